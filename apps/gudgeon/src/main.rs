@@ -1,0 +1,2 @@
+//! The Gudgeon command line.
+fn main() {}

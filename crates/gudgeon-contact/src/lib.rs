@@ -1,0 +1,1 @@
+//! Asperity and boundary contact.

@@ -1,0 +1,87 @@
+//! Errors that cross the border between a sub-model and what drives it.
+
+use std::borrow::Cow;
+
+/// A model could not answer for these inputs.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum EvalError {
+    /// A smaller step may succeed (no convergence, a trial state outside the range). The integrator retries.
+    #[error("{model}: {what}")]
+    Recoverable {
+        /// The model that could not answer.
+        model: &'static str,
+        /// What went wrong, with the offending values.
+        what: Cow<'static, str>,
+    },
+    /// No step size can help. The run stops.
+    #[error("{model}: {what}")]
+    Fatal {
+        /// The model that could not answer.
+        model: &'static str,
+        /// What went wrong, with the offending values.
+        what: Cow<'static, str>,
+    },
+}
+
+impl EvalError {
+    /// A [`EvalError::Recoverable`].
+    pub fn recoverable(model: &'static str, what: impl Into<Cow<'static, str>>) -> Self {
+        Self::Recoverable { model, what: what.into() }
+    }
+
+    /// A [`EvalError::Fatal`].
+    pub fn fatal(model: &'static str, what: impl Into<Cow<'static, str>>) -> Self {
+        Self::Fatal { model, what: what.into() }
+    }
+
+    /// Whether a smaller step may help.
+    #[must_use]
+    pub const fn is_recoverable(&self) -> bool {
+        matches!(self, Self::Recoverable { .. })
+    }
+}
+
+/// A well-formed specification that cannot be built: values that contradict each other or a combination with no meaning.
+///
+/// `field` is a dotted path inside the specification (`""` for the whole); the loader turns it into a place in the file.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{message}")]
+pub struct BuildError {
+    /// Dotted path of the offending value, relative to the specification that was being built.
+    pub field: String,
+    /// What is wrong, with the values.
+    pub message: String,
+    /// What would be right, when that is known.
+    pub help: Option<String>,
+}
+
+impl BuildError {
+    /// An error about one value of the specification.
+    pub fn at(field: impl Into<String>, message: impl Into<String>) -> Self {
+        Self { field: field.into(), message: message.into(), help: None }
+    }
+
+    /// An error about the specification as a whole.
+    pub fn new(message: impl Into<String>) -> Self {
+        Self::at("", message)
+    }
+
+    /// Adds the advice.
+    #[must_use]
+    pub fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+
+    /// Prepends `prefix` to the path: what a container does with an error of one of its parts.
+    #[must_use]
+    pub fn within(mut self, prefix: &str) -> Self {
+        self.field = match (prefix.is_empty(), self.field.is_empty()) {
+            (true, _) => self.field,
+            (false, true) => prefix.to_owned(),
+            (false, false) => format!("{prefix}.{}", self.field),
+        };
+        self
+    }
+}

@@ -1,0 +1,187 @@
+//! Resolved geometry of a ring pack, in SI numbers: what a scene hands to the models it builds.
+
+/// Shape of a ring's running face: drop `h_s(x)` below its nearest point to the liner, `x` from the bottom edge (0) to
+/// the top edge (`length`) \[m\].
+#[derive(Debug, Clone, PartialEq)]
+pub enum FaceProfile {
+    /// `h_s = curvature (x - apex)^2`.
+    Parabola {
+        /// Axial length of the running face \[m\].
+        length: f64,
+        /// κ \[1/m\].
+        curvature: f64,
+        /// Position of the apex \[m\]; may lie outside the face.
+        apex: f64,
+    },
+    /// Piecewise linear through equally spaced nodes, bottom edge first. A straight taper has two nodes.
+    Table {
+        /// Axial length of the running face \[m\].
+        length: f64,
+        /// Drops at the nodes \[m\], at least two.
+        drops: Vec<f64>,
+    },
+}
+
+impl FaceProfile {
+    /// Axial length of the running face \[m\].
+    #[must_use]
+    pub const fn length(&self) -> f64 {
+        match self {
+            Self::Parabola { length, .. } | Self::Table { length, .. } => *length,
+        }
+    }
+
+    /// Drop at `x` \[m\], with the nearest point at zero as stored (nothing is shifted here).
+    #[must_use]
+    pub fn drop_at(&self, x: f64) -> f64 {
+        match self {
+            Self::Parabola { curvature, apex, .. } => curvature * (x - apex) * (x - apex),
+            Self::Table { length, drops } => {
+                let n = drops.len() - 1;
+                let t = (x / length * n as f64).clamp(0.0, n as f64);
+                let i = (t as usize).min(n - 1);
+                let f = t - i as f64;
+                drops[i] + f * (drops[i + 1] - drops[i])
+            }
+        }
+    }
+}
+
+/// Where the gas behind a ring is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum BackVolume {
+    /// From the groove's geometry; follows the ring's radial position.
+    Geometric,
+    /// A given constant volume \[m³\].
+    Fixed(f64),
+    /// Groove drained to the space below the ring: no volume of its own, `p_back` is the pressure below.
+    Drained,
+    /// A ring with no axial clearance (three-piece oil ring): no volume, `p_back` is the mean of above and below.
+    Sealed,
+}
+
+/// A chamfer at an edge of a groove: opens an extra leak path at the end gap when the ring is seated on that side.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Chamfer {
+    /// Extra area \[m²\] when seated on the lower flank.
+    pub area_lower: f64,
+    /// Extra area \[m²\] when seated on the upper flank.
+    pub area_upper: f64,
+}
+
+/// One ring with its groove.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RingGeometry {
+    /// Axial thickness `b` at the outer diameter \[m\].
+    pub height: f64,
+    /// Radial thickness `w` \[m\].
+    pub width: f64,
+    /// Mass \[kg\].
+    pub mass: f64,
+    /// Tangential (closing) force \[N\].
+    pub tangential_force: f64,
+    /// Running end gap at the nominal bore \[m\]; a liner distortion `δ` adds `2πδ`.
+    pub gap: f64,
+    /// Flow area of the end gap \[m²\] when it is given instead of following from gap and land clearance.
+    pub gap_area: Option<f64>,
+    /// Piston radius above the groove \[m\].
+    pub piston_radius_above: f64,
+    /// Piston radius below the groove \[m\].
+    pub piston_radius_below: f64,
+    /// Groove root radius \[m\].
+    pub root_radius: f64,
+    /// Slope of the upper groove flank, positive when the groove opens outwards.
+    pub slope_upper: f64,
+    /// Slope of the lower groove flank.
+    pub slope_lower: f64,
+    /// Axial height of the groove at its root \[m\].
+    pub groove_height_inner: f64,
+    /// Axial clearance when the ring touches the groove root \[m\]; grows by `(slope_upper + slope_lower) * gap_behind`.
+    pub clearance_inner: f64,
+    /// Equivalent leak height of the seated upper flank \[m\].
+    pub leak_upper: f64,
+    /// Equivalent leak height of the seated lower flank \[m\].
+    pub leak_lower: f64,
+    /// Equivalent leak height of the running face \[m\].
+    pub leak_face: f64,
+    /// Groove-edge chamfers.
+    pub chamfer: Chamfer,
+    /// Where the gas behind the ring is.
+    pub back: BackVolume,
+    /// Gas temperature behind the ring \[K\].
+    pub back_temperature: f64,
+    /// Oil-filled fraction of the groove flanks, 0 to 1.
+    pub oil_fill: f64,
+    /// Running face of one land.
+    pub face: FaceProfile,
+    /// Lands of the running face: 1, or 2 for a twin-land oil ring; the space between lands is drained to below the ring.
+    pub lands: usize,
+    /// Rails that this entry stands for: 1, or 2 for a three-piece oil ring whose rails are modelled by one that carries
+    /// half the tangential force.
+    pub rails: usize,
+    /// Whether the ring can move in its groove at all.
+    pub has_clearance: bool,
+}
+
+impl RingGeometry {
+    /// Film thickness at which the ring touches the groove root \[m\], for a local liner radius.
+    #[must_use]
+    pub fn h_max(&self, liner_radius: f64) -> f64 {
+        liner_radius - self.root_radius - self.width
+    }
+}
+
+/// The space above a ring, or the crankcase.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LandGeometry {
+    /// Gas volume \[m³\]; not used for the first (combustion chamber) and the last (crankcase).
+    pub volume: f64,
+    /// Gas temperature \[K\].
+    pub temperature: f64,
+}
+
+/// A ring pack.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PackGeometry {
+    /// Liner radius without distortion \[m\].
+    pub bore_radius: f64,
+    /// Rings, crown first.
+    pub rings: Vec<RingGeometry>,
+    /// `rings.len() + 1` spaces: above ring 1 (combustion chamber) … below the last ring (crankcase).
+    pub lands: Vec<LandGeometry>,
+    /// Ratio of specific heats.
+    pub gamma: f64,
+    /// Specific gas constant \[J/(kg K)\].
+    pub gas_constant: f64,
+}
+
+/// Where one ring is at an instant, and the geometry that follows from it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct RingPlace {
+    /// Film thickness at the nearest point \[m\].
+    pub h: f64,
+    /// Height of the ring above the lower groove flank \[m\], 0 to `clearance` (slightly outside while in contact).
+    pub s: f64,
+    /// Velocity of the ring relative to the piston \[m/s\], upwards positive.
+    pub v: f64,
+    /// Axial clearance now \[m\].
+    pub clearance: f64,
+    /// `s / clearance` clamped to 0…1; for a discrete motion model 0, ½ or 1.
+    pub e: f64,
+    /// Liner radius here \[m\], distortion included.
+    pub liner_radius: f64,
+    /// Inner radius of the ring \[m\].
+    pub r_inner: f64,
+    /// Outer radius of the ring \[m\].
+    pub r_outer: f64,
+    /// Volume behind the ring \[m³\].
+    pub back_volume: f64,
+}
+
+impl RingPlace {
+    /// Flank annulus `π (r_outer² - r_inner²)` \[m²\].
+    #[must_use]
+    pub fn flank_area(&self) -> f64 {
+        std::f64::consts::PI * (self.r_outer * self.r_outer - self.r_inner * self.r_inner)
+    }
+}

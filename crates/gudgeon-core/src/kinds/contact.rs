@@ -1,0 +1,35 @@
+use std::fmt::Debug;
+
+use dyn_clone::DynClone;
+
+use crate::BuildError;
+
+/// Configuration of a contact model.
+#[typetag::serde(tag = "model")]
+pub trait ContactSpec: Debug + DynClone + Send + Sync {
+    /// Builds the running model.
+    ///
+    /// # Errors
+    /// Constants outside their range.
+    fn build(&self) -> Result<Box<dyn Contact>, BuildError>;
+}
+dyn_clone::clone_trait_object!(ContactSpec);
+crate::register_kind!(dyn ContactSpec, "contact", "solid contact of asperities and boundary friction");
+
+/// A running contact model.
+pub trait Contact: Debug + Send + Sync {
+    /// Nominal contact pressure \[Pa\] for each separation \[m\] of the mean planes. Never negative, falls with separation.
+    fn pressure(&self, separation: &[f64], pressure: &mut [f64]);
+    /// Separation \[m\] above which the pressure is zero or below 1e-12 of its value at zero separation. Zero when the model
+    /// carries no load.
+    fn range(&self) -> f64;
+    /// Film thickness \[m\] that a film cannot go below, when this model is a switch and not a pressure: the surfaces then
+    /// carry the remaining load.
+    fn floor(&self) -> Option<f64>;
+    /// Coefficient of friction of the load that the solid contact carries.
+    fn friction_coefficient(&self) -> f64;
+    /// Whether, on the floor, the whole radial load rubs with the boundary coefficient and the film contributes no shear.
+    fn floor_replaces_film(&self) -> bool {
+        false
+    }
+}

@@ -1,0 +1,28 @@
+use std::fmt::Debug;
+
+use dyn_clone::DynClone;
+
+use crate::BuildError;
+
+/// Configuration of a model of the friction between ring and groove flanks, which resists radial motion.
+#[typetag::serde(tag = "model")]
+pub trait FlankFrictionSpec: Debug + DynClone + Send + Sync {
+    /// Builds the running model.
+    ///
+    /// # Errors
+    /// Constants outside their range.
+    fn build(&self) -> Result<Box<dyn FlankFriction>, BuildError>;
+}
+dyn_clone::clone_trait_object!(FlankFrictionSpec);
+crate::register_kind!(dyn FlankFrictionSpec, "flank_friction", "friction on the groove flanks against the ring's radial motion");
+
+/// A running flank-friction model.
+pub trait FlankFriction: Send {
+    /// Radial force on the ring \[N\] towards the liner, odd and not decreasing in `hdot` \[m/s\] (a ring moving away from the
+    /// liner is pushed towards it), for the axial load \[N\] that presses the flanks together.
+    fn force(&self, hdot: f64, axial_load: f64) -> f64;
+    /// Derivative of the force by `hdot` \[N s/m\].
+    fn slope(&self, hdot: f64, axial_load: f64) -> f64;
+    /// Whether the force is zero for all inputs.
+    fn is_off(&self) -> bool;
+}

@@ -1,0 +1,87 @@
+use std::fmt::Debug;
+
+use dyn_clone::DynClone;
+
+use crate::geometry::{PackGeometry, RingPlace};
+use crate::{BuildError, EvalError};
+
+/// What a [`GasFlowSpec`] is built for.
+#[derive(Debug, Clone, Copy)]
+pub struct GasFlowCtx<'a> {
+    /// The pack.
+    pub pack: &'a PackGeometry,
+}
+
+/// Configuration of an inter-ring gas-flow model.
+#[typetag::serde(tag = "model")]
+pub trait GasFlowSpec: Debug + DynClone + Send + Sync {
+    /// Checks the geometry it needs and builds the running model.
+    ///
+    /// # Errors
+    /// A volume or gap that the geometry does not give.
+    fn build(&self, ctx: &GasFlowCtx<'_>) -> Result<Box<dyn GasFlow>, BuildError>;
+}
+dyn_clone::clone_trait_object!(GasFlowSpec);
+crate::register_kind!(dyn GasFlowSpec, "gas_flow", "gas flow between the lands, past and behind the rings");
+
+/// The boundary and the rings at an instant.
+#[derive(Debug, Clone, Copy)]
+pub struct GasIn<'a> {
+    /// Cylinder pressure \[Pa\].
+    pub p_cylinder: f64,
+    /// Crankcase pressure \[Pa\].
+    pub p_crankcase: f64,
+    /// One place per ring.
+    pub rings: &'a [RingPlace],
+}
+
+/// Pressures and flows of the pack with `n` rings.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct GasOut {
+    /// Pressures \[Pa\] of the `n + 1` lands, cylinder first, crankcase last.
+    pub p_land: Vec<f64>,
+    /// Pressures \[Pa\] behind the `n` rings.
+    pub p_back: Vec<f64>,
+    /// Flow \[kg/s\] leaving the land above each ring towards the ring (gap, face and upper flank), downwards positive.
+    pub flow_in: Vec<f64>,
+    /// Flow \[kg/s\] arriving in the land below each ring from the ring, downwards positive. Differs from `flow_in` by what
+    /// the space behind the ring stores. The last one is the blow-by.
+    pub flow_out: Vec<f64>,
+}
+
+impl GasOut {
+    /// Buffers for `rings` rings.
+    #[must_use]
+    pub fn new(rings: usize) -> Self {
+        Self {
+            p_land: vec![0.0; rings + 1],
+            p_back: vec![0.0; rings],
+            flow_in: vec![0.0; rings],
+            flow_out: vec![0.0; rings],
+        }
+    }
+}
+
+/// A running gas-flow model. Its states are the gas masses \[kg\] of its volumes, so that any linear-invariant-preserving
+/// integrator closes the mass balance to round-off: `Σ d_state = flow_in[0] - flow_out[n-1]` holds for every call.
+pub trait GasFlow: Send {
+    /// Number of volumes with a mass of their own.
+    fn n_states(&self) -> usize;
+    /// Name of each state's volume: `land2`, `ring1.back`.
+    fn state_names(&self) -> Vec<String>;
+    /// Whether flows or volumes depend on the film thickness of the rings (`RingPlace::h`).
+    fn uses_film_height(&self) -> bool;
+    /// Masses \[kg\] for the given pressures \[Pa\] of all volumes: `p_land[i]` for lands, for the space behind ring i the
+    /// mean of `p_land[i]` and `p_land[i+1]`, as start of a run.
+    fn initial(&self, inp: &GasIn<'_>, p_land: &[f64], state: &mut [f64]);
+    /// Pressures only: `out.p_land`, `out.p_back`.
+    ///
+    /// # Errors
+    /// A mass that is not positive.
+    fn pressures(&mut self, inp: &GasIn<'_>, state: &[f64], out: &mut GasOut) -> Result<(), EvalError>;
+    /// Pressures, flows and rates of change of the masses \[kg/s\].
+    ///
+    /// # Errors
+    /// A mass that is not positive.
+    fn rates(&mut self, inp: &GasIn<'_>, state: &[f64], d_state: &mut [f64], out: &mut GasOut) -> Result<(), EvalError>;
+}

@@ -1,0 +1,84 @@
+use std::fmt::Debug;
+
+use dyn_clone::DynClone;
+
+use crate::geometry::FaceProfile;
+use crate::{BuildError, EvalError};
+
+/// What a [`HydrodynamicsSpec`] is built for: one running face of one ring.
+#[derive(Debug, Clone, Copy)]
+pub struct FaceCtx<'a> {
+    /// Shape of the face.
+    pub face: &'a FaceProfile,
+}
+
+/// Configuration of a ring-face film model.
+#[typetag::serde(tag = "model")]
+pub trait HydrodynamicsSpec: Debug + DynClone + Send + Sync {
+    /// Builds the running model of one face.
+    ///
+    /// # Errors
+    /// A face shape that the model cannot represent.
+    fn build(&self, ctx: &FaceCtx<'_>) -> Result<Box<dyn Hydrodynamics>, BuildError>;
+}
+dyn_clone::clone_trait_object!(HydrodynamicsSpec);
+crate::register_kind!(dyn HydrodynamicsSpec, "hydrodynamics", "oil film between a ring face and the liner");
+
+/// One film at an instant, in the frame of the ring, `x` from the bottom edge to the top edge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FaceIn {
+    /// Film thickness at zero drop \[m\]: `h(x) = h + drop(x)`.
+    pub h: f64,
+    /// Velocity of the liner along `+x` seen from the ring \[m/s\]: minus the piston velocity.
+    pub u: f64,
+    /// Absolute pressure at the bottom edge \[Pa\].
+    pub p_bottom: f64,
+    /// Absolute pressure at the top edge \[Pa\].
+    pub p_top: f64,
+    /// Absolute pressure below which the film cavitates \[Pa\].
+    pub p_cav: f64,
+    /// Dynamic viscosity \[Pa s\].
+    pub mu: f64,
+}
+
+/// What a film does, per metre of circumference.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct FaceOut {
+    /// `∫ (p - p_cav) dx` \[N/m\].
+    pub load: f64,
+    /// `∂load/∂ḣ` \[N s/m²\], never positive.
+    pub load_rate: f64,
+    /// Viscous force on the **ring** along `+x`, `∫ (μu/h - h p'/2) dx` \[N/m\].
+    pub ring_shear: f64,
+    /// Viscous force on the **liner** along `-x`, `∫ (μu/h + h p'/2) dx` \[N/m\]: what a liner load cell feels, and what the
+    /// crank pays for but for the end term `[p h]`.
+    pub liner_shear: f64,
+    /// Pressure force on the sloping ring face along `+x`, `-∫ p h' dx` \[N/m\], with `p` above `p_cav`.
+    pub slope_force: f64,
+    /// Highest absolute pressure \[Pa\].
+    pub p_max: f64,
+    /// Extent of the full film: `x` of its lower and upper end \[m\].
+    pub full_film: (f64, f64),
+}
+
+/// A running ring-face film.
+pub trait Hydrodynamics: Send {
+    /// Load and friction for a given squeeze velocity `hdot = ∂h/∂t` \[m/s\].
+    ///
+    /// # Errors
+    /// No solution for these inputs (Recoverable), or inputs that are not numbers (Fatal).
+    fn evaluate(&mut self, inp: &FaceIn, hdot: f64) -> Result<FaceOut, EvalError>;
+
+    /// The squeeze velocity \[m/s\] at which the film carries `load` \[N/m\] (measured above `p_cav`, as in
+    /// [`FaceOut::load`]). Load falls monotonically with `hdot`; the default brackets and then runs a safeguarded Newton.
+    ///
+    /// # Errors
+    /// As [`Hydrodynamics::evaluate`], or no convergence.
+    fn squeeze_rate(&mut self, inp: &FaceIn, load: f64) -> Result<f64, EvalError>;
+
+    /// Film thickness and absolute pressure along the face, for plots: `out[i] = (x, h, p)` at `out.len()` equal spacings.
+    ///
+    /// # Errors
+    /// As [`Hydrodynamics::evaluate`].
+    fn profile(&mut self, inp: &FaceIn, hdot: f64, out: &mut [(f64, f64, f64)]) -> Result<(), EvalError>;
+}

@@ -1,0 +1,26 @@
+//! The sub-model traits, one file per kind: a specification (what a case file says) and the runtime it builds.
+//!
+//! A runtime owns its work arrays, allocates only when built, answers a whole field or scene step per call, and says
+//! [`EvalError::Recoverable`](crate::EvalError::Recoverable) when it cannot answer.
+
+mod contact;
+mod cylinder_pressure;
+mod film_temperature;
+mod flank_damping;
+mod flank_friction;
+mod gas_flow;
+mod hydrodynamics;
+mod kinematics;
+mod oil;
+mod ring_motion;
+
+pub use contact::*;
+pub use cylinder_pressure::*;
+pub use film_temperature::*;
+pub use flank_damping::*;
+pub use flank_friction::*;
+pub use gas_flow::*;
+pub use hydrodynamics::*;
+pub use kinematics::*;
+pub use oil::*;
+pub use ring_motion::*;

@@ -1,0 +1,26 @@
+//! What every part of Gudgeon agrees on: the sub-model traits with their inputs and outputs, the model registry,
+//! quantities with units, results, errors. No physics lives here.
+//!
+//! # Conventions
+//!
+//! * SI `f64` everywhere; a name that holds anything else carries a suffix (`theta_deg`).
+//! * Crank angle `theta` \[rad\], 0 at the gas-exchange top dead centre (start of intake), 2π at the firing one of a
+//!   four-stroke cycle; it counts from the crank throw pointing at the head.
+//! * Axial direction: positive towards the cylinder head ("up"). Face coordinate `x` runs from the bottom edge (crankcase
+//!   side) to the top edge of the ring face.
+//! * Rings count from the crown, ring 1 first; `land 1` is the top land above ring 1, `land n+1` the space below ring n.
+//!   Slices are zero-based: `lands[0]` is land 1.
+//! * Pressures are absolute unless said otherwise. `p_cav` is the pressure below which a film cannot go.
+
+pub mod error;
+pub mod geometry;
+pub mod kinds;
+pub mod quantity;
+pub mod registry;
+pub mod result;
+
+#[doc(hidden)]
+pub use {inventory, schemars, serde_json};
+
+pub use error::{BuildError, EvalError};
+pub use registry::{KindInfo, ModelInfo, Registry};

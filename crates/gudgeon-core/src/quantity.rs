@@ -1,0 +1,361 @@
+//! Physical quantities as they stand in case files: `"120 mm"`, `"2000 rpm"`, `"100 degC"`, or a bare SI number.
+//!
+//! Inside the program every value is an SI `f64`; a [`Quantity`] exists only where a file is read or echoed. Its two
+//! type parameters say which dimension it has and which values it admits, so that a wrong unit, a negative clearance
+//! or a NaN is refused while the file is being read, where the error can still point at the text.
+
+use std::borrow::Cow;
+use std::fmt;
+use std::marker::PhantomData;
+
+use serde::de::{self, Visitor};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+/// One unit of a dimension: `si = value * factor + offset`.
+#[derive(Debug, Clone, Copy)]
+pub struct Unit {
+    /// The text a user writes.
+    pub name: &'static str,
+    /// Multiplier to SI.
+    pub factor: f64,
+    /// Added after the multiplication (temperatures only).
+    pub offset: f64,
+}
+
+/// A physical dimension with the units a user may write. The first unit is the SI unit.
+pub trait Dimension: 'static {
+    /// What to call it in a message: "a length".
+    const NAME: &'static str;
+    /// Accepted units, the SI unit first.
+    const UNITS: &'static [Unit];
+}
+
+/// Which values of a dimension are admitted.
+pub trait Bound: 'static {
+    /// Completes the sentence "must be …".
+    const TEXT: &'static str;
+    /// Whether an SI value is admitted. Only finite values are ever asked about.
+    fn admits(si: f64) -> bool;
+}
+
+macro_rules! bounds {
+    ($($(#[$doc:meta])* $name:ident: $text:literal, $test:expr;)*) => {$(
+        $(#[$doc])*
+        #[derive(Debug, Clone, Copy)]
+        pub enum $name {}
+        impl Bound for $name {
+            const TEXT: &'static str = $text;
+            fn admits(si: f64) -> bool { let f: fn(f64) -> bool = $test; f(si) }
+        }
+    )*};
+}
+bounds! {
+    /// Any finite value.
+    Any: "finite", |_| true;
+    /// Strictly greater than zero.
+    Positive: "greater than zero", |v| v > 0.0;
+    /// Zero or greater.
+    NonNegative: "zero or greater", |v| v >= 0.0;
+    /// From 0 to 1.
+    Fraction: "between 0 and 1", |v| (0.0..=1.0).contains(&v);
+}
+
+macro_rules! dimensions {
+    ($($(#[$doc:meta])* $name:ident, $alias:ident, $pos:ident, $text:literal, [$(($unit:literal, $factor:expr, $offset:expr)),* $(,)?];)*) => {
+        /// Marker types of the dimensions.
+        pub mod dim {
+            use super::{Dimension, PI, Unit};
+            $(
+                $(#[$doc])*
+                #[derive(Debug, Clone, Copy)]
+                pub enum $name {}
+                impl Dimension for $name {
+                    const NAME: &'static str = $text;
+                    const UNITS: &'static [Unit] = &[$(Unit { name: $unit, factor: $factor, offset: $offset }),*];
+                }
+            )*
+        }
+        $(
+            $(#[$doc])*
+            pub type $alias<B = Any> = Quantity<dim::$name, B>;
+            $(#[$doc])*
+            ///
+            /// Strictly positive.
+            pub type $pos = Quantity<dim::$name, Positive>;
+        )*
+        /// Every dimension with its units, for documentation: (name, units).
+        pub const ALL_DIMENSIONS: &[(&str, &[Unit])] = &[$((dim::$name::NAME, dim::$name::UNITS)),*];
+    };
+}
+const PI: f64 = std::f64::consts::PI;
+dimensions! {
+    /// Length \[m\].
+    Length, Length, PosLength, "a length", [("m", 1.0, 0.0), ("cm", 1e-2, 0.0), ("mm", 1e-3, 0.0), ("um", 1e-6, 0.0), ("µm", 1e-6, 0.0), ("nm", 1e-9, 0.0), ("in", 0.0254, 0.0)];
+    /// Area \[m²\].
+    Area, Area, PosArea, "an area", [("m2", 1.0, 0.0), ("cm2", 1e-4, 0.0), ("mm2", 1e-6, 0.0)];
+    /// Volume \[m³\].
+    Volume, Volume, PosVolume, "a volume", [("m3", 1.0, 0.0), ("l", 1e-3, 0.0), ("cm3", 1e-6, 0.0), ("mm3", 1e-9, 0.0)];
+    /// Mass \[kg\].
+    Mass, Mass, PosMass, "a mass", [("kg", 1.0, 0.0), ("g", 1e-3, 0.0), ("mg", 1e-6, 0.0)];
+    /// Force \[N\].
+    Force, Force, PosForce, "a force", [("N", 1.0, 0.0), ("kN", 1e3, 0.0)];
+    /// Pressure \[Pa\], absolute unless the key says otherwise.
+    Pressure, Pressure, PosPressure, "a pressure", [("Pa", 1.0, 0.0), ("kPa", 1e3, 0.0), ("MPa", 1e6, 0.0), ("GPa", 1e9, 0.0), ("bar", 1e5, 0.0), ("mbar", 1e2, 0.0), ("atm", 101_325.0, 0.0), ("psi", 6_894.757_293_168, 0.0)];
+    /// Temperature \[K\].
+    Temperature, Temperature, PosTemperature, "a temperature", [("K", 1.0, 0.0), ("degC", 1.0, 273.15), ("°C", 1.0, 273.15)];
+    /// Angular speed \[rad/s\].
+    AngularSpeed, AngularSpeed, PosAngularSpeed, "a rotational speed", [("rad/s", 1.0, 0.0), ("rpm", PI / 30.0, 0.0), ("1/min", PI / 30.0, 0.0), ("rev/s", 2.0 * PI, 0.0)];
+    /// Angle \[rad\].
+    Angle, Angle, PosAngle, "an angle", [("rad", 1.0, 0.0), ("deg", PI / 180.0, 0.0)];
+    /// Time \[s\].
+    Time, Time, PosTime, "a time", [("s", 1.0, 0.0), ("ms", 1e-3, 0.0), ("us", 1e-6, 0.0)];
+    /// Velocity \[m/s\].
+    Velocity, Velocity, PosVelocity, "a velocity", [("m/s", 1.0, 0.0), ("mm/s", 1e-3, 0.0)];
+    /// Dynamic viscosity \[Pa s\].
+    Viscosity, Viscosity, PosViscosity, "a dynamic viscosity", [("Pa s", 1.0, 0.0), ("mPa s", 1e-3, 0.0), ("cP", 1e-3, 0.0)];
+    /// Energy \[J\].
+    Energy, Energy, PosEnergy, "an energy", [("J", 1.0, 0.0), ("kJ", 1e3, 0.0)];
+    /// Specific gas constant \[J/(kg K)\].
+    GasConstant, GasConstant, PosGasConstant, "a specific gas constant", [("J/(kg K)", 1.0, 0.0), ("kJ/(kg K)", 1e3, 0.0)];
+    /// Coefficient of thermal expansion \[1/K\].
+    Expansion, Expansion, PosExpansion, "a thermal expansion coefficient", [("1/K", 1.0, 0.0)];
+    /// Stiffness \[N/m\].
+    Stiffness, Stiffness, PosStiffness, "a stiffness", [("N/m", 1.0, 0.0), ("N/mm", 1e3, 0.0), ("N/um", 1e6, 0.0)];
+    /// Force per area and velocity \[N s/m³\].
+    AreaDamping, AreaDamping, PosAreaDamping, "a damping per area", [("N s/m3", 1.0, 0.0), ("N/(m2 m/s)", 1.0, 0.0)];
+    /// Surface density \[1/m²\].
+    SurfaceDensity, SurfaceDensity, PosSurfaceDensity, "a surface density", [("1/m2", 1.0, 0.0), ("1/mm2", 1e6, 0.0)];
+    /// Dimensionless number.
+    Ratio, Ratio, PosRatio, "a number", [("", 1.0, 0.0), ("%", 1e-2, 0.0)];
+}
+
+/// An SI value of dimension `D` that satisfies `B`.
+///
+/// Reads from a bare number (SI) or from text with a unit; writes text with the SI unit, which reads back to the same bits.
+pub struct Quantity<D, B = Any> {
+    si: f64,
+    marker: PhantomData<fn() -> (D, B)>,
+}
+
+/// Why a value is not a [`Quantity`].
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum QuantityError {
+    /// No number at the front of the text.
+    #[error("`{text}` does not start with a number; write {dimension} like `{example}`")]
+    NotANumber {
+        /// What was written.
+        text: String,
+        /// The dimension wanted.
+        dimension: &'static str,
+        /// A well-formed example.
+        example: String,
+    },
+    /// The unit belongs to another dimension or does not exist.
+    #[error("unit `{unit}` is not {dimension}, expected one of {known}")]
+    Unit {
+        /// What was written.
+        unit: String,
+        /// The dimension wanted.
+        dimension: &'static str,
+        /// The units that would do.
+        known: String,
+    },
+    /// Not finite, or outside the admitted range.
+    #[error("`{text}` must be {bound}")]
+    Range {
+        /// What was written.
+        text: String,
+        /// What it must be.
+        bound: &'static str,
+    },
+}
+
+impl<D: Dimension, B: Bound> Quantity<D, B> {
+    /// From an SI value.
+    ///
+    /// # Errors
+    /// [`QuantityError::Range`] when the value is not finite or not admitted by `B`.
+    pub fn new(si: f64) -> Result<Self, QuantityError> {
+        Self::checked(si, || format!("{si} {}", D::UNITS[0].name).trim_end().to_owned())
+    }
+
+    fn checked(si: f64, text: impl Fn() -> String) -> Result<Self, QuantityError> {
+        if !si.is_finite() {
+            return Err(QuantityError::Range { text: text(), bound: "finite" });
+        }
+        if !B::admits(si) {
+            return Err(QuantityError::Range { text: text(), bound: B::TEXT });
+        }
+        Ok(Self { si, marker: PhantomData })
+    }
+
+    /// From text with a unit, `"120 mm"`. A number without a unit is SI.
+    ///
+    /// # Errors
+    /// Says which part of the text is wrong and what would be right.
+    pub fn parse(text: &str) -> Result<Self, QuantityError> {
+        let t = text.trim();
+        // The longest prefix that is a number; "1e3" must not be read as "1" with the unit "e3".
+        let number = (0..=t.len())
+            .rev()
+            .filter(|&i| t.is_char_boundary(i))
+            .find_map(|i| t[..i].trim_end().parse::<f64>().ok().map(|v| (v, t[i..].trim())));
+        let Some((value, unit)) = number else {
+            let u = D::UNITS.get(2).or(D::UNITS.first()).map_or("", |u| u.name);
+            return Err(QuantityError::NotANumber {
+                text: text.to_owned(),
+                dimension: D::NAME,
+                example: format!("1.5 {u}").trim_end().to_owned(),
+            });
+        };
+        let unit_of = |name: &str| D::UNITS.iter().find(|u| u.name == name);
+        let u = if unit.is_empty() { Some(&D::UNITS[0]) } else { unit_of(unit) };
+        let Some(u) = u else {
+            return Err(QuantityError::Unit {
+                unit: unit.to_owned(),
+                dimension: D::NAME,
+                known: D::UNITS
+                    .iter()
+                    .filter(|u| !u.name.is_empty())
+                    .map(|u| format!("`{}`", u.name))
+                    .collect::<Vec<_>>()
+                    .join(", "),
+            });
+        };
+        Self::checked(value * u.factor + u.offset, || text.to_owned())
+    }
+
+    /// The value in SI units.
+    #[must_use]
+    pub const fn si(self) -> f64 {
+        self.si
+    }
+}
+
+/// Shorthand for a value that stands in the source code and is known to be admitted.
+///
+/// # Panics
+/// When it is not, which a test of the default catches.
+pub fn quantity<D: Dimension, B: Bound>(si: f64) -> Quantity<D, B> {
+    match Quantity::new(si) {
+        Ok(q) => q,
+        Err(e) => panic!("built-in value: {e}"),
+    }
+}
+
+impl<D, B> Clone for Quantity<D, B> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<D, B> Copy for Quantity<D, B> {}
+impl<D, B> PartialEq for Quantity<D, B> {
+    fn eq(&self, other: &Self) -> bool {
+        self.si == other.si
+    }
+}
+impl<D: Dimension, B> fmt::Debug for Quantity<D, B> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+impl<D: Dimension, B> fmt::Display for Quantity<D, B> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let unit = D::UNITS[0].name;
+        let (v, space) = (self.si, if unit.is_empty() { "" } else { " " });
+        if v != 0.0 && (v.abs() < 1e-4 || v.abs() >= 1e7) {
+            write!(f, "{v:e}{space}{unit}")
+        } else {
+            write!(f, "{v}{space}{unit}")
+        }
+    }
+}
+
+impl<D: Dimension, B: Bound> Serialize for Quantity<D, B> {
+    fn serialize<S: Serializer>(&self, s: S) -> Result<S::Ok, S::Error> {
+        if D::UNITS[0].name.is_empty() { s.serialize_f64(self.si) } else { s.collect_str(self) }
+    }
+}
+
+impl<'de, D: Dimension, B: Bound> Deserialize<'de> for Quantity<D, B> {
+    fn deserialize<T: Deserializer<'de>>(d: T) -> Result<Self, T::Error> {
+        struct V<D, B>(PhantomData<fn() -> (D, B)>);
+        impl<D: Dimension, B: Bound> Visitor<'_> for V<D, B> {
+            type Value = Quantity<D, B>;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                let u = D::UNITS[0].name;
+                if u.is_empty() {
+                    write!(f, "{}", D::NAME)
+                } else {
+                    write!(f, "{} (a number in {u}, or text with a unit)", D::NAME)
+                }
+            }
+            fn visit_f64<E: de::Error>(self, v: f64) -> Result<Self::Value, E> {
+                Quantity::new(v).map_err(E::custom)
+            }
+            fn visit_i64<E: de::Error>(self, v: i64) -> Result<Self::Value, E> {
+                Quantity::new(v as f64).map_err(E::custom)
+            }
+            fn visit_u64<E: de::Error>(self, v: u64) -> Result<Self::Value, E> {
+                Quantity::new(v as f64).map_err(E::custom)
+            }
+            fn visit_str<E: de::Error>(self, v: &str) -> Result<Self::Value, E> {
+                Quantity::parse(v).map_err(E::custom)
+            }
+        }
+        d.deserialize_any(V(PhantomData))
+    }
+}
+
+impl<D: Dimension, B: Bound> schemars::JsonSchema for Quantity<D, B> {
+    fn inline_schema() -> bool {
+        true
+    }
+    fn schema_name() -> Cow<'static, str> {
+        format!("{} ({})", D::NAME, B::TEXT).into()
+    }
+    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        let units: Vec<_> = D::UNITS.iter().map(|u| u.name).filter(|n| !n.is_empty()).collect();
+        schemars::json_schema!({
+            "description": format!("{}, {}", D::NAME, B::TEXT),
+            "type": ["number", "string"],
+            "x-units": units,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reads_units_and_bare_numbers() {
+        let mm = PosLength::parse("120 mm").map(Quantity::si);
+        assert_eq!(mm, Ok(0.12));
+        assert_eq!(Length::<Any>::parse("1e3").map(Quantity::si), Ok(1000.0));
+        assert_eq!(PosTemperature::parse("100degC").map(Quantity::si), Ok(373.15));
+        assert_eq!(Ratio::<Any>::parse("5 %").map(Quantity::si), Ok(0.05));
+    }
+
+    #[test]
+    fn refuses_with_the_reason() {
+        let e = |r: Result<PosLength, QuantityError>| r.expect_err("must be refused").to_string();
+        assert_eq!(
+            e(PosLength::parse("3 bar")),
+            "unit `bar` is not a length, expected one of `m`, `cm`, `mm`, `um`, `µm`, `nm`, `in`"
+        );
+        assert_eq!(e(PosLength::parse("-3 mm")), "`-3 mm` must be greater than zero");
+        assert_eq!(e(PosLength::parse("NaN mm")), "`NaN mm` must be finite");
+        assert_eq!(e(PosLength::parse("mm")), "`mm` does not start with a number; write a length like `1.5 mm`");
+        assert!(PosLength::new(f64::INFINITY).is_err());
+    }
+
+    #[test]
+    fn echo_reads_back_to_the_same_bits() {
+        for v in [0.12, 1e-9 / 3.0, 8.335_65e-5, 1.0 / 3.0, 2e9] {
+            let q: Length = quantity(v);
+            assert_eq!(Length::<Any>::parse(&q.to_string()).map(Quantity::si), Ok(v));
+        }
+    }
+}

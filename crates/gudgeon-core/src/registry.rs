@@ -1,0 +1,296 @@
+//! The registry: which kinds of sub-model exist, which models each has, and everything a person may ask about them.
+//!
+//! A model announces itself with one [`register_model!`](crate::register_model) in its own file; the commands
+//! `models`, `describe`, `schema`, the contract tests and the documentation read nothing else. Reading a model from a
+//! case file is typetag's business; [`Registry::verify`] checks that both lists agree.
+
+use std::collections::BTreeMap;
+
+/// One registered model.
+#[derive(Debug)]
+pub struct ModelInfo {
+    /// The kind it implements, `gas_flow`.
+    pub kind: &'static str,
+    /// Its name in a case file, `orifice_network`. Equals the file name of its source.
+    pub name: &'static str,
+    /// One line.
+    pub summary: &'static str,
+    /// The governing equations, as text.
+    pub equations: &'static str,
+    /// Where it holds and where it does not.
+    pub validity: &'static str,
+    /// Keys into `REFERENCES.bib`.
+    pub references: &'static [&'static str],
+    /// A complete, runnable specification in TOML, without the table header.
+    pub example: &'static str,
+    /// JSON schema of the specification without its `model` key.
+    pub schema: fn(&mut schemars::SchemaGenerator) -> schemars::Schema,
+    /// Source file.
+    pub file: &'static str,
+    /// Source line.
+    pub line: u32,
+}
+inventory::collect!(ModelInfo);
+
+/// One kind of sub-model.
+#[derive(Debug)]
+pub struct KindInfo {
+    /// Name in a case file, `gas_flow`.
+    pub kind: &'static str,
+    /// What a model of this kind answers.
+    pub summary: &'static str,
+    /// Reads a specification (with its `model` key) and writes it back with every default filled in.
+    pub resolve: fn(serde_json::Value) -> Result<serde_json::Value, serde_json::Error>,
+}
+inventory::collect!(KindInfo);
+
+/// Registers a kind: the trait object, its name in a case file and what it answers.
+#[macro_export]
+macro_rules! register_kind {
+    ($spec:ty, $kind:literal, $summary:literal) => {
+        $crate::inventory::submit! {
+            $crate::registry::KindInfo {
+                kind: $kind,
+                summary: $summary,
+                resolve: |v| {
+                    let spec: Box<$spec> = $crate::serde_json::from_value(v)?;
+                    $crate::serde_json::to_value(&spec)
+                },
+            }
+        }
+        impl $crate::schemars::JsonSchema for $spec {
+            fn inline_schema() -> bool {
+                false
+            }
+            fn schema_name() -> ::std::borrow::Cow<'static, str> {
+                $kind.into()
+            }
+            fn json_schema(g: &mut $crate::schemars::SchemaGenerator) -> $crate::schemars::Schema {
+                $crate::registry::kind_schema($kind, g)
+            }
+        }
+    };
+}
+
+/// Registers a model. Stands next to `#[typetag::serde(name = "…")] impl …Spec for …`, with the same name.
+///
+/// ```ignore
+/// register_model! {
+///     ExactSliderCrank, kind: "kinematics", name: "exact_slider_crank",
+///     summary: "…", equations: "…", validity: "…", references: ["key"], example: "",
+/// }
+/// ```
+#[macro_export]
+macro_rules! register_model {
+    ($ty:ty, kind: $kind:literal, name: $name:literal, summary: $summary:expr, equations: $equations:expr,
+     validity: $validity:expr, references: [$($r:literal),* $(,)?], example: $example:expr $(,)?) => {
+        $crate::inventory::submit! {
+            $crate::registry::ModelInfo {
+                kind: $kind,
+                name: $name,
+                summary: $summary,
+                equations: $equations,
+                validity: $validity,
+                references: &[$($r),*],
+                example: $example,
+                schema: |g| <$ty as $crate::schemars::JsonSchema>::json_schema(g),
+                file: file!(),
+                line: line!(),
+            }
+        }
+    };
+}
+
+/// Everything registered in this program, sorted by kind and name.
+#[derive(Debug)]
+pub struct Registry {
+    kinds: BTreeMap<&'static str, (&'static KindInfo, Vec<&'static ModelInfo>)>,
+}
+
+/// The registry contradicts itself. Both places are named so that either can be mended.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RegistryError {
+    /// Two models of one kind share a name.
+    #[error("the {kind} model `{name}` is registered twice: {first} and {second}")]
+    Duplicate {
+        /// The kind.
+        kind: &'static str,
+        /// The name they share.
+        name: String,
+        /// `file:line` of one.
+        first: String,
+        /// `file:line` of the other.
+        second: String,
+    },
+    /// A kind is registered twice, or a model names a kind that does not exist.
+    #[error("the kind `{kind}` {what}")]
+    Kind {
+        /// The kind.
+        kind: String,
+        /// What is wrong with it.
+        what: String,
+    },
+    /// `register_model!` without `#[typetag::serde]`, or with another name there.
+    #[error("the {kind} model `{name}` ({place}) is described but cannot be read from a case file: no `#[typetag::serde(name = \"{name}\")]` for it")]
+    NotReadable {
+        /// The kind.
+        kind: &'static str,
+        /// The name.
+        name: String,
+        /// `file:line` of the description.
+        place: String,
+    },
+    /// `#[typetag::serde]` without `register_model!`.
+    #[error("the {kind} model `{name}` can be read from a case file but has no `register_model!` entry")]
+    NotDescribed {
+        /// The kind.
+        kind: &'static str,
+        /// The name.
+        name: String,
+    },
+}
+
+impl Registry {
+    /// Collects everything linked into this program.
+    #[must_use]
+    pub fn collect() -> Self {
+        let mut kinds: BTreeMap<_, _> =
+            inventory::iter::<KindInfo>().map(|k| (k.kind, (k, Vec::new()))).collect();
+        for m in inventory::iter::<ModelInfo>() {
+            if let Some((_, models)) = kinds.get_mut(m.kind) {
+                models.push(m);
+            }
+        }
+        for (_, models) in kinds.values_mut() {
+            models.sort_by_key(|m| (m.name, m.file, m.line));
+        }
+        Self { kinds }
+    }
+
+    /// The kinds, by name.
+    pub fn kinds(&self) -> impl Iterator<Item = &'static KindInfo> + '_ {
+        self.kinds.values().map(|(k, _)| *k)
+    }
+
+    /// One kind.
+    #[must_use]
+    pub fn kind(&self, kind: &str) -> Option<&'static KindInfo> {
+        self.kinds.get(kind).map(|(k, _)| *k)
+    }
+
+    /// The models of one kind, by name; empty for a kind that does not exist.
+    #[must_use]
+    pub fn models(&self, kind: &str) -> &[&'static ModelInfo] {
+        self.kinds.get(kind).map_or(&[], |(_, m)| m)
+    }
+
+    /// One model.
+    #[must_use]
+    pub fn model(&self, kind: &str, name: &str) -> Option<&'static ModelInfo> {
+        self.models(kind).iter().find(|m| m.name == name).copied()
+    }
+
+    /// Checks that names are unique and that every model can be both read and described.
+    ///
+    /// # Errors
+    /// Every contradiction found.
+    pub fn verify(&self) -> Result<(), Vec<RegistryError>> {
+        let mut errors = Vec::new();
+        let mut seen = BTreeMap::new();
+        for k in inventory::iter::<KindInfo>() {
+            *seen.entry(k.kind).or_insert(0) += 1;
+        }
+        for (kind, n) in seen {
+            if n > 1 {
+                errors.push(RegistryError::Kind { kind: kind.into(), what: format!("is registered {n} times") });
+            }
+        }
+        for m in inventory::iter::<ModelInfo>() {
+            if !self.kinds.contains_key(m.kind) {
+                let what = format!("does not exist, but {}:{} registers `{}` as one", m.file, m.line, m.name);
+                errors.push(RegistryError::Kind { kind: m.kind.into(), what });
+            }
+        }
+        for (kind, models) in self.kinds.values() {
+            let place = |m: &ModelInfo| format!("{}:{}", m.file, m.line);
+            for pair in models.windows(2) {
+                if pair[0].name == pair[1].name {
+                    errors.push(RegistryError::Duplicate {
+                        kind: kind.kind,
+                        name: pair[0].name.into(),
+                        first: place(pair[0]),
+                        second: place(pair[1]),
+                    });
+                }
+            }
+            let mut readable = readable_names(kind);
+            readable.sort_unstable();
+            for pair in readable.windows(2) {
+                if pair[0] == pair[1] && models.iter().filter(|m| m.name == pair[0]).count() < 2 {
+                    let first = models.iter().find(|m| m.name == pair[0]).map_or("?".into(), |m| place(m));
+                    errors.push(RegistryError::Duplicate {
+                        kind: kind.kind,
+                        name: pair[0].clone(),
+                        first,
+                        second: "a type without `register_model!`".into(),
+                    });
+                }
+            }
+            readable.dedup();
+            for m in models {
+                if !readable.iter().any(|r| r == m.name) {
+                    errors.push(RegistryError::NotReadable {
+                        kind: kind.kind,
+                        name: m.name.into(),
+                        place: place(m),
+                    });
+                }
+            }
+            for r in &readable {
+                if !models.iter().any(|m| m.name == r) {
+                    errors.push(RegistryError::NotDescribed { kind: kind.kind, name: r.clone() });
+                }
+            }
+        }
+        if errors.is_empty() { Ok(()) } else { Err(errors) }
+    }
+}
+
+/// The names typetag would accept, taken from its own error text: it offers no other way to ask.
+fn readable_names(kind: &KindInfo) -> Vec<String> {
+    let probe = serde_json::json!({ "model": "?" });
+    match (kind.resolve)(probe) {
+        Ok(_) => Vec::new(),
+        Err(e) => {
+            let text = e.to_string();
+            // "unknown variant `?`, expected `a` or `b`": the first quoted word is the probe itself.
+            text.split('`').skip(1).step_by(2).skip(1).map(str::to_owned).collect()
+        }
+    }
+}
+
+/// JSON schema of a kind: one of its models, told apart by the `model` key.
+pub fn kind_schema(kind: &str, g: &mut schemars::SchemaGenerator) -> schemars::Schema {
+    let registry = Registry::collect();
+    let variants: Vec<serde_json::Value> = registry
+        .models(kind)
+        .iter()
+        .map(|m| {
+            let mut schema = (m.schema)(g).to_value();
+            if let Some(o) = schema.as_object_mut() {
+                let properties = o.entry("properties").or_insert_with(|| serde_json::json!({}));
+                if let Some(p) = properties.as_object_mut() {
+                    p.insert("model".into(), serde_json::json!({ "const": m.name }));
+                }
+                let required = o.entry("required").or_insert_with(|| serde_json::json!([]));
+                if let Some(r) = required.as_array_mut() {
+                    r.push("model".into());
+                }
+                o.insert("description".into(), m.summary.into());
+            }
+            schema
+        })
+        .collect();
+    schemars::json_schema!({ "oneOf": variants })
+}

@@ -1,0 +1,251 @@
+//! What a run produces, independent of how it is written: the interface between the simulation and the report.
+
+use indexmap::IndexMap;
+use serde::Serialize;
+
+/// A result value.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Value {
+    /// The number, in `unit`.
+    pub value: f64,
+    /// The unit, as a person writes it.
+    pub unit: String,
+    /// One line saying what it is.
+    #[serde(skip)]
+    pub what: String,
+}
+
+/// A model that ran.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ModelUse {
+    /// Its kind.
+    pub kind: String,
+    /// Its name.
+    pub model: String,
+    /// Keys into `REFERENCES.bib`.
+    pub references: Vec<String>,
+}
+
+/// Something that was not built or not evaluated, and why.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Skipped {
+    /// What.
+    pub what: String,
+    /// Why.
+    pub why: String,
+}
+
+/// Relative closure per cycle; absent where the scene has no such balance.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Balance {
+    /// Gas mass: (in - out - stored) / throughput.
+    pub gas_mass: Option<f64>,
+    /// Oil mass.
+    pub oil_mass: Option<f64>,
+    /// Work of all forces on the rings less the change of their kinetic energy, by the sum of the magnitudes.
+    pub energy: Option<f64>,
+    /// Impulse of all forces on the rings less the change of their momentum, by the sum of the magnitudes.
+    pub momentum: Option<f64>,
+}
+
+/// Work done by the solver.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct SolverReport {
+    /// Solver name.
+    pub method: String,
+    /// Counters, by name: `steps`, `rejected`, `rhs`, `jacobians`, `film_evaluations`, `cycles`, `events`, `states`.
+    pub counters: IndexMap<String, u64>,
+    /// Notes a person should read: several periodic solutions, a period-2 cycle, a fallback that was used.
+    pub notes: Vec<String>,
+}
+
+/// One column of a series.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Column {
+    /// `ring1.h_min`, `land2.p`.
+    pub name: String,
+    /// SI unit.
+    pub unit: String,
+    /// One value per row.
+    pub values: Vec<f64>,
+}
+
+/// Values over the cycle.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Series {
+    /// Crank angle of each row \[deg\].
+    pub theta_deg: Vec<f64>,
+    /// Columns.
+    pub columns: Vec<Column>,
+}
+
+impl Series {
+    /// One column by name.
+    #[must_use]
+    pub fn get(&self, name: &str) -> Option<&Column> {
+        self.columns.iter().find(|c| c.name == name)
+    }
+}
+
+/// Something that happened at a crank angle.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Event {
+    /// Crank angle \[deg\].
+    pub theta_deg: f64,
+    /// `ring1`, `land2`.
+    pub subject: String,
+    /// `seats on the lower flank`, `leaves the upper flank`, `highest pressure`.
+    pub what: String,
+}
+
+/// One periodic solution among several.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Branch {
+    /// How it was reached: `all lands at 1 bar`.
+    pub start: String,
+    /// 1 for a periodic cycle, 2 when it repeats every second one, 0 when it did not settle.
+    pub period: u32,
+    /// Its results.
+    pub results: IndexMap<String, Value>,
+}
+
+/// One ring of a [`PackSection`], all lengths in metres.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SectionRing {
+    /// Axial thickness.
+    pub height: f64,
+    /// Radial width.
+    pub width: f64,
+    /// Distance of the groove's lower edge below the crown of the section.
+    pub groove_bottom: f64,
+    /// Axial groove height.
+    pub groove_height: f64,
+    /// Radial groove depth.
+    pub groove_depth: f64,
+    /// Mean axial clearance.
+    pub clearance: f64,
+    /// Drop of the running face at equal spacings, bottom edge first.
+    pub face_drop: Vec<f64>,
+    /// Axial length of the running face.
+    pub face_length: f64,
+    /// Number of running lands or rails.
+    pub lands: usize,
+}
+
+/// Geometry of a ring pack for drawing its section.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct PackSection {
+    /// Bore radius.
+    pub bore_radius: f64,
+    /// Height of the top land.
+    pub top_land: f64,
+    /// Axial length of the drawn piston.
+    pub length: f64,
+    /// Stroke.
+    pub stroke: f64,
+    /// Rings, crown first.
+    pub rings: Vec<SectionRing>,
+}
+
+/// Everything a run of one case produced.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct RunResult {
+    /// Name of the case: the file name without its extension.
+    pub case: String,
+    /// Title from the case file.
+    pub title: String,
+    /// Where the case comes from.
+    pub source: String,
+    /// Assumptions that the case file declares.
+    pub assumptions: Vec<String>,
+    /// The scene.
+    pub scene: String,
+    /// Version of Gudgeon.
+    pub gudgeon: String,
+    /// Models that ran.
+    pub models: Vec<ModelUse>,
+    /// What was left out.
+    pub skipped: Vec<Skipped>,
+    /// Results by name.
+    pub results: IndexMap<String, Value>,
+    /// The balance sheet.
+    pub balance: Balance,
+    /// Work done.
+    pub solver: SolverReport,
+    /// Wall-clock seconds by phase: `build`, `solve`, `total`.
+    pub seconds: IndexMap<String, f64>,
+    /// Curves over the cycle.
+    #[serde(skip)]
+    pub series: Series,
+    /// What happened when.
+    pub events: Vec<Event>,
+    /// Other periodic solutions.
+    pub branches: Vec<Branch>,
+    /// Section to draw, when the scene has one.
+    #[serde(skip)]
+    pub section: Option<PackSection>,
+}
+
+/// One combination of a [`Comparison`].
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Variant {
+    /// `gas_flow=narrow_channel, contact=off`.
+    pub label: String,
+    /// `(path, value)` of every swap, in the order given.
+    pub swaps: Vec<(String, String)>,
+    /// The run, or why there is none (refused combination, failed run).
+    pub outcome: Result<RunResult, String>,
+}
+
+/// One case run with every combination of some swaps.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Comparison {
+    /// Name of the case.
+    pub case: String,
+    /// Title of the case.
+    pub title: String,
+    /// `(path, values)` of every swap.
+    pub swaps: Vec<(String, Vec<String>)>,
+    /// The combinations, the first one being the base that others are compared with.
+    pub variants: Vec<Variant>,
+}
+
+/// One point of a work-precision sweep.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BenchPoint {
+    /// Solver: points of one method form one curve.
+    pub method: String,
+    /// The setting that was swept: `tolerance 1e-4`, `16 sub-steps`.
+    pub setting: String,
+    /// Whether this is the default setting of the method.
+    pub is_default: bool,
+    /// Median wall time of one cycle \[s\].
+    pub seconds_per_cycle: f64,
+    /// Wall time to the periodic state \[s\].
+    pub seconds_total: f64,
+    /// Cycle-equivalents to the periodic state.
+    pub cycles: f64,
+    /// Work counters.
+    pub work: IndexMap<String, u64>,
+    /// Relative error of each chosen result against the reference.
+    pub errors: IndexMap<String, f64>,
+    /// Why the point is missing, when it is.
+    pub failure: Option<String>,
+}
+
+/// Run time against error of one case.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct BenchTable {
+    /// Name of the case.
+    pub case: String,
+    /// Title of the case.
+    pub title: String,
+    /// How the reference was made and how far it is trusted.
+    pub reference: String,
+    /// Reference values by result name.
+    pub reference_values: IndexMap<String, Value>,
+    /// The sweep.
+    pub points: Vec<BenchPoint>,
+    /// Statements drawn from the points: `implicit is 12 times faster than as_published at an error of 1e-3`.
+    pub findings: Vec<String>,
+}

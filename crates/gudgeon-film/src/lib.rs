@@ -1,0 +1,1 @@
+//! Oil, film temperature and the film under a ring face.

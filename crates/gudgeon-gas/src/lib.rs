@@ -1,0 +1,1 @@
+//! Inter-ring gas flow.

@@ -1,0 +1,1 @@
+//! Slider-crank and cylinder-pressure models.

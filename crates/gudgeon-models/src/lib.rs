@@ -1,0 +1,12 @@
+//! Links every built-in model crate.
+//!
+//! A crate that no code names is never given to the linker, and its models would be missing without a word. Programs,
+//! tests and benches name this crate (`use gudgeon_models as _;`), and this crate names the rest.
+#![deny(unused_crate_dependencies)]
+
+use gudgeon_contact as _;
+use gudgeon_core as _;
+use gudgeon_film as _;
+use gudgeon_gas as _;
+use gudgeon_kinematics as _;
+use gudgeon_ring as _;

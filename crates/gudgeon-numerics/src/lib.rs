@@ -1,0 +1,1 @@
+//! Fallible stiff integrators, periodic-orbit solver, roots, tables and small linear algebra.

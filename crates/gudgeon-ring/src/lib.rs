@@ -1,0 +1,1 @@
+//! Axial motion of rings in their grooves, groove oil and flank friction.

@@ -1,0 +1,1 @@
+//! Case files, scenes, planner, runner and studies.
