@@ -47,7 +47,10 @@ macro_rules! bounds {
             const TEXT: &'static str = $text;
             fn admits(si: f64) -> bool { let f: fn(f64) -> bool = $test; f(si) }
         }
-    )*};
+    )*
+        /// The bounds of this module: the text of each and its test.
+        const ALL_BOUNDS: &[(&str, fn(f64) -> bool)] = &[$(($text, <$name as Bound>::admits)),*];
+    };
 }
 bounds! {
     /// Any finite value.
@@ -171,6 +174,71 @@ pub enum QuantityError {
     },
 }
 
+fn admit(
+    si: f64,
+    bound: &'static str,
+    admits: fn(f64) -> bool,
+    text: impl Fn() -> String,
+) -> Result<f64, QuantityError> {
+    if !si.is_finite() {
+        return Err(QuantityError::Range { text: text(), bound: "finite" });
+    }
+    if !admits(si) {
+        return Err(QuantityError::Range { text: text(), bound });
+    }
+    Ok(si)
+}
+
+/// The SI value that `text` states in one of `units`.
+fn read(text: &str, dimension: &'static str, units: &'static [Unit]) -> Result<f64, QuantityError> {
+    let t = text.trim();
+    // The longest prefix that is a number; "1e3" must not be read as "1" with the unit "e3". No number of a case has more
+    // characters than this; without a limit a megabyte of digits would take hours to refuse.
+    const NUMBER: usize = 64;
+    let number = (0..=t.len().min(NUMBER))
+        .rev()
+        .filter(|&i| t.is_char_boundary(i))
+        .find_map(|i| t[..i].trim_end().parse::<f64>().ok().map(|v| (v, t[i..].trim())));
+    let Some((value, unit)) = number else {
+        let u = units.get(2).or(units.first()).map_or("", |u| u.name);
+        return Err(QuantityError::NotANumber {
+            text: text.to_owned(),
+            dimension,
+            example: format!("1.5 {u}").trim_end().to_owned(),
+        });
+    };
+    let found = if unit.is_empty() { units.first() } else { units.iter().find(|u| u.name == unit) };
+    let Some(u) = found else {
+        return Err(QuantityError::Unit {
+            unit: unit.to_owned(),
+            dimension,
+            known: units
+                .iter()
+                .filter(|u| !u.name.is_empty())
+                .map(|u| format!("`{}`", u.name))
+                .collect::<Vec<_>>()
+                .join(", "),
+        });
+    };
+    Ok(value * u.factor + u.offset)
+}
+
+/// What is wrong with a value of the dimension and bound that a JSON schema names by its keys `x-dimension` and
+/// `x-bound`: `number` when it stands there as a bare number, otherwise `text`. Nothing is wrong with a dimension that is
+/// not one of [`ALL_DIMENSIONS`], which only its own type can judge.
+///
+/// # Errors
+/// As [`Quantity::parse`] and [`Quantity::new`].
+pub fn check(dimension: &str, bound: &str, text: &str, number: Option<f64>) -> Result<(), QuantityError> {
+    let Some((name, units)) = ALL_DIMENSIONS.iter().find(|(name, _)| *name == dimension) else {
+        return Ok(());
+    };
+    let si = number.map_or_else(|| read(text, name, units), Ok)?;
+    let (bound, admits) =
+        ALL_BOUNDS.iter().find(|(t, _)| *t == bound).copied().unwrap_or((Any::TEXT, <Any as Bound>::admits));
+    admit(si, bound, admits, || text.to_owned()).map(|_| ())
+}
+
 impl<D: Dimension, B: Bound> Quantity<D, B> {
     /// From an SI value.
     ///
@@ -181,13 +249,7 @@ impl<D: Dimension, B: Bound> Quantity<D, B> {
     }
 
     fn checked(si: f64, text: impl Fn() -> String) -> Result<Self, QuantityError> {
-        if !si.is_finite() {
-            return Err(QuantityError::Range { text: text(), bound: "finite" });
-        }
-        if !B::admits(si) {
-            return Err(QuantityError::Range { text: text(), bound: B::TEXT });
-        }
-        Ok(Self { si, marker: PhantomData })
+        admit(si, B::TEXT, B::admits, text).map(|si| Self { si, marker: PhantomData })
     }
 
     /// From text with a unit, `"120 mm"`. A number without a unit is SI.
@@ -195,35 +257,7 @@ impl<D: Dimension, B: Bound> Quantity<D, B> {
     /// # Errors
     /// Says which part of the text is wrong and what would be right.
     pub fn parse(text: &str) -> Result<Self, QuantityError> {
-        let t = text.trim();
-        // The longest prefix that is a number; "1e3" must not be read as "1" with the unit "e3".
-        let number = (0..=t.len())
-            .rev()
-            .filter(|&i| t.is_char_boundary(i))
-            .find_map(|i| t[..i].trim_end().parse::<f64>().ok().map(|v| (v, t[i..].trim())));
-        let Some((value, unit)) = number else {
-            let u = D::UNITS.get(2).or(D::UNITS.first()).map_or("", |u| u.name);
-            return Err(QuantityError::NotANumber {
-                text: text.to_owned(),
-                dimension: D::NAME,
-                example: format!("1.5 {u}").trim_end().to_owned(),
-            });
-        };
-        let unit_of = |name: &str| D::UNITS.iter().find(|u| u.name == name);
-        let u = if unit.is_empty() { Some(&D::UNITS[0]) } else { unit_of(unit) };
-        let Some(u) = u else {
-            return Err(QuantityError::Unit {
-                unit: unit.to_owned(),
-                dimension: D::NAME,
-                known: D::UNITS
-                    .iter()
-                    .filter(|u| !u.name.is_empty())
-                    .map(|u| format!("`{}`", u.name))
-                    .collect::<Vec<_>>()
-                    .join(", "),
-            });
-        };
-        Self::checked(value * u.factor + u.offset, || text.to_owned())
+        Self::checked(read(text, D::NAME, D::UNITS)?, || text.to_owned())
     }
 
     /// The value in SI units.
@@ -321,6 +355,8 @@ impl<D: Dimension, B: Bound> schemars::JsonSchema for Quantity<D, B> {
             "description": format!("{}, {}", D::NAME, B::TEXT),
             "type": ["number", "string"],
             "x-units": units,
+            "x-dimension": D::NAME,
+            "x-bound": B::TEXT,
         })
     }
 }
@@ -347,8 +383,24 @@ mod tests {
         );
         assert_eq!(e(PosLength::parse("-3 mm")), "`-3 mm` must be greater than zero");
         assert_eq!(e(PosLength::parse("NaN mm")), "`NaN mm` must be finite");
-        assert_eq!(e(PosLength::parse("mm")), "`mm` does not start with a number; write a length like `1.5 mm`");
+        assert_eq!(
+            e(PosLength::parse("mm")),
+            "`mm` does not start with a number; write a length like `1.5 mm`"
+        );
         assert!(PosLength::new(f64::INFINITY).is_err());
+    }
+
+    #[test]
+    fn schema_keys_check_like_the_type() {
+        let schema = schemars::schema_for!(PosLength).to_value();
+        let (d, b) = (schema["x-dimension"].as_str(), schema["x-bound"].as_str());
+        let (d, b) = (d.expect("present"), b.expect("present"));
+        for text in ["120 mm", "3 bar", "-3 mm", "NaN mm", "mm", "0", "1e400 m"] {
+            assert_eq!(check(d, b, text, None).err(), PosLength::parse(text).err());
+        }
+        assert!(check(d, b, "-1", Some(-1.0)).is_err());
+        assert!(check(d, b, "1", Some(1.0)).is_ok());
+        assert!(check("a colour", b, "red", None).is_ok());
     }
 
     #[test]

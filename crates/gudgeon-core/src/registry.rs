@@ -132,7 +132,9 @@ pub enum RegistryError {
         what: String,
     },
     /// `register_model!` without `#[typetag::serde]`, or with another name there.
-    #[error("the {kind} model `{name}` ({place}) is described but cannot be read from a case file: no `#[typetag::serde(name = \"{name}\")]` for it")]
+    #[error(
+        "the {kind} model `{name}` ({place}) is described but cannot be read from a case file: no `#[typetag::serde(name = \"{name}\")]` for it"
+    )]
     NotReadable {
         /// The kind.
         kind: &'static str,
@@ -203,7 +205,10 @@ impl Registry {
         }
         for (kind, n) in seen {
             if n > 1 {
-                errors.push(RegistryError::Kind { kind: kind.into(), what: format!("is registered {n} times") });
+                errors.push(RegistryError::Kind {
+                    kind: kind.into(),
+                    what: format!("is registered {n} times"),
+                });
             }
         }
         for m in inventory::iter::<ModelInfo>() {

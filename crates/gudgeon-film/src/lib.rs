@@ -1,1 +1,19 @@
 //! Oil, film temperature and the film under a ring face.
+
+mod constant;
+mod given;
+mod gridded_face;
+mod land_wall_mean;
+mod liner_linear;
+mod off;
+mod vogel;
+mod vogel_grade;
+
+pub use constant::Constant;
+pub use given::Given;
+pub use gridded_face::GriddedFace;
+pub use land_wall_mean::LandWallMean;
+pub use liner_linear::LinerLinear;
+pub use off::Off;
+pub use vogel::Vogel;
+pub use vogel_grade::{Grade, VogelGrade, VogelTable};

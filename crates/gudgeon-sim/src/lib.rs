@@ -1,1 +1,13 @@
-//! Case files, scenes, planner, runner and studies.
+//! Case files, scenes, the planner, the runner and studies.
+
+// The models that a case names, and those that stand as defaults, must be linked.
+use gudgeon_models as _;
+
+pub mod case;
+pub mod load;
+pub mod ring_pack;
+pub mod run;
+pub mod study;
+
+pub use run::{Checked, Explanation, Progress, RunError, check, explain, run};
+pub use study::{bench, compare};

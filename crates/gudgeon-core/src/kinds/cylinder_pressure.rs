@@ -10,7 +10,7 @@ use crate::BuildError;
 #[derive(Debug, Clone, Copy)]
 pub struct CylinderPressureCtx<'a> {
     /// Piston motion; cylinder volume is `piston_area * (y_tdc - y) + clearance volume`.
-    pub kinematics: &'a dyn Kinematics,
+    pub kinematics: &'a (dyn Kinematics + 'static),
     /// Piston area \[m²\].
     pub piston_area: f64,
     /// Folder that relative file names in the case refer to.
@@ -27,7 +27,11 @@ pub trait CylinderPressureSpec: Debug + DynClone + Send + Sync {
     fn build(&self, ctx: &CylinderPressureCtx<'_>) -> Result<Box<dyn CylinderPressure>, BuildError>;
 }
 dyn_clone::clone_trait_object!(CylinderPressureSpec);
-crate::register_kind!(dyn CylinderPressureSpec, "cylinder_pressure", "gas pressure in the cylinder over the cycle");
+crate::register_kind!(
+    dyn CylinderPressureSpec,
+    "cylinder_pressure",
+    "gas pressure in the cylinder over the cycle"
+);
 
 /// A running cylinder-pressure model.
 pub trait CylinderPressure: Debug + DynClone + Send + Sync {

@@ -23,7 +23,11 @@ pub trait FilmTemperatureSpec: Debug + DynClone + Send + Sync {
     fn build(&self, ctx: &FilmTemperatureCtx<'_>) -> Result<Box<dyn FilmTemperature>, BuildError>;
 }
 dyn_clone::clone_trait_object!(FilmTemperatureSpec);
-crate::register_kind!(dyn FilmTemperatureSpec, "film_temperature", "temperature of the oil film under each ring");
+crate::register_kind!(
+    dyn FilmTemperatureSpec,
+    "film_temperature",
+    "temperature of the oil film under each ring"
+);
 
 /// A running film-temperature model.
 pub trait FilmTemperature: Debug + Send + Sync {

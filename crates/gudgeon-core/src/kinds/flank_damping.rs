@@ -14,7 +14,11 @@ pub trait FlankDampingSpec: Debug + DynClone + Send + Sync {
     fn build(&self, ctx: &FlankDampingCtx) -> Result<Box<dyn FlankDamping>, BuildError>;
 }
 dyn_clone::clone_trait_object!(FlankDampingSpec);
-crate::register_kind!(dyn FlankDampingSpec, "flank_damping", "resistance of the oil in the groove to the ring's axial motion");
+crate::register_kind!(
+    dyn FlankDampingSpec,
+    "flank_damping",
+    "resistance of the oil in the groove to the ring's axial motion"
+);
 
 /// What a [`FlankDampingSpec`] is built for.
 #[derive(Debug, Clone, Copy)]

@@ -14,7 +14,11 @@ pub trait FlankFrictionSpec: Debug + DynClone + Send + Sync {
     fn build(&self) -> Result<Box<dyn FlankFriction>, BuildError>;
 }
 dyn_clone::clone_trait_object!(FlankFrictionSpec);
-crate::register_kind!(dyn FlankFrictionSpec, "flank_friction", "friction on the groove flanks against the ring's radial motion");
+crate::register_kind!(
+    dyn FlankFrictionSpec,
+    "flank_friction",
+    "friction on the groove flanks against the ring's radial motion"
+);
 
 /// A running flank-friction model.
 pub trait FlankFriction: Send {

@@ -83,5 +83,11 @@ pub trait GasFlow: Send {
     ///
     /// # Errors
     /// A mass that is not positive.
-    fn rates(&mut self, inp: &GasIn<'_>, state: &[f64], d_state: &mut [f64], out: &mut GasOut) -> Result<(), EvalError>;
+    fn rates(
+        &mut self,
+        inp: &GasIn<'_>,
+        state: &[f64],
+        d_state: &mut [f64],
+        out: &mut GasOut,
+    ) -> Result<(), EvalError>;
 }

@@ -41,7 +41,11 @@ pub trait KinematicsSpec: Debug + DynClone + Send + Sync {
     fn build(&self, ctx: &KinematicsCtx) -> Result<Box<dyn Kinematics>, BuildError>;
 }
 dyn_clone::clone_trait_object!(KinematicsSpec);
-crate::register_kind!(dyn KinematicsSpec, "kinematics", "position, velocity and acceleration of the piston at a crank angle");
+crate::register_kind!(
+    dyn KinematicsSpec,
+    "kinematics",
+    "position, velocity and acceleration of the piston at a crank angle"
+);
 
 /// A running kinematics model.
 pub trait Kinematics: Debug + DynClone + Send + Sync {

@@ -1,0 +1,144 @@
+//! What may stand on the command line.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args as ClapArgs, Parser, Subcommand};
+
+/// Simulates the power cylinder of reciprocating machines: gas between the rings, films, contact, ring motion.
+///
+/// A case is a TOML file that names its models. `gudgeon models` lists them, `gudgeon explain CASE` tells what a case does.
+#[derive(Debug, Parser)]
+#[command(version, max_term_width = 110, arg_required_else_help = true)]
+pub struct Args {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+impl Args {
+    /// Whether anything but results and errors is unwanted.
+    pub const fn quiet(&self) -> bool {
+        match &self.command {
+            Command::Run(a) => a.quiet,
+            Command::Compare(a) => a.quiet,
+            Command::Bench(a) => a.quiet,
+            _ => false,
+        }
+    }
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Run a case; results go to `out/<case>/`
+    Run(RunArgs),
+    /// Read, resolve and validate a case without running it
+    Check(CheckArgs),
+    /// Show the resolved case: models, equations, defaults, what runs and what is skipped
+    Explain(CheckArgs),
+    /// List the models, of one kind or of all
+    Models(ModelsArgs),
+    /// Tell everything about one model
+    Describe(DescribeArgs),
+    /// Print the JSON schema of a case file, for editors
+    Schema,
+    /// Run a case with every combination of some values and compare the results
+    Compare(CompareArgs),
+    /// Measure run time against error of the solvers on a case
+    Bench(BenchArgs),
+    /// Write report.html of a result folder again
+    Report(ReportArgs),
+}
+
+/// The case and its changes.
+#[derive(Debug, ClapArgs)]
+pub struct CaseArgs {
+    /// Case file
+    pub case: PathBuf,
+    /// Change a value of the case: rings.0.gap="0.5 mm", models.gas_flow.model=narrow_channel
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    pub set: Vec<String>,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct RunArgs {
+    #[command(flatten)]
+    pub case: CaseArgs,
+    /// Folder for the results [default: out/<case>]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Print the summary as JSON and nothing else
+    #[arg(long)]
+    pub json: bool,
+    /// No progress, no table
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct CheckArgs {
+    #[command(flatten)]
+    pub case: CaseArgs,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct ModelsArgs {
+    /// Only this kind
+    pub kind: Option<String>,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct DescribeArgs {
+    /// KIND/MODEL, or a kind or a model alone
+    #[arg(value_name = "KIND/MODEL")]
+    pub what: String,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct CompareArgs {
+    #[command(flatten)]
+    pub case: CaseArgs,
+    /// Values to try, the first one being the base: gas_flow=orifice_network,narrow_channel
+    #[arg(long, value_name = "PATH=A,B,C", required = true)]
+    pub swap: Vec<String>,
+    /// Folder for the results [default: out/<case>-compare]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// No progress, no table
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct BenchArgs {
+    #[command(flatten)]
+    pub case: CaseArgs,
+    /// Results whose error is measured
+    #[arg(long, value_name = "A,B", value_delimiter = ',')]
+    pub results: Vec<String>,
+    /// Folder for the results [default: out/<case>-bench]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// No progress, no table
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct ReportArgs {
+    /// Folder with the results of a run, a comparison or a benchmark
+    #[arg(value_name = "DIR")]
+    pub dir: PathBuf,
+}
+
+/// The folder that results go to.
+pub fn out_dir(given: Option<&Path>, case: &str, suffix: &str) -> PathBuf {
+    given.map_or_else(|| Path::new("out").join(format!("{case}{suffix}")), Path::to_owned)
+}

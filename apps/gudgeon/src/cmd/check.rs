@@ -1,0 +1,27 @@
+//! `gudgeon check CASE`
+
+use serde_json::json;
+
+use crate::args::CheckArgs;
+use crate::cmd::checked;
+use crate::failure::Failure;
+use crate::ui::Ui;
+
+pub fn check(a: &CheckArgs, ui: &Ui) -> Result<(), Failure> {
+    if a.json {
+        return match gudgeon_sim::check(&a.case.case, &a.case.set) {
+            Ok(c) => {
+                ui.json(&json!({ "case": c.name, "ok": true, "notes": c.notes, "mistakes": [] }));
+                Ok(())
+            }
+            Err(report) => {
+                ui.json(&json!({ "ok": false, "notes": [], "mistakes": report.to_json() }));
+                Err(report.into())
+            }
+        };
+    }
+    let c = checked(&a.case, ui)?;
+    ui.out(&format!("{}: ok", a.case.case.display()));
+    drop(c);
+    Ok(())
+}

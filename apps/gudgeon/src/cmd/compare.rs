@@ -1,0 +1,115 @@
+//! `gudgeon compare CASE --swap PATH=A,B,C`
+
+use std::fmt::Write as _;
+
+use gudgeon_core::result::Comparison;
+
+use crate::args::{CompareArgs, out_dir};
+use crate::cmd::{check_out, checked};
+use crate::failure::Failure;
+use crate::ui::{Ui, number, table};
+
+pub fn compare(a: &CompareArgs, ui: &Ui) -> Result<(), Failure> {
+    let swaps = a.swap.iter().map(|s| swap(s)).collect::<Result<Vec<_>, _>>()?;
+    let name = checked(&a.case, ui)?.name;
+    let dir = out_dir(a.out.as_deref(), &name, "-compare");
+    check_out(&dir)?;
+    let comparison = {
+        let bar = ui.bar();
+        gudgeon_sim::compare(&a.case.case, &a.case.set, &swaps, &mut |p| bar.show(p))?
+    };
+    let files = gudgeon_report::write_comparison(&comparison, &dir)?;
+    if !ui.quiet() {
+        ui.out(&format!("{}\n{}", text(&comparison), files.report.display()));
+    }
+    if comparison.variants.iter().all(|v| v.outcome.is_err()) {
+        return Err(Failure::Run("none of the combinations has a result".into()));
+    }
+    Ok(())
+}
+
+/// `PATH=A,B,C`. A comma inside brackets or quotes belongs to its value.
+fn swap(text: &str) -> Result<(String, Vec<String>), Failure> {
+    let form = "write `--swap PATH=A,B,C`, for example `--swap gas_flow=orifice_network,narrow_channel`";
+    let Some((path, values)) = text.split_once('=').filter(|(p, _)| !p.trim().is_empty()) else {
+        return Err(Failure::argument(format!("`--swap {text}` is not a path with values"), form));
+    };
+    let mut all = vec![String::new()];
+    let (mut depth, mut quote) = (0_i32, None);
+    for c in values.chars() {
+        match (quote, c) {
+            (Some(q), c) if c == q => quote = None,
+            (None, '"' | '\'') => quote = Some(c),
+            (None, '[' | '{' | '(') => depth += 1,
+            (None, ']' | '}' | ')') => depth -= 1,
+            _ => {}
+        }
+        match all.last_mut() {
+            Some(last) if c != ',' || depth > 0 || quote.is_some() => last.push(c),
+            _ => all.push(String::new()),
+        }
+    }
+    let all: Vec<String> = all.into_iter().map(|v| v.trim().to_owned()).collect();
+    if all.iter().any(String::is_empty) {
+        return Err(Failure::argument(format!("`--swap {text}` has an empty value"), form));
+    }
+    Ok((path.trim().to_owned(), all))
+}
+
+/// Combinations that fit a terminal side by side.
+const COLUMNS: usize = 6;
+
+fn text(c: &Comparison) -> String {
+    let mut s = format!("{}: {}\n\n", c.case, c.title);
+    let letter = |i: usize| format!("({})", i + 1);
+    // Writing to a String cannot fail.
+    for (i, v) in c.variants.iter().enumerate() {
+        let why = v.outcome.as_ref().err().map_or_else(String::new, |e| format!("  {e}"));
+        let _ = writeln!(s, "  {} {}{why}", letter(i), v.label);
+    }
+    let shown: Vec<_> = c.variants.iter().enumerate().filter_map(|(i, v)| Some((i, v.outcome.as_ref().ok()?))).collect();
+    let Some((first, base)) = shown.first() else { return s };
+    let shown = &shown[..shown.len().min(COLUMNS)];
+    let mut rows = vec![
+        ["".into(), "".into()]
+            .into_iter()
+            .chain(shown.iter().map(|(i, _)| if i == first { letter(*i) } else { format!("{} to {}", letter(*i), letter(*first)) }))
+            .collect::<Vec<String>>(),
+    ];
+    for (name, v) in &base.results {
+        let mut row = vec![name.clone(), v.unit.clone(), number(v.value)];
+        for (_, r) in &shown[1..] {
+            row.push(match r.results.get(name) {
+                Some(other) if v.value != 0.0 && other.value != v.value => {
+                    format!("{} {:+.2} %", number(other.value), 100.0 * (other.value / v.value - 1.0))
+                }
+                Some(other) => number(other.value),
+                None => "-".into(),
+            });
+        }
+        rows.push(row);
+    }
+    s.push('\n');
+    let right: Vec<usize> = (2..2 + shown.len()).collect();
+    s.push_str(&table(&rows, &right));
+    let hidden = c.variants.iter().filter(|v| v.outcome.is_ok()).count() - shown.len();
+    if hidden > 0 {
+        let _ = writeln!(s, "\n  {hidden} more in the report");
+    }
+    s
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn swaps_split_at_outer_commas() {
+        let values = |t: &str| swap(t).ok().map(|(_, v)| v);
+        assert_eq!(values("a.b=x, y"), Some(vec!["x".into(), "y".into()]));
+        assert_eq!(values("a=[1,2],\"p,q\",{ m = 1, n = 2 }"), Some(vec!["[1,2]".into(), "\"p,q\"".into(), "{ m = 1, n = 2 }".into()]));
+        for wrong in ["a", "=x", "a=", "a=x,,y", "a=x,"] {
+            assert!(values(wrong).is_none(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,240 @@
+//! `gudgeon describe KIND/MODEL`
+
+use std::fmt::Write as _;
+
+use gudgeon_core::schemars::SchemaGenerator;
+use gudgeon_core::{ModelInfo, Registry};
+use gudgeon_sim::load::{advice, list};
+use serde_json::{Map, Value, json};
+
+use crate::args::{DescribeArgs, ModelsArgs};
+use crate::cmd::models;
+use crate::failure::Failure;
+use crate::ui::{Ui, wrapped};
+
+pub fn describe(a: &DescribeArgs, registry: &Registry, ui: &Ui) -> Result<(), Failure> {
+    let what = a.what.trim().trim_start_matches("models.");
+    if registry.kind(what).is_some() {
+        let a = ModelsArgs { kind: Some(what.to_owned()), json: a.json };
+        return models::models(&a, registry, ui);
+    }
+    let m = find(registry, what)?;
+    if a.json {
+        let (schema, definitions) = schema(m);
+        ui.json(&json!({
+            "kind": m.kind,
+            "model": m.name,
+            "summary": m.summary,
+            "equations": equations(m).collect::<Vec<_>>(),
+            "validity": m.validity,
+            "references": m.references,
+            "example": example(m),
+            "source": format!("{}:{}", m.file, m.line),
+            "schema": schema,
+            "definitions": definitions,
+        }));
+    } else {
+        ui.out(&page(registry, m));
+    }
+    Ok(())
+}
+
+/// `kind/model`, `kind.model`, or a model name that only one kind has.
+fn find(registry: &Registry, what: &str) -> Result<&'static ModelInfo, Failure> {
+    if let Some((k, name)) = what.split_once(['/', '.']) {
+        let k = models::kind(registry, k)?;
+        return registry.model(k.kind, name).ok_or_else(|| {
+            let names: Vec<&str> = registry.models(k.kind).iter().map(|m| m.name).collect();
+            Failure::argument(format!("there is no {} model `{name}`", k.kind), advice(name, &names))
+        });
+    }
+    let all: Vec<&ModelInfo> = registry.kinds().flat_map(|k| registry.models(k.kind)).copied().collect();
+    let named: Vec<&&ModelInfo> = all.iter().filter(|m| m.name == what).collect();
+    match named[..] {
+        [only] => registry
+            .model(only.kind, only.name)
+            .ok_or_else(|| Failure::Run(format!("the model `{what}` is not registered"))),
+        [] => {
+            let mut names: Vec<&str> = all.iter().map(|m| m.name).collect();
+            names.extend(registry.kinds().map(|k| k.kind));
+            names.sort_unstable();
+            names.dedup();
+            Err(Failure::argument(format!("there is no kind and no model `{what}`"), advice(what, &names)))
+        }
+        ref many => {
+            let full: Vec<String> = many.iter().map(|m| format!("{}/{}", m.kind, m.name)).collect();
+            Err(Failure::argument(
+                format!("several kinds have a model `{what}`"),
+                format!("name one of {}", list(full.iter().map(String::as_str))),
+            ))
+        }
+    }
+}
+
+fn schema(m: &ModelInfo) -> (Value, Map<String, Value>) {
+    let mut g = SchemaGenerator::default();
+    let schema = (m.schema)(&mut g).to_value();
+    (schema, g.take_definitions(true))
+}
+
+fn equations(m: &ModelInfo) -> impl Iterator<Item = &'static str> {
+    m.equations.split(";  ").map(str::trim).filter(|e| !e.is_empty())
+}
+
+fn example(m: &ModelInfo) -> String {
+    format!("[models.{}]\nmodel = \"{}\"\n{}", m.kind, m.name, m.example.trim_start())
+}
+
+fn page(registry: &Registry, m: &ModelInfo) -> String {
+    let mut s = String::new();
+    // Writing to a String cannot fail.
+    let _ = writeln!(s, "{}/{}", m.kind, m.name);
+    s.push_str(&wrapped(m.summary, 2));
+    if let Some(k) = registry.kind(m.kind) {
+        s.push_str(&wrapped(&format!("kind: {}", k.summary), 2));
+    }
+    let _ = writeln!(s, "\nEquations");
+    for e in equations(m) {
+        s.push_str(&wrapped(e, 2));
+    }
+    let _ = writeln!(s, "\nValidity");
+    s.push_str(&wrapped(m.validity, 2));
+    let (schema, definitions) = schema(m);
+    let _ = writeln!(s, "\nParameters");
+    let before = s.len();
+    parameters(&schema, &definitions, 2, 0, &mut s);
+    if s.len() == before {
+        let _ = writeln!(s, "  none");
+    }
+    let _ = writeln!(s, "\nExample");
+    for line in example(m).lines() {
+        let _ = writeln!(s, "  {line}");
+    }
+    let _ = writeln!(s, "\nReferences\n  {}", if m.references.is_empty() { "none".into() } else { m.references.join(", ") });
+    let _ = writeln!(s, "\nSource\n  {}:{}", m.file, m.line);
+    s
+}
+
+/// Tables inside tables that are shown; a model inside a model names its kind instead.
+const DEPTH: usize = 4;
+
+/// Follows references and the non-null alternative of an optional value; with the name of the last reference.
+fn resolve<'a>(mut schema: &'a Value, definitions: &'a Map<String, Value>) -> (&'a Value, Option<&'a str>) {
+    let mut name = None;
+    for _ in 0..DEPTH {
+        if let Some(r) = schema.get("$ref").and_then(Value::as_str) {
+            name = r.rsplit('/').next();
+            match name.and_then(|n| definitions.get(n)) {
+                Some(s) => schema = s,
+                None => break,
+            }
+        } else if let Some(any) = schema.get("anyOf").and_then(Value::as_array) {
+            let is_null = |s: &&Value| s.get("type").and_then(Value::as_str) == Some("null");
+            match any.iter().find(|s| !is_null(s)) {
+                Some(s) if any.len() == 2 => schema = s,
+                _ => break,
+            }
+        } else {
+            break;
+        }
+    }
+    (schema, name)
+}
+
+fn parameters(schema: &Value, definitions: &Map<String, Value>, indent: usize, depth: usize, s: &mut String) {
+    let Some(properties) = schema.get("properties").and_then(Value::as_object) else { return };
+    let required: Vec<&str> =
+        schema.get("required").and_then(Value::as_array).into_iter().flatten().filter_map(Value::as_str).collect();
+    for (key, p) in properties.iter().filter(|(k, _)| *k != "model") {
+        let (inner, name) = resolve(p, definitions);
+        let default = match p.get("default") {
+            Some(Value::String(t)) => format!(", default {t}"),
+            Some(Value::Object(_)) => ", has defaults".to_owned(),
+            Some(Value::Null) => ", optional".to_owned(),
+            Some(v) => format!(", default {v}"),
+            None if required.contains(&key.as_str()) => ", required".to_owned(),
+            None => ", optional".to_owned(),
+        };
+        let _ = writeln!(s, "{:indent$}{key}: {}{default}", "", type_text(inner, name, definitions));
+        let text = p.get("description").or_else(|| inner.get("description")).and_then(Value::as_str);
+        if let Some(t) = text {
+            s.push_str(&wrapped(&plain(t), indent + 4));
+        }
+        for (word, what) in words(inner) {
+            let meaning = what.map_or_else(String::new, |w| format!(": {}", plain(w)));
+            s.push_str(&wrapped(&format!("`{word}`{meaning}"), indent + 6));
+        }
+        let element = inner.get("items").map_or(inner, |i| resolve(i, definitions).0);
+        if depth < DEPTH {
+            parameters(element, definitions, indent + 4, depth + 1, s);
+        }
+    }
+}
+
+/// Rustdoc's escapes and line breaks are for another reader.
+fn plain(t: &str) -> String {
+    t.replace("\\[", "[").replace("\\]", "]").split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// The words of a choice, each with its meaning.
+fn words(schema: &Value) -> Vec<(&str, Option<&str>)> {
+    if let Some(all) = schema.get("enum").and_then(Value::as_array) {
+        return all.iter().filter_map(Value::as_str).map(|w| (w, None)).collect();
+    }
+    let Some(all) = schema.get("oneOf").and_then(Value::as_array) else { return Vec::new() };
+    let mut out = Vec::new();
+    for s in all {
+        match s.get("const").and_then(Value::as_str) {
+            Some(word) => out.push((word, s.get("description").and_then(Value::as_str))),
+            None => out.extend(words(s)),
+        }
+    }
+    out
+}
+
+fn type_text(schema: &Value, name: Option<&str>, definitions: &Map<String, Value>) -> String {
+    if let Some(dimension) = schema.get("x-dimension").and_then(Value::as_str) {
+        let units: Vec<&str> =
+            schema.get("x-units").and_then(Value::as_array).into_iter().flatten().filter_map(Value::as_str).collect();
+        let bound = match schema.get("x-bound").and_then(Value::as_str) {
+            None | Some("finite") => String::new(),
+            Some(b) => format!(", {b}"),
+        };
+        let units = if units.is_empty() { String::new() } else { format!(" [{}]", units.join(", ")) };
+        return format!("{dimension}{units}{bound}");
+    }
+    if !words(schema).is_empty() {
+        return "one word of".into();
+    }
+    if schema.get("oneOf").is_some() {
+        return format!("a {} model, a table with the key `model`", name.unwrap_or("sub-"));
+    }
+    if let Some(items) = schema.get("items") {
+        let (inner, name) = resolve(items, definitions);
+        return format!("array of {}", type_text(inner, name, definitions));
+    }
+    match schema.get("type") {
+        Some(Value::Array(a)) => a
+            .iter()
+            .filter_map(Value::as_str)
+            .filter(|t| *t != "null")
+            .map(|t| basic(t, schema))
+            .collect::<Vec<_>>()
+            .join(" or "),
+        Some(Value::String(t)) => basic(t, schema),
+        _ => "any value".into(),
+    }
+}
+
+fn basic(t: &str, schema: &Value) -> String {
+    let minimum = schema.get("minimum").and_then(Value::as_f64);
+    let suffix = minimum.map_or(String::new(), |m| format!(", at least {m}"));
+    match t {
+        "string" => "text".into(),
+        "number" => format!("number{suffix}"),
+        "integer" => format!("whole number{suffix}"),
+        "boolean" => "true or false".into(),
+        "object" => "table".into(),
+        other => other.into(),
+    }
+}

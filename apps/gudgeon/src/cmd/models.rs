@@ -1,0 +1,54 @@
+//! `gudgeon models [KIND]`
+
+use std::fmt::Write as _;
+
+use gudgeon_core::{KindInfo, Registry};
+use gudgeon_sim::load::advice;
+use serde_json::json;
+
+use crate::args::ModelsArgs;
+use crate::failure::Failure;
+use crate::ui::{Ui, table};
+
+pub fn models(a: &ModelsArgs, registry: &Registry, ui: &Ui) -> Result<(), Failure> {
+    let kinds = match &a.kind {
+        Some(k) => vec![kind(registry, k)?],
+        None => registry.kinds().collect(),
+    };
+    if a.json {
+        let list: Vec<_> = kinds
+            .iter()
+            .map(|k| {
+                let models: Vec<_> = registry
+                    .models(k.kind)
+                    .iter()
+                    .map(|m| json!({ "model": m.name, "summary": m.summary, "references": m.references }))
+                    .collect();
+                json!({ "kind": k.kind, "summary": k.summary, "models": models })
+            })
+            .collect();
+        ui.json(&list.into());
+        return Ok(());
+    }
+    let mut text = String::new();
+    for k in kinds {
+        if !text.is_empty() {
+            text.push('\n');
+        }
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{}: {}", k.kind, k.summary);
+        let rows: Vec<_> =
+            registry.models(k.kind).iter().map(|m| vec![m.name.to_owned(), m.summary.to_owned()]).collect();
+        text.push_str(&table(&rows, &[]));
+    }
+    ui.out(&text);
+    Ok(())
+}
+
+/// The kind of that name; otherwise the names that would do.
+pub fn kind(registry: &Registry, name: &str) -> Result<&'static KindInfo, Failure> {
+    registry.kind(name).ok_or_else(|| {
+        let names: Vec<&str> = registry.kinds().map(|k| k.kind).collect();
+        Failure::argument(format!("there is no kind `{name}`"), advice(name, &names))
+    })
+}

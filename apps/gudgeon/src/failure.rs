@@ -1,0 +1,58 @@
+//! Why a command did not do what it was asked, and the exit code that says so.
+
+use std::process::ExitCode;
+
+use gudgeon_core::registry::RegistryError;
+use gudgeon_report::ReportError;
+use gudgeon_sim::RunError;
+use gudgeon_sim::load::{Diagnostic, Report};
+
+#[derive(Debug)]
+pub enum Failure {
+    /// The case or a `--set` argument is wrong.
+    Input(Report),
+    /// Another argument is wrong.
+    Argument(Diagnostic),
+    /// The run failed.
+    Run(String),
+    /// The program contradicts itself.
+    Registry(Vec<RegistryError>),
+}
+
+impl Failure {
+    /// An argument that is wrong.
+    pub fn argument(message: impl Into<String>, help: impl Into<String>) -> Self {
+        Self::Argument(Diagnostic::new(message).help(help))
+    }
+
+    pub fn exit_code(&self) -> ExitCode {
+        match self {
+            Self::Input(_) | Self::Argument(_) => ExitCode::from(2),
+            Self::Run(_) | Self::Registry(_) => ExitCode::from(1),
+        }
+    }
+}
+
+impl From<Report> for Failure {
+    fn from(r: Report) -> Self {
+        Self::Input(r)
+    }
+}
+impl From<RunError> for Failure {
+    fn from(e: RunError) -> Self {
+        match e {
+            RunError::Refused(what) => Self::Argument(Diagnostic::new(what)),
+            e => Self::Run(e.to_string()),
+        }
+    }
+}
+impl From<ReportError> for Failure {
+    fn from(e: ReportError) -> Self {
+        match e {
+            ReportError::NothingHere { .. } | ReportError::Malformed { .. } => {
+                Self::Argument(Diagnostic::new(e.to_string()))
+            }
+            e => Self::Run(e.to_string()),
+        }
+    }
+}

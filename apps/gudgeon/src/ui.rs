@@ -1,0 +1,211 @@
+//! The only place that writes to the terminal.
+//!
+//! Results go to standard output; progress, notes and errors to standard error. A reader that closes the pipe early
+//! (`| head`) is not an error.
+
+use std::fmt::Write as _;
+use std::io::{self, IsTerminal, Write};
+use std::time::Duration;
+
+use gudgeon_sim::Progress;
+use gudgeon_sim::load::Report;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use crate::failure::Failure;
+
+pub struct Ui {
+    quiet: bool,
+    color: bool,
+}
+
+/// Width that long texts are broken at.
+pub const WIDTH: usize = 100;
+
+impl Ui {
+    pub fn new(quiet: bool) -> Self {
+        let wanted = std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty());
+        Self { quiet, color: wanted && io::stderr().is_terminal() }
+    }
+
+    /// Whether tables and progress are unwanted.
+    pub const fn quiet(&self) -> bool {
+        self.quiet
+    }
+
+    /// To standard output.
+    pub fn out(&self, text: &str) {
+        // The only thing to do about a closed pipe or a full disk behind a redirection is to stop writing.
+        let mut stdout = io::stdout().lock();
+        let _ = stdout.write_all(text.as_bytes());
+        if !text.ends_with('\n') {
+            let _ = stdout.write_all(b"\n");
+        }
+        let _ = stdout.flush();
+    }
+
+    /// JSON to standard output.
+    pub fn json(&self, value: &serde_json::Value) {
+        self.out(&format!("{value:#}"));
+    }
+
+    /// To standard error.
+    fn err(&self, text: &str) {
+        let mut stderr = io::stderr().lock();
+        let _ = stderr.write_all(text.as_bytes());
+        let _ = stderr.flush();
+    }
+
+    /// Something a person should know although nothing is wrong.
+    pub fn note(&self, text: &str) {
+        self.err(&format!("note: {text}\n"));
+    }
+
+    /// Why the command stops.
+    pub fn failure(&self, failure: &Failure) {
+        let mut text = String::new();
+        match failure {
+            Failure::Input(report) => {
+                text = report.render(self.color);
+                if report.diagnostics.len() > 1 {
+                    let _ = writeln!(text, "\n{} mistakes in {}", report.diagnostics.len(), report.source.name);
+                }
+            }
+            Failure::Argument(d) => text = Report::unreadable("", d.clone()).render(self.color),
+            Failure::Run(what) => {
+                let _ = writeln!(text, "the run failed: {what}");
+            }
+            Failure::Registry(all) => {
+                for e in all {
+                    let _ = writeln!(text, "defect of this program: {e}");
+                }
+            }
+        }
+        self.err(&text);
+    }
+
+    /// A progress bar on a terminal, nothing elsewhere.
+    pub fn bar(&self) -> Bar {
+        const SCALE: u64 = 1000;
+        let target = if self.quiet || !io::stderr().is_terminal() {
+            ProgressDrawTarget::hidden()
+        } else {
+            ProgressDrawTarget::stderr()
+        };
+        let bar = ProgressBar::with_draw_target(Some(SCALE), target);
+        // A constant template: a mistake in it shows in every run, and costs only the look.
+        if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent:>3} %  {elapsed}  {wide_msg}") {
+            bar.set_style(style);
+        }
+        bar.enable_steady_tick(Duration::from_millis(200));
+        Bar { bar, scale: SCALE as f64 }
+    }
+}
+
+/// A running progress bar; it disappears when dropped.
+pub struct Bar {
+    bar: ProgressBar,
+    scale: f64,
+}
+
+impl Bar {
+    pub fn show(&self, p: Progress) {
+        self.bar.set_position((p.fraction.clamp(0.0, 1.0) * self.scale) as u64);
+        self.bar.set_message(p.phase);
+    }
+}
+
+impl Drop for Bar {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+/// A number with enough digits to compare by, few enough to read.
+pub fn number(v: f64) -> String {
+    const DIGITS: i32 = 5;
+    if v == 0.0 {
+        return "0".into();
+    }
+    if !v.is_finite() {
+        return v.to_string();
+    }
+    let magnitude = v.abs().log10().floor() as i32;
+    if !(-4..7).contains(&magnitude) {
+        return format!("{v:.*e}", DIGITS as usize - 1);
+    }
+    format!("{v:.*}", (DIGITS - 1 - magnitude).max(0) as usize)
+}
+
+/// Columns padded to their widest cell. `right` tells which ones are aligned to the right.
+pub fn table(rows: &[Vec<String>], right: &[usize]) -> String {
+    let width = |c: usize| rows.iter().filter_map(|r| r.get(c)).map(|s| s.chars().count()).max().unwrap_or(0);
+    let mut out = String::new();
+    for row in rows {
+        let mut line = String::new();
+        for (c, cell) in row.iter().enumerate() {
+            let pad = " ".repeat(width(c).saturating_sub(cell.chars().count()));
+            line.push_str("  ");
+            if right.contains(&c) {
+                line.push_str(&pad);
+                line.push_str(cell);
+            } else {
+                line.push_str(cell);
+                line.push_str(&pad);
+            }
+        }
+        out.push_str(line.trim_end());
+        out.push('\n');
+    }
+    out
+}
+
+/// Text broken into lines of at most [`WIDTH`] characters, each indented.
+pub fn wrapped(text: &str, indent: usize) -> String {
+    let pad = " ".repeat(indent);
+    let mut out = String::new();
+    let mut length = 0;
+    for word in text.split_whitespace() {
+        let n = word.chars().count();
+        if length > 0 && indent + length + 1 + n > WIDTH {
+            out.push('\n');
+            length = 0;
+        }
+        if length == 0 {
+            out.push_str(&pad);
+        } else {
+            out.push(' ');
+            length += 1;
+        }
+        out.push_str(word);
+        length += n;
+    }
+    if !out.is_empty() {
+        out.push('\n');
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_keep_five_digits() {
+        let shown = [49.876_543, 0.001_234_567, 1e-9, 123_456.7, 1.0, -2.5, 0.0, 2e9].map(number);
+        assert_eq!(shown, ["49.877", "0.0012346", "1.0000e-9", "123457", "1.0000", "-2.5000", "0", "2.0000e9"]);
+    }
+
+    #[test]
+    fn tables_align() {
+        let rows = [vec!["a".into(), "1".into(), "µm".into()], vec!["bcd".into(), "12".into(), "bar".into()]];
+        assert_eq!(table(&rows, &[1]), "  a     1  µm\n  bcd  12  bar\n");
+    }
+
+    #[test]
+    fn text_wraps_at_words() {
+        let text = wrapped(&"word ".repeat(50), 4);
+        assert!(text.lines().all(|l| l.len() <= WIDTH && l.starts_with("    word")));
+        assert_eq!(text.split_whitespace().count(), 50);
+        assert_eq!(wrapped("", 4), "");
+    }
+}

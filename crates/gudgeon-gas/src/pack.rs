@@ -1,0 +1,399 @@
+//! What the gas-flow models of a ring pack share: the network of lands and spaces behind rings, and the geometry of the end gap.
+
+use std::f64::consts::{PI, TAU};
+
+use gudgeon_core::geometry::{BackVolume, PackGeometry, RingGeometry, RingPlace};
+use gudgeon_core::kinds::{GasFlow, GasIn, GasOut};
+use gudgeon_core::{BuildError, EvalError};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::network::{Network, Passage};
+use crate::orifice::OrificeLaw;
+
+/// Which film thickness sets the passages and the volume behind a ring.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum FilmHeight {
+    /// The film thickness of the instant: gas flow and film are solved together.
+    #[default]
+    Instantaneous,
+    /// The constant thickness `nominal_film`: the gas flow does not need the films.
+    Nominal,
+}
+
+/// The openings around one ring at an instant.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Openings {
+    /// Film thickness that counts \[m\].
+    pub h: f64,
+    /// Liner radius \[m\].
+    pub liner_radius: f64,
+    /// Axial distance from the lower groove flank \[m\], not negative.
+    pub lower: f64,
+    /// Axial distance from the upper groove flank \[m\], not negative.
+    pub upper: f64,
+    /// Position in the groove, 0 lower flank, 1 upper flank.
+    pub e: f64,
+    /// End-gap area \[m²\], with the chamfer.
+    pub gap: f64,
+    /// Volume behind the ring \[m³\].
+    pub back_volume: f64,
+}
+
+/// The passages of one ring.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct RingPassages {
+    /// Past the upper flank: land above to the space behind (drained groove: to the land below).
+    pub upper: Passage,
+    /// Past the lower flank: space behind to land below.
+    pub lower: Passage,
+    /// Directly from land to land through the gap.
+    pub gap: Passage,
+    /// Directly from land to land past the face.
+    pub face: Passage,
+}
+
+/// What distinguishes the models.
+pub(crate) trait Passages: Send {
+    /// Name of the model.
+    const NAME: &'static str;
+    /// The passages of ring `i`. Upper and lower flank are ignored for a sealed ring, the lower one for a drained groove.
+    fn passages(&self, i: usize, ring: &RingGeometry, o: &Openings) -> RingPassages;
+    /// Whether the passages themselves (not gap, clearance and volume) depend on `Openings::h`.
+    fn uses_film_height(&self, ring: &RingGeometry) -> bool;
+}
+
+#[derive(Debug, Clone, Copy)]
+struct RingLinks {
+    upper: Option<usize>,
+    lower: Option<usize>,
+    gap: usize,
+    face: usize,
+    /// Node of the space behind the ring.
+    back: Option<usize>,
+}
+
+/// A gas-flow model over a pack.
+pub(crate) struct Pack<M> {
+    model: M,
+    pack: PackGeometry,
+    /// `None`: instantaneous.
+    nominal_film: Option<f64>,
+    chamfer_fade: f64,
+    net: Network,
+    links: Vec<RingLinks>,
+    /// Nodes of the lands.
+    lands: Vec<usize>,
+}
+
+/// Gap, piston and groove of a pack make sense for a gas-flow model.
+fn check(pack: &PackGeometry, film: f64) -> Result<(), BuildError> {
+    let n = pack.rings.len();
+    if n == 0 {
+        return Err(BuildError::new("a gas-flow model needs at least one ring"));
+    }
+    if pack.lands.len() != n + 1 {
+        return Err(BuildError::new(format!(
+            "{n} rings need {} spaces above, between and below, not {}",
+            n + 1,
+            pack.lands.len()
+        )));
+    }
+    for (i, land) in pack.lands.iter().enumerate().take(n).skip(1) {
+        if !(land.volume > 0.0 && land.volume.is_finite()) {
+            return Err(BuildError::new(format!(
+                "land {} has the gas volume {:e} m3, which must be greater than zero",
+                i + 1,
+                land.volume
+            ))
+            .help("give its height and the piston diameter, or its volume"));
+        }
+    }
+    for (i, ring) in pack.rings.iter().enumerate() {
+        let number = i + 1;
+        let clearance = pack.bore_radius - ring.piston_radius_above;
+        match ring.gap_area {
+            Some(a) if !(a >= 0.0 && a.is_finite()) => {
+                return Err(BuildError::new(format!("the gap area of ring {number} is {a:e} m2")));
+            }
+            None if clearance - film <= 0.0 || clearance.is_nan() => {
+                return Err(BuildError::new(format!(
+                    "above ring {number} the piston has the radius {:.6} m in a liner of {:.6} m: no clearance is left for \
+                     the end gap",
+                    ring.piston_radius_above, pack.bore_radius
+                )));
+            }
+            _ => {}
+        }
+        let no_volume = |v: f64, why: String| {
+            BuildError::new(format!("the volume behind ring {number} is {v:e} m3: {why}"))
+        };
+        match ring.back {
+            BackVolume::Fixed(v) if !(v > 0.0 && v.is_finite()) => {
+                return Err(no_volume(v, "it must be greater than zero".to_owned()));
+            }
+            BackVolume::Geometric => {
+                let v = back_volume(ring, pack.bore_radius, film);
+                if !(v > 0.0 && v.is_finite()) {
+                    let behind = ring.h_max(pack.bore_radius) - film;
+                    return Err(no_volume(
+                        v,
+                        format!(
+                            "the radial distance behind it is {behind:e} m, the groove is {:e} m high at its root",
+                            ring.groove_height_inner
+                        ),
+                    )
+                    .help("check groove root diameter, radial thickness and groove height"));
+                }
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+/// `½ [B_in + B_in + (c_1 + c_2) DR] π (R_int² - R_root²)`, the groove behind the ring.
+fn back_volume(ring: &RingGeometry, liner_radius: f64, film: f64) -> f64 {
+    let behind = ring.h_max(liner_radius) - film;
+    let r_int = ring.root_radius + behind;
+    let height = ring.groove_height_inner + 0.5 * (ring.slope_upper + ring.slope_lower) * behind;
+    height * PI * (r_int * r_int - ring.root_radius * ring.root_radius)
+}
+
+impl<M: Passages> Pack<M> {
+    pub(crate) fn new(
+        model: M,
+        pack: &PackGeometry,
+        law: OrificeLaw,
+        nominal_film: Option<f64>,
+        chamfer_fade: f64,
+    ) -> Result<Self, BuildError> {
+        check(pack, nominal_film.unwrap_or(0.0))?;
+        let n = pack.rings.len();
+        let has_back = |r: &RingGeometry| matches!(r.back, BackVolume::Geometric | BackVolume::Fixed(_));
+        // Volumes from the top: behind ring 1, land 2, behind ring 2, ...; then chamber and crankcase.
+        let mut temperatures = Vec::with_capacity(2 * n + 1);
+        let mut backs = vec![None; n];
+        let mut lands = vec![0; n + 1];
+        for (i, ring) in pack.rings.iter().enumerate() {
+            if i > 0 {
+                lands[i] = temperatures.len();
+                temperatures.push(pack.lands[i].temperature);
+            }
+            if has_back(ring) {
+                backs[i] = Some(temperatures.len());
+                temperatures.push(ring.back_temperature);
+            }
+        }
+        let volumes = temperatures.len();
+        for i in [0, n] {
+            lands[i] = temperatures.len();
+            temperatures.push(pack.lands[i].temperature);
+        }
+        let mut ends = Vec::with_capacity(4 * n);
+        let mut link = |a: usize, b: usize| {
+            ends.push((a, b));
+            ends.len() - 1
+        };
+        let links = (0..n)
+            .map(|i| {
+                let (above, below) = (lands[i], lands[i + 1]);
+                RingLinks {
+                    upper: match pack.rings[i].back {
+                        BackVolume::Sealed => None,
+                        _ => Some(link(above, backs[i].unwrap_or(below))),
+                    },
+                    lower: backs[i].map(|b| link(b, below)),
+                    gap: link(above, below),
+                    face: link(above, below),
+                    back: backs[i],
+                }
+            })
+            .collect();
+        let net = Network::new(law, pack.gas_constant, &temperatures, volumes, &ends)?;
+        Ok(Self { model, pack: pack.clone(), nominal_film, chamfer_fade, net, links, lands })
+    }
+
+    /// Volume behind ring `i`, not yet checked.
+    fn volume_behind(&self, i: usize, place: &RingPlace) -> f64 {
+        let ring = &self.pack.rings[i];
+        match (ring.back, self.nominal_film) {
+            (BackVolume::Fixed(v), _) => v,
+            (BackVolume::Geometric, None) => place.back_volume,
+            (BackVolume::Geometric, Some(h)) => back_volume(ring, place.liner_radius, h),
+            _ => 0.0,
+        }
+    }
+
+    fn openings(&self, i: usize, place: &RingPlace) -> Result<Openings, EvalError> {
+        let ring = &self.pack.rings[i];
+        let h = self.nominal_film.unwrap_or(place.h);
+        let clearance = match self.nominal_film {
+            _ if !ring.has_clearance => 0.0,
+            None => place.clearance,
+            Some(h) => {
+                ring.clearance_inner
+                    + (ring.slope_upper + ring.slope_lower) * (ring.h_max(place.liner_radius) - h)
+            }
+        }
+        .max(0.0);
+        let e = place.e.clamp(0.0, 1.0);
+        let seated = |distance: f64| {
+            if self.chamfer_fade > 0.0 {
+                (1.0 - distance / self.chamfer_fade).max(0.0)
+            } else if distance == 0.0 {
+                1.0
+            } else {
+                0.0
+            }
+        };
+        let chamfer = ring.chamfer.area_lower * seated(e) + ring.chamfer.area_upper * seated(1.0 - e);
+        let area = match ring.gap_area {
+            Some(a) => a,
+            None => {
+                let running = ring.gap + TAU * (place.liner_radius - self.pack.bore_radius);
+                let radial = place.liner_radius - ring.piston_radius_above;
+                if running <= 0.0 || radial <= 0.0 {
+                    return Err(EvalError::fatal(
+                        M::NAME,
+                        format!(
+                            "the end gap of ring {} closes when hot: {:e} m at the nominal bore, {running:e} m in the liner of \
+                             radius {} m, under a radial clearance of {radial:e} m",
+                            i + 1,
+                            ring.gap,
+                            place.liner_radius
+                        ),
+                    ));
+                }
+                if radial - h <= 0.0 {
+                    return Err(EvalError::recoverable(
+                        M::NAME,
+                        format!(
+                            "the film of ring {} ({h:e} m) is thicker than the land clearance ({radial:e} m)",
+                            i + 1
+                        ),
+                    ));
+                }
+                running * (radial - h)
+            }
+        };
+        Ok(Openings {
+            h,
+            liner_radius: place.liner_radius,
+            lower: e * clearance,
+            upper: (1.0 - e) * clearance,
+            e,
+            gap: area + chamfer,
+            back_volume: self.volume_behind(i, place),
+        })
+    }
+
+    /// Pressures of all nodes.
+    fn set_pressures(&mut self, inp: &GasIn<'_>, state: &[f64], out: &mut GasOut) -> Result<(), EvalError> {
+        let n = self.links.len();
+        self.net.set_pressure(M::NAME, self.lands[0], inp.p_cylinder)?;
+        self.net.set_pressure(M::NAME, self.lands[n], inp.p_crankcase)?;
+        for i in 0..n {
+            if i > 0 {
+                let node = self.lands[i];
+                self.net.set_mass(M::NAME, node, state[node], self.pack.lands[i].volume)?;
+            }
+            if let Some(node) = self.links[i].back {
+                let volume = self.volume_behind(i, &inp.rings[i]);
+                self.net.set_mass(M::NAME, node, state[node], volume)?;
+            }
+        }
+        for (p, &node) in out.p_land.iter_mut().zip(&self.lands) {
+            *p = self.net.pressure(node);
+        }
+        for i in 0..n {
+            let (above, below) = (out.p_land[i], out.p_land[i + 1]);
+            out.p_back[i] = match (self.links[i].back, self.pack.rings[i].back) {
+                (Some(node), _) => self.net.pressure(node),
+                (None, BackVolume::Drained) => below,
+                (None, _) => 0.5 * (above + below),
+            };
+        }
+        Ok(())
+    }
+}
+
+impl<M: Passages> GasFlow for Pack<M> {
+    fn n_states(&self) -> usize {
+        self.net.volumes()
+    }
+
+    fn state_names(&self) -> Vec<String> {
+        let mut names = vec![String::new(); self.net.volumes()];
+        for i in 0..self.links.len() {
+            if i > 0 {
+                names[self.lands[i]] = format!("land{}", i + 1);
+            }
+            if let Some(node) = self.links[i].back {
+                names[node] = format!("ring{}.back", i + 1);
+            }
+        }
+        names
+    }
+
+    fn uses_film_height(&self) -> bool {
+        self.nominal_film.is_none()
+            && self.pack.rings.iter().any(|r| {
+                r.gap_area.is_none()
+                    || r.back == BackVolume::Geometric
+                    || (r.has_clearance && r.slope_upper + r.slope_lower != 0.0)
+                    || self.model.uses_film_height(r)
+            })
+    }
+
+    fn initial(&self, inp: &GasIn<'_>, p_land: &[f64], state: &mut [f64]) {
+        for i in 0..self.links.len() {
+            if i > 0 {
+                let node = self.lands[i];
+                state[node] = p_land[i] * self.pack.lands[i].volume / self.net.rt(node);
+            }
+            if let Some(node) = self.links[i].back {
+                let p = 0.5 * (p_land[i] + p_land[i + 1]);
+                state[node] = p * self.volume_behind(i, &inp.rings[i]) / self.net.rt(node);
+            }
+        }
+    }
+
+    fn pressures(&mut self, inp: &GasIn<'_>, state: &[f64], out: &mut GasOut) -> Result<(), EvalError> {
+        self.set_pressures(inp, state, out)
+    }
+
+    fn rates(
+        &mut self,
+        inp: &GasIn<'_>,
+        state: &[f64],
+        d_state: &mut [f64],
+        out: &mut GasOut,
+    ) -> Result<(), EvalError> {
+        self.set_pressures(inp, state, out)?;
+        for i in 0..self.links.len() {
+            let o = self.openings(i, &inp.rings[i])?;
+            let links = self.links[i];
+            let p = self.model.passages(i, &self.pack.rings[i], &o);
+            if let Some(l) = links.upper {
+                self.net.set_passage(l, p.upper);
+            }
+            if let Some(l) = links.lower {
+                self.net.set_passage(l, p.lower);
+            }
+            self.net.set_passage(links.gap, p.gap);
+            self.net.set_passage(links.face, p.face);
+        }
+        self.net.update_flows();
+        self.net.rates(d_state);
+        for (i, links) in self.links.iter().enumerate() {
+            let direct = self.net.flow(links.gap) + self.net.flow(links.face);
+            let upper = links.upper.map_or(0.0, |l| self.net.flow(l));
+            out.flow_in[i] = direct + upper;
+            out.flow_out[i] = direct
+                + if links.back.is_some() { links.lower.map_or(0.0, |l| self.net.flow(l)) } else { upper };
+        }
+        Ok(())
+    }
+}

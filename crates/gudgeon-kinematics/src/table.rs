@@ -1,0 +1,365 @@
+use std::f64::consts::PI;
+
+use gudgeon_core::BuildError;
+use gudgeon_core::kinds::{CylinderPressure, CylinderPressureCtx, CylinderPressureSpec};
+use gudgeon_core::quantity::{Angle, Dimension, PosAngle, PosRatio, Pressure, dim, quantity};
+use serde::{Deserialize, Serialize};
+
+use crate::periodic_cubic::{PeriodicCubic, TooClose};
+
+/// A measured or computed trace of cylinder pressure.
+///
+/// The rows come from `file`, or from `pressure` with or without `theta_deg`:
+///
+/// * `file`: text with two columns, crank angle in degrees and pressure, or with one column of equally spaced pressures.
+///   Columns are separated by semicolons, tabs, commas or blanks (with the first two a comma may stand for the decimal
+///   point). Leading lines that are no numbers are a header; lines that begin with `#` are comments.
+/// * `theta_deg` and `pressure`: two lists of the same length.
+/// * `pressure` alone: equally spaced over the cycle from angle 0. When the number of values less one is a multiple of 90
+///   (721 values over 720°) the last one belongs to the end of the cycle, otherwise (720 values) to one spacing before it.
+///
+/// Angles ascend and cover one cycle. A row at the end of the cycle repeats the one at its start; the two are averaged, and
+/// must agree within 5 %. Between the rows runs a periodic monotone cubic: differentiable, without overshoot.
+///
+/// The pressure used is `scale * p(theta - shift) + offset`.
+#[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Table {
+    /// Text file with the rows, relative to the folder of the case.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
+    /// Crank angles in degrees, ascending.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub theta_deg: Option<Vec<f64>>,
+    /// Absolute pressures, in `unit`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pressure: Option<Vec<f64>>,
+    /// Unit of the pressures.
+    #[serde(default = "pascal")]
+    pub unit: String,
+    /// Length of the cycle: 720 deg for four strokes, 360 deg for two.
+    #[serde(default = "four_strokes")]
+    pub cycle: PosAngle,
+    /// Added to the angles of the rows: 360 deg for a trace whose angle 0 is the firing top dead centre.
+    #[serde(default = "no_shift")]
+    pub shift: Angle,
+    /// Factor on the pressures.
+    #[serde(default = "one")]
+    pub scale: PosRatio,
+    /// Added to the pressures after scaling: the reference pressure of a trace that is not absolute.
+    #[serde(default = "no_offset")]
+    pub offset: Pressure,
+}
+
+fn pascal() -> String {
+    "Pa".into()
+}
+fn four_strokes() -> PosAngle {
+    quantity(crate::FOUR_STROKE)
+}
+fn no_shift() -> Angle {
+    quantity(0.0)
+}
+fn one() -> PosRatio {
+    quantity(1.0)
+}
+fn no_offset() -> Pressure {
+    quantity(0.0)
+}
+
+gudgeon_core::register_model! {
+    Table, kind: "cylinder_pressure", name: "table",
+    summary: "a measured trace, inline or from a file, by periodic monotone cubic interpolation",
+    equations: "p = scale * P(theta - shift) + offset;  P: monotone piecewise cubic Hermite through the rows, periodic",
+    validity: "As good as the trace; at least 4 rows per cycle, absolute pressures after scale and offset. Interpolation does not overshoot; it cuts an extremum that lies between rows.",
+    references: ["fritsch1980"],
+    example: "theta_deg = [0, 180, 300, 350, 370, 400, 450, 540]\npressure = [1, 1, 4, 30, 60, 25, 6, 1.5]\nunit = \"bar\"\n",
+}
+
+impl Default for Table {
+    fn default() -> Self {
+        Self {
+            file: None,
+            theta_deg: None,
+            pressure: None,
+            unit: pascal(),
+            cycle: four_strokes(),
+            shift: no_shift(),
+            scale: one(),
+            offset: no_offset(),
+        }
+    }
+}
+
+#[typetag::serde(name = "table")]
+impl CylinderPressureSpec for Table {
+    fn build(&self, ctx: &CylinderPressureCtx<'_>) -> Result<Box<dyn CylinderPressure>, BuildError> {
+        let period = self.cycle.si();
+        // `720 deg` may be one ulp from 4π; everything else in the program uses the exact double.
+        let period =
+            [2.0 * PI, 4.0 * PI].into_iter().find(|p| (p - period).abs() < 1e-12 * p).unwrap_or(period);
+        let factor = dim::Pressure::UNITS.iter().find(|u| u.name == self.unit).map(|u| u.factor);
+        let Some(factor) = factor else {
+            let known: Vec<_> = dim::Pressure::UNITS.iter().map(|u| format!("`{}`", u.name)).collect();
+            return Err(BuildError::at("unit", format!("unit `{}` is not a pressure", self.unit))
+                .help(format!("expected one of {}", known.join(", "))));
+        };
+        let mut rows = self.rows(ctx, period.to_degrees())?;
+        rows.check(|p| p * factor * self.scale.si() + self.offset.si(), period.to_degrees())?;
+        let angles: Vec<f64> = rows.theta_deg.iter().map(|t| t.to_radians() + self.shift.si()).collect();
+        let curve = PeriodicCubic::new(&angles, &rows.pressure, period)
+            .map_err(|TooClose(i)| rows.fault(i, Column::Theta, "is too close to the row before"))?;
+        Ok(Box::new(Trace { curve, period }))
+    }
+}
+
+impl Table {
+    fn rows(&self, ctx: &CylinderPressureCtx<'_>, period_deg: f64) -> Result<Rows, BuildError> {
+        match (&self.file, &self.theta_deg, &self.pressure) {
+            (Some(file), None, None) => {
+                let path = ctx.folder.join(file);
+                let text = std::fs::read(&path).map_err(|e| {
+                    BuildError::at("file", format!("cannot read {}: {e}", path.display()))
+                        .help("the name is relative to the folder of the case file")
+                })?;
+                Rows::parse(file, &String::from_utf8_lossy(&text), period_deg)
+            }
+            (None, Some(theta), Some(pressure)) => {
+                if theta.len() != pressure.len() {
+                    let what =
+                        format!("theta_deg has {} values and pressure {}", theta.len(), pressure.len());
+                    return Err(BuildError::at("pressure", what));
+                }
+                Ok(Rows {
+                    file: None,
+                    lines: Vec::new(),
+                    theta_deg: theta.clone(),
+                    pressure: pressure.clone(),
+                })
+            }
+            (None, None, Some(pressure)) => Ok(Rows {
+                file: None,
+                lines: Vec::new(),
+                theta_deg: equally_spaced(pressure.len(), period_deg),
+                pressure: pressure.clone(),
+            }),
+            (None, Some(_), None) => {
+                Err(BuildError::at("pressure", "theta_deg stands there without pressure"))
+            }
+            (None, None, None) => Err(BuildError::new("a table needs rows")
+                .help("give `file`, or `pressure` with or without `theta_deg`")),
+            (Some(_), ..) => Err(BuildError::at("file", "the rows are given twice, in a file and inline")
+                .help("keep either `file` or `theta_deg` and `pressure`")),
+        }
+    }
+}
+
+fn equally_spaced(n: usize, period_deg: f64) -> Vec<f64> {
+    let closed = n > 1 && (n - 1).is_multiple_of(90);
+    let intervals = (if closed { n - 1 } else { n }) as f64;
+    (0..n).map(|i| period_deg * i as f64 / intervals).collect()
+}
+
+#[derive(Clone, Copy)]
+enum Column {
+    Theta,
+    Pressure,
+}
+
+#[derive(Debug)]
+struct Rows {
+    /// The name of the file the rows come from.
+    file: Option<String>,
+    /// Line of each row in that file.
+    lines: Vec<usize>,
+    theta_deg: Vec<f64>,
+    pressure: Vec<f64>,
+}
+
+impl Rows {
+    fn parse(file: &str, text: &str, period_deg: f64) -> Result<Self, BuildError> {
+        let fault =
+            |line: usize, what: String| BuildError::at("file", format!("{file}, line {line}: {what}"));
+        let mut rows =
+            Self { file: Some(file.into()), lines: Vec::new(), theta_deg: Vec::new(), pressure: Vec::new() };
+        let mut format: Option<(Separator, usize)> = None;
+        for (number, line) in text.strip_prefix('\u{feff}').unwrap_or(text).lines().enumerate() {
+            let (number, line) = (number + 1, line.trim());
+            if line.is_empty() || line.starts_with('#') {
+                continue;
+            }
+            let separator = format.map_or_else(|| Separator::of(line), |f| f.0);
+            let mut values = [0.0; 2];
+            let mut count = 0;
+            for field in separator.split(line) {
+                match separator.number(field) {
+                    Some(v) if count < 2 => values[count] = v,
+                    Some(_) => {}
+                    None if format.is_none()
+                        && !field.starts_with(|c: char| c.is_ascii_digit() || "+-.,".contains(c)) =>
+                    {
+                        // A header. Anything that begins like a number but is none is a fault, not a header.
+                        count = 0;
+                        break;
+                    }
+                    None => return Err(fault(number, format!("`{field}` is not a number"))),
+                }
+                count += 1;
+            }
+            if count == 0 {
+                continue;
+            }
+            let columns = format.map_or(count, |f| f.1);
+            if count > 2 || count != columns {
+                let what = if count == columns { 2 } else { columns };
+                return Err(fault(number, format!("{count} columns where {what} are expected")));
+            }
+            format = Some((separator, columns));
+            rows.lines.push(number);
+            if columns == 2 {
+                rows.theta_deg.push(values[0]);
+            }
+            rows.pressure.push(values[columns - 1]);
+        }
+        if format.is_some_and(|f| f.1 == 1) {
+            rows.theta_deg = equally_spaced(rows.pressure.len(), period_deg);
+        }
+        Ok(rows)
+    }
+
+    fn fault(&self, row: usize, column: Column, what: &str) -> BuildError {
+        let (name, value) = match column {
+            Column::Theta => ("theta_deg", self.theta_deg.get(row)),
+            Column::Pressure => ("pressure", self.pressure.get(row)),
+        };
+        let value = value.copied().unwrap_or(f64::NAN);
+        match &self.file {
+            Some(file) => {
+                let line = self.lines.get(row).copied().unwrap_or(0);
+                BuildError::at("file", format!("{file}, line {line}: {name} {value} {what}"))
+            }
+            None => {
+                BuildError::at(format!("{name}.{row}"), format!("row {}: {name} {value} {what}", row + 1))
+            }
+        }
+    }
+
+    fn place(&self) -> (&'static str, String) {
+        match &self.file {
+            Some(file) => ("file", format!("{file}: ")),
+            None => ("pressure", String::new()),
+        }
+    }
+
+    /// Checks the rows, converts the pressures to pascal, and merges a row at the end of the cycle into the first one.
+    fn check(&mut self, pascal: impl Fn(f64) -> f64, period_deg: f64) -> Result<(), BuildError> {
+        for (i, t) in self.theta_deg.iter().enumerate() {
+            if !t.is_finite() {
+                return Err(self.fault(i, Column::Theta, "is not a finite number"));
+            }
+            match i.checked_sub(1).map(|before| t - self.theta_deg[before]) {
+                Some(0.0) => return Err(self.fault(i, Column::Theta, "repeats the row before")),
+                Some(d) if d < 0.0 => {
+                    let what =
+                        format!("is below {}, the row before; angles must ascend", self.theta_deg[i - 1]);
+                    return Err(self.fault(i, Column::Theta, &what));
+                }
+                _ => {}
+            }
+        }
+        for (i, &p) in self.pressure.iter().enumerate() {
+            if !p.is_finite() {
+                return Err(self.fault(i, Column::Pressure, "is not a finite number"));
+            }
+            let si = pascal(p);
+            if !(si.is_finite() && si > 0.0) {
+                let what = format!("is {si} Pa absolute, it must be greater than zero");
+                return Err(self.fault(i, Column::Pressure, &what));
+            }
+        }
+        let (field, place) = self.place();
+        let too_few = |n: usize| {
+            BuildError::at(field, format!("{place}{n} rows over the cycle, at least 4 are needed"))
+        };
+        let n = self.theta_deg.len();
+        if n < 4 {
+            return Err(too_few(n));
+        }
+        self.pressure.iter_mut().for_each(|p| *p = pascal(*p));
+        let span = self.theta_deg[n - 1] - self.theta_deg[0];
+        // A millionth of a degree covers angles written with single precision around 720.
+        let slack = 1e-4;
+        if span > period_deg + slack {
+            let what = format!("{place}the rows span {span} deg, the cycle {period_deg} deg");
+            return Err(BuildError::at(field, what).help("`cycle` sets the length of the cycle"));
+        }
+        if span >= period_deg - slack {
+            let (first, last) = (self.pressure[0], self.pressure[n - 1]);
+            if (first - last).abs() > 0.05 * first.min(last) {
+                let what = format!(
+                    "{place}the first and the last row are one cycle apart, but their pressures are {first} and {last} Pa"
+                );
+                return Err(BuildError::at(field, what)
+                    .help("drop the last row, or mend the trace: a cycle is periodic"));
+            }
+            self.pressure[0] = 0.5 * (first + last);
+            self.pressure.pop();
+            self.theta_deg.pop();
+            if n - 1 < 4 {
+                return Err(too_few(n - 1));
+            }
+        } else {
+            let widest = self.theta_deg.windows(2).map(|w| w[1] - w[0]).fold(0.0_f64, f64::max);
+            if period_deg - span > 2.0 * widest + slack {
+                let what = format!(
+                    "{place}the rows span {span} deg of a cycle of {period_deg} deg and leave the rest empty, more than twice the widest gap between them ({widest} deg)"
+                );
+                return Err(BuildError::at(field, what).help(
+                    "add the missing rows, repeat the first row at the end of the cycle, or set `cycle`",
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+#[derive(Clone, Copy)]
+enum Separator {
+    Char(char),
+    Blank,
+}
+
+impl Separator {
+    fn of(line: &str) -> Self {
+        [';', '\t', ','].into_iter().find(|&c| line.contains(c)).map_or(Self::Blank, Self::Char)
+    }
+    fn split(self, line: &str) -> impl Iterator<Item = &str> {
+        let on = move |c: char| match self {
+            Self::Char(s) => c == s,
+            Self::Blank => c.is_whitespace(),
+        };
+        line.split(on).map(str::trim).filter(move |f| !(f.is_empty() && matches!(self, Self::Blank)))
+    }
+    fn number(self, field: &str) -> Option<f64> {
+        let decimal_comma = matches!(self, Self::Char(';' | '\t')) && field.contains(',');
+        if decimal_comma { field.replace(',', ".").parse().ok() } else { field.parse().ok() }
+    }
+}
+
+#[derive(Debug, Clone)]
+struct Trace {
+    curve: PeriodicCubic,
+    period: f64,
+}
+
+impl CylinderPressure for Trace {
+    fn pressure(&self, theta: f64) -> f64 {
+        self.curve.value(theta)
+    }
+    fn kinks(&self) -> &[f64] {
+        &[]
+    }
+    fn period(&self) -> f64 {
+        self.period
+    }
+}

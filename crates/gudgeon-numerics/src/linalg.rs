@@ -1,0 +1,410 @@
+//! Small dense, banded and tridiagonal linear systems. Matrices are row-major slices.
+//!
+//! Factorisations are in place and allocate nothing; a singular matrix is an error, never a NaN in the solution.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// The matrix is singular to working precision, or holds a non-finite number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("singular matrix: no usable pivot in column {column}")]
+pub struct Singular {
+    /// The column (counted from 0) in which elimination stopped.
+    pub column: usize,
+}
+
+/// A complex number, just enough of one for the linear algebra here.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Complex {
+    /// Real part.
+    pub re: f64,
+    /// Imaginary part.
+    pub im: f64,
+}
+
+impl Complex {
+    /// `re + i im`.
+    #[must_use]
+    pub const fn new(re: f64, im: f64) -> Self {
+        Self { re, im }
+    }
+
+    /// `|re| + |im|`: within √2 of the modulus, enough to choose a pivot.
+    #[must_use]
+    pub fn norm1(self) -> f64 {
+        self.re.abs() + self.im.abs()
+    }
+
+    /// The modulus.
+    #[must_use]
+    pub fn abs(self) -> f64 {
+        self.re.hypot(self.im)
+    }
+}
+
+impl Add for Complex {
+    type Output = Self;
+    fn add(self, o: Self) -> Self {
+        Self::new(self.re + o.re, self.im + o.im)
+    }
+}
+
+impl Sub for Complex {
+    type Output = Self;
+    fn sub(self, o: Self) -> Self {
+        Self::new(self.re - o.re, self.im - o.im)
+    }
+}
+
+impl Mul for Complex {
+    type Output = Self;
+    fn mul(self, o: Self) -> Self {
+        Self::new(self.re * o.re - self.im * o.im, self.re * o.im + self.im * o.re)
+    }
+}
+
+impl Neg for Complex {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self::new(-self.re, -self.im)
+    }
+}
+
+impl Div for Complex {
+    type Output = Self;
+    /// Smith's division: no overflow unless the quotient itself overflows.
+    fn div(self, o: Self) -> Self {
+        if o.re.abs() >= o.im.abs() {
+            let r = o.im / o.re;
+            let d = o.re + o.im * r;
+            Self::new((self.re + self.im * r) / d, (self.im - self.re * r) / d)
+        } else {
+            let r = o.re / o.im;
+            let d = o.re * r + o.im;
+            Self::new((self.re * r + self.im) / d, (self.im * r - self.re) / d)
+        }
+    }
+}
+
+/// LU factorisation with partial pivoting of the `n` × `n` matrix `a`, in place; `piv` (length `n`) records the row swaps.
+///
+/// # Errors
+/// [`Singular`] when a column has no finite non-zero pivot.
+pub fn lu_factor(a: &mut [f64], n: usize, piv: &mut [usize]) -> Result<(), Singular> {
+    lu_factor_weighted(a, n, piv, None)
+}
+
+/// [`lu_factor`] whose pivot search compares `|a_ik| * weight_i`: with `weight` = 1 / (magnitude of unknown i) the choice of
+/// pivots does not depend on the units of the rows. `weights` (length `n`) is permuted with the rows.
+///
+/// # Errors
+/// [`Singular`] when a column has no finite non-zero pivot.
+pub fn lu_factor_weighted(
+    a: &mut [f64],
+    n: usize,
+    piv: &mut [usize],
+    mut weights: Option<&mut [f64]>,
+) -> Result<(), Singular> {
+    assert!(a.len() >= n * n && piv.len() >= n, "work arrays shorter than the matrix");
+    for k in 0..n {
+        let mut best = k;
+        let mut best_size = -1.0;
+        for i in k..n {
+            let w = weights.as_ref().map_or(1.0, |w| w[i]);
+            let size = a[i * n + k].abs() * w;
+            if size > best_size {
+                best_size = size;
+                best = i;
+            }
+        }
+        // Written so that a NaN pivot also fails.
+        if !(best_size > 0.0 && best_size < f64::INFINITY) {
+            return Err(Singular { column: k });
+        }
+        piv[k] = best;
+        if best != k {
+            let (top, bottom) = a.split_at_mut(best * n);
+            top[k * n..k * n + n].swap_with_slice(&mut bottom[..n]);
+            if let Some(w) = weights.as_mut() {
+                w.swap(k, best);
+            }
+        }
+        let (top, bottom) = a.split_at_mut((k + 1) * n);
+        let pivot_row = &top[k * n + k + 1..k * n + n];
+        let inv = 1.0 / top[k * n + k];
+        for row in bottom[..(n - k - 1) * n].chunks_exact_mut(n) {
+            let l = row[k] * inv;
+            row[k] = l;
+            // Sparse Jacobians are common: a zero multiplier needs no row operation.
+            if l != 0.0 {
+                for (x, p) in row[k + 1..].iter_mut().zip(pivot_row) {
+                    *x -= l * p;
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Solves `A x = b` in place with the factors of [`lu_factor`].
+pub fn lu_solve(a: &[f64], n: usize, piv: &[usize], b: &mut [f64]) {
+    for k in 0..n {
+        b.swap(k, piv[k]);
+    }
+    for i in 1..n {
+        let (done, rest) = b.split_at_mut(i);
+        rest[0] -= dot(&a[i * n..i * n + i], done);
+    }
+    for i in (0..n).rev() {
+        let (head, tail) = b.split_at_mut(i + 1);
+        let s = head[i] - dot(&a[i * n + i + 1..i * n + n], &tail[..n - i - 1]);
+        head[i] = s / a[i * n + i];
+    }
+}
+
+/// Inner product with four partial sums: the order of summation is fixed, so results do not depend on the optimiser.
+#[inline]
+#[must_use]
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let n = a.len().min(b.len());
+    let (a, b) = (&a[..n], &b[..n]);
+    let mut s = [0.0; 4];
+    let (ca, cb) = (a.chunks_exact(4), b.chunks_exact(4));
+    let tail: f64 = ca.remainder().iter().zip(cb.remainder()).map(|(x, y)| x * y).sum();
+    for (x, y) in ca.zip(cb) {
+        for i in 0..4 {
+            s[i] += x[i] * y[i];
+        }
+    }
+    (s[0] + s[1]) + (s[2] + s[3]) + tail
+}
+
+/// [`lu_factor_weighted`] for a complex matrix.
+///
+/// # Errors
+/// [`Singular`] when a column has no finite non-zero pivot.
+pub fn lu_factor_complex(
+    a: &mut [Complex],
+    n: usize,
+    piv: &mut [usize],
+    mut weights: Option<&mut [f64]>,
+) -> Result<(), Singular> {
+    assert!(a.len() >= n * n && piv.len() >= n, "work arrays shorter than the matrix");
+    for k in 0..n {
+        let mut best = k;
+        let mut best_size = -1.0;
+        for i in k..n {
+            let w = weights.as_ref().map_or(1.0, |w| w[i]);
+            let size = a[i * n + k].norm1() * w;
+            if size > best_size {
+                best_size = size;
+                best = i;
+            }
+        }
+        if !(best_size > 0.0 && best_size < f64::INFINITY) {
+            return Err(Singular { column: k });
+        }
+        piv[k] = best;
+        if best != k {
+            let (top, bottom) = a.split_at_mut(best * n);
+            top[k * n..k * n + n].swap_with_slice(&mut bottom[..n]);
+            if let Some(w) = weights.as_mut() {
+                w.swap(k, best);
+            }
+        }
+        let (top, bottom) = a.split_at_mut((k + 1) * n);
+        let pivot_row = &top[k * n + k + 1..k * n + n];
+        let inv = Complex::new(1.0, 0.0) / top[k * n + k];
+        for row in bottom[..(n - k - 1) * n].chunks_exact_mut(n) {
+            let l = row[k] * inv;
+            row[k] = l;
+            if l != Complex::default() {
+                for (x, p) in row[k + 1..].iter_mut().zip(pivot_row) {
+                    *x = *x - l * *p;
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Solves `A x = b` in place with the factors of [`lu_factor_complex`].
+pub fn lu_solve_complex(a: &[Complex], n: usize, piv: &[usize], b: &mut [Complex]) {
+    for k in 0..n {
+        b.swap(k, piv[k]);
+    }
+    for i in 1..n {
+        let mut s = b[i];
+        for j in 0..i {
+            s = s - a[i * n + j] * b[j];
+        }
+        b[i] = s;
+    }
+    for i in (0..n).rev() {
+        let mut s = b[i];
+        for j in i + 1..n {
+            s = s - a[i * n + j] * b[j];
+        }
+        b[i] = s / a[i * n + i];
+    }
+}
+
+/// Solves a tridiagonal system in place by elimination without pivoting (Thomas), for diagonally dominant matrices.
+///
+/// `lower[i]` multiplies `x[i-1]` in row i (`lower[0]` unused), `upper[i]` multiplies `x[i+1]` (`upper[n-1]` unused).
+/// `rhs` becomes the solution, `work` (length n) is overwritten.
+///
+/// # Errors
+/// [`Singular`] when a pivot is zero or not finite; use [`Banded`] when the matrix is not diagonally dominant.
+pub fn solve_tridiagonal(
+    lower: &[f64],
+    diagonal: &[f64],
+    upper: &[f64],
+    rhs: &mut [f64],
+    work: &mut [f64],
+) -> Result<(), Singular> {
+    let n = diagonal.len();
+    if n == 0 {
+        return Ok(());
+    }
+    let usable = |p: f64| p != 0.0 && p.is_finite();
+    let mut pivot = diagonal[0];
+    if !usable(pivot) {
+        return Err(Singular { column: 0 });
+    }
+    rhs[0] /= pivot;
+    for i in 1..n {
+        work[i] = upper[i - 1] / pivot;
+        pivot = diagonal[i] - lower[i] * work[i];
+        if !usable(pivot) {
+            return Err(Singular { column: i });
+        }
+        rhs[i] = (rhs[i] - lower[i] * rhs[i - 1]) / pivot;
+    }
+    for i in (0..n - 1).rev() {
+        rhs[i] -= work[i + 1] * rhs[i + 1];
+    }
+    Ok(())
+}
+
+/// A banded matrix with `kl` sub- and `ku` super-diagonals, factorised with partial pivoting.
+///
+/// Rows are stored with `2 kl + ku + 1` entries: the extra `kl` take the fill of the row exchanges.
+#[derive(Debug, Clone)]
+pub struct Banded {
+    n: usize,
+    kl: usize,
+    ku: usize,
+    width: usize,
+    a: Vec<f64>,
+    piv: Vec<usize>,
+    factored: bool,
+}
+
+impl Banded {
+    /// A zero matrix of size `n` with the given bandwidths.
+    #[must_use]
+    pub fn new(n: usize, kl: usize, ku: usize) -> Self {
+        let width = 2 * kl + ku + 1;
+        Self { n, kl, ku, width, a: vec![0.0; n * width], piv: vec![0; n], factored: false }
+    }
+
+    /// Number of rows.
+    #[must_use]
+    pub fn size(&self) -> usize {
+        self.n
+    }
+
+    /// Sets every entry to zero, ready to be assembled again.
+    pub fn clear(&mut self) {
+        self.a.fill(0.0);
+        self.factored = false;
+    }
+
+    /// Adds `value` to entry `(i, j)`.
+    ///
+    /// # Panics
+    /// When `(i, j)` lies outside the band: that is a mistake of the program, not of its user.
+    #[inline]
+    pub fn add(&mut self, i: usize, j: usize, value: f64) {
+        assert!(j + self.kl >= i && j <= i + self.ku && i < self.n && j < self.n, "outside the band");
+        // Column j of row i sits at offset j - (i - kl).
+        self.a[i * self.width + (j + self.kl - i)] += value;
+        self.factored = false;
+    }
+
+    /// Entry `(i, j)` of a matrix that is not yet factorised.
+    #[must_use]
+    pub fn get(&self, i: usize, j: usize) -> f64 {
+        if j + self.kl < i || j > i + self.ku { 0.0 } else { self.a[i * self.width + (j + self.kl - i)] }
+    }
+
+    /// LU factorisation in place.
+    ///
+    /// # Errors
+    /// [`Singular`] when a column has no finite non-zero pivot.
+    pub fn factor(&mut self) -> Result<(), Singular> {
+        let (n, kl, w) = (self.n, self.kl, self.width);
+        // Shift each row so that its first stored entry is column max(0, i - kl) of the remaining matrix: during the
+        // elimination row i starts at column `k`, and its multiplier of column k is kept at slot kl + k - i as before.
+        for k in 0..n {
+            let last = (k + kl).min(n - 1);
+            let mut best = k;
+            let mut best_size = -1.0;
+            for i in k..=last {
+                let size = self.a[i * w + (k + kl - i)].abs();
+                if size > best_size {
+                    best_size = size;
+                    best = i;
+                }
+            }
+            if !(best_size > 0.0 && best_size < f64::INFINITY) {
+                return Err(Singular { column: k });
+            }
+            self.piv[k] = best;
+            let reach = (k + self.ku + kl).min(n - 1);
+            if best != k {
+                for j in k..=reach {
+                    self.a.swap(k * w + (j + kl - k), best * w + (j + kl - best));
+                }
+            }
+            let pivot = self.a[k * w + kl];
+            for i in k + 1..=last {
+                let l = self.a[i * w + (k + kl - i)] / pivot;
+                self.a[i * w + (k + kl - i)] = l;
+                if l != 0.0 {
+                    let (top, bottom) = self.a.split_at_mut(i * w);
+                    let src = &top[k * w + kl + 1..=k * w + (reach + kl - k)];
+                    let dst = &mut bottom[k + 1 + kl - i..=reach + kl - i];
+                    for (x, p) in dst.iter_mut().zip(src) {
+                        *x -= l * p;
+                    }
+                }
+            }
+        }
+        self.factored = true;
+        Ok(())
+    }
+
+    /// Solves `A x = b` in place with the factors of [`Banded::factor`].
+    ///
+    /// # Panics
+    /// When the matrix was not factorised since it was last changed: a mistake of the program.
+    pub fn solve(&self, b: &mut [f64]) {
+        assert!(self.factored, "solve before factor");
+        let (n, kl, w) = (self.n, self.kl, self.width);
+        for k in 0..n {
+            b.swap(k, self.piv[k]);
+            let x = b[k];
+            for i in k + 1..=(k + kl).min(n - 1) {
+                b[i] -= self.a[i * w + (k + kl - i)] * x;
+            }
+        }
+        for i in (0..n).rev() {
+            let mut s = b[i];
+            for j in i + 1..=(i + self.ku + kl).min(n - 1) {
+                s -= self.a[i * w + (j + kl - i)] * b[j];
+            }
+            b[i] = s / self.a[i * w + kl];
+        }
+    }
+}

@@ -1,0 +1,472 @@
+//! A comparison's files and its page.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use gudgeon_core::result::{Column, Comparison, Series};
+use indexmap::IndexMap;
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+
+use crate::number::{capital, count, percent, round_trip, significant, unit};
+use crate::page::{self, Arrays, Kind, esc};
+use crate::stage::Stage;
+use crate::summary::{ModelEntry, Summary};
+use crate::{REPORT, ReportError, table};
+
+pub(crate) const COMPARISON: &str = "comparison.json";
+const TABLE: &str = "comparison.csv";
+const SERIES: &str = "series.csv";
+
+/// Where [`write_comparison`] put things.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ComparisonFiles {
+    /// Everything but the curves.
+    pub comparison: PathBuf,
+    /// Results down, variants across.
+    pub table: PathBuf,
+    /// Curves of all variants in long form, told apart by the column `variant`.
+    pub series: PathBuf,
+    /// The page.
+    pub report: PathBuf,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+struct Swap {
+    path: String,
+    values: Vec<String>,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+struct VariantEntry {
+    /// 1 for the base.
+    number: usize,
+    label: String,
+    swaps: IndexMap<String, String>,
+    /// Why there is no run: the combination was refused, or it failed.
+    error: Option<String>,
+    /// The shape of `summary.json`.
+    run: Option<Summary>,
+}
+
+/// One result over all variants; null where a variant has none.
+#[derive(Debug, Serialize, Deserialize)]
+struct Row {
+    unit: String,
+    values: Vec<Option<f64>>,
+    /// To the first variant.
+    difference_percent: Vec<Option<f64>>,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+struct File {
+    case: String,
+    title: String,
+    swaps: Vec<Swap>,
+    variants: Vec<VariantEntry>,
+    results: IndexMap<String, Row>,
+}
+
+impl File {
+    fn new(c: &Comparison) -> Self {
+        let variants: Vec<VariantEntry> = c
+            .variants
+            .iter()
+            .enumerate()
+            .map(|(i, v)| VariantEntry {
+                number: i + 1,
+                label: v.label.clone(),
+                swaps: v.swaps.iter().cloned().collect(),
+                error: v.outcome.as_ref().err().cloned(),
+                run: v.outcome.as_ref().ok().map(Summary::new),
+            })
+            .collect();
+        Self {
+            case: c.case.clone(),
+            title: c.title.clone(),
+            swaps: c
+                .swaps
+                .iter()
+                .map(|(path, values)| Swap { path: path.clone(), values: values.clone() })
+                .collect(),
+            results: rows(&variants),
+            variants,
+        }
+    }
+}
+
+fn rows(variants: &[VariantEntry]) -> IndexMap<String, Row> {
+    let mut names: IndexMap<&str, &str> = IndexMap::new();
+    for run in variants.iter().filter_map(|v| v.run.as_ref()) {
+        for (name, v) in &run.results {
+            names.entry(name).or_insert(&v.unit);
+        }
+    }
+    let value = |v: &VariantEntry, name: &str, u: &str| -> Option<f64> {
+        // Values in different units cannot stand in one row.
+        v.run.as_ref()?.results.get(name).filter(|v| v.unit == u)?.value
+    };
+    names
+        .iter()
+        .map(|(name, u)| {
+            let values: Vec<Option<f64>> = variants.iter().map(|v| value(v, name, u)).collect();
+            let base = values.first().copied().flatten().filter(|b| *b != 0.0);
+            let difference_percent = values
+                .iter()
+                .map(|v| Some((((*v)? - base?) / base?.abs()) * 100.0).filter(|d| d.is_finite()))
+                .collect();
+            ((*name).to_owned(), Row { unit: (*u).to_owned(), values, difference_percent })
+        })
+        .collect()
+}
+
+/// Writes `comparison.json`, `comparison.csv`, `series.csv` and `report.html` of a comparison into `dir`.
+///
+/// # Errors
+/// A column of another length than the crank angles, or a file system that refuses; files already in `dir` are then as
+/// they were.
+pub fn write_comparison(c: &Comparison, dir: &Path) -> Result<ComparisonFiles, ReportError> {
+    let file = File::new(c);
+    let series: Vec<(usize, &Series)> = c
+        .variants
+        .iter()
+        .enumerate()
+        .filter_map(|(i, v)| v.outcome.as_ref().ok().map(|r| (i + 1, &r.series)))
+        .collect();
+    let mut stage = Stage::new(dir)?;
+    stage.add(SERIES, &table::long_csv(&series)?)?;
+    stage.add(TABLE, &csv_table(&file)?)?;
+    stage.add(REPORT, page(&file, &series).as_bytes())?;
+    stage.add(COMPARISON, (serde_json::to_string_pretty(&file).unwrap_or_default() + "\n").as_bytes())?;
+    stage.commit()?;
+    Ok(ComparisonFiles {
+        comparison: dir.join(COMPARISON),
+        table: dir.join(TABLE),
+        series: dir.join(SERIES),
+        report: dir.join(REPORT),
+    })
+}
+
+/// Rebuilds the page of a comparison.
+pub(crate) fn rewrite(dir: &Path) -> Result<PathBuf, ReportError> {
+    let path = dir.join(COMPARISON);
+    let bytes = std::fs::read(&path).map_err(ReportError::io("read", &path))?;
+    let file: File = serde_json::from_slice(&bytes)
+        .map_err(|e| ReportError::Malformed { path: path.clone(), why: e.to_string() })?;
+    let series = dir.join(SERIES);
+    let series = if series.is_file() { table::read_long(&series)? } else { Vec::new() };
+    let series: Vec<(usize, &Series)> = series.iter().map(|(n, s)| (*n, s)).collect();
+    let mut stage = Stage::new(dir)?;
+    stage.add(REPORT, page(&file, &series).as_bytes())?;
+    stage.commit()?;
+    Ok(dir.join(REPORT))
+}
+
+/// Names of the counters or phases that any variant has.
+fn union<'a, V>(
+    variants: &'a [VariantEntry],
+    of: impl Fn(&'a Summary) -> &'a IndexMap<String, V>,
+) -> Vec<&'a str>
+where
+    V: 'a,
+{
+    let mut names: Vec<&str> = Vec::new();
+    for run in variants.iter().filter_map(|v| v.run.as_ref()) {
+        for name in of(run).keys() {
+            if !names.contains(&name.as_str()) {
+                names.push(name);
+            }
+        }
+    }
+    names
+}
+
+fn csv_table(file: &File) -> Result<Vec<u8>, ReportError> {
+    let mut out = vec![
+        ["result".to_owned(), "unit".to_owned()]
+            .into_iter()
+            .chain(file.variants.iter().map(|v| v.label.clone()))
+            .collect::<Vec<_>>(),
+    ];
+    for (name, row) in &file.results {
+        let mut line = vec![name.clone(), row.unit.clone()];
+        line.extend(row.values.iter().map(|v| v.map_or_else(String::new, round_trip)));
+        out.push(line);
+    }
+    for name in union(&file.variants, |r| &r.solver.counters) {
+        let mut line = vec![format!("solver.{name}"), "-".to_owned()];
+        line.extend(file.variants.iter().map(|v| {
+            let n = v.run.as_ref().and_then(|r| r.solver.counters.get(name));
+            n.map_or_else(String::new, u64::to_string)
+        }));
+        out.push(line);
+    }
+    for name in union(&file.variants, |r| &r.seconds) {
+        let mut line = vec![format!("seconds.{name}"), "s".to_owned()];
+        line.extend(file.variants.iter().map(|v| {
+            let s = v.run.as_ref().and_then(|r| r.seconds.get(name)).copied().flatten();
+            s.map_or_else(String::new, round_trip)
+        }));
+        out.push(line);
+    }
+    table::csv(out)
+}
+
+/// Curves worth overlaying; the rest stay in `series.csv`.
+fn overlaid(c: &Column) -> bool {
+    const LAST: [&str; 11] = [
+        "p",
+        "position",
+        "lift",
+        "h_min",
+        "cumulative_mass",
+        "cumulative",
+        "rate",
+        "flow",
+        "friction_force",
+        "friction_power",
+        "contact_load",
+    ];
+    let known = ["ring", "land", "cylinder", "blow_by", "piston"].iter().any(|p| c.name.starts_with(p));
+    let last = c.name.rsplit('.').next().unwrap_or("");
+    // Other scenes name their curves themselves.
+    !known || LAST.contains(&last)
+}
+
+fn badge(n: usize) -> String {
+    format!("<span class=\"badge c{}\">{n}</span>", (n - 1) % 8)
+}
+
+fn page(file: &File, series: &[(usize, &Series)]) -> String {
+    let heading = if file.title.trim().is_empty() { &file.case } else { &file.title };
+    let ran: Vec<&VariantEntry> = file.variants.iter().filter(|v| v.run.is_some()).collect();
+    let mut body = String::new();
+    let _ = write!(
+        body,
+        "<header><h1>{}</h1><p class=\"meta\"><code>{}</code> · comparison of {} variants</p>",
+        esc(heading),
+        esc(&file.case),
+        file.variants.len()
+    );
+    for s in &file.swaps {
+        let values: Vec<String> = s.values.iter().map(|v| format!("<code>{}</code>", esc(v))).collect();
+        let _ = write!(body, "<p class=\"source\"><b>{}</b> {}</p>", esc(&s.path), values.join(" "));
+    }
+    body.push_str("</header>\n<main>\n");
+    let missing: Vec<&VariantEntry> = file.variants.iter().filter(|v| v.run.is_none()).collect();
+    if !missing.is_empty() {
+        body.push_str(
+            "<section id=\"refused\" class=\"note\"><h2>Did not run</h2><table class=\"plain\"><tbody>",
+        );
+        for v in missing {
+            let _ = write!(
+                body,
+                "<tr><th scope=\"row\">{} {}</th><td><pre class=\"error\">{}</pre></td></tr>",
+                badge(v.number),
+                esc(&v.label),
+                esc(v.error.as_deref().unwrap_or("no reason is recorded").trim())
+            );
+        }
+        body.push_str("</tbody></table></section>\n");
+    }
+    if ran.is_empty() {
+        body.push_str("<section><h2>Results</h2><p class=\"hint\">No variant ran.</p></section>\n");
+    } else {
+        comparison_table(&mut body, file, &ran);
+    }
+    let noted: Vec<&&VariantEntry> =
+        ran.iter().filter(|v| v.run.as_ref().is_some_and(|r| !r.solver.notes.is_empty())).collect();
+    if !noted.is_empty() {
+        body.push_str("<section id=\"notes\"><h2>Notes of the runs</h2><table class=\"plain\"><tbody>");
+        for v in noted {
+            let notes: Vec<String> = v
+                .run
+                .iter()
+                .flat_map(|r| &r.solver.notes)
+                .map(|n| format!("<p>{}</p>", page::prose(n)))
+                .collect();
+            let _ = write!(
+                body,
+                "<tr><th scope=\"row\">{} {}</th><td>{}</td></tr>",
+                badge(v.number),
+                esc(&v.label),
+                notes.concat()
+            );
+        }
+        body.push_str("</tbody></table></section>\n");
+    }
+    if series.iter().any(|(_, s)| !s.theta_deg.is_empty() && !s.columns.is_empty()) {
+        body.push_str(
+            "<section id=\"cycle\"><h2>Over the cycle</h2><div id=\"bar\"></div><div id=\"plots\"></div></section>\n",
+        );
+    }
+    let mut models: Vec<ModelEntry> = Vec::new();
+    for m in ran.iter().filter_map(|v| v.run.as_ref()).flat_map(|r| &r.models) {
+        if !models.iter().any(|k| k.kind == m.kind && k.model == m.model) {
+            models.push(m.clone());
+        }
+    }
+    if !models.is_empty() {
+        models.sort_by(|a, b| (&a.kind, &a.model).cmp(&(&b.kind, &b.model)));
+        body.push_str(&page::models_section(&models));
+    }
+    body.push_str("</main>\n");
+    let version = ran.first().and_then(|v| v.run.as_ref()).map_or("", |r| r.gudgeon.as_str());
+    body.push_str(&page::footer(version));
+
+    let mut arrays = Arrays::default();
+    let variants: Vec<serde_json::Value> = series
+        .iter()
+        .map(|(n, s)| {
+            let label = file.variants.iter().find(|v| v.number == *n).map_or("", |v| v.label.as_str());
+            let columns = arrays.series(&s.theta_deg, s.columns.iter().filter(|c| overlaid(c)));
+            json!({ "number": n, "label": label, "series": columns })
+        })
+        .collect();
+    let data = json!({ "variants": variants, "arrays": arrays.into_json() });
+    page::document(Kind::Comparison, heading, &body, &data)
+}
+
+fn comparison_table(out: &mut String, file: &File, ran: &[&VariantEntry]) {
+    let base = file.variants.first().filter(|v| v.run.is_some());
+    out.push_str("<section id=\"results\"><h2>Results</h2>");
+    match base {
+        Some(v) => {
+            let _ = write!(
+                out,
+                "<p class=\"hint\">Differences are to variant {} {}.</p>",
+                badge(v.number),
+                esc(&v.label)
+            );
+        }
+        None => out.push_str(
+            "<p class=\"hint\">The first variant did not run: there is nothing to take differences to.</p>",
+        ),
+    }
+    out.push_str("<div class=\"scroll\"><table class=\"plain compare\"><thead><tr><th>Result</th>");
+    for v in ran {
+        let parts: Vec<String> = v
+            .swaps
+            .iter()
+            .map(|(path, value)| {
+                let short = path.trim_end_matches(".model").rsplit('.').next().unwrap_or(path);
+                format!("<span title=\"{}\">{} <b>{}</b></span>", esc(path), esc(short), esc(value))
+            })
+            .collect();
+        let label = if parts.is_empty() { esc(&v.label) } else { parts.join("<br>") };
+        let _ = write!(out, "<th class=\"num variant\">{}<br>{label}</th>", badge(v.number));
+    }
+    out.push_str("<th></th></tr></thead><tbody>");
+    for (name, row) in &file.results {
+        let what = ran
+            .iter()
+            .find_map(|v| v.run.as_ref().and_then(|r| r.descriptions.get(name)))
+            .map_or("", String::as_str);
+        let _ = write!(out, "<tr><th scope=\"row\">{} <code>{}</code></th>", esc(&capital(what)), esc(name));
+        let value = |k: usize| row.values.get(k).copied().flatten();
+        for v in ran {
+            let k = v.number - 1;
+            let text = significant(value(k), 4);
+            if row.unit == "deg" {
+                // A percentage of an angle says nothing: it would depend on where zero is.
+                let shift = value(0).zip(value(k)).filter(|_| k > 0).map(|(a, b)| b - a);
+                shift_cell(out, &text, shift);
+            } else {
+                cell(out, &text, row.difference_percent.get(k).copied().flatten().filter(|_| k > 0));
+            }
+        }
+        let _ = write!(out, "<td class=\"unit\">{}</td></tr>", esc(&unit(&row.unit)));
+    }
+    out.push_str("</tbody><tbody class=\"work\">");
+    for name in union(&file.variants, |r| &r.seconds) {
+        let value = |v: &VariantEntry| v.run.as_ref().and_then(|r| r.seconds.get(name)).copied().flatten();
+        let first = base.and_then(value);
+        let _ = write!(out, "<tr><th scope=\"row\">{} time</th>", esc(&name.replace('_', " ")));
+        for v in ran {
+            let s = value(v);
+            let ratio =
+                first.zip(s).filter(|(f, _)| *f > 0.0 && v.number > 1).map(|(f, s)| (s / f - 1.0) * 100.0);
+            cell(out, &significant(s, 3), ratio);
+        }
+        out.push_str("<td class=\"unit\">s</td></tr>");
+    }
+    out.push_str("<tr><th scope=\"row\">solver</th>");
+    for v in ran {
+        let _ = write!(
+            out,
+            "<td class=\"num\">{}</td>",
+            esc(v.run.as_ref().map_or("", |r| r.solver.method.as_str()))
+        );
+    }
+    out.push_str("<td></td></tr>");
+    for name in union(&file.variants, |r| &r.solver.counters) {
+        let value = |v: &VariantEntry| v.run.as_ref().and_then(|r| r.solver.counters.get(name)).copied();
+        let first = base.and_then(value);
+        let _ = write!(out, "<tr><th scope=\"row\">{}</th>", esc(&name.replace('_', " ")));
+        for v in ran {
+            let n = value(v);
+            let ratio = first
+                .zip(n)
+                .filter(|(f, _)| *f > 0 && v.number > 1)
+                .map(|(f, n)| (n as f64 / f as f64 - 1.0) * 100.0);
+            cell(out, &n.map_or_else(|| "–".into(), count), ratio);
+        }
+        out.push_str("<td></td></tr>");
+    }
+    type Closure = (&'static str, fn(&Summary) -> Option<f64>);
+    let balances: [Closure; 4] = [
+        ("gas mass closure", |r| r.balance.gas_mass),
+        ("oil mass closure", |r| r.balance.oil_mass),
+        ("energy closure", |r| r.balance.energy),
+        ("momentum closure", |r| r.balance.momentum),
+    ];
+    for (name, of) in balances {
+        if ran.iter().all(|v| v.run.as_ref().and_then(of).is_none()) {
+            continue;
+        }
+        let _ = write!(out, "<tr><th scope=\"row\">{name}</th>");
+        for v in ran {
+            cell(out, &significant(v.run.as_ref().and_then(of), 2), None);
+        }
+        out.push_str("<td></td></tr>");
+    }
+    out.push_str("</tbody></table></div></section>\n");
+}
+
+/// An angle with its shift.
+fn shift_cell(out: &mut String, text: &str, shift: Option<f64>) {
+    let Some(shift) = shift else {
+        let _ = write!(out, "<td class=\"num\">{text}</td>");
+        return;
+    };
+    let side = if shift < 0.0 { "less" } else { "more" };
+    let step = match shift.abs() {
+        d if d < 1.0 => 0,
+        d if d < 5.0 => 1,
+        d if d < 20.0 => 2,
+        _ => 3,
+    };
+    let sign = if shift > 0.0 { "+" } else { "" };
+    let _ = write!(
+        out,
+        "<td class=\"num {side}{step}\">{text} <span class=\"diff\">{sign}{}°</span></td>",
+        significant(Some(shift), 2)
+    );
+}
+
+/// A value with its difference; the larger the difference, the stronger the cell's ground.
+fn cell(out: &mut String, text: &str, difference: Option<f64>) {
+    let Some(d) = difference else {
+        let _ = write!(out, "<td class=\"num\">{text}</td>");
+        return;
+    };
+    let step = match d.abs() {
+        d if d < 1.0 => 0,
+        d if d < 5.0 => 1,
+        d if d < 20.0 => 2,
+        _ => 3,
+    };
+    let side = if d < 0.0 { "less" } else { "more" };
+    let _ =
+        write!(out, "<td class=\"num {side}{step}\">{text} <span class=\"diff\">{}</span></td>", percent(d));
+}

@@ -1,0 +1,136 @@
+//! Numbers for people.
+
+/// `value` with `digits` significant digits; powers of ten outside 10⁻³ … 10⁶. An absent or non-finite value is a dash.
+pub(crate) fn significant(value: Option<f64>, digits: usize) -> String {
+    let Some(value) = value.filter(|v| v.is_finite()) else { return "–".into() };
+    if value == 0.0 {
+        return "0".into();
+    }
+    let digits = digits.max(1);
+    // The exponent after rounding: 9.9999 with three digits is 10.0, not 9.99 or 10.00.
+    let scientific = format!("{:.*e}", digits - 1, value);
+    let Some((mantissa, exponent)) = scientific.split_once('e') else { return scientific };
+    let exponent: i32 = exponent.parse().unwrap_or(0);
+    let text = if (-3..6).contains(&exponent) {
+        let decimals = usize::try_from(digits as i32 - 1 - exponent).unwrap_or(0);
+        format!("{value:.decimals$}")
+    } else {
+        format!("{mantissa}×10{}", superscript(exponent))
+    };
+    text.replace('-', "−")
+}
+
+/// A relative difference in percent with its sign, finer the smaller it is.
+pub(crate) fn percent(value: f64) -> String {
+    if !value.is_finite() {
+        return "–".into();
+    }
+    let size = value.abs();
+    let text = if size < 5e-4 {
+        "0".into()
+    } else if size < 0.1 {
+        format!("{value:+.3}")
+    } else if size < 10.0 {
+        format!("{value:+.2}")
+    } else if size < 1e4 {
+        format!("{value:+.1}")
+    } else {
+        format!("{value:+.1e}")
+    };
+    format!("{} %", text.replace('-', "−"))
+}
+
+/// Units as they are typeset.
+pub(crate) fn unit(text: &str) -> String {
+    match text {
+        "-" | "" | "1" => String::new(),
+        "um" => "µm".into(),
+        "deg" => "°".into(),
+        "degC" => "°C".into(),
+        _ => text.replace("um", "µm").replace("m2", "m²").replace("m3", "m³").replace("s2", "s²"),
+    }
+}
+
+/// A counter with thin spaces between groups of three digits.
+pub(crate) fn count(n: u64) -> String {
+    let plain = n.to_string();
+    if plain.len() < 5 {
+        return plain;
+    }
+    let mut text = String::new();
+    for (i, c) in plain.chars().enumerate() {
+        if i > 0 && (plain.len() - i).is_multiple_of(3) {
+            text.push('\u{202f}');
+        }
+        text.push(c);
+    }
+    text
+}
+
+/// First letter large.
+pub(crate) fn capital(text: &str) -> String {
+    let mut chars = text.chars();
+    chars.next().map_or_else(String::new, |c| c.to_uppercase().collect::<String>() + chars.as_str())
+}
+
+fn superscript(n: i32) -> String {
+    n.to_string()
+        .chars()
+        .map(|c| match c {
+            '-' => '⁻',
+            '1' => '¹',
+            '2' => '²',
+            '3' => '³',
+            '0' | '4'..='9' => char::from_u32(0x2070 + c as u32 - '0' as u32).unwrap_or(c),
+            _ => c,
+        })
+        .collect()
+}
+
+/// Shortest decimal text that reads back as the same number; empty for one that is not finite.
+pub(crate) fn round_trip(value: f64) -> String {
+    if !value.is_finite() {
+        return String::new();
+    }
+    let size = value.abs();
+    if size == 0.0 || (1e-4..1e15).contains(&size) { format!("{value}") } else { format!("{value:e}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn significant_digits_survive_rounding_up_and_extremes() {
+        assert_eq!(significant(Some(49.9), 4), "49.90");
+        assert_eq!(significant(Some(9.9996), 4), "10.00");
+        assert_eq!(significant(Some(-0.012_345), 4), "−0.01235");
+        assert_eq!(significant(Some(2.14e-9), 2), "2.1×10⁻⁹");
+        assert_eq!(significant(Some(123_456.7), 4), "123457");
+        assert_eq!(significant(Some(0.0), 4), "0");
+        assert_eq!(significant(Some(f64::NAN), 4), "–");
+        assert_eq!(significant(None, 4), "–");
+    }
+
+    #[test]
+    fn percentages_have_a_sign() {
+        assert_eq!(percent(3.456), "+3.46 %");
+        assert_eq!(percent(-12.34), "−12.3 %");
+        assert_eq!(percent(0.0), "0 %");
+        assert_eq!(percent(f64::INFINITY), "–");
+    }
+
+    #[test]
+    fn round_trip_is_exact_at_every_size() {
+        for v in [0.1, 1.0 / 3.0, 1e-7, 5e-324, 1.797e308, -2.5e-10, 101_325.0, 720.0] {
+            assert_eq!(round_trip(v).parse::<f64>().unwrap().to_bits(), v.to_bits());
+        }
+        assert_eq!(round_trip(f64::NAN), "");
+    }
+
+    #[test]
+    fn counters_are_grouped() {
+        assert_eq!(count(9999), "9999");
+        assert_eq!(count(1_234_567), "1\u{202f}234\u{202f}567");
+    }
+}

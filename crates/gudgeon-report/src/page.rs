@@ -1,0 +1,345 @@
+//! The shell of every page, and the parts that pages share.
+
+use std::fmt::Write;
+
+use gudgeon_core::Registry;
+use gudgeon_core::result::{Column, Series};
+use serde_json::{Value, json};
+
+use crate::number::{count, significant, unit};
+use crate::summary::{BalanceSheet, ModelEntry, ResultValue, SkippedEntry, SolverEntry};
+
+const STYLE: &str = include_str!("assets/style.css");
+const CORE: &str = include_str!("assets/core.js");
+const PLOT: &str = include_str!("assets/plot.js");
+const SECTION: &str = include_str!("assets/section.js");
+const RUN: &str = include_str!("assets/run.js");
+const COMPARE: &str = include_str!("assets/compare.js");
+const BENCH: &str = include_str!("assets/bench.js");
+
+/// Which script draws the page.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Kind {
+    Run,
+    Comparison,
+    Bench,
+}
+
+/// Text made safe for HTML content and quoted attributes.
+pub(crate) fn esc(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            '\'' => out.push_str("&#39;"),
+            _ => out.push(c),
+        }
+    }
+    out
+}
+
+/// Prose made safe, with what stands between backticks set as code.
+pub(crate) fn prose(text: &str) -> String {
+    let parts: Vec<String> = text.split('`').map(esc).collect();
+    if parts.len().is_multiple_of(2) {
+        return esc(text);
+    }
+    let mut out = String::new();
+    for (i, part) in parts.iter().enumerate() {
+        if i % 2 == 1 {
+            let _ = write!(out, "<code>{part}</code>");
+        } else {
+            out.push_str(part);
+        }
+    }
+    out
+}
+
+/// JSON made safe inside a script element: no `<` (so no `</script>`, no `<!--`) and no line separators.
+fn json_for_script(value: &Value) -> String {
+    value.to_string().replace('<', "\\u003c").replace('\u{2028}', "\\u2028").replace('\u{2029}', "\\u2029")
+}
+
+/// One whole page.
+pub(crate) fn document(kind: Kind, title: &str, body: &str, data: &Value) -> String {
+    let scripts: &[&str] = match kind {
+        Kind::Run => &[CORE, PLOT, SECTION, RUN],
+        Kind::Comparison => &[CORE, PLOT, COMPARE],
+        Kind::Bench => &[CORE, BENCH],
+    };
+    let mut out = String::new();
+    out.push_str("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
+    out.push_str("<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n");
+    // The page may run what is written in it and load nothing from anywhere.
+    out.push_str(
+        "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; \
+         script-src 'unsafe-inline'; img-src data:\">\n",
+    );
+    let _ =
+        write!(out, "<title>{} · Gudgeon</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n", esc(title));
+    out.push_str(body);
+    out.push_str("<noscript><p class=\"note\">The drawings and curves on this page need JavaScript; the tables do not.</p></noscript>\n");
+    let _ = write!(
+        out,
+        "<script type=\"application/json\" id=\"data\">{}</script>\n<script>\n",
+        json_for_script(data)
+    );
+    for script in scripts {
+        out.push_str(script);
+    }
+    out.push_str("</script>\n</body>\n</html>\n");
+    out
+}
+
+/// Standard base64.
+fn base64(bytes: &[u8]) -> String {
+    const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for chunk in bytes.chunks(3) {
+        let group = chunk.iter().fold(0u32, |g, b| g << 8 | u32::from(*b)) << (8 * (3 - chunk.len()));
+        for k in 0..4 {
+            if k <= chunk.len() {
+                out.push(char::from(ALPHABET[(group >> (18 - 6 * k)) as usize & 63]));
+            } else {
+                out.push('=');
+            }
+        }
+    }
+    out
+}
+
+/// Numbers as base64 of little-endian 32-bit floats: seven digits, enough for a drawing, at five bytes a number.
+fn packed(values: impl Iterator<Item = f64>) -> String {
+    let bytes: Vec<u8> = values.flat_map(|v| (v as f32).to_le_bytes()).collect();
+    base64(&bytes)
+}
+
+/// Most rows of a curve that a page carries; two per degree of a four-stroke cycle.
+const MAX_ROWS: usize = 1441;
+
+/// Collects arrays for a page; equal arrays are stored once.
+#[derive(Default)]
+pub(crate) struct Arrays {
+    arrays: Vec<String>,
+}
+
+impl Arrays {
+    fn add(&mut self, text: String) -> usize {
+        if let Some(i) = self.arrays.iter().position(|a| *a == text) {
+            return i;
+        }
+        self.arrays.push(text);
+        self.arrays.len() - 1
+    }
+
+    /// `{"theta": index, "columns": [{"name", "unit", "at": index}], "every": stride}`.
+    pub(crate) fn series<'a>(
+        &mut self,
+        theta_deg: &[f64],
+        columns: impl Iterator<Item = &'a Column>,
+    ) -> Value {
+        let every = theta_deg.len().div_ceil(MAX_ROWS).max(1);
+        let theta = self.add(packed(theta_deg.iter().copied().step_by(every)));
+        let columns: Vec<Value> = columns
+            .map(|c| {
+                let at = self.add(packed(c.values.iter().copied().step_by(every)));
+                json!({ "name": c.name, "unit": c.unit, "at": at })
+            })
+            .collect();
+        json!({ "theta": theta, "columns": columns, "every": every })
+    }
+
+    pub(crate) fn into_json(self) -> Value {
+        self.arrays.into()
+    }
+}
+
+/// Arrays and one series.
+pub(crate) fn one_series(series: &Series) -> (Value, Value) {
+    let mut arrays = Arrays::default();
+    let columns = arrays.series(&series.theta_deg, series.columns.iter());
+    (columns, arrays.into_json())
+}
+
+/// `<td>` with a number and its unit.
+pub(crate) fn value_cells(v: Option<&ResultValue>) -> String {
+    match v {
+        Some(v) => format!(
+            "<td class=\"num\">{}</td><td class=\"unit\">{}</td>",
+            significant(v.value, 4),
+            esc(&unit(&v.unit))
+        ),
+        None => "<td class=\"num\">–</td><td></td>".into(),
+    }
+}
+
+/// The balance sheet.
+pub(crate) fn balance_section(balance: &BalanceSheet) -> String {
+    let rows = [
+        ("Gas mass", "(in − out − stored) / throughput", balance.gas_mass),
+        ("Oil mass", "(in − out − stored) / throughput", balance.oil_mass),
+        (
+            "Energy",
+            "work of all forces on the rings less the change of their kinetic energy, by the sum of magnitudes",
+            balance.energy,
+        ),
+        (
+            "Momentum",
+            "impulse of all forces on the rings less the change of their momentum, by the sum of magnitudes",
+            balance.momentum,
+        ),
+    ];
+    let mut out = String::from(
+        "<section id=\"balance\"><h2>Balance sheet</h2><p class=\"hint\">Relative closure over one cycle: what the \
+         numerics lose. It should be small beside the accuracy you need.</p><table class=\"plain\"><tbody>",
+    );
+    for (name, how, value) in rows {
+        let text = match value {
+            Some(_) => significant(value, 2),
+            None => "<span class=\"muted\">none in this run</span>".into(),
+        };
+        let _ = write!(
+            out,
+            "<tr><th scope=\"row\">{name}</th><td class=\"num\">{text}</td><td class=\"what\">{how}</td></tr>"
+        );
+    }
+    out.push_str("</tbody></table></section>\n");
+    out
+}
+
+/// Models with equations, validity and references, as this program knows them.
+pub(crate) fn models_section(models: &[ModelEntry]) -> String {
+    let registry = Registry::collect();
+    let mut out = String::from(
+        "<section id=\"models\"><h2>Models</h2><p class=\"hint\">What ran, with its equations. References are keys \
+         of REFERENCES.bib.</p><div class=\"models\">",
+    );
+    for m in models {
+        let info = registry.model(&m.kind, &m.model);
+        let _ = write!(
+            out,
+            "<article class=\"model\"><h3><span class=\"kind\">{}</span> {}</h3>",
+            esc(&m.kind.replace('_', " ")),
+            esc(&m.model)
+        );
+        if let Some(info) = info {
+            let _ = write!(out, "<p>{}</p>", prose(info.summary));
+            if !info.equations.trim().is_empty() {
+                let _ = write!(out, "<pre>{}</pre>", esc(info.equations.trim()));
+            }
+            if !info.validity.trim().is_empty() {
+                let _ = write!(out, "<p class=\"valid\"><b>Valid</b> {}</p>", prose(info.validity.trim()));
+            }
+        }
+        if !m.references.is_empty() {
+            let keys: Vec<String> = m.references.iter().map(|r| format!("<code>{}</code>", esc(r))).collect();
+            let _ = write!(out, "<p class=\"refs\">{}</p>", keys.join(" "));
+        }
+        out.push_str("</article>");
+    }
+    out.push_str("</div></section>\n");
+    out
+}
+
+/// What was not computed.
+pub(crate) fn skipped_section(skipped: &[SkippedEntry]) -> String {
+    if skipped.is_empty() {
+        return String::new();
+    }
+    let mut out = String::from("<section id=\"skipped\"><h2>Not computed</h2><table class=\"plain\"><tbody>");
+    for s in skipped {
+        let _ = write!(out, "<tr><th scope=\"row\">{}</th><td>{}</td></tr>", prose(&s.what), prose(&s.why));
+    }
+    out.push_str("</tbody></table></section>\n");
+    out
+}
+
+/// Work of the solver and time by phase.
+pub(crate) fn solver_section(
+    solver: &SolverEntry,
+    seconds: &indexmap::IndexMap<String, Option<f64>>,
+) -> String {
+    let mut out = String::from("<section id=\"solver\"><h2>Solver</h2><table class=\"plain\"><tbody>");
+    let _ =
+        write!(out, "<tr><th scope=\"row\">method</th><td class=\"num\">{}</td></tr>", esc(&solver.method));
+    for (name, n) in &solver.counters {
+        let _ = write!(
+            out,
+            "<tr><th scope=\"row\">{}</th><td class=\"num\">{}</td></tr>",
+            esc(&name.replace('_', " ")),
+            count(*n)
+        );
+    }
+    for (name, s) in seconds {
+        let _ = write!(
+            out,
+            "<tr><th scope=\"row\">{} time</th><td class=\"num\">{}\u{a0}s</td></tr>",
+            esc(&name.replace('_', " ")),
+            significant(*s, 3)
+        );
+    }
+    out.push_str("</tbody></table></section>\n");
+    out
+}
+
+/// Notes that a person should see before the numbers.
+pub(crate) fn notes(notes: &[String]) -> String {
+    if notes.is_empty() {
+        return String::new();
+    }
+    let items: Vec<String> = notes.iter().map(|n| format!("<p>{}</p>", prose(n))).collect();
+    format!("<div class=\"note\" role=\"note\">{}</div>\n", items.concat())
+}
+
+/// Closing line.
+pub(crate) fn footer(version: &str) -> String {
+    let version = if version.is_empty() { String::new() } else { format!(" {}", esc(version)) };
+    format!(
+        "<footer>Made by Gudgeon{version}. Crank angle 0° is the gas-exchange top dead centre (start of intake), 360° \
+         the firing one. Pressures are absolute. Axial direction: positive towards the cylinder head.</footer>\n"
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn base64_matches_the_test_vectors_of_rfc_4648() {
+        for (plain, coded) in [
+            ("", ""),
+            ("f", "Zg=="),
+            ("fo", "Zm8="),
+            ("foo", "Zm9v"),
+            ("foob", "Zm9vYg=="),
+            ("fooba", "Zm9vYmE="),
+            ("foobar", "Zm9vYmFy"),
+        ] {
+            assert_eq!(base64(plain.as_bytes()), coded);
+        }
+    }
+
+    #[test]
+    fn nothing_in_the_scripts_closes_their_element() {
+        for script in [CORE, PLOT, SECTION, RUN, COMPARE, BENCH] {
+            assert!(!script.to_lowercase().contains("</script"));
+            assert!(!script.contains("<!--"));
+            // Text from a case must never be parsed as markup.
+            assert!(!script.contains("innerHTML"));
+        }
+        assert!(!STYLE.to_lowercase().contains("</style"));
+    }
+
+    #[test]
+    fn long_series_are_thinned_to_a_bounded_size() {
+        let theta: Vec<f64> = (0..7201).map(|i| f64::from(i) * 0.1).collect();
+        let mut arrays = Arrays::default();
+        let series = arrays.series(&theta, std::iter::empty());
+        assert_eq!(series["every"], 5);
+        let rows = 7201usize.div_ceil(5);
+        assert_eq!(arrays.arrays[0].len(), (rows * 4).div_ceil(3) * 4);
+    }
+}

@@ -1,0 +1,297 @@
+//! A run's files and its page.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use gudgeon_core::result::{RunResult, Series};
+use indexmap::IndexMap;
+use serde_json::json;
+
+use crate::number::{capital, percent, significant, unit};
+use crate::page::{self, Kind, esc};
+use crate::stage::Stage;
+use crate::summary::{ResultValue, Summary};
+use crate::{REPORT, ReportError, table};
+
+pub(crate) const SUMMARY: &str = "summary.json";
+pub(crate) const SERIES: &str = "series.csv";
+
+/// Where [`write_run`] put things.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RunFiles {
+    /// Results, models, balances, solver work.
+    pub summary: PathBuf,
+    /// Curves over the cycle, one row per crank angle.
+    pub series: PathBuf,
+    /// The page.
+    pub report: PathBuf,
+}
+
+/// Writes `summary.json`, `series.csv` and `report.html` of a run into `dir`, which is made when it does not exist.
+///
+/// # Errors
+/// A column of another length than the crank angles, or a file system that refuses; files already in `dir` are then as
+/// they were.
+pub fn write_run(run: &RunResult, dir: &Path) -> Result<RunFiles, ReportError> {
+    let summary = Summary::new(run);
+    let series = table::series_csv(&run.series)?;
+    let mut stage = Stage::new(dir)?;
+    stage.add(SERIES, &series)?;
+    stage.add(REPORT, page(&summary, &run.series).as_bytes())?;
+    // Last, so that whoever waits for the summary finds the rest complete.
+    stage.add(SUMMARY, text(&summary).as_bytes())?;
+    stage.commit()?;
+    Ok(RunFiles { summary: dir.join(SUMMARY), series: dir.join(SERIES), report: dir.join(REPORT) })
+}
+
+/// What [`write_run`] writes to `summary.json`: for standard output.
+#[must_use]
+pub fn summary_json(run: &RunResult) -> String {
+    text(&Summary::new(run))
+}
+
+fn text(summary: &Summary) -> String {
+    // Text, numbers and maps with text keys: there is nothing in it that JSON refuses.
+    serde_json::to_string_pretty(summary).unwrap_or_default() + "\n"
+}
+
+/// Rebuilds the page of a run directory.
+pub(crate) fn rewrite(dir: &Path) -> Result<PathBuf, ReportError> {
+    let path = dir.join(SUMMARY);
+    let bytes = std::fs::read(&path).map_err(ReportError::io("read", &path))?;
+    let summary: Summary = serde_json::from_slice(&bytes)
+        .map_err(|e| ReportError::Malformed { path: path.clone(), why: e.to_string() })?;
+    let series = dir.join(SERIES);
+    let series = if series.is_file() { table::read_series(&series)? } else { Series::default() };
+    let mut stage = Stage::new(dir)?;
+    stage.add(REPORT, page(&summary, &series).as_bytes())?;
+    stage.commit()?;
+    Ok(dir.join(REPORT))
+}
+
+fn page(s: &Summary, series: &Series) -> String {
+    let mut body = String::new();
+    header(&mut body, s);
+    body.push_str("<main>\n");
+    let mut notes = s.solver.notes.clone();
+    if s.branches.len() > 1 && notes.is_empty() {
+        notes.push(format!(
+            "{} periodic solutions were found from different starts; see the table of periodic solutions.",
+            s.branches.len()
+        ));
+    }
+    body.push_str(&page::notes(&notes));
+    results(&mut body, s);
+    if series.theta_deg.is_empty() || series.columns.is_empty() {
+        body.push_str("<section id=\"curves\"><h2>Over the cycle</h2><p class=\"hint\">This run has no curves.</p></section>\n");
+    } else {
+        body.push_str("<section id=\"cycle\"><h2>Over the cycle</h2><div id=\"bar\"></div><div id=\"pack\"></div><div id=\"plots\"></div></section>\n");
+    }
+    if !s.events.is_empty() {
+        body.push_str("<section id=\"events\"><h2>Events</h2><div id=\"event-list\"><ul>");
+        for e in &s.events {
+            let _ = write!(
+                body,
+                "<li><b>{}°</b> {}: {}</li>",
+                significant(Some(e.theta_deg), 4),
+                esc(&subject(&e.subject)),
+                esc(&e.what)
+            );
+        }
+        body.push_str("</ul></div></section>\n");
+    }
+    branches(&mut body, s);
+    body.push_str("<div class=\"pair\">\n");
+    body.push_str(&page::balance_section(&s.balance));
+    body.push_str(&page::solver_section(&s.solver, &s.seconds));
+    body.push_str("</div>\n");
+    body.push_str(&page::skipped_section(&s.skipped));
+    body.push_str(&page::models_section(&s.models));
+    body.push_str("</main>\n");
+    body.push_str(&page::footer(&s.gudgeon));
+    let (columns, arrays) = page::one_series(series);
+    let data = json!({
+        "scene": s.scene, "section": s.section, "events": s.events, "series": columns, "arrays": arrays,
+    });
+    page::document(Kind::Run, s.heading(), &body, &data)
+}
+
+/// `ring1` as `ring 1`.
+fn subject(name: &str) -> String {
+    match member(name) {
+        Some((family, n)) => format!("{family} {n}"),
+        None => name.replace('_', " "),
+    }
+}
+
+/// `ring12` as `("ring", 12)`.
+fn member(name: &str) -> Option<(&str, u32)> {
+    let at = name.find(|c: char| c.is_ascii_digit())?;
+    let (family, number) = name.split_at(at);
+    if family.is_empty() { None } else { Some((family, number.parse().ok()?)) }
+}
+
+fn header(out: &mut String, s: &Summary) {
+    let _ =
+        write!(out, "<header><h1>{}</h1><p class=\"meta\"><code>{}</code>", esc(s.heading()), esc(&s.case));
+    if !s.scene.is_empty() {
+        let _ = write!(out, " · {}", esc(&s.scene.replace('_', " ")));
+    }
+    if !s.solver.method.is_empty() {
+        let _ = write!(out, " · solver {}", esc(&s.solver.method));
+    }
+    if let Some(Some(total)) = s.seconds.get("total") {
+        let _ = write!(out, " · {}\u{a0}s", significant(Some(*total), 3));
+    }
+    if !s.gudgeon.is_empty() {
+        let _ = write!(out, " · Gudgeon {}", esc(&s.gudgeon));
+    }
+    out.push_str("</p>");
+    if !s.source.is_empty() {
+        let _ = write!(out, "<p class=\"source\"><b>Source</b> {}</p>", page::prose(&s.source));
+    }
+    if !s.assumptions.is_empty() {
+        let n = s.assumptions.len();
+        let plural = if n == 1 { "" } else { "s" };
+        let open = if n <= 4 { " open" } else { "" };
+        let _ = write!(
+            out,
+            "<details class=\"assumptions\"{open}><summary>{n} assumption{plural} where the source is silent</summary><ul>"
+        );
+        for a in &s.assumptions {
+            let _ = write!(out, "<li>{}</li>", page::prose(a));
+        }
+        out.push_str("</ul></details>");
+    }
+    out.push_str("</header>\n");
+}
+
+/// Results of one family (`ring`, `land`): by what follows the dot, then by number.
+type Family<'a> = IndexMap<&'a str, BTreeMap<u32, (&'a str, &'a ResultValue)>>;
+
+fn results(out: &mut String, s: &Summary) {
+    let mut plain: Vec<(&str, &ResultValue)> = Vec::new();
+    let mut families: IndexMap<&str, Family<'_>> = IndexMap::new();
+    for (name, v) in &s.results {
+        match name.split_once('.').and_then(|(head, rest)| Some((member(head)?, rest))) {
+            Some(((family, n), rest)) => {
+                families.entry(family).or_default().entry(rest).or_default().insert(n, (name, v));
+            }
+            None => plain.push((name, v)),
+        }
+    }
+    out.push_str("<section id=\"results\"><h2>Results</h2><div class=\"results\">");
+    if plain.is_empty() && families.is_empty() {
+        out.push_str("<p class=\"hint\">This run computed no results.</p>");
+    }
+    if !plain.is_empty() {
+        out.push_str("<table class=\"plain key\"><tbody>");
+        for (name, v) in plain {
+            let what = s.descriptions.get(name).map_or("", String::as_str);
+            let _ = write!(
+                out,
+                "<tr><th scope=\"row\">{}<code>{}</code></th>{}</tr>",
+                if what.is_empty() { String::new() } else { format!("{} ", esc(&capital(what))) },
+                esc(name),
+                page::value_cells(Some(v))
+            );
+        }
+        out.push_str("</tbody></table>");
+    }
+    out.push_str("<div class=\"families\">");
+    for (family, rows) in &families {
+        let mut numbers: Vec<u32> = rows.values().flat_map(|r| r.keys().copied()).collect();
+        numbers.sort_unstable();
+        numbers.dedup();
+        let _ = write!(
+            out,
+            "<div class=\"scroll\"><table class=\"plain\"><thead><tr><th>Per {}</th>",
+            esc(family)
+        );
+        for n in &numbers {
+            let _ = write!(out, "<th class=\"num\">{} {n}</th>", esc(family));
+        }
+        out.push_str("<th></th></tr></thead><tbody>");
+        for (rest, row) in rows {
+            let first = row.values().next();
+            let what = first
+                .and_then(|(name, _)| Some((s.descriptions.get(*name)?, *row.keys().next()?)))
+                .map(|(text, n)| without_member(text, family, n))
+                .unwrap_or_default();
+            let _ = write!(
+                out,
+                "<tr><th scope=\"row\">{}<code>{}</code></th>",
+                if what.is_empty() { String::new() } else { format!("{} ", esc(&capital(&what))) },
+                esc(rest)
+            );
+            for n in &numbers {
+                let text = row.get(n).map_or_else(|| "–".into(), |(_, v)| significant(v.value, 4));
+                let _ = write!(out, "<td class=\"num\">{text}</td>");
+            }
+            let u = first.map_or("", |(_, v)| v.unit.as_str());
+            let _ = write!(out, "<td class=\"unit\">{}</td></tr>", esc(&unit(u)));
+        }
+        out.push_str("</tbody></table></div>");
+    }
+    out.push_str("</div></div></section>\n");
+}
+
+/// A row of a table per ring must not speak of ring 1.
+fn without_member(text: &str, family: &str, n: u32) -> String {
+    let name = format!("{family} {n}");
+    for lead in [" of ", " on ", " at ", " in ", " past ", " behind ", ", "] {
+        if let Some(rest) = text.strip_suffix(&format!("{lead}{name}")) {
+            return rest.to_owned();
+        }
+    }
+    text.replace(&name, &format!("the {family}"))
+}
+
+fn branches(out: &mut String, s: &Summary) {
+    if s.branches.is_empty() {
+        return;
+    }
+    let mut names: Vec<(&str, &str)> = Vec::new();
+    for b in &s.branches {
+        for (name, v) in &b.results {
+            if !names.iter().any(|(n, _)| n == name) {
+                names.push((name, &v.unit));
+            }
+        }
+    }
+    out.push_str(
+        "<section id=\"branches\"><h2>Periodic solutions</h2><p class=\"hint\">The same case settles into another cycle \
+         when it starts from another state. Differences are to the first column.</p><div class=\"scroll\"><table \
+         class=\"plain\"><thead><tr><th>Start</th>",
+    );
+    for b in &s.branches {
+        let _ = write!(out, "<th class=\"num\">{}</th>", esc(&b.start));
+    }
+    out.push_str("<th></th></tr></thead><tbody><tr><th scope=\"row\">Period</th>");
+    for b in &s.branches {
+        let text = match b.period {
+            0 => "did not settle".to_owned(),
+            1 => "every cycle".to_owned(),
+            n => format!("every {n} cycles"),
+        };
+        let _ = write!(out, "<td class=\"num\">{text}</td>");
+    }
+    out.push_str("<td></td></tr>");
+    for (name, u) in names {
+        let _ = write!(out, "<tr><th scope=\"row\"><code>{}</code></th>", esc(name));
+        let first = s.branches.first().and_then(|b| b.results.get(name)).and_then(|v| v.value);
+        for (i, b) in s.branches.iter().enumerate() {
+            let v = b.results.get(name).and_then(|v| v.value);
+            let difference = match (first, v) {
+                (Some(a), Some(v)) if i > 0 && a != 0.0 => {
+                    format!(" <span class=\"diff\">{}</span>", percent((v - a) / a.abs() * 100.0))
+                }
+                _ => String::new(),
+            };
+            let _ = write!(out, "<td class=\"num\">{}{difference}</td>", significant(v, 4));
+        }
+        let _ = write!(out, "<td class=\"unit\">{}</td></tr>", esc(&unit(u)));
+    }
+    out.push_str("</tbody></table></div></section>\n");
+}

@@ -1,0 +1,144 @@
+//! Series as CSV, both ways.
+
+use std::path::Path;
+
+use gudgeon_core::result::{Column, Series};
+
+use crate::ReportError;
+use crate::number::round_trip;
+
+/// `name[unit]`.
+fn header(name: &str, unit: &str) -> String {
+    format!("{name}[{unit}]")
+}
+
+/// Every column as long as the crank angles.
+pub(crate) fn check(series: &Series) -> Result<(), ReportError> {
+    let expected = series.theta_deg.len();
+    match series.columns.iter().find(|c| c.values.len() != expected) {
+        Some(c) => Err(ReportError::Ragged { column: c.name.clone(), rows: c.values.len(), expected }),
+        None => Ok(()),
+    }
+}
+
+/// A CSV file from rows of text.
+pub(crate) fn csv(rows: impl IntoIterator<Item = Vec<String>>) -> Result<Vec<u8>, ReportError> {
+    let mut writer = csv::WriterBuilder::new().flexible(false).from_writer(Vec::new());
+    let io = |e: csv::Error| ReportError::Io {
+        what: "write",
+        path: "CSV".into(),
+        source: std::io::Error::other(e.to_string()),
+    };
+    for row in rows {
+        writer.write_record(&row).map_err(io)?;
+    }
+    writer.into_inner().map_err(|e| ReportError::Io {
+        what: "write",
+        path: "CSV".into(),
+        source: std::io::Error::other(e.to_string()),
+    })
+}
+
+/// `theta[deg]`, then the columns.
+pub(crate) fn series_csv(series: &Series) -> Result<Vec<u8>, ReportError> {
+    check(series)?;
+    let names = std::iter::once("theta[deg]".to_owned())
+        .chain(series.columns.iter().map(|c| header(&c.name, &c.unit)))
+        .collect::<Vec<_>>();
+    csv(std::iter::once(names).chain(series.theta_deg.iter().enumerate().map(|(i, theta)| {
+        std::iter::once(round_trip(*theta))
+            .chain(series.columns.iter().map(|c| round_trip(c.values[i])))
+            .collect()
+    })))
+}
+
+/// One series per variant in long form: `variant`, `theta[deg]`, then every column that any variant has.
+pub(crate) fn long_csv(variants: &[(usize, &Series)]) -> Result<Vec<u8>, ReportError> {
+    let mut columns: Vec<(&str, &str)> = Vec::new();
+    for (_, series) in variants {
+        check(series)?;
+        for c in &series.columns {
+            if !columns.contains(&(&c.name, &c.unit)) {
+                columns.push((&c.name, &c.unit));
+            }
+        }
+    }
+    let names = ["variant".to_owned(), "theta[deg]".to_owned()]
+        .into_iter()
+        .chain(columns.iter().map(|(n, u)| header(n, u)))
+        .collect::<Vec<_>>();
+    let mut rows = vec![names];
+    for (number, series) in variants {
+        let found: Vec<Option<&Column>> = columns
+            .iter()
+            .map(|(n, u)| series.columns.iter().find(|c| c.name == *n && c.unit == *u))
+            .collect();
+        for (i, theta) in series.theta_deg.iter().enumerate() {
+            let mut row = vec![number.to_string(), round_trip(*theta)];
+            row.extend(found.iter().map(|c| c.map_or_else(String::new, |c| round_trip(c.values[i]))));
+            rows.push(row);
+        }
+    }
+    csv(rows)
+}
+
+/// Reads what [`series_csv`] wrote.
+pub(crate) fn read_series(path: &Path) -> Result<Series, ReportError> {
+    Ok(read_groups(path, false)?.into_iter().next().map(|(_, s)| s).unwrap_or_default())
+}
+
+/// Reads what [`long_csv`] wrote. A column that is empty in all rows of a variant is not part of it.
+pub(crate) fn read_long(path: &Path) -> Result<Vec<(usize, Series)>, ReportError> {
+    let mut groups = read_groups(path, true)?;
+    for (_, series) in &mut groups {
+        series.columns.retain(|c| c.values.iter().any(|v| v.is_finite()));
+    }
+    Ok(groups)
+}
+
+fn read_groups(path: &Path, long: bool) -> Result<Vec<(usize, Series)>, ReportError> {
+    let bad = |why: String| ReportError::Malformed { path: path.to_path_buf(), why };
+    let text = std::fs::read(path).map_err(ReportError::io("read", path))?;
+    let mut reader = csv::ReaderBuilder::new().from_reader(text.as_slice());
+    let lead = if long { 2 } else { 1 };
+    let names = reader.headers().map_err(|e| bad(e.to_string()))?.clone();
+    if names.get(lead - 1) != Some("theta[deg]") || (long && names.get(0) != Some("variant")) {
+        return Err(bad("the crank angle `theta[deg]` is missing from the first columns".into()));
+    }
+    let empty = || -> Series {
+        let columns = names.iter().skip(lead).map(|n| {
+            let (name, unit) = n.strip_suffix(']').and_then(|n| n.rsplit_once('[')).unwrap_or((n, "-"));
+            Column { name: name.into(), unit: unit.into(), values: Vec::new() }
+        });
+        Series { theta_deg: Vec::new(), columns: columns.collect() }
+    };
+    let mut groups: Vec<(usize, Series)> = Vec::new();
+    if !long {
+        groups.push((0, empty()));
+    }
+    for (i, record) in reader.records().enumerate() {
+        let record = record.map_err(|e| bad(e.to_string()))?;
+        let number = |k: usize| -> Result<f64, ReportError> {
+            match record.get(k).unwrap_or("") {
+                "" => Ok(f64::NAN),
+                t => t.parse().map_err(|_| bad(format!("row {}: `{t}` is not a number", i + 2))),
+            }
+        };
+        if long {
+            let variant = record.get(0).unwrap_or("");
+            let variant = variant
+                .parse()
+                .map_err(|_| bad(format!("row {}: `{variant}` is not a variant number", i + 2)))?;
+            if groups.last().is_none_or(|(v, _)| *v != variant) {
+                groups.push((variant, empty()));
+            }
+        }
+        if let Some((_, series)) = groups.last_mut() {
+            series.theta_deg.push(number(lead - 1)?);
+            for (k, column) in series.columns.iter_mut().enumerate() {
+                column.values.push(number(k + lead)?);
+            }
+        }
+    }
+    Ok(groups)
+}

@@ -1,0 +1,290 @@
+//! The result files: their shape, and that a page is made whatever a run has or lacks.
+
+mod common;
+
+use std::fs;
+use std::path::PathBuf;
+
+use gudgeon_core::result::{RunResult, Series};
+use gudgeon_report::{ReportError, rewrite, summary_json, write_bench, write_comparison, write_run};
+use serde_json::Value;
+
+/// A fresh directory of this test's own.
+fn scratch(name: &str) -> PathBuf {
+    let dir = std::env::temp_dir().join(format!("gudgeon-report-{}-{name}", std::process::id()));
+    let _ = fs::remove_dir_all(&dir);
+    dir
+}
+
+fn read(path: impl AsRef<std::path::Path>) -> String {
+    fs::read_to_string(path).unwrap()
+}
+
+/// The JSON that a page carries.
+fn data(page: &str) -> Value {
+    let start = page.find("id=\"data\">").unwrap() + "id=\"data\">".len();
+    let end = start + page[start..].find("</script>").unwrap();
+    serde_json::from_str(&page[start..end]).unwrap()
+}
+
+#[test]
+fn summary_has_the_promised_shape() {
+    let run = common::run(3);
+    let summary: Value = serde_json::from_str(&summary_json(&run)).unwrap();
+    let keys: Vec<&str> = summary.as_object().unwrap().keys().map(String::as_str).collect();
+    assert_eq!(
+        keys[..8],
+        ["case", "gudgeon", "models", "skipped", "results", "balance", "solver", "seconds"]
+    );
+    for additive in ["title", "source", "assumptions", "events", "branches", "section"] {
+        assert!(keys.contains(&additive), "{additive}");
+    }
+    assert_eq!(summary["results"]["blow_by"], serde_json::json!({ "value": 8.312, "unit": "l/min" }));
+    assert_eq!(
+        summary["models"][1],
+        serde_json::json!({ "kind": "gas_flow", "model": "orifice_network", "references": ["furuhama1961"] })
+    );
+    assert_eq!(summary["skipped"][0]["what"], "asperity contact");
+    assert!(summary["skipped"][0]["why"].is_string());
+    let balance: Vec<&String> = summary["balance"].as_object().unwrap().keys().collect();
+    assert_eq!(balance, ["gas_mass", "oil_mass", "energy", "momentum"]);
+    assert!(summary["balance"]["oil_mass"].is_null());
+    assert_eq!(summary["solver"]["counters"]["steps"], 5210);
+    assert_eq!(summary["seconds"]["solve"], 0.0834);
+    assert_eq!(summary["section"]["rings"].as_array().unwrap().len(), 3);
+}
+
+#[test]
+fn no_number_in_json_is_other_than_finite() {
+    let mut run = common::run(1);
+    run.results.insert("lost".into(), common::value(f64::NAN, "N", ""));
+    run.results.insert("endless".into(), common::value(f64::INFINITY, "N", ""));
+    run.balance.energy = Some(f64::NAN);
+    run.seconds.insert("nowhere".into(), f64::NEG_INFINITY);
+    let text = summary_json(&run);
+    let summary: Value = serde_json::from_str(&text).unwrap();
+    assert!(summary["results"]["lost"]["value"].is_null());
+    assert!(summary["results"]["endless"]["value"].is_null());
+    assert!(summary["balance"]["energy"].is_null());
+    assert!(summary["seconds"]["nowhere"].is_null());
+    assert!(!text.contains("NaN") && !text.contains("inf"));
+}
+
+#[test]
+fn series_has_one_named_column_each_and_reads_back_exactly() {
+    let dir = scratch("series");
+    let run = common::run(2);
+    let files = write_run(&run, &dir).unwrap();
+    let text = read(&files.series);
+    let mut lines = text.lines();
+    let header = lines.next().unwrap();
+    assert!(header.starts_with("theta[deg],piston.y[m],"));
+    assert!(header.contains(",ring1.h_min[m],") && header.contains(",land2.p[Pa],"));
+    assert_eq!(text.lines().count(), 1 + 721);
+    let names: Vec<&str> = header.split(',').collect();
+    let at = names.iter().position(|n| *n == "ring1.h_min[m]").unwrap();
+    let column = run.series.get("ring1.h_min").unwrap();
+    for (line, v) in lines.zip(&column.values) {
+        let cell: f64 = line.split(',').nth(at).unwrap().parse().unwrap();
+        assert_eq!(cell.to_bits(), v.to_bits());
+    }
+    fs::remove_dir_all(dir).unwrap();
+}
+
+#[test]
+fn a_ragged_series_is_refused_and_nothing_is_written() {
+    let dir = scratch("ragged");
+    let mut run = common::run(1);
+    run.series.columns[3].values.pop();
+    let e = write_run(&run, &dir).unwrap_err();
+    assert!(matches!(e, ReportError::Ragged { rows: 720, expected: 721, .. }), "{e}");
+    assert!(!dir.exists());
+}
+
+#[test]
+fn text_of_a_case_cannot_become_markup_or_script() {
+    let dir = scratch("escape");
+    let nasty = "</script><script>alert(\"1\")</script> <b>'quoted'</b> & \u{2028} `<i>`";
+    let mut run = common::run(1);
+    run.title = nasty.into();
+    run.case = nasty.into();
+    run.source = nasty.into();
+    run.assumptions = vec![nasty.into()];
+    run.solver.notes = vec![nasty.into()];
+    run.events[0].what = nasty.into();
+    run.skipped[0].why = nasty.into();
+    run.models[0].model = nasty.into();
+    run.series.columns[0].name = nasty.into();
+    run.results.insert(nasty.into(), common::value(1.0, nasty, nasty));
+    run.branches[0].start = nasty.into();
+    let page = read(write_run(&run, &dir).unwrap().report);
+    assert!(!page.contains("<script>alert"));
+    assert!(!page.contains("<b>'quoted'"));
+    assert!(!page.contains("<i>"));
+    // The data and the code: two elements, each closed once.
+    assert_eq!(page.matches("<script").count(), 2);
+    assert_eq!(page.matches("</script>").count(), 2);
+    assert_eq!(data(&page)["events"][0]["what"], nasty);
+    assert!(page.contains("&lt;/script&gt;&lt;script&gt;alert(&quot;1&quot;)"));
+
+    let mut c = common::comparison();
+    c.title = nasty.into();
+    c.variants[1].label = nasty.into();
+    c.variants[3].outcome = Err(nasty.into());
+    let page = read(write_comparison(&c, &dir).unwrap().report);
+    assert!(!page.contains("<script>alert") && page.matches("</script>").count() == 2);
+    let mut b = common::bench();
+    b.findings = vec![nasty.into()];
+    b.points[0].setting = nasty.into();
+    let page = read(write_bench(&b, &dir).unwrap().report);
+    assert!(!page.contains("<script>alert") && page.matches("</script>").count() == 2);
+    fs::remove_dir_all(dir).unwrap();
+}
+
+#[test]
+fn a_page_loads_nothing() {
+    let dir = scratch("offline");
+    let pages = [
+        read(write_run(&common::run(3), &dir).unwrap().report),
+        read(write_comparison(&common::comparison(), &dir).unwrap().report),
+        read(write_bench(&common::bench(), &dir).unwrap().report),
+    ];
+    for page in pages {
+        assert!(page.contains("default-src 'none'"));
+        for outside in ["src=\"", "href=\"", "url(http", "@import", "https://"] {
+            assert!(!page.contains(outside), "{outside}");
+        }
+        // The name of the SVG language is the only address in a page, and it is never fetched.
+        assert_eq!(page.matches("http://").count(), page.matches("http://www.w3.org/2000/svg").count());
+    }
+    fs::remove_dir_all(dir).unwrap();
+}
+
+#[test]
+fn any_number_of_rings_and_any_missing_part_makes_a_page() {
+    let dir = scratch("parts");
+    for n in [1, 2, 3, 5] {
+        let page = read(write_run(&common::run(n), &dir).unwrap().report);
+        assert_eq!(data(&page)["section"]["rings"].as_array().unwrap().len(), n);
+        assert!(page.contains(&format!("<th class=\"num\">ring {n}</th>")));
+        assert!(page.len() < 700_000, "{n} rings: {} bytes", page.len());
+    }
+    // Nothing at all.
+    let page = read(write_run(&RunResult::default(), &dir).unwrap().report);
+    assert!(page.contains("This run has no curves."));
+    assert_eq!(read(dir.join("series.csv")), "theta[deg]\n");
+    // Angles without columns, columns without rows, a single row.
+    let mut run = common::run(2);
+    run.series.columns.clear();
+    assert!(read(write_run(&run, &dir).unwrap().report).contains("This run has no curves."));
+    run.series = Series { theta_deg: vec![], columns: common::run(2).series.columns };
+    run.series.columns.iter_mut().for_each(|c| c.values.clear());
+    assert!(read(write_run(&run, &dir).unwrap().report).contains("This run has no curves."));
+    // No section, no film, no motion.
+    let mut run = common::run(3);
+    run.section = None;
+    run.series.columns.retain(|c| c.name.ends_with(".p"));
+    let page = read(write_run(&run, &dir).unwrap().report);
+    assert!(data(&page)["section"].is_null());
+    fs::remove_dir_all(dir).unwrap();
+}
+
+#[test]
+fn same_input_same_bytes_and_no_temporary_file_is_left() {
+    let (a, b) = (scratch("same-a"), scratch("same-b"));
+    for dir in [&a, &b] {
+        write_run(&common::run(3), dir).unwrap();
+        write_comparison(&common::comparison(), &dir.join("c")).unwrap();
+        write_bench(&common::bench(), &dir.join("b")).unwrap();
+    }
+    for (sub, names) in [
+        (".", vec!["report.html", "series.csv", "summary.json"]),
+        ("c", vec!["comparison.csv", "comparison.json", "report.html", "series.csv"]),
+        ("b", vec!["bench.csv", "bench.json", "report.html"]),
+    ] {
+        let mut found: Vec<String> = fs::read_dir(a.join(sub))
+            .unwrap()
+            .map(|e| e.unwrap())
+            .filter(|e| e.file_type().unwrap().is_file())
+            .map(|e| e.file_name().into_string().unwrap())
+            .collect();
+        found.sort();
+        assert_eq!(found, names);
+        for name in names {
+            assert!(
+                fs::read(a.join(sub).join(name)).unwrap() == fs::read(b.join(sub).join(name)).unwrap(),
+                "{name}"
+            );
+        }
+    }
+    fs::remove_dir_all(a).unwrap();
+    fs::remove_dir_all(b).unwrap();
+}
+
+#[test]
+fn a_page_is_rebuilt_byte_for_byte_from_its_files() {
+    let dir = scratch("rewrite");
+    write_run(&common::run(3), &dir).unwrap();
+    write_comparison(&common::comparison(), &dir.join("c")).unwrap();
+    write_bench(&common::bench(), &dir.join("b")).unwrap();
+    for sub in [dir.clone(), dir.join("c"), dir.join("b")] {
+        let before = read(sub.join("report.html"));
+        fs::remove_file(sub.join("report.html")).unwrap();
+        assert_eq!(rewrite(&sub).unwrap(), sub.join("report.html"));
+        assert!(before == read(sub.join("report.html")), "{}", sub.display());
+    }
+    fs::create_dir_all(dir.join("empty")).unwrap();
+    assert!(matches!(rewrite(&dir.join("empty")).unwrap_err(), ReportError::NothingHere { .. }));
+    fs::write(dir.join("summary.json"), "{\"case\": 1}").unwrap();
+    assert!(matches!(rewrite(&dir).unwrap_err(), ReportError::Malformed { .. }));
+    fs::remove_dir_all(dir).unwrap();
+}
+
+#[test]
+fn a_comparison_states_differences_and_refusals() {
+    let dir = scratch("comparison");
+    let files = write_comparison(&common::comparison(), &dir).unwrap();
+    let json: Value = serde_json::from_str(&read(&files.comparison)).unwrap();
+    let blow_by = &json["results"]["blow_by"];
+    assert_eq!(blow_by["difference_percent"][0], 0.0);
+    // 0.82 of the base by construction; what is left is rounding of the quotient.
+    assert!((blow_by["difference_percent"][2].as_f64().unwrap() + 18.0).abs() < 1e-12);
+    assert!(blow_by["values"][3].is_null());
+    assert!(json["variants"][3]["run"].is_null());
+    assert!(json["variants"][3]["error"].as_str().unwrap().starts_with("refused"));
+    assert_eq!(json["variants"][2]["run"]["results"]["fmep"]["unit"], "bar");
+    let table = read(&files.table);
+    assert!(table.starts_with("result,unit,\"gas_flow=orifice_network, contact=off\","));
+    assert!(table.contains("\nsolver.steps,-,5210,5210,5210,\n"));
+    let series = read(&files.series);
+    assert!(series.starts_with("variant,theta[deg],"));
+    assert_eq!(series.lines().count(), 1 + 3 * 721);
+    let page = read(&files.report);
+    assert!(page.contains("−18.0 %") && page.contains("Did not run"));
+    // Three variants share one cylinder pressure: it is stored once.
+    let d = data(&page);
+    let at = |k: usize| {
+        let columns = d["variants"][k]["series"]["columns"].as_array().unwrap().clone();
+        columns.iter().find(|c| c["name"] == "cylinder.p").unwrap()["at"].clone()
+    };
+    assert!(at(0) == at(1) && at(1) == at(2));
+    fs::remove_dir_all(dir).unwrap();
+}
+
+#[test]
+fn a_benchmark_keeps_its_failures_apart() {
+    let dir = scratch("bench");
+    let files = write_bench(&common::bench(), &dir).unwrap();
+    let json: Value = serde_json::from_str(&read(&files.bench)).unwrap();
+    let points = json["points"].as_array().unwrap();
+    let failed: Vec<&Value> = points.iter().filter(|p| !p["failure"].is_null()).collect();
+    assert_eq!(failed.len(), 1);
+    assert!(failed[0]["seconds_per_cycle"].is_null());
+    let table = read(&files.table);
+    assert!(table.starts_with(
+        "method,setting,default,seconds_per_cycle[s],seconds_total[s],cycles[-],error.blow_by[-],"
+    ));
+    assert_eq!(table.lines().count(), 1 + points.len());
+    assert!(read(&files.report).contains("became negative"));
+    fs::remove_dir_all(dir).unwrap();
+}

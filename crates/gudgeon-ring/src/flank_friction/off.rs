@@ -1,0 +1,43 @@
+//! No friction on the flanks.
+
+use gudgeon_core::BuildError;
+use gudgeon_core::kinds::{FlankFriction, FlankFrictionSpec};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The ring slides radially on its flank without resistance.
+#[derive(Debug, Clone, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Off {}
+
+#[typetag::serde(name = "off")]
+impl FlankFrictionSpec for Off {
+    fn build(&self) -> Result<Box<dyn FlankFriction>, BuildError> {
+        Ok(Box::new(Runtime))
+    }
+}
+
+gudgeon_core::register_model! {
+    Off,
+    kind: "flank_friction",
+    name: "off",
+    summary: "no friction between ring and groove flank",
+    equations: "F = 0",
+    validity: "Radial velocities of rings are a few mm/s; the friction left out is at most about a tenth of the axial load.",
+    references: [],
+    example: "",
+}
+
+struct Runtime;
+
+impl FlankFriction for Runtime {
+    fn force(&self, _: f64, _: f64) -> f64 {
+        0.0
+    }
+    fn slope(&self, _: f64, _: f64) -> f64 {
+        0.0
+    }
+    fn is_off(&self) -> bool {
+        true
+    }
+}

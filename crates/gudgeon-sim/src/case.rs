@@ -1,0 +1,601 @@
+//! What a case file may say. Every field's doc comment is its documentation in `gudgeon schema`.
+
+use gudgeon_core::kinds::{
+    ContactSpec, CylinderPressureSpec, FilmTemperatureSpec, FlankDampingSpec, FlankFrictionSpec, GasFlowSpec,
+    HydrodynamicsSpec, KinematicsSpec, OilSpec, RingMotionSpec,
+};
+use gudgeon_core::quantity::{
+    Angle, Fraction, Length, NonNegative, PosAngle, PosAngularSpeed, PosArea, PosExpansion, PosForce,
+    PosGasConstant, PosLength, PosMass, PosPressure, PosRatio, PosTemperature, PosVolume, Ratio, quantity,
+};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A piston ring pack in one cylinder.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RingPackCase {
+    /// What is simulated.
+    pub scene: SceneName,
+    /// One line for reports.
+    #[serde(default)]
+    pub title: String,
+    /// Where the case comes from.
+    #[serde(default)]
+    pub source: String,
+    /// Inputs that no source gives and that were assumed, one sentence each. Reports show them.
+    #[serde(default)]
+    pub assumptions: Vec<String>,
+    /// Engine.
+    pub engine: Engine,
+    /// Piston, from the crown down.
+    pub piston: Piston,
+    /// Cylinder liner.
+    #[serde(default)]
+    pub liner: Liner,
+    /// Gas and crankcase.
+    #[serde(default)]
+    pub gas: Gas,
+    /// Rings, from the crown down.
+    pub rings: Vec<Ring>,
+    /// Sub-models.
+    pub models: Models,
+    /// Conventions in which published programs differ. The defaults are the physically correct ones.
+    #[serde(default)]
+    pub conventions: Conventions,
+    /// How the equations are solved.
+    #[serde(default)]
+    pub solver: Solver,
+    /// What is wanted.
+    #[serde(default)]
+    pub outputs: Outputs,
+}
+
+/// Scenes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SceneName {
+    /// A piston ring pack in one cylinder.
+    RingPack,
+}
+
+/// Engine.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Engine {
+    /// Crankshaft speed.
+    pub speed: PosAngularSpeed,
+    /// Cylinder bore.
+    pub bore: PosLength,
+    /// Twice the crank radius.
+    pub stroke: PosLength,
+    /// Connecting-rod length between centres.
+    pub rod_length: PosLength,
+    /// Offset of the pin's line of motion from the crank axis (pin offset plus crank offset).
+    #[serde(default = "zero_length")]
+    pub offset: Length,
+    /// Number of cylinders, for the engine totals.
+    #[serde(default = "one")]
+    pub cylinders: u32,
+}
+
+/// Piston.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Piston {
+    /// Lands above each ring, top land first: as many as there are rings.
+    pub lands: Vec<Land>,
+    /// Height of the middle of ring 1 above the gudgeon pin. Needed when the liner is distorted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pin_to_ring1: Option<Length>,
+}
+
+/// A piston land, running (hot) dimensions.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Land {
+    /// Diameter. Give this or `clearance`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub diameter: Option<PosLength>,
+    /// Radial clearance to the bore. Give this or `diameter`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub clearance: Option<PosLength>,
+    /// Axial height. Gives the gas volume with the clearance, unless `volume` is given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub height: Option<PosLength>,
+    /// Gas volume.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub volume: Option<PosVolume>,
+    /// Gas temperature (that of the piston surface).
+    pub temperature: PosTemperature,
+}
+
+/// Cylinder liner.
+#[derive(Debug, Clone, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Liner {
+    /// Growth of the bore along the liner, thermal growth included; linear between the points.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub distortion: Vec<Distortion>,
+}
+
+/// Bore growth at one height.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Distortion {
+    /// Height above the gudgeon pin at top dead centre.
+    pub position: Length,
+    /// Growth of the diameter.
+    pub diametral: Length,
+}
+
+/// Gas and crankcase.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Gas {
+    /// Ratio of specific heats.
+    pub gamma: PosRatio,
+    /// Specific gas constant.
+    pub gas_constant: PosGasConstant,
+    /// Crankcase pressure.
+    pub crankcase_pressure: PosPressure,
+    /// Crankcase gas temperature.
+    pub crankcase_temperature: PosTemperature,
+    /// Gas temperature at the blow-by meter; turns a mass flow into litres per minute.
+    pub meter_temperature: PosTemperature,
+    /// Pressure at the blow-by meter.
+    pub meter_pressure: PosPressure,
+}
+
+impl Default for Gas {
+    fn default() -> Self {
+        Self {
+            gamma: quantity(1.4),
+            gas_constant: quantity(287.0),
+            crankcase_pressure: quantity(101_325.0),
+            crankcase_temperature: quantity(373.15),
+            meter_temperature: quantity(298.15),
+            meter_pressure: quantity(101_325.0),
+        }
+    }
+}
+
+/// A ring with its groove.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Ring {
+    /// Name for reports.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub name: String,
+    /// Kind of ring.
+    #[serde(default)]
+    pub design: RingDesign,
+    /// Mass of the whole ring.
+    pub mass: PosMass,
+    /// Axial thickness; of one rail for a three-piece oil ring.
+    pub height: PosLength,
+    /// Radial thickness.
+    pub width: PosLength,
+    /// Tangential (closing) force of the whole ring.
+    pub tangential_force: PosForce,
+    /// End gap in the running engine at the undistorted bore. Give this, or `cold_gap` with temperature and expansion.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gap: Option<PosLength>,
+    /// End gap in the undistorted bore at 20 degC.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cold_gap: Option<PosLength>,
+    /// Running temperature of the ring (closes a cold gap).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub temperature: Option<PosTemperature>,
+    /// Thermal expansion coefficient of the ring (closes a cold gap).
+    #[serde(default = "cast_iron_expansion")]
+    pub expansion: PosExpansion,
+    /// Flow area of the end gap, instead of gap times land clearance.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gap_area: Option<PosArea>,
+    /// Running face.
+    pub face: Face,
+    /// Groove.
+    pub groove: Groove,
+    /// Equivalent leak height between running face and liner.
+    #[serde(default = "zero_nn")]
+    pub face_leak: Length<NonNegative>,
+    /// Models of this ring alone, instead of those of the pack.
+    #[serde(default)]
+    pub models: RingModels,
+}
+
+/// Kinds of ring.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum RingDesign {
+    /// One running face, gas behind the ring.
+    #[default]
+    Compression,
+    /// Oil ring with two lands; the space between them and the groove drain to below the ring.
+    TwinLand,
+    /// Two rails on an expander: one rail is modelled with half the force and counted twice; no axial clearance.
+    ThreePiece,
+}
+
+/// Shape of the running face. Drops are measured away from the liner.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Face {
+    /// Which of the shapes.
+    pub shape: FaceShape,
+    /// Axial length of the running face (of one land of a twin-land ring). The ring's height when absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub length: Option<PosLength>,
+    /// `parabola`: drop at half a face length from the apex (the barrel height of a symmetric face). `taper`: drop at the
+    /// top edge.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drop: Option<Length<NonNegative>>,
+    /// `parabola`: height of the apex above the middle of the face.
+    #[serde(default = "zero_length")]
+    pub offset: Length,
+    /// `table`: drops at equal spacings, bottom edge first, at least two.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub drops: Vec<Length>,
+}
+
+/// Shapes of a running face.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum FaceShape {
+    /// Barrel: `drop * ((x - middle - offset) / (length / 2))^2`.
+    Parabola,
+    /// Straight, the bottom edge touching.
+    Taper,
+    /// Straight lines between given drops.
+    Table,
+}
+
+/// A ring groove, running dimensions.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Groove {
+    /// Axial height at the outer diameter of the piston. Gives the axial clearance, unless `clearance` is given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub height: Option<PosLength>,
+    /// Axial clearance of the ring.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub clearance: Option<PosLength>,
+    /// Diameter of the groove root. Gives the volume behind the ring, unless `back_volume` is given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub root_diameter: Option<PosLength>,
+    /// Volume behind the ring, axial clearance included.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub back_volume: Option<PosVolume>,
+    /// Inclination of the upper flank, positive when the groove opens outwards (keystone).
+    #[serde(default = "zero_angle")]
+    pub upper_angle: Angle,
+    /// Inclination of the lower flank.
+    #[serde(default = "zero_angle")]
+    pub lower_angle: Angle,
+    /// Gas temperature behind the ring.
+    pub temperature: PosTemperature,
+    /// Equivalent leak height of the ring seated on the upper flank.
+    #[serde(default = "zero_nn")]
+    pub leak_upper: Length<NonNegative>,
+    /// Equivalent leak height of the ring seated on the lower flank.
+    #[serde(default = "zero_nn")]
+    pub leak_lower: Length<NonNegative>,
+    /// Oil-filled fraction of the flanks.
+    #[serde(default = "half")]
+    pub oil_fill: Ratio<Fraction>,
+    /// Chamfer of the upper groove edge.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub chamfer_upper: Option<ChamferShape>,
+    /// Chamfer of the lower groove edge.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub chamfer_lower: Option<ChamferShape>,
+}
+
+/// A chamfer of a groove edge; opens an area `length² tan(angle) / 2` at the end gap of a ring seated on that side.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ChamferShape {
+    /// Angle to the flank.
+    pub angle: PosAngle,
+    /// Radial length.
+    pub length: PosLength,
+}
+
+/// Models of one ring.
+#[derive(Debug, Clone, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct RingModels {
+    /// Axial motion of this ring.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ring_motion: Option<Box<dyn RingMotionSpec>>,
+    /// Film of this ring.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hydrodynamics: Option<Box<dyn HydrodynamicsSpec>>,
+    /// Solid contact of this ring.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contact: Option<Box<dyn ContactSpec>>,
+}
+
+/// Models of the pack.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Models {
+    /// Piston motion.
+    #[serde(default = "default_kinematics")]
+    pub kinematics: Box<dyn KinematicsSpec>,
+    /// Cylinder pressure.
+    pub cylinder_pressure: Box<dyn CylinderPressureSpec>,
+    /// Gas flow between lands.
+    #[serde(default = "default_gas_flow")]
+    pub gas_flow: Box<dyn GasFlowSpec>,
+    /// Axial motion of the rings.
+    #[serde(default = "default_ring_motion")]
+    pub ring_motion: Box<dyn RingMotionSpec>,
+    /// Oil between ring and groove flanks.
+    #[serde(default = "default_flank_damping")]
+    pub flank_damping: Box<dyn FlankDampingSpec>,
+    /// Friction of the groove flanks against radial motion.
+    #[serde(default = "default_flank_friction")]
+    pub flank_friction: Box<dyn FlankFrictionSpec>,
+    /// Film under the ring faces.
+    #[serde(default = "default_hydrodynamics")]
+    pub hydrodynamics: Box<dyn HydrodynamicsSpec>,
+    /// Solid contact of ring faces and liner.
+    #[serde(default = "default_contact")]
+    pub contact: Box<dyn ContactSpec>,
+    /// Lubricant.
+    pub oil: Box<dyn OilSpec>,
+    /// Temperature of the films.
+    pub film_temperature: Box<dyn FilmTemperatureSpec>,
+}
+
+/// Conventions in which published programs differ.
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Conventions {
+    /// Contact pressure from the tangential force.
+    pub hoop: Hoop,
+    /// Area and pressure distribution of the axial gas force.
+    pub axial_gas: AxialGas,
+    /// Where gas presses radially.
+    pub radial_gas: RadialGas,
+    /// Force of the film in the ring's axial balance.
+    pub film_force: FilmForce,
+    /// Friction that friction power counts.
+    pub drag: Drag,
+    /// Pressure at which films cavitate.
+    pub cavitation_datum: CavitationDatum,
+    /// Friction of a twin-land ring.
+    pub twin_land_friction: TwinLandFriction,
+}
+
+/// Contact pressure from the tangential force.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Hoop {
+    /// Equilibrium of half a ring: `p = 2 F / (D b)`, radial force `2 π F`.
+    #[default]
+    Correct,
+    /// `p = 2 F / (2 π r b)`, too small by π: radial force `2 F` (tomanik1993 eq. 10).
+    AsPrinted,
+}
+
+/// Area and pressure distribution of the axial gas force.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum AxialGas {
+    /// Flank annulus, each flank gap with the mean of a laminar pressure profile (p² linear) between the pressure behind
+    /// the ring and that of its land.
+    #[default]
+    LaminarProfile,
+    /// Flank annulus, linear profile on both flanks: half of the pressure difference (zottin1992 eq. 4.2).
+    LinearProfile,
+    /// Full pressure difference on `π D w` (tomanik1993 eq. 4).
+    FullPerimeter,
+}
+
+/// Where gas presses radially.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum RadialGas {
+    /// Pressure behind the ring on its inner cylinder; the parts of the face outside the running face see their land.
+    #[default]
+    BackAndFace,
+    /// Pressure behind the ring on its inner cylinder only (zottin1992 eq. 3.4).
+    BackOnly,
+    /// Pressure behind the ring on `π D b` (tomanik1993 eq. 5).
+    BorePerimeter,
+}
+
+/// Force of the film in the ring's axial balance.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum FilmForce {
+    /// Shear on the ring face and pressure on its slope.
+    #[default]
+    Total,
+    /// Reaction to the shear on the liner (zottin1992 eq. 4.7): the total but for the end term `[p h]`.
+    LinerReaction,
+    /// Shear on the ring face alone (tomanik1993 eq. 15).
+    FaceShear,
+}
+
+/// Friction that friction power counts.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Drag {
+    /// Shear on the liner: what the crank pays for.
+    #[default]
+    Liner,
+    /// Shear on the ring face alone (tomanik1993).
+    FaceShear,
+}
+
+/// Pressure at which films cavitate.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum CavitationDatum {
+    /// Crankcase pressure (or the lower of the two edge pressures, when that is below).
+    #[default]
+    Gauge,
+    /// Absolute zero.
+    Absolute,
+}
+
+/// Friction of a twin-land ring.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum TwinLandFriction {
+    /// Sum over both lands.
+    #[default]
+    BothLands,
+    /// Twice the lower land (zottin1992 listing).
+    LowerTwice,
+}
+
+/// How the equations are solved.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Solver {
+    /// `implicit`: the whole scene at once, adaptive. `as_published`: the scheme of the source.
+    pub method: Method,
+    /// `implicit`: relative error per step.
+    pub tolerance: PosRatio,
+    /// `implicit`: time integrator.
+    pub integrator: IntegratorName,
+    /// `implicit`: true relative error of the periodic state.
+    pub periodicity: PosRatio,
+    /// Most cycles before the run is called unconverged.
+    pub max_cycles: u32,
+    /// Pressures of all lands from which the cycle is started. Each start is run to its periodic state; those that
+    /// differ are reported, the first is the result. Empty: one start at crankcase pressure, and a second at 6 bar when
+    /// the axial motion is decided in steps (such models have several periodic states).
+    pub starts: Vec<PosPressure>,
+    /// `as_published`: the scheme.
+    pub scheme: Scheme,
+    /// `as_published`: cycles to run; 0 takes the source's number (2), or for `degree_march` until periodic.
+    pub cycles: u32,
+    /// `as_published`: steps of mechanics per crank degree; 0 takes the source's number (rings + 1; 1 for `degree_march`).
+    pub steps_per_degree: u32,
+    /// `as_published`: gas sub-steps per step of mechanics; 0 takes the source's number (2^(rings+1); 10).
+    pub gas_steps: u32,
+    /// `as_published`: one-degree passes per cycle: 721 as in the source's listing, or 720.
+    pub passes: u32,
+}
+
+impl Default for Solver {
+    fn default() -> Self {
+        Self {
+            method: Method::Implicit,
+            tolerance: quantity(1e-4),
+            integrator: IntegratorName::Rodas,
+            periodicity: quantity(1e-4),
+            max_cycles: 40,
+            starts: Vec::new(),
+            scheme: Scheme::SubstepMarch,
+            cycles: 0,
+            steps_per_degree: 0,
+            gas_steps: 0,
+            passes: 721,
+        }
+    }
+}
+
+/// Solvers.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Method {
+    /// The whole scene at once, adaptive and error-controlled; the cycle closed by a periodic-orbit solver.
+    #[default]
+    Implicit,
+    /// The scheme of the source document.
+    AsPublished,
+}
+
+/// Time integrators of the implicit solver.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum IntegratorName {
+    /// Rosenbrock method of order 5 (default).
+    #[default]
+    Rodas,
+    /// Radau IIA of order 5, for references at tight tolerances.
+    Radau5,
+}
+
+/// Published schemes.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Scheme {
+    /// Mechanics in sub-steps of a degree, gas explicit inside them, film by bisection, axial motion with implicit damping
+    /// (zottin1992).
+    #[default]
+    SubstepMarch,
+    /// Degree by degree: seats from force balance, gas explicit in sub-steps, film by bisection (tomanik1993).
+    DegreeMarch,
+}
+
+/// What is wanted.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Outputs {
+    /// Names of results; `all` for every one that the scene has. What no wanted result needs is not computed.
+    pub results: Vec<String>,
+    /// Crank angle between rows of the series.
+    pub series_step: PosAngle,
+}
+
+impl Default for Outputs {
+    fn default() -> Self {
+        Self { results: vec!["all".into()], series_step: quantity(1f64.to_radians()) }
+    }
+}
+
+const fn one() -> u32 {
+    1
+}
+fn zero_length() -> Length {
+    quantity(0.0)
+}
+fn zero_nn() -> Length<NonNegative> {
+    quantity(0.0)
+}
+fn zero_angle() -> Angle {
+    quantity(0.0)
+}
+fn half() -> Ratio<Fraction> {
+    quantity(0.5)
+}
+fn cast_iron_expansion() -> PosExpansion {
+    quantity(11e-6)
+}
+
+/// A default model by name, read the way a case file would: the names stand in one place and the contract tests check them.
+macro_rules! default_model {
+    ($($f:ident: $t:ty = $name:literal;)*) => {
+        $(fn $f() -> Box<$t> {
+            match serde_json::from_value(serde_json::json!({ "model": $name })) {
+                Ok(m) => m,
+                Err(e) => panic!("built-in default `{}`: {e}", $name),
+            }
+        })*
+        #[cfg(test)]
+        mod tests {
+            use gudgeon_models as _;
+            #[test]
+            fn default_models_exist() {
+                $(let _ = super::$f();)*
+            }
+        }
+    };
+}
+default_model! {
+    default_kinematics: dyn KinematicsSpec = "exact_slider_crank";
+    default_gas_flow: dyn GasFlowSpec = "orifice_network";
+    default_ring_motion: dyn RingMotionSpec = "newton_groove";
+    default_flank_damping: dyn FlankDampingSpec = "squeeze_film";
+    default_flank_friction: dyn FlankFrictionSpec = "off";
+    default_hydrodynamics: dyn HydrodynamicsSpec = "closed_form_face";
+    default_contact: dyn ContactSpec = "greenwood_tripp";
+}

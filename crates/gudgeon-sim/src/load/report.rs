@@ -1,0 +1,260 @@
+//! What is wrong with a case, and where.
+
+use std::fmt;
+use std::ops::Range;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use miette::{
+    GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteError, MietteSpanContents, SourceCode,
+    SourceSpan, SpanContents,
+};
+
+/// The text of a case.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Source {
+    /// Name as the user gave it.
+    pub name: String,
+    /// Content.
+    pub text: String,
+    /// Folder that relative paths inside the case start from.
+    pub folder: PathBuf,
+}
+
+/// Where a value comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Origin {
+    /// The case file.
+    File,
+    /// The `--set` argument with this index.
+    Override(usize),
+    /// Neither: a default of the schema.
+    Default,
+}
+
+/// One mistake.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Diagnostic {
+    /// What is wrong.
+    pub message: String,
+    /// What would be right, when that is known.
+    pub help: Option<String>,
+    /// Dotted path of the value, `rings.0.gap`; empty for the whole file.
+    pub path: String,
+    /// Byte range in the text of `origin`; absent when no place in it is to blame (the file cannot be read).
+    pub span: Option<Range<usize>>,
+    /// Which text `span` is in.
+    pub origin: Origin,
+}
+
+impl Diagnostic {
+    /// A mistake without a place.
+    pub fn new(message: impl Into<String>) -> Self {
+        Self { message: message.into(), help: None, path: String::new(), span: None, origin: Origin::File }
+    }
+
+    /// Adds the path.
+    #[must_use]
+    pub fn path(mut self, path: impl Into<String>) -> Self {
+        self.path = path.into();
+        self
+    }
+
+    /// Adds the place.
+    #[must_use]
+    pub fn at(mut self, origin: Origin, span: Option<Range<usize>>) -> Self {
+        (self.origin, self.span) = (origin, span);
+        self
+    }
+
+    /// Adds the advice.
+    #[must_use]
+    pub fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+
+    /// One line: the path, if any, and what is wrong.
+    #[must_use]
+    pub fn headline(&self) -> String {
+        if self.path.is_empty() { self.message.clone() } else { format!("{}: {}", self.path, self.message) }
+    }
+}
+
+/// Everything that is wrong with one case, in the order of the file, then of the `--set` arguments.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Report {
+    /// The mistakes; never empty in a report that is returned as an error.
+    pub diagnostics: Vec<Diagnostic>,
+    /// The file.
+    pub source: Arc<Source>,
+    /// The `--set` arguments.
+    pub overrides: Arc<[String]>,
+}
+
+impl Report {
+    /// Puts the mistakes in order.
+    #[must_use]
+    pub fn new(mut diagnostics: Vec<Diagnostic>, source: Arc<Source>, overrides: Arc<[String]>) -> Self {
+        diagnostics.sort_by_key(|d| (d.origin, d.span.as_ref().map_or(usize::MAX, |s| s.start)));
+        diagnostics.dedup();
+        Self { diagnostics, source, overrides }
+    }
+
+    /// A report that has nothing but a message: a file that cannot be read.
+    #[must_use]
+    pub fn unreadable(name: &str, diagnostic: Diagnostic) -> Self {
+        let source = Source { name: name.to_owned(), text: String::new(), folder: PathBuf::new() };
+        Self { diagnostics: vec![diagnostic], source: Arc::new(source), overrides: Arc::new([]) }
+    }
+
+    /// `(name, line, column)` of a mistake, both from 1, columns in characters.
+    #[must_use]
+    pub fn place(&self, diagnostic: &Diagnostic) -> Option<(String, usize, usize)> {
+        let span = diagnostic.span.as_ref()?;
+        let (name, text) = self.text_of(diagnostic.origin)?;
+        let (line, column) = line_column(text, span.start);
+        Some((name, line, column))
+    }
+
+    fn text_of(&self, origin: Origin) -> Option<(String, &str)> {
+        match origin {
+            Origin::File => Some((self.source.name.clone(), &self.source.text)),
+            Origin::Override(i) => self.overrides.get(i).map(|t| ("--set".to_owned(), t.as_str())),
+            Origin::Default => None,
+        }
+    }
+
+    /// The report as a person reads it: each mistake with its place, the text underlined, and the advice.
+    #[must_use]
+    pub fn render(&self, color: bool) -> String {
+        let theme = if color { GraphicalTheme::unicode() } else { GraphicalTheme::unicode_nocolor() };
+        let handler = GraphicalReportHandler::new_themed(theme).with_width(110).with_context_lines(1);
+        let mut out = String::new();
+        for d in &self.diagnostics {
+            if !out.is_empty() {
+                out.push('\n');
+            }
+            let shown = Shown { headline: d.headline(), diagnostic: d, source: self.excerpt(d) };
+            if handler.render_report(&mut out, &shown).is_err() {
+                // Only a writer can fail, and a String does not; the text must not be lost in any case.
+                out.push_str(&shown.headline);
+                out.push('\n');
+            }
+        }
+        out
+    }
+
+    /// The mistakes for a program to read: `message`, `help`, `path`, `in` (file name or `--set`), `line`, `column`.
+    #[must_use]
+    pub fn to_json(&self) -> serde_json::Value {
+        self.diagnostics
+            .iter()
+            .map(|d| {
+                let (name, line, column) = match self.place(d) {
+                    Some((n, l, c)) => (n, Some(l), Some(c)),
+                    None => (self.source.name.clone(), None, None),
+                };
+                serde_json::json!({
+                    "message": d.message, "help": d.help, "path": d.path, "in": name, "line": line, "column": column,
+                })
+            })
+            .collect()
+    }
+
+    fn excerpt(&self, d: &Diagnostic) -> Option<Excerpt<'_>> {
+        let span = d.span.clone()?;
+        let (name, text) = self.text_of(d.origin)?;
+        let start = floor(text, span.start);
+        let line_end = text[start..].find('\n').map_or(text.len(), |i| start + i);
+        let end = floor(text, span.end.min(start + LABEL)).clamp(start, line_end.max(start));
+        let end = if text[start..end].ends_with('\r') { end - 1 } else { end };
+        Some(Excerpt { name, text, start, end })
+    }
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.render(false))
+    }
+}
+impl std::error::Error for Report {}
+
+/// Line and column from 1 of a byte offset; columns count characters.
+#[must_use]
+pub fn line_column(text: &str, offset: usize) -> (usize, usize) {
+    let before = &text[..floor(text, offset)];
+    let start = before.rfind('\n').map_or(0, |i| i + 1);
+    (before.matches('\n').count() + 1, before[start..].chars().count() + 1)
+}
+
+/// The character boundary at or before a byte offset.
+fn floor(text: &str, offset: usize) -> usize {
+    let mut offset = offset.min(text.len());
+    while !text.is_char_boundary(offset) {
+        offset -= 1;
+    }
+    offset
+}
+
+/// Bytes of a line that are underlined, and shown before and after that, at most: a line may be a megabyte.
+const LABEL: usize = 100;
+const AROUND: usize = 100;
+
+/// The one line that a mistake stands in.
+#[derive(Debug)]
+struct Excerpt<'a> {
+    name: String,
+    text: &'a str,
+    start: usize,
+    end: usize,
+}
+
+impl SourceCode for Excerpt<'_> {
+    fn read_span<'a>(
+        &'a self,
+        _: &SourceSpan,
+        context_before: usize,
+        _: usize,
+    ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
+        let (line, column) = line_column(self.text, self.start);
+        // miette asks without context for the header's line and column, with context for what it draws.
+        let (from, to, column) = if context_before == 0 {
+            (self.start, self.end, column - 1)
+        } else {
+            let line_start = self.text[..self.start].rfind('\n').map_or(0, |i| i + 1);
+            let line_end = self.text[self.end..].find('\n').map_or(self.text.len(), |i| self.end + i);
+            let from = floor(self.text, line_start.max(self.start.saturating_sub(AROUND)));
+            (from.max(line_start), floor(self.text, line_end.min(self.end + AROUND)), 0)
+        };
+        let data = self.text[from..to].trim_end_matches('\r').as_bytes();
+        let span = SourceSpan::new(from.into(), data.len());
+        Ok(Box::new(MietteSpanContents::new_named(self.name.clone(), data, span, line - 1, column, 1)))
+    }
+}
+
+/// One mistake as miette sees it.
+#[derive(Debug)]
+struct Shown<'a> {
+    headline: String,
+    diagnostic: &'a Diagnostic,
+    source: Option<Excerpt<'a>>,
+}
+impl fmt::Display for Shown<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.headline)
+    }
+}
+impl std::error::Error for Shown<'_> {}
+impl miette::Diagnostic for Shown<'_> {
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        self.diagnostic.help.as_ref().map(|h| Box::new(h) as Box<dyn fmt::Display>)
+    }
+    fn source_code(&self) -> Option<&dyn miette::SourceCode> {
+        self.source.as_ref().map(|s| s as &dyn miette::SourceCode)
+    }
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        let span = self.source.as_ref().map(|s| s.start..s.end)?;
+        Some(Box::new(std::iter::once(LabeledSpan::new_with_span(None, span))))
+    }
+}

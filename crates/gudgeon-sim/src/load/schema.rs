@@ -1,0 +1,536 @@
+//! Checks a document against the JSON schema of what it should become, and reports every mistake with its place.
+//!
+//! Deserialisation stops at the first mistake; this walk does not. The schema comes from the same types, so both agree, and
+//! deserialisation still has the last word.
+
+use gudgeon_core::quantity::{self, ALL_DIMENSIONS, QuantityError};
+use serde_json::{Map, Value};
+
+use super::near::{advice, list, nearest};
+use super::report::{Diagnostic, Origin};
+use super::tree::{Data, Entry, Node, Place, join, steps};
+
+/// A root schema with its definitions.
+#[derive(Debug)]
+pub(super) struct Schema {
+    root: Value,
+    end_of_file: usize,
+}
+
+/// Nesting of schemas without a value in between (references, options); only a schema that refers to itself has more.
+const MAX_REFERENCES: usize = 32;
+
+impl Schema {
+    pub fn of<T: schemars::JsonSchema>(text_length: usize) -> Self {
+        Self { root: schemars::schema_for!(T).to_value(), end_of_file: text_length }
+    }
+
+    pub const fn root(&self) -> &Value {
+        &self.root
+    }
+
+    /// Follows references and drops the `null` alternative of an optional value.
+    pub fn resolve<'a>(&'a self, mut schema: &'a Value) -> &'a Value {
+        for _ in 0..MAX_REFERENCES {
+            if let Some(target) = schema.get("$ref").and_then(Value::as_str) {
+                match target.strip_prefix('#').and_then(|p| self.root.pointer(p)) {
+                    Some(s) => schema = s,
+                    None => return &Value::Bool(true),
+                }
+                continue;
+            }
+            // `oneOf` is a choice even when only one model is linked; the others are how schemars writes an option.
+            if schema.get("oneOf").is_some() {
+                break;
+            }
+            let mut rest = alternatives(schema).into_iter().flatten().filter(|s| !is_null(s));
+            match (rest.next(), rest.next()) {
+                (Some(only), None) => schema = only,
+                _ => break,
+            }
+        }
+        schema
+    }
+
+    /// Keys that the outermost table must have.
+    pub fn required(&self) -> Vec<&str> {
+        strings(self.root.get("required"))
+    }
+
+    /// The schema of one field or element, before references are followed (its `default` stands there).
+    pub fn field<'a>(&'a self, schema: &'a Value, node: Option<&Node>, step: &str) -> Option<&'a Value> {
+        let schema = self.resolve(schema);
+        if step.parse::<usize>().is_ok() && schema.get("items").is_some() {
+            return schema.get("items");
+        }
+        let table = match Tagged::of(self, schema) {
+            Some(tagged) => tagged.chosen(node?)?,
+            None => schema,
+        };
+        let properties = table.get("properties").and_then(Value::as_object);
+        properties
+            .and_then(|p| p.get(step))
+            .or_else(|| table.get("additionalProperties").filter(|a| a.is_object()))
+    }
+
+    /// Every mistake of the document.
+    pub fn check(&self, document: &Node) -> Vec<Diagnostic> {
+        let mut out = Vec::new();
+        self.value(document, &self.root, "", &mut out);
+        out
+    }
+
+    fn value(&self, node: &Node, schema: &Value, path: &str, out: &mut Vec<Diagnostic>) {
+        let schema = self.resolve(schema);
+        if let Some(dimension) = schema.get("x-dimension").and_then(Value::as_str) {
+            let bound = schema.get("x-bound").and_then(Value::as_str).unwrap_or_default();
+            return check_quantity(node, dimension, bound, path, out);
+        }
+        if let Some(words) = words_of(schema) {
+            return check_word(node, &words, path, out);
+        }
+        if let Some(tagged) = Tagged::of(self, schema) {
+            return self.tagged(node, &tagged, path, out);
+        }
+        if let Some(variants) = alternatives(schema) {
+            return self.any_of(node, &variants, path, out);
+        }
+        let types = types_of(schema);
+        if !types.is_empty() && !types.iter().any(|t| admits(t, &node.data)) {
+            return out.push(wrong_type(node, &phrase(&types), path));
+        }
+        match &node.data {
+            Data::Table(entries) => self.table(node, entries, schema, &[], path, out),
+            Data::Array(items) => self.array(node, items, schema, path, out),
+            Data::Integer(i) => check_range(node, *i as f64, schema, path, out),
+            Data::Float(f) => check_range(node, *f, schema, path, out),
+            Data::Text(_) | Data::Bool(_) | Data::Date => {}
+        }
+    }
+
+    fn table(
+        &self,
+        node: &Node,
+        entries: &[Entry],
+        schema: &Value,
+        skip: &[&str],
+        path: &str,
+        out: &mut Vec<Diagnostic>,
+    ) {
+        let empty = Map::new();
+        let properties = schema.get("properties").and_then(Value::as_object).unwrap_or(&empty);
+        let other = schema.get("additionalProperties");
+        let known: Vec<&str> = properties.keys().map(String::as_str).collect();
+        let absent = |key: &&str| !entries.iter().any(|e| e.key == **key);
+        let mut missing: Vec<&str> =
+            strings(schema.get("required")).into_iter().filter(|k| absent(k) && !skip.contains(k)).collect();
+
+        for e in entries {
+            if let Some(s) = properties.get(&e.key) {
+                if !skip.contains(&e.key.as_str()) {
+                    self.value(&e.node, s, &join(path, &e.key), out);
+                }
+            } else if let Some(s) = other.filter(|o| o.is_object()) {
+                self.value(&e.node, s, &join(path, &e.key), out);
+            } else if other == Some(&Value::Bool(false)) {
+                // A key that is probably a misspelt required one explains the missing one too.
+                let near = nearest(&e.key, known.iter().filter(|k| absent(k)).copied());
+                missing.retain(|m| Some(*m) != near);
+                let mut d = Diagnostic::new(format!("unknown key `{}`", e.key))
+                    .path(path)
+                    .at(e.key_place.origin, e.key_place.span.clone());
+                let elsewhere = if near.is_some() { Vec::new() } else { self.homes_of(&e.key, path) };
+                d = d.help(match (near, elsewhere.first()) {
+                    (None, Some(home)) => {
+                        format!("`{}` belongs to {home}; {}", e.key, advice(&e.key, &known))
+                    }
+                    (Some(near), _) if known.len() > 1 => {
+                        format!("did you mean `{near}`? valid: {}", list(known.iter().copied()))
+                    }
+                    _ => advice(&e.key, &known),
+                });
+                out.push(d);
+            }
+        }
+        if !missing.is_empty() {
+            let what = if missing.len() == 1 { "missing key" } else { "missing keys" };
+            let mut d = Diagnostic::new(format!("{what} {}", list(missing.iter().copied()))).path(path);
+            d = match (&node.place, path) {
+                // The whole file: where the missing table would be added.
+                (Place { span: None, origin: Origin::File }, "") => {
+                    d.at(Origin::File, Some(self.end_of_file..self.end_of_file))
+                }
+                (place, _) => d.at(place.origin, place.span.clone()),
+            };
+            let text = |key: &str| {
+                let s = properties.get(key).unwrap_or(&Value::Null);
+                let s = s.get("description").or_else(|| self.resolve(s).get("description"));
+                s.and_then(Value::as_str).map(|t| format!("`{key}`: {}", first_sentence(t)))
+            };
+            let texts: Vec<String> = missing.iter().filter_map(|k| text(k)).collect();
+            if !texts.is_empty() {
+                d = d.help(texts.join("\n"));
+            }
+            out.push(d);
+        }
+    }
+
+    fn array(&self, node: &Node, items: &[Node], schema: &Value, path: &str, out: &mut Vec<Diagnostic>) {
+        let prefix = schema.get("prefixItems").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
+        for (i, item) in items.iter().enumerate() {
+            if let Some(s) = prefix.get(i).or_else(|| schema.get("items")) {
+                self.value(item, s, &join(path, i), out);
+            }
+        }
+        let limit = |key: &str| schema.get(key).and_then(Value::as_u64);
+        let n = items.len() as u64;
+        let wanted = match (limit("minItems"), limit("maxItems")) {
+            (Some(a), Some(b)) if a == b && n != a => format!("exactly {a}"),
+            (Some(a), _) if n < a => format!("at least {a}"),
+            (_, Some(b)) if n > b => format!("at most {b}"),
+            _ => return,
+        };
+        let message =
+            format!("{n} {} given, {wanted} wanted", if n == 1 { "value is" } else { "values are" });
+        out.push(Diagnostic::new(message).path(path).at(node.place.origin, node.place.span.clone()));
+    }
+
+    fn tagged(&self, node: &Node, tagged: &Tagged<'_>, path: &str, out: &mut Vec<Diagnostic>) {
+        let here = |d: Diagnostic, p: &Place| d.path(path).at(p.origin, p.span.clone());
+        let (tag, names) = (tagged.tag, tagged.names());
+        let Data::Table(entries) = &node.data else {
+            let mut d = wrong_type(node, &format!("a table with the key `{tag}`"), path);
+            if let Data::Text(t) = &node.data {
+                let name = nearest(t, names.iter().copied()).unwrap_or(t);
+                let key = path.rsplit('.').next().unwrap_or(path);
+                d = d.help(if node.place.origin == Origin::File {
+                    format!("write `{key} = {{ {tag} = \"{name}\" }}`")
+                } else {
+                    format!("set `{path}.{tag}={name}`")
+                });
+            }
+            return out.push(d);
+        };
+        let Some(chosen) = entries.iter().find(|e| e.key == tag) else {
+            let what = Diagnostic::new(format!("missing key `{tag}`"));
+            let near = entries.iter().find(|e| nearest(&e.key, [tag]).is_some() && !tagged.has_key(&e.key));
+            return out.push(match near {
+                Some(e) => here(Diagnostic::new(format!("unknown key `{}`", e.key)), &e.key_place)
+                    .help(format!("did you mean `{tag}`?")),
+                None => here(what, &node.place).help(advice("", &names)),
+            });
+        };
+        let Data::Text(name) = &chosen.node.data else {
+            return out.push(wrong_type(&chosen.node, "a name", &join(path, tag)).help(advice("", &names)));
+        };
+        match tagged.variants.iter().find(|(n, _)| n == name) {
+            Some((_, variant)) => self.table(node, entries, variant, &[tag], path, out),
+            None => {
+                let what = if tag == "model" {
+                    format!("there is no {} model `{name}`", path.rsplit('.').next().unwrap_or_default())
+                } else {
+                    format!("unknown {tag} `{name}`")
+                };
+                out.push(here(Diagnostic::new(what), &chosen.node.place).help(advice(name, &names)));
+            }
+        }
+    }
+
+    /// Alternatives that no tag tells apart: right when one fits, else the complaint of the one that fits best.
+    fn any_of(&self, node: &Node, variants: &[&Value], path: &str, out: &mut Vec<Diagnostic>) {
+        let mut best: Option<Vec<Diagnostic>> = None;
+        for v in variants.iter().filter(|v| !is_null(v)) {
+            let v = self.resolve(v);
+            let types = types_of(v);
+            let mut found = Vec::new();
+            self.value(node, v, path, &mut found);
+            if found.is_empty() {
+                return;
+            }
+            let fits = types.is_empty() || types.iter().any(|t| admits(t, &node.data));
+            if fits && best.as_ref().is_none_or(|b| found.len() < b.len()) {
+                best = Some(found);
+            }
+        }
+        match best {
+            Some(found) => out.extend(found),
+            None => {
+                let wanted: Vec<_> = variants.iter().flat_map(|v| types_of(self.resolve(v))).collect();
+                out.push(wrong_type(node, &phrase(&wanted), path));
+            }
+        }
+    }
+
+    /// Where else a key is valid: `[engine]`, `[[rings]]`, `the top of the file`.
+    fn homes_of(&self, key: &str, except: &str) -> Vec<String> {
+        let mut homes = Vec::new();
+        self.search(&self.root, "", false, 0, &mut |path, in_array, properties| {
+            if path != except && properties.contains_key(key) {
+                homes.push(match (path, in_array) {
+                    ("", _) => "the top of the file, before the first table".to_owned(),
+                    (p, true) => format!("`[[{p}]]`"),
+                    (p, false) => format!("`[{p}]`"),
+                });
+            }
+        });
+        let index_free: String =
+            except.split('.').filter(|s| s.parse::<usize>().is_err()).collect::<Vec<_>>().join(".");
+        homes.retain(|h| *h != format!("`[[{index_free}]]`"));
+        homes
+    }
+
+    /// Visits every plain table that the schema has: its path without indices, whether it is an element of an array, its
+    /// properties. Models are left out.
+    fn search(&self, schema: &Value, path: &str, in_array: bool, depth: usize, visit: &mut Visit<'_>) {
+        const DEPTH: usize = 4;
+        let schema = self.resolve(schema);
+        if let Some(items) = schema.get("items") {
+            return self.search(items, path, true, depth, visit);
+        }
+        let Some(properties) = schema.get("properties").and_then(Value::as_object) else { return };
+        visit(path, in_array, properties);
+        if depth < DEPTH {
+            for (key, s) in properties {
+                self.search(s, &join(path, key), false, depth + 1, visit);
+            }
+        }
+    }
+
+    /// The existing dotted path nearest to one that does not exist. Array indices of `wanted` are taken over.
+    pub fn nearest_path(&self, wanted: &str) -> Option<String> {
+        let mut paths = Vec::new();
+        self.search(&self.root, "", false, 0, &mut |path, in_array, properties| {
+            for key in properties.keys() {
+                paths.push(if in_array { format!("{path}.0.{key}") } else { join(path, key) });
+            }
+        });
+        let asked: Vec<String> = steps(wanted, 0).into_iter().map(|s| s.text).collect();
+        let last = asked.last()?;
+        let index = asked.iter().find(|s| s.parse::<usize>().is_ok());
+        let same_leaf = paths.iter().filter(|p| p.rsplit('.').next() == Some(last));
+        let found = same_leaf
+            .min_by_key(|p| strsim::damerau_levenshtein(wanted, p))
+            .cloned()
+            .or_else(|| nearest(&asked.join("."), paths.iter().map(String::as_str)).map(str::to_owned))?;
+        Some(match index {
+            Some(i) => found.replace(".0.", &format!(".{i}.")),
+            None => found,
+        })
+    }
+}
+
+type Visit<'a> = dyn FnMut(&str, bool, &Map<String, Value>) + 'a;
+
+/// Tables told apart by the constant value of one key.
+pub(super) struct Tagged<'a> {
+    pub tag: &'a str,
+    /// Name and schema of each.
+    pub variants: Vec<(&'a str, &'a Value)>,
+}
+
+impl<'a> Tagged<'a> {
+    pub fn of(schemas: &'a Schema, schema: &'a Value) -> Option<Self> {
+        let all: Vec<&Value> = alternatives(schema)?.into_iter().map(|s| schemas.resolve(s)).collect();
+        let properties = |s: &'a Value| s.get("properties").and_then(Value::as_object);
+        let constant = |s: &'a Value, key: &str| properties(s)?.get(key)?.get("const")?.as_str();
+        let tag = properties(all.first()?)?.keys().find(|k| all.iter().all(|s| constant(s, k).is_some()))?;
+        Some(Self { tag, variants: all.iter().filter_map(|s| Some((constant(s, tag)?, *s))).collect() })
+    }
+
+    pub fn names(&self) -> Vec<&'a str> {
+        self.variants.iter().map(|(n, _)| *n).collect()
+    }
+
+    fn has_key(&self, key: &str) -> bool {
+        self.variants.iter().any(|(_, s)| s.get("properties").is_some_and(|p| p.get(key).is_some()))
+    }
+
+    /// The alternative that a table asks for.
+    pub fn chosen(&self, node: &Node) -> Option<&'a Value> {
+        match &node.child(self.tag)?.data {
+            Data::Text(name) => self.variants.iter().find(|(n, _)| n == name).map(|(_, s)| *s),
+            _ => None,
+        }
+    }
+}
+
+fn alternatives(schema: &Value) -> Option<Vec<&Value>> {
+    let v = schema.get("oneOf").or_else(|| schema.get("anyOf")).or_else(|| schema.get("allOf"))?;
+    v.as_array().map(|a| a.iter().collect())
+}
+
+fn is_null(schema: &Value) -> bool {
+    schema.get("type").and_then(Value::as_str) == Some("null")
+}
+
+fn strings(v: Option<&Value>) -> Vec<&str> {
+    v.and_then(Value::as_array).map_or_else(Vec::new, |a| a.iter().filter_map(Value::as_str).collect())
+}
+
+fn types_of(schema: &Value) -> Vec<&str> {
+    match schema.get("type") {
+        Some(Value::String(t)) => vec![t],
+        list => strings(list).into_iter().filter(|t| *t != "null").collect(),
+    }
+}
+
+/// The admitted words, when the schema is nothing but a choice of words.
+fn words_of(schema: &Value) -> Option<Vec<&str>> {
+    if let Some(word) = schema.get("const").and_then(Value::as_str) {
+        return Some(vec![word]);
+    }
+    if schema.get("enum").is_some() {
+        return Some(strings(schema.get("enum")));
+    }
+    let mut words = Vec::new();
+    for s in alternatives(schema)?.into_iter().filter(|s| !is_null(s)) {
+        words.extend(words_of(s)?);
+    }
+    Some(words)
+}
+
+fn admits(kind: &str, data: &Data) -> bool {
+    match kind {
+        "string" => matches!(data, Data::Text(_)),
+        "number" => matches!(data, Data::Integer(_) | Data::Float(_)),
+        "integer" => matches!(data, Data::Integer(_)),
+        "boolean" => matches!(data, Data::Bool(_)),
+        "array" => matches!(data, Data::Array(_)),
+        "object" => matches!(data, Data::Table(_)),
+        _ => false,
+    }
+}
+
+fn phrase(types: &[&str]) -> String {
+    let mut words: Vec<&str> = types
+        .iter()
+        .map(|t| match *t {
+            "string" => "a text in quotes",
+            "number" => "a number",
+            "integer" => "a whole number",
+            "boolean" => "`true` or `false`",
+            "array" => "an array",
+            "object" => "a table",
+            other => other,
+        })
+        .collect();
+    words.dedup();
+    words.join(" or ")
+}
+
+fn wrong_type(node: &Node, wanted: &str, path: &str) -> Diagnostic {
+    Diagnostic::new(format!("{wanted} is wanted here, not {}", node.noun()))
+        .path(path)
+        .at(node.place.origin, node.place.span.clone())
+}
+
+fn check_range(node: &Node, v: f64, schema: &Value, path: &str, out: &mut Vec<Diagnostic>) {
+    let limit = |key: &str| schema.get(key).and_then(Value::as_f64);
+    let wanted = if !v.is_finite() {
+        Some("finite".to_owned())
+    } else if let Some(a) = limit("minimum").filter(|a| v < *a) {
+        Some(if a == 0.0 { "zero or greater".to_owned() } else { format!("at least {a}") })
+    } else if let Some(b) = limit("maximum").filter(|b| v > *b) {
+        Some(format!("at most {b}"))
+    } else if let Some(a) = limit("exclusiveMinimum").filter(|a| v <= *a) {
+        Some(format!("greater than {a}"))
+    } else {
+        limit("exclusiveMaximum").filter(|b| v >= *b).map(|b| format!("less than {b}"))
+    };
+    if let Some(w) = wanted {
+        let d = Diagnostic::new(format!("`{}` must be {w}", number_text(v)));
+        out.push(d.path(path).at(node.place.origin, node.place.span.clone()));
+    }
+}
+
+fn check_word(node: &Node, words: &[&str], path: &str, out: &mut Vec<Diagnostic>) {
+    let Data::Text(word) = &node.data else {
+        return out.push(wrong_type(node, "a word in quotes", path).help(advice("", words)));
+    };
+    if !words.contains(&word.as_str()) {
+        let d = Diagnostic::new(format!("`{}` is not a valid word here", shorten(word)));
+        out.push(d.path(path).at(node.place.origin, node.place.span.clone()).help(advice(word, words)));
+    }
+}
+
+fn check_quantity(node: &Node, dimension: &str, bound: &str, path: &str, out: &mut Vec<Diagnostic>) {
+    let result = match &node.data {
+        Data::Text(t) => quantity::check(dimension, bound, t, None),
+        Data::Integer(i) => quantity::check(dimension, bound, &i.to_string(), Some(*i as f64)),
+        Data::Float(f) => quantity::check(dimension, bound, &number_text(*f), Some(*f)),
+        _ => {
+            let example =
+                units_of(dimension).get(2).or(units_of(dimension).first()).copied().unwrap_or_default();
+            let example = if example.is_empty() { "1.5".to_owned() } else { format!("\"1.5 {example}\"") };
+            let d = wrong_type(node, dimension, path).help(format!("write it like `{example}`"));
+            return out.push(d);
+        }
+    };
+    let Err(e) = result else { return };
+    let (message, help) = match &e {
+        QuantityError::Unit { unit, dimension, known } => (
+            format!("`{}` is not a unit of {dimension}", shorten(unit)),
+            Some(unit_advice(unit, dimension, known)),
+        ),
+        QuantityError::NotANumber { text, dimension, example } => (
+            format!("`{}` does not start with a number", shorten(text)),
+            Some(format!("write {dimension} like `\"{example}\"`")),
+        ),
+        QuantityError::Range { text, bound } => (format!("`{}` must be {bound}", shorten(text)), None),
+        _ => (shorten(&e.to_string()), None),
+    };
+    let mut d = Diagnostic::new(message).path(path).at(node.place.origin, node.place.span.clone());
+    d.help = help;
+    out.push(d);
+}
+
+fn units_of(dimension: &str) -> Vec<&'static str> {
+    ALL_DIMENSIONS
+        .iter()
+        .find(|(n, _)| *n == dimension)
+        .map_or_else(Vec::new, |(_, u)| u.iter().map(|u| u.name).filter(|n| !n.is_empty()).collect())
+}
+
+fn unit_advice(unit: &str, dimension: &str, known: &str) -> String {
+    let units = units_of(dimension);
+    if units.is_empty() {
+        return format!("{dimension} has no unit");
+    }
+    // Short names make edit distance meaningless: only the case of the letters is forgiven.
+    if let Some(u) = units.iter().find(|u| u.eq_ignore_ascii_case(unit)) {
+        return format!("did you mean `{u}`? valid: {known}");
+    }
+    let owner = ALL_DIMENSIONS.iter().find(|(_, us)| us.iter().any(|u| u.name == unit));
+    match owner {
+        Some((other, _)) => format!("`{unit}` is a unit of {other}; valid: {known}"),
+        None => format!("valid: {known}"),
+    }
+}
+
+fn number_text(v: f64) -> String {
+    if v.is_nan() {
+        "nan".to_owned()
+    } else if v != 0.0 && (v.abs() < 1e-4 || v.abs() >= 1e16) {
+        format!("{v:e}")
+    } else {
+        v.to_string()
+    }
+}
+
+fn first_sentence(text: &str) -> String {
+    let flat = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    match flat.find(". ") {
+        Some(i) => flat[..i].to_owned(),
+        None => flat.trim_end_matches('.').to_owned(),
+    }
+}
+
+/// A user's text in a message: one line, not a page.
+pub(super) fn shorten(text: &str) -> String {
+    const LONG: usize = 80;
+    let flat = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    if flat.chars().count() <= LONG {
+        return flat;
+    }
+    flat.chars().take(LONG).chain(std::iter::once('…')).collect()
+}

@@ -1,0 +1,367 @@
+//! From the case file's dimensions to a resolved [`PackGeometry`].
+
+use std::f64::consts::PI;
+
+use gudgeon_core::BuildError;
+use gudgeon_core::geometry::{BackVolume, Chamfer, FaceProfile, LandGeometry, PackGeometry, RingGeometry};
+use gudgeon_core::result::{PackSection, SectionRing};
+
+use crate::case::{Face, FaceShape, Land, Ring, RingDesign, RingPackCase};
+
+/// Temperature at which cold gaps are measured \[K\] (zottin1992, 20 degC).
+const COLD: f64 = 293.15;
+
+/// Resolves the geometry; reports every contradiction, not only the first.
+pub fn resolve(case: &RingPackCase) -> Result<PackGeometry, Vec<BuildError>> {
+    let mut errors = Vec::new();
+    let n = case.rings.len();
+    if n == 0 {
+        return Err(vec![
+            BuildError::at("rings", "a ring pack needs at least one ring").help("add a `[[rings]]` table"),
+        ]);
+    }
+    if case.piston.lands.len() != n {
+        return Err(vec![
+            BuildError::at(
+                "piston.lands",
+                format!("there are {n} rings but {} lands", case.piston.lands.len()),
+            )
+            .help("give one `[[piston.lands]]` for the land above each ring, top land first"),
+        ]);
+    }
+    let bore_radius = case.engine.bore.si() / 2.0;
+    let radii: Vec<f64> = case
+        .piston
+        .lands
+        .iter()
+        .enumerate()
+        .map(|(i, l)| land_radius(l, bore_radius).map_err(|e| e.within(&format!("piston.lands.{i}"))))
+        .filter_map(|r| r.map_err(|e| errors.push(e)).ok())
+        .collect();
+    if radii.len() != n {
+        return Err(errors);
+    }
+    let mut rings = Vec::with_capacity(n);
+    for (i, r) in case.rings.iter().enumerate() {
+        let below = radii[(i + 1).min(n - 1)];
+        match ring(r, bore_radius, radii[i], below, &mut |e| errors.push(e.within(&format!("rings.{i}")))) {
+            Some(g) => rings.push(g),
+            None => continue,
+        }
+    }
+    let mut lands = Vec::with_capacity(n + 1);
+    for (i, l) in case.piston.lands.iter().enumerate() {
+        let volume = match (i, l.volume, l.height) {
+            (_, Some(v), _) => v.si(),
+            (0, None, _) => 0.0,
+            (_, None, Some(h)) => PI * h.si() * (bore_radius * bore_radius - radii[i] * radii[i]),
+            (_, None, None) => {
+                errors.push(
+                    BuildError::at(
+                        format!("piston.lands.{i}"),
+                        format!("land {} has neither `height` nor `volume`", i + 1),
+                    )
+                    .help("a land between two rings needs its axial height or its gas volume"),
+                );
+                continue;
+            }
+        };
+        lands.push(LandGeometry { volume, temperature: l.temperature.si() });
+    }
+    lands.push(LandGeometry { volume: 0.0, temperature: case.gas.crankcase_temperature.si() });
+    if case.gas.gamma.si() <= 1.0 {
+        errors
+            .push(BuildError::at("gas.gamma", format!("`{}` must be greater than one", case.gas.gamma.si())));
+    }
+    if errors.is_empty() {
+        Ok(PackGeometry {
+            bore_radius,
+            rings,
+            lands,
+            gamma: case.gas.gamma.si(),
+            gas_constant: case.gas.gas_constant.si(),
+        })
+    } else {
+        Err(errors)
+    }
+}
+
+fn land_radius(l: &Land, bore_radius: f64) -> Result<f64, BuildError> {
+    let r = match (l.diameter, l.clearance) {
+        (Some(_), Some(_)) => {
+            return Err(BuildError::at("clearance", "both `diameter` and `clearance` are given")
+                .help("keep one of them"));
+        }
+        (Some(d), None) => d.si() / 2.0,
+        (None, Some(c)) => bore_radius - c.si(),
+        (None, None) => {
+            return Err(BuildError::new("the land has neither `diameter` nor `clearance`")
+                .help("give its running diameter or its radial clearance to the bore"));
+        }
+    };
+    if r <= 0.0 || r >= bore_radius {
+        let field = if l.diameter.is_some() { "diameter" } else { "clearance" };
+        return Err(BuildError::at(
+            field,
+            format!(
+                "a land of {:.3} mm diameter does not fit a bore of {:.3} mm",
+                2e3 * r,
+                2e3 * bore_radius
+            ),
+        ));
+    }
+    Ok(r)
+}
+
+fn face(f: &Face, height: f64) -> Result<FaceProfile, BuildError> {
+    let length = f.length.map_or(height, |l| l.si());
+    if length > height * (1.0 + 1e-9) {
+        return Err(BuildError::at(
+            "length",
+            format!(
+                "a face of {:.4} mm is longer than its ring is thick ({:.4} mm)",
+                1e3 * length,
+                1e3 * height
+            ),
+        ));
+    }
+    let only = |unwanted: bool, field: &str, shape: &str| {
+        if unwanted {
+            Err(BuildError::at(field, format!("`{field}` has no meaning for a face of shape `{shape}`")))
+        } else {
+            Ok(())
+        }
+    };
+    match f.shape {
+        FaceShape::Parabola => {
+            only(!f.drops.is_empty(), "drops", "parabola")?;
+            let drop = f.drop.ok_or_else(|| BuildError::at("shape", "a `parabola` needs its `drop`"))?.si();
+            let half = length / 2.0;
+            Ok(FaceProfile::Parabola { length, curvature: drop / (half * half), apex: half + f.offset.si() })
+        }
+        FaceShape::Taper => {
+            only(!f.drops.is_empty(), "drops", "taper")?;
+            only(f.offset.si() != 0.0, "offset", "taper")?;
+            let drop = f.drop.ok_or_else(|| BuildError::at("shape", "a `taper` needs its `drop`"))?.si();
+            Ok(FaceProfile::Table { length, drops: vec![0.0, drop] })
+        }
+        FaceShape::Table => {
+            only(f.drop.is_some(), "drop", "table")?;
+            only(f.offset.si() != 0.0, "offset", "table")?;
+            if f.drops.len() < 2 {
+                return Err(BuildError::at(
+                    "drops",
+                    format!("a table needs at least two drops, not {}", f.drops.len()),
+                ));
+            }
+            let drops: Vec<f64> = f.drops.iter().map(|d| d.si()).collect();
+            if let Some(i) = drops.iter().position(|d| *d < 0.0) {
+                return Err(BuildError::at(
+                    format!("drops.{i}"),
+                    "a drop is measured away from the liner and cannot be negative",
+                ));
+            }
+            Ok(FaceProfile::Table { length, drops })
+        }
+    }
+}
+
+fn ring(
+    r: &Ring,
+    bore_radius: f64,
+    above: f64,
+    below: f64,
+    fail: &mut dyn FnMut(BuildError),
+) -> Option<RingGeometry> {
+    let mut ok = true;
+    let mut check = |result: Result<(), BuildError>| {
+        if let Err(e) = result {
+            ok = false;
+            fail(e);
+        }
+    };
+    let (width, height) = (r.width.si(), r.height.si());
+    let g = &r.groove;
+    let (c1, c2) = (g.upper_angle.si().tan(), g.lower_angle.si().tan());
+    let sealed = r.design == RingDesign::ThreePiece;
+
+    // Running gap: given, or the cold gap less the growth of the ring's circumference.
+    let gap = match (r.gap, r.cold_gap, r.temperature) {
+        (Some(_), Some(_), _) => {
+            check(Err(BuildError::at("gap", "both `gap` and `cold_gap` are given").help("keep one of them")));
+            0.0
+        }
+        (Some(g), None, _) => g.si(),
+        (None, Some(g0), Some(t)) => {
+            g0.si() - r.expansion.si() * (2.0 * PI * bore_radius - g0.si()) * (t.si() - COLD)
+        }
+        (None, Some(_), None) => {
+            check(Err(BuildError::at("cold_gap", "a `cold_gap` needs the ring's running `temperature`")));
+            0.0
+        }
+        (None, None, _) if r.gap_area.is_some() => 0.0,
+        (None, None, _) => {
+            check(Err(BuildError::new("the ring has no end gap")
+                .help("give `gap`, or `cold_gap` with `temperature`, or `gap_area`")));
+            0.0
+        }
+    };
+    let root_radius = match (g.root_diameter, g.back_volume) {
+        (Some(d), _) => d.si() / 2.0,
+        // Lumped data: the root radius follows from the volume behind the ring, π (R_in² - R_g²) b.
+        (None, Some(v)) => {
+            let r_in = bore_radius - width;
+            (r_in * r_in - v.si() / (PI * height)).max(0.0).sqrt()
+        }
+        (None, None) if sealed => bore_radius - width - 0.5e-3,
+        (None, None) => {
+            check(Err(BuildError::at("groove", "the groove has neither `root_diameter` nor `back_volume`")));
+            0.0
+        }
+    };
+    if root_radius + width >= bore_radius {
+        check(Err(BuildError::at(
+            "groove.root_diameter",
+            format!(
+                "a ring {:.3} mm thick on a root of {:.3} mm does not fit a bore of {:.3} mm",
+                1e3 * width,
+                2e3 * root_radius,
+                2e3 * bore_radius
+            ),
+        )));
+    }
+    // Axial clearance: `b_in` and `B_in` are ring and groove at their inner ends (zottin1992 section 2.2).
+    let b_in = height - (c1 + c2) * width;
+    let (groove_height_inner, clearance_inner) = match (g.height, g.clearance) {
+        (Some(_), Some(_)) => {
+            check(Err(BuildError::at("groove.clearance", "both `height` and `clearance` are given")
+                .help("keep one of them")));
+            (b_in, 0.0)
+        }
+        (Some(b), None) => {
+            let inner = b.si() - (c1 * (above - root_radius) + c2 * (below - root_radius));
+            (inner, inner - b_in)
+        }
+        (None, Some(c)) => {
+            let behind = bore_radius - root_radius - width;
+            let rc = c.si() - (c1 + c2) * behind;
+            (b_in + rc, rc)
+        }
+        (None, None) => {
+            if !sealed {
+                check(Err(BuildError::at("groove", "the groove has neither `height` nor `clearance`")));
+            }
+            (b_in, 0.0)
+        }
+    };
+    let behind = bore_radius - root_radius - width;
+    let clearance = clearance_inner + (c1 + c2) * behind;
+    if !sealed && ok_number(behind) && clearance <= 0.0 {
+        check(Err(BuildError::at(
+            if g.height.is_some() { "groove.height" } else { "groove.clearance" },
+            format!("the ring has an axial clearance of {:.4} mm in its groove", 1e3 * clearance),
+        )
+        .help(format!("a ring of {:.4} mm needs a higher groove", 1e3 * height))));
+    }
+    let chamfer = |c: Option<crate::case::ChamferShape>| {
+        c.map_or(0.0, |c| 0.5 * c.length.si() * c.length.si() * c.angle.si().tan())
+    };
+    let profile = match face(&r.face, height) {
+        Ok(p) => p,
+        Err(e) => {
+            check(Err(e.within("face")));
+            return None;
+        }
+    };
+    let lands = if r.design == RingDesign::TwinLand { 2 } else { 1 };
+    if lands == 2 && 2.0 * profile.length() > height * (1.0 + 1e-9) {
+        check(Err(BuildError::at(
+            "face.length",
+            format!(
+                "two lands of {:.4} mm do not fit a ring of {:.4} mm",
+                1e3 * profile.length(),
+                1e3 * height
+            ),
+        )));
+    }
+    let back = match r.design {
+        RingDesign::ThreePiece => BackVolume::Sealed,
+        RingDesign::TwinLand => BackVolume::Drained,
+        RingDesign::Compression => match g.back_volume {
+            Some(v) => BackVolume::Fixed(v.si()),
+            None => BackVolume::Geometric,
+        },
+    };
+    ok.then(|| RingGeometry {
+        height,
+        width,
+        mass: r.mass.si(),
+        tangential_force: r.tangential_force.si(),
+        gap,
+        gap_area: r.gap_area.map(|a| a.si()),
+        piston_radius_above: above,
+        piston_radius_below: below,
+        root_radius,
+        slope_upper: c1,
+        slope_lower: c2,
+        groove_height_inner,
+        clearance_inner,
+        leak_upper: g.leak_upper.si(),
+        leak_lower: g.leak_lower.si(),
+        leak_face: r.face_leak.si(),
+        chamfer: Chamfer { area_lower: chamfer(g.chamfer_lower), area_upper: chamfer(g.chamfer_upper) },
+        back,
+        back_temperature: g.temperature.si(),
+        oil_fill: g.oil_fill.si(),
+        face: profile,
+        lands,
+        rails: if sealed { 2 } else { 1 },
+        has_clearance: !sealed,
+    })
+}
+
+fn ok_number(v: f64) -> bool {
+    v.is_finite() && v > 0.0
+}
+
+/// The section that reports draw.
+pub fn section(case: &RingPackCase, pack: &PackGeometry) -> PackSection {
+    let top_land = case.piston.lands[0].height.map_or(6e-3, |h| h.si());
+    let mut y = top_land;
+    let mut rings = Vec::with_capacity(pack.rings.len());
+    for (i, (r, g)) in case.rings.iter().zip(&pack.rings).enumerate() {
+        let behind = g.h_max(pack.bore_radius);
+        let clearance = g.clearance_inner + (g.slope_upper + g.slope_lower) * behind;
+        let axial = if g.has_clearance { g.height } else { g.height * 6.0 };
+        let groove_height = axial + clearance.max(0.0);
+        let points = 21;
+        rings.push(SectionRing {
+            height: axial,
+            width: g.width,
+            groove_bottom: y + groove_height,
+            groove_height,
+            groove_depth: g.piston_radius_above - g.root_radius,
+            clearance: clearance.max(0.0),
+            face_drop: (0..points)
+                .map(|k| g.face.drop_at(g.face.length() * k as f64 / (points - 1) as f64))
+                .collect(),
+            face_length: g.face.length(),
+            lands: g.lands.max(g.rails),
+        });
+        y += groove_height;
+        let _ = r;
+        y += match case.piston.lands.get(i + 1) {
+            Some(l) => l.height.map_or_else(
+                || {
+                    l.volume.map_or(3e-3, |v| {
+                        let rp = pack.rings[i].piston_radius_below;
+                        (v.si() / (PI * (pack.bore_radius * pack.bore_radius - rp * rp))).clamp(1e-3, 20e-3)
+                    })
+                },
+                |h| h.si(),
+            ),
+            None => 6e-3,
+        };
+    }
+    PackSection { bore_radius: pack.bore_radius, top_land, length: y, stroke: case.engine.stroke.si(), rings }
+}

@@ -1,0 +1,434 @@
+//! The default solver: the whole scene at once, adaptive, with an L-stable integrator; the cycle closed by a
+//! periodic-orbit solver.
+
+use std::f64::consts::PI;
+use std::time::Instant;
+
+use gudgeon_core::EvalError;
+use gudgeon_core::result::Balance;
+use gudgeon_numerics::ode::{ColumnGroups, Flow, IntegrateError, Integrator, OdeSystem, Options, Stats, StepView};
+use gudgeon_numerics::orbit::{CycleMap, OrbitOptions, periodic_orbit};
+use gudgeon_numerics::rodas::Rodas as Radau5;
+use gudgeon_numerics::rodas::Rodas;
+
+use super::Found;
+use super::pack::Pack;
+use super::record::{Record, Totals};
+use crate::case::{IntegratorName, RingPackCase};
+use crate::run::RunError;
+
+/// The pack as an initial-value problem in crank angle.
+struct Problem<'a> {
+    pack: &'a mut Pack,
+}
+
+impl OdeSystem for Problem<'_> {
+    fn dim(&self) -> usize {
+        self.pack.layout.n
+    }
+    fn quad_dim(&self) -> usize {
+        2 * self.pack.n_rings() + 1
+    }
+    fn rhs(&mut self, t: f64, y: &[f64], f: &mut [f64]) -> Result<(), EvalError> {
+        self.pack.rates(t, y, f)
+    }
+}
+
+/// Which columns of the Jacobian can be differenced together: film thickness and height of a ring touch its own rows and the
+/// volumes next to it; velocities touch their own ring only.
+fn column_groups(pack: &Pack) -> ColumnGroups {
+    let (n, ng, dim) = (pack.n_rings(), pack.layout.gas, pack.layout.n);
+    let names = pack.gas.state_names();
+    // Volumes that ring i (from 0) borders on; a name that is not understood borders on every ring.
+    let borders = |name: &str, i: usize| {
+        let number = |p: &str, s: &str| name.strip_prefix(p).and_then(|r| r.strip_suffix(s)).and_then(|k| k.parse::<usize>().ok());
+        match (number("ring", ".back"), number("land", "")) {
+            (Some(k), _) => k == i + 1,
+            (None, Some(k)) => k == i + 1 || k == i + 2,
+            (None, None) => true,
+        }
+    };
+    let own = |i: usize| {
+        let mut rows: Vec<usize> = pack.layout.film[i].into_iter().collect();
+        if let Some(k) = pack.layout.axial[i] {
+            rows.extend([k, k + 1]);
+        }
+        rows.push(dim + n + 1 + i);
+        rows
+    };
+    let every: Vec<usize> = (0..dim + 2 * n + 1).collect();
+    let mut g = ColumnGroups { groups: (0..ng).map(|k| vec![k]).collect(), rows: vec![every; dim] };
+    let place_rows = |i: usize| {
+        let mut rows: Vec<usize> = (0..ng).filter(|k| borders(&names[*k], i)).collect();
+        rows.extend(own(i));
+        rows.push(dim + i);
+        if i + 1 == n {
+            rows.push(dim + n);
+        }
+        rows
+    };
+    // The gas of ring i and of ring i + 2 have no volume in common; rings next to each other do.
+    let understood = names.iter().all(|m| m.starts_with("land") || m.ends_with(".back"));
+    for column in 0..2 {
+        for parity in 0..2 {
+            let mut group = Vec::new();
+            for i in (0..n).filter(|i| !understood || i % 2 == parity) {
+                let index = if column == 0 { pack.layout.film[i] } else { pack.layout.axial[i] };
+                let Some(k) = index else { continue };
+                if g.groups.iter().any(|x| x.contains(&k)) {
+                    continue;
+                }
+                g.rows[k] = if understood { place_rows(i) } else { g.rows[k].clone() };
+                if understood {
+                    group.push(k);
+                } else {
+                    g.groups.push(vec![k]);
+                }
+            }
+            if !group.is_empty() {
+                g.groups.push(group);
+            }
+        }
+    }
+    let mut velocities = Vec::new();
+    for i in 0..n {
+        if let Some(k) = pack.layout.axial[i] {
+            g.rows[k + 1] = own(i);
+            velocities.push(k + 1);
+        }
+    }
+    if !velocities.is_empty() {
+        g.groups.push(velocities);
+    }
+    g
+}
+
+enum Method {
+    Rodas(Box<Rodas>),
+    Radau(Box<Radau5>),
+}
+
+/// The map from the state at the start of a cycle to that at its end.
+struct Cycle<'a> {
+    pack: &'a mut Pack,
+    method: Method,
+    breakpoints: Vec<f64>,
+    scale: Vec<f64>,
+    h: f64,
+    stats: Stats,
+    q: Vec<f64>,
+    full_accuracy: f64,
+    failure: Option<IntegrateError>,
+    /// Steps of a cycle at full accuracy, when known: the unit of cost.
+    progress: &'a mut dyn FnMut(f64),
+    done: f64,
+}
+
+impl Cycle<'_> {
+    /// Integrates one cycle from `y`. With a record, the cycle is sampled at `step` \[rad\] and its closures measured.
+    fn integrate(&mut self, y: &mut [f64], rtol: f64, mut sampler: Option<&mut Sampler>) -> Result<(), IntegrateError> {
+        let mut options = Options::new(rtol, &self.scale);
+        // No step may jump over a pressure pulse: 10 degrees at most.
+        options.h_max = 10f64.to_radians();
+        options.h_init = self.h;
+        self.q.fill(0.0);
+        let period = self.pack.period();
+        let interval = self.pack.decision_interval();
+        let pieces = interval.map_or(1, |i| (period / i).round().max(1.0) as usize);
+        let mut q = std::mem::take(&mut self.q);
+        let mut outcome = Ok(0.0);
+        for piece in 0..pieces {
+            let span = (period * piece as f64 / pieces as f64, period * (piece + 1) as f64 / pieces as f64);
+            if interval.is_some()
+                && let Err(source) = self.pack.evaluate(span.0, y)
+            {
+                outcome = Err(IntegrateError::Eval { t: span.0, source });
+                break;
+            }
+            if interval.is_some() {
+                self.pack.decide_seats();
+            }
+            if piece == 0
+                && let Some(s) = sampler.as_deref_mut()
+                && let Err(source) = s.sample(self.pack, span.0, y)
+            {
+                outcome = Err(IntegrateError::Eval { t: span.0, source });
+                break;
+            }
+            options.h_init = self.h;
+            let mut problem = Problem { pack: self.pack };
+            let mut observe = |p: &mut Problem<'_>, v: &dyn StepView| match sampler.as_deref_mut() {
+                Some(s) => s.step(p.pack, v),
+                None => Flow::Continue,
+            };
+            let (b, st) = (&self.breakpoints, &mut self.stats);
+            outcome = match &mut self.method {
+                Method::Rodas(m) => m.integrate(&mut problem, span, b, y, &mut q, &options, st, &mut observe),
+                Method::Radau(m) => m.integrate(&mut problem, span, b, y, &mut q, &options, st, &mut observe),
+            };
+            match &outcome {
+                Ok(h) => self.h = *h,
+                Err(_) => break,
+            }
+        }
+        self.q = q;
+        self.done += 1.0;
+        (self.progress)(1.0 - 0.8f64.powf(self.done));
+        outcome.map(|_| ())
+    }
+}
+
+impl CycleMap for Cycle<'_> {
+    fn dim(&self) -> usize {
+        self.pack.layout.n
+    }
+    fn map(&mut self, y0: &[f64], y1: &mut [f64], accuracy: f64) -> Result<f64, EvalError> {
+        y1.copy_from_slice(y0);
+        let before = self.stats.rhs;
+        let rtol = accuracy.max(self.full_accuracy);
+        if let Err(e) = self.integrate(y1, rtol, None) {
+            self.failure = Some(e);
+            return Err(EvalError::fatal("ring_pack", "the cycle could not be integrated"));
+        }
+        let _ = before;
+        Ok(1.0)
+    }
+    fn scale(&self, y: &[f64], s: &mut [f64]) {
+        // Gas states relative to their value (at least 1 bar), film thickness relative (its state is a logarithm), heights by
+        // the clearance, velocities by the clearance per radian.
+        s.fill(1.0);
+        for k in 0..self.pack.layout.gas {
+            s[k] = y[k].abs().max(1.0);
+        }
+        for k in self.pack.layout.axial.iter().flatten() {
+            s[k + 1] = 10.0;
+        }
+    }
+}
+
+/// Samples a cycle on a fixed grid and measures its closures step by step.
+struct Sampler {
+    record: Record,
+    grid: Vec<f64>,
+    next: usize,
+    y: Vec<f64>,
+    failure: Option<EvalError>,
+    impulse: Vec<[f64; 2]>,
+    work: Vec<[f64; 2]>,
+    start: Vec<(f64, f64)>,
+    end: Vec<(f64, f64)>,
+}
+
+impl Sampler {
+    fn new(pack: &Pack, step: f64) -> Self {
+        let period = pack.period();
+        let rows = (period / step).round().max(1.0) as usize;
+        let n = pack.n_rings();
+        Self {
+            record: Record::new(pack),
+            grid: (0..=rows).map(|k| period * k as f64 / rows as f64).collect(),
+            next: 0,
+            y: vec![0.0; pack.layout.n],
+            failure: None,
+            impulse: vec![[0.0; 2]; n],
+            work: vec![[0.0; 2]; n],
+            start: vec![(0.0, 0.0); n],
+            end: vec![(0.0, 0.0); n],
+        }
+    }
+
+    fn sample(&mut self, pack: &mut Pack, theta: f64, y: &[f64]) -> Result<(), EvalError> {
+        pack.evaluate(theta, y)?;
+        self.record.push(theta, pack);
+        self.next += 1;
+        for (i, s) in self.start.iter_mut().enumerate() {
+            *s = momentum(pack, i);
+        }
+        Ok(())
+    }
+
+    fn step(&mut self, pack: &mut Pack, v: &dyn StepView) -> Flow {
+        match self.advance(pack, v) {
+            Ok(()) => Flow::Continue,
+            Err(e) => {
+                self.failure = Some(e);
+                Flow::Stop
+            }
+        }
+    }
+
+    fn advance(&mut self, pack: &mut Pack, v: &dyn StepView) -> Result<(), EvalError> {
+        let mut y = std::mem::take(&mut self.y);
+        let last = *self.grid.last().unwrap_or(&0.0);
+        let slack = 1e-9;
+        while self.next < self.grid.len() && self.grid[self.next] <= v.t1() + slack {
+            let t = self.grid[self.next].min(v.t1());
+            v.interpolate(t, &mut y);
+            pack.evaluate(t, &y)?;
+            self.record.push(self.grid[self.next], pack);
+            self.next += 1;
+        }
+        // Simpson's rule over the step for impulse and work of the forces on each ring.
+        if pack.plan.axial {
+            let dt = (v.t1() - v.t0()) / pack.omega / 6.0;
+            for (t, weight) in [(v.t0(), 1.0), (0.5 * (v.t0() + v.t1()), 4.0), (v.t1(), 1.0)] {
+                v.interpolate(t, &mut y);
+                pack.evaluate(t, &y)?;
+                for i in 0..pack.n_rings() {
+                    if pack.layout.axial[i].is_none() {
+                        continue;
+                    }
+                    let r = &pack.at.rings[i];
+                    let a = &r.axial;
+                    let velocity = pack.at.places[i].v;
+                    let parts = [a.gas, a.inertia, a.gravity, a.film, a.damping, r.reaction];
+                    let sum: f64 = parts.iter().sum();
+                    let magnitude: f64 = parts.iter().map(|p| p.abs()).sum();
+                    self.impulse[i][0] += weight * dt * sum;
+                    self.impulse[i][1] += weight * dt * magnitude;
+                    self.work[i][0] += weight * dt * sum * velocity;
+                    self.work[i][1] += weight * dt * parts.iter().map(|p| (p * velocity).abs()).sum::<f64>();
+                }
+            }
+            if v.t1() >= last - slack {
+                for (i, e) in self.end.iter_mut().enumerate() {
+                    *e = momentum(pack, i);
+                }
+            }
+        }
+        self.y = y;
+        Ok(())
+    }
+
+    fn balance(&self, pack: &Pack) -> (Option<f64>, Option<f64>) {
+        if pack.layout.axial.iter().all(Option::is_none) {
+            return (None, None);
+        }
+        let worst = |sums: &[[f64; 2]], change: &dyn Fn(usize) -> f64| {
+            sums.iter()
+                .enumerate()
+                .filter(|(_, s)| s[1] > 0.0)
+                .map(|(i, s)| ((s[0] - change(i)) / s[1]).abs())
+                .fold(0.0, f64::max)
+        };
+        let momentum = worst(&self.impulse, &|i| self.end[i].0 - self.start[i].0);
+        let energy = worst(&self.work, &|i| self.end[i].1 - self.start[i].1);
+        (Some(energy), Some(momentum))
+    }
+}
+
+/// Momentum and kinetic energy of ring `i` relative to the piston.
+fn momentum(pack: &Pack, i: usize) -> (f64, f64) {
+    let (m, v) = (pack.geo.rings[i].mass, pack.at.places[i].v);
+    (m * v, 0.5 * m * v * v)
+}
+
+/// Solves one start.
+pub(super) fn run(case: &RingPackCase, pack: &mut Pack, start: f64, progress: &mut dyn FnMut(f64)) -> Result<Found, RunError> {
+    let begin = Instant::now();
+    let s = &case.solver;
+    let dim = pack.layout.n;
+    let quads = 2 * pack.n_rings() + 1;
+    let groups = column_groups(pack);
+    let method = match s.integrator {
+        IntegratorName::Rodas => Method::Rodas(Box::new(Rodas::new(dim, quads, Some(groups)))),
+        IntegratorName::Radau5 => Method::Radau(Box::new(Radau5::new(dim, quads, Some(groups)))),
+    };
+    // The pressure has kinks of its own; the sliding speed of the films changes sign at the dead centres.
+    let period = pack.period();
+    let mut breakpoints: Vec<f64> = pack.cylinder.kinks().to_vec();
+    breakpoints.extend((1..(period / PI).round() as usize).map(|k| k as f64 * PI));
+    breakpoints.sort_by(f64::total_cmp);
+    breakpoints.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
+    let mut scale = vec![1.0; dim];
+    for k in &mut scale[..pack.layout.gas] {
+        *k = 0.1;
+    }
+    for k in pack.layout.axial.iter().flatten() {
+        scale[k + 1] = 10.0;
+    }
+    let discrete = pack.decision_interval().is_some();
+    let mut y = vec![0.0; dim];
+    pack.initial(start, &mut y);
+    let mut cycle = Cycle {
+        pack,
+        method,
+        breakpoints,
+        scale,
+        h: 0.0,
+        stats: Stats::default(),
+        q: vec![0.0; quads],
+        full_accuracy: s.tolerance.si(),
+        failure: None,
+        progress,
+        done: 0.0,
+    };
+    let options = OrbitOptions {
+        tolerance: s.periodicity.si(),
+        accuracy: s.tolerance.si(),
+        max_cycles: s.max_cycles as usize,
+        accelerate: !discrete,
+    };
+    let report = match periodic_orbit(&mut cycle, &mut y, &options) {
+        Ok(r) => r,
+        Err(source) => {
+            let theta_deg = cycle.pack.at.theta.to_degrees();
+            return Err(cycle.failure.map_or(RunError::Eval { theta_deg, source }, RunError::Integrate));
+        }
+    };
+    let seconds = begin.elapsed().as_secs_f64();
+    let work = cycle.stats;
+    // The recorded cycle, at full accuracy.
+    let mut sampler = Sampler::new(cycle.pack, case.outputs.series_step.si());
+    let gas: Vec<f64> = y[..cycle.pack.layout.gas].to_vec();
+    cycle.integrate(&mut y, s.tolerance.si(), Some(&mut sampler))?;
+    if let Some(source) = sampler.failure.take() {
+        return Err(RunError::Eval { theta_deg: cycle.pack.at.theta.to_degrees(), source });
+    }
+    let q = cycle.q;
+    let n = pack.n_rings();
+    let stored: f64 = gas.iter().zip(&y).zip(&pack.mass_scale).map(|((a, b), m)| (b - a) * m).sum();
+    let through = q[0].abs().max(q[n].abs()).max(f64::MIN_POSITIVE);
+    let (energy, momentum) = sampler.balance(pack);
+    let totals = Totals {
+        flow_in: q[..n].to_vec(),
+        blow_by: q[n],
+        friction_work: q[n + 1..].to_vec(),
+        balance: Balance { gas_mass: Some((q[0] - q[n] - stored).abs() / through), oil_mass: None, energy, momentum },
+        periodicity_error: report.error_estimate,
+        duration: None,
+    };
+    let mut notes = Vec::new();
+    if report.period == 1 && !report.converged {
+        notes.push(format!(
+            "not periodic within {:.0e} after {} cycles: the estimated error is {:.1e}",
+            s.periodicity.si(),
+            report.cycles,
+            report.error_estimate
+        ));
+    }
+    if report.error_estimate > 0.5 && !discrete {
+        return Err(RunError::NotPeriodic {
+            cycles: report.cycles as u32,
+            error: report.error_estimate,
+            wanted: s.periodicity.si(),
+            advice: "Raise `solver.max_cycles`, or look for a mode that never settles (a ring that flutters)".into(),
+        });
+    }
+    let counters = [
+        ("steps", work.steps),
+        ("rejected", work.rejected),
+        ("rhs", work.rhs),
+        ("jacobians", work.jacobians),
+        ("factorisations", work.lu),
+    ];
+    Ok(Found {
+        record: sampler.record,
+        totals,
+        period: if report.converged { report.period } else { 0 },
+        cycles: report.cycle_equivalents,
+        counters: counters.into_iter().map(|(k, v)| (k.to_owned(), v)).collect(),
+        notes,
+        seconds,
+    })
+}

@@ -1,0 +1,271 @@
+//! The scene `ring_pack`: one cylinder's rings with their gas, films and axial motion.
+//!
+//! `geometry` resolves dimensions, `plan` decides what must run, `assemble` builds the sub-models into a `pack::Pack`,
+//! one of `implicit`, `substep_march` and `degree_march` solves it, `record` turns the last cycle into results.
+
+pub mod assemble;
+pub mod contact_line;
+pub mod degree_march;
+pub mod geometry;
+pub mod implicit;
+pub mod pack;
+pub mod plan;
+pub mod record;
+pub mod substep_march;
+
+use std::time::Instant;
+
+use gudgeon_core::kinds::Motion;
+use gudgeon_core::result::{Branch, SolverReport};
+use gudgeon_core::{BuildError, EvalError};
+use indexmap::IndexMap;
+
+use crate::case::{Method, RingPackCase, Scheme};
+use crate::run::{Progress, RunError};
+use pack::Pack;
+use record::{Meter, Record, Totals};
+
+/// A solved pack: the last cycle of the first start, and what else was found.
+pub struct Solved {
+    /// The recorded cycle.
+    pub record: Record,
+    /// Its totals.
+    pub totals: Totals,
+    /// Periodic solutions, when there are several or the start matters.
+    pub branches: Vec<Branch>,
+    /// Work.
+    pub report: SolverReport,
+    /// Wall time of the solver \[s\], recording excluded.
+    pub seconds: f64,
+}
+
+/// One start brought to its periodic state.
+struct Found {
+    record: Record,
+    totals: Totals,
+    period: u32,
+    cycles: f64,
+    counters: IndexMap<String, u64>,
+    notes: Vec<String>,
+    seconds: f64,
+}
+
+/// Starts when the case names none.
+fn starts(case: &RingPackCase, pack: &Pack) -> Vec<f64> {
+    if !case.solver.starts.is_empty() {
+        return case.solver.starts.iter().map(|p| p.si()).collect();
+    }
+    let mut s = vec![pack.p_crankcase];
+    if pack.decision_interval().is_some() {
+        s.push(6e5);
+    }
+    s
+}
+
+/// Two periodic solutions count as one when their results agree within this relative difference.
+const SAME: f64 = 5e-3;
+
+/// Solves the case.
+///
+/// # Errors
+/// What stopped the solver.
+pub fn solve(case: &RingPackCase, pack: &mut Pack, progress: &mut dyn FnMut(Progress)) -> Result<Solved, RunError> {
+    let starts = starts(case, pack);
+    let total = starts.len() as f64;
+    let mut found: Vec<(f64, Found)> = Vec::new();
+    for (k, start) in starts.iter().enumerate() {
+        let phase = if starts.len() > 1 { format!("start at {:.2} bar", start / 1e5) } else { "solving".to_owned() };
+        let mut tell = |f: f64| progress(Progress { phase: phase.clone(), fraction: (k as f64 + f) / total });
+        found.push((*start, one_start(case, pack, *start, &mut tell)?));
+    }
+    let m = meter(case);
+    let mut branches: Vec<Branch> = Vec::new();
+    for (start, f) in &found {
+        let results = f.record.results(pack, &f.totals, m);
+        let name = format!("{:.2} bar", start / 1e5);
+        let alike = |b: &&mut Branch| {
+            results.iter().filter(|(k, _)| k.as_str() != "periodicity_error" && !k.ends_with("_angle")).all(|(k, v)| {
+                b.results.get(k).is_some_and(|w| (v.value - w.value).abs() <= SAME * v.value.abs().max(w.value.abs()) + 1e-12)
+            })
+        };
+        match branches.iter_mut().find(alike) {
+            Some(b) => {
+                b.start.push_str(" and ");
+                b.start.push_str(&name);
+            }
+            None => branches.push(Branch { start: format!("all lands at {name}"), period: f.period, results }),
+        }
+    }
+    let mut report = SolverReport { method: method_name(case).into(), ..SolverReport::default() };
+    if branches.len() > 1 {
+        report.notes.push(format!(
+            "this case has {} periodic solutions; the results are those of the first start ({})",
+            branches.len(),
+            branches[0].start
+        ));
+    }
+    for b in &branches {
+        match b.period {
+            1 => {}
+            0 => report.notes.push(format!("started with {}, the cycle did not become periodic", b.start)),
+            p => report.notes.push(format!("started with {}, the cycle repeats only every {p} cycles", b.start)),
+        }
+    }
+    if branches.len() < 2 {
+        branches.clear();
+    }
+    let mut seconds = 0.0;
+    for (_, f) in &found {
+        seconds += f.seconds;
+        for (name, n) in &f.counters {
+            *report.counters.entry(name.clone()).or_insert(0) += n;
+        }
+        for n in &f.notes {
+            if !report.notes.contains(n) {
+                report.notes.push(n.clone());
+            }
+        }
+    }
+    report.counters.insert("cycles".into(), found.iter().map(|(_, f)| f.cycles).sum::<f64>().ceil() as u64);
+    report.counters.insert("states".into(), pack.layout.n as u64);
+    report.counters.insert("film_evaluations".into(), pack.counters.film);
+    report.counters.insert("gas_evaluations".into(), pack.counters.gas);
+    let (_, first) = found.swap_remove(0);
+    Ok(Solved { record: first.record, totals: first.totals, branches, report, seconds })
+}
+
+fn method_name(case: &RingPackCase) -> &'static str {
+    match (case.solver.method, case.solver.scheme) {
+        (Method::Implicit, _) => "implicit",
+        (Method::AsPublished, Scheme::SubstepMarch) => "as_published/substep_march",
+        (Method::AsPublished, Scheme::DegreeMarch) => "as_published/degree_march",
+    }
+}
+
+fn one_start(case: &RingPackCase, pack: &mut Pack, start: f64, progress: &mut dyn FnMut(f64)) -> Result<Found, RunError> {
+    let s = &case.solver;
+    let begin = Instant::now();
+    let mut record = Record::new(pack);
+    let at = |pack: &Pack| {
+        let theta_deg = pack.at.theta.to_degrees();
+        move |source: EvalError| RunError::Eval { theta_deg, source }
+    };
+    let or = |given: u32, own: u32| if given == 0 { own } else { given };
+    match (s.method, s.scheme) {
+        (Method::Implicit, _) => implicit::run(case, pack, start, progress),
+        (Method::AsPublished, Scheme::SubstepMarch) => {
+            let n = pack.n_rings() as u32;
+            let set = substep_march::Settings {
+                cycles: or(s.cycles, 2),
+                steps: or(s.steps_per_degree, n + 1),
+                gas_steps: or(s.gas_steps, 1 << (n + 1)),
+                passes: s.passes,
+            };
+            let outcome = substep_march::run(pack, set, start, &mut record, progress);
+            let (totals, steps) = outcome.map_err(at(pack))?;
+            Ok(Found {
+                record,
+                totals,
+                period: 1,
+                cycles: f64::from(set.cycles),
+                counters: [("steps".to_owned(), steps)].into_iter().collect(),
+                notes: Vec::new(),
+                seconds: begin.elapsed().as_secs_f64(),
+            })
+        }
+        (Method::AsPublished, Scheme::DegreeMarch) => {
+            let set = degree_march::Settings {
+                cycles: s.cycles,
+                max_cycles: s.max_cycles,
+                steps: or(s.steps_per_degree, 1),
+                gas_steps: or(s.gas_steps, 10),
+                tolerance: s.periodicity.si(),
+            };
+            let outcome = degree_march::run(pack, set, start, &mut record, progress).map_err(at(pack))?;
+            Ok(Found {
+                record,
+                totals: outcome.totals,
+                period: outcome.period,
+                cycles: f64::from(outcome.cycles),
+                counters: [("steps".to_owned(), outcome.steps)].into_iter().collect(),
+                notes: Vec::new(),
+                seconds: begin.elapsed().as_secs_f64(),
+            })
+        }
+    }
+}
+
+/// Combinations that mean nothing, with the reason.
+#[must_use]
+pub fn legal(case: &RingPackCase) -> Vec<BuildError> {
+    let mut errors = Vec::new();
+    let s = &case.solver;
+    if s.max_cycles == 0 {
+        errors.push(BuildError::at("solver.max_cycles", "at least one cycle is needed"));
+    }
+    if s.tolerance.si() > 0.1 || s.tolerance.si() < 1e-12 {
+        errors.push(BuildError::at("solver.tolerance", "the tolerance must be between 1e-12 and 0.1"));
+    }
+    if s.method == Method::AsPublished {
+        let name = case.models.ring_motion.typetag_name();
+        let steps = u64::from(s.steps_per_degree.max(1)) * u64::from(s.gas_steps.max(1));
+        if steps > 1_000_000 {
+            errors.push(BuildError::at("solver.gas_steps", format!("{steps} gas steps per degree would run for days")));
+        }
+        match s.scheme {
+            Scheme::SubstepMarch => {
+                if name == "three_seat" {
+                    errors.push(
+                        BuildError::at("solver.scheme", "`substep_march` integrates the ring's motion; `three_seat` decides seats by the degree")
+                            .help("use `scheme = \"degree_march\"`, or `ring_motion` `newton_groove` or `seated`"),
+                    );
+                }
+                if s.passes == 0 || s.passes > 7200 {
+                    errors.push(BuildError::at("solver.passes", format!("{} one-degree passes do not make a cycle", s.passes)).help("720, or 721 as the source's listing runs"));
+                }
+            }
+            Scheme::DegreeMarch => {
+                if !matches!(name, "three_seat" | "seated") {
+                    errors.push(
+                        BuildError::at("solver.scheme", format!("`degree_march` decides seats by the degree; `{name}` needs the ring's motion integrated"))
+                            .help("use `scheme = \"substep_march\"`, or `ring_motion` `three_seat` or `seated`"),
+                    );
+                }
+            }
+        }
+    }
+    errors
+}
+
+/// Names of the states in the order of the state vector.
+#[must_use]
+pub fn state_names(pack: &Pack) -> Vec<String> {
+    let mut names: Vec<String> = pack.gas.state_names().iter().map(|n| format!("mass of {n}")).collect();
+    for (i, k) in pack.layout.film.iter().enumerate() {
+        if k.is_some() {
+            names.push(format!("film of ring{}", i + 1));
+        }
+    }
+    for (i, k) in pack.layout.axial.iter().enumerate() {
+        if k.is_some() {
+            names.push(format!("lift of ring{}", i + 1));
+            names.push(format!("axial velocity of ring{}", i + 1));
+        }
+    }
+    for (i, r) in pack.rings.iter().enumerate() {
+        if matches!(r.kind, Motion::Discrete { .. }) {
+            names.push(format!("seat of ring{} (decided in steps)", i + 1));
+        }
+    }
+    names
+}
+
+/// How blow-by is metered.
+#[must_use]
+pub fn meter(case: &RingPackCase) -> Meter {
+    let g = &case.gas;
+    Meter {
+        density: g.meter_pressure.si() / (g.gas_constant.si() * g.meter_temperature.si()),
+        cylinders: f64::from(case.engine.cylinders),
+    }
+}

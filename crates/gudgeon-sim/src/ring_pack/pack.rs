@@ -1,0 +1,665 @@
+//! The assembled ring pack: sub-models, layout of the state vector, and the evaluation of one instant.
+//!
+//! State vector, in this order: gas masses, each over its mass at 1 bar; `ln h` of every ring with a film; for every ring
+//! that moves freely the height `s / c0` and the velocity `v / (c0 ω)`, `c0` its nominal clearance. Independent
+//! variable: crank angle.
+
+use std::f64::consts::PI;
+
+use gudgeon_core::EvalError;
+use gudgeon_core::geometry::{BackVolume, PackGeometry, RingPlace};
+use gudgeon_core::kinds::{
+    AxialForces, CylinderPressure, FaceIn, FaceOut, FilmTemperature, FlankDamping, FlankFriction, GasFlow,
+    GasIn, GasOut, Hydrodynamics, Kinematics, Motion, Oil, PistonMotion, RingMotion,
+};
+
+use super::contact_line::ContactLine;
+use super::plan::Plan;
+use crate::case::{
+    AxialGas, CavitationDatum, Conventions, Drag, FilmForce, Hoop, RadialGas, TwinLandFriction,
+};
+
+/// Standard acceleration used by both sources \[m/s²\].
+const GRAVITY: f64 = 9.8;
+/// Sliding speed over which boundary friction changes sign \[m/s\]; 1e-3 of a typical piston speed.
+const FRICTION_SPEED: f64 = 0.01;
+/// Fraction of a hard limit of the film over which the motion towards it fades out.
+const LIMIT_BAND: f64 = 0.02;
+/// Least film load as a fraction of the ring's own tension load: a ring pushed off the liner by gas moves away fast
+/// instead of infinitely fast.
+const LOAD_FLOOR: f64 = 1e-3;
+
+/// Work counters.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Evaluations of the whole scene.
+    pub instants: u64,
+    /// Film solves and evaluations, one per face.
+    pub film: u64,
+    /// Calls of the gas model.
+    pub gas: u64,
+}
+
+/// Liner radius growth over the height above the pin at top dead centre; positions ascending.
+#[derive(Debug, Clone, Default)]
+pub struct LinerShape {
+    /// Heights \[m\].
+    pub position: Vec<f64>,
+    /// Radial growth \[m\].
+    pub growth: Vec<f64>,
+}
+
+impl LinerShape {
+    fn at(&self, x: f64) -> f64 {
+        let n = self.position.len();
+        if n == 0 {
+            return 0.0;
+        }
+        let i = self.position.partition_point(|p| *p <= x).clamp(1, n - 1);
+        let (x0, x1) = (self.position[i - 1], self.position[i]);
+        self.growth[i - 1] + (self.growth[i] - self.growth[i - 1]) * (x - x0) / (x1 - x0)
+    }
+}
+
+/// One ring with its models.
+pub struct RingModel {
+    /// One film per running land, upper land first. Empty when no film is needed.
+    pub films: Vec<Box<dyn Hydrodynamics>>,
+    /// Solid contact of the whole face as a function of film thickness.
+    pub contact: ContactLine,
+    /// Axial motion.
+    pub motion: Box<dyn RingMotion>,
+    /// Its kind, asked once.
+    pub kind: Motion,
+    /// Oil in the groove.
+    pub damping: Box<dyn FlankDamping>,
+    /// Radial friction.
+    pub friction: Box<dyn FlankFriction>,
+    /// Distance below ring 1 \[m\].
+    pub spacing: f64,
+    /// Nominal clearance \[m\], the scale of the axial states.
+    pub clearance0: f64,
+    /// Viscosity when it does not change over the cycle \[Pa s\].
+    pub mu: Option<f64>,
+    /// Film thickness used when there is no film \[m\].
+    pub nominal_film: f64,
+}
+
+/// One ring at an instant.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct RingInstant {
+    /// Film thickness rate \[m/s\].
+    pub hdot: f64,
+    /// Viscosity \[Pa s\].
+    pub mu: f64,
+    /// Pressures above, below, behind \[Pa\].
+    pub p_above: f64,
+    /// Below.
+    pub p_below: f64,
+    /// Behind.
+    pub p_back: f64,
+    /// Pressure at which the film cavitates \[Pa\].
+    pub p_cav: f64,
+    /// Radial load on the face, above `p_cav`, per circumference \[N/m\] of one rail.
+    pub load: f64,
+    /// Part of it that solid contact carries \[N/m\].
+    pub contact: f64,
+    /// Film, summed over the lands.
+    pub film: FaceOut,
+    /// Friction that the convention counts \[N\], whole ring, along the liner's velocity.
+    pub friction: f64,
+    /// Friction power \[W\].
+    pub power: f64,
+    /// Axial forces on the whole ring \[N\].
+    pub axial: AxialForces,
+    /// Reaction of the flanks \[N\].
+    pub reaction: f64,
+}
+
+/// Everything at an instant.
+#[derive(Debug, Clone, Default)]
+pub struct Instant {
+    /// Crank angle \[rad\].
+    pub theta: f64,
+    /// Piston motion.
+    pub piston: PistonMotion,
+    /// Pressures and flows.
+    pub gas: GasOut,
+    /// Rates of the gas masses \[kg/s\].
+    pub dm: Vec<f64>,
+    /// Places of the rings.
+    pub places: Vec<RingPlace>,
+    /// The rings.
+    pub rings: Vec<RingInstant>,
+}
+
+/// Where things are in the state vector.
+#[derive(Debug, Clone, Default)]
+pub struct Layout {
+    /// Number of gas states.
+    pub gas: usize,
+    /// Index of `ln h` per ring.
+    pub film: Vec<Option<usize>>,
+    /// Index of the height per ring; the velocity follows.
+    pub axial: Vec<Option<usize>>,
+    /// Number of states.
+    pub n: usize,
+}
+
+/// The assembled scene.
+pub struct Pack {
+    /// Geometry.
+    pub geo: PackGeometry,
+    /// Conventions.
+    pub conv: Conventions,
+    /// Crank speed \[rad/s\].
+    pub omega: f64,
+    /// Piston motion.
+    pub kinematics: Box<dyn Kinematics>,
+    /// Cylinder pressure.
+    pub cylinder: Box<dyn CylinderPressure>,
+    /// Gas flow.
+    pub gas: Box<dyn GasFlow>,
+    /// Oil.
+    pub oil: Box<dyn Oil>,
+    /// Film temperatures.
+    pub film_temperature: Box<dyn FilmTemperature>,
+    /// Rings.
+    pub rings: Vec<RingModel>,
+    /// Liner distortion.
+    pub liner: LinerShape,
+    /// Height of ring 1 above the pin \[m\].
+    pub pin_to_ring1: f64,
+    /// Crankcase pressure \[Pa\].
+    pub p_crankcase: f64,
+    /// What runs.
+    pub plan: Plan,
+    /// State layout.
+    pub layout: Layout,
+    /// Masses of the gas volumes at 1 bar \[kg\], the scale of the gas states.
+    pub mass_scale: Vec<f64>,
+    /// Seats of the rings whose motion is decided in steps (0, ½, 1).
+    pub seats: Vec<f64>,
+    /// The last instant evaluated.
+    pub at: Instant,
+    /// Work counters.
+    pub counters: Counters,
+    /// Masses, unscaled, scratch.
+    pub masses: Vec<f64>,
+}
+
+impl Pack {
+    /// Number of rings.
+    #[must_use]
+    pub fn n_rings(&self) -> usize {
+        self.rings.len()
+    }
+
+    /// Length of the cycle \[rad\].
+    #[must_use]
+    pub fn period(&self) -> f64 {
+        self.cylinder.period()
+    }
+
+    /// Whether any ring's seat is decided in steps; the smallest interval \[rad\].
+    #[must_use]
+    pub fn decision_interval(&self) -> Option<f64> {
+        self.rings
+            .iter()
+            .filter_map(|r| if let Motion::Discrete { interval } = r.kind { Some(interval) } else { None })
+            .reduce(f64::min)
+    }
+
+    /// Liner radius at ring `i` for a pin height \[m\].
+    fn liner_radius(&self, i: usize, y: f64) -> f64 {
+        let x = y - self.kinematics.y_tdc() + self.pin_to_ring1 - self.rings[i].spacing;
+        self.geo.bore_radius + self.liner.at(x)
+    }
+
+    /// The geometry that follows from film thickness and axial position.
+    pub fn place(&self, i: usize, liner_radius: f64, h: f64, s: Option<(f64, f64)>) -> RingPlace {
+        let g = &self.geo.rings[i];
+        let behind = g.h_max(liner_radius) - h;
+        let slope = g.slope_upper + g.slope_lower;
+        let clearance = (g.clearance_inner + slope * behind).max(0.0);
+        let r_inner = g.root_radius + behind;
+        let r_outer = r_inner + g.width;
+        let back_volume = match g.back {
+            BackVolume::Geometric => {
+                0.5 * (2.0 * g.groove_height_inner + slope * behind)
+                    * PI
+                    * (r_inner * r_inner - g.root_radius * g.root_radius)
+            }
+            BackVolume::Fixed(v) => v,
+            BackVolume::Drained | BackVolume::Sealed => 0.0,
+        };
+        let (s, v, e) = match (s, self.rings[i].kind) {
+            (Some((s, v)), _) => (s, v, if clearance > 0.0 { (s / clearance).clamp(0.0, 1.0) } else { 0.0 }),
+            (None, Motion::Fixed { e }) => (e * clearance, 0.0, e),
+            (None, _) => (self.seats[i] * clearance, 0.0, self.seats[i]),
+        };
+        RingPlace { h, s, v, clearance, e, liner_radius, r_inner, r_outer, back_volume }
+    }
+
+    /// Viscosity under ring `i` for a pin height \[m\].
+    fn viscosity(&self, i: usize, y: f64) -> f64 {
+        self.rings[i].mu.unwrap_or_else(|| {
+            let travel = self.kinematics.y_tdc() - y + self.rings[i].spacing;
+            self.oil.viscosity(self.film_temperature.temperature(i, travel))
+        })
+    }
+
+    /// Sets places, piston and viscosities for an angle and a state.
+    pub fn set_places(&mut self, theta: f64, y: &[f64]) {
+        self.at.theta = theta;
+        self.at.piston = self.kinematics.motion(theta);
+        let pin = self.at.piston.y;
+        for i in 0..self.n_rings() {
+            let h = self.layout.film[i].map_or(self.rings[i].nominal_film, |k| y[k].exp());
+            let s = self.layout.axial[i].map(|k| {
+                let c0 = self.rings[i].clearance0;
+                (y[k] * c0, y[k + 1] * c0 * self.omega)
+            });
+            self.at.places[i] = self.place(i, self.liner_radius(i, pin), h, s);
+            if self.plan.film {
+                self.at.rings[i].mu = self.viscosity(i, pin);
+            }
+        }
+    }
+
+    /// Sets the place of one ring directly, for solvers that keep their own state.
+    pub fn set_place(&mut self, i: usize, h: f64, s: Option<(f64, f64)>) {
+        let r = self.liner_radius(i, self.at.piston.y);
+        self.at.places[i] = self.place(i, r, h, s);
+    }
+
+    /// Runs the gas model on `self.masses` and copies the pressures to the rings. `p_cylinder` overrides the model.
+    pub fn gas(&mut self, p_cylinder: Option<f64>) -> Result<(), EvalError> {
+        let inp = GasIn {
+            p_cylinder: p_cylinder.unwrap_or_else(|| self.cylinder.pressure(self.at.theta)),
+            p_crankcase: self.p_crankcase,
+            rings: &self.at.places,
+        };
+        self.counters.gas += 1;
+        self.gas.rates(&inp, &self.masses, &mut self.at.dm, &mut self.at.gas)?;
+        self.share_pressures();
+        Ok(())
+    }
+
+    fn share_pressures(&mut self) {
+        for i in 0..self.n_rings() {
+            let r = &mut self.at.rings[i];
+            (r.p_above, r.p_below, r.p_back) =
+                (self.at.gas.p_land[i], self.at.gas.p_land[i + 1], self.at.gas.p_back[i]);
+            r.p_cav = match self.conv.cavitation_datum {
+                CavitationDatum::Absolute => 0.0,
+                CavitationDatum::Gauge => self.p_crankcase.min(r.p_above).min(r.p_below),
+            };
+        }
+    }
+
+    /// Circumference that turns forces per length into forces \[m\].
+    fn perimeter(&self, i: usize) -> f64 {
+        match self.conv.radial_gas {
+            RadialGas::BorePerimeter => 2.0 * PI * self.geo.bore_radius,
+            _ => 2.0 * PI * self.at.places[i].r_outer,
+        }
+    }
+
+    /// Load of tension alone, per circumference \[N/m\] of one rail.
+    fn tension(&self, i: usize) -> f64 {
+        let g = &self.geo.rings[i];
+        let f = g.tangential_force / g.rails as f64;
+        match self.conv.hoop {
+            Hoop::Correct => 2.0 * PI * f / self.perimeter(i),
+            Hoop::AsPrinted => 2.0 * f / self.perimeter(i),
+        }
+    }
+
+    /// Radial load that the face must carry above `p_cav`, per circumference \[N/m\] of one rail, without flank friction.
+    pub fn radial_load(&self, i: usize) -> f64 {
+        let (g, r, place) = (&self.geo.rings[i], &self.at.rings[i], &self.at.places[i]);
+        let back = g.height * (r.p_back - r.p_cav);
+        let inner = place.r_inner / place.r_outer;
+        self.tension(i)
+            + match self.conv.radial_gas {
+                RadialGas::BorePerimeter => back,
+                RadialGas::BackOnly => back * inner,
+                RadialGas::BackAndFace => {
+                    let rest = g.height - g.lands as f64 * g.face.length();
+                    let face = if g.lands == 2 {
+                        rest * (r.p_below - r.p_cav)
+                    } else {
+                        0.5 * rest * (r.p_above + r.p_below - 2.0 * r.p_cav)
+                    };
+                    back * inner - face
+                }
+            }
+    }
+
+    /// Axial load that presses the flanks together, as the radial friction laws take it \[N\].
+    fn flank_load(&self, i: usize) -> f64 {
+        let r = &self.at.rings[i];
+        0.5 * self.at.places[i].flank_area() * (r.p_below - r.p_above).abs()
+    }
+
+    fn face_in(&self, i: usize, land: usize) -> FaceIn {
+        let (g, r) = (&self.geo.rings[i], &self.at.rings[i]);
+        // The space between the lands of a twin-land ring is drained to below the ring.
+        let p_top = if g.lands == 2 && land == 1 { r.p_below } else { r.p_above };
+        FaceIn {
+            h: self.at.places[i].h,
+            u: -self.at.piston.v,
+            p_bottom: r.p_below,
+            p_top,
+            p_cav: r.p_cav,
+            mu: r.mu,
+        }
+    }
+
+    /// Film of ring `i` at squeeze velocity `hdot`, summed over the lands.
+    pub fn film(&mut self, i: usize, hdot: f64) -> Result<FaceOut, EvalError> {
+        let lands = self.rings[i].films.len();
+        let mut sum = FaceOut::default();
+        for land in 0..lands {
+            let inp = self.face_in(i, land);
+            self.counters.film += 1;
+            let o = self.rings[i].films[land].evaluate(&inp, hdot)?;
+            let twice = lands == 2 && self.conv.twin_land_friction == TwinLandFriction::LowerTwice;
+            let share = if !twice {
+                1.0
+            } else if land == 1 {
+                2.0
+            } else {
+                0.0
+            };
+            sum.load += o.load;
+            sum.load_rate += o.load_rate;
+            sum.ring_shear += share * o.ring_shear;
+            sum.liner_shear += share * o.liner_shear;
+            sum.slope_force += share * o.slope_force;
+            sum.p_max = sum.p_max.max(o.p_max);
+            sum.full_film = o.full_film;
+        }
+        Ok(sum)
+    }
+
+    /// Squeeze velocity \[m/s\] from the radial balance. Sets `load`, `contact` and `hdot` of the ring.
+    pub fn radial_balance(&mut self, i: usize) -> Result<(), EvalError> {
+        let load = self.radial_load(i);
+        let h = self.at.places[i].h;
+        let contact = self.rings[i].contact.load(h);
+        let floor = LOAD_FLOOR * self.tension(i);
+        // Smooth maximum: equal to the load within floor²/load.
+        let soft = |w: f64| 0.5 * (w + (w * w + 4.0 * floor * floor).sqrt());
+        let needed = load - contact;
+        let mut hdot = if self.rings[i].films.len() == 1 && self.rings[i].friction.is_off() {
+            self.counters.film += 1;
+            let inp = self.face_in(i, 0);
+            self.rings[i].films[0].squeeze_rate(&inp, soft(needed))?
+        } else {
+            self.solve_balance(i, needed, soft)?
+        };
+        let g = &self.geo.rings[i];
+        let h_max = g.h_max(self.at.places[i].liner_radius);
+        if hdot > 0.0 {
+            hdot *= ((h_max - h) / (LIMIT_BAND * h_max)).clamp(0.0, 1.0);
+        } else if let Some(f) = self.rings[i].contact.floor {
+            hdot *= ((h - f) / (LIMIT_BAND * f)).clamp(0.0, 1.0);
+        }
+        let r = &mut self.at.rings[i];
+        (r.load, r.contact, r.hdot) = (load, contact, hdot);
+        Ok(())
+    }
+
+    /// Balance of several lands, or with flank friction: film load less needed load falls with `hdot`; bracket and Newton.
+    fn solve_balance(&mut self, i: usize, needed: f64, soft: impl Fn(f64) -> f64) -> Result<f64, EvalError> {
+        let perimeter = self.perimeter(i) * self.geo.rings[i].rails as f64;
+        let axial = self.flank_load(i);
+        let residual = |p: &mut Self, x: f64| -> Result<(f64, f64), EvalError> {
+            let o = p.film(i, x)?;
+            let f = &p.rings[i].friction;
+            let (fa, dfa) = if f.is_off() {
+                (0.0, 0.0)
+            } else {
+                (f.force(x, axial) / perimeter, f.slope(x, axial) / perimeter)
+            };
+            Ok((o.load - soft(needed + fa), o.load_rate - dfa))
+        };
+        let (mut lo, mut hi) = (f64::NEG_INFINITY, f64::INFINITY);
+        let mut x = self.at.rings[i].hdot;
+        if !x.is_finite() {
+            x = 0.0;
+        }
+        let scale = soft(needed).abs().max(1e-300);
+        let mut stride = 1e-4;
+        for _ in 0..200 {
+            let (f, d) = residual(self, x)?;
+            if f.abs() <= 1e-12 * scale {
+                return Ok(x);
+            }
+            if f > 0.0 {
+                lo = x
+            } else {
+                hi = x
+            }
+            let newton = x - f / d;
+            let bracketed = lo.is_finite() && hi.is_finite();
+            let inside = newton.is_finite() && newton > lo && newton < hi;
+            let next = if inside && (bracketed || (newton - x).abs() <= 1e3 * stride) {
+                newton
+            } else if bracketed {
+                0.5 * (lo + hi)
+            } else {
+                stride *= 8.0;
+                if f > 0.0 { x + stride } else { x - stride }
+            };
+            if bracketed && (hi - lo) <= 1e-14 * (hi.abs().max(lo.abs())) + 1e-18 {
+                return Ok(next);
+            }
+            if next == x {
+                return Ok(x);
+            }
+            x = next;
+        }
+        Err(EvalError::recoverable("ring_pack", format!("radial balance of ring {} did not converge", i + 1)))
+    }
+
+    /// Friction and film force of ring `i` at its `hdot`. Needs `radial_balance` or a given `hdot` and `load`.
+    pub fn friction(&mut self, i: usize) -> Result<(), EvalError> {
+        let hdot = self.at.rings[i].hdot;
+        let o = self.film(i, hdot)?;
+        let u = -self.at.piston.v;
+        let perimeter = self.perimeter(i) * self.geo.rings[i].rails as f64;
+        let line = &self.rings[i].contact;
+        let r = &mut self.at.rings[i];
+        r.film = o;
+        // On a hard floor the surfaces carry what the film does not.
+        let mut viscous = 1.0;
+        if let Some(f) = line.floor {
+            let weight = 1.0 - ((self.at.places[i].h - f) / (LIMIT_BAND * f)).clamp(0.0, 1.0);
+            if line.floor_replaces_film {
+                viscous = 1.0 - weight;
+                r.contact = weight * r.load.max(0.0);
+            } else {
+                r.contact = weight * (r.load - o.load).max(0.0);
+            }
+        }
+        let rubbing = line.friction * r.contact * (u / FRICTION_SPEED).tanh();
+        let shear = match self.conv.drag {
+            Drag::Liner => o.liner_shear,
+            Drag::FaceShear => o.ring_shear,
+        };
+        r.friction = perimeter * (viscous * shear + rubbing);
+        r.power = match self.conv.drag {
+            Drag::Liner => r.friction * u,
+            Drag::FaceShear => (r.friction * u).abs(),
+        };
+        let force = match self.conv.film_force {
+            FilmForce::Total => o.ring_shear + o.slope_force,
+            FilmForce::LinerReaction => o.liner_shear,
+            FilmForce::FaceShear => o.ring_shear,
+        };
+        r.axial.film = perimeter * (viscous * force + rubbing);
+        Ok(())
+    }
+
+    /// Axial forces on ring `i`, film excepted.
+    pub fn axial_forces(&mut self, i: usize) {
+        let (g, place, ring) = (&self.geo.rings[i], &self.at.places[i], &self.rings[i]);
+        let r = &mut self.at.rings[i];
+        r.axial.gas = match self.conv.axial_gas {
+            AxialGas::FullPerimeter => 2.0 * PI * self.geo.bore_radius * g.width * (r.p_below - r.p_above),
+            AxialGas::LinearProfile => 0.5 * place.flank_area() * (r.p_below - r.p_above),
+            AxialGas::LaminarProfile => {
+                let mean = |a: f64, b: f64| 2.0 / 3.0 * (a * a + a * b + b * b) / (a + b);
+                place.flank_area() * (mean(r.p_back, r.p_below) - mean(r.p_back, r.p_above))
+            }
+        };
+        r.axial.inertia = -g.mass * self.at.piston.a;
+        r.axial.gravity = if ring.motion.uses_gravity() { -GRAVITY * g.mass } else { 0.0 };
+        if ring.kind == Motion::Dynamic {
+            r.axial.damping = ring.damping.force(place.s, place.v, place.clearance, place.flank_area());
+            r.reaction = ring.motion.flank_reaction(place.s, place.v, place.clearance);
+        }
+        if !ring.motion.uses_film_force() {
+            r.axial.film = 0.0;
+        }
+    }
+
+    /// Evaluates the whole scene at crank angle `theta` for state `y`: `self.at` holds the result.
+    pub fn evaluate(&mut self, theta: f64, y: &[f64]) -> Result<(), EvalError> {
+        self.counters.instants += 1;
+        if let Some(k) = y.iter().position(|v| !v.is_finite()) {
+            return Err(EvalError::recoverable("ring_pack", format!("state {k} is not a number")));
+        }
+        self.set_places(theta, y);
+        for k in 0..self.layout.gas {
+            self.masses[k] = y[k] * self.mass_scale[k];
+        }
+        self.gas(None)?;
+        for i in 0..self.n_rings() {
+            if self.plan.film {
+                self.radial_balance(i)?;
+                self.friction(i)?;
+            }
+            if self.plan.axial {
+                self.axial_forces(i);
+            }
+        }
+        Ok(())
+    }
+
+    /// Rates of the state by crank angle, and of the quadratures (flow into each ring, flow out of the last, friction work
+    /// of each ring) when `f` is longer than the state.
+    pub fn rates(&mut self, theta: f64, y: &[f64], f: &mut [f64]) -> Result<(), EvalError> {
+        self.evaluate(theta, y)?;
+        let per = 1.0 / self.omega;
+        for k in 0..self.layout.gas {
+            f[k] = self.at.dm[k] / self.mass_scale[k] * per;
+        }
+        for i in 0..self.n_rings() {
+            if let Some(k) = self.layout.film[i] {
+                f[k] = self.at.rings[i].hdot / self.at.places[i].h * per;
+            }
+            if let Some(k) = self.layout.axial[i] {
+                let r = &self.at.rings[i];
+                let c0 = self.rings[i].clearance0;
+                f[k] = y[k + 1];
+                f[k + 1] =
+                    (r.axial.sum() + r.reaction) / self.geo.rings[i].mass / (c0 * self.omega * self.omega);
+            }
+        }
+        let q = &mut f[self.layout.n..];
+        if !q.is_empty() {
+            let n = self.rings.len();
+            for i in 0..n {
+                q[i] = self.at.gas.flow_in[i] * per;
+                q[n + 1 + i] = self.at.rings[i].power * per;
+            }
+            q[n] = self.at.gas.flow_out[n - 1] * per;
+        }
+        Ok(())
+    }
+
+    /// Decides the seats of the rings whose motion is decided in steps, from the forces of the last instant. Returns
+    /// whether any changed.
+    pub fn decide_seats(&mut self) -> bool {
+        let mut changed = false;
+        for i in 0..self.n_rings() {
+            if matches!(self.rings[i].kind, Motion::Discrete { .. }) {
+                self.axial_forces(i);
+                let e = self.rings[i].motion.seat(&self.at.rings[i].axial);
+                changed |= e != self.seats[i];
+                self.seats[i] = e;
+            }
+        }
+        changed
+    }
+
+    /// A state with all lands at `pressure` \[Pa\], films of 3 µm (or on their floor when that is thicker), rings at rest on
+    /// the lower flank.
+    pub fn initial(&mut self, pressure: f64, y: &mut [f64]) {
+        self.seats.fill(0.0);
+        for (i, k) in self.layout.film.iter().enumerate() {
+            if let Some(k) = k {
+                y[*k] = 3e-6f64.max(self.rings[i].contact.floor.unwrap_or(0.0) * 1.5).ln();
+            }
+        }
+        for k in self.layout.axial.iter().flatten() {
+            y[*k] = 0.0;
+            y[*k + 1] = 0.0;
+        }
+        self.set_places(0.0, y);
+        let n = self.n_rings();
+        let p = vec![pressure; n + 1];
+        let inp = GasIn {
+            p_cylinder: self.cylinder.pressure(0.0),
+            p_crankcase: self.p_crankcase,
+            rings: &self.at.places,
+        };
+        self.gas.initial(&inp, &p, &mut self.masses);
+        for k in 0..self.layout.gas {
+            y[k] = self.masses[k] / self.mass_scale[k];
+        }
+        for r in &mut self.at.rings {
+            r.hdot = 0.0;
+            r.axial = AxialForces::default();
+        }
+    }
+}
+
+/// What solvers need that keep their own state and march through the parts one by one.
+impl Pack {
+    /// Sets place and viscosity of one ring for the piston position of `self.at`.
+    pub fn refresh_ring(&mut self, i: usize, h: f64, s: Option<(f64, f64)>) {
+        self.set_place(i, h, s);
+        if self.plan.film {
+            self.at.rings[i].mu = self.viscosity(i, self.at.piston.y);
+        }
+    }
+
+    /// Fills the gas volumes for lands at `pressure` \[Pa\] with the places of `self.at`.
+    pub fn fill_masses(&mut self, pressure: f64, p_cylinder: f64) {
+        let p = vec![pressure; self.n_rings() + 1];
+        let inp = GasIn { p_cylinder, p_crankcase: self.p_crankcase, rings: &self.at.places };
+        self.gas.initial(&inp, &p, &mut self.masses);
+    }
+
+    /// Pressures for the masses as they are, shared with the rings.
+    pub fn gas_pressures(&mut self, p_cylinder: f64) -> Result<(), EvalError> {
+        let inp = GasIn { p_cylinder, p_crankcase: self.p_crankcase, rings: &self.at.places };
+        self.gas.pressures(&inp, &self.masses, &mut self.at.gas)?;
+        self.share_pressures();
+        Ok(())
+    }
+
+    /// Radial force of the flank friction per circumference \[N/m\] of one rail.
+    pub fn radial_friction(&self, i: usize, hdot: f64) -> f64 {
+        let f = &self.rings[i].friction;
+        if f.is_off() {
+            return 0.0;
+        }
+        f.force(hdot, self.flank_load(i)) / (self.perimeter(i) * self.geo.rings[i].rails as f64)
+    }
+}

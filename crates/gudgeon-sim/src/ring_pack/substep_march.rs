@@ -1,0 +1,223 @@
+//! The scheme of zottin1992: mechanics in sub-steps of a crank degree, gas explicit inside them.
+//!
+//! Per sub-step: kinematics, cylinder pressure (linear between whole degrees), areas and volumes from the positions so
+//! far; `gas_steps` explicit Euler steps of the gas masses; then ring by ring the film thickness by bisection on the
+//! radial balance with `dh/dt = (h - h_old)/Δt`, and the axial position with the groove damping taken implicitly and
+//! the rings clamped, inelastically, at the flanks. `passes` one-degree passes make a cycle: the listing runs 721.
+//!
+//! The sub-models are those of the case: with the published ones this is the published program, and with finer steps
+//! it tends to the solution of the same equations as the implicit solver.
+
+use gudgeon_core::EvalError;
+use gudgeon_core::kinds::Motion;
+
+use super::pack::Pack;
+use super::record::{Record, Totals};
+
+/// Settings; see [`crate::case::Solver`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Settings {
+    /// Cycles.
+    pub cycles: u32,
+    /// Sub-steps of mechanics per degree.
+    pub steps: u32,
+    /// Gas steps per sub-step.
+    pub gas_steps: u32,
+    /// Passes of one degree per cycle.
+    pub passes: u32,
+}
+
+/// Interval at which the bisection stops \[m\], and its least number of halvings.
+const BISECTION: (f64, u32) = (1e-14, 10);
+
+struct RingState {
+    h: f64,
+    s: f64,
+    v: f64,
+    a: f64,
+}
+
+/// Runs the scheme; calls `progress` with the fraction done.
+///
+/// # Errors
+/// What a sub-model refuses.
+pub fn run(
+    pack: &mut Pack,
+    set: Settings,
+    start: f64,
+    record: &mut Record,
+    progress: &mut dyn FnMut(f64),
+) -> Result<(Totals, u64), EvalError> {
+    let n = pack.n_rings();
+    let mut y = vec![0.0; pack.layout.n];
+    pack.initial(start, &mut y);
+    // The listing starts every film at 1 µm and every ring at rest on its lower flank.
+    let mut rings: Vec<RingState> = (0..n)
+        .map(|i| RingState {
+            h: if pack.plan.film { 1e-6 } else { pack.rings[i].nominal_film },
+            s: 0.0,
+            v: 0.0,
+            a: 0.0,
+        })
+        .collect();
+    let degree = 1f64.to_radians();
+    let dt = degree / pack.omega / f64::from(set.steps);
+    let dt_gas = dt / f64::from(set.gas_steps);
+    // Whole-degree values, wrapped: the listing reads one beyond its table.
+    let p_table: Vec<f64> = (0..=set.passes).map(|k| pack.cylinder.pressure(f64::from(k) * degree)).collect();
+    let mut totals = Totals::default();
+    let mut steps = 0;
+    let mut started = false;
+    for cycle in 1..=set.cycles {
+        totals = Totals { flow_in: vec![0.0; n], friction_work: vec![0.0; n], ..Totals::default() };
+        let before: f64 = if started { pack.masses.iter().sum() } else { 0.0 };
+        let last = cycle == set.cycles;
+        for pass in 0..set.passes {
+            for sub in 1..=set.steps {
+                let f = f64::from(sub) / f64::from(set.steps);
+                let theta = (f64::from(pass) + f) * degree;
+                pack.at.theta = theta;
+                pack.at.piston = pack.kinematics.motion(theta);
+                let k = pass as usize;
+                let p_cyl = p_table[k] + (p_table[k + 1] - p_table[k]) * f;
+                pack.counters.instants += 1;
+                for (i, r) in rings.iter().enumerate() {
+                    pack.refresh_ring(i, r.h, moving(pack, i).then_some((r.s, r.v)));
+                }
+                if !started {
+                    started = true;
+                    pack.fill_masses(start, p_cyl);
+                }
+                for _ in 0..set.gas_steps {
+                    pack.gas(Some(p_cyl))?;
+                    for (m, dm) in pack.masses.iter_mut().zip(&pack.at.dm) {
+                        *m += dm * dt_gas;
+                    }
+                    for (sum, w) in totals.flow_in.iter_mut().zip(&pack.at.gas.flow_in) {
+                        *sum += w * dt_gas;
+                    }
+                    totals.blow_by += pack.at.gas.flow_out[n - 1] * dt_gas;
+                }
+                pack.gas_pressures(p_cyl)?;
+                if pack.plan.film {
+                    for (i, r) in rings.iter_mut().enumerate() {
+                        let old = r.h;
+                        r.h = bisect(pack, i, old, dt, (r.s, r.v))?;
+                        pack.set_place(i, r.h, moving(pack, i).then_some((r.s, r.v)));
+                        pack.at.rings[i].hdot = (r.h - old) / dt;
+                        pack.at.rings[i].load = pack.radial_load(i);
+                        pack.friction(i)?;
+                        totals.friction_work[i] += pack.at.rings[i].power * dt;
+                    }
+                }
+                for (i, r) in rings.iter_mut().enumerate() {
+                    if moving(pack, i) {
+                        axial(pack, i, r, dt);
+                    }
+                }
+                steps += 1;
+            }
+            let whole = f64::from(pass + 1) * degree;
+            if last && pass < 720 {
+                if pass == 0 {
+                    // Row 0 repeats the state before the first pass as nearly as the scheme knows it.
+                    record.push(0.0, pack);
+                }
+                record.push(whole, pack);
+            }
+            progress(
+                (f64::from(cycle - 1) + f64::from(pass) / f64::from(set.passes)) / f64::from(set.cycles),
+            );
+        }
+        let after: f64 = pack.masses.iter().sum();
+        let through = totals.flow_in[0].abs().max(totals.blow_by.abs()).max(f64::MIN_POSITIVE);
+        totals.balance.gas_mass =
+            (cycle > 1).then(|| ((totals.flow_in[0] - totals.blow_by) - (after - before)).abs() / through);
+        // Change of the stored gas over the cycle: how far the state is from repeating.
+        totals.periodicity_error = ((after - before) / through).abs();
+    }
+    Ok((totals, steps))
+}
+
+fn moving(pack: &Pack, i: usize) -> bool {
+    pack.rings[i].kind == Motion::Dynamic
+}
+
+fn bisect(pack: &mut Pack, i: usize, old: f64, dt: f64, s: (f64, f64)) -> Result<f64, EvalError> {
+    let moving = moving(pack, i);
+    let floor = pack.rings[i].contact.floor.unwrap_or(1e-9);
+    let mut high = pack.geo.rings[i].h_max(pack.at.places[i].liner_radius);
+    let mut low = floor;
+    let mut h = old.clamp(low, high);
+    for k in 1..=500 {
+        let hdot = (h - old) / dt;
+        pack.set_place(i, h, moving.then_some(s));
+        let load = pack.radial_load(i) + pack.radial_friction(i, hdot) - pack.rings[i].contact.load(h);
+        let film = pack.film(i, hdot)?;
+        if load >= film.load {
+            high = h
+        } else {
+            low = h
+        }
+        h = 0.5 * (low + high);
+        if high - low <= BISECTION.0 && k > BISECTION.1 {
+            // No balance above the floor: the ring rests on it.
+            return Ok(if low == floor { floor } else { h });
+        }
+    }
+    Err(EvalError::fatal("as_published", format!("bisection of the film of ring {} did not end", i + 1)))
+}
+
+/// One step of `m a = F`, damping at the new velocity and position: `v' = v + a Δt`, `s' = s + v Δt + a Δt²/2`.
+fn axial(pack: &mut Pack, i: usize, r: &mut RingState, dt: f64) {
+    pack.axial_forces(i);
+    let mass = pack.geo.rings[i].mass;
+    let place = pack.at.places[i];
+    let f = &pack.at.rings[i].axial;
+    let rest = f.sum() - f.damping;
+    let (v0, s0, area, c) = (r.v, r.s, place.flank_area(), place.clearance);
+    let trial = |a: f64| (s0 + v0 * dt + 0.5 * a * dt * dt, v0 + a * dt);
+    let residual = |a: f64| {
+        let (s, v) = trial(a);
+        mass * a - rest - pack.rings[i].damping.force(s.clamp(0.0, c), v, c, area)
+    };
+    // Damping opposes the motion, so the root lies between free flight and standing still.
+    let (mut lo, mut hi) = (rest / mass, -v0 / dt);
+    if lo > hi {
+        std::mem::swap(&mut lo, &mut hi);
+    }
+    let mut a = r.a.clamp(lo, hi);
+    for _ in 0..200 {
+        let f = residual(a);
+        if f.abs() <= 1e-12 * (rest.abs() + (mass * a).abs()) {
+            break;
+        }
+        if f > 0.0 {
+            hi = a
+        } else {
+            lo = a
+        }
+        let step = 1e-7 * (hi - lo).abs().max(1e-9 * a.abs());
+        let slope = (residual(a + step) - f) / step;
+        let newton = a - f / slope;
+        let next = if newton > lo && newton < hi { newton } else { 0.5 * (lo + hi) };
+        if next == a || hi - lo <= 1e-15 * hi.abs().max(lo.abs()) {
+            break;
+        }
+        a = next;
+    }
+    let (s, v) = trial(a);
+    r.a = a;
+    (r.s, r.v) = if s <= 0.0 {
+        (0.0, 0.0)
+    } else if s >= c {
+        (c, 0.0)
+    } else {
+        (s, v)
+    };
+    pack.set_place(i, r.h, Some((r.s, r.v)));
+    let damping = pack.rings[i].damping.force(r.s, r.v, c, area);
+    let ring = &mut pack.at.rings[i];
+    ring.axial.damping = damping;
+    ring.reaction = 0.0;
+}

@@ -1,0 +1,283 @@
+//! From a file to results: the functions behind `check`, `explain` and `run`.
+
+use std::path::Path;
+use std::time::Instant;
+
+use gudgeon_core::result::{ModelUse, RunResult, Skipped};
+use gudgeon_core::{EvalError, Registry};
+use gudgeon_numerics::ode::IntegrateError;
+use serde::Serialize;
+
+use crate::case::RingPackCase;
+use crate::load::{Loaded, Report, load};
+use crate::ring_pack::{self, assemble};
+
+/// A case that was read, resolved and found to be possible.
+pub struct Checked {
+    /// Name of the case: the file name without its extension.
+    pub name: String,
+    /// What a person should know although nothing is wrong (keys dropped by a model swap).
+    pub notes: Vec<String>,
+    /// The case with its places in the file.
+    pub loaded: Loaded<RingPackCase>,
+}
+
+/// How far a run is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Progress {
+    /// What is going on.
+    pub phase: String,
+    /// Fraction done, 0 to 1.
+    pub fraction: f64,
+}
+
+/// A case that is well-formed but whose run failed.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RunError {
+    /// A sub-model refused.
+    #[error("at {theta_deg:.3} deg crank angle: {source}")]
+    Eval {
+        /// Where \[deg\].
+        theta_deg: f64,
+        /// What it said.
+        source: EvalError,
+    },
+    /// The integrator gave up.
+    #[error("the integration stopped: {0}")]
+    Integrate(#[from] IntegrateError),
+    /// The cycle does not close.
+    #[error("no periodic cycle after {cycles} cycles: estimated error {error:.2e}, wanted {wanted:.0e}. {advice}")]
+    NotPeriodic {
+        /// Cycles run.
+        cycles: u32,
+        /// Estimated relative error.
+        error: f64,
+        /// Wanted relative error.
+        wanted: f64,
+        /// What may help.
+        advice: String,
+    },
+    /// A result is not a number: a defect of a model, caught before anything is written.
+    #[error("the result `{0}` is not a number; nothing was written")]
+    NotANumber(String),
+    /// The sub-models could not be built a second time.
+    #[error("{0}")]
+    Refused(String),
+}
+
+/// Reads, resolves and validates a case.
+///
+/// # Errors
+/// Everything that is wrong with it, with places.
+pub fn check(path: &Path, overrides: &[String]) -> Result<Checked, Report> {
+    checked(path, load(path, overrides)?)
+}
+
+fn checked(path: &Path, loaded: Loaded<RingPackCase>) -> Result<Checked, Report> {
+    let mut errors = match assemble::assemble(&loaded.value, &loaded.source.folder) {
+        Ok(_) => Vec::new(),
+        Err(e) => e,
+    };
+    errors.extend(ring_pack::legal(&loaded.value));
+    if !errors.is_empty() {
+        return Err(loaded.refuse(&errors));
+    }
+    let name = path.file_stem().map_or_else(|| "case".to_owned(), |s| s.to_string_lossy().into_owned());
+    Ok(Checked { name, notes: loaded.notes.clone(), loaded })
+}
+
+impl Checked {
+    /// The same file with more `--set` arguments.
+    ///
+    /// # Errors
+    /// As [`check`].
+    pub fn with(&self, more: &[String]) -> Result<Self, Report> {
+        checked(Path::new(&format!("{}.toml", self.name)), self.loaded.reload(more)?)
+    }
+
+    /// The case.
+    #[must_use]
+    pub fn case(&self) -> &RingPackCase {
+        &self.loaded.value
+    }
+}
+
+/// One model in an [`Explanation`].
+#[derive(Debug, Clone, Serialize)]
+pub struct ExplainedModel {
+    /// Kind and name.
+    #[serde(rename = "model")]
+    pub used: ModelUse,
+    /// One line.
+    pub summary: String,
+    /// Governing equations.
+    pub equations: String,
+    /// Where it holds.
+    pub validity: String,
+}
+
+/// The resolved case: every model, default and unit; what runs and what is skipped.
+#[derive(Debug, Clone, Serialize)]
+pub struct Explanation {
+    /// Name of the case.
+    pub case: String,
+    /// Title.
+    pub title: String,
+    /// Every value, defaults filled in, SI units.
+    pub resolved: serde_json::Value,
+    /// Models that run.
+    pub models: Vec<ExplainedModel>,
+    /// What runs, and why.
+    pub runs: Vec<Skipped>,
+    /// What is left out, and why.
+    pub skipped: Vec<Skipped>,
+    /// Wanted results.
+    pub results: Vec<String>,
+    /// Names of the states that are integrated.
+    pub states: Vec<String>,
+    /// Notes.
+    pub notes: Vec<String>,
+}
+
+/// Explains a case without running it.
+///
+/// # Errors
+/// When the sub-models cannot be built (which [`check`] would have said).
+pub fn explain(c: &Checked) -> Result<Explanation, RunError> {
+    let pack = build(c)?;
+    let (used, skipped) = assemble::models_in_use(c.case(), &pack.plan);
+    let registry = Registry::collect();
+    let models = used
+        .into_iter()
+        .map(|used| {
+            let info = registry.model(&used.kind, &used.model);
+            let text = |f: fn(&gudgeon_core::ModelInfo) -> &'static str| info.map_or("", f).to_owned();
+            ExplainedModel {
+                summary: text(|i| i.summary),
+                equations: text(|i| i.equations),
+                validity: text(|i| i.validity),
+                used,
+            }
+        })
+        .collect();
+    Ok(Explanation {
+        case: c.name.clone(),
+        title: c.case().title.clone(),
+        resolved: c.loaded.resolved().map_err(|e| RunError::Refused(e.to_string()))?,
+        models,
+        runs: pack.plan.runs.clone(),
+        skipped,
+        results: pack.plan.wanted.clone(),
+        states: ring_pack::state_names(&pack),
+        notes: c.notes.clone(),
+    })
+}
+
+impl Explanation {
+    /// As text for a person.
+    #[must_use]
+    pub fn to_text(&self) -> String {
+        use std::fmt::Write as _;
+        let mut s = String::new();
+        // Writing to a String cannot fail.
+        let _ = writeln!(s, "{}: {}\n", self.case, self.title);
+        let _ = writeln!(s, "Models");
+        for m in &self.models {
+            let _ = writeln!(s, "  {:<18} {}", m.used.kind, m.used.model);
+            let _ = writeln!(s, "  {:<18}   {}", "", m.summary);
+            for line in m.equations.split(";  ") {
+                let _ = writeln!(s, "  {:<18}     {}", "", line.trim());
+            }
+            if !m.used.references.is_empty() {
+                let _ = writeln!(s, "  {:<18}   [{}]", "", m.used.references.join(", "));
+            }
+        }
+        let _ = writeln!(s, "\nRuns");
+        for r in &self.runs {
+            let _ = writeln!(s, "  {}: {}", r.what, r.why);
+        }
+        let _ = writeln!(s, "\nSkipped");
+        if self.skipped.is_empty() {
+            let _ = writeln!(s, "  nothing");
+        }
+        for r in &self.skipped {
+            let _ = writeln!(s, "  {}: {}", r.what, r.why);
+        }
+        let _ = writeln!(s, "\nStates integrated ({}): {}", self.states.len(), self.states.join(", "));
+        let _ = writeln!(s, "Results: {}", self.results.join(", "));
+        for n in &self.notes {
+            let _ = writeln!(s, "Note: {n}");
+        }
+        let _ = writeln!(s, "\nResolved case (SI units, defaults filled in)");
+        print_value(&mut s, "", &self.resolved);
+        s
+    }
+}
+
+/// Flat `path = value` lines.
+fn print_value(s: &mut String, path: &str, v: &serde_json::Value) {
+    use std::fmt::Write as _;
+    let join = |k: &str| if path.is_empty() { k.to_owned() } else { format!("{path}.{k}") };
+    match v {
+        serde_json::Value::Object(o) if !o.is_empty() => {
+            for (k, v) in o {
+                print_value(s, &join(k), v);
+            }
+        }
+        serde_json::Value::Array(a) if a.iter().any(|v| v.is_object()) => {
+            for (k, v) in a.iter().enumerate() {
+                print_value(s, &join(&k.to_string()), v);
+            }
+        }
+        v => {
+            let _ = writeln!(s, "  {path} = {v}");
+        }
+    }
+}
+
+fn build(c: &Checked) -> Result<ring_pack::pack::Pack, RunError> {
+    assemble::assemble(c.case(), &c.loaded.source.folder)
+        .map_err(|e| RunError::Refused(e.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")))
+}
+
+/// Runs a case.
+///
+/// # Errors
+/// What stopped it; nothing has been written.
+pub fn run(c: &Checked, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
+    let begin = Instant::now();
+    let mut pack = build(c)?;
+    let built = begin.elapsed().as_secs_f64();
+    let case = c.case();
+    let solved = ring_pack::solve(case, &mut pack, progress)?;
+    let meter = ring_pack::meter(case);
+    let mut result = RunResult {
+        case: c.name.clone(),
+        title: case.title.clone(),
+        source: case.source.clone(),
+        assumptions: case.assumptions.clone(),
+        scene: "ring_pack".into(),
+        gudgeon: env!("CARGO_PKG_VERSION").into(),
+        ..RunResult::default()
+    };
+    (result.models, result.skipped) = assemble::models_in_use(case, &pack.plan);
+    result.results = solved.record.results(&pack, &solved.totals, meter);
+    result.balance = solved.totals.balance.clone();
+    result.events = solved.record.events(&pack);
+    result.branches = solved.branches;
+    result.solver = solved.report;
+    result.solver.notes.extend(c.notes.iter().cloned());
+    result.series = solved.record.series(&pack, &solved.totals);
+    result.section = Some(ring_pack::geometry::section(case, &pack.geo));
+    if let Some((name, _)) = result.results.iter().find(|(_, v)| !v.value.is_finite()) {
+        return Err(RunError::NotANumber(name.clone()));
+    }
+    if let Some(column) = result.series.columns.iter().find(|c| c.values.iter().any(|v| !v.is_finite())) {
+        return Err(RunError::NotANumber(column.name.clone()));
+    }
+    result.seconds.insert("build".into(), built);
+    result.seconds.insert("solve".into(), solved.seconds);
+    result.seconds.insert("total".into(), begin.elapsed().as_secs_f64());
+    Ok(result)
+}
