@@ -111,21 +111,48 @@ pub(crate) fn check_face(face: &FaceProfile) -> Result<(), BuildError> {
     if finite { Ok(()) } else { Err(BuildError::new("the drops of a running face must be finite")) }
 }
 
+/// The face is cut into so many stretches that are worked on side by side: sums of one stretch do not wait for those of
+/// another, and the stretches fill vector registers.
+const LANES: usize = 4;
+
+/// One number for each stretch.
+type Lanes = [f64; LANES];
+
+/// What the solution needs to know of the nodes `row`, `rows + row`, `2 rows + row`, …: one node of each stretch. Nodes beyond
+/// the last repeat it with weight 0.
+#[derive(Debug, Clone, Copy)]
+struct Nodes {
+    drop: Lanes,
+    /// Trapezoid weight in panels: 1, at the edges ½.
+    weight: Lanes,
+    /// `x/dx`.
+    number: Lanes,
+    /// `(drop[j+1] - drop[j-1])/2`, at the edges half the difference to the neighbour: `∫ p h' dx = Σ p_j half_rise_j`.
+    half_rise: Lanes,
+}
+
+/// The solution at the same nodes, zero beyond the last.
+#[derive(Debug, Clone, Copy, Default)]
+struct Work {
+    /// `1/h`.
+    r: Lanes,
+    /// Pressure above `p_cav` before the clip.
+    p: Lanes,
+    /// `∂p/∂ḣ`.
+    q: Lanes,
+}
+
 /// The nodes of one face, with work space.
 struct Grid {
     length: f64,
     dx: f64,
     min_drop: f64,
-    /// Drop at each node.
-    drop: Vec<f64>,
-    /// `(drop[j+1] - drop[j-1])/2`, at the ends half the difference to the neighbour: `∫ p h' dx = Σ p_j half_rise_j`.
-    half_rise: Vec<f64>,
-    /// `1/h`, then `1/h³`, at each node.
-    r: Vec<f64>,
-    /// Pressure above `p_cav` before the clip.
-    p: Vec<f64>,
-    /// `∂p/∂ḣ`.
-    q: Vec<f64>,
+    /// Number of nodes, at least 2.
+    n: usize,
+    /// Drop at both edges.
+    edges: (f64, f64),
+    nodes: Vec<Nodes>,
+    work: Vec<Work>,
 }
 
 impl Grid {
@@ -135,53 +162,124 @@ impl Grid {
         let shape: Vec<f64> = (0..=base)
             .map(|i| match face {
                 FaceProfile::Parabola { .. } => face.drop_at(length * (i as f64 / base as f64)),
-                FaceProfile::Table { drops, .. } => {
-                    // Panels of the table divide evenly into those of the grid: its own nodes stay exact.
-                    let parts = base / (drops.len() - 1);
-                    between(drops, i, parts)
+                // Panels of the table divide evenly into those of the grid: its own nodes stay exact.
+                FaceProfile::Table { drops, .. } => between(drops, i, base / (drops.len() - 1)),
+            })
+            .collect();
+        let last = base * refine;
+        let drop: Vec<f64> = (0..=last).map(|i| between(&shape, i, refine)).collect();
+        let rows = drop.len().div_ceil(LANES);
+        let nodes: Vec<Nodes> = (0..rows)
+            .map(|row| {
+                let each = |f: &dyn Fn(usize) -> f64| std::array::from_fn(|lane| f(lane * rows + row));
+                Nodes {
+                    drop: each(&|j| drop[j.min(last)]),
+                    weight: each(&|j| if j > last { 0.0 } else if j == 0 || j == last { 0.5 } else { 1.0 }),
+                    number: each(&|j| j as f64),
+                    half_rise: each(&|j| {
+                        if j > last { 0.0 } else { 0.5 * (drop[(j + 1).min(last)] - drop[j.saturating_sub(1)]) }
+                    }),
                 }
             })
             .collect();
-        let n = base * refine + 1;
-        let drop: Vec<f64> = (0..n).map(|i| between(&shape, i, refine)).collect();
-        let half_rise = (0..n)
-            .map(|j| 0.5 * (drop[(j + 1).min(n - 1)] - drop[j.saturating_sub(1)]))
-            .collect();
         Self {
             length,
-            dx: length / (n - 1) as f64,
+            dx: length / last as f64,
             min_drop: drop.iter().copied().fold(f64::INFINITY, f64::min),
-            drop,
-            half_rise,
-            r: vec![0.0; n],
-            p: vec![0.0; n],
-            q: vec![0.0; n],
+            n: last + 1,
+            edges: (drop[0], drop[last]),
+            work: vec![Work::default(); rows],
+            nodes,
         }
     }
 
     fn check(&self, inp: &FaceIn, hdot: f64) -> Result<(), EvalError> {
         // One test for all: a sum with a term that is not finite is not finite.
         if !(inp.h + inp.u + inp.p_bottom + inp.p_top + inp.p_cav + inp.mu + hdot).is_finite() {
-            return Err(EvalError::fatal(MODEL, format!("not a number among {inp:?}, hdot = {hdot}")));
+            return Err(not_a_number(inp, hdot));
         }
         if inp.mu <= 0.0 {
-            return Err(EvalError::fatal(MODEL, format!("the viscosity is {} Pa s", inp.mu)));
+            return Err(no_viscosity(inp));
         }
         if inp.h + self.min_drop <= 0.0 {
-            let h = inp.h + self.min_drop;
-            return Err(EvalError::recoverable(MODEL, format!("the thinnest film is {h:e} m: the surfaces touch")));
+            return Err(touching(inp.h + self.min_drop));
         }
         Ok(())
     }
 
-    /// Fills `p` and `q`; returns the trapezoid of `1/h`.
-    fn solve(&mut self, inp: &FaceIn, hdot: f64) -> Result<f64, EvalError> {
+    /// Fills the work space.
+    fn solve(&mut self, inp: &FaceIn, hdot: f64) -> Result<(), EvalError> {
         self.check(inp, hdot)?;
-        match solve(inp, hdot, self.dx, &self.drop, &mut self.r, &mut self.p, &mut self.q) {
-            Some(shear) => Ok(shear),
-            None => Err(overflow(inp, hdot)),
+        solve(inp, hdot, self.dx, self.n, &self.nodes, &mut self.work).map(drop).ok_or_else(|| overflow(inp, hdot))
+    }
+
+    /// Drop and pressure above `p_cav`, clipped, at node `j`.
+    fn node(&self, j: usize) -> (f64, f64) {
+        let (lane, row) = (j / self.nodes.len(), j % self.nodes.len());
+        (self.nodes[row].drop[lane], clip(self.work[row].p[lane]))
+    }
+
+    /// Load and friction of a solved film, from the sum of `weight/h`.
+    #[inline(always)]
+    fn result(&self, inp: &FaceIn, sum_r: f64, nodes: &[Nodes], work: &[Work]) -> FaceOut {
+        let (mut load, mut rate, mut slope, mut top) = ([0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        for (a, w) in nodes.iter().zip(work) {
+            for k in 0..LANES {
+                let p = clip(w.p[k]);
+                let q = if w.p[k] > 0.0 { w.q[k] } else { 0.0 };
+                load[k] += a.weight[k] * p;
+                rate[k] += a.weight[k] * q;
+                slope[k] += a.half_rise[k] * p;
+                top[k] = p.max(top[k]);
+            }
+        }
+        let slope_force = -sum(slope);
+        // Central differences with trapezoid weights satisfy summation by parts: ∫ h p' dx = [p h] - ∫ p h' dx holds for the
+        // sums too, which saves differentiating the pressure.
+        let (bottom, up) = (clip(inp.p_bottom - inp.p_cav), clip(inp.p_top - inp.p_cav));
+        let half_drag = 0.5 * (up * (inp.h + self.edges.1) - bottom * (inp.h + self.edges.0) + slope_force);
+        let shear = inp.mu * inp.u * self.dx * sum_r;
+        FaceOut {
+            load: self.dx * sum(load),
+            // Rounding must not turn a film that cannot yield into one that pushes.
+            load_rate: (self.dx * sum(rate)).min(0.0),
+            ring_shear: shear - half_drag,
+            liner_shear: shear + half_drag,
+            slope_force,
+            p_max: inp.p_cav + top[0].max(top[1]).max(top[2].max(top[3])),
+            full_film: self.full_film(work),
         }
     }
+
+    /// Where the pressure before the clip passes through `p_cav`, outermost on both sides; an empty film lies at 0.
+    #[inline(always)]
+    fn full_film(&self, work: &[Work]) -> (f64, f64) {
+        let rows = work.len();
+        let p = |j: usize| work[j % rows].p[j / rows];
+        let last = self.n - 1;
+        let low = (0..LANES).find_map(|k| work.iter().position(|w| w.p[k] > 0.0).map(|row| k * rows + row));
+        let Some(low) = low else { return (0.0, 0.0) };
+        let high = (0..LANES).rev().find_map(|k| work.iter().rposition(|w| w.p[k] > 0.0).map(|row| k * rows + row));
+        let high = high.unwrap_or(low);
+        let from = if low == 0 { 0.0 } else { (low as f64 - p(low) / (p(low) - p(low - 1))) * self.dx };
+        let to = if high == last { self.length } else { (high as f64 + p(high) / (p(high) - p(high + 1))) * self.dx };
+        (from, to)
+    }
+}
+
+#[cold]
+fn not_a_number(inp: &FaceIn, hdot: f64) -> EvalError {
+    EvalError::fatal(MODEL, format!("not a number among {inp:?}, hdot = {hdot}"))
+}
+
+#[cold]
+fn no_viscosity(inp: &FaceIn) -> EvalError {
+    EvalError::fatal(MODEL, format!("the viscosity is {} Pa s", inp.mu))
+}
+
+#[cold]
+fn touching(h: f64) -> EvalError {
+    EvalError::recoverable(MODEL, format!("the thinnest film is {h:e} m: the surfaces touch"))
 }
 
 #[cold]
@@ -195,136 +293,112 @@ fn between(list: &[f64], i: usize, parts: usize) -> f64 {
     if rest == 0 { list[k] } else { list[k] + (list[k + 1] - list[k]) * (rest as f64 / parts as f64) }
 }
 
-/// Sum with half weight at both ends, in four lanes: a single running sum would wait for each addition in turn.
 #[inline(always)]
-fn trapezoid(n: usize, f: impl Fn(usize) -> f64) -> f64 {
-    let mut lane = [0.5 * f(0), 0.5 * f(n - 1), 0.0, 0.0];
-    let mut j = 1;
-    while j + 4 < n {
-        for (k, l) in lane.iter_mut().enumerate() {
-            *l += f(j + k);
-        }
-        j += 4;
-    }
-    while j < n - 1 {
-        lane[0] += f(j);
-        j += 1;
-    }
-    (lane[0] + lane[1]) + (lane[2] + lane[3])
+fn clip(v: f64) -> f64 {
+    v.max(0.0)
 }
 
-/// Pressures above `p_cav` before the clip (`p`) and their derivatives with respect to `hdot` (`q`) at the nodes. Returns
-/// the trapezoid of `1/h`, or nothing when a number overflowed. All slices have the same length, at least 2.
+#[inline(always)]
+fn sum(lanes: Lanes) -> f64 {
+    (lanes[0] + lanes[1]) + (lanes[2] + lanes[3])
+}
+
+/// What stands before each stretch when `start` stands before the first and each adds its own.
+#[inline(always)]
+fn before(start: f64, [a, b, c, _]: Lanes) -> Lanes {
+    [start, start + a, start + (a + b), start + ((a + b) + c)]
+}
+
+/// Pressures above `p_cav` before the clip and their derivatives with respect to `hdot` at the `n` nodes. Returns the sum of
+/// `weight/h`, or nothing when a number overflowed.
 ///
 /// The pressure gradient `6 μ u (1/h² - m/h³) + 12 μ ḣ (x - x̄)/h³ + Δp/(Ī3 h³)` with `m = Ī1/Ī3` and `x̄ = Ī2/Ī3` is
 /// summed up once, which is the published formula with its terms collected before the sum instead of after it.
 #[inline(always)]
-fn solve(
-    inp: &FaceIn,
-    hdot: f64,
-    dx: f64,
-    drop: &[f64],
-    r: &mut [f64],
-    p: &mut [f64],
-    q: &mut [f64],
-) -> Option<f64> {
-    let n = drop.len();
-    let (r, p, q) = (&mut r[..n], &mut p[..n], &mut q[..n]);
-    for (r, d) in r.iter_mut().zip(drop) {
-        *r = 1.0 / (inp.h + d);
+fn solve(inp: &FaceIn, hdot: f64, dx: f64, n: usize, nodes: &[Nodes], work: &mut [Work]) -> Option<f64> {
+    let (mut s0, mut s1, mut s2, mut s3) = ([0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]);
+    for (a, w) in nodes.iter().zip(work.iter_mut()) {
+        for k in 0..LANES {
+            let r = 1.0 / (inp.h + a.drop[k]);
+            let wr = a.weight[k] * r;
+            let wrr = wr * r;
+            let wrrr = wrr * r;
+            w.r[k] = r;
+            s0[k] += wr;
+            s1[k] += wrr;
+            s2[k] += wrrr * a.number[k];
+            s3[k] += wrrr;
+        }
     }
-    let t0 = trapezoid(n, |j| r[j]);
-    let t1 = trapezoid(n, |j| r[j] * r[j]);
-    // The last node of the second factor has its number, n - 1; x = j dx.
-    let t2 = trapezoid(n, |j| r[j] * r[j] * r[j] * j as f64);
-    let t3 = trapezoid(n, |j| r[j] * r[j] * r[j]);
-    let inv3 = 1.0 / t3;
-    let (mean_h, mean_j) = (t1 * inv3, t2 * inv3);
+    let sum_r = sum(s0);
+    let inv3 = 1.0 / sum(s3);
+    let (mean_h, mean_j) = (sum(s1) * inv3, sum(s2) * inv3);
     let (bottom, top) = (inp.p_bottom - inp.p_cav, inp.p_top - inp.p_cav);
-    // Half a panel of each coefficient: the trapezoid adds both ends of a panel.
+    // Coefficients of half a panel: the trapezoid adds both ends of a panel.
     let half = 0.5 * dx * inp.mu;
     let wedge = 6.0 * half * inp.u;
     let squeeze = 12.0 * half * dx;
     let slope = squeeze * hdot;
     let constant = 0.5 * (top - bottom) * inv3 - wedge * mean_h - slope * mean_j;
-    let mut before = (r[0] * r[0] * (wedge + r[0] * constant), -r[0] * r[0] * r[0] * squeeze * mean_j);
-    let mut sum = (bottom, 0.0);
-    p[0] = bottom;
-    q[0] = 0.0;
-    for j in 1..n {
-        let (r1, x) = (r[j], j as f64);
-        let r2 = r1 * r1;
-        let now = (r2 * (wedge + r1 * (constant + slope * x)), r2 * r1 * (squeeze * (x - mean_j)));
-        sum = (sum.0 + (before.0 + now.0), sum.1 + (before.1 + now.1));
-        p[j] = sum.0;
-        q[j] = sum.1;
-        before = now;
-    }
-    p[n - 1] = top;
-    q[n - 1] = 0.0;
-    // Once a running sum has left the finite numbers it never comes back, so its end tells of every node.
-    (sum.0 + sum.1 + t0).is_finite().then_some(t0)
-}
-
-/// Load, friction and extent of the solved film. All slices have the same length, at least 2.
-#[inline(always)]
-fn result(inp: &FaceIn, length: f64, dx: f64, t0: f64, drop: &[f64], half_rise: &[f64], p: &[f64], q: &[f64]) -> FaceOut {
-    let n = drop.len();
-    let (half_rise, p, q) = (&half_rise[..n], &p[..n], &q[..n]);
-    let clip = |v: f64| if v > 0.0 { v } else { 0.0 };
-    let load = dx * trapezoid(n, |j| clip(p[j]));
-    let load_rate = dx * trapezoid(n, |j| if p[j] > 0.0 { q[j] } else { 0.0 });
-    let mut p_max = 0.0;
-    let mut slope_force = 0.0;
-    for (p, e) in p.iter().zip(half_rise) {
-        let p = clip(*p);
-        p_max = if p > p_max { p } else { p_max };
-        slope_force -= p * e;
-    }
-    // Central differences with trapezoid weights satisfy summation by parts: ∫ h p' dx = [p h] - ∫ p h' dx to the last bit
-    // of arithmetic, which saves differentiating the pressure.
-    let ends = clip(p[n - 1]) * (inp.h + drop[n - 1]) - clip(p[0]) * (inp.h + drop[0]);
-    let half_drag = 0.5 * (ends + slope_force);
-    let shear = inp.mu * inp.u * dx * t0;
-    let first = p.iter().position(|p| *p > 0.0);
-    let last = p.iter().rposition(|p| *p > 0.0);
-    let full_film = match (first, last) {
-        (Some(i), Some(k)) => {
-            // Where the pressure before the clip passes through p_cav between two nodes.
-            let low = if i == 0 { 0.0 } else { (i as f64 - p[i] / (p[i] - p[i - 1])) * dx };
-            let high = if k == n - 1 { length } else { (k as f64 + p[k] / (p[k] - p[k + 1])) * dx };
-            (low, high)
+    // Sums of the gradients at both ends of each panel, from the first node of its stretch on.
+    let (mut p, mut q) = ([0.0; LANES], [0.0; LANES]);
+    let (mut gp, mut gq) = ([0.0; LANES], [0.0; LANES]);
+    let (mut first_p, mut first_q) = ([0.0; LANES], [0.0; LANES]);
+    for (row, (a, w)) in nodes.iter().zip(work.iter_mut()).enumerate() {
+        let (before_p, before_q) = (gp, gq);
+        for k in 0..LANES {
+            let r = w.r[k];
+            let rr = r * r;
+            gp[k] = rr * (wedge + r * (constant + slope * a.number[k]));
+            gq[k] = rr * (r * squeeze) * (a.number[k] - mean_j);
         }
-        _ => (0.0, 0.0),
-    };
-    FaceOut {
-        load,
-        load_rate,
-        ring_shear: shear - half_drag,
-        liner_shear: shear + half_drag,
-        slope_force,
-        p_max: p_max + inp.p_cav,
-        full_film,
+        if row == 0 {
+            (first_p, first_q) = (gp, gq);
+        } else {
+            for k in 0..LANES {
+                p[k] += before_p[k] + gp[k];
+                q[k] += before_q[k] + gq[k];
+            }
+        }
+        w.p = p;
+        w.q = q;
     }
+    // The panel between two stretches belongs to the lower one.
+    for k in 0..LANES - 1 {
+        p[k] += gp[k] + first_p[k + 1];
+        q[k] += gq[k] + first_q[k + 1];
+    }
+    let (start_p, start_q) = (before(bottom, p), before(0.0, q));
+    for w in work.iter_mut() {
+        for k in 0..LANES {
+            w.p[k] += start_p[k];
+            w.q[k] += start_q[k];
+        }
+    }
+    // The top edge is given; beyond it there is nothing.
+    let rows = work.len();
+    for j in n - 1..rows * LANES {
+        work[j % rows].p[j / rows] = if j == n - 1 { top } else { 0.0 };
+        work[j % rows].q[j / rows] = 0.0;
+    }
+    // Once a running sum has left the finite numbers it never comes back, so its end tells of every node.
+    (start_p[LANES - 1] + p[LANES - 1] + start_q[LANES - 1] + q[LANES - 1] + sum_r).is_finite().then_some(sum_r)
 }
 
 impl Hydrodynamics for Grid {
     fn evaluate(&mut self, inp: &FaceIn, hdot: f64) -> Result<FaceOut, EvalError> {
         self.check(inp, hdot)?;
-        let (drop, half_rise) = (self.drop.as_slice(), self.half_rise.as_slice());
         // The published grid has a copy of the loops with their length known: no loop control, work space on the stack.
-        let out = if let (Ok(drop), Ok(half_rise)) =
-            (<&[f64; PUBLISHED]>::try_from(drop), <&[f64; PUBLISHED]>::try_from(half_rise))
-        {
-            let (mut r, mut p, mut q) = ([0.0; PUBLISHED], [0.0; PUBLISHED], [0.0; PUBLISHED]);
-            solve(inp, hdot, self.dx, drop, &mut r, &mut p, &mut q)
-                .map(|t0| result(inp, self.length, self.dx, t0, drop, half_rise, &p, &q))
-        } else {
-            solve(inp, hdot, self.dx, drop, &mut self.r, &mut self.p, &mut self.q)
-                .map(|t0| result(inp, self.length, self.dx, t0, drop, half_rise, &self.p, &self.q))
+        let out = match <&[Nodes; PUBLISHED.div_ceil(LANES)]>::try_from(self.nodes.as_slice()) {
+            Ok(nodes) if self.n == PUBLISHED => {
+                let mut work = [Work::default(); PUBLISHED.div_ceil(LANES)];
+                solve(inp, hdot, self.dx, PUBLISHED, nodes, &mut work).map(|s| self.result(inp, s, nodes, &work))
+            }
+            _ => solve(inp, hdot, self.dx, self.n, &self.nodes, &mut self.work)
+                .map(|s| self.result(inp, s, &self.nodes, &self.work)),
         };
         match out {
-            Some(o) if (o.load + o.load_rate + o.ring_shear + o.slope_force).is_finite() => Ok(o),
+            Some(o) if (o.load + o.load_rate + o.ring_shear + o.liner_shear + o.slope_force).is_finite() => Ok(o),
             _ => Err(overflow(inp, hdot)),
         }
     }
@@ -334,33 +408,40 @@ impl Hydrodynamics for Grid {
             return Err(EvalError::fatal(MODEL, format!("the load is {load} N/m")));
         }
         self.solve(inp, 0.0)?;
-        let n = self.p.len();
-        let (p, q) = (&self.p[..n], &self.q[..n]);
+        // Sums of p and ∂p/∂ḣ over the nodes that are not clipped at hdot (over all for none).
+        let loaded = |hdot: Option<f64>| {
+            let (mut s, mut d) = ([0.0; LANES], [0.0; LANES]);
+            for (a, w) in self.nodes.iter().zip(&self.work) {
+                for k in 0..LANES {
+                    let on = hdot.is_none_or(|hdot| w.p[k] + hdot * w.q[k] > 0.0);
+                    s[k] += a.weight[k] * if on { w.p[k] } else { 0.0 };
+                    d[k] += a.weight[k] * if on { w.q[k] } else { 0.0 };
+                }
+            }
+            (sum(s), sum(d))
+        };
         // The discrete load is a convex, falling, piecewise linear function of hdot. From the root of the piece on which no
         // node is clipped, which lies at or left of the sought one, Newton's method climbs down piece by piece and is done,
-        // without rounding apart, when the set of loaded nodes repeats: at most once for each node.
+        // but for rounding, when the set of loaded nodes repeats: at most once for each node.
         let target = load / self.dx;
-        let (p0, p1) = (trapezoid(n, |j| p[j]), trapezoid(n, |j| q[j]));
-        let mut hdot = (target - p0) / p1;
-        for _ in 0..=n {
-            let above = |j: usize| p[j] + hdot * q[j] > 0.0;
-            let sum = trapezoid(n, |j| if above(j) { p[j] } else { 0.0 });
-            let rate = trapezoid(n, |j| if above(j) { q[j] } else { 0.0 });
-            // Rounding of the sums: what a node at the clip, or the subtraction, may leave.
-            let noise = 1e-13 * (sum.abs() + (hdot * rate).abs() + target.abs());
-            let excess = sum + hdot * rate - target;
+        let (s, d) = loaded(None);
+        let mut hdot = (target - s) / d;
+        for _ in 0..=self.n {
+            let (s, d) = loaded(Some(hdot));
+            let excess = s + hdot * d - target;
             if !excess.is_finite() {
                 return Err(overflow(inp, hdot));
             }
-            if excess.abs() <= noise {
+            // Rounding of these sums.
+            if excess.abs() <= 1e-13 * (s.abs() + (hdot * d).abs() + target.abs()) {
                 return Ok(hdot);
             }
-            if rate >= 0.0 || excess < 0.0 {
+            if d >= 0.0 || excess < 0.0 {
                 break;
             }
-            hdot -= excess / rate;
+            hdot -= excess / d;
         }
-        let edges = 0.5 * self.dx * (p[0].max(0.0) + p[n - 1].max(0.0));
+        let edges = 0.5 * self.dx * (clip(inp.p_bottom - inp.p_cav) + clip(inp.p_top - inp.p_cav));
         Err(EvalError::recoverable(
             MODEL,
             format!("no squeeze velocity gives the load {load:e} N/m; the edge pressures alone carry {edges:e} N/m"),
@@ -369,15 +450,15 @@ impl Hydrodynamics for Grid {
 
     fn profile(&mut self, inp: &FaceIn, hdot: f64, out: &mut [(f64, f64, f64)]) -> Result<(), EvalError> {
         self.solve(inp, hdot)?;
-        let panels = self.p.len() - 1;
+        let panels = self.n - 1;
         let parts = out.len().saturating_sub(1).max(1) as f64;
         for (i, o) in out.iter_mut().enumerate() {
             let part = i as f64 / parts;
             let k = ((part * panels as f64) as usize).min(panels - 1);
             let f = part * panels as f64 - k as f64;
+            let ((d0, p0), (d1, p1)) = (self.node(k), self.node(k + 1));
             let at = |a: f64, b: f64| (1.0 - f) * a + f * b;
-            let p = at(self.p[k].max(0.0), self.p[k + 1].max(0.0));
-            *o = (part * self.length, inp.h + at(self.drop[k], self.drop[k + 1]), inp.p_cav + p);
+            *o = (part * self.length, inp.h + at(d0, d1), inp.p_cav + at(p0, p1));
         }
         Ok(())
     }

@@ -1,6 +1,8 @@
 //! Oil, film temperature and the film under a ring face.
 
+mod closed_form_face;
 mod constant;
+mod face;
 mod given;
 mod gridded_face;
 mod land_wall_mean;
@@ -9,6 +11,7 @@ mod off;
 mod vogel;
 mod vogel_grade;
 
+pub use closed_form_face::{Cavitation, CavityShear, ClosedFormFace};
 pub use constant::Constant;
 pub use given::Given;
 pub use gridded_face::GriddedFace;

@@ -230,24 +230,292 @@ fn loss_of_the_published_grid() {
     }
 }
 
-/// Film tables of Tomanik 1993 (evaluated by independent quadrature of the exact parabola), `x` from the leading to the
-/// trailing edge.
+/// Films in the manner of Tomanik 1993, evaluated by independent quadrature of the exact parabola, `x` from the leading to
+/// the trailing edge. The face drag of the first row misses that row's own sum rule: wall drag less slope force is 16.91.
 #[test]
 fn parabolic_faces_against_quadrature() {
-    struct Row(f64, f64, f64, f64, f64, f64, f64, f64, [f64; 4]);
+    /// h, depth, b, u, mu, hdot, p1, p2, then load, face drag, wall drag and slope force, each with its last digit.
+    struct Row(f64, f64, f64, f64, f64, f64, f64, f64, [(f64, f64); 4]);
     let rows = [
-        Row(2e-6, 8e-6, 1.5e-3, 10.0, 5e-3, 0.0, 0.0, 0.0, [959.1, 16.92, 24.60, 7.691]),
-        Row(2e-6, 8e-6, 1.5e-3, 0.0, 5e-3, -1e-3, 0.0, 0.0, [133.20, 0.0, 0.0, 0.0]),
-        Row(2e-6, 8e-6, 1.5e-3, 10.0, 5e-3, 0.0, 1e5, 5e5, [1112.2, 14.90, 26.62, 7.716]),
-        Row(2e-6, 8e-6, 1.5e-3, 10.0, 5e-3, -1e-3, 1e5, 5e5, [1184.9, 14.74, 26.78, 8.036]),
-        Row(1e-6, 25e-6, 0.5e-3, 10.0, 8e-3, 0.0, 0.0, 0.0, [178.77, 6.99, 14.98, 7.989]),
+        Row(2e-6, 8e-6, 1.5e-3, 10.0, 5e-3, 0.0, 0.0, 0.0, [(959.1, 0.1), (16.92, 0.01), (24.60, 0.01), (7.691, 0.001)]),
+        Row(2e-6, 8e-6, 1.5e-3, 0.0, 5e-3, -1e-3, 0.0, 0.0, [(133.20, 0.01), (0.0, 0.0), (0.0, 0.0), (0.0, 0.0)]),
+        Row(2e-6, 8e-6, 1.5e-3, 10.0, 5e-3, 0.0, 1e5, 5e5, [(1112.2, 0.1), (14.90, 0.01), (26.62, 0.01), (7.716, 0.001)]),
+        Row(2e-6, 8e-6, 1.5e-3, 10.0, 5e-3, -1e-3, 1e5, 5e5, [(1184.9, 0.1), (14.74, 0.01), (26.78, 0.01), (8.036, 0.001)]),
+        Row(1e-6, 25e-6, 0.5e-3, 10.0, 8e-3, 0.0, 0.0, 0.0, [(178.77, 0.01), (6.99, 0.01), (14.98, 0.01), (7.989, 0.001)]),
     ];
     for (i, Row(h, depth, b, u, mu, hdot, p1, p2, want)) in rows.into_iter().enumerate() {
-        let get = |points, refine| {
-            let o = build(&barrel(b, depth), points, refine).evaluate(&film(h, u, p1, p2, mu), hdot).expect("film");
+        let get = |points| {
+            let o = build(&barrel(b, depth), points, 1).evaluate(&film(h, u, p1, p2, mu), hdot).expect("film");
             [o.load, o.ring_shear, o.liner_shear, o.slope_force]
         };
-        let got = get(200, 1);
-        println!("row {i}: {:?} {got:?} {:?}", get(121, 1), want);
+        // The trapezoid over N panels loses about 1/(w N)² of the load, w the width of the pressure hill in face lengths times
+        // a factor of order one: 0.16 on the deep barrel of the last row, 0.3 on the others. It takes half as much of the
+        // forces. On top stands half of the last printed digit.
+        let width = if i == 4 { 0.16 } else { 0.3 };
+        for points in [121, 200] {
+            let lost = 1.0 / (width * f64::from(points - 1)).powi(2);
+            let got = get(points as usize);
+            for ((got, (want, digit)), lost) in got.into_iter().zip(want).zip([lost, 0.5 * lost, 0.5 * lost, 0.5 * lost]) {
+                assert!(
+                    (got - want).abs() <= lost * want + 0.5 * digit + 1e-12, // the last for rounding of zeros
+                    "row {i}, {points} points: {got} for {want}"
+                );
+            }
+        }
     }
+}
+
+/// Halving the spacing quarters the error: of the integration alone (`refine`), and of shape and integration (`points`).
+#[test]
+fn second_order() {
+    // High edge pressures: nothing is clipped, so that the error is smooth in the spacing.
+    let inp = film(2e-6, 10.0, 60e5, 50e5, 5e-3);
+    let face = FaceProfile::Parabola { length: 1.5e-3, curvature: 5e-6 / 0.5625e-6, apex: 0.6e-3 };
+    let order = |grids: [(usize, usize); 3]| {
+        let v = grids.map(|(points, refine)| {
+            let o = build(&face, points, refine).evaluate(&inp, -2e-3).expect("film");
+            assert_eq!(o.full_film, (0.0, 1.5e-3));
+            [o.load, o.ring_shear, o.liner_shear, o.slope_force, o.load_rate]
+        });
+        (0..5).map(|k| ((v[0][k] - v[1][k]) / (v[1][k] - v[2][k])).log2()).collect::<Vec<_>>()
+    };
+    for grids in [[(11, 4), (11, 8), (11, 16)], [(41, 1), (81, 1), (161, 1)]] {
+        for o in order(grids) {
+            // The next term of the error is of fourth order: under one part in a hundred of the difference here.
+            assert!((o - 2.0).abs() < 0.02, "{grids:?}: observed order {o}");
+        }
+    }
+
+    // With a clip the error also depends on where the film's end falls between two nodes; its envelope stays of second order.
+    let inp = film(2e-6, 10.0, 0.0, 0.0, 5e-3);
+    let fine = printed(&(0..=40_000).map(|i| face.drop_at(1.5e-3 * f64::from(i) / 4e4)).collect::<Vec<_>>(), 1.5e-3, &inp, 0.0);
+    let worst = |panels: std::ops::Range<usize>| {
+        panels
+            .map(|n| {
+                let load = build(&face, n + 1, 1).evaluate(&inp, 0.0).expect("film").load;
+                (load - fine.load).abs() * (n * n) as f64
+            })
+            .fold(0.0, f64::max)
+    };
+    let (coarse, dense) = (worst(20..60), worst(100..199));
+    // First order would make this ratio about 3.
+    assert!(dense < 1.2 * coarse && dense > coarse / 1.2, "{coarse} {dense}");
+}
+
+/// The face turned upside down, with edge pressures exchanged and the liner running the other way, is the same film.
+#[test]
+fn mirror_symmetry() {
+    for refine in [1, 7] {
+        for (face, inp, hdot) in cases() {
+            let length = face.length();
+            let nodes = refined(&face, 1);
+            let up = FaceProfile::Table { length, drops: nodes.clone() };
+            let down = FaceProfile::Table { length, drops: nodes.into_iter().rev().collect() };
+            let mirrored = FaceIn { u: -inp.u, p_bottom: inp.p_top, p_top: inp.p_bottom, ..inp };
+            let a = build(&up, 11, refine).evaluate(&inp, hdot).expect("film");
+            let b = build(&down, 11, refine).evaluate(&mirrored, hdot).expect("film");
+            // Rounding of sums that are taken in the opposite order.
+            let size = a.ring_shear.abs() + a.liner_shear.abs() + a.slope_force.abs();
+            assert!((a.load - b.load).abs() <= 1e-11 * (1.0 + a.load), "{} {}", a.load, b.load);
+            assert!((a.load_rate - b.load_rate).abs() <= 1e-11 * (1.0 - a.load_rate));
+            assert!((a.ring_shear + b.ring_shear).abs() <= 1e-11 * size);
+            assert!((a.liner_shear + b.liner_shear).abs() <= 1e-11 * size);
+            assert!((a.slope_force + b.slope_force).abs() <= 1e-11 * size);
+            assert!((a.full_film.0 + b.full_film.1 - length).abs() <= 1e-9 * length);
+            assert!((a.full_film.1 + b.full_film.0 - length).abs() <= 1e-9 * length);
+        }
+    }
+}
+
+/// The load falls with `hdot`, is convex, and `load_rate` is its slope.
+#[test]
+fn load_falls_with_squeeze_velocity() {
+    for (face, inp, _) in cases() {
+        let mut model = build(&face, 11, 3);
+        let scale = 0.02 / 400.0;
+        let mut before = model.evaluate(&inp, -200.0 * scale).expect("film");
+        let largest = before.load + before.load_rate.abs() * 200.0 * scale;
+        for i in -199..=200 {
+            let now = model.evaluate(&inp, f64::from(i) * scale).expect("film");
+            assert!(now.load_rate <= 0.0 && now.load_rate.is_finite());
+            let secant = (now.load - before.load) / scale;
+            // Rounding of the difference of two loads. Each is the sum of a wedge and a squeeze part, and the pressure in turn
+            // the sum of gradients that cancel each other.
+            let noise = 1e-13 * (largest + 6.0 * inp.mu * inp.u.abs() * (face.length() / inp.h).powi(2)) / scale;
+            assert!(
+                before.load_rate <= secant + noise && secant <= now.load_rate + noise,
+                "{inp:?} {i}: {} {secant} {} +- {noise}", before.load_rate, now.load_rate
+            );
+            before = now;
+        }
+    }
+}
+
+#[test]
+fn squeeze_rate_inverts_the_load() {
+    for refine in [1, 19] {
+        for (face, inp, hdot) in cases() {
+            let mut model = build(&face, 11, refine);
+            let at = model.evaluate(&inp, hdot).expect("film").load;
+            let edges = 0.5 * (inp.p_bottom + inp.p_top - 2.0 * inp.p_cav) * face.length() / (10 * refine) as f64;
+            for factor in [1.001, 1.5, 10.0, 1e3] {
+                let load = (at.max(edges) + 1.0) * factor;
+                let rate = model.squeeze_rate(&inp, load).expect("a load above that of the edges");
+                let back = model.evaluate(&inp, rate).expect("film").load;
+                // Rounding: the load is the difference of a wedge and a squeeze part, both as large as the largest load here.
+                close(back, load, 1e-10);
+            }
+            if edges > 0.0 {
+                let e = model.squeeze_rate(&inp, 0.9 * edges).expect_err("less than the edges carry");
+                assert!(e.is_recoverable() && e.to_string().contains("edge pressures"), "{e}");
+            }
+        }
+    }
+    // With dry edges a load of nothing is reached where the last node is clipped.
+    let inp = film(1e-6, 10.0, 0.0, 0.0, 5e-3);
+    let mut model = build(&barrel(2e-3, 8e-6), 11, 1);
+    let rate = model.squeeze_rate(&inp, 0.0).expect("zero");
+    assert!(rate > 0.0);
+    assert!(model.evaluate(&inp, rate * (1.0 + 1e-9)).expect("film").load == 0.0);
+    assert!(model.evaluate(&inp, rate * (1.0 - 1e-9)).expect("film").load > 0.0);
+    assert!(model.squeeze_rate(&inp, -1.0).is_err_and(|e| e.is_recoverable()));
+}
+
+#[test]
+fn profile_passes_through_the_nodes() {
+    for (face, inp, hdot) in cases() {
+        let want = printed(&refined(&face, 1), face.length(), &inp, hdot);
+        let mut out = vec![(0.0, 0.0, 0.0); 21];
+        build(&face, 11, 1).profile(&inp, hdot, &mut out).expect("film");
+        let size = want.p.iter().copied().fold(inp.p_cav, f64::max);
+        for j in 0..11 {
+            let (x, h, p) = out[2 * j];
+            // Rounding.
+            assert!((x - face.length() * j as f64 / 10.0).abs() <= 1e-15);
+            close(h, want.h[j], 1e-14);
+            assert!((p - inp.p_cav - want.p[j]).abs() <= 1e-11 * size);
+            if j < 10 {
+                let mean = 0.5 * (want.p[j] + want.p[j + 1]);
+                assert!((out[2 * j + 1].2 - inp.p_cav - mean).abs() <= 1e-11 * size);
+            }
+        }
+        build(&face, 11, 1).profile(&inp, hdot, &mut []).expect("nothing asked, nothing done");
+    }
+}
+
+#[test]
+fn full_film_ends_where_the_pressure_falls_to_cavitation() {
+    let out = build(&barrel(2e-3, 8e-6), 200, 1).evaluate(&film(2e-6, 10.0, 0.0, 0.0, 5e-3), 0.0).expect("film");
+    // An antisymmetric pressure, clipped: full from the leading (bottom) edge to the apex.
+    assert_eq!(out.full_film.0, 0.0);
+    assert!((out.full_film.1 - 1e-3).abs() < 1e-9, "{:?}", out.full_film); // rounding of a zero crossing
+}
+
+/// Whatever stands in the inputs: finite numbers or an error.
+#[test]
+fn extremes_never_give_nan() {
+    let values = [0.0, 1e-300, 1e-150, 1e-30, 1e-12, 1e-6, 1.0, 1e12, 1e30, 1e150, 1e300];
+    for face in [barrel(2e-3, 8e-6), wedge(2e-3, 35e-6), barrel(1e-6, 1.0), flat(1.0)] {
+        for refine in [1, 2] {
+            let mut model = build(&face, 11, refine);
+            let mut out = [(0.0, 0.0, 0.0); 7];
+            for h in values {
+                for v in values {
+                    for p in values {
+                        for (u, hdot) in [(v, 0.0), (-v, v), (0.0, -v), (1.0, v)] {
+                            for mu in [1e-3, v] {
+                                let inp = FaceIn { h, u, p_bottom: p, p_top: 1e5, p_cav: 0.0, mu };
+                                if let Ok(o) = model.evaluate(&inp, hdot) {
+                                    let all = [o.load, o.load_rate, o.ring_shear, o.liner_shear, o.slope_force, o.p_max];
+                                    assert!(all.iter().all(|v| v.is_finite()), "{inp:?} {hdot}: {o:?}");
+                                    assert!(o.load >= 0.0 && o.load_rate <= 0.0, "{inp:?} {hdot}: {o:?}");
+                                    let (a, b) = o.full_film;
+                                    assert!(0.0 <= a && a <= b && b <= face.length(), "{inp:?} {hdot}: {o:?}");
+                                }
+                                if let Ok(r) = model.squeeze_rate(&inp, v) {
+                                    assert!(r.is_finite(), "{inp:?} {v}");
+                                }
+                                if model.profile(&inp, hdot, &mut out).is_ok() {
+                                    assert!(out.iter().all(|o| o.1.is_finite() && o.2.is_finite()));
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn refuses_what_is_no_film() {
+    let good = film(1e-6, 1.0, 1e5, 1e5, 5e-3);
+    let mut model = build(&barrel(2e-3, 8e-6), 11, 1);
+    for inp in [
+        FaceIn { h: f64::NAN, ..good },
+        FaceIn { u: f64::INFINITY, ..good },
+        FaceIn { p_top: f64::NAN, ..good },
+        FaceIn { mu: f64::NAN, ..good },
+        FaceIn { mu: 0.0, ..good },
+        FaceIn { mu: -1.0, ..good },
+    ] {
+        assert!(matches!(model.evaluate(&inp, 0.0), Err(EvalError::Fatal { .. })), "{inp:?}");
+        assert!(matches!(model.squeeze_rate(&inp, 0.0), Err(EvalError::Fatal { .. })));
+    }
+    assert!(matches!(model.evaluate(&good, f64::NAN), Err(EvalError::Fatal { .. })));
+    assert!(matches!(model.squeeze_rate(&good, f64::NAN), Err(EvalError::Fatal { .. })));
+    for h in [0.0, -1e-7] {
+        let e = model.evaluate(&FaceIn { h, ..good }, 0.0).expect_err("the surfaces touch");
+        assert!(e.is_recoverable() && e.to_string().contains("touch"), "{e}");
+    }
+    // The face of ring 2 may lie further back than its reference point: only h plus the least drop counts.
+    let table = FaceProfile::Table { length: 2e-3, drops: vec![2e-6; 11] };
+    assert!(build(&table, 11, 1).evaluate(&FaceIn { h: -1e-6, ..good }, 0.0).is_ok());
+}
+
+#[test]
+fn builds_any_table_and_says_what_does_not_fit() {
+    let nodes = |n: usize| FaceProfile::Table { length: 1e-3, drops: (0..n).map(|i| 1e-6 * i as f64).collect() };
+    let try_build = |face: &FaceProfile, points, refine| GriddedFace { refine, points }.build(&FaceCtx { face }).map(drop);
+    // A straight taper has two nodes of its own and is still integrated on eleven.
+    let two = FaceProfile::Table { length: 2e-3, drops: vec![0.0, 3e-6] };
+    let inp = film(3e-6, -10.0, 0.0, 0.0, 5e-3);
+    let load = |face: &FaceProfile| build(face, 11, 1).evaluate(&inp, 0.0).expect("film").load;
+    close(load(&two), load(&wedge(2e-3, 3e-6)), 1e-12); // rounding of the nodes
+    assert!(try_build(&nodes(400), 11, 1).is_ok());
+    assert_eq!(try_build(&nodes(401), 11, 1).expect_err("too many").field, "points");
+    assert_eq!(try_build(&nodes(300), 11, 2).expect_err("too many").field, "refine");
+    assert_eq!(try_build(&nodes(11), 11, 20).expect_err("too fine").field, "refine");
+    assert_eq!(try_build(&nodes(11), 11, 0).expect_err("too coarse").field, "refine");
+    assert_eq!(try_build(&nodes(11), 10, 1).expect_err("too coarse").field, "points");
+    assert_eq!(try_build(&nodes(11), 201, 1).expect_err("too fine").field, "points");
+    assert!(try_build(&nodes(0), 11, 1).is_err());
+    assert!(try_build(&nodes(1), 11, 1).is_err());
+    assert!(try_build(&FaceProfile::Table { length: 0.0, drops: vec![0.0; 2] }, 11, 1).is_err());
+    assert!(try_build(&FaceProfile::Table { length: 1e-3, drops: vec![0.0, f64::NAN] }, 11, 1).is_err());
+    assert!(try_build(&FaceProfile::Parabola { length: 1e-3, curvature: f64::NAN, apex: 0.0 }, 11, 1).is_err());
+}
+
+#[test]
+fn off_carries_nothing_and_stays() {
+    let face = barrel(2e-3, 8e-6);
+    let mut model = gudgeon_film::Off {}.build(&FaceCtx { face: &face }).expect("off");
+    let inp = FaceIn { p_cav: 2e4, ..film(1e-6, 10.0, 1e5, 5e5, 5e-3) };
+    let out = model.evaluate(&inp, -1e-3).expect("off");
+    assert_eq!((out.load, out.load_rate, out.ring_shear, out.liner_shear, out.slope_force), (0.0, 0.0, 0.0, 0.0, 0.0));
+    assert_eq!(model.squeeze_rate(&inp, 300.0), Ok(0.0));
+    let mut points = [(0.0, 0.0, 0.0); 3];
+    model.profile(&inp, 0.0, &mut points).expect("off");
+    assert_eq!(points.map(|p| p.2), [2e4; 3]);
+    close(points[2].1, 9e-6, 1e-14); // rounding
+}
+
+#[test]
+fn reads_from_a_case_file() {
+    let read = |text: &str| toml::from_str::<Box<dyn HydrodynamicsSpec>>(text);
+    for text in ["model = \"gridded_face\"", "model = \"gridded_face\"\nrefine = 1\npoints = 11\n", "model = \"off\""] {
+        let spec = read(text).expect("valid");
+        assert!(spec.build(&FaceCtx { face: &flat(1e-3) }).is_ok());
+    }
+    assert!(read("model = \"gridded_face\"\nnodes = 3").expect_err("unknown key").to_string().contains("nodes"));
 }

@@ -64,5 +64,6 @@ fn reduced(theta: f64, period: f64) -> f64 {
     }
     // The quotient may be rounded across a whole number, and the result by an ulp to either side of the interval.
     let x = theta - period * (theta / period).floor();
-    if x >= period { 0.0 } else { x.max(0.0) }
+    // (A `theta` that is not a number stays one.)
+    if x >= period || x < 0.0 { 0.0 } else { x }
 }

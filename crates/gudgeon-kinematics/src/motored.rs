@@ -79,7 +79,7 @@ impl CylinderPressureSpec for Motored {
             ("exhaust_open", FOUR_STROKE - open),
             ("intake_close", 2.0 * PI - close),
         ] {
-            if !(room >= width) {
+            if room < width {
                 let what = format!(
                     "{name} leaves {:.6} deg for a valve transition of {:.6} deg: transitions follow 0 deg, intake_close and exhaust_open and end before the next dead centre of gas exchange or firing",
                     room.to_degrees(),
@@ -97,8 +97,8 @@ impl CylinderPressureSpec for Motored {
         Ok(Box::new(Smooth {
             volume_at_close,
             chamber,
-            ln_intake: self.intake_pressure.si().ln(),
-            ln_exhaust: self.exhaust_pressure.si().ln(),
+            intake: self.intake_pressure.si(),
+            exhaust: (self.exhaust_pressure.si() / self.intake_pressure.si()).ln(),
             n,
             close,
             open,
@@ -111,8 +111,9 @@ impl CylinderPressureSpec for Motored {
 struct Smooth {
     chamber: Chamber,
     volume_at_close: f64,
-    ln_intake: f64,
-    ln_exhaust: f64,
+    intake: f64,
+    /// ln(p_e/p_i)
+    exhaust: f64,
     n: f64,
     close: f64,
     open: f64,
@@ -127,16 +128,16 @@ fn step(u: f64) -> f64 {
 impl CylinderPressure for Smooth {
     fn pressure(&self, theta: f64) -> f64 {
         let theta = reduced(theta, FOUR_STROKE);
-        let ln_p = if theta < self.close {
-            self.ln_exhaust + step(theta / self.width) * (self.ln_intake - self.ln_exhaust)
+        let ln_ratio = if theta < self.close {
+            (1.0 - step(theta / self.width)) * self.exhaust
         } else if theta >= self.open + self.width {
-            self.ln_exhaust
+            self.exhaust
         } else {
             let rise = self.n * (self.volume_at_close / self.chamber.volume(theta)).ln();
-            let trapped = self.ln_intake + step((theta - self.close) / self.width) * rise;
-            trapped + step((theta - self.open) / self.width) * (self.ln_exhaust - trapped)
+            let trapped = step((theta - self.close) / self.width) * rise;
+            trapped + step((theta - self.open) / self.width) * (self.exhaust - trapped)
         };
-        ln_p.exp()
+        self.intake * ln_ratio.exp()
     }
     fn kinks(&self) -> &[f64] {
         &[]

@@ -172,7 +172,7 @@ impl CylinderPressureSpec for PolytropicBurn {
 pub(crate) fn check_order(angles: &[(&str, f64)]) -> Result<(), BuildError> {
     let mut before = ("the start of the cycle", 0.0);
     for &(name, angle) in angles {
-        if !(angle >= before.1) {
+        if angle < before.1 {
             let what = format!(
                 "{name} ({:.6} deg) comes before {} ({:.6} deg)",
                 angle.to_degrees(),
@@ -181,7 +181,7 @@ pub(crate) fn check_order(angles: &[(&str, f64)]) -> Result<(), BuildError> {
             );
             return Err(BuildError::at(name, what));
         }
-        if !(angle < FOUR_STROKE) {
+        if angle >= FOUR_STROKE {
             let what =
                 format!("{name} ({:.6} deg) is not before the end of the cycle, 720 deg", angle.to_degrees());
             return Err(BuildError::at(name, what));

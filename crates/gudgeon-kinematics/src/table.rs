@@ -287,7 +287,7 @@ impl Rows {
         }
         self.pressure.iter_mut().for_each(|p| *p = pascal(*p));
         let span = self.theta_deg[n - 1] - self.theta_deg[0];
-        // A millionth of a degree covers angles written with single precision around 720.
+        // Degrees. Angles written with single precision are 6e-5 apart near 720.
         let slack = 1e-4;
         if span > period_deg + slack {
             let what = format!("{place}the rows span {span} deg, the cycle {period_deg} deg");

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 ///
 /// Velocity and position are the exact integrals of the acceleration, so that work and impulse over a cycle close. The
 /// dead centres and the stroke `2r` are exact. Compared with the exact mechanism the terms of order `λ³` are missing: at
-/// λ = 0.27 the acceleration differs by at most 2 % of `r ω²`, the velocity by 0.6 % of `r ω`.
+/// λ = 0.27 the acceleration differs by at most 1.1 % of `r ω²`, the velocity by 0.33 % of `r ω`.
 #[derive(Debug, Clone, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TwoHarmonicSeries {}
@@ -21,7 +21,7 @@ gudgeon_core::register_model! {
     TwoHarmonicSeries, kind: "kinematics", name: "two_harmonic_series",
     summary: "slider-crank as two harmonics, first order in r/l",
     equations: "a = -r omega^2 (cos(theta) + lambda cos(2 theta));  v = -r omega (sin(theta) + lambda/2 sin(2 theta));  y = l - r lambda/4 + r (cos(theta) + lambda/4 cos(2 theta));  lambda = r/l",
-    validity: "No offset. Error of order (r/l)^3: 2 % of r omega^2 at r/l = 0.27.",
+    validity: "No offset. Error of order (r/l)^3: 1.1 % of r omega^2 at r/l = 0.27.",
     references: ["tomanik1993", "heywood1988"],
     example: "",
 }
@@ -148,7 +148,7 @@ mod tests {
         };
         let (near, far) = (worst(0.144), worst(0.288));
         // The documented figures, and the third order: halving λ divides the error by 8, less the fifth-order rest (7 %).
-        assert!(near.0 < 0.006 && near.1 < 0.02, "{near:?}");
+        assert!(near.0 < 0.0033 && near.1 < 0.011, "{near:?}");
         assert!((near.0 / far.0 - 8.0).abs() < 0.8 && (near.1 / far.1 - 8.0).abs() < 0.8, "{near:?} {far:?}");
     }
 

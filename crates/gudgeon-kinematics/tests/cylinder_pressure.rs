@@ -212,12 +212,12 @@ fn single_zone_wiebe_converges_to_the_differential_equation() {
             bar(&*p, deg) - exact_single_zone(&engine, i, deg)
         };
         for deg in [350.0, 360.0, 372.3, 400.0, 500.0] {
-            let ratio = error(0.2, deg) / error(0.05, deg);
-            // First order: a quarter of the step, a quarter of the error, up to the second-order term (1 % of the error)
-            // and, at 372.3°, the start of the burn at another place inside its step.
-            assert!((ratio - 4.0).abs() < 0.15, "case {}, {deg} deg: ratio {ratio}", i + 1);
+            let ratio = error(0.05, deg) / error(0.025, deg);
+            // First order: half the step, half the error. The second-order term shows as a deviation that halves with the
+            // step: 0.14 at 0.4° where the two first-order terms nearly cancel (case 3, 372.3°), so 0.014 here.
+            assert!((ratio - 2.0).abs() < 0.02, "case {}, {deg} deg: ratio {ratio}", i + 1);
             // The documented effect of the published step.
-            assert!((error(0.1, deg) / exact_single_zone(&engine, i, deg)).abs() < 1e-3, "{deg}");
+            assert!((error(0.1, deg) / exact_single_zone(&engine, i, deg)).abs() < 2e-4, "{deg}");
         }
     }
 }
@@ -232,13 +232,16 @@ fn single_zone_wiebe_without_heat_is_adiabatic_and_between_the_steps_too() {
         folder: Path::new("."),
     };
     let chamber = Chamber::new(&ctx, 12.0).expect("builds");
-    for (step, tolerance) in [(0.1, 1e-11), (1.0, 2e-8), (2.0, 4e-7)] {
+    for step in [0.1, 1.0, 2.0] {
         let p = engine.build(&format!("{text}step = \"{step} deg\""));
+        // Exact at the steps; between them the cubic leaves h⁴/384 p⁗. Near the dead centre V/V_c = 1 + k θ² with
+        // k = (12-1)/4 (1 + r/l) = 3.49, so p⁗/p = 12 γ (γ+1) k² = 447 per rad⁴, its largest value; a tenth more for the
+        // higher orders. And 1400 roundings of powers.
+        let h = f64::to_radians(step);
+        let tolerance = 1.1 * 447.0 / 384.0 * h.powi(4) + 2e-13;
         for k in 0..1400 {
             let deg = 220.0 + 0.1 * f64::from(k);
             let v = (chamber.volume(220_f64.to_radians()) / chamber.volume(deg.to_radians())).powf(1.32);
-            // Exact at the steps; between them the cubic leaves h⁴/384 p⁗ with p⁗ of the order of 1/(10°)⁴ p near the
-            // dead centre: 3e-3 (h/10°)⁴, less than the tolerances; 1400 roundings of powers for the first.
             let e = bar(&*p, deg) / (0.93 * v) - 1.0;
             assert!(e.abs() < tolerance, "step {step}, {deg} deg: {e:e}");
         }
@@ -276,7 +279,9 @@ fn motored_is_smooth_and_polytropic() {
     };
     let chamber = Chamber::new(&ctx, 10.0).expect("builds");
     // Outside the 30° transitions: plateaus and p V^n.
-    assert!((bar(&*p, 100.0) - 0.9).abs() < 1e-15 && (bar(&*p, 600.0) - 1.1).abs() < 1e-15);
+    assert_eq!(bar(&*p, 100.0), 0.9);
+    // A logarithm and its exponential.
+    assert!((bar(&*p, 600.0) - 1.1).abs() < 1e-15);
     for deg in [250.0, 300.0, 360.0, 420.0, 500.0] {
         let exact =
             0.9 * (chamber.volume(220_f64.to_radians()) / chamber.volume(f64::to_radians(deg))).powf(1.35);
@@ -326,6 +331,8 @@ fn all_are_periodic_positive_and_finite() {
     for text in EVERY {
         let p = engine.build(text);
         assert_eq!(p.period(), 4.0 * PI, "{text}");
+        // An angle that is not a number is not silently some other angle.
+        assert!(p.pressure(f64::NAN).is_nan() || text.contains("constant"), "{text}");
         for k in 0..2000 {
             let theta = 4.0 * PI * (f64::from(k) + 0.37) / 2000.0;
             let base = p.pressure(theta);
@@ -427,8 +434,18 @@ fn table_of_a_trace_converges() {
             .fold(0.0_f64, f64::max)
     };
     let (one, half) = (error(720), error(1440));
-    // 1° rows are good to 2e-4 near the firing dead centre; halving the spacing gains between 2² and 2³.
-    assert!(one < 2e-4, "{one:e}");
+    // Next to the peak the interpolant leaves h²/8 p''; the second differences of 1° rows are up to 0.3 % of
+    // the pressure there.
+    let bend = (1..720)
+        .map(|k| f64::from(k).to_radians())
+        .filter(|t| (360.0..380.0).contains(&t.to_degrees()))
+        .map(|t| {
+            let h = 1_f64.to_radians();
+            (exact.pressure(t + h) - 2.0 * exact.pressure(t) + exact.pressure(t - h)).abs()
+                / exact.pressure(t)
+        })
+        .fold(0.0_f64, f64::max);
+    assert!(one < bend / 8.0, "{one:e} {bend:e}");
     assert!(one / half > 3.0, "{one:e} {half:e}");
 }
 
@@ -436,7 +453,7 @@ fn table_of_a_trace_converges() {
 fn table_is_not_upset_by_float_noise() {
     let n = 720;
     let value =
-        |i: usize| 3.0 + 2.0 * (0.5 * i as f64).to_radians().sin() + (3.0 * i as f64).to_radians().cos();
+        |i: usize| 4.0 + 2.0 * (0.5 * i as f64).to_radians().sin() + (3.0 * i as f64).to_radians().cos();
     let build = |f: &dyn Fn(usize) -> (f64, f64)| {
         let (a, v): (Vec<f64>, Vec<f64>) = (0..n).map(f).unzip();
         table(&format!("theta_deg = {a:?}\npressure = {v:?}")).expect("builds")
@@ -599,4 +616,59 @@ fn chamber_refuses_nonsense() {
         Chamber::new(&ctx, ratio).is_err()
     };
     assert!(e(1.0, 1.0) && e(1.0, f64::NAN) && e(0.0, 10.0) && e(f64::NAN, 10.0) && !e(0.01, 10.0));
+}
+
+/// Run with `--release -- --ignored --nocapture`.
+#[test]
+#[ignore = "a measurement"]
+#[allow(clippy::print_stdout, reason = "a measurement")]
+fn nanoseconds_per_evaluation() {
+    let engine = Engine::otto();
+    let rows = |n: usize| {
+        let p: Vec<String> =
+            (0..n).map(|i| format!("{}", 2.0 + (2.0 * PI * i as f64 / n as f64).sin())).collect();
+        format!("model = \"table\"\npressure = [{}]", p.join(", "))
+    };
+    let (degree, million) = (rows(720), rows(1_000_000));
+    let mut texts = EVERY.to_vec();
+    texts.extend([degree.as_str(), million.as_str()]);
+    for text in texts {
+        let mut build = f64::INFINITY;
+        for _ in 0..if text.len() > 100_000 { 1 } else { 20 } {
+            let start = std::time::Instant::now();
+            engine.build(text);
+            build = build.min(start.elapsed().as_secs_f64());
+        }
+        let p = engine.build(text);
+        let mut best = f64::INFINITY;
+        let mut sum = 0.0;
+        for _ in 0..20 {
+            let start = std::time::Instant::now();
+            // Through two cycles in steps that an integrator would take.
+            for k in 0..10_000 {
+                sum += p.pressure(0.002_513 * f64::from(k));
+            }
+            best = best.min(start.elapsed().as_secs_f64() / 1e4);
+        }
+        println!(
+            "{:.50} …: {:.1} ns, built in {:.2} ms ({sum:.1e})",
+            text.replace('\n', " "),
+            best * 1e9,
+            build * 1e3
+        );
+    }
+    let folder = Folder::new("table-timing");
+    let text: String = (0..1_000_000).map(|i| format!("{},{}\n", f64::from(i) * 720e-6, 2 + i % 7)).collect();
+    let start = std::time::Instant::now();
+    folder.read(&text).expect("builds");
+    println!("file of 1e6 rows: {:.0} ms", start.elapsed().as_secs_f64() * 1e3);
+    let k = &engine.kinematics;
+    let mut best = f64::INFINITY;
+    let mut sum = 0.0;
+    for _ in 0..100 {
+        let start = std::time::Instant::now();
+        sum += (0..10_000).map(|i| k.motion(1e-3 * f64::from(i)).a).sum::<f64>();
+        best = best.min(start.elapsed().as_secs_f64() / 1e4);
+    }
+    println!("motion: {:.1} ns ({sum:.1e})", best * 1e9);
 }

@@ -9,7 +9,8 @@
 //!
 //! Files appear whole or not at all: each is written beside its place under a temporary name, and all are renamed once
 //! the last one is complete. The same input gives the same bytes. A page is one file that loads nothing: its style, its
-//! script and its data are inside, and its content policy forbids the browser any request.
+//! script and its data are inside, and its content policy forbids the browser any request. A link may open it at a crank
+//! angle and a range: `report.html#theta=380&view=300,480`.
 
 mod bench;
 mod comparison;

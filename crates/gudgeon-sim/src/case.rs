@@ -341,8 +341,7 @@ pub struct Models {
     /// Film under the ring faces.
     #[serde(default = "default_hydrodynamics")]
     pub hydrodynamics: Box<dyn HydrodynamicsSpec>,
-    /// Solid contact of ring faces and liner.
-    #[serde(default = "default_contact")]
+    /// Solid contact of ring faces and liner. No default: it needs the roughness of the surfaces.
     pub contact: Box<dyn ContactSpec>,
     /// Lubricant.
     pub oil: Box<dyn OilSpec>,
@@ -597,5 +596,4 @@ default_model! {
     default_flank_damping: dyn FlankDampingSpec = "squeeze_film";
     default_flank_friction: dyn FlankFrictionSpec = "off";
     default_hydrodynamics: dyn HydrodynamicsSpec = "closed_form_face";
-    default_contact: dyn ContactSpec = "greenwood_tripp";
 }

@@ -9,6 +9,7 @@
   const cycle = new Cycle(lo, hi > lo ? hi : lo + 1, 0.5);
   cycleBar(bar, cycle);
   const host = document.getElementById("plots");
+  host.className = "wide";
   const names = new Map();
   for (const v of variants) for (const c of v.series.columns) if (!names.has(c.name)) names.set(c.name, c.unit);
   if (names.has("cylinder.p")) names.delete("land1.p");
@@ -51,19 +52,18 @@
       // Variants that share a curve share one line.
       const same = lines.find((l) => l.at === c.at && l.x === arrays[v.series.theta]);
       if (same) { same.numbers.push(v.number); continue; }
-      lines.push({ numbers: [v.number], at: c.at, x: arrays[v.series.theta], y: arrays[c.at], color: color(v.number - 1), dash: dashes[Math.floor((v.number - 1) / 8) % 4] });
+      lines.push({ numbers: [v.number], at: c.at, x: arrays[v.series.theta], y: arrays[c.at], color: color(v.number - 1), dash: dashes[(v.number - 1) % 4] });
     }
     for (const l of lines) {
       l.label = l.numbers.length === variants.length && variants.length > 1 ? "all variants" : l.numbers.join(", ");
       l.title = l.numbers.map((k) => variants.find((v) => v.number === k).label).join("; ");
-      if (l.label.length < 6 && variants.length <= 8) l.label = l.numbers.length === 1 ? l.label + "  " + shorten(l.title) : l.label;
+      if (l.numbers.length === 1) l.label += "  " + values(l.title);
     }
-    const spec = { title: q.title, unit: q.unit, lines, modes: q.modes, height: q.rank < 2 ? 240 : 190 };
+    const spec = { title: q.title, unit: q.unit, lines, modes: lines.length > 1 ? [...(q.modes || ["linear"]), "difference"] : q.modes, height: q.rank < 2 ? 240 : 190 };
     if (q.rank >= 9 && q.rank < 20) later.push(spec); else plot(host, cycle, spec);
   }
-  function shorten(label) {
-    const t = label.split(",").map((p) => p.split("=").at(-1).trim()).join(", ");
-    return t.length > 26 ? t.slice(0, 25) + "…" : t;
+  function values(label) {
+    return label.split(",").map((p) => p.split("=").at(-1).trim()).join(", ");
   }
   if (later.length) {
     let drawn = false;

@@ -115,17 +115,17 @@ function at(x, y, t) {
   return y[a] + f * (y[b] - y[a]);
 }
 
-// Names of the dead centres of a four-stroke (720°) or two-stroke (360°) cycle that the curves span.
-function deadCentres(lo, hi) {
-  const out = [], four = hi - lo > 540;
+// The dead centres between two angles, by name.
+function deadCentres(lo, hi, four) {
+  const out = [];
   for (let t = Math.ceil(lo / 180 - 1e-9) * 180; t <= hi + 1e-6; t += 180) {
     const m = ((t % 720) + 720) % 720;
     out.push({ t, name: m % 360 === 180 ? "BDC" : !four ? "TDC" : m === 360 ? "firing TDC" : "gas exchange TDC" });
   }
   return out;
 }
-function angleName(t, lo, hi) {
-  const four = hi - lo > 540, m = ((t % 720) + 720) % 720;
+function angleName(t, four) {
+  const m = ((t % 720) + 720) % 720;
   const near = Math.round(m / 180) * 180, d = m - near;
   const name = near % 360 === 180 ? "BDC" : !four ? "TDC" : near === 360 ? "firing TDC" : "gas exchange TDC";
   const where = Math.abs(d) < 0.05 ? "at " + name : sig(Math.abs(d), Math.abs(d) < 10 ? 2 : 3) + "° " + (d < 0 ? "before " : "after ") + name;
@@ -137,6 +137,8 @@ function angleName(t, lo, hi) {
 class Cycle {
   constructor(lo, hi, step) {
     Object.assign(this, { lo, hi, step, pinned: lo, shown: lo, view: [lo, hi], playing: false, speed: 60 });
+    // A four-stroke cycle, unless the curves span no more than one turn.
+    this.four = hi - lo > 540;
     this.listeners = [];
     this.dirty = 0;
     this.readHash();
@@ -190,18 +192,18 @@ function cycleBar(host, cycle) {
   const reset = h("button", { type: "button", onclick: () => cycle.zoom(cycle.lo, cycle.hi) }, "Reset zoom");
   const angle = h("b"), name = h("small");
   const track = h("div", { class: "track" }, range);
-  for (const d of deadCentres(cycle.lo, cycle.hi)) {
+  for (const d of deadCentres(cycle.lo, cycle.hi, cycle.four)) {
     const x = (d.t - cycle.lo) / (cycle.hi - cycle.lo);
-    track.append(h("span", { style: "left:calc(8px + (100% - 16px)*" + x + ")" }, d.t + "° " + d.name));
+    track.append(h("span", { style: "left:calc(8px + (100% - 16px)*" + x + ")" }, d.t + "° " + d.name.replace("gas exchange ", "")));
   }
   host.className = "bar";
   host.append(h("div", { class: "left" }, play, speed, reset), track, h("div", { class: "now" }, angle, name));
   cycle.on(() => {
     range.value = cycle.shown;
     play.textContent = cycle.playing ? "❚❚ Pause" : "▶ Play";
-    reset.hidden = !cycle.zoomed;
+    reset.style.visibility = cycle.zoomed ? "visible" : "hidden";
     angle.textContent = cycle.shown.toFixed(cycle.step < 0.1 ? 2 : 1) + "°";
-    name.textContent = angleName(cycle.shown, cycle.lo, cycle.hi);
+    name.textContent = angleName(cycle.shown, cycle.four);
   });
   addEventListener("keydown", (e) => {
     if (e.altKey || e.ctrlKey || e.metaKey || /^(INPUT|SELECT|TEXTAREA)$/.test(e.target.tagName)) return;

@@ -23,13 +23,20 @@ function plot(host, cycle, spec) {
       if (hidden.has(i)) hidden.delete(i); else hidden.add(i);
       b.setAttribute("aria-pressed", String(!hidden.has(i)));
       draw();
-    } }, swatch, h("span", {}, line.label), v);
+    } }, swatch, h("span", { class: "name" }, line.label), v);
     legend.append(b);
     return v;
   });
   const nearby = h("div", { class: "events" });
   if ((spec.events || []).length) legend.append(nearby);
 
+  // "difference" shows every curve less the first one.
+  const shown = (line) => {
+    if (mode !== "difference") return line.y;
+    const first = spec.lines[0];
+    if (!line.less) line.less = line === first ? new Float32Array(line.y.length) : line.y.map((v, i) => v - at(first.x, first.y, line.x[i]));
+    return line.less;
+  };
   const H = spec.lanes ? T + B + spec.lines.length * 62 : spec.height || 220;
   let W = 0, X, Y = [], drag = null, cursor, dots = [], box;
   const invert = (px) => cycle.view[0] + ((px - L) / (W - L - R)) * (cycle.view[1] - cycle.view[0]);
@@ -54,7 +61,7 @@ function plot(host, cycle, spec) {
       s("line", { x1: X(t), x2: X(t), y1: T, y2: bottom, class: "gridline" }, svg);
       s("text", { x: X(t), y: bottom + 15, "text-anchor": "middle", class: "dim" }, svg, tickText(t));
     }
-    for (const d of deadCentres(lo, hi)) {
+    for (const d of deadCentres(lo, hi, cycle.four)) {
       s("line", { x1: X(d.t), x2: X(d.t), y1: T, y2: bottom, class: d.name === "firing TDC" ? "firing" : "dead" }, svg);
       const anchor = X(d.t) > W - 60 ? "end" : X(d.t) < L + 40 ? "start" : "middle";
       s("text", { x: anchor === "end" ? W - 2 : anchor === "start" ? Math.max(2, X(d.t) - 12) : X(d.t), y: bottom + 29, "text-anchor": anchor, class: "dim" }, svg, d.name);
@@ -79,11 +86,11 @@ function plot(host, cycle, spec) {
     return `url(#${id})`;
   }
   function curve(line, y, clipPath, fillTo) {
-    const [lo, hi] = cycle.view, n = line.x.length;
+    const [lo, hi] = cycle.view, n = line.x.length, value = shown(line);
     let d = "", pen = false, first = 0, lastX = 0;
     for (let i = 0; i < n; i++) {
       if ((i + 1 < n && line.x[i + 1] < lo) || (i > 0 && line.x[i - 1] > hi)) continue;
-      const v = y(line.y[i] * unit.f);
+      const v = y(value[i] * unit.f);
       if (!isNumber(v)) { pen = false; continue; }
       const px = X(line.x[i]);
       if (!pen && !d) first = px;
@@ -100,25 +107,26 @@ function plot(host, cycle, spec) {
     let lo = Infinity, hi = -Infinity, tiny = Infinity;
     spec.lines.forEach((line, i) => {
       if (hidden.has(i)) return;
+      const value = shown(line);
       for (let k = 0; k < line.x.length; k++) {
         if (line.x[k] < cycle.view[0] || line.x[k] > cycle.view[1]) continue;
-        const v = line.y[k] * unit.f;
+        const v = value[k] * unit.f;
         if (!isNumber(v)) continue;
         lo = Math.min(lo, v); hi = Math.max(hi, v);
         if (v !== 0) tiny = Math.min(tiny, Math.abs(v));
       }
     });
     if (lo > hi) { lo = 0; hi = 1; }
-    let y, ticks, shown = mode;
-    if (mode === "log" && hi <= 0) shown = "linear";
-    if (shown === "log") {
+    let y, ticks, scale = mode;
+    if (mode === "log" && hi <= 0) scale = "linear";
+    if (scale === "log") {
       if (lo <= 0) lo = Math.max(tiny, hi * 1e-6);
       const pad = Math.max(1.05, (hi / lo) ** 0.04);
       lo /= pad; hi *= pad;
       const k = (bottom - T) / Math.log(hi / lo);
       y = (v) => (v > 0 ? bottom - k * Math.log(v / lo) : NaN);
       ticks = logTicks(lo, hi);
-    } else if (shown === "±log") {
+    } else if (scale === "±log") {
       // Straight through zero up to a thousandth of the largest value, by decades beyond.
       const m = Math.max(Math.abs(lo), Math.abs(hi)) || 1, unitPart = 10 ** Math.floor(Math.log10(m) - 2.7);
       const f = (v) => Math.asinh(v / unitPart / 2);
@@ -178,7 +186,7 @@ function plot(host, cycle, spec) {
     const t = cycle.shown, seen = t >= cycle.view[0] && t <= cycle.view[1];
     set(cursor, { x1: X(t), x2: X(t), visibility: seen ? "visible" : "hidden" });
     spec.lines.forEach((line, i) => {
-      const v = at(line.x, line.y, t) * unit.f, py = Y[i] ? Y[i](v) : NaN;
+      const v = at(line.x, shown(line), t) * unit.f, py = Y[i] ? Y[i](v) : NaN;
       set(dots[i], isNumber(py) && seen ? { cx: X(t), cy: clamp(py, T, H - B), visibility: "visible" } : { visibility: "hidden" });
       values[i].textContent = sig(Math.abs(v) < 1e-7 * largest[i] ? 0 : v, 4);
       if (unit.label) values[i].append(h("span", { class: "u" }, " " + unit.label));
@@ -220,7 +228,7 @@ function leftovers(columns) {
   const groups = [];
   for (const c of columns) {
     const m = maxAbs(c.y);
-    const g = groups.find((g) => g.unit === c.unit && g.columns.length < 8 && (m === 0 || g.max === 0 || (m / g.max < 300 && g.max / m < 300)));
+    const g = groups.find((g) => g.unit === c.unit && g.columns.length < 8 && (m === 0 || g.max === 0 || (m / g.max < 30 && g.max / m < 30)));
     if (g) { g.columns.push(c); g.max = Math.max(g.max, m); }
     else groups.push({ unit: c.unit, max: m, columns: [c] });
   }

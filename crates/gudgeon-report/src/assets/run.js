@@ -51,10 +51,10 @@
   if (p.length) used.add("land1.p"); else p.push(...take("land1.p", "land 1", { color: "var(--fg)" }));
   for (let k = 2; k <= lands; k++) {
     const crankcase = k === n + 1;
-    p.push(...take(`land${k}.p`, crankcase ? "crankcase" : `land ${k}, below ring ${k - 1}`, { color: crankcase ? "var(--muted)" : color(k - 2) }));
+    p.push(...take(`land${k}.p`, crankcase ? "crankcase" : `land ${k}`, { color: crankcase ? "var(--muted)" : color(k - 2) }));
   }
   for (let i = 1; i <= n; i++) p.push(...take(`ring${i}.back.p`, "behind ring " + i, { color: color(i - 1), dash: "5 4" }));
-  add(p, { title: "Gas pressures", hint: "absolute; behind the rings dashed", modes: ["log", "linear"], height: 320, events: events(/^(land|cylinder)/) });
+  add(p, { title: "Gas pressures", hint: n > 1 ? "absolute; land 2 is below ring 1; behind the rings dashed" : "absolute; behind the ring dashed", modes: ["log", "linear"], height: 320, events: events(/^(land|cylinder)/) });
 
   const position = perRing("position");
   add(position.map((l) => Object.assign(l, { short: l.label.replace("ring ", "R") })), { title: "Rings in their grooves", hint: "0 on the lower flank, 1 on the upper", lanes: true, events: events(/^ring/) });
@@ -92,9 +92,10 @@
   const rest = order.filter((c) => !used.has(c.name));
   const others = leftovers(rest).map((g) => [g.columns.map((c, i) => ({ label: c.name, title: c.name, x: c.x, y: c.y, unit: c.unit, color: color(i) })), {
     title: g.columns.length === 1 ? g.columns[0].name : "Others in " + (display(g.unit, g.max).label || "no unit"), modes: ["linear", "±log"] }]);
-  if (n || p.length) later.push(...others);
-  else for (const [lines, spec] of others) add(lines, spec);
-  if (later.length) {
+  // A scene without rings has its own curves first, and nothing to put them away behind.
+  if (n || p.length) later.push(...others); else later.unshift(...others);
+  if (!n && !p.length) for (const [lines, spec] of later) add(lines, spec);
+  else if (later.length) {
     let drawn = false;
     more.addEventListener("toggle", () => {
       if (!more.open || drawn) return;

@@ -71,7 +71,7 @@ function packSection(host, cycle, geometry, columns) {
 
   const films = rings.map(() => s("path", { style: "fill:var(--oil)" }, svg));
   const bodies = rings.map(() => s("path", { style: "fill:var(--ring);stroke:var(--fg);stroke-width:.8;stroke-linejoin:round" }, svg));
-  const names = rings.map((r, i) => s("text", { "text-anchor": "middle", style: "fill:var(--bg);pointer-events:none", class: "strong" }, svg, "ring " + (i + 1)));
+  const names = rings.map((r, i) => s("text", { "text-anchor": "middle", style: "fill:var(--bg);pointer-events:none;font-size:11px", class: "strong" }, svg, "ring " + (i + 1)));
   const seats = rings.map(() => s("line", { style: "stroke:var(--c1);stroke-width:2.6;stroke-linecap:round" }, svg));
   const rubs = rings.map(() => s("line", { x1: xLiner, x2: xLiner, style: "stroke:var(--c1);stroke-width:3" }, svg));
   const arrows = rings.map(() => s("path", { style: "fill:var(--accent)" }, svg));
@@ -98,12 +98,12 @@ function packSection(host, cycle, geometry, columns) {
 
   // Scale bars.
   const nice = (px, per) => { const v = round(px / per); return [v, v * per]; };
-  const [cm, cpx] = nice(40, axial * k), [fm, fpx] = nice(60, um);
+  const [cm, cpx] = nice(26, axial * k), [fm, fpx] = nice(36, um);
   const scales = s("g", {}, svg);
-  s("path", { d: `M${xLeft + 14},${y0 + 24}v${cpx}m-4,0h8m-8,${-cpx}h8`, style: "fill:none;stroke:var(--fg)" }, scales);
-  s("text", { x: xLeft + 24, y: y0 + 24 + cpx / 2 + 4 }, scales, sig(cm * 1e3, 1) + " mm clearance");
-  s("path", { d: `M${xLeft + 10},${y0 + 44 + cpx}h${fpx}m0,-4v8m${-fpx},-8v8`, style: "fill:none;stroke:var(--fg)" }, scales);
-  s("text", { x: xLeft + 18 + fpx, y: y0 + 48 + cpx }, scales, sig(fm * 1e6, 1) + " µm film");
+  s("path", { d: `M${xLeft + 12},${y0 + 16}h8m-4,0v${cpx}m-4,0h8`, style: "fill:none;stroke:var(--fg)" }, scales);
+  s("text", { x: xLeft + 26, y: y0 + 16 + cpx / 2 + 4 }, scales, sig(cm * 1e3, 1) + " mm clearance");
+  s("path", { d: `M${xLeft + 12},${y0 + 30 + cpx}v8m0,-4h${fpx}m0,-4v8`, style: "fill:none;stroke:var(--fg)" }, scales);
+  s("text", { x: xLeft + 20 + fpx, y: y0 + 38 + cpx }, scales, sig(fm * 1e6, 1) + " µm film");
 
   const times = (x) => "×" + tickText(+x.toPrecision(2));
   const caption = h("figcaption", {}, `Rings, grooves and lands to scale. Axial clearance ${times(axial)}, film and face profile ${times(film)}; ` +
@@ -154,7 +154,7 @@ function packSection(host, cycle, geometry, columns) {
       if (!twin && single < low - 0.5) body += `L${xCorner(faces[0][drops.length - 1][0])},${top}`;
       bodies[i].setAttribute("d", body + `L${inner},${top}Z`);
       films[i].setAttribute("d", faces.map((f) => `M${xLiner},${f[0][1]}` + f.map(([a, b]) => `L${a.toFixed(1)},${b.toFixed(1)}`).join("") + `L${xLiner},${f[f.length - 1][1]}Z`).join(""));
-      set(names[i], { x: (inner + xLand) / 2, y: (low + top) / 2 + 4 });
+      set(names[i], { x: (inner + xLand + 8) / 2, y: (low + top) / 2 + 4, visibility: low - top < 13 ? "hidden" : "visible" });
       const seat = sealed(i) ? null : e < 0.01 ? low : e > 0.99 ? top : null;
       set(seats[i], seat === null || !columns.has(id + ".position") ? { visibility: "hidden" } : { visibility: "visible", x1: inner + 2, x2: xLand - 1, y1: seat, y2: seat });
       const rub = get(id + ".contact_load") > 0;
@@ -206,14 +206,14 @@ function crankGlyph(cycle, geometry, columns) {
 // Numbers at the shown angle.
 function nowTable(cycle, n, get, columns) {
   const rows = [
-    ["position, 0 lower 1 upper", "position", 1, ""], ["film", "h_min", 1e6, "µm"], ["gas past the ring", "flow", 1e6, "mg/s"],
-    ["axial gas force", "force_gas", 1, "N"], ["inertia force", "force_inertia", 1, "N"], ["film force", "force_film", 1, "N"], ["damping force", "force_damping", 1, "N"],
+    ["position in groove", "position", 1, ""], ["film", "h_min", 1e6, "µm"], ["gas past ring", "flow", 1e6, "mg/s"],
+    ["gas force", "force_gas", 1, "N"], ["inertia force", "force_inertia", 1, "N"], ["film force", "force_film", 1, "N"], ["damping force", "force_damping", 1, "N"],
     ["flank reaction", "force_flank", 1, "N"], ["radial load", "radial_load", 1, "N"], ["contact load", "contact_load", 1, "N"],
     ["friction", "friction_force", 1, "N"], ["friction power", "friction_power", 1, "W"],
   ].filter(([, key]) => Array.from({ length: n }, (_, i) => columns.has(`ring${i + 1}.${key}`)).some(Boolean));
   const cells = [];
   const body = h("tbody");
-  const single = [["piston speed", "piston.v", 1, "m/s"], ["piston acceleration", "piston.a", 1, "m/s²"], ["blow-by", "blow_by.rate", 1e6, "mg/s"]].filter(([, name]) => columns.has(name));
+  const single = [["piston speed", "piston.v", 1, "m/s"], ["piston accel.", "piston.a", 1, "m/s²"], ["blow-by", "blow_by.rate", 1e6, "mg/s"]].filter(([, name]) => columns.has(name));
   const digits = (v, key) => (key === "position" ? (isNumber(v) ? v.toFixed(3) : "–") : isNumber(v) && Math.abs(v) < 1e-3 ? "0" : sig(v, 3));
   for (const [label, key, f, unit] of rows) {
     const tr = h("tr", {}, h("th", { scope: "row" }, label));
@@ -245,16 +245,17 @@ function colourBar(cycle, o) {
     s("line", { x1: x, x2: x, y1: top + 14, y2: top + 18, style: "stroke:var(--muted)" }, svg);
     s("text", { x, y: top + 30, "text-anchor": "middle", class: "dim" }, svg, tickText(t));
   }
-  s("text", { x: W - R, y: H - 1, "text-anchor": "end", class: "dim" }, svg, "bar absolute, logarithmic");
-  s("text", { x: L, y: H - 1, class: "dim" }, svg, "Gas pressure");
+  s("text", { x: W - R, y: H - 1, "text-anchor": "end", class: "dim" }, svg, "bar absolute");
+  s("text", { x: L, y: H - 1, class: "dim" }, svg, "Gas pressure: cylinder, L lands, B behind rings, crankcase");
   const marks = [];
   for (let j = 1; j <= o.n + 1; j++) {
-    marks.push({ name: o.landName(j), p: () => o.landP(j) });
-    if (j <= o.n) marks.push({ name: "behind " + j, p: () => o.get("ring" + j + ".back.p") });
+    marks.push({ name: j === 1 ? "cyl" : j === o.n + 1 ? "case" : "L" + j, title: o.landName(j), p: () => o.landP(j) });
+    if (j <= o.n) marks.push({ name: "B" + j, title: "behind ring " + j, p: () => o.get("ring" + j + ".back.p") });
   }
   for (const m of marks) {
     m.tick = s("path", { style: "fill:none;stroke:var(--fg)" }, svg);
     m.text = s("text", { "text-anchor": "middle" }, svg, m.name);
+    s("title", {}, m.text, m.title);
   }
   cycle.on((what) => {
     if (!(what & 1)) return;
@@ -264,7 +265,7 @@ function colourBar(cycle, o) {
     for (const { m, v } of live) {
       const x = X(v), half = m.name.length * 3.3 + 3, c = clamp(x, half, W - half);
       let r = rows.findIndex((row) => row.every(([a, b]) => c + half < a || c - half > b));
-      if (r < 0) r = rows.length - 1;
+      if (r < 0) { set(m.text, { visibility: "hidden" }); continue; }
       rows[r].push([c - half, c + half]);
       const ty = top - 8 - r * 15;
       set(m.text, { x: c, y: ty });

@@ -44,7 +44,7 @@ pub struct Loaded<T> {
     pub source: Arc<Source>,
     /// The `--set` arguments that changed it.
     pub overrides: Arc<[String]>,
-    /// What a person should be told: keys that a changed model made meaningless.
+    /// What a person should be told: keys that a changed model made meaningless, numbers that probably lack their unit.
     pub notes: Vec<String>,
     tree: Arc<Node>,
 }
@@ -99,6 +99,7 @@ pub fn load_source<T: DeserializeOwned + JsonSchema>(
     if !found.is_empty() {
         return Err(refuse(found));
     }
+    notes.extend(schema.improbable(&tree));
     match serde_path_to_error::deserialize(tree.to_json()) {
         Ok(value) => Ok(Loaded { value, source, overrides, notes, tree: Arc::new(tree) }),
         Err(e) => {
@@ -172,11 +173,20 @@ fn parse(text: &str) -> Result<(Node, Vec<Diagnostic>), Vec<Diagnostic>> {
     let (table, errors) = DeTable::parse_recoverable(text);
     let mut duplicates = Vec::new();
     let mut syntax = Vec::new();
+    let mut second_table = None;
     for e in errors {
         let span = e.span().map_or(0..0, |s| s.start.min(text.len())..s.end.min(text.len()));
         let key = text.get(span.clone()).unwrap_or_default().to_owned();
         let d = Diagnostic::new(e.message()).at(Origin::File, Some(span.clone()));
         if e.message() == "duplicate key" {
+            // The keys below a table that stands for the second time are not second mistakes.
+            let header = header_above(text, span.start);
+            if second_table.is_some() && second_table == header {
+                continue;
+            }
+            if header.is_some_and(|h| line_column(text, h).0 == line_column(text, span.start).0) {
+                second_table = header;
+            }
             let first = first_line_of(text, span.start, &key);
             let d = Diagnostic { message: format!("`{key}` stands here for the second time"), ..d };
             duplicates.push(match first {
@@ -213,6 +223,20 @@ fn hint(text: &str, span: &std::ops::Range<usize>) -> Option<String> {
     (key_is_plain && !value.is_empty() && value.chars().all(plain)).then(|| {
         format!("text and values with a unit stand in quotes: `{} = \"{}\"`", key.trim(), shorten(value))
     })
+}
+
+/// Where the table header starts that a place stands in or below.
+fn header_above(text: &str, offset: usize) -> Option<usize> {
+    let end = text[offset..].find('\n').map_or(text.len(), |i| offset + i);
+    let mut start = 0;
+    let mut found = None;
+    for line in text[..end].split_inclusive('\n') {
+        if line.trim_start().starts_with('[') {
+            found = Some(start);
+        }
+        start += line.len();
+    }
+    found
 }
 
 /// The line of the key that a second one repeats.

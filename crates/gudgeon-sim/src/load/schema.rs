@@ -20,6 +20,15 @@ pub(super) struct Schema {
 /// Nesting of schemas without a value in between (references, options); only a schema that refers to itself has more.
 const MAX_REFERENCES: usize = 32;
 
+/// Ranges of bare numbers that no power cylinder has but a number with a forgotten unit does: dimension, from, below, the
+/// unit that was probably meant.
+const IMPROBABLE: &[(&str, f64, f64, &str)] = &[
+    ("a length", 2.0, f64::INFINITY, "mm"),
+    ("a temperature", 0.0, 200.0, "degC"),
+    ("a pressure", 1e-3, 1000.0, "bar"),
+    ("a mass", 100.0, f64::INFINITY, "g"),
+];
+
 impl Schema {
     pub fn of<T: schemars::JsonSchema>(text_length: usize) -> Self {
         Self { root: schemars::schema_for!(T).to_value(), end_of_file: text_length }
@@ -78,6 +87,48 @@ impl Schema {
         let mut out = Vec::new();
         self.value(document, &self.root, "", &mut out);
         out
+    }
+
+    /// Numbers without a unit that are possible but improbable in SI: `bore = 120`, a temperature of 150. To be called on a
+    /// document without mistakes.
+    pub fn improbable(&self, document: &Node) -> Vec<String> {
+        let mut out = Vec::new();
+        self.look_for_improbable(document, &self.root, "", &mut out);
+        out
+    }
+
+    fn look_for_improbable(&self, node: &Node, schema: &Value, path: &str, out: &mut Vec<String>) {
+        let schema = self.resolve(schema);
+        let number = match &node.data {
+            Data::Integer(i) => *i as f64,
+            Data::Float(f) => *f,
+            Data::Table(entries) => {
+                for e in entries {
+                    if let Some(s) = self.field(schema, Some(node), &e.key) {
+                        self.look_for_improbable(&e.node, s, &join(path, &e.key), out);
+                    }
+                }
+                return;
+            }
+            Data::Array(items) => {
+                for (i, item) in items.iter().enumerate() {
+                    if let Some(s) = schema.get("items") {
+                        self.look_for_improbable(item, s, &join(path, i), out);
+                    }
+                }
+                return;
+            }
+            _ => return,
+        };
+        if let Some(dimension) = schema.get("x-dimension").and_then(Value::as_str)
+            && let Some((_, _, _, example)) = IMPROBABLE
+                .iter()
+                .find(|(d, least, most, _)| *d == dimension && number.abs() >= *least && number.abs() < *most)
+        {
+            let si = units_of(dimension).first().copied().unwrap_or_default();
+            let n = number_text(number);
+            out.push(format!("{path} is {n} {si}: a number without a unit is SI; `\"{n} {example}\"` has one"));
+        }
     }
 
     fn value(&self, node: &Node, schema: &Value, path: &str, out: &mut Vec<Diagnostic>) {
@@ -162,17 +213,22 @@ impl Schema {
                 }
                 (place, _) => d.at(place.origin, place.span.clone()),
             };
-            let text = |key: &str| {
-                let s = properties.get(key).unwrap_or(&Value::Null);
-                let s = s.get("description").or_else(|| self.resolve(s).get("description"));
-                s.and_then(Value::as_str).map(|t| format!("`{key}`: {}", first_sentence(t)))
-            };
-            let texts: Vec<String> = missing.iter().filter_map(|k| text(k)).collect();
+            let texts: Vec<String> = missing.iter().filter_map(|k| self.meaning(k, properties.get(*k)?)).collect();
             if !texts.is_empty() {
                 d = d.help(texts.join("\n"));
             }
             out.push(d);
         }
+    }
+
+    /// What a missing key is for, and which models could stand there.
+    fn meaning(&self, key: &str, schema: &Value) -> Option<String> {
+        let inner = self.resolve(schema);
+        let text = schema.get("description").or_else(|| inner.get("description")).and_then(Value::as_str);
+        let models = Tagged::of(self, inner).map(|t| format!("{}: {}", t.tag, list(t.names())));
+        let words = words_of(inner).map(list);
+        let parts: Vec<String> = text.map(first_sentence).into_iter().chain(models).chain(words).collect();
+        (!parts.is_empty()).then(|| format!("`{key}`: {}", parts.join("; ")))
     }
 
     fn array(&self, node: &Node, items: &[Node], schema: &Value, path: &str, out: &mut Vec<Diagnostic>) {

@@ -417,6 +417,20 @@ fn overrides_are_blamed_where_they_are_wrong() {
 }
 
 #[test]
+fn a_forgotten_unit_is_told() {
+    let c = try_set(&edited("\"120 mm\"", "120"), &["rings.0.drops=[1e-6, 5]", "solver.start=1"]).expect("possible");
+    assert_eq!(
+        c.notes,
+        [
+            "machine.bore is 120 m: a number without a unit is SI; `\"120 mm\"` has one",
+            "rings.0.drops.1 is 5 m: a number without a unit is SI; `\"5 mm\"` has one",
+            "solver.start is 1 Pa: a number without a unit is SI; `\"1 bar\"` has one",
+        ]
+    );
+    assert!(try_set(&edited("\"120 mm\"", "\"120 m\""), &[]).expect("possible").notes.is_empty());
+}
+
+#[test]
 fn later_errors_find_their_place() {
     let c = good(&["rings.1.gap=0.7 mm"]);
     let place = |field: &str| {
@@ -475,7 +489,7 @@ fn rendering_shows_place_line_and_help() {
 "#
     );
     assert_eq!(
-        render(GOOD, &["solver.rtol=0", "machine.speed=2000 rpn"]),
+        render(GOOD, &["solver.rtol=1", "machine.speed=2000 rpn"]),
         r#"  × machine.speed: `rpn` is not a unit of a rotational speed
    ╭─[--set:1:15]
  1 │ machine.speed=2000 rpn

@@ -14,6 +14,8 @@ pub struct ContactLine {
     step: f64,
     /// Hard lower limit of the film thickness \[m\].
     pub floor: Option<f64>,
+    /// Fraction of the floor over which the approach to it fades out.
+    pub band: f64,
     /// Whether on the floor the film contributes no shear.
     pub floor_replaces_film: bool,
     /// Friction coefficient of the solid load.
@@ -22,6 +24,11 @@ pub struct ContactLine {
 
 /// Intervals of the table: cubic interpolation between them is good to about 1e-7 of the load.
 const POINTS: usize = 1024;
+/// A pressure law loses its meaning when the mean planes touch: at this fraction of its range the surfaces carry whatever
+/// load is left (an edge would wear until they do).
+const TOUCHING: f64 = 0.01;
+/// Fading out above a floor that the contact model itself names, and above [`TOUCHING`].
+const BANDS: (f64, f64) = (0.02, 1.0);
 
 impl ContactLine {
     /// Tabulates the contact of `lands` equal faces.
@@ -29,7 +36,8 @@ impl ContactLine {
     pub fn new(contact: &dyn Contact, face: &FaceProfile, lands: usize) -> Self {
         let range = contact.range();
         let mut line = Self {
-            floor: contact.floor(),
+            floor: contact.floor().or((range > 0.0).then_some(TOUCHING * range)),
+            band: if contact.floor().is_some() { BANDS.0 } else { BANDS.1 },
             floor_replaces_film: contact.floor_replaces_film(),
             friction: contact.friction_coefficient(),
             ..Self::default()

@@ -405,7 +405,7 @@ impl Pack {
         if hdot > 0.0 {
             hdot *= ((h_max - h) / (LIMIT_BAND * h_max)).clamp(0.0, 1.0);
         } else if let Some(f) = self.rings[i].contact.floor {
-            hdot *= ((h - f) / (LIMIT_BAND * f)).clamp(0.0, 1.0);
+            hdot *= ((h - f) / (self.rings[i].contact.band * f)).clamp(0.0, 1.0);
         }
         let r = &mut self.at.rings[i];
         (r.load, r.contact, r.hdot) = (load, contact, hdot);
@@ -477,12 +477,12 @@ impl Pack {
         // On a hard floor the surfaces carry what the film does not.
         let mut viscous = 1.0;
         if let Some(f) = line.floor {
-            let weight = 1.0 - ((self.at.places[i].h - f) / (LIMIT_BAND * f)).clamp(0.0, 1.0);
+            let weight = 1.0 - ((self.at.places[i].h - f) / (line.band * f)).clamp(0.0, 1.0);
             if line.floor_replaces_film {
                 viscous = 1.0 - weight;
                 r.contact = weight * r.load.max(0.0);
             } else {
-                r.contact = weight * (r.load - o.load).max(0.0);
+                r.contact += weight * (r.load - r.contact - o.load).max(0.0);
             }
         }
         let rubbing = line.friction * r.contact * (u / FRICTION_SPEED).tanh();

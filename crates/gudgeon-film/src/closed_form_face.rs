@@ -1,0 +1,901 @@
+use gudgeon_core::geometry::FaceProfile;
+use gudgeon_core::kinds::{FaceCtx, FaceIn, FaceOut, Hydrodynamics, HydrodynamicsSpec};
+use gudgeon_core::{BuildError, EvalError};
+use serde::{Deserialize, Serialize};
+
+use crate::face::{Moments, Parabola, Shape, Table, Three};
+
+/// Exact film under a ring face: Reynolds' equation integrated in closed form, without a grid.
+///
+/// With `h(x) = h + drop(x)`, `u` the velocity of the liner along `+x` seen from the ring and `ḣ` the squeeze velocity, the
+/// flux per metre of circumference and the pressure of a full film are
+///
+/// `q(x) = u h/2 - h³ p'/(12 μ) = q0 - ḣ x`,  `p' = 12 μ (u h/2 + ḣ x - q0)/h³`,
+///
+/// and on a parabola or a straight line every integral of that is elementary. Load and friction are
+///
+/// `W = ∫ (p - p_cav) dx`,  `F_ring = ∫ (μu/h - h p'/2) dx`,  `F_liner = ∫ (μu/h + h p'/2) dx`,
+///
+/// `F_slope = -∫ (p - p_cav) h' dx`, with `F_ring + F_slope = F_liner - [(p - p_cav) h]` over the two edges.
+///
+/// Fully flooded: both edges are covered with oil at the gas pressure next to them. An edge pressure below `p_cav` counts
+/// as `p_cav`, except with `full_sommerfeld`. What happens where oil would have to pull is the choice of `cavitation`.
+#[derive(Debug, Clone, Default, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ClosedFormFace {
+    /// What happens where the pressure would fall below `p_cav`.
+    #[serde(default)]
+    pub cavitation: Cavitation,
+    /// Friction of the oil that is left in the cavity.
+    #[serde(default)]
+    pub cavity_shear: CavityShear,
+}
+
+/// Condition of a film where its pressure would fall below the cavitation pressure.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Cavitation {
+    /// Ruptures where pressure and pressure gradient vanish and, behind the cavity, forms again where the flux that the
+    /// liner carries through it fills the gap (Jakobsson, Floberg and Olsson). Load and friction are continuous in every
+    /// input. The cavity is quasi-steady: its void keeps its volume, so that the flux in it is `q_r - ḣ (x - x_r)`, and a
+    /// cavity that runs dry on the way takes oil from neither side.
+    #[default]
+    MassConserving,
+    /// Ruptures where pressure and pressure gradient vanish; from there to the trailing edge the pressure is `p_cav`
+    /// (Reynolds or Swift-Stieber condition). When the trailing edge is above `p_cav` the load jumps where the film first
+    /// ruptures. Without sliding there is no trailing edge and both edges keep their films, as in `mass_conserving`.
+    SwiftStieber,
+    /// The full film, cut off at `p_cav` afterwards (Gümbel condition). Loses oil at the cut.
+    HalfSommerfeld,
+    /// The full film, however far below `p_cav`.
+    FullSommerfeld,
+}
+
+/// Friction of the part of a face that is not under full film.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum CavityShear {
+    /// `full` for the Sommerfeld conditions, as programs that use them count it; `streamers` otherwise.
+    #[default]
+    Auto,
+    /// Streamers of oil over the fraction of the width that the flux through the cavity fills: `h_r/h` in a steady film.
+    Streamers,
+    /// As if the gap were full: `μ u/h`.
+    Full,
+    /// None.
+    None,
+}
+
+gudgeon_core::register_model! {
+    ClosedFormFace, kind: "hydrodynamics", name: "closed_form_face",
+    summary: "exact Reynolds film on parabola or straight pieces, with a choice of cavitation conditions",
+    equations: "q = u h/2 - h^3 p'/(12 mu) = q0 - hdot x;  p' = 12 mu (u h/2 + hdot x - q0)/h^3, integrated in closed form;  \
+                mass_conserving: p = p' = 0 at rupture, flux carried through the cavity u h_r/2 - hdot (x - x_r) >= 0, \
+                same flux at reformation;  swift_stieber: p = p_cav from the rupture to the trailing edge;  \
+                half_sommerfeld: max(p, p_cav);  load = int (p - p_cav) dx;  shear = int (mu u/h -+ h p'/2) dx, \
+                in the cavity weighted with the filled fraction",
+    validity: "Smooth surfaces, fully flooded, narrow face (no flow along the circumference), constant viscosity. \
+               A face that waves up and down has one film under swift_stieber, the one at the leading edge. \
+               The cavity has no history: transients shorter than the passage over the face are not resolved.",
+    references: ["reynolds1886", "jakobsson1957", "cameron1966", "dowson1979"],
+    example: "cavitation = \"mass_conserving\"\ncavity_shear = \"streamers\"\n",
+}
+
+const MODEL: &str = "closed_form_face";
+
+#[typetag::serde(name = "closed_form_face")]
+impl HydrodynamicsSpec for ClosedFormFace {
+    fn build(&self, ctx: &FaceCtx<'_>) -> Result<Box<dyn Hydrodynamics>, BuildError> {
+        crate::gridded_face::check_face(ctx.face)?;
+        let shear = match (self.cavity_shear, self.cavitation) {
+            (CavityShear::Auto, Cavitation::HalfSommerfeld | Cavitation::FullSommerfeld) => CavityShear::Full,
+            (CavityShear::Auto, _) => CavityShear::Streamers,
+            (s, _) => s,
+        };
+        Ok(match ctx.face {
+            FaceProfile::Parabola { length, curvature, apex } => {
+                let up = Parabola::new(*length, *curvature, *apex);
+                let down = up.mirrored();
+                Box::new(Film::new(up, down, self.cavitation, shear))
+            }
+            FaceProfile::Table { length, drops } => {
+                let up = Table::new(*length, drops);
+                let down = up.mirrored();
+                Box::new(Film::new(up, down, self.cavitation, shear))
+            }
+        })
+    }
+}
+
+/// One film problem in the frame where the liner moves along `+x` (`u >= 0`). Pressures are above `p_cav`, over `12 μ`.
+#[derive(Debug, Clone, Copy)]
+struct Flow {
+    /// Half the sliding velocity.
+    u: f64,
+    v: f64,
+    pa: f64,
+    pb: f64,
+}
+
+/// A stretch of full film: flux law `q0 - v s` with `q0 = q + u h`.
+#[derive(Debug, Clone, Copy)]
+struct Island {
+    ia: usize,
+    xa: f64,
+    pa: f64,
+    ib: usize,
+    xb: f64,
+    pb: f64,
+    q: f64,
+    /// `∂q/∂v`
+    w: f64,
+    /// `∂p/∂v` at the ends.
+    ra: f64,
+    rb: f64,
+    /// Pressure is counted from the lower end (or from the upper).
+    upwards: bool,
+}
+
+/// How the film that begins at the leading edge ends.
+#[derive(Debug, Clone, Copy)]
+enum Lead {
+    /// At the trailing edge.
+    Full { q: f64 },
+    /// Where pressure and gradient vanish.
+    Rupture { i: usize, x: f64, q: f64 },
+}
+
+/// Load over `12 μ` and its derivative.
+#[derive(Debug, Clone, Copy, Default)]
+struct Carried {
+    load: f64,
+    rate: f64,
+}
+
+/// Where the last cavity was, as a start for the next search.
+#[derive(Debug, Clone, Copy)]
+struct Warm {
+    xr: f64,
+    xf: f64,
+}
+
+/// A face in one sliding direction.
+#[derive(Debug)]
+struct Side<S> {
+    face: S,
+    islands: Vec<Island>,
+    warm: Option<Warm>,
+}
+
+#[derive(Debug)]
+struct Film<S> {
+    up: Side<S>,
+    down: Side<S>,
+    cavitation: Cavitation,
+    shear: CavityShear,
+}
+
+impl<S: Shape> Side<S> {
+    fn new(face: S) -> Self {
+        let islands = Vec::with_capacity(2 * face.pieces() + 2);
+        Self { face, islands, warm: None }
+    }
+
+    /// `U d + V s - q`, the pressure gradient times `h³`.
+    #[inline]
+    fn n(&self, f: &Flow, i: usize, x: f64, q: f64) -> f64 {
+        f.u * self.face.drop(i, x) + f.v * self.face.s(x) - q
+    }
+
+    fn full_q(&self, f: &Flow) -> f64 {
+        let w = self.face.whole();
+        (f.pa - f.pb + f.u * w.d2 + f.v * w.x3) / w.i3
+    }
+
+    /// The lowest of the pressure minima of the film that starts with `pa` at 0 and has the flux `q`.
+    fn lowest_valley(&self, f: &Flow, q: f64) -> Option<(f64, usize, f64, Three)> {
+        let mut low: Option<(f64, usize, f64, Three)> = None;
+        for i in 0..self.face.pieces() {
+            if let Some(x) = self.face.valley(i, f.u, f.v, q) {
+                let t = self.face.head(i, x);
+                let p = f.pa + t.rise(f.u, f.v, q);
+                if low.is_none_or(|l| p < l.0) {
+                    low = Some((p, i, x, t));
+                }
+            }
+        }
+        low
+    }
+
+    /// The film at the leading edge.
+    ///
+    /// As a function of the flux, every pressure minimum is concave and falls (`dp/dq = -∫dx/h³` up to it, which grows), and
+    /// so does the lowest of them. The flux sought is the largest that leaves no pressure negative; from the full film,
+    /// where the lowest is negative, second-order steps on a concave function approach it from one side.
+    fn lead(&self, f: &Flow) -> Result<Lead, EvalError> {
+        let full = self.full_q(f);
+        // Without pressure at the leading edge the pressure has to rise from there.
+        let limit = f.u * self.face.drop(0, 0.0) + f.v * self.face.s(0.0);
+        let held = f.pa <= 0.0 && full > limit;
+        let mut q = if held { limit } else { full };
+        let (mut lo, mut hi) = (f64::NAN, q);
+        let mut valley = self.lowest_valley(f, q);
+        if valley.is_none_or(|v| v.0 >= 0.0) {
+            return Ok(if held { Lead::Rupture { i: 0, x: 0.0, q } } else { Lead::Full { q } });
+        }
+        for _ in 0..200 {
+            let mut close = None;
+            let next = match valley {
+                Some((p, i, x, t)) => {
+                    let scale = f.pa.abs() + (f.u * t.d2).abs() + (f.v * t.x3).abs() + (q * t.i3).abs();
+                    if p.abs() <= 2.0 * f64::EPSILON * scale {
+                        return Ok(Lead::Rupture { i, x, q });
+                    }
+                    if p < 0.0 {
+                        hi = q;
+                    } else {
+                        lo = q;
+                    }
+                    let h = self.face.film() + self.face.drop(i, x);
+                    let bend = -1.0 / (h * h * h * (f.u * self.face.slope(i, x) + f.v));
+                    let newton = p / t.i3;
+                    // Quadratic model of p(q): exact where the film is short and p has a double zero.
+                    let r = newton * bend / -t.i3;
+                    let step = 2.0 * newton / (1.0 + (1.0 + 2.0 * r).max(0.0).sqrt());
+                    if r.abs() < 1e-5 {
+                        close = Some(i);
+                    }
+                    q + step
+                }
+                None => {
+                    lo = q;
+                    f64::NAN
+                }
+            };
+            let inside = next < hi && !(next <= lo) && next.is_finite();
+            let next = match (inside, lo.is_nan()) {
+                (true, _) => next,
+                (false, false) => 0.5 * (lo + hi),
+                (false, true) => return Err(no_convergence("rupture")),
+            };
+            if next == q || next == hi || next == lo {
+                // The bracket has closed to neighbouring numbers.
+                return match valley {
+                    Some((_, i, x, _)) => Ok(Lead::Rupture { i, x, q }),
+                    None => Err(no_convergence("rupture")),
+                };
+            }
+            q = next;
+            valley = self.lowest_valley(f, q);
+            // The step was of third order if it stayed in one piece: what is left is below rounding.
+            if let (Some(c), Some((_, i, x, _))) = (close, valley)
+                && c == i
+                && inside
+            {
+                return Ok(Lead::Rupture { i, x, q });
+            }
+        }
+        Err(no_convergence("rupture"))
+    }
+
+    /// Beginning of the film that ends at `(ie, xe)` with pressure `pe` and lies above `(ir, xr)`; `(piece, x, q, dry)`.
+    #[allow(clippy::too_many_arguments)]
+    fn reform(&self, f: &Flow, q: f64, ir: usize, xr: f64, ie: usize, xe: f64, pe: f64, may_dry: bool) -> Start {
+        let end = if xe >= self.face.len() { Three::default() } else { self.face.tail(ie, xe) };
+        // Pressure at x counted back from the end, its slope over x, and the flux constant there.
+        let at = |i: usize, x: f64| {
+            let t = self.face.tail(i, x).minus(end);
+            let dry_q = f.v * self.face.s(x) - f.u * self.face.film();
+            let dry = may_dry && dry_q > q;
+            let qx = if dry { dry_q } else { q };
+            let h = self.face.film() + self.face.drop(i, x);
+            let slope = self.n(f, i, x, qx) / (h * h * h) + if dry { f.v * t.i3 } else { 0.0 };
+            (pe - t.rise(f.u, f.v, qx), slope, qx, dry)
+        };
+        let mut i = ie;
+        let mut hi = xe;
+        loop {
+            let mut lo = if i == ir { xr } else { self.face.node(i) };
+            let valley = self
+                .face
+                .valley(i, f.u, f.v, q)
+                .filter(|x| i != ir && *x > lo && *x < hi && at(i, *x).0 <= 0.0);
+            let found = if let Some(x) = valley {
+                lo = x;
+                true
+            } else {
+                at(i, lo).0 <= 0.0
+            };
+            if found {
+                return self.reform_between(i, lo, hi, xe, at);
+            }
+            if i == ir {
+                // The film is full but for rounding.
+                return Start { i, x: xr, q, dry: false };
+            }
+            hi = lo;
+            i -= 1;
+        }
+    }
+
+    fn reform_between(
+        &self,
+        i: usize,
+        mut lo: f64,
+        mut hi: f64,
+        xe: f64,
+        at: impl Fn(usize, f64) -> (f64, f64, f64, bool),
+    ) -> Start {
+        let mut x = self.warm.map_or(f64::NAN, |w| w.xf);
+        if !(x > lo && x < hi) {
+            x = hi;
+        }
+        for _ in 0..200 {
+            let (p, slope, q, dry) = at(i, x);
+            if p > 0.0 {
+                hi = x;
+            } else {
+                lo = x;
+            }
+            let step = -p / slope;
+            let next = x + step;
+            if p == 0.0 || hi - lo <= 2.0 * f64::EPSILON * self.face.len() {
+                return Start { i, x, q, dry };
+            }
+            if next > lo && next < hi {
+                x = next;
+                // Second order, in units of the length of the film: what is left is below rounding.
+                if step.abs() <= 1e-9 * (xe - x) {
+                    let (_, _, q, dry) = at(i, x);
+                    return Start { i, x, q, dry };
+                }
+            } else {
+                x = 0.5 * (lo + hi);
+            }
+        }
+        let (_, _, q, dry) = at(i, x);
+        Start { i, x, q, dry }
+    }
+
+    /// Fills `islands` for the film at the given squeeze velocity.
+    fn solve(&mut self, f: &Flow, cavitation: Cavitation) -> Result<(), EvalError> {
+        self.islands.clear();
+        let last = self.face.pieces() - 1;
+        let len = self.face.len();
+        let whole = *self.face.whole();
+        match cavitation {
+            Cavitation::FullSommerfeld => {
+                let q = self.full_q(f);
+                self.push_full(f, q, &whole);
+            }
+            Cavitation::HalfSommerfeld => self.clip(f, &whole),
+            Cavitation::MassConserving | Cavitation::SwiftStieber => match self.lead(f)? {
+                Lead::Full { q } => self.push_full(f, q, &whole),
+                Lead::Rupture { i, x, q } => {
+                    let head = self.face.head(i, x);
+                    let w = if x > 0.0 { head.x3 / head.i3 } else { self.face.s(0.0) };
+                    self.islands.push(Island {
+                        ia: 0,
+                        xa: 0.0,
+                        pa: f.pa,
+                        ib: i,
+                        xb: x,
+                        pb: 0.0,
+                        q,
+                        w,
+                        ra: 0.0,
+                        rb: 0.0,
+                        upwards: true,
+                    });
+                    let mut xf = len;
+                    // The trailing edge has a film if there is pressure, or if the gap narrows towards it.
+                    let trailing = f.pb > 0.0 || self.n(f, last, len, q) < 0.0;
+                    if (cavitation == Cavitation::MassConserving || f.u == 0.0) && trailing {
+                        let start = self.reform(f, q, i, x, last, len, f.pb, true);
+                        xf = start.x;
+                        self.push_trailing(f, start, last, len, f.pb, w);
+                        if !start.dry {
+                            self.middle(f, q, w, i, x, start);
+                        }
+                    } else if cavitation == Cavitation::MassConserving {
+                        let start = Start { i: last, x: len, q, dry: false };
+                        self.middle(f, q, w, i, x, start);
+                    }
+                    self.warm = Some(Warm { xr: x, xf });
+                }
+            },
+        }
+        Ok(())
+    }
+
+    fn push_full(&mut self, f: &Flow, q: f64, whole: &Moments) {
+        self.islands.push(Island {
+            ia: 0,
+            xa: 0.0,
+            pa: f.pa,
+            ib: self.face.pieces() - 1,
+            xb: self.face.len(),
+            pb: f.pb,
+            q,
+            w: whole.x3 / whole.i3,
+            ra: 0.0,
+            rb: 0.0,
+            upwards: true,
+        });
+    }
+
+    fn push_trailing(&mut self, f: &Flow, start: Start, ie: usize, xe: f64, pe: f64, w: f64) {
+        let m = self.face.span(start.i, start.x, ie, xe).pressure();
+        let w = if start.dry {
+            // The flux constant moves with the front, and the front with v.
+            let s = self.face.s(start.x);
+            let h = self.face.film() + self.face.drop(start.i, start.x);
+            let n = self.n(f, start.i, start.x, start.q);
+            s + f.v * (m.x3 - s * m.i3) / (n / (h * h * h) + f.v * m.i3)
+        } else {
+            w
+        };
+        self.islands.push(Island {
+            ia: start.i,
+            xa: start.x,
+            pa: 0.0,
+            ib: ie,
+            xb: xe,
+            pb: pe,
+            q: start.q,
+            w,
+            ra: w * m.i3 - m.x3,
+            rb: 0.0,
+            upwards: false,
+        });
+    }
+
+    /// Films inside the cavity of a face that waves: each ends at a pressure minimum.
+    #[allow(clippy::too_many_arguments)]
+    fn middle(&mut self, f: &Flow, q: f64, w: f64, ir: usize, xr: f64, from: Start) {
+        if self.face.convex() {
+            return;
+        }
+        let (mut i, mut below) = (from.i, from.x);
+        // A cavity that has run dry feeds no further film.
+        let dry = |s: &Self, x: f64| f.v * s.face.s(x) - f.u * s.face.film() > q;
+        loop {
+            let valley = self.face.valley(i, f.u, f.v, q).filter(|x| *x < below && (i > ir || *x > xr));
+            if let Some(xe) = valley
+                && i > ir
+                && !dry(self, xe)
+            {
+                let start = self.reform(f, q, ir, xr, i, xe, 0.0, false);
+                if start.x < xe {
+                    self.push_trailing(f, start, i, xe, 0.0, w);
+                    i = start.i;
+                    below = start.x;
+                    if i > ir {
+                        continue;
+                    }
+                    return;
+                }
+            }
+            if i <= ir {
+                return;
+            }
+            i -= 1;
+        }
+    }
+
+    /// The parts of the full film above zero pressure.
+    fn clip(&mut self, f: &Flow, whole: &Moments) {
+        let q = self.full_q(f);
+        let w = whole.x3 / whole.i3;
+        let len = self.face.len();
+        let mid = self.face.x_ref();
+        let last = self.face.pieces() - 1;
+        // (pressure, ∂p/∂v); counted from the nearer end, for the sake of digits.
+        let at = |i: usize, x: f64| {
+            if x >= len {
+                (f.pb, 0.0)
+            } else if x <= 0.0 {
+                (f.pa, 0.0)
+            } else if x <= mid {
+                let t = self.face.head(i, x);
+                (f.pa + t.rise(f.u, f.v, q), t.x3 - w * t.i3)
+            } else {
+                let t = self.face.tail(i, x);
+                (f.pb - t.rise(f.u, f.v, q), w * t.i3 - t.x3)
+            }
+        };
+        let mut open: Option<(usize, f64, f64, f64)> = (f.pa > 0.0).then_some((0, 0.0, f.pa, 0.0));
+        let (mut i0, mut x0, mut p0) = (0, 0.0, f.pa);
+        let islands = &mut self.islands;
+        let face = &self.face;
+        let mut visit = |i: usize, x: f64, islands: &mut Vec<Island>| {
+            let (p, r) = at(i, x);
+            let island = |a: (usize, f64, f64, f64), b: (usize, f64, f64, f64)| Island {
+                ia: a.0,
+                xa: a.1,
+                pa: a.2,
+                ib: b.0,
+                xb: b.1,
+                pb: b.2,
+                q,
+                w,
+                ra: a.3,
+                rb: b.3,
+                upwards: a.1 <= 0.0,
+            };
+            // Rises or falls monotonically since the last visit.
+            if p > 0.0 && open.is_none() {
+                let z = if p0 < 0.0 { clip_zero(face, f, q, i, x0, p0, x, p, &at) } else { x0 };
+                open = Some((if z > x0 { i } else { i0 }, z, 0.0, if z > 0.0 { at(i, z).1 } else { 0.0 }));
+            } else if p <= 0.0
+                && let Some(a) = open
+            {
+                let z = if p < 0.0 { clip_zero(face, f, q, i, x0, p0, x, p, &at) } else { x };
+                let rb = if z < len { at(i, z).1 } else { 0.0 };
+                islands.push(island(a, (i, z, 0.0, rb)));
+                open = None;
+            }
+            if x >= len
+                && let Some(a) = open
+            {
+                islands.push(island(a, (i, x, p, r)));
+                open = None;
+            }
+            (i0, x0, p0) = (i, x, p);
+        };
+        for i in 0..=last {
+            let c = self.face.crest(i, f.u, f.v, q);
+            let v = self.face.valley(i, f.u, f.v, q);
+            let (first, second) = match (c, v) {
+                (Some(c), Some(v)) if c > v => (Some(v), Some(c)),
+                both => both,
+            };
+            for x in [first, second].into_iter().flatten() {
+                visit(i, x, islands);
+            }
+            visit(i, self.face.node(i + 1), islands);
+        }
+    }
+
+    /// Load over `12 μ` of the films found last.
+    fn carried(&self, f: &Flow) -> Carried {
+        let mut c = Carried::default();
+        for l in &self.islands {
+            let m = self.face.span(l.ia, l.xa, l.ib, l.xb);
+            self.carry(f, l, &m, &mut c);
+        }
+        c
+    }
+
+    #[inline]
+    fn carry(&self, f: &Flow, l: &Island, m: &Moments, c: &mut Carried) {
+        let (sa, sb) = (self.face.s(l.xa), self.face.s(l.xb));
+        // Integration by parts: ∫p dx = [s p] - ∫ s p' dx.
+        c.load += sb * l.pb - sa * l.pa - (f.u * m.e2 + f.v * m.xx3 - l.q * m.x3);
+        c.rate += sb * l.rb - sa * l.ra - (m.xx3 - l.w * m.x3);
+    }
+
+    /// Pressure over `12 μ` at `x`; zero outside the films.
+    fn pressure(&self, f: &Flow, i: usize, x: f64) -> f64 {
+        for l in &self.islands {
+            if x >= l.xa && x <= l.xb {
+                return self.pressure_in(f, l, i, x);
+            }
+        }
+        0.0
+    }
+
+    fn pressure_in(&self, f: &Flow, l: &Island, i: usize, x: f64) -> f64 {
+        if x >= l.xb {
+            l.pb
+        } else if x <= l.xa {
+            l.pa
+        } else if l.upwards {
+            l.pa + self.face.span(l.ia, l.xa, i, x).pressure().rise(f.u, f.v, l.q)
+        } else {
+            l.pb - self.face.span(i, x, l.ib, l.xb).pressure().rise(f.u, f.v, l.q)
+        }
+    }
+
+    /// Everything about the films found last, in this sliding direction.
+    fn report(&mut self, f: &Flow, cavitation: Cavitation, shear: CavityShear, mu: f64, p_cav: f64) -> FaceOut {
+        let h0 = self.face.film();
+        let len = self.face.len();
+        let last = self.face.pieces() - 1;
+        let mut c = Carried::default();
+        let (mut gradient, mut sheared, mut ends) = (0.0, 0.0, 0.0);
+        let mut high = f64::NEG_INFINITY;
+        let mut extent = (0.0, 0.0);
+        for l in &self.islands {
+            let m = self.face.span(l.ia, l.xa, l.ib, l.xb);
+            self.carry(f, l, &m, &mut c);
+            gradient += f.u * (m.i1 - h0 * m.i2) + f.v * m.x2 - l.q * m.i2;
+            sheared += m.i1;
+            ends += l.pb * (h0 + self.face.drop(l.ib, l.xb)) - l.pa * (h0 + self.face.drop(l.ia, l.xa));
+            let mut p = l.pa.max(l.pb);
+            for i in l.ia..=l.ib {
+                if let Some(x) = self.face.crest(i, f.u, f.v, l.q)
+                    && x > l.xa
+                    && x < l.xb
+                {
+                    p = p.max(self.pressure_in(f, l, i, x));
+                }
+            }
+            if p > high {
+                high = p;
+                extent = (l.xa, l.xb);
+            }
+        }
+        let mut couette = 2.0 * f.u * sheared;
+        if shear != CavityShear::None {
+            // The gaps between the films, in order along the face.
+            let lead = self.islands.first().filter(|l| l.xa <= 0.0).copied();
+            self.islands.sort_by(|a, b| a.xa.total_cmp(&b.xa));
+            let (mut i, mut x) = (0, 0.0);
+            for k in 0..=self.islands.len() {
+                let next = self.islands.get(k).map_or((last, len, last, len), |l| (l.ia, l.xa, l.ib, l.xb));
+                if next.1 > x {
+                    couette += self.gap_shear(f, cavitation, shear, lead, (i, x), (next.0, next.1));
+                }
+                (i, x) = (next.2, next.3);
+            }
+        }
+        if self.islands.is_empty() {
+            high = 0.0;
+        }
+        let k = 12.0 * mu;
+        let (j, viscous) = (k * gradient, mu * couette);
+        FaceOut {
+            load: k * c.load,
+            load_rate: (k * c.rate).min(0.0),
+            ring_shear: viscous - 0.5 * j,
+            liner_shear: viscous + 0.5 * j,
+            slope_force: j - k * ends,
+            p_max: p_cav + k * high,
+            full_film: extent,
+        }
+    }
+
+    /// `∫ u w/h dx` over a stretch without full film, `w` the filled fraction.
+    fn gap_shear(
+        &self,
+        f: &Flow,
+        cavitation: Cavitation,
+        shear: CavityShear,
+        lead: Option<Island>,
+        a: (usize, f64),
+        b: (usize, f64),
+    ) -> f64 {
+        if f.u == 0.0 {
+            return 0.0;
+        }
+        let h0 = self.face.film();
+        if shear == CavityShear::Full {
+            return 2.0 * f.u * self.face.span(a.0, a.1, b.0, b.1).i1;
+        }
+        if let (true, Some(l)) = (cavitation != Cavitation::HalfSommerfeld, lead) {
+            // θ = (q0 - v s)/(u h), until it runs dry.
+            let q0 = l.q + f.u * h0;
+            let mut b = b;
+            if f.v > 0.0 {
+                let dry = self.face.x_ref() + q0 / f.v;
+                if dry <= a.1 {
+                    return 0.0;
+                }
+                if dry < b.1 {
+                    b = (self.face.piece_of(dry), dry);
+                }
+            }
+            let m = self.face.span(a.0, a.1, b.0, b.1);
+            return 2.0 * (q0 * m.i2 - f.v * m.x2);
+        }
+        // The clip has no flux of its own: what passes the narrowest place fills the rest to that height.
+        let m = self.face.span(a.0, a.1, b.0, b.1);
+        2.0 * f.u * (h0 + self.face.lowest_between(a.0, a.1, b.0, b.1)) * m.i2
+    }
+}
+
+/// Beginning of a film behind a cavity.
+#[derive(Debug, Clone, Copy)]
+struct Start {
+    i: usize,
+    x: f64,
+    q: f64,
+    /// The cavity has run dry before.
+    dry: bool,
+}
+
+/// Zero of the pressure between `(x0, p0)` and `(x1, p1)`, where it is monotone.
+#[allow(clippy::too_many_arguments)]
+fn clip_zero<S: Shape>(
+    face: &S,
+    f: &Flow,
+    q: f64,
+    i: usize,
+    x0: f64,
+    p0: f64,
+    x1: f64,
+    p1: f64,
+    at: &impl Fn(usize, f64) -> (f64, f64),
+) -> f64 {
+    let (mut lo, mut hi) = (x0, x1);
+    let falls = p0 > p1;
+    let mut x = x0 + (x1 - x0) * (p0 / (p0 - p1));
+    for _ in 0..200 {
+        let p = at(i, x).0;
+        if (p > 0.0) == falls {
+            lo = x;
+        } else {
+            hi = x;
+        }
+        let h = face.film() + face.drop(i, x);
+        let slope = (f.u * face.drop(i, x) + f.v * face.s(x) - q) / (h * h * h);
+        let step = -p / slope;
+        let next = x + step;
+        if p == 0.0 || hi - lo <= 2.0 * f64::EPSILON * face.len() {
+            return x;
+        }
+        if next > lo && next < hi {
+            x = next;
+            // Second order: what is left is below rounding.
+            if step.abs() <= 1e-9 * (x1 - x).min(x - x0) {
+                return x;
+            }
+        } else {
+            x = 0.5 * (lo + hi);
+        }
+    }
+    x
+}
+
+fn no_convergence(what: &'static str) -> EvalError {
+    EvalError::recoverable(MODEL, format!("no convergence of the {what}"))
+}
+
+impl<S: Shape> Film<S> {
+    fn new(up: S, down: S, cavitation: Cavitation, shear: CavityShear) -> Self {
+        Self { up: Side::new(up), down: Side::new(down), cavitation, shear }
+    }
+
+    /// Checks the inputs and turns them so that the liner moves along `+x`.
+    fn enter(&mut self, inp: &FaceIn, v: f64) -> Result<(&mut Side<S>, Flow, bool), EvalError> {
+        let all = [inp.h, inp.u, inp.p_bottom, inp.p_top, inp.p_cav, inp.mu, v];
+        if all.iter().any(|x| !x.is_finite()) || inp.mu <= 0.0 {
+            return Err(EvalError::fatal(MODEL, format!("not a film: {inp:?}, squeeze {v}")));
+        }
+        let turned = inp.u < 0.0;
+        let side = if turned { &mut self.down } else { &mut self.up };
+        if inp.h + side.face.lowest() <= 0.0 {
+            return Err(EvalError::recoverable(
+                MODEL,
+                format!("film of {} m leaves no gap at the nearest point", inp.h),
+            ));
+        }
+        side.face.set_film(inp.h);
+        let least = if self.cavitation == Cavitation::FullSommerfeld { f64::NEG_INFINITY } else { 0.0 };
+        let scale = 1.0 / (12.0 * inp.mu);
+        let bottom = (inp.p_bottom - inp.p_cav).max(least) * scale;
+        let top = (inp.p_top - inp.p_cav).max(least) * scale;
+        let (pa, pb) = if turned { (top, bottom) } else { (bottom, top) };
+        Ok((side, Flow { u: 0.5 * inp.u.abs(), v, pa, pb }, turned))
+    }
+}
+
+fn finite(x: f64, what: &'static str) -> Result<f64, EvalError> {
+    if x.is_finite() { Ok(x) } else { Err(EvalError::recoverable(MODEL, format!("{what} out of range"))) }
+}
+
+impl<S: Shape> Hydrodynamics for Film<S> {
+    fn evaluate(&mut self, inp: &FaceIn, hdot: f64) -> Result<FaceOut, EvalError> {
+        let (cavitation, shear) = (self.cavitation, self.shear);
+        let (side, f, turned) = self.enter(inp, hdot)?;
+        side.solve(&f, cavitation)?;
+        let mut o = side.report(&f, cavitation, shear, inp.mu, inp.p_cav);
+        if turned {
+            o.ring_shear = -o.ring_shear;
+            o.liner_shear = -o.liner_shear;
+            o.slope_force = -o.slope_force;
+            let len = side.face.len();
+            o.full_film = (len - o.full_film.1, len - o.full_film.0);
+        }
+        let sum = o.load + o.load_rate + o.ring_shear + o.liner_shear + o.slope_force + o.p_max;
+        finite(sum, "film")?;
+        Ok(o)
+    }
+
+    fn squeeze_rate(&mut self, inp: &FaceIn, load: f64) -> Result<f64, EvalError> {
+        let cavitation = self.cavitation;
+        let (side, mut f, _) = self.enter(inp, load)?;
+        let target = load / (12.0 * inp.mu);
+        f.v = 0.0;
+        side.squeeze(&mut f, cavitation, target)
+    }
+
+    fn profile(&mut self, inp: &FaceIn, hdot: f64, out: &mut [(f64, f64, f64)]) -> Result<(), EvalError> {
+        let cavitation = self.cavitation;
+        let (side, f, turned) = self.enter(inp, hdot)?;
+        side.solve(&f, cavitation)?;
+        let n = out.len();
+        let len = side.face.len();
+        let steps = n.saturating_sub(1).max(1);
+        for (j, o) in out.iter_mut().enumerate() {
+            let x = if j == steps { len } else { len * j as f64 / steps as f64 };
+            let along = if turned { len - x } else { x };
+            let i = side.face.piece_of(along);
+            let p = inp.p_cav + 12.0 * inp.mu * side.pressure(&f, i, along);
+            *o = (x, inp.h + side.face.drop(i, along), finite(p, "pressure")?);
+        }
+        Ok(())
+    }
+}
+
+impl<S: Shape> Side<S> {
+    /// The squeeze velocity at which the film carries `target` (over `12 μ`).
+    fn squeeze(&mut self, f: &mut Flow, cavitation: Cavitation, target: f64) -> Result<f64, EvalError> {
+        if target <= 0.0 && cavitation != Cavitation::FullSommerfeld {
+            return Err(EvalError::recoverable(MODEL, "a cavitating film carries no load of zero or less"));
+        }
+        // The full film is linear in v.
+        let m = *self.face.whole();
+        let spread = m.xx3 - m.x3 * m.x3 / m.i3;
+        let ends = self.face.s(self.face.len()) * f.pb - self.face.s(0.0) * f.pa;
+        let still = ends - f.u * m.e2 + m.x3 / m.i3 * (f.pa - f.pb + f.u * m.d2);
+        let full = finite((still - target) / spread, "squeeze velocity")?;
+        if cavitation == Cavitation::FullSommerfeld {
+            return Ok(full);
+        }
+        f.v = full;
+        self.bracketed(f, cavitation, target)
+    }
+
+    /// Safeguarded Newton on the load, which never rises with `v`, from `f.v`.
+    fn bracketed(&mut self, f: &mut Flow, cavitation: Cavitation, target: f64) -> Result<f64, EvalError> {
+        let (mut lo, mut hi) = (f64::NEG_INFINITY, f64::INFINITY);
+        let mut v = f.v;
+        let mut reach = 0.0_f64;
+        for _ in 0..400 {
+            f.v = v;
+            self.solve(f, cavitation)?;
+            let c = self.carried(f);
+            let g = c.load - target;
+            if !g.is_finite() {
+                return Err(EvalError::recoverable(MODEL, "film out of range"));
+            }
+            if g > 0.0 {
+                lo = v;
+            } else {
+                hi = v;
+            }
+            let step = -g / c.rate;
+            let mut next = v + step;
+            // Newton's next error is about step²: relative to the distance over which the load changes by itself.
+            if g == 0.0 || next == v {
+                return Ok(v);
+            }
+            if step.abs() <= 1e-15 * v.abs() || g.abs() <= 2.0 * f64::EPSILON * target {
+                return Ok(next.clamp(lo, hi));
+            }
+            if !(next > lo && next < hi) {
+                next = if lo.is_finite() && hi.is_finite() {
+                    0.5 * (lo + hi)
+                } else {
+                    reach = (4.0 * reach).max(v.abs()).max(target / (spread_of(&self.face)));
+                    if g > 0.0 { v + reach } else { v - reach }
+                };
+                if next == lo || next == hi {
+                    return finite(next, "squeeze velocity");
+                }
+            }
+            if next.abs() > 1e30 {
+                return Err(EvalError::recoverable(MODEL, "no squeeze velocity gives this load"));
+            }
+            v = next;
+        }
+        Err(no_convergence("squeeze velocity"))
+    }
+}
+
+fn spread_of<S: Shape>(face: &S) -> f64 {
+    let m = face.whole();
+    m.xx3 - m.x3 * m.x3 / m.i3
+}

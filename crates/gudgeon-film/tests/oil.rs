@@ -1,0 +1,119 @@
+//! Viscosities against the printed tables.
+
+use gudgeon_core::kinds::{Oil, OilSpec};
+use gudgeon_core::quantity::quantity;
+use gudgeon_film::{Constant, Grade, Vogel, VogelGrade, VogelTable};
+
+const CELSIUS: f64 = 273.15;
+
+fn oil(table: VogelTable, grade: Grade) -> Box<dyn Oil> {
+    VogelGrade { table, grade }.build().expect("a grade of this table")
+}
+
+/// `value` is `printed`, a number with `digits` significant digits.
+fn prints_as(value: f64, printed: f64, digits: i32, what: &str) {
+    let ulp = 10f64.powi(printed.log10().floor() as i32 + 1 - digits);
+    // Half of the last digit, and rounding of the reading for a value half way between two.
+    assert!((value - printed).abs() <= 0.500_001 * ulp, "{what}: {value} does not print as {printed}");
+}
+
+/// Viscosities at 40, 100 and 150 °C \[mPa s\] of the program listing of Zottin 1992, evaluated to four digits; its annex
+/// prints rounded constants: a \[Pa s\], b, c.
+#[test]
+fn zottin_1992() {
+    use Grade::*;
+    let rows = [
+        (Sae10w10, [38.76, 5.778, 2.421], [0.083356e-3, 820.723, 93.625]),
+        (Sae10w20, [33.88, 5.571, 2.444], [0.1014e-3, 773.810, 93.153]),
+        (Sae10w30, [57.97, 9.637, 4.289], [0.1981e-3, 737.690, 89.9]),
+        (Sae10w40, [70.59, 12.31, 5.189], [0.1142e-3, 1033.39, 120.8]),
+        (Sae10w50, [74.38, 15.47, 6.697], [0.09335e-3, 1304.170, 155.22]),
+        (Sae20w20, [69.87, 8.415, 3.381], [0.1324e-3, 737.810, 77.7]),
+        (Sae20w30, [62.01, 9.396, 3.968], [0.1413e-3, 811.962, 93.458]),
+        (Sae20w40, [98.76, 12.24, 4.868], [0.1637e-3, 793.329, 83.931]),
+        (Sae20w50, [97.92, 15.27, 6.033], [0.09297e-3, 1146.25, 124.7]),
+        (Sae30, [97.83, 10.09, 3.896], [0.1501e-3, 720.015, 71.123]),
+    ];
+    assert!(VogelTable::Zottin1992.grades().eq(rows.iter().map(|r| r.0)));
+    for (grade, printed, [a, b, c]) in rows {
+        let listing = oil(VogelTable::Zottin1992, grade);
+        let annex = Vogel { a: quantity(a), b: quantity(b), c: quantity(c) }.build().expect("constants of an oil");
+        for (t, mu) in [40.0, 100.0, 150.0].into_iter().zip(printed) {
+            let value = listing.viscosity(t + CELSIUS);
+            prints_as(1e3 * value, mu, 4, grade.name());
+            // The annex rounds a to four digits at most.
+            assert!((annex.viscosity(t + CELSIUS) / value - 1.0).abs() <= 1e-3, "{}", grade.name());
+        }
+    }
+}
+
+/// Tomanik 1993, evaluated at 40, 100 and 150 °C \[mPa s\] and given to three or four digits.
+#[test]
+fn tomanik_1993() {
+    use Grade::*;
+    let rows = [
+        (Sae5w, [(21.7, 3), (3.96, 3), (1.75, 3)]),
+        (Sae10w, [(37.1, 3), (5.61, 3), (2.23, 3)]),
+        (Sae15w, [(41.6, 3), (6.05, 3), (2.46, 3)]),
+        (Sae20w, [(98.7, 3), (10.5, 3), (3.45, 3)]),
+        (Sae20, [(51.8, 3), (6.99, 3), (2.68, 3)]),
+        (Sae30, [(98.7, 3), (10.5, 3), (3.45, 3)]),
+        (Sae40, [(133.0, 3), (12.87, 4), (4.04, 3)]),
+        (Sae50, [(222.0, 3), (17.94, 4), (5.14, 3)]),
+    ];
+    assert!(VogelTable::Tomanik1993.grades().eq(rows.iter().map(|r| r.0)));
+    for (grade, printed) in rows {
+        let oil = oil(VogelTable::Tomanik1993, grade);
+        for (t, (mu, digits)) in [40.0, 100.0, 150.0].into_iter().zip(printed) {
+            prints_as(1e3 * oil.viscosity(t + CELSIUS), mu, digits, grade.name());
+        }
+    }
+}
+
+#[test]
+fn says_which_grades_a_table_has() {
+    let e = VogelGrade { table: VogelTable::Tomanik1993, grade: Grade::Sae10w40 }.build().expect_err("not in there");
+    assert_eq!(e.field, "grade");
+    assert_eq!(e.message, "the table `tomanik1993` has no grade `sae_10w40`");
+    assert_eq!(
+        e.help.as_deref(),
+        Some("its grades are `sae_5w`, `sae_10w`, `sae_15w`, `sae_20w`, `sae_20`, `sae_30`, `sae_40`, `sae_50`")
+    );
+}
+
+/// Every grade is written in a case file as its name says.
+#[test]
+fn grades_read_and_write_their_names() {
+    for (table, word) in [(VogelTable::Zottin1992, "zottin1992"), (VogelTable::Tomanik1993, "tomanik1993")] {
+        for grade in table.grades() {
+            let text = format!("model = \"vogel_grade\"\ntable = \"{word}\"\ngrade = \"{}\"\n", grade.name());
+            let spec: Box<dyn OilSpec> = toml::from_str(&text).expect("valid");
+            assert!(spec.build().is_ok());
+            assert_eq!(toml::to_string(&spec).expect("writable"), text);
+        }
+    }
+    let e = toml::from_str::<Box<dyn OilSpec>>("model = \"vogel_grade\"\ntable = \"zottin1992\"\ngrade = \"sae_60\"\n");
+    let e = e.expect_err("no such grade").to_string();
+    assert!(e.contains("sae_60") && e.contains("`sae_30`"), "{e}");
+}
+
+#[test]
+fn vogel_is_finite_and_falls_with_temperature() {
+    let spec: Box<dyn OilSpec> =
+        toml::from_str("model = \"vogel\"\na = \"0.15014 mPa s\"\nb = 720.015\nc = 71.123\n").expect("valid");
+    let oil = spec.build().expect("an oil");
+    let mut before = f64::INFINITY;
+    for t in [0.0, 100.0, 200.0, 210.0, 250.0, 300.0, 400.0, 1e3, 1e6, 1e300] {
+        let mu = oil.viscosity(t);
+        assert!(mu.is_finite() && mu >= 0.15014e-3 && mu <= before, "{t} K: {mu}");
+        before = mu;
+    }
+    let bad = Vogel { a: quantity(1e-4), b: quantity(1e300), c: quantity(100.0) }.build();
+    assert!(bad.is_err_and(|e| e.message.contains("no viscosity")));
+}
+
+#[test]
+fn constant_is_constant() {
+    let oil = Constant { viscosity: quantity(5e-3) }.build().expect("an oil");
+    assert_eq!((oil.viscosity(300.0), oil.viscosity(500.0)), (5e-3, 5e-3));
+}
