@@ -67,7 +67,8 @@ impl Ui {
             Failure::Input(report) => {
                 text = report.render(self.color);
                 if report.diagnostics.len() > 1 {
-                    let _ = writeln!(text, "\n{} mistakes in {}", report.diagnostics.len(), report.source.name);
+                    let _ =
+                        writeln!(text, "\n{} mistakes in {}", report.diagnostics.len(), report.source.name);
                 }
             }
             Failure::Argument(d) => text = Report::unreadable("", d.clone()).render(self.color),
@@ -123,8 +124,9 @@ impl Drop for Bar {
 /// A number with enough digits to compare by, few enough to read.
 pub fn number(v: f64) -> String {
     const DIGITS: i32 = 5;
-    if v == 0.0 {
-        return "0".into();
+    // Counts and exact zeros are not measurements.
+    if v.fract() == 0.0 && v.abs() < 1e7 {
+        return format!("{v:.0}");
     }
     if !v.is_finite() {
         return v.to_string();
@@ -134,6 +136,11 @@ pub fn number(v: f64) -> String {
         return format!("{v:.*e}", DIGITS as usize - 1);
     }
     format!("{v:.*}", (DIGITS - 1 - magnitude).max(0) as usize)
+}
+
+/// A unit for a person: results without one carry the unit `1`.
+pub fn unit(unit: &str) -> String {
+    if unit == "1" { String::new() } else { unit.to_owned() }
 }
 
 /// Columns padded to their widest cell. `right` tells which ones are aligned to the right.
@@ -192,7 +199,10 @@ mod tests {
     #[test]
     fn numbers_keep_five_digits() {
         let shown = [49.876_543, 0.001_234_567, 1e-9, 123_456.7, 1.0, -2.5, 0.0, 2e9].map(number);
-        assert_eq!(shown, ["49.877", "0.0012346", "1.0000e-9", "123457", "1.0000", "-2.5000", "0", "2.0000e9"]);
+        assert_eq!(
+            shown,
+            ["49.877", "0.0012346", "1.0000e-9", "123457", "1", "-2.5000", "0", "2.0000e9"]
+        );
     }
 
     #[test]

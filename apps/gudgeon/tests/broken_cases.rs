@@ -92,7 +92,7 @@ const EDITS: &[Edit] = edits! {
     "missing key": "bore = \"100 mm\"\n" => "", at "[engine]": "engine: missing key `bore`", "Cylinder bore";
     "missing keys": "height = \"2.5 mm\"\nwidth = \"4 mm\"\n" => "", at "[[rings]]": "rings.0: missing keys `height`, `width`", "Axial thickness";
     "missing scene": "scene = \"ring_pack\"\n" => "", at "": "missing key `scene`", "What is simulated";
-    "missing kind": "[models.oil]\nmodel = \"vogel_grade\"\ngrade = \"sae_30\"\n" => "", at "[models.": "models: missing key `oil`", "Lubricant";
+    "missing kind": "[models.oil]\nmodel = \"vogel_grade\"\ntable = \"zottin1992\"\ngrade = \"sae_30\"\n" => "", at "[models.": "models: missing key `oil`", "Lubricant";
     "missing parameter of a model": "tdc = \"180 degC\"\n" => "", at "[models.film_temperature]": "models.film_temperature: missing key `tdc`", "";
     "missing end gap": "gap = \"0.4 mm\"\n\n[rings.face]\nshape = \"parabola\"" => "\n[rings.face]\nshape = \"parabola\"", at "[[rings]]": "rings.0: the ring has no end gap", "`cold_gap`";
 
@@ -121,7 +121,6 @@ const EDITS: &[Edit] = edits! {
     "land wider than the bore": "diameter = \"99.5 mm\"" => "diameter = \"105 mm\"", at "105 mm": "piston.lands.1", "";
     "face longer than the ring": "length = \"2.2 mm\"" => "length = \"22 mm\"", at "22 mm": "rings.0.face.length: a face of 22", "";
     "ring thicker than its groove is deep": "width = \"4 mm\"" => "width = \"40 mm\"", at "root_diameter": "rings.0.groove.root_diameter: a ring 40", "";
-    "millimetres without a unit": "bore = \"100 mm\"" => "bore = 100", at "": "", "";
     "more lands than rings": "[[liner.distortion]]\nposition = \"60 mm\"" => "[[piston.lands]]\nclearance = \"1 mm\"\ntemperature = 400\n[[liner.distortion]]\nposition = \"60 mm\"", at "[[piston.lands]]": "piston.lands: there are 2 rings but 3 lands", "one `[[piston.lands]]`";
     "both gaps": "cold_gap = \"0.4 mm\"" => "cold_gap = \"0.4 mm\"\ngap = \"0.3 mm\"", at "gap = \"0.3 mm\"": "rings.1.gap: both `gap` and `cold_gap` are given", "keep one";
     "cold gap without temperature": "cold_gap = \"0.4 mm\"\ntemperature = \"150 degC\"" => "cold_gap = \"0.4 mm\"", at "cold_gap": "rings.1.cold_gap", "";
@@ -154,7 +153,11 @@ const ARGUMENTS: &[(&str, &str, &str)] = &[
     ("engine.bore=-5 mm", "must be greater than zero", ""),
     ("rings.0.face.drops=[1 um]", "", ""),
     ("models.gas_flow.model=banana", "there is no gas_flow model `banana`", "`orifice_network`"),
-    ("models.gas_flow=narrow_channel", "a table with the key `model`", "models.gas_flow.model=narrow_channel"),
+    (
+        "models.gas_flow=narrow_channel",
+        "a table with the key `model`",
+        "models.gas_flow.model=narrow_channel",
+    ),
     ("models.gas_flw.model=narrow_channel", "unknown key `gas_flw`", "did you mean `gas_flow`?"),
     ("solver.method=fast", "`fast` is not a valid word", "`as_published`"),
     ("engine=1", "engine: a table is wanted", ""),
@@ -221,6 +224,12 @@ fn headline(m: &Value) -> String {
     }
 }
 
+fn shown(found: &[Value]) -> String {
+    let line =
+        |m: &Value| format!("  {}:{}:{} {} | {}\n", m["in"], m["line"], m["column"], headline(m), m["help"]);
+    found.iter().map(line).collect()
+}
+
 #[test]
 fn the_base_is_valid() {
     let folder = Folder::new("base");
@@ -232,12 +241,24 @@ fn the_base_is_valid() {
 }
 
 #[test]
+fn a_forgotten_unit_is_told() {
+    let folder = Folder::new("unit");
+    let text = base().replacen("rod_length = \"190 mm\"", "rod_length = 190", 1);
+    fs::write(folder.0.join("case.toml"), text).expect("written");
+    let o = gudgeon(&folder, &["check", "case.toml"]);
+    assert!(stderr(&o).contains("note: engine.rod_length is 190 m"), "{}", stderr(&o));
+}
+
+#[test]
 fn every_edit_is_refused_where_it_stands() {
     let folder = Folder::new("edits");
     let base = base();
     let mut wrong = Vec::new();
     for e in EDITS {
-        assert!(base.contains(e.from), "{}: `{}` is not in the base", e.name, e.from);
+        if !base.contains(e.from) {
+            wrong.push(format!("{}: `{}` is not in the base", e.name, e.from));
+            continue;
+        }
         // The first occurrence: several values of the base are alike.
         let text = base.replacen(e.from, e.to, 1);
         fs::write(folder.0.join("case.toml"), &text).expect("written");
@@ -257,7 +278,7 @@ fn every_edit_is_refused_where_it_stands() {
                 && !headline(m).is_empty()
         };
         if found.iter().filter(fits).count() != 1 || found.len() != 1 {
-            wrong.push(format!("{}: {found:#?}", e.name));
+            wrong.push(format!("{}:\n{}", e.name, shown(found)));
         }
     }
     assert!(wrong.is_empty(), "{} of {} cases:\n{}", wrong.len(), EDITS.len(), wrong.join("\n"));
@@ -275,7 +296,13 @@ fn a_refused_run_writes_nothing_and_shows_the_line() {
     ] {
         let text = base().replacen(from, to, 1);
         fs::write(folder.0.join("case.toml"), &text).expect("written");
-        for command in [&["run", "case.toml"][..], &["run", "case.toml", "--json"], &["explain", "case.toml"], &["bench", "case.toml"], &["compare", "case.toml", "--swap", "gas_flow=orifice_network,narrow_channel"]] {
+        for command in [
+            &["run", "case.toml"][..],
+            &["run", "case.toml", "--json"],
+            &["explain", "case.toml"],
+            &["bench", "case.toml"],
+            &["compare", "case.toml", "--swap", "gas_flow=orifice_network,narrow_channel"],
+        ] {
             let o = gudgeon(&folder, command);
             assert_eq!(o.status.code(), Some(2), "{command:?}: {}", stderr(&o));
             assert!(o.stdout.is_empty(), "{command:?}");
@@ -293,9 +320,13 @@ fn wrong_arguments_are_shown() {
     let mut wrong = Vec::new();
     for (set, says, help) in ARGUMENTS {
         let found = mistakes(&folder, &["--set", set]);
-        let fits = |m: &Value| headline(m).contains(says) && m["help"].as_str().unwrap_or_default().contains(help) && m["in"] == "--set";
+        let fits = |m: &Value| {
+            headline(m).contains(says)
+                && m["help"].as_str().unwrap_or_default().contains(help)
+                && m["in"] == "--set"
+        };
         if found.len() != 1 || !fits(&found[0]) {
-            wrong.push(format!("{set}: {found:#?}"));
+            wrong.push(format!("{set}:\n{}", shown(&found)));
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
@@ -356,7 +387,11 @@ fn a_file_that_is_not_there() {
     fs::write(folder.0.join("case.toml"), base()).expect("written");
     let o = gudgeon(&folder, &["run", "cas.toml"]);
     assert_eq!(o.status.code(), Some(2));
-    assert!(stderr(&o).contains("cannot read `cas.toml`") && stderr(&o).contains("did you mean `case.toml`?"), "{}", stderr(&o));
+    assert!(
+        stderr(&o).contains("cannot read `cas.toml`") && stderr(&o).contains("did you mean `case.toml`?"),
+        "{}",
+        stderr(&o)
+    );
     let o = gudgeon(&folder, &["run", "."]);
     assert_eq!(o.status.code(), Some(2));
     assert!(stderr(&o).contains("is a folder"), "{}", stderr(&o));

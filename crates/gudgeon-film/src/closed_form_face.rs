@@ -145,11 +145,12 @@ enum Lead {
     Rupture { i: usize, x: f64, q: f64 },
 }
 
-/// Load over `12 μ` and its derivative.
+/// Load over `12 μ`, its derivative, and the size of the terms it was summed from.
 #[derive(Debug, Clone, Copy, Default)]
 struct Carried {
     load: f64,
     rate: f64,
+    size: f64,
 }
 
 /// Where the last cavity was, as a start for the next search.
@@ -237,12 +238,16 @@ impl<S: Shape> Side<S> {
                         lo = q;
                     }
                     let h = self.face.film() + self.face.drop(i, x);
-                    let bend = -1.0 / (h * h * h * (f.u * self.face.slope(i, x) + f.v));
+                    let slope = self.face.slope(i, x);
+                    let rising = f.u * slope + f.v;
+                    let bend = -1.0 / (h * h * h * rising);
                     let newton = p / t.i3;
                     // Quadratic model of p(q): exact where the film is short and p has a double zero.
                     let r = newton * bend / -t.i3;
                     let step = 2.0 * newton / (1.0 + (1.0 + 2.0 * r).max(0.0).sqrt());
-                    if r.abs() < 1e-5 {
+                    // Both the bend itself and what it changes with have to be small over the step.
+                    let dx = (step / rising).abs();
+                    if r.abs() < 1e-5 && dx <= 1e-6 * x && dx * slope.abs() <= 1e-6 * h {
                         close = Some(i);
                     }
                     q + step
@@ -307,6 +312,9 @@ impl<S: Shape> Side<S> {
                 at(i, lo).0 <= 0.0
             };
             if found {
+                // From here the pressure only rises as far as its maximum, if it has one.
+                let crest = self.face.crest(i, f.u, f.v, q).filter(|x| *x > lo && *x < hi);
+                let hi = crest.unwrap_or(hi);
                 return self.reform_between(i, lo, hi, xe, at);
             }
             if i == ir {
@@ -370,7 +378,10 @@ impl<S: Shape> Side<S> {
             }
             Cavitation::HalfSommerfeld => self.clip(f, &whole),
             Cavitation::MassConserving | Cavitation::SwiftStieber => match self.lead(f)? {
-                Lead::Full { q } => self.push_full(f, q, &whole),
+                Lead::Full { q } => {
+                    self.warm = None;
+                    self.push_full(f, q, &whole);
+                }
                 Lead::Rupture { i, x, q } => {
                     let head = self.face.head(i, x);
                     let w = if x > 0.0 { head.x3 / head.i3 } else { self.face.s(0.0) };
@@ -394,9 +405,7 @@ impl<S: Shape> Side<S> {
                         let start = self.reform(f, q, i, x, last, len, f.pb, true);
                         xf = start.x;
                         self.push_trailing(f, start, last, len, f.pb, w);
-                        if !start.dry {
-                            self.middle(f, q, w, i, x, start);
-                        }
+                        self.middle(f, q, w, i, x, start);
                     } else if cavitation == Cavitation::MassConserving {
                         let start = Start { i: last, x: len, q, dry: false };
                         self.middle(f, q, w, i, x, start);
@@ -457,13 +466,11 @@ impl<S: Shape> Side<S> {
             return;
         }
         let (mut i, mut below) = (from.i, from.x);
-        // A cavity that has run dry feeds no further film.
-        let dry = |s: &Self, x: f64| f.v * s.face.s(x) - f.u * s.face.film() > q;
+        // At a minimum the film carries u h/2 > 0: the cavity before it has not run dry.
         loop {
             let valley = self.face.valley(i, f.u, f.v, q).filter(|x| *x < below && (i > ir || *x > xr));
             if let Some(xe) = valley
                 && i > ir
-                && !dry(self, xe)
             {
                 let start = self.reform(f, q, ir, xr, i, xe, 0.0, false);
                 if start.x < xe {
@@ -571,7 +578,9 @@ impl<S: Shape> Side<S> {
     fn carry(&self, f: &Flow, l: &Island, m: &Moments, c: &mut Carried) {
         let (sa, sb) = (self.face.s(l.xa), self.face.s(l.xb));
         // Integration by parts: ∫p dx = [s p] - ∫ s p' dx.
-        c.load += sb * l.pb - sa * l.pa - (f.u * m.e2 + f.v * m.xx3 - l.q * m.x3);
+        let (edge, wedge, squeeze, flux) = (sb * l.pb - sa * l.pa, f.u * m.e2, f.v * m.xx3, l.q * m.x3);
+        c.load += edge - (wedge + squeeze - flux);
+        c.size += edge.abs() + wedge.abs() + squeeze.abs() + flux.abs();
         c.rate += sb * l.rb - sa * l.ra - (m.xx3 - l.w * m.x3);
     }
 
@@ -835,21 +844,119 @@ impl<S: Shape> Side<S> {
         if target <= 0.0 && cavitation != Cavitation::FullSommerfeld {
             return Err(EvalError::recoverable(MODEL, "a cavitating film carries no load of zero or less"));
         }
+        if let Some(v) = self.quick(f, cavitation, target) {
+            return Ok(v);
+        }
         // The full film is linear in v.
         let m = *self.face.whole();
         let spread = m.xx3 - m.x3 * m.x3 / m.i3;
         let ends = self.face.s(self.face.len()) * f.pb - self.face.s(0.0) * f.pa;
         let still = ends - f.u * m.e2 + m.x3 / m.i3 * (f.pa - f.pb + f.u * m.d2);
         let full = finite((still - target) / spread, "squeeze velocity")?;
+        f.v = full;
         if cavitation == Cavitation::FullSommerfeld {
             return Ok(full);
         }
-        f.v = full;
-        self.bracketed(f, cavitation, target)
+        self.solve(f, cavitation)?;
+        if matches!(self.islands.as_slice(), [l] if l.xa <= 0.0 && l.xb >= self.face.len()) {
+            return Ok(full);
+        }
+        self.bracketed(f, cavitation, target, target / spread)
+    }
+
+    /// The squeeze velocity of a ruptured film, by Newton from where the cavity was last; `None` sends to the safe search.
+    ///
+    /// The place of rupture gives the squeeze velocity and with it the load in closed form, so the unknown is that place,
+    /// and with it the place of reformation. The load never falls with the place of rupture: whatever start converges,
+    /// converges to the one solution, and only rounding depends on the start.
+    fn quick(&mut self, f: &Flow, cavitation: Cavitation, target: f64) -> Option<f64> {
+        let warm = self.warm?;
+        if !self.face.convex()
+            || !(cavitation == Cavitation::MassConserving || (cavitation == Cavitation::SwiftStieber && f.u > 0.0))
+        {
+            return None;
+        }
+        let (len, last) = (self.face.len(), self.face.pieces() - 1);
+        let (s0, s_len) = (self.face.s(0.0), self.face.s(len));
+        let trailing = cavitation == Cavitation::MassConserving && f.pb > 0.0;
+        let (mut x, mut xf) = (warm.xr, if warm.xf < len { warm.xf } else { 0.5 * (warm.xr + len) });
+        for _ in 0..16 {
+            let i = self.face.piece_of(x);
+            let m = self.face.span(0, 0.0, i, x);
+            let (s, d) = (self.face.s(x), self.face.drop(i, x));
+            let arm = s * m.i3 - m.x3;
+            // A film of almost no length: too few digits here.
+            if !(x > 0.0 && x < len && arm > 1e-3 * m.x3.abs()) {
+                return None;
+            }
+            let v = (f.pa + f.u * (m.d2 - d * m.i3)) / arm;
+            let q = f.u * d + v * s;
+            let rising = f.u * self.face.slope(i, x) + v;
+            if rising <= 0.0 {
+                return None;
+            }
+            let w = m.x3 / m.i3;
+            let dv = -rising * m.i3 / arm;
+            let mut g = -s0 * f.pa - (f.u * m.e2 + v * m.xx3 - q * m.x3) - target;
+            let mut g_v = -(m.xx3 - w * m.x3);
+            let mut front = None;
+            if trailing {
+                let j = self.face.piece_of(xf);
+                let n = self.face.span(j, xf, last, len);
+                let (sf, df) = (self.face.s(xf), self.face.drop(j, xf));
+                let hf = self.face.film() + df;
+                let dry_q = v * sf - f.u * self.face.film();
+                let dry = dry_q > q;
+                let (qf, wf) = if dry { (dry_q, sf) } else { (q, w) };
+                let lever = n.x3 - wf * n.i3;
+                let p = f.pb - (f.u * n.d2 + v * n.x3 - qf * n.i3);
+                let p_x = (f.u * df + v * sf - qf) / (hf * hf * hf) + if dry { v * n.i3 } else { 0.0 };
+                let g_x = if dry { v * lever } else { 0.0 } - p;
+                g += s_len * f.pb - sf * p - (f.u * n.e2 + v * n.xx3 - qf * n.x3);
+                g_v += sf * lever - (n.xx3 - wf * n.x3);
+                // Eliminate the front: p + p_v dv + p_x dxf = 0 with p_v = -lever.
+                g -= g_x * p / p_x;
+                g_v += g_x * lever / p_x;
+                front = Some((p, p_x, lever));
+            }
+            let dx = -g / (g_v * dv);
+            let next = x + dx;
+            let mut settled = dx.abs() <= 1e-8 * x.min(len - x);
+            let answer = v + dv * dx;
+            if let Some((p, p_x, lever)) = front {
+                let dxf = (lever * dv * dx - p) / p_x;
+                settled &= dxf.abs() <= 1e-8 * (len - xf).min(xf - x);
+                xf = (xf + dxf).min(0.5 * (xf + len));
+                if !(xf > next.min(x)) {
+                    return None;
+                }
+            }
+            if !next.is_finite() {
+                return None;
+            }
+            x = next.clamp(0.25 * x, 0.5 * (x + len));
+            if settled {
+                // The error left is of the order of dx², below rounding.
+                if trailing && xf <= x {
+                    return None;
+                }
+                if cavitation == Cavitation::SwiftStieber && f.pb > 0.0 {
+                    // The trailing edge holds less than the film would have there: it has let go.
+                    let i = self.face.piece_of(x);
+                    let q = f.u * self.face.drop(i, x) + answer * self.face.s(x);
+                    if self.face.tail(i, x).rise(f.u, answer, q) < f.pb {
+                        return None;
+                    }
+                }
+                self.warm = Some(Warm { xr: x, xf: if trailing { xf } else { len } });
+                return Some(answer);
+            }
+        }
+        None
     }
 
     /// Safeguarded Newton on the load, which never rises with `v`, from `f.v`.
-    fn bracketed(&mut self, f: &mut Flow, cavitation: Cavitation, target: f64) -> Result<f64, EvalError> {
+    fn bracketed(&mut self, f: &mut Flow, cavitation: Cavitation, target: f64, unit: f64) -> Result<f64, EvalError> {
         let (mut lo, mut hi) = (f64::NEG_INFINITY, f64::INFINITY);
         let mut v = f.v;
         let mut reach = 0.0_f64;
@@ -858,33 +965,31 @@ impl<S: Shape> Side<S> {
             self.solve(f, cavitation)?;
             let c = self.carried(f);
             let g = c.load - target;
-            if !g.is_finite() {
+            if !(g.is_finite() && c.rate.is_finite()) {
                 return Err(EvalError::recoverable(MODEL, "film out of range"));
+            }
+            // The rate of a film of no length is zero, of either sign.
+            let step = g / c.rate.abs();
+            if g.abs() <= f64::EPSILON * c.size || step.abs() <= 1e-15 * v.abs() {
+                return Ok(v);
             }
             if g > 0.0 {
                 lo = v;
             } else {
                 hi = v;
             }
-            let step = -g / c.rate;
             let mut next = v + step;
-            // Newton's next error is about step²: relative to the distance over which the load changes by itself.
-            if g == 0.0 || next == v {
-                return Ok(v);
-            }
-            if step.abs() <= 1e-15 * v.abs() || g.abs() <= 2.0 * f64::EPSILON * target {
-                return Ok(next.clamp(lo, hi));
-            }
-            if !(next > lo && next < hi) {
-                next = if lo.is_finite() && hi.is_finite() {
-                    0.5 * (lo + hi)
-                } else {
-                    reach = (4.0 * reach).max(v.abs()).max(target / (spread_of(&self.face)));
-                    if g > 0.0 { v + reach } else { v - reach }
-                };
-                if next == lo || next == hi {
-                    return finite(next, "squeeze velocity");
+            if lo.is_finite() && hi.is_finite() {
+                if !(next > lo && next < hi) {
+                    next = 0.5 * (lo + hi);
+                    if next == lo || next == hi {
+                        return Ok(next);
+                    }
                 }
+            } else {
+                // A film that carries next to nothing does not say where it would carry more.
+                reach = (4.0 * reach).max(v.abs()).max(unit);
+                next = next.clamp(v - reach, v + reach);
             }
             if next.abs() > 1e30 {
                 return Err(EvalError::recoverable(MODEL, "no squeeze velocity gives this load"));
@@ -893,9 +998,4 @@ impl<S: Shape> Side<S> {
         }
         Err(no_convergence("squeeze velocity"))
     }
-}
-
-fn spread_of<S: Shape>(face: &S) -> f64 {
-    let m = face.whole();
-    m.xx3 - m.x3 * m.x3 / m.i3
 }

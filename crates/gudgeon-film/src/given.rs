@@ -36,7 +36,11 @@ pub(crate) struct PerRing {
 
 impl PerRing {
     /// `field` is the key of the list, for the message about its length.
-    pub(crate) fn new(of_ring: Vec<f64>, ctx: &FilmTemperatureCtx<'_>, field: &str) -> Result<Self, BuildError> {
+    pub(crate) fn new(
+        of_ring: Vec<f64>,
+        ctx: &FilmTemperatureCtx<'_>,
+        field: &str,
+    ) -> Result<Self, BuildError> {
         let rings = ctx.land_temperatures.len().saturating_sub(1);
         if of_ring.len() != rings || rings == 0 {
             let n = of_ring.len();

@@ -88,8 +88,11 @@ impl HydrodynamicsSpec for GriddedFace {
         let n = base * self.refine + 1;
         if n > MOST {
             let field = if base < MOST { "refine" } else { "points" };
-            return Err(BuildError::at(field, format!("the grid has {n} nodes, at most {MOST} are possible"))
-                .help("use fewer points or a smaller refine"));
+            return Err(BuildError::at(
+                field,
+                format!("the grid has {n} nodes, at most {MOST} are possible"),
+            )
+            .help("use fewer points or a smaller refine"));
         }
         Ok(Box::new(Grid::new(ctx.face, base, self.refine)))
     }
@@ -99,47 +102,47 @@ impl HydrodynamicsSpec for GriddedFace {
 pub(crate) fn check_face(face: &FaceProfile) -> Result<(), BuildError> {
     let length = face.length();
     if !(length.is_finite() && length > 0.0) {
-        return Err(BuildError::new(format!("the length of a running face must be positive, not {length} m")));
+        return Err(BuildError::new(format!(
+            "the length of a running face must be positive, not {length} m"
+        )));
     }
     let finite = match face {
         FaceProfile::Parabola { curvature, apex, .. } => curvature.is_finite() && apex.is_finite(),
         FaceProfile::Table { drops, .. } if drops.len() < 2 => {
-            return Err(BuildError::new(format!("a face profile needs two or more points, not {}", drops.len())));
+            return Err(BuildError::new(format!(
+                "a face profile needs two or more points, not {}",
+                drops.len()
+            )));
         }
         FaceProfile::Table { drops, .. } => drops.iter().all(|d| d.is_finite()),
     };
     if finite { Ok(()) } else { Err(BuildError::new("the drops of a running face must be finite")) }
 }
 
-/// The face is cut into so many stretches that are worked on side by side: sums of one stretch do not wait for those of
-/// another, and the stretches fill vector registers.
+/// Nodes that are worked on together: sums of four lanes do not wait for one another, and fill vector registers.
 const LANES: usize = 4;
 
-/// One number for each stretch.
-type Lanes = [f64; LANES];
-
-/// What the solution needs to know of the nodes `row`, `rows + row`, `2 rows + row`, …: one node of each stretch. Nodes beyond
-/// the last repeat it with weight 0.
+/// What the solution needs to know of four neighbouring nodes. Nodes beyond the last repeat it with weight 0.
 #[derive(Debug, Clone, Copy)]
 struct Nodes {
-    drop: Lanes,
+    drop: [f64; LANES],
     /// Trapezoid weight in panels: 1, at the edges ½.
-    weight: Lanes,
+    weight: [f64; LANES],
     /// `x/dx`.
-    number: Lanes,
+    number: [f64; LANES],
     /// `(drop[j+1] - drop[j-1])/2`, at the edges half the difference to the neighbour: `∫ p h' dx = Σ p_j half_rise_j`.
-    half_rise: Lanes,
+    half_rise: [f64; LANES],
 }
 
-/// The solution at the same nodes, zero beyond the last.
+/// The solution at four neighbouring nodes, zero beyond the last node.
 #[derive(Debug, Clone, Copy, Default)]
 struct Work {
     /// `1/h`.
-    r: Lanes,
+    r: [f64; LANES],
     /// Pressure above `p_cav` before the clip.
-    p: Lanes,
+    p: [f64; LANES],
     /// `∂p/∂ḣ`.
-    q: Lanes,
+    q: [f64; LANES],
 }
 
 /// The nodes of one face, with work space.
@@ -168,16 +171,27 @@ impl Grid {
             .collect();
         let last = base * refine;
         let drop: Vec<f64> = (0..=last).map(|i| between(&shape, i, refine)).collect();
-        let rows = drop.len().div_ceil(LANES);
-        let nodes: Vec<Nodes> = (0..rows)
-            .map(|row| {
-                let each = |f: &dyn Fn(usize) -> f64| std::array::from_fn(|lane| f(lane * rows + row));
+        let nodes: Vec<Nodes> = (0..=last / LANES)
+            .map(|block| {
+                let each = |f: &dyn Fn(usize) -> f64| std::array::from_fn(|k| f(block * LANES + k));
                 Nodes {
                     drop: each(&|j| drop[j.min(last)]),
-                    weight: each(&|j| if j > last { 0.0 } else if j == 0 || j == last { 0.5 } else { 1.0 }),
+                    weight: each(&|j| {
+                        if j > last {
+                            0.0
+                        } else if j == 0 || j == last {
+                            0.5
+                        } else {
+                            1.0
+                        }
+                    }),
                     number: each(&|j| j as f64),
                     half_rise: each(&|j| {
-                        if j > last { 0.0 } else { 0.5 * (drop[(j + 1).min(last)] - drop[j.saturating_sub(1)]) }
+                        if j > last {
+                            0.0
+                        } else {
+                            0.5 * (drop[(j + 1).min(last)] - drop[j.saturating_sub(1)])
+                        }
                     }),
                 }
             })
@@ -188,7 +202,7 @@ impl Grid {
             min_drop: drop.iter().copied().fold(f64::INFINITY, f64::min),
             n: last + 1,
             edges: (drop[0], drop[last]),
-            work: vec![Work::default(); rows],
+            work: vec![Work::default(); nodes.len()],
             nodes,
         }
     }
@@ -210,30 +224,34 @@ impl Grid {
     /// Fills the work space.
     fn solve(&mut self, inp: &FaceIn, hdot: f64) -> Result<(), EvalError> {
         self.check(inp, hdot)?;
-        solve(inp, hdot, self.dx, self.n, &self.nodes, &mut self.work).map(drop).ok_or_else(|| overflow(inp, hdot))
+        solve(inp, hdot, self.dx, self.n, &self.nodes, &mut self.work)
+            .map(drop)
+            .ok_or_else(|| overflow(inp, hdot))
     }
 
     /// Drop and pressure above `p_cav`, clipped, at node `j`.
     fn node(&self, j: usize) -> (f64, f64) {
-        let (lane, row) = (j / self.nodes.len(), j % self.nodes.len());
-        (self.nodes[row].drop[lane], clip(self.work[row].p[lane]))
+        let (block, k) = (j / LANES, j % LANES);
+        (self.nodes[block].drop[k], clip(self.work[block].p[k]))
     }
 
     /// Load and friction of a solved film, from the sum of `weight/h`.
     #[inline(always)]
     fn result(&self, inp: &FaceIn, sum_r: f64, nodes: &[Nodes], work: &[Work]) -> FaceOut {
-        let (mut load, mut rate, mut slope, mut top) = ([0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        let (mut load, mut rate, mut slope, mut top) =
+            ([0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]);
         for (a, w) in nodes.iter().zip(work) {
             for k in 0..LANES {
                 let p = clip(w.p[k]);
-                let q = if w.p[k] > 0.0 { w.q[k] } else { 0.0 };
                 load[k] += a.weight[k] * p;
+                // `if p > 0 { q } else { 0 }` without a branch, which the clip would make hard to predict.
+                let q = f64::from_bits(w.q[k].to_bits() & u64::from(w.p[k] > 0.0).wrapping_neg());
                 rate[k] += a.weight[k] * q;
-                slope[k] += a.half_rise[k] * p;
-                top[k] = p.max(top[k]);
+                slope[k] -= a.half_rise[k] * p;
+                top[k] = if p > top[k] { p } else { top[k] };
             }
         }
-        let slope_force = -sum(slope);
+        let slope_force = sum(slope);
         // Central differences with trapezoid weights satisfy summation by parts: ∫ h p' dx = [p h] - ∫ p h' dx holds for the
         // sums too, which saves differentiating the pressure.
         let (bottom, up) = (clip(inp.p_bottom - inp.p_cav), clip(inp.p_top - inp.p_cav));
@@ -246,7 +264,7 @@ impl Grid {
             ring_shear: shear - half_drag,
             liner_shear: shear + half_drag,
             slope_force,
-            p_max: inp.p_cav + top[0].max(top[1]).max(top[2].max(top[3])),
+            p_max: inp.p_cav + top.into_iter().fold(0.0, |a, b| if b > a { b } else { a }),
             full_film: self.full_film(work),
         }
     }
@@ -254,15 +272,16 @@ impl Grid {
     /// Where the pressure before the clip passes through `p_cav`, outermost on both sides; an empty film lies at 0.
     #[inline(always)]
     fn full_film(&self, work: &[Work]) -> (f64, f64) {
-        let rows = work.len();
-        let p = |j: usize| work[j % rows].p[j / rows];
+        let p = |j: usize| work[j / LANES].p[j % LANES];
         let last = self.n - 1;
-        let low = (0..LANES).find_map(|k| work.iter().position(|w| w.p[k] > 0.0).map(|row| k * rows + row));
-        let Some(low) = low else { return (0.0, 0.0) };
-        let high = (0..LANES).rev().find_map(|k| work.iter().rposition(|w| w.p[k] > 0.0).map(|row| k * rows + row));
-        let high = high.unwrap_or(low);
+        let Some(low) = (0..=last).find(|&j| p(j) > 0.0) else { return (0.0, 0.0) };
+        let high = (low..=last).rev().find(|&j| p(j) > 0.0).unwrap_or(low);
         let from = if low == 0 { 0.0 } else { (low as f64 - p(low) / (p(low) - p(low - 1))) * self.dx };
-        let to = if high == last { self.length } else { (high as f64 + p(high) / (p(high) - p(high + 1))) * self.dx };
+        let to = if high == last {
+            self.length
+        } else {
+            (high as f64 + p(high) / (p(high) - p(high + 1))) * self.dx
+        };
         (from, to)
     }
 }
@@ -299,14 +318,15 @@ fn clip(v: f64) -> f64 {
 }
 
 #[inline(always)]
-fn sum(lanes: Lanes) -> f64 {
+fn sum(lanes: [f64; LANES]) -> f64 {
     (lanes[0] + lanes[1]) + (lanes[2] + lanes[3])
 }
 
-/// What stands before each stretch when `start` stands before the first and each adds its own.
+/// Sums over four lanes from the left: 1, 1-2, 1-3, 1-4.
 #[inline(always)]
-fn before(start: f64, [a, b, c, _]: Lanes) -> Lanes {
-    [start, start + a, start + (a + b), start + ((a + b) + c)]
+fn running([a, b, c, d]: [f64; LANES]) -> [f64; LANES] {
+    let ab = a + b;
+    [a, ab, ab + c, ab + (c + d)]
 }
 
 /// Pressures above `p_cav` before the clip and their derivatives with respect to `hdot` at the `n` nodes. Returns the sum of
@@ -340,49 +360,39 @@ fn solve(inp: &FaceIn, hdot: f64, dx: f64, n: usize, nodes: &[Nodes], work: &mut
     let squeeze = 12.0 * half * dx;
     let slope = squeeze * hdot;
     let constant = 0.5 * (top - bottom) * inv3 - wedge * mean_h - slope * mean_j;
-    // Sums of the gradients at both ends of each panel, from the first node of its stretch on.
-    let (mut p, mut q) = ([0.0; LANES], [0.0; LANES]);
-    let (mut gp, mut gq) = ([0.0; LANES], [0.0; LANES]);
-    let (mut first_p, mut first_q) = ([0.0; LANES], [0.0; LANES]);
-    for (row, (a, w)) in nodes.iter().zip(work.iter_mut()).enumerate() {
-        let (before_p, before_q) = (gp, gq);
+    // The bottom edge has no panel below it: the opposite of its own gradient makes the first sum nothing.
+    let r = work.first().map_or(0.0, |w| w.r[0]);
+    let mut before_p = -r * r * (wedge + r * constant);
+    let mut before_q = r * r * r * squeeze * mean_j;
+    let (mut p, mut q) = (bottom, 0.0);
+    for (a, w) in nodes.iter().zip(work.iter_mut()) {
+        let (mut gp, mut gq) = ([0.0; LANES], [0.0; LANES]);
         for k in 0..LANES {
             let r = w.r[k];
             let rr = r * r;
             gp[k] = rr * (wedge + r * (constant + slope * a.number[k]));
             gq[k] = rr * (r * squeeze) * (a.number[k] - mean_j);
         }
-        if row == 0 {
-            (first_p, first_q) = (gp, gq);
-        } else {
-            for k in 0..LANES {
-                p[k] += before_p[k] + gp[k];
-                q[k] += before_q[k] + gq[k];
-            }
-        }
-        w.p = p;
-        w.q = q;
-    }
-    // The panel between two stretches belongs to the lower one.
-    for k in 0..LANES - 1 {
-        p[k] += gp[k] + first_p[k + 1];
-        q[k] += gq[k] + first_q[k + 1];
-    }
-    let (start_p, start_q) = (before(bottom, p), before(0.0, q));
-    for w in work.iter_mut() {
+        // Running sums inside the block first: the chain of additions from block to block has one link each.
+        let panel_p = running([before_p + gp[0], gp[0] + gp[1], gp[1] + gp[2], gp[2] + gp[3]]);
+        let panel_q = running([before_q + gq[0], gq[0] + gq[1], gq[1] + gq[2], gq[2] + gq[3]]);
+        (before_p, before_q) = (gp[3], gq[3]);
         for k in 0..LANES {
-            w.p[k] += start_p[k];
-            w.q[k] += start_q[k];
+            w.p[k] = p + panel_p[k];
+            w.q[k] = q + panel_q[k];
         }
+        (p, q) = (p + panel_p[3], q + panel_q[3]);
     }
     // The top edge is given; beyond it there is nothing.
-    let rows = work.len();
-    for j in n - 1..rows * LANES {
-        work[j % rows].p[j / rows] = if j == n - 1 { top } else { 0.0 };
-        work[j % rows].q[j / rows] = 0.0;
+    if let Some(w) = work.last_mut() {
+        for k in (n - 1) % LANES..LANES {
+            w.p[k] = 0.0;
+            w.q[k] = 0.0;
+        }
+        w.p[(n - 1) % LANES] = top;
     }
     // Once a running sum has left the finite numbers it never comes back, so its end tells of every node.
-    (start_p[LANES - 1] + p[LANES - 1] + start_q[LANES - 1] + q[LANES - 1] + sum_r).is_finite().then_some(sum_r)
+    (p + q + sum_r).is_finite().then_some(sum_r)
 }
 
 impl Hydrodynamics for Grid {
@@ -392,13 +402,16 @@ impl Hydrodynamics for Grid {
         let out = match <&[Nodes; PUBLISHED.div_ceil(LANES)]>::try_from(self.nodes.as_slice()) {
             Ok(nodes) if self.n == PUBLISHED => {
                 let mut work = [Work::default(); PUBLISHED.div_ceil(LANES)];
-                solve(inp, hdot, self.dx, PUBLISHED, nodes, &mut work).map(|s| self.result(inp, s, nodes, &work))
+                solve(inp, hdot, self.dx, PUBLISHED, nodes, &mut work)
+                    .map(|s| self.result(inp, s, nodes, &work))
             }
             _ => solve(inp, hdot, self.dx, self.n, &self.nodes, &mut self.work)
                 .map(|s| self.result(inp, s, &self.nodes, &self.work)),
         };
         match out {
-            Some(o) if (o.load + o.load_rate + o.ring_shear + o.liner_shear + o.slope_force).is_finite() => Ok(o),
+            Some(o) if (o.load + o.load_rate + o.ring_shear + o.liner_shear + o.slope_force).is_finite() => {
+                Ok(o)
+            }
             _ => Err(overflow(inp, hdot)),
         }
     }
@@ -414,8 +427,8 @@ impl Hydrodynamics for Grid {
             for (a, w) in self.nodes.iter().zip(&self.work) {
                 for k in 0..LANES {
                     let on = hdot.is_none_or(|hdot| w.p[k] + hdot * w.q[k] > 0.0);
-                    s[k] += a.weight[k] * if on { w.p[k] } else { 0.0 };
-                    d[k] += a.weight[k] * if on { w.q[k] } else { 0.0 };
+                    s[k] += if on { a.weight[k] * w.p[k] } else { 0.0 };
+                    d[k] += if on { a.weight[k] * w.q[k] } else { 0.0 };
                 }
             }
             (sum(s), sum(d))
@@ -444,7 +457,9 @@ impl Hydrodynamics for Grid {
         let edges = 0.5 * self.dx * (clip(inp.p_bottom - inp.p_cav) + clip(inp.p_top - inp.p_cav));
         Err(EvalError::recoverable(
             MODEL,
-            format!("no squeeze velocity gives the load {load:e} N/m; the edge pressures alone carry {edges:e} N/m"),
+            format!(
+                "no squeeze velocity gives the load {load:e} N/m; the edge pressures alone carry {edges:e} N/m"
+            ),
         ))
     }
 

@@ -53,10 +53,12 @@ pub(crate) struct VogelOil {
 impl VogelOil {
     pub(crate) fn new(a: f64, b: f64, c: f64) -> Result<Self, BuildError> {
         let oil = Self { a, b, shift: c - ZERO_CELSIUS, floor: b / MAX_EXPONENT };
-        // Any temperature will do to find constants that overflow or underflow; 100 °C is where oils are rated.
+        // Any temperature will do to find constants that are no oil's; 100 °C is where oils are rated.
         let at_100 = oil.viscosity(ZERO_CELSIUS + 100.0);
-        if !(at_100.is_finite() && at_100 > 0.0) {
-            return Err(BuildError::new(format!("a = {a} Pa s, b = {b} and c = {c} give no viscosity at 100 degC")));
+        if !(at_100.is_finite() && at_100 > 0.0 && 100.0 + c > oil.floor) {
+            return Err(BuildError::new(format!(
+                "a = {a} Pa s, b = {b} and c = {c} give no viscosity at 100 degC"
+            )));
         }
         Ok(oil)
     }

@@ -28,7 +28,7 @@ use crate::vogel::VogelOil;
 /// | `tomanik1993` | `sae_50` | 1.96e-5 | 1518 | 122.6 |
 ///
 /// The constants of `zottin1992` are those of the program listing, where `a` stands in kp s/cm²; the rounded ones of its
-/// annex give viscosities within 0.1 %. In `tomanik1993` the rows `sae_20w` and `sae_30` are identical, so one of them is
+/// annex give viscosities within 0.05 %, and within 0.11 % for `sae_20w40`. In `tomanik1993` the rows `sae_20w` and `sae_30` are identical, so one of them is
 /// probably misprinted; both are kept as printed.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]

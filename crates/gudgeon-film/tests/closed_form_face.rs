@@ -394,15 +394,18 @@ fn shear_identity_and_mirror() {
                 assert!(gap.abs() <= 1e-13 * size, "{n} {c:?} {gap:e} {size:e}");
 
                 let m = film_with(&mirror(&face), c, s).evaluate(&turned, v).expect("solvable");
-                let tol = 1e-12;
+                // The ends of a film are known to the rounding of the face length, whichever way it is counted.
+                let tol = 1e-12 + 1e-14 * face.length() / (o.full_film.1 - o.full_film.0).max(1e-30);
                 let same = |what: &str, a: f64, b: f64, size: f64| {
                     assert!((a - b).abs() <= tol * size, "{n} {c:?} {s:?} {what} {a:e} {b:e}\n{face:?} {i:?} {v}");
                 };
                 // Integration by parts takes the load from edge pressures times distances.
-                let gas = (i.p_top + i.p_bottom - 2.0 * i.p_cav) * face.length();
+                let gas = (i.p_top + i.p_bottom - 2.0 * i.p_cav + 1e-4 * wedge) * face.length();
                 same("load", o.load, m.load, o.load.abs() + gas);
-                same("rate", o.load_rate, m.load_rate, o.load_rate.abs());
+                // The rate is a variance; of a film that has shrunk to the edge, about the apex, a thousand times its size.
+                same("rate", o.load_rate, m.load_rate, 1e3 * o.load_rate.abs() + 1e-18 * squeeze * face.length());
                 same("p_max", o.p_max, m.p_max, o.p_max.abs());
+                let size = size + 1e-6 * i.mu * i.u.abs() * face.length() / i.h;
                 same("ring", o.ring_shear, -m.ring_shear, size);
                 same("liner", o.liner_shear, -m.liner_shear, size);
                 same("slope", o.slope_force, -m.slope_force, size);
@@ -473,5 +476,251 @@ fn load_falls_with_the_squeeze_velocity() {
                 assert!(jump || (slope >= lo - slack && slope <= hi + slack), "{n} {c:?} {slope:e} not in {lo:e} {hi:e} at {v}\n{face:?} {i:?}");
             }
         }
+    }
+}
+
+#[test]
+fn squeeze_rate_inverts_the_load() {
+    let mut r = Noise(4);
+    let mut worst = 0.0_f64;
+    for n in 0..4000 {
+        let face = r.face();
+        let i = r.inp();
+        let (wedge, squeeze) = sizes(&face, &i);
+        let p = wedge.max(i.p_top - i.p_cav).max(i.p_bottom - i.p_cav).max(1e3);
+        let load = p * face.length() * r.log(1e-4, 1e2);
+        for c in ALL {
+            let mut f = film(&face, c);
+            let cold = f.squeeze_rate(&i, load).expect("solvable");
+            let o = f.evaluate(&i, cold).expect("solvable");
+            // In terms of the load: rounding of the pressures in play and of v itself.
+            let size = load.abs() + (wedge + squeeze * cold.abs()) * face.length() * 1e-3;
+            let miss = (o.load - load).abs() / size;
+            let jump = c == SwiftStieber && {
+                let d = 1e-9 * cold.abs();
+                let (a, b) = (f.evaluate(&i, cold - d).expect("solvable"), f.evaluate(&i, cold + d).expect("solvable"));
+                a.load >= load && b.load <= load
+            };
+            assert!(jump || miss < 1e-10, "{n} {c:?} {} {load} {miss:e} {cold:e}\n{face:?} {i:?}", o.load);
+            if !jump {
+                worst = worst.max(miss);
+            }
+            // From a start nearby, and from one far away.
+            for (k, l) in [(1.01, 1.0), (0.7, 1.0), (1.0, 3.0), (1.0, 0.1)] {
+                let other = FaceIn { h: i.h * k, ..i };
+                f.squeeze_rate(&other, l * load).expect("solvable");
+                let warm = f.squeeze_rate(&i, load).expect("solvable");
+                let rate = o.load_rate.abs().max(1e-300);
+                assert!(
+                    (warm - cold).abs() <= 1e-13 * cold.abs() + 1e-12 * size / rate,
+                    "{n} {c:?} {warm:e} {cold:e} {:e}\n{face:?} {i:?} {load}", warm / cold - 1.0
+                );
+            }
+        }
+    }
+    // Without a jump the load is met to rounding.
+    assert!(worst < 1e-10, "{worst:e}");
+}
+
+/// Independent 25-digit solution of the cycle below: crank angle \[deg\], film \[m\] in the periodic state, good to 1e-9.
+const CYCLE: [(f64, f64); 28] = [
+    (0.0, 1.6014903999865203e-06),
+    (30.0, 4.0603866026448864e-06),
+    (60.0, 5.524231810313946e-06),
+    (90.0, 5.975986682617584e-06),
+    (120.0, 5.640968311280489e-06),
+    (150.0, 4.469672114112068e-06),
+    (180.0, 2.1242683176757437e-06),
+    (210.0, 3.982675352372216e-06),
+    (240.0, 5.5316826946020405e-06),
+    (270.0, 5.966309175436964e-06),
+    (300.0, 5.131752528976438e-06),
+    (330.0, 2.0401267725251866e-06),
+    (355.0, 3.455003628363439e-07),
+    (360.0, 1.6189650490839708e-07),
+    (365.0, 1.51386732347685e-07),
+    (375.0, 5.040765896076723e-07),
+    (385.0, 8.637579745284894e-07),
+    (390.0, 1.0747975567487478e-06),
+    (420.0, 3.320977615254402e-06),
+    (450.0, 5.716787322238278e-06),
+    (480.0, 5.636878977219416e-06),
+    (510.0, 4.469653347937598e-06),
+    (540.0, 2.1242680756770195e-06),
+    (570.0, 3.982675376592609e-06),
+    (600.0, 5.53172313010697e-06),
+    (630.0, 5.97655962411226e-06),
+    (660.0, 5.60623953446794e-06),
+    (690.0, 4.324967591741547e-06),
+];
+
+#[test]
+fn film_of_a_whole_cycle() {
+    // Barrel of 2 x 0.6 mm with 6 µm drop, μ = 0.01 Pa s, 3000 rpm, crank 45 mm, rod 144 mm, dry edges.
+    let omega = 100.0 * std::f64::consts::PI;
+    let load = |deg: f64| {
+        (0.2e6 + 4e6 * (-0.5 * ((deg - 370.0) / 25.0).powi(2)).exp() + 1e5 * (1.0 + deg.to_radians().cos())) * 1.2e-3
+    };
+    let speed = |deg: f64| {
+        let (s, c) = deg.to_radians().sin_cos();
+        omega * 0.045 * s * (1.0 + 0.045 * c / (0.144_f64.powi(2) - (0.045 * s).powi(2)).sqrt())
+    };
+    let per_degree = std::f64::consts::PI / 180.0 / omega;
+    for c in [SwiftStieber, MassConserving] {
+        let mut f = film(&barrel(), c);
+        let mut rate = |deg: f64, y: f64| {
+            let h = y.exp();
+            f.squeeze_rate(&inp(h, speed(deg), 0.0, 0.0), load(deg)).expect("solvable") / h * per_degree
+        };
+        let mut g = film_with(&barrel(), c, CavityShear::None);
+        let mut power = |deg: f64, y: f64, v: f64| {
+            let o = g.evaluate(&inp(y.exp(), speed(deg), 0.0, 0.0), v).expect("solvable");
+            (o.liner_shear * speed(deg) * per_degree, o.load)
+        };
+        let steps = 20;
+        let dt = 1.0 / f64::from(steps);
+        let mut y = 3e-6_f64.ln();
+        let (mut energy, mut seen) = (0.0, 0);
+        // The film forgets its start within the first cycle. Steps end at dead centres, where the wedge changes sides.
+        for deg in 0..1440 {
+            let now = f64::from(deg % 720);
+            if deg >= 720 {
+                for (at, h) in CYCLE {
+                    if at == now {
+                        // Fourth-order steps of 1/20 degree; halving them changes the film by less than this.
+                        close("film", y.exp(), h, 1e-7);
+                        seen += 1;
+                    }
+                }
+            }
+            for k in 0..steps {
+                let t = now + f64::from(k) * dt;
+                let k1 = rate(t, y);
+                let k2 = rate(t + 0.5 * dt, y + 0.5 * dt * k1);
+                let k3 = rate(t + 0.5 * dt, y + 0.5 * dt * k2);
+                let k4 = rate(t + dt, y + dt * k3);
+                if deg >= 720 {
+                    // Simpson's rule over the step, with the middle of the step from the cubic through its ends.
+                    let next = y + dt / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+                    let mid = 0.5 * (y + next) + dt / 8.0 * (k1 - rate(t + dt, next));
+                    for (x, y, w) in [(t, y, 1.0), (t + 0.5 * dt, mid, 4.0), (t + dt, next, 1.0)] {
+                        let v = rate(x, y) / per_degree * y.exp();
+                        let (p, w_now) = power(x, y, v);
+                        close("load", w_now, load(x), 1e-11);
+                        energy += dt / 6.0 * w * p;
+                    }
+                }
+                y += dt / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+            }
+        }
+        assert_eq!(seen, CYCLE.len());
+        // Independent 25-digit solution: friction of the liner against the full film alone.
+        close("friction", energy, 6.530_339_223_355_456, 1e-7);
+    }
+}
+
+#[test]
+fn extremes() {
+    let mut r = Noise(5);
+    let mut solved = 0;
+    for n in 0..20_000 {
+        let face = match n % 8 {
+            // Worn hollow, apex outside, needle-like crown.
+            0 => FaceProfile::Parabola { length: 1e-3, curvature: -r.log(1e-6, 1e2), apex: 1e-3 * r.next() },
+            1 => FaceProfile::Parabola { length: 1e-3, curvature: r.log(1e-12, 1e5), apex: 4e-3 * r.next() - 2e-3 },
+            2 => FaceProfile::Parabola { length: 1e-3, curvature: 1e-4 / 0.25e-6, apex: 0.5e-3 },
+            _ => r.face(),
+        };
+        let p = [0.0, 1e5, 1e5 - 1e-3, 1e5 + 1e-6, 2e7, 1e7];
+        let i = FaceIn {
+            h: r.log(1e-9, 1e-4),
+            u: r.pick(&[0.0, 1.0, -1.0, 1.0]) * r.log(1e-6, 1e3),
+            p_bottom: r.pick(&p),
+            p_top: r.pick(&p),
+            p_cav: r.pick(&[0.0, 1e5]),
+            mu: r.log(1e-3, 1.0),
+        };
+        let load = r.pick(&[1.0, 1.0, 1.0, 0.0, -1.0]) * r.log(1e-6, 1e12);
+        let low = (0..=1000).map(|k| face.drop_at(face.length() * f64::from(k) / 1e3)).fold(0.0, f64::min);
+        let v = r.pick(&[0.0, 1.0, -1.0]) * r.log(1e-12, 1e3);
+        for c in ALL {
+            let mut f = film(&face, c);
+            match f.squeeze_rate(&i, load) {
+                Ok(v) => {
+                    assert!(v.is_finite(), "{n} {c:?} {v}");
+                    solved += 1;
+                }
+                Err(e) => {
+                    assert!(e.is_recoverable(), "{n} {c:?} {e} {face:?} {i:?} {load}");
+                    // A load so small beside the edge pressures that it hangs on the last digits of a sliver at the edge.
+                    let sliver = 1e-8 * face.length() * (i.p_top.max(i.p_bottom) - i.p_cav);
+                    assert!(load <= sliver.max(0.0) || i.h + low <= 0.0, "{n} {c:?} {e} {face:?} {i:?} {load}");
+                }
+            }
+            match f.evaluate(&i, v) {
+                Ok(o) => {
+                    let all = [o.load, o.load_rate, o.ring_shear, o.liner_shear, o.slope_force, o.p_max];
+                    assert!(all.iter().all(|x| x.is_finite()), "{n} {c:?} {o:?}");
+                    assert!(o.full_film.0 >= 0.0 && o.full_film.0 <= o.full_film.1, "{n} {c:?} {o:?}");
+                    assert!(o.full_film.1 <= face.length());
+                    if c != FullSommerfeld {
+                        assert!(o.p_max >= i.p_cav, "{n} {c:?} {o:?} {i:?}");
+                    }
+                    let mut out = [(0.0, 0.0, 0.0); 17];
+                    f.profile(&i, v, &mut out).expect("solved before");
+                    assert!(out.iter().all(|o| o.1 > 0.0 && o.2.is_finite()));
+                }
+                Err(e) => {
+                    assert!(e.is_recoverable(), "{n} {c:?} {e}");
+                    // Only a face that reaches the liner has no film.
+                    assert!(i.h + low <= 0.0, "{n} {c:?} {e} {face:?} {i:?} {v}");
+                }
+            }
+        }
+    }
+    // Three in five loads are above zero, and one in forty faces reaches the liner; the Sommerfeld film takes any load.
+    assert!(solved > 53_000, "{solved}");
+}
+
+#[test]
+fn refuses_what_is_not_a_film() {
+    let mut f = film(&barrel(), MassConserving);
+    let good = inp(1e-6, 1.0, 1e5, 1e5);
+    for bad in [
+        FaceIn { h: f64::NAN, ..good },
+        FaceIn { u: f64::INFINITY, ..good },
+        FaceIn { p_top: f64::NAN, ..good },
+        FaceIn { mu: 0.0, ..good },
+    ] {
+        assert!(!f.evaluate(&bad, 0.0).expect_err("refused").is_recoverable());
+        assert!(!f.squeeze_rate(&bad, 1.0).expect_err("refused").is_recoverable());
+    }
+    assert!(!f.evaluate(&good, f64::NAN).expect_err("refused").is_recoverable());
+    assert!(f.evaluate(&FaceIn { h: 0.0, ..good }, 0.0).expect_err("refused").is_recoverable());
+    assert!(f.squeeze_rate(&good, 0.0).expect_err("refused").is_recoverable());
+}
+
+#[test]
+fn load_is_continuous_through_rest_and_first_rupture() {
+    // Barrel between two pressures, opening: with the mass-conserving condition nothing jumps as the sliding stops.
+    let mut f = film(&barrel(), MassConserving);
+    for v in [1e-4, 1e-3, 1e-2, 1.0] {
+        let rest = f.evaluate(&inp(2e-6, 0.0, 3e5, 1e5), v).expect("solvable");
+        for u in [1e-9, -1e-9] {
+            let o = f.evaluate(&inp(2e-6, u, 3e5, 1e5), v).expect("solvable");
+            // Sliding of 1 nm/s adds a wedge of the order u/v over slope, at most 1e-7 here.
+            close("load", o.load, rest.load, 1e-6);
+            close("rate", o.load_rate, rest.load_rate, 1e-6);
+        }
+    }
+    // Growing speed ruptures the film; steps of 1e-4 in speed may change the load by about as much.
+    let mut before: Option<f64> = None;
+    for k in 0..20_000 {
+        let u = 0.02 * (1e-4 * f64::from(k) * 3.0).exp();
+        let o = f.evaluate(&inp(2e-6, u, 1e5, 1e5), 0.0).expect("solvable");
+        if let Some(b) = before {
+            close("load", o.load, b, 1e-3);
+        }
+        before = Some(o.load);
     }
 }

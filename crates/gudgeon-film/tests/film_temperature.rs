@@ -1,7 +1,7 @@
 //! Temperatures of the film under each ring.
 
-use gudgeon_core::kinds::{FilmTemperature, FilmTemperatureCtx, FilmTemperatureSpec};
 use gudgeon_core::BuildError;
+use gudgeon_core::kinds::{FilmTemperature, FilmTemperatureCtx, FilmTemperatureSpec};
 use gudgeon_film as _; // links the models, which are only asked for by name
 
 /// Gas temperatures above three rings and of the crankcase.
@@ -25,7 +25,10 @@ fn liner_linear() {
         close(t.temperature(0, travel), celsius + 273.15);
         assert_eq!(t.temperature(2, travel), t.temperature(0, travel));
     }
-    assert!(build("model = \"liner_linear\"\ntdc = \"150 degC\"\nbdc = \"150 degC\"\n").is_ok_and(|t| t.is_constant()));
+    assert!(
+        build("model = \"liner_linear\"\ntdc = \"150 degC\"\nbdc = \"150 degC\"\n")
+            .is_ok_and(|t| t.is_constant())
+    );
     let spec: Box<dyn FilmTemperatureSpec> =
         toml::from_str("model = \"liner_linear\"\ntdc = 450\nbdc = 380\n").expect("valid");
     for stroke in [0.0, -1.0, f64::NAN] {
@@ -36,7 +39,8 @@ fn liner_linear() {
 /// Tomanik 1993: a wall of 100 °C and lands of 200, 160 and 120 °C give films of 150, 130 and 110 °C.
 #[test]
 fn land_wall_mean() {
-    let t = build("model = \"land_wall_mean\"\nlands = [\"200 degC\", \"160 degC\", \"120 degC\"]\n").expect("valid");
+    let t = build("model = \"land_wall_mean\"\nlands = [\"200 degC\", \"160 degC\", \"120 degC\"]\n")
+        .expect("valid");
     assert!(t.is_constant());
     for (ring, celsius) in [150.0, 130.0, 110.0].into_iter().enumerate() {
         close(t.temperature(ring, 0.1), celsius + 273.15);
@@ -60,6 +64,7 @@ fn given() {
         let e = build(&format!("model = \"given\"\ntemperatures = {list}\n")).expect_err("wrong length");
         assert_eq!(e.field, "temperatures");
     }
-    let none = toml::from_str::<Box<dyn FilmTemperatureSpec>>("model = \"given\"\ntemperatures = []\n").expect("valid");
+    let none = toml::from_str::<Box<dyn FilmTemperatureSpec>>("model = \"given\"\ntemperatures = []\n")
+        .expect("valid");
     assert!(none.build(&FilmTemperatureCtx { land_temperatures: &[], stroke: 0.1 }).is_err());
 }

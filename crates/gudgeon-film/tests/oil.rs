@@ -28,7 +28,8 @@ fn zottin_1992() {
         (Sae10w30, [57.97, 9.637, 4.289], [0.1981e-3, 737.690, 89.9]),
         (Sae10w40, [70.59, 12.31, 5.189], [0.1142e-3, 1033.39, 120.8]),
         (Sae10w50, [74.38, 15.47, 6.697], [0.09335e-3, 1304.170, 155.22]),
-        (Sae20w20, [69.87, 8.415, 3.381], [0.1324e-3, 737.810, 77.7]),
+        // Given as 69.87 at 40 °C, which is what the constants of the annex make of it.
+        (Sae20w20, [69.86, 8.415, 3.381], [0.1324e-3, 737.810, 77.7]),
         (Sae20w30, [62.01, 9.396, 3.968], [0.1413e-3, 811.962, 93.458]),
         (Sae20w40, [98.76, 12.24, 4.868], [0.1637e-3, 793.329, 83.931]),
         (Sae20w50, [97.92, 15.27, 6.033], [0.09297e-3, 1146.25, 124.7]),
@@ -37,12 +38,16 @@ fn zottin_1992() {
     assert!(VogelTable::Zottin1992.grades().eq(rows.iter().map(|r| r.0)));
     for (grade, printed, [a, b, c]) in rows {
         let listing = oil(VogelTable::Zottin1992, grade);
-        let annex = Vogel { a: quantity(a), b: quantity(b), c: quantity(c) }.build().expect("constants of an oil");
+        let annex =
+            Vogel { a: quantity(a), b: quantity(b), c: quantity(c) }.build().expect("constants of an oil");
         for (t, mu) in [40.0, 100.0, 150.0].into_iter().zip(printed) {
             let value = listing.viscosity(t + CELSIUS);
             prints_as(1e3 * value, mu, 4, grade.name());
-            // The annex rounds a to four digits at most.
-            assert!((annex.viscosity(t + CELSIUS) / value - 1.0).abs() <= 1e-3, "{}", grade.name());
+            // The annex rounds a in the fourth digit, half of which is 4.4e-4 of 0.1142. Only its 0.1637 for 20W/40 is no
+            // rounding of the listing's 0.16387.
+            let bound = if grade == Sae20w40 { 1.04e-3 } else { 4.5e-4 };
+            let apart = (annex.viscosity(t + CELSIUS) / value - 1.0).abs();
+            assert!(apart <= bound, "{}: {apart}", grade.name());
         }
     }
 }
@@ -52,7 +57,8 @@ fn zottin_1992() {
 fn tomanik_1993() {
     use Grade::*;
     let rows = [
-        (Sae5w, [(21.7, 3), (3.96, 3), (1.75, 3)]),
+        // Given as 21.7 at 40 °C; the formula gives 21.6498, so the third digit was rounded twice.
+        (Sae5w, [(21.65, 4), (3.96, 3), (1.75, 3)]),
         (Sae10w, [(37.1, 3), (5.61, 3), (2.23, 3)]),
         (Sae15w, [(41.6, 3), (6.05, 3), (2.46, 3)]),
         (Sae20w, [(98.7, 3), (10.5, 3), (3.45, 3)]),
@@ -72,12 +78,16 @@ fn tomanik_1993() {
 
 #[test]
 fn says_which_grades_a_table_has() {
-    let e = VogelGrade { table: VogelTable::Tomanik1993, grade: Grade::Sae10w40 }.build().expect_err("not in there");
+    let e = VogelGrade { table: VogelTable::Tomanik1993, grade: Grade::Sae10w40 }
+        .build()
+        .expect_err("not in there");
     assert_eq!(e.field, "grade");
     assert_eq!(e.message, "the table `tomanik1993` has no grade `sae_10w40`");
     assert_eq!(
         e.help.as_deref(),
-        Some("its grades are `sae_5w`, `sae_10w`, `sae_15w`, `sae_20w`, `sae_20`, `sae_30`, `sae_40`, `sae_50`")
+        Some(
+            "its grades are `sae_5w`, `sae_10w`, `sae_15w`, `sae_20w`, `sae_20`, `sae_30`, `sae_40`, `sae_50`"
+        )
     );
 }
 
@@ -92,7 +102,9 @@ fn grades_read_and_write_their_names() {
             assert_eq!(toml::to_string(&spec).expect("writable"), text);
         }
     }
-    let e = toml::from_str::<Box<dyn OilSpec>>("model = \"vogel_grade\"\ntable = \"zottin1992\"\ngrade = \"sae_60\"\n");
+    let e = toml::from_str::<Box<dyn OilSpec>>(
+        "model = \"vogel_grade\"\ntable = \"zottin1992\"\ngrade = \"sae_60\"\n",
+    );
     let e = e.expect_err("no such grade").to_string();
     assert!(e.contains("sae_60") && e.contains("`sae_30`"), "{e}");
 }
@@ -108,8 +120,11 @@ fn vogel_is_finite_and_falls_with_temperature() {
         assert!(mu.is_finite() && mu >= 0.15014e-3 && mu <= before, "{t} K: {mu}");
         before = mu;
     }
-    let bad = Vogel { a: quantity(1e-4), b: quantity(1e300), c: quantity(100.0) }.build();
-    assert!(bad.is_err_and(|e| e.message.contains("no viscosity")));
+    // An `a` that overflows, and a `b` that no oil has.
+    for (a, b) in [(1e300, 1e5), (1e-4, 1e300)] {
+        let bad = Vogel { a: quantity(a), b: quantity(b), c: quantity(100.0) }.build();
+        assert!(bad.is_err_and(|e| e.message.contains("no viscosity")), "{a} {b}");
+    }
 }
 
 #[test]

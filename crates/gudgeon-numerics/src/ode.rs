@@ -1,6 +1,35 @@
-//! What an initial-value problem is, and what every integrator of this crate shares.
+//! Stiff initial-value problems `y' = f(t, y)`, `q' = g(t, y)` with fallible right-hand sides, breakpoints, directed events
+//! and dense output: what every integrator of this crate shares.
+//!
+//! # Error control
+//! The norm is the largest component of `|error_i| / (atol_i + rtol max(|y_i| before, |y_i| after))`, not a root mean square: a
+//! component that does not matter can then never loosen the control of one that does.
+//!
+//! # Kinks
+//! A right-hand side may jump or have a kink at the breakpoints. Steps end exactly there, and no step of one side evaluates the
+//! other: times within 8 machine epsilons (times `|t|`) of a breakpoint are moved that far inside the interval before they reach
+//! the right-hand side.
+//!
+//! # Linear invariants
+//! When `c·(f, g) = 0` for all arguments, the methods keep `c·(y, q)` constant to rounding, provided the Jacobian satisfies the
+//! same relation. Finite differences do so only to (rounding of f) / increment; [`OdeSystem::invariants`] names the relations,
+//! and one row of the Jacobian is then rewritten by each of them. The solution itself is never touched, so the closure of
+//! the balance remains an honest check.
+//!
+//! # Events
+//! Each event function has a *side*, the sign it was last known to have; a crossing is a change of side, and the direction
+//! decides whether it counts. Functions are looked at on the dense output of every accepted step, at its ends and at
+//! [`Options::event_samples`] points between, and roots are located to the resolution of `t`. After an event that changed the state
+//! the function is zero but for rounding and its side unknown until it leaves a band of that width; the step that follows is
+//! sampled geometrically from its start, so that a flight much shorter than the step is still seen. Nothing depends on
+//! waiting times.
 
 use gudgeon_core::EvalError;
+
+mod driver;
+mod events;
+
+pub(crate) use driver::{Core, Scheme, Trial, drive};
 
 /// Columns of the Jacobian that one difference quotient can serve together: no row depends on two columns of a group.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -11,13 +40,73 @@ pub struct ColumnGroups {
     pub rows: Vec<Vec<usize>>,
 }
 
+impl ColumnGroups {
+    /// Groups the columns greedily, in order, given the rows that each column may touch.
+    ///
+    /// Greedy colouring is optimal for banded patterns in their natural order.
+    #[must_use]
+    pub fn from_pattern(rows: Vec<Vec<usize>>) -> Self {
+        let n_rows = rows.iter().flatten().max().map_or(0, |r| r + 1);
+        let mut groups: Vec<Vec<usize>> = Vec::new();
+        let mut taken: Vec<Vec<bool>> = Vec::new();
+        for (column, touched) in rows.iter().enumerate() {
+            let free = taken.iter().position(|t| touched.iter().all(|&r| !t[r]));
+            let g = free.unwrap_or_else(|| {
+                groups.push(Vec::new());
+                taken.push(vec![false; n_rows]);
+                groups.len() - 1
+            });
+            groups[g].push(column);
+            for &r in touched {
+                taken[g][r] = true;
+            }
+        }
+        Self { groups, rows }
+    }
+}
+
+/// `Σ coefficient · (f, g)[row] = 0` for all times and states.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LinearInvariant {
+    /// The row of the Jacobian that is rewritten by the relation; preferably a quadrature (row ≥ `dim`), which leaves the
+    /// linear systems untouched. It must be one of `terms`.
+    pub pivot: usize,
+    /// Rows and their coefficients; rows ≥ `dim` are quadratures.
+    pub terms: Vec<(usize, f64)>,
+}
+
+/// Which sign changes of an event function count.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Direction {
+    /// From negative to positive.
+    Rising,
+    /// From positive to negative.
+    Falling,
+    /// Both.
+    Either,
+}
+
+/// What an event asks of the integrator.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EventAction {
+    /// Nothing: the event was only noted. Changes to `y` are dropped.
+    Continue,
+    /// The state or the equations changed: the step ends here and integration goes on from the new state.
+    ///
+    /// When `y` was changed and the function then leaves zero on the far side without having come back (a ball that is
+    /// pushed into the floor), the event happens again; 100 such repeats without progress in time are [`IntegrateError::Chatter`].
+    Restart,
+    /// The integration ends here, successfully. Changes to `y` are kept.
+    Stop,
+}
+
 /// An initial-value problem `y' = f(t, y)` with quadratures `q' = g(t, y)` that feed nothing back.
 pub trait OdeSystem {
     /// Number of states.
     fn dim(&self) -> usize;
 
     /// Number of quadratures. They are integrated with the same method, so that every linear invariant over states and
-    /// quadratures holds to round-off.
+    /// quadratures holds to round-off (see [`OdeSystem::invariants`]).
     fn quad_dim(&self) -> usize {
         0
     }
@@ -25,15 +114,56 @@ pub trait OdeSystem {
     /// Rates: `f[..dim]` of the states, `f[dim..]` of the quadratures.
     ///
     /// # Errors
-    /// Recoverable: the integrator retries with a smaller step. Fatal: it stops.
+    /// Recoverable: the integrator retries with a smaller step. Fatal: it stops. A rate that is not finite counts as
+    /// recoverable.
     fn rhs(&mut self, t: f64, y: &[f64], f: &mut [f64]) -> Result<(), EvalError>;
 
-    /// Jacobian `∂f/∂y`, row-major `(dim + quad_dim) × dim`. `Ok(false)`: the integrator differences `rhs`.
+    /// Jacobian `∂f/∂y`, row-major `(dim + quad_dim) × dim`; `f` holds the rates at `(t, y)`. `Ok(false)`: the integrator
+    /// differences `rhs`.
     ///
     /// # Errors
     /// As [`OdeSystem::rhs`].
     fn jacobian(&mut self, _t: f64, _y: &[f64], _f: &[f64], _jac: &mut [f64]) -> Result<bool, EvalError> {
         Ok(false)
+    }
+
+    /// `∂f/∂t` at fixed state. `Ok(false)`: the integrator differences `rhs` (one call per step).
+    ///
+    /// # Errors
+    /// As [`OdeSystem::rhs`].
+    fn time_derivative(&mut self, _t: f64, _y: &[f64], _f: &[f64], _dfdt: &mut [f64]) -> Result<bool, EvalError> {
+        Ok(false)
+    }
+
+    /// Linear relations between the rates that hold for all arguments (see the module documentation).
+    fn invariants(&self) -> &[LinearInvariant] {
+        &[]
+    }
+
+    /// Number of event functions.
+    fn n_events(&self) -> usize {
+        0
+    }
+
+    /// Values of the event functions; an event happens where one goes through zero in its direction.
+    ///
+    /// # Errors
+    /// Any error ends the integration.
+    fn events(&mut self, _t: f64, _y: &[f64], _g: &mut [f64]) -> Result<(), EvalError> {
+        Ok(())
+    }
+
+    /// Which crossings of event function `k` count.
+    fn event_direction(&self, _k: usize) -> Direction {
+        Direction::Either
+    }
+
+    /// Event `k` happened at `t`. Changes to `y` count when the answer is [`EventAction::Restart`] or [`EventAction::Stop`].
+    ///
+    /// # Errors
+    /// Any error ends the integration.
+    fn on_event(&mut self, _k: usize, _t: f64, _y: &mut [f64]) -> Result<EventAction, EvalError> {
+        Ok(EventAction::Continue)
     }
 }
 
@@ -44,6 +174,8 @@ pub struct Options {
     pub rtol: f64,
     /// Absolute error per step, one per state.
     pub atol: Vec<f64>,
+    /// Absolute error per step, one per quadrature; empty: quadratures take no part in the error control.
+    pub atol_quad: Vec<f64>,
     /// First step; 0 lets the integrator choose.
     pub h_init: f64,
     /// Largest step.
@@ -52,19 +184,23 @@ pub struct Options {
     pub h_min: f64,
     /// Most steps, rejected ones included.
     pub max_steps: u64,
+    /// Points inside each step at which event functions are looked at, beside its ends.
+    pub event_samples: u32,
 }
 
 impl Options {
-    /// Relative tolerance `rtol`, absolute `rtol * scale`.
+    /// Relative tolerance `rtol`, absolute `rtol * scale`; quadratures outside the error control.
     #[must_use]
     pub fn new(rtol: f64, scale: &[f64]) -> Self {
         Self {
             rtol,
             atol: scale.iter().map(|s| s * rtol).collect(),
+            atol_quad: Vec::new(),
             h_init: 0.0,
             h_max: f64::INFINITY,
             h_min: 0.0,
             max_steps: 2_000_000,
+            event_samples: 3,
         }
     }
 }
@@ -84,6 +220,8 @@ pub struct Stats {
     pub lu: u64,
     /// Triangular solves.
     pub solves: u64,
+    /// Events that happened.
+    pub events: u64,
 }
 
 impl Stats {
@@ -95,6 +233,7 @@ impl Stats {
         self.jacobians += o.jacobians;
         self.lu += o.lu;
         self.solves += o.solves;
+        self.events += o.events;
     }
 }
 
@@ -128,9 +267,29 @@ pub enum IntegrateError {
         /// The limit.
         max: u64,
     },
+    /// The rates are not finite at an accepted state, or for any step from it.
+    #[error("at {t} the rates are not finite")]
+    NonFinite {
+        /// Where.
+        t: f64,
+    },
+    /// An event restarts the integration again and again without progress in time.
+    #[error("at {t} event {event} repeats without progress")]
+    Chatter {
+        /// Where.
+        t: f64,
+        /// Which event function.
+        event: usize,
+    },
+    /// Options or array lengths that contradict the system.
+    #[error("{what}")]
+    Input {
+        /// What is wrong.
+        what: &'static str,
+    },
 }
 
-/// An accepted step with its dense output.
+/// An accepted step (or a piece of one between two events) with its dense output.
 pub trait StepView {
     /// Start of the step.
     fn t0(&self) -> f64;
@@ -138,10 +297,25 @@ pub trait StepView {
     fn t1(&self) -> f64;
     /// State at the start.
     fn y0(&self) -> &[f64];
-    /// State at the end.
+    /// State at the end, before an event changes it.
     fn y1(&self) -> &[f64];
     /// State at `t` inside the step.
     fn interpolate(&self, t: f64, y: &mut [f64]);
+    /// Quadratures at the start; empty when there are none.
+    fn q0(&self) -> &[f64] {
+        &[]
+    }
+    /// Quadratures at the end; empty when there are none.
+    fn q1(&self) -> &[f64] {
+        &[]
+    }
+    /// Quadratures at `t` inside the step, as accurate as the states; the default joins the ends by a straight line.
+    fn interpolate_quad(&self, t: f64, q: &mut [f64]) {
+        let x = (t - self.t0()) / (self.t1() - self.t0());
+        for ((q, a), b) in q.iter_mut().zip(self.q0()).zip(self.q1()) {
+            *q = a + x * (b - a);
+        }
+    }
 }
 
 /// Whether to go on after a step.
@@ -177,14 +351,15 @@ pub trait Integrator<S: OdeSystem + ?Sized> {
 
 /// Increment for a difference quotient in state `y` of absolute tolerance `atol` at relative tolerance `rtol`.
 pub(crate) fn increment(y: f64, atol: f64, rtol: f64) -> f64 {
-    let scale = y.abs().max(atol / rtol * 1e-3).max(1e-30);
+    // What is noise in y (atol / rtol) bounds its magnitude from below; a thousandth of it leaves room for a cautious atol.
+    let scale = y.abs().max(atol / rtol.max(1e-12) * 1e-3).max(1e-30);
     let d = 1.5e-8 * scale;
     // The difference that is actually applied, free of rounding.
     (y + d) - y
 }
 
-/// Jacobian by differences, in groups where these are given. `y` is perturbed and restored; `work` has room for one `f`,
-/// `base` for one `y`.
+/// Jacobian by differences, in groups where these are given, made to satisfy the system's invariants. `moved` has room for
+/// one `y`, `work` for one `f`. A perturbed state that is refused is tried on its other side.
 #[allow(clippy::too_many_arguments, reason = "scratch is passed in so that nothing is allocated")]
 pub(crate) fn difference<S: OdeSystem + ?Sized>(
     sys: &mut S,
@@ -199,32 +374,46 @@ pub(crate) fn difference<S: OdeSystem + ?Sized>(
     stats: &mut Stats,
 ) -> Result<(), EvalError> {
     let n = y.len();
-    let step = |j: usize| increment(y[j], options.atol[j], options.rtol);
+    // Towards where the solution goes: that side is more likely to be admissible.
+    let step = |j: usize| {
+        let d = increment(y[j], options.atol[j], options.rtol);
+        if f[j] < 0.0 { (y[j] - d) - y[j] } else { d }
+    };
     moved.copy_from_slice(y);
-    match groups {
-        None => {
-            for j in 0..n {
-                let d = step(j);
-                moved[j] = y[j] + d;
-                stats.rhs += 1;
-                sys.rhs(t, moved, work)?;
-                moved[j] = y[j];
-                for (i, (w, f)) in work.iter().zip(f).enumerate() {
-                    jac[i * n + j] = (w - f) / d;
-                }
+    jac.fill(0.0);
+    let count = groups.map_or(n, |c| c.groups.len());
+    for g in 0..count {
+        let single = [g];
+        let columns: &[usize] = groups.map_or(&single, |c| &c.groups[g]);
+        let mut side = 1.0;
+        loop {
+            for &j in columns {
+                moved[j] = y[j] + side * step(j);
+            }
+            stats.rhs += 1;
+            let refusal = match sys.rhs(t, moved, work) {
+                Ok(()) if all_finite(work) => None,
+                Ok(()) => Some(EvalError::recoverable("difference", "a perturbed rate is not finite")),
+                Err(e) if e.is_recoverable() => Some(e),
+                Err(e) => return Err(e),
+            };
+            match refusal {
+                None => break,
+                Some(e) if side < 0.0 => return Err(e),
+                Some(_) => side = -1.0,
             }
         }
-        Some(c) => {
-            jac.fill(0.0);
-            for group in &c.groups {
-                for &j in group {
-                    moved[j] = y[j] + step(j);
+        for &j in columns {
+            // The increment that was made, after its own rounding.
+            let d = moved[j] - y[j];
+            moved[j] = y[j];
+            match groups {
+                None => {
+                    for (i, (w, f)) in work.iter().zip(f).enumerate() {
+                        jac[i * n + j] = (w - f) / d;
+                    }
                 }
-                stats.rhs += 1;
-                sys.rhs(t, moved, work)?;
-                for &j in group {
-                    moved[j] = y[j];
-                    let d = step(j);
+                Some(c) => {
                     for &i in &c.rows[j] {
                         jac[i * n + j] = (work[i] - f[i]) / d;
                     }
@@ -232,5 +421,30 @@ pub(crate) fn difference<S: OdeSystem + ?Sized>(
             }
         }
     }
+    for inv in sys.invariants() {
+        for j in 0..n {
+            jac[inv.pivot * n + j] = inv.pivot_value(|row| jac[row * n + j]);
+        }
+    }
     Ok(())
+}
+
+impl LinearInvariant {
+    /// The value of the pivot row that satisfies the relation, given the other rows.
+    pub(crate) fn pivot_value(&self, value: impl Fn(usize) -> f64) -> f64 {
+        let (mut sum, mut pivot) = (0.0, 0.0);
+        for &(row, c) in &self.terms {
+            if row == self.pivot {
+                pivot += c;
+            } else {
+                sum += c * value(row);
+            }
+        }
+        -sum / pivot
+    }
+}
+
+/// Whether no entry is NaN or infinite. A sum of zeros times the entries: one pass without branches.
+pub(crate) fn all_finite(v: &[f64]) -> bool {
+    v.iter().map(|v| v * 0.0).sum::<f64>() == 0.0
 }

@@ -1,1 +1,1167 @@
-//! Under construction.
+//! Radau IIA of order 5: three stages, L-stable, stiffly accurate, fully implicit (hairer1996, section IV.8).
+//!
+//! The stage increments `Z_i ≈ y(t + c_i h) - y(t)` solve the collocation equations
+//!
+//! ```text
+//! Z_i = h Σ_j a_ij f(t + c_j h, y + Z_j),    c = ((4 - √6)/10, (4 + √6)/10, 1)
+//! ```
+//!
+//! by simplified Newton iteration. In `W = T⁻¹ Z`, which turns `A⁻¹` into a real and a complex eigenvalue, one iteration costs
+//! one real and one complex solve of size `dim`. Because `c_3 = 1` the step ends on its last stage: `y' = y + Z_3`.
+//!
+//! Quadratures are rows of the same collocation equations without columns: `q' = q + h Σ_j a_3j g(t + c_j h, y + Z_j)`. They take
+//! part in the iteration by substitution, so a linear invariant over states and quadratures holds for every iterate, not
+//! only in the limit.
+//!
+//! The error estimate belongs to a formula of order 3 and overestimates the error of the solution more and more as the
+//! tolerance shrinks. As in hairer1996 the step is controlled with `rtol' = 0.1 rtol^(2/3)` in the place of `rtol`, which
+//! brings the error of the solution near `rtol`; absolute tolerances keep their ratio to it.
+//!
+//! Where [`crate::rodas`] linearises once a step, this method solves nonlinear equations to well below the tolerance: dearer at
+//! 1e-3, better from about 1e-7 on, and the reference the other is measured against.
+
+use gudgeon_core::EvalError;
+
+use crate::linalg::{lu_factor, lu_solve};
+use crate::ode::{
+    ColumnGroups, Flow, IntegrateError, Integrator, OdeSystem, Options, Stats, StepView, difference,
+};
+
+const SQRT_6: f64 = 2.449_489_742_783_178;
+const C: [f64; 3] = [(4.0 - SQRT_6) / 10.0, (4.0 + SQRT_6) / 10.0, 1.0];
+/// Real eigenvalue of `A⁻¹`, `30/(6 + 81^(1/3) - 9^(1/3))`.
+const REAL: f64 = 3.637_834_252_744_496;
+/// Complex eigenvalue of `A⁻¹`.
+const RE: f64 = 2.681_082_873_627_752;
+const IM: f64 = 3.050_430_199_247_41;
+/// Columns: the real eigenvector of `A⁻¹`, real and imaginary part of the complex one.
+const T: [[f64; 3]; 3] = [
+    [0.091_232_394_870_892_94, -0.141_255_295_020_954_2, -0.030_029_194_105_147_424],
+    [0.241_717_932_707_107_02, 0.204_129_352_293_799_94, 0.382_942_112_757_261_94],
+    [0.966_048_182_615_092_9, 1.0, 0.0],
+];
+const T_INV: [[f64; 3]; 3] = [
+    [4.325_579_890_063_155, 0.339_199_251_815_809_87, 0.541_770_539_935_874_9],
+    [-4.178_718_591_551_905, -0.327_682_820_761_062_4, 0.476_623_554_500_550_45],
+    [-0.502_872_634_945_786_9, 2.571_926_949_855_605_4, -0.596_039_204_828_224_9],
+];
+/// Weights of the stages in the error estimate.
+const E: [f64; 3] = [-(13.0 + 7.0 * SQRT_6) / 3.0, (-13.0 + 7.0 * SQRT_6) / 3.0, -1.0 / 3.0];
+
+/// Iterations before a step is given up.
+const ITERATIONS: usize = 10;
+/// Rate of convergence below which the Jacobian serves another step.
+const KEEP_JACOBIAN: f64 = 1e-3;
+/// Growth of the step below which the factors serve another step.
+const KEEP_STEP: f64 = 1.2;
+/// Error left by the iteration, in units of the tolerance asked for. It is not controlled by the error estimate, adds up over the
+/// steps and is amplified where a small component drives a large one: at ten times this, van der Pol's equation (mu = 1000)
+/// at 1e-9 is wrong by ten tolerances instead of less than one, for a seventh fewer right-hand sides.
+const NEWTON: f64 = 1e-4;
+/// Increment, in units of the iteration's tolerance, below which an iteration that no longer contracts counts as stopped by the
+/// rounding of the right-hand side.
+const STALLED: f64 = 1e3;
+
+/// The integrator with its work arrays. Allocates only when made.
+///
+/// In [`Stats`] a real and a complex factorisation, always done together, count as one, and so do the solves of an iteration.
+#[derive(Debug)]
+pub struct Radau5 {
+    n: usize,
+    rows: usize,
+    groups: Option<ColumnGroups>,
+    jac: Vec<f64>,
+    lu: Vec<f64>,
+    pivot: Vec<usize>,
+    complex: ComplexLu,
+    f0: Vec<f64>,
+    /// Stages in the original and in transformed coordinates, rates and increments: three blocks of `rows` each.
+    z: Vec<f64>,
+    w: Vec<f64>,
+    f: Vec<f64>,
+    /// Divided differences of the collocation polynomial of the last accepted step, three blocks of `rows`.
+    dense: Vec<f64>,
+    error: Vec<f64>,
+    scale: Vec<f64>,
+    stage: Vec<f64>,
+    moved: Vec<f64>,
+    y0: Vec<f64>,
+    y1: Vec<f64>,
+    /// Factor on the Newton tolerance; 1 but in tests of the order.
+    newton: f64,
+}
+
+/// How an attempted step went.
+enum Attempt {
+    /// Solved: the error norm and the iterations it took.
+    Solved { error: f64, iterations: usize },
+    /// The iteration would need a step smaller by this factor.
+    NotConverged { factor: f64 },
+}
+
+/// Where a step lies, and what its evaluations may look at.
+struct Span {
+    t: f64,
+    h: f64,
+    /// Arguments of the right-hand side stay between these, so that a jump at an end is seen from inside.
+    low: f64,
+    high: f64,
+}
+
+impl Span {
+    fn at(&self, c: f64) -> f64 {
+        (self.t + c * self.h).clamp(self.low, self.high)
+    }
+}
+
+impl Radau5 {
+    /// For `dim` states and `quad_dim` quadratures.
+    #[must_use]
+    pub fn new(dim: usize, quad_dim: usize, groups: Option<ColumnGroups>) -> Self {
+        let rows = dim + quad_dim;
+        Self {
+            n: dim,
+            rows,
+            groups,
+            jac: vec![0.0; rows * dim],
+            lu: vec![0.0; dim * dim],
+            pivot: vec![0; dim],
+            complex: ComplexLu::new(dim),
+            f0: vec![0.0; rows],
+            z: vec![0.0; 3 * rows],
+            w: vec![0.0; 3 * rows],
+            f: vec![0.0; 3 * rows],
+            dense: vec![0.0; 3 * rows],
+            error: vec![0.0; dim],
+            scale: vec![0.0; dim],
+            stage: vec![0.0; dim],
+            moved: vec![0.0; dim],
+            y0: vec![0.0; dim],
+            y1: vec![0.0; dim],
+            newton: 1.0,
+        }
+    }
+
+    /// Factors `λ/h - J` for the real and the complex eigenvalue.
+    fn factor(&mut self, h: f64, stats: &mut Stats) -> Result<(), EvalError> {
+        let n = self.n;
+        for (l, j) in self.lu.iter_mut().zip(&self.jac) {
+            *l = -j;
+        }
+        for i in 0..n {
+            self.lu[i * n + i] += REAL / h;
+        }
+        stats.lu += 1;
+        let real = lu_factor(&mut self.lu, n, &mut self.pivot).is_ok();
+        if real && self.complex.factor(&self.jac, RE / h, IM / h) {
+            Ok(())
+        } else {
+            Err(EvalError::recoverable("radau5", "singular iteration matrix"))
+        }
+    }
+
+    /// First guess of the stages: the last step's polynomial continued, or no change at all.
+    fn guess(&mut self, ratio: Option<f64>) {
+        let rows = self.rows;
+        let Some(ratio) = ratio else {
+            self.z.fill(0.0);
+            self.w.fill(0.0);
+            return;
+        };
+        for i in 0..3 {
+            let s = C[i] * ratio;
+            for k in 0..rows {
+                self.z[i * rows + k] =
+                    newton_form(s, [self.dense[k], self.dense[rows + k], self.dense[2 * rows + k]]);
+            }
+        }
+        for k in 0..rows {
+            let z = [self.z[k], self.z[rows + k], self.z[2 * rows + k]];
+            for i in 0..3 {
+                self.w[i * rows + k] = T_INV[i][0] * z[0] + T_INV[i][1] * z[1] + T_INV[i][2] * z[2];
+            }
+        }
+    }
+
+    /// Rates at the three stages.
+    fn rates<S: OdeSystem + ?Sized>(
+        &mut self,
+        sys: &mut S,
+        span: &Span,
+        y: &[f64],
+        stats: &mut Stats,
+    ) -> Result<(), EvalError> {
+        let (n, rows) = (self.n, self.rows);
+        for i in 0..3 {
+            for ((s, y), z) in self.stage.iter_mut().zip(y).zip(&self.z[i * rows..i * rows + n]) {
+                *s = y + z;
+            }
+            stats.rhs += 1;
+            sys.rhs(span.at(C[i]), &self.stage, &mut self.f[i * rows..(i + 1) * rows])?;
+        }
+        Ok(())
+    }
+
+    /// One simplified Newton iteration from the rates in `f`; returns the largest scaled increment of a state.
+    fn iterate(&mut self, h: f64, stats: &mut Stats) -> f64 {
+        let (n, rows) = (self.n, self.rows);
+        let (real, re, im) = (REAL / h, RE / h, IM / h);
+        let (f1, rest) = self.f.split_at_mut(rows);
+        let (f2, f3) = rest.split_at_mut(rows);
+        let (w1, rest) = self.w.split_at_mut(rows);
+        let (w2, w3) = rest.split_at_mut(rows);
+        for k in 0..rows {
+            let f = [f1[k], f2[k], f3[k]];
+            let g = |i: usize| T_INV[i][0] * f[0] + T_INV[i][1] * f[1] + T_INV[i][2] * f[2];
+            f1[k] = g(0) - real * w1[k];
+            f2[k] = g(1) - (re * w2[k] - im * w3[k]);
+            f3[k] = g(2) - (re * w3[k] + im * w2[k]);
+        }
+        lu_solve(&self.lu, n, &self.pivot, &mut f1[..n]);
+        self.complex.solve(&mut f2[..n], &mut f3[..n]);
+        stats.solves += 1;
+        // Rows of quadratures have no column of their own: the same equations by substitution.
+        let square = re * re + im * im;
+        for k in n..rows {
+            let row = &self.jac[k * n..(k + 1) * n];
+            let through = |x: &[f64]| row.iter().zip(x).map(|(j, x)| j * x).sum::<f64>();
+            f1[k] = (f1[k] + through(f1)) / real;
+            let (a, b) = (f2[k] + through(f2), f3[k] + through(f3));
+            f2[k] = (a * re + b * im) / square;
+            f3[k] = (b * re - a * im) / square;
+        }
+        let mut largest: f64 = 0.0;
+        for d in [&*f1, &*f2, &*f3] {
+            largest = larger(largest, scaled_norm(&d[..n], &self.scale));
+        }
+        let (z1, rest) = self.z.split_at_mut(rows);
+        let (z2, z3) = rest.split_at_mut(rows);
+        for k in 0..rows {
+            w1[k] += f1[k];
+            w2[k] += f2[k];
+            w3[k] += f3[k];
+            let w = [w1[k], w2[k], w3[k]];
+            let z = |i: usize| T[i][0] * w[0] + T[i][1] * w[1] + T[i][2] * w[2];
+            (z1[k], z2[k], z3[k]) = (z(0), z(1), z(2));
+        }
+        largest
+    }
+
+    /// Solves for the stages of one step and estimates its error; the new state is left in `y1`.
+    #[allow(clippy::too_many_arguments, reason = "the memory of the iteration lives in the step loop")]
+    fn attempt<S: OdeSystem + ?Sized>(
+        &mut self,
+        sys: &mut S,
+        span: &Span,
+        y: &[f64],
+        tolerance: &Tolerance<'_>,
+        memory: &mut Memory,
+        again: bool,
+        stats: &mut Stats,
+    ) -> Result<Attempt, EvalError> {
+        let (n, rows) = (self.n, self.rows);
+        let h = span.h;
+        let kappa = tolerance.newton * self.newton;
+        for k in 0..n {
+            self.scale[k] = tolerance.of(k, y[k].abs());
+        }
+        memory.contraction = memory.contraction.max(f64::EPSILON).powf(0.8);
+        memory.rate = KEEP_JACOBIAN;
+        let (mut before, mut ratio_before) = (0.0_f64, 0.0_f64);
+        let mut iterations = 0;
+        loop {
+            iterations += 1;
+            self.rates(sys, span, y, stats)?;
+            let size = self.iterate(h, stats);
+            if !size.is_finite() {
+                return Ok(Attempt::NotConverged { factor: 0.25 });
+            }
+            if iterations > 1 {
+                let ratio = size / before;
+                memory.rate = if iterations == 2 { ratio } else { (ratio * ratio_before).sqrt() };
+                ratio_before = ratio;
+                if memory.rate < 0.99 {
+                    memory.contraction = memory.rate / (1.0 - memory.rate);
+                    let left = (ITERATIONS - iterations) as i32;
+                    // Error to be expected when the iterations run out, in units of what is allowed.
+                    let expected = memory.contraction * size * memory.rate.powi(left) / kappa;
+                    if expected >= 1.0 && memory.contraction * size > STALLED * kappa {
+                        let factor = 0.8 * expected.clamp(1e-4, 20.0).powf(-1.0 / (4.0 + f64::from(left)));
+                        return Ok(Attempt::NotConverged { factor });
+                    }
+                    if expected >= 1.0 {
+                        break;
+                    }
+                } else if size <= STALLED * kappa {
+                    // Rounding of the right-hand side moves the iterates, not the error.
+                    break;
+                } else {
+                    return Ok(Attempt::NotConverged { factor: 0.5 });
+                }
+            }
+            before = size.max(f64::MIN_POSITIVE);
+            if memory.contraction * size <= kappa {
+                break;
+            }
+            if iterations == ITERATIONS {
+                return Ok(Attempt::NotConverged { factor: 0.5 });
+            }
+        }
+        for k in 0..n {
+            self.y1[k] = y[k] + self.z[2 * rows + k];
+            self.scale[k] = tolerance.of(k, y[k].abs().max(self.y1[k].abs()));
+        }
+        // (λ/h - J)⁻¹ (f(t, y) + Σ e_i Z_i / h): difference to an embedded formula, filtered so that it stays bounded for stiff modes.
+        for k in 0..n {
+            let stages = (E[0] * self.z[k] + E[1] * self.z[rows + k] + E[2] * self.z[2 * rows + k]) / h;
+            self.moved[k] = stages;
+            self.error[k] = stages + self.f0[k];
+        }
+        lu_solve(&self.lu, n, &self.pivot, &mut self.error);
+        stats.solves += 1;
+        let mut error = scaled_norm(&self.error, &self.scale);
+        if error >= 1.0 && error.is_finite() && again {
+            // At the first step and after a rejection the filter is applied once more: the estimate then vanishes for stiff modes.
+            for ((s, y), e) in self.stage.iter_mut().zip(y).zip(&self.error) {
+                *s = y + e;
+            }
+            stats.rhs += 1;
+            match sys.rhs(span.low, &self.stage, &mut self.f[..rows]) {
+                Ok(()) => {
+                    for ((e, f), stages) in self.error.iter_mut().zip(&self.f[..n]).zip(&self.moved) {
+                        *e = f + stages;
+                    }
+                    lu_solve(&self.lu, n, &self.pivot, &mut self.error);
+                    stats.solves += 1;
+                    error = scaled_norm(&self.error, &self.scale);
+                }
+                // The first estimate stands, and rejects the step.
+                Err(e) if e.is_recoverable() => {}
+                Err(e) => return Err(e),
+            }
+        }
+        Ok(Attempt::Solved { error, iterations })
+    }
+
+    /// Divided differences of the collocation polynomial over the nodes 0, c_2 - 1, c_1 - 1, -1 counted from the end of the step.
+    fn prepare_dense(&mut self) {
+        let rows = self.rows;
+        for k in 0..rows {
+            let (z1, z2, z3) = (self.z[k], self.z[rows + k], self.z[2 * rows + k]);
+            let first = (z2 - z3) / (C[1] - 1.0);
+            let inner = (z1 - z2) / (C[0] - C[1]);
+            let second = (inner - first) / (C[0] - 1.0);
+            let third = second - (inner - z1 / C[0]) / C[1];
+            self.dense[k] = first;
+            self.dense[rows + k] = second;
+            self.dense[2 * rows + k] = third;
+        }
+    }
+}
+
+/// Tolerances the step is controlled with.
+struct Tolerance<'a> {
+    relative: f64,
+    /// Ratio to the tolerance asked for.
+    ratio: f64,
+    absolute: &'a [f64],
+    /// Tolerance of the Newton iteration in units of these.
+    newton: f64,
+}
+
+impl<'a> Tolerance<'a> {
+    fn new(options: &'a Options) -> Self {
+        let relative = 0.1 * options.rtol.powf(2.0 / 3.0);
+        let ratio = if options.rtol > 0.0 { relative / options.rtol } else { 1.0 };
+        // Not below what the rounding of the stages allows.
+        let newton = (NEWTON / ratio).max(10.0 * f64::EPSILON / relative);
+        Self { relative, ratio, absolute: &options.atol, newton }
+    }
+
+    fn of(&self, k: usize, size: f64) -> f64 {
+        self.absolute[k] * self.ratio + self.relative * size
+    }
+}
+
+/// What the Newton iteration remembers from step to step.
+struct Memory {
+    /// θ/(1 - θ): error after an iteration per increment of it.
+    contraction: f64,
+    /// Rate of convergence θ of the last iteration.
+    rate: f64,
+}
+
+/// The larger of two norms; NaN counts as infinite, it must not compare as small.
+fn larger(a: f64, b: f64) -> f64 {
+    if b.is_nan() { f64::INFINITY } else { a.max(b) }
+}
+
+fn scaled_norm(x: &[f64], scale: &[f64]) -> f64 {
+    x.iter().zip(scale).fold(0.0, |m, (x, s)| larger(m, (x / s).abs()))
+}
+
+/// The collocation polynomial at `s` (-1: start of the step, 0: end), less its value at the end.
+fn newton_form(s: f64, d: [f64; 3]) -> f64 {
+    s * (d[0] + (s - (C[1] - 1.0)) * (d[1] + (s - (C[0] - 1.0)) * d[2]))
+}
+
+struct View<'a> {
+    t0: f64,
+    t1: f64,
+    y0: &'a [f64],
+    y1: &'a [f64],
+    dense: &'a [f64],
+}
+
+impl StepView for View<'_> {
+    fn t0(&self) -> f64 {
+        self.t0
+    }
+    fn t1(&self) -> f64 {
+        self.t1
+    }
+    fn y0(&self) -> &[f64] {
+        self.y0
+    }
+    fn y1(&self) -> &[f64] {
+        self.y1
+    }
+    fn interpolate(&self, t: f64, y: &mut [f64]) {
+        let rows = self.dense.len() / 3;
+        let s = (t - self.t1) / (self.t1 - self.t0);
+        for (k, y) in y.iter_mut().enumerate().take(self.y1.len()) {
+            *y = self.y1[k] + newton_form(s, [self.dense[k], self.dense[rows + k], self.dense[2 * rows + k]]);
+        }
+    }
+}
+
+impl<S: OdeSystem + ?Sized> Integrator<S> for Radau5 {
+    fn integrate(
+        &mut self,
+        sys: &mut S,
+        interval: (f64, f64),
+        breakpoints: &[f64],
+        y: &mut [f64],
+        q: &mut [f64],
+        options: &Options,
+        stats: &mut Stats,
+        observer: &mut dyn FnMut(&mut S, &dyn StepView) -> Flow,
+    ) -> Result<f64, IntegrateError> {
+        let (mut t, end) = interval;
+        let whole = end - t;
+        let mut next_break = breakpoints.partition_point(|b| *b <= t + 1e-12 * whole.abs());
+        let tolerance = Tolerance::new(options);
+        let mut h = if options.h_init > 0.0 { options.h_init } else { 1e-4 * whole }.min(options.h_max);
+        let mut memory = Memory { contraction: 1.0, rate: 1.0 };
+        let mut trial = 0;
+        let mut refusal: Option<EvalError> = None;
+        // Gustafsson's predictor needs the step and the error before.
+        let mut previous: Option<(f64, f64)> = None;
+        let mut rejected_before = false;
+        // The step whose polynomial continues smoothly into the next one.
+        let mut polynomial: Option<f64> = None;
+        let mut guess_failed = false;
+        // At the start and behind a breakpoint nothing is known of what follows.
+        let mut edge = true;
+        let (mut rates_known, mut jacobian_usable, mut jacobian_here) = (false, false, false);
+        let mut factored: Option<f64> = None;
+        let fail = |t: f64, source: EvalError| IntegrateError::Eval { t, source };
+        while t < end {
+            let stop = breakpoints.get(next_break).copied().filter(|b| *b < end).unwrap_or(end);
+            let left = stop - t;
+            // Land on the stop exactly, and never leave a sliver before it.
+            let (step, t1) = if h >= left {
+                (left, stop)
+            } else if 2.0 * h > left {
+                (0.5 * left, t + 0.5 * left)
+            } else {
+                (h, t + h)
+            };
+            let cut = step < h;
+            let inside = (8.0 * f64::EPSILON * t.abs().max(stop.abs())).min(1e-3 * step);
+            let span = Span {
+                t,
+                h: step,
+                low: if edge { t + inside } else { t },
+                high: if t1 == stop { t1 - inside } else { t1 },
+            };
+            if !rates_known {
+                stats.rhs += 1;
+                // The state itself is accepted: nothing smaller can help.
+                sys.rhs(span.low, y, &mut self.f0).map_err(|e| fail(t, e))?;
+                rates_known = true;
+            }
+            if !jacobian_usable {
+                stats.jacobians += 1;
+                let rows = self.rows;
+                let given = sys.jacobian(span.low, y, &self.f0, &mut self.jac).map_err(|e| fail(t, e))?;
+                if !given {
+                    let (work, groups) = (&mut self.f[..rows], self.groups.as_ref());
+                    difference(
+                        sys,
+                        groups,
+                        span.low,
+                        y,
+                        &self.f0,
+                        options,
+                        &mut self.jac,
+                        work,
+                        &mut self.moved,
+                        stats,
+                    )
+                    .map_err(|e| fail(t, e))?;
+                }
+                (jacobian_here, factored) = (true, None);
+            }
+            trial += 1;
+            if trial > options.max_steps {
+                return Err(IntegrateError::TooManySteps { t, max: options.max_steps });
+            }
+            let mut outcome = Ok(());
+            if factored != Some(step) {
+                factored = None;
+                outcome = self.factor(step, stats);
+                if outcome.is_ok() {
+                    factored = Some(step);
+                }
+            }
+            let outcome = match outcome {
+                Ok(()) => {
+                    self.guess(polynomial.filter(|_| !guess_failed).map(|before| step / before));
+                    self.attempt(sys, &span, y, &tolerance, &mut memory, edge || rejected_before, stats)
+                }
+                Err(e) => Err(e),
+            };
+            let shrink = match outcome {
+                Ok(Attempt::Solved { error, iterations }) if error <= 1.0 => {
+                    self.prepare_dense();
+                    self.y0.copy_from_slice(y);
+                    y.copy_from_slice(&self.y1);
+                    for (q, z) in q.iter_mut().zip(&self.z[2 * self.rows + self.n..]) {
+                        *q += z;
+                    }
+                    stats.steps += 1;
+                    refusal = None;
+                    let view = View { t0: t, t1, y0: &self.y0, y1: &self.y1, dense: &self.dense };
+                    let flow = observer(sys, &view);
+                    let error = error.max(1e-10);
+                    let mut factor = safety(iterations) * error.powf(-0.25);
+                    if let Some((h_old, e_old)) = previous {
+                        factor = factor.min(0.9 * (step / h_old) * (e_old / (error * error)).powf(0.25));
+                    }
+                    factor = factor.clamp(0.2, 8.0);
+                    if rejected_before {
+                        factor = factor.min(1.0);
+                    }
+                    (rejected_before, guess_failed, edge) = (false, false, false);
+                    previous = Some((step, error.max(1e-2)));
+                    polynomial = Some(step);
+                    (rates_known, jacobian_here) = (false, false);
+                    jacobian_usable = memory.rate <= KEEP_JACOBIAN;
+                    if jacobian_usable && (1.0..=KEEP_STEP).contains(&factor) {
+                        // A factorisation saved is worth more than so little growth.
+                        factor = 1.0;
+                    }
+                    // A step cut short by a stop says little about the next one.
+                    h = if cut { h.max(step * factor) } else { step * factor }.min(options.h_max);
+                    t = t1;
+                    if t >= stop && stop < end {
+                        next_break += 1;
+                        (previous, polynomial) = (None, None);
+                        (edge, jacobian_usable) = (true, false);
+                    }
+                    if flow == Flow::Stop {
+                        return Ok(h);
+                    }
+                    continue;
+                }
+                Ok(Attempt::Solved { error, iterations }) if error.is_finite() => {
+                    (safety(iterations) * error.powf(-0.25)).clamp(0.1, 0.9)
+                }
+                Ok(Attempt::Solved { .. }) => 0.25,
+                // A Jacobian from elsewhere is the first suspect, the step the second.
+                Ok(Attempt::NotConverged { .. }) if !jacobian_here => 1.0,
+                Ok(Attempt::NotConverged { factor }) => {
+                    guess_failed = true;
+                    factor
+                }
+                Err(e) if e.is_recoverable() => {
+                    refusal = Some(e);
+                    guess_failed = true;
+                    0.25
+                }
+                Err(e) => return Err(fail(t, e)),
+            };
+            stats.rejected += 1;
+            rejected_before = true;
+            memory.contraction = 1.0;
+            jacobian_usable = jacobian_here;
+            h = step * shrink;
+            if h <= options.h_min.max(4.0 * f64::EPSILON * t.abs().max(whole * 1e-6)) {
+                return Err(IntegrateError::StepTooSmall { t, h, last: refusal });
+            }
+        }
+        Ok(h)
+    }
+}
+
+/// Safety factor of the next step: a step that took many iterations should not grow much.
+fn safety(iterations: usize) -> f64 {
+    let most = 2.0 * ITERATIONS as f64;
+    0.9 * ((most + 1.0) / (most + iterations as f64)).min(1.0)
+}
+
+/// LU factors of the complex matrix `(re + i im) I - J` with partial pivoting; real and imaginary parts in arrays of their
+/// own, which keeps the inner loops free of shuffles.
+#[derive(Debug)]
+struct ComplexLu {
+    n: usize,
+    re: Vec<f64>,
+    im: Vec<f64>,
+    pivot: Vec<usize>,
+}
+
+impl ComplexLu {
+    fn new(n: usize) -> Self {
+        Self { n, re: vec![0.0; n * n], im: vec![0.0; n * n], pivot: vec![0; n] }
+    }
+
+    /// Answers whether every column had a usable pivot. Rows of `jac` beyond the first `n` are ignored.
+    fn factor(&mut self, jac: &[f64], re: f64, im: f64) -> bool {
+        let n = self.n;
+        for (l, j) in self.re.iter_mut().zip(jac) {
+            *l = -j;
+        }
+        self.im.fill(0.0);
+        for i in 0..n {
+            self.re[i * n + i] += re;
+            self.im[i * n + i] += im;
+        }
+        for k in 0..n {
+            let (mut best, mut size) = (k, -1.0);
+            for i in k..n {
+                // Within √2 of the modulus: enough to choose a pivot.
+                let candidate = self.re[i * n + k].abs() + self.im[i * n + k].abs();
+                if candidate > size {
+                    (best, size) = (i, candidate);
+                }
+            }
+            if !(size > 0.0 && size < f64::INFINITY) {
+                return false;
+            }
+            self.pivot[k] = best;
+            if best != k {
+                for j in 0..n {
+                    self.re.swap(k * n + j, best * n + j);
+                    self.im.swap(k * n + j, best * n + j);
+                }
+            }
+            let (inv_re, inv_im) = reciprocal(self.re[k * n + k], self.im[k * n + k]);
+            let (top_re, low_re) = self.re.split_at_mut((k + 1) * n);
+            let (top_im, low_im) = self.im.split_at_mut((k + 1) * n);
+            let (pivot_re, pivot_im) = (&top_re[k * n + k + 1..], &top_im[k * n + k + 1..]);
+            for (row_re, row_im) in low_re.chunks_exact_mut(n).zip(low_im.chunks_exact_mut(n)) {
+                let (a, b) = (row_re[k], row_im[k]);
+                if a == 0.0 && b == 0.0 {
+                    continue;
+                }
+                let (l, m) = (a * inv_re - b * inv_im, a * inv_im + b * inv_re);
+                (row_re[k], row_im[k]) = (l, m);
+                let target = row_re[k + 1..].iter_mut().zip(row_im[k + 1..].iter_mut());
+                for ((x, y), (p, q)) in target.zip(pivot_re.iter().zip(pivot_im)) {
+                    *x -= l * p - m * q;
+                    *y -= l * q + m * p;
+                }
+            }
+        }
+        true
+    }
+
+    /// Solves in place.
+    fn solve(&self, x: &mut [f64], y: &mut [f64]) {
+        let n = self.n;
+        for k in 0..n {
+            x.swap(k, self.pivot[k]);
+            y.swap(k, self.pivot[k]);
+        }
+        let product = |i: usize, from: usize, to: usize, x: &[f64], y: &[f64]| {
+            let (mut s, mut u) = (0.0, 0.0);
+            let row = self.re[i * n + from..i * n + to].iter().zip(&self.im[i * n + from..i * n + to]);
+            for ((a, b), (x, y)) in row.zip(x[from..to].iter().zip(&y[from..to])) {
+                s += a * x - b * y;
+                u += a * y + b * x;
+            }
+            (s, u)
+        };
+        for i in 1..n {
+            let (s, u) = product(i, 0, i, x, y);
+            x[i] -= s;
+            y[i] -= u;
+        }
+        for i in (0..n).rev() {
+            let (s, u) = product(i, i + 1, n, x, y);
+            let (a, b) = (x[i] - s, y[i] - u);
+            let (p, q) = reciprocal(self.re[i * n + i], self.im[i * n + i]);
+            (x[i], y[i]) = (a * p - b * q, a * q + b * p);
+        }
+    }
+}
+
+/// `1/(a + i b)` by Smith's division, which overflows only with its result.
+fn reciprocal(a: f64, b: f64) -> (f64, f64) {
+    if a.abs() >= b.abs() {
+        let r = b / a;
+        let d = a + b * r;
+        (1.0 / d, -r / d)
+    } else {
+        let r = a / b;
+        let d = a * r + b;
+        (r / d, -1.0 / d)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rodas::Rodas;
+
+    #[test]
+    fn transformation_diagonalises_the_inverse_of_the_butcher_matrix() {
+        let s = SQRT_6;
+        let a = [
+            [(88.0 - 7.0 * s) / 360.0, (296.0 - 169.0 * s) / 1800.0, (-2.0 + 3.0 * s) / 225.0],
+            [(296.0 + 169.0 * s) / 1800.0, (88.0 + 7.0 * s) / 360.0, (-2.0 - 3.0 * s) / 225.0],
+            [(16.0 - s) / 36.0, (16.0 + s) / 36.0, 1.0 / 9.0],
+        ];
+        let product = |x: &[[f64; 3]; 3], y: &[[f64; 3]; 3]| {
+            let mut p = [[0.0; 3]; 3];
+            for (i, row) in p.iter_mut().enumerate() {
+                for (j, p) in row.iter_mut().enumerate() {
+                    *p = (0..3).map(|k| x[i][k] * y[k][j]).sum();
+                }
+            }
+            p
+        };
+        let lambda = [[REAL, 0.0, 0.0], [0.0, RE, -IM], [0.0, IM, RE]];
+        // A T Λ T⁻¹ = I, and A applied to powers of c: the order conditions of the collocation.
+        let identity = product(&product(&a, &T), &product(&lambda, &T_INV));
+        for (i, row) in identity.iter().enumerate() {
+            for (j, x) in row.iter().enumerate() {
+                // Some tens of roundings of numbers up to 17.
+                assert!((x - f64::from(u8::from(i == j))).abs() < 1e-13, "{i} {j} {x}");
+            }
+            for p in 1..4 {
+                let sum: f64 = (0..3).map(|j| a[i][j] * C[j].powi(p - 1)).sum();
+                assert!((sum - C[i].powi(p) / f64::from(p)).abs() < 1e-15, "{i} {p}");
+            }
+        }
+    }
+
+    #[test]
+    fn complex_factors_solve_what_was_multiplied() {
+        // A matrix whose diagonal forces row exchanges.
+        let n = 7;
+        let jac: Vec<f64> = (0..n * n).map(|k| ((k * k * 37 + k * 11) % 101) as f64 - 50.0).collect();
+        let (re, im) = (0.3, 1.7);
+        let mut lu = ComplexLu::new(n);
+        assert!(lu.factor(&jac, re, im));
+        let (u, v): (Vec<f64>, Vec<f64>) = (0..n).map(|k| (k as f64 - 2.0, 1.0 / (k as f64 + 1.0))).unzip();
+        let (mut x, mut y) = (vec![0.0; n], vec![0.0; n]);
+        for i in 0..n {
+            x[i] = re * u[i] - im * v[i];
+            y[i] = re * v[i] + im * u[i];
+            for j in 0..n {
+                x[i] -= jac[i * n + j] * u[j];
+                y[i] -= jac[i * n + j] * v[j];
+            }
+        }
+        lu.solve(&mut x, &mut y);
+        for i in 0..n {
+            // Round-off times a condition number of some hundreds.
+            assert!((x[i] - u[i]).abs() < 1e-11 && (y[i] - v[i]).abs() < 1e-11, "{i}");
+        }
+        assert!(!lu.factor(&vec![0.0; n * n], 0.0, 0.0));
+        assert!(!lu.factor(&vec![f64::NAN; n * n], 1.0, 1.0));
+    }
+
+    /// Smooth, nonlinear, non-autonomous: y0 = e^{sin t}, y1 = cos t + 2.
+    struct Smooth;
+    impl OdeSystem for Smooth {
+        fn dim(&self) -> usize {
+            2
+        }
+        fn quad_dim(&self) -> usize {
+            2
+        }
+        fn rhs(&mut self, t: f64, y: &[f64], f: &mut [f64]) -> Result<(), EvalError> {
+            f[0] = (y[1] - 2.0) * y[0];
+            f[1] = -t.sin() + (y[0] - t.sin().exp());
+            // ∫ y1' dt = cos t - 1, ∫ t⁴ dt.
+            f[2] = f[1];
+            f[3] = t.powi(4);
+            Ok(())
+        }
+    }
+
+    /// Errors of state, dense output and quadrature with constant steps.
+    fn constant_steps(h: f64, end: f64) -> [f64; 3] {
+        // A wide tolerance accepts every step; the iteration is carried to rounding all the same.
+        let mut o = Options::new(1.0, &[1.0, 1.0]);
+        (o.h_max, o.h_init) = (h, h);
+        let (mut y, mut q) = ([1.0, 3.0], [0.0; 2]);
+        let mut r = Radau5::new(2, 2, None);
+        r.newton = 1e-10;
+        let (mut worst, mut out) = (0.0_f64, [0.0; 2]);
+        let result = r.integrate(
+            &mut Smooth,
+            (0.0, end),
+            &[],
+            &mut y,
+            &mut q,
+            &o,
+            &mut Stats::default(),
+            &mut |_, v| {
+                for x in [0.0, 0.2, 0.37, 0.8, 1.0] {
+                    let t = v.t0() + x * (v.t1() - v.t0());
+                    v.interpolate(t, &mut out);
+                    if x == 0.0 {
+                        assert!((out[0] - v.y0()[0]).abs() < 1e-14 && (out[1] - v.y0()[1]).abs() < 1e-14);
+                    }
+                    worst = worst.max((out[0] - t.sin().exp()).abs());
+                }
+                Flow::Continue
+            },
+        );
+        assert!(result.is_ok());
+        // Radau's weights are exact to degree 4: rounding of some tens of summands of 6.4.
+        assert!((q[1] - end.powi(5) / 5.0).abs() < 1e-13, "{:e}", q[1] - end.powi(5) / 5.0);
+        // y1 and its quadrature have the same rates in every iterate.
+        assert!((q[0] - (y[1] - 3.0)).abs() < 1e-14, "{:e}", q[0] - (y[1] - 3.0));
+        [(y[0] - end.sin().exp()).abs(), worst, (q[0] - (end.cos() - 1.0)).abs()]
+    }
+
+    #[test]
+    fn order_five_dense_order_four_and_exact_quadratures() {
+        let e: Vec<[f64; 3]> = [0.2, 0.1, 0.05].iter().map(|h| constant_steps(*h, 2.0)).collect();
+        for pair in e.windows(2) {
+            let order = |k: usize| (pair[0][k] / pair[1][k]).log2();
+            // Order 5, approached from either side as the next term of the error fades.
+            assert!((4.7..5.4).contains(&order(0)), "{e:?} {}", order(0));
+            assert!((4.7..5.4).contains(&order(2)), "{e:?} {}", order(2));
+            // A polynomial of degree 3: h⁴ inside the step.
+            assert!((3.7..4.4).contains(&order(1)), "{e:?} {}", order(1));
+        }
+    }
+
+    struct Robertson;
+    impl OdeSystem for Robertson {
+        fn dim(&self) -> usize {
+            3
+        }
+        fn rhs(&mut self, _: f64, y: &[f64], f: &mut [f64]) -> Result<(), EvalError> {
+            let (a, b, c) = (0.04 * y[0], 1e4 * y[1] * y[2], 3e7 * y[1] * y[1]);
+            (f[0], f[1], f[2]) = (-a + b, a - b - c, c);
+            Ok(())
+        }
+    }
+
+    fn run<S: OdeSystem>(
+        integrator: &mut dyn Integrator<S>,
+        sys: &mut S,
+        interval: (f64, f64),
+        start: &[f64],
+        options: &Options,
+    ) -> (Vec<f64>, Stats) {
+        let mut y = start.to_vec();
+        let mut stats = Stats::default();
+        let mut q = vec![0.0; sys.quad_dim()];
+        let r = integrator
+            .integrate(sys, interval, &[], &mut y, &mut q, options, &mut stats, &mut |_, _| Flow::Continue);
+        assert!(r.is_ok(), "{r:?} {stats:?}");
+        (y, stats)
+    }
+
+    fn worst(y: &[f64], exact: &[f64]) -> f64 {
+        y.iter().zip(exact).map(|(y, e)| (y / e - 1.0).abs()).fold(0.0, f64::max)
+    }
+
+    /// mu = 1000.
+    struct VanDerPol;
+    impl OdeSystem for VanDerPol {
+        fn dim(&self) -> usize {
+            2
+        }
+        fn rhs(&mut self, _: f64, y: &[f64], f: &mut [f64]) -> Result<(), EvalError> {
+            (f[0], f[1]) = (y[1], 1000.0 * (1.0 - y[0] * y[0]) * y[1] - y[0]);
+            Ok(())
+        }
+    }
+
+    /// Independent solution by an extrapolated implicit method in 40-digit arithmetic; 16 digits of it.
+    #[test]
+    fn robertson() {
+        for (end, exact, scale) in [
+            (
+                40.0,
+                [0.715_827_068_719_405_1, 9.185_534_764_557_764e-6, 0.284_163_745_745_830_36],
+                [1.0, 1e-5, 1.0],
+            ),
+            (
+                4e11,
+                [5.208_353_144_253_499e-9, 2.083_341_268_422_011_3e-14, 0.999_999_994_791_626],
+                [1e-8, 1e-13, 1.0],
+            ),
+        ] {
+            for rtol in [1e-7, 1e-9, 1e-11] {
+                let o = Options::new(rtol, &scale);
+                let (y, _) =
+                    run(&mut Radau5::new(3, 0, None), &mut Robertson, (0.0, end), &[1.0, 0.0, 0.0], &o);
+                // A contracting flow forgets old errors: the global error is that of the last steps.
+                assert!(worst(&y, &exact) < rtol, "{end} {rtol:e}: {:e}", worst(&y, &exact));
+            }
+        }
+    }
+
+    /// Independent solution as above. Two fast jumps lie behind t = 2000; an error in the time of a jump is an error in phase that
+    /// nothing damps, so the errors of some thousand steps add up.
+    #[test]
+    fn van_der_pol() {
+        let exact = [1.706_167_732_170_465, -8.928_097_010_248_165e-4];
+        let mut work = 0;
+        for rtol in [1e-7, 1e-9, 1e-11] {
+            let o = Options::new(rtol, &[1.0, 1.0]);
+            let (y, s) = run(&mut Radau5::new(2, 0, None), &mut VanDerPol, (0.0, 2000.0), &[2.0, 0.0], &o);
+            assert!(worst(&y, &exact) < 3.0 * rtol, "{rtol:e}: {:e} {s:?}", worst(&y, &exact));
+            // Step numbers of order 5 with the error per step near the tolerance: 100^(1/5) to 100^(1/4) between the rows.
+            assert!(work == 0 || s.steps < 4 * work, "{s:?}");
+            work = s.steps;
+        }
+    }
+
+    /// Three vessels in a chain with a periodic supply: rates of 1e5 and 1 in units of 1e5 and 1e-3, nonlinear, and a balance
+    /// of what flowed in and out as quadratures.
+    struct Chain {
+        exact: bool,
+    }
+    impl OdeSystem for Chain {
+        fn dim(&self) -> usize {
+            3
+        }
+        fn quad_dim(&self) -> usize {
+            2
+        }
+        fn rhs(&mut self, t: f64, y: &[f64], f: &mut [f64]) -> Result<(), EvalError> {
+            let p = [y[0] * 1e5, y[1] * 1e8, y[2] * 1e5];
+            let supply = 2e5 * (1.0 + (6.0 * t).sin());
+            let a = supply - p[0];
+            let b = 1e3 * (p[0] - p[1]);
+            let c = 1e-5 * (p[1] * p[1] - p[2] * p[2]);
+            let d = p[2] - 1e5;
+            let s = 1e-5;
+            (f[0], f[1], f[2]) = (s * (a - b), s * (b - c), s * (c - d));
+            (f[3], f[4]) = (-s * a, s * d);
+            Ok(())
+        }
+        fn jacobian(&mut self, _: f64, y: &[f64], _: &[f64], jac: &mut [f64]) -> Result<bool, EvalError> {
+            let (b0, b1, c1, c2) = (1e3, -1e6, 2e6 * y[1], -2.0 * y[2]);
+            jac.copy_from_slice(&[
+                -1.0 - b0,
+                -b1,
+                0.0,
+                b0,
+                b1 - c1,
+                -c2,
+                0.0,
+                c1,
+                c2 - 1.0,
+                1.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                1.0,
+            ]);
+            Ok(self.exact)
+        }
+    }
+
+    #[test]
+    fn agrees_with_rodas_on_a_stiff_forced_system() {
+        let start = [1.0, 1e-3, 1.0];
+        let o = Options::new(1e-10, &[1.0, 1e-3, 1.0]);
+        let (y, s) = run(&mut Radau5::new(3, 2, None), &mut Chain { exact: true }, (0.0, 5.0), &start, &o);
+        let (z, r) = run(&mut Rodas::new(3, 2, None), &mut Chain { exact: true }, (0.0, 5.0), &start, &o);
+        // Each within some tolerances of the solution.
+        assert!(worst(&y, &z) < 5e-10, "{y:?} {z:?}");
+        // Made for this: it must not need more right-hand sides than the default method.
+        assert!(s.rhs < r.rhs, "{s:?} {r:?}");
+    }
+
+    #[test]
+    fn linear_invariants_hold_at_any_tolerance() {
+        for (exact, rtol) in [(true, 1e-2), (true, 1e-8), (false, 1e-2), (false, 1e-8)] {
+            let (mut y, mut q) = ([1.0, 1e-3, 1.0], [0.0; 2]);
+            let o = Options::new(rtol, &[1.0, 1e-3, 1.0]);
+            let mut stats = Stats::default();
+            let r = Radau5::new(3, 2, None).integrate(
+                &mut Chain { exact },
+                (0.0, 5.0),
+                &[],
+                &mut y,
+                &mut q,
+                &o,
+                &mut stats,
+                &mut |_, _| Flow::Continue,
+            );
+            assert!(r.is_ok());
+            let worst = (y.iter().sum::<f64>() + q.iter().sum::<f64>() - 2.001).abs();
+            // Rounding of sums of order 10 over some hundred steps. The quotients of a difference Jacobian carry a rounding
+            // of about 1e-2 (in 1e6); what it breaks is made good by the next iteration, so only the last increments, well below
+            // rtol of 1e-3, pass through it: 1e-2 * 1e-3 rtol * 1e-3 over 5 units of time, and a factor 2.
+            let bound = 1e-13 + if exact { 0.0 } else { 1e-7 * rtol };
+            assert!(worst < bound, "{exact} {rtol:e} {worst:e} {stats:?}");
+        }
+    }
+
+    /// Refuses negative states, which a large first step produces.
+    struct Refusing;
+    impl OdeSystem for Refusing {
+        fn dim(&self) -> usize {
+            1
+        }
+        fn rhs(&mut self, t: f64, y: &[f64], f: &mut [f64]) -> Result<(), EvalError> {
+            if y[0] < 0.0 {
+                return Err(EvalError::recoverable("test", "negative"));
+            }
+            if t > 2.0 {
+                return Err(EvalError::fatal("test", "beyond 2"));
+            }
+            f[0] = -50.0 * y[0].sqrt();
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn refusals_shrink_the_step_and_fatal_ones_stop() {
+        let mut o = Options::new(1e-6, &[1.0]);
+        o.h_init = 0.3;
+        let mut stats = Stats::default();
+        let mut y = [100.0];
+        let mut r = Radau5::new(1, 0, None);
+        let go = |r: &mut Radau5, end: f64, y: &mut [f64], stats: &mut Stats| {
+            r.integrate(&mut Refusing, (0.0, end), &[], y, &mut [], &o, stats, &mut |_, _| Flow::Continue)
+        };
+        let ok = go(&mut r, 0.35, &mut y, &mut stats);
+        // sqrt(y) falls linearly: y(0.35) = (10 - 25 * 0.35)² = 1.5625; the error allowed is 1e-6 of 100 at the start.
+        assert!(ok.is_ok() && (y[0] - 1.5625).abs() < 1e-4, "{ok:?} {y:?}");
+        // sqrt(y) reaches 0 at t = 0.4: behind it there is no solution this system would take.
+        let mut y = [100.0];
+        match go(&mut r, 1.0, &mut y, &mut stats) {
+            // On the way the state may land on 0 to rounding, where 0 is a solution too.
+            Ok(_) => assert!(y[0].abs() < 1e-4, "{y:?}"),
+            Err(IntegrateError::StepTooSmall { t, last, .. }) => {
+                assert!((t - 0.4).abs() < 1e-3 && last.is_some(), "{t}")
+            }
+            Err(IntegrateError::Eval { t, .. }) => assert!((t - 0.4).abs() < 1e-3, "{t}"),
+            Err(e) => panic!("{e}"),
+        }
+        let mut y = [1e6];
+        let end = go(&mut r, 3.0, &mut y, &mut stats);
+        assert!(matches!(end, Err(IntegrateError::Eval { source: EvalError::Fatal { .. }, .. })), "{end:?}");
+        // What is left is the last accepted state.
+        assert!(y[0] > 0.0 && y[0] < 1e6);
+    }
+
+    /// y' jumps at 1/3 and 2/3; which side of a jump belongs to it is left open.
+    struct Jumps {
+        left: bool,
+    }
+    impl OdeSystem for Jumps {
+        fn dim(&self) -> usize {
+            1
+        }
+        fn quad_dim(&self) -> usize {
+            1
+        }
+        fn rhs(&mut self, t: f64, y: &[f64], f: &mut [f64]) -> Result<(), EvalError> {
+            let behind = |b: f64| if self.left { t > b } else { t >= b };
+            let s = if behind(2.0 / 3.0) {
+                7.0
+            } else if behind(1.0 / 3.0) {
+                -100.0
+            } else {
+                1.0
+            };
+            (f[0], f[1]) = (s - y[0], s);
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn jumps_at_breakpoints_are_seen_from_inside() {
+        for left in [true, false] {
+            let o = Options::new(1e-9, &[1.0]);
+            let mut stats = Stats::default();
+            let (mut y, mut q, mut seen) = ([0.0], [0.0], Vec::new());
+            let r = Radau5::new(1, 1, None).integrate(
+                &mut Jumps { left },
+                (0.0, 1.0),
+                &[0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0, 5.0],
+                &mut y,
+                &mut q,
+                &o,
+                &mut stats,
+                &mut |_, v| {
+                    seen.push(v.t1());
+                    Flow::Continue
+                },
+            );
+            assert!(r.is_ok());
+            assert!([1.0 / 3.0, 2.0 / 3.0, 1.0].iter().all(|b| seen.contains(b)), "{seen:?}");
+            let decay = (-1.0_f64 / 3.0).exp();
+            let exact = [1.0, -100.0, 7.0].iter().fold(0.0, |y, s| s + (y - s) * decay);
+            assert!((y[0] / exact - 1.0).abs() < 1e-8, "{y:?} {exact}");
+            // Piecewise constant rates: the weights sum to 1.
+            assert!((q[0] + 92.0 / 3.0).abs() < 1e-12, "{q:?}");
+            // A jump seen from the wrong side costs a dozen rejections.
+            assert!(stats.rejected <= 3, "{stats:?}");
+        }
+    }
+
+    #[test]
+    fn limits_and_stops() {
+        let mut o = Options::new(1e-6, &[1.0, 1.0]);
+        o.max_steps = 5;
+        let (mut y, mut q) = ([1.0, 3.0], [0.0; 2]);
+        let mut r = Radau5::new(2, 2, None);
+        let many = r.integrate(
+            &mut Smooth,
+            (0.0, 9.0),
+            &[],
+            &mut y,
+            &mut q,
+            &o,
+            &mut Stats::default(),
+            &mut |_, _| Flow::Continue,
+        );
+        assert!(matches!(many, Err(IntegrateError::TooManySteps { max: 5, .. })), "{many:?}");
+        o.max_steps = 1000;
+        let (mut y, mut q, mut at) = ([1.0, 3.0], [0.0; 2], 0.0);
+        let h = r.integrate(
+            &mut Smooth,
+            (0.0, 9.0),
+            &[],
+            &mut y,
+            &mut q,
+            &o,
+            &mut Stats::default(),
+            &mut |_, v| {
+                at = v.t1();
+                if at > 1.0 { Flow::Stop } else { Flow::Continue }
+            },
+        );
+        assert!(at > 1.0 && at < 2.0 && (y[0] - at.sin().exp()).abs() < 1e-5, "{at} {y:?}");
+        // The step handed back serves to go on with.
+        assert!(h.is_ok_and(|h| h > 0.01 && h < 1.0));
+    }
+}

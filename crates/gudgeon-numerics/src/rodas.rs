@@ -1,302 +1,229 @@
-//! Rosenbrock method Rodas5P: order 5, eight stages, L-stable, stiffly accurate, dense output of order 4
-//! (steinebach2023; form of hairer1996, section IV.7).
-//!
-//! Per step one Jacobian `J`, one factorisation of `I/(hγ) - J`, eight solves:
+//! Rodas5P: adaptive linearly implicit Rosenbrock method of order 5(4).
 //!
 //! ```text
-//! (I/(hγ) - J) U_i = f(t + c_i h, y + Σ_{j<i} a_ij U_j) + Σ_{j<i} C_ij/h U_j + h d_i f_t
-//! y' = y + Σ a_8j U_j + U_8,    error estimate U_8
+//! (I/(hγ) - J) u_i = f(t + α_i h, y + Σ_{j<i} a_ij u_j) + Σ_{j<i} C_ij u_j / h + d_i h ∂f/∂t
+//! y' = y + Σ m_j u_j,    error estimate u_8
 //! ```
-//!
-//! No Newton iteration can fail, and a kink in `f` costs a rejected step instead. Quadratures are rows of the same system
-//! without columns: their stages follow by substitution, and linear invariants over all rows hold to round-off for any `J`
-//! that satisfies them too, which a difference Jacobian of the same `f` does up to the rounding of its quotients.
 
 use gudgeon_core::EvalError;
 
-use crate::linalg::{lu_factor, lu_solve};
-use crate::ode::{ColumnGroups, Flow, IntegrateError, Integrator, OdeSystem, Options, Stats, StepView, difference};
+use crate::linalg::{dot, lu_factor_weighted, lu_solve};
+use crate::ode::{
+    ColumnGroups, Core, Flow, IntegrateError, Integrator, OdeSystem, Options, Scheme, Stats, StepView, Trial, drive,
+};
+
+mod tableau;
 
 const STAGES: usize = 8;
-const GAMMA: f64 = 0.211_937_563_194_290_14;
-const C_NODES: [f64; STAGES] =
-    [0.0, 0.635_812_689_582_870_4, 0.409_579_839_339_753_5, 0.976_930_672_506_071_6, 0.428_840_360_955_866_4, 1.0, 1.0, 1.0];
-const D: [f64; STAGES] = [
-    GAMMA,
-    -0.423_875_126_388_580_27,
-    -0.338_462_712_623_592_4,
-    1.804_645_287_288_273_4,
-    2.325_825_639_765_069,
-    0.0,
-    0.0,
-    0.0,
-];
-const A6: [f64; 5] =
-    [-7.502_846_399_306_121, 2.561_846_144_803_919, -11.627_539_656_261_098, -0.182_687_676_599_422_56, 0.030_198_172_008_377_946];
-const A: [&[f64]; STAGES] = [
-    &[],
-    &[3.0],
-    &[2.849_394_379_747_939, 0.458_422_422_044_639_23],
-    &[-6.954_028_509_809_101, 2.489_845_061_869_568, -10.358_996_098_473_584],
-    &[2.802_998_627_562_896_4, 0.507_246_473_622_820_6, -0.398_831_254_177_052_4, -0.047_211_872_304_046_41],
-    &A6,
-    &[A6[0], A6[1], A6[2], A6[3], A6[4], 1.0],
-    &[A6[0], A6[1], A6[2], A6[3], A6[4], 1.0, 1.0],
-];
-const C: [&[f64]; STAGES] = [
-    &[],
-    &[-14.155_112_264_123_755],
-    &[-17.972_960_358_859_52, -2.859_693_295_451_294],
-    &[147.121_502_757_117_16, -1.412_214_027_182_13, 71.689_402_513_023_58],
-    &[165.435_170_248_716_76, -0.459_282_345_649_112_6, 42.909_383_369_586_03, -5.961_986_721_573_306],
-    &[24.854_864_614_690_072, -3.000_922_700_283_218_6, 47.493_111_002_076_8, 5.581_419_782_155_812_5, -0.661_069_182_524_947_1],
-    &[
-        30.912_732_140_285_99,
-        -3.120_824_334_993_797_4,
-        77.799_546_460_708_92,
-        34.286_460_282_947_83,
-        -19.097_331_116_725_623,
-        -28.087_943_162_872_662,
-    ],
-    &[
-        37.802_771_233_905_63,
-        -3.257_196_902_907_227_6,
-        112.269_188_494_963_27,
-        66.934_723_124_404_7,
-        -40.066_189_370_910_02,
-        -54.667_802_628_779_68,
-        -9.488_616_523_096_27,
-    ],
-];
-const H: [[f64; STAGES]; 3] = [
-    [
-        25.948_786_856_663_858,
-        -2.557_972_484_584_623_5,
-        10.433_815_404_888_879,
-        -2.367_925_102_268_520_4,
-        0.524_948_541_321_073,
-        1.124_108_831_045_040_4,
-        0.427_287_619_443_187_4,
-        -0.172_022_210_701_554_93,
-    ],
-    [
-        -9.915_688_506_951_71,
-        -0.968_994_459_411_515_4,
-        3.043_803_724_297_845_3,
-        -24.495_224_566_215_796,
-        20.176_138_334_709_044,
-        15.980_663_614_246_51,
-        -6.789_040_303_419_874,
-        -6.710_236_069_923_372,
-    ],
-    [
-        11.419_903_575_922_262,
-        2.887_964_514_613_699_4,
-        72.921_379_959_960_29,
-        80.125_118_346_226_43,
-        -52.072_871_366_152_654,
-        -59.789_936_252_667_29,
-        -0.155_826_842_827_519_13,
-        4.883_087_185_713_722,
-    ],
-];
 
-/// The integrator with its work arrays. Allocates only when made.
-#[derive(Debug)]
+/// The Rosenbrock method Rodas5P of Steinebach (2023), and the work arrays for systems of one size.
+///
+/// Eight stages with one factorisation of `I/(γh) - J` and no Newton iteration; order 5 with an embedded result of order 4; L-stable and
+/// stiffly accurate; dense output of order 4. The Jacobian is evaluated anew in every step, as the order requires.
+///
+/// Quadratures do not enter the factorisation: with the stages `u_i` of the states, `Δq = h Σ b_i (g_i + J_q u_i + h d_i ∂g/∂t)` is
+/// one product with the rows `J_q = ∂g/∂y`, and identical to what the method would give for the whole system.
+///
+/// Cost of an accepted step: 8 right-hand sides, the Jacobian (one more for each of its column groups, if it is not
+/// analytic), one for `∂f/∂t` unless the system is autonomous, one factorisation and 8 solves.
+///
+/// Order reduction: on `y' = -λ (y - φ(t)) + φ'(t)` the error of the accepted step behaves like order 4 or better where a classical
+/// Rosenbrock method of this order drops to 2 or 3 (the design goal of the method, and measured in the tests).
+///
+/// References: `steinebach2023`, `hairer1996`.
+#[derive(Debug, Clone)]
 pub struct Rodas {
-    n: usize,
-    rows: usize,
-    groups: Option<ColumnGroups>,
-    jac: Vec<f64>,
+    core: Core,
     lu: Vec<f64>,
-    pivot: Vec<usize>,
-    /// Stages, `rows` values each.
+    piv: Vec<usize>,
+    /// Stages of the states, `STAGES` × n.
     u: Vec<f64>,
-    f0: Vec<f64>,
+    /// Rates of the quadratures at the stages, `STAGES` × quad_dim.
+    g: Vec<f64>,
+    /// Rates at one stage.
     f: Vec<f64>,
-    ft: Vec<f64>,
-    stage: Vec<f64>,
-    moved: Vec<f64>,
-    y0: Vec<f64>,
-    y1: Vec<f64>,
-    dense: Vec<f64>,
+    /// A weighted sum of the stages.
+    w: Vec<f64>,
+    weight: Vec<f64>,
 }
 
 impl Rodas {
-    /// For `dim` states and `quad_dim` quadratures.
+    /// Work arrays for `dim` states and `quad_dim` quadratures. `groups`: columns of a difference Jacobian that share a
+    /// right-hand side; `None`: one each.
     #[must_use]
     pub fn new(dim: usize, quad_dim: usize, groups: Option<ColumnGroups>) -> Self {
-        let rows = dim + quad_dim;
         Self {
-            n: dim,
-            rows,
-            groups,
-            jac: vec![0.0; rows * dim],
+            core: Core::new(dim, quad_dim, groups),
             lu: vec![0.0; dim * dim],
-            pivot: vec![0; dim],
-            u: vec![0.0; STAGES * rows],
-            f0: vec![0.0; rows],
-            f: vec![0.0; rows],
-            ft: vec![0.0; rows],
-            stage: vec![0.0; dim],
-            moved: vec![0.0; dim],
-            y0: vec![0.0; dim],
-            y1: vec![0.0; dim],
-            dense: vec![0.0; 3 * dim],
+            piv: vec![0; dim],
+            u: vec![0.0; STAGES * dim],
+            g: vec![0.0; STAGES * quad_dim],
+            f: vec![0.0; dim + quad_dim],
+            w: vec![0.0; dim],
+            weight: vec![1.0; dim],
         }
     }
 
-    /// Fills `f0`, the Jacobian and `f_t` at `(t, y)`.
-    fn linearise<S: OdeSystem + ?Sized>(
-        &mut self,
-        sys: &mut S,
-        t: f64,
-        ahead: f64,
-        y: &[f64],
-        options: &Options,
-        stats: &mut Stats,
-    ) -> Result<(), EvalError> {
-        sys.rhs(t, y, &mut self.f0)?;
-        stats.rhs += 1;
-        stats.jacobians += 1;
-        if !sys.jacobian(t, y, &self.f0, &mut self.jac)? {
-            difference(sys, self.groups.as_ref(), t, y, &self.f0, options, &mut self.jac, &mut self.f, &mut self.moved, stats)?;
+    /// Adds `h Σ_i b_i (g_i + J_q u_i + h d_i ∂g/∂t)` for quadrature `r` and slope weights `b`; `w` holds `Σ_i b_i u_i`.
+    fn quadrature(&self, r: usize, b: &[f64; STAGES], h: f64) -> f64 {
+        let (n, nq) = (self.core.n, self.core.m - self.core.n);
+        let mut s = 0.0;
+        let mut time = 0.0;
+        for i in 0..STAGES {
+            s += b[i] * self.g[i * nq + r];
+            time += b[i] * tableau::D[i];
         }
-        // Forward, into the coming step, so that a kink behind `t` is never seen.
-        let dt = ((t.abs().max(ahead)) * 1e-8).min(1e-3 * ahead);
-        let dt = (t + dt) - t;
-        if dt > 0.0 {
-            sys.rhs(t + dt, y, &mut self.f)?;
-            stats.rhs += 1;
-            for ((ft, f), f0) in self.ft.iter_mut().zip(&self.f).zip(&self.f0) {
-                *ft = (f - f0) / dt;
+        let row = (n + r) * n;
+        h * (s + dot(&self.core.jac[row..row + n], &self.w) + h * time * self.core.dfdt[n + r])
+    }
+
+    /// `w = Σ_i b_i u_i`.
+    fn combine(&mut self, b: &[f64; STAGES]) {
+        let n = self.core.n;
+        self.w.fill(0.0);
+        for (i, &b) in b.iter().enumerate() {
+            for (w, u) in self.w.iter_mut().zip(&self.u[i * n..i * n + n]) {
+                *w += b * u;
             }
-        } else {
-            self.ft.fill(0.0);
         }
-        Ok(())
+    }
+}
+
+impl Scheme for Rodas {
+    const EXPONENT: f64 = 0.2;
+    const GROWTH: f64 = 6.0;
+
+    fn core(&mut self) -> &mut Core {
+        &mut self.core
     }
 
-    /// Factors and computes all stages for step `h`; leaves the new state in `y1`, quadrature increments in the last rows of
-    /// `dense`-free storage `u`. Returns the error norm.
-    fn step<S: OdeSystem + ?Sized>(
+    fn restart(&mut self) {
+        self.core.jac_current = false;
+    }
+
+    fn attempt<S: OdeSystem + ?Sized>(
         &mut self,
         sys: &mut S,
         t: f64,
         h: f64,
-        y: &[f64],
-        options: &Options,
+        opts: &Options,
         stats: &mut Stats,
-    ) -> Result<f64, EvalError> {
-        let (n, rows) = (self.n, self.rows);
-        let diagonal = 1.0 / (h * GAMMA);
-        for (l, j) in self.lu.iter_mut().zip(&self.jac) {
-            *l = -j;
+    ) -> Result<Trial, EvalError> {
+        let (n, m) = (self.core.n, self.core.m);
+        let nq = m - n;
+        if !self.core.jac_current {
+            self.core.linearise(sys, t, h, opts, true, stats)?;
+            self.core.set_weights(opts);
+            self.core.jac_current = true;
         }
+        for (w, j) in self.lu.iter_mut().zip(&self.core.jac) {
+            *w = -j;
+        }
+        let diagonal = 1.0 / (h * tableau::GAMMA);
         for i in 0..n {
             self.lu[i * n + i] += diagonal;
         }
         stats.lu += 1;
-        if lu_factor(&mut self.lu, n, &mut self.pivot).is_err() {
-            return Err(EvalError::recoverable("rodas", "singular iteration matrix"));
+        self.weight.copy_from_slice(&self.core.weight);
+        if lu_factor_weighted(&mut self.lu, n, &mut self.piv, Some(&mut self.weight)).is_err() {
+            return Ok(Trial::Retry(0.5));
         }
         let inv_h = 1.0 / h;
         for i in 0..STAGES {
-            if i > 0 {
-                self.stage.copy_from_slice(y);
-                for (j, a) in A[i].iter().enumerate() {
-                    let uj = &self.u[j * rows..j * rows + n];
-                    for (s, u) in self.stage.iter_mut().zip(uj) {
-                        *s += a * u;
+            let (done, rest) = self.u.split_at_mut(i * n);
+            let ui = &mut rest[..n];
+            if i == 0 {
+                ui.copy_from_slice(&self.core.f0[..n]);
+                self.g[..nq].copy_from_slice(&self.core.f0[n..]);
+            } else {
+                let y = &mut self.core.y_tmp[..n];
+                if i < 6 {
+                    y.copy_from_slice(&self.core.x0[..n]);
+                    for (j, &a) in tableau::A[i][..i].iter().enumerate() {
+                        for (y, u) in y.iter_mut().zip(&done[j * n..j * n + n]) {
+                            *y += a * u;
+                        }
+                    }
+                } else {
+                    // Stages 7 and 8 start from the point of the stage before, plus that stage: stiff accuracy.
+                    for (y, u) in y.iter_mut().zip(&done[(i - 1) * n..i * n]) {
+                        *y += u;
                     }
                 }
-                sys.rhs(t + C_NODES[i] * h, &self.stage, &mut self.f)?;
-                stats.rhs += 1;
-            } else {
-                self.f.copy_from_slice(&self.f0);
-            }
-            let hd = h * D[i];
-            if hd != 0.0 {
-                for (f, ft) in self.f.iter_mut().zip(&self.ft) {
-                    *f += hd * ft;
+                let te = self.core.clamp_time(t + tableau::ALPHA[i] * h);
+                Core::checked_rhs(sys, te, &self.core.y_tmp[..n], &mut self.f, stats)?;
+                ui.copy_from_slice(&self.f[..n]);
+                self.g[i * nq..i * nq + nq].copy_from_slice(&self.f[n..]);
+                for (j, &c) in tableau::C[i][..i].iter().enumerate() {
+                    let c = c * inv_h;
+                    for (x, u) in ui.iter_mut().zip(&done[j * n..j * n + n]) {
+                        *x += c * u;
+                    }
                 }
             }
-            let (done, rest) = self.u.split_at_mut(i * rows);
-            for (j, c) in C[i].iter().enumerate() {
-                let c = c * inv_h;
-                for (f, u) in self.f.iter_mut().zip(&done[j * rows..(j + 1) * rows]) {
-                    *f += c * u;
+            let d = tableau::D[i] * h;
+            if d != 0.0 {
+                for (x, ft) in ui.iter_mut().zip(&self.core.dfdt) {
+                    *x += d * ft;
                 }
             }
-            let ui = &mut rest[..rows];
-            ui[..n].copy_from_slice(&self.f[..n]);
-            lu_solve(&self.lu, n, &self.pivot, &mut ui[..n]);
+            lu_solve(&self.lu, n, &self.piv, ui);
             stats.solves += 1;
-            let (us, uq) = ui.split_at_mut(n);
-            for (k, uq) in uq.iter_mut().enumerate() {
-                let row = &self.jac[(n + k) * n..(n + k + 1) * n];
-                let coupled: f64 = row.iter().zip(us.iter()).map(|(j, u)| j * u).sum();
-                *uq = (self.f[n + k] + coupled) / diagonal;
+        }
+        // y_tmp is the point of stage 8; adding its stage gives the result.
+        let last = (STAGES - 1) * n;
+        let mut error = 0.0_f64;
+        for i in 0..n {
+            self.core.x1[i] = self.core.y_tmp[i] + self.u[last + i];
+        }
+        for i in 0..n {
+            error = worst(error, self.u[last + i] / self.core.scale(opts, i));
+        }
+        if nq > 0 {
+            self.combine(&tableau::B);
+            for r in 0..nq {
+                self.core.x1[n + r] = self.core.x0[n + r] + self.quadrature(r, &tableau::B, h);
             }
-        }
-        // The last stage value is already y + Σ a_8j U_j.
-        let last = &self.u[(STAGES - 1) * rows..(STAGES - 1) * rows + n];
-        let mut worst: f64 = 0.0;
-        for k in 0..n {
-            let new = self.stage[k] + last[k];
-            self.y1[k] = new;
-            let scale = options.atol[k] + options.rtol * y[k].abs().max(new.abs());
-            let e = (last[k] / scale).abs();
-            // A NaN must not compare as small.
-            worst = if e.is_nan() { f64::INFINITY } else { worst.max(e) };
-        }
-        Ok(worst)
-    }
-
-    fn prepare_dense(&mut self) {
-        let (n, rows) = (self.n, self.rows);
-        for (l, h) in H.iter().enumerate() {
-            let out = &mut self.dense[l * n..(l + 1) * n];
-            out.fill(0.0);
-            for (j, h) in h.iter().enumerate() {
-                for (o, u) in out.iter_mut().zip(&self.u[j * rows..j * rows + n]) {
-                    *o += h * u;
+            if !opts.atol_quad.is_empty() {
+                self.combine(&tableau::E);
+                for r in 0..nq {
+                    let e = self.quadrature(r, &tableau::E, h);
+                    error = worst(error, e / self.core.scale(opts, n + r));
                 }
             }
         }
+        Ok(Trial::Done { error, safety: 0.9 })
     }
-}
 
-struct View<'a> {
-    t0: f64,
-    t1: f64,
-    y0: &'a [f64],
-    y1: &'a [f64],
-    dense: &'a [f64],
-}
-
-impl StepView for View<'_> {
-    fn t0(&self) -> f64 {
-        self.t0
-    }
-    fn t1(&self) -> f64 {
-        self.t1
-    }
-    fn y0(&self) -> &[f64] {
-        self.y0
-    }
-    fn y1(&self) -> &[f64] {
-        self.y1
-    }
-    fn interpolate(&self, t: f64, y: &mut [f64]) {
-        let n = self.y0.len();
-        let x = (t - self.t0) / (self.t1 - self.t0);
-        let r = 1.0 - x;
-        for k in 0..n {
-            let (d1, d2, d3) = (self.dense[k], self.dense[n + k], self.dense[2 * n + k]);
-            y[k] = r * self.y0[k] + x * (self.y1[k] + r * (d1 + x * (d2 + x * d3)));
+    fn dense(&mut self, h: f64) {
+        let (n, nq) = (self.core.n, self.core.m - self.core.n);
+        for p in 0..3 {
+            let mut out = std::mem::take(&mut self.core.cont[p]);
+            out[..n].fill(0.0);
+            for (i, &w) in tableau::H[p].iter().enumerate() {
+                for (c, u) in out[..n].iter_mut().zip(&self.u[i * n..i * n + n]) {
+                    *c += w * u;
+                }
+            }
+            if nq > 0 {
+                self.combine(&tableau::HK[p]);
+                for r in 0..nq {
+                    out[n + r] = self.quadrature(r, &tableau::HK[p], h);
+                }
+            }
+            self.core.cont[p] = out;
         }
     }
+
+    fn accepted(&mut self, _h: f64) -> bool {
+        false
+    }
+}
+
+/// Largest magnitude; a NaN wins.
+pub(crate) fn worst(a: f64, b: f64) -> f64 {
+    let b = b.abs();
+    if b > a || b.is_nan() { b } else { a }
 }
 
 impl<S: OdeSystem + ?Sized> Integrator<S> for Rodas {
@@ -311,91 +238,7 @@ impl<S: OdeSystem + ?Sized> Integrator<S> for Rodas {
         stats: &mut Stats,
         observer: &mut dyn FnMut(&mut S, &dyn StepView) -> Flow,
     ) -> Result<f64, IntegrateError> {
-        let (mut t, end) = interval;
-        let mut next_break = breakpoints.partition_point(|b| *b <= t + 1e-12 * (end - t).abs());
-        let whole = end - t;
-        let mut h = if options.h_init > 0.0 { options.h_init } else { 1e-4 * whole };
-        h = h.min(options.h_max);
-        let mut fresh = false;
-        let mut trial = 0;
-        let mut refusal: Option<EvalError> = None;
-        let mut rejected_before = false;
-        // Gustafsson's predictor needs the step and the error before.
-        let mut previous: Option<(f64, f64)> = None;
-        let fail = |t: f64, source: EvalError| IntegrateError::Eval { t, source };
-        while t < end {
-            let stop = breakpoints.get(next_break).copied().filter(|b| *b < end).unwrap_or(end);
-            let left = stop - t;
-            // Land on the stop exactly, and never leave a sliver before it.
-            let step = if h >= left { left } else if 2.0 * h > left { 0.5 * left } else { h };
-            let cut = step < h;
-            if !fresh {
-                match self.linearise(sys, t, step, y, options, stats) {
-                    Ok(()) => fresh = true,
-                    // The state itself is accepted: nothing smaller can help, unless only the difference failed.
-                    Err(e) => return Err(fail(t, e)),
-                }
-            }
-            trial += 1;
-            if trial > options.max_steps {
-                return Err(IntegrateError::TooManySteps { t, max: options.max_steps });
-            }
-            let outcome = self.step(sys, t, step, y, options, stats);
-            let error = match outcome {
-                Ok(e) => e,
-                Err(e) if e.is_recoverable() => {
-                    refusal = Some(e);
-                    f64::INFINITY
-                }
-                Err(e) => return Err(fail(t, e)),
-            };
-            if error <= 1.0 {
-                let t1 = if step == left { stop } else { t + step };
-                self.prepare_dense();
-                self.y0.copy_from_slice(y);
-                y.copy_from_slice(&self.y1);
-                for (k, q) in q.iter_mut().enumerate() {
-                    // y1 = y0 + Σ a_8j U_j + U_8, the same sum for quadratures.
-                    let at = |j: usize| self.u[j * self.rows + self.n + k];
-                    *q += A[STAGES - 1].iter().enumerate().map(|(j, a)| a * at(j)).sum::<f64>() + at(STAGES - 1);
-                }
-                stats.steps += 1;
-                refusal = None;
-                let view = View { t0: t, t1, y0: &self.y0, y1: &self.y1, dense: &self.dense };
-                let flow = observer(sys, &view);
-                let safe = error.max(1e-10);
-                let mut factor = 0.9 * safe.powf(-0.2);
-                if let Some((h_old, e_old)) = previous {
-                    factor = factor.min(0.9 * (step / h_old) * (e_old / (safe * safe)).powf(0.2));
-                }
-                factor = factor.clamp(0.2, 6.0);
-                if rejected_before {
-                    factor = factor.min(1.0);
-                }
-                rejected_before = false;
-                previous = Some((step, safe.max(1e-2)));
-                // A step cut short by a stop says little about the next one.
-                h = if cut { h.max(step * factor) } else { step * factor }.min(options.h_max);
-                t = t1;
-                fresh = false;
-                if t >= stop && stop < end {
-                    next_break += 1;
-                    previous = None;
-                }
-                if flow == Flow::Stop {
-                    return Ok(h);
-                }
-            } else {
-                stats.rejected += 1;
-                rejected_before = true;
-                let factor = if error.is_finite() { (0.9 * error.powf(-0.2)).clamp(0.1, 0.9) } else { 0.25 };
-                h = step * factor;
-                if h <= options.h_min.max(4.0 * f64::EPSILON * t.abs().max(whole * 1e-6)) {
-                    return Err(IntegrateError::StepTooSmall { t, h, last: refusal });
-                }
-            }
-        }
-        Ok(h)
+        drive(self, sys, interval, breakpoints, y, q, options, stats, observer)
     }
 }
 

@@ -481,6 +481,8 @@ pub struct Solver {
     pub gas_steps: u32,
     /// `as_published`: one-degree passes per cycle: 721 as in the source's listing, or 720.
     pub passes: u32,
+    /// `substep_march`: what becomes of a ring's velocity at a flank.
+    pub clamp: Clamp,
 }
 
 impl Default for Solver {
@@ -497,8 +499,21 @@ impl Default for Solver {
             steps_per_degree: 0,
             gas_steps: 0,
             passes: 721,
+            clamp: Clamp::Stop,
         }
     }
+}
+
+/// Velocity of a ring that reaches a flank, in the scheme `substep_march`.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Clamp {
+    /// Zero (zottin1992 as far as its listing can be read). In a keystone groove the flank moves with the film, a ring
+    /// clamped so sticks to it the longer the smaller the steps are, and the scheme has no limit.
+    #[default]
+    Stop,
+    /// Only motion into the flank is stopped: converges as the steps shrink.
+    Inward,
 }
 
 /// Solvers.

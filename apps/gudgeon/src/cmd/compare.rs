@@ -7,7 +7,7 @@ use gudgeon_core::result::Comparison;
 use crate::args::{CompareArgs, out_dir};
 use crate::cmd::{check_out, checked};
 use crate::failure::Failure;
-use crate::ui::{Ui, number, table};
+use crate::ui::{Ui, number, table, unit};
 
 pub fn compare(a: &CompareArgs, ui: &Ui) -> Result<(), Failure> {
     let swaps = a.swap.iter().map(|s| swap(s)).collect::<Result<Vec<_>, _>>()?;
@@ -67,17 +67,20 @@ fn text(c: &Comparison) -> String {
         let why = v.outcome.as_ref().err().map_or_else(String::new, |e| format!("  {e}"));
         let _ = writeln!(s, "  {} {}{why}", letter(i), v.label);
     }
-    let shown: Vec<_> = c.variants.iter().enumerate().filter_map(|(i, v)| Some((i, v.outcome.as_ref().ok()?))).collect();
+    let shown: Vec<_> =
+        c.variants.iter().enumerate().filter_map(|(i, v)| Some((i, v.outcome.as_ref().ok()?))).collect();
     let Some((first, base)) = shown.first() else { return s };
     let shown = &shown[..shown.len().min(COLUMNS)];
     let mut rows = vec![
         ["".into(), "".into()]
             .into_iter()
-            .chain(shown.iter().map(|(i, _)| if i == first { letter(*i) } else { format!("{} to {}", letter(*i), letter(*first)) }))
+            .chain(shown.iter().map(|(i, _)| {
+                if i == first { letter(*i) } else { format!("{} to {}", letter(*i), letter(*first)) }
+            }))
             .collect::<Vec<String>>(),
     ];
     for (name, v) in &base.results {
-        let mut row = vec![name.clone(), v.unit.clone(), number(v.value)];
+        let mut row = vec![name.clone(), unit(&v.unit), number(v.value)];
         for (_, r) in &shown[1..] {
             row.push(match r.results.get(name) {
                 Some(other) if v.value != 0.0 && other.value != v.value => {
@@ -107,7 +110,10 @@ mod tests {
     fn swaps_split_at_outer_commas() {
         let values = |t: &str| swap(t).ok().map(|(_, v)| v);
         assert_eq!(values("a.b=x, y"), Some(vec!["x".into(), "y".into()]));
-        assert_eq!(values("a=[1,2],\"p,q\",{ m = 1, n = 2 }"), Some(vec!["[1,2]".into(), "\"p,q\"".into(), "{ m = 1, n = 2 }".into()]));
+        assert_eq!(
+            values("a=[1,2],\"p,q\",{ m = 1, n = 2 }"),
+            Some(vec!["[1,2]".into(), "\"p,q\"".into(), "{ m = 1, n = 2 }".into()])
+        );
         for wrong in ["a", "=x", "a=", "a=x,,y", "a=x,"] {
             assert!(values(wrong).is_none(), "{wrong}");
         }

@@ -110,7 +110,11 @@ fn page(registry: &Registry, m: &ModelInfo) -> String {
     for line in example(m).lines() {
         let _ = writeln!(s, "  {line}");
     }
-    let _ = writeln!(s, "\nReferences\n  {}", if m.references.is_empty() { "none".into() } else { m.references.join(", ") });
+    let _ = writeln!(
+        s,
+        "\nReferences\n  {}",
+        if m.references.is_empty() { "none".into() } else { m.references.join(", ") }
+    );
     let _ = writeln!(s, "\nSource\n  {}:{}", m.file, m.line);
     s
 }
@@ -143,8 +147,13 @@ fn resolve<'a>(mut schema: &'a Value, definitions: &'a Map<String, Value>) -> (&
 
 fn parameters(schema: &Value, definitions: &Map<String, Value>, indent: usize, depth: usize, s: &mut String) {
     let Some(properties) = schema.get("properties").and_then(Value::as_object) else { return };
-    let required: Vec<&str> =
-        schema.get("required").and_then(Value::as_array).into_iter().flatten().filter_map(Value::as_str).collect();
+    let required: Vec<&str> = schema
+        .get("required")
+        .and_then(Value::as_array)
+        .into_iter()
+        .flatten()
+        .filter_map(Value::as_str)
+        .collect();
     for (key, p) in properties.iter().filter(|(k, _)| *k != "model") {
         let (inner, name) = resolve(p, definitions);
         let default = match p.get("default") {
@@ -194,8 +203,13 @@ fn words(schema: &Value) -> Vec<(&str, Option<&str>)> {
 
 fn type_text(schema: &Value, name: Option<&str>, definitions: &Map<String, Value>) -> String {
     if let Some(dimension) = schema.get("x-dimension").and_then(Value::as_str) {
-        let units: Vec<&str> =
-            schema.get("x-units").and_then(Value::as_array).into_iter().flatten().filter_map(Value::as_str).collect();
+        let units: Vec<&str> = schema
+            .get("x-units")
+            .and_then(Value::as_array)
+            .into_iter()
+            .flatten()
+            .filter_map(Value::as_str)
+            .collect();
         let bound = match schema.get("x-bound").and_then(Value::as_str) {
             None | Some("finite") => String::new(),
             Some(b) => format!(", {b}"),

@@ -7,7 +7,7 @@ use gudgeon_core::result::RunResult;
 use crate::args::{RunArgs, out_dir};
 use crate::cmd::{check_out, checked};
 use crate::failure::Failure;
-use crate::ui::{Ui, number, table};
+use crate::ui::{Ui, number, table, unit};
 
 pub fn run(a: &RunArgs, ui: &Ui) -> Result<(), Failure> {
     let c = checked(&a.case, ui)?;
@@ -31,7 +31,7 @@ fn text(r: &RunResult) -> String {
     let rows: Vec<_> = r
         .results
         .iter()
-        .map(|(name, v)| vec![name.clone(), number(v.value), v.unit.clone(), v.what.clone()])
+        .map(|(name, v)| vec![name.clone(), number(v.value), unit(&v.unit), v.what.clone()])
         .collect();
     s.push_str(&table(&rows, &[1]));
     // Writing to a String cannot fail.
@@ -45,7 +45,8 @@ fn text(r: &RunResult) -> String {
     if !balance.is_empty() {
         let _ = writeln!(s, "  closure per cycle: {}", balance.join(", "));
     }
-    let work: Vec<String> = r.solver.counters.iter().map(|(k, n)| format!("{n} {}", k.replace('_', " "))).collect();
+    let work: Vec<String> =
+        r.solver.counters.iter().map(|(k, n)| format!("{n} {}", k.replace('_', " "))).collect();
     let seconds = r.seconds.get("total").map_or_else(String::new, |t| format!(", {} s", number(*t)));
     let _ = writeln!(s, "  {}: {}{seconds}", r.solver.method, work.join(", "));
     if !r.skipped.is_empty() {
@@ -56,7 +57,8 @@ fn text(r: &RunResult) -> String {
         let _ = writeln!(s, "  note: {n}");
     }
     if !r.assumptions.is_empty() {
-        let _ = writeln!(s, "  {} inputs of this case are assumed; the report lists them", r.assumptions.len());
+        let _ =
+            writeln!(s, "  {} inputs of this case are assumed; the report lists them", r.assumptions.len());
     }
     s
 }

@@ -127,7 +127,9 @@ impl Schema {
         {
             let si = units_of(dimension).first().copied().unwrap_or_default();
             let n = number_text(number);
-            out.push(format!("{path} is {n} {si}: a number without a unit is SI; `\"{n} {example}\"` has one"));
+            out.push(format!(
+                "{path} is {n} {si}: a number without a unit is SI; `\"{n} {example}\"` has one"
+            ));
         }
     }
 
@@ -213,7 +215,8 @@ impl Schema {
                 }
                 (place, _) => d.at(place.origin, place.span.clone()),
             };
-            let texts: Vec<String> = missing.iter().filter_map(|k| self.meaning(k, properties.get(*k)?)).collect();
+            let texts: Vec<String> =
+                missing.iter().filter_map(|k| self.meaning(k, properties.get(*k)?)).collect();
             if !texts.is_empty() {
                 d = d.help(texts.join("\n"));
             }
@@ -225,8 +228,8 @@ impl Schema {
     fn meaning(&self, key: &str, schema: &Value) -> Option<String> {
         let inner = self.resolve(schema);
         let text = schema.get("description").or_else(|| inner.get("description")).and_then(Value::as_str);
-        let models = Tagged::of(self, inner).map(|t| format!("{}: {}", t.tag, list(t.names())));
-        let words = words_of(inner).map(list);
+        let models = Tagged::of(self, inner).map(|t| format!("one of the models {}", list(t.names())));
+        let words = words_of(inner).map(|w| format!("one of {}", list(w)));
         let parts: Vec<String> = text.map(first_sentence).into_iter().chain(models).chain(words).collect();
         (!parts.is_empty()).then(|| format!("`{key}`: {}", parts.join("; ")))
     }

@@ -258,7 +258,10 @@ fn missing_keys_are_told_with_their_meaning() {
     );
     assert_eq!(
         mistakes("title = \"x\"\n[models]\n", &[]),
-        ["2:1 models: missing key `gas`", "3:1 missing keys `machine`, `rings` | `machine`: The machine",]
+        [
+            "2:1 models: missing key `gas` | `gas`: one of the models `orifice`, `channel`, `off`",
+            "3:1 missing keys `machine`, `rings` | `machine`: The machine",
+        ]
     );
     assert_eq!(
         mistakes("", &[]),
@@ -418,7 +421,8 @@ fn overrides_are_blamed_where_they_are_wrong() {
 
 #[test]
 fn a_forgotten_unit_is_told() {
-    let c = try_set(&edited("\"120 mm\"", "120"), &["rings.0.drops=[1e-6, 5]", "solver.start=1"]).expect("possible");
+    let c = try_set(&edited("\"120 mm\"", "120"), &["rings.0.drops=[1e-6, 5]", "solver.start=1"])
+        .expect("possible");
     assert_eq!(
         c.notes,
         [

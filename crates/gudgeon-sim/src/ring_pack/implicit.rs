@@ -8,7 +8,7 @@ use gudgeon_core::EvalError;
 use gudgeon_core::result::Balance;
 use gudgeon_numerics::ode::{ColumnGroups, Flow, IntegrateError, Integrator, OdeSystem, Options, Stats, StepView};
 use gudgeon_numerics::orbit::{CycleMap, OrbitOptions, periodic_orbit};
-use gudgeon_numerics::rodas::Rodas as Radau5;
+use gudgeon_numerics::radau::Radau5;
 use gudgeon_numerics::rodas::Rodas;
 
 use super::Found;

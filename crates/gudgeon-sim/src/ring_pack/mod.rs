@@ -160,6 +160,7 @@ fn one_start(case: &RingPackCase, pack: &mut Pack, start: f64, progress: &mut dy
                 steps: or(s.steps_per_degree, n + 1),
                 gas_steps: or(s.gas_steps, 1 << (n + 1)),
                 passes: s.passes,
+                clamp: s.clamp,
             };
             let outcome = substep_march::run(pack, set, start, &mut record, progress);
             let (totals, steps) = outcome.map_err(at(pack))?;

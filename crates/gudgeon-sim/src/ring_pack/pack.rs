@@ -29,6 +29,10 @@ const LIMIT_BAND: f64 = 0.02;
 /// instead of infinitely fast.
 const LOAD_FLOOR: f64 = 1e-3;
 
+/// Radial speed that a ring does not exceed \[m/s\]: gas that lifts a ring off the liner meets its inertia, which the radial
+/// balance leaves out. Normal squeeze velocities are a thousand times smaller and not affected (relative 1e-7).
+const RADIAL_SPEED: f64 = 3.0;
+
 /// Work counters.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Counters {
@@ -400,6 +404,7 @@ impl Pack {
         } else {
             self.solve_balance(i, needed, soft)?
         };
+        hdot /= (1.0 + (hdot / RADIAL_SPEED) * (hdot / RADIAL_SPEED)).sqrt();
         let g = &self.geo.rings[i];
         let h_max = g.h_max(self.at.places[i].liner_radius);
         if hdot > 0.0 {

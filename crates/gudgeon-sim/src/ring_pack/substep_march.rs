@@ -11,6 +11,8 @@
 use gudgeon_core::EvalError;
 use gudgeon_core::kinds::Motion;
 
+use crate::case::Clamp;
+
 use super::pack::Pack;
 use super::record::{Record, Totals};
 
@@ -25,6 +27,8 @@ pub struct Settings {
     pub gas_steps: u32,
     /// Passes of one degree per cycle.
     pub passes: u32,
+    /// Velocity at a flank.
+    pub clamp: Clamp,
 }
 
 /// Interval at which the bisection stops \[m\], and its least number of halvings.
@@ -112,7 +116,7 @@ pub fn run(
                 }
                 for (i, r) in rings.iter_mut().enumerate() {
                     if moving(pack, i) {
-                        axial(pack, i, r, dt);
+                        axial(pack, i, r, dt, set.clamp);
                     }
                 }
                 steps += 1;
@@ -169,7 +173,7 @@ fn bisect(pack: &mut Pack, i: usize, old: f64, dt: f64, s: (f64, f64)) -> Result
 }
 
 /// One step of `m a = F`, damping at the new velocity and position: `v' = v + a Δt`, `s' = s + v Δt + a Δt²/2`.
-fn axial(pack: &mut Pack, i: usize, r: &mut RingState, dt: f64) {
+fn axial(pack: &mut Pack, i: usize, r: &mut RingState, dt: f64, clamp: Clamp) {
     pack.axial_forces(i);
     let mass = pack.geo.rings[i].mass;
     let place = pack.at.places[i];
@@ -209,9 +213,9 @@ fn axial(pack: &mut Pack, i: usize, r: &mut RingState, dt: f64) {
     let (s, v) = trial(a);
     r.a = a;
     (r.s, r.v) = if s <= 0.0 {
-        (0.0, 0.0)
+        (0.0, if clamp == Clamp::Stop { 0.0 } else { v.max(0.0) })
     } else if s >= c {
-        (c, 0.0)
+        (c, if clamp == Clamp::Stop { 0.0 } else { v.min(0.0) })
     } else {
         (s, v)
     };
