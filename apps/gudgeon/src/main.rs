@@ -1,50 +1,7 @@
-//! The Gudgeon command line.
-//!
-//! Exit codes: 0 done, 1 the run failed, 2 the input is wrong.
-
-// Links every built-in model.
-use gudgeon_models as _;
-
-mod args;
-mod cmd;
-mod failure;
-mod ui;
+//! The program `gudgeon`; everything is in the library.
 
 use std::process::ExitCode;
 
-use clap::Parser;
-use gudgeon_core::Registry;
-
-use args::{Args, Command};
-use failure::Failure;
-use ui::Ui;
-
 fn main() -> ExitCode {
-    let args = Args::parse();
-    let ui = Ui::new(args.quiet());
-    match dispatch(&args.command, &ui) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            ui.failure(&failure);
-            failure.exit_code()
-        }
-    }
-}
-
-fn dispatch(command: &Command, ui: &Ui) -> Result<(), Failure> {
-    let registry = Registry::collect();
-    if let Err(all) = registry.verify() {
-        return Err(Failure::Registry(all));
-    }
-    match command {
-        Command::Run(a) => cmd::run::run(a, ui),
-        Command::Check(a) => cmd::check::check(a, ui),
-        Command::Explain(a) => cmd::explain::explain(a, ui),
-        Command::Models(a) => cmd::models::models(a, &registry, ui),
-        Command::Describe(a) => cmd::describe::describe(a, &registry, ui),
-        Command::Schema => cmd::schema::schema(ui),
-        Command::Compare(a) => cmd::compare::compare(a, ui),
-        Command::Bench(a) => cmd::bench::bench(a, ui),
-        Command::Report(a) => cmd::report::report(a, ui),
-    }
+    gudgeon::main()
 }

@@ -8,7 +8,7 @@ use std::io::{self, IsTerminal, Write};
 use std::time::Duration;
 
 use gudgeon_sim::Progress;
-use gudgeon_sim::load::Report;
+use gudgeon_sim::load::{Origin, Report};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::failure::Failure;
@@ -199,10 +199,7 @@ mod tests {
     #[test]
     fn numbers_keep_five_digits() {
         let shown = [49.876_543, 0.001_234_567, 1e-9, 123_456.7, 1.0, -2.5, 0.0, 2e9].map(number);
-        assert_eq!(
-            shown,
-            ["49.877", "0.0012346", "1.0000e-9", "123457", "1", "-2.5000", "0", "2.0000e9"]
-        );
+        assert_eq!(shown, ["49.877", "0.0012346", "1.0000e-9", "123457", "1", "-2.5000", "0", "2.0000e9"]);
     }
 
     #[test]

@@ -113,7 +113,7 @@ dimensions! {
     /// Time \[s\].
     Time, Time, PosTime, "a time", [("s", 1.0, 0.0), ("ms", 1e-3, 0.0), ("us", 1e-6, 0.0)];
     /// Velocity \[m/s\].
-    Velocity, Velocity, PosVelocity, "a velocity", [("m/s", 1.0, 0.0), ("mm/s", 1e-3, 0.0)];
+    Velocity, Velocity, PosVelocity, "a velocity", [("m/s", 1.0, 0.0), ("cm/s", 1e-2, 0.0), ("mm/s", 1e-3, 0.0)];
     /// Dynamic viscosity \[Pa s\].
     Viscosity, Viscosity, PosViscosity, "a dynamic viscosity", [("Pa s", 1.0, 0.0), ("mPa s", 1e-3, 0.0), ("cP", 1e-3, 0.0)];
     /// Energy \[J\].

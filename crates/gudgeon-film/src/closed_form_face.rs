@@ -132,17 +132,31 @@ struct Island {
     /// `∂p/∂v` at the ends.
     ra: f64,
     rb: f64,
-    /// Pressure is counted from the lower end (or from the upper).
+    /// The film begins at 0, and its pressure is counted from there; otherwise from the upper end.
     upwards: bool,
+    m: Moments,
 }
 
+/// A pressure minimum, and the integrals up to it.
+struct Valley<S: Shape> {
+    p: f64,
+    i: usize,
+    x: f64,
+    head: S::Head,
+}
+impl<S: Shape> Clone for Valley<S> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<S: Shape> Copy for Valley<S> {}
+
 /// How the film that begins at the leading edge ends.
-#[derive(Debug, Clone, Copy)]
-enum Lead {
+enum Lead<S: Shape> {
     /// At the trailing edge.
     Full { q: f64 },
     /// Where pressure and gradient vanish.
-    Rupture { i: usize, x: f64, q: f64 },
+    Rupture { q: f64, at: Valley<S> },
 }
 
 /// Load over `12 μ`, its derivative, and the size of the terms it was summed from.
@@ -166,6 +180,9 @@ struct Side<S> {
     face: S,
     islands: Vec<Island>,
     warm: Option<Warm>,
+    /// Where the full film was cut last, and the last squeeze velocity of one.
+    cuts: [f64; 2],
+    v_cut: Option<f64>,
 }
 
 #[derive(Debug)]
@@ -179,7 +196,7 @@ struct Film<S> {
 impl<S: Shape> Side<S> {
     fn new(face: S) -> Self {
         let islands = Vec::with_capacity(2 * face.pieces() + 2);
-        Self { face, islands, warm: None }
+        Self { face, islands, warm: None, cuts: [f64::NAN; 2], v_cut: None }
     }
 
     /// `U d + V s - q`, the pressure gradient times `h³`.
@@ -188,20 +205,20 @@ impl<S: Shape> Side<S> {
         f.u * self.face.drop(i, x) + f.v * self.face.s(x) - q
     }
 
-    fn full_q(&self, f: &Flow) -> f64 {
+    fn full_q(&mut self, f: &Flow) -> f64 {
         let w = self.face.whole();
         (f.pa - f.pb + f.u * w.d2 + f.v * w.x3) / w.i3
     }
 
     /// The lowest of the pressure minima of the film that starts with `pa` at 0 and has the flux `q`.
-    fn lowest_valley(&self, f: &Flow, q: f64) -> Option<(f64, usize, f64, Three)> {
-        let mut low: Option<(f64, usize, f64, Three)> = None;
+    fn lowest_valley(&self, f: &Flow, q: f64) -> Option<Valley<S>> {
+        let mut low: Option<Valley<S>> = None;
         for i in 0..self.face.pieces() {
             if let Some(x) = self.face.valley(i, f.u, f.v, q) {
-                let t = self.face.head(i, x);
-                let p = f.pa + t.rise(f.u, f.v, q);
-                if low.is_none_or(|l| p < l.0) {
-                    low = Some((p, i, x, t));
+                let head = self.face.head(i, x);
+                let p = f.pa + S::three(&head).rise(f.u, f.v, q);
+                if low.as_ref().is_none_or(|l| p < l.p) {
+                    low = Some(Valley { p, i, x, head });
                 }
             }
         }
@@ -213,24 +230,51 @@ impl<S: Shape> Side<S> {
     /// As a function of the flux, every pressure minimum is concave and falls (`dp/dq = -∫dx/h³` up to it, which grows), and
     /// so does the lowest of them. The flux sought is the largest that leaves no pressure negative; from the full film,
     /// where the lowest is negative, second-order steps on a concave function approach it from one side.
-    fn lead(&self, f: &Flow) -> Result<Lead, EvalError> {
-        let full = self.full_q(f);
+    fn lead(&mut self, f: &Flow) -> Result<Lead<S>, EvalError> {
         // Without pressure at the leading edge the pressure has to rise from there.
         let limit = f.u * self.face.drop(0, 0.0) + f.v * self.face.s(0.0);
-        let held = f.pa <= 0.0 && full > limit;
-        let mut q = if held { limit } else { full };
-        let (mut lo, mut hi) = (f64::NAN, q);
-        let mut valley = self.lowest_valley(f, q);
-        if valley.is_none_or(|v| v.0 >= 0.0) {
-            return Ok(if held { Lead::Rupture { i: 0, x: 0.0, q } } else { Lead::Full { q } });
+        if let Some(w) = self.warm
+            && self.face.convex()
+            && f.u > 0.0
+        {
+            // One minimum only: if the film ruptures at all, it is there, and the start does not matter.
+            let i = self.face.piece_of(w.xr);
+            let q = f.u * self.face.drop(i, w.xr) + f.v * self.face.s(w.xr);
+            if (f.pa > 0.0 || q < limit)
+                && let Ok(Lead::Rupture { q, at }) = self.touch(f, q, f64::NAN)
+                && self.face.tail(at.i, at.x).rise(f.u, f.v, q) >= f.pb
+            {
+                return Ok(Lead::Rupture { q, at });
+            }
         }
+        let full = self.full_q(f);
+        let held = f.pa <= 0.0 && full > limit;
+        let q = if held { limit } else { full };
+        let valley = self.lowest_valley(f, q);
+        if valley.is_none_or(|v| v.p >= 0.0) {
+            return Ok(if held {
+                let head = self.face.head(0, 0.0);
+                Lead::Rupture { q, at: Valley { p: 0.0, i: 0, x: 0.0, head } }
+            } else {
+                Lead::Full { q }
+            });
+        }
+        self.touch(f, q, q)
+    }
+
+    /// The film whose lowest minimum is zero, from the flux `q`; `hi` is a flux known to be too large, if any.
+    fn touch(&self, f: &Flow, mut q: f64, mut hi: f64) -> Result<Lead<S>, EvalError> {
+        let mut lo = f64::NAN;
+        let mut valley = self.lowest_valley(f, q);
         for _ in 0..200 {
             let mut close = None;
             let next = match valley {
-                Some((p, i, x, t)) => {
+                Some(at) => {
+                    let Valley { p, i, x, head } = at;
+                    let t = S::three(&head);
                     let scale = f.pa.abs() + (f.u * t.d2).abs() + (f.v * t.x3).abs() + (q * t.i3).abs();
                     if p.abs() <= 2.0 * f64::EPSILON * scale {
-                        return Ok(Lead::Rupture { i, x, q });
+                        return Ok(Lead::Rupture { q, at });
                     }
                     if p < 0.0 {
                         hi = q;
@@ -257,73 +301,88 @@ impl<S: Shape> Side<S> {
                     f64::NAN
                 }
             };
-            let inside = next < hi && !(next <= lo) && next.is_finite();
-            let next = match (inside, lo.is_nan()) {
-                (true, _) => next,
-                (false, false) => 0.5 * (lo + hi),
-                (false, true) => return Err(no_convergence("rupture")),
-            };
+            let inside = next.is_finite() && (hi.is_nan() || next < hi) && (lo.is_nan() || next > lo);
+            let next = if inside { next } else { 0.5 * (lo + hi) };
+            if !next.is_finite() {
+                return Err(no_convergence("rupture"));
+            }
             if next == q || next == hi || next == lo {
                 // The bracket has closed to neighbouring numbers.
-                return match valley {
-                    Some((_, i, x, _)) => Ok(Lead::Rupture { i, x, q }),
-                    None => Err(no_convergence("rupture")),
-                };
+                return valley.map_or(Err(no_convergence("rupture")), |at| Ok(Lead::Rupture { q, at }));
             }
             q = next;
             valley = self.lowest_valley(f, q);
             // The step was of third order if it stayed in one piece: what is left is below rounding.
-            if let (Some(c), Some((_, i, x, _))) = (close, valley)
-                && c == i
+            if let (Some(c), Some(at)) = (close, valley)
+                && c == at.i
                 && inside
             {
-                return Ok(Lead::Rupture { i, x, q });
+                return Ok(Lead::Rupture { q, at });
             }
         }
         Err(no_convergence("rupture"))
     }
 
-    /// Beginning of the film that ends at `(ie, xe)` with pressure `pe` and lies above `(ir, xr)`; `(piece, x, q, dry)`.
+    /// Beginning of the film that ends at `(ie, xe)` with pressure `pe`, behind the rupture at `(ir, xr)`.
+    ///
+    /// The largest place where the pressure, counted back from the end, comes down to zero: with the flux that the cavity
+    /// carries there, which is that of the rupture unless the cavity has run dry.
     #[allow(clippy::too_many_arguments)]
-    fn reform(&self, f: &Flow, q: f64, ir: usize, xr: f64, ie: usize, xe: f64, pe: f64, may_dry: bool) -> Start {
+    fn reform(
+        &self,
+        f: &Flow,
+        q: f64,
+        ir: usize,
+        xr: f64,
+        ie: usize,
+        xe: f64,
+        pe: f64,
+        may_dry: bool,
+    ) -> Start {
         let end = if xe >= self.face.len() { Three::default() } else { self.face.tail(ie, xe) };
-        // Pressure at x counted back from the end, its slope over x, and the flux constant there.
+        // Pressure at x counted back from the end, with its first and second derivative there.
         let at = |i: usize, x: f64| {
             let t = self.face.tail(i, x).minus(end);
-            let dry_q = f.v * self.face.s(x) - f.u * self.face.film();
-            let dry = may_dry && dry_q > q;
-            let qx = if dry { dry_q } else { q };
-            let h = self.face.film() + self.face.drop(i, x);
-            let slope = self.n(f, i, x, qx) / (h * h * h) + if dry { f.v * t.i3 } else { 0.0 };
-            (pe - t.rise(f.u, f.v, qx), slope, qx, dry)
+            let (qx, dry) = self.carried_to(f, q, x, may_dry);
+            let (h, dh) = (self.face.film() + self.face.drop(i, x), self.face.slope(i, x));
+            let (n, ih) = (self.n(f, i, x, qx), 1.0 / h);
+            let ih3 = ih * ih * ih;
+            let p = pe - t.rise(f.u, f.v, qx);
+            if dry {
+                // Second derivative not worth its terms: zero asks for plain Newton steps.
+                (p, n * ih3 + f.v * t.i3, 0.0)
+            } else {
+                (p, n * ih3, (f.u * dh + f.v - 3.0 * n * dh * ih) * ih3)
+            }
         };
         let mut i = ie;
         let mut hi = xe;
         loop {
             let mut lo = if i == ir { xr } else { self.face.node(i) };
-            let valley = self
-                .face
-                .valley(i, f.u, f.v, q)
-                .filter(|x| i != ir && *x > lo && *x < hi && at(i, *x).0 <= 0.0);
-            let found = if let Some(x) = valley {
-                lo = x;
-                true
+            let valley = if i == ir {
+                // The pressure there is zero or, counted back from the end, less: the film has ruptured.
+                Some(xr)
             } else {
-                at(i, lo).0 <= 0.0
+                self.face.valley(i, f.u, f.v, q).filter(|x| *x > lo && *x < hi && at(i, *x).0 <= 0.0)
             };
-            if found {
+            if valley.is_some() || at(i, lo).0 <= 0.0 {
+                lo = valley.unwrap_or(lo);
                 // From here the pressure only rises as far as its maximum, if it has one.
                 let crest = self.face.crest(i, f.u, f.v, q).filter(|x| *x > lo && *x < hi);
-                let hi = crest.unwrap_or(hi);
-                return self.reform_between(i, lo, hi, xe, at);
-            }
-            if i == ir {
-                // The film is full but for rounding.
-                return Start { i, x: xr, q, dry: false };
+                let x = self.reform_between(i, lo, crest.unwrap_or(hi), xe, at);
+                let (q, dry) = self.carried_to(f, q, x, may_dry);
+                return Start { i, x, q, dry };
             }
             hi = lo;
             i -= 1;
         }
+    }
+
+    /// Flux constant of a film that begins at `x` behind a cavity, and whether the cavity has run dry before.
+    #[inline]
+    fn carried_to(&self, f: &Flow, q: f64, x: f64, may_dry: bool) -> (f64, bool) {
+        let dry_q = f.v * self.face.s(x) - f.u * self.face.film();
+        if may_dry && dry_q > q { (dry_q, true) } else { (q, false) }
     }
 
     fn reform_between(
@@ -332,37 +391,40 @@ impl<S: Shape> Side<S> {
         mut lo: f64,
         mut hi: f64,
         xe: f64,
-        at: impl Fn(usize, f64) -> (f64, f64, f64, bool),
-    ) -> Start {
+        at: impl Fn(usize, f64) -> (f64, f64, f64),
+    ) -> f64 {
         let mut x = self.warm.map_or(f64::NAN, |w| w.xf);
         if !(x > lo && x < hi) {
             x = hi;
         }
         for _ in 0..200 {
-            let (p, slope, q, dry) = at(i, x);
+            let (p, slope, bend) = at(i, x);
             if p > 0.0 {
                 hi = x;
             } else {
                 lo = x;
             }
-            let step = -p / slope;
-            let next = x + step;
             if p == 0.0 || hi - lo <= 2.0 * f64::EPSILON * self.face.len() {
-                return Start { i, x, q, dry };
+                return x;
             }
+            // Halley's step, third order.
+            let newton = -p / slope;
+            let r = newton * bend / slope;
+            let step = newton / (1.0 + 0.5 * r);
+            let next = x + step;
             if next > lo && next < hi {
                 x = next;
-                // Second order, in units of the length of the film: what is left is below rounding.
-                if step.abs() <= 1e-9 * (xe - x) {
-                    let (_, _, q, dry) = at(i, x);
-                    return Start { i, x, q, dry };
+                // Small beside the length of the film and beside that over which the slope changes: what is left is below
+                // rounding.
+                let small = if bend == 0.0 { 1e-9 } else { 1e-6 };
+                if step.abs() <= small * (xe - x) && r.abs() <= 1e-6 {
+                    return x;
                 }
             } else {
                 x = 0.5 * (lo + hi);
             }
         }
-        let (_, _, q, dry) = at(i, x);
-        Start { i, x, q, dry }
+        x
     }
 
     /// Fills `islands` for the film at the given squeeze velocity.
@@ -370,21 +432,20 @@ impl<S: Shape> Side<S> {
         self.islands.clear();
         let last = self.face.pieces() - 1;
         let len = self.face.len();
-        let whole = *self.face.whole();
         match cavitation {
             Cavitation::FullSommerfeld => {
                 let q = self.full_q(f);
-                self.push_full(f, q, &whole);
+                self.push_full(f, q);
             }
-            Cavitation::HalfSommerfeld => self.clip(f, &whole),
+            Cavitation::HalfSommerfeld => self.clip(f),
             Cavitation::MassConserving | Cavitation::SwiftStieber => match self.lead(f)? {
                 Lead::Full { q } => {
                     self.warm = None;
-                    self.push_full(f, q, &whole);
+                    self.push_full(f, q);
                 }
-                Lead::Rupture { i, x, q } => {
-                    let head = self.face.head(i, x);
-                    let w = if x > 0.0 { head.x3 / head.i3 } else { self.face.s(0.0) };
+                Lead::Rupture { q, at: Valley { i, x, head, .. } } => {
+                    let m = self.face.complete(i, x, &head);
+                    let w = if x > 0.0 { m.x3 / m.i3 } else { self.face.s(0.0) };
                     self.islands.push(Island {
                         ia: 0,
                         xa: 0.0,
@@ -397,6 +458,7 @@ impl<S: Shape> Side<S> {
                         ra: 0.0,
                         rb: 0.0,
                         upwards: true,
+                        m,
                     });
                     let mut xf = len;
                     // The trailing edge has a film if there is pressure, or if the gap narrows towards it.
@@ -417,7 +479,8 @@ impl<S: Shape> Side<S> {
         Ok(())
     }
 
-    fn push_full(&mut self, f: &Flow, q: f64, whole: &Moments) {
+    fn push_full(&mut self, f: &Flow, q: f64) {
+        let whole = self.face.whole();
         self.islands.push(Island {
             ia: 0,
             xa: 0.0,
@@ -430,11 +493,12 @@ impl<S: Shape> Side<S> {
             ra: 0.0,
             rb: 0.0,
             upwards: true,
+            m: whole,
         });
     }
 
     fn push_trailing(&mut self, f: &Flow, start: Start, ie: usize, xe: f64, pe: f64, w: f64) {
-        let m = self.face.span(start.i, start.x, ie, xe).pressure();
+        let m = self.face.span(start.i, start.x, ie, xe);
         let w = if start.dry {
             // The flux constant moves with the front, and the front with v.
             let s = self.face.s(start.x);
@@ -456,6 +520,7 @@ impl<S: Shape> Side<S> {
             ra: w * m.i3 - m.x3,
             rb: 0.0,
             upwards: false,
+            m,
         });
     }
 
@@ -491,8 +556,9 @@ impl<S: Shape> Side<S> {
     }
 
     /// The parts of the full film above zero pressure.
-    fn clip(&mut self, f: &Flow, whole: &Moments) {
+    fn clip(&mut self, f: &Flow) {
         let q = self.full_q(f);
+        let whole = self.face.whole();
         let w = whole.x3 / whole.i3;
         let len = self.face.len();
         let mid = self.face.x_ref();
@@ -504,13 +570,14 @@ impl<S: Shape> Side<S> {
             } else if x <= 0.0 {
                 (f.pa, 0.0)
             } else if x <= mid {
-                let t = self.face.head(i, x);
+                let t = S::three(&self.face.head(i, x));
                 (f.pa + t.rise(f.u, f.v, q), t.x3 - w * t.i3)
             } else {
                 let t = self.face.tail(i, x);
                 (f.pb - t.rise(f.u, f.v, q), w * t.i3 - t.x3)
             }
         };
+        let mut cuts = self.cuts;
         let mut open: Option<(usize, f64, f64, f64)> = (f.pa > 0.0).then_some((0, 0.0, f.pa, 0.0));
         let (mut i0, mut x0, mut p0) = (0, 0.0, f.pa);
         let islands = &mut self.islands;
@@ -529,15 +596,18 @@ impl<S: Shape> Side<S> {
                 ra: a.3,
                 rb: b.3,
                 upwards: a.1 <= 0.0,
+                m: face.span(a.0, a.1, b.0, b.1),
             };
             // Rises or falls monotonically since the last visit.
             if p > 0.0 && open.is_none() {
-                let z = if p0 < 0.0 { clip_zero(face, f, q, i, x0, p0, x, p, &at) } else { x0 };
+                let z = if p0 < 0.0 { clip_zero(face, f, q, i, (x0, p0), (x, p), cuts[1], &at) } else { x0 };
+                cuts[1] = z;
                 open = Some((if z > x0 { i } else { i0 }, z, 0.0, if z > 0.0 { at(i, z).1 } else { 0.0 }));
             } else if p <= 0.0
                 && let Some(a) = open
             {
-                let z = if p < 0.0 { clip_zero(face, f, q, i, x0, p0, x, p, &at) } else { x };
+                let z = if p < 0.0 { clip_zero(face, f, q, i, (x0, p0), (x, p), cuts[0], &at) } else { x };
+                cuts[0] = z;
                 let rb = if z < len { at(i, z).1 } else { 0.0 };
                 islands.push(island(a, (i, z, 0.0, rb)));
                 open = None;
@@ -562,20 +632,21 @@ impl<S: Shape> Side<S> {
             }
             visit(i, self.face.node(i + 1), islands);
         }
+        self.cuts = cuts;
     }
 
     /// Load over `12 μ` of the films found last.
     fn carried(&self, f: &Flow) -> Carried {
         let mut c = Carried::default();
         for l in &self.islands {
-            let m = self.face.span(l.ia, l.xa, l.ib, l.xb);
-            self.carry(f, l, &m, &mut c);
+            self.carry(f, l, &mut c);
         }
         c
     }
 
     #[inline]
-    fn carry(&self, f: &Flow, l: &Island, m: &Moments, c: &mut Carried) {
+    fn carry(&self, f: &Flow, l: &Island, c: &mut Carried) {
+        let m = &l.m;
         let (sa, sb) = (self.face.s(l.xa), self.face.s(l.xb));
         // Integration by parts: ∫p dx = [s p] - ∫ s p' dx.
         let (edge, wedge, squeeze, flux) = (sb * l.pb - sa * l.pa, f.u * m.e2, f.v * m.xx3, l.q * m.x3);
@@ -600,14 +671,22 @@ impl<S: Shape> Side<S> {
         } else if x <= l.xa {
             l.pa
         } else if l.upwards {
-            l.pa + self.face.span(l.ia, l.xa, i, x).pressure().rise(f.u, f.v, l.q)
+            l.pa + S::three(&self.face.head(i, x)).rise(f.u, f.v, l.q)
         } else {
-            l.pb - self.face.span(i, x, l.ib, l.xb).pressure().rise(f.u, f.v, l.q)
+            let end = if l.xb >= self.face.len() { Three::default() } else { self.face.tail(l.ib, l.xb) };
+            l.pb - self.face.tail(i, x).minus(end).rise(f.u, f.v, l.q)
         }
     }
 
     /// Everything about the films found last, in this sliding direction.
-    fn report(&mut self, f: &Flow, cavitation: Cavitation, shear: CavityShear, mu: f64, p_cav: f64) -> FaceOut {
+    fn report(
+        &mut self,
+        f: &Flow,
+        cavitation: Cavitation,
+        shear: CavityShear,
+        mu: f64,
+        p_cav: f64,
+    ) -> FaceOut {
         let h0 = self.face.film();
         let len = self.face.len();
         let last = self.face.pieces() - 1;
@@ -616,8 +695,8 @@ impl<S: Shape> Side<S> {
         let mut high = f64::NEG_INFINITY;
         let mut extent = (0.0, 0.0);
         for l in &self.islands {
-            let m = self.face.span(l.ia, l.xa, l.ib, l.xb);
-            self.carry(f, l, &m, &mut c);
+            let m = &l.m;
+            self.carry(f, l, &mut c);
             gradient += f.u * (m.i1 - h0 * m.i2) + f.v * m.x2 - l.q * m.i2;
             sheared += m.i1;
             ends += l.pb * (h0 + self.face.drop(l.ib, l.xb)) - l.pa * (h0 + self.face.drop(l.ia, l.xa));
@@ -721,15 +800,14 @@ fn clip_zero<S: Shape>(
     f: &Flow,
     q: f64,
     i: usize,
-    x0: f64,
-    p0: f64,
-    x1: f64,
-    p1: f64,
+    (x0, p0): (f64, f64),
+    (x1, p1): (f64, f64),
+    guess: f64,
     at: &impl Fn(usize, f64) -> (f64, f64),
 ) -> f64 {
     let (mut lo, mut hi) = (x0, x1);
     let falls = p0 > p1;
-    let mut x = x0 + (x1 - x0) * (p0 / (p0 - p1));
+    let mut x = if guess > x0 && guess < x1 { guess } else { x0 + (x1 - x0) * (p0 / (p0 - p1)) };
     for _ in 0..200 {
         let p = at(i, x).0;
         if (p > 0.0) == falls {
@@ -768,8 +846,9 @@ impl<S: Shape> Film<S> {
 
     /// Checks the inputs and turns them so that the liner moves along `+x`.
     fn enter(&mut self, inp: &FaceIn, v: f64) -> Result<(&mut Side<S>, Flow, bool), EvalError> {
-        let all = [inp.h, inp.u, inp.p_bottom, inp.p_top, inp.p_cav, inp.mu, v];
-        if all.iter().any(|x| !x.is_finite()) || inp.mu <= 0.0 {
+        // One test for all: what is not finite leaves no finite sum.
+        let sum = inp.h + inp.u + inp.p_bottom + inp.p_top + inp.p_cav + inp.mu + v;
+        if !sum.is_finite() || inp.mu <= 0.0 {
             return Err(EvalError::fatal(MODEL, format!("not a film: {inp:?}, squeeze {v}")));
         }
         let turned = inp.u < 0.0;
@@ -848,20 +927,32 @@ impl<S: Shape> Side<S> {
             return Ok(v);
         }
         // The full film is linear in v.
-        let m = *self.face.whole();
+        let m = self.face.whole();
         let spread = m.xx3 - m.x3 * m.x3 / m.i3;
         let ends = self.face.s(self.face.len()) * f.pb - self.face.s(0.0) * f.pa;
         let still = ends - f.u * m.e2 + m.x3 / m.i3 * (f.pa - f.pb + f.u * m.d2);
         let full = finite((still - target) / spread, "squeeze velocity")?;
-        f.v = full;
         if cavitation == Cavitation::FullSommerfeld {
             return Ok(full);
         }
+        let unit = target / spread;
+        if cavitation == Cavitation::HalfSommerfeld
+            && let Some(v) = self.v_cut
+        {
+            f.v = v;
+            if let Ok(v) = self.bracketed(f, cavitation, target, unit) {
+                self.v_cut = Some(v);
+                return Ok(v);
+            }
+        }
+        f.v = full;
         self.solve(f, cavitation)?;
         if matches!(self.islands.as_slice(), [l] if l.xa <= 0.0 && l.xb >= self.face.len()) {
             return Ok(full);
         }
-        self.bracketed(f, cavitation, target, target / spread)
+        let v = self.bracketed(f, cavitation, target, unit)?;
+        self.v_cut = Some(v);
+        Ok(v)
     }
 
     /// The squeeze velocity of a ruptured film, by Newton from where the cavity was last; `None` sends to the safe search.
@@ -872,13 +963,15 @@ impl<S: Shape> Side<S> {
     fn quick(&mut self, f: &Flow, cavitation: Cavitation, target: f64) -> Option<f64> {
         let warm = self.warm?;
         if !self.face.convex()
-            || !(cavitation == Cavitation::MassConserving || (cavitation == Cavitation::SwiftStieber && f.u > 0.0))
+            || !(cavitation == Cavitation::MassConserving
+                || (cavitation == Cavitation::SwiftStieber && f.u > 0.0))
         {
             return None;
         }
         let (len, last) = (self.face.len(), self.face.pieces() - 1);
         let (s0, s_len) = (self.face.s(0.0), self.face.s(len));
         let trailing = cavitation == Cavitation::MassConserving && f.pb > 0.0;
+        let mut before: Option<(f64, f64, f64)> = None;
         let (mut x, mut xf) = (warm.xr, if warm.xf < len { warm.xf } else { 0.5 * (warm.xr + len) });
         for _ in 0..16 {
             let i = self.face.piece_of(x);
@@ -922,12 +1015,25 @@ impl<S: Shape> Side<S> {
             let dx = -g / (g_v * dv);
             let next = x + dx;
             let mut settled = dx.abs() <= 1e-8 * x.min(len - x);
-            let answer = v + dv * dx;
+            let mut answer = v + dv * dx;
+            if let (Some((g1, v1, slope1)), false) = (before, trailing || settled)
+                && (g * g1).abs() <= 1e-9 * target * target
+                && g.abs() < 1e-4 * target
+            {
+                // v(g) from values and slopes at the last two points; the error is of the order of (g g1)².
+                let (slope, h) = (1.0 / g_v, g1 - g);
+                let mean = (v1 - v) / h;
+                let bend = (mean - slope) / h;
+                let twist = (slope1 - 2.0 * mean + slope) / (h * h);
+                answer = v - slope * g + g * g * (bend - twist * g1);
+                settled = true;
+            }
+            before = Some((g, v, 1.0 / g_v));
             if let Some((p, p_x, lever)) = front {
                 let dxf = (lever * dv * dx - p) / p_x;
                 settled &= dxf.abs() <= 1e-8 * (len - xf).min(xf - x);
                 xf = (xf + dxf).min(0.5 * (xf + len));
-                if !(xf > next.min(x)) {
+                if xf.is_nan() || xf <= next.min(x) {
                     return None;
                 }
             }
@@ -956,7 +1062,13 @@ impl<S: Shape> Side<S> {
     }
 
     /// Safeguarded Newton on the load, which never rises with `v`, from `f.v`.
-    fn bracketed(&mut self, f: &mut Flow, cavitation: Cavitation, target: f64, unit: f64) -> Result<f64, EvalError> {
+    fn bracketed(
+        &mut self,
+        f: &mut Flow,
+        cavitation: Cavitation,
+        target: f64,
+        unit: f64,
+    ) -> Result<f64, EvalError> {
         let (mut lo, mut hi) = (f64::NEG_INFINITY, f64::INFINITY);
         let mut v = f.v;
         let mut reach = 0.0_f64;
@@ -970,7 +1082,7 @@ impl<S: Shape> Side<S> {
             }
             // The rate of a film of no length is zero, of either sign.
             let step = g / c.rate.abs();
-            if g.abs() <= f64::EPSILON * c.size || step.abs() <= 1e-15 * v.abs() {
+            if g.abs() <= 4.0 * f64::EPSILON * c.size || step.abs() <= 1e-15 * v.abs() {
                 return Ok(v);
             }
             if g > 0.0 {

@@ -147,8 +147,8 @@ pub fn lu_factor_weighted(
 
 /// Solves `A x = b` in place with the factors of [`lu_factor`].
 pub fn lu_solve(a: &[f64], n: usize, piv: &[usize], b: &mut [f64]) {
-    for k in 0..n {
-        b.swap(k, piv[k]);
+    for (k, &p) in piv[..n].iter().enumerate() {
+        b.swap(k, p);
     }
     for i in 1..n {
         let (done, rest) = b.split_at_mut(i);
@@ -229,8 +229,8 @@ pub fn lu_factor_complex(
 
 /// Solves `A x = b` in place with the factors of [`lu_factor_complex`].
 pub fn lu_solve_complex(a: &[Complex], n: usize, piv: &[usize], b: &mut [Complex]) {
-    for k in 0..n {
-        b.swap(k, piv[k]);
+    for (k, &p) in piv[..n].iter().enumerate() {
+        b.swap(k, p);
     }
     for i in 1..n {
         let mut s = b[i];
@@ -395,16 +395,15 @@ impl Banded {
         for k in 0..n {
             b.swap(k, self.piv[k]);
             let x = b[k];
-            for i in k + 1..=(k + kl).min(n - 1) {
-                b[i] -= self.a[i * w + (k + kl - i)] * x;
+            let last = (k + kl).min(n - 1);
+            for (i, b) in b.iter_mut().enumerate().take(last + 1).skip(k + 1) {
+                *b -= self.a[i * w + (k + kl - i)] * x;
             }
         }
         for i in (0..n).rev() {
-            let mut s = b[i];
-            for j in i + 1..=(i + self.ku + kl).min(n - 1) {
-                s -= self.a[i * w + (j + kl - i)] * b[j];
-            }
-            b[i] = s / self.a[i * w + kl];
+            let reach = (i + self.ku + kl).min(n - 1) - i;
+            let row = &self.a[i * w + kl..=i * w + kl + reach];
+            b[i] = (b[i] - dot(&row[1..], &b[i + 1..=i + reach])) / row[0];
         }
     }
 }

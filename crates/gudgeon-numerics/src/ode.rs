@@ -131,7 +131,13 @@ pub trait OdeSystem {
     ///
     /// # Errors
     /// As [`OdeSystem::rhs`].
-    fn time_derivative(&mut self, _t: f64, _y: &[f64], _f: &[f64], _dfdt: &mut [f64]) -> Result<bool, EvalError> {
+    fn time_derivative(
+        &mut self,
+        _t: f64,
+        _y: &[f64],
+        _f: &[f64],
+        _dfdt: &mut [f64],
+    ) -> Result<bool, EvalError> {
         Ok(false)
     }
 
@@ -335,7 +341,10 @@ pub trait Integrator<S: OdeSystem + ?Sized> {
     ///
     /// # Errors
     /// [`IntegrateError`]; `y` and `q` then hold the last accepted state.
-    #[allow(clippy::too_many_arguments, reason = "an interval, a state, its quadratures and the settings belong together")]
+    #[allow(
+        clippy::too_many_arguments,
+        reason = "an interval, a state, its quadratures and the settings belong together"
+    )]
     fn integrate(
         &mut self,
         sys: &mut S,

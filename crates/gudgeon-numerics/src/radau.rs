@@ -20,6 +20,12 @@
 //! Where [`crate::rodas`] linearises once a step, this method solves nonlinear equations to well below the tolerance: dearer at
 //! 1e-3, better from about 1e-7 on, and the reference the other is measured against.
 
+#![allow(
+    clippy::excessive_precision,
+    clippy::needless_range_loop,
+    reason = "coefficients as published; small fixed index ranges over several arrays"
+)]
+
 use gudgeon_core::EvalError;
 
 use crate::linalg::{lu_factor, lu_solve};
@@ -447,6 +453,11 @@ impl<S: OdeSystem + ?Sized> Integrator<S> for Radau5 {
         stats: &mut Stats,
         observer: &mut dyn FnMut(&mut S, &dyn StepView) -> Flow,
     ) -> Result<f64, IntegrateError> {
+        if sys.n_events() > 0 {
+            return Err(IntegrateError::Input {
+                what: "Radau5 locates no events; use Rodas for this system",
+            });
+        }
         let (mut t, end) = interval;
         let whole = end - t;
         let mut next_break = breakpoints.partition_point(|b| *b <= t + 1e-12 * whole.abs());

@@ -245,7 +245,13 @@ mod tests {
             assert!((r.x - root).abs() < 1e-12, "{x0} {r:?}");
         }
         // arctan: Newton alone diverges from |x| > 1.39.
-        let r = newton_bracketed(|x| Ok::<_, Infallible>((x.atan(), 1.0 / (1.0 + x * x))), -50.0, 40.0, 30.0, 1e-12);
+        let r = newton_bracketed(
+            |x| Ok::<_, Infallible>((x.atan(), 1.0 / (1.0 + x * x))),
+            -50.0,
+            40.0,
+            30.0,
+            1e-12,
+        );
         assert!(r.unwrap().x.abs() < 1e-12);
         let none = newton_bracketed(|x| Ok::<_, Infallible>((x * x + 1.0, 2.0 * x)), -1.0, 2.0, 0.5, 1e-12);
         assert!(matches!(none, Err(RootError::NoBracket { .. })), "{none:?}");

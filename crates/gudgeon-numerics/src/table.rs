@@ -179,8 +179,8 @@ impl Pchip {
         if n == 2 {
             d.fill(s(0));
         } else {
-            for i in 1..n - 1 {
-                d[i] = harmonic(h(i - 1), h(i), s(i - 1), s(i));
+            for (i, d) in d.iter_mut().enumerate().take(n - 1).skip(1) {
+                *d = harmonic(h(i - 1), h(i), s(i - 1), s(i));
             }
             d[0] = one_sided(h(0), h(1), s(0), s(1));
             d[n - 1] = one_sided(h(n - 2), h(n - 3), s(n - 2), s(n - 3));
@@ -294,7 +294,9 @@ impl PeriodicCubic {
             z[n - 1] = bottom;
             let mut work = vec![0.0; n];
             let solved = crate::linalg::solve_tridiagonal(&lower, &diagonal, &upper, &mut d, &mut work)
-                .and_then(|()| crate::linalg::solve_tridiagonal(&lower, &diagonal, &upper, &mut z, &mut work));
+                .and_then(|()| {
+                    crate::linalg::solve_tridiagonal(&lower, &diagonal, &upper, &mut z, &mut work)
+                });
             let f = (d[0] + top * d[n - 1] / gamma) / (1.0 + z[0] + top * z[n - 1] / gamma);
             for (d, z) in d.iter_mut().zip(&z) {
                 *d -= f * z;
@@ -386,8 +388,7 @@ mod tests {
     fn monotone_data_gives_a_monotone_interpolant() {
         // The RPN 14 data of Fritsch & Carlson 1980 (radiochemical calculations): a spline overshoots here.
         let x = vec![7.99, 8.09, 8.19, 8.7, 9.2, 10.0, 12.0, 15.0, 20.0];
-        let y =
-            vec![0.0, 2.76429e-5, 4.37498e-2, 0.169183, 0.469428, 0.943740, 0.998636, 0.999919, 0.999994];
+        let y = vec![0.0, 2.76429e-5, 4.37498e-2, 0.169183, 0.469428, 0.943740, 0.998636, 0.999919, 0.999994];
         let p = Pchip::new(x, y).unwrap();
         let mut last = -1.0;
         let mut hint = 0;

@@ -1,5 +1,8 @@
 //! The step loop of the integrators and one look-up of a table allocate nothing.
-#![allow(unsafe_code, reason = "a counting global allocator is an unsafe trait; it only counts and forwards to the system's")]
+#![allow(
+    unsafe_code,
+    reason = "a counting global allocator is an unsafe trait; it only counts and forwards to the system's"
+)]
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -77,10 +80,19 @@ fn rodas_allocates_only_when_made() {
         let (mut y, mut q, mut stats) = ([2.0, 0.0], [0.0], Stats::default());
         let before = COUNT.with(Cell::get);
         let mut seen = 0.0;
-        m.integrate(&mut Stiff, (0.0, 500.0), &[100.0, 250.0], &mut y, &mut q, &o, &mut stats, &mut |_, v| {
-            seen += v.y1()[0];
-            Flow::Continue
-        })
+        m.integrate(
+            &mut Stiff,
+            (0.0, 500.0),
+            &[100.0, 250.0],
+            &mut y,
+            &mut q,
+            &o,
+            &mut stats,
+            &mut |_, v| {
+                seen += v.y1()[0];
+                Flow::Continue
+            },
+        )
         .unwrap();
         (COUNT.with(Cell::get) - before, stats)
     };

@@ -463,7 +463,7 @@ pub struct Solver {
     pub tolerance: PosRatio,
     /// `implicit`: time integrator.
     pub integrator: IntegratorName,
-    /// `implicit`: true relative error of the periodic state.
+    /// `implicit`: true relative error of the periodic state; not below ten times `tolerance`.
     pub periodicity: PosRatio,
     /// Most cycles before the run is called unconverged.
     pub max_cycles: u32,
@@ -489,7 +489,7 @@ impl Default for Solver {
     fn default() -> Self {
         Self {
             method: Method::Implicit,
-            tolerance: quantity(1e-4),
+            tolerance: quantity(1e-5),
             integrator: IntegratorName::Rodas,
             periodicity: quantity(1e-4),
             max_cycles: 40,

@@ -47,7 +47,9 @@ pub enum RunError {
     #[error("the integration stopped: {0}")]
     Integrate(#[from] IntegrateError),
     /// The cycle does not close.
-    #[error("no periodic cycle after {cycles} cycles: estimated error {error:.2e}, wanted {wanted:.0e}. {advice}")]
+    #[error(
+        "no periodic cycle after {cycles} cycles: estimated error {error:.2e}, wanted {wanted:.0e}. {advice}"
+    )]
     NotPeriodic {
         /// Cycles run.
         cycles: u32,

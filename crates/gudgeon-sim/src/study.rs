@@ -39,14 +39,18 @@ pub fn compare(
     let mut combinations: Vec<Vec<(String, String)>> = vec![Vec::new()];
     for (p, values) in swaps {
         if values.is_empty() || values.iter().any(String::is_empty) {
-            let e = BuildError::new(format!("the swap `{p}` has an empty value")).help("write `--swap PATH=A,B,C`");
+            let e = BuildError::new(format!("the swap `{p}` has an empty value"))
+                .help("write `--swap PATH=A,B,C`");
             return Err(base.loaded.refuse([&e]));
         }
         let p = swap_path(p);
         combinations = combinations
             .iter()
             .flat_map(|c| {
-                values.iter().map(|v| c.iter().cloned().chain([(p.clone(), v.clone())]).collect()).collect::<Vec<_>>()
+                values
+                    .iter()
+                    .map(|v| c.iter().cloned().chain([(p.clone(), v.clone())]).collect())
+                    .collect::<Vec<_>>()
             })
             .collect();
     }
@@ -78,7 +82,10 @@ pub fn compare(
                     report.diagnostics.iter().map(|d| d.headline()).collect::<Vec<_>>().join("; ")
                 )),
                 Ok(c) => run(&c, &mut |p| {
-                    progress(Progress { phase: format!("{label}: {}", p.phase), fraction: (k as f64 + p.fraction) / total });
+                    progress(Progress {
+                        phase: format!("{label}: {}", p.phase),
+                        fraction: (k as f64 + p.fraction) / total,
+                    });
                 })
                 .map_err(|e| format!("failed: {e}")),
             };
@@ -113,7 +120,11 @@ fn sweeps(base: &Checked) -> Vec<Sweep> {
             method: "implicit",
             setting: format!("tolerance {t:.0e}"),
             is_default: (t / default - 1.0).abs() < 1e-9,
-            set: vec!["solver.method=implicit".into(), format!("solver.tolerance={t:e}"), format!("solver.periodicity={t:e}")],
+            set: vec![
+                "solver.method=implicit".into(),
+                format!("solver.tolerance={t:e}"),
+                format!("solver.periodicity={t:e}"),
+            ],
         });
     }
     let rings = base.case().rings.len() as u32;
@@ -123,7 +134,8 @@ fn sweeps(base: &Checked) -> Vec<Sweep> {
     let (scheme, own) = if discrete { ("degree_march", 1) } else { ("substep_march", rings + 1) };
     for factor in [1u32, 2, 4, 8] {
         let steps = own * factor;
-        let gas = if published && base.case().solver.gas_steps > 0 { base.case().solver.gas_steps } else { 0 };
+        let gas =
+            if published && base.case().solver.gas_steps > 0 { base.case().solver.gas_steps } else { 0 };
         all.push(Sweep {
             method: "as_published",
             setting: format!("{steps} steps per degree"),
@@ -148,7 +160,11 @@ fn sweeps(base: &Checked) -> Vec<Sweep> {
 ///
 /// # Errors
 /// The reference cannot be run.
-pub fn bench(base: &Checked, results: &[String], progress: &mut dyn FnMut(Progress)) -> Result<BenchTable, RunError> {
+pub fn bench(
+    base: &Checked,
+    results: &[String],
+    progress: &mut dyn FnMut(Progress),
+) -> Result<BenchTable, RunError> {
     let reference = |tolerance: f64| -> Result<_, RunError> {
         let c = base
             .with(&[
@@ -172,7 +188,10 @@ pub fn bench(base: &Checked, results: &[String], progress: &mut dyn FnMut(Progre
     for name in &chosen {
         if !tight.results.contains_key(name) {
             let known: Vec<_> = tight.results.keys().map(String::as_str).collect();
-            return Err(RunError::Refused(format!("there is no result `{name}`; this case has {}", known.join(", "))));
+            return Err(RunError::Refused(format!(
+                "there is no result `{name}`; this case has {}",
+                known.join(", ")
+            )));
         }
     }
     let error = |r: &gudgeon_core::result::RunResult, name: &str| {
@@ -186,7 +205,10 @@ pub fn bench(base: &Checked, results: &[String], progress: &mut dyn FnMut(Progre
         reference: format!(
             "implicit system, Radau IIA order 5, tolerance 1e-8; differs from the same at 1e-7 by at most {trust:.1e} (relative)"
         ),
-        reference_values: chosen.iter().filter_map(|n| tight.results.get(n).map(|v| (n.clone(), v.clone()))).collect(),
+        reference_values: chosen
+            .iter()
+            .filter_map(|n| tight.results.get(n).map(|v| (n.clone(), v.clone())))
+            .collect(),
         ..BenchTable::default()
     };
     let sweeps = sweeps(base);
@@ -203,7 +225,10 @@ pub fn bench(base: &Checked, results: &[String], progress: &mut dyn FnMut(Progre
                 continue;
             }
             let begin = Instant::now();
-            let outcome = base.with(&s.set).map_err(|r| r.to_string()).and_then(|c| run(&c, &mut |_| {}).map_err(|e| e.to_string()));
+            let outcome = base
+                .with(&s.set)
+                .map_err(|r| r.to_string())
+                .and_then(|c| run(&c, &mut |_| {}).map_err(|e| e.to_string()));
             let wall = begin.elapsed().as_secs_f64();
             if repeat == 0 {
                 let mut point = BenchPoint {

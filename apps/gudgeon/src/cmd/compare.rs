@@ -57,7 +57,7 @@ fn swap(text: &str) -> Result<(String, Vec<String>), Failure> {
 }
 
 /// Combinations that fit a terminal side by side.
-const COLUMNS: usize = 6;
+const COLUMNS: usize = 4;
 
 fn text(c: &Comparison) -> String {
     let mut s = format!("{}: {}\n\n", c.case, c.title);
@@ -66,34 +66,34 @@ fn text(c: &Comparison) -> String {
     for (i, v) in c.variants.iter().enumerate() {
         let why = v.outcome.as_ref().err().map_or_else(String::new, |e| format!("  {e}"));
         let _ = writeln!(s, "  {} {}{why}", letter(i), v.label);
+        for n in v.outcome.iter().flat_map(|r| &r.solver.notes) {
+            let _ = writeln!(s, "      note: {n}");
+        }
     }
     let shown: Vec<_> =
         c.variants.iter().enumerate().filter_map(|(i, v)| Some((i, v.outcome.as_ref().ok()?))).collect();
     let Some((first, base)) = shown.first() else { return s };
     let shown = &shown[..shown.len().min(COLUMNS)];
-    let mut rows = vec![
-        ["".into(), "".into()]
-            .into_iter()
-            .chain(shown.iter().map(|(i, _)| {
-                if i == first { letter(*i) } else { format!("{} to {}", letter(*i), letter(*first)) }
-            }))
-            .collect::<Vec<String>>(),
-    ];
+    let mut rows = vec![vec![String::new(), String::new(), letter(*first)]];
+    for (i, _) in &shown[1..] {
+        rows[0].extend([letter(*i), format!("to {}", letter(*first))]);
+    }
     for (name, v) in &base.results {
         let mut row = vec![name.clone(), unit(&v.unit), number(v.value)];
         for (_, r) in &shown[1..] {
-            row.push(match r.results.get(name) {
-                Some(other) if v.value != 0.0 && other.value != v.value => {
-                    format!("{} {:+.2} %", number(other.value), 100.0 * (other.value / v.value - 1.0))
+            let other = r.results.get(name);
+            row.push(other.map_or_else(|| "-".into(), |o| number(o.value)));
+            row.push(match other {
+                Some(o) if v.value != 0.0 && o.value != v.value => {
+                    format!("{:+.2} %", 100.0 * (o.value / v.value - 1.0))
                 }
-                Some(other) => number(other.value),
-                None => "-".into(),
+                _ => String::new(),
             });
         }
         rows.push(row);
     }
     s.push('\n');
-    let right: Vec<usize> = (2..2 + shown.len()).collect();
+    let right: Vec<usize> = (2..2 + 2 * shown.len()).collect();
     s.push_str(&table(&rows, &right));
     let hidden = c.variants.iter().filter(|v| v.outcome.is_ok()).count() - shown.len();
     if hidden > 0 {

@@ -76,6 +76,16 @@ pub trait Hydrodynamics: Send {
     /// As [`Hydrodynamics::evaluate`], or no convergence.
     fn squeeze_rate(&mut self, inp: &FaceIn, load: f64) -> Result<f64, EvalError>;
 
+    /// [`Hydrodynamics::squeeze_rate`] and [`Hydrodynamics::evaluate`] there, in one call: a model that has the film in hand
+    /// after finding the velocity need not solve it again.
+    ///
+    /// # Errors
+    /// As those two.
+    fn carry(&mut self, inp: &FaceIn, load: f64) -> Result<(f64, FaceOut), EvalError> {
+        let hdot = self.squeeze_rate(inp, load)?;
+        Ok((hdot, self.evaluate(inp, hdot)?))
+    }
+
     /// Film thickness and absolute pressure along the face, for plots: `out[i] = (x, h, p)` at `out.len()` equal spacings.
     ///
     /// # Errors

@@ -3,7 +3,9 @@
 use gudgeon_core::EvalError;
 
 use super::events::{Events, ScanEnd};
-use super::{ColumnGroups, Flow, IntegrateError, OdeSystem, Options, Stats, StepView, all_finite, difference};
+use super::{
+    ColumnGroups, Flow, IntegrateError, OdeSystem, Options, Stats, StepView, all_finite, difference,
+};
 
 /// Arrays and flags every method works with. `m = n + quad_dim`; vectors of length `m` hold states, then quadratures.
 #[derive(Debug, Clone)]
@@ -338,9 +340,7 @@ fn run<M: Scheme, S: OdeSystem + ?Sized>(
     // Next breakpoint, and whether the current segment starts at one.
     let mut next_bp = breakpoints.partition_point(|&b| b <= t0 && !near(b, t0));
     let mut seg_start_is_bp = false;
-    while next_bp < breakpoints.len()
-        && (breakpoints[next_bp] <= t0 || near(breakpoints[next_bp], t0))
-    {
+    while next_bp < breakpoints.len() && (breakpoints[next_bp] <= t0 || near(breakpoints[next_bp], t0)) {
         seg_start_is_bp = true;
         next_bp += 1;
     }
@@ -355,7 +355,11 @@ fn run<M: Scheme, S: OdeSystem + ?Sized>(
     let mut rejected_before = false;
     let mut cause: Option<EvalError> = None;
     let eval_error = |t: f64, source: EvalError| {
-        if is_non_finite(&source) { IntegrateError::NonFinite { t } } else { IntegrateError::Eval { t, source } }
+        if is_non_finite(&source) {
+            IntegrateError::NonFinite { t }
+        } else {
+            IntegrateError::Eval { t, source }
+        }
     };
 
     while t < t1 {

@@ -192,7 +192,8 @@ impl Events {
         stats: &mut Stats,
     ) -> Result<ScanEnd, IntegrateError> {
         let n = core.n;
-        let dense = Dense { t, h, x0: &core.x0, x1: &core.x1, c: [&core.cont[0], &core.cont[1], &core.cont[2]] };
+        let dense =
+            Dense { t, h, x0: &core.x0, x1: &core.x1, c: [&core.cont[0], &core.cont[1], &core.cont[2]] };
         let fail = |e: EvalError| IntegrateError::Eval { t, source: e };
         let ev = &mut core.events;
         if ev.g.is_empty() {
@@ -348,7 +349,9 @@ impl Events {
                 sys.events(te, &ev.xb[..n], &mut ev.trial).map_err(fail)?;
                 stats.events += 1;
                 ev.y[..n].copy_from_slice(&ev.xb[..n]);
-                let action = sys.on_event(k, te, &mut ev.y[..n]).map_err(|e| IntegrateError::Eval { t: te, source: e })?;
+                let action = sys
+                    .on_event(k, te, &mut ev.y[..n])
+                    .map_err(|e| IntegrateError::Eval { t: te, source: e })?;
                 match action {
                     EventAction::Continue => {
                         ev.side[k] = sign(ev.g[k]);

@@ -480,6 +480,32 @@ fn odd_texts_are_read_or_refused_with_a_place() {
 }
 
 #[test]
+fn no_damage_to_a_text_makes_it_panic_or_lose_its_place() {
+    let judge = |text: &str, set: &[&str]| {
+        if let Err(report) = try_set(text, set) {
+            assert!(!report.diagnostics.is_empty(), "{text}");
+            for d in &report.diagnostics {
+                assert!(report.place(d).is_some() && !d.message.is_empty(), "{text}\n{d:?}");
+            }
+            assert!(!report.render(false).is_empty());
+        }
+    };
+    for (i, c) in GOOD.char_indices() {
+        judge(&GOOD[..i], &[]);
+        let rest = &GOOD[i + c.len_utf8()..];
+        for put in ["", "\"", "[", "]", "{", "=", ".", "#", "\n", "\r", "0", "-", "µ", "\u{0}", "\u{feff}"] {
+            judge(&format!("{}{put}{rest}", &GOOD[..i]), &[]);
+        }
+    }
+    let set = "rings[1].drops=[\"1 um\", { a = 'b' }]";
+    for (i, c) in set.char_indices() {
+        for put in ["", "\"", "[", "]", "=", ".", "\n", "µ"] {
+            judge(GOOD, &[&format!("{}{put}{}", &set[..i], &set[i + c.len_utf8()..])]);
+        }
+    }
+}
+
+#[test]
 fn rendering_shows_place_line_and_help() {
     let render = |text: &str, set: &[&str]| try_set(text, set).expect_err("refused").render(false);
     assert_eq!(

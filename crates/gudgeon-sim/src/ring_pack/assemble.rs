@@ -58,9 +58,13 @@ pub fn assemble(case: &RingPackCase, folder: &Path) -> Result<Pack, Vec<BuildErr
         omega,
     };
     let kinematics = m.kinematics.build(&ctx).map_err(|e| {
-        // The mechanism is the engine's, not the model's: point there when the model names nothing of its own.
-        let e =
-            if e.field.is_empty() { e.within("engine.rod_length") } else { e.within("models.kinematics") };
+        // The mechanism is the engine's, not the model's.
+        let place = match e.field.as_str() {
+            "crank_radius" => "engine.stroke",
+            "offset" => "engine.offset",
+            _ => "engine.rod_length",
+        };
+        let e = BuildError { field: place.into(), ..e };
         errors.push(e);
     });
     let (Some(want), Some(geo), Ok(kinematics)) = (want, geo, kinematics) else { return Err(errors) };
@@ -237,6 +241,7 @@ pub fn assemble(case: &RingPackCase, folder: &Path) -> Result<Pack, Vec<BuildErr
             layout.n += 2;
         }
     }
+    let states = layout.n;
     let places = vec![gudgeon_core::geometry::RingPlace::default(); n];
     let mut pack = Pack {
         conv: case.conventions,
@@ -264,6 +269,7 @@ pub fn assemble(case: &RingPackCase, folder: &Path) -> Result<Pack, Vec<BuildErr
         },
         counters: Counters::default(),
         masses: vec![0.0; gas_states],
+        state: vec![f64::NAN; states],
         geo,
     };
     // Masses at 1 bar, the scale of the gas states; also the first evaluation of every geometry-dependent number.

@@ -22,8 +22,8 @@ pub struct ContactLine {
     pub friction: f64,
 }
 
-/// Intervals of the table: cubic interpolation between them is good to about 1e-7 of the load.
-const POINTS: usize = 1024;
+/// Intervals of the table: cubic interpolation between them is good to about 1e-6 of the load.
+const POINTS: usize = 512;
 /// A pressure law loses its meaning when the mean planes touch: at this fraction of its range the surfaces carry whatever
 /// load is left (an edge would wear until they do).
 const TOUCHING: f64 = 0.01;
@@ -46,7 +46,7 @@ impl ContactLine {
             return line;
         }
         // Where the face is within reach of the liner is all that is integrated, panel by panel with Gauss's rule.
-        let panels = 64;
+        let panels = 24;
         let (mut xs, mut ws) = (Vec::new(), Vec::new());
         let nodes = [
             (-0.932_469_514_203_152_1, 0.171_324_492_379_170_36),

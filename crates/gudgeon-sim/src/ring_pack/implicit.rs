@@ -6,13 +6,13 @@ use std::time::Instant;
 
 use gudgeon_core::EvalError;
 use gudgeon_core::result::Balance;
-use gudgeon_numerics::ode::{ColumnGroups, Flow, IntegrateError, Integrator, OdeSystem, Options, Stats, StepView};
+use gudgeon_numerics::ode::{Flow, IntegrateError, Integrator, OdeSystem, Options, Stats, StepView};
 use gudgeon_numerics::orbit::{CycleMap, OrbitOptions, periodic_orbit};
 use gudgeon_numerics::radau::Radau5;
 use gudgeon_numerics::rodas::Rodas;
 
 use super::Found;
-use super::pack::Pack;
+use super::pack::{Base, Pack};
 use super::record::{Record, Totals};
 use crate::case::{IntegratorName, RingPackCase};
 use crate::run::RunError;
@@ -20,6 +20,8 @@ use crate::run::RunError;
 /// The pack as an initial-value problem in crank angle.
 struct Problem<'a> {
     pack: &'a mut Pack,
+    base: &'a mut Base,
+    scale: &'a [f64],
 }
 
 impl OdeSystem for Problem<'_> {
@@ -32,76 +34,28 @@ impl OdeSystem for Problem<'_> {
     fn rhs(&mut self, t: f64, y: &[f64], f: &mut [f64]) -> Result<(), EvalError> {
         self.pack.rates(t, y, f)
     }
+    fn jacobian(&mut self, t: f64, y: &[f64], _: &[f64], jac: &mut [f64]) -> Result<bool, EvalError> {
+        // The integrator has just evaluated `rhs` here, unless it was somewhere else in between.
+        if self.pack.at.theta != t || self.pack.state != y {
+            self.pack.evaluate(t, y)?;
+        }
+        let scale = self.scale;
+        // Square root of the rounding error times the magnitude of the state.
+        let increment = |k: usize| {
+            let y = y[k];
+            (y + 1.5e-8 * y.abs().max(1e-3 * scale[k])) - y
+        };
+        self.pack.jacobian(y, increment, jac, self.base)?;
+        Ok(true)
+    }
 }
 
-/// Which columns of the Jacobian can be differenced together: film thickness and height of a ring touch its own rows and the
-/// volumes next to it; velocities touch their own ring only.
-fn column_groups(pack: &Pack) -> ColumnGroups {
-    let (n, ng, dim) = (pack.n_rings(), pack.layout.gas, pack.layout.n);
-    let names = pack.gas.state_names();
-    // Volumes that ring i (from 0) borders on; a name that is not understood borders on every ring.
-    let borders = |name: &str, i: usize| {
-        let number = |p: &str, s: &str| name.strip_prefix(p).and_then(|r| r.strip_suffix(s)).and_then(|k| k.parse::<usize>().ok());
-        match (number("ring", ".back"), number("land", "")) {
-            (Some(k), _) => k == i + 1,
-            (None, Some(k)) => k == i + 1 || k == i + 2,
-            (None, None) => true,
-        }
-    };
-    let own = |i: usize| {
-        let mut rows: Vec<usize> = pack.layout.film[i].into_iter().collect();
-        if let Some(k) = pack.layout.axial[i] {
-            rows.extend([k, k + 1]);
-        }
-        rows.push(dim + n + 1 + i);
-        rows
-    };
-    let every: Vec<usize> = (0..dim + 2 * n + 1).collect();
-    let mut g = ColumnGroups { groups: (0..ng).map(|k| vec![k]).collect(), rows: vec![every; dim] };
-    let place_rows = |i: usize| {
-        let mut rows: Vec<usize> = (0..ng).filter(|k| borders(&names[*k], i)).collect();
-        rows.extend(own(i));
-        rows.push(dim + i);
-        if i + 1 == n {
-            rows.push(dim + n);
-        }
-        rows
-    };
-    // The gas of ring i and of ring i + 2 have no volume in common; rings next to each other do.
-    let understood = names.iter().all(|m| m.starts_with("land") || m.ends_with(".back"));
-    for column in 0..2 {
-        for parity in 0..2 {
-            let mut group = Vec::new();
-            for i in (0..n).filter(|i| !understood || i % 2 == parity) {
-                let index = if column == 0 { pack.layout.film[i] } else { pack.layout.axial[i] };
-                let Some(k) = index else { continue };
-                if g.groups.iter().any(|x| x.contains(&k)) {
-                    continue;
-                }
-                g.rows[k] = if understood { place_rows(i) } else { g.rows[k].clone() };
-                if understood {
-                    group.push(k);
-                } else {
-                    g.groups.push(vec![k]);
-                }
-            }
-            if !group.is_empty() {
-                g.groups.push(group);
-            }
-        }
-    }
-    let mut velocities = Vec::new();
-    for i in 0..n {
-        if let Some(k) = pack.layout.axial[i] {
-            g.rows[k + 1] = own(i);
-            velocities.push(k + 1);
-        }
-    }
-    if !velocities.is_empty() {
-        g.groups.push(velocities);
-    }
-    g
-}
+/// How far two cycles from nearly the same state may differ, in tolerances: steps accepted here and rejected there.
+const NOISE: f64 = 10.0;
+/// First step of a cycle \[rad\].
+const FIRST_STEP: f64 = 1e-3;
+/// Velocity that counts as one in the error norm, in clearances per radian: what matters of a velocity is the distance it covers.
+const VELOCITY_SCALE: f64 = 30.0;
 
 enum Method {
     Rodas(Box<Rodas>),
@@ -114,6 +68,7 @@ struct Cycle<'a> {
     method: Method,
     breakpoints: Vec<f64>,
     scale: Vec<f64>,
+    base: Base,
     h: f64,
     stats: Stats,
     q: Vec<f64>,
@@ -126,11 +81,17 @@ struct Cycle<'a> {
 
 impl Cycle<'_> {
     /// Integrates one cycle from `y`. With a record, the cycle is sampled at `step` \[rad\] and its closures measured.
-    fn integrate(&mut self, y: &mut [f64], rtol: f64, mut sampler: Option<&mut Sampler>) -> Result<(), IntegrateError> {
+    fn integrate(
+        &mut self,
+        y: &mut [f64],
+        rtol: f64,
+        mut sampler: Option<&mut Sampler>,
+    ) -> Result<(), IntegrateError> {
         let mut options = Options::new(rtol, &self.scale);
         // No step may jump over a pressure pulse: 10 degrees at most.
         options.h_max = 10f64.to_radians();
-        options.h_init = self.h;
+        // Every cycle starts with the same step: the map must depend on nothing but the state.
+        self.h = FIRST_STEP;
         self.q.fill(0.0);
         let period = self.pack.period();
         let interval = self.pack.decision_interval();
@@ -156,7 +117,7 @@ impl Cycle<'_> {
                 break;
             }
             options.h_init = self.h;
-            let mut problem = Problem { pack: self.pack };
+            let mut problem = Problem { pack: self.pack, base: &mut self.base, scale: &self.scale };
             let mut observe = |p: &mut Problem<'_>, v: &dyn StepView| match sampler.as_deref_mut() {
                 Some(s) => s.step(p.pack, v),
                 None => Flow::Continue,
@@ -201,7 +162,7 @@ impl CycleMap for Cycle<'_> {
             s[k] = y[k].abs().max(1.0);
         }
         for k in self.pack.layout.axial.iter().flatten() {
-            s[k + 1] = 10.0;
+            s[k + 1] = VELOCITY_SCALE;
         }
     }
 }
@@ -324,15 +285,19 @@ fn momentum(pack: &Pack, i: usize) -> (f64, f64) {
 }
 
 /// Solves one start.
-pub(super) fn run(case: &RingPackCase, pack: &mut Pack, start: f64, progress: &mut dyn FnMut(f64)) -> Result<Found, RunError> {
+pub(super) fn run(
+    case: &RingPackCase,
+    pack: &mut Pack,
+    start: f64,
+    progress: &mut dyn FnMut(f64),
+) -> Result<Found, RunError> {
     let begin = Instant::now();
     let s = &case.solver;
     let dim = pack.layout.n;
     let quads = 2 * pack.n_rings() + 1;
-    let groups = column_groups(pack);
     let method = match s.integrator {
-        IntegratorName::Rodas => Method::Rodas(Box::new(Rodas::new(dim, quads, Some(groups)))),
-        IntegratorName::Radau5 => Method::Radau(Box::new(Radau5::new(dim, quads, Some(groups)))),
+        IntegratorName::Rodas => Method::Rodas(Box::new(Rodas::new(dim, quads, None))),
+        IntegratorName::Radau5 => Method::Radau(Box::new(Radau5::new(dim, quads, None))),
     };
     // The pressure has kinks of its own; the sliding speed of the films changes sign at the dead centres.
     let period = pack.period();
@@ -345,7 +310,7 @@ pub(super) fn run(case: &RingPackCase, pack: &mut Pack, start: f64, progress: &m
         *k = 0.1;
     }
     for k in pack.layout.axial.iter().flatten() {
-        scale[k + 1] = 10.0;
+        scale[k + 1] = VELOCITY_SCALE;
     }
     let discrete = pack.decision_interval().is_some();
     let mut y = vec![0.0; dim];
@@ -355,7 +320,8 @@ pub(super) fn run(case: &RingPackCase, pack: &mut Pack, start: f64, progress: &m
         method,
         breakpoints,
         scale,
-        h: 0.0,
+        base: Base::default(),
+        h: FIRST_STEP,
         stats: Stats::default(),
         q: vec![0.0; quads],
         full_accuracy: s.tolerance.si(),
@@ -364,7 +330,8 @@ pub(super) fn run(case: &RingPackCase, pack: &mut Pack, start: f64, progress: &m
         done: 0.0,
     };
     let options = OrbitOptions {
-        tolerance: s.periodicity.si(),
+        // A map is only as repeatable as its integration is accurate.
+        tolerance: s.periodicity.si().max(NOISE * s.tolerance.si()),
         accuracy: s.tolerance.si(),
         max_cycles: s.max_cycles as usize,
         accelerate: !discrete,
@@ -394,7 +361,12 @@ pub(super) fn run(case: &RingPackCase, pack: &mut Pack, start: f64, progress: &m
         flow_in: q[..n].to_vec(),
         blow_by: q[n],
         friction_work: q[n + 1..].to_vec(),
-        balance: Balance { gas_mass: Some((q[0] - q[n] - stored).abs() / through), oil_mass: None, energy, momentum },
+        balance: Balance {
+            gas_mass: Some((q[0] - q[n] - stored).abs() / through),
+            oil_mass: None,
+            energy,
+            momentum,
+        },
         periodicity_error: report.error_estimate,
         duration: None,
     };
@@ -412,7 +384,8 @@ pub(super) fn run(case: &RingPackCase, pack: &mut Pack, start: f64, progress: &m
             cycles: report.cycles as u32,
             error: report.error_estimate,
             wanted: s.periodicity.si(),
-            advice: "Raise `solver.max_cycles`, or look for a mode that never settles (a ring that flutters)".into(),
+            advice: "Raise `solver.max_cycles`, or look for a mode that never settles (a ring that flutters)"
+                .into(),
         });
     }
     let counters = [

@@ -69,12 +69,17 @@ const SAME: f64 = 5e-3;
 ///
 /// # Errors
 /// What stopped the solver.
-pub fn solve(case: &RingPackCase, pack: &mut Pack, progress: &mut dyn FnMut(Progress)) -> Result<Solved, RunError> {
+pub fn solve(
+    case: &RingPackCase,
+    pack: &mut Pack,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<Solved, RunError> {
     let starts = starts(case, pack);
     let total = starts.len() as f64;
     let mut found: Vec<(f64, Found)> = Vec::new();
     for (k, start) in starts.iter().enumerate() {
-        let phase = if starts.len() > 1 { format!("start at {:.2} bar", start / 1e5) } else { "solving".to_owned() };
+        let phase =
+            if starts.len() > 1 { format!("start at {:.2} bar", start / 1e5) } else { "solving".to_owned() };
         let mut tell = |f: f64| progress(Progress { phase: phase.clone(), fraction: (k as f64 + f) / total });
         found.push((*start, one_start(case, pack, *start, &mut tell)?));
     }
@@ -84,16 +89,22 @@ pub fn solve(case: &RingPackCase, pack: &mut Pack, progress: &mut dyn FnMut(Prog
         let results = f.record.results(pack, &f.totals, m);
         let name = format!("{:.2} bar", start / 1e5);
         let alike = |b: &&mut Branch| {
-            results.iter().filter(|(k, _)| k.as_str() != "periodicity_error" && !k.ends_with("_angle")).all(|(k, v)| {
-                b.results.get(k).is_some_and(|w| (v.value - w.value).abs() <= SAME * v.value.abs().max(w.value.abs()) + 1e-12)
-            })
+            results.iter().filter(|(k, _)| k.as_str() != "periodicity_error" && !k.ends_with("_angle")).all(
+                |(k, v)| {
+                    b.results.get(k).is_some_and(|w| {
+                        (v.value - w.value).abs() <= SAME * v.value.abs().max(w.value.abs()) + 1e-12
+                    })
+                },
+            )
         };
         match branches.iter_mut().find(alike) {
             Some(b) => {
                 b.start.push_str(" and ");
                 b.start.push_str(&name);
             }
-            None => branches.push(Branch { start: format!("all lands at {name}"), period: f.period, results }),
+            None => {
+                branches.push(Branch { start: format!("all lands at {name}"), period: f.period, results })
+            }
         }
     }
     let mut report = SolverReport { method: method_name(case).into(), ..SolverReport::default() };
@@ -108,7 +119,9 @@ pub fn solve(case: &RingPackCase, pack: &mut Pack, progress: &mut dyn FnMut(Prog
         match b.period {
             1 => {}
             0 => report.notes.push(format!("started with {}, the cycle did not become periodic", b.start)),
-            p => report.notes.push(format!("started with {}, the cycle repeats only every {p} cycles", b.start)),
+            p => report
+                .notes
+                .push(format!("started with {}, the cycle repeats only every {p} cycles", b.start)),
         }
     }
     if branches.len() < 2 {
@@ -142,7 +155,12 @@ fn method_name(case: &RingPackCase) -> &'static str {
     }
 }
 
-fn one_start(case: &RingPackCase, pack: &mut Pack, start: f64, progress: &mut dyn FnMut(f64)) -> Result<Found, RunError> {
+fn one_start(
+    case: &RingPackCase,
+    pack: &mut Pack,
+    start: f64,
+    progress: &mut dyn FnMut(f64),
+) -> Result<Found, RunError> {
     let s = &case.solver;
     let begin = Instant::now();
     let mut record = Record::new(pack);
@@ -211,7 +229,10 @@ pub fn legal(case: &RingPackCase) -> Vec<BuildError> {
         let name = case.models.ring_motion.typetag_name();
         let steps = u64::from(s.steps_per_degree.max(1)) * u64::from(s.gas_steps.max(1));
         if steps > 1_000_000 {
-            errors.push(BuildError::at("solver.gas_steps", format!("{steps} gas steps per degree would run for days")));
+            errors.push(BuildError::at(
+                "solver.gas_steps",
+                format!("{steps} gas steps per degree would run for days"),
+            ));
         }
         match s.scheme {
             Scheme::SubstepMarch => {
@@ -222,7 +243,13 @@ pub fn legal(case: &RingPackCase) -> Vec<BuildError> {
                     );
                 }
                 if s.passes == 0 || s.passes > 7200 {
-                    errors.push(BuildError::at("solver.passes", format!("{} one-degree passes do not make a cycle", s.passes)).help("720, or 721 as the source's listing runs"));
+                    errors.push(
+                        BuildError::at(
+                            "solver.passes",
+                            format!("{} one-degree passes do not make a cycle", s.passes),
+                        )
+                        .help("720, or 721 as the source's listing runs"),
+                    );
                 }
             }
             Scheme::DegreeMarch => {

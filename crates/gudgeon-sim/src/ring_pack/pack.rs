@@ -110,6 +110,8 @@ pub struct RingInstant {
     pub contact: f64,
     /// Film, summed over the lands.
     pub film: FaceOut,
+    /// Whether `film` belongs to `hdot`.
+    pub film_known: bool,
     /// Friction that the convention counts \[N\], whole ring, along the liner's velocity.
     pub friction: f64,
     /// Friction power \[W\].
@@ -190,6 +192,8 @@ pub struct Pack {
     pub counters: Counters,
     /// Masses, unscaled, scratch.
     pub masses: Vec<f64>,
+    /// State of the last complete evaluation.
+    pub state: Vec<f64>,
 }
 
 impl Pack {
@@ -397,13 +401,14 @@ impl Pack {
         // Smooth maximum: equal to the load within floor²/load.
         let soft = |w: f64| 0.5 * (w + (w * w + 4.0 * floor * floor).sqrt());
         let needed = load - contact;
-        let mut hdot = if self.rings[i].films.len() == 1 && self.rings[i].friction.is_off() {
+        let (found, film) = if self.rings[i].films.len() == 1 && self.rings[i].friction.is_off() {
             self.counters.film += 1;
             let inp = self.face_in(i, 0);
-            self.rings[i].films[0].squeeze_rate(&inp, soft(needed))?
+            self.rings[i].films[0].carry(&inp, soft(needed))?
         } else {
             self.solve_balance(i, needed, soft)?
         };
+        let mut hdot = found;
         hdot /= (1.0 + (hdot / RADIAL_SPEED) * (hdot / RADIAL_SPEED)).sqrt();
         let g = &self.geo.rings[i];
         let h_max = g.h_max(self.at.places[i].liner_radius);
@@ -412,16 +417,23 @@ impl Pack {
         } else if let Some(f) = self.rings[i].contact.floor {
             hdot *= ((h - f) / (self.rings[i].contact.band * f)).clamp(0.0, 1.0);
         }
+        // Off its limits a ring moves as its film allows, and the film found with the velocity is the film of the instant.
+        let known = (hdot - found).abs() <= 1e-6 * found.abs();
         let r = &mut self.at.rings[i];
-        (r.load, r.contact, r.hdot) = (load, contact, hdot);
+        (r.load, r.contact, r.hdot, r.film, r.film_known) = (load, contact, hdot, film, known);
         Ok(())
     }
 
     /// Balance of several lands, or with flank friction: film load less needed load falls with `hdot`; bracket and Newton.
-    fn solve_balance(&mut self, i: usize, needed: f64, soft: impl Fn(f64) -> f64) -> Result<f64, EvalError> {
+    fn solve_balance(
+        &mut self,
+        i: usize,
+        needed: f64,
+        soft: impl Fn(f64) -> f64,
+    ) -> Result<(f64, FaceOut), EvalError> {
         let perimeter = self.perimeter(i) * self.geo.rings[i].rails as f64;
         let axial = self.flank_load(i);
-        let residual = |p: &mut Self, x: f64| -> Result<(f64, f64), EvalError> {
+        let residual = |p: &mut Self, x: f64| -> Result<(f64, f64, FaceOut), EvalError> {
             let o = p.film(i, x)?;
             let f = &p.rings[i].friction;
             let (fa, dfa) = if f.is_off() {
@@ -429,9 +441,10 @@ impl Pack {
             } else {
                 (f.force(x, axial) / perimeter, f.slope(x, axial) / perimeter)
             };
-            Ok((o.load - soft(needed + fa), o.load_rate - dfa))
+            Ok((o.load - soft(needed + fa), o.load_rate - dfa, o))
         };
         let (mut lo, mut hi) = (f64::NEG_INFINITY, f64::INFINITY);
+        // The velocity of the last evaluation, a small step away, is a good start.
         let mut x = self.at.rings[i].hdot;
         if !x.is_finite() {
             x = 0.0;
@@ -439,9 +452,14 @@ impl Pack {
         let scale = soft(needed).abs().max(1e-300);
         let mut stride = 1e-4;
         for _ in 0..200 {
-            let (f, d) = residual(self, x)?;
+            let (f, d, o) = residual(self, x)?;
             if f.abs() <= 1e-12 * scale {
-                return Ok(x);
+                return Ok((x, o));
+            }
+            // Newton's method squares a small error: one more step from here ends at rounding, and the film belongs to the
+            // new velocity within the square root of that.
+            if f.abs() <= 1e-7 * scale && (x - f / d).is_finite() {
+                return Ok((x - f / d, o));
             }
             if f > 0.0 {
                 lo = x
@@ -459,11 +477,8 @@ impl Pack {
                 stride *= 8.0;
                 if f > 0.0 { x + stride } else { x - stride }
             };
-            if bracketed && (hi - lo) <= 1e-14 * (hi.abs().max(lo.abs())) + 1e-18 {
-                return Ok(next);
-            }
-            if next == x {
-                return Ok(x);
+            if bracketed && (hi - lo) <= 1e-14 * (hi.abs().max(lo.abs())) + 1e-18 || next == x {
+                return Ok((x, o));
             }
             x = next;
         }
@@ -472,8 +487,11 @@ impl Pack {
 
     /// Friction and film force of ring `i` at its `hdot`. Needs `radial_balance` or a given `hdot` and `load`.
     pub fn friction(&mut self, i: usize) -> Result<(), EvalError> {
-        let hdot = self.at.rings[i].hdot;
-        let o = self.film(i, hdot)?;
+        let o = if self.at.rings[i].film_known {
+            self.at.rings[i].film
+        } else {
+            self.film(i, self.at.rings[i].hdot)?
+        };
         let u = -self.at.piston.v;
         let perimeter = self.perimeter(i) * self.geo.rings[i].rails as f64;
         let line = &self.rings[i].contact;
@@ -538,6 +556,7 @@ impl Pack {
         if let Some(k) = y.iter().position(|v| !v.is_finite()) {
             return Err(EvalError::recoverable("ring_pack", format!("state {k} is not a number")));
         }
+        self.state.copy_from_slice(y);
         self.set_places(theta, y);
         for k in 0..self.layout.gas {
             self.masses[k] = y[k] * self.mass_scale[k];
@@ -666,5 +685,148 @@ impl Pack {
             return 0.0;
         }
         f.force(hdot, self.flank_load(i)) / (self.perimeter(i) * self.geo.rings[i].rails as f64)
+    }
+}
+
+/// Scratch of [`Pack::jacobian`].
+#[derive(Debug, Clone, Default)]
+pub struct Base {
+    rings: Vec<RingInstant>,
+    places: Vec<RingPlace>,
+    dm: Vec<f64>,
+    gas: GasOut,
+}
+
+impl Pack {
+    /// Jacobian of [`Pack::rates`] by differences (row-major, `layout.n` columns, quadratures below the states), `self.at`
+    /// holding the evaluation at `y`.
+    ///
+    /// A perturbation is followed only as far as it reaches: velocities touch nothing but the ring's own force, heights
+    /// touch the flows but no pressure, and a film is solved again only when its ring, or a pressure at its ring, moved.
+    /// `increment(k)` is the perturbation of state `k`.
+    ///
+    /// # Errors
+    /// What a sub-model refuses.
+    pub fn jacobian(
+        &mut self,
+        y: &[f64],
+        increment: impl Fn(usize) -> f64,
+        jac: &mut [f64],
+        base: &mut Base,
+    ) -> Result<(), EvalError> {
+        let n = self.layout.n;
+        let theta = self.at.theta;
+        jac.fill(0.0);
+        base.rings.clone_from(&self.at.rings);
+        base.places.clone_from(&self.at.places);
+        base.dm.clone_from(&self.at.dm);
+        base.gas.clone_from(&self.at.gas);
+        let p_cylinder = self.at.gas.p_land[0];
+        debug_assert!(theta.is_finite());
+        for k in 0..self.layout.gas {
+            let d = increment(k);
+            let keep = self.masses[k];
+            self.masses[k] = (y[k] + d) * self.mass_scale[k];
+            let outcome = self.gas(Some(p_cylinder)).and_then(|()| self.column(k, d, None, base, jac));
+            self.masses[k] = keep;
+            self.restore(base);
+            outcome?;
+        }
+        for i in 0..self.n_rings() {
+            if let Some(k) = self.layout.film[i] {
+                let d = increment(k);
+                let s = self.layout.axial[i].map(|_| (base.places[i].s, base.places[i].v));
+                self.at.places[i] = self.place(i, base.places[i].liner_radius, (y[k] + d).exp(), s);
+                let outcome = self.gas(Some(p_cylinder)).and_then(|()| self.column(k, d, Some(i), base, jac));
+                self.restore(base);
+                outcome?;
+            }
+            if let Some(k) = self.layout.axial[i] {
+                let c0 = self.rings[i].clearance0;
+                let place = base.places[i];
+                let d = increment(k);
+                let s = (y[k] + d) * c0;
+                self.at.places[i] = self.place(i, place.liner_radius, place.h, Some((s, place.v)));
+                let outcome = self.gas(Some(p_cylinder));
+                if outcome.is_ok() {
+                    self.gas_rows(k, d, base, jac);
+                    self.axial_forces(i);
+                    self.axial_row(i, k, d, base, jac);
+                }
+                self.restore(base);
+                outcome?;
+                let d = increment(k + 1);
+                self.at.places[i].v = (y[k + 1] + d) * c0 * self.omega;
+                self.axial_forces(i);
+                jac[k * n + k + 1] = 1.0;
+                self.axial_row(i, k + 1, d, base, jac);
+                self.restore(base);
+            }
+        }
+        Ok(())
+    }
+
+    fn restore(&mut self, base: &Base) {
+        self.at.rings.clone_from(&base.rings);
+        self.at.places.clone_from(&base.places);
+    }
+
+    fn gas_rows(&self, column: usize, d: f64, base: &Base, jac: &mut [f64]) {
+        let (n, rings) = (self.layout.n, self.n_rings());
+        let per = 1.0 / (self.omega * d);
+        for r in 0..self.layout.gas {
+            jac[r * n + column] = (self.at.dm[r] - base.dm[r]) / self.mass_scale[r] * per;
+        }
+        for r in 0..rings {
+            jac[(n + r) * n + column] = (self.at.gas.flow_in[r] - base.gas.flow_in[r]) * per;
+        }
+        jac[(n + rings) * n + column] =
+            (self.at.gas.flow_out[rings - 1] - base.gas.flow_out[rings - 1]) * per;
+    }
+
+    fn axial_row(&self, i: usize, column: usize, d: f64, base: &Base, jac: &mut [f64]) {
+        if let Some(k) = self.layout.axial[i] {
+            let (a, b) = (&self.at.rings[i], &base.rings[i]);
+            let change = (a.axial.sum() + a.reaction) - (b.axial.sum() + b.reaction);
+            let scale = self.geo.rings[i].mass * self.rings[i].clearance0 * self.omega * self.omega;
+            jac[(k + 1) * self.layout.n + column] = change / (scale * d);
+        }
+    }
+
+    /// Rows of a column whose perturbation is in place and whose gas is evaluated; `moved` is the ring whose film changed.
+    fn column(
+        &mut self,
+        column: usize,
+        d: f64,
+        moved: Option<usize>,
+        base: &Base,
+        jac: &mut [f64],
+    ) -> Result<(), EvalError> {
+        self.gas_rows(column, d, base, jac);
+        let (n, rings) = (self.layout.n, self.n_rings());
+        for i in 0..rings {
+            let (a, b) = (&self.at.rings[i], &base.rings[i]);
+            let same = (a.p_above, a.p_below, a.p_back) == (b.p_above, b.p_below, b.p_back);
+            if same && moved != Some(i) {
+                continue;
+            }
+            if self.plan.film {
+                self.radial_balance(i)?;
+                self.friction(i)?;
+                let rate = |r: &RingInstant, h: f64| r.hdot / (h * self.omega);
+                if let Some(k) = self.layout.film[i] {
+                    jac[k * n + column] = (rate(&self.at.rings[i], self.at.places[i].h)
+                        - rate(&base.rings[i], base.places[i].h))
+                        / d;
+                }
+                jac[(n + rings + 1 + i) * n + column] =
+                    (self.at.rings[i].power - base.rings[i].power) / (self.omega * d);
+            }
+            if self.plan.axial {
+                self.axial_forces(i);
+                self.axial_row(i, column, d, base, jac);
+            }
+        }
+        Ok(())
     }
 }

@@ -1,0 +1,180 @@
+//! The commands as a person or a script meets them: what goes to which stream, exit codes, files.
+
+use std::fs;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use serde_json::Value;
+
+fn command(args: &[&str]) -> Command {
+    let mut c = Command::new(env!("CARGO_BIN_EXE_gudgeon"));
+    c.args(args).env("NO_COLOR", "1");
+    c
+}
+fn gudgeon(args: &[&str]) -> Output {
+    command(args).output().expect("the program starts")
+}
+fn stdout(o: &Output) -> String {
+    String::from_utf8(o.stdout.clone()).expect("text")
+}
+fn stderr(o: &Output) -> String {
+    String::from_utf8(o.stderr.clone()).expect("text")
+}
+fn json(args: &[&str]) -> Value {
+    let o = gudgeon(args);
+    assert_eq!(o.status.code(), Some(0), "{args:?}: {}", stderr(&o));
+    serde_json::from_slice(&o.stdout).expect("nothing but JSON on standard output")
+}
+fn base() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/broken/base.toml")
+}
+
+/// `(kind, model)` of everything registered.
+fn all_models() -> Vec<(String, String)> {
+    let list = json(&["models", "--json"]);
+    let text = |v: &Value| v.as_str().expect("text").to_owned();
+    list.as_array()
+        .expect("kinds")
+        .iter()
+        .flat_map(|k| {
+            let models = k["models"].as_array().expect("models");
+            models.iter().map(|m| (text(&k["kind"]), text(&m["model"]))).collect::<Vec<_>>()
+        })
+        .collect()
+}
+
+#[test]
+fn every_kind_has_models_and_every_model_a_page() {
+    let all = all_models();
+    let text = stdout(&gudgeon(&["models"]));
+    for (kind, model) in &all {
+        assert!(text.contains(&format!("{kind}: ")) && text.contains(model), "{kind}/{model}");
+        let o = gudgeon(&["describe", &format!("{kind}/{model}")]);
+        assert_eq!(o.status.code(), Some(0));
+        let page = stdout(&o);
+        for part in [
+            "Equations",
+            "Validity",
+            "Parameters",
+            "Example",
+            "References",
+            "Source",
+            &format!("model = \"{model}\""),
+        ] {
+            assert!(page.contains(part), "{kind}/{model}: no {part}");
+        }
+        assert!(page.lines().all(|l| l.chars().count() <= 160), "{kind}/{model}: a line is too long");
+        let d = json(&["describe", &format!("{kind}/{model}"), "--json"]);
+        assert_eq!((d["kind"].as_str(), d["model"].as_str()), (Some(kind.as_str()), Some(model.as_str())));
+    }
+    for kind in ["gas_flow", "hydrodynamics", "contact", "ring_motion", "cylinder_pressure", "oil"] {
+        assert!(all.iter().any(|(k, _)| k == kind), "{kind} has no model: is its crate linked?");
+    }
+    // The kind alone lists its models; a name that only one kind has needs no kind.
+    assert!(stdout(&gudgeon(&["describe", "gas_flow"])).contains("orifice_network"));
+    assert!(stdout(&gudgeon(&["describe", "orifice_network"])).starts_with("gas_flow/orifice_network\n"));
+}
+
+#[test]
+fn wrong_names_get_the_right_ones() {
+    for (args, help) in [
+        (&["models", "gasflow"][..], "did you mean `gas_flow`?"),
+        (&["describe", "gas_flow/banana"], "`orifice_network`"),
+        (&["describe", "gas_flow/orifice_netwrok"], "did you mean `orifice_network`?"),
+        (&["describe", "gas/orifice_network"], "did you mean `gas_flow`?"),
+        (&["describe", "narow_channel"], "did you mean `narrow_channel`?"),
+        (&["describe", "off"], "`contact/off`"),
+    ] {
+        let o = gudgeon(args);
+        assert_eq!(o.status.code(), Some(2), "{args:?}");
+        assert!(o.stdout.is_empty() && stderr(&o).contains(help), "{args:?}: {}", stderr(&o));
+    }
+    for args in [&[][..], &["rnu"], &["run"], &["run", "x", "--sett", "a=b"], &["compare", "x"]] {
+        assert_eq!(gudgeon(args).status.code(), Some(2), "{args:?}");
+    }
+    let case = base();
+    let case = case.to_str().expect("text");
+    for swap in ["gas_flow", "gas_flow=", "=a", "gas_flow=a,,b"] {
+        let o = gudgeon(&["compare", case, "--swap", swap]);
+        assert_eq!(o.status.code(), Some(2), "{swap}");
+        assert!(stderr(&o).contains("--swap PATH=A,B,C"), "{swap}: {}", stderr(&o));
+    }
+    let o = gudgeon(&["report", env!("CARGO_MANIFEST_DIR")]);
+    assert_eq!(o.status.code(), Some(2), "{}", stderr(&o));
+}
+
+#[test]
+fn the_schema_knows_every_model() {
+    let text = json(&["schema"]).to_string();
+    for (kind, model) in all_models() {
+        assert!(text.contains(&format!("{{\"const\":\"{model}\"}}")), "{kind}/{model}");
+    }
+}
+
+#[test]
+fn explain_names_every_value() {
+    let case = base();
+    let case = case.to_str().expect("text");
+    let text = stdout(&gudgeon(&["explain", case, "--set", "models.gas_flow.model=narrow_channel"]));
+    for part in ["engine.bore = \"0.1 m\"", "narrow_channel", "Skipped", "greenwood_tripp"] {
+        assert!(text.contains(part), "{part} missing in {text}");
+    }
+    let v = json(&["explain", case, "--json"]);
+    assert_eq!(v["resolved"]["engine"]["cylinders"], 4);
+}
+
+#[test]
+fn dropped_keys_are_told() {
+    let case = base();
+    let case = case.to_str().expect("text");
+    let o = gudgeon(&["check", case, "--set", "models.contact.model=off"]);
+    assert_eq!(o.status.code(), Some(0), "{}", stderr(&o));
+    assert!(stderr(&o).contains("note: models.contact: `off` does not have `roughness`"), "{}", stderr(&o));
+}
+
+#[test]
+fn a_reader_that_leaves_early_is_no_error() {
+    let mut child = command(&["schema"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    // One byte, then the pipe closes while most of the schema is still to be written.
+    let mut pipe = child.stdout.take().expect("piped");
+    pipe.read_exact(&mut [0]).expect("readable");
+    drop(pipe);
+    let o = child.wait_with_output().expect("ends");
+    assert_eq!((o.status.code(), stderr(&o)), (Some(0), String::new()));
+}
+
+#[test]
+fn a_run_writes_its_files_where_it_says() {
+    let folder = std::env::temp_dir().join(format!("gudgeon-run-{}", std::process::id()));
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("the temporary folder can be written");
+    let case = fs::canonicalize(base()).expect("the base is in the repository");
+    let run = |args: &[&str]| command(args).current_dir(&folder).output().expect("the program starts");
+    let case = case.to_str().expect("text");
+    let o = run(&["run", case]);
+    assert_eq!(o.status.code(), Some(0), "{}", stderr(&o));
+    assert!(stderr(&o).is_empty(), "no progress where there is no terminal: {}", stderr(&o));
+    assert!(
+        stdout(&o).contains("blow_by") && stdout(&o).trim_end().ends_with("out/base/report.html"),
+        "{}",
+        stdout(&o)
+    );
+    for file in ["summary.json", "series.csv", "report.html"] {
+        assert!(folder.join("out/base").join(file).is_file(), "{file}");
+    }
+    let o = run(&["run", case, "--json", "--out", "there"]);
+    let v: Value = serde_json::from_slice(&o.stdout).expect("nothing but JSON");
+    assert!(v["results"]["blow_by"]["value"].is_f64());
+    assert!(folder.join("there/summary.json").is_file());
+    let o = run(&["run", case, "--quiet", "--out", "there"]);
+    assert!(o.status.success() && o.stdout.is_empty() && o.stderr.is_empty());
+    fs::remove_file(folder.join("there/report.html")).expect("written before");
+    let o = run(&["report", "there"]);
+    assert!(o.status.success() && folder.join("there/report.html").is_file(), "{}", stderr(&o));
+    let _ = fs::remove_dir_all(&folder);
+}

@@ -1,0 +1,159 @@
+//! One file outside the physics crates is a full member of the program: listed, described, read from a case, validated
+//! with places, run and compared.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use custom_model as _;
+use gudgeon_core::Registry;
+use gudgeon_core::kinds::{Oil, OilSpec};
+use gudgeon_sim::case::RingPackCase;
+use gudgeon_sim::load::load_str;
+use serde_json::json;
+
+fn folder() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+fn case_file() -> PathBuf {
+    folder().join("data-sheet-oil.toml")
+}
+fn oil(spec: serde_json::Value) -> Box<dyn Oil> {
+    let spec: Box<dyn OilSpec> = serde_json::from_value(spec).expect("a valid specification");
+    spec.build().expect("a possible oil")
+}
+
+#[test]
+fn the_registry_lists_and_describes_it() {
+    let registry = Registry::collect();
+    assert_eq!(registry.verify(), Ok(()));
+    let m = registry.model("oil", "walther").expect("linked");
+    assert_eq!(Path::new(m.file).file_name().and_then(|f| f.to_str()), Some("walther.rs"));
+    assert_eq!(m.references, ["walther1931"]);
+    // The built-in oils are there as before.
+    assert!(registry.model("oil", "vogel_grade").is_some());
+}
+
+#[test]
+fn the_command_line_knows_it() {
+    let run = |args: &[&str]| {
+        let o =
+            Command::new(env!("CARGO_BIN_EXE_custom-model")).args(args).output().expect("the program starts");
+        assert_eq!(o.status.code(), Some(0), "{args:?}: {}", String::from_utf8_lossy(&o.stderr));
+        String::from_utf8(o.stdout).expect("text")
+    };
+    assert!(run(&["models", "oil"]).contains("walther"));
+    let page = run(&["describe", "oil/walther"]);
+    for part in ["log10 log10", "nu_cold: a number", "required", "walther1931", "walther.rs"] {
+        assert!(page.contains(part), "no `{part}` in\n{page}");
+    }
+    assert!(run(&["schema"]).contains(r#""const": "walther""#));
+    let case = case_file();
+    assert!(run(&["check", case.to_str().expect("text")]).contains("ok"));
+}
+
+#[test]
+fn a_case_picks_it() {
+    let c = gudgeon_sim::check(&case_file(), &[]).map_err(|r| r.to_string()).expect("a valid case");
+    assert_eq!(c.case().models.oil.typetag_name(), "walther");
+    let e = gudgeon_sim::explain(&c).expect("a possible case");
+    let m = e.models.iter().find(|m| m.used.kind == "oil").expect("friction needs an oil");
+    assert_eq!((m.used.model.as_str(), m.used.references[0].as_str()), ("walther", "walther1931"));
+    // Defaults of the specification are filled in.
+    assert_eq!(e.resolved["models"]["oil"]["hot"], json!("373.15 K"));
+}
+
+#[test]
+fn mistakes_are_found_at_their_place() {
+    let text = std::fs::read_to_string(case_file()).expect("the case stands beside the example");
+    let places = |text: &str| -> Vec<(usize, String)> {
+        let report =
+            load_str::<RingPackCase>("case.toml", text, &folder(), &[]).expect_err("must be refused");
+        let line = |d| report.place(d).map_or(0, |(_, line, _)| line);
+        report.diagnostics.iter().map(|d| (line(d), d.headline())).collect()
+    };
+    let line_of =
+        |text: &str, what: &str| 1 + text.lines().position(|l| l.starts_with(what)).expect("is there");
+
+    let unknown = text.replace("nu_hot = 10.7", "nu_hto = 10.7");
+    let found = places(&unknown);
+    let line = line_of(&unknown, "nu_hto");
+    assert!(found.iter().any(|(l, m)| *l == line && m.contains("`nu_hto`")), "{found:?}");
+
+    let negative = text.replace("nu_hot = 10.7", "nu_hot = -10.7");
+    let found = places(&negative);
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert_eq!(found[0].0, line_of(&negative, "nu_hot"), "{found:?}");
+
+    // What only the model itself can see: every value is possible alone.
+    let report =
+        gudgeon_sim::check(&case_file(), &["models.oil.nu_hot=200".into()]).err().expect("must be refused");
+    let d = &report.diagnostics[0];
+    assert_eq!(d.path, "models.oil.nu_hot");
+    assert!(d.message.contains("thinner"), "{}", d.message);
+}
+
+#[test]
+fn it_runs_and_is_compared() {
+    let swaps = [("models.oil.nu_hot".to_owned(), vec!["10.7".to_owned(), "14.5".to_owned()])];
+    let c = gudgeon_sim::compare(&case_file(), &[], &swaps, &mut |_| {})
+        .map_err(|r| r.to_string())
+        .expect("both oils are possible");
+    let film = |k: usize| {
+        let r = c.variants[k].outcome.as_ref().expect("ran");
+        assert!(r.models.iter().any(|m| m.kind == "oil" && m.model == "walther"));
+        r.results["ring1.h_mean"].value
+    };
+    // Film thickness grows with viscosity; 14.5 instead of 10.7 mm²/s at 100 degC cannot leave it within a percent.
+    assert!(film(1) > 1.01 * film(0), "{} and {}", film(0), film(1));
+}
+
+#[test]
+fn it_is_swapped_for_a_built_in_model_and_back() {
+    // A model whose required keys the case does not have is a variant with a reason, not a failure of the comparison.
+    let swaps = [("oil".to_owned(), vec!["walther".to_owned(), "constant".to_owned()])];
+    let c = gudgeon_sim::compare(&case_file(), &[], &swaps, &mut |_| {})
+        .map_err(|r| r.to_string())
+        .expect("one oil is possible");
+    assert!(c.variants[0].outcome.is_ok());
+    let why = c.variants[1].outcome.as_ref().expect_err("`constant` needs a viscosity");
+    assert!(why.contains("viscosity"), "{why}");
+    // With its key it is a case like any other.
+    let set = [r#"models.oil={ model = "constant", viscosity = "5 mPa s" }"#.to_owned()];
+    let c = gudgeon_sim::check(&case_file(), &set).map_err(|r| r.to_string()).expect("a valid case");
+    assert_eq!(c.case().models.oil.typetag_name(), "constant");
+}
+
+#[test]
+fn the_equation_passes_through_its_points() {
+    let o = oil(
+        json!({ "model": "walther", "nu_cold": 95.0, "nu_hot": 10.7, "density": 880.0, "expansion": 7e-4 }),
+    );
+    for (celsius, nu) in [(40.0, 95.0), (100.0, 10.7)] {
+        let t = 273.15 + celsius;
+        let exact = nu * 1e-6 * 880.0 * (1.0 - 7e-4 * (t - 288.15));
+        // Two logarithms and two powers, each good to a few ulp; the double exponential magnifies by at most
+        // nu ln(nu + 0.7) ln(10) w / nu, about 20.
+        assert!(
+            (o.viscosity(t) / exact - 1.0).abs() < 1e-13,
+            "{} at {celsius} degC, exact {exact}",
+            o.viscosity(t)
+        );
+    }
+}
+
+#[test]
+fn no_temperature_gives_nonsense() {
+    let o = oil(json!({ "model": "walther", "nu_cold": 95.0, "nu_hot": 10.7 }));
+    let mut last = f64::INFINITY;
+    for k in 1..=3000 {
+        let mu = o.viscosity(f64::from(k));
+        assert!(mu.is_finite() && mu > 0.0 && mu <= last, "{mu} Pa s at {k} K");
+        last = mu;
+    }
+    for (cold, hot) in [(10.0, 20.0), (0.2, 0.1), (50.0, 0.25)] {
+        let spec: Box<dyn OilSpec> =
+            serde_json::from_value(json!({ "model": "walther", "nu_cold": cold, "nu_hot": hot }))
+                .expect("readable");
+        assert!(spec.build().is_err(), "{cold} and {hot} mm2/s");
+    }
+}

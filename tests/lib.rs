@@ -1,0 +1,1 @@
+//! Integration and validation tests: see the files in `tests`.

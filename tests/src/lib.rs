@@ -1,1 +1,0 @@
-//! Integration and validation tests.
