@@ -20,6 +20,9 @@ use crate::face::{Moments, Parabola, Shape, Table, Three};
 ///
 /// Fully flooded: both edges are covered with oil at the gas pressure next to them. An edge pressure below `p_cav` counts
 /// as `p_cav`, except with `full_sommerfeld`. What happens where oil would have to pull is the choice of `cavitation`.
+///
+/// Good to 12 digits for a film that covers a fair part of the face; the load of a sliver at an edge to 12 digits of the
+/// edge pressure times the face length.
 #[derive(Debug, Clone, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ClosedFormFace {
@@ -718,7 +721,7 @@ impl<S: Shape> Side<S> {
         if shear != CavityShear::None {
             // The gaps between the films, in order along the face.
             let lead = self.islands.first().filter(|l| l.xa <= 0.0).copied();
-            self.islands.sort_by(|a, b| a.xa.total_cmp(&b.xa));
+            self.islands.sort_unstable_by(|a, b| a.xa.total_cmp(&b.xa));
             let (mut i, mut x) = (0, 0.0);
             for k in 0..=self.islands.len() {
                 let next = self.islands.get(k).map_or((last, len, last, len), |l| (l.ia, l.xa, l.ib, l.xb));

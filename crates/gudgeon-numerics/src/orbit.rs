@@ -238,7 +238,8 @@ impl Search {
         let mut unexplained = f64::INFINITY;
         let mut gains: Vec<f64> = Vec::new();
         let mut best = f64::INFINITY;
-        let limit = options.max_cycles.div_ceil(times);
+        // Half of the cycles: what does not settle accelerated must have some left to be watched plainly.
+        let limit = (options.max_cycles / 2).div_ceil(times).max(3);
         for k in 0..limit {
             // Far from the orbit a rough map does: the first cycle only has to leave the arbitrary start.
             let accuracy = if k == 0 && times == 1 { options.accuracy.max(1e-3) } else { options.accuracy };
@@ -329,7 +330,7 @@ impl Search {
         let mut seen: Vec<Vec<f64>> = vec![y.to_vec()];
         let mut g = vec![0.0; n];
         let first = self.report.cycles;
-        while self.report.cycles - first < options.max_cycles {
+        while self.report.cycles < options.max_cycles.max(first + 2 * MAX_PERIOD) {
             self.apply(map, y, &mut g, options.accuracy, 1)?;
             map.scale(&g, &mut s);
             let residual = norm(&g, y, &s);

@@ -126,7 +126,7 @@ impl Table {
         let (ok, mark) = match within {
             Within::Relative(t) => (d.abs() <= t * printed.abs(), format!("{} %", 100.0 * t)),
             Within::Absolute(t) => (d.abs() <= t, format!("+-{t}")),
-            Within::Rounded(t, half) => (d.abs() <= t * printed.abs() + half, format!("{} % + {half}", 100.0 * t)),
+            Within::Rounded(t, half) => (d.abs() <= t * printed.abs() + half, format!("{} % + {}", 100.0 * t, number(half))),
             Within::Shown => (true, "-".into()),
         };
         let ok = ok && ours.is_finite();
@@ -202,8 +202,8 @@ impl Table {
     }
 }
 
-/// Runs many variants of a case on all processors; the order of the answers is that of the variants.
-pub fn run_all(name: &str, variants: &[Vec<String>]) -> Vec<Result<RunResult, String>> {
+/// Runs many cases with their overrides on all processors; the order of the answers is that of the question.
+pub fn run_all(variants: &[(&str, Vec<String>)]) -> Vec<Result<RunResult, String>> {
     let next = std::sync::atomic::AtomicUsize::new(0);
     let done = std::sync::Mutex::new((0..variants.len()).map(|_| None).collect::<Vec<_>>());
     let workers = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
@@ -212,7 +212,7 @@ pub fn run_all(name: &str, variants: &[Vec<String>]) -> Vec<Result<RunResult, St
             s.spawn(|| {
                 loop {
                     let k = next.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-                    let Some(overrides) = variants.get(k) else { break };
+                    let Some((name, overrides)) = variants.get(k) else { break };
                     let outcome = check(&case_file(name), overrides)
                         .map_err(|r| r.to_string())
                         .and_then(|c| run(&c, &mut |_| {}).map_err(|e| e.to_string()));
