@@ -1,25 +1,10 @@
 //! Periodic orbits: fixed points of the map from the start of a cycle to its end.
 //!
 //! Plain repetition converges with the largest multiplier λ of the map, which for a coupled ring pack can be 0.9 and more.
-//! Anderson's acceleration (walker2011) needs no derivative and finds a few slow modes in as many cycles.
-//!
-//! # What is reported
-//! The change over one cycle, `r = Φ(y) - y`, underestimates the distance to the orbit by up to 1/(1 - λ). With `r = Σ γ_j Δr_j + ρ`,
-//! where `Δr_j` belong to the steps `Δy_j` between earlier iterates, a linear map obeys
-//!
-//! ```text
-//! y - y* = Σ γ_j Δy_j + (M - I)⁻¹ ρ,    and the next iterate y - Σ γ_j Δy_j + ρ has the residual M ρ.
-//! ```
-//!
-//! So the ratio `|r_{k+1}| / |ρ_k|` measures what the map does to the part that no earlier step explains. The estimate is
-//! `λ |ρ| / (1 - λ)` with the largest of the last three such ratios (at least 0.9), plus a tenth of `|Σ γ_j Δy_j|` for the curvature of the map. Before two
-//! ratios were measured nothing is known about a slow mode behind the fast ones: `1 / (1 - λ)` is then taken as 300.
-//! A mode whose share of all residuals so far was negligible cannot be seen by any method.
-//!
-//! # Stability
-//! A fixed point with |λ| > 1 is not what the machine does, but the acceleration finds it as easily. When the multiplier in the span of
-//! the iterates comes near 1, a displaced state decides: if it does not come back, the orbit that repeats after two cycles is sought,
-//! then any that plain repetition finds.
+//! Anderson's acceleration (walker2011) needs no derivative and finds a few slow modes in as many cycles. The change over one
+//! cycle, `r = Φ(y) - y`, underestimates the distance to the orbit by 1/(1 - λ); what is reported is that distance, with λ
+//! taken from the differences of the iterates. A fixed point with |λ| > 1 is not what the machine does: when the multiplier
+//! comes near, plain repetition decides, and a cycle that repeats only every second or third time is reported as such.
 
 use gudgeon_core::EvalError;
 use nalgebra::{DMatrix, DVector, Schur};
@@ -73,18 +58,22 @@ pub struct OrbitReport {
 }
 
 /// Differences of earlier iterates that the acceleration keeps.
-const DEPTH: usize = 4;
+const DEPTH: usize = 8;
 /// Longest repetition that is looked for.
 const MAX_PERIOD: usize = 4;
-/// Multiplier beyond which a displaced state must confirm a fixed point.
+/// Multiplier beyond which plain repetition must confirm a fixed point.
 const SUSPECT: f64 = 0.97;
-/// 1/(1 - λ) for the part of the residual about which nothing was measured yet.
-const UNKNOWN: f64 = 300.0;
-/// Multiplier that is always thought possible for the unexplained part: a mode that hides behind faster ones.
-const HIDDEN: f64 = 0.9;
-/// Displacement of the stability test, in scaled units, and the cycles it may take.
-const DISPLACEMENT: f64 = 0.03;
-const TEST_CYCLES: usize = 8;
+/// The same for multipliers that are negative or complex: curvature, as in the doubling of a period, makes these differ most between
+/// the secants and the fixed point itself.
+const SUSPECT_TURNING: f64 = 0.85;
+/// Cycles in which it shows whether a machine leaves a fixed point.
+const PROBE: usize = 8;
+/// Displacement from it, in scaled units.
+const NUDGE: f64 = 0.03;
+/// Cycles in the noise of the map after which nothing more is expected of another.
+const IDLE: usize = 5;
+/// Largest factor by which a residual is taken to understate an error.
+const MOST_GAIN: f64 = 3000.0;
 
 fn norm(a: &[f64], b: &[f64], s: &[f64]) -> f64 {
     a.iter()
@@ -112,54 +101,29 @@ pub fn periodic_orbit(
         return Ok(search.finish());
     }
     search.accelerated(map, y, options, 1)?;
-    if search.report.converged && search.report.multiplier < SUSPECT {
+    if !search.suspect || !search.report.converged {
         return Ok(search.finish());
     }
-    if search.report.converged {
-        // Near or beyond the edge of stability: what does the machine itself do?
-        let fixed = y.to_vec();
-        let mut s = vec![1.0; y.len()];
-        map.scale(y, &mut s);
-        let mut z: Vec<f64> = y
-            .iter()
-            .zip(&s)
-            .enumerate()
-            .map(|(i, (y, s))| y + s * DISPLACEMENT * if i % 2 == 0 { 1.0 } else { -0.7 })
-            .collect();
-        let mut g = z.clone();
-        let mut away = [DISPLACEMENT; TEST_CYCLES + 1];
-        for distance in &mut away[1..] {
-            search.apply(map, &z, &mut g, options.accuracy, 1)?;
-            z.copy_from_slice(&g);
-            *distance = norm(&z, &fixed, &s);
-        }
-        // The first half of the cycles lets the fast modes die out; a state that went far and came nearer by chance (chaos) has
-        // not come back.
-        let half = away[TEST_CYCLES / 2];
-        if (half <= 2.0 * DISPLACEMENT && away[TEST_CYCLES] <= half)
-            || away[TEST_CYCLES] <= 2.0 * options.tolerance
-        {
-            return Ok(search.finish());
-        }
-        search.report.converged = false;
-        y.copy_from_slice(&z);
+    // Near or beyond the edge of stability: what does the machine itself do?
+    let mut other = y.to_vec();
+    if !search.leaves(map, &mut other, options)? {
+        return Ok(search.finish());
     }
-    // An orbit that repeats after two cycles, and does not after one.
-    let fallback = y.to_vec();
-    search.accelerated(map, y, options, 2)?;
-    if search.report.converged && search.report.multiplier < 1.0 {
-        let mut g = y.to_vec();
-        let mut s = vec![1.0; y.len()];
-        search.apply(map, y, &mut g, options.accuracy, 1)?;
+    let mut s = vec![1.0; y.len()];
+    let mut g = other.clone();
+    let mut twice = other.clone();
+    search.accelerated(map, &mut twice, options, 2)?;
+    if search.report.converged && !search.suspect {
+        search.apply(map, &twice, &mut g, options.accuracy, 1)?;
         map.scale(&g, &mut s);
-        if norm(&g, y, &s) > 10.0 * search.report.error_estimate.max(options.tolerance) {
+        if norm(&g, &twice, &s) > 10.0 * options.tolerance {
             search.report.period = 2;
+            y.copy_from_slice(&twice);
             return Ok(search.finish());
         }
     }
-    search.report.converged = false;
-    y.copy_from_slice(&fallback);
-    search.plain(map, y, options)?;
+    search.plain(map, &mut other, options)?;
+    y.copy_from_slice(&other);
     Ok(search.finish())
 }
 
@@ -167,6 +131,8 @@ struct Search {
     report: OrbitReport,
     cost: f64,
     last_cost: f64,
+    /// Whether the multipliers leave it open if the fixed point is stable.
+    suspect: bool,
 }
 
 impl Search {
@@ -184,6 +150,7 @@ impl Search {
             },
             cost: 0.0,
             last_cost: 1.0,
+            suspect: false,
         }
     }
 
@@ -219,6 +186,7 @@ impl Search {
         Ok(())
     }
 
+    /// Search of an orbit that repeats after `times` cycles.
     fn accelerated(
         &mut self,
         map: &mut dyn CycleMap,
@@ -229,94 +197,123 @@ impl Search {
         let n = y.len();
         let mut g = vec![0.0; n];
         let mut s = vec![1.0; n];
-        // Differences of successive iterates and of their residuals, newest last, unscaled.
-        let (mut dy, mut dr): (Vec<DVector<f64>>, Vec<DVector<f64>>) = (Vec::new(), Vec::new());
-        let mut previous: Option<(DVector<f64>, DVector<f64>)> = None;
-        // The image of the last iterate: where to go on when an extrapolated state cannot be computed.
-        let mut image: Option<Vec<f64>> = None;
-        // Size of the unexplained part, and the ratios it led to.
-        let mut unexplained = f64::INFINITY;
-        let mut gains: Vec<f64> = Vec::new();
+        let mut secants: Vec<Secant> = Vec::new();
+        let (mut trusted, mut idle) = (0, 0);
+        let mut previous: Option<(DVector<f64>, DVector<f64>, DVector<f64>)> = None;
         let mut best = f64::INFINITY;
-        // Half of the cycles: what does not settle accelerated must have some left to be watched plainly.
-        let limit = (options.max_cycles / 2).div_ceil(times).max(3);
-        for k in 0..limit {
+        // The estimate of the last cycle if it was good enough, else 0.
+        let mut passed = 0.0;
+        let mut last = 0.0_f64;
+        self.report.converged = false;
+        for k in 0..options.max_cycles.div_ceil(times) {
             // Far from the orbit a rough map does: the first cycle only has to leave the arbitrary start.
-            let accuracy = if k == 0 && times == 1 { options.accuracy.max(1e-3) } else { options.accuracy };
-            if let Err(e) = self.apply(map, y, &mut g, accuracy, times) {
-                let Some(safe) = image.take() else { return Err(e) };
-                y.copy_from_slice(&safe);
-                dy.clear();
-                dr.clear();
-                previous = None;
-                self.apply(map, y, &mut g, accuracy, times)?;
-            }
+            let rough = options.accuracy.max(1e-3);
+            let accuracy = if k == 0 && times == 1 { rough } else { options.accuracy };
+            self.apply(map, y, &mut g, accuracy, times)?;
+            let before = s.clone();
             map.scale(&g, &mut s);
-            let ys = DVector::from_column_slice(y);
-            let rs = DVector::from_iterator(n, g.iter().zip(y.iter()).map(|(g, y)| g - y));
-            let size = |v: &DVector<f64>| v.iter().zip(&s).map(|(v, s)| (v / s).abs()).fold(0.0, f64::max);
-            let residual = size(&rs);
+            // What was kept in the scales of the last cycle, in those of this one.
+            let rescale = DVector::from_iterator(n, before.iter().zip(&s).map(|(before, s)| before / s));
+            for secant in &mut secants {
+                secant.dy.component_mul_assign(&rescale);
+                secant.dr.component_mul_assign(&rescale);
+            }
+            if let Some((at, r, rest)) = &mut previous {
+                for v in [at, r, rest] {
+                    v.component_mul_assign(&rescale);
+                }
+            }
+            let at = DVector::from_iterator(n, y.iter().zip(&s).map(|(y, s)| y / s));
+            let r = DVector::from_iterator(n, g.iter().zip(y.iter()).zip(&s).map(|((g, y), s)| (g - y) / s));
+            let residual = r.amax();
             self.report.residual = residual;
             self.report.history.push(residual);
-            if unexplained.is_finite() {
-                gains.push(if unexplained > 0.0 { residual / unexplained } else { 0.0 });
-            }
-            if let Some((y0, r0)) = &previous {
-                dy.push(&ys - y0);
-                dr.push(&rs - r0);
-                if dy.len() > DEPTH {
-                    dy.remove(0);
-                    dr.remove(0);
-                }
-            }
             if residual > 4.0 * best {
-                // The secants mislead: keep the newest only.
-                let keep = dy.len().saturating_sub(1);
-                dy.drain(..keep);
-                dr.drain(..keep);
+                // The secants mislead: step with newer ones only. What they say of the multipliers is still of use.
+                trusted = secants.len();
             }
+            // Cycles since the residual came down to the noise of the map and stays there.
+            let falls = residual > 3.0 * options.accuracy || residual < 0.5 * best;
+            idle = if falls { 0 } else { idle + 1 };
             best = best.min(residual);
-            // The step away from the arbitrary start tells nothing about the neighbourhood of the orbit, and was rough.
-            let (known_y, known_r): (&[_], &[_]) = if k >= 2 {
-                let skip = if k <= DEPTH { usize::from(dy.len() == k) } else { 0 };
-                (&dy[skip..], &dr[skip..])
-            } else {
-                (&[], &[])
-            };
-            let mut rest = rs.clone();
-            let mut shift = DVector::zeros(n);
-            if let Some(gamma) = least_squares(known_r, &rs, &s) {
-                for (c, (dy, dr)) in gamma.iter().zip(known_y.iter().zip(known_r)) {
-                    shift += dy * *c;
-                    rest -= dr * *c;
+            let mut ratio = 0.0_f64;
+            if let Some((at_before, r_before, rest)) = &previous {
+                let noise = if k == 1 && times == 1 { rough } else { options.accuracy };
+                let secant = Secant { dy: &at - at_before, dr: &r - r_before, noise };
+                // In the noise the older ones know more.
+                if idle == 0 && secant.dy.amax() > 10.0 * noise {
+                    secants.push(secant);
                 }
+                if secants.len() > DEPTH {
+                    secants.remove(0);
+                    trusted = trusted.saturating_sub(1);
+                }
+                // For a linear map r = M rest: how slowly does what the secants did not explain decay? Modes that change their sign
+                // do not let a residual understate an error.
+                let floor = (0.1 * r_before.norm()).max(options.accuracy);
+                ratio = if r.dot(rest) > 0.0 { r.norm() / rest.norm().max(floor) } else { 0.0 };
             }
-            let (moved, left) = (size(&shift), size(&rest));
-            if moved.is_nan() || moved > 1e4 * residual.max(options.tolerance) {
-                // Extrapolation from noise.
-                shift.fill(0.0);
-                rest.copy_from(&rs);
-            }
-            let (moved, left) = if shift.amax() == 0.0 { (0.0, residual) } else { (moved, left) };
-            unexplained = left;
-            self.report.multiplier =
-                multiplier(known_y, known_r, &s).unwrap_or_else(|| gains.last().copied().unwrap_or(1.0));
-            let lambda = gains.iter().rev().take(3).copied().fold(HIDDEN, f64::max).min(0.999);
-            let remainder = if gains.len() < 2 { UNKNOWN * left } else { left * lambda / (1.0 - lambda) };
-            let estimate = remainder + 0.1 * moved;
+            let (largest, gain, suspect) = spectrum(&secants);
+            self.report.multiplier = largest;
+            self.suspect = suspect;
+            let (correction, rest) = explain(&secants[trusted..], &r);
+            let gain = gain.max(1.0 / (1.0 - ratio.clamp(0.0, 1.0 - 1.0 / MOST_GAIN)));
+            // y + r - correction would be on the orbit, but for what the secants leave unexplained, and for the noise that
+            // may be all that they explain.
+            let noise = residual.max(last).min(options.accuracy);
+            last = residual;
+            let estimate = (correction.amax() + rest.amax() * gain).max(residual).max(noise * gain);
             self.report.error_estimate = estimate;
-            let next = &ys - &shift + &rest;
-            image = Some(g.clone());
-            y.copy_from_slice(next.as_slice());
-            if k > 0 && estimate <= options.tolerance {
+            // A slow mode can hide behind faster ones for a cycle: what passes must pass twice, and go on falling as if it would
+            // end below the tolerance, unless nothing but the noise of the map is left, which a further cycle would not lessen.
+            let settled = k > 0 && residual <= 3.0 * options.accuracy;
+            if settled && estimate <= options.tolerance || sinks(estimate, passed, options) {
                 self.report.converged = true;
+                y.copy_from_slice(&g);
                 return Ok(());
             }
-            previous = Some((ys, rs));
+            if idle > IDLE {
+                // Too near the edge of stability for the noise of the map.
+                break;
+            }
+            passed = if k > 0 && estimate <= options.tolerance { estimate } else { 0.0 };
+            // Not further than the states are large.
+            let damping = (1.0 / correction.amax().max(1e-300)).min(1.0);
+            let next = &at + &r - correction * damping;
+            for ((y, n), s) in y.iter_mut().zip(next.iter()).zip(&s) {
+                *y = n * s;
+            }
+            previous = Some((at, r, rest));
         }
-        // Not converged: the last computed image is a state the map has reached.
         y.copy_from_slice(&g);
         Ok(())
+    }
+
+    /// Whether plain repetition leaves the neighbourhood of the fixed point `y`; `y` is then where it went.
+    fn leaves(
+        &mut self,
+        map: &mut dyn CycleMap,
+        y: &mut [f64],
+        options: &OrbitOptions,
+    ) -> Result<bool, EvalError> {
+        let fixed = y.to_vec();
+        let mut s = vec![1.0; y.len()];
+        let mut g = vec![0.0; y.len()];
+        map.scale(y, &mut s);
+        for (i, (y, s)) in y.iter_mut().zip(&s).enumerate() {
+            *y += s * NUDGE * if i.is_multiple_of(2) { 1.0 } else { -0.7 };
+        }
+        let mut halfway = 0.0;
+        for k in 0..PROBE {
+            self.apply(map, y, &mut g, options.accuracy, 1)?;
+            y.copy_from_slice(&g);
+            if 2 * k < PROBE {
+                halfway = norm(y, &fixed, &s);
+            }
+        }
+        // The first half lets decaying modes go; what then still grows is unstable. A state that went far has not come back,
+        // though chance may bring it nearer.
+        Ok(halfway > 5.0 * NUDGE || norm(y, &fixed, &s) > 1.02 * halfway.max(options.tolerance))
     }
 
     fn plain(
@@ -325,117 +322,150 @@ impl Search {
         y: &mut [f64],
         options: &OrbitOptions,
     ) -> Result<(), EvalError> {
-        let n = y.len();
-        let mut s = vec![1.0; n];
+        let mut s = vec![1.0; y.len()];
+        // States at the ends of the last cycles, newest last; and for every period the changes over it, oldest first.
         let mut seen: Vec<Vec<f64>> = vec![y.to_vec()];
-        let mut g = vec![0.0; n];
-        let first = self.report.cycles;
-        while self.report.cycles < options.max_cycles.max(first + 2 * MAX_PERIOD) {
+        let mut changes: [Vec<f64>; MAX_PERIOD] = Default::default();
+        // The estimates of the last cycle where they were good enough, else 0.
+        let mut passed = [0.0; MAX_PERIOD];
+        let mut g = vec![0.0; y.len()];
+        self.report.converged = false;
+        self.report.period = 1;
+        for _ in 0..options.max_cycles {
             self.apply(map, y, &mut g, options.accuracy, 1)?;
             map.scale(&g, &mut s);
-            let residual = norm(&g, y, &s);
-            let before = self.report.history.last().copied().filter(|_| self.report.cycles - first > 1);
-            self.report.history.push(residual);
-            self.report.residual = residual;
-            let lambda = before.map_or(0.0, |b| if b > 0.0 { (residual / b).min(0.999) } else { 0.0 });
-            self.report.multiplier = self.report.multiplier.max(lambda);
             y.copy_from_slice(&g);
-            // The shortest repetition first; its residual over its own multiplier is the error.
+            let mut estimates = [f64::INFINITY; MAX_PERIOD];
+            let mut blurred = [f64::INFINITY; MAX_PERIOD];
             for p in 1..=MAX_PERIOD.min(seen.len()) {
-                let change = norm(&g, &seen[seen.len() - p], &s);
-                let estimate = if p == 1 { change / (1.0 - lambda) } else { change * 2.0 };
+                changes[p - 1].push(norm(&g, &seen[seen.len() - p], &s));
+                let (per_cycle, change) = decay(&changes[p - 1], options.accuracy);
+                let lambda = per_cycle.powi(p as i32).min(1.0 - 1.0 / MOST_GAIN);
+                // The second term: noise of the last cycle alone.
+                estimates[p - 1] = change * lambda.max(0.5) / (1.0 - lambda) + change.min(options.accuracy);
+                // What noise could have hidden.
+                blurred[p - 1] = estimates[p - 1] + 2.0 * options.accuracy / (1.0 - lambda);
                 if p == 1 {
-                    self.report.error_estimate = estimate;
+                    self.report.multiplier = per_cycle;
+                    self.report.residual = change;
+                    self.report.error_estimate = estimates[0];
+                    self.report.history.push(change);
                 }
-                // A repetition must have been seen twice before it is believed.
-                let again = seen.len() < 2 * p || {
-                    let (a, b) = (&seen[seen.len() - p], &seen[seen.len() - 2 * p]);
-                    norm(a, b, &s) <= 30.0 * options.tolerance
-                };
-                if estimate <= options.tolerance && seen.len() >= 2 * p.max(1) && again {
+            }
+            for p in 1..=MAX_PERIOD {
+                let estimate = estimates[p - 1];
+                // A longer repetition counts when what it says of its own error excludes every shorter one.
+                let excluded =
+                    changes[..p - 1].iter().all(|c| c.last().is_some_and(|c| *c > 4.0 * blurred[p - 1]));
+                // It must be seen twice before it is believed, and go on falling: a slow mode can hide behind faster ones.
+                let settled = passed[p - 1] > 0.0
+                    && changes[p - 1].last().is_some_and(|c| *c <= 3.0 * options.accuracy);
+                if excluded
+                    && (settled && estimate <= options.tolerance || sinks(estimate, passed[p - 1], options))
+                {
                     self.report.converged = true;
                     self.report.period = p as u32;
                     self.report.error_estimate = estimate;
                     return Ok(());
                 }
+                passed[p - 1] = if excluded && estimate <= options.tolerance {
+                    estimate.max(f64::MIN_POSITIVE)
+                } else {
+                    0.0
+                };
             }
             seen.push(g.clone());
+            if seen.len() > MAX_PERIOD {
+                seen.remove(0);
+            }
         }
-        self.report.converged = false;
         Ok(())
     }
 }
 
-/// Indices of the columns, newest first, that are independent of the newer ones to within `tolerance` of their length, with an
-/// orthonormal basis of their span (scaled by 1/s).
-fn independent(columns: &[DVector<f64>], s: &[f64], tolerance: f64) -> (Vec<usize>, Vec<DVector<f64>>) {
-    let (mut used, mut basis): (Vec<usize>, Vec<DVector<f64>>) = (Vec::new(), Vec::new());
-    for (i, c) in columns.iter().enumerate().rev() {
-        let mut v = scaled(c, s);
-        let length = v.norm();
-        // Twice: one pass of Gram–Schmidt loses orthogonality of nearly dependent columns.
+/// Whether an estimate, falling from cycle to cycle as it does now, stands for an error below the tolerance.
+fn sinks(estimate: f64, before: f64, options: &OrbitOptions) -> bool {
+    let fall = (estimate / before).min(1.0 - 1.0 / MOST_GAIN);
+    estimate * (fall / (1.0 - fall)).max(1.0) <= options.tolerance
+}
+
+/// A difference of two iterates, of their residuals, and the noise in the latter.
+struct Secant {
+    dy: DVector<f64>,
+    dr: DVector<f64>,
+    noise: f64,
+}
+
+/// Decay per cycle of a sequence of changes, and the last change. The shortest stretch that shows a decay beyond the noise
+/// decides, noise counted against it: then a slow mode shows as soon as the fast ones have left, and a sequence that has
+/// come down to its noise is judged by how it came there.
+fn decay(changes: &[f64], noise: f64) -> (f64, f64) {
+    let Some((&last, earlier)) = changes.split_last() else { return (1.0, f64::INFINITY) };
+    for (w, &c) in earlier.iter().rev().enumerate() {
+        if c > last + 4.0 * noise || (noise == 0.0 && c > last) {
+            return (((last + noise) / (c - noise)).powf(1.0 / (w + 1) as f64).min(1.0), last);
+        }
+    }
+    (1.0, last)
+}
+
+/// The part of `r` that the secants explain, as the change of the end state it stands for, and the rest. Newer secants come first;
+/// one that says nothing new beyond its noise is left out.
+fn explain(secants: &[Secant], r: &DVector<f64>) -> (DVector<f64>, DVector<f64>) {
+    let mut rest = r.clone();
+    let mut correction = DVector::zeros(r.len());
+    // Orthonormal directions of residuals, with the end states they belong to.
+    let mut basis: Vec<(DVector<f64>, DVector<f64>)> = Vec::new();
+    for secant in secants.iter().rev() {
+        let (mut q, mut g) = (secant.dr.clone(), &secant.dy + &secant.dr);
+        // Twice is enough for orthogonality to rounding.
         for _ in 0..2 {
-            for b in &basis {
-                v.axpy(-b.dot(&v), b, 1.0);
+            for (b, h) in &basis {
+                let c = b.dot(&q);
+                q -= b * c;
+                g -= h * c;
             }
         }
-        let left = v.norm();
-        if left > tolerance * length && left > f64::MIN_POSITIVE {
-            basis.push(v / left);
-            used.push(i);
+        let size = q.norm();
+        if size.is_finite() && size > secant.noise.max(1e-9 * secant.dr.norm()) {
+            (q, g) = (q / size, g / size);
+            let c = q.dot(&rest);
+            rest -= &q * c;
+            correction += &g * c;
+            basis.push((q, g));
         }
     }
-    (used, basis)
+    (correction, rest)
 }
 
-fn scaled(v: &DVector<f64>, s: &[f64]) -> DVector<f64> {
-    DVector::from_iterator(v.len(), v.iter().zip(s).map(|(v, s)| v / s))
-}
-
-/// Largest multiplier of the map restricted to the span of the iterates' differences: spectral radius of `Qᵀ M Q`, with the
-/// orthonormal basis `Q` of the steps and `M Δy = Δy + Δr`. `None` without steps.
-fn multiplier(dy: &[DVector<f64>], dr: &[DVector<f64>], s: &[f64]) -> Option<f64> {
-    let (used, basis) = independent(dy, s, 1e-4);
-    if used.is_empty() {
-        return None;
-    }
-    let y = DMatrix::from_columns(&used.iter().map(|&i| scaled(&dy[i], s)).collect::<Vec<_>>());
-    let g = DMatrix::from_columns(&used.iter().map(|&i| scaled(&(&dy[i] + &dr[i]), s)).collect::<Vec<_>>());
-    let q = DMatrix::from_columns(&basis);
-    // Qᵀ M Q = (Qᵀ G)(Qᵀ Y)⁻¹.
-    let inverse = (q.transpose() * y).try_inverse()?;
-    let projected = q.transpose() * g * inverse;
-    Schur::try_new(projected, 1e-12, 200)
-        .map(|s| s.complex_eigenvalues().iter().map(|l| l.norm()).fold(0.0, f64::max))
-}
-
-/// Coefficients of the combination of `columns` nearest to `target` in the scaled 2-norm; columns that depend on newer ones get
-/// zero. `None` without columns.
-fn least_squares(columns: &[DVector<f64>], target: &DVector<f64>, s: &[f64]) -> Option<Vec<f64>> {
-    let (used, basis) = independent(columns, s, 1e-7);
-    if used.is_empty() {
-        return None;
-    }
-    let m = used.len();
-    let t = scaled(target, s);
-    // R γ = Qᵀ t with R = Qᵀ A upper triangular in the order of `used`.
-    let a: Vec<DVector<f64>> = used.iter().map(|&i| scaled(&columns[i], s)).collect();
-    let mut x: Vec<f64> = basis.iter().map(|b| b.dot(&t)).collect();
-    for i in (0..m).rev() {
-        for j in i + 1..m {
-            x[i] -= basis[i].dot(&a[j]) * x[j];
+/// Largest multiplier (its magnitude) of the map on the span of the iterates' differences, and the largest factor `1/|1 - λ|` by
+/// which a residual there understates an error; and whether an unstable fixed point must be thought possible. Differences that are not well apart, or near the noise, are left out.
+fn spectrum(secants: &[Secant]) -> (f64, f64, bool) {
+    let mut basis: Vec<(DVector<f64>, DVector<f64>)> = Vec::new();
+    for secant in secants.iter().rev() {
+        let (mut q, mut g) = (secant.dy.clone(), &secant.dy + &secant.dr);
+        for _ in 0..2 {
+            for (b, h) in &basis {
+                let c = b.dot(&q);
+                q -= b * c;
+                g -= h * c;
+            }
         }
-        x[i] /= basis[i].dot(&a[i]);
+        let size = q.norm();
+        if size.is_finite() && size > (30.0 * secant.noise).max(0.01 * secant.dy.norm()) {
+            basis.push((q / size, g / size));
+        }
     }
-    let mut gamma = vec![0.0; columns.len()];
-    for (i, x) in used.into_iter().zip(x) {
-        gamma[i] = x;
+    if basis.is_empty() {
+        return (0.0, 1.0, false);
     }
-    Some(gamma)
-}
-
-/// Whether two solutions differ by more than `tolerance` in the scaled maximum norm; a NaN differs from everything.
-#[must_use]
-pub fn distinct(a: &[f64], b: &[f64], scale: &[f64], tolerance: f64) -> bool {
-    a.len() != b.len() || !a.iter().zip(b).zip(scale).all(|((a, b), s)| (a - b).abs() <= tolerance * s)
+    let m = DMatrix::from_fn(basis.len(), basis.len(), |i, j| basis[i].0.dot(&basis[j].1));
+    let eigenvalues = Schur::try_new(m, 1e-12, 200).map(|s| s.complex_eigenvalues());
+    let (mut largest, mut gain, mut suspect) = (0.0_f64, 1.0_f64, false);
+    for l in eigenvalues.iter().flat_map(|e| e.iter()) {
+        largest = largest.max(l.norm());
+        suspect |= l.norm() > if l.re < 0.9 * l.norm() { SUSPECT_TURNING } else { SUSPECT };
+        gain = gain.max(1.0 / (l - 1.0).norm().max(1.0 / MOST_GAIN));
+    }
+    (largest, gain, suspect)
 }

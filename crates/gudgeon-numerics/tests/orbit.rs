@@ -1,29 +1,188 @@
-//! The periodic-orbit search on maps whose fixed points and multipliers are known: cost, period and, above all, honesty of the
-//! reported error.
+//! Orbits of maps whose fixed points and multipliers are known: the true error against the reported one.
 
 use gudgeon_core::EvalError;
-use gudgeon_numerics::orbit::{CycleMap, OrbitOptions, OrbitReport, periodic_orbit};
+use gudgeon_numerics::orbit::{CycleMap, OrbitOptions, periodic_orbit};
+use nalgebra::{DMatrix, DVector};
 
-/// A map from a closure, with unit scales and a deterministic noise of relative size `noise`.
-struct Map<F> {
-    dim: usize,
-    f: F,
+const N: usize = 8;
+
+/// `y -> x + M (y - x)` with the given multipliers along a skew basis, and an error of every cycle of the size of its accuracy.
+struct Linear {
+    fixed: DVector<f64>,
+    m: DMatrix<f64>,
+    scale: Vec<f64>,
     noise: f64,
-    calls: usize,
+    state: u64,
+    start: Vec<f64>,
 }
 
-impl<F: FnMut(&[f64], &mut [f64])> CycleMap for Map<F> {
+/// A reproducible number in (-1, 1).
+fn noise(state: &mut u64) -> f64 {
+    *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+    (*state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+}
+
+impl Linear {
+    /// The largest multiplier given, the others falling from 0.3 of it.
+    fn new(largest: f64, noise_level: f64, seed: u64) -> Self {
+        let tail = [0.3, 0.2, -0.12, 0.05, 0.02, 0.0, 0.0].map(|f| f * largest.abs().min(1.0));
+        let mut lambda = vec![largest];
+        lambda.extend(tail);
+        Self::with(&lambda, noise_level, seed)
+    }
+
+    fn with(lambda: &[f64], noise_level: f64, seed: u64) -> Self {
+        let mut state = seed;
+        // Units from 1e-6 to 1e5, as film thicknesses and pressures have.
+        let scale: Vec<f64> = (0..N).map(|i| [1.0, 1e-6, 1e5, 1e-2, 1e-6, 1e5, 3.0, 1e-3][i]).collect();
+        let basis = DMatrix::from_fn(N, N, |i, j| f64::from(u8::from(i == j)) + 0.3 * noise(&mut state));
+        let inverse = basis.clone().try_inverse().unwrap();
+        let units = DMatrix::from_diagonal(&DVector::from_vec(scale.clone()));
+        let m = &basis * DMatrix::from_diagonal(&DVector::from_row_slice(lambda)) * inverse;
+        let m = &units * m * units.clone().try_inverse().unwrap();
+        let fixed = DVector::from_fn(N, |i, _| scale[i] * (1.0 + 0.4 * noise(&mut state)));
+        // Every mode takes part in the start, the slow one with about 0.4.
+        let parts = DVector::from_fn(N, |i, _| if i == 0 { 0.4 } else { 0.5 * noise(&mut state) });
+        let start = (&fixed + &units * &basis * parts).iter().copied().collect();
+        Self { fixed, m, scale, noise: noise_level, state, start }
+    }
+
+    fn error(&self, y: &[f64]) -> f64 {
+        (0..N).map(|i| ((y[i] - self.fixed[i]) / self.scale[i]).abs()).fold(0.0, f64::max)
+    }
+}
+
+impl CycleMap for Linear {
     fn dim(&self) -> usize {
-        self.dim
+        N
+    }
+    fn map(&mut self, y0: &[f64], y1: &mut [f64], accuracy: f64) -> Result<f64, EvalError> {
+        let y = &self.fixed + &self.m * (DVector::from_row_slice(y0) - &self.fixed);
+        for i in 0..N {
+            y1[i] = y[i] + self.noise * accuracy * self.scale[i] * noise(&mut self.state);
+        }
+        Ok(1.0)
+    }
+    fn scale(&self, _: &[f64], s: &mut [f64]) {
+        s.copy_from_slice(&self.scale);
+    }
+}
+
+fn options(tolerance: f64, accelerate: bool) -> OrbitOptions {
+    OrbitOptions {
+        tolerance,
+        accuracy: tolerance / 30.0,
+        max_cycles: if accelerate { 60 } else { 300 },
+        accelerate,
+    }
+}
+
+/// Runs many starts and bases; every converged answer must be as good as it says, to a factor 3. Answers the median of the cycles
+/// and how many converged.
+fn survey(largest: f64, level: f64, tolerance: f64, accelerate: bool) -> (usize, usize) {
+    let (mut cycles, mut converged) = (Vec::new(), 0);
+    for seed in 1..=SEEDS {
+        let mut map = Linear::new(largest, level, seed);
+        let mut y = map.start.clone();
+        let r = periodic_orbit(&mut map, &mut y, &options(tolerance, accelerate)).unwrap();
+        let error = map.error(&y);
+        assert_eq!(r.period, 1, "{largest} {level} {tolerance:e} {seed}: {r:?}");
+        if r.converged {
+            converged += 1;
+            assert!(r.error_estimate <= tolerance);
+            // 1e-14: rounding of the states themselves.
+            assert!(
+                error <= 3.0 * r.error_estimate + 1e-14,
+                "{largest} {level} {tolerance:e} {seed}: {error:e} {r:?}"
+            );
+        } else {
+            assert!(r.error_estimate > tolerance, "{largest} {level} {tolerance:e} {seed}: {r:?}");
+        }
+        assert_eq!(r.cycles as f64, r.cycle_equivalents);
+        cycles.push(r.cycles);
+    }
+    cycles.sort_unstable();
+    (cycles[SEEDS as usize / 2], converged)
+}
+
+const SEEDS: u64 = 199;
+
+#[test]
+fn estimates_of_accelerated_orbits_are_true() {
+    for tolerance in [1e-3, 1e-4, 1e-6] {
+        for level in [0.0, 1.0] {
+            for largest in [0.0, 0.3, 0.7, -0.9] {
+                let (_, converged) = survey(largest, level, tolerance, true);
+                assert_eq!(converged, SEEDS as usize, "{largest} {level} {tolerance:e}");
+            }
+            let (_, converged) = survey(0.95, level, tolerance, true);
+            // With an error of tolerance/30 in every cycle the state is uncertain by 20 times that, not far from the tolerance:
+            // some starts rightly end unconverged.
+            assert!(
+                converged as f64 > if level == 0.0 { 0.999 } else { 0.9 } * SEEDS as f64,
+                "{level} {tolerance:e} {converged}"
+            );
+        }
+    }
+}
+
+/// A multiplier of 0.999 makes an error a thousand times the residual: with noise of tolerance/30 no answer is good to the tolerance, and
+/// the search must say so. At a tolerance of 1e-3 the slow mode's residual of 4e-4 is itself not far above noise (3e-5): there chance can
+/// hide it, and did so for 1 of 199 starts when this was written; the statement is made for the tighter tolerances.
+#[test]
+fn the_edge_of_stability_is_reported() {
+    for tolerance in [1e-4, 1e-6] {
+        let (cycles, converged) = survey(0.999, 0.0, tolerance, true);
+        // Found exactly, once the slow mode is seen; 8 of the cycles confirm that the orbit is stable.
+        assert!(cycles <= 18 && converged * 10 > 9 * SEEDS as usize, "{cycles} {converged}");
+        let (_, converged) = survey(0.999, 1.0, tolerance, true);
+        assert_eq!(converged, 0);
+    }
+    survey(0.999, 0.0, 1e-3, true);
+}
+
+#[test]
+fn cycles_of_accelerated_orbits() {
+    // The targets of the design: a machine without memory in 3, a slow one (plain repetition: 170 cycles) in 8.
+    assert!(survey(0.0, 0.0, 1e-4, true).0 <= 3);
+    assert!(survey(0.0, 1.0, 1e-4, true).0 <= 3);
+    assert!(survey(0.3, 0.0, 1e-4, true).0 <= 6);
+    assert!(survey(0.95, 0.0, 1e-4, true).0 <= 8);
+    assert!(survey(0.95, 1.0, 1e-4, true).0 <= 9);
+    // A negative one: 8 of the cycles confirm that the orbit is stable.
+    assert!(survey(-0.9, 0.0, 1e-4, true).0 <= 15);
+    assert!(survey(0.999, 0.0, 1e-6, true).0 <= 18);
+}
+
+#[test]
+fn estimates_of_repeated_orbits_are_true() {
+    for tolerance in [1e-3, 1e-4, 1e-6] {
+        for largest in [0.0, 0.3, 0.7, -0.9, 0.95] {
+            let (_, converged) = survey(largest, 0.0, tolerance, false);
+            assert_eq!(converged, SEEDS as usize, "{largest} {tolerance:e}");
+        }
+        for largest in [0.0, 0.3, 0.7] {
+            let (_, converged) = survey(largest, 1.0, tolerance, false);
+            assert_eq!(converged, SEEDS as usize, "{largest} {tolerance:e}");
+        }
+    }
+    // At 1e-3 the slow mode's change per cycle, 4e-4, passes for convergence while the fast modes fade: 54 of 199 starts were
+    // then called converged when this was written. Plain repetition cannot know; the accelerated search does.
+    for tolerance in [1e-4, 1e-6] {
+        let (_, converged) = survey(0.999, 0.0, tolerance, false);
+        assert_eq!(converged, 0);
+    }
+}
+
+/// `x -> r x (1 - x)` beside a contraction that follows it.
+struct Logistic(f64);
+impl CycleMap for Logistic {
+    fn dim(&self) -> usize {
+        2
     }
     fn map(&mut self, y0: &[f64], y1: &mut [f64], _: f64) -> Result<f64, EvalError> {
-        self.calls += 1;
-        (self.f)(y0, y1);
-        for (i, y) in y1.iter_mut().enumerate() {
-            // A hash of the call: looks random, repeats exactly.
-            let u = ((self.calls * 31 + i * 17) as f64 * 0.618_033_988_749_894_9).fract() * 2.0 - 1.0;
-            *y += self.noise * u;
-        }
+        y1[0] = self.0 * y0[0] * (1.0 - y0[0]);
+        y1[1] = 0.2 * y0[1] + y0[0];
         Ok(1.0)
     }
     fn scale(&self, _: &[f64], s: &mut [f64]) {
@@ -31,137 +190,105 @@ impl<F: FnMut(&[f64], &mut [f64])> CycleMap for Map<F> {
     }
 }
 
-fn options(tolerance: f64) -> OrbitOptions {
-    OrbitOptions { tolerance, accuracy: 0.1 * tolerance, max_cycles: 60, accelerate: true }
+#[test]
+fn a_cycle_that_repeats_every_second_time_is_reported() {
+    for accelerate in [true, false] {
+        for start in [0.3, 0.55, 0.68, 0.9] {
+            let r: f64 = 3.2;
+            let mut y = [start, 0.5];
+            let report = periodic_orbit(&mut Logistic(r), &mut y, &options(1e-6, accelerate)).unwrap();
+            assert!(report.converged && report.period == 2, "{accelerate} {start}: {report:?}");
+            // The two points of the period: (r + 1 ± sqrt((r - 3)(r + 1))) / 2r.
+            let root = ((r - 3.0) * (r + 1.0)).sqrt();
+            let error = [1.0, -1.0].map(|s| (y[0] - (r + 1.0 + s * root) / (2.0 * r)).abs());
+            assert!(error[0].min(error[1]) <= 3.0 * report.error_estimate, "{error:?} {report:?}");
+        }
+        // Below r = 3 the fixed point 1 - 1/r is stable.
+        for r in [1.5, 2.5, 2.9] {
+            let mut y = [0.3, 0.5];
+            let report = periodic_orbit(&mut Logistic(r), &mut y, &options(1e-6, accelerate)).unwrap();
+            assert!(report.converged && report.period == 1, "{accelerate} {r}: {report:?}");
+            assert!(
+                (y[0] - 1.0 + 1.0 / r).abs() <= 3.0 * report.error_estimate + 1e-14,
+                "{accelerate} {r} {y:?} {report:?}"
+            );
+        }
+    }
 }
 
-fn distance(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
-}
-
-/// A linear map with these multipliers in a skew (non-normal) basis, around a fixed point; returns report and true error.
-fn linear(multipliers: &[f64], o: &OrbitOptions, noise: f64) -> (OrbitReport, f64) {
-    let n = multipliers.len();
-    let target: Vec<f64> = (0..n).map(|i| 1.0 + 0.3 * i as f64).collect();
-    // v_i = e_i + 0.5 e_{i+1}: coordinates in this basis by forward substitution.
-    let t = target.clone();
-    let f = |y: &[f64], out: &mut [f64]| {
-        let mut c = vec![0.0; n];
-        for i in 0..n {
-            c[i] = y[i] - t[i] - if i > 0 { 0.5 * c[i - 1] } else { 0.0 };
+/// A contraction with a slow and some fast modes, strongly nonlinear at the start: the gas pressures of a ring pack after a cycle
+/// depend on those before about so.
+struct Nonlinear;
+impl CycleMap for Nonlinear {
+    fn dim(&self) -> usize {
+        5
+    }
+    fn map(&mut self, y0: &[f64], y1: &mut [f64], accuracy: f64) -> Result<f64, EvalError> {
+        for i in 0..5 {
+            let next = y0[(i + 1) % 5];
+            y1[i] = 1.0
+                + [0.9, 0.5, 0.3, 0.1, 0.0][i] * (y0[i] - 1.0 + 0.3 * (y0[i] - 1.0).powi(2)).tanh()
+                + 0.05 * (next - 1.0).sin();
+            // A smooth error, as an integrator's is.
+            y1[i] += 0.1 * accuracy * (3.0 * y0[i] + i as f64).sin();
         }
-        for i in 0..n {
-            c[i] *= multipliers[i];
+        Ok(1.0)
+    }
+    fn scale(&self, y: &[f64], s: &mut [f64]) {
+        for (s, y) in s.iter_mut().zip(y) {
+            *s = y.abs().max(0.5);
         }
-        for i in 0..n {
-            out[i] = t[i] + c[i] + if i > 0 { 0.5 * c[i - 1] } else { 0.0 };
-        }
-    };
-    let mut y = vec![0.0; n];
-    let r = periodic_orbit(&mut Map { dim: n, f, noise, calls: 0 }, &mut y, o).unwrap();
-    let e = distance(&y, &target);
-    (r, e)
+    }
 }
 
 #[test]
-fn the_reported_error_covers_the_true_one() {
-    let slow: [&[f64]; 10] = [
-        &[0.3, 0.0],
-        &[0.95, 1e-3, 1e-7],
-        &[-0.9, 0.2],
-        &[0.999, 0.1],
-        &[0.9, 0.8, 0.7, 0.3],
-        &[0.99, -0.95, 0.5],
-        &[0.95; 3],
-        &[-0.5, 0.5, 0.1, -0.1, 0.01, 0.0],
-        &[1e-7; 5],
-        &[0.0; 3],
-    ];
-    let mut failures = Vec::new();
-    for m in slow {
-        for tolerance in [1e-2, 1e-4, 1e-8] {
-            for noise in [0.0, 0.01] {
-                let (r, e) = linear(m, &options(tolerance), noise * tolerance);
-                // Rounding of numbers of order 1; the map's own noise over 1 - λ, from up to four secants and the state.
-                let floor = 1e-13 + 5.0 * noise * tolerance / (1.0 - m[0].max(0.0));
-                // A mode that changes the state by about a tenth of the tolerance per cycle is invisible beside faster ones.
-                if 1.0 - m[0] < 0.11 * tolerance {
-                    continue;
-                }
-                let covered = e <= 3.0 * r.error_estimate + floor;
-                if !covered || !r.converged || r.period != 1 {
-                    failures.push(format!("{m:?} {tolerance:e} {noise}: {e:e} {r:?}"));
-                }
+fn nonlinear_contractions() {
+    // Ten cycles to the orbit, and 8 that confirm its stability.
+    for (accelerate, most) in [(true, 18), (false, 200)] {
+        for tolerance in [1e-3, 1e-4, 1e-6] {
+            for start in [[3.0, 0.2, 2.0, -1.0, 0.5], [1.3, 1.2, 0.9, 1.1, 1.0], [8.0; 5]] {
+                let mut y = start;
+                let report = periodic_orbit(&mut Nonlinear, &mut y, &options(tolerance, accelerate)).unwrap();
+                assert!(
+                    report.converged && report.period == 1 && report.cycles <= most,
+                    "{tolerance:e} {report:?}"
+                );
+                // (1, .., 1) is on the orbit of the exact map; the error of the map moves it by up to 0.1 accuracy / (1 - 0.91).
+                let error = y.iter().map(|y| (y - 1.0).abs()).fold(0.0, f64::max);
+                assert!(
+                    error <= 3.0 * report.error_estimate + 1.2 * tolerance / 30.0,
+                    "{error:e} {report:?}"
+                );
             }
         }
     }
-    assert!(failures.is_empty(), "{failures:#?}");
 }
 
-#[test]
-fn cheap_maps_are_cheap() {
-    // A gas network forgets its start within one cycle: one cycle to get there, one to confirm.
-    let (r, _) = linear(&[1e-7, 1e-8, 0.0], &options(1e-4), 0.0);
-    assert!(r.cycles <= 2, "{r:?}");
-    // One slow mode: two cycles give its secant, one the extrapolation, the rest confirms.
-    let (r, e) = linear(&[0.95, 1e-3, 1e-4, 0.0], &options(1e-4), 0.0);
-    assert!(r.cycles <= 6 && e < 1e-4, "{e:e} {r:?}");
-}
-
-#[test]
-fn nonlinear_fixed_points() {
-    // x' = cos x, and a coupled pair with multipliers 0.9 and -0.3.
-    let mut y = [0.0];
-    let mut m = Map { dim: 1, f: |y: &[f64], o: &mut [f64]| o[0] = y[0].cos(), noise: 0.0, calls: 0 };
-    let r = periodic_orbit(&mut m, &mut y, &options(1e-9)).unwrap();
-    let e = (y[0] - 0.739_085_133_215_160_6).abs();
-    assert!(r.converged && e <= 3.0 * r.error_estimate + 1e-13 && r.cycles < 12, "{e:e} {r:?}");
-    let f = |y: &[f64], o: &mut [f64]| {
-        o[0] = 0.9 * y[0] + 0.1 * y[1] * y[1];
-        o[1] = 1.0 - 0.3 * y[1] + 0.3 + 0.01 * (y[0] - 1.0).powi(2);
-    };
-    let mut y = [0.2, 0.4];
-    let r = periodic_orbit(&mut Map { dim: 2, f, noise: 0.0, calls: 0 }, &mut y, &options(1e-8)).unwrap();
-    let e = distance(&y, &[1.0, 1.0]);
-    assert!(r.converged && r.period == 1 && e <= 3.0 * r.error_estimate + 1e-13 && e < 1e-8, "{e:e} {r:?}");
-}
-
-#[test]
-fn period_two_is_reported_not_an_unstable_fixed_point() {
-    // Logistic map at 3.2: fixed point 0.6875 (multiplier -1.2), two-cycle 0.5130, 0.7995 (multiplier 0.16).
-    let logistic = |y: &[f64], o: &mut [f64]| o[0] = 3.2 * y[0] * (1.0 - y[0]);
-    for start in [0.1, 0.3, 0.68, 0.9] {
-        let mut y = [start];
-        let r =
-            periodic_orbit(&mut Map { dim: 1, f: logistic, noise: 0.0, calls: 0 }, &mut y, &options(1e-6))
-                .unwrap();
-        // x± = (r + 1 ± sqrt((r - 3)(r + 1)))/(2 r).
-        let root = (0.2f64 * 4.2).sqrt();
-        let e = [(4.2 + root) / 6.4, (4.2 - root) / 6.4].iter().map(|x| (y[0] - x).abs()).fold(1.0, f64::min);
-        assert!(r.converged && r.period == 2 && e <= 3.0 * r.error_estimate + 1e-13, "{start} {y:?} {r:?}");
+/// Refuses; and a map whose state runs away.
+struct Bad(bool);
+impl CycleMap for Bad {
+    fn dim(&self) -> usize {
+        1
     }
-    // Hénon's map with a = 0.5, b = 0.3: two-cycle; the fixed point has a multiplier of -1.2.
-    let henon = |y: &[f64], o: &mut [f64]| (o[0], o[1]) = (1.0 - 0.5 * y[0] * y[0] + y[1], 0.3 * y[0]);
-    let mut y = [0.5, 0.1];
-    let r =
-        periodic_orbit(&mut Map { dim: 2, f: henon, noise: 0.0, calls: 0 }, &mut y, &options(1e-6)).unwrap();
-    // x± = ((1-b) ± sqrt(4 a - 3 (1-b)²))/(2 a).
-    let root = (2.0f64 - 3.0 * 0.49).sqrt();
-    let e = [0.7 + root, 0.7 - root].iter().map(|x| (y[0] - x).abs()).fold(1.0, f64::min);
-    assert!(r.converged && r.period == 2 && e <= 3.0 * r.error_estimate + 1e-13, "{e:e} {y:?} {r:?}");
+    fn map(&mut self, y0: &[f64], y1: &mut [f64], _: f64) -> Result<f64, EvalError> {
+        y1[0] = 3.0 * y0[0] + 1.0;
+        if self.0 { Err(EvalError::fatal("test", "no")) } else { Ok(2.0) }
+    }
+    fn scale(&self, y: &[f64], s: &mut [f64]) {
+        s[0] = y[0].abs().max(1.0);
+    }
 }
 
 #[test]
-fn no_fixed_point_is_not_converged() {
-    // A drift: y grows by 0.01 each cycle (multiplier 1, no orbit).
-    let mut y = [0.0];
-    let mut m = Map { dim: 1, f: |y: &[f64], o: &mut [f64]| o[0] = y[0] + 0.01, noise: 0.0, calls: 0 };
-    let r = periodic_orbit(&mut m, &mut y, &options(1e-3)).unwrap();
-    assert!(!r.converged, "{r:?}");
-    // Chaos.
-    let mut y = [0.3];
-    let mut m =
-        Map { dim: 1, f: |y: &[f64], o: &mut [f64]| o[0] = 3.99 * y[0] * (1.0 - y[0]), noise: 0.0, calls: 0 };
-    let r = periodic_orbit(&mut m, &mut y, &options(1e-6)).unwrap();
-    assert!(!r.converged, "{r:?}");
+fn failures_are_reported() {
+    for accelerate in [true, false] {
+        assert!(periodic_orbit(&mut Bad(true), &mut [1.0], &options(1e-4, accelerate)).is_err());
+        let short: &mut [f64] = &mut [];
+        assert!(periodic_orbit(&mut Bad(false), short, &options(1e-4, accelerate)).is_err());
+        // The only fixed point, -1/2, is unstable: nothing settles there.
+        let mut y = [1.0];
+        let report = periodic_orbit(&mut Bad(false), &mut y, &options(1e-4, accelerate)).unwrap();
+        assert!(!report.converged && report.error_estimate > 0.1, "{accelerate} {report:?}");
+        assert_eq!(report.cycle_equivalents, report.cycles as f64);
+    }
 }

@@ -456,9 +456,9 @@ impl Pack {
             if f.abs() <= 1e-12 * scale {
                 return Ok((x, o));
             }
-            // Newton's method squares a small error: one more step from here ends at rounding, and the film belongs to the
-            // new velocity within the square root of that.
-            if f.abs() <= 1e-7 * scale && (x - f / d).is_finite() {
+            // Newton's method squares a small error: the next step from here ends within 1e-9, and the film is that of a
+            // velocity 1e-5 away.
+            if f.abs() <= 1e-5 * scale && (x - f / d).is_finite() {
                 return Ok((x - f / d, o));
             }
             if f > 0.0 {
