@@ -70,9 +70,21 @@ fn as_published() {
     }
     for (what, _, blow_by, p_max) in SENSITIVITIES {
         let r = runs.next().expect("a run");
-        t.compare("scheme", &format!("{what}: blow-by, l/min"), blow_by, value(&r, "blow_by_per_cylinder"), Within::Rounded(0.005, 0.005));
+        t.compare(
+            "scheme",
+            &format!("{what}: blow-by, l/min"),
+            blow_by,
+            value(&r, "blow_by_per_cylinder"),
+            Within::Rounded(0.005, 0.005),
+        );
         if let Some(p) = p_max {
-            t.compare("scheme", &format!("{what}: land 2, bar"), p, value(&r, "land2.p_max"), Within::Rounded(0.005, 0.005));
+            t.compare(
+                "scheme",
+                &format!("{what}: land 2, bar"),
+                p,
+                value(&r, "land2.p_max"),
+                Within::Rounded(0.005, 0.005),
+            );
         }
     }
     let (q0, p0) = (value(&base, "blow_by_per_cylinder"), value(&base, "land2.p_max"));
@@ -97,20 +109,50 @@ fn as_published() {
         }
     }
     for (what, why) in [
-        ("1 gas step per step: 9.47 l/min, 15.18 bar", "the explicit gas march chatters by 10 % there and the numbers are those of the noise"),
-        ("text eq. 4.10 instead of the listing: 8.405 l/min", "the scheme follows the listing and has no such switch"),
-        ("radial motion off, films of 1 um: 7.93 l/min", "without films the axial balance has no film friction, the listing keeps it at 1 um"),
+        (
+            "1 gas step per step: 9.47 l/min, 15.18 bar",
+            "the explicit gas march chatters by 10 % there and the numbers are those of the noise",
+        ),
+        (
+            "text eq. 4.10 instead of the listing: 8.405 l/min",
+            "the scheme follows the listing and has no such switch",
+        ),
+        (
+            "radial motion off, films of 1 um: 7.93 l/min",
+            "without films the axial balance has no film friction, the listing keeps it at 1 um",
+        ),
     ] {
         t.note("skipped", what, why, true);
     }
-    t.finish("zottin1992, scheme and listing as published: surrogate case of a 120 mm turbo diesel", "validation-zottin.md");
+    t.finish(
+        "zottin1992, scheme and listing as published: surrogate case of a 120 mm turbo diesel",
+        "validation-zottin.md",
+    );
 }
 
 fn golden(t: &mut Table, r: &RunResult) {
-    t.compare("7.3", "blow-by per cylinder, cycle 2, l/min", 8.312, value(r, "blow_by_per_cylinder"), Within::Relative(0.01));
-    t.compare("7.3", "land 2, highest pressure, bar", 14.707, value(r, "land2.p_max"), Within::Relative(0.005));
+    t.compare(
+        "7.3",
+        "blow-by per cylinder, cycle 2, l/min",
+        8.312,
+        value(r, "blow_by_per_cylinder"),
+        Within::Relative(0.01),
+    );
+    t.compare(
+        "7.3",
+        "land 2, highest pressure, bar",
+        14.707,
+        value(r, "land2.p_max"),
+        Within::Relative(0.005),
+    );
     t.compare("7.3", "land 2, its angle, deg", 436.0, value(r, "land2.p_max_angle"), Within::Absolute(1.0));
-    t.compare("7.3", "land 3, highest pressure, bar", 3.690, value(r, "land3.p_max"), Within::Relative(0.005));
+    t.compare(
+        "7.3",
+        "land 3, highest pressure, bar",
+        3.690,
+        value(r, "land3.p_max"),
+        Within::Relative(0.005),
+    );
     t.compare("7.3", "land 3, its angle, deg", 400.0, value(r, "land3.p_max_angle"), Within::Absolute(1.0));
     let flows = |col: usize| ["cylinder.p", "ring1.back.p", "land2.p", "ring2.back.p", "land3.p"][col - 1];
     // A ring that crosses its groove changes everything near it within a degree. Events are good to 1 deg; where they happen,
@@ -133,10 +175,22 @@ fn golden(t: &mut Table, r: &RunResult) {
             let printed = row[8 + i];
             // On the floor the film is the floor; elsewhere 2 % and half a unit of the last printed digit.
             let within = if printed == 0.10 { Within::Absolute(0.005) } else { Within::Rounded(0.02, 0.005) };
-            t.compare(&source, &format!("h{i}, um"), printed, at(r, &format!("ring{i}.h_min"), theta) * 1e6, within);
+            t.compare(
+                &source,
+                &format!("h{i}, um"),
+                printed,
+                at(r, &format!("ring{i}.h_min"), theta) * 1e6,
+                within,
+            );
         }
         // The printed value is a sum over 64 gas steps; the trapezoidal rule over the degree adds 1 % to the 1 % of blow-by.
-        t.compare(&source, "blow-by, ml/min per deg", row[12], per_degree(r, theta), Within::Rounded(0.02, 0.005));
+        t.compare(
+            &source,
+            "blow-by, ml/min per deg",
+            row[12],
+            per_degree(r, theta),
+            Within::Rounded(0.02, 0.005),
+        );
         for i in 1..=3 {
             let ours = at(r, &format!("ring{i}.friction_force"), theta);
             // Zeros are printed without decimals.
@@ -162,7 +216,13 @@ fn golden(t: &mut Table, r: &RunResult) {
         ("ring3", "seats on the upper", 365.0),
         ("ring3", "seats on the lower", 536.0),
     ] {
-        t.compare("7.3, events", &format!("{ring} {what} flank, deg"), deg, event(ring, what, deg), Within::Absolute(1.0));
+        t.compare(
+            "7.3, events",
+            &format!("{ring} {what} flank, deg"),
+            deg,
+            event(ring, what, deg),
+            Within::Absolute(1.0),
+        );
     }
     let crossing = r
         .series
@@ -173,36 +233,109 @@ fn golden(t: &mut Table, r: &RunResult) {
         .map_or(f64::NAN, |(th, _)| *th);
     t.compare("7.3, events", "land 2 above the cylinder from, deg", 451.0, crossing, Within::Absolute(1.0));
     let lift = peak(r, "ring1.position", 440.0, 560.0);
-    t.compare("7.3, events", "ring 1, highest lift in 440 to 560 deg", 0.71, lift.0, Within::Rounded(0.02, 0.005));
-    let bbi = (1..=720).map(|d| (per_degree(r, f64::from(d)), d)).fold((0.0, 0), |m, v| if v.0 > m.0 { v } else { m });
+    t.compare(
+        "7.3, events",
+        "ring 1, highest lift in 440 to 560 deg",
+        0.71,
+        lift.0,
+        Within::Rounded(0.02, 0.005),
+    );
+    let bbi = (1..=720)
+        .map(|d| (per_degree(r, f64::from(d)), d))
+        .fold((0.0, 0), |m, v| if v.0 > m.0 { v } else { m });
     t.compare("7.3, events", "highest blow-by, ml/min per deg", 94.5, bbi.0, Within::Rounded(0.01, 0.05));
     t.compare("7.3, events", "its angle, deg", 113.0, f64::from(bbi.1), Within::Absolute(1.0));
     for (i, floor, mean, max) in [(1, 0.1, 4.11, 9.86), (2, 0.1, 4.36, 13.15), (3, 0.1, 0.625, 1.13)] {
-        t.compare("7.3, films", &format!("h{i}, least, um"), floor, value(r, &format!("ring{i}.h_min")), Within::Absolute(1e-6));
-        t.compare("7.3, films", &format!("h{i}, mean, um"), mean, value(r, &format!("ring{i}.h_mean")), Within::Rounded(0.02, 0.005));
-        t.compare("7.3, films", &format!("h{i}, greatest, um"), max, value(r, &format!("ring{i}.h_max")), Within::Rounded(0.02, 0.005));
+        t.compare(
+            "7.3, films",
+            &format!("h{i}, least, um"),
+            floor,
+            value(r, &format!("ring{i}.h_min")),
+            Within::Absolute(1e-6),
+        );
+        t.compare(
+            "7.3, films",
+            &format!("h{i}, mean, um"),
+            mean,
+            value(r, &format!("ring{i}.h_mean")),
+            Within::Rounded(0.02, 0.005),
+        );
+        t.compare(
+            "7.3, films",
+            &format!("h{i}, greatest, um"),
+            max,
+            value(r, &format!("ring{i}.h_max")),
+            Within::Rounded(0.02, 0.005),
+        );
     }
-    t.compare("7.3, films", "h1, angle of the greatest, deg", 625.0, peak(r, "ring1.h_min", 0.0, 720.0).1, Within::Absolute(1.0));
+    t.compare(
+        "7.3, films",
+        "h1, angle of the greatest, deg",
+        625.0,
+        peak(r, "ring1.h_min", 0.0, 720.0).1,
+        Within::Absolute(1.0),
+    );
     for (i, power) in [(1, 131.0), (2, 177.0), (3, 163.0)] {
-        t.compare("7.3", &format!("ring {i}, friction power, W"), power, value(r, &format!("ring{i}.friction_power")), Within::Rounded(0.02, 0.5));
+        t.compare(
+            "7.3",
+            &format!("ring {i}, friction power, W"),
+            power,
+            value(r, &format!("ring{i}.friction_power")),
+            Within::Rounded(0.02, 0.5),
+        );
     }
-    t.compare("7.3", "friction mean effective pressure, bar", 0.18, value(r, "fmep"), Within::Rounded(0.02, 0.005));
+    t.compare(
+        "7.3",
+        "friction mean effective pressure, bar",
+        0.18,
+        value(r, "fmep"),
+        Within::Rounded(0.02, 0.005),
+    );
     let span = |name: &str| {
         let v = column(r, name);
         (v.iter().copied().fold(f64::INFINITY, f64::min), v.iter().copied().fold(f64::NEG_INFINITY, f64::max))
     };
-    t.compare("7.3", "ring 1, gas force, least, kN", -10.8, span("ring1.force_gas").0 / 1e3, Within::Rounded(0.005, 0.05));
+    t.compare(
+        "7.3",
+        "ring 1, gas force, least, kN",
+        -10.8,
+        span("ring1.force_gas").0 / 1e3,
+        Within::Rounded(0.005, 0.05),
+    );
     let inertia = span("ring1.force_inertia");
     t.compare("7.3", "ring 1, inertia force, least, N", -94.0, inertia.0, Within::Rounded(0.0, 0.5));
     t.compare("7.3", "ring 1, inertia force, greatest, N", 171.0, inertia.1, Within::Rounded(0.0, 0.5));
     // Section 7.2: the cylinder pressure itself.
-    for (theta, p) in [(371.0, 128.315), (360.0, 107.744), (370.0, 127.996), (380.0, 116.260), (420.0, 30.034), (450.0, 14.680), (485.0, 9.347), (540.0, 2.372), (300.0, 9.326), (240.0, 2.929)] {
-        t.compare("7.2", &format!("cylinder at {theta} deg, bar"), p, at(r, "cylinder.p", theta) / 1e5, Within::Rounded(0.0, 5e-4));
+    for (theta, p) in [
+        (371.0, 128.315),
+        (360.0, 107.744),
+        (370.0, 127.996),
+        (380.0, 116.260),
+        (420.0, 30.034),
+        (450.0, 14.680),
+        (485.0, 9.347),
+        (540.0, 2.372),
+        (300.0, 9.326),
+        (240.0, 2.929),
+    ] {
+        t.compare(
+            "7.2",
+            &format!("cylinder at {theta} deg, bar"),
+            p,
+            at(r, "cylinder.p", theta) / 1e5,
+            Within::Rounded(0.0, 5e-4),
+        );
     }
     let p = column(r, "cylinder.p");
     let y = column(r, "piston.y");
     let work: f64 = (1..p.len()).map(|k| 0.5 * (p[k] + p[k - 1]) * (y[k - 1] - y[k])).sum();
-    t.compare("7.2", "indicated mean effective pressure, bar", 18.98, work / 0.14 / 1e5, Within::Rounded(0.0, 0.005));
+    t.compare(
+        "7.2",
+        "indicated mean effective pressure, bar",
+        18.98,
+        work / 0.14 / 1e5,
+        Within::Rounded(0.0, 0.005),
+    );
 }
 
 /// What, the settings that make it so, blow-by \[l/min per cylinder\] and, where printed, the highest pressure of land 2 \[bar\].

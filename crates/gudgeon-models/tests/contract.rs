@@ -300,6 +300,30 @@ fn bibliography(text: &str) -> BTreeMap<&str, &str> {
 }
 
 #[test]
+fn a_parameter_without_description_is_noticed() {
+    #[derive(schemars::JsonSchema)]
+    #[expect(dead_code, reason = "only its schema is looked at")]
+    struct Sloppy {
+        silent: gudgeon_core::quantity::PosLength,
+        /// Described.
+        told: gudgeon_core::quantity::PosLength,
+        inner: Inner,
+    }
+    /// A table in the table.
+    #[derive(schemars::JsonSchema)]
+    #[expect(dead_code, reason = "only its schema is looked at")]
+    struct Inner {
+        mute: f64,
+    }
+    let mut g = schemars::SchemaGenerator::default();
+    let schema = <Sloppy as schemars::JsonSchema>::json_schema(&mut g).to_value();
+    let mut wrong = Vec::new();
+    described(&schema, &g.take_definitions(true), "", &mut wrong);
+    let found: Vec<_> = wrong.iter().filter_map(|w| w.split('`').nth(1)).collect();
+    assert_eq!(found, ["silent", "inner", "Inner.mute"], "{wrong:?}");
+}
+
+#[test]
 fn every_reference_stands_in_the_bibliography() {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../REFERENCES.bib");
     let text = std::fs::read_to_string(&file).expect("REFERENCES.bib stands at the root of the repository");

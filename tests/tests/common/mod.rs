@@ -118,15 +118,14 @@ impl Table {
     /// Sets `ours` beside `printed`. Returns whether it lies within the tolerance (always for [`Within::Shown`]).
     pub fn compare(&mut self, source: &str, quantity: &str, printed: f64, ours: f64, within: Within) -> bool {
         let d = ours - printed;
-        let deviation = if printed == 0.0 {
-            format!("{d:+.2e}")
-        } else {
-            format!("{:+.2} %", 100.0 * d / printed.abs())
-        };
+        let deviation =
+            if printed == 0.0 { format!("{d:+.2e}") } else { format!("{:+.2} %", 100.0 * d / printed.abs()) };
         let (ok, mark) = match within {
             Within::Relative(t) => (d.abs() <= t * printed.abs(), format!("{} %", 100.0 * t)),
             Within::Absolute(t) => (d.abs() <= t, format!("+-{t}")),
-            Within::Rounded(t, half) => (d.abs() <= t * printed.abs() + half, format!("{} % + {}", 100.0 * t, number(half))),
+            Within::Rounded(t, half) => {
+                (d.abs() <= t * printed.abs() + half, format!("{} % + {}", 100.0 * t, number(half)))
+            }
             Within::Shown => (true, "-".into()),
         };
         let ok = ok && ours.is_finite();
@@ -139,7 +138,11 @@ impl Table {
             self.shown_only += 1;
         }
         if !ok {
-            self.failures.push(format!("{source}, {quantity}: {} printed, {} ours", number(printed), number(ours)));
+            self.failures.push(format!(
+                "{source}, {quantity}: {} printed, {} ours",
+                number(printed),
+                number(ours)
+            ));
         }
         self.rows.push([source.into(), quantity.into(), number(printed), number(ours), deviation, verdict]);
         ok
@@ -148,7 +151,14 @@ impl Table {
     /// A statement that is true or not.
     pub fn claim(&mut self, source: &str, claim: &str, ours: &str, ok: bool) -> bool {
         let verdict = if ok { "ok" } else { "FAIL" };
-        self.rows.push([source.into(), claim.into(), "yes".into(), ours.into(), String::new(), verdict.into()]);
+        self.rows.push([
+            source.into(),
+            claim.into(),
+            "yes".into(),
+            ours.into(),
+            String::new(),
+            verdict.into(),
+        ]);
         if !ok {
             self.failures.push(format!("{source}, {claim}: {ours}"));
         }
@@ -159,7 +169,14 @@ impl Table {
     pub fn note(&mut self, source: &str, claim: &str, ours: &str, ok: bool) {
         let verdict = if ok { "ok, not asserted" } else { "FAIL, not asserted" };
         self.shown_only += 1;
-        self.rows.push([source.into(), claim.into(), "yes".into(), ours.into(), String::new(), verdict.into()]);
+        self.rows.push([
+            source.into(),
+            claim.into(),
+            "yes".into(),
+            ours.into(),
+            String::new(),
+            verdict.into(),
+        ]);
     }
 
     /// The table as Markdown.

@@ -98,10 +98,7 @@ pub fn run(
                     let old = *h;
                     *h = bisect(pack, i, old, dt)?;
                     pack.set_place(i, *h, None);
-                    pack.at.rings[i].film_known = false;
-                    pack.at.rings[i].hdot = (*h - old) / dt;
-                    pack.at.rings[i].load = pack.radial_load(i);
-                    pack.friction(i)?;
+                    pack.friction_at(i, (*h - old) / dt)?;
                     totals.friction_work[i] += pack.at.rings[i].power * dt;
                 }
             }

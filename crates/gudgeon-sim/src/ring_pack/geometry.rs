@@ -114,7 +114,10 @@ fn land_radius(l: &Land, bore_radius: f64) -> Result<f64, BuildError> {
         let field = if l.diameter.is_some() { "diameter" } else { "clearance" };
         return Err(BuildError::at(
             field,
-            format!("the land leaves a radial clearance of {:.3} mm, more than a tenth of the bore's radius", 1e3 * (bore_radius - r)),
+            format!(
+                "the land leaves a radial clearance of {:.3} mm, more than a tenth of the bore's radius",
+                1e3 * (bore_radius - r)
+            ),
         )
         .help("check the units of the bore and of the land: a bare number is in metres"));
     }

@@ -33,6 +33,9 @@ const LOAD_FLOOR: f64 = 1e-3;
 /// balance leaves out. Normal squeeze velocities are a thousand times smaller and not affected (relative 1e-7).
 const RADIAL_SPEED: f64 = 3.0;
 
+/// Radial gap left behind a ring that touches the groove root \[m\].
+const BOTTOMED: f64 = 1e-6;
+
 /// Work counters.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Counters {
@@ -227,7 +230,8 @@ impl Pack {
     /// The geometry that follows from film thickness and axial position.
     pub fn place(&self, i: usize, liner_radius: f64, h: f64, s: Option<(f64, f64)>) -> RingPlace {
         let g = &self.geo.rings[i];
-        let behind = g.h_max(liner_radius) - h;
+        // A ring that has bottomed in its groove keeps a sliver of gas behind it.
+        let behind = (g.h_max(liner_radius) - h).max(BOTTOMED);
         let slope = g.slope_upper + g.slope_lower;
         let clearance = (g.clearance_inner + slope * behind).max(0.0);
         let r_inner = g.root_radius + behind;
@@ -668,6 +672,18 @@ impl Pack {
         let p = vec![pressure; self.n_rings() + 1];
         let inp = GasIn { p_cylinder, p_crankcase: self.p_crankcase, rings: &self.at.places };
         self.gas.initial(&inp, &p, &mut self.masses);
+    }
+
+    /// Friction of ring `i`, found at `hdot` by a solver of its own.
+    ///
+    /// # Errors
+    /// What the film refuses.
+    pub fn friction_at(&mut self, i: usize, hdot: f64) -> Result<(), EvalError> {
+        let load = self.radial_load(i);
+        let contact = self.rings[i].contact.load(self.at.places[i].h);
+        let r = &mut self.at.rings[i];
+        (r.hdot, r.film_known, r.load, r.contact) = (hdot, false, load, contact);
+        self.friction(i)
     }
 
     /// Pressures for the masses as they are, shared with the rings.

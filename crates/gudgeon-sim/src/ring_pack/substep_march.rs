@@ -108,10 +108,7 @@ pub fn run(
                         let old = r.h;
                         r.h = bisect(pack, i, old, dt, (r.s, r.v))?;
                         pack.set_place(i, r.h, moving(pack, i).then_some((r.s, r.v)));
-                        pack.at.rings[i].film_known = false;
-                        pack.at.rings[i].hdot = (r.h - old) / dt;
-                        pack.at.rings[i].load = pack.radial_load(i);
-                        pack.friction(i)?;
+                        pack.friction_at(i, (r.h - old) / dt)?;
                         totals.friction_work[i] += pack.at.rings[i].power * dt;
                     }
                 }
