@@ -852,7 +852,13 @@ impl<S: Shape> Film<S> {
         // One test for all: what is not finite leaves no finite sum.
         let sum = inp.h + inp.u + inp.p_bottom + inp.p_top + inp.p_cav + inp.mu + v;
         if !sum.is_finite() || inp.mu <= 0.0 {
-            return Err(EvalError::fatal(MODEL, format!("not a film: {inp:?}, squeeze {v}")));
+            return Err(EvalError::fatal(
+                MODEL,
+                format!(
+                    "these are no film: thickness {} m, sliding {} m/s, squeeze or load {v}, edges {} and {} Pa, viscosity {} Pa s",
+                    inp.h, inp.u, inp.p_bottom, inp.p_top, inp.mu
+                ),
+            ));
         }
         let turned = inp.u < 0.0;
         let side = if turned { &mut self.down } else { &mut self.up };

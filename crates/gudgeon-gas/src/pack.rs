@@ -266,16 +266,8 @@ impl<M: Passages> Pack<M> {
                         ),
                     ));
                 }
-                if radial - h <= 0.0 {
-                    return Err(EvalError::recoverable(
-                        M::NAME,
-                        format!(
-                            "the film of ring {} ({h:e} m) is thicker than the land clearance ({radial:e} m)",
-                            i + 1
-                        ),
-                    ));
-                }
-                running * (radial - h)
+                // A ring that has retreated behind its land leaves no gap of this kind.
+                running * (radial - h).max(0.0)
             }
         };
         Ok(Openings {

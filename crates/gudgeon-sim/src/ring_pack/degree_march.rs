@@ -7,7 +7,7 @@
 
 use gudgeon_core::EvalError;
 
-use super::pack::Pack;
+use super::pack::{Pack, THINNEST};
 use super::record::{Record, Totals};
 
 /// Settings; see [`crate::case::Solver`].
@@ -153,7 +153,7 @@ fn instant(pack: &mut Pack, theta: f64, h: &[f64]) {
 }
 
 fn bisect(pack: &mut Pack, i: usize, old: f64, dt: f64) -> Result<f64, EvalError> {
-    let floor = pack.rings[i].contact.floor.unwrap_or(1e-9);
+    let floor = pack.rings[i].contact.floor.unwrap_or(THINNEST);
     let needed = pack.radial_load(i);
     let excess = |p: &mut Pack, h: f64| -> Result<f64, EvalError> {
         p.set_place(i, h, None);

@@ -33,6 +33,10 @@ const LOAD_FLOOR: f64 = 1e-3;
 /// balance leaves out. Normal squeeze velocities are a thousand times smaller and not affected (relative 1e-7).
 const RADIAL_SPEED: f64 = 3.0;
 
+/// Film thickness below which nothing goes when there is no contact model \[m\]: a molecule or two.
+pub const THINNEST: f64 = 1e-9;
+/// Film thickness beyond which a trial state is refused \[m\].
+const THICKEST: f64 = 0.1;
 /// Radial gap left behind a ring that touches the groove root \[m\].
 const BOTTOMED: f64 = 1e-6;
 
@@ -415,11 +419,15 @@ impl Pack {
         let mut hdot = found;
         hdot /= (1.0 + (hdot / RADIAL_SPEED) * (hdot / RADIAL_SPEED)).sqrt();
         let g = &self.geo.rings[i];
-        let h_max = g.h_max(self.at.places[i].liner_radius);
         if hdot > 0.0 {
-            hdot *= ((h_max - h) / (LIMIT_BAND * h_max)).clamp(0.0, 1.0);
-        } else if let Some(f) = self.rings[i].contact.floor {
-            hdot *= ((h - f) / (self.rings[i].contact.band * f)).clamp(0.0, 1.0);
+            // A ring can retreat until it touches the groove root or is flush with its land.
+            let liner = self.at.places[i].liner_radius;
+            let furthest = g.h_max(liner).min(liner - g.piston_radius_above);
+            hdot *= ((furthest - h) / (LIMIT_BAND * furthest)).clamp(0.0, 1.0);
+        } else {
+            let line = &self.rings[i].contact;
+            let (floor, band) = line.floor.map_or((THINNEST, 1.0), |f| (f, line.band));
+            hdot *= ((h - floor) / (band * floor)).clamp(0.0, 1.0);
         }
         // Off its limits a ring moves as its film allows, and the film found with the velocity is the film of the instant.
         let known = (hdot - found).abs() <= 1e-6 * found.abs();
@@ -559,6 +567,14 @@ impl Pack {
         self.counters.instants += 1;
         if let Some(k) = y.iter().position(|v| !v.is_finite()) {
             return Err(EvalError::recoverable("ring_pack", format!("state {k} is not a number")));
+        }
+        if let Some(i) =
+            self.layout.film.iter().position(|k| k.is_some_and(|k| !(-60.0..THICKEST.ln()).contains(&y[k])))
+        {
+            return Err(EvalError::recoverable(
+                "ring_pack",
+                format!("the film of ring {} left the range of films", i + 1),
+            ));
         }
         self.state.copy_from_slice(y);
         self.set_places(theta, y);

@@ -13,7 +13,7 @@ use gudgeon_core::kinds::Motion;
 
 use crate::case::Clamp;
 
-use super::pack::Pack;
+use super::pack::{Pack, THINNEST};
 use super::record::{Record, Totals};
 
 /// Settings; see [`crate::case::Solver`].
@@ -147,7 +147,7 @@ fn moving(pack: &Pack, i: usize) -> bool {
 
 fn bisect(pack: &mut Pack, i: usize, old: f64, dt: f64, s: (f64, f64)) -> Result<f64, EvalError> {
     let moving = moving(pack, i);
-    let floor = pack.rings[i].contact.floor.unwrap_or(1e-9);
+    let floor = pack.rings[i].contact.floor.unwrap_or(THINNEST);
     let mut high = pack.geo.rings[i].h_max(pack.at.places[i].liner_radius);
     let mut low = floor;
     let mut h = old.clamp(low, high);

@@ -1,0 +1,23 @@
+//! The cases that ship with Gudgeon.
+
+mod common;
+
+use common::*;
+use gudgeon_sim::{check, explain};
+
+#[test]
+fn every_case_is_possible_and_explains_itself() {
+    let folder = case_file("x").parent().expect("a folder").to_owned();
+    let mut seen = 0;
+    let mut files: Vec<_> = std::fs::read_dir(folder).expect("the folder").map(|e| e.expect("an entry").path()).collect();
+    files.sort();
+    for path in files.iter().filter(|p| p.extension().is_some_and(|e| e == "toml")) {
+        let checked = check(path, &[]).unwrap_or_else(|r| panic!("{}: {r}", path.display()));
+        assert!(!checked.case().title.is_empty() && !checked.case().source.is_empty(), "{}", path.display());
+        assert!(!checked.case().assumptions.is_empty(), "{}: nothing is assumed?", path.display());
+        let e = explain(&checked).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        assert!(!e.models.is_empty() && !e.states.is_empty() && !e.to_text().is_empty());
+        seen += 1;
+    }
+    assert!(seen >= 6, "only {seen} cases");
+}
