@@ -1,1 +1,1 @@
-//! Criterion benches.
+//! Criterion benches: see `benches/benches/`.

@@ -8,7 +8,7 @@ use std::io::{self, IsTerminal, Write};
 use std::time::Duration;
 
 use gudgeon_sim::Progress;
-use gudgeon_sim::load::{Origin, Report};
+use gudgeon_sim::load::Report;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::failure::Failure;

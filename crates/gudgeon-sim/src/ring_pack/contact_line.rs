@@ -5,6 +5,7 @@
 
 use gudgeon_core::geometry::FaceProfile;
 use gudgeon_core::kinds::Contact;
+use gudgeon_numerics::quadrature::GaussLegendre;
 
 /// Line load against film thickness.
 #[derive(Debug, Clone, Default)]
@@ -48,14 +49,7 @@ impl ContactLine {
         // Where the face is within reach of the liner is all that is integrated, panel by panel with Gauss's rule.
         let panels = 24;
         let (mut xs, mut ws) = (Vec::new(), Vec::new());
-        let nodes = [
-            (-0.932_469_514_203_152_1, 0.171_324_492_379_170_36),
-            (-0.661_209_386_466_264_5, 0.360_761_573_048_138_6),
-            (-0.238_619_186_083_196_9, 0.467_913_934_572_691_05),
-            (0.238_619_186_083_196_9, 0.467_913_934_572_691_05),
-            (0.661_209_386_466_264_5, 0.360_761_573_048_138_6),
-            (0.932_469_514_203_152_1, 0.171_324_492_379_170_36),
-        ];
+        let rule = GaussLegendre::new(6);
         let length = face.length();
         let reach: Vec<f64> = (0..=4000)
             .map(|k| length * f64::from(k) / 4000.0)
@@ -66,7 +60,7 @@ impl ContactLine {
         let width = (b - a) / f64::from(panels);
         for k in 0..panels {
             let mid = a + (f64::from(k) + 0.5) * width;
-            for (x, w) in nodes {
+            for (x, w) in rule.nodes().iter().zip(rule.weights()) {
                 xs.push(mid + 0.5 * width * x);
                 ws.push(0.5 * width * w);
             }
