@@ -60,9 +60,10 @@ struct GasNet {
 
 impl GasNet {
     fn new() -> Self {
-        let law = Orifice { discharge: quantity(1.0), law: OrificeFormula::Isentropic, laminar: quantity(1e-3) }
-            .build(1.33, R)
-            .expect("the orifice law builds");
+        let law =
+            Orifice { discharge: quantity(1.0), law: OrificeFormula::Isentropic, laminar: quantity(1e-3) }
+                .build(1.33, R)
+                .expect("the orifice law builds");
         let ends = LINKS.map(|l| l.0);
         let mut net = Network::new(law, R, &[TEMPERATURE; N + 2], N, &ends).expect("the network builds");
         for (l, (_, area)) in LINKS.into_iter().enumerate() {
@@ -194,11 +195,7 @@ fn table() -> Result<Vec<Row>, String> {
         rows.push(measure("gudgeon Rodas5P", &mut rodas(), rtol)?);
     }
     for rtol in TOLERANCES {
-        rows.push(measure(
-            "gudgeon Radau5",
-            &mut Radau5::new(N, 2, Some(GasNet::groups())),
-            rtol,
-        )?);
+        rows.push(measure("gudgeon Radau5", &mut Radau5::new(N, 2, Some(GasNet::groups())), rtol)?);
     }
     Ok(rows)
 }

@@ -276,7 +276,8 @@ impl Record {
             .into_iter()
             .filter(|r| pack.plan.wanted.contains(&r.name))
             .map(|r| {
-                let v = value(&r.name);
+                // Adding zero turns -0 into 0.
+                let v = value(&r.name) + 0.0;
                 (r.name, Value { value: v, unit: r.unit.into(), what: r.what })
             })
             .collect()

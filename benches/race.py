@@ -1,0 +1,473 @@
+"""The five-volume gas network of `benches/gas_network.rs` with other people's integrators, in one run with Gudgeon's.
+
+How to run (in a directory outside the source tree):
+
+    python3 -m venv venv
+    venv/bin/pip install numpy scipy numba scikit-sundae
+    venv/bin/python <source tree>/benches/race.py
+
+Needs cargo. A code whose package is missing is skipped with a message. Options: `--rounds N` (default 15), `--binary PATH` (a
+`gas_network` bench that is built already; otherwise `cargo bench --no-run` builds one).
+
+Rules
+- One problem: the same nine links, volumes, temperatures, pressure pulse, start state and cycle, from the periodic start state. The
+  flow law is evaluated by the same polynomial of degree 9 in Chebyshev nodes. The right-hand side is compiled by numba with
+  `error_model="numpy"`; Gudgeon's is its library's `Network`, errors checked.
+- One accuracy measure: the relative error of the blow-by after the cycle against a value on which three codes at relative tolerances of 1e-11 and
+  1e-12 agree within 1e-10.
+- The same tolerances: relative `rtol`, absolute `rtol` times the start mass for the volumes. Gudgeon integrates the blow-by as a quadrature outside
+  the error control; the others carry it as a sixth state with an absolute tolerance of `rtol` times 1e-6 kg, for which they are
+  the more accurate. Every code chooses its first step; no code is told of the largest step.
+- Jacobians: Gudgeon differences in groups of columns that share no row. Codes marked `J` have the exact Jacobian, compiled too; the
+  others difference.
+- `compiled` codes call the compiled functions without Python in between: CVODE through its C interface. The others call back
+  into Python for every evaluation, which is most of their time: they show what the package costs as it is usually used, not
+  what the method costs.
+- Timing: setup of a solver counts where its interface offers no reset (all others than Gudgeon set up anew for every cycle; for CVODE through C the
+  memory is made once and reinitialised). One round runs every code at every tolerance once, so that all see the same load of the machine; Gudgeon's
+  figure of a round is the median of 50 cycles in a process of its own, CVODE's through C the median of 50, the others' the median of 3.
+  The table gives the median over the rounds.
+- Compilation and the first call of each function are outside the timing.
+"""
+
+import argparse
+import ctypes
+import glob
+import json
+import math
+import os
+import platform
+import statistics
+import subprocess
+import sys
+import time
+
+import numpy as np
+
+try:
+    import numba
+    from numba import carray, cfunc, types
+
+    def compiled(f):
+        return numba.njit(error_model="numpy")(f)
+except ImportError:
+    numba = None
+    print("numba is missing: the right-hand side is plain Python, times of the other codes say little")
+
+    def compiled(f):
+        return f
+
+
+try:
+    import scipy
+    from scipy.integrate import solve_ivp
+except ImportError:
+    scipy = None
+    print("scipy is missing: LSODA, BDF and Radau are skipped")
+
+try:
+    import sksundae
+except ImportError:
+    sksundae = None
+    print("scikit-sundae is missing: CVODE is skipped")
+
+BLOW_BY = 6.2493570768654555e-6
+TOLERANCES = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8]
+N = 5
+CH, CC = 5, 6
+FROM = np.array([CH, CH, 0, 1, 1, 2, 3, 3, 4])
+TO = np.array([0, 1, 1, 2, 3, 3, 4, CC, CC])
+AREA = np.array([3e-7, 1.2e-7, 1.5e-7, 3e-7, 1.6e-7, 1e-7, 4e-7, 1e-6, 2e-6])
+VOLUME = np.array([1.2e-7, 6e-7, 1e-7, 5e-7, 2e-7])
+START = np.array(
+    [100018.5728228574880631641, 100049.1854464881180319935, 100046.3416580167831853032,
+     100008.2727634799521183595, 100001.4000864467234350741]
+)  # fmt: skip
+RT = 287.0 * 450.0
+GAMMA = 1.33
+EPS = 1e-3
+OMEGA = 18000.0  # deg/s: 3000 rpm
+CYCLE = 720.0 / OMEGA
+TO_P = RT / VOLUME
+INV_SQRT_RT = 1.0 / math.sqrt(RT)
+U_CRIT = 1.0 - (2.0 / (GAMMA + 1.0)) ** (GAMMA / (GAMMA - 1.0))
+
+
+def _polynomial():
+    """psi(u)/sqrt(u) interpolated in the ten Chebyshev nodes of 0 to U_CRIT; powers of 2 u/U_CRIT - 1."""
+    nodes = np.cos(np.pi * (np.arange(10) + 0.5) / 10)
+    u = 0.5 * U_CRIT * (nodes + 1.0)
+    k = (GAMMA - 1.0) / GAMMA
+    ln_r = np.log1p(-u)
+    psi = np.sqrt(2.0 / k * np.exp(2.0 / GAMMA * ln_r) * -np.expm1(k * ln_r))
+    chebyshev = np.polynomial.chebyshev.chebfit(nodes, psi / np.sqrt(u), 9)
+    return np.polynomial.chebyshev.cheb2poly(chebyshev)
+
+
+C = tuple(float(c) for c in _polynomial())
+C0, C1, C2, C3, C4, C5, C6, C7, C8, C9 = C
+
+
+@compiled
+def chamber(t):
+    deg = t * OMEGA
+    a, b = (deg - 360.0) / 55.0, (deg - 370.0) / 18.0
+    return 1e5 * (1.0 + 11.0 * math.exp(-a * a)) + 68e5 * math.exp(-0.5 * b * b)
+
+
+@compiled
+def poly(x):
+    x2 = x * x
+    x4 = x2 * x2
+    lo = (C0 + C1 * x) + (C2 + C3 * x) * x2
+    mid = (C4 + C5 * x) + (C6 + C7 * x) * x2
+    return lo + mid * x4 + (C8 + C9 * x) * (x4 * x4)
+
+
+@compiled
+def poly_slope(x):
+    s = 9.0 * C9
+    for c in ((8.0 * C8), (7.0 * C7), (6.0 * C6), (5.0 * C5), (4.0 * C4), (3.0 * C3), (2.0 * C2), C1):
+        s = s * x + c
+    return s
+
+
+@compiled
+def nozzle(p, dp):
+    """p psi sqrt(u/(u + eps)) for the upstream pressure p and the difference dp > 0."""
+    u, laminar = dp / p, dp / (dp + EPS * p)
+    uc = min(u, U_CRIT)
+    return p * math.sqrt(uc * laminar) * poly(2.0 / U_CRIT * uc - 1.0)
+
+
+@compiled
+def nozzle_slope(p, dp):
+    """Its derivatives with respect to the upstream and the downstream pressure."""
+    u = dp / p
+    uc = min(u, U_CRIT)
+    x = 2.0 / U_CRIT * uc - 1.0
+    laminar = u / (u + EPS)
+    root = math.sqrt(uc * laminar)
+    q = poly(x)
+    # d ln(root)/du: half of the logarithmic slopes of uc and of the laminar factor.
+    slope = root * q * 0.5 * EPS / (u * (u + EPS))
+    if u < U_CRIT:
+        slope += root * (0.5 * q / uc + poly_slope(x) * 2.0 / U_CRIT)
+    # du/dp_up = (1 - u)/p, du/dp_down = -1/p.
+    return root * q + (1.0 - u) * slope, -slope
+
+
+@compiled
+def rates(t, y, f):
+    p = (y[0] * TO_P[0], y[1] * TO_P[1], y[2] * TO_P[2], y[3] * TO_P[3], y[4] * TO_P[4], chamber(t), 1e5)
+    for i in range(6):
+        f[i] = 0.0
+    for k in range(9):
+        a, b = FROM[k], TO[k]
+        dp = p[a] - p[b]
+        flow = 0.0
+        if dp > 0.0:
+            flow = AREA[k] * INV_SQRT_RT * nozzle(p[a], dp)
+        elif dp < 0.0:
+            flow = -AREA[k] * INV_SQRT_RT * nozzle(p[b], -dp)
+        if a < 5:
+            f[a] -= flow
+        if b < 5:
+            f[b] += flow
+        elif b == 6:
+            f[5] += flow
+
+
+@compiled
+def jacobian(t, y, jac):
+    p = (y[0] * TO_P[0], y[1] * TO_P[1], y[2] * TO_P[2], y[3] * TO_P[3], y[4] * TO_P[4], chamber(t), 1e5)
+    for i in range(6):
+        for j in range(6):
+            jac[i, j] = 0.0
+    for k in range(9):
+        a, b = FROM[k], TO[k]
+        dp = p[a] - p[b]
+        # Slope of the laminar branch where the pressures are equal.
+        by_a = math.sqrt(1.0 / EPS) * poly(-1.0)
+        by_b = -by_a
+        if dp > 0.0:
+            by_a, by_b = nozzle_slope(p[a], dp)
+        elif dp < 0.0:
+            up, down = nozzle_slope(p[b], -dp)
+            by_a, by_b = -down, -up
+        scale = AREA[k] * INV_SQRT_RT
+        into = b if b < 5 else 5
+        if a < 5:
+            s = scale * by_a * TO_P[a]
+            jac[a, a] -= s
+            jac[into, a] += s
+        if b < 5:
+            s = scale * by_b * TO_P[b]
+            jac[into, b] += s
+            if a < 5:
+                jac[a, b] -= s
+
+
+Y0 = np.append(START / TO_P, 0.0)
+
+
+def absolute(rtol):
+    return rtol * np.append(Y0[:N], 1e-6)
+
+
+# The codes: each gives a function of the tolerance that makes a function of nothing, which runs one cycle and returns
+# (blow-by, steps, evaluations of the right-hand side).
+
+
+def through_scipy(method, exact):
+    def make(rtol):
+        calls = [0]
+
+        def fun(t, y):
+            calls[0] += 1
+            f = np.empty(6)
+            rates(t, y, f)
+            return f
+
+        def jac(t, y):
+            j = np.empty((6, 6))
+            jacobian(t, y, j)
+            return j
+
+        more = {"jac": jac} if exact else {}
+
+        def once():
+            calls[0] = 0
+            s = solve_ivp(fun, (0.0, CYCLE), Y0, method=method, rtol=rtol, atol=absolute(rtol), **more)
+            if not s.success:
+                raise RuntimeError(s.message)
+            return s.y[5, -1], len(s.t) - 1, calls[0]
+
+        return once
+
+    return make
+
+
+def through_sksundae(rtol):
+    calls = [0]
+
+    def fun(t, y, f):
+        calls[0] += 1
+        rates(t, y, f)
+
+    def jac(t, y, f, j):
+        jacobian(t, y, j)
+
+    span = np.array([0.0, CYCLE])
+
+    def once():
+        calls[0] = 0
+        solver = sksundae.cvode.CVODE(
+            fun, rtol=rtol, atol=absolute(rtol), jacfn=jac, linsolver="dense", max_num_steps=100000
+        )
+        s = solver.solve(span, Y0)
+        if not s.success:
+            raise RuntimeError(s.message)
+        return s.y[-1, 5], len(s.t) - 1, calls[0]
+
+    return once
+
+
+def through_c():
+    """CVODE with its dense solver through the C interface, from the libraries in the scikit-sundae wheel."""
+    folder = os.path.join(os.path.dirname(os.path.dirname(sksundae.__file__)), "scikit_sundae.libs")
+    lib = {}
+    for name in ("core", "nvecserial", "sunmatrixdense", "sunlinsoldense", "cvode"):
+        found = glob.glob(os.path.join(folder, f"libsundials_{name}-*"))
+        if not found:
+            raise OSError(f"the wheel holds no libsundials_{name}")
+        lib[name] = ctypes.CDLL(found[0], ctypes.RTLD_GLOBAL)
+    ptr, real, integer, long = ctypes.c_void_p, ctypes.c_double, ctypes.c_int, ctypes.c_long
+
+    def declare(library, name, result, *args):
+        f = getattr(lib[library], name)
+        f.restype, f.argtypes = result, list(args)
+        return f
+
+    new_context = declare("core", "SUNContext_Create", integer, integer, ptr)
+    # Sizes are 32 or 64 bits wide depending on the build; small positive numbers pass in registers either way.
+    new_vector = declare("nvecserial", "N_VNew_Serial", ptr, ctypes.c_int64, ptr)
+    vector_data = declare("nvecserial", "N_VGetArrayPointer_Serial", ctypes.POINTER(real), ptr)
+    new_matrix = declare("sunmatrixdense", "SUNDenseMatrix", ptr, ctypes.c_int64, ctypes.c_int64, ptr)
+    matrix_data = declare("sunmatrixdense", "SUNDenseMatrix_Data", ctypes.POINTER(real), ptr)
+    new_solver = declare("sunlinsoldense", "SUNLinSol_Dense", ptr, ptr, ptr, ptr)
+    create = declare("cvode", "CVodeCreate", ptr, integer, ptr)
+    init = declare("cvode", "CVodeInit", integer, ptr, ptr, real, ptr)
+    reinit = declare("cvode", "CVodeReInit", integer, ptr, real, ptr)
+    tolerances = declare("cvode", "CVodeSVtolerances", integer, ptr, real, ptr)
+    set_solver = declare("cvode", "CVodeSetLinearSolver", integer, ptr, ptr, ptr)
+    set_jacobian = declare("cvode", "CVodeSetJacFn", integer, ptr, ptr)
+    set_max_steps = declare("cvode", "CVodeSetMaxNumSteps", integer, ptr, long)
+    set_stop = declare("cvode", "CVodeSetStopTime", integer, ptr, real)
+    advance = declare("cvode", "CVode", integer, ptr, real, ptr, ptr, integer)
+    get_steps = declare("cvode", "CVodeGetNumSteps", integer, ptr, ptr)
+    get_rhs = declare("cvode", "CVodeGetNumRhsEvals", integer, ptr, ptr)
+
+    @cfunc(types.int32(types.double, types.voidptr, types.voidptr, types.voidptr), error_model="numpy")
+    def rhs(t, y, f, _user):
+        rates(t, carray(vector_data(y), 6), carray(vector_data(f), 6))
+        return 0
+
+    @cfunc(
+        types.int32(types.double, *[types.voidptr] * 7),
+        error_model="numpy",
+    )
+    def jac(t, y, _f, j, _user, _a, _b, _c):
+        # Stored by columns.
+        jacobian(t, carray(vector_data(y), 6), carray(matrix_data(j), (6, 6)).T)
+        return 0
+
+    def good(flag):
+        if flag < 0:
+            raise RuntimeError(f"CVODE answers {flag}")
+
+    context = ptr()
+    good(new_context(0, ctypes.byref(context)))
+
+    def array(vector):
+        return np.ctypeslib.as_array(vector_data(vector), (6,))
+
+    def make(rtol):
+        y, weights = new_vector(6, context), new_vector(6, context)
+        state = array(y)
+        state[:] = Y0
+        array(weights)[:] = absolute(rtol)
+        memory = create(2, context)  # 2: BDF
+        good(init(memory, ctypes.cast(rhs.address, ptr), 0.0, y))
+        good(tolerances(memory, rtol, weights))
+        matrix = new_matrix(6, 6, context)
+        good(set_solver(memory, new_solver(y, matrix, context), matrix))
+        good(set_jacobian(memory, ctypes.cast(jac.address, ptr)))
+        good(set_max_steps(memory, 100_000))
+        reached, count = real(), long()
+
+        def number(get):
+            good(get(memory, ctypes.byref(count)))
+            return count.value
+
+        def once():
+            state[:] = Y0
+            good(reinit(memory, 0.0, y))
+            good(set_stop(memory, CYCLE))
+            good(advance(memory, CYCLE, y, ctypes.byref(reached), 1))  # 1: to the given time
+            return state[5], number(get_steps), number(get_rhs)
+
+        return once
+
+    return make
+
+
+def gudgeon_binary(given):
+    if given:
+        return given
+    root = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+    out = subprocess.run(
+        ["cargo", "bench", "-q", "-p", "gudgeon-benches", "--bench", "gas_network", "--no-run",
+         "--message-format=json"],
+        cwd=root, stdout=subprocess.PIPE, check=True, text=True,
+    ).stdout  # fmt: skip
+    for line in out.splitlines():
+        message = json.loads(line)
+        if message.get("executable") and message.get("target", {}).get("name") == "gas_network":
+            return message["executable"]
+    raise RuntimeError("cargo built no bench `gas_network`")
+
+
+def codes():
+    """Name, cycles timed per round, maker."""
+    if scipy is not None:
+        for method in ("LSODA", "BDF", "Radau"):
+            yield f"SciPy {method}", 3, through_scipy(method, False)
+            yield f"SciPy {method} J", 3, through_scipy(method, True)
+    if sksundae is not None:
+        yield "scikit-sundae CVODE J", 3, through_sksundae
+        if numba is not None:
+            try:
+                yield "CVODE J, compiled", 50, through_c()
+            except OSError as e:
+                print(f"CVODE through C is skipped: {e}")
+
+
+def check_jacobian():
+    """The exact Jacobian against central differences, at a state between choked and free flow."""
+    y = np.append(np.array([30e5, 12e5, 9e5, 1.5e5, 1.03e5]) / TO_P, 0.0)
+    exact, up, down = np.empty((6, 6)), np.empty(6), np.empty(6)
+    jacobian(0.0205, y, exact)
+    for j in range(N):
+        d = np.zeros(6)
+        d[j] = 1e-5 * y[j]
+        rates(0.0205, y + d, up)
+        rates(0.0205, y - d, down)
+        # Differences of relative step 1e-5 are right to about 1e-8 of the largest entry of the column.
+        if np.abs((up - down) / (2 * d[j]) - exact[:, j]).max() > 1e-6 * np.abs(exact[:, j]).max():
+            raise AssertionError(f"the exact Jacobian is wrong in column {j}")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--rounds", type=int, default=15)
+    parser.add_argument("--binary", help="a built gas_network bench")
+    args = parser.parse_args()
+    check_jacobian()
+    binary = gudgeon_binary(args.binary)
+
+    def gudgeon():
+        out = subprocess.run([binary, "--json"], stdout=subprocess.PIPE, check=True, text=True).stdout
+        return json.loads(out)
+
+    runners = [(name, repeat, rtol, make(rtol)) for name, repeat, make in codes() for rtol in TOLERANCES]
+    result, seconds = {}, {}
+    for name, _, rtol, once in list(runners):
+        try:
+            result[name, rtol] = once()
+        except RuntimeError as e:
+            print(f"{name} at {rtol:.0e}: {e}")
+    for _ in range(args.rounds):
+        for row in gudgeon():
+            key = row["code"], row["rtol"]
+            result[key] = row["blow_by"], row["steps"], row["rhs"]
+            seconds.setdefault(key, []).append(row["microseconds"])
+        for name, repeat, rtol, once in runners:
+            if (name, rtol) not in result:
+                continue
+            times = []
+            for _ in range(repeat):
+                begin = time.perf_counter()
+                once()
+                times.append((time.perf_counter() - begin) * 1e6)
+            seconds.setdefault((name, rtol), []).append(statistics.median(times))
+    versions = [f"Python {platform.python_version()}", f"numpy {np.__version__}"]
+    versions += [f"{m.__name__} {m.__version__}" for m in (scipy, numba, sksundae) if m is not None]
+    if sksundae is not None:
+        versions.append(f"SUNDIALS {sksundae.SUNDIALS_VERSION}")
+    versions.append(subprocess.run(["rustc", "--version"], stdout=subprocess.PIPE, text=True).stdout.strip())
+    print("; ".join(versions))
+    print(f"{args.rounds} rounds")
+    print(f"{'code':<24}{'rtol':>7}{'steps':>7}{'rhs':>7}{'blow-by error':>15}{'us, median':>12}{'us, least':>11}")
+    table = {}
+    for name, rtol in seconds:
+        blow_by, steps, rhs = result[name, rtol]
+        error, median = abs(blow_by / BLOW_BY - 1.0), statistics.median(seconds[name, rtol])
+        table.setdefault(name, []).append((error, median))
+        print(f"{name:<24}{rtol:>7.0e}{steps:>7}{rhs:>7}{error:>15.2e}{median:>12.1f}{min(seconds[name, rtol]):>11.1f}")
+    print("\nleast median time [us] with a blow-by error of at most ...")
+    print(f"{'code':<24}" + "".join(f"{e:>12.0e}{'ratio':>8}" for e in (1e-3, 1e-4, 1e-5, 1e-6)))
+    base = {}
+    for name, rows in table.items():
+        line = f"{name:<24}"
+        for wanted in (1e-3, 1e-4, 1e-5, 1e-6):
+            reached = [t for error, t in rows if error <= wanted]
+            best = min(reached) if reached else math.nan
+            base.setdefault(wanted, best)
+            line += f"{best:>12.1f}{best / base[wanted]:>8.2f}"
+        print(line)
+    print(f"ratio: time over that of {next(iter(table))}")
+
+
+if __name__ == "__main__":
+    sys.exit(main())
