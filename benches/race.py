@@ -6,7 +6,7 @@ How to run (in a directory outside the source tree):
     venv/bin/pip install numpy scipy numba scikit-sundae
     venv/bin/python <source tree>/benches/race.py
 
-Needs cargo. A code whose package is missing is skipped with a message. Options: `--rounds N` (default 15), `--binary PATH` (a
+Needs cargo. A code whose package is missing is skipped with a message. Options: `--rounds N` (default 5), `--binary PATH` (a
 `gas_network` bench that is built already; otherwise `cargo bench --no-run` builds one).
 
 Rules
@@ -16,8 +16,8 @@ Rules
 - One accuracy measure: the relative error of the blow-by after the cycle against a value on which three codes at relative tolerances of 1e-11 and
   1e-12 agree within 1e-10.
 - The same tolerances: relative `rtol`, absolute `rtol` times the start mass for the volumes. Gudgeon integrates the blow-by as a quadrature outside
-  the error control; the others carry it as a sixth state with an absolute tolerance of `rtol` times 1e-6 kg, for which they are
-  the more accurate. Every code chooses its first step; no code is told of the largest step.
+  the error control; the others carry it as a sixth state with an absolute tolerance of `rtol` times 1e-6 kg. Gudgeon
+  also integrates the outflow of the chamber, to check its mass balance. Every code chooses its first step; no code is told of the largest step.
 - Jacobians: Gudgeon differences in groups of columns that share no row. Codes marked `J` have the exact Jacobian, compiled too; the
   others difference.
 - `compiled` codes call the compiled functions without Python in between: CVODE through its C interface. The others call back
@@ -25,8 +25,8 @@ Rules
   what the method costs.
 - Timing: setup of a solver counts where its interface offers no reset (all others than Gudgeon set up anew for every cycle; for CVODE through C the
   memory is made once and reinitialised). One round runs every code at every tolerance once, so that all see the same load of the machine; Gudgeon's
-  figure of a round is the median of 50 cycles in a process of its own, CVODE's through C the median of 50, the others' the median of 3.
-  The table gives the median over the rounds.
+  figure of a round is the median of 50 cycles in a process of its own, CVODE's through C the median of 50, the others' the median of
+  3, or one cycle for BDF and Radau of SciPy, which are written in Python. The table gives the median over the rounds.
 - Compilation and the first call of each function are outside the timing.
 """
 
@@ -72,6 +72,7 @@ except ImportError:
     print("scikit-sundae is missing: CVODE is skipped")
 
 BLOW_BY = 6.2493570768654555e-6
+WANTED = [1e-3, 1e-4, 1e-5, 1e-6]
 TOLERANCES = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8]
 N = 5
 CH, CC = 5, 6
@@ -307,16 +308,14 @@ def through_c():
     advance = declare("cvode", "CVode", integer, ptr, real, ptr, ptr, integer)
     get_steps = declare("cvode", "CVodeGetNumSteps", integer, ptr, ptr)
     get_rhs = declare("cvode", "CVodeGetNumRhsEvals", integer, ptr, ptr)
+    get_differences = declare("cvode", "CVodeGetNumLinRhsEvals", integer, ptr, ptr)
 
     @cfunc(types.int32(types.double, types.voidptr, types.voidptr, types.voidptr), error_model="numpy")
     def rhs(t, y, f, _user):
         rates(t, carray(vector_data(y), 6), carray(vector_data(f), 6))
         return 0
 
-    @cfunc(
-        types.int32(types.double, *[types.voidptr] * 7),
-        error_model="numpy",
-    )
+    @cfunc(types.int32(types.double, *[types.voidptr] * 7), error_model="numpy")
     def jac(t, y, _f, j, _user, _a, _b, _c):
         # Stored by columns.
         jacobian(t, carray(vector_data(y), 6), carray(matrix_data(j), (6, 6)).T)
@@ -332,7 +331,7 @@ def through_c():
     def array(vector):
         return np.ctypeslib.as_array(vector_data(vector), (6,))
 
-    def make(rtol):
+    def make(rtol, exact):
         y, weights = new_vector(6, context), new_vector(6, context)
         state = array(y)
         state[:] = Y0
@@ -342,7 +341,8 @@ def through_c():
         good(tolerances(memory, rtol, weights))
         matrix = new_matrix(6, 6, context)
         good(set_solver(memory, new_solver(y, matrix, context), matrix))
-        good(set_jacobian(memory, ctypes.cast(jac.address, ptr)))
+        if exact:
+            good(set_jacobian(memory, ctypes.cast(jac.address, ptr)))
         good(set_max_steps(memory, 100_000))
         reached, count = real(), long()
 
@@ -355,7 +355,7 @@ def through_c():
             good(reinit(memory, 0.0, y))
             good(set_stop(memory, CYCLE))
             good(advance(memory, CYCLE, y, ctypes.byref(reached), 1))  # 1: to the given time
-            return state[5], number(get_steps), number(get_rhs)
+            return state[5], number(get_steps), number(get_rhs) + number(get_differences)
 
         return once
 
@@ -381,14 +381,17 @@ def gudgeon_binary(given):
 def codes():
     """Name, cycles timed per round, maker."""
     if scipy is not None:
-        for method in ("LSODA", "BDF", "Radau"):
-            yield f"SciPy {method}", 3, through_scipy(method, False)
-            yield f"SciPy {method} J", 3, through_scipy(method, True)
+        # The two written in Python take a fraction of a second each.
+        for method, repeat in (("LSODA", 3), ("BDF", 1), ("Radau", 1)):
+            yield f"SciPy {method}", repeat, through_scipy(method, False)
+            yield f"SciPy {method} J", repeat, through_scipy(method, True)
     if sksundae is not None:
         yield "scikit-sundae CVODE J", 3, through_sksundae
         if numba is not None:
             try:
-                yield "CVODE J, compiled", 50, through_c()
+                make = through_c()
+                yield "CVODE, compiled", 50, lambda rtol: make(rtol, False)
+                yield "CVODE J, compiled", 50, lambda rtol: make(rtol, True)
             except OSError as e:
                 print(f"CVODE through C is skipped: {e}")
 
@@ -410,7 +413,7 @@ def check_jacobian():
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--rounds", type=int, default=15)
+    parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--binary", help="a built gas_network bench")
     args = parser.parse_args()
     check_jacobian()
@@ -453,19 +456,21 @@ def main():
     for name, rtol in seconds:
         blow_by, steps, rhs = result[name, rtol]
         error, median = abs(blow_by / BLOW_BY - 1.0), statistics.median(seconds[name, rtol])
-        table.setdefault(name, []).append((error, median))
-        print(f"{name:<24}{rtol:>7.0e}{steps:>7}{rhs:>7}{error:>15.2e}{median:>12.1f}{min(seconds[name, rtol]):>11.1f}")
-    print("\nleast median time [us] with a blow-by error of at most ...")
-    print(f"{'code':<24}" + "".join(f"{e:>12.0e}{'ratio':>8}" for e in (1e-3, 1e-4, 1e-5, 1e-6)))
-    base = {}
-    for name, rows in table.items():
-        line = f"{name:<24}"
-        for wanted in (1e-3, 1e-4, 1e-5, 1e-6):
-            reached = [t for error, t in rows if error <= wanted]
-            best = min(reached) if reached else math.nan
-            base.setdefault(wanted, best)
-            line += f"{best:>12.1f}{best / base[wanted]:>8.2f}"
-        print(line)
+        least = min(seconds[name, rtol])
+        table.setdefault(name, []).append((error, median, least))
+        print(f"{name:<24}{rtol:>7.0e}{steps:>7}{rhs:>7}{error:>15.2e}{median:>12.1f}{least:>11.1f}")
+    # The median is what the rules ask for; the least of all rounds is what a disturbed machine changes last.
+    for statistic, column in (("median", 1), ("least", 2)):
+        print(f"\nshortest time [us], {statistic} over the rounds, with a blow-by error of at most ...")
+        print(f"{'code':<24}" + "".join(f"{e:>12.0e}{'ratio':>8}" for e in WANTED))
+        base = {}
+        for name, rows in table.items():
+            line = f"{name:<24}"
+            for wanted in WANTED:
+                best = min((row[column] for row in rows if row[0] <= wanted), default=math.nan)
+                base.setdefault(wanted, best)
+                line += f"{best:>12.1f}{best / base[wanted]:>8.2f}"
+            print(line)
     print(f"ratio: time over that of {next(iter(table))}")
 
 

@@ -9,7 +9,8 @@ use gudgeon_sim::{check, explain};
 fn every_case_is_possible_and_explains_itself() {
     let folder = case_file("x").parent().expect("a folder").to_owned();
     let mut seen = 0;
-    let mut files: Vec<_> = std::fs::read_dir(folder).expect("the folder").map(|e| e.expect("an entry").path()).collect();
+    let mut files: Vec<_> =
+        std::fs::read_dir(folder).expect("the folder").map(|e| e.expect("an entry").path()).collect();
     files.sort();
     for path in files.iter().filter(|p| p.extension().is_some_and(|e| e == "toml")) {
         let checked = check(path, &[]).unwrap_or_else(|r| panic!("{}: {r}", path.display()));

@@ -12,11 +12,17 @@ fn swap(path: &str, values: &[&str]) -> (String, Vec<String>) {
 #[test]
 #[allow(clippy::print_stdout, reason = "the comparison is for reading")]
 fn three_gas_flow_models() {
-    let overrides = ["solver.method=implicit".to_owned(), "solver.starts=[\"6 bar\"]".to_owned(), "solver.max_cycles=10".to_owned()];
+    let overrides = [
+        "solver.method=implicit".to_owned(),
+        "solver.starts=[\"6 bar\"]".to_owned(),
+        "solver.max_cycles=10".to_owned(),
+    ];
     let names = ["gap_orifice", "orifice_network", "narrow_channel"];
     let mut told = 0.0;
-    let c = compare(&case_file("alcohol-1600-3000"), &overrides, &[swap("gas_flow", &names)], &mut |p| told = p.fraction)
-        .unwrap_or_else(|r| panic!("{r}"));
+    let c = compare(&case_file("alcohol-1600-3000"), &overrides, &[swap("gas_flow", &names)], &mut |p| {
+        told = p.fraction
+    })
+    .unwrap_or_else(|r| panic!("{r}"));
     assert_eq!(c.variants.len(), 3);
     assert!(told > 0.5, "progress was told up to {told}");
     for (v, name) in c.variants.iter().zip(names) {
@@ -38,7 +44,8 @@ fn three_gas_flow_models() {
         }
     }
     // Leaks past seated flanks and faces can only add to the gap: here they are zero, and what differs is how the gap area is shared.
-    let q: Vec<f64> = c.variants.iter().filter_map(|v| v.outcome.as_ref().ok()).map(|r| value(r, "blow_by")).collect();
+    let q: Vec<f64> =
+        c.variants.iter().filter_map(|v| v.outcome.as_ref().ok()).map(|r| value(r, "blow_by")).collect();
     assert!(q.iter().all(|v| (1.0..100.0).contains(v)), "{q:?}");
 }
 
@@ -47,18 +54,28 @@ fn refused_combinations_keep_their_reason() {
     let quick: Vec<String> =
         ["solver.cycles=2", "solver.gas_steps=10", "solver.starts=[\"1 bar\"]"].map(str::to_owned).to_vec();
     let swaps = [swap("ring_motion", &["three_seat", "newton_groove", "seated"])];
-    let c = compare(&case_file("alcohol-1600-3000"), &quick, &swaps, &mut |_| {}).unwrap_or_else(|r| panic!("{r}"));
+    let c = compare(&case_file("alcohol-1600-3000"), &quick, &swaps, &mut |_| {})
+        .unwrap_or_else(|r| panic!("{r}"));
     assert!(c.variants[0].outcome.is_ok() && c.variants[2].outcome.is_ok());
     let why = c.variants[1].outcome.as_ref().expect_err("newton_groove cannot be marched by the degree");
-    assert!(why.starts_with("refused") && why.contains("degree_march") && why.contains("newton_groove"), "{why}");
+    assert!(
+        why.starts_with("refused") && why.contains("degree_march") && why.contains("newton_groove"),
+        "{why}"
+    );
 
     // Every combination refused: the report of the first says why.
-    let none = compare(&case_file("alcohol-1600-3000"), &quick, &[swap("ring_motion", &["newton_groove"])], &mut |_| {});
+    let none = compare(
+        &case_file("alcohol-1600-3000"),
+        &quick,
+        &[swap("ring_motion", &["newton_groove"])],
+        &mut |_| {},
+    );
     assert!(none.expect_err("nothing to run").to_string().contains("degree_march"));
     // A swap without values, and a path that does not exist.
     let empty = compare(&case_file("alcohol-1600-3000"), &quick, &[swap("gas_flow", &[])], &mut |_| {});
     assert!(empty.expect_err("empty").to_string().contains("gas_flow"));
-    let unknown = compare(&case_file("alcohol-1600-3000"), &quick, &[swap("gas_flow", &["gap_orfice"])], &mut |_| {});
+    let unknown =
+        compare(&case_file("alcohol-1600-3000"), &quick, &[swap("gas_flow", &["gap_orfice"])], &mut |_| {});
     assert!(unknown.expect_err("unknown").to_string().contains("gap_orifice"), "no suggestion");
 }
 
@@ -66,8 +83,12 @@ fn refused_combinations_keep_their_reason() {
 fn two_swaps_make_every_combination() {
     let quick: Vec<String> =
         ["solver.cycles=2", "solver.gas_steps=10", "solver.starts=[\"1 bar\"]"].map(str::to_owned).to_vec();
-    let swaps = [swap("models.gas_flow.model", &["gap_orifice", "orifice_network"]), swap("conventions.hoop", &["as_printed", "correct"])];
-    let c = compare(&case_file("alcohol-1600-3000"), &quick, &swaps, &mut |_| {}).unwrap_or_else(|r| panic!("{r}"));
+    let swaps = [
+        swap("models.gas_flow.model", &["gap_orifice", "orifice_network"]),
+        swap("conventions.hoop", &["as_printed", "correct"]),
+    ];
+    let c = compare(&case_file("alcohol-1600-3000"), &quick, &swaps, &mut |_| {})
+        .unwrap_or_else(|r| panic!("{r}"));
     assert_eq!(c.variants.len(), 4);
     let friction = |k: usize| match &c.variants[k].outcome {
         Ok(r) => value(r, "friction_power"),

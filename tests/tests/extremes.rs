@@ -22,7 +22,12 @@ fn outcome(path: &Path, overrides: &[String]) -> Result<String, String> {
     let begin = Instant::now();
     std::thread::spawn(move || {
         let result = std::panic::catch_unwind(|| {
-            let c = check(&path, &overrides).map_err(|r| format!("refused: {}", r.diagnostics.iter().map(|d| d.headline()).collect::<Vec<_>>().join("; ")))?;
+            let c = check(&path, &overrides).map_err(|r| {
+                format!(
+                    "refused: {}",
+                    r.diagnostics.iter().map(|d| d.headline()).collect::<Vec<_>>().join("; ")
+                )
+            })?;
             run(&c, &mut |_| {}).map_err(|e| format!("failed: {e}"))
         });
         // Nobody listens any more when the time was up.
@@ -92,20 +97,75 @@ fn set(name: &str, overrides: &[&str]) -> (String, PathBuf, Vec<String>) {
 
 #[test]
 fn speeds() {
-    all([1.0, 10.0, 20_000.0, 200_000.0].iter().map(|n| set(&format!("{n} rpm"), &[&format!("engine.speed={n} rpm")])).collect());
+    all([1.0, 10.0, 20_000.0, 200_000.0]
+        .iter()
+        .map(|n| set(&format!("{n} rpm"), &[&format!("engine.speed={n} rpm")]))
+        .collect());
 }
 
 #[test]
 fn clearances() {
     all(vec![
-        set("axial clearances x 1e-3", &["rings.0.groove.height=3.3935 mm", "rings.1.groove.height=3.00007 mm", "rings.2.groove.height=4.00005 mm"]),
-        set("axial clearances x 1e3", &["rings.0.groove.height=103.4 mm", "rings.1.groove.height=73 mm", "rings.2.groove.height=54 mm", "liner.distortion=[]"]),
-        set("land clearances x 1e-3", &["piston.lands.0.diameter=119.9993 mm", "piston.lands.1.diameter=119.9994 mm", "piston.lands.2.diameter=119.9995 mm"]),
-        set("land clearances x 1e3", &["piston.lands.0.diameter=0.1 mm", "piston.lands.1.diameter=0.1 mm", "piston.lands.2.diameter=0.1 mm"]),
-        set("gap areas x 1e-3", &["rings.0.gap_area=0.0002 mm2", "rings.1.gap_area=0.0002 mm2", "rings.2.gap_area=0.0002 mm2"]),
-        set("gap areas x 1e3", &["rings.0.gap_area=200 mm2", "rings.1.gap_area=200 mm2", "rings.2.gap_area=200 mm2"]),
-        set("leak heights of 1 mm", &["rings.0.groove.leak_upper=1 mm", "rings.0.groove.leak_lower=1 mm", "rings.1.groove.leak_upper=1 mm", "rings.1.groove.leak_lower=1 mm"]),
-        set("no leak at the flanks", &["rings.0.groove.leak_upper=0 um", "rings.0.groove.leak_lower=0 um", "rings.1.groove.leak_upper=0 um", "rings.1.groove.leak_lower=0 um", "rings.2.groove.leak_upper=0 um"]),
+        set(
+            "axial clearances x 1e-3",
+            &[
+                "rings.0.groove.height=3.3935 mm",
+                "rings.1.groove.height=3.00007 mm",
+                "rings.2.groove.height=4.00005 mm",
+            ],
+        ),
+        set(
+            "axial clearances x 1e3",
+            &[
+                "rings.0.groove.height=103.4 mm",
+                "rings.1.groove.height=73 mm",
+                "rings.2.groove.height=54 mm",
+                "liner.distortion=[]",
+            ],
+        ),
+        set(
+            "land clearances x 1e-3",
+            &[
+                "piston.lands.0.diameter=119.9993 mm",
+                "piston.lands.1.diameter=119.9994 mm",
+                "piston.lands.2.diameter=119.9995 mm",
+            ],
+        ),
+        set(
+            "land clearances x 1e3",
+            &[
+                "piston.lands.0.diameter=0.1 mm",
+                "piston.lands.1.diameter=0.1 mm",
+                "piston.lands.2.diameter=0.1 mm",
+            ],
+        ),
+        set(
+            "gap areas x 1e-3",
+            &["rings.0.gap_area=0.0002 mm2", "rings.1.gap_area=0.0002 mm2", "rings.2.gap_area=0.0002 mm2"],
+        ),
+        set(
+            "gap areas x 1e3",
+            &["rings.0.gap_area=200 mm2", "rings.1.gap_area=200 mm2", "rings.2.gap_area=200 mm2"],
+        ),
+        set(
+            "leak heights of 1 mm",
+            &[
+                "rings.0.groove.leak_upper=1 mm",
+                "rings.0.groove.leak_lower=1 mm",
+                "rings.1.groove.leak_upper=1 mm",
+                "rings.1.groove.leak_lower=1 mm",
+            ],
+        ),
+        set(
+            "no leak at the flanks",
+            &[
+                "rings.0.groove.leak_upper=0 um",
+                "rings.0.groove.leak_lower=0 um",
+                "rings.1.groove.leak_upper=0 um",
+                "rings.1.groove.leak_lower=0 um",
+                "rings.2.groove.leak_upper=0 um",
+            ],
+        ),
     ]);
 }
 
@@ -141,15 +201,47 @@ fn pressures() {
 #[test]
 fn rings() {
     all(vec![
-        set("flat faces", &["rings.0.face.drop=0 um", "rings.0.face.offset=0 mm", "rings.1.face.drop=0 um", "rings.2.face.drop=0 um", "rings.2.face.offset=0 mm"]),
-        set("barrels of 1 mm", &["rings.0.face.drop=1 mm", "rings.1.face.drop=1 mm", "rings.2.face.drop=1 mm"]),
+        set(
+            "flat faces",
+            &[
+                "rings.0.face.drop=0 um",
+                "rings.0.face.offset=0 mm",
+                "rings.1.face.drop=0 um",
+                "rings.2.face.drop=0 um",
+                "rings.2.face.offset=0 mm",
+            ],
+        ),
+        set(
+            "barrels of 1 mm",
+            &["rings.0.face.drop=1 mm", "rings.1.face.drop=1 mm", "rings.2.face.drop=1 mm"],
+        ),
         set("masses x 1e-3", &["rings.0.mass=43 mg", "rings.1.mass=37 mg", "rings.2.mass=44 mg"]),
         set("masses x 1e-6", &["rings.0.mass=0.043 mg", "rings.1.mass=0.037 mg", "rings.2.mass=0.044 mg"]),
         set("masses x 1e3", &["rings.0.mass=43 kg", "rings.1.mass=37 kg", "rings.2.mass=44 kg"]),
-        set("tensions x 1e-3", &["rings.0.tangential_force=22 mN", "rings.1.tangential_force=18 mN", "rings.2.tangential_force=60 mN"]),
-        set("tensions x 1e3", &["rings.0.tangential_force=22 kN", "rings.1.tangential_force=18 kN", "rings.2.tangential_force=60 kN"]),
-        set("oil at -20 degC", &["models.film_temperature.tdc=-20 degC", "models.film_temperature.bdc=-20 degC"]),
-        set("oil at 500 degC", &["models.film_temperature.tdc=500 degC", "models.film_temperature.bdc=500 degC"]),
+        set(
+            "tensions x 1e-3",
+            &[
+                "rings.0.tangential_force=22 mN",
+                "rings.1.tangential_force=18 mN",
+                "rings.2.tangential_force=60 mN",
+            ],
+        ),
+        set(
+            "tensions x 1e3",
+            &[
+                "rings.0.tangential_force=22 kN",
+                "rings.1.tangential_force=18 kN",
+                "rings.2.tangential_force=60 kN",
+            ],
+        ),
+        set(
+            "oil at -20 degC",
+            &["models.film_temperature.tdc=-20 degC", "models.film_temperature.bdc=-20 degC"],
+        ),
+        set(
+            "oil at 500 degC",
+            &["models.film_temperature.tdc=500 degC", "models.film_temperature.bdc=500 degC"],
+        ),
         set("no groove oil", &["models.flank_damping.model=off"]),
     ]);
 }
@@ -178,7 +270,10 @@ fn numbers_of_rings() {
         std::fs::write(&path, toml::to_string(&case).expect("TOML")).expect("writes");
         path
     };
-    all([1, 2, 4, 5, 8].iter().map(|n| (format!("{n} rings"), with(*n), vec!["solver.max_cycles=10".to_owned()])).collect());
+    all([1, 2, 4, 5, 8]
+        .iter()
+        .map(|n| (format!("{n} rings"), with(*n), vec!["solver.max_cycles=10".to_owned()]))
+        .collect());
 }
 
 #[test]
@@ -194,12 +289,28 @@ fn published_schemes() {
         march("zottin, 1 rpm", z, &["engine.speed=1 rpm"]),
         march("zottin, 20 000 rpm", z, &["engine.speed=20000 rpm"]),
         march("zottin, lands x 1e-3", z, &["piston.lands.1.volume=0.9 mm3", "piston.lands.2.volume=0.4 mm3"]),
-        march("zottin, masses x 1e-3", z, &["rings.0.mass=43 mg", "rings.1.mass=37 mg", "rings.2.mass=44 mg"]),
+        march(
+            "zottin, masses x 1e-3",
+            z,
+            &["rings.0.mass=43 mg", "rings.1.mass=37 mg", "rings.2.mass=44 mg"],
+        ),
         march("zottin, start at 1000 bar", z, &["solver.starts=[\"1000 bar\"]"]),
         march("tomanik, 1 rpm", t, &with(&["engine.speed=1 rpm"])),
         march("tomanik, 20 000 rpm", t, &with(&["engine.speed=20000 rpm"])),
-        march("tomanik, lands x 1e-3", t, &with(&["piston.lands.1.volume=0.16 mm3", "piston.lands.2.volume=0.079 mm3"])),
-        march("tomanik, clearances x 1e3", t, &with(&["rings.0.groove.clearance=30 mm", "rings.1.groove.clearance=30 mm"])),
-        march("tomanik, start at 1000 bar", t, &["solver.cycles=2", "solver.gas_steps=20", "solver.starts=[\"1000 bar\"]"]),
+        march(
+            "tomanik, lands x 1e-3",
+            t,
+            &with(&["piston.lands.1.volume=0.16 mm3", "piston.lands.2.volume=0.079 mm3"]),
+        ),
+        march(
+            "tomanik, clearances x 1e3",
+            t,
+            &with(&["rings.0.groove.clearance=30 mm", "rings.1.groove.clearance=30 mm"]),
+        ),
+        march(
+            "tomanik, start at 1000 bar",
+            t,
+            &["solver.cycles=2", "solver.gas_steps=20", "solver.starts=[\"1000 bar\"]"],
+        ),
     ]);
 }

@@ -26,7 +26,11 @@ fn set(case: &'static str, overrides: &[String]) -> (&'static str, Vec<String>) 
 }
 
 fn implicit(tolerance: &str) -> Vec<String> {
-    vec!["solver.method=implicit".into(), format!("solver.tolerance={tolerance}"), format!("solver.periodicity={tolerance}")]
+    vec![
+        "solver.method=implicit".into(),
+        format!("solver.tolerance={tolerance}"),
+        format!("solver.periodicity={tolerance}"),
+    ]
 }
 
 fn march(clamp: &str, steps: u32) -> Vec<String> {
@@ -109,10 +113,17 @@ fn closures() {
     let asked = [
         set(CASE, &[]),
         set(CASE, &implicit("1e-6")),
-        set("alcohol-1600-5600", &[implicit("1e-3"), vec!["solver.starts=[\"1 bar\"]".into(), "solver.max_cycles=10".into()]].concat()),
+        set(
+            "alcohol-1600-5600",
+            &[implicit("1e-3"), vec!["solver.starts=[\"1 bar\"]".into(), "solver.max_cycles=10".into()]]
+                .concat(),
+        ),
         set(CASE, &["models.gas_flow.model=narrow_channel".into()]),
         set(PUBLISHED, &[]),
-        set("alcohol-1600-3000", &["solver.cycles=4".into(), "solver.gas_steps=20".into(), "solver.starts=[\"6 bar\"]".into()]),
+        set(
+            "alcohol-1600-3000",
+            &["solver.cycles=4".into(), "solver.gas_steps=20".into(), "solver.starts=[\"6 bar\"]".into()],
+        ),
     ];
     for (r, a) in runs(&asked).iter().zip(&asked) {
         println!("{} {:?}: {:?}", a.0, a.1, r.balance);

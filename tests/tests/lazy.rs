@@ -25,7 +25,11 @@ fn blow_by_alone_needs_no_film() {
     assert!(r.series.get("ring1.h_min").is_none() && r.series.get("ring1.position").is_some());
     let film = r.skipped.iter().find(|s| s.what.contains("hydrodynamics")).expect("it is said");
     assert!(film.why.contains("gap_orifice") && film.why.contains("three_seat"), "{}", film.why);
-    assert!(r.models.iter().all(|m| !["hydrodynamics", "contact", "oil", "film_temperature"].contains(&m.kind.as_str())));
+    assert!(
+        r.models
+            .iter()
+            .all(|m| !["hydrodynamics", "contact", "oil", "film_temperature"].contains(&m.kind.as_str()))
+    );
 
     let e = explain(&checked("alcohol-1600-3000", &set)).expect("explains");
     assert!(e.skipped.iter().any(|s| s.what.contains("hydrodynamics")));
@@ -47,8 +51,15 @@ fn a_film_that_motion_or_gas_depends_on_is_solved() {
     let r = run_case("alcohol-1600-3000", &all(&[GAS_ONLY]));
     assert!(r.solver.counters["film_evaluations"] > 0);
     // The gap area of the orifice network depends on the film.
-    let r = run_case("alcohol-1600-3000", &all(&[GAS_ONLY, "models.ring_motion.film_force=false", "models.gas_flow.model=orifice_network"]));
-    let e = explain(&checked("alcohol-1600-3000", &[GAS_ONLY, "models.ring_motion.film_force=false", "models.gas_flow.model=orifice_network"])).expect("explains");
+    let r = run_case(
+        "alcohol-1600-3000",
+        &all(&[GAS_ONLY, "models.ring_motion.film_force=false", "models.gas_flow.model=orifice_network"]),
+    );
+    let e = explain(&checked(
+        "alcohol-1600-3000",
+        &[GAS_ONLY, "models.ring_motion.film_force=false", "models.gas_flow.model=orifice_network"],
+    ))
+    .expect("explains");
     let film = e.runs.iter().find(|s| s.what.contains("hydrodynamics"));
     assert_eq!(film.is_some(), r.solver.counters["film_evaluations"] > 0);
 }
@@ -74,7 +85,8 @@ fn seated_rings_have_no_states() {
     // Two more states per ring that moves, one per ring with a film.
     let e = explain(&checked("turbo-diesel-120", &[])).expect("explains");
     assert_eq!(e.states.len(), 4 + 3 + 6);
-    let e = explain(&checked("turbo-diesel-120", &["rings.0.models.ring_motion.model=seated"])).expect("explains");
+    let e = explain(&checked("turbo-diesel-120", &["rings.0.models.ring_motion.model=seated"]))
+        .expect("explains");
     assert_eq!(e.states.len(), 4 + 3 + 4);
 }
 
