@@ -44,7 +44,7 @@ pub enum RunError {
         source: EvalError,
     },
     /// The integrator gave up.
-    #[error("the integration stopped: {0}")]
+    #[error("the integration stopped: {0} (crank angles in radians)")]
     Integrate(#[from] IntegrateError),
     /// The cycle does not close.
     #[error(

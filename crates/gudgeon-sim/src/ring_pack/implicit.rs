@@ -50,6 +50,9 @@ impl OdeSystem for Problem<'_> {
     }
 }
 
+/// Most steps of a cycle, a hundred times what a pack needs: beyond it the case asks for something that cannot be followed, such as
+/// the contact of a ring without mass.
+const MOST_STEPS: u64 = 100_000;
 /// How far two cycles from nearly the same state may differ, in tolerances: steps accepted here and rejected there.
 const NOISE: f64 = 10.0;
 /// First step of a cycle \[rad\].
@@ -90,6 +93,7 @@ impl Cycle<'_> {
         let mut options = Options::new(rtol, &self.scale);
         // No step may jump over a pressure pulse: 10 degrees at most.
         options.h_max = 10f64.to_radians();
+        options.max_steps = MOST_STEPS;
         // Every cycle starts with the same step: the map must depend on nothing but the state.
         self.h = FIRST_STEP;
         self.q.fill(0.0);
