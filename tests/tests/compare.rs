@@ -12,11 +12,11 @@ fn swap(path: &str, values: &[&str]) -> (String, Vec<String>) {
 #[test]
 #[allow(clippy::print_stdout, reason = "the comparison is for reading")]
 fn three_gas_flow_models() {
-    let overrides = [
-        "solver.method=implicit".to_owned(),
-        "solver.starts=[\"6 bar\"]".to_owned(),
-        "solver.max_cycles=10".to_owned(),
-    ];
+    // The case has the bare orifice law of its source, whose infinite slope at zero pressure difference suits explicit marches only.
+    let overrides: Vec<String> =
+        ["solver.method=implicit", "solver.starts=[\"6 bar\"]", "models.gas_flow.orifice.laminar=1e-3"]
+            .map(str::to_owned)
+            .to_vec();
     let names = ["gap_orifice", "orifice_network", "narrow_channel"];
     let mut told = 0.0;
     let c = compare(&case_file("alcohol-1600-3000"), &overrides, &[swap("gas_flow", &names)], &mut |p| {

@@ -38,6 +38,11 @@ fn outcome(path: &Path, overrides: &[String]) -> Result<String, String> {
     let r = match result.map_err(|_| "it panicked".to_owned())? {
         Ok(r) => r,
         // A refusal names a cause: a place in the case, or a quantity; "failed: " alone would not do.
+        // Between boundaries of positive pressure no volume can be emptied: an explicit march with too long steps may say so,
+        // an implicit solver that does blames the wrong thing.
+        Err(e) if e.contains("the integration stopped") && e.contains("holds a mass of") => {
+            return Err(format!("a refusal that misses the cause: {e}"));
+        }
         Err(e) if e.len() > 30 => return Ok(format!("{e} ({seconds:.1} s)")),
         Err(e) => return Err(format!("an unclear refusal: {e}")),
     };
@@ -109,7 +114,7 @@ fn clearances() {
         set(
             "axial clearances x 1e-3",
             &[
-                "rings.0.groove.height=3.3935 mm",
+                "rings.0.groove.height=3.4145 mm",
                 "rings.1.groove.height=3.00007 mm",
                 "rings.2.groove.height=4.00005 mm",
             ],
@@ -120,7 +125,7 @@ fn clearances() {
                 "rings.0.groove.height=103.4 mm",
                 "rings.1.groove.height=73 mm",
                 "rings.2.groove.height=54 mm",
-                "liner.distortion=[]",
+                r#"liner.distortion=[{position="70 mm", diametral="0.2 mm"}, {position="-500 mm", diametral="0.12 mm"}]"#,
             ],
         ),
         set(
@@ -216,14 +221,13 @@ fn rings() {
             &["rings.0.face.drop=1 mm", "rings.1.face.drop=1 mm", "rings.2.face.drop=1 mm"],
         ),
         set("masses x 1e-3", &["rings.0.mass=43 mg", "rings.1.mass=37 mg", "rings.2.mass=44 mg"]),
-        set("masses x 1e-6", &["rings.0.mass=0.043 mg", "rings.1.mass=0.037 mg", "rings.2.mass=0.044 mg"]),
         set("masses x 1e3", &["rings.0.mass=43 kg", "rings.1.mass=37 kg", "rings.2.mass=44 kg"]),
         set(
             "tensions x 1e-3",
             &[
-                "rings.0.tangential_force=22 mN",
-                "rings.1.tangential_force=18 mN",
-                "rings.2.tangential_force=60 mN",
+                "rings.0.tangential_force=0.022 N",
+                "rings.1.tangential_force=0.018 N",
+                "rings.2.tangential_force=0.060 N",
             ],
         ),
         set(
@@ -235,8 +239,8 @@ fn rings() {
             ],
         ),
         set(
-            "oil at -20 degC",
-            &["models.film_temperature.tdc=-20 degC", "models.film_temperature.bdc=-20 degC"],
+            "oil at -10 degC",
+            &["models.film_temperature.tdc=-10 degC", "models.film_temperature.bdc=-10 degC"],
         ),
         set(
             "oil at 500 degC",
@@ -244,6 +248,20 @@ fn rings() {
         ),
         set("no groove oil", &["models.flank_damping.model=off"]),
     ]);
+}
+
+/// Inertia of no account: the motion between two flanks is fast against everything else.
+#[test]
+fn rings_of_a_few_micrograms() {
+    let masses = ["rings.0.mass=0.043 mg", "rings.1.mass=0.037 mg", "rings.2.mass=0.044 mg"];
+    all(vec![set("masses x 1e-6", &masses)]);
+}
+
+/// 200 Pa s: films push the rings to the bottom of their grooves.
+#[test]
+fn frozen_oil() {
+    let cold = ["models.film_temperature.tdc=-20 degC", "models.film_temperature.bdc=-20 degC"];
+    all(vec![set("oil at -20 degC", &cold)]);
 }
 
 #[test]
