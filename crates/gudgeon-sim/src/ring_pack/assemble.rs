@@ -15,7 +15,7 @@ use super::contact_line::ContactLine;
 use super::geometry;
 use super::pack::{Counters, Instant, Layout, LinerShape, Pack, RingInstant, RingModel};
 use super::plan::{Facts, Plan, plan, wanted};
-use crate::case::{RingDesign, RingPackCase};
+use crate::case::{Method, RingDesign, RingPackCase};
 
 /// Film thickness where the gas model wants one and no film is solved \[m\].
 const NOMINAL_FILM: f64 = 2e-6;
@@ -269,6 +269,7 @@ pub fn assemble(case: &RingPackCase, folder: &Path) -> Result<Pack, Vec<BuildErr
         },
         counters: Counters::default(),
         masses: vec![0.0; gas_states],
+        hard_floor: case.solver.method == Method::AsPublished,
         state: vec![f64::NAN; states],
         geo,
     };

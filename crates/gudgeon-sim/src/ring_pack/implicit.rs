@@ -149,13 +149,15 @@ impl CycleMap for Cycle<'_> {
     }
     fn map(&mut self, y0: &[f64], y1: &mut [f64], accuracy: f64) -> Result<f64, EvalError> {
         y1.copy_from_slice(y0);
-        let before = self.stats.rhs;
+        // An extrapolated state may have lost its gas: a hundredth of a bar is the least that a cycle starts with.
+        for k in &mut y1[..self.pack.layout.gas] {
+            *k = k.max(0.01);
+        }
         let rtol = accuracy.max(self.full_accuracy);
         if let Err(e) = self.integrate(y1, rtol, None) {
             self.failure = Some(e);
             return Err(EvalError::fatal("ring_pack", "the cycle could not be integrated"));
         }
-        let _ = before;
         Ok(1.0)
     }
     fn scale(&self, y: &[f64], s: &mut [f64]) {

@@ -199,6 +199,8 @@ pub struct Pack {
     pub counters: Counters,
     /// Masses, unscaled, scratch.
     pub masses: Vec<f64>,
+    /// Whether friction changes over at a film floor at once, as in the published schemes, and not over a narrow band.
+    pub hard_floor: bool,
     /// State of the last complete evaluation.
     pub state: Vec<f64>,
 }
@@ -512,7 +514,12 @@ impl Pack {
         // On a hard floor the surfaces carry what the film does not.
         let mut viscous = 1.0;
         if let Some(f) = line.floor {
-            let weight = 1.0 - ((self.at.places[i].h - f) / (line.band * f)).clamp(0.0, 1.0);
+            let above = self.at.places[i].h - f;
+            let weight = if self.hard_floor {
+                f64::from(u8::from(above <= 1e-6 * f))
+            } else {
+                1.0 - (above / (line.band * f)).clamp(0.0, 1.0)
+            };
             if line.floor_replaces_film {
                 viscous = 1.0 - weight;
                 r.contact = weight * r.load.max(0.0);
