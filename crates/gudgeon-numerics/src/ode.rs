@@ -164,6 +164,12 @@ pub trait OdeSystem {
         Direction::Either
     }
 
+    /// Whether the time of event `k` matters. When it does not, the event happens at the end of the step (or at the sample) in
+    /// which it was seen, and nothing is spent on its root.
+    fn event_located(&self, _k: usize) -> bool {
+        true
+    }
+
     /// Event `k` happened at `t`. Changes to `y` count when the answer is [`EventAction::Restart`] or [`EventAction::Stop`].
     ///
     /// # Errors

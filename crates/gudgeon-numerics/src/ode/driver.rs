@@ -38,6 +38,8 @@ pub(crate) struct Core {
 
 /// Distance kept from breakpoints, in units of machine epsilon times |t|.
 const NUDGE: f64 = 8.0 * f64::EPSILON;
+/// Least order that a rejected step is credited with.
+const LEAST_ORDER: f64 = 0.5;
 
 impl Core {
     pub(crate) fn new(n: usize, quad: usize, groups: Option<ColumnGroups>) -> Self {
@@ -350,9 +352,9 @@ fn run<M: Scheme, S: OdeSystem + ?Sized>(
     let h_max = if opts.h_max > 0.0 { opts.h_max } else { f64::INFINITY };
     let mut f0_known = false;
     let mut events_known = false;
-    // Controller memory: previous accepted step and error.
-    let mut previous: Option<(f64, f64)> = None;
     let mut rejected_before = false;
+    // Step and error of the last rejection since the last accepted step.
+    let mut rejected: Option<(f64, f64)> = None;
     let mut cause: Option<EvalError> = None;
     let eval_error = |t: f64, source: EvalError| {
         if is_non_finite(&source) {
@@ -435,10 +437,21 @@ fn run<M: Scheme, S: OdeSystem + ?Sized>(
         };
         let power = error.max(1e-10).powf(M::EXPONENT);
         if error > 1.0 {
-            reject(stats, &mut h, h_try, (safety / power).clamp(0.1, 0.9), &mut rejected_before);
+            // Across a kink the error falls slower than the order of the method says: from the second rejection on, the
+            // order seen since the last one.
+            let seen =
+                rejected.map_or(f64::INFINITY, |(h0, e0): (f64, f64)| (e0 / error).ln() / (h0 / h_try).ln());
+            let shrink = if seen.is_nan() {
+                0.1
+            } else {
+                safety * error.powf(-1.0 / seen.clamp(LEAST_ORDER, 1.0 / M::EXPONENT))
+            };
+            reject(stats, &mut h, h_try, shrink.clamp(0.1, 0.9), &mut rejected_before);
+            rejected = Some((h_try, error));
             cause = None;
             continue;
         }
+        rejected = None;
         {
             let c = m.core();
             let te = c.clamp_time(t_new);
@@ -454,14 +467,8 @@ fn run<M: Scheme, S: OdeSystem + ?Sized>(
         }
         stats.steps += 1;
         cause = None;
-        // Predictive control (Gustafsson 1994): the error trend of the last two steps.
         let mut factor = safety / power;
-        if let Some((h_prev, err_prev)) = previous {
-            let trend = safety * (h_try / h_prev) * (err_prev / (error * error).max(1e-20)).powf(M::EXPONENT);
-            factor = factor.min(trend);
-        }
         factor = factor.clamp(0.2, if rejected_before { 1.0 } else { M::GROWTH });
-        previous = Some((h_try, error.max(1e-2)));
         rejected_before = false;
 
         m.dense(h_try);
@@ -479,17 +486,6 @@ fn run<M: Scheme, S: OdeSystem + ?Sized>(
                 std::mem::swap(&mut c.f0, &mut c.f1);
                 c.jac_current = false;
                 t = t_new;
-                if last && bp.is_some() {
-                    // The other side of the kink.
-                    seg_start = stop;
-                    seg_start_is_bp = true;
-                    while breakpoints.get(next_bp).is_some_and(|&b| b <= stop || near(b, stop)) {
-                        next_bp += 1;
-                    }
-                    f0_known = false;
-                    previous = None;
-                    m.restart();
-                }
             }
             // `scan` left the final state in x0.
             ScanEnd::Stopped => return Ok(h_next),
@@ -501,9 +497,18 @@ fn run<M: Scheme, S: OdeSystem + ?Sized>(
                 t = te;
                 f0_known = false;
                 c.jac_current = false;
-                previous = None;
                 m.restart();
             }
+        }
+        if bp.is_some() && t >= stop {
+            // The other side of the kink.
+            seg_start = stop;
+            seg_start_is_bp = true;
+            while breakpoints.get(next_bp).is_some_and(|&b| b <= stop || near(b, stop)) {
+                next_bp += 1;
+            }
+            f0_known = false;
+            m.restart();
         }
         h = h_next;
     }

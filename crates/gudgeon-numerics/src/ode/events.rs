@@ -286,7 +286,9 @@ impl Events {
                         continue;
                     }
                     let s = f64::from(ev.side[k]);
-                    let root = {
+                    let root = if !sys.event_located(k) {
+                        b
+                    } else {
                         let (y, g) = (&mut ev.y, &mut ev.trial);
                         let mut failure = None;
                         let r = roots::itp(

@@ -13,6 +13,7 @@ use gudgeon_core::result::{ModelUse, Skipped};
 
 use super::contact_line::ContactLine;
 use super::geometry;
+use super::hold::Hold;
 use super::pack::{Counters, Instant, Layout, LinerShape, Pack, RingInstant, RingModel};
 use super::plan::{Facts, Plan, plan, wanted};
 use crate::case::{Method, RingDesign, RingPackCase};
@@ -271,6 +272,8 @@ pub fn assemble(case: &RingPackCase, folder: &Path) -> Result<Pack, Vec<BuildErr
         masses: vec![0.0; gas_states],
         hard_floor: case.solver.method == Method::AsPublished,
         state: vec![f64::NAN; states],
+        holds: vec![Hold::Free; n],
+        hold_tolerance: 0.0,
         geo,
     };
     // Masses at 1 bar, the scale of the gas states; also the first evaluation of every geometry-dependent number.

@@ -6,12 +6,15 @@ use std::time::Instant;
 
 use gudgeon_core::EvalError;
 use gudgeon_core::result::Balance;
-use gudgeon_numerics::ode::{Flow, IntegrateError, Integrator, OdeSystem, Options, Stats, StepView};
+use gudgeon_numerics::ode::{
+    Direction, EventAction, Flow, IntegrateError, Integrator, OdeSystem, Options, Stats, StepView,
+};
 use gudgeon_numerics::orbit::{CycleMap, OrbitOptions, periodic_orbit};
 use gudgeon_numerics::radau::Radau5;
 use gudgeon_numerics::rodas::Rodas;
 
 use super::Found;
+use super::hold::Hold;
 use super::pack::{Base, Pack};
 use super::record::{Record, Totals};
 use crate::case::{IntegratorName, RingPackCase};
@@ -48,6 +51,37 @@ impl OdeSystem for Problem<'_> {
         self.pack.jacobian(y, increment, jac, self.base)?;
         Ok(true)
     }
+    fn n_events(&self) -> usize {
+        if self.pack.hold_tolerance > 0.0 { self.pack.n_rings() } else { 0 }
+    }
+    fn events(&mut self, t: f64, y: &[f64], g: &mut [f64]) -> Result<(), EvalError> {
+        // The integrator has just evaluated the end of a step.
+        if self.pack.at.theta != t || self.pack.state != y {
+            self.pack.evaluate(t, y)?;
+        }
+        for (i, g) in g.iter_mut().enumerate() {
+            *g = if self.pack.layout.axial[i].is_some() { self.pack.hold_event(i) } else { -1.0 };
+        }
+        Ok(())
+    }
+    fn event_direction(&self, _: usize) -> Direction {
+        Direction::Rising
+    }
+    fn event_located(&self, k: usize) -> bool {
+        // A ring may be held any time after it is ready, but has to be let go in time.
+        self.pack.holds[k] != Hold::Free
+    }
+    fn on_event(&mut self, k: usize, t: f64, y: &mut [f64]) -> Result<EventAction, EvalError> {
+        if self.pack.at.theta != t || self.pack.state != y {
+            self.pack.evaluate(t, y)?;
+        }
+        if let Some(v) = self.pack.layout.axial[k] {
+            self.pack.switch_hold(k, &mut y[v + 1]);
+            // The instant belongs to the other mode.
+            self.pack.state.fill(f64::NAN);
+        }
+        Ok(EventAction::Restart)
+    }
 }
 
 /// Most steps of a cycle, a hundred times what a pack needs: beyond it the case asks for something that cannot be followed, such as
@@ -58,7 +92,7 @@ const NOISE: f64 = 10.0;
 /// First step of a cycle \[rad\].
 const FIRST_STEP: f64 = 1e-3;
 /// Velocity that counts as one in the error norm, in clearances per radian: what matters of a velocity is the distance it covers.
-const VELOCITY_SCALE: f64 = 30.0;
+const VELOCITY_SCALE: f64 = 100.0;
 
 enum Method {
     Rodas(Box<Rodas>),
@@ -94,6 +128,10 @@ impl Cycle<'_> {
         // No step may jump over a pressure pulse: 10 degrees at most.
         options.h_max = 10f64.to_radians();
         options.max_steps = MOST_STEPS;
+        // Rings turn slowly beside the steps that their motion allows.
+        options.event_samples = 0;
+        // The reference integrates every ring with its inertia.
+        self.pack.hold_tolerance = if matches!(self.method, Method::Rodas(_)) { rtol } else { 0.0 };
         // Every cycle starts with the same step: the map must depend on nothing but the state.
         self.h = FIRST_STEP;
         self.q.fill(0.0);
@@ -112,6 +150,10 @@ impl Cycle<'_> {
             }
             if interval.is_some() {
                 self.pack.decide_seats();
+            }
+            if let Err(source) = self.pack.start_holds(span.0, y) {
+                outcome = Err(IntegrateError::Eval { t: span.0, source });
+                break;
             }
             if piece == 0
                 && let Some(s) = sampler.as_deref_mut()
@@ -400,6 +442,7 @@ pub(super) fn run(
         ("rhs", work.rhs),
         ("jacobians", work.jacobians),
         ("factorisations", work.lu),
+        ("events", work.events),
     ];
     Ok(Found {
         record: sampler.record,

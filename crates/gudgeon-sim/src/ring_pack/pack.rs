@@ -14,6 +14,7 @@ use gudgeon_core::kinds::{
 };
 
 use super::contact_line::ContactLine;
+use super::hold::Hold;
 use super::plan::Plan;
 use crate::case::{
     AxialGas, CavitationDatum, Conventions, Drag, FilmForce, Hoop, RadialGas, TwinLandFriction,
@@ -203,6 +204,10 @@ pub struct Pack {
     pub hard_floor: bool,
     /// State of the last complete evaluation.
     pub state: Vec<f64>,
+    /// What holds each ring that moves freely otherwise, see [`super::hold`].
+    pub holds: Vec<Hold>,
+    /// Tolerance that the holding of rings goes by; 0: no ring is ever held.
+    pub hold_tolerance: f64,
 }
 
 impl Pack {
@@ -548,7 +553,7 @@ impl Pack {
 
     /// Axial forces on ring `i`, film excepted.
     pub fn axial_forces(&mut self, i: usize) {
-        let (g, place, ring) = (&self.geo.rings[i], &self.at.places[i], &self.rings[i]);
+        let (g, place, ring) = (&self.geo.rings[i], self.at.places[i], &self.rings[i]);
         let r = &mut self.at.rings[i];
         r.axial.gas = match self.conv.axial_gas {
             AxialGas::FullPerimeter => 2.0 * PI * self.geo.bore_radius * g.width * (r.p_below - r.p_above),
@@ -560,12 +565,16 @@ impl Pack {
         };
         r.axial.inertia = -g.mass * self.at.piston.a;
         r.axial.gravity = if ring.motion.uses_gravity() { -GRAVITY * g.mass } else { 0.0 };
-        if ring.kind == Motion::Dynamic {
-            r.axial.damping = ring.damping.force(place.s, place.v, place.clearance, place.flank_area());
-            r.reaction = ring.motion.flank_reaction(place.s, place.v, place.clearance);
-        }
         if !ring.motion.uses_film_force() {
             r.axial.film = 0.0;
+        }
+        if ring.kind == Motion::Dynamic {
+            if self.holds[i] != Hold::Free {
+                self.at.places[i].v = self.held_velocity(i);
+            }
+            let (place, ring, r) = (&self.at.places[i], &self.rings[i], &mut self.at.rings[i]);
+            r.axial.damping = ring.damping.force(place.s, place.v, place.clearance, place.flank_area());
+            r.reaction = ring.motion.flank_reaction(place.s, place.v, place.clearance);
         }
     }
 
@@ -616,6 +625,11 @@ impl Pack {
             if let Some(k) = self.layout.axial[i] {
                 let r = &self.at.rings[i];
                 let c0 = self.rings[i].clearance0;
+                if self.holds[i] != Hold::Free {
+                    f[k] = self.at.places[i].v / (c0 * self.omega);
+                    f[k + 1] = 0.0;
+                    continue;
+                }
                 f[k] = y[k + 1];
                 f[k + 1] =
                     (r.axial.sum() + r.reaction) / self.geo.rings[i].mass / (c0 * self.omega * self.omega);
@@ -794,6 +808,9 @@ impl Pack {
                 }
                 self.restore(base);
                 outcome?;
+                if self.holds[i] != Hold::Free {
+                    continue;
+                }
                 let d = increment(k + 1);
                 self.at.places[i].v = (y[k + 1] + d) * c0 * self.omega;
                 self.axial_forces(i);
@@ -825,6 +842,11 @@ impl Pack {
 
     fn axial_row(&self, i: usize, column: usize, d: f64, base: &Base, jac: &mut [f64]) {
         if let Some(k) = self.layout.axial[i] {
+            if self.holds[i] != Hold::Free {
+                let change = self.at.places[i].v - base.places[i].v;
+                jac[k * self.layout.n + column] = change / (self.rings[i].clearance0 * self.omega * d);
+                return;
+            }
             let (a, b) = (&self.at.rings[i], &base.rings[i]);
             let change = (a.axial.sum() + a.reaction) - (b.axial.sum() + b.reaction);
             let scale = self.geo.rings[i].mass * self.rings[i].clearance0 * self.omega * self.omega;

@@ -1,0 +1,211 @@
+//! Rings that the oil on a flank holds: their inertia is left out while it does not matter.
+//!
+//! Close to a flank the squeeze film answers a change of load within nanoseconds, and its law has a sharp corner where the ring
+//! turns from sinking to rising. No step that is as long as the load deserves can look across that corner with a derivative
+//! taken before it. A ring is therefore *held* while its velocity follows from the balance of forces alone,
+//!
+//! ```text
+//! F_gas + F_inertia + F_gravity + F_film + F_damping(s, v) + F_flank(s, v) = 0,
+//! ```
+//!
+//! which falls with `v` and has one root. It is let go where the balance asks for a speed away from the flank beyond the release
+//! speed, and held again when its velocity has come as close to that of the balance as the tolerance asks. Both limits are
+//! proportional to the tolerance: the tighter it is, the more of the motion is integrated with its inertia.
+
+use gudgeon_core::kinds::{FlankDamping, RingMotion};
+use gudgeon_numerics::roots;
+
+use super::pack::Pack;
+
+/// What holds a ring.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Hold {
+    /// Nothing: velocity is a state.
+    #[default]
+    Free,
+    /// The lower flank.
+    Lower,
+    /// The upper flank.
+    Upper,
+}
+
+impl Hold {
+    /// Direction away from the flank.
+    const fn away(self) -> f64 {
+        match self {
+            Self::Upper => -1.0,
+            _ => 1.0,
+        }
+    }
+}
+
+/// Release speed over the tolerance, in clearances per radian.
+const RELEASE: f64 = 10.0;
+/// Least rate \[1/rad\] at which the velocity of a ring must tend to that of the balance for the ring to be held: a time constant of
+/// half a degree.
+const LEAST_RATE: f64 = 100.0;
+/// Slope of the balance is taken over this part of the velocity, or the smallest change \[m/s\].
+const DIFFERENCE: (f64, f64) = (1e-6, 1e-11);
+
+/// Axial balance of one ring against the velocity away from a flank.
+struct Balance<'a> {
+    away: f64,
+    external: f64,
+    s: f64,
+    clearance: f64,
+    area: f64,
+    damping: &'a dyn FlankDamping,
+    motion: &'a dyn RingMotion,
+}
+
+impl Balance<'_> {
+    /// Force away from the flank \[N\] at velocity `w` \[m/s\] away from it.
+    fn force(&self, w: f64) -> f64 {
+        let v = self.away * w;
+        self.away
+            * (self.external
+                + self.damping.force(self.s, v, self.clearance, self.area)
+                + self.motion.flank_reaction(self.s, v, self.clearance))
+    }
+
+    /// How fast the force falls with the velocity \[N s/m\], on the side away from zero.
+    fn stiffness(&self, w: f64) -> f64 {
+        let d = (DIFFERENCE.0 * w.abs()).max(DIFFERENCE.1).copysign(w);
+        (self.force(w) - self.force(w + d)) / d
+    }
+
+    /// The velocity away from the flank that balances the forces; beyond `release` along the tangent there, so that a step
+    /// that went too far still sees a smooth motion.
+    fn velocity(&self, release: f64) -> f64 {
+        let over = self.force(release);
+        if over >= 0.0 {
+            let k = self.stiffness(release);
+            return if k > 0.0 { release + over / k } else { release };
+        }
+        let still = self.force(0.0);
+        if still == 0.0 {
+            return 0.0;
+        }
+        let (mut lo, mut hi, start);
+        if still > 0.0 {
+            (lo, hi) = (0.0, release);
+            start = still / self.stiffness(0.0);
+        } else {
+            // The flank is approached: the law is linear or stiffer than that.
+            (lo, hi) = (still / self.stiffness(-0.0), 0.0);
+            start = lo;
+            for _ in 0..200 {
+                if !(lo.is_finite() && self.force(lo) < 0.0) {
+                    break;
+                }
+                hi = lo;
+                lo *= 4.0;
+            }
+        }
+        let start = if start > lo && start < hi { start } else { 0.5 * (lo + hi) };
+        let residual = |w: f64| Ok::<_, ()>((self.force(w), -self.stiffness(w)));
+        roots::newton_bracketed(residual, lo, hi, start, 1e-13 * lo.abs().max(hi)).map_or(start, |r| r.x)
+    }
+}
+
+impl Pack {
+    fn axial_balance(&self, i: usize, hold: Hold) -> Balance<'_> {
+        let (place, ring, a) = (&self.at.places[i], &self.rings[i], &self.at.rings[i].axial);
+        Balance {
+            away: hold.away(),
+            external: a.gas + a.inertia + a.gravity + a.film,
+            s: place.s,
+            clearance: place.clearance,
+            area: place.flank_area(),
+            damping: &*ring.damping,
+            motion: &*ring.motion,
+        }
+    }
+
+    /// One clearance per radian \[m/s\].
+    fn unit_speed(&self, i: usize) -> f64 {
+        self.rings[i].clearance0 * self.omega
+    }
+
+    fn release_speed(&self, i: usize) -> f64 {
+        RELEASE * self.hold_tolerance * self.unit_speed(i)
+    }
+
+    /// Velocity of a held ring \[m/s\], the forces at the instant known.
+    pub(super) fn held_velocity(&self, i: usize) -> f64 {
+        let b = self.axial_balance(i, self.holds[i]);
+        b.away * b.velocity(self.release_speed(i))
+    }
+
+    /// Goes through zero from below where ring `i` is let go, or held again; the forces at the instant known.
+    pub(super) fn hold_event(&self, i: usize) -> f64 {
+        match self.holds[i] {
+            Hold::Free => self.readiness(i, false),
+            hold => {
+                let b = self.axial_balance(i, hold);
+                let scale = self.geo.rings[i].mass * self.unit_speed(i) * self.omega;
+                b.force(self.release_speed(i)) / scale
+            }
+        }
+    }
+
+    /// The flank that could hold ring `i`.
+    fn nearest(&self, i: usize) -> Hold {
+        let p = &self.at.places[i];
+        if p.s < 0.5 * p.clearance { Hold::Lower } else { Hold::Upper }
+    }
+
+    /// Positive when the free ring `i` can be held: the film is stiff, the balance keeps the ring, and the velocity, unless it
+    /// `starts` from rest, has settled.
+    fn readiness(&self, i: usize, starts: bool) -> f64 {
+        if self.hold_tolerance <= 0.0 {
+            return -1.0;
+        }
+        let b = self.axial_balance(i, self.nearest(i));
+        let w = b.away * self.at.places[i].v;
+        let rate = b.stiffness(w) / (self.geo.rings[i].mass * self.omega);
+        let stiff = rate / LEAST_RATE - 1.0;
+        if stiff.is_nan() || stiff <= 0.0 {
+            return -1.0;
+        }
+        let release = self.release_speed(i);
+        let balanced = b.velocity(release);
+        let kept = 1.0 - 2.0 * balanced / release;
+        let settled = 1.0 - (w - balanced).abs() / (self.hold_tolerance * self.unit_speed(i));
+        stiff.min(kept).min(if starts { 1.0 } else { settled }).max(-1.0)
+    }
+
+    /// Lets ring `i` go or holds it; `v` is its velocity state \[clearances per radian\].
+    pub(super) fn switch_hold(&mut self, i: usize, v: &mut f64) {
+        match self.holds[i] {
+            Hold::Free => {
+                self.holds[i] = self.nearest(i);
+                *v = 0.0;
+            }
+            hold => {
+                *v = hold.away() * RELEASE * self.hold_tolerance;
+                self.holds[i] = Hold::Free;
+            }
+        }
+    }
+
+    /// Which rings are held at the start of a cycle: a function of the state alone. Evaluates the instant.
+    ///
+    /// # Errors
+    /// What a sub-model refuses.
+    pub(super) fn start_holds(&mut self, theta: f64, y: &mut [f64]) -> Result<(), gudgeon_core::EvalError> {
+        self.holds.fill(Hold::Free);
+        if self.hold_tolerance <= 0.0 || self.layout.axial.iter().all(Option::is_none) {
+            return Ok(());
+        }
+        self.evaluate(theta, y)?;
+        for i in 0..self.n_rings() {
+            if let Some(k) = self.layout.axial[i]
+                && self.readiness(i, y[k + 1].abs() <= self.hold_tolerance) > 0.0
+            {
+                self.switch_hold(i, &mut y[k + 1]);
+            }
+        }
+        Ok(())
+    }
+}
