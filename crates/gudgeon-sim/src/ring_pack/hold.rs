@@ -47,6 +47,11 @@ const LEAST_RATE: f64 = 100.0;
 /// Slope of the balance is taken over this part of the velocity, or the smallest change \[m/s\].
 const DIFFERENCE: (f64, f64) = (1e-6, 1e-11);
 
+/// Accuracy of the velocity of a balance: a difference Jacobian sees changes of 1e-8 of it.
+const RESOLUTION: f64 = 1e-13;
+/// Rounding of a slope, generously: how far the root of a linear law may lie beyond the first guess.
+const START: f64 = 1e-3;
+
 /// Axial balance of one ring against the velocity away from a flank.
 struct Balance<'a> {
     away: f64,
@@ -68,43 +73,46 @@ impl Balance<'_> {
                 + self.motion.flank_reaction(self.s, v, self.clearance))
     }
 
-    /// How fast the force falls with the velocity \[N s/m\], on the side away from zero.
-    fn stiffness(&self, w: f64) -> f64 {
+    /// How fast the force falls with the velocity \[N s/m\] at `w`, on the side away from zero; `f` is the force there.
+    fn stiffness(&self, w: f64, f: f64) -> f64 {
         let d = (DIFFERENCE.0 * w.abs()).max(DIFFERENCE.1).copysign(w);
-        (self.force(w) - self.force(w + d)) / d
+        (f - self.force(w + d)) / d
     }
 
     /// The velocity away from the flank that balances the forces; beyond `release` along the tangent there, so that a step
     /// that went too far still sees a smooth motion.
     fn velocity(&self, release: f64) -> f64 {
-        let over = self.force(release);
-        if over >= 0.0 {
-            let k = self.stiffness(release);
-            return if k > 0.0 { release + over / k } else { release };
-        }
         let still = self.force(0.0);
         if still == 0.0 {
             return 0.0;
         }
         let (mut lo, mut hi, start);
         if still > 0.0 {
+            let over = self.force(release);
+            if over >= 0.0 {
+                let k = self.stiffness(release, over);
+                return if k > 0.0 { release + over / k } else { release };
+            }
             (lo, hi) = (0.0, release);
-            start = still / self.stiffness(0.0);
+            start = still / self.stiffness(0.0, still);
         } else {
-            // The flank is approached: the law is linear or stiffer than that.
-            (lo, hi) = (still / self.stiffness(-0.0), 0.0);
-            start = lo;
+            // Squeeze films are linear in the approach: usually the first guess is the root, but for the rounding of its slope.
+            start = still / self.stiffness(-0.0, still);
+            (lo, hi) = (start, 0.0);
             for _ in 0..200 {
                 if !(lo.is_finite() && self.force(lo) < 0.0) {
                     break;
                 }
                 hi = lo;
-                lo *= 4.0;
+                lo *= if hi == start { 1.0 + START } else { 4.0 };
             }
         }
-        let start = if start > lo && start < hi { start } else { 0.5 * (lo + hi) };
-        let residual = |w: f64| Ok::<_, ()>((self.force(w), -self.stiffness(w)));
-        roots::newton_bracketed(residual, lo, hi, start, 1e-13 * lo.abs().max(hi)).map_or(start, |r| r.x)
+        let tolerance = RESOLUTION * lo.abs().max(hi);
+        let residual = |w: f64| {
+            let f = self.force(w);
+            Ok::<_, ()>((f, -self.stiffness(w, f)))
+        };
+        roots::newton_bracketed(residual, lo, hi, start, tolerance).map_or(start, |r| r.x)
     }
 }
 
@@ -163,7 +171,7 @@ impl Pack {
         }
         let b = self.axial_balance(i, self.nearest(i));
         let w = b.away * self.at.places[i].v;
-        let rate = b.stiffness(w) / (self.geo.rings[i].mass * self.omega);
+        let rate = b.stiffness(w, b.force(w)) / (self.geo.rings[i].mass * self.omega);
         let stiff = rate / LEAST_RATE - 1.0;
         if stiff.is_nan() || stiff <= 0.0 {
             return -1.0;
