@@ -186,6 +186,9 @@ pub struct Options {
     pub rtol: f64,
     /// Absolute error per step, one per state.
     pub atol: Vec<f64>,
+    /// States whose value says nothing about the accuracy they need (a position, whose origin is arbitrary): for them
+    /// `atol` alone counts. One per state; empty: none.
+    pub absolute: Vec<bool>,
     /// Absolute error per step, one per quadrature; empty: quadratures take no part in the error control.
     pub atol_quad: Vec<f64>,
     /// First step; 0 lets the integrator choose.
@@ -201,12 +204,23 @@ pub struct Options {
 }
 
 impl Options {
+    /// Whether `atol` alone counts for state or quadrature `i`.
+    pub(crate) fn is_absolute(&self, i: usize) -> bool {
+        self.absolute.get(i).copied().unwrap_or(false)
+    }
+
+    /// Relative error of state or quadrature `i`.
+    pub(crate) fn relative(&self, i: usize) -> f64 {
+        if self.is_absolute(i) { 0.0 } else { self.rtol }
+    }
+
     /// Relative tolerance `rtol`, absolute `rtol * scale`; quadratures outside the error control.
     #[must_use]
     pub fn new(rtol: f64, scale: &[f64]) -> Self {
         Self {
             rtol,
             atol: scale.iter().map(|s| s * rtol).collect(),
+            absolute: Vec::new(),
             atol_quad: Vec::new(),
             h_init: 0.0,
             h_max: f64::INFINITY,

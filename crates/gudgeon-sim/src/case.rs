@@ -489,7 +489,7 @@ impl Default for Solver {
     fn default() -> Self {
         Self {
             method: Method::Implicit,
-            tolerance: quantity(1e-5),
+            tolerance: quantity(1e-4),
             integrator: IntegratorName::Rodas,
             periodicity: quantity(1e-4),
             max_cycles: 40,

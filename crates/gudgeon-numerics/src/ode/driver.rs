@@ -75,13 +75,13 @@ impl Core {
     #[inline]
     pub(crate) fn scale(&self, opts: &Options, i: usize) -> f64 {
         let a = if i < self.n { opts.atol[i] } else { opts.atol_quad[i - self.n] };
-        a + opts.rtol * self.x0[i].abs().max(self.x1[i].abs())
+        a + opts.relative(i) * self.x0[i].abs().max(self.x1[i].abs())
     }
 
     /// Sets the pivot weights from the scales at the start of the step.
     pub(crate) fn set_weights(&mut self, opts: &Options) {
         for i in 0..self.n {
-            let s = opts.atol[i] + opts.rtol * self.x0[i].abs();
+            let s = opts.atol[i] + opts.relative(i) * self.x0[i].abs();
             self.weight[i] = if s > 0.0 { 1.0 / s } else { 1.0 };
         }
     }
@@ -225,7 +225,7 @@ fn check<S: OdeSystem + ?Sized>(
     if o.atol.iter().chain(&o.atol_quad).any(|a| !(*a >= 0.0 && a.is_finite())) {
         return bad("an absolute tolerance is negative or not finite");
     }
-    if o.rtol == 0.0 && o.atol.iter().chain(&o.atol_quad).any(|a| *a == 0.0) {
+    if (o.rtol == 0.0 || !o.absolute.is_empty()) && o.atol.iter().chain(&o.atol_quad).any(|a| *a == 0.0) {
         return bad("relative and absolute tolerance are both zero");
     }
     if breakpoints.iter().any(|b| b.is_nan()) || breakpoints.windows(2).any(|w| w[1] < w[0]) {

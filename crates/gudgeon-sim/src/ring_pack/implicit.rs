@@ -84,15 +84,18 @@ impl OdeSystem for Problem<'_> {
     }
 }
 
-/// Most steps of a cycle, a hundred times what a pack needs: beyond it the case asks for something that cannot be followed, such as
+/// Most steps of a cycle, fifty times what a pack needs: beyond it the case asks for something that cannot be followed, such as
 /// the contact of a ring without mass.
-const MOST_STEPS: u64 = 100_000;
+const MOST_STEPS: u64 = 30_000;
 /// How far two cycles from nearly the same state may differ, in tolerances: steps accepted here and rejected there.
-const NOISE: f64 = 10.0;
+const NOISE: f64 = 3.0;
 /// First step of a cycle \[rad\].
 const FIRST_STEP: f64 = 1e-3;
 /// Velocity that counts as one in the error norm, in clearances per radian: what matters of a velocity is the distance it covers.
 const VELOCITY_SCALE: f64 = 100.0;
+/// Height that counts as one in the error norm, in clearances: the films on the flanks are a hundredth of a clearance thick, and
+/// their force goes with the cube.
+const POSITION_SCALE: f64 = 0.01;
 
 enum Method {
     Rodas(Box<Rodas>),
@@ -105,6 +108,7 @@ struct Cycle<'a> {
     method: Method,
     breakpoints: Vec<f64>,
     scale: Vec<f64>,
+    absolute: Vec<bool>,
     base: Base,
     h: f64,
     stats: Stats,
@@ -125,6 +129,7 @@ impl Cycle<'_> {
         mut sampler: Option<&mut Sampler>,
     ) -> Result<(), IntegrateError> {
         let mut options = Options::new(rtol, &self.scale);
+        options.absolute.clone_from(&self.absolute);
         // No step may jump over a pressure pulse: 10 degrees at most.
         options.h_max = 10f64.to_radians();
         options.max_steps = MOST_STEPS;
@@ -357,8 +362,11 @@ pub(super) fn run(
     for k in &mut scale[..pack.layout.gas] {
         *k = 0.1;
     }
+    let mut absolute = vec![false; dim];
     for k in pack.layout.axial.iter().flatten() {
+        absolute[*k] = true;
         scale[k + 1] = VELOCITY_SCALE;
+        scale[*k] = POSITION_SCALE;
     }
     let discrete = pack.decision_interval().is_some();
     let mut y = vec![0.0; dim];
@@ -368,6 +376,7 @@ pub(super) fn run(
         method,
         breakpoints,
         scale,
+        absolute,
         base: Base::default(),
         h: FIRST_STEP,
         stats: Stats::default(),
