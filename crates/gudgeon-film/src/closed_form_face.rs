@@ -1,5 +1,5 @@
 use gudgeon_core::geometry::FaceProfile;
-use gudgeon_core::kinds::{FaceCtx, FaceIn, FaceOut, Hydrodynamics, HydrodynamicsSpec};
+use gudgeon_core::kinds::{FaceCtx, FaceForces, FaceIn, FaceOut, Hydrodynamics, HydrodynamicsSpec};
 use gudgeon_core::{BuildError, EvalError};
 use serde::{Deserialize, Serialize};
 
@@ -170,11 +170,48 @@ struct Carried {
     size: f64,
 }
 
-/// Where the last cavity was, as a start for the next search.
+/// Where the last cavity was and at which squeeze velocity, and how its ends move with that: a start for the next search.
 #[derive(Debug, Clone, Copy)]
 struct Warm {
+    v: f64,
     xr: f64,
     xf: f64,
+    xr_v: f64,
+    xf_v: f64,
+}
+
+/// A place and the integrals of the film between it and the edge.
+#[derive(Debug, Clone, Copy)]
+struct Anchor {
+    i: usize,
+    x: f64,
+    m: Moments,
+}
+
+/// A ruptured film: its squeeze velocity, the end of the film at the leading edge and the beginning of that at the trailing
+/// edge.
+#[derive(Debug, Clone, Copy)]
+struct Ruptured {
+    v: f64,
+    i: usize,
+    x: f64,
+    q: f64,
+    front: Option<Start>,
+}
+
+/// What the quick searches find.
+#[derive(Debug, Clone, Copy)]
+enum Quick {
+    Full { v: f64, q: f64 },
+    Ruptured(Ruptured),
+}
+
+/// What a search is asked for: the film at a squeeze velocity, or that under a load. Each starts where it ended last; a ring
+/// that does not move as its film asks has two different films.
+#[derive(Debug, Clone, Copy)]
+enum Ask {
+    Rate = 0,
+    Load = 1,
 }
 
 /// A face in one sliding direction.
@@ -182,7 +219,12 @@ struct Warm {
 struct Side<S> {
     face: S,
     islands: Vec<Island>,
+    /// Where the search for either began and the safe search begins.
     warm: Option<Warm>,
+    starts: [Option<Warm>; 2],
+    /// Ends of films of the present thickness.
+    lead: Option<Anchor>,
+    trail: Option<Anchor>,
     /// Where the full film was cut last, and the last squeeze velocity of one.
     cuts: [f64; 2],
     v_cut: Option<f64>,
@@ -199,7 +241,62 @@ struct Film<S> {
 impl<S: Shape> Side<S> {
     fn new(face: S) -> Self {
         let islands = Vec::with_capacity(2 * face.pieces() + 2);
-        Self { face, islands, warm: None, cuts: [f64::NAN; 2], v_cut: None }
+        Self {
+            face,
+            islands,
+            warm: None,
+            starts: [None; 2],
+            lead: None,
+            trail: None,
+            cuts: [f64::NAN; 2],
+            v_cut: None,
+        }
+    }
+
+    fn set_film(&mut self, h: f64) {
+        if self.face.film().to_bits() != h.to_bits() {
+            self.face.set_film(h);
+            (self.lead, self.trail) = (None, None);
+        }
+    }
+
+    /// Integrals from 0 to `x` in piece `i`.
+    // Inlined so that no caller sums what it does not use.
+    #[inline(always)]
+    fn lead_to(&mut self, i: usize, x: f64) -> Moments {
+        if let Some(a) = &self.lead
+            && a.i == i
+            && let Some(m) = self.face.nearby(&a.m, x, i, a.x, x)
+        {
+            return m;
+        }
+        self.lead_anew(i, x)
+    }
+
+    #[inline(never)]
+    fn lead_anew(&mut self, i: usize, x: f64) -> Moments {
+        let m = self.face.span(0, 0.0, i, x);
+        self.lead = Some(Anchor { i, x, m });
+        m
+    }
+
+    /// Integrals from `x` in piece `i` to the end.
+    #[inline(always)]
+    fn trail_from(&mut self, i: usize, x: f64) -> Moments {
+        if let Some(a) = &self.trail
+            && a.i == i
+            && let Some(m) = self.face.nearby(&a.m, self.face.len() - x, i, x, a.x)
+        {
+            return m;
+        }
+        self.trail_anew(i, x)
+    }
+
+    #[inline(never)]
+    fn trail_anew(&mut self, i: usize, x: f64) -> Moments {
+        let m = self.face.span(i, x, self.face.pieces() - 1, self.face.len());
+        self.trail = Some(Anchor { i, x, m });
+        m
     }
 
     /// `U d + V s - q`, the pressure gradient times `h³`.
@@ -432,6 +529,18 @@ impl<S: Shape> Side<S> {
 
     /// Fills `islands` for the film at the given squeeze velocity.
     fn solve(&mut self, f: &Flow, cavitation: Cavitation) -> Result<(), EvalError> {
+        self.warm = self.starts[Ask::Rate as usize];
+        if let Some(found) = self.quick_rate(f, cavitation) {
+            self.lay(f, &found, Ask::Rate);
+            return Ok(());
+        }
+        self.search(f, cavitation)?;
+        self.starts[Ask::Rate as usize] = self.warm;
+        Ok(())
+    }
+
+    /// [`Self::solve`] by searches that always end.
+    fn search(&mut self, f: &Flow, cavitation: Cavitation) -> Result<(), EvalError> {
         self.islands.clear();
         let last = self.face.pieces() - 1;
         let len = self.face.len();
@@ -449,20 +558,7 @@ impl<S: Shape> Side<S> {
                 Lead::Rupture { q, at: Valley { i, x, head, .. } } => {
                     let m = self.face.complete(i, x, &head);
                     let w = if x > 0.0 { m.x3 / m.i3 } else { self.face.s(0.0) };
-                    self.islands.push(Island {
-                        ia: 0,
-                        xa: 0.0,
-                        pa: f.pa,
-                        ib: i,
-                        xb: x,
-                        pb: 0.0,
-                        q,
-                        w,
-                        ra: 0.0,
-                        rb: 0.0,
-                        upwards: true,
-                        m,
-                    });
+                    self.push_lead(f, i, x, 0.0, q, w, m);
                     let mut xf = len;
                     // The trailing edge has a film if there is pressure, or if the gap narrows towards it.
                     let trailing = f.pb > 0.0 || self.n(f, last, len, q) < 0.0;
@@ -475,7 +571,7 @@ impl<S: Shape> Side<S> {
                         let start = Start { i: last, x: len, q, dry: false };
                         self.middle(f, q, w, i, x, start);
                     }
-                    self.warm = Some(Warm { xr: x, xf });
+                    self.warm = Some(Warm { v: f.v, xr: x, xf, xr_v: 0.0, xf_v: 0.0 });
                 }
             },
         }
@@ -483,25 +579,36 @@ impl<S: Shape> Side<S> {
     }
 
     fn push_full(&mut self, f: &Flow, q: f64) {
-        let whole = self.face.whole();
+        let m = self.face.whole();
+        self.push_lead(f, self.face.pieces() - 1, self.face.len(), f.pb, q, m.x3 / m.i3, m);
+    }
+
+    /// The film at the leading edge, to `x` in piece `i`.
+    #[allow(clippy::too_many_arguments)]
+    fn push_lead(&mut self, f: &Flow, i: usize, x: f64, pb: f64, q: f64, w: f64, m: Moments) {
         self.islands.push(Island {
             ia: 0,
             xa: 0.0,
             pa: f.pa,
-            ib: self.face.pieces() - 1,
-            xb: self.face.len(),
-            pb: f.pb,
+            ib: i,
+            xb: x,
+            pb,
             q,
-            w: whole.x3 / whole.i3,
+            w,
             ra: 0.0,
             rb: 0.0,
             upwards: true,
-            m: whole,
+            m,
         });
     }
 
     fn push_trailing(&mut self, f: &Flow, start: Start, ie: usize, xe: f64, pe: f64, w: f64) {
         let m = self.face.span(start.i, start.x, ie, xe);
+        self.push_behind(f, start, ie, xe, pe, w, m);
+    }
+
+    #[allow(clippy::too_many_arguments)]
+    fn push_behind(&mut self, f: &Flow, start: Start, ie: usize, xe: f64, pe: f64, w: f64, m: Moments) {
         let w = if start.dry {
             // The flux constant moves with the front, and the front with v.
             let s = self.face.s(start.x);
@@ -681,28 +788,44 @@ impl<S: Shape> Side<S> {
         }
     }
 
-    /// Everything about the films found last, in this sliding direction.
-    fn report(
-        &mut self,
-        f: &Flow,
-        cavitation: Cavitation,
-        shear: CavityShear,
-        mu: f64,
-        p_cav: f64,
-    ) -> FaceOut {
+    /// Load and friction of the films found last, in this sliding direction.
+    fn forces(&mut self, f: &Flow, cavitation: Cavitation, shear: CavityShear, mu: f64) -> FaceForces {
         let h0 = self.face.film();
-        let len = self.face.len();
-        let last = self.face.pieces() - 1;
         let mut c = Carried::default();
         let (mut gradient, mut sheared, mut ends) = (0.0, 0.0, 0.0);
-        let mut high = f64::NEG_INFINITY;
-        let mut extent = (0.0, 0.0);
         for l in &self.islands {
             let m = &l.m;
             self.carry(f, l, &mut c);
             gradient += f.u * (m.i1 - h0 * m.i2) + f.v * m.x2 - l.q * m.i2;
             sheared += m.i1;
-            ends += l.pb * (h0 + self.face.drop(l.ib, l.xb)) - l.pa * (h0 + self.face.drop(l.ia, l.xa));
+            // Most ends have no pressure.
+            if l.pa != 0.0 {
+                ends -= l.pa * (h0 + self.face.drop(l.ia, l.xa));
+            }
+            if l.pb != 0.0 {
+                ends += l.pb * (h0 + self.face.drop(l.ib, l.xb));
+            }
+        }
+        let mut couette = 2.0 * f.u * sheared;
+        if shear != CavityShear::None && f.u != 0.0 {
+            couette += self.gaps_shear(f, cavitation, shear);
+        }
+        let k = 12.0 * mu;
+        let (j, viscous) = (k * gradient, mu * couette);
+        FaceForces {
+            load: k * c.load,
+            load_rate: (k * c.rate).min(0.0),
+            ring_shear: viscous - 0.5 * j,
+            liner_shear: viscous + 0.5 * j,
+            slope_force: j - k * ends,
+        }
+    }
+
+    /// Highest pressure over `12 μ` and extent of the film that has it, of the films found last.
+    fn peak(&self, f: &Flow) -> (f64, (f64, f64)) {
+        let mut high = f64::NEG_INFINITY;
+        let mut extent = (0.0, 0.0);
+        for l in &self.islands {
             let mut p = l.pa.max(l.pb);
             for i in l.ia..=l.ib {
                 if let Some(x) = self.face.crest(i, f.u, f.v, l.q)
@@ -717,56 +840,69 @@ impl<S: Shape> Side<S> {
                 extent = (l.xa, l.xb);
             }
         }
-        let mut couette = 2.0 * f.u * sheared;
-        if shear != CavityShear::None {
-            // The gaps between the films, in order along the face.
-            let lead = self.islands.first().filter(|l| l.xa <= 0.0).copied();
-            self.islands.sort_unstable_by(|a, b| a.xa.total_cmp(&b.xa));
-            let (mut i, mut x) = (0, 0.0);
-            for k in 0..=self.islands.len() {
-                let next = self.islands.get(k).map_or((last, len, last, len), |l| (l.ia, l.xa, l.ib, l.xb));
-                if next.1 > x {
-                    couette += self.gap_shear(f, cavitation, shear, lead, (i, x), (next.0, next.1));
-                }
-                (i, x) = (next.2, next.3);
+        (if self.islands.is_empty() { 0.0 } else { high }, extent)
+    }
+
+    /// `∫ u w/h dx` over the gaps between the films, in order along the face.
+    fn gaps_shear(&mut self, f: &Flow, cavitation: Cavitation, shear: CavityShear) -> f64 {
+        let (last, len) = (self.face.pieces() - 1, self.face.len());
+        let lead = self.islands.first().filter(|l| l.xa <= 0.0).map(|l| (l.q, l.ib, l.xb));
+        if let (
+            Some((q, i, x)),
+            Cavitation::MassConserving | Cavitation::SwiftStieber,
+            CavityShear::Streamers,
+        ) = (lead, cavitation, shear)
+            && self.islands.len() <= 2
+        {
+            // One gap: all but the films. Its digits count beside those of the films.
+            let front = self.islands.get(1).map_or((last, len), |l| (l.ia, l.xa));
+            if front.1 <= x {
+                return 0.0;
             }
+            let q0 = q + f.u * self.face.film();
+            if q0 - f.v * self.face.s(front.1) >= 0.0 {
+                let whole = self.face.whole();
+                let (mut i2, mut x2) = (whole.i2, whole.x2);
+                for l in &self.islands {
+                    i2 -= l.m.i2;
+                    x2 -= l.m.x2;
+                }
+                return 2.0 * (q0 * i2 - f.v * x2);
+            }
+            return self.gap_shear(f, cavitation, shear, Some(q), (i, x), front);
         }
-        if self.islands.is_empty() {
-            high = 0.0;
+        self.islands.sort_unstable_by(|a, b| a.xa.total_cmp(&b.xa));
+        let q = lead.map(|l| l.0);
+        let mut sum = 0.0;
+        let (mut i, mut x) = (0, 0.0);
+        for k in 0..=self.islands.len() {
+            let next = self.islands.get(k).map_or((last, len, last, len), |l| (l.ia, l.xa, l.ib, l.xb));
+            if next.1 > x {
+                sum += self.gap_shear(f, cavitation, shear, q, (i, x), (next.0, next.1));
+            }
+            (i, x) = (next.2, next.3);
         }
-        let k = 12.0 * mu;
-        let (j, viscous) = (k * gradient, mu * couette);
-        FaceOut {
-            load: k * c.load,
-            load_rate: (k * c.rate).min(0.0),
-            ring_shear: viscous - 0.5 * j,
-            liner_shear: viscous + 0.5 * j,
-            slope_force: j - k * ends,
-            p_max: p_cav + k * high,
-            full_film: extent,
-        }
+        sum
     }
 
     /// `∫ u w/h dx` over a stretch without full film, `w` the filled fraction.
+    #[allow(clippy::too_many_arguments)]
     fn gap_shear(
         &self,
         f: &Flow,
         cavitation: Cavitation,
         shear: CavityShear,
-        lead: Option<Island>,
+        lead: Option<f64>,
         a: (usize, f64),
         b: (usize, f64),
     ) -> f64 {
-        if f.u == 0.0 {
-            return 0.0;
-        }
         let h0 = self.face.film();
         if shear == CavityShear::Full {
             return 2.0 * f.u * self.face.span(a.0, a.1, b.0, b.1).i1;
         }
-        if let (true, Some(l)) = (cavitation != Cavitation::HalfSommerfeld, lead) {
+        if let (true, Some(q)) = (cavitation != Cavitation::HalfSommerfeld, lead) {
             // θ = (q0 - v s)/(u h), until it runs dry.
-            let q0 = l.q + f.u * h0;
+            let q0 = q + f.u * h0;
             let mut b = b;
             if f.v > 0.0 {
                 let dry = self.face.x_ref() + q0 / f.v;
@@ -868,7 +1004,7 @@ impl<S: Shape> Film<S> {
                 format!("film of {} m leaves no gap at the nearest point", inp.h),
             ));
         }
-        side.face.set_film(inp.h);
+        side.set_film(inp.h);
         let least = if self.cavitation == Cavitation::FullSommerfeld { f64::NEG_INFINITY } else { 0.0 };
         let scale = 1.0 / (12.0 * inp.mu);
         let bottom = (inp.p_bottom - inp.p_cav).max(least) * scale;
@@ -882,22 +1018,51 @@ fn finite(x: f64, what: &'static str) -> Result<f64, EvalError> {
     if x.is_finite() { Ok(x) } else { Err(EvalError::recoverable(MODEL, format!("{what} out of range"))) }
 }
 
+/// Forces in the frame of the ring, when they are numbers.
+fn told(mut o: FaceForces, turned: bool) -> Result<FaceForces, EvalError> {
+    if turned {
+        o.ring_shear = -o.ring_shear;
+        o.liner_shear = -o.liner_shear;
+        o.slope_force = -o.slope_force;
+    }
+    finite(o.load + o.load_rate + o.ring_shear + o.liner_shear + o.slope_force, "film")?;
+    Ok(o)
+}
+
 impl<S: Shape> Hydrodynamics for Film<S> {
     fn evaluate(&mut self, inp: &FaceIn, hdot: f64) -> Result<FaceOut, EvalError> {
         let (cavitation, shear) = (self.cavitation, self.shear);
         let (side, f, turned) = self.enter(inp, hdot)?;
         side.solve(&f, cavitation)?;
-        let mut o = side.report(&f, cavitation, shear, inp.mu, inp.p_cav);
-        if turned {
-            o.ring_shear = -o.ring_shear;
-            o.liner_shear = -o.liner_shear;
-            o.slope_force = -o.slope_force;
-            let len = side.face.len();
-            o.full_film = (len - o.full_film.1, len - o.full_film.0);
-        }
-        let sum = o.load + o.load_rate + o.ring_shear + o.liner_shear + o.slope_force + o.p_max;
-        finite(sum, "film")?;
-        Ok(o)
+        let o = told(side.forces(&f, cavitation, shear, inp.mu), turned)?;
+        let (high, (a, b)) = side.peak(&f);
+        let len = side.face.len();
+        Ok(FaceOut {
+            load: o.load,
+            load_rate: o.load_rate,
+            ring_shear: o.ring_shear,
+            liner_shear: o.liner_shear,
+            slope_force: o.slope_force,
+            p_max: finite(inp.p_cav + 12.0 * inp.mu * high, "pressure")?,
+            full_film: if turned { (len - b, len - a) } else { (a, b) },
+        })
+    }
+
+    fn forces(&mut self, inp: &FaceIn, hdot: f64) -> Result<FaceForces, EvalError> {
+        let (cavitation, shear) = (self.cavitation, self.shear);
+        let (side, f, turned) = self.enter(inp, hdot)?;
+        side.solve(&f, cavitation)?;
+        told(side.forces(&f, cavitation, shear, inp.mu), turned)
+    }
+
+    fn load(&mut self, inp: &FaceIn, hdot: f64) -> Result<(f64, f64), EvalError> {
+        let cavitation = self.cavitation;
+        let (side, f, _) = self.enter(inp, hdot)?;
+        side.solve(&f, cavitation)?;
+        let c = side.carried(&f);
+        let k = 12.0 * inp.mu;
+        finite(c.load + c.rate, "film")?;
+        Ok((k * c.load, (k * c.rate).min(0.0)))
     }
 
     fn squeeze_rate(&mut self, inp: &FaceIn, load: f64) -> Result<f64, EvalError> {
@@ -905,7 +1070,17 @@ impl<S: Shape> Hydrodynamics for Film<S> {
         let (side, mut f, _) = self.enter(inp, load)?;
         let target = load / (12.0 * inp.mu);
         f.v = 0.0;
-        side.squeeze(&mut f, cavitation, target)
+        side.squeeze(&mut f, cavitation, target)?;
+        Ok(f.v)
+    }
+
+    fn carry(&mut self, inp: &FaceIn, load: f64) -> Result<(f64, FaceForces), EvalError> {
+        let (cavitation, shear) = (self.cavitation, self.shear);
+        let (side, mut f, turned) = self.enter(inp, load)?;
+        let target = load / (12.0 * inp.mu);
+        f.v = 0.0;
+        side.squeeze(&mut f, cavitation, target)?;
+        Ok((f.v, told(side.forces(&f, cavitation, shear, inp.mu), turned)?))
     }
 
     fn profile(&mut self, inp: &FaceIn, hdot: f64, out: &mut [(f64, f64, f64)]) -> Result<(), EvalError> {
@@ -927,163 +1102,357 @@ impl<S: Shape> Hydrodynamics for Film<S> {
 }
 
 impl<S: Shape> Side<S> {
-    /// The squeeze velocity at which the film carries `target` (over `12 μ`).
-    fn squeeze(&mut self, f: &mut Flow, cavitation: Cavitation, target: f64) -> Result<f64, EvalError> {
+    /// Sets `f.v` to the squeeze velocity at which the film carries `target` (over `12 μ`), and finds that film.
+    fn squeeze(&mut self, f: &mut Flow, cavitation: Cavitation, target: f64) -> Result<(), EvalError> {
         if target <= 0.0 && cavitation != Cavitation::FullSommerfeld {
             return Err(EvalError::recoverable(MODEL, "a cavitating film carries no load of zero or less"));
         }
-        if let Some(v) = self.quick(f, cavitation, target) {
-            return Ok(v);
+        self.warm = self.starts[Ask::Load as usize];
+        if let Some(found) = self.quick_load(f, cavitation, target) {
+            f.v = match found {
+                Quick::Full { v, .. } | Quick::Ruptured(Ruptured { v, .. }) => v,
+            };
+            self.lay(f, &found, Ask::Load);
+            return Ok(());
         }
-        // The full film is linear in v.
+        let full = finite(self.full_v(f, target), "squeeze velocity")?;
         let m = self.face.whole();
-        let spread = m.xx3 - m.x3 * m.x3 / m.i3;
-        let ends = self.face.s(self.face.len()) * f.pb - self.face.s(0.0) * f.pa;
-        let still = ends - f.u * m.e2 + m.x3 / m.i3 * (f.pa - f.pb + f.u * m.d2);
-        let full = finite((still - target) / spread, "squeeze velocity")?;
-        if cavitation == Cavitation::FullSommerfeld {
-            return Ok(full);
-        }
-        let unit = target / spread;
+        let unit = target / (m.xx3 - m.x3 * m.x3 / m.i3);
         if cavitation == Cavitation::HalfSommerfeld
             && let Some(v) = self.v_cut
         {
             f.v = v;
-            if let Ok(v) = self.bracketed(f, cavitation, target, unit) {
-                self.v_cut = Some(v);
-                return Ok(v);
+            if self.bracketed(f, cavitation, target, unit).is_ok() {
+                self.v_cut = Some(f.v);
+                return Ok(());
             }
         }
         f.v = full;
-        self.solve(f, cavitation)?;
-        if matches!(self.islands.as_slice(), [l] if l.xa <= 0.0 && l.xb >= self.face.len()) {
-            return Ok(full);
+        self.search(f, cavitation)?;
+        if cavitation != Cavitation::FullSommerfeld
+            && !matches!(self.islands.as_slice(), [l] if l.xa <= 0.0 && l.xb >= self.face.len())
+        {
+            self.bracketed(f, cavitation, target, unit)?;
+            self.v_cut = Some(f.v);
         }
-        let v = self.bracketed(f, cavitation, target, unit)?;
-        self.v_cut = Some(v);
-        Ok(v)
+        self.starts[Ask::Load as usize] = self.warm;
+        Ok(())
     }
 
-    /// The squeeze velocity of a ruptured film, by Newton from where the cavity was last; `None` sends to the safe search.
+    /// The squeeze velocity at which a full film, which is linear in it, carries `target`.
+    fn full_v(&mut self, f: &Flow, target: f64) -> f64 {
+        let m = self.face.whole();
+        let w = m.x3 / m.i3;
+        let ends = self.face.s(self.face.len()) * f.pb - self.face.s(0.0) * f.pa;
+        let still = ends - f.u * m.e2 + w * (f.pa - f.pb + f.u * m.d2);
+        (still - target) / (m.xx3 - m.x3 * w)
+    }
+
+    /// Whether the quick searches know this film: one cavity at most.
+    fn simple(&self, f: &Flow, cavitation: Cavitation) -> bool {
+        self.face.convex()
+            && f.u > 0.0
+            && matches!(cavitation, Cavitation::MassConserving | Cavitation::SwiftStieber)
+    }
+
+    /// Fills `islands` with what a quick search found and keeps it as a start.
+    fn lay(&mut self, f: &Flow, found: &Quick, ask: Ask) {
+        self.islands.clear();
+        self.starts[ask as usize] = match found {
+            Quick::Full { q, .. } => {
+                self.push_full(f, *q);
+                None
+            }
+            Quick::Ruptured(r) => {
+                let m = self.lead_to(r.i, r.x);
+                let w = m.x3 / m.i3;
+                self.push_lead(f, r.i, r.x, 0.0, r.q, w, m);
+                let rising = f.u * self.face.slope(r.i, r.x) + f.v;
+                let xr_v = (w - self.face.s(r.x)) / rising;
+                let (mut xf, mut xf_v) = (self.face.len(), 0.0);
+                if let Some(start) = r.front {
+                    let m = self.trail_from(start.i, start.x);
+                    self.push_behind(f, start, self.face.pieces() - 1, xf, f.pb, w, m);
+                    xf = start.x;
+                    if !start.dry {
+                        let h = self.face.film() + self.face.drop(start.i, xf);
+                        xf_v = (m.x3 - w * m.i3) * (h * h * h) / self.n(f, start.i, xf, start.q);
+                    }
+                }
+                Some(Warm { v: f.v, xr: r.x, xf, xr_v, xf_v })
+            }
+        };
+    }
+
+    /// The film at a squeeze velocity, from where its cavity was last; `None` sends to the safe search.
     ///
-    /// The place of rupture gives the squeeze velocity and with it the load in closed form, so the unknown is that place,
-    /// and with it the place of reformation. The load never falls with the place of rupture: whatever start converges,
-    /// converges to the one solution, and only rounding depends on the start.
-    fn quick(&mut self, f: &Flow, cavitation: Cavitation, target: f64) -> Option<f64> {
-        let warm = self.warm?;
-        if !self.face.convex()
-            || !(cavitation == Cavitation::MassConserving
-                || (cavitation == Cavitation::SwiftStieber && f.u > 0.0))
-        {
+    /// A convex face has one pressure minimum, so that each of the two places is the only zero of a monotone function, and a
+    /// film that has both is ruptured: whatever start converges, converges to the one film, and only rounding depends on it.
+    fn quick_rate(&mut self, f: &Flow, cavitation: Cavitation) -> Option<Quick> {
+        if !self.simple(f, cavitation) {
             return None;
         }
-        let (len, last) = (self.face.len(), self.face.pieces() - 1);
+        if let Some(w) = self.warm
+            && let Some(r) = self.ruptured(f, cavitation, w)
+        {
+            return Some(Quick::Ruptured(r));
+        }
+        match self.full(f)? {
+            Ok(q) => Some(Quick::Full { v: f.v, q }),
+            Err(start) => self.ruptured(f, cavitation, start).map(Quick::Ruptured),
+        }
+    }
+
+    /// The film under a load, as [`Self::quick_rate`].
+    fn quick_load(&mut self, f: &Flow, cavitation: Cavitation, target: f64) -> Option<Quick> {
+        if !self.simple(f, cavitation) {
+            return None;
+        }
+        if let Some(w) = self.warm
+            && let Some(r) = self.loaded(f, cavitation, target, w)
+        {
+            return Some(Quick::Ruptured(r));
+        }
+        let mut f = *f;
+        f.v = self.full_v(&f, target);
+        if !f.v.is_finite() {
+            return None;
+        }
+        match self.full(&f)? {
+            Ok(q) => Some(Quick::Full { v: f.v, q }),
+            Err(start) => self.loaded(&f, cavitation, target, start).map(Quick::Ruptured),
+        }
+    }
+
+    /// Flux of the full film, or where it would rupture. `None` when it does at the edge itself.
+    fn full(&mut self, f: &Flow) -> Option<Result<f64, Warm>> {
+        let q = self.full_q(f);
+        if f.pa <= 0.0 && q > f.u * self.face.drop(0, 0.0) + f.v * self.face.s(0.0) {
+            return None;
+        }
+        for i in 0..self.face.pieces() {
+            if let Some(x) = self.face.valley(i, f.u, f.v, q) {
+                let m = self.lead_to(i, x);
+                let p = f.pa + m.pressure().rise(f.u, f.v, q);
+                if p >= 0.0 {
+                    break;
+                }
+                return Some(Err(Warm { v: f.v, xr: x, xf: self.behind(f, i, x, p), xr_v: 0.0, xf_v: 0.0 }));
+            }
+        }
+        Some(Ok(q))
+    }
+
+    /// Where the pressure is zero again that has the minimum `p < 0` at `x` in piece `i`, by its curvature there.
+    fn behind(&self, f: &Flow, i: usize, x: f64, p: f64) -> f64 {
+        let h = self.face.film() + self.face.drop(i, x);
+        let rising = f.u * self.face.slope(i, x) + f.v;
+        (x + (-2.0 * p * h * h * h / rising).sqrt()).min(0.5 * (x + self.face.len()))
+    }
+
+    /// The ruptured film at `f.v`, by third-order steps from `start`.
+    fn ruptured(&mut self, f: &Flow, cavitation: Cavitation, start: Warm) -> Option<Ruptured> {
+        let len = self.face.len();
+        // Straight on from the last film, when that is not far.
+        let on = |x: f64, slope: f64| {
+            let (step, room) = (slope * (f.v - start.v), 0.2 * x.min(len - x));
+            if step.abs() <= room { x + step } else { x }
+        };
+        let mut x = on(start.xr, start.xr_v);
+        let mut settled = false;
+        for _ in 0..10 {
+            let i = self.face.piece_of(x);
+            let m = self.lead_to(i, x);
+            let (s, d, slope) = (self.face.s(x), self.face.drop(i, x), self.face.slope(i, x));
+            let h = self.face.film() + d;
+            let rising = f.u * slope + f.v;
+            // A film of almost no length: too few digits here.
+            if !(x > 0.0 && x < len && rising > 0.0 && s * m.i3 - m.x3 > 1e-3 * m.x3.abs()) {
+                return None;
+            }
+            let e = f.pa + m.pressure().rise(f.u, f.v, f.u * d + f.v * s);
+            let newton = e / (rising * m.i3);
+            let curve = f.u * self.face.bend() / rising + 1.0 / (h * h * h * m.i3);
+            let dx = newton / (1.0 + 0.5 * newton * curve).max(0.25);
+            settled = newton.abs() * (curve.abs() + 1.0 / x) <= 3e-5;
+            let next = (x + dx).clamp(0.25 * x, 0.5 * (x + len));
+            settled &= self.face.piece_of(next) == i;
+            x = next;
+            if settled {
+                break;
+            }
+        }
+        let i = self.face.piece_of(x);
+        let q = f.u * self.face.drop(i, x) + f.v * self.face.s(x);
+        if !settled || f.u * self.face.slope(i, x) + f.v <= 0.0 {
+            return None;
+        }
+        let found = Ruptured { v: f.v, i, x, q, front: None };
+        if f.pb <= 0.0 {
+            return Some(found);
+        }
+        if cavitation == Cavitation::SwiftStieber {
+            return self.let_go(f, &found).then_some(found);
+        }
+        let mut xf = on(start.xf, start.xf_v);
+        if !(xf > x && xf < len) {
+            xf = 0.5 * (x + len);
+        }
+        for k in 0..10 {
+            let j = self.face.piece_of(xf);
+            let n = self.trail_from(j, xf).pressure();
+            let (qf, dry) = self.carried_to(f, q, xf, true);
+            let (hf, slope) = (self.face.film() + self.face.drop(j, xf), self.face.slope(j, xf));
+            let (nf, ih) = (self.n(f, j, xf, qf), 1.0 / hf);
+            let ih3 = ih * ih * ih;
+            let p = f.pb - n.rise(f.u, f.v, qf);
+            let (p_x, bend) = if dry {
+                (nf * ih3 + f.v * n.i3, 0.0)
+            } else {
+                (nf * ih3, (f.u * slope + f.v - 3.0 * nf * slope * ih) * ih3)
+            };
+            let newton = -p / p_x;
+            let r = newton * bend / p_x;
+            let dx = newton / (1.0 + 0.5 * r).max(0.25);
+            let next = xf + dx;
+            if next.is_nan() || (next <= x && k > 0 && !self.let_go(f, &found)) {
+                return None;
+            }
+            let inside = next > x && next < len && self.face.piece_of(next) == j;
+            if inside && dx.abs() <= (if dry { 1e-9 } else { 3e-5 }) * (len - next) && r.abs() <= 3e-5 {
+                let (qf, late) = self.carried_to(f, q, next, true);
+                return (late == dry)
+                    .then_some(Ruptured { front: Some(Start { i: j, x: next, q: qf, dry }), ..found });
+            }
+            xf = next.clamp(0.5 * (x + xf), 0.5 * (xf + len));
+        }
+        None
+    }
+
+    /// Whether the film that ends at `r.x` would, if it went on, need more than the pressure there is at the trailing edge:
+    /// whether it has ruptured.
+    fn let_go(&self, f: &Flow, r: &Ruptured) -> bool {
+        self.face.tail(r.i, r.x).rise(f.u, f.v, r.q) >= f.pb
+    }
+
+    /// The ruptured film that carries `target`: Newton's method on the squeeze velocity and both places at once, `f.v` and
+    /// `start` being the start.
+    ///
+    /// With the film at the leading edge ending where its gradient vanishes, its pressure there, `e`, changes by
+    /// `-i3 dq + x3 dv`, and the load of both films does not change with the places themselves.
+    fn loaded(&mut self, f: &Flow, cavitation: Cavitation, target: f64, start: Warm) -> Option<Ruptured> {
+        let len = self.face.len();
         let (s0, s_len) = (self.face.s(0.0), self.face.s(len));
         let trailing = cavitation == Cavitation::MassConserving && f.pb > 0.0;
-        let mut before: Option<(f64, f64, f64)> = None;
-        let (mut x, mut xf) = (warm.xr, if warm.xf < len { warm.xf } else { 0.5 * (warm.xr + len) });
-        for _ in 0..16 {
+        let (mut v, mut x, mut xf) = (start.v, start.xr, start.xf);
+        if !(xf > x && xf < len) {
+            xf = 0.5 * (x + len);
+        }
+        for k in 0..16 {
             let i = self.face.piece_of(x);
-            let m = self.face.span(0, 0.0, i, x);
+            let m = self.lead_to(i, x);
             let (s, d) = (self.face.s(x), self.face.drop(i, x));
             let arm = s * m.i3 - m.x3;
             // A film of almost no length: too few digits here.
             if !(x > 0.0 && x < len && arm > 1e-3 * m.x3.abs()) {
                 return None;
             }
-            let v = (f.pa + f.u * (m.d2 - d * m.i3)) / arm;
-            let q = f.u * d + v * s;
+            if k == 0 && x > 0.05 * len {
+                // The velocity that belongs to a place changes less from film to film than the velocity.
+                v = (f.pa + f.u * (m.d2 - d * m.i3)) / arm;
+            }
             let rising = f.u * self.face.slope(i, x) + v;
-            if rising <= 0.0 {
+            if rising.is_nan() || rising <= 0.0 {
                 return None;
             }
-            let w = m.x3 / m.i3;
-            let dv = -rising * m.i3 / arm;
-            let mut g = -s0 * f.pa - (f.u * m.e2 + v * m.xx3 - q * m.x3) - target;
-            let mut g_v = -(m.xx3 - w * m.x3);
+            let q = f.u * d + v * s;
+            let e = f.pa + m.pressure().rise(f.u, v, q);
+            let (w, e_q) = (m.x3 / m.i3, e / m.i3);
+            let mut g = w * e - s0 * f.pa - (f.u * m.e2 + v * m.xx3 - q * m.x3) - target;
+            let mut g_v = w * m.x3 - m.xx3;
             let mut front = None;
             if trailing {
                 let j = self.face.piece_of(xf);
-                let n = self.face.span(j, xf, last, len);
-                let (sf, df) = (self.face.s(xf), self.face.drop(j, xf));
-                let hf = self.face.film() + df;
-                let dry_q = v * sf - f.u * self.face.film();
-                let dry = dry_q > q;
-                let (qf, wf) = if dry { (dry_q, sf) } else { (q, w) };
-                let lever = n.x3 - wf * n.i3;
-                let p = f.pb - (f.u * n.d2 + v * n.x3 - qf * n.i3);
-                let p_x = (f.u * df + v * sf - qf) / (hf * hf * hf) + if dry { v * n.i3 } else { 0.0 };
-                let g_x = if dry { v * lever } else { 0.0 } - p;
-                g += s_len * f.pb - sf * p - (f.u * n.e2 + v * n.xx3 - qf * n.x3);
-                g_v += sf * lever - (n.xx3 - wf * n.x3);
-                // Eliminate the front: p + p_v dv + p_x dxf = 0 with p_v = -lever.
-                g -= g_x * p / p_x;
-                g_v += g_x * lever / p_x;
-                front = Some((p, p_x, lever));
-            }
-            let dx = -g / (g_v * dv);
-            let next = x + dx;
-            let mut settled = dx.abs() <= 1e-8 * x.min(len - x);
-            let mut answer = v + dv * dx;
-            if let (Some((g1, v1, slope1)), false) = (before, trailing || settled)
-                && (g * g1).abs() <= 1e-9 * target * target
-                && g.abs() < 1e-4 * target
-            {
-                // v(g) from values and slopes at the last two points; the error is of the order of (g g1)².
-                let (slope, h) = (1.0 / g_v, g1 - g);
-                let mean = (v1 - v) / h;
-                let bend = (mean - slope) / h;
-                let twist = (slope1 - 2.0 * mean + slope) / (h * h);
-                answer = v - slope * g + g * g * (bend - twist * g1);
-                settled = true;
-            }
-            before = Some((g, v, 1.0 / g_v));
-            if let Some((p, p_x, lever)) = front {
-                let dxf = (lever * dv * dx - p) / p_x;
-                settled &= dxf.abs() <= 1e-8 * (len - xf).min(xf - x);
-                xf = (xf + dxf).min(0.5 * (xf + len));
-                if xf.is_nan() || xf <= next.min(x) {
-                    return None;
+                let n = self.trail_from(j, xf);
+                let (sf, hf) = (self.face.s(xf), self.face.film() + self.face.drop(j, xf));
+                let ih3 = 1.0 / (hf * hf * hf);
+                let fv = Flow { v, ..*f };
+                let (qf, dry) = self.carried_to(&fv, q, xf, true);
+                let nf = self.n(&fv, j, xf, qf);
+                // Flux of the trailing film: by itself, and with v.
+                let (q_e, wf) = if dry { (0.0, sf) } else { (e_q, w) };
+                let lever = n.x3 - sf * n.i3;
+                let p = f.pb - n.pressure().rise(f.u, v, qf);
+                let p_x = nf * ih3 + if dry { v * n.i3 } else { 0.0 };
+                let (p_e, p_v) = (p + n.i3 * q_e, wf * n.i3 - n.x3);
+                g += s_len * f.pb - sf * p - (f.u * n.e2 + v * n.xx3 - qf * n.x3) + lever * q_e;
+                g_v += sf * n.x3 - n.xx3 + lever * wf;
+                if dry {
+                    // The flux moves with the front: dq = v dx.
+                    g -= lever * v * p_e / p_x;
+                    g_v -= lever * v * p_v / p_x;
+                } else {
+                    // What the load is off by while the front is.
+                    g += 0.5 * p * p / p_x;
                 }
+                front = Some((j, p_e, p_v, p_x, nf, sf, dry));
             }
+            let dv = -g / g_v;
+            let dq = e_q + w * dv;
+            let dx = (dq - s * dv) / rising;
+            let next = x + dx;
             if !next.is_finite() {
                 return None;
             }
-            x = next.clamp(0.25 * x, 0.5 * (x + len));
-            if settled {
-                // The error left is of the order of dx², below rounding.
-                if trailing && xf <= x {
+            // Second order: what is left of steps of 1e-7 is near rounding.
+            let mut settled = dx.abs() <= 1e-7 * x.min(len - x);
+            let mut next_f = xf;
+            if let Some((j, p_e, p_v, p_x, nf, sf, dry)) = front {
+                let dxf = -(p_e + p_v * dv) / p_x;
+                let drift = if dry { 0.0 } else { sf * dv - dq };
+                settled &= dxf.abs() <= 1e-7 * (len - xf).min(xf - x) && drift.abs() <= 1e-7 * nf.abs();
+                next_f = xf + dxf;
+                if next_f.is_nan() {
                     return None;
                 }
-                if cavitation == Cavitation::SwiftStieber && f.pb > 0.0 {
-                    // The trailing edge holds less than the film would have there: it has let go.
-                    let i = self.face.piece_of(x);
-                    let q = f.u * self.face.drop(i, x) + answer * self.face.s(x);
-                    if self.face.tail(i, x).rise(f.u, answer, q) < f.pb {
+                settled &= self.face.piece_of(next_f) == j;
+            }
+            v += dv;
+            if settled && self.face.piece_of(next) == i {
+                let q = f.u * self.face.drop(i, next) + v * self.face.s(next);
+                let mut found = Ruptured { v, i, x: next, q, front: None };
+                let f = Flow { v, ..*f };
+                if let Some((j, .., dry)) = front {
+                    let (qf, late) = self.carried_to(&f, q, next_f, true);
+                    if late != dry || next_f <= next || next_f >= len {
                         return None;
                     }
+                    found.front = Some(Start { i: j, x: next_f, q: qf, dry });
+                } else if f.pb > 0.0 && !self.let_go(&f, &found) {
+                    return None;
                 }
-                self.warm = Some(Warm { xr: x, xf: if trailing { xf } else { len } });
-                return Some(answer);
+                return Some(found);
             }
+            x = next.clamp(0.25 * x, 0.5 * (x + len));
+            xf = next_f.clamp(0.5 * (x + xf.max(x)), 0.5 * (xf.max(x) + len));
         }
         None
     }
 
-    /// Safeguarded Newton on the load, which never rises with `v`, from `f.v`.
+    /// Safeguarded Newton on the load, which never rises with `v`, from `f.v`; leaves the film that carries it.
     fn bracketed(
         &mut self,
         f: &mut Flow,
         cavitation: Cavitation,
         target: f64,
         unit: f64,
-    ) -> Result<f64, EvalError> {
+    ) -> Result<(), EvalError> {
         let (mut lo, mut hi) = (f64::NEG_INFINITY, f64::INFINITY);
         let mut v = f.v;
         let mut reach = 0.0_f64;
         for _ in 0..400 {
             f.v = v;
-            self.solve(f, cavitation)?;
+            self.search(f, cavitation)?;
             let c = self.carried(f);
             let g = c.load - target;
             if !(g.is_finite() && c.rate.is_finite()) {
@@ -1092,7 +1461,7 @@ impl<S: Shape> Side<S> {
             // The rate of a film of no length is zero, of either sign.
             let step = g / c.rate.abs();
             if g.abs() <= 4.0 * f64::EPSILON * c.size || step.abs() <= 1e-15 * v.abs() {
-                return Ok(v);
+                return Ok(());
             }
             if g > 0.0 {
                 lo = v;
@@ -1104,7 +1473,8 @@ impl<S: Shape> Side<S> {
                 if !(next > lo && next < hi) {
                     next = 0.5 * (lo + hi);
                     if next == lo || next == hi {
-                        return Ok(next);
+                        f.v = next;
+                        return self.search(f, cavitation);
                     }
                 }
             } else {

@@ -3,7 +3,7 @@
 //! "Independent 25-digit solution": the same equations solved with 25-digit arithmetic by another program, numbers copied here.
 
 use gudgeon_core::geometry::FaceProfile;
-use gudgeon_core::kinds::{FaceCtx, FaceIn, Hydrodynamics, HydrodynamicsSpec};
+use gudgeon_core::kinds::{FaceCtx, FaceIn, FaceOut, Hydrodynamics, HydrodynamicsSpec};
 use gudgeon_film::{Cavitation, CavityShear, ClosedFormFace};
 
 use Cavitation::{FullSommerfeld, HalfSommerfeld, MassConserving, SwiftStieber};
@@ -792,6 +792,134 @@ fn squeeze_rate_inverts_the_load() {
     }
     // Without a jump the load is met to rounding.
     assert!(worst < 1e-10, "{worst:e}");
+}
+
+/// Faces with one cavity at most, whose films are found from the last one, films in their usual range, and squeeze velocities
+/// at which they are full, ruptured, or ruptured with a dry cavity.
+fn usual(r: &mut Noise) -> (FaceProfile, FaceIn, f64) {
+    let l = r.log(3e-4, 3e-3);
+    let drop = r.log(1e-7, 3e-5);
+    let face = match r.pick(&[0, 1, 2, 3]) {
+        0 => FaceProfile::Parabola {
+            length: l,
+            curvature: drop / (0.25 * l * l),
+            apex: l * (0.2 + 0.6 * r.next()),
+        },
+        1 => FaceProfile::Parabola { length: l, curvature: drop / (l * l), apex: -0.5 * l },
+        2 => table(l, &[0.0, drop]),
+        _ => table(l, &[0.6 * drop, 0.1 * drop, 0.0, 0.2 * drop, drop]),
+    };
+    let gas = [0.0, 0.0, 1e4, 1e5, 3e6];
+    let i = FaceIn {
+        h: r.log(2e-7, 2e-5),
+        u: r.pick(&[1.0, -1.0]) * r.log(0.1, 20.0),
+        p_bottom: 1e5 + r.pick(&gas),
+        p_top: 1e5 + r.pick(&gas),
+        p_cav: 1e5,
+        mu: r.log(2e-3, 2e-2),
+    };
+    let (wedge, squeeze) = sizes(&face, &i);
+    let v = r.pick(&[0.0, 1.0, -1.0]) * r.log(1e-4, 1.0) * wedge / squeeze;
+    (face, i, v)
+}
+
+/// What films of this kind are known to: the rounding of the pressures that wedge, squeeze and edges make, and of the ends of
+/// a film, a rounding of the face length.
+fn known_to(face: &FaceProfile, i: &FaceIn, v: f64, o: &FaceOut) -> f64 {
+    let (wedge, squeeze) = sizes(face, i);
+    let l = face.length();
+    let short = l / (o.full_film.1 - o.full_film.0).max(1e-30);
+    (1e-12 + 1e-14 * short) * (o.load.abs() + l * (i.p_top + i.p_bottom - 2.0 * i.p_cav))
+        + 1e-15 * l * (wedge + squeeze * v.abs())
+}
+
+#[test]
+fn the_film_before_does_not_matter() {
+    let mut r = Noise(6);
+    let mut ruptured = 0;
+    for n in 0..4000 {
+        let (face, i, v) = usual(&mut r);
+        for c in [MassConserving, SwiftStieber] {
+            let cold = film(&face, c).evaluate(&i, v).expect("solvable");
+            ruptured += usize::from(cold.full_film != (0.0, face.length()));
+            let mut f = film(&face, c);
+            // A film before that is nearly the same, of another velocity, of another thickness, of the other direction.
+            for (dh, du, dv) in [
+                (1e-8, 0.0, 0.0),
+                (0.0, 0.0, 1e-5),
+                (0.0, 0.0, 0.3),
+                (0.02, -0.03, 0.1),
+                (2.0, 1.0, -2.0),
+                (0.0, -2.0, 0.0),
+            ] {
+                let before = FaceIn { h: i.h * (1.0 + dh), u: i.u * (1.0 + du), ..i };
+                f.evaluate(&before, v * (1.0 + dv)).expect("solvable");
+                let warm = f.evaluate(&i, v).expect("solvable");
+                let tol = known_to(&face, &i, v, &cold);
+                assert!(
+                    (warm.load - cold.load).abs() <= tol,
+                    "{n} {c:?} {} {} {tol:e}\n{face:?} {i:?} {v}",
+                    warm.load,
+                    cold.load
+                );
+                // Shear is a sum over the whole face of terms of the size of the largest.
+                let size = cold.ring_shear.abs() + cold.liner_shear.abs() + cold.slope_force.abs();
+                assert!(
+                    (warm.liner_shear - cold.liner_shear).abs() <= 1e-11 * size,
+                    "{n} {c:?} {warm:?} {cold:?}"
+                );
+                assert!(
+                    (warm.ring_shear - cold.ring_shear).abs() <= 1e-11 * size,
+                    "{n} {c:?} {warm:?} {cold:?}"
+                );
+            }
+        }
+    }
+    // A third of the squeeze velocities press the films together and keep many full.
+    assert!(ruptured > 3000, "{ruptured}");
+}
+
+#[test]
+fn short_answers_agree_with_the_long_one() {
+    let mut r = Noise(7);
+    for n in 0..2000 {
+        let (face, i, v) = usual(&mut r);
+        for c in ALL {
+            let mut f = film(&face, c);
+            let o = f.evaluate(&i, v).expect("solvable");
+            // The same film found again from itself.
+            let tol = known_to(&face, &i, v, &o);
+            let forces = f.forces(&i, v).expect("solvable");
+            let (load, rate) = f.load(&i, v).expect("solvable");
+            assert!((forces.load - o.load).abs() <= tol && (load - o.load).abs() <= tol, "{n} {c:?}");
+            assert!(
+                (rate - o.load_rate).abs() <= 1e-9 * o.load_rate.abs(),
+                "{n} {c:?} {rate} {}",
+                o.load_rate
+            );
+            if o.load <= 1e6 * tol {
+                continue;
+            }
+            // One call against two of a model that has found nothing yet.
+            let (hdot, carried) = f.carry(&i, o.load).expect("solvable");
+            let mut g = film(&face, c);
+            let apart = g.squeeze_rate(&i, o.load).expect("solvable");
+            let two = g.evaluate(&i, apart).expect("solvable");
+            let jump = c == SwiftStieber && (two.load - o.load).abs() > 1e-6 * o.load;
+            if jump {
+                continue;
+            }
+            let slack = 10.0 * tol / o.load_rate.abs().max(1e-300) + 1e-13 * apart.abs();
+            assert!((hdot - apart).abs() <= slack, "{n} {c:?} {hdot} {apart} {slack:e}\n{face:?} {i:?} {v}");
+            assert!((carried.load - o.load).abs() <= 10.0 * tol, "{n} {c:?} {} {}", carried.load, o.load);
+            let size = two.ring_shear.abs() + two.liner_shear.abs() + two.slope_force.abs();
+            // Shear follows the squeeze velocity as its slack allows: pressures times film thickness.
+            let (_, squeeze) = sizes(&face, &i);
+            let drag = 1e-10 * size + slack * squeeze * i.h;
+            assert!((carried.liner_shear - two.liner_shear).abs() <= drag, "{n} {c:?} {carried:?} {two:?}");
+            assert!((carried.slope_force - two.slope_force).abs() <= drag, "{n} {c:?} {carried:?} {two:?}");
+        }
+    }
 }
 
 /// Independent 25-digit solution of the cycle below: crank angle \[deg\], film \[m\] in the periodic state, good to 1e-9.

@@ -61,7 +61,41 @@ pub struct FaceOut {
     pub full_film: (f64, f64),
 }
 
+/// The part of [`FaceOut`] that the motion of a ring depends on.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct FaceForces {
+    /// See [`FaceOut::load`].
+    pub load: f64,
+    /// See [`FaceOut::load_rate`].
+    pub load_rate: f64,
+    /// See [`FaceOut::ring_shear`].
+    pub ring_shear: f64,
+    /// See [`FaceOut::liner_shear`].
+    pub liner_shear: f64,
+    /// See [`FaceOut::slope_force`].
+    pub slope_force: f64,
+}
+
+impl FaceOut {
+    /// Load and friction alone.
+    #[must_use]
+    pub const fn forces(&self) -> FaceForces {
+        FaceForces {
+            load: self.load,
+            load_rate: self.load_rate,
+            ring_shear: self.ring_shear,
+            liner_shear: self.liner_shear,
+            slope_force: self.slope_force,
+        }
+    }
+}
+
 /// A running ring-face film.
+///
+/// [`Hydrodynamics::forces`], [`Hydrodynamics::load`] and [`Hydrodynamics::carry`] say nothing that
+/// [`Hydrodynamics::evaluate`] and [`Hydrodynamics::squeeze_rate`] do not; a model overrides them where less is less work.
+/// A model may start its search from the film it found last, but what it finds must not depend on that by more than
+/// rounding: integrators difference it.
 pub trait Hydrodynamics: Send {
     /// Load and friction for a given squeeze velocity `hdot = ∂h/∂t` \[m/s\].
     ///
@@ -76,14 +110,31 @@ pub trait Hydrodynamics: Send {
     /// As [`Hydrodynamics::evaluate`], or no convergence.
     fn squeeze_rate(&mut self, inp: &FaceIn, load: f64) -> Result<f64, EvalError>;
 
-    /// [`Hydrodynamics::squeeze_rate`] and [`Hydrodynamics::evaluate`] there, in one call: a model that has the film in hand
+    /// [`Hydrodynamics::evaluate`] without pressures and extent.
+    ///
+    /// # Errors
+    /// As [`Hydrodynamics::evaluate`].
+    fn forces(&mut self, inp: &FaceIn, hdot: f64) -> Result<FaceForces, EvalError> {
+        Ok(self.evaluate(inp, hdot)?.forces())
+    }
+
+    /// [`FaceOut::load`] \[N/m\] and [`FaceOut::load_rate`] \[N s/m²\] alone.
+    ///
+    /// # Errors
+    /// As [`Hydrodynamics::evaluate`].
+    fn load(&mut self, inp: &FaceIn, hdot: f64) -> Result<(f64, f64), EvalError> {
+        let o = self.forces(inp, hdot)?;
+        Ok((o.load, o.load_rate))
+    }
+
+    /// [`Hydrodynamics::squeeze_rate`] and [`Hydrodynamics::forces`] there, in one call: a model that has the film in hand
     /// after finding the velocity need not solve it again.
     ///
     /// # Errors
     /// As those two.
-    fn carry(&mut self, inp: &FaceIn, load: f64) -> Result<(f64, FaceOut), EvalError> {
+    fn carry(&mut self, inp: &FaceIn, load: f64) -> Result<(f64, FaceForces), EvalError> {
         let hdot = self.squeeze_rate(inp, load)?;
-        Ok((hdot, self.evaluate(inp, hdot)?))
+        Ok((hdot, self.forces(inp, hdot)?))
     }
 
     /// Film thickness and absolute pressure along the face, for plots: `out[i] = (x, h, p)` at `out.len()` equal spacings.

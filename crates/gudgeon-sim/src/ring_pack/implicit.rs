@@ -253,6 +253,7 @@ impl Sampler {
 
     fn sample(&mut self, pack: &mut Pack, theta: f64, y: &[f64]) -> Result<(), EvalError> {
         pack.evaluate(theta, y)?;
+        film_peaks(pack)?;
         self.record.push(theta, pack);
         self.next += 1;
         for (i, s) in self.start.iter_mut().enumerate() {
@@ -279,6 +280,7 @@ impl Sampler {
             let t = self.grid[self.next].min(v.t1());
             v.interpolate(t, &mut y);
             pack.evaluate(t, &y)?;
+            film_peaks(pack)?;
             self.record.push(self.grid[self.next], pack);
             self.next += 1;
         }
@@ -329,6 +331,10 @@ impl Sampler {
         let energy = worst(&self.work, &|i| self.end[i].1 - self.start[i].1);
         (Some(energy), Some(momentum))
     }
+}
+
+fn film_peaks(pack: &mut Pack) -> Result<(), EvalError> {
+    (0..pack.n_rings()).try_for_each(|i| pack.film_peak(i))
 }
 
 /// Momentum and kinetic energy of ring `i` relative to the piston.

@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 use gudgeon_core::EvalError;
 use gudgeon_core::geometry::{BackVolume, PackGeometry, RingPlace};
 use gudgeon_core::kinds::{
-    AxialForces, CylinderPressure, FaceIn, FaceOut, FilmTemperature, FlankDamping, FlankFriction, GasFlow,
+    AxialForces, CylinderPressure, FaceForces, FaceIn, FilmTemperature, FlankDamping, FlankFriction, GasFlow,
     GasIn, GasOut, Hydrodynamics, Kinematics, Motion, Oil, PistonMotion, RingMotion,
 };
 
@@ -117,7 +117,9 @@ pub struct RingInstant {
     /// Part of it that solid contact carries \[N/m\].
     pub contact: f64,
     /// Film, summed over the lands.
-    pub film: FaceOut,
+    pub film: FaceForces,
+    /// Highest pressure of the film \[Pa\], as of the last [`Pack::film_peak`].
+    pub film_p_max: f64,
     /// Whether `film` belongs to `hdot`.
     pub film_known: bool,
     /// Friction that the convention counts \[N\], whole ring, along the liner's velocity.
@@ -381,13 +383,16 @@ impl Pack {
     }
 
     /// Film of ring `i` at squeeze velocity `hdot`, summed over the lands.
-    pub fn film(&mut self, i: usize, hdot: f64) -> Result<FaceOut, EvalError> {
+    ///
+    /// # Errors
+    /// What the film refuses.
+    pub fn film(&mut self, i: usize, hdot: f64) -> Result<FaceForces, EvalError> {
         let lands = self.rings[i].films.len();
-        let mut sum = FaceOut::default();
+        let mut sum = FaceForces::default();
         for land in 0..lands {
             let inp = self.face_in(i, land);
             self.counters.film += 1;
-            let o = self.rings[i].films[land].evaluate(&inp, hdot)?;
+            let o = self.rings[i].films[land].forces(&inp, hdot)?;
             let twice = lands == 2 && self.conv.twin_land_friction == TwinLandFriction::LowerTwice;
             let share = if !twice {
                 1.0
@@ -401,10 +406,35 @@ impl Pack {
             sum.ring_shear += share * o.ring_shear;
             sum.liner_shear += share * o.liner_shear;
             sum.slope_force += share * o.slope_force;
-            sum.p_max = sum.p_max.max(o.p_max);
-            sum.full_film = o.full_film;
         }
         Ok(sum)
+    }
+
+    /// Load of the film of ring `i` at squeeze velocity `hdot` and its derivative, summed over the lands.
+    fn film_load(&mut self, i: usize, hdot: f64) -> Result<(f64, f64), EvalError> {
+        let mut sum = (0.0, 0.0);
+        for land in 0..self.rings[i].films.len() {
+            let inp = self.face_in(i, land);
+            self.counters.film += 1;
+            let (load, rate) = self.rings[i].films[land].load(&inp, hdot)?;
+            sum = (sum.0 + load, sum.1 + rate);
+        }
+        Ok(sum)
+    }
+
+    /// Sets the highest film pressure of ring `i`, which only records need.
+    ///
+    /// # Errors
+    /// What the film refuses.
+    pub fn film_peak(&mut self, i: usize) -> Result<(), EvalError> {
+        let mut high = 0.0_f64;
+        for land in 0..self.rings[i].films.len() {
+            let inp = self.face_in(i, land);
+            self.counters.film += 1;
+            high = high.max(self.rings[i].films[land].evaluate(&inp, self.at.rings[i].hdot)?.p_max);
+        }
+        self.at.rings[i].film_p_max = high;
+        Ok(())
     }
 
     /// Squeeze velocity \[m/s\] from the radial balance. Sets `load`, `contact` and `hdot` of the ring.
@@ -416,12 +446,25 @@ impl Pack {
         // Smooth maximum: equal to the load within floor²/load.
         let soft = |w: f64| 0.5 * (w + (w * w + 4.0 * floor * floor).sqrt());
         let needed = load - contact;
+        let line = &self.rings[i].contact;
+        let (lowest, band) = line.floor.map_or((THINNEST, 1.0), |f| (f, line.band));
+        if h <= lowest {
+            // On the floor: does the film at rest carry less than it must?
+            let film = self.film(i, 0.0)?;
+            if film.load <= soft(needed + self.radial_friction(i, 0.0)) {
+                let r = &mut self.at.rings[i];
+                (r.load, r.contact, r.hdot) = (load, contact, 0.0);
+                (r.film, r.film_known) = (film, true);
+                return Ok(());
+            }
+        }
         let (found, film) = if self.rings[i].films.len() == 1 && self.rings[i].friction.is_off() {
             self.counters.film += 1;
             let inp = self.face_in(i, 0);
-            self.rings[i].films[0].carry(&inp, soft(needed))?
+            let (hdot, film) = self.rings[i].films[0].carry(&inp, soft(needed))?;
+            (hdot, Some(film))
         } else {
-            self.solve_balance(i, needed, soft)?
+            (self.solve_balance(i, needed, soft)?, None)
         };
         let mut hdot = found;
         hdot /= (1.0 + (hdot / RADIAL_SPEED) * (hdot / RADIAL_SPEED)).sqrt();
@@ -432,35 +475,29 @@ impl Pack {
             let furthest = g.h_max(liner).min(liner - g.piston_radius_above);
             hdot *= ((furthest - h) / (LIMIT_BAND * furthest)).clamp(0.0, 1.0);
         } else {
-            let line = &self.rings[i].contact;
-            let (floor, band) = line.floor.map_or((THINNEST, 1.0), |f| (f, line.band));
-            hdot *= ((h - floor) / (band * floor)).clamp(0.0, 1.0);
+            hdot *= ((h - lowest) / (band * lowest)).clamp(0.0, 1.0);
         }
         // Off its limits a ring moves as its film allows, and the film found with the velocity is the film of the instant.
-        let known = (hdot - found).abs() <= 1e-6 * found.abs();
+        let film = film.filter(|_| (hdot - found).abs() <= 1e-6 * found.abs());
         let r = &mut self.at.rings[i];
-        (r.load, r.contact, r.hdot, r.film, r.film_known) = (load, contact, hdot, film, known);
+        (r.load, r.contact, r.hdot, r.film_known) = (load, contact, hdot, film.is_some());
+        r.film = film.unwrap_or(r.film);
         Ok(())
     }
 
     /// Balance of several lands, or with flank friction: film load less needed load falls with `hdot`; bracket and Newton.
-    fn solve_balance(
-        &mut self,
-        i: usize,
-        needed: f64,
-        soft: impl Fn(f64) -> f64,
-    ) -> Result<(f64, FaceOut), EvalError> {
+    fn solve_balance(&mut self, i: usize, needed: f64, soft: impl Fn(f64) -> f64) -> Result<f64, EvalError> {
         let perimeter = self.perimeter(i) * self.geo.rings[i].rails as f64;
         let axial = self.flank_load(i);
-        let residual = |p: &mut Self, x: f64| -> Result<(f64, f64, FaceOut), EvalError> {
-            let o = p.film(i, x)?;
+        let residual = |p: &mut Self, x: f64| -> Result<(f64, f64), EvalError> {
+            let (load, rate) = p.film_load(i, x)?;
             let f = &p.rings[i].friction;
             let (fa, dfa) = if f.is_off() {
                 (0.0, 0.0)
             } else {
                 (f.force(x, axial) / perimeter, f.slope(x, axial) / perimeter)
             };
-            Ok((o.load - soft(needed + fa), o.load_rate - dfa, o))
+            Ok((load - soft(needed + fa), rate - dfa))
         };
         let (mut lo, mut hi) = (f64::NEG_INFINITY, f64::INFINITY);
         // The velocity of the last evaluation, a small step away, is a good start.
@@ -471,14 +508,13 @@ impl Pack {
         let scale = soft(needed).abs().max(1e-300);
         let mut stride = 1e-4;
         for _ in 0..200 {
-            let (f, d, o) = residual(self, x)?;
+            let (f, d) = residual(self, x)?;
             if f.abs() <= 1e-12 * scale {
-                return Ok((x, o));
+                return Ok(x);
             }
-            // Newton's method squares a small error: the next step from here ends within 1e-9, and the film is that of a
-            // velocity 1e-5 away.
+            // Newton's method squares a small error: the next step from here ends within 1e-9.
             if f.abs() <= 1e-5 * scale && (x - f / d).is_finite() {
-                return Ok((x - f / d, o));
+                return Ok(x - f / d);
             }
             if f > 0.0 {
                 lo = x
@@ -497,7 +533,7 @@ impl Pack {
                 if f > 0.0 { x + stride } else { x - stride }
             };
             if bracketed && (hi - lo) <= 1e-14 * (hi.abs().max(lo.abs())) + 1e-18 || next == x {
-                return Ok((x, o));
+                return Ok(x);
             }
             x = next;
         }
@@ -720,7 +756,8 @@ impl Pack {
         let contact = self.rings[i].contact.load(self.at.places[i].h);
         let r = &mut self.at.rings[i];
         (r.hdot, r.film_known, r.load, r.contact) = (hdot, false, load, contact);
-        self.friction(i)
+        self.friction(i)?;
+        self.film_peak(i)
     }
 
     /// Pressures for the masses as they are, shared with the rings.

@@ -151,7 +151,7 @@ impl Record {
                 put(r.contact * circumference);
                 put(r.friction);
                 put(r.power);
-                put(r.film.p_max);
+                put(r.film_p_max);
                 put(r.mu);
             }
         }
