@@ -74,6 +74,9 @@ struct RingLinks {
     face: Option<usize>,
     /// Node of the space behind the ring.
     back: Option<usize>,
+    /// The pressure behind the ring is the mean of these two nodes': its own volume twice, the land below twice when it is drained
+    /// into that, both lands when it has no room.
+    behind: [usize; 2],
 }
 
 /// A gas-flow model over a pack.
@@ -210,6 +213,11 @@ impl<M: Passages> Pack<M> {
                     gap: link(above, below),
                     face: M::FACE.then(|| link(above, below)),
                     back: backs[i],
+                    behind: match (backs[i], pack.rings[i].back) {
+                        (Some(node), _) => [node; 2],
+                        (None, BackVolume::Drained) => [below; 2],
+                        (None, _) => [above, below],
+                    },
                 }
             })
             .collect();
@@ -332,13 +340,9 @@ impl<M: Passages> Pack<M> {
         for (p, &node) in out.p_land.iter_mut().zip(&self.lands) {
             *p = self.net.pressure(node);
         }
-        for i in 0..self.links.len() {
-            let (above, below) = (out.p_land[i], out.p_land[i + 1]);
-            out.p_back[i] = match (self.links[i].back, self.pack.rings[i].back) {
-                (Some(node), _) => self.net.pressure(node),
-                (None, BackVolume::Drained) => below,
-                (None, _) => 0.5 * (above + below),
-            };
+        for (p, links) in out.p_back.iter_mut().zip(&self.links) {
+            let [a, b] = links.behind;
+            *p = 0.5 * (self.net.pressure(a) + self.net.pressure(b));
         }
     }
 
@@ -434,14 +438,8 @@ impl<M: Passages> GasFlow for Pack<M> {
         }
         for (i, links) in self.links.iter().enumerate() {
             let columns = i * m..(i + 1) * m;
-            let p_back = &mut out.p_back[columns.clone()];
-            match (links.back, self.pack.rings[i].back) {
-                (Some(node), _) => add(p_back, node, 1.0),
-                (None, BackVolume::Drained) => add(p_back, self.lands[i + 1], 1.0),
-                (None, _) => {
-                    add(p_back, self.lands[i], 0.5);
-                    add(p_back, self.lands[i + 1], 0.5);
-                }
+            for node in links.behind {
+                add(&mut out.p_back[columns.clone()], node, 0.5);
             }
             let arriving = if links.back.is_some() { links.lower } else { links.upper };
             for (last, rows) in [(links.upper, &mut out.flow_in), (arriving, &mut out.flow_out)] {
@@ -462,7 +460,7 @@ impl<M: Passages> GasFlow for Pack<M> {
         out: &mut GasOut,
     ) -> Result<(), EvalError> {
         // A ring touches its own passages and the space behind it, which no other ring's passage reaches.
-        let RingLinks { upper, lower, gap, face, back } = self.links[ring];
+        let RingLinks { upper, lower, gap, face, back, .. } = self.links[ring];
         let place = &inp.rings[ring];
         let before = back.map(|node| (node, self.net.node(node)));
         if let Some(node) = back {
