@@ -55,6 +55,9 @@ const TOLERANCES: [f64; 6] = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8];
 
 struct GasNet {
     net: Network,
+    /// Time of the last Jacobian and the rates by time that came with it.
+    at: f64,
+    by_time: [f64; N + 2],
     invariants: Vec<LinearInvariant>,
 }
 
@@ -72,7 +75,19 @@ impl GasNet {
         net.set_pressure("bench", CC, CRANKCASE).expect("a pressure");
         // What leaves the chamber goes into the volumes or the crankcase.
         let terms = (0..=N).map(|row| (row, 1.0)).chain([(N + 1, -1.0)]).collect();
-        Self { net, invariants: vec![LinearInvariant { pivot: N + 1, terms }] }
+        Self {
+            net,
+            at: f64::NAN,
+            by_time: [0.0; N + 2],
+            invariants: vec![LinearInvariant { pivot: N + 1, terms }],
+        }
+    }
+
+    fn set(&mut self, t: f64, y: &[f64]) -> Result<(), EvalError> {
+        for (i, (&m, v)) in y.iter().zip(VOLUMES).enumerate() {
+            self.net.set_mass("bench", i, m, v)?;
+        }
+        self.net.set_pressure("bench", CH, chamber(t * OMEGA).0)
     }
 
     fn start() -> [f64; N] {
@@ -107,10 +122,11 @@ impl GasNet {
     }
 }
 
-/// Pressure in the chamber \[Pa\]: compression and a combustion pulse.
-fn chamber(deg: f64) -> f64 {
-    1e5 * (1.0 + 11.0 * (-((deg - 360.0) / 55.0).powi(2)).exp())
-        + 68e5 * (-0.5 * ((deg - 370.0) / 18.0).powi(2)).exp()
+/// Pressure in the chamber \[Pa\], compression and a combustion pulse, and its derivative \[Pa/deg\].
+fn chamber(deg: f64) -> (f64, f64) {
+    let (a, b) = ((deg - 360.0) / 55.0, (deg - 370.0) / 18.0);
+    let (compression, combustion) = (11e5 * (-a * a).exp(), 68e5 * (-0.5 * b * b).exp());
+    (1e5 + compression + combustion, -2.0 * a / 55.0 * compression - b / 18.0 * combustion)
 }
 
 impl OdeSystem for GasNet {
@@ -124,16 +140,36 @@ impl OdeSystem for GasNet {
     }
 
     fn rhs(&mut self, t: f64, y: &[f64], f: &mut [f64]) -> Result<(), EvalError> {
-        for (i, (&m, v)) in y.iter().zip(VOLUMES).enumerate() {
-            self.net.set_mass("bench", i, m, v)?;
-        }
-        self.net.set_pressure("bench", CH, chamber(t * OMEGA))?;
+        self.set(t, y)?;
         self.net.update_flows();
         let (rates, quadratures) = f.split_at_mut(N);
         self.net.rates(rates);
         quadratures[0] = self.net.flow(7) + self.net.flow(8);
         quadratures[1] = self.net.flow(0) + self.net.flow(1);
         Ok(())
+    }
+
+    fn jacobian(&mut self, t: f64, y: &[f64], _: &[f64], jac: &mut [f64]) -> Result<bool, EvalError> {
+        self.set(t, y)?;
+        self.net.update_slopes();
+        let (rates, quadratures) = jac.split_at_mut(N * N);
+        self.net.jacobian(rates);
+        quadratures.fill(0.0);
+        for (row, link) in [(0, 7), (0, 8), (1, 0), (1, 1)] {
+            self.net.add_flow_gradient(link, 1.0, &mut quadratures[row * N..row * N + N]);
+        }
+        // Time enters by the pressure in the chamber alone.
+        let rate = chamber(t * OMEGA).1 * OMEGA;
+        let into = [0, 1].map(|link| self.net.slope(link)[0] * rate);
+        self.at = t;
+        self.by_time = [into[0], into[1], 0.0, 0.0, 0.0, 0.0, into[0] + into[1]];
+        Ok(true)
+    }
+
+    fn time_derivative(&mut self, t: f64, _: &[f64], _: &[f64], dfdt: &mut [f64]) -> Result<bool, EvalError> {
+        // The integrator asks for it where it has just asked for the Jacobian.
+        dfdt.copy_from_slice(&self.by_time);
+        Ok(self.at == t)
     }
 
     fn invariants(&self) -> &[LinearInvariant] {

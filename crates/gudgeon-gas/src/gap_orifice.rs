@@ -119,6 +119,7 @@ struct Areas {
 
 impl Passages for Areas {
     const NAME: &'static str = "gap_orifice";
+    const FACE: bool = false;
 
     fn passages(&self, i: usize, ring: &RingGeometry, o: &Openings) -> RingPassages {
         let gap = Passage::Orifice { area: o.gap };

@@ -23,7 +23,7 @@ mod prescribed;
 pub use gap_orifice::{BackVolumes, GapOrifice};
 pub use narrow_channel::{GasViscosity, NarrowChannel};
 pub use network::{Network, Passage, channel_conductance, sutherland_viscosity};
-pub use orifice::{FlowFunction, Orifice, OrificeFormula, OrificeLaw, Side, critical_ratio};
+pub use orifice::{FlowFunction, FlowSlopes, Orifice, OrificeFormula, OrificeLaw, Side, critical_ratio};
 pub use orifice_network::OrificeNetwork;
 pub use pack::FilmHeight;
 pub use prescribed::Prescribed;

@@ -162,6 +162,7 @@ struct Channels {
 
 impl Passages for Channels {
     const NAME: &'static str = "narrow_channel";
+    const FACE: bool = true;
 
     fn passages(&self, i: usize, ring: &RingGeometry, o: &Openings) -> RingPassages {
         let k = self.per_ring[i];

@@ -2,7 +2,7 @@
 
 use gudgeon_core::{BuildError, EvalError};
 
-use crate::orifice::{OrificeLaw, Side};
+use crate::orifice::{FlowSlopes, OrificeLaw, Side};
 
 /// What lets gas through between two nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -72,7 +72,26 @@ struct Link {
     from: usize,
     to: usize,
     passage: Passage,
+    /// That of a plain orifice, 0 for everything else.
+    area: f64,
 }
+
+/// A node and what its links need of it, computed once for all of them.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Node {
+    /// `R T` \[J/kg\].
+    rt: f64,
+    side: Side,
+    /// `1 / p` \[1/Pa\]; 0 before a pressure is set.
+    inv_p: f64,
+    /// `C_d p / sqrt(R T)`, the choked flow per area but for its constant \[kg/(s m²)\].
+    strength: f64,
+    /// `∂p/∂m = R T / V` \[Pa/kg\].
+    per_mass: f64,
+}
+
+/// Links that are computed together.
+const LANES: usize = 4;
 
 /// Gas volumes, each at its own constant temperature, and boundaries at given pressures, joined by passages.
 ///
@@ -87,10 +106,18 @@ struct Link {
 #[derive(Debug, Clone)]
 pub struct Network {
     law: OrificeLaw,
-    rt: Vec<f64>,
-    sides: Vec<Side>,
+    nodes: Vec<Node>,
     links: Vec<Link>,
+    /// One per link, filled up with zeros to whole lanes; so are `front` and `drop`.
     flow: Vec<f64>,
+    /// What stands before `ψ` in the orifice law \[kg/s\].
+    front: Vec<f64>,
+    /// Relative pressure drop, positive in the direction of the link.
+    drop: Vec<f64>,
+    /// Whether any link has been more than an orifice.
+    others: bool,
+    /// Derivatives of the flows by the pressures of both ends.
+    slope: Vec<[f64; 2]>,
     volumes: usize,
 }
 
@@ -107,22 +134,35 @@ impl Network {
         volumes: usize,
         links: &[(usize, usize)],
     ) -> Result<Self, BuildError> {
-        let rt: Vec<f64> = temperatures.iter().map(|t| gas_constant * t).collect();
-        if let Some(i) = rt.iter().position(|rt| !(*rt > 0.0 && rt.is_finite())) {
+        let possible = |t: &f64| gas_constant * t > 0.0 && (gas_constant * t).is_finite();
+        if let Some(i) = temperatures.iter().position(|t| !possible(t)) {
             return Err(BuildError::new(format!(
                 "the gas temperature {} K with the gas constant {gas_constant} J/(kg K) is not possible",
                 temperatures[i]
             )));
         }
-        if volumes > rt.len() || links.iter().any(|&(a, b)| a.max(b) >= rt.len()) {
-            return Err(BuildError::new(format!("the gas network has only {} nodes", rt.len())));
+        let count = temperatures.len();
+        if volumes > count || links.iter().any(|&(a, b)| a.max(b) >= count) {
+            return Err(BuildError::new(format!("the gas network has only {count} nodes")));
         }
+        let node = |t: &f64| {
+            let rt = gas_constant * t;
+            let side = Side { p: 0.0, inv_sqrt_rt: rt.sqrt().recip() };
+            Node { rt, side, inv_p: 0.0, strength: 0.0, per_mass: 0.0 }
+        };
+        let padded = links.len().next_multiple_of(LANES);
         Ok(Self {
             law,
-            sides: rt.iter().map(|rt| Side { p: 0.0, inv_sqrt_rt: rt.sqrt().recip() }).collect(),
-            rt,
-            links: links.iter().map(|&(from, to)| Link { from, to, passage: Passage::Closed }).collect(),
-            flow: vec![0.0; links.len()],
+            nodes: temperatures.iter().map(node).collect(),
+            links: links
+                .iter()
+                .map(|&(from, to)| Link { from, to, passage: Passage::Closed, area: 0.0 })
+                .collect(),
+            flow: vec![0.0; padded],
+            front: vec![0.0; padded],
+            drop: vec![0.0; padded],
+            others: false,
+            slope: vec![[0.0; 2]; links.len()],
             volumes,
         })
     }
@@ -136,7 +176,7 @@ impl Network {
     /// `R T` of a node \[J/kg\].
     #[must_use]
     pub fn rt(&self, node: usize) -> f64 {
-        self.rt[node]
+        self.nodes[node].rt
     }
 
     /// Sets the pressure of a volume \[Pa\] from its mass \[kg\] and size \[m³\].
@@ -152,16 +192,16 @@ impl Network {
         volume: f64,
     ) -> Result<(), EvalError> {
         if mass > 0.0 && volume > 0.0 {
-            let p = mass * self.rt[node] / volume;
-            if p.is_finite() {
-                self.sides[node].p = p;
+            let n = &mut self.nodes[node];
+            let per_mass = n.rt / volume;
+            let p = mass * per_mass;
+            if p >= f64::MIN_POSITIVE && p.is_finite() {
+                n.per_mass = per_mass;
+                n.set(p, self.law.discharge());
                 return Ok(());
             }
         }
-        Err(EvalError::recoverable(
-            model,
-            format!("a gas volume of {volume:e} m3 holds a mass of {mass:e} kg"),
-        ))
+        Err(refused_volume(model, mass, volume))
     }
 
     /// Sets the pressure of a boundary \[Pa\].
@@ -170,31 +210,136 @@ impl Network {
     /// Recoverable, when it is not positive.
     #[inline]
     pub fn set_pressure(&mut self, model: &'static str, node: usize, p: f64) -> Result<(), EvalError> {
-        if p > 0.0 && p.is_finite() {
-            self.sides[node].p = p;
+        if p >= f64::MIN_POSITIVE && p.is_finite() {
+            self.nodes[node].set(p, self.law.discharge());
             Ok(())
         } else {
-            Err(EvalError::recoverable(model, format!("a boundary has the absolute pressure {p:e} Pa")))
+            Err(refused_pressure(model, p))
         }
+    }
+
+    /// A node as it is, for [`restore_node`](Self::restore_node).
+    pub(crate) fn node(&self, node: usize) -> Node {
+        self.nodes[node]
+    }
+
+    /// Puts back a node as it was.
+    pub(crate) fn restore_node(&mut self, node: usize, as_it_was: Node) {
+        self.nodes[node] = as_it_was;
     }
 
     /// Opens or closes a link.
     #[inline]
     pub fn set_passage(&mut self, link: usize, passage: Passage) {
-        self.links[link].passage = passage;
+        let link = &mut self.links[link];
+        link.passage = passage;
+        link.area = match passage {
+            Passage::Orifice { area } => area,
+            Passage::Closed => 0.0,
+            _ => {
+                self.others = true;
+                0.0
+            }
+        };
     }
 
     /// Pressure of a node \[Pa\].
     #[inline]
     #[must_use]
     pub fn pressure(&self, node: usize) -> f64 {
-        self.sides[node].p
+        self.nodes[node].side.p
+    }
+
+    /// `∂p/∂m = R T / V` \[Pa/kg\] of a volume, for the size at the last [`set_mass`](Self::set_mass).
+    #[inline]
+    #[must_use]
+    pub fn pressure_per_mass(&self, node: usize) -> f64 {
+        self.nodes[node].per_mass
     }
 
     /// Computes the flows through all links from the pressures and passages set before.
     pub fn update_flows(&mut self) {
-        for (link, flow) in self.links.iter().zip(&mut self.flow) {
-            *flow = through(&self.law, link.passage, self.sides[link.from], self.sides[link.to]);
+        if self.law.is_truncated() {
+            for (link, flow) in self.links.iter().zip(&mut self.flow) {
+                *flow = through(&self.law, &self.nodes, link);
+            }
+            return;
+        }
+        let nodes = self.nodes.as_slice();
+        for ((link, front), drop) in self.links.iter().zip(&mut self.front).zip(&mut self.drop) {
+            (*front, *drop) = orifice(link.area, &nodes[link.from], &nodes[link.to]);
+        }
+        let lanes = self.front.as_chunks::<LANES>().0.iter().zip(self.drop.as_chunks::<LANES>().0);
+        for (flow, (front, drop)) in self.flow.as_chunks_mut::<LANES>().0.iter_mut().zip(lanes) {
+            let psi = self.law.psi_lanes(*drop);
+            *flow = std::array::from_fn(|i| (front[i] * psi[i]).copysign(drop[i]));
+        }
+        if self.others {
+            for (link, flow) in self.links.iter().zip(&mut self.flow) {
+                if !matches!(link.passage, Passage::Orifice { .. } | Passage::Closed) {
+                    *flow = through(&self.law, nodes, link);
+                }
+            }
+        }
+    }
+
+    /// Computes the flow through one link alone, and gives what it was before.
+    pub(crate) fn update_flow(&mut self, link: usize) -> f64 {
+        let flow = through(&self.law, &self.nodes, &self.links[link]);
+        std::mem::replace(&mut self.flow[link], flow)
+    }
+
+    /// Puts back a flow that was found before.
+    #[inline]
+    pub(crate) fn restore_flow(&mut self, link: usize, flow: f64) {
+        self.flow[link] = flow;
+    }
+
+    /// Computes flows and their derivatives by the pressures, see [`slope`](Self::slope) and [`jacobian`](Self::jacobian).
+    pub fn update_slopes(&mut self) {
+        for ((link, flow), slope) in self.links.iter().zip(&mut self.flow).zip(&mut self.slope) {
+            let s = slopes_through(&self.law, link.passage, &self.nodes[link.from], &self.nodes[link.to]);
+            *flow = s.flow;
+            *slope = [s.by_a, s.by_b];
+        }
+    }
+
+    /// Derivatives \[kg/(s Pa)\] of the flow through a link by the pressures of its first and of its second node, at the last
+    /// [`update_slopes`](Self::update_slopes).
+    #[inline]
+    #[must_use]
+    pub fn slope(&self, link: usize) -> [f64; 2] {
+        self.slope[link]
+    }
+
+    /// Adds `factor` times the derivatives of the flow through a link by the masses of all volumes to `row` \[1/s\].
+    #[inline]
+    pub fn add_flow_gradient(&self, link: usize, factor: f64, row: &mut [f64]) {
+        let Link { from, to, .. } = self.links[link];
+        for (node, slope) in [from, to].into_iter().zip(self.slope[link]) {
+            if node < self.volumes {
+                row[node] += factor * slope * self.nodes[node].per_mass;
+            }
+        }
+    }
+
+    /// Derivatives \[1/s\] of the [`rates`](Self::rates) by the masses, row-major, one row per volume, from the last
+    /// [`update_slopes`](Self::update_slopes). The columns of a closed network add up to zero within rounding.
+    pub fn jacobian(&self, jac: &mut [f64]) {
+        let n = self.volumes;
+        jac[..n * n].fill(0.0);
+        for (&Link { from, to, .. }, slope) in self.links.iter().zip(&self.slope) {
+            for (node, slope) in [from, to].into_iter().zip(slope) {
+                if node < n {
+                    let rate = slope * self.nodes[node].per_mass;
+                    if from < n {
+                        jac[from * n + node] -= rate;
+                    }
+                    if to < n {
+                        jac[to * n + node] += rate;
+                    }
+                }
+            }
         }
     }
 
@@ -219,13 +364,50 @@ impl Network {
     }
 }
 
-/// Flow \[kg/s\] from `a` to `b`.
+impl Node {
+    #[inline]
+    fn set(&mut self, p: f64, discharge: f64) {
+        self.side.p = p;
+        self.inv_p = 1.0 / p;
+        self.strength = discharge * p * self.side.inv_sqrt_rt;
+    }
+}
+
+#[cold]
+fn refused_volume(model: &'static str, mass: f64, volume: f64) -> EvalError {
+    EvalError::recoverable(model, format!("a gas volume of {volume:e} m3 holds a mass of {mass:e} kg"))
+}
+
+#[cold]
+fn refused_pressure(model: &'static str, p: f64) -> EvalError {
+    EvalError::recoverable(model, format!("a boundary has the absolute pressure {p:e} Pa"))
+}
+
+/// What stands before `ψ`, and the relative pressure drop of an opening, positive from `a` to `b`.
 #[inline]
-fn through(law: &OrificeLaw, passage: Passage, a: Side, b: Side) -> f64 {
+fn orifice(area: f64, a: &Node, b: &Node) -> (f64, f64) {
+    let drop = a.side.p - b.side.p;
+    let up = if drop >= 0.0 { a } else { b };
+    (area * up.strength, drop * up.inv_p)
+}
+
+/// Flow \[kg/s\] through a link.
+#[inline]
+fn through(law: &OrificeLaw, nodes: &[Node], link: &Link) -> f64 {
+    let (from, to) = (&nodes[link.from], &nodes[link.to]);
+    let (a, b) = (from.side, to.side);
     let channel = |conductance: f64| conductance * (a.p - b.p) * (a.p + b.p);
-    match passage {
+    let opening = |area: f64| {
+        if law.is_truncated() {
+            return law.flow(area, a, b);
+        }
+        let (front, drop) = orifice(area, from, to);
+        let [psi] = law.psi_lanes([drop]);
+        (front * psi).copysign(drop)
+    };
+    match link.passage {
         Passage::Closed => 0.0,
-        Passage::Orifice { area } => law.flow(area, a, b),
+        Passage::Orifice { area } => opening(area),
         Passage::Channel { conductance } => channel(conductance),
         Passage::LimitedChannel { conductance, area } => {
             let c = channel(conductance);
@@ -233,7 +415,61 @@ fn through(law: &OrificeLaw, passage: Passage, a: Side, b: Side) -> f64 {
             let sum = o + (o * o + 4.0 * c * c).sqrt();
             if sum > 0.0 { 2.0 * c * (o / sum) } else { 0.0 }
         }
-        Passage::Tied { area, leak } => law.flow(area, a, b) + leak * (a.p - b.p),
+        Passage::Tied { area, leak } => opening(area) + leak * (a.p - b.p),
+    }
+}
+
+/// Flow from one node to another with its derivatives.
+fn slopes_through(law: &OrificeLaw, passage: Passage, from: &Node, to: &Node) -> FlowSlopes {
+    let (a, b) = (from.side, to.side);
+    let opening = |area: f64| {
+        if law.is_truncated() {
+            return law.flow_slopes(area, a, b);
+        }
+        let (front, drop) = orifice(area, from, to);
+        let (psi, by_up, by_down) = law.psi_slopes(drop.abs());
+        let flow = (front * psi).copysign(drop);
+        if drop >= 0.0 {
+            let front = front * from.inv_p;
+            FlowSlopes { flow, by_a: front * by_up, by_b: front * by_down }
+        } else {
+            let front = front * to.inv_p;
+            FlowSlopes { flow, by_a: -front * by_down, by_b: -front * by_up }
+        }
+    };
+    let channel = |k: f64| FlowSlopes {
+        flow: k * (a.p - b.p) * (a.p + b.p),
+        by_a: 2.0 * k * a.p,
+        by_b: -2.0 * k * b.p,
+    };
+    match passage {
+        Passage::Closed => FlowSlopes::default(),
+        Passage::Orifice { area } => opening(area),
+        Passage::Channel { conductance } => channel(conductance),
+        Passage::LimitedChannel { conductance, area } => {
+            let c = channel(conductance);
+            let o = law.flow_bare_slopes(area, a, b);
+            let size = o.flow.abs();
+            let sum = size + (size * size + 4.0 * c.flow * c.flow).sqrt();
+            if sum <= 0.0 {
+                // Near equal pressures the channel is the narrow part.
+                return c;
+            }
+            // ṁ/c + (ṁ/o)² = 1, differentiated, with k = ṁ/c and n = ṁ/o.
+            let (k, n) = (2.0 * size / sum, 2.0 * c.flow / sum);
+            let by_c = k * k / (1.0 + n * n);
+            // n carries the sign of the flow, and so does the orifice: |n|³ times its signed slope.
+            let by_o = 2.0 * n * n * n.abs() / (1.0 + n * n);
+            FlowSlopes {
+                flow: k * c.flow,
+                by_a: by_c * c.by_a + by_o * o.by_a,
+                by_b: by_c * c.by_b + by_o * o.by_b,
+            }
+        }
+        Passage::Tied { area, leak } => {
+            let o = opening(area);
+            FlowSlopes { flow: o.flow + leak * (a.p - b.p), by_a: o.by_a + leak, by_b: o.by_b - leak }
+        }
     }
 }
 
@@ -307,7 +543,7 @@ mod tests {
                 net.set_pressure("test", 1, p_b).expect("p");
                 net.update_flows();
                 let (both, channel) = (net.flow(0), net.flow(1));
-                let orifice = bare.flow(area, net.sides[0], net.sides[1]);
+                let orifice = bare.flow(area, net.nodes[0].side, net.nodes[1].side);
                 assert!(both.abs() <= channel.abs() && both.abs() <= orifice.abs() && both * channel >= 0.0);
                 // c/o is the small parameter of one limit, o/c of the other.
                 if orifice != 0.0 {

@@ -67,11 +67,16 @@ impl Orifice {
         Ok(OrificeLaw {
             flow_function: FlowFunction::new(gamma)?,
             discharge: self.discharge.si(),
-            laminar: self.laminar.si(),
+            // Zero over zero must not arise where the pressures are equal; beside any other pressure difference this vanishes.
+            laminar: self.laminar.si().max(f64::MIN_POSITIVE),
             truncated: self.law == OrificeFormula::IsentropicTruncated,
         })
     }
 }
+
+/// Relative pressure drop up to which the slope of the root follows the law: below it a Jacobian gets the slope there, 1e4,
+/// for the infinite one of the bare law at equal pressures.
+const STEEPEST: f64 = 1e-8;
 
 /// Number of coefficients of the polynomial in [`FlowFunction`].
 const COEFFICIENTS: usize = 10;
@@ -93,6 +98,8 @@ pub struct FlowFunction {
     /// `2 / u_crit`, which maps `u` to the interval -1 to 1 of the polynomial.
     scale: f64,
     q: [f64; COEFFICIENTS],
+    /// Coefficients of `dQ/du`.
+    dq: [f64; COEFFICIENTS],
 }
 
 impl FlowFunction {
@@ -114,7 +121,10 @@ impl FlowFunction {
             let u = 0.5 * u_crit * (x + 1.0);
             nozzle(gamma, u) / u.sqrt()
         });
-        Ok(Self { gamma, u_crit, scale: 2.0 / u_crit, q: chebyshev_to_powers(&nodes, &values) })
+        let scale = 2.0 / u_crit;
+        let q = chebyshev_to_powers(&nodes, &values);
+        let dq = std::array::from_fn(|i| q.get(i + 1).map_or(0.0, |c| (i + 1) as f64 * c * scale));
+        Ok(Self { gamma, u_crit, scale, q, dq })
     }
 
     /// `1 - r_c`: the relative pressure drop from which on the flow is choked.
@@ -126,15 +136,13 @@ impl FlowFunction {
     /// `Q(u)` for `u` already limited to the choking drop.
     #[inline]
     fn q(&self, u: f64) -> f64 {
-        let x = self.scale * u - 1.0;
-        let c = &self.q;
-        // Estrin's scheme: four independent products instead of a chain of nine.
-        let x2 = x * x;
-        let x4 = x2 * x2;
-        let lo = (c[0] + c[1] * x) + (c[2] + c[3] * x) * x2;
-        let mid = (c[4] + c[5] * x) + (c[6] + c[7] * x) * x2;
-        let hi = c[8] + c[9] * x;
-        lo + mid * x4 + hi * (x4 * x4)
+        estrin(&self.q, self.scale * u - 1.0)
+    }
+
+    /// `dQ/du`.
+    #[inline]
+    fn dq(&self, u: f64) -> f64 {
+        estrin(&self.dq, self.scale * u - 1.0)
     }
 
     /// `ψ` at the relative pressure drop `u = 1 - r`, `0 <= u <= 1`, by the fast form.
@@ -145,17 +153,44 @@ impl FlowFunction {
         uc.sqrt() * self.q(uc)
     }
 
-    /// `ψ_ε = ψ sqrt(u / (u + ε))` for the pressure `p` upstream and the difference `dp`, `u = dp/p`: proportional to `u` where `u << ε`.
+    /// `ψ` and `dψ/du`; the slope of the root is limited to that at `u` = 1e-8.
     #[inline]
     #[must_use]
-    pub fn psi_laminar(&self, p: f64, dp: f64, eps: f64) -> f64 {
-        if dp <= 0.0 {
-            return 0.0; // Also where 0/0 would stand for ε = 0.
-        }
-        // Two divisions that do not wait for each other.
-        let (u, laminar) = (dp / p, dp / (dp + eps * p));
+    pub fn psi_slope(&self, u: f64) -> (f64, f64) {
         let uc = u.min(self.u_crit);
-        (uc * laminar).sqrt() * self.q(uc)
+        let (root, q) = (uc.sqrt(), self.q(uc));
+        let slope =
+            if u < self.u_crit { 0.5 * q / root.max(STEEPEST.sqrt()) + root * self.dq(u) } else { 0.0 };
+        (root * q, slope)
+    }
+
+    /// `ψ_ε = ψ sqrt(u / (u + ε))`: proportional to `u` where `u << ε`. `ε > 0`.
+    #[inline]
+    #[must_use]
+    pub fn psi_laminar(&self, u: f64, eps: f64) -> f64 {
+        let uc = u.min(self.u_crit);
+        (uc * (u / (u + eps))).sqrt() * self.q(uc)
+    }
+
+    /// `ψ_ε` and `dψ_ε/du`; for an `ε` below 1e-8 the slope is limited to that at `u` = 1e-8.
+    ///
+    /// ```text
+    /// ψ_ε = u Q / sqrt(u + ε)            dψ_ε/du = [ Q + u Q' - u Q / (2 (u + ε)) ] / sqrt(u + ε)       subsonic
+    /// ψ_ε = ψ_c sqrt(u / (u + ε))        dψ_ε/du = ψ_ε ε / (2 u (u + ε))                                choked
+    /// ```
+    #[inline]
+    #[must_use]
+    pub fn psi_laminar_slope(&self, u: f64, eps: f64) -> (f64, f64) {
+        let uc = u.min(self.u_crit);
+        let q = self.q(uc);
+        let psi = (uc * (u / (u + eps))).sqrt() * q;
+        let slope = if u < self.u_crit {
+            let inverse = 1.0 / (u + eps).max(STEEPEST);
+            inverse.sqrt() * (q + u * (self.dq(u) - 0.5 * q * inverse))
+        } else {
+            0.5 * psi * eps / (u * (u + eps))
+        };
+        (psi, slope)
     }
 
     /// `ψ` by logarithms and exponentials: slow, exact to a few units in the last place.
@@ -163,6 +198,17 @@ impl FlowFunction {
     pub fn psi_exact(&self, u: f64) -> f64 {
         nozzle(self.gamma, u.min(self.u_crit))
     }
+}
+
+/// Polynomial by Estrin's scheme: four independent products instead of a chain of nine.
+#[inline]
+fn estrin(c: &[f64; COEFFICIENTS], x: f64) -> f64 {
+    let x2 = x * x;
+    let x4 = x2 * x2;
+    let lo = (c[0] + c[1] * x) + (c[2] + c[3] * x) * x2;
+    let mid = (c[4] + c[5] * x) + (c[6] + c[7] * x) * x2;
+    let hi = c[8] + c[9] * x;
+    lo + mid * x4 + hi * (x4 * x4)
 }
 
 /// Critical pressure ratio `(2/(γ+1))^(γ/(γ-1))`.
@@ -233,58 +279,148 @@ pub struct Side {
     pub inv_sqrt_rt: f64,
 }
 
+/// A flow and its derivatives by the pressures on both sides.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct FlowSlopes {
+    /// Flow \[kg/s\] from `a` to `b`.
+    pub flow: f64,
+    /// Its derivative by the pressure of `a` \[kg/(s Pa)\].
+    pub by_a: f64,
+    /// Its derivative by the pressure of `b` \[kg/(s Pa)\].
+    pub by_b: f64,
+}
+
 impl OrificeLaw {
     /// Flow \[kg/s\] from `a` to `b` through the geometric area \[m²\]. Pressures must not be negative.
     #[inline]
     #[must_use]
     pub fn flow(&self, area: f64, a: Side, b: Side) -> f64 {
-        self.directed(area, a, b, |law, p, dp| law.psi_laminar(p, dp, self.laminar))
+        self.directed(area, a, b, |law, u| law.psi_laminar(u, self.laminar))
     }
 
     /// The same without the laminar branch: what an opening in series with a laminar resistance needs.
     #[inline]
     #[must_use]
     pub fn flow_bare(&self, area: f64, a: Side, b: Side) -> f64 {
-        self.directed(area, a, b, |law, p, dp| law.psi(dp / p))
+        self.directed(area, a, b, FlowFunction::psi)
     }
 
     /// The same as [`flow`](Self::flow), by logarithms and exponentials.
     #[must_use]
     pub fn flow_exact(&self, area: f64, a: Side, b: Side) -> f64 {
-        self.directed(area, a, b, |law, p, dp| {
-            if dp <= 0.0 { 0.0 } else { law.psi_exact(dp / p) * (dp / (dp + self.laminar * p)).sqrt() }
-        })
+        self.directed(area, a, b, |law, u| law.psi_exact(u) * (u / (u + self.laminar)).sqrt())
+    }
+
+    /// [`flow`](Self::flow) with its derivatives by both pressures, one-sided where the law has a kink (at equal pressures between
+    /// sides of different temperature). With `C = C_d A / sqrt(R T_u)`:
+    ///
+    /// ```text
+    /// ∂ṁ/∂p_u = C [ ψ + (1 - u) dψ/du ]        ∂ṁ/∂p_d = -C dψ/du
+    /// ```
+    ///
+    /// Where the slope of the law is infinite, at equal pressures without a laminar branch, that at `u` = 1e-8 stands for it.
+    #[inline]
+    #[must_use]
+    pub fn flow_slopes(&self, area: f64, a: Side, b: Side) -> FlowSlopes {
+        self.directed_slopes(area, a, b, |law, u| law.psi_laminar_slope(u, self.laminar))
+    }
+
+    /// [`flow_bare`](Self::flow_bare) with its derivatives, as [`flow_slopes`](Self::flow_slopes).
+    #[inline]
+    #[must_use]
+    pub fn flow_bare_slopes(&self, area: f64, a: Side, b: Side) -> FlowSlopes {
+        self.directed_slopes(area, a, b, FlowFunction::psi_slope)
+    }
+
+    /// `ψ_ε` of the isentropic form at relative pressure drops of either sign, for several openings at once.
+    #[inline]
+    pub(crate) fn psi_lanes<const N: usize>(&self, u: [f64; N]) -> [f64; N] {
+        std::array::from_fn(|i| self.flow_function.psi_laminar(u[i].abs(), self.laminar))
+    }
+
+    /// `ψ_ε` of the isentropic form at the relative pressure drop `u`, and the derivatives of `p_u ψ_ε` by the pressures upstream
+    /// and downstream.
+    #[inline]
+    pub(crate) fn psi_slopes(&self, u: f64) -> (f64, f64, f64) {
+        let (psi, slope) = self.flow_function.psi_laminar_slope(u, self.laminar);
+        (psi, psi + (1.0 - u) * slope, -slope)
+    }
+
+    /// Discharge coefficient.
+    pub(crate) const fn discharge(&self) -> f64 {
+        self.discharge
+    }
+
+    /// Whether the truncated form stands in for the isentropic one.
+    pub(crate) const fn is_truncated(&self) -> bool {
+        self.truncated
     }
 
     #[inline]
-    fn directed(&self, area: f64, a: Side, b: Side, psi: impl Fn(&FlowFunction, f64, f64) -> f64) -> f64 {
+    fn directed(&self, area: f64, a: Side, b: Side, psi: impl Fn(&FlowFunction, f64) -> f64) -> f64 {
         let forward = a.p >= b.p;
         let (up, down) = if forward { (a, b) } else { (b, a) };
-        let magnitude = if self.truncated {
-            self.truncated_flow(area, up, down)
-        } else if up.p > 0.0 {
-            self.discharge * area * up.p * up.inv_sqrt_rt * psi(&self.flow_function, up.p, up.p - down.p)
-        } else {
-            0.0
-        };
-        if forward { magnitude } else { -magnitude }
-    }
-
-    /// The printed form: `k A p_u sqrt(2/(R T_u)) sqrt(γ/(γ-1) [r^(2/γ) - r^((γ+1)/γ)])`, choked `0.259` in place of the root of the bracket.
-    fn truncated_flow(&self, area: f64, up: Side, down: Side) -> f64 {
         if up.p <= 0.0 {
             return 0.0;
         }
-        let g = self.flow_function.gamma;
-        let r = down.p / up.p;
-        let front = self.discharge * area * up.p * std::f64::consts::SQRT_2 * up.inv_sqrt_rt;
-        if r >= TRUNCATED_RATIO {
-            // Rounding can make the bracket negative at r = 1.
-            let bracket = (r.powf(2.0 / g) - r.powf((g + 1.0) / g)).max(0.0);
-            front * (g / (g - 1.0) * bracket).sqrt()
+        let psi = if self.truncated {
+            self.truncated(down.p / up.p)
         } else {
-            TRUNCATED_FACTOR * front * (g / (g - 1.0)).sqrt()
+            psi(&self.flow_function, (up.p - down.p) / up.p)
+        };
+        let magnitude = self.discharge * area * up.p * up.inv_sqrt_rt * psi;
+        if forward { magnitude } else { -magnitude }
+    }
+
+    #[inline]
+    fn directed_slopes(
+        &self,
+        area: f64,
+        a: Side,
+        b: Side,
+        psi: impl Fn(&FlowFunction, f64) -> (f64, f64),
+    ) -> FlowSlopes {
+        let forward = a.p >= b.p;
+        let (up, down) = if forward { (a, b) } else { (b, a) };
+        if up.p <= 0.0 {
+            return FlowSlopes::default();
         }
+        let u = (up.p - down.p) / up.p;
+        let (psi, slope) =
+            if self.truncated { self.truncated_slope(down.p / up.p) } else { psi(&self.flow_function, u) };
+        let flow = self.discharge * area * up.p * up.inv_sqrt_rt * psi;
+        let front = self.discharge * area * up.inv_sqrt_rt;
+        let (by_up, by_down) = (front * (psi + (1.0 - u) * slope), -front * slope);
+        if forward {
+            FlowSlopes { flow, by_a: by_up, by_b: by_down }
+        } else {
+            FlowSlopes { flow: -flow, by_a: -by_down, by_b: -by_up }
+        }
+    }
+
+    /// `ψ` of the printed form, `sqrt(2) sqrt(γ/(γ-1) [r^(2/γ) - r^((γ+1)/γ)])`, choked `0.259` in place of the root of the bracket.
+    fn truncated(&self, r: f64) -> f64 {
+        let g = self.flow_function.gamma;
+        let root = if r >= TRUNCATED_RATIO {
+            // Rounding can make the bracket negative at r = 1.
+            (r.powf(2.0 / g) - r.powf((g + 1.0) / g)).max(0.0).sqrt()
+        } else {
+            TRUNCATED_FACTOR
+        };
+        (2.0 * g / (g - 1.0)).sqrt() * root
+    }
+
+    /// The same and its derivative by `u = 1 - r`, limited to that at `u` = 1e-8.
+    fn truncated_slope(&self, r: f64) -> (f64, f64) {
+        let g = self.flow_function.gamma;
+        let psi = self.truncated(r);
+        if r < TRUNCATED_RATIO {
+            return (psi, 0.0);
+        }
+        // ψ² = k [r^a - r^b], and k (b - a) u near r = 1.
+        let (a, b, k) = (2.0 / g, (g + 1.0) / g, 2.0 * g / (g - 1.0));
+        let rise = k * (b * r.powf(b - 1.0) - a * r.powf(a - 1.0));
+        (psi, 0.5 * rise / psi.max((k * (b - a) * STEEPEST).sqrt()))
     }
 
     /// Ratio of specific heats.
@@ -404,11 +540,11 @@ mod tests {
 
     #[test]
     fn continuous_with_zero_slope_at_choking() {
-        for eps in [0.0, 1e-3] {
+        for eps in [f64::MIN_POSITIVE, 1e-3] {
             for (gamma, ..) in CRITICAL {
                 let f = FlowFunction::new(gamma).expect("gamma");
                 let (uc, d) = (f.choking_drop(), 1e-6);
-                let psi = |u: f64| f.psi_laminar(1.0, u, eps);
+                let psi = |u: f64| f.psi_laminar(u, eps);
                 let (below, at, above) = (psi(uc - d), psi(uc), psi(uc + d));
                 // The curvature of ψ is about -3, so the parabola falls by 2e-12 over d; the laminar factor has the slope ε/2u²;
                 // the interpolation error 1e-9 of ψ has a slope of at most 9² 1e-9/u_c by Markov's inequality.
@@ -485,6 +621,101 @@ mod tests {
                 assert_eq!(law.flow(0.0, side(2e5, 300.0), side(1e5, 400.0)), 0.0);
             }
         }
+    }
+
+    /// Derivative by central differences of fourth order, and what it cannot resolve.
+    fn central(f: impl Fn(f64) -> f64, x: f64, d: f64) -> (f64, f64) {
+        let (near, far) = (f(x + d) - f(x - d), f(x + 2.0 * d) - f(x - 2.0 * d));
+        let slope = (8.0 * near - far) / (12.0 * d);
+        // Eight roundings of the values, divided by d.
+        (slope, 8.0 * f64::EPSILON * f(x).abs() / d)
+    }
+
+    #[test]
+    fn slopes_agree_with_differences() {
+        let mut rng = Lcg(3);
+        let (mut choked, mut laminar, mut reversed) = (0, 0, 0);
+        for formula in [OrificeFormula::Isentropic, OrificeFormula::IsentropicTruncated] {
+            for eps in [0.0, 1e-3, 0.1] {
+                let law = law(Orifice { law: formula, laminar: quantity(eps), ..Orifice::default() });
+                for k in 0..3000 {
+                    let p = 10f64.powf(4.0 + 3.0 * rng.next());
+                    // Drops from 1e-6 to nearly everything, evenly in their logarithm, in both directions.
+                    let u = 10f64.powf(-6.0 * rng.next());
+                    let (mut a, mut b) = (
+                        side(p, 300.0 + 500.0 * rng.next()),
+                        side(p * (1.0 - u), 300.0 + 500.0 * rng.next()),
+                    );
+                    if k % 2 == 1 {
+                        (a, b) = (b, a);
+                        reversed += 1;
+                    }
+                    let critical = match formula {
+                        OrificeFormula::Isentropic => law.flow_function.u_crit,
+                        OrificeFormula::IsentropicTruncated => 1.0 - TRUNCATED_RATIO,
+                    };
+                    choked += i32::from(u > critical);
+                    laminar += i32::from(u < eps);
+                    // A step of 2e-3 of the distance to the nearest singularity (equal pressures, the linear branch at ε, choking):
+                    // the error of fourth order is below 4e-12 times a derivative of fifth order scaled with that distance.
+                    let d = 1e-3 * p * u.min(1.0 - u).min((u - critical).abs());
+                    if d < 1e-9 * p {
+                        continue;
+                    }
+                    for bare in [false, true] {
+                        let flow = |a: Side, b: Side| {
+                            if bare { law.flow_bare(1e-7, a, b) } else { law.flow(1e-7, a, b) }
+                        };
+                        let slopes =
+                            if bare { law.flow_bare_slopes(1e-7, a, b) } else { law.flow_slopes(1e-7, a, b) };
+                        assert_eq!(slopes.flow, flow(a, b));
+                        let (by_a, noise_a) = central(|p| flow(Side { p, ..a }, b), a.p, d);
+                        let (by_b, noise_b) = central(|p| flow(a, Side { p, ..b }), b.p, d);
+                        // The drop itself is rounded to 1e-16 of p: 1e-16 p ∂²ṁ/∂p² at most, which is below slope 1e-16/u,
+                        // and in each difference below slope 1e-16 p / d.
+                        let size = slopes.by_a.abs().max(slopes.by_b.abs());
+                        let rounding = 8.0 * f64::EPSILON * p / d * size;
+                        for (is, by, noise) in [(slopes.by_a, by_a, noise_a), (slopes.by_b, by_b, noise_b)] {
+                            assert!(
+                                (is - by).abs() <= 1e-9 * size + noise + rounding,
+                                "{formula:?} {eps} {bare} u {u:e}: {is:e} {by:e}"
+                            );
+                        }
+                        // More pressure on its own side, more flow, always.
+                        assert!(slopes.by_a >= 0.0);
+                    }
+                }
+            }
+        }
+        assert!(choked > 500 && laminar > 1000 && reversed > 1000, "{choked} {laminar} {reversed}");
+    }
+
+    #[test]
+    fn slopes_at_equal_pressures() {
+        let (p, t) = (2e5, 400.0f64);
+        let c = 0.86 * 1e-7 / (287.0 * t).sqrt();
+        for eps in [1e-3f64, 0.1] {
+            let law = law(Orifice { laminar: quantity(eps), ..Orifice::default() });
+            let s = law.flow_slopes(1e-7, side(p, t), side(p, t));
+            // ψ_ε -> u sqrt(2/ε); the fast form of ψ is right within 2e-9.
+            let slope = c * (2.0 / eps).sqrt();
+            assert_eq!(s.flow, 0.0);
+            assert!((s.by_a / slope - 1.0).abs() < 2e-9 && s.by_b == -s.by_a);
+        }
+        // The bare laws: infinite, given as at u = 1e-8, where ψ = sqrt(2u); the next term of ψ is of the order u.
+        for law in [law(bare(OrificeFormula::Isentropic)), law(bare(OrificeFormula::IsentropicTruncated))] {
+            for s in [
+                law.flow_slopes(1e-7, side(p, t), side(p, t)),
+                law.flow_bare_slopes(1e-7, side(p, t), side(p, t)),
+            ] {
+                let steepest = c * (0.5 / STEEPEST).sqrt();
+                // The laminar form has no more than twice that slope at 0: it is linear below its ε.
+                let ratio = s.by_a / steepest;
+                assert!((0.99..2.01).contains(&ratio) && s.by_b == -s.by_a && s.flow == 0.0, "{s:?} {ratio}");
+            }
+        }
+        let law = law(Orifice::default());
+        assert_eq!(law.flow_slopes(1e-7, side(0.0, t), side(0.0, t)), FlowSlopes::default());
     }
 
     #[test]

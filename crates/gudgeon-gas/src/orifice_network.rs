@@ -123,6 +123,7 @@ struct Areas {
 
 impl Passages for Areas {
     const NAME: &'static str = "orifice_network";
+    const FACE: bool = false;
 
     fn passages(&self, _: usize, ring: &RingGeometry, o: &Openings) -> RingPassages {
         let face = TAU * (o.liner_radius - o.h) * ring.leak_face;

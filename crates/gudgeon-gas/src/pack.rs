@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use gudgeon_core::geometry::{BackVolume, PackGeometry, RingGeometry, RingPlace};
-use gudgeon_core::kinds::{GasFlow, GasIn, GasOut};
+use gudgeon_core::kinds::{GasFlow, GasIn, GasOut, GasSlopes};
 use gudgeon_core::{BuildError, EvalError};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -58,6 +58,8 @@ pub(crate) struct RingPassages {
 pub(crate) trait Passages: Send {
     /// Name of the model.
     const NAME: &'static str;
+    /// Whether any ring has a passage past its face.
+    const FACE: bool;
     /// The passages of ring `i`. Upper and lower flank are ignored for a sealed ring, the lower one for a drained groove.
     fn passages(&self, i: usize, ring: &RingGeometry, o: &Openings) -> RingPassages;
     /// Whether the passages themselves (not gap, clearance and volume) depend on `Openings::h`.
@@ -69,9 +71,12 @@ struct RingLinks {
     upper: Option<usize>,
     lower: Option<usize>,
     gap: usize,
-    face: usize,
+    face: Option<usize>,
     /// Node of the space behind the ring.
     back: Option<usize>,
+    /// The pressure behind the ring is the mean of these two nodes': its own volume twice, the land below twice when it is drained
+    /// into that, both lands when it has no room.
+    behind: [usize; 2],
 }
 
 /// A gas-flow model over a pack.
@@ -206,8 +211,13 @@ impl<M: Passages> Pack<M> {
                     },
                     lower: backs[i].map(|b| link(b, below)),
                     gap: link(above, below),
-                    face: link(above, below),
+                    face: M::FACE.then(|| link(above, below)),
                     back: backs[i],
+                    behind: match (backs[i], pack.rings[i].back) {
+                        (Some(node), _) => [node; 2],
+                        (None, BackVolume::Drained) => [below; 2],
+                        (None, _) => [above, below],
+                    },
                 }
             })
             .collect();
@@ -282,7 +292,7 @@ impl<M: Passages> Pack<M> {
     }
 
     /// Pressures of all nodes.
-    fn set_pressures(&mut self, inp: &GasIn<'_>, state: &[f64], out: &mut GasOut) -> Result<(), EvalError> {
+    fn set_pressures(&mut self, inp: &GasIn<'_>, state: &[f64]) -> Result<(), EvalError> {
         let n = self.links.len();
         self.net.set_pressure(M::NAME, self.lands[0], inp.p_cylinder)?;
         self.net.set_pressure(M::NAME, self.lands[n], inp.p_crankcase)?;
@@ -296,18 +306,55 @@ impl<M: Passages> Pack<M> {
                 self.net.set_mass(M::NAME, node, state[node], volume)?;
             }
         }
+        Ok(())
+    }
+
+    /// The passages of ring `i` as they are now.
+    fn set_passages(&mut self, i: usize, place: &RingPlace) -> Result<(), EvalError> {
+        let o = self.openings(i, place)?;
+        let links = self.links[i];
+        let p = self.model.passages(i, &self.pack.rings[i], &o);
+        if let Some(l) = links.upper {
+            self.net.set_passage(l, p.upper);
+        }
+        if let Some(l) = links.lower {
+            self.net.set_passage(l, p.lower);
+        }
+        self.net.set_passage(links.gap, p.gap);
+        if let Some(l) = links.face {
+            self.net.set_passage(l, p.face);
+        }
+        Ok(())
+    }
+
+    /// Everything the flows follow from.
+    fn set(&mut self, inp: &GasIn<'_>, state: &[f64]) -> Result<(), EvalError> {
+        self.set_pressures(inp, state)?;
+        for (i, place) in inp.rings.iter().enumerate().take(self.links.len()) {
+            self.set_passages(i, place)?;
+        }
+        Ok(())
+    }
+
+    fn tell_pressures(&self, out: &mut GasOut) {
         for (p, &node) in out.p_land.iter_mut().zip(&self.lands) {
             *p = self.net.pressure(node);
         }
-        for i in 0..n {
-            let (above, below) = (out.p_land[i], out.p_land[i + 1]);
-            out.p_back[i] = match (self.links[i].back, self.pack.rings[i].back) {
-                (Some(node), _) => self.net.pressure(node),
-                (None, BackVolume::Drained) => below,
-                (None, _) => 0.5 * (above + below),
-            };
+        for (p, links) in out.p_back.iter_mut().zip(&self.links) {
+            let [a, b] = links.behind;
+            *p = 0.5 * (self.net.pressure(a) + self.net.pressure(b));
         }
-        Ok(())
+    }
+
+    fn tell_flows(&self, d_state: &mut [f64], out: &mut GasOut) {
+        self.net.rates(d_state);
+        for (i, links) in self.links.iter().enumerate() {
+            let flow = |link: Option<usize>| link.map_or(0.0, |l| self.net.flow(l));
+            let direct = self.net.flow(links.gap) + flow(links.face);
+            let upper = flow(links.upper);
+            out.flow_in[i] = direct + upper;
+            out.flow_out[i] = direct + if links.back.is_some() { flow(links.lower) } else { upper };
+        }
     }
 }
 
@@ -353,7 +400,9 @@ impl<M: Passages> GasFlow for Pack<M> {
     }
 
     fn pressures(&mut self, inp: &GasIn<'_>, state: &[f64], out: &mut GasOut) -> Result<(), EvalError> {
-        self.set_pressures(inp, state, out)
+        self.set_pressures(inp, state)?;
+        self.tell_pressures(out);
+        Ok(())
     }
 
     fn rates(
@@ -363,29 +412,73 @@ impl<M: Passages> GasFlow for Pack<M> {
         d_state: &mut [f64],
         out: &mut GasOut,
     ) -> Result<(), EvalError> {
-        self.set_pressures(inp, state, out)?;
-        for i in 0..self.links.len() {
-            let o = self.openings(i, &inp.rings[i])?;
-            let links = self.links[i];
-            let p = self.model.passages(i, &self.pack.rings[i], &o);
-            if let Some(l) = links.upper {
-                self.net.set_passage(l, p.upper);
-            }
-            if let Some(l) = links.lower {
-                self.net.set_passage(l, p.lower);
-            }
-            self.net.set_passage(links.gap, p.gap);
-            self.net.set_passage(links.face, p.face);
-        }
+        self.set(inp, state)?;
         self.net.update_flows();
-        self.net.rates(d_state);
-        for (i, links) in self.links.iter().enumerate() {
-            let direct = self.net.flow(links.gap) + self.net.flow(links.face);
-            let upper = links.upper.map_or(0.0, |l| self.net.flow(l));
-            out.flow_in[i] = direct + upper;
-            out.flow_out[i] = direct
-                + if links.back.is_some() { links.lower.map_or(0.0, |l| self.net.flow(l)) } else { upper };
-        }
+        self.tell_pressures(out);
+        self.tell_flows(d_state, out);
         Ok(())
+    }
+
+    fn slopes(&mut self, inp: &GasIn<'_>, state: &[f64], out: &mut GasSlopes) -> Result<bool, EvalError> {
+        self.set(inp, state)?;
+        self.net.update_slopes();
+        self.net.jacobian(&mut out.d_state);
+        let m = self.net.volumes();
+        for rows in [&mut out.p_land, &mut out.p_back, &mut out.flow_in, &mut out.flow_out] {
+            rows.fill(0.0);
+        }
+        // A pressure follows from the mass of its own volume, the boundaries from none.
+        let add = |row: &mut [f64], node: usize, factor: f64| {
+            if let Some(slot) = row.get_mut(node) {
+                *slot += factor * self.net.pressure_per_mass(node);
+            }
+        };
+        for (i, &node) in self.lands.iter().enumerate() {
+            add(&mut out.p_land[i * m..(i + 1) * m], node, 1.0);
+        }
+        for (i, links) in self.links.iter().enumerate() {
+            let columns = i * m..(i + 1) * m;
+            for node in links.behind {
+                add(&mut out.p_back[columns.clone()], node, 0.5);
+            }
+            let arriving = if links.back.is_some() { links.lower } else { links.upper };
+            for (last, rows) in [(links.upper, &mut out.flow_in), (arriving, &mut out.flow_out)] {
+                for link in [Some(links.gap), links.face, last].into_iter().flatten() {
+                    self.net.add_flow_gradient(link, 1.0, &mut rows[columns.clone()]);
+                }
+            }
+        }
+        Ok(true)
+    }
+
+    fn rates_moved(
+        &mut self,
+        ring: usize,
+        inp: &GasIn<'_>,
+        state: &[f64],
+        d_state: &mut [f64],
+        out: &mut GasOut,
+    ) -> Result<(), EvalError> {
+        // A ring touches its own passages and the space behind it, which no other ring's passage reaches.
+        let RingLinks { upper, lower, gap, face, back, .. } = self.links[ring];
+        let place = &inp.rings[ring];
+        let before = back.map(|node| (node, self.net.node(node)));
+        if let Some(node) = back {
+            self.net.set_mass(M::NAME, node, state[node], self.volume_behind(ring, place))?;
+        }
+        let outcome = self.set_passages(ring, place);
+        if outcome.is_ok() {
+            let links = [Some(gap), face, upper, lower];
+            let flows = links.map(|l| l.map(|l| (l, self.net.update_flow(l))));
+            self.tell_pressures(out);
+            self.tell_flows(d_state, out);
+            for (link, flow) in flows.into_iter().flatten() {
+                self.net.restore_flow(link, flow);
+            }
+        }
+        if let Some((node, before)) = before {
+            self.net.restore_node(node, before);
+        }
+        outcome
     }
 }

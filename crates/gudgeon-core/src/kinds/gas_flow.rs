@@ -62,6 +62,36 @@ impl GasOut {
     }
 }
 
+/// Derivatives of pressures and flows by the gas masses, the places of the rings and the boundary pressures kept: one row per
+/// quantity, row-major, one column per mass.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct GasSlopes {
+    /// Of the rates of the masses \[1/s\].
+    pub d_state: Vec<f64>,
+    /// Of the `n + 1` land pressures \[Pa/kg\].
+    pub p_land: Vec<f64>,
+    /// Of the `n` pressures behind the rings \[Pa/kg\].
+    pub p_back: Vec<f64>,
+    /// Of `flow_in` \[1/s\].
+    pub flow_in: Vec<f64>,
+    /// Of `flow_out` \[1/s\].
+    pub flow_out: Vec<f64>,
+}
+
+impl GasSlopes {
+    /// Zeros for `rings` rings and `states` masses.
+    #[must_use]
+    pub fn new(rings: usize, states: usize) -> Self {
+        Self {
+            d_state: vec![0.0; states * states],
+            p_land: vec![0.0; (rings + 1) * states],
+            p_back: vec![0.0; rings * states],
+            flow_in: vec![0.0; rings * states],
+            flow_out: vec![0.0; rings * states],
+        }
+    }
+}
+
 /// A running gas-flow model. Its states are the gas masses \[kg\] of its volumes, so that any linear-invariant-preserving
 /// integrator closes the mass balance to round-off: `Σ d_state = flow_in[0] - flow_out[n-1]` holds for every call.
 pub trait GasFlow: Send {
@@ -90,4 +120,30 @@ pub trait GasFlow: Send {
         d_state: &mut [f64],
         out: &mut GasOut,
     ) -> Result<(), EvalError>;
+
+    /// Derivatives of all that [`rates`](Self::rates) gives by the masses, all of `out` written. One-sided where the flow has a kink;
+    /// always finite. `Ok(false)`, which is what a model gets that says nothing: they are not known, and `out` is as it was.
+    ///
+    /// # Errors
+    /// As [`rates`](Self::rates).
+    fn slopes(&mut self, _inp: &GasIn<'_>, _state: &[f64], _out: &mut GasSlopes) -> Result<bool, EvalError> {
+        Ok(false)
+    }
+
+    /// The same as [`rates`](Self::rates) to the last bit, when nothing but the place of one ring has changed since the last call of
+    /// `rates` or [`slopes`](Self::slopes), and that one succeeded: a model may compute anew only what the ring touches. Such
+    /// calls may follow each other for any rings; each means that last call, with no ring moved but its own.
+    ///
+    /// # Errors
+    /// As [`rates`](Self::rates).
+    fn rates_moved(
+        &mut self,
+        _ring: usize,
+        inp: &GasIn<'_>,
+        state: &[f64],
+        d_state: &mut [f64],
+        out: &mut GasOut,
+    ) -> Result<(), EvalError> {
+        self.rates(inp, state, d_state, out)
+    }
 }

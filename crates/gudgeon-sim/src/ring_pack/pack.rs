@@ -10,7 +10,7 @@ use gudgeon_core::EvalError;
 use gudgeon_core::geometry::{BackVolume, PackGeometry, RingPlace};
 use gudgeon_core::kinds::{
     AxialForces, CylinderPressure, FaceForces, FaceIn, FilmTemperature, FlankDamping, FlankFriction, GasFlow,
-    GasIn, GasOut, Hydrodynamics, Kinematics, Motion, Oil, PistonMotion, RingMotion,
+    GasIn, GasOut, GasSlopes, Hydrodynamics, Kinematics, Motion, Oil, PistonMotion, RingMotion,
 };
 
 use super::contact_line::ContactLine;
@@ -309,6 +309,34 @@ impl Pack {
         self.gas.rates(&inp, &self.masses, &mut self.at.dm, &mut self.at.gas)?;
         self.share_pressures();
         Ok(())
+    }
+
+    /// The gas model again, after nothing but the place of ring `i` has moved since the last full call.
+    fn gas_moved(&mut self, i: usize, p_cylinder: f64) -> Result<(), EvalError> {
+        let inp = GasIn { p_cylinder, p_crankcase: self.p_crankcase, rings: &self.at.places };
+        self.counters.gas += 1;
+        self.gas.rates_moved(i, &inp, &self.masses, &mut self.at.dm, &mut self.at.gas)?;
+        self.share_pressures();
+        Ok(())
+    }
+
+    /// Derivatives of the gas model by the masses at the state of `self.at`, into `out`; `false` when it has none.
+    fn gas_slopes(&mut self, p_cylinder: f64, out: &mut GasSlopes) -> Result<bool, EvalError> {
+        let inp = GasIn { p_cylinder, p_crankcase: self.p_crankcase, rings: &self.at.places };
+        self.counters.gas += 1;
+        self.gas.slopes(&inp, &self.masses, out)
+    }
+
+    /// Pressures after a small change of mass `k` \[kg\] from `base`.
+    fn shift_pressures(&mut self, k: usize, d_mass: f64, base: &Base) {
+        let (m, s) = (self.layout.gas, &base.slopes);
+        for (i, p) in self.at.gas.p_land.iter_mut().enumerate() {
+            *p = base.gas.p_land[i] + s.p_land[i * m + k] * d_mass;
+        }
+        for (i, p) in self.at.gas.p_back.iter_mut().enumerate() {
+            *p = base.gas.p_back[i] + s.p_back[i * m + k] * d_mass;
+        }
+        self.share_pressures();
     }
 
     fn share_pressures(&mut self) {
@@ -785,10 +813,11 @@ pub struct Base {
     places: Vec<RingPlace>,
     dm: Vec<f64>,
     gas: GasOut,
+    slopes: GasSlopes,
 }
 
 impl Pack {
-    /// Jacobian of [`Pack::rates`] by differences (row-major, `layout.n` columns, quadratures below the states), `self.at`
+    /// Jacobian of [`Pack::rates`] by differences, but for the rows and columns of the gas where its model gives them (row-major, `layout.n` columns, quadratures below the states), `self.at`
     /// holding the evaluation at `y`.
     ///
     /// A perturbation is followed only as far as it reaches: velocities touch nothing but the ring's own force, heights
@@ -813,21 +842,37 @@ impl Pack {
         base.gas.clone_from(&self.at.gas);
         let p_cylinder = self.at.gas.p_land[0];
         debug_assert!(theta.is_finite());
+        if base.slopes.d_state.len() != self.layout.gas * self.layout.gas {
+            base.slopes = GasSlopes::new(self.n_rings(), self.layout.gas);
+        }
+        let known = self.gas_slopes(p_cylinder, &mut base.slopes)?;
         for k in 0..self.layout.gas {
             let d = increment(k);
-            let keep = self.masses[k];
-            self.masses[k] = (y[k] + d) * self.mass_scale[k];
-            let outcome = self.gas(Some(p_cylinder)).and_then(|()| self.column(k, d, None, base, jac));
-            self.masses[k] = keep;
+            let outcome = if known {
+                self.gas_column(k, base, jac);
+                self.shift_pressures(k, d * self.mass_scale[k], base);
+                self.followers(k, d, None, base, jac)
+            } else {
+                let keep = self.masses[k];
+                self.masses[k] = (y[k] + d) * self.mass_scale[k];
+                let outcome = self.gas(Some(p_cylinder)).and_then(|()| self.column(k, d, None, base, jac));
+                self.masses[k] = keep;
+                outcome
+            };
             self.restore(base);
             outcome?;
+        }
+        if !known {
+            // The gas model is to know the unmoved places again.
+            self.gas(Some(p_cylinder))?;
         }
         for i in 0..self.n_rings() {
             if let Some(k) = self.layout.film[i] {
                 let d = increment(k);
                 let s = self.layout.axial[i].map(|_| (base.places[i].s, base.places[i].v));
                 self.at.places[i] = self.place(i, base.places[i].liner_radius, (y[k] + d).exp(), s);
-                let outcome = self.gas(Some(p_cylinder)).and_then(|()| self.column(k, d, Some(i), base, jac));
+                let outcome =
+                    self.gas_moved(i, p_cylinder).and_then(|()| self.column(k, d, Some(i), base, jac));
                 self.restore(base);
                 outcome?;
             }
@@ -837,7 +882,7 @@ impl Pack {
                 let d = increment(k);
                 let s = (y[k] + d) * c0;
                 self.at.places[i] = self.place(i, place.liner_radius, place.h, Some((s, place.v)));
-                let outcome = self.gas(Some(p_cylinder));
+                let outcome = self.gas_moved(i, p_cylinder);
                 if outcome.is_ok() {
                     self.gas_rows(k, d, base, jac);
                     self.axial_forces(i);
@@ -862,6 +907,21 @@ impl Pack {
     fn restore(&mut self, base: &Base) {
         self.at.rings.clone_from(&base.rings);
         self.at.places.clone_from(&base.places);
+        self.at.dm.clone_from(&base.dm);
+        self.at.gas.clone_from(&base.gas);
+    }
+
+    /// Rows of the gas in the column of mass `k`, from the derivatives in `base`.
+    fn gas_column(&self, k: usize, base: &Base, jac: &mut [f64]) {
+        let (n, rings, m, s) = (self.layout.n, self.n_rings(), self.layout.gas, &base.slopes);
+        let per = self.mass_scale[k] / self.omega;
+        for r in 0..m {
+            jac[r * n + k] = s.d_state[r * m + k] / self.mass_scale[r] * per;
+        }
+        for r in 0..rings {
+            jac[(n + r) * n + k] = s.flow_in[r * m + k] * per;
+        }
+        jac[(n + rings) * n + k] = s.flow_out[(rings - 1) * m + k] * per;
     }
 
     fn gas_rows(&self, column: usize, d: f64, base: &Base, jac: &mut [f64]) {
@@ -901,6 +961,18 @@ impl Pack {
         jac: &mut [f64],
     ) -> Result<(), EvalError> {
         self.gas_rows(column, d, base, jac);
+        self.followers(column, d, moved, base, jac)
+    }
+
+    /// Rows of film, motion and friction of such a column.
+    fn followers(
+        &mut self,
+        column: usize,
+        d: f64,
+        moved: Option<usize>,
+        base: &Base,
+        jac: &mut [f64],
+    ) -> Result<(), EvalError> {
         let (n, rings) = (self.layout.n, self.n_rings());
         for i in 0..rings {
             let (a, b) = (&self.at.rings[i], &base.rings[i]);
