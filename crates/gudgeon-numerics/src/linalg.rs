@@ -108,13 +108,16 @@ pub fn lu_factor_weighted(
     for k in 0..n {
         let mut best = k;
         let mut best_size = -1.0;
-        for i in k..n {
-            let w = weights.as_ref().map_or(1.0, |w| w[i]);
-            let size = a[i * n + k].abs() * w;
+        let mut consider = |i: usize, size: f64| {
             if size > best_size {
                 best_size = size;
                 best = i;
             }
+        };
+        let column = a[k * n..n * n].chunks_exact(n).map(|row| row[k].abs());
+        match &weights {
+            Some(w) => column.zip(&w[k..]).enumerate().for_each(|(i, (x, w))| consider(k + i, x * w)),
+            None => column.enumerate().for_each(|(i, x)| consider(k + i, x)),
         }
         // Written so that a NaN pivot also fails.
         if !(best_size > 0.0 && best_size < f64::INFINITY) {
@@ -150,14 +153,22 @@ pub fn lu_solve(a: &[f64], n: usize, piv: &[usize], b: &mut [f64]) {
     for (k, &p) in piv[..n].iter().enumerate() {
         b.swap(k, p);
     }
-    for i in 1..n {
-        let (done, rest) = b.split_at_mut(i);
-        rest[0] -= dot(&a[i * n..i * n + i], done);
+    // By columns: every step adds to all that are left, and waits for one only.
+    let (a, b) = (&a[..n * n], &mut b[..n]);
+    for k in 0..n {
+        let (done, rest) = b.split_at_mut(k + 1);
+        let x = done[k];
+        for (row, b) in a[(k + 1) * n..].chunks_exact(n).zip(rest) {
+            *b -= row[k] * x;
+        }
     }
-    for i in (0..n).rev() {
-        let (head, tail) = b.split_at_mut(i + 1);
-        let s = head[i] - dot(&a[i * n + i + 1..i * n + n], &tail[..n - i - 1]);
-        head[i] = s / a[i * n + i];
+    for k in (0..n).rev() {
+        let (rest, done) = b.split_at_mut(k);
+        done[0] /= a[k * n + k];
+        let x = done[0];
+        for (row, b) in a.chunks_exact(n).zip(rest) {
+            *b -= row[k] * x;
+        }
     }
 }
 

@@ -96,15 +96,21 @@ impl Balance<'_> {
             (lo, hi) = (0.0, release);
             start = still / self.stiffness(0.0, still);
         } else {
-            // Squeeze films are linear in the approach: usually the first guess is the root, but for the rounding of its slope.
-            start = still / self.stiffness(-0.0, still);
-            (lo, hi) = (start, 0.0);
+            // Squeeze films are linear in the approach: the first guess is the root, but for the rounding of its slope, and the
+            // chord to it leads there.
+            let guess = still / self.stiffness(-0.0, still);
+            let f = self.force(guess);
+            start = guess * still / (still - f);
+            if f.abs() <= START * still.abs() && self.force(start).abs() <= RESOLUTION * still.abs() {
+                return start;
+            }
+            (lo, hi) = (guess, 0.0);
             for _ in 0..200 {
                 if !(lo.is_finite() && self.force(lo) < 0.0) {
                     break;
                 }
                 hi = lo;
-                lo *= if hi == start { 1.0 + START } else { 4.0 };
+                lo *= if hi == guess { 1.0 + START } else { 4.0 };
             }
         }
         let tolerance = RESOLUTION * lo.abs().max(hi);
