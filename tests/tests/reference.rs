@@ -55,6 +55,8 @@ const TABLE: [(f64, [f64; 5]); 14] = [
 const BLOW_BY: f64 = 6.2493570768654555e-6;
 /// Pressure that makes the states numbers near 1.
 const SCALE: f64 = 1e5;
+/// Time of a degree of crank angle \[s\].
+const PER_DEGREE: f64 = 1.0 / (360.0 * 3000.0 / 60.0);
 
 struct Gas {
     net: Network,
@@ -77,6 +79,19 @@ impl Gas {
     }
 }
 
+impl Gas {
+    fn set(&mut self, th: f64, y: &[f64]) -> Result<(), EvalError> {
+        let chamber = 1e5 * (1.0 + 11.0 * (-((th - 360.0) / 55.0).powi(2)).exp())
+            + 68e5 * (-0.5 * ((th - 370.0) / 18.0).powi(2)).exp();
+        self.net.set_pressure("reference", 5, chamber)?;
+        for i in 0..5 {
+            self.masses[i] = y[i] * SCALE * VOLUMES[i] / (R * T);
+            self.net.set_mass("reference", i, self.masses[i], VOLUMES[i])?;
+        }
+        Ok(())
+    }
+}
+
 impl OdeSystem for Gas {
     fn dim(&self) -> usize {
         5
@@ -87,24 +102,37 @@ impl OdeSystem for Gas {
     /// Independent variable: degrees of crank angle at 3000 rpm. States: pressures over 1 bar. Quadratures: gas from the chamber and
     /// to the crankcase \[mg\].
     fn rhs(&mut self, th: f64, y: &[f64], f: &mut [f64]) -> Result<(), EvalError> {
-        let per_degree = 1.0 / (360.0 * 3000.0 / 60.0);
-        let chamber = 1e5 * (1.0 + 11.0 * (-((th - 360.0) / 55.0).powi(2)).exp())
-            + 68e5 * (-0.5 * ((th - 370.0) / 18.0).powi(2)).exp();
-        self.net.set_pressure("reference", 5, chamber)?;
-        for i in 0..5 {
-            self.masses[i] = y[i] * SCALE * VOLUMES[i] / (R * T);
-            self.net.set_mass("reference", i, self.masses[i], VOLUMES[i])?;
-        }
+        self.set(th, y)?;
         self.net.update_flows();
         self.net.rates(&mut self.d);
         for i in 0..5 {
-            f[i] = self.d[i] * R * T / VOLUMES[i] / SCALE * per_degree;
+            f[i] = self.d[i] * R * T / VOLUMES[i] / SCALE * PER_DEGREE;
         }
         if f.len() > 5 {
-            f[5] = 1e6 * (self.net.flow(0) + self.net.flow(1)) * per_degree;
-            f[6] = 1e6 * (self.net.flow(7) + self.net.flow(8)) * per_degree;
+            f[5] = 1e6 * (self.net.flow(0) + self.net.flow(1)) * PER_DEGREE;
+            f[6] = 1e6 * (self.net.flow(7) + self.net.flow(8)) * PER_DEGREE;
         }
         Ok(())
+    }
+
+    fn jacobian(&mut self, th: f64, y: &[f64], _: &[f64], jac: &mut [f64]) -> Result<bool, EvalError> {
+        self.set(th, y)?;
+        self.net.update_slopes();
+        jac.fill(0.0);
+        self.net.jacobian(&mut jac[..25]);
+        for (row, links) in [(5, [0, 1]), (6, [7, 8])] {
+            for link in links {
+                self.net.add_flow_gradient(link, 1.0, &mut jac[row * 5..row * 5 + 5]);
+            }
+        }
+        for (row, entries) in jac.chunks_exact_mut(5).enumerate() {
+            for (entry, volume) in entries.iter_mut().zip(VOLUMES) {
+                let per_pressure = SCALE * volume / (R * T);
+                let unit = if row < 5 { R * T / VOLUMES[row] / SCALE } else { 1e6 };
+                *entry *= per_pressure * unit * PER_DEGREE;
+            }
+        }
+        Ok(true)
     }
 }
 
@@ -187,7 +215,17 @@ fn gas(rtol: f64) -> (u64, f64, f64, f64) {
 #[allow(clippy::print_stdout, reason = "measured errors are for reading")]
 fn gas_network() {
     println!("rtol, steps, error of blow-by, largest error of 70 pressures, imbalance");
-    let runs: Vec<_> = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8].map(|rtol| (rtol, gas(rtol))).into_iter().collect();
+    // Where steps meet the kinks of the choking links is a matter of luck: errors at neighbouring tolerances scatter by a factor of
+    // ten, so the worst of five stands for each.
+    let worst = |rtol: f64| {
+        [0.8, 0.9, 1.0, 1.1, 1.25]
+            .map(|near| gas(near * rtol))
+            .into_iter()
+            .fold((0, 0.0f64, 0.0f64, 0.0f64), |w, g| {
+                (w.0.max(g.0), w.1.max(g.1), w.2.max(g.2), w.3.max(g.3))
+            })
+    };
+    let runs: Vec<_> = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8].map(|rtol| (rtol, worst(rtol))).into_iter().collect();
     for (rtol, (steps, blow_by, table, balance)) in &runs {
         println!("{rtol:.0e} {steps:5} {blow_by:.2e} {table:.2e} {balance:.2e}");
         // Masses and quadratures are integrated by one method: what goes in comes out to rounding. A thousand steps of sums of a
@@ -195,9 +233,9 @@ fn gas_network() {
         assert!(*balance < 1e-10);
     }
     // At a sensible tolerance, and with the accuracy of the reference itself (6e-9) at a tight one.
-    let (_, blow_by, table, _) = runs[2].1;
+    let (_, blow_by, table, _) = gas(1e-6);
     assert!(blow_by < 1e-5 && table < 1e-5, "1e-6: {blow_by:e} {table:e}");
-    let (_, blow_by, table, _) = runs[4].1;
+    let (_, blow_by, table, _) = gas(1e-8);
     assert!(blow_by < 1e-7 && table < 1e-7, "1e-8: {blow_by:e} {table:e}");
     // Errors fall with the tolerance.
     assert!(runs.windows(2).all(|w| w[1].1.1 < w[0].1.1 || w[1].1.1 < 1e-8));
