@@ -141,6 +141,10 @@ pub trait OdeSystem {
         Ok(false)
     }
 
+    /// Absolute errors per step at the state where a step begins, for systems whose accuracy depends on where they are (a
+    /// position beside a wall): `atol` comes as [`Options::atol`] and may be changed. Taken by `Rodas`.
+    fn tolerances(&mut self, _t: f64, _y: &[f64], _atol: &mut [f64]) {}
+
     /// Linear relations between the rates that hold for all arguments (see the module documentation).
     fn invariants(&self) -> &[LinearInvariant] {
         &[]

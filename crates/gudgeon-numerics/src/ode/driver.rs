@@ -28,6 +28,8 @@ pub(crate) struct Core {
     pub y_tmp: Vec<f64>,
     pub f_tmp: Vec<f64>,
     pub groups: Option<ColumnGroups>,
+    /// Absolute errors of the states in the current step.
+    pub atol: Vec<f64>,
     /// Row weights of the pivot search.
     pub weight: Vec<f64>,
     /// Times handed to the right-hand side are kept in here.
@@ -59,6 +61,7 @@ impl Core {
             y_tmp: v(),
             f_tmp: v(),
             groups,
+            atol: vec![0.0; n],
             weight: vec![1.0; n],
             lo: f64::NEG_INFINITY,
             hi: f64::INFINITY,
@@ -74,14 +77,14 @@ impl Core {
     /// Scale of the error of component i.
     #[inline]
     pub(crate) fn scale(&self, opts: &Options, i: usize) -> f64 {
-        let a = if i < self.n { opts.atol[i] } else { opts.atol_quad[i - self.n] };
+        let a = if i < self.n { self.atol[i] } else { opts.atol_quad[i - self.n] };
         a + opts.relative(i) * self.x0[i].abs().max(self.x1[i].abs())
     }
 
     /// Sets the pivot weights from the scales at the start of the step.
     pub(crate) fn set_weights(&mut self, opts: &Options) {
         for i in 0..self.n {
-            let s = opts.atol[i] + opts.relative(i) * self.x0[i].abs();
+            let s = self.atol[i] + opts.relative(i) * self.x0[i].abs();
             self.weight[i] = if s > 0.0 { 1.0 / s } else { 1.0 };
         }
     }
@@ -98,6 +101,8 @@ impl Core {
     ) -> Result<(), EvalError> {
         let n = self.n;
         let te = self.clamp_time(t);
+        self.atol.copy_from_slice(&opts.atol);
+        sys.tolerances(te, &self.x0[..n], &mut self.atol);
         stats.jacobians += 1;
         self.jac.fill(0.0);
         if !sys.jacobian(te, &self.x0[..n], &self.f0, &mut self.jac)? {

@@ -51,6 +51,18 @@ impl OdeSystem for Problem<'_> {
         self.pack.jacobian(y, increment, jac, self.base)?;
         Ok(true)
     }
+    fn tolerances(&mut self, t: f64, y: &[f64], atol: &mut [f64]) {
+        if self.pack.at.theta != t || self.pack.state != y {
+            return;
+        }
+        for (i, k) in self.pack.layout.axial.iter().enumerate() {
+            if let Some(k) = *k {
+                let (place, c0) = (&self.pack.at.places[i], self.pack.rings[i].clearance0);
+                let gap = place.s.min(place.clearance - place.s) / c0;
+                atol[k] *= (gap / POSITION_SCALE).max(1.0);
+            }
+        }
+    }
     fn n_events(&self) -> usize {
         if self.pack.hold_tolerance > 0.0 { self.pack.n_rings() } else { 0 }
     }
