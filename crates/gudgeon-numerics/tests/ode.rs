@@ -561,3 +561,103 @@ fn stop_keeps_the_state_of_the_event() {
     solve(&mut s, (0.0, 10.0), &[], &mut y, &mut [], &Options::new(1e-6, &[1.0])).unwrap();
     assert!((y[0] - 1.0).abs() < 1e-14, "{y:?}");
 }
+
+/// A mass thrown up from a height of 1, whose event changes the equations (gravity off) in the step in which it is seen.
+struct Coarse {
+    free: bool,
+    seen: Vec<f64>,
+}
+impl OdeSystem for Coarse {
+    fn dim(&self) -> usize {
+        2
+    }
+    fn rhs(&mut self, _: f64, y: &[f64], f: &mut [f64]) -> Result<(), EvalError> {
+        (f[0], f[1]) = (y[1], if self.free { 0.0 } else { -G });
+        Ok(())
+    }
+    fn n_events(&self) -> usize {
+        1
+    }
+    fn events(&mut self, _: f64, y: &[f64], g: &mut [f64]) -> Result<(), EvalError> {
+        g[0] = if self.free { 1.0 } else { y[0] - 0.5 };
+        Ok(())
+    }
+    fn event_direction(&self, _: usize) -> Direction {
+        Direction::Falling
+    }
+    fn event_located(&self, _: usize) -> bool {
+        false
+    }
+    fn on_event(&mut self, _: usize, t: f64, _: &mut [f64]) -> Result<EventAction, EvalError> {
+        self.seen.push(t);
+        self.free = true;
+        Ok(EventAction::Restart)
+    }
+}
+
+#[test]
+fn events_that_need_no_place_happen_at_the_end_of_the_step() {
+    let mut s = Coarse { free: false, seen: Vec::new() };
+    let mut o = Options::new(1e-6, &[1.0, 1.0]);
+    (o.h_max, o.h_init, o.event_samples) = (0.05, 0.05, 0);
+    let mut y = [1.0, 0.0];
+    solve(&mut s, (0.0, 1.0), &[], &mut y, &mut [], &o).unwrap();
+    // The height of 0.5 is passed at sqrt(1/9.80665) = 0.3193 s, and the steps of 0.05 s end at 0.35 s.
+    assert_eq!(s.seen.len(), 1);
+    assert!((s.seen[0] - 0.35).abs() < 1e-12, "{:?}", s.seen);
+    // From there on a straight line.
+    let (v, h) = (-G * 0.35, 1.0 - 0.5 * G * 0.35 * 0.35);
+    assert!((y[0] - (h + 0.65 * v)).abs() < 1e-9 && (y[1] - v).abs() < 1e-9, "{y:?}");
+}
+
+#[test]
+fn an_event_at_a_breakpoint_does_not_hold_up_the_time() {
+    // The step ends at the breakpoint, and the event is seen there: both have to pass.
+    let mut s = Coarse { free: false, seen: Vec::new() };
+    let mut o = Options::new(1e-6, &[1.0, 1.0]);
+    (o.h_max, o.h_init, o.event_samples, o.max_steps) = (0.35, 0.35, 0, 1000);
+    let mut y = [1.0, 0.0];
+    solve(&mut s, (0.0, 1.0), &[0.35], &mut y, &mut [], &o).unwrap();
+    assert_eq!(s.seen, [0.35]);
+}
+
+/// Decay far from the origin, with an accuracy asked by distance from the level it decays to.
+struct Level {
+    by_distance: bool,
+}
+impl OdeSystem for Level {
+    fn dim(&self) -> usize {
+        1
+    }
+    fn rhs(&mut self, t: f64, y: &[f64], f: &mut [f64]) -> Result<(), EvalError> {
+        f[0] = -(y[0] - 1e3) + (3.0 * t).sin();
+        Ok(())
+    }
+    fn tolerances(&mut self, _: f64, y: &[f64], atol: &mut [f64]) {
+        if self.by_distance {
+            atol[0] *= (y[0] - 1e3).abs().max(1.0);
+        }
+    }
+}
+
+#[test]
+fn absolute_states_ignore_their_value_and_tolerances_follow_the_state() {
+    let exact = |t: f64| {
+        1e3 + 100.0 * (-t).exp() + ((3.0 * t).sin() - 3.0 * (3.0 * t).cos() + 3.0 * (-t).exp()) / 10.0
+    };
+    let error = |absolute: bool, by_distance: bool| {
+        let mut o = Options::new(1e-6, &[1.0]);
+        if absolute {
+            o.absolute = vec![true];
+        }
+        let mut y = [1100.0];
+        let stats = solve(&mut Level { by_distance }, (0.0, 5.0), &[], &mut y, &mut [], &o).unwrap();
+        ((y[0] - exact(5.0)).abs(), stats.steps)
+    };
+    let (relative, strict, distant) = (error(false, false), error(true, false), error(true, true));
+    // Judged by its value of 1000 the state is good to 1e-3 per step; by 1e-6 alone the error that is left after 5 time
+    // constants is some steps' worth of that.
+    assert!(strict.0 < 1e-5 && relative.0 > 10.0 * strict.0, "{relative:?} {strict:?}");
+    // A tolerance by distance saves steps at the start and is as good at the end, where the distance is one.
+    assert!(distant.1 < strict.1 && distant.0 < 1e-5, "{distant:?} {strict:?}");
+}

@@ -81,6 +81,12 @@ impl Core {
         a + opts.relative(i) * self.x0[i].abs().max(self.x1[i].abs())
     }
 
+    /// Absolute errors for the step from `x0`.
+    fn set_tolerances<S: OdeSystem + ?Sized>(&mut self, sys: &mut S, t: f64, opts: &Options) {
+        self.atol.copy_from_slice(&opts.atol);
+        sys.tolerances(t, &self.x0[..self.n], &mut self.atol);
+    }
+
     /// Sets the pivot weights from the scales at the start of the step.
     pub(crate) fn set_weights(&mut self, opts: &Options) {
         for i in 0..self.n {
@@ -101,8 +107,7 @@ impl Core {
     ) -> Result<(), EvalError> {
         let n = self.n;
         let te = self.clamp_time(t);
-        self.atol.copy_from_slice(&opts.atol);
-        sys.tolerances(te, &self.x0[..n], &mut self.atol);
+        self.set_tolerances(sys, te, opts);
         stats.jacobians += 1;
         self.jac.fill(0.0);
         if !sys.jacobian(te, &self.x0[..n], &self.f0, &mut self.jac)? {
@@ -266,6 +271,7 @@ fn initial_step<M: Scheme, S: OdeSystem + ?Sized>(
 ) -> f64 {
     let c = m.core();
     let k = if o.atol_quad.is_empty() { c.n } else { c.m };
+    c.set_tolerances(sys, t, o);
     c.x1.copy_from_slice(&c.x0);
     let (mut d0, mut d1) = (0.0_f64, 0.0_f64);
     for i in 0..k {

@@ -223,3 +223,87 @@ impl Pack {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gudgeon_core::kinds::{FlankDampingCtx, FlankDampingSpec, RingMotionCtx, RingMotionSpec};
+    use gudgeon_ring::{NewtonGroove, SqueezeFilm};
+
+    const C: f64 = 1e-4;
+    const A: f64 = 1.8e-3;
+
+    fn models() -> (Box<dyn FlankDamping>, Box<dyn RingMotion>) {
+        let ctx = FlankDampingCtx { ring: 0, rings: 1, oil_fill: 0.6, width: 5e-3, mu: 0.01 };
+        let motion = RingMotionCtx { mass: 0.043, clearance: C, flank_area: A, ring: 0 };
+        (
+            SqueezeFilm::default().build(&ctx).expect("builds"),
+            NewtonGroove::default().build(&motion).expect("builds"),
+        )
+    }
+
+    #[test]
+    fn velocity_balances_the_forces_on_both_flanks() {
+        let (damping, motion) = models();
+        let mut held = 0;
+        for (away, s) in [(1.0, 0.0), (1.0, 1e-7), (1.0, -2e-8), (1.0, 3e-6), (-1.0, C), (-1.0, C - 2e-7)] {
+            for load in [-1e4, -300.0, -1.0, -1e-6, 1e-6, 1.0, 50.0] {
+                // A load on the flank is towards it; up to 50 N are less than the 108 N that the film can hold.
+                let b = Balance {
+                    away,
+                    external: away * load,
+                    s,
+                    clearance: C,
+                    area: A,
+                    damping: &*damping,
+                    motion: &*motion,
+                };
+                // A film that the load tears apart, and a flank that pushes harder than the load, let go.
+                if b.force(1e-3) >= 0.0 {
+                    continue;
+                }
+                held += 1;
+                let w = b.velocity(1e-3);
+                assert!(w < 1e-3, "kept");
+                // Resolution of the velocity times the stiffness, against the largest force in the balance.
+                let left = b.force(w).abs();
+                assert!(
+                    left <= 1e-9 * (load.abs() + b.stiffness(w, b.force(w)) * w.abs()) + 1e-12,
+                    "{s} {load}: {w:e} {left:e}"
+                );
+            }
+        }
+        assert!(held >= 30, "{held} of 42");
+    }
+
+    #[test]
+    fn beyond_the_release_speed_the_velocity_goes_on_along_the_tangent() {
+        let (damping, motion) = models();
+        let release = 1e-5;
+        let at = |load: f64| {
+            Balance {
+                away: 1.0,
+                external: load,
+                s: 0.0,
+                clearance: C,
+                area: A,
+                damping: &*damping,
+                motion: &*motion,
+            }
+            .velocity(release)
+        };
+        // The load that leads to the release speed, by bisection on the velocity.
+        let (mut lo, mut hi) = (0.0, 1e4);
+        for _ in 0..100 {
+            let mid = 0.5 * (lo + hi);
+            if at(mid) < release { lo = mid } else { hi = mid }
+        }
+        let step = 1e-6 * hi;
+        let (below, above) = ((at(hi) - at(hi - step)) / step, (at(hi + step) - at(hi)) / step);
+        // One tangent on both sides; the curvature of the law over a millionth of the load.
+        assert!((below / above - 1.0).abs() < 1e-3, "{below:e} {above:e}");
+        // Straight from there: twice the excess, twice the speed.
+        let (one, two) = (at(1.5 * hi) - release, at(2.0 * hi) - release);
+        assert!((two / one - 2.0).abs() < 1e-6, "{one:e} {two:e}");
+    }
+}
