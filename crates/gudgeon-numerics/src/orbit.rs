@@ -30,7 +30,7 @@ pub struct OrbitOptions {
     pub tolerance: f64,
     /// Accuracy of the map.
     pub accuracy: f64,
-    /// Most cycles.
+    /// Most cycles, those of all phases of the search together (a probe of stability, once begun, runs to its end).
     pub max_cycles: usize,
     /// Whether to accelerate. Maps with discrete decisions are not smooth and are repeated plainly.
     pub accelerate: bool,
@@ -205,7 +205,10 @@ impl Search {
         let mut passed = 0.0;
         let mut last = 0.0_f64;
         self.report.converged = false;
-        for k in 0..options.max_cycles.div_ceil(times) {
+        for k in 0.. {
+            if self.report.cycles + times > options.max_cycles {
+                break;
+            }
             // Far from the orbit a rough map does: the first cycle only has to leave the arbitrary start.
             let rough = options.accuracy.max(1e-3);
             let accuracy = if k == 0 && times == 1 { rough } else { options.accuracy };
@@ -331,7 +334,7 @@ impl Search {
         let mut g = vec![0.0; y.len()];
         self.report.converged = false;
         self.report.period = 1;
-        for _ in 0..options.max_cycles {
+        while self.report.cycles < options.max_cycles {
             self.apply(map, y, &mut g, options.accuracy, 1)?;
             map.scale(&g, &mut s);
             y.copy_from_slice(&g);

@@ -463,9 +463,9 @@ pub struct Solver {
     pub tolerance: PosRatio,
     /// `implicit`: time integrator.
     pub integrator: IntegratorName,
-    /// `implicit`: true relative error of the periodic state; not below ten times `tolerance`.
+    /// `implicit`: true relative error of the periodic state; not below `tolerance`.
     pub periodicity: PosRatio,
-    /// Most cycles before the run is called unconverged.
+    /// Most cycles, all phases of the search together, before the run is called unconverged.
     pub max_cycles: u32,
     /// Pressures of all lands from which the cycle is started. Each start is run to its periodic state; those that
     /// differ are reported, the first is the result. Empty: one start at crankcase pressure, and a second at 6 bar when

@@ -99,8 +99,6 @@ impl OdeSystem for Problem<'_> {
 /// Most steps of a cycle, fifty times what a pack needs: beyond it the case asks for something that cannot be followed, such as
 /// the contact of a ring without mass.
 const MOST_STEPS: u64 = 30_000;
-/// How far two cycles from nearly the same state may differ, in tolerances: steps accepted here and rejected there.
-const NOISE: f64 = 3.0;
 /// First step of a cycle \[rad\].
 const FIRST_STEP: f64 = 1e-3;
 /// Velocity that counts as one in the error norm, in clearances per radian: what matters of a velocity is the distance it covers.
@@ -406,7 +404,7 @@ pub(super) fn run(
     };
     let options = OrbitOptions {
         // A map is only as repeatable as its integration is accurate.
-        tolerance: s.periodicity.si().max(NOISE * s.tolerance.si()),
+        tolerance: s.periodicity.si().max(s.tolerance.si()),
         accuracy: s.tolerance.si(),
         max_cycles: s.max_cycles as usize,
         accelerate: !discrete,
