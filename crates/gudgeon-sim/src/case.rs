@@ -531,9 +531,13 @@ pub enum Method {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum IntegratorName {
-    /// Rosenbrock method of order 5 (default).
+    /// `rodas3` down to a tolerance of 5e-5, `rodas5p` below (default).
     #[default]
     Rodas,
+    /// Rosenbrock method of order 3, of few stages: the cheapest for errors of 1e-3 to 1e-5.
+    Rodas3,
+    /// Rosenbrock method of order 5.
+    Rodas5p,
     /// Radau IIA of order 5, for references at tight tolerances.
     Radau5,
 }

@@ -184,10 +184,10 @@ pub(crate) enum Trial {
 
 /// A one-step method.
 pub(crate) trait Scheme {
-    /// 1 / (order of the error estimate + 1).
-    const EXPONENT: f64;
     /// Largest growth of the step.
     const GROWTH: f64;
+    /// 1 / (order of the error estimate + 1).
+    fn exponent(&self) -> f64;
     fn core(&mut self) -> &mut Core;
     /// Forget everything about the past: the state or the equations have changed.
     fn restart(&mut self);
@@ -345,6 +345,7 @@ fn run<M: Scheme, S: OdeSystem + ?Sized>(
     observer: &mut dyn FnMut(&mut S, &dyn StepView) -> Flow,
 ) -> Result<f64, IntegrateError> {
     let n = m.core().n;
+    let exponent = m.exponent();
     let mut trials = 0;
     let mut t = t0;
     // Time of the last restart by an event.
@@ -446,7 +447,7 @@ fn run<M: Scheme, S: OdeSystem + ?Sized>(
             }
             Err(e) => return Err(IntegrateError::Eval { t, source: e }),
         };
-        let power = error.max(1e-10).powf(M::EXPONENT);
+        let power = error.max(1e-10).powf(exponent);
         if error > 1.0 {
             // Across a kink the error falls slower than the order of the method says: from the second rejection on, the
             // order seen since the last one.
@@ -455,7 +456,7 @@ fn run<M: Scheme, S: OdeSystem + ?Sized>(
             let shrink = if seen.is_nan() {
                 0.1
             } else {
-                safety * error.powf(-1.0 / seen.clamp(LEAST_ORDER, 1.0 / M::EXPONENT))
+                safety * error.powf(-1.0 / seen.clamp(LEAST_ORDER, 1.0 / exponent))
             };
             reject(stats, &mut h, h_try, shrink.clamp(0.1, 0.9), &mut rejected_before);
             rejected = Some((h_try, error));
