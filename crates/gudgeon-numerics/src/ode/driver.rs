@@ -124,6 +124,13 @@ impl Core {
                 moved,
                 stats,
             )?;
+        } else {
+            for inv in sys.invariants() {
+                for j in 0..n {
+                    let entry = inv.pivot_value(|row| self.jac[row * n + j]);
+                    self.jac[inv.pivot * n + j] = entry;
+                }
+            }
         }
         if !with_time {
             return Ok(());

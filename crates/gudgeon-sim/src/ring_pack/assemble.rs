@@ -274,6 +274,7 @@ pub fn assemble(case: &RingPackCase, folder: &Path) -> Result<Pack, Vec<BuildErr
         state: vec![f64::NAN; states],
         holds: vec![Hold::Free; n],
         hold_tolerance: 0.0,
+        tangents: vec![0.0; n],
         geo,
     };
     // Masses at 1 bar, the scale of the gas states; also the first evaluation of every geometry-dependent number.

@@ -151,6 +151,20 @@ impl Pack {
         b.away * b.velocity(self.release_speed(i))
     }
 
+    /// How fast the balance of a held ring falls with its velocity \[N s/m\], at the velocity found last.
+    pub(super) fn held_stiffness(&self, i: usize) -> f64 {
+        let b = self.axial_balance(i, self.holds[i]);
+        let w = b.away * self.at.places[i].v;
+        b.stiffness(w, b.force(w))
+    }
+
+    /// Velocity of a held ring \[m/s\] after a small change of its forces or its place, by one step of Newton from before.
+    pub(super) fn moved_velocity(&self, i: usize) -> f64 {
+        let b = self.axial_balance(i, self.holds[i]);
+        let w = b.away * self.at.places[i].v;
+        b.away * (w + b.force(w) / self.tangents[i])
+    }
+
     /// Goes through zero from below where ring `i` is let go, or held again; the forces at the instant known.
     pub(super) fn hold_event(&self, i: usize) -> f64 {
         match self.holds[i] {

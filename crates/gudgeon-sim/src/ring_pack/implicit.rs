@@ -7,7 +7,8 @@ use std::time::Instant;
 use gudgeon_core::EvalError;
 use gudgeon_core::result::Balance;
 use gudgeon_numerics::ode::{
-    Direction, EventAction, Flow, IntegrateError, Integrator, OdeSystem, Options, Stats, StepView,
+    Direction, EventAction, Flow, IntegrateError, Integrator, LinearInvariant, OdeSystem, Options, Stats,
+    StepView,
 };
 use gudgeon_numerics::orbit::{CycleMap, OrbitOptions, periodic_orbit};
 use gudgeon_numerics::radau::Radau5;
@@ -25,6 +26,7 @@ struct Problem<'a> {
     pack: &'a mut Pack,
     base: &'a mut Base,
     scale: &'a [f64],
+    balance: &'a [LinearInvariant],
 }
 
 impl OdeSystem for Problem<'_> {
@@ -50,6 +52,9 @@ impl OdeSystem for Problem<'_> {
         };
         self.pack.jacobian(y, increment, jac, self.base)?;
         Ok(true)
+    }
+    fn invariants(&self) -> &[LinearInvariant] {
+        self.balance
     }
     fn tolerances(&mut self, t: f64, y: &[f64], atol: &mut [f64]) {
         if self.pack.at.theta != t || self.pack.state != y {
@@ -121,6 +126,7 @@ struct Cycle<'a> {
     breakpoints: Vec<f64>,
     scale: Vec<f64>,
     absolute: Vec<bool>,
+    balance: Vec<LinearInvariant>,
     base: Base,
     h: f64,
     stats: Stats,
@@ -180,7 +186,8 @@ impl Cycle<'_> {
                 break;
             }
             options.h_init = self.h;
-            let mut problem = Problem { pack: self.pack, base: &mut self.base, scale: &self.scale };
+            let mut problem =
+                Problem { pack: self.pack, base: &mut self.base, scale: &self.scale, balance: &self.balance };
             let mut observe = |p: &mut Problem<'_>, v: &dyn StepView| match sampler.as_deref_mut() {
                 Some(s) => s.step(p.pack, v),
                 None => Flow::Continue,
@@ -389,6 +396,14 @@ pub(super) fn run(
         scale[k + 1] = VELOCITY_SCALE;
         scale[*k] = POSITION_SCALE;
     }
+    // Gas in, less gas out, is gas stored.
+    let mut balance = Vec::new();
+    if pack.layout.gas > 0 {
+        let (first, last) = (dim, dim + pack.n_rings());
+        let mut terms = vec![(first, -1.0), (last, 1.0)];
+        terms.extend(pack.mass_scale.iter().copied().enumerate());
+        balance.push(LinearInvariant { pivot: last, terms });
+    }
     let discrete = pack.decision_interval().is_some();
     let mut y = vec![0.0; dim];
     pack.initial(start, &mut y);
@@ -398,6 +413,7 @@ pub(super) fn run(
         breakpoints,
         scale,
         absolute,
+        balance,
         base: Base::default(),
         h: FIRST_STEP,
         stats: Stats::default(),

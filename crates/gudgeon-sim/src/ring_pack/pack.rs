@@ -210,6 +210,8 @@ pub struct Pack {
     pub holds: Vec<Hold>,
     /// Tolerance that the holding of rings goes by; 0: no ring is ever held.
     pub hold_tolerance: f64,
+    /// How fast the axial balance of a held ring falls with its velocity \[N s/m\], while a Jacobian is built; else 0.
+    pub tangents: Vec<f64>,
 }
 
 impl Pack {
@@ -634,7 +636,8 @@ impl Pack {
         }
         if ring.kind == Motion::Dynamic {
             if self.holds[i] != Hold::Free {
-                self.at.places[i].v = self.held_velocity(i);
+                self.at.places[i].v =
+                    if self.tangents[i] > 0.0 { self.moved_velocity(i) } else { self.held_velocity(i) };
             }
             let (place, ring, r) = (&self.at.places[i], &self.rings[i], &mut self.at.rings[i]);
             r.axial.damping = ring.damping.force(place.s, place.v, place.clearance, place.flank_area());
@@ -827,6 +830,23 @@ impl Pack {
     /// # Errors
     /// What a sub-model refuses.
     pub fn jacobian(
+        &mut self,
+        y: &[f64],
+        increment: impl Fn(usize) -> f64,
+        jac: &mut [f64],
+        base: &mut Base,
+    ) -> Result<(), EvalError> {
+        for i in 0..self.n_rings() {
+            if self.layout.axial[i].is_some() && self.holds[i] != Hold::Free {
+                self.tangents[i] = self.held_stiffness(i);
+            }
+        }
+        let outcome = self.columns(y, increment, jac, base);
+        self.tangents.fill(0.0);
+        outcome
+    }
+
+    fn columns(
         &mut self,
         y: &[f64],
         increment: impl Fn(usize) -> f64,
