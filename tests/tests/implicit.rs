@@ -85,7 +85,7 @@ fn published_scheme_tends_to_the_implicit_solution() {
 /// Error against the other integrator falls with the tolerance.
 #[test]
 fn error_follows_the_tolerance() {
-    let tolerances = ["1e-3", "1e-4", "1e-5", "1e-6"];
+    let tolerances = ["1e-2", "1e-3", "1e-4", "1e-5", "1e-6"];
     let mut asked = vec![set(CASE, &[implicit("1e-7"), vec!["solver.integrator=radau5".into()]].concat())];
     asked.extend(tolerances.iter().map(|t| set(CASE, &implicit(t))));
     let r = runs(&asked);
@@ -99,13 +99,13 @@ fn error_follows_the_tolerance() {
         let steps = v.solver.counters["steps"] as f64 / v.solver.counters["cycles"] as f64;
         println!("tolerance {}: error {:.2e}, {steps:.0} steps per cycle", tolerances[k], errors[k]);
     }
-    let slope = (errors[0] / errors[3]).log10() / 3.0;
+    let slope = (errors[0] / errors[4]).log10() / 4.0;
     println!("observed slope of error over tolerance, both logarithmic: {slope:.2}");
     assert!(errors.windows(2).all(|w| w[1] < w[0]), "{errors:?}");
     // Error control per step: proportional to the tolerance, were it not for kinks that a step may meet anywhere.
     assert!(slope > 0.5, "{slope}");
-    // The default tolerance keeps its promise within a factor of ten.
-    assert!(errors[1] < 1e-3, "{errors:?}");
+    // At 1e-3 and at the default of 1e-4 the results are as good as the tolerance says.
+    assert!(errors[1] < 1e-3 && errors[2] < 1e-4, "{errors:?}");
 }
 
 #[test]
