@@ -341,7 +341,7 @@ impl<S: Shape> Side<S> {
             let i = self.face.piece_of(w.xr);
             let q = f.u * self.face.drop(i, w.xr) + f.v * self.face.s(w.xr);
             if (f.pa > 0.0 || q < limit)
-                && let Ok(Lead::Rupture { q, at }) = self.touch(f, q, f64::NAN)
+                && let Some(Lead::Rupture { q, at }) = self.touch(f, q, f64::NAN)
                 && self.face.tail(at.i, at.x).rise(f.u, f.v, q) >= f.pb
             {
                 return Ok(Lead::Rupture { q, at });
@@ -359,11 +359,12 @@ impl<S: Shape> Side<S> {
                 Lead::Full { q }
             });
         }
-        self.touch(f, q, q)
+        self.touch(f, q, q).ok_or_else(|| no_convergence("rupture"))
     }
 
-    /// The film whose lowest minimum is zero, from the flux `q`; `hi` is a flux known to be too large, if any.
-    fn touch(&self, f: &Flow, mut q: f64, mut hi: f64) -> Result<Lead<S>, EvalError> {
+    /// The film whose lowest minimum is zero, from the flux `q`; `hi` is a flux known to be too large, if any. `None`: no
+    /// convergence.
+    fn touch(&self, f: &Flow, mut q: f64, mut hi: f64) -> Option<Lead<S>> {
         let mut lo = f64::NAN;
         let mut valley = self.lowest_valley(f, q);
         for _ in 0..200 {
@@ -374,7 +375,7 @@ impl<S: Shape> Side<S> {
                     let t = S::three(&head);
                     let scale = f.pa.abs() + (f.u * t.d2).abs() + (f.v * t.x3).abs() + (q * t.i3).abs();
                     if p.abs() <= 2.0 * f64::EPSILON * scale {
-                        return Ok(Lead::Rupture { q, at });
+                        return Some(Lead::Rupture { q, at });
                     }
                     if p < 0.0 {
                         hi = q;
@@ -404,11 +405,11 @@ impl<S: Shape> Side<S> {
             let inside = next.is_finite() && (hi.is_nan() || next < hi) && (lo.is_nan() || next > lo);
             let next = if inside { next } else { 0.5 * (lo + hi) };
             if !next.is_finite() {
-                return Err(no_convergence("rupture"));
+                return None;
             }
             if next == q || next == hi || next == lo {
                 // The bracket has closed to neighbouring numbers.
-                return valley.map_or(Err(no_convergence("rupture")), |at| Ok(Lead::Rupture { q, at }));
+                return valley.map(|at| Lead::Rupture { q, at });
             }
             q = next;
             valley = self.lowest_valley(f, q);
@@ -417,10 +418,10 @@ impl<S: Shape> Side<S> {
                 && c == at.i
                 && inside
             {
-                return Ok(Lead::Rupture { q, at });
+                return Some(Lead::Rupture { q, at });
             }
         }
-        Err(no_convergence("rupture"))
+        None
     }
 
     /// Beginning of the film that ends at `(ie, xe)` with pressure `pe`, behind the rupture at `(ir, xr)`.

@@ -36,7 +36,7 @@ pub struct GasIn<'a> {
 }
 
 /// Pressures and flows of the pack with `n` rings.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, PartialEq, Default)]
 pub struct GasOut {
     /// Pressures \[Pa\] of the `n + 1` lands, cylinder first, crankcase last.
     pub p_land: Vec<f64>,
@@ -47,6 +47,21 @@ pub struct GasOut {
     /// Flow \[kg/s\] arriving in the land below each ring from the ring, downwards positive. Differs from `flow_in` by what
     /// the space behind the ring stores. The last one is the blow-by.
     pub flow_out: Vec<f64>,
+}
+
+impl Clone for GasOut {
+    fn clone(&self) -> Self {
+        let mut copy = Self::default();
+        copy.clone_from(self);
+        copy
+    }
+    /// Into the buffers that are there.
+    fn clone_from(&mut self, other: &Self) {
+        self.p_land.clone_from(&other.p_land);
+        self.p_back.clone_from(&other.p_back);
+        self.flow_in.clone_from(&other.flow_in);
+        self.flow_out.clone_from(&other.flow_out);
+    }
 }
 
 impl GasOut {
