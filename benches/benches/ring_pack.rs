@@ -30,11 +30,15 @@ fn value(r: &RunResult, name: &str) -> f64 {
 
 fn table() -> Result<(), String> {
     let tight = run(&["solver.integrator=radau5", "solver.tolerance=1e-8", "solver.periodicity=1e-7"])?;
-    let settings: [(&str, Vec<&str>); 5] = [
-        ("implicit, 1e-3", vec!["solver.tolerance=1e-3", "solver.periodicity=1e-2"]),
-        ("implicit, 1e-4", vec!["solver.tolerance=1e-4", "solver.periodicity=1e-3"]),
-        ("implicit, 1e-5 (default)", vec!["solver.tolerance=1e-5"]),
-        ("implicit, 1e-6", vec!["solver.tolerance=1e-6"]),
+    let settings: [(&str, Vec<&str>); 9] = [
+        ("order 3, 1e-2", vec!["solver.integrator=rodas3", "solver.tolerance=1e-2"]),
+        ("order 3, 5e-3", vec!["solver.integrator=rodas3", "solver.tolerance=5e-3"]),
+        ("order 3, 1e-3", vec!["solver.integrator=rodas3", "solver.tolerance=1e-3"]),
+        ("order 3, 1e-4 (default)", vec![]),
+        ("order 5, 1e-2", vec!["solver.integrator=rodas5p", "solver.tolerance=1e-2"]),
+        ("order 5, 1e-4", vec!["solver.integrator=rodas5p", "solver.tolerance=1e-4"]),
+        ("order 5, 1e-5", vec!["solver.tolerance=1e-5"]),
+        ("order 5, 1e-6", vec!["solver.tolerance=1e-6"]),
         (
             "as published, 16 per degree",
             vec![

@@ -542,6 +542,21 @@ pub enum IntegratorName {
     Radau5,
 }
 
+/// Tolerance below which the integrator of order 5 needs less work than that of order 3.
+const ORDER_FIVE: f64 = 5e-5;
+
+impl Solver {
+    /// The integrator that runs: never [`IntegratorName::Rodas`].
+    #[must_use]
+    pub fn resolved(&self) -> IntegratorName {
+        match self.integrator {
+            IntegratorName::Rodas if self.tolerance.si() >= ORDER_FIVE => IntegratorName::Rodas3,
+            IntegratorName::Rodas => IntegratorName::Rodas5p,
+            other => other,
+        }
+    }
+}
+
 /// Published schemes.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]

@@ -7,6 +7,7 @@ use gudgeon_core::result::{BenchPoint, BenchTable, Comparison, Variant};
 use gudgeon_core::{BuildError, Registry};
 use indexmap::IndexMap;
 
+use crate::case::IntegratorName;
 use crate::load::Report;
 use crate::run::{Checked, Progress, RunError, check, run};
 
@@ -105,6 +106,9 @@ const DEFAULT_RESULTS: [&str; 3] = ["blow_by", "friction_power", "land2.p_max"];
 /// Runs per point, three for slow ones; the median counts.
 const REPEATS: usize = 5;
 
+/// Methods of the sweep.
+const METHODS: [&str; 3] = ["implicit, order 3", "implicit, order 5", "as_published"];
+
 struct Sweep {
     method: &'static str,
     setting: String,
@@ -115,17 +119,24 @@ struct Sweep {
 fn sweeps(base: &Checked) -> Vec<Sweep> {
     let mut all = Vec::new();
     let default = base.case().solver.tolerance.si();
-    for t in [1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5, 1e-6] {
-        all.push(Sweep {
-            method: "implicit",
-            setting: format!("tolerance {t:.0e}"),
-            is_default: (t / default - 1.0).abs() < 1e-9,
-            set: vec![
-                "solver.method=implicit".into(),
-                format!("solver.tolerance={t:e}"),
-                format!("solver.periodicity={t:e}"),
-            ],
-        });
+    let orders: [(&str, &str, IntegratorName, &[f64]); 2] = [
+        (METHODS[0], "rodas3", IntegratorName::Rodas3, &[1e-2, 3e-3, 1e-3, 3e-4, 1e-4]),
+        (METHODS[1], "rodas5p", IntegratorName::Rodas5p, &[1e-2, 1e-3, 1e-4, 1e-5, 1e-6]),
+    ];
+    for (method, name, integrator, tolerances) in orders {
+        for &t in tolerances {
+            all.push(Sweep {
+                method,
+                setting: format!("tolerance {t:.0e}"),
+                is_default: (t / default - 1.0).abs() < 1e-9 && base.case().solver.resolved() == integrator,
+                set: vec![
+                    "solver.method=implicit".into(),
+                    format!("solver.integrator={name}"),
+                    format!("solver.tolerance={t:e}"),
+                    format!("solver.periodicity={t:e}"),
+                ],
+            });
+        }
     }
     let rings = base.case().rings.len() as u32;
     let published = base.case().solver.method == crate::case::Method::AsPublished;
@@ -137,7 +148,7 @@ fn sweeps(base: &Checked) -> Vec<Sweep> {
         let gas =
             if published && base.case().solver.gas_steps > 0 { base.case().solver.gas_steps } else { 0 };
         all.push(Sweep {
-            method: "as_published",
+            method: METHODS[2],
             setting: format!("{steps} steps per degree"),
             is_default: factor == 1,
             set: vec![
@@ -282,32 +293,38 @@ fn findings(table: &BenchTable, chosen: &[String]) -> Vec<String> {
             .filter(|p| p.method == method && p.failure.is_none() && worst(p) <= error)
             .min_by(|a, b| a.seconds_per_cycle.total_cmp(&b.seconds_per_cycle))
     };
-    let methods = ["implicit", "as_published"];
     for error in [1e-2, 1e-3, 1e-4] {
-        match (best(methods[0], error), best(methods[1], error)) {
-            (Some(a), Some(b)) => out.push(format!(
-                "at an error of {error:.0e} in {}: implicit ({}) takes {:.3} ms a cycle, as_published ({}) {:.3} ms: a factor of {:.1}",
-                chosen.join(", "),
-                a.setting,
-                1e3 * a.seconds_per_cycle,
-                b.setting,
-                1e3 * b.seconds_per_cycle,
-                b.seconds_per_cycle / a.seconds_per_cycle
-            )),
-            (Some(a), None) => out.push(format!(
-                "at an error of {error:.0e} in {}: implicit ({}) takes {:.3} ms a cycle; as_published does not reach it within this sweep",
-                chosen.join(", "),
-                a.setting,
-                1e3 * a.seconds_per_cycle
-            )),
-            (None, Some(b)) => out.push(format!(
-                "at an error of {error:.0e} in {}: only as_published ({}) reaches it, in {:.3} ms a cycle",
-                chosen.join(", "),
-                b.setting,
-                1e3 * b.seconds_per_cycle
-            )),
-            (None, None) => {}
+        let (mut reach, mut fail) = (Vec::new(), Vec::new());
+        for method in METHODS {
+            match best(method, error) {
+                Some(p) => reach.push(p),
+                None => fail.push(method),
+            }
         }
+        reach.sort_by(|a, b| a.seconds_per_cycle.total_cmp(&b.seconds_per_cycle));
+        let Some(first) = reach.first() else { continue };
+        let mut text = format!("at an error of {error:.0e} in {}: ", chosen.join(", "));
+        for (i, p) in reach.iter().enumerate() {
+            if i > 0 {
+                text.push_str("; ");
+            }
+            text.push_str(&format!(
+                "{} ({}) {:.3} ms a cycle",
+                p.method,
+                p.setting,
+                1e3 * p.seconds_per_cycle
+            ));
+            if i > 0 {
+                text.push_str(&format!(
+                    ", {:.1} times the first",
+                    p.seconds_per_cycle / first.seconds_per_cycle
+                ));
+            }
+        }
+        for method in fail {
+            text.push_str(&format!("; {method} does not reach it within this sweep"));
+        }
+        out.push(text);
     }
     out
 }

@@ -104,8 +104,6 @@ impl OdeSystem for Problem<'_> {
 /// Most steps of a cycle, fifty times what a pack needs: beyond it the case asks for something that cannot be followed, such as
 /// the contact of a ring without mass.
 const MOST_STEPS: u64 = 30_000;
-/// Tolerance below which the integrator of order 5 needs less work than that of order 3.
-const ORDER_FIVE: f64 = 5e-5;
 /// First step of a cycle \[rad\].
 const FIRST_STEP: f64 = 1e-3;
 /// Velocity that counts as one in the error norm, in clearances per radian: what matters of a velocity is the distance it covers.
@@ -374,8 +372,7 @@ pub(super) fn run(
     let dim = pack.layout.n;
     let quads = 2 * pack.n_rings() + 1;
     let rosenbrock = |formula| Method::Rodas(Box::new(Rodas::with(formula, dim, quads, None)));
-    let method = match s.integrator {
-        IntegratorName::Rodas if s.tolerance.si() >= ORDER_FIVE => rosenbrock(Formula::Rodas3),
+    let method = match s.resolved() {
         IntegratorName::Rodas3 => rosenbrock(Formula::Rodas3),
         IntegratorName::Rodas | IntegratorName::Rodas5p => rosenbrock(Formula::Rodas5P),
         IntegratorName::Radau5 => Method::Radau(Box::new(Radau5::new(dim, quads, None))),
