@@ -183,8 +183,8 @@ impl Pack {
         if p.s < 0.5 * p.clearance { Hold::Lower } else { Hold::Upper }
     }
 
-    /// Positive when the free ring `i` can be held: the film is stiff, the balance keeps the ring, and the velocity, unless it
-    /// `starts` from rest, has settled.
+    /// Positive when the free ring `i` can be held: the film is stiff, the balance keeps the ring, and the velocity has settled,
+    /// which it does within a fraction of a degree when a cycle `starts`.
     fn readiness(&self, i: usize, starts: bool) -> f64 {
         if self.hold_tolerance <= 0.0 {
             return -1.0;
@@ -198,7 +198,8 @@ impl Pack {
         }
         let release = self.release_speed(i);
         let balanced = b.velocity(release);
-        let kept = 1.0 - 2.0 * balanced / release;
+        // A ring just let go is not held again at once; one that was held when the last cycle ended still is.
+        let kept = 1.0 - if starts { 1.0 } else { 2.0 } * balanced / release;
         let settled = 1.0 - (w - balanced).abs() / (self.hold_tolerance * self.unit_speed(i));
         stiff.min(kept).min(if starts { 1.0 } else { settled }).max(-1.0)
     }
@@ -217,7 +218,8 @@ impl Pack {
         }
     }
 
-    /// Which rings are held at the start of a cycle: a function of the state alone. Evaluates the instant.
+    /// Which rings are held where one cycle ends and the next starts: a function of the state alone, without the velocities that
+    /// the films decide. Evaluates the instant.
     ///
     /// # Errors
     /// What a sub-model refuses.
@@ -229,7 +231,7 @@ impl Pack {
         self.evaluate(theta, y)?;
         for i in 0..self.n_rings() {
             if let Some(k) = self.layout.axial[i]
-                && self.readiness(i, y[k + 1].abs() <= self.hold_tolerance) > 0.0
+                && self.readiness(i, true) > 0.0
             {
                 self.switch_hold(i, &mut y[k + 1]);
             }

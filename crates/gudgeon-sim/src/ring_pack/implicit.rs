@@ -222,6 +222,8 @@ impl CycleMap for Cycle<'_> {
             self.failure = Some(e);
             return Err(EvalError::fatal("ring_pack", "the cycle could not be integrated"));
         }
+        // The velocity of a ring that could be held says nothing.
+        self.pack.start_holds(self.pack.period(), y1)?;
         Ok(1.0)
     }
     fn scale(&self, y: &[f64], s: &mut [f64]) {
