@@ -22,8 +22,8 @@ crate::register_kind!(
 
 /// A running flank-friction model.
 pub trait FlankFriction: Send {
-    /// Radial force on the ring \[N\] towards the liner, odd and not decreasing in `hdot` \[m/s\] (a ring moving away from the
-    /// liner is pushed towards it), for the axial load \[N\] that presses the flanks together.
+    /// Radial force on the ring \[N\] towards the liner, odd in `hdot` \[m/s\] and of its sign (a ring moving away from the liner is
+    /// pushed towards it), for the axial load \[N\] that presses the flanks together.
     fn force(&self, hdot: f64, axial_load: f64) -> f64;
     /// Derivative of the force by `hdot` \[N s/m\].
     fn slope(&self, hdot: f64, axial_load: f64) -> f64;

@@ -63,6 +63,9 @@ fn starts(case: &RingPackCase, pack: &Pack) -> Vec<f64> {
     s
 }
 
+/// Change of the stored gas over the last cycle, as part of what passes, above which a marched scheme is said not to have settled.
+const UNSETTLED: f64 = 0.02;
+
 /// Two periodic solutions count as one when their results agree within this relative difference.
 const SAME: f64 = 5e-3;
 
@@ -183,13 +186,21 @@ fn one_start(
             };
             let outcome = substep_march::run(pack, set, start, &mut record, progress);
             let (totals, steps) = outcome.map_err(at(pack))?;
+            let mut notes = Vec::new();
+            if totals.periodicity_error > UNSETTLED {
+                notes.push(format!(
+                    "the gas between the rings still changed by {:.1} % of what passes over cycle {}: raise `solver.cycles`",
+                    100.0 * totals.periodicity_error,
+                    set.cycles
+                ));
+            }
             Ok(Found {
                 record,
                 totals,
                 period: 1,
                 cycles: f64::from(set.cycles),
                 counters: [("steps".to_owned(), steps)].into_iter().collect(),
-                notes: Vec::new(),
+                notes,
                 seconds: begin.elapsed().as_secs_f64(),
             })
         }
