@@ -370,7 +370,6 @@ struct Tolerance<'a> {
     relative: f64,
     /// Ratio to the tolerance asked for.
     ratio: f64,
-    absolute: &'a [f64],
     options: &'a Options,
     /// Tolerance of the Newton iteration in units of these.
     newton: f64,
@@ -382,12 +381,12 @@ impl<'a> Tolerance<'a> {
         let ratio = if options.rtol > 0.0 { relative / options.rtol } else { 1.0 };
         // Not below what the rounding of the stages allows.
         let newton = (NEWTON / ratio).max(10.0 * f64::EPSILON / relative);
-        Self { relative, ratio, absolute: &options.atol, options, newton }
+        Self { relative, ratio, options, newton }
     }
 
     fn of(&self, k: usize, size: f64) -> f64 {
         let relative = if self.options.is_absolute(k) { 0.0 } else { self.relative };
-        self.absolute[k] * self.ratio + relative * size
+        self.options.atol[k] * self.ratio + relative * size
     }
 }
 

@@ -236,13 +236,16 @@ fn check<S: OdeSystem + ?Sized>(
     if !(o.rtol >= 0.0 && o.rtol.is_finite()) {
         return bad("the relative tolerance is negative or not finite");
     }
-    if o.atol.len() != n || !(o.atol_quad.is_empty() || o.atol_quad.len() == nq) {
+    if !(o.absolute.is_empty() || o.absolute.len() == n)
+        || o.atol.len() != n
+        || !(o.atol_quad.is_empty() || o.atol_quad.len() == nq)
+    {
         return bad("an absolute tolerance has the wrong length");
     }
     if o.atol.iter().chain(&o.atol_quad).any(|a| !(*a >= 0.0 && a.is_finite())) {
         return bad("an absolute tolerance is negative or not finite");
     }
-    if (o.rtol == 0.0 || !o.absolute.is_empty()) && o.atol.iter().chain(&o.atol_quad).any(|a| *a == 0.0) {
+    if o.atol.iter().chain(&o.atol_quad).enumerate().any(|(i, a)| *a == 0.0 && o.relative(i) == 0.0) {
         return bad("relative and absolute tolerance are both zero");
     }
     if breakpoints.iter().any(|b| b.is_nan()) || breakpoints.windows(2).any(|w| w[1] < w[0]) {

@@ -29,6 +29,13 @@ struct Problem<'a> {
     balance: &'a [LinearInvariant],
 }
 
+impl Problem<'_> {
+    /// Has the instant evaluated that the integrator asks about, which it usually just did.
+    fn look_at(&mut self, t: f64, y: &[f64]) -> Result<(), EvalError> {
+        if self.pack.at.theta == t && self.pack.state == y { Ok(()) } else { self.pack.evaluate(t, y) }
+    }
+}
+
 impl OdeSystem for Problem<'_> {
     fn dim(&self) -> usize {
         self.pack.layout.n
@@ -40,10 +47,7 @@ impl OdeSystem for Problem<'_> {
         self.pack.rates(t, y, f)
     }
     fn jacobian(&mut self, t: f64, y: &[f64], _: &[f64], jac: &mut [f64]) -> Result<bool, EvalError> {
-        // The integrator has just evaluated `rhs` here, unless it was somewhere else in between.
-        if self.pack.at.theta != t || self.pack.state != y {
-            self.pack.evaluate(t, y)?;
-        }
+        self.look_at(t, y)?;
         let scale = self.scale;
         // Square root of the rounding error times the magnitude of the state.
         let increment = |k: usize| {
@@ -57,8 +61,8 @@ impl OdeSystem for Problem<'_> {
         self.balance
     }
     fn tolerances(&mut self, t: f64, y: &[f64], atol: &mut [f64]) {
-        // An observer may have looked elsewhere. Where the instant cannot be evaluated the step will say so.
-        if (self.pack.at.theta != t || self.pack.state != y) && self.pack.evaluate(t, y).is_err() {
+        // Where the instant cannot be evaluated the step will say so.
+        if self.look_at(t, y).is_err() {
             return;
         }
         for (i, k) in self.pack.layout.axial.iter().enumerate() {
@@ -70,13 +74,11 @@ impl OdeSystem for Problem<'_> {
         }
     }
     fn n_events(&self) -> usize {
-        if self.pack.hold_tolerance > 0.0 { self.pack.n_rings() } else { 0 }
+        let moves = self.pack.layout.axial.iter().any(Option::is_some);
+        if moves && self.pack.hold_tolerance > 0.0 { self.pack.n_rings() } else { 0 }
     }
     fn events(&mut self, t: f64, y: &[f64], g: &mut [f64]) -> Result<(), EvalError> {
-        // The integrator has just evaluated the end of a step.
-        if self.pack.at.theta != t || self.pack.state != y {
-            self.pack.evaluate(t, y)?;
-        }
+        self.look_at(t, y)?;
         for (i, g) in g.iter_mut().enumerate() {
             *g = if self.pack.layout.axial[i].is_some() { self.pack.hold_event(i) } else { -1.0 };
         }
@@ -90,9 +92,7 @@ impl OdeSystem for Problem<'_> {
         self.pack.holds[k] != Hold::Free
     }
     fn on_event(&mut self, k: usize, t: f64, y: &mut [f64]) -> Result<EventAction, EvalError> {
-        if self.pack.at.theta != t || self.pack.state != y {
-            self.pack.evaluate(t, y)?;
-        }
+        self.look_at(t, y)?;
         if let Some(v) = self.pack.layout.axial[k] {
             self.pack.switch_hold(k, &mut y[v + 1]);
             // The instant belongs to the other mode.
@@ -102,7 +102,7 @@ impl OdeSystem for Problem<'_> {
     }
 }
 
-/// Most steps of a cycle, fifty times what a pack needs: beyond it the case asks for something that cannot be followed, such as
+/// Most steps of a cycle, some thirty times what a pack needs at the default tolerance: beyond it the case asks for something that cannot be followed, such as
 /// the contact of a ring without mass.
 const MOST_STEPS: u64 = 30_000;
 /// First step of a cycle \[rad\].
