@@ -12,6 +12,7 @@ mod gas_flow;
 mod hydrodynamics;
 mod kinematics;
 mod oil;
+mod rig;
 mod ring_motion;
 
 pub use contact::*;
@@ -23,4 +24,5 @@ pub use gas_flow::*;
 pub use hydrodynamics::*;
 pub use kinematics::*;
 pub use oil::*;
+pub use rig::*;
 pub use ring_motion::*;
