@@ -17,9 +17,9 @@ use crate::ring_pack::{self, assemble};
 /// A case of any scene, with its places in the file.
 pub enum Case {
     /// `scene = "ring_pack"`
-    RingPack(Loaded<RingPackCase>),
+    RingPack(Box<Loaded<RingPackCase>>),
     /// `scene = "rig"`
-    Rig(Loaded<RigCase>),
+    Rig(Box<Loaded<RigCase>>),
 }
 
 /// A case that was read, resolved and found to be possible.
@@ -102,7 +102,7 @@ fn checked(name: String, source: Source, overrides: &[String]) -> Result<Checked
             if !errors.is_empty() {
                 return Err(loaded.refuse(&errors));
             }
-            Ok(Checked { name, notes: loaded.notes.clone(), case: Case::Rig(loaded) })
+            Ok(Checked { name, notes: loaded.notes.clone(), case: Case::Rig(Box::new(loaded)) })
         }
         _ => {
             let loaded: Loaded<RingPackCase> = load_source(source, overrides)?;
@@ -114,7 +114,7 @@ fn checked(name: String, source: Source, overrides: &[String]) -> Result<Checked
             if !errors.is_empty() {
                 return Err(loaded.refuse(&errors));
             }
-            Ok(Checked { name, notes: loaded.notes.clone(), case: Case::RingPack(loaded) })
+            Ok(Checked { name, notes: loaded.notes.clone(), case: Case::RingPack(Box::new(loaded)) })
         }
     }
 }

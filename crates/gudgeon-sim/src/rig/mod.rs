@@ -24,7 +24,7 @@ pub fn legal(case: &RigCase, folder: &Path) -> Vec<BuildError> {
     errors.extend(sweep::legal(case));
     for (k, c) in case.checks.iter().enumerate() {
         for (j, e) in c.expect.iter().enumerate() {
-            if !e.value.is_finite() || !(e.tolerance.is_finite() && e.tolerance >= 0.0) {
+            if !(e.value.is_finite() && e.tolerance.is_finite() && e.tolerance >= 0.0) {
                 errors.push(BuildError::at(
                     format!("checks.{k}.expect.{j}"),
                     "a value and a tolerance of zero or more are needed",

@@ -44,7 +44,7 @@ fn values(s: &Sweep) -> Result<Vec<String>, BuildError> {
     if !(2..=MOST).contains(&n) {
         return Err(BuildError::at("points", format!("a sweep has 2 to {MOST} points, not {n}")));
     }
-    if s.spacing == Spacing::Log && !(a * b > 0.0) {
+    if s.spacing == Spacing::Log && a * b <= 0.0 {
         return Err(BuildError::at("spacing", "equal ratios need two values of the same sign, neither zero"));
     }
     let at = |k: usize| {
