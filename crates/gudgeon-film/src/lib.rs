@@ -8,6 +8,7 @@ mod gridded_face;
 mod land_wall_mean;
 mod liner_linear;
 mod off;
+pub mod oil_transport;
 mod vogel;
 mod vogel_grade;
 

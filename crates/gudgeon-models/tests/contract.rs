@@ -41,6 +41,8 @@ const MODELS: &[&str] = &[
     "oil/constant",
     "oil/vogel",
     "oil/vogel_grade",
+    "oil_transport/liner_film",
+    "oil_transport/off",
     "rig/cylinder_pressure",
     "rig/kinematics",
     "rig/ring_face",
@@ -61,6 +63,7 @@ const SWITCHED_OFF: &[(&str, Option<&str>)] = &[
     ("hydrodynamics", Some("off")),
     ("kinematics", None),
     ("oil", Some("constant")),
+    ("oil_transport", Some("off")),
     ("rig", None),
     ("ring_motion", Some("seated")),
 ];

@@ -12,6 +12,7 @@ mod gas_flow;
 mod hydrodynamics;
 mod kinematics;
 mod oil;
+mod oil_transport;
 mod rig;
 mod ring_motion;
 
@@ -24,5 +25,6 @@ pub use gas_flow::*;
 pub use hydrodynamics::*;
 pub use kinematics::*;
 pub use oil::*;
+pub use oil_transport::*;
 pub use rig::*;
 pub use ring_motion::*;
