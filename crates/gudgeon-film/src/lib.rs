@@ -3,6 +3,7 @@
 mod closed_form_face;
 mod constant;
 mod face;
+pub mod film_1d;
 mod given;
 mod gridded_face;
 mod land_wall_mean;

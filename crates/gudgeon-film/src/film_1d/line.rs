@@ -1,0 +1,646 @@
+//! What every model of a film along a line needs: the panels of the line, turned so that the surface moves along `+x`, and the
+//! integrals over a film that has been found.
+//!
+//! In a panel the gap is linear, `h = h_m (1 + t w)`, `-1 ≤ w ≤ 1`, and the flux `q` constant, so that
+//!
+//! ```text
+//! p' = 12 μ/φ_p (u φ_s h/2 - q)/h³
+//! q  = c θ_a + g (p_a - p_b),   1/g = 12 μ/φ_p ∫dx/h³,   c = u φ_s/2 ∫dx/h² / ∫dx/h³
+//! ```
+//!
+//! exactly, with `θ_a` the filled fraction at the upstream node. All integrals of pressure and shear follow from `t²` and
+//! `A1 = (artanh t/t - 1)/t²` without cancellation.
+
+use gudgeon_core::EvalError;
+use gudgeon_core::kinds::{
+    Film1dCtx, Film1dIn, Film1dOut, FilmEnd, FilmField, FilmFront, FilmTime, PanelFactors,
+};
+use serde::{Deserialize, Serialize};
+
+use crate::Cavitation;
+
+/// Friction of the part of a line that is not under full film.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum LineCavityShear {
+    /// `full` for the Sommerfeld conditions, as programs that use them count it; `streamers` otherwise.
+    #[default]
+    Auto,
+    /// Streamers of oil over the filled fraction of the width: `θ μ u/h`.
+    Streamers,
+    /// As if the gap were full: `μ u/h`.
+    Full,
+    /// None.
+    None,
+}
+
+/// [`LineCavityShear`] when it is decided.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Shear {
+    Streamers,
+    Full,
+    None,
+}
+
+impl LineCavityShear {
+    /// What is left to decide when the condition of cavitation is known.
+    pub(super) const fn decided(self, cavitation: Cavitation) -> Shear {
+        match (self, cavitation) {
+            (Self::None, _) => Shear::None,
+            (Self::Full, _) | (Self::Auto, Cavitation::HalfSommerfeld | Cavitation::FullSommerfeld) => {
+                Shear::Full
+            }
+            _ => Shear::Streamers,
+        }
+    }
+}
+
+/// `(artanh t/t - 1)/t²` of `z = t²`, `0 ≤ z < 1`.
+#[inline]
+fn a1(z: f64) -> f64 {
+    if z < 1e-3 {
+        // 1e-18 of the series is left out.
+        return 1.0 / 3.0 + z * (0.2 + z * (1.0 / 7.0 + z * (1.0 / 9.0 + z * (1.0 / 11.0 + z / 13.0))));
+    }
+    if z < 0.06 {
+        let mut sum = 0.0;
+        // 0.06^14/31 = 3e-19.
+        for k in (0..14).rev() {
+            sum = sum * z + 1.0 / (2 * k + 3) as f64;
+        }
+        return sum;
+    }
+    let t = z.sqrt();
+    (t.atanh() / t - 1.0) / z
+}
+
+/// How the oil stored along the line changes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Change {
+    Steady,
+    /// At a given rate at each node.
+    Rates,
+    /// In a step of this length, from a given content.
+    Step(f64),
+}
+
+/// A line with its panels and the film found on it, in the direction of sliding: `u ≥ 0`, coordinate `±x`.
+#[derive(Debug)]
+pub(super) struct Line {
+    model: &'static str,
+    nodes: Vec<f64>,
+    /// Number of panels.
+    pub n: usize,
+    /// Sliding is along `-x`.
+    turned: bool,
+    smooth: bool,
+    pub u: f64,
+    p_cav: f64,
+    /// Nodes in the direction of sliding.
+    pub x: Vec<f64>,
+    pub dx: Vec<f64>,
+    pub ha: Vec<f64>,
+    pub hb: Vec<f64>,
+    pub mu: Vec<f64>,
+    pub rough: Vec<PanelFactors>,
+    /// Flux through a panel for a pressure difference of 1, and its inverse.
+    pub g: Vec<f64>,
+    pub d: Vec<f64>,
+    /// Flux that sliding drives through a full panel.
+    pub c: Vec<f64>,
+    /// Pressures above `p_cav` at the ends.
+    pub p_in: f64,
+    pub p_out: f64,
+    /// Flux that arrives, when the inlet is no bath.
+    pub supply: Option<f64>,
+    pub change: Change,
+    /// Volume of the gap at the nodes.
+    pub volume: Vec<f64>,
+    /// Rate at which a node stores oil.
+    pub rate: Vec<f64>,
+    /// Oil at the nodes at the start of a step.
+    pub before: Vec<f64>,
+    /// The solution: pressure above `p_cav` and filled fraction of the nodes, whether there is a film, flux of the panels.
+    pub p: Vec<f64>,
+    pub fill: Vec<f64>,
+    pub film: Vec<bool>,
+    pub q: Vec<f64>,
+    /// Nodes before this one lie before the film of a starved inlet, under the gas.
+    pub lead: usize,
+    pub starved: bool,
+    /// The answers, in the direction of `x`.
+    field_p: Vec<f64>,
+    field_fill: Vec<f64>,
+    field_content: Vec<f64>,
+    field_flux: Vec<f64>,
+    fronts: Vec<FilmFront>,
+}
+
+/// Integrals over a panel of full film, of what lies above the straight line between the pressures of its nodes.
+struct Bulge {
+    load: f64,
+    /// About the middle of the panel, the straight line included.
+    moment: f64,
+    /// `½ ∫ h p' dx`
+    gradient: f64,
+    /// `∫ dx/h`
+    i1: f64,
+}
+
+impl Line {
+    pub fn new(model: &'static str, ctx: &Film1dCtx<'_>) -> Self {
+        let n = ctx.x.len() - 1;
+        let panels = || vec![0.0; n];
+        let nodes = || vec![0.0; n + 1];
+        Self {
+            model,
+            nodes: ctx.x.to_vec(),
+            n,
+            turned: false,
+            smooth: true,
+            u: 0.0,
+            p_cav: 0.0,
+            x: ctx.x.to_vec(),
+            dx: ctx.x.windows(2).map(|w| w[1] - w[0]).collect(),
+            ha: panels(),
+            hb: panels(),
+            mu: panels(),
+            rough: vec![PanelFactors::SMOOTH; n],
+            g: panels(),
+            d: panels(),
+            c: panels(),
+            p_in: 0.0,
+            p_out: 0.0,
+            supply: None,
+            change: Change::Steady,
+            volume: nodes(),
+            rate: nodes(),
+            before: nodes(),
+            p: nodes(),
+            fill: nodes(),
+            film: vec![false; n + 1],
+            q: panels(),
+            lead: 0,
+            starved: false,
+            field_p: nodes(),
+            field_fill: nodes(),
+            field_content: nodes(),
+            field_flux: panels(),
+            // Between two nodes there is one front at most.
+            fronts: Vec::with_capacity(n + 1),
+        }
+    }
+
+    pub const fn turned(&self) -> bool {
+        self.turned
+    }
+
+    pub fn fatal(&self, what: impl Into<std::borrow::Cow<'static, str>>) -> EvalError {
+        EvalError::fatal(self.model, what)
+    }
+
+    pub fn recoverable(&self, what: impl Into<std::borrow::Cow<'static, str>>) -> EvalError {
+        EvalError::recoverable(self.model, what)
+    }
+
+    /// Takes the inputs, turned into the direction of sliding, and computes the coefficients of the panels. With `clip` an end
+    /// pressure below `p_cav` counts as `p_cav`.
+    pub fn enter(&mut self, inp: &Film1dIn<'_>, clip: bool) -> Result<(), EvalError> {
+        let n = self.n;
+        let fits = inp.h_a.len() == n
+            && inp.h_b.len() == n
+            && inp.mu.len() == n
+            && inp.factors.is_none_or(|f| f.len() == n);
+        if !fits {
+            return Err(
+                self.fatal(format!("film, viscosity and roughness must be given for each of {n} panels"))
+            );
+        }
+        let [first, last] = inp.ends.map(FilmEnd::pressure);
+        if !(first + last + inp.p_cav + inp.u).is_finite() {
+            return Err(self.fatal(format!(
+                "these are no film: sliding {} m/s, ends {first} and {last} Pa, cavitation {} Pa",
+                inp.u, inp.p_cav
+            )));
+        }
+        let turned = inp.u < 0.0;
+        if turned != self.turned {
+            self.turned = turned;
+            if turned {
+                self.x.iter_mut().zip(self.nodes.iter().rev()).for_each(|(x, n)| *x = -n);
+            } else {
+                self.x.copy_from_slice(&self.nodes);
+            }
+            self.dx.iter_mut().zip(self.x.windows(2)).for_each(|(d, w)| *d = w[1] - w[0]);
+        }
+        self.u = inp.u.abs();
+        self.p_cav = inp.p_cav;
+        if turned {
+            copy_back(&mut self.ha, inp.h_b);
+            copy_back(&mut self.hb, inp.h_a);
+            copy_back(&mut self.mu, inp.mu);
+        } else {
+            self.ha.copy_from_slice(inp.h_a);
+            self.hb.copy_from_slice(inp.h_b);
+            self.mu.copy_from_slice(inp.mu);
+        }
+        // A comparison with what is not a number is false, and a sum with it is not finite.
+        let positive = |v: &[f64]| v.iter().fold(true, |ok, x| ok & (*x > 0.0));
+        let sum = |v: &[f64]| v.iter().sum::<f64>();
+        if !(sum(&self.ha) + sum(&self.hb) + sum(&self.mu)).is_finite() || !positive(&self.mu) {
+            return Err(self.fatal("film thickness and viscosity must be finite, viscosity positive"));
+        }
+        if !positive(&self.ha) || !positive(&self.hb) {
+            let least = self.ha.iter().chain(&self.hb).copied().fold(f64::INFINITY, f64::min);
+            return Err(self.recoverable(format!("a film of {least} m leaves no gap")));
+        }
+        match inp.factors {
+            Some(f) => {
+                let bad = |f: &PanelFactors| {
+                    let all = f.pressure_flow + f.sliding_flow + f.sliding_shear + f.pressure_shear;
+                    !all.is_finite() || f.pressure_flow <= 0.0 || f.sliding_flow < 0.0
+                };
+                if f.iter().any(bad) {
+                    return Err(
+                        self.fatal("roughness factors must be finite, that of the pressure flow positive")
+                    );
+                }
+                self.smooth = false;
+                if turned {
+                    copy_back(&mut self.rough, f);
+                } else {
+                    self.rough.copy_from_slice(f);
+                }
+            }
+            None if !self.smooth => {
+                self.rough.fill(PanelFactors::SMOOTH);
+                self.smooth = true;
+            }
+            None => {}
+        }
+        self.coefficients();
+        let least = if clip { 0.0 } else { f64::NEG_INFINITY };
+        let (p0, p1) = ((first - inp.p_cav).max(least), (last - inp.p_cav).max(least));
+        (self.p_in, self.p_out) = if turned { (p1, p0) } else { (p0, p1) };
+        self.supply = match inp.ends[usize::from(turned)] {
+            FilmEnd::Flooded { .. } => None,
+            FilmEnd::Starved { h_oil, .. } if h_oil.is_finite() && h_oil >= 0.0 => Some(self.u * h_oil),
+            FilmEnd::Starved { h_oil, .. } => {
+                return Err(self.fatal(format!("no layer of oil is {h_oil} m thick")));
+            }
+        };
+        self.lead = 0;
+        self.starved = false;
+        self.enter_time(&inp.time)
+    }
+
+    fn enter_time(&mut self, time: &FilmTime<'_>) -> Result<(), EvalError> {
+        let n = self.n;
+        self.change = match time {
+            FilmTime::Steady => Change::Steady,
+            FilmTime::Squeeze(v) => {
+                if v.len() != n || !v.iter().sum::<f64>().is_finite() {
+                    return Err(
+                        self.fatal(format!("a finite squeeze velocity is needed for each of {n} panels"))
+                    );
+                }
+                self.rate.fill(0.0);
+                for i in 0..n {
+                    let half = 0.5 * self.dx[i] * if self.turned { v[n - 1 - i] } else { v[i] };
+                    self.rate[i] += half;
+                    self.rate[i + 1] += half;
+                }
+                if self.rate.iter().all(|r| *r == 0.0) { Change::Steady } else { Change::Rates }
+            }
+            FilmTime::Step { dt, content } => {
+                if !(dt.is_finite() && *dt > 0.0) {
+                    return Err(self.fatal(format!("a step of {dt} s is none")));
+                }
+                let sum: f64 = content.iter().sum();
+                if content.len() != n + 1 || !sum.is_finite() || content.iter().any(|c| *c < 0.0) {
+                    return Err(
+                        self.fatal(format!("the oil at each of {} nodes must be zero or more", n + 1))
+                    );
+                }
+                if self.turned {
+                    copy_back(&mut self.before, content);
+                } else {
+                    self.before.copy_from_slice(content);
+                }
+                volumes(&self.dx, &self.ha, &self.hb, &mut self.volume);
+                Change::Step(*dt)
+            }
+        };
+        Ok(())
+    }
+
+    /// Conductance and sliding flux of the panels.
+    fn coefficients(&mut self) {
+        let n = self.n;
+        let (ha, hb, dx, mu) = (&self.ha[..n], &self.hb[..n], &self.dx[..n], &self.mu[..n]);
+        let (g, d, c) = (&mut self.g[..n], &mut self.d[..n], &mut self.c[..n]);
+        for i in 0..n {
+            let (product, sum) = (ha[i] * hb[i], ha[i] + hb[i]);
+            let resistance = 6.0 * mu[i] * dx[i] * sum;
+            let square = product * product;
+            g[i] = square / resistance;
+            d[i] = resistance / square;
+            c[i] = self.u * product / sum;
+        }
+        if !self.smooth {
+            for i in 0..n {
+                let f = &self.rough[i];
+                g[i] *= f.pressure_flow;
+                d[i] /= f.pressure_flow;
+                c[i] *= f.sliding_flow;
+            }
+        }
+    }
+
+    /// Oil that the bath or the layer at either end must give or take beside the flux of the first or last panel.
+    fn ends_store(&self) -> (f64, f64) {
+        match self.change {
+            Change::Steady => (0.0, 0.0),
+            _ => (self.rate[0], self.rate[self.n]),
+        }
+    }
+
+    /// Fill of the last node: a bath, the end of a film, or what the cavity carries out of the line.
+    pub fn outlet(&mut self) {
+        let n = self.n;
+        let open = !self.film[n - 1] && self.p[n] <= 0.0;
+        let full = 0.5 * self.u * self.rough[n - 1].sliding_flow * self.hb[n - 1];
+        self.film[n] = !open;
+        self.fill[n] = if open && full > 0.0 { (self.q[n - 1] / full).clamp(0.0, 1.0) } else { 1.0 };
+    }
+
+    /// Sets [`Line::rate`] from the oil stored in the film that was found.
+    pub fn store(&mut self) {
+        if let Change::Step(dt) = self.change {
+            for i in 0..=self.n {
+                self.rate[i] = (self.volume[i] * self.fill[i] - self.before[i]) / dt;
+            }
+        }
+    }
+
+    /// Integrals over the full panel `i` that has the flux `q`.
+    #[inline]
+    fn bulge(&self, i: usize, q: f64, rise: f64) -> Bulge {
+        let (ha, hb, dx, f) = (self.ha[i], self.hb[i], self.dx[i], &self.rough[i]);
+        let hm = 0.5 * (ha + hb);
+        let r = 1.0 / hm;
+        let t = 0.5 * (hb - ha) * r;
+        let z = t * t;
+        let y = 1.0 / (1.0 - z);
+        let a = a1(z);
+        let i1 = dx * r * (1.0 + z * a);
+        let i2 = dx * r * r * y;
+        let uf = self.u * f.sliding_flow;
+        let k = 3.0 * self.mu[i] * dx * dx / f.pressure_flow;
+        Bulge {
+            load: k * t * r * r * (uf * (y - a) - 2.0 * q * r * y * y),
+            moment: 0.125 * dx * dx * rise
+                - 0.5 * k * dx * r * r * (0.5 * uf * (y - 2.0 * a) - q * r * (a + z * y * y)),
+            gradient: 2.0 * k / (dx * dx) * (0.5 * uf * i1 - q * i2) * f.pressure_shear,
+            i1,
+        }
+    }
+
+    /// Load, shear and the rest of the film that was found, and the answers in the direction of `x`. `clip`: pressure is below
+    /// zero where nothing has been done about it yet, and is cut off.
+    pub fn finish(&mut self, shear: Shear, clip: bool, iterations: usize) -> Result<Film1dOut, EvalError> {
+        let n = self.n;
+        self.fronts.clear();
+        let (mut load, mut moment, mut slope) = (0.0, 0.0, 0.0);
+        let (mut couette, mut gradient) = (0.0, 0.0);
+        let squeezed = self.change != Change::Steady;
+        let width = |line: &Self, i: usize| {
+            0.5 * (if i > 0 { line.dx[i - 1] } else { 0.0 } + if i < n { line.dx[i] } else { 0.0 })
+        };
+        for i in 0..n {
+            let (ha, hb, dx) = (self.ha[i], self.hb[i], self.dx[i]);
+            let (pa, pb) = (self.p[i], self.p[i + 1]);
+            let (mid, mu, f) = (0.5 * (self.x[i] + self.x[i + 1]), self.mu[i], &self.rough[i]);
+            let full = if clip { pa >= 0.0 && pb >= 0.0 } else { self.film[i] };
+            let part = if full {
+                let b = self.bulge(i, self.q[i], pb - pa);
+                let mut part = 0.5 * dx * (pa + pb) + b.load;
+                if squeezed {
+                    // The flux is not constant: a parabola of pressure more.
+                    let v = 0.5 * (self.rate[i] / width(self, i) + self.rate[i + 1] / width(self, i + 1));
+                    let hm = 0.5 * (ha + hb);
+                    part -= mu * v * (dx / hm) * (dx / hm) * (dx / hm) / f.pressure_flow;
+                }
+                moment += b.moment + mid * part;
+                couette += mu * self.u * b.i1 * f.sliding_shear;
+                gradient += b.gradient;
+                part
+            } else {
+                // What presses on the whole panel, and the film at one of its ends with its fraction of the length.
+                let (floor, pe, fraction, at_b) = if clip {
+                    let (high, low) = (pa.max(pb), pa.min(pb));
+                    (0.0, high.max(0.0), if high > 0.0 { high / (high - low) } else { 0.0 }, pb > pa)
+                } else {
+                    let rise = (self.c[i] - self.q[i]) * self.d[i];
+                    let high = pb - pa;
+                    (pa, high, if high > 0.0 { high / rise.max(high) } else { 0.0 }, true)
+                };
+                let length = fraction * dx;
+                let above = 0.5 * pe.max(0.0) * length;
+                let (far, tip) = if at_b { (self.x[i + 1], -1.0) } else { (self.x[i], 1.0) };
+                let grade = (hb - ha) / dx;
+                if fraction > 0.0 {
+                    self.fronts.push(FilmFront { x: far + tip * length, film_before: !at_b });
+                }
+                moment += floor * dx * mid + above * (far + tip * length / 3.0);
+                let edge = if at_b { hb * pe } else { -ha * pe };
+                gradient += 0.5 * (edge - grade * above) * f.pressure_shear;
+                let (i1, height) = (2.0 * dx / (ha + hb), 2.0 * ha * hb / (ha + hb));
+                let wet = match shear {
+                    Shear::Full => i1,
+                    Shear::None => fraction * i1,
+                    // The layer before the film touches one surface alone.
+                    Shear::Streamers if i < self.lead => fraction * i1,
+                    Shear::Streamers => {
+                        let c = self.c[i];
+                        let fill = if c > 0.0 { (self.q[i] / c).clamp(0.0, 1.0) } else { 0.0 };
+                        fraction * i1 + (1.0 - fraction) * fill * height * dx / (ha * hb)
+                    }
+                };
+                couette += mu * self.u * wet * f.sliding_shear;
+                floor * dx + above
+            };
+            load += part;
+            slope -= part * ((hb - ha) / dx);
+            if i > 0 {
+                slope -= pa.max(if clip { 0.0 } else { f64::NEG_INFINITY }) * (ha - self.hb[i - 1]);
+            }
+        }
+        if clip {
+            self.p.iter_mut().for_each(|p| *p = p.max(0.0));
+            for i in 0..n {
+                self.q[i] = self.c[i] + self.g[i] * (self.p[i] - self.p[i + 1]);
+            }
+        } else {
+            self.ruptures();
+        }
+        let (p_max, x_max) = self.highest();
+        let (store_in, store_out) = self.ends_store();
+        let (enters, leaves) = (self.q[0] + store_in, self.q[n - 1] - store_out);
+        let flux_error = self.flux_error();
+        let sign = if self.turned { -1.0 } else { 1.0 };
+        let out = Film1dOut {
+            load,
+            moment: sign * moment,
+            moving_shear: sign * (couette + gradient),
+            fixed_shear: sign * (couette - gradient),
+            slope_force: sign * slope,
+            flux_in: if self.turned { -leaves } else { enters },
+            flux_out: if self.turned { -enters } else { leaves },
+            p_max: self.p_cav + p_max,
+            x_p_max: sign * x_max,
+            starved: self.starved,
+            flux_error,
+            iterations,
+        };
+        let sum = load + moment + couette + gradient + slope + enters + leaves + p_max + flux_error;
+        if !sum.is_finite() {
+            return Err(self.recoverable("film out of range"));
+        }
+        self.tell();
+        Ok(out)
+    }
+
+    /// Adds the fronts where a film ends downstream: between the last node under pressure and the first without film, moved to
+    /// where the flux fills the gap without a gradient.
+    fn ruptures(&mut self) {
+        for k in 0..self.n {
+            if !self.film[k] || self.film[k + 1] {
+                continue;
+            }
+            let filled = 2.0 * self.q[k];
+            let mut x = self.x[k + 1];
+            for i in k..(k + 2).min(self.n) {
+                let (ha, hb) = (self.ha[i], self.hb[i]);
+                let (fa, fb) = {
+                    let uf = self.u * self.rough[i].sliding_flow;
+                    (uf * ha - filled, uf * hb - filled)
+                };
+                if fa <= 0.0 && fb > 0.0 {
+                    x = self.x[i] + self.dx[i] * (fa / (fa - fb));
+                }
+            }
+            self.fronts.push(FilmFront { x, film_before: true });
+        }
+        self.fronts.sort_unstable_by(|a, b| a.x.total_cmp(&b.x));
+    }
+
+    /// Highest pressure above `p_cav` and where it is: at a node, or at the crest in a panel beside it.
+    fn highest(&self) -> (f64, f64) {
+        let mut k = 0;
+        for (i, p) in self.p.iter().enumerate() {
+            if *p > self.p[k] {
+                k = i;
+            }
+        }
+        let (mut high, mut x) = (self.p[k], self.x[k]);
+        for i in k.saturating_sub(1)..(k + 1).min(self.n) {
+            let (ha, hb, f) = (self.ha[i], self.hb[i], &self.rough[i]);
+            let uf = self.u * f.sliding_flow;
+            let h = 2.0 * self.q[i] / uf;
+            if self.film[i] && h < ha && h > hb {
+                let l = self.dx[i] * (ha - h) / (ha - hb);
+                let k = 6.0 * self.mu[i] * l / f.pressure_flow;
+                let p = self.p[i] + k * (uf - self.q[i] * (ha + h) / (ha * h)) / (ha * h);
+                if p > high {
+                    (high, x) = (p, self.x[i] + l);
+                }
+            }
+        }
+        (high, x)
+    }
+
+    /// See [`Film1dOut::flux_error`]: from the pressures and fills of the nodes alone.
+    fn flux_error(&self) -> f64 {
+        let n = self.n;
+        let flux = |i: usize| self.c[i] * self.fill[i] + self.g[i] * (self.p[i] - self.p[i + 1]);
+        let scale = |i: usize| self.c[i].max(self.g[i] * self.p[i].abs().max(self.p[i + 1].abs()));
+        let stored = |i: usize| if self.change == Change::Steady { 0.0 } else { self.rate[i] };
+        let (mut before, mut size) = (flux(0), scale(0));
+        let mut worst: f64 = 0.0;
+        for i in 1..n {
+            let (now, here) = (flux(i), scale(i));
+            let off = (before - now - stored(i)).abs();
+            if off > 0.0 {
+                worst = worst.max(off / size.max(here));
+            }
+            (before, size) = (now, here);
+        }
+        worst
+    }
+
+    /// Writes the answers in the direction of `x`.
+    fn tell(&mut self) {
+        let cav = self.p_cav;
+        if self.change == Change::Steady || self.change == Change::Rates {
+            volumes(&self.dx, &self.ha, &self.hb, &mut self.volume);
+        }
+        let n = self.n;
+        if self.turned {
+            for i in 0..=n {
+                let j = n - i;
+                self.field_p[i] = cav + self.p[j];
+                self.field_fill[i] = self.fill[j];
+                self.field_content[i] = self.fill[j] * self.volume[j];
+            }
+            self.field_flux.iter_mut().zip(self.q.iter().rev()).for_each(|(f, q)| *f = -q);
+            self.fronts.reverse();
+            for f in &mut self.fronts {
+                *f = FilmFront { x: -f.x, film_before: !f.film_before };
+            }
+        } else {
+            for i in 0..=n {
+                self.field_p[i] = cav + self.p[i];
+                self.field_fill[i] = self.fill[i];
+                self.field_content[i] = self.fill[i] * self.volume[i];
+            }
+            self.field_flux.copy_from_slice(&self.q);
+        }
+    }
+
+    pub fn field(&self) -> FilmField<'_> {
+        FilmField {
+            p: &self.field_p,
+            fill: &self.field_fill,
+            content: &self.field_content,
+            flux: &self.field_flux,
+            fronts: &self.fronts,
+        }
+    }
+
+    pub fn full_content(&self, h_a: &[f64], h_b: &[f64], content: &mut [f64]) {
+        content.fill(0.0);
+        for (i, w) in self.nodes.windows(2).enumerate() {
+            if let (Some(a), Some(b)) = (h_a.get(i), h_b.get(i))
+                && i + 1 < content.len()
+            {
+                let dx = w[1] - w[0];
+                content[i] += 0.125 * dx * (3.0 * a + b);
+                content[i + 1] += 0.125 * dx * (a + 3.0 * b);
+            }
+        }
+    }
+}
+
+/// Volume of the halves of the panels beside each node.
+fn volumes(dx: &[f64], ha: &[f64], hb: &[f64], volume: &mut [f64]) {
+    volume.fill(0.0);
+    for i in 0..dx.len() {
+        volume[i] += 0.125 * dx[i] * (3.0 * ha[i] + hb[i]);
+        volume[i + 1] += 0.125 * dx[i] * (ha[i] + 3.0 * hb[i]);
+    }
+}
+
+fn copy_back<T: Copy>(to: &mut [T], from: &[T]) {
+    to.iter_mut().zip(from.iter().rev()).for_each(|(t, f)| *t = *f);
+}
