@@ -115,4 +115,26 @@ fn scratch() {
             o.flux_error
         );
     }
+
+    let ft = FrontTracking::default();
+    let ea = ElrodAdams::default();
+    for (u, w, q, xf, fr) in [(0.02, 2333.451964244468593322038, 1.073208240076096281398981e-8, 0.0, 1.874671479487971898376998), (0.05, 3683.4736333629854863946, 2.659986602870813397129187e-8, 0.002554933333871499088896818, 4.529166997523321203430668), (1.0, 35165.7009797406808120885, 5.229635023923444976076555e-7, 0.003611262655813475733708496, 84.4257934944705684652534)] {
+            for (n, s) in [(10, &ft as &dyn Film1dSpec), (1, &ft), (800, &ea)] {
+                let l = LineProfile::pocket(0.01, 1.05e-6, 1e-6, (0.002, 0.005), 1e-6, n).unwrap();
+                let (o, f, _) = solve(s, &l, 0.01, u, (1e5, 1e5), 0.0);
+                println!("FT pocket {u} {n} W {:e} q {:e} xf {:e} F {:e} err {:e} its {} {f:?}", o.load / w - 1.0, o.flux_in / q - 1.0, f.last().map_or(0.0, |f| f.x) - xf, o.moving_shear / fr - 1.0, o.flux_error, o.iterations);
+            }
+    }
+    for n in [50, 64, 100, 200, 400, 800, 1600] {
+        let l = LineProfile::parabola(1.2e-3, 6e-6 / 0.36e-6, 0.6e-3, 2e-6, n, false).unwrap();
+        for s in [&ft as &dyn Film1dSpec, &ea] {
+            let (o, f, _) = solve(s, &l, 0.01, 10.0, (1e5, 1e5), 0.0);
+            println!("FT ring {n} {:e} F {:e} pmax {:e} q {:e} {:?} err {:e} its {}", o.load / 1928.500543377637755942081 - 1.0, o.moving_shear / (31.83651283314982372982677 + 7.192262943906510181987812) - 1.0, o.p_max / 5153863.278147620133311238 - 1.0, o.flux_in / 0.00001189463034543730148282106 - 1.0, f.iter().map(|f| f.x - 0.6e-3).collect::<Vec<_>>(), o.flux_error, o.iterations);
+        }
+    }
+    let l = LineProfile::textured(0.01, 2e-6, 1e-6, 7, 0.5, 3e-6, 700).unwrap();
+    for s in [&ft as &dyn Film1dSpec, &c, &fb, &ea] {
+        let (o, f, _) = solve(s, &l, 0.01, 10.0, (1e5, 1e5), 0.0);
+        println!("FT textured {:e} F {:e} q {:e} err {:e} its {} {:?}", o.load , o.moving_shear , o.flux_in, o.flux_error, o.iterations, f.iter().map(|f| f.x).collect::<Vec<_>>());
+    }
 }

@@ -133,7 +133,7 @@ pub(super) struct Line {
     field_fill: Vec<f64>,
     field_content: Vec<f64>,
     field_flux: Vec<f64>,
-    fronts: Vec<FilmFront>,
+    pub fronts: Vec<FilmFront>,
 }
 
 /// Integrals over a panel of full film, of what lies above the straight line between the pressures of its nodes.
@@ -145,6 +145,83 @@ struct Bulge {
     gradient: f64,
     /// `∫ dx/h`
     i1: f64,
+}
+
+/// A stretch of a panel.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Stretch {
+    /// From where.
+    pub x: f64,
+    pub dx: f64,
+    pub ha: f64,
+    pub hb: f64,
+    pub mu: f64,
+    pub rough: PanelFactors,
+}
+
+impl Stretch {
+    /// Integrals over the stretch under full film with the flux `q` and the sliding velocity `u`.
+    #[inline]
+    fn bulge(&self, u: f64, q: f64, rise: f64) -> Bulge {
+        let (dx, f) = (self.dx, &self.rough);
+        let r = 2.0 / (self.ha + self.hb);
+        let t = 0.5 * (self.hb - self.ha) * r;
+        let z = t * t;
+        let y = 1.0 / (1.0 - z);
+        let a = a1(z);
+        let i1 = dx * r * (1.0 + z * a);
+        let i2 = dx * r * r * y;
+        let uf = u * f.sliding_flow;
+        let k = 3.0 * self.mu * dx * dx / f.pressure_flow;
+        Bulge {
+            load: k * t * r * r * (uf * (y - a) - 2.0 * q * r * y * y),
+            moment: 0.125 * dx * dx * rise
+                - 0.5 * k * dx * r * r * (0.5 * uf * (y - 2.0 * a) - q * r * (a + z * y * y)),
+            gradient: 2.0 * self.mu / f.pressure_flow * (1.5 * uf * i1 - 3.0 * q * i2) * f.pressure_shear,
+            i1,
+        }
+    }
+}
+
+/// Integrals over the line, in the direction of sliding.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Sums {
+    load: f64,
+    moment: f64,
+    slope: f64,
+    couette: f64,
+    gradient: f64,
+}
+
+impl Sums {
+    /// Adds a stretch of full film between the pressures `pa` and `pb` with the flux `q`; `more` is load that a flux changing
+    /// along it makes.
+    #[inline]
+    pub fn film(&mut self, s: &Stretch, u: f64, q: f64, (pa, pb): (f64, f64), more: f64) {
+        let b = s.bulge(u, q, pb - pa);
+        let part = 0.5 * s.dx * (pa + pb) + b.load + more;
+        self.load += part;
+        self.moment += b.moment + (s.x + 0.5 * s.dx) * part;
+        self.slope -= part * ((s.hb - s.ha) / s.dx);
+        self.couette += s.mu * u * b.i1 * s.rough.sliding_shear;
+        self.gradient += b.gradient;
+    }
+
+    /// Adds a stretch without full film under the pressure `p`; `wet` is `∫ θ dx/h`.
+    #[inline]
+    pub fn void(&mut self, s: &Stretch, u: f64, p: f64, wet: f64) {
+        let part = p * s.dx;
+        self.load += part;
+        self.moment += part * (s.x + 0.5 * s.dx);
+        self.slope -= p * (s.hb - s.ha);
+        self.couette += s.mu * u * wet * s.rough.sliding_shear;
+    }
+
+    /// Adds the load on a step of the gap.
+    #[inline]
+    pub fn step(&mut self, p: f64, height: f64) {
+        self.slope -= p * height;
+    }
 }
 
 impl Line {
@@ -186,8 +263,8 @@ impl Line {
             field_fill: nodes(),
             field_content: nodes(),
             field_flux: panels(),
-            // Between two nodes there is one front at most.
-            fronts: Vec::with_capacity(n + 1),
+            // Two in a panel at most.
+            fronts: Vec::with_capacity(2 * n),
         }
     }
 
@@ -383,26 +460,16 @@ impl Line {
         }
     }
 
-    /// Integrals over the full panel `i` that has the flux `q`.
+    /// Panel `i`.
     #[inline]
-    fn bulge(&self, i: usize, q: f64, rise: f64) -> Bulge {
-        let (ha, hb, dx, f) = (self.ha[i], self.hb[i], self.dx[i], &self.rough[i]);
-        let hm = 0.5 * (ha + hb);
-        let r = 1.0 / hm;
-        let t = 0.5 * (hb - ha) * r;
-        let z = t * t;
-        let y = 1.0 / (1.0 - z);
-        let a = a1(z);
-        let i1 = dx * r * (1.0 + z * a);
-        let i2 = dx * r * r * y;
-        let uf = self.u * f.sliding_flow;
-        let k = 3.0 * self.mu[i] * dx * dx / f.pressure_flow;
-        Bulge {
-            load: k * t * r * r * (uf * (y - a) - 2.0 * q * r * y * y),
-            moment: 0.125 * dx * dx * rise
-                - 0.5 * k * dx * r * r * (0.5 * uf * (y - 2.0 * a) - q * r * (a + z * y * y)),
-            gradient: 2.0 * k / (dx * dx) * (0.5 * uf * i1 - q * i2) * f.pressure_shear,
-            i1,
+    pub fn stretch(&self, i: usize) -> Stretch {
+        Stretch {
+            x: self.x[i],
+            dx: self.dx[i],
+            ha: self.ha[i],
+            hb: self.hb[i],
+            mu: self.mu[i],
+            rough: self.rough[i],
         }
     }
 
@@ -411,69 +478,21 @@ impl Line {
     pub fn finish(&mut self, shear: Shear, clip: bool, iterations: usize) -> Result<Film1dOut, EvalError> {
         let n = self.n;
         self.fronts.clear();
-        let (mut load, mut moment, mut slope) = (0.0, 0.0, 0.0);
-        let (mut couette, mut gradient) = (0.0, 0.0);
+        let mut sums = Sums::default();
         let squeezed = self.change != Change::Steady;
-        let width = |line: &Self, i: usize| {
-            0.5 * (if i > 0 { line.dx[i - 1] } else { 0.0 } + if i < n { line.dx[i] } else { 0.0 })
-        };
         for i in 0..n {
-            let (ha, hb, dx) = (self.ha[i], self.hb[i], self.dx[i]);
             let (pa, pb) = (self.p[i], self.p[i + 1]);
-            let (mid, mu, f) = (0.5 * (self.x[i] + self.x[i + 1]), self.mu[i], &self.rough[i]);
+            let s = self.stretch(i);
             let full = if clip { pa >= 0.0 && pb >= 0.0 } else { self.film[i] };
-            let part = if full {
-                let b = self.bulge(i, self.q[i], pb - pa);
-                let mut part = 0.5 * dx * (pa + pb) + b.load;
-                if squeezed {
-                    // The flux is not constant: a parabola of pressure more.
-                    let v = 0.5 * (self.rate[i] / width(self, i) + self.rate[i + 1] / width(self, i + 1));
-                    let hm = 0.5 * (ha + hb);
-                    part -= mu * v * (dx / hm) * (dx / hm) * (dx / hm) / f.pressure_flow;
-                }
-                moment += b.moment + mid * part;
-                couette += mu * self.u * b.i1 * f.sliding_shear;
-                gradient += b.gradient;
-                part
+            if full {
+                // The flux of a changing gap is not constant: a parabola of pressure more.
+                let more = if squeezed { self.squeeze_bulge(i) } else { 0.0 };
+                sums.film(&s, self.u, self.q[i], (pa, pb), more);
             } else {
-                // What presses on the whole panel, and the film at one of its ends with its fraction of the length.
-                let (floor, pe, fraction, at_b) = if clip {
-                    let (high, low) = (pa.max(pb), pa.min(pb));
-                    (0.0, high.max(0.0), if high > 0.0 { high / (high - low) } else { 0.0 }, pb > pa)
-                } else {
-                    let rise = (self.c[i] - self.q[i]) * self.d[i];
-                    let high = pb - pa;
-                    (pa, high, if high > 0.0 { high / rise.max(high) } else { 0.0 }, true)
-                };
-                let length = fraction * dx;
-                let above = 0.5 * pe.max(0.0) * length;
-                let (far, tip) = if at_b { (self.x[i + 1], -1.0) } else { (self.x[i], 1.0) };
-                let grade = (hb - ha) / dx;
-                if fraction > 0.0 {
-                    self.fronts.push(FilmFront { x: far + tip * length, film_before: !at_b });
-                }
-                moment += floor * dx * mid + above * (far + tip * length / 3.0);
-                let edge = if at_b { hb * pe } else { -ha * pe };
-                gradient += 0.5 * (edge - grade * above) * f.pressure_shear;
-                let (i1, height) = (2.0 * dx / (ha + hb), 2.0 * ha * hb / (ha + hb));
-                let wet = match shear {
-                    Shear::Full => i1,
-                    Shear::None => fraction * i1,
-                    // The layer before the film touches one surface alone.
-                    Shear::Streamers if i < self.lead => fraction * i1,
-                    Shear::Streamers => {
-                        let c = self.c[i];
-                        let fill = if c > 0.0 { (self.q[i] / c).clamp(0.0, 1.0) } else { 0.0 };
-                        fraction * i1 + (1.0 - fraction) * fill * height * dx / (ha * hb)
-                    }
-                };
-                couette += mu * self.u * wet * f.sliding_shear;
-                floor * dx + above
-            };
-            load += part;
-            slope -= part * ((hb - ha) / dx);
+                self.partial(&mut sums, &s, i, shear, clip);
+            }
             if i > 0 {
-                slope -= pa.max(if clip { 0.0 } else { f64::NEG_INFINITY }) * (ha - self.hb[i - 1]);
+                sums.step(if clip { pa.max(0.0) } else { pa }, s.ha - self.hb[i - 1]);
             }
         }
         if clip {
@@ -484,17 +503,81 @@ impl Line {
         } else {
             self.ruptures();
         }
-        let (p_max, x_max) = self.highest();
-        let (store_in, store_out) = self.ends_store();
-        let (enters, leaves) = (self.q[0] + store_in, self.q[n - 1] - store_out);
+        let highest = self.highest();
         let flux_error = self.flux_error();
+        self.report(&sums, highest, flux_error, iterations)
+    }
+
+    /// Load of the parabola of pressure that storing oil adds in panel `i`.
+    fn squeeze_bulge(&self, i: usize) -> f64 {
+        let width = |i: usize| {
+            0.5 * (if i > 0 { self.dx[i - 1] } else { 0.0 } + if i < self.n { self.dx[i] } else { 0.0 })
+        };
+        let v = 0.5 * (self.rate[i] / width(i) + self.rate[i + 1] / width(i + 1));
+        let slender = 2.0 * self.dx[i] / (self.ha[i] + self.hb[i]);
+        -self.mu[i] * v * slender * slender * slender / self.rough[i].pressure_flow
+    }
+
+    /// Adds panel `i`, which has no film or one at one end alone.
+    fn partial(&mut self, sums: &mut Sums, s: &Stretch, i: usize, shear: Shear, clip: bool) {
+        let (pa, pb) = (self.p[i], self.p[i + 1]);
+        // What presses on the whole panel, and the film at one of its ends with its part of the length.
+        let (floor, top, part, at_b) = if clip {
+            let (high, low) = (pa.max(pb), pa.min(pb));
+            (0.0, high.max(0.0), if high > 0.0 { high / (high - low) } else { 0.0 }, pb > pa)
+        } else {
+            let (rise, high) = ((self.c[i] - self.q[i]) * self.d[i], pb - pa);
+            (pa, high.max(0.0), if high > 0.0 { high / rise.max(high) } else { 0.0 }, true)
+        };
+        let length = part * s.dx;
+        let above = 0.5 * top * length;
+        let (x, inwards, edge) =
+            if at_b { (self.x[i + 1], -1.0, s.hb * top) } else { (s.x, 1.0, -s.ha * top) };
+        if part > 0.0 {
+            self.fronts.push(FilmFront { x: x + inwards * length, film_before: !at_b });
+        }
+        let sum = s.ha + s.hb;
+        let i1 = 2.0 * s.dx / sum;
+        let wet = match shear {
+            Shear::Full => i1,
+            Shear::None => part * i1,
+            // The layer before the film touches one surface alone.
+            Shear::Streamers if i < self.lead => part * i1,
+            Shear::Streamers => {
+                let fill = if self.c[i] > 0.0 { (self.q[i] / self.c[i]).clamp(0.0, 1.0) } else { 0.0 };
+                (part + (1.0 - part) * fill) * i1
+            }
+        };
+        sums.void(s, self.u, floor, wet);
+        let slope = (s.hb - s.ha) / s.dx;
+        sums.load += above;
+        sums.moment += above * (x + inwards * length / 3.0);
+        sums.slope -= above * slope;
+        sums.gradient += 0.5 * (edge - slope * above) * s.rough.pressure_shear;
+    }
+
+    /// The result of the sums, and the answers in the direction of `x`.
+    pub fn report(
+        &mut self,
+        s: &Sums,
+        (p_max, x_max): (f64, f64),
+        flux_error: f64,
+        iterations: usize,
+    ) -> Result<Film1dOut, EvalError> {
+        let (store_in, store_out) = self.ends_store();
+        let (enters, leaves) = (self.q[0] + store_in, self.q[self.n - 1] - store_out);
+        let sum = s.load + s.moment + s.couette + s.gradient + s.slope + enters + leaves + p_max + flux_error;
+        if !sum.is_finite() {
+            return Err(self.recoverable("film out of range"));
+        }
         let sign = if self.turned { -1.0 } else { 1.0 };
-        let out = Film1dOut {
-            load,
-            moment: sign * moment,
-            moving_shear: sign * (couette + gradient),
-            fixed_shear: sign * (couette - gradient),
-            slope_force: sign * slope,
+        self.tell();
+        Ok(Film1dOut {
+            load: s.load,
+            moment: sign * s.moment,
+            moving_shear: sign * (s.couette + s.gradient),
+            fixed_shear: sign * (s.couette - s.gradient),
+            slope_force: sign * s.slope,
             flux_in: if self.turned { -leaves } else { enters },
             flux_out: if self.turned { -enters } else { leaves },
             p_max: self.p_cav + p_max,
@@ -502,13 +585,7 @@ impl Line {
             starved: self.starved,
             flux_error,
             iterations,
-        };
-        let sum = load + moment + couette + gradient + slope + enters + leaves + p_max + flux_error;
-        if !sum.is_finite() {
-            return Err(self.recoverable("film out of range"));
-        }
-        self.tell();
-        Ok(out)
+        })
     }
 
     /// Adds the fronts where a film ends downstream: between the last node under pressure and the first without film, moved to
@@ -606,6 +683,16 @@ impl Line {
             }
             self.field_flux.copy_from_slice(&self.q);
         }
+    }
+
+    /// A line without oil, of the inputs taken last.
+    pub fn nothing(&mut self) -> Film1dOut {
+        self.fronts.clear();
+        for v in [&mut self.p, &mut self.fill, &mut self.q] {
+            v.fill(0.0);
+        }
+        self.tell();
+        Film1dOut { p_max: self.p_cav, x_p_max: self.nodes[0], ..Film1dOut::default() }
     }
 
     pub fn field(&self) -> FilmField<'_> {

@@ -3,6 +3,10 @@
 use gudgeon_core::BuildError;
 
 /// A gap along a line, linear in each panel.
+///
+/// A curved gap is replaced in each panel by the parallel to its chord that encloses the same volume (Simpson's rule): the
+/// integrals of a film over it are then of fourth order in the length of the panels, and the steps that this leaves between
+/// panels are of third order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LineProfile {
     /// Nodes \[m\], rising.
@@ -50,11 +54,18 @@ impl LineProfile {
             for i in 0..share as usize {
                 let (a, b) = (at(i as f64), at(i as f64 + 1.0));
                 line.x.push(b);
-                line.h_a.push(h(k, a));
-                line.h_b.push(h(k, b));
+                line.panel(h(k, a), h(k, 0.5 * (a + b)), h(k, b));
             }
         }
         line.checked()
+    }
+
+    /// Adds a panel with the gaps at its ends and in its middle.
+    fn panel(&mut self, a: f64, middle: f64, b: f64) {
+        // No lower than half of what there is: a panel far too long for its bend keeps a gap.
+        let shift = (2.0 / 3.0 * (middle - 0.5 * (a + b))).max(-0.5 * a.min(b));
+        self.h_a.push(a + shift);
+        self.h_b.push(b + shift);
     }
 
     fn checked(self) -> Result<Self, BuildError> {
@@ -110,8 +121,11 @@ impl LineProfile {
             for i in 1..n {
                 line.x[i] = apex + l * (a + (b - a) * (i as f64 / n as f64)).sinh();
             }
+            line.h_a.clear();
+            line.h_b.clear();
             for i in 0..n {
-                (line.h_a[i], line.h_b[i]) = (h(line.x[i]), h(line.x[i + 1]));
+                let (a, b) = (line.x[i], line.x[i + 1]);
+                line.panel(h(a), h(0.5 * (a + b)), h(b));
             }
         }
         line.checked()

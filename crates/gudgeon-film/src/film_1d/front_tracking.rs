@@ -1,0 +1,353 @@
+use gudgeon_core::kinds::{Film1d, Film1dCtx, Film1dIn, Film1dOut, Film1dSpec, FilmField, FilmFront};
+use gudgeon_core::{BuildError, EvalError};
+use serde::{Deserialize, Serialize};
+
+use super::line::{Change, Line, LineCavityShear, Shear, Stretch, Sums};
+use crate::Cavitation;
+
+/// Steady mass-conserving film along a line with its fronts where they are, between nodes too: exact for a gap that is linear
+/// in each panel, with any number of cavities.
+///
+/// The flux `q` is the same everywhere. A film ends where pressure and gradient vanish, `u h/2 = q`, carries `q` through the cavity
+/// and begins again where the pressure, counted back from its end, has come down to `p_cav`:
+///
+/// `p(x) = p_e - ∫_x 12 μ (u h/2 - q)/h³ dx`,
+///
+/// every integral in closed form. The film at the inlet decides the flux: with `C(x) = ∫_0 6 μ u/h² dx` and
+/// `R(x) = ∫_0 12 μ/h³ dx` it is the largest that leaves no pressure below `p_cav`,
+///
+/// `q = min_x (p_0 - p(x) + C(x))/R(x)`, `p(x)` zero inside the line and the given pressure at its end,
+///
+/// a root of a concave function that Newton's method approaches from one side.
+#[derive(Debug, Clone, Default, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FrontTracking {
+    /// Friction of the oil that is left in the cavity.
+    #[serde(default)]
+    pub cavity_shear: LineCavityShear,
+}
+
+gudgeon_core::register_model! {
+    FrontTracking, kind: "film_1d", name: "front_tracking",
+    summary: "steady mass-conserving film along a line, exact for profiles of straight pieces",
+    equations: "p' = 12 mu/phi_p (u phi_s h/2 - q)/h^3, integrated in closed form;  rupture: p = p_cav, u phi_s h/2 = q;  \
+                reformation: p = p_cav counted back from the end of the film;  q = min_x (p_0 - p(x) + C(x))/R(x);  \
+                load = int (p - p_cav) dx;  shear = int (mu u/h -+ h p'/2) dx, in the cavity with 2 q/(u h) of the width",
+    validity: "Steady films: a gap that changes with time is refused. Narrow gap, no flow across the line, incompressible oil, \
+               viscosity and roughness constant in each panel.",
+    references: ["reynolds1886", "jakobsson1957"],
+    example: "cavity_shear = \"streamers\"\n",
+}
+
+const MODEL: &str = "front_tracking";
+
+#[typetag::serde(name = "front_tracking")]
+impl Film1dSpec for FrontTracking {
+    fn build(&self, ctx: &Film1dCtx<'_>) -> Result<Box<dyn Film1d>, BuildError> {
+        ctx.check()?;
+        Ok(Box::new(Film {
+            line: Line::new(MODEL, ctx),
+            shear: self.cavity_shear.decided(Cavitation::MassConserving),
+        }))
+    }
+}
+
+struct Film {
+    line: Line,
+    shear: Shear,
+}
+
+impl Film1d for Film {
+    fn solve(&mut self, inp: &Film1dIn<'_>) -> Result<Film1dOut, EvalError> {
+        let line = &mut self.line;
+        line.enter(inp, true)?;
+        if line.change != Change::Steady {
+            return Err(line.fatal("a gap that changes with time needs another model"));
+        }
+        let (mut q, passes) = flux(line).ok_or_else(|| line.recoverable("no convergence of the flux"))?;
+        if let Some(supply) = line.supply
+            && supply < q
+        {
+            line.starved = true;
+            q = supply;
+        }
+        let mut sweep = Sweep::new(line, q, self.shear);
+        sweep.run(0.0, None);
+        if sweep.line.starved && sweep.line.p_in > 0.0 {
+            let gas = sweep.line.p_in;
+            // Before the place nearest to the inlet that has the pressure of the gas, there is gas.
+            let sealed = sweep.line.p.iter().position(|p| *p >= gas);
+            let crest = sweep.crest_above(gas);
+            let from = match (sealed, crest) {
+                (Some(a), Some(b)) => Some(a.min(b)),
+                (a, b) => a.or(b),
+            };
+            if from.is_none() {
+                // A film that nowhere reaches the pressure of the gas lets it through to the end.
+                sweep.line.p_out = gas;
+            }
+            sweep.run(gas, Some(from.unwrap_or(sweep.line.n)));
+        }
+        let (sums, highest, off) = (sweep.sums, sweep.highest, sweep.off);
+        line.fronts.reverse();
+        line.report(&sums, highest, off, passes + 1)
+    }
+
+    fn field(&self) -> FilmField<'_> {
+        self.line.field()
+    }
+
+    fn full_content(&self, h_a: &[f64], h_b: &[f64], content: &mut [f64]) {
+        self.line.full_content(h_a, h_b, content);
+    }
+}
+
+impl Stretch {
+    /// The part from `x` to the end (`after`), or from the beginning to `x`, where the film is `h`.
+    fn cut(&self, x: f64, h: f64, after: bool) -> Self {
+        if after {
+            Self { x, dx: (self.x + self.dx - x).max(0.0), ha: h, ..*self }
+        } else {
+            Self { dx: (x - self.x).max(0.0), hb: h, ..*self }
+        }
+    }
+
+    /// Rise of pressure over it: `C - q R`.
+    fn rise(&self, u: f64, q: f64) -> f64 {
+        let r = 1.0 / (self.ha * self.hb);
+        let k = 6.0 * self.mu * self.dx * r / self.rough.pressure_flow;
+        k * (u * self.rough.sliding_flow - q * (self.ha + self.hb) * r)
+    }
+
+    /// `R`.
+    fn resistance(&self) -> f64 {
+        let r = 1.0 / (self.ha * self.hb);
+        6.0 * self.mu * self.dx * (self.ha + self.hb) * r * r / self.rough.pressure_flow
+    }
+
+    /// Where the gap is `h`, when that is inside.
+    fn place(&self, h: f64) -> Option<f64> {
+        let inside = (self.ha < h && h < self.hb) || (self.hb < h && h < self.ha);
+        inside.then(|| self.x + self.dx * ((h - self.ha) / (self.hb - self.ha)))
+    }
+}
+
+/// Flux of the film at the inlet, were it flooded, and the passes that it took.
+fn flux(line: &Line) -> Option<(f64, usize)> {
+    let n = line.n;
+    let u = line.u;
+    let total: f64 = line.d.iter().sum();
+    let rise: f64 = line.c.iter().zip(&line.d).map(|(c, d)| c * d).sum();
+    let mut q = (line.p_in - line.p_out + rise) / total;
+    for pass in 1..200 {
+        // Lowest pressure of the film with this flux, and the resistance up to there.
+        let (mut low, mut over) = (0.0, 1.0);
+        let (mut p, mut resistance, mut size) = (line.p_in, 0.0, line.p_in);
+        for i in 0..n {
+            let s = line.stretch(i);
+            if s.ha < s.hb
+                && let Some(x) = s.place(2.0 * q / (u * s.rough.sliding_flow))
+            {
+                let part = s.cut(x, 2.0 * q / (u * s.rough.sliding_flow), false);
+                let at = p + part.rise(u, q);
+                if at < low {
+                    (low, over) = (at, resistance + part.resistance());
+                }
+            }
+            p += (line.c[i] - q) * line.d[i];
+            resistance += line.d[i];
+            size = size.max(p);
+            if i + 1 < n && p < low {
+                (low, over) = (p, resistance);
+            }
+        }
+        let next = q + low / over;
+        if low >= -1e-15 * size || next == q {
+            return Some((next, pass));
+        }
+        q = next;
+        if !q.is_finite() {
+            return None;
+        }
+    }
+    None
+}
+
+/// The line counted back from its last node.
+struct Sweep<'a> {
+    line: &'a mut Line,
+    u: f64,
+    q: f64,
+    shear: Shear,
+    sums: Sums,
+    highest: (f64, f64),
+    /// Flux that the pressure missed at the inlet would drive, over the flux of sliding or pressure.
+    off: f64,
+}
+
+impl<'a> Sweep<'a> {
+    fn new(line: &'a mut Line, q: f64, shear: Shear) -> Self {
+        let u = line.u;
+        Self { line, u, q, shear, sums: Sums::default(), highest: (0.0, 0.0), off: 0.0 }
+    }
+
+    /// Gap that the flux fills without a gradient of pressure.
+    fn filled(&self, s: &Stretch) -> f64 {
+        2.0 * self.q / (self.u * s.rough.sliding_flow)
+    }
+
+    /// First panel with a crest of pressure above `p`.
+    fn crest_above(&self, p: f64) -> Option<usize> {
+        (0..self.line.n).find(|i| {
+            let s = self.line.stretch(*i);
+            self.line.film[*i]
+                && s.ha > s.hb
+                && s.place(self.filled(&s)).is_some_and(|x| {
+                    let part = s.cut(x, self.filled(&s), false);
+                    self.line.p[*i] + part.rise(self.u, self.q) >= p
+                })
+        })
+    }
+
+    /// Finds all films. Below `gas` the pressure does not go at and before the panel that ends at node `sealed`.
+    fn run(&mut self, gas: f64, sealed: Option<usize>) {
+        let n = self.line.n;
+        self.sums = Sums::default();
+        self.line.fronts.clear();
+        self.line.q.fill(self.q);
+        self.line.p[n] = self.line.p_out;
+        self.highest = (self.line.p_out, self.line.x[n]);
+        let mut p = self.line.p_out;
+        for i in (0..n).rev() {
+            let s = self.line.stretch(i);
+            let vented = sealed.is_some_and(|k| i < k || (i == k && k < n));
+            let floor = if vented { gas } else { 0.0 };
+            if i + 1 < n {
+                self.sums.step(p, self.line.ha[i + 1] - s.hb);
+            }
+            p = self.panel(i, &s, p, floor, vented);
+            self.line.p[i] = p;
+            let full = self.filled(&s);
+            let film = p > floor || s.ha <= full;
+            self.line.film[i] = film;
+            self.line.fill[i] = if film { 1.0 } else { (full / s.ha).clamp(0.0, 1.0) };
+            if p > self.highest.0 {
+                self.highest = (p, self.line.x[i]);
+            }
+        }
+        if !self.line.starved {
+            let size = self.line.c[0].max(self.line.g[0] * self.line.p_in).max(self.q.abs());
+            let missed = (p - self.line.p_in).abs() / self.line.d.iter().sum::<f64>();
+            self.off = if size > 0.0 { missed / size } else { 0.0 };
+            self.line.p[0] = self.line.p_in;
+            self.line.film[0] = true;
+            self.line.fill[0] = 1.0;
+        }
+        self.line.outlet();
+    }
+
+    /// Panel `i` with the pressure `pb` at its end; returns that at its beginning.
+    fn panel(&mut self, i: usize, s: &Stretch, pb: f64, floor: f64, vented: bool) -> f64 {
+        let (u, q) = (self.u, self.q);
+        let full = self.filled(s);
+        let mut s = *s;
+        if pb > floor {
+            // Lowest pressure on the way back: inside, where the gap widens along x, or at the beginning.
+            let valley = if s.ha < s.hb { s.place(full) } else { None };
+            let pa = pb - s.rise(u, q);
+            let low = valley.map_or(pa, |x| pb - s.cut(x, full, true).rise(u, q));
+            if low >= floor {
+                self.film(&s, pa, pb);
+                return pa;
+            }
+            let from = valley.unwrap_or(s.x);
+            let (x, h) = self.front(&s, pb - floor, from);
+            self.film(&s.cut(x, h, true), floor, pb);
+            self.line.fronts.push(FilmFront { x, film_before: false });
+            s = s.cut(x, h, false);
+        } else if s.hb <= full {
+            let pa = floor - s.rise(u, q);
+            if s.hb == full || pa >= floor {
+                // A film ends at the node itself, or goes on through it.
+                if i + 1 < self.line.n && !self.line.film[i + 1] {
+                    self.line.fronts.push(FilmFront { x: s.x + s.dx, film_before: true });
+                }
+                self.film(&s, pa.max(floor), floor);
+                return pa.max(floor);
+            }
+        }
+        if s.dx <= 0.0 {
+            return floor;
+        }
+        match if s.ha < s.hb { s.place(full) } else { None } {
+            Some(x) => {
+                self.void(i, &s.cut(x, full, true), floor, vented);
+                self.line.fronts.push(FilmFront { x, film_before: true });
+                let film = s.cut(x, full, false);
+                let pa = floor - film.rise(u, q);
+                self.film(&film, pa, floor);
+                pa
+            }
+            None => {
+                self.void(i, &s, floor, vented);
+                floor
+            }
+        }
+    }
+
+    fn film(&mut self, s: &Stretch, pa: f64, pb: f64) {
+        if s.dx <= 0.0 {
+            return;
+        }
+        self.sums.film(s, self.u, self.q, (pa, pb), 0.0);
+        if s.ha > s.hb
+            && let Some(x) = s.place(self.filled(s))
+        {
+            let p = pa + s.cut(x, self.filled(s), false).rise(self.u, self.q);
+            if p > self.highest.0 {
+                self.highest = (p, x);
+            }
+        }
+    }
+
+    fn void(&mut self, _: usize, s: &Stretch, p: f64, vented: bool) {
+        if s.dx <= 0.0 {
+            return;
+        }
+        let wet = match self.shear {
+            Shear::None => 0.0,
+            Shear::Full => 2.0 * s.dx / (s.ha + s.hb),
+            // The layer before the film touches one surface alone.
+            Shear::Streamers if vented => 0.0,
+            Shear::Streamers => self.filled(s) * s.dx / (s.ha * s.hb),
+        };
+        self.sums.void(s, self.u, p, wet);
+    }
+
+    /// Where the pressure, `p` at the end of the stretch, has come down to nothing, not before `lo`; and the gap there.
+    fn front(&self, s: &Stretch, p: f64, mut lo: f64) -> (f64, f64) {
+        let end = s.x + s.dx;
+        let slope = (s.hb - s.ha) / s.dx;
+        let gap = |x: f64| s.hb - slope * (end - x);
+        let k = 12.0 * s.mu / s.rough.pressure_flow;
+        let uf = self.u * s.rough.sliding_flow;
+        let (mut hi, mut x) = (end, end);
+        for _ in 0..200 {
+            let h = gap(x);
+            let here = p - s.cut(x, h, true).rise(self.u, self.q);
+            if here > 0.0 {
+                hi = x;
+            } else {
+                lo = x;
+            }
+            let step = -here * (h * h * h) / (k * (0.5 * uf * h - self.q));
+            let next = x + step;
+            let next = if next > lo && next < hi { next } else { 0.5 * (lo + hi) };
+            if next == x || here == 0.0 || hi - lo <= f64::EPSILON * s.dx {
+                break;
+            }
+            x = next;
+        }
+        (x, gap(x))
+    }
+}
