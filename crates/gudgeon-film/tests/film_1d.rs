@@ -507,13 +507,8 @@ fn the_pocket_slider_is_exact_with_fronts_and_near_it_on_nodes() {
                     ]
                 })
                 .into();
-            // The rupture is at a node and pressures are exact. In the panel of the front the pressure is taken for a straight
-            // line, an error of (12.5 µm)² in 10 mm², and that of second order: far below the 1e-5 asked for.
-            assert!(errors[3].iter().all(|e| *e < 1e-7), "{u} m/s: {errors:?}");
-            if x.is_some() && spec.solver == LineSolver::Direct {
-                let o = order(&errors.iter().map(|e| e[0]).collect::<Vec<_>>());
-                assert!(o > 2.0, "order {o} of the load: {errors:?}");
-            }
+            // The rupture is at a node, nodal pressures are exact, and so is the front in its panel: rounding of 800 panels.
+            assert!(errors.iter().flatten().all(|e| *e < 1e-11), "{u} m/s: {errors:?}");
         }
     }
 }
@@ -543,4 +538,640 @@ fn conditions_that_lose_oil_fail_the_pocket_visibly() {
             assert!(o.flux_error < 1e-12, "{o:?}");
         }
     }
+}
+
+/// Load of a journal from the pressures on its unrolled line, in the directions of the widest gap and a quarter turn on.
+fn journal_load(f: &Found, x: &[f64]) -> f64 {
+    let (mut a, mut b) = (0.0, 0.0);
+    for i in 0..x.len() - 1 {
+        let dx = x[i + 1] - x[i];
+        a += 0.5 * dx * (f.p[i] * x[i].cos() + f.p[i + 1] * x[i + 1].cos());
+        b += 0.5 * dx * (f.p[i] * x[i].sin() + f.p[i + 1] * x[i + 1].sin());
+    }
+    a.hypot(b)
+}
+
+#[test]
+fn a_long_journal_bearing_under_each_condition() {
+    // ε; W/(μ ω R³ L/c²) full, half, Reynolds; rupture in degrees from the widest gap. 25 digits by mpmath.
+    let cases = [
+        (
+            0.1,
+            1.885026517610911316277879,
+            0.9444405117938343692900135,
+            1.31824524441850433854812,
+            249.2222559281593367346368,
+        ),
+        (
+            0.6,
+            11.98064995013056743481517,
+            6.638114402987017887267281,
+            8.172406381829003695994542,
+            213.0783284122065759731495,
+        ),
+        (
+            0.95,
+            39.51665612780240398790187,
+            43.06899382832932096833319,
+            52.28734930334391128134364,
+            188.9672194778495787607258,
+        ),
+    ];
+    let n = 1440;
+    for (e, full, half, reynolds, rupture) in cases {
+        let line = LineProfile::journal(1.0, 1.0, e, (0.0, std::f64::consts::TAU), n).expect("a line");
+        let x = line.x.clone();
+        let b = Bench::new(line, 1.0, 1.0, (0.0, 0.0));
+        // Second order in 0.25°, in which the narrow part of a bearing of ε = 0.95, √(1 - ε²) wide, has few nodes.
+        let tolerance = 2e-6 / (1.0 - e * e).powi(2);
+        close("full", journal_load(&b.solve(&with(Cavitation::FullSommerfeld)), &x), full, tolerance);
+        close("half", journal_load(&b.solve(&with(Cavitation::HalfSommerfeld)), &x), half, tolerance);
+        // Oil enters at the widest gap and nothing presses at the end: conserving mass changes nothing.
+        for spec in [
+            &with(Cavitation::SwiftStieber) as &dyn Film1dSpec,
+            &mass_conserving(),
+            &FrontTracking::default(),
+        ] {
+            let f = b.solve(spec);
+            close("Reynolds", journal_load(&f, &x), reynolds, tolerance);
+            let at = f.fronts.iter().find(|f| f.film_before).expect("a rupture").x.to_degrees();
+            assert!((at - rupture).abs() < 0.25, "ruptures at {at} and not {rupture}");
+        }
+    }
+}
+
+#[test]
+fn a_short_journal_bearing_is_a_squeeze_film_across() {
+    // W/(μ ω R L³/c²) under half of the circumference. At each angle the film across the bearing is a strip between parallel
+    // plates, which the wedge squeezes at u/2 ∂h/∂x: one panel is exact.
+    for (e, w) in [
+        (0.1, 0.08038298074749372479477209),
+        (0.6, 1.272631579454899998171626),
+        (0.8, 5.731328069323448852420854),
+    ] {
+        let (mut a, mut b) = (0.0, 0.0);
+        let n = 2000;
+        for i in 1..n {
+            let phi = std::f64::consts::PI * f64::from(i) / f64::from(n);
+            let line = LineProfile::linear(1.0, 1.0 + e * phi.cos(), 1.0 + e * phi.cos(), 1).expect("a line");
+            let bench = Bench::new(line, 1.0, 0.0, (0.0, 0.0));
+            let squeeze = [-0.5 * e * phi.sin()];
+            let mut film = bench.build(&mass_conserving());
+            let load = bench.run(&mut *film, FilmTime::Squeeze(&squeeze)).expect("a film").out.load;
+            // Simpson; the integrand is zero at both ends.
+            let weight = if i % 2 == 1 { 4.0 } else { 2.0 } * std::f64::consts::PI / (3.0 * f64::from(n));
+            a += weight * load * phi.cos();
+            b += weight * load * phi.sin();
+        }
+        // (π/2000)⁴ of the rule, steep where 1 - ε is small.
+        close("short bearing", f64::hypot(a, b), w, 1e-8);
+    }
+}
+
+#[test]
+fn a_squeezed_strip_is_exact() {
+    // W = -μ ḣ L³/h³.
+    for n in [1, 2, 7, 64] {
+        let b =
+            Bench::new(LineProfile::linear(1.2e-3, 1e-6, 1e-6, n).expect("a line"), 0.01, 0.0, (0.0, 0.0));
+        let exact = 0.01 * 1e-3 * 1.2e-3_f64.powi(3) / 1e-18;
+        let rates = vec![-1e-3; n];
+        for spec in [mass_conserving(), fischer_burmeister()] {
+            let f = b.run(&mut *b.build(&spec), FilmTime::Squeeze(&rates)).expect("a film");
+            close("strip", f.out.load, exact, ROUNDING);
+            close("what is squeezed out", f.out.flux_out - f.out.flux_in, 1e-3 * 1.2e-3, ROUNDING);
+        }
+        // One step of time from a full, wider gap is the same film.
+        let mut film = b.build(&mass_conserving());
+        let dt = 1e-4;
+        let mut content = vec![0.0; n + 1];
+        film.full_content(&vec![1e-6 + 1e-3 * dt; n], &vec![1e-6 + 1e-3 * dt; n], &mut content);
+        let f = b.run(&mut *film, FilmTime::Step { dt, content: &content }).expect("a film");
+        // The change of the gap is 10 % of it: no digits lost but rounding.
+        close("strip in a step", f.out.load, exact, ROUNDING);
+    }
+}
+
+#[test]
+fn a_squeezed_barrel_converges() {
+    // μ = 0.01, h0 = 1 µm, drop 6 µm at ±0.6 mm, ḣ = -1 mm/s.
+    let exact = 631.8864504263097759643658;
+    let errors: Vec<f64> = [50, 100, 200, 400]
+        .map(|n| {
+            let b = Bench::new(barrel(1e-6, n, false), 0.01, 0.0, (0.0, 0.0));
+            let f =
+                b.run(&mut *b.build(&mass_conserving()), FilmTime::Squeeze(&vec![-1e-3; n])).expect("a film");
+            off_by(f.out.load, exact)
+        })
+        .into();
+    let o = order(&errors);
+    assert!((o - 2.0).abs() < 0.2 && errors[3] < 1e-4, "order {o}: {errors:?}");
+}
+
+/// Parallel plates that oscillate, `h = 0.375 + 0.125 cos 4πt`, `(h³ p')' = (θ h)_t`, 0.025 at both ends of a line of length 1: time
+/// and load while there is a cavity, from the equations of its front.
+const PLATES: [(f64, f64); 14] = [
+    (0.27, 0.0007629715467982991139103688),
+    (0.28, 0.0006451597964643229548772907),
+    (0.29, 0.0005859546654392029478575221),
+    (0.30, 0.0005558889018655526577036841),
+    (0.31, 0.0005435905072075896673697293),
+    (0.32, 0.0005436572947159848141068794),
+    (0.36, 0.0006178476519223825413201778),
+    (0.40, 0.0007556963858422233337061447),
+    (0.44, 0.0009429789129139869423984477),
+    (0.48, 0.001203337993444310392160412),
+    (0.52, 0.001618187854651237031489153),
+    (0.56, 0.002453421839654506414474255),
+    (0.60, 0.004681520162108702975967134),
+    (0.64, 0.01254890731060910417926646),
+];
+
+fn plates(spec: &dyn Film1dSpec, n: usize) -> (f64, usize, f64) {
+    let gap = |t: f64| 0.375 + 0.125 * (4.0 * std::f64::consts::PI * t).cos();
+    let mut b =
+        Bench::new(LineProfile::linear(1.0, 0.5, 0.5, n).expect("a line"), 1.0 / 12.0, 0.0, (0.025, 0.025));
+    let mut film = b.build(spec);
+    let mut content = vec![0.0; n + 1];
+    film.full_content(&b.line.h_a, &b.line.h_b, &mut content);
+    // Steps of 0.1 of a panel.
+    let steps = n / 10;
+    let dt = 0.01 / steps as f64;
+    let (mut worst, mut passes, mut lost): (f64, usize, f64) = (0.0, 0, 0.0);
+    for k in 1..=64 * steps {
+        let h = gap(k as f64 * dt);
+        b.line.h_a.fill(h);
+        b.line.h_b.fill(h);
+        let f = b.run(&mut *film, FilmTime::Step { dt, content: &content }).expect("a film");
+        let now = film.field().content.to_vec();
+        let change: f64 = now.iter().sum::<f64>() - content.iter().sum::<f64>();
+        let through = dt * (f.out.flux_in - f.out.flux_out);
+        lost = lost.max((change - through).abs() / (change.abs() + 0.5));
+        content = now;
+        passes += f.out.iterations;
+        if let Some((_, load)) = PLATES.iter().find(|(t, _)| (t * 100.0).round() as usize * steps == k) {
+            worst = worst.max(off_by(f.out.load, *load));
+        }
+    }
+    (worst, passes, lost)
+}
+
+#[test]
+fn oscillating_plates_tear_and_heal_with_their_history() {
+    let found: Vec<(f64, usize, f64)> = [50, 100, 200, 400].map(|n| plates(&mass_conserving(), n)).into();
+    // First order in time and at the fronts. The film is 3 % of the plates wide at its least, 13 panels of the finest grid.
+    let errors: Vec<f64> = found.iter().map(|f| f.0).collect();
+    assert!(order(&errors) > 0.9 && errors[3] < 0.02, "order {}: {errors:?}", order(&errors));
+    for ((_, passes, lost), n) in found.iter().zip([50, 100, 200, 400]) {
+        // A front moves at most by a panel or two in a step: a second pass, and most steps do without.
+        assert!(*passes <= 64 * n / 10 * 5 / 4 + 20, "{passes} passes with {n} panels");
+        // What is stored came in: rounding of a sum over the line, for each step.
+        assert!(*lost < 1e-13, "{lost:e} of the oil lost");
+    }
+    let fb = plates(&fischer_burmeister(), 100);
+    // The same problem in the end: rounding of 640 steps.
+    assert!((fb.0 - found[1].0).abs() < 1e-9, "{} and {}", fb.0, found[1].0);
+}
+
+/// 168 cases: six films, seven speeds, four pairs of pressures.
+fn sweep(drop: f64, panels: usize) -> Vec<Bench> {
+    let mut all = Vec::new();
+    for h0 in [1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4] {
+        for u in [1e-6, 1e-4, 1e-2, 1.0, 10.0, 100.0, 1e3] {
+            for p in [(0.0, 0.0), (1e5, 1e5), (1e7, 1e5), (1e5, 1e7)] {
+                let line =
+                    LineProfile::parabola(1.2e-3, drop / 0.36e-6, 0.6e-3, h0, panels, false).expect("a line");
+                all.push(Bench::new(line, 0.01, u, p));
+            }
+        }
+    }
+    assert_eq!(all.len(), 168);
+    all
+}
+
+/// Largest deviation of the flux through a panel, from pressures and fills of nodes, over the largest flux that sliding and
+/// pressure drive; and the part of it that rounding of the pressures alone makes.
+fn unevenness(b: &Bench, f: &Found) -> (f64, f64) {
+    let (mut size, mut off, mut noise): (f64, f64, f64) = (0.0, 0.0, 0.0);
+    for i in 0..b.line.panels() {
+        let (ha, hb, dx) = (b.line.h_a[i], b.line.h_b[i], b.line.x[i + 1] - b.line.x[i]);
+        let g = (ha * hb).powi(2) / (6.0 * b.mu * dx * (ha + hb));
+        let c = b.u * ha * hb / (ha + hb);
+        let poiseuille = g * (f.p[i] - f.p[i + 1]);
+        size = size.max(c).max(poiseuille.abs());
+        off = off.max((c * f.fill[i] + poiseuille - f.out.flux_in).abs());
+        noise = noise.max(g * f.p[i].max(f.p[i + 1]) * f64::EPSILON);
+    }
+    (off / size, noise / size)
+}
+
+#[test]
+fn a_sweep_over_all_films_speeds_and_pressures_converges_everywhere() {
+    let mut most = [0; 3];
+    let mut rounding = 0;
+    for b in [6e-6, 1e-4].into_iter().flat_map(|drop| sweep(drop, 128)) {
+        let specs: [&dyn Film1dSpec; 3] =
+            [&mass_conserving(), &fischer_burmeister(), &FrontTracking::default()];
+        for (k, spec) in specs.into_iter().enumerate() {
+            let f = b.solve(spec);
+            most[k] = most[k].max(f.out.iterations);
+            assert!(f.out.flux_error < 1e-9, "{b:?}: {:?}", f.out);
+            assert!(f.out.load >= 0.0 && f.p.iter().all(|p| *p >= 0.0), "{:?}", f.out);
+            assert!(f.fill.iter().all(|t| (0.0..=1.0).contains(t)), "{:?}", f.fill);
+            if k == 0 {
+                let (off, noise) = unevenness(&b, &f);
+                rounding += usize::from(off > 1e-9);
+                // Pressures of 1e7 Pa hold differences of 1e-9 Pa, which a gap of 0.1 mm turns into more flux than a surface
+                // that creeps: nothing better can be written down. Sums over 128 panels add to that.
+                assert!(off < 1e-9 + 1e3 * noise, "{off:e}, rounding {noise:e}, {b:?}");
+            }
+        }
+        let (node, tracked) = (b.solve(&mass_conserving()), b.solve(&FrontTracking::default()));
+        let (w, v) = (node.out.load, tracked.out.load);
+        // Wherever the grid resolves the thin part, √(h0/κ) long, both are the same film.
+        if b.line.h_a.iter().copied().fold(f64::INFINITY, f64::min) > 5e-7 {
+            assert!((w - v).abs() <= 3e-2 * v.max(1e-9), "{w} and {v}: {:?}", b.ends);
+        }
+    }
+    // A steady film on nodes needs no iteration; Newton's method took 8 and the flux of tracked fronts 10.
+    assert!(most[0] == 1 && most[1] <= 15 && most[2] <= 15, "passes {most:?}");
+    assert!(rounding < 60, "{rounding} films are uneven by rounding");
+}
+
+#[test]
+fn films_seen_from_the_other_side_are_mirrored() {
+    let line = LineProfile::pocket(0.01, 1.3e-6, 1e-6, (0.002, 0.005), 1e-6, 77).expect("a line");
+    let b =
+        Bench { u: 0.7, ends: [bath(2e5), bath(1e5)], p_cav: 1e4, ..Bench::new(line, 0.01, 0.0, (0.0, 0.0)) };
+    let m = Bench { u: -0.7, ends: [bath(1e5), bath(2e5)], line: b.line.mirrored(), ..b.clone() };
+    let specs: [&dyn Film1dSpec; 6] = [
+        &mass_conserving(),
+        &fischer_burmeister(),
+        &FrontTracking::default(),
+        &ElrodAdams::default(),
+        &with(Cavitation::SwiftStieber),
+        &with(Cavitation::HalfSommerfeld),
+    ];
+    for spec in specs {
+        let (a, z) = (b.solve(spec), m.solve(spec));
+        for (x, y) in [
+            (a.out.load, z.out.load),
+            (a.out.moment, -z.out.moment),
+            (a.out.moving_shear, -z.out.moving_shear),
+            (a.out.fixed_shear, -z.out.fixed_shear),
+            (a.out.slope_force, -z.out.slope_force),
+            (a.out.flux_in, -z.out.flux_out),
+            (a.out.flux_out, -z.out.flux_in),
+            (a.out.p_max, z.out.p_max),
+            (a.out.x_p_max, -z.out.x_p_max),
+        ] {
+            close("mirrored", x, y, 1e-12);
+        }
+        assert_eq!(a.p, z.p.iter().rev().copied().collect::<Vec<_>>(), "the same sums in the same order");
+        assert_eq!(a.fill, z.fill.iter().rev().copied().collect::<Vec<_>>());
+        for (x, y) in a.fronts.iter().zip(z.fronts.iter().rev()) {
+            assert!((x.x + y.x).abs() < 1e-15 && x.film_before != y.film_before);
+        }
+        assert_eq!(a.fronts.len(), z.fronts.len());
+    }
+}
+
+#[test]
+fn without_cavitation_all_conditions_are_full_sommerfeld() {
+    for (_, r) in &RINGS {
+        let b = Bench { p_cav: -1e9, ..ring(r, 100, false) };
+        let full = b.solve(&with(Cavitation::FullSommerfeld));
+        let specs: [&dyn Film1dSpec; 5] = [
+            &mass_conserving(),
+            &fischer_burmeister(),
+            &FrontTracking::default(),
+            &with(Cavitation::SwiftStieber),
+            &with(Cavitation::HalfSommerfeld),
+        ];
+        for spec in specs {
+            let f = b.solve(spec);
+            // The load counts from -1e9 Pa.
+            close("load", f.out.load, full.out.load, 1e-13);
+            close("flux", f.out.flux_in, full.out.flux_in, 1e-9);
+            assert!(f.fronts.is_empty());
+            for (p, q) in f.p.iter().zip(&full.p) {
+                // Rounding of sums of 1e9 Pa over 100 panels.
+                assert!((p - q).abs() < 1e-4, "{p} and {q}");
+            }
+        }
+    }
+}
+
+#[test]
+fn flat_faces_and_standing_surfaces_are_simple() {
+    let specs: [&dyn Film1dSpec; 5] = [
+        &mass_conserving(),
+        &fischer_burmeister(),
+        &FrontTracking::default(),
+        &ElrodAdams::default(),
+        &with(Cavitation::SwiftStieber),
+    ];
+    for spec in specs {
+        for u in [0.0, 3.0, -3.0] {
+            // Flat: pressure falls along a straight line.
+            let line = LineProfile::linear(1e-3, 1e-6, 1e-6, 10).expect("a line");
+            let o = Bench::new(line.clone(), 0.01, u, (3e5, 1e5)).solve(spec).out;
+            // The compressible oil of one of them gains 2e5/1.5e9 of its flux along the line.
+            close("load of a flat face", o.load, 2e5 * 1e-3, if u == 0.0 { 1e-12 } else { 1e-2 });
+            close(
+                "couette",
+                o.moving_shear + o.fixed_shear,
+                2.0 * 0.01 * u * 1e3 + f64::MIN_POSITIVE,
+                if u == 0.0 { f64::INFINITY } else { 1e-12 },
+            );
+            // Nothing presses: no cavity, no pressure, full flux.
+            let o = Bench::new(line, 0.01, u, (0.0, 0.0)).solve(spec).out;
+            assert!(o.load.abs() < 1e-12, "{o:?}");
+            assert!((o.flux_in - 0.5 * u * 1e-6).abs() <= 1e-18, "{o:?}");
+        }
+        // A barrel at rest leaks only, and load and flux go there without a jump.
+        let at = |u: f64| Bench::new(barrel(1e-6, 64, false), 0.01, u, (3e5, 1e5)).solve(spec).out;
+        let (rest, creep, back) = (at(0.0), at(1e-12), at(-1e-12));
+        for o in [creep, back] {
+            close("load", o.load, rest.load, 1e-9);
+            close("leak", o.flux_in, rest.flux_in, 1e-6);
+        }
+    }
+}
+
+#[test]
+fn starved_films_go_from_nothing_to_flooded_without_a_jump() {
+    let specs: [&dyn Film1dSpec; 3] = [&mass_conserving(), &fischer_burmeister(), &FrontTracking::default()];
+    for spec in specs {
+        let line = barrel(2e-6, 400, false);
+        let b = Bench::new(line, 0.01, 10.0, (1e5, 1e5));
+        let flooded = b.solve(spec);
+        let needed = flooded.out.flux_in / b.u;
+        let starve = |h_oil: f64| {
+            Bench { ends: [FilmEnd::Starved { p: 1e5, h_oil }, bath(1e5)], ..b.clone() }.solve(spec)
+        };
+        // More than enough is a bath, to the bit.
+        let more = starve(1.0001 * needed);
+        assert_eq!(more, flooded);
+        let mut last = flooded.out.load;
+        for part in
+            [1.0 - 1e-9, 1.0 - 1e-6, 0.9999, 0.99, 0.95, 0.9, 0.8, 0.6, 0.4, 0.2, 0.1, 0.01, 1e-3, 1e-6, 0.0]
+        {
+            let f = starve(part * needed);
+            assert!(f.out.starved && f.out.flux_error < 1e-12, "{:?}", f.out);
+            // The flux is what arrives, as long as something does.
+            assert!((f.out.flux_in - part * flooded.out.flux_in).abs() <= 1e-12 * flooded.out.flux_in);
+            assert!(f.out.load <= last, "less oil carries less: {} after {last}", f.out.load);
+            if part > 0.9998 {
+                close("near the flooded film", f.out.load, flooded.out.load, 0.2 * (1.0 - part).sqrt());
+            }
+            last = f.out.load;
+        }
+        // Without oil there is gas, and the bath at the other end, at the same pressure.
+        close("gas alone", last, 1e5 * 1.2e-3, 1e-9);
+        assert!(starve(1e-9 * needed).p.iter().all(|p| (p - 1e5).abs() < 1e-3));
+    }
+}
+
+#[test]
+fn squeezed_and_sliding_faces_agree_with_the_closed_form() {
+    let face = FaceProfile::Parabola { length: 1.2e-3, curvature: 6e-6 / 0.36e-6, apex: 0.6e-3 };
+    let n = 1600;
+    for cavitation in [
+        Cavitation::MassConserving,
+        Cavitation::SwiftStieber,
+        Cavitation::HalfSommerfeld,
+        Cavitation::FullSommerfeld,
+    ] {
+        let closed = ClosedFormFace { cavitation, ..ClosedFormFace::default() };
+        let mut exact = closed.build(&FaceCtx { face: &face }).expect("a face");
+        for u in [10.0, -10.0, 0.3, 0.0] {
+            for v in [-0.02, -1e-3, 1e-3, 5e-3, 0.02, 0.1] {
+                let inp = FaceIn { h: 2e-6, u, p_bottom: 4e5, p_top: 1e5, p_cav: 0.0, mu: 0.01 };
+                let e = exact.evaluate(&inp, v).expect("a film");
+                let mut b = Bench::new(barrel(2e-6, n, false), 0.01, u, (4e5, 1e5));
+                b.p_cav = 0.0;
+                let f =
+                    b.run(&mut *b.build(&with(cavitation)), FilmTime::Squeeze(&vec![v; n])).expect("a film");
+                let what = format!("{cavitation:?}, u {u}, v {v}");
+                // Second order in 0.75 µm, over films as short as 20 µm when the face leaves fast.
+                let size = e.load.abs().max(0.02 * 4e5 * 1.2e-3);
+                assert!((f.out.load - e.load).abs() < 1e-3 * size, "{what}: {} and {}", f.out.load, e.load);
+                let size = e.liner_shear.abs().max(e.ring_shear.abs());
+                for (a, z) in [
+                    (f.out.moving_shear, e.liner_shear),
+                    (f.out.fixed_shear, e.ring_shear),
+                    (f.out.slope_force, e.slope_force),
+                ] {
+                    assert!((a - z).abs() < 3e-3 * size.max(e.slope_force.abs()), "{what}: {a} and {z}");
+                }
+                close(&what, f.out.p_max, e.p_max, 1e-3);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_step_in_time_keeps_the_oil_and_the_steady_film_is_its_rest() {
+    let b =
+        Bench { ends: [bath(2e5), bath(1e5)], ..Bench::new(barrel(1e-6, 100, false), 0.01, 4.0, (0.0, 0.0)) };
+    for spec in [mass_conserving(), fischer_burmeister()] {
+        let steady = b.solve(&spec);
+        let mut film = b.build(&spec);
+        let mut content = vec![0.0; 101];
+        film.full_content(&b.line.h_a, &b.line.h_b, &mut content);
+        // 1.2 mm at 2 m/s take 0.6 ms: after 20 ms nothing of the full start is left.
+        for _ in 0..400 {
+            let f = b.run(&mut *film, FilmTime::Step { dt: 5e-5, content: &content }).expect("a film");
+            let now = film.field().content.to_vec();
+            let change: f64 = now.iter().sum::<f64>() - content.iter().sum::<f64>();
+            let through = 5e-5 * (f.out.flux_in - f.out.flux_out);
+            let size: f64 = now.iter().sum();
+            assert!((change - through).abs() < 1e-12 * size, "{change:e} and {through:e}");
+            assert!(f.out.flux_error < 1e-12, "{:?}", f.out);
+            content = now;
+        }
+        let rest = b.run(&mut *film, FilmTime::Step { dt: 5e-5, content: &content }).expect("a film");
+        close("load at rest", rest.out.load, steady.out.load, 1e-10);
+        close("flux at rest", rest.out.flux_in, steady.out.flux_in, 1e-10);
+        // Then the surface turns: the cavity now starves the side that has become the inlet, and moves through the face.
+        let back = Bench { u: -4.0, ..b.clone() };
+        let mut less = 0;
+        let settled = back.solve(&spec).out.load;
+        for _ in 0..400 {
+            let f = back.run(&mut *film, FilmTime::Step { dt: 5e-6, content: &content }).expect("a film");
+            less += usize::from(f.out.load < 0.9 * settled);
+            content.copy_from_slice(film.field().content);
+        }
+        assert!(less > 20, "the cavity left by the stroke before takes load: {less} steps of 5 µs");
+        let f = back.run(&mut *film, FilmTime::Step { dt: 5e-6, content: &content }).expect("a film");
+        close("load after the turn", f.out.load, settled, 1e-6);
+    }
+}
+
+#[test]
+fn many_cavities_are_found_by_all() {
+    let line = LineProfile::textured(0.01, 1e-6, 1e-6, 6, 0.4, 2e-6, 1200).expect("a line");
+    let b = Bench::new(line, 0.01, 2.0, (1e5, 1e5));
+    let exact = b.solve(&FrontTracking::default());
+    // A parallel face: each dimple has a cavity at its upstream edge.
+    let ruptures = exact.fronts.iter().filter(|f| f.film_before).count();
+    assert!(ruptures >= 5 && exact.fronts.len() == 2 * ruptures, "{:?}", exact.fronts);
+    for spec in [mass_conserving(), fischer_burmeister()] {
+        let f = b.solve(&spec);
+        assert_eq!(f.fronts.len(), exact.fronts.len());
+        for (a, z) in f.fronts.iter().zip(&exact.fronts) {
+            assert!((a.x - z.x).abs() < 1e-5 && a.film_before == z.film_before, "{a:?} and {z:?}");
+        }
+        // Steps on nodes: only the panels of the reforming fronts are not exact.
+        close("load", f.out.load, exact.out.load, 1e-5);
+        close("flux", f.out.flux_in, exact.out.flux_in, 1e-9);
+        close("shear", f.out.moving_shear, exact.out.moving_shear, 1e-5);
+    }
+    // Three panels for each stretch of constant gap do as well.
+    let coarse = LineProfile::textured(0.01, 1e-6, 1e-6, 6, 0.4, 2e-6, 1).expect("a line");
+    let few = Bench { line: coarse, ..b.clone() }.solve(&FrontTracking::default());
+    close("load on 13 panels", few.out.load, exact.out.load, 1e-11);
+    close("shear on 13 panels", few.out.moving_shear, exact.out.moving_shear, 1e-11);
+}
+
+#[test]
+fn the_universal_variable_tends_to_complementarity_as_the_oil_stiffens() {
+    let b = pocket(1.0, 200);
+    let exact = b.solve(&mass_conserving()).out;
+    let errors: Vec<f64> = [1e10, 1e11, 1e12]
+        .map(|beta| {
+            let spec =
+                ElrodAdams { bulk_modulus: gudgeon_core::quantity::quantity(beta), ..ElrodAdams::default() };
+            off_by(b.solve(&spec).out.load, exact.load)
+        })
+        .into();
+    // p/β: ten times stiffer, ten times nearer.
+    for w in errors.windows(2) {
+        assert!((w[0] / w[1] - 10.0).abs() < 1.0, "{errors:?}");
+    }
+}
+
+#[test]
+fn rough_panels_scale_the_coefficients() {
+    let b = pocket(1.0, 50);
+    let n = b.line.panels();
+    let mu = vec![b.mu; n];
+    let solve = |spec: &dyn Film1dSpec, factors: &[PanelFactors], mu: &[f64]| {
+        let mut film = b.build(spec);
+        film.solve(&Film1dIn {
+            h_a: &b.line.h_a,
+            h_b: &b.line.h_b,
+            mu,
+            factors: Some(factors),
+            u: b.u,
+            ends: b.ends,
+            p_cav: 0.0,
+            time: FilmTime::Steady,
+        })
+        .expect("a film")
+    };
+    for spec in [&mass_conserving() as &dyn Film1dSpec, &fischer_burmeister(), &FrontTracking::default()] {
+        let smooth = b.solve(spec).out;
+        let same = solve(spec, &vec![PanelFactors::SMOOTH; n], &mu);
+        close("smooth", same.load, smooth.load, 1e-14);
+        // Twice the conductance is half the viscosity, but for the shear of sliding.
+        let open = PanelFactors { pressure_flow: 2.0, ..PanelFactors::SMOOTH };
+        let (rough, thin) = (
+            solve(spec, &vec![open; n], &mu),
+            solve(spec, &vec![PanelFactors::SMOOTH; n], &vec![0.5 * b.mu; n]),
+        );
+        close("load", rough.load, thin.load, 1e-12);
+        close("flux", rough.flux_in, thin.flux_in, 1e-12);
+        // Half the transport is half the speed.
+        let less = PanelFactors { sliding_flow: 0.5, ..PanelFactors::SMOOTH };
+        let slow = Bench { u: 0.5, ..b.clone() }.solve(spec).out;
+        let rough = solve(spec, &vec![less; n], &mu);
+        close("load", rough.load, slow.load, 1e-12);
+        close("flux", rough.flux_in, slow.flux_in, 1e-12);
+    }
+}
+
+#[test]
+fn bad_inputs_are_refused_and_leave_the_film_usable() {
+    let b = pocket(1.0, 20);
+    let n = b.line.panels();
+    let specs: [&dyn Film1dSpec; 6] = [
+        &mass_conserving(),
+        &fischer_burmeister(),
+        &FrontTracking::default(),
+        &ElrodAdams::default(),
+        &with(Cavitation::HalfSommerfeld),
+        &Off {},
+    ];
+    for spec in specs {
+        assert!(spec.build(&Film1dCtx { x: &[0.0] }).is_err());
+        assert!(spec.build(&Film1dCtx { x: &[0.0, 0.0] }).is_err());
+        assert!(spec.build(&Film1dCtx { x: &[0.0, f64::NAN] }).is_err());
+        let mut film = b.build(spec);
+        let good = b.run(&mut *film, FilmTime::Steady).expect("a film");
+        let mut fail = |b: &Bench, time: FilmTime<'_>, recoverable: bool| {
+            let e = b.run(&mut *film, time).expect_err("no film");
+            assert_eq!(e.is_recoverable(), recoverable, "{e}");
+            assert_eq!(film.field().p, good.p, "the film found last is still there");
+        };
+        for bad in [f64::NAN, f64::INFINITY] {
+            let mut c = b.clone();
+            c.line.h_a[3] = bad;
+            fail(&c, FilmTime::Steady, false);
+            fail(&Bench { u: bad, ..b.clone() }, FilmTime::Steady, false);
+            fail(&Bench { mu: bad, ..b.clone() }, FilmTime::Steady, false);
+            fail(&Bench { p_cav: bad, ..b.clone() }, FilmTime::Steady, false);
+            fail(&Bench { ends: [bath(bad), bath(0.0)], ..b.clone() }, FilmTime::Steady, false);
+            fail(
+                &Bench { ends: [FilmEnd::Starved { p: 0.0, h_oil: bad }, bath(0.0)], ..b.clone() },
+                FilmTime::Steady,
+                false,
+            );
+            fail(&b, FilmTime::Squeeze(&vec![bad; n]), false);
+            fail(&b, FilmTime::Step { dt: bad, content: &vec![0.0; n + 1] }, false);
+            fail(&b, FilmTime::Step { dt: 1.0, content: &vec![bad; n + 1] }, false);
+        }
+        fail(&Bench { mu: 0.0, ..b.clone() }, FilmTime::Steady, false);
+        fail(&b, FilmTime::Squeeze(&[0.0]), false);
+        fail(&b, FilmTime::Step { dt: 1.0, content: &[0.0] }, false);
+        let mut c = b.clone();
+        c.line.h_b[3] = 0.0;
+        fail(&c, FilmTime::Steady, true);
+        c.line.h_b[3] = -1e-6;
+        fail(&c, FilmTime::Steady, true);
+        let mut again = b.run(&mut *film, FilmTime::Steady).expect("a film");
+        // A start from the last film may be shorter, not other.
+        again.out.iterations = good.out.iterations;
+        assert_eq!(again, good, "comes again to the bit");
+    }
+}
+
+#[test]
+fn shear_in_the_cavity_is_a_choice() {
+    let b = pocket(1.0, 100);
+    let shear = |cavity_shear| {
+        let on_nodes =
+            b.solve(&Complementarity { cavity_shear, ..Complementarity::default() }).out.moving_shear;
+        let tracked = b.solve(&FrontTracking { cavity_shear }).out.moving_shear;
+        close("with fronts where they are", on_nodes, tracked, 1e-6);
+        tracked
+    };
+    // Film 80.36 N/m, cavity 4.07 N/m with streamers, exact in 25 digits.
+    close("none", shear(LineCavityShear::None), 80.36018193411334040173103, 1e-12);
+    close(
+        "streamers",
+        shear(LineCavityShear::Streamers),
+        80.36018193411334040173103 + 4.065611560357228063522365,
+        1e-12,
+    );
+    assert_eq!(shear(LineCavityShear::Auto), shear(LineCavityShear::Streamers));
+    assert!(shear(LineCavityShear::Full) > shear(LineCavityShear::Streamers));
+}
+
+#[test]
+fn off_does_nothing() {
+    let f = pocket(1.0, 10).solve(&Off {});
+    assert_eq!((f.out.load, f.out.moving_shear, f.out.flux_in, f.out.flux_out), (0.0, 0.0, 0.0, 0.0));
+    assert!(f.p.iter().all(|p| *p == 0.0) && f.fill.iter().all(|t| *t == 0.0));
 }

@@ -160,8 +160,8 @@ pub struct Film1dOut {
     pub x_p_max: f64,
     /// The inlet is not filled: less oil arrives than a bath would give.
     pub starved: bool,
-    /// Largest imbalance of flux at a node, over the larger of the fluxes that sliding and pressure drive through the panels
-    /// beside it.
+    /// Largest imbalance of flux at a node, from the pressures and fills of the nodes, over the largest of what sliding drives
+    /// through the panels beside it, what their pressures would drive against none, and what the node stores.
     pub flux_error: f64,
     /// Passes over the line that the solution took.
     pub iterations: usize,

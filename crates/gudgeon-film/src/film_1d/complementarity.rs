@@ -100,11 +100,12 @@ impl Film1d for Film {
                 let clip = self.cavitation == Cavitation::HalfSommerfeld;
                 line.finish(self.shear, clip, 1)
             }
-            Cavitation::SwiftStieber => {
+            // Without sliding no end is the trailing one: both keep their films.
+            Cavitation::SwiftStieber if line.u > 0.0 => {
                 swift_stieber(line);
                 line.finish(self.shear, false, 1)
             }
-            Cavitation::MassConserving => {
+            Cavitation::MassConserving | Cavitation::SwiftStieber => {
                 let direct = self.solver == LineSolver::Direct
                     && matches!(line.change, Change::Steady | Change::Rates)
                     && steady(line);
@@ -175,6 +176,7 @@ fn full(line: &mut Line) {
             line.p[i] = line.p[i + 1] + (line.q[i] - line.c[i]) * line.d[i];
         }
     }
+    meet(line, n, f64::NEG_INFINITY);
 }
 
 /// The film up to the rupture where pressure and gradient vanish, and `p_cav` from there on.
@@ -193,6 +195,7 @@ fn swift_stieber(line: &mut Line) {
     for i in (1..k).rev() {
         line.p[i] = (line.p[i + 1] + (line.q[i] - line.c[i]) * line.d[i]).max(0.0);
     }
+    meet(line, k, 0.0);
     for i in k..=n {
         if k < n {
             line.p[i] = 0.0;
@@ -207,7 +210,7 @@ fn swift_stieber(line: &mut Line) {
 /// a cavity runs dry.
 fn steady(line: &mut Line) -> bool {
     let n = line.n;
-    let (mut q, _) = flux(line, true);
+    let (mut q, k) = flux(line, true);
     let changing = line.change != Change::Steady;
     line.starved = false;
     if let Some(supply) = line.supply {
@@ -234,6 +237,7 @@ fn steady(line: &mut Line) -> bool {
         }
     } else {
         line.p[0] = line.p_in;
+        meet(line, k, 0.0);
     }
     let gas = if line.lead > 0 { line.p_in } else { 0.0 };
     for i in 0..n {
@@ -254,6 +258,22 @@ fn steady(line: &mut Line) -> bool {
     }
     line.outlet();
     true
+}
+
+/// Counts the pressures of the film at the inlet, which ends at node `k`, from the inlet up to the highest: the sums from the
+/// other end have left the rounding of that behind them, which a wide gap would turn into a flux.
+fn meet(line: &mut Line, k: usize, floor: f64) {
+    let mut top = 0;
+    for (i, p) in line.p[..=k].iter().enumerate() {
+        if p.abs() > line.p[top].abs() {
+            top = i;
+        }
+    }
+    let mut p = line.p_in;
+    for i in 0..top.saturating_sub(1) {
+        p = (p + (line.c[i] - line.q[i]) * line.d[i]).max(floor);
+        line.p[i + 1] = p;
+    }
 }
 
 /// Pressures of the nodes before `from`, counted back from there.

@@ -102,36 +102,6 @@ impl Film1d for Film {
     }
 }
 
-impl Stretch {
-    /// The part from `x` to the end (`after`), or from the beginning to `x`, where the film is `h`.
-    fn cut(&self, x: f64, h: f64, after: bool) -> Self {
-        if after {
-            Self { x, dx: (self.x + self.dx - x).max(0.0), ha: h, ..*self }
-        } else {
-            Self { dx: (x - self.x).max(0.0), hb: h, ..*self }
-        }
-    }
-
-    /// Rise of pressure over it: `C - q R`.
-    fn rise(&self, u: f64, q: f64) -> f64 {
-        let r = 1.0 / (self.ha * self.hb);
-        let k = 6.0 * self.mu * self.dx * r / self.rough.pressure_flow;
-        k * (u * self.rough.sliding_flow - q * (self.ha + self.hb) * r)
-    }
-
-    /// `R`.
-    fn resistance(&self) -> f64 {
-        let r = 1.0 / (self.ha * self.hb);
-        6.0 * self.mu * self.dx * (self.ha + self.hb) * r * r / self.rough.pressure_flow
-    }
-
-    /// Where the gap is `h`, when that is inside.
-    fn place(&self, h: f64) -> Option<f64> {
-        let inside = (self.ha < h && h < self.hb) || (self.hb < h && h < self.ha);
-        inside.then(|| self.x + self.dx * ((h - self.ha) / (self.hb - self.ha)))
-    }
-}
-
 /// Flux of the film at the inlet, were it flooded, and the passes that it took.
 fn flux(line: &Line) -> Option<(f64, usize)> {
     let n = line.n;
@@ -145,10 +115,11 @@ fn flux(line: &Line) -> Option<(f64, usize)> {
         let (mut p, mut resistance, mut size) = (line.p_in, 0.0, line.p_in);
         for i in 0..n {
             let s = line.stretch(i);
+            let full = s.filled(u, q);
             if s.ha < s.hb
-                && let Some(x) = s.place(2.0 * q / (u * s.rough.sliding_flow))
+                && let Some(x) = s.place(full)
             {
-                let part = s.cut(x, 2.0 * q / (u * s.rough.sliding_flow), false);
+                let part = s.cut(x, full, false);
                 let at = p + part.rise(u, q);
                 if at < low {
                     (low, over) = (at, resistance + part.resistance());
@@ -193,7 +164,7 @@ impl<'a> Sweep<'a> {
 
     /// Gap that the flux fills without a gradient of pressure.
     fn filled(&self, s: &Stretch) -> f64 {
-        2.0 * self.q / (self.u * s.rough.sliding_flow)
+        s.filled(self.u, self.q)
     }
 
     /// First panel with a crest of pressure above `p`.
@@ -261,7 +232,7 @@ impl<'a> Sweep<'a> {
                 return pa;
             }
             let from = valley.unwrap_or(s.x);
-            let (x, h) = self.front(&s, pb - floor, from);
+            let (x, h) = s.front(u, q, pb - floor, from);
             self.film(&s.cut(x, h, true), floor, pb);
             self.line.fronts.push(FilmFront { x, film_before: false });
             s = s.cut(x, h, false);
@@ -281,7 +252,7 @@ impl<'a> Sweep<'a> {
         }
         match if s.ha < s.hb { s.place(full) } else { None } {
             Some(x) => {
-                self.void(i, &s.cut(x, full, true), floor, vented);
+                self.void(&s.cut(x, full, true), floor, vented);
                 self.line.fronts.push(FilmFront { x, film_before: true });
                 let film = s.cut(x, full, false);
                 let pa = floor - film.rise(u, q);
@@ -289,7 +260,7 @@ impl<'a> Sweep<'a> {
                 pa
             }
             None => {
-                self.void(i, &s, floor, vented);
+                self.void(&s, floor, vented);
                 floor
             }
         }
@@ -310,44 +281,11 @@ impl<'a> Sweep<'a> {
         }
     }
 
-    fn void(&mut self, _: usize, s: &Stretch, p: f64, vented: bool) {
+    fn void(&mut self, s: &Stretch, p: f64, vented: bool) {
         if s.dx <= 0.0 {
             return;
         }
-        let wet = match self.shear {
-            Shear::None => 0.0,
-            Shear::Full => 2.0 * s.dx / (s.ha + s.hb),
-            // The layer before the film touches one surface alone.
-            Shear::Streamers if vented => 0.0,
-            Shear::Streamers => self.filled(s) * s.dx / (s.ha * s.hb),
-        };
+        let wet = s.wet(self.u, self.q, self.shear, vented);
         self.sums.void(s, self.u, p, wet);
-    }
-
-    /// Where the pressure, `p` at the end of the stretch, has come down to nothing, not before `lo`; and the gap there.
-    fn front(&self, s: &Stretch, p: f64, mut lo: f64) -> (f64, f64) {
-        let end = s.x + s.dx;
-        let slope = (s.hb - s.ha) / s.dx;
-        let gap = |x: f64| s.hb - slope * (end - x);
-        let k = 12.0 * s.mu / s.rough.pressure_flow;
-        let uf = self.u * s.rough.sliding_flow;
-        let (mut hi, mut x) = (end, end);
-        for _ in 0..200 {
-            let h = gap(x);
-            let here = p - s.cut(x, h, true).rise(self.u, self.q);
-            if here > 0.0 {
-                hi = x;
-            } else {
-                lo = x;
-            }
-            let step = -here * (h * h * h) / (k * (0.5 * uf * h - self.q));
-            let next = x + step;
-            let next = if next > lo && next < hi { next } else { 0.5 * (lo + hi) };
-            if next == x || here == 0.0 || hi - lo <= f64::EPSILON * s.dx {
-                break;
-            }
-            x = next;
-        }
-        (x, gap(x))
     }
 }

@@ -183,6 +183,88 @@ impl Stretch {
     }
 }
 
+impl Stretch {
+    /// The part from `x` to the end (`after`), or from the beginning to `x`, where the film is `h`.
+    pub fn cut(&self, x: f64, h: f64, after: bool) -> Self {
+        if after {
+            Self { x, dx: (self.x + self.dx - x).max(0.0), ha: h, ..*self }
+        } else {
+            Self { dx: (x - self.x).max(0.0), hb: h, ..*self }
+        }
+    }
+
+    /// Gap that the flux fills without a gradient of pressure; more than any without sliding.
+    pub fn filled(&self, u: f64, q: f64) -> f64 {
+        let uf = u * self.rough.sliding_flow;
+        if uf > 0.0 { 2.0 * q / uf } else { f64::INFINITY }
+    }
+
+    /// `∫ θ dx/h` without full film; `layer`: before the film of a starved inlet, where the oil touches one surface alone.
+    pub fn wet(&self, u: f64, q: f64, shear: Shear, layer: bool) -> f64 {
+        match shear {
+            Shear::None => 0.0,
+            Shear::Full => self.i1(),
+            Shear::Streamers if layer || u == 0.0 => 0.0,
+            Shear::Streamers => {
+                self.filled(u, q).max(0.0).min(self.ha.max(self.hb)) * self.dx / (self.ha * self.hb)
+            }
+        }
+    }
+
+    /// `∫ dx/h`
+    fn i1(&self) -> f64 {
+        let r = 2.0 / (self.ha + self.hb);
+        let t = 0.5 * (self.hb - self.ha) * r;
+        self.dx * r * (1.0 + t * t * a1(t * t))
+    }
+
+    /// Rise of pressure over it under full film.
+    pub fn rise(&self, u: f64, q: f64) -> f64 {
+        let r = 1.0 / (self.ha * self.hb);
+        let k = 6.0 * self.mu * self.dx * r / self.rough.pressure_flow;
+        k * (u * self.rough.sliding_flow - q * (self.ha + self.hb) * r)
+    }
+
+    /// Fall of pressure over it for a flux of 1.
+    pub fn resistance(&self) -> f64 {
+        let r = 1.0 / (self.ha * self.hb);
+        6.0 * self.mu * self.dx * (self.ha + self.hb) * r * r / self.rough.pressure_flow
+    }
+
+    /// Where the gap is `h`, when that is inside.
+    pub fn place(&self, h: f64) -> Option<f64> {
+        let inside = (self.ha < h && h < self.hb) || (self.hb < h && h < self.ha);
+        inside.then(|| self.x + self.dx * ((h - self.ha) / (self.hb - self.ha)))
+    }
+
+    /// Where the pressure, `p` at the end, has come down to nothing, not before `lo`; and the gap there.
+    pub fn front(&self, u: f64, q: f64, p: f64, mut lo: f64) -> (f64, f64) {
+        let end = self.x + self.dx;
+        let slope = (self.hb - self.ha) / self.dx;
+        let gap = |x: f64| self.hb - slope * (end - x);
+        let k = 12.0 * self.mu / self.rough.pressure_flow;
+        let uf = u * self.rough.sliding_flow;
+        let (mut hi, mut x) = (end, end);
+        for _ in 0..200 {
+            let h = gap(x);
+            let here = p - self.cut(x, h, true).rise(u, q);
+            if here > 0.0 {
+                hi = x;
+            } else {
+                lo = x;
+            }
+            let step = -here * (h * h * h) / (k * (0.5 * uf * h - q));
+            let next = x + step;
+            let next = if next > lo && next < hi { next } else { 0.5 * (lo + hi) };
+            if next == x || here == 0.0 || hi - lo <= f64::EPSILON * self.dx {
+                break;
+            }
+            x = next;
+        }
+        (x, gap(x))
+    }
+}
+
 /// Integrals over the line, in the direction of sliding.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Sums {
@@ -488,8 +570,10 @@ impl Line {
                 // The flux of a changing gap is not constant: a parabola of pressure more.
                 let more = if squeezed { self.squeeze_bulge(i) } else { 0.0 };
                 sums.film(&s, self.u, self.q[i], (pa, pb), more);
+            } else if clip {
+                self.clipped(&mut sums, &s, i, shear);
             } else {
-                self.partial(&mut sums, &s, i, shear, clip);
+                self.partial(&mut sums, &s, i, shear);
             }
             if i > 0 {
                 sums.step(if clip { pa.max(0.0) } else { pa }, s.ha - self.hb[i - 1]);
@@ -518,42 +602,56 @@ impl Line {
         -self.mu[i] * v * slender * slender * slender / self.rough[i].pressure_flow
     }
 
-    /// Adds panel `i`, which has no film or one at one end alone.
-    fn partial(&mut self, sums: &mut Sums, s: &Stretch, i: usize, shear: Shear, clip: bool) {
+    /// Adds panel `i`, which has no film or one behind a front.
+    fn partial(&mut self, sums: &mut Sums, s: &Stretch, i: usize, shear: Shear) {
+        let (q, floor, pb) = (self.q[i], self.p[i], self.p[i + 1]);
+        let mut empty = *s;
+        if pb > floor {
+            let above = pb - floor;
+            // To rounding the film may fill the panel.
+            if above >= s.rise(self.u, q) * (1.0 - 1e-15) {
+                sums.film(s, self.u, q, (floor, pb), 0.0);
+                self.fronts.push(FilmFront { x: s.x, film_before: false });
+                return;
+            }
+            let (x, h) = s.front(self.u, q, above, s.x);
+            sums.film(&s.cut(x, h, true), self.u, q, (floor, pb), 0.0);
+            self.fronts.push(FilmFront { x, film_before: false });
+            empty = s.cut(x, h, false);
+        }
+        if empty.dx > 0.0 {
+            sums.void(&empty, self.u, floor, empty.wet(self.u, q, shear, i < self.lead));
+        }
+    }
+
+    /// Adds panel `i`, whose pressure is cut off at zero.
+    fn clipped(&mut self, sums: &mut Sums, s: &Stretch, i: usize, shear: Shear) {
         let (pa, pb) = (self.p[i], self.p[i + 1]);
-        // What presses on the whole panel, and the film at one of its ends with its part of the length.
-        let (floor, top, part, at_b) = if clip {
-            let (high, low) = (pa.max(pb), pa.min(pb));
-            (0.0, high.max(0.0), if high > 0.0 { high / (high - low) } else { 0.0 }, pb > pa)
-        } else {
-            let (rise, high) = ((self.c[i] - self.q[i]) * self.d[i], pb - pa);
-            (pa, high.max(0.0), if high > 0.0 { high / rise.max(high) } else { 0.0 }, true)
-        };
+        let (high, low) = (pa.max(pb), pa.min(pb));
+        let (mut top, mut part) = (0.0, 0.0);
+        if high > 0.0 {
+            (top, part) = (high, high / (high - low));
+        }
+        // A straight line of pressure between the nodes.
         let length = part * s.dx;
-        let above = 0.5 * top * length;
-        let (x, inwards, edge) =
-            if at_b { (self.x[i + 1], -1.0, s.hb * top) } else { (s.x, 1.0, -s.ha * top) };
+        let load = 0.5 * top * length;
+        let at_b = pb > pa;
+        let (x, inwards, edge) = if at_b { (s.x + s.dx, -1.0, s.hb * top) } else { (s.x, 1.0, -s.ha * top) };
         if part > 0.0 {
             self.fronts.push(FilmFront { x: x + inwards * length, film_before: !at_b });
         }
-        let sum = s.ha + s.hb;
-        let i1 = 2.0 * s.dx / sum;
+        let i1 = s.i1();
         let wet = match shear {
             Shear::Full => i1,
-            Shear::None => part * i1,
-            // The layer before the film touches one surface alone.
-            Shear::Streamers if i < self.lead => part * i1,
-            Shear::Streamers => {
-                let fill = if self.c[i] > 0.0 { (self.q[i] / self.c[i]).clamp(0.0, 1.0) } else { 0.0 };
-                (part + (1.0 - part) * fill) * i1
-            }
+            // The flux of a film that is cut off says nothing of what is left of it.
+            Shear::None | Shear::Streamers => part * i1,
         };
-        sums.void(s, self.u, floor, wet);
+        sums.void(s, self.u, 0.0, wet);
         let slope = (s.hb - s.ha) / s.dx;
-        sums.load += above;
-        sums.moment += above * (x + inwards * length / 3.0);
-        sums.slope -= above * slope;
-        sums.gradient += 0.5 * (edge - slope * above) * s.rough.pressure_shear;
+        sums.load += load;
+        sums.moment += load * (x + inwards * length / 3.0);
+        sums.slope -= load * slope;
+        sums.gradient += 0.5 * (edge - slope * load) * s.rough.pressure_shear;
     }
 
     /// The result of the sums, and the answers in the direction of `x`.
@@ -649,7 +747,12 @@ impl Line {
             let (now, here) = (flux(i), scale(i));
             let off = (before - now - stored(i)).abs();
             if off > 0.0 {
-                worst = worst.max(off / size.max(here));
+                let kept = match self.change {
+                    Change::Steady => 0.0,
+                    Change::Rates => self.rate[i].abs(),
+                    Change::Step(dt) => self.volume[i] / dt,
+                };
+                worst = worst.max(off / size.max(here).max(kept));
             }
             (before, size) = (now, here);
         }
