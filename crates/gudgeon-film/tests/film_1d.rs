@@ -8,7 +8,7 @@ use gudgeon_core::kinds::{
     HydrodynamicsSpec, PanelFactors,
 };
 use gudgeon_film::film_1d::{
-    Complementarity, ElrodAdams, FrontTracking, LineCavityShear, LineProfile, LineSolver, Off,
+    Complementarity, ElrodAdams, FrontTracking, LineCavityShear, LineProfile, LineSolver, Off, ViscosityLoop,
 };
 use gudgeon_film::{Cavitation, ClosedFormFace};
 
@@ -1174,4 +1174,125 @@ fn off_does_nothing() {
     let f = pocket(1.0, 10).solve(&Off {});
     assert_eq!((f.out.load, f.out.moving_shear, f.out.flux_in, f.out.flux_out), (0.0, 0.0, 0.0, 0.0));
     assert!(f.p.iter().all(|p| *p == 0.0) && f.fill.iter().all(|t| *t == 0.0));
+}
+
+/// Barus, with `r = (1 - exp(-α p))/α` the pressure of the film whose oil does not thicken.
+fn barus(alpha: f64, r: f64) -> f64 {
+    -(1.0 - alpha * r).ln() / alpha
+}
+
+#[test]
+fn oil_that_thickens_with_pressure_follows_the_reduced_pressure() {
+    // μ = 8 mPa s, U = 12 m/s, L = 1.5 mm, 2 to 1 µm: 36 MPa without thickening.
+    let plain =
+        Bench::new(LineProfile::linear(1.5e-3, 2e-6, 1e-6, 40).expect("a line"), 0.008, 12.0, (0.0, 0.0));
+    for (reach, most) in [(0.1, 8), (0.5, 12), (0.9, 25), (0.97, 60)] {
+        let alpha = reach / 36e6;
+        for spec in [&mass_conserving() as &dyn Film1dSpec, &FrontTracking::default()] {
+            let thin = plain.solve(spec);
+            let mut film = plain.build(spec);
+            let mut l = ViscosityLoop::new(40);
+            let mu = [0.008; 40];
+            let inp = Film1dIn {
+                h_a: &plain.line.h_a,
+                h_b: &plain.line.h_b,
+                mu: &mu,
+                factors: None,
+                u: 12.0,
+                ends: plain.ends,
+                p_cav: 0.0,
+                time: FilmTime::Steady,
+            };
+            let (out, rounds) = l.solve(&mut *film, &inp, |p, _| 0.008 * (alpha * p).exp()).expect("a film");
+            println!("reach {reach}: {rounds} rounds");
+            assert!(rounds <= most, "{rounds} rounds for α r = {reach}");
+            // The thickening film has the flux of the plain one.
+            close("flux", out.flux_in, thin.out.flux_in, 1e-8);
+            for (p, r) in film.field().p.iter().zip(&thin.p) {
+                // Gauss's rule leaves (α Δp)⁶/2e6 of a panel; ln(1 - α r) magnifies.
+                assert!(
+                    (p - barus(alpha, *r)).abs() <= 1e-6 * barus(alpha, 36e6),
+                    "{p} and {}",
+                    barus(alpha, *r)
+                );
+            }
+            let (_, again) = l.solve(&mut *film, &inp, |p, _| 0.008 * (alpha * p).exp()).expect("a film");
+            assert_eq!(again, 1, "the last film is the start of the next");
+        }
+    }
+    // Beyond α r = 1 the oil turns solid: an error, not a number.
+    let mut film = plain.build(&mass_conserving());
+    let mu = [0.008; 40];
+    let inp = Film1dIn {
+        h_a: &plain.line.h_a,
+        h_b: &plain.line.h_b,
+        mu: &mu,
+        factors: None,
+        u: 12.0,
+        ends: plain.ends,
+        p_cav: 0.0,
+        time: FilmTime::Steady,
+    };
+    let e = ViscosityLoop::new(40).solve(&mut *film, &inp, |p, _| 0.008 * (1.2 / 36e6 * p).exp());
+    assert!(e.is_err_and(|e| e.is_recoverable()));
+}
+
+#[test]
+fn a_cavity_stays_where_it_is_when_the_oil_thickens() {
+    let (_, r) = &RINGS[1];
+    let plain = ring(r, 400, false);
+    let alpha = 0.5 / r.10;
+    let reduced = |p: f64| (1.0 - (-alpha * p).exp()) / alpha;
+    let thin =
+        Bench { ends: [bath(reduced(r.2)), bath(reduced(r.3))], ..plain.clone() }.solve(&mass_conserving());
+    let mut film = plain.build(&mass_conserving());
+    let mu = [0.01; 400];
+    let inp = Film1dIn {
+        h_a: &plain.line.h_a,
+        h_b: &plain.line.h_b,
+        mu: &mu,
+        factors: None,
+        u: plain.u,
+        ends: plain.ends,
+        p_cav: 0.0,
+        time: FilmTime::Steady,
+    };
+    let (out, _) =
+        ViscosityLoop::new(400).solve(&mut *film, &inp, |p, _| 0.01 * (alpha * p).exp()).expect("a film");
+    close("flux", out.flux_in, thin.out.flux_in, 1e-9);
+    let fronts = film.field().fronts;
+    assert_eq!(fronts.len(), 2);
+    for (a, z) in fronts.iter().zip(&thin.fronts) {
+        // In the panel of the front its own viscosity counts.
+        assert!((a.x - z.x).abs() < 1e-8, "{a:?} and {z:?}");
+    }
+    for (p, r) in film.field().p.iter().zip(&thin.p) {
+        assert!((p - barus(alpha, *r)).abs() <= 1e-8 * out.p_max, "{p} and {}", barus(alpha, *r));
+    }
+}
+
+#[test]
+fn oil_that_thins_with_shear_does_so_at_the_rate_of_sliding() {
+    let b = Bench::new(LineProfile::linear(1e-3, 1e-6, 1e-6, 8).expect("a line"), 0.01, 5.0, (3e5, 1e5));
+    let mut film = b.build(&mass_conserving());
+    let mu = [0.01; 8];
+    let inp = Film1dIn {
+        h_a: &b.line.h_a,
+        h_b: &b.line.h_b,
+        mu: &mu,
+        factors: None,
+        u: 5.0,
+        ends: b.ends,
+        p_cav: 0.0,
+        time: FilmTime::Steady,
+    };
+    let cross = |rate: f64| 0.003 + 0.007 / (1.0 + rate / 2e6);
+    let mut l = ViscosityLoop::new(8);
+    let (out, rounds) = l.solve(&mut *film, &inp, |_, rate| cross(rate)).expect("a film");
+    // One shear rate everywhere: 5 m/s over 1 µm. The second round finds nothing to change.
+    assert_eq!(rounds, 2);
+    for mu in l.viscosity() {
+        close("viscosity", *mu, cross(5e6), 1e-12);
+    }
+    close("shear", 0.5 * (out.moving_shear + out.fixed_shear), cross(5e6) * 5e6 * 1e-3, 1e-12);
 }

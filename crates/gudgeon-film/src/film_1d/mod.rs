@@ -7,6 +7,7 @@ mod line;
 mod off;
 mod profile;
 mod rows;
+mod viscosity;
 
 pub use complementarity::{Complementarity, LineSolver};
 pub use elrod_adams::ElrodAdams;
@@ -14,3 +15,4 @@ pub use front_tracking::FrontTracking;
 pub use line::LineCavityShear;
 pub use off::Off;
 pub use profile::LineProfile;
+pub use viscosity::ViscosityLoop;
