@@ -1204,7 +1204,6 @@ fn oil_that_thickens_with_pressure_follows_the_reduced_pressure() {
                 time: FilmTime::Steady,
             };
             let (out, rounds) = l.solve(&mut *film, &inp, |p, _| 0.008 * (alpha * p).exp()).expect("a film");
-            println!("reach {reach}: {rounds} rounds");
             assert!(rounds <= most, "{rounds} rounds for α r = {reach}");
             // The thickening film has the flux of the plain one.
             close("flux", out.flux_in, thin.out.flux_in, 1e-8);

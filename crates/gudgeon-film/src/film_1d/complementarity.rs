@@ -94,6 +94,9 @@ impl Film1d for Film {
     fn solve(&mut self, inp: &Film1dIn<'_>) -> Result<Film1dOut, EvalError> {
         let line = &mut self.line;
         line.enter(inp, self.cavitation != Cavitation::FullSommerfeld)?;
+        if line.supply.is_some() && self.cavitation != Cavitation::MassConserving {
+            return Err(line.fatal("a starved inlet needs a film that conserves mass"));
+        }
         match self.cavitation {
             Cavitation::FullSommerfeld | Cavitation::HalfSommerfeld => {
                 full(line);

@@ -72,21 +72,17 @@ impl Film1d for Film {
             q = supply;
         }
         let mut sweep = Sweep::new(line, q, self.shear);
-        sweep.run(0.0, None);
+        sweep.run(0.0, 0, false);
         if sweep.line.starved && sweep.line.p_in > 0.0 {
             let gas = sweep.line.p_in;
             // Before the place nearest to the inlet that has the pressure of the gas, there is gas.
-            let sealed = sweep.line.p.iter().position(|p| *p >= gas);
-            let crest = sweep.crest_above(gas);
-            let from = match (sealed, crest) {
-                (Some(a), Some(b)) => Some(a.min(b)),
-                (a, b) => a.or(b),
-            };
-            if from.is_none() {
+            let node = sweep.line.p.iter().position(|p| *p >= gas);
+            let crest = sweep.crest_above(gas).filter(|i| node.is_none_or(|n| *i < n));
+            if node.is_none() && crest.is_none() {
                 // A film that nowhere reaches the pressure of the gas lets it through to the end.
                 sweep.line.p_out = gas;
             }
-            sweep.run(gas, Some(from.unwrap_or(sweep.line.n)));
+            sweep.run(gas, crest.or(node).unwrap_or(sweep.line.n), crest.is_some());
         }
         let (sums, highest, off) = (sweep.sums, sweep.highest, sweep.off);
         line.fronts.reverse();
@@ -162,26 +158,24 @@ impl<'a> Sweep<'a> {
         Self { line, u, q, shear, sums: Sums::default(), highest: (0.0, 0.0), off: 0.0 }
     }
 
-    /// Gap that the flux fills without a gradient of pressure.
-    fn filled(&self, s: &Stretch) -> f64 {
-        s.filled(self.u, self.q)
+    /// Where a film with the pressure `pa` at the beginning of the stretch has a crest, and the pressure there.
+    fn crest(&self, s: &Stretch, pa: f64) -> Option<(f64, f64)> {
+        let h = s.filled(self.u, self.q);
+        let x = if s.ha > s.hb { s.place(h) } else { None };
+        x.map(|x| (x, pa + s.cut(x, h, false).rise(self.u, self.q)))
     }
 
-    /// First panel with a crest of pressure above `p`.
+    /// First panel with a crest of pressure of `p` or more.
     fn crest_above(&self, p: f64) -> Option<usize> {
         (0..self.line.n).find(|i| {
-            let s = self.line.stretch(*i);
-            self.line.film[*i]
-                && s.ha > s.hb
-                && s.place(self.filled(&s)).is_some_and(|x| {
-                    let part = s.cut(x, self.filled(&s), false);
-                    self.line.p[*i] + part.rise(self.u, self.q) >= p
-                })
+            let crest = self.crest(&self.line.stretch(*i), self.line.p[*i]);
+            self.line.film[*i] && crest.is_some_and(|(_, high)| high >= p)
         })
     }
 
-    /// Finds all films. Below `gas` the pressure does not go at and before the panel that ends at node `sealed`.
-    fn run(&mut self, gas: f64, sealed: Option<usize>) {
+    /// Finds all films. Where the pressure of the `gas` is reached first, at node `sealed` or at the crest in the panel behind it,
+    /// it goes no lower on the way from there to the inlet.
+    fn run(&mut self, gas: f64, sealed: usize, at_crest: bool) {
         let n = self.line.n;
         self.sums = Sums::default();
         self.line.fronts.clear();
@@ -191,14 +185,21 @@ impl<'a> Sweep<'a> {
         let mut p = self.line.p_out;
         for i in (0..n).rev() {
             let s = self.line.stretch(i);
-            let vented = sealed.is_some_and(|k| i < k || (i == k && k < n));
-            let floor = if vented { gas } else { 0.0 };
             if i + 1 < n {
                 self.sums.step(p, self.line.ha[i + 1] - s.hb);
             }
-            p = self.panel(i, &s, p, floor, vented);
+            let vented = i < sealed || (at_crest && i == sealed);
+            let floor = if vented { gas } else { 0.0 };
+            p = match self.crest(&s, p - s.rise(self.u, self.q)) {
+                Some((x, high)) if at_crest && i == sealed => {
+                    let h = s.filled(self.u, self.q);
+                    self.film(&s.cut(x, h, true), high, p);
+                    self.panel(i, &s.cut(x, h, false), high, gas, true)
+                }
+                _ => self.panel(i, &s, p, floor, vented),
+            };
             self.line.p[i] = p;
-            let full = self.filled(&s);
+            let full = s.filled(self.u, self.q);
             let film = p > floor || s.ha <= full;
             self.line.film[i] = film;
             self.line.fill[i] = if film { 1.0 } else { (full / s.ha).clamp(0.0, 1.0) };
@@ -220,7 +221,7 @@ impl<'a> Sweep<'a> {
     /// Panel `i` with the pressure `pb` at its end; returns that at its beginning.
     fn panel(&mut self, i: usize, s: &Stretch, pb: f64, floor: f64, vented: bool) -> f64 {
         let (u, q) = (self.u, self.q);
-        let full = self.filled(s);
+        let full = s.filled(self.u, self.q);
         let mut s = *s;
         if pb > floor {
             // Lowest pressure on the way back: inside, where the gap widens along x, or at the beginning.
@@ -271,13 +272,10 @@ impl<'a> Sweep<'a> {
             return;
         }
         self.sums.film(s, self.u, self.q, (pa, pb), 0.0);
-        if s.ha > s.hb
-            && let Some(x) = s.place(self.filled(s))
+        if let Some((x, p)) = self.crest(s, pa)
+            && p > self.highest.0
         {
-            let p = pa + s.cut(x, self.filled(s), false).rise(self.u, self.q);
-            if p > self.highest.0 {
-                self.highest = (p, x);
-            }
+            self.highest = (p, x);
         }
     }
 

@@ -752,7 +752,11 @@ impl Line {
                     Change::Rates => self.rate[i].abs(),
                     Change::Step(dt) => self.volume[i] / dt,
                 };
-                worst = worst.max(off / size.max(here).max(kept));
+                let most = size.max(here).max(kept);
+                // A division only where it counts.
+                if off > worst * most {
+                    worst = off / most;
+                }
             }
             (before, size) = (now, here);
         }
