@@ -1295,3 +1295,40 @@ fn oil_that_thins_with_shear_does_so_at_the_rate_of_sliding() {
     }
     close("shear", 0.5 * (out.moving_shear + out.fixed_shear), cross(5e6) * 5e6 * 1e-3, 1e-12);
 }
+
+#[test]
+fn a_starved_film_does_not_depend_on_how_its_straight_pieces_are_divided() {
+    let points = [(0.0, 3e-6), (4e-4, 1e-6), (6e-4, 1.1e-6), (1e-3, 4e-6)];
+    let at = |panels: usize, p: (f64, f64), h_oil: f64| {
+        let b = Bench {
+            ends: [FilmEnd::Starved { p: p.0, h_oil }, bath(p.1)],
+            ..Bench::new(LineProfile::table(&points, panels).expect("a line"), 0.01, 5.0, (0.0, 0.0))
+        };
+        (b.solve(&FrontTracking::default()), b.solve(&mass_conserving()))
+    };
+    for p in [(0.0, 0.0), (1e5, 1e5), (2e6, 1e5), (1e5, 2e6)] {
+        let mut starved = 0;
+        for h_oil in [1e-9, 1e-7, 2e-7, 3e-7, 4e-7, 4.5e-7, 4.9e-7, 5.2e-7, 5.5e-7, 6e-7, 1e-6] {
+            let (exact, few) = at(3, p, h_oil);
+            starved += usize::from(exact.out.starved);
+            for panels in [10, 117, 1000] {
+                let (tracked, nodes) = at(panels, p, h_oil);
+                close("load", tracked.out.load + 1e-300, exact.out.load + 1e-300, 1e-10);
+                close("shear", tracked.out.moving_shear + 1e-12, exact.out.moving_shear + 1e-12, 1e-9);
+                assert_eq!(
+                    tracked.fronts.len(),
+                    exact.fronts.len(),
+                    "{:?} {:?}",
+                    tracked.fronts,
+                    exact.fronts
+                );
+                if panels == 1000 {
+                    // Nodes decide by whole panels whether a film keeps the gas out.
+                    close("on nodes", nodes.out.load + 1e-3, exact.out.load + 1e-3, 5e-3);
+                }
+            }
+            assert!(few.out.flux_error < 1e-12);
+        }
+        assert!((6..11).contains(&starved), "{starved}");
+    }
+}

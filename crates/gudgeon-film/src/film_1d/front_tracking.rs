@@ -150,12 +150,14 @@ struct Sweep<'a> {
     highest: (f64, f64),
     /// Flux that the pressure missed at the inlet would drive, over the flux of sliding or pressure.
     off: f64,
+    /// What was added last is no film.
+    open: bool,
 }
 
 impl<'a> Sweep<'a> {
     fn new(line: &'a mut Line, q: f64, shear: Shear) -> Self {
         let u = line.u;
-        Self { line, u, q, shear, sums: Sums::default(), highest: (0.0, 0.0), off: 0.0 }
+        Self { line, u, q, shear, sums: Sums::default(), highest: (0.0, 0.0), off: 0.0, open: false }
     }
 
     /// Where a film with the pressure `pa` at the beginning of the stretch has a crest, and the pressure there.
@@ -178,6 +180,7 @@ impl<'a> Sweep<'a> {
     fn run(&mut self, gas: f64, sealed: usize, at_crest: bool) {
         let n = self.line.n;
         self.sums = Sums::default();
+        self.open = false;
         self.line.fronts.clear();
         self.line.q.fill(self.q);
         self.line.p[n] = self.line.p_out;
@@ -221,16 +224,17 @@ impl<'a> Sweep<'a> {
     /// Panel `i` with the pressure `pb` at its end; returns that at its beginning.
     fn panel(&mut self, i: usize, s: &Stretch, pb: f64, floor: f64, vented: bool) -> f64 {
         let (u, q) = (self.u, self.q);
-        let full = s.filled(self.u, self.q);
+        let full = s.filled(u, q);
         let mut s = *s;
         if pb > floor {
             // Lowest pressure on the way back: inside, where the gap widens along x, or at the beginning.
             let valley = if s.ha < s.hb { s.place(full) } else { None };
             let pa = pb - s.rise(u, q);
             let low = valley.map_or(pa, |x| pb - s.cut(x, full, true).rise(u, q));
-            if low >= floor {
-                self.film(&s, pa, pb);
-                return pa;
+            // The flux was made so that a film from the inlet has its pressure, but for rounding.
+            if low >= floor || (i == 0 && !self.line.starved && valley.is_none()) {
+                self.film(&s, pa.max(floor), pb);
+                return pa.max(floor);
             }
             let from = valley.unwrap_or(s.x);
             let (x, h) = s.front(u, q, pb - floor, from);
@@ -241,7 +245,7 @@ impl<'a> Sweep<'a> {
             let pa = floor - s.rise(u, q);
             if s.hb == full || pa >= floor {
                 // A film ends at the node itself, or goes on through it.
-                if i + 1 < self.line.n && !self.line.film[i + 1] {
+                if self.open {
                     self.line.fronts.push(FilmFront { x: s.x + s.dx, film_before: true });
                 }
                 self.film(&s, pa.max(floor), floor);
@@ -251,7 +255,9 @@ impl<'a> Sweep<'a> {
         if s.dx <= 0.0 {
             return floor;
         }
-        match if s.ha < s.hb { s.place(full) } else { None } {
+        // A film that would begin again within rounding of the node belongs to the panel before.
+        let rupture = if s.ha < s.hb { s.place(full) } else { None };
+        match rupture.filter(|x| x - s.x > 1e-12 * s.dx) {
             Some(x) => {
                 self.void(&s.cut(x, full, true), floor, vented);
                 self.line.fronts.push(FilmFront { x, film_before: true });
@@ -271,6 +277,7 @@ impl<'a> Sweep<'a> {
         if s.dx <= 0.0 {
             return;
         }
+        self.open = false;
         self.sums.film(s, self.u, self.q, (pa, pb), 0.0);
         if let Some((x, p)) = self.crest(s, pa)
             && p > self.highest.0
@@ -283,6 +290,7 @@ impl<'a> Sweep<'a> {
         if s.dx <= 0.0 {
             return;
         }
+        self.open = true;
         let wet = s.wet(self.u, self.q, self.shear, vented);
         self.sums.void(s, self.u, p, wet);
     }
