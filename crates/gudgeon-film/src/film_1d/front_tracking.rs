@@ -105,6 +105,10 @@ fn flux(line: &Line) -> Option<(f64, usize)> {
     let total: f64 = line.d.iter().sum();
     let rise: f64 = line.c.iter().zip(&line.d).map(|(c, d)| c * d).sum();
     let mut q = (line.p_in - line.p_out + rise) / total;
+    if line.p_in <= 0.0 {
+        // Without pressure at the inlet it has to rise from there, or there is a void from there.
+        q = q.min(0.5 * u * line.rough[0].sliding_flow * line.ha[0]);
+    }
     for pass in 1..200 {
         // Lowest pressure of the film with this flux, and the resistance up to there.
         let (mut low, mut over) = (0.0, 1.0);
@@ -160,18 +164,19 @@ impl<'a> Sweep<'a> {
         Self { line, u, q, shear, sums: Sums::default(), highest: (0.0, 0.0), off: 0.0, open: false }
     }
 
-    /// Where a film with the pressure `pa` at the beginning of the stretch has a crest, and the pressure there.
-    fn crest(&self, s: &Stretch, pa: f64) -> Option<(f64, f64)> {
+    /// Where the film in a stretch that narrows has a crest, and the pressure there, with `pb` at the end: the gap is less than
+    /// filled by the flux from there on, so that a film it is.
+    fn crest(&self, s: &Stretch, pb: f64) -> Option<(f64, f64)> {
         let h = s.filled(self.u, self.q);
         let x = if s.ha > s.hb { s.place(h) } else { None };
-        x.map(|x| (x, pa + s.cut(x, h, false).rise(self.u, self.q)))
+        x.map(|x| (x, pb - s.cut(x, h, true).rise(self.u, self.q)))
     }
 
     /// First panel with a crest of pressure of `p` or more.
     fn crest_above(&self, p: f64) -> Option<usize> {
         (0..self.line.n).find(|i| {
-            let crest = self.crest(&self.line.stretch(*i), self.line.p[*i]);
-            self.line.film[*i] && crest.is_some_and(|(_, high)| high >= p)
+            let crest = self.crest(&self.line.stretch(*i), self.line.p[*i + 1]);
+            crest.is_some_and(|(_, high)| high >= p)
         })
     }
 
@@ -193,7 +198,7 @@ impl<'a> Sweep<'a> {
             }
             let vented = i < sealed || (at_crest && i == sealed);
             let floor = if vented { gas } else { 0.0 };
-            p = match self.crest(&s, p - s.rise(self.u, self.q)) {
+            p = match self.crest(&s, p) {
                 Some((x, high)) if at_crest && i == sealed => {
                     let h = s.filled(self.u, self.q);
                     self.film(&s.cut(x, h, true), high, p);
@@ -206,9 +211,6 @@ impl<'a> Sweep<'a> {
             let film = p > floor || s.ha <= full;
             self.line.film[i] = film;
             self.line.fill[i] = if film { 1.0 } else { (full / s.ha).clamp(0.0, 1.0) };
-            if p > self.highest.0 {
-                self.highest = (p, self.line.x[i]);
-            }
         }
         if !self.line.starved {
             let size = self.line.c[0].max(self.line.g[0] * self.line.p_in).max(self.q.abs());
@@ -231,26 +233,28 @@ impl<'a> Sweep<'a> {
             let valley = if s.ha < s.hb { s.place(full) } else { None };
             let pa = pb - s.rise(u, q);
             let low = valley.map_or(pa, |x| pb - s.cut(x, full, true).rise(u, q));
-            // The flux was made so that a film from the inlet has its pressure, but for rounding.
-            if low >= floor || (i == 0 && !self.line.starved && valley.is_none()) {
+            let front = (low < floor).then(|| s.front(u, q, pb - floor, valley.unwrap_or(s.x)));
+            // The flux was made so that a film from the inlet begins there, but for rounding.
+            let inlet = i == 0 && !self.line.starved;
+            let Some((x, h)) = front.filter(|(x, _)| !(inlet && x - s.x <= 1e-9 * s.dx)) else {
                 self.film(&s, pa.max(floor), pb);
                 return pa.max(floor);
-            }
-            let from = valley.unwrap_or(s.x);
-            let (x, h) = s.front(u, q, pb - floor, from);
+            };
             self.film(&s.cut(x, h, true), floor, pb);
             self.line.fronts.push(FilmFront { x, film_before: false });
             s = s.cut(x, h, false);
-        } else if s.hb <= full {
-            let pa = floor - s.rise(u, q);
-            if s.hb == full || pa >= floor {
-                // A film ends at the node itself, or goes on through it.
-                if self.open {
-                    self.line.fronts.push(FilmFront { x: s.x + s.dx, film_before: true });
-                }
-                self.film(&s, pa.max(floor), floor);
-                return pa.max(floor);
+        } else if s.hb <= full && (s.ha <= full || s.hb < full) {
+            // A film ends at the node itself, or goes on through it.
+            if let Some(x) = s.place(full).filter(|_| s.ha > s.hb) {
+                // It is highest inside, and may begin there.
+                let behind = s.cut(x, full, true);
+                let high = floor - behind.rise(u, q);
+                self.film(&behind, high, floor);
+                return self.panel(i, &s.cut(x, full, false), high, floor, vented);
             }
+            let pa = (floor - s.rise(u, q)).max(floor);
+            self.film(&s, pa, floor);
+            return pa;
         }
         if s.dx <= 0.0 {
             return floor;
@@ -260,7 +264,6 @@ impl<'a> Sweep<'a> {
         match rupture.filter(|x| x - s.x > 1e-12 * s.dx) {
             Some(x) => {
                 self.void(&s.cut(x, full, true), floor, vented);
-                self.line.fronts.push(FilmFront { x, film_before: true });
                 let film = s.cut(x, full, false);
                 let pa = floor - film.rise(u, q);
                 self.film(&film, pa, floor);
@@ -277,12 +280,14 @@ impl<'a> Sweep<'a> {
         if s.dx <= 0.0 {
             return;
         }
-        self.open = false;
+        if std::mem::take(&mut self.open) {
+            self.line.fronts.push(FilmFront { x: s.x + s.dx, film_before: true });
+        }
         self.sums.film(s, self.u, self.q, (pa, pb), 0.0);
-        if let Some((x, p)) = self.crest(s, pa)
-            && p > self.highest.0
-        {
-            self.highest = (p, x);
+        for (x, p) in [Some((s.x, pa)), self.crest(s, pb)].into_iter().flatten() {
+            if p > self.highest.0 {
+                self.highest = (p, x);
+            }
         }
     }
 

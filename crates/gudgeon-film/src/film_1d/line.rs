@@ -565,7 +565,12 @@ impl Line {
         for i in 0..n {
             let (pa, pb) = (self.p[i], self.p[i + 1]);
             let s = self.stretch(i);
-            let full = if clip { pa >= 0.0 && pb >= 0.0 } else { self.film[i] };
+            // A bath at `p_cav` before a gap that widens makes no film.
+            let full = if clip {
+                pa >= 0.0 && pb >= 0.0
+            } else {
+                self.film[i] && (self.film[i + 1] || pa != 0.0 || pb != 0.0)
+            };
             if full {
                 // The flux of a changing gap is not constant: a parabola of pressure more.
                 let more = if squeezed { self.squeeze_bulge(i) } else { 0.0 };
