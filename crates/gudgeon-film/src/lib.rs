@@ -1,4 +1,4 @@
-//! Oil, film temperature and the film under a ring face.
+//! Oil, film temperature, the film under a ring face, and films along a line.
 
 mod closed_form_face;
 mod constant;

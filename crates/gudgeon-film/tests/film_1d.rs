@@ -442,6 +442,24 @@ fn ring_faces_under_the_other_conditions_converge() {
     }
 }
 
+#[test]
+fn a_roller_in_a_sea_of_oil() {
+    // h = h0 + x²/2R between -1000 and 1000 √(2Rh0). With H h0 the gap at the rupture, t² = H - 1 and t from the condition that
+    // the pressure is zero there (25 digits by mpmath), W h0/(μ U R) = 12 ∫ -t (1 + t² - H)/(1 + t²)³ dt = 3/H; 2 for half.
+    let (h0, radius, mu, u) = (1e-6, 0.01, 0.01, 3.0);
+    let l = f64::sqrt(2.0 * radius * h0);
+    let line = LineProfile::parabola(2000.0 * l, 0.5 / radius, 1000.0 * l, h0, 8000, true).expect("a line");
+    let b = Bench::new(line, mu, u, (0.0, 0.0));
+    let unit = mu * u * radius / h0;
+    // The inlet that is left out carries 12/(2·1000²), 2.5e-6 of the load.
+    let half = b.solve(&with(Cavitation::HalfSommerfeld)).out;
+    close("half-Sommerfeld", half.load / unit, 2.0, 1e-5);
+    let f = b.solve(&FrontTracking::default());
+    close("Reynolds", f.out.load / unit, 3.0 / 1.225748440967634044856629, 3e-6);
+    close("rupture", (f.fronts[0].x - 1000.0 * l) / l, 0.4751299200930562790572838, 1e-5);
+    close("flux", f.out.flux_in, 0.5 * u * h0 * 1.225748440967634044856629, 1e-6);
+}
+
 /// The slider with a pocket, 10 mm long, 1.05 to 1 µm, a pocket of 1 µm from 2 to 5 mm, 0.01 Pa s, 1 bar at both ends: U; W, q,
 /// moving shear, reformation. From an exact solution in 25 digits.
 const POCKET: [(f64, f64, f64, f64, Option<f64>); 5] = [

@@ -102,6 +102,9 @@ pub(super) struct Line {
     pub ha: Vec<f64>,
     pub hb: Vec<f64>,
     pub mu: Vec<f64>,
+    /// `1/dx`, and `μ/φ_p`.
+    per_dx: Vec<f64>,
+    thick: Vec<f64>,
     pub rough: Vec<PanelFactors>,
     /// Flux through a panel for a pressure difference of 1, and its inverse.
     pub g: Vec<f64>,
@@ -156,6 +159,10 @@ pub(super) struct Stretch {
     pub ha: f64,
     pub hb: f64,
     pub mu: f64,
+    /// `μ/φ_p`
+    pub thick: f64,
+    /// Slope of the gap.
+    pub slope: f64,
     pub rough: PanelFactors,
 }
 
@@ -172,12 +179,12 @@ impl Stretch {
         let i1 = dx * r * (1.0 + z * a);
         let i2 = dx * r * r * y;
         let uf = u * f.sliding_flow;
-        let k = 3.0 * self.mu * dx * dx / f.pressure_flow;
+        let k = 3.0 * self.thick * dx * dx;
         Bulge {
             load: k * t * r * r * (uf * (y - a) - 2.0 * q * r * y * y),
             moment: 0.125 * dx * dx * rise
                 - 0.5 * k * dx * r * r * (0.5 * uf * (y - 2.0 * a) - q * r * (a + z * y * y)),
-            gradient: 2.0 * self.mu / f.pressure_flow * (1.5 * uf * i1 - 3.0 * q * i2) * f.pressure_shear,
+            gradient: 3.0 * self.thick * (uf * i1 - 2.0 * q * i2) * f.pressure_shear,
             i1,
         }
     }
@@ -221,14 +228,14 @@ impl Stretch {
     /// Rise of pressure over it under full film.
     pub fn rise(&self, u: f64, q: f64) -> f64 {
         let r = 1.0 / (self.ha * self.hb);
-        let k = 6.0 * self.mu * self.dx * r / self.rough.pressure_flow;
+        let k = 6.0 * self.thick * self.dx * r;
         k * (u * self.rough.sliding_flow - q * (self.ha + self.hb) * r)
     }
 
     /// Fall of pressure over it for a flux of 1.
     pub fn resistance(&self) -> f64 {
         let r = 1.0 / (self.ha * self.hb);
-        6.0 * self.mu * self.dx * (self.ha + self.hb) * r * r / self.rough.pressure_flow
+        6.0 * self.thick * self.dx * (self.ha + self.hb) * r * r
     }
 
     /// Where the gap is `h`, when that is inside.
@@ -240,9 +247,8 @@ impl Stretch {
     /// Where the pressure, `p` at the end, has come down to nothing, not before `lo`; and the gap there.
     pub fn front(&self, u: f64, q: f64, p: f64, mut lo: f64) -> (f64, f64) {
         let end = self.x + self.dx;
-        let slope = (self.hb - self.ha) / self.dx;
-        let gap = |x: f64| self.hb - slope * (end - x);
-        let k = 12.0 * self.mu / self.rough.pressure_flow;
+        let gap = |x: f64| self.hb - self.slope * (end - x);
+        let k = 12.0 * self.thick;
         let uf = u * self.rough.sliding_flow;
         let (mut hi, mut x) = (end, end);
         for _ in 0..200 {
@@ -284,7 +290,7 @@ impl Sums {
         let part = 0.5 * s.dx * (pa + pb) + b.load + more;
         self.load += part;
         self.moment += b.moment + (s.x + 0.5 * s.dx) * part;
-        self.slope -= part * ((s.hb - s.ha) / s.dx);
+        self.slope -= part * s.slope;
         self.couette += s.mu * u * b.i1 * s.rough.sliding_shear;
         self.gradient += b.gradient;
     }
@@ -324,6 +330,8 @@ impl Line {
             ha: panels(),
             hb: panels(),
             mu: panels(),
+            per_dx: ctx.x.windows(2).map(|w| 1.0 / (w[1] - w[0])).collect(),
+            thick: panels(),
             rough: vec![PanelFactors::SMOOTH; n],
             g: panels(),
             d: panels(),
@@ -391,6 +399,7 @@ impl Line {
                 self.x.copy_from_slice(&self.nodes);
             }
             self.dx.iter_mut().zip(self.x.windows(2)).for_each(|(d, w)| *d = w[1] - w[0]);
+            self.per_dx.iter_mut().zip(&self.dx).for_each(|(r, d)| *r = 1.0 / d);
         }
         self.u = inp.u.abs();
         self.p_cav = inp.p_cav;
@@ -506,9 +515,11 @@ impl Line {
             d[i] = resistance / square;
             c[i] = self.u * product / sum;
         }
+        self.thick.copy_from_slice(mu);
         if !self.smooth {
             for i in 0..n {
                 let f = &self.rough[i];
+                self.thick[i] /= f.pressure_flow;
                 g[i] *= f.pressure_flow;
                 d[i] /= f.pressure_flow;
                 c[i] *= f.sliding_flow;
@@ -551,6 +562,8 @@ impl Line {
             ha: self.ha[i],
             hb: self.hb[i],
             mu: self.mu[i],
+            thick: self.thick[i],
+            slope: (self.hb[i] - self.ha[i]) * self.per_dx[i],
             rough: self.rough[i],
         }
     }
@@ -604,7 +617,7 @@ impl Line {
         };
         let v = 0.5 * (self.rate[i] / width(i) + self.rate[i + 1] / width(i + 1));
         let slender = 2.0 * self.dx[i] / (self.ha[i] + self.hb[i]);
-        -self.mu[i] * v * slender * slender * slender / self.rough[i].pressure_flow
+        -self.thick[i] * v * slender * slender * slender
     }
 
     /// Adds panel `i`, which has no film or one behind a front.
@@ -652,7 +665,7 @@ impl Line {
             Shear::None | Shear::Streamers => part * i1,
         };
         sums.void(s, self.u, 0.0, wet);
-        let slope = (s.hb - s.ha) / s.dx;
+        let slope = s.slope;
         sums.load += load;
         sums.moment += load * (x + inwards * length / 3.0);
         sums.slope -= load * slope;

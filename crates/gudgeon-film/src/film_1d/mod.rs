@@ -1,4 +1,7 @@
-//! Films along a line.
+//! Films along a line: the Reynolds equation in one dimension, on any profile ([`LineProfile`]) given by its panels.
+//!
+//! [`Complementarity`] solves on nodes, steady or in time; [`FrontTracking`] finds the steady film with its fronts where they are;
+//! [`ElrodAdams`] is kept for comparison. [`ViscosityLoop`] goes around any of them when viscosity depends on pressure or shear.
 
 mod complementarity;
 mod elrod_adams;
