@@ -1409,3 +1409,47 @@ fn tracked_fronts_do_not_depend_on_how_any_straight_pieces_are_divided() {
     }
     assert!(cavities > 800, "{cavities} ruptures");
 }
+
+#[test]
+fn a_starved_inlet_empties_in_time_and_keeps_the_ledger() {
+    let flooded = Bench::new(barrel(2e-6, 100, false), 0.01, 10.0, (1e5, 1e5));
+    let needed = flooded.solve(&mass_conserving()).out.flux_in / 10.0;
+    // At 0.6 nothing touches the face.
+    for (h_oil, back) in
+        [(0.9 * needed, false), (0.9 * needed, true), (0.6 * needed, false), (2.0 * needed, false)]
+    {
+        let starved = FilmEnd::Starved { p: 1e5, h_oil };
+        let b = if back {
+            Bench { u: -10.0, ends: [bath(1e5), starved], ..flooded.clone() }
+        } else {
+            Bench { ends: [starved, bath(1e5)], ..flooded.clone() }
+        };
+        let steady = b.solve(&mass_conserving()).out;
+        for spec in [mass_conserving(), fischer_burmeister()] {
+            let mut film = b.build(&spec);
+            let mut content = vec![0.0; 101];
+            film.full_content(&b.line.h_a, &b.line.h_b, &mut content);
+            // 1.2 mm at 5 m/s take 0.24 ms; 8 ms follow.
+            let mut last = Film1dOut::default();
+            for _ in 0..400 {
+                let f = b.run(&mut *film, FilmTime::Step { dt: 2e-5, content: &content }).expect("a film");
+                let now = film.field().content.to_vec();
+                let change: f64 = now.iter().sum::<f64>() - content.iter().sum::<f64>();
+                let through = 2e-5 * (f.out.flux_in - f.out.flux_out);
+                assert!(
+                    (change - through).abs() < 1e-12 * now.iter().sum::<f64>(),
+                    "{change:e}, {through:e}"
+                );
+                if f.out.starved {
+                    let arrives = if back { -f.out.flux_out } else { f.out.flux_in };
+                    close("what arrives", arrives, 10.0 * h_oil, 1e-9);
+                }
+                content = now;
+                last = f.out;
+            }
+            assert_eq!(last.starved, h_oil < needed);
+            close("load at rest", last.load, steady.load, 1e-9);
+            close("shear at rest", last.moving_shear + 1e-12, steady.moving_shear + 1e-12, 1e-9);
+        }
+    }
+}

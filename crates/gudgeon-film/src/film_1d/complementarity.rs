@@ -54,7 +54,7 @@ pub enum LineSolver {
 gudgeon_core::register_model! {
     Complementarity, kind: "film_1d", name: "complementarity",
     summary: "mass-conserving film along a line: pressure or void at each node, steady without iteration",
-    equations: "q_i = c_i theta_i + g_i (p_i - p_(i+1)),  1/g = 12 mu/phi_p int dx/h^3,  c g = u phi_s/2 int dx/h^2 / (12 mu/phi_p);  \
+    equations: "q_i = c_i theta_i + g_i (p_i - p_(i+1)),  1/g = 12 mu/phi_p int dx/h^3,  c = u phi_s/2 int dx/h^2 / int dx/h^3;  \
                 d(V theta)/dt = q_(i-1) - q_i;  p - p_cav >= 0, 1 - theta >= 0, (p - p_cav)(1 - theta) = 0;  \
                 steady: q = min_k (p_0 - p_k + sum c/g)/(sum 1/g), p_i = max(0, p_(i+1) + (q - c_i)/g_i);  \
                 swift_stieber: p = p_cav from the rupture to the trailing end;  half_sommerfeld: max(p, p_cav);  \

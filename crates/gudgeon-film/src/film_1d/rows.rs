@@ -102,24 +102,17 @@ impl Rows {
                 line.starved = true;
                 self.first = 0;
                 self.b[0] += supply;
-                // The gas reaches as far as the first node with its pressure, and pushes that back no further than there.
-                let mut lead = n;
-                loop {
-                    passes += self.find(line, solver, true)?;
-                    let at = self.p[..n].iter().position(|p| *p >= line.p_in);
-                    let at = at.unwrap_or(if line.p_out >= line.p_in { n } else { n + 1 });
-                    if line.lead == at || at > lead || line.p_in <= 0.0 {
-                        line.lead = at.min(n);
-                        break;
-                    }
-                    lead = at;
-                    line.lead = at;
-                    self.floor[..at.min(n)].fill(line.p_in);
-                    if at > n {
+                passes += self.find(line, solver, true)?;
+                if line.p_in > 0.0 {
+                    // Before the first node with the pressure of the gas there is gas; that only raises pressures, so that the
+                    // node keeps it out.
+                    line.lead = self.p[..n].iter().position(|p| *p >= line.p_in).unwrap_or(n);
+                    if line.lead == n {
                         // Nowhere sealed: the gas reaches the other end.
-                        self.p[n] = line.p_in;
-                        line.p_out = line.p_in;
+                        line.p_out = line.p_out.max(line.p_in);
                     }
+                    self.floor[..line.lead].fill(line.p_in);
+                    passes += self.find(line, solver, true)?;
                 }
             }
         }
