@@ -19,6 +19,10 @@ const MODELS: &[&str] = &[
     "cylinder_pressure/polytropic_burn",
     "cylinder_pressure/single_zone_wiebe",
     "cylinder_pressure/table",
+    "film_1d/complementarity",
+    "film_1d/elrod_adams",
+    "film_1d/front_tracking",
+    "film_1d/off",
     "film_temperature/given",
     "film_temperature/land_wall_mean",
     "film_temperature/liner_linear",
@@ -56,6 +60,7 @@ const MODELS: &[&str] = &[
 const SWITCHED_OFF: &[(&str, Option<&str>)] = &[
     ("contact", Some("off")),
     ("cylinder_pressure", Some("constant")),
+    ("film_1d", Some("off")),
     ("film_temperature", Some("given")),
     ("flank_damping", Some("off")),
     ("flank_friction", Some("off")),

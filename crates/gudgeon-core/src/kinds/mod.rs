@@ -5,6 +5,7 @@
 
 mod contact;
 mod cylinder_pressure;
+mod film_1d;
 mod film_temperature;
 mod flank_damping;
 mod flank_friction;
@@ -18,6 +19,7 @@ mod ring_motion;
 
 pub use contact::*;
 pub use cylinder_pressure::*;
+pub use film_1d::*;
 pub use film_temperature::*;
 pub use flank_damping::*;
 pub use flank_friction::*;
