@@ -1,4 +1,4 @@
-//! Oil, film temperature and the film under a ring face.
+//! Oil, film temperature, rough surfaces and the film under a ring face.
 
 mod closed_form_face;
 mod constant;
@@ -8,6 +8,7 @@ mod gridded_face;
 mod land_wall_mean;
 mod liner_linear;
 mod off;
+mod roughness;
 mod vogel;
 mod vogel_grade;
 
@@ -18,5 +19,6 @@ pub use gridded_face::GriddedFace;
 pub use land_wall_mean::LandWallMean;
 pub use liner_linear::LinerLinear;
 pub use off::Off;
+pub use roughness::off::Off as SmoothSurfaces;
 pub use vogel::Vogel;
 pub use vogel_grade::{Grade, VogelGrade, VogelTable};

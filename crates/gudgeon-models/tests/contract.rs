@@ -44,6 +44,7 @@ const MODELS: &[&str] = &[
     "ring_motion/newton_groove",
     "ring_motion/seated",
     "ring_motion/three_seat",
+    "roughness/off",
 ];
 
 /// How the physics of each kind is switched off: its `off` model, or the model that takes its place by giving the
@@ -59,6 +60,7 @@ const SWITCHED_OFF: &[(&str, Option<&str>)] = &[
     ("kinematics", None),
     ("oil", Some("constant")),
     ("ring_motion", Some("seated")),
+    ("roughness", Some("off")),
 ];
 
 fn path(m: &ModelInfo) -> String {

@@ -13,6 +13,7 @@ mod hydrodynamics;
 mod kinematics;
 mod oil;
 mod ring_motion;
+mod roughness;
 
 pub use contact::*;
 pub use cylinder_pressure::*;
@@ -24,3 +25,4 @@ pub use hydrodynamics::*;
 pub use kinematics::*;
 pub use oil::*;
 pub use ring_motion::*;
+pub use roughness::*;
