@@ -20,5 +20,7 @@ pub use land_wall_mean::LandWallMean;
 pub use liner_linear::LinerLinear;
 pub use off::Off;
 pub use roughness::off::Off as SmoothSurfaces;
+pub use roughness::patir_cheng::{PatirCheng, Pattern};
+pub use roughness::sawtooth_waviness::{SawtoothWaviness, WavinessTransport};
 pub use vogel::Vogel;
 pub use vogel_grade::{Grade, VogelGrade, VogelTable};

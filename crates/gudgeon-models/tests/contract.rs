@@ -45,6 +45,8 @@ const MODELS: &[&str] = &[
     "ring_motion/seated",
     "ring_motion/three_seat",
     "roughness/off",
+    "roughness/patir_cheng",
+    "roughness/sawtooth_waviness",
 ];
 
 /// How the physics of each kind is switched off: its `off` model, or the model that takes its place by giving the
