@@ -3,30 +3,21 @@
 use gudgeon_core::EvalError;
 use gudgeon_core::kinds::{RoughFlow, RoughShear};
 
+use crate::slices::check;
+
 mod gaussian_gap;
 pub mod off;
 pub mod patir_cheng;
 pub mod sawtooth_waviness;
 
-/// Whether separations are finite and every buffer has their number.
-fn check(model: &'static str, h: &[f64], lengths: &[usize]) -> Result<(), EvalError> {
-    if lengths.iter().any(|&n| n != h.len()) {
-        return Err(EvalError::fatal(model, format!("{} separations for buffers of {lengths:?}", h.len())));
-    }
-    match h.iter().find(|h| !h.is_finite()) {
-        Some(h) => Err(EvalError::recoverable(model, format!("the separation {h} m is not finite"))),
-        None => Ok(()),
-    }
-}
-
 fn check_flow(model: &'static str, h: &[f64], out: &RoughFlow) -> Result<(), EvalError> {
     let RoughFlow { film, phi_x, phi_y, transport, content, content_slope } = out;
-    check(model, h, &[film, phi_x, phi_y, transport, content, content_slope].map(Vec::len))
+    check(model, "separation [m]", h, &[film, phi_x, phi_y, transport, content, content_slope].map(Vec::len))
 }
 
 fn check_shear(model: &'static str, h: &[f64], out: &RoughShear) -> Result<(), EvalError> {
     let RoughShear { film, phi_f, phi_fs, phi_fp } = out;
-    check(model, h, &[film, phi_f, phi_fs, phi_fp].map(Vec::len))
+    check(model, "separation [m]", h, &[film, phi_f, phi_fs, phi_fp].map(Vec::len))
 }
 
 /// `x` above `floor + blend`, `floor` below `floor - blend`, a parabola with continuous slope between: never below `floor`.

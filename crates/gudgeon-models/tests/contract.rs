@@ -10,6 +10,8 @@ use serde_json::{Map, Value};
 
 /// Every built-in model. A model that is missing here was added without anyone noticing, or is no longer linked.
 const MODELS: &[&str] = &[
+    "compressibility/dowson_higginson",
+    "compressibility/off",
     "contact/film_floor",
     "contact/greenwood_tripp",
     "contact/off",
@@ -41,17 +43,24 @@ const MODELS: &[&str] = &[
     "oil/constant",
     "oil/vogel",
     "oil/vogel_grade",
+    "piezoviscosity/barus",
+    "piezoviscosity/off",
+    "piezoviscosity/roelands",
     "ring_motion/newton_groove",
     "ring_motion/seated",
     "ring_motion/three_seat",
     "roughness/off",
     "roughness/patir_cheng",
     "roughness/sawtooth_waviness",
+    "shear_thinning/carreau",
+    "shear_thinning/cross",
+    "shear_thinning/off",
 ];
 
 /// How the physics of each kind is switched off: its `off` model, or the model that takes its place by giving the
 /// answer instead of computing it. A piston always moves, so `kinematics` has none.
 const SWITCHED_OFF: &[(&str, Option<&str>)] = &[
+    ("compressibility", Some("off")),
     ("contact", Some("off")),
     ("cylinder_pressure", Some("constant")),
     ("film_temperature", Some("given")),
@@ -61,8 +70,10 @@ const SWITCHED_OFF: &[(&str, Option<&str>)] = &[
     ("hydrodynamics", Some("off")),
     ("kinematics", None),
     ("oil", Some("constant")),
+    ("piezoviscosity", Some("off")),
     ("ring_motion", Some("seated")),
     ("roughness", Some("off")),
+    ("shear_thinning", Some("off")),
 ];
 
 fn path(m: &ModelInfo) -> String {

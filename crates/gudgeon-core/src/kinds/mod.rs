@@ -3,6 +3,7 @@
 //! A runtime owns its work arrays, allocates only when built, answers a whole field or scene step per call, and says
 //! [`EvalError::Recoverable`](crate::EvalError::Recoverable) when it cannot answer.
 
+mod compressibility;
 mod contact;
 mod cylinder_pressure;
 mod film_temperature;
@@ -12,9 +13,12 @@ mod gas_flow;
 mod hydrodynamics;
 mod kinematics;
 mod oil;
+mod piezoviscosity;
 mod ring_motion;
 mod roughness;
+mod shear_thinning;
 
+pub use compressibility::*;
 pub use contact::*;
 pub use cylinder_pressure::*;
 pub use film_temperature::*;
@@ -24,5 +28,7 @@ pub use gas_flow::*;
 pub use hydrodynamics::*;
 pub use kinematics::*;
 pub use oil::*;
+pub use piezoviscosity::*;
 pub use ring_motion::*;
 pub use roughness::*;
+pub use shear_thinning::*;
