@@ -10,10 +10,15 @@ use serde_json::{Map, Value};
 
 /// Every built-in model. A model that is missing here was added without anyone noticing, or is no longer linked.
 const MODELS: &[&str] = &[
+    "boundary_friction/coulomb",
+    "boundary_friction/off",
+    "boundary_friction/stribeck",
     "compressibility/dowson_higginson",
     "compressibility/off",
+    "contact/crest_wedge",
     "contact/film_floor",
     "contact/greenwood_tripp",
+    "contact/linear_penalty",
     "contact/off",
     "contact/roughness_threshold",
     "cylinder_pressure/constant",
@@ -60,6 +65,7 @@ const MODELS: &[&str] = &[
 /// How the physics of each kind is switched off: its `off` model, or the model that takes its place by giving the
 /// answer instead of computing it. A piston always moves, so `kinematics` has none.
 const SWITCHED_OFF: &[(&str, Option<&str>)] = &[
+    ("boundary_friction", Some("off")),
     ("compressibility", Some("off")),
     ("contact", Some("off")),
     ("cylinder_pressure", Some("constant")),

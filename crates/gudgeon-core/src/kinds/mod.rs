@@ -3,6 +3,7 @@
 //! A runtime owns its work arrays, allocates only when built, answers a whole field or scene step per call, and says
 //! [`EvalError::Recoverable`](crate::EvalError::Recoverable) when it cannot answer.
 
+mod boundary_friction;
 mod compressibility;
 mod contact;
 mod cylinder_pressure;
@@ -18,6 +19,7 @@ mod ring_motion;
 mod roughness;
 mod shear_thinning;
 
+pub use boundary_friction::*;
 pub use compressibility::*;
 pub use contact::*;
 pub use cylinder_pressure::*;
