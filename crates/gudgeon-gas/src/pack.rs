@@ -36,8 +36,8 @@ pub enum Elimination {
 }
 
 /// Default of `eliminate_below`.
-pub(crate) fn one_microsecond() -> PosTime {
-    quantity(1e-6)
+pub(crate) fn ten_nanoseconds() -> PosTime {
+    quantity(1e-8)
 }
 
 impl Elimination {
