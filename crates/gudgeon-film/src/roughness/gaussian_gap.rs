@@ -75,10 +75,10 @@ impl GaussianGap {
         if u < 0.0 {
             return (0.0, 0.0);
         }
-        // A saturating cast: beyond the table no piece is found.
-        let i = u as usize;
-        self.pieces.get(i).map_or((gap, 1.0), |a| {
-            let x = (u - i as f64 - 0.5) / PER_UNIT;
+        // A saturating cast: beyond the table no piece is found. To 32 bits it is the cheapest one.
+        let i = u as u32;
+        self.pieces.get(i as usize).map_or((gap, 1.0), |a| {
+            let x = (u - f64::from(i) - 0.5) / PER_UNIT;
             let (mut value, mut slope) = (a[TERMS - 1], 0.0);
             for &c in a[..TERMS - 1].iter().rev() {
                 slope = slope * x + value;
