@@ -111,7 +111,7 @@ impl Pieces {
     fn at(&self, u: f64) -> f64 {
         // Added to a small number, it leaves that rounded to the nearest integer in the last bits of the sum.
         const ROUND: f64 = 6_755_399_441_055_744.0;
-        if u >= -0.5 && u < (FAR - DEEP) * PER_UNIT - 0.5 {
+        if (-0.5..(FAR - DEEP) * PER_UNIT - 0.5).contains(&u) {
             let rounded = u + ROUND;
             let i = rounded.to_bits() as u32 as usize;
             self.pieces.get(i).map_or(0.0, |a| polynomial(a, u - (rounded - ROUND)))

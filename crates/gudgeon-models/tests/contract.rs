@@ -51,6 +51,9 @@ const MODELS: &[&str] = &[
     "piezoviscosity/barus",
     "piezoviscosity/off",
     "piezoviscosity/roelands",
+    "rig/cylinder_pressure",
+    "rig/kinematics",
+    "rig/ring_face",
     "ring_motion/newton_groove",
     "ring_motion/seated",
     "ring_motion/three_seat",
@@ -63,7 +66,7 @@ const MODELS: &[&str] = &[
 ];
 
 /// How the physics of each kind is switched off: its `off` model, or the model that takes its place by giving the
-/// answer instead of computing it. A piston always moves, so `kinematics` has none.
+/// answer instead of computing it. A piston always moves, so `kinematics` has none; a bench without a model is none.
 const SWITCHED_OFF: &[(&str, Option<&str>)] = &[
     ("boundary_friction", Some("off")),
     ("compressibility", Some("off")),
@@ -77,6 +80,7 @@ const SWITCHED_OFF: &[(&str, Option<&str>)] = &[
     ("kinematics", None),
     ("oil", Some("constant")),
     ("piezoviscosity", Some("off")),
+    ("rig", None),
     ("ring_motion", Some("seated")),
     ("roughness", Some("off")),
     ("shear_thinning", Some("off")),
