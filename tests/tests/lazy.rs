@@ -105,10 +105,13 @@ fn spaces_that_store_nothing_are_not_integrated() {
     let less = run_case("turbo-diesel-120", &set);
     let states = |r: &gudgeon_core::result::RunResult| r.solver.counters["states"];
     assert!(states(&less) < states(&full), "{} {}", states(&less), states(&full));
-    // The pressure between the flanks follows without a state of its own.
-    let (p, q) = (peak(&full, "ring1.back.p", 0.0, 720.0).0, peak(&less, "ring1.back.p", 0.0, 720.0).0);
-    println!("{p} {q} {} {}", value(&full, "blow_by"), value(&less, "blow_by"));
-    println!("{:?} {:?}", full.balance, less.balance);
+    // Behind the top ring the pressure follows the land above it, with a state of its own or without: 4e-6 at the peak, where the
+    // space changes little.
+    let top = |r: &gudgeon_core::result::RunResult| peak(r, "ring1.back.p", 0.0, 720.0).0;
+    assert!((top(&less) / top(&full) - 1.0).abs() < 1e-4, "{} {}", top(&less), top(&full));
+    // But these spaces are no small ones: what they store is some tenth of the blow-by.
+    let change = value(&less, "blow_by") / value(&full, "blow_by") - 1.0;
+    assert!(change > 0.02 && change < 0.3, "{change}");
     // Gas in less gas out less gas stored is rounding, as with all spaces.
     assert!(less.balance.gas_mass.is_some_and(|b| b.abs() < 1e-10), "{:?}", less.balance);
     // By default none of them is fast enough, and it is the same run to the last bit.
