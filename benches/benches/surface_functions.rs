@@ -76,13 +76,14 @@ fn asperities() -> Vec<Contender> {
         .collect()
 }
 
+/// A form of the flow function.
+type Psi = fn(&FlowFunction, f64) -> f64;
+
 fn orifices() -> Vec<Contender> {
     let f = FlowFunction::new(1.4).expect("the flow function builds");
     let u = spread();
-    let error = |psi: fn(&FlowFunction, f64) -> f64| {
-        worst(u.iter().filter(|u| **u > 0.0).map(|&u| (psi(&f, u), f.psi_exact(u))))
-    };
-    let forms: [(&str, fn(&FlowFunction, f64) -> f64); 3] = [
+    let error = |psi: Psi| worst(u.iter().filter(|u| **u > 0.0).map(|&u| (psi(&f, u), f.psi_exact(u))));
+    let forms: [(&str, Psi); 3] = [
         ("psi fast", FlowFunction::psi),
         ("psi laminar", |f, u| f.psi_laminar(u, 1e-3)),
         ("psi by ln and exp", FlowFunction::psi_exact),
