@@ -63,10 +63,14 @@ struct GasNet {
 
 impl GasNet {
     fn new() -> Self {
-        let law =
-            Orifice { discharge: quantity(1.0), law: OrificeFormula::Isentropic, laminar: quantity(1e-3) }
-                .build(1.33, R)
-                .expect("the orifice law builds");
+        let law = Orifice {
+            discharge: quantity(1.0),
+            law: OrificeFormula::Isentropic,
+            laminar: quantity(1e-3),
+            ..Orifice::default()
+        }
+        .build(1.33, R)
+        .expect("the orifice law builds");
         let ends = LINKS.map(|l| l.0);
         let mut net = Network::new(law, R, &[TEMPERATURE; N + 2], N, &ends).expect("the network builds");
         for (l, (_, area)) in LINKS.into_iter().enumerate() {

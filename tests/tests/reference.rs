@@ -66,8 +66,12 @@ struct Gas {
 
 impl Gas {
     fn new() -> Self {
-        let orifice =
-            Orifice { discharge: quantity(1.0), law: OrificeFormula::Isentropic, laminar: quantity(1e-3) };
+        let orifice = Orifice {
+            discharge: quantity(1.0),
+            law: OrificeFormula::Isentropic,
+            laminar: quantity(1e-3),
+            ..Orifice::default()
+        };
         let law = orifice.build(1.33, R).expect("a law");
         let links: Vec<_> = LINKS.iter().map(|l| (l.0, l.1)).collect();
         let mut net = Network::new(law, R, &[T; 7], 5, &links).expect("a network");

@@ -126,8 +126,14 @@ dimensions! {
     Stiffness, Stiffness, PosStiffness, "a stiffness", [("N/m", 1.0, 0.0), ("N/mm", 1e3, 0.0), ("N/um", 1e6, 0.0)];
     /// Force per area and velocity \[N s/m³\].
     AreaDamping, AreaDamping, PosAreaDamping, "a damping per area", [("N s/m3", 1.0, 0.0), ("N/(m2 m/s)", 1.0, 0.0)];
+    /// Pressure per approach \[N/m³\].
+    AreaStiffness, AreaStiffness, PosAreaStiffness, "a stiffness per area", [("N/m3", 1.0, 0.0), ("Pa/m", 1.0, 0.0), ("MPa/um", 1e12, 0.0)];
     /// Surface density \[1/m²\].
     SurfaceDensity, SurfaceDensity, PosSurfaceDensity, "a surface density", [("1/m2", 1.0, 0.0), ("1/mm2", 1e6, 0.0)];
+    /// Relative change per pressure \[1/Pa\].
+    PressureCoefficient, PressureCoefficient, PosPressureCoefficient, "a pressure coefficient", [("1/Pa", 1.0, 0.0), ("1/MPa", 1e-6, 0.0), ("1/GPa", 1e-9, 0.0)];
+    /// Shear rate \[1/s\].
+    ShearRate, ShearRate, PosShearRate, "a shear rate", [("1/s", 1.0, 0.0)];
     /// Dimensionless number.
     Ratio, Ratio, PosRatio, "a number", [("", 1.0, 0.0), ("%", 1e-2, 0.0)];
 }

@@ -77,7 +77,6 @@ impl Default for GapOrifice {
 
 impl GapOrifice {
     fn pack(&self, pack: &PackGeometry) -> Result<Pack<Areas>, BuildError> {
-        let law = self.orifice.build(pack.gamma, pack.gas_constant).map_err(|e| e.within("orifice"))?;
         let merge = (self.back_volumes == BackVolumes::Merged).then(|| self.merge_time.si());
         let areas = Areas {
             circumference: 2.0 * PI * pack.bore_radius,
@@ -87,7 +86,7 @@ impl GapOrifice {
                 .map(|r| merge.map_or(0.0, |tau| 1.0 / (pack.gas_constant * r.back_temperature * tau)))
                 .collect(),
         };
-        Pack::new(areas, pack, law, Some(0.0), DEFAULT_CHAMFER_FADE)
+        Pack::new(areas, pack, &self.orifice, Some(0.0), DEFAULT_CHAMFER_FADE, None)
     }
 }
 
@@ -107,7 +106,7 @@ gudgeon_core::register_model! {
                 A_gap given or gap x land clearance;  A_upper = pi D c (1 - e);  A_lower = pi D c e",
     validity: "Needs no film. Leaves out leaks past face and seated flanks, so it is a lower bound: models of this kind compute 2 to 6 times \
                less blow-by than is measured. Near the speed where rings start to float it has two periodic solutions.",
-    references: ["tomanik1993", "furuhama1961"],
+    references: ["tomanik1993", "furuhama1961", "smith1999"],
     example: "back_volumes = \"separate\"\n",
 }
 

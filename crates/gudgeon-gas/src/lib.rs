@@ -13,6 +13,7 @@
 //! The gas in each volume is at the temperature of its walls, so its state is its mass alone.
 
 mod gap_orifice;
+mod heat_capacity;
 mod narrow_channel;
 mod network;
 mod orifice;
@@ -21,9 +22,10 @@ mod pack;
 mod prescribed;
 
 pub use gap_orifice::{BackVolumes, GapOrifice};
-pub use narrow_channel::{GasViscosity, NarrowChannel};
-pub use network::{Network, Passage, channel_conductance, sutherland_viscosity};
+pub use heat_capacity::Gamma;
+pub use narrow_channel::{ChannelFriction, GasViscosity, NarrowChannel};
+pub use network::{Network, Passage, TRANSITION, channel_conductance, sutherland_viscosity};
 pub use orifice::{FlowFunction, FlowSlopes, Orifice, OrificeFormula, OrificeLaw, Side, critical_ratio};
 pub use orifice_network::OrificeNetwork;
-pub use pack::FilmHeight;
+pub use pack::{Elimination, FilmHeight};
 pub use prescribed::Prescribed;

@@ -5,14 +5,14 @@ use std::f64::consts::{PI, TAU};
 use gudgeon_core::BuildError;
 use gudgeon_core::geometry::{BackVolume, PackGeometry, RingGeometry};
 use gudgeon_core::kinds::{GasFlow, GasFlowCtx, GasFlowSpec};
-use gudgeon_core::quantity::{Length, NonNegative, PosViscosity, quantity};
+use gudgeon_core::quantity::{Length, NonNegative, PosTime, PosViscosity, quantity};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::network::{Passage, channel_conductance, sutherland_viscosity};
 use crate::orifice::Orifice;
 use crate::orifice_network::{DEFAULT_CHAMFER_FADE, nominal};
-use crate::pack::{FilmHeight, Openings, Pack, Passages, RingPassages};
+use crate::pack::{Elimination, FilmHeight, Openings, Pack, Passages, RingPassages};
 
 /// How viscous the gas is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
@@ -23,6 +23,18 @@ pub enum GasViscosity {
     Sutherland,
     /// The constant `viscosity`.
     Constant,
+}
+
+/// Friction in a narrow channel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ChannelFriction {
+    /// Laminar, whatever the Reynolds number.
+    #[default]
+    Laminar,
+    /// Laminar below a Reynolds number of about 2000 (of twice the height), with Blasius' turbulent friction factor above, and a
+    /// smooth passage between.
+    Blended,
 }
 
 /// Flank clearances and face leak as compressible laminar channels, end gaps as orifices.
@@ -62,6 +74,17 @@ pub struct NarrowChannel {
     /// Film thickness for `film_height = "nominal"`.
     #[serde(default = "default_film")]
     pub nominal_film: Length<NonNegative>,
+    /// Friction in the channels: laminar whatever the Reynolds number, or turbulent above the transition.
+    #[serde(default)]
+    pub friction: ChannelFriction,
+    /// Whether spaces behind rings that fill in less than `eliminate_below` are left out of the integration.
+    #[serde(default)]
+    pub eliminate: Elimination,
+    /// Filling time for `eliminate = "auto"`, at a pressure difference of a tenth. What a space stores is left out, so the limit is
+    /// much shorter than the time that accuracy asks of the pressures: spaces that fill in the default 10 ns change the blow-by of a
+    /// ring that floats between its flanks by a few millionths.
+    #[serde(default = "crate::pack::ten_nanoseconds")]
+    pub eliminate_below: PosTime,
 }
 
 fn default_viscosity() -> PosViscosity {
@@ -79,20 +102,26 @@ impl Default for NarrowChannel {
             viscosity: default_viscosity(),
             film_height: FilmHeight::default(),
             nominal_film: default_film(),
+            friction: ChannelFriction::default(),
+            eliminate: Elimination::default(),
+            eliminate_below: crate::pack::ten_nanoseconds(),
         }
     }
 }
 
 impl NarrowChannel {
     fn pack(&self, pack: &PackGeometry) -> Result<Pack<Channels>, BuildError> {
-        let law = self.orifice.build(pack.gamma, pack.gas_constant).map_err(|e| e.within("orifice"))?;
-        let conductance = |perimeter: f64, length: f64, t_a: f64, t_b: f64| {
+        let channel = |perimeter: f64, length: f64, t_a: f64, t_b: f64| {
             let t = 0.5 * (t_a + t_b);
             let mu = match self.gas_viscosity {
                 GasViscosity::Sutherland => sutherland_viscosity(t),
                 GasViscosity::Constant => self.viscosity.si(),
             };
-            channel_conductance(perimeter, 1.0, length, mu, pack.gas_constant * t)
+            Channel {
+                perimeter,
+                conductance: channel_conductance(perimeter, 1.0, length, mu, pack.gas_constant * t),
+                unit_flow: 0.5 * perimeter * mu,
+            }
         };
         let mut per_ring = Vec::with_capacity(pack.rings.len());
         for (i, ring) in pack.rings.iter().enumerate() {
@@ -110,10 +139,10 @@ impl NarrowChannel {
                 BackVolume::Drained | BackVolume::Sealed => below.temperature,
             };
             let (upper, lower) = (TAU * ring.piston_radius_above, TAU * ring.piston_radius_below);
-            per_ring.push(RingConductances {
-                upper: conductance(upper, ring.width, above.temperature, behind),
-                lower: conductance(lower, ring.width, behind, below.temperature),
-                face: conductance(
+            per_ring.push(RingChannels {
+                upper: channel(upper, ring.width, above.temperature, behind),
+                lower: channel(lower, ring.width, behind, below.temperature),
+                face: channel(
                     2.0 * PI * pack.bore_radius,
                     ring.face.length(),
                     above.temperature,
@@ -122,8 +151,9 @@ impl NarrowChannel {
             });
         }
         let film = nominal(self.film_height, self.nominal_film);
-        let bore_circumference = 2.0 * PI * pack.bore_radius;
-        Pack::new(Channels { per_ring, bore_circumference }, pack, law, film, DEFAULT_CHAMFER_FADE)
+        let eliminate = self.eliminate.below(self.eliminate_below);
+        let channels = Channels { per_ring, blended: self.friction == ChannelFriction::Blended };
+        Pack::new(channels, pack, &self.orifice, film, DEFAULT_CHAMFER_FADE, eliminate)
     }
 }
 
@@ -140,24 +170,35 @@ gudgeon_core::register_model! {
     name: "narrow_channel",
     summary: "flanks and face as compressible laminar channels, end gaps as orifices",
     equations: "dm_i/dt = sum of flows;  p_i = m_i R T_i / V_i;  gap: m' = C_d A p_u / sqrt(R T_u) psi(p_d/p_u);  \
-                channel: m' = 2 pi R H^3 (p_a^2 - p_b^2) / (24 mu R_g T w), limited by the orifice of area 2 pi R H",
-    validity: "Laminar, isothermal, inertia-free flow in the channels, which holds up to heights of about 10 to 20 um; wider passages pass over \
-               to the orifice law. Flanks parallel, dry.",
-    references: ["tian1996", "kuo1989", "sutherland1893", "furuhama1961"],
+                channel: m' = 2 pi R H^3 (p_a^2 - p_b^2) / (24 mu R_g T w), limited by the orifice of area 2 pi R H;  \
+                blended friction: times [1 + (Re/2039)^3]^(-1/7), Re = m'/(pi R mu)",
+    validity: "Isothermal, inertia-free flow in the channels, laminar unless `friction` says otherwise, which holds up to heights of about 10 to \
+               20 um; wider passages pass over to the orifice law. Flanks parallel, dry.",
+    references: ["tian1996", "kuo1989", "sutherland1893", "furuhama1961", "blasius1913", "smith1999"],
     example: "gas_viscosity = \"sutherland\"\n",
 }
 
-/// Channel conductances of one ring for a height of 1 m.
+/// One passage but for its height.
 #[derive(Debug, Clone, Copy)]
-struct RingConductances {
-    upper: f64,
-    lower: f64,
-    face: f64,
+struct Channel {
+    perimeter: f64,
+    /// Conductance for a height of 1 m.
+    conductance: f64,
+    /// Flow at a Reynolds number of one.
+    unit_flow: f64,
+}
+
+/// The channels of one ring.
+#[derive(Debug, Clone, Copy)]
+struct RingChannels {
+    upper: Channel,
+    lower: Channel,
+    face: Channel,
 }
 
 struct Channels {
-    per_ring: Vec<RingConductances>,
-    bore_circumference: f64,
+    per_ring: Vec<RingChannels>,
+    blended: bool,
 }
 
 impl Passages for Channels {
@@ -166,29 +207,26 @@ impl Passages for Channels {
 
     fn passages(&self, i: usize, ring: &RingGeometry, o: &Openings) -> RingPassages {
         let k = self.per_ring[i];
-        let channel = |unit: f64, perimeter: f64, height: f64| {
-            if height > 0.0 {
-                Passage::LimitedChannel {
-                    conductance: unit * height * height * height,
-                    area: perimeter * height,
-                }
-            } else {
+        let channel = |Channel { perimeter, conductance, unit_flow }: Channel, height: f64| {
+            let (conductance, area) = (conductance * height * height * height, perimeter * height);
+            if height <= 0.0 {
                 Passage::Closed
+            } else if self.blended {
+                Passage::BlendedChannel { conductance, area, unit_flow }
+            } else {
+                Passage::LimitedChannel { conductance, area }
             }
         };
         let (upper, lower) = if ring.back == BackVolume::Sealed {
             (Passage::Closed, Passage::Closed)
         } else {
-            (
-                channel(k.upper, TAU * ring.piston_radius_above, o.upper + ring.leak_upper),
-                channel(k.lower, TAU * ring.piston_radius_below, o.lower + ring.leak_lower),
-            )
+            (channel(k.upper, o.upper + ring.leak_upper), channel(k.lower, o.lower + ring.leak_lower))
         };
         RingPassages {
             upper,
             lower,
             gap: Passage::Orifice { area: o.gap },
-            face: channel(k.face, self.bore_circumference, ring.leak_face),
+            face: channel(k.face, ring.leak_face),
         }
     }
 

@@ -1,5 +1,6 @@
 //! Flow of a gas through a sharp opening: the one orifice law that every model of this crate uses.
 
+use crate::heat_capacity::Gamma;
 use gudgeon_core::BuildError;
 use gudgeon_core::quantity::{Bound as _, Fraction, NonNegative, PosRatio, Ratio, quantity};
 use schemars::JsonSchema;
@@ -33,6 +34,9 @@ pub struct Orifice {
     /// which suits only explicit schemes with fixed steps. Not used by `isentropic_truncated`.
     #[serde(default = "default_laminar")]
     pub laminar: Ratio<NonNegative>,
+    /// Ratio of specific heats in the law: the machine's constant one, or that of a gas at the temperature it comes with.
+    #[serde(default)]
+    pub gamma: Gamma,
 }
 
 fn default_discharge() -> PosRatio {
@@ -44,7 +48,12 @@ fn default_laminar() -> Ratio<NonNegative> {
 
 impl Default for Orifice {
     fn default() -> Self {
-        Self { discharge: default_discharge(), law: OrificeFormula::default(), laminar: default_laminar() }
+        Self {
+            discharge: default_discharge(),
+            law: OrificeFormula::default(),
+            laminar: default_laminar(),
+            gamma: Gamma::default(),
+        }
     }
 }
 
@@ -71,6 +80,21 @@ impl Orifice {
             laminar: self.laminar.si().max(f64::MIN_POSITIVE),
             truncated: self.law == OrificeFormula::IsentropicTruncated,
         })
+    }
+}
+
+impl Orifice {
+    /// One law per temperature \[K\], for gas that comes with it; none when the ratio of specific heats is constant.
+    pub(crate) fn laws(
+        &self,
+        temperatures: &[f64],
+        gamma: f64,
+        gas_constant: f64,
+    ) -> Result<Vec<OrificeLaw>, BuildError> {
+        if self.gamma == Gamma::Constant {
+            return Ok(Vec::new());
+        }
+        temperatures.iter().map(|&t| self.build(self.gamma.at(t, gamma), gas_constant)).collect()
     }
 }
 

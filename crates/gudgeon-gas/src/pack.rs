@@ -4,12 +4,13 @@ use std::f64::consts::{PI, TAU};
 
 use gudgeon_core::geometry::{BackVolume, PackGeometry, RingGeometry, RingPlace};
 use gudgeon_core::kinds::{GasFlow, GasIn, GasOut, GasSlopes};
+use gudgeon_core::quantity::{PosTime, quantity};
 use gudgeon_core::{BuildError, EvalError};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::network::{Network, Passage};
-use crate::orifice::OrificeLaw;
+use crate::network::{Network, Node, Passage, through};
+use crate::orifice::{Orifice, OrificeLaw};
 
 /// Which film thickness sets the passages and the volume behind a ring.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
@@ -20,6 +21,30 @@ pub enum FilmHeight {
     Instantaneous,
     /// The constant thickness `nominal_film`: the gas flow does not need the films.
     Nominal,
+}
+
+/// What becomes of spaces behind rings that fill much faster than anything else changes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Elimination {
+    /// Every space stores gas and is integrated.
+    #[default]
+    Never,
+    /// Spaces that fill in less than `eliminate_below` store nothing: what enters past one flank leaves past the other, and the
+    /// pressure between follows from that.
+    Auto,
+}
+
+/// Default of `eliminate_below`.
+pub(crate) fn ten_nanoseconds() -> PosTime {
+    quantity(1e-8)
+}
+
+impl Elimination {
+    /// Filling time \[s\] below which a space is left out.
+    pub(crate) fn below(self, limit: PosTime) -> Option<f64> {
+        (self == Self::Auto).then(|| limit.si())
+    }
 }
 
 /// The openings around one ring at an instant.
@@ -72,6 +97,8 @@ struct RingLinks {
     lower: Option<usize>,
     gap: usize,
     face: Option<usize>,
+    /// Whether the upper link goes on past the lower flank, through a space behind the ring that stores nothing.
+    through: bool,
     /// Node of the space behind the ring.
     back: Option<usize>,
     /// The pressure behind the ring is the mean of these two nodes': its own volume twice, the land below twice when it is drained
@@ -166,17 +193,62 @@ fn back_volume(ring: &RingGeometry, liner_radius: f64, film: f64) -> f64 {
     height * PI * (r_int * r_int - ring.root_radius * ring.root_radius)
 }
 
+/// Time \[s\] in which the space behind ring `i` fills when the pressures around differ by a tenth at 1 bar, at its longest over the
+/// positions of the ring: `V/(R T Σ ṁ/Δp)`.
+fn filling_time<M: Passages>(model: &M, pack: &PackGeometry, i: usize, law: &OrificeLaw, film: f64) -> f64 {
+    let ring = &pack.rings[i];
+    let volume = match ring.back {
+        BackVolume::Fixed(v) => v,
+        _ => back_volume(ring, pack.bore_radius, film),
+    };
+    let radial = (pack.bore_radius - ring.piston_radius_above - film).max(0.0);
+    let behind = ring.h_max(pack.bore_radius) - film;
+    let clearance = (ring.clearance_inner + (ring.slope_upper + ring.slope_lower) * behind).max(0.0);
+    let rt = pack.gas_constant * ring.back_temperature;
+    let [mut full, mut less] = [Node::at(rt); 2];
+    full.set(1e5, law.discharge());
+    less.set(0.9e5, law.discharge());
+    [0.0, 0.5, 1.0].into_iter().fold(0.0, |longest: f64, e| {
+        let passages = model.passages(
+            i,
+            ring,
+            &Openings {
+                h: film,
+                liner_radius: pack.bore_radius,
+                lower: e * clearance,
+                upper: (1.0 - e) * clearance,
+                e,
+                gap: ring.gap_area.unwrap_or(ring.gap * radial),
+                back_volume: volume,
+            },
+        );
+        let flow = through(law, passages.upper, &full, &less) + through(law, passages.lower, &full, &less);
+        longest.max(volume * 1e4 / (rt * flow))
+    })
+}
+
 impl<M: Passages> Pack<M> {
+    /// `eliminate`: filling time \[s\] below which a space behind a ring stores nothing.
     pub(crate) fn new(
         model: M,
         pack: &PackGeometry,
-        law: OrificeLaw,
+        orifice: &Orifice,
         nominal_film: Option<f64>,
         chamfer_fade: f64,
+        eliminate: Option<f64>,
     ) -> Result<Self, BuildError> {
-        check(pack, nominal_film.unwrap_or(0.0))?;
+        let film = nominal_film.unwrap_or(0.0);
+        check(pack, film)?;
+        let within = |e: BuildError| e.within("orifice");
+        let law = orifice.build(pack.gamma, pack.gas_constant).map_err(within)?;
         let n = pack.rings.len();
-        let has_back = |r: &RingGeometry| matches!(r.back, BackVolume::Geometric | BackVolume::Fixed(_));
+        let with_room = |r: &RingGeometry| matches!(r.back, BackVolume::Geometric | BackVolume::Fixed(_));
+        let fast: Vec<bool> = (0..n)
+            .map(|i| {
+                with_room(&pack.rings[i])
+                    && eliminate.is_some_and(|limit| filling_time(&model, pack, i, &law, film) < limit)
+            })
+            .collect();
         // Volumes from the top: behind ring 1, land 2, behind ring 2, ...; then chamber and crankcase.
         let mut temperatures = Vec::with_capacity(2 * n + 1);
         let mut backs = vec![None; n];
@@ -186,7 +258,7 @@ impl<M: Passages> Pack<M> {
                 lands[i] = temperatures.len();
                 temperatures.push(pack.lands[i].temperature);
             }
-            if has_back(ring) {
+            if with_room(ring) && !fast[i] {
                 backs[i] = Some(temperatures.len());
                 temperatures.push(ring.back_temperature);
             }
@@ -201,7 +273,7 @@ impl<M: Passages> Pack<M> {
             ends.push((a, b));
             ends.len() - 1
         };
-        let links = (0..n)
+        let links: Vec<_> = (0..n)
             .map(|i| {
                 let (above, below) = (lands[i], lands[i + 1]);
                 RingLinks {
@@ -210,6 +282,7 @@ impl<M: Passages> Pack<M> {
                         _ => Some(link(above, backs[i].unwrap_or(below))),
                     },
                     lower: backs[i].map(|b| link(b, below)),
+                    through: fast[i],
                     gap: link(above, below),
                     face: M::FACE.then(|| link(above, below)),
                     back: backs[i],
@@ -221,7 +294,14 @@ impl<M: Passages> Pack<M> {
                 }
             })
             .collect();
-        let net = Network::new(law, pack.gas_constant, &temperatures, volumes, &ends)?;
+        let own = orifice.laws(&temperatures, pack.gamma, pack.gas_constant).map_err(within)?;
+        let mut net = Network::new(law, pack.gas_constant, &temperatures, volumes, &ends)?;
+        net.set_laws(own);
+        for (i, link) in links.iter().enumerate() {
+            if let RingLinks { through: true, upper: Some(upper), .. } = link {
+                net.split_link(*upper, pack.gas_constant * pack.rings[i].back_temperature);
+            }
+        }
         Ok(Self { model, pack: pack.clone(), nominal_film, chamfer_fade, net, links, lands })
     }
 
@@ -315,7 +395,11 @@ impl<M: Passages> Pack<M> {
         let links = self.links[i];
         let p = self.model.passages(i, &self.pack.rings[i], &o);
         if let Some(l) = links.upper {
-            self.net.set_passage(l, p.upper);
+            if links.through {
+                self.net.set_passages(l, p.upper, p.lower);
+            } else {
+                self.net.set_passage(l, p.upper);
+            }
         }
         if let Some(l) = links.lower {
             self.net.set_passage(l, p.lower);
@@ -341,8 +425,13 @@ impl<M: Passages> Pack<M> {
             *p = self.net.pressure(node);
         }
         for (p, links) in out.p_back.iter_mut().zip(&self.links) {
-            let [a, b] = links.behind;
-            *p = 0.5 * (self.net.pressure(a) + self.net.pressure(b));
+            *p = match links.upper {
+                Some(upper) if links.through => self.net.middle_pressure(upper),
+                _ => {
+                    let [a, b] = links.behind;
+                    0.5 * (self.net.pressure(a) + self.net.pressure(b))
+                }
+            };
         }
     }
 
@@ -401,6 +490,12 @@ impl<M: Passages> GasFlow for Pack<M> {
 
     fn pressures(&mut self, inp: &GasIn<'_>, state: &[f64], out: &mut GasOut) -> Result<(), EvalError> {
         self.set_pressures(inp, state)?;
+        for (i, place) in inp.rings.iter().enumerate().take(self.links.len()) {
+            if let RingLinks { through: true, upper: Some(upper), .. } = self.links[i] {
+                self.set_passages(i, place)?;
+                self.net.update_flow(upper);
+            }
+        }
         self.tell_pressures(out);
         Ok(())
     }
@@ -438,8 +533,15 @@ impl<M: Passages> GasFlow for Pack<M> {
         }
         for (i, links) in self.links.iter().enumerate() {
             let columns = i * m..(i + 1) * m;
-            for node in links.behind {
-                add(&mut out.p_back[columns.clone()], node, 0.5);
+            let behind = match links.upper {
+                Some(upper) if links.through => {
+                    let [above, below] = self.net.middle_slope(upper);
+                    [(self.lands[i], above), (self.lands[i + 1], below)]
+                }
+                _ => links.behind.map(|node| (node, 0.5)),
+            };
+            for (node, weight) in behind {
+                add(&mut out.p_back[columns.clone()], node, weight);
             }
             let arriving = if links.back.is_some() { links.lower } else { links.upper };
             for (last, rows) in [(links.upper, &mut out.flow_in), (arriving, &mut out.flow_out)] {

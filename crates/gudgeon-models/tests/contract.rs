@@ -10,8 +10,15 @@ use serde_json::{Map, Value};
 
 /// Every built-in model. A model that is missing here was added without anyone noticing, or is no longer linked.
 const MODELS: &[&str] = &[
+    "boundary_friction/coulomb",
+    "boundary_friction/off",
+    "boundary_friction/stribeck",
+    "compressibility/dowson_higginson",
+    "compressibility/off",
+    "contact/crest_wedge",
     "contact/film_floor",
     "contact/greenwood_tripp",
+    "contact/linear_penalty",
     "contact/off",
     "contact/roughness_threshold",
     "cylinder_pressure/constant",
@@ -47,17 +54,28 @@ const MODELS: &[&str] = &[
     "oil/vogel_grade",
     "oil_transport/liner_film",
     "oil_transport/off",
+    "piezoviscosity/barus",
+    "piezoviscosity/off",
+    "piezoviscosity/roelands",
     "rig/cylinder_pressure",
     "rig/kinematics",
     "rig/ring_face",
     "ring_motion/newton_groove",
     "ring_motion/seated",
     "ring_motion/three_seat",
+    "roughness/off",
+    "roughness/patir_cheng",
+    "roughness/sawtooth_waviness",
+    "shear_thinning/carreau",
+    "shear_thinning/cross",
+    "shear_thinning/off",
 ];
 
 /// How the physics of each kind is switched off: its `off` model, or the model that takes its place by giving the
 /// answer instead of computing it. A piston always moves, so `kinematics` has none; a bench without a model is none.
 const SWITCHED_OFF: &[(&str, Option<&str>)] = &[
+    ("boundary_friction", Some("off")),
+    ("compressibility", Some("off")),
     ("contact", Some("off")),
     ("cylinder_pressure", Some("constant")),
     ("film_1d", Some("off")),
@@ -69,8 +87,11 @@ const SWITCHED_OFF: &[(&str, Option<&str>)] = &[
     ("kinematics", None),
     ("oil", Some("constant")),
     ("oil_transport", Some("off")),
+    ("piezoviscosity", Some("off")),
     ("rig", None),
     ("ring_motion", Some("seated")),
+    ("roughness", Some("off")),
+    ("shear_thinning", Some("off")),
 ];
 
 fn path(m: &ModelInfo) -> String {

@@ -3,6 +3,8 @@
 //! A runtime owns its work arrays, allocates only when built, answers a whole field or scene step per call, and says
 //! [`EvalError::Recoverable`](crate::EvalError::Recoverable) when it cannot answer.
 
+mod boundary_friction;
+mod compressibility;
 mod contact;
 mod cylinder_pressure;
 mod film_1d;
@@ -14,9 +16,14 @@ mod hydrodynamics;
 mod kinematics;
 mod oil;
 mod oil_transport;
+mod piezoviscosity;
 mod rig;
 mod ring_motion;
+mod roughness;
+mod shear_thinning;
 
+pub use boundary_friction::*;
+pub use compressibility::*;
 pub use contact::*;
 pub use cylinder_pressure::*;
 pub use film_1d::*;
@@ -28,5 +35,8 @@ pub use hydrodynamics::*;
 pub use kinematics::*;
 pub use oil::*;
 pub use oil_transport::*;
+pub use piezoviscosity::*;
 pub use rig::*;
 pub use ring_motion::*;
+pub use roughness::*;
+pub use shear_thinning::*;

@@ -1,0 +1,46 @@
+use gudgeon_core::kinds::{BoundaryFriction, BoundaryFrictionSpec};
+use gudgeon_core::{BuildError, EvalError};
+use serde::{Deserialize, Serialize};
+
+use crate::check;
+
+/// Solid contact without friction.
+#[derive(Debug, Clone, Default, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Off {}
+
+gudgeon_core::register_model! {
+    Off, kind: "boundary_friction", name: "off",
+    summary: "solid contact without friction",
+    equations: "mu = 0",
+    validity: "Comparisons.",
+    references: [],
+    example: "",
+}
+
+#[typetag::serde(name = "off")]
+impl BoundaryFrictionSpec for Off {
+    fn build(&self) -> Result<Box<dyn BoundaryFriction>, BuildError> {
+        Ok(Box::new(Frictionless))
+    }
+}
+
+#[derive(Debug)]
+struct Frictionless;
+
+impl BoundaryFriction for Frictionless {
+    fn is_off(&self) -> bool {
+        true
+    }
+    fn coefficient(
+        &self,
+        speed: &[f64],
+        coefficient: &mut [f64],
+        slope: &mut [f64],
+    ) -> Result<(), EvalError> {
+        check("boundary_friction off", speed, &[coefficient.len(), slope.len()])?;
+        coefficient.fill(0.0);
+        slope.fill(0.0);
+        Ok(())
+    }
+}

@@ -1,0 +1,56 @@
+use gudgeon_core::kinds::{Compressibility, CompressibilitySpec};
+use gudgeon_core::{BuildError, EvalError};
+use serde::{Deserialize, Serialize};
+
+use crate::slices::check;
+
+/// Density does not depend on pressure.
+#[derive(Debug, Clone, Default, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Off {}
+
+gudgeon_core::register_model! {
+    Off, kind: "compressibility", name: "off",
+    summary: "density does not depend on pressure",
+    equations: "rho = rho0",
+    validity: "Film pressures below about 50 MPa, where oil is 3 % denser.",
+    references: [],
+    example: "",
+}
+
+#[typetag::serde(name = "off")]
+impl CompressibilitySpec for Off {
+    fn build(&self) -> Result<Box<dyn Compressibility>, BuildError> {
+        Ok(Box::new(Incompressible))
+    }
+}
+
+#[derive(Debug)]
+struct Incompressible;
+
+impl Compressibility for Incompressible {
+    fn is_off(&self) -> bool {
+        true
+    }
+    fn factor(&self, pressure: &[f64], factor: &mut [f64], slope: &mut [f64]) -> Result<(), EvalError> {
+        check("compressibility off", "pressure [Pa]", pressure, &[factor.len(), slope.len()])?;
+        factor.fill(1.0);
+        slope.fill(0.0);
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_changes() {
+        let (mut f, mut s) = ([0.0; 2], [1.0; 2]);
+        let model = Off {}.build().expect("builds");
+        model.factor(&[0.0, 1e9], &mut f, &mut s).expect("finite");
+        assert_eq!((f, s, model.is_off()), ([1.0; 2], [0.0; 2], true));
+        assert!(model.factor(&[f64::NAN; 2], &mut f, &mut s).is_err_and(|e| e.is_recoverable()));
+        assert!(model.factor(&[0.0], &mut f, &mut s).is_err_and(|e| !e.is_recoverable()));
+    }
+}

@@ -1,0 +1,62 @@
+use gudgeon_core::kinds::{Piezoviscosity, PiezoviscositySpec};
+use gudgeon_core::{BuildError, EvalError};
+use serde::{Deserialize, Serialize};
+
+use crate::slices::check;
+
+/// Viscosity does not depend on pressure.
+#[derive(Debug, Clone, Default, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Off {}
+
+gudgeon_core::register_model! {
+    Off, kind: "piezoviscosity", name: "off",
+    summary: "viscosity does not depend on pressure",
+    equations: "mu = mu0",
+    validity: "Film pressures below about 10 MPa.",
+    references: [],
+    example: "",
+}
+
+#[typetag::serde(name = "off")]
+impl PiezoviscositySpec for Off {
+    fn build(&self) -> Result<Box<dyn Piezoviscosity>, BuildError> {
+        Ok(Box::new(Isoviscous))
+    }
+}
+
+#[derive(Debug)]
+struct Isoviscous;
+
+impl Piezoviscosity for Isoviscous {
+    fn is_off(&self) -> bool {
+        true
+    }
+    fn factor(
+        &self,
+        _: f64,
+        pressure: &[f64],
+        factor: &mut [f64],
+        slope: &mut [f64],
+    ) -> Result<(), EvalError> {
+        check("piezoviscosity off", "pressure [Pa]", pressure, &[factor.len(), slope.len()])?;
+        factor.fill(1.0);
+        slope.fill(0.0);
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_changes() {
+        let (mut f, mut s) = ([0.0; 2], [1.0; 2]);
+        let model = Off {}.build().expect("builds");
+        model.factor(0.01, &[0.0, 1e9], &mut f, &mut s).expect("finite");
+        assert_eq!((f, s, model.is_off()), ([1.0; 2], [0.0; 2], true));
+        assert!(model.factor(0.01, &[f64::NAN; 2], &mut f, &mut s).is_err_and(|e| e.is_recoverable()));
+        assert!(model.factor(0.01, &[0.0], &mut f, &mut s).is_err_and(|e| !e.is_recoverable()));
+    }
+}

@@ -1,0 +1,56 @@
+use gudgeon_core::kinds::{ShearThinning, ShearThinningSpec};
+use gudgeon_core::{BuildError, EvalError};
+use serde::{Deserialize, Serialize};
+
+use crate::slices::check;
+
+/// Viscosity does not depend on shear rate.
+#[derive(Debug, Clone, Default, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Off {}
+
+gudgeon_core::register_model! {
+    Off, kind: "shear_thinning", name: "off",
+    summary: "viscosity does not depend on shear rate",
+    equations: "mu = mu0",
+    validity: "Oils without polymers, or shear rates below about 1e5 1/s.",
+    references: [],
+    example: "",
+}
+
+#[typetag::serde(name = "off")]
+impl ShearThinningSpec for Off {
+    fn build(&self) -> Result<Box<dyn ShearThinning>, BuildError> {
+        Ok(Box::new(Newtonian))
+    }
+}
+
+#[derive(Debug)]
+struct Newtonian;
+
+impl ShearThinning for Newtonian {
+    fn is_off(&self) -> bool {
+        true
+    }
+    fn factor(&self, shear_rate: &[f64], factor: &mut [f64], slope: &mut [f64]) -> Result<(), EvalError> {
+        check("shear_thinning off", "shear rate [1/s]", shear_rate, &[factor.len(), slope.len()])?;
+        factor.fill(1.0);
+        slope.fill(0.0);
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_changes() {
+        let (mut f, mut s) = ([0.0; 2], [1.0; 2]);
+        let model = Off {}.build().expect("builds");
+        model.factor(&[0.0, 1e9], &mut f, &mut s).expect("finite");
+        assert_eq!((f, s, model.is_off()), ([1.0; 2], [0.0; 2], true));
+        assert!(model.factor(&[f64::NAN; 2], &mut f, &mut s).is_err_and(|e| e.is_recoverable()));
+        assert!(model.factor(&[0.0], &mut f, &mut s).is_err_and(|e| !e.is_recoverable()));
+    }
+}
