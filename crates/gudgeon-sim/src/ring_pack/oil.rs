@@ -86,6 +86,17 @@ pub struct Ledger {
     pub taken: f64,
 }
 
+/// A ring's oil at an instant.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct RingOil {
+    /// Share of its faces under full film.
+    pub wetted: f64,
+    /// Oil held, per circumference \[m²\].
+    pub held: f64,
+    /// Film left on the liner \[m\].
+    pub left: f64,
+}
+
 /// Description of a face for [`OilPack::new`].
 #[derive(Debug, Clone)]
 pub struct FacePlace {
@@ -385,6 +396,25 @@ impl OilPack {
             self.ledger.supplied += (film - self.film[k]) * outside;
             self.film[k] = film;
         }
+    }
+
+    /// What ring `i` does with the oil while the piston moves at `v` \[m/s\].
+    #[must_use]
+    pub fn ring(&self, i: usize, v: f64) -> RingOil {
+        let (mut wetted, mut length) = (0.0, 0.0);
+        let mut out = RingOil::default();
+        let trailing = usize::from(v < 0.0);
+        for f in self.faces.iter().filter(|f| f.ring == i) {
+            wetted += f.reach[0].length + f.reach[1].length;
+            length += f.length;
+            out.held += f.volume[0] + f.volume[1];
+            // The last land to pass decides what stays: the upper one on the way down.
+            if out.left == 0.0 || trailing == 0 {
+                out.left = self.model.left_behind(f.reach[trailing].gap, v.abs());
+            }
+        }
+        out.wetted = if length > 0.0 { wetted / length } else { 0.0 };
+        out
     }
 
     /// All oil per circumference \[m²\]: on the liner outside the faces, and under them.
