@@ -5,6 +5,7 @@
 
 mod contact;
 mod cylinder_pressure;
+mod film_2d;
 mod film_temperature;
 mod flank_damping;
 mod flank_friction;
@@ -16,6 +17,7 @@ mod ring_motion;
 
 pub use contact::*;
 pub use cylinder_pressure::*;
+pub use film_2d::*;
 pub use film_temperature::*;
 pub use flank_damping::*;
 pub use flank_friction::*;
