@@ -1,8 +1,9 @@
-//! Oil, film temperature and the film under a ring face.
+//! Oil, film temperature, the film under a ring face and films along and across the motion.
 
 mod closed_form_face;
 mod constant;
 mod face;
+pub mod film_2d;
 mod given;
 mod gridded_face;
 mod land_wall_mean;

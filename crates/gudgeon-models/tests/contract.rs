@@ -19,6 +19,10 @@ const MODELS: &[&str] = &[
     "cylinder_pressure/polytropic_burn",
     "cylinder_pressure/single_zone_wiebe",
     "cylinder_pressure/table",
+    "film_2d/direct",
+    "film_2d/multigrid",
+    "film_2d/off",
+    "film_2d/sor",
     "film_temperature/given",
     "film_temperature/land_wall_mean",
     "film_temperature/liner_linear",
@@ -51,6 +55,7 @@ const MODELS: &[&str] = &[
 const SWITCHED_OFF: &[(&str, Option<&str>)] = &[
     ("contact", Some("off")),
     ("cylinder_pressure", Some("constant")),
+    ("film_2d", Some("off")),
     ("film_temperature", Some("given")),
     ("flank_damping", Some("off")),
     ("flank_friction", Some("off")),

@@ -1,0 +1,163 @@
+use gudgeon_core::BuildError;
+use gudgeon_core::kinds::{Film2d, Film2dCtx, Film2dSpec};
+use gudgeon_numerics::linalg::{Banded, Singular, SymmetricBanded};
+use gudgeon_numerics::multigrid::{FivePoint, Role};
+use serde::{Deserialize, Serialize};
+
+use super::complementarity::{Linear, Solver};
+use super::problem::Problem;
+use super::{Cavitation, Flux};
+
+/// Film by finite volumes, its linear systems solved by elimination within the band.
+///
+/// The same equations as `multigrid`. Work and storage grow with the square and the first power of the shorter side of the grid times the number of nodes:
+/// for small grids, and as a check.
+#[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Direct {
+    /// What happens where the pressure would fall below `p_cav`.
+    #[serde(default)]
+    pub cavitation: Cavitation,
+    /// Which film thickness counts for the flow between two nodes.
+    #[serde(default)]
+    pub flux: Flux,
+    /// Largest imbalance of a control volume over the largest flow by sliding, squeezing or pressures of the edges, from 1e-14 to 0.1.
+    #[serde(default = "super::tolerance")]
+    #[schemars(range(min = 1e-14, max = 0.1))]
+    pub tolerance: f64,
+}
+
+impl Default for Direct {
+    fn default() -> Self {
+        Self { cavitation: Cavitation::default(), flux: Flux::default(), tolerance: super::tolerance() }
+    }
+}
+
+gudgeon_core::register_model! {
+    Direct, kind: "film_2d", name: "direct",
+    summary: "finite volumes with banded elimination, mass-conserving or other cavitation",
+    equations: "d/dx(phi_x h^3/(12 mu) dp/dx) + d/dy(phi_y h^3/(12 mu) dp/dy) = d/dx(u h_T theta/2) + d/dt(h_T theta);  \
+                mass_conserving: min(p - p_cav, 1 - theta) = 0, theta carried from upstream;  \
+                swift_stieber: p >= p_cav, residual >= 0, one of them an equality;  half_sommerfeld: max(p, p_cav);  \
+                load = int (p - p_cav) dA;  shear = int (theta mu u/h -+ h/2 dp/dx) dA",
+    validity: "As multigrid. Grids whose band needs more than 1 GB are refused.",
+    references: ["reynolds1886", "jakobsson1957", "hintermuller2003"],
+    example: "cavitation = \"swift_stieber\"\nflux = \"face\"\ntolerance = 1e-9\n",
+}
+
+/// Most entries of the band: 1 GB.
+const MOST: usize = 1 << 27;
+
+#[typetag::serde(name = "direct")]
+impl Film2dSpec for Direct {
+    fn build(&self, ctx: &Film2dCtx<'_>) -> Result<Box<dyn Film2d>, BuildError> {
+        super::check_tolerance(self.tolerance)?;
+        let problem = Problem::new(ctx.grid, self.flux)?;
+        let linear = Elimination::new(&problem, self.cavitation == Cavitation::MassConserving)?;
+        Ok(Box::new(Solver::new("direct", problem, linear, self.cavitation, self.tolerance)))
+    }
+}
+
+struct Elimination {
+    /// Where each node stands among the unknowns.
+    place: Vec<usize>,
+    symmetric: SymmetricBanded,
+    general: Option<Banded>,
+    is_symmetric: bool,
+    work: Vec<f64>,
+}
+
+impl Elimination {
+    fn new(problem: &Problem, needs_general: bool) -> Result<Self, BuildError> {
+        let (nx, ny, n) = (problem.nx, problem.ny, problem.len());
+        // Folded, a ring has its neighbours two columns apart.
+        let column = |i: usize| {
+            if !problem.periodic {
+                i
+            } else if 2 * i < nx {
+                2 * i
+            } else {
+                2 * (nx - 1 - i) + 1
+            }
+        };
+        let by_line = !problem.periodic && nx <= ny;
+        let half = if by_line {
+            nx
+        } else if problem.periodic {
+            2 * ny
+        } else {
+            ny
+        };
+        let place = (0..n).map(|k| if by_line { k } else { column(k % nx) * ny + k / nx }).collect();
+        let width = half + 1 + if needs_general { 3 * half + 1 } else { 0 };
+        if n.saturating_mul(width) > MOST {
+            return Err(BuildError::new(format!("{nx} x {ny} nodes are too many for banded elimination"))
+                .help("use the model `multigrid`"));
+        }
+        Ok(Self {
+            place,
+            symmetric: SymmetricBanded::new(n, half),
+            general: needs_general.then(|| Banded::new(n, half, half)),
+            is_symmetric: true,
+            work: vec![0.0; n],
+        })
+    }
+}
+
+impl Linear for Elimination {
+    fn factor(&mut self, m: &FivePoint, symmetric: bool) -> Result<(), Singular> {
+        let (nx, ny) = (m.nx, m.ny);
+        self.is_symmetric = symmetric;
+        self.symmetric.clear();
+        if let (false, Some(general)) = (symmetric, self.general.as_mut()) {
+            general.clear();
+        }
+        for j in 0..ny {
+            for i in 0..nx {
+                let k = j * nx + i;
+                let row = self.place[k];
+                let mut put = |column: usize, value: f64| match self.general.as_mut() {
+                    Some(general) if !symmetric => general.add(row, column, value),
+                    _ if column <= row => self.symmetric.add(row, column, value),
+                    _ => {}
+                };
+                if m.role[k] == Role::Fixed {
+                    put(row, 1.0);
+                    continue;
+                }
+                put(row, m.c[k]);
+                let mut couple = |to: usize, value: f64| {
+                    if to != k && m.role[to] != Role::Fixed && value != 0.0 {
+                        put(self.place[to], -value);
+                    }
+                };
+                couple(m.before(i, k), m.w[k]);
+                couple(m.after(i, k), m.e[k]);
+                if j > 0 {
+                    couple(k - nx, m.s[k]);
+                }
+                if j + 1 < ny {
+                    couple(k + nx, m.n[k]);
+                }
+            }
+        }
+        match self.general.as_mut() {
+            Some(general) if !symmetric => general.factor(),
+            _ => self.symmetric.factor(),
+        }
+    }
+
+    fn solve(&mut self, m: &FivePoint, b: &[f64], z: &mut [f64], _: f64) -> (usize, f64) {
+        for (k, &row) in self.place.iter().enumerate() {
+            self.work[row] = if m.role[k] == Role::Fixed { 0.0 } else { b[k] };
+        }
+        match self.general.as_ref() {
+            Some(general) if !self.is_symmetric => general.solve(&mut self.work),
+            _ => self.symmetric.solve(&mut self.work),
+        }
+        for (z, &row) in z.iter_mut().zip(&self.place) {
+            *z = self.work[row];
+        }
+        (1, m.residual(b, z))
+    }
+}
