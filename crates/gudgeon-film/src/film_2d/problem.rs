@@ -25,6 +25,9 @@ pub(super) struct Problem {
     wy: Vec<f64>,
     dx: Vec<f64>,
     dy: Vec<f64>,
+    /// Weights of the nodes in integrals.
+    sx: Vec<f64>,
+    sy: Vec<f64>,
     pub gx: Vec<f64>,
     pub gy: Vec<f64>,
     pub qx: Vec<f64>,
@@ -89,6 +92,7 @@ impl Problem {
                 .collect()
         };
         let (wx, wy) = (half(&dx, periodic), half(&dy, false));
+        let (sx, sy) = grid.weights();
         let edge = (0..nx * ny)
             .map(|k| {
                 let (i, j) = (k % nx, k / nx);
@@ -107,6 +111,8 @@ impl Problem {
             wy,
             dx,
             dy,
+            sx,
+            sy,
             gx: v(),
             gy: v(),
             qx: v(),
@@ -179,9 +185,8 @@ impl Problem {
         }
         let mu = match inp.mu {
             Viscosity::Uniform(mu) => mu,
-            Viscosity::Nodes(m) if m.len() == n => {
-                m.iter().fold(f64::INFINITY, |a, &b| if a <= b { a } else { b })
-            }
+            Viscosity::Nodes(m) if m.len() == n && m.iter().sum::<f64>().is_nan() => f64::NAN,
+            Viscosity::Nodes(m) if m.len() == n => m.iter().fold(f64::INFINITY, |a, &b| a.min(b)),
             Viscosity::Nodes(m) => {
                 return Err(EvalError::fatal(
                     model,
@@ -443,7 +448,7 @@ impl Problem {
             let mut line = [0.0; 5];
             for i in 0..nx {
                 let k = j * nx + i;
-                let w = self.wx[i];
+                let w = self.sx[i];
                 let mu = match inp.mu {
                     Viscosity::Uniform(mu) => mu,
                     Viscosity::Nodes(m) => m[k],
@@ -471,7 +476,7 @@ impl Problem {
                     worst = worst.max(balance[k].abs());
                 }
             }
-            let w = self.wy[j];
+            let w = self.sy[j];
             out.load += w * line[0];
             out.moment_x += w * line[1];
             out.moment_y += w * line[0] * self.grid.y[j];
