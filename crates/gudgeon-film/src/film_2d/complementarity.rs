@@ -31,7 +31,6 @@ pub(super) struct Solver<L> {
     linear: L,
     cavitation: Cavitation,
     tolerance: f64,
-    m: FivePoint,
     /// Pressure above `p_cav`, and `1 - θ`.
     p: Vec<f64>,
     void: Vec<f64>,
@@ -56,7 +55,6 @@ impl<L: Linear> Solver<L> {
         let n = problem.len();
         Self {
             model,
-            m: FivePoint::new(problem.nx, problem.ny, problem.periodic),
             problem,
             linear,
             cavitation,
@@ -78,7 +76,7 @@ impl<L: Linear> Solver<L> {
 
     /// Residual that rounding alone leaves.
     fn floor(&self) -> f64 {
-        let g = self.problem.gx.iter().chain(&self.problem.gy).fold(0.0_f64, |a, &b| a.max(b));
+        let g = self.problem.m.gx.iter().chain(&self.problem.m.gy).fold(0.0_f64, |a, &b| a.max(b));
         let p = self.p.iter().fold(0.0_f64, |a, &b| a.max(b.abs()));
         // A row sums some eight products of g p, each rounded once.
         2e-15 * g * p
@@ -91,7 +89,7 @@ impl<L: Linear> Solver<L> {
             *b = -*b;
         }
         self.z.fill(0.0);
-        let (work, left) = self.linear.solve(&self.m, &self.b, &mut self.z, target);
+        let (work, left) = self.linear.solve(&self.problem.m, &self.b, &mut self.z, target);
         *cycles += work;
         for k in 0..self.z.len() {
             if self.problem.edge[k] < 4 {
@@ -109,8 +107,8 @@ impl<L: Linear> Solver<L> {
     /// The film without cavitation. Returns the work done.
     fn full(&mut self, reference: f64) -> Result<usize, EvalError> {
         self.cavitated.fill(false);
-        self.problem.matrix(&self.cavitated, false, &mut self.m);
-        self.linear.factor(&self.m, true).map_err(|s| self.singular(s))?;
+        self.problem.choose(&self.cavitated, false);
+        self.linear.factor(&self.problem.m, true).map_err(|s| self.singular(s))?;
         let mut cycles = 0;
         self.settle(self.tolerance * reference, &mut cycles)?;
         Ok(cycles)
@@ -146,8 +144,8 @@ impl<L: Linear> Solver<L> {
                     self.p[k] = 0.0;
                 }
             }
-            self.problem.matrix(&self.cavitated, false, &mut self.m);
-            self.linear.factor(&self.m, true).map_err(|s| self.singular(s))?;
+            self.problem.choose(&self.cavitated, false);
+            self.linear.factor(&self.problem.m, true).map_err(|s| self.singular(s))?;
             target = self.settle(target, &mut cycles)?;
             self.problem.balance(&self.p, &self.void, &mut self.b);
             let top = self.p.iter().fold(0.0_f64, |a, &b| a.max(b));
@@ -194,8 +192,8 @@ impl<L: Linear> Solver<L> {
                     self.void[k] = 0.0;
                 }
             }
-            self.problem.matrix(&self.cavitated, true, &mut self.m);
-            self.linear.factor(&self.m, !any).map_err(|s| self.singular(s))?;
+            self.problem.choose(&self.cavitated, true);
+            self.linear.factor(&self.problem.m, !any).map_err(|s| self.singular(s))?;
             // A few digits at a time: a set that changes again needs no more.
             let mut stalled = 0;
             let changed = loop {
@@ -317,8 +315,8 @@ impl<L: Linear> Film2d for Solver<L> {
         self.problem.assemble(self.model, inp)?;
         self.warm = false;
         self.cavitated.fill(false);
-        self.problem.matrix(&self.cavitated, false, &mut self.m);
-        self.linear.factor(&self.m, true).map_err(|s| self.singular(s))?;
+        self.problem.choose(&self.cavitated, false);
+        self.linear.factor(&self.problem.m, true).map_err(|s| self.singular(s))?;
         let mut cycles = 0;
         for (mode, out) in modes.iter().zip(p.chunks_exact_mut(n)) {
             let scale = self.problem.cause(inp, mode, &mut self.p, &mut self.void, &mut self.b);

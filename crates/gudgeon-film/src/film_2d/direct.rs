@@ -125,19 +125,20 @@ impl Linear for Elimination {
                     put(row, 1.0);
                     continue;
                 }
-                put(row, m.c[k]);
+                let r = m.row(i, j);
+                put(row, r.c);
                 let mut couple = |to: usize, value: f64| {
                     if to != k && m.role[to] != Role::Fixed && value != 0.0 {
                         put(self.place[to], -value);
                     }
                 };
-                couple(m.before(i, k), m.w[k]);
-                couple(m.after(i, k), m.e[k]);
+                couple(m.before(i, k), r.w);
+                couple(m.after(i, k), r.e);
                 if j > 0 {
-                    couple(k - nx, m.s[k]);
+                    couple(k - nx, r.s);
                 }
                 if j + 1 < ny {
-                    couple(k + nx, m.n[k]);
+                    couple(k + nx, r.n);
                 }
             }
         }

@@ -28,10 +28,8 @@ pub(super) struct Problem {
     /// Weights of the nodes in integrals.
     sx: Vec<f64>,
     sy: Vec<f64>,
-    pub gx: Vec<f64>,
-    pub gy: Vec<f64>,
-    pub qx: Vec<f64>,
-    pub hold: Vec<f64>,
+    /// `gx`, `gy`, `qx`, `hold`, and what is unknown at each node.
+    pub m: FivePoint,
     pub fixed: Vec<f64>,
     /// Nodes whose pressure is given, and by which edge; 4 for the others.
     pub edge: Vec<u8>,
@@ -100,7 +98,6 @@ impl Problem {
                 (0..4).find(|&s| at[s] && e[s] == Edge::Pressure).unwrap_or(4) as u8
             })
             .collect();
-        let v = || vec![0.0; nx * ny];
         Ok(Self {
             grid: grid.clone(),
             flux,
@@ -113,11 +110,8 @@ impl Problem {
             dy,
             sx,
             sy,
-            gx: v(),
-            gy: v(),
-            qx: v(),
-            hold: v(),
-            fixed: v(),
+            m: FivePoint::new(nx, ny, periodic),
+            fixed: vec![0.0; nx * ny],
             edge,
             scale: 0.0,
         })
@@ -127,27 +121,14 @@ impl Problem {
         self.nx * self.ny
     }
 
-    /// Node after `k = (i, j)` along x; `k` itself at an edge.
     #[inline]
     pub fn after(&self, i: usize, k: usize) -> usize {
-        if i + 1 < self.nx {
-            k + 1
-        } else if self.periodic {
-            k + 1 - self.nx
-        } else {
-            k
-        }
+        self.m.after(i, k)
     }
 
     #[inline]
     pub fn before(&self, i: usize, k: usize) -> usize {
-        if i > 0 {
-            k - 1
-        } else if self.periodic {
-            k + self.nx - 1
-        } else {
-            k
-        }
+        self.m.before(i, k)
     }
 
     fn check(&self, model: &'static str, inp: &Film2dIn<'_>) -> Result<(), EvalError> {
@@ -252,12 +233,12 @@ impl Problem {
             for i in 0..nx {
                 let k = j * nx + i;
                 let next = self.after(i, k);
-                self.gx[k] = if next == k {
+                self.m.gx[k] = if next == k {
                     0.0
                 } else {
                     conductivity(inp.h_face_x, phi.pressure_x, k, next) * self.wy[j] / self.dx[i]
                 };
-                self.gy[k] = if j + 1 == ny {
+                self.m.gy[k] = if j + 1 == ny {
                     0.0
                 } else {
                     conductivity(inp.h_face_y, phi.pressure_y, k, k + nx) * self.wx[i] / self.dy[j]
@@ -277,7 +258,7 @@ impl Problem {
             for i in 0..nx {
                 let k = j * nx + i;
                 let next = self.after(i, k);
-                self.qx[k] = if next == k {
+                self.m.qx[k] = if next == k {
                     0.0
                 } else {
                     let h = match self.flux {
@@ -288,7 +269,7 @@ impl Problem {
                     0.5 * u * h * self.wy[j]
                 };
                 let area = self.wx[i] * self.wy[j];
-                (self.hold[k], self.fixed[k]) = match inp.history {
+                (self.m.hold[k], self.fixed[k]) = match inp.history {
                     Some(old) => {
                         let full = if inp.factors.content.is_empty() { inp.h } else { inp.factors.content };
                         (full[k] * area / old.dt, -old.content[k] * area / old.dt)
@@ -297,7 +278,7 @@ impl Problem {
                     None if filling && dhdt[k] > 0.0 => (dhdt[k] * area, 0.0),
                     None => (0.0, dhdt[k] * area),
                 };
-                scale = scale.max(self.qx[k].abs()).max((self.hold[k] + self.fixed[k]).abs());
+                scale = scale.max(self.m.qx[k].abs()).max((self.m.hold[k] + self.fixed[k]).abs());
             }
         }
         self.scale = scale;
@@ -318,20 +299,20 @@ impl Problem {
     pub fn balance(&self, p: &[f64], void: &[f64], out: &mut [f64]) {
         let (nx, ny) = (self.nx, self.ny);
         for k in 0..out.len() {
-            out[k] = self.hold[k] * (1.0 - void[k]) + self.fixed[k];
+            out[k] = self.m.hold[k] * (1.0 - void[k]) + self.fixed[k];
         }
         for j in 0..ny {
             for i in 0..nx {
                 let k = j * nx + i;
                 let next = self.after(i, k);
                 if next != k {
-                    let upstream = if self.qx[k] >= 0.0 { k } else { next };
-                    let flow = self.gx[k] * (p[k] - p[next]) + self.qx[k] * (1.0 - void[upstream]);
+                    let upstream = if self.m.qx[k] >= 0.0 { k } else { next };
+                    let flow = self.m.gx[k] * (p[k] - p[next]) + self.m.qx[k] * (1.0 - void[upstream]);
                     out[k] += flow;
                     out[next] -= flow;
                 }
                 if j + 1 < ny {
-                    let flow = self.gy[k] * (p[k] - p[k + nx]);
+                    let flow = self.m.gy[k] * (p[k] - p[k + nx]);
                     out[k] += flow;
                     out[k + nx] -= flow;
                 }
@@ -346,52 +327,31 @@ impl Problem {
         for j in 0..self.ny {
             for i in 0..nx {
                 let k = j * nx + i;
-                most = most.max((self.gx[k] * (p[k] - p[self.after(i, k)])).abs());
+                most = most.max((self.m.gx[k] * (p[k] - p[self.after(i, k)])).abs());
                 if j + 1 < self.ny {
-                    most = most.max((self.gy[k] * (p[k] - p[k + nx])).abs());
+                    most = most.max((self.m.gy[k] * (p[k] - p[k + nx])).abs());
                 }
             }
         }
         most
     }
 
-    /// The matrix of a film whose nodes `cavitated` are unknown in their void and the others in their pressure. With `carried` false,
-    /// cavitated nodes are not unknown at all: their pressure is that of the cavity.
-    pub fn matrix(&self, cavitated: &[bool], carried: bool, m: &mut FivePoint) {
-        let (nx, ny) = (self.nx, self.ny);
-        for j in 0..ny {
-            for i in 0..nx {
-                let k = j * nx + i;
-                let (west, east) = (self.before(i, k), self.after(i, k));
-                let (gw, ge) = (if west == k { 0.0 } else { self.gx[west] }, self.gx[k]);
-                let gs = if j > 0 { self.gy[k - nx] } else { 0.0 };
-                let gn = self.gy[k];
-                m.gx[k] = ge;
-                m.gy[k] = gn;
-                m.qx[k] = self.qx[k];
-                m.hold[k] = self.hold[k];
-                if self.edge[k] < 4 || (cavitated[k] && !carried) {
-                    m.role[k] = Role::Fixed;
-                    m.c[k] = 1.0;
-                    (m.w[k], m.e[k], m.s[k], m.n[k]) = (0.0, 0.0, 0.0, 0.0);
-                    continue;
-                }
-                // Column of a neighbour: its pressure, or its void where it is cavitated and upstream.
-                let (qw, qe) = (if west == k { 0.0 } else { self.qx[west] }, self.qx[k]);
-                m.w[k] = if cavitated[west] && carried { -qw.max(0.0) } else { gw };
-                m.e[k] = if cavitated[east] && carried { qe.min(0.0) } else { ge };
-                m.s[k] = if j > 0 && cavitated[k - nx] { 0.0 } else { gs };
-                m.n[k] = if j + 1 < ny && cavitated[k + nx] { 0.0 } else { gn };
-                if cavitated[k] {
-                    let out = qe.max(0.0) - qw.min(0.0) + self.hold[k];
-                    m.c[k] = -out;
-                    // Nothing flows and nothing is held: there is no telling how full it is.
-                    m.role[k] = if out > 0.0 { Role::Carried } else { Role::Fixed };
-                } else {
-                    m.c[k] = gw + ge + gs + gn;
-                    m.role[k] = Role::Diffused;
-                }
-            }
+    /// What is unknown at each node: the void of the nodes `cavitated`, the pressure of the others. With `carried` false, cavitated nodes have no
+    /// unknown at all: their pressure is that of the cavity.
+    pub fn choose(&mut self, cavitated: &[bool], carried: bool) {
+        for (k, &cavitated) in cavitated.iter().enumerate() {
+            self.m.role[k] = if self.edge[k] < 4 || (cavitated && !carried) {
+                Role::Fixed
+            } else if !cavitated {
+                Role::Diffused
+            } else {
+                let i = k % self.nx;
+                let west = self.before(i, k);
+                let inwards = if west == k { 0.0 } else { self.m.qx[west] };
+                // Nothing flows and nothing is held: there is no telling how full it is.
+                let leaves = self.m.qx[k].max(0.0) - inwards.min(0.0) + self.m.hold[k];
+                if leaves > 0.0 { Role::Carried } else { Role::Fixed }
+            };
         }
     }
 
@@ -425,7 +385,7 @@ impl Problem {
                 (low, high) = (low.min(pe), high.max(pe));
             }
         }
-        let most = self.gx.iter().chain(&self.gy).fold(0.0_f64, |a, &b| a.max(b));
+        let most = self.m.gx.iter().chain(&self.m.gy).fold(0.0_f64, |a, &b| a.max(b));
         self.scale + most * (high - low)
     }
 
@@ -469,7 +429,7 @@ impl Problem {
                 line[4] += w * cavity;
                 top = top.max(p[k]);
                 let e = self.edge[k] as usize;
-                out.storage += self.hold[k] * (1.0 - void[k]) + self.fixed[k];
+                out.storage += self.m.hold[k] * (1.0 - void[k]) + self.fixed[k];
                 if e < 4 {
                     out.outflow[e] -= balance[k];
                 } else {

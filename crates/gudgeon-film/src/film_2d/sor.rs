@@ -107,7 +107,7 @@ impl Relaxation {
             return w;
         }
         let p = &self.problem;
-        let (gx, gy) = (p.gx.iter().sum::<f64>(), p.gy.iter().sum::<f64>());
+        let (gx, gy) = (p.m.gx.iter().sum::<f64>(), p.m.gy.iter().sum::<f64>());
         let cosine = |n: usize, edges: [gudgeon_core::kinds::Edge; 2]| {
             let given = edges.iter().filter(|e| **e == gudgeon_core::kinds::Edge::Pressure).count();
             // Half a wave between two given edges, a quarter from a given edge to a wall, none otherwise.
@@ -135,7 +135,7 @@ impl Relaxation {
                 let (mut worst, mut top, mut c) = (0.0_f64, 0.0_f64, 0.0_f64);
                 for k in 0..n {
                     top = top.max(self.p[k].abs());
-                    c = c.max(self.problem.gx[k]).max(self.problem.gy[k]);
+                    c = c.max(self.problem.m.gx[k]).max(self.problem.m.gy[k]);
                     // At p_cav a surplus is what the condition asks for, unless it is kept account of.
                     let allowed = !signed && !carried && self.p[k] <= 0.0 && self.b[k] > 0.0;
                     if self.problem.edge[k] == 4 && !allowed {
@@ -159,26 +159,26 @@ impl Relaxation {
         let pr = &self.problem;
         let (nx, i) = (pr.nx, k % pr.nx);
         let (west, east) = (pr.before(i, k), pr.after(i, k));
-        let (mut c, mut inflow, mut out) = (0.0, -pr.fixed[k], pr.hold[k]);
+        let (mut c, mut inflow, mut out) = (0.0, -pr.fixed[k], pr.m.hold[k]);
         if west != k {
-            let q = pr.qx[west];
-            c += pr.gx[west];
-            inflow += pr.gx[west] * self.p[west] + q.max(0.0) * (1.0 - self.void[west]);
+            let q = pr.m.qx[west];
+            c += pr.m.gx[west];
+            inflow += pr.m.gx[west] * self.p[west] + q.max(0.0) * (1.0 - self.void[west]);
             out -= q.min(0.0);
         }
         if east != k {
-            let q = pr.qx[k];
-            c += pr.gx[k];
-            inflow += pr.gx[k] * self.p[east] - q.min(0.0) * (1.0 - self.void[east]);
+            let q = pr.m.qx[k];
+            c += pr.m.gx[k];
+            inflow += pr.m.gx[k] * self.p[east] - q.min(0.0) * (1.0 - self.void[east]);
             out += q.max(0.0);
         }
         if k >= nx {
-            c += pr.gy[k - nx];
-            inflow += pr.gy[k - nx] * self.p[k - nx];
+            c += pr.m.gy[k - nx];
+            inflow += pr.m.gy[k - nx] * self.p[k - nx];
         }
         if k + nx < pr.len() {
-            c += pr.gy[k];
-            inflow += pr.gy[k] * self.p[k + nx];
+            c += pr.m.gy[k];
+            inflow += pr.m.gy[k] * self.p[k + nx];
         }
         let target = (inflow - out) / c;
         let p = self.p[k] + omega * (target - self.p[k]);
