@@ -425,7 +425,7 @@ impl Banded {
 pub struct SymmetricBanded {
     n: usize,
     half: usize,
-    /// Row i holds the entries of columns i - half to i.
+    /// Row i holds the entries of columns i to i + half.
     a: Vec<f64>,
     factored: bool,
 }
@@ -450,7 +450,7 @@ impl SymmetricBanded {
     #[inline]
     pub fn add(&mut self, i: usize, j: usize, value: f64) {
         assert!(j <= i && i <= j + self.half && i < self.n, "outside the lower half of the band");
-        self.a[i * (self.half + 1) + (j + self.half - i)] += value;
+        self.a[j * (self.half + 1) + (i - j)] += value;
         self.factored = false;
     }
 
@@ -459,29 +459,29 @@ impl SymmetricBanded {
     /// # Errors
     /// [`Singular`] when the matrix is not positive definite.
     pub fn factor(&mut self) -> Result<(), Singular> {
-        let (half, w) = (self.half, self.half + 1);
-        for i in 0..self.n {
-            let first = i.saturating_sub(half);
-            let (above, own) = self.a.split_at_mut(i * w);
-            let own = &mut own[..w];
-            // own[j] becomes L_ij D_j, from left to right.
-            for j in first..i {
-                let row = &above[j * w..(j + 1) * w];
-                let start = first.max(j.saturating_sub(half));
-                let (a, b) = (&own[start + half - i..j + half - i], &row[start + half - j..half]);
-                own[j + half - i] -= dot(a, b);
-            }
-            let mut pivot = own[half];
-            for j in first..i {
-                let t = own[j + half - i];
-                let l = t * above[j * w + half];
-                own[j + half - i] = l;
-                pivot -= l * t;
-            }
+        let w = self.half + 1;
+        for k in 0..self.n {
+            let (done, rest) = self.a.split_at_mut((k + 1) * w);
+            let own = &mut done[k * w..];
+            let pivot = own[0];
             if !(pivot > 0.0 && pivot < f64::INFINITY) {
-                return Err(Singular { column: i });
+                return Err(Singular { column: k });
             }
-            own[half] = 1.0 / pivot;
+            own[0] = 1.0 / pivot;
+            let reach = self.half.min(self.n - 1 - k);
+            for m in 1..=reach {
+                let l = own[m] * own[0];
+                if l != 0.0 {
+                    let row = &mut rest[(m - 1) * w..][..=reach - m];
+                    for (x, p) in row.iter_mut().zip(&own[m..=reach]) {
+                        *x -= l * p;
+                    }
+                }
+            }
+            let inverse = own[0];
+            for x in &mut own[1..=reach] {
+                *x *= inverse;
+            }
         }
         self.factored = true;
         Ok(())
@@ -493,21 +493,19 @@ impl SymmetricBanded {
     /// When the matrix was not factorised since it was last changed: a mistake of the program.
     pub fn solve(&self, b: &mut [f64]) {
         assert!(self.factored, "solve before factor");
-        let (half, w) = (self.half, self.half + 1);
-        for i in 0..self.n {
-            let first = i.saturating_sub(half);
-            b[i] -= dot(&self.a[i * w + first + half - i..i * w + half], &b[first..i]);
-        }
-        for i in 0..self.n {
-            b[i] *= self.a[i * w + half];
-        }
-        for i in (0..self.n).rev() {
-            let first = i.saturating_sub(half);
-            let x = b[i];
-            let row = &self.a[i * w + first + half - i..i * w + half];
-            for (b, l) in b[first..i].iter_mut().zip(row) {
-                *b -= l * x;
+        let w = self.half + 1;
+        for k in 0..self.n {
+            let reach = self.half.min(self.n - 1 - k);
+            let (done, rest) = b.split_at_mut(k + 1);
+            let x = done[k];
+            for (y, l) in rest[..reach].iter_mut().zip(&self.a[k * w + 1..]) {
+                *y -= l * x;
             }
+            done[k] = x * self.a[k * w];
+        }
+        for k in (0..self.n).rev() {
+            let reach = self.half.min(self.n - 1 - k);
+            b[k] -= dot(&self.a[k * w + 1..=k * w + reach], &b[k + 1..=k + reach]);
         }
     }
 }

@@ -608,8 +608,25 @@ struct Krylov {
     z: Vec<Vec<f64>>,
     q: Vec<Vec<f64>>,
     square: [f64; DIRECTIONS],
+    /// What each direction shares with the ones before, and how far to go along it once that is taken out.
+    share: [[f64; DIRECTIONS]; DIRECTIONS],
+    step: [f64; DIRECTIONS],
     v: Vec<f64>,
     r: Vec<f64>,
+}
+
+impl Krylov {
+    /// Adds the first `count` directions to the solution, each with its own step less what later ones took of it.
+    fn move_along(&mut self, count: usize) {
+        for d in (0..count).rev() {
+            let later: f64 = (d + 1..count).map(|e| self.share[e][d] * self.step[e]).sum();
+            self.step[d] -= later;
+            let step = self.step[d];
+            for (v, z) in self.v.iter_mut().zip(&self.z[d]) {
+                *v += step * z;
+            }
+        }
+    }
 }
 
 impl LineMultigrid {
@@ -627,6 +644,8 @@ impl LineMultigrid {
             z: vec![field(); DIRECTIONS],
             q: vec![field(); DIRECTIONS],
             square: [0.0; DIRECTIONS],
+            share: [[0.0; DIRECTIONS]; DIRECTIONS],
+            step: [0.0; DIRECTIONS],
             v: field(),
             r: field(),
         });
@@ -735,6 +754,7 @@ impl LineMultigrid {
         let start = largest(&k.r);
         out.residual = start;
         let mut last = start;
+        let mut kept = 0;
         while out.residual > target && out.cycles < most && out.residual.is_finite() {
             let now = out.cycles % DIRECTIONS;
             // A round of all directions that brought less than a tenth is the end of what can be had.
@@ -750,17 +770,13 @@ impl LineMultigrid {
             self.descend(0);
             self.correct(0);
             k.z[now].copy_from_slice(&self.levels[0].v);
-            let (q, z) = (&mut k.q, &mut k.z);
-            let (q_done, q_now) = q.split_at_mut(now);
-            let (z_done, z_now) = z.split_at_mut(now);
-            let (q_now, z_now) = (&mut q_now[0], &mut z_now[0]);
-            self.levels[0].apply(z_now, q_now);
-            for (d, (qd, zd)) in q_done.iter().zip(&*z_done).enumerate() {
+            let (q_done, q_now) = k.q.split_at_mut(now);
+            let q_now = &mut q_now[0];
+            self.levels[0].apply(&k.z[now], q_now);
+            for (d, qd) in q_done.iter().enumerate() {
                 let share = dot(qd, q_now) / k.square[d];
+                k.share[now][d] = share;
                 for (x, y) in q_now.iter_mut().zip(qd) {
-                    *x -= share * y;
-                }
-                for (x, y) in z_now.iter_mut().zip(zd) {
                     *x -= share * y;
                 }
             }
@@ -770,14 +786,18 @@ impl LineMultigrid {
                 break;
             }
             let step = dot(q_now, &k.r) / k.square[now];
-            for (v, z) in k.v.iter_mut().zip(&*z_now) {
-                *v += step * z;
-            }
+            k.step[now] = step;
+            kept = now + 1;
             for (r, q) in k.r.iter_mut().zip(&*q_now) {
                 *r -= step * q;
             }
             out.residual = largest(&k.r);
+            if kept == DIRECTIONS {
+                k.move_along(kept);
+                kept = 0;
+            }
         }
+        k.move_along(kept);
         if out.cycles > 0 && start > 0.0 {
             out.rate = (out.residual / start).powf(1.0 / out.cycles as f64);
         }
