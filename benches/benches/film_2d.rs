@@ -124,12 +124,12 @@ fn skirts() -> Result<(), EvalError> {
     for (nx, ny) in [(32, 24), (64, 48), (128, 96), (256, 192)] {
         let scene = Scene::skirt(nx, ny);
         let mut films = vec![
-            scene.build(&multigrid(1e-2)),
             scene.build(&multigrid(1e-3)),
+            scene.build(&multigrid(1e-4)),
             scene.build(&multigrid(1e-9)),
             scene.build(&Direct { cavitation, ..Direct::default() }),
         ];
-        let mut names = vec!["multigrid 1e-2", "multigrid 1e-3", "multigrid 1e-9", "direct"];
+        let mut names = vec!["multigrid 1e-3", "multigrid 1e-4", "multigrid 1e-9", "direct"];
         if nx <= 64 {
             films.push(scene.build(&Sor { cavitation, tolerance: 1e-3, ..Sor::default() }));
             names.push("sor 1e-3");
@@ -209,7 +209,7 @@ fn run() -> Result<(), EvalError> {
     let mut group = criterion.benchmark_group("film_2d");
     let cavitation = Cavitation::FullSommerfeld;
     let skirt = Scene::skirt(64, 48);
-    let mut film = skirt.build(&Multigrid { cavitation, tolerance: 1e-3, ..Multigrid::default() });
+    let mut film = skirt.build(&Multigrid { cavitation, tolerance: 1e-4, ..Multigrid::default() });
     group.bench_function("skirt_multigrid", |b| {
         b.iter(|| cold(film.as_mut(), &skirt.input()).map(|o| o.load))
     });

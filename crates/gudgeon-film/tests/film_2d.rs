@@ -704,3 +704,68 @@ fn without_a_film_there_is_nothing() {
     assert!(out.load == 0.0 && out.shear_lower == 0.0 && out.p_max == 5.0);
     assert!(film.fill().iter().all(|f| *f == 0.0) && film.pressure().iter().all(|p| *p == 5.0));
 }
+
+/// A fixed sequence of numbers in [0, 1).
+struct Numbers(u64);
+
+impl Numbers {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// Evenly in the exponent.
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low * (high / low).powf(self.next())
+    }
+}
+
+#[test]
+fn films_of_all_kinds_are_found() {
+    let mut numbers = Numbers(1);
+    let mut failed = Vec::new();
+    let runs = 400;
+    for run in 0..runs {
+        let (nx, ny) = (3 + (40.0 * numbers.next()) as usize, 3 + (30.0 * numbers.next()) as usize);
+        let (length, width) = (numbers.between(1e-4, 0.1), numbers.between(1e-4, 0.1));
+        let grid = if numbers.next() < 0.25 {
+            Film2dGrid::journal(nx, ny, length, width)
+        } else {
+            Film2dGrid::uniform(nx, ny, length, width)
+        };
+        let (thin, depth) = (numbers.between(1e-9, 1e-4), numbers.between(1e-3, 1e3));
+        let waves = [6.0 * numbers.next(), 6.0 * numbers.next(), 6.0 * numbers.next()];
+        let h = field(&grid, |x, y| {
+            let (x, y) = (x / length, y / width);
+            let wave = (6.0 * waves[0] * x + 3.0 * y).sin() * (6.0 * waves[1] * y).cos();
+            thin * (1.0 + depth * (wave + 0.5 * (x - 0.5).abs() * waves[2]).powi(2))
+        });
+        let u = numbers.between(1e-6, 1e3) * if numbers.next() < 0.5 { -1.0 } else { 1.0 };
+        let dhdt = match (4.0 * numbers.next()) as usize {
+            0 => field(&grid, |x, y| u * thin / length * (7.0 * x / length + y / width).sin()),
+            1 => vec![u * 1e-2; grid.len()],
+            _ => Vec::new(),
+        };
+        let mut pressure = || if numbers.next() < 0.3 { 0.0 } else { numbers.between(1e3, 1e7) };
+        let edge_pressure = [pressure(), pressure(), pressure(), pressure()];
+        let cavitation = CONDITIONS[run % 3];
+        let spec = Multigrid { cavitation, ..Multigrid::default() };
+        let inp = Film2dIn { dhdt: &dhdt, edge_pressure, ..Film2dIn::new(&h, u, 0.01) };
+        let mut film = build(&spec, &grid);
+        match film.solve(&inp) {
+            Err(e) => failed.push(format!("{run} {nx}x{ny} {cavitation:?}: {e}")),
+            Ok(out) => {
+                assert!(film.pressure().iter().all(|p| p.is_finite() && *p >= 0.0), "{run}");
+                assert!(film.fill().iter().all(|f| (0.0..=1.0).contains(f)), "{run}");
+                assert!(
+                    out.load >= -1e-9 * out.p_max * length * width && out.shear_lower.is_finite(),
+                    "{run}"
+                );
+                // Nothing but the tolerance, for a condition that conserves oil.
+                let closed = cavitation != Cavitation::MassConserving || out.residual < 1e-6;
+                assert!(closed, "{run} {nx}x{ny}: {out:?}");
+            }
+        }
+    }
+    assert!(failed.is_empty(), "{} of {runs}: {failed:#?}", failed.len());
+}

@@ -595,7 +595,7 @@ pub struct LineMultigrid {
     levels: Vec<Level>,
     /// Whether the matrix carries unknowns along lines.
     carries: bool,
-    krylov: Option<Krylov>,
+    krylov: Krylov,
 }
 
 /// Search directions kept by the minimisation of residuals.
@@ -630,9 +630,9 @@ impl Krylov {
 }
 
 impl LineMultigrid {
-    /// Work space for a grid of `ny` lines of `nx` nodes. A matrix that `carries` unknowns needs more of it.
+    /// Work space for a grid of `ny` lines of `nx` nodes: some 60 values per node.
     #[must_use]
-    pub fn new(nx: usize, ny: usize, periodic: bool, carries: bool) -> Self {
+    pub fn new(nx: usize, ny: usize, periodic: bool) -> Self {
         let mut levels = vec![Level::new(nx, ny, periodic)];
         let mut lines = ny;
         while lines > 1 {
@@ -640,7 +640,7 @@ impl LineMultigrid {
             levels.push(Level::new(nx, lines, periodic));
         }
         let field = || vec![0.0; nx * ny];
-        let krylov = carries.then(|| Krylov {
+        let krylov = Krylov {
             z: vec![field(); DIRECTIONS],
             q: vec![field(); DIRECTIONS],
             square: [0.0; DIRECTIONS],
@@ -648,7 +648,7 @@ impl LineMultigrid {
             step: [0.0; DIRECTIONS],
             v: field(),
             r: field(),
-        });
+        };
         Self { levels, carries: false, krylov }
     }
 
@@ -693,11 +693,21 @@ impl LineMultigrid {
     }
 
     /// Improves `v` until no residual is larger than `target`, for at most `most` cycles, or until they stop helping. Where unknowns are
-    /// carried, the cycles precondition a minimisation of the residual (GCR, Eisenstat, Elman and Schultz 1983).
+    /// carried, or cycles alone are slow, the cycles precondition a minimisation of the residual (GCR, Eisenstat, Elman and Schultz 1983).
     pub fn solve(&mut self, b: &[f64], v: &mut [f64], target: f64, most: usize) -> Cycles {
-        if self.carries && self.krylov.is_some() {
+        if self.carries {
             return self.minimise(b, v, target, most);
         }
+        let plain = self.repeat(b, v, target, most);
+        if plain.residual <= target || plain.cycles >= most || !plain.residual.is_finite() {
+            return plain;
+        }
+        let more = self.minimise(b, v, target, most - plain.cycles);
+        Cycles { cycles: plain.cycles + more.cycles, ..more }
+    }
+
+    /// Cycles alone.
+    fn repeat(&mut self, b: &[f64], v: &mut [f64], target: f64, most: usize) -> Cycles {
         let fine = &mut self.levels[0];
         let (nx, ny) = (fine.nx, fine.ny);
         for j in 0..ny {
@@ -709,16 +719,16 @@ impl LineMultigrid {
         }
         let (mut start, mut out) = (f64::NAN, Cycles { cycles: 0, residual: f64::INFINITY, rate: 0.0 });
         loop {
-            let worst = self.descend(0);
+            let worst = Self::descend(&mut self.levels, 0);
             if start.is_nan() {
                 start = worst;
             }
-            let slow = out.cycles > 8 && worst > 0.9 * out.residual;
+            let slow = out.cycles > 4 && worst > 0.5 * out.residual;
             out.residual = worst;
             if worst <= target || out.cycles >= most || slow || !worst.is_finite() {
                 break;
             }
-            self.correct(0);
+            Self::correct(&mut self.levels, 0);
             out.cycles += 1;
         }
         if out.cycles > 0 && start > 0.0 {
@@ -736,8 +746,8 @@ impl LineMultigrid {
 
     fn minimise(&mut self, b: &[f64], v: &mut [f64], target: f64, most: usize) -> Cycles {
         let mut out = Cycles { cycles: 0, residual: f64::INFINITY, rate: 0.0 };
-        let Some(mut k) = self.krylov.take() else { return out };
         let (nx, ny) = (self.levels[0].nx, self.levels[0].ny);
+        let k = &mut self.krylov;
         let fixed = |level: &Level, m: usize| level.role[m] == Role::Fixed;
         for j in 0..ny {
             let place = self.levels[0].place(j);
@@ -767,8 +777,8 @@ impl LineMultigrid {
             let fine = &mut self.levels[0];
             fine.b.copy_from_slice(&k.r);
             fine.v.fill(0.0);
-            self.descend(0);
-            self.correct(0);
+            Self::descend(&mut self.levels, 0);
+            Self::correct(&mut self.levels, 0);
             k.z[now].copy_from_slice(&self.levels[0].v);
             let (q_done, q_now) = k.q.split_at_mut(now);
             let q_now = &mut q_now[0];
@@ -807,13 +817,12 @@ impl LineMultigrid {
                 v[j * nx + i] = k.v[i * ny + place];
             }
         }
-        self.krylov = Some(k);
         out
     }
 
     /// Solves the odd lines of a level, and hands the residual of the even ones to the next. Returns the largest of them.
-    fn descend(&mut self, l: usize) -> f64 {
-        let (head, tail) = self.levels.split_at_mut(l + 1);
+    fn descend(levels: &mut [Level], l: usize) -> f64 {
+        let (head, tail) = levels.split_at_mut(l + 1);
         let level = &mut head[l];
         level.relax(true);
         let Some(coarse) = tail.first_mut() else { return 0.0 };
@@ -832,17 +841,17 @@ impl LineMultigrid {
     }
 
     /// Coarse correction and the lines once more, odd ones first: they carry the correction to where the coarse grid has no node.
-    fn correct(&mut self, l: usize) {
-        if l + 1 < self.levels.len() {
-            let coarsest = l + 2 == self.levels.len();
-            let next = &mut self.levels[l + 1];
+    fn correct(levels: &mut [Level], l: usize) {
+        if l + 1 < levels.len() {
+            let coarsest = l + 2 == levels.len();
+            let next = &mut levels[l + 1];
             next.v.fill(0.0);
             if !coarsest {
                 next.relax(false);
-                self.descend(l + 1);
+                Self::descend(levels, l + 1);
             }
-            self.correct(l + 1);
-            let (head, tail) = self.levels.split_at_mut(l + 1);
+            Self::correct(levels, l + 1);
+            let (head, tail) = levels.split_at_mut(l + 1);
             let (level, coarse) = (&mut head[l], &tail[0]);
             for i in 0..level.nx {
                 for k in 0..level.even {
@@ -850,7 +859,7 @@ impl LineMultigrid {
                 }
             }
         }
-        let level = &mut self.levels[l];
+        let level = &mut levels[l];
         level.relax(true);
         level.relax(false);
     }
@@ -883,7 +892,7 @@ mod tests {
             for (nx, ny) in [(3, 3), (5, 64), (33, 33), (64, 64), (129, 129), (200, 31), (16, 4096)] {
                 for a in [1e-6, 1e-2, 0.25, 1.0, 4.0, 100.0, 1e6] {
                     let m = poisson(nx, ny, a, periodic);
-                    let mut mg = LineMultigrid::new(nx, ny, periodic, false);
+                    let mut mg = LineMultigrid::new(nx, ny, periodic);
                     mg.setup(&m).unwrap();
                     let b: Vec<f64> =
                         (0..nx * ny).map(|k| ((k * 7919) % 1009) as f64 / 1009.0 - 0.3).collect();
@@ -917,7 +926,7 @@ mod tests {
                 m.gy[k] = if j + 1 < ny { 0.5 * (conductivity(i, j) + conductivity(i, j + 1)) } else { 0.0 };
             }
         }
-        let mut mg = LineMultigrid::new(nx, ny, false, false);
+        let mut mg = LineMultigrid::new(nx, ny, false);
         mg.setup(&m).unwrap();
         let mut v = vec![0.0; nx * ny];
         let done = mg.solve(&vec![1.0; nx * ny], &mut v, 1e-8, 40);
@@ -941,7 +950,7 @@ mod tests {
                 m.role[k] = Role::Carried;
             }
         }
-        let mut mg = LineMultigrid::new(nx, ny, false, true);
+        let mut mg = LineMultigrid::new(nx, ny, false);
         mg.setup(&m).unwrap();
         let (b, mut v) = (vec![1.0; nx * ny], vec![0.0; nx * ny]);
         let done = mg.solve(&b, &mut v, 1e-11, 60);
@@ -968,6 +977,6 @@ mod tests {
         let mut m = FivePoint::new(4, 4, false);
         // Neither tied to anything nor zero.
         m.gx.fill(f64::NAN);
-        assert!(LineMultigrid::new(4, 4, false, false).setup(&m).is_err());
+        assert!(LineMultigrid::new(4, 4, false).setup(&m).is_err());
     }
 }

@@ -21,7 +21,7 @@ pub struct Direct {
     /// Which film thickness counts for the flow between two nodes.
     #[serde(default)]
     pub flux: Flux,
-    /// Largest imbalance of a control volume over the largest flow by sliding, squeezing or pressures of the edges, from 1e-14 to 0.1.
+    /// Largest imbalance of a control volume over the largest flow between two or into one, from 1e-14 to 0.1.
     #[serde(default = "super::tolerance")]
     #[schemars(range(min = 1e-14, max = 0.1))]
     pub tolerance: f64,
@@ -53,12 +53,16 @@ impl Film2dSpec for Direct {
     fn build(&self, ctx: &Film2dCtx<'_>) -> Result<Box<dyn Film2d>, BuildError> {
         super::check_tolerance(self.tolerance)?;
         let problem = Problem::new(ctx.grid, self.flux)?;
-        let linear = Elimination::new(&problem, self.cavitation == Cavitation::MassConserving)?;
+        if !Elimination::fits(&problem.m) {
+            let what = format!("{} x {} nodes are too many for banded elimination", problem.nx, problem.ny);
+            return Err(BuildError::new(what).help("use the model `multigrid`"));
+        }
+        let linear = Elimination::new(&problem.m, self.cavitation == Cavitation::MassConserving);
         Ok(Box::new(Solver::new("direct", problem, linear, self.cavitation, self.tolerance)))
     }
 }
 
-struct Elimination {
+pub(super) struct Elimination {
     /// Where each node stands among the unknowns.
     place: Vec<usize>,
     symmetric: SymmetricBanded,
@@ -68,11 +72,20 @@ struct Elimination {
 }
 
 impl Elimination {
-    fn new(problem: &Problem, needs_general: bool) -> Result<Self, BuildError> {
-        let (nx, ny, n) = (problem.nx, problem.ny, problem.len());
-        // Folded, a ring has its neighbours two columns apart.
+    /// Sub-diagonals: the shorter side of the grid, twice over when a ring is folded so that its neighbours stand two columns apart.
+    fn half(m: &FivePoint) -> usize {
+        if m.periodic { 2 * m.ny } else { m.nx.min(m.ny) }
+    }
+
+    pub fn fits(m: &FivePoint) -> bool {
+        (m.nx * m.ny).saturating_mul(4 * Self::half(m) + 2) <= MOST
+    }
+
+    /// Work space; `general` for matrices that are not symmetric.
+    pub fn new(m: &FivePoint, general: bool) -> Self {
+        let (nx, ny, n) = (m.nx, m.ny, m.nx * m.ny);
         let column = |i: usize| {
-            if !problem.periodic {
+            if !m.periodic {
                 i
             } else if 2 * i < nx {
                 2 * i
@@ -80,27 +93,15 @@ impl Elimination {
                 2 * (nx - 1 - i) + 1
             }
         };
-        let by_line = !problem.periodic && nx <= ny;
-        let half = if by_line {
-            nx
-        } else if problem.periodic {
-            2 * ny
-        } else {
-            ny
-        };
-        let place = (0..n).map(|k| if by_line { k } else { column(k % nx) * ny + k / nx }).collect();
-        let width = half + 1 + if needs_general { 3 * half + 1 } else { 0 };
-        if n.saturating_mul(width) > MOST {
-            return Err(BuildError::new(format!("{nx} x {ny} nodes are too many for banded elimination"))
-                .help("use the model `multigrid`"));
-        }
-        Ok(Self {
-            place,
+        let by_line = !m.periodic && nx <= ny;
+        let half = Self::half(m);
+        Self {
+            place: (0..n).map(|k| if by_line { k } else { column(k % nx) * ny + k / nx }).collect(),
             symmetric: SymmetricBanded::new(n, half),
-            general: needs_general.then(|| Banded::new(n, half, half)),
+            general: general.then(|| Banded::new(n, half, half)),
             is_symmetric: true,
             work: vec![0.0; n],
-        })
+        }
     }
 }
 

@@ -5,6 +5,7 @@ use gudgeon_numerics::multigrid::{FivePoint, LineMultigrid};
 use serde::{Deserialize, Serialize};
 
 use super::complementarity::{Linear, Solver};
+use super::direct::Elimination;
 use super::problem::Problem;
 use super::{Cavitation, Flux};
 
@@ -24,7 +25,7 @@ pub struct Multigrid {
     /// Which film thickness counts for the flow between two nodes.
     #[serde(default)]
     pub flux: Flux,
-    /// Largest imbalance of a control volume over the largest flow by sliding, squeezing or pressures of the edges, from 1e-14 to 0.1.
+    /// Largest imbalance of a control volume over the largest flow between two or into one, from 1e-14 to 0.1.
     #[serde(default = "super::tolerance")]
     #[schemars(range(min = 1e-14, max = 0.1))]
     pub tolerance: f64,
@@ -54,23 +55,51 @@ impl Film2dSpec for Multigrid {
     fn build(&self, ctx: &Film2dCtx<'_>) -> Result<Box<dyn Film2d>, BuildError> {
         super::check_tolerance(self.tolerance)?;
         let problem = Problem::new(ctx.grid, self.flux)?;
-        let carries = self.cavitation == Cavitation::MassConserving;
-        let linear = Cycling { grids: LineMultigrid::new(problem.nx, problem.ny, problem.periodic, carries) };
+        let linear = Cycling {
+            grids: LineMultigrid::new(problem.nx, problem.ny, problem.periodic),
+            fallback: None,
+            failed: None,
+            symmetric: true,
+        };
         Ok(Box::new(Solver::new("multigrid", problem, linear, self.cavitation, self.tolerance)))
     }
 }
 
 struct Cycling {
     grids: LineMultigrid,
+    /// Elimination, made when it is first needed: where the film changes a thousandfold from node to node, cycles may not help.
+    fallback: Option<Elimination>,
+    /// Why the grids cannot be used for the present matrix.
+    failed: Option<Singular>,
+    symmetric: bool,
 }
 
 impl Linear for Cycling {
-    fn factor(&mut self, m: &FivePoint, _: bool) -> Result<(), Singular> {
-        self.grids.setup(m)
+    fn factor(&mut self, m: &FivePoint, symmetric: bool) -> Result<(), Singular> {
+        self.symmetric = symmetric;
+        self.failed = self.grids.setup(m).err();
+        match self.failed {
+            // Too large for elimination.
+            Some(s) if self.fallback.is_none() && !Elimination::fits(m) => Err(s),
+            _ => Ok(()),
+        }
     }
 
-    fn solve(&mut self, _: &FivePoint, b: &[f64], z: &mut [f64], target: f64) -> (usize, f64) {
-        let done = self.grids.solve(b, z, target, 60);
-        (done.cycles, done.residual)
+    fn solve(&mut self, m: &FivePoint, b: &[f64], z: &mut [f64], target: f64) -> (usize, f64) {
+        let mut cycles = 0;
+        let mut left = f64::INFINITY;
+        if self.failed.is_none() {
+            let done = self.grids.solve(b, z, target, 60);
+            (cycles, left) = (done.cycles, done.residual);
+        }
+        if left <= target || !Elimination::fits(m) {
+            return (cycles, left);
+        }
+        let fallback = self.fallback.get_or_insert_with(|| Elimination::new(m, true));
+        if fallback.factor(m, self.symmetric).is_err() {
+            return (cycles, left);
+        }
+        let (more, residual) = fallback.solve(m, b, z, target);
+        (cycles + more, residual)
     }
 }

@@ -320,20 +320,24 @@ impl Problem {
         }
     }
 
-    /// Largest flow between two nodes, and the largest storage.
-    fn largest_flow(&self, p: &[f64]) -> f64 {
+    /// Largest flow between two nodes or into one, and the residual that rounding leaves of such pressures.
+    pub fn largest_flow(&self, p: &[f64]) -> (f64, f64) {
         let nx = self.nx;
-        let mut most = self.scale;
+        let (mut most, mut product) = (self.scale, 0.0_f64);
         for j in 0..self.ny {
             for i in 0..nx {
                 let k = j * nx + i;
-                most = most.max((self.m.gx[k] * (p[k] - p[self.after(i, k)])).abs());
+                let (gx, gy, next) = (self.m.gx[k], self.m.gy[k], self.after(i, k));
+                most = most.max((gx * (p[k] - p[next])).abs());
+                product = product.max((gx * p[k]).abs()).max((gx * p[next]).abs());
                 if j + 1 < self.ny {
-                    most = most.max((self.m.gy[k] * (p[k] - p[k + nx])).abs());
+                    most = most.max((gy * (p[k] - p[k + nx])).abs());
+                    product = product.max((gy * p[k]).abs()).max((gy * p[k + nx]).abs());
                 }
             }
         }
-        most
+        // A row sums eight such products, each rounded to 1e-16.
+        (most, 2e-15 * product)
     }
 
     /// What is unknown at each node: the void of the nodes `cavitated`, the pressure of the others. With `carried` false, cavitated nodes have no
@@ -355,38 +359,13 @@ impl Problem {
         }
     }
 
-    /// Sets the film up for one cause of pressure and without cavitation: flows, the pressures of the edges in `p` and zero inside. `balance` is
-    /// overwritten. Returns the largest flow that the cause leaves unbalanced.
-    pub fn cause(
-        &mut self,
-        inp: &Film2dIn<'_>,
-        mode: &FilmMode<'_>,
-        p: &mut [f64],
-        void: &mut [f64],
-        balance: &mut [f64],
-    ) -> f64 {
+    /// Sets the film up for one cause of pressure and without cavitation: flows, the pressures of the edges in `p` and zero inside.
+    pub fn cause(&mut self, inp: &Film2dIn<'_>, mode: &FilmMode<'_>, p: &mut [f64], void: &mut [f64]) {
         let plain = Film2dIn { edge_pressure: mode.edge_pressure, p_cav: 0.0, history: None, ..*inp };
         self.drive(&plain, mode.u, mode.dhdt, false);
         p.fill(0.0);
         self.set_edges(&plain, false, p, void);
         void.fill(0.0);
-        self.balance(p, void, balance);
-        let inner = balance.iter().zip(&self.edge).filter(|(_, e)| **e == 4);
-        inner.fold(0.0_f64, |a, (b, _)| a.max(b.abs()))
-    }
-
-    /// The flow to which residuals are compared: the largest by sliding and squeezing, and what the difference of the pressures of the edges would
-    /// drive.
-    pub fn reference(&self, inp: &Film2dIn<'_>, cavitates: bool) -> f64 {
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for (e, &pe) in self.grid.edges.iter().zip(&inp.edge_pressure) {
-            if *e == Edge::Pressure {
-                let pe = if cavitates { pe.max(inp.p_cav) } else { pe };
-                (low, high) = (low.min(pe), high.max(pe));
-            }
-        }
-        let most = self.m.gx.iter().chain(&self.m.gy).fold(0.0_f64, |a, &b| a.max(b));
-        self.scale + most * (high - low)
     }
 
     /// Forces, flows and balances of a film. `balance` is overwritten.
@@ -445,7 +424,7 @@ impl Problem {
             out.cavity += w * line[4];
         }
         out.p_max = inp.p_cav + top;
-        let most = self.largest_flow(p);
+        let (most, _) = self.largest_flow(p);
         out.residual = if most > 0.0 { worst / most } else { worst };
         out
     }

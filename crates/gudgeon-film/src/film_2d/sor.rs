@@ -20,7 +20,7 @@ pub struct Sor {
     /// Which film thickness counts for the flow between two nodes.
     #[serde(default)]
     pub flux: Flux,
-    /// Largest imbalance of a control volume over the largest flow by sliding, squeezing or pressures of the edges, from 1e-14 to 0.1.
+    /// Largest imbalance of a control volume over the largest flow between two or into one, from 1e-14 to 0.1.
     #[serde(default = "super::tolerance")]
     #[schemars(range(min = 1e-14, max = 0.1))]
     pub tolerance: f64,
@@ -119,7 +119,7 @@ impl Relaxation {
     }
 
     /// Sweeps until the balances close. `signed` pressures may fall below that of the cavity.
-    fn sweep(&mut self, signed: bool, carried: bool, reference: f64) -> Result<usize, EvalError> {
+    fn sweep(&mut self, signed: bool, carried: bool) -> Result<usize, EvalError> {
         let omega = self.relaxation();
         let n = self.problem.len();
         for sweep in 1..=self.spec.most_sweeps {
@@ -132,10 +132,8 @@ impl Relaxation {
             }
             if sweep % 10 == 0 || sweep == self.spec.most_sweeps {
                 self.problem.balance(&self.p, &self.void, &mut self.b);
-                let (mut worst, mut top, mut c) = (0.0_f64, 0.0_f64, 0.0_f64);
+                let mut worst = 0.0_f64;
                 for k in 0..n {
-                    top = top.max(self.p[k].abs());
-                    c = c.max(self.problem.m.gx[k]).max(self.problem.m.gy[k]);
                     // At p_cav a surplus is what the condition asks for, unless it is kept account of.
                     let allowed = !signed && !carried && self.p[k] <= 0.0 && self.b[k] > 0.0;
                     if self.problem.edge[k] == 4 && !allowed {
@@ -143,7 +141,8 @@ impl Relaxation {
                         worst = if r <= worst { worst } else { r };
                     }
                 }
-                if worst <= (self.spec.tolerance * reference).max(4e-15 * c * top) {
+                let (most, rounding) = self.problem.largest_flow(&self.p);
+                if worst <= rounding.max(self.spec.tolerance * most) {
                     return Ok(sweep);
                 }
                 if !worst.is_finite() {
@@ -217,9 +216,8 @@ impl Film2d for Relaxation {
             self.void.fill(0.0);
         }
         let signed = matches!(cavitation, Cavitation::FullSommerfeld | Cavitation::HalfSommerfeld);
-        let reference = self.problem.reference(inp, cavitates);
         self.warm = false;
-        let sweeps = self.sweep(signed, conserves, reference)?;
+        let sweeps = self.sweep(signed, conserves)?;
         self.warm = true;
         for k in 0..self.p.len() {
             let p = if cavitates { self.p[k].max(0.0) } else { self.p[k] };
@@ -257,8 +255,8 @@ impl Film2d for Relaxation {
         self.warm = false;
         let mut sweeps = 0;
         for (mode, out) in modes.iter().zip(p.chunks_exact_mut(n)) {
-            let reference = self.problem.cause(inp, mode, &mut self.p, &mut self.void, &mut self.b);
-            sweeps += self.sweep(true, false, reference)?;
+            self.problem.cause(inp, mode, &mut self.p, &mut self.void);
+            sweeps += self.sweep(true, false)?;
             out.copy_from_slice(&self.p);
         }
         Ok(sweeps)
