@@ -724,7 +724,7 @@ impl Numbers {
 fn films_of_all_kinds_are_found() {
     let mut numbers = Numbers(1);
     let mut failed = Vec::new();
-    let runs = 400;
+    let runs = 1000;
     for run in 0..runs {
         let (nx, ny) = (3 + (40.0 * numbers.next()) as usize, 3 + (30.0 * numbers.next()) as usize);
         let (length, width) = (numbers.between(1e-4, 0.1), numbers.between(1e-4, 0.1));
@@ -753,6 +753,8 @@ fn films_of_all_kinds_are_found() {
         let inp = Film2dIn { dhdt: &dhdt, edge_pressure, ..Film2dIn::new(&h, u, 0.01) };
         let mut film = build(&spec, &grid);
         match film.solve(&inp) {
+            // Cavitated all round, a ring has no steady film unless it knows what it held.
+            Err(e) if grid.is_periodic() && e.to_string().contains("closes on itself") => {}
             Err(e) => failed.push(format!("{run} {nx}x{ny} {cavitation:?}: {e}")),
             Ok(out) => {
                 assert!(film.pressure().iter().all(|p| p.is_finite() && *p >= 0.0), "{run}");

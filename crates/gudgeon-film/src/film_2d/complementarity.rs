@@ -77,7 +77,7 @@ impl<L: Linear> Solver<L> {
 
     /// Residual to aim at: the tolerance times the largest flow of the present film, or what rounding leaves.
     fn target(&self) -> f64 {
-        let (most, rounding) = self.problem.largest_flow(&self.p);
+        let (most, rounding) = self.problem.largest_flow(&self.p, &self.void);
         rounding.max(self.tolerance * most)
     }
 
@@ -126,7 +126,16 @@ impl<L: Linear> Solver<L> {
         Err(self.slow(*cycles))
     }
 
+    /// Whether a line of a ring is cavitated all round: what is in it never leaves.
+    fn closed(&self) -> bool {
+        self.problem.periodic && self.cavitated.chunks(self.problem.nx).any(|line| line.iter().all(|c| *c))
+    }
+
     fn slow(&self, cycles: usize) -> EvalError {
+        if self.closed() {
+            let what = "a cavity that closes on itself may hold any amount of oil: there is no steady film";
+            return EvalError::recoverable(self.model, what);
+        }
         EvalError::recoverable(
             self.model,
             format!("no convergence of the linear system after {cycles} cycles"),
@@ -214,7 +223,9 @@ impl<L: Linear> Solver<L> {
                 }
             };
             if changed == 0 {
-                return Ok((iteration, cycles));
+                // More void than room is no film, however well the equations hold.
+                let most = self.void.iter().fold(0.0_f64, |a, &b| a.max(b));
+                return if most <= 1.0 + 1e-6 { Ok((iteration, cycles)) } else { Err(self.slow(cycles)) };
             }
             let top = self.p.iter().fold(0.0_f64, |a, &b| a.max(b));
             for k in 0..self.p.len() {

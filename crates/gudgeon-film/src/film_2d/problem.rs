@@ -321,7 +321,7 @@ impl Problem {
     }
 
     /// Largest flow between two nodes or into one, and the residual that rounding leaves of such pressures.
-    pub fn largest_flow(&self, p: &[f64]) -> (f64, f64) {
+    pub fn largest_flow(&self, p: &[f64], void: &[f64]) -> (f64, f64) {
         let nx = self.nx;
         let (mut most, mut product) = (self.scale, 0.0_f64);
         for j in 0..self.ny {
@@ -330,6 +330,8 @@ impl Problem {
                 let (gx, gy, next) = (self.m.gx[k], self.m.gy[k], self.after(i, k));
                 most = most.max((gx * (p[k] - p[next])).abs());
                 product = product.max((gx * p[k]).abs()).max((gx * p[next]).abs());
+                product = product.max(self.m.qx[k].abs() * void[k].abs().max(void[next].abs()));
+                product = product.max((self.m.hold[k] * void[k]).abs());
                 if j + 1 < self.ny {
                     most = most.max((gy * (p[k] - p[k + nx])).abs());
                     product = product.max((gy * p[k]).abs()).max((gy * p[k + nx]).abs());
@@ -424,7 +426,7 @@ impl Problem {
             out.cavity += w * line[4];
         }
         out.p_max = inp.p_cav + top;
-        let (most, _) = self.largest_flow(p);
+        let (most, _) = self.largest_flow(p, void);
         out.residual = if most > 0.0 { worst / most } else { worst };
         out
     }

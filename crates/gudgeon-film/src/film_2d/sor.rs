@@ -141,7 +141,7 @@ impl Relaxation {
                         worst = if r <= worst { worst } else { r };
                     }
                 }
-                let (most, rounding) = self.problem.largest_flow(&self.p);
+                let (most, rounding) = self.problem.largest_flow(&self.p, &self.void);
                 if worst <= rounding.max(self.spec.tolerance * most) {
                     return Ok(sweep);
                 }
