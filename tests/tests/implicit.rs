@@ -143,7 +143,7 @@ fn runs_repeat_bit_by_bit() {
         let bits = |r: &RunResult| -> Vec<u64> {
             let results = r.results.values().map(|v| v.value);
             let series = r.series.columns.iter().flat_map(|c| c.values.iter().copied());
-            results.chain(r.series.theta_deg.iter().copied()).chain(series).map(f64::to_bits).collect()
+            results.chain(r.series.axis.values.iter().copied()).chain(series).map(f64::to_bits).collect()
         };
         assert_eq!(bits(&r[0]), bits(&r[1]), "{case}");
         assert_eq!(r[0].solver, r[1].solver, "{case}");

@@ -24,7 +24,7 @@ fn kilowatts(r: &RunResult, ring: usize) -> f64 {
 fn angles(r: &RunResult, ring: usize, seat: impl Fn(f64) -> bool) -> Vec<f64> {
     // The last row repeats the first.
     let e = column(r, &format!("ring{ring}.position"));
-    (0..e.len() - 1).filter(|k| seat(e[*k])).map(|k| r.series.theta_deg[k]).collect()
+    (0..e.len() - 1).filter(|k| seat(e[*k])).map(|k| r.series.axis.values[k]).collect()
 }
 
 fn unstable(e: f64) -> bool {
@@ -58,7 +58,7 @@ fn past_ring1(r: &RunResult) -> Vec<f64> {
 /// Least and greatest value with their angles.
 fn extremes(r: &RunResult, v: &[f64]) -> [(f64, f64); 2] {
     let mut out = [(f64::INFINITY, 0.0), (f64::NEG_INFINITY, 0.0)];
-    for (t, v) in r.series.theta_deg.iter().zip(v) {
+    for (t, v) in r.series.axis.values.iter().zip(v) {
         if *v < out[0].0 {
             out[0] = (*v, *t);
         }
@@ -160,7 +160,7 @@ fn land2(r: &RunResult) -> (f64, f64) {
 
 /// The greater of the local maxima of land 2 in 390 to 430 deg.
 fn earlier_maximum(r: &RunResult) -> (f64, f64) {
-    let (theta, p) = (&r.series.theta_deg, column(r, "land2.p"));
+    let (theta, p) = (&r.series.axis.values, column(r, "land2.p"));
     (1..p.len() - 1)
         .filter(|k| (390.0..430.0).contains(&theta[*k]) && p[*k] > p[k - 1] && p[*k] >= p[k + 1])
         .fold((0.0, f64::NAN), |m, k| if p[k] > m.0 { (p[k], theta[k]) } else { m })
@@ -210,7 +210,7 @@ fn pressures(t: &mut Table, runs: &[RunResult]) {
     t.note("P4", "its angle rises with speed", &text, all.windows(2).all(|w| w[1].1 > w[0].1));
     // Where both fall together at the end of the exhaust they differ by less than pressures are good for, 0.5 %.
     let above = |r: &RunResult, from: f64, to: f64| {
-        let rows = r.series.theta_deg.iter().zip(column(r, "land2.p").iter().zip(column(r, "cylinder.p")));
+        let rows = r.series.axis.values.iter().zip(column(r, "land2.p").iter().zip(column(r, "cylinder.p")));
         let inside: Vec<bool> =
             rows.filter(|(th, _)| **th >= from && **th <= to).map(|(_, (l, c))| *l > 0.995 * c).collect();
         inside.iter().filter(|b| **b).count() as f64 / inside.len() as f64
@@ -234,7 +234,8 @@ fn pressures(t: &mut Table, runs: &[RunResult]) {
     }
     let crossing = |r: &RunResult| {
         r.series
-            .theta_deg
+            .axis
+            .values
             .iter()
             .zip(column(r, "land2.p").iter().zip(column(r, "cylinder.p")))
             .find(|(th, (l, c))| **th > 380.0 && l > c)
@@ -587,7 +588,8 @@ fn films(t: &mut Table, runs: &[RunResult]) {
         let r = &runs[k];
         let floor: Vec<f64> = r
             .series
-            .theta_deg
+            .axis
+            .values
             .iter()
             .zip(column(r, "ring1.h_min"))
             .filter(|(t, h)| **h < 0.2e-6 * (1.0 + 1e-6) && (300.0..420.0).contains(*t))

@@ -226,7 +226,8 @@ fn golden(t: &mut Table, r: &RunResult) {
     }
     let crossing = r
         .series
-        .theta_deg
+        .axis
+        .values
         .iter()
         .zip(column(r, "land2.p").iter().zip(column(r, "cylinder.p")))
         .find(|(th, (land, cylinder))| **th > 372.0 && land > cylinder)

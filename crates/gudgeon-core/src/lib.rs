@@ -13,6 +13,7 @@
 //! * Pressures are absolute unless said otherwise. `p_cav` is the pressure below which a film cannot go.
 
 pub mod error;
+pub mod face;
 pub mod geometry;
 pub mod kinds;
 pub mod quantity;

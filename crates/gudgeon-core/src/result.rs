@@ -1,7 +1,7 @@
 //! What a run produces, independent of how it is written: the interface between the simulation and the report.
 
 use indexmap::IndexMap;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A result value.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -59,8 +59,11 @@ pub struct SolverReport {
     pub notes: Vec<String>,
 }
 
+/// Name of the axis of a [`Series`] over the crank angle.
+pub const CRANK_ANGLE: &str = "theta";
+
 /// One column of a series.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Column {
     /// `ring1.h_min`, `land2.p`.
     pub name: String,
@@ -70,16 +73,35 @@ pub struct Column {
     pub values: Vec<f64>,
 }
 
-/// Values over the cycle.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+/// Columns over a common axis.
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Series {
-    /// Crank angle of each row \[deg\].
-    pub theta_deg: Vec<f64>,
-    /// Columns.
+    /// What the rows are at: `theta` \[deg\] over a cycle, `x` \[m\] along a film, `t` \[s\].
+    pub axis: Column,
+    /// Columns, as long as the axis.
     pub columns: Vec<Column>,
 }
 
+/// No rows, over the crank angle.
+impl Default for Series {
+    fn default() -> Self {
+        Self::over_cycle(Vec::new(), Vec::new())
+    }
+}
+
 impl Series {
+    /// A series over the crank angle \[deg\].
+    #[must_use]
+    pub fn over_cycle(theta_deg: Vec<f64>, columns: Vec<Column>) -> Self {
+        Self { axis: Column { name: CRANK_ANGLE.into(), unit: "deg".into(), values: theta_deg }, columns }
+    }
+
+    /// Whether the rows are crank angles.
+    #[must_use]
+    pub fn is_over_cycle(&self) -> bool {
+        self.axis.name == CRANK_ANGLE
+    }
+
     /// One column by name.
     #[must_use]
     pub fn get(&self, name: &str) -> Option<&Column> {
@@ -147,6 +169,82 @@ pub struct PackSection {
     pub rings: Vec<SectionRing>,
 }
 
+/// A drawing of columns of a table.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Figure {
+    /// What it shows.
+    pub title: String,
+    /// One line of explanation.
+    #[serde(default)]
+    pub hint: String,
+    /// The table it reads: `series`, or a key of [`RunResult::tables`].
+    pub table: String,
+    /// How it is drawn.
+    pub kind: FigureKind,
+}
+
+/// Kinds of [`Figure`]. Columns are named; the axis of the table by its own name.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FigureKind {
+    /// Curves over one column.
+    Lines {
+        /// Column along the abscissa.
+        x: String,
+        /// Label and column of each curve. Curves share a unit.
+        lines: Vec<(String, String)>,
+        /// Logarithmic abscissa.
+        log_x: bool,
+        /// Logarithmic ordinate.
+        log_y: bool,
+    },
+    /// Colours over a rectangular grid, one row per point; rows of equal `y` follow each other.
+    Map {
+        /// Column along the abscissa.
+        x: String,
+        /// Column along the ordinate.
+        y: String,
+        /// Column shown as colour.
+        value: String,
+    },
+}
+
+/// A result beside the value that a source gives for it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Check {
+    /// What was changed against the case as it stands: `rig.speed=1 m/s`; empty for the case itself.
+    pub set: Vec<String>,
+    /// Name of the result.
+    pub result: String,
+    /// Computed value.
+    pub value: f64,
+    /// Value of the source.
+    pub reference: f64,
+    /// Unit of both.
+    pub unit: String,
+    /// Admitted deviation, relative to the reference (absolute when that is zero).
+    pub tolerance: f64,
+    /// Where the reference comes from.
+    pub source: String,
+    /// Whether it is a defect of the model, wanted to be seen, that the deviation is larger than `tolerance`.
+    pub must_fail: bool,
+}
+
+impl Check {
+    /// Deviation relative to the reference, or from zero when the reference is zero.
+    #[must_use]
+    pub fn deviation(&self) -> f64 {
+        let d = self.value - self.reference;
+        if self.reference == 0.0 { d } else { d / self.reference.abs() }
+    }
+
+    /// Whether the result is as the case says it must be.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        (self.deviation().abs() <= self.tolerance) != self.must_fail
+    }
+}
+
 /// Everything a run of one case produced.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct RunResult {
@@ -174,9 +272,16 @@ pub struct RunResult {
     pub solver: SolverReport,
     /// Wall-clock seconds by phase: `build`, `solve`, `total`.
     pub seconds: IndexMap<String, f64>,
-    /// Curves over the cycle.
+    /// Curves over the cycle, or over what the scene runs along.
     #[serde(skip)]
     pub series: Series,
+    /// Further tables, each a file of its own, by file name without `.csv`.
+    #[serde(skip)]
+    pub tables: IndexMap<String, Series>,
+    /// Drawings of the series and the tables, besides those of curves over the cycle.
+    pub figures: Vec<Figure>,
+    /// Results beside the values of a source.
+    pub checks: Vec<Check>,
     /// What happened when.
     pub events: Vec<Event>,
     /// Other periodic solutions.

@@ -228,12 +228,17 @@ struct Side<S> {
     /// Where the full film was cut last, and the last squeeze velocity of one.
     cuts: [f64; 2],
     v_cut: Option<f64>,
+    /// Where the part of the face that is covered with oil begins.
+    from: f64,
 }
 
 #[derive(Debug)]
 struct Film<S> {
     up: Side<S>,
     down: Side<S>,
+    /// Length of the whole face, and where its film begins.
+    whole: f64,
+    from: f64,
     cavitation: Cavitation,
     shear: CavityShear,
 }
@@ -250,7 +255,24 @@ impl<S: Shape> Side<S> {
             trail: None,
             cuts: [f64::NAN; 2],
             v_cut: None,
+            from: 0.0,
         }
+    }
+
+    /// Confines the film to the face between `from` and `to` of the whole.
+    fn set_extent(&mut self, from: f64, to: f64) {
+        self.face.crop(from, to);
+        (self.lead, self.trail) = (None, None);
+        // Places of the last film, seen from the new beginning.
+        let (shift, len) = (self.from - from, to - from);
+        for start in &mut self.starts {
+            *start = start
+                .map(|w| Warm { xr: w.xr + shift, xf: (w.xf + shift).min(len), ..w })
+                .filter(|w| w.xr > 0.0 && w.xr < len && w.xf > w.xr);
+        }
+        self.warm = None;
+        self.cuts = [f64::NAN; 2];
+        self.from = from;
     }
 
     fn set_film(&mut self, h: f64) {
@@ -819,7 +841,14 @@ impl<S: Shape> Side<S> {
             ring_shear: viscous - 0.5 * j,
             liner_shear: viscous + 0.5 * j,
             slope_force: j - k * ends,
+            flux: self.flux(f),
         }
+    }
+
+    /// Flux at the leading edge in this sliding direction; that of the cut film where it is cut.
+    fn flux(&self, f: &Flow) -> f64 {
+        let q = self.islands.first().map_or(0.0, |l| l.q);
+        f.u * self.face.film() + q - f.v * self.face.s(0.0)
     }
 
     /// Highest pressure over `12 μ` and extent of the film that has it, of the films found last.
@@ -981,7 +1010,8 @@ fn no_convergence(what: &'static str) -> EvalError {
 
 impl<S: Shape> Film<S> {
     fn new(up: S, down: S, cavitation: Cavitation, shear: CavityShear) -> Self {
-        Self { up: Side::new(up), down: Side::new(down), cavitation, shear }
+        let whole = up.len();
+        Self { up: Side::new(up), down: Side::new(down), whole, from: 0.0, cavitation, shear }
     }
 
     /// Checks the inputs and turns them so that the liner moves along `+x`.
@@ -1020,22 +1050,39 @@ fn finite(x: f64, what: &'static str) -> Result<f64, EvalError> {
 }
 
 /// Forces in the frame of the ring, when they are numbers.
-fn told(mut o: FaceForces, turned: bool) -> Result<FaceForces, EvalError> {
+fn told<S: Shape>(
+    mut o: FaceForces,
+    turned: bool,
+    side: &Side<S>,
+    f: &Flow,
+) -> Result<FaceForces, EvalError> {
     if turned {
+        // The lower end is the trailing one then; the flux changes along the film with what it squeezes out.
+        o.flux = f.v * side.face.len() - o.flux;
         o.ring_shear = -o.ring_shear;
         o.liner_shear = -o.liner_shear;
         o.slope_force = -o.slope_force;
     }
-    finite(o.load + o.load_rate + o.ring_shear + o.liner_shear + o.slope_force, "film")?;
+    finite(o.load + o.load_rate + o.ring_shear + o.liner_shear + o.slope_force + o.flux, "film")?;
     Ok(o)
 }
 
 impl<S: Shape> Hydrodynamics for Film<S> {
+    fn set_extent(&mut self, from: f64, to: f64) -> bool {
+        if !(from >= 0.0 && to <= self.whole && from < to) {
+            return false;
+        }
+        self.up.set_extent(from, to);
+        self.down.set_extent(self.whole - to, self.whole - from);
+        self.from = from;
+        true
+    }
+
     fn evaluate(&mut self, inp: &FaceIn, hdot: f64) -> Result<FaceOut, EvalError> {
-        let (cavitation, shear) = (self.cavitation, self.shear);
+        let (cavitation, shear, from) = (self.cavitation, self.shear, self.from);
         let (side, f, turned) = self.enter(inp, hdot)?;
         side.solve(&f, cavitation)?;
-        let o = told(side.forces(&f, cavitation, shear, inp.mu), turned)?;
+        let o = told(side.forces(&f, cavitation, shear, inp.mu), turned, side, &f)?;
         let (high, (a, b)) = side.peak(&f);
         let len = side.face.len();
         Ok(FaceOut {
@@ -1044,8 +1091,9 @@ impl<S: Shape> Hydrodynamics for Film<S> {
             ring_shear: o.ring_shear,
             liner_shear: o.liner_shear,
             slope_force: o.slope_force,
+            flux: o.flux,
             p_max: finite(inp.p_cav + 12.0 * inp.mu * high, "pressure")?,
-            full_film: if turned { (len - b, len - a) } else { (a, b) },
+            full_film: if turned { (from + len - b, from + len - a) } else { (from + a, from + b) },
         })
     }
 
@@ -1053,7 +1101,7 @@ impl<S: Shape> Hydrodynamics for Film<S> {
         let (cavitation, shear) = (self.cavitation, self.shear);
         let (side, f, turned) = self.enter(inp, hdot)?;
         side.solve(&f, cavitation)?;
-        told(side.forces(&f, cavitation, shear, inp.mu), turned)
+        told(side.forces(&f, cavitation, shear, inp.mu), turned, side, &f)
     }
 
     fn load(&mut self, inp: &FaceIn, hdot: f64) -> Result<(f64, f64), EvalError> {
@@ -1081,11 +1129,11 @@ impl<S: Shape> Hydrodynamics for Film<S> {
         let target = load / (12.0 * inp.mu);
         f.v = 0.0;
         side.squeeze(&mut f, cavitation, target)?;
-        Ok((f.v, told(side.forces(&f, cavitation, shear, inp.mu), turned)?))
+        Ok((f.v, told(side.forces(&f, cavitation, shear, inp.mu), turned, side, &f)?))
     }
 
     fn profile(&mut self, inp: &FaceIn, hdot: f64, out: &mut [(f64, f64, f64)]) -> Result<(), EvalError> {
-        let cavitation = self.cavitation;
+        let (cavitation, from) = (self.cavitation, self.from);
         let (side, f, turned) = self.enter(inp, hdot)?;
         side.solve(&f, cavitation)?;
         let n = out.len();
@@ -1096,7 +1144,7 @@ impl<S: Shape> Hydrodynamics for Film<S> {
             let along = if turned { len - x } else { x };
             let i = side.face.piece_of(along);
             let p = inp.p_cav + 12.0 * inp.mu * side.pressure(&f, i, along);
-            *o = (x, inp.h + side.face.drop(i, along), finite(p, "pressure")?);
+            *o = (from + x, inp.h + side.face.drop(i, along), finite(p, "pressure")?);
         }
         Ok(())
     }

@@ -207,6 +207,9 @@ pub(crate) trait Shape: Send {
     fn lowest_between(&self, ia: usize, xa: f64, ib: usize, xb: f64) -> f64;
     /// Whether the slope never decreases, so that a film moving along `+x` has one cavity at most.
     fn convex(&self) -> bool;
+    /// Confines the face to what lies between `from` and `to` of the whole; `x` then counts from `from`. The film has to be set
+    /// again.
+    fn crop(&mut self, from: f64, to: f64);
     /// Fixes the film thickness at zero drop and prepares the integrals of the pieces.
     fn set_film(&mut self, h: f64);
     /// Film thickness at zero drop.
@@ -289,23 +292,38 @@ pub(crate) struct Parabola {
     /// `√(h κ)`
     root: f64,
     whole: Option<Moments>,
+    /// Apex on the whole face.
+    uncropped_apex: f64,
 }
 
 impl Parabola {
     pub fn new(len: f64, curvature: f64, apex: f64) -> Self {
-        let inside = (0.0..=len).contains(&apex);
-        let (a, b) = (curvature * apex * apex, curvature * (len - apex) * (len - apex));
-        Self {
+        let mut face = Self {
             len,
             curvature,
             apex,
-            x_ref: if inside { apex } else { 0.5 * len },
-            about_apex: inside,
-            lowest: if inside { a.min(b).min(0.0) } else { a.min(b) },
+            x_ref: 0.0,
+            about_apex: false,
+            lowest: 0.0,
             h: f64::NAN,
             root: f64::NAN,
             whole: None,
-        }
+            uncropped_apex: apex,
+        };
+        face.place(len, apex);
+        face
+    }
+
+    /// Sets what follows from length and apex.
+    fn place(&mut self, len: f64, apex: f64) {
+        let curvature = self.curvature;
+        let inside = (0.0..=len).contains(&apex);
+        let (a, b) = (curvature * apex * apex, curvature * (len - apex) * (len - apex));
+        (self.len, self.apex) = (len, apex);
+        self.x_ref = if inside { apex } else { 0.5 * len };
+        self.about_apex = inside;
+        self.lowest = if inside { a.min(b).min(0.0) } else { a.min(b) };
+        (self.h, self.whole) = (f64::NAN, None);
     }
 
     #[must_use]
@@ -454,6 +472,9 @@ impl Shape for Parabola {
         let ends = self.drop(0, xa).min(self.drop(0, xb));
         if (xa..=xb).contains(&self.apex) { ends.min(0.0) } else { ends }
     }
+    fn crop(&mut self, from: f64, to: f64) {
+        self.place(to - from, self.uncropped_apex - from);
+    }
     #[inline]
     fn convex(&self) -> bool {
         self.curvature >= 0.0
@@ -534,6 +555,8 @@ pub(crate) struct Table {
     heads: Vec<Three>,
     tails: Vec<Three>,
     whole: Moments,
+    /// Nodes and drops of the whole face.
+    uncropped: (Vec<f64>, Vec<f64>),
 }
 
 /// Leaves out the nodes of a straight line: those that lie on the line through their neighbours but for the rounding of the
@@ -576,17 +599,13 @@ impl Table {
 
     fn with_ref(len: f64, nodes: Vec<f64>, drops: Vec<f64>, low: usize) -> Self {
         let n = drops.len() - 1;
-        let line = |i: usize| {
-            let (x0, x1, d0, d1) = (nodes[i], nodes[i + 1], drops[i], drops[i + 1]);
-            Line { x0, x1, d0, d1, slope: (d1 - d0) / (x1 - x0) }
-        };
-        let lines: Vec<Line> = (0..n).map(line).collect();
-        Self {
+        let mut face = Self {
             len,
             x_ref: nodes[low],
             lowest: drops[low],
-            convex: lines.windows(2).all(|l| l[1].slope >= l[0].slope),
-            lines,
+            convex: false,
+            lines: Vec::with_capacity(n),
+            uncropped: (nodes.clone(), drops.clone()),
             nodes,
             drops,
             h: f64::NAN,
@@ -594,7 +613,20 @@ impl Table {
             heads: vec![Three::default(); n + 1],
             tails: vec![Three::default(); n + 1],
             whole: Moments::default(),
-        }
+        };
+        face.join();
+        face
+    }
+
+    /// Draws the lines between the nodes.
+    fn join(&mut self) {
+        let (nodes, drops) = (&self.nodes, &self.drops);
+        self.lines.clear();
+        self.lines.extend((0..drops.len() - 1).map(|i| {
+            let (x0, x1, d0, d1) = (nodes[i], nodes[i + 1], drops[i], drops[i + 1]);
+            Line { x0, x1, d0, d1, slope: (d1 - d0) / (x1 - x0) }
+        }));
+        self.convex = self.lines.windows(2).all(|l| l[1].slope >= l[0].slope);
     }
 
     #[must_use]
@@ -717,6 +749,38 @@ impl Shape for Table {
     #[inline]
     fn convex(&self) -> bool {
         self.convex
+    }
+    fn crop(&mut self, from: f64, to: f64) {
+        let (x, d) = &self.uncropped;
+        let n = x.len() - 1;
+        // Drop of the whole face at an end of the part.
+        let at = |p: f64| {
+            let k = x.partition_point(|v| *v <= p).clamp(1, n) - 1;
+            d[k] + (d[k + 1] - d[k]) * ((p - x[k]) / (x[k + 1] - x[k]))
+        };
+        self.nodes.clear();
+        self.drops.clear();
+        self.nodes.push(0.0);
+        self.drops.push(if from <= 0.0 { d[0] } else { at(from) });
+        // A node so near to an end that its line would have no slope to speak of belongs to the end.
+        let slack = 1e-9 * (to - from);
+        for (v, w) in x.iter().zip(d) {
+            if *v > from + slack && *v < to - slack {
+                self.nodes.push(v - from);
+                self.drops.push(*w);
+            }
+        }
+        self.nodes.push(to - from);
+        self.drops.push(if to >= x[n] { d[n] } else { at(to) });
+        let low = (0..self.drops.len()).fold(0, |l, k| if self.drops[k] < self.drops[l] { k } else { l });
+        (self.len, self.x_ref, self.lowest) = (to - from, self.nodes[low], self.drops[low]);
+        let pieces = self.drops.len() - 1;
+        self.parts.resize(pieces, Moments::default());
+        self.heads.resize(pieces + 1, Three::default());
+        self.tails.resize(pieces + 1, Three::default());
+        self.tails[pieces] = Three::default();
+        self.join();
+        self.h = f64::NAN;
     }
     fn set_film(&mut self, h: f64) {
         if self.h.to_bits() == h.to_bits() {

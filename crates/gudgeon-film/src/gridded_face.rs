@@ -264,6 +264,8 @@ impl Grid {
             ring_shear: shear - half_drag,
             liner_shear: shear + half_drag,
             slope_force,
+            // A clipped film has no flux of its own.
+            flux: 0.0,
             p_max: inp.p_cav + top.into_iter().fold(0.0, |a, b| if b > a { b } else { a }),
             full_film: self.full_film(work),
         }

@@ -1138,3 +1138,67 @@ fn load_is_continuous_through_rest_and_first_rupture() {
         before = Some(o.load);
     }
 }
+
+/// The flux of the film, in both sliding directions: r02 of the reference set (closed form in 40-digit arithmetic), and
+/// `q' = -∂h/∂t` from one end of a squeezed film to the other.
+#[test]
+fn flux_is_that_of_the_closed_form() {
+    let mut film = film(&barrel(), MassConserving);
+    let inp = |u: f64| inp(2e-6, u, 1e5, 1e5);
+    // Case A_jfo_U1. Thirteen digits: the moments are good to rounding, q is a quotient of two of them.
+    let q = 1.207576326888573e-6;
+    for (u, sign) in [(1.0, 1.0), (-1.0, -1.0)] {
+        let f = film.evaluate(&inp(u), 0.0).expect("a film").flux;
+        assert!((f - sign * q).abs() <= 1e-13 * q, "{u}: {f:e}");
+    }
+    // A symmetric film without sliding squeezes the same out of both ends.
+    let v = -1e-3_f64;
+    let f = film.evaluate(&inp(0.0), v).expect("a film").flux;
+    assert!((f - v * 0.6e-3).abs() <= 1e-13 * (v * 0.6e-3).abs(), "{f:e}");
+}
+
+/// A film confined to a part of a face is the film of a face that is no longer than that part.
+#[test]
+fn a_confined_film_is_that_of_a_shorter_face() {
+    let (a, b) = (0.15e-3, 0.9e-3);
+    let (k, apex) = (6e-6 / (0.6e-3 * 0.6e-3), 0.55e-3);
+    let drops = [4e-6, 1e-6, 0.0, 0.5e-6, 3e-6];
+    let table = FaceProfile::Table { length: 1.2e-3, drops: drops.to_vec() };
+    // The table's nodes are 0.3 mm apart: the part from 0.15 to 0.9 mm on a grid of 0.15 mm.
+    let part = FaceProfile::Table { length: b - a, drops: vec![2.5e-6, 1e-6, 0.5e-6, 0.0, 0.25e-6, 0.5e-6] };
+    let parabola = FaceProfile::Parabola { length: 1.2e-3, curvature: k, apex };
+    let short = FaceProfile::Parabola { length: b - a, curvature: k, apex: apex - a };
+    for (whole, part) in [(&parabola, &short), (&table, &part)] {
+        for cavitation in [MassConserving, SwiftStieber, FullSommerfeld] {
+            let (mut film, mut other) = (film(whole, cavitation), film(part, cavitation));
+            for (u, v) in [(8.0, 0.0), (-8.0, 1e-3), (0.0, -2e-3), (3.0, -1e-4)] {
+                let inp = FaceIn { h: 1.5e-6, u, p_bottom: 3e5, p_top: 2e6, p_cav: 1e5, mu: 0.01 };
+                // From the whole face and back again: what was found before must not matter.
+                let before = film.evaluate(&inp, v).expect("the whole film");
+                assert!(film.set_extent(a, b));
+                let x = film.evaluate(&inp, v).expect("the confined film");
+                let y = other.evaluate(&inp, v).expect("the short film");
+                for (x, y, size) in [
+                    (x.load, y.load, y.load),
+                    (x.ring_shear, y.ring_shear, y.liner_shear),
+                    (x.liner_shear, y.liner_shear, y.liner_shear),
+                    (x.slope_force, y.slope_force, y.liner_shear),
+                    (x.flux, y.flux, y.flux),
+                    (x.p_max, y.p_max, y.p_max),
+                    (x.full_film.0 - a, y.full_film.0, b),
+                    (x.full_film.1 - a, y.full_film.1, b),
+                ] {
+                    // The ends of the part are differences, good to rounding; roots of the film amplify that a thousandfold.
+                    assert!((x - y).abs() <= 1e-11 * size.abs(), "{cavitation:?} {u} {v}: {x:e} {y:e}");
+                }
+                assert!(film.set_extent(0.0, 1.2e-3));
+                let again = film.evaluate(&inp, v).expect("the whole film");
+                assert!((again.load - before.load).abs() <= 1e-11 * before.load.abs());
+            }
+        }
+    }
+    let mut film = film(&parabola, MassConserving);
+    assert!(
+        !film.set_extent(0.5e-3, 0.5e-3) && !film.set_extent(-1e-6, 1e-3) && !film.set_extent(0.0, 1.3e-3)
+    );
+}

@@ -10,4 +10,5 @@ use gudgeon_core as _;
 use gudgeon_film as _;
 use gudgeon_gas as _;
 use gudgeon_kinematics as _;
+use gudgeon_rig as _;
 use gudgeon_ring as _;

@@ -45,13 +45,16 @@ const MODELS: &[&str] = &[
     "oil/constant",
     "oil/vogel",
     "oil/vogel_grade",
+    "rig/cylinder_pressure",
+    "rig/kinematics",
+    "rig/ring_face",
     "ring_motion/newton_groove",
     "ring_motion/seated",
     "ring_motion/three_seat",
 ];
 
 /// How the physics of each kind is switched off: its `off` model, or the model that takes its place by giving the
-/// answer instead of computing it. A piston always moves, so `kinematics` has none.
+/// answer instead of computing it. A piston always moves, so `kinematics` has none; a bench without a model is none.
 const SWITCHED_OFF: &[(&str, Option<&str>)] = &[
     ("contact", Some("off")),
     ("cylinder_pressure", Some("constant")),
@@ -63,6 +66,7 @@ const SWITCHED_OFF: &[(&str, Option<&str>)] = &[
     ("hydrodynamics", Some("off")),
     ("kinematics", None),
     ("oil", Some("constant")),
+    ("rig", None),
     ("ring_motion", Some("seated")),
 ];
 

@@ -295,10 +295,14 @@ fn page(file: &File, series: &[(usize, &Series)]) -> String {
         }
         body.push_str("</tbody></table></section>\n");
     }
-    if series.iter().any(|(_, s)| !s.theta_deg.is_empty() && !s.columns.is_empty()) {
+    let drawn: Vec<_> =
+        series.iter().filter(|(_, s)| !s.axis.values.is_empty() && !s.columns.is_empty()).collect();
+    if drawn.iter().any(|(_, s)| s.is_over_cycle()) {
         body.push_str(
             "<section id=\"cycle\"><h2>Over the cycle</h2><div id=\"bar\"></div><div id=\"plots\"></div></section>\n",
         );
+    } else if !drawn.is_empty() {
+        body.push_str("<section id=\"curves\"><h2>Curves</h2><div id=\"overlay\"></div></section>\n");
     }
     let mut models: Vec<ModelEntry> = Vec::new();
     for m in ran.iter().filter_map(|v| v.run.as_ref()).flat_map(|r| &r.models) {
@@ -319,7 +323,7 @@ fn page(file: &File, series: &[(usize, &Series)]) -> String {
         .iter()
         .map(|(n, s)| {
             let label = file.variants.iter().find(|v| v.number == *n).map_or("", |v| v.label.as_str());
-            let columns = arrays.series(&s.theta_deg, s.columns.iter().filter(|c| overlaid(c)));
+            let columns = arrays.series(&s.axis, s.columns.iter().filter(|c| overlaid(c)));
             json!({ "number": n, "label": label, "series": columns })
         })
         .collect();

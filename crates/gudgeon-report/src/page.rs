@@ -12,6 +12,7 @@ use crate::summary::{BalanceSheet, ModelEntry, ResultValue, SkippedEntry, Solver
 const STYLE: &str = include_str!("assets/style.css");
 const CORE: &str = include_str!("assets/core.js");
 const PLOT: &str = include_str!("assets/plot.js");
+const FIGURE: &str = include_str!("assets/figure.js");
 const SECTION: &str = include_str!("assets/section.js");
 const RUN: &str = include_str!("assets/run.js");
 const COMPARE: &str = include_str!("assets/compare.js");
@@ -66,8 +67,8 @@ fn json_for_script(value: &Value) -> String {
 /// One whole page.
 pub(crate) fn document(kind: Kind, title: &str, body: &str, data: &Value) -> String {
     let scripts: &[&str] = match kind {
-        Kind::Run => &[CORE, PLOT, SECTION, RUN],
-        Kind::Comparison => &[CORE, PLOT, COMPARE],
+        Kind::Run => &[CORE, PLOT, SECTION, RUN, FIGURE],
+        Kind::Comparison => &[CORE, PLOT, COMPARE, FIGURE],
         Kind::Bench => &[CORE, BENCH],
     };
     let mut out = String::new();
@@ -135,33 +136,35 @@ impl Arrays {
         self.arrays.len() - 1
     }
 
-    /// `{"theta": index, "columns": [{"name", "unit", "at": index}], "every": stride}`.
-    pub(crate) fn series<'a>(
+    /// `{"axis": {"name", "unit", "at": index}, "columns": [the same], "every": stride}`.
+    pub(crate) fn series<'a>(&mut self, axis: &Column, columns: impl Iterator<Item = &'a Column>) -> Value {
+        self.thinned(axis, columns, axis.values.len().div_ceil(MAX_ROWS).max(1))
+    }
+
+    /// As [`Arrays::series`] with every row: a map cannot spare any.
+    pub(crate) fn whole(&mut self, table: &Series) -> Value {
+        self.thinned(&table.axis, table.columns.iter(), 1)
+    }
+
+    fn thinned<'a>(
         &mut self,
-        theta_deg: &[f64],
+        axis: &Column,
         columns: impl Iterator<Item = &'a Column>,
+        every: usize,
     ) -> Value {
-        let every = theta_deg.len().div_ceil(MAX_ROWS).max(1);
-        let theta = self.add(packed(theta_deg.iter().copied().step_by(every)));
+        let at = self.add(packed(axis.values.iter().copied().step_by(every)));
         let columns: Vec<Value> = columns
             .map(|c| {
                 let at = self.add(packed(c.values.iter().copied().step_by(every)));
                 json!({ "name": c.name, "unit": c.unit, "at": at })
             })
             .collect();
-        json!({ "theta": theta, "columns": columns, "every": every })
+        json!({ "axis": { "name": axis.name, "unit": axis.unit, "at": at }, "columns": columns, "every": every })
     }
 
     pub(crate) fn into_json(self) -> Value {
         self.arrays.into()
     }
-}
-
-/// Arrays and one series.
-pub(crate) fn one_series(series: &Series) -> (Value, Value) {
-    let mut arrays = Arrays::default();
-    let columns = arrays.series(&series.theta_deg, series.columns.iter());
-    (columns, arrays.into_json())
 }
 
 /// `<td>` with a number and its unit.
@@ -192,6 +195,9 @@ pub(crate) fn balance_section(balance: &BalanceSheet) -> String {
             balance.momentum,
         ),
     ];
+    if rows.iter().all(|(_, _, v)| v.is_none()) {
+        return String::new();
+    }
     let mut out = String::from(
         "<section id=\"balance\"><h2>Balance sheet</h2><p class=\"hint\">Relative closure over one cycle: what the \
          numerics lose. It should be small beside the accuracy you need.</p><table class=\"plain\"><tbody>",
@@ -324,7 +330,7 @@ mod tests {
 
     #[test]
     fn nothing_in_the_scripts_closes_their_element() {
-        for script in [CORE, PLOT, SECTION, RUN, COMPARE, BENCH] {
+        for script in [CORE, PLOT, FIGURE, SECTION, RUN, COMPARE, BENCH] {
             assert!(!script.to_lowercase().contains("</script"));
             assert!(!script.contains("<!--"));
             // Text from a case must never be parsed as markup.
@@ -337,7 +343,8 @@ mod tests {
     fn long_series_are_thinned_to_a_bounded_size() {
         let theta: Vec<f64> = (0..7201).map(|i| f64::from(i) * 0.1).collect();
         let mut arrays = Arrays::default();
-        let series = arrays.series(&theta, std::iter::empty());
+        let axis = Column { values: theta, ..Column::default() };
+        let series = arrays.series(&axis, std::iter::empty());
         assert_eq!(series["every"], 5);
         let rows = 7201usize.div_ceil(5);
         assert_eq!(arrays.arrays[0].len(), (rows * 4).div_ceil(3) * 4);

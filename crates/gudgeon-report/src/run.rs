@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use gudgeon_core::result::{RunResult, Series};
+use gudgeon_core::result::{Check, RunResult, Series};
 use indexmap::IndexMap;
 use serde_json::json;
 
@@ -22,23 +22,27 @@ pub(crate) const SERIES: &str = "series.csv";
 pub struct RunFiles {
     /// Results, models, balances, solver work.
     pub summary: PathBuf,
-    /// Curves over the cycle, one row per crank angle.
+    /// Curves, one row per crank angle or per point of what the scene runs along.
     pub series: PathBuf,
     /// The page.
     pub report: PathBuf,
 }
 
-/// Writes `summary.json`, `series.csv` and `report.html` of a run into `dir`, which is made when it does not exist.
+/// Writes `summary.json`, `series.csv`, the further tables and `report.html` of a run into `dir`, which is made when it does
+/// not exist.
 ///
 /// # Errors
-/// A column of another length than the crank angles, or a file system that refuses; files already in `dir` are then as
+/// A column of another length than its axis, or a file system that refuses; files already in `dir` are then as
 /// they were.
 pub fn write_run(run: &RunResult, dir: &Path) -> Result<RunFiles, ReportError> {
     let summary = Summary::new(run);
     let series = table::series_csv(&run.series)?;
     let mut stage = Stage::new(dir)?;
     stage.add(SERIES, &series)?;
-    stage.add(REPORT, page(&summary, &run.series).as_bytes())?;
+    for (name, t) in &run.tables {
+        stage.add(&file_of(name), &table::series_csv(t)?)?;
+    }
+    stage.add(REPORT, page(&summary, &run.series, &run.tables).as_bytes())?;
     // Last, so that whoever waits for the summary finds the rest complete.
     stage.add(SUMMARY, text(&summary).as_bytes())?;
     stage.commit()?;
@@ -64,13 +68,24 @@ pub(crate) fn rewrite(dir: &Path) -> Result<PathBuf, ReportError> {
         .map_err(|e| ReportError::Malformed { path: path.clone(), why: e.to_string() })?;
     let series = dir.join(SERIES);
     let series = if series.is_file() { table::read_series(&series)? } else { Series::default() };
+    let mut tables = IndexMap::new();
+    for name in &summary.tables {
+        let path = dir.join(file_of(name));
+        if path.is_file() {
+            tables.insert(name.clone(), table::read_series(&path)?);
+        }
+    }
     let mut stage = Stage::new(dir)?;
-    stage.add(REPORT, page(&summary, &series).as_bytes())?;
+    stage.add(REPORT, page(&summary, &series, &tables).as_bytes())?;
     stage.commit()?;
     Ok(dir.join(REPORT))
 }
 
-fn page(s: &Summary, series: &Series) -> String {
+fn file_of(table: &str) -> String {
+    format!("{table}.csv")
+}
+
+fn page(s: &Summary, series: &Series, tables: &IndexMap<String, Series>) -> String {
     let mut body = String::new();
     header(&mut body, s);
     body.push_str("<main>\n");
@@ -83,11 +98,18 @@ fn page(s: &Summary, series: &Series) -> String {
     }
     body.push_str(&page::notes(&notes));
     results(&mut body, s);
-    if series.theta_deg.is_empty() || series.columns.is_empty() {
-        body.push_str("<section id=\"curves\"><h2>Over the cycle</h2><p class=\"hint\">This run has no curves.</p></section>\n");
-    } else {
+    if !s.figures.is_empty() {
+        body.push_str("<section id=\"curves\"><h2>Figures</h2><div id=\"figures\"></div></section>\n");
+    }
+    let over_cycle = series.is_over_cycle() && !series.axis.values.is_empty() && !series.columns.is_empty();
+    if !over_cycle && s.figures.is_empty() {
+        body.push_str(
+            "<section id=\"curves\"><h2>Curves</h2><p class=\"hint\">This run has no curves.</p></section>\n",
+        );
+    } else if over_cycle {
         body.push_str("<section id=\"cycle\"><h2>Over the cycle</h2><div id=\"bar\"></div><div id=\"pack\"></div><div id=\"plots\"></div></section>\n");
     }
+    checks(&mut body, &s.checks);
     if !s.events.is_empty() {
         body.push_str("<section id=\"events\"><h2>Events</h2><div id=\"event-list\"><ul>");
         for e in &s.events {
@@ -110,9 +132,17 @@ fn page(s: &Summary, series: &Series) -> String {
     body.push_str(&page::models_section(&s.models));
     body.push_str("</main>\n");
     body.push_str(&page::footer(&s.gudgeon));
-    let (columns, arrays) = page::one_series(series);
+    let mut arrays = page::Arrays::default();
+    let used = |name: &str| s.figures.iter().any(|f| f.table == name);
+    let columns = if over_cycle { arrays.series(&series.axis, series.columns.iter()) } else { json!(null) };
+    let mut data_of: serde_json::Map<String, serde_json::Value> =
+        tables.iter().filter(|(n, _)| used(n)).map(|(n, t)| (n.clone(), arrays.whole(t))).collect();
+    if used("series") {
+        data_of.insert("series".into(), arrays.whole(series));
+    }
     let data = json!({
-        "scene": s.scene, "section": s.section, "events": s.events, "series": columns, "arrays": arrays,
+        "scene": s.scene, "section": s.section, "events": s.events, "series": columns, "tables": data_of,
+        "figures": s.figures, "arrays": arrays.into_json(),
     });
     page::document(Kind::Run, s.heading(), &body, &data)
 }
@@ -167,6 +197,58 @@ fn header(out: &mut String, s: &Summary) {
     out.push_str("</header>\n");
 }
 
+/// Results beside the values of their sources.
+fn checks(out: &mut String, checks: &[Check]) {
+    if checks.is_empty() {
+        return;
+    }
+    let bad = checks.iter().filter(|c| !c.holds()).count();
+    let verdict = if bad == 0 {
+        format!("All {} are as the case says they must be.", checks.len())
+    } else {
+        format!("{bad} of {} are not as the case says they must be.", checks.len())
+    };
+    let _ = write!(
+        out,
+        "<section id=\"checks\"><h2>Against sources</h2><p class=\"hint\">{verdict} A deviation is relative to the source, \
+         or absolute where the source gives zero.</p><div class=\"scroll\"><table class=\"plain\"><thead><tr><th>Setting</th>\
+         <th>Result</th><th class=\"num\">Computed</th><th class=\"num\">Source</th><th></th><th class=\"num\">Deviation</th>\
+         <th class=\"num\">Admitted</th><th></th><th></th></tr></thead><tbody>"
+    );
+    for (i, c) in checks.iter().enumerate() {
+        let setting = if i > 0 && checks[i - 1].set == c.set {
+            String::new()
+        } else {
+            let rows = checks[i..].iter().take_while(|d| d.set == c.set).count();
+            let text = if c.set.is_empty() {
+                "as it stands".into()
+            } else {
+                // Every path begins with the name of the bench's table.
+                let short: Vec<&str> = c.set.iter().map(|s| s.strip_prefix("rig.").unwrap_or(s)).collect();
+                esc(&short.join(", "))
+            };
+            format!("<th scope=\"rowgroup\" rowspan=\"{rows}\">{text}</th>")
+        };
+        let sign = if c.holds() { "✓" } else { "<b class=\"wrong\">✗</b>" };
+        let why = if c.must_fail { "the model is known to be wrong here" } else { "" };
+        let _ = write!(
+            out,
+            "<tr>{setting}<td><code>{}</code></td><td class=\"num\">{}</td><td class=\"num\">{}</td>\
+             <td class=\"unit\">{}</td><td class=\"num\">{:.1e}</td><td class=\"num\">{}{:.0e}</td><td>{sign}</td>\
+             <td class=\"what\">{} {why}</td></tr>",
+            esc(&c.result),
+            significant(Some(c.value), 10),
+            significant(Some(c.reference), 10),
+            esc(&unit(&c.unit)),
+            c.deviation(),
+            if c.must_fail { "more than " } else { "" },
+            c.tolerance,
+            page::prose(&c.source),
+        );
+    }
+    out.push_str("</tbody></table></div></section>\n");
+}
+
 /// Results of one family (`ring`, `land`): by what follows the dot, then by number.
 type Family<'a> = IndexMap<&'a str, BTreeMap<u32, (&'a str, &'a ResultValue)>>;
 
@@ -192,7 +274,7 @@ fn results(out: &mut String, s: &Summary) {
             let _ = write!(
                 out,
                 "<tr><th scope=\"row\">{}<code>{}</code></th>{}</tr>",
-                if what.is_empty() { String::new() } else { format!("{} ", esc(&capital(what))) },
+                if what.is_empty() { String::new() } else { format!("{} ", page::prose(&capital(what))) },
                 esc(name),
                 page::value_cells(Some(v))
             );

@@ -1,6 +1,6 @@
 //! `summary.json` as a type of its own: it is read back to rebuild a page, and its shape is a promise to other programs.
 
-use gudgeon_core::result::RunResult;
+use gudgeon_core::result::{Check, Figure, RunResult};
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
@@ -98,6 +98,13 @@ pub(crate) struct Summary {
     /// Geometry for the drawn section, as the scene gave it; null when there is none.
     #[serde(default)]
     pub section: Option<serde_json::Value>,
+    /// Names of the tables beside `series.csv`.
+    #[serde(default)]
+    pub tables: Vec<String>,
+    #[serde(default)]
+    pub figures: Vec<Figure>,
+    #[serde(default)]
+    pub checks: Vec<Check>,
 }
 
 impl Summary {
@@ -168,6 +175,9 @@ impl Summary {
                 .collect(),
             // Numbers and lists only: this cannot fail, and a page without a drawing is the right answer if it did.
             section: run.section.as_ref().and_then(|s| serde_json::to_value(s).ok()),
+            tables: run.tables.keys().cloned().collect(),
+            figures: run.figures.clone(),
+            checks: run.checks.clone(),
         }
     }
 

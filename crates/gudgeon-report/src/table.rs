@@ -12,9 +12,15 @@ fn header(name: &str, unit: &str) -> String {
     format!("{name}[{unit}]")
 }
 
-/// Every column as long as the crank angles.
+/// `name[unit]` taken apart.
+fn named(header: &str) -> Column {
+    let (name, unit) = header.strip_suffix(']').and_then(|n| n.rsplit_once('[')).unwrap_or((header, "-"));
+    Column { name: name.into(), unit: unit.into(), values: Vec::new() }
+}
+
+/// Every column as long as the axis.
 pub(crate) fn check(series: &Series) -> Result<(), ReportError> {
-    let expected = series.theta_deg.len();
+    let expected = series.axis.values.len();
     match series.columns.iter().find(|c| c.values.len() != expected) {
         Some(c) => Err(ReportError::Ragged { column: c.name.clone(), rows: c.values.len(), expected }),
         None => Ok(()),
@@ -39,23 +45,30 @@ pub(crate) fn csv(rows: impl IntoIterator<Item = Vec<String>>) -> Result<Vec<u8>
     })
 }
 
-/// `theta[deg]`, then the columns.
+/// The axis (`theta[deg]`), then the columns.
 pub(crate) fn series_csv(series: &Series) -> Result<Vec<u8>, ReportError> {
     check(series)?;
-    let names = std::iter::once("theta[deg]".to_owned())
-        .chain(series.columns.iter().map(|c| header(&c.name, &c.unit)))
+    let names = std::iter::once(&series.axis)
+        .chain(&series.columns)
+        .map(|c| header(&c.name, &c.unit))
         .collect::<Vec<_>>();
-    csv(std::iter::once(names).chain(series.theta_deg.iter().enumerate().map(|(i, theta)| {
-        std::iter::once(round_trip(*theta))
+    csv(std::iter::once(names).chain(series.axis.values.iter().enumerate().map(|(i, at)| {
+        std::iter::once(round_trip(*at))
             .chain(series.columns.iter().map(|c| round_trip(c.values[i])))
             .collect()
     })))
 }
 
-/// One series per variant in long form: `variant`, `theta[deg]`, then every column that any variant has.
+/// One series per variant in long form: `variant`, the axis, then every column that any variant has. Variants whose axis is not
+/// that of the first with an axis are left out: they are series of something else.
 pub(crate) fn long_csv(variants: &[(usize, &Series)]) -> Result<Vec<u8>, ReportError> {
     let mut columns: Vec<(&str, &str)> = Vec::new();
-    for (_, series) in variants {
+    let Some(axis) = variants.iter().map(|(_, s)| &s.axis).find(|a| !a.name.is_empty()) else {
+        return csv([vec!["variant".to_owned()]]);
+    };
+    let variants: Vec<_> =
+        variants.iter().filter(|(_, s)| s.axis.name == axis.name && s.axis.unit == axis.unit).collect();
+    for (_, series) in &variants {
         check(series)?;
         for c in &series.columns {
             if !columns.contains(&(&c.name, &c.unit)) {
@@ -63,7 +76,7 @@ pub(crate) fn long_csv(variants: &[(usize, &Series)]) -> Result<Vec<u8>, ReportE
             }
         }
     }
-    let names = ["variant".to_owned(), "theta[deg]".to_owned()]
+    let names = ["variant".to_owned(), header(&axis.name, &axis.unit)]
         .into_iter()
         .chain(columns.iter().map(|(n, u)| header(n, u)))
         .collect::<Vec<_>>();
@@ -73,8 +86,8 @@ pub(crate) fn long_csv(variants: &[(usize, &Series)]) -> Result<Vec<u8>, ReportE
             .iter()
             .map(|(n, u)| series.columns.iter().find(|c| c.name == *n && c.unit == *u))
             .collect();
-        for (i, theta) in series.theta_deg.iter().enumerate() {
-            let mut row = vec![number.to_string(), round_trip(*theta)];
+        for (i, at) in series.axis.values.iter().enumerate() {
+            let mut row = vec![number.to_string(), round_trip(*at)];
             row.extend(found.iter().map(|c| c.map_or_else(String::new, |c| round_trip(c.values[i]))));
             rows.push(row);
         }
@@ -102,16 +115,11 @@ fn read_groups(path: &Path, long: bool) -> Result<Vec<(usize, Series)>, ReportEr
     let mut reader = csv::ReaderBuilder::new().from_reader(text.as_slice());
     let lead = if long { 2 } else { 1 };
     let names = reader.headers().map_err(|e| bad(e.to_string()))?.clone();
-    if names.get(lead - 1) != Some("theta[deg]") || (long && names.get(0) != Some("variant")) {
-        return Err(bad("the crank angle `theta[deg]` is missing from the first columns".into()));
+    if long && names.get(0) != Some("variant") {
+        return Err(bad("the first column is not `variant`".into()));
     }
-    let empty = || -> Series {
-        let columns = names.iter().skip(lead).map(|n| {
-            let (name, unit) = n.strip_suffix(']').and_then(|n| n.rsplit_once('[')).unwrap_or((n, "-"));
-            Column { name: name.into(), unit: unit.into(), values: Vec::new() }
-        });
-        Series { theta_deg: Vec::new(), columns: columns.collect() }
-    };
+    let Some(axis) = names.get(lead - 1) else { return Ok(Vec::new()) };
+    let empty = || Series { axis: named(axis), columns: names.iter().skip(lead).map(named).collect() };
     let mut groups: Vec<(usize, Series)> = Vec::new();
     if !long {
         groups.push((0, empty()));
@@ -134,7 +142,7 @@ fn read_groups(path: &Path, long: bool) -> Result<Vec<(usize, Series)>, ReportEr
             }
         }
         if let Some((_, series)) = groups.last_mut() {
-            series.theta_deg.push(number(lead - 1)?);
+            series.axis.values.push(number(lead - 1)?);
             for (k, column) in series.columns.iter_mut().enumerate() {
                 column.values.push(number(k + lead)?);
             }

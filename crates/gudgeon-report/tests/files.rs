@@ -177,7 +177,7 @@ fn any_number_of_rings_and_any_missing_part_makes_a_page() {
     let mut run = common::run(2);
     run.series.columns.clear();
     assert!(read(write_run(&run, &dir).unwrap().report).contains("This run has no curves."));
-    run.series = Series { theta_deg: vec![], columns: common::run(2).series.columns };
+    run.series = Series::over_cycle(vec![], common::run(2).series.columns);
     run.series.columns.iter_mut().for_each(|c| c.values.clear());
     assert!(read(write_run(&run, &dir).unwrap().report).contains("This run has no curves."));
     // No section, no film, no motion.

@@ -1,5 +1,6 @@
 //! What a case file may say. Every field's doc comment is its documentation in `gudgeon schema`.
 
+use gudgeon_core::face::Face;
 use gudgeon_core::kinds::{
     ContactSpec, CylinderPressureSpec, FilmTemperatureSpec, FlankDampingSpec, FlankFrictionSpec, GasFlowSpec,
     HydrodynamicsSpec, KinematicsSpec, OilSpec, RingMotionSpec,
@@ -216,39 +217,6 @@ pub enum RingDesign {
     TwinLand,
     /// Two rails on an expander: one rail is modelled with half the force and counted twice; no axial clearance.
     ThreePiece,
-}
-
-/// Shape of the running face. Drops are measured away from the liner.
-#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Face {
-    /// Which of the shapes.
-    pub shape: FaceShape,
-    /// Axial length of the running face (of one land of a twin-land ring). The ring's height when absent.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub length: Option<PosLength>,
-    /// `parabola`: drop at half a face length from the apex (the barrel height of a symmetric face). `taper`: drop at the
-    /// top edge.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub drop: Option<Length<NonNegative>>,
-    /// `parabola`: height of the apex above the middle of the face.
-    #[serde(default = "zero_length")]
-    pub offset: Length,
-    /// `table`: drops at equal spacings, bottom edge first, at least two.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub drops: Vec<Length>,
-}
-
-/// Shapes of a running face.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum FaceShape {
-    /// Barrel: `drop * ((x - middle - offset) / (length / 2))^2`.
-    Parabola,
-    /// Straight, the bottom edge touching.
-    Taper,
-    /// Straight lines between given drops.
-    Table,
 }
 
 /// A ring groove, running dimensions.

@@ -4,13 +4,23 @@ use std::path::Path;
 use std::time::Instant;
 
 use gudgeon_core::result::{ModelUse, RunResult, Skipped};
-use gudgeon_core::{EvalError, Registry};
+use gudgeon_core::{BuildError, EvalError, Registry};
 use gudgeon_numerics::ode::IntegrateError;
 use serde::Serialize;
 
 use crate::case::RingPackCase;
-use crate::load::{Loaded, Report, load};
+use crate::load::{Loaded, Report, Source, load_source, read, scene_of};
+use crate::rig;
+use crate::rig::case::RigCase;
 use crate::ring_pack::{self, assemble};
+
+/// A case of any scene, with its places in the file.
+pub enum Case {
+    /// `scene = "ring_pack"`
+    RingPack(Box<Loaded<RingPackCase>>),
+    /// `scene = "rig"`
+    Rig(Box<Loaded<RigCase>>),
+}
 
 /// A case that was read, resolved and found to be possible.
 pub struct Checked {
@@ -18,8 +28,8 @@ pub struct Checked {
     pub name: String,
     /// What a person should know although nothing is wrong (keys dropped by a model swap).
     pub notes: Vec<String>,
-    /// The case with its places in the file.
-    pub loaded: Loaded<RingPackCase>,
+    /// The case.
+    pub case: Case,
 }
 
 /// How far a run is.
@@ -40,6 +50,12 @@ pub enum RunError {
     Eval {
         /// Where \[deg\].
         theta_deg: f64,
+        /// What it said.
+        source: EvalError,
+    },
+    /// The sub-model of a rig refused.
+    #[error("{source}")]
+    Rig {
         /// What it said.
         source: EvalError,
     },
@@ -73,20 +89,34 @@ pub enum RunError {
 /// # Errors
 /// Everything that is wrong with it, with places.
 pub fn check(path: &Path, overrides: &[String]) -> Result<Checked, Report> {
-    checked(path, load(path, overrides)?)
+    let name = path.file_stem().map_or_else(|| "case".to_owned(), |s| s.to_string_lossy().into_owned());
+    checked(name, read(path)?, overrides)
 }
 
-fn checked(path: &Path, loaded: Loaded<RingPackCase>) -> Result<Checked, Report> {
-    let mut errors = match assemble::assemble(&loaded.value, &loaded.source.folder) {
-        Ok(_) => Vec::new(),
-        Err(e) => e,
-    };
-    errors.extend(ring_pack::legal(&loaded.value));
-    if !errors.is_empty() {
-        return Err(loaded.refuse(&errors));
+fn checked(name: String, source: Source, overrides: &[String]) -> Result<Checked, Report> {
+    // A scene that does not exist is reported by the reader of the commonest one, with the rest of what is wrong.
+    match scene_of(&source, overrides).as_deref() {
+        Some("rig") => {
+            let loaded: Loaded<RigCase> = load_source(source, overrides)?;
+            let errors = rig::legal(&loaded.value, &loaded.source.folder);
+            if !errors.is_empty() {
+                return Err(loaded.refuse(&errors));
+            }
+            Ok(Checked { name, notes: loaded.notes.clone(), case: Case::Rig(Box::new(loaded)) })
+        }
+        _ => {
+            let loaded: Loaded<RingPackCase> = load_source(source, overrides)?;
+            let mut errors = match assemble::assemble(&loaded.value, &loaded.source.folder) {
+                Ok(_) => Vec::new(),
+                Err(e) => e,
+            };
+            errors.extend(ring_pack::legal(&loaded.value));
+            if !errors.is_empty() {
+                return Err(loaded.refuse(&errors));
+            }
+            Ok(Checked { name, notes: loaded.notes.clone(), case: Case::RingPack(Box::new(loaded)) })
+        }
     }
-    let name = path.file_stem().map_or_else(|| "case".to_owned(), |s| s.to_string_lossy().into_owned());
-    Ok(Checked { name, notes: loaded.notes.clone(), loaded })
 }
 
 impl Checked {
@@ -95,13 +125,65 @@ impl Checked {
     /// # Errors
     /// As [`check`].
     pub fn with(&self, more: &[String]) -> Result<Self, Report> {
-        checked(Path::new(&format!("{}.toml", self.name)), self.loaded.reload(more)?)
+        let overrides: Vec<String> = self.overrides().iter().chain(more).cloned().collect();
+        checked(self.name.clone(), self.source().clone(), &overrides)
     }
 
-    /// The case.
+    /// The text it was read from.
     #[must_use]
-    pub fn case(&self) -> &RingPackCase {
-        &self.loaded.value
+    pub fn source(&self) -> &Source {
+        match &self.case {
+            Case::RingPack(l) => &l.source,
+            Case::Rig(l) => &l.source,
+        }
+    }
+
+    /// The `--set` arguments that changed it.
+    #[must_use]
+    pub fn overrides(&self) -> &[String] {
+        match &self.case {
+            Case::RingPack(l) => &l.overrides,
+            Case::Rig(l) => &l.overrides,
+        }
+    }
+
+    /// Title.
+    #[must_use]
+    pub fn title(&self) -> &str {
+        match &self.case {
+            Case::RingPack(l) => &l.value.title,
+            Case::Rig(l) => &l.value.title,
+        }
+    }
+
+    /// A report on errors found after the case was read.
+    #[must_use]
+    pub fn refuse<'e>(&self, errors: impl IntoIterator<Item = &'e BuildError>) -> Report {
+        match &self.case {
+            Case::RingPack(l) => l.refuse(errors),
+            Case::Rig(l) => l.refuse(errors),
+        }
+    }
+
+    /// The case, when its scene is a ring pack.
+    #[must_use]
+    pub fn ring_pack(&self) -> Option<&RingPackCase> {
+        match &self.case {
+            Case::RingPack(l) => Some(&l.value),
+            Case::Rig(_) => None,
+        }
+    }
+}
+
+/// A model with the references of its registration.
+pub(crate) fn model_use(registry: &Registry, kind: &str, model: &str) -> ModelUse {
+    ModelUse {
+        kind: kind.into(),
+        model: model.into(),
+        references: registry
+            .model(kind, model)
+            .map(|m| m.references.iter().map(|r| (*r).to_owned()).collect())
+            .unwrap_or_default(),
     }
 }
 
@@ -120,7 +202,7 @@ pub struct ExplainedModel {
 }
 
 /// The resolved case: every model, default and unit; what runs and what is skipped.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Default, Serialize)]
 pub struct Explanation {
     /// Name of the case.
     pub case: String,
@@ -147,10 +229,36 @@ pub struct Explanation {
 /// # Errors
 /// When the sub-models cannot be built (which [`check`] would have said).
 pub fn explain(c: &Checked) -> Result<Explanation, RunError> {
-    let pack = build(c)?;
-    let (used, skipped) = assemble::models_in_use(c.case(), &pack.plan);
     let registry = Registry::collect();
-    let models = used
+    let text_of = |e: serde_json::Error| RunError::Refused(e.to_string());
+    let mut told = Explanation {
+        case: c.name.clone(),
+        title: c.title().into(),
+        notes: c.notes.clone(),
+        ..Explanation::default()
+    };
+    let used = match &c.case {
+        Case::RingPack(loaded) => {
+            let pack = build(loaded)?;
+            let (used, skipped) = assemble::models_in_use(&loaded.value, &pack.plan);
+            told.resolved = loaded.resolved().map_err(text_of)?;
+            told.runs = pack.plan.runs.clone();
+            told.skipped = skipped;
+            told.results = pack.plan.wanted.clone();
+            told.states = ring_pack::state_names(&pack);
+            used
+        }
+        Case::Rig(loaded) => {
+            told.resolved = loaded.resolved().map_err(text_of)?;
+            let models = rig::models(&loaded.value);
+            told.runs = models
+                .iter()
+                .map(|(k, m)| Skipped { what: format!("{k}/{m}"), why: "stands on the bench".into() })
+                .collect();
+            models.into_iter().map(|(k, m)| model_use(&registry, k, m)).collect()
+        }
+    };
+    told.models = used
         .into_iter()
         .map(|used| {
             let info = registry.model(&used.kind, &used.model);
@@ -163,17 +271,7 @@ pub fn explain(c: &Checked) -> Result<Explanation, RunError> {
             }
         })
         .collect();
-    Ok(Explanation {
-        case: c.name.clone(),
-        title: c.case().title.clone(),
-        resolved: c.loaded.resolved().map_err(|e| RunError::Refused(e.to_string()))?,
-        models,
-        runs: pack.plan.runs.clone(),
-        skipped,
-        results: pack.plan.wanted.clone(),
-        states: ring_pack::state_names(&pack),
-        notes: c.notes.clone(),
-    })
+    Ok(told)
 }
 
 impl Explanation {
@@ -206,8 +304,12 @@ impl Explanation {
         for r in &self.skipped {
             let _ = writeln!(s, "  {}: {}", r.what, r.why);
         }
-        let _ = writeln!(s, "\nStates integrated ({}): {}", self.states.len(), self.states.join(", "));
-        let _ = writeln!(s, "Results: {}", self.results.join(", "));
+        if !self.states.is_empty() {
+            let _ = writeln!(s, "\nStates integrated ({}): {}", self.states.len(), self.states.join(", "));
+        }
+        if !self.results.is_empty() {
+            let _ = writeln!(s, "Results: {}", self.results.join(", "));
+        }
         for n in &self.notes {
             let _ = writeln!(s, "Note: {n}");
         }
@@ -238,8 +340,8 @@ fn print_value(s: &mut String, path: &str, v: &serde_json::Value) {
     }
 }
 
-fn build(c: &Checked) -> Result<ring_pack::pack::Pack, RunError> {
-    assemble::assemble(c.case(), &c.loaded.source.folder)
+fn build(loaded: &Loaded<RingPackCase>) -> Result<ring_pack::pack::Pack, RunError> {
+    assemble::assemble(&loaded.value, &loaded.source.folder)
         .map_err(|e| RunError::Refused(e.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")))
 }
 
@@ -249,18 +351,38 @@ fn build(c: &Checked) -> Result<ring_pack::pack::Pack, RunError> {
 /// What stopped it; nothing has been written.
 pub fn run(c: &Checked, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
     let begin = Instant::now();
-    let mut pack = build(c)?;
+    let mut result = match &c.case {
+        Case::RingPack(loaded) => run_ring_pack(loaded, progress)?,
+        Case::Rig(loaded) => rig::run(loaded, progress)?,
+    };
+    result.case.clone_from(&c.name);
+    result.gudgeon = env!("CARGO_PKG_VERSION").into();
+    result.solver.notes.extend(c.notes.iter().cloned());
+    if let Some((name, _)) = result.results.iter().find(|(_, v)| !v.value.is_finite()) {
+        return Err(RunError::NotANumber(name.clone()));
+    }
+    if let Some(column) = result.series.columns.iter().find(|c| c.values.iter().any(|v| !v.is_finite())) {
+        return Err(RunError::NotANumber(column.name.clone()));
+    }
+    result.seconds.insert("total".into(), begin.elapsed().as_secs_f64());
+    Ok(result)
+}
+
+fn run_ring_pack(
+    loaded: &Loaded<RingPackCase>,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<RunResult, RunError> {
+    let begin = Instant::now();
+    let mut pack = build(loaded)?;
     let built = begin.elapsed().as_secs_f64();
-    let case = c.case();
+    let case = &loaded.value;
     let solved = ring_pack::solve(case, &mut pack, progress)?;
     let meter = ring_pack::meter(case);
     let mut result = RunResult {
-        case: c.name.clone(),
         title: case.title.clone(),
         source: case.source.clone(),
         assumptions: case.assumptions.clone(),
         scene: "ring_pack".into(),
-        gudgeon: env!("CARGO_PKG_VERSION").into(),
         ..RunResult::default()
     };
     (result.models, result.skipped) = assemble::models_in_use(case, &pack.plan);
@@ -269,17 +391,9 @@ pub fn run(c: &Checked, progress: &mut dyn FnMut(Progress)) -> Result<RunResult,
     result.events = solved.record.events(&pack);
     result.branches = solved.branches;
     result.solver = solved.report;
-    result.solver.notes.extend(c.notes.iter().cloned());
     result.series = solved.record.series(&pack, &solved.totals);
     result.section = Some(ring_pack::geometry::section(case, &pack.geo));
-    if let Some((name, _)) = result.results.iter().find(|(_, v)| !v.value.is_finite()) {
-        return Err(RunError::NotANumber(name.clone()));
-    }
-    if let Some(column) = result.series.columns.iter().find(|c| c.values.iter().any(|v| !v.is_finite())) {
-        return Err(RunError::NotANumber(column.name.clone()));
-    }
     result.seconds.insert("build".into(), built);
     result.seconds.insert("solve".into(), solved.seconds);
-    result.seconds.insert("total".into(), begin.elapsed().as_secs_f64());
     Ok(result)
 }

@@ -7,7 +7,7 @@ use gudgeon_core::result::{BenchPoint, BenchTable, Comparison, Variant};
 use gudgeon_core::{BuildError, Registry};
 use indexmap::IndexMap;
 
-use crate::case::IntegratorName;
+use crate::case::{IntegratorName, RingPackCase};
 use crate::load::Report;
 use crate::run::{Checked, Progress, RunError, check, run};
 
@@ -42,7 +42,7 @@ pub fn compare(
         if values.is_empty() || values.iter().any(String::is_empty) {
             let e = BuildError::new(format!("the swap `{p}` has an empty value"))
                 .help("write `--swap PATH=A,B,C`");
-            return Err(base.loaded.refuse([&e]));
+            return Err(base.refuse([&e]));
         }
         let p = swap_path(p);
         combinations = combinations
@@ -64,7 +64,7 @@ pub fn compare(
         if let Some(Err(report)) = checked.into_iter().next() {
             return Err(report);
         }
-        return Err(base.loaded.refuse([&BuildError::new("no combination to run")]));
+        return Err(base.refuse([&BuildError::new("no combination to run")]));
     }
     let total = combinations.len() as f64;
     let variants = combinations
@@ -95,7 +95,7 @@ pub fn compare(
         .collect();
     Ok(Comparison {
         case: base.name.clone(),
-        title: base.case().title.clone(),
+        title: base.title().to_owned(),
         swaps: swaps.iter().map(|(p, v)| (swap_path(p), v.clone())).collect(),
         variants,
     })
@@ -116,9 +116,9 @@ struct Sweep {
     set: Vec<String>,
 }
 
-fn sweeps(base: &Checked) -> Vec<Sweep> {
+fn sweeps(case: &RingPackCase) -> Vec<Sweep> {
     let mut all = Vec::new();
-    let default = base.case().solver.tolerance.si();
+    let default = case.solver.tolerance.si();
     let orders: [(&str, &str, IntegratorName, &[f64]); 2] = [
         (METHODS[0], "rodas3", IntegratorName::Rodas3, &[1e-2, 3e-3, 1e-3, 3e-4, 1e-4]),
         (METHODS[1], "rodas5p", IntegratorName::Rodas5p, &[1e-2, 1e-3, 1e-4, 1e-5, 1e-6]),
@@ -128,7 +128,7 @@ fn sweeps(base: &Checked) -> Vec<Sweep> {
             all.push(Sweep {
                 method,
                 setting: format!("tolerance {t:.0e}"),
-                is_default: (t / default - 1.0).abs() < 1e-9 && base.case().solver.resolved() == integrator,
+                is_default: (t / default - 1.0).abs() < 1e-9 && case.solver.resolved() == integrator,
                 set: vec![
                     "solver.method=implicit".into(),
                     format!("solver.integrator={name}"),
@@ -138,15 +138,14 @@ fn sweeps(base: &Checked) -> Vec<Sweep> {
             });
         }
     }
-    let rings = base.case().rings.len() as u32;
-    let published = base.case().solver.method == crate::case::Method::AsPublished;
+    let rings = case.rings.len() as u32;
+    let published = case.solver.method == crate::case::Method::AsPublished;
     // The published scheme and its own refinement. The scheme follows from the axial motion.
-    let discrete = base.case().models.ring_motion.typetag_name() == "three_seat";
+    let discrete = case.models.ring_motion.typetag_name() == "three_seat";
     let (scheme, own) = if discrete { ("degree_march", 1) } else { ("substep_march", rings + 1) };
     for factor in [1u32, 2, 4, 8] {
         let steps = own * factor;
-        let gas =
-            if published && base.case().solver.gas_steps > 0 { base.case().solver.gas_steps } else { 0 };
+        let gas = if published && case.solver.gas_steps > 0 { case.solver.gas_steps } else { 0 };
         all.push(Sweep {
             method: METHODS[2],
             setting: format!("{steps} steps per degree"),
@@ -178,6 +177,13 @@ pub fn bench(
     results: &[String],
     progress: &mut dyn FnMut(Progress),
 ) -> Result<BenchTable, RunError> {
+    let Some(case) = base.ring_pack() else {
+        return Err(RunError::Refused(
+            "`bench` races the solvers of a ring pack, and a rig has none; `compare` swaps its sub-model, and a sweep over its grid \
+             with checks against a source shows the errors"
+                .into(),
+        ));
+    };
     let reference = |tolerance: f64| -> Result<_, RunError> {
         let c = base
             .with(&[
@@ -214,7 +220,7 @@ pub fn bench(
     let trust = chosen.iter().map(|n| error(&loose, n)).fold(0.0, f64::max);
     let mut table = BenchTable {
         case: base.name.clone(),
-        title: base.case().title.clone(),
+        title: base.title().to_owned(),
         reference: format!(
             "implicit system, Radau IIA order 5, tolerance 1e-8; differs from the same at 1e-7 by at most {trust:.1e} (relative)"
         ),
@@ -224,7 +230,7 @@ pub fn bench(
             .collect(),
         ..BenchTable::default()
     };
-    let sweeps = sweeps(base);
+    let sweeps = sweeps(case);
     let total = (sweeps.len() * REPEATS) as f64;
     let mut samples: Vec<Vec<(f64, f64)>> = vec![Vec::new(); sweeps.len()];
     // Methods take turns, so that a slow spell of the machine hits all of them.

@@ -60,7 +60,7 @@ pub fn column<'a>(r: &'a RunResult, name: &str) -> &'a [f64] {
 
 /// The value of a column in the row of a crank angle, which must be one of the grid.
 pub fn at(r: &RunResult, name: &str, theta_deg: f64) -> f64 {
-    let k = r.series.theta_deg.iter().position(|t| (t - theta_deg).abs() < 1e-6);
+    let k = r.series.axis.values.iter().position(|t| (t - theta_deg).abs() < 1e-6);
     match k {
         Some(k) => column(r, name)[k],
         None => panic!("no row at {theta_deg} deg"),
@@ -70,7 +70,8 @@ pub fn at(r: &RunResult, name: &str, theta_deg: f64) -> f64 {
 /// Largest value of a column in `[from, to]` deg, and its crank angle.
 pub fn peak(r: &RunResult, name: &str, from: f64, to: f64) -> (f64, f64) {
     r.series
-        .theta_deg
+        .axis
+        .values
         .iter()
         .zip(column(r, name))
         .filter(|(t, _)| (from..=to).contains(*t))

@@ -48,7 +48,24 @@ fn text(r: &RunResult) -> String {
     let work: Vec<String> =
         r.solver.counters.iter().map(|(k, n)| format!("{n} {}", k.replace('_', " "))).collect();
     let seconds = r.seconds.get("total").map_or_else(String::new, |t| format!(", {} s", number(*t)));
-    let _ = writeln!(s, "  {}: {}{seconds}", r.solver.method, work.join(", "));
+    let work = if work.is_empty() { String::new() } else { format!(": {}", work.join(", ")) };
+    let _ = writeln!(s, "  {}{work}{seconds}", r.solver.method);
+    if !r.checks.is_empty() {
+        let held = r.checks.iter().filter(|c| c.holds()).count();
+        let _ = writeln!(s, "  against sources: {held} of {} as the case says they must be", r.checks.len());
+        for c in r.checks.iter().filter(|c| !c.holds()) {
+            let at = if c.set.is_empty() { String::new() } else { format!(" ({})", c.set.join(", ")) };
+            let _ = writeln!(
+                s,
+                "    {}{at}: {} instead of {}, deviation {:.1e}, admitted {:.0e}",
+                c.result,
+                number(c.value),
+                number(c.reference),
+                c.deviation(),
+                c.tolerance
+            );
+        }
+    }
     if !r.skipped.is_empty() {
         let skipped: Vec<&str> = r.skipped.iter().map(|k| k.what.as_str()).collect();
         let _ = writeln!(s, "  skipped (`gudgeon explain` says why): {}", skipped.join(", "));

@@ -1,12 +1,22 @@
 //! `gudgeon schema`
 
-use gudgeon_core::schemars::schema_for;
+use gudgeon_core::schemars::SchemaGenerator;
 use gudgeon_sim::case::RingPackCase;
+use gudgeon_sim::rig::case::RigCase;
+use serde_json::json;
 
 use crate::failure::Failure;
 use crate::ui::Ui;
 
 pub fn schema(ui: &Ui) -> Result<(), Failure> {
-    ui.json(&schema_for!(RingPackCase).to_value());
+    let mut generator = SchemaGenerator::default();
+    let scenes = [generator.subschema_for::<RingPackCase>(), generator.subschema_for::<RigCase>()];
+    let definitions = generator.take_definitions(true);
+    ui.json(&json!({
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "A Gudgeon case: one of the scenes",
+        "anyOf": scenes,
+        "$defs": definitions,
+    }));
     Ok(())
 }

@@ -55,6 +55,8 @@ pub struct FaceOut {
     pub liner_shear: f64,
     /// Pressure force on the sloping ring face along `+x`, `-∫ p h' dx` \[N/m\], with `p` above `p_cav`.
     pub slope_force: f64,
+    /// See [`FaceForces::flux`].
+    pub flux: f64,
     /// Highest absolute pressure \[Pa\].
     pub p_max: f64,
     /// Extent of the full film: `x` of its lower and upper end \[m\].
@@ -74,6 +76,9 @@ pub struct FaceForces {
     pub liner_shear: f64,
     /// See [`FaceOut::slope_force`].
     pub slope_force: f64,
+    /// Flux of oil along `+x` at the lower end of the film, seen from the ring, per metre of circumference \[m²/s\]; zero from a
+    /// model that does not know its flux.
+    pub flux: f64,
 }
 
 impl FaceOut {
@@ -86,6 +91,7 @@ impl FaceOut {
             ring_shear: self.ring_shear,
             liner_shear: self.liner_shear,
             slope_force: self.slope_force,
+            flux: self.flux,
         }
     }
 }
@@ -109,6 +115,13 @@ pub trait Hydrodynamics: Send {
     /// # Errors
     /// As [`Hydrodynamics::evaluate`], or no convergence.
     fn squeeze_rate(&mut self, inp: &FaceIn, load: f64) -> Result<f64, EvalError>;
+
+    /// Confines the film to the face between `from` and `to` \[m\]: beyond, the face is dry and the pressure of the edge reaches
+    /// to the end of the film. Until the next call everything else speaks of that part alone, in coordinates of the whole face.
+    /// Whether the model can do that; one that cannot stays as it was.
+    fn set_extent(&mut self, _from: f64, _to: f64) -> bool {
+        false
+    }
 
     /// [`Hydrodynamics::evaluate`] without pressures and extent.
     ///

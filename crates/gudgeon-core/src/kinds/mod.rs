@@ -13,6 +13,7 @@ mod gas_flow;
 mod hydrodynamics;
 mod kinematics;
 mod oil;
+mod rig;
 mod ring_motion;
 
 pub use contact::*;
@@ -25,4 +26,5 @@ pub use gas_flow::*;
 pub use hydrodynamics::*;
 pub use kinematics::*;
 pub use oil::*;
+pub use rig::*;
 pub use ring_motion::*;

@@ -2,10 +2,10 @@
 (function () {
   const bar = document.getElementById("bar");
   if (!bar) return;
-  const variants = DATA.variants.filter((v) => arrays[v.series.theta].length);
+  const variants = DATA.variants.filter((v) => arrays[v.series.axis.at].length);
   if (!variants.length) return;
-  const lo = Math.min(...variants.map((v) => arrays[v.series.theta][0]));
-  const hi = Math.max(...variants.map((v) => arrays[v.series.theta].at(-1)));
+  const lo = Math.min(...variants.map((v) => arrays[v.series.axis.at][0]));
+  const hi = Math.max(...variants.map((v) => arrays[v.series.axis.at].at(-1)));
   const cycle = new Cycle(lo, hi > lo ? hi : lo + 1, 0.5);
   cycleBar(bar, cycle);
   const host = document.getElementById("plots");
@@ -50,9 +50,9 @@
       const c = v.series.columns.find((c) => c.name === q.name);
       if (!c) continue;
       // Variants that share a curve share one line.
-      const same = lines.find((l) => l.at === c.at && l.x === arrays[v.series.theta]);
+      const same = lines.find((l) => l.at === c.at && l.x === arrays[v.series.axis.at]);
       if (same) { same.numbers.push(v.number); continue; }
-      lines.push({ numbers: [v.number], at: c.at, x: arrays[v.series.theta], y: arrays[c.at], color: color(v.number - 1), dash: dashes[(v.number - 1) % 4] });
+      lines.push({ numbers: [v.number], at: c.at, x: arrays[v.series.axis.at], y: arrays[c.at], color: color(v.number - 1), dash: dashes[(v.number - 1) % 4] });
     }
     for (const l of lines) {
       l.label = l.numbers.length === variants.length && variants.length > 1 ? "all variants" : l.numbers.join(", ");

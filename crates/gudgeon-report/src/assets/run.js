@@ -2,7 +2,7 @@
 (function () {
   const bar = document.getElementById("bar");
   if (!bar) return;
-  const theta = arrays[DATA.series.theta];
+  const theta = arrays[DATA.series.axis.at];
   const columns = new Map(), order = [];
   for (const c of DATA.series.columns) {
     const entry = { name: c.name, unit: c.unit, at: c.at, x: theta, y: arrays[c.at] };

@@ -295,7 +295,7 @@ pub fn run(n: usize) -> RunResult {
             .map(|(k, v)| (k.to_owned(), v))
             .into_iter()
             .collect(),
-        series: Series { theta_deg: theta, columns },
+        series: Series::over_cycle(theta, columns),
         events,
         branches: vec![
             Branch {
@@ -322,6 +322,7 @@ pub fn run(n: usize) -> RunResult {
             stroke: 0.14,
             rings,
         }),
+        ..RunResult::default()
     }
 }
 

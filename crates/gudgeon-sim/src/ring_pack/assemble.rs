@@ -402,17 +402,8 @@ pub fn models_in_use(case: &RingPackCase, plan: &Plan) -> (Vec<ModelUse>, Vec<Sk
             RingDesign::Compression => {}
         }
     }
-    let models = used
-        .into_iter()
-        .map(|(kind, model)| ModelUse {
-            kind: kind.into(),
-            model: model.into(),
-            references: registry
-                .model(kind, model)
-                .map(|m| m.references.iter().map(|r| (*r).to_owned()).collect())
-                .unwrap_or_default(),
-        })
-        .collect();
+    let models =
+        used.into_iter().map(|(kind, model)| crate::run::model_use(&registry, kind, model)).collect();
     (models, skipped)
 }
 

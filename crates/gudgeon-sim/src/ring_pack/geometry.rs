@@ -3,10 +3,10 @@
 use std::f64::consts::PI;
 
 use gudgeon_core::BuildError;
-use gudgeon_core::geometry::{BackVolume, Chamfer, FaceProfile, LandGeometry, PackGeometry, RingGeometry};
+use gudgeon_core::geometry::{BackVolume, Chamfer, LandGeometry, PackGeometry, RingGeometry};
 use gudgeon_core::result::{PackSection, SectionRing};
 
-use crate::case::{Face, FaceShape, Land, Ring, RingDesign, RingPackCase};
+use crate::case::{Land, Ring, RingDesign, RingPackCase};
 
 /// Temperature at which cold gaps are measured \[K\] (zottin1992, 20 degC).
 const COLD: f64 = 293.15;
@@ -124,59 +124,6 @@ fn land_radius(l: &Land, bore_radius: f64) -> Result<f64, BuildError> {
     Ok(r)
 }
 
-fn face(f: &Face, height: f64) -> Result<FaceProfile, BuildError> {
-    let length = f.length.map_or(height, |l| l.si());
-    if length > height * (1.0 + 1e-9) {
-        return Err(BuildError::at(
-            "length",
-            format!(
-                "a face of {:.4} mm is longer than its ring is thick ({:.4} mm)",
-                1e3 * length,
-                1e3 * height
-            ),
-        ));
-    }
-    let only = |unwanted: bool, field: &str, shape: &str| {
-        if unwanted {
-            Err(BuildError::at(field, format!("`{field}` has no meaning for a face of shape `{shape}`")))
-        } else {
-            Ok(())
-        }
-    };
-    match f.shape {
-        FaceShape::Parabola => {
-            only(!f.drops.is_empty(), "drops", "parabola")?;
-            let drop = f.drop.ok_or_else(|| BuildError::at("shape", "a `parabola` needs its `drop`"))?.si();
-            let half = length / 2.0;
-            Ok(FaceProfile::Parabola { length, curvature: drop / (half * half), apex: half + f.offset.si() })
-        }
-        FaceShape::Taper => {
-            only(!f.drops.is_empty(), "drops", "taper")?;
-            only(f.offset.si() != 0.0, "offset", "taper")?;
-            let drop = f.drop.ok_or_else(|| BuildError::at("shape", "a `taper` needs its `drop`"))?.si();
-            Ok(FaceProfile::Table { length, drops: vec![0.0, drop] })
-        }
-        FaceShape::Table => {
-            only(f.drop.is_some(), "drop", "table")?;
-            only(f.offset.si() != 0.0, "offset", "table")?;
-            if f.drops.len() < 2 {
-                return Err(BuildError::at(
-                    "drops",
-                    format!("a table needs at least two drops, not {}", f.drops.len()),
-                ));
-            }
-            let drops: Vec<f64> = f.drops.iter().map(|d| d.si()).collect();
-            if let Some(i) = drops.iter().position(|d| *d < 0.0) {
-                return Err(BuildError::at(
-                    format!("drops.{i}"),
-                    "a drop is measured away from the liner and cannot be negative",
-                ));
-            }
-            Ok(FaceProfile::Table { length, drops })
-        }
-    }
-}
-
 fn ring(
     r: &Ring,
     bore_radius: f64,
@@ -277,7 +224,7 @@ fn ring(
     let chamfer = |c: Option<crate::case::ChamferShape>| {
         c.map_or(0.0, |c| 0.5 * c.length.si() * c.length.si() * c.angle.si().tan())
     };
-    let profile = match face(&r.face, height) {
+    let profile = match r.face.profile(height) {
         Ok(p) => p,
         Err(e) => {
             check(Err(e.within("face")));

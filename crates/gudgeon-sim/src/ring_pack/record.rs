@@ -216,10 +216,8 @@ impl Record {
     #[must_use]
     pub fn series(mut self, pack: &Pack, totals: &Totals) -> Series {
         self.accumulate(totals, pack.omega);
-        Series {
-            theta_deg: self.theta.iter().map(|t| round_deg(t.to_degrees())).collect(),
-            columns: self.columns,
-        }
+        let theta_deg = self.theta.iter().map(|t| round_deg(t.to_degrees())).collect();
+        Series::over_cycle(theta_deg, self.columns)
     }
 
     /// Every wanted result.
