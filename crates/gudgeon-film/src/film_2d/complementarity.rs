@@ -81,9 +81,8 @@ impl<L: Linear> Solver<L> {
         rounding.max(self.tolerance * most)
     }
 
-    /// One correction of the unknowns of the present matrix. Returns the largest residual that is left.
+    /// One correction of the unknowns of the present matrix by the balances in `b`. Returns the largest residual that is left.
     fn correct(&mut self, target: f64, cycles: &mut usize) -> f64 {
-        self.problem.balance(&self.p, &self.void, &mut self.b);
         for b in &mut self.b {
             *b = -*b;
         }
@@ -115,10 +114,12 @@ impl<L: Linear> Solver<L> {
 
     /// Solves the present linear system. Returns the residual that is allowed for.
     fn settle(&mut self, cycles: &mut usize) -> Result<f64, EvalError> {
+        let mut target = self.target();
         for _ in 0..5 {
-            // Judged by the flows of the film it leads to.
-            let left = self.correct(self.target(), cycles);
-            let target = self.target();
+            self.problem.balance(&self.p, &self.void, &mut self.b);
+            let left = self.correct(target, cycles);
+            // Judged by the flows of the film it led to.
+            target = self.target();
             if left <= target {
                 return Ok(target);
             }
@@ -202,13 +203,14 @@ impl<L: Linear> Solver<L> {
             self.linear.factor(&self.problem.m, !any).map_err(|s| self.singular(s))?;
             // A few digits at a time: a set that changes again needs no more.
             let mut stalled = 0;
+            let mut target = self.target();
             let changed = loop {
                 self.problem.balance(&self.p, &self.void, &mut self.b);
                 let now = self.b.iter().zip(&self.problem.edge).filter(|(_, e)| **e == 4);
                 let now = now.fold(0.0_f64, |a, (b, _)| a.max(b.abs()));
-                let aim = self.target().max(LOOSE * now);
+                let aim = target.max(LOOSE * now);
                 let left = self.correct(aim, &mut cycles);
-                let target = self.target();
+                target = self.target();
                 let top = self.p.iter().fold(0.0_f64, |a, &b| a.max(b));
                 let inner = (0..self.p.len()).filter(|&k| self.problem.edge[k] == 4);
                 let changed = inner.filter(|&k| self.wrong(k, top)).count();
