@@ -283,7 +283,7 @@ impl<L: Linear> Solver<L> {
 }
 
 /// Part of the residual that a step leaves while the set of cavitated nodes still changes.
-const LOOSE: f64 = 1e-2;
+const LOOSE: f64 = 3e-3;
 
 impl<L: Linear> Film2d for Solver<L> {
     fn grid(&self) -> &Film2dGrid {
