@@ -1,14 +1,16 @@
-//! Oil, film temperature, the film under a ring face and films along and across the motion.
+//! Oil, film temperature, the film under a ring face, and films along a line and along and across the motion.
 
 mod closed_form_face;
 mod constant;
 mod face;
+pub mod film_1d;
 pub mod film_2d;
 mod given;
 mod gridded_face;
 mod land_wall_mean;
 mod liner_linear;
 mod off;
+pub mod oil_transport;
 mod vogel;
 mod vogel_grade;
 

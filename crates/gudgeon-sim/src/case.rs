@@ -3,7 +3,7 @@
 use gudgeon_core::face::Face;
 use gudgeon_core::kinds::{
     ContactSpec, CylinderPressureSpec, FilmTemperatureSpec, FlankDampingSpec, FlankFrictionSpec, GasFlowSpec,
-    HydrodynamicsSpec, KinematicsSpec, OilSpec, RingMotionSpec,
+    HydrodynamicsSpec, KinematicsSpec, OilSpec, OilTransportSpec, RingMotionSpec,
 };
 use gudgeon_core::quantity::{
     Angle, Fraction, Length, NonNegative, PosAngle, PosAngularSpeed, PosArea, PosExpansion, PosForce,
@@ -309,6 +309,9 @@ pub struct Models {
     /// Film under the ring faces.
     #[serde(default = "default_hydrodynamics")]
     pub hydrodynamics: Box<dyn HydrodynamicsSpec>,
+    /// Oil on the liner and under the faces.
+    #[serde(default = "default_oil_transport")]
+    pub oil_transport: Box<dyn OilTransportSpec>,
     /// Solid contact of ring faces and liner. No default: it needs the roughness of the surfaces.
     pub contact: Box<dyn ContactSpec>,
     /// Lubricant.
@@ -597,5 +600,6 @@ default_model! {
     default_ring_motion: dyn RingMotionSpec = "newton_groove";
     default_flank_damping: dyn FlankDampingSpec = "squeeze_film";
     default_flank_friction: dyn FlankFrictionSpec = "off";
+    default_oil_transport: dyn OilTransportSpec = "off";
     default_hydrodynamics: dyn HydrodynamicsSpec = "closed_form_face";
 }

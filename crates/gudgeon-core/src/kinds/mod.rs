@@ -5,6 +5,7 @@
 
 mod contact;
 mod cylinder_pressure;
+mod film_1d;
 mod film_2d;
 mod film_temperature;
 mod flank_damping;
@@ -13,11 +14,13 @@ mod gas_flow;
 mod hydrodynamics;
 mod kinematics;
 mod oil;
+mod oil_transport;
 mod rig;
 mod ring_motion;
 
 pub use contact::*;
 pub use cylinder_pressure::*;
+pub use film_1d::*;
 pub use film_2d::*;
 pub use film_temperature::*;
 pub use flank_damping::*;
@@ -26,5 +29,6 @@ pub use gas_flow::*;
 pub use hydrodynamics::*;
 pub use kinematics::*;
 pub use oil::*;
+pub use oil_transport::*;
 pub use rig::*;
 pub use ring_motion::*;

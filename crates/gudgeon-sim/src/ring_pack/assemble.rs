@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use gudgeon_core::BuildError;
-use gudgeon_core::geometry::BackVolume;
+use gudgeon_core::geometry::{BackVolume, PackGeometry};
 use gudgeon_core::kinds::{
     CylinderPressureCtx, FaceCtx, FilmTemperatureCtx, FlankDampingCtx, GasFlowCtx, GasIn, GasOut,
     KinematicsCtx, Motion, RingMotion, RingMotionCtx,
@@ -14,6 +14,7 @@ use gudgeon_core::result::{ModelUse, Skipped};
 use super::contact_line::ContactLine;
 use super::geometry;
 use super::hold::Hold;
+use super::oil::{FacePlace, OilPack};
 use super::pack::{Counters, Instant, Layout, LinerShape, Pack, RingInstant, RingModel};
 use super::plan::{Facts, Plan, plan, wanted};
 use crate::case::{Method, RingDesign, RingPackCase};
@@ -148,7 +149,10 @@ pub fn assemble(case: &RingPackCase, folder: &Path) -> Result<Pack, Vec<BuildErr
     let ctx = FilmTemperatureCtx { land_temperatures: &land_temperatures, stroke: kinematics.stroke() };
     let film_temperature =
         m.film_temperature.build(&ctx).map_err(at("models.film_temperature")).map_err(|e| errors.push(e));
-    let (Ok(oil), Ok(film_temperature)) = (oil, film_temperature) else { return Err(errors) };
+    let oil_model = m.oil_transport.build().map_err(at("models.oil_transport")).map_err(|e| errors.push(e));
+    let (Ok(oil), Ok(film_temperature), Ok(oil_model)) = (oil, film_temperature, oil_model) else {
+        return Err(errors);
+    };
 
     let mut spacing = 0.0;
     let mut rings = Vec::with_capacity(n);
@@ -227,7 +231,8 @@ pub fn assemble(case: &RingPackCase, folder: &Path) -> Result<Pack, Vec<BuildErr
 
     // Layout.
     let gas_states = gas.n_states();
-    let mut layout = Layout { gas: gas_states, film: vec![None; n], axial: vec![None; n], n: gas_states };
+    let mut layout =
+        Layout { gas: gas_states, film: vec![None; n], axial: vec![None; n], oil: None, n: gas_states };
     if plan.film {
         for (i, r) in rings.iter().enumerate() {
             if !r.films.is_empty() {
@@ -241,6 +246,35 @@ pub fn assemble(case: &RingPackCase, folder: &Path) -> Result<Pack, Vec<BuildErr
             layout.axial[i] = Some(layout.n);
             layout.n += 2;
         }
+    }
+    let mut oil_pack = None;
+    if plan.film
+        && let Some(model) = oil_model
+    {
+        for (i, r) in rings.iter_mut().enumerate() {
+            let length = geo.rings[i].face.length();
+            if !r.films.iter_mut().all(|f| f.set_extent(0.0, length)) {
+                return Err(vec![
+                    BuildError::at(
+                        "models.oil_transport",
+                        format!("the film of ring {} cannot be confined to the part of its face that has oil", i + 1),
+                    )
+                    .help("use `hydrodynamics = { model = \"closed_form_face\" }`, or `oil_transport = { model = \"off\" }`"),
+                ]);
+            }
+        }
+        let faces = faces(&geo, &rings, pin_to_ring1);
+        if let Some(w) = faces.windows(2).find(|w| w[0].offset <= w[1].offset + w[1].profile.length()) {
+            return Err(vec![BuildError::at(
+                format!("rings.{}.face", w[1].ring),
+                format!("the faces of ring {} and ring {} overlap", w[0].ring + 1, w[1].ring + 1),
+            )]);
+        }
+        let (top, stroke) = (kinematics.y_tdc(), kinematics.stroke());
+        let oil = OilPack::new(model, faces, top - stroke, top, layout.n);
+        layout.oil = Some(layout.n);
+        layout.n += oil.states();
+        oil_pack = Some(oil);
     }
     let states = layout.n;
     let places = vec![gudgeon_core::geometry::RingPlace::default(); n];
@@ -256,6 +290,7 @@ pub fn assemble(case: &RingPackCase, folder: &Path) -> Result<Pack, Vec<BuildErr
         liner,
         pin_to_ring1,
         p_crankcase: case.gas.crankcase_pressure.si(),
+        oil_pack,
         plan,
         layout,
         mass_scale: vec![1.0; gas_states],
@@ -292,6 +327,42 @@ pub fn assemble(case: &RingPackCase, folder: &Path) -> Result<Pack, Vec<BuildErr
         ]);
     }
     Ok(pack)
+}
+
+/// Radial clearance of a land to the liner \[m\].
+fn clearance(geo: &PackGeometry, piston_radius: f64) -> Option<f64> {
+    Some((geo.bore_radius - piston_radius).max(0.0))
+}
+
+/// The running faces from the top down, where they are on the piston, and what room there is before their edges.
+fn faces(geo: &PackGeometry, rings: &[RingModel], pin_to_ring1: f64) -> Vec<FacePlace> {
+    let mut all = Vec::new();
+    for (i, (g, r)) in geo.rings.iter().zip(rings).enumerate() {
+        let middle = pin_to_ring1 - r.spacing;
+        let length = g.face.length();
+        let lowest = i + 1 == geo.rings.len();
+        for land in 0..g.lands {
+            let bottom = match (g.lands, land) {
+                (1, _) => middle - 0.5 * length,
+                (_, 0) => middle + 0.5 * g.height - length,
+                _ => middle - 0.5 * g.height,
+            };
+            // Oil between the lands of an oil ring, and below the lowest ring, drains at once.
+            let drained_below = lowest && land + 1 == g.lands || g.lands == 2 && land == 0;
+            let drained_above = g.lands == 2 && land == 1;
+            all.push(FacePlace {
+                ring: i,
+                land,
+                profile: g.face.clone(),
+                offset: bottom,
+                clearance: [
+                    if drained_below { None } else { clearance(geo, g.piston_radius_below) },
+                    if drained_above { None } else { clearance(geo, g.piston_radius_above) },
+                ],
+            });
+        }
+    }
+    all
 }
 
 fn liner_shape(case: &RingPackCase, stroke: f64, spacing: f64) -> Result<(LinerShape, f64), BuildError> {
@@ -386,6 +457,7 @@ pub fn models_in_use(case: &RingPackCase, plan: &Plan) -> (Vec<ModelUse>, Vec<Sk
             own(|r| r.contact.as_ref().map(|s| s.typetag_name())),
         );
         pack_and_own("oil", m.oil.typetag_name(), Vec::new());
+        pack_and_own("oil_transport", m.oil_transport.typetag_name(), Vec::new());
         pack_and_own("film_temperature", m.film_temperature.typetag_name(), Vec::new());
         pack_and_own("flank_friction", m.flank_friction.typetag_name(), Vec::new());
     }

@@ -16,6 +16,7 @@ use gudgeon_numerics::rodas::{Formula, Rodas};
 
 use super::Found;
 use super::hold::Hold;
+use super::oil::Ledger;
 use super::pack::{Base, Pack};
 use super::record::{Record, Totals};
 use crate::case::{IntegratorName, RingPackCase};
@@ -150,6 +151,11 @@ impl Cycle<'_> {
         // No step may jump over a pressure pulse: 10 degrees at most.
         options.h_max = 10f64.to_radians();
         options.max_steps = MOST_STEPS;
+        if let Some(oil) = &self.pack.oil_pack {
+            // A face takes up what the one before it left in earlier steps.
+            let speed = 1.1 * 0.5 * self.pack.kinematics.stroke() * self.pack.omega;
+            options.h_max = options.h_max.min(0.8 * oil.least_gap * self.pack.omega / speed);
+        }
         // Rings turn slowly beside the steps that their motion allows.
         options.event_samples = 0;
         // The reference integrates every ring with its inertia.
@@ -187,9 +193,13 @@ impl Cycle<'_> {
             options.h_init = self.h;
             let mut problem =
                 Problem { pack: self.pack, base: &mut self.base, scale: &self.scale, balance: &self.balance };
-            let mut observe = |p: &mut Problem<'_>, v: &dyn StepView| match sampler.as_deref_mut() {
-                Some(s) => s.step(p.pack, v),
-                None => Flow::Continue,
+            let mut observe = |p: &mut Problem<'_>, v: &dyn StepView| {
+                let flow = match sampler.as_deref_mut() {
+                    Some(s) => s.step(p.pack, v),
+                    None => Flow::Continue,
+                };
+                p.pack.book_oil(v);
+                flow
             };
             let (b, st) = (&self.breakpoints, &mut self.stats);
             outcome = match &mut self.method {
@@ -208,9 +218,42 @@ impl Cycle<'_> {
     }
 }
 
+impl Cycle<'_> {
+    /// Takes the film on the liner from behind the states and begins a cycle with it.
+    fn begin(&mut self, y: &[f64]) {
+        let (n, pin) = (self.pack.layout.n, self.pack.kinematics.motion(0.0).y);
+        if let Some(oil) = &mut self.pack.oil_pack {
+            // An extrapolated film may be less than none.
+            for (film, y) in oil.film.iter_mut().zip(&y[n..]) {
+                *film = (y * LINER_SCALE).max(0.0);
+            }
+            oil.begin(pin);
+        }
+    }
+
+    /// Puts the film on the liner behind the states, and what the faces took up into them.
+    fn end(&mut self, y: &mut [f64]) {
+        let n = self.pack.layout.n;
+        if let Some(oil) = &mut self.pack.oil_pack {
+            oil.fold(&mut y[..n]);
+            for (film, y) in oil.film.iter().zip(&mut y[n..]) {
+                *y = film / LINER_SCALE;
+            }
+        }
+    }
+}
+
+/// How much less repeatable than its integration a cycle with oil on the liner is.
+const OIL_NOISE: f64 = 10.0;
+/// Unit of the film on the liner \[m\].
+const LINER_SCALE: f64 = 1e-6;
+/// Film of one cell that counts as one, in its unit: which cells a step ends in differs from cycle to cycle, and a face is as long
+/// as many of them.
+const CELL_SCALE: f64 = 100.0;
+
 impl CycleMap for Cycle<'_> {
     fn dim(&self) -> usize {
-        self.pack.layout.n
+        self.pack.layout.n + self.pack.oil_pack.as_ref().map_or(0, |o| o.film.len())
     }
     fn map(&mut self, y0: &[f64], y1: &mut [f64], accuracy: f64) -> Result<f64, EvalError> {
         y1.copy_from_slice(y0);
@@ -219,12 +262,15 @@ impl CycleMap for Cycle<'_> {
             *k = k.max(0.01);
         }
         let rtol = accuracy.max(self.full_accuracy);
-        if let Err(e) = self.integrate(y1, rtol, None) {
+        let n = self.pack.layout.n;
+        self.begin(y1);
+        if let Err(e) = self.integrate(&mut y1[..n], rtol, None) {
             self.failure = Some(e);
             return Err(EvalError::fatal("ring_pack", "the cycle could not be integrated"));
         }
         // The velocity of a ring that could be held says nothing.
-        self.pack.start_holds(self.pack.period(), y1)?;
+        self.pack.start_holds(self.pack.period(), &mut y1[..n])?;
+        self.end(y1);
         Ok(1.0)
     }
     fn scale(&self, y: &[f64], s: &mut [f64]) {
@@ -236,6 +282,12 @@ impl CycleMap for Cycle<'_> {
         }
         for k in self.pack.layout.axial.iter().flatten() {
             s[k + 1] = VELOCITY_SCALE;
+        }
+        if let Some(k) = self.pack.layout.oil {
+            for (s, y) in s[k..self.pack.layout.n].iter_mut().zip(&y[k..]) {
+                *s = y.abs().max(1.0);
+            }
+            s[self.pack.layout.n..].fill(CELL_SCALE);
         }
     }
 }
@@ -396,6 +448,10 @@ pub(super) fn run(
         scale[k + 1] = VELOCITY_SCALE;
         scale[*k] = POSITION_SCALE;
     }
+    // What a face took up stands beside its states, which may therefore be anything.
+    if let Some(k) = pack.layout.oil {
+        absolute[k..].fill(true);
+    }
     // Gas in, less gas out, is gas stored.
     let mut balance = Vec::new();
     if pack.layout.gas > 0 {
@@ -405,8 +461,12 @@ pub(super) fn run(
         balance.push(LinearInvariant { pivot: last, terms });
     }
     let discrete = pack.decision_interval().is_some();
-    let mut y = vec![0.0; dim];
-    pack.initial(start, &mut y);
+    let cells = pack.oil_pack.as_ref().map_or(0, |o| o.film.len());
+    let mut y = vec![0.0; dim + cells];
+    pack.initial(start, &mut y[..dim]);
+    for (y, film) in y[dim..].iter_mut().zip(pack.oil_pack.iter().flat_map(|o| &o.film)) {
+        *y = film / LINER_SCALE;
+    }
     let mut cycle = Cycle {
         pack,
         method,
@@ -423,9 +483,10 @@ pub(super) fn run(
         progress,
         done: 0.0,
     };
+    // A map is only as repeatable as its integration is accurate, and where a film ends on the liner depends on where steps end.
+    let repeatable = if cycle.pack.oil_pack.is_some() { OIL_NOISE } else { 1.0 } * s.tolerance.si();
     let options = OrbitOptions {
-        // A map is only as repeatable as its integration is accurate.
-        tolerance: s.periodicity.si().max(s.tolerance.si()),
+        tolerance: s.periodicity.si().max(repeatable),
         accuracy: s.tolerance.si(),
         max_cycles: s.max_cycles as usize,
         accelerate: !discrete,
@@ -442,7 +503,18 @@ pub(super) fn run(
     // The recorded cycle, at full accuracy.
     let mut sampler = Sampler::new(cycle.pack, case.outputs.series_step.si());
     let gas: Vec<f64> = y[..cycle.pack.layout.gas].to_vec();
-    cycle.integrate(&mut y, s.tolerance.si(), Some(&mut sampler))?;
+    cycle.begin(&y);
+    let oil_before = cycle.pack.oil_pack.as_ref().map_or(0.0, |o| o.total(&y[..dim]));
+    if let Some(o) = &mut cycle.pack.oil_pack {
+        // What the crankcase put on the liner before the first step was counted with the rest.
+        o.ledger = Ledger::default();
+    }
+    cycle.integrate(&mut y[..dim], s.tolerance.si(), Some(&mut sampler))?;
+    let oil_mass = cycle.pack.oil_pack.as_ref().map(|o| {
+        let l = &o.ledger;
+        let stored = o.total(&y[..dim]) - oil_before;
+        (l.supplied - l.drained - l.thrown - stored).abs() / l.taken.max(f64::MIN_POSITIVE)
+    });
     if let Some(source) = sampler.failure.take() {
         return Err(RunError::Eval { theta_deg: cycle.pack.at.theta.to_degrees(), source });
     }
@@ -457,7 +529,7 @@ pub(super) fn run(
         friction_work: q[n + 1..].to_vec(),
         balance: Balance {
             gas_mass: Some((q[0] - q[n] - stored).abs() / through),
-            oil_mass: None,
+            oil_mass,
             energy,
             momentum,
         },

@@ -9,6 +9,7 @@ pub mod degree_march;
 pub mod geometry;
 pub mod hold;
 pub mod implicit;
+pub mod oil;
 pub mod pack;
 pub mod plan;
 pub mod record;
@@ -238,6 +239,15 @@ pub fn legal(case: &RingPackCase) -> Vec<BuildError> {
         errors.push(BuildError::at("solver.tolerance", "the tolerance must be between 1e-12 and 0.1"));
     }
     if s.method == Method::AsPublished {
+        if case.models.oil_transport.typetag_name() != "off" {
+            errors.push(
+                BuildError::at(
+                    "models.oil_transport",
+                    "the published schemes have flooded faces and follow no oil",
+                )
+                .help("use `solver.method = \"implicit\"`, or `oil_transport = { model = \"off\" }`"),
+            );
+        }
         let name = case.models.ring_motion.typetag_name();
         let steps = u64::from(s.steps_per_degree.max(1)) * u64::from(s.gas_steps.max(1));
         if steps > 1_000_000 {

@@ -15,6 +15,7 @@ use gudgeon_core::kinds::{
 
 use super::contact_line::ContactLine;
 use super::hold::Hold;
+use super::oil::OilPack;
 use super::plan::Plan;
 use crate::case::{
     AxialGas, CavitationDatum, Conventions, Drag, FilmForce, Hoop, RadialGas, TwinLandFriction,
@@ -116,8 +117,13 @@ pub struct RingInstant {
     pub load: f64,
     /// Part of it that solid contact carries \[N/m\].
     pub contact: f64,
+    /// Part of the load \[N/m\] that gas on the dry parts of the face carries, and their force along the liner, from the bottom
+    /// edge to the top edge positive.
+    pub dry: (f64, f64),
     /// Film, summed over the lands.
     pub film: FaceForces,
+    /// Flux at the lower end of each land's film \[m²/s\].
+    pub flux: [f64; 2],
     /// Highest pressure of the film \[Pa\], as of the last [`Pack::film_peak`].
     pub film_p_max: f64,
     /// Whether `film` belongs to `hdot`.
@@ -158,6 +164,8 @@ pub struct Layout {
     pub film: Vec<Option<usize>>,
     /// Index of the height per ring; the velocity follows.
     pub axial: Vec<Option<usize>>,
+    /// Index of the first volume of oil, when oil is followed.
+    pub oil: Option<usize>,
     /// Number of states.
     pub n: usize,
 }
@@ -188,6 +196,8 @@ pub struct Pack {
     pub pin_to_ring1: f64,
     /// Crankcase pressure \[Pa\].
     pub p_crankcase: f64,
+    /// Oil on the liner and under the faces, when it is followed.
+    pub oil_pack: Option<OilPack>,
     /// What runs.
     pub plan: Plan,
     /// State layout.
@@ -431,6 +441,7 @@ impl Pack {
             } else {
                 0.0
             };
+            self.at.rings[i].flux[land] = o.flux;
             sum.load += o.load;
             sum.load_rate += o.load_rate;
             sum.ring_shear += share * o.ring_shear;
@@ -467,15 +478,49 @@ impl Pack {
         Ok(())
     }
 
+    /// Lets the films of ring `i` reach as far as its oil does.
+    fn wet(&mut self, i: usize) -> Result<(), EvalError> {
+        let Some(oil) = &mut self.oil_pack else { return Ok(()) };
+        let (r, h) = (&mut self.at.rings[i], self.at.places[i].h);
+        r.dry = (0.0, 0.0);
+        for f in oil.faces.iter_mut().filter(|f| f.ring == i) {
+            let (from, to) = f.set_reach(h);
+            if !self.rings[i].films[f.land].set_extent(from, to) {
+                return Err(EvalError::fatal(
+                    "ring_pack",
+                    "this film cannot be confined to a part of its face",
+                ));
+            }
+            let upper = self.geo.rings[i].lands == 2 && f.land == 1;
+            let (bottom, top) = (r.p_below - r.p_cav, if upper { r.p_below } else { r.p_above } - r.p_cav);
+            let d = f.drops();
+            r.dry.0 += bottom * from + top * (f.length - to);
+            r.dry.1 -= bottom * (d[1] - d[0]) + top * (d[3] - d[2]);
+        }
+        Ok(())
+    }
+
+    /// Rates of the oil volumes of ring `i` for the film of the instant.
+    fn oil_rates(&mut self, i: usize) {
+        let Some(oil) = &mut self.oil_pack else { return };
+        let (r, h, u) = (&self.at.rings[i], self.at.places[i].h, -self.at.piston.v);
+        for k in 0..oil.faces.len() {
+            if oil.faces[k].ring == i {
+                oil.set_rates(k, h, r.hdot, u, r.flux[oil.faces[k].land]);
+            }
+        }
+    }
+
     /// Squeeze velocity \[m/s\] from the radial balance. Sets `load`, `contact` and `hdot` of the ring.
     pub fn radial_balance(&mut self, i: usize) -> Result<(), EvalError> {
+        self.wet(i)?;
         let load = self.radial_load(i);
         let h = self.at.places[i].h;
         let contact = self.rings[i].contact.load(h);
         let floor = LOAD_FLOOR * self.tension(i);
         // Smooth maximum: equal to the load within floor²/load.
         let soft = |w: f64| 0.5 * (w + (w * w + 4.0 * floor * floor).sqrt());
-        let needed = load - contact;
+        let needed = load - contact - self.at.rings[i].dry.0;
         let line = &self.rings[i].contact;
         let (lowest, band) = line.floor.map_or((THINNEST, 1.0), |f| (f, line.band));
         if h <= lowest {
@@ -492,6 +537,7 @@ impl Pack {
             self.counters.film += 1;
             let inp = self.face_in(i, 0);
             let (hdot, film) = self.rings[i].films[0].carry(&inp, soft(needed))?;
+            self.at.rings[i].flux[0] = film.flux;
             (hdot, Some(film))
         } else {
             (self.solve_balance(i, needed, soft)?, None)
@@ -595,7 +641,7 @@ impl Pack {
                 viscous = 1.0 - weight;
                 r.contact = weight * r.load.max(0.0);
             } else {
-                r.contact += weight * (r.load - r.contact - o.load).max(0.0);
+                r.contact += weight * (r.load - r.dry.0 - r.contact - o.load).max(0.0);
             }
         }
         let rubbing = line.friction * r.contact * (u / FRICTION_SPEED).tanh();
@@ -609,11 +655,12 @@ impl Pack {
             Drag::FaceShear => (r.friction * u).abs(),
         };
         let force = match self.conv.film_force {
-            FilmForce::Total => o.ring_shear + o.slope_force,
+            FilmForce::Total => o.ring_shear + o.slope_force + r.dry.1,
             FilmForce::LinerReaction => o.liner_shear,
             FilmForce::FaceShear => o.ring_shear,
         };
         r.axial.film = perimeter * (viscous * force + rubbing);
+        self.oil_rates(i);
         Ok(())
     }
 
@@ -661,6 +708,9 @@ impl Pack {
         }
         self.state.copy_from_slice(y);
         self.set_places(theta, y);
+        if let Some(oil) = &mut self.oil_pack {
+            oil.set_volumes(y, self.at.piston.y);
+        }
         for k in 0..self.layout.gas {
             self.masses[k] = y[k] * self.mass_scale[k];
         }
@@ -702,6 +752,13 @@ impl Pack {
                     (r.axial.sum() + r.reaction) / self.geo.rings[i].mass / (c0 * self.omega * self.omega);
             }
         }
+        if let Some(oil) = &self.oil_pack {
+            for k in 0..oil.faces.len() {
+                let (s, unit) = (oil.faces[k].state, oil.unit(k));
+                f[s] = oil.faces[k].rate[0] / unit * per;
+                f[s + 1] = oil.faces[k].rate[1] / unit * per;
+            }
+        }
         let q = &mut f[self.layout.n..];
         if !q.is_empty() {
             let n = self.rings.len();
@@ -712,6 +769,14 @@ impl Pack {
             q[n] = self.at.gas.flow_out[n - 1] * per;
         }
         Ok(())
+    }
+
+    /// Books the oil of an accepted step.
+    pub fn book_oil(&mut self, v: &dyn gudgeon_numerics::ode::StepView) {
+        let Some(oil) = &mut self.oil_pack else { return };
+        let pin = self.kinematics.motion(v.t1()).y;
+        let film = &self.layout.film;
+        oil.book(v.y0(), v.y1(), pin, |i| film[i].map_or(0.0, |k| v.y1()[k].exp()));
     }
 
     /// Decides the seats of the rings whose motion is decided in steps, from the forces of the last instant. Returns
@@ -741,6 +806,11 @@ impl Pack {
         for k in self.layout.axial.iter().flatten() {
             y[*k] = 0.0;
             y[*k + 1] = 0.0;
+        }
+        if let Some(oil) = &mut self.oil_pack {
+            let thickness: Vec<f64> =
+                self.layout.film.iter().map(|k| k.map_or(0.0, |k| y[k].exp())).collect();
+            oil.start(|i| thickness[i], y);
         }
         self.set_places(0.0, y);
         let n = self.n_rings();
@@ -817,6 +887,8 @@ pub struct Base {
     dm: Vec<f64>,
     gas: GasOut,
     slopes: GasSlopes,
+    /// Rates of the oil volumes.
+    oil: Vec<[f64; 2]>,
 }
 
 impl Pack {
@@ -860,6 +932,8 @@ impl Pack {
         base.places.clone_from(&self.at.places);
         base.dm.clone_from(&self.at.dm);
         base.gas.clone_from(&self.at.gas);
+        base.oil.clear();
+        base.oil.extend(self.oil_pack.iter().flat_map(|o| o.faces.iter().map(|f| f.rate)));
         let p_cylinder = self.at.gas.p_land[0];
         debug_assert!(theta.is_finite());
         if base.slopes.d_state.len() != self.layout.gas * self.layout.gas {
@@ -919,6 +993,20 @@ impl Pack {
                 jac[k * n + k + 1] = 1.0;
                 self.axial_row(i, k + 1, d, base, jac);
                 self.restore(base);
+            }
+        }
+        for f in 0..base.oil.len() {
+            for side in 0..2 {
+                let Some(oil) = &mut self.oil_pack else { break };
+                let (i, k, unit) = (oil.faces[f].ring, oil.faces[f].state + side, oil.unit(f));
+                let (d, keep) = (increment(k), oil.faces[f].volume[side]);
+                oil.faces[f].volume[side] = keep + d * unit;
+                let outcome = self.followers(k, d, Some(i), base, jac);
+                if let Some(oil) = &mut self.oil_pack {
+                    oil.faces[f].volume[side] = keep;
+                }
+                self.restore(base);
+                outcome?;
             }
         }
         Ok(())
@@ -1011,6 +1099,14 @@ impl Pack {
                 }
                 jac[(n + rings + 1 + i) * n + column] =
                     (self.at.rings[i].power - base.rings[i].power) / (self.omega * d);
+                if let Some(oil) = &self.oil_pack {
+                    for (k, f) in oil.faces.iter().enumerate().filter(|(_, f)| f.ring == i) {
+                        let scale = 1.0 / (oil.unit(k) * self.omega * d);
+                        for side in 0..2 {
+                            jac[(f.state + side) * n + column] = (f.rate[side] - base.oil[k][side]) * scale;
+                        }
+                    }
+                }
             }
             if self.plan.axial {
                 self.axial_forces(i);

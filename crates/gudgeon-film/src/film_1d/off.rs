@@ -1,0 +1,46 @@
+use gudgeon_core::kinds::{Film1d, Film1dCtx, Film1dIn, Film1dOut, Film1dSpec, FilmField};
+use gudgeon_core::{BuildError, EvalError};
+use serde::{Deserialize, Serialize};
+
+use super::line::Line;
+
+/// No oil film: it carries nothing, does not shear and lets nothing through. The inputs must still make a line.
+#[derive(Debug, Clone, Default, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Off {}
+
+gudgeon_core::register_model! {
+    Off, kind: "film_1d", name: "off",
+    summary: "no film: no load, no friction, no flux",
+    equations: "p = p_cav,  theta = 0",
+    validity: "Solid contact and gas alone.",
+    references: [],
+    example: "",
+}
+
+#[typetag::serde(name = "off")]
+impl Film1dSpec for Off {
+    fn build(&self, ctx: &Film1dCtx<'_>) -> Result<Box<dyn Film1d>, BuildError> {
+        ctx.check()?;
+        Ok(Box::new(NoFilm { line: Line::new("off", ctx) }))
+    }
+}
+
+struct NoFilm {
+    line: Line,
+}
+
+impl Film1d for NoFilm {
+    fn solve(&mut self, inp: &Film1dIn<'_>) -> Result<Film1dOut, EvalError> {
+        self.line.enter(inp, true)?;
+        Ok(self.line.nothing())
+    }
+
+    fn field(&self) -> FilmField<'_> {
+        self.line.field()
+    }
+
+    fn full_content(&self, h_a: &[f64], h_b: &[f64], content: &mut [f64]) {
+        self.line.full_content(h_a, h_b, content);
+    }
+}

@@ -1,0 +1,7 @@
+//! Models of the oil on the liner.
+
+mod liner_film;
+mod off;
+
+pub use liner_film::LinerFilm;
+pub use off::Off;

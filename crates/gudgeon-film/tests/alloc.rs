@@ -1,0 +1,89 @@
+//! A film along a line allocates when it is built, not when it is solved.
+#![allow(
+    unsafe_code,
+    reason = "a global allocator that counts is the only way to see allocations, and its trait is unsafe"
+)]
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+use gudgeon_core::kinds::{Film1dCtx, Film1dIn, Film1dSpec, FilmEnd, FilmTime};
+use gudgeon_film::film_1d::{
+    Complementarity, ElrodAdams, FrontTracking, LineProfile, LineSolver, ViscosityLoop,
+};
+
+thread_local! {
+    // Per thread: the test harness allocates on its own.
+    static COUNT: Cell<u64> = const { Cell::new(0) };
+}
+
+struct Counting;
+
+fn count() {
+    // A thread that ends may still free and allocate: those are not ours.
+    let _ = COUNT.try_with(|c| c.set(c.get() + 1));
+}
+
+// SAFETY: every call is handed to the system's allocator unchanged.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count();
+        unsafe { System.alloc(layout) }
+    }
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        count();
+        unsafe { System.alloc_zeroed(layout) }
+    }
+    unsafe fn realloc(&self, block: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        count();
+        unsafe { System.realloc(block, layout, size) }
+    }
+    unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
+        unsafe { System.dealloc(block, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+#[test]
+fn solving_allocates_nothing() {
+    // Parallel with dimples: many cavities, and as many fronts.
+    let line = LineProfile::textured(0.01, 1e-6, 1e-6, 6, 0.4, 2e-6, 120).expect("a line");
+    let n = line.panels();
+    let mu = vec![0.01; n];
+    let rates = vec![0.05; n];
+    let mut content = vec![0.0; n + 1];
+    let newton = Complementarity { solver: LineSolver::FischerBurmeister, ..Complementarity::default() };
+    let specs: [&dyn Film1dSpec; 4] =
+        [&Complementarity::default(), &newton, &FrontTracking::default(), &ElrodAdams::default()];
+    for (k, spec) in specs.into_iter().enumerate() {
+        let mut film = spec.build(&Film1dCtx { x: &line.x }).expect("a line");
+        let mut viscosity = ViscosityLoop::new(n);
+        film.full_content(&line.h_a, &line.h_b, &mut content);
+        let inp = |u: f64, time| Film1dIn {
+            h_a: &line.h_a,
+            h_b: &line.h_b,
+            mu: &mu,
+            factors: None,
+            u,
+            ends: [FilmEnd::Flooded { p: 1e5 }; 2],
+            p_cav: 0.0,
+            time,
+        };
+        let before = COUNT.with(Cell::get);
+        for u in [2.0, -2.0, 0.0, 50.0] {
+            let out = film.solve(&inp(u, FilmTime::Steady)).expect("a film");
+            assert!(out.flux_error < 1e-9);
+            let thickening = |p: f64, _: f64| 0.01 * (1e-8 * p).exp();
+            viscosity.solve(&mut *film, &inp(u, FilmTime::Steady), thickening).expect("a film");
+            if k < 2 {
+                film.solve(&inp(u, FilmTime::Squeeze(&rates))).expect("a film");
+            }
+            if k != 2 {
+                film.solve(&inp(u, FilmTime::Step { dt: 1e-4, content: &content })).expect("a film");
+            }
+        }
+        assert_eq!(COUNT.with(Cell::get) - before, 0, "model {k}");
+    }
+}
