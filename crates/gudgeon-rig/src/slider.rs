@@ -253,7 +253,12 @@ impl Rig for Bench {
         );
         if let Some(centre) = o.centre() {
             out.result("centre", 1e3 * centre, "mm", "centre of pressure");
-            out.result("friction_coefficient", o.moving_shear / o.load, "", "moving_shear over load");
+            out.result(
+                "friction_coefficient",
+                o.moving_shear / o.load,
+                "",
+                "friction of the moving surface over load",
+            );
         }
         out.result(
             "flux_in",
@@ -262,20 +267,23 @@ impl Rig for Bench {
             "flux of oil at the beginning of the line, along x positive",
         );
         out.result("flux_out", o.flux_out, "m2/s", "flux of oil at the end of the line, along x positive");
-        let ruptures = || field.fronts.iter().filter(|f| f.film_before == (self.u >= 0.0));
-        let reforms = || field.fronts.iter().filter(|f| f.film_before != (self.u >= 0.0));
+        let forwards = self.u >= 0.0;
+        let of = |film_before: bool| field.fronts.iter().filter(move |f| f.film_before == film_before);
+        let first = |film_before: bool| {
+            let mut all = of(film_before);
+            if forwards { all.next() } else { all.next_back() }
+        };
         out.result(
             "ruptures",
-            ruptures().count() as f64,
+            of(forwards).count() as f64,
             "",
             "number of places where a film ends along the sliding",
         );
-        let in_order = |x: Option<f64>, y: Option<f64>| if self.u >= 0.0 { x } else { y };
-        if let Some(x) = in_order(ruptures().next().map(|f| f.x), ruptures().last().map(|f| f.x)) {
-            out.result("x_rupture", 1e3 * x, "mm", "place where the film ruptures first along the sliding");
+        if let Some(f) = first(forwards) {
+            out.result("x_rupture", 1e3 * f.x, "mm", "place where the film ruptures first along the sliding");
         }
-        if let Some(x) = in_order(reforms().next().map(|f| f.x), reforms().last().map(|f| f.x)) {
-            out.result("x_reform", 1e3 * x, "mm", "place where the film forms first along the sliding");
+        if let Some(f) = first(!forwards) {
+            out.result("x_reform", 1e3 * f.x, "mm", "place where the film forms first along the sliding");
         }
         out.result("starved", f64::from(u8::from(o.starved)), "", "1 when the inlet is not filled");
         out.result(

@@ -68,9 +68,9 @@ pub enum Motion {
         period: PosTime,
         /// How long.
         duration: PosTime,
-        /// Time of the results at a point; the end when absent.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        at: Option<Time>,
+        /// Times at which gap, load and film are results.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        at: Vec<Time>,
         /// Steps of a period.
         #[serde(default = "steps")]
         #[schemars(range(min = 4, max = 100_000))]
@@ -141,8 +141,13 @@ impl RigSpec for SqueezeFilmRig {
                         format!("{MOST_STEPS} steps in all are the most"),
                     ));
                 }
-                if at.is_some_and(|at| !(0.0..=duration.si()).contains(&at.si())) {
-                    errors.push(BuildError::at("motion.at", "must lie between zero and `duration`"));
+                for (k, t) in at.iter().enumerate() {
+                    if !(0.0..=duration.si()).contains(&t.si()) {
+                        errors.push(BuildError::at(
+                            format!("motion.at.{k}"),
+                            "must lie between zero and `duration`",
+                        ));
+                    }
                 }
                 mean.si() + amplitude.si()
             }
@@ -331,7 +336,7 @@ impl Bench {
         let (length, x0) = (self.length(), self.line.x[0]);
         let omega = 2.0 * std::f64::consts::PI / o.period;
         // The duration is a whole number of steps.
-        let steps = (o.duration / o.period * f64::from(o.steps)).ceil().max(1.0) as usize;
+        let steps = (o.duration / o.period * f64::from(o.steps) - 1e-6).ceil().max(1.0) as usize;
         let dt = o.duration / steps as f64;
         let mut content = vec![0.0; n + 1];
         self.film.full_content(&self.line.h_a, &self.line.h_b, &mut content);
@@ -381,27 +386,21 @@ impl Bench {
             let k = (0..v.len()).fold(0, |m, k| if sign * v[k] > sign * v[m] { k } else { m });
             (v[k], t[k])
         };
-        let at = |v: &[f64]| {
+        for (k, moment) in o.at.iter().enumerate() {
             // Between the steps; the first step stands for what is before it.
-            let s = (o.at / dt - 1.0).clamp(0.0, (steps - 1) as f64);
-            let i = (s as usize).min(steps.saturating_sub(2));
-            let f = s - i as f64;
-            if steps == 1 { v[0] } else { v[i] + f * (v[i + 1] - v[i]) }
-        };
-        out.result("h", 1e6 * at(&h), "um", "gap at the time `at`");
-        out.result(
-            "load",
-            at(&load),
-            "N/m",
-            "load at the time `at` above that of the pressure at the ends, per metre of width",
-        );
-        out.result(
-            "load_cav",
-            at(&load) + rest * length,
-            "N/m",
-            "load at the time `at` above the cavitation pressure",
-        );
-        out.result("film_part", at(&part), "", "part of the strip under full film at the time `at`");
+            let place = (moment / dt - 1.0).clamp(0.0, (steps - 1) as f64);
+            let i = (place as usize).min(steps.saturating_sub(2));
+            let next = (i + 1).min(steps - 1);
+            let at = |v: &[f64]| v[i] + (place - i as f64) * (v[next] - v[i]);
+            let when = format!("at {} ms", (1e9 * moment).round() / 1e6);
+            let mut add = |name: &str, value: f64, unit: &str, what: &str| {
+                out.result(format!("{name}_{}", k + 1), value, unit, format!("{what} {when}"));
+            };
+            add("h", 1e6 * at(&h), "um", "gap");
+            add("load", at(&load), "N/m", "load above that of the pressure at the ends, per metre of width,");
+            add("load_cav", at(&load) + rest * length, "N/m", "load above the cavitation pressure");
+            add("film_part", at(&part), "", "part of the strip under full film");
+        }
         out.result(
             "load_max",
             extreme(&load, 1.0).0,
@@ -464,7 +463,7 @@ struct Oscillation {
     amplitude: f64,
     period: f64,
     duration: f64,
-    at: f64,
+    at: Vec<f64>,
     steps: u32,
 }
 
@@ -480,7 +479,7 @@ impl Rig for Bench {
                     amplitude: amplitude.si(),
                     period: period.si(),
                     duration: duration.si(),
-                    at: at.map_or(duration.si(), |t| t.si()),
+                    at: at.iter().map(|t| t.si()).collect(),
                     steps,
                 },
             ),

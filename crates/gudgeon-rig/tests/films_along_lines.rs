@@ -126,7 +126,7 @@ fn no_value_makes_a_panic_or_a_result_that_is_no_number() {
         r#"{ shape = "textured", length = "1 mm", h_in = "2 um", h_out = "1 um", count = 3, fraction = 0.5, depth = "1 um" }"#,
         r#"{ shape = "table", x = ["0 mm", "1 mm", "1 mm", "2 mm"], h = ["1 um", "1 um", "2 um", "1 um"] }"#,
     ];
-    let oscillation = r#"{ mode = "oscillation", mean = "1 um", amplitude = "0.5 um", period = "1 ms", duration = "1 ms", at = "0.2 ms", steps = 50 }"#;
+    let oscillation = r#"{ mode = "oscillation", mean = "1 um", amplitude = "0.5 um", period = "1 ms", duration = "1 ms", at = ["0.2 ms"], steps = 50 }"#;
     let rough = r#"{ model = "patir_cheng", liner_roughness = "0.3 um", body_roughness = "0.1 um" }"#;
     let mut cases: Vec<Table> = shapes.iter().map(|s| case(SLIDER, &[("profile", s)])).collect();
     cases.push(case(SLIDER, &[("left.oil_film", "\"0.2 um\"")]));
@@ -236,7 +236,7 @@ fn contradictions_are_named_with_their_place() {
             swing("").replace("amplitude = \"1 um\"", "amplitude = \"2 um\""),
             "motion.amplitude: ",
         ),
-        (STRIP, "motion", swing(", at = \"2 ms\""), "motion.at: "),
+        (STRIP, "motion", swing(", at = [\"1 ms\", \"2 ms\"]"), "motion.at.1: "),
         (
             STRIP,
             "motion",
@@ -284,11 +284,11 @@ fn a_slider_seen_from_the_other_side_is_mirrored() {
     for (x, t) in x.iter().zip(fill) {
         let void = *x > 2.000_001e-3 && *x < reform - 1e-9;
         let film = *x < 1.999_999e-3 || *x > reform + 1e-9;
-        assert!(!(void && *t >= 1.0) && !(film && *t < 1.0), "{x} {t}");
+        assert!(!(void && *t >= 1.0 || film && *t < 1.0), "{x} {t}");
     }
     // θ at the beginning of the pocket and before the front, from the exact solution in 25 digits.
     let least = fill.iter().copied().fold(1.0, f64::min);
-    close("fill at the beginning of the pocket", least, 0.512_709_316_070_925_98, 1e-10);
+    close("fill at the beginning of the pocket", least, 0.512_709_316_070_926, 1e-10);
     let front = x.iter().rposition(|x| (*x - reform).abs() < 1e-12).expect("a row");
     close("fill before the front", fill[front - 1], 0.514_742_121_851_104_6, 1e-10);
 }
@@ -360,7 +360,7 @@ fn a_strip_falls_in_the_time_of_the_closed_form() {
 fn an_oscillation_without_a_cavity_is_the_strip_at_each_instant() {
     let motion = |steps: u32| {
         format!(
-            r#"{{ mode = "oscillation", mean = "10 um", amplitude = "1 um", period = "10 ms", duration = "10 ms", steps = {steps}, at = "2.5 ms" }}"#
+            r#"{{ mode = "oscillation", mean = "10 um", amplitude = "1 um", period = "10 ms", duration = "10 ms", steps = {steps}, at = ["2.5 ms"] }}"#
         )
     };
     // W = -μ L³ ḣ/h³ at the quarter, where ḣ = -a ω.
@@ -371,7 +371,7 @@ fn an_oscillation_without_a_cavity_is_the_strip_at_each_instant() {
         assert!(!o.results.contains_key("t_cavity"));
         // What came in is there: rounding of the steps.
         assert!(o.balance.oil_mass.expect("a balance").abs() < 1e-12);
-        (value(&o, "load") / exact - 1.0).abs()
+        (value(&o, "load_1") / exact - 1.0).abs()
     });
     // A quotient of differences around the middle of the step, half a step before: at the quarter ḧ = 0, and the second order is left.
     assert!(errors[2] < 1e-5 && errors[0] / errors[1] > 3.0 && errors[1] / errors[2] > 3.0, "{errors:?}");
