@@ -156,7 +156,7 @@
     s("text", { x: 14, y: (T + bottom) / 2, "text-anchor": "middle", transform: `rotate(-90 14 ${(T + bottom) / 2})` }, svg, spec.yName + (uy.label ? " [" + uy.label + "]" : ""));
     for (let k = 0; k < 64; k++) s("rect", { x: right + 14, y: bottom - ((k + 1) / 64) * (bottom - T), width: 14, height: (bottom - T) / 64 + 0.6, style: `fill:rgb(${shade((k + 0.5) / 64).join(",")})` }, svg);
     for (const t of linearTicks(lo * uz.f, (lo + range) * uz.f, 5)) s("text", { x: right + 32, y: bottom - ((t / uz.f - lo) / range) * (bottom - T) + 4, class: "dim" }, svg, tickText(t));
-    s("text", { x: right + 14, y: bottom + 18 }, svg, uz.label);
+    s("text", { x: right + 14, y: H - 6 }, svg, uz.label);
     svg.addEventListener("pointermove", (e) => {
       const r = svg.getBoundingClientRect(), px = ((e.clientX - r.left) / r.width) * W - L, py = bottom - ((e.clientY - r.top) / r.height) * H;
       const i = Math.floor(px), j = Math.floor(py);
