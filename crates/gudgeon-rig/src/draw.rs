@@ -1,8 +1,8 @@
 //! What the benches share: rows, tables with curves, and the refusal of results that are no numbers.
 
-use gudgeon_core::EvalError;
 use gudgeon_core::kinds::RigOut;
 use gudgeon_core::result::{Column, Figure, FigureKind, Series};
+use gudgeon_core::{BuildError, EvalError};
 
 /// `n` values at equal distances, both ends included.
 pub fn linear(from: f64, to: f64, n: usize) -> Vec<f64> {
@@ -84,4 +84,14 @@ pub fn finite(model: &'static str, out: &RigOut) -> Result<(), EvalError> {
         }
     }
     Ok(())
+}
+
+/// What the law of openings refuses, at its place: without a field it speaks of the gas, whose constant is positive already.
+pub fn law_error(mut e: BuildError) -> BuildError {
+    if e.field.is_empty() {
+        e.field = "gamma".into();
+        e
+    } else {
+        e.within("orifice")
+    }
 }

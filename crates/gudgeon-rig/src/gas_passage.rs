@@ -7,7 +7,7 @@ use gudgeon_gas::{FlowFunction, Network, Orifice, Passage, channel_conductance, 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::draw::{self, Scales, line};
+use crate::draw::{self, Scales, law_error, line};
 
 /// Flow through one passage over the ratio of the pressures on its sides.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
@@ -96,7 +96,7 @@ impl GasPassageRig {
         let law = self
             .orifice
             .build(self.orifice.gamma.at(t, self.gamma.si()), r)
-            .map_err(|e| errors.push(if e.field.is_empty() { e } else { e.within("orifice") }));
+            .map_err(|e| errors.push(law_error(e)));
         let mut foreign = |given: bool, key: &str| {
             if given {
                 let what = format!("`{key}` does not belong to this law");

@@ -14,7 +14,7 @@ use gudgeon_numerics::rodas::Rodas;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::draw::{self, Scales, line};
+use crate::draw::{self, Scales, law_error, line};
 
 /// Gas volumes joined by openings, between boundaries of given pressure.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
@@ -247,7 +247,7 @@ impl GasVolumesRig {
             .map(|v| v.temperature.si())
             .chain(self.boundaries.iter().map(|b| b.temperature.si()))
             .collect();
-        let mut wrong = |e: BuildError| errors.push(if e.field.is_empty() { e } else { e.within("orifice") });
+        let mut wrong = |e: BuildError| errors.push(law_error(e));
         let law = self.orifice.build(gamma, r).map_err(&mut wrong);
         let laws = self.orifice.laws(&temperatures, gamma, r).map_err(&mut wrong);
         let (Ok(law), Ok(laws)) = (law, laws) else { return Err(errors) };

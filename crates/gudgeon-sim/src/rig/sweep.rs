@@ -109,6 +109,25 @@ fn abscissa(s: &Sweep, values: &[String]) -> (Column, bool) {
     }
 }
 
+/// What curves are called: the values as written, but a model with its settings, `{ model = "barus", … }`, by its name alone where
+/// that tells it from the others.
+fn labels(values: &[String]) -> Vec<String> {
+    let name = |v: &String| {
+        let inside = v.trim().strip_prefix('{')?;
+        let (_, after) = inside.split_once("model")?;
+        Some(after.trim_start().strip_prefix('=')?.trim_start().split('"').nth(1)?.to_owned())
+    };
+    let names: Vec<Option<String>> = values.iter().map(name).collect();
+    values
+        .iter()
+        .zip(&names)
+        .map(|(v, n)| match n {
+            Some(text) if names.iter().filter(|m| *m == n).count() == 1 => text.clone(),
+            _ => v.clone(),
+        })
+        .collect()
+}
+
 /// Runs the sweeps of a case into the table `sweep` and its figures.
 pub fn run(
     loaded: &Loaded<RigCase>,
@@ -208,10 +227,11 @@ pub fn run(
             } else {
                 // Few values, or names: a curve for each.
                 table.axis = x.clone();
+                let labels = labels(v);
                 for n in &wanted {
                     let r = names.iter().position(|m| m == n).unwrap_or(0);
                     let mut curves = Vec::new();
-                    for (row, label) in cells.iter().zip(v) {
+                    for (row, label) in cells.iter().zip(&labels) {
                         let name = format!("{n}.{}", label.replace(' ', "_"));
                         table.columns.push(Column {
                             name: name.clone(),
