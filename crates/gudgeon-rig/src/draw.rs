@@ -6,7 +6,7 @@ use gudgeon_core::{BuildError, EvalError};
 
 /// `n` values at equal distances, both ends included.
 pub fn linear(from: f64, to: f64, n: usize) -> Vec<f64> {
-    (0..n).map(|i| if i + 1 == n { to } else { from + (to - from) * (i as f64 / (n - 1) as f64) }).collect()
+    (0..n).map(|i| if i + 1 == n { to } else { from + (to - from) * i as f64 / (n - 1) as f64 }).collect()
 }
 
 /// `n` values at equal ratios, both ends, positive, included.

@@ -292,8 +292,8 @@ impl GasVolumesRig {
             ),
             ends,
             until: run.until,
-            extent: if degrees { run.period.si().to_degrees() } else { run.duration.map_or(0.0, |d| d.si()) },
-            angle: run.angle.si().to_degrees(),
+            extent: if degrees { degrees_of(run.period.si()) } else { run.duration.map_or(0.0, |d| d.si()) },
+            angle: degrees_of(run.angle.si()),
             tolerance: self.tolerance.si(),
         })
     }
@@ -393,6 +393,20 @@ impl OdeSystem for Gas {
             }
         }
         Ok(true)
+    }
+}
+
+/// Whole degrees as such: radians have them rounded.
+fn degrees_of(angle: f64) -> f64 {
+    let (d, whole) = (angle.to_degrees(), angle.to_degrees().round());
+    if (d - whole).abs() < 1e-10 { whole } else { d }
+}
+
+/// `land2` as `land 2`.
+fn spoken(name: &str) -> String {
+    match name.find(|c: char| c.is_ascii_digit()) {
+        Some(at) if at > 0 => format!("{} {}", &name[..at], &name[at..]),
+        _ => name.to_owned(),
     }
 }
 
@@ -537,11 +551,16 @@ impl Bench {
         self.gas.net.update_flows();
         let n = y.len();
         for (name, p) in self.names.0.iter().zip(&y) {
-            out.result(format!("{name}.p"), *p, "bar", format!("steady pressure in {name}"));
+            out.result(format!("{name}.p"), *p, "bar", format!("steady pressure in {}", spoken(name)));
         }
         for (i, name) in self.names.1.iter().enumerate() {
             let inflow: f64 = self.sum_into(n + i, |k| self.gas.net.flow(k));
-            out.result(format!("{name}.flow"), 1e3 * inflow, "g/s", format!("steady flow into {name}"));
+            out.result(
+                format!("{name}.flow"),
+                1e3 * inflow,
+                "g/s",
+                format!("steady flow into {}", spoken(name)),
+            );
         }
         // In the order of the nodes: along a labyrinth when its volumes stand in theirs.
         out.axis("volume", "1", (1..=n).map(|i| i as f64).collect());
@@ -634,15 +653,15 @@ impl Bench {
             out.counters.insert("cycles".into(), cycles);
         }
 
-        let when = if periodic { "at `angle`" } else { "at the end" };
+        let when = if periodic { "pressure at the angle" } else { "pressure at the end" };
         for (i, name) in self.names.0.iter().enumerate() {
-            out.result(format!("{name}.p"), here[i], "bar", format!("pressure in {name} {when}"));
+            out.result(format!("{name}.p"), here[i], "bar", format!("{when}, in {}", spoken(name)));
             let most = rows.iter().map(|r| r[i]).fold(0.0, f64::max);
             out.result(
                 format!("{name}.p_max"),
                 most,
                 "bar",
-                format!("highest pressure of the rows in {name}"),
+                format!("highest pressure, of the rows of the series, in {}", spoken(name)),
             );
         }
         let mut balance = 0.0;
@@ -654,7 +673,7 @@ impl Bench {
                 format!("{name}.received"),
                 received,
                 "mg",
-                format!("gas that {name} takes in {whole}"),
+                format!("gas taken in over {whole} by {}", spoken(name)),
             );
         }
         let stored: f64 = (0..n).map(|i| (y[i] - begin[i]) * self.gas.mass_of_bar[i] / MILLIGRAM).sum();

@@ -203,7 +203,7 @@ impl Rig for Bench {
             "Viscosity over temperature",
             "at the given pressure and shear rate",
             Scales { log_x: false, log_y: true },
-            &[line("viscosity", "viscosity"), line("at ambient pressure and rest", "base_viscosity")],
+            &[line("viscosity", "viscosity"), line("ambient, at rest", "base_viscosity")],
         );
 
         let pressures = draw::linear(0.0, self.most.0, POINTS);
