@@ -341,6 +341,22 @@ fn the_textured_slider_has_the_published_load() {
     }
 }
 
+#[test]
+fn a_long_film_may_grow_line_by_line() {
+    // The first cut is at 180 degrees, the film ends near 249: 138 lines of nodes further. Closed form of the load.
+    let (nx, eps) = (720, 0.1);
+    let mut grid = Film2dGrid::uniform(nx + 1, 3, 2.0 * std::f64::consts::PI, 1.0);
+    grid.edges[2..].fill(Edge::Wall);
+    let h = field(&grid, |x, _| 1.0 + eps * x.cos());
+    let (out, p, _) = solved(&multigrid(Cavitation::SwiftStieber), &grid, &Film2dIn::new(&h, 1.0, 1.0));
+    assert!(out.iterations > 100, "{out:?}");
+    let step = grid.x[1];
+    let force = |f: fn(f64) -> f64| -> f64 { (0..nx).map(|i| p[i] * f(grid.x[i]) * step).sum() };
+    // Second order in the spacing of 0.0087.
+    let load = force(f64::cos).hypot(force(f64::sin));
+    assert!((load / 1.31824524441850433854812 - 1.0).abs() < 1e-4, "{load}");
+}
+
 /// A slider with waves along it, a bit different from side to side.
 fn wavy(grid: &Film2dGrid) -> Vec<f64> {
     field(grid, |x, y| 1.0 + 0.4 * (9.0 * x).sin() * (1.0 + 0.3 * (7.0 * y).cos()) + 0.3 * y)

@@ -3,6 +3,7 @@
 mod along;
 mod cylinder_pressure;
 mod journal_1d;
+mod journal_2d;
 mod kinematics;
 mod profile;
 mod ring_face;
@@ -18,10 +19,14 @@ mod kinematics;
 mod lubricant;
 mod ring_face;
 mod rough_surface;
+mod sheet;
+mod skirt;
+mod slider_2d;
 
 pub use contact_pair::ContactPairRig;
 pub use cylinder_pressure::CylinderPressureRig;
 pub use journal_1d::Journal1dRig;
+pub use journal_2d::{Journal2dRig, JournalSupply};
 pub use kinematics::KinematicsRig;
 pub use profile::Profile;
 pub use ring_face::RingFaceRig;
@@ -34,3 +39,5 @@ pub use kinematics::KinematicsRig;
 pub use lubricant::LubricantRig;
 pub use ring_face::RingFaceRig;
 pub use rough_surface::RoughSurfaceRig;
+pub use skirt::SkirtRig;
+pub use slider_2d::{BetweenNodes, Dimples, PadProfile, Sides, Slider2dRig};

@@ -146,7 +146,9 @@ impl<L: Linear> Solver<L> {
     /// Rupture without conservation: nodes are full, or at `p_cav` and none of the problem's business.
     fn swift_stieber(&mut self) -> Result<(usize, usize), EvalError> {
         let mut cycles = 0;
-        for iteration in 1..=MOST {
+        // A film that grows again after the first cut does so by one line of nodes a step.
+        let most = MOST + self.problem.nx + self.problem.ny;
+        for iteration in 1..=most {
             for k in 0..self.p.len() {
                 if self.cavitated[k] {
                     self.p[k] = 0.0;
@@ -174,13 +176,13 @@ impl<L: Linear> Solver<L> {
                 return Ok((iteration, cycles));
             }
         }
-        Err(self.restless(cycles))
+        Err(self.restless(most, cycles))
     }
 
-    fn restless(&self, cycles: usize) -> EvalError {
+    fn restless(&self, steps: usize, cycles: usize) -> EvalError {
         EvalError::recoverable(
             self.model,
-            format!("the cavity still changes after {MOST} steps and {cycles} cycles"),
+            format!("the cavity still changes after {steps} steps and {cycles} cycles"),
         )
     }
 
@@ -236,7 +238,7 @@ impl<L: Linear> Solver<L> {
                 }
             }
         }
-        Err(self.restless(cycles))
+        Err(self.restless(MOST, cycles))
     }
 
     /// Whether a node has a negative pressure or a negative void, beyond what rounding does.
