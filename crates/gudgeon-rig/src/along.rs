@@ -22,12 +22,14 @@ pub(crate) struct Row {
 }
 
 /// Rows of the steady film `field` on `line`: for each panel its ends, and both sides of every front in it. The filled fraction in
-/// a void is that of the flux there, `2 q/(u φ h)`, with `sliding` the factor `φ` of a panel.
+/// a void is that of the flux there, `2 q/(u φ h)`, with `sliding` the factor `φ` of a panel. Before the film of a `starved` inlet the
+/// oil lies on the moving surface and goes with it: half as much.
 pub(crate) fn rows(
     line: &LineProfile,
     field: &FilmField<'_>,
     u: f64,
     p_cav: f64,
+    starved: bool,
     sliding: impl Fn(usize) -> f64,
 ) -> Vec<Row> {
     let fronts = field.fronts;
@@ -41,8 +43,9 @@ pub(crate) fn rows(
         let (a, b) = (line.x[i], line.x[i + 1]);
         let (ha, hb) = (line.h_a[i], line.h_b[i]);
         let emptied = field.fill[i].min(field.fill[i + 1]) < 1.0;
-        let row = |x: f64, h: f64, p: f64, film: bool| {
-            let carried = 2.0 * field.flux[i] / (u * sliding(i) * h);
+        let row = |x: f64, h: f64, p: f64, film: bool, passed: usize| {
+            let layer = starved && passed == if u > 0.0 { 0 } else { fronts.len() };
+            let carried = if layer { 1.0 } else { 2.0 } * field.flux[i] / (u * sliding(i) * h);
             let fill = if film || !emptied || !carried.is_finite() { 1.0 } else { carried.clamp(0.0, 1.0) };
             Row { x, h, p, fill, panel: i, film }
         };
@@ -50,7 +53,7 @@ pub(crate) fn rows(
             film = !fronts[next].film_before;
             next += 1;
         }
-        out.push(row(a, ha, field.p[i], film));
+        out.push(row(a, ha, field.p[i], film, next));
         let inside = fronts[next..].iter().take_while(|f| f.x < b).count();
         for f in &fronts[next..next + inside] {
             let h = ha + (hb - ha) * ((f.x - a) / (b - a));
@@ -59,12 +62,12 @@ pub(crate) fn rows(
                 (1, false) => field.p[i],
                 _ => p_cav,
             };
-            out.push(row(f.x, h, p, f.film_before));
-            out.push(row(f.x, h, p, !f.film_before));
+            out.push(row(f.x, h, p, f.film_before, next));
+            next += 1;
+            out.push(row(f.x, h, p, !f.film_before, next));
             film = !f.film_before;
         }
-        next += inside;
-        out.push(row(b, hb, field.p[i + 1], film));
+        out.push(row(b, hb, field.p[i + 1], film, next));
     }
     out
 }

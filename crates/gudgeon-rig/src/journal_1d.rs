@@ -165,7 +165,7 @@ impl Rig for Bench {
             time: FilmTime::Steady,
         })?;
         let field = self.film.field();
-        let rows = along::rows(&self.line, &field, u, self.p_cav, |_| 1.0);
+        let rows = along::rows(&self.line, &field, u, self.p_cav, false, |_| 1.0);
         let (along_gap, across) = self.load(&rows, field.flux);
         let load = along_gap.hypot(across);
         let unit = self.mu * self.omega.abs() * (self.radius / self.clearance).powi(2) * self.radius;
@@ -238,7 +238,9 @@ impl Rig for Bench {
         out.column("fill", "", rows.iter().map(|r| r.fill).collect());
         out.curves("Pressure around the shaft", "absolute; angle from the widest gap", &[("pressure", "p")]);
         out.curves("Gap and oil in it", "", &[("gap", "h"), ("oil", "oil")]);
-        out.curves("Filled fraction of the gap", "", &[("fill", "fill")]);
+        if rows.iter().any(|r| r.fill < 1.0) {
+            out.curves("Filled fraction of the gap", "", &[("fill", "fill")]);
+        }
         along::finite(out, "journal_1d")
     }
 }

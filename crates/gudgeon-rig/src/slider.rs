@@ -301,7 +301,7 @@ impl Rig for Bench {
             out.notes.push("the inlet is starved: less oil arrives than a bath would give".into());
         }
 
-        let rows = along::rows(&self.line, &field, self.u, self.p_cav, |i| {
+        let rows = along::rows(&self.line, &field, self.u, self.p_cav, o.starved, |i| {
             factors.as_ref().map_or(1.0, |f| f[i].sliding_flow)
         });
         out.axis("x", "m", rows.iter().map(|r| r.x).collect());
@@ -312,11 +312,9 @@ impl Rig for Bench {
         out.column("flux", "m2/s", rows.iter().map(|r| field.flux[r.panel]).collect());
         out.curves("Pressure along the line", "absolute", &[("pressure", "p")]);
         out.curves("Gap and oil in it", "", &[("gap", "h"), ("oil", "oil")]);
-        out.curves(
-            "Filled fraction of the gap",
-            "below 1 in cavities and starved inlets",
-            &[("fill", "fill")],
-        );
+        if rows.iter().any(|r| r.fill < 1.0) {
+            out.curves("Filled fraction of the gap", "", &[("fill", "fill")]);
+        }
         if let Some(mu) = mu {
             out.column("mu", "Pa s", rows.iter().map(|r| mu[r.panel]).collect());
             out.curves("Viscosity", "constant in each panel", &[("viscosity", "mu")]);

@@ -294,6 +294,22 @@ fn a_slider_seen_from_the_other_side_is_mirrored() {
 }
 
 #[test]
+fn before_a_starved_film_the_oil_lies_on_the_moving_surface() {
+    let barrel = r#"{ shape = "parabola", length = "1.2 mm", film = "2 um", drop = "6 um" }"#;
+    for (u, side) in [("10.0", "left"), ("-10.0", "right")] {
+        let end = (side, r#"{ p = "1 bar", oil_film = "1.1 um" }"#);
+        let o = good(SLIDER, &[("profile", barrel), ("speed", u), end, ("panels", "200")]);
+        assert_eq!(value(&o, "starved"), 1.0);
+        let oil = &o.series.get("oil").expect("a column").values;
+        let (inlet, behind) = if u == "10.0" { (0, 0.8e-3) } else { (oil.len() - 1, 0.4e-3) };
+        close("layer", oil[inlet], 1.1e-6, 1e-12);
+        // Between both surfaces it goes at half their speed.
+        let cavity = o.series.axis.values.iter().position(|x| *x >= behind).expect("a row");
+        close("cavity", oil[cavity], 2.2e-6, 1e-12);
+    }
+}
+
+#[test]
 fn oil_that_thickens_follows_the_reduced_pressure() {
     let barus = r#"{ model = "barus", pressure_viscosity = "20 1/GPa" }"#;
     let open = [("left.p", "0.0"), ("right.p", "0.0"), ("p_ambient", "0.0")];
