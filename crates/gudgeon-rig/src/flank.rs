@@ -209,7 +209,7 @@ struct Bench {
 /// Rows of the series, heights of the table.
 const POINTS: usize = 401;
 /// Most steps of the integration.
-const MOST_STEPS: u64 = 400_000;
+const MOST_STEPS: u64 = 100_000;
 
 impl Bench {
     /// Rows of time and state, of which the last is where the ring lands or the time ends.
