@@ -1107,6 +1107,13 @@ fn rough_panels_scale_the_coefficients() {
         let rough = solve(spec, &vec![less; n], &mu);
         close("load", rough.load, slow.load, 1e-12);
         close("flux", rough.flux_in, slow.flux_in, 1e-12);
+        // What one surface drags more the other drags less, and nothing flows otherwise.
+        let uneven = PanelFactors { shear_difference: 0.25, ..PanelFactors::SMOOTH };
+        let rough = solve(spec, &vec![uneven; n], &mu);
+        let sliding = 0.5 * (smooth.moving_shear + smooth.fixed_shear);
+        close("moving", rough.moving_shear - smooth.moving_shear, 0.25 * sliding, 1e-12);
+        close("fixed", smooth.fixed_shear - rough.fixed_shear, 0.25 * sliding, 1e-12);
+        close("load", rough.load, smooth.load, 1e-14);
     }
 }
 

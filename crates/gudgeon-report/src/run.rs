@@ -322,7 +322,7 @@ fn results(out: &mut String, s: &Summary) {
 /// A row of a table per ring must not speak of ring 1.
 fn without_member(text: &str, family: &str, n: u32) -> String {
     let name = format!("{family} {n}");
-    for lead in [" of ", " on ", " at ", " in ", " past ", " behind ", ", "] {
+    for lead in [", in ", " of ", " on ", " at ", " in ", " past ", " behind ", ", "] {
         if let Some(rest) = text.strip_suffix(&format!("{lead}{name}")) {
             return rest.to_owned();
         }

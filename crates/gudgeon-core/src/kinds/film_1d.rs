@@ -97,7 +97,8 @@ pub enum FilmTime<'a> {
     },
 }
 
-/// How the roughness of the surfaces changes the flow through a panel and the shear in it; all 1 for smooth surfaces.
+/// How the roughness of the surfaces changes the flow through a panel and the shear in it; for smooth surfaces all 1 but for the
+/// difference, which is zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PanelFactors {
     /// φ_p: on the flow that pressure drives. Positive.
@@ -108,12 +109,19 @@ pub struct PanelFactors {
     pub sliding_shear: f64,
     /// On the shear `h/2 ∂p/∂x`.
     pub pressure_shear: f64,
+    /// Part of the shear `μ u/h` that the moving surface has more, and the stationary one less.
+    pub shear_difference: f64,
 }
 
 impl PanelFactors {
     /// Smooth surfaces.
-    pub const SMOOTH: Self =
-        Self { pressure_flow: 1.0, sliding_flow: 1.0, sliding_shear: 1.0, pressure_shear: 1.0 };
+    pub const SMOOTH: Self = Self {
+        pressure_flow: 1.0,
+        sliding_flow: 1.0,
+        sliding_shear: 1.0,
+        pressure_shear: 1.0,
+        shear_difference: 0.0,
+    };
 }
 
 /// One film at an instant, in the frame of the stationary surface, which has the profile.

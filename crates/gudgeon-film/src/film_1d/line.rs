@@ -279,6 +279,8 @@ pub(super) struct Sums {
     slope: f64,
     couette: f64,
     gradient: f64,
+    /// Shear of sliding that the moving surface has more, and the other less.
+    difference: f64,
 }
 
 impl Sums {
@@ -291,7 +293,7 @@ impl Sums {
         self.load += part;
         self.moment += b.moment + (s.x + 0.5 * s.dx) * part;
         self.slope -= part * s.slope;
-        self.couette += s.mu * u * b.i1 * s.rough.sliding_shear;
+        self.slide(s, u, b.i1);
         self.gradient += b.gradient;
     }
 
@@ -302,7 +304,15 @@ impl Sums {
         self.load += part;
         self.moment += part * (s.x + 0.5 * s.dx);
         self.slope -= p * (s.hb - s.ha);
-        self.couette += s.mu * u * wet * s.rough.sliding_shear;
+        self.slide(s, u, wet);
+    }
+
+    /// Adds the shear of sliding of a stretch; `wet` is `∫ θ dx/h`.
+    #[inline]
+    fn slide(&mut self, s: &Stretch, u: f64, wet: f64) {
+        let shear = s.mu * u * wet;
+        self.couette += shear * s.rough.sliding_shear;
+        self.difference += shear * s.rough.shear_difference;
     }
 
     /// Adds the load on a step of the gap.
@@ -425,7 +435,8 @@ impl Line {
         match inp.factors {
             Some(f) => {
                 let bad = |f: &PanelFactors| {
-                    let all = f.pressure_flow + f.sliding_flow + f.sliding_shear + f.pressure_shear;
+                    let shear = f.sliding_shear + f.pressure_shear + f.shear_difference;
+                    let all = f.pressure_flow + f.sliding_flow + shear;
                     !all.is_finite() || f.pressure_flow <= 0.0 || f.sliding_flow < 0.0
                 };
                 if f.iter().any(bad) {
@@ -682,7 +693,8 @@ impl Line {
     ) -> Result<Film1dOut, EvalError> {
         let (store_in, store_out) = self.ends_store();
         let (enters, leaves) = (self.q[0] + store_in, self.q[self.n - 1] - store_out);
-        let sum = s.load + s.moment + s.couette + s.gradient + s.slope + enters + leaves + p_max + flux_error;
+        let shear = s.couette + s.gradient + s.difference;
+        let sum = s.load + s.moment + shear + s.slope + enters + leaves + p_max + flux_error;
         if !sum.is_finite() {
             return Err(self.recoverable("film out of range"));
         }
@@ -691,8 +703,8 @@ impl Line {
         Ok(Film1dOut {
             load: s.load,
             moment: sign * s.moment,
-            moving_shear: sign * (s.couette + s.gradient),
-            fixed_shear: sign * (s.couette - s.gradient),
+            moving_shear: sign * shear,
+            fixed_shear: sign * (s.couette - s.gradient - s.difference),
             slope_force: sign * s.slope,
             flux_in: if self.turned { -leaves } else { enters },
             flux_out: if self.turned { -enters } else { leaves },
