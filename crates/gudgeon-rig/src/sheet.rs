@@ -265,6 +265,14 @@ impl Sheet {
         self.film.grid().len()
     }
 
+    /// Which line of nodes along `x` has the largest value; the middle one where none has more.
+    pub fn through_top(&self, of: &[f64]) -> usize {
+        let nx = self.whole.x.len();
+        let top = |j: usize| of[j * nx..(j + 1) * nx].iter().fold(f64::NEG_INFINITY, |a, &b| a.max(b));
+        let middle = (self.whole.y.len() - 1) / 2;
+        (0..self.whole.y.len()).fold(middle, |best, j| if top(j) > top(best) { j } else { best })
+    }
+
     /// The middle line, or the mean of the two beside the middle.
     pub fn middle(&self, f: &[f64]) -> Vec<f64> {
         let (nx, ny) = (self.whole.x.len(), self.whole.y.len());

@@ -101,7 +101,7 @@ gudgeon_core::register_model! {
     equations: "h = c - (e_t (1 - s) + e_b s) cos phi + B (2 s - 1)^2;  thrust = int (p - p_edge) cos phi dA;  \
                 moment = int (p - p_edge) (x_pin - x) cos phi dA;  \
                 liner_shear = int (theta mu u/h (phi_f + phi_fs) + phi_fp h/2 dp/dx) dA",
-    validity: "Rigid skirt, flooded on all edges, no history. The gap must be open everywhere, or held open by the roughness model.",
+    validity: "The piston feels the opposite of liner_shear: skirt_shear, and the pressure on what is tilted. Rigid skirt, flooded on all edges, no history. The gap must be open everywhere, or held open by the roughness model.",
     references: ["loureiro2009"],
     example: "radius = \"43 mm\"\nlength = \"50 mm\"\nhalf_angle = \"50 deg\"\nclearance = \"30 um\"\nbarrel = \"20 um\"\ne_top = \"18 um\"\n\
               e_bottom = \"10 um\"\nspeed = \"-8 m/s\"\nviscosity = \"10 mPa s\"\nfilm_2d = { model = \"multigrid\" }\n",
@@ -180,12 +180,7 @@ impl Rig for Bench {
         let thrust = self.sheet.integral(|k, _, y| (found.p[k] - edge) * (y / radius).cos());
         let moment = self.sheet.integral(|k, x, y| (found.p[k] - edge) * (pin - x) * (y / radius).cos());
         out.result("thrust", thrust, "N", "force that presses the skirt away from this side of the liner");
-        out.result(
-            "moment",
-            moment,
-            "N m",
-            "moment of the pressure about the height of the pin, pushing the upper edge away positive",
-        );
+        out.result("moment", moment, "N m", "moment about the pin, pushing the upper edge away positive");
         out.result("p_max", o.p_max / 1e5, "bar", "highest pressure");
         let thinnest = found.h.iter().fold(f64::INFINITY, |a, &b| a.min(b));
         out.result("film_min", 1e6 * thinnest, "um", "smallest gap");
@@ -193,7 +188,7 @@ impl Rig for Bench {
             "liner_shear",
             o.shear_lower,
             "N",
-            "viscous force on the liner, towards the head positive; the piston feels its opposite, pressure on the tilted skirt included",
+            "viscous force on the liner, towards the head positive",
         );
         out.result(
             "skirt_shear",

@@ -326,16 +326,32 @@ impl Rig for Bench {
         let grid = &self.sheet.whole;
         sheet::account(&o, self.sheet.nodes(), out);
         out.axis("x", "m", grid.x.clone());
-        out.column("p", "Pa", self.sheet.middle(&found.p));
-        out.column("h", "m", self.sheet.middle(&found.h));
-        out.column("fill", "", self.sheet.middle(&found.fill));
-        out.curves("Pressure along the middle", "absolute; halfway between the sides", &[("pressure", "p")]);
-        out.curves("Gap along the middle", "", &[("gap", "h")]);
+        // Between rows of dimples the middle shows little.
+        let top = self.sheet.through_top(&found.p);
+        let line = |f: &[f64]| match spec.dimples {
+            Some(_) => f[top * grid.x.len()..(top + 1) * grid.x.len()].to_vec(),
+            None => self.sheet.middle(f),
+        };
+        out.column("p", "Pa", line(&found.p));
+        out.column("h", "m", line(&found.h));
+        out.column("fill", "", line(&found.fill));
+        let hint = match spec.dimples {
+            Some(_) => format!(
+                "absolute; on the line with the highest pressure, {:.3} mm from a side",
+                1e3 * grid.y[top]
+            ),
+            None => "absolute; halfway between the sides".to_owned(),
+        };
+        out.curves("Pressure along the motion", &hint, &[("pressure", "p")]);
+        out.curves("Gap along the motion", "on the same line", &[("gap", "h")]);
         let (xs, ys) = (sheet::drawn(grid.x.len()), sheet::drawn(grid.y.len()));
         let pick = |f: &[f64]| -> Vec<f64> {
             ys.iter().flat_map(|j| xs.iter().map(move |i| f[j * grid.x.len() + i])).collect()
         };
-        let mut maps = vec![("p", "Pa", "Pressure", pick(&found.p)), ("h", "m", "Gap", pick(&found.h))];
+        let mut maps = vec![("p", "Pa", "Pressure", pick(&found.p))];
+        if spec.dimples.is_some() {
+            maps.push(("h", "m", "Gap", pick(&found.h)));
+        }
         if emptiest < 1.0 {
             maps.push(("fill", "", "Filling", pick(&found.fill)));
         }
