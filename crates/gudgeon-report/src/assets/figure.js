@@ -185,10 +185,11 @@
         if (lines.length) curves(host, { title: f.title, hint: f.hint, xName: x.name.replace(/_/g, " "), xUnit: x.unit, lines, logX: k.log_x, logY: k.log_y });
       } else {
         const y = column(k.y), z = column(k.value);
+        // Maps stand side by side, where the first of them comes.
+        if (y && z && !maps.isConnected) host.append(maps);
         if (y && z) map(maps, { title: f.title, hint: f.hint, x: arrays[x.at], y: arrays[y.at], z: arrays[z.at], xName: x.name.replace(/_/g, " "), yName: y.name.replace(/_/g, " "), xUnit: x.unit, yUnit: y.unit, zUnit: z.unit });
       }
     }
-    if (maps.childElementCount) host.append(maps);
   }
   // A comparison of runs that do not go over a cycle: one drawing per column, one curve per variant.
   const overlay = document.getElementById("overlay");
