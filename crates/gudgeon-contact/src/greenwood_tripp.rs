@@ -132,6 +132,7 @@ impl ContactSpec for GreenwoodTripp {
             sigma,
             inverse_roughness,
             scale,
+            eta_beta_sigma: ebs,
             integral: self.integral,
             friction_coefficient: self.friction_coefficient.si(),
         }))
@@ -149,6 +150,7 @@ struct Asperities {
     sigma: f64,
     inverse_roughness: f64,
     scale: f64,
+    eta_beta_sigma: f64,
     integral: AsperityIntegralFormula,
     friction_coefficient: f64,
 }
@@ -231,6 +233,13 @@ impl Contact for Asperities {
     }
     fn friction_coefficient(&self) -> f64 {
         self.friction_coefficient
+    }
+    /// By the exact integral, whichever formula gives the pressure.
+    fn real_area(&self, separation: &[f64], ratio: &mut [f64]) -> bool {
+        for (r, h) in ratio.iter_mut().zip(separation) {
+            *r = real_area_ratio(self.eta_beta_sigma, h * self.inverse_roughness);
+        }
+        true
     }
 }
 

@@ -1,9 +1,11 @@
-//! Oil and its rheology, film temperature, rough surfaces, the film under a ring face, and films along a line.
+//! Oil and its rheology, film temperature, rough surfaces, the film under a ring face, and films along a line and along and across
+//! the motion.
 
 mod closed_form_face;
 mod constant;
 mod face;
 pub mod film_1d;
+pub mod film_2d;
 mod given;
 mod gridded_face;
 mod land_wall_mean;

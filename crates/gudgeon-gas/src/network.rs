@@ -208,8 +208,8 @@ impl Network {
         })
     }
 
-    /// Gives every node the law for the gas that comes from it.
-    pub(crate) fn set_laws(&mut self, laws: Vec<OrificeLaw>) {
+    /// Gives every node the law for the gas that comes from it: one per node, or none, and all have the law of the network.
+    pub fn set_laws(&mut self, laws: Vec<OrificeLaw>) {
         self.own = laws;
     }
 

@@ -85,7 +85,10 @@ impl Orifice {
 
 impl Orifice {
     /// One law per temperature \[K\], for gas that comes with it; none when the ratio of specific heats is constant.
-    pub(crate) fn laws(
+    ///
+    /// # Errors
+    /// As [`build`](Self::build).
+    pub fn laws(
         &self,
         temperatures: &[f64],
         gamma: f64,

@@ -1,6 +1,7 @@
 //! Fallible stiff integrators, periodic-orbit solver, roots, tables and small linear algebra. No physics lives here.
 
 pub mod linalg;
+pub mod multigrid;
 pub mod ode;
 pub mod orbit;
 pub mod quadrature;

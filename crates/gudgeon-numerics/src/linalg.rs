@@ -419,6 +419,97 @@ impl Banded {
     }
 }
 
+/// A symmetric positive definite banded matrix, factorised as `L D Lᵀ` without pivoting: half the storage and a quarter of the work of
+/// [`Banded`].
+#[derive(Debug, Clone)]
+pub struct SymmetricBanded {
+    n: usize,
+    half: usize,
+    /// Row i holds the entries of columns i to i + half.
+    a: Vec<f64>,
+    factored: bool,
+}
+
+impl SymmetricBanded {
+    /// A zero matrix of size `n` with `half` sub-diagonals.
+    #[must_use]
+    pub fn new(n: usize, half: usize) -> Self {
+        Self { n, half, a: vec![0.0; n * (half + 1)], factored: false }
+    }
+
+    /// Sets every entry to zero, ready to be assembled again.
+    pub fn clear(&mut self) {
+        self.a.fill(0.0);
+        self.factored = false;
+    }
+
+    /// Adds `value` to entry `(i, j)` of the lower triangle and, where `i` is not `j`, to its mirror image.
+    ///
+    /// # Panics
+    /// When `(i, j)` lies outside the lower half of the band: that is a mistake of the program, not of its user.
+    #[inline]
+    pub fn add(&mut self, i: usize, j: usize, value: f64) {
+        assert!(j <= i && i <= j + self.half && i < self.n, "outside the lower half of the band");
+        self.a[j * (self.half + 1) + (i - j)] += value;
+        self.factored = false;
+    }
+
+    /// Factorisation in place.
+    ///
+    /// # Errors
+    /// [`Singular`] when the matrix is not positive definite.
+    pub fn factor(&mut self) -> Result<(), Singular> {
+        let w = self.half + 1;
+        for k in 0..self.n {
+            let (done, rest) = self.a.split_at_mut((k + 1) * w);
+            let own = &mut done[k * w..];
+            let pivot = own[0];
+            if !(pivot > 0.0 && pivot < f64::INFINITY) {
+                return Err(Singular { column: k });
+            }
+            own[0] = 1.0 / pivot;
+            let reach = self.half.min(self.n - 1 - k);
+            for m in 1..=reach {
+                let l = own[m] * own[0];
+                if l != 0.0 {
+                    let row = &mut rest[(m - 1) * w..][..=reach - m];
+                    for (x, p) in row.iter_mut().zip(&own[m..=reach]) {
+                        *x -= l * p;
+                    }
+                }
+            }
+            let inverse = own[0];
+            for x in &mut own[1..=reach] {
+                *x *= inverse;
+            }
+        }
+        self.factored = true;
+        Ok(())
+    }
+
+    /// Solves `A x = b` in place with the factors of [`SymmetricBanded::factor`].
+    ///
+    /// # Panics
+    /// When the matrix was not factorised since it was last changed: a mistake of the program.
+    pub fn solve(&self, b: &mut [f64]) {
+        assert!(self.factored, "solve before factor");
+        let w = self.half + 1;
+        for k in 0..self.n {
+            let reach = self.half.min(self.n - 1 - k);
+            let (done, rest) = b.split_at_mut(k + 1);
+            let x = done[k];
+            for (y, l) in rest[..reach].iter_mut().zip(&self.a[k * w + 1..]) {
+                *y -= l * x;
+            }
+            done[k] = x * self.a[k * w];
+        }
+        for k in (0..self.n).rev() {
+            let reach = self.half.min(self.n - 1 - k);
+            b[k] -= dot(&self.a[k * w + 1..=k * w + reach], &b[k + 1..=k + reach]);
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -504,6 +595,40 @@ mod tests {
             }
         }
         assert!(Banded::new(3, 1, 1).factor().is_err());
+    }
+
+    #[test]
+    fn symmetric_banded_agrees_with_the_general_one() {
+        for (n, half) in [(1, 0), (7, 1), (40, 6), (30, 29)] {
+            let (mut a, mut b) = (SymmetricBanded::new(n, half), Banded::new(n, half, half));
+            for i in 0..n {
+                for j in i.saturating_sub(half)..i {
+                    let v = weyl(i * 31 + j);
+                    a.add(i, j, v);
+                    b.add(i, j, v);
+                    b.add(j, i, v);
+                }
+                // Diagonally dominant, so positive definite.
+                let v = 2.0 * half as f64 + 1.0;
+                a.add(i, i, v);
+                b.add(i, i, v);
+            }
+            let f: Vec<f64> = (0..n).map(|k| weyl(k + 11)).collect();
+            let (mut x, mut y) = (f.clone(), f);
+            a.factor().unwrap();
+            a.solve(&mut x);
+            b.factor().unwrap();
+            b.solve(&mut y);
+            for (x, y) in x.iter().zip(&y) {
+                // Condition of a dominant matrix: a few; the rest is rounding.
+                assert!((x - y).abs() < 1e-13, "{n} {half}: {x} {y}");
+            }
+        }
+        let mut indefinite = SymmetricBanded::new(2, 1);
+        indefinite.add(0, 0, 1.0);
+        indefinite.add(1, 1, 1.0);
+        indefinite.add(1, 0, 2.0);
+        assert!(indefinite.factor().is_err());
     }
 
     #[test]

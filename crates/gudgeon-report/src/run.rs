@@ -230,12 +230,12 @@ fn checks(out: &mut String, checks: &[Check]) {
             format!("<th scope=\"rowgroup\" rowspan=\"{rows}\">{text}</th>")
         };
         let sign = if c.holds() { "✓" } else { "<b class=\"wrong\">✗</b>" };
-        let why = if c.must_fail { "the model is known to be wrong here" } else { "" };
+        let why = if c.must_fail { "; the model is known to be wrong here" } else { "" };
         let _ = write!(
             out,
             "<tr>{setting}<td><code>{}</code></td><td class=\"num\">{}</td><td class=\"num\">{}</td>\
              <td class=\"unit\">{}</td><td class=\"num\">{:.1e}</td><td class=\"num\">{}{:.0e}</td><td>{sign}</td>\
-             <td class=\"what\">{} {why}</td></tr>",
+             <td class=\"what\">{}{why}</td></tr>",
             esc(&c.result),
             significant(Some(c.value), 10),
             significant(Some(c.reference), 10),
@@ -322,7 +322,7 @@ fn results(out: &mut String, s: &Summary) {
 /// A row of a table per ring must not speak of ring 1.
 fn without_member(text: &str, family: &str, n: u32) -> String {
     let name = format!("{family} {n}");
-    for lead in [" of ", " on ", " at ", " in ", " past ", " behind ", ", "] {
+    for lead in [", in ", " of ", " on ", " at ", " in ", " past ", " behind ", ", "] {
         if let Some(rest) = text.strip_suffix(&format!("{lead}{name}")) {
             return rest.to_owned();
         }

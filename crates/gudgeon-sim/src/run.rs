@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Instant;
 
-use gudgeon_core::result::{ModelUse, RunResult, Skipped};
+use gudgeon_core::result::{Figure, FigureKind, ModelUse, RunResult, Skipped};
 use gudgeon_core::{BuildError, EvalError, Registry};
 use gudgeon_numerics::ode::IntegrateError;
 use serde::Serialize;
@@ -392,6 +392,16 @@ fn run_ring_pack(
     result.branches = solved.branches;
     result.solver = solved.report;
     result.series = solved.record.series(&pack, &solved.totals);
+    if let Some(liner) = solved.liner {
+        let lines = liner.columns.iter().map(|c| (c.name.replace("film_at_", "") + " deg", c.name.clone()));
+        result.figures.push(Figure {
+            title: "Oil on the liner".into(),
+            hint: "at the dead centres, over the height above the lowest place of the gudgeon pin".into(),
+            table: "liner".into(),
+            kind: FigureKind::Lines { x: "height".into(), lines: lines.collect(), log_x: false, log_y: true },
+        });
+        result.tables.insert("liner".into(), liner);
+    }
     result.section = Some(ring_pack::geometry::section(case, &pack.geo));
     result.seconds.insert("build".into(), built);
     result.seconds.insert("solve".into(), solved.seconds);

@@ -28,6 +28,10 @@ pub trait Contact: Debug + Send + Sync {
     fn floor(&self) -> Option<f64>;
     /// Coefficient of friction of the load that the solid contact carries.
     fn friction_coefficient(&self) -> f64;
+    /// Real over nominal area of contact for each separation \[m\], where the model knows it: otherwise `false`, and `ratio` stays.
+    fn real_area(&self, _separation: &[f64], _ratio: &mut [f64]) -> bool {
+        false
+    }
     /// Whether, on the floor, the whole radial load rubs with the boundary coefficient and the film contributes no shear.
     fn floor_replaces_film(&self) -> bool {
         false

@@ -72,6 +72,9 @@ function display(unit, max) {
     case "W": return pick([[5e3, 1, "W"], [Infinity, 1e-3, "kW"]]);
     case "J": return pick([[1e-2, 1e3, "mJ"], [5e3, 1, "J"], [Infinity, 1e-3, "kJ"]]);
     case "N m": case "Nm": return pick([[5e3, 1, "N·m"], [Infinity, 1e-3, "kN·m"]]);
+    case "s": return pick([[2e-3, 1e6, "µs"], [2, 1e3, "ms"], [Infinity, 1, "s"]]);
+    case "Pa s": return pick([[2, 1e3, "mPa·s"], [Infinity, 1, "Pa·s"]]);
+    case "um": return { f: 1, label: "µm" };
     case "K": return { f: 1, label: "K" };
     case "rad": return pick([[0.1, 1e3, "mrad"], [Infinity, 1, "rad"]]);
     case "rad/s": return { f: 1, label: "rad/s" };

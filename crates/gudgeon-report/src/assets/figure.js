@@ -1,9 +1,10 @@
 // Figures of a rig: curves over any column, and maps of a value over a plane.
 (function () {
   const capital = (t) => t.charAt(0).toUpperCase() + t.slice(1);
+  let clips = 0;
   // lines: [{ label, x, y, unit, color, dash }]; x in SI of unit spec.xUnit. Values under the pointer stand in the legend.
   function curves(host, spec) {
-    const L = 66, T = 14, B = 40, R = 16, H = 300;
+    const L = 66, T = 14, B = 40, R = 24, H = 300, clip = "clip" + ++clips;
     const ux = display(spec.xUnit, Math.max(...spec.lines.map((l) => maxAbs(l.x)))), uy = display(spec.lines[0].unit, Math.max(...spec.lines.map((l) => maxAbs(l.y))));
     const hidden = new Set();
     let logX = spec.logX, logY = spec.logY, W = 0, X, Y, invert, cursor, dots;
@@ -75,7 +76,9 @@
       }
       s("text", { x: L - 7, y: T - 3, "text-anchor": "end" }, svg, uy.label);
       s("text", { x: (L + W - R) / 2, y: H - 6, "text-anchor": "middle" }, svg, spec.xName + (ux.label ? " [" + ux.label + "]" : ""));
-      s("rect", { x: L, y: T, width: W - L - R, height: bottom - T, class: "frame" }, svg);
+      const frame = { x: L, y: T, width: W - L - R, height: bottom - T };
+      s("rect", frame, s("clipPath", { id: clip }, svg));
+      s("rect", { ...frame, class: "frame" }, svg);
       spec.lines.forEach((line, i) => {
         if (hidden.has(i)) return;
         let d = "", on = false;
@@ -85,10 +88,10 @@
           d += (on ? "L" : "M") + px.toFixed(1) + "," + clamp(py, -1e4, 1e4).toFixed(1);
           on = true;
         }
-        if (d) s("path", { d, class: "line", style: "stroke:" + line.color, "stroke-dasharray": line.dash || "none" }, svg);
+        if (d) s("path", { d, class: "line", "clip-path": `url(#${clip})`, style: "stroke:" + line.color, "stroke-dasharray": line.dash || "none" }, svg);
         if (line.x.length <= 40) for (let k = 0; k < line.x.length; k++) {
           const px = X(line.x[k] * ux.f), py = Y(line.y[k] * uy.f);
-          if (isNumber(px) && isNumber(py)) s("circle", { cx: px, cy: py, r: 2.4, style: "fill:" + line.color }, svg);
+          if (isNumber(px) && isNumber(py) && py <= bottom) s("circle", { cx: px, cy: py, r: 2.4, style: "fill:" + line.color }, svg);
         }
       });
       cursor = s("line", { y1: T, y2: bottom, class: "cursor", visibility: "hidden" }, svg);

@@ -100,7 +100,7 @@ fn set(
     }
 
     let field = schema.and_then(|s| schemas.field(s, Some(node), &last.text));
-    let wants_text = field.is_some_and(|f| f.get("type").and_then(Value::as_str) == Some("string"));
+    let wants_text = field.is_some_and(|f| schemas.wants_text(f));
     if wants_text && !matches!(given.value.data, Data::Text(_) | Data::Array(_) | Data::Table(_)) {
         // `--set title=2024`: the schema knows that this is no number.
         let (raw, base) = (given.raw_value(), given.value.place.span.as_ref().map_or(0, |s| s.start));

@@ -61,6 +61,12 @@ impl Schema {
         schema
     }
 
+    /// Whether a text, or one of some words, is what a value must be.
+    pub fn wants_text(&self, schema: &Value) -> bool {
+        let schema = self.resolve(schema);
+        types_of(schema) == ["string"] || words_of(schema).is_some_and(|w| !w.is_empty())
+    }
+
     /// Keys that the outermost table must have.
     pub fn required(&self) -> Vec<&str> {
         strings(self.root.get("required"))

@@ -109,6 +109,25 @@ fn abscissa(s: &Sweep, values: &[String]) -> (Column, bool) {
     }
 }
 
+/// What curves are called: the values as written, but a model with its settings, `{ model = "barus", … }`, by its name alone where
+/// that tells it from the others.
+fn labels(values: &[String]) -> Vec<String> {
+    let name = |v: &String| {
+        let inside = v.trim().strip_prefix('{')?;
+        let (_, after) = inside.split_once("model")?;
+        Some(after.trim_start().strip_prefix('=')?.trim_start().split('"').nth(1)?.to_owned())
+    };
+    let names: Vec<Option<String>> = values.iter().map(name).collect();
+    values
+        .iter()
+        .zip(&names)
+        .map(|(v, n)| match n {
+            Some(text) if names.iter().filter(|m| *m == n).count() == 1 => text.clone(),
+            _ => v.clone(),
+        })
+        .collect()
+}
+
 /// Runs the sweeps of a case into the table `sweep` and its figures.
 pub fn run(
     loaded: &Loaded<RigCase>,
@@ -172,7 +191,8 @@ pub fn run(
             .push(format!("{} of {total} points of the sweep have no result; the first: {f}", failed.len()));
     }
     let unit = |n: &str| result.results.get(n).map_or(String::new(), |v| v.unit.clone());
-    let what = |n: &str| result.results.get(n).map_or(String::new(), |v| v.what.clone());
+    // Titles are plain text.
+    let what = |n: &str| result.results.get(n).map_or(String::new(), |v| v.what.replace('`', ""));
     let mut table = Series::default();
     let mut figures = Vec::new();
     match &b {
@@ -183,7 +203,8 @@ pub fn run(
                 table.columns.push(Column { name: n.clone(), unit: unit(n), values: v });
             }
             for n in &wanted {
-                figures.push(lines(what(n), first, &x.name, vec![(n.clone(), n.clone())]));
+                let line = vec![(n.clone(), n.clone())];
+                figures.push(lines(what(n), first, &table, line));
             }
         }
         Some((second, v)) => {
@@ -208,9 +229,11 @@ pub fn run(
             } else {
                 // Few values, or names: a curve for each.
                 table.axis = x.clone();
+                let labels = labels(v);
                 for n in &wanted {
                     let r = names.iter().position(|m| m == n).unwrap_or(0);
                     let mut curves = Vec::new();
+                    for (row, label) in cells.iter().zip(&labels) {
                     for (row, label) in cells.iter().zip(v) {
                         // A word that would read as a number stands in quotes.
                         let label = label.trim_matches('"');
@@ -222,7 +245,7 @@ pub fn run(
                         });
                         curves.push((label.to_owned(), name));
                     }
-                    figures.push(lines(what(n), first, &x.name, curves));
+                    figures.push(lines(what(n), first, &table, curves));
                 }
             }
         }
@@ -232,11 +255,70 @@ pub fn run(
     Ok(())
 }
 
-fn lines(title: String, s: &Sweep, x: &str, lines: Vec<(String, String)>) -> Figure {
+/// Values over a sweep by equal ratios that span more than this factor are drawn by equal ratios too.
+const WIDE: f64 = 100.0;
+
+fn lines(title: String, s: &Sweep, table: &Series, lines: Vec<(String, String)>) -> Figure {
+    let log_x = s.spacing == Spacing::Log;
+    let (lo, hi) = lines
+        .iter()
+        .filter_map(|(_, c)| table.get(c))
+        .flat_map(|c| &c.values)
+        .filter(|v| v.is_finite())
+        .fold((f64::INFINITY, 0.0), |(lo, hi): (f64, f64), v| (lo.min(*v), hi.max(*v)));
     Figure {
         title,
         hint: format!("over {}", s.path),
         table: "sweep".into(),
-        kind: FigureKind::Lines { x: x.into(), lines, log_x: s.spacing == Spacing::Log, log_y: false },
+        kind: FigureKind::Lines {
+            x: table.axis.name.clone(),
+            lines,
+            log_x,
+            log_y: log_x && lo > 0.0 && hi > WIDE * lo,
+        },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn models_with_settings_are_called_by_name() {
+        let named = |v: &[&str]| labels(&v.iter().map(|s| (*s).to_owned()).collect::<Vec<_>>());
+        assert_eq!(
+            named(&[r#"{ model = "barus", x = 1 }"#, r#"{x = 2, model="off"}"#, "1 um"]),
+            ["barus", "off", "1 um"]
+        );
+        // A name that stands for two says nothing.
+        let twice = [r#"{ model = "barus", x = 1 }"#, r#"{ model = "barus", x = 2 }"#];
+        assert_eq!(named(&twice), twice);
+        assert_eq!(named(&["{ x = 1 }", "{"]), ["{ x = 1 }", "{"]);
+    }
+
+    #[test]
+    fn wide_results_of_a_sweep_by_ratios_are_drawn_by_ratios() {
+        let drawn = |spacing, values: Vec<f64>| {
+            let sweep = Sweep {
+                path: "rig.x".into(),
+                values: Vec::new(),
+                from: String::new(),
+                to: String::new(),
+                points: 0,
+                spacing,
+                results: Vec::new(),
+            };
+            let column = |name: &str, values| Column { name: name.into(), unit: String::new(), values };
+            let table = Series { axis: column("x", vec![1.0; 3]), columns: vec![column("y", values)] };
+            match lines(String::new(), &sweep, &table, vec![("y".into(), "y".into())]).kind {
+                FigureKind::Lines { log_x, log_y, .. } => (log_x, log_y),
+                FigureKind::Map { .. } => (false, false),
+            }
+        };
+        assert_eq!(drawn(Spacing::Log, vec![1.0, 10.0, 1000.0]), (true, true));
+        assert_eq!(drawn(Spacing::Log, vec![1.0, f64::NAN, 1000.0]), (true, true));
+        assert_eq!(drawn(Spacing::Log, vec![1.0, 10.0, 50.0]), (true, false));
+        assert_eq!(drawn(Spacing::Log, vec![0.0, 10.0, 1000.0]), (true, false));
+        assert_eq!(drawn(Spacing::Linear, vec![1.0, 10.0, 1000.0]), (false, false));
     }
 }

@@ -48,7 +48,10 @@ impl RingMotion for Clamped {
 /// Everything about the case that cannot be, with the place in the case.
 pub fn assemble(case: &RingPackCase, folder: &Path) -> Result<Pack, Vec<BuildError>> {
     let mut errors = Vec::new();
-    let want = wanted(&case.outputs.results, case.rings.len()).map_err(|e| errors.extend(e)).ok();
+    let want =
+        wanted(&case.outputs.results, case.rings.len(), case.models.oil_transport.typetag_name() != "off")
+            .map_err(|e| errors.extend(e))
+            .ok();
     let geo = geometry::resolve(case).map_err(|e| errors.extend(e)).ok();
     let m = &case.models;
     let omega = case.engine.speed.si();

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use std::time::Instant;
 
 use gudgeon_core::EvalError;
-use gudgeon_core::result::Balance;
+use gudgeon_core::result::{Balance, Column, Series};
 use gudgeon_numerics::ode::{
     Direction, EventAction, Flow, IntegrateError, Integrator, LinearInvariant, OdeSystem, Options, Stats,
     StepView,
@@ -199,6 +199,9 @@ impl Cycle<'_> {
                     None => Flow::Continue,
                 };
                 p.pack.book_oil(v);
+                if let Some(s) = sampler.as_deref_mut() {
+                    s.look_at_liner(p.pack, v.t1());
+                }
                 flow
             };
             let (b, st) = (&self.breakpoints, &mut self.stats);
@@ -303,6 +306,8 @@ struct Sampler {
     work: Vec<[f64; 2]>,
     start: Vec<(f64, f64)>,
     end: Vec<(f64, f64)>,
+    /// Crank angles \[deg\] and the film on the liner there.
+    liner: Vec<(u32, Vec<f64>)>,
 }
 
 impl Sampler {
@@ -320,6 +325,17 @@ impl Sampler {
             work: vec![[0.0; 2]; n],
             start: vec![(0.0, 0.0); n],
             end: vec![(0.0, 0.0); n],
+            liner: Vec::new(),
+        }
+    }
+
+    /// Keeps the film on the liner at every dead centre.
+    fn look_at_liner(&mut self, pack: &Pack, theta: f64) {
+        let turns = theta / PI;
+        if let Some(oil) = &pack.oil_pack
+            && (turns - turns.round()).abs() < 1e-9
+        {
+            self.liner.push((turns.round() as u32 * 180, oil.film.clone()));
         }
     }
 
@@ -403,6 +419,18 @@ impl Sampler {
         let energy = worst(&self.work, &|i| self.end[i].1 - self.start[i].1);
         (Some(energy), Some(momentum))
     }
+}
+
+/// The film on the liner at the dead centres over the height above the lowest place of the pin.
+fn liner_table(pack: &Pack, films: Vec<(u32, Vec<f64>)>) -> Option<Series> {
+    let oil = pack.oil_pack.as_ref()?;
+    let lowest = pack.kinematics.y_tdc() - pack.kinematics.stroke();
+    let z = (0..oil.film.len()).map(|k| oil.bottom + (k as f64 + 0.5) * oil.cell - lowest).collect();
+    let column = |name: String, unit: &str, values| Column { name, unit: unit.into(), values };
+    Some(Series {
+        axis: column("height".into(), "m", z),
+        columns: films.into_iter().map(|(deg, f)| column(format!("film_at_{deg}"), "m", f)).collect(),
+    })
 }
 
 fn film_peaks(pack: &mut Pack) -> Result<(), EvalError> {
@@ -489,7 +517,7 @@ pub(super) fn run(
         tolerance: s.periodicity.si().max(repeatable),
         accuracy: s.tolerance.si(),
         max_cycles: s.max_cycles as usize,
-        accelerate: !discrete,
+        accelerate: !discrete && cycle.pack.oil_pack.is_none(),
     };
     let report = match periodic_orbit(&mut cycle, &mut y, &options) {
         Ok(r) => r,
@@ -534,6 +562,7 @@ pub(super) fn run(
             momentum,
         },
         periodicity_error: report.error_estimate,
+        oil: pack.oil_pack.as_ref().map_or_else(Ledger::default, |o| o.ledger),
         duration: None,
     };
     let mut notes = Vec::new();
@@ -563,6 +592,7 @@ pub(super) fn run(
         ("events", work.events),
     ];
     Ok(Found {
+        liner: liner_table(pack, sampler.liner),
         record: sampler.record,
         totals,
         period: if report.converged { report.period } else { 0 },

@@ -18,7 +18,7 @@ pub mod substep_march;
 use std::time::Instant;
 
 use gudgeon_core::kinds::Motion;
-use gudgeon_core::result::{Branch, SolverReport};
+use gudgeon_core::result::{Branch, Series, SolverReport};
 use gudgeon_core::{BuildError, EvalError};
 use indexmap::IndexMap;
 
@@ -29,6 +29,8 @@ use record::{Meter, Record, Totals};
 
 /// A solved pack: the last cycle of the first start, and what else was found.
 pub struct Solved {
+    /// Film on the liner at the dead centres, when oil is followed.
+    pub liner: Option<Series>,
     /// The recorded cycle.
     pub record: Record,
     /// Its totals.
@@ -43,6 +45,8 @@ pub struct Solved {
 
 /// One start brought to its periodic state.
 struct Found {
+    /// Film on the liner at the dead centres, when oil is followed.
+    liner: Option<Series>,
     record: Record,
     totals: Totals,
     period: u32,
@@ -149,7 +153,7 @@ pub fn solve(
     report.counters.insert("film_evaluations".into(), pack.counters.film);
     report.counters.insert("gas_evaluations".into(), pack.counters.gas);
     let (_, first) = found.swap_remove(0);
-    Ok(Solved { record: first.record, totals: first.totals, branches, report, seconds })
+    Ok(Solved { liner: first.liner, record: first.record, totals: first.totals, branches, report, seconds })
 }
 
 fn method_name(case: &RingPackCase) -> &'static str {
@@ -196,6 +200,7 @@ fn one_start(
                 ));
             }
             Ok(Found {
+                liner: None,
                 record,
                 totals,
                 period: 1,
@@ -215,6 +220,7 @@ fn one_start(
             };
             let outcome = degree_march::run(pack, set, start, &mut record, progress).map_err(at(pack))?;
             Ok(Found {
+                liner: None,
                 record,
                 totals: outcome.totals,
                 period: outcome.period,

@@ -56,6 +56,8 @@ pub struct OilFace {
     exit: [Exit; SIDES],
     /// Taken up since the states were last told \[m²\].
     taken: [f64; SIDES],
+    /// Lost and not laid down yet \[m²\]: negative where the face has more than it took up.
+    owed: f64,
     /// Edges at the start of the step \[m\].
     edge: [f64; SIDES],
     /// Volumes now \[m²\].
@@ -84,6 +86,17 @@ pub struct Ledger {
     pub thrown: f64,
     /// Taken up by all faces.
     pub taken: f64,
+}
+
+/// A ring's oil at an instant.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct RingOil {
+    /// Share of its faces under full film.
+    pub wetted: f64,
+    /// Oil held, per circumference \[m²\].
+    pub held: f64,
+    /// Film left on the liner \[m\].
+    pub left: f64,
 }
 
 /// Description of a face for [`OilPack::new`].
@@ -172,6 +185,7 @@ impl OilPack {
                     room: p.clearance.map(|c| c.map_or(0.0, |c| 0.5 * c.min(wave).powi(2) / WAVE_SLOPE)),
                     exit: [Exit::Crankcase, if k == 0 { Exit::Chamber } else { Exit::Crankcase }],
                     taken: [0.0; SIDES],
+                    owed: 0.0,
                     edge: [0.0; SIDES],
                     volume: [0.0; SIDES],
                     reach: [Reach::default(); SIDES],
@@ -228,7 +242,7 @@ impl OilPack {
     pub fn begin(&mut self, pin: f64) {
         self.ledger = Ledger::default();
         for f in &mut self.faces {
-            f.taken = [0.0; SIDES];
+            (f.taken, f.owed) = ([0.0; SIDES], 0.0);
             f.edge = f.edges(pin);
         }
         if let Some(z) = self.faces.last().map(|f| f.edge[0]) {
@@ -246,6 +260,8 @@ impl OilPack {
                 y[f.state + side] += f.taken[side] / unit;
                 f.taken[side] = 0.0;
             }
+            y[f.state] += f.owed / unit;
+            f.owed = 0.0;
         }
     }
 
@@ -318,30 +334,24 @@ impl OilPack {
                 f.taken[side] += swept[side];
                 self.ledger.taken += swept[side];
             }
-            // What the face lost stays behind its trailing edge; what there is no place for it keeps.
-            let lost = -((y1[s] - y0[s]) + (y1[s + 1] - y0[s + 1])) * unit;
+            // What the face lost stays behind its trailing edge. Integration errors may make it less than nothing: that is owed,
+            // for the volumes must not jump, which would spoil the time derivatives of the next step.
+            let lost = f.owed - ((y1[s] - y0[s]) + (y1[s + 1] - y0[s + 1])) * unit;
             let trailing = usize::from(to[1] < from[1]);
             let way = (to[trailing] - from[trailing]).abs();
-            // Wave before each edge, beyond what there is room for.
-            let thickness = h(f.ring);
-            let mut left = [0.0; SIDES];
-            for side in 0..SIDES {
-                let volume = y1[s + side] * unit + f.taken[side];
-                left[side] = (volume - f.capacity(thickness, side) - f.room[side]).max(0.0);
-                f.taken[side] -= left[side];
-            }
-            let exit = f.exit;
+            // The wave before the leading edge, beyond what there is room for, goes; nothing else depends on it.
+            let leading = 1 - trailing;
+            let volume = y1[s + leading] * unit + f.taken[leading];
+            let left = (volume - f.capacity(h(f.ring), leading) - f.room[leading]).max(0.0);
+            f.taken[leading] -= left;
             let laid = if way > 0.0 { lost.max(0.0) } else { 0.0 };
-            if way > 0.0 {
-                let (a, b) = (from[trailing], to[trailing]);
-                self.lay(a, b, laid / way, trailing);
+            f.owed = lost - laid;
+            match f.exit[leading] {
+                Exit::Crankcase => self.ledger.drained += left,
+                Exit::Chamber => self.ledger.thrown += left,
             }
-            self.faces[k].taken[trailing] += lost - laid;
-            for side in 0..SIDES {
-                match exit[side] {
-                    Exit::Crankcase => self.ledger.drained += left[side],
-                    Exit::Chamber => self.ledger.thrown += left[side],
-                }
+            if way > 0.0 {
+                self.lay(from[trailing], to[trailing], laid / way, trailing);
             }
             self.faces[k].edge = to;
         }
@@ -387,6 +397,25 @@ impl OilPack {
         }
     }
 
+    /// What ring `i` does with the oil while the piston moves at `v` \[m/s\].
+    #[must_use]
+    pub fn ring(&self, i: usize, v: f64) -> RingOil {
+        let (mut wetted, mut length) = (0.0, 0.0);
+        let mut out = RingOil::default();
+        let trailing = usize::from(v < 0.0);
+        for f in self.faces.iter().filter(|f| f.ring == i) {
+            wetted += f.reach[0].length + f.reach[1].length;
+            length += f.length;
+            out.held += f.volume[0] + f.volume[1];
+            // The last land to pass decides what stays: the upper one on the way down.
+            if out.left == 0.0 || trailing == 0 {
+                out.left = self.model.left_behind(f.reach[trailing].gap, v.abs());
+            }
+        }
+        out.wetted = if length > 0.0 { wetted / length } else { 0.0 };
+        out
+    }
+
     /// All oil per circumference \[m²\]: on the liner outside the faces, and under them.
     #[must_use]
     pub fn total(&self, y: &[f64]) -> f64 {
@@ -401,6 +430,7 @@ impl OilPack {
             for side in 0..SIDES {
                 sum += y[f.state + side] * self.unit(k) + f.taken[side];
             }
+            sum += f.owed;
         }
         sum
     }

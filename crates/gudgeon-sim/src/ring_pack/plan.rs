@@ -27,9 +27,9 @@ pub struct ResultInfo {
     pub needs: Needs,
 }
 
-/// Every result of a pack of `rings` rings.
+/// Every result of a pack of `rings` rings; `oil`: whether oil is followed on the liner.
 #[must_use]
-pub fn catalogue(rings: usize) -> Vec<ResultInfo> {
+pub fn catalogue(rings: usize, oil: bool) -> Vec<ResultInfo> {
     let mut all = Vec::new();
     let mut add = |name: String, unit, needs, what: String| all.push(ResultInfo { name, unit, what, needs });
     add(
@@ -88,6 +88,53 @@ pub fn catalogue(rings: usize) -> Vec<ResultInfo> {
             Needs::Film,
             format!("mean friction power of ring {i}, one cylinder"),
         );
+        add(
+            format!("ring{i}.oil_face_combustion"),
+            "mm3",
+            Needs::Film,
+            format!("film on the expansion stroke less that on the compression stroke, ring {i}, per cycle"),
+        );
+        add(
+            format!("ring{i}.oil_face_gas_exchange"),
+            "mm3",
+            Needs::Film,
+            format!("film on the intake stroke less that on the exhaust stroke, ring {i}, per cycle"),
+        );
+        add(
+            format!("ring{i}.oil_gap"),
+            "mm3",
+            Needs::Film,
+            format!("oil that a gap full of oil would let up past ring {i}, per cycle"),
+        );
+        add(
+            format!("ring{i}.oil_groove"),
+            "mm3",
+            Needs::Axial,
+            format!("oil pumped up past the flanks of ring {i} in an oil-filled groove, per cycle"),
+        );
+        if oil {
+            add(
+                format!("ring{i}.wetted_share"),
+                "1",
+                Needs::Film,
+                format!("mean share of the face under full film, ring {i}"),
+            );
+        }
+    }
+    if oil {
+        add(
+            "oil_taken".into(),
+            "mm3",
+            Needs::Film,
+            "oil taken up from the liner by all faces, per cycle".into(),
+        );
+        add("oil_drained".into(), "mm3", Needs::Film, "oil scraped into the crankcase, per cycle".into());
+        add(
+            "oil_thrown".into(),
+            "mm3",
+            Needs::Film,
+            "oil thrown off above ring 1 into the combustion chamber, per cycle".into(),
+        );
     }
     add("friction_power".into(), "W", Needs::Film, "mean friction power of the pack, one cylinder".into());
     add("fmep".into(), "bar", Needs::Film, "friction mean effective pressure of the pack".into());
@@ -132,8 +179,8 @@ pub struct Facts<'a> {
 ///
 /// # Errors
 /// A name that is not in the catalogue.
-pub fn wanted(asked: &[String], rings: usize) -> Result<Vec<ResultInfo>, Vec<BuildError>> {
-    let all = catalogue(rings);
+pub fn wanted(asked: &[String], rings: usize, oil: bool) -> Result<Vec<ResultInfo>, Vec<BuildError>> {
+    let all = catalogue(rings, oil);
     let mut errors = Vec::new();
     for (k, name) in asked.iter().enumerate() {
         if name != "all" && !all.iter().any(|r| &r.name == name) {

@@ -1,0 +1,343 @@
+//! Cavitation as a complementarity problem, on top of any solver of linear systems.
+
+use gudgeon_core::EvalError;
+use gudgeon_core::kinds::{Film2d, Film2dGrid, Film2dIn, Film2dOut, FilmMode};
+use gudgeon_numerics::linalg::Singular;
+use gudgeon_numerics::multigrid::FivePoint;
+
+use super::Cavitation;
+use super::problem::Problem;
+
+/// Solves linear systems with a [`FivePoint`] matrix.
+pub(super) trait Linear: Send {
+    /// Prepares for a matrix, which is symmetric and positive definite when `symmetric`.
+    fn factor(&mut self, m: &FivePoint, symmetric: bool) -> Result<(), Singular>;
+    /// Improves `z` until no residual is larger than `target` where that is possible. Returns the work done and the largest residual.
+    fn solve(&mut self, m: &FivePoint, b: &[f64], z: &mut [f64], target: f64) -> (usize, f64);
+}
+
+/// Most changes of the set of cavitated nodes.
+const MOST: usize = 100;
+
+/// A film found by Newton's method on the complementarity of pressure and void.
+///
+/// Both are non-negative and one of them is zero: `min(p, 1 - θ) = 0` at every node, together with the balance of its volume. Newton's
+/// method on that says of each node whether it is full (its pressure is unknown) or cavitated (its void is unknown), solves the linear
+/// system of that choice, and chooses anew by the signs of what it found (Hintermüller, Ito and Kunisch 2003). It ends when no node
+/// changes. The function of Fischer and Burmeister in place of the minimum (Woloszynski et al. 2015) comes to the same film in about as many steps, but
+/// mixes pressure and void at a node, which the multigrid could not tell apart.
+pub(super) struct Solver<L> {
+    model: &'static str,
+    problem: Problem,
+    linear: L,
+    cavitation: Cavitation,
+    tolerance: f64,
+    /// Pressure above `p_cav`, and `1 - θ`.
+    p: Vec<f64>,
+    void: Vec<f64>,
+    cavitated: Vec<bool>,
+    b: Vec<f64>,
+    z: Vec<f64>,
+    /// What is shown: absolute pressure and filling.
+    pressure: Vec<f64>,
+    fill: Vec<f64>,
+    /// Whether `p`, `void` and `cavitated` hold a film.
+    warm: bool,
+}
+
+impl<L: Linear> Solver<L> {
+    pub fn new(
+        model: &'static str,
+        problem: Problem,
+        linear: L,
+        cavitation: Cavitation,
+        tolerance: f64,
+    ) -> Self {
+        let n = problem.len();
+        Self {
+            model,
+            problem,
+            linear,
+            cavitation,
+            tolerance,
+            p: vec![0.0; n],
+            void: vec![0.0; n],
+            cavitated: vec![false; n],
+            b: vec![0.0; n],
+            z: vec![0.0; n],
+            pressure: vec![0.0; n],
+            fill: vec![1.0; n],
+            warm: false,
+        }
+    }
+
+    fn singular(&self, s: Singular) -> EvalError {
+        EvalError::recoverable(self.model, format!("the film is undetermined at node {}", s.column))
+    }
+
+    /// Residual to aim at: the tolerance times the largest flow of the present film, or what rounding leaves.
+    fn target(&self) -> f64 {
+        let (most, rounding) = self.problem.largest_flow(&self.p, &self.void);
+        rounding.max(self.tolerance * most)
+    }
+
+    /// One correction of the unknowns of the present matrix by the balances in `b`. Returns the largest residual that is left.
+    fn correct(&mut self, target: f64, cycles: &mut usize) -> f64 {
+        for b in &mut self.b {
+            *b = -*b;
+        }
+        self.z.fill(0.0);
+        let (work, left) = self.linear.solve(&self.problem.m, &self.b, &mut self.z, target);
+        *cycles += work;
+        for k in 0..self.z.len() {
+            if self.problem.edge[k] < 4 {
+                continue;
+            }
+            if self.cavitated[k] {
+                self.void[k] += self.z[k];
+            } else {
+                self.p[k] += self.z[k];
+            }
+        }
+        left
+    }
+
+    /// The film without cavitation. Returns the work done.
+    fn full(&mut self) -> Result<usize, EvalError> {
+        self.cavitated.fill(false);
+        self.problem.choose(&self.cavitated, false);
+        self.linear.factor(&self.problem.m, true).map_err(|s| self.singular(s))?;
+        let mut cycles = 0;
+        self.settle(&mut cycles)?;
+        Ok(cycles)
+    }
+
+    /// Solves the present linear system. Returns the residual that is allowed for.
+    fn settle(&mut self, cycles: &mut usize) -> Result<f64, EvalError> {
+        let mut target = self.target();
+        for _ in 0..5 {
+            self.problem.balance(&self.p, &self.void, &mut self.b);
+            let left = self.correct(target, cycles);
+            // Judged by the flows of the film it led to.
+            target = self.target();
+            if left <= target {
+                return Ok(target);
+            }
+        }
+        Err(self.slow(*cycles))
+    }
+
+    /// Whether a line of a ring is cavitated all round: what is in it never leaves.
+    fn closed(&self) -> bool {
+        self.problem.periodic && self.cavitated.chunks(self.problem.nx).any(|line| line.iter().all(|c| *c))
+    }
+
+    fn slow(&self, cycles: usize) -> EvalError {
+        if self.closed() {
+            let what = "a cavity that closes on itself may hold any amount of oil: there is no steady film";
+            return EvalError::recoverable(self.model, what);
+        }
+        EvalError::recoverable(
+            self.model,
+            format!("no convergence of the linear system after {cycles} cycles"),
+        )
+    }
+
+    /// Rupture without conservation: nodes are full, or at `p_cav` and none of the problem's business.
+    fn swift_stieber(&mut self) -> Result<(usize, usize), EvalError> {
+        let mut cycles = 0;
+        // A film that grows again after the first cut does so by one line of nodes a step.
+        let most = MOST + self.problem.nx + self.problem.ny;
+        for iteration in 1..=most {
+            for k in 0..self.p.len() {
+                if self.cavitated[k] {
+                    self.p[k] = 0.0;
+                }
+            }
+            self.problem.choose(&self.cavitated, false);
+            self.linear.factor(&self.problem.m, true).map_err(|s| self.singular(s))?;
+            let target = self.settle(&mut cycles)?;
+            self.problem.balance(&self.p, &self.void, &mut self.b);
+            let top = self.p.iter().fold(0.0_f64, |a, &b| a.max(b));
+            let mut changed = 0;
+            for k in 0..self.p.len() {
+                if self.problem.edge[k] < 4 {
+                    continue;
+                }
+                // A node at p_cav that would send more oil away than it gets must take pressure.
+                let change =
+                    if self.cavitated[k] { self.b[k] < -2.0 * target } else { self.p[k] < -1e-12 * top };
+                if change {
+                    self.cavitated[k] = !self.cavitated[k];
+                    changed += 1;
+                }
+            }
+            if changed == 0 {
+                return Ok((iteration, cycles));
+            }
+        }
+        Err(self.restless(most, cycles))
+    }
+
+    fn restless(&self, steps: usize, cycles: usize) -> EvalError {
+        EvalError::recoverable(
+            self.model,
+            format!("the cavity still changes after {steps} steps and {cycles} cycles"),
+        )
+    }
+
+    fn mass_conserving(&mut self) -> Result<(usize, usize), EvalError> {
+        let mut cycles = 0;
+        for iteration in 1..=MOST {
+            let mut any = false;
+            for k in 0..self.p.len() {
+                if self.problem.edge[k] < 4 {
+                    continue;
+                }
+                if self.cavitated[k] {
+                    self.p[k] = 0.0;
+                    any = true;
+                } else {
+                    self.void[k] = 0.0;
+                }
+            }
+            self.problem.choose(&self.cavitated, true);
+            self.linear.factor(&self.problem.m, !any).map_err(|s| self.singular(s))?;
+            // A few digits at a time: a set that changes again needs no more.
+            let mut stalled = 0;
+            let mut target = self.target();
+            let changed = loop {
+                self.problem.balance(&self.p, &self.void, &mut self.b);
+                let now = self.b.iter().zip(&self.problem.edge).filter(|(_, e)| **e == 4);
+                let now = now.fold(0.0_f64, |a, (b, _)| a.max(b.abs()));
+                let aim = target.max(LOOSE * now);
+                let left = self.correct(aim, &mut cycles);
+                target = self.target();
+                let top = self.p.iter().fold(0.0_f64, |a, &b| a.max(b));
+                let inner = (0..self.p.len()).filter(|&k| self.problem.edge[k] == 4);
+                let changed = inner.filter(|&k| self.wrong(k, top)).count();
+                if left <= target || (changed > 0 && left <= aim) {
+                    break changed;
+                }
+                if left > aim {
+                    stalled += 1;
+                    if stalled > 2 {
+                        return Err(self.slow(cycles));
+                    }
+                }
+            };
+            if changed == 0 {
+                // More void than room is no film, however well the equations hold.
+                let most = self.void.iter().fold(0.0_f64, |a, &b| a.max(b));
+                return if most <= 1.0 + 1e-6 { Ok((iteration, cycles)) } else { Err(self.slow(cycles)) };
+            }
+            let top = self.p.iter().fold(0.0_f64, |a, &b| a.max(b));
+            for k in 0..self.p.len() {
+                if self.problem.edge[k] == 4 && self.wrong(k, top) {
+                    self.cavitated[k] = !self.cavitated[k];
+                }
+            }
+        }
+        Err(self.restless(MOST, cycles))
+    }
+
+    /// Whether a node has a negative pressure or a negative void, beyond what rounding does.
+    fn wrong(&self, k: usize, top: f64) -> bool {
+        if self.cavitated[k] { self.void[k] < -1e-12 } else { self.p[k] < -1e-12 * top }
+    }
+
+    fn find(&mut self, inp: &Film2dIn<'_>) -> Result<Film2dOut, EvalError> {
+        let n = self.p.len();
+        if !self.warm {
+            self.p.fill(0.0);
+            self.cavitated.fill(false);
+            self.void.fill(0.0);
+        }
+        let cavitates = self.cavitation != Cavitation::FullSommerfeld;
+        let conserves = self.cavitation == Cavitation::MassConserving;
+        if !conserves {
+            self.void.fill(0.0);
+        }
+        self.problem.set_edges(inp, cavitates, &mut self.p, &mut self.void);
+        if !conserves {
+            self.void.fill(0.0);
+        }
+        let (iterations, cycles) = match self.cavitation {
+            Cavitation::MassConserving => self.mass_conserving()?,
+            Cavitation::SwiftStieber => self.swift_stieber()?,
+            Cavitation::HalfSommerfeld | Cavitation::FullSommerfeld => (1, self.full()?),
+        };
+        // For a full film that is cut off, the next search starts from what was not.
+        for k in 0..n {
+            let p = if cavitates { self.p[k].max(0.0) } else { self.p[k] };
+            self.z[k] = p;
+            self.void[k] = self.void[k].clamp(0.0, 1.0);
+            self.pressure[k] = inp.p_cav + p;
+            self.fill[k] = 1.0 - self.void[k];
+        }
+        let mut out = self.problem.result(inp, &self.z, &self.void, conserves, &mut self.b);
+        (out.iterations, out.cycles) = (iterations, cycles);
+        if !(out.load.is_finite() && out.shear_lower.is_finite()) {
+            return Err(EvalError::recoverable(self.model, "the film overflows"));
+        }
+        Ok(out)
+    }
+}
+
+/// Part of the residual that a step leaves while the set of cavitated nodes still changes.
+const LOOSE: f64 = 3e-3;
+
+impl<L: Linear> Film2d for Solver<L> {
+    fn grid(&self) -> &Film2dGrid {
+        &self.problem.grid
+    }
+
+    fn solve(&mut self, inp: &Film2dIn<'_>) -> Result<Film2dOut, EvalError> {
+        if inp.history.is_some() && self.cavitation != Cavitation::MassConserving {
+            return Err(EvalError::fatal(self.model, "only the mass-conserving condition has a history"));
+        }
+        self.problem.assemble(self.model, inp)?;
+        self.problem.drive(inp, inp.u, inp.dhdt, self.cavitation == Cavitation::MassConserving);
+        let mut found = self.find(inp);
+        if found.is_err() && self.warm {
+            self.warm = false;
+            found = self.find(inp);
+        }
+        self.warm = found.is_ok();
+        found
+    }
+
+    fn pressure(&self) -> &[f64] {
+        &self.pressure
+    }
+
+    fn fill(&self) -> &[f64] {
+        &self.fill
+    }
+
+    fn solve_many(
+        &mut self,
+        inp: &Film2dIn<'_>,
+        modes: &[FilmMode<'_>],
+        p: &mut [f64],
+    ) -> Result<usize, EvalError> {
+        let n = self.p.len();
+        super::check_modes(self.model, n, modes, p.len())?;
+        self.problem.assemble(self.model, inp)?;
+        self.warm = false;
+        self.cavitated.fill(false);
+        self.problem.choose(&self.cavitated, false);
+        self.linear.factor(&self.problem.m, true).map_err(|s| self.singular(s))?;
+        let mut cycles = 0;
+        for (mode, out) in modes.iter().zip(p.chunks_exact_mut(n)) {
+            self.problem.cause(inp, mode, &mut self.p, &mut self.void);
+            self.settle(&mut cycles)?;
+            out.copy_from_slice(&self.p);
+        }
+        Ok(cycles)
+    }
+
+    fn reset(&mut self) {
+        self.warm = false;
+    }
+}

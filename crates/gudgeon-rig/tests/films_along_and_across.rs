@@ -1,0 +1,246 @@
+//! Benches of films along and across the motion: any text gives an error or numbers, and what is symmetric is solved once.
+#![allow(missing_docs)]
+
+use std::path::Path;
+
+use gudgeon_core::kinds::{RigCtx, RigOut, RigSpec};
+use gudgeon_rig as _;
+
+/// From the text of a case to results, or why not.
+fn run(text: &str) -> Result<RigOut, String> {
+    let spec: Box<dyn RigSpec> = toml::from_str(text).map_err(|e| e.to_string())?;
+    let errors =
+        |e: Vec<gudgeon_core::BuildError>| e.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n");
+    let mut rig = spec.build(&RigCtx { folder: Path::new(".") }).map_err(errors)?;
+    let mut out = RigOut::default();
+    rig.run(&mut out).map_err(|e| e.to_string())?;
+    Ok(out)
+}
+
+const SLIDER: &[(&str, &str)] = &[
+    ("model", "\"slider_2d\""),
+    ("length", "\"10 mm\""),
+    ("width", "\"8 mm\""),
+    ("profile", "{ shape = \"linear\", h_in = \"20 um\", h_out = \"10 um\" }"),
+    ("dimples", "{ along = 2, across = 3, depth = \"4 um\", fraction = 0.5 }"),
+    ("speed", "\"5 m/s\""),
+    ("squeeze", "\"1 mm/s\""),
+    ("viscosity", "\"10 mPa s\""),
+    ("p_inlet", "\"1 bar\""),
+    ("p_outlet", "\"1 bar\""),
+    ("p_side", "\"1 bar\""),
+    ("p_cav", "\"0.3 bar\""),
+    ("inlet_fill", "1.0"),
+    ("intervals_x", "12"),
+    ("intervals_y", "10"),
+    ("roughness", "{ model = \"sawtooth_waviness\", amplitude = \"2 um\" }"),
+    ("film_2d", "{ model = \"multigrid\" }"),
+];
+
+const JOURNAL: &[(&str, &str)] = &[
+    ("model", "\"journal_2d\""),
+    ("radius", "\"25 mm\""),
+    ("width", "\"30 mm\""),
+    ("clearance", "\"25 um\""),
+    ("eccentricity", "0.7"),
+    ("speed", "\"3000 rpm\""),
+    ("viscosity", "\"10 mPa s\""),
+    ("p_supply", "\"2 bar\""),
+    ("p_side", "\"1 bar\""),
+    ("p_cav", "\"0.3 bar\""),
+    ("intervals_x", "24"),
+    ("intervals_y", "8"),
+    ("film_2d", "{ model = \"multigrid\" }"),
+];
+
+const SKIRT: &[(&str, &str)] = &[
+    ("model", "\"skirt\""),
+    ("radius", "\"43 mm\""),
+    ("length", "\"50 mm\""),
+    ("half_angle", "\"50 deg\""),
+    ("clearance", "\"30 um\""),
+    ("barrel", "\"20 um\""),
+    ("e_top", "\"18 um\""),
+    ("e_bottom", "\"10 um\""),
+    ("e_top_rate", "\"1 mm/s\""),
+    ("e_bottom_rate", "\"-1 mm/s\""),
+    ("speed", "\"8 m/s\""),
+    ("viscosity", "\"10 mPa s\""),
+    ("p_edge", "\"1 bar\""),
+    ("p_cav", "\"0.3 bar\""),
+    ("pin", "\"20 mm\""),
+    ("intervals_x", "12"),
+    ("intervals_y", "10"),
+    ("crowding", "0.1"),
+    ("film_2d", "{ model = \"multigrid\" }"),
+];
+
+fn text(keys: &[(&str, &str)], changed: &str, value: &str) -> String {
+    let line = |(k, v): &(&str, &str)| format!("{k} = {}\n", if *k == changed { value } else { v });
+    let mut all: String = keys.iter().map(line).collect();
+    if !changed.is_empty() && keys.iter().all(|(k, _)| *k != changed) {
+        all.push_str(&format!("{changed} = {value}\n"));
+    }
+    all
+}
+
+fn number(out: &RigOut, name: &str) -> f64 {
+    out.results[name].value
+}
+
+#[test]
+fn any_value_gives_an_error_or_numbers() {
+    let values = [
+        "0",
+        "-1",
+        "1",
+        "1e-300",
+        "1e300",
+        "-1e300",
+        "1e-9",
+        "1e9",
+        "nan",
+        "inf",
+        "\"nan m\"",
+        "\"1e999 m\"",
+        "\"\"",
+        "\"x\"",
+        "[]",
+        "{}",
+        "true",
+        "2",
+        "3",
+        "5",
+        "4294967296",
+    ];
+    for keys in [SLIDER, JOURNAL, SKIRT] {
+        run(&text(keys, "", "")).unwrap();
+        let (mut refused, mut ran) = (0, 0);
+        for (key, _) in keys {
+            for value in values {
+                match run(&text(keys, key, value)) {
+                    Err(e) => {
+                        assert!(!e.is_empty(), "{key} = {value}");
+                        refused += 1;
+                    }
+                    Ok(out) => {
+                        let all = out.tables.values().chain([&out.series]);
+                        let columns = all.flat_map(|t| t.columns.iter().chain([&t.axis]));
+                        let finite = columns.flat_map(|c| &c.values).all(|v| v.is_finite())
+                            && out.results.values().all(|v| v.value.is_finite());
+                        assert!(finite, "{key} = {value}");
+                        ran += 1;
+                    }
+                }
+            }
+        }
+        // Neither everything is refused nor everything let through.
+        assert!(refused > 50 && ran > 20, "{refused} {ran}");
+    }
+}
+
+#[test]
+fn contradictions_are_named() {
+    let refused = |keys, key, value, word: &str| {
+        let e = run(&text(keys, key, value)).unwrap_err();
+        assert!(e.contains(word), "{key} = {value}: {e}");
+    };
+    refused(SLIDER, "inlet_fill", "0.5", "inlet_fill");
+    refused(SLIDER, "intervals_x", "1", "intervals_x");
+    refused(SLIDER, "intervals_y", "4000", "intervals_y");
+    refused(SLIDER, "dimples", "{ along = 0, across = 1, depth = 0.0, fraction = 0.5 }", "dimples.along");
+    refused(
+        SLIDER,
+        "dimples",
+        "{ along = 1, across = 1, depth = 0.0, fraction = 0.5, rim = 0.004 }",
+        "dimples.rim",
+    );
+    refused(SLIDER, "film_2d", "{ model = \"multigrid\", tolerance = 1.0 }", "film_2d.tolerance");
+    refused(JOURNAL, "eccentricity", "1.0", "eccentricity");
+    refused(JOURNAL, "supply", "\"sides\"", "p_supply");
+    refused(SKIRT, "half_angle", "\"90 deg\"", "half_angle");
+    refused(SKIRT, "crowding", "0.6", "crowding");
+    refused(SKIRT, "e_top", "\"70 um\"", "touch");
+    // Everything at once.
+    let both = text(SKIRT, "crowding", "0.6").replace("50 deg", "95 deg");
+    let e = run(&both).unwrap_err();
+    assert!(e.contains("crowding") && e.contains("half_angle"), "{e}");
+}
+
+#[test]
+fn half_a_film_gives_what_the_whole_gives() {
+    // The direct solver on a film whose sides' pressures are told apart by nothing: with an odd number of intervals the whole is solved, with
+    // an even one half. Twice the nodes across tell how far apart the two may be: second order, so 25/24 of the intervals change
+    // an error of e by less than e/10.
+    for (keys, results) in [
+        (SLIDER, ["load", "plane_shear", "pad_shear", "inflow"].as_slice()),
+        (JOURNAL, &["load", "attitude", "friction", "side_flow_number"]),
+        (SKIRT, &["thrust", "moment", "liner_shear", "skirt_shear"]),
+    ] {
+        let smooth = text(keys, "dimples", "{ along = 1, across = 1, depth = 0.0, fraction = 0.5 }");
+        let keys = if keys[0].1 == SLIDER[0].1 { smooth } else { text(keys, "", "") };
+        let at = |n: u32| {
+            let line = keys.lines().map(|l| {
+                if l.starts_with("intervals_y") { format!("intervals_y = {n}\n") } else { format!("{l}\n") }
+            });
+            run(&line.collect::<String>()).unwrap()
+        };
+        let (whole, half, coarse) = (at(25), at(24), at(12));
+        assert!(5 * half.counters["nodes"] < 3 * whole.counters["nodes"]);
+        for name in results {
+            let [w, h, c] = [&whole, &half, &coarse].map(|o| number(o, name));
+            let error = (h - c).abs() / 3.0;
+            assert!((w - h).abs() < 0.15 * error + 1e-9 * h.abs(), "{name}: {w} {h} {c}");
+        }
+    }
+}
+
+#[test]
+fn smooth_surfaces_shear_as_the_model_says() {
+    // Factors of very small waves are those of smooth surfaces.
+    for keys in [SLIDER, SKIRT] {
+        let off = run(&text(keys, "roughness", "{ model = \"off\" }")).unwrap();
+        let small = "{ model = \"sawtooth_waviness\", amplitude = \"0.1 nm\" }";
+        let wavy = run(&text(keys, "roughness", small)).unwrap();
+        for (name, value) in &off.results {
+            if name == "residual" {
+                continue;
+            }
+            // (Ω/h)² is 1e-10; the solver stops at 1e-9.
+            let apart = (value.value - number(&wavy, name)).abs();
+            assert!(
+                apart <= 2e-8 * value.value.abs() + 1e-12,
+                "{name}: {} {}",
+                value.value,
+                number(&wavy, name)
+            );
+        }
+    }
+}
+
+#[test]
+fn sides_supply_a_bearing_that_does_not_rupture() {
+    // Without cavitation the film knows no groove, where the pressure of the widest gap is that of the sides by symmetry.
+    let keys = text(
+        JOURNAL,
+        "film_2d",
+        "{ model = \"multigrid\", cavitation = \"full_sommerfeld\", tolerance = 1e-12 }",
+    );
+    let groove = run(&keys.replace("2 bar", "1 bar")).unwrap();
+    let closed = run(&keys.replace("p_supply = \"2 bar\"", "supply = \"sides\"")).unwrap();
+    for name in ["load", "friction", "p_max"] {
+        let (a, b) = (number(&groove, name), number(&closed, name));
+        // Residuals of 1e-12.
+        assert!((a / b - 1.0).abs() < 1e-9, "{name}: {a} {b}");
+    }
+    assert!((number(&closed, "attitude") - 90.0).abs() < 1e-6);
+}
+
+#[test]
+fn starved_pads_carry_less() {
+    let keys = text(SLIDER, "p_cav", "\"1 bar\"");
+    let full = run(&keys).unwrap();
+    let starved = run(&keys.replace("inlet_fill = 1.0", "inlet_fill = 0.5")).unwrap();
+    assert!(number(&starved, "load") < 0.9 * number(&full, "load"));
+    assert!(number(&starved, "load") > 0.0 && number(&starved, "cavity") > number(&full, "cavity"));
+}
