@@ -68,7 +68,7 @@ pub enum Motion {
         period: PosTime,
         /// How long.
         duration: PosTime,
-        /// Times at which gap, load and film are results.
+        /// Times at which load and film are results.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         at: Vec<Time>,
         /// Steps of a period.
@@ -386,21 +386,6 @@ impl Bench {
             let k = (0..v.len()).fold(0, |m, k| if sign * v[k] > sign * v[m] { k } else { m });
             (v[k], t[k])
         };
-        for (k, moment) in o.at.iter().enumerate() {
-            // Between the steps; the first step stands for what is before it.
-            let place = (moment / dt - 1.0).clamp(0.0, (steps - 1) as f64);
-            let i = (place as usize).min(steps.saturating_sub(2));
-            let next = (i + 1).min(steps - 1);
-            let at = |v: &[f64]| v[i] + (place - i as f64) * (v[next] - v[i]);
-            let when = format!("at {} ms", (1e9 * moment).round() / 1e6);
-            let mut add = |name: &str, value: f64, unit: &str, what: &str| {
-                out.result(format!("{name}_{}", k + 1), value, unit, format!("{what} {when}"));
-            };
-            add("h", 1e6 * at(&h), "um", "gap");
-            add("load", at(&load), "N/m", "load above that of the pressure at the ends, per metre of width,");
-            add("load_cav", at(&load) + rest * length, "N/m", "load above the cavitation pressure");
-            add("film_part", at(&part), "", "part of the strip under full film");
-        }
         out.result(
             "load_max",
             extreme(&load, 1.0).0,
@@ -427,6 +412,19 @@ impl Bench {
                     "first step without a cavity after one with it",
                 );
             }
+        }
+        for (k, moment) in o.at.iter().enumerate() {
+            // Between the steps; the first step stands for what is before it.
+            let place = (moment / dt - 1.0).clamp(0.0, (steps - 1) as f64);
+            let i = (place as usize).min(steps.saturating_sub(2));
+            let next = (i + 1).min(steps - 1);
+            let at = |v: &[f64]| v[i] + (place - i as f64) * (v[next] - v[i]);
+            let when = format!("at {} ms", (1e9 * moment).round() / 1e6);
+            let mut add = |name: &str, value: f64, unit: &str, what: &str| {
+                out.result(format!("{name}_{}", k + 1), value, unit, format!("{what} {when}"));
+            };
+            add("load_cav", at(&load) + rest * length, "N/m", "load above the cavitation pressure");
+            add("film_part", at(&part), "", "part of the strip under full film");
         }
         let size = through.max(start);
         out.balance.oil_mass = Some((entered - (stored(&content) - start)) / size);
