@@ -234,7 +234,6 @@ pub fn run(
                     let r = names.iter().position(|m| m == n).unwrap_or(0);
                     let mut curves = Vec::new();
                     for (row, label) in cells.iter().zip(&labels) {
-                    for (row, label) in cells.iter().zip(v) {
                         // A word that would read as a number stands in quotes.
                         let label = label.trim_matches('"');
                         let name = format!("{n}.{}", label.replace(' ', "_"));
