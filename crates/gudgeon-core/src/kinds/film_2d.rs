@@ -192,7 +192,8 @@ pub struct FlowFactors<'a> {
     pub pressure_x: &'a [f64],
     /// Factor of the pressure flow along `y`.
     pub pressure_y: &'a [f64],
-    /// Film thickness that the sliding surface carries along \[m\], `h_T + σ φ_s`: the flux is half the velocity times it.
+    /// Film thickness that the sliding surface carries along \[m\], `h_T + σ φ_s`: the flux is half the velocity times it. Between
+    /// nodes its mean, or where [`Film2dIn::h_face_x`] is given that and the mean of what it is above the film thickness of the nodes.
     pub transport: &'a [f64],
     /// Oil that the full gap holds per area \[m\], the mean gap `h_T`. Its rate stands in [`Film2dIn::dhdt`]; here it is what
     /// a filling of 1 means in [`History`].

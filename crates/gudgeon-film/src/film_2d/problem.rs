@@ -284,7 +284,7 @@ impl Problem {
     pub fn drive(&mut self, inp: &Film2dIn<'_>, u: f64, dhdt: &[f64], filling: bool) {
         let (nx, ny) = (self.nx, self.ny);
         let film = if inp.factors.transport.is_empty() { inp.h } else { inp.factors.transport };
-        let given = if inp.factors.transport.is_empty() { inp.h_face_x } else { &[] };
+        let given = inp.h_face_x;
         let mut scale = 0.0_f64;
         for j in 0..ny {
             for i in 0..nx {
@@ -295,7 +295,8 @@ impl Problem {
                 } else {
                     let h = match self.flux {
                         Flux::Face if given.is_empty() => 0.5 * (film[k] + film[next]),
-                        Flux::Face => given[k],
+                        // What rough surfaces add varies little: its mean, on top of the film between the nodes.
+                        Flux::Face => given[k] + 0.5 * ((film[k] - inp.h[k]) + (film[next] - inp.h[next])),
                         Flux::Node => film[if u >= 0.0 { k } else { next }],
                     };
                     0.5 * u * h * self.wy[j]
