@@ -1,4 +1,4 @@
-//! A film along a line allocates when it is built, not when it is solved.
+//! Films allocate when they are built, not when they are solved.
 #![allow(
     unsafe_code,
     reason = "a global allocator that counts is the only way to see allocations, and its trait is unsafe"
@@ -7,10 +7,13 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use gudgeon_core::kinds::{Film1dCtx, Film1dIn, Film1dSpec, FilmEnd, FilmTime};
+use gudgeon_core::kinds::{
+    Film1dCtx, Film1dIn, Film1dSpec, Film2dCtx, Film2dGrid, Film2dIn, Film2dSpec, FilmEnd, FilmMode, FilmTime,
+};
 use gudgeon_film::film_1d::{
     Complementarity, ElrodAdams, FrontTracking, LineProfile, LineSolver, ViscosityLoop,
 };
+use gudgeon_film::film_2d::{Cavitation, Direct, Multigrid, Sor};
 
 thread_local! {
     // Per thread: the test harness allocates on its own.
@@ -47,7 +50,7 @@ unsafe impl GlobalAlloc for Counting {
 static ALLOCATOR: Counting = Counting;
 
 #[test]
-fn solving_allocates_nothing() {
+fn a_film_along_a_line_allocates_nothing() {
     // Parallel with dimples: many cavities, and as many fronts.
     let line = LineProfile::textured(0.01, 1e-6, 1e-6, 6, 0.4, 2e-6, 120).expect("a line");
     let n = line.panels();
@@ -85,5 +88,31 @@ fn solving_allocates_nothing() {
             }
         }
         assert_eq!(COUNT.with(Cell::get) - before, 0, "model {k}");
+    }
+}
+
+#[test]
+fn a_film_along_and_across_allocates_nothing() {
+    let grid = Film2dGrid::uniform(30, 25, 1.0, 0.8);
+    let h: Vec<f64> = (0..grid.len()).map(|k| 1.0 + 0.4 * ((k % 30) as f64 * 0.3).sin()).collect();
+    let inp = Film2dIn { edge_pressure: [0.01; 4], ..Film2dIn::new(&h, 1.0, 1.0) };
+    let mut p = vec![0.0; 2 * grid.len()];
+    let modes = [FilmMode { u: 1.0, ..FilmMode::default() }, FilmMode { dhdt: &h, ..FilmMode::default() }];
+    for cavitation in [Cavitation::MassConserving, Cavitation::SwiftStieber, Cavitation::HalfSommerfeld] {
+        let specs: [&dyn Film2dSpec; 3] = [
+            &Multigrid { cavitation, ..Multigrid::default() },
+            &Direct { cavitation, ..Direct::default() },
+            &Sor { cavitation, ..Sor::default() },
+        ];
+        for spec in specs {
+            let mut film = spec.build(&Film2dCtx { grid: &grid }).unwrap();
+            let before = COUNT.with(Cell::get);
+            let first = film.solve(&inp).unwrap();
+            let second = film.solve(&Film2dIn { u: -2.0, ..inp }).unwrap();
+            film.solve_many(&inp, &modes, &mut p).unwrap();
+            let after = COUNT.with(Cell::get);
+            assert!(first.load > 0.0 && second.load > 0.0);
+            assert_eq!(after - before, 0, "{spec:?}");
+        }
     }
 }
