@@ -502,8 +502,14 @@ impl OilFace {
         if volume <= 0.0 {
             return joined(0.0);
         }
-        // The volume grows faster than h t: Newton's method comes from the right, inside a bracket.
+        // The volume grows faster than h t, and under a parabola faster than its cube: Newton's method comes from the right, inside a
+        // bracket.
         let (mut lo, mut hi) = (0.0, (volume / h).min(span));
+        if let FaceProfile::Parabola { curvature, .. } = &self.profile
+            && *curvature > 0.0
+        {
+            hi = hi.min((3.0 * volume / curvature).cbrt());
+        }
         let mut t = hi;
         for _ in 0..60 {
             let f = self.held(h, t, side) - volume;
@@ -512,13 +518,12 @@ impl OilFace {
             } else {
                 lo = t;
             }
-            let next = t - f / (h + self.drop_at(t, side));
-            let next = if next > lo && next < hi { next } else { 0.5 * (lo + hi) };
-            if (next - t).abs() <= 1e-15 * span {
-                t = next;
+            let step = f / (h + self.drop_at(t, side));
+            if step.abs() <= 4.0 * f64::EPSILON * t {
                 break;
             }
-            t = next;
+            let next = t - step;
+            t = if next > lo && next < hi { next } else { 0.5 * (lo + hi) };
         }
         joined(t)
     }
