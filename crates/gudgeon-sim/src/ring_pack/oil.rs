@@ -30,7 +30,7 @@ pub const SIDES: usize = 2;
 pub struct Reach {
     /// Distance of the meniscus from the narrowest place, not beyond the edge \[m\].
     pub length: f64,
-    /// Gap at the meniscus \[m\]; before the edge it opens by [`WAVE_SLOPE`].
+    /// Gap at the meniscus \[m\]; before the edge it opens slowly as it gets longer.
     pub gap: f64,
 }
 
