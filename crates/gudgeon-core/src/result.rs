@@ -241,7 +241,8 @@ impl Check {
     /// Whether the result is as the case says it must be.
     #[must_use]
     pub fn holds(&self) -> bool {
-        (self.deviation().abs() <= self.tolerance) != self.must_fail
+        let d = self.deviation();
+        d.is_finite() && (d.abs() <= self.tolerance) != self.must_fail
     }
 }
 

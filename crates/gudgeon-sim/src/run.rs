@@ -98,7 +98,7 @@ fn checked(name: String, source: Source, overrides: &[String]) -> Result<Checked
     match scene_of(&source, overrides).as_deref() {
         Some("rig") => {
             let loaded: Loaded<RigCase> = load_source(source, overrides)?;
-            let errors = rig::legal(&loaded.value, &loaded.source.folder);
+            let errors = rig::legal(&loaded);
             if !errors.is_empty() {
                 return Err(loaded.refuse(&errors));
             }

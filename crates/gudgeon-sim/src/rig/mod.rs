@@ -14,15 +14,28 @@ use crate::load::Loaded;
 use crate::run::{Progress, RunError, model_use};
 use case::{Expect, RigCase};
 
-/// Everything that is wrong with a case.
+/// Everything that is wrong with a case, the changes that its sweeps and checks make included.
 #[must_use]
-pub fn legal(case: &RigCase, folder: &Path) -> Vec<BuildError> {
+pub fn legal(loaded: &Loaded<RigCase>) -> Vec<BuildError> {
+    let (case, folder) = (&loaded.value, &loaded.source.folder);
     let mut errors: Vec<BuildError> = match case.rig.build(&RigCtx { folder }) {
         Ok(_) => Vec::new(),
         Err(e) => e.into_iter().map(|e| e.within("rig")).collect(),
     };
     errors.extend(sweep::legal(case));
+    // The file itself comes first: its mistakes would come back with every change.
+    if !errors.is_empty() {
+        return errors;
+    }
+    for (k, set) in sweep::first_values(case) {
+        if let Err(e) = changed(loaded, &[set]) {
+            errors.push(BuildError::at(format!("sweeps.{k}.path"), e.to_string()));
+        }
+    }
     for (k, c) in case.checks.iter().enumerate() {
+        if let Err(e) = changed(loaded, &c.set) {
+            errors.push(BuildError::at(format!("checks.{k}.set"), e.to_string()));
+        }
         for (j, e) in c.expect.iter().enumerate() {
             if !(e.value.is_finite() && e.tolerance.is_finite() && e.tolerance >= 0.0) {
                 errors.push(BuildError::at(
@@ -55,7 +68,10 @@ fn once(case: &RigCase, folder: &Path) -> Result<RigOut, RunError> {
     let mut rig = case.rig.build(&RigCtx { folder }).map_err(|e| refused(&e))?;
     let mut out = RigOut::default();
     rig.run(&mut out).map_err(|source: EvalError| RunError::Rig { source })?;
-    Ok(out)
+    match out.results.iter().find(|(_, v)| !v.value.is_finite()) {
+        Some((name, _)) => Err(RunError::NotANumber(name.clone())),
+        None => Ok(out),
+    }
 }
 
 /// Runs the bench, its sweeps and its checks.
@@ -102,16 +118,20 @@ pub fn run(loaded: &Loaded<RigCase>, progress: &mut dyn FnMut(Progress)) -> Resu
     Ok(result)
 }
 
-/// The bench with some values changed.
-fn variant(loaded: &Loaded<RigCase>, set: &[String]) -> Result<RigOut, RunError> {
-    let changed: Loaded<RigCase> = loaded.reload(set).map_err(|report| {
+/// The case with some values changed.
+fn changed(loaded: &Loaded<RigCase>, set: &[String]) -> Result<Loaded<RigCase>, RunError> {
+    loaded.reload(set).map_err(|report| {
         RunError::Refused(format!(
             "{}: {}",
             set.join(", "),
             report.diagnostics.iter().map(|d| d.headline()).collect::<Vec<_>>().join("; ")
         ))
-    })?;
-    once(&changed.value, &loaded.source.folder)
+    })
+}
+
+/// The bench with some values changed.
+fn variant(loaded: &Loaded<RigCase>, set: &[String]) -> Result<RigOut, RunError> {
+    once(&changed(loaded, set)?.value, &loaded.source.folder)
 }
 
 fn check(

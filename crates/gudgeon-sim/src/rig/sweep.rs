@@ -83,6 +83,12 @@ pub fn legal(case: &RigCase) -> Vec<BuildError> {
     errors
 }
 
+/// The change that each sweep begins with, with its number.
+pub fn first_values(case: &RigCase) -> Vec<(usize, String)> {
+    let first = |s: &Sweep| values(s).ok().and_then(|v| v.first().map(|v| format!("{}={v}", s.path)));
+    case.sweeps.iter().enumerate().filter_map(|(k, s)| first(s).map(|f| (k, f))).collect()
+}
+
 /// Name of a swept input as a column: the last part of its path.
 fn short(path: &str) -> String {
     let parts: Vec<&str> = path.split('.').collect();
