@@ -6,6 +6,7 @@ use gudgeon_core::kinds::{RoughFlow, RoughShear};
 use crate::slices::check;
 
 mod gaussian_gap;
+pub(crate) use gaussian_gap::GaussianGap;
 pub mod off;
 pub mod patir_cheng;
 pub mod sawtooth_waviness;

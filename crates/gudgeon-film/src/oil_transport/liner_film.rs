@@ -3,6 +3,8 @@ use gudgeon_core::kinds::{OilTransport, OilTransportSpec};
 use gudgeon_core::quantity::{Fraction, Length, NonNegative, PosLength, Ratio, quantity};
 use serde::{Deserialize, Serialize};
 
+use crate::roughness::GaussianGap;
+
 /// Every face holds the oil it has, takes up what lies on the liner before it and leaves a film behind it.
 ///
 /// A face holds a volume of oil per circumference below and above its narrowest place, `V_b` and `V_a`. They tell how far the
@@ -79,6 +81,7 @@ impl OilTransportSpec for LinerFilm {
             supply: self.supply.si(),
             split: self.split.si(),
             roughness: self.roughness.si(),
+            mean_gap: GaussianGap::new(),
             wave: self.wave.si(),
             spacing: self.spacing.si(),
             initial: self.initial.si(),
@@ -90,20 +93,13 @@ impl Carried {
     /// Mean gap of two Gaussian surfaces less the distance of their mean planes, `σ F_1(h/σ)` (Patir and Cheng): where they overlap
     /// there is no gap.
     fn valleys(&self, h: f64) -> f64 {
-        if self.roughness > 0.0 { self.roughness * first_moment(h / self.roughness) } else { 0.0 }
+        if self.roughness > 0.0 {
+            let over = h / self.roughness;
+            self.roughness * (self.mean_gap.at(over).0 - over).max(0.0)
+        } else {
+            0.0
+        }
     }
-}
-
-/// `F_1(λ) = (2π)^(-1/2) ∫_λ^∞ (s - λ) exp(-s²/2) ds` for `λ >= 0`, to 3e-7 of its value at zero.
-fn first_moment(lambda: f64) -> f64 {
-    let l = lambda.max(0.0);
-    let phi = (-0.5 * l * l).exp() / (2.0 * std::f64::consts::PI).sqrt();
-    // Upper tail of the normal distribution after Abramowitz and Stegun 26.2.17, error below 7.5e-8.
-    let t = 1.0 / (1.0 + 0.231_641_9 * l);
-    let poly = t
-        * (0.319_381_530
-            + t * (-0.356_563_782 + t * (1.781_477_937 + t * (-1.821_255_978 + t * 1.330_274_429))));
-    (phi - l * phi * poly).max(0.0)
 }
 
 #[derive(Debug)]
@@ -111,6 +107,7 @@ struct Carried {
     supply: f64,
     split: f64,
     roughness: f64,
+    mean_gap: GaussianGap,
     wave: f64,
     spacing: f64,
     initial: f64,

@@ -59,7 +59,7 @@ fn taylor(c: f64) -> [f64; TERMS] {
 
 /// The table, to be taken once per slice.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct GaussianGap {
+pub(crate) struct GaussianGap {
     pieces: &'static [[f64; TERMS]],
 }
 

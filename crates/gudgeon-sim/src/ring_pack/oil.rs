@@ -146,7 +146,6 @@ impl OilPack {
         highest: f64,
         state: usize,
     ) -> Self {
-        let count = places.len();
         let mut least = model.spacing();
         let mut least_gap = f64::INFINITY;
         for p in &places {
@@ -199,7 +198,6 @@ impl OilPack {
         let cells = (((top - low + 2.0 * margin) / least).ceil() as usize).max(8);
         let cell = (top - low + 2.0 * margin) / cells as f64;
         let film = vec![model.initial(); cells];
-        debug_assert!(count == faces.len());
         Self {
             model,
             faces,
