@@ -1,0 +1,18 @@
+//! Torsional vibration of shaft lines.
+//!
+//! | kind | models |
+//! |---|---|
+//! | `coupling` | [`coupling::Linear`], [`coupling::Progressive`], [`coupling::Piecewise`], [`coupling::LoadDependent`], [`coupling::FrequencyDependent`], [`coupling::Off`] |
+//! | `drive` | [`drive::Constant`], [`drive::Linear`], [`drive::InductionMotor`], [`drive::PowerLaw`], [`drive::Table`], [`drive::Harmonics`], [`drive::Off`] |
+//! | `throw_inertia` | [`throw_inertia::Mean`], [`throw_inertia::FirstHarmonic`], [`throw_inertia::Exact`], [`throw_inertia::Off`] |
+//! | `natural_frequencies` | [`natural_frequencies::Eigenvalues`], [`natural_frequencies::ClampedNeighbours`] |
+//!
+//! Everything rests on one data structure, the line as a tree in the order of its elimination: see [`tree`].
+
+pub mod coupling;
+pub mod drive;
+pub mod eigen;
+pub mod natural_frequencies;
+pub mod sweep;
+pub mod throw_inertia;
+pub mod tree;
