@@ -171,7 +171,7 @@ impl Crown {
 
     /// The film at the squeeze velocity `v`, from a rupture near `xr` and a reformation near `xf`. `None` where the general way has to
     /// find out.
-    #[inline]
+    #[inline(always)]
     pub fn at_rate(&self, f: &Asked, v: f64, xr: f64, xf: f64) -> Option<Crowned> {
         let alpha = f.u * self.l * self.ih * self.ih;
         let beta = v * self.l * self.l * self.ih * self.ih * self.ih;
@@ -261,7 +261,7 @@ impl Crown {
     ///
     /// The place of the rupture tells the squeeze velocity, `β = (p_a + α (X - t² P3))/(t P3 - M3)`, so that Newton's method has one
     /// unknown, and a second one follows it: the front, on whose place the load depends in second order only.
-    #[inline]
+    #[inline(always)]
     pub fn under_load(&self, f: &Asked, load: f64, xr: f64, xf: f64) -> Option<Crowned> {
         let alpha = f.u * self.l * self.ih * self.ih;
         let edges = if f.trailing { self.b.t * f.pb } else { 0.0 } - self.a.t * f.pa - load * self.il;
