@@ -18,6 +18,7 @@ use crate::case::RingPackCase;
 use crate::load::{Loaded, Report, Source, load_source, scene_of};
 use crate::rig::case::RigCase;
 use crate::run::{Explanation, Progress, RunError};
+use crate::shaft_line::case::ShaftLineCase;
 use crate::study::Race;
 use crate::sweep::{self, Sweep};
 
@@ -29,11 +30,17 @@ pub enum SceneName {
     RingPack,
     /// One sub-model on a test bench.
     Rig,
+    /// A shaft line that twists.
+    ShaftLine,
 }
 
 /// All scenes. The first one reads cases that name none of them, so that the rest of what is wrong is reported too.
 pub static SCENES: &[SceneEntry] =
-    &[SceneEntry::of::<RingPackCase>("ring_pack"), SceneEntry::of::<RigCase>("rig")];
+    &[
+    SceneEntry::of::<RingPackCase>("ring_pack"),
+    SceneEntry::of::<RigCase>("rig"),
+    SceneEntry::of::<ShaftLineCase>("shaft_line"),
+];
 
 /// What every case may say besides its physics.
 #[derive(Debug, Clone, Copy, Default)]

@@ -104,6 +104,11 @@ pub fn inertia_series(t: &LineThrow, most: usize) -> Vec<Complex> {
     series(|a| -0.5 * t.inertia.inertia(a).1, 2.0 * PI, &[], most)
 }
 
+/// Number of harmonics of a throw up to order `most` of the reference shaft.
+fn wanted(line: &Line, t: &LineThrow, base: f64, most: f64) -> usize {
+    (most / (base * line.nodes[t.node].ratio.abs()) + SAME).floor() as usize
+}
+
 impl Excitation {
     /// All torques of a line that turns at `speed` \[rad/s\], to order `most` of the reference shaft.
     #[must_use]
@@ -112,20 +117,8 @@ impl Excitation {
         for (node, n) in line.nodes.iter().enumerate() {
             e.mean[node] -= n.damping * speed * n.ratio;
         }
-        for t in &line.throws {
-            let ratio = line.nodes[t.node].ratio;
-            let base = 2.0 * PI / gas_period(t);
-            let wanted = |base: f64| (most / (base * ratio.abs()) + SAME).floor() as usize;
-            if !t.ends.is_empty() {
-                let c = gas_series(t, wanted(base));
-                e.mean[t.node] += c[0].re;
-                e.insert(line, t.node, t.phase, base, &c);
-            }
-            let mut c = inertia_series(t, wanted(1.0));
-            let square = (speed * ratio) * (speed * ratio);
-            c.iter_mut().for_each(|c| *c = *c * Complex::new(square, 0.0));
-            e.insert(line, t.node, t.phase, 1.0, &c);
-        }
+        e.gas(line, most);
+        e.masses(line, speed, most);
         for d in &line.drives {
             let ratio = line.nodes[d.node].ratio;
             let orders = d.drive.orders();
@@ -133,15 +126,54 @@ impl Excitation {
             let here = d.drive.torque(0.0, speed * ratio).torque;
             let swing: f64 = orders.iter().map(|o| o.cosine).sum();
             e.mean[d.node] += d.factor * (here - swing);
-            for o in orders {
-                if o.order * ratio.abs() <= most + SAME {
+        }
+        e.given(line, most);
+        e.orders.sort_unstable_by(|a, b| a.order.total_cmp(&b.order));
+        e
+    }
+
+    /// The torques that do not depend on the speed, and those of the moving masses at unit speed: the torque at speed Ω is the first
+    /// plus Ω² times the second. Means are those of the gas alone.
+    #[must_use]
+    pub fn parts(line: &Line, most: f64) -> [Self; 2] {
+        let empty = || Self { orders: Vec::new(), mean: vec![0.0; line.nodes.len()] };
+        let (mut fixed, mut square) = (empty(), empty());
+        fixed.gas(line, most);
+        fixed.given(line, most);
+        square.masses(line, 1.0, most);
+        for e in [&mut fixed, &mut square] {
+            e.orders.sort_unstable_by(|a, b| a.order.total_cmp(&b.order));
+        }
+        [fixed, square]
+    }
+
+    fn gas(&mut self, line: &Line, most: f64) {
+        for t in line.throws.iter().filter(|t| !t.ends.is_empty()) {
+            let base = 2.0 * PI / gas_period(t);
+            let c = gas_series(t, wanted(line, t, base, most));
+            self.mean[t.node] += c[0].re;
+            self.insert(line, t.node, t.phase, base, &c);
+        }
+    }
+
+    fn masses(&mut self, line: &Line, speed: f64, most: f64) {
+        for t in line.throws.iter().filter(|t| !t.inertia.is_constant()) {
+            let mut c = inertia_series(t, wanted(line, t, 1.0, most));
+            let turn = speed * line.nodes[t.node].ratio;
+            c.iter_mut().for_each(|c| *c = *c * Complex::new(turn * turn, 0.0));
+            self.insert(line, t.node, t.phase, 1.0, &c);
+        }
+    }
+
+    fn given(&mut self, line: &Line, most: f64) {
+        for d in &line.drives {
+            for o in d.drive.orders() {
+                if o.order * line.nodes[d.node].ratio.abs() <= most + SAME {
                     let a = Complex::new(o.cosine * d.factor, -o.sine * d.factor);
-                    e.add(line, d.node, d.phase, o.order, a);
+                    self.add(line, d.node, d.phase, o.order, a);
                 }
             }
         }
-        e.orders.sort_unstable_by(|a, b| a.order.total_cmp(&b.order));
-        e
     }
 
     fn insert(&mut self, line: &Line, node: usize, phase: f64, base: f64, c: &[Complex]) {

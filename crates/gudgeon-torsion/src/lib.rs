@@ -11,6 +11,7 @@
 //! Everything rests on one data structure, the line as a tree in the order of its elimination: see [`tree`].
 
 pub mod coupling;
+mod crank_end;
 pub mod damper;
 pub mod drive;
 mod dynamics;
@@ -18,8 +19,11 @@ pub mod eigen;
 pub mod forcing;
 pub mod natural_frequencies;
 pub mod shaft;
+pub mod speed_range;
 pub mod steady;
 pub mod sweep;
 pub mod throw_inertia;
 pub mod torsion;
 pub mod tree;
+
+pub use crank_end::CrankEnd;

@@ -467,7 +467,6 @@ fn a_free_throw_keeps_its_energy() {
             balance: 0,
             angles: &[0.0],
             speeds: &[100.0],
-            start_steady: false,
             times: &times,
         };
         let j0 = inertia.inertia(0.0).0;

@@ -155,8 +155,6 @@ pub struct TorsionCtx<'a> {
     pub angles: &'a [f64],
     /// Speeds of the inertias at the start of a transient \[rad/s\].
     pub speeds: &'a [f64],
-    /// Whether the inertias start in the periodic motion of the mean speed instead.
-    pub start_steady: bool,
     /// Instants at which a transient is wanted \[s\], ascending.
     pub times: &'a [f64],
 }

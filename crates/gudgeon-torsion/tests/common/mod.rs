@@ -170,7 +170,6 @@ pub mod compressor {
             balance: 0,
             angles: &[0.0; 7],
             speeds,
-            start_steady: false,
             times,
         }
     }
