@@ -35,8 +35,7 @@ pub enum SceneName {
 }
 
 /// All scenes. The first one reads cases that name none of them, so that the rest of what is wrong is reported too.
-pub static SCENES: &[SceneEntry] =
-    &[
+pub static SCENES: &[SceneEntry] = &[
     SceneEntry::of::<RingPackCase>("ring_pack"),
     SceneEntry::of::<RigCase>("rig"),
     SceneEntry::of::<ShaftLineCase>("shaft_line"),

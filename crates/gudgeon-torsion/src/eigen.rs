@@ -355,7 +355,7 @@ pub fn modal_damping(tree: &Tree, omega: f64, v: &[f64]) -> f64 {
 }
 
 /// Eigenvalues of the damped line: Newton's method on the determinant, which the tree gives with its derivative in linear time, from
-/// the undamped modes; where that does not find every eigenvalue once, all are corrected together (ehrlich1967, aberth1973).
+/// the undamped modes; where that does not find every eigenvalue once, all are corrected together (aberth1973).
 ///
 /// # Errors
 /// No convergence (Fatal).

@@ -28,7 +28,10 @@ pub struct SpeedRange {
 ///
 /// # Errors
 /// A line that cannot be; [`EvalError`] for an undamped resonance, as a message with order and speed.
-pub fn speed_range(ctx: &TorsionCtx<'_>, speeds: &[f64]) -> Result<Result<SpeedRange, EvalError>, BuildError> {
+pub fn speed_range(
+    ctx: &TorsionCtx<'_>,
+    speeds: &[f64],
+) -> Result<Result<SpeedRange, EvalError>, BuildError> {
     let line = ctx.line;
     let parts = Excitation::parts(line, ctx.orders);
     let mut orders: Vec<f64> = parts.iter().flat_map(|p| p.orders.iter().map(|o| o.order)).collect();

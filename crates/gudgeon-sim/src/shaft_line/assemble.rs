@@ -206,7 +206,8 @@ pub fn assemble(case: &ShaftLineCase, folder: &Path) -> Result<Assembled, Vec<Bu
     }
     for d in &case.dampers {
         let ratio = line.nodes.iter().find(|n| n.name == d.at).map_or(1.0, |n| n.ratio);
-        let node = LineNode { name: d.name.clone(), inertia: d.inertia.si(), damping: 0.0, ground: 0.0, ratio };
+        let node =
+            LineNode { name: d.name.clone(), inertia: d.inertia.si(), damping: 0.0, ground: 0.0, ratio };
         line.nodes.push(node);
     }
     let names: Vec<String> = line.nodes.iter().map(|n| n.name.clone()).collect();
@@ -214,7 +215,10 @@ pub fn assemble(case: &ShaftLineCase, folder: &Path) -> Result<Assembled, Vec<Bu
     for (i, n) in known.iter().enumerate() {
         if known[..i].contains(n) {
             let own = i.saturating_sub(known.len() - case.inertias.len() - case.dampers.len());
-            errors.push(BuildError::at(format!("inertias.{own}.name"), format!("`{n}` is the name of another inertia")));
+            errors.push(BuildError::at(
+                format!("inertias.{own}.name"),
+                format!("`{n}` is the name of another inertia"),
+            ));
         }
     }
     let find = |name: &str| known.iter().position(|n| *n == name);
@@ -250,7 +254,10 @@ pub fn assemble(case: &ShaftLineCase, folder: &Path) -> Result<Assembled, Vec<Bu
     for (i, r) in ratios.iter().enumerate() {
         if *r == 0.0 {
             let own = i.saturating_sub(ratios.len() - case.inertias.len() - case.dampers.len());
-            errors.push(BuildError::at(format!("inertias.{own}.ratio"), "a ratio of zero: the inertia would not turn"));
+            errors.push(BuildError::at(
+                format!("inertias.{own}.ratio"),
+                "a ratio of zero: the inertia would not turn",
+            ));
         }
     }
     if errors.is_empty() {
@@ -276,7 +283,10 @@ pub fn assemble(case: &ShaftLineCase, folder: &Path) -> Result<Assembled, Vec<Bu
         let here = format!("shafts.{k}");
         let name = if s.name.is_empty() { format!("shaft {}", line.links.len() + 1) } else { s.name.clone() };
         if line.links.iter().any(|l| l.name == name) {
-            errors.push(BuildError::at(format!("{here}.name"), format!("`{name}` is the name of another shaft")));
+            errors.push(BuildError::at(
+                format!("{here}.name"),
+                format!("`{name}` is the name of another shaft"),
+            ));
         }
         let Some(nodes) = ends[k] else { continue };
         let Some(spec) = coupling(s, default_damping, &here, &mut errors) else { continue };

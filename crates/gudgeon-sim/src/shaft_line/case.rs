@@ -6,8 +6,8 @@ use gudgeon_core::kinds::{
 };
 use gudgeon_core::quantity::{
     Angle, AngularSpeed, Fraction, Inertia, Length, Mass, NonNegative, PosAngularSpeed, PosInertia,
-    PosLength, PosPressure, PosRatio, PosTime, PosTorque, Power, Ratio, TorsionalDamping,
-    TorsionalStiffness, quantity,
+    PosLength, PosPressure, PosRatio, PosTime, PosTorque, Power, Ratio, TorsionalDamping, TorsionalStiffness,
+    quantity,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -481,4 +481,3 @@ fn steel() -> PosPressure {
 fn one_atmosphere() -> PosPressure {
     quantity(101_325.0)
 }
-

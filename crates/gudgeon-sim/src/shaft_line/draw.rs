@@ -135,7 +135,9 @@ pub fn modes(line: &Line, modes: &[&Mode]) -> Figure {
                 let centre = [at[a][0] + f * (at[b][0] - at[a][0]), at[a][1] + f * (at[b][1] - at[a][1])];
                 shapes.push(Shape::Circle { centre, radius: 0.09, style: Style::Second });
             }
-            let damping = m.damped.map_or_else(String::new, |(d, w)| format!(", damping {:.2} %", 100.0 * d / d.hypot(w)));
+            let damping = m
+                .damped
+                .map_or_else(String::new, |(d, w)| format!(", damping {:.2} %", 100.0 * d / d.hypot(w)));
             Frame { label: format!("mode {}: {:.2} Hz{damping}", k + 1, m.omega / (2.0 * PI)), shapes }
         })
         .collect();
@@ -166,7 +168,11 @@ pub fn interference(modes: &[&Mode], orders: &[f64], speed: f64, span: (f64, f64
     let y = |f: f64| height * f / top;
     let mut s = Vec::new();
     let path = |points: Vec<[f64; 2]>, style: Style| Shape::Path { points, closed: false, style };
-    s.push(Shape::Path { points: vec![[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]], closed: true, style: Style::Thin });
+    s.push(Shape::Path {
+        points: vec![[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]],
+        closed: true,
+        style: Style::Thin,
+    });
     for k in 0..=8 {
         let at = from + (to - from) * f64::from(k) / 8.0;
         s.push(path(vec![[x(at), 0.0], [x(at), 0.12]], Style::Thin));
@@ -175,7 +181,9 @@ pub fn interference(modes: &[&Mode], orders: &[f64], speed: f64, span: (f64, f64
     s.push(Shape::Text { at: [0.5 * width, -1.0], text: "speed, rpm".into(), anchor: Anchor::Middle });
     for (k, f) in levels.iter().take(drawn).enumerate() {
         s.push(path(vec![[0.0, y(*f)], [width, y(*f)]], Style::Outline));
-        s.push(Shape::Text { at: [-0.15, y(*f)], text: format!("mode {}: {f:.1} Hz", k + 1), anchor: Anchor::End });
+        // Inside the frame, above its line.
+        let text = format!("mode {}: {f:.1} Hz", k + 1);
+        s.push(Shape::Text { at: [0.15, y(*f) + 0.28], text, anchor: Anchor::Start });
     }
     for o in orders {
         let end = to.min(60.0 * top / o);

@@ -127,11 +127,7 @@ impl SceneCase for ShaftLineCase {
                 && case.models.torsion.answers() == TorsionAnswer::Time
             {
                 let mut steady = TorsionOut::default();
-                Orders {}
-                    .build(&start.context(case, &a))
-                    .map_err(one)?
-                    .run(&mut steady)
-                    .map_err(model)?;
+                Orders {}.build(&start.context(case, &a)).map_err(one)?.run(&mut steady).map_err(model)?;
                 start.from_steady(&steady);
             }
             progress(Progress { phase: "response".into(), fraction: 0.2 });
@@ -148,7 +144,8 @@ impl SceneCase for ShaftLineCase {
             progress(Progress { phase: "vibration over the speed".into(), fraction: 0.6 });
             let ctx = start.context(case, &a);
             let speeds = speeds(case);
-            let range = gudgeon_torsion::speed_range::speed_range(&ctx, &speeds).map_err(one)?.map_err(model)?;
+            let range =
+                gudgeon_torsion::speed_range::speed_range(&ctx, &speeds).map_err(one)?.map_err(model)?;
             results.range(&range, &speeds, &a);
         }
         results.verdict(&modes, response.as_ref(), &a);
@@ -252,7 +249,10 @@ fn legal_values(case: &ShaftLineCase) -> Vec<BuildError> {
             errors.push(BuildError::at(format!("limits.separation.{k}"), what));
         }
         if l.orders.iter().any(|o| !(o.is_finite() && *o > 0.0)) {
-            errors.push(BuildError::at(format!("limits.separation.{k}.orders"), "orders are greater than zero"));
+            errors.push(BuildError::at(
+                format!("limits.separation.{k}.orders"),
+                "orders are greater than zero",
+            ));
         }
     }
     for (k, l) in case.limits.torque.iter().enumerate() {
@@ -267,8 +267,10 @@ fn legal_values(case: &ShaftLineCase) -> Vec<BuildError> {
 fn legal_names(case: &ShaftLineCase, line: &Line) -> Vec<BuildError> {
     let names: Vec<&str> = line.links.iter().map(|l| l.name.as_str()).collect();
     let l = &case.limits;
-    let stress = l.stress.iter().enumerate().map(|(k, s)| (format!("limits.stress.{k}.shaft"), s.shaft.as_str()));
-    let torque = l.torque.iter().enumerate().map(|(k, s)| (format!("limits.torque.{k}.shaft"), s.shaft.as_str()));
+    let stress =
+        l.stress.iter().enumerate().map(|(k, s)| (format!("limits.stress.{k}.shaft"), s.shaft.as_str()));
+    let torque =
+        l.torque.iter().enumerate().map(|(k, s)| (format!("limits.torque.{k}.shaft"), s.shaft.as_str()));
     let heat = l.heat.iter().enumerate().map(|(k, s)| (format!("limits.heat.{k}.shaft"), s.shaft.as_str()));
     stress
         .filter(|(_, n)| !n.is_empty())

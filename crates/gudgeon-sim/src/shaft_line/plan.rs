@@ -35,11 +35,17 @@ impl Plan {
         let torque = !(limits.stress.is_empty() && limits.torque.is_empty() && limits.heat.is_empty());
         let mut decide = |what: &str, runs: bool, why: String| {
             let entry = Skipped { what: what.into(), why };
-            if runs { plan.runs.push(entry) } else { plan.skipped.push(entry) }
+            if runs {
+                plan.runs.push(entry)
+            } else {
+                plan.skipped.push(entry)
+            }
             runs
         };
         let asked = |g: Group| {
-            if case.outputs.groups.is_empty() { "all groups are wanted".to_owned() } else if wanted(g) {
+            if case.outputs.groups.is_empty() {
+                "all groups are wanted".to_owned()
+            } else if wanted(g) {
                 "`outputs.groups` names it".to_owned()
             } else {
                 "`outputs.groups` does not name it".to_owned()

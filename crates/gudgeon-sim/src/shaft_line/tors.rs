@@ -42,10 +42,18 @@ pub fn read(path: &Path) -> Result<Import, String> {
 pub fn parse(text: &str) -> Result<Import, String> {
     let file: Value = serde_json::from_str(text).map_err(|e| format!("is not JSON: {e}"))?;
     let list = |key: &str| {
-        file.get(key).and_then(Value::as_array).ok_or_else(|| format!("has no list `{key}`, as TORS files have"))
+        file.get(key)
+            .and_then(Value::as_array)
+            .ok_or_else(|| format!("has no list `{key}`, as TORS files have"))
     };
     let (components, structure) = (list("components")?, list("structure")?);
-    let mut reader = Reader { components, connections: Vec::new(), out: Import::default(), gears: Vec::new(), elements: 0 };
+    let mut reader = Reader {
+        components,
+        connections: Vec::new(),
+        out: Import::default(),
+        gears: Vec::new(),
+        elements: 0,
+    };
     for key in file.as_object().into_iter().flat_map(|o| o.keys()) {
         if key != "components" && key != "structure" {
             reader.out.report.push(format!("`{key}` was not read"));
@@ -109,7 +117,13 @@ impl<'a> Reader<'a> {
         self.out.line.nodes.len() - 1
     }
 
-    fn link(&mut self, name: String, nodes: [usize; 2], spec: &dyn CouplingSpec, stress: Option<f64>) -> Result<(), String> {
+    fn link(
+        &mut self,
+        name: String,
+        nodes: [usize; 2],
+        spec: &dyn CouplingSpec,
+        stress: Option<f64>,
+    ) -> Result<(), String> {
         let coupling = spec.build().map_err(|e| format!("{name}: {e}"))?;
         self.out.line.links.push(LineLink { name, nodes, coupling });
         self.out.stress.push(stress);
@@ -136,13 +150,18 @@ impl<'a> Reader<'a> {
             if self.elements > MOST {
                 return Err("structure: the connections go round in circles".into());
             }
-            let own = e.get("name").and_then(Value::as_str).map_or_else(|| format!("element {}", k + 1), str::to_owned);
+            let own = e
+                .get("name")
+                .and_then(Value::as_str)
+                .map_or_else(|| format!("element {}", k + 1), str::to_owned);
             let place = format!("{name}.{own}");
             let kind = e.get("type").and_then(Value::as_str).unwrap_or_default();
             let known: &[&str] = match kind {
                 "Disk" => &["inertia", "damping"],
                 "ShaftDiscrete" => &["stiffness", "damping"],
-                "ShaftContinuous" => &["length", "innerDiameter", "outerDiameter", "density", "shearModulus", "damping"],
+                "ShaftContinuous" => {
+                    &["length", "innerDiameter", "outerDiameter", "density", "shearModulus", "damping"]
+                }
                 "GearElement" => &["inertia", "teeth", "diameter", "parent", "damping"],
                 _ => &[],
             };
@@ -154,7 +173,9 @@ impl<'a> Reader<'a> {
                 .filter(|key| !["name", "type"].contains(key) && !known.contains(key))
                 .collect();
             if known.is_empty() {
-                self.out.report.push(format!("{place}: elements of type `{kind}` are not known; it was left out"));
+                self.out
+                    .report
+                    .push(format!("{place}: elements of type `{kind}` are not known; it was left out"));
             } else if !unread.is_empty() {
                 self.out.report.push(format!("{place}: {} not read", unread.join(", ")));
             }
@@ -167,7 +188,8 @@ impl<'a> Reader<'a> {
                     };
                     node = Some(n);
                     let inertia = Self::number(e, "inertia", &place)?;
-                    let damping = if e.get("damping").is_some() { Self::number(e, "damping", &place)? } else { 0.0 };
+                    let damping =
+                        if e.get("damping").is_some() { Self::number(e, "damping", &place)? } else { 0.0 };
                     if inertia < 0.0 {
                         return Err(format!("{place}: an inertia of {inertia} cannot be"));
                     }
@@ -187,7 +209,11 @@ impl<'a> Reader<'a> {
                     };
                     let b = self.new_node(format!("{place} end"), r);
                     let (k, c, stress) = if kind == "ShaftDiscrete" {
-                        let c = if e.get("damping").is_some() { Self::number(e, "damping", &place)? } else { 0.0 };
+                        let c = if e.get("damping").is_some() {
+                            Self::number(e, "damping", &place)?
+                        } else {
+                            0.0
+                        };
                         (Self::number(e, "stiffness", &place)?, c, None)
                     } else {
                         // Lengths are in millimetres there.
@@ -196,8 +222,11 @@ impl<'a> Reader<'a> {
                             Some(_) => Self::number(e, key, &place),
                             None => Ok(default),
                         };
-                        let piece =
-                            Piece { length: mm("length")?, diameter: mm("outerDiameter")?, bore: mm("innerDiameter")? };
+                        let piece = Piece {
+                            length: mm("length")?,
+                            diameter: mm("outerDiameter")?,
+                            bore: mm("innerDiameter")?,
+                        };
                         if !(piece.length > 0.0 && piece.diameter > piece.bore && piece.bore >= 0.0) {
                             return Err(format!("{place}: length and diameters do not make a shaft"));
                         }
@@ -214,12 +243,14 @@ impl<'a> Reader<'a> {
                     let stiffness: TorsionalStiffness<NonNegative> = quantity(k)?;
                     let damping: TorsionalDamping =
                         TorsionalDamping::new(c).map_err(|e| format!("{place}: {e}"))?;
-                    let law = Linear { stiffness, damping, loss_factor: gudgeon_core::quantity::quantity(0.0) };
+                    let law =
+                        Linear { stiffness, damping, loss_factor: gudgeon_core::quantity::quantity(0.0) };
                     self.link(place.clone(), [a, b], &law, stress)?;
                     node = Some(b);
                 }
                 "GearElement" => {
-                    let size = Self::number(e, if e.get("teeth").is_some() { "teeth" } else { "diameter" }, &place)?;
+                    let size =
+                        Self::number(e, if e.get("teeth").is_some() { "teeth" } else { "diameter" }, &place)?;
                     if size <= 0.0 {
                         return Err(format!("{place}: a gear of size {size} cannot be"));
                     }
@@ -238,7 +269,9 @@ impl<'a> Reader<'a> {
                         (None, None) => self.new_node(place.clone(), 1.0),
                     };
                     if e.get("parent").is_some() && parent.is_none() {
-                        self.out.report.push(format!("{place}: its parent gear does not come before it and was not meshed"));
+                        self.out.report.push(format!(
+                            "{place}: its parent gear does not come before it and was not meshed"
+                        ));
                     }
                     let inertia = Self::number(e, "inertia", &place)?;
                     self.out.line.nodes[n].inertia += inertia.max(0.0);
@@ -260,7 +293,6 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 }
-
 
 #[cfg(test)]
 mod tests {
@@ -289,7 +321,10 @@ mod tests {
         let names: Vec<&str> = i.line.nodes.iter().map(|n| n.name.as_str()).collect();
         assert_eq!(names, ["engine.flywheel", "engine.throw", "engine.wheel", "pump.rotor"]);
         assert!((i.line.nodes[1].inertia - 0.065).abs() < 1e-15, "disk and pinion on one node");
-        assert!((i.line.nodes[2].ratio + 1.0 / 3.0).abs() < 1e-15, "the wheel turns slower and the other way");
+        assert!(
+            (i.line.nodes[2].ratio + 1.0 / 3.0).abs() < 1e-15,
+            "the wheel turns slower and the other way"
+        );
         let quill = i.line.links[2].coupling.linear(0.0, 0.0).stiffness;
         assert!((quill / (80e9 * PI * 0.04_f64.powi(4) / 32.0 / 0.5) - 1.0).abs() < 1e-14);
         let half = 8000.0 * PI * 0.04_f64.powi(4) / 32.0 * 0.25;

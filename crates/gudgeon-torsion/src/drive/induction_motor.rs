@@ -34,7 +34,7 @@ gudgeon_core::register_model! {
     summary: "induction motor from rest to synchronous speed, by the formula of Kloss",
     equations: "T = 2 T_b/(s/s_b + s_b/s);  s = (omega_s - omega)/omega_s",
     validity: "Quasi-steady torque: slow against the electrical time constants. No alternating torque at line frequency.",
-    references: ["kloss1908"],
+    references: ["kloss1916"],
     example: "synchronous = \"1200 rpm\"\nbreakdown_torque = \"5 kN m\"\nbreakdown_slip = \"8 %\"\n",
 }
 
