@@ -92,26 +92,26 @@ fn chain_values(inertia: &[f64], k: &[f64], a: &mut [f64], b: &mut [f64]) -> Res
 /// No convergence (Fatal).
 pub fn natural_frequencies(tree: &Tree, most: usize) -> Result<Vec<f64>, EvalError> {
     let n = tree.len();
-    let mut squares = Vec::new();
-    let rigid = rigid_modes(tree);
+    // A chain that turns freely, without inertias of zero, rigid links and links of fluid alone: one rigid mode.
     let plain = tree.chain
         && n > 1
-        && rigid == 1
         && !tree.is_grounded()
         && tree.inertia.iter().all(|j| *j > 0.0)
         && tree.k[..n - 1].iter().all(|k| k.is_finite() && *k > 0.0);
+    let mut squares;
     if plain {
-        let (mut a, mut b) = (vec![0.0; n - 1], vec![0.0; n - 1]);
-        chain_values(&tree.inertia, &tree.k[..n - 1], &mut a, &mut b)?;
+        // The zero, the values, and room for the off-diagonal.
+        squares = vec![0.0; 2 * n - 1];
+        let (a, b) = squares[1..].split_at_mut(n - 1);
+        chain_values(&tree.inertia, &tree.k[..n - 1], a, b)?;
         a.sort_unstable_by(f64::total_cmp);
         let top = a[n - 2];
-        squares.push(0.0);
-        squares.extend_from_slice(&a);
-        squares.truncate(most);
-        refine(tree, &mut squares, 30.0 * f64::EPSILON * top);
+        squares.truncate(most.min(n));
+        refine(tree, &mut squares, 10.0 * f64::EPSILON * top);
     } else {
         let mut s = vec![0.0; n];
         // Every inertia that moves by itself has a mode.
+        let rigid = rigid_modes(tree);
         let all = tree.count_below(f64::MAX.sqrt(), &mut s).max(rigid);
         squares = vec![0.0; all.min(most)];
         let upto = squares.len();
@@ -124,7 +124,8 @@ pub fn natural_frequencies(tree: &Tree, most: usize) -> Result<Vec<f64>, EvalErr
 fn refine(tree: &Tree, squares: &mut [f64], bound: f64) {
     for k in 1..squares.len() {
         let v = squares[k];
-        if v > bound * 1e13 {
+        // Half of this is the relative error of the frequency.
+        if v > bound * 1e12 {
             break;
         }
         let above = squares.get(k + 1).map_or(f64::INFINITY, |a| a - v);

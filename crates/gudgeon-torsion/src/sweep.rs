@@ -8,7 +8,7 @@ use gudgeon_numerics::linalg::Complex;
 use crate::tree::{Resonance, Singular, Tree, Work};
 
 /// Frequencies side by side.
-pub const LANES: usize = 4;
+pub const LANES: usize = 8;
 /// One real number per lane.
 pub type Lane = [f64; LANES];
 
@@ -117,7 +117,8 @@ impl Sweep {
                 f[i][1][l] = torque[i][1];
             }
         }
-        let mut small = false;
+        // Smallest of all pivots against their limits, by lane: a minimum has no branch.
+        let mut margin = [f64::INFINITY; LANES];
         for i in 0..n - 1 {
             let p = parent[i];
             let (own, force) = (s[i], f[i]);
@@ -142,7 +143,8 @@ impl Sweep {
                 let im = kappa[1][l] + own[1][l];
                 let d2 = re * re + im * im;
                 let size = ki * ki + own[0][l] * own[0][l];
-                small |= d2 <= SMALL2 * size;
+                let m = d2 - SMALL2 * size;
+                margin[l] = if m < margin[l] { m } else { margin[l] };
                 let r = 1.0 / d2;
                 inv[0][l] = re * r;
                 inv[1][l] = -im * r;
@@ -160,12 +162,13 @@ impl Sweep {
             let d2 = re * re + im * im;
             // The own inertia stands for the size of the terms.
             let size = omega[l] * omega[l] * inertia[r] + ground[r];
-            small |= d2 <= SMALL2 * size * size || d2 == 0.0;
+            let m = d2 - SMALL2 * size * size;
+            margin[l] = if m < margin[l] { m } else { margin[l] };
             let q = 1.0 / d2;
             inv[0][l] = re * q;
             inv[1][l] = -im * q;
         }
-        if small {
+        if margin.iter().any(|m| *m <= 0.0) {
             return false;
         }
         angle[r] = mul(&f[r], &inv);

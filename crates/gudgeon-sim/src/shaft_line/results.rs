@@ -598,9 +598,14 @@ impl<'a> Results<'a> {
             "momentum by inertia at the end, at the reference shaft",
         );
         let first = window.start;
-        let turned = (out.angles[last][0] - out.angles[first][0]) / (2.0 * PI);
+        // Momentum's angle: what the inertias turn in the mean.
+        let turned = (0..nodes)
+            .map(|i| inertia[i] * ratio[i] * (out.angles[last][i] - out.angles[first][i]))
+            .sum::<f64>()
+            / total
+            / (2.0 * PI);
         self.result("window", out.times[last] - out.times[first], "s", "length of the window at the end");
-        self.result("turns", turned, "", "turns of the first inertia within the window");
+        self.result("turns", turned, "", "turns within the window, mean over the inertias");
         for i in 0..nodes {
             let name = &a.line.nodes[i].name;
             let k = i + 1;
