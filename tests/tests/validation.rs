@@ -20,9 +20,8 @@ fn cases_with_checks() -> Vec<PathBuf> {
         files.sort();
         files
     };
-    let has_checks = |p: &PathBuf| {
-        std::fs::read_to_string(p).is_ok_and(|t| t.lines().any(|l| l.trim() == "[[checks]]"))
-    };
+    let has_checks =
+        |p: &PathBuf| std::fs::read_to_string(p).is_ok_and(|t| t.lines().any(|l| l.trim() == "[[checks]]"));
     let scenes = list(folder.clone()).into_iter().filter(has_checks);
     list(folder.join("rigs")).into_iter().chain(scenes).collect()
 }
