@@ -89,7 +89,7 @@ fn every_torsion_model_answers_the_compressor() {
         "time={ duration = \"0.12 s\", interval = \"0.2 ms\", window = \"0.06 s\", start_steady = true }";
     let hold = format!(
         "drives=[{{ at = \"motor\", drive = {{ model = \"constant\", torque = {} }} }}]",
-        orders.results["balance_torque"].value
+        -4.0 * orders.results["throw1.mean_torque"].value
     );
     let held = with(&[&hold]);
     let closed = with(&[time, &hold, "models.torsion={ model = \"propagator\" }"]);
@@ -108,7 +108,7 @@ fn a_start_from_rest_reaches_the_speed_of_the_motor() {
         "range={ orders = 12 }",
         "limits={}",
         "models.torsion={ model = \"implicit\", tolerance = 1e-5 }",
-        "drives=[{ at = \"motor\", drive = { model = \"induction_motor\", synchronous = \"1015 rpm\", breakdown_torque = \"12 kN m\", breakdown_slip = \"8 %\" } }]",
+        "drives=[{ at = \"motor\", drive = { model = \"induction_motor\", synchronous = \"1015 rpm\", breakdown_torque = \"12 kN m\", breakdown_slip = \"30 %\" } }]",
         "time={ duration = \"12 s\", interval = \"20 ms\", window = \"1 s\", start_speeds = [\"1 rad/s\"] }",
     ];
     let r = once("compressor-4-throw.toml", &set);
