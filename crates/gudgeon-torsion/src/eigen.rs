@@ -511,7 +511,7 @@ pub fn roots(tree: &Tree, omega: &[f64], normal: &[Vec<f64>]) -> Result<Spectrum
     let mut flat: Vec<f64> = all.iter().filter(|z| z.im == 0.0).map(|z| z.re).collect();
     upper.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
     flat.sort_by(|a, b| b.total_cmp(a));
-    if upper.len() * 2 + flat.len() != all.len() || flat.len() % 2 != 0 {
+    if upper.len() * 2 + flat.len() != all.len() || !flat.len().is_multiple_of(2) {
         return Err(EvalError::fatal(
             "eigenvalues",
             "damped eigenvalues do not come in conjugate pairs: not all were found",

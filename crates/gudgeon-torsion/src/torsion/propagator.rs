@@ -166,7 +166,7 @@ impl Terms {
         let scale = size(phi) * fastest + size(rate);
         let worst =
             (0..n).map(|i| ((a[i] - phi[i]).abs() * fastest).max((b[i] - rate[i]).abs())).fold(0.0, f64::max);
-        if !(worst <= 1e-7 * scale) {
+        if worst.is_nan() || worst > 1e-7 * scale {
             return Err(EvalError::fatal(
                 "propagator",
                 "two damped modes are (nearly) one: a critically damped pair has no sum of exponentials; use `implicit`",
