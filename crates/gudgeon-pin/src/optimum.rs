@@ -134,6 +134,8 @@ pub enum NoOptimum {
 const CLOSED: f64 = 1e-13;
 /// Closure that counts as proof.
 pub const PROOF: f64 = 1e-9;
+/// Part of the bore that one step leaves.
+const SHRINK: f64 = 0.4;
 /// Most quadratic programs.
 const MOST_STEPS: u32 = 80;
 
@@ -280,11 +282,25 @@ fn start(d: &Design<'_>) -> Option<PinSize> {
 /// # Errors
 /// [`NoOptimum`].
 pub fn lightest(d: &Design<'_>, from: Option<PinSize>) -> Result<Optimum, NoOptimum> {
-    let infeasible = || NoOptimum::Infeasible(d.forbids(d.outer.high));
     let from = match from {
         Some(s) => s,
-        None => start(d).ok_or_else(infeasible)?,
+        None => start(d).ok_or_else(|| NoOptimum::Infeasible(d.forbids(d.outer.high)))?,
     };
+    let mut found = descend(d, from);
+    // A solid pin is stationary in its bore without being the lightest: the mass falls with the square of the bore. From there the search
+    // starts again with the greatest bore.
+    for _ in 0..2 {
+        let Err(NoOptimum::Unproven(o)) = &found else { break };
+        let PinSize { length, outer, .. } = o.size;
+        // Beyond the rounding of the limits that hold the solid pin; without room even there, from a hollow one that is not admitted.
+        let (longer, wider) = (length * (1.0 + 1e-9), outer * (1.0 + 1e-9));
+        let inner = d.bore_within(length, longer, wider, 1e-3).map_or(0.3 * outer, |i| 0.98 * i);
+        found = descend(d, PinSize { length, outer, inner });
+    }
+    found
+}
+
+fn descend(d: &Design<'_>, from: PinSize) -> Result<Optimum, NoOptimum> {
     let unit = d.outer.high;
     let p = Program {
         design: d,
@@ -315,7 +331,11 @@ pub fn lightest(d: &Design<'_>, from: Option<PinSize>) -> Result<Optimum, NoOpti
         }
         for (k, b) in bounds.iter().enumerate() {
             if let Some(b) = b {
-                let slack = b.b - (b.a[0] * x[0] + b.a[1] * x[1] + b.a[2] * x[2]);
+                let mut slack = b.b - (b.a[0] * x[0] + b.a[1] * x[1] + b.a[2] * x[2]);
+                if Bound::ALL[k] == Bound::LeastInner {
+                    // A bore shrinks by parts: at a solid pin the mass is stationary, and no step would leave it again.
+                    slack = slack.min((1.0 - SHRINK) * x[2]);
+                }
                 let a = std::array::from_fn(|i| if p.fixed[i] { 0.0 } else { b.a[i] });
                 (rows[n], from[n]) = (HalfSpace { a, b: slack }, PIN_QUANTITIES + k);
                 n += 1;

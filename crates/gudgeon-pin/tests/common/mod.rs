@@ -104,12 +104,13 @@ pub struct Engine {
     pub limits: [f64; PIN_QUANTITIES],
     pub bore: f64,
     pub relief: f64,
+    pub outer: f64,
 }
 
 impl Engine {
     pub fn new(r: &mut Random) -> Self {
         let bore = r.between(60e-3, 200e-3);
-        let gas = r.between(6e6, 16e6) * std::f64::consts::PI * bore * bore / 4.0;
+        let gas = r.between(6e6, 22e6) * std::f64::consts::PI * bore * bore / 4.0;
         let gap = bore * r.between(0.28, 0.38);
         let base = limits();
         // Deformations are allowed in proportion to the engine.
@@ -130,6 +131,7 @@ impl Engine {
             limits,
             bore,
             relief: r.between(0.2, 0.35) * bore,
+            outer: r.between(0.28, 0.6) * bore,
         }
     }
 
@@ -143,7 +145,7 @@ impl Engine {
             relief: Some(Relief { bore: self.bore, height: self.relief, density: 2690.0 }),
             boss_gap: self.ctx.boss_gap,
             length: Range { low: 1.001 * self.ctx.boss_gap, high: 0.999 * self.bore },
-            outer: Range { low: 0.2 * self.bore, high: 0.6 * self.bore },
+            outer: Range { low: 0.2 * self.bore, high: self.outer },
             inner: Range { low: 0.0, high: self.bore },
             least_wall: 0.0,
             tolerance: PinSize::default(),
