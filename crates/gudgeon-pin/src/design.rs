@@ -66,7 +66,7 @@ impl Range {
 }
 
 /// A pin to be sized: model, load, limits, weights, ranges.
-#[derive(Debug)]
+#[derive(Debug, Clone, Copy)]
 pub struct Design<'a> {
     /// Model of strength.
     pub strength: &'a dyn PinStrength,
@@ -167,13 +167,15 @@ impl Design<'_> {
     }
 
     /// Smallest inner diameter at an outer one.
-    pub(crate) fn least_inner(&self, outer: f64) -> f64 {
+    #[must_use]
+    pub fn least_inner(&self, outer: f64) -> f64 {
         // The model must hold in the corner of the tolerances too.
         self.inner.low.max(self.strength.least_bore_ratio() * outer)
     }
 
     /// Greatest inner diameter at an outer one that leaves a wall, in every corner of the tolerances.
-    pub(crate) fn greatest_inner(&self, outer: f64) -> f64 {
+    #[must_use]
+    pub fn greatest_inner(&self, outer: f64) -> f64 {
         let play = self.tolerance.outer + self.tolerance.inner;
         self.inner.high.min(outer - 2.0 * self.least_wall).min((outer - play) * (1.0 - 1e-9))
     }
@@ -214,6 +216,28 @@ impl Design<'_> {
         }
         // To rounding the admitted end, which is feasible; coarser, the end that bounds it.
         Some(if rounding > 1e-12 { hi } else { lo })
+    }
+
+    /// The greatest inner diameter that one limit admits at a length and an outer diameter; `None` when it admits none, the wall's own when
+    /// it never binds.
+    #[must_use]
+    pub fn bore_of_limit(&self, q: PinQuantity, length: f64, outer: f64) -> Option<f64> {
+        let keeps = |inner: f64| {
+            self.utilisation(&PinSize { length, outer, inner }).is_ok_and(|u| u[q as usize] <= 1.0)
+        };
+        let (mut lo, mut hi) = (self.least_inner(outer), self.greatest_inner(outer));
+        if !(lo <= hi && keeps(lo)) {
+            return None;
+        }
+        for _ in 0..60 {
+            let mid = 0.5 * (lo + hi);
+            if keeps(mid) {
+                lo = mid;
+            } else {
+                hi = mid;
+            }
+        }
+        Some(lo)
     }
 
     /// Which limits leave no pin of this outer diameter, with what they ask of the length of a pin with the smallest bore; empty when

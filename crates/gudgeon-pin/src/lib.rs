@@ -8,7 +8,7 @@
 //! | `profile_curve` | [`Lagrange`], [`MonotoneCubic`], [`Linear`] |
 //!
 //! [`design`] says what a pin must keep, [`optimum`] finds the lightest one and proves it, [`certificate`] shows that no other part of the
-//! design space holds a lighter one, [`stepper`] is the published search. [`piston`] holds rules of piston design.
+//! design space holds a lighter one, [`stepper`] is the published search, [`stock`] chooses from sizes that can be had. [`piston`] holds rules of piston design.
 
 pub mod certificate;
 pub mod design;
@@ -19,6 +19,7 @@ mod pin_strength;
 pub mod piston;
 mod profile_curve;
 pub mod stepper;
+pub mod stock;
 
 pub use fatigue::gerber::Gerber;
 pub use fatigue::goodman::Goodman;

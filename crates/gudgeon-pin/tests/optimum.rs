@@ -168,7 +168,11 @@ fn multipliers_are_the_change_of_the_mass() {
         let h: f64 = 1e-5;
         let slope = (at(h.exp()) - at((-h).exp())) / (2.0 * h);
         // Truncation h² of the third derivative, rounding 1e-16/h of the mass.
-        assert!((slope + o.multipliers[k]).abs() < 1e-8 * o.masses.pin, "{q:?}: {slope} {}", o.multipliers[k]);
+        assert!(
+            (slope + o.multipliers[k]).abs() < 1e-8 * o.masses.pin,
+            "{q:?}: {slope} {}",
+            o.multipliers[k]
+        );
     }
 }
 
