@@ -85,13 +85,13 @@ pub fn section(case: &PinCase, s: &Setup, size: &PinSize, out: &mut RunResult) {
         ));
     }
     let y = -0.5 * o - eye;
-    fixed.push(path(vec![[0.0, y - 0.3 * o], [0.0, y]], false, Style::Second));
+    fixed.push(path(vec![[0.0, y - 0.2 * o], [0.0, y]], false, Style::Second));
     fixed.push(path(vec![[-0.05 * o, y - 0.1 * o], [0.0, y], [0.05 * o, y - 0.1 * o]], false, Style::Second));
     fixed.push(path(vec![[-0.5 * bore - 2.0, 0.0], [0.5 * bore + 2.0, 0.0]], false, Style::Axis));
     let low = -0.5 * o - boss;
-    fixed.push(dimension([0.5 * l, low], [-0.5 * l, low], 0.55 * o, "L", l));
-    fixed.push(dimension([0.5 * bore, -0.9 * o], [-0.5 * bore, -0.9 * o], 0.45 * o, "D", bore));
-    fixed.push(dimension([-0.5 * gap, low], [0.5 * gap, low], -0.25 * o, "D3", gap));
+    fixed.push(dimension([0.5 * l, low], [-0.5 * l, low], 0.6 * o, "L", l));
+    fixed.push(dimension([0.5 * bore, -0.9 * o], [-0.5 * bore, -0.9 * o], 0.95 * o, "D", bore));
+    fixed.push(dimension([-0.5 * gap, low], [0.5 * gap, low], -0.28 * o, "D3", gap));
     fixed.push(dimension([-0.5 * rod, 0.5 * o + eye], [0.5 * rod, 0.5 * o + eye], 0.18 * o, "B", rod));
     fixed.push(dimension(
         [-0.5 * centres, 0.5 * o + boss + 0.3 * o],
@@ -203,7 +203,7 @@ pub fn map(d: &Design<'_>, size: &PinSize, out: &mut RunResult) {
         let mut points = region.clone();
         points.push([region[region.len() - 1][0], y(floor)]);
         points.push([region[0][0], y(floor)]);
-        fixed.push(path(points, true, Style::Oil));
+        fixed.push(path(points, true, Style::Metal));
     }
     // Lines of equal mass.
     let mass = |l: f64, i: f64| d.masses(&PinSize { length: l, outer: size.outer, inner: i }).differential();

@@ -27,7 +27,6 @@ pub fn run(
     progress: &mut dyn FnMut(Progress),
 ) -> Result<(), RunError> {
     let d = s.design();
-    loads(case, s, out);
     let size = match &case.optimise {
         None => given(s)?,
         Some(o) if o.method == Method::AsPublished => published(&d, s, o, out)?,
@@ -36,7 +35,11 @@ pub fn run(
     if case.optimise.is_none() {
         out.solver.method = "evaluation".into();
     }
+    // What was found comes before how.
+    let how = std::mem::take(&mut out.results);
     evaluate(case, s, &d, &size, out)?;
+    loads(case, s, out);
+    out.results.extend(how);
     draw::section(case, s, &size, out);
     draw::utilisation(&d, &size, out).map_err(model)?;
     if let Some(o) = &case.optimise {
@@ -94,6 +97,12 @@ fn evaluate(
     result(out, "length", 1e3 * size.length, "mm", "length of the pin");
     result(out, "outer", 1e3 * size.outer, "mm", "outer diameter");
     result(out, "inner", 1e3 * size.inner, "mm", "inner diameter");
+    let m = d.masses(size);
+    result(out, "pin_mass", 1e3 * m.pin, "g", "mass of the pin");
+    if s.relief.is_some() {
+        result(out, "relieved_mass", 1e3 * m.relieved, "g", "mass of the flats cut from the piston");
+        result(out, "mass_differential", 1e3 * m.differential(), "g", "pin less relief");
+    }
     let j = s.pi * (size.outer.powi(4) - size.inner.powi(4)) / 64.0;
     result(out, "second_moment", 1e12 * j, "mm4", "second moment of area");
     result(out, "section_modulus", 1e9 * 2.0 * j / size.outer, "mm3", "section modulus");
@@ -128,12 +137,6 @@ fn evaluate(
                 100.0 * (v - 1.0)
             ));
         }
-    }
-    let m = d.masses(size);
-    result(out, "pin_mass", 1e3 * m.pin, "g", "mass of the pin");
-    if s.relief.is_some() {
-        result(out, "relieved_mass", 1e3 * m.relieved, "g", "mass of the flats cut from the piston");
-        result(out, "mass_differential", 1e3 * m.differential(), "g", "pin less relief");
     }
     Ok(())
 }
@@ -553,6 +556,11 @@ fn cycle(
         result(out, "fatigue_mean", 1e-6 * mean.abs(), "MPa", "mean of the resultant stress over the cycle");
         result(out, "fatigue_amplitude", 1e-6 * amplitude, "MPa", "its amplitude");
         result(out, "fatigue_safety", safety, "", "safety against fatigue");
+        if safety < 1.0 {
+            out.solver.notes.push(format!(
+                "The pin keeps its limits perhaps, but not for ever: the safety against fatigue is {safety:.2}."
+            ));
+        }
     }
     if stress.is_empty() {
         return Ok(());

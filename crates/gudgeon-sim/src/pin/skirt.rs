@@ -154,31 +154,31 @@ fn skirt(case: &PinCase, s: &Skirt, out: &mut RunResult) -> Result<(), BuildErro
     let c: [Clearance; 5] = st.map(|s| barrel.clearance(&s));
     let proposed = proposed_ordinates(&st, &c);
     let y = s.ordinates.map_or(proposed, |o| o.map(|v| v.si()));
-    for i in 0..5 {
-        let n = i + 1;
-        let mut um = |name: &str, v: f64, what: &str| {
-            result(out, format!("{name}_{n}"), 1e6 * v, "um", format!("{what} at station {n}"));
-        };
-        um("growth", c[i].growth, "growth of the piston over the cylinder");
-        um("assembly_clearance", c[i].theoretical, "clearance at assembly that leaves the wanted one");
-        um("deviation", c[i].deviation, "clearance at assembly less that one");
-        if let Some(z) = s.reference_offset {
-            um("reference", c[i].deviation - z.si(), "deviation less the number typed");
-        }
-        um("proposed_ordinate", proposed[i], "ordinate that the published program proposes");
-        um("warm_clearance", c[i].warm, "clearance of the warm piston without a profile");
-        um(
-            "warm_proposed",
-            c[i].warm - proposed[i],
-            "clearance of the warm piston with the proposed profile",
-        );
-        um("warm_profiled", c[i].warm - y[i], "clearance of the warm piston with its profile");
-    }
-    profile(case, s, &st, &y, out)?;
     let oval = s.surface_ratio.map(|r| ovality(barrel.bore, r.si()));
     if let Some(o) = oval {
         result(out, "ovality", 1e6 * o, "um", "difference of the axes of the skirt");
     }
+    let mut um = |name: &str, what: &str, of: &dyn Fn(usize) -> f64| {
+        for i in 0..5 {
+            // Sums of tens of micrometres: what is below a femtometre is rounding.
+            let v = of(i);
+            let v = if v.abs() < 1e-15 { 0.0 } else { v };
+            result(out, format!("{name}_{}", i + 1), 1e6 * v, "um", format!("{what} at station {}", i + 1));
+        }
+    };
+    um("growth", "growth of the piston over the cylinder", &|i| c[i].growth);
+    um("assembly_clearance", "clearance at assembly that leaves the wanted one", &|i| c[i].theoretical);
+    um("deviation", "clearance at assembly less that one", &|i| c[i].deviation);
+    if let Some(z) = s.reference_offset {
+        um("reference", "deviation less the number typed", &|i| c[i].deviation - z.si());
+    }
+    um("proposed_ordinate", "ordinate that the published program proposes", &|i| proposed[i]);
+    um("warm_clearance", "clearance of the warm piston without a profile", &|i| c[i].warm);
+    um("warm_proposed", "clearance of the warm piston with the proposed profile", &|i| {
+        c[i].warm - proposed[i]
+    });
+    um("warm_profiled", "clearance of the warm piston with its profile", &|i| c[i].warm - y[i]);
+    profile(case, s, &st, &y, out)?;
     draw::skirt(barrel.bore, s.height.si(), oval, out);
     Ok(())
 }
@@ -203,7 +203,7 @@ fn profile(
             format!("curve_{k}"),
             1e6 * v,
             "um",
-            format!("profile {:.3} mm above the open end", 1e3 * at[k]),
+            format!("profile {} mm above the open end", 1e-3 * (1e6 * at[k]).round()),
         );
     }
     // Material cannot be added: what stands proud is cut at the nominal diameter.
