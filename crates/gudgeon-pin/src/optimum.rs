@@ -122,7 +122,7 @@ impl Optimum {
 /// Why there is no optimum.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NoOptimum {
-    /// No pin of the ranges keeps the limits; the largest outer diameter is forbidden by these.
+    /// No pin of the ranges keeps the limits; the largest outer diameter is forbidden by these, by its wall when there are none.
     Infeasible(Vec<Forbids>),
     /// The conditions do not close; the best point found.
     Unproven(Box<Optimum>),
@@ -282,6 +282,10 @@ fn start(d: &Design<'_>) -> Option<PinSize> {
 /// # Errors
 /// [`NoOptimum`].
 pub fn lightest(d: &Design<'_>, from: Option<PinSize>) -> Result<Optimum, NoOptimum> {
+    if d.least_inner(d.outer.high) > d.greatest_inner(d.outer.high) {
+        // No limit of strength: there is no room for a bore and its wall.
+        return Err(NoOptimum::Infeasible(d.forbids(d.outer.high)));
+    }
     let from = match from {
         Some(s) => s,
         None => start(d).ok_or_else(|| NoOptimum::Infeasible(d.forbids(d.outer.high)))?,

@@ -74,7 +74,7 @@ pub fn alloy(case: &PinCase) -> Result<Option<&'static Alloy>, BuildError> {
 /// Builds what the case says of its pin; nothing when it has none.
 pub fn setup(case: &PinCase, folder: &Path) -> Result<Option<Setup>, Vec<BuildError>> {
     let mut errors = Vec::new();
-    let alloy = alloy(case).map_err(|e| errors.push(e)).ok().flatten();
+    let alloy = alloy(case).map_err(|e| errors.push(e));
     let Some(pin) = &case.pin else {
         if case.optimise.is_some() {
             errors.push(BuildError::at("optimise", "there is no pin to optimise: a table `pin` is needed"));
@@ -91,7 +91,11 @@ pub fn setup(case: &PinCase, folder: &Path) -> Result<Option<Setup>, Vec<BuildEr
     let strength = strength(case, pin, pi).map_err(|e| errors.push(e)).ok();
     let fatigue = case.models.fatigue.build().map_err(|e| errors.push(e.within("models.fatigue"))).ok();
     let load = load(case, folder, bore, pi).map_err(|e| errors.push(e)).ok();
-    let relief = relief(pin, alloy, bore).map_err(|e| errors.push(e)).ok().flatten();
+    // Without its alloy the density of the piston is another mistake's.
+    let relief = match alloy {
+        Ok(alloy) => relief(pin, alloy, bore).map_err(|e| errors.push(e)).ok().flatten(),
+        Err(()) => None,
+    };
     let gap = pin.boss_gap.si();
     if gap >= bore {
         errors.push(BuildError::at("pin.boss_gap", "the bosses are further apart than the piston is wide"));

@@ -289,7 +289,7 @@ fn published(d: &Design<'_>, s: &Setup, o: &Optimise, out: &mut RunResult) -> Re
     }
     out.solver.method = "as published".into();
     out.solver.counters.insert("passes".into(), u64::from(found.passes));
-    trace(&found, out);
+    trace(d, &found, out);
     result(
         out,
         "start_bore_admitted",
@@ -343,19 +343,12 @@ fn published(d: &Design<'_>, s: &Setup, o: &Optimise, out: &mut RunResult) -> Re
 }
 
 /// Counts of the messages that the program prints, by phase.
-fn trace(found: &Search, out: &mut RunResult) {
+fn trace(d: &Design<'_>, found: &Search, out: &mut RunResult) {
     for (phase, name) in [(Phase::Coarse, "coarse"), (Phase::Fine, "fine")] {
-        for q in PinQuantity::ALL {
-            let n = found.count(phase, q);
-            if n > 0 {
-                result(
-                    out,
-                    format!("{name}_{}", q.name()),
-                    n as f64,
-                    "",
-                    format!("{name} steps that {} asked for", q.words()),
-                );
-            }
+        for q in PinQuantity::ALL.into_iter().filter(|q| d.limits[*q as usize].is_finite()) {
+            let n = found.count(phase, q) as f64;
+            let what = format!("{name} steps that {} asked for", q.words());
+            result(out, format!("{name}_{}", q.name()), n, "", what);
         }
     }
     let order = (1..=found.trace.len()).map(|k| k as f64).collect();

@@ -179,6 +179,7 @@ fn skirt(case: &PinCase, s: &Skirt, out: &mut RunResult) -> Result<(), BuildErro
     });
     um("warm_profiled", "clearance of the warm piston with its profile", &|i| c[i].warm - y[i]);
     profile(case, s, &st, &y, out)?;
+    shape(&barrel, s.height.si(), &st, &c, oval, out);
     draw::skirt(barrel.bore, s.height.si(), oval, out);
     Ok(())
 }
@@ -243,6 +244,59 @@ fn profile(
         &drawn,
     );
     Ok(())
+}
+
+/// The skirt as a film sees it: how far it stands behind its most prominent place, on the radius, cold and warm, from the upper edge down.
+fn shape(
+    barrel: &Barrel,
+    height: f64,
+    st: &[Station; 5],
+    c: &[Clearance; 5],
+    oval: Option<f64>,
+    out: &mut RunResult,
+) {
+    let Some(t) = out.tables.get("skirt") else { return };
+    let Some(finished) = t.get("finished") else { return };
+    // Growth straight between the stations and beyond them.
+    let growth = |x: f64| {
+        let k = st.iter().filter(|s| s.height <= x).count().clamp(1, 4);
+        let part = (x - st[k - 1].height) / (st[k].height - st[k - 1].height);
+        c[k - 1].growth + part * (c[k].growth - c[k - 1].growth)
+    };
+    let rows = || t.axis.values.iter().zip(&finished.values).rev();
+    let below: Vec<f64> = rows().map(|(x, _)| height - x).collect();
+    let cold: Vec<f64> = rows().map(|(_, y)| -0.5 * y).collect();
+    let gap: Vec<f64> = rows().map(|(x, y)| 0.5 * (barrel.assembly_clearance - growth(*x) - y)).collect();
+    let least = |v: &[f64]| v.iter().copied().fold(f64::INFINITY, f64::min);
+    let (proud, tightest) = (least(&cold), least(&gap));
+    let columns = vec![
+        column("cold_drop", "m", cold.iter().map(|v| v - proud).collect()),
+        column("warm_drop", "m", gap.iter().map(|v| v - tightest).collect()),
+    ];
+    result(
+        out,
+        "warm_gap",
+        1e6 * tightest,
+        "um",
+        "smallest radial gap of the warm skirt, negative for interference",
+    );
+    if let Some(o) = oval {
+        result(
+            out,
+            "oval_drop",
+            0.5e6 * o,
+            "um",
+            "radial drop of the oval skirt across the thrust direction",
+        );
+    }
+    out.tables.insert("skirt_shape".into(), Series { axis: column("depth", "m", below), columns });
+    lines(
+        out,
+        "skirt_shape",
+        "Shape of the skirt for its film",
+        "radial drop behind the most prominent place over the depth below the upper edge",
+        &[("cold", "cold_drop"), ("warm", "warm_drop")],
+    );
 }
 
 fn crown(case: &PinCase, c: &Crown, out: &mut RunResult) -> Result<(), BuildError> {
