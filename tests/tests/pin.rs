@@ -47,7 +47,7 @@ fn what_cannot_be_is_refused_at_its_place() {
         (EXACT, "optimise.pareto=[\"weight\"]", "optimise.pareto", "weight"),
         (EXACT, "optimise.certificate=1e-15", "optimise.certificate", "gap"),
         (EXACT, "optimise.stock.length_step=1 nm", "optimise.stock", "combinations"),
-        (EXACT, "limits={}", "limits", "vanishing"),
+        ("pin-two-limits", "limits={}", "limits", "vanishing"),
         (PUBLISHED, "optimise.steps.fine=1e-15", "optimise.steps.fine", "never end"),
         (SKIRT, "skirt.step=1 nm", "skirt.step", "too many rows"),
         (SKIRT, "skirt.step=1 m", "skirt.step", "longer than the skirt"),

@@ -205,9 +205,12 @@ fn load(case: &PinCase, folder: &Path, bore: f64, pi: f64) -> Result<PinLoadCase
 
 /// Speed, crank drive and cylinder pressure of a ring-pack case.
 fn other_cycle(path: &Path) -> Result<EngineCycle, BuildError> {
-    let first = |r: crate::load::Report| {
-        let said = r.diagnostics.first().map(|d| d.headline()).unwrap_or_default();
-        BuildError::new(format!("`{}`: {said}", path.display()))
+    let first = |r: crate::load::Report| match r.diagnostics.into_iter().next() {
+        Some(d) => BuildError {
+            help: d.help.clone(),
+            ..BuildError::new(format!("`{}`: {}", path.display(), d.headline()))
+        },
+        None => BuildError::new(format!("`{}` cannot be read", path.display())),
     };
     let source = read(path).map_err(first)?;
     let scene = scene_of(&source, &[]).unwrap_or_default();
