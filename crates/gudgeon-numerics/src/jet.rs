@@ -145,7 +145,6 @@ impl Mul for Jet {
 impl Div for Jet {
     type Output = Self;
     // A quotient is the product with the reciprocal.
-    #[expect(clippy::suspicious_arithmetic_impl)]
     fn div(self, o: Self) -> Self {
         let r = 1.0 / o.v;
         let mut out = self * o.chain(r, -r * r, 2.0 * r * r * r);

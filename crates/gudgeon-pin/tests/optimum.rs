@@ -1,5 +1,7 @@
 //! The exact optimum: the published engine, the closed-form problem, random engines, its proofs.
 
+#![allow(clippy::excessive_precision, reason = "reference values stand as they were computed")]
+
 mod common;
 
 use common::*;
@@ -146,7 +148,6 @@ fn random_engines_satisfy_the_conditions_and_hold_no_lighter_pin() {
             Err(e) => wrong.push(format!("{k} {name}: {e:?} {:?} {:?}", d.limits, d.length)),
         }
     }
-    println!("{solved} {infeasible} {corners}");
     assert!(wrong.is_empty(), "{} of {solved}\n{}", wrong.len(), wrong.join("\n"));
     assert!(solved > 400 && corners > 100 && infeasible > 0, "{solved} {corners} {infeasible}");
 }
