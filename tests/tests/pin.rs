@@ -205,8 +205,7 @@ fn the_cycle_of_the_diesel_sizes_its_pin() {
     // No row is above the design load; rows are half a degree apart.
     assert!(most <= design && most > 0.999 * design, "{most} {design}");
     // The same pressure drives the ring pack.
-    let pack =
-        run_case("turbo-diesel-120", &["outputs.results=[\"blow_by\"]"]);
+    let pack = run_case("turbo-diesel-120", &["outputs.results=[\"blow_by\"]"]);
     let peak = column(&pack, "cylinder.p").iter().copied().fold(0.0, f64::max);
     let here = column(&r, "cylinder.pressure").iter().copied().fold(0.0, f64::max);
     assert!((peak / here - 1.0).abs() < 1e-3, "{peak} {here}");
@@ -248,4 +247,58 @@ fn the_same_case_gives_the_same_bytes() {
             assert!(t.columns.iter().flat_map(|c| &c.values).all(|v| v.is_finite()), "{case}");
         }
     }
+}
+
+#[test]
+fn extremes_end_in_words_or_in_numbers() {
+    let paths = [
+        "engine.bore",
+        "pin.length",
+        "pin.outer",
+        "pin.inner",
+        "pin.boss_gap",
+        "pin.rod_width",
+        "pin.modulus",
+        "pin.density",
+        "pin.relief.height",
+        "limits.boss_pressure",
+        "limits.ovalisation",
+        "limits.deflection",
+        "limits.shear_stress",
+        "limits.resultant_stress",
+        "optimise.least_wall",
+        "optimise.tolerance.length",
+        "optimise.tolerance.inner",
+        "optimise.steps.coarse",
+        "models.pin_load.fuel_coefficient",
+        "models.pin_load.speed",
+        "models.pin_load.piston_mass",
+        "models.pin_load.rod_length",
+    ];
+    let (mut ran, mut refused, mut failed) = (0, 0, 0);
+    for case in [EXACT, PUBLISHED] {
+        for path in paths {
+            for v in ["1e-12", "1e-4", "0.0199", "0.0401", "1e3", "1e15", "1e300"] {
+                let set = [
+                    format!("{path}={v}"),
+                    "checks=[]".into(),
+                    "optimise.sweep_points=3".into(),
+                    "optimise.pareto=[]".into(),
+                    "optimise.stock={}".into(),
+                    "optimise.certificate=1e-3".into(),
+                ];
+                match check(&case_file(case), &set) {
+                    Err(_) => refused += 1,
+                    Ok(c) => match gudgeon_sim::run(&c, &mut |_| {}) {
+                        Err(_) => failed += 1,
+                        Ok(r) => {
+                            ran += 1;
+                            assert!(r.results.values().all(|v| v.value.is_finite()), "{case} {path}={v}");
+                        }
+                    },
+                }
+            }
+        }
+    }
+    assert!(ran > 60 && refused > 60 && failed > 20, "{ran} ran, {refused} refused, {failed} failed");
 }

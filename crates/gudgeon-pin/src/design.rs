@@ -322,8 +322,9 @@ impl Design<'_> {
     /// keep with a larger outer diameter.
     #[must_use]
     pub fn least_outer(&self) -> Option<f64> {
-        let possible =
-            |outer: f64| self.least_inner(outer) <= self.greatest_inner(outer) && self.forbids(outer).is_empty();
+        let possible = |outer: f64| {
+            self.least_inner(outer) <= self.greatest_inner(outer) && self.forbids(outer).is_empty()
+        };
         let (mut lo, mut hi) = (self.outer.low, self.outer.high);
         if possible(lo) {
             return Some(lo);

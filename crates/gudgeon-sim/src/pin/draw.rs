@@ -354,6 +354,8 @@ pub fn skirt(bore: f64, height: f64, ovality: Option<f64>, out: &mut RunResult) 
         fixed.push(path(vec![[cx, cy - half - 4.0], [cx, cy + half + 4.0]], false, Style::Axis));
         fixed.push(text([cx + half + 5.0, cy], "thrust", Anchor::Start));
         fixed.push(text([cx, cy + half + 6.0], "pin", Anchor::Middle));
+        // Room for the word beside the axis.
+        fixed.push(text([cx + half + 24.0, cy], "", Anchor::Start));
         hint += &format!("; the ovality of {:.1} um enlarged {scale:.0} times", 1e6 * ov);
     }
     figure(out, "Skirt", hint, FigureKind::Drawing { fixed, frames: Vec::new() });

@@ -450,6 +450,10 @@ fn sweep(d: &Design<'_>, s: &Setup, o: &Optimise, out: &mut RunResult) {
         "mass against the outer diameter; length and bore are the best for each",
         &masses,
     );
+    if s.relief.is_some() {
+        // Without the pin itself the curve fills the page: the steps of the published search show.
+        lines(out, "diameter_sweep", "Lightest pin of each outer diameter, less relief", "", &masses[1..]);
+    }
     lines(
         out,
         "diameter_sweep",
