@@ -130,7 +130,7 @@ pub enum NoOptimum {
     Model(EvalError),
 }
 
-/// Wanted closure of the conditions.
+/// Closure at rounding.
 const CLOSED: f64 = 1e-13;
 /// Closure that counts as proof.
 pub const PROOF: f64 = 1e-9;
@@ -590,7 +590,7 @@ fn least_curvature(w: &[[f64; 3]; 3], normals: &[[f64; 3]], fixed: &[bool; 3]) -
     (0..free).map(|i| m[i][i]).reduce(f64::min)
 }
 
-/// Whether an optimum is closed to [`CLOSED`], as one expects away from degenerate corners.
+/// Whether an optimum is closed to rounding, 1e-13, as one expects away from degenerate corners.
 #[must_use]
 pub fn is_sharp(o: &Optimum) -> bool {
     o.proof.stationarity <= CLOSED && o.proof.infeasibility <= CLOSED && o.proof.complementarity <= CLOSED
