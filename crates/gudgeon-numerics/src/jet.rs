@@ -98,6 +98,7 @@ impl Jet {
     }
 
     /// `f(self)` from the value of `f` and its first and second derivative there.
+    #[inline]
     fn chain(self, f: f64, f1: f64, f2: f64) -> Self {
         let mut out = Self { v: f, ..Self::default() };
         for (o, g) in out.g.iter_mut().zip(self.g) {
@@ -110,29 +111,49 @@ impl Jet {
     }
 
     /// `a·x + b·y`.
+    #[inline]
     fn combined(a: f64, x: Self, b: f64, y: Self) -> Self {
-        Self {
-            v: a * x.v + b * y.v,
-            g: std::array::from_fn(|i| a * x.g[i] + b * y.g[i]),
-            h: std::array::from_fn(|k| a * x.h[k] + b * y.h[k]),
+        let mut out = Self { v: a * x.v + b * y.v, ..Self::default() };
+        for i in 0..VARIABLES {
+            out.g[i] = a * x.g[i] + b * y.g[i];
         }
+        for k in 0..6 {
+            out.h[k] = a * x.h[k] + b * y.h[k];
+        }
+        out
+    }
+
+    /// Derivatives times `r`, with the value `v`.
+    #[inline]
+    fn stretched(self, v: f64, r: f64) -> Self {
+        let mut out = Self { v, ..self };
+        for g in &mut out.g {
+            *g *= r;
+        }
+        for h in &mut out.h {
+            *h *= r;
+        }
+        out
     }
 }
 
 impl Add for Jet {
     type Output = Self;
+    #[inline]
     fn add(self, o: Self) -> Self {
         Self::combined(1.0, self, 1.0, o)
     }
 }
 impl Sub for Jet {
     type Output = Self;
+    #[inline]
     fn sub(self, o: Self) -> Self {
         Self::combined(1.0, self, -1.0, o)
     }
 }
 impl Mul for Jet {
     type Output = Self;
+    #[inline]
     fn mul(self, o: Self) -> Self {
         let mut out = Self::combined(o.v, self, self.v, o);
         out.v = self.v * o.v;
@@ -145,6 +166,7 @@ impl Mul for Jet {
 impl Div for Jet {
     type Output = Self;
     // A quotient is the product with the reciprocal.
+    #[inline]
     fn div(self, o: Self) -> Self {
         let r = 1.0 / o.v;
         let mut out = self * o.chain(r, -r * r, 2.0 * r * r * r);
@@ -154,55 +176,65 @@ impl Div for Jet {
 }
 impl Neg for Jet {
     type Output = Self;
+    #[inline]
     fn neg(self) -> Self {
         self * -1.0
     }
 }
 impl Add<f64> for Jet {
     type Output = Self;
+    #[inline]
     fn add(self, o: f64) -> Self {
         Self { v: self.v + o, ..self }
     }
 }
 impl Sub<f64> for Jet {
     type Output = Self;
+    #[inline]
     fn sub(self, o: f64) -> Self {
         Self { v: self.v - o, ..self }
     }
 }
 impl Mul<f64> for Jet {
     type Output = Self;
+    #[inline]
     fn mul(self, o: f64) -> Self {
-        Self { v: self.v * o, g: self.g.map(|g| g * o), h: self.h.map(|h| h * o) }
+        self.stretched(self.v * o, o)
     }
 }
 impl Div<f64> for Jet {
     type Output = Self;
+    #[inline]
     fn div(self, o: f64) -> Self {
-        let r = 1.0 / o;
-        Self { v: self.v / o, g: self.g.map(|g| g * r), h: self.h.map(|h| h * r) }
+        self.stretched(self.v / o, 1.0 / o)
     }
 }
 
 impl Real for Jet {
+    #[inline]
     fn constant(v: f64) -> Self {
         Self { v, ..Self::default() }
     }
+    #[inline]
     fn value(self) -> f64 {
         self.v
     }
+    #[inline]
     fn sqrt(self) -> Self {
         let r = self.v.sqrt();
         self.chain(r, 0.5 / r, -0.25 / (r * self.v))
     }
+    #[inline]
     fn ln(self) -> Self {
         let r = 1.0 / self.v;
         self.chain(self.v.ln(), r, -r * r)
     }
+    #[inline]
     fn acos(self) -> Self {
         let w = 1.0 / (1.0 - self.v * self.v);
         self.chain(self.v.acos(), -w.sqrt(), -self.v * w * w.sqrt())
     }
+    #[inline]
     fn recip(self) -> Self {
         let r = 1.0 / self.v;
         self.chain(r, -r * r, 2.0 * r * r * r)

@@ -170,9 +170,14 @@ impl Program<'_, '_> {
         self.scaled(m) / self.mass
     }
 
-    fn scaled(&self, j: Jet) -> Jet {
-        let u = self.unit;
-        Jet { v: j.v, g: j.g.map(|g| g * u), h: j.h.map(|h| h * (u * u)) }
+    fn scaled(&self, mut j: Jet) -> Jet {
+        for g in &mut j.g {
+            *g *= self.unit;
+        }
+        for h in &mut j.h {
+            *h *= self.unit * self.unit;
+        }
+        j
     }
 
     fn local(&self, x: &[f64; 3]) -> Result<Local, EvalError> {

@@ -198,7 +198,11 @@ impl<F: Formula> PinStrength for Evaluated<F> {
         let pin = Loaded::new(self.0.surroundings(), x, load.total().abs());
         let jets = self.0.quantities(&pin, load.gas.abs());
         Self::finite(jets.iter().all(|j| j.v.is_finite() && j.h.iter().all(|h| h.is_finite())))?;
-        Ok(PinExpansion { value: jets.map(|j| j.v), gradient: jets.map(|j| j.g), hessian: jets.map(|j| j.h) })
+        let mut out = PinExpansion::default();
+        for (k, j) in jets.iter().enumerate() {
+            (out.value[k], out.gradient[k], out.hessian[k]) = (j.v, j.g, j.h);
+        }
+        Ok(out)
     }
 
     fn least_bore_ratio(&self) -> f64 {
