@@ -182,7 +182,8 @@ pub fn minimise(h: &[[f64; 3]; 3], g: &[f64; 3], constraints: &[HalfSpace]) -> R
                 }
             }
             for j in 0..q {
-                u[j] -= t * r[j];
+                // The step ends where the first of them reaches zero: below lies rounding.
+                u[j] = (u[j] - t * r[j]).max(0.0);
             }
             up += t;
             if full <= partial.0 {
@@ -229,21 +230,31 @@ mod tests {
             let cs: Vec<HalfSpace> = (0..8)
                 .map(|_| half(std::array::from_fn(|_| random(&mut seed)), 0.3 * random(&mut seed)))
                 .collect();
-            let Ok(m) = minimise(&h, &g, &cs) else { continue };
+            let m = match minimise(&h, &g, &cs) {
+                Ok(m) => m,
+                // Eight random half spaces often have nothing in common.
+                Err(e) => {
+                    assert_eq!(e, QpError::Infeasible);
+                    continue;
+                }
+            };
             solved += 1;
             let mut rest = apply(&h, &m.x);
             for i in 0..3 {
                 rest[i] += g[i] + cs.iter().enumerate().map(|(k, c)| m.multipliers[k] * c.a[i]).sum::<f64>();
             }
-            // Multipliers of order one to a hundred, Hessians of condition up to a few hundred.
-            assert!(rest.iter().all(|r| r.abs() < 1e-9), "{rest:?}");
+            // Rounding of steps as long as the multipliers, which are large where normals nearly depend on each other; inverses of
+            // Hessians with eigenvalues down to 0.1.
+            let size = 1.0 + m.multipliers.iter().sum::<f64>();
+            assert!(rest.iter().all(|r| r.abs() < 1e-12 * size), "{rest:?} {size}");
             for (k, c) in cs.iter().enumerate() {
-                let slack = c.b - dot(&c.a, &m.x);
-                assert!(slack > -1e-11 && m.multipliers[k] >= 0.0 && m.multipliers[k] * slack < 1e-9);
+                let (slack, mu) = (c.b - dot(&c.a, &m.x), m.multipliers[k]);
+                assert!(slack > -1e-13 * size && mu >= 0.0, "{slack} {mu} {size}");
+                assert!(mu == 0.0 || slack.abs() < 1e-13 * size, "{slack} {mu} {size}");
                 tight += usize::from(m.multipliers[k] > 0.0);
             }
         }
-        assert!(solved > 1000 && tight > 1000, "{solved} {tight}");
+        assert!(solved > 500 && tight > 1000, "{solved} {tight}");
     }
 
     #[test]
