@@ -10,5 +10,6 @@ use gudgeon_core as _;
 use gudgeon_film as _;
 use gudgeon_gas as _;
 use gudgeon_kinematics as _;
+use gudgeon_pin as _;
 use gudgeon_rig as _;
 use gudgeon_ring as _;
