@@ -42,6 +42,10 @@ const MODELS: &[&str] = &[
     "drive/off",
     "drive/power_law",
     "drive/table",
+    "fatigue/gerber",
+    "fatigue/goodman",
+    "fatigue/off",
+    "fatigue/soderberg",
     "film_1d/complementarity",
     "film_1d/elrod_adams",
     "film_1d/front_tracking",
@@ -79,6 +83,17 @@ const MODELS: &[&str] = &[
     "piezoviscosity/barus",
     "piezoviscosity/off",
     "piezoviscosity/roelands",
+    "pin_load/cycle",
+    "pin_load/given",
+    "pin_load/other_case",
+    "pin_load/peak_pressure_rule",
+    "pin_strength/curved_ring",
+    "pin_strength/elastic_ring",
+    "pin_strength/shear_beam",
+    "pin_strength/thin_ring",
+    "profile_curve/lagrange",
+    "profile_curve/linear",
+    "profile_curve/monotone_cubic",
     "rig/contact_pair",
     "rig/cylinder_pressure",
     "rig/flank",
@@ -118,7 +133,8 @@ const MODELS: &[&str] = &[
 ];
 
 /// How the physics of each kind is switched off: its `off` model, or the model that takes its place by giving the
-/// answer instead of computing it. A piston always moves, so `kinematics` has none; a bench without a model is none.
+/// answer instead of computing it. A piston always moves and a pin always
+/// bears, so `kinematics` and `pin_strength` have none; a bench without a model is none.
 const SWITCHED_OFF: &[(&str, Option<&str>)] = &[
     ("boundary_friction", Some("off")),
     ("compressibility", Some("off")),
@@ -126,6 +142,7 @@ const SWITCHED_OFF: &[(&str, Option<&str>)] = &[
     ("coupling", Some("off")),
     ("cylinder_pressure", Some("constant")),
     ("drive", Some("off")),
+    ("fatigue", Some("off")),
     ("film_1d", Some("off")),
     ("film_2d", Some("off")),
     ("film_temperature", Some("given")),
@@ -138,6 +155,9 @@ const SWITCHED_OFF: &[(&str, Option<&str>)] = &[
     ("oil", Some("constant")),
     ("oil_transport", Some("off")),
     ("piezoviscosity", Some("off")),
+    ("pin_load", Some("given")),
+    ("pin_strength", None),
+    ("profile_curve", None),
     ("rig", None),
     ("ring_motion", Some("seated")),
     ("roughness", Some("off")),
