@@ -13,3 +13,4 @@ use gudgeon_kinematics as _;
 use gudgeon_pin as _;
 use gudgeon_rig as _;
 use gudgeon_ring as _;
+use gudgeon_torsion as _;

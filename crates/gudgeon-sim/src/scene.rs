@@ -19,6 +19,7 @@ use crate::load::{Loaded, Report, Source, load_source, scene_of};
 use crate::pin::case::PinCase;
 use crate::rig::case::RigCase;
 use crate::run::{Explanation, Progress, RunError};
+use crate::shaft_line::case::ShaftLineCase;
 use crate::study::Race;
 use crate::sweep::{self, Sweep};
 
@@ -32,6 +33,8 @@ pub enum SceneName {
     Pin,
     /// One sub-model on a test bench.
     Rig,
+    /// A shaft line that twists.
+    ShaftLine,
 }
 
 /// All scenes. The first one reads cases that name none of them, so that the rest of what is wrong is reported too.
@@ -39,6 +42,7 @@ pub static SCENES: &[SceneEntry] = &[
     SceneEntry::of::<RingPackCase>("ring_pack"),
     SceneEntry::of::<PinCase>("pin"),
     SceneEntry::of::<RigCase>("rig"),
+    SceneEntry::of::<ShaftLineCase>("shaft_line"),
 ];
 
 /// What every case may say besides its physics.
