@@ -1,4 +1,4 @@
-//! Every case with checks against the values of its sources: one table, which stands in VALIDATION.md.
+//! Every bench, and every case with checks, against the values of its sources: one table, which stands in VALIDATION.md.
 
 mod common;
 
@@ -8,22 +8,21 @@ use std::path::{Path, PathBuf};
 use gudgeon_core::result::Check;
 use gudgeon_sim::{check, run};
 
-/// Cases with values of sources: those of the benches, and of all scenes whose case files hold checks.
-fn cases_with_checks() -> Vec<PathBuf> {
+/// Every bench, and every engine case that compares itself with its source.
+fn cases() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases");
-    let list = |folder: PathBuf| {
-        let mut files: Vec<_> = std::fs::read_dir(folder)
-            .expect("the folder of the cases")
-            .map(|e| e.expect("an entry").path())
-            .filter(|p| p.extension().is_some_and(|e| e == "toml"))
-            .collect();
-        files.sort();
-        files
-    };
-    let has_checks =
-        |p: &PathBuf| std::fs::read_to_string(p).is_ok_and(|t| t.lines().any(|l| l.trim() == "[[checks]]"));
-    let scenes = list(folder.clone()).into_iter().filter(has_checks);
-    list(folder.join("rigs")).into_iter().chain(scenes).collect()
+    let mut files: Vec<_> = ["", "rigs"]
+        .iter()
+        .flat_map(|f| std::fs::read_dir(folder.join(f)).expect("the folder of the cases"))
+        .map(|e| e.expect("an entry").path())
+        .filter(|p| p.extension().is_some_and(|e| e == "toml"))
+        .filter(|p| {
+            let bench = p.parent().is_some_and(|f| f.ends_with("rigs"));
+            bench || std::fs::read_to_string(p).expect("a case").contains("[[checks]]")
+        })
+        .collect();
+    files.sort();
+    files
 }
 
 /// Its name below the folder of the cases.
@@ -49,19 +48,17 @@ fn value(v: f64) -> String {
 #[test]
 fn every_case_agrees_with_its_sources() {
     let mut text = String::from(
-        "# Validation\n\nEvery case of `cases/rigs`, and every other case with checks, beside the values of its sources. The test `validation` makes this \
+        "# Validation\n\nEvery bench of `cases/rigs` and every other case with checks beside the values of its sources. The test `validation` makes this \
          file and fails when a deviation is larger than admitted, or when a model that must fail (it does not conserve mass, \
          say) does not. Deviations are relative, or absolute where the source gives zero. The published engine cases have \
          tables of their own, made by the tests `zottin` and `tomanik`.\n",
     );
     let mut wrong = Vec::new();
     let mut rows = 0;
-    for path in cases_with_checks() {
+    for path in cases() {
         let c = check(&path, &[]).unwrap_or_else(|r| panic!("{}: {r}", path.display()));
         let r = run(&c, &mut |_| {}).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-        let rig = path.parent().is_some_and(|p| p.ends_with("rigs"));
-        let folder = if rig { "cases/rigs" } else { "cases" };
-        let _ = write!(text, "\n## {}\n\n`{folder}/{}.toml`. {}\n\n", r.title, r.case, r.source);
+        let _ = write!(text, "\n## {}\n\n`cases/{}.toml`. {}\n\n", r.title, name(&path), r.source);
         if r.checks.is_empty() {
             text.push_str("No values to compare with.\n");
             continue;

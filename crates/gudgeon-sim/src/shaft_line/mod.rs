@@ -128,7 +128,7 @@ impl SceneCase for ShaftLineCase {
             {
                 let mut steady = TorsionOut::default();
                 Orders {}.build(&start.context(case, &a)).map_err(one)?.run(&mut steady).map_err(model)?;
-                start.from_steady(&steady);
+                start.take_steady(&steady);
             }
             progress(Progress { phase: "response".into(), fraction: 0.2 });
             let mut torsion = case.models.torsion.build(&start.context(case, &a)).map_err(one)?;
@@ -342,7 +342,7 @@ impl Start {
         s
     }
 
-    fn from_steady(&mut self, out: &TorsionOut) {
+    fn take_steady(&mut self, out: &TorsionOut) {
         self.angles.clone_from(&out.mean_angle);
         for o in &out.orders {
             for (i, a) in o.angle.iter().enumerate() {

@@ -73,8 +73,7 @@ impl<'a> Results<'a> {
     /// Gas torque, work and inertia of the throws at constant speed.
     pub fn throws(&mut self, throws: &[LineThrow]) {
         let speed = self.case.speed.si();
-        let mut table = Series::default();
-        table.axis = column("angle", "deg", Vec::new());
+        let mut table = Series { axis: column("angle", "deg", Vec::new()), columns: Vec::new() };
         let mut curves = Vec::new();
         for (k, t) in throws.iter().enumerate() {
             let n = k + 1;

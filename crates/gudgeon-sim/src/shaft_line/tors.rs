@@ -62,16 +62,16 @@ pub fn parse(text: &str) -> Result<Import, String> {
     for (i, c) in structure.iter().enumerate() {
         let end = |k: usize| c.get(k).and_then(Value::as_str).and_then(|s| s.split_once('.'));
         match (end(0), end(1)) {
-            (Some(a), Some(b)) => reader.connections.push((a, b)),
+            (Some(a), Some(b)) => reader.connections.push([a, b]),
             _ => return Err(format!("structure.{i}: a connection is a pair of `component.element`")),
         }
     }
     let starts: Vec<&str> = components
         .iter()
         .filter_map(|c| c.get("name").and_then(Value::as_str))
-        .filter(|n| !reader.connections.iter().any(|(_, b)| b.0 == *n))
+        .filter(|n| !reader.connections.iter().any(|[_, b]| b.0 == *n))
         .collect();
-    let connected = |n: &&&str| reader.connections.iter().any(|(a, _)| a.0 == **n);
+    let connected = |n: &&&str| reader.connections.iter().any(|[a, _]| a.0 == **n);
     let start = match (components.len(), starts.iter().filter(connected).count()) {
         (1, _) => starts.first().copied().ok_or("the component has no name")?,
         (_, 1) => starts.iter().find(connected).copied().unwrap_or_default(),
@@ -90,7 +90,8 @@ pub fn parse(text: &str) -> Result<Import, String> {
 
 struct Reader<'a> {
     components: &'a [Value],
-    connections: Vec<((&'a str, &'a str), (&'a str, &'a str))>,
+    /// From and to, component and element each.
+    connections: Vec<[(&'a str, &'a str); 2]>,
     out: Import,
     /// Name of every gear with its node and its size (teeth or diameter).
     gears: Vec<(String, usize, f64)>,
@@ -283,8 +284,8 @@ impl<'a> Reader<'a> {
             let next: Vec<&'a str> = self
                 .connections
                 .iter()
-                .filter(|(a, _)| a.0 == name && a.1 == own)
-                .map(|(_, b)| b.0)
+                .filter(|[a, _]| a.0 == name && a.1 == own)
+                .map(|[_, b]| b.0)
                 .collect();
             for next in next {
                 self.component(next, node, depth + 1)?;
