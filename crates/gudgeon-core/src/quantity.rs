@@ -100,6 +100,8 @@ dimensions! {
     Volume, Volume, PosVolume, "a volume", [("m3", 1.0, 0.0), ("l", 1e-3, 0.0), ("cm3", 1e-6, 0.0), ("mm3", 1e-9, 0.0)];
     /// Mass \[kg\].
     Mass, Mass, PosMass, "a mass", [("kg", 1.0, 0.0), ("g", 1e-3, 0.0), ("mg", 1e-6, 0.0)];
+    /// Moment of inertia \[kg m²\].
+    Inertia, Inertia, PosInertia, "a moment of inertia", [("kg m2", 1.0, 0.0), ("kg cm2", 1e-4, 0.0), ("kg mm2", 1e-6, 0.0), ("g mm2", 1e-9, 0.0)];
     /// Force \[N\].
     Force, Force, PosForce, "a force", [("N", 1.0, 0.0), ("kN", 1e3, 0.0)];
     /// Pressure \[Pa\], absolute unless the key says otherwise.

@@ -12,3 +12,4 @@ use gudgeon_gas as _;
 use gudgeon_kinematics as _;
 use gudgeon_rig as _;
 use gudgeon_ring as _;
+use gudgeon_skirt as _;
