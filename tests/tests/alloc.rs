@@ -11,6 +11,7 @@ use std::cell::Cell;
 use std::path::Path;
 
 use common::*;
+use gudgeon_sim::case::RingPackCase;
 use gudgeon_sim::ring_pack::assemble::assemble;
 use gudgeon_sim::ring_pack::pack::Base;
 
@@ -52,7 +53,8 @@ static ALLOCATOR: Counting = Counting;
 fn a_right_hand_side_allocates_nothing() {
     for gas in ["orifice_network", "gap_orifice", "narrow_channel"] {
         let case = checked("turbo-diesel-120", &[&format!("models.gas_flow.model={gas}")]);
-        let mut pack = assemble(case.ring_pack().expect("a ring pack"), Path::new(".")).expect("assembles");
+        let mut pack =
+            assemble(case.of::<RingPackCase>().expect("a ring pack"), Path::new(".")).expect("assembles");
         let n = pack.layout.n;
         let mut y = vec![0.0; n];
         pack.initial(2e5, &mut y);

@@ -3,6 +3,7 @@
 mod common;
 
 use common::*;
+use gudgeon_sim::case::RingPackCase;
 use gudgeon_sim::{check, explain};
 
 #[test]
@@ -14,7 +15,7 @@ fn every_case_is_possible_and_explains_itself() {
     files.sort();
     for path in files.iter().filter(|p| p.extension().is_some_and(|e| e == "toml")) {
         let checked = check(path, &[]).unwrap_or_else(|r| panic!("{}: {r}", path.display()));
-        let case = checked.ring_pack().expect("a ring pack");
+        let case = checked.of::<RingPackCase>().expect("a ring pack");
         assert!(!case.title.is_empty() && !case.source.is_empty(), "{}", path.display());
         assert!(!case.assumptions.is_empty(), "{}: nothing is assumed?", path.display());
         let e = explain(&checked).unwrap_or_else(|e| panic!("{}: {e}", path.display()));

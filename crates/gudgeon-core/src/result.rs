@@ -177,7 +177,8 @@ pub struct Figure {
     /// One line of explanation.
     #[serde(default)]
     pub hint: String,
-    /// The table it reads: `series`, or a key of [`RunResult::tables`].
+    /// The table it reads: `series`, or a key of [`RunResult::tables`]; empty when it holds all it shows.
+    #[serde(default)]
     pub table: String,
     /// How it is drawn.
     pub kind: FigureKind,
@@ -207,6 +208,123 @@ pub enum FigureKind {
         /// Column shown as colour.
         value: String,
     },
+    /// Something drawn to scale, still or moving. Reads no table.
+    Drawing {
+        /// What all frames show.
+        fixed: Vec<Shape>,
+        /// What changes; several frames are shown one after the other.
+        frames: Vec<Frame>,
+    },
+    /// Labelled bars. Reads no table.
+    Bars {
+        /// Unit of the values, empty for a ratio.
+        unit: String,
+        /// The bars, from above.
+        bars: Vec<Bar>,
+    },
+}
+
+/// One of the pictures of a moving drawing.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Frame {
+    /// What tells it from the others: `372 deg`.
+    pub label: String,
+    /// What it shows.
+    pub shapes: Vec<Shape>,
+}
+
+/// Part of a drawing. Coordinates share one length unit, `y` upwards.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Shape {
+    /// Straight pieces between points.
+    Path {
+        /// The points.
+        points: Vec<[f64; 2]>,
+        /// Whether the last joins the first.
+        closed: bool,
+        /// How it looks.
+        style: Style,
+    },
+    /// A circle.
+    Circle {
+        /// Its centre.
+        centre: [f64; 2],
+        /// Its radius.
+        radius: f64,
+        /// How it looks.
+        style: Style,
+    },
+    /// Words.
+    Text {
+        /// Their place.
+        at: [f64; 2],
+        /// The words.
+        text: String,
+        /// What part of them stands there.
+        anchor: Anchor,
+    },
+    /// A dimension line with its arrows.
+    Dimension {
+        /// One end of what is measured.
+        from: [f64; 2],
+        /// The other.
+        to: [f64; 2],
+        /// How far the line stands off, to the left of the way from one to the other.
+        offset: f64,
+        /// What is written on it.
+        text: String,
+    },
+}
+
+/// How a [`Shape`] looks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Style {
+    /// A strong line.
+    Outline,
+    /// A thin line.
+    Thin,
+    /// A thin dashed line: hidden, or a reference.
+    Dashed,
+    /// A dash-dotted line: an axis.
+    Axis,
+    /// A line that draws the eye.
+    Accent,
+    /// A second line that does.
+    Second,
+    /// A solid body.
+    Metal,
+    /// A solid body that is cut.
+    Cut,
+    /// A hollow in a body.
+    Hollow,
+    /// Oil.
+    Oil,
+}
+
+/// Which part of a text stands at its place.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Anchor {
+    /// Its beginning.
+    Start,
+    /// Its middle.
+    #[default]
+    Middle,
+    /// Its end.
+    End,
+}
+
+/// One bar of a figure.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Bar {
+    /// What it is.
+    pub label: String,
+    /// How long it is.
+    pub value: f64,
+    /// A mark that it should not pass.
+    pub limit: Option<f64>,
 }
 
 /// A result beside the value that a source gives for it.

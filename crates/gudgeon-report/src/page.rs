@@ -12,6 +12,7 @@ use crate::summary::{BalanceSheet, ModelEntry, ResultValue, SkippedEntry, Solver
 const STYLE: &str = include_str!("assets/style.css");
 const CORE: &str = include_str!("assets/core.js");
 const PLOT: &str = include_str!("assets/plot.js");
+const DRAWING: &str = include_str!("assets/drawing.js");
 const FIGURE: &str = include_str!("assets/figure.js");
 const SECTION: &str = include_str!("assets/section.js");
 const RUN: &str = include_str!("assets/run.js");
@@ -67,8 +68,8 @@ fn json_for_script(value: &Value) -> String {
 /// One whole page.
 pub(crate) fn document(kind: Kind, title: &str, body: &str, data: &Value) -> String {
     let scripts: &[&str] = match kind {
-        Kind::Run => &[CORE, PLOT, SECTION, RUN, FIGURE],
-        Kind::Comparison => &[CORE, PLOT, COMPARE, FIGURE],
+        Kind::Run => &[CORE, PLOT, SECTION, RUN, DRAWING, FIGURE],
+        Kind::Comparison => &[CORE, PLOT, COMPARE, DRAWING, FIGURE],
         Kind::Bench => &[CORE, BENCH],
     };
     let mut out = String::new();
@@ -330,7 +331,7 @@ mod tests {
 
     #[test]
     fn nothing_in_the_scripts_closes_their_element() {
-        for script in [CORE, PLOT, FIGURE, SECTION, RUN, COMPARE, BENCH] {
+        for script in [CORE, PLOT, DRAWING, FIGURE, SECTION, RUN, COMPARE, BENCH] {
             assert!(!script.to_lowercase().contains("</script"));
             assert!(!script.contains("<!--"));
             // Text from a case must never be parsed as markup.

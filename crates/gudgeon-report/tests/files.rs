@@ -55,6 +55,63 @@ fn summary_has_the_promised_shape() {
 }
 
 #[test]
+fn drawings_and_bars_travel_with_the_page() {
+    use gudgeon_core::result::{Anchor, Bar, Figure, FigureKind, Frame, Shape, Style};
+    let path = |x: f64, style| Shape::Path {
+        points: vec![[x, 0.0], [x + 20.0, 0.0], [x + 20.0, 30.0], [x, 30.0]],
+        closed: true,
+        style,
+    };
+    let dimension =
+        |from, to, offset: f64, text: &str| Shape::Dimension { from, to, offset, text: text.into() };
+    let drawing = FigureKind::Drawing {
+        fixed: vec![
+            path(0.0, Style::Cut),
+            dimension([0.0, 30.0], [20.0, 30.0], 8.0, "20 mm"),
+            dimension([0.0, 0.0], [0.0, 30.0], 8.0, "30 mm"),
+            Shape::Text { at: [10.0, 15.0], text: "boss".into(), anchor: Anchor::Middle },
+        ],
+        frames: [25.0, 30.0, 35.0]
+            .map(|x| Frame {
+                label: format!("{x} mm"),
+                shapes: vec![
+                    path(x, Style::Metal),
+                    Shape::Circle { centre: [x + 10.0, 15.0], radius: 5.0, style: Style::Hollow },
+                ],
+            })
+            .to_vec(),
+    };
+    let bar = |label: &str, value, limit| Bar { label: label.into(), value, limit };
+    let bars = FigureKind::Bars {
+        unit: String::new(),
+        bars: vec![
+            bar("bending", 0.8, Some(1.0)),
+            bar("shear", 1.2, Some(1.0)),
+            bar("slenderness", 0.3, None),
+        ],
+    };
+    let figure =
+        |title: &str, kind| Figure { title: title.into(), hint: String::new(), table: String::new(), kind };
+    let run = RunResult {
+        case: "drawn".into(),
+        figures: vec![figure("section", drawing), figure("utilisation", bars)],
+        ..RunResult::default()
+    };
+    let dir = scratch("drawn");
+    let files = write_run(&run, &dir).unwrap();
+    let page = data(&read(&files.report));
+    assert_eq!(page["figures"][0]["kind"]["drawing"]["frames"].as_array().unwrap().len(), 3);
+    assert_eq!(page["figures"][1]["kind"]["bars"]["bars"][1]["value"], 1.2);
+    // The page is made again from its files.
+    let first = read(&files.report);
+    rewrite(&dir).unwrap();
+    assert_eq!(first, read(&files.report));
+    if std::env::var_os("GUDGEON_KEEP_REPORT").is_none() {
+        fs::remove_dir_all(dir).unwrap();
+    }
+}
+
+#[test]
 fn no_number_in_json_is_other_than_finite() {
     let mut run = common::run(1);
     run.results.insert("lost".into(), common::value(f64::NAN, "N", ""));

@@ -12,6 +12,9 @@ use gudgeon_core::quantity::{
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::scene::{CheckCase, SceneName};
+use crate::sweep::Sweep;
+
 /// A piston ring pack in one cylinder.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -50,14 +53,12 @@ pub struct RingPackCase {
     /// What is wanted.
     #[serde(default)]
     pub outputs: Outputs,
-}
-
-/// Scenes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum SceneName {
-    /// A piston ring pack in one cylinder.
-    RingPack,
+    /// Inputs that are varied, one or two: every combination is run.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sweeps: Vec<Sweep>,
+    /// Results of a source to compare with.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub checks: Vec<CheckCase>,
 }
 
 /// Engine.

@@ -8,7 +8,9 @@ pub mod load;
 pub mod rig;
 pub mod ring_pack;
 pub mod run;
+pub mod scene;
 pub mod study;
+pub mod sweep;
 
 pub use run::{Checked, Explanation, Progress, RunError, check, explain, run};
 pub use study::{bench, compare};

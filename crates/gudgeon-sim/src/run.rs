@@ -3,24 +3,13 @@
 use std::path::Path;
 use std::time::Instant;
 
-use gudgeon_core::result::{Figure, FigureKind, ModelUse, RunResult, Skipped};
-use gudgeon_core::{BuildError, EvalError, Registry};
+use gudgeon_core::result::{ModelUse, RunResult, Skipped};
+use gudgeon_core::{EvalError, Registry};
 use gudgeon_numerics::ode::IntegrateError;
 use serde::Serialize;
 
-use crate::case::RingPackCase;
-use crate::load::{Loaded, Report, Source, load_source, read, scene_of};
-use crate::rig;
-use crate::rig::case::RigCase;
-use crate::ring_pack::{self, assemble};
-
-/// A case of any scene, with its places in the file.
-pub enum Case {
-    /// `scene = "ring_pack"`
-    RingPack(Box<Loaded<RingPackCase>>),
-    /// `scene = "rig"`
-    Rig(Box<Loaded<RigCase>>),
-}
+use crate::load::{Report, Source, read};
+use crate::scene::{self, Scene, SceneCase};
 
 /// A case that was read, resolved and found to be possible.
 pub struct Checked {
@@ -29,7 +18,7 @@ pub struct Checked {
     /// What a person should know although nothing is wrong (keys dropped by a model swap).
     pub notes: Vec<String>,
     /// The case.
-    pub case: Case,
+    pub case: Box<dyn Scene>,
 }
 
 /// How far a run is.
@@ -53,9 +42,9 @@ pub enum RunError {
         /// What it said.
         source: EvalError,
     },
-    /// The sub-model of a rig refused.
+    /// A sub-model refused, wherever it was asked.
     #[error("{source}")]
-    Rig {
+    Model {
         /// What it said.
         source: EvalError,
     },
@@ -94,29 +83,12 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<Checked, Report> {
 }
 
 fn checked(name: String, source: Source, overrides: &[String]) -> Result<Checked, Report> {
-    // A scene that does not exist is reported by the reader of the commonest one, with the rest of what is wrong.
-    match scene_of(&source, overrides).as_deref() {
-        Some("rig") => {
-            let loaded: Loaded<RigCase> = load_source(source, overrides)?;
-            let errors = rig::legal(&loaded);
-            if !errors.is_empty() {
-                return Err(loaded.refuse(&errors));
-            }
-            Ok(Checked { name, notes: loaded.notes.clone(), case: Case::Rig(Box::new(loaded)) })
-        }
-        _ => {
-            let loaded: Loaded<RingPackCase> = load_source(source, overrides)?;
-            let mut errors = match assemble::assemble(&loaded.value, &loaded.source.folder) {
-                Ok(_) => Vec::new(),
-                Err(e) => e,
-            };
-            errors.extend(ring_pack::legal(&loaded.value));
-            if !errors.is_empty() {
-                return Err(loaded.refuse(&errors));
-            }
-            Ok(Checked { name, notes: loaded.notes.clone(), case: Case::RingPack(Box::new(loaded)) })
-        }
+    let case = scene::load(source, overrides)?;
+    let errors = case.legal();
+    if !errors.is_empty() {
+        return Err(case.refuse(&errors));
     }
+    Ok(Checked { name, notes: case.notes().to_vec(), case })
 }
 
 impl Checked {
@@ -125,53 +97,20 @@ impl Checked {
     /// # Errors
     /// As [`check`].
     pub fn with(&self, more: &[String]) -> Result<Self, Report> {
-        let overrides: Vec<String> = self.overrides().iter().chain(more).cloned().collect();
-        checked(self.name.clone(), self.source().clone(), &overrides)
-    }
-
-    /// The text it was read from.
-    #[must_use]
-    pub fn source(&self) -> &Source {
-        match &self.case {
-            Case::RingPack(l) => &l.source,
-            Case::Rig(l) => &l.source,
-        }
-    }
-
-    /// The `--set` arguments that changed it.
-    #[must_use]
-    pub fn overrides(&self) -> &[String] {
-        match &self.case {
-            Case::RingPack(l) => &l.overrides,
-            Case::Rig(l) => &l.overrides,
-        }
+        let overrides: Vec<String> = self.case.overrides().iter().chain(more).cloned().collect();
+        checked(self.name.clone(), self.case.source().clone(), &overrides)
     }
 
     /// Title.
     #[must_use]
     pub fn title(&self) -> &str {
-        match &self.case {
-            Case::RingPack(l) => &l.value.title,
-            Case::Rig(l) => &l.value.title,
-        }
+        self.case.heading().title
     }
 
-    /// A report on errors found after the case was read.
+    /// The case, when it is one of the scene `C`.
     #[must_use]
-    pub fn refuse<'e>(&self, errors: impl IntoIterator<Item = &'e BuildError>) -> Report {
-        match &self.case {
-            Case::RingPack(l) => l.refuse(errors),
-            Case::Rig(l) => l.refuse(errors),
-        }
-    }
-
-    /// The case, when its scene is a ring pack.
-    #[must_use]
-    pub fn ring_pack(&self) -> Option<&RingPackCase> {
-        match &self.case {
-            Case::RingPack(l) => Some(&l.value),
-            Case::Rig(_) => None,
-        }
+    pub fn of<C: SceneCase>(&self) -> Option<&C> {
+        self.case.value().downcast_ref()
     }
 }
 
@@ -230,34 +169,13 @@ pub struct Explanation {
 /// When the sub-models cannot be built (which [`check`] would have said).
 pub fn explain(c: &Checked) -> Result<Explanation, RunError> {
     let registry = Registry::collect();
-    let text_of = |e: serde_json::Error| RunError::Refused(e.to_string());
     let mut told = Explanation {
         case: c.name.clone(),
         title: c.title().into(),
         notes: c.notes.clone(),
         ..Explanation::default()
     };
-    let used = match &c.case {
-        Case::RingPack(loaded) => {
-            let pack = build(loaded)?;
-            let (used, skipped) = assemble::models_in_use(&loaded.value, &pack.plan);
-            told.resolved = loaded.resolved().map_err(text_of)?;
-            told.runs = pack.plan.runs.clone();
-            told.skipped = skipped;
-            told.results = pack.plan.wanted.clone();
-            told.states = ring_pack::state_names(&pack);
-            used
-        }
-        Case::Rig(loaded) => {
-            told.resolved = loaded.resolved().map_err(text_of)?;
-            let models = rig::models(&loaded.value);
-            told.runs = models
-                .iter()
-                .map(|(k, m)| Skipped { what: format!("{k}/{m}"), why: "stands on the bench".into() })
-                .collect();
-            models.into_iter().map(|(k, m)| model_use(&registry, k, m)).collect()
-        }
-    };
+    let used = c.case.explain(&mut told)?;
     told.models = used
         .into_iter()
         .map(|used| {
@@ -340,70 +258,19 @@ fn print_value(s: &mut String, path: &str, v: &serde_json::Value) {
     }
 }
 
-fn build(loaded: &Loaded<RingPackCase>) -> Result<ring_pack::pack::Pack, RunError> {
-    assemble::assemble(&loaded.value, &loaded.source.folder)
-        .map_err(|e| RunError::Refused(e.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")))
-}
-
 /// Runs a case.
 ///
 /// # Errors
 /// What stopped it; nothing has been written.
 pub fn run(c: &Checked, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
     let begin = Instant::now();
-    let mut result = match &c.case {
-        Case::RingPack(loaded) => run_ring_pack(loaded, progress)?,
-        Case::Rig(loaded) => rig::run(loaded, progress)?,
-    };
+    let mut result = scene::run(c.case.as_ref(), progress)?;
     result.case.clone_from(&c.name);
     result.gudgeon = env!("CARGO_PKG_VERSION").into();
     result.solver.notes.extend(c.notes.iter().cloned());
-    if let Some((name, _)) = result.results.iter().find(|(_, v)| !v.value.is_finite()) {
-        return Err(RunError::NotANumber(name.clone()));
-    }
     if let Some(column) = result.series.columns.iter().find(|c| c.values.iter().any(|v| !v.is_finite())) {
         return Err(RunError::NotANumber(column.name.clone()));
     }
     result.seconds.insert("total".into(), begin.elapsed().as_secs_f64());
-    Ok(result)
-}
-
-fn run_ring_pack(
-    loaded: &Loaded<RingPackCase>,
-    progress: &mut dyn FnMut(Progress),
-) -> Result<RunResult, RunError> {
-    let begin = Instant::now();
-    let mut pack = build(loaded)?;
-    let built = begin.elapsed().as_secs_f64();
-    let case = &loaded.value;
-    let solved = ring_pack::solve(case, &mut pack, progress)?;
-    let meter = ring_pack::meter(case);
-    let mut result = RunResult {
-        title: case.title.clone(),
-        source: case.source.clone(),
-        assumptions: case.assumptions.clone(),
-        scene: "ring_pack".into(),
-        ..RunResult::default()
-    };
-    (result.models, result.skipped) = assemble::models_in_use(case, &pack.plan);
-    result.results = solved.record.results(&pack, &solved.totals, meter);
-    result.balance = solved.totals.balance.clone();
-    result.events = solved.record.events(&pack);
-    result.branches = solved.branches;
-    result.solver = solved.report;
-    result.series = solved.record.series(&pack, &solved.totals);
-    if let Some(liner) = solved.liner {
-        let lines = liner.columns.iter().map(|c| (c.name.replace("film_at_", "") + " deg", c.name.clone()));
-        result.figures.push(Figure {
-            title: "Oil on the liner".into(),
-            hint: "at the dead centres, over the height above the lowest place of the gudgeon pin".into(),
-            table: "liner".into(),
-            kind: FigureKind::Lines { x: "height".into(), lines: lines.collect(), log_x: false, log_y: true },
-        });
-        result.tables.insert("liner".into(), liner);
-    }
-    result.section = Some(ring_pack::geometry::section(case, &pack.geo));
-    result.seconds.insert("build".into(), built);
-    result.seconds.insert("solve".into(), solved.seconds);
     Ok(result)
 }

@@ -7,7 +7,6 @@ use gudgeon_core::result::{BenchPoint, BenchTable, Comparison, Variant};
 use gudgeon_core::{BuildError, Registry};
 use indexmap::IndexMap;
 
-use crate::case::{IntegratorName, RingPackCase};
 use crate::load::Report;
 use crate::run::{Checked, Progress, RunError, check, run};
 
@@ -42,7 +41,7 @@ pub fn compare(
         if values.is_empty() || values.iter().any(String::is_empty) {
             let e = BuildError::new(format!("the swap `{p}` has an empty value"))
                 .help("write `--swap PATH=A,B,C`");
-            return Err(base.refuse([&e]));
+            return Err(base.case.refuse(&[e]));
         }
         let p = swap_path(p);
         combinations = combinations
@@ -64,7 +63,7 @@ pub fn compare(
         if let Some(Err(report)) = checked.into_iter().next() {
             return Err(report);
         }
-        return Err(base.refuse([&BuildError::new("no combination to run")]));
+        return Err(base.case.refuse(&[BuildError::new("no combination to run")]));
     }
     let total = combinations.len() as f64;
     let variants = combinations
@@ -101,74 +100,41 @@ pub fn compare(
     })
 }
 
-/// Results that a work-precision study looks at unless told otherwise; those that the case has.
-const DEFAULT_RESULTS: [&str; 3] = ["blow_by", "friction_power", "land2.p_max"];
 /// Runs per point, three for slow ones; the median counts.
 const REPEATS: usize = 5;
 
-/// Methods of the sweep.
-const METHODS: [&str; 3] = ["implicit, order 3", "implicit, order 5", "as_published"];
-
-struct Sweep {
-    method: &'static str,
-    setting: String,
-    is_default: bool,
-    set: Vec<String>,
+/// One solver at one setting.
+pub struct Contender {
+    /// Solver: settings of one method form one curve.
+    pub method: &'static str,
+    /// The setting: `tolerance 1e-4`, `16 sub-steps`.
+    pub setting: String,
+    /// Whether a case that says nothing has it.
+    pub is_default: bool,
+    /// The setting as `--set` takes it.
+    pub set: Vec<String>,
 }
 
-fn sweeps(case: &RingPackCase) -> Vec<Sweep> {
-    let mut all = Vec::new();
-    let default = case.solver.tolerance.si();
-    let orders: [(&str, &str, IntegratorName, &[f64]); 2] = [
-        (METHODS[0], "rodas3", IntegratorName::Rodas3, &[1e-2, 3e-3, 1e-3, 3e-4, 1e-4]),
-        (METHODS[1], "rodas5p", IntegratorName::Rodas5p, &[1e-2, 1e-3, 1e-4, 1e-5, 1e-6]),
-    ];
-    for (method, name, integrator, tolerances) in orders {
-        for &t in tolerances {
-            all.push(Sweep {
-                method,
-                setting: format!("tolerance {t:.0e}"),
-                is_default: (t / default - 1.0).abs() < 1e-9 && case.solver.resolved() == integrator,
-                set: vec![
-                    "solver.method=implicit".into(),
-                    format!("solver.integrator={name}"),
-                    format!("solver.tolerance={t:e}"),
-                    format!("solver.periodicity={t:e}"),
-                ],
-            });
-        }
-    }
-    let rings = case.rings.len() as u32;
-    let published = case.solver.method == crate::case::Method::AsPublished;
-    // The published scheme and its own refinement. The scheme follows from the axial motion.
-    let discrete = case.models.ring_motion.typetag_name() == "three_seat";
-    let (scheme, own) = if discrete { ("degree_march", 1) } else { ("substep_march", rings + 1) };
-    for factor in [1u32, 2, 4, 8] {
-        let steps = own * factor;
-        let gas = if published && case.solver.gas_steps > 0 { case.solver.gas_steps } else { 0 };
-        all.push(Sweep {
-            method: METHODS[2],
-            setting: format!("{steps} steps per degree"),
-            is_default: factor == 1,
-            set: vec![
-                "solver.method=as_published".into(),
-                format!("solver.scheme={scheme}"),
-                format!("solver.steps_per_degree={steps}"),
-                format!("solver.gas_steps={gas}"),
-                "solver.passes=720".into(),
-                // The scheme as printed has no limit in a keystone groove; this variant of its flank rule has.
-                "solver.clamp=inward".into(),
-                format!("solver.cycles={}", if discrete { 8 } else { 3 }),
-            ],
-        });
-    }
-    all
+/// What `bench` runs for a scene.
+pub struct Race {
+    /// Methods, in the order in which they are named.
+    pub methods: Vec<&'static str>,
+    /// Every method at every setting.
+    pub contenders: Vec<Contender>,
+    /// Settings that give the reference.
+    pub reference: Vec<String>,
+    /// Settings that tell how far the reference can be trusted.
+    pub reference_check: Vec<String>,
+    /// Both in words, up to "by at most".
+    pub reference_is: &'static str,
+    /// Results that are looked at unless told otherwise; those that the case has.
+    pub results: Vec<&'static str>,
 }
 
 /// Sweeps the accuracy of every solver against a reference and states error beside run time.
 ///
-/// The reference is the implicit system solved by the other integrator (Radau IIA) at a tolerance a hundred times tighter
-/// than the tightest point; the same integrator ten times looser tells how far it can be trusted.
+/// The scene names the reference, an independent method far more accurate than the tightest contender, and a looser one that tells how
+/// far it can be trusted.
 ///
 /// # Errors
 /// The reference cannot be run.
@@ -177,30 +143,23 @@ pub fn bench(
     results: &[String],
     progress: &mut dyn FnMut(Progress),
 ) -> Result<BenchTable, RunError> {
-    let Some(case) = base.ring_pack() else {
+    let Some(race) = base.case.race() else {
         return Err(RunError::Refused(
-            "`bench` races the solvers of a ring pack, and a rig has none; `compare` swaps its sub-model, and a sweep over its grid \
-             with checks against a source shows the errors"
+            "`bench` races the solvers of a scene, and this one has none to choose from; `compare` swaps sub-models, and a sweep over a \
+             grid with checks against a source shows the errors"
                 .into(),
         ));
     };
-    let reference = |tolerance: f64| -> Result<_, RunError> {
-        let c = base
-            .with(&[
-                "solver.method=implicit".into(),
-                "solver.integrator=radau5".into(),
-                format!("solver.tolerance={tolerance:e}"),
-                format!("solver.periodicity={tolerance:e}"),
-            ])
-            .map_err(|r| RunError::Refused(r.to_string()))?;
+    let reference = |set: &[String]| -> Result<_, RunError> {
+        let c = base.with(set).map_err(|r| RunError::Refused(r.to_string()))?;
         run(&c, &mut |_| {})
     };
     progress(Progress { phase: "reference".into(), fraction: 0.0 });
-    let tight = reference(1e-8)?;
+    let tight = reference(&race.reference)?;
     progress(Progress { phase: "reference check".into(), fraction: 0.1 });
-    let loose = reference(1e-7)?;
+    let loose = reference(&race.reference_check)?;
     let chosen: Vec<String> = if results.is_empty() {
-        DEFAULT_RESULTS.iter().map(|s| (*s).to_owned()).filter(|n| tight.results.contains_key(n)).collect()
+        race.results.iter().map(|s| (*s).to_owned()).filter(|n| tight.results.contains_key(n)).collect()
     } else {
         results.to_vec()
     };
@@ -221,16 +180,14 @@ pub fn bench(
     let mut table = BenchTable {
         case: base.name.clone(),
         title: base.title().to_owned(),
-        reference: format!(
-            "implicit system, Radau IIA order 5, tolerance 1e-8; differs from the same at 1e-7 by at most {trust:.1e} (relative)"
-        ),
+        reference: format!("{} by at most {trust:.1e} (relative)", race.reference_is),
         reference_values: chosen
             .iter()
             .filter_map(|n| tight.results.get(n).map(|v| (n.clone(), v.clone())))
             .collect(),
         ..BenchTable::default()
     };
-    let sweeps = sweeps(case);
+    let sweeps = &race.contenders;
     let total = (sweeps.len() * REPEATS) as f64;
     let mut samples: Vec<Vec<(f64, f64)>> = vec![Vec::new(); sweeps.len()];
     // Methods take turns, so that a slow spell of the machine hits all of them.
@@ -284,12 +241,12 @@ pub fn bench(
             point.seconds_per_cycle = seconds / cycles;
         }
     }
-    table.findings = findings(&table, &chosen);
+    table.findings = findings(&table, &race.methods, &chosen);
     Ok(table)
 }
 
 /// Compares methods at equal error: time interpolated on the log-log curve of each.
-fn findings(table: &BenchTable, chosen: &[String]) -> Vec<String> {
+fn findings(table: &BenchTable, methods: &[&str], chosen: &[String]) -> Vec<String> {
     let mut out = Vec::new();
     let worst = |p: &BenchPoint| chosen.iter().filter_map(|n| p.errors.get(n)).copied().fold(0.0, f64::max);
     let best = |method: &str, error: f64| {
@@ -301,7 +258,7 @@ fn findings(table: &BenchTable, chosen: &[String]) -> Vec<String> {
     };
     for error in [1e-2, 1e-3, 1e-4] {
         let (mut reach, mut fail) = (Vec::new(), Vec::new());
-        for method in METHODS {
+        for &method in methods {
             match best(method, error) {
                 Some(p) => reach.push(p),
                 None => fail.push(method),

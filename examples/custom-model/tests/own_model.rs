@@ -54,7 +54,7 @@ fn the_command_line_knows_it() {
 #[test]
 fn a_case_picks_it() {
     let c = gudgeon_sim::check(&case_file(), &[]).map_err(|r| r.to_string()).expect("a valid case");
-    assert_eq!(c.ring_pack().expect("a ring pack").models.oil.typetag_name(), "walther");
+    assert_eq!(c.of::<RingPackCase>().expect("a ring pack").models.oil.typetag_name(), "walther");
     let e = gudgeon_sim::explain(&c).expect("a possible case");
     let m = e.models.iter().find(|m| m.used.kind == "oil").expect("friction needs an oil");
     assert_eq!((m.used.model.as_str(), m.used.references[0].as_str()), ("walther", "walther1931"));
@@ -120,7 +120,7 @@ fn it_is_swapped_for_a_built_in_model_and_back() {
     // With its key it is a case like any other.
     let set = [r#"models.oil={ model = "constant", viscosity = "5 mPa s" }"#.to_owned()];
     let c = gudgeon_sim::check(&case_file(), &set).map_err(|r| r.to_string()).expect("a valid case");
-    assert_eq!(c.ring_pack().expect("a ring pack").models.oil.typetag_name(), "constant");
+    assert_eq!(c.of::<RingPackCase>().expect("a ring pack").models.oil.typetag_name(), "constant");
 }
 
 #[test]

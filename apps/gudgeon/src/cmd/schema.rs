@@ -1,8 +1,7 @@
 //! `gudgeon schema`
 
 use gudgeon_core::schemars::SchemaGenerator;
-use gudgeon_sim::case::RingPackCase;
-use gudgeon_sim::rig::case::RigCase;
+use gudgeon_sim::scene::SCENES;
 use serde_json::json;
 
 use crate::failure::Failure;
@@ -10,7 +9,7 @@ use crate::ui::Ui;
 
 pub fn schema(ui: &Ui) -> Result<(), Failure> {
     let mut generator = SchemaGenerator::default();
-    let scenes = [generator.subschema_for::<RingPackCase>(), generator.subschema_for::<RigCase>()];
+    let scenes: Vec<_> = SCENES.iter().map(|s| s.schema(&mut generator)).collect();
     let definitions = generator.take_definitions(true);
     ui.json(&json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",

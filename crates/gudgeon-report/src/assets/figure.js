@@ -174,6 +174,12 @@
   if (host && DATA.figures) {
     const maps = h("div", { class: "charts" });
     for (const f of DATA.figures) {
+      const still = f.kind.drawing || f.kind.bars;
+      if (still) {
+        if (!maps.isConnected) host.append(maps);
+        (f.kind.drawing ? drawing : bars)(maps, { title: capital(f.title), hint: f.hint, ...still });
+        continue;
+      }
       const table = DATA.tables[f.table];
       if (!table) continue;
       const column = (name) => [table.axis, ...table.columns].find((c) => c.name === name);
@@ -185,7 +191,7 @@
         if (lines.length) curves(host, { title: f.title, hint: f.hint, xName: x.name.replace(/_/g, " "), xUnit: x.unit, lines, logX: k.log_x, logY: k.log_y });
       } else {
         const y = column(k.y), z = column(k.value);
-        // Maps stand side by side, where the first of them comes.
+        // Maps and drawings stand side by side, where the first of them comes.
         if (y && z && !maps.isConnected) host.append(maps);
         if (y && z) map(maps, { title: f.title, hint: f.hint, x: arrays[x.at], y: arrays[y.at], z: arrays[z.at], xName: x.name.replace(/_/g, " "), yName: y.name.replace(/_/g, " "), xUnit: x.unit, yUnit: y.unit, zUnit: z.unit });
       }

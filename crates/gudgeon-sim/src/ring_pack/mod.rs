@@ -13,6 +13,7 @@ pub mod oil;
 pub mod pack;
 pub mod plan;
 pub mod record;
+mod scene;
 pub mod substep_march;
 
 use std::time::Instant;

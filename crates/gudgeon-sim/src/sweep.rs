@@ -3,10 +3,48 @@
 use gudgeon_core::BuildError;
 use gudgeon_core::result::{Column, Figure, FigureKind, RunResult, Series};
 
-use super::case::{RigCase, Spacing, Sweep};
-use super::variant;
-use crate::load::Loaded;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
 use crate::run::{Progress, RunError};
+use crate::scene::{Scene, changed};
+
+/// One varied input. Give `values`, or `from`, `to` and `points`.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Sweep {
+    /// Path of the input, `rig.speed` or `models.oil.model`.
+    pub path: String,
+    /// The values as a case would write them: `["1 um", "2 um"]`, `["complementarity", "elrod_adams"]`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub values: Vec<String>,
+    /// First value, with its unit.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub from: String,
+    /// Last value, in the same unit.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub to: String,
+    /// Number of values between `from` and `to`, both included.
+    #[serde(default)]
+    pub points: u32,
+    /// How they are spaced.
+    #[serde(default)]
+    pub spacing: Spacing,
+    /// Results that the report draws over the sweep; empty: the first six.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub results: Vec<String>,
+}
+
+/// Spacing of the values of a sweep.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Spacing {
+    /// Equal steps.
+    #[default]
+    Linear,
+    /// Equal ratios.
+    Log,
+}
 
 /// Most runs of one sweep: at a millisecond each, a minute and a half.
 const MOST: usize = 100_000;
@@ -62,16 +100,16 @@ fn values(s: &Sweep) -> Result<Vec<String>, BuildError> {
 }
 
 /// What is wrong with the sweeps of a case.
-pub fn legal(case: &RigCase) -> Vec<BuildError> {
+pub fn legal(sweeps: &[Sweep]) -> Vec<BuildError> {
     let mut errors = Vec::new();
-    if case.sweeps.len() > 2 {
+    if sweeps.len() > 2 {
         errors.push(BuildError::at(
             "sweeps.2",
             "a case has one or two sweeps; more can be run from a script with `--set`",
         ));
     }
     let mut runs = 1usize;
-    for (k, s) in case.sweeps.iter().enumerate() {
+    for (k, s) in sweeps.iter().enumerate() {
         match values(s) {
             Ok(v) => runs = runs.saturating_mul(v.len()),
             Err(e) => errors.push(e.within(&format!("sweeps.{k}"))),
@@ -84,9 +122,9 @@ pub fn legal(case: &RigCase) -> Vec<BuildError> {
 }
 
 /// The change that each sweep begins with, with its number.
-pub fn first_values(case: &RigCase) -> Vec<(usize, String)> {
+pub fn first_values(sweeps: &[Sweep]) -> Vec<(usize, String)> {
     let first = |s: &Sweep| values(s).ok().and_then(|v| v.first().map(|v| format!("{}={v}", s.path)));
-    case.sweeps.iter().enumerate().filter_map(|(k, s)| first(s).map(|f| (k, f))).collect()
+    sweeps.iter().enumerate().filter_map(|(k, s)| first(s).map(|f| (k, f))).collect()
 }
 
 /// Name of a swept input as a column: the last part of its path.
@@ -135,12 +173,15 @@ fn labels(values: &[String]) -> Vec<String> {
 }
 
 /// Runs the sweeps of a case into the table `sweep` and its figures.
+///
+/// # Errors
+/// No point can be run, or a result is wanted that there is not.
 pub fn run(
-    loaded: &Loaded<RigCase>,
+    scene: &dyn Scene,
+    sweeps: &[Sweep],
     result: &mut RunResult,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<(), RunError> {
-    let sweeps = &loaded.value.sweeps;
     let Some(first) = sweeps.first() else { return Ok(()) };
     let refused = |e: BuildError| RunError::Refused(e.to_string());
     let a = values(first).map_err(refused)?;
@@ -174,7 +215,7 @@ pub fn run(
             if let (Some((s, _)), Some(o)) = (&b, o) {
                 set.push(format!("{}={o}", s.path));
             }
-            row.push(match variant(loaded, &set) {
+            row.push(match changed(scene, &set).and_then(|s| s.once(&mut |_| {})) {
                 Ok(out) => names.iter().map(|n| out.results.get(n).map_or(f64::NAN, |v| v.value)).collect(),
                 Err(e) => {
                     failed.push(format!("{}: {e}", set.join(", ")));
@@ -317,7 +358,7 @@ mod tests {
             let table = Series { axis: column("x", vec![1.0; 3]), columns: vec![column("y", values)] };
             match lines(String::new(), &sweep, &table, vec![("y".into(), "y".into())]).kind {
                 FigureKind::Lines { log_x, log_y, .. } => (log_x, log_y),
-                FigureKind::Map { .. } => (false, false),
+                _ => (false, false),
             }
         };
         assert_eq!(drawn(Spacing::Log, vec![1.0, 10.0, 1000.0]), (true, true));

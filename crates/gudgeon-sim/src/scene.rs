@@ -1,0 +1,322 @@
+//! What a scene is: the case it reads, what it refuses, what it explains and how it runs.
+//!
+//! A scene is one implementation of [`SceneCase`] and one line in [`SCENES`]. Sweeps of any input and comparison with the values of a
+//! source are the same for all of them.
+
+use std::any::Any;
+use std::collections::HashSet;
+
+use gudgeon_core::BuildError;
+use gudgeon_core::result::{Check, ModelUse, RunResult, Value};
+use gudgeon_core::schemars::{Schema, SchemaGenerator};
+use indexmap::IndexMap;
+use schemars::JsonSchema;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+use crate::case::RingPackCase;
+use crate::load::{Loaded, Report, Source, load_source, scene_of};
+use crate::rig::case::RigCase;
+use crate::run::{Explanation, Progress, RunError};
+use crate::study::Race;
+use crate::sweep::{self, Sweep};
+
+/// Scenes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SceneName {
+    /// A piston ring pack in one cylinder.
+    RingPack,
+    /// One sub-model on a test bench.
+    Rig,
+}
+
+/// All scenes. The first one reads cases that name none of them, so that the rest of what is wrong is reported too.
+pub static SCENES: &[SceneEntry] =
+    &[SceneEntry::of::<RingPackCase>("ring_pack"), SceneEntry::of::<RigCase>("rig")];
+
+/// What every case may say besides its physics.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Heading<'a> {
+    /// One line for reports.
+    pub title: &'a str,
+    /// Where the case comes from.
+    pub source: &'a str,
+    /// Inputs that no source gives and that were assumed.
+    pub assumptions: &'a [String],
+    /// Inputs that are varied.
+    pub sweeps: &'a [Sweep],
+    /// Results of a source to compare with.
+    pub checks: &'a [CheckCase],
+}
+
+/// A setting and the results that a source gives for it.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CheckCase {
+    /// Changes to the case, as `--set` takes them; empty: the case as it stands.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub set: Vec<String>,
+    /// Expected results.
+    pub expect: Vec<Expect>,
+}
+
+/// A result of a source.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Expect {
+    /// Name of the result.
+    pub result: String,
+    /// The value, in the unit of the result.
+    pub value: f64,
+    /// Admitted deviation: relative, or absolute when the value is zero.
+    pub tolerance: f64,
+    /// Where the value comes from, and why the tolerance is what it is.
+    pub source: String,
+    /// The source or the model is known to be wrong here, and the case shows it: the deviation must be *larger* than `tolerance`.
+    #[serde(default)]
+    pub must_fail: bool,
+}
+
+/// What a case of one scene says and does.
+pub trait SceneCase: Serialize + DeserializeOwned + JsonSchema + Send + Sync + Sized + 'static {
+    /// Title, source, sweeps, checks.
+    fn heading(&self) -> Heading<'_>;
+
+    /// Everything that is wrong with a case that could be read, sweeps and checks apart.
+    fn legal(loaded: &Loaded<Self>) -> Vec<BuildError>;
+
+    /// The models in use; adds to `told` what runs, what is skipped and which results there are.
+    ///
+    /// # Errors
+    /// The sub-models cannot be built, which [`SceneCase::legal`] would have said.
+    fn explain(loaded: &Loaded<Self>, told: &mut Explanation) -> Result<Vec<ModelUse>, RunError>;
+
+    /// Runs the case once, sweeps and checks apart. Title, source and scene are filled in by the caller.
+    ///
+    /// # Errors
+    /// What stopped it.
+    fn run(loaded: &Loaded<Self>, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError>;
+
+    /// What `bench` races; none when the scene has no solvers to choose from.
+    fn race(&self) -> Option<Race> {
+        None
+    }
+}
+
+/// A case of any scene with its places in the file. Implemented for every [`SceneCase`] that was read.
+pub trait Scene: Send + Sync {
+    /// Title, source, sweeps, checks.
+    fn heading(&self) -> Heading<'_>;
+    /// The text it was read from.
+    fn source(&self) -> &Source;
+    /// The `--set` arguments that changed it.
+    fn overrides(&self) -> &[String];
+    /// What a person should know although nothing is wrong.
+    fn notes(&self) -> &[String];
+    /// Everything that is wrong, the changes that sweeps and checks make included.
+    fn legal(&self) -> Vec<BuildError>;
+    /// A report on errors found after the case was read.
+    fn refuse(&self, errors: &[BuildError]) -> Report;
+    /// The same case with some values changed, read but not built.
+    ///
+    /// # Errors
+    /// Every mistake of the changes.
+    fn changed(&self, set: &[String]) -> Result<Box<dyn Scene>, Report>;
+    /// As [`SceneCase::explain`], with the resolved case.
+    ///
+    /// # Errors
+    /// As [`SceneCase::explain`].
+    fn explain(&self, told: &mut Explanation) -> Result<Vec<ModelUse>, RunError>;
+    /// As [`SceneCase::run`].
+    ///
+    /// # Errors
+    /// As [`SceneCase::run`]; a result that is not a number.
+    fn once(&self, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError>;
+    /// As [`SceneCase::race`].
+    fn race(&self) -> Option<Race>;
+    /// The typed case, for callers that know the scene.
+    fn value(&self) -> &dyn Any;
+}
+
+impl<C: SceneCase> Scene for Loaded<C> {
+    fn heading(&self) -> Heading<'_> {
+        self.value.heading()
+    }
+
+    fn source(&self) -> &Source {
+        &self.source
+    }
+
+    fn overrides(&self) -> &[String] {
+        &self.overrides
+    }
+
+    fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    fn legal(&self) -> Vec<BuildError> {
+        let heading = self.value.heading();
+        let mut errors = C::legal(self);
+        errors.extend(sweep::legal(heading.sweeps));
+        // The file itself comes first: its mistakes would come back with every change.
+        if errors.is_empty() {
+            errors.extend(legal_changes(self, heading));
+        }
+        errors
+    }
+
+    fn refuse(&self, errors: &[BuildError]) -> Report {
+        Self::refuse(self, errors)
+    }
+
+    fn changed(&self, set: &[String]) -> Result<Box<dyn Scene>, Report> {
+        Ok(Box::new(self.reload::<C>(set)?))
+    }
+
+    fn explain(&self, told: &mut Explanation) -> Result<Vec<ModelUse>, RunError> {
+        told.resolved = self.resolved().map_err(|e| RunError::Refused(e.to_string()))?;
+        C::explain(self, told)
+    }
+
+    fn once(&self, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
+        let result = C::run(self, progress)?;
+        let not_finite = |(_, v): &(&String, &Value)| !v.value.is_finite();
+        match result.results.iter().find(not_finite) {
+            Some((name, _)) => Err(RunError::NotANumber(name.clone())),
+            None => Ok(result),
+        }
+    }
+
+    fn race(&self) -> Option<Race> {
+        self.value.race()
+    }
+
+    fn value(&self) -> &dyn Any {
+        &self.value
+    }
+}
+
+/// Reads a case from a text and `--set` arguments.
+type Read = fn(Source, &[String]) -> Result<Box<dyn Scene>, Report>;
+
+/// One scene in [`SCENES`].
+pub struct SceneEntry {
+    /// Name, as the key `scene` gives it.
+    pub name: &'static str,
+    /// Reads a case.
+    read: Read,
+    /// JSON schema of a case.
+    schema: fn(&mut SchemaGenerator) -> Schema,
+}
+
+impl SceneEntry {
+    const fn of<C: SceneCase>(name: &'static str) -> Self {
+        Self {
+            name,
+            read: |source, overrides| Ok(Box::new(load_source::<C>(source, overrides)?)),
+            schema: SchemaGenerator::subschema_for::<C>,
+        }
+    }
+
+    /// JSON schema of a case of this scene.
+    pub fn schema(&self, generator: &mut SchemaGenerator) -> Schema {
+        (self.schema)(generator)
+    }
+}
+
+/// Reads a case of the scene it names.
+///
+/// # Errors
+/// Every mistake of the text and of the overrides.
+pub fn load(source: Source, overrides: &[String]) -> Result<Box<dyn Scene>, Report> {
+    let name = scene_of(&source, overrides);
+    let entry = SCENES.iter().find(|s| Some(s.name) == name.as_deref()).unwrap_or(&SCENES[0]);
+    (entry.read)(source, overrides)
+}
+
+/// What is wrong with the changes that sweeps and checks make.
+fn legal_changes(scene: &dyn Scene, heading: Heading<'_>) -> Vec<BuildError> {
+    let mut errors = Vec::new();
+    let mut seen = HashSet::new();
+    for (k, set) in sweep::first_values(heading.sweeps) {
+        if let Err(e) = changed(scene, &[set]) {
+            errors.push(BuildError::at(format!("sweeps.{k}.path"), e.to_string()));
+        }
+    }
+    for (k, c) in heading.checks.iter().enumerate() {
+        if !c.set.is_empty()
+            && seen.insert(&c.set)
+            && let Err(e) = changed(scene, &c.set)
+        {
+            errors.push(BuildError::at(format!("checks.{k}.set"), e.to_string()));
+        }
+        for (j, e) in c.expect.iter().enumerate() {
+            if !(e.value.is_finite() && e.tolerance.is_finite() && e.tolerance >= 0.0) {
+                errors.push(BuildError::at(
+                    format!("checks.{k}.expect.{j}"),
+                    "a value and a tolerance of zero or more are needed",
+                ));
+            }
+        }
+    }
+    errors
+}
+
+/// The case with some values changed; a refusal in one line.
+pub(crate) fn changed(scene: &dyn Scene, set: &[String]) -> Result<Box<dyn Scene>, RunError> {
+    scene.changed(set).map_err(|report| {
+        RunError::Refused(format!(
+            "{}: {}",
+            set.join(", "),
+            report.diagnostics.iter().map(|d| d.headline()).collect::<Vec<_>>().join("; ")
+        ))
+    })
+}
+
+/// Runs the case, its sweeps and its checks.
+///
+/// # Errors
+/// What stopped it, or a check names a result that the scene does not have.
+pub(crate) fn run(scene: &dyn Scene, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
+    let mut result = scene.once(progress)?;
+    let heading = scene.heading();
+    result.title = heading.title.into();
+    result.source = heading.source.into();
+    result.assumptions = heading.assumptions.to_vec();
+    result.scene = scene_of(scene.source(), scene.overrides()).unwrap_or_default();
+    sweep::run(scene, heading.sweeps, &mut result, progress)?;
+    for (k, c) in heading.checks.iter().enumerate() {
+        progress(Progress {
+            phase: "comparing with the source".into(),
+            fraction: k as f64 / heading.checks.len() as f64,
+        });
+        let variant = if c.set.is_empty() { None } else { Some(changed(scene, &c.set)?.once(&mut |_| {})?) };
+        let results = variant.as_ref().map_or(&result.results, |r| &r.results);
+        let rows: Result<Vec<Check>, RunError> = c.expect.iter().map(|e| check(e, &c.set, results)).collect();
+        result.checks.extend(rows?);
+    }
+    Ok(result)
+}
+
+fn check(e: &Expect, set: &[String], results: &IndexMap<String, Value>) -> Result<Check, RunError> {
+    let name = e.result.as_str();
+    let Some(v) = results.get(name) else {
+        let known: Vec<&str> = results.keys().map(String::as_str).collect();
+        let near = crate::load::advice(name, &known);
+        return Err(RunError::Refused(format!(
+            "a check names the result `{name}`, which this case does not have; {near}"
+        )));
+    };
+    Ok(Check {
+        set: set.to_vec(),
+        result: name.to_owned(),
+        value: v.value,
+        reference: e.value,
+        unit: v.unit.clone(),
+        tolerance: e.tolerance,
+        source: e.source.clone(),
+        must_fail: e.must_fail,
+    })
+}
