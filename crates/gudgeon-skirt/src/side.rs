@@ -235,7 +235,7 @@ impl Side {
             }
         }
         let field = |x: &[f64], a: &[f64]| -> Vec<f64> {
-            a.iter().flat_map(|&a| x.iter().map(move |&x| setup.profile.drop(x * panel.length, a))).collect()
+            a.iter().flat_map(|&a| x.iter().map(move |&x| setup.profile.depth(x * panel.length, a))).collect()
         };
         let mut drop = [field(&s, &angle), field(&s_face, &angle), field(&s, &angle_face)];
         let least_drop = drop[0].iter().chain(&drop[1]).fold(f64::INFINITY, |a, &b| a.min(b));
@@ -255,7 +255,7 @@ impl Side {
             Vec::new()
         } else {
             rows.iter()
-                .flat_map(|&s| contact_angle.iter().map(move |&a| setup.profile.drop(s * panel.length, a)))
+                .flat_map(|&s| contact_angle.iter().map(move |&a| setup.profile.depth(s * panel.length, a)))
                 .collect()
         };
         let mut contact_shapes = Vec::new();

@@ -32,7 +32,7 @@ crate::register_kind!(dyn SkirtProfileSpec, "skirt_profile", "shape of the pisto
 pub trait SkirtProfile: Debug + Send + Sync {
     /// How far the surface stands behind the cylinder of nominal radius \[m\], at the height `x` below the upper edge \[m\] and the angle
     /// `angle` from the middle of the side \[rad\].
-    fn drop(&self, x: f64, angle: f64) -> f64;
+    fn depth(&self, x: f64, angle: f64) -> f64;
     /// Whether it is the same at `angle` and `-angle`: half of each side is then solved.
     fn is_symmetric(&self) -> bool;
 }

@@ -54,7 +54,7 @@ struct Shape {
 }
 
 impl SkirtProfile for Shape {
-    fn drop(&self, x: f64, angle: f64) -> f64 {
+    fn depth(&self, x: f64, angle: f64) -> f64 {
         let (s, s0) = (x / self.length, self.spec.widest.si());
         let part = |way: f64, whole: f64| if whole > 0.0 { (way / whole).powi(2) } else { 0.0 };
         let along = if s < s0 {
@@ -80,10 +80,10 @@ mod tests {
         let p = spec.build(&SkirtProfileCtx { length: 0.05, radius: 0.04, folder }).expect("builds");
         // A product and a sum or two.
         let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-19, "{a} {b}");
-        near(p.drop(0.0, 0.0), 2e-5);
-        near(p.drop(0.05, 0.0), 1e-5);
-        near(p.drop(0.02, 0.0), 0.0);
-        near(p.drop(0.01, 0.0), 0.5e-5);
-        near(p.drop(0.02, std::f64::consts::FRAC_PI_6), 2.5e-5);
+        near(p.depth(0.0, 0.0), 2e-5);
+        near(p.depth(0.05, 0.0), 1e-5);
+        near(p.depth(0.02, 0.0), 0.0);
+        near(p.depth(0.01, 0.0), 0.5e-5);
+        near(p.depth(0.02, std::f64::consts::FRAC_PI_6), 2.5e-5);
     }
 }

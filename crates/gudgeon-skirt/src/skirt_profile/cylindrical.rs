@@ -27,7 +27,7 @@ impl SkirtProfileSpec for Cylindrical {
 struct Straight;
 
 impl SkirtProfile for Straight {
-    fn drop(&self, _: f64, _: f64) -> f64 {
+    fn depth(&self, _: f64, _: f64) -> f64 {
         0.0
     }
     fn is_symmetric(&self) -> bool {

@@ -71,7 +71,7 @@ struct Curve {
 }
 
 impl SkirtProfile for Curve {
-    fn drop(&self, x: f64, angle: f64) -> f64 {
+    fn depth(&self, x: f64, angle: f64) -> f64 {
         self.curve.value(x.clamp(self.ends.0, self.ends.1)) + self.oval * angle.sin().powi(2)
     }
     fn is_symmetric(&self) -> bool {
@@ -86,7 +86,7 @@ struct Map {
 }
 
 impl SkirtProfile for Map {
-    fn drop(&self, x: f64, angle: f64) -> f64 {
+    fn depth(&self, x: f64, angle: f64) -> f64 {
         self.points.value(0, x, angle) + self.oval * angle.sin().powi(2)
     }
     fn is_symmetric(&self) -> bool {
