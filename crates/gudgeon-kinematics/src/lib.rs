@@ -24,7 +24,7 @@ pub use exact_slider_crank::ExactSliderCrank;
 pub use motored::Motored;
 pub use polytropic_burn::PolytropicBurn;
 pub use single_zone_wiebe::{ChamberVolume, SingleZoneWiebe};
-pub use table::Table;
+pub use table::{Interpolation, Table};
 pub use two_harmonic_series::TwoHarmonicSeries;
 
 use gudgeon_core::BuildError;

@@ -595,6 +595,7 @@ macro_rules! default_model {
         }
     };
 }
+pub(crate) use default_model;
 default_model! {
     default_kinematics: dyn KinematicsSpec = "exact_slider_crank";
     default_gas_flow: dyn GasFlowSpec = "orifice_network";

@@ -16,6 +16,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::case::RingPackCase;
 use crate::load::{Loaded, Report, Source, load_source, scene_of};
+use crate::piston_secondary::case::PistonSecondaryCase;
 use crate::rig::case::RigCase;
 use crate::run::{Explanation, Progress, RunError};
 use crate::study::Race;
@@ -29,11 +30,16 @@ pub enum SceneName {
     RingPack,
     /// One sub-model on a test bench.
     Rig,
+    /// The lateral motion and the tilt of a piston in its bore.
+    PistonSecondary,
 }
 
 /// All scenes. The first one reads cases that name none of them, so that the rest of what is wrong is reported too.
-pub static SCENES: &[SceneEntry] =
-    &[SceneEntry::of::<RingPackCase>("ring_pack"), SceneEntry::of::<RigCase>("rig")];
+pub static SCENES: &[SceneEntry] = &[
+    SceneEntry::of::<RingPackCase>("ring_pack"),
+    SceneEntry::of::<RigCase>("rig"),
+    SceneEntry::of::<PistonSecondaryCase>("piston_secondary"),
+];
 
 /// What every case may say besides its physics.
 #[derive(Debug, Clone, Copy, Default)]

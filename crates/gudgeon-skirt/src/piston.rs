@@ -170,6 +170,9 @@ impl Linear {
 const MOST_STEPS: usize = 60;
 /// Part of the forces that a balance leaves: what the films leave of theirs.
 const CLOSED: f64 = 1e-11;
+/// The same of a step of the backward Euler method, and its iterations.
+const EULER_CLOSED: f64 = 1e-8;
+const EULER_STEPS: usize = 25;
 const CLOSED_CAVITIES: f64 = 1e-7;
 
 impl Piston {
@@ -597,6 +600,86 @@ impl Piston {
     fn increment(&self, w: &[f64], column: usize) -> f64 {
         let d = DIFFERENCE * self.smallest_gap().abs().max(1e-8);
         if w[column] < 0.0 { -d } else { d }
+    }
+
+    /// One step of the backward Euler method from the coordinates `from`, over `dt` \[s\] to the instant `now`; with inertia, from the
+    /// velocities `v` of both edges. `w` holds a guess of the rates and takes them; the coordinates are then `from + dt w`, into `x`.
+    ///
+    /// # Errors
+    /// A film that cannot be solved, no convergence.
+    pub fn euler_step(
+        &mut self,
+        now: &Instant,
+        from: &[f64],
+        v: Option<[f64; 2]>,
+        dt: f64,
+        w: &mut [f64],
+        x: &mut [f64],
+    ) -> Result<(), EvalError> {
+        let n = self.n;
+        let mass = self.body.matrix();
+        let mut work = std::mem::take(&mut self.work);
+        let mut outcome = Err(EvalError::recoverable(MODEL, "a step of the backward Euler method does not converge"));
+        let mut before = f64::INFINITY;
+        for _ in 0..EULER_STEPS {
+            for k in 0..n {
+                x[k] = from[k] + dt * w[k];
+            }
+            if let Err(e) = self.place(now, x).and_then(|()| self.residual(now, x, w, Slopes::Film)) {
+                outcome = Err(e);
+                break;
+            }
+            work.base.copy_from_slice(&self.r);
+            if let Some(v) = v {
+                for k in 0..2 {
+                    self.r[k] -= (mass[k][0] * (w[0] - v[0]) + mass[k][1] * (w[1] - v[1])) / dt;
+                }
+            }
+            let left = self.r.iter().fold(0.0_f64, |a, r| a.max(r.abs()));
+            if !left.is_finite() {
+                break;
+            }
+            if left <= EULER_CLOSED * self.force_scale(now) {
+                outcome = Ok(());
+                break;
+            }
+            // The Jacobian serves as long as the forces fall tenfold.
+            if left > 0.1 * before || before.is_infinite() {
+                let mut told = Ok(());
+                for column in 0..n {
+                    let d = self.increment(w, column);
+                    work.moved.copy_from_slice(x);
+                    work.moved[column] = x[column] + d;
+                    let d = work.moved[column] - x[column];
+                    told = self.residual_beside(now, &work.moved, w, column, &mut work.dr);
+                    if told.is_err() {
+                        break;
+                    }
+                    for k in 0..n {
+                        let inertia = if v.is_some() && k < 2 && column < 2 { mass[k][column] / dt } else { 0.0 };
+                        work.slope[k * n + column] = self.slope[k * n + column]
+                            + dt * (work.dr[k] - work.base[k]) / d
+                            - inertia;
+                    }
+                }
+                work.lu.copy_from_slice(&work.slope);
+                if told.is_err() || lu_factor(&mut work.lu, n, &mut work.piv).is_err() {
+                    outcome = told.and(outcome);
+                    break;
+                }
+            }
+            before = left;
+            for k in 0..n {
+                work.d[k] = -self.r[k];
+            }
+            lu_solve(&work.lu, n, &work.piv, &mut work.d);
+            for k in 0..n {
+                w[k] += work.d[k];
+            }
+            self.newton_steps += 1;
+        }
+        self.work = work;
+        outcome
     }
 
     /// Forces at the present place for rates that [`Piston::rates`] found.

@@ -387,14 +387,30 @@ impl Side {
         self.p.iter().fold(0.0, |a, &b| a.max(b))
     }
 
-    /// Largest elastic displacement that the pressure found last would cause, over the gap there; 0 for a rigid skirt.
+    /// Largest elastic displacement over the gap of the present place, for the amplitudes `q` \[m\]; 0 for a rigid skirt.
     #[must_use]
-    pub fn yielding(&self, amplitudes: &[f64]) -> f64 {
+    pub fn yielding(&self, q: &[f64]) -> f64 {
+        self.part_of_gap(q, self)
+    }
+
+    /// Amplitudes \[m\] with which the shapes of this side yield to the pressure that `other`, the same side without shapes, found last.
+    #[must_use]
+    pub fn yields_to(&self, other: &Self) -> Vec<f64> {
         let n = self.nodes();
+        let full = other.pressure();
+        let shapes = self.tests[2 * n..].chunks_exact(n.max(1)).zip(&self.stiffness);
+        shapes.map(|(test, k)| test.iter().zip(&full).map(|(t, p)| t * p).sum::<f64>() / k).collect()
+    }
+
+    /// Largest elastic displacement with the amplitudes `q` over the gap of `other`, which may be the same side without shapes.
+    #[must_use]
+    pub fn part_of_gap(&self, q: &[f64], other: &Self) -> f64 {
+        let n = self.nodes();
+        let gap = other.gap();
         (0..n)
             .map(|k| {
-                let d: f64 = amplitudes.iter().enumerate().map(|(m, q)| q * self.shapes[(2 + m) * n + k]).sum();
-                (d / self.now.h[k].abs().max(1e-12)).abs()
+                let d: f64 = q.iter().enumerate().map(|(m, q)| q * self.shapes[(2 + m) * n + k]).sum();
+                (d / gap[k].abs().max(1e-12)).abs()
             })
             .fold(0.0, f64::max)
     }
