@@ -167,13 +167,17 @@ impl Linear {
 }
 
 /// Newton steps of a balance before it is given up.
-const MOST_STEPS: usize = 60;
+const MOST_STEPS: usize = 100;
+/// Places along a step that are looked at.
+const LINE_STEPS: usize = 20;
 /// Part of the forces that a balance leaves: what the films leave of theirs.
 const CLOSED: f64 = 1e-11;
 /// The same of a step of the backward Euler method, and its iterations.
 const EULER_CLOSED: f64 = 1e-8;
 const EULER_STEPS: usize = 25;
 const CLOSED_CAVITIES: f64 = 1e-7;
+/// Multiple of it at which a balance that no step improves is one.
+const ROUNDED: f64 = 1e3;
 
 impl Piston {
     /// Puts the parts together.
@@ -353,7 +357,6 @@ impl Piston {
     }
 
     /// Finds the rates at which all forces from coordinate `first` on are in balance, the rates before it being given. `w` holds a guess.
-    /// Returns the magnitude of the forces in the balance.
     ///
     /// The films resist motion the more the faster it is, so there is one balance. Newton's method on forces that are linear in the rates but
     /// for what cavitates ends in a few steps; where cavities leave nothing that resists, the steps are those of full films.
@@ -365,77 +368,84 @@ impl Piston {
         if first == n {
             return Ok(());
         }
-        let size = |r: &[f64]| r[first..].iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+        let m = n - first;
+        let size = |r: &[f64]| r[first..].iter().map(|r| r * r).sum::<f64>().sqrt();
         let superposed = self.sides.iter().all(Side::is_superposed);
         let closed = if superposed { CLOSED } else { CLOSED_CAVITIES };
-        let mut slopes = Slopes::Film;
-        self.residual(now, x, w, slopes)?;
-        let mut left = size(&self.r);
-        for step in 0..MOST_STEPS {
+        self.residual(now, x, w, Slopes::Film)?;
+        for _ in 0..MOST_STEPS {
+            let before = size(&self.r);
             let scale = self.force_scale(now);
-            if !left.is_finite() {
+            if !before.is_finite() {
                 return Err(EvalError::recoverable(MODEL, "the forces are not finite"));
             }
-            if left <= closed * scale {
+            if before <= closed * scale {
                 return Ok(());
             }
-            self.newton_steps += 1;
-            let m = n - first;
-            for i in 0..m {
-                self.step[i] = -self.r[first + i];
-                for j in 0..m {
-                    self.lu[i * m + j] = self.slope[(first + i) * n + first + j];
-                }
-            }
-            let solved = lu_factor(&mut self.lu[..m * m], m, &mut self.piv[..m]).is_ok();
-            if solved {
-                lu_solve(&self.lu[..m * m], m, &self.piv[..m], &mut self.step[..m]);
-            }
-            if !solved || self.step[..m].iter().any(|s| !s.is_finite()) {
-                if slopes == Slopes::Full {
+            self.best[first..].copy_from_slice(&w[first..]);
+            if !self.newton(first) || self.along_step(first) <= 0.0 {
+                // Where cavities leave nothing that resists, full films tell the way.
+                self.residual(now, x, w, Slopes::Full)?;
+                if !self.newton(first) {
                     return Err(EvalError::recoverable(MODEL, "nothing resists the motion of the piston"));
                 }
-                slopes = Slopes::Full;
-                self.residual(now, x, w, slopes)?;
-                continue;
             }
-            self.best[first..].copy_from_slice(&w[first..]);
+            // The forces left over are the slope of a convex potential of the rates: its lowest place along the step lies where they no longer
+            // point along it.
+            let ahead = self.along_step(first);
+            let (mut low, mut high) = ((0.0, ahead), (f64::INFINITY, 0.0));
             let mut part = 1.0;
-            let before = left;
-            loop {
+            for _ in 0..LINE_STEPS {
                 for i in 0..m {
                     w[first + i] = self.best[first + i] + part * self.step[i];
                 }
-                self.residual(now, x, w, slopes)?;
-                left = size(&self.r);
-                if left < before || part < 0.05 {
+                self.residual(now, x, w, Slopes::Film)?;
+                let here = self.along_step(first);
+                if here.abs() <= 0.5 * ahead || size(&self.r) <= 0.5 * before {
                     break;
                 }
-                part *= 0.5;
+                if here > 0.0 {
+                    low = (part, here);
+                } else {
+                    high = (part, here);
+                }
+                part = if high.0.is_finite() {
+                    let straight = low.0 + (high.0 - low.0) * low.1 / (low.1 - high.1);
+                    // A kink may hold one end where it is.
+                    straight.clamp(low.0 + 0.1 * (high.0 - low.0), high.0 - 0.1 * (high.0 - low.0))
+                } else {
+                    3.0 * part
+                };
             }
-            if left >= before {
-                if before <= 1e3 * closed * scale {
-                    // Rounding: no step leads further.
-                    w[first..].copy_from_slice(&self.best[first..]);
-                    self.residual(now, x, w, Slopes::Film)?;
-                    return Ok(());
-                }
+            if size(&self.r) >= before && before <= ROUNDED * closed * scale {
+                // Rounding: no step leads further.
                 w[first..].copy_from_slice(&self.best[first..]);
-                if slopes == Slopes::Full && step > MOST_STEPS / 2 {
-                    break;
-                }
-                slopes = Slopes::Full;
-                self.residual(now, x, w, slopes)?;
-                left = size(&self.r);
-            } else {
-                // Back to the film as it is as soon as that is safe.
-                if slopes == Slopes::Full {
-                    slopes = Slopes::Film;
-                    self.residual(now, x, w, slopes)?;
-                }
+                return self.residual(now, x, w, Slopes::Film);
             }
         }
         Err(EvalError::recoverable(MODEL, "no velocity was found at which the forces are in balance"))
+    }
+
+    /// Forces left over, along the step.
+    fn along_step(&self, first: usize) -> f64 {
+        self.r[first..].iter().zip(&self.step).map(|(r, s)| r * s).sum()
+    }
+
+    /// Newton's step for the forces left over from coordinate `first` on, into `step`. Whether there is one.
+    fn newton(&mut self, first: usize) -> bool {
+        let (n, m) = (self.n, self.n - first);
+        self.newton_steps += 1;
+        for i in 0..m {
+            self.step[i] = -self.r[first + i];
+            for j in 0..m {
+                self.lu[i * m + j] = self.slope[(first + i) * n + first + j];
+            }
+        }
+        if lu_factor(&mut self.lu[..m * m], m, &mut self.piv[..m]).is_err() {
+            return false;
+        }
+        lu_solve(&self.lu[..m * m], m, &self.piv[..m], &mut self.step[..m]);
+        self.step[..m].iter().all(|s| s.is_finite())
     }
 
     /// What counts as one when forces are compared.
