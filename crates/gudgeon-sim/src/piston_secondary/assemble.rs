@@ -305,6 +305,10 @@ fn legal(case: &PistonSecondaryCase) -> Vec<BuildError> {
     if s.method == Method::BackwardEuler && !(36.0..=1e6).contains(&steps) {
         say("solver.step", format!("a cycle of {steps:.0} steps is none: between 7e-4 and 20 degrees"));
     }
+    let parts = case.outputs.series_step.si() / s.step.si();
+    if s.method == Method::BackwardEuler && (parts - parts.round()).abs() > 1e-6 {
+        say("outputs.series_step", "rows of the series must be a whole number of `solver.step` apart".into());
+    }
     if case.skirt.length.si() / s.contact_pitch.si() > 1e5 {
         say("solver.contact_pitch", "more than 100 000 rows of contact on the skirt".into());
     }

@@ -325,7 +325,7 @@ impl Default for Outputs {
             results: vec!["all".into()],
             series_step: quantity(1f64.to_radians()),
             at: Vec::new(),
-            map_step: Some(quantity(10f64.to_radians())),
+            map_step: Some(quantity(5f64.to_radians())),
         }
     }
 }

@@ -146,8 +146,9 @@ struct Cycle<'a> {
     w: Vec<f64>,
     tolerance: f64,
     stats: Stats,
-    failure: Option<(f64, RunError)>,
-    at: f64,
+    /// A state: coordinates, and with inertia the velocities of both edges.
+    y: Vec<f64>,
+    failure: Option<RunError>,
     progress: &'a mut dyn FnMut(f64),
     done: f64,
 }
@@ -299,23 +300,47 @@ fn row(record: &mut Record, p: &mut Problem<'_>, t: f64, y: &[f64]) -> Result<()
     record.push(p.a, &now, p.x, p.w)
 }
 
+impl Cycle<'_> {
+    /// Takes coordinates as the start of a cycle. The velocities are those of a balance of forces, which the films come to within nanoseconds;
+    /// where nothing balances them, the piston starts at rest.
+    fn begin(&mut self, x: &[f64]) {
+        let n = self.x.len();
+        self.y[..n].copy_from_slice(x);
+        if !self.inertial {
+            return;
+        }
+        let (c, speed) = (self.a.clearance, self.a.clearance * self.a.omega());
+        for (own, x) in self.x.iter_mut().zip(x) {
+            *own = c * x;
+        }
+        let now = self.a.instant(0.0);
+        self.w.fill(0.0);
+        if self.a.piston.rates(&now, &self.x, None, &mut self.w, &mut [0.0; 2]).is_err() {
+            self.w.fill(0.0);
+        }
+        (self.y[n], self.y[n + 1]) = (self.w[0] / speed, self.w[1] / speed);
+    }
+}
+
 impl CycleMap for Cycle<'_> {
     fn dim(&self) -> usize {
-        self.states()
+        self.x.len()
     }
     fn map(&mut self, y0: &[f64], y1: &mut [f64], accuracy: f64) -> Result<f64, EvalError> {
-        y1.copy_from_slice(y0);
         let before = self.a.piston.film_evaluations();
-        if let Err(e) = self.integrate(y1, accuracy.max(self.tolerance), None) {
-            self.failure = Some((self.at, e));
+        self.begin(y0);
+        let mut y = std::mem::take(&mut self.y);
+        let outcome = self.integrate(&mut y, accuracy.max(self.tolerance), None);
+        y1.copy_from_slice(&y[..y1.len()]);
+        self.y = y;
+        if let Err(e) = outcome {
+            self.failure = Some(e);
             return Err(EvalError::fatal("piston_secondary", "the cycle could not be integrated"));
         }
         Ok((self.a.piston.film_evaluations() - before) as f64)
     }
     fn scale(&self, _: &[f64], s: &mut [f64]) {
         s.fill(1.0);
-        // A velocity follows from the position within nanoseconds.
-        s[self.x.len()..].fill(1e3);
     }
 }
 
@@ -376,8 +401,8 @@ pub fn run(
         w: vec![0.0; n],
         tolerance: s.tolerance.si(),
         stats: Stats::default(),
+        y: vec![0.0; states],
         failure: None,
-        at: 0.0,
         progress,
         done: 0.0,
     };
@@ -395,13 +420,12 @@ pub fn run(
             max_cycles: s.max_cycles as usize,
             accelerate: true,
         };
-        let report = match periodic_orbit(&mut cycle, &mut y, &options) {
+        let report = match periodic_orbit(&mut cycle, &mut y[..n], &options) {
             Ok(r) => r,
-            Err(source) => {
-                let theta_deg = cycle.at.to_degrees();
-                return Err(cycle.failure.map_or(RunError::Eval { theta_deg, source }, |f| f.1));
-            }
+            Err(source) => return Err(cycle.failure.unwrap_or(RunError::Eval { theta_deg: 0.0, source })),
         };
+        cycle.begin(&y[..n]);
+        y.copy_from_slice(&cycle.y);
         if !report.converged {
             let wanted = s.periodicity.si();
             if report.error_estimate > 0.1 {
@@ -416,6 +440,9 @@ pub fn run(
                 "not periodic within {wanted:.0e} clearances after {} cycles: the estimated error is {:.1e}",
                 report.cycles, report.error_estimate
             ));
+        }
+        if report.multiplier > 0.9 {
+            notes.push(format!("a slow mode of the lateral position: {:.3} of a deviation is left after a cycle", report.multiplier));
         }
         if report.period > 1 {
             notes.push(format!("the motion repeats only every {} cycles", report.period));

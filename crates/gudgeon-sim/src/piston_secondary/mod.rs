@@ -130,7 +130,7 @@ impl SceneCase for PistonSecondaryCase {
                 case::GravitySide::AntiThrust => "anti-thrust",
             }
         ));
-        draw::figures(case, &a, &found.record, &mut result);
+        draw::figures(&a, &found.record, &mut result);
         result.series = found.record.series();
         result.seconds.insert("build".into(), built);
         result.seconds.insert("solve".into(), seconds);

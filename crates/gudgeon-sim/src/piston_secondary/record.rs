@@ -133,7 +133,9 @@ impl Record {
                 let flow = side.oil_flow(now.speed, now.mu, &rates)?;
                 oil.iter_mut().zip(flow).for_each(|(o, f)| *o += f);
             }
-            self.yielding = self.yielding.max(side.yielding(own));
+            if !own.is_empty() {
+                self.yielding = self.yielding.max(side.yielding(own));
+            }
             yields = own.iter().fold(yields, |y, q| y.max(q.abs()));
             if self.every > 0 && self.count.is_multiple_of(self.every) {
                 self.maps[k].push(Map { theta_deg: deg, p: side.pressure() });
@@ -297,6 +299,9 @@ impl Record {
             let (value, deg) = if low.0.abs() >= high.0.abs() { low } else { high };
             known.insert("friction_expansion".into(), value);
             known.insert("friction_expansion_angle".into(), deg);
+            let force = self.column("skirt.side_force");
+            let exchange = force[..row_at(160.0)].iter().chain(&force[row_at(560.0)..]);
+            known.insert("side_force_exchange".into(), exchange.fold(0.0, |a, f| a.max(f.abs())));
         }
         let lowest = |names: [&str; 2], sign: f64| {
             let v: Vec<f64> = self
