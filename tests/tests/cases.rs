@@ -15,9 +15,9 @@ fn every_case_is_possible_and_explains_itself() {
     files.sort();
     for path in files.iter().filter(|p| p.extension().is_some_and(|e| e == "toml")) {
         let checked = check(path, &[]).unwrap_or_else(|r| panic!("{}: {r}", path.display()));
-        let case = checked.of::<RingPackCase>().expect("a ring pack");
-        assert!(!case.title.is_empty() && !case.source.is_empty(), "{}", path.display());
-        assert!(!case.assumptions.is_empty(), "{}: nothing is assumed?", path.display());
+        let heading = checked.case.heading();
+        assert!(!heading.title.is_empty() && !heading.source.is_empty(), "{}", path.display());
+        assert!(!heading.assumptions.is_empty(), "{}: nothing is assumed?", path.display());
         let e = explain(&checked).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
         assert!(!e.models.is_empty() && !e.states.is_empty() && !e.to_text().is_empty());
         seen += 1;

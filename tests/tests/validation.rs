@@ -8,14 +8,22 @@ use std::path::{Path, PathBuf};
 use gudgeon_core::result::Check;
 use gudgeon_sim::{check, run};
 
-fn rig_cases() -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/rigs");
+fn cases_in(folder: &str) -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(folder);
     let mut files: Vec<_> = std::fs::read_dir(folder)
-        .expect("the folder of the rig cases")
+        .expect("the folder of the cases")
         .map(|e| e.expect("an entry").path())
         .filter(|p| p.extension().is_some_and(|e| e == "toml"))
         .collect();
     files.sort();
+    files
+}
+
+/// The benches, and the cases of whole scenes that say what their sources print.
+fn rig_cases() -> Vec<PathBuf> {
+    let mut files = cases_in("cases/rigs");
+    let compares = |p: &PathBuf| std::fs::read_to_string(p).is_ok_and(|t| t.contains("[[checks]]"));
+    files.extend(cases_in("cases").into_iter().filter(compares));
     files
 }
 

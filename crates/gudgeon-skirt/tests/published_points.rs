@@ -4,11 +4,11 @@ use std::f64::consts::PI;
 
 use gudgeon_contact::CrestWedge;
 use gudgeon_core::kinds::{
-    Film2dSpec, GrooveFrictionCtx, GrooveFrictionSpec, KinematicsCtx, KinematicsSpec, PinFrictionSpec, PistonMotion,
+    Film2dCtx, Film2dGrid, Film2dIn, Film2dSpec, GrooveFrictionCtx, GrooveFrictionSpec, KinematicsCtx, KinematicsSpec, PinFrictionSpec, PistonMotion,
     RoughnessSpec, SkirtComplianceCtx, SkirtComplianceSpec, SkirtModes, SkirtProfileCtx, SkirtProfileSpec,
 };
 use gudgeon_core::quantity::quantity;
-use gudgeon_film::film_2d::{Cavitation, CentralDifferences, Direct, Multigrid};
+use gudgeon_film::film_2d::{Cavitation, CentralDifferences, Direct, Equations, Multigrid};
 use gudgeon_film::{SawtoothWaviness, SmoothSurfaces, WavinessTransport};
 use gudgeon_skirt::{
     Body, ContactGrid, Crank, Cylindrical, Instant, Modal, NoGrooveFriction, NoPinFriction, Panel, Piston, Rod, Shape, Side,
@@ -418,4 +418,122 @@ fn shapes_yield_as_their_stiffness_says() {
             assert!((slope(a, b) - slope(b, a)).abs() < 0.02 * slope(a, a).abs(), "{a} {b}: {} {}", slope(a, b), slope(b, a));
         }
     }
+}
+
+/// Acceleration of both edges at the crank angle `t`.
+fn acceleration(p: &mut Piston, t: f64, e: [f64; 2], v: [f64; 2]) -> Option<[f64; 2]> {
+    let c = crank();
+    // Gas of the exchange strokes: none.
+    let now = c.instant(t, &slider_crank(&c, t.to_degrees()), 0.0, 4.6e-3, 0.016);
+    let (mut w, mut a) = ([0.0; 2], [0.0; 2]);
+    p.rates(&now, &e, Some(&v), &mut w, &mut a).ok()?;
+    Some(a)
+}
+
+#[test]
+fn published_explicit_scheme_diverges() {
+    // Runge-Kutta of order four on the accelerations behind a filter of second order at 500 Hz, damping 0.707: e' = v, v' = the filtered
+    // acceleration. The films damp the velocity at 1e6 to 5e7 1/s; behind a filter that is slower the loop needs 2 zeta w0 above that rate.
+    let mut p = piston(WavinessTransport::AsPublished, -3.25e-4);
+    let omega = crank().omega;
+    let (w0, zeta) = (2.0 * PI * 500.0, 0.707);
+    for step_deg in [0.1, 0.02, 0.005] {
+        let h = f64::to_radians(step_deg) / omega;
+        // Displacements, velocities, filtered accelerations and their rates.
+        let mut y = [0.0; 8];
+        let mut reached = 5.0;
+        let slope = |p: &mut Piston, t: f64, y: &[f64; 8]| -> Option<[f64; 8]> {
+            let a = acceleration(p, t, [y[0], y[1]], [y[2], y[3]])?;
+            let filter = |k: usize| w0 * w0 * (a[k] - y[4 + k]) - 2.0 * zeta * w0 * y[6 + k];
+            Some([y[2], y[3], y[4], y[5], y[6], y[7], filter(0), filter(1)])
+        };
+        let steps = (5.0 / step_deg) as usize;
+        for k in 0..steps {
+            let t = f64::to_radians(step_deg * k as f64);
+            let half = 0.5 * h;
+            let at = |y: &[f64; 8], d: &[f64; 8], h: f64| std::array::from_fn(|i| y[i] + h * d[i]);
+            let next = (|| {
+                let k1 = slope(&mut p, t, &y)?;
+                let k2 = slope(&mut p, t + half * omega, &at(&y, &k1, half))?;
+                let k3 = slope(&mut p, t + half * omega, &at(&y, &k2, half))?;
+                let k4 = slope(&mut p, t + h * omega, &at(&y, &k3, h))?;
+                Some(std::array::from_fn(|i| y[i] + h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i])))
+            })();
+            match next {
+                // Beyond the clearance of 10 um there is no piston, and beyond ten times the largest velocity of the source no motion.
+                Some(n) if n[0].abs().max(n[1].abs()) < 1e-5 && n[2].abs().max(n[3].abs()) < 0.016 => y = n,
+                _ => {
+                    reached = step_deg * k as f64;
+                    break;
+                }
+            }
+        }
+        assert!(reached < 5.0, "steps of {step_deg} deg survive: {y:?}");
+    }
+    // The implicit step stands at the same place with a hundred times the largest of these steps.
+    let c = crank();
+    let now = c.instant(0.17, &slider_crank(&c, f64::to_degrees(0.17)), 0.0, 4.6e-3, 0.016);
+    let (mut w, mut x) = ([0.0; 2], [0.0; 2]);
+    p.euler_step(&now, &[0.0; 2], Some([0.0; 2]), 0.17 / omega, &mut w, &mut x).expect("a step of ten degrees");
+    assert!(x[0].abs() < 1e-6 && x[1].abs() < 1e-6, "{x:?}");
+}
+
+#[test]
+fn poisson_test_of_the_source() {
+    // Tables 5 and 6: u_xx + u_yy = u on the unit square, 0 on three sides and u(1, y) = y; six by six nodes. The stencil is that of a film of
+    // uniform thickness with a sink, which no film has: so only the series and its nodes are checked here, against each other.
+    let series = |x: f64, y: f64| {
+        (1..400)
+            .map(|n| {
+                let k = (1.0 + (f64::from(n) * PI).powi(2)).sqrt();
+                let ratio = ((k * (x - 1.0)).exp() - (-k * (x + 1.0)).exp()) / (1.0 - (-2.0 * k).exp());
+                let sign = if n % 2 == 1 { 2.0 } else { -2.0 };
+                sign / (f64::from(n) * PI) * ratio * (f64::from(n) * PI * y).sin()
+            })
+            .sum::<f64>()
+    };
+    let mut u = [[0.0; 6]; 6];
+    for (j, row) in u.iter_mut().enumerate() {
+        row[5] = if j == 5 { 0.0 } else { 0.2 * j as f64 };
+    }
+    for _ in 0..500 {
+        for j in 1..5 {
+            for i in 1..5 {
+                u[j][i] = (u[j][i - 1] + u[j][i + 1] + u[j - 1][i] + u[j + 1][i]) / 4.04;
+            }
+        }
+    }
+    let exact = [[0.018, 0.042, 0.079, 0.132], [0.031, 0.073, 0.143, 0.251], [0.033, 0.081, 0.170, 0.336], [0.021, 0.055, 0.127, 0.312]];
+    let numeric = [[0.018, 0.042, 0.077, 0.130], [0.031, 0.074, 0.141, 0.248], [0.034, 0.084, 0.170, 0.330], [0.023, 0.059, 0.134, 0.313]];
+    for j in 0..4 {
+        for i in 0..4 {
+            let (x, y) = (0.2 * (i + 1) as f64, 0.2 * (j + 1) as f64);
+            // Printed with three decimals, some of them cut.
+            assert!((series(x, y) - exact[j][i]).abs() < 1e-3, "{x} {y}: {}", series(x, y));
+            assert!((u[j + 1][i + 1] - numeric[j][i]).abs() < 1e-3, "{x} {y}: {}", u[j + 1][i + 1]);
+        }
+    }
+}
+
+#[test]
+fn slider_of_table_seven() {
+    // 10 m/s on a wedge from 6.75 to 6.5 um over 33.8 mm, 16 mPa s, ten intervals; so wide that its middle is that of a slider without ends. The
+    // second value stands as 1.1283 in the source.
+    let printed = [0.0, 1.2183, 2.1821, 2.8856, 3.3226, 3.4872, 3.3731, 2.9740, 2.2832, 1.2942, 0.0];
+    let grid = Film2dGrid::uniform(11, 41, 0.0338, 3.38);
+    let mut film = CentralDifferences::default().build(&Film2dCtx { grid: &grid }).expect("builds");
+    let h: Vec<f64> = (0..grid.len()).map(|k| 6.75e-6 - 0.25e-6 * grid.x[k % 11] / 0.0338).collect();
+    film.solve(&Film2dIn::new(&h, 10.0, 0.016)).expect("a film");
+    for (i, printed) in printed.iter().enumerate() {
+        let p = 1e-6 * film.pressure()[20 * 11 + i];
+        // 1e-4 MPa, the last digit printed.
+        assert!((p - printed).abs() < 1.5e-4, "{i}: {p} {printed}");
+    }
+    // By sweeps the same.
+    let swept = CentralDifferences { equations: Equations::Sweeps, ..CentralDifferences::default() };
+    let mut swept = swept.build(&Film2dCtx { grid: &grid }).expect("builds");
+    swept.solve(&Film2dIn::new(&h, 10.0, 0.016)).expect("a film");
+    let top = film.pressure().iter().fold(0.0_f64, |a, b| a.max(*b));
+    // The sweeps end when they change pressures of 3.5 MPa by less than 1e-5 Pa.
+    assert!(film.pressure().iter().zip(swept.pressure()).all(|(a, b)| (a - b).abs() < 1e-8 * top));
 }

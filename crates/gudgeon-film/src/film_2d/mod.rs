@@ -8,7 +8,7 @@ mod off;
 mod problem;
 mod sor;
 
-pub use central_differences::CentralDifferences;
+pub use central_differences::{CentralDifferences, Equations};
 pub use direct::Direct;
 use gudgeon_core::kinds::{FilmMode, Superposition};
 use gudgeon_core::{BuildError, EvalError};

@@ -406,6 +406,10 @@ pub fn run(
         progress,
         done: 0.0,
     };
+    if start.is_none() {
+        cycle.begin(&y[..n]);
+        y.copy_from_slice(&cycle.y);
+    }
     let mut notes = Vec::new();
     let (cycles, error);
     if s.cycles > 0 {

@@ -54,7 +54,7 @@ pub fn catalogue(case: &PistonSecondaryCase, period_deg: f64) -> Vec<ResultInfo>
     if period_deg > 540.0 {
         add("friction_expansion", "N", false, "friction force of largest magnitude between 360 and 540 deg");
         add("friction_expansion_angle", "deg", false, "crank angle of friction_expansion");
-        add("side_force_exchange", "N", false, "largest side force in the strokes of gas exchange, away from 180 and 540 deg by 20 deg");
+        add("side_force_intake", "N", false, "largest side force between 0 and 180 deg");
     }
     for (name, unit, what) in [
         ("tilt_max", "um", "largest difference of the displacements of both edges"),

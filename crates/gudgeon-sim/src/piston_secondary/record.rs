@@ -300,8 +300,8 @@ impl Record {
             known.insert("friction_expansion".into(), value);
             known.insert("friction_expansion_angle".into(), deg);
             let force = self.column("skirt.side_force");
-            let exchange = force[..row_at(160.0)].iter().chain(&force[row_at(560.0)..]);
-            known.insert("side_force_exchange".into(), exchange.fold(0.0, |a, f| a.max(f.abs())));
+            let intake = &force[..row_at(180.0)];
+            known.insert("side_force_intake".into(), intake.iter().fold(0.0, |a, f| a.max(f.abs())));
         }
         let lowest = |names: [&str; 2], sign: f64| {
             let v: Vec<f64> = self
