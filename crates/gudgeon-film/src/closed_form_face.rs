@@ -3,6 +3,7 @@ use gudgeon_core::kinds::{FaceCtx, FaceForces, FaceIn, FaceOut, Hydrodynamics, H
 use gudgeon_core::{BuildError, EvalError};
 use serde::{Deserialize, Serialize};
 
+use crate::crown::{Asked, Crowned};
 use crate::face::{Moments, Parabola, Shape, Table, Three};
 
 /// Exact film under a ring face: Reynolds' equation integrated in closed form, without a grid.
@@ -551,7 +552,10 @@ impl<S: Shape> Side<S> {
     }
 
     /// Fills `islands` for the film at the given squeeze velocity.
-    fn solve(&mut self, f: &Flow, cavitation: Cavitation) -> Result<(), EvalError> {
+    fn solve(&mut self, f: &mut Flow, cavitation: Cavitation) -> Result<(), EvalError> {
+        if self.crowned(f, cavitation, None, Ask::Rate) {
+            return Ok(());
+        }
         self.warm = self.starts[Ask::Rate as usize];
         if let Some(found) = self.quick_rate(f, cavitation) {
             self.lay(f, &found, Ask::Rate);
@@ -1080,8 +1084,8 @@ impl<S: Shape> Hydrodynamics for Film<S> {
 
     fn evaluate(&mut self, inp: &FaceIn, hdot: f64) -> Result<FaceOut, EvalError> {
         let (cavitation, shear, from) = (self.cavitation, self.shear, self.from);
-        let (side, f, turned) = self.enter(inp, hdot)?;
-        side.solve(&f, cavitation)?;
+        let (side, mut f, turned) = self.enter(inp, hdot)?;
+        side.solve(&mut f, cavitation)?;
         let o = told(side.forces(&f, cavitation, shear, inp.mu), turned, side, &f)?;
         let (high, (a, b)) = side.peak(&f);
         let len = side.face.len();
@@ -1099,15 +1103,15 @@ impl<S: Shape> Hydrodynamics for Film<S> {
 
     fn forces(&mut self, inp: &FaceIn, hdot: f64) -> Result<FaceForces, EvalError> {
         let (cavitation, shear) = (self.cavitation, self.shear);
-        let (side, f, turned) = self.enter(inp, hdot)?;
-        side.solve(&f, cavitation)?;
+        let (side, mut f, turned) = self.enter(inp, hdot)?;
+        side.solve(&mut f, cavitation)?;
         told(side.forces(&f, cavitation, shear, inp.mu), turned, side, &f)
     }
 
     fn load(&mut self, inp: &FaceIn, hdot: f64) -> Result<(f64, f64), EvalError> {
         let cavitation = self.cavitation;
-        let (side, f, _) = self.enter(inp, hdot)?;
-        side.solve(&f, cavitation)?;
+        let (side, mut f, _) = self.enter(inp, hdot)?;
+        side.solve(&mut f, cavitation)?;
         let c = side.carried(&f);
         let k = 12.0 * inp.mu;
         finite(c.load + c.rate, "film")?;
@@ -1134,8 +1138,8 @@ impl<S: Shape> Hydrodynamics for Film<S> {
 
     fn profile(&mut self, inp: &FaceIn, hdot: f64, out: &mut [(f64, f64, f64)]) -> Result<(), EvalError> {
         let (cavitation, from) = (self.cavitation, self.from);
-        let (side, f, turned) = self.enter(inp, hdot)?;
-        side.solve(&f, cavitation)?;
+        let (side, mut f, turned) = self.enter(inp, hdot)?;
+        side.solve(&mut f, cavitation)?;
         let n = out.len();
         let len = side.face.len();
         let steps = n.saturating_sub(1).max(1);
@@ -1155,6 +1159,9 @@ impl<S: Shape> Side<S> {
     fn squeeze(&mut self, f: &mut Flow, cavitation: Cavitation, target: f64) -> Result<(), EvalError> {
         if target <= 0.0 && cavitation != Cavitation::FullSommerfeld {
             return Err(EvalError::recoverable(MODEL, "a cavitating film carries no load of zero or less"));
+        }
+        if self.crowned(f, cavitation, Some(target), Ask::Load) {
+            return Ok(());
         }
         self.warm = self.starts[Ask::Load as usize];
         if let Some(found) = self.quick_load(f, cavitation, target) {
@@ -1271,6 +1278,31 @@ impl<S: Shape> Side<S> {
             Ok(q) => Some(Quick::Full { v: f.v, q }),
             Err(start) => self.loaded(&f, cavitation, target, start).map(Quick::Ruptured),
         }
+    }
+
+    /// The film of a crowned face at `f.v` or, if one is given, under a load, from where its cavity was last; lays it and says whether
+    /// it did.
+    #[inline]
+    fn crowned(&mut self, f: &mut Flow, cavitation: Cavitation, load: Option<f64>, ask: Ask) -> bool {
+        let (Some(w), true) = (self.starts[ask as usize], self.simple(f, cavitation)) else { return false };
+        let Some(crown) = self.face.crown() else { return false };
+        let trailing = cavitation == Cavitation::MassConserving && f.pb > 0.0;
+        let asked = Asked { u: f.u, pa: f.pa, pb: f.pb, trailing };
+        let found = match load {
+            Some(load) => crown.under_load(&asked, load, w.xr, w.xf),
+            None => crown.at_rate(&asked, f.v, w.xr, w.xf),
+        };
+        let Some(Crowned { v, x, q, w, ref lead, ref front }) = found else { return false };
+        f.v = v;
+        self.islands.clear();
+        self.push_lead(f, 0, x, 0.0, q, w, *lead);
+        let mut xf = self.face.len();
+        if let Some((x, m)) = front {
+            self.push_behind(f, Start { i: 0, x: *x, q, dry: false }, 0, xf, f.pb, w, *m);
+            xf = *x;
+        }
+        self.starts[ask as usize] = Some(Warm { v, xr: x, xf, xr_v: 0.0, xf_v: 0.0 });
+        true
     }
 
     /// Flux of the full film, or where it would rupture. `None` when it does at the edge itself.

@@ -16,6 +16,8 @@
 //!
 //! For small `G/m²` both quotients are replaced by the series of `β2 m⁵ = 4/5 ₂F₁(3, 5/2; 7/2; -G/m²)`.
 
+use crate::crown::Crown;
+
 /// Integrals over a part of a face. `s = x - x_ref`, `d` the drop, `h` the film.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Moments {
@@ -151,7 +153,7 @@ fn core(m: f64, p: f64, g: f64, root: f64) -> (f64, f64, f64, f64) {
 /// Angle of the point `(x, y)`, `y > 0`, to 2 ulp: `y.atan2(x)` without the cases that do not occur here, at half its cost.
 /// `(arctan t / t - 1)/t²` up to `t = tan(π/8)` is a Chebyshev fit in `t²`, relative error of the angle 3e-18.
 #[inline]
-fn angle(y: f64, x: f64) -> f64 {
+pub(crate) fn angle(y: f64, x: f64) -> f64 {
     use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
     const C: [f64; 12] = [
         -0.333_333_333_333_333_3,
@@ -226,6 +228,10 @@ pub(crate) trait Shape: Send {
     fn complete(&self, i: usize, x: f64, head: &Self::Head) -> Moments;
     /// Pressure integrals from `x` in piece `i` to the end.
     fn tail(&self, i: usize, x: f64) -> Three;
+    /// The face as one crown under the present film, if it is one whose film has a natural coordinate.
+    fn crown(&mut self) -> Option<&Crown> {
+        None
+    }
     /// Where `U d + V s - q` goes from negative to positive inside piece `i`: a minimum of pressure.
     fn valley(&self, i: usize, u: f64, v: f64, q: f64) -> Option<f64>;
     /// Where it goes from positive to negative: a maximum of pressure.
@@ -292,6 +298,10 @@ pub(crate) struct Parabola {
     /// `√(h κ)`
     root: f64,
     whole: Option<Moments>,
+    /// Coordinates of a crowned face under the present film.
+    crown: Option<Crown>,
+    /// `1/κ`
+    radius: f64,
     /// Apex on the whole face.
     uncropped_apex: f64,
 }
@@ -308,6 +318,8 @@ impl Parabola {
             h: f64::NAN,
             root: f64::NAN,
             whole: None,
+            crown: None,
+            radius: 1.0 / curvature,
             uncropped_apex: apex,
         };
         face.place(len, apex);
@@ -323,7 +335,7 @@ impl Parabola {
         self.x_ref = if inside { apex } else { 0.5 * len };
         self.about_apex = inside;
         self.lowest = if inside { a.min(b).min(0.0) } else { a.min(b) };
-        (self.h, self.whole) = (f64::NAN, None);
+        (self.h, self.whole, self.crown) = (f64::NAN, None, None);
     }
 
     #[must_use]
@@ -484,12 +496,19 @@ impl Shape for Parabola {
         if self.h.to_bits() != h.to_bits() {
             self.h = h;
             self.root = (h * self.curvature).max(0.0).sqrt();
-            self.whole = None;
+            (self.whole, self.crown) = (None, None);
         }
     }
     #[inline]
     fn film(&self) -> f64 {
         self.h
+    }
+    #[inline]
+    fn crown(&mut self) -> Option<&Crown> {
+        if self.crown.is_none() && self.about_apex && self.curvature > 0.0 {
+            self.crown = Some(Crown::new(self.len, self.apex, self.curvature, self.radius, self.h));
+        }
+        self.crown.as_ref()
     }
     #[inline]
     fn whole(&mut self) -> Moments {

@@ -3,6 +3,7 @@
 
 mod closed_form_face;
 mod constant;
+mod crown;
 mod face;
 pub mod film_1d;
 pub mod film_2d;
