@@ -26,7 +26,10 @@ fn side_force_follows_the_mechanism() {
     }
     // The film carries what the rod asks, whatever the film: the amplitude of the waviness changes the force by the friction alone.
     for amplitude in ["3 um", "2 um"] {
-        let f = force(&[&format!("models.roughness.amplitude={amplitude}"), &format!("models.contact.amplitude={amplitude}")]);
+        let f = force(&[
+            &format!("models.roughness.amplitude={amplitude}"),
+            &format!("models.contact.amplitude={amplitude}"),
+        ]);
         assert!((f / by_rod[1] - 1.0).abs() < 1e-3, "{amplitude}: {f}");
     }
 }
@@ -88,9 +91,8 @@ fn errors_fall_with_the_order_of_the_method() {
     let (exact, _) = place(&["solver.integrator=radau5", "solver.tolerance=1e-8"]);
     let error = |x: [f64; 2]| 1e6 * (x[0] - exact[0]).abs().max((x[1] - exact[1]).abs());
     // Backward Euler: half the step, half the error.
-    let euler = ["2 deg", "1 deg", "0.5 deg"].map(|h| {
-        error(place(&["solver.method=backward_euler", &format!("solver.step={h}")]).0)
-    });
+    let euler = ["2 deg", "1 deg", "0.5 deg"]
+        .map(|h| error(place(&["solver.method=backward_euler", &format!("solver.step={h}")]).0));
     println!("backward Euler {euler:.3?} um");
     for w in euler.windows(2) {
         // First order, and what the second leaves at these steps.
@@ -99,7 +101,8 @@ fn errors_fall_with_the_order_of_the_method() {
     // Rosenbrock methods of orders three and five: the slope of error against steps. A film that is cut off has kinks, which cost some of it.
     for (name, tolerances, least) in [("rodas3", [1e-3, 1e-5], 2.0), ("rodas5p", [1e-3, 1e-5], 2.5)] {
         let points = tolerances.map(|t| {
-            let (x, steps) = place(&[&format!("solver.integrator={name}"), &format!("solver.tolerance={t:e}")]);
+            let (x, steps) =
+                place(&[&format!("solver.integrator={name}"), &format!("solver.tolerance={t:e}")]);
             (error(x), steps as f64)
         });
         let order = (points[0].0 / points[1].0).ln() / (points[1].1 / points[0].1).ln();
@@ -134,9 +137,18 @@ fn extremes_run_or_are_refused_with_a_reason() {
         for (tolerance, every) in [("1e-2", 1), ("1e-5", 4)] {
             for s in settings.iter().step_by(every) {
                 let own: Vec<&str> = s.iter().map(String::as_str).collect();
-                let (m, t) = (format!("models.secondary_motion.model={motion}"), format!("solver.tolerance={tolerance}"));
+                let (m, t) = (
+                    format!("models.secondary_motion.model={motion}"),
+                    format!("solver.tolerance={tolerance}"),
+                );
                 let mut all = coarse(&own);
-                all.extend([m.as_str(), t.as_str(), "solver.cycles=1", "solver.intervals_along=8", "outputs.series_step=5 deg"]);
+                all.extend([
+                    m.as_str(),
+                    t.as_str(),
+                    "solver.cycles=1",
+                    "solver.intervals_along=8",
+                    "outputs.series_step=5 deg",
+                ]);
                 all.push("outputs.results=[\"e_top_max\", \"h_min\", \"side_force_max\", \"contact_work\"]");
                 let begin = std::time::Instant::now();
                 let told = match try_run(CASE, &all) {
@@ -162,7 +174,15 @@ fn extremes_run_or_are_refused_with_a_reason() {
 #[test]
 fn contact_and_its_end_are_passed() {
     // A small pin offset lets the piston rest on the other side, where the crests touch in the expansion stroke.
-    let r = run_case(CASE, &coarse(&["engine.pin_offset=0.2 mm", "solver.start_top=2 um", "solver.start_bottom=4 um", "solver.cycles=8"]));
+    let r = run_case(
+        CASE,
+        &coarse(&[
+            "engine.pin_offset=0.2 mm",
+            "solver.start_top=2 um",
+            "solver.start_bottom=4 um",
+            "solver.cycles=8",
+        ]),
+    );
     assert!(value(&r, "contact_share") > 0.02 && value(&r, "contact_work") > 0.0);
     assert!(r.events.iter().any(|e| e.what == "solid contact begins"));
     assert!(r.events.iter().any(|e| e.what == "solid contact ends"));
@@ -171,7 +191,9 @@ fn contact_and_its_end_are_passed() {
 #[test]
 fn a_skirt_that_hardly_yields_is_taken_for_rigid() {
     let stiff = |k: &str| {
-        format!("models.skirt_compliance={{ model = \"modal\", stiffness = [\"{k}\"], shapes = [{{ power = 1, waves = 1 }}] }}")
+        format!(
+            "models.skirt_compliance={{ model = \"modal\", stiffness = [\"{k}\"], shapes = [{{ power = 1, waves = 1 }}] }}"
+        )
     };
     let short = ["outputs.results=[\"p_max\", \"e_top_max\", \"h_min\"]"];
     let run = |k: &str| {
@@ -186,7 +208,12 @@ fn a_skirt_that_hardly_yields_is_taken_for_rigid() {
     let rigid = run_case(CASE, &coarse(&short));
     assert_eq!(value(&hard, "p_max"), value(&rigid, "p_max"));
     // A skirt that gives way spreads its load.
-    assert!(value(&soft, "p_max") < 0.98 * value(&rigid, "p_max"), "{} {}", value(&soft, "p_max"), value(&rigid, "p_max"));
+    assert!(
+        value(&soft, "p_max") < 0.98 * value(&rigid, "p_max"),
+        "{} {}",
+        value(&soft, "p_max"),
+        value(&rigid, "p_max")
+    );
 }
 
 #[test]

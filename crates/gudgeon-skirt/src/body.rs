@@ -98,10 +98,10 @@ impl Crank {
         if rod.mass > 0.0 || rod.inertia > 0.0 {
             let turning = (turn * turn * across - w * w * r * sin) / along;
             let part = rod.centre / l;
-            let (az, ay) = (-part * r * w * w * sin, (1.0 - part) * now.acceleration + part * r * w * w * cos);
+            let (az, ay) =
+                (-part * r * w * w * sin, (1.0 - part) * now.acceleration + part * r * w * w * cos);
             // Moments about the crank pin: what the pin has to do to turn and carry the rod.
-            let moment =
-                (1.0 - part) * rod.mass * (along * az - across * ay) - rod.inertia * turning;
+            let moment = (1.0 - part) * rod.mass * (along * az - across * ay) - rod.inertia * turning;
             now.rod_inertia = -moment / along;
         }
         now
@@ -219,11 +219,8 @@ mod tests {
         };
         let (m1, m2, l) = (0.13, 0.31, 0.14);
         let centre = m2 / (m1 + m2) * l;
-        let rod = Rod {
-            mass: m1 + m2,
-            centre,
-            inertia: m1 * centre * centre + m2 * (l - centre) * (l - centre),
-        };
+        let rod =
+            Rod { mass: m1 + m2, centre, inertia: m1 * centre * centre + m2 * (l - centre) * (l - centre) };
         let body = ea111();
         let heavier = Body { pin_mass: body.pin_mass + m1, ..body };
         for k in 0..12 {

@@ -19,4 +19,3 @@ pub use secondary_motion::{FullInertia, Held, QuasiStatic};
 pub use side::{ContactGrid, Side, SideLoads, SideSetup, Slopes};
 pub use skirt_compliance::{InfluenceMatrix, Modal, Rigid, Shape};
 pub use skirt_profile::{Barrel, Cylindrical, Table};
-

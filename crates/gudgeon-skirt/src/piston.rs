@@ -284,14 +284,25 @@ impl Piston {
     }
 
     /// Lateral force and moment about the pin of everything but pressures on the skirt.
-    fn others(&self, now: &Instant, w: &[f64], loads: &[SideLoads; 2], summary: Option<&mut Summary>) -> (f64, f64) {
+    fn others(
+        &self,
+        now: &Instant,
+        w: &[f64],
+        loads: &[SideLoads; 2],
+        summary: Option<&mut Summary>,
+    ) -> (f64, f64) {
         let (mut friction, mut moment) = (0.0, 0.0);
-        let direction = if now.speed > 0.0 { 1.0 } else if now.speed < 0.0 { -1.0 } else { 0.0 };
+        let direction = if now.speed > 0.0 {
+            1.0
+        } else if now.speed < 0.0 {
+            -1.0
+        } else {
+            0.0
+        };
         let mut told = Summary::default();
         for (i, (side, l)) in self.sides.iter().zip(loads).enumerate() {
             let rub = -direction * side.friction_coefficient();
-            let moment_of =
-                |force: f64, arm: f64| -side.sign * arm + self.crank.pin_offset * force;
+            let moment_of = |force: f64, arm: f64| -side.sign * arm + self.crank.pin_offset * force;
             let own = moment_of(l.film[2], l.film[3]);
             friction += l.film[2] + rub * l.contact[2];
             moment += own + moment_of(rub * l.contact[2], rub * l.contact[3]);
@@ -363,7 +374,13 @@ impl Piston {
     ///
     /// # Errors
     /// No balance.
-    pub fn balance(&mut self, now: &Instant, x: &[f64], w: &mut [f64], first: usize) -> Result<(), EvalError> {
+    pub fn balance(
+        &mut self,
+        now: &Instant,
+        x: &[f64],
+        w: &mut [f64],
+        first: usize,
+    ) -> Result<(), EvalError> {
         let n = self.n;
         if first == n {
             return Ok(());
@@ -629,7 +646,8 @@ impl Piston {
         let n = self.n;
         let mass = self.body.matrix();
         let mut work = std::mem::take(&mut self.work);
-        let mut outcome = Err(EvalError::recoverable(MODEL, "a step of the backward Euler method does not converge"));
+        let mut outcome =
+            Err(EvalError::recoverable(MODEL, "a step of the backward Euler method does not converge"));
         let mut before = f64::INFINITY;
         for _ in 0..EULER_STEPS {
             for k in 0..n {
@@ -666,10 +684,10 @@ impl Piston {
                         break;
                     }
                     for k in 0..n {
-                        let inertia = if v.is_some() && k < 2 && column < 2 { mass[k][column] / dt } else { 0.0 };
-                        work.slope[k * n + column] = self.slope[k * n + column]
-                            + dt * (work.dr[k] - work.base[k]) / d
-                            - inertia;
+                        let inertia =
+                            if v.is_some() && k < 2 && column < 2 { mass[k][column] / dt } else { 0.0 };
+                        work.slope[k * n + column] =
+                            self.slope[k * n + column] + dt * (work.dr[k] - work.base[k]) / d - inertia;
                     }
                 }
                 work.lu.copy_from_slice(&work.slope);

@@ -1,9 +1,9 @@
 //! One side of the skirt: gap, film, contact, and the forces that belong to the motions of the gap.
 
 use gudgeon_core::kinds::{
-    Contact, ContactSpec, Film2d, Film2dCtx, Film2dGrid, Film2dIn, Film2dOut, Film2dSpec, FilmMode, FlowFactors,
-    RoughFlow, RoughShear, Roughness, RoughnessSpec, ShearThinning, SkirtModes, SkirtProfile, Superposition,
-    Viscosity,
+    Contact, ContactSpec, Film2d, Film2dCtx, Film2dGrid, Film2dIn, Film2dOut, Film2dSpec, FilmMode,
+    FlowFactors, RoughFlow, RoughShear, Roughness, RoughnessSpec, ShearThinning, SkirtModes, SkirtProfile,
+    Superposition, Viscosity,
 };
 use gudgeon_core::{BuildError, EvalError};
 
@@ -229,7 +229,8 @@ impl Side {
         for m in 0..elastic {
             let shape = &shapes[(2 + m) * n..(3 + m) * n];
             for k in 0..n {
-                let (east, north) = (if k % nx + 1 < nx { k + 1 } else { k }, if k + nx < n { k + nx } else { k });
+                let (east, north) =
+                    (if k % nx + 1 < nx { k + 1 } else { k }, if k + nx < n { k + nx } else { k });
                 face_shapes[0][m * n + k] = 0.5 * (shape[k] + shape[east]);
                 face_shapes[1][m * n + k] = 0.5 * (shape[k] + shape[north]);
             }
@@ -247,9 +248,8 @@ impl Side {
         let count = (panel.length / cg.pitch * (1.0 + 1e-12)).floor() as usize + 1;
         let rows: Vec<f64> = (0..count).map(|k| k as f64 * cg.pitch / panel.length).collect();
         let across = if symmetric && cg.intervals % 2 == 0 { cg.intervals / 2 } else { cg.intervals };
-        let contact_angle: Vec<f64> = (0..=across)
-            .map(|i| panel.half_angle * (2.0 * i as f64 / cg.intervals as f64 - 1.0))
-            .collect();
+        let contact_angle: Vec<f64> =
+            (0..=across).map(|i| panel.half_angle * (2.0 * i as f64 / cg.intervals as f64 - 1.0)).collect();
         let contact_cos: Vec<f64> = contact_angle.iter().map(|a| a.cos()).collect();
         let contact_drop = if drop[0].is_empty() {
             Vec::new()
@@ -668,7 +668,8 @@ impl Side {
             let mode = FilmMode { u: -speed, dhdt: &self.rates, edge_pressure: [0.0; 4] };
             let r = self.film.solve_many(&inp, &[mode], &mut self.p).map(|_| ());
             self.evaluations += 1;
-            let cut = if self.superposition == Superposition::CutOff { self.p_cav } else { f64::NEG_INFINITY };
+            let cut =
+                if self.superposition == Superposition::CutOff { self.p_cav } else { f64::NEG_INFINITY };
             self.p.iter_mut().for_each(|p| *p = (mu * *p).max(cut));
             if r.is_ok() {
                 self.sums(true, speed, mu, out);
@@ -695,7 +696,13 @@ impl Side {
     }
 
     /// The film with its cavitation, by the solver alone.
-    fn solve_whole(&mut self, trial: bool, speed: f64, mu: f64, rates: &[f64]) -> Result<Film2dOut, EvalError> {
+    fn solve_whole(
+        &mut self,
+        trial: bool,
+        speed: f64,
+        mu: f64,
+        rates: &[f64],
+    ) -> Result<Film2dOut, EvalError> {
         self.combine_rates(trial, rates);
         let n = self.nodes();
         let gap = if trial { &self.trial } else { &self.now };
@@ -841,7 +848,15 @@ fn film_input<'a>(gap: &'a Gap, n: usize) -> Film2dIn<'a> {
 }
 
 /// `out`: forces of a pressure on both edges, along the bore, along the bore times `R cos φ`, and on the elastic shapes.
-fn pressure_sums(p: &[f64], tests: &[f64], lever: &[f64], cos: &[f64], radius: f64, nx: usize, out: &mut [f64]) {
+fn pressure_sums(
+    p: &[f64],
+    tests: &[f64],
+    lever: &[f64],
+    cos: &[f64],
+    radius: f64,
+    nx: usize,
+    out: &mut [f64],
+) {
     let n = p.len();
     let dot = gudgeon_numerics::linalg::dot;
     out[0] = dot(&tests[..n], p);

@@ -4,15 +4,16 @@ use std::f64::consts::PI;
 
 use gudgeon_contact::CrestWedge;
 use gudgeon_core::kinds::{
-    Film2dCtx, Film2dGrid, Film2dIn, Film2dSpec, GrooveFrictionCtx, GrooveFrictionSpec, KinematicsCtx, KinematicsSpec, PinFrictionSpec, PistonMotion,
-    RoughnessSpec, SkirtComplianceCtx, SkirtComplianceSpec, SkirtModes, SkirtProfileCtx, SkirtProfileSpec,
+    Film2dCtx, Film2dGrid, Film2dIn, Film2dSpec, GrooveFrictionCtx, GrooveFrictionSpec, KinematicsCtx,
+    KinematicsSpec, PinFrictionSpec, PistonMotion, RoughnessSpec, SkirtComplianceCtx, SkirtComplianceSpec,
+    SkirtModes, SkirtProfileCtx, SkirtProfileSpec,
 };
 use gudgeon_core::quantity::quantity;
 use gudgeon_film::film_2d::{Cavitation, CentralDifferences, Direct, Equations, Multigrid};
 use gudgeon_film::{SawtoothWaviness, SmoothSurfaces, WavinessTransport};
 use gudgeon_skirt::{
-    Body, ContactGrid, Crank, Cylindrical, Instant, Modal, NoGrooveFriction, NoPinFriction, Panel, Piston, Rod, Shape, Side,
-    SideLoads, SideSetup, Slopes,
+    Body, ContactGrid, Crank, Cylindrical, Instant, Modal, NoGrooveFriction, NoPinFriction, Panel, Piston,
+    Rod, Shape, Side, SideLoads, SideSetup, Slopes,
 };
 
 const RADIUS: f64 = 0.03824;
@@ -51,7 +52,8 @@ struct Setup<'a> {
 fn side(which: usize, setup: &Setup<'_>) -> Side {
     let panel = Panel { radius: RADIUS, length: LENGTH, half_angle: HALF[which] };
     let folder = std::path::Path::new("");
-    let profile = Cylindrical {}.build(&SkirtProfileCtx { length: LENGTH, radius: RADIUS, folder }).expect("builds");
+    let profile =
+        Cylindrical {}.build(&SkirtProfileCtx { length: LENGTH, radius: RADIUS, folder }).expect("builds");
     let contact = CrestWedge {
         amplitude: quantity(4e-6),
         pitch: quantity(0.25e-3),
@@ -103,12 +105,48 @@ fn slider_crank(c: &Crank, deg: f64) -> PistonMotion {
 /// intervals.
 #[allow(clippy::type_complexity)]
 const POINTS: [(f64, [f64; 2], [f64; 2], [[f64; 4]; 2], [f64; 2]); 6] = [
-    (90.0, [-2.8, -3.7], [0.0, 0.0], [[0.0, 0.0, -51.399, 1.82127], [-590.11, 3.84285, -16.843, -0.62238]], [0.0, -596.44]),
-    (330.0, [0.5, -2.5], [400.0, -100.0], [[2205.20, -24.8245, 20.483, -0.72429], [-2.540, -0.01279, 13.115, 0.48478]], [2242.25, -5.598]),
-    (390.0, [1.5, -3.3], [-800.0, -100.0], [[779.55, -0.83575, -20.850, 0.73726], [-85.707, 1.39713, -13.695, -0.50628]], [776.71, -85.308]),
-    (390.0, [-0.5, -3.0], [-500.0, -50.0], [[1725.80, -5.60753, -23.177, 0.81979], [-14.847, 0.26577, -12.117, -0.44783]], [1729.02, -15.675]),
-    (440.0, [-2.3, -3.45], [-240.0, -90.0], [[1151.20, -3.99497, -48.394, 1.71381], [-57.264, 0.75815, -17.991, -0.66480]], [1154.30, -57.727]),
-    (180.0, [-2.0, -3.0], [100.0, 200.0], [[0.0, 0.0, 0.1494, -0.00529], [-785.64, 5.46705, 0.0483, 0.00178]], [0.0, -793.76]),
+    (
+        90.0,
+        [-2.8, -3.7],
+        [0.0, 0.0],
+        [[0.0, 0.0, -51.399, 1.82127], [-590.11, 3.84285, -16.843, -0.62238]],
+        [0.0, -596.44],
+    ),
+    (
+        330.0,
+        [0.5, -2.5],
+        [400.0, -100.0],
+        [[2205.20, -24.8245, 20.483, -0.72429], [-2.540, -0.01279, 13.115, 0.48478]],
+        [2242.25, -5.598],
+    ),
+    (
+        390.0,
+        [1.5, -3.3],
+        [-800.0, -100.0],
+        [[779.55, -0.83575, -20.850, 0.73726], [-85.707, 1.39713, -13.695, -0.50628]],
+        [776.71, -85.308],
+    ),
+    (
+        390.0,
+        [-0.5, -3.0],
+        [-500.0, -50.0],
+        [[1725.80, -5.60753, -23.177, 0.81979], [-14.847, 0.26577, -12.117, -0.44783]],
+        [1729.02, -15.675],
+    ),
+    (
+        440.0,
+        [-2.3, -3.45],
+        [-240.0, -90.0],
+        [[1151.20, -3.99497, -48.394, 1.71381], [-57.264, 0.75815, -17.991, -0.66480]],
+        [1154.30, -57.727],
+    ),
+    (
+        180.0,
+        [-2.0, -3.0],
+        [100.0, 200.0],
+        [[0.0, 0.0, 0.1494, -0.00529], [-785.64, 5.46705, 0.0483, 0.00178]],
+        [0.0, -793.76],
+    ),
 ];
 
 /// Lateral force, moment about the pin, friction and its moment.
@@ -135,7 +173,11 @@ fn static_points_on_the_published_mesh() {
             let admitted = [0.005, 5e-5, 0.035, 0.035 * 0.04];
             for q in 0..4 {
                 let d = (got[q] - expected[k][q]).abs();
-                assert!(d <= 1e-3 * expected[k][q].abs() + admitted[q], "{deg} {k} {q}: {got:?} {:?}", expected[k]);
+                assert!(
+                    d <= 1e-3 * expected[k][q].abs() + admitted[q],
+                    "{deg} {k} {q}: {got:?} {:?}",
+                    expected[k]
+                );
             }
         }
     }
@@ -190,7 +232,12 @@ fn crank_drive() {
     // U1, U2: rod angles and speed; speed, acceleration and rod angle at the static points.
     let most = |l: f64| {
         let c = Crank { rod_length: l, ..crank() };
-        (0..7200).map(|k| -c.instant((f64::from(k) * 0.1).to_radians(), &PistonMotion::default(), 0.0, 0.0, 0.0).tangent.atan())
+        (0..7200)
+            .map(|k| {
+                -c.instant((f64::from(k) * 0.1).to_radians(), &PistonMotion::default(), 0.0, 0.0, 0.0)
+                    .tangent
+                    .atan()
+            })
             .fold(0.0_f64, |a, b| a.max(b.abs()))
             .to_degrees()
     };
@@ -223,7 +270,12 @@ fn crank_drive() {
     }
     // Half a unit.
     for (mass, least, most) in [(0.236, -451.0, 772.0), (0.288, -551.0, 942.0)] {
-        assert!((mass * low - least).abs() < 0.5 && (mass * high - most).abs() < 0.5, "{} {}", mass * low, mass * high);
+        assert!(
+            (mass * low - least).abs() < 0.5 && (mass * high - most).abs() < 0.5,
+            "{} {}",
+            mass * low,
+            mass * high
+        );
     }
 }
 
@@ -263,7 +315,8 @@ fn flat_plates_and_concentric_drag() {
     }
     // U10: drag of the centred skirt at 10.2418 m/s with crests of 4, 3 and 2 um.
     for (amplitude, printed) in [(4e-6, 54.09), (3e-6, 49.29), (2e-6, 46.13)] {
-        let roughness = SawtoothWaviness { amplitude: quantity(amplitude), transport: WavinessTransport::AsPublished };
+        let roughness =
+            SawtoothWaviness { amplitude: quantity(amplitude), transport: WavinessTransport::AsPublished };
         let setup = Setup { film: &CentralDifferences::default(), roughness: &roughness, intervals: 9 };
         let drag: f64 = (0..2)
             .map(|k| {
@@ -301,16 +354,26 @@ fn forces_are_found_in_balance_wherever_the_piston_is() {
                 let x = [e[0] * 1e-6, e[1] * 1e-6];
                 let mut w = [0.0; 2];
                 let before = p.newton_steps;
-                p.rates(&now, &x, None, &mut w, &mut [0.0; 2]).unwrap_or_else(|err| panic!("{deg} {pressure} {e:?}: {err}"));
+                p.rates(&now, &x, None, &mut w, &mut [0.0; 2])
+                    .unwrap_or_else(|err| panic!("{deg} {pressure} {e:?}: {err}"));
                 worst = worst.max(p.newton_steps - before);
                 let s = p.summary(&now, &x, &w).expect("a film");
                 // What rounding leaves of the largest force.
-                let scale = 1.0 + s.film[0].abs() + s.film[1].abs() + s.contact[0].abs() + s.contact[1].abs() + s.rod.abs();
-                assert!(s.net[0].abs() < 1e-6 * scale && s.net[1].abs() < 1e-7 * scale, "{deg} {pressure} {e:?}: {s:?}");
+                let scale = 1.0
+                    + s.film[0].abs()
+                    + s.film[1].abs()
+                    + s.contact[0].abs()
+                    + s.contact[1].abs()
+                    + s.rod.abs();
+                assert!(
+                    s.net[0].abs() < 1e-6 * scale && s.net[1].abs() < 1e-7 * scale,
+                    "{deg} {pressure} {e:?}: {s:?}"
+                );
             }
         }
     }
-    eprintln!("{worst}");assert!(worst < 30, "{worst} Newton steps");
+    eprintln!("{worst}");
+    assert!(worst < 30, "{worst} Newton steps");
 }
 
 #[test]
@@ -338,24 +401,37 @@ fn derivatives_are_those_of_the_rates() {
             for k in 0..states {
                 let (mut x, mut u) = (e, v);
                 let d = if k < 2 { 2e-11 } else { 1e-9 };
-                if k < 2 { x[k] -= d } else { u[k - 2] -= d }
+                if k < 2 {
+                    x[k] -= d
+                } else {
+                    u[k - 2] -= d
+                }
                 let there = ask(&now, x, u);
                 columns.push([0, 1, 2, 3].map(|r| (here[r] - there[r]) / d));
             }
             ask(&now, e, v);
             let w = [here[0], here[1]];
             let (mut jac, mut time) = (vec![0.0; states * states], vec![0.0; states]);
-            p.derivatives(&now, &e, inertial, &w, Some(&mut jac), Some((&later, dt, &mut time))).expect("derivatives");
+            p.derivatives(&now, &e, inertial, &w, Some(&mut jac), Some((&later, dt, &mut time)))
+                .expect("derivatives");
             for (row, t) in time.iter().enumerate() {
                 // The difference quotients are of first order, and the films are solved to 1e-9 of their flows.
                 let scale = columns.iter().map(|c| c[row].abs()).fold(0.0, f64::max);
                 for (column, c) in columns.iter().enumerate() {
                     let d = (jac[row * states + column] - c[row]).abs();
-                    assert!(d < 2e-3 * scale, "{e:?} {inertial} {row} {column}: {} {}", jac[row * states + column], c[row]);
+                    assert!(
+                        d < 2e-3 * scale,
+                        "{e:?} {inertial} {row} {column}: {} {}",
+                        jac[row * states + column],
+                        c[row]
+                    );
                 }
                 let fresh = (then[row] - here[row]) / dt;
                 let inherent = if inertial && row < 2 { 0.0 } else { fresh };
-                assert!((t - inherent).abs() <= 1e-3 * inherent.abs() + 1e-9, "{e:?} {inertial} time {row}: {t} {inherent}");
+                assert!(
+                    (t - inherent).abs() <= 1e-3 * inherent.abs() + 1e-9,
+                    "{e:?} {inertial} time {row}: {t} {inherent}"
+                );
             }
         }
     }
@@ -373,10 +449,17 @@ fn shapes_yield_as_their_stiffness_says() {
     };
     let film = Direct { cavitation: Cavitation::HalfSommerfeld, ..Direct::default() };
     let roughness = waves(WavinessTransport::Homogenised);
-    let profile = Cylindrical {}.build(&SkirtProfileCtx { length: LENGTH, radius: RADIUS, folder }).expect("builds");
+    let profile =
+        Cylindrical {}.build(&SkirtProfileCtx { length: LENGTH, radius: RADIUS, folder }).expect("builds");
     let grid = panel.grid(12, 12, 0.0);
     let modes = modal
-        .build(&SkirtComplianceCtx { grid: &grid, length: LENGTH, radius: RADIUS, half_angle: HALF[0], folder })
+        .build(&SkirtComplianceCtx {
+            grid: &grid,
+            length: LENGTH,
+            radius: RADIUS,
+            half_angle: HALF[0],
+            folder,
+        })
         .expect("shapes");
     let mut s = Side::new(SideSetup {
         panel,
@@ -415,7 +498,12 @@ fn shapes_yield_as_their_stiffness_says() {
         for b in 0..4 {
             // The squeeze of rough surfaces acts with the content, the pressure with the gap: the same here, far from contact. Quadrature weights
             // differ from the areas of control volumes.
-            assert!((slope(a, b) - slope(b, a)).abs() < 0.02 * slope(a, a).abs(), "{a} {b}: {} {}", slope(a, b), slope(b, a));
+            assert!(
+                (slope(a, b) - slope(b, a)).abs() < 0.02 * slope(a, a).abs(),
+                "{a} {b}: {} {}",
+                slope(a, b),
+                slope(b, a)
+            );
         }
     }
 }
@@ -474,7 +562,8 @@ fn published_explicit_scheme_diverges() {
     let c = crank();
     let now = c.instant(0.17, &slider_crank(&c, f64::to_degrees(0.17)), 0.0, 4.6e-3, 0.016);
     let (mut w, mut x) = ([0.0; 2], [0.0; 2]);
-    p.euler_step(&now, &[0.0; 2], Some([0.0; 2]), 0.17 / omega, &mut w, &mut x).expect("a step of ten degrees");
+    p.euler_step(&now, &[0.0; 2], Some([0.0; 2]), 0.17 / omega, &mut w, &mut x)
+        .expect("a step of ten degrees");
     assert!(x[0].abs() < 1e-6 && x[1].abs() < 1e-6, "{x:?}");
 }
 
@@ -503,8 +592,18 @@ fn poisson_test_of_the_source() {
             }
         }
     }
-    let exact = [[0.018, 0.042, 0.079, 0.132], [0.031, 0.073, 0.143, 0.251], [0.033, 0.081, 0.170, 0.336], [0.021, 0.055, 0.127, 0.312]];
-    let numeric = [[0.018, 0.042, 0.077, 0.130], [0.031, 0.074, 0.141, 0.248], [0.034, 0.084, 0.170, 0.330], [0.023, 0.059, 0.134, 0.313]];
+    let exact = [
+        [0.018, 0.042, 0.079, 0.132],
+        [0.031, 0.073, 0.143, 0.251],
+        [0.033, 0.081, 0.170, 0.336],
+        [0.021, 0.055, 0.127, 0.312],
+    ];
+    let numeric = [
+        [0.018, 0.042, 0.077, 0.130],
+        [0.031, 0.074, 0.141, 0.248],
+        [0.034, 0.084, 0.170, 0.330],
+        [0.023, 0.059, 0.134, 0.313],
+    ];
     for j in 0..4 {
         for i in 0..4 {
             let (x, y) = (0.2 * (i + 1) as f64, 0.2 * (j + 1) as f64);

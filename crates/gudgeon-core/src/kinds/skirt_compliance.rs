@@ -43,4 +43,8 @@ pub trait SkirtComplianceSpec: Debug + DynClone + Send + Sync {
     fn build(&self, ctx: &SkirtComplianceCtx<'_>) -> Result<SkirtModes, BuildError>;
 }
 dyn_clone::clone_trait_object!(SkirtComplianceSpec);
-crate::register_kind!(dyn SkirtComplianceSpec, "skirt_compliance", "how the skirt yields to the pressure on it");
+crate::register_kind!(
+    dyn SkirtComplianceSpec,
+    "skirt_compliance",
+    "how the skirt yields to the pressure on it"
+);

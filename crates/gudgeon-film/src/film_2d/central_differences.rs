@@ -218,9 +218,9 @@ impl Differences {
                 }
             }
         }
-        self.band
-            .factor()
-            .map_err(|s| EvalError::recoverable(MODEL, format!("the film is undetermined at node {}", s.column)))
+        self.band.factor().map_err(|s| {
+            EvalError::recoverable(MODEL, format!("the film is undetermined at node {}", s.column))
+        })
     }
 
     /// Pressures of one cause into `p`; those of the edges stand there. Returns the work.
@@ -252,8 +252,7 @@ impl Differences {
         let e = self.problem.grid.edges;
         let weight = |at: usize| self.coefficient.iter().map(|c| c[at] + c[at + 1]).sum::<f64>();
         let (wx, wy) = (weight(0), weight(2));
-        let rho =
-            (wx * lines(nx, [e[0], e[1]]) + wy * lines(self.problem.ny, [e[2], e[3]])) / (wx + wy);
+        let rho = (wx * lines(nx, [e[0], e[1]]) + wy * lines(self.problem.ny, [e[2], e[3]])) / (wx + wy);
         let omega = 2.0 / (1.0 + (1.0 - rho * rho).max(0.0).sqrt());
         for sweep in 1..=MOST_SWEEPS {
             let mut moved = 0.0;

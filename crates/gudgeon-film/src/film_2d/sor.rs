@@ -1,4 +1,6 @@
-use gudgeon_core::kinds::{Film2d, Film2dCtx, Film2dGrid, Film2dIn, Film2dOut, Film2dSpec, FilmMode, Superposition};
+use gudgeon_core::kinds::{
+    Film2d, Film2dCtx, Film2dGrid, Film2dIn, Film2dOut, Film2dSpec, FilmMode, Superposition,
+};
 use gudgeon_core::{BuildError, EvalError};
 use serde::{Deserialize, Serialize};
 

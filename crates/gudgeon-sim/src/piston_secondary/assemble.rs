@@ -5,8 +5,8 @@ use std::path::Path;
 
 use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{
-    CylinderPressure, CylinderPressureCtx, GrooveFrictionCtx, Kinematics, KinematicsCtx, Lateral, SkirtComplianceCtx,
-    SkirtModes, SkirtProfileCtx,
+    CylinderPressure, CylinderPressureCtx, GrooveFrictionCtx, Kinematics, KinematicsCtx, Lateral,
+    SkirtComplianceCtx, SkirtModes, SkirtProfileCtx,
 };
 use gudgeon_skirt::{Body, ContactGrid, Crank, Instant, Panel, Piston, Rod, Side, SideSetup};
 
@@ -67,7 +67,11 @@ pub fn radius(case: &PistonSecondaryCase) -> f64 {
 ///
 /// # Errors
 /// Everything that is wrong, with places.
-pub fn assemble(case: &PistonSecondaryCase, folder: &Path, elastic: bool) -> Result<Assembly, Vec<BuildError>> {
+pub fn assemble(
+    case: &PistonSecondaryCase,
+    folder: &Path,
+    elastic: bool,
+) -> Result<Assembly, Vec<BuildError>> {
     let mut errors = legal(case);
     let (e, p, s, m) = (&case.engine, &case.piston, &case.skirt, &case.models);
     let (radius, length) = (radius(case), s.length.si());
@@ -134,7 +138,10 @@ pub fn assemble(case: &PistonSecondaryCase, folder: &Path, elastic: bool) -> Res
     let mut sides = Vec::new();
     let clearance = running_clearance(case, radius);
     if !(clearance > 0.0) {
-        keep(Err(BuildError::at("skirt.thermal", format!("the running clearance is {:.3} um", 1e6 * clearance))));
+        keep(Err(BuildError::at(
+            "skirt.thermal",
+            format!("the running clearance is {:.3} um", 1e6 * clearance),
+        )));
     }
     let p_cav = case.gas.cavitation_pressure.map_or(0.0, |p| p.si() - case.gas.crankcase_pressure.si());
     if p_cav > 0.0 {
@@ -214,7 +221,10 @@ pub fn assemble(case: &PistonSecondaryCase, folder: &Path, elastic: bool) -> Res
     };
     let mu = oil.viscosity(s.oil_temperature.si());
     if !(mu > 0.0 && mu.is_finite()) {
-        errors.push(BuildError::at("models.oil", format!("the viscosity at the oil's temperature is {mu} Pa s")));
+        errors.push(BuildError::at(
+            "models.oil",
+            format!("the viscosity at the oil's temperature is {mu} Pa s"),
+        ));
     }
     if !errors.is_empty() {
         return Err(errors);
@@ -317,7 +327,10 @@ fn legal(case: &PistonSecondaryCase) -> Vec<BuildError> {
         say("outputs.series_step", format!("a series of {rows:.0} rows a cycle is none"));
     }
     if case.outputs.map_step.is_some_and(|m| m.si() < case.outputs.series_step.si() * (1.0 - 1e-9)) {
-        say("outputs.map_step", "maps are kept at rows of the series: not below `outputs.series_step`".into());
+        say(
+            "outputs.map_step",
+            "maps are kept at rows of the series: not below `outputs.series_step`".into(),
+        );
     }
     if radius(case) <= 0.0 {
         say("skirt.clearance", "the clearance is larger than the bore".into());

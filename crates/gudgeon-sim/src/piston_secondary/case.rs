@@ -1,12 +1,13 @@
 //! What a case of the scene `piston_secondary` may say.
 
 use gudgeon_core::kinds::{
-    ContactSpec, CylinderPressureSpec, Film2dSpec, GrooveFrictionSpec, KinematicsSpec, OilSpec, PinFrictionSpec,
-    RoughnessSpec, SecondaryMotionSpec, ShearThinningSpec, SkirtComplianceSpec, SkirtProfileSpec,
+    ContactSpec, CylinderPressureSpec, Film2dSpec, GrooveFrictionSpec, KinematicsSpec, OilSpec,
+    PinFrictionSpec, RoughnessSpec, SecondaryMotionSpec, ShearThinningSpec, SkirtComplianceSpec,
+    SkirtProfileSpec,
 };
 use gudgeon_core::quantity::{
-    Angle, Length, NonNegative, PosAngle, PosAngularSpeed, PosExpansion, PosInertia, PosLength, PosMass, PosPressure,
-    PosRatio, PosTemperature, Pressure, Ratio, quantity,
+    Angle, Length, NonNegative, PosAngle, PosAngularSpeed, PosExpansion, PosInertia, PosLength, PosMass,
+    PosPressure, PosRatio, PosTemperature, Pressure, Ratio, quantity,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -63,7 +63,10 @@ fn middle_over_cycle(side: &Side, maps: &[Map]) -> Series {
             p.push(middle(side, &map.p)[i]);
         }
     }
-    Series { axis: column("theta", "deg", theta), columns: vec![column("height", "m", height), column("p", "Pa", p)] }
+    Series {
+        axis: column("theta", "deg", theta),
+        columns: vec![column("height", "m", height), column("p", "Pa", p)],
+    }
 }
 
 fn over_side(side: &Side, map: &Map) -> Series {
@@ -77,7 +80,10 @@ fn over_side(side: &Side, map: &Map) -> Series {
             p.push(map.p[j * nx + i]);
         }
     }
-    Series { axis: column("angle", "deg", angle), columns: vec![column("height", "m", height), column("p", "Pa", p)] }
+    Series {
+        axis: column("angle", "deg", angle),
+        columns: vec![column("height", "m", height), column("p", "Pa", p)],
+    }
 }
 
 fn line(points: Vec<[f64; 2]>, closed: bool, style: Style) -> Shape {
@@ -101,7 +107,8 @@ fn piston(a: &Assembly, record: &Record) -> Figure {
     let (head, end) = (top + crown + 0.1 * radius, top - stroke - (body.length - body.pin) - 0.1 * radius);
     let thick = 0.12 * radius;
     let highest = record.maps.iter().flatten().flat_map(|m| &m.p).fold(1.0_f64, |m, p| m.max(*p));
-    let mut fixed = vec![line(vec![[0.0, head + 0.3 * radius], [0.0, -1.2 * crank.radius]], false, Style::Axis)];
+    let mut fixed =
+        vec![line(vec![[0.0, head + 0.3 * radius], [0.0, -1.2 * crank.radius]], false, Style::Axis)];
     for side in [-1.0, 1.0] {
         let x = side * wall;
         fixed.push(line(
@@ -157,7 +164,9 @@ fn piston(a: &Assembly, record: &Record) -> Figure {
         // Film pressure along the middle of both sides, standing on the liner.
         let deg = tidy(theta.to_degrees());
         for (side, direction) in [(0, -1.0), (1, 1.0)] {
-            let Some(map) = record.maps[side].iter().find(|m| (m.theta_deg - deg).abs() < 1e-6) else { continue };
+            let Some(map) = record.maps[side].iter().find(|m| (m.theta_deg - deg).abs() < 1e-6) else {
+                continue;
+            };
             let p = middle(&a.piston.sides[side], &map.p);
             if p.iter().all(|p| *p <= 0.0) {
                 continue;
@@ -166,7 +175,9 @@ fn piston(a: &Assembly, record: &Record) -> Figure {
             let from = direction * (wall + thick);
             let mut points = vec![[from, height(0.0)]];
             points.extend(
-                x.iter().zip(&p).map(|(x, p)| [from + direction * PRESSURE * radius * p.max(0.0) / highest, height(*x)]),
+                x.iter()
+                    .zip(&p)
+                    .map(|(x, p)| [from + direction * PRESSURE * radius * p.max(0.0) / highest, height(*x)]),
             );
             points.push([from, height(body.length)]);
             shapes.push(line(points, true, Style::Oil));

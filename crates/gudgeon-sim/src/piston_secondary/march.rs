@@ -159,7 +159,12 @@ impl Cycle<'_> {
     }
 
     /// One cycle from `y`, recorded into `record`.
-    fn integrate(&mut self, y: &mut [f64], tolerance: f64, record: Option<&mut Record>) -> Result<(), RunError> {
+    fn integrate(
+        &mut self,
+        y: &mut [f64],
+        tolerance: f64,
+        record: Option<&mut Record>,
+    ) -> Result<(), RunError> {
         self.w.fill(0.0);
         let outcome = match self.engine {
             Engine::Euler { steps } => self.euler(y, steps, record),
@@ -170,7 +175,12 @@ impl Cycle<'_> {
         outcome
     }
 
-    fn adaptive(&mut self, y: &mut [f64], tolerance: f64, mut record: Option<&mut Record>) -> Result<(), RunError> {
+    fn adaptive(
+        &mut self,
+        y: &mut [f64],
+        tolerance: f64,
+        mut record: Option<&mut Record>,
+    ) -> Result<(), RunError> {
         let (n, states, period) = (self.x.len(), self.states(), self.a.period);
         let mut scale = vec![1.0; states];
         scale[n..].fill(VELOCITY_SCALE);
@@ -237,7 +247,12 @@ impl Cycle<'_> {
         })
     }
 
-    fn euler(&mut self, y: &mut [f64], steps: usize, mut record: Option<&mut Record>) -> Result<(), RunError> {
+    fn euler(
+        &mut self,
+        y: &mut [f64],
+        steps: usize,
+        mut record: Option<&mut Record>,
+    ) -> Result<(), RunError> {
         let (c, n, period, omega) = (self.a.clearance, self.x.len(), self.a.period, self.a.omega());
         let speed = c * omega;
         let mut from: Vec<f64> = y[..n].iter().map(|y| c * y).collect();
@@ -446,7 +461,10 @@ pub fn run(
             ));
         }
         if report.multiplier > 0.9 {
-            notes.push(format!("a slow mode of the lateral position: {:.3} of a deviation is left after a cycle", report.multiplier));
+            notes.push(format!(
+                "a slow mode of the lateral position: {:.3} of a deviation is left after a cycle",
+                report.multiplier
+            ));
         }
         if report.period > 1 {
             notes.push(format!("the motion repeats only every {} cycles", report.period));

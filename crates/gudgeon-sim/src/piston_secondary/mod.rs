@@ -160,7 +160,8 @@ impl SceneCase for PistonSecondaryCase {
 }
 
 /// Methods of the race.
-const METHODS: [&str; 4] = ["implicit, order 3", "implicit, order 5", "backward Euler", "backward Euler, published film"];
+const METHODS: [&str; 4] =
+    ["implicit, order 3", "implicit, order 5", "backward Euler", "backward Euler, published film"];
 
 /// Every method with the films that its steps deserve.
 fn contenders(case: &PistonSecondaryCase) -> Vec<Contender> {
@@ -174,7 +175,8 @@ fn contenders(case: &PistonSecondaryCase) -> Vec<Contender> {
         (METHODS[1], "rodas5p", &[(1e-3, 20, 16), (1e-4, 32, 20), (1e-5, 48, 32)]),
     ] {
         for &(t, along, across) in points {
-            let own = s.method == Method::Implicit && (along, across) == (s.intervals_along, s.intervals_across);
+            let own =
+                s.method == Method::Implicit && (along, across) == (s.intervals_along, s.intervals_across);
             let mut set = vec![
                 "solver.method=implicit".into(),
                 format!("solver.integrator={name}"),
@@ -190,7 +192,11 @@ fn contenders(case: &PistonSecondaryCase) -> Vec<Contender> {
         }
     }
     for (method, film, points) in [
-        (METHODS[2], "{ model = \"direct\", cavitation = \"half_sommerfeld\" }", &[(2.0, 12, 10), (1.0, 16, 12), (0.5, 20, 16)][..]),
+        (
+            METHODS[2],
+            "{ model = \"direct\", cavitation = \"half_sommerfeld\" }",
+            &[(2.0, 12, 10), (1.0, 16, 12), (0.5, 20, 16)][..],
+        ),
         (METHODS[3], "{ model = \"central_differences\" }", &[(0.5, 9, 9), (0.5, 19, 19)]),
     ] {
         for &(step, along, across) in points {
@@ -292,7 +298,11 @@ fn skipped(case: &PistonSecondaryCase, a: &Assembly, wanted: &[ResultInfo]) -> (
     let pin = !off(m.pin_friction.typetag_name());
     say(pin, "friction of the pin", if pin { "it turns the piston" } else { "the model is `off`" });
     let rings = !off(m.groove_friction.typetag_name());
-    say(rings, "friction of the rings in their grooves", if rings { "it holds the piston" } else { "the model is `off`" });
+    say(
+        rings,
+        "friction of the rings in their grooves",
+        if rings { "it holds the piston" } else { "the model is `off`" },
+    );
     let rod = case.rod.is_some();
     say(rod, "inertia of the rod", if rod { "it presses the pin aside" } else { "the rod has no mass" });
     let flow = wanted.iter().any(|r| r.flow);
@@ -304,15 +314,25 @@ fn skipped(case: &PistonSecondaryCase, a: &Assembly, wanted: &[ResultInfo]) -> (
     match a.lateral {
         Lateral::Inertial => say(true, "inertia across the bore", "`full_inertia`"),
         Lateral::QuasiStatic => {
-            say(false, "inertia across the bore", "`quasi_static`: films and rod are in balance at every instant");
+            say(
+                false,
+                "inertia across the bore",
+                "`quasi_static`: films and rod are in balance at every instant",
+            );
         }
-        Lateral::Held { .. } => say(false, "motion across the bore", "`held`: the skirt stands where it is told"),
+        Lateral::Held { .. } => {
+            say(false, "motion across the bore", "`held`: the skirt stands where it is told")
+        }
     }
     let whole = a.piston.sides.iter().all(|s| s.nodes() == s.grid().len());
     say(
         whole,
         "one half of each side",
-        if whole { "an odd number of intervals, or a shape that is no mirror image" } else { "it is the mirror image of the other" },
+        if whole {
+            "an odd number of intervals, or a shape that is no mirror image"
+        } else {
+            "it is the mirror image of the other"
+        },
     );
     (out, runs)
 }

@@ -35,7 +35,13 @@ pub const EXTREMES: [(&str, &str, &str, f64, &str); 6] = [
     ("e_top_rate", "um/s", "skirt.e_top_rate", 1e6, "velocity of the upper edge"),
     ("e_bottom_rate", "um/s", "skirt.e_bottom_rate", 1e6, "velocity of the lower edge"),
     ("side_force", "N", "skirt.side_force", 1.0, "lateral force of film and contact on the skirt"),
-    ("friction_force", "N", "skirt.friction_force", 1.0, "axial force of film and contact, away from the head"),
+    (
+        "friction_force",
+        "N",
+        "skirt.friction_force",
+        1.0,
+        "axial force of film and contact, away from the head",
+    ),
 ];
 
 /// Every result of a case.
@@ -69,7 +75,11 @@ pub fn catalogue(case: &PistonSecondaryCase, period_deg: f64) -> Vec<ResultInfo>
         ("contact_work", "J", "part of the friction work that rubbing does"),
         ("contact_force_max", "N", "largest force of solid contact on a side"),
         ("contact_share", "1", "share of the cycle with solid contact"),
-        ("contact_begin", "deg", "crank angle at which solid contact begins in the longest stretch; 0 without contact"),
+        (
+            "contact_begin",
+            "deg",
+            "crank angle at which solid contact begins in the longest stretch; 0 without contact",
+        ),
         ("contact_end", "deg", "crank angle at which that stretch ends"),
         ("slap_energy", "mJ", "largest kinetic energy across the bore that an approach to a side loses"),
         ("slap_energy_angle", "deg", "crank angle at which it is largest"),

@@ -223,9 +223,7 @@ impl Record {
 
     /// Integral over the cycle in time, by the trapezoidal rule.
     fn integral(&self, f: impl Fn(usize) -> f64) -> f64 {
-        (1..self.count)
-            .map(|k| 0.5 * (f(k) + f(k - 1)) * (self.grid[k] - self.grid[k - 1]))
-            .sum::<f64>()
+        (1..self.count).map(|k| 0.5 * (f(k) + f(k - 1)) * (self.grid[k] - self.grid[k - 1])).sum::<f64>()
             / self.omega
     }
 

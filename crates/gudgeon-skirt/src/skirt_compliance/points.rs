@@ -22,7 +22,8 @@ impl Points {
             BuildError::at("file", format!("cannot read {}: {e}", path.display()))
                 .help("the name is relative to the folder of the case file")
         })?;
-        let fault = |line: usize, what: String| BuildError::at("file", format!("{file}, line {line}: {what}"));
+        let fault =
+            |line: usize, what: String| BuildError::at("file", format!("{file}, line {line}: {what}"));
         let mut rows: Vec<Vec<f64>> = Vec::new();
         for (number, line) in text.lines().enumerate() {
             let line = line.trim();
@@ -69,7 +70,10 @@ impl Points {
         for r in &rows {
             let k = place(r);
             if std::mem::replace(&mut seen[k], true) {
-                return Err(BuildError::at("file", format!("{file}: the point {} {} stands there twice", r[0], r[1])));
+                return Err(BuildError::at(
+                    "file",
+                    format!("{file}: the point {} {} stands there twice", r[0], r[1]),
+                ));
             }
             for (m, v) in r[2..].iter().enumerate() {
                 values[m * count + k] = *v;
@@ -104,12 +108,7 @@ impl Points {
         let ((i, a), (j, b)) = (find(&self.heights, x), find(&self.angles, angle));
         let n = self.heights.len();
         let k = j * n + i;
-        [
-            (k, (1.0 - a) * (1.0 - b)),
-            (k + 1, a * (1.0 - b)),
-            (k + n, (1.0 - a) * b),
-            (k + n + 1, a * b),
-        ]
+        [(k, (1.0 - a) * (1.0 - b)), (k + 1, a * (1.0 - b)), (k + n, (1.0 - a) * b), (k + n + 1, a * b)]
     }
 
     /// The point on the other side of the middle, when there is one for every point.

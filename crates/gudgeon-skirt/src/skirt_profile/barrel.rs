@@ -75,7 +75,12 @@ mod tests {
 
     #[test]
     fn drops_at_the_edges_and_none_in_the_middle() {
-        let spec = Barrel { top: quantity(2e-5), bottom: quantity(1e-5), widest: quantity(0.4), ovality: quantity(1e-4) };
+        let spec = Barrel {
+            top: quantity(2e-5),
+            bottom: quantity(1e-5),
+            widest: quantity(0.4),
+            ovality: quantity(1e-4),
+        };
         let folder = std::path::Path::new("");
         let p = spec.build(&SkirtProfileCtx { length: 0.05, radius: 0.04, folder }).expect("builds");
         // A product and a sum or two.
