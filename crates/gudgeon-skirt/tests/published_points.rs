@@ -372,7 +372,6 @@ fn forces_are_found_in_balance_wherever_the_piston_is() {
             }
         }
     }
-    eprintln!("{worst}");
     assert!(worst < 30, "{worst} Newton steps");
 }
 

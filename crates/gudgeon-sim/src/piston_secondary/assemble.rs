@@ -137,7 +137,7 @@ pub fn assemble(
         .map_err(|e| e.within("models.groove_friction"));
     let mut sides = Vec::new();
     let clearance = running_clearance(case, radius);
-    if !(clearance > 0.0) {
+    if clearance.is_nan() || clearance <= 0.0 {
         keep(Err(BuildError::at(
             "skirt.thermal",
             format!("the running clearance is {:.3} um", 1e6 * clearance),

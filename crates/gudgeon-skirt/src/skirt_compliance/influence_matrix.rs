@@ -76,7 +76,7 @@ impl SkirtComplianceSpec for InfluenceMatrix {
         let mut order: Vec<usize> = (0..n).collect();
         order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]).then(a.cmp(b)));
         let top = eigen.eigenvalues[order[0]];
-        if !(top > 0.0) || eigen.eigenvalues[order[n - 1]] < -0.01 * top {
+        if top.is_nan() || top <= 0.0 || eigen.eigenvalues[order[n - 1]] < -0.01 * top {
             let what = format!("{}: a skirt with this matrix would push back where it is pushed", self.file);
             return Err(BuildError::at("file", what));
         }
