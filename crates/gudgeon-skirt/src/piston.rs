@@ -278,7 +278,7 @@ impl Piston {
         }
         for side in 0..2 {
             for (m, k) in self.own(side).enumerate() {
-                r[k] = loads[side].elastic[m] - self.sides[side].stiffness[m] * x[k];
+                r[k] = loads[side].elastic[m] - self.sides[side].stiffness[m] * (x[k] + RELAXATION * w[k]);
             }
         }
     }
@@ -353,6 +353,9 @@ impl Piston {
                 }
                 for k in 0..elastic {
                     self.slope[(own.start + k) * n + column] += s[4 + k];
+                }
+                if m >= 2 {
+                    self.slope[column * n + column] -= RELAXATION * self.sides[side].stiffness[m - 2];
                 }
             }
         }
@@ -739,6 +742,9 @@ impl Piston {
     }
 }
 
+/// Time \[s\] in which an elastic shape without load comes back to rest: a little inner damping, without which nothing would hold a surface
+/// under a cavity.
+const RELAXATION: f64 = 1e-6;
 /// Part of the gap by which a coordinate is changed for a difference quotient: the forces change by three times as much, the films are
 /// solved to 1e-9.
 const DIFFERENCE: f64 = 1e-5;

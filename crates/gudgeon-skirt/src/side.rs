@@ -247,7 +247,8 @@ impl Side {
         let cg = setup.contact_grid;
         let count = (panel.length / cg.pitch * (1.0 + 1e-12)).floor() as usize + 1;
         let rows: Vec<f64> = (0..count).map(|k| k as f64 * cg.pitch / panel.length).collect();
-        let across = if symmetric && cg.intervals.is_multiple_of(2) { cg.intervals / 2 } else { cg.intervals };
+        let across =
+            if symmetric && cg.intervals.is_multiple_of(2) { cg.intervals / 2 } else { cg.intervals };
         let contact_angle: Vec<f64> =
             (0..=across).map(|i| panel.half_angle * (2.0 * i as f64 / cg.intervals as f64 - 1.0)).collect();
         let contact_cos: Vec<f64> = contact_angle.iter().map(|a| a.cos()).collect();

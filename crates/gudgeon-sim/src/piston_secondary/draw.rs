@@ -10,7 +10,7 @@ use super::record::{Map, Record};
 /// Crank angle between the pictures of the piston \[deg\].
 const FRAME: f64 = 5.0;
 /// Part of the radius that the clearance takes up in the picture.
-const SHOWN: f64 = 0.12;
+const SHOWN: f64 = 0.35;
 /// Part of the radius that the highest pressure takes up beside the liner.
 const PRESSURE: f64 = 0.9;
 
@@ -125,7 +125,7 @@ fn piston(a: &Assembly, record: &Record) -> Figure {
         from: [-wall, end],
         to: [-radius, end],
         offset: -0.35 * radius,
-        text: format!("{:.3} um", 1e6 * a.clearance),
+        text: format!("{} um", tidy(1e6 * a.clearance)),
     });
     let (et, eb) = (record.column("skirt.e_top"), record.column("skirt.e_bottom"));
     let force = record.column("skirt.side_force");
