@@ -106,7 +106,7 @@ fn errors_fall_with_the_order_of_the_method() {
             (error(x), steps as f64)
         });
         let order = (points[0].0 / points[1].0).ln() / (points[1].1 / points[0].1).ln();
-        println!("{name} {points:.1e?}: order {order:.1}");
+        println!("{name} {points:?}: order {order:.1}");
         assert!(order > least, "{name}: {points:?} {order}");
     }
 }

@@ -17,6 +17,7 @@ use serde::{Deserialize, Serialize};
 use crate::case::RingPackCase;
 use crate::load::{Loaded, Report, Source, load_source, scene_of};
 use crate::piston_secondary::case::PistonSecondaryCase;
+use crate::power_cylinder::case::PowerCylinderCase;
 use crate::rig::case::RigCase;
 use crate::run::{Explanation, Progress, RunError};
 use crate::study::Race;
@@ -32,6 +33,8 @@ pub enum SceneName {
     Rig,
     /// The lateral motion and the tilt of a piston in its bore.
     PistonSecondary,
+    /// Rings and skirt of one cylinder.
+    PowerCylinder,
 }
 
 /// All scenes. The first one reads cases that name none of them, so that the rest of what is wrong is reported too.
@@ -39,6 +42,7 @@ pub static SCENES: &[SceneEntry] = &[
     SceneEntry::of::<RingPackCase>("ring_pack"),
     SceneEntry::of::<RigCase>("rig"),
     SceneEntry::of::<PistonSecondaryCase>("piston_secondary"),
+    SceneEntry::of::<PowerCylinderCase>("power_cylinder"),
 ];
 
 /// What every case may say besides its physics.
