@@ -47,6 +47,19 @@ fn a_starved_ring_rides_lower_than_a_flooded_one() {
     assert!(value(&starved, "ring1.h_mean") < 0.5 * value(&flooded, "ring1.h_mean"));
 }
 
+/// Seated rings let the second land press ring 1 off the liner; until a ring off the liner had a drag and a dry side gave back what it
+/// owed, both of these ran into the limit of steps.
+#[test]
+fn dry_faces_and_rings_off_the_liner_are_stepped_over() {
+    let seated = diesel(&["models.ring_motion.model=seated"]);
+    assert!(value(&seated, "ring1.h_max") > 10.0, "ring 1 leaves the liner");
+    assert!(seated.balance.oil_mass.expect("an oil balance") <= 1e-11);
+    let fine = diesel(&["models.oil_transport.spacing=0.05 mm", "models.oil_transport.supply=3 um"]);
+    let per_cycle = fine.solver.counters["steps"] / fine.solver.counters["cycles"];
+    // A thousand and a half on the liner as it stands; 30 000 is the limit.
+    assert!(per_cycle < 3000, "{per_cycle} steps a cycle");
+}
+
 #[test]
 fn more_oil_in_more_oil_on_the_liner() {
     let left = |supply: &str| {

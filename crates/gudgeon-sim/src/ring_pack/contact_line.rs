@@ -13,6 +13,8 @@ pub struct ContactLine {
     /// `load^(1/4)` at equal steps of `h` from 0 to `range`: the root keeps the table smooth where the load fades out.
     root: Vec<f64>,
     step: f64,
+    /// Film thickness above which there is no contact \[m\].
+    pub range: f64,
     /// Hard lower limit of the film thickness \[m\].
     pub floor: Option<f64>,
     /// Fraction of the floor over which the approach to it fades out.
@@ -31,7 +33,16 @@ const TOUCHING: f64 = 0.01;
 /// Fading out above a floor that the contact model itself names, and above [`TOUCHING`].
 const BANDS: (f64, f64) = (0.02, 1.0);
 
+/// Part of the range over which a load that fades out with its sixth to eighth power changes by its own size, halfway.
+const SCALE: f64 = 0.1;
+
 impl ContactLine {
+    /// Film thickness over which the load of surfaces in contact changes by about its own size \[m\].
+    #[must_use]
+    pub fn scale(&self) -> f64 {
+        SCALE * self.range
+    }
+
     /// Tabulates the contact of `lands` equal faces.
     #[must_use]
     pub fn new(contact: &dyn Contact, face: &FaceProfile, lands: usize) -> Self {
@@ -68,6 +79,7 @@ impl ContactLine {
         let drops: Vec<f64> = xs.iter().map(|x| face.drop_at(*x)).collect();
         let (mut gap, mut p) = (vec![0.0; xs.len()], vec![0.0; xs.len()]);
         line.step = range / POINTS as f64;
+        line.range = range;
         line.root = (0..=POINTS + 2)
             .map(|k| {
                 let h = line.step * k as f64;

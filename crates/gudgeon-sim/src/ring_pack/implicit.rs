@@ -73,6 +73,12 @@ impl OdeSystem for Problem<'_> {
                 atol[k] *= (gap / POSITION_SCALE).max(1.0);
             }
         }
+        // Surfaces that touch carry by their roughness, beside which a film much thinner need not be known to its own size.
+        for (i, k) in self.pack.layout.film.iter().enumerate() {
+            if let Some(k) = *k {
+                atol[k] *= (self.pack.rings[i].contact.scale() / self.pack.at.places[i].h).max(1.0);
+            }
+        }
     }
     fn n_events(&self) -> usize {
         let moves = self.pack.layout.axial.iter().any(Option::is_some);

@@ -308,10 +308,11 @@ impl OilPack {
     pub fn set_rates(&mut self, k: usize, h: f64, hdot: f64, u: f64, flux: f64) {
         let f = &mut self.faces[k];
         let least = h * LEAST_REACH * f.length;
-        // A side that has no oil gives none.
+        // A side that has no oil gives none; one that errors have made owe some takes it back in the same time. With a corner at zero,
+        // near which a nearly dry side rests, every other step would be wrong.
         let has = |side: usize| {
-            let x = (f.volume[side] / least).clamp(0.0, 1.0);
-            x * (2.0 - x)
+            let x = (f.volume[side] / least).clamp(-1.0, 1.0);
+            x * (2.0 - x.abs())
         };
         let through = flux - hdot * f.reach[0].length + self.model.through_valleys(h, u.abs()).copysign(u);
         let through = through * if through > 0.0 { has(0) } else { has(1) };
