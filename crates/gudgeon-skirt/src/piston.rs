@@ -167,7 +167,7 @@ impl Linear {
 }
 
 /// Newton steps of a balance before it is given up.
-const MOST_STEPS: usize = 100;
+const MOST_STEPS: usize = 400;
 /// Places along a step that are looked at.
 const LINE_STEPS: usize = 20;
 /// Part of the forces that a balance leaves: what the films leave of theirs.
@@ -176,6 +176,8 @@ const CLOSED: f64 = 1e-11;
 const EULER_CLOSED: f64 = 1e-8;
 const EULER_STEPS: usize = 25;
 const CLOSED_CAVITIES: f64 = 1e-7;
+/// Part of the forces that is left of a balance which cavities let come slowly.
+const SLOW: f64 = 1e-6;
 /// Multiple of it at which a balance that no step improves is one.
 const ROUNDED: f64 = 1e3;
 
@@ -442,6 +444,9 @@ impl Piston {
                 w[first..].copy_from_slice(&self.best[first..]);
                 return self.residual(now, x, w, Slopes::Film);
             }
+        }
+        if size(&self.r) <= SLOW * self.force_scale(now) {
+            return Ok(());
         }
         Err(EvalError::recoverable(MODEL, "no velocity was found at which the forces are in balance"))
     }

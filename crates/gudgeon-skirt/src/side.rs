@@ -10,6 +10,8 @@ use gudgeon_core::{BuildError, EvalError};
 use crate::geometry::{Panel, between};
 
 const MODEL: &str = "skirt";
+/// How deep a skirt may stand inside the liner \[m\]: far beyond what contact allows, and yet within a start that is given wrongly.
+const DEEPEST: f64 = 1e-4;
 
 /// Where the pressure of solid contact is summed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -452,6 +454,10 @@ impl Side {
             }
         }
         gap.smallest = gap.h.iter().fold(f64::INFINITY, |a, &b| a.min(b));
+        if gap.smallest < -DEEPEST {
+            let what = format!("the skirt would stand {:.0} um inside the liner", -1e6 * gap.smallest);
+            return Err(EvalError::recoverable(MODEL, what));
+        }
         // Films for the flow, at and between the nodes, and shear.
         let lever = &mut self.work[0];
         if self.rough.is_smooth() {

@@ -471,10 +471,12 @@ pub fn run(
         }
         (cycles, error) = (report.cycle_equivalents, Some(report.error_estimate));
     }
-    let seconds = begin.elapsed().as_secs_f64();
-    let stats = cycle.stats;
+    let searched = begin.elapsed().as_secs_f64();
     let first = y.clone();
     cycle.integrate(&mut y, s.tolerance.si(), Some(&mut record))?;
+    let stats = cycle.stats;
+    // Of a given number of cycles the last one is that of the record.
+    let seconds = if s.cycles > 0 { begin.elapsed().as_secs_f64() } else { searched };
     let change = first[..n].iter().zip(&y).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     let clearance = cycle.a.clearance;
     let speed = clearance * cycle.a.omega();
