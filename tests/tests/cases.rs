@@ -3,7 +3,6 @@
 mod common;
 
 use common::*;
-use gudgeon_sim::case::RingPackCase;
 use gudgeon_sim::{check, explain};
 
 #[test]

@@ -79,9 +79,10 @@ fn the_motion_that_is_found_is_the_periodic_one() {
 
 #[test]
 fn errors_fall_with_the_order_of_the_method() {
-    // One cycle from rest under a pressure without kinks, so that steps are as long as their errors allow.
+    // One cycle from rest under a pressure without kinks and with films that are not cut off, which has none either.
     let smooth = [
         "models.cylinder_pressure={ model = \"motored\", compression_ratio = 9.0 }",
+        "models.film_2d.cavitation=full_sommerfeld",
         "solver.cycles=1",
         "outputs.results=[\"e_top_max\", \"e_bottom_min\"]",
         "outputs.series_step=10 deg",
@@ -93,7 +94,7 @@ fn errors_fall_with_the_order_of_the_method() {
         let last = |c: &str| *column(&r, c).last().expect("rows");
         ([last("skirt.e_top"), last("skirt.e_bottom")], r.solver.counters["steps"])
     };
-    let (exact, _) = place(&["solver.integrator=radau5", "solver.tolerance=1e-8"]);
+    let (exact, _) = place(&["solver.integrator=radau5", "solver.tolerance=1e-10"]);
     let error = |x: [f64; 2]| 1e6 * (x[0] - exact[0]).abs().max((x[1] - exact[1]).abs());
     // Backward Euler: half the step, half the error.
     let euler = ["2 deg", "1 deg", "0.5 deg"]
@@ -103,8 +104,8 @@ fn errors_fall_with_the_order_of_the_method() {
         // First order, and what the second leaves at these steps.
         assert!((1.7..2.4).contains(&(w[0] / w[1])), "{euler:?}");
     }
-    // Rosenbrock methods of orders three and five: the slope of error against steps. A film that is cut off has kinks, which cost some of it.
-    for (name, tolerances, least) in [("rodas3", [1e-3, 1e-5], 2.0), ("rodas5p", [1e-3, 1e-5], 2.5)] {
+    // Rosenbrock methods of orders three and five: the slope of error against steps.
+    for (name, tolerances, least) in [("rodas3", [1e-4, 1e-6], 2.0), ("rodas5p", [1e-6, 1e-8], 2.5)] {
         let points = tolerances.map(|t| {
             let (x, steps) =
                 place(&[&format!("solver.integrator={name}"), &format!("solver.tolerance={t:e}")]);
@@ -196,7 +197,7 @@ fn contact_and_its_end_are_passed() {
 fn a_skirt_that_hardly_yields_is_taken_for_rigid() {
     let stiff = |k: &str| {
         format!(
-            "models.skirt_compliance={{ model = \"modal\", stiffness = [\"{k}\"], shapes = [{{ power = 1, waves = 1 }}] }}"
+            "models.skirt_compliance={{ model = \"modal\", stiffness = [\"{k}\"], shapes = [{{ power = 0, waves = 1 }}] }}"
         )
     };
     let short = ["outputs.results=[\"p_max\", \"e_top_max\", \"h_min\"]"];
@@ -211,13 +212,9 @@ fn a_skirt_that_hardly_yields_is_taken_for_rigid() {
     assert!(!soft.skipped.iter().any(|s| s.what.contains("yielding")));
     let rigid = run_once(&coarse(&short));
     assert_eq!(value(&hard, "p_max"), value(&rigid, "p_max"));
-    // A skirt that gives way spreads its load.
-    assert!(
-        value(&soft, "p_max") < 0.98 * value(&rigid, "p_max"),
-        "{} {}",
-        value(&soft, "p_max"),
-        value(&rigid, "p_max")
-    );
+    // 2.3 kN of side force, of which the shape takes its part, on 300 N/um: some micrometres.
+    let most = column(&soft, "skirt.yield").iter().fold(0.0_f64, |a, b| a.max(*b));
+    assert!((1e-6..1e-5).contains(&most), "{most:e}");
 }
 
 #[test]

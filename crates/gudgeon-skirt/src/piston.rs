@@ -168,6 +168,8 @@ impl Linear {
 
 /// Newton steps of a balance before it is given up.
 const MOST_STEPS: usize = 400;
+/// Steps after which the size of the forces decides.
+const PATIENCE: usize = 30;
 /// Places along a step that are looked at.
 const LINE_STEPS: usize = 20;
 /// Part of the forces that a balance leaves: what the films leave of theirs.
@@ -395,7 +397,7 @@ impl Piston {
         let superposed = self.sides.iter().all(Side::is_superposed);
         let closed = if superposed { CLOSED } else { CLOSED_CAVITIES };
         self.residual(now, x, w, Slopes::Film)?;
-        for _ in 0..MOST_STEPS {
+        for count in 0..MOST_STEPS {
             let before = size(&self.r);
             let scale = self.force_scale(now);
             if !before.is_finite() {
@@ -412,8 +414,8 @@ impl Piston {
                     return Err(EvalError::recoverable(MODEL, "nothing resists the motion of the piston"));
                 }
             }
-            // The forces left over are the slope of a convex potential of the rates: its lowest place along the step lies where they no longer
-            // point along it.
+            // The forces left over are nearly the slope of a convex potential of the rates: its lowest place along the step lies where they no
+            // longer point along it.
             let ahead = self.along_step(first);
             let (mut low, mut high) = ((0.0, ahead), (f64::INFINITY, 0.0));
             let mut part = 1.0;
@@ -423,6 +425,15 @@ impl Piston {
                 }
                 self.residual(now, x, w, Slopes::Film)?;
                 let here = self.along_step(first);
+                if count >= PATIENCE {
+                    // A film that is cut off is not quite the slope of anything, and may send the search in circles: the forces themselves must
+                    // fall then, which Newton's step lets them do if it is short enough.
+                    if size(&self.r) < before {
+                        break;
+                    }
+                    part *= 0.5;
+                    continue;
+                }
                 if here.abs() <= 0.5 * ahead || size(&self.r) <= 0.5 * before {
                     break;
                 }
