@@ -1,4 +1,4 @@
-//! Every rig case against the values of its sources: one table, which stands in VALIDATION.md.
+//! Every bench, and every case with checks, against the values of its sources: one table, which stands in VALIDATION.md.
 
 mod common;
 
@@ -8,23 +8,28 @@ use std::path::{Path, PathBuf};
 use gudgeon_core::result::Check;
 use gudgeon_sim::{check, run};
 
-fn cases_in(folder: &str) -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(folder);
-    let mut files: Vec<_> = std::fs::read_dir(folder)
-        .expect("the folder of the cases")
+/// Every bench, and every engine case that compares itself with its source.
+fn cases() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases");
+    let mut files: Vec<_> = ["", "rigs"]
+        .iter()
+        .flat_map(|f| std::fs::read_dir(folder.join(f)).expect("the folder of the cases"))
         .map(|e| e.expect("an entry").path())
         .filter(|p| p.extension().is_some_and(|e| e == "toml"))
+        .filter(|p| {
+            let bench = p.parent().is_some_and(|f| f.ends_with("rigs"));
+            bench || std::fs::read_to_string(p).expect("a case").contains("[[checks]]")
+        })
         .collect();
     files.sort();
     files
 }
 
-/// The benches, and the cases of whole scenes that say what their sources print.
-fn rig_cases() -> Vec<PathBuf> {
-    let mut files = cases_in("cases/rigs");
-    let compares = |p: &PathBuf| std::fs::read_to_string(p).is_ok_and(|t| t.contains("[[checks]]"));
-    files.extend(cases_in("cases").into_iter().filter(compares));
-    files
+/// Its name below the folder of the cases.
+fn name(path: &Path) -> String {
+    let bench = path.parent().is_some_and(|f| f.ends_with("rigs"));
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    if bench { format!("rigs/{stem}") } else { stem.into_owned() }
 }
 
 /// A deviation as the table shows it. Rounding differs between machines, so what is of its size is only called small.
@@ -41,19 +46,19 @@ fn value(v: f64) -> String {
 /// Runs every case and writes its checks as a table. The file in the repository must be what this makes of the cases:
 /// `GUDGEON_WRITE_VALIDATION=1 cargo test -p gudgeon-tests --test validation` writes it anew.
 #[test]
-fn every_rig_agrees_with_its_sources() {
+fn every_case_agrees_with_its_sources() {
     let mut text = String::from(
-        "# Validation\n\nEvery rig case of `cases/rigs` beside the values of its sources. The test `validation` makes this \
+        "# Validation\n\nEvery bench of `cases/rigs` and every other case with checks beside the values of its sources. The test `validation` makes this \
          file and fails when a deviation is larger than admitted, or when a model that must fail (it does not conserve mass, \
          say) does not. Deviations are relative, or absolute where the source gives zero. The published engine cases have \
          tables of their own, made by the tests `zottin` and `tomanik`.\n",
     );
     let mut wrong = Vec::new();
     let mut rows = 0;
-    for path in rig_cases() {
+    for path in cases() {
         let c = check(&path, &[]).unwrap_or_else(|r| panic!("{}: {r}", path.display()));
         let r = run(&c, &mut |_| {}).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-        let _ = write!(text, "\n## {}\n\n`cases/rigs/{}.toml`. {}\n\n", r.title, r.case, r.source);
+        let _ = write!(text, "\n## {}\n\n`cases/{}.toml`. {}\n\n", r.title, name(&path), r.source);
         if r.checks.is_empty() {
             text.push_str("No values to compare with.\n");
             continue;

@@ -102,10 +102,12 @@ dimensions! {
     Mass, Mass, PosMass, "a mass", [("kg", 1.0, 0.0), ("g", 1e-3, 0.0), ("mg", 1e-6, 0.0)];
     /// Moment of inertia \[kg m²\].
     Inertia, Inertia, PosInertia, "a moment of inertia", [("kg m2", 1.0, 0.0), ("kg cm2", 1e-4, 0.0), ("kg mm2", 1e-6, 0.0), ("g mm2", 1e-9, 0.0)];
+    /// Density \[kg/m³\].
+    Density, Density, PosDensity, "a density", [("kg/m3", 1.0, 0.0), ("g/cm3", 1e3, 0.0), ("g/mm3", 1e6, 0.0)];
     /// Force \[N\].
-    Force, Force, PosForce, "a force", [("N", 1.0, 0.0), ("kN", 1e3, 0.0)];
+    Force, Force, PosForce, "a force", [("N", 1.0, 0.0), ("kN", 1e3, 0.0), ("kgf", 9.80665, 0.0)];
     /// Pressure \[Pa\], absolute unless the key says otherwise.
-    Pressure, Pressure, PosPressure, "a pressure", [("Pa", 1.0, 0.0), ("kPa", 1e3, 0.0), ("MPa", 1e6, 0.0), ("GPa", 1e9, 0.0), ("bar", 1e5, 0.0), ("mbar", 1e2, 0.0), ("atm", 101_325.0, 0.0), ("psi", 6_894.757_293_168, 0.0)];
+    Pressure, Pressure, PosPressure, "a pressure", [("Pa", 1.0, 0.0), ("kPa", 1e3, 0.0), ("MPa", 1e6, 0.0), ("GPa", 1e9, 0.0), ("bar", 1e5, 0.0), ("mbar", 1e2, 0.0), ("atm", 101_325.0, 0.0), ("psi", 6_894.757_293_168, 0.0), ("kgf/mm2", 9_806_650.0, 0.0), ("kgf/cm2", 98_066.5, 0.0)];
     /// Temperature \[K\].
     Temperature, Temperature, PosTemperature, "a temperature", [("K", 1.0, 0.0), ("degC", 1.0, 273.15), ("°C", 1.0, 273.15)];
     /// Angular speed \[rad/s\].

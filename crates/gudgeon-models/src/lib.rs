@@ -10,6 +10,7 @@ use gudgeon_core as _;
 use gudgeon_film as _;
 use gudgeon_gas as _;
 use gudgeon_kinematics as _;
+use gudgeon_pin as _;
 use gudgeon_rig as _;
 use gudgeon_ring as _;
 use gudgeon_skirt as _;

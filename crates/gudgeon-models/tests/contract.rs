@@ -26,6 +26,10 @@ const MODELS: &[&str] = &[
     "cylinder_pressure/polytropic_burn",
     "cylinder_pressure/single_zone_wiebe",
     "cylinder_pressure/table",
+    "fatigue/gerber",
+    "fatigue/goodman",
+    "fatigue/off",
+    "fatigue/soderberg",
     "film_1d/complementarity",
     "film_1d/elrod_adams",
     "film_1d/front_tracking",
@@ -66,6 +70,17 @@ const MODELS: &[&str] = &[
     "piezoviscosity/roelands",
     "pin_friction/coulomb",
     "pin_friction/off",
+    "pin_load/cycle",
+    "pin_load/given",
+    "pin_load/other_case",
+    "pin_load/peak_pressure_rule",
+    "pin_strength/curved_ring",
+    "pin_strength/elastic_ring",
+    "pin_strength/shear_beam",
+    "pin_strength/thin_ring",
+    "profile_curve/lagrange",
+    "profile_curve/linear",
+    "profile_curve/monotone_cubic",
     "rig/contact_pair",
     "rig/cylinder_pressure",
     "rig/flank",
@@ -102,12 +117,14 @@ const MODELS: &[&str] = &[
 ];
 
 /// How the physics of each kind is switched off: its `off` model, or the model that takes its place by giving the
-/// answer instead of computing it. A piston always moves, so `kinematics` has none; a bench without a model is none.
+/// answer instead of computing it. A piston always moves and a pin always
+/// bears, so `kinematics` and `pin_strength` have none; a bench without a model is none.
 const SWITCHED_OFF: &[(&str, Option<&str>)] = &[
     ("boundary_friction", Some("off")),
     ("compressibility", Some("off")),
     ("contact", Some("off")),
     ("cylinder_pressure", Some("constant")),
+    ("fatigue", Some("off")),
     ("film_1d", Some("off")),
     ("film_2d", Some("off")),
     ("film_temperature", Some("given")),
@@ -121,6 +138,9 @@ const SWITCHED_OFF: &[(&str, Option<&str>)] = &[
     ("oil_transport", Some("off")),
     ("piezoviscosity", Some("off")),
     ("pin_friction", Some("off")),
+    ("pin_load", Some("given")),
+    ("pin_strength", None),
+    ("profile_curve", None),
     ("rig", None),
     ("ring_motion", Some("seated")),
     ("roughness", Some("off")),

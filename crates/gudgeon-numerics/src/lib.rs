@@ -1,9 +1,11 @@
 //! Fallible stiff integrators, periodic-orbit solver, roots, tables and small linear algebra. No physics lives here.
 
+pub mod jet;
 pub mod linalg;
 pub mod multigrid;
 pub mod ode;
 pub mod orbit;
+pub mod qp;
 pub mod quadrature;
 pub mod radau;
 pub mod rodas;

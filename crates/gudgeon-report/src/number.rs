@@ -47,7 +47,12 @@ pub(crate) fn unit(text: &str) -> String {
         "um" => "µm".into(),
         "deg" => "°".into(),
         "degC" => "°C".into(),
-        _ => text.replace("um", "µm").replace("m2", "m²").replace("m3", "m³").replace("s2", "s²"),
+        _ => text
+            .replace("um", "µm")
+            .replace("m2", "m²")
+            .replace("m3", "m³")
+            .replace("m4", "m⁴")
+            .replace("s2", "s²"),
     }
 }
 

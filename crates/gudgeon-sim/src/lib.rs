@@ -5,6 +5,7 @@ use gudgeon_models as _;
 
 pub mod case;
 pub mod load;
+pub mod pin;
 pub mod piston_secondary;
 pub mod power_cylinder;
 pub mod rig;

@@ -16,6 +16,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::case::RingPackCase;
 use crate::load::{Loaded, Report, Source, load_source, scene_of};
+use crate::pin::case::PinCase;
 use crate::piston_secondary::case::PistonSecondaryCase;
 use crate::power_cylinder::case::PowerCylinderCase;
 use crate::rig::case::RigCase;
@@ -29,6 +30,8 @@ use crate::sweep::{self, Sweep};
 pub enum SceneName {
     /// A piston ring pack in one cylinder.
     RingPack,
+    /// Gudgeon pin and piston design.
+    Pin,
     /// One sub-model on a test bench.
     Rig,
     /// The lateral motion and the tilt of a piston in its bore.
@@ -40,6 +43,7 @@ pub enum SceneName {
 /// All scenes. The first one reads cases that name none of them, so that the rest of what is wrong is reported too.
 pub static SCENES: &[SceneEntry] = &[
     SceneEntry::of::<RingPackCase>("ring_pack"),
+    SceneEntry::of::<PinCase>("pin"),
     SceneEntry::of::<RigCase>("rig"),
     SceneEntry::of::<PistonSecondaryCase>("piston_secondary"),
     SceneEntry::of::<PowerCylinderCase>("power_cylinder"),

@@ -285,7 +285,7 @@ impl<L: Linear> Solver<L> {
 }
 
 /// Part of the residual that a step leaves while the set of cavitated nodes still changes.
-const LOOSE: f64 = 3e-3;
+const LOOSE: f64 = 2e-2;
 
 impl<L: Linear> Film2d for Solver<L> {
     fn grid(&self) -> &Film2dGrid {

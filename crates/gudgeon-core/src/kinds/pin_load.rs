@@ -1,0 +1,72 @@
+use std::fmt::Debug;
+use std::path::Path;
+
+use dyn_clone::DynClone;
+
+use super::{CylinderPressure, Kinematics, PinForces};
+use crate::BuildError;
+
+/// One cylinder over its cycle, as another case describes it.
+#[derive(Debug, Clone)]
+pub struct EngineCycle {
+    /// Cylinder bore \[m\].
+    pub bore: f64,
+    /// Piston motion.
+    pub kinematics: Box<dyn Kinematics>,
+    /// Cylinder pressure.
+    pub pressure: Box<dyn CylinderPressure>,
+    /// Pressure below the piston \[Pa\].
+    pub crankcase_pressure: f64,
+}
+
+/// What a [`PinLoadSpec`] is built for.
+pub struct PinLoadCtx<'a> {
+    /// Piston diameter \[m\].
+    pub bore: f64,
+    /// Ratio of circumference to diameter, as [`PinStrengthCtx::pi`](super::PinStrengthCtx::pi).
+    pub pi: f64,
+    /// Folder that relative file names in the case refer to.
+    pub folder: &'a Path,
+    /// Reads the cycle of another case file, named relative to `folder`.
+    pub cycle_of: &'a dyn Fn(&str) -> Result<EngineCycle, BuildError>,
+}
+
+/// Forces at one crank angle.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct PinInstant {
+    /// Crank angle \[rad\].
+    pub theta: f64,
+    /// Cylinder pressure \[Pa\].
+    pub pressure: f64,
+    /// Forces on the pin.
+    pub forces: PinForces,
+}
+
+/// What a pin is sized for.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct PinLoadCase {
+    /// The instant with the greatest force on the pin, in magnitude.
+    pub design: PinInstant,
+    /// Crank speed \[rad/s\], when the model has one.
+    pub omega: Option<f64>,
+    /// Ratio of crank radius to rod length, when the model has one.
+    pub crank_ratio: Option<f64>,
+    /// The cycle at equal distances, end excluded; empty when the model knows one instant only.
+    pub cycle: Vec<PinInstant>,
+}
+
+/// Configuration of a model of the force on the gudgeon pin.
+#[typetag::serde(tag = "model")]
+pub trait PinLoadSpec: Debug + DynClone + Send + Sync {
+    /// Kind and name of the models inside.
+    fn models(&self) -> Vec<(&'static str, &'static str)> {
+        Vec::new()
+    }
+    /// Checks the numbers and evaluates the load.
+    ///
+    /// # Errors
+    /// An engine that cannot be, another case that cannot be read, a load without any force.
+    fn build(&self, ctx: &PinLoadCtx<'_>) -> Result<PinLoadCase, BuildError>;
+}
+dyn_clone::clone_trait_object!(PinLoadSpec);
+crate::register_kind!(dyn PinLoadSpec, "pin_load", "force of gas and inertia on the gudgeon pin");

@@ -1,0 +1,278 @@
+//! Values with their exact first and second derivatives by three variables.
+//!
+//! A formula written once over [`Real`] gives, with `f64`, its value, and with [`Jet`] its value, gradient and Hessian as exact
+//! as the value itself: nothing is differenced, and no derivative can disagree with its function.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// Variables of a [`Jet`].
+pub const VARIABLES: usize = 3;
+
+/// What a formula needs of a number.
+pub trait Real:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + Add<f64, Output = Self>
+    + Sub<f64, Output = Self>
+    + Mul<f64, Output = Self>
+    + Div<f64, Output = Self>
+{
+    /// A constant.
+    fn constant(v: f64) -> Self;
+    /// The value without derivatives.
+    fn value(self) -> f64;
+    /// Square root; derivatives exist for values above zero.
+    fn sqrt(self) -> Self;
+    /// Natural logarithm of a value above zero.
+    fn ln(self) -> Self;
+    /// Arc cosine of a value in (-1, 1).
+    fn acos(self) -> Self;
+    /// Square.
+    fn squared(self) -> Self {
+        self * self
+    }
+    /// Cube.
+    fn cubed(self) -> Self {
+        self * self * self
+    }
+    /// Reciprocal.
+    fn recip(self) -> Self {
+        Self::constant(1.0) / self
+    }
+}
+
+impl Real for f64 {
+    fn constant(v: f64) -> Self {
+        v
+    }
+    fn value(self) -> f64 {
+        self
+    }
+    fn sqrt(self) -> Self {
+        self.sqrt()
+    }
+    fn ln(self) -> Self {
+        self.ln()
+    }
+    fn acos(self) -> Self {
+        self.acos()
+    }
+}
+
+/// A value, its gradient, and its Hessian in the order 00, 01, 02, 11, 12, 22.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Jet {
+    /// Value.
+    pub v: f64,
+    /// First derivatives.
+    pub g: [f64; VARIABLES],
+    /// Second derivatives, upper triangle by rows.
+    pub h: [f64; 6],
+}
+
+/// Row and column of the entries of [`Jet::h`].
+const PAIRS: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
+
+/// Place in [`Jet::h`] of the entry in row `i` and column `j`.
+const PLACE: [[usize; 3]; 3] = [[0, 1, 2], [1, 3, 4], [2, 4, 5]];
+
+impl Jet {
+    /// Variable `i` of the formula at the value `v`.
+    #[must_use]
+    pub fn variable(v: f64, i: usize) -> Self {
+        let mut j = Self { v, ..Self::default() };
+        if let Some(g) = j.g.get_mut(i) {
+            *g = 1.0;
+        }
+        j
+    }
+
+    /// Second derivative by variables `i` and `j`, both below [`VARIABLES`].
+    #[must_use]
+    pub fn second(&self, i: usize, j: usize) -> f64 {
+        self.h[PLACE[i][j]]
+    }
+
+    /// `f(self)` from the value of `f` and its first and second derivative there.
+    #[inline]
+    fn chain(self, f: f64, f1: f64, f2: f64) -> Self {
+        let mut out = Self { v: f, ..Self::default() };
+        for (o, g) in out.g.iter_mut().zip(self.g) {
+            *o = f1 * g;
+        }
+        for (k, (i, j)) in PAIRS.into_iter().enumerate() {
+            out.h[k] = f1 * self.h[k] + f2 * self.g[i] * self.g[j];
+        }
+        out
+    }
+
+    /// `a·x + b·y`.
+    #[inline]
+    fn combined(a: f64, x: Self, b: f64, y: Self) -> Self {
+        let mut out = Self { v: a * x.v + b * y.v, ..Self::default() };
+        for i in 0..VARIABLES {
+            out.g[i] = a * x.g[i] + b * y.g[i];
+        }
+        for k in 0..6 {
+            out.h[k] = a * x.h[k] + b * y.h[k];
+        }
+        out
+    }
+
+    /// Derivatives times `r`, with the value `v`.
+    #[inline]
+    fn stretched(self, v: f64, r: f64) -> Self {
+        let mut out = Self { v, ..self };
+        for g in &mut out.g {
+            *g *= r;
+        }
+        for h in &mut out.h {
+            *h *= r;
+        }
+        out
+    }
+}
+
+impl Add for Jet {
+    type Output = Self;
+    #[inline]
+    fn add(self, o: Self) -> Self {
+        Self::combined(1.0, self, 1.0, o)
+    }
+}
+impl Sub for Jet {
+    type Output = Self;
+    #[inline]
+    fn sub(self, o: Self) -> Self {
+        Self::combined(1.0, self, -1.0, o)
+    }
+}
+impl Mul for Jet {
+    type Output = Self;
+    #[inline]
+    fn mul(self, o: Self) -> Self {
+        let mut out = Self::combined(o.v, self, self.v, o);
+        out.v = self.v * o.v;
+        for (k, (i, j)) in PAIRS.into_iter().enumerate() {
+            out.h[k] += self.g[i] * o.g[j] + self.g[j] * o.g[i];
+        }
+        out
+    }
+}
+impl Div for Jet {
+    type Output = Self;
+    // A quotient is the product with the reciprocal.
+    #[inline]
+    fn div(self, o: Self) -> Self {
+        let r = 1.0 / o.v;
+        let mut out = self * o.chain(r, -r * r, 2.0 * r * r * r);
+        out.v = self.v / o.v;
+        out
+    }
+}
+impl Neg for Jet {
+    type Output = Self;
+    #[inline]
+    fn neg(self) -> Self {
+        self * -1.0
+    }
+}
+impl Add<f64> for Jet {
+    type Output = Self;
+    #[inline]
+    fn add(self, o: f64) -> Self {
+        Self { v: self.v + o, ..self }
+    }
+}
+impl Sub<f64> for Jet {
+    type Output = Self;
+    #[inline]
+    fn sub(self, o: f64) -> Self {
+        Self { v: self.v - o, ..self }
+    }
+}
+impl Mul<f64> for Jet {
+    type Output = Self;
+    #[inline]
+    fn mul(self, o: f64) -> Self {
+        self.stretched(self.v * o, o)
+    }
+}
+impl Div<f64> for Jet {
+    type Output = Self;
+    #[inline]
+    fn div(self, o: f64) -> Self {
+        self.stretched(self.v / o, 1.0 / o)
+    }
+}
+
+impl Real for Jet {
+    #[inline]
+    fn constant(v: f64) -> Self {
+        Self { v, ..Self::default() }
+    }
+    #[inline]
+    fn value(self) -> f64 {
+        self.v
+    }
+    #[inline]
+    fn sqrt(self) -> Self {
+        let r = self.v.sqrt();
+        self.chain(r, 0.5 / r, -0.25 / (r * self.v))
+    }
+    #[inline]
+    fn ln(self) -> Self {
+        let r = 1.0 / self.v;
+        self.chain(self.v.ln(), r, -r * r)
+    }
+    #[inline]
+    fn acos(self) -> Self {
+        let w = 1.0 / (1.0 - self.v * self.v);
+        self.chain(self.v.acos(), -w.sqrt(), -self.v * w * w.sqrt())
+    }
+    #[inline]
+    fn recip(self) -> Self {
+        let r = 1.0 / self.v;
+        self.chain(r, -r * r, 2.0 * r * r * r)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn formula<T: Real>(x: T, y: T, z: T) -> T {
+        ((x * y).sqrt() + z.cubed() / (x + 2.0)).ln() * (y / z / 4.0).acos() - x.recip() * 3.0
+            + (-z).squared()
+    }
+
+    #[test]
+    fn derivatives_are_those_of_central_differences() {
+        let p = [1.3, 0.8, 0.6];
+        let jet = formula(Jet::variable(p[0], 0), Jet::variable(p[1], 1), Jet::variable(p[2], 2));
+        assert_eq!(jet.v, formula(p[0], p[1], p[2]));
+        let at = |i: usize, di: f64, j: usize, dj: f64| {
+            let mut q = p;
+            q[i] += di;
+            q[j] += dj;
+            formula(q[0], q[1], q[2])
+        };
+        for i in 0..3 {
+            let d = 1e-5;
+            let first = (at(i, d, i, 0.0) - at(i, -d, i, 0.0)) / (2.0 * d);
+            // Truncation 1e-10 times the third derivative, rounding 1e-16/1e-5.
+            assert!((jet.g[i] - first).abs() < 1e-8, "{i}: {} {first}", jet.g[i]);
+            for j in 0..3 {
+                let d = 1e-4;
+                let second =
+                    (at(i, d, j, d) - at(i, d, j, -d) - at(i, -d, j, d) + at(i, -d, j, -d)) / (4.0 * d * d);
+                // Truncation 1e-8 times the fourth derivative, rounding 1e-16/1e-8.
+                assert!((jet.second(i, j) - second).abs() < 2e-5, "{i} {j}: {} {second}", jet.second(i, j));
+            }
+        }
+    }
+}
