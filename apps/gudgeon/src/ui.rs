@@ -126,7 +126,8 @@ pub fn number(v: f64) -> String {
     const DIGITS: i32 = 5;
     // Counts and exact zeros are not measurements.
     if v.fract() == 0.0 && v.abs() < 1e7 {
-        return format!("{v:.0}");
+        // Without the sign of a negative zero.
+        return format!("{:.0}", v + 0.0);
     }
     if !v.is_finite() {
         return v.to_string();
@@ -198,8 +199,11 @@ mod tests {
 
     #[test]
     fn numbers_keep_five_digits() {
-        let shown = [49.876_543, 0.001_234_567, 1e-9, 123_456.7, 1.0, -2.5, 0.0, 2e9].map(number);
-        assert_eq!(shown, ["49.877", "0.0012346", "1.0000e-9", "123457", "1", "-2.5000", "0", "2.0000e9"]);
+        let shown = [49.876_543, 0.001_234_567, 1e-9, 123_456.7, 1.0, -2.5, 0.0, 2e9, -0.0].map(number);
+        assert_eq!(
+            shown,
+            ["49.877", "0.0012346", "1.0000e-9", "123457", "1", "-2.5000", "0", "2.0000e9", "0"]
+        );
     }
 
     #[test]

@@ -138,6 +138,16 @@ dimensions! {
     PressureCoefficient, PressureCoefficient, PosPressureCoefficient, "a pressure coefficient", [("1/Pa", 1.0, 0.0), ("1/MPa", 1e-6, 0.0), ("1/GPa", 1e-9, 0.0)];
     /// Shear rate \[1/s\].
     ShearRate, ShearRate, PosShearRate, "a shear rate", [("1/s", 1.0, 0.0)];
+    /// Torque \[N m\].
+    Torque, Torque, PosTorque, "a torque", [("N m", 1.0, 0.0), ("kN m", 1e3, 0.0), ("MN m", 1e6, 0.0)];
+    /// Torsional stiffness \[N m/rad\].
+    TorsionalStiffness, TorsionalStiffness, PosTorsionalStiffness, "a torsional stiffness", [("N m/rad", 1.0, 0.0), ("kN m/rad", 1e3, 0.0), ("MN m/rad", 1e6, 0.0)];
+    /// Torsional damping \[N m s/rad\].
+    TorsionalDamping, TorsionalDamping, PosTorsionalDamping, "a torsional damping", [("N m s/rad", 1.0, 0.0), ("kN m s/rad", 1e3, 0.0)];
+    /// Frequency \[Hz\].
+    Frequency, Frequency, PosFrequency, "a frequency", [("Hz", 1.0, 0.0), ("cpm", 1.0 / 60.0, 0.0)];
+    /// Power \[W\].
+    Power, Power, PosPower, "a power", [("W", 1.0, 0.0), ("kW", 1e3, 0.0), ("MW", 1e6, 0.0)];
     /// Dimensionless number.
     Ratio, Ratio, PosRatio, "a number", [("", 1.0, 0.0), ("%", 1e-2, 0.0)];
 }

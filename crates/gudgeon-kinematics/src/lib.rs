@@ -3,29 +3,37 @@
 //! | kind | models |
 //! |---|---|
 //! | `kinematics` | [`ExactSliderCrank`], [`TwoHarmonicSeries`] |
-//! | `cylinder_pressure` | [`Table`], [`PolytropicBurn`], [`SingleZoneWiebe`], [`Motored`], [`Constant`] |
+//! | `cylinder_pressure` | [`Table`], [`PolytropicBurn`], [`SingleZoneWiebe`], [`Motored`], [`Constant`]; compressors: [`IdealValves`], [`ValveLosses`], [`AngleWindows`] |
 //!
 //! Crank angle 0 is the gas-exchange top dead centre, 2π the firing one; the crank angle counts from the throw pointing at
 //! the head. With an offset crank the piston is highest a little after (or before) that.
 
+mod angle_windows;
 mod chamber;
+mod compressor;
 mod constant;
 mod exact_slider_crank;
+mod ideal_valves;
 mod motored;
 mod periodic_cubic;
 mod polytropic_burn;
 mod single_zone_wiebe;
 mod table;
 mod two_harmonic_series;
+mod valve_losses;
 
+pub use angle_windows::AngleWindows;
 pub use chamber::Chamber;
+pub use compressor::Clearance;
 pub use constant::Constant;
 pub use exact_slider_crank::ExactSliderCrank;
+pub use ideal_valves::IdealValves;
 pub use motored::Motored;
 pub use polytropic_burn::PolytropicBurn;
 pub use single_zone_wiebe::{ChamberVolume, SingleZoneWiebe};
 pub use table::{Interpolation, Table};
 pub use two_harmonic_series::TwoHarmonicSeries;
+pub use valve_losses::ValveLosses;
 
 use gudgeon_core::BuildError;
 use gudgeon_core::kinds::KinematicsCtx;

@@ -249,6 +249,9 @@ fn checks(out: &mut String, checks: &[Check]) {
     out.push_str("</tbody></table></div></section>\n");
 }
 
+/// Results that make a list too long for one column.
+const LONG: usize = 12;
+
 /// Results of one family (`ring`, `land`): by what follows the dot, then by number.
 type Family<'a> = IndexMap<&'a str, BTreeMap<u32, (&'a str, &'a ResultValue)>>;
 
@@ -267,10 +270,13 @@ fn results(out: &mut String, s: &Summary) {
     if plain.is_empty() && families.is_empty() {
         out.push_str("<p class=\"hint\">This run computed no results.</p>");
     }
-    if !plain.is_empty() {
+    // A long list stands in two columns, when nothing else stands beside it.
+    let column =
+        if families.is_empty() && plain.len() > LONG { plain.len().div_ceil(2) } else { plain.len() };
+    for part in plain.chunks(column.max(1)) {
         out.push_str("<table class=\"plain key\"><tbody>");
-        for (name, v) in plain {
-            let what = s.descriptions.get(name).map_or("", String::as_str);
+        for (name, v) in part {
+            let what = s.descriptions.get(*name).map_or("", String::as_str);
             let _ = write!(
                 out,
                 "<tr><th scope=\"row\">{}<code>{}</code></th>{}</tr>",
@@ -281,7 +287,9 @@ fn results(out: &mut String, s: &Summary) {
         }
         out.push_str("</tbody></table>");
     }
-    out.push_str("<div class=\"families\">");
+    if !families.is_empty() {
+        out.push_str("<div class=\"families\">");
+    }
     for (family, rows) in &families {
         let mut numbers: Vec<u32> = rows.values().flat_map(|r| r.keys().copied()).collect();
         numbers.sort_unstable();
@@ -316,7 +324,7 @@ fn results(out: &mut String, s: &Summary) {
         }
         out.push_str("</tbody></table></div>");
     }
-    out.push_str("</div></div></section>\n");
+    out.push_str(if families.is_empty() { "</div></section>\n" } else { "</div></div></section>\n" });
 }
 
 /// A row of a table per ring must not speak of ring 1.

@@ -12,6 +12,7 @@ pub mod rig;
 pub mod ring_pack;
 pub mod run;
 pub mod scene;
+pub mod shaft_line;
 pub mod study;
 pub mod sweep;
 

@@ -21,6 +21,7 @@ use crate::piston_secondary::case::PistonSecondaryCase;
 use crate::power_cylinder::case::PowerCylinderCase;
 use crate::rig::case::RigCase;
 use crate::run::{Explanation, Progress, RunError};
+use crate::shaft_line::case::ShaftLineCase;
 use crate::study::Race;
 use crate::sweep::{self, Sweep};
 
@@ -38,6 +39,8 @@ pub enum SceneName {
     PistonSecondary,
     /// Rings and skirt of one cylinder.
     PowerCylinder,
+    /// A shaft line that twists.
+    ShaftLine,
 }
 
 /// All scenes. The first one reads cases that name none of them, so that the rest of what is wrong is reported too.
@@ -47,6 +50,7 @@ pub static SCENES: &[SceneEntry] = &[
     SceneEntry::of::<RigCase>("rig"),
     SceneEntry::of::<PistonSecondaryCase>("piston_secondary"),
     SceneEntry::of::<PowerCylinderCase>("power_cylinder"),
+    SceneEntry::of::<ShaftLineCase>("shaft_line"),
 ];
 
 /// What every case may say besides its physics.

@@ -37,6 +37,12 @@ crate::register_kind!(
 pub trait CylinderPressure: Debug + DynClone + Send + Sync {
     /// Absolute pressure \[Pa\] at crank angle `theta` \[rad\], any real number.
     fn pressure(&self, theta: f64) -> f64;
+    /// Pressure at `theta` of a model that goes by fixed crank angles, with the choice between these made at the angle
+    /// `decided_at`. A published program evaluates its stages that way; other models have nothing to decide.
+    fn pressure_decided_at(&self, decided_at: f64, theta: f64) -> f64 {
+        let _ = decided_at;
+        self.pressure(theta)
+    }
     /// Crank angles in `[0, period)` \[rad\], ascending, where the pressure or its slope jumps: an integrator restarts there.
     fn kinks(&self) -> &[f64];
     /// Length of the cycle \[rad\]: 4π for four strokes.

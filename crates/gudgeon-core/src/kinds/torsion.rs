@@ -1,0 +1,242 @@
+use std::fmt::Debug;
+
+use dyn_clone::DynClone;
+use indexmap::IndexMap;
+
+use super::{Coupling, CylinderPressure, Drive, Kinematics, ThrowInertia};
+use crate::{BuildError, EvalError};
+
+/// One inertia of a shaft line.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LineNode {
+    /// Name.
+    pub name: String,
+    /// Constant inertia \[kg m²\]; zero is admitted. Throws add theirs.
+    pub inertia: f64,
+    /// Damping against the ground \[N m s/rad\].
+    pub damping: f64,
+    /// Stiffness against the ground \[N m/rad\]; zero for a shaft that turns.
+    pub ground: f64,
+    /// Speed by the speed of the reference shaft.
+    pub ratio: f64,
+}
+
+/// A link between two inertias that turn at the same speed.
+#[derive(Debug, Clone)]
+pub struct LineLink {
+    /// Name.
+    pub name: String,
+    /// The inertias it joins; torque is positive when the first drives the second.
+    pub nodes: [usize; 2],
+    /// Law of torque. For inertias of different speed (a gear mesh) the twist is that of the first less that of the second by their
+    /// ratio of speeds, and the torque that on the first.
+    pub coupling: Box<dyn Coupling>,
+}
+
+/// How the torque of a throw is made from its gas force.
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize, schemars::JsonSchema,
+)]
+#[serde(rename_all = "snake_case")]
+pub enum Obliquity {
+    /// `r (sin θ + cos θ tan φ)`, the rate of the piston's way.
+    #[default]
+    Exact,
+    /// `r (sin θ - cos θ tan φ)`: the sign of the rod's obliquity as a published program has it. For reproduction only.
+    Reversed,
+}
+
+/// One gas space that acts on a throw.
+#[derive(Debug, Clone)]
+pub struct GasEnd {
+    /// Motion of the piston towards this end.
+    pub kinematics: Box<dyn Kinematics>,
+    /// Gas pressure over the angle of the throw.
+    pub pressure: Box<dyn CylinderPressure>,
+    /// Area the gas acts on \[m²\].
+    pub area: f64,
+    /// Pressure \[Pa\] on the other side of that area.
+    pub back_pressure: f64,
+    /// Share of the gas torque that reaches the crank (mechanical efficiency of a driving piston).
+    pub factor: f64,
+    /// Crank radius \[m\], for the published obliquity.
+    pub crank_radius: f64,
+    /// Which lever.
+    pub obliquity: Obliquity,
+}
+
+impl GasEnd {
+    /// Torque \[N m\] on the throw at its angle `theta`, in the direction of rotation; a model that goes by fixed angles decides
+    /// at `decided_at`.
+    #[must_use]
+    pub fn torque(&self, decided_at: f64, theta: f64) -> f64 {
+        let m = self.kinematics.motion(theta);
+        let mut way = m.v / self.kinematics.omega();
+        if self.obliquity == Obliquity::Reversed {
+            // The crank end sees the motion turned about, and its lever with it.
+            let sign = if m.y < 0.0 { -1.0 } else { 1.0 };
+            way += sign * 2.0 * self.crank_radius * theta.cos() * m.rod_angle.tan();
+        }
+        let p = self.pressure.pressure_decided_at(decided_at, theta);
+        -self.factor * way * (p - self.back_pressure) * self.area
+    }
+}
+
+/// A crank throw on an inertia.
+#[derive(Debug, Clone)]
+pub struct LineThrow {
+    /// The inertia it belongs to.
+    pub node: usize,
+    /// Angle of the throw when its inertia is at zero \[rad\].
+    pub phase: f64,
+    /// Inertia over the angle.
+    pub inertia: Box<dyn ThrowInertia>,
+    /// Gas spaces.
+    pub ends: Vec<GasEnd>,
+}
+
+impl LineThrow {
+    /// Gas torque \[N m\] at angle `theta` of its inertia.
+    #[must_use]
+    pub fn gas_torque(&self, decided_at: f64, theta: f64) -> f64 {
+        self.ends.iter().map(|e| e.torque(decided_at + self.phase, theta + self.phase)).sum()
+    }
+}
+
+/// A torque on an inertia.
+#[derive(Debug, Clone)]
+pub struct LineDrive {
+    /// The inertia.
+    pub node: usize,
+    /// Angle added to that of the inertia \[rad\].
+    pub phase: f64,
+    /// Sign and share: 1 for a drive, -1 for a load.
+    pub factor: f64,
+    /// The torque.
+    pub drive: Box<dyn Drive>,
+}
+
+/// A shaft line: inertias, links between them, throws and torques.
+#[derive(Debug, Clone, Default)]
+pub struct Line {
+    /// Inertias.
+    pub nodes: Vec<LineNode>,
+    /// Links.
+    pub links: Vec<LineLink>,
+    /// Throws.
+    pub throws: Vec<LineThrow>,
+    /// Drives and loads.
+    pub drives: Vec<LineDrive>,
+}
+
+impl Line {
+    /// Inertia of a node with the mean of its throws \[kg m²\].
+    #[must_use]
+    pub fn mean_inertia(&self, node: usize) -> f64 {
+        let throws = self.throws.iter().filter(|t| t.node == node).map(|t| t.inertia.mean());
+        self.nodes[node].inertia + throws.sum::<f64>()
+    }
+}
+
+/// What a response is wanted for.
+#[derive(Debug, Clone)]
+pub struct TorsionCtx<'a> {
+    /// The shaft line.
+    pub line: &'a Line,
+    /// Mean speed of the reference shaft \[rad/s\].
+    pub speed: f64,
+    /// Highest order of the reference shaft that is looked at.
+    pub orders: f64,
+    /// Period of the torques over the angle of the reference shaft \[rad\].
+    pub period: f64,
+    /// Inertia that gives the torque which keeps the mean speed.
+    pub balance: usize,
+    /// Angles of the inertias at the start of a transient \[rad\].
+    pub angles: &'a [f64],
+    /// Speeds of the inertias at the start of a transient \[rad/s\].
+    pub speeds: &'a [f64],
+    /// Instants at which a transient is wanted \[s\], ascending.
+    pub times: &'a [f64],
+}
+
+/// Configuration of how the response of a shaft line is computed.
+#[typetag::serde(tag = "model")]
+pub trait TorsionSpec: Debug + DynClone + Send + Sync {
+    /// Builds the running model.
+    ///
+    /// # Errors
+    /// A shaft line that the model does not cover, each with the reason.
+    fn build(&self, ctx: &TorsionCtx<'_>) -> Result<Box<dyn Torsion>, BuildError>;
+    /// What kind of answer it gives.
+    fn answers(&self) -> TorsionAnswer;
+}
+dyn_clone::clone_trait_object!(TorsionSpec);
+crate::register_kind!(
+    dyn TorsionSpec,
+    "torsion",
+    "response of a shaft line to its torques, steady or in time"
+);
+
+/// Kinds of answer of a [`TorsionSpec`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TorsionAnswer {
+    /// None: the shaft turns at constant speed and stays untwisted.
+    Nothing,
+    /// The periodic motion at the mean speed.
+    Periodic,
+    /// The motion over time.
+    Time,
+}
+
+/// One order of a periodic motion; phasors `a` stand for `Re(a e^{i order θ})`, θ the angle of the reference shaft.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct OrderResponse {
+    /// The order.
+    pub order: f64,
+    /// Angles of the inertias \[rad\], real and imaginary part.
+    pub angle: Vec<[f64; 2]>,
+    /// Torques in the links \[N m\].
+    pub torque: Vec<[f64; 2]>,
+    /// Power that the link turns into heat \[W\].
+    pub heat: Vec<f64>,
+    /// Torques that excite the inertias \[N m\].
+    pub excitation: Vec<[f64; 2]>,
+}
+
+/// What a torsion model found.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct TorsionOut {
+    /// Periodic motion by order, ascending.
+    pub orders: Vec<OrderResponse>,
+    /// Mean torques in the links \[N m\].
+    pub mean_torque: Vec<f64>,
+    /// Mean twists from the inertia that balances, \[rad\].
+    pub mean_angle: Vec<f64>,
+    /// Mean torque \[N m\] that holds the speed, on the balancing inertia.
+    pub balance_torque: f64,
+    /// Mean speed \[rad/s\] of the periodic motion.
+    pub speed: f64,
+    /// Instants of a transient \[s\].
+    pub times: Vec<f64>,
+    /// Angles of the inertias at each instant \[rad\].
+    pub angles: Vec<Vec<f64>>,
+    /// Speeds of the inertias at each instant \[rad/s\].
+    pub speeds: Vec<Vec<f64>>,
+    /// Torques of the throws at each instant as the method used them \[N m\].
+    pub gas: Vec<Vec<f64>>,
+    /// Torques of the drives at each instant as the method used them \[N m\].
+    pub drive: Vec<Vec<f64>>,
+    /// Work: time steps, right-hand sides, linear solutions.
+    pub counters: IndexMap<String, u64>,
+    /// What a person should read.
+    pub notes: Vec<String>,
+}
+
+/// A running torsion model.
+pub trait Torsion: Debug + Send {
+    /// Computes the response.
+    ///
+    /// # Errors
+    /// An undamped resonance that is hit, a step that blows up, no convergence.
+    fn run(&mut self, out: &mut TorsionOut) -> Result<(), EvalError>;
+}

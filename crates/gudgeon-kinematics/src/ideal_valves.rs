@@ -1,0 +1,107 @@
+use gudgeon_core::BuildError;
+use gudgeon_core::kinds::{CylinderPressure, CylinderPressureCtx, CylinderPressureSpec};
+use gudgeon_core::quantity::{PosPressure, PosRatio, quantity};
+use serde::{Deserialize, Serialize};
+
+use crate::compressor::{Clearance, Space, TURN, check};
+
+/// A compressor cylinder with valves that open and close without loss.
+///
+/// ```text
+/// away from the head   p = max(p_s, p_d (V_c/V)ⁿ)
+/// towards the head     p = min(p_d, p_s (V_max/V)ⁿ)
+/// ```
+///
+/// Work of a turn: `W = n/(n-1) p_s (V_max - V_4) ((p_d/p_s)^((n-1)/n) - 1)`, `V_4 = V_c (p_d/p_s)^(1/n)`. Where compression does not
+/// reach the discharge pressure the gas is compressed and expanded along one line. With `held_open` the suction valves stay open: the
+/// cylinder end is unloaded.
+#[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct IdealValves {
+    /// Suction pressure p_s.
+    pub suction: PosPressure,
+    /// Discharge pressure p_d.
+    pub discharge: PosPressure,
+    /// Exponent n of compression and expansion.
+    #[serde(default = "air")]
+    pub exponent: PosRatio,
+    /// Clearance volume V_c.
+    pub clearance: Clearance,
+    /// Whether an unloader keeps the suction valves open.
+    #[serde(default)]
+    pub held_open: bool,
+}
+
+pub(crate) fn air() -> PosRatio {
+    quantity(1.4)
+}
+
+gudgeon_core::register_model! {
+    IdealValves, kind: "cylinder_pressure", name: "ideal_valves",
+    summary: "compressor cylinder with ideal valves and clearance, per cylinder end",
+    equations: "p = max(p_s, p_d (V_c/V)^n) away from the head;  p = min(p_d, p_s (V_max/V)^n) towards it",
+    validity: "Two-stroke cycle of a compressor end; no valve losses, no leakage, constant plenum pressures.",
+    references: ["gomes2021"],
+    example: "suction = \"101325 Pa\"\ndischarge = \"601325 Pa\"\nclearance = { fraction = 0.05 }\n",
+}
+
+#[typetag::serde(name = "ideal_valves")]
+impl CylinderPressureSpec for IdealValves {
+    fn build(&self, ctx: &CylinderPressureCtx<'_>) -> Result<Box<dyn CylinderPressure>, BuildError> {
+        let space = Space::new(ctx, &self.clearance)?;
+        let (suction, discharge, n) = (self.suction.si(), self.discharge.si(), self.exponent.si());
+        check(suction, discharge, n, &space)?;
+        let mut m =
+            Ideal { space, suction, discharge, n, top: discharge, open: self.held_open, kinks: Vec::new() };
+        // Never reached: what is at the dead centre expands again.
+        m.top = m.discharge.min(m.suction * (m.space.most / m.space.least).powf(n));
+        if !m.open {
+            let (t, d) = (m.space.top, m.space.down);
+            let suction_opens = m.space.crossing(t, t + d, |x| m.expansion(x) - m.suction);
+            let discharge_opens = m.space.crossing(t + d, t + TURN, |x| m.discharge - m.compression(x));
+            m.kinks = [t, suction_opens, t + d, discharge_opens].map(|x| crate::reduced(x, TURN)).to_vec();
+            m.kinks.sort_unstable_by(f64::total_cmp);
+            m.kinks.dedup();
+        }
+        Ok(Box::new(m))
+    }
+}
+
+#[derive(Debug, Clone)]
+struct Ideal {
+    space: Space,
+    suction: f64,
+    discharge: f64,
+    n: f64,
+    /// Pressure at the upper dead centre.
+    top: f64,
+    open: bool,
+    kinks: Vec<f64>,
+}
+
+impl Ideal {
+    fn expansion(&self, theta: f64) -> f64 {
+        self.top * (self.space.least / self.space.volume(theta)).powf(self.n)
+    }
+    fn compression(&self, theta: f64) -> f64 {
+        self.suction * (self.space.most / self.space.volume(theta)).powf(self.n)
+    }
+}
+
+impl CylinderPressure for Ideal {
+    fn pressure(&self, theta: f64) -> f64 {
+        if self.open {
+            self.suction
+        } else if self.space.since_top(theta) < self.space.down {
+            self.expansion(theta).max(self.suction)
+        } else {
+            self.compression(theta).min(self.discharge)
+        }
+    }
+    fn kinks(&self) -> &[f64] {
+        &self.kinks
+    }
+    fn period(&self) -> f64 {
+        TURN
+    }
+}

@@ -1,0 +1,217 @@
+//! Drawings: mode shapes on the line, the interference diagram.
+
+use std::f64::consts::PI;
+
+use gudgeon_core::kinds::{Line, Mode};
+use gudgeon_core::result::{Anchor, Figure, FigureKind, Frame, Shape, Style};
+use gudgeon_torsion::tree::Tree;
+
+use super::rpm;
+
+/// Where each inertia is drawn: along the line, branches below each other.
+fn layout(line: &Line) -> Vec<[f64; 2]> {
+    let n = line.nodes.len();
+    let mut near = vec![Vec::new(); n];
+    for l in &line.links {
+        near[l.nodes[0]].push(l.nodes[1]);
+        near[l.nodes[1]].push(l.nodes[0]);
+    }
+    // The longest way through the tree is the main line: twice the farthest node.
+    let far = |from: usize| {
+        let mut seen = vec![usize::MAX; n];
+        let mut queue = vec![from];
+        seen[from] = from;
+        let mut last = from;
+        let mut k = 0;
+        while k < queue.len() {
+            last = queue[k];
+            for &j in &near[last] {
+                if seen[j] == usize::MAX {
+                    seen[j] = last;
+                    queue.push(j);
+                }
+            }
+            k += 1;
+        }
+        (last, seen)
+    };
+    let (end, _) = far(0);
+    let (begin, _) = far(end);
+    let (first, other) = (begin.min(end), begin.max(end));
+    let (_, from) = far(first);
+    let mut path = vec![other];
+    while path[path.len() - 1] != first {
+        path.push(from[path[path.len() - 1]]);
+    }
+    path.reverse();
+    let mut at = vec![[f64::NAN; 2]; n];
+    for (k, &i) in path.iter().enumerate() {
+        at[i] = [k as f64, 0.0];
+    }
+    let mut row = 0.0;
+    for &i in &path {
+        let mut stack: Vec<(usize, f64)> =
+            near[i].iter().filter(|j| at[**j][0].is_nan()).map(|j| (*j, at[i][0] + 0.5)).collect();
+        while let Some((j, x)) = stack.pop() {
+            if !at[j][0].is_nan() {
+                continue;
+            }
+            // Every leaf of a branch has a row of its own.
+            if stack.is_empty() || near[j].len() == 1 || row == 0.0 {
+                row -= 3.0;
+            }
+            at[j] = [x, row];
+            for &m in near[j].iter().filter(|m| at[**m][0].is_nan()) {
+                stack.push((m, x + 1.0));
+            }
+        }
+    }
+    at
+}
+
+/// Places at rest of a shape: link and fraction of its length from the first of its inertias.
+pub fn nodes(line: &Line, shape: &[f64]) -> Vec<(usize, f64)> {
+    if shape.len() != line.nodes.len() {
+        return Vec::new();
+    }
+    line.links
+        .iter()
+        .enumerate()
+        .filter_map(|(l, link)| {
+            let [a, b] = link.nodes;
+            // Gears turn the shape; seen from the reference shaft they do not.
+            let (x, y) = (shape[a] / line.nodes[a].ratio, shape[b] / line.nodes[b].ratio);
+            (x * y < 0.0).then(|| (l, x / (x - y)))
+        })
+        .collect()
+}
+
+/// Mode shapes drawn on the line, one frame each.
+pub fn modes(line: &Line, modes: &[&Mode]) -> Figure {
+    let at = layout(line);
+    let n = line.nodes.len();
+    // Discs as tall as the cube root of their inertia, at least visible.
+    let inertia: Vec<f64> = (0..n).map(|i| line.mean_inertia(i) * line.nodes[i].ratio.powi(2)).collect();
+    let heaviest = inertia.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+    let mut fixed = Vec::new();
+    for l in &line.links {
+        let [a, b] = l.nodes.map(|i| at[i]);
+        let points = if a[1] == b[1] { vec![a, b] } else { vec![a, [a[0], b[1]], b] };
+        fixed.push(Shape::Path { points, closed: false, style: Style::Axis });
+    }
+    let few = n <= 16;
+    for i in 0..n {
+        let h = (0.12 + 0.45 * (inertia[i] / heaviest).cbrt()).min(0.6);
+        let w = 0.10;
+        let [x, y] = at[i];
+        let points = vec![[x - w, y - h], [x + w, y - h], [x + w, y + h], [x - w, y + h]];
+        fixed.push(Shape::Path { points, closed: true, style: Style::Metal });
+        if few {
+            let text = line.nodes[i].name.clone();
+            // Every other name a little lower, so that long ones do not meet.
+            let drop = if i % 2 == 0 { 1.35 } else { 1.62 };
+            fixed.push(Shape::Text { at: [x, y - drop], text, anchor: Anchor::Middle });
+        }
+    }
+    let tree = Tree::new(line).ok();
+    let frames = modes
+        .iter()
+        .enumerate()
+        .map(|(k, m)| {
+            let scaled: Vec<f64> = (0..n).map(|i| m.shape[i] / line.nodes[i].ratio).collect();
+            let top = scaled.iter().map(|s| s.abs()).fold(f64::MIN_POSITIVE, f64::max);
+            let y = |i: usize| at[i][1] + 1.1 * scaled[i] / top;
+            let mut shapes = Vec::new();
+            for l in &line.links {
+                let [a, b] = l.nodes;
+                let points = vec![[at[a][0], y(a)], [at[b][0], y(b)]];
+                shapes.push(Shape::Path { points, closed: false, style: Style::Accent });
+            }
+            for i in 0..n {
+                shapes.push(Shape::Circle { centre: [at[i][0], y(i)], radius: 0.05, style: Style::Accent });
+            }
+            for (l, f) in nodes(line, &m.shape) {
+                let [a, b] = line.links[l].nodes;
+                let centre = [at[a][0] + f * (at[b][0] - at[a][0]), at[a][1] + f * (at[b][1] - at[a][1])];
+                shapes.push(Shape::Circle { centre, radius: 0.09, style: Style::Second });
+            }
+            let damping = m
+                .damped
+                .map_or_else(String::new, |(d, w)| format!(", damping {:.2} %", 100.0 * d / d.hypot(w)));
+            Frame { label: format!("mode {}: {:.2} Hz{damping}", k + 1, m.omega / (2.0 * PI)), shapes }
+        })
+        .collect();
+    let branched = tree.is_some_and(|t| !t.chain);
+    Figure {
+        title: "Mode shapes".into(),
+        hint: if branched {
+            "angle of each inertia as seen from the reference shaft, branches below the main line; circles on the shaft are places at rest".into()
+        } else {
+            "angle of each inertia; circles on the shaft are places at rest".into()
+        },
+        table: String::new(),
+        kind: FigureKind::Drawing { fixed, frames },
+    }
+}
+
+/// Interference diagram: natural frequencies as levels, orders as rays, marks where they meet.
+pub fn interference(modes: &[&Mode], orders: &[f64], speed: f64, span: (f64, f64)) -> Figure {
+    let (from, to) = span;
+    // Modes that an order can reach, and one above.
+    let reach = orders.last().copied().unwrap_or(1.0) * to / 60.0;
+    let levels: Vec<f64> = modes.iter().map(|m| m.omega / (2.0 * PI)).collect();
+    let drawn = levels.iter().filter(|f| **f <= reach).count().clamp(1, 12).min(levels.len());
+    let top = 1.15 * levels[drawn - 1];
+    // Drawn in a frame of 16 by 9.
+    let (width, height) = (16.0, 9.0);
+    let x = |rpm: f64| width * (rpm - from) / (to - from);
+    let y = |f: f64| height * f / top;
+    let mut s = Vec::new();
+    let path = |points: Vec<[f64; 2]>, style: Style| Shape::Path { points, closed: false, style };
+    s.push(Shape::Path {
+        points: vec![[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]],
+        closed: true,
+        style: Style::Thin,
+    });
+    for k in 0..=8 {
+        let at = from + (to - from) * f64::from(k) / 8.0;
+        s.push(path(vec![[x(at), 0.0], [x(at), 0.12]], Style::Thin));
+        s.push(Shape::Text { at: [x(at), -0.45], text: format!("{at:.0}"), anchor: Anchor::Middle });
+    }
+    s.push(Shape::Text { at: [0.5 * width, -1.0], text: "speed, rpm".into(), anchor: Anchor::Middle });
+    for (k, f) in levels.iter().take(drawn).enumerate() {
+        s.push(path(vec![[0.0, y(*f)], [width, y(*f)]], Style::Outline));
+        // Inside the frame, above its line.
+        let text = format!("mode {}: {f:.1} Hz", k + 1);
+        s.push(Shape::Text { at: [0.15, y(*f) + 0.28], text, anchor: Anchor::Start });
+    }
+    for o in orders {
+        let end = to.min(60.0 * top / o);
+        if end <= from {
+            continue;
+        }
+        s.push(path(vec![[x(from), y(o * from / 60.0)], [x(end), y(o * end / 60.0)]], Style::Dashed));
+        let (text, place, anchor) = if end < to {
+            (format!("{o}"), [x(end), height + 0.25], Anchor::Middle)
+        } else {
+            (format!("{o}"), [width + 0.15, y(o * end / 60.0)], Anchor::Start)
+        };
+        s.push(Shape::Text { at: place, text, anchor });
+        for f in levels.iter().take(drawn) {
+            let at = 60.0 * f / o;
+            if at >= from && at <= to {
+                s.push(Shape::Circle { centre: [x(at), y(*f)], radius: 0.09, style: Style::Accent });
+            }
+        }
+    }
+    let run = rpm(speed);
+    if run >= from && run <= to {
+        s.push(path(vec![[x(run), 0.0], [x(run), height]], Style::Second));
+    }
+    Figure {
+        title: "Interference diagram".into(),
+        hint: "natural frequencies as levels, orders of the speed as rays (numbers at their ends), critical speeds where they meet; the upright line is the mean speed".into(),
+        table: String::new(),
+        kind: FigureKind::Drawing { fixed: s, frames: Vec::new() },
+    }
+}

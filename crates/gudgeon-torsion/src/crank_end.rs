@@ -1,0 +1,24 @@
+use gudgeon_core::kinds::{Kinematics, PistonMotion};
+
+/// The piston as its crank-end gas space sees it: up is towards the crank.
+#[derive(Debug, Clone)]
+pub struct CrankEnd {
+    /// Motion towards the head.
+    pub head: Box<dyn Kinematics>,
+}
+
+impl Kinematics for CrankEnd {
+    fn motion(&self, theta: f64) -> PistonMotion {
+        let m = self.head.motion(theta);
+        PistonMotion { y: -m.y, v: -m.v, a: -m.a, rod_angle: m.rod_angle }
+    }
+    fn y_tdc(&self) -> f64 {
+        self.head.stroke() - self.head.y_tdc()
+    }
+    fn stroke(&self) -> f64 {
+        self.head.stroke()
+    }
+    fn omega(&self) -> f64 {
+        self.head.omega()
+    }
+}

@@ -1,0 +1,205 @@
+//! What excites a line, as harmonics over the angle of the reference shaft.
+
+use std::f64::consts::PI;
+
+use gudgeon_core::kinds::{Line, LineThrow};
+use gudgeon_numerics::linalg::Complex;
+use gudgeon_numerics::quadrature::GaussLegendre;
+
+/// Orders closer than this are one.
+const SAME: f64 = 1e-9;
+/// Panels per turn between which, and the kinks of the pressure, torque is smooth.
+const PANELS: usize = 64;
+/// Points of Gauss per panel: 16 points carry 5 waves to rounding, so a turn carries 300 orders.
+const POINTS: usize = 16;
+
+/// Torques of one order.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Order {
+    /// Cycles per turn of the reference shaft.
+    pub order: f64,
+    /// Phasors by node of the line: torque `Re(a e^{i order θ})` \[N m\].
+    pub torque: Vec<Complex>,
+}
+
+/// Torques of a line at constant speed.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Excitation {
+    /// Orders, ascending.
+    pub orders: Vec<Order>,
+    /// Mean torques by node \[N m\], those of drives at the mean speed and drag included.
+    pub mean: Vec<f64>,
+}
+
+/// Fourier coefficients `c_k`, `f = c_0 + Re Σ c_k e^{i k b α}`, of a function that is smooth between `kinks`, `b = 2π/period`.
+#[must_use]
+pub fn series(f: impl Fn(f64) -> f64, period: f64, kinks: &[f64], most: usize) -> Vec<Complex> {
+    let base = 2.0 * PI / period;
+    let panels = (PANELS as f64 * period / (2.0 * PI)).ceil().max(most as f64 / 4.0) as usize;
+    let mut stops: Vec<f64> = (0..=panels).map(|i| period * i as f64 / panels as f64).collect();
+    stops.extend(kinks.iter().map(|k| k.rem_euclid(period)));
+    stops.sort_unstable_by(f64::total_cmp);
+    let gauss = GaussLegendre::new(POINTS);
+    let mut c = vec![Complex::default(); most + 1];
+    for w in stops.windows(2) {
+        let (a, b) = (w[0], w[1]);
+        if b - a < 1e-14 * period {
+            continue;
+        }
+        for (x, weight) in gauss.nodes().iter().zip(gauss.weights()) {
+            let at = 0.5 * (a + b) + 0.5 * (b - a) * x;
+            let v = f(at) * weight * 0.5 * (b - a) / period;
+            c[0].re += v;
+            // e^{-ikbα} by repeated turning, started afresh now and then so that rounding does not add up.
+            let (sin, cos) = (base * at).sin_cos();
+            let turn = Complex::new(cos, -sin);
+            let mut e = Complex::new(2.0 * v, 0.0);
+            for (k, c) in c.iter_mut().enumerate().skip(1) {
+                if k % 32 == 0 {
+                    let (sin, cos) = (k as f64 * base * at).sin_cos();
+                    e = Complex::new(2.0 * v * cos, -2.0 * v * sin);
+                } else {
+                    e = e * turn;
+                }
+                *c = *c + e;
+            }
+        }
+    }
+    c
+}
+
+/// Period of the gas torque of a throw over its angle \[rad\].
+#[must_use]
+pub fn gas_period(t: &LineThrow) -> f64 {
+    // 4π is a multiple of 2π; other periods do not occur in one machine.
+    t.ends.iter().map(|e| e.pressure.period()).fold(2.0 * PI, f64::max)
+}
+
+fn kinks(t: &LineThrow) -> Vec<f64> {
+    let period = gas_period(t);
+    let mut all = Vec::new();
+    for e in &t.ends {
+        let own = e.pressure.period();
+        let copies = (period / own).round().max(1.0) as usize;
+        for i in 0..copies {
+            all.extend(e.pressure.kinks().iter().map(|k| k + own * i as f64));
+        }
+    }
+    all
+}
+
+/// Fourier coefficients of the gas torque of a throw over the angle of the throw; the base order is `2π/period`.
+#[must_use]
+pub fn gas_series(t: &LineThrow, most: usize) -> Vec<Complex> {
+    let torque = |a: f64| t.ends.iter().map(|e| e.torque(a, a)).sum();
+    series(torque, gas_period(t), &kinks(t), most)
+}
+
+/// Fourier coefficients of `-½ dI/dθ`, the torque of the moving masses at unit speed.
+#[must_use]
+pub fn inertia_series(t: &LineThrow, most: usize) -> Vec<Complex> {
+    if t.inertia.is_constant() {
+        return vec![Complex::default(); 1];
+    }
+    series(|a| -0.5 * t.inertia.inertia(a).1, 2.0 * PI, &[], most)
+}
+
+/// Number of harmonics of a throw up to order `most` of the reference shaft.
+fn wanted(line: &Line, t: &LineThrow, base: f64, most: f64) -> usize {
+    (most / (base * line.nodes[t.node].ratio.abs()) + SAME).floor() as usize
+}
+
+impl Excitation {
+    /// All torques of a line that turns at `speed` \[rad/s\], to order `most` of the reference shaft.
+    #[must_use]
+    pub fn new(line: &Line, speed: f64, most: f64) -> Self {
+        let mut e = Self { orders: Vec::new(), mean: vec![0.0; line.nodes.len()] };
+        for (node, n) in line.nodes.iter().enumerate() {
+            e.mean[node] -= n.damping * speed * n.ratio;
+        }
+        e.gas(line, most);
+        e.masses(line, speed, most);
+        for d in &line.drives {
+            let ratio = line.nodes[d.node].ratio;
+            let orders = d.drive.orders();
+            // The part that goes with the angle is not in the mean.
+            let here = d.drive.torque(0.0, speed * ratio).torque;
+            let swing: f64 = orders.iter().map(|o| o.cosine).sum();
+            e.mean[d.node] += d.factor * (here - swing);
+        }
+        e.given(line, most);
+        e.orders.sort_unstable_by(|a, b| a.order.total_cmp(&b.order));
+        e
+    }
+
+    /// The torques that do not depend on the speed, and those of the moving masses at unit speed: the torque at speed Ω is the first
+    /// plus Ω² times the second. Means are those of the gas alone.
+    #[must_use]
+    pub fn parts(line: &Line, most: f64) -> [Self; 2] {
+        let empty = || Self { orders: Vec::new(), mean: vec![0.0; line.nodes.len()] };
+        let (mut fixed, mut square) = (empty(), empty());
+        fixed.gas(line, most);
+        fixed.given(line, most);
+        square.masses(line, 1.0, most);
+        for e in [&mut fixed, &mut square] {
+            e.orders.sort_unstable_by(|a, b| a.order.total_cmp(&b.order));
+        }
+        [fixed, square]
+    }
+
+    fn gas(&mut self, line: &Line, most: f64) {
+        for t in line.throws.iter().filter(|t| !t.ends.is_empty()) {
+            let base = 2.0 * PI / gas_period(t);
+            let c = gas_series(t, wanted(line, t, base, most));
+            self.mean[t.node] += c[0].re;
+            self.insert(line, t.node, t.phase, base, &c);
+        }
+    }
+
+    fn masses(&mut self, line: &Line, speed: f64, most: f64) {
+        for t in line.throws.iter().filter(|t| !t.inertia.is_constant()) {
+            let mut c = inertia_series(t, wanted(line, t, 1.0, most));
+            let turn = speed * line.nodes[t.node].ratio;
+            c.iter_mut().for_each(|c| *c = *c * Complex::new(turn * turn, 0.0));
+            self.insert(line, t.node, t.phase, 1.0, &c);
+        }
+    }
+
+    fn given(&mut self, line: &Line, most: f64) {
+        for d in &line.drives {
+            for o in d.drive.orders() {
+                if o.order * line.nodes[d.node].ratio.abs() <= most + SAME {
+                    let a = Complex::new(o.cosine * d.factor, -o.sine * d.factor);
+                    self.add(line, d.node, d.phase, o.order, a);
+                }
+            }
+        }
+    }
+
+    fn insert(&mut self, line: &Line, node: usize, phase: f64, base: f64, c: &[Complex]) {
+        for (k, c) in c.iter().enumerate().skip(1) {
+            self.add(line, node, phase, k as f64 * base, *c);
+        }
+    }
+
+    /// Adds `Re(a e^{i order (θ + phase)})`, θ the angle of the node.
+    fn add(&mut self, line: &Line, node: usize, phase: f64, order: f64, a: Complex) {
+        if a == Complex::default() {
+            return;
+        }
+        let (sin, cos) = (order * phase).sin_cos();
+        let mut a = a * Complex::new(cos, sin);
+        let ratio = line.nodes[node].ratio;
+        if ratio < 0.0 {
+            a.im = -a.im;
+        }
+        let order = order * ratio.abs();
+        let found = self.orders.iter().position(|o| (o.order - order).abs() < SAME);
+        let at = found.unwrap_or_else(|| {
+            self.orders.push(Order { order, torque: vec![Complex::default(); line.nodes.len()] });
+            self.orders.len() - 1
+        });
+        let t = &mut self.orders[at].torque[node];
+        *t = *t + a;
+    }
+}

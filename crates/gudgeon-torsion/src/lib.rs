@@ -1,0 +1,29 @@
+//! Torsional vibration of shaft lines.
+//!
+//! | kind | models |
+//! |---|---|
+//! | `coupling` | [`coupling::Linear`], [`coupling::Progressive`], [`coupling::Piecewise`], [`coupling::LoadDependent`], [`coupling::FrequencyDependent`], [`coupling::Off`] |
+//! | `drive` | [`drive::Constant`], [`drive::Linear`], [`drive::InductionMotor`], [`drive::PowerLaw`], [`drive::Table`], [`drive::Harmonics`], [`drive::Off`] |
+//! | `throw_inertia` | [`throw_inertia::Mean`], [`throw_inertia::FirstHarmonic`], [`throw_inertia::Exact`], [`throw_inertia::Off`] |
+//! | `natural_frequencies` | [`natural_frequencies::Eigenvalues`], [`natural_frequencies::ClampedNeighbours`] |
+//! | `torsion` | [`torsion::Orders`], [`torsion::Modal`], [`torsion::HarmonicBalance`], [`torsion::Propagator`], [`torsion::RungeKutta`], [`torsion::Implicit`], [`torsion::Off`] |
+//!
+//! Everything rests on one data structure, the line as a tree in the order of its elimination: see [`tree`].
+
+pub mod coupling;
+mod crank_end;
+pub mod damper;
+pub mod drive;
+mod dynamics;
+pub mod eigen;
+pub mod forcing;
+pub mod natural_frequencies;
+pub mod shaft;
+pub mod speed_range;
+pub mod steady;
+pub mod sweep;
+pub mod throw_inertia;
+pub mod torsion;
+pub mod tree;
+
+pub use crank_end::CrankEnd;

@@ -1,0 +1,60 @@
+use gudgeon_core::kinds::{Line, Mode, NaturalFrequencies, NaturalFrequenciesSpec};
+use gudgeon_core::{BuildError, EvalError};
+use serde::{Deserialize, Serialize};
+
+use crate::eigen;
+use crate::tree::Tree;
+
+/// The eigenvalues of the line, undamped and damped.
+///
+/// `(K - ω² J) φ = 0` with rigid modes at exactly zero; `det(K + z C + z² J) = 0` for the damped ones. Chains by root-free QL on the
+/// differences of the shafts, everything else by counts of negative pivots of the tree; see [`crate::tree`] for why their accuracy
+/// does not depend on the ratio of stiffnesses. Holzer's residual of every mode is its check.
+#[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Eigenvalues {
+    /// Most modes wanted, the lowest first; rigid ones count.
+    #[serde(default = "most")]
+    pub most: usize,
+}
+
+fn most() -> usize {
+    40
+}
+
+impl Default for Eigenvalues {
+    fn default() -> Self {
+        Self { most: most() }
+    }
+}
+
+gudgeon_core::register_model! {
+    Eigenvalues, kind: "natural_frequencies", name: "eigenvalues",
+    summary: "eigenvalues of the whole line with shapes, undamped and damped",
+    equations: "(K - omega^2 J) phi = 0;  det(K + z C + z^2 J) = 0, z = -decay + i omega_d",
+    validity: "Small vibration about the mean torque; inertia of throws at its mean.",
+    references: ["holzer1921", "reinsch1973", "wilkinson1971", "aberth1973"],
+    example: "",
+}
+
+#[typetag::serde(name = "eigenvalues")]
+impl NaturalFrequenciesSpec for Eigenvalues {
+    fn build(&self, line: &Line) -> Result<Box<dyn NaturalFrequencies>, BuildError> {
+        if self.most == 0 {
+            return Err(BuildError::at("most", "at least one mode must be wanted"));
+        }
+        Ok(Box::new(Solver { tree: Tree::new(line)?, most: self.most }))
+    }
+}
+
+#[derive(Debug)]
+struct Solver {
+    tree: Tree,
+    most: usize,
+}
+
+impl NaturalFrequencies for Solver {
+    fn modes(&mut self) -> Result<Vec<Mode>, EvalError> {
+        eigen::modes(&self.tree, self.most, true)
+    }
+}

@@ -1,0 +1,26 @@
+use gudgeon_core::BuildError;
+use gudgeon_core::kinds::{ThrowCtx, ThrowInertia, ThrowInertiaSpec};
+use serde::{Deserialize, Serialize};
+
+use super::mean::Same;
+
+/// The crank alone: rod and piston add nothing.
+#[derive(Debug, Clone, Default, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Off {}
+
+gudgeon_core::register_model! {
+    Off, kind: "throw_inertia", name: "off",
+    summary: "inertia of the crank alone",
+    equations: "I = I_c",
+    validity: "Lines whose inertias are given as sums already.",
+    references: [],
+    example: "",
+}
+
+#[typetag::serde(name = "off")]
+impl ThrowInertiaSpec for Off {
+    fn build(&self, ctx: &ThrowCtx) -> Result<Box<dyn ThrowInertia>, BuildError> {
+        Ok(Box::new(Same { inertia: ctx.crank_inertia }))
+    }
+}

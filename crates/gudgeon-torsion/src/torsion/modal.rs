@@ -1,0 +1,158 @@
+use gudgeon_core::kinds::{Torsion, TorsionAnswer, TorsionCtx, TorsionOut, TorsionSpec};
+use gudgeon_core::quantity::{Fraction, Ratio};
+use gudgeon_core::{BuildError, EvalError};
+use gudgeon_numerics::linalg::Complex;
+use serde::{Deserialize, Serialize};
+
+use crate::eigen;
+use crate::steady::Steady;
+
+/// Forced vibration by superposition of undamped modes.
+///
+/// `q_m = φ_mᵀ T/(ω_m² - ω² + i ω c_m)` with the modal damping `c_m = φᵀCφ` or `2 ζ ω_m`; what couples the modes in C is left out. The
+/// modes left out follow statically where `static_correction` is set: their part of the answer to torque without acceleration.
+#[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Modal {
+    /// Number of modes kept, the rigid one included.
+    #[serde(default = "ten")]
+    pub modes: usize,
+    /// Damping ratio of all modes, instead of that of the dampers.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub damping_ratio: Option<Ratio<Fraction>>,
+    /// Whether modes that are left out follow statically.
+    #[serde(default = "yes")]
+    pub static_correction: bool,
+}
+
+fn ten() -> usize {
+    10
+}
+fn yes() -> bool {
+    true
+}
+
+impl Default for Modal {
+    fn default() -> Self {
+        Self { modes: ten(), damping_ratio: None, static_correction: true }
+    }
+}
+
+gudgeon_core::register_model! {
+    Modal, kind: "torsion", name: "modal",
+    summary: "forced vibration by superposition of modes, with static correction",
+    equations: "q_m = phi_m^T T/(omega_m^2 - omega^2 + i omega c_m);  theta = sum phi_m q_m",
+    validity: "Light damping that hardly couples the modes. For long lines of which few modes matter.",
+    references: ["gomes2021", "ker_wilson1956"],
+    example: "modes = 6\n",
+}
+
+#[typetag::serde(name = "modal")]
+impl TorsionSpec for Modal {
+    fn build(&self, ctx: &TorsionCtx<'_>) -> Result<Box<dyn Torsion>, BuildError> {
+        if self.modes == 0 {
+            return Err(BuildError::at("modes", "at least one mode is needed"));
+        }
+        if let Some(l) = ctx.line.links.iter().position(|l| l.coupling.depends_on_frequency()) {
+            let what = "modes need a stiffness that does not depend on the frequency; use `orders`";
+            return Err(BuildError::at(format!("links.{l}"), what));
+        }
+        let steady = Steady::new(ctx)?;
+        if steady.tree.is_grounded() && self.static_correction {
+            return Err(BuildError::at("static_correction", "is for lines that turn freely; use `orders`"));
+        }
+        Ok(Box::new(Solver { spec: self.clone(), steady }))
+    }
+    fn answers(&self) -> TorsionAnswer {
+        TorsionAnswer::Periodic
+    }
+}
+
+#[derive(Debug)]
+struct Solver {
+    spec: Modal,
+    steady: Steady,
+}
+
+impl Torsion for Solver {
+    fn run(&mut self, out: &mut TorsionOut) -> Result<(), EvalError> {
+        let t = &self.steady.tree;
+        let n = t.len();
+        let omega = eigen::natural_frequencies(t, self.spec.modes)?;
+        let v = eigen::shapes(t, &omega);
+        let damping: Vec<f64> = omega
+            .iter()
+            .zip(&v)
+            .map(|(w, v)| match self.spec.damping_ratio {
+                Some(z) => 2.0 * z.si() * w,
+                None => eigen::modal_damping(t, *w, v),
+            })
+            .collect();
+        let total = t.total_inertia();
+        for o in &self.steady.excitation.orders {
+            let w = o.order * self.steady.speed;
+            let f: Vec<Complex> =
+                (0..n).map(|p| o.torque[t.node[p]] * Complex::new(t.ratio[p], 0.0)).collect();
+            let project = |v: &[f64]| {
+                v.iter().zip(&f).fold(Complex::default(), |s, (v, f)| s + *f * Complex::new(*v, 0.0))
+            };
+            let mut phi = vec![Complex::default(); n];
+            if self.spec.static_correction {
+                // Torque less that of the rigid acceleration, through the springs alone.
+                let rigid = project(&vec![1.0; n]);
+                let mut load: Vec<Complex> =
+                    (0..n).map(|p| f[p] - rigid * Complex::new(t.inertia[p] / total, 0.0)).collect();
+                for p in 0..n - 1 {
+                    let q = t.parent[p];
+                    load[q] = load[q] + load[p];
+                }
+                for p in (0..n - 1).rev() {
+                    phi[p] = phi[t.parent[p]] + load[p] * Complex::new(1.0 / t.k[p], 0.0);
+                }
+                let mean = phi
+                    .iter()
+                    .zip(&t.inertia)
+                    .fold(Complex::default(), |s, (x, j)| s + *x * Complex::new(j / total, 0.0));
+                phi.iter_mut().for_each(|x| *x = *x - mean);
+            }
+            for ((wm, c), v) in omega.iter().zip(&damping).zip(&v) {
+                let d = Complex::new(wm * wm - w * w, w * c);
+                if d == Complex::default() {
+                    let what = format!("order {} hits an undamped natural frequency", o.order);
+                    return Err(EvalError::fatal("modal", what));
+                }
+                let mut q = project(v) / d;
+                if self.spec.static_correction && *wm > 0.0 {
+                    q = q - project(v) * Complex::new(1.0 / (wm * wm), 0.0);
+                }
+                for (x, v) in phi.iter_mut().zip(v) {
+                    *x = *x + q * Complex::new(*v, 0.0);
+                }
+            }
+            let links = self.steady.line.links.len();
+            let mut r = gudgeon_core::kinds::OrderResponse {
+                order: o.order,
+                angle: vec![[0.0; 2]; n],
+                torque: vec![[0.0; 2]; links],
+                heat: vec![0.0; links],
+                excitation: o.torque.iter().map(|t| [t.re, t.im]).collect(),
+            };
+            for p in 0..n {
+                r.angle[t.node[p]] = [phi[p].re * t.ratio[p], phi[p].im * t.ratio[p]];
+                if t.parent[p] < n && t.k[p].is_finite() {
+                    let kappa = Complex::new(t.k[p], t.k[p] * t.eta[p] + w * t.c[p]);
+                    let twist = phi[p] - phi[t.parent[p]];
+                    let s = if t.forward[p] { 1.0 } else { -1.0 } / t.link_ratio[p];
+                    let q = kappa * twist;
+                    r.torque[t.link[p]] = [q.re * s, q.im * s];
+                    r.heat[t.link[p]] = 0.5 * w * kappa.im * twist.abs() * twist.abs();
+                }
+            }
+            out.orders.push(r);
+        }
+        out.counters.insert("time_steps".into(), 0);
+        out.counters.insert("modes".into(), omega.len() as u64);
+        self.steady.describe(out);
+        Ok(())
+    }
+}

@@ -1,0 +1,36 @@
+use gudgeon_core::kinds::{Torsion, TorsionAnswer, TorsionCtx, TorsionOut, TorsionSpec};
+use gudgeon_core::{BuildError, EvalError};
+use serde::{Deserialize, Serialize};
+
+/// No torsion: the shaft turns at constant speed and does not twist.
+#[derive(Debug, Clone, Default, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Off {}
+
+gudgeon_core::register_model! {
+    Off, kind: "torsion", name: "off",
+    summary: "constant speed, no twist",
+    equations: "theta_i = ratio_i Omega t",
+    validity: "Where neither speed fluctuation nor torque is asked for.",
+    references: [],
+    example: "",
+}
+
+#[typetag::serde(name = "off")]
+impl TorsionSpec for Off {
+    fn build(&self, _: &TorsionCtx<'_>) -> Result<Box<dyn Torsion>, BuildError> {
+        Ok(Box::new(Nothing))
+    }
+    fn answers(&self) -> TorsionAnswer {
+        TorsionAnswer::Nothing
+    }
+}
+
+#[derive(Debug)]
+struct Nothing;
+
+impl Torsion for Nothing {
+    fn run(&mut self, _: &mut TorsionOut) -> Result<(), EvalError> {
+        Ok(())
+    }
+}
