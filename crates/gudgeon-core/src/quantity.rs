@@ -100,6 +100,8 @@ dimensions! {
     Volume, Volume, PosVolume, "a volume", [("m3", 1.0, 0.0), ("l", 1e-3, 0.0), ("cm3", 1e-6, 0.0), ("mm3", 1e-9, 0.0)];
     /// Mass \[kg\].
     Mass, Mass, PosMass, "a mass", [("kg", 1.0, 0.0), ("g", 1e-3, 0.0), ("mg", 1e-6, 0.0)];
+    /// Moment of inertia \[kg m²\].
+    Inertia, Inertia, PosInertia, "a moment of inertia", [("kg m2", 1.0, 0.0), ("kg cm2", 1e-4, 0.0), ("kg mm2", 1e-6, 0.0), ("g mm2", 1e-9, 0.0)];
     /// Density \[kg/m³\].
     Density, Density, PosDensity, "a density", [("kg/m3", 1.0, 0.0), ("g/cm3", 1e3, 0.0), ("g/mm3", 1e6, 0.0)];
     /// Force \[N\].
@@ -136,8 +138,6 @@ dimensions! {
     PressureCoefficient, PressureCoefficient, PosPressureCoefficient, "a pressure coefficient", [("1/Pa", 1.0, 0.0), ("1/MPa", 1e-6, 0.0), ("1/GPa", 1e-9, 0.0)];
     /// Shear rate \[1/s\].
     ShearRate, ShearRate, PosShearRate, "a shear rate", [("1/s", 1.0, 0.0)];
-    /// Moment of inertia \[kg m²\].
-    Inertia, Inertia, PosInertia, "a moment of inertia", [("kg m2", 1.0, 0.0), ("kg mm2", 1e-6, 0.0)];
     /// Torque \[N m\].
     Torque, Torque, PosTorque, "a torque", [("N m", 1.0, 0.0), ("kN m", 1e3, 0.0), ("MN m", 1e6, 0.0)];
     /// Torsional stiffness \[N m/rad\].

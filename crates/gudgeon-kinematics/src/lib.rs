@@ -31,7 +31,7 @@ pub use ideal_valves::IdealValves;
 pub use motored::Motored;
 pub use polytropic_burn::PolytropicBurn;
 pub use single_zone_wiebe::{ChamberVolume, SingleZoneWiebe};
-pub use table::Table;
+pub use table::{Interpolation, Table};
 pub use two_harmonic_series::TwoHarmonicSeries;
 pub use valve_losses::ValveLosses;
 

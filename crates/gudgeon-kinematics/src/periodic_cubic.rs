@@ -30,6 +30,15 @@ impl PeriodicCubic {
     /// Through `(x[i], y[i])` and their repetitions. `x` ascends, starts anywhere and spans less than one period; `y` is
     /// finite; there are at least two points.
     pub(crate) fn new(x: &[f64], y: &[f64], period: f64) -> Result<Self, TooClose> {
+        Self::through(x, y, period, false)
+    }
+
+    /// Straight lines through the same points.
+    pub(crate) fn straight(x: &[f64], y: &[f64], period: f64) -> Result<Self, TooClose> {
+        Self::through(x, y, period, true)
+    }
+
+    fn through(x: &[f64], y: &[f64], period: f64, straight: bool) -> Result<Self, TooClose> {
         let n = x.len();
         let origin = x[0];
         let left: Vec<f64> = x.iter().map(|x| x - origin).collect();
@@ -56,7 +65,8 @@ impl PeriodicCubic {
             .collect();
         let coefficients = (0..n)
             .map(|i| {
-                let (h, d, s0, s1) = (width(i), chord[i], slope[i], slope[(i + 1) % n]);
+                let (h, d) = (width(i), chord[i]);
+                let (s0, s1) = if straight { (d, d) } else { (slope[i], slope[(i + 1) % n]) };
                 [y[i], s0, (3.0 * d - 2.0 * s0 - s1) / h, (s0 + s1 - 2.0 * d) / (h * h)]
             })
             .collect();

@@ -19,7 +19,7 @@ use crate::periodic_cubic::{PeriodicCubic, TooClose};
 ///   (721 values over 720°) the last one belongs to the end of the cycle, otherwise (720 values) to one spacing before it.
 ///
 /// Angles ascend and cover one cycle. A row at the end of the cycle repeats the one at its start; the two are averaged, and
-/// must agree within 5 %. Between the rows runs a periodic monotone cubic: differentiable, without overshoot.
+/// must agree within 5 %. Between the rows runs a periodic monotone cubic, differentiable and without overshoot, or straight lines.
 ///
 /// The pressure used is `scale * p(theta - shift) + offset`.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
@@ -37,6 +37,9 @@ pub struct Table {
     /// Unit of the pressures.
     #[serde(default = "pascal")]
     pub unit: String,
+    /// Curve between the rows.
+    #[serde(default)]
+    pub interpolation: Interpolation,
     /// Length of the cycle: 720 deg for four strokes, 360 deg for two.
     #[serde(default = "four_strokes")]
     pub cycle: PosAngle,
@@ -49,6 +52,17 @@ pub struct Table {
     /// Added to the pressures after scaling: the reference pressure of a trace that is not absolute.
     #[serde(default = "no_offset")]
     pub offset: Pressure,
+}
+
+/// Curve between the rows of a [`Table`].
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Interpolation {
+    /// Monotone cubic.
+    #[default]
+    MonotoneCubic,
+    /// Straight lines: an integrator stops at every row.
+    Linear,
 }
 
 fn pascal() -> String {
@@ -69,8 +83,8 @@ fn no_offset() -> Pressure {
 
 gudgeon_core::register_model! {
     Table, kind: "cylinder_pressure", name: "table",
-    summary: "a measured trace, inline or from a file, by periodic monotone cubic interpolation",
-    equations: "p = scale * P(theta - shift) + offset;  P: monotone piecewise cubic Hermite through the rows, periodic",
+    summary: "a measured trace, inline or from a file, by periodic monotone cubic or linear interpolation",
+    equations: "p = scale * P(theta - shift) + offset;  P: monotone piecewise cubic Hermite (or straight lines) through the rows, periodic",
     validity: "As good as the trace; at least 4 rows per cycle, absolute pressures after scale and offset. Interpolation does not overshoot; it cuts an extremum that lies between rows.",
     references: ["fritsch1980"],
     example: "theta_deg = [0, 180, 300, 350, 370, 400, 450, 540]\npressure = [1, 1, 4, 30, 60, 25, 6, 1.5]\nunit = \"bar\"\n",
@@ -83,6 +97,7 @@ impl Default for Table {
             theta_deg: None,
             pressure: None,
             unit: pascal(),
+            interpolation: Interpolation::default(),
             cycle: four_strokes(),
             shift: no_shift(),
             scale: one(),
@@ -107,9 +122,15 @@ impl CylinderPressureSpec for Table {
         let mut rows = self.rows(ctx, period.to_degrees())?;
         rows.check(|p| p * factor * self.scale.si() + self.offset.si(), period.to_degrees())?;
         let angles: Vec<f64> = rows.theta_deg.iter().map(|t| t.to_radians() + self.shift.si()).collect();
-        let curve = PeriodicCubic::new(&angles, &rows.pressure, period)
+        let linear = self.interpolation == Interpolation::Linear;
+        let through = if linear { PeriodicCubic::straight } else { PeriodicCubic::new };
+        let curve = through(&angles, &rows.pressure, period)
             .map_err(|TooClose(i)| rows.fault(i, Column::Theta, "is too close to the row before"))?;
-        Ok(Box::new(Trace { curve, period }))
+        let mut kinks: Vec<f64> =
+            if linear { angles.iter().map(|a| a.rem_euclid(period)).collect() } else { Vec::new() };
+        kinks.retain(|k| *k < period);
+        kinks.sort_by(f64::total_cmp);
+        Ok(Box::new(Trace { curve, period, kinks }))
     }
 }
 
@@ -350,6 +371,7 @@ impl Separator {
 struct Trace {
     curve: PeriodicCubic,
     period: f64,
+    kinks: Vec<f64>,
 }
 
 impl CylinderPressure for Trace {
@@ -357,7 +379,7 @@ impl CylinderPressure for Trace {
         self.curve.value(theta)
     }
     fn kinks(&self) -> &[f64] {
-        &[]
+        &self.kinks
     }
     fn period(&self) -> f64 {
         self.period

@@ -13,4 +13,5 @@ use gudgeon_kinematics as _;
 use gudgeon_pin as _;
 use gudgeon_rig as _;
 use gudgeon_ring as _;
+use gudgeon_skirt as _;
 use gudgeon_torsion as _;

@@ -1,9 +1,10 @@
-use gudgeon_core::kinds::{Film2dGrid, Film2dSpec, Rig, RigCtx, RigOut, RigSpec, RoughnessSpec};
+use gudgeon_core::kinds::{Film2dSpec, Rig, RigCtx, RigOut, RigSpec, RoughnessSpec};
 use gudgeon_core::quantity::{
     Length, NonNegative, PosAngle, PosLength, PosViscosity, Pressure, Ratio, Velocity, quantity,
 };
 use gudgeon_core::{BuildError, EvalError};
 use gudgeon_film::SmoothSurfaces;
+use gudgeon_skirt::Panel;
 use serde::{Deserialize, Serialize};
 
 use crate::sheet::{self, Conditions, Sheet};
@@ -126,16 +127,8 @@ impl RigSpec for SkirtRig {
         let ny = sheet::intervals("intervals_y", self.intervals_y);
         match (nx, ny) {
             (Ok(nx), Ok(ny)) if errors.is_empty() => {
-                let (length, g) = (self.length.si(), self.crowding.si());
-                let width = 2.0 * self.half_angle.si() * self.radius.si();
-                let mut grid = Film2dGrid::uniform(nx + 1, ny + 1, length, width);
-                for x in &mut grid.x {
-                    let t = 2.0 * *x / length - 1.0;
-                    *x = 0.5 * length * (1.0 + t * (1.0 - g + g * t * t));
-                }
-                for y in &mut grid.y {
-                    *y -= 0.5 * width;
-                }
+                let panel = self.panel();
+                let grid = panel.grid(nx, ny, self.crowding.si());
                 let sheet = Sheet::new(grid, true, &*self.film_2d, &*self.roughness)?;
                 Ok(Box::new(Bench { sheet, spec: self.clone() }))
             }
@@ -144,6 +137,12 @@ impl RigSpec for SkirtRig {
                 Err(errors)
             }
         }
+    }
+}
+
+impl SkirtRig {
+    fn panel(&self) -> Panel {
+        Panel { radius: self.radius.si(), length: self.length.si(), half_angle: self.half_angle.si() }
     }
 }
 
@@ -156,13 +155,13 @@ impl Rig for Bench {
     fn run(&mut self, out: &mut RigOut) -> Result<(), EvalError> {
         let spec = &self.spec;
         let (radius, length, edge) = (spec.radius.si(), spec.length.si(), spec.p_edge.si());
-        let between = |top: f64, bottom: f64, x: f64| top + (bottom - top) * (x / length);
+        let panel = spec.panel();
         let (e, v) = ((spec.e_top.si(), spec.e_bottom.si()), (spec.e_top_rate.si(), spec.e_bottom_rate.si()));
         let gap = |x: f64, y: f64| {
             let barrel = spec.barrel.si() * (2.0 * x / length - 1.0).powi(2);
-            spec.clearance.si() - between(e.0, e.1, x) * (y / radius).cos() + barrel
+            panel.gap(spec.clearance.si(), e.0, e.1, x, y / radius) + barrel
         };
-        let rate = |x: f64, y: f64| -between(v.0, v.1, x) * (y / radius).cos();
+        let rate = |x: f64, y: f64| panel.gap(0.0, v.0, v.1, x, y / radius);
         let found = self.sheet.solve(
             &Conditions {
                 u: spec.speed.si(),

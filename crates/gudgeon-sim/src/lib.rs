@@ -6,6 +6,8 @@ use gudgeon_models as _;
 pub mod case;
 pub mod load;
 pub mod pin;
+pub mod piston_secondary;
+pub mod power_cylinder;
 pub mod rig;
 pub mod ring_pack;
 pub mod run;

@@ -17,6 +17,8 @@ use serde::{Deserialize, Serialize};
 use crate::case::RingPackCase;
 use crate::load::{Loaded, Report, Source, load_source, scene_of};
 use crate::pin::case::PinCase;
+use crate::piston_secondary::case::PistonSecondaryCase;
+use crate::power_cylinder::case::PowerCylinderCase;
 use crate::rig::case::RigCase;
 use crate::run::{Explanation, Progress, RunError};
 use crate::shaft_line::case::ShaftLineCase;
@@ -33,6 +35,10 @@ pub enum SceneName {
     Pin,
     /// One sub-model on a test bench.
     Rig,
+    /// The lateral motion and the tilt of a piston in its bore.
+    PistonSecondary,
+    /// Rings and skirt of one cylinder.
+    PowerCylinder,
     /// A shaft line that twists.
     ShaftLine,
 }
@@ -42,6 +48,8 @@ pub static SCENES: &[SceneEntry] = &[
     SceneEntry::of::<RingPackCase>("ring_pack"),
     SceneEntry::of::<PinCase>("pin"),
     SceneEntry::of::<RigCase>("rig"),
+    SceneEntry::of::<PistonSecondaryCase>("piston_secondary"),
+    SceneEntry::of::<PowerCylinderCase>("power_cylinder"),
     SceneEntry::of::<ShaftLineCase>("shaft_line"),
 ];
 

@@ -302,6 +302,18 @@ pub struct FilmMode<'a> {
     pub edge_pressure: [f64; 4],
 }
 
+/// Whether a film follows from the pressures that [`Film2d::solve_many`] finds for its causes one by one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Superposition {
+    /// It does not: cavitation changes the equations.
+    #[default]
+    None,
+    /// Their sum, raised to `p_cav` where it is below.
+    CutOff,
+    /// Their sum.
+    Full,
+}
+
 /// A running solver of one film.
 ///
 /// It may start from the film it found last; what it finds depends on that by no more than its tolerance.
@@ -334,6 +346,11 @@ pub trait Film2d: Send {
         modes: &[FilmMode<'_>],
         p: &mut [f64],
     ) -> Result<usize, EvalError>;
+
+    /// Whether the film is the sum of what [`Film2d::solve_many`] finds.
+    fn superposition(&self) -> Superposition {
+        Superposition::None
+    }
 
     /// Forgets the film found last: the next search starts from nothing.
     fn reset(&mut self);

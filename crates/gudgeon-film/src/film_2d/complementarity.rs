@@ -1,7 +1,7 @@
 //! Cavitation as a complementarity problem, on top of any solver of linear systems.
 
 use gudgeon_core::EvalError;
-use gudgeon_core::kinds::{Film2d, Film2dGrid, Film2dIn, Film2dOut, FilmMode};
+use gudgeon_core::kinds::{Film2d, Film2dGrid, Film2dIn, Film2dOut, FilmMode, Superposition};
 use gudgeon_numerics::linalg::Singular;
 use gudgeon_numerics::multigrid::FivePoint;
 
@@ -335,6 +335,10 @@ impl<L: Linear> Film2d for Solver<L> {
             out.copy_from_slice(&self.p);
         }
         Ok(cycles)
+    }
+
+    fn superposition(&self) -> Superposition {
+        self.cavitation.superposition()
     }
 
     fn reset(&mut self) {

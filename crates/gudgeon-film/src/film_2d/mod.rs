@@ -1,5 +1,6 @@
 //! Films resolved along and across the motion.
 
+mod central_differences;
 mod complementarity;
 mod direct;
 mod multigrid;
@@ -7,8 +8,9 @@ mod off;
 mod problem;
 mod sor;
 
+pub use central_differences::{CentralDifferences, Equations};
 pub use direct::Direct;
-use gudgeon_core::kinds::FilmMode;
+use gudgeon_core::kinds::{FilmMode, Superposition};
 use gudgeon_core::{BuildError, EvalError};
 pub use multigrid::Multigrid;
 pub use off::Off;
@@ -32,6 +34,17 @@ pub enum Cavitation {
     HalfSommerfeld,
     /// The full film, however far below `p_cav`.
     FullSommerfeld,
+}
+
+impl Cavitation {
+    /// How the film follows from that of its causes.
+    fn superposition(self) -> Superposition {
+        match self {
+            Self::MassConserving | Self::SwiftStieber => Superposition::None,
+            Self::HalfSommerfeld => Superposition::CutOff,
+            Self::FullSommerfeld => Superposition::Full,
+        }
+    }
 }
 
 /// Which film thickness counts for the flow between two nodes.

@@ -1,4 +1,6 @@
-use gudgeon_core::kinds::{Film2d, Film2dCtx, Film2dGrid, Film2dIn, Film2dOut, Film2dSpec, FilmMode};
+use gudgeon_core::kinds::{
+    Film2d, Film2dCtx, Film2dGrid, Film2dIn, Film2dOut, Film2dSpec, FilmMode, Superposition,
+};
 use gudgeon_core::{BuildError, EvalError};
 use serde::{Deserialize, Serialize};
 
@@ -260,6 +262,10 @@ impl Film2d for Relaxation {
             out.copy_from_slice(&self.p);
         }
         Ok(sweeps)
+    }
+
+    fn superposition(&self) -> Superposition {
+        self.spec.cavitation.superposition()
     }
 
     fn reset(&mut self) {

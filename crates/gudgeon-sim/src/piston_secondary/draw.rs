@@ -1,0 +1,206 @@
+//! Pictures of the motion: the piston in its bore, and the pressures on both sides of its skirt.
+
+use gudgeon_core::result::{Anchor, Column, Figure, FigureKind, Frame, RunResult, Series, Shape, Style};
+use gudgeon_skirt::Side;
+
+use super::assemble::Assembly;
+use super::plan::tidy;
+use super::record::{Map, Record};
+
+/// Crank angle between the pictures of the piston \[deg\].
+const FRAME: f64 = 5.0;
+/// Part of the radius that the clearance takes up in the picture.
+const SHOWN: f64 = 0.35;
+/// Part of the radius that the highest pressure takes up beside the liner.
+const PRESSURE: f64 = 0.9;
+
+/// Adds the figures of a run.
+pub fn figures(a: &Assembly, record: &Record, result: &mut RunResult) {
+    result.figures.push(piston(a, record));
+    let names = ["thrust", "anti_thrust"];
+    let words = ["thrust side", "anti-thrust side"];
+    for k in 0..2 {
+        let (maps, peak, side) = (&record.maps[k], &record.peak[k], &a.piston.sides[k]);
+        if maps.is_empty() || peak.p.is_empty() {
+            continue;
+        }
+        let table = format!("{}_cycle", names[k]);
+        result.tables.insert(table.clone(), middle_over_cycle(side, maps));
+        result.figures.push(Figure {
+            title: format!("Pressure on the {} over the cycle", words[k]),
+            hint: "along the middle of the side, height above the lower edge".into(),
+            table,
+            kind: FigureKind::Map { x: "theta".into(), y: "height".into(), value: "p".into() },
+        });
+        let table = format!("{}_pressure", names[k]);
+        result.tables.insert(table.clone(), over_side(side, peak));
+        result.figures.push(Figure {
+            title: format!("Pressure on the {} at {} deg", words[k], peak.theta_deg),
+            hint: "where it is highest in the cycle; angle from the middle of the side, height above the lower edge".into(),
+            table,
+            kind: FigureKind::Map { x: "angle".into(), y: "height".into(), value: "p".into() },
+        });
+    }
+}
+
+fn column(name: &str, unit: &str, values: Vec<f64>) -> Column {
+    Column { name: name.into(), unit: unit.into(), values }
+}
+
+/// The line of nodes in the middle of a side, from the upper edge down, or the mean of the two beside it.
+fn middle(side: &Side, p: &[f64]) -> Vec<f64> {
+    let (nx, ny) = (side.grid().x.len(), side.grid().y.len());
+    let (low, high) = ((ny - 1) / 2 * nx, ny / 2 * nx);
+    (0..nx).map(|i| 0.5 * (p[low + i] + p[high + i])).collect()
+}
+
+fn middle_over_cycle(side: &Side, maps: &[Map]) -> Series {
+    let (mut theta, mut height, mut p) = (Vec::new(), Vec::new(), Vec::new());
+    for i in (0..side.grid().x.len()).rev() {
+        for map in maps {
+            theta.push(map.theta_deg);
+            height.push(side.panel.length - side.grid().x[i]);
+            p.push(middle(side, &map.p)[i]);
+        }
+    }
+    Series {
+        axis: column("theta", "deg", theta),
+        columns: vec![column("height", "m", height), column("p", "Pa", p)],
+    }
+}
+
+fn over_side(side: &Side, map: &Map) -> Series {
+    let grid = side.grid();
+    let nx = grid.x.len();
+    let (mut angle, mut height, mut p) = (Vec::new(), Vec::new(), Vec::new());
+    for i in (0..nx).rev() {
+        for (j, y) in grid.y.iter().enumerate() {
+            angle.push((y / side.panel.radius).to_degrees());
+            height.push(side.panel.length - grid.x[i]);
+            p.push(map.p[j * nx + i]);
+        }
+    }
+    Series {
+        axis: column("angle", "deg", angle),
+        columns: vec![column("height", "m", height), column("p", "Pa", p)],
+    }
+}
+
+fn line(points: Vec<[f64; 2]>, closed: bool, style: Style) -> Shape {
+    Shape::Path { points, closed, style }
+}
+
+fn text(at: [f64; 2], text: String, anchor: Anchor) -> Shape {
+    Shape::Text { at, text, anchor }
+}
+
+/// The piston in its bore, to scale but for what happens across it.
+fn piston(a: &Assembly, record: &Record) -> Figure {
+    let body = &a.piston.body;
+    let crank = &a.piston.crank;
+    let radius = a.piston.sides[0].panel.radius;
+    let magnified = SHOWN * radius / a.clearance;
+    let wall = radius + SHOWN * radius;
+    // Heights count from the crank axis.
+    let (top, stroke) = (a.kinematics.y_tdc(), a.kinematics.stroke());
+    let crown = body.pin.max(0.0) + 0.5 * radius;
+    let (head, end) = (top + crown + 0.1 * radius, top - stroke - (body.length - body.pin) - 0.1 * radius);
+    let thick = 0.12 * radius;
+    let highest = record.maps.iter().flatten().flat_map(|m| &m.p).fold(1.0_f64, |m, p| m.max(*p));
+    let mut fixed =
+        vec![line(vec![[0.0, head + 0.3 * radius], [0.0, -1.2 * crank.radius]], false, Style::Axis)];
+    for side in [-1.0, 1.0] {
+        let x = side * wall;
+        fixed.push(line(
+            vec![[x, head], [x + side * thick, head], [x + side * thick, end], [x, end]],
+            true,
+            Style::Cut,
+        ));
+    }
+    fixed.push(text([-wall - thick, head + 0.12 * radius], "thrust side".into(), Anchor::Middle));
+    fixed.push(text([wall + thick, head + 0.12 * radius], "anti-thrust side".into(), Anchor::Middle));
+    let centre = [-crank.crank_offset, 0.0];
+    fixed.push(Shape::Circle { centre, radius: crank.radius, style: Style::Thin });
+    fixed.push(Shape::Dimension {
+        from: [-wall, end],
+        to: [-radius, end],
+        offset: -0.35 * radius,
+        text: format!("{} um", tidy(1e6 * a.clearance)),
+    });
+    let (et, eb) = (record.column("skirt.e_top"), record.column("skirt.e_bottom"));
+    let force = record.column("skirt.side_force");
+    let rows = record.rows();
+    let every = ((FRAME.to_radians() / (rows[1] - rows[0])).round() as usize).max(1);
+    let mut frames = Vec::new();
+    for k in (0..et.len()).step_by(every) {
+        let theta = rows[k];
+        let motion = a.kinematics.motion(theta);
+        // Displacement at a depth below the upper edge of the skirt, magnified.
+        let aside = |depth: f64| magnified * (et[k] + (eb[k] - et[k]) * depth / body.length);
+        let height = |depth: f64| motion.y + body.pin - depth;
+        let at = |across: f64, depth: f64| [across + aside(depth), height(depth)];
+        let up = body.pin - crown;
+        let land = 0.985 * radius;
+        let mut shapes = vec![line(
+            vec![
+                at(-land, up),
+                at(land, up),
+                at(land, 0.0),
+                at(radius, 0.0),
+                at(radius, body.length),
+                at(-radius, body.length),
+                at(-radius, 0.0),
+                at(-land, 0.0),
+            ],
+            true,
+            Style::Metal,
+        )];
+        let pin = at(-crank.pin_offset, body.pin);
+        let (sin, cos) = theta.sin_cos();
+        let crank_pin = [centre[0] + crank.radius * sin, crank.radius * cos];
+        shapes.push(line(vec![pin, crank_pin, centre], false, Style::Outline));
+        shapes.push(Shape::Circle { centre: pin, radius: 0.22 * radius, style: Style::Hollow });
+        shapes.push(Shape::Circle { centre: crank_pin, radius: 0.1 * radius, style: Style::Hollow });
+        // Film pressure along the middle of both sides, standing on the liner.
+        let deg = tidy(theta.to_degrees());
+        for (side, direction) in [(0, -1.0), (1, 1.0)] {
+            let Some(map) = record.maps[side].iter().find(|m| (m.theta_deg - deg).abs() < 1e-6) else {
+                continue;
+            };
+            let p = middle(&a.piston.sides[side], &map.p);
+            if p.iter().all(|p| *p <= 0.0) {
+                continue;
+            }
+            let x = &a.piston.sides[side].grid().x;
+            let from = direction * (wall + thick);
+            let mut points = vec![[from, height(0.0)]];
+            points.extend(
+                x.iter()
+                    .zip(&p)
+                    .map(|(x, p)| [from + direction * PRESSURE * radius * p.max(0.0) / highest, height(*x)]),
+            );
+            points.push([from, height(body.length)]);
+            shapes.push(line(points, true, Style::Oil));
+        }
+        shapes.push(text(
+            [0.0, head + 0.4 * radius],
+            format!(
+                "upper edge {:.2} um, lower edge {:.2} um, side force {:.0} N",
+                1e6 * et[k],
+                1e6 * eb[k],
+                force[k]
+            ),
+            Anchor::Middle,
+        ));
+        frames.push(Frame { label: format!("{deg} deg"), shapes });
+    }
+    Figure {
+        title: "The piston in its bore".into(),
+        hint: format!(
+            "displacement, tilt and clearance magnified {magnified:.0} times; film pressure along the middle of both sides, {:.1} bar at most",
+            1e-5 * highest
+        ),
+        table: String::new(),
+        kind: FigureKind::Drawing { fixed, frames },
+    }
+}

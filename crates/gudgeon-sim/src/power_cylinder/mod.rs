@@ -1,0 +1,189 @@
+//! The scene `power_cylinder`: the rings and the skirt of one cylinder in one case. Kinematics and gas are those of the ring pack, given once.
+
+pub mod case;
+
+use std::time::Instant;
+
+use gudgeon_core::BuildError;
+use gudgeon_core::result::{ModelUse, RunResult, Value};
+use serde_json::Value as Json;
+
+use crate::case::RingPackCase;
+use crate::load::Loaded;
+use crate::piston_secondary::case::PistonSecondaryCase;
+use crate::run::{Checked, Explanation, Progress, RunError, check, explain};
+use crate::scene::{Heading, SceneCase};
+use case::{Part, PowerCylinderCase};
+
+impl SceneCase for PowerCylinderCase {
+    fn heading(&self) -> Heading<'_> {
+        Heading {
+            title: &self.title,
+            source: &self.source,
+            assumptions: &self.assumptions,
+            sweeps: &self.sweeps,
+            checks: &self.checks,
+        }
+    }
+
+    fn legal(loaded: &Loaded<Self>) -> Vec<BuildError> {
+        parts(loaded).err().unwrap_or_default()
+    }
+
+    fn explain(loaded: &Loaded<Self>, told: &mut Explanation) -> Result<Vec<ModelUse>, RunError> {
+        let (rings, skirt) = parts(loaded).map_err(refused)?;
+        let mut models = Vec::new();
+        for (part, name) in [(&rings, "rings"), (&skirt, "skirt")] {
+            let own = explain(part)?;
+            told.runs.extend(own.runs);
+            told.skipped.extend(own.skipped);
+            told.states.extend(own.states);
+            told.results.extend(own.results.iter().map(|r| named(name, r)));
+            add_models(&mut models, own.models.into_iter().map(|m| m.used));
+        }
+        Ok(models)
+    }
+
+    fn run(loaded: &Loaded<Self>, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
+        let begin = Instant::now();
+        let (rings, skirt) = parts(loaded).map_err(refused)?;
+        let mut half = |name: &'static str, from: f64| {
+            let mut tell = |p: Progress| {
+                progress(Progress {
+                    phase: format!("{name}: {}", p.phase),
+                    fraction: from + 0.5 * p.fraction,
+                });
+            };
+            let part = if from == 0.0 { &rings } else { &skirt };
+            part.case.once(&mut tell)
+        };
+        let mut result = half("rings", 0.0)?;
+        let other = half("skirt", 0.5)?;
+        let power = |r: &RunResult| r.results.get("friction_power").map(|v| v.value);
+        let total = power(&result).zip(power(&other));
+        let fmep = |r: &RunResult, unit: f64| r.results.get("fmep").map(|v| unit * v.value);
+        let pressure = fmep(&result, 1e5).zip(fmep(&other, 1e3));
+        let mut results = indexmap::IndexMap::new();
+        let mut sum = |name: &str, value: Option<f64>, unit: &str, what: &str| {
+            if let Some(value) = value {
+                results.insert(name.to_owned(), Value { value, unit: unit.into(), what: what.into() });
+            }
+        };
+        sum(
+            "friction_power",
+            total.map(|(a, b)| a + b),
+            "W",
+            "friction power of rings and skirt, one cylinder",
+        );
+        sum(
+            "fmep",
+            pressure.map(|(a, b)| 1e-3 * (a + b)),
+            "kPa",
+            "friction work of rings and skirt over swept volume",
+        );
+        results.extend(result.results.into_iter().map(|(k, v)| (named("rings", &k), v)));
+        results.extend(other.results.into_iter().map(|(k, v)| (named("skirt", &k), v)));
+        result.results = results;
+        add_models(&mut result.models, other.models);
+        result.skipped.extend(other.skipped);
+        result.figures.extend(other.figures);
+        result.tables.extend(other.tables);
+        result.events.extend(other.events);
+        result.events.sort_by(|a, b| a.theta_deg.total_cmp(&b.theta_deg));
+        result.solver.notes.extend(other.solver.notes);
+        let own = std::mem::take(&mut result.solver.counters);
+        result.solver.counters = own.into_iter().map(|(k, n)| (named("rings", &k), n)).collect();
+        result
+            .solver
+            .counters
+            .extend(other.solver.counters.into_iter().map(|(k, n)| (named("skirt", &k), n)));
+        if result.series.axis.values == other.series.axis.values {
+            // The crank drive and the gas are told once.
+            let known: Vec<String> = result.series.columns.iter().map(|c| c.name.clone()).collect();
+            result
+                .series
+                .columns
+                .extend(other.series.columns.into_iter().filter(|c| !known.contains(&c.name)));
+        } else {
+            result.tables.insert("skirt".into(), other.series);
+        }
+        result.seconds.insert("solve".into(), begin.elapsed().as_secs_f64());
+        Ok(result)
+    }
+}
+
+fn named(part: &str, name: &str) -> String {
+    format!("{part}.{name}")
+}
+
+fn add_models(to: &mut Vec<ModelUse>, more: impl IntoIterator<Item = ModelUse>) {
+    for m in more {
+        if !to.contains(&m) {
+            to.push(m);
+        }
+    }
+}
+
+fn refused(e: Vec<BuildError>) -> RunError {
+    RunError::Refused(e.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))
+}
+
+/// Both cases, the skirt's with the crank drive and the gas of the rings'.
+fn parts(loaded: &Loaded<PowerCylinderCase>) -> Result<(Checked, Checked), Vec<BuildError>> {
+    let folder = &loaded.source.folder;
+    let read = |part: &Part, field: &str, more: &[String]| {
+        let set: Vec<String> = part.set.iter().chain(more).cloned().collect();
+        check(&folder.join(&part.case), &set).map_err(|report| {
+            let told: Vec<String> = report.diagnostics.iter().map(|d| d.headline()).collect();
+            vec![BuildError::at(format!("{field}.case"), format!("{}: {}", part.case, told.join("; ")))]
+        })
+    };
+    let wrong = |field: &str, scene: &str| {
+        vec![BuildError::at(format!("{field}.case"), format!("must be a case of the scene `{scene}`"))]
+    };
+    let rings = read(&loaded.value.ring_pack, "ring_pack", &[])?;
+    let pack = rings.of::<RingPackCase>().ok_or_else(|| wrong("ring_pack", "ring_pack"))?;
+    let first = read(&loaded.value.piston_secondary, "piston_secondary", &[])?;
+    let own =
+        first.of::<PistonSecondaryCase>().ok_or_else(|| wrong("piston_secondary", "piston_secondary"))?;
+    let shared = shared(pack, own).map_err(|e| {
+        vec![BuildError::at("ring_pack.case", format!("its models cannot be handed on: {e}"))]
+    })?;
+    let skirt = read(&loaded.value.piston_secondary, "piston_secondary", &shared)?;
+    Ok((rings, skirt))
+}
+
+/// What the skirt takes from the rings' case, as `--set` takes it.
+fn shared(pack: &RingPackCase, skirt: &PistonSecondaryCase) -> Result<Vec<String>, serde_json::Error> {
+    let e = &pack.engine;
+    // The ring pack knows the distance of the pin's line from the crank axis, towards the anti-thrust side positive.
+    let crank_offset = e.offset.si() + skirt.engine.pin_offset.si();
+    Ok(vec![
+        format!("engine.speed={:e} rad/s", e.speed.si()),
+        format!("engine.bore={:e} m", e.bore.si()),
+        format!("engine.crank_radius={:e} m", 0.5 * e.stroke.si()),
+        format!("engine.rod_length={:e} m", e.rod_length.si()),
+        format!("engine.crank_offset={crank_offset:e} m"),
+        format!("engine.cylinders={}", e.cylinders),
+        format!("gas.crankcase_pressure={:e} Pa", pack.gas.crankcase_pressure.si()),
+        format!("models.kinematics={}", inline(&serde_json::to_value(&pack.models.kinematics)?)),
+        format!(
+            "models.cylinder_pressure={}",
+            inline(&serde_json::to_value(&pack.models.cylinder_pressure)?)
+        ),
+    ])
+}
+
+/// A value as TOML on one line; what is null is left out.
+fn inline(v: &Json) -> String {
+    match v {
+        Json::Object(o) => {
+            let fields = o.iter().filter(|(_, v)| !v.is_null());
+            let fields: Vec<String> = fields.map(|(k, v)| format!("{k} = {}", inline(v))).collect();
+            format!("{{ {} }}", fields.join(", "))
+        }
+        Json::Array(a) => format!("[{}]", a.iter().map(inline).collect::<Vec<_>>().join(", ")),
+        // JSON and TOML write text and numbers the same.
+        other => other.to_string(),
+    }
+}

@@ -1,0 +1,766 @@
+//! The piston between both sides of its skirt: the balance of all forces across the bore.
+
+use gudgeon_core::EvalError;
+use gudgeon_core::kinds::{GrooveFriction, PinFriction};
+use gudgeon_numerics::linalg::{lu_factor, lu_solve};
+
+use crate::body::{Body, Crank, Instant};
+use crate::side::{Side, SideLoads, Slopes};
+
+const MODEL: &str = "piston";
+
+/// Forces on the piston at an instant, as a person looks at them. Thrust side first.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Summary {
+    /// Lateral force of the film of each side \[N\], towards the anti-thrust side.
+    pub film: [f64; 2],
+    /// Moment of the film pressure of each side about the pin \[N m\].
+    pub film_moment: [f64; 2],
+    /// Viscous force on each side along the bore, away from the head \[N\].
+    pub film_friction: [f64; 2],
+    /// Moment of the viscous force of each side about the pin \[N m\].
+    pub film_friction_moment: [f64; 2],
+    /// Lateral force of solid contact of each side \[N\].
+    pub contact: [f64; 2],
+    /// Moment of solid contact of each side about the pin \[N m\].
+    pub contact_moment: [f64; 2],
+    /// Friction of solid contact along the bore, away from the head \[N\].
+    pub contact_friction: [f64; 2],
+    /// Lateral force of the rod \[N\], towards the anti-thrust side.
+    pub rod: f64,
+    /// Moment of the pin's friction \[N m\].
+    pub pin_moment: f64,
+    /// Lateral force of the rings \[N\].
+    pub groove: f64,
+    /// Sum of lateral forces \[N\] and of moments about the pin \[N m\]: what accelerates the piston.
+    pub net: [f64; 2],
+    /// Highest film pressure above that of the crankcase on each side \[Pa\].
+    pub p_max: [f64; 2],
+    /// Smallest gap on each side \[m\].
+    pub gap: [f64; 2],
+}
+
+impl Summary {
+    /// Friction of film and contact of both sides along the bore, away from the head \[N\].
+    #[must_use]
+    pub fn friction(&self) -> f64 {
+        self.film_friction[0] + self.film_friction[1] + self.contact_friction[0] + self.contact_friction[1]
+    }
+    /// Lateral force of film and contact of both sides \[N\].
+    #[must_use]
+    pub fn side_force(&self) -> f64 {
+        self.film[0] + self.film[1] + self.contact[0] + self.contact[1]
+    }
+}
+
+/// Piston with both sides of its skirt. Coordinates: displacements of the upper and the lower edge towards the anti-thrust side, then
+/// the elastic amplitudes of the thrust side, then those of the other.
+pub struct Piston {
+    /// Thrust side, anti-thrust side.
+    pub sides: [Side; 2],
+    /// Masses.
+    pub body: Body,
+    /// Crank drive.
+    pub crank: Crank,
+    pin: Box<dyn PinFriction>,
+    groove: Box<dyn GrooveFriction>,
+    loads: [SideLoads; 2],
+    trial: [SideLoads; 2],
+    n: usize,
+    r: Vec<f64>,
+    best: Vec<f64>,
+    slope: Vec<f64>,
+    lu: Vec<f64>,
+    piv: Vec<usize>,
+    step: Vec<f64>,
+    own_rates: [Vec<f64>; 2],
+    work: Linear,
+    /// Newton steps of balances so far.
+    pub newton_steps: u64,
+}
+
+/// Accelerations of both edges under forces on them.
+fn accelerate([[a, b], [_, d]]: [[f64; 2]; 2], f: [f64; 2]) -> [f64; 2] {
+    let det = a * d - b * b;
+    [(d * f[0] - b * f[1]) / det, (a * f[1] - b * f[0]) / det]
+}
+
+/// Answer of rates and accelerations to a change of the forces.
+#[derive(Default)]
+struct Linear {
+    n: usize,
+    first: usize,
+    inertial: bool,
+    mass: [[f64; 2]; 2],
+    base: Vec<f64>,
+    slope: Vec<f64>,
+    lu: Vec<f64>,
+    piv: Vec<usize>,
+    /// Change of the forces at fixed rates.
+    dr: Vec<f64>,
+    d: Vec<f64>,
+    moved: Vec<f64>,
+}
+
+impl Linear {
+    fn new(n: usize) -> Self {
+        let v = |n: usize| vec![0.0; n];
+        Self {
+            n,
+            base: v(n),
+            slope: v(n * n),
+            lu: v(n * n),
+            piv: vec![0; n],
+            dr: v(n),
+            d: v(n),
+            moved: v(n),
+            ..Self::default()
+        }
+    }
+
+    fn states(&self) -> usize {
+        if self.inertial { self.n + 2 } else { self.n }
+    }
+
+    /// Takes the forces and their derivatives that the piston just found.
+    fn prepare(&mut self, piston: &Piston, inertial: bool) -> Result<(), EvalError> {
+        let n = self.n;
+        (self.inertial, self.first) = (inertial, if inertial { 2 } else { 0 });
+        self.mass = piston.body.matrix();
+        self.base.copy_from_slice(&piston.r);
+        self.slope.copy_from_slice(&piston.slope);
+        let m = n - self.first;
+        for i in 0..m {
+            for j in 0..m {
+                self.lu[i * m + j] = self.slope[(self.first + i) * n + self.first + j];
+            }
+        }
+        lu_factor(&mut self.lu[..m * m], m, &mut self.piv[..m])
+            .map_err(|_| EvalError::recoverable(MODEL, "nothing resists the motion of the piston"))
+    }
+
+    /// Tells the change of every rate that is not given and of the accelerations, for the change of the forces in `dr`.
+    fn respond(&mut self, mut tell: impl FnMut(usize, f64)) {
+        let (n, first) = (self.n, self.first);
+        let m = n - first;
+        for i in 0..m {
+            self.d[i] = -self.dr[first + i];
+        }
+        if m > 0 {
+            lu_solve(&self.lu[..m * m], m, &self.piv[..m], &mut self.d[..m]);
+        }
+        for i in 0..m {
+            tell(first + i, self.d[i]);
+        }
+        if self.inertial {
+            let mut f = [self.dr[0], self.dr[1]];
+            for (k, f) in f.iter_mut().enumerate() {
+                for j in 0..m {
+                    *f += self.slope[k * n + first + j] * self.d[j];
+                }
+            }
+            let a = accelerate(self.mass, f);
+            tell(n, a[0]);
+            tell(n + 1, a[1]);
+        }
+    }
+}
+
+/// Newton steps of a balance before it is given up.
+const MOST_STEPS: usize = 400;
+/// Steps after which the size of the forces decides.
+const PATIENCE: usize = 30;
+/// Places along a step that are looked at.
+const LINE_STEPS: usize = 20;
+/// Part of the forces that a balance leaves: what the films leave of theirs.
+const CLOSED: f64 = 1e-11;
+/// The same of a step of the backward Euler method, and its iterations.
+const EULER_CLOSED: f64 = 1e-8;
+const EULER_STEPS: usize = 25;
+const CLOSED_CAVITIES: f64 = 1e-7;
+/// Part of the forces that is left of a balance which cavities let come slowly.
+const SLOW: f64 = 1e-6;
+/// Multiple of it at which a balance that no step improves is one.
+const ROUNDED: f64 = 1e3;
+
+impl Piston {
+    /// Puts the parts together.
+    #[must_use]
+    pub fn new(
+        sides: [Side; 2],
+        body: Body,
+        crank: Crank,
+        pin: Box<dyn PinFriction>,
+        groove: Box<dyn GrooveFriction>,
+    ) -> Self {
+        let n = 2 + sides[0].elastic() + sides[1].elastic();
+        let own_rates = [vec![0.0; 2 + sides[0].elastic()], vec![0.0; 2 + sides[1].elastic()]];
+        let v = |n: usize| vec![0.0; n];
+        Self {
+            sides,
+            body,
+            crank,
+            pin,
+            groove,
+            loads: Default::default(),
+            trial: Default::default(),
+            n,
+            r: v(n),
+            best: v(n),
+            slope: v(n * n),
+            lu: v(n * n),
+            piv: vec![0; n],
+            step: v(n),
+            own_rates,
+            work: Linear::new(n),
+            newton_steps: 0,
+        }
+    }
+
+    /// Number of coordinates.
+    #[must_use]
+    pub fn coordinates(&self) -> usize {
+        self.n
+    }
+
+    /// Where the elastic amplitudes of a side stand among the coordinates.
+    fn own(&self, side: usize) -> std::ops::Range<usize> {
+        let first = 2 + self.sides[0].elastic();
+        if side == 0 { 2..first } else { first..self.n }
+    }
+
+    /// Smallest gap on either side of the place set last \[m\].
+    #[must_use]
+    pub fn smallest_gap(&self) -> f64 {
+        self.sides[0].smallest_gap().min(self.sides[1].smallest_gap())
+    }
+
+    /// Linear systems of films set up so far.
+    #[must_use]
+    pub fn film_evaluations(&self) -> u64 {
+        self.sides[0].evaluations + self.sides[1].evaluations
+    }
+
+    /// Goes to the coordinates `x`.
+    ///
+    /// # Errors
+    /// A film that cannot be solved there.
+    pub fn place(&mut self, now: &Instant, x: &[f64]) -> Result<(), EvalError> {
+        for side in 0..2 {
+            let own = self.own(side);
+            self.sides[side].place([x[0], x[1]], &x[own], now.speed)?;
+        }
+        Ok(())
+    }
+
+    /// Forces left over at the present place `x` and the rates `w`, into `r`: on both edges \[N\] and on the elastic shapes \[N\]. With their
+    /// derivatives, row after row, into `slope`.
+    fn residual(&mut self, now: &Instant, x: &[f64], w: &[f64], slopes: Slopes) -> Result<(), EvalError> {
+        for side in 0..2 {
+            let own = self.own(side);
+            let rates = &mut self.own_rates[side];
+            rates[..2].copy_from_slice(&w[..2]);
+            rates[2..].copy_from_slice(&w[own]);
+            self.sides[side].loads(now.speed, now.mu, rates, slopes, &mut self.loads[side])?;
+        }
+        let mut r = std::mem::take(&mut self.r);
+        self.left_over(now, x, w, false, &mut r);
+        self.r = r;
+        if slopes != Slopes::None {
+            self.slopes(now, w);
+        }
+        Ok(())
+    }
+
+    /// Forces of both sides and of all else, into `r`.
+    fn left_over(&self, now: &Instant, x: &[f64], w: &[f64], trial: bool, r: &mut [f64]) {
+        let loads = if trial { &self.trial } else { &self.loads };
+        let (force, moment) = self.others(now, w, loads, None);
+        let edges = self.body.on_edges(force, moment);
+        for k in 0..2 {
+            r[k] = edges[k] + loads.iter().map(|l| l.film[k] + l.contact[k]).sum::<f64>();
+        }
+        for side in 0..2 {
+            for (m, k) in self.own(side).enumerate() {
+                r[k] = loads[side].elastic[m] - self.sides[side].stiffness[m] * (x[k] + RELAXATION * w[k]);
+            }
+        }
+    }
+
+    /// Lateral force and moment about the pin of everything but pressures on the skirt.
+    fn others(
+        &self,
+        now: &Instant,
+        w: &[f64],
+        loads: &[SideLoads; 2],
+        summary: Option<&mut Summary>,
+    ) -> (f64, f64) {
+        let (mut friction, mut moment) = (0.0, 0.0);
+        let direction = if now.speed > 0.0 {
+            1.0
+        } else if now.speed < 0.0 {
+            -1.0
+        } else {
+            0.0
+        };
+        let mut told = Summary::default();
+        for (i, (side, l)) in self.sides.iter().zip(loads).enumerate() {
+            let rub = -direction * side.friction_coefficient();
+            let moment_of = |force: f64, arm: f64| -side.sign * arm + self.crank.pin_offset * force;
+            let own = moment_of(l.film[2], l.film[3]);
+            friction += l.film[2] + rub * l.contact[2];
+            moment += own + moment_of(rub * l.contact[2], rub * l.contact[3]);
+            told.film_friction[i] = l.film[2];
+            told.film_friction_moment[i] = own;
+            told.contact_friction[i] = rub * l.contact[2];
+        }
+        let rod = self.body.rod_lateral(now, friction);
+        let mut force = rod;
+        moment += self.body.drive_moment(now, self.crank.pin_offset);
+        told.rod = rod;
+        if !self.pin.is_off() {
+            let load = self.body.rod_axial(now, friction).hypot(rod);
+            told.pin_moment = self.pin.moment(load, now.rod_rotation);
+            moment += told.pin_moment;
+        }
+        if !self.groove.is_off() {
+            let (ring, _) = self.groove_force(now, w);
+            force += ring;
+            moment += (self.body.pin + self.groove.height()) * ring;
+            told.groove = ring;
+        }
+        if let Some(s) = summary {
+            *s = told;
+        }
+        (force, moment)
+    }
+
+    fn groove_force(&self, now: &Instant, w: &[f64]) -> (f64, f64) {
+        let part = -self.groove.height() / self.body.length;
+        self.groove.force(now.pressure, w[0] + (w[1] - w[0]) * part)
+    }
+
+    /// Derivatives of the forces left over with respect to the rates.
+    fn slopes(&mut self, now: &Instant, w: &[f64]) {
+        let n = self.n;
+        self.slope.fill(0.0);
+        for side in 0..2 {
+            let elastic = self.sides[side].elastic();
+            let own = self.own(side);
+            for m in 0..2 + elastic {
+                let column = if m < 2 { m } else { own.start + m - 2 };
+                let s = &self.loads[side].slope[m * (4 + elastic)..(m + 1) * (4 + elastic)];
+                let moment = -self.sides[side].sign * s[3] + self.crank.pin_offset * s[2];
+                let edges = self.body.on_edges(-now.tangent * s[2], moment);
+                for k in 0..2 {
+                    self.slope[k * n + column] += s[k] + edges[k];
+                }
+                for k in 0..elastic {
+                    self.slope[(own.start + k) * n + column] += s[4 + k];
+                }
+                if m >= 2 {
+                    self.slope[column * n + column] -= RELAXATION * self.sides[side].stiffness[m - 2];
+                }
+            }
+        }
+        if !self.groove.is_off() {
+            let (_, slope) = self.groove_force(now, w);
+            let part = -self.groove.height() / self.body.length;
+            let edges = self.body.on_edges(slope, (self.body.pin + self.groove.height()) * slope);
+            for k in 0..2 {
+                self.slope[k * n] += edges[k] * (1.0 - part);
+                self.slope[k * n + 1] += edges[k] * part;
+            }
+        }
+    }
+
+    /// Finds the rates at which all forces from coordinate `first` on are in balance, the rates before it being given. `w` holds a guess.
+    ///
+    /// The films resist motion the more the faster it is, so there is one balance. Newton's method on forces that are linear in the rates but
+    /// for what cavitates ends in a few steps; where cavities leave nothing that resists, the steps are those of full films.
+    ///
+    /// # Errors
+    /// No balance.
+    pub fn balance(
+        &mut self,
+        now: &Instant,
+        x: &[f64],
+        w: &mut [f64],
+        first: usize,
+    ) -> Result<(), EvalError> {
+        let n = self.n;
+        if first == n {
+            return Ok(());
+        }
+        let m = n - first;
+        let size = |r: &[f64]| r[first..].iter().map(|r| r * r).sum::<f64>().sqrt();
+        let superposed = self.sides.iter().all(Side::is_superposed);
+        let closed = if superposed { CLOSED } else { CLOSED_CAVITIES };
+        self.residual(now, x, w, Slopes::Film)?;
+        for count in 0..MOST_STEPS {
+            let before = size(&self.r);
+            let scale = self.force_scale(now);
+            if !before.is_finite() {
+                return Err(EvalError::recoverable(MODEL, "the forces are not finite"));
+            }
+            if before <= closed * scale {
+                return Ok(());
+            }
+            self.best[first..].copy_from_slice(&w[first..]);
+            if !self.newton(first) || self.along_step(first) <= 0.0 {
+                // Where cavities leave nothing that resists, full films tell the way.
+                self.residual(now, x, w, Slopes::Full)?;
+                if !self.newton(first) {
+                    return Err(EvalError::recoverable(MODEL, "nothing resists the motion of the piston"));
+                }
+            }
+            // The forces left over are nearly the slope of a convex potential of the rates: its lowest place along the step lies where they no
+            // longer point along it.
+            let ahead = self.along_step(first);
+            let (mut low, mut high) = ((0.0, ahead), (f64::INFINITY, 0.0));
+            let mut part = 1.0;
+            for _ in 0..LINE_STEPS {
+                for i in 0..m {
+                    w[first + i] = self.best[first + i] + part * self.step[i];
+                }
+                self.residual(now, x, w, Slopes::Film)?;
+                let here = self.along_step(first);
+                if count >= PATIENCE {
+                    // A film that is cut off is not quite the slope of anything, and may send the search in circles: the forces themselves must
+                    // fall then, which Newton's step lets them do if it is short enough.
+                    if size(&self.r) < before {
+                        break;
+                    }
+                    part *= 0.5;
+                    continue;
+                }
+                if here.abs() <= 0.5 * ahead || size(&self.r) <= 0.5 * before {
+                    break;
+                }
+                if here > 0.0 {
+                    low = (part, here);
+                } else {
+                    high = (part, here);
+                }
+                part = if high.0.is_finite() {
+                    let straight = low.0 + (high.0 - low.0) * low.1 / (low.1 - high.1);
+                    // A kink may hold one end where it is.
+                    straight.clamp(low.0 + 0.1 * (high.0 - low.0), high.0 - 0.1 * (high.0 - low.0))
+                } else {
+                    3.0 * part
+                };
+            }
+            if size(&self.r) >= before && before <= ROUNDED * closed * scale {
+                // Rounding: no step leads further.
+                w[first..].copy_from_slice(&self.best[first..]);
+                return self.residual(now, x, w, Slopes::Film);
+            }
+        }
+        if size(&self.r) <= SLOW * self.force_scale(now) {
+            return Ok(());
+        }
+        Err(EvalError::recoverable(MODEL, "no velocity was found at which the forces are in balance"))
+    }
+
+    /// Forces left over, along the step.
+    fn along_step(&self, first: usize) -> f64 {
+        self.r[first..].iter().zip(&self.step).map(|(r, s)| r * s).sum()
+    }
+
+    /// Newton's step for the forces left over from coordinate `first` on, into `step`. Whether there is one.
+    fn newton(&mut self, first: usize) -> bool {
+        let (n, m) = (self.n, self.n - first);
+        self.newton_steps += 1;
+        for i in 0..m {
+            self.step[i] = -self.r[first + i];
+            for j in 0..m {
+                self.lu[i * m + j] = self.slope[(first + i) * n + first + j];
+            }
+        }
+        if lu_factor(&mut self.lu[..m * m], m, &mut self.piv[..m]).is_err() {
+            return false;
+        }
+        lu_solve(&self.lu[..m * m], m, &self.piv[..m], &mut self.step[..m]);
+        self.step[..m].iter().all(|s| s.is_finite())
+    }
+
+    /// What counts as one when forces are compared.
+    fn force_scale(&self, now: &Instant) -> f64 {
+        let films: f64 = self.loads.iter().map(|l| l.film[0].abs() + l.film[1].abs()).sum();
+        let inertia = (self.body.mass() * now.acceleration * now.tangent).abs();
+        1e-3 + films + inertia + (now.gas * now.tangent).abs()
+    }
+
+    /// Rates of all coordinates and, for a piston with inertia, accelerations of both edges: `v` holds the velocities of both edges then.
+    /// `w` holds a guess of the rates and takes them.
+    ///
+    /// # Errors
+    /// A film that cannot be solved, no balance.
+    pub fn rates(
+        &mut self,
+        now: &Instant,
+        x: &[f64],
+        v: Option<&[f64]>,
+        w: &mut [f64],
+        acceleration: &mut [f64; 2],
+    ) -> Result<(), EvalError> {
+        self.place(now, x)?;
+        match v {
+            None => self.balance(now, x, w, 0),
+            Some(v) => {
+                w[..2].copy_from_slice(&v[..2]);
+                if self.n > 2 {
+                    self.balance(now, x, w, 2)?;
+                } else {
+                    self.residual(now, x, w, Slopes::Film)?;
+                }
+                *acceleration = accelerate(self.body.matrix(), [self.r[0], self.r[1]]);
+                Ok(())
+            }
+        }
+    }
+
+    /// Derivatives of what [`Piston::rates`] just found, at the same arguments: of the rates (`n`), then of the accelerations (2, with inertia), with
+    /// respect to the coordinates, the velocities (with inertia), row after row; and with respect to time, given the instant `later` by `dt`.
+    ///
+    /// # Errors
+    /// A film beside the present place that cannot be solved.
+    #[allow(clippy::too_many_arguments, reason = "arguments of one function and its derivatives")]
+    pub fn derivatives(
+        &mut self,
+        now: &Instant,
+        x: &[f64],
+        inertial: bool,
+        w: &[f64],
+        jacobian: Option<&mut [f64]>,
+        time: Option<(&Instant, f64, &mut [f64])>,
+    ) -> Result<(), EvalError> {
+        self.residual(now, x, w, Slopes::Film)?;
+        let mut work = std::mem::take(&mut self.work);
+        let mut outcome = work.prepare(self, inertial);
+        if outcome.is_err() {
+            // Nothing but cavities: the answer of full films stands for theirs.
+            outcome = self.residual(now, x, w, Slopes::Full).and_then(|()| work.prepare(self, inertial));
+        }
+        if outcome.is_ok() {
+            outcome = self.differentiate(&mut work, now, x, w, jacobian, time);
+        }
+        self.work = work;
+        outcome
+    }
+
+    fn differentiate(
+        &mut self,
+        work: &mut Linear,
+        now: &Instant,
+        x: &[f64],
+        w: &[f64],
+        jacobian: Option<&mut [f64]>,
+        time: Option<(&Instant, f64, &mut [f64])>,
+    ) -> Result<(), EvalError> {
+        let (n, states) = (self.n, work.states());
+        if let Some((later, dt, out)) = time {
+            let mut r = std::mem::take(&mut work.dr);
+            let told = self.residual_at(later, x, w, &mut r);
+            r.iter_mut().zip(&work.base).for_each(|(r, b)| *r = (*r - b) / dt);
+            work.dr = r;
+            told?;
+            out[..states].fill(0.0);
+            work.respond(|row, value| out[row] = value);
+        }
+        let Some(jac) = jacobian else { return Ok(()) };
+        jac[..states * states].fill(0.0);
+        let mut moved = std::mem::take(&mut work.moved);
+        moved.copy_from_slice(x);
+        let mut outcome = Ok(());
+        for column in 0..n {
+            let d = self.increment(w, column);
+            moved[column] = x[column] + d;
+            let d = moved[column] - x[column];
+            let mut r = std::mem::take(&mut work.dr);
+            outcome = self.residual_beside(now, &moved, w, column, &mut r);
+            r.iter_mut().zip(&work.base).for_each(|(r, b)| *r = (*r - b) / d);
+            work.dr = r;
+            moved[column] = x[column];
+            if outcome.is_err() {
+                break;
+            }
+            work.respond(|row, value| jac[row * states + column] = value);
+        }
+        work.moved = moved;
+        outcome?;
+        if work.inertial {
+            for v in 0..2 {
+                for k in 0..n {
+                    work.dr[k] = work.slope[k * n + v];
+                }
+                work.respond(|row, value| jac[row * states + n + v] = value);
+                // The edges move as their velocities say.
+                jac[v * states + n + v] = 1.0;
+            }
+        }
+        Ok(())
+    }
+
+    /// Forces left over at `x`, which differs from the present place in the coordinate `column`, at the rates of now.
+    fn residual_beside(
+        &mut self,
+        now: &Instant,
+        x: &[f64],
+        w: &[f64],
+        column: usize,
+        r: &mut [f64],
+    ) -> Result<(), EvalError> {
+        for side in 0..2 {
+            let own = self.own(side);
+            if column < 2 || own.contains(&column) {
+                let rates = &mut self.own_rates[side];
+                rates[..2].copy_from_slice(&w[..2]);
+                rates[2..].copy_from_slice(&w[own.clone()]);
+                let (e, q) = ([x[0], x[1]], &x[own]);
+                self.sides[side].loads_elsewhere(e, q, now.speed, now.mu, rates, &mut self.trial[side])?;
+            } else {
+                let (from, to) = (&self.loads[side], &mut self.trial[side]);
+                (to.film, to.contact) = (from.film, from.contact);
+                to.elastic.clone_from(&from.elastic);
+            }
+        }
+        self.left_over(now, x, w, true, r);
+        Ok(())
+    }
+
+    /// Forces left over at another instant, at the place and the rates of now.
+    fn residual_at(&mut self, at: &Instant, x: &[f64], w: &[f64], r: &mut [f64]) -> Result<(), EvalError> {
+        for side in 0..2 {
+            let own = self.own(side);
+            let rates = &mut self.own_rates[side];
+            rates[..2].copy_from_slice(&w[..2]);
+            rates[2..].copy_from_slice(&w[own]);
+            self.sides[side].loads(at.speed, at.mu, rates, Slopes::None, &mut self.trial[side])?;
+        }
+        self.left_over(at, x, w, true, r);
+        Ok(())
+    }
+
+    /// Change of a coordinate for a difference quotient: a small part of the gap, in the direction of motion.
+    fn increment(&self, w: &[f64], column: usize) -> f64 {
+        let d = DIFFERENCE * self.smallest_gap().abs().max(1e-8);
+        if w[column] < 0.0 { -d } else { d }
+    }
+
+    /// One step of the backward Euler method from the coordinates `from`, over `dt` \[s\] to the instant `now`; with inertia, from the
+    /// velocities `v` of both edges. `w` holds a guess of the rates and takes them; the coordinates are then `from + dt w`, into `x`.
+    ///
+    /// # Errors
+    /// A film that cannot be solved, no convergence.
+    pub fn euler_step(
+        &mut self,
+        now: &Instant,
+        from: &[f64],
+        v: Option<[f64; 2]>,
+        dt: f64,
+        w: &mut [f64],
+        x: &mut [f64],
+    ) -> Result<(), EvalError> {
+        let n = self.n;
+        let mass = self.body.matrix();
+        let mut work = std::mem::take(&mut self.work);
+        let mut outcome =
+            Err(EvalError::recoverable(MODEL, "a step of the backward Euler method does not converge"));
+        let mut before = f64::INFINITY;
+        for _ in 0..EULER_STEPS {
+            for k in 0..n {
+                x[k] = from[k] + dt * w[k];
+            }
+            if let Err(e) = self.place(now, x).and_then(|()| self.residual(now, x, w, Slopes::Film)) {
+                outcome = Err(e);
+                break;
+            }
+            work.base.copy_from_slice(&self.r);
+            if let Some(v) = v {
+                for k in 0..2 {
+                    self.r[k] -= (mass[k][0] * (w[0] - v[0]) + mass[k][1] * (w[1] - v[1])) / dt;
+                }
+            }
+            let left = self.r.iter().fold(0.0_f64, |a, r| a.max(r.abs()));
+            if !left.is_finite() {
+                break;
+            }
+            if left <= EULER_CLOSED * self.force_scale(now) {
+                outcome = Ok(());
+                break;
+            }
+            // The Jacobian serves as long as the forces fall tenfold.
+            if left > 0.1 * before || before.is_infinite() {
+                let mut told = Ok(());
+                for column in 0..n {
+                    let d = self.increment(w, column);
+                    work.moved.copy_from_slice(x);
+                    work.moved[column] = x[column] + d;
+                    let d = work.moved[column] - x[column];
+                    told = self.residual_beside(now, &work.moved, w, column, &mut work.dr);
+                    if told.is_err() {
+                        break;
+                    }
+                    for k in 0..n {
+                        let inertia =
+                            if v.is_some() && k < 2 && column < 2 { mass[k][column] / dt } else { 0.0 };
+                        work.slope[k * n + column] =
+                            self.slope[k * n + column] + dt * (work.dr[k] - work.base[k]) / d - inertia;
+                    }
+                }
+                work.lu.copy_from_slice(&work.slope);
+                if told.is_err() || lu_factor(&mut work.lu, n, &mut work.piv).is_err() {
+                    outcome = told.and(outcome);
+                    break;
+                }
+            }
+            before = left;
+            for k in 0..n {
+                work.d[k] = -self.r[k];
+            }
+            lu_solve(&work.lu, n, &work.piv, &mut work.d);
+            for k in 0..n {
+                w[k] += work.d[k];
+            }
+            self.newton_steps += 1;
+        }
+        self.work = work;
+        outcome
+    }
+
+    /// Forces at the present place for rates that [`Piston::rates`] found.
+    ///
+    /// # Errors
+    /// A film that cannot be solved.
+    pub fn summary(&mut self, now: &Instant, x: &[f64], w: &[f64]) -> Result<Summary, EvalError> {
+        self.place(now, x)?;
+        self.residual(now, x, w, Slopes::None)?;
+        let mut told = Summary::default();
+        let (force, moment) = self.others(now, w, &self.loads, Some(&mut told));
+        told.net = [force, moment];
+        for (i, (side, l)) in self.sides.iter().zip(&self.loads).enumerate() {
+            [told.film[i], told.film_moment[i]] = self.body.about_pin([l.film[0], l.film[1]]);
+            [told.contact[i], told.contact_moment[i]] = self.body.about_pin([l.contact[0], l.contact[1]]);
+            told.net[0] += told.film[i] + told.contact[i];
+            told.net[1] += told.film_moment[i] + told.contact_moment[i];
+            told.p_max[i] = side.p_max();
+            told.gap[i] = side.smallest_gap();
+        }
+        Ok(told)
+    }
+
+    /// Kinetic energy of the motion across the bore \[J\].
+    #[must_use]
+    pub fn lateral_energy(&self, v: [f64; 2]) -> f64 {
+        let [[a, b], [_, d]] = self.body.matrix();
+        0.5 * (a * v[0] * v[0] + 2.0 * b * v[0] * v[1] + d * v[1] * v[1])
+    }
+}
+
+/// Time \[s\] in which an elastic shape without load comes back to rest: a little inner damping, without which nothing would hold a surface
+/// under a cavity.
+const RELAXATION: f64 = 1e-6;
+/// Part of the gap by which a coordinate is changed for a difference quotient: the forces change by three times as much, the films are
+/// solved to 1e-9.
+const DIFFERENCE: f64 = 1e-5;

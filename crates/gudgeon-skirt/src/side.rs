@@ -1,0 +1,898 @@
+//! One side of the skirt: gap, film, contact, and the forces that belong to the motions of the gap.
+
+use gudgeon_core::kinds::{
+    Contact, ContactSpec, Film2d, Film2dCtx, Film2dGrid, Film2dIn, Film2dOut, Film2dSpec, FilmMode,
+    FlowFactors, RoughFlow, RoughShear, Roughness, RoughnessSpec, ShearThinning, SkirtModes, SkirtProfile,
+    Superposition, Viscosity,
+};
+use gudgeon_core::{BuildError, EvalError};
+
+use crate::geometry::{Panel, between};
+
+const MODEL: &str = "skirt";
+/// How deep a skirt may stand inside the liner \[m\]: far beyond what contact allows, and yet within a start that is given wrongly.
+const DEEPEST: f64 = 1e-4;
+
+/// Where the pressure of solid contact is summed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactGrid {
+    /// Distance of the rows \[m\], the first one on the upper edge: the pitch of machining grooves whose crests touch. Every row stands for one
+    /// distance.
+    pub pitch: f64,
+    /// Intervals along the arc, summed by the trapezoidal rule.
+    pub intervals: usize,
+}
+
+/// What a [`Side`] is made of.
+pub struct SideSetup<'a> {
+    /// Surface.
+    pub panel: Panel,
+    /// 1 on the thrust side, -1 on the anti-thrust side.
+    pub sign: f64,
+    /// Radial clearance of the centred skirt \[m\].
+    pub clearance: f64,
+    /// Whole grid of the film, from [`Panel::grid`].
+    pub grid: &'a Film2dGrid,
+    /// Film.
+    pub film: &'a dyn Film2dSpec,
+    /// Rough surfaces, the skirt being the body.
+    pub roughness: &'a dyn RoughnessSpec,
+    /// Contact.
+    pub contact: &'a dyn ContactSpec,
+    /// Where contact is summed.
+    pub contact_grid: ContactGrid,
+    /// Shape.
+    pub profile: &'a dyn SkirtProfile,
+    /// Shapes in which it yields, on the whole grid; none: rigid.
+    pub modes: &'a SkirtModes,
+    /// Shear dependence of the viscosity; none: Newtonian.
+    pub shear_thinning: Option<Box<dyn ShearThinning>>,
+    /// Cavitation pressure above that of the crankcase \[Pa\], not positive.
+    pub p_cav: f64,
+    /// Film between smooth surfaces that the gap is held above \[m\].
+    pub floor: f64,
+}
+
+/// Forces of one side and their derivatives with respect to the rates: `[top edge, bottom edge, axial force, axial force times R cos φ]`, then
+/// one value per elastic shape.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct SideLoads {
+    /// Film, forces on the displacements of the upper and lower edge \[N\]; the axial force on the skirt away from the head \[N\] and its moment
+    /// arm `∫ τ R cos φ dA` \[N m\].
+    pub film: [f64; 4],
+    /// Forces on the elastic shapes \[N\].
+    pub elastic: Vec<f64>,
+    /// Solid contact: forces on both edges \[N\], normal force `∫ p dA` \[N\], `∫ p R cos φ dA` \[N m\].
+    pub contact: [f64; 4],
+    /// Derivative of `film`, then of `elastic`, with respect to the rates, rate after rate.
+    pub slope: Vec<f64>,
+}
+
+/// Derivatives of the forces with respect to the rates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Slopes {
+    /// Not wanted.
+    None,
+    /// Of the film as it is.
+    Film,
+    /// Of a film that does not cavitate, where the film is one that is cut off: larger than the others.
+    Full,
+}
+
+/// A film and what it depends on besides the rates.
+#[derive(Default)]
+struct Gap {
+    h: Vec<f64>,
+    flow: RoughFlow,
+    face_x: Vec<f64>,
+    face_y: Vec<f64>,
+    /// Shear stress on the liner per viscosity and speed, without the filling.
+    drag: Vec<f64>,
+    /// Axial force per pressure of a node.
+    lever: Vec<f64>,
+    /// Relative viscosity, when it varies.
+    thinning: Vec<f64>,
+    smallest: f64,
+    is_rough: bool,
+}
+
+/// One side of a skirt in its liner. Allocates when built.
+pub struct Side {
+    /// Surface.
+    pub panel: Panel,
+    /// 1 on the thrust side, -1 on the anti-thrust side.
+    pub sign: f64,
+    clearance: f64,
+    floor: f64,
+    whole: Film2dGrid,
+    is_half: bool,
+    nx: usize,
+    ny: usize,
+    /// Part of the height at nodes and halfway to the next ones.
+    s: Vec<f64>,
+    s_face: Vec<f64>,
+    cos: Vec<f64>,
+    cos_face: Vec<f64>,
+    /// Area of every node, both halves counted.
+    weight: Vec<f64>,
+    line_weight: Vec<f64>,
+    /// Drop of the profile at nodes, at faces along `x` and along `y`; empty for a cylinder.
+    drop: [Vec<f64>; 3],
+    least_drop: f64,
+    /// Shapes of the gap's rates at the nodes: upper edge, lower edge, elastic ones; and times the area.
+    shapes: Vec<f64>,
+    tests: Vec<f64>,
+    /// Elastic shapes at faces along `x` and along `y`.
+    face_shapes: [Vec<f64>; 2],
+    elastic: usize,
+    /// Stiffness of the elastic shapes \[N/m\].
+    pub stiffness: Vec<f64>,
+    film: Box<dyn Film2d>,
+    superposition: Superposition,
+    rough: Box<dyn Roughness>,
+    contact: Box<dyn Contact>,
+    thinning: Option<Box<dyn ShearThinning>>,
+    p_cav: f64,
+    shear: RoughShear,
+    work: [Vec<f64>; 3],
+    now: Gap,
+    trial: Gap,
+    /// Where `now` is: displacements, elastic amplitudes, speed (when viscosity depends on it).
+    placed: Vec<f64>,
+    /// Pressure per viscosity and cause: sliding, then every rate.
+    fields: Vec<f64>,
+    rates: Vec<f64>,
+    modes_of_rates: Vec<f64>,
+    /// Pressure above the crankcase and the part of it that takes part in changes.
+    p: Vec<f64>,
+    open: Vec<f64>,
+    fill: Vec<f64>,
+    contact_grid: ContactGrid,
+    rows: Vec<f64>,
+    contact_cos: Vec<f64>,
+    contact_drop: Vec<f64>,
+    contact_shapes: Vec<f64>,
+    contact_work: [Vec<f64>; 2],
+    contact_now: [f64; 4],
+    /// Film evaluations so far: linear systems set up.
+    pub evaluations: u64,
+    /// Contact sums so far.
+    pub contact_sums: u64,
+}
+
+/// A gap held above `floor`: itself from twice the floor on, with continuous slope, and the floor where surfaces touch.
+fn held_above(h: f64, floor: f64) -> f64 {
+    if h >= 2.0 * floor {
+        h
+    } else if h <= 0.0 {
+        floor
+    } else {
+        floor + 0.25 * h * h / floor
+    }
+}
+
+/// Values halfway between neighbours; the last one stands at the end.
+fn halfway(v: &[f64]) -> Vec<f64> {
+    let mut m: Vec<f64> = v.windows(2).map(|w| 0.5 * (w[0] + w[1])).collect();
+    m.extend(v.last());
+    m
+}
+
+impl Side {
+    /// Builds the side.
+    ///
+    /// # Errors
+    /// What film, roughness and contact refuse, at `film_2d`, `roughness` and `contact`.
+    pub fn new(setup: SideSetup<'_>) -> Result<Self, Vec<BuildError>> {
+        let SideSetup { panel, sign, clearance, .. } = setup;
+        let whole = setup.grid.clone();
+        let elastic = setup.modes.stiffness.len();
+        let symmetric = setup.profile.is_symmetric() && modes_are_symmetric(&whole, setup.modes);
+        let half = if symmetric { Panel::half(&whole) } else { None };
+        let is_half = half.is_some();
+        let grid = half.unwrap_or_else(|| whole.clone());
+        let (nx, ny) = (grid.x.len(), grid.y.len());
+        let n = nx * ny;
+        let film = setup.film.build(&Film2dCtx { grid: &grid }).map_err(|e| e.within("film_2d"));
+        let rough = setup.roughness.build().map_err(|e| e.within("roughness"));
+        let contact = setup.contact.build().map_err(|e| e.within("contact"));
+        let (film, rough, contact) = match (film, rough, contact) {
+            (Ok(film), Ok(rough), Ok(contact)) => (film, rough, contact),
+            (film, rough, contact) => {
+                return Err(film.err().into_iter().chain(rough.err()).chain(contact.err()).collect());
+            }
+        };
+        let s: Vec<f64> = grid.x.iter().map(|x| x / panel.length).collect();
+        let angle: Vec<f64> = grid.y.iter().map(|y| y / panel.radius).collect();
+        let cos: Vec<f64> = angle.iter().map(|a| a.cos()).collect();
+        let angle_face = halfway(&angle);
+        let cos_face: Vec<f64> = angle_face.iter().map(|a| a.cos()).collect();
+        let s_face = halfway(&s);
+        let (wx, wy) = grid.weights();
+        let both = if is_half { 2.0 } else { 1.0 };
+        let line_weight: Vec<f64> = wy.iter().map(|w| both * w).collect();
+        let mut weight = vec![0.0; n];
+        let mut shapes = vec![0.0; (2 + elastic) * n];
+        for j in 0..ny {
+            for i in 0..nx {
+                let k = j * nx + i;
+                weight[k] = wx[i] * line_weight[j];
+                shapes[k] = sign * cos[j] * (1.0 - s[i]);
+                shapes[n + k] = sign * cos[j] * s[i];
+            }
+        }
+        // The half of a grid is its first half.
+        for k in 0..elastic {
+            let from = &setup.modes.shapes[k * whole.len()..][..n];
+            shapes[(2 + k) * n..(3 + k) * n].copy_from_slice(from);
+        }
+        let tests: Vec<f64> = shapes.iter().enumerate().map(|(k, v)| v * weight[k % n]).collect();
+        let mut face_shapes = [vec![0.0; elastic * n], vec![0.0; elastic * n]];
+        for m in 0..elastic {
+            let shape = &shapes[(2 + m) * n..(3 + m) * n];
+            for k in 0..n {
+                let (east, north) =
+                    (if k % nx + 1 < nx { k + 1 } else { k }, if k + nx < n { k + nx } else { k });
+                face_shapes[0][m * n + k] = 0.5 * (shape[k] + shape[east]);
+                face_shapes[1][m * n + k] = 0.5 * (shape[k] + shape[north]);
+            }
+        }
+        let field = |x: &[f64], a: &[f64]| -> Vec<f64> {
+            a.iter().flat_map(|&a| x.iter().map(move |&x| setup.profile.depth(x * panel.length, a))).collect()
+        };
+        let mut drop = [field(&s, &angle), field(&s_face, &angle), field(&s, &angle_face)];
+        let least_drop = drop[0].iter().chain(&drop[1]).fold(f64::INFINITY, |a, &b| a.min(b));
+        if drop.iter().flatten().all(|d| *d == 0.0) {
+            drop = Default::default();
+        }
+        // Rows of contact, and what they need.
+        let cg = setup.contact_grid;
+        let count = (panel.length / cg.pitch * (1.0 + 1e-12)).floor() as usize + 1;
+        let rows: Vec<f64> = (0..count).map(|k| k as f64 * cg.pitch / panel.length).collect();
+        let across =
+            if symmetric && cg.intervals.is_multiple_of(2) { cg.intervals / 2 } else { cg.intervals };
+        let contact_angle: Vec<f64> =
+            (0..=across).map(|i| panel.half_angle * (2.0 * i as f64 / cg.intervals as f64 - 1.0)).collect();
+        let contact_cos: Vec<f64> = contact_angle.iter().map(|a| a.cos()).collect();
+        let contact_drop = if drop[0].is_empty() {
+            Vec::new()
+        } else {
+            rows.iter()
+                .flat_map(|&s| contact_angle.iter().map(move |&a| setup.profile.depth(s * panel.length, a)))
+                .collect()
+        };
+        let mut contact_shapes = Vec::new();
+        for m in 0..elastic {
+            let shape = &shapes[(2 + m) * n..(3 + m) * n];
+            for &row in &rows {
+                for &a in &contact_angle {
+                    contact_shapes.push(bilinear(shape, &s, &angle, row, a));
+                }
+            }
+        }
+        let is_rough = !rough.is_smooth();
+        let empty = || Gap {
+            h: vec![0.0; n],
+            flow: RoughFlow::new(n),
+            face_x: vec![0.0; n],
+            face_y: vec![0.0; n],
+            drag: vec![0.0; n],
+            lever: vec![0.0; n],
+            thinning: Vec::new(),
+            smallest: f64::INFINITY,
+            is_rough,
+        };
+        let points = contact_cos.len();
+        Ok(Self {
+            panel,
+            sign,
+            clearance,
+            floor: setup.floor,
+            is_half,
+            nx,
+            ny,
+            s,
+            s_face,
+            cos,
+            cos_face,
+            weight,
+            line_weight,
+            drop,
+            least_drop,
+            tests,
+            face_shapes,
+            elastic,
+            stiffness: setup.modes.stiffness.clone(),
+            superposition: film.superposition(),
+            film,
+            rough,
+            contact,
+            thinning: setup.shear_thinning.filter(|t| !t.is_off()),
+            p_cav: setup.p_cav,
+            shear: RoughShear::new(n),
+            work: [vec![0.0; n], vec![0.0; n], vec![0.0; n]],
+            now: empty(),
+            trial: empty(),
+            placed: Vec::with_capacity(3 + elastic),
+            fields: vec![0.0; (3 + elastic) * n],
+            rates: vec![0.0; n],
+            modes_of_rates: vec![0.0; (2 + elastic) * n],
+            shapes,
+            p: vec![0.0; n],
+            open: vec![0.0; n],
+            fill: vec![1.0; n],
+            contact_grid: cg,
+            rows,
+            contact_cos,
+            contact_drop,
+            contact_shapes,
+            contact_work: [vec![0.0; points], vec![0.0; points]],
+            contact_now: [0.0; 4],
+            evaluations: 0,
+            contact_sums: 0,
+            whole,
+        })
+    }
+
+    /// Elastic shapes.
+    #[must_use]
+    pub fn elastic(&self) -> usize {
+        self.elastic
+    }
+
+    /// Whether the film is linear in the rates but for a cut.
+    #[must_use]
+    pub fn is_superposed(&self) -> bool {
+        self.superposition != Superposition::None
+    }
+
+    /// Nodes that are solved.
+    #[must_use]
+    pub fn nodes(&self) -> usize {
+        self.nx * self.ny
+    }
+
+    /// Whole grid.
+    #[must_use]
+    pub fn grid(&self) -> &Film2dGrid {
+        &self.whole
+    }
+
+    /// Smallest gap at the nodes of the place set last \[m\].
+    #[must_use]
+    pub fn smallest_gap(&self) -> f64 {
+        self.now.smallest
+    }
+
+    /// Pressure above that of the crankcase \[Pa\] that was found last, at the nodes of the whole grid.
+    #[must_use]
+    pub fn pressure(&self) -> Vec<f64> {
+        self.unfold(&self.p)
+    }
+
+    /// Gap \[m\] of the place set last, at the nodes of the whole grid.
+    #[must_use]
+    pub fn gap(&self) -> Vec<f64> {
+        self.unfold(&self.now.h)
+    }
+
+    fn unfold(&self, f: &[f64]) -> Vec<f64> {
+        let mut all = f.to_vec();
+        if self.is_half {
+            (0..self.ny - 1).rev().for_each(|j| all.extend_from_slice(&f[j * self.nx..(j + 1) * self.nx]));
+        }
+        all
+    }
+
+    /// Highest pressure above that of the crankcase found last \[Pa\].
+    #[must_use]
+    pub fn p_max(&self) -> f64 {
+        self.p.iter().fold(0.0, |a, &b| a.max(b))
+    }
+
+    /// Largest elastic displacement over the gap of the present place, for the amplitudes `q` \[m\]; 0 for a rigid skirt.
+    #[must_use]
+    pub fn yielding(&self, q: &[f64]) -> f64 {
+        self.part_of_gap(q, self)
+    }
+
+    /// Amplitudes \[m\] with which the shapes of this side yield to the pressure that `other`, the same side without shapes, found last.
+    #[must_use]
+    pub fn yields_to(&self, other: &Self) -> Vec<f64> {
+        let n = self.nodes();
+        let full = other.pressure();
+        let shapes = self.tests[2 * n..].chunks_exact(n.max(1)).zip(&self.stiffness);
+        shapes.map(|(test, k)| test.iter().zip(&full).map(|(t, p)| t * p).sum::<f64>() / k).collect()
+    }
+
+    /// Largest elastic displacement with the amplitudes `q` over the gap of `other`, which may be the same side without shapes.
+    #[must_use]
+    pub fn part_of_gap(&self, q: &[f64], other: &Self) -> f64 {
+        let n = self.nodes();
+        let gap = other.gap();
+        (0..n)
+            .map(|k| {
+                let d: f64 = q.iter().enumerate().map(|(m, q)| q * self.shapes[(2 + m) * n + k]).sum();
+                (d / gap[k].abs().max(1e-12)).abs()
+            })
+            .fold(0.0, f64::max)
+    }
+
+    /// Gap and factors at the displacements `e` of both edges and the elastic amplitudes `q`.
+    fn shape_gap(&mut self, trial: bool, e: [f64; 2], q: &[f64], speed: f64) -> Result<(), EvalError> {
+        let (nx, ny, n) = (self.nx, self.ny, self.nx * self.ny);
+        let gap = if trial { &mut self.trial } else { &mut self.now };
+        let (c, top, bottom) = (self.clearance, self.sign * e[0], self.sign * e[1]);
+        if !(top.is_finite() && bottom.is_finite() && q.iter().all(|q| q.is_finite())) {
+            return Err(EvalError::recoverable(MODEL, "a displacement is not finite"));
+        }
+        for j in 0..ny {
+            let (own, next) = (self.cos[j], self.cos_face[j]);
+            let line = j * nx..(j + 1) * nx;
+            let (h, fx, fy) =
+                (&mut gap.h[line.clone()], &mut gap.face_x[line.clone()], &mut gap.face_y[line]);
+            for i in 0..nx {
+                let here = between(top, bottom, self.s[i]);
+                h[i] = c + here * own;
+                fx[i] = c + between(top, bottom, self.s_face[i]) * own;
+                fy[i] = c + here * next;
+            }
+        }
+        if !self.drop[0].is_empty() {
+            for (f, d) in [(&mut gap.h, 0), (&mut gap.face_x, 1), (&mut gap.face_y, 2)] {
+                f.iter_mut().zip(&self.drop[d]).for_each(|(f, d)| *f += d);
+            }
+        }
+        for (m, q) in q.iter().enumerate() {
+            let shapes = [
+                &self.shapes[(2 + m) * n..(3 + m) * n],
+                &self.face_shapes[0][m * n..(m + 1) * n],
+                &self.face_shapes[1][m * n..(m + 1) * n],
+            ];
+            for (f, shape) in [&mut gap.h, &mut gap.face_x, &mut gap.face_y].into_iter().zip(shapes) {
+                f.iter_mut().zip(shape).for_each(|(f, s)| *f += q * s);
+            }
+        }
+        gap.smallest = gap.h.iter().fold(f64::INFINITY, |a, &b| a.min(b));
+        if gap.smallest < -DEEPEST {
+            let what = format!("the skirt would stand {:.0} um inside the liner", -1e6 * gap.smallest);
+            return Err(EvalError::recoverable(MODEL, what));
+        }
+        // Films for the flow, at and between the nodes, and shear.
+        let lever = &mut self.work[0];
+        if self.rough.is_smooth() {
+            let floor = self.floor;
+            let held = |h: f64| held_above(h, floor);
+            for k in 0..n {
+                let film = held(gap.h[k]);
+                gap.flow.film[k] = film;
+                gap.flow.transport[k] = film;
+                gap.flow.content_slope[k] = 1.0;
+                gap.drag[k] = 1.0 / film;
+                lever[k] = film;
+            }
+            if gap.smallest < 2.0 * floor {
+                gap.face_x.iter_mut().chain(&mut gap.face_y).for_each(|h| *h = held(*h));
+            }
+        } else {
+            self.rough.flow(&gap.h, &mut gap.flow)?;
+            self.rough.shear(&gap.h, &mut self.shear)?;
+            for k in 0..n {
+                gap.drag[k] = (self.shear.phi_f[k] + self.shear.phi_fs[k]) / self.shear.film[k];
+                lever[k] = self.shear.phi_fp[k] * self.shear.film[k];
+            }
+            if gap.flow.film.iter().zip(&gap.h).any(|(f, h)| f != h) {
+                // Where the model holds the film above contact, it does so between the nodes too.
+                for k in 0..n {
+                    let east = if k % nx + 1 < nx { k + 1 } else { k };
+                    let north = if k + nx < n { k + nx } else { k };
+                    let raise = |a: usize, b: usize| {
+                        0.5 * ((gap.flow.film[a] - gap.h[a]) + (gap.flow.film[b] - gap.h[b]))
+                    };
+                    let least = |a: usize, b: usize| 0.5 * gap.flow.film[a].min(gap.flow.film[b]);
+                    gap.face_x[k] = (gap.face_x[k] + raise(k, east)).max(least(k, east));
+                    gap.face_y[k] = (gap.face_y[k] + raise(k, north)).max(least(k, north));
+                }
+            }
+        }
+        for j in 0..ny {
+            let w = 0.5 * self.line_weight[j];
+            let own = &lever[j * nx..(j + 1) * nx];
+            for i in 0..nx {
+                // Half the mean of both neighbours, for the face before and for the face after.
+                let before = if i > 0 { 0.5 * (own[i - 1] + own[i]) } else { 0.0 };
+                let after = if i + 1 < nx { 0.5 * (own[i] + own[i + 1]) } else { 0.0 };
+                gap.lever[j * nx + i] = w * (before - after);
+            }
+        }
+        if let Some(model) = &self.thinning {
+            gap.thinning.resize(n, 1.0);
+            let [rate, slope, _] = &mut self.work;
+            for k in 0..n {
+                rate[k] = speed / gap.flow.film[k];
+            }
+            model.factor(rate, &mut gap.thinning, slope)?;
+            gap.drag.iter_mut().zip(&gap.thinning).for_each(|(d, t)| *d *= t);
+        }
+        Ok(())
+    }
+
+    /// Puts the skirt at the displacements `e` of both edges \[m\], with the elastic amplitudes `q` \[m\]; `speed` is that of the piston away from the
+    /// head \[m/s\]. What is linear in the rates is solved here, once.
+    ///
+    /// # Errors
+    /// A gap that is none, a film that cannot be solved.
+    pub fn place(&mut self, e: [f64; 2], q: &[f64], speed: f64) -> Result<(), EvalError> {
+        let key = if self.thinning.is_some() { speed } else { 0.0 };
+        let same = self.placed.len() == 3 + q.len()
+            && self.placed[..3] == [e[0], e[1], key]
+            && self.placed[3..] == *q;
+        if same {
+            return Ok(());
+        }
+        self.placed.clear();
+        self.shape_gap(false, e, q, speed)?;
+        self.contact_now = self.contact_loads(e, q);
+        let n = self.nodes();
+        for (m, rates) in self.modes_of_rates.chunks_exact_mut(n).enumerate() {
+            let shape = &self.shapes[m * n..(m + 1) * n];
+            for ((r, s), slope) in rates.iter_mut().zip(shape).zip(&self.now.flow.content_slope) {
+                *r = s * slope;
+            }
+        }
+        if self.superposition != Superposition::None {
+            let inp = film_input(&self.now, n);
+            let [top, bottom] = [&self.modes_of_rates[..n], &self.modes_of_rates[n..2 * n]];
+            let mode = |u: f64, dhdt| FilmMode { u, dhdt, edge_pressure: [0.0; 4] };
+            let first = [mode(-1.0, &[]), mode(0.0, top), mode(0.0, bottom)];
+            if self.elastic == 0 {
+                self.film.solve_many(&inp, &first, &mut self.fields)?;
+            } else {
+                let mut all = first.to_vec();
+                all.extend(self.modes_of_rates[2 * n..].chunks_exact(n).map(|r| mode(0.0, r)));
+                self.film.solve_many(&inp, &all, &mut self.fields)?;
+            }
+            self.evaluations += 1;
+        }
+        self.placed.extend_from_slice(&[e[0], e[1], key]);
+        self.placed.extend_from_slice(q);
+        Ok(())
+    }
+
+    /// Forces at the present place for the rates of both edges and of the elastic amplitudes \[m/s\], with their derivatives as `slopes` says.
+    ///
+    /// # Errors
+    /// A film that cannot be solved.
+    pub fn loads(
+        &mut self,
+        speed: f64,
+        mu: f64,
+        rates: &[f64],
+        slopes: Slopes,
+        out: &mut SideLoads,
+    ) -> Result<(), EvalError> {
+        let n = self.nodes();
+        out.contact = self.contact_now;
+        if self.superposition == Superposition::None {
+            self.solve_whole(false, speed, mu, rates)?;
+            self.sums(false, speed, mu, out);
+            if slopes != Slopes::None {
+                let count = rates.len();
+                out.slope.resize(count * (4 + self.elastic), 0.0);
+                let mut moved = rates.to_vec();
+                let base = (out.film, out.elastic.clone());
+                let kept = (self.p.clone(), self.fill.clone());
+                let mut there = SideLoads::default();
+                for m in 0..count {
+                    // Rates matter against the clearance per millisecond; the film is found to some 1e-9.
+                    let d = 1e-4 * rates[m].abs().max(1e-2 * self.clearance / 1e-3);
+                    moved[m] = rates[m] + d;
+                    self.solve_whole(false, speed, mu, &moved)?;
+                    moved[m] = rates[m];
+                    self.sums(false, speed, mu, &mut there);
+                    let row = &mut out.slope[m * (4 + self.elastic)..(m + 1) * (4 + self.elastic)];
+                    for k in 0..4 {
+                        row[k] = (there.film[k] - base.0[k]) / d;
+                    }
+                    for k in 0..self.elastic {
+                        row[4 + k] = (there.elastic[k] - base.1[k]) / d;
+                    }
+                }
+                (self.p, self.fill) = kept;
+            }
+            return Ok(());
+        }
+        let cut = if self.superposition == Superposition::CutOff { self.p_cav } else { f64::NEG_INFINITY };
+        let (sliding, rest) = self.fields.split_at(n);
+        let (top, bottom) = (&rest[..n], &rest[n..2 * n]);
+        let (a, b, c) = (mu * speed, mu * rates[0], mu * rates[1]);
+        for k in 0..n {
+            self.p[k] = a * sliding[k] + b * top[k] + c * bottom[k];
+        }
+        for (m, rate) in rates[2..].iter().enumerate() {
+            let field = &rest[(2 + m) * n..(3 + m) * n];
+            self.p.iter_mut().zip(field).for_each(|(p, f)| *p += mu * rate * f);
+        }
+        for k in 0..n {
+            let is_open = self.p[k] > cut;
+            self.open[k] = if is_open { 1.0 } else { 0.0 };
+            self.p[k] = if is_open { self.p[k] } else { cut };
+        }
+        self.sums(false, speed, mu, out);
+        if slopes != Slopes::None {
+            let width = 4 + self.elastic;
+            let all = if slopes == Slopes::Full { 1.0 } else { 0.0 };
+            out.slope.resize(rates.len() * width, 0.0);
+            for (m, row) in out.slope.chunks_exact_mut(width).enumerate() {
+                let field = &self.fields[(1 + m) * n..(2 + m) * n];
+                let taken = &mut self.work[0];
+                for k in 0..n {
+                    taken[k] = mu * self.open[k].max(all) * field[k];
+                }
+                pressure_sums(
+                    taken,
+                    &self.tests,
+                    &self.now.lever,
+                    &self.cos,
+                    self.panel.radius,
+                    self.nx,
+                    row,
+                );
+            }
+        }
+        Ok(())
+    }
+
+    /// Forces at another place for rates that are given: one film alone. The present place stays.
+    ///
+    /// # Errors
+    /// A film that cannot be solved.
+    pub fn loads_elsewhere(
+        &mut self,
+        e: [f64; 2],
+        q: &[f64],
+        speed: f64,
+        mu: f64,
+        rates: &[f64],
+        out: &mut SideLoads,
+    ) -> Result<(), EvalError> {
+        self.shape_gap(true, e, q, speed)?;
+        out.contact = self.contact_loads(e, q);
+        let kept = std::mem::take(&mut self.p);
+        self.p = std::mem::take(&mut self.open);
+        let outcome = if self.superposition == Superposition::None {
+            let filled = self.fill.clone();
+            let r = self.solve_whole(true, speed, mu, rates);
+            if r.is_ok() {
+                self.sums(true, speed, mu, out);
+            }
+            self.fill = filled;
+            r.map(|_| ())
+        } else {
+            self.combine_rates(true, rates);
+            let n = self.nodes();
+            let inp = film_input(&self.trial, n);
+            let mode = FilmMode { u: -speed, dhdt: &self.rates, edge_pressure: [0.0; 4] };
+            let r = self.film.solve_many(&inp, &[mode], &mut self.p).map(|_| ());
+            self.evaluations += 1;
+            let cut =
+                if self.superposition == Superposition::CutOff { self.p_cav } else { f64::NEG_INFINITY };
+            self.p.iter_mut().for_each(|p| *p = (mu * *p).max(cut));
+            if r.is_ok() {
+                self.sums(true, speed, mu, out);
+            }
+            r
+        };
+        self.open = std::mem::take(&mut self.p);
+        self.p = kept;
+        outcome
+    }
+
+    /// Rate of the gap's content at every node, into `self.rates`.
+    fn combine_rates(&mut self, trial: bool, rates: &[f64]) {
+        let n = self.nodes();
+        let gap = if trial { &self.trial } else { &self.now };
+        for k in 0..n {
+            self.rates[k] = rates[0] * self.shapes[k] + rates[1] * self.shapes[n + k];
+        }
+        for (m, rate) in rates[2..].iter().enumerate() {
+            let shape = &self.shapes[(2 + m) * n..(3 + m) * n];
+            self.rates.iter_mut().zip(shape).for_each(|(r, s)| *r += rate * s);
+        }
+        self.rates.iter_mut().zip(&gap.flow.content_slope).for_each(|(r, s)| *r *= s);
+    }
+
+    /// The film with its cavitation, by the solver alone.
+    fn solve_whole(
+        &mut self,
+        trial: bool,
+        speed: f64,
+        mu: f64,
+        rates: &[f64],
+    ) -> Result<Film2dOut, EvalError> {
+        self.combine_rates(trial, rates);
+        let n = self.nodes();
+        let gap = if trial { &self.trial } else { &self.now };
+        let [scaled, _, _] = &mut self.work;
+        let viscosity = if gap.thinning.is_empty() {
+            Viscosity::Uniform(mu)
+        } else {
+            scaled.iter_mut().zip(&gap.thinning).for_each(|(s, t)| *s = mu * t);
+            Viscosity::Nodes(scaled)
+        };
+        let found = self.film.solve(&Film2dIn {
+            u: -speed,
+            mu: viscosity,
+            dhdt: &self.rates,
+            p_cav: self.p_cav,
+            edge_pressure: [0.0; 4],
+            ..film_input(gap, n)
+        })?;
+        self.evaluations += 1;
+        self.p.copy_from_slice(self.film.pressure());
+        self.fill.copy_from_slice(self.film.fill());
+        Ok(found)
+    }
+
+    /// Oil that leaves the side at the rates given \[m³/s\]: over the upper edge, over the lower edge, over the flanks.
+    ///
+    /// # Errors
+    /// A film that cannot be solved.
+    pub fn oil_flow(&mut self, speed: f64, mu: f64, rates: &[f64]) -> Result<[f64; 3], EvalError> {
+        let kept = (self.p.clone(), self.fill.clone());
+        let found = self.solve_whole(false, speed, mu, rates);
+        (self.p, self.fill) = kept;
+        let out = found?.outflow;
+        let both = if self.is_half { 2.0 } else { 1.0 };
+        let flanks = if self.is_half { 2.0 * out[2] } else { out[2] + out[3] };
+        Ok([both * out[0], both * out[1], flanks])
+    }
+
+    /// Sums over the film in `self.p`.
+    fn sums(&self, trial: bool, speed: f64, mu: f64, out: &mut SideLoads) {
+        let gap = if trial { &self.trial } else { &self.now };
+        let (nx, width) = (self.nx, 4 + self.elastic);
+        out.elastic.resize(self.elastic, 0.0);
+        let mut found = [0.0; 4];
+        let (tests, radius) = (&self.tests, self.panel.radius);
+        if self.elastic == 0 {
+            pressure_sums(&self.p, tests, &gap.lever, &self.cos, radius, nx, &mut found);
+        } else {
+            let mut all = vec![0.0; width];
+            pressure_sums(&self.p, tests, &gap.lever, &self.cos, radius, nx, &mut all);
+            found.copy_from_slice(&all[..4]);
+            out.elastic.copy_from_slice(&all[4..]);
+        }
+        // Couette drag: the liner slides against the piston.
+        for j in 0..self.ny {
+            let line = j * nx..(j + 1) * nx;
+            let full: f64 = self.weight[line.clone()]
+                .iter()
+                .zip(&gap.drag[line.clone()])
+                .zip(&self.fill[line])
+                .map(|((w, d), f)| w * d * f)
+                .sum();
+            found[2] -= mu * speed * full;
+            found[3] -= mu * speed * full * radius * self.cos[j];
+        }
+        out.film = found;
+    }
+
+    /// Solid contact: forces on both edges, normal force, and its moment arm.
+    fn contact_loads(&mut self, e: [f64; 2], q: &[f64]) -> [f64; 4] {
+        let range = self.contact.range();
+        let (top, bottom) = (self.sign * e[0], self.sign * e[1]);
+        let least = self.clearance + self.least_drop.min(0.0) + top.min(bottom).min(0.0)
+            - q.iter().map(|q| 2.0 * q.abs()).sum::<f64>();
+        let mut sum = [0.0; 4];
+        if range <= 0.0 || least >= range {
+            return sum;
+        }
+        self.contact_sums += 1;
+        let points = self.contact_cos.len();
+        let n = self.contact_grid.intervals;
+        let doubled = points < n + 1;
+        let [h, p] = &mut self.contact_work;
+        let step = self.contact_grid.pitch * self.panel.width() / n as f64;
+        for (k, &s) in self.rows.iter().enumerate() {
+            let here = between(top, bottom, s);
+            for (i, h) in h.iter_mut().enumerate() {
+                *h = self.clearance + here * self.contact_cos[i];
+                if !self.contact_drop.is_empty() {
+                    *h += self.contact_drop[k * points + i];
+                }
+                for (m, q) in q.iter().enumerate() {
+                    *h += q * self.contact_shapes[(m * self.rows.len() + k) * points + i];
+                }
+            }
+            if h.iter().all(|h| *h >= range) {
+                continue;
+            }
+            self.contact.pressure(h, p);
+            for (i, p) in p.iter().enumerate() {
+                let end = i == 0 || (!doubled && i + 1 == points);
+                let middle = doubled && i + 1 == points;
+                let w = match (end, middle, doubled) {
+                    (true, _, true) | (_, true, _) | (false, false, false) => 1.0,
+                    (true, _, false) => 0.5,
+                    _ => 2.0,
+                };
+                let load = step * w * p;
+                let side = self.sign * load * self.contact_cos[i];
+                sum[0] += side * (1.0 - s);
+                sum[1] += side * s;
+                sum[2] += load;
+                sum[3] += load * self.panel.radius * self.contact_cos[i];
+            }
+        }
+        sum
+    }
+
+    /// Coefficient of friction of solid contact.
+    #[must_use]
+    pub fn friction_coefficient(&self) -> f64 {
+        self.contact.friction_coefficient()
+    }
+}
+
+/// A film of unit viscosity without causes.
+fn film_input<'a>(gap: &'a Gap, n: usize) -> Film2dIn<'a> {
+    let flow = &gap.flow;
+    let factor = |f: &'a [f64]| if gap.is_rough { f } else { &[] };
+    Film2dIn {
+        h_face_x: &gap.face_x,
+        h_face_y: &gap.face_y,
+        mu: if gap.thinning.len() == n { Viscosity::Nodes(&gap.thinning) } else { Viscosity::Uniform(1.0) },
+        p_cav: 0.0,
+        factors: FlowFactors {
+            pressure_x: factor(&flow.phi_x),
+            pressure_y: factor(&flow.phi_y),
+            transport: factor(&flow.transport),
+            content: &[],
+        },
+        ..Film2dIn::new(&flow.film, 0.0, 1.0)
+    }
+}
+
+/// `out`: forces of a pressure on both edges, along the bore, along the bore times `R cos φ`, and on the elastic shapes.
+fn pressure_sums(
+    p: &[f64],
+    tests: &[f64],
+    lever: &[f64],
+    cos: &[f64],
+    radius: f64,
+    nx: usize,
+    out: &mut [f64],
+) {
+    let n = p.len();
+    let dot = gudgeon_numerics::linalg::dot;
+    out[0] = dot(&tests[..n], p);
+    out[1] = dot(&tests[n..2 * n], p);
+    let (mut axial, mut arm) = (0.0, 0.0);
+    for (j, cos) in cos.iter().enumerate() {
+        let line = dot(&lever[j * nx..(j + 1) * nx], &p[j * nx..(j + 1) * nx]);
+        axial += line;
+        arm += line * radius * cos;
+    }
+    (out[2], out[3]) = (axial, arm);
+    for (m, out) in out[4..].iter_mut().enumerate() {
+        *out = dot(&tests[(2 + m) * n..(3 + m) * n], p);
+    }
+}
+
+/// Whether all shapes are their own mirror images.
+fn modes_are_symmetric(grid: &Film2dGrid, modes: &SkirtModes) -> bool {
+    let fields: Vec<&[f64]> = modes.shapes.chunks(grid.len().max(1)).collect();
+    grid.is_symmetric_in_y(&[0.0; 4], &fields, 1e-9)
+}
+
+/// Value of a field over `x` × `y` between its nodes; beyond the last ones that of the mirror image or of the edge.
+fn bilinear(f: &[f64], x: &[f64], y: &[f64], at_x: f64, at_y: f64) -> f64 {
+    let find = |line: &[f64], at: f64| {
+        let i = line.partition_point(|v| *v < at).clamp(1, line.len() - 1);
+        (i - 1, ((at - line[i - 1]) / (line[i] - line[i - 1])).clamp(0.0, 1.0))
+    };
+    let ((i, a), (j, b)) = (find(x, at_x), find(y, at_y));
+    let row = |j: usize| f[j * x.len() + i] * (1.0 - a) + f[j * x.len() + i + 1] * a;
+    row(j) * (1.0 - b) + row(j + 1) * b
+}

@@ -1,0 +1,24 @@
+use gudgeon_core::BuildError;
+use gudgeon_core::kinds::{SkirtComplianceCtx, SkirtComplianceSpec, SkirtModes};
+use serde::{Deserialize, Serialize};
+
+/// A skirt that does not yield.
+#[derive(Debug, Clone, Default, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Rigid {}
+
+gudgeon_core::register_model! {
+    Rigid, kind: "skirt_compliance", name: "rigid",
+    summary: "a skirt that does not yield",
+    equations: "h has no elastic part",
+    validity: "Deflections small against the film.",
+    references: [],
+    example: "",
+}
+
+#[typetag::serde(name = "rigid")]
+impl SkirtComplianceSpec for Rigid {
+    fn build(&self, _: &SkirtComplianceCtx<'_>) -> Result<SkirtModes, BuildError> {
+        Ok(SkirtModes::default())
+    }
+}

@@ -1,0 +1,253 @@
+//! Secondary motion of the piston: the EA111 cases beyond what their `[[checks]]` say.
+
+#![allow(clippy::print_stdout, reason = "what became of each case is for reading")]
+
+mod common;
+
+use common::*;
+use gudgeon_core::result::{FigureKind, RunResult};
+
+const CASE: &str = "ea111-1400";
+/// A film that is coarse and quick: these tests ask for the scheme, not for the film.
+const COARSE: [&str; 3] =
+    ["solver.intervals_along=10", "solver.intervals_across=8", "outputs.map_step=90 deg"];
+
+/// Runs the case once, without what it compares itself with.
+fn run_once(set: &[&str]) -> RunResult {
+    match checked(CASE, set).case.once(&mut |_| {}) {
+        Ok(r) => r,
+        Err(e) => panic!("{set:?}: {e}"),
+    }
+}
+
+fn coarse<'a>(more: &[&'a str]) -> Vec<&'a str> {
+    COARSE.iter().chain(more).copied().collect()
+}
+
+#[test]
+fn side_force_follows_the_mechanism() {
+    let force = |set: &[&str]| value(&run_once(&coarse(set)), "side_force_max");
+    // Rods of 136, 144 and 152 mm: 2470, 2330 and 2200 N in the source, within 1 %.
+    let by_rod = ["136 mm", "144 mm", "152 mm"].map(|l| force(&[&format!("engine.rod_length={l}")]));
+    for (f, printed) in by_rod.iter().zip([2470.0, 2330.0, 2200.0]) {
+        assert!((f / printed - 1.0).abs() < 0.01, "{f} {printed}");
+    }
+    // The film carries what the rod asks, whatever the film: the amplitude of the waviness changes the force by the friction alone.
+    for amplitude in ["3 um", "2 um"] {
+        let f = force(&[
+            &format!("models.roughness.amplitude={amplitude}"),
+            &format!("models.contact.amplitude={amplitude}"),
+        ]);
+        assert!((f / by_rod[1] - 1.0).abs() < 1e-3, "{amplitude}: {f}");
+    }
+}
+
+#[test]
+fn forces_balance_and_inertia_is_small() {
+    let r = run_once(&coarse(&["models.secondary_motion.model=full_inertia"]));
+    // Film and contact against rod: what is left accelerates the piston across the bore.
+    assert!(value(&r, "inertia_share") < 1e-3, "{}", value(&r, "inertia_share"));
+    let still = run_once(&coarse(&[]));
+    for name in ["e_top_max", "e_top_min", "e_bottom_min", "friction_force_min", "friction_power"] {
+        let (a, b) = (value(&r, name), value(&still, name));
+        // The tolerance, a thousandth of the gap of 10 um per step, over some hundred steps; inertia itself moves the edges by less than 1e-3 um.
+        assert!((a - b).abs() < 0.02 * b.abs().max(0.5), "{name}: {a} {b}");
+    }
+    assert_eq!(value(&still, "contact_share"), 0.0);
+    // No crest comes near: nothing is summed.
+    assert_eq!(still.solver.counters["contact_sums"], 0);
+}
+
+#[test]
+fn the_motion_that_is_found_is_the_periodic_one() {
+    let found = run_once(&coarse(&["solver.tolerance=1e-4"]));
+    assert!(found.solver.counters["cycles"] <= 8, "{} cycles", found.solver.counters["cycles"]);
+    let at = |r: &RunResult, name: &str| column(r, name)[0];
+    let (top, bottom) = (at(&found, "skirt.e_top"), at(&found, "skirt.e_bottom"));
+    // Thirty cycles more end where they began, within a nanometre.
+    let on = run_once(&coarse(&[
+        "solver.tolerance=1e-4",
+        "solver.cycles=30",
+        "outputs.results=[\"e_top_max\"]",
+        &format!("solver.start_top={top:e} m"),
+        &format!("solver.start_bottom={bottom:e} m"),
+    ]));
+    let off = (at(&on, "skirt.e_top") - top).abs().max((at(&on, "skirt.e_bottom") - bottom).abs());
+    println!("after 30 cycles {:.1e} um off, {} cycles searched", 1e6 * off, found.solver.counters["cycles"]);
+    assert!(off < 1e-9, "{off:e} m");
+}
+
+#[test]
+fn errors_fall_with_the_order_of_the_method() {
+    // One cycle from rest under a pressure without kinks and with films that are not cut off, which has none either.
+    let smooth = [
+        "models.cylinder_pressure={ model = \"motored\", compression_ratio = 9.0 }",
+        "models.film_2d.cavitation=full_sommerfeld",
+        "solver.cycles=1",
+        "outputs.results=[\"e_top_max\", \"e_bottom_min\"]",
+        "outputs.series_step=10 deg",
+    ];
+    let place = |set: &[&str]| {
+        let mut all = coarse(&smooth);
+        all.extend(set);
+        let r = run_once(&all);
+        let last = |c: &str| *column(&r, c).last().expect("rows");
+        ([last("skirt.e_top"), last("skirt.e_bottom")], r.solver.counters["steps"])
+    };
+    let (exact, _) = place(&["solver.integrator=radau5", "solver.tolerance=1e-10"]);
+    let error = |x: [f64; 2]| 1e6 * (x[0] - exact[0]).abs().max((x[1] - exact[1]).abs());
+    // Backward Euler: half the step, half the error.
+    let euler = ["2 deg", "1 deg", "0.5 deg"]
+        .map(|h| error(place(&["solver.method=backward_euler", &format!("solver.step={h}")]).0));
+    println!("backward Euler {euler:.3?} um");
+    for w in euler.windows(2) {
+        // First order, and what the second leaves at these steps.
+        assert!((1.7..2.4).contains(&(w[0] / w[1])), "{euler:?}");
+    }
+    // Rosenbrock methods of orders three and five: the slope of error against steps.
+    for (name, tolerances, least) in [("rodas3", [1e-4, 1e-6], 2.0), ("rodas5p", [1e-6, 1e-8], 2.5)] {
+        let points = tolerances.map(|t| {
+            let (x, steps) =
+                place(&[&format!("solver.integrator={name}"), &format!("solver.tolerance={t:e}")]);
+            (error(x), steps as f64)
+        });
+        let order = (points[0].0 / points[1].0).ln() / (points[1].1 / points[0].1).ln();
+        println!("{name} {points:?}: order {order:.1}");
+        assert!(order > least, "{name}: {points:?} {order}");
+    }
+}
+
+#[test]
+fn extremes_run_or_are_refused_with_a_reason() {
+    let mut wrong = Vec::new();
+    // The vacuum of the trace must not grow beyond nothing.
+    let burn = |bar: f64| format!("models.cylinder_pressure.scale={}", bar / 49.11);
+    let lift = "models.cylinder_pressure.offset=2.5 bar".to_owned();
+    let thick = "models.oil.viscosity=200 mPa s".to_owned();
+    let thin = "models.oil.viscosity=1 mPa s".to_owned();
+    let settings: Vec<Vec<String>> = vec![
+        vec!["engine.speed=300 rpm".into()],
+        vec!["engine.speed=12000 rpm".into()],
+        vec!["skirt.clearance=5 um".into()],
+        vec!["skirt.clearance=50 um".into()],
+        vec!["skirt.clearance=200 um".into()],
+        vec![thin.clone()],
+        vec![thick.clone()],
+        vec![burn(250.0), lift.clone()],
+        vec![burn(250.0), lift.clone(), thin.clone(), "engine.speed=300 rpm".into()],
+        vec!["engine.speed=12000 rpm".into(), "skirt.clearance=200 um".into(), thin.clone()],
+        vec!["skirt.clearance=5 um".into(), thick, burn(250.0), lift.clone()],
+        vec!["engine.pin_offset=0.8 mm".into(), "piston.gravity_side=thrust".into()],
+        vec!["solver.start_top=30 um".into(), "solver.start_bottom=-40 um".into()],
+        vec!["models.roughness={ model = \"off\" }".into(), burn(250.0), lift, thin],
+    ];
+    for motion in ["quasi_static", "full_inertia"] {
+        for (tolerance, every) in [("1e-2", 1), ("1e-4", 5)] {
+            for s in settings.iter().step_by(every) {
+                let own: Vec<&str> = s.iter().map(String::as_str).collect();
+                let (m, t) = (
+                    format!("models.secondary_motion.model={motion}"),
+                    format!("solver.tolerance={tolerance}"),
+                );
+                let mut all = coarse(&own);
+                all.extend([
+                    m.as_str(),
+                    t.as_str(),
+                    "solver.cycles=1",
+                    "solver.intervals_along=8",
+                    "outputs.series_step=5 deg",
+                ]);
+                all.push("outputs.results=[\"e_top_max\", \"h_min\", \"side_force_max\", \"contact_work\"]");
+                let begin = std::time::Instant::now();
+                let told = match attempt(&all) {
+                    Ok(r) => {
+                        if r.results.values().any(|v| !v.value.is_finite()) {
+                            wrong.push(format!("{motion} {own:?}: not finite"));
+                        }
+                        format!("h_min {:.2} um, {} steps", value(&r, "h_min"), r.solver.counters["steps"])
+                    }
+                    Err(e) if e.len() > 30 => e,
+                    Err(e) => {
+                        wrong.push(format!("{motion} {own:?}: unclear: {e}"));
+                        String::new()
+                    }
+                };
+                println!("{motion} {tolerance} {own:?}: {told} ({:.2} s)", begin.elapsed().as_secs_f64());
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn contact_and_its_end_are_passed() {
+    // A small pin offset lets the piston rest on the other side, where the crests touch in the expansion stroke.
+    let r = run_once(&coarse(&[
+        "engine.pin_offset=0.2 mm",
+        "solver.start_top=2 um",
+        "solver.start_bottom=4 um",
+        "solver.cycles=8",
+    ]));
+    assert!(value(&r, "contact_share") > 0.02 && value(&r, "contact_work") > 0.0);
+    assert!(r.events.iter().any(|e| e.what == "solid contact begins"));
+    assert!(r.events.iter().any(|e| e.what == "solid contact ends"));
+}
+
+#[test]
+fn a_skirt_that_hardly_yields_is_taken_for_rigid() {
+    let stiff = |k: &str| {
+        format!(
+            "models.skirt_compliance={{ model = \"modal\", stiffness = [\"{k}\"], shapes = [{{ power = 0, waves = 1 }}] }}"
+        )
+    };
+    let short = ["outputs.results=[\"p_max\", \"e_top_max\", \"h_min\"]"];
+    let run = |k: &str| {
+        let set = stiff(k);
+        let mut all = coarse(&short);
+        all.push(&set);
+        run_once(&all)
+    };
+    let (hard, soft) = (run("1e5 N/um"), run("300 N/um"));
+    assert!(hard.skipped.iter().any(|s| s.what.contains("yielding")));
+    assert!(!soft.skipped.iter().any(|s| s.what.contains("yielding")));
+    let rigid = run_once(&coarse(&short));
+    assert_eq!(value(&hard, "p_max"), value(&rigid, "p_max"));
+    // 2.3 kN of side force, of which the shape takes its part, on 300 N/um: some micrometres.
+    let most = column(&soft, "skirt.yield").iter().fold(0.0_f64, |a, b| a.max(*b));
+    assert!((1e-6..1e-5).contains(&most), "{most:e}");
+}
+
+#[test]
+fn what_is_not_wanted_is_not_computed() {
+    let all = run_once(&coarse(&["solver.cycles=1"]));
+    let few = run_once(&coarse(&["solver.cycles=1", "outputs.results=[\"e_top_max\"]"]));
+    assert!(few.skipped.iter().any(|s| s.what.contains("flow of oil")));
+    assert!(few.solver.counters["film_evaluations"] < all.solver.counters["film_evaluations"]);
+    assert_eq!(few.results.len(), 1);
+    let moving = |r: &RunResult| {
+        r.figures.iter().any(|f| matches!(&f.kind, FigureKind::Drawing { frames, .. } if frames.len() > 100))
+    };
+    assert!(moving(&all));
+    assert!(all.figures.iter().filter(|f| matches!(f.kind, FigureKind::Map { .. })).count() >= 3);
+}
+
+#[test]
+fn published_scheme_is_refused_with_the_reason() {
+    let e = try_check(CASE, "solver.method=as_published");
+    // The text may be broken into lines.
+    assert!(e.contains("low-") && e.contains("diverges"), "{e}");
+}
+
+/// Runs the case once, or says why not.
+fn attempt(set: &[&str]) -> Result<RunResult, String> {
+    let set: Vec<String> = set.iter().map(|s| (*s).to_owned()).collect();
+    let c = gudgeon_sim::check(&case_file(CASE), &set).map_err(|r| format!("refused: {r}"))?;
+    c.case.once(&mut |_| {}).map_err(|e| format!("failed: {e}"))
+}
+
+fn try_check(case: &str, set: &str) -> String {
+    match gudgeon_sim::check(&case_file(case), &[set.to_owned()]) {
+        Ok(_) => String::new(),
+        Err(r) => r.to_string(),
+    }
+}
