@@ -217,13 +217,14 @@ fn growth() {
         let tree = Tree::new(line).expect("builds");
         let n = tree.len();
         let f: Vec<[f64; 2]> = (0..n).map(|i| [(i as f64).sin(), 0.5]).collect();
+        let omega: [f64; LANES] = std::array::from_fn(|l| 100.0 * (l + 1) as f64);
         let mut work = Sweep::new(n);
         let t = median(7, (200_000 / n).max(1), || {
-            work.solve(black_box(&tree), &[100.0, 200.0, 300.0, 400.0], &f).expect("damped");
+            work.solve(black_box(&tree), &omega, &f).expect("damped");
         }) / LANES as f64;
         println!("{name:>28} {n:>9} {:>12.3} {:>14.2}", 1e6 * t, 1e9 * t / n as f64);
     };
-    for n in [10, 100, 1000, 10_000] {
+    for n in [10_u32, 100, 1000, 10_000] {
         let j: Vec<f64> = (0..n).map(|i| 0.1 + 0.05 * f64::from(i).sin()).collect();
         let k: Vec<f64> = (1..n).map(|i| 1e6 * (1.5 + (0.7 * f64::from(i)).cos())).collect();
         let m = n as usize;
