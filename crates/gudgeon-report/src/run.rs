@@ -305,10 +305,11 @@ fn results(out: &mut String, s: &Summary) {
         out.push_str("<th></th></tr></thead><tbody>");
         for (rest, row) in rows {
             let first = row.values().next();
-            let what = first
-                .and_then(|(name, _)| Some((s.descriptions.get(*name)?, *row.keys().next()?)))
-                .map(|(text, n)| without_member(text, family, n))
-                .unwrap_or_default();
+            let told: Vec<String> = row
+                .iter()
+                .filter_map(|(n, (name, _))| Some(without_member(s.descriptions.get(*name)?, family, *n)))
+                .collect();
+            let what = shared(&told, family);
             let _ = write!(
                 out,
                 "<tr><th scope=\"row\">{}<code>{}</code></th>",
@@ -325,6 +326,25 @@ fn results(out: &mut String, s: &Summary) {
         out.push_str("</tbody></table></div>");
     }
     out.push_str(if families.is_empty() { "</div></section>\n" } else { "</div></div></section>\n" });
+}
+
+/// One description for all members: what differs between theirs is the name of each.
+fn shared(told: &[String], family: &str) -> String {
+    let Some((first, rest)) = told.split_first() else { return String::new() };
+    let words: Vec<&str> = first.split(' ').collect();
+    let (mut lead, mut end) = (words.len(), words.len());
+    for other in rest {
+        let other: Vec<&str> = other.split(' ').collect();
+        lead = lead.min(words.iter().zip(&other).take_while(|(a, b)| a == b).count());
+        end = end.min(words.iter().rev().zip(other.iter().rev()).take_while(|(a, b)| a == b).count());
+    }
+    if lead == words.len() {
+        return first.clone();
+    }
+    let end = end.min(words.len() - lead);
+    let name = format!("the {family}");
+    let parts = [&words[..lead], &[name.as_str()], &words[words.len() - end..]];
+    parts.concat().join(" ")
 }
 
 /// A row of a table per ring must not speak of ring 1.
@@ -384,4 +404,23 @@ fn branches(out: &mut String, s: &Summary) {
         let _ = write!(out, "<td class=\"unit\">{}</td></tr>", esc(&unit(u)));
     }
     out.push_str("</tbody></table></div></section>\n");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::shared;
+
+    #[test]
+    fn descriptions_of_members_are_shared() {
+        let told = |t: &[&str]| shared(&t.iter().map(|s| (*s).to_owned()).collect::<Vec<_>>(), "shaft");
+        assert_eq!(
+            told(&["mean torque of motor shaft", "mean torque of crank 1-2"]),
+            "mean torque of the shaft"
+        );
+        let at_rest = ["torque of order 2 in crank 1-2 at rest", "torque of order 2 in coupling at rest"];
+        assert_eq!(told(&at_rest), "torque of order 2 in the shaft at rest");
+        assert_eq!(told(&["mean torque", "mean torque"]), "mean torque");
+        assert_eq!(told(&["mean torque"]), "mean torque");
+        assert_eq!(told(&[]), "");
+    }
 }
