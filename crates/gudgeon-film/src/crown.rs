@@ -14,8 +14,11 @@
 
 use crate::face::{Moments, angle};
 
-/// Least `X` beside `P2`, and least lever of the rupture beside `P3`: three digits are lost there.
+/// Least `X` beside `P2` and least `P3` beside `P1`: three digits are lost there.
 const LEAST: f64 = 1e-3;
+/// Least lever of the rupture, `t P3 - M3`, beside its parts: of a film much shorter than its distance from the apex, differences of
+/// differences decide.
+const LEVER: f64 = 0.05;
 /// Farthest an angle is moved by the series of the arc tangent up to `z⁷/7`: what is left out is 6e-17.
 const SHORT: f64 = 2e-2;
 /// Step beside what it is a step of, after which one of fourth or of second order has left only rounding.
@@ -55,6 +58,14 @@ struct Sums {
     m3: f64,
     x: f64,
     e: f64,
+}
+
+impl Sums {
+    /// Whether the differences they are made of leave digits enough.
+    #[inline(always)]
+    fn sound(&self) -> bool {
+        self.x > LEAST * self.p2 && self.p3 > LEAST * self.p1
+    }
 }
 
 impl Stretch {
@@ -183,7 +194,7 @@ impl Crown {
         loop {
             let (t, r, s) = (lead.t, lead.r, lead.sums());
             let rising = 2.0 * alpha * t + beta;
-            if !(rising > 0.0 && s.x > LEAST * s.p2 && t * s.p3 - s.m3 > LEAST * s.p3) {
+            if !(rising > 0.0 && s.sound() && t * s.p3 - s.m3 > LEVER * s.p3.max(s.m3.abs())) {
                 return None;
             }
             let gamma = t * (alpha * t + beta);
@@ -218,7 +229,7 @@ impl Crown {
                 // Pressure gradient, over `r³`, and what of it follows the place.
                 let n = t * (alpha * t + beta) - gamma;
                 let p = f.pb - (alpha * s.x + beta * s.m3 - gamma * s.p3);
-                if !(n > 0.0 && s.x > LEAST * s.p2) {
+                if !(n > 0.0 && s.sound()) {
                     return None;
                 }
                 let (i, tr) = (1.0 / n, 6.0 * t * r);
@@ -269,7 +280,7 @@ impl Crown {
         for _ in 0..STEPS {
             let (t, s) = (lead.t, lead.sums());
             let arm = t * s.p3 - s.m3;
-            if !(s.x > LEAST * s.p2 && arm > LEAST * s.p3) {
+            if !(s.sound() && arm > LEVER * s.p3.max(s.m3.abs())) {
                 return None;
             }
             let i = 1.0 / (arm * s.p3);
@@ -288,7 +299,7 @@ impl Crown {
             if let Some(trail) = &trail {
                 let (t, r, s) = (trail.t, trail.r, trail.sums());
                 let n = t * (alpha * t + beta) - gamma;
-                if !(n > 0.0 && s.x > LEAST * s.p2) {
+                if !(n > 0.0 && s.sound()) {
                     return None;
                 }
                 let p = f.pb - (alpha * s.x + beta * s.m3 - gamma * s.p3);
