@@ -16,7 +16,16 @@ fn every_model_is_described_and_its_example_runs() {
     assert_eq!(names("kinematics"), ["exact_slider_crank", "two_harmonic_series"]);
     assert_eq!(
         names("cylinder_pressure"),
-        ["constant", "motored", "polytropic_burn", "single_zone_wiebe", "table"]
+        [
+            "angle_windows",
+            "constant",
+            "ideal_valves",
+            "motored",
+            "polytropic_burn",
+            "single_zone_wiebe",
+            "table",
+            "valve_losses"
+        ]
     );
     if let Err(e) = registry.verify() {
         // Other kinds have no models in this test program; only complaints about these two count.
