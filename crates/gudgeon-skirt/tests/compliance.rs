@@ -127,3 +127,29 @@ fn profile_from_a_file() {
     assert!((p.depth(0.05, 0.15) - (3e-6 + 1.5e-6)).abs() < 1e-15);
     let _ = std::fs::remove_dir_all(&folder);
 }
+
+/// The table that a case of the scene `pin` writes for the skirt it designed.
+#[test]
+fn profile_designed_with_the_pin() {
+    let spec = Table {
+        heights: Vec::new(),
+        drops: Vec::new(),
+        ovality: quantity(1e-5),
+        file: Some("data.csv".into()),
+    };
+    let build = |name: &str, text: &str| {
+        let folder = folder(name, text);
+        let built = spec.build(&SkirtProfileCtx { length: 0.05, radius: 0.04, folder: &folder });
+        let _ = std::fs::remove_dir_all(&folder);
+        built
+    };
+    let text = "depth[m],cold_drop[m],warm_drop[m]\n0,8e-5,5e-5\n0.02,1e-5,0\n0.04,2e-5,1e-5\n";
+    let p = build("designed", text).expect("builds");
+    assert!(p.is_symmetric());
+    // At a row the warm drop, all round but for the ovality; the ends count beyond the table.
+    assert!((p.depth(0.0, 0.0) - 5e-5).abs() < 1e-18 && p.depth(0.02, 0.0).abs() < 1e-18);
+    assert!((p.depth(0.05, std::f64::consts::FRAC_PI_2) - 2e-5).abs() < 1e-18);
+    let refused = |name: &str, text: &str| build(name, text).expect_err("refused").to_string();
+    assert!(refused("designed-word", "depth[m],warm_drop[m]\n0,x\n").contains("line 2"));
+    assert!(refused("designed-empty", "depth[m],warm_drop[m]\n").contains("two heights"));
+}

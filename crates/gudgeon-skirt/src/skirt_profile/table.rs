@@ -1,3 +1,5 @@
+use std::path::Path;
+
 use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{SkirtProfile, SkirtProfileCtx, SkirtProfileSpec};
 use gudgeon_core::quantity::{Length, NonNegative, quantity};
@@ -10,7 +12,8 @@ use crate::skirt_compliance::points::Points;
 ///
 /// Either `heights` and `drops`, the same all round but for an ovality `o sin² φ`, or a `file` of rows `height angle drop` in metres, degrees and
 /// metres, whose points form a rectangular grid over the side (lines that begin with `#` are comments, separators are blanks, commas, semicolons or
-/// tabs). Between heights runs a monotone cubic, between the points of a file a plane grid of straight lines.
+/// tabs), or the table `skirt_shape.csv` that a case of the scene `pin` writes, whose `warm_drop` is taken over its `depth`. Between heights runs
+/// a monotone cubic, between the points of a grid a plane of straight lines.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Table {
@@ -48,6 +51,9 @@ impl SkirtProfileSpec for Table {
             if !self.heights.is_empty() || !self.drops.is_empty() {
                 return Err(BuildError::at("file", "the shape is given twice, in a file and inline"));
             }
+            if let Some((x, y)) = designed(&ctx.folder.join(file))? {
+                return self.curve(x, y, "file");
+            }
             let points = Points::read(ctx.folder, file, |_| 1)?;
             return Ok(Box::new(Map { oval: self.ovality.si(), points }));
         }
@@ -55,12 +61,48 @@ impl SkirtProfileSpec for Table {
             let what = format!("{} heights and {} drops are no table", self.heights.len(), self.drops.len());
             return Err(BuildError::at("heights", what).help("give two or more of both, or a `file`"));
         }
-        let x: Vec<f64> = self.heights.iter().map(|h| h.si()).collect();
+        let x = self.heights.iter().map(|h| h.si()).collect();
         let y = self.drops.iter().map(|d| d.si()).collect();
-        let ends = (x[0], x[x.len() - 1]);
-        let curve = Pchip::new(x, y).map_err(|e| BuildError::at("heights", e.to_string()))?;
+        self.curve(x, y, "heights")
+    }
+}
+
+impl Table {
+    fn curve(
+        &self,
+        x: Vec<f64>,
+        y: Vec<f64>,
+        key: &'static str,
+    ) -> Result<Box<dyn SkirtProfile>, BuildError> {
+        let (Some(first), Some(last)) = (x.first(), x.last()) else {
+            return Err(BuildError::at(key, "a shape needs two heights or more"));
+        };
+        let ends = (*first, *last);
+        let curve = Pchip::new(x, y).map_err(|e| BuildError::at(key, e.to_string()))?;
         Ok(Box::new(Curve { curve, ends, oval: self.ovality.si() }))
     }
+}
+
+/// Depths and warm drops of a table that the scene `pin` wrote; nothing when the file is another one.
+fn designed(path: &Path) -> Result<Option<(Vec<f64>, Vec<f64>)>, BuildError> {
+    let Ok(text) = std::fs::read_to_string(path) else { return Ok(None) };
+    let mut lines = text.lines().enumerate();
+    let names: Vec<&str> = lines.next().map_or(Vec::new(), |(_, l)| l.split(',').collect());
+    let place = |name: &str| names.iter().position(|n| *n == name);
+    let (Some(x), Some(y)) = (place("depth[m]"), place("warm_drop[m]")) else { return Ok(None) };
+    let mut columns = (Vec::new(), Vec::new());
+    for (k, line) in lines.filter(|(_, l)| !l.trim().is_empty()) {
+        let cells: Vec<&str> = line.split(',').collect();
+        let number =
+            |i: usize| cells.get(i).and_then(|c| c.trim().parse::<f64>().ok()).filter(|v| v.is_finite());
+        let (Some(x), Some(y)) = (number(x), number(y)) else {
+            let what = format!("{}, line {}: a depth and a warm drop are needed", path.display(), k + 1);
+            return Err(BuildError::at("file", what));
+        };
+        columns.0.push(x);
+        columns.1.push(y);
+    }
+    Ok(Some(columns))
 }
 
 #[derive(Debug)]
