@@ -83,8 +83,11 @@ impl Table {
     }
 }
 
+/// Depths and drops.
+type Shape = (Vec<f64>, Vec<f64>);
+
 /// Depths and warm drops of a table that the scene `pin` wrote; nothing when the file is another one.
-fn designed(path: &Path) -> Result<Option<(Vec<f64>, Vec<f64>)>, BuildError> {
+fn designed(path: &Path) -> Result<Option<Shape>, BuildError> {
     let Ok(text) = std::fs::read_to_string(path) else { return Ok(None) };
     let mut lines = text.lines().enumerate();
     let names: Vec<&str> = lines.next().map_or(Vec::new(), |(_, l)| l.split(',').collect());
