@@ -27,6 +27,7 @@ fn mistakes_in_sweeps_and_checks_are_found_before_anything_runs() {
 fn what_is_not_a_number_holds_no_check() {
     let check = |value: f64, must_fail: bool| Check {
         set: Vec::new(),
+        against: None,
         result: "load".into(),
         value,
         reference: 1.0,

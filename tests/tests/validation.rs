@@ -49,8 +49,8 @@ fn value(v: f64) -> String {
 fn every_case_agrees_with_its_sources() {
     let mut text = String::from(
         "# Validation\n\nEvery bench of `cases/rigs` and every other case with checks beside the values of its sources. The test `validation` makes this \
-         file and fails when a deviation is larger than admitted, or when a model that must fail (it does not conserve mass, \
-         say) does not. Deviations are relative, or absolute where the source gives zero. The published engine cases have \
+         file and fails when a deviation is larger than admitted, or when a model or a source that must fail (it does not conserve \
+         mass, say) does not. Deviations are relative, or absolute where the source gives zero. The published engine cases have \
          tables of their own, made by the tests `zottin` and `tomanik`.\n",
     );
     let mut wrong = Vec::new();
@@ -66,8 +66,7 @@ fn every_case_agrees_with_its_sources() {
         text.push_str("| setting | result | computed | source | unit | deviation | admitted | where from |\n|---|---|---|---|---|---|---|---|\n");
         for c in &r.checks {
             rows += 1;
-            let set: Vec<&str> = c.set.iter().map(|s| s.strip_prefix("rig.").unwrap_or(s)).collect();
-            let set = if set.is_empty() { "as it stands".to_owned() } else { set.join(", ") };
+            let set = c.setting();
             let admitted = format!("{}{:.0e}", if c.must_fail { "must exceed " } else { "" }, c.tolerance);
             let _ = writeln!(
                 text,

@@ -265,11 +265,7 @@ impl<D: Dimension, B: Bound> Quantity<D, B> {
     /// # Errors
     /// [`QuantityError::Range`] when the value is not finite or not admitted by `B`.
     pub fn new(si: f64) -> Result<Self, QuantityError> {
-        Self::checked(si, || format!("{si} {}", D::UNITS[0].name).trim_end().to_owned())
-    }
-
-    fn checked(si: f64, text: impl Fn() -> String) -> Result<Self, QuantityError> {
-        admit(si, B::TEXT, B::admits, text).map(|si| Self { si, marker: PhantomData })
+        Wanted::of::<D, B>().number(si).map(|si| Self { si, marker: PhantomData })
     }
 
     /// From text with a unit, `"120 mm"`. A number without a unit is SI.
@@ -277,7 +273,7 @@ impl<D: Dimension, B: Bound> Quantity<D, B> {
     /// # Errors
     /// Says which part of the text is wrong and what would be right.
     pub fn parse(text: &str) -> Result<Self, QuantityError> {
-        Self::checked(read(text, D::NAME, D::UNITS)?, || text.to_owned())
+        Wanted::of::<D, B>().text(text).map(|si| Self { si, marker: PhantomData })
     }
 
     /// The value in SI units.
@@ -332,33 +328,69 @@ impl<D: Dimension, B: Bound> Serialize for Quantity<D, B> {
     }
 }
 
+/// A dimension and a bound as values: what reads any quantity is compiled once for a format, not once for every pair of types.
+struct Wanted {
+    name: &'static str,
+    units: &'static [Unit],
+    bound: &'static str,
+    admits: fn(f64) -> bool,
+}
+
+impl Wanted {
+    const fn of<D: Dimension, B: Bound>() -> Self {
+        Self { name: D::NAME, units: D::UNITS, bound: B::TEXT, admits: B::admits }
+    }
+
+    /// See [`Quantity::new`].
+    fn number(&self, si: f64) -> Result<f64, QuantityError> {
+        admit(si, self.bound, self.admits, || format!("{si} {}", self.units[0].name).trim_end().to_owned())
+    }
+
+    /// See [`Quantity::parse`].
+    fn text(&self, text: &str) -> Result<f64, QuantityError> {
+        admit(read(text, self.name, self.units)?, self.bound, self.admits, || text.to_owned())
+    }
+
+    fn schema(&self) -> schemars::Schema {
+        let units: Vec<_> = self.units.iter().map(|u| u.name).filter(|n| !n.is_empty()).collect();
+        schemars::json_schema!({
+            "description": format!("{}, {}", self.name, self.bound),
+            "type": ["number", "string"],
+            "x-units": units,
+            "x-dimension": self.name,
+            "x-bound": self.bound,
+        })
+    }
+}
+
+impl Visitor<'_> for Wanted {
+    type Value = f64;
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let u = self.units[0].name;
+        if u.is_empty() {
+            write!(f, "{}", self.name)
+        } else {
+            write!(f, "{} (a number in {u}, or text with a unit)", self.name)
+        }
+    }
+    fn visit_f64<E: de::Error>(self, v: f64) -> Result<f64, E> {
+        self.number(v).map_err(E::custom)
+    }
+    fn visit_i64<E: de::Error>(self, v: i64) -> Result<f64, E> {
+        self.number(v as f64).map_err(E::custom)
+    }
+    fn visit_u64<E: de::Error>(self, v: u64) -> Result<f64, E> {
+        self.number(v as f64).map_err(E::custom)
+    }
+    fn visit_str<E: de::Error>(self, v: &str) -> Result<f64, E> {
+        self.text(v).map_err(E::custom)
+    }
+}
+
 impl<'de, D: Dimension, B: Bound> Deserialize<'de> for Quantity<D, B> {
     fn deserialize<T: Deserializer<'de>>(d: T) -> Result<Self, T::Error> {
-        struct V<D, B>(PhantomData<fn() -> (D, B)>);
-        impl<D: Dimension, B: Bound> Visitor<'_> for V<D, B> {
-            type Value = Quantity<D, B>;
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                let u = D::UNITS[0].name;
-                if u.is_empty() {
-                    write!(f, "{}", D::NAME)
-                } else {
-                    write!(f, "{} (a number in {u}, or text with a unit)", D::NAME)
-                }
-            }
-            fn visit_f64<E: de::Error>(self, v: f64) -> Result<Self::Value, E> {
-                Quantity::new(v).map_err(E::custom)
-            }
-            fn visit_i64<E: de::Error>(self, v: i64) -> Result<Self::Value, E> {
-                Quantity::new(v as f64).map_err(E::custom)
-            }
-            fn visit_u64<E: de::Error>(self, v: u64) -> Result<Self::Value, E> {
-                Quantity::new(v as f64).map_err(E::custom)
-            }
-            fn visit_str<E: de::Error>(self, v: &str) -> Result<Self::Value, E> {
-                Quantity::parse(v).map_err(E::custom)
-            }
-        }
-        d.deserialize_any(V(PhantomData))
+        let si = d.deserialize_any(Wanted::of::<D, B>())?;
+        Ok(Self { si, marker: PhantomData })
     }
 }
 
@@ -370,14 +402,7 @@ impl<D: Dimension, B: Bound> schemars::JsonSchema for Quantity<D, B> {
         format!("{} ({})", D::NAME, B::TEXT).into()
     }
     fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
-        let units: Vec<_> = D::UNITS.iter().map(|u| u.name).filter(|n| !n.is_empty()).collect();
-        schemars::json_schema!({
-            "description": format!("{}, {}", D::NAME, B::TEXT),
-            "type": ["number", "string"],
-            "x-units": units,
-            "x-dimension": D::NAME,
-            "x-bound": B::TEXT,
-        })
+        Wanted::of::<D, B>().schema()
     }
 }
 

@@ -332,7 +332,10 @@ pub struct Bar {
 pub struct Check {
     /// What was changed against the case as it stands: `rig.speed=1 m/s`; empty for the case itself.
     pub set: Vec<String>,
-    /// Name of the result.
+    /// The setting from which the result changes, for sources that tell a change.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub against: Option<Vec<String>>,
+    /// Name of the result; `change of …` and `relative change of …` where the change is told.
     pub result: String,
     /// Computed value.
     pub value: f64,
@@ -344,7 +347,7 @@ pub struct Check {
     pub tolerance: f64,
     /// Where the reference comes from.
     pub source: String,
-    /// Whether it is a defect of the model, wanted to be seen, that the deviation is larger than `tolerance`.
+    /// Whether it is a known defect of the model or of the source, wanted to be seen, that the deviation is larger than `tolerance`.
     pub must_fail: bool,
 }
 
@@ -354,6 +357,19 @@ impl Check {
     pub fn deviation(&self) -> f64 {
         let d = self.value - self.reference;
         if self.reference == 0.0 { d } else { d / self.reference.abs() }
+    }
+
+    /// The setting in words. Paths stand without the name of a bench's table, with which every one of a bench begins.
+    #[must_use]
+    pub fn setting(&self) -> String {
+        let words = |set: &[String]| {
+            let short: Vec<&str> = set.iter().map(|s| s.strip_prefix("rig.").unwrap_or(s)).collect();
+            if short.is_empty() { "as it stands".to_owned() } else { short.join(", ") }
+        };
+        match &self.against {
+            None => words(&self.set),
+            Some(from) => format!("{}, against {}", words(&self.set), words(from)),
+        }
     }
 
     /// Whether the result is as the case says it must be.

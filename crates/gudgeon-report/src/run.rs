@@ -216,21 +216,15 @@ fn checks(out: &mut String, checks: &[Check]) {
          <th class=\"num\">Admitted</th><th></th><th></th></tr></thead><tbody>"
     );
     for (i, c) in checks.iter().enumerate() {
-        let setting = if i > 0 && checks[i - 1].set == c.set {
+        let same = |d: &Check| d.set == c.set && d.against == c.against;
+        let setting = if i > 0 && same(&checks[i - 1]) {
             String::new()
         } else {
-            let rows = checks[i..].iter().take_while(|d| d.set == c.set).count();
-            let text = if c.set.is_empty() {
-                "as it stands".into()
-            } else {
-                // Every path begins with the name of the bench's table.
-                let short: Vec<&str> = c.set.iter().map(|s| s.strip_prefix("rig.").unwrap_or(s)).collect();
-                esc(&short.join(", "))
-            };
-            format!("<th scope=\"rowgroup\" rowspan=\"{rows}\">{text}</th>")
+            let rows = checks[i..].iter().take_while(|d| same(d)).count();
+            format!("<th scope=\"rowgroup\" rowspan=\"{rows}\">{}</th>", esc(&c.setting()))
         };
         let sign = if c.holds() { "✓" } else { "<b class=\"wrong\">✗</b>" };
-        let why = if c.must_fail { "; the model is known to be wrong here" } else { "" };
+        let why = if c.must_fail { "; known to differ" } else { "" };
         let _ = write!(
             out,
             "<tr>{setting}<td><code>{}</code></td><td class=\"num\">{}</td><td class=\"num\">{}</td>\

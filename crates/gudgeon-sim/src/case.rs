@@ -12,53 +12,35 @@ use gudgeon_core::quantity::{
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::scene::{CheckCase, SceneName};
-use crate::sweep::Sweep;
+use crate::scene::case_file;
 
-/// A piston ring pack in one cylinder.
-#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RingPackCase {
-    /// What is simulated.
-    pub scene: SceneName,
-    /// One line for reports.
-    #[serde(default)]
-    pub title: String,
-    /// Where the case comes from.
-    #[serde(default)]
-    pub source: String,
-    /// Inputs that no source gives and that were assumed, one sentence each. Reports show them.
-    #[serde(default)]
-    pub assumptions: Vec<String>,
-    /// Engine.
-    pub engine: Engine,
-    /// Piston, from the crown down.
-    pub piston: Piston,
-    /// Cylinder liner.
-    #[serde(default)]
-    pub liner: Liner,
-    /// Gas and crankcase.
-    #[serde(default)]
-    pub gas: Gas,
-    /// Rings, from the crown down.
-    pub rings: Vec<Ring>,
-    /// Sub-models.
-    pub models: Models,
-    /// Conventions in which published programs differ. The defaults are the physically correct ones.
-    #[serde(default)]
-    pub conventions: Conventions,
-    /// How the equations are solved.
-    #[serde(default)]
-    pub solver: Solver,
-    /// What is wanted.
-    #[serde(default)]
-    pub outputs: Outputs,
-    /// Inputs that are varied, one or two: every combination is run.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub sweeps: Vec<Sweep>,
-    /// Results of a source to compare with.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub checks: Vec<CheckCase>,
+case_file! {
+    /// A piston ring pack in one cylinder.
+    pub struct RingPackCase {
+        /// Engine.
+        pub engine: Engine,
+        /// Piston, from the crown down.
+        pub piston: Piston,
+        /// Cylinder liner.
+        #[serde(default)]
+        pub liner: Liner,
+        /// Gas and crankcase.
+        #[serde(default)]
+        pub gas: Gas,
+        /// Rings, from the crown down.
+        pub rings: Vec<Ring>,
+        /// Sub-models.
+        pub models: Models,
+        /// Conventions in which published programs differ. The defaults are the physically correct ones.
+        #[serde(default)]
+        pub conventions: Conventions,
+        /// How the equations are solved.
+        #[serde(default)]
+        pub solver: Solver,
+        /// What is wanted.
+        #[serde(default)]
+        pub outputs: Outputs,
+    }
 }
 
 /// Engine.

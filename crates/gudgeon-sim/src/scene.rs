@@ -4,7 +4,7 @@
 //! source are the same for all of them.
 
 use std::any::Any;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use gudgeon_core::BuildError;
 use gudgeon_core::result::{Check, ModelUse, RunResult, Value};
@@ -75,6 +75,12 @@ pub struct CheckCase {
     /// Changes to the case, as `--set` takes them; empty: the case as it stands.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub set: Vec<String>,
+    /// A setting to compare with, as `set`: expected are then changes of results from there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub against: Option<Vec<String>>,
+    /// With `against`: changes are told as parts of the value there.
+    #[serde(default)]
+    pub relative: bool,
     /// Expected results.
     pub expect: Vec<Expect>,
 }
@@ -96,11 +102,58 @@ pub struct Expect {
     pub must_fail: bool,
 }
 
-/// What a case of one scene says and does.
-pub trait SceneCase: Serialize + DeserializeOwned + JsonSchema + Send + Sync + Sized + 'static {
+/// The part of a case that is the same for every scene. `case_file!` implements it.
+pub trait Headed {
     /// Title, source, sweeps, checks.
     fn heading(&self) -> Heading<'_>;
+}
 
+/// The type of a case file: the keys of its scene between those that every case may say.
+macro_rules! case_file {
+    ($(#[$about:meta])* pub struct $name:ident { $($own:tt)* }) => {
+        $(#[$about])*
+        #[derive(Debug, Clone, ::serde::Serialize, ::serde::Deserialize, ::schemars::JsonSchema)]
+        #[serde(deny_unknown_fields)]
+        pub struct $name {
+            /// What is simulated.
+            pub scene: $crate::scene::SceneName,
+            /// One line for reports.
+            #[serde(default)]
+            pub title: String,
+            /// Where the case comes from.
+            #[serde(default)]
+            pub source: String,
+            /// Inputs that no source gives and that were assumed, one sentence each. Reports show them.
+            #[serde(default)]
+            pub assumptions: Vec<String>,
+            $($own)*
+            /// Inputs that are varied, one or two: every combination is run.
+            #[serde(default, skip_serializing_if = "Vec::is_empty")]
+            pub sweeps: Vec<$crate::sweep::Sweep>,
+            /// Results of a source to compare with.
+            #[serde(default, skip_serializing_if = "Vec::is_empty")]
+            pub checks: Vec<$crate::scene::CheckCase>,
+        }
+
+        impl $crate::scene::Headed for $name {
+            fn heading(&self) -> $crate::scene::Heading<'_> {
+                $crate::scene::Heading {
+                    title: &self.title,
+                    source: &self.source,
+                    assumptions: &self.assumptions,
+                    sweeps: &self.sweeps,
+                    checks: &self.checks,
+                }
+            }
+        }
+    };
+}
+pub(crate) use case_file;
+
+/// What a case of one scene says and does.
+pub trait SceneCase:
+    Headed + Serialize + DeserializeOwned + JsonSchema + Send + Sync + Sized + 'static
+{
     /// Everything that is wrong with a case that could be read, sweeps and checks apart.
     fn legal(loaded: &Loaded<Self>) -> Vec<BuildError>;
 
@@ -264,11 +317,15 @@ fn legal_changes(scene: &dyn Scene, heading: Heading<'_>) -> Vec<BuildError> {
         }
     }
     for (k, c) in heading.checks.iter().enumerate() {
-        if !c.set.is_empty()
-            && seen.insert(&c.set)
-            && let Err(e) = changed(scene, &c.set)
-        {
-            errors.push(BuildError::at(format!("checks.{k}.set"), e.to_string()));
+        for (field, set) in [("set", Some(&c.set)), ("against", c.against.as_ref())] {
+            if let Some(set) = set.filter(|s| !s.is_empty() && seen.insert(*s))
+                && let Err(e) = changed(scene, set)
+            {
+                errors.push(BuildError::at(format!("checks.{k}.{field}"), e.to_string()));
+            }
+        }
+        if c.relative && c.against.is_none() {
+            errors.push(BuildError::at(format!("checks.{k}.relative"), "needs `against`"));
         }
         for (j, e) in c.expect.iter().enumerate() {
             if !(e.value.is_finite() && e.tolerance.is_finite() && e.tolerance >= 0.0) {
@@ -305,34 +362,59 @@ pub(crate) fn run(scene: &dyn Scene, progress: &mut dyn FnMut(Progress)) -> Resu
     result.assumptions = heading.assumptions.to_vec();
     result.scene = scene_of(scene.source(), scene.overrides()).unwrap_or_default();
     sweep::run(scene, heading.sweeps, &mut result, progress)?;
+    let mut known = Known::new();
+    known.insert(&[], result.results.clone());
     for (k, c) in heading.checks.iter().enumerate() {
         progress(Progress {
             phase: "comparing with the source".into(),
             fraction: k as f64 / heading.checks.len() as f64,
         });
-        let variant = if c.set.is_empty() { None } else { Some(changed(scene, &c.set)?.once(&mut |_| {})?) };
-        let results = variant.as_ref().map_or(&result.results, |r| &r.results);
-        let rows: Result<Vec<Check>, RunError> = c.expect.iter().map(|e| check(e, &c.set, results)).collect();
-        result.checks.extend(rows?);
+        for set in [Some(&c.set), c.against.as_ref()].into_iter().flatten() {
+            if !known.contains_key(set.as_slice()) {
+                known.insert(set, changed(scene, set)?.once(&mut |_| {})?.results);
+            }
+        }
+        for e in &c.expect {
+            result.checks.push(check(c, e, &known)?);
+        }
     }
     Ok(result)
 }
 
-fn check(e: &Expect, set: &[String], results: &IndexMap<String, Value>) -> Result<Check, RunError> {
+/// Results by the setting that gives them.
+type Known<'a> = HashMap<&'a [String], IndexMap<String, Value>>;
+
+fn check(c: &CheckCase, e: &Expect, known: &Known<'_>) -> Result<Check, RunError> {
     let name = e.result.as_str();
-    let Some(v) = results.get(name) else {
-        let known: Vec<&str> = results.keys().map(String::as_str).collect();
-        let near = crate::load::advice(name, &known);
-        return Err(RunError::Refused(format!(
-            "a check names the result `{name}`, which this case does not have; {near}"
-        )));
+    let find = |set: &[String]| -> Result<&Value, RunError> {
+        let results = &known[set];
+        results.get(name).ok_or_else(|| {
+            let names: Vec<&str> = results.keys().map(String::as_str).collect();
+            let near = crate::load::advice(name, &names);
+            RunError::Refused(format!(
+                "a check names the result `{name}`, which this case does not have; {near}"
+            ))
+        })
+    };
+    let own = find(&c.set)?;
+    let (value, unit, result) = match &c.against {
+        None => (own.value, own.unit.clone(), name.to_owned()),
+        Some(from) => {
+            let from = find(from)?.value;
+            if c.relative {
+                (own.value / from - 1.0, "1".into(), format!("relative change of {name}"))
+            } else {
+                (own.value - from, own.unit.clone(), format!("change of {name}"))
+            }
+        }
     };
     Ok(Check {
-        set: set.to_vec(),
-        result: name.to_owned(),
-        value: v.value,
+        set: c.set.clone(),
+        against: c.against.clone(),
+        result,
+        value,
         reference: e.value,
-        unit: v.unit.clone(),
+        unit,
         tolerance: e.tolerance,
         source: e.source.clone(),
         must_fail: e.must_fail,

@@ -10,59 +10,41 @@ use gudgeon_core::quantity::{
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::scene::{CheckCase, SceneName};
-use crate::sweep::Sweep;
+use crate::scene::case_file;
 
-/// Design of a gudgeon pin and of the piston around it. Give any of `pin`, `skirt`, `crown` and `dimensions`.
-#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PinCase {
-    /// What is simulated.
-    pub scene: SceneName,
-    /// One line for reports.
-    #[serde(default)]
-    pub title: String,
-    /// Where the case comes from.
-    #[serde(default)]
-    pub source: String,
-    /// Inputs that no source gives and that were assumed, one sentence each. Reports show them.
-    #[serde(default)]
-    pub assumptions: Vec<String>,
-    /// Engine.
-    pub engine: Engine,
-    /// Piston.
-    #[serde(default)]
-    pub piston: Piston,
-    /// Gudgeon pin: evaluated as it stands, or the start of `optimise`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub pin: Option<Pin>,
-    /// Greatest admitted values.
-    #[serde(default)]
-    pub limits: Limits,
-    /// The lightest pin that keeps the limits.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub optimise: Option<Optimise>,
-    /// Clearance, profile and ovality of the skirt.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub skirt: Option<Skirt>,
-    /// Recess in the crown.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub crown: Option<Crown>,
-    /// Main dimensions, beside the guide.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub dimensions: Option<Dimensions>,
-    /// Sub-models.
-    #[serde(default)]
-    pub models: Models,
-    /// Constants in which a published program differs.
-    #[serde(default)]
-    pub conventions: Conventions,
-    /// Inputs that are varied, one or two: every combination is run.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub sweeps: Vec<Sweep>,
-    /// Results of a source to compare with.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub checks: Vec<CheckCase>,
+case_file! {
+    /// Design of a gudgeon pin and of the piston around it. Give any of `pin`, `skirt`, `crown` and `dimensions`.
+    pub struct PinCase {
+        /// Engine.
+        pub engine: Engine,
+        /// Piston.
+        #[serde(default)]
+        pub piston: Piston,
+        /// Gudgeon pin: evaluated as it stands, or the start of `optimise`.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub pin: Option<Pin>,
+        /// Greatest admitted values.
+        #[serde(default)]
+        pub limits: Limits,
+        /// The lightest pin that keeps the limits.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub optimise: Option<Optimise>,
+        /// Clearance, profile and ovality of the skirt.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub skirt: Option<Skirt>,
+        /// Recess in the crown.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub crown: Option<Crown>,
+        /// Main dimensions, beside the guide.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub dimensions: Option<Dimensions>,
+        /// Sub-models.
+        #[serde(default)]
+        pub models: Models,
+        /// Constants in which a published program differs.
+        #[serde(default)]
+        pub conventions: Conventions,
+    }
 }
 
 /// Engine.

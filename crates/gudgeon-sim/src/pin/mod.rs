@@ -13,20 +13,10 @@ use gudgeon_core::{BuildError, EvalError, Registry};
 
 use crate::load::Loaded;
 use crate::run::{Explanation, Progress, RunError, model_use};
-use crate::scene::{Heading, SceneCase};
+use crate::scene::SceneCase;
 use case::{Method, PinCase};
 
 impl SceneCase for PinCase {
-    fn heading(&self) -> Heading<'_> {
-        Heading {
-            title: &self.title,
-            source: &self.source,
-            assumptions: &self.assumptions,
-            sweeps: &self.sweeps,
-            checks: &self.checks,
-        }
-    }
-
     fn legal(loaded: &Loaded<Self>) -> Vec<BuildError> {
         let case = &loaded.value;
         let mut errors = Vec::new();

@@ -13,50 +13,32 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::case::{IntegratorName, default_model};
-use crate::scene::{CheckCase, SceneName};
-use crate::sweep::Sweep;
+use crate::scene::case_file;
 
-/// The lateral motion and the tilt of a piston in its bore.
-#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PistonSecondaryCase {
-    /// What is simulated.
-    pub scene: SceneName,
-    /// One line for reports.
-    #[serde(default)]
-    pub title: String,
-    /// Where the case comes from.
-    #[serde(default)]
-    pub source: String,
-    /// Inputs that no source gives and that were assumed, one sentence each. Reports show them.
-    #[serde(default)]
-    pub assumptions: Vec<String>,
-    /// Crank drive.
-    pub engine: Engine,
-    /// Piston and pin.
-    pub piston: Piston,
-    /// Connecting rod; without mass when absent.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub rod: Option<Rod>,
-    /// Skirt.
-    pub skirt: Skirt,
-    /// Crankcase.
-    #[serde(default)]
-    pub gas: Gas,
-    /// Sub-models.
-    pub models: Models,
-    /// How the equations are solved.
-    #[serde(default)]
-    pub solver: Solver,
-    /// What is wanted.
-    #[serde(default)]
-    pub outputs: Outputs,
-    /// Inputs that are varied, one or two: every combination is run.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub sweeps: Vec<Sweep>,
-    /// Results of a source to compare with.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub checks: Vec<CheckCase>,
+case_file! {
+    /// The lateral motion and the tilt of a piston in its bore.
+    pub struct PistonSecondaryCase {
+        /// Crank drive.
+        pub engine: Engine,
+        /// Piston and pin.
+        pub piston: Piston,
+        /// Connecting rod; without mass when absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub rod: Option<Rod>,
+        /// Skirt.
+        pub skirt: Skirt,
+        /// Crankcase.
+        #[serde(default)]
+        pub gas: Gas,
+        /// Sub-models.
+        pub models: Models,
+        /// How the equations are solved.
+        #[serde(default)]
+        pub solver: Solver,
+        /// What is wanted.
+        #[serde(default)]
+        pub outputs: Outputs,
+    }
 }
 
 /// Crank drive.

@@ -17,7 +17,7 @@ use gudgeon_core::{BuildError, Registry};
 
 use crate::load::Loaded;
 use crate::run::{Explanation, Progress, RunError, model_use};
-use crate::scene::{Heading, SceneCase};
+use crate::scene::SceneCase;
 use crate::study::{Contender, Race};
 use assemble::{Assembly, assemble};
 use case::{Method, PistonSecondaryCase};
@@ -27,19 +27,9 @@ use plan::ResultInfo;
 const YIELDING: f64 = 0.02;
 
 impl SceneCase for PistonSecondaryCase {
-    fn heading(&self) -> Heading<'_> {
-        Heading {
-            title: &self.title,
-            source: &self.source,
-            assumptions: &self.assumptions,
-            sweeps: &self.sweeps,
-            checks: &self.checks,
-        }
-    }
-
     fn legal(loaded: &Loaded<Self>) -> Vec<BuildError> {
         match assemble(&loaded.value, &loaded.source.folder, true) {
-            Ok(a) => plan::wanted(&loaded.value, a.period.to_degrees()).err().unwrap_or_default(),
+            Ok(a) => plan::wanted(&loaded.value, &a).err().unwrap_or_default(),
             Err(e) => e,
         }
     }
@@ -227,7 +217,7 @@ fn refused(e: Vec<BuildError>) -> RunError {
 }
 
 fn wanted(case: &PistonSecondaryCase, a: &Assembly) -> Result<Vec<ResultInfo>, RunError> {
-    plan::wanted(case, a.period.to_degrees()).map_err(refused)
+    plan::wanted(case, a).map_err(refused)
 }
 
 fn work(a: &Assembly, found: &march::Found) -> indexmap::IndexMap<String, u64> {

@@ -1,7 +1,9 @@
 //! Results of the scene, and what they need.
 
 use gudgeon_core::BuildError;
+use gudgeon_core::kinds::Lateral;
 
+use super::assemble::Assembly;
 use super::case::PistonSecondaryCase;
 
 /// One result.
@@ -44,9 +46,9 @@ pub const EXTREMES: [(&str, &str, &str, f64, &str); 6] = [
     ),
 ];
 
-/// Every result of a case.
+/// Every result of a case whose cycle has `period_deg` degrees; `inertial`: with inertia across the bore.
 #[must_use]
-pub fn catalogue(case: &PistonSecondaryCase, period_deg: f64) -> Vec<ResultInfo> {
+pub fn catalogue(case: &PistonSecondaryCase, period_deg: f64, inertial: bool) -> Vec<ResultInfo> {
     let mut all = Vec::new();
     let mut add = |name: &str, unit, flow, what: &str| {
         all.push(ResultInfo { name: name.into(), unit, what: what.into(), flow });
@@ -63,6 +65,8 @@ pub fn catalogue(case: &PistonSecondaryCase, period_deg: f64) -> Vec<ResultInfo>
         add("side_force_intake", "N", false, "largest side force between 0 and 180 deg");
     }
     for (name, unit, what) in [
+        ("e_top_mean", "um", "mean displacement of the upper edge"),
+        ("e_bottom_mean", "um", "mean displacement of the lower edge"),
         ("tilt_max", "um", "largest difference of the displacements of both edges"),
         ("h_min", "um", "smallest gap"),
         ("h_min_angle", "deg", "crank angle of the smallest gap"),
@@ -83,10 +87,13 @@ pub fn catalogue(case: &PistonSecondaryCase, period_deg: f64) -> Vec<ResultInfo>
         ("contact_end", "deg", "crank angle at which that stretch ends"),
         ("slap_energy", "mJ", "largest kinetic energy across the bore that an approach to a side loses"),
         ("slap_energy_angle", "deg", "crank angle at which it is largest"),
-        ("inertia_share", "1", "largest lateral inertia force over the largest side force"),
         ("periodicity_error", "um", "estimated distance from the periodic motion"),
     ] {
         add(name, unit, false, what);
+    }
+    if inertial {
+        let what = "largest lateral inertia force over the largest side force";
+        add("inertia_share", "1", false, what);
     }
     for (name, what) in [
         ("oil_up", "oil that leaves the skirt over its upper edges in a cycle, less what enters"),
@@ -114,8 +121,8 @@ pub fn tidy(deg: f64) -> f64 {
 ///
 /// # Errors
 /// Names that the scene does not have.
-pub fn wanted(case: &PistonSecondaryCase, period_deg: f64) -> Result<Vec<ResultInfo>, Vec<BuildError>> {
-    let all = catalogue(case, period_deg);
+pub fn wanted(case: &PistonSecondaryCase, a: &Assembly) -> Result<Vec<ResultInfo>, Vec<BuildError>> {
+    let all = catalogue(case, a.period.to_degrees(), a.lateral == Lateral::Inertial);
     if case.outputs.results.iter().any(|r| r == "all") {
         return Ok(all);
     }

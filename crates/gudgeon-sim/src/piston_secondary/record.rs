@@ -1,6 +1,7 @@
 //! One recorded cycle: the series, and the results that follow from it.
 
 use gudgeon_core::EvalError;
+use gudgeon_core::kinds::Lateral;
 use gudgeon_core::result::{Column, Event, Series, Value};
 use gudgeon_skirt::Instant;
 use indexmap::IndexMap;
@@ -45,7 +46,8 @@ const COLUMNS: [(&str, &str); 33] = [
     ("skirt.oil_aside", "m3/s"),
     ("skirt.yield", "m"),
 ];
-/// Of these, the ones of oil flow and of yielding, which are not always there.
+/// Of these, the ones of inertia across the bore, of oil flow and of yielding, which are not always there.
+const INERTIA: usize = 16;
 const OIL: std::ops::Range<usize> = 29..32;
 const YIELD: usize = 32;
 
@@ -66,6 +68,8 @@ pub struct Record {
     columns: Vec<Column>,
     flows: bool,
     elastic: bool,
+    /// Whether forces that are not in balance are those of inertia. Without it they are what the search for the balance leaves.
+    inertial: bool,
     every: usize,
     /// Maps of both sides in equal steps of crank angle.
     pub maps: [Vec<Map>; 2],
@@ -92,6 +96,7 @@ impl Record {
                 .collect(),
             flows,
             elastic: a.elastic,
+            inertial: a.lateral == Lateral::Inertial,
             every: case.outputs.map_step.map_or(0, |m| (m.si() / step).round().max(1.0) as usize),
             maps: Default::default(),
             peak: Default::default(),
@@ -200,7 +205,11 @@ impl Record {
     #[must_use]
     pub fn series(&self) -> Series {
         let theta = self.grid[..self.count].iter().map(|t| tidy(t.to_degrees())).collect();
-        let shown = |k: &usize| (self.flows || !OIL.contains(k)) && (self.elastic || *k != YIELD);
+        let shown = |k: &usize| {
+            (self.flows || !OIL.contains(k))
+                && (self.elastic || *k != YIELD)
+                && (self.inertial || *k != INERTIA)
+        };
         let columns = (0..self.columns.len()).filter(shown).map(|k| self.columns[k].clone()).collect();
         Series::over_cycle(theta, columns)
     }
@@ -313,9 +322,10 @@ impl Record {
         let (h, h_angle) = lowest(["thrust.h_min", "anti_thrust.h_min"], -1.0);
         let (p, p_angle) = lowest(["thrust.p_max", "anti_thrust.p_max"], 1.0);
         let (top, bottom) = (self.column("skirt.e_top"), self.column("skirt.e_bottom"));
+        let duration = a.period / self.omega;
+        let mean = |v: &[f64]| self.integral(|k| v[k]) / duration;
         let tilt = top.iter().zip(bottom).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         let power = self.column("skirt.friction_power");
-        let duration = a.period / self.omega;
         let work = self.integral(|k| power[k]);
         let speed = self.column("piston.v");
         let (ra, rb) = (self.column("thrust.rubbing_force"), self.column("anti_thrust.rubbing_force"));
@@ -328,6 +338,8 @@ impl Record {
         let largest = |name: &str| self.column(name).iter().fold(0.0_f64, |m, v| m.max(v.abs()));
         let side = largest("skirt.side_force");
         for (name, value) in [
+            ("e_top_mean", 1e6 * mean(top)),
+            ("e_bottom_mean", 1e6 * mean(bottom)),
             ("tilt_max", 1e6 * tilt),
             ("h_min", 1e6 * h),
             ("h_min_angle", h_angle),

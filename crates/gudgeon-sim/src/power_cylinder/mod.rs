@@ -12,20 +12,10 @@ use crate::case::RingPackCase;
 use crate::load::Loaded;
 use crate::piston_secondary::case::PistonSecondaryCase;
 use crate::run::{Checked, Explanation, Progress, RunError, check, explain};
-use crate::scene::{Heading, SceneCase};
+use crate::scene::SceneCase;
 use case::{Part, PowerCylinderCase};
 
 impl SceneCase for PowerCylinderCase {
-    fn heading(&self) -> Heading<'_> {
-        Heading {
-            title: &self.title,
-            source: &self.source,
-            assumptions: &self.assumptions,
-            sweeps: &self.sweeps,
-            checks: &self.checks,
-        }
-    }
-
     fn legal(loaded: &Loaded<Self>) -> Vec<BuildError> {
         parts(loaded).err().unwrap_or_default()
     }

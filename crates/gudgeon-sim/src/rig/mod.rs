@@ -10,20 +10,10 @@ use gudgeon_core::{BuildError, EvalError, Registry};
 
 use crate::load::Loaded;
 use crate::run::{Explanation, Progress, RunError, model_use};
-use crate::scene::{Heading, SceneCase};
+use crate::scene::SceneCase;
 use case::RigCase;
 
 impl SceneCase for RigCase {
-    fn heading(&self) -> Heading<'_> {
-        Heading {
-            title: &self.title,
-            source: &self.source,
-            assumptions: &self.assumptions,
-            sweeps: &self.sweeps,
-            checks: &self.checks,
-        }
-    }
-
     fn legal(loaded: &Loaded<Self>) -> Vec<BuildError> {
         match loaded.value.rig.build(&RigCtx { folder: &loaded.source.folder }) {
             Ok(_) => Vec::new(),

@@ -9,20 +9,10 @@ use super::{assemble, geometry, legal, meter, pack::Pack, solve, state_names};
 use crate::case::{IntegratorName, Method, RingPackCase};
 use crate::load::Loaded;
 use crate::run::{Explanation, Progress, RunError};
-use crate::scene::{Heading, SceneCase};
+use crate::scene::SceneCase;
 use crate::study::{Contender, Race};
 
 impl SceneCase for RingPackCase {
-    fn heading(&self) -> Heading<'_> {
-        Heading {
-            title: &self.title,
-            source: &self.source,
-            assumptions: &self.assumptions,
-            sweeps: &self.sweeps,
-            checks: &self.checks,
-        }
-    }
-
     fn legal(loaded: &Loaded<Self>) -> Vec<BuildError> {
         let mut errors = assemble::assemble(&loaded.value, &loaded.source.folder).err().unwrap_or_default();
         errors.extend(legal(&loaded.value));

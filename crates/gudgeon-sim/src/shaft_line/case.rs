@@ -12,68 +12,50 @@ use gudgeon_core::quantity::{
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::scene::{CheckCase, SceneName};
-use crate::sweep::Sweep;
+use crate::scene::case_file;
 
-/// A shaft line of a compressor, an engine or anything else that twists.
-#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ShaftLineCase {
-    /// What is simulated.
-    pub scene: SceneName,
-    /// One line for reports.
-    #[serde(default)]
-    pub title: String,
-    /// Where the case comes from.
-    #[serde(default)]
-    pub source: String,
-    /// Inputs that no source gives and that were assumed, one sentence each. Reports show them.
-    #[serde(default)]
-    pub assumptions: Vec<String>,
-    /// Mean speed of the reference shaft, that of inertias with ratio 1.
-    pub speed: PosAngularSpeed,
-    /// File in openTorsion's TORS format whose inertias and shafts come before those given here.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub tors: Option<String>,
-    /// Inertias.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub inertias: Vec<InertiaCase>,
-    /// Shafts, couplings and gear meshes between them.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub shafts: Vec<ShaftCase>,
-    /// Dampers, each an inertia on a link of its own.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub dampers: Vec<DamperCase>,
-    /// Crank throws.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub throws: Vec<ThrowCase>,
-    /// Motors, loads and given torques.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub drives: Vec<DriveCase>,
-    /// Sub-models.
-    #[serde(default)]
-    pub models: Models,
-    /// Conventions of a published program. The defaults are the physically correct ones.
-    #[serde(default)]
-    pub conventions: Conventions,
-    /// Orders and speeds that are looked at.
-    #[serde(default)]
-    pub range: Range,
-    /// Start and length of a motion over time.
-    #[serde(default)]
-    pub time: Option<TimeCase>,
-    /// Limits that results are held against.
-    #[serde(default)]
-    pub limits: Limits,
-    /// What is wanted.
-    #[serde(default)]
-    pub outputs: Outputs,
-    /// Inputs that are varied, one or two: every combination is run.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub sweeps: Vec<Sweep>,
-    /// Results of a source to compare with.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub checks: Vec<CheckCase>,
+case_file! {
+    /// A shaft line of a compressor, an engine or anything else that twists.
+    pub struct ShaftLineCase {
+        /// Mean speed of the reference shaft, that of inertias with ratio 1.
+        pub speed: PosAngularSpeed,
+        /// File in openTorsion's TORS format whose inertias and shafts come before those given here.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub tors: Option<String>,
+        /// Inertias.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        pub inertias: Vec<InertiaCase>,
+        /// Shafts, couplings and gear meshes between them.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        pub shafts: Vec<ShaftCase>,
+        /// Dampers, each an inertia on a link of its own.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        pub dampers: Vec<DamperCase>,
+        /// Crank throws.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        pub throws: Vec<ThrowCase>,
+        /// Motors, loads and given torques.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        pub drives: Vec<DriveCase>,
+        /// Sub-models.
+        #[serde(default)]
+        pub models: Models,
+        /// Conventions of a published program. The defaults are the physically correct ones.
+        #[serde(default)]
+        pub conventions: Conventions,
+        /// Orders and speeds that are looked at.
+        #[serde(default)]
+        pub range: Range,
+        /// Start and length of a motion over time.
+        #[serde(default)]
+        pub time: Option<TimeCase>,
+        /// Limits that results are held against.
+        #[serde(default)]
+        pub limits: Limits,
+        /// What is wanted.
+        #[serde(default)]
+        pub outputs: Outputs,
+    }
 }
 
 /// An inertia.

@@ -17,23 +17,13 @@ use gudgeon_torsion::torsion::Orders;
 
 use crate::load::Loaded;
 use crate::run::{Explanation, Progress, RunError, model_use};
-use crate::scene::{Heading, SceneCase};
+use crate::scene::SceneCase;
 use assemble::{Assembled, assemble, renamed};
 use case::ShaftLineCase;
 use plan::Plan;
 use results::Results;
 
 impl SceneCase for ShaftLineCase {
-    fn heading(&self) -> Heading<'_> {
-        Heading {
-            title: &self.title,
-            source: &self.source,
-            assumptions: &self.assumptions,
-            sweeps: &self.sweeps,
-            checks: &self.checks,
-        }
-    }
-
     fn legal(loaded: &Loaded<Self>) -> Vec<BuildError> {
         let case = &loaded.value;
         let mut errors = legal_values(case);
