@@ -243,6 +243,9 @@ fn checks(out: &mut String, checks: &[Check]) {
     out.push_str("</tbody></table></div></section>\n");
 }
 
+/// Parts of a cylinder: what the names of their results begin with, and their titles.
+const PARTS: [(&str, &str); 2] = [("rings.", "Rings"), ("skirt.", "Skirt")];
+
 /// Results that make a list too long for one column.
 const LONG: usize = 12;
 
@@ -250,18 +253,46 @@ const LONG: usize = 12;
 type Family<'a> = IndexMap<&'a str, BTreeMap<u32, (&'a str, &'a ResultValue)>>;
 
 fn results(out: &mut String, s: &Summary) {
+    out.push_str("<section id=\"results\"><h2>Results</h2>");
+    // A cylinder has the results of its parts behind those of the whole.
+    let part = |name: &str| PARTS.iter().find(|(p, _)| name.strip_prefix(p).is_some()).copied();
+    for (prefix, title) in std::iter::once(("", "")).chain(PARTS) {
+        let own: Vec<(&str, &str, &ResultValue)> = s
+            .results
+            .iter()
+            .filter(|(name, _)| part(name).map_or("", |(p, _)| p) == prefix)
+            .map(|(name, v)| (name.as_str(), &name[prefix.len()..], v))
+            .collect();
+        if own.is_empty() && !(prefix.is_empty() && s.results.is_empty()) {
+            continue;
+        }
+        if !title.is_empty() {
+            let _ = write!(out, "<h3>{title}</h3>");
+        }
+        part_results(out, s, &own);
+    }
+    out.push_str("</section>\n");
+}
+
+/// Results of one part: full name, name within the part, value.
+fn part_results(out: &mut String, s: &Summary, own: &[(&str, &str, &ResultValue)]) {
     let mut plain: Vec<(&str, &ResultValue)> = Vec::new();
     let mut families: IndexMap<&str, Family<'_>> = IndexMap::new();
-    for (name, v) in &s.results {
-        match name.split_once('.').and_then(|(head, rest)| Some((member(head)?, rest))) {
+    let mut angles: IndexMap<&str, IndexMap<&str, (&str, &ResultValue)>> = IndexMap::new();
+    for &(name, short, v) in own {
+        if let Some((what, angle)) = short.split_once('@') {
+            angles.entry(angle).or_default().insert(what, (name, v));
+            continue;
+        }
+        match short.split_once('.').and_then(|(head, rest)| Some((member(head)?, rest))) {
             Some(((family, n), rest)) => {
                 families.entry(family).or_default().entry(rest).or_default().insert(n, (name, v));
             }
             None => plain.push((name, v)),
         }
     }
-    out.push_str("<section id=\"results\"><h2>Results</h2><div class=\"results\">");
-    if plain.is_empty() && families.is_empty() {
+    out.push_str("<div class=\"results\">");
+    if own.is_empty() {
         out.push_str("<p class=\"hint\">This run computed no results.</p>");
     }
     // A long list stands in two columns, when nothing else stands beside it.
@@ -319,7 +350,34 @@ fn results(out: &mut String, s: &Summary) {
         }
         out.push_str("</tbody></table></div>");
     }
-    out.push_str(if families.is_empty() { "</div></section>\n" } else { "</div></div></section>\n" });
+    out.push_str(if families.is_empty() { "</div>" } else { "</div></div>" });
+    at_angles(out, s, &angles);
+}
+
+/// Results at crank angles: one row each.
+fn at_angles(out: &mut String, s: &Summary, angles: &IndexMap<&str, IndexMap<&str, (&str, &ResultValue)>>) {
+    let Some(first) = angles.values().next() else { return };
+    out.push_str("<div class=\"scroll\"><table class=\"plain angles\"><thead><tr><th class=\"num\">At crank angle</th>");
+    for (what, (name, v)) in first {
+        let title = s.descriptions.get(*name).map_or("", String::as_str);
+        let _ = write!(
+            out,
+            "<th class=\"num\" title=\"{}\"><code>{}</code> <span class=\"unit\">{}</span></th>",
+            esc(title),
+            esc(what),
+            esc(&unit(&v.unit))
+        );
+    }
+    out.push_str("</tr></thead><tbody>");
+    for (angle, row) in angles {
+        let _ = write!(out, "<tr><th class=\"num\" scope=\"row\">{}°</th>", esc(angle));
+        for what in first.keys() {
+            let text = row.get(what).map_or_else(|| "–".into(), |(_, v)| significant(v.value, 4));
+            let _ = write!(out, "<td class=\"num\">{text}</td>");
+        }
+        out.push_str("</tr>");
+    }
+    out.push_str("</tbody></table></div>");
 }
 
 /// One description for all members: what differs between theirs is the name of each.

@@ -35,12 +35,13 @@ pub struct SawtoothWaviness {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum WavinessTransport {
-    /// `h_c = h - Ω²/h`: exact.
+    /// `h_c = h - Ω²/h`: exact (`k_s = +1` in the equations of Loureiro). Waves strengthen the wedge of a tilted side: the EA111 piston is drawn to
+    /// one side until its crests touch.
     #[default]
     Homogenised,
-    /// `h_c = h + Ω²/h`: the sign that the program of Loureiro has.
+    /// `h_c = h + Ω²/h`: the sign that the program of Loureiro has (`k_s = -1`), by which waves weaken the wedge; what reproduces his results.
     AsPublished,
-    /// `h_c = h`: the waves do not change it.
+    /// `h_c = h`: the waves do not change it (`k_s = 0`).
     Smooth,
 }
 

@@ -76,6 +76,7 @@ function display(unit, max) {
     case "Pa s": return pick([[2, 1e3, "mPa·s"], [Infinity, 1, "Pa·s"]]);
     case "um": return { f: 1, label: "µm" };
     case "K": return { f: 1, label: "K" };
+    case "deg": return { f: 1, label: "°" };
     case "rad": return pick([[0.1, 1e3, "mrad"], [Infinity, 1, "rad"]]);
     case "rad/s": return { f: 1, label: "rad/s" };
     case "-": case "1": case "": return { f: 1, label: "" };

@@ -152,9 +152,13 @@
     }
     g.putImageData(image, 0, 0);
     s("image", { x: L, y: T, width: right - L, height: bottom - T, href: canvas.toDataURL(), preserveAspectRatio: "none" }, svg);
-    const ticksOf = (a, b, f, room) => linearTicks(Math.min(a, b) * f, Math.max(a, b) * f, room);
-    for (const t of ticksOf(xs[0], xs[nx - 1], ux.f, 6)) s("text", { x: X(t / ux.f), y: bottom + 15, "text-anchor": "middle", class: "dim" }, svg, tickText(t));
-    for (const t of ticksOf(ys[0], ys[ny - 1], uy.f, 5)) s("text", { x: L - 7, y: Y(t / uy.f) + 4, "text-anchor": "end", class: "dim" }, svg, tickText(t));
+    const ticksOf = (a, b, f, room, unit) => {
+      const lo = Math.min(a, b) * f, hi = Math.max(a, b) * f;
+      // Whole turns are read by quarters.
+      return unit === "deg" && hi - lo >= 360 ? linearTicks(lo / 90, hi / 90, (hi - lo) / 90).map((t) => 90 * t) : linearTicks(lo, hi, room);
+    };
+    for (const t of ticksOf(xs[0], xs[nx - 1], ux.f, 6, spec.xUnit)) s("text", { x: X(t / ux.f), y: bottom + 15, "text-anchor": "middle", class: "dim" }, svg, tickText(t));
+    for (const t of ticksOf(ys[0], ys[ny - 1], uy.f, 5, spec.yUnit)) s("text", { x: L - 7, y: Y(t / uy.f) + 4, "text-anchor": "end", class: "dim" }, svg, tickText(t));
     s("text", { x: (L + right) / 2, y: H - 6, "text-anchor": "middle" }, svg, spec.xName + (ux.label ? " [" + ux.label + "]" : ""));
     s("text", { x: 14, y: (T + bottom) / 2, "text-anchor": "middle", transform: `rotate(-90 14 ${(T + bottom) / 2})` }, svg, spec.yName + (uy.label ? " [" + uy.label + "]" : ""));
     for (let k = 0; k < 64; k++) s("rect", { x: right + 14, y: bottom - ((k + 1) / 64) * (bottom - T), width: 14, height: (bottom - T) / 64 + 0.6, style: `fill:rgb(${shade((k + 0.5) / 64).join(",")})` }, svg);

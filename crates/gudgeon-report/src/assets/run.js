@@ -54,18 +54,22 @@
     p.push(...take(`land${k}.p`, crankcase ? "crankcase" : `land ${k}`, { color: crankcase ? "var(--muted)" : color(k - 2) }));
   }
   for (let i = 1; i <= n; i++) p.push(...take(`ring${i}.back.p`, "behind ring " + i, { color: color(i - 1), dash: "5 4" }));
-  add(p, { title: "Gas pressures", hint: n > 1 ? "absolute; land 2 is below ring 1; behind the rings dashed" : "absolute; behind the ring dashed", modes: ["log", "linear"], height: 320, events: events(/^(land|cylinder)/) });
+  add(p, { title: "Gas pressures", hint: n > 1 ? "absolute; land 2 is below ring 1; behind the rings dashed" : n ? "absolute; behind the ring dashed" : "absolute", modes: ["log", "linear"], height: 320, events: events(/^(land|cylinder)/) });
 
   // The piston across its bore.
   const sides = events(/^(thrust side|anti-thrust side|piston)$/);
-  const edges = (key, title, hint) => add([...take("skirt.e_top" + key, "upper edge", { color: color(0) }), ...take("skirt.e_bottom" + key, "lower edge", { color: color(1) })], { title, hint, events: sides });
-  edges("", "Skirt across the bore", "towards the anti-thrust side positive");
-  edges("_rate", "Velocity across the bore", "towards the anti-thrust side positive");
-  const both = (key, title, hint, spec) => add([...take("thrust." + key, "thrust side", { color: color(0) }), ...take("anti_thrust." + key, "anti-thrust side", { color: color(1) })], Object.assign({ title, hint }, spec));
+  const edges = (key, title, hint) => add([...take("skirt.e_top" + key, "upper", { color: color(0) }), ...take("skirt.e_bottom" + key, "lower", { color: color(1) })], { title, hint, events: sides });
+  edges("", "Skirt across the bore", "its upper and lower edge, towards the anti-thrust side positive");
+  edges("_rate", "Velocity across the bore", "of its upper and lower edge, towards the anti-thrust side positive");
+  const both = (key, title, hint, spec) => {
+    const lines = [...take("thrust." + key, "thrust", { color: color(0) }), ...take("anti_thrust." + key, "anti-thrust", { color: color(1) })];
+    // Surfaces that never touch need no picture of it.
+    if (lines.some((l) => l.y.some((v) => v !== 0))) add(lines, Object.assign({ title, hint }, spec));
+  };
   add([...take("skirt.side_force", "film and contact", { color: color(0) }), ...take("rod.side_force", "rod", { color: color(1), dash: "5 4" })], { title: "Forces across the bore", hint: "towards the anti-thrust side positive", events: sides });
-  both("h_min", "Smallest gap", "of either side", { modes: ["linear", "log"] });
-  both("p_max", "Highest film pressure", "of either side, above that of the crankcase", { modes: ["linear", "log"] });
-  both("contact_force", "Force of solid contact", "across the bore");
+  both("h_min", "Smallest gap", "of the thrust and the anti-thrust side", { modes: ["linear", "log"] });
+  both("p_max", "Highest film pressure", "of the thrust and the anti-thrust side, above that of the crankcase", { modes: ["linear", "log"] });
+  both("contact_force", "Force of solid contact", "of the thrust and the anti-thrust side, across the bore");
   add(take("skirt.friction_force", "skirt", { color: color(0) }), { title: "Friction force of the skirt", hint: "on the piston, away from the head positive" });
   add(take("skirt.friction_power", "skirt", { color: color(0) }), { title: "Friction power of the skirt" });
 

@@ -6,7 +6,7 @@ use std::path::Path;
 use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{
     CylinderPressure, CylinderPressureCtx, GrooveFrictionCtx, Kinematics, KinematicsCtx, Lateral,
-    SkirtComplianceCtx, SkirtModes, SkirtProfileCtx,
+    SkirtComplianceCtx, SkirtModes, SkirtProfile, SkirtProfileCtx,
 };
 use gudgeon_skirt::{Body, ContactGrid, Crank, Instant, Panel, Piston, Rod, Side, SideSetup};
 
@@ -18,6 +18,8 @@ pub struct Assembly {
     pub piston: Piston,
     /// Motion along the bore.
     pub kinematics: Box<dyn Kinematics>,
+    /// Shape of the skirt.
+    pub profile: Box<dyn SkirtProfile>,
     /// Gas.
     pub cylinder: Box<dyn CylinderPressure>,
     /// How the motion across the bore comes about.
@@ -211,12 +213,15 @@ pub fn assemble(
     let motion = motion.map_err(|e| told(Some(e))).ok();
     let pin = pin.map_err(|e| told(Some(e))).ok();
     let groove = groove.map_err(|e| told(Some(e))).ok();
-    told(profile.err());
+    let profile = profile.map_err(|e| told(Some(e))).ok();
     told(thinning.err());
     let sides: Result<[Side; 2], _> = sides.try_into();
-    let (Some(kinematics), Some(cylinder), Some(oil), Some(motion), Some(pin), Some(groove), Ok(sides)) =
-        (kinematics, cylinder, oil, motion, pin, groove, sides)
+    let (Some(kinematics), Some(profile), Some(cylinder), Some(oil), Some(motion)) =
+        (kinematics, profile, cylinder, oil, motion)
     else {
+        return Err(errors);
+    };
+    let (Some(pin), Some(groove), Ok(sides)) = (pin, groove, sides) else {
         return Err(errors);
     };
     let mu = oil.viscosity(s.oil_temperature.si());
@@ -238,6 +243,7 @@ pub fn assemble(
     Ok(Assembly {
         piston: Piston::new(sides, body, crank, pin, groove),
         kinematics,
+        profile,
         cylinder,
         lateral: motion.lateral(),
         area,

@@ -65,16 +65,21 @@ pub struct Engine {
     pub cylinders: u32,
 }
 
-/// Side of the pin on which the centre of gravity stands.
+/// Side of the pin on which the centre of gravity stands. Loureiro (2009) gives its distance alone, and none of the two sides meets all his
+/// figures.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum GravitySide {
-    /// Towards the anti-thrust side: between a pin offset to the thrust side and the axis of the bore. The inertia of the piston along the bore
-    /// then counteracts the moment of the gas about an offset pin (the source's s_G = -1).
+    /// Towards the anti-thrust side: between a pin offset to the thrust side and the axis of the bore (the source's `s_G = -1`). The inertia of
+    /// the piston along the bore counteracts the moment of the gas about the pin. The EA111 piston is periodic within 8 cycles, its upper edge
+    /// crosses to the anti-thrust side about firing top dead centre, and lower waves drag less, as in the source; the motored piston of Zhu rests
+    /// on the wrong side.
     #[default]
     AntiThrust,
-    /// Towards the thrust side, beyond a pin offset to that side (s_G = +1, what the source's equation 59 gives when read with
-    /// its own sign of the inertia force). The mean lateral position then restores itself over tens of cycles.
+    /// Towards the thrust side, beyond a pin offset to that side (`s_G = +1`: the source's equation 59 with its own sign of the inertia
+    /// force). Both moments add. The motored piston rests on the side of the source. The mean lateral position of the EA111 piston restores itself over
+    /// some 20 cycles, passes the source's values near his fourth one, and ends nearer to the thrust side with half as much friction again; lower
+    /// waves then drag more.
     Thrust,
 }
 

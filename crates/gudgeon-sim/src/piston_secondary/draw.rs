@@ -11,6 +11,8 @@ use super::record::{Map, Record};
 const FRAME: f64 = 5.0;
 /// Part of the radius that the clearance takes up in the picture.
 const SHOWN: f64 = 0.35;
+/// Depths at which the outline of the skirt is drawn, less one.
+const OUTLINE: usize = 16;
 /// Part of the radius that the highest pressure takes up beside the liner.
 const PRESSURE: f64 = 0.9;
 
@@ -30,13 +32,13 @@ pub fn figures(a: &Assembly, record: &Record, result: &mut RunResult) {
             title: format!("Pressure on the {} over the cycle", words[k]),
             hint: "along the middle of the side, height above the lower edge".into(),
             table,
-            kind: FigureKind::Map { x: "theta".into(), y: "height".into(), value: "p".into() },
+            kind: FigureKind::Map { x: "crank_angle".into(), y: "height".into(), value: "p".into() },
         });
         let table = format!("{}_pressure", names[k]);
         result.tables.insert(table.clone(), over_side(side, peak));
         result.figures.push(Figure {
-            title: format!("Pressure on the {} at {} deg", words[k], peak.theta_deg),
-            hint: "where it is highest in the cycle; angle from the middle of the side, height above the lower edge".into(),
+            title: format!("Pressure on the {} at {}°", words[k], peak.theta_deg),
+            hint: "when it is highest; angle from the middle of the side, height above the lower edge".into(),
             table,
             kind: FigureKind::Map { x: "angle".into(), y: "height".into(), value: "p".into() },
         });
@@ -64,7 +66,7 @@ fn middle_over_cycle(side: &Side, maps: &[Map]) -> Series {
         }
     }
     Series {
-        axis: column("theta", "deg", theta),
+        axis: column("crank_angle", "deg", theta),
         columns: vec![column("height", "m", height), column("p", "Pa", p)],
     }
 }
@@ -108,7 +110,7 @@ fn piston(a: &Assembly, record: &Record) -> Figure {
     let thick = 0.12 * radius;
     let highest = record.maps.iter().flatten().flat_map(|m| &m.p).fold(1.0_f64, |m, p| m.max(*p));
     let mut fixed =
-        vec![line(vec![[0.0, head + 0.3 * radius], [0.0, -1.2 * crank.radius]], false, Style::Axis)];
+        vec![line(vec![[0.0, head + 0.2 * radius], [0.0, -1.2 * crank.radius]], false, Style::Axis)];
     for side in [-1.0, 1.0] {
         let x = side * wall;
         fixed.push(line(
@@ -117,44 +119,38 @@ fn piston(a: &Assembly, record: &Record) -> Figure {
             Style::Cut,
         ));
     }
-    fixed.push(text([-wall - thick, head + 0.12 * radius], "thrust side".into(), Anchor::Middle));
-    fixed.push(text([wall + thick, head + 0.12 * radius], "anti-thrust side".into(), Anchor::Middle));
+    fixed.push(text([-wall - thick, head + 0.2 * radius], "thrust side".into(), Anchor::Middle));
+    fixed.push(text([wall + thick, head + 0.2 * radius], "anti-thrust side".into(), Anchor::Middle));
     let centre = [-crank.crank_offset, 0.0];
     fixed.push(Shape::Circle { centre, radius: crank.radius, style: Style::Thin });
     fixed.push(Shape::Dimension {
         from: [-wall, end],
         to: [-radius, end],
-        offset: -0.35 * radius,
-        text: format!("{} um", tidy(1e6 * a.clearance)),
+        offset: -0.45 * radius,
+        text: format!("{} µm", tidy(1e6 * a.clearance)),
     });
     let (et, eb) = (record.column("skirt.e_top"), record.column("skirt.e_bottom"));
     let force = record.column("skirt.side_force");
     let rows = record.rows();
     let every = ((FRAME.to_radians() / (rows[1] - rows[0])).round() as usize).max(1);
+    // Displacement at a depth below the upper edge of the skirt, magnified, and how far the skirt stands back there.
+    let moved = |k: usize, depth: f64| magnified * (et[k] + (eb[k] - et[k]) * depth / body.length);
+    let relief = |depth: f64| magnified * a.profile.depth(depth, 0.0);
+    // The crown is much farther from the liner than the skirt: as wide as leaves it free at this magnification.
+    let up = body.pin - crown;
+    let farthest = (0..et.len()).map(|k| moved(k, up).abs().max(moved(k, 0.0).abs())).fold(0.0, f64::max);
+    let land = (wall - farthest - 0.05 * radius).clamp(0.4 * radius, 0.985 * radius);
     let mut frames = Vec::new();
     for k in (0..et.len()).step_by(every) {
         let theta = rows[k];
         let motion = a.kinematics.motion(theta);
-        // Displacement at a depth below the upper edge of the skirt, magnified.
-        let aside = |depth: f64| magnified * (et[k] + (eb[k] - et[k]) * depth / body.length);
         let height = |depth: f64| motion.y + body.pin - depth;
-        let at = |across: f64, depth: f64| [across + aside(depth), height(depth)];
-        let up = body.pin - crown;
-        let land = 0.985 * radius;
-        let mut shapes = vec![line(
-            vec![
-                at(-land, up),
-                at(land, up),
-                at(land, 0.0),
-                at(radius, 0.0),
-                at(radius, body.length),
-                at(-radius, body.length),
-                at(-radius, 0.0),
-                at(-land, 0.0),
-            ],
-            true,
-            Style::Metal,
-        )];
+        let at = |across: f64, depth: f64| [across + moved(k, depth), height(depth)];
+        let depth = |i: usize| body.length * i as f64 / OUTLINE as f64;
+        let mut outline = vec![at(-land, 0.0), at(-land, up), at(land, up), at(land, 0.0)];
+        outline.extend((0..=OUTLINE).map(|i| at(radius - relief(depth(i)), depth(i))));
+        outline.extend((0..=OUTLINE).rev().map(|i| at(relief(depth(i)) - radius, depth(i))));
+        let mut shapes = vec![line(outline, true, Style::Metal)];
         let pin = at(-crank.pin_offset, body.pin);
         let (sin, cos) = theta.sin_cos();
         let crank_pin = [centre[0] + crank.radius * sin, crank.radius * cos];
@@ -183,21 +179,22 @@ fn piston(a: &Assembly, record: &Record) -> Figure {
             shapes.push(line(points, true, Style::Oil));
         }
         shapes.push(text(
-            [0.0, head + 0.4 * radius],
+            [0.0, head + 0.55 * radius],
+            // Adding zero turns -0 into 0.
             format!(
-                "upper edge {:.2} um, lower edge {:.2} um, side force {:.0} N",
-                1e6 * et[k],
-                1e6 * eb[k],
-                force[k]
+                "upper edge {:.2} µm, lower edge {:.2} µm, side force {:.0} N",
+                1e6 * et[k] + 0.0,
+                1e6 * eb[k] + 0.0,
+                force[k].round() + 0.0
             ),
             Anchor::Middle,
         ));
-        frames.push(Frame { label: format!("{deg} deg"), shapes });
+        frames.push(Frame { label: format!("{deg}°"), shapes });
     }
     Figure {
         title: "The piston in its bore".into(),
         hint: format!(
-            "displacement, tilt and clearance magnified {magnified:.0} times; film pressure along the middle of both sides, {:.1} bar at most",
+            "displacement, tilt, clearance and profile magnified {magnified:.0} times; film pressure along the middle of both sides, {:.1} bar at most",
             1e-5 * highest
         ),
         table: String::new(),

@@ -114,7 +114,7 @@ impl SceneCase for PistonSecondaryCase {
             notes: found.notes.clone(),
         };
         result.solver.notes.push(format!(
-            "centre of gravity {:.3} mm from the pin on its {} side",
+            "Centre of gravity {:.3} mm from the pin on its {} side",
             1e3 * case.piston.gravity_offset.si(),
             match case.piston.gravity_side {
                 case::GravitySide::Thrust => "thrust",

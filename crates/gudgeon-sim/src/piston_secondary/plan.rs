@@ -19,15 +19,15 @@ pub struct ResultInfo {
     pub flow: bool,
 }
 
-/// Quantities that [`Outputs::at`](super::case::Outputs::at) tells at a crank angle: name, unit, column, factor.
-pub const AT: [(&str, &str, &str, f64); 7] = [
-    ("e_top", "um", "skirt.e_top", 1e6),
-    ("e_bottom", "um", "skirt.e_bottom", 1e6),
-    ("e_top_rate", "um/s", "skirt.e_top_rate", 1e6),
-    ("e_bottom_rate", "um/s", "skirt.e_bottom_rate", 1e6),
-    ("side_force", "N", "skirt.side_force", 1.0),
-    ("side_moment", "N m", "skirt.side_moment", 1.0),
-    ("friction_force", "N", "skirt.friction_force", 1.0),
+/// Quantities that [`Outputs::at`](super::case::Outputs::at) tells at a crank angle: name, unit, column, factor, what.
+pub const AT: [(&str, &str, &str, f64, &str); 7] = [
+    ("e_top", "um", "skirt.e_top", 1e6, "displacement of the upper edge"),
+    ("e_bottom", "um", "skirt.e_bottom", 1e6, "displacement of the lower edge"),
+    ("e_top_rate", "um/s", "skirt.e_top_rate", 1e6, "velocity of the upper edge"),
+    ("e_bottom_rate", "um/s", "skirt.e_bottom_rate", 1e6, "velocity of the lower edge"),
+    ("side_force", "N", "skirt.side_force", 1.0, "side force"),
+    ("side_moment", "N m", "skirt.side_moment", 1.0, "moment of the side force about the pin"),
+    ("friction_force", "N", "skirt.friction_force", 1.0, "friction force"),
 ];
 
 /// Results that are the largest and smallest value of a column and where: name, unit, column, factor, what.
@@ -104,8 +104,8 @@ pub fn catalogue(case: &PistonSecondaryCase, period_deg: f64, inertial: bool) ->
     }
     for angle in &case.outputs.at {
         let deg = angle.si().to_degrees();
-        for (name, unit, _, _) in AT {
-            add(&format!("{name}@{}", tidy(deg)), unit, false, &format!("{name} at {} deg", tidy(deg)));
+        for (name, unit, _, _, what) in AT {
+            add(&format!("{name}@{}", tidy(deg)), unit, false, &format!("{what} at {} deg", tidy(deg)));
         }
     }
     all

@@ -367,7 +367,7 @@ impl Record {
         }
         for angle in &case.outputs.at {
             let deg = tidy(angle.si().to_degrees());
-            for (name, _, column, factor) in AT {
+            for (name, _, column, factor, _) in AT {
                 let v = self.column(column);
                 known.insert(format!("{name}@{deg}"), factor * v.get(row_at(deg)).copied().unwrap_or(0.0));
             }
