@@ -1,53 +1,16 @@
 //! The right-hand side of a whole ring pack and its Jacobian allocate nothing.
-#![allow(
-    unsafe_code,
-    reason = "a global allocator that counts is the only way to see allocations, and its trait is unsafe"
-)]
 
 mod common;
+#[path = "common/counting.rs"]
+mod counting;
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
 use std::path::Path;
 
 use common::*;
+use counting::allocations;
 use gudgeon_sim::case::RingPackCase;
 use gudgeon_sim::ring_pack::assemble::assemble;
 use gudgeon_sim::ring_pack::pack::Base;
-
-thread_local! {
-    // Per thread: the test harness allocates on its own.
-    static COUNT: Cell<u64> = const { Cell::new(0) };
-}
-
-struct Counting;
-
-fn count() {
-    // A thread that ends may still free and allocate: those are not ours.
-    let _ = COUNT.try_with(|c| c.set(c.get() + 1));
-}
-
-// SAFETY: every call is handed to the system's allocator unchanged.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        count();
-        unsafe { System.alloc(layout) }
-    }
-    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
-        count();
-        unsafe { System.alloc_zeroed(layout) }
-    }
-    unsafe fn realloc(&self, block: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        count();
-        unsafe { System.realloc(block, layout, size) }
-    }
-    unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
-        unsafe { System.dealloc(block, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 #[test]
 fn a_right_hand_side_allocates_nothing() {
@@ -67,7 +30,7 @@ fn a_right_hand_side_allocates_nothing() {
         // arrays.
         for k in 0..1440 {
             if k == 720 {
-                before = COUNT.with(Cell::get);
+                before = allocations();
                 answered = 0;
             }
             let theta = f64::from(k % 720).to_radians();
@@ -82,7 +45,7 @@ fn a_right_hand_side_allocates_nothing() {
                 answered += 1;
             }
         }
-        let allocations = COUNT.with(Cell::get) - before;
+        let allocations = allocations() - before;
         assert!(answered > 600, "{gas}: {answered} of 720 states can be evaluated");
         // A state that a model refuses costs the text of its refusal.
         assert!(allocations <= 10 * (720 - answered), "{gas}: {allocations} allocations, {answered} answers");

@@ -1,12 +1,9 @@
 //! Films allocate when they are built, not when they are solved.
-#![allow(
-    unsafe_code,
-    reason = "a global allocator that counts is the only way to see allocations, and its trait is unsafe"
-)]
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
+#[path = "../../../tests/tests/common/counting.rs"]
+mod counting;
 
+use counting::allocations;
 use gudgeon_core::kinds::{
     Film1dCtx, Film1dIn, Film1dSpec, Film2dCtx, Film2dGrid, Film2dIn, Film2dSpec, FilmEnd, FilmMode, FilmTime,
 };
@@ -14,40 +11,6 @@ use gudgeon_film::film_1d::{
     Complementarity, ElrodAdams, FrontTracking, LineProfile, LineSolver, ViscosityLoop,
 };
 use gudgeon_film::film_2d::{Cavitation, Direct, Multigrid, Sor};
-
-thread_local! {
-    // Per thread: the test harness allocates on its own.
-    static COUNT: Cell<u64> = const { Cell::new(0) };
-}
-
-struct Counting;
-
-fn count() {
-    // A thread that ends may still free and allocate: those are not ours.
-    let _ = COUNT.try_with(|c| c.set(c.get() + 1));
-}
-
-// SAFETY: every call is handed to the system's allocator unchanged.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        count();
-        unsafe { System.alloc(layout) }
-    }
-    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
-        count();
-        unsafe { System.alloc_zeroed(layout) }
-    }
-    unsafe fn realloc(&self, block: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        count();
-        unsafe { System.realloc(block, layout, size) }
-    }
-    unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
-        unsafe { System.dealloc(block, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 #[test]
 fn a_film_along_a_line_allocates_nothing() {
@@ -74,7 +37,7 @@ fn a_film_along_a_line_allocates_nothing() {
             p_cav: 0.0,
             time,
         };
-        let before = COUNT.with(Cell::get);
+        let before = allocations();
         for u in [2.0, -2.0, 0.0, 50.0] {
             let out = film.solve(&inp(u, FilmTime::Steady)).expect("a film");
             assert!(out.flux_error < 1e-9);
@@ -87,7 +50,7 @@ fn a_film_along_a_line_allocates_nothing() {
                 film.solve(&inp(u, FilmTime::Step { dt: 1e-4, content: &content })).expect("a film");
             }
         }
-        assert_eq!(COUNT.with(Cell::get) - before, 0, "model {k}");
+        assert_eq!(allocations() - before, 0, "model {k}");
     }
 }
 
@@ -106,11 +69,11 @@ fn a_film_along_and_across_allocates_nothing() {
         ];
         for spec in specs {
             let mut film = spec.build(&Film2dCtx { grid: &grid }).unwrap();
-            let before = COUNT.with(Cell::get);
+            let before = allocations();
             let first = film.solve(&inp).unwrap();
             let second = film.solve(&Film2dIn { u: -2.0, ..inp }).unwrap();
             film.solve_many(&inp, &modes, &mut p).unwrap();
-            let after = COUNT.with(Cell::get);
+            let after = allocations();
             assert!(first.load > 0.0 && second.load > 0.0);
             assert_eq!(after - before, 0, "{spec:?}");
         }

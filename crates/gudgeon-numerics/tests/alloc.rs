@@ -1,50 +1,13 @@
 //! The step loops of the integrators allocate nothing: a long integration takes as many allocations as a short one.
-#![allow(
-    unsafe_code,
-    reason = "a global allocator that counts is the only way to see allocations, and its trait is unsafe"
-)]
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
+#[path = "../../../tests/tests/common/counting.rs"]
+mod counting;
 
+use counting::allocations;
 use gudgeon_core::EvalError;
 use gudgeon_numerics::ode::{ColumnGroups, Flow, Integrator, OdeSystem, Options, Stats};
 use gudgeon_numerics::radau::Radau5;
 use gudgeon_numerics::rodas::Rodas;
-
-thread_local! {
-    // Per thread: the test harness allocates on its own.
-    static COUNT: Cell<u64> = const { Cell::new(0) };
-}
-
-struct Counting;
-
-fn count() {
-    // A thread that ends may still free and allocate: those are not ours.
-    let _ = COUNT.try_with(|c| c.set(c.get() + 1));
-}
-
-// SAFETY: every call is handed to the system's allocator unchanged.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        count();
-        unsafe { System.alloc(layout) }
-    }
-    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
-        count();
-        unsafe { System.alloc_zeroed(layout) }
-    }
-    unsafe fn realloc(&self, block: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        count();
-        unsafe { System.realloc(block, layout, size) }
-    }
-    unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
-        unsafe { System.dealloc(block, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 /// A forced chain of oscillators with a stiff end, which now and then refuses a trial state.
 struct Chain;
@@ -74,7 +37,7 @@ fn allocations(integrator: &mut dyn Integrator<Chain>, cycles: u32) -> (u64, Sta
     let options = Options { h_init: 1.0, ..Options::new(1e-7, &[1.0; 6]) };
     let (mut y, mut q, mut stats) = ([0.0; 6], [0.0], Stats::default());
     let (mut steps, mut middle) = (0, [0.0; 6]);
-    let before = COUNT.get();
+    let before = allocations();
     let end = 5.0 * f64::from(cycles);
     let result = integrator.integrate(
         &mut Chain,
@@ -90,7 +53,7 @@ fn allocations(integrator: &mut dyn Integrator<Chain>, cycles: u32) -> (u64, Sta
             Flow::Continue
         },
     );
-    let count = COUNT.get() - before;
+    let count = allocations() - before;
     assert!(result.is_ok(), "{result:?}");
     assert_eq!(steps, stats.steps);
     (count, stats)
