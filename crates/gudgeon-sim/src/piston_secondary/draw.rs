@@ -127,8 +127,11 @@ fn piston(a: &Assembly, record: &Record) -> Figure {
         from: [-wall, end],
         to: [-radius, end],
         offset: -0.45 * radius,
-        text: format!("{} µm", tidy(1e6 * a.clearance)),
+        text: String::new(),
     });
+    // Beside the arrows, which leave no room for it.
+    let clearance = format!("{} µm", tidy(1e6 * a.clearance));
+    fixed.push(text([-wall - 0.1 * radius, end - 0.45 * radius], clearance, Anchor::End));
     let (et, eb) = (record.column("skirt.e_top"), record.column("skirt.e_bottom"));
     let force = record.column("skirt.side_force");
     let rows = record.rows();

@@ -187,7 +187,7 @@ fn contenders(case: &PistonSecondaryCase) -> Vec<Contender> {
             "{ model = \"direct\", cavitation = \"half_sommerfeld\" }",
             &[(2.0, 12, 10), (1.0, 16, 12), (0.5, 20, 16)][..],
         ),
-        (METHODS[3], "{ model = \"central_differences\" }", &[(0.5, 9, 9), (0.5, 19, 19)]),
+        (METHODS[3], "{ model = \"central_differences\" }", &[(0.5, 9, 9), (0.5, 13, 13)]),
     ] {
         for &(step, along, across) in points {
             let mut set = vec![

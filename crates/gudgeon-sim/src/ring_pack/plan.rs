@@ -53,12 +53,7 @@ pub fn catalogue(rings: usize, oil: bool) -> Vec<ResultInfo> {
     );
     add("cylinder.p_max".into(), "bar", Needs::Gas, "highest cylinder pressure".into());
     for k in 2..=rings {
-        add(
-            format!("land{k}.p_max"),
-            "bar",
-            Needs::Gas,
-            format!("highest pressure between rings {} and {k}", k - 1),
-        );
+        add(format!("land{k}.p_max"), "bar", Needs::Gas, format!("highest pressure of land {k}"));
         add(
             format!("land{k}.p_max_angle"),
             "deg",
