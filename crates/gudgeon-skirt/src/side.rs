@@ -400,12 +400,6 @@ impl Side {
         self.p.iter().fold(0.0, |a, &b| a.max(b))
     }
 
-    /// Largest elastic displacement over the gap of the present place, for the amplitudes `q` \[m\]; 0 for a rigid skirt.
-    #[must_use]
-    pub fn yielding(&self, q: &[f64]) -> f64 {
-        self.part_of_gap(q, self)
-    }
-
     /// Amplitudes \[m\] with which the shapes of this side yield to the pressure that `other`, the same side without shapes, found last.
     #[must_use]
     pub fn yields_to(&self, other: &Self) -> Vec<f64> {
@@ -415,7 +409,7 @@ impl Side {
         shapes.map(|(test, k)| test.iter().zip(&full).map(|(t, p)| t * p).sum::<f64>() / k).collect()
     }
 
-    /// Largest elastic displacement with the amplitudes `q` over the gap of `other`, which may be the same side without shapes.
+    /// Largest elastic displacement with the amplitudes `q` over the gap of `other`, the same side without shapes.
     #[must_use]
     pub fn part_of_gap(&self, q: &[f64], other: &Self) -> f64 {
         let n = self.nodes();
