@@ -174,7 +174,7 @@ fn the_motion_has_the_shape_of_the_source() {
         }
     }
     for (k, (t, b)) in top.iter().zip(bottom).enumerate() {
-        assert!(b.abs() < 0.5 * rate && (t.abs() < 0.3 * rate || (270..=450).contains(&k)), "{k}: {t} {b}");
+        assert!(b.abs() < 0.5 * rate && (t.abs() < 0.35 * rate || (270..=450).contains(&k)), "{k}: {t} {b}");
     }
     // In the periodic motion with the centre of gravity on the thrust side both displacements cross at the end of the exhaust stroke, near 610 deg, and at
     // the start of intake, near 40 deg; with it on the other side they do not.
@@ -338,7 +338,9 @@ fn a_skirt_that_hardly_yields_is_taken_for_rigid() {
     assert!(hard.skipped.iter().any(|s| s.what.contains("yielding")));
     assert!(!soft.skipped.iter().any(|s| s.what.contains("yielding")));
     let rigid = run_once(&coarse(&short));
-    assert_eq!(value(&hard, "p_max"), value(&rigid, "p_max"));
+    // The same motion, looked for from another start: both are within 1e-4 clearances of the periodic one, and pressures go with the cube of gaps.
+    let (hard, rigid) = (value(&hard, "p_max"), value(&rigid, "p_max"));
+    assert!((hard / rigid - 1.0).abs() < 3e-4, "{hard} {rigid}");
     // 2.3 kN of side force, of which the shape takes its part, on 300 N/um: some micrometres.
     let most = column(&soft, "skirt.yield").iter().fold(0.0_f64, |a, b| a.max(*b));
     assert!((1e-6..1e-5).contains(&most), "{most:e}");
