@@ -280,6 +280,16 @@ impl Piston {
         Ok(())
     }
 
+    /// Derivatives of the forces that [`Piston::residual`] found at the same arguments.
+    fn tangent(&mut self, now: &Instant, w: &[f64], slopes: Slopes) -> Result<(), EvalError> {
+        for side in 0..2 {
+            let (rates, loads) = (&self.own_rates[side], &mut self.loads[side]);
+            self.sides[side].slopes(now.speed, now.mu, rates, slopes, loads)?;
+        }
+        self.slopes(now, w);
+        Ok(())
+    }
+
     /// Forces of both sides and of all else, into `r`.
     fn left_over(&self, now: &Instant, x: &[f64], w: &[f64], trial: bool, r: &mut [f64]) {
         let loads = if trial { &self.trial } else { &self.loads };
@@ -404,7 +414,7 @@ impl Piston {
         let size = |r: &[f64]| r[first..].iter().map(|r| r * r).sum::<f64>().sqrt();
         let superposed = self.sides.iter().all(Side::is_superposed);
         let closed = if superposed { CLOSED } else { CLOSED_CAVITIES };
-        self.residual(now, x, w, Slopes::Film)?;
+        self.residual(now, x, w, Slopes::None)?;
         for count in 0..MOST_STEPS {
             let before = size(&self.r);
             let scale = self.force_scale(now);
@@ -415,9 +425,10 @@ impl Piston {
                 return Ok(());
             }
             self.best[first..].copy_from_slice(&w[first..]);
+            self.tangent(now, w, Slopes::Film)?;
             if !self.newton(first) || self.along_step(first) <= 0.0 {
                 // Where cavities leave nothing that resists, full films tell the way.
-                self.residual(now, x, w, Slopes::Full)?;
+                self.tangent(now, w, Slopes::Full)?;
                 if !self.newton(first) {
                     return Err(EvalError::recoverable(MODEL, "nothing resists the motion of the piston"));
                 }
@@ -431,7 +442,7 @@ impl Piston {
                 for i in 0..m {
                     w[first + i] = self.best[first + i] + part * self.step[i];
                 }
-                self.residual(now, x, w, Slopes::Film)?;
+                self.residual(now, x, w, Slopes::None)?;
                 let here = self.along_step(first);
                 if count >= PATIENCE {
                     // A film that is cut off is not quite the slope of anything, and may send the search in circles: the forces themselves must
@@ -461,7 +472,7 @@ impl Piston {
             if size(&self.r) >= before && before <= ROUNDED * closed * scale {
                 // Rounding: no step leads further.
                 w[first..].copy_from_slice(&self.best[first..]);
-                return self.residual(now, x, w, Slopes::Film);
+                return self.residual(now, x, w, Slopes::None);
             }
         }
         if size(&self.r) <= SLOW * self.force_scale(now) {
@@ -520,7 +531,7 @@ impl Piston {
                 if self.n > 2 {
                     self.balance(now, x, w, 2)?;
                 } else {
-                    self.residual(now, x, w, Slopes::Film)?;
+                    self.residual(now, x, w, Slopes::None)?;
                 }
                 *acceleration = accelerate(self.body.matrix(), [self.r[0], self.r[1]]);
                 Ok(())

@@ -575,44 +575,36 @@ impl Side {
         slopes: Slopes,
         out: &mut SideLoads,
     ) -> Result<(), EvalError> {
-        let n = self.nodes();
         out.contact = self.contact_now;
-        if self.superposition == Superposition::None {
+        if self.is_superposed() {
+            self.superpose(speed, rates);
+            self.cut(mu);
+        } else {
             self.solve_whole(false, speed, mu, rates)?;
-            self.sums(false, speed, mu, out);
-            if slopes != Slopes::None {
-                let count = rates.len();
-                out.slope.resize(count * (4 + self.elastic), 0.0);
-                let mut moved = rates.to_vec();
-                let base = (out.film, out.elastic.clone());
-                let kept = (self.p.clone(), self.fill.clone());
-                let mut there = SideLoads::default();
-                for m in 0..count {
-                    // Rates matter against the clearance per millisecond; the film is found to some 1e-9.
-                    let d = 1e-4 * rates[m].abs().max(1e-2 * self.clearance / 1e-3);
-                    moved[m] = rates[m] + d;
-                    self.solve_whole(false, speed, mu, &moved)?;
-                    moved[m] = rates[m];
-                    self.sums(false, speed, mu, &mut there);
-                    let row = &mut out.slope[m * (4 + self.elastic)..(m + 1) * (4 + self.elastic)];
-                    for k in 0..4 {
-                        row[k] = (there.film[k] - base.0[k]) / d;
-                    }
-                    for k in 0..self.elastic {
-                        row[4 + k] = (there.elastic[k] - base.1[k]) / d;
-                    }
-                }
-                (self.p, self.fill) = kept;
-            }
+        }
+        self.sums(false, speed, mu, out);
+        self.slopes(speed, mu, rates, slopes, out)
+    }
+
+    /// Derivatives of the forces that [`Side::loads`] just found, with the same arguments, into `out.slope`.
+    ///
+    /// # Errors
+    /// A film that cannot be solved.
+    pub fn slopes(
+        &mut self,
+        speed: f64,
+        mu: f64,
+        rates: &[f64],
+        slopes: Slopes,
+        out: &mut SideLoads,
+    ) -> Result<(), EvalError> {
+        if slopes == Slopes::None {
             return Ok(());
         }
-        self.superpose(speed, rates);
-        self.cut(mu);
-        self.sums(false, speed, mu, out);
-        if slopes != Slopes::None {
-            let width = 4 + self.elastic;
+        let (n, width) = (self.nodes(), 4 + self.elastic);
+        out.slope.resize(rates.len() * width, 0.0);
+        if self.is_superposed() {
             let all = if slopes == Slopes::Full { 1.0 } else { 0.0 };
-            out.slope.resize(rates.len() * width, 0.0);
             for (m, row) in out.slope.chunks_exact_mut(width).enumerate() {
                 let field = &self.fields[(1 + m) * n..(2 + m) * n];
                 let taken = &mut self.work[0];
@@ -621,7 +613,27 @@ impl Side {
                 }
                 self.over.sums(taken, &self.now.lever, row);
             }
+            return Ok(());
         }
+        let mut moved = rates.to_vec();
+        let kept = (self.p.clone(), self.fill.clone());
+        let mut there = SideLoads::default();
+        for m in 0..rates.len() {
+            // Rates matter against the clearance per millisecond; the film is found to some 1e-9.
+            let d = 1e-4 * rates[m].abs().max(1e-2 * self.clearance / 1e-3);
+            moved[m] = rates[m] + d;
+            self.solve_whole(false, speed, mu, &moved)?;
+            moved[m] = rates[m];
+            self.sums(false, speed, mu, &mut there);
+            let row = &mut out.slope[m * width..(m + 1) * width];
+            for k in 0..4 {
+                row[k] = (there.film[k] - out.film[k]) / d;
+            }
+            for k in 0..self.elastic {
+                row[4 + k] = (there.elastic[k] - out.elastic[k]) / d;
+            }
+        }
+        (self.p, self.fill) = kept;
         Ok(())
     }
 
