@@ -3,7 +3,6 @@
 #[path = "../../../tests/tests/common/counting.rs"]
 mod counting;
 
-use counting::allocations;
 use gudgeon_core::EvalError;
 use gudgeon_numerics::ode::{ColumnGroups, Flow, Integrator, OdeSystem, Options, Stats};
 use gudgeon_numerics::radau::Radau5;
@@ -37,7 +36,7 @@ fn allocations(integrator: &mut dyn Integrator<Chain>, cycles: u32) -> (u64, Sta
     let options = Options { h_init: 1.0, ..Options::new(1e-7, &[1.0; 6]) };
     let (mut y, mut q, mut stats) = ([0.0; 6], [0.0], Stats::default());
     let (mut steps, mut middle) = (0, [0.0; 6]);
-    let before = allocations();
+    let before = counting::allocations();
     let end = 5.0 * f64::from(cycles);
     let result = integrator.integrate(
         &mut Chain,
@@ -53,7 +52,7 @@ fn allocations(integrator: &mut dyn Integrator<Chain>, cycles: u32) -> (u64, Sta
             Flow::Continue
         },
     );
-    let count = allocations() - before;
+    let count = counting::allocations() - before;
     assert!(result.is_ok(), "{result:?}");
     assert_eq!(steps, stats.steps);
     (count, stats)
