@@ -102,7 +102,7 @@ impl Elimination {
             general: general.then(|| Banded::new(n, half, half)),
             is_symmetric: true,
             work: vec![0.0; n],
-            block: Vec::new(),
+            block: vec![[0.0; 4]; n],
         }
     }
 }
