@@ -71,6 +71,23 @@ impl Rodas {
     /// [`Rodas::new`] with a formula of choice.
     #[must_use]
     pub fn with(formula: Formula, dim: usize, quad_dim: usize, groups: Option<ColumnGroups>) -> Self {
+        Self::build(formula, dim, quad_dim, groups, false)
+    }
+
+    /// For a system of `dim` states without quadratures that solves its linear systems itself ([`OdeSystem::linearise`],
+    /// [`OdeSystem::factor`], [`OdeSystem::solve`]): no matrix is kept.
+    #[must_use]
+    pub fn structured(formula: Formula, dim: usize) -> Self {
+        Self::build(formula, dim, 0, None, true)
+    }
+
+    fn build(
+        formula: Formula,
+        dim: usize,
+        quad_dim: usize,
+        groups: Option<ColumnGroups>,
+        structured: bool,
+    ) -> Self {
         let tableau = match formula {
             Formula::Rodas5P => &tableau::RODAS5P,
             Formula::Rodas3 => &tableau::RODAS3,
@@ -78,8 +95,8 @@ impl Rodas {
         let stages = tableau.alpha.len();
         Self {
             tableau,
-            core: Core::new(dim, quad_dim, groups),
-            lu: vec![0.0; dim * dim],
+            core: Core::new(dim, quad_dim, groups, structured),
+            lu: vec![0.0; if structured { 0 } else { dim * dim }],
             piv: vec![0; dim],
             u: vec![0.0; stages * dim],
             g: vec![0.0; stages * quad_dim],
@@ -146,17 +163,24 @@ impl Scheme for Rodas {
             self.core.set_weights(opts);
             self.core.jac_current = true;
         }
-        for (w, j) in self.lu.iter_mut().zip(&self.core.jac) {
-            *w = -j;
-        }
         let diagonal = 1.0 / (h * tableau.gamma);
-        for i in 0..n {
-            self.lu[i * n + i] += diagonal;
-        }
         stats.lu += 1;
-        self.weight.copy_from_slice(&self.core.weight);
-        if lu_factor_weighted(&mut self.lu, n, &mut self.piv, Some(&mut self.weight)).is_err() {
-            return Ok(Trial::Retry(0.5));
+        let structured = self.core.structured;
+        if structured {
+            if !sys.factor(diagonal) {
+                return Ok(Trial::Retry(0.5));
+            }
+        } else {
+            for (w, j) in self.lu.iter_mut().zip(&self.core.jac) {
+                *w = -j;
+            }
+            for i in 0..n {
+                self.lu[i * n + i] += diagonal;
+            }
+            self.weight.copy_from_slice(&self.core.weight);
+            if lu_factor_weighted(&mut self.lu, n, &mut self.piv, Some(&mut self.weight)).is_err() {
+                return Ok(Trial::Retry(0.5));
+            }
         }
         let inv_h = 1.0 / h;
         for i in 0..stages {
@@ -198,7 +222,11 @@ impl Scheme for Rodas {
                     *x += d * ft;
                 }
             }
-            lu_solve(&self.lu, n, &self.piv, ui);
+            if structured {
+                sys.solve(ui);
+            } else {
+                lu_solve(&self.lu, n, &self.piv, ui);
+            }
             stats.solves += 1;
         }
         // y_tmp is the point of the last stage; adding its stage gives the result.

@@ -66,6 +66,9 @@ impl Coupling for Spring {
     fn linear(&self, _: f64, _: f64) -> LinearCoupling {
         self.law
     }
+    fn is_harmonic_only(&self) -> bool {
+        self.law.loss_factor != 0.0
+    }
     fn static_twist(&self, torque: f64) -> f64 {
         if self.law.stiffness > 0.0 { torque / self.law.stiffness } else { 0.0 }
     }

@@ -87,6 +87,12 @@ impl Coupling for Rubber {
             loss_factor: interpolate(&self.torque, &self.eta, t),
         }
     }
+    fn depends_on_load(&self) -> bool {
+        true
+    }
+    fn is_harmonic_only(&self) -> bool {
+        true
+    }
     fn static_twist(&self, torque: f64) -> f64 {
         // dT = K(T) dx, so x is the integral of 1/K over the torque; 1/K by straight pieces of K.
         let end = torque.abs();
