@@ -294,7 +294,7 @@ impl Dynamics {
         self.elastic(theta, omega, &mut w.held);
         let [at, moved, out] = &mut w.trial;
         // What a group does to itself, by differences: gas, drives, moving masses. One evaluation serves all groups.
-        let mut evaluate = |theta: &[f64], omega: &[f64], out: &mut [f64], own: &mut Self| {
+        let evaluate = |theta: &[f64], omega: &[f64], out: &mut [f64], own: &mut Self| {
             for i in 0..theta.len() {
                 out[i] = w.held[i] - own.damping[i] * omega[i] - own.ground[i] * theta[i];
             }

@@ -1,9 +1,11 @@
 //! The periodic motion of a line at constant mean speed, order by order: what several torsion models share.
 
-use gudgeon_core::kinds::{Line, OrderResponse, TorsionCtx};
+use gudgeon_core::kinds::{CouplingSpec, Line, LinearCoupling, OrderResponse, TorsionCtx};
+use gudgeon_core::quantity::quantity;
 use gudgeon_core::{BuildError, EvalError};
 use gudgeon_numerics::linalg::Complex;
 
+use crate::coupling::Linear;
 use crate::forcing::{Excitation, Order};
 use crate::tree::{Singular, Tree, Work};
 
@@ -36,6 +38,29 @@ pub(crate) fn drive_damping(line: &Line, tree: &mut Tree, speed: f64) {
         let ratio = line.nodes[d.node].ratio;
         tree.damping[p] -= d.factor * d.drive.torque(0.0, speed * ratio).slope * ratio * ratio;
     }
+}
+
+/// The line with the couplings that depend on their mean torque replaced by what they are in small vibration about it: the line whose
+/// natural frequencies are those at the speed of `ctx`. Laws over the frequency stay as they are.
+///
+/// # Errors
+/// As [`Tree::new`].
+pub fn about_mean_torque(ctx: &TorsionCtx<'_>) -> Result<Line, BuildError> {
+    let mut line = ctx.line.clone();
+    if line.links.iter().all(|l| !l.coupling.depends_on_load()) {
+        return Ok(line);
+    }
+    let mean = Steady::new(ctx)?.mean_torque;
+    for (l, mean) in line.links.iter_mut().zip(mean).filter(|(l, _)| l.coupling.depends_on_load()) {
+        let LinearCoupling { stiffness, damping, loss_factor } = l.coupling.linear(0.0, mean);
+        let law = Linear {
+            stiffness: quantity(stiffness),
+            damping: quantity(damping),
+            loss_factor: quantity(loss_factor),
+        };
+        l.coupling = law.build()?;
+    }
+    Ok(line)
 }
 
 impl Steady {

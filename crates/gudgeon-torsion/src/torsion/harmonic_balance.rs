@@ -1,6 +1,8 @@
 use std::f64::consts::PI;
 
-use gudgeon_core::kinds::{OrderResponse, Torsion, TorsionAnswer, TorsionCtx, TorsionOut, TorsionSpec};
+use gudgeon_core::kinds::{
+    LinearCoupling, OrderResponse, Torsion, TorsionAnswer, TorsionCtx, TorsionOut, TorsionSpec,
+};
 use gudgeon_core::quantity::{Positive, Ratio, quantity};
 use gudgeon_core::{BuildError, EvalError};
 use gudgeon_numerics::linalg::{Complex, lu_factor, lu_solve};
@@ -9,13 +11,14 @@ use serde::{Deserialize, Serialize};
 use crate::forcing::Order;
 use crate::steady::Steady;
 
-/// The periodic motion at constant mean speed with all that is not linear: variable inertia with its velocity-squared term, gas torques at
-/// the true angle, couplings that stiffen.
+/// The periodic motion at constant mean speed with all that is not linear: variable inertia with its velocity-squared term, gas torques and
+/// drives at the true angle and speed, couplings that stiffen.
 ///
 /// Each order is solved by elimination along the tree; what the linear line does not have is put on its right-hand side,
 ///
 /// ```text
-/// T_nl = Q(α) - Q(α₀) - (I(α) - Ī) θ'' - ½ I'(α) θ'²,   α = angle of the throw,
+/// T_nl = Q(α) - Q(α₀) - (I(α) - Ī) θ'' - ½ I'(α) θ'²,   α = angle of the throw;
+/// of a coupling: its torque less that of its tangent at the mean torque,
 /// ```
 ///
 /// evaluated over the cycle and taken apart into orders again. The iteration is accelerated (walker2011) and ends when the torques of
@@ -68,12 +71,6 @@ impl TorsionSpec for HarmonicBalance {
                 return Err(BuildError::at("model", what).help("use `orders` for gears of any ratio"));
             }
         }
-        if let Some(l) = ctx.line.links.iter().position(|l| {
-            let v = l.coupling.linear(0.0, 0.0);
-            !l.coupling.is_linear() && (v.stiffness == f64::INFINITY || l.coupling.depends_on_frequency())
-        }) {
-            return Err(BuildError::at(format!("links.{l}"), "has no law over the twist"));
-        }
         let harmonics = ((ctx.orders / base) + 1e-9).floor() as usize;
         if harmonics == 0 || harmonics > 4000 {
             let what = format!("{harmonics} harmonics; between 1 and 4000 are possible");
@@ -123,6 +120,10 @@ impl TorsionSpec for HarmonicBalance {
             harmonics,
             samples,
             balance: ctx.balance,
+            // The tree keeps these, whatever the mean torque turns out to be.
+            tangents: (ctx.line.links.iter().zip(&steady.mean_torque))
+                .map(|(l, mean)| l.coupling.linear(0.0, *mean))
+                .collect(),
             steady,
         }))
     }
@@ -142,7 +143,16 @@ struct Solver {
     harmonics: usize,
     samples: usize,
     balance: usize,
+    /// Laws of the links as the linear line has them.
+    tangents: Vec<LinearCoupling>,
     steady: Steady,
+}
+
+/// What the linear line leaves out, in orders from 0: torques by order and node, and those of each nonlinear link by order.
+#[derive(Debug, Default)]
+struct Rest {
+    nodes: Vec<Vec<Complex>>,
+    links: Vec<(usize, Vec<Complex>)>,
 }
 
 /// Motion of one node over the cycle: deviation from the mean rotation, its first and second derivative in time.
@@ -191,8 +201,23 @@ impl Solver {
             .collect()
     }
 
-    /// What the linear line leaves out, by node, in orders from 0.
-    fn rest(&self, waves: &[Wave], table: &[(f64, f64)]) -> Vec<Vec<Complex>> {
+    /// Orders of what is given over the cycle.
+    fn transform(&self, f: &[f64], table: &[(f64, f64)]) -> Vec<Complex> {
+        let m = self.samples;
+        (0..=self.harmonics)
+            .map(|k| {
+                let factor = if k == 0 { 1.0 } else { 2.0 } / m as f64;
+                let mut c = Complex::default();
+                for (s, f) in f.iter().enumerate() {
+                    let (sin, cos) = table[k * s % m];
+                    c = c + Complex::new(f * cos, -f * sin);
+                }
+                c * Complex::new(factor, 0.0)
+            })
+            .collect()
+    }
+
+    fn rest(&self, waves: &[Wave], table: &[(f64, f64)]) -> Rest {
         let (m, n) = (self.samples, waves.len());
         let line = &self.steady.line;
         let cycle = 2.0 * PI / self.base;
@@ -214,37 +239,52 @@ impl Solver {
                 }
             }
         }
+        let mut out =
+            Rest { nodes: vec![vec![Complex::default(); n]; self.harmonics + 1], links: Vec::new() };
+        for (node, f) in force.iter().enumerate().filter(|(_, f)| f.iter().any(|f| *f != 0.0)) {
+            for (o, c) in out.nodes.iter_mut().zip(self.transform(f, table)) {
+                o[node] = c;
+            }
+        }
+        let mut over = vec![0.0; m];
         for (l, link) in line.links.iter().enumerate().filter(|(_, l)| !l.coupling.is_linear()) {
             let [a, b] = link.nodes;
             let gear = line.nodes[a].ratio / line.nodes[b].ratio;
             let mean_torque = self.steady.mean_torque[l];
-            let tangent = link.coupling.linear(0.0, mean_torque);
+            let tangent = self.tangents[l];
             let rest = link.coupling.static_twist(mean_torque);
-            for s in 0..m {
+            for (s, over) in over.iter_mut().enumerate() {
                 let twist = waves[a].x[s] - gear * waves[b].x[s];
                 let rate = waves[a].v[s] - gear * waves[b].v[s];
-                let t = link.coupling.torque(twist, rate).torque;
                 let linear = mean_torque + tangent.stiffness * (twist - rest) + tangent.damping * rate;
-                force[a][s] -= t - linear;
-                force[b][s] += gear * (t - linear);
+                *over = link.coupling.torque(twist, rate).torque - linear;
             }
-        }
-        let mut out = vec![vec![Complex::default(); n]; self.harmonics + 1];
-        for (node, f) in force.iter().enumerate() {
-            if f.iter().all(|f| *f == 0.0) {
-                continue;
+            let c = self.transform(&over, table);
+            for (o, c) in out.nodes.iter_mut().zip(&c) {
+                o[a] = o[a] - *c;
+                o[b] = o[b] + *c * Complex::new(gear, 0.0);
             }
-            for (k, o) in out.iter_mut().enumerate() {
-                let factor = if k == 0 { 1.0 } else { 2.0 } / m as f64;
-                let mut c = Complex::default();
-                for (s, f) in f.iter().enumerate() {
-                    let (sin, cos) = table[k * s % m];
-                    c = c + Complex::new(f * cos, -f * sin);
-                }
-                o[node] = c * Complex::new(factor, 0.0);
-            }
+            out.links.push((l, c));
         }
         out
+    }
+
+    /// Puts what nonlinear links carry beside their tangents into their torques, and their loss.
+    fn complete(&mut self, orders: &mut [OrderResponse], rest: &Rest) {
+        let line = &self.steady.line;
+        for (l, c) in &rest.links {
+            let [a, b] = line.links[*l].nodes;
+            let gear = line.nodes[a].ratio / line.nodes[b].ratio;
+            self.steady.mean_torque[*l] += c[0].re;
+            for (o, c) in orders.iter_mut().zip(&c[1..]) {
+                let t = &mut o.torque[*l];
+                *t = [t[0] + c.re, t[1] + c.im];
+                // Mean of torque times rate of twist: an order may take power from another, the sum is the loss.
+                let twist = [o.angle[a][0] - gear * o.angle[b][0], o.angle[a][1] - gear * o.angle[b][1]];
+                let rate = o.order * self.steady.speed;
+                o.heat[*l] = 0.5 * rate * (t[1] * twist[0] - t[0] * twist[1]);
+            }
+        }
     }
 }
 
@@ -255,6 +295,7 @@ impl Torsion for Solver {
         // Only nodes with something nonlinear have unknowns.
         let line = &self.steady.line;
         let mut active: Vec<usize> = line.throws.iter().map(|t| t.node).collect();
+        active.extend(line.drives.iter().filter(|d| !d.drive.is_linear()).map(|d| d.node));
         active.extend(line.links.iter().filter(|l| !l.coupling.is_linear()).flat_map(|l| l.nodes));
         active.sort_unstable();
         active.dedup();
@@ -286,7 +327,8 @@ impl Torsion for Solver {
         let mut solutions = 0;
         let mut change = f64::INFINITY;
         let mut rounds = 0;
-        let mut best: Option<Vec<OrderResponse>> = None;
+        let mut best: Vec<OrderResponse> = Vec::new();
+        let mut rest = Rest::default();
         while rounds < self.rounds {
             rounds += 1;
             let extra = if active.is_empty() {
@@ -303,19 +345,20 @@ impl Torsion for Solver {
             let orders = self.solve(&extra)?;
             solutions += self.harmonics as u64;
             if active.is_empty() {
-                best = Some(orders);
+                best = orders;
                 change = 0.0;
                 break;
             }
             let waves = self.waves(&orders, &self.steady.mean_angle, &table);
-            let g = flat(&self.rest(&waves, &table));
+            rest = self.rest(&waves, &table);
+            let g = flat(&rest.nodes);
             if g.iter().any(|v| !v.is_finite()) {
                 return Err(EvalError::fatal("harmonic_balance", "the iteration leaves all bounds"));
             }
             let f: Vec<f64> = g.iter().zip(&x).map(|(g, x)| g - x).collect();
             let largest = g.iter().map(|v| v.abs()).fold(scale, f64::max);
             change = f.iter().map(|v| v.abs()).fold(0.0, f64::max) / largest.max(f64::MIN_POSITIVE);
-            best = Some(orders);
+            best = orders;
             if change <= self.tolerance {
                 break;
             }
@@ -335,7 +378,8 @@ impl Torsion for Solver {
                 ),
             ));
         }
-        out.orders = best.unwrap_or_default();
+        self.complete(&mut best, &rest);
+        out.orders = best;
         out.counters.insert("time_steps".into(), 0);
         out.counters.insert("rounds".into(), rounds as u64);
         out.counters.insert("linear_solutions".into(), solutions);

@@ -54,7 +54,8 @@ fn check_start(ctx: &TorsionCtx<'_>) -> Result<(), BuildError> {
         for (name, v) in [("angles", ctx.angles), ("speeds", ctx.speeds)] {
             // Rounding of what a steady motion gives.
             if (v[a] - gear * v[b]).abs() > 1e-9 * top(v) {
-                let what = format!("`{}` is rigid, but its ends start with {name} of {} and {}", l.name, v[a], v[b]);
+                let what =
+                    format!("`{}` is rigid, but its ends start with {name} of {} and {}", l.name, v[a], v[b]);
                 return Err(BuildError::at("start", what));
             }
         }
