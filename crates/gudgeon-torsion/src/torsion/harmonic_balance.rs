@@ -239,6 +239,17 @@ impl Solver {
                 }
             }
         }
+        for d in line.drives.iter().filter(|d| !d.drive.is_linear()) {
+            let ratio = line.nodes[d.node].ratio;
+            let w = &waves[d.node];
+            let speed = self.steady.speed * ratio;
+            for (s, f) in force[d.node].iter_mut().enumerate() {
+                let even = ratio * cycle * s as f64 / m as f64 + d.phase;
+                let mean = d.drive.torque(even, speed);
+                let here = d.drive.torque(even + w.x[s], speed + w.v[s]);
+                *f += d.factor * (here.torque - mean.torque - mean.slope * w.v[s]);
+            }
+        }
         let mut out =
             Rest { nodes: vec![vec![Complex::default(); n]; self.harmonics + 1], links: Vec::new() };
         for (node, f) in force.iter().enumerate().filter(|(_, f)| f.iter().any(|f| *f != 0.0)) {

@@ -66,8 +66,8 @@ const REDUCED: f64 = 2.0 / 3.0;
 fn released(line: &Line, spec: &dyn TorsionSpec, x: f64, t: f64) -> (f64, f64, u64) {
     let (angles, times) = ([x / 3.0, -2.0 * x / 3.0], [t]);
     let out = run(spec, &context(line, 1.0, 1.0, [&angles, &[0.0; 2]], &times));
-    // Nothing turns: twice the first and once the second is zero.
-    assert!((2.0 * out.angles[0][0] + out.angles[0][1]).abs() < 1e-12 * x);
+    // Nothing turns: twice the first and once the second is zero, to the rounding of some thousand steps.
+    assert!((2.0 * out.angles[0][0] + out.angles[0][1]).abs() < 1e-10 * x);
     (out.angles[0][0] - out.angles[0][1], out.speeds[0][0] - out.speeds[0][1], out.counters["time_steps"])
 }
 
@@ -381,8 +381,8 @@ fn harmonic_balance_of_nonlinear_couplings_is_their_motion_over_time() {
         let plain = run(&Orders {}, &context(&line, speed, orders, [&[], &[]], &[]));
         let twist = |m: &[f64]| m[0] - m[1];
         assert!((twist(&out.mean_angle) / twist(&plain.mean_angle) - 1.0).abs() > 0.01);
-        // Both inertias need what the load takes, whatever the law: that is the mean torque of the coupling.
-        assert!((out.mean_torque[0] / (600.0 - out.balance_torque.abs() * 0.0) - 1.0).abs() < 1e-2);
+        // The load takes 600 N m, whatever the law: that is the mean torque of the coupling.
+        assert!((out.mean_torque[0] / 600.0 - 1.0).abs() < 1e-10);
         let state = |t: f64| {
             let (mut a, mut w, mut q) = (out.mean_angle.clone(), vec![speed; 2], out.mean_torque[0]);
             for o in &out.orders {
