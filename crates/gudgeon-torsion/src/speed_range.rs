@@ -55,7 +55,9 @@ pub fn speed_range(
     if !plain {
         for &speed in speeds {
             let here = TorsionCtx { speed, ..*ctx };
-            let mut s = Steady::new(&here)?;
+            let mut means = Excitation { orders: Vec::new(), mean: parts[0].mean.clone() };
+            means.at_speed(line, speed);
+            let mut s = Steady::with(&here, means)?;
             let mut rows = Vec::with_capacity(orders.len());
             for (o, parts) in orders.iter().zip(&torque) {
                 let square = Complex::new(speed * speed, 0.0);

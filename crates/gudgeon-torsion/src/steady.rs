@@ -69,13 +69,17 @@ impl Steady {
     /// # Errors
     /// As [`Tree::new`].
     pub fn new(ctx: &TorsionCtx<'_>) -> Result<Self, BuildError> {
+        Self::with(ctx, Excitation::new(ctx.line, ctx.speed, ctx.orders))
+    }
+
+    /// [`Steady::new`] with an excitation that is known already.
+    pub(crate) fn with(ctx: &TorsionCtx<'_>, excitation: Excitation) -> Result<Self, BuildError> {
         let line = ctx.line.clone();
         let mut tree = Tree::new(&line)?;
         let n = tree.len();
         if ctx.balance >= n {
             return Err(BuildError::at("balance", "the inertia that balances does not exist"));
         }
-        let excitation = Excitation::new(&line, ctx.speed, ctx.orders);
         let (mean_torque, mean_angle, balance_torque) =
             mean_state(&line, &tree, &excitation.mean, ctx.balance);
         tree.linearise(&line, 0.0, &mean_torque);

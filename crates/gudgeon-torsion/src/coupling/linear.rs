@@ -36,7 +36,7 @@ gudgeon_core::register_model! {
     summary: "linear spring and damper, with a loss factor for harmonic motion",
     equations: "T = k dtheta + c domega;  in vibration T = (k (1 + i eta) + i omega c) dtheta",
     validity: "Small twists of steel shafts and couplings. The loss factor has no meaning in time.",
-    references: ["ker_wilson1956"],
+    references: ["den_hartog1956"],
     example: "stiffness = \"8 MN m/rad\"\ndamping = \"492.5 N m s/rad\"\nloss_factor = 0\n",
 }
 

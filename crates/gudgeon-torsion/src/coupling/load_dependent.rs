@@ -36,7 +36,7 @@ gudgeon_core::register_model! {
     summary: "dynamic stiffness and relative damping over the mean torque",
     equations: "T = K(T_mean) (1 + i psi/(2 pi)) dtheta",
     validity: "Harmonic motion about a mean torque; models in time refuse it.",
-    references: ["ker_wilson1956"],
+    references: [],
     example: "mean_torque = [0, 1000, 2000]\nstiffness = [1e4, 2e4, 4e4]\nrelative_damping = [1.1, 1.0, 0.9]\nheat_factor = 1\n",
 }
 

@@ -36,7 +36,7 @@ gudgeon_core::register_model! {
     summary: "stiffness by pieces: stages, stops, play",
     equations: "T = T_i + k_i (x - x_i) + (c + tau k_i) dx/dt between the rows x_i <= x < x_{i+1}",
     validity: "Spring couplings, gear play. In harmonic models the piece of the mean torque, as long as the vibration stays in it.",
-    references: ["ker_wilson1956"],
+    references: ["den_hartog1956"],
     example: "twist = [-0.02, -0.01, 0.01, 0.02]\ntorque = [-300, -100, 100, 300]\ndamping = \"2 N m s/rad\"\nloss_time = 0\n",
 }
 

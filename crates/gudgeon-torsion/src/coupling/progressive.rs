@@ -35,7 +35,7 @@ gudgeon_core::register_model! {
     summary: "stiffness that grows with the torque, cubic",
     equations: "T = k x + k3 x^3 + c dx/dt;  3 k3 x_n^2 = (gain - 1) k;  x_n = 3 T_n/(k (2 + gain))",
     validity: "Rubber couplings up to about their largest torque. In harmonic models the tangent at the mean torque.",
-    references: ["ker_wilson1956"],
+    references: ["den_hartog1956"],
     example: "stiffness = \"20 kN m/rad\"\nnominal_torque = \"2 kN m\"\ngain = 2\ndamping = \"20 N m s/rad\"\n",
 }
 

@@ -43,7 +43,7 @@ gudgeon_core::register_model! {
     summary: "forced vibration by superposition of modes, with static correction",
     equations: "q_m = phi_m^T T/(omega_m^2 - omega^2 + i omega c_m);  theta = sum phi_m q_m",
     validity: "Light damping that hardly couples the modes. For long lines of which few modes matter.",
-    references: ["gomes2021", "ker_wilson1956"],
+    references: ["gomes2021", "den_hartog1956"],
     example: "modes = 6\n",
 }
 
