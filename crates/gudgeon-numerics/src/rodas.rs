@@ -423,6 +423,57 @@ mod tests {
         }
     }
 
+    /// A pendulum with damping that inverts its two by two matrix by hand.
+    #[derive(Default)]
+    struct Own {
+        j: [f64; 2],
+        d: f64,
+    }
+    impl OdeSystem for Own {
+        fn dim(&self) -> usize {
+            2
+        }
+        fn rhs(&mut self, _: f64, y: &[f64], f: &mut [f64]) -> Result<(), EvalError> {
+            (f[0], f[1]) = (y[1], -40.0 * y[0].sin() - 900.0 * y[1]);
+            Ok(())
+        }
+        fn linearise(&mut self, _: f64, y: &[f64], _: &[f64]) -> Result<(), EvalError> {
+            self.j = [-40.0 * y[0].cos(), -900.0];
+            Ok(())
+        }
+        fn factor(&mut self, d: f64) -> bool {
+            self.d = d;
+            d * (d - self.j[1]) - self.j[0] != 0.0
+        }
+        fn solve(&mut self, b: &mut [f64]) {
+            // [d, -1; -j0, d - j1] x = b
+            let det = self.d * (self.d - self.j[1]) - self.j[0];
+            let x = ((self.d - self.j[1]) * b[0] + b[1]) / det;
+            (b[0], b[1]) = (x, self.d * x - b[0]);
+        }
+    }
+
+    #[test]
+    fn a_system_that_solves_for_itself_is_the_same() {
+        let mut found = [[0.0; 2]; 2];
+        for (y, mut r) in
+            found.iter_mut().zip([Rodas::new(2, 0, None), Rodas::structured(Formula::Rodas5P, 2)])
+        {
+            *y = [2.0, 0.0];
+            let o = Options::new(1e-8, &[1.0, 1.0]);
+            let mut stats = Stats::default();
+            let done =
+                r.integrate(&mut Own::default(), (0.0, 9.0), &[], y, &mut [], &o, &mut stats, &mut |_, _| {
+                    Flow::Continue
+                });
+            assert!(done.is_ok() && stats.lu > 10);
+        }
+        // The difference Jacobian of the first is good to 1e-8; what that does to the result is below the tolerance.
+        for (a, b) in found[0].iter().zip(found[1]) {
+            assert!((a - b).abs() < 1e-9, "{found:?}");
+        }
+    }
+
     struct Robertson;
     impl OdeSystem for Robertson {
         fn dim(&self) -> usize {

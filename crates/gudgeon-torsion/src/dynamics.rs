@@ -1,5 +1,7 @@
 //! Equations of motion over time: what the models that integrate share.
 
+use std::f64::consts::PI;
+
 use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{Line, TorsionOut};
 
@@ -110,6 +112,30 @@ impl Dynamics {
             return Err(BuildError::at(format!("inertias.{i}"), what).help(
                 "join it to its neighbour by a rigid link (coupling `off`), or make one shaft of the two beside it (1/k = 1/k1 + 1/k2)",
             ));
+        }
+        // A crank without inertia stands still with its piston at the dead centres.
+        for g in
+            (0..count).filter(|g| line.throws.iter().any(|t| group[t.node] == *g && !t.inertia.is_constant()))
+        {
+            let varying = || line.throws.iter().filter(|t| group[t.node] == g && !t.inertia.is_constant());
+            let at = |angle: f64| {
+                base[g]
+                    + varying()
+                        .map(|t| {
+                            let s = scale[t.node];
+                            s * s * t.inertia.inertia(s * angle + t.phase).0
+                        })
+                        .sum::<f64>()
+            };
+            let dead = varying().flat_map(|t| [0.0, PI].map(|a| (a - t.phase) / scale[t.node]));
+            let least =
+                (0..720).map(|i| PI / 360.0 * f64::from(i)).chain(dead).map(at).fold(f64::INFINITY, f64::min);
+            if least.is_nan() || least <= 1e-6 * mean[g] {
+                let i = first[g];
+                let what =
+                    format!("the inertia of `{}` vanishes at an angle of its crank", line.nodes[i].name);
+                return Err(BuildError::at(format!("inertias.{i}"), what).help("give the crank its inertia"));
+            }
         }
         let mut links = Vec::new();
         let mut number = vec![None; line.links.len()];

@@ -151,7 +151,8 @@ impl Steady {
     }
 }
 
-/// Mean torques in the links, angles against the balancing node and its torque, for mean torques by node.
+/// Mean torques in the links, angles against the balancing node (against the ground where several places are held) and its torque, for
+/// mean torques by node.
 pub(crate) fn mean_state(
     line: &Line,
     tree: &Tree,
@@ -161,14 +162,18 @@ pub(crate) fn mean_state(
     let n = tree.len();
     let mut f: Vec<f64> = (0..n).map(|p| mean[tree.node[p]] * tree.ratio[p]).collect();
     let at = tree.position[balance];
-    // A line that is held takes up the rest where it is held: the first ground closes the balance.
     let total: f64 = f.iter().sum();
-    let held = tree.is_grounded();
-    let balance_torque = if held { 0.0 } else { -total / tree.ratio[at] };
-    if !held {
-        f[at] -= total;
-    } else if let Some(g) = tree.ground.iter().position(|g| *g > 0.0) {
-        f[g] -= total;
+    let held = tree.ground.iter().filter(|g| **g != 0.0).count();
+    let balance_torque = if held > 0 { 0.0 } else { -total / tree.ratio[at] };
+    if held > 1
+        && let Some(answer) = held_state(line, tree, &f)
+    {
+        return answer;
+    }
+    // A line that is held at one place takes up the rest there.
+    match tree.ground.iter().position(|g| *g != 0.0) {
+        Some(g) => f[g] -= total,
+        None => f[at] -= total,
     }
     let mut torque = vec![0.0; line.links.len()];
     let mut twist = vec![0.0; n];
@@ -195,6 +200,23 @@ pub(crate) fn mean_state(
         angle[tree.node[p]] = (phi[p] - zero) * tree.ratio[p];
     }
     (torque, angle, balance_torque)
+}
+
+/// Static state of a line that is held at several places: couplings as the tree has them. None when a part is not held at all.
+fn held_state(line: &Line, tree: &Tree, f: &[f64]) -> Option<(Vec<f64>, Vec<f64>, f64)> {
+    let n = tree.len();
+    let load: Vec<Complex> = f.iter().map(|f| Complex::new(*f, 0.0)).collect();
+    let (mut x, mut q) = (vec![Complex::default(); n], vec![Complex::default(); n]);
+    tree.solve(Complex::default(), &load, &mut x, &mut q, Singular::Refuse, &mut Work::new(n)).ok()?;
+    let (mut torque, mut angle) = (vec![0.0; line.links.len()], vec![0.0; n]);
+    for p in 0..n {
+        angle[tree.node[p]] = x[p].re * tree.ratio[p];
+        if tree.parent[p] < n {
+            let s = if tree.forward[p] { 1.0 } else { -1.0 };
+            torque[tree.link[p]] = s * q[p].re / tree.link_ratio[p];
+        }
+    }
+    Some((torque, angle, 0.0))
 }
 
 impl Steady {

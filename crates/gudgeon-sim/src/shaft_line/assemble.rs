@@ -349,6 +349,15 @@ pub fn assemble(case: &ShaftLineCase, folder: &Path) -> Result<Assembled, Vec<Bu
         errors.push(renamed(e));
     }
     out.period = period(line);
+    let odd = gears(line).find(|o| {
+        let per = o * out.period / (2.0 * PI);
+        (per - per.round()).abs() > 1e-6
+    });
+    if let Some(o) = odd {
+        out.notes.push(format!(
+            "order {o:.6} of the reference shaft does not repeat within two turns: extremes are those of the window that is looked at"
+        ));
+    }
     if errors.is_empty() { Ok(out) } else { Err(errors) }
 }
 
@@ -360,16 +369,20 @@ pub fn renamed(mut e: BuildError) -> BuildError {
     e
 }
 
-/// Turns of the reference shaft after which all torques repeat: one, or two where anything has half orders.
-fn period(line: &Line) -> f64 {
-    let half = |order: f64| (order - order.round()).abs() > 1e-9;
-    let throws = line.throws.iter().any(|t| {
-        let per = 2.0 * PI / gudgeon_torsion::forcing::gas_period(t) * line.nodes[t.node].ratio.abs();
-        !t.ends.is_empty() && half(per)
+/// Lowest orders of the reference shaft that throws and given torques bring.
+fn gears(line: &Line) -> impl Iterator<Item = f64> + '_ {
+    let throws = line.throws.iter().filter(|t| !t.ends.is_empty() || !t.inertia.is_constant()).map(|t| {
+        let base = if t.ends.is_empty() { 1.0 } else { 2.0 * PI / gudgeon_torsion::forcing::gas_period(t) };
+        base * line.nodes[t.node].ratio.abs()
     });
-    let drives = line
-        .drives
-        .iter()
-        .any(|d| d.drive.orders().iter().any(|o| half(o.order * line.nodes[d.node].ratio.abs())));
-    if throws || drives { 4.0 * PI } else { 2.0 * PI }
+    let drives = line.drives.iter().flat_map(|d| {
+        let ratio = line.nodes[d.node].ratio.abs();
+        d.drive.orders().iter().map(move |o| o.order * ratio)
+    });
+    throws.chain(drives)
+}
+
+/// Period of the reference shaft \[rad\] after which all torques repeat: one turn, or two where anything has half orders.
+fn period(line: &Line) -> f64 {
+    if gears(line).any(|o| (o - o.round()).abs() > 1e-9) { 4.0 * PI } else { 2.0 * PI }
 }

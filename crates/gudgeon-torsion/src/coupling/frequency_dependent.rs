@@ -34,7 +34,7 @@ impl CouplingSpec for FrequencyDependent {
         let columns =
             [("stiffness", self.stiffness.as_slice()), ("loss_factor", self.loss_factor.as_slice())];
         check_table("frequency", &self.frequency, &columns, 1)?;
-        for (name, c) in columns {
+        for (name, c) in columns.into_iter().chain([("frequency", self.frequency.as_slice())]) {
             if let Some(i) = c.iter().position(|v| *v < 0.0) {
                 return Err(BuildError::at(format!("{name}.{i}"), "must be zero or greater"));
             }

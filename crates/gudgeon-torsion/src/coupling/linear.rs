@@ -18,13 +18,13 @@ pub struct Linear {
     pub stiffness: TorsionalStiffness<NonNegative>,
     /// Viscous damping c between the two ends.
     #[serde(default = "none")]
-    pub damping: TorsionalDamping,
+    pub damping: TorsionalDamping<NonNegative>,
     /// Loss factor η.
     #[serde(default = "no_loss")]
     pub loss_factor: Ratio<NonNegative>,
 }
 
-fn none() -> TorsionalDamping {
+fn none() -> TorsionalDamping<NonNegative> {
     quantity(0.0)
 }
 fn no_loss() -> Ratio<NonNegative> {

@@ -72,8 +72,12 @@ impl TorsionSpec for HarmonicBalance {
             }
         }
         let harmonics = ((ctx.orders / base) + 1e-9).floor() as usize;
-        if harmonics == 0 || harmonics > 4000 {
-            let what = format!("{harmonics} harmonics; between 1 and 4000 are possible");
+        // Taking the torques of a round apart goes with the square of the harmonics.
+        let places = active(ctx.line).len();
+        if harmonics == 0 || harmonics > 4000 || harmonics * harmonics * places > 25_000_000 {
+            let what = format!(
+                "{harmonics} harmonics of {places} nonlinear places; between 1 and 4000 are possible, and less for many places"
+            );
             return Err(BuildError::at("orders", what));
         }
         // Every harmonic has an order, even where nothing excites it yet.
@@ -132,6 +136,16 @@ impl TorsionSpec for HarmonicBalance {
     }
 }
 
+/// Nodes with something that is not linear, ascending.
+fn active(line: &Line) -> Vec<usize> {
+    let mut nodes: Vec<usize> = line.throws.iter().map(|t| t.node).collect();
+    nodes.extend(line.drives.iter().filter(|d| !d.drive.is_linear()).map(|d| d.node));
+    nodes.extend(line.links.iter().filter(|l| !l.coupling.is_linear()).flat_map(|l| l.nodes));
+    nodes.sort_unstable();
+    nodes.dedup();
+    nodes
+}
+
 /// Rounds that the acceleration remembers.
 const DEPTH: usize = 24;
 
@@ -176,11 +190,16 @@ impl Solver {
         Ok(out)
     }
 
-    fn waves(&self, orders: &[OrderResponse], mean: &[f64], table: &[(f64, f64)]) -> Vec<Wave> {
+    /// Motion of the `active` nodes; nothing for the others.
+    fn waves(&self, orders: &[OrderResponse], active: &[usize], table: &[(f64, f64)]) -> Vec<Wave> {
         let m = self.samples;
         let omega = self.steady.speed * self.base;
+        let mean = &self.steady.mean_angle;
         (0..mean.len())
             .map(|node| {
+                if active.binary_search(&node).is_err() {
+                    return Wave::default();
+                }
                 let mut w = Wave { x: vec![mean[node]; m], v: vec![0.0; m], a: vec![0.0; m] };
                 for (k, o) in orders.iter().enumerate() {
                     let [re, im] = o.angle[node];
@@ -305,11 +324,7 @@ impl Torsion for Solver {
         let table: Vec<(f64, f64)> = (0..m).map(|s| (2.0 * PI * s as f64 / m as f64).sin_cos()).collect();
         // Only nodes with something nonlinear have unknowns.
         let line = &self.steady.line;
-        let mut active: Vec<usize> = line.throws.iter().map(|t| t.node).collect();
-        active.extend(line.drives.iter().filter(|d| !d.drive.is_linear()).map(|d| d.node));
-        active.extend(line.links.iter().filter(|l| !l.coupling.is_linear()).flat_map(|l| l.nodes));
-        active.sort_unstable();
-        active.dedup();
+        let active = active(line);
         let flat = |r: &[Vec<Complex>]| -> Vec<f64> {
             r.iter().flat_map(|o| active.iter().flat_map(|&i| [o[i].re, o[i].im])).collect()
         };
@@ -360,7 +375,7 @@ impl Torsion for Solver {
                 change = 0.0;
                 break;
             }
-            let waves = self.waves(&orders, &self.steady.mean_angle, &table);
+            let waves = self.waves(&orders, &active, &table);
             rest = self.rest(&waves, &table);
             let g = flat(&rest.nodes);
             if g.iter().any(|v| !v.is_finite()) {
