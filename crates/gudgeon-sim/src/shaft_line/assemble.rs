@@ -5,12 +5,13 @@ use std::path::Path;
 
 use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{
-    CouplingSpec, CylinderPressureCtx, GasEnd, KinematicsCtx, Line, LineDrive, LineLink, LineNode, LineThrow,
-    ThrowCtx,
+    CouplingSpec, CylinderPressureCtx, Drive, GasEnd, KinematicsCtx, Line, LineDrive, LineLink, LineNode,
+    LineThrow, ThrowCtx,
 };
 use gudgeon_core::quantity::quantity;
 use gudgeon_torsion::CrankEnd;
 use gudgeon_torsion::coupling::Linear;
+use gudgeon_torsion::drive::Reversed;
 use gudgeon_torsion::shaft::{Piece, stiffness, weakest};
 
 use super::case::{ShaftCase, ShaftLineCase, Side};
@@ -67,6 +68,14 @@ fn throws(
         };
         for (i, name) in t.at.iter().enumerate() {
             let Some((node, ratio)) = find(name) else { continue };
+            if ratio < 0.0 {
+                let what = format!("`{name}` turns backwards, which a throw does not");
+                let e = BuildError::at(format!("{here}.at.{i}"), what);
+                errors.push(
+                    e.help("vibration does not know the sign of a ratio: give that shaft a positive one"),
+                );
+                continue;
+            }
             let kinematics = case.models.kinematics.build(&KinematicsCtx {
                 crank_radius: t.crank_radius.si(),
                 rod_length: t.rod_length.si(),
@@ -338,7 +347,12 @@ pub fn assemble(case: &ShaftLineCase, folder: &Path) -> Result<Assembled, Vec<Bu
         match d.drive.build() {
             Ok(drive) => {
                 let factor = if d.load { -1.0 } else { 1.0 };
-                line.drives.push(LineDrive { node, phase: d.phase.si(), factor, drive });
+                let (phase, drive): (_, Box<dyn Drive>) = if line.nodes[node].ratio < 0.0 {
+                    (-d.phase.si(), Box::new(Reversed::new(drive)))
+                } else {
+                    (d.phase.si(), drive)
+                };
+                line.drives.push(LineDrive { node, phase, factor, drive });
             }
             Err(e) => errors.push(e.within(&format!("drives.{k}.drive"))),
         }
