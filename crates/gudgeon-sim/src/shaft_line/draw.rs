@@ -100,6 +100,8 @@ pub fn modes(line: &Line, modes: &[&Mode]) -> Figure {
         fixed.push(Shape::Path { points, closed: false, style: Style::Axis });
     }
     let few = n <= 16;
+    let (left, right) =
+        at.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), p| (a.min(p[0]), b.max(p[0])));
     for i in 0..n {
         let h = (0.12 + 0.45 * (inertia[i] / heaviest).cbrt()).min(0.6);
         let w = 0.10;
@@ -110,7 +112,15 @@ pub fn modes(line: &Line, modes: &[&Mode]) -> Figure {
             let text = line.nodes[i].name.clone();
             // Every other name a little lower, so that long ones do not meet.
             let drop = if i % 2 == 0 { 1.35 } else { 1.62 };
-            fixed.push(Shape::Text { at: [x, y - drop], text, anchor: Anchor::Middle });
+            // Names at the ends stay within the drawing.
+            let (shift, anchor) = if x <= left {
+                (-0.4, Anchor::Start)
+            } else if x >= right {
+                (0.4, Anchor::End)
+            } else {
+                (0.0, Anchor::Middle)
+            };
+            fixed.push(Shape::Text { at: [x + shift, y - drop], text, anchor });
         }
     }
     let tree = Tree::new(line).ok();
