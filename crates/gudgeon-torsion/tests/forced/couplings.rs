@@ -83,7 +83,7 @@ fn progressive_has_the_period_of_the_cubic_oscillator() {
     // The definition: tangent three times the first at the nominal torque.
     assert!((law.linear(0.0, 2e3).stiffness / 6e4 - 1.0).abs() < 1e-14);
     assert!((law.torque(law.static_twist(2e3), 0.0).torque / 2e3 - 1.0).abs() < 1e-14);
-    let cubic = (law.torque(1.0, 0.0).torque - 2e4) / 1.0;
+    let cubic = law.torque(1.0, 0.0).torque - 2e4;
     let line = pair(J, &spec);
     // x'' + αx + βx³ = 0 from rest at A: T = 4 K(m)/√(α + βA²), m = βA²/(2 (α + βA²)). Twice the nominal twist.
     let a = 2.0 * law.static_twist(2e3);
