@@ -110,8 +110,13 @@ pub fn modes(line: &Line, modes: &[&Mode]) -> Figure {
         fixed.push(Shape::Path { points, closed: true, style: Style::Metal });
         if few {
             let text = line.nodes[i].name.clone();
-            // Every other name a little lower, so that long ones do not meet.
-            let drop = if i % 2 == 0 { 1.35 } else { 1.62 };
+            // Every other name a little lower, long ones at the ends lower still, so that they do not meet.
+            let end = x <= left || x >= right;
+            let drop = match x.round() as i64 % 2 {
+                _ if end && text.len() > 9 => 1.89,
+                0 => 1.35,
+                _ => 1.62,
+            };
             // Names at the ends stay within the drawing.
             let (shift, anchor) = if x <= left {
                 (-0.4, Anchor::Start)
