@@ -523,6 +523,54 @@ fn causes_of_pressure_add_up() {
 }
 
 #[test]
+fn the_film_beside_is_one_newton_step_away() {
+    let grid = skirt(32, 24);
+    let n = grid.len();
+    let squeeze = skirt_squeeze(&grid, [0.02, -0.01]);
+    let mode = FilmMode { u: -6.0, dhdt: &squeeze, edge_pressure: [2e4, 0.0, 0.0, 0.0] };
+    let cavitation = Cavitation::FullSommerfeld;
+    let specs: [&dyn Film2dSpec; 2] = [&multigrid(cavitation), &Direct { cavitation, ..Direct::default() }];
+    for spec in specs {
+        let mut film = build(spec, &grid);
+        let mut error = [0.0; 2];
+        for (error, d) in error.iter_mut().zip([2e-7, 1e-7]) {
+            let now = field(&grid, |x, y| skirt_film(x, y, [18e-6, 10e-6]));
+            let there = field(&grid, |x, y| skirt_film(x, y, [18e-6 + d, 10e-6 - d]));
+            let (mut p, mut exact) = (vec![0.0; n], vec![0.0; n]);
+            film.solve_many(&Film2dIn::new(&there, 0.0, 0.01), &[mode], &mut exact).unwrap();
+            film.solve_many(&Film2dIn::new(&now, 0.0, 0.01), &[mode], &mut p).unwrap();
+            let mut r = vec![0.0; n];
+            assert!(film.imbalance(&Film2dIn::new(&there, 0.0, 0.01), &mode, &p, &mut r).unwrap());
+            film.respond(&mut r).unwrap();
+            let found: Vec<f64> = p.iter().zip(&r).map(|(p, r)| p + r).collect();
+            *error = apart(&found, &exact);
+            // The first step closes most of the way.
+            assert!(*error < 0.1 * apart(&p, &exact), "{spec:?}: {error} of {}", apart(&p, &exact));
+            // A solution leaves nothing over but what crosses the edges.
+            film.imbalance(&Film2dIn::new(&there, 0.0, 0.01), &mode, &exact, &mut r).unwrap();
+            let inner = |k: usize| k % 33 > 0 && k % 33 < 32 && k / 33 > 0 && k / 33 < 24;
+            let left = (0..n).filter(|k| inner(*k)).map(|k| r[k].abs()).fold(0.0, f64::max);
+            let most = (0..n).map(|k| r[k].abs()).fold(0.0, f64::max);
+            // Residuals of 1e-12, against flows over edges.
+            assert!(left < 1e-8 * most, "{spec:?}: {left} of {most}");
+            let inp = Film2dIn {
+                dhdt: &squeeze,
+                edge_pressure: mode.edge_pressure,
+                ..Film2dIn::new(&there, -6.0, 0.01)
+            };
+            let out = film.solve(&inp).unwrap();
+            let before_x: f64 = (0..n).filter(|k| k % 33 == 0).map(|k| r[k]).sum();
+            assert!((before_x / out.outflow[0] - 1.0).abs() < 1e-8, "{spec:?}: {before_x} {:?}", out.outflow);
+            // That film is another one now.
+            assert!(film.respond(&mut r).is_err());
+        }
+        // What is left is of second order in the step.
+        let order = (error[0] / error[1]).log2();
+        assert!((order - 2.0).abs() < 0.1, "{spec:?}: {error:?}");
+    }
+}
+
+#[test]
 fn cycles_do_not_depend_on_size_and_ratio() {
     for (nx, ny) in [(3, 3), (3, 4096), (4096, 3), (33, 33), (64, 48), (300, 200), (1000, 31)] {
         for ratio in [1e-3, 1.0, 1e3] {

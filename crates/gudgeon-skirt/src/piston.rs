@@ -74,6 +74,11 @@ pub struct Piston {
     piv: Vec<usize>,
     step: Vec<f64>,
     own_rates: [Vec<f64>; 2],
+    /// Coordinates beside the present place, their moves, and the loads there.
+    moved: Vec<f64>,
+    moves: Vec<f64>,
+    own_moves: [Vec<f64>; 2],
+    beside: [Vec<SideLoads>; 2],
     work: Linear,
     /// Newton steps of balances so far.
     pub newton_steps: u64,
@@ -99,7 +104,6 @@ struct Linear {
     /// Change of the forces at fixed rates.
     dr: Vec<f64>,
     d: Vec<f64>,
-    moved: Vec<f64>,
 }
 
 impl Linear {
@@ -113,7 +117,6 @@ impl Linear {
             piv: vec![0; n],
             dr: v(n),
             d: v(n),
-            moved: v(n),
             ..Self::default()
         }
     }
@@ -196,6 +199,7 @@ impl Piston {
         let n = 2 + sides[0].elastic() + sides[1].elastic();
         let own_rates = [vec![0.0; 2 + sides[0].elastic()], vec![0.0; 2 + sides[1].elastic()]];
         let v = |n: usize| vec![0.0; n];
+        let beside = [0, 1].map(|s: usize| vec![SideLoads::default(); own_rates[s].len()]);
         Self {
             sides,
             body,
@@ -211,7 +215,11 @@ impl Piston {
             lu: v(n * n),
             piv: vec![0; n],
             step: v(n),
+            moved: v(n),
+            moves: v(n),
+            own_moves: own_rates.clone(),
             own_rates,
+            beside,
             work: Linear::new(n),
             newton_steps: 0,
         }
@@ -269,6 +277,16 @@ impl Piston {
         if slopes != Slopes::None {
             self.slopes(now, w);
         }
+        Ok(())
+    }
+
+    /// Derivatives of the forces that [`Piston::residual`] found at the same arguments.
+    fn tangent(&mut self, now: &Instant, w: &[f64], slopes: Slopes) -> Result<(), EvalError> {
+        for side in 0..2 {
+            let (rates, loads) = (&self.own_rates[side], &mut self.loads[side]);
+            self.sides[side].slopes(now.speed, now.mu, rates, slopes, loads)?;
+        }
+        self.slopes(now, w);
         Ok(())
     }
 
@@ -396,7 +414,7 @@ impl Piston {
         let size = |r: &[f64]| r[first..].iter().map(|r| r * r).sum::<f64>().sqrt();
         let superposed = self.sides.iter().all(Side::is_superposed);
         let closed = if superposed { CLOSED } else { CLOSED_CAVITIES };
-        self.residual(now, x, w, Slopes::Film)?;
+        self.residual(now, x, w, Slopes::None)?;
         for count in 0..MOST_STEPS {
             let before = size(&self.r);
             let scale = self.force_scale(now);
@@ -407,9 +425,10 @@ impl Piston {
                 return Ok(());
             }
             self.best[first..].copy_from_slice(&w[first..]);
+            self.tangent(now, w, Slopes::Film)?;
             if !self.newton(first) || self.along_step(first) <= 0.0 {
                 // Where cavities leave nothing that resists, full films tell the way.
-                self.residual(now, x, w, Slopes::Full)?;
+                self.tangent(now, w, Slopes::Full)?;
                 if !self.newton(first) {
                     return Err(EvalError::recoverable(MODEL, "nothing resists the motion of the piston"));
                 }
@@ -423,7 +442,7 @@ impl Piston {
                 for i in 0..m {
                     w[first + i] = self.best[first + i] + part * self.step[i];
                 }
-                self.residual(now, x, w, Slopes::Film)?;
+                self.residual(now, x, w, Slopes::None)?;
                 let here = self.along_step(first);
                 if count >= PATIENCE {
                     // A film that is cut off is not quite the slope of anything, and may send the search in circles: the forces themselves must
@@ -453,7 +472,7 @@ impl Piston {
             if size(&self.r) >= before && before <= ROUNDED * closed * scale {
                 // Rounding: no step leads further.
                 w[first..].copy_from_slice(&self.best[first..]);
-                return self.residual(now, x, w, Slopes::Film);
+                return self.residual(now, x, w, Slopes::None);
             }
         }
         if size(&self.r) <= SLOW * self.force_scale(now) {
@@ -512,7 +531,7 @@ impl Piston {
                 if self.n > 2 {
                     self.balance(now, x, w, 2)?;
                 } else {
-                    self.residual(now, x, w, Slopes::Film)?;
+                    self.residual(now, x, w, Slopes::None)?;
                 }
                 *acceleration = accelerate(self.body.matrix(), [self.r[0], self.r[1]]);
                 Ok(())
@@ -570,25 +589,11 @@ impl Piston {
         }
         let Some(jac) = jacobian else { return Ok(()) };
         jac[..states * states].fill(0.0);
-        let mut moved = std::mem::take(&mut work.moved);
-        moved.copy_from_slice(x);
-        let mut outcome = Ok(());
+        self.look_beside(now, x, w)?;
         for column in 0..n {
-            let d = self.increment(w, column);
-            moved[column] = x[column] + d;
-            let d = moved[column] - x[column];
-            let mut r = std::mem::take(&mut work.dr);
-            outcome = self.residual_beside(now, &moved, w, column, &mut r);
-            r.iter_mut().zip(&work.base).for_each(|(r, b)| *r = (*r - b) / d);
-            work.dr = r;
-            moved[column] = x[column];
-            if outcome.is_err() {
-                break;
-            }
+            self.change_beside(now, x, w, column, &work.base, &mut work.dr);
             work.respond(|row, value| jac[row * states + column] = value);
         }
-        work.moved = moved;
-        outcome?;
         if work.inertial {
             for v in 0..2 {
                 for k in 0..n {
@@ -602,31 +607,58 @@ impl Piston {
         Ok(())
     }
 
-    /// Forces left over at `x`, which differs from the present place in the coordinate `column`, at the rates of now.
-    fn residual_beside(
+    /// Loads of both sides at places beside the present one `x`, each coordinate moved a little.
+    fn look_beside(&mut self, now: &Instant, x: &[f64], w: &[f64]) -> Result<(), EvalError> {
+        for k in 0..self.n {
+            // The difference of what is then added, to the last digit.
+            self.moves[k] = (x[k] + self.increment(w, k)) - x[k];
+        }
+        for side in 0..2 {
+            let own = self.own(side);
+            let rates = &mut self.own_rates[side];
+            rates[..2].copy_from_slice(&w[..2]);
+            rates[2..].copy_from_slice(&w[own.clone()]);
+            let moves = &mut self.own_moves[side];
+            moves[..2].copy_from_slice(&self.moves[..2]);
+            moves[2..].copy_from_slice(&self.moves[own.clone()]);
+            let (e, out) = ([x[0], x[1]], &mut self.beside[side]);
+            self.sides[side].loads_beside(e, &x[own], moves, now.speed, now.mu, rates, out)?;
+        }
+        Ok(())
+    }
+
+    /// Change of the forces left over per change of the coordinate `column`, from what [`Piston::look_beside`] found, into `dr`; `base` is what is left
+    /// over at `x`.
+    fn change_beside(
         &mut self,
         now: &Instant,
         x: &[f64],
         w: &[f64],
         column: usize,
-        r: &mut [f64],
-    ) -> Result<(), EvalError> {
+        base: &[f64],
+        dr: &mut [f64],
+    ) {
         for side in 0..2 {
             let own = self.own(side);
-            if column < 2 || own.contains(&column) {
-                let rates = &mut self.own_rates[side];
-                rates[..2].copy_from_slice(&w[..2]);
-                rates[2..].copy_from_slice(&w[own.clone()]);
-                let (e, q) = ([x[0], x[1]], &x[own]);
-                self.sides[side].loads_elsewhere(e, q, now.speed, now.mu, rates, &mut self.trial[side])?;
+            let from = if column < 2 {
+                &self.beside[side][column]
+            } else if own.contains(&column) {
+                &self.beside[side][2 + column - own.start]
             } else {
-                let (from, to) = (&self.loads[side], &mut self.trial[side]);
-                (to.film, to.contact) = (from.film, from.contact);
-                to.elastic.clone_from(&from.elastic);
-            }
+                &self.loads[side]
+            };
+            let to = &mut self.trial[side];
+            (to.film, to.contact) = (from.film, from.contact);
+            to.elastic.clone_from(&from.elastic);
         }
-        self.left_over(now, x, w, true, r);
-        Ok(())
+        let mut moved = std::mem::take(&mut self.moved);
+        moved.copy_from_slice(x);
+        moved[column] += self.moves[column];
+        self.left_over(now, &moved, w, true, dr);
+        self.moved = moved;
+        for (dr, base) in dr.iter_mut().zip(base) {
+            *dr = (*dr - base) / self.moves[column];
+        }
     }
 
     /// Forces left over at another instant, at the place and the rates of now.
@@ -692,21 +724,13 @@ impl Piston {
             }
             // The Jacobian serves as long as the forces fall tenfold.
             if left > 0.1 * before || before.is_infinite() {
-                let mut told = Ok(());
-                for column in 0..n {
-                    let d = self.increment(w, column);
-                    work.moved.copy_from_slice(x);
-                    work.moved[column] = x[column] + d;
-                    let d = work.moved[column] - x[column];
-                    told = self.residual_beside(now, &work.moved, w, column, &mut work.dr);
-                    if told.is_err() {
-                        break;
-                    }
+                let told = self.look_beside(now, x, w);
+                for column in 0..if told.is_ok() { n } else { 0 } {
+                    self.change_beside(now, x, w, column, &work.base, &mut work.dr);
                     for k in 0..n {
                         let inertia =
                             if v.is_some() && k < 2 && column < 2 { mass[k][column] / dt } else { 0.0 };
-                        work.slope[k * n + column] =
-                            self.slope[k * n + column] + dt * (work.dr[k] - work.base[k]) / d - inertia;
+                        work.slope[k * n + column] = self.slope[k * n + column] + dt * work.dr[k] - inertia;
                     }
                 }
                 work.lu.copy_from_slice(&work.slope);

@@ -1,7 +1,7 @@
 //! One side of the skirt: gap, film, contact, and the forces that belong to the motions of the gap.
 
 use gudgeon_core::kinds::{
-    Contact, ContactSpec, Film2d, Film2dCtx, Film2dGrid, Film2dIn, Film2dOut, Film2dSpec, FilmMode,
+    Contact, ContactSpec, Edge, Film2d, Film2dCtx, Film2dGrid, Film2dIn, Film2dOut, Film2dSpec, FilmMode,
     FlowFactors, RoughFlow, RoughShear, Roughness, RoughnessSpec, ShearThinning, SkirtModes, SkirtProfile,
     Superposition, Viscosity,
 };
@@ -119,9 +119,9 @@ pub struct Side {
     /// Drop of the profile at nodes, at faces along `x` and along `y`; empty for a cylinder.
     drop: [Vec<f64>; 3],
     least_drop: f64,
-    /// Shapes of the gap's rates at the nodes: upper edge, lower edge, elastic ones; and times the area.
+    /// Shapes of the gap's rates at the nodes: upper edge, lower edge, elastic ones.
     shapes: Vec<f64>,
-    tests: Vec<f64>,
+    over: Over,
     /// Elastic shapes at faces along `x` and along `y`.
     face_shapes: [Vec<f64>; 2],
     elastic: usize,
@@ -143,6 +143,11 @@ pub struct Side {
     fields: Vec<f64>,
     rates: Vec<f64>,
     modes_of_rates: Vec<f64>,
+    /// Uncut pressure per viscosity, flows left over beside the present place, coordinates there, one row of sums.
+    raw: Vec<f64>,
+    beside: Vec<f64>,
+    moved: Vec<f64>,
+    row: Vec<f64>,
     /// Pressure above the crankcase and the part of it that takes part in changes.
     p: Vec<f64>,
     open: Vec<f64>,
@@ -283,6 +288,7 @@ impl Side {
             is_rough,
         };
         let points = contact_cos.len();
+        let over = Over { tests, arm: cos.iter().map(|c| panel.radius * c).collect(), nx };
         Ok(Self {
             panel,
             sign,
@@ -299,7 +305,7 @@ impl Side {
             line_weight,
             drop,
             least_drop,
-            tests,
+            over,
             face_shapes,
             elastic,
             stiffness: setup.modes.stiffness.clone(),
@@ -317,6 +323,10 @@ impl Side {
             fields: vec![0.0; (3 + elastic) * n],
             rates: vec![0.0; n],
             modes_of_rates: vec![0.0; (2 + elastic) * n],
+            raw: vec![0.0; n],
+            beside: vec![0.0; (2 + elastic) * n],
+            moved: Vec::with_capacity(elastic),
+            row: vec![0.0; 4 + elastic],
             shapes,
             p: vec![0.0; n],
             open: vec![0.0; n],
@@ -390,22 +400,16 @@ impl Side {
         self.p.iter().fold(0.0, |a, &b| a.max(b))
     }
 
-    /// Largest elastic displacement over the gap of the present place, for the amplitudes `q` \[m\]; 0 for a rigid skirt.
-    #[must_use]
-    pub fn yielding(&self, q: &[f64]) -> f64 {
-        self.part_of_gap(q, self)
-    }
-
     /// Amplitudes \[m\] with which the shapes of this side yield to the pressure that `other`, the same side without shapes, found last.
     #[must_use]
     pub fn yields_to(&self, other: &Self) -> Vec<f64> {
         let n = self.nodes();
         let full = other.pressure();
-        let shapes = self.tests[2 * n..].chunks_exact(n.max(1)).zip(&self.stiffness);
+        let shapes = self.over.tests[2 * n..].chunks_exact(n.max(1)).zip(&self.stiffness);
         shapes.map(|(test, k)| test.iter().zip(&full).map(|(t, p)| t * p).sum::<f64>() / k).collect()
     }
 
-    /// Largest elastic displacement with the amplitudes `q` over the gap of `other`, which may be the same side without shapes.
+    /// Largest elastic displacement with the amplitudes `q` over the gap of `other`, the same side without shapes.
     #[must_use]
     pub fn part_of_gap(&self, q: &[f64], other: &Self) -> f64 {
         let n = self.nodes();
@@ -571,83 +575,151 @@ impl Side {
         slopes: Slopes,
         out: &mut SideLoads,
     ) -> Result<(), EvalError> {
-        let n = self.nodes();
         out.contact = self.contact_now;
-        if self.superposition == Superposition::None {
+        if self.is_superposed() {
+            self.superpose(speed, rates);
+            self.cut(mu);
+        } else {
             self.solve_whole(false, speed, mu, rates)?;
-            self.sums(false, speed, mu, out);
-            if slopes != Slopes::None {
-                let count = rates.len();
-                out.slope.resize(count * (4 + self.elastic), 0.0);
-                let mut moved = rates.to_vec();
-                let base = (out.film, out.elastic.clone());
-                let kept = (self.p.clone(), self.fill.clone());
-                let mut there = SideLoads::default();
-                for m in 0..count {
-                    // Rates matter against the clearance per millisecond; the film is found to some 1e-9.
-                    let d = 1e-4 * rates[m].abs().max(1e-2 * self.clearance / 1e-3);
-                    moved[m] = rates[m] + d;
-                    self.solve_whole(false, speed, mu, &moved)?;
-                    moved[m] = rates[m];
-                    self.sums(false, speed, mu, &mut there);
-                    let row = &mut out.slope[m * (4 + self.elastic)..(m + 1) * (4 + self.elastic)];
-                    for k in 0..4 {
-                        row[k] = (there.film[k] - base.0[k]) / d;
-                    }
-                    for k in 0..self.elastic {
-                        row[4 + k] = (there.elastic[k] - base.1[k]) / d;
-                    }
-                }
-                (self.p, self.fill) = kept;
-            }
-            return Ok(());
-        }
-        let cut = if self.superposition == Superposition::CutOff { self.p_cav } else { f64::NEG_INFINITY };
-        let (sliding, rest) = self.fields.split_at(n);
-        let (top, bottom) = (&rest[..n], &rest[n..2 * n]);
-        let (a, b, c) = (mu * speed, mu * rates[0], mu * rates[1]);
-        for k in 0..n {
-            self.p[k] = a * sliding[k] + b * top[k] + c * bottom[k];
-        }
-        for (m, rate) in rates[2..].iter().enumerate() {
-            let field = &rest[(2 + m) * n..(3 + m) * n];
-            self.p.iter_mut().zip(field).for_each(|(p, f)| *p += mu * rate * f);
-        }
-        for k in 0..n {
-            let is_open = self.p[k] > cut;
-            self.open[k] = if is_open { 1.0 } else { 0.0 };
-            self.p[k] = if is_open { self.p[k] } else { cut };
         }
         self.sums(false, speed, mu, out);
-        if slopes != Slopes::None {
-            let width = 4 + self.elastic;
+        self.slopes(speed, mu, rates, slopes, out)
+    }
+
+    /// Derivatives of the forces that [`Side::loads`] just found, with the same arguments, into `out.slope`.
+    ///
+    /// # Errors
+    /// A film that cannot be solved.
+    pub fn slopes(
+        &mut self,
+        speed: f64,
+        mu: f64,
+        rates: &[f64],
+        slopes: Slopes,
+        out: &mut SideLoads,
+    ) -> Result<(), EvalError> {
+        if slopes == Slopes::None {
+            return Ok(());
+        }
+        let (n, width) = (self.nodes(), 4 + self.elastic);
+        out.slope.resize(rates.len() * width, 0.0);
+        if self.is_superposed() {
             let all = if slopes == Slopes::Full { 1.0 } else { 0.0 };
-            out.slope.resize(rates.len() * width, 0.0);
             for (m, row) in out.slope.chunks_exact_mut(width).enumerate() {
                 let field = &self.fields[(1 + m) * n..(2 + m) * n];
                 let taken = &mut self.work[0];
                 for k in 0..n {
                     taken[k] = mu * self.open[k].max(all) * field[k];
                 }
-                pressure_sums(
-                    taken,
-                    &self.tests,
-                    &self.now.lever,
-                    &self.cos,
-                    self.panel.radius,
-                    self.nx,
-                    row,
-                );
+                self.over.sums(taken, &self.now.lever, row);
             }
+            return Ok(());
+        }
+        let mut moved = rates.to_vec();
+        let kept = (self.p.clone(), self.fill.clone());
+        let mut there = SideLoads::default();
+        for m in 0..rates.len() {
+            // Rates matter against the clearance per millisecond; the film is found to some 1e-9.
+            let d = 1e-4 * rates[m].abs().max(1e-2 * self.clearance / 1e-3);
+            moved[m] = rates[m] + d;
+            self.solve_whole(false, speed, mu, &moved)?;
+            moved[m] = rates[m];
+            self.sums(false, speed, mu, &mut there);
+            let row = &mut out.slope[m * width..(m + 1) * width];
+            for k in 0..4 {
+                row[k] = (there.film[k] - out.film[k]) / d;
+            }
+            for k in 0..self.elastic {
+                row[4 + k] = (there.elastic[k] - out.elastic[k]) / d;
+            }
+        }
+        (self.p, self.fill) = kept;
+        Ok(())
+    }
+
+    /// Forces at places beside the present one, at `e` and `q`: coordinate after coordinate (upper edge, lower edge, elastic amplitudes) is moved by its `d`
+    /// alone; to first order in it.
+    ///
+    /// The pressures of now leave a flow over in the film beside; the matrix that is set up says what pressures take it up.
+    ///
+    /// # Errors
+    /// A film that cannot be solved.
+    #[allow(clippy::too_many_arguments, reason = "a place, a motion and a step")]
+    pub fn loads_beside(
+        &mut self,
+        e: [f64; 2],
+        q: &[f64],
+        d: &[f64],
+        speed: f64,
+        mu: f64,
+        rates: &[f64],
+        out: &mut [SideLoads],
+    ) -> Result<(), EvalError> {
+        let n = self.nodes();
+        let count = 2 + self.elastic;
+        if self.is_superposed() {
+            self.superpose(speed, rates);
+            self.cut(mu);
+        }
+        let mut moved = std::mem::take(&mut self.moved);
+        let mut outcome = Ok(true);
+        for (c, out) in out.iter_mut().enumerate().take(count) {
+            let at = |k: usize, x: f64| if k == c { x + d[k] } else { x };
+            let there = [at(0, e[0]), at(1, e[1])];
+            moved.clear();
+            moved.extend(q.iter().enumerate().map(|(m, q)| at(2 + m, *q)));
+            outcome = if self.is_superposed() {
+                self.begin_beside(there, &moved, speed, mu, rates, c, out)
+            } else {
+                Ok(false)
+            };
+            if let Ok(false) = outcome {
+                outcome = self.loads_elsewhere(there, &moved, speed, mu, rates, out).map(|()| false);
+            }
+            if outcome.is_err() {
+                break;
+            }
+        }
+        self.moved = moved;
+        if !outcome? {
+            return Ok(());
+        }
+        self.film.respond(&mut self.beside)?;
+        let width = 4 + self.elastic;
+        for (c, out) in out.iter_mut().enumerate().take(count) {
+            let change = &self.beside[c * n..(c + 1) * n];
+            let taken = &mut self.work[0];
+            for k in 0..n {
+                taken[k] = mu * self.open[k] * change[k];
+            }
+            self.over.sums(taken, &self.now.lever, &mut self.row[..width]);
+            out.film.iter_mut().zip(&self.row).for_each(|(f, d)| *f += d);
+            out.elastic.iter_mut().zip(&self.row[4..]).for_each(|(f, d)| *f += d);
         }
         Ok(())
     }
 
+    /// The part of [`Side::loads_beside`] that needs no solution: forces of the pressures of now in the film beside, and the flow that they leave
+    /// over. Whether the film's model can tell.
+    #[allow(clippy::too_many_arguments, reason = "a place, a motion and a column")]
+    fn begin_beside(
+        &mut self,
+        e: [f64; 2],
+        q: &[f64],
+        speed: f64,
+        mu: f64,
+        rates: &[f64],
+        column: usize,
+        out: &mut SideLoads,
+    ) -> Result<bool, EvalError> {
+        self.shape_gap(true, e, q, speed)?;
+        out.contact = self.contact_loads(e, q);
+        self.sums(true, speed, mu, out);
+        self.left_over(true, speed, rates, column)
+    }
+
     /// Forces at another place for rates that are given: one film alone. The present place stays.
-    ///
-    /// # Errors
-    /// A film that cannot be solved.
-    pub fn loads_elsewhere(
+    fn loads_elsewhere(
         &mut self,
         e: [f64; 2],
         q: &[f64],
@@ -739,30 +811,95 @@ impl Side {
     /// # Errors
     /// A film that cannot be solved.
     pub fn oil_flow(&mut self, speed: f64, mu: f64, rates: &[f64]) -> Result<[f64; 3], EvalError> {
-        let kept = (self.p.clone(), self.fill.clone());
-        let found = self.solve_whole(false, speed, mu, rates);
-        (self.p, self.fill) = kept;
-        let out = found?.outflow;
+        let out = if self.is_superposed() {
+            self.superpose(speed, rates);
+            self.cut(mu);
+            self.p.iter_mut().for_each(|p| *p /= mu);
+            let known = self.left_over(false, speed, rates, 0);
+            self.p.iter_mut().for_each(|p| *p *= mu);
+            if known? { self.outflow() } else { self.whole_outflow(speed, mu, rates)? }
+        } else {
+            self.whole_outflow(speed, mu, rates)?
+        };
         let both = if self.is_half { 2.0 } else { 1.0 };
         let flanks = if self.is_half { 2.0 * out[2] } else { out[2] + out[3] };
         Ok([both * out[0], both * out[1], flanks])
     }
 
-    /// Sums over the film in `self.p`.
-    fn sums(&self, trial: bool, speed: f64, mu: f64, out: &mut SideLoads) {
-        let gap = if trial { &self.trial } else { &self.now };
-        let (nx, width) = (self.nx, 4 + self.elastic);
-        out.elastic.resize(self.elastic, 0.0);
-        let mut found = [0.0; 4];
-        let (tests, radius) = (&self.tests, self.panel.radius);
-        if self.elastic == 0 {
-            pressure_sums(&self.p, tests, &gap.lever, &self.cos, radius, nx, &mut found);
-        } else {
-            let mut all = vec![0.0; width];
-            pressure_sums(&self.p, tests, &gap.lever, &self.cos, radius, nx, &mut all);
-            found.copy_from_slice(&all[..4]);
-            out.elastic.copy_from_slice(&all[4..]);
+    /// Flow over every edge, by a film of its own.
+    fn whole_outflow(&mut self, speed: f64, mu: f64, rates: &[f64]) -> Result<[f64; 4], EvalError> {
+        let kept = (self.p.clone(), self.fill.clone());
+        let found = self.solve_whole(false, speed, mu, rates);
+        (self.p, self.fill) = kept;
+        // The matrix is no longer that of the present place.
+        self.placed.clear();
+        Ok(found?.outflow)
+    }
+
+    /// Flow over every edge that the first field of `self.beside` leaves over there.
+    fn outflow(&self) -> [f64; 4] {
+        let (nx, ny) = (self.nx, self.ny);
+        let mut out = [0.0; 4];
+        for (k, r) in self.beside[..nx * ny].iter().enumerate() {
+            let (i, j) = (k % nx, k / nx);
+            let at = [i == 0, i + 1 == nx, j == 0, j + 1 == ny];
+            let edges = self.film.grid().edges;
+            if let Some(e) = (0..4).find(|&e| at[e] && edges[e] == Edge::Pressure) {
+                out[e] += r;
+            }
         }
+        out
+    }
+
+    /// Uncut pressure per viscosity for the rates, into `self.raw`.
+    fn superpose(&mut self, speed: f64, rates: &[f64]) {
+        let n = self.nodes();
+        let (sliding, rest) = self.fields.split_at(n);
+        self.raw.iter_mut().zip(sliding).for_each(|(p, f)| *p = speed * f);
+        for (rate, field) in rates.iter().zip(rest.chunks_exact(n)) {
+            self.raw.iter_mut().zip(field).for_each(|(p, f)| *p += rate * f);
+        }
+    }
+
+    /// The pressure from `self.raw`, cut off, and where it takes part in changes.
+    fn cut(&mut self, mu: f64) {
+        let cut = if self.superposition == Superposition::CutOff { self.p_cav } else { f64::NEG_INFINITY };
+        for ((p, open), raw) in self.p.iter_mut().zip(&mut self.open).zip(&self.raw) {
+            let full = mu * raw;
+            // A film without pressure, as that of a centred skirt at rest, answers like a full one.
+            let is_open = full >= cut;
+            *open = if is_open { 1.0 } else { 0.0 };
+            *p = if is_open { full } else { cut };
+        }
+    }
+
+    /// Flow per viscosity that a pressure per viscosity leaves over in the film, into field `column` of `self.beside`: `self.raw` for the film beside the
+    /// present place, `self.p` for the present one. Whether the film's model can tell.
+    fn left_over(
+        &mut self,
+        trial: bool,
+        speed: f64,
+        rates: &[f64],
+        column: usize,
+    ) -> Result<bool, EvalError> {
+        self.combine_rates(trial, rates);
+        let n = self.nodes();
+        let gap = if trial { &self.trial } else { &self.now };
+        let mode = FilmMode { u: -speed, dhdt: &self.rates, edge_pressure: [0.0; 4] };
+        let p = if trial { &self.raw } else { &self.p };
+        self.film.imbalance(&film_input(gap, n), &mode, p, &mut self.beside[column * n..(column + 1) * n])
+    }
+
+    /// Sums over the film in `self.p`.
+    fn sums(&mut self, trial: bool, speed: f64, mu: f64, out: &mut SideLoads) {
+        let width = 4 + self.elastic;
+        let gap = if trial { &self.trial } else { &self.now };
+        let nx = self.nx;
+        self.over.sums(&self.p, &gap.lever, &mut self.row[..width]);
+        let mut found = [0.0; 4];
+        found.copy_from_slice(&self.row[..4]);
+        out.elastic.resize(self.elastic, 0.0);
+        out.elastic.copy_from_slice(&self.row[4..width]);
         // Couette drag: the liner slides against the piston.
         for j in 0..self.ny {
             let line = j * nx..(j + 1) * nx;
@@ -773,7 +910,7 @@ impl Side {
                 .map(|((w, d), f)| w * d * f)
                 .sum();
             found[2] -= mu * speed * full;
-            found[3] -= mu * speed * full * radius * self.cos[j];
+            found[3] -= mu * speed * full * self.panel.radius * self.cos[j];
         }
         out.film = found;
     }
@@ -854,29 +991,31 @@ fn film_input<'a>(gap: &'a Gap, n: usize) -> Film2dIn<'a> {
     }
 }
 
-/// `out`: forces of a pressure on both edges, along the bore, along the bore times `R cos φ`, and on the elastic shapes.
-fn pressure_sums(
-    p: &[f64],
-    tests: &[f64],
-    lever: &[f64],
-    cos: &[f64],
-    radius: f64,
+/// What sums over a film need besides its lever.
+struct Over {
+    /// Shapes of the gap's rates times the areas of the nodes.
+    tests: Vec<f64>,
+    /// `R cos φ` of every line.
+    arm: Vec<f64>,
     nx: usize,
-    out: &mut [f64],
-) {
-    let n = p.len();
-    let dot = gudgeon_numerics::linalg::dot;
-    out[0] = dot(&tests[..n], p);
-    out[1] = dot(&tests[n..2 * n], p);
-    let (mut axial, mut arm) = (0.0, 0.0);
-    for (j, cos) in cos.iter().enumerate() {
-        let line = dot(&lever[j * nx..(j + 1) * nx], &p[j * nx..(j + 1) * nx]);
-        axial += line;
-        arm += line * radius * cos;
-    }
-    (out[2], out[3]) = (axial, arm);
-    for (m, out) in out[4..].iter_mut().enumerate() {
-        *out = dot(&tests[(2 + m) * n..(3 + m) * n], p);
+}
+
+impl Over {
+    /// `out`: forces of a pressure on both edges, along the bore, along the bore times `R cos φ`, and on the elastic shapes.
+    fn sums(&self, p: &[f64], lever: &[f64], out: &mut [f64]) {
+        let (n, nx) = (p.len(), self.nx);
+        let dot = gudgeon_numerics::linalg::dot;
+        let (head, elastic) = out.split_at_mut(4);
+        let mut tests = self.tests.chunks_exact(n);
+        for out in head[..2].iter_mut().chain(elastic) {
+            *out = tests.next().map_or(0.0, |test| dot(test, p));
+        }
+        (head[2], head[3]) = (0.0, 0.0);
+        for ((lever, p), arm) in lever.chunks_exact(nx).zip(p.chunks_exact(nx)).zip(&self.arm) {
+            let line = dot(lever, p);
+            head[2] += line;
+            head[3] += line * arm;
+        }
     }
 }
 

@@ -347,6 +347,31 @@ pub trait Film2d: Send {
         p: &mut [f64],
     ) -> Result<usize, EvalError>;
 
+    /// Flow that the pressures `p` \[Pa\] leave over in a full film, into `r` \[m³/s\]: what reaches each node less what leaves it and what it takes up;
+    /// at a node on an edge that gives a pressure, the flow out over that edge. Of `inp` is read what [`Film2d::solve_many`] reads, and its set-up
+    /// stays. Returns whether the model can tell; `r` is untouched when it cannot.
+    ///
+    /// # Errors
+    /// As [`Film2d::solve`], and fields of the wrong length (Fatal).
+    fn imbalance(
+        &mut self,
+        _inp: &Film2dIn<'_>,
+        _mode: &FilmMode<'_>,
+        _p: &[f64],
+        _r: &mut [f64],
+    ) -> Result<bool, EvalError> {
+        Ok(false)
+    }
+
+    /// Pressures \[Pa\] that take up flows left over, field after field in place: the solutions of the matrix that [`Film2d::solve_many`] set up last. With
+    /// [`Film2d::imbalance`] this is one step of Newton's method from a film to one beside it. Flows on edges that give a pressure do not count.
+    ///
+    /// # Errors
+    /// Nothing is set up, or no solution (Recoverable); a length that is no multiple of the nodes (Fatal).
+    fn respond(&mut self, _r: &mut [f64]) -> Result<(), EvalError> {
+        Err(EvalError::recoverable("film_2d", "this model does not tell how a film answers to flows"))
+    }
+
     /// Whether the film is the sum of what [`Film2d::solve_many`] finds.
     fn superposition(&self) -> Superposition {
         Superposition::None

@@ -6,7 +6,7 @@ use gudgeon_numerics::linalg::Singular;
 use gudgeon_numerics::multigrid::FivePoint;
 
 use super::Cavitation;
-use super::problem::Problem;
+use super::problem::{Problem, cause_of};
 
 /// Solves linear systems with a [`FivePoint`] matrix.
 pub(super) trait Linear: Send {
@@ -14,6 +14,10 @@ pub(super) trait Linear: Send {
     fn factor(&mut self, m: &FivePoint, symmetric: bool) -> Result<(), Singular>;
     /// Improves `z` until no residual is larger than `target` where that is possible. Returns the work done and the largest residual.
     fn solve(&mut self, m: &FivePoint, b: &[f64], z: &mut [f64], target: f64) -> (usize, f64);
+    /// Solves for several right-hand sides at once, in place, to rounding. Whether this is how the solver works.
+    fn solve_block(&mut self, _m: &FivePoint, _b: &mut [f64]) -> bool {
+        false
+    }
 }
 
 /// Most changes of the set of cavitated nodes.
@@ -43,6 +47,10 @@ pub(super) struct Solver<L> {
     fill: Vec<f64>,
     /// Whether `p`, `void` and `cavitated` hold a film.
     warm: bool,
+    /// Whether the matrix is that of a full film without cavitation, as `solve_many` leaves it.
+    set_up: bool,
+    /// A film beside that one, once it is asked for.
+    beside: Option<Problem>,
 }
 
 impl<L: Linear> Solver<L> {
@@ -68,6 +76,8 @@ impl<L: Linear> Solver<L> {
             pressure: vec![0.0; n],
             fill: vec![1.0; n],
             warm: false,
+            set_up: false,
+            beside: None,
         }
     }
 
@@ -296,6 +306,7 @@ impl<L: Linear> Film2d for Solver<L> {
         if inp.history.is_some() && self.cavitation != Cavitation::MassConserving {
             return Err(EvalError::fatal(self.model, "only the mass-conserving condition has a history"));
         }
+        self.set_up = false;
         self.problem.assemble(self.model, inp)?;
         self.problem.drive(inp, inp.u, inp.dhdt, self.cavitation == Cavitation::MassConserving);
         let mut found = self.find(inp);
@@ -323,11 +334,26 @@ impl<L: Linear> Film2d for Solver<L> {
     ) -> Result<usize, EvalError> {
         let n = self.p.len();
         super::check_modes(self.model, n, modes, p.len())?;
+        (self.warm, self.set_up) = (false, false);
         self.problem.assemble(self.model, inp)?;
-        self.warm = false;
         self.cavitated.fill(false);
         self.problem.choose(&self.cavitated, false);
         self.linear.factor(&self.problem.m, true).map_err(|s| self.singular(s))?;
+        self.set_up = true;
+        for (mode, out) in modes.iter().zip(p.chunks_exact_mut(n)) {
+            self.problem.cause(inp, mode, &mut self.p, &mut self.void);
+            self.problem.balance(&self.p, &self.void, out);
+            out.iter_mut().for_each(|b| *b = -*b);
+        }
+        if self.linear.solve_block(&self.problem.m, p) {
+            for (mode, out) in modes.iter().zip(p.chunks_exact_mut(n)) {
+                self.problem.set_edges(&cause_of(inp, mode), false, out, &mut self.void);
+                if !out.iter().sum::<f64>().is_finite() {
+                    return Err(EvalError::recoverable(self.model, "the film overflows"));
+                }
+            }
+            return Ok(modes.len());
+        }
         let mut cycles = 0;
         for (mode, out) in modes.iter().zip(p.chunks_exact_mut(n)) {
             self.problem.cause(inp, mode, &mut self.p, &mut self.void);
@@ -335,6 +361,52 @@ impl<L: Linear> Film2d for Solver<L> {
             out.copy_from_slice(&self.p);
         }
         Ok(cycles)
+    }
+
+    fn imbalance(
+        &mut self,
+        inp: &Film2dIn<'_>,
+        mode: &FilmMode<'_>,
+        p: &[f64],
+        r: &mut [f64],
+    ) -> Result<bool, EvalError> {
+        let n = self.p.len();
+        super::check_modes(self.model, n, &[*mode], p.len())?;
+        super::check_modes(self.model, n, &[*mode], r.len())?;
+        let beside = self.beside.get_or_insert_with(|| self.problem.clone());
+        beside.assemble(self.model, inp)?;
+        beside.drive(&cause_of(inp, mode), mode.u, mode.dhdt, false);
+        self.void.fill(0.0);
+        beside.balance(p, &self.void, r);
+        r.iter_mut().for_each(|b| *b = -*b);
+        self.warm = false;
+        Ok(true)
+    }
+
+    fn respond(&mut self, r: &mut [f64]) -> Result<(), EvalError> {
+        let n = self.p.len();
+        if !self.set_up {
+            return Err(EvalError::recoverable(self.model, "no full film is set up"));
+        }
+        if !r.len().is_multiple_of(n) {
+            let what = format!("{} values are no fields over {n} nodes", r.len());
+            return Err(EvalError::fatal(self.model, what));
+        }
+        if self.linear.solve_block(&self.problem.m, r) {
+            return Ok(());
+        }
+        for r in r.chunks_exact_mut(n) {
+            let most = r.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+            self.b.copy_from_slice(r);
+            self.z.fill(0.0);
+            let (_, left) = self.linear.solve(&self.problem.m, &self.b, &mut self.z, self.tolerance * most);
+            // Rounding may end the cycles a little short of a strict tolerance.
+            if left.is_nan() || left > 1e-6 * most {
+                return Err(EvalError::recoverable(self.model, "no convergence of the linear system"));
+            }
+            r.copy_from_slice(&self.z);
+        }
+        Ok(())
     }
 
     fn superposition(&self) -> Superposition {

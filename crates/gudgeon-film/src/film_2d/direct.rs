@@ -69,6 +69,7 @@ pub(super) struct Elimination {
     general: Option<Banded>,
     is_symmetric: bool,
     work: Vec<f64>,
+    block: Vec<[f64; 4]>,
 }
 
 impl Elimination {
@@ -101,6 +102,7 @@ impl Elimination {
             general: general.then(|| Banded::new(n, half, half)),
             is_symmetric: true,
             work: vec![0.0; n],
+            block: Vec::new(),
         }
     }
 }
@@ -161,5 +163,22 @@ impl Linear for Elimination {
             *z = self.work[row];
         }
         (1, m.residual(b, z))
+    }
+    fn solve_block(&mut self, m: &FivePoint, b: &mut [f64]) -> bool {
+        if !self.is_symmetric {
+            return false;
+        }
+        for column in b.chunks_exact_mut(self.place.len()) {
+            for (k, &row) in self.place.iter().enumerate() {
+                self.work[row] = if m.role[k] == Role::Fixed { 0.0 } else { column[k] };
+            }
+            column.copy_from_slice(&self.work);
+        }
+        self.symmetric.solve_block(b, &mut self.block);
+        for column in b.chunks_exact_mut(self.place.len()) {
+            self.work.copy_from_slice(column);
+            column.iter_mut().zip(&self.place).for_each(|(z, &row)| *z = self.work[row]);
+        }
+        true
     }
 }

@@ -13,7 +13,7 @@ const MOST: usize = 1 << 24;
 ///
 /// Volume flow from node `k` to the next along `x` is `gx (p_k - p_next) + qx θ`, with `θ` the filling of the node upstream; across it is
 /// `gy (p_k - p_next)`; and the volume takes up `hold θ + fixed`. Pressures count from `p_cav`.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Problem {
     pub grid: Film2dGrid,
     pub flux: Flux,
@@ -399,7 +399,7 @@ impl Problem {
 
     /// Sets the film up for one cause of pressure and without cavitation: flows, the pressures of the edges in `p` and zero inside.
     pub fn cause(&mut self, inp: &Film2dIn<'_>, mode: &FilmMode<'_>, p: &mut [f64], void: &mut [f64]) {
-        let plain = Film2dIn { edge_pressure: mode.edge_pressure, p_cav: 0.0, history: None, ..*inp };
+        let plain = cause_of(inp, mode);
         self.drive(&plain, mode.u, mode.dhdt, false);
         p.fill(0.0);
         self.set_edges(&plain, false, p, void);
@@ -466,4 +466,9 @@ impl Problem {
         out.residual = if most > 0.0 { worst / most } else { worst };
         out
     }
+}
+
+/// A film with one cause of pressure alone.
+pub(super) fn cause_of<'a>(inp: &Film2dIn<'a>, mode: &FilmMode<'_>) -> Film2dIn<'a> {
+    Film2dIn { edge_pressure: mode.edge_pressure, p_cav: 0.0, history: None, ..*inp }
 }

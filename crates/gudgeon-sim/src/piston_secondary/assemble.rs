@@ -63,7 +63,7 @@ pub fn radius(case: &PistonSecondaryCase) -> f64 {
     case.skirt.radius.map_or(0.5 * case.engine.bore.si() - case.skirt.clearance.si(), |r| r.si())
 }
 
-/// Builds the sub-models; with `elastic`, the skirt yields as its model says.
+/// Builds the sub-models; with `elastic`, the skirt yields as its model says. `intervals` along and across each side take the place of those of the case.
 ///
 /// # Errors
 /// Everything that is wrong, with places.
@@ -71,6 +71,7 @@ pub fn assemble(
     case: &PistonSecondaryCase,
     folder: &Path,
     elastic: bool,
+    intervals: Option<[u32; 2]>,
 ) -> Result<Assembly, Vec<BuildError>> {
     let mut errors = legal(case);
     let (e, p, s, m) = (&case.engine, &case.piston, &case.skirt, &case.models);
@@ -157,8 +158,8 @@ pub fn assemble(
         for which in 0..2 {
             let panel = Panel { radius, length, half_angle: half(which) };
             let solver = &case.solver;
-            let (nx, ny) = (solver.intervals_along as usize, solver.intervals_across as usize);
-            let grid = panel.grid(nx, ny, solver.crowding.si());
+            let [nx, ny] = intervals.unwrap_or([solver.intervals_along, solver.intervals_across]);
+            let grid = panel.grid(nx as usize, ny as usize, solver.crowding.si());
             let modes = if elastic {
                 m.skirt_compliance.build(&SkirtComplianceCtx {
                     grid: &grid,

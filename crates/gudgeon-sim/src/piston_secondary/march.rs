@@ -11,7 +11,7 @@ use gudgeon_numerics::rodas::{Formula, Rodas};
 
 use super::assemble::Assembly;
 use super::case::{Method, PistonSecondaryCase};
-use super::record::Record;
+use super::record::{Record, Rows};
 use crate::case::IntegratorName;
 use crate::run::RunError;
 
@@ -359,7 +359,7 @@ impl CycleMap for Cycle<'_> {
     }
 }
 
-/// Runs the case: the skirt as it is built, from `start` when one is known.
+/// Runs the case: the skirt as it is built, from `start` when one is known. What is wanted of the last cycle is `rows`.
 ///
 /// # Errors
 /// What stopped it.
@@ -367,7 +367,7 @@ pub fn run(
     case: &PistonSecondaryCase,
     a: &mut Assembly,
     start: Option<&[f64]>,
-    flows: bool,
+    rows: Rows,
     progress: &mut dyn FnMut(f64),
 ) -> Result<Found, RunError> {
     let begin = Clock::now();
@@ -375,7 +375,8 @@ pub fn run(
     let n = a.piston.coordinates();
     let inertial = a.lateral == Lateral::Inertial;
     let states = if inertial { n + 2 } else { n };
-    let mut record = Record::new(a, case, flows);
+    let recorded = !matches!(rows, Rows::None);
+    let mut record = Record::new(a, case, rows);
     if let Lateral::Held { e_top, e_bottom } = a.lateral {
         return held(a, [e_top, e_bottom], record, begin);
     }
@@ -473,7 +474,9 @@ pub fn run(
     }
     let searched = begin.elapsed().as_secs_f64();
     let first = y.clone();
-    cycle.integrate(&mut y, s.tolerance.si(), Some(&mut record))?;
+    if recorded {
+        cycle.integrate(&mut y, s.tolerance.si(), Some(&mut record))?;
+    }
     let stats = cycle.stats;
     // Of a given number of cycles the last one is that of the record.
     let seconds = if s.cycles > 0 { begin.elapsed().as_secs_f64() } else { searched };

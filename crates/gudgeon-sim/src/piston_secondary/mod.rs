@@ -22,6 +22,7 @@ use crate::study::{Contender, Race};
 use assemble::{Assembly, assemble};
 use case::{Method, PistonSecondaryCase};
 use plan::ResultInfo;
+use record::Rows;
 
 /// Part of the film by which a skirt may yield that is taken for rigid.
 const YIELDING: f64 = 0.02;
@@ -38,7 +39,7 @@ impl SceneCase for PistonSecondaryCase {
     }
 
     fn legal(loaded: &Loaded<Self>) -> Vec<BuildError> {
-        match assemble(&loaded.value, &loaded.source.folder, true) {
+        match assemble(&loaded.value, &loaded.source.folder, true, None) {
             Ok(a) => plan::wanted(&loaded.value, a.period.to_degrees()).err().unwrap_or_default(),
             Err(e) => e,
         }
@@ -46,7 +47,7 @@ impl SceneCase for PistonSecondaryCase {
 
     fn explain(loaded: &Loaded<Self>, told: &mut Explanation) -> Result<Vec<ModelUse>, RunError> {
         let case = &loaded.value;
-        let a = build(loaded, true)?;
+        let a = assemble(case, &loaded.source.folder, true, None).map_err(refused)?;
         let wanted = wanted(case, &a)?;
         let why = |what: &str, why: &str| Skipped { what: what.into(), why: why.into() };
         told.runs.push(why("films of both sides", "their forces move the piston"));
@@ -69,45 +70,68 @@ impl SceneCase for PistonSecondaryCase {
     fn run(loaded: &Loaded<Self>, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
         let begin = Instant::now();
         let case = &loaded.value;
-        let mut a = build(loaded, false)?;
-        let yields = case.models.skirt_compliance.typetag_name() != "rigid";
+        let built = |elastic: bool, intervals: Option<[u32; 2]>| {
+            assemble(case, &loaded.source.folder, elastic, intervals).map_err(refused)
+        };
+        let mut a = built(false, None)?;
         let wanted = wanted(case, &a)?;
         let flows = wanted.iter().any(|r| r.flow);
-        let built = begin.elapsed().as_secs_f64();
-        let mut phase = "rigid skirt".to_owned();
-        let mut tell = |fraction: f64| progress(Progress { phase: phase.clone(), fraction });
-        let mut found = march::run(case, &mut a, None, flows && !yields, &mut tell)?;
-        let mut seconds = found.seconds;
-        let mut counters = work(&a, &found);
+        let build_time = begin.elapsed().as_secs_f64();
+        let periodic = case.solver.cycles == 0 && !matches!(a.lateral, Lateral::Held { .. });
+        let coarse = coarse(case);
+        let mut search = Search::default();
+        let mut elastic = case.models.skirt_compliance.typetag_name() != "rigid";
         let mut skipped_more = Vec::new();
-        if yields {
-            let soft = build(loaded, true)?;
-            let (part, start) = would_yield(&found, &mut a, soft)?;
-            if part.0 >= YIELDING {
-                phase = "elastic skirt".into();
-                a = part.1;
-                let mut tell = |fraction: f64| progress(Progress { phase: phase.clone(), fraction });
-                found = march::run(case, &mut a, Some(&start), flows, &mut tell)?;
-                seconds += found.seconds;
-                for (name, n) in work(&a, &found) {
-                    counters.entry(name).and_modify(|m| *m += n).or_insert(n);
+        let mut start: Option<Vec<f64>> = None;
+        if elastic {
+            let mut hard = built(false, coarse)?;
+            let soft = Box::new(built(true, coarse)?.piston);
+            let (shapes, inertial) = (soft.coordinates() - 2, hard.lateral == Lateral::Inertial);
+            let found = search.run(
+                "rigid skirt",
+                case,
+                &mut hard,
+                None,
+                Rows::Yielding(soft),
+                coarse.is_some(),
+                progress,
+            )?;
+            elastic = found.record.yielding >= YIELDING;
+            if periodic {
+                let mut s = found.start[..2].to_vec();
+                if elastic {
+                    s.extend(&found.record.yields_first);
+                    debug_assert_eq!(s.len(), 2 + shapes, "one amplitude a shape");
                 }
-            } else {
+                s.extend(if inertial { &found.start[2..4] } else { &[] });
+                start = Some(s);
+            }
+            if !elastic {
                 skipped_more.push(Skipped {
                     what: "yielding of the skirt".into(),
                     why: format!(
                         "the pressures on the rigid skirt would move its surface by {:.2} % of the gap at most, below {:.0} %",
-                        100.0 * part.0,
+                        100.0 * found.record.yielding,
                         100.0 * YIELDING
                     ),
                 });
-                if flows {
-                    let start = found.start.clone();
-                    let mut tell = |fraction: f64| progress(Progress { phase: phase.clone(), fraction });
-                    found = march::run(case, &mut a, Some(&start), true, &mut tell)?;
-                }
             }
         }
+        let looked_at = elastic || start.is_none();
+        if let (true, true, Some(_)) = (periodic, looked_at, coarse) {
+            // A start that is wrong costs cycles; one that is not found costs nothing more.
+            let mut a = built(elastic, coarse)?;
+            let from = start.as_deref();
+            if let Ok(found) = search.run("coarse film", case, &mut a, from, Rows::None, true, progress) {
+                start = Some(found.start);
+            }
+        }
+        if elastic {
+            a = built(true, None)?;
+        }
+        let phase = if elastic { "elastic skirt" } else { "rigid skirt" };
+        let found =
+            search.run(phase, case, &mut a, start.as_deref(), Rows::All { flows }, false, progress)?;
         let mut result = RunResult { models: models(case), ..RunResult::default() };
         (result.skipped, _) = skipped(case, &a, &wanted);
         result.skipped.extend(skipped_more);
@@ -120,7 +144,7 @@ impl SceneCase for PistonSecondaryCase {
                 Method::AsPublished => "as_published",
             }
             .into(),
-            counters,
+            counters: search.counters,
             notes: found.notes.clone(),
         };
         result.solver.notes.push(format!(
@@ -133,8 +157,8 @@ impl SceneCase for PistonSecondaryCase {
         ));
         draw::figures(&a, &found.record, &mut result);
         result.series = found.record.series();
-        result.seconds.insert("build".into(), built);
-        result.seconds.insert("solve".into(), seconds);
+        result.seconds.insert("build".into(), build_time);
+        result.seconds.insert("solve".into(), search.seconds);
         Ok(result)
     }
 
@@ -218,10 +242,6 @@ fn contenders(case: &PistonSecondaryCase) -> Vec<Contender> {
     all
 }
 
-fn build(loaded: &Loaded<PistonSecondaryCase>, elastic: bool) -> Result<Assembly, RunError> {
-    assemble(&loaded.value, &loaded.source.folder, elastic).map_err(refused)
-}
-
 fn refused(e: Vec<BuildError>) -> RunError {
     RunError::Refused(e.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))
 }
@@ -230,54 +250,58 @@ fn wanted(case: &PistonSecondaryCase, a: &Assembly) -> Result<Vec<ResultInfo>, R
     plan::wanted(case, a.period.to_degrees()).map_err(refused)
 }
 
-fn work(a: &Assembly, found: &march::Found) -> indexmap::IndexMap<String, u64> {
-    let s = &found.stats;
-    [
-        ("steps", s.steps),
-        ("rejected", s.rejected),
-        ("rhs", s.rhs),
-        ("jacobians", s.jacobians),
-        ("film_evaluations", a.piston.film_evaluations()),
-        ("contact_sums", a.piston.sides.iter().map(|s| s.contact_sums).sum()),
-        ("newton_steps", a.piston.newton_steps),
-        ("cycles", found.cycles.ceil() as u64),
-        ("nodes", a.piston.sides.iter().map(|s| s.nodes() as u64).sum()),
-    ]
-    .into_iter()
-    .map(|(k, n)| (k.to_owned(), n))
-    .collect()
+/// Intervals of a film that is coarse enough to look for a start with, when that of the case is much finer.
+fn coarse(case: &PistonSecondaryCase) -> Option<[u32; 2]> {
+    let s = &case.solver;
+    let [along, across] = COARSE;
+    let much_finer = s.intervals_along * s.intervals_across >= 4 * along * across;
+    (s.cycles == 0 && much_finer).then(|| [s.intervals_along.min(along), s.intervals_across.min(across)])
 }
 
-/// How far the skirt `soft` would yield to the pressures of the rigid one, as part of the gap, and a start for its motion.
-#[allow(clippy::type_complexity, reason = "the skirt is handed through")]
-fn would_yield(
-    found: &march::Found,
-    rigid: &mut Assembly,
-    soft: Assembly,
-) -> Result<((f64, Assembly), Vec<f64>), RunError> {
-    let n = soft.piston.coordinates();
-    let mut most = 0.0_f64;
-    let mut start = found.start.clone();
-    start.truncate(2);
-    start.resize(n, 0.0);
-    start.extend(found.start.get(2..4).unwrap_or_default());
-    let (top, bottom) = (found.record.column("skirt.e_top"), found.record.column("skirt.e_bottom"));
-    let (vt, vb) = (found.record.column("skirt.e_top_rate"), found.record.column("skirt.e_bottom_rate"));
-    for (k, &t) in found.record.rows().iter().enumerate().take(top.len()) {
-        let now = rigid.instant(t);
-        let eval = |source| RunError::Eval { theta_deg: t.to_degrees(), source };
-        rigid.piston.summary(&now, &[top[k], bottom[k]], &[vt[k], vb[k]]).map_err(eval)?;
-        let mut at = 2;
-        for (hard, own) in rigid.piston.sides.iter().zip(&soft.piston.sides) {
-            let q = own.yields_to(hard);
-            most = most.max(own.part_of_gap(&q, hard));
-            if k == 0 {
-                start[at..at + q.len()].copy_from_slice(&q);
-            }
-            at += q.len();
+/// Forces within some percent, at a hundredth of the work of 64 x 48.
+const COARSE: [u32; 2] = [16, 12];
+
+/// What all motions of a run took together.
+#[derive(Default)]
+struct Search {
+    counters: indexmap::IndexMap<String, u64>,
+    seconds: f64,
+}
+
+impl Search {
+    /// A motion, of which `rows` are recorded; `coarse`: on a film that is not that of the case.
+    #[allow(clippy::too_many_arguments, reason = "a motion and how it is told")]
+    fn run(
+        &mut self,
+        phase: &str,
+        case: &PistonSecondaryCase,
+        a: &mut Assembly,
+        start: Option<&[f64]>,
+        rows: Rows,
+        coarse: bool,
+        progress: &mut dyn FnMut(Progress),
+    ) -> Result<march::Found, RunError> {
+        let mut tell = |fraction: f64| progress(Progress { phase: phase.to_owned(), fraction });
+        let found = march::run(case, a, start, rows, &mut tell)?;
+        self.seconds += found.seconds;
+        let s = &found.stats;
+        let cycles = if coarse { "coarse_cycles" } else { "cycles" };
+        for (name, n) in [
+            ("steps", s.steps),
+            ("rejected", s.rejected),
+            ("rhs", s.rhs),
+            ("jacobians", s.jacobians),
+            ("film_evaluations", a.piston.film_evaluations()),
+            ("contact_sums", a.piston.sides.iter().map(|s| s.contact_sums).sum()),
+            ("newton_steps", a.piston.newton_steps),
+            (cycles, found.cycles.ceil() as u64),
+        ] {
+            *self.counters.entry(name.to_owned()).or_default() += n;
         }
+        let nodes = a.piston.sides.iter().map(|s| s.nodes() as u64).sum();
+        self.counters.insert("nodes".into(), nodes);
+        Ok(found)
     }
-    Ok(((most, soft), start))
 }
 
 /// What is left out, and what runs besides the films.

@@ -2,7 +2,7 @@
 
 use gudgeon_core::EvalError;
 use gudgeon_core::result::{Column, Event, Series, Value};
-use gudgeon_skirt::Instant;
+use gudgeon_skirt::{Instant, Piston};
 use indexmap::IndexMap;
 
 use super::assemble::Assembly;
@@ -58,6 +58,22 @@ pub struct Map {
     pub p: Vec<f64>,
 }
 
+/// What is recorded of a cycle.
+pub enum Rows {
+    /// All that the case asks for; `flows`: with the oil that crosses the edges.
+    All {
+        /// With the oil that crosses the edges.
+        flows: bool,
+    },
+    /// How far this piston, the same with shapes, would yield to the pressures.
+    Yielding(Box<Piston>),
+    /// Nothing: the start is looked for.
+    None,
+}
+
+/// Step of the crank angle at which yielding is judged \[rad\]: 3 deg, a tenth of the pulse that loads a skirt.
+const YIELD_STEP: f64 = std::f64::consts::PI / 60.0;
+
 /// A recorded cycle.
 pub struct Record {
     grid: Vec<f64>,
@@ -72,19 +88,28 @@ pub struct Record {
     /// The map with the highest pressure of each side.
     pub peak: [Map; 2],
     highest: [f64; 2],
-    /// Largest part of the gap by which the skirt would yield.
+    soft: Option<Box<Piston>>,
+    /// Largest part of the gap by which the other skirt would yield.
     pub yielding: f64,
+    /// Amplitudes of its shapes at the start of the cycle \[m\].
+    pub yields_first: Vec<f64>,
     omega: f64,
 }
 
 impl Record {
-    /// For a cycle of `a`; `flows`: with the oil that crosses the edges.
+    /// For a cycle of `a`, as `rows` says.
     #[must_use]
-    pub fn new(a: &Assembly, case: &PistonSecondaryCase, flows: bool) -> Self {
-        let rows = (a.period / case.outputs.series_step.si()).round().max(1.0) as usize;
-        let step = a.period / rows as f64;
+    pub fn new(a: &Assembly, case: &PistonSecondaryCase, rows: Rows) -> Self {
+        let step = if let Rows::Yielding(_) = rows { YIELD_STEP } else { case.outputs.series_step.si() };
+        let count = (a.period / step).round().max(1.0) as usize;
+        let step = a.period / count as f64;
+        let (flows, soft) = match rows {
+            Rows::All { flows } => (flows, None),
+            Rows::Yielding(soft) => (false, Some(soft)),
+            Rows::None => (false, None),
+        };
         Self {
-            grid: (0..=rows).map(|k| a.period * k as f64 / rows as f64).collect(),
+            grid: (0..=count).map(|k| a.period * k as f64 / count as f64).collect(),
             count: 0,
             columns: COLUMNS
                 .iter()
@@ -96,7 +121,9 @@ impl Record {
             maps: Default::default(),
             peak: Default::default(),
             highest: [0.0; 2],
+            soft,
             yielding: 0.0,
+            yields_first: Vec::new(),
             omega: a.omega(),
         }
     }
@@ -133,9 +160,6 @@ impl Record {
                 let flow = side.oil_flow(now.speed, now.mu, &rates)?;
                 oil.iter_mut().zip(flow).for_each(|(o, f)| *o += f);
             }
-            if !own.is_empty() {
-                self.yielding = self.yielding.max(side.yielding(own));
-            }
             yields = own.iter().fold(yields, |y, q| y.max(q.abs()));
             if self.every > 0 && self.count.is_multiple_of(self.every) {
                 self.maps[k].push(Map { theta_deg: deg, p: side.pressure() });
@@ -144,6 +168,15 @@ impl Record {
                 self.highest[k] = s.p_max[k];
                 if self.every > 0 {
                     self.peak[k] = Map { theta_deg: deg, p: side.pressure() };
+                }
+            }
+        }
+        if let Some(soft) = &self.soft {
+            for (hard, own) in a.piston.sides.iter().zip(&soft.sides) {
+                let q = own.yields_to(hard);
+                self.yielding = self.yielding.max(own.part_of_gap(&q, hard));
+                if self.count == 0 {
+                    self.yields_first.extend(q);
                 }
             }
         }
