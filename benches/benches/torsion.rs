@@ -14,7 +14,7 @@ use gudgeon_core::quantity::quantity;
 use gudgeon_torsion::coupling::Linear;
 use gudgeon_torsion::eigen::{natural_frequencies, roots, shapes};
 use gudgeon_torsion::sweep::{LANES, Sweep};
-use gudgeon_torsion::torsion::{Propagator, RungeKutta};
+use gudgeon_torsion::torsion::{Implicit, Propagator, RungeKutta};
 use gudgeon_torsion::tree::Tree;
 
 const J: [f64; 9] = [0.120, 0.030, 0.055, 0.055, 0.055, 0.055, 0.055, 0.055, 1.60];
@@ -246,6 +246,40 @@ fn growth() {
     }
 }
 
+/// Microseconds per step and inertia of the implicit method over time: a chain hit at its end.
+fn growth_in_time() {
+    println!(
+        "{:>28} {:>9} {:>7} {:>12} {:>14}",
+        "implicit, 0.05 s", "inertias", "steps", "us/step", "ns/inertia"
+    );
+    for n in [10_usize, 100, 1000, 4000] {
+        let j: Vec<f64> = (0..n).map(|i| 0.1 + 0.05 * (i as f64).sin()).collect();
+        let k: Vec<f64> = (1..n).map(|i| 1e6 * (1.5 + (0.7 * i as f64).cos())).collect();
+        let chain = line(&j, &k, &vec![30.0; n - 1], &vec![0.1; n]);
+        let mut speeds = vec![100.0; n];
+        speeds[0] = 120.0;
+        let ctx = TorsionCtx {
+            line: &chain,
+            speed: 100.0,
+            orders: 1.0,
+            period: 2.0 * std::f64::consts::PI,
+            balance: 0,
+            angles: &vec![0.0; n],
+            speeds: &speeds,
+            times: &[0.05],
+        };
+        let spec = Implicit { tolerance: quantity(1e-6) };
+        let mut steps = 0;
+        let t = median(3, 1, || {
+            let mut out = TorsionOut::default();
+            spec.build(&ctx).expect("builds").run(&mut out).expect("runs");
+            steps = out.counters["time_steps"] + out.counters["rejected"];
+        });
+        let each = t / steps as f64;
+        println!("{:>28} {n:>9} {steps:>7} {:>12.2} {:>14.1}", "", 1e6 * each, 1e9 * each / n as f64);
+    }
+}
+
 fn main() {
     let json = std::env::args().any(|a| a == "--json");
     let figures = race();
@@ -255,6 +289,7 @@ fn main() {
     }
     println!("{figures:#}");
     growth();
+    growth_in_time();
     if std::env::args().any(|a| a == "--table") {
         return;
     }

@@ -127,6 +127,23 @@ pub trait OdeSystem {
         Ok(false)
     }
 
+    /// Takes the Jacobian at `(t, y)`, rates `f`, for [`OdeSystem::factor`]: for systems whose equations have a structure that no general
+    /// matrix knows (a chain, a tree). Asked by `Rodas::structured` instead of [`OdeSystem::jacobian`].
+    ///
+    /// # Errors
+    /// As [`OdeSystem::rhs`].
+    fn linearise(&mut self, _t: f64, _y: &[f64], _f: &[f64]) -> Result<(), EvalError> {
+        Err(EvalError::fatal("integrator", "the system has no linear solver of its own"))
+    }
+
+    /// Prepares [`OdeSystem::solve`] for `d I - J`; false when that is singular.
+    fn factor(&mut self, _d: f64) -> bool {
+        false
+    }
+
+    /// Solves `(d I - J) x = b` in place, with `d` and `J` of the last [`OdeSystem::factor`].
+    fn solve(&mut self, _b: &mut [f64]) {}
+
     /// `∂f/∂t` at fixed state. `Ok(false)`: the integrator differences `rhs` (one call per step).
     ///
     /// # Errors

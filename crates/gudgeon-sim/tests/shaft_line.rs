@@ -17,8 +17,12 @@ fn once(name: &str, set: &[&str]) -> RunResult {
 }
 
 fn refused(set: &[&str]) -> String {
+    refused_of("compressor-4-throw.toml", set)
+}
+
+fn refused_of(name: &str, set: &[&str]) -> String {
     let set: Vec<String> = set.iter().map(|s| (*s).to_owned()).collect();
-    match check(&case("compressor-4-throw.toml"), &set) {
+    match check(&case(name), &set) {
         Ok(_) => "accepted".into(),
         Err(r) => r.to_string() + &r.diagnostics.iter().map(|d| d.headline()).collect::<Vec<_>>().join("; "),
     }
@@ -245,4 +249,38 @@ fn an_undamped_resonance_that_is_hit_is_refused() {
     let c = check(&case("compressor-4-throw.toml"), &exact).unwrap_or_else(|r| panic!("{r}"));
     let e = run(&c, &mut |_| {}).expect_err("a resonance").to_string();
     assert!(e.contains("undamped natural frequency") && e.contains("order 1"), "{e}");
+}
+
+#[test]
+fn gears_over_time_turn_as_one_and_carry_what_is_behind_them() {
+    let mut set: Vec<String> = [
+        r#"models.torsion={ model = "implicit" }"#,
+        r#"time={ duration = "0.3 s", interval = "1 ms", window = "0.2 s", start_steady = true }"#,
+        r#"shafts.7.coupling={ model = "linear", stiffness = "20 kN m/rad", damping = "40 N m s/rad" }"#,
+        r#"dampers.0.coupling={ model = "linear", stiffness = "20 kN m/rad", damping = "60 N m s/rad" }"#,
+        r#"outputs.groups=["response"]"#,
+    ]
+    .map(String::from)
+    .to_vec();
+    set.extend([0, 1, 2, 3, 4, 5, 6, 9, 11].map(|k| format!("shafts.{k}.loss_factor=0")));
+    let r = once("geared-train.toml", &set.iter().map(String::as_str).collect::<Vec<_>>());
+    let of = |name: &str| r.results[name].value;
+    let pinion = of("inertia9.speed_end");
+    for (i, ratio) in [(10, -0.5), (12, -1.5)] {
+        // Rigid meshes: one state, so exactly.
+        assert!((of(&format!("inertia{i}.speed_end")) - ratio * pinion).abs() < 1e-12 * pinion);
+    }
+    // Loads act against the rotation, also where that is backwards: the generator's torque brakes.
+    assert!((of("drive4.torque") - 110.0).abs() < 1e-9, "{}", of("drive4.torque"));
+    // The mesh carries the generator's torque and its vibration; a rigid link has a torque though it has no twist.
+    let mesh = of("shaft11.torque_peak") - of("shaft11.torque_amplitude");
+    assert!((mesh - 165.0).abs() < 0.3 * 165.0, "{mesh}");
+    assert!(of("shaft11.twist_peak") < 1e-9 && !r.results.contains_key("shaft11.stiffness"));
+    // A loss factor has no meaning there, and the refusal says what has.
+    let short: Vec<&str> = set[..2].iter().map(String::as_str).collect();
+    let told = refused_of("geared-train.toml", &short);
+    assert!(told.contains("harmonic motion only"), "{told}");
+    // A throw on a shaft that turns backwards.
+    let told = refused_of("geared-train.toml", &["throws.0.at.0=wheel"]);
+    assert!(told.contains("turns backwards"), "{told}");
 }

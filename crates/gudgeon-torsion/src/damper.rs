@@ -2,7 +2,7 @@
 //!
 //! μ is the inertia of the damper by that of the main system, frequencies are by that of the main system alone, amplitudes by the static
 //! angle. Damping ratios are c by `2 J_d ω`, ω the frequency of the damper on its spring, or that of the main system for a damper without
-//! one.
+//! one. All of it holds for μ > 0.
 
 /// A damper at its optimum.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -114,22 +114,25 @@ impl Excitation {
     #[must_use]
     pub fn new(line: &Line, speed: f64, most: f64) -> Self {
         let mut e = Self { orders: Vec::new(), mean: vec![0.0; line.nodes.len()] };
-        for (node, n) in line.nodes.iter().enumerate() {
-            e.mean[node] -= n.damping * speed * n.ratio;
-        }
         e.gas(line, most);
         e.masses(line, speed, most);
-        for d in &line.drives {
-            let ratio = line.nodes[d.node].ratio;
-            let orders = d.drive.orders();
-            // The part that goes with the angle is not in the mean.
-            let here = d.drive.torque(0.0, speed * ratio).torque;
-            let swing: f64 = orders.iter().map(|o| o.cosine).sum();
-            e.mean[d.node] += d.factor * (here - swing);
-        }
+        e.at_speed(line, speed);
         e.given(line, most);
         e.orders.sort_unstable_by(|a, b| a.order.total_cmp(&b.order));
         e
+    }
+
+    /// Adds the means of drag and drives at a speed \[rad/s\] of the reference shaft.
+    pub(crate) fn at_speed(&mut self, line: &Line, speed: f64) {
+        for (node, n) in line.nodes.iter().enumerate() {
+            self.mean[node] -= n.damping * speed * n.ratio;
+        }
+        for d in &line.drives {
+            // The part that goes with the angle is not in the mean.
+            let here = d.drive.torque(0.0, speed * line.nodes[d.node].ratio).torque;
+            let swing: f64 = d.drive.orders().iter().map(|o| o.cosine).sum();
+            self.mean[d.node] += d.factor * (here - swing);
+        }
     }
 
     /// The torques that do not depend on the speed, and those of the moving masses at unit speed: the torque at speed Ω is the first

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-/// A cylindrical piece of a shaft.
+/// A cylindrical piece of a shaft: every length greater than zero, the bore less than the diameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Piece {
     /// Length \[m\].

@@ -5,7 +5,7 @@ use gudgeon_core::{BuildError, EvalError};
 use gudgeon_numerics::linalg::Complex;
 
 use crate::forcing::{Excitation, Order};
-use crate::steady::{Steady, drive_damping, mean_state};
+use crate::steady::{Steady, drive_damping};
 use crate::sweep::{LANES, Sweep};
 use crate::tree::Tree;
 
@@ -47,16 +47,17 @@ pub fn speed_range(
             })
         })
         .collect();
-    let steady = line.links.iter().all(|l| l.coupling.is_linear() && !l.coupling.depends_on_frequency());
-    // Laws over the mean torque: the mean torque goes with the speed where drag or drives do.
-    let plain = steady
-        && line.links.iter().all(|l| l.coupling.linear(0.0, 0.0) == l.coupling.linear(0.0, 1e4))
-        && line.drives.iter().all(|d| d.drive.is_linear() || !d.drive.orders().is_empty());
+    // Laws over the mean torque: that goes with the speed where drag or drives do.
+    let plain =
+        line.links.iter().all(|l| !l.coupling.depends_on_load() && !l.coupling.depends_on_frequency())
+            && line.drives.iter().all(|d| d.drive.is_linear() || !d.drive.orders().is_empty());
     let mut out = SpeedRange { orders: orders.clone(), lanes: plain, ..SpeedRange::default() };
     if !plain {
         for &speed in speeds {
             let here = TorsionCtx { speed, ..*ctx };
-            let mut s = Steady::new(&here)?;
+            let mut means = Excitation { orders: Vec::new(), mean: parts[0].mean.clone() };
+            means.at_speed(line, speed);
+            let mut s = Steady::with(&here, means)?;
             let mut rows = Vec::with_capacity(orders.len());
             for (o, parts) in orders.iter().zip(&torque) {
                 let square = Complex::new(speed * speed, 0.0);
@@ -72,8 +73,6 @@ pub fn speed_range(
         return Ok(Ok(out));
     }
     let mut tree = Tree::new(line)?;
-    let (mean, ..) = mean_state(line, &tree, &parts[0].mean, ctx.balance);
-    tree.linearise(line, 0.0, &mean);
     drive_damping(line, &mut tree, ctx.speed);
     let mut sweep = Sweep::new(n);
     out.torque = vec![vec![vec![[0.0; 2]; line.links.len()]; orders.len()]; speeds.len()];

@@ -1,9 +1,11 @@
 //! The periodic motion of a line at constant mean speed, order by order: what several torsion models share.
 
-use gudgeon_core::kinds::{Line, OrderResponse, TorsionCtx};
+use gudgeon_core::kinds::{CouplingSpec, Line, LinearCoupling, OrderResponse, TorsionCtx};
+use gudgeon_core::quantity::quantity;
 use gudgeon_core::{BuildError, EvalError};
 use gudgeon_numerics::linalg::Complex;
 
+use crate::coupling::Linear;
 use crate::forcing::{Excitation, Order};
 use crate::tree::{Singular, Tree, Work};
 
@@ -38,19 +40,46 @@ pub(crate) fn drive_damping(line: &Line, tree: &mut Tree, speed: f64) {
     }
 }
 
+/// The line with the couplings that depend on their mean torque replaced by what they are in small vibration about it: the line whose
+/// natural frequencies are those at the speed of `ctx`. Laws over the frequency stay as they are.
+///
+/// # Errors
+/// As [`Tree::new`].
+pub fn about_mean_torque(ctx: &TorsionCtx<'_>) -> Result<Line, BuildError> {
+    let mut line = ctx.line.clone();
+    if line.links.iter().all(|l| !l.coupling.depends_on_load()) {
+        return Ok(line);
+    }
+    let mean = Steady::new(ctx)?.mean_torque;
+    for (l, mean) in line.links.iter_mut().zip(mean).filter(|(l, _)| l.coupling.depends_on_load()) {
+        let LinearCoupling { stiffness, damping, loss_factor } = l.coupling.linear(0.0, mean);
+        let law = Linear {
+            stiffness: quantity(stiffness),
+            damping: quantity(damping),
+            loss_factor: quantity(loss_factor),
+        };
+        l.coupling = law.build()?;
+    }
+    Ok(line)
+}
+
 impl Steady {
     /// Mean torques, excitation and tree.
     ///
     /// # Errors
     /// As [`Tree::new`].
     pub fn new(ctx: &TorsionCtx<'_>) -> Result<Self, BuildError> {
+        Self::with(ctx, Excitation::new(ctx.line, ctx.speed, ctx.orders))
+    }
+
+    /// [`Steady::new`] with an excitation that is known already.
+    pub(crate) fn with(ctx: &TorsionCtx<'_>, excitation: Excitation) -> Result<Self, BuildError> {
         let line = ctx.line.clone();
         let mut tree = Tree::new(&line)?;
         let n = tree.len();
         if ctx.balance >= n {
             return Err(BuildError::at("balance", "the inertia that balances does not exist"));
         }
-        let excitation = Excitation::new(&line, ctx.speed, ctx.orders);
         let (mean_torque, mean_angle, balance_torque) =
             mean_state(&line, &tree, &excitation.mean, ctx.balance);
         tree.linearise(&line, 0.0, &mean_torque);
@@ -122,7 +151,8 @@ impl Steady {
     }
 }
 
-/// Mean torques in the links, angles against the balancing node and its torque, for mean torques by node.
+/// Mean torques in the links, angles against the balancing node (against the ground where several places are held) and its torque, for
+/// mean torques by node.
 pub(crate) fn mean_state(
     line: &Line,
     tree: &Tree,
@@ -132,14 +162,18 @@ pub(crate) fn mean_state(
     let n = tree.len();
     let mut f: Vec<f64> = (0..n).map(|p| mean[tree.node[p]] * tree.ratio[p]).collect();
     let at = tree.position[balance];
-    // A line that is held takes up the rest where it is held: the first ground closes the balance.
     let total: f64 = f.iter().sum();
-    let held = tree.is_grounded();
-    let balance_torque = if held { 0.0 } else { -total / tree.ratio[at] };
-    if !held {
-        f[at] -= total;
-    } else if let Some(g) = tree.ground.iter().position(|g| *g > 0.0) {
-        f[g] -= total;
+    let held = tree.ground.iter().filter(|g| **g != 0.0).count();
+    let balance_torque = if held > 0 { 0.0 } else { -total / tree.ratio[at] };
+    if held > 1
+        && let Some(answer) = held_state(line, tree, &f)
+    {
+        return answer;
+    }
+    // A line that is held at one place takes up the rest there.
+    match tree.ground.iter().position(|g| *g != 0.0) {
+        Some(g) => f[g] -= total,
+        None => f[at] -= total,
     }
     let mut torque = vec![0.0; line.links.len()];
     let mut twist = vec![0.0; n];
@@ -166,6 +200,23 @@ pub(crate) fn mean_state(
         angle[tree.node[p]] = (phi[p] - zero) * tree.ratio[p];
     }
     (torque, angle, balance_torque)
+}
+
+/// Static state of a line that is held at several places: couplings as the tree has them. None when a part is not held at all.
+fn held_state(line: &Line, tree: &Tree, f: &[f64]) -> Option<(Vec<f64>, Vec<f64>, f64)> {
+    let n = tree.len();
+    let load: Vec<Complex> = f.iter().map(|f| Complex::new(*f, 0.0)).collect();
+    let (mut x, mut q) = (vec![Complex::default(); n], vec![Complex::default(); n]);
+    tree.solve(Complex::default(), &load, &mut x, &mut q, Singular::Refuse, &mut Work::new(n)).ok()?;
+    let (mut torque, mut angle) = (vec![0.0; line.links.len()], vec![0.0; n]);
+    for p in 0..n {
+        angle[tree.node[p]] = x[p].re * tree.ratio[p];
+        if tree.parent[p] < n {
+            let s = if tree.forward[p] { 1.0 } else { -1.0 };
+            torque[tree.link[p]] = s * q[p].re / tree.link_ratio[p];
+        }
+    }
+    Some((torque, angle, 0.0))
 }
 
 impl Steady {

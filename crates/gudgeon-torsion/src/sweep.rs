@@ -119,12 +119,19 @@ impl Sweep {
         }
         // Smallest of all pivots against their limits, by lane: a minimum has no branch.
         let mut margin = [f64::INFINITY; LANES];
+        // What the branches bring to the last pivot, beside which it may vanish.
+        let mut brought = [0.0; LANES];
         for i in 0..n - 1 {
             let p = parent[i];
             let (own, force) = (s[i], f[i]);
             if k[i] == f64::INFINITY {
                 add(&mut s[p], &own);
                 add(&mut f[p], &force);
+                if p == n - 1 {
+                    for l in 0..LANES {
+                        brought[l] += own[0][l].abs() + own[1][l].abs();
+                    }
+                }
                 for l in 0..LANES {
                     t[i][0][l] = 1.0;
                     t[i][1][l] = 0.0;
@@ -151,7 +158,13 @@ impl Sweep {
             }
             let ti = mul(&kappa, &inv);
             t[i] = ti;
-            add(&mut s[p], &mul(&ti, &own));
+            let series = mul(&ti, &own);
+            if p == n - 1 {
+                for l in 0..LANES {
+                    brought[l] += series[0][l].abs() + series[1][l].abs();
+                }
+            }
+            add(&mut s[p], &series);
             add(&mut f[p], &mul(&ti, &force));
             angle[i] = mul(&force, &inv);
         }
@@ -160,8 +173,7 @@ impl Sweep {
         for l in 0..LANES {
             let (re, im) = (s[r][0][l], s[r][1][l]);
             let d2 = re * re + im * im;
-            // The own inertia stands for the size of the terms.
-            let size = omega[l] * omega[l] * inertia[r] + ground[r];
+            let size = omega[l] * omega[l] * inertia[r] + ground[r] + brought[l];
             let m = d2 - SMALL2 * size * size;
             margin[l] = if m < margin[l] { m } else { margin[l] };
             let q = 1.0 / d2;

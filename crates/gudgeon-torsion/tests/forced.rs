@@ -1,6 +1,10 @@
 //! Forced vibration against exact solutions, conservation and special cases.
 
 mod common;
+#[path = "forced/couplings.rs"]
+mod couplings;
+#[path = "forced/time.rs"]
+mod time;
 
 use common::reference::*;
 use common::{chain, engine, link, node};

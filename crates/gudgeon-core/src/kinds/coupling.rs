@@ -45,7 +45,8 @@ pub struct LinearCoupling {
 
 /// A running coupling.
 pub trait Coupling: Debug + DynClone + Send + Sync {
-    /// Torque at a twist \[rad\] and rate of twist \[rad/s\] of the first inertia against the second.
+    /// Torque at a twist \[rad\] and rate of twist \[rad/s\] of the first inertia against the second. Without meaning for a law that
+    /// [`Coupling::is_harmonic_only`], and for a rigid link.
     fn torque(&self, twist: f64, rate: f64) -> CouplingTorque;
     /// Small vibration at angular frequency `omega` \[rad/s\] about a mean torque \[N m\].
     fn linear(&self, omega: f64, mean_torque: f64) -> LinearCoupling;
@@ -54,6 +55,14 @@ pub trait Coupling: Debug + DynClone + Send + Sync {
     /// Whether [`Coupling::linear`] depends on the frequency.
     fn depends_on_frequency(&self) -> bool {
         false
+    }
+    /// Whether [`Coupling::linear`] depends on the mean torque.
+    fn depends_on_load(&self) -> bool {
+        !self.is_linear()
+    }
+    /// Whether the law is one of harmonic motion (a loss factor, a dynamic stiffness) that says nothing about other motion.
+    fn is_harmonic_only(&self) -> bool {
+        self.depends_on_frequency()
     }
     /// Whether [`Coupling::torque`] is linear in twist and rate.
     fn is_linear(&self) -> bool {

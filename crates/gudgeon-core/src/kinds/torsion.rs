@@ -222,6 +222,8 @@ pub struct TorsionOut {
     pub angles: Vec<Vec<f64>>,
     /// Speeds of the inertias at each instant \[rad/s\].
     pub speeds: Vec<Vec<f64>>,
+    /// Torques in the links at each instant \[N m\]; may be left empty where their laws give them, so not with rigid links.
+    pub torque: Vec<Vec<f64>>,
     /// Torques of the throws at each instant as the method used them \[N m\].
     pub gas: Vec<Vec<f64>>,
     /// Torques of the drives at each instant as the method used them \[N m\].

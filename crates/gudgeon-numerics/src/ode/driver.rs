@@ -18,8 +18,10 @@ pub(crate) struct Core {
     /// Rates at the start and at the accepted end.
     pub f0: Vec<f64>,
     pub f1: Vec<f64>,
-    /// m × n, row-major.
+    /// m × n, row-major; empty when the system solves for itself.
     pub jac: Vec<f64>,
+    /// Whether the system has a linear solver of its own.
+    pub structured: bool,
     pub dfdt: Vec<f64>,
     /// Whether `jac` and `dfdt` belong to `x0`.
     pub jac_current: bool,
@@ -44,7 +46,7 @@ const NUDGE: f64 = 8.0 * f64::EPSILON;
 const LEAST_ORDER: f64 = 0.5;
 
 impl Core {
-    pub(crate) fn new(n: usize, quad: usize, groups: Option<ColumnGroups>) -> Self {
+    pub(crate) fn new(n: usize, quad: usize, groups: Option<ColumnGroups>, structured: bool) -> Self {
         let m = n + quad;
         let v = || vec![0.0; m];
         Self {
@@ -54,7 +56,8 @@ impl Core {
             x1: v(),
             f0: v(),
             f1: v(),
-            jac: vec![0.0; m * n],
+            jac: vec![0.0; if structured { 0 } else { m * n }],
+            structured,
             dfdt: v(),
             jac_current: false,
             cont: [v(), v(), v()],
@@ -110,7 +113,9 @@ impl Core {
         self.set_tolerances(sys, te, opts);
         stats.jacobians += 1;
         self.jac.fill(0.0);
-        if !sys.jacobian(te, &self.x0[..n], &self.f0, &mut self.jac)? {
+        if self.structured {
+            sys.linearise(te, &self.x0[..n], &self.f0)?;
+        } else if !sys.jacobian(te, &self.x0[..n], &self.f0, &mut self.jac)? {
             let (y, moved) = (&self.x0[..n], &mut self.y_tmp[..n]);
             difference(
                 sys,

@@ -5,12 +5,13 @@ use std::path::Path;
 
 use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{
-    CouplingSpec, CylinderPressureCtx, GasEnd, KinematicsCtx, Line, LineDrive, LineLink, LineNode, LineThrow,
-    ThrowCtx,
+    CouplingSpec, CylinderPressureCtx, Drive, GasEnd, KinematicsCtx, Line, LineDrive, LineLink, LineNode,
+    LineThrow, ThrowCtx,
 };
 use gudgeon_core::quantity::quantity;
 use gudgeon_torsion::CrankEnd;
 use gudgeon_torsion::coupling::Linear;
+use gudgeon_torsion::drive::Reversed;
 use gudgeon_torsion::shaft::{Piece, stiffness, weakest};
 
 use super::case::{ShaftCase, ShaftLineCase, Side};
@@ -67,6 +68,14 @@ fn throws(
         };
         for (i, name) in t.at.iter().enumerate() {
             let Some((node, ratio)) = find(name) else { continue };
+            if ratio < 0.0 {
+                let what = format!("`{name}` turns backwards, which a throw does not");
+                let e = BuildError::at(format!("{here}.at.{i}"), what);
+                errors.push(
+                    e.help("vibration does not know the sign of a ratio: give that shaft a positive one"),
+                );
+                continue;
+            }
             let kinematics = case.models.kinematics.build(&KinematicsCtx {
                 crank_radius: t.crank_radius.si(),
                 rod_length: t.rod_length.si(),
@@ -338,7 +347,12 @@ pub fn assemble(case: &ShaftLineCase, folder: &Path) -> Result<Assembled, Vec<Bu
         match d.drive.build() {
             Ok(drive) => {
                 let factor = if d.load { -1.0 } else { 1.0 };
-                line.drives.push(LineDrive { node, phase: d.phase.si(), factor, drive });
+                let (phase, drive): (_, Box<dyn Drive>) = if line.nodes[node].ratio < 0.0 {
+                    (-d.phase.si(), Box::new(Reversed::new(drive)))
+                } else {
+                    (d.phase.si(), drive)
+                };
+                line.drives.push(LineDrive { node, phase, factor, drive });
             }
             Err(e) => errors.push(e.within(&format!("drives.{k}.drive"))),
         }
@@ -349,6 +363,15 @@ pub fn assemble(case: &ShaftLineCase, folder: &Path) -> Result<Assembled, Vec<Bu
         errors.push(renamed(e));
     }
     out.period = period(line);
+    let odd = gears(line).find(|o| {
+        let per = o * out.period / (2.0 * PI);
+        (per - per.round()).abs() > 1e-6
+    });
+    if let Some(o) = odd {
+        out.notes.push(format!(
+            "order {o:.6} of the reference shaft does not repeat within two turns: extremes are those of the window that is looked at"
+        ));
+    }
     if errors.is_empty() { Ok(out) } else { Err(errors) }
 }
 
@@ -360,16 +383,20 @@ pub fn renamed(mut e: BuildError) -> BuildError {
     e
 }
 
-/// Turns of the reference shaft after which all torques repeat: one, or two where anything has half orders.
-fn period(line: &Line) -> f64 {
-    let half = |order: f64| (order - order.round()).abs() > 1e-9;
-    let throws = line.throws.iter().any(|t| {
-        let per = 2.0 * PI / gudgeon_torsion::forcing::gas_period(t) * line.nodes[t.node].ratio.abs();
-        !t.ends.is_empty() && half(per)
+/// Lowest orders of the reference shaft that throws and given torques bring.
+fn gears(line: &Line) -> impl Iterator<Item = f64> + '_ {
+    let throws = line.throws.iter().filter(|t| !t.ends.is_empty() || !t.inertia.is_constant()).map(|t| {
+        let base = if t.ends.is_empty() { 1.0 } else { 2.0 * PI / gudgeon_torsion::forcing::gas_period(t) };
+        base * line.nodes[t.node].ratio.abs()
     });
-    let drives = line
-        .drives
-        .iter()
-        .any(|d| d.drive.orders().iter().any(|o| half(o.order * line.nodes[d.node].ratio.abs())));
-    if throws || drives { 4.0 * PI } else { 2.0 * PI }
+    let drives = line.drives.iter().flat_map(|d| {
+        let ratio = line.nodes[d.node].ratio.abs();
+        d.drive.orders().iter().map(move |o| o.order * ratio)
+    });
+    throws.chain(drives)
+}
+
+/// Period of the reference shaft \[rad\] after which all torques repeat: one turn, or two where anything has half orders.
+fn period(line: &Line) -> f64 {
+    if gears(line).any(|o| (o - o.round()).abs() > 1e-9) { 4.0 * PI } else { 2.0 * PI }
 }

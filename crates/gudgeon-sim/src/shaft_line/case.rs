@@ -225,7 +225,7 @@ pub enum Side {
     Crank,
 }
 
-/// A torque on an inertia.
+/// A torque on an inertia. Torque, angle and speed count in the direction in which the inertia turns.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DriveCase {

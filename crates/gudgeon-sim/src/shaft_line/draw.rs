@@ -100,6 +100,8 @@ pub fn modes(line: &Line, modes: &[&Mode]) -> Figure {
         fixed.push(Shape::Path { points, closed: false, style: Style::Axis });
     }
     let few = n <= 16;
+    let (left, right) =
+        at.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), p| (a.min(p[0]), b.max(p[0])));
     for i in 0..n {
         let h = (0.12 + 0.45 * (inertia[i] / heaviest).cbrt()).min(0.6);
         let w = 0.10;
@@ -108,9 +110,22 @@ pub fn modes(line: &Line, modes: &[&Mode]) -> Figure {
         fixed.push(Shape::Path { points, closed: true, style: Style::Metal });
         if few {
             let text = line.nodes[i].name.clone();
-            // Every other name a little lower, so that long ones do not meet.
-            let drop = if i % 2 == 0 { 1.35 } else { 1.62 };
-            fixed.push(Shape::Text { at: [x, y - drop], text, anchor: Anchor::Middle });
+            // Every other name a little lower, long ones at the ends lower still, so that they do not meet.
+            let end = x <= left || x >= right;
+            let drop = match x.round() as i64 % 2 {
+                _ if end && text.len() > 9 => 1.89,
+                0 => 1.35,
+                _ => 1.62,
+            };
+            // Names at the ends stay within the drawing.
+            let (shift, anchor) = if x <= left {
+                (-0.4, Anchor::Start)
+            } else if x >= right {
+                (0.4, Anchor::End)
+            } else {
+                (0.0, Anchor::Middle)
+            };
+            fixed.push(Shape::Text { at: [x + shift, y - drop], text, anchor });
         }
     }
     let tree = Tree::new(line).ok();

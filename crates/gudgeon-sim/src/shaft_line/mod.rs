@@ -93,24 +93,29 @@ impl SceneCase for ShaftLineCase {
         }
         let one = |e: BuildError| refused(vec![e]);
         let mut modes = Vec::new();
+        let mut start = Start::new(case, a.line.nodes.len());
         if plan.frequencies {
             progress(Progress { phase: "natural frequencies".into(), fraction: 0.0 });
             let wanted = &case.models.natural_frequencies;
+            // Small vibration happens about the mean torque.
+            let line = gudgeon_torsion::steady::about_mean_torque(&start.context(case, &a)).map_err(one)?;
             modes = if wanted.typetag_name() == "eigenvalues" {
-                wanted.build(&a.line).map_err(one)?.modes().map_err(model)?
+                wanted.build(&line).map_err(one)?.modes().map_err(model)?
             } else {
                 // A model that is known to be wrong stands beside the truth.
-                results.published(&wanted.build(&a.line).map_err(one)?.modes().map_err(model)?, &a.line);
+                results.published(&wanted.build(&line).map_err(one)?.modes().map_err(model)?, &a.line);
                 gudgeon_torsion::natural_frequencies::Eigenvalues::default()
-                    .build(&a.line)
+                    .build(&line)
                     .map_err(one)?
                     .modes()
                     .map_err(model)?
             };
             results.modes(&modes, &a.line);
             results.critical_speeds(&modes, &a);
+            if case.models.torsion.typetag_name() == "runge_kutta" {
+                results.stable_step(&modes);
+            }
         }
-        let mut start = Start::new(case, a.line.nodes.len());
         let mut response = None;
         if plan.response {
             if case.time.as_ref().is_some_and(|t| t.start_steady)
@@ -212,6 +217,8 @@ fn models(case: &ShaftLineCase, plan: &Plan) -> Vec<ModelUse> {
 
 /// Most rows of a motion over time.
 const ROWS: f64 = 4e5;
+/// Most values of a motion over time: half a gigabyte.
+const VALUES: f64 = 6e7;
 
 fn legal_values(case: &ShaftLineCase) -> Vec<BuildError> {
     let mut errors = Vec::new();
@@ -317,6 +324,13 @@ impl Start {
         let fine = t.window_interval.map_or(step, |w| w.si());
         if end / step + window / fine > ROWS {
             let what = format!("{:.1e} rows are more than {ROWS:.0e}", end / step + window / fine);
+            s.errors.push(BuildError::at("time.interval", what));
+            return s;
+        }
+        // Angles, speeds and torques of each are kept.
+        let values = (end / step + window / fine) * 3.0 * n as f64;
+        if values > VALUES {
+            let what = format!("{values:.1e} values over time are more than {VALUES:.0e}");
             s.errors.push(BuildError::at("time.interval", what));
             return s;
         }

@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use gudgeon_core::kinds::{Line, LineThrow, Mode, TorsionOut};
 use gudgeon_core::result::{Bar, Column, Figure, FigureKind, RunResult, Series, Value};
+use gudgeon_numerics::linalg::Complex;
 use gudgeon_torsion::forcing::{gas_period, gas_series};
 use gudgeon_torsion::speed_range::SpeedRange;
 
@@ -126,13 +127,19 @@ impl<'a> Results<'a> {
             );
             if t.ends.len() == 1 {
                 for e in &t.ends {
-                    let [p, _] = extremes(
+                    let [p, least] = extremes(
                         e.pressure
                             .kinks()
                             .iter()
                             .map(|x| x - 1e-9)
                             .chain((0..=points).map(at))
                             .map(|x| e.pressure.pressure(x)),
+                    );
+                    self.result(
+                        format!("throw{n}.p_min"),
+                        least / 1e5,
+                        "bar",
+                        format!("lowest pressure of {of}, of the same points"),
                     );
                     self.result(format!("throw{n}.p_max"), p / 1e5, "bar", format!("highest pressure of {of}, of points a quarter of a degree apart and before its kinks"));
                 }
@@ -404,19 +411,7 @@ impl<'a> Results<'a> {
                     format!("order of the largest torque in {name}"),
                 );
             }
-            let law = a.line.links[l].coupling.linear(0.0, out.mean_torque[l]);
-            self.result(
-                format!("shaft{n}.stiffness"),
-                law.stiffness.min(f64::MAX),
-                "N m/rad",
-                format!("stiffness of {name} at its mean torque"),
-            );
-            self.result(
-                format!("shaft{n}.damping"),
-                law.damping,
-                "N m s/rad",
-                format!("viscous damping of {name}"),
-            );
+            self.law(l, out.mean_torque[l], a, "at its mean torque");
             let heat: f64 = out.orders.iter().map(|o| o.heat[l]).sum();
             self.heat.push(heat);
             self.result(format!("shaft{n}.heat"), heat, "W", format!("mean power lost in {name}"));
@@ -563,8 +558,72 @@ impl<'a> Results<'a> {
         }
     }
 
+    /// Stiffness and damping of a link at a mean torque; a rigid one has neither.
+    fn law(&mut self, l: usize, mean_torque: f64, a: &Assembled, about: &str) {
+        let (n, name) = (l + 1, &a.line.links[l].name);
+        let law = a.line.links[l].coupling.linear(0.0, mean_torque);
+        if law.stiffness.is_finite() {
+            self.result(
+                format!("shaft{n}.stiffness"),
+                law.stiffness,
+                "N m/rad",
+                format!("stiffness of {name} {about}"),
+            );
+            self.result(
+                format!("shaft{n}.damping"),
+                law.damping,
+                "N m s/rad",
+                format!("viscous damping of {name}"),
+            );
+        }
+    }
+
     fn torque_limit(&self, name: &str) -> Option<f64> {
         self.case.limits.torque.iter().find(|t| t.shaft == name).and_then(|t| t.amplitude).map(|t| t.si())
+    }
+
+    /// Largest step of the fixed-step Runge-Kutta method that damps every mode: `|1 + x + x²/2 + x³/6 + x⁴/24| ≤ 1`, `x = h z`.
+    pub fn stable_step(&mut self, modes: &[Mode]) {
+        let grows = |re: f64, im: f64| {
+            let x = Complex::new(re, im);
+            let real = |v: f64| Complex::new(v, 0.0);
+            let r =
+                real(1.0) + x * (real(1.0) + x * (real(0.5) + x * (real(1.0 / 6.0) + x * real(1.0 / 24.0))));
+            r.abs() > 1.0 + 1e-12
+        };
+        let limit = |m: &Mode| {
+            let (decay, w) = m.damped.unwrap_or((0.0, m.omega));
+            let (mut low, mut high) = (0.0, 4.0 / decay.hypot(w));
+            for k in 1..=400 {
+                let h = high * f64::from(k) / 400.0;
+                if grows(-decay * h, w * h) {
+                    (low, high) = (high * f64::from(k - 1) / 400.0, h);
+                    break;
+                }
+            }
+            for _ in 0..60 {
+                let middle = 0.5 * (low + high);
+                if grows(-decay * middle, w * middle) {
+                    high = middle;
+                } else {
+                    low = middle;
+                }
+            }
+            low
+        };
+        let least = modes
+            .iter()
+            .filter(|m| m.omega > 0.0 && m.damped.is_some())
+            .map(limit)
+            .fold(f64::INFINITY, f64::min);
+        if least.is_finite() {
+            self.result(
+                "stable_step",
+                least,
+                "s",
+                "largest step of the Runge-Kutta method at which no mode grows by the method",
+            );
+        }
     }
 
     /// Motion over time.
@@ -580,12 +639,19 @@ impl<'a> Results<'a> {
         let mean_speed = |r: usize| -> f64 {
             (0..nodes).map(|i| inertia[i] * ratio[i] * out.speeds[r][i]).sum::<f64>() / total
         };
-        let torque = |l: usize, r: usize| {
+        // Twist of a link and its rate.
+        let twist = |l: usize, r: usize| -> [f64; 2] {
             let [x, y] = a.line.links[l].nodes;
             let gear = ratio[x] / ratio[y];
-            let twist = out.angles[r][x] - gear * out.angles[r][y];
-            let rate = out.speeds[r][x] - gear * out.speeds[r][y];
-            a.line.links[l].coupling.torque(twist, rate).torque
+            [&out.angles, &out.speeds].map(|v| v[r][x] - gear * v[r][y])
+        };
+        // A model that does not say leaves it to the law.
+        let torque = |l: usize, r: usize| {
+            let said = out.torque.get(r).and_then(|t| t.get(l)).copied();
+            said.unwrap_or_else(|| {
+                let [twist, rate] = twist(l, r);
+                a.line.links[l].coupling.torque(twist, rate).torque
+            })
         };
         let window = rows.min(n - 1)..n;
         let last = n - 1;
@@ -605,6 +671,34 @@ impl<'a> Results<'a> {
             / (2.0 * PI);
         self.result("window", out.times[last] - out.times[first], "s", "length of the window at the end");
         self.result("turns", turned, "", "turns within the window, mean over the inertias");
+        let length = out.times[last] - out.times[first];
+        if turned > 0.0 {
+            self.result("cycle_time", length / turned, "s", "time of a turn within the window");
+        }
+        if length > 0.0 {
+            self.result(
+                "acceleration",
+                (mean_speed(last) - mean_speed(first)) / length,
+                "rad/s2",
+                "change of the mean speed over the window, by its length",
+            );
+        }
+        let end = mean_speed(last);
+        let swing = |i: usize| {
+            let [top, bottom] = extremes(window.clone().map(|r| out.speeds[r][i]));
+            (top - bottom) / ratio[i].abs()
+        };
+        if let Some(most) = (0..nodes).max_by(|a, b| swing(*a).total_cmp(&swing(*b))) {
+            self.result(
+                "most_swing",
+                (most + 1) as f64,
+                "",
+                format!(
+                    "inertia whose speed swings most within the window, at the reference shaft: {}",
+                    a.line.nodes[most].name
+                ),
+            );
+        }
         for i in 0..nodes {
             let name = &a.line.nodes[i].name;
             let k = i + 1;
@@ -627,6 +721,21 @@ impl<'a> Results<'a> {
                 "rad",
                 format!("angle of {name} at the end"),
             );
+            // Settled from the row on after which the speed stays within a band about the mean speed at the end.
+            for percent in [5, 1] {
+                let band = 0.01 * f64::from(percent) * end.abs();
+                let outside = (0..n).rev().find(|r| (out.speeds[*r][i] / ratio[i] - end).abs() > band);
+                if let Some(at) = outside.map_or(Some(0), |r| (r < last).then_some(r + 1)) {
+                    self.result(
+                        format!("inertia{k}.settled_{percent}"),
+                        out.times[at],
+                        "s",
+                        format!(
+                            "time from which {name} stays within {percent} % of the mean speed at the end"
+                        ),
+                    );
+                }
+            }
             let [top, bottom] = extremes((0..n).map(|r| out.speeds[r][i]));
             self.result(
                 format!("inertia{k}.speed_max"),
@@ -659,6 +768,15 @@ impl<'a> Results<'a> {
                 "N m",
                 format!("largest torque of {name} of all rows, either way"),
             );
+            let mean = window.clone().map(|r| torque(l, r)).sum::<f64>() / window.len() as f64;
+            self.law(l, mean, a, "at its mean torque within the window");
+            let [more, less] = extremes((0..n).map(|r| twist(l, r)[0]));
+            self.result(
+                format!("shaft{k}.twist_peak"),
+                more.abs().max(less.abs()).to_degrees(),
+                "deg",
+                format!("largest twist of {name} of all rows, either way"),
+            );
             if let Some(s) = a.stress[l] {
                 self.result(
                     format!("shaft{k}.stress_peak"),
@@ -668,11 +786,8 @@ impl<'a> Results<'a> {
                 );
             }
             // Heat: the loss of the dampers, mean over the window.
-            let [x, y] = a.line.links[l].nodes;
-            let gear = ratio[x] / ratio[y];
             let loss = window.clone().map(|r| {
-                let rate = out.speeds[r][x] - gear * out.speeds[r][y];
-                let twist = out.angles[r][x] - gear * out.angles[r][y];
+                let [twist, rate] = twist(l, r);
                 a.line.links[l].coupling.torque(twist, rate).damping * rate * rate
             });
             let heat = loss.sum::<f64>() / window.len() as f64;
@@ -687,6 +802,23 @@ impl<'a> Results<'a> {
         if let Some(g) = out.gas.get(last) {
             for k in (0..g.len()).filter(|k| !a.line.throws[*k].ends.is_empty()) {
                 let [top, bottom] = extremes(window.clone().map(|r| out.gas[r][k]));
+                let lag = |r: usize| {
+                    let turned = |k: usize| {
+                        let i = a.line.throws[k].node;
+                        out.angles[r][i] / ratio[i]
+                    };
+                    turned(0) - turned(k)
+                };
+                let mean = window.clone().map(lag).sum::<f64>() / window.len() as f64;
+                self.result(
+                    format!("throw{}.lag", k + 1),
+                    mean.to_degrees(),
+                    "deg",
+                    format!(
+                        "angle of the shaft that throw {} lags behind throw 1 by twist, mean over the window",
+                        k + 1
+                    ),
+                );
                 self.result(
                     format!("throw{}.gas_max", k + 1),
                     top,

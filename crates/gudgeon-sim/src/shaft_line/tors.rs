@@ -242,8 +242,8 @@ impl<'a> Reader<'a> {
                     };
                     let quantity = |v: f64| Quantity::new(v).map_err(|e| format!("{place}: {e}"));
                     let stiffness: TorsionalStiffness<NonNegative> = quantity(k)?;
-                    let damping: TorsionalDamping =
-                        TorsionalDamping::new(c).map_err(|e| format!("{place}: {e}"))?;
+                    let damping: TorsionalDamping<NonNegative> =
+                        Quantity::new(c).map_err(|e| format!("{place}: {e}"))?;
                     let law =
                         Linear { stiffness, damping, loss_factor: gudgeon_core::quantity::quantity(0.0) };
                     self.link(place.clone(), [a, b], &law, stress)?;

@@ -24,7 +24,7 @@ gudgeon_core::register_model! {
     summary: "stiffness and loss factor over the frequency, from a table",
     equations: "T = K(omega) (1 + i eta(omega)) dtheta",
     validity: "Harmonic motion; models in time refuse it. Natural frequencies are those of the first row.",
-    references: ["ker_wilson1956"],
+    references: [],
     example: "frequency = [1, 50, 200]\nstiffness = [2e4, 3e4, 4e4]\nloss_factor = [0.1, 0.4, 0.9]\n",
 }
 
@@ -34,7 +34,7 @@ impl CouplingSpec for FrequencyDependent {
         let columns =
             [("stiffness", self.stiffness.as_slice()), ("loss_factor", self.loss_factor.as_slice())];
         check_table("frequency", &self.frequency, &columns, 1)?;
-        for (name, c) in columns {
+        for (name, c) in columns.into_iter().chain([("frequency", self.frequency.as_slice())]) {
             if let Some(i) = c.iter().position(|v| *v < 0.0) {
                 return Err(BuildError::at(format!("{name}.{i}"), "must be zero or greater"));
             }

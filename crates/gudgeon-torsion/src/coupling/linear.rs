@@ -18,13 +18,13 @@ pub struct Linear {
     pub stiffness: TorsionalStiffness<NonNegative>,
     /// Viscous damping c between the two ends.
     #[serde(default = "none")]
-    pub damping: TorsionalDamping,
+    pub damping: TorsionalDamping<NonNegative>,
     /// Loss factor η.
     #[serde(default = "no_loss")]
     pub loss_factor: Ratio<NonNegative>,
 }
 
-fn none() -> TorsionalDamping {
+fn none() -> TorsionalDamping<NonNegative> {
     quantity(0.0)
 }
 fn no_loss() -> Ratio<NonNegative> {
@@ -36,7 +36,7 @@ gudgeon_core::register_model! {
     summary: "linear spring and damper, with a loss factor for harmonic motion",
     equations: "T = k dtheta + c domega;  in vibration T = (k (1 + i eta) + i omega c) dtheta",
     validity: "Small twists of steel shafts and couplings. The loss factor has no meaning in time.",
-    references: ["ker_wilson1956"],
+    references: ["den_hartog1956"],
     example: "stiffness = \"8 MN m/rad\"\ndamping = \"492.5 N m s/rad\"\nloss_factor = 0\n",
 }
 
@@ -65,6 +65,9 @@ impl Coupling for Spring {
     }
     fn linear(&self, _: f64, _: f64) -> LinearCoupling {
         self.law
+    }
+    fn is_harmonic_only(&self) -> bool {
+        self.law.loss_factor != 0.0
     }
     fn static_twist(&self, torque: f64) -> f64 {
         if self.law.stiffness > 0.0 { torque / self.law.stiffness } else { 0.0 }

@@ -36,7 +36,7 @@ gudgeon_core::register_model! {
     summary: "dynamic stiffness and relative damping over the mean torque",
     equations: "T = K(T_mean) (1 + i psi/(2 pi)) dtheta",
     validity: "Harmonic motion about a mean torque; models in time refuse it.",
-    references: ["ker_wilson1956"],
+    references: [],
     example: "mean_torque = [0, 1000, 2000]\nstiffness = [1e4, 2e4, 4e4]\nrelative_damping = [1.1, 1.0, 0.9]\nheat_factor = 1\n",
 }
 
@@ -86,6 +86,12 @@ impl Coupling for Rubber {
             damping: 0.0,
             loss_factor: interpolate(&self.torque, &self.eta, t),
         }
+    }
+    fn depends_on_load(&self) -> bool {
+        true
+    }
+    fn is_harmonic_only(&self) -> bool {
+        true
     }
     fn static_twist(&self, torque: f64) -> f64 {
         // dT = K(T) dx, so x is the integral of 1/K over the torque; 1/K by straight pieces of K.

@@ -35,8 +35,11 @@ pub(crate) fn check_table(
             return Err(BuildError::at(format!("{other}.{i}"), "is not a finite number"));
         }
     }
+    if let Some(i) = x.iter().position(|v| !v.is_finite()) {
+        return Err(BuildError::at(format!("{name}.{i}"), "is not a finite number"));
+    }
     for (i, w) in x.windows(2).enumerate() {
-        if !(w[0].is_finite() && w[1].is_finite() && w[1] > w[0]) {
+        if w[1] <= w[0] {
             let what = format!("{} does not follow {}: the values must ascend", w[1], w[0]);
             return Err(BuildError::at(format!("{name}.{}", i + 1), what));
         }

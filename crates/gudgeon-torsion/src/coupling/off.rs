@@ -2,7 +2,8 @@ use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{Coupling, CouplingSpec, CouplingTorque, LinearCoupling};
 use serde::{Deserialize, Serialize};
 
-/// A rigid link: both ends turn as one. Elimination passes it without ever forming a large number.
+/// A rigid link: both ends turn as one. Elimination passes it without ever forming a large number; in time its
+/// inertias are one.
 #[derive(Debug, Clone, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Off {}
@@ -11,7 +12,7 @@ gudgeon_core::register_model! {
     Off, kind: "coupling", name: "off",
     summary: "no elasticity: a rigid link",
     equations: "theta_1 = theta_2",
-    validity: "Flanges, hubs, gear meshes without elasticity. For harmonic motion; models in time want a stiffness.",
+    validity: "Flanges, hubs, gear meshes without elasticity.",
     references: [],
     example: "",
 }

@@ -18,13 +18,13 @@ pub struct Piecewise {
     pub torque: Vec<f64>,
     /// Viscous damping everywhere.
     #[serde(default = "none")]
-    pub damping: TorsionalDamping,
+    pub damping: TorsionalDamping<NonNegative>,
     /// Damping of each piece by its stiffness \[s\].
     #[serde(default = "no_time")]
     pub loss_time: Ratio<NonNegative>,
 }
 
-fn none() -> TorsionalDamping {
+fn none() -> TorsionalDamping<NonNegative> {
     quantity(0.0)
 }
 fn no_time() -> Ratio<NonNegative> {
@@ -35,8 +35,8 @@ gudgeon_core::register_model! {
     Piecewise, kind: "coupling", name: "piecewise",
     summary: "stiffness by pieces: stages, stops, play",
     equations: "T = T_i + k_i (x - x_i) + (c + tau k_i) dx/dt between the rows x_i <= x < x_{i+1}",
-    validity: "Spring couplings, gear play. In harmonic models the piece of the mean torque, as long as the vibration stays in it.",
-    references: ["ker_wilson1956"],
+    validity: "Spring couplings, gear play. `orders` and `modal` take the piece of the mean torque, right while the vibration stays in it; `harmonic_balance` and models in time take all.",
+    references: ["den_hartog1956"],
     example: "twist = [-0.02, -0.01, 0.01, 0.02]\ntorque = [-300, -100, 100, 300]\ndamping = \"2 N m s/rad\"\nloss_time = 0\n",
 }
 

@@ -23,10 +23,10 @@ pub struct Progressive {
     pub gain: Ratio<NonNegative>,
     /// Viscous damping c.
     #[serde(default = "none")]
-    pub damping: TorsionalDamping,
+    pub damping: TorsionalDamping<NonNegative>,
 }
 
-fn none() -> TorsionalDamping {
+fn none() -> TorsionalDamping<NonNegative> {
     quantity(0.0)
 }
 
@@ -34,8 +34,8 @@ gudgeon_core::register_model! {
     Progressive, kind: "coupling", name: "progressive",
     summary: "stiffness that grows with the torque, cubic",
     equations: "T = k x + k3 x^3 + c dx/dt;  3 k3 x_n^2 = (gain - 1) k;  x_n = 3 T_n/(k (2 + gain))",
-    validity: "Rubber couplings up to about their largest torque. In harmonic models the tangent at the mean torque.",
-    references: ["ker_wilson1956"],
+    validity: "Rubber couplings up to about their largest torque. `orders` and `modal` take the tangent at the mean torque; `harmonic_balance` and models in time take all.",
+    references: ["den_hartog1956"],
     example: "stiffness = \"20 kN m/rad\"\nnominal_torque = \"2 kN m\"\ngain = 2\ndamping = \"20 N m s/rad\"\n",
 }
 

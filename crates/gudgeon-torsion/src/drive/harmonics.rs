@@ -48,7 +48,7 @@ gudgeon_core::register_model! {
     summary: "torque by its harmonics over the angle",
     equations: "T = T_0 + sum_n A_n cos(n theta - phi_n)",
     validity: "Orders are multiples of a half.",
-    references: ["ker_wilson1956"],
+    references: ["den_hartog1956"],
     example: "mean = \"100 N m\"\norders = [{ order = 3, amplitude = \"160 N m\" }, { order = 4.5, amplitude = \"90 N m\", phase = \"30 deg\" }]\n",
 }
 

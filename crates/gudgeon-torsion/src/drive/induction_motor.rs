@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 /// T = 2 T_b/(s/s_b + s_b/s),   s = (ω_s - ω)/ω_s
 /// ```
 ///
-/// T_b pull-out (breakdown) torque at the slip s_b, ω_s synchronous speed. Above ω_s it brakes. `pulsation` is the alternating torque at
-/// line frequency that a motor has while it is switched on; it is not part of this stationary curve.
+/// T_b pull-out (breakdown) torque at the slip s_b, ω_s synchronous speed. Above ω_s it brakes. The alternating torque at
+/// line frequency that a motor has while it is switched on is not part of this stationary curve.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct InductionMotor {

@@ -1,6 +1,8 @@
 use std::f64::consts::PI;
 
-use gudgeon_core::kinds::{OrderResponse, Torsion, TorsionAnswer, TorsionCtx, TorsionOut, TorsionSpec};
+use gudgeon_core::kinds::{
+    Line, LinearCoupling, OrderResponse, Torsion, TorsionAnswer, TorsionCtx, TorsionOut, TorsionSpec,
+};
 use gudgeon_core::quantity::{Positive, Ratio, quantity};
 use gudgeon_core::{BuildError, EvalError};
 use gudgeon_numerics::linalg::{Complex, lu_factor, lu_solve};
@@ -9,13 +11,14 @@ use serde::{Deserialize, Serialize};
 use crate::forcing::Order;
 use crate::steady::Steady;
 
-/// The periodic motion at constant mean speed with all that is not linear: variable inertia with its velocity-squared term, gas torques at
-/// the true angle, couplings that stiffen.
+/// The periodic motion at constant mean speed with all that is not linear: variable inertia with its velocity-squared term, gas torques and
+/// drives at the true angle and speed, couplings that stiffen.
 ///
 /// Each order is solved by elimination along the tree; what the linear line does not have is put on its right-hand side,
 ///
 /// ```text
-/// T_nl = Q(α) - Q(α₀) - (I(α) - Ī) θ'' - ½ I'(α) θ'²,   α = angle of the throw,
+/// T_nl = Q(α) - Q(α₀) - (I(α) - Ī) θ'' - ½ I'(α) θ'²,   α = angle of the throw;
+/// of a coupling: its torque less that of its tangent at the mean torque,
 /// ```
 ///
 /// evaluated over the cycle and taken apart into orders again. The iteration is accelerated (walker2011) and ends when the torques of
@@ -68,15 +71,13 @@ impl TorsionSpec for HarmonicBalance {
                 return Err(BuildError::at("model", what).help("use `orders` for gears of any ratio"));
             }
         }
-        if let Some(l) = ctx.line.links.iter().position(|l| {
-            let v = l.coupling.linear(0.0, 0.0);
-            !l.coupling.is_linear() && (v.stiffness == f64::INFINITY || l.coupling.depends_on_frequency())
-        }) {
-            return Err(BuildError::at(format!("links.{l}"), "has no law over the twist"));
-        }
         let harmonics = ((ctx.orders / base) + 1e-9).floor() as usize;
-        if harmonics == 0 || harmonics > 4000 {
-            let what = format!("{harmonics} harmonics; between 1 and 4000 are possible");
+        // Taking the torques of a round apart goes with the square of the harmonics.
+        let places = active(ctx.line).len();
+        if harmonics == 0 || harmonics > 4000 || harmonics * harmonics * places > 25_000_000 {
+            let what = format!(
+                "{harmonics} harmonics of {places} nonlinear places; between 1 and 4000 are possible, and less for many places"
+            );
             return Err(BuildError::at("orders", what));
         }
         // Every harmonic has an order, even where nothing excites it yet.
@@ -123,12 +124,26 @@ impl TorsionSpec for HarmonicBalance {
             harmonics,
             samples,
             balance: ctx.balance,
+            // The tree keeps these, whatever the mean torque turns out to be.
+            tangents: (ctx.line.links.iter().zip(&steady.mean_torque))
+                .map(|(l, mean)| l.coupling.linear(0.0, *mean))
+                .collect(),
             steady,
         }))
     }
     fn answers(&self) -> TorsionAnswer {
         TorsionAnswer::Periodic
     }
+}
+
+/// Nodes with something that is not linear, ascending.
+fn active(line: &Line) -> Vec<usize> {
+    let mut nodes: Vec<usize> = line.throws.iter().map(|t| t.node).collect();
+    nodes.extend(line.drives.iter().filter(|d| !d.drive.is_linear()).map(|d| d.node));
+    nodes.extend(line.links.iter().filter(|l| !l.coupling.is_linear()).flat_map(|l| l.nodes));
+    nodes.sort_unstable();
+    nodes.dedup();
+    nodes
 }
 
 /// Rounds that the acceleration remembers.
@@ -142,7 +157,16 @@ struct Solver {
     harmonics: usize,
     samples: usize,
     balance: usize,
+    /// Laws of the links as the linear line has them.
+    tangents: Vec<LinearCoupling>,
     steady: Steady,
+}
+
+/// What the linear line leaves out, in orders from 0: torques by order and node, and those of each nonlinear link by order.
+#[derive(Debug, Default)]
+struct Rest {
+    nodes: Vec<Vec<Complex>>,
+    links: Vec<(usize, Vec<Complex>)>,
 }
 
 /// Motion of one node over the cycle: deviation from the mean rotation, its first and second derivative in time.
@@ -166,11 +190,16 @@ impl Solver {
         Ok(out)
     }
 
-    fn waves(&self, orders: &[OrderResponse], mean: &[f64], table: &[(f64, f64)]) -> Vec<Wave> {
+    /// Motion of the `active` nodes; nothing for the others.
+    fn waves(&self, orders: &[OrderResponse], active: &[usize], table: &[(f64, f64)]) -> Vec<Wave> {
         let m = self.samples;
         let omega = self.steady.speed * self.base;
+        let mean = &self.steady.mean_angle;
         (0..mean.len())
             .map(|node| {
+                if active.binary_search(&node).is_err() {
+                    return Wave::default();
+                }
                 let mut w = Wave { x: vec![mean[node]; m], v: vec![0.0; m], a: vec![0.0; m] };
                 for (k, o) in orders.iter().enumerate() {
                     let [re, im] = o.angle[node];
@@ -191,8 +220,23 @@ impl Solver {
             .collect()
     }
 
-    /// What the linear line leaves out, by node, in orders from 0.
-    fn rest(&self, waves: &[Wave], table: &[(f64, f64)]) -> Vec<Vec<Complex>> {
+    /// Orders of what is given over the cycle.
+    fn transform(&self, f: &[f64], table: &[(f64, f64)]) -> Vec<Complex> {
+        let m = self.samples;
+        (0..=self.harmonics)
+            .map(|k| {
+                let factor = if k == 0 { 1.0 } else { 2.0 } / m as f64;
+                let mut c = Complex::default();
+                for (s, f) in f.iter().enumerate() {
+                    let (sin, cos) = table[k * s % m];
+                    c = c + Complex::new(f * cos, -f * sin);
+                }
+                c * Complex::new(factor, 0.0)
+            })
+            .collect()
+    }
+
+    fn rest(&self, waves: &[Wave], table: &[(f64, f64)]) -> Rest {
         let (m, n) = (self.samples, waves.len());
         let line = &self.steady.line;
         let cycle = 2.0 * PI / self.base;
@@ -214,37 +258,63 @@ impl Solver {
                 }
             }
         }
+        for d in line.drives.iter().filter(|d| !d.drive.is_linear()) {
+            let ratio = line.nodes[d.node].ratio;
+            let w = &waves[d.node];
+            let speed = self.steady.speed * ratio;
+            for (s, f) in force[d.node].iter_mut().enumerate() {
+                let even = ratio * cycle * s as f64 / m as f64 + d.phase;
+                let mean = d.drive.torque(even, speed);
+                let here = d.drive.torque(even + w.x[s], speed + w.v[s]);
+                *f += d.factor * (here.torque - mean.torque - mean.slope * w.v[s]);
+            }
+        }
+        let mut out =
+            Rest { nodes: vec![vec![Complex::default(); n]; self.harmonics + 1], links: Vec::new() };
+        for (node, f) in force.iter().enumerate().filter(|(_, f)| f.iter().any(|f| *f != 0.0)) {
+            for (o, c) in out.nodes.iter_mut().zip(self.transform(f, table)) {
+                o[node] = c;
+            }
+        }
+        let mut over = vec![0.0; m];
         for (l, link) in line.links.iter().enumerate().filter(|(_, l)| !l.coupling.is_linear()) {
             let [a, b] = link.nodes;
             let gear = line.nodes[a].ratio / line.nodes[b].ratio;
             let mean_torque = self.steady.mean_torque[l];
-            let tangent = link.coupling.linear(0.0, mean_torque);
+            let tangent = self.tangents[l];
             let rest = link.coupling.static_twist(mean_torque);
-            for s in 0..m {
+            for (s, over) in over.iter_mut().enumerate() {
                 let twist = waves[a].x[s] - gear * waves[b].x[s];
                 let rate = waves[a].v[s] - gear * waves[b].v[s];
-                let t = link.coupling.torque(twist, rate).torque;
                 let linear = mean_torque + tangent.stiffness * (twist - rest) + tangent.damping * rate;
-                force[a][s] -= t - linear;
-                force[b][s] += gear * (t - linear);
+                *over = link.coupling.torque(twist, rate).torque - linear;
             }
-        }
-        let mut out = vec![vec![Complex::default(); n]; self.harmonics + 1];
-        for (node, f) in force.iter().enumerate() {
-            if f.iter().all(|f| *f == 0.0) {
-                continue;
+            let c = self.transform(&over, table);
+            for (o, c) in out.nodes.iter_mut().zip(&c) {
+                o[a] = o[a] - *c;
+                o[b] = o[b] + *c * Complex::new(gear, 0.0);
             }
-            for (k, o) in out.iter_mut().enumerate() {
-                let factor = if k == 0 { 1.0 } else { 2.0 } / m as f64;
-                let mut c = Complex::default();
-                for (s, f) in f.iter().enumerate() {
-                    let (sin, cos) = table[k * s % m];
-                    c = c + Complex::new(f * cos, -f * sin);
-                }
-                o[node] = c * Complex::new(factor, 0.0);
-            }
+            out.links.push((l, c));
         }
         out
+    }
+
+    /// Puts what nonlinear links carry beside their tangents into their torques, and their loss.
+    fn complete(&mut self, orders: &mut [OrderResponse], rest: &Rest) {
+        let line = &self.steady.line;
+        for (l, c) in &rest.links {
+            let [a, b] = line.links[*l].nodes;
+            let gear = line.nodes[a].ratio / line.nodes[b].ratio;
+            self.steady.mean_torque[*l] += c[0].re;
+            for (o, c) in orders.iter_mut().zip(&c[1..]) {
+                let t = &mut o.torque[*l];
+                *t = [t[0] + c.re, t[1] + c.im];
+                // Mean of torque times rate of twist: an order may take power from another, the sum is the loss.
+                let twist = [o.angle[a][0] - gear * o.angle[b][0], o.angle[a][1] - gear * o.angle[b][1]];
+                let rate = o.order * self.steady.speed;
+                o.heat[*l] = 0.5 * rate * (t[1] * twist[0] - t[0] * twist[1]);
+            }
+        }
     }
 }
 
@@ -254,10 +324,7 @@ impl Torsion for Solver {
         let table: Vec<(f64, f64)> = (0..m).map(|s| (2.0 * PI * s as f64 / m as f64).sin_cos()).collect();
         // Only nodes with something nonlinear have unknowns.
         let line = &self.steady.line;
-        let mut active: Vec<usize> = line.throws.iter().map(|t| t.node).collect();
-        active.extend(line.links.iter().filter(|l| !l.coupling.is_linear()).flat_map(|l| l.nodes));
-        active.sort_unstable();
-        active.dedup();
+        let active = active(line);
         let flat = |r: &[Vec<Complex>]| -> Vec<f64> {
             r.iter().flat_map(|o| active.iter().flat_map(|&i| [o[i].re, o[i].im])).collect()
         };
@@ -286,7 +353,8 @@ impl Torsion for Solver {
         let mut solutions = 0;
         let mut change = f64::INFINITY;
         let mut rounds = 0;
-        let mut best: Option<Vec<OrderResponse>> = None;
+        let mut best: Vec<OrderResponse> = Vec::new();
+        let mut rest = Rest::default();
         while rounds < self.rounds {
             rounds += 1;
             let extra = if active.is_empty() {
@@ -303,19 +371,20 @@ impl Torsion for Solver {
             let orders = self.solve(&extra)?;
             solutions += self.harmonics as u64;
             if active.is_empty() {
-                best = Some(orders);
+                best = orders;
                 change = 0.0;
                 break;
             }
-            let waves = self.waves(&orders, &self.steady.mean_angle, &table);
-            let g = flat(&self.rest(&waves, &table));
+            let waves = self.waves(&orders, &active, &table);
+            rest = self.rest(&waves, &table);
+            let g = flat(&rest.nodes);
             if g.iter().any(|v| !v.is_finite()) {
                 return Err(EvalError::fatal("harmonic_balance", "the iteration leaves all bounds"));
             }
             let f: Vec<f64> = g.iter().zip(&x).map(|(g, x)| g - x).collect();
             let largest = g.iter().map(|v| v.abs()).fold(scale, f64::max);
             change = f.iter().map(|v| v.abs()).fold(0.0, f64::max) / largest.max(f64::MIN_POSITIVE);
-            best = Some(orders);
+            best = orders;
             if change <= self.tolerance {
                 break;
             }
@@ -335,7 +404,8 @@ impl Torsion for Solver {
                 ),
             ));
         }
-        out.orders = best.unwrap_or_default();
+        self.complete(&mut best, &rest);
+        out.orders = best;
         out.counters.insert("time_steps".into(), 0);
         out.counters.insert("rounds".into(), rounds as u64);
         out.counters.insert("linear_solutions".into(), solutions);

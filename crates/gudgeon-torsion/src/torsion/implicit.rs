@@ -1,17 +1,17 @@
 use gudgeon_core::kinds::{Torsion, TorsionAnswer, TorsionCtx, TorsionOut, TorsionSpec};
 use gudgeon_core::quantity::{Positive, Ratio, quantity};
 use gudgeon_core::{BuildError, EvalError};
-use gudgeon_numerics::ode::{ColumnGroups, Flow, Integrator, OdeSystem, Options, Stats};
-use gudgeon_numerics::rodas::Rodas;
+use gudgeon_numerics::ode::{Flow, Integrator, OdeSystem, Options, Stats};
+use gudgeon_numerics::rodas::{Formula, Rodas};
 use serde::{Deserialize, Serialize};
 
 use super::{check_in_time, check_start};
-use crate::dynamics::Dynamics;
+use crate::dynamics::{Dynamics, record};
 
 /// Motion over time with error control: nonlinear couplings, variable inertia, motors over their whole curve.
 ///
-/// An L-stable Rosenbrock method of order 5. Stiff couplings do not bound its step; what is wanted is found by interpolation of the
-/// same order within the steps.
+/// An L-stable Rosenbrock method of order 5. Stiff couplings do not bound its step; what is wanted between its steps is found by
+/// interpolation of order 4. Its linear systems are eliminated along the tree, so a step costs in proportion to the number of inertias.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Implicit {
@@ -34,7 +34,7 @@ gudgeon_core::register_model! {
     Implicit, kind: "torsion", name: "implicit",
     summary: "motion over time with error control, for anything nonlinear",
     equations: "J(theta) domega/dt + J'(theta) omega^2/2 = T(theta, omega) - coupling torques",
-    validity: "Lines of some hundred inertias: its linear algebra is that of a full matrix.",
+    validity: "Viscous damping; every inertia greater than zero but for those on rigid links.",
     references: ["gomes2021", "steinebach2023"],
     example: "tolerance = 1e-6\n",
 }
@@ -42,25 +42,18 @@ gudgeon_core::register_model! {
 #[typetag::serde(name = "implicit")]
 impl TorsionSpec for Implicit {
     fn build(&self, ctx: &TorsionCtx<'_>) -> Result<Box<dyn Torsion>, BuildError> {
-        crate::tree::Tree::new(ctx.line)?;
+        let dynamics = Dynamics::new(ctx.line)?;
         check_in_time(ctx.line)?;
         check_start(ctx)?;
         if !(1e-13..=1e-2).contains(&self.tolerance.si()) {
             return Err(BuildError::at("tolerance", "must be between 1e-13 and 1e-2"));
         }
-        let n = ctx.line.nodes.len();
-        if n > 400 {
-            return Err(BuildError::at(
-                "model",
-                "is for lines of up to 400 inertias; use `propagator` or `orders`",
-            ));
-        }
         let fastest = ctx.speeds.iter().map(|v| v.abs()).fold(ctx.speed.abs(), f64::max).max(1e-3);
         Ok(Box::new(Solver {
-            system: System { dynamics: Dynamics::new(ctx.line), n },
+            start: [dynamics.condense(ctx.angles), dynamics.condense(ctx.speeds)].concat(),
+            system: System { n: dynamics.len(), dynamics },
             tolerance: self.tolerance.si(),
             fastest,
-            start: ctx.angles.iter().chain(ctx.speeds).copied().collect(),
             times: ctx.times.to_vec(),
         }))
     }
@@ -86,6 +79,17 @@ impl OdeSystem for System {
         self.dynamics.accelerations(theta, omega, theta, theta, accelerations);
         Ok(())
     }
+    fn linearise(&mut self, _: f64, y: &[f64], _: &[f64]) -> Result<(), EvalError> {
+        let (theta, omega) = y.split_at(self.n);
+        self.dynamics.linearise(theta, omega);
+        Ok(())
+    }
+    fn factor(&mut self, d: f64) -> bool {
+        self.dynamics.factor(d)
+    }
+    fn solve(&mut self, b: &mut [f64]) {
+        self.dynamics.solve(b);
+    }
     fn time_derivative(&mut self, _: f64, _: &[f64], _: &[f64], d: &mut [f64]) -> Result<bool, EvalError> {
         d.fill(0.0);
         Ok(true)
@@ -104,19 +108,7 @@ struct Solver {
 impl Torsion for Solver {
     fn run(&mut self, out: &mut TorsionOut) -> Result<(), EvalError> {
         let n = self.system.n;
-        let near = self.system.dynamics.neighbours();
-        // Column of an angle or speed: the speed's rate and the accelerations of the neighbours.
-        let rows: Vec<Vec<usize>> = (0..2 * n)
-            .map(|c| {
-                let node = c % n;
-                let mut rows: Vec<usize> = near[node].iter().map(|j| n + j).collect();
-                if c >= n {
-                    rows.push(node);
-                }
-                rows
-            })
-            .collect();
-        let mut integrator = Rodas::new(2 * n, 0, Some(ColumnGroups::from_pattern(rows)));
+        let mut integrator = Rodas::structured(Formula::Rodas5P, 2 * n);
         // Twists are milliradians where speeds are hundreds: errors of an angle count against a hundredth of a radian.
         let scale: Vec<f64> = (0..2 * n).map(|i| if i < n { 1e-2 } else { self.fastest }).collect();
         let mut options = Options::new(self.tolerance, &scale);
@@ -129,14 +121,7 @@ impl Torsion for Solver {
         let times = &self.times;
         let mut keep = |dynamics: &mut Dynamics, t: f64, y: &[f64]| {
             let (theta, omega) = y.split_at(n);
-            // Torques as they are at this instant.
-            let mut rates = vec![0.0; n];
-            dynamics.accelerations(theta, omega, theta, theta, &mut rates);
-            out.times.push(t);
-            out.angles.push(theta.to_vec());
-            out.speeds.push(omega.to_vec());
-            out.gas.push(dynamics.gas.clone());
-            out.drive.push(dynamics.drive.clone());
+            record(dynamics, t, theta, omega, out);
         };
         while next < times.len() && times[next] <= 0.0 {
             keep(&mut self.system.dynamics, times[next], &y);

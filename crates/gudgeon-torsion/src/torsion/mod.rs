@@ -19,33 +19,23 @@ pub use runge_kutta::RungeKutta;
 use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{Line, TorsionCtx};
 
-/// Refuses what has no meaning in time: rigid links, loss factors, laws over the frequency, inertias of zero.
+/// Refuses laws that have no meaning in time: loss factors, laws over the frequency, dynamic stiffnesses.
 fn check_in_time(line: &Line) -> Result<(), BuildError> {
-    for (i, l) in line.links.iter().enumerate() {
-        let v = l.coupling.linear(0.0, 0.0);
-        let at = |what: String| Err(BuildError::at(format!("links.{i}"), what));
-        if v.stiffness == f64::INFINITY {
-            return at(format!(
-                "`{}` is rigid: motion over time wants a stiffness, or one inertia for both",
-                l.name
-            ));
-        }
-        if v.loss_factor != 0.0 || l.coupling.depends_on_frequency() {
-            return at(format!(
-                "the damping of `{}` has a meaning in harmonic motion only; motion over time wants viscous damping",
-                l.name
-            ));
+    match line.links.iter().position(|l| l.coupling.is_harmonic_only()) {
+        None => Ok(()),
+        Some(i) => {
+            let what = format!(
+                "the law of `{}` (loss factor, relative damping, values over the frequency) has a meaning in harmonic motion only",
+                line.links[i].name
+            );
+            Err(BuildError::at(format!("links.{i}"), what).help(
+                "use `orders`, `modal` or `harmonic_balance`; or a stiffness with the viscous damping c = eta k/omega, which loses as much at the angular frequency omega",
+            ))
         }
     }
-    for i in 0..line.nodes.len() {
-        if line.mean_inertia(i) <= 0.0 {
-            let what = format!("the inertia of `{}` is zero: motion over time wants one", line.nodes[i].name);
-            return Err(BuildError::at(format!("inertias.{i}"), what));
-        }
-    }
-    Ok(())
 }
 
+/// The start of a motion, and that rigid links and gears agree with it.
 fn check_start(ctx: &TorsionCtx<'_>) -> Result<(), BuildError> {
     let n = ctx.line.nodes.len();
     if ctx.angles.len() != n || ctx.speeds.len() != n {
@@ -53,6 +43,22 @@ fn check_start(ctx: &TorsionCtx<'_>) -> Result<(), BuildError> {
     }
     if ctx.times.is_empty() {
         return Err(BuildError::at("time", "a motion over time needs a duration"));
+    }
+    let top = |v: &[f64]| v.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+    for l in &ctx.line.links {
+        if l.coupling.linear(0.0, 0.0).stiffness != f64::INFINITY {
+            continue;
+        }
+        let [a, b] = l.nodes;
+        let gear = ctx.line.nodes[a].ratio / ctx.line.nodes[b].ratio;
+        for (name, v) in [("angles", ctx.angles), ("speeds", ctx.speeds)] {
+            // Rounding of what a steady motion gives.
+            if (v[a] - gear * v[b]).abs() > 1e-9 * top(v) {
+                let what =
+                    format!("`{}` is rigid, but its ends start with {name} of {} and {}", l.name, v[a], v[b]);
+                return Err(BuildError::at("start", what));
+            }
+        }
     }
     Ok(())
 }

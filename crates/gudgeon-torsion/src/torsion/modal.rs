@@ -43,7 +43,7 @@ gudgeon_core::register_model! {
     summary: "forced vibration by superposition of modes, with static correction",
     equations: "q_m = phi_m^T T/(omega_m^2 - omega^2 + i omega c_m);  theta = sum phi_m q_m",
     validity: "Light damping that hardly couples the modes. For long lines of which few modes matter.",
-    references: ["gomes2021", "ker_wilson1956"],
+    references: ["gomes2021", "den_hartog1956"],
     example: "modes = 6\n",
 }
 
@@ -60,6 +60,18 @@ impl TorsionSpec for Modal {
         let steady = Steady::new(ctx)?;
         if steady.tree.is_grounded() && self.static_correction {
             return Err(BuildError::at("static_correction", "is for lines that turn freely; use `orders`"));
+        }
+        if self.static_correction {
+            let part = eigen::parts(&steady.tree);
+            let empty = |p: usize| {
+                part[p] == p && (0..part.len()).all(|i| part[i] != p || steady.tree.inertia[i] == 0.0)
+            };
+            if let Some(p) = (0..part.len()).find(|p| empty(*p)) {
+                let i = steady.tree.node[p];
+                let what =
+                    format!("`{}` has neither inertia nor stiffness; use `orders`", ctx.line.nodes[i].name);
+                return Err(BuildError::at(format!("inertias.{i}"), what));
+            }
         }
         Ok(Box::new(Solver { spec: self.clone(), steady }))
     }
@@ -88,7 +100,11 @@ impl Torsion for Solver {
                 None => eigen::modal_damping(t, *w, v),
             })
             .collect();
-        let total = t.total_inertia();
+        let part = eigen::parts(t);
+        let mut total = vec![0.0; n];
+        for p in 0..n {
+            total[part[p]] += t.inertia[p];
+        }
         for o in &self.steady.excitation.orders {
             let w = o.order * self.steady.speed;
             let f: Vec<Complex> =
@@ -98,22 +114,33 @@ impl Torsion for Solver {
             };
             let mut phi = vec![Complex::default(); n];
             if self.spec.static_correction {
-                // Torque less that of the rigid acceleration, through the springs alone.
-                let rigid = project(&vec![1.0; n]);
-                let mut load: Vec<Complex> =
-                    (0..n).map(|p| f[p] - rigid * Complex::new(t.inertia[p] / total, 0.0)).collect();
+                // Torque less that of the rigid acceleration, through the springs alone, in each part that turns by itself.
+                let mut sum = vec![Complex::default(); n];
+                for p in 0..n {
+                    sum[part[p]] = sum[part[p]] + f[p];
+                }
+                let mut load: Vec<Complex> = (0..n)
+                    .map(|p| f[p] - sum[part[p]] * Complex::new(t.inertia[p] / total[part[p]], 0.0))
+                    .collect();
                 for p in 0..n - 1 {
                     let q = t.parent[p];
-                    load[q] = load[q] + load[p];
+                    if part[p] == part[q] {
+                        load[q] = load[q] + load[p];
+                    }
                 }
                 for p in (0..n - 1).rev() {
-                    phi[p] = phi[t.parent[p]] + load[p] * Complex::new(1.0 / t.k[p], 0.0);
+                    if part[p] == part[t.parent[p]] {
+                        phi[p] = phi[t.parent[p]] + load[p] * Complex::new(1.0 / t.k[p], 0.0);
+                    }
                 }
-                let mean = phi
-                    .iter()
-                    .zip(&t.inertia)
-                    .fold(Complex::default(), |s, (x, j)| s + *x * Complex::new(j / total, 0.0));
-                phi.iter_mut().for_each(|x| *x = *x - mean);
+                let mut mean = vec![Complex::default(); n];
+                for p in 0..n {
+                    let share = Complex::new(t.inertia[p] / total[part[p]], 0.0);
+                    mean[part[p]] = mean[part[p]] + phi[p] * share;
+                }
+                for p in 0..n {
+                    phi[p] = phi[p] - mean[part[p]];
+                }
             }
             for ((wm, c), v) in omega.iter().zip(&damping).zip(&v) {
                 let d = Complex::new(wm * wm - w * w, w * c);
@@ -137,16 +164,27 @@ impl Torsion for Solver {
                 heat: vec![0.0; links],
                 excitation: o.torque.iter().map(|t| [t.re, t.im]).collect(),
             };
+            // What each inertia needs beside its links, for those that are rigid.
+            let mut load: Vec<Complex> = (0..n)
+                .map(|p| f[p] - phi[p] * Complex::new(t.ground[p] - w * w * t.inertia[p], w * t.damping[p]))
+                .collect();
             for p in 0..n {
                 r.angle[t.node[p]] = [phi[p].re * t.ratio[p], phi[p].im * t.ratio[p]];
-                if t.parent[p] < n && t.k[p].is_finite() {
-                    let kappa = Complex::new(t.k[p], t.k[p] * t.eta[p] + w * t.c[p]);
-                    let twist = phi[p] - phi[t.parent[p]];
-                    let s = if t.forward[p] { 1.0 } else { -1.0 } / t.link_ratio[p];
-                    let q = kappa * twist;
-                    r.torque[t.link[p]] = [q.re * s, q.im * s];
-                    r.heat[t.link[p]] = 0.5 * w * kappa.im * twist.abs() * twist.abs();
+                let q = t.parent[p];
+                if q >= n {
+                    continue;
                 }
+                let s = if t.forward[p] { 1.0 } else { -1.0 } / t.link_ratio[p];
+                let torque = if t.k[p].is_finite() {
+                    let kappa = Complex::new(t.k[p], t.k[p] * t.eta[p] + w * t.c[p]);
+                    let twist = phi[p] - phi[q];
+                    r.heat[t.link[p]] = 0.5 * w * kappa.im * twist.abs() * twist.abs();
+                    kappa * twist
+                } else {
+                    load[p]
+                };
+                load[q] = load[q] + torque;
+                r.torque[t.link[p]] = [torque.re * s, torque.im * s];
             }
             out.orders.push(r);
         }

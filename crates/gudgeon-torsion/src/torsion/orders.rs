@@ -22,7 +22,7 @@ gudgeon_core::register_model! {
     summary: "forced vibration per order, exact orders, elimination in linear time",
     equations: "(K(omega)(1 + i eta) + i omega C - omega^2 J) a_n = T_n;  omega = n Omega",
     validity: "Small vibration about constant mean speed. Torques follow the mean angle; variable inertia to first order.",
-    references: ["gomes2021", "ker_wilson1956"],
+    references: ["gomes2021", "den_hartog1956"],
     example: "",
 }
 

@@ -4,6 +4,7 @@ use gudgeon_numerics::linalg::Complex;
 use serde::{Deserialize, Serialize};
 
 use super::{check_in_time, check_start};
+use crate::dynamics::Dynamics;
 use crate::eigen;
 use crate::steady::Steady;
 use crate::tree::{Singular, Tree, Work};
@@ -26,8 +27,8 @@ gudgeon_core::register_model! {
     Propagator, kind: "torsion", name: "propagator",
     summary: "motion over time in closed form: damped modes on the periodic motion, no steps",
     equations: "theta(t) = theta_p(t) + sum_j c_j v_j exp(z_j t);  det(z^2 J + z C + K) = 0",
-    validity: "Linear couplings, constant inertia, straight torque-speed lines, gas torques by the mean angle. No double damped eigenvalue (critical damping).",
-    references: ["gomes2021", "tisseur2001"],
+    validity: "Linear couplings with stiffness, constant inertia, straight torque-speed lines, gas torques by the mean angle. No double damped eigenvalue (critical damping).",
+    references: ["gomes2021"],
     example: "",
 }
 
@@ -35,11 +36,18 @@ gudgeon_core::register_model! {
 impl TorsionSpec for Propagator {
     fn build(&self, ctx: &TorsionCtx<'_>) -> Result<Box<dyn Torsion>, BuildError> {
         let line = ctx.line;
-        Tree::new(line)?;
+        let dynamics = Dynamics::new(line)?;
         check_in_time(line)?;
         check_start(ctx)?;
         if let Some(l) = line.links.iter().position(|l| !l.coupling.is_linear()) {
             let what = format!("`{}` is not linear; use `implicit`", line.links[l].name);
+            return Err(BuildError::at(format!("links.{l}"), what));
+        }
+        if let Some(l) = line.links.iter().position(|l| l.coupling.linear(0.0, 0.0).stiffness == 0.0) {
+            let what = format!(
+                "`{}` has no stiffness: what it joins slips, and has no static twist to vibrate about; use `implicit`",
+                line.links[l].name
+            );
             return Err(BuildError::at(format!("links.{l}"), what));
         }
         if let Some(t) = line.throws.iter().find(|t| !t.inertia.is_constant()) {
@@ -60,6 +68,7 @@ impl TorsionSpec for Propagator {
         }
         Ok(Box::new(Solver {
             steady,
+            dynamics,
             angles: ctx.angles.to_vec(),
             speeds: ctx.speeds.to_vec(),
             times: ctx.times.to_vec(),
@@ -73,6 +82,7 @@ impl TorsionSpec for Propagator {
 #[derive(Debug)]
 struct Solver {
     steady: Steady,
+    dynamics: Dynamics,
     angles: Vec<f64>,
     speeds: Vec<f64>,
     times: Vec<f64>,
@@ -243,6 +253,7 @@ impl Torsion for Solver {
         }
         let terms = Terms::new(t, &phi, &rate)?;
         let (mut free, mut free_rate) = (vec![0.0; n], vec![0.0; n]);
+        let mut alpha = vec![0.0; self.dynamics.len()];
         for &time in &self.times {
             at(time, &mut phi, &mut rate);
             terms.at(time, &mut free, &mut free_rate);
@@ -251,16 +262,14 @@ impl Torsion for Solver {
                 a[t.node[p]] = (phi[p] + free[p]) * t.ratio[p];
                 w[t.node[p]] = (rate[p] + free_rate[p]) * t.ratio[p];
             }
-            let gas = s.line.throws.iter().map(|g| {
-                let x = s.speed * time * s.line.nodes[g.node].ratio;
-                g.gas_torque(x, x)
-            });
-            out.gas.push(gas.collect());
-            let drives = s.line.drives.iter().map(|d| {
-                let x = s.speed * time * s.line.nodes[d.node].ratio + d.phase;
-                d.factor * d.drive.torque(x, w[d.node]).torque
-            });
-            out.drive.push(drives.collect());
+            // Torques as the method has them: by the angle of the mean speed.
+            let even: Vec<f64> = s.line.nodes.iter().map(|n| s.speed * time * n.ratio).collect();
+            let d = &mut self.dynamics;
+            let [angle, speed, even] = [&a, &w, &even].map(|v| d.condense(v));
+            d.accelerations(&angle, &speed, &even, &even, &mut alpha);
+            out.torque.push(d.link_torques(&angle, &speed, &even, &alpha));
+            out.gas.push(d.gas.clone());
+            out.drive.push(d.drive.clone());
             out.times.push(time);
             out.angles.push(a);
             out.speeds.push(w);

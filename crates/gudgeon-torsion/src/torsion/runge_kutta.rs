@@ -4,7 +4,7 @@ use gudgeon_core::{BuildError, EvalError};
 use serde::{Deserialize, Serialize};
 
 use super::{check_in_time, check_start};
-use crate::dynamics::Dynamics;
+use crate::dynamics::{Dynamics, record};
 
 /// Motion over time by the classical Runge-Kutta method of order 4 with a fixed step, as published.
 ///
@@ -38,7 +38,7 @@ const MOST: f64 = 2e7;
 #[typetag::serde(name = "runge_kutta")]
 impl TorsionSpec for RungeKutta {
     fn build(&self, ctx: &TorsionCtx<'_>) -> Result<Box<dyn Torsion>, BuildError> {
-        crate::tree::Tree::new(ctx.line)?;
+        let dynamics = Dynamics::new(ctx.line)?;
         check_in_time(ctx.line)?;
         check_start(ctx)?;
         let h = self.step.si();
@@ -47,14 +47,13 @@ impl TorsionSpec for RungeKutta {
             let what = format!("{:.3e} steps to {end} s are more than {MOST:.0e}", end / h);
             return Err(BuildError::at("step", what));
         }
-        let n = ctx.line.nodes.len();
-        let row = vec![0.0; n];
+        let row = vec![0.0; dynamics.len()];
         Ok(Box::new(Solver {
-            dynamics: Dynamics::new(ctx.line),
+            theta: dynamics.condense(ctx.angles),
+            omega: dynamics.condense(ctx.speeds),
+            dynamics,
             h,
             look_ahead: self.look_ahead,
-            theta: ctx.angles.to_vec(),
-            omega: ctx.speeds.to_vec(),
             // Results at the nearest step.
             at: ctx.times.iter().map(|t| (t / h).round() as u64).collect(),
             u: std::array::from_fn(|_| row.clone()),
@@ -132,11 +131,13 @@ impl Torsion for Solver {
                 );
                 return Err(EvalError::fatal("runge_kutta", what));
             }
-            out.times.push(done as f64 * self.h);
-            out.angles.push(self.theta.clone());
-            out.speeds.push(self.omega.clone());
-            out.gas.push(self.dynamics.gas.clone());
-            out.drive.push(self.dynamics.drive.clone());
+            // Gas and drives as the method used them, torques in the links as they are at this instant.
+            let used = (self.dynamics.gas.clone(), self.dynamics.drive.clone());
+            record(&mut self.dynamics, done as f64 * self.h, &self.theta, &self.omega, out);
+            let last = out.gas.len() - 1;
+            out.gas[last].clone_from(&used.0);
+            out.drive[last].clone_from(&used.1);
+            (self.dynamics.gas, self.dynamics.drive) = used;
         }
         out.counters.insert("time_steps".into(), done);
         out.counters.insert("right_hand_sides".into(), 4 * done);

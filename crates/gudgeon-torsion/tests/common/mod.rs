@@ -115,9 +115,8 @@ pub mod compressor {
     }
 
     /// Mean inertia of a throw and the damping that the source sizes with it.
-    pub fn inertia_and_damping(spec: &dyn ThrowInertiaSpec) -> (f64, f64) {
+    pub fn inertia_and_damping() -> (f64, f64) {
         let i0 = gudgeon_torsion::throw_inertia::Mean {}.build(&THROW).expect("builds").mean();
-        let _ = spec;
         (i0, 2.0 * 0.03 * (8e6 * i0).sqrt())
     }
 
@@ -128,7 +127,7 @@ pub mod compressor {
         motor: Option<(f64, f64)>,
         phases: [f64; 4],
     ) -> Line {
-        let (_, c0) = inertia_and_damping(inertia);
+        let (_, c0) = inertia_and_damping();
         let mut l = Line {
             nodes: [130.0, 10.0, 310.0, 0.0, 0.0, 0.0, 0.0].map(|j| node(j, 0.0)).to_vec(),
             links: super::COMPRESSOR_K.iter().enumerate().map(|(i, k)| link(i, i + 1, *k, c0, 0.0)).collect(),
