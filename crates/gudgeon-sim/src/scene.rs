@@ -401,7 +401,11 @@ fn check(c: &CheckCase, e: &Expect, known: &Known<'_>) -> Result<Check, RunError
         None => (own.value, own.unit.clone(), name.to_owned()),
         Some(from) => {
             let from = find(from)?.value;
-            if c.relative {
+            if c.relative && from == 0.0 {
+                return Err(RunError::Refused(format!(
+                    "a check wants the relative change of `{name}`, which is 0 with the setting to compare with"
+                )));
+            } else if c.relative {
                 (own.value / from - 1.0, "1".into(), format!("relative change of {name}"))
             } else {
                 (own.value - from, own.unit.clone(), format!("change of {name}"))

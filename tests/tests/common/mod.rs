@@ -1,5 +1,5 @@
 //! What the tests of this package share: cases by name, runs, and tables that set our numbers beside printed ones.
-#![allow(dead_code, reason = "every test file is a program of its own and uses a part of this")]
+#![allow(dead_code, reason = "every test program uses a part of this")]
 #![allow(clippy::print_stdout, reason = "validation tables are for reading: `cargo test -- --nocapture`")]
 
 use std::fmt::Write as _;

@@ -376,6 +376,9 @@ pub fn run(
     let inertial = a.lateral == Lateral::Inertial;
     let states = if inertial { n + 2 } else { n };
     let recorded = !matches!(rows, Rows::None);
+    // Where another motion starts from this one, no closer than films of different grids are.
+    let is_start = !matches!(rows, Rows::All { .. });
+    let periodicity = if is_start { s.periodicity.si().max(START) } else { s.periodicity.si() };
     let mut record = Record::new(a, case, rows);
     if let Lateral::Held { e_top, e_bottom } = a.lateral {
         return held(a, [e_top, e_bottom], record, begin);
@@ -435,8 +438,8 @@ pub fn run(
         (cycles, error) = (f64::from(s.cycles), None);
     } else {
         let options = OrbitOptions {
-            tolerance: s.periodicity.si(),
-            accuracy: (ACCURACY * s.tolerance.si()).min(0.3 * s.periodicity.si()),
+            tolerance: periodicity,
+            accuracy: (ACCURACY * s.tolerance.si()).min(0.3 * periodicity),
             max_cycles: s.max_cycles as usize,
             accelerate: true,
         };
@@ -447,7 +450,7 @@ pub fn run(
         cycle.begin(&y[..n]);
         y.copy_from_slice(&cycle.y);
         if !report.converged {
-            let wanted = s.periodicity.si();
+            let wanted = periodicity;
             if report.error_estimate > 0.1 {
                 return Err(RunError::NotPeriodic {
                     cycles: report.cycles as u32,
@@ -497,6 +500,8 @@ pub fn run(
 
 /// Tolerance at which the method of order five needs no more films than that of order three.
 const ORDER_FIVE: f64 = 2e-4;
+/// Periodicity of a motion that is a start for another, in clearances.
+const START: f64 = 1e-3;
 /// How repeatable a cycle is, in tolerances.
 const ACCURACY: f64 = 0.1;
 

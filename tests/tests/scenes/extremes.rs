@@ -3,13 +3,11 @@
 
 #![allow(clippy::print_stdout, reason = "what became of each case is for reading")]
 
-mod common;
-
 use std::path::{Path, PathBuf};
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
-use common::*;
+use crate::common::*;
 use gudgeon_sim::{check, run};
 
 const CASE: &str = "turbo-diesel-120";

@@ -4,9 +4,7 @@
 //! fills for the inputs that the dissertation does not give (cylinder pressure, bore, temperatures, oil, roughness), which are
 //! the assumptions that the cases declare. Orifice, film and kinematics are tested in their crates.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use gudgeon_core::result::RunResult;
 
 const CASES: [&str; 4] = ["alcohol-1600-3000", "alcohol-1600-4000", "alcohol-1600-5000", "alcohol-1600-5600"];

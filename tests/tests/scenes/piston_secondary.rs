@@ -2,9 +2,7 @@
 
 #![allow(clippy::print_stdout, reason = "what became of each case is for reading")]
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use gudgeon_core::result::{FigureKind, RunResult};
 
 const CASE: &str = "ea111-1400";

@@ -1,8 +1,6 @@
 //! The scene `pin`: what it refuses, how it fails, what it shows besides the checks of its cases.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use gudgeon_core::result::FigureKind;
 use gudgeon_sim::{check, compare};
 

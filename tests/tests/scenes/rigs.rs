@@ -1,8 +1,6 @@
 //! What the scene `rig` refuses, and where it points.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use gudgeon_core::result::Check;
 use gudgeon_sim::check;
 

@@ -1,8 +1,6 @@
 //! The cases that ship with Gudgeon.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use gudgeon_sim::case::RingPackCase;
 use gudgeon_sim::{check, explain};
 

@@ -1,7 +1,5 @@
 //! Every bench, and every case with checks, against the values of its sources: one table, which stands in VALIDATION.md.
 
-mod common;
-
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -44,7 +42,7 @@ fn value(v: f64) -> String {
 }
 
 /// Runs every case and writes its checks as a table. The file in the repository must be what this makes of the cases:
-/// `GUDGEON_WRITE_VALIDATION=1 cargo test -p gudgeon-tests --test validation` writes it anew.
+/// `GUDGEON_WRITE_VALIDATION=1 cargo test -p gudgeon-tests --test scenes validation` writes it anew.
 #[test]
 fn every_case_agrees_with_its_sources() {
     let mut text = String::from(

@@ -5,9 +5,7 @@
 //! agree to every digit printed here. They are a strong check of the equations and of the scheme, and none of the physics.
 //! Kinematics and orifice constants are tested in their crates.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use gudgeon_core::result::RunResult;
 
 const CASE: &str = "turbo-diesel-120-as-published";

@@ -1,8 +1,6 @@
 //! What no wanted result needs is neither built nor evaluated, and it is said so.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use gudgeon_sim::explain;
 
 const GAS_ONLY: &str = "outputs.results=[\"blow_by\"]";

@@ -1,8 +1,6 @@
 //! Oil on the liner: starved faces, the balance of oil, and what the case may not ask for.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use gudgeon_sim::check;
 
 const FILM: &str = "models.oil_transport.model=liner_film";

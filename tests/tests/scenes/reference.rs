@@ -43,7 +43,7 @@ const VOLUMES: [&str; 5] = ["behind1", "land2", "behind2", "land3", "behind3"];
 /// cycle (relative).
 fn gas(rtol: f64) -> (u64, f64, f64, f64) {
     let mut case: toml::Table =
-        toml::from_str(include_str!("../../cases/rigs/gas-five-volumes.toml")).expect("a case");
+        toml::from_str(include_str!("../../../cases/rigs/gas-five-volumes.toml")).expect("a case");
     let mut rig = case.remove("rig").expect("a rig");
     rig["tolerance"] = rtol.into();
     let spec: Box<dyn RigSpec> = rig.try_into().expect("a specification");

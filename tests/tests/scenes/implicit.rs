@@ -2,9 +2,7 @@
 
 #![allow(clippy::print_stdout, reason = "measured errors are for reading")]
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use gudgeon_core::result::RunResult;
 
 const PUBLISHED: &str = "turbo-diesel-120-as-published";

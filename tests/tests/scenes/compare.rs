@@ -1,8 +1,6 @@
 //! One case with several models side by side.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use gudgeon_sim::compare;
 
 fn swap(path: &str, values: &[&str]) -> (String, Vec<String>) {

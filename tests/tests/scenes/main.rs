@@ -1,0 +1,18 @@
+//! Whole cases. One program for all of them: it is linked once, and its tests run side by side.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod cases;
+mod compare;
+mod extremes;
+mod implicit;
+mod lazy;
+mod oil;
+mod pin;
+mod piston_secondary;
+mod reference;
+mod rigs;
+mod tomanik;
+mod validation;
+mod zottin;
