@@ -258,13 +258,25 @@ fn print_value(s: &mut String, path: &str, v: &serde_json::Value) {
     }
 }
 
-/// Runs a case.
+/// Runs a case with its sweeps and its checks.
 ///
 /// # Errors
 /// What stopped it; nothing has been written.
 pub fn run(c: &Checked, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
     let begin = Instant::now();
-    let mut result = scene::run(c.case.as_ref(), progress)?;
+    finish(c, begin, scene::run(c.case.as_ref(), progress)?)
+}
+
+/// Runs a case without its sweeps and its checks.
+///
+/// # Errors
+/// As [`run`].
+pub(crate) fn run_alone(c: &Checked, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
+    let begin = Instant::now();
+    finish(c, begin, scene::run_alone(c.case.as_ref(), progress)?)
+}
+
+fn finish(c: &Checked, begin: Instant, mut result: RunResult) -> Result<RunResult, RunError> {
     result.case.clone_from(&c.name);
     result.gudgeon = env!("CARGO_PKG_VERSION").into();
     result.solver.notes.extend(c.notes.iter().cloned());

@@ -350,17 +350,30 @@ pub(crate) fn changed(scene: &dyn Scene, set: &[String]) -> Result<Box<dyn Scene
     })
 }
 
-/// Runs the case, its sweeps and its checks.
+/// Runs the case without its sweeps and checks.
 ///
 /// # Errors
-/// What stopped it, or a check names a result that the scene does not have.
-pub(crate) fn run(scene: &dyn Scene, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
+/// What stopped it.
+pub(crate) fn run_alone(
+    scene: &dyn Scene,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<RunResult, RunError> {
     let mut result = scene.once(progress)?;
     let heading = scene.heading();
     result.title = heading.title.into();
     result.source = heading.source.into();
     result.assumptions = heading.assumptions.to_vec();
     result.scene = scene_of(scene.source(), scene.overrides()).unwrap_or_default();
+    Ok(result)
+}
+
+/// Runs the case, its sweeps and its checks.
+///
+/// # Errors
+/// What stopped it, or a check names a result that the scene does not have.
+pub(crate) fn run(scene: &dyn Scene, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
+    let mut result = run_alone(scene, progress)?;
+    let heading = scene.heading();
     sweep::run(scene, heading.sweeps, &mut result, progress)?;
     let mut known = Known::new();
     known.insert(&[], result.results.clone());

@@ -8,7 +8,7 @@ use gudgeon_core::{BuildError, Registry};
 use indexmap::IndexMap;
 
 use crate::load::Report;
-use crate::run::{Checked, Progress, RunError, check, run};
+use crate::run::{Checked, Progress, RunError, check, run_alone};
 
 /// `gas_flow`, `models.gas_flow` and `models.gas_flow.model` all mean the model's name; anything else is taken as written.
 fn swap_path(path: &str) -> String {
@@ -81,7 +81,7 @@ pub fn compare(
                     "refused: {}",
                     report.diagnostics.iter().map(|d| d.headline()).collect::<Vec<_>>().join("; ")
                 )),
-                Ok(c) => run(&c, &mut |p| {
+                Ok(c) => run_alone(&c, &mut |p| {
                     progress(Progress {
                         phase: format!("{label}: {}", p.phase),
                         fraction: (k as f64 + p.fraction) / total,
@@ -152,7 +152,7 @@ pub fn bench(
     };
     let reference = |set: &[String]| -> Result<_, RunError> {
         let c = base.with(set).map_err(|r| RunError::Refused(r.to_string()))?;
-        run(&c, &mut |_| {})
+        run_alone(&c, &mut |_| {})
     };
     progress(Progress { phase: "reference".into(), fraction: 0.0 });
     let tight = reference(&race.reference)?;
@@ -205,7 +205,7 @@ pub fn bench(
             let outcome = base
                 .with(&s.set)
                 .map_err(|r| r.to_string())
-                .and_then(|c| run(&c, &mut |_| {}).map_err(|e| e.to_string()));
+                .and_then(|c| run_alone(&c, &mut |_| {}).map_err(|e| e.to_string()));
             let wall = begin.elapsed().as_secs_f64();
             if repeat == 0 {
                 let mut point = BenchPoint {
