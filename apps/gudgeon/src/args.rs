@@ -157,7 +157,8 @@ pub struct ReportArgs {
     pub dir: PathBuf,
 }
 
-/// The folder that results go to.
+/// The folder that results go to. A case whose file is called `...toml` must not get a folder beside `out`.
 pub fn out_dir(given: Option<&Path>, case: &str, suffix: &str) -> PathBuf {
-    given.map_or_else(|| Path::new("out").join(format!("{case}{suffix}")), Path::to_owned)
+    let name = if case.chars().all(|c| c == '.') { "case" } else { case };
+    given.map_or_else(|| Path::new("out").join(format!("{name}{suffix}")), Path::to_owned)
 }

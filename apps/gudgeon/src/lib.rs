@@ -24,7 +24,7 @@ use ui::Ui;
 pub fn main() -> ExitCode {
     let args = Args::parse();
     let ui = Ui::new(args.quiet());
-    match dispatch(&args.command, &ui) {
+    match dispatch(&args.command, &ui).and_then(|()| ui.end()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             ui.failure(&failure);
