@@ -11,6 +11,7 @@ mod near;
 mod overrides;
 mod plain;
 mod published;
+mod refine;
 mod report;
 mod schema;
 mod tree;
@@ -23,8 +24,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use gudgeon_core::BuildError;
-use gudgeon_core::quantity::with_decimal_point;
 use gudgeon_core::file::{MOST_OF_A_CASE, ReadError, read_text};
+use gudgeon_core::quantity::with_decimal_point;
 use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
 use serde_path_to_error::Segment;
@@ -32,6 +33,7 @@ use toml::de::DeTable;
 
 pub use near::{advice, list, nearest};
 pub use published::{one_scene_of, published};
+pub use refine::Setting;
 pub use report::{Diagnostic, MOST_MISTAKES, Origin, Report, Source, line_column};
 
 use plain::plain;
@@ -249,9 +251,8 @@ fn hint(text: &str, span: &Range<usize>) -> Option<String> {
         return Some(format!("the decimal mark is a point: `{key} = {quote}{}{quote}`", shorten(&pointed)));
     }
     let plain = |c: char| c.is_alphanumeric() || " ._-+/%°µ()".contains(c);
-    (!value.is_empty() && value.chars().all(plain)).then(|| {
-        format!("text and values with a unit stand in quotes: `{key} = \"{}\"`", shorten(value))
-    })
+    (!value.is_empty() && value.chars().all(plain))
+        .then(|| format!("text and values with a unit stand in quotes: `{key} = \"{}\"`", shorten(value)))
 }
 
 /// Where the table header starts that a place stands in or below.
@@ -386,5 +387,13 @@ impl<T: serde::Serialize> Loaded<T> {
     /// A type whose serialisation fails, which none of a case does.
     pub fn resolved(&self) -> Result<serde_json::Value, serde_json::Error> {
         serde_json::to_value(&self.value)
+    }
+}
+
+impl<T: serde::Serialize + JsonSchema + 'static> Loaded<T> {
+    /// The numerical settings that refine the results of this case.
+    #[must_use]
+    pub fn settings(&self) -> Vec<Setting> {
+        self.resolved().map_or_else(|_| Vec::new(), |v| refine::settings(Schema::of::<T>(), &v))
     }
 }
