@@ -12,7 +12,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use crate::case::RingPackCase;
-use crate::load::{Loaded, Report, Setting, Source, load_source, scene_of};
+use crate::load::{Loaded, Refinement, Report, Source, load_source, scene_of};
 use crate::pin::case::PinCase;
 use crate::piston_secondary::case::PistonSecondaryCase;
 use crate::power_cylinder::case::PowerCylinderCase;
@@ -126,6 +126,11 @@ pub trait SceneCase:
     /// What stopped it.
     fn run(loaded: &Loaded<Self>, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError>;
 
+    /// How its numerical settings are refined: those that it and its models declare.
+    fn refinements(loaded: &Loaded<Self>) -> Vec<Refinement> {
+        loaded.refinements()
+    }
+
     /// What `bench` races; none when the scene has no solvers to choose from.
     fn race(&self) -> Option<Race> {
         None
@@ -144,8 +149,8 @@ pub trait Scene: Send + Sync {
     fn notes(&self) -> &[String];
     /// Every value in SI units, changes and defaults filled in.
     fn resolved(&self) -> serde_json::Value;
-    /// The numerical settings that refine its results.
-    fn settings(&self) -> Vec<Setting>;
+    /// As [`SceneCase::refinements`].
+    fn refinements(&self) -> Vec<Refinement>;
     /// Everything that is wrong, the changes that sweeps make included.
     fn legal(&self) -> Vec<BuildError>;
     /// A report on errors found after the case was read.
@@ -193,8 +198,8 @@ impl<C: SceneCase> Scene for Loaded<C> {
         Self::resolved(self).unwrap_or_default()
     }
 
-    fn settings(&self) -> Vec<Setting> {
-        Self::settings(self)
+    fn refinements(&self) -> Vec<Refinement> {
+        C::refinements(self)
     }
 
     fn legal(&self) -> Vec<BuildError> {

@@ -33,7 +33,7 @@ use toml::de::DeTable;
 
 pub use near::{advice, list, nearest};
 pub use published::{one_scene_of, published};
-pub use refine::Setting;
+pub use refine::Refinement;
 pub use report::{Diagnostic, MOST_MISTAKES, Origin, Report, Source, line_column};
 
 use plain::plain;
@@ -391,9 +391,9 @@ impl<T: serde::Serialize> Loaded<T> {
 }
 
 impl<T: serde::Serialize + JsonSchema + 'static> Loaded<T> {
-    /// The numerical settings that refine the results of this case.
+    /// How the numerical settings of this case are refined.
     #[must_use]
-    pub fn settings(&self) -> Vec<Setting> {
-        self.resolved().map_or_else(|_| Vec::new(), |v| refine::settings(Schema::of::<T>(), &v))
+    pub fn refinements(&self) -> Vec<Refinement> {
+        self.resolved().map_or_else(|_| Vec::new(), |v| refine::refinements(Schema::of::<T>(), &v))
     }
 }

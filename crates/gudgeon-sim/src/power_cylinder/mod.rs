@@ -9,7 +9,7 @@ use gudgeon_core::result::{ModelUse, RunResult, Value};
 use serde_json::Value as Json;
 
 use crate::case::RingPackCase;
-use crate::load::{Loaded, Report, read, scene_of};
+use crate::load::{Loaded, Refinement, Report, read, scene_of};
 use crate::piston_secondary::case::PistonSecondaryCase;
 use crate::run::{Checked, Explanation, Progress, RunError, check, explain};
 use crate::scene::SceneCase;
@@ -32,6 +32,29 @@ impl SceneCase for PowerCylinderCase {
             add_models(&mut models, own.models.into_iter().map(|m| m.used));
         }
         Ok(models)
+    }
+
+    /// Those of both parts, as changes to the parts.
+    fn refinements(loaded: &Loaded<Self>) -> Vec<Refinement> {
+        let Ok((rings, skirt)) = parts(loaded) else { return Vec::new() };
+        let own = &loaded.value;
+        let of = |case: &Checked, part: &Part, field: &str, name: &str| -> Vec<Refinement> {
+            let level = |set: Vec<String>| {
+                let all: Vec<String> = part.set.iter().chain(&set).map(|s| format!("{s:?}")).collect();
+                vec![format!("{field}.set=[{}]", all.join(", "))]
+            };
+            case.case
+                .refinements()
+                .into_iter()
+                .map(|r| Refinement {
+                    what: format!("{} of the {name}", r.what),
+                    levels: r.levels.into_iter().map(level).collect(),
+                })
+                .collect()
+        };
+        let mut all = of(&rings, &own.ring_pack, "ring_pack", "rings");
+        all.extend(of(&skirt, &own.piston_secondary, "piston_secondary", "skirt"));
+        all
     }
 
     fn run(loaded: &Loaded<Self>, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
