@@ -15,6 +15,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use crate::case::RingPackCase;
+use crate::foresee;
 use crate::load::{Loaded, Report, Source, load_source, scene_of};
 use crate::pin::case::PinCase;
 use crate::piston_secondary::case::PistonSecondaryCase;
@@ -169,6 +170,11 @@ pub trait SceneCase:
     /// What stopped it.
     fn run(loaded: &Loaded<Self>, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError>;
 
+    /// Names of the results that a run has, when they are known before it. `loaded` is legal.
+    fn result_names(_loaded: &Loaded<Self>) -> Option<Vec<String>> {
+        None
+    }
+
     /// What `bench` races; none when the scene has no solvers to choose from.
     fn race(&self) -> Option<Race> {
         None
@@ -187,6 +193,10 @@ pub trait Scene: Send + Sync {
     fn notes(&self) -> &[String];
     /// Everything that is wrong, the changes that sweeps and checks make included.
     fn legal(&self) -> Vec<BuildError>;
+    /// Everything that is wrong, sweeps and checks apart.
+    fn legal_alone(&self) -> Vec<BuildError>;
+    /// As [`SceneCase::result_names`].
+    fn result_names(&self) -> Option<Vec<String>>;
     /// A report on errors found after the case was read.
     fn refuse(&self, errors: &[BuildError]) -> Report;
     /// The same case with some values changed, read but not built.
@@ -236,6 +246,14 @@ impl<C: SceneCase> Scene for Loaded<C> {
             errors.extend(legal_changes(self, heading));
         }
         errors
+    }
+
+    fn legal_alone(&self) -> Vec<BuildError> {
+        C::legal(self)
+    }
+
+    fn result_names(&self) -> Option<Vec<String>> {
+        C::result_names(self)
     }
 
     fn refuse(&self, errors: &[BuildError]) -> Report {
@@ -311,11 +329,8 @@ pub fn load(source: Source, overrides: &[String]) -> Result<Box<dyn Scene>, Repo
 fn legal_changes(scene: &dyn Scene, heading: Heading<'_>) -> Vec<BuildError> {
     let mut errors = Vec::new();
     let mut seen = HashSet::new();
-    for (k, set) in sweep::first_values(heading.sweeps) {
-        if let Err(e) = changed(scene, &[set]) {
-            errors.push(BuildError::at(format!("sweeps.{k}.path"), e.to_string()));
-        }
-    }
+    errors.extend(foresee::sweeps(scene, heading.sweeps));
+    errors.extend(foresee::results(scene, heading));
     for (k, c) in heading.checks.iter().enumerate() {
         for (field, set) in [("set", Some(&c.set)), ("against", c.against.as_ref())] {
             if let Some(set) = set.filter(|s| !s.is_empty() && seen.insert(*s))

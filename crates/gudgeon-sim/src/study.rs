@@ -7,6 +7,7 @@ use gudgeon_core::result::{BenchPoint, BenchTable, Comparison, Variant};
 use gudgeon_core::{BuildError, Registry};
 use indexmap::IndexMap;
 
+use crate::foresee;
 use crate::load::Report;
 use crate::run::{Checked, Progress, RunError, check, run_alone};
 
@@ -23,6 +24,9 @@ fn swap_path(path: &str) -> String {
     }
 }
 
+/// Most combinations of one comparison: each is a run, and all their results are kept.
+const MOST_COMBINATIONS: usize = 1000;
+
 /// Runs every combination of `swaps`, `(path, values)`.
 ///
 /// Every combination is checked before any is run; those that cannot be are kept with the reason.
@@ -36,6 +40,13 @@ pub fn compare(
     progress: &mut dyn FnMut(Progress),
 ) -> Result<Comparison, Report> {
     let base = check(path, overrides)?;
+    let count = swaps.iter().fold(1usize, |n, (_, v)| n.saturating_mul(v.len()));
+    if count > MOST_COMBINATIONS {
+        let what = format!("the swaps make {count} combinations, at most {MOST_COMBINATIONS} are compared");
+        return Err(base
+            .case
+            .refuse(&[BuildError::new(what).help("fewer values, or one `--swap` after the other")]));
+    }
     let mut combinations: Vec<Vec<(String, String)>> = vec![Vec::new()];
     for (p, values) in swaps {
         if values.is_empty() || values.iter().any(String::is_empty) {
@@ -150,6 +161,9 @@ pub fn bench(
                 .into(),
         ));
     };
+    if let Some(known) = base.case.result_names() {
+        foresee::all_known(results, &known).map_err(|e| RunError::Refused(e.to_string()))?;
+    }
     let reference = |set: &[String]| -> Result<_, RunError> {
         let c = base.with(set).map_err(|r| RunError::Refused(r.to_string()))?;
         run_alone(&c, &mut |_| {})
