@@ -261,6 +261,11 @@ impl<C: SceneCase> Scene for Loaded<C> {
     }
 
     fn changed(&self, set: &[String]) -> Result<Box<dyn Scene>, Report> {
+        if set.iter().any(|s| s.split('=').next().is_some_and(|path| path.trim() == "scene")) {
+            // Another scene is another type of case.
+            let all: Vec<String> = self.overrides.iter().chain(set).cloned().collect();
+            return load(Source::clone(&self.source), &all);
+        }
         Ok(Box::new(self.reload::<C>(set)?))
     }
 

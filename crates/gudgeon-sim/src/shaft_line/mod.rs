@@ -270,12 +270,12 @@ fn legal_memory(case: &ShaftLineCase, period: f64, links: usize) -> Option<Build
     if !Plan::new(case).range {
         return None;
     }
-    let orders = (case.range.orders.si() * period / (2.0 * PI)).floor();
+    let orders = (case.range.orders.si() * period / (2.0 * PI)).round();
     let bytes = case.range.points as f64 * orders * links as f64 * size_of::<[f64; 2]>() as f64;
     let gigabytes = |b: f64| b / (1u64 << 30) as f64;
     let what = || {
         format!(
-            "{} speeds times {orders} orders times {links} shafts take {:.1} GiB, at most {} is kept",
+            "{} speeds times {orders} orders times {links} shafts take {:.1} GiB, at most {} GiB is kept",
             case.range.points,
             gigabytes(bytes),
             gigabytes(MOST_OF_A_RANGE)
