@@ -21,6 +21,7 @@ impl Args {
             Command::Run(a) => a.quiet,
             Command::Compare(a) => a.quiet,
             Command::Bench(a) => a.quiet,
+            Command::Validate(a) => a.quiet,
             _ => false,
         }
     }
@@ -44,6 +45,8 @@ pub enum Command {
     Compare(CompareArgs),
     /// Measure run time against error of the solvers on a case
     Bench(BenchArgs),
+    /// Compare cases with the values of their sources
+    Validate(ValidateArgs),
     /// Write report.html of a result folder again
     Report(ReportArgs),
 }
@@ -127,6 +130,22 @@ pub struct BenchArgs {
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// No progress, no table
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct ValidateArgs {
+    /// Cases, files of comparisons or folders of them [default: validation]
+    #[arg(value_name = "CASE")]
+    pub files: Vec<PathBuf>,
+    /// Write the comparisons as pages of Markdown: an index FILE, and a folder beside it with a page for each case
+    #[arg(long, value_name = "FILE")]
+    pub pages: Option<PathBuf>,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+    /// No progress, only what does not hold
     #[arg(long, short)]
     pub quiet: bool,
 }

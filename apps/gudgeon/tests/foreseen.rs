@@ -145,12 +145,11 @@ fn benches_that_ask_a_film_for_what_it_does_not_know() {
     let starved = case("rigs/slider-starved.toml");
     for model in ["elrod_adams", "complementarity\", cavitation = \"half_sommerfeld"] {
         let set = format!("rig.film_1d={{ model = \"{model}\" }}");
-        let said = folder.refused(&starved, &["sweeps=[]", "checks=[]", &set]);
+        let said = folder.refused(&starved, &["sweeps=[]", &set]);
         holds(&said, &["rig.left.oil_film", "knows no inlet that starves", "front_tracking"]);
     }
     let squeeze = case("rigs/squeeze-plates.toml");
-    let said =
-        folder.refused(&squeeze, &["sweeps=[]", "checks=[]", "rig.film_1d={ model = \"front_tracking\" }"]);
+    let said = folder.refused(&squeeze, &["sweeps=[]", "rig.film_1d={ model = \"front_tracking\" }"]);
     holds(&said, &["rig.film_1d.model", "`front_tracking` knows no gap that changes in this way"]);
 }
 
@@ -172,7 +171,7 @@ fn pins_that_no_search_can_find() {
     assert!(o.status.success(), "{}", stderr(&o));
     let said = folder.refused(
         &case("pin-85-alcohol-optimise-as-published.toml"),
-        &["checks=[]", "pin.outer=\"15 mm\"", "pin.inner=\"9 mm\""],
+        &["pin.outer=\"15 mm\"", "pin.inner=\"9 mm\""],
     );
     holds(&said, &["pin.outer: no pin of 15.0000 mm outer diameter keeps the limits"]);
 }
@@ -180,8 +179,7 @@ fn pins_that_no_search_can_find() {
 #[test]
 fn memory_of_a_speed_range() {
     let folder = Folder::new("range");
-    let said =
-        folder.refused(&case("geared-train.toml"), &["checks=[]", "range.orders=2000", "range.points=20000"]);
+    let said = folder.refused(&case("geared-train.toml"), &["range.orders=2000", "range.points=20000"]);
     holds(
         &said,
         &[

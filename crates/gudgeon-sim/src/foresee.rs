@@ -6,8 +6,9 @@ use std::collections::HashSet;
 use gudgeon_core::BuildError;
 
 use crate::load::advice;
-use crate::scene::{Heading, Scene};
+use crate::scene::Scene;
 use crate::sweep::{self, Sweep};
+use crate::validate::CheckCase;
 
 /// Most cases of the sweeps that are read and built before a run. Beyond it, every listed value still stands in one of them, with a value of
 /// the other sweep in turn, and of a range of numbers this many, both ends among them.
@@ -88,15 +89,22 @@ fn combinations(lengths: &[usize]) -> Vec<Vec<usize>> {
     (0..tried).map(|k| lengths.iter().map(|l| spread(k, *l)).collect()).collect()
 }
 
-/// Results that sweeps and checks name and that the case does not have; nothing where only a run tells its results.
-pub(crate) fn results(scene: &dyn Scene, heading: Heading<'_>) -> Vec<BuildError> {
-    let asks = heading.sweeps.iter().any(|s| !s.results.is_empty()) || !heading.checks.is_empty();
+/// Results that sweeps name and that the case does not have; nothing where only a run tells its results.
+pub(crate) fn drawn(scene: &dyn Scene, sweeps: &[Sweep]) -> Vec<BuildError> {
+    let asks = sweeps.iter().any(|s| !s.results.is_empty());
     let Some(own) = asks.then(|| scene.result_names()).flatten() else { return Vec::new() };
+    let wrong = |(k, s): (usize, &Sweep)| {
+        let place = move |(j, e): (usize, BuildError)| e.within(&format!("sweeps.{k}.results.{j}"));
+        unknown(&s.results, &own).map(place).collect::<Vec<_>>()
+    };
+    sweeps.iter().enumerate().flat_map(wrong).collect()
+}
+
+/// Results that comparisons name and that the case does not have with their changes; nothing where only a run tells its results.
+pub(crate) fn compared(scene: &dyn Scene, checks: &[CheckCase]) -> Vec<BuildError> {
+    let Some(own) = scene.result_names() else { return Vec::new() };
     let mut errors = Vec::new();
-    for (k, s) in heading.sweeps.iter().enumerate() {
-        errors.extend(unknown(&s.results, &own).map(|(j, e)| e.within(&format!("sweeps.{k}.results.{j}"))));
-    }
-    for (k, c) in heading.checks.iter().enumerate() {
+    for (k, c) in checks.iter().enumerate() {
         let names: Vec<String> = c.expect.iter().map(|e| e.result.clone()).collect();
         if unknown(&names, &own).next().is_none() {
             continue;

@@ -23,7 +23,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use gudgeon_core::BuildError;
-use gudgeon_core::file::{MOST_OF_A_CASE, ReadError, read_text};
+use gudgeon_core::file::{MOST_OF_A_CASE, MOST_OF_A_TABLE, ReadError, read_text};
 use gudgeon_core::quantity::with_decimal_point;
 use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
@@ -130,7 +130,8 @@ fn load_tree<T: DeserializeOwned + JsonSchema + 'static>(
     }
 }
 
-/// The text of a case file: a regular file of at most [`MOST_OF_A_CASE`] bytes.
+/// The text of a case file, or of the summary that records one: a regular file of at most [`MOST_OF_A_CASE`] bytes, a summary of
+/// [`MOST_OF_A_TABLE`].
 ///
 /// # Errors
 /// A file that does not exist, cannot be read, is too large or is not UTF-8 text.
@@ -140,7 +141,8 @@ pub fn read(path: &Path) -> Result<Source, Report> {
         Some(p) if !p.as_os_str().is_empty() => p.to_owned(),
         _ => PathBuf::from("."),
     };
-    let said = match read_text(path, MOST_OF_A_CASE) {
+    let most = if path.extension().is_some_and(|e| e == "json") { MOST_OF_A_TABLE } else { MOST_OF_A_CASE };
+    let said = match read_text(path, most) {
         Ok(text) => return Ok(Source { name, text, folder }),
         Err(e) => e,
     };
