@@ -159,11 +159,7 @@ fn pins_that_no_search_can_find() {
     let pin = case("pin-85-alcohol-optimise.toml");
     let said = folder.refused(
         &pin,
-        &[
-            "checks=[]",
-            "optimise.outer={ from = \"10 mm\", to = \"12 mm\" }",
-            "optimise.stock.length_step=\"1 mm\"",
-        ],
+        &["optimise.outer={ from = \"10 mm\", to = \"12 mm\" }", "optimise.stock.length_step=\"1 mm\""],
     );
     holds(&said, &["optimise.outer: no pin of the ranges keeps the limits", "outer diameter of 12.0000 mm"]);
     // What could be cannot be refused.
