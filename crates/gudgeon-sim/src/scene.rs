@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::case::RingPackCase;
 use crate::foresee;
-use crate::load::{Loaded, Report, Source, load_source, scene_of};
+use crate::load::{Loaded, Report, Setting, Source, load_source, scene_of};
 use crate::pin::case::PinCase;
 use crate::piston_secondary::case::PistonSecondaryCase;
 use crate::power_cylinder::case::PowerCylinderCase;
@@ -150,6 +150,8 @@ pub trait Scene: Send + Sync {
     fn notes(&self) -> &[String];
     /// Every value in SI units, changes and defaults filled in.
     fn resolved(&self) -> serde_json::Value;
+    /// The numerical settings that refine its results.
+    fn settings(&self) -> Vec<Setting>;
     /// Everything that is wrong, the changes that sweeps make included.
     fn legal(&self) -> Vec<BuildError>;
     /// Everything that is wrong, sweeps and checks apart.
@@ -199,6 +201,10 @@ impl<C: SceneCase> Scene for Loaded<C> {
     fn resolved(&self) -> serde_json::Value {
         // What a case was read from can be written: a type that cannot would fail its first test.
         Self::resolved(self).unwrap_or_default()
+    }
+
+    fn settings(&self) -> Vec<Setting> {
+        Self::settings(self)
     }
 
     fn legal(&self) -> Vec<BuildError> {
