@@ -126,7 +126,7 @@ fn legal(file: String, case: Box<dyn Scene>, errors: &[BuildError]) -> Result<Ch
 }
 
 impl Checked {
-    /// The same file with more `--set` arguments, its sweeps and checks apart: what a study does for each of its variants.
+    /// The same file with more `--set` arguments, its sweeps apart: what a study does for each of its variants.
     ///
     /// # Errors
     /// As [`check`].

@@ -154,7 +154,7 @@ pub trait Scene: Send + Sync {
     fn settings(&self) -> Vec<Setting>;
     /// Everything that is wrong, the changes that sweeps make included.
     fn legal(&self) -> Vec<BuildError>;
-    /// Everything that is wrong, sweeps and checks apart.
+    /// Everything that is wrong, sweeps apart.
     fn legal_alone(&self) -> Vec<BuildError>;
     /// As [`SceneCase::result_names`].
     fn result_names(&self) -> Option<Vec<String>>;
