@@ -188,7 +188,7 @@ pub fn bench(
         ));
     };
     if let Some(known) = base.case.result_names() {
-        foresee::all_known(results, &known).map_err(|e| RunError::Refused(e.to_string()))?;
+        foresee::all_known(results, &known).map_err(RunError::Refused)?;
     }
     let reference = |set: &[String]| -> Result<_, RunError> {
         let c = base.with(set).map_err(|r| RunError::Refused(r.to_string()))?;

@@ -179,7 +179,7 @@ fn parameters(schema: &Value, definitions: &Map<String, Value>, indent: usize, d
         }
         match choice(element) {
             // A model inside a model has a page of its own.
-            Some((tag, _)) if tag == "model" => {}
+            Some(("model", _)) => {}
             Some((tag, tables)) => {
                 for (word, table) in tables {
                     let what = table.get("description").and_then(Value::as_str).unwrap_or_default();
