@@ -57,6 +57,15 @@ impl SceneCase for PowerCylinderCase {
         all
     }
 
+    fn result_names(loaded: &Loaded<Self>) -> Option<Vec<String>> {
+        let (rings, skirt) = parts(loaded).ok()?;
+        let (rings, skirt) = (rings.case.result_names()?, skirt.case.result_names()?);
+        let both = |name: &&str| [&rings, &skirt].iter().all(|p| p.iter().any(|r| r == name));
+        let sums = ["friction_power", "fmep"].into_iter().filter(both).map(str::to_owned);
+        let parts = [("rings", &rings), ("skirt", &skirt)];
+        Some(sums.chain(parts.iter().flat_map(|(p, all)| all.iter().map(|r| named(p, r)))).collect())
+    }
+
     fn run(loaded: &Loaded<Self>, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
         let begin = Instant::now();
         let (rings, skirt) = parts(loaded).map_err(refused)?;
