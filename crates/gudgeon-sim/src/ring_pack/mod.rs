@@ -1,7 +1,8 @@
 //! The scene `ring_pack`: one cylinder's rings with their gas, films and axial motion.
 //!
 //! `geometry` resolves dimensions, `plan` decides what must run, `assemble` builds the sub-models into a `pack::Pack`,
-//! one of `implicit`, `substep_march` and `degree_march` solves it, `record` turns the last cycle into results.
+//! one of `implicit`, `substep_march` and `degree_march` solves it. `measure` gathers what the results need on the steps of the last cycle,
+//! `results` says it, `record` holds the series.
 
 pub mod assemble;
 pub mod contact_line;
@@ -9,10 +10,13 @@ pub mod degree_march;
 pub mod geometry;
 pub mod hold;
 pub mod implicit;
+pub mod measure;
 pub mod oil;
 pub mod pack;
 pub mod plan;
 pub mod record;
+pub mod results;
+pub mod rows;
 mod scene;
 pub mod substep_march;
 
@@ -21,21 +25,25 @@ use std::time::Instant;
 use gudgeon_core::kinds::Motion;
 use gudgeon_core::result::{Branch, Series, SolverReport};
 use gudgeon_core::{BuildError, EvalError};
+use gudgeon_numerics::panel::TRAPEZIUM;
 use indexmap::IndexMap;
 
 use crate::case::{Method, RingPackCase, Scheme};
 use crate::run::{Progress, RunError};
 use pack::Pack;
-use record::{Meter, Record, Totals};
+use measure::Measures;
+use record::Record;
+use results::{Cycle, Meter};
+use rows::Rows;
 
 /// A solved pack: the last cycle of the first start, and what else was found.
 pub struct Solved {
     /// Film on the liner at the dead centres, when oil is followed.
     pub liner: Option<Series>,
-    /// The recorded cycle.
+    /// The series of the last cycle.
     pub record: Record,
-    /// Its totals.
-    pub totals: Totals,
+    /// The last cycle.
+    pub cycle: Cycle,
     /// Periodic solutions, when there are several or the start matters.
     pub branches: Vec<Branch>,
     /// Work.
@@ -48,13 +56,19 @@ pub struct Solved {
 struct Found {
     /// Film on the liner at the dead centres, when oil is followed.
     liner: Option<Series>,
-    record: Record,
-    totals: Totals,
+    record: Recorded,
+    cycle: Cycle,
     period: u32,
     cycles: f64,
     counters: IndexMap<String, u64>,
     notes: Vec<String>,
     seconds: f64,
+}
+
+/// The series of a cycle, or what it is evaluated from.
+enum Recorded {
+    Series(Record),
+    Rows(Rows),
 }
 
 /// Starts when the case names none.
@@ -96,7 +110,7 @@ pub fn solve(
     let m = meter(case);
     let mut branches: Vec<Branch> = Vec::new();
     for (start, f) in &found {
-        let results = f.record.results(pack, &f.totals, m);
+        let results = f.cycle.results(pack, m);
         let name = format!("{:.2} bar", start / 1e5);
         let alike = |b: &&mut Branch| {
             results.iter().filter(|(k, _)| k.as_str() != "periodicity_error" && !k.ends_with("_angle")).all(
@@ -154,7 +168,14 @@ pub fn solve(
     report.counters.insert("film_evaluations".into(), pack.counters.film);
     report.counters.insert("gas_evaluations".into(), pack.counters.gas);
     let (_, first) = found.swap_remove(0);
-    Ok(Solved { liner: first.liner, record: first.record, totals: first.totals, branches, report, seconds })
+    let record = match first.record {
+        Recorded::Series(record) => record,
+        Recorded::Rows(rows) => rows.record(pack).map_err(|source| RunError::Eval {
+            theta_deg: pack.at.theta.to_degrees(),
+            source,
+        })?,
+    };
+    Ok(Solved { liner: first.liner, record, cycle: first.cycle, branches, report, seconds })
 }
 
 fn method_name(case: &RingPackCase) -> &'static str {
@@ -174,6 +195,7 @@ fn one_start(
     let s = &case.solver;
     let begin = Instant::now();
     let mut record = Record::new(pack);
+    let mut measures = Measures::new(pack, TRAPEZIUM, case.outputs.seat.si());
     let at = |pack: &Pack| {
         let theta_deg = pack.at.theta.to_degrees();
         move |source: EvalError| RunError::Eval { theta_deg, source }
@@ -190,7 +212,7 @@ fn one_start(
                 passes: s.passes,
                 clamp: s.clamp,
             };
-            let outcome = substep_march::run(pack, set, start, &mut record, progress);
+            let outcome = substep_march::run(pack, set, start, (&mut record, &mut measures), progress);
             let (totals, steps) = outcome.map_err(at(pack))?;
             let mut notes = Vec::new();
             if totals.periodicity_error > UNSETTLED {
@@ -202,8 +224,8 @@ fn one_start(
             }
             Ok(Found {
                 liner: None,
-                record,
-                totals,
+                record: Recorded::Series(record),
+                cycle: Cycle { totals, measures },
                 period: 1,
                 cycles: f64::from(set.cycles),
                 counters: [("steps".to_owned(), steps)].into_iter().collect(),
@@ -219,11 +241,12 @@ fn one_start(
                 gas_steps: or(s.gas_steps, 10),
                 tolerance: s.periodicity.si(),
             };
-            let outcome = degree_march::run(pack, set, start, &mut record, progress).map_err(at(pack))?;
+            let outcome = degree_march::run(pack, set, start, (&mut record, &mut measures), progress)
+                .map_err(at(pack))?;
             Ok(Found {
                 liner: None,
-                record,
-                totals: outcome.totals,
+                record: Recorded::Series(record),
+                cycle: Cycle { totals: outcome.totals, measures },
                 period: outcome.period,
                 cycles: f64::from(outcome.cycles),
                 counters: [("steps".to_owned(), outcome.steps)].into_iter().collect(),

@@ -13,6 +13,7 @@ use gudgeon_core::kinds::Motion;
 
 use crate::case::Clamp;
 
+use super::measure::Measures;
 use super::pack::{Pack, THINNEST};
 use super::record::{Record, Totals};
 
@@ -49,7 +50,7 @@ pub fn run(
     pack: &mut Pack,
     set: Settings,
     start: f64,
-    record: &mut Record,
+    (record, measures): (&mut Record, &mut Measures),
     progress: &mut dyn FnMut(f64),
 ) -> Result<(Totals, u64), EvalError> {
     let n = pack.n_rings();
@@ -118,14 +119,21 @@ pub fn run(
                     }
                 }
                 steps += 1;
+                if last && pass < 720 {
+                    if pass == 0 && sub == 1 {
+                        // The state before the first step is as nearly as the scheme knows it that after it.
+                        measures.march(0.0, pack, 0.0);
+                    }
+                    measures.march(theta, pack, totals.flow_in[0]);
+                }
             }
             let whole = f64::from(pass + 1) * degree;
             if last && pass < 720 {
                 if pass == 0 {
                     // Row 0 repeats the state before the first pass as nearly as the scheme knows it.
-                    record.push(0.0, pack);
+                    record.push(0.0, pack, &vec![0.0; n], 0.0);
                 }
-                record.push(whole, pack);
+                record.push(whole, pack, &totals.flow_in, totals.blow_by);
             }
             progress(
                 (f64::from(cycle - 1) + f64::from(pass) / f64::from(set.passes)) / f64::from(set.cycles),
