@@ -5,6 +5,7 @@ use dyn_clone::DynClone;
 
 use super::Kinematics;
 use crate::BuildError;
+use crate::result::Note;
 
 /// What a [`CylinderPressureSpec`] is built for.
 #[derive(Debug, Clone, Copy)]
@@ -52,6 +53,10 @@ pub trait CylinderPressure: Debug + DynClone + Send + Sync {
     /// quarter of a degree and on both sides of every kink, then between the neighbours of the highest value.
     fn highest(&self) -> (f64, f64) {
         search_highest(self)
+    }
+    /// What a person should know about how the pressure came about: a filter that acted, with how much.
+    fn notes(&self) -> Vec<Note> {
+        Vec::new()
     }
 }
 dyn_clone::clone_trait_object!(CylinderPressure);

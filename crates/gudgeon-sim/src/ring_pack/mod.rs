@@ -83,8 +83,24 @@ fn starts(case: &RingPackCase, pack: &Pack) -> Vec<f64> {
     s
 }
 
-/// Change of the stored gas over the last cycle, as part of what passes, above which a marched scheme is said not to have settled.
-const UNSETTLED: f64 = 0.02;
+/// A result whose cycle is farther from repeating than this many times the tolerance is not the periodic one.
+const NOT_PERIODIC: f64 = 10.0;
+
+/// What to say of a marching scheme whose state changed by the part `change` over its last cycle.
+fn unsettled(change: f64, tolerance: f64, cycles: u32, start: f64, advice: &str) -> Option<Note> {
+    if change <= tolerance {
+        return None;
+    }
+    let text = format!(
+        "started with all lands at {:.2} bar, the state still changed by {:.2} % over cycle {cycles}, the last, where `solver.periodicity` asks \
+         for {:.2} %: raise `solver.{advice}`",
+        start / 1e5,
+        100.0 * change,
+        100.0 * tolerance,
+    );
+    let of = if change > NOT_PERIODIC * tolerance { Note::failure } else { Note::caution };
+    Some(of("not_periodic".to_owned(), text).amount("change", change, "1").amount("tolerance", tolerance, "1"))
+}
 
 /// Two periodic solutions count as one when their results agree within this relative difference.
 const SAME: f64 = 5e-3;
@@ -131,7 +147,11 @@ pub fn solve(
             }
         }
     }
-    let mut report = SolverReport { method: method_name(case).into(), ..SolverReport::default() };
+    let mut report = SolverReport {
+        method: method_name(case).into(),
+        notes: pack.cylinder.notes(),
+        ..SolverReport::default()
+    };
     if branches.len() > 1 {
         report.notes.push(Note::caution(
             "several_solutions",
@@ -145,6 +165,8 @@ pub fn solve(
     for b in &branches {
         match b.period {
             1 => {}
+            // A marching scheme has said by how much.
+            0 if case.solver.method == Method::AsPublished => {}
             0 => report.notes.push(Note::failure(
                 "not_periodic",
                 format!("started with {}, the cycle did not become periodic", b.start),
@@ -221,14 +243,7 @@ fn one_start(
             };
             let outcome = substep_march::run(pack, set, start, (&mut record, &mut measures), progress);
             let (totals, steps) = outcome.map_err(at(pack))?;
-            let mut notes = Vec::new();
-            if totals.periodicity_error > UNSETTLED {
-                notes.push(Note::caution("not_periodic", format!(
-                    "the gas between the rings still changed by {:.1} % of what passes over cycle {}: raise `solver.cycles`",
-                    100.0 * totals.periodicity_error,
-                    set.cycles
-                )));
-            }
+            let notes = unsettled(totals.periodicity_error, s.periodicity.si(), set.cycles, start, "cycles");
             Ok(Found {
                 liner: None,
                 record: Recorded::Series(record),
@@ -236,7 +251,7 @@ fn one_start(
                 period: 1,
                 cycles: f64::from(set.cycles),
                 counters: [("steps".to_owned(), steps)].into_iter().collect(),
-                notes,
+                notes: notes.into_iter().collect(),
                 seconds: begin.elapsed().as_secs_f64(),
             })
         }
@@ -250,6 +265,11 @@ fn one_start(
             };
             let outcome = degree_march::run(pack, set, start, (&mut record, &mut measures), progress)
                 .map_err(at(pack))?;
+            let change = outcome.totals.periodicity_error;
+            let advice = if set.cycles > 0 { "cycles" } else { "max_cycles" };
+            let notes = (outcome.period == 0)
+                .then(|| unsettled(change, set.tolerance, outcome.cycles, start, advice))
+                .flatten();
             Ok(Found {
                 liner: None,
                 record: Recorded::Series(record),
@@ -257,7 +277,7 @@ fn one_start(
                 period: outcome.period,
                 cycles: f64::from(outcome.cycles),
                 counters: [("steps".to_owned(), outcome.steps)].into_iter().collect(),
-                notes: Vec::new(),
+                notes: notes.into_iter().collect(),
                 seconds: begin.elapsed().as_secs_f64(),
             })
         }

@@ -1,7 +1,8 @@
 //! The scheme of zottin1992: mechanics in sub-steps of a crank degree, gas explicit inside them.
 //!
 //! Per sub-step: kinematics, cylinder pressure (linear between whole degrees), areas and volumes from the positions so
-//! far; `gas_steps` explicit Euler steps of the gas masses; then ring by ring the film thickness by bisection on the
+//! far; `gas_steps` explicit Euler steps of the gas masses, the first with the flows of the pressures so far, which do not know the new
+//! volumes; then ring by ring the film thickness by bisection on the
 //! radial balance with `dh/dt = (h - h_old)/Δt`, and the axial position with the groove damping taken implicitly and
 //! the rings clamped, inelastically, at the flanks. `passes` one-degree passes make a cycle: the listing runs 721.
 //!
@@ -73,9 +74,11 @@ pub fn run(
     let mut totals = Totals::default();
     let mut steps = 0;
     let mut started = false;
+    // Volumes behind the rings that the last pressures belong to.
+    let mut volumes = Vec::with_capacity(n);
     for cycle in 1..=set.cycles {
         totals = Totals { flow_in: vec![0.0; n], friction_work: vec![0.0; n], ..Totals::default() };
-        let before: f64 = if started { pack.masses.iter().sum() } else { 0.0 };
+        let mut before: f64 = pack.masses.iter().sum();
         let last = cycle == set.cycles;
         for pass in 0..set.passes {
             for sub in 1..=set.steps {
@@ -92,9 +95,19 @@ pub fn run(
                 if !started {
                     started = true;
                     pack.fill_masses(start, p_cyl);
+                    before = pack.masses.iter().sum();
+                    volumes.clear();
+                    volumes.extend(pack.at.places.iter().map(|p| p.back_volume));
                 }
-                for _ in 0..set.gas_steps {
+                for g in 0..set.gas_steps {
+                    if g == 0 {
+                        // The listing computes pressures after the masses: its first flows are those of the pressures so far.
+                        swap_volumes(pack, &mut volumes);
+                    }
                     pack.gas(Some(p_cyl))?;
+                    if g == 0 {
+                        swap_volumes(pack, &mut volumes);
+                    }
                     for (m, dm) in pack.masses.iter_mut().zip(&pack.at.dm) {
                         *m += dm * dt_gas;
                     }
@@ -102,6 +115,9 @@ pub fn run(
                         *sum += w * dt_gas;
                     }
                     totals.blow_by += pack.at.gas.flow_out[n - 1] * dt_gas;
+                }
+                for (v, p) in volumes.iter_mut().zip(&pack.at.places) {
+                    *v = p.back_volume;
                 }
                 pack.gas_pressures(p_cyl)?;
                 if pack.plan.film {
@@ -147,6 +163,12 @@ pub fn run(
         totals.periodicity_error = ((after - before) / through).abs();
     }
     Ok((totals, steps))
+}
+
+fn swap_volumes(pack: &mut Pack, volumes: &mut [f64]) {
+    for (place, v) in pack.at.places.iter_mut().zip(volumes) {
+        std::mem::swap(&mut place.back_volume, v);
+    }
 }
 
 fn moving(pack: &Pack, i: usize) -> bool {
