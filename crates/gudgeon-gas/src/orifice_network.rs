@@ -29,6 +29,8 @@ use crate::pack::{Elimination, FilmHeight, Openings, Pack, Passages, RingPassage
 /// half directly. A drained groove has no volume of its own: its upper-flank path ends in the land below and there is no lower one.
 /// A sealed ring has no flank paths, and its whole gap is direct.
 ///
+/// `s` is kept within 0 and `c`, and `A_gap` above zero, unless `bounded` is `false`.
+///
 /// Gas temperatures are those of the walls (isothermal volumes); the flow in an orifice is adiabatic.
 ///
 /// Source: zottin1992 (areas and network), furuhama1961 (orifices between rings, discharge coefficient).

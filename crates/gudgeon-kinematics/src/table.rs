@@ -3,8 +3,8 @@ use std::f64::consts::PI;
 use gudgeon_core::BuildError;
 use gudgeon_core::file::{MOST_OF_A_TABLE, read_bytes};
 use gudgeon_core::kinds::{CylinderPressure, CylinderPressureCtx, CylinderPressureSpec};
-use gudgeon_core::result::Note;
 use gudgeon_core::quantity::{Angle, Dimension, PosAngle, PosRatio, Pressure, dim, quantity};
+use gudgeon_core::result::Note;
 use serde::{Deserialize, Serialize};
 
 use crate::periodic_cubic::{PeriodicCubic, TooClose};
@@ -64,7 +64,8 @@ pub struct Table {
     /// Whether noise is filtered.
     #[serde(default)]
     pub smoothing: Smoothing,
-    /// Wave length \[crank angle\] that the filter halves. Left out: the longest for which the filter takes off no more than the noise.
+    /// Wave length \[crank angle\] that the filter halves. Left out: the longest for which the filter bends the
+    /// trace by no more than half of the noise it leaves.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cutoff: Option<PosAngle>,
 }
@@ -162,7 +163,8 @@ impl CylinderPressureSpec for Table {
         kinks.retain(|k| *k < period);
         kinks.sort_by(f64::total_cmp);
         // Between rows neither curve is above both of them.
-        let top = (0..within.len()).max_by(|a, b| rows.pressure[*a].total_cmp(&rows.pressure[*b]).then(b.cmp(a)));
+        let top =
+            (0..within.len()).max_by(|a, b| rows.pressure[*a].total_cmp(&rows.pressure[*b]).then(b.cmp(a)));
         let highest = top.map_or((0.0, 0.0), |k| (within[k], rows.pressure[k]));
         Ok(Box::new(Trace { curve, period, kinks, highest, notes }))
     }
@@ -232,12 +234,15 @@ impl Table {
             }
             (_, _, Some(length)) => Some(period / length.si()),
             (Smoothing::On, None, None) => {
-                return Err(BuildError::at("smoothing", "the rows are smooth, or not equally spaced: there is no noise to go by")
-                    .help("give `cutoff`, the wave length that the filter halves, or leave `smoothing` out"));
+                return Err(BuildError::at(
+                    "smoothing",
+                    "the rows are smooth, or not equally spaced: there is no noise to go by",
+                )
+                .help("give `cutoff`, the wave length that the filter halves, or leave `smoothing` out"));
             }
             (_, Some(_), None) => None,
         };
-        let done = smoothing::smooth(&mut rows.pressure, noise.unwrap_or(0.0), harmonic);
+        let done = smoothing::smooth(&mut rows.pressure, harmonic);
         if let Some(k) = rows.pressure.iter().position(|p| !(*p > 0.0 && p.is_finite())) {
             return Err(rows.fault(k, Column::Pressure, "is not above zero after the filter"));
         }

@@ -30,8 +30,8 @@ use indexmap::IndexMap;
 
 use crate::case::{Method, RingPackCase, Scheme};
 use crate::run::{Progress, RunError};
-use pack::Pack;
 use measure::Measures;
+use pack::Pack;
 use record::Record;
 use results::{Cycle, Meter};
 use rows::Rows;
@@ -99,7 +99,11 @@ fn unsettled(change: f64, tolerance: f64, cycles: u32, start: f64, advice: &str)
         100.0 * tolerance,
     );
     let of = if change > NOT_PERIODIC * tolerance { Note::failure } else { Note::caution };
-    Some(of("not_periodic".to_owned(), text).amount("change", change, "1").amount("tolerance", tolerance, "1"))
+    Some(of("not_periodic".to_owned(), text).amount("change", change, "1").amount(
+        "tolerance",
+        tolerance,
+        "1",
+    ))
 }
 
 /// Two periodic solutions count as one when their results agree within this relative difference.
@@ -199,10 +203,9 @@ pub fn solve(
     let (_, first) = found.swap_remove(0);
     let record = match first.record {
         Recorded::Series(record) => record,
-        Recorded::Rows(rows) => rows.record(pack).map_err(|source| RunError::Eval {
-            theta_deg: pack.at.theta.to_degrees(),
-            source,
-        })?,
+        Recorded::Rows(rows) => rows
+            .record(pack)
+            .map_err(|source| RunError::Eval { theta_deg: pack.at.theta.to_degrees(), source })?,
     };
     Ok(Solved { liner: first.liner, record, cycle: first.cycle, branches, report, seconds })
 }
