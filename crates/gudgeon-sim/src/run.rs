@@ -11,6 +11,7 @@ use serde::Serialize;
 use crate::load::{Report, Source, read};
 use crate::provenance::{self, provenance};
 use crate::scene::{self, Scene, SceneCase};
+use crate::verify::verify;
 
 /// A case that was read, resolved and found to be possible.
 pub struct Checked {
@@ -278,6 +279,25 @@ pub fn run(c: &Checked, progress: &mut dyn FnMut(Progress)) -> Result<RunResult,
     finish(c, begin, scene::run(c.case.as_ref(), progress)?)
 }
 
+/// As [`run`], then refines every numerical setting until the uncertainty of each result is known.
+///
+/// # Errors
+/// As [`run`]; a refinement that cannot be run.
+pub fn run_verified(c: &Checked, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
+    verified(c, run(c, progress)?, progress)
+}
+
+fn verified(
+    c: &Checked,
+    mut result: RunResult,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<RunResult, RunError> {
+    let begin = Instant::now();
+    verify(c.case.as_ref(), &mut result, progress)?;
+    result.seconds.insert("verify".into(), begin.elapsed().as_secs_f64());
+    Ok(result)
+}
+
 /// Runs a case without its sweeps.
 ///
 /// # Errors
@@ -285,6 +305,17 @@ pub fn run(c: &Checked, progress: &mut dyn FnMut(Progress)) -> Result<RunResult,
 pub(crate) fn run_alone(c: &Checked, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
     let begin = Instant::now();
     finish(c, begin, scene::run_alone(c.case.as_ref(), progress)?)
+}
+
+/// As [`run_verified`] without the sweeps.
+///
+/// # Errors
+/// As [`run_verified`].
+pub(crate) fn run_alone_verified(
+    c: &Checked,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<RunResult, RunError> {
+    verified(c, run_alone(c, progress)?, progress)
 }
 
 fn finish(c: &Checked, begin: Instant, mut result: RunResult) -> Result<RunResult, RunError> {

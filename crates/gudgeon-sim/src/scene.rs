@@ -12,7 +12,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use crate::case::RingPackCase;
-use crate::load::{Loaded, Report, Source, load_source, scene_of};
+use crate::load::{Loaded, Report, Setting, Source, load_source, scene_of};
 use crate::pin::case::PinCase;
 use crate::piston_secondary::case::PistonSecondaryCase;
 use crate::power_cylinder::case::PowerCylinderCase;
@@ -144,6 +144,8 @@ pub trait Scene: Send + Sync {
     fn notes(&self) -> &[String];
     /// Every value in SI units, changes and defaults filled in.
     fn resolved(&self) -> serde_json::Value;
+    /// The numerical settings that refine its results.
+    fn settings(&self) -> Vec<Setting>;
     /// Everything that is wrong, the changes that sweeps make included.
     fn legal(&self) -> Vec<BuildError>;
     /// A report on errors found after the case was read.
@@ -189,6 +191,10 @@ impl<C: SceneCase> Scene for Loaded<C> {
     fn resolved(&self) -> serde_json::Value {
         // What a case was read from can be written: a type that cannot would fail its first test.
         Self::resolved(self).unwrap_or_default()
+    }
+
+    fn settings(&self) -> Vec<Setting> {
+        Self::settings(self)
     }
 
     fn legal(&self) -> Vec<BuildError> {

@@ -11,6 +11,7 @@ mod near;
 mod overrides;
 mod plain;
 mod published;
+mod refine;
 mod report;
 mod schema;
 mod tree;
@@ -32,6 +33,7 @@ use toml::de::DeTable;
 
 pub use near::{advice, list, nearest};
 pub use published::{one_scene_of, published};
+pub use refine::Setting;
 pub use report::{Diagnostic, MOST_MISTAKES, Origin, Report, Source, line_column};
 
 use plain::plain;
@@ -385,5 +387,13 @@ impl<T: serde::Serialize> Loaded<T> {
     /// A type whose serialisation fails, which none of a case does.
     pub fn resolved(&self) -> Result<serde_json::Value, serde_json::Error> {
         serde_json::to_value(&self.value)
+    }
+}
+
+impl<T: serde::Serialize + JsonSchema + 'static> Loaded<T> {
+    /// The numerical settings that refine the results of this case.
+    #[must_use]
+    pub fn settings(&self) -> Vec<Setting> {
+        self.resolved().map_or_else(|_| Vec::new(), |v| refine::settings(Schema::of::<T>(), &v))
     }
 }
