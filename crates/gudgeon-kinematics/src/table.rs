@@ -64,7 +64,7 @@ pub struct Table {
     /// Whether noise is filtered.
     #[serde(default)]
     pub smoothing: Smoothing,
-    /// Wave length \[crank angle\] that the filter halves. Left out: the longest for which the filter bends the
+    /// Wave length \[crank angle\] that the filter halves; with it, `auto` filters clean rows too. Left out: the longest for which the filter bends the
     /// trace by no more than half of the noise it leaves.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cutoff: Option<PosAngle>,
@@ -74,10 +74,10 @@ pub struct Table {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Smoothing {
-    /// When its rows are noisy.
+    /// When its rows are noisy, or `cutoff` is given.
     #[default]
     Auto,
-    /// Always; needs `cutoff` when the rows are not noisy.
+    /// Always; refused when the rows are not noisy and `cutoff` is not given.
     On,
     /// Never.
     Off,
