@@ -540,13 +540,17 @@ pub enum Scheme {
 pub struct Outputs {
     /// Names of results; `all` for every one that the scene has. What no wanted result needs is not computed.
     pub results: Vec<String>,
-    /// Crank angle between rows of the series.
+    /// Crank angle between rows of the series. No result depends on it.
     pub series_step: PosAngle,
+    /// A ring counts as on a groove flank while its distance from it is at most this share of its axial clearance, in results and
+    /// events. Oil lets a ring come down ever more slowly, the gap going with the time to the power -1/2, so that it never touches; at a
+    /// tenth of the clearance, the default, it rests on its film of oil. At most 0.5.
+    pub seat: Ratio<Fraction>,
 }
 
 impl Default for Outputs {
     fn default() -> Self {
-        Self { results: vec!["all".into()], series_step: quantity(1f64.to_radians()) }
+        Self { results: vec!["all".into()], series_step: quantity(1f64.to_radians()), seat: quantity(0.1) }
     }
 }
 

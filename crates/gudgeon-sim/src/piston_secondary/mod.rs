@@ -140,7 +140,7 @@ impl SceneCase for PistonSecondaryCase {
             }
             .into(),
             counters: search.counters,
-            notes: found.notes.clone(),
+            notes: a.cylinder.notes().into_iter().chain(found.notes.iter().cloned()).collect(),
         };
         result.solver.notes.push(Note::info(
             "centre_of_gravity",

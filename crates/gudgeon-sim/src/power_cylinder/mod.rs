@@ -112,7 +112,12 @@ impl SceneCase for PowerCylinderCase {
         result.tables.extend(other.tables);
         result.events.extend(other.events);
         result.events.sort_by(|a, b| a.theta_deg.total_cmp(&b.theta_deg));
-        result.solver.notes.extend(other.solver.notes);
+        for note in other.solver.notes {
+            // Both scenes have the same cylinder pressure.
+            if !result.solver.notes.contains(&note) {
+                result.solver.notes.push(note);
+            }
+        }
         let own = std::mem::take(&mut result.solver.counters);
         result.solver.counters = own.into_iter().map(|(k, n)| (named("rings", &k), n)).collect();
         result

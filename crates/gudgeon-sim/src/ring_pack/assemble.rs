@@ -84,6 +84,12 @@ pub fn assemble(case: &RingPackCase, folder: &Path) -> Result<Pack, Vec<BuildErr
                 .help("between 0.006 deg and 90 deg"),
         );
     }
+    if case.outputs.seat.si() > 0.5 {
+        errors.push(
+            BuildError::at("outputs.seat", "a ring would be on both flanks at once")
+                .help("at most 0.5 of the clearance; 0.1 when it is left out"),
+        );
+    }
     let ctx = CylinderPressureCtx {
         kinematics: kinematics.as_ref(),
         piston_area: PI * geo.bore_radius * geo.bore_radius,

@@ -88,6 +88,14 @@ impl SceneCase for ShaftLineCase {
         let a = assemble(case, folder).map_err(refused)?;
         results.count("lines_built", 1);
         results.note(&a.notes);
+        // Once for all throws that share a pressure.
+        let mut told = Vec::new();
+        for note in a.line.throws.iter().flat_map(|t| &t.ends).flat_map(|e| e.pressure.notes()) {
+            if !told.contains(&note) {
+                told.push(note);
+            }
+        }
+        results.note(&told);
         let built = begin.elapsed().as_secs_f64();
         if plan.throws {
             results.throws(&a.line.throws);
