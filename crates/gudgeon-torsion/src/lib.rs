@@ -12,6 +12,8 @@
 
 pub mod coupling;
 mod crank_end;
+pub mod critical;
+pub mod cycle;
 pub mod damper;
 pub mod drive;
 mod dynamics;

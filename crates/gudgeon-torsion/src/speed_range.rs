@@ -4,7 +4,7 @@ use gudgeon_core::kinds::TorsionCtx;
 use gudgeon_core::{BuildError, EvalError};
 use gudgeon_numerics::linalg::Complex;
 
-use crate::forcing::{Excitation, Order};
+use crate::forcing::Excitation;
 use crate::steady::{Steady, drive_damping};
 use crate::sweep::{LANES, Sweep};
 use crate::tree::Tree;
@@ -53,20 +53,18 @@ pub fn speed_range(
             && line.drives.iter().all(|d| d.drive.is_linear() || !d.drive.orders().is_empty());
     let mut out = SpeedRange { orders: orders.clone(), lanes: plain, ..SpeedRange::default() };
     if !plain {
+        let mut s = Steady::new(ctx)?;
         for &speed in speeds {
-            let here = TorsionCtx { speed, ..*ctx };
-            let mut means = Excitation { orders: Vec::new(), mean: parts[0].mean.clone() };
-            means.at_speed(line, speed);
-            let mut s = Steady::with(&here, means)?;
+            s.set_speed(speed);
+            let excitation = std::mem::take(&mut s.excitation);
             let mut rows = Vec::with_capacity(orders.len());
-            for (o, parts) in orders.iter().zip(&torque) {
-                let square = Complex::new(speed * speed, 0.0);
-                let torque = parts[0].iter().zip(&parts[1]).map(|(a, b)| *a + *b * square).collect();
-                match s.respond(&Order { order: *o, torque }) {
+            for o in &excitation.orders {
+                match s.respond(o) {
                     Ok(r) => rows.push(r.torque),
                     Err(e) => return Ok(Err(e)),
                 }
             }
+            s.excitation = excitation;
             out.solutions += orders.len() as u64;
             out.torque.push(rows);
         }

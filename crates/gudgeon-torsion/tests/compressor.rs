@@ -500,7 +500,7 @@ fn a_free_throw_keeps_its_energy() {
             speed: 100.0,
             orders: 1.0,
             period: 2.0 * PI,
-            balance: 0,
+            balance: &[1.0],
             angles: &[0.0],
             speeds: &[100.0],
             times: &times,

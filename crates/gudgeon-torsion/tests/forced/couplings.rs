@@ -38,7 +38,7 @@ fn context<'a>(
         speed,
         orders,
         period: 2.0 * PI,
-        balance: 0,
+        balance: &[1.0],
         angles: start[0],
         speeds: start[1],
         times,
