@@ -4,7 +4,7 @@ use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
 /// A result value.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Value {
     /// The number, in `unit`.
     pub value: f64,
@@ -13,6 +13,65 @@ pub struct Value {
     /// One line saying what it is.
     #[serde(skip)]
     pub what: String,
+}
+
+/// How much a [`Note`] matters.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum NoteLevel {
+    /// Good to know.
+    #[default]
+    Info,
+    /// A floor, a cap, a limit of validity or a fallback acted. The results are what was asked for, with that in mind.
+    Caution,
+    /// The results are not what was asked for (a cycle that is not periodic): they are written and marked, and the run fails.
+    Failure,
+}
+
+/// Something that a person who relies on the results must know, with how much and how long.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Note {
+    /// Stable key, with the subject in it where there are several: `contact_floor.ring2`. Runs of a sweep are gathered by it.
+    pub topic: String,
+    /// How much it matters.
+    pub level: NoteLevel,
+    /// One sentence with the figures.
+    pub text: String,
+    /// The figures: share of the cycle, residual load.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub amounts: IndexMap<String, Value>,
+}
+
+impl Note {
+    fn new(level: NoteLevel, topic: impl Into<String>, text: impl Into<String>) -> Self {
+        Self { topic: topic.into(), level, text: text.into(), amounts: IndexMap::new() }
+    }
+
+    /// Good to know.
+    #[must_use]
+    pub fn info(topic: impl Into<String>, text: impl Into<String>) -> Self {
+        Self::new(NoteLevel::Info, topic, text)
+    }
+
+    /// A floor, a cap, a limit of validity or a fallback acted.
+    #[must_use]
+    pub fn caution(topic: impl Into<String>, text: impl Into<String>) -> Self {
+        Self::new(NoteLevel::Caution, topic, text)
+    }
+
+    /// The results are not what was asked for.
+    #[must_use]
+    pub fn failure(topic: impl Into<String>, text: impl Into<String>) -> Self {
+        Self::new(NoteLevel::Failure, topic, text)
+    }
+
+    /// Adds a figure.
+    #[must_use]
+    pub fn amount(mut self, name: impl Into<String>, value: f64, unit: &str) -> Self {
+        let what = String::new();
+        self.amounts.insert(name.into(), Value { value, unit: unit.into(), what });
+        self
+    }
 }
 
 /// A model that ran.
@@ -55,8 +114,8 @@ pub struct SolverReport {
     pub method: String,
     /// Counters, by name: `steps`, `rejected`, `rhs`, `jacobians`, `film_evaluations`, `cycles`, `events`, `states`.
     pub counters: IndexMap<String, u64>,
-    /// Notes a person should read: several periodic solutions, a period-2 cycle, a fallback that was used.
-    pub notes: Vec<String>,
+    /// Several periodic solutions, a period-2 cycle, a fallback that was used.
+    pub notes: Vec<Note>,
 }
 
 /// Name of the axis of a [`Series`] over the crank angle.

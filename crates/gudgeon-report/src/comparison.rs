@@ -275,15 +275,15 @@ fn page(file: &File, series: &[(usize, &Series)]) -> String {
         comparison_table(&mut body, file, &ran);
     }
     let noted: Vec<&&VariantEntry> =
-        ran.iter().filter(|v| v.run.as_ref().is_some_and(|r| !r.solver.notes.is_empty())).collect();
+        ran.iter().filter(|v| v.run.as_ref().is_some_and(|r| !r.notes.is_empty())).collect();
     if !noted.is_empty() {
         body.push_str("<section id=\"notes\"><h2>Notes of the runs</h2><table class=\"plain\"><tbody>");
         for v in noted {
             let notes: Vec<String> = v
                 .run
                 .iter()
-                .flat_map(|r| &r.solver.notes)
-                .map(|n| format!("<p>{}</p>", page::prose(n)))
+                .flat_map(|r| &r.notes)
+                .map(|n| format!("<p>{}</p>", page::prose(&n.text)))
                 .collect();
             let _ = write!(
                 body,

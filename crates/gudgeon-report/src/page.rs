@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use gudgeon_core::Registry;
-use gudgeon_core::result::{Column, Series};
+use gudgeon_core::result::{Column, Note, NoteLevel, Series};
 use serde_json::{Value, json};
 
 use crate::number::{count, significant, unit};
@@ -293,12 +293,16 @@ pub(crate) fn solver_section(
 }
 
 /// Notes that a person should see before the numbers.
-pub(crate) fn notes(notes: &[String]) -> String {
-    if notes.is_empty() {
-        return String::new();
-    }
-    let items: Vec<String> = notes.iter().map(|n| format!("<p>{}</p>", prose(n))).collect();
-    format!("<div class=\"note\" role=\"note\">{}</div>\n", items.concat())
+pub(crate) fn notes(notes: &[Note]) -> String {
+    let of = |level: NoteLevel, class: &str| {
+        let items: Vec<String> =
+            notes.iter().filter(|n| n.level == level).map(|n| format!("<p>{}</p>", prose(&n.text))).collect();
+        if items.is_empty() {
+            return String::new();
+        }
+        format!("<div class=\"note {class}\" role=\"note\">{}</div>\n", items.concat())
+    };
+    of(NoteLevel::Failure, "failure") + &of(NoteLevel::Caution, "caution") + &of(NoteLevel::Info, "info")
 }
 
 /// Closing line.

@@ -89,14 +89,7 @@ fn page(s: &Summary, series: &Series, tables: &IndexMap<String, Series>) -> Stri
     let mut body = String::new();
     header(&mut body, s);
     body.push_str("<main>\n");
-    let mut notes = s.solver.notes.clone();
-    if s.branches.len() > 1 && notes.is_empty() {
-        notes.push(format!(
-            "{} periodic solutions were found from different starts; see the table of periodic solutions.",
-            s.branches.len()
-        ));
-    }
-    body.push_str(&page::notes(&notes));
+    body.push_str(&page::notes(&s.notes));
     results(&mut body, s);
     if !s.figures.is_empty() {
         body.push_str("<section id=\"curves\"><h2>Figures</h2><div id=\"figures\"></div></section>\n");

@@ -1,6 +1,6 @@
 //! `summary.json` as a type of its own: it is read back to rebuild a page, and its shape is a promise to other programs.
 
-use gudgeon_core::result::{Check, Figure, RunResult};
+use gudgeon_core::result::{Check, Figure, Note, RunResult};
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
@@ -45,8 +45,6 @@ pub(crate) struct SolverEntry {
     pub method: String,
     #[serde(default)]
     pub counters: IndexMap<String, u64>,
-    #[serde(default)]
-    pub notes: Vec<String>,
 }
 
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -78,6 +76,9 @@ pub(crate) struct Summary {
     pub balance: BalanceSheet,
     #[serde(default)]
     pub solver: SolverEntry,
+    /// What a person who relies on the results must know.
+    #[serde(default)]
+    pub notes: Vec<Note>,
     #[serde(default)]
     pub seconds: IndexMap<String, Option<f64>>,
     #[serde(default)]
@@ -137,11 +138,8 @@ impl Summary {
                 energy: finite(run.balance.energy),
                 momentum: finite(run.balance.momentum),
             },
-            solver: SolverEntry {
-                method: run.solver.method.clone(),
-                counters: run.solver.counters.clone(),
-                notes: run.solver.notes.clone(),
-            },
+            solver: SolverEntry { method: run.solver.method.clone(), counters: run.solver.counters.clone() },
+            notes: run.solver.notes.clone(),
             seconds: run.seconds.iter().map(|(k, v)| (k.clone(), finite(Some(*v)))).collect(),
             title: run.title.clone(),
             source: run.source.clone(),

@@ -5,7 +5,7 @@ mod common;
 use std::fs;
 use std::path::PathBuf;
 
-use gudgeon_core::result::{RunResult, Series};
+use gudgeon_core::result::{Note, RunResult, Series};
 use gudgeon_report::{ReportError, rewrite, summary_json, write_bench, write_comparison, write_run};
 use serde_json::Value;
 
@@ -167,7 +167,7 @@ fn text_of_a_case_cannot_become_markup_or_script() {
     run.case = nasty.into();
     run.source = nasty.into();
     run.assumptions = vec![nasty.into()];
-    run.solver.notes = vec![nasty.into()];
+    run.solver.notes = vec![Note::caution("x", nasty)];
     run.events[0].what = nasty.into();
     run.skipped[0].why = nasty.into();
     run.models[0].model = nasty.into();

@@ -5,6 +5,7 @@ use gudgeon_core::quantity::{
     Angle, PosAngle, PosAngularSpeed, PosArea, PosGasConstant, PosPressure, PosRatio, PosTemperature,
     PosTime, PosVolume, Pressure, quantity,
 };
+use gudgeon_core::result::Note;
 use gudgeon_core::{BuildError, EvalError};
 use gudgeon_gas::{Network, Orifice, Passage};
 use gudgeon_numerics::linalg::{lu_factor, lu_solve};
@@ -660,10 +661,11 @@ impl Bench {
             };
             let report = periodic_orbit(&mut march, &mut y, &options)?;
             if !report.converged {
-                out.notes.push(format!(
+                let text = format!(
                     "the cycle does not repeat itself after {CYCLES} cycles: it changes by {:.1e} bar",
                     report.residual
-                ));
+                );
+                out.notes.push(Note::failure("not_periodic", text).amount("change", report.residual, "bar"));
             }
         }
         let begin = y.clone();

@@ -4,7 +4,7 @@ use gudgeon_core::kinds::{
     ShearThinning, ShearThinningSpec,
 };
 use gudgeon_core::quantity::{Length, NonNegative, PosViscosity, Pressure, Velocity, quantity};
-use gudgeon_core::result::{Column, Series};
+use gudgeon_core::result::{Column, Note, Series};
 use gudgeon_core::{BuildError, EvalError};
 use gudgeon_film::film_1d::{LineProfile, ViscosityLoop};
 use gudgeon_film::{Isoviscous, Newtonian, SmoothSurfaces};
@@ -298,7 +298,10 @@ impl Rig for Bench {
         out.counters.insert("film_evaluations".into(), rounds as u64);
         out.balance.oil_mass = Some(o.flux_error);
         if o.starved {
-            out.notes.push("the inlet is starved: less oil arrives than a bath would give".into());
+            out.notes.push(Note::caution(
+                "starved_inlet",
+                "the inlet is starved: less oil arrives than a bath would give",
+            ));
         }
 
         let rows = along::rows(&self.line, &field, self.u, self.p_cav, o.starved, |i| {

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Instant;
 
-use gudgeon_core::result::{ModelUse, RunResult, Skipped};
+use gudgeon_core::result::{ModelUse, Note, RunResult, Skipped};
 use gudgeon_core::{EvalError, Registry};
 use gudgeon_numerics::ode::IntegrateError;
 use serde::Serialize;
@@ -279,7 +279,7 @@ pub(crate) fn run_alone(c: &Checked, progress: &mut dyn FnMut(Progress)) -> Resu
 fn finish(c: &Checked, begin: Instant, mut result: RunResult) -> Result<RunResult, RunError> {
     result.case.clone_from(&c.name);
     result.gudgeon = env!("CARGO_PKG_VERSION").into();
-    result.solver.notes.extend(c.notes.iter().cloned());
+    result.solver.notes.extend(c.notes.iter().map(|n| Note::caution("dropped_keys", n)));
     if let Some(column) = result.series.columns.iter().find(|c| c.values.iter().any(|v| !v.is_finite())) {
         return Err(RunError::NotANumber(column.name.clone()));
     }

@@ -1,7 +1,7 @@
 //! Sweeps: every combination of one or two varied inputs, each read and built as a case of its own.
 
 use gudgeon_core::BuildError;
-use gudgeon_core::result::{Column, Figure, FigureKind, RunResult, Series};
+use gudgeon_core::result::{Column, Figure, FigureKind, Note, RunResult, Series};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -232,10 +232,8 @@ pub fn run(
         )));
     }
     if let Some(f) = failed.first() {
-        result
-            .solver
-            .notes
-            .push(format!("{} of {total} points of the sweep have no result; the first: {f}", failed.len()));
+        let text = format!("{} of {total} points of the sweep have no result; the first: {f}", failed.len());
+        result.solver.notes.push(Note::caution("sweep.failed", text));
     }
     let unit = |n: &str| result.results.get(n).map_or(String::new(), |v| v.unit.clone());
     // Titles are plain text.

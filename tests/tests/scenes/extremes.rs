@@ -58,7 +58,11 @@ fn outcome(path: &Path, overrides: &[String]) -> Result<String, String> {
         "blow-by {:.3e} l/min, periodicity {:.0e}, closure {closure:.0e}, {} ({seconds:.1} s)",
         r.results.get("blow_by_per_cylinder").map_or(f64::NAN, |v| v.value),
         r.results.get("periodicity_error").map_or(f64::NAN, |v| v.value),
-        if r.solver.notes.is_empty() { "no notes".to_owned() } else { r.solver.notes.join("; ") },
+        if r.solver.notes.is_empty() {
+            "no notes".to_owned()
+        } else {
+            r.solver.notes.iter().map(|n| n.text.as_str()).collect::<Vec<_>>().join("; ")
+        },
     ))
 }
 

@@ -122,7 +122,11 @@ fn a_search_without_a_pin_names_the_limit() {
 #[test]
 fn a_wrong_start_is_told_by_the_published_search_and_solved_by_the_default() {
     let r = run_case(PUBLISHED, &["pin.inner=12 mm"]);
-    assert!(r.solver.notes.iter().any(|n| n.contains("keeps the limits already")), "{:?}", r.solver.notes);
+    assert!(
+        r.solver.notes.iter().any(|n| n.text.contains("keeps the limits already")),
+        "{:?}",
+        r.solver.notes
+    );
     assert!(value(&r, "excess") > 18.0);
     let exact = run_case(EXACT, &["pin.inner=12 mm"]);
     let from_far = run_case(EXACT, &["pin.length=80 mm", "pin.outer=20 mm", "pin.inner=1 mm"]);

@@ -67,7 +67,7 @@ fn text(c: &Comparison) -> String {
         let why = v.outcome.as_ref().err().map_or_else(String::new, |e| format!("  {e}"));
         let _ = writeln!(s, "  {} {}{why}", letter(i), v.label);
         for n in v.outcome.iter().flat_map(|r| &r.solver.notes) {
-            let _ = writeln!(s, "      note: {n}");
+            let _ = writeln!(s, "      note: {}", n.text);
         }
     }
     let shown: Vec<_> =

@@ -71,7 +71,7 @@ fn text(r: &RunResult) -> String {
         let _ = writeln!(s, "  skipped (`gudgeon explain` says why): {}", skipped.join(", "));
     }
     for n in &r.solver.notes {
-        let _ = writeln!(s, "  note: {n}");
+        let _ = writeln!(s, "  note: {}", n.text);
     }
     if !r.assumptions.is_empty() {
         let _ =

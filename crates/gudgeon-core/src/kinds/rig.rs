@@ -4,7 +4,7 @@ use std::path::Path;
 use dyn_clone::DynClone;
 use indexmap::IndexMap;
 
-use crate::result::{Balance, Column, Figure, FigureKind, Series, Value};
+use crate::result::{Balance, Column, Figure, FigureKind, Note, Series, Value};
 use crate::{BuildError, EvalError};
 
 /// What a [`RigSpec`] is built for.
@@ -53,7 +53,7 @@ pub struct RigOut {
     /// Work counters.
     pub counters: IndexMap<String, u64>,
     /// What a person should read.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
 }
 
 impl RigOut {

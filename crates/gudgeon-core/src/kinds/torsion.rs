@@ -4,6 +4,7 @@ use dyn_clone::DynClone;
 use indexmap::IndexMap;
 
 use super::{Coupling, CylinderPressure, Drive, Kinematics, ThrowInertia};
+use crate::result::Note;
 use crate::{BuildError, EvalError};
 
 /// One inertia of a shaft line.
@@ -241,7 +242,7 @@ pub struct TorsionOut {
     /// Work: time steps, right-hand sides, linear solutions.
     pub counters: IndexMap<String, u64>,
     /// What a person should read.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
 }
 
 /// A running torsion model.

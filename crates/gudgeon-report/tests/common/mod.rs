@@ -5,8 +5,8 @@
 use std::f64::consts::PI;
 
 use gudgeon_core::result::{
-    Balance, BenchPoint, BenchTable, Branch, Column, Comparison, Event, ModelUse, PackSection, RunResult,
-    SectionRing, Series, Skipped, SolverReport, Value, Variant,
+    Balance, BenchPoint, BenchTable, Branch, Column, Comparison, Event, ModelUse, Note, PackSection,
+    RunResult, SectionRing, Series, Skipped, SolverReport, Value, Variant,
 };
 use indexmap::IndexMap;
 
@@ -286,10 +286,10 @@ pub fn run(n: usize) -> RunResult {
             .map(|(k, v)| (k.to_owned(), v))
             .into_iter()
             .collect(),
-            notes: vec![
-                "Two periodic solutions were found; this page shows the one reached from all lands at 6 bar."
-                    .into(),
-            ],
+            notes: vec![Note::caution(
+                "several_solutions",
+                "Two periodic solutions were found; this page shows the one reached from all lands at 6 bar.",
+            )],
         },
         seconds: [("build", 0.0012), ("solve", 0.0834), ("total", 0.0871)]
             .map(|(k, v)| (k.to_owned(), v))

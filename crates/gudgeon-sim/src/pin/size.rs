@@ -1,7 +1,7 @@
 //! The pin: evaluation, published search, exact optimum with its proof, sweeps.
 
 use gudgeon_core::kinds::{PinQuantity, PinSize};
-use gudgeon_core::result::{RunResult, Series};
+use gudgeon_core::result::{Note, RunResult, Series};
 use gudgeon_pin::certificate::certify;
 use gudgeon_pin::design::{Design, Forbids, Range};
 use gudgeon_pin::optimum::{Bound, NoOptimum, Optimum, lightest};
@@ -129,12 +129,15 @@ fn evaluate(
                 .filter(|q| d.limits[*q as usize].is_finite() && u[*q as usize] > 1.0 + 1e-9)
                 .map(PinQuantity::words)
                 .collect();
-            out.solver.notes.push(format!(
-                "The pin exceeds {}: {}; the most, {}, by {:.3} %.",
-                if over.len() == 1 { "a limit" } else { "limits" },
-                over.join(", "),
-                k.words(),
-                100.0 * (v - 1.0)
+            out.solver.notes.push(Note::caution(
+                "pin_beyond_limits",
+                format!(
+                    "The pin exceeds {}: {}; the most, {}, by {:.3} %.",
+                    if over.len() == 1 { "a limit" } else { "limits" },
+                    over.join(", "),
+                    k.words(),
+                    100.0 * (v - 1.0)
+                ),
             ));
         }
     }
@@ -226,15 +229,16 @@ fn exact(d: &Design<'_>, s: &Setup, o: &Optimise, out: &mut RunResult) -> Result
             (proof.best - proof.bound) / best.masses.pin
         )
     };
-    out.solver.notes.push(format!("The optimum is held by {held}. {certified}"));
+    out.solver.notes.push(Note::info("optimum", format!("The optimum is held by {held}. {certified}")));
     if let Some(g) = &s.given {
         let excess = d.masses(g).differential() - best.masses.differential();
         result(out, "excess_of_given", 1e3 * excess, "g", "mass of the given pin above the optimum");
         let keeps = d.utilisation(g).is_ok_and(|u| u.iter().all(|u| *u <= 1.0 + 1e-9));
         if keeps {
-            out.solver
-                .notes
-                .push(format!("The given pin keeps the limits too and is {:.2} g heavier.", 1e3 * excess));
+            out.solver.notes.push(Note::info(
+                "given_pin",
+                format!("The given pin keeps the limits too and is {:.2} g heavier.", 1e3 * excess),
+            ));
         }
     }
     Ok(best.size)
@@ -305,14 +309,10 @@ fn published(d: &Design<'_>, s: &Setup, o: &Optimise, out: &mut RunResult) -> Re
         "1: the length of the start was never raised, the result may be too long",
     );
     if found.bore_was_admitted {
-        out.solver.notes.push(
-            "The search started from a bore that keeps the limits already: it only stops one coarse step above it. This is no optimum.".into(),
-        );
+        out.solver.notes.push(Note::caution("not_an_optimum.bore", "The search started from a bore that keeps the limits already: it only stops one coarse step above it. This is no optimum."));
     }
     if found.length_was_admitted {
-        out.solver.notes.push(
-            "The search started from a length that is great enough already and never reduces it. This is no optimum.".into(),
-        );
+        out.solver.notes.push(Note::caution("not_an_optimum.length", "The search started from a length that is great enough already and never reduces it. This is no optimum."));
     }
     let mut here = *d;
     here.outer = Range::at(start.outer);
@@ -331,13 +331,13 @@ fn published(d: &Design<'_>, s: &Setup, o: &Optimise, out: &mut RunResult) -> Re
     if let Some(o) = free {
         let excess = mine - o.masses.differential();
         result(out, "excess", 1e3 * excess, "g", "mass above the exact optimum of all dimensions");
-        out.solver.notes.push(format!(
+        out.solver.notes.push(Note::info("exact_optimum", format!(
             "The exact optimum of all dimensions is {:.2} g lighter: length {:.3} mm, outer diameter {:.3} mm, inner diameter {:.3} mm.",
             1e3 * excess,
             1e3 * o.size.length,
             1e3 * o.size.outer,
             1e3 * o.size.inner
-        ));
+        )));
     }
     Ok(found.size)
 }
@@ -377,14 +377,16 @@ fn sweep(d: &Design<'_>, s: &Setup, o: &Optimise, out: &mut RunResult) {
         );
         if least > d.outer.low * (1.0 + 1e-9) {
             let just = d.forbids(least * (1.0 - 1e-6));
-            out.solver.notes.push(format!(
-                "No pin below {:.4} mm of outer diameter: {}.",
-                1e3 * least,
-                because(&just)
+            out.solver.notes.push(Note::info(
+                "no_pin_below",
+                format!("No pin below {:.4} mm of outer diameter: {}.", 1e3 * least, because(&just)),
             ));
             let first = d.forbids(d.outer.low);
             if first != just && !first.is_empty() {
-                out.solver.notes.push(format!("At {:.4} mm: {}.", 1e3 * d.outer.low, because(&first)));
+                out.solver.notes.push(Note::info(
+                    "no_pin_at",
+                    format!("At {:.4} mm: {}.", 1e3 * d.outer.low, because(&first)),
+                ));
             }
         }
     }
@@ -510,7 +512,9 @@ fn front(d: &Design<'_>, q: PinQuantity, out: &mut RunResult) {
 
 fn from_stock(d: &Design<'_>, sizes: &gudgeon_pin::stock::Sizes, best: &PinSize, out: &mut RunResult) {
     let Some(c) = sizes.lightest(d) else {
-        out.solver.notes.push("No combination of the sizes that can be had keeps the limits.".into());
+        out.solver
+            .notes
+            .push(Note::caution("stock", "No combination of the sizes that can be had keeps the limits."));
         return;
     };
     out.solver.counters.insert("stock_combinations".into(), u64::from(c.tried));
@@ -554,9 +558,9 @@ fn cycle(
         result(out, "fatigue_amplitude", 1e-6 * amplitude, "MPa", "its amplitude");
         result(out, "fatigue_safety", safety, "", "safety against fatigue");
         if safety < 1.0 {
-            out.solver.notes.push(format!(
+            out.solver.notes.push(Note::caution("fatigue", format!(
                 "The pin keeps its limits perhaps, but not for ever: the safety against fatigue is {safety:.2}."
-            ));
+            )));
         }
     }
     if stress.is_empty() {

@@ -1,7 +1,7 @@
 //! The piston around the pin: skirt, crown, main dimensions.
 
 use gudgeon_core::BuildError;
-use gudgeon_core::result::{RunResult, Series};
+use gudgeon_core::result::{Note, RunResult, Series};
 use gudgeon_pin::piston::{
     Barrel, Clearance, GUIDES, STATIONS, Station, cap_depth, cap_rim, cap_volume, cap_volume_of_rim, ovality,
     proposed_ordinates,
@@ -127,13 +127,16 @@ pub fn run(case: &PinCase, out: &mut RunResult) -> Result<(), RunError> {
                 let off = v / bore;
                 // A quarter of the guide is the room that adopted pistons take.
                 if off < 0.75 * g.low || off > 1.25 * g.high {
-                    out.solver.notes.push(format!(
-                        "{}: {:.2} mm is {:.1} % of the diameter; the guide says {:.0} to {:.0} %.",
-                        g.what,
-                        1e3 * v,
-                        100.0 * off,
-                        100.0 * g.low,
-                        100.0 * g.high
+                    out.solver.notes.push(Note::caution(
+                        "guide",
+                        format!(
+                            "{}: {:.2} mm is {:.1} % of the diameter; the guide says {:.0} to {:.0} %.",
+                            g.what,
+                            1e3 * v,
+                            100.0 * off,
+                            100.0 * g.low,
+                            100.0 * g.high
+                        ),
                     ));
                 }
             }
@@ -211,10 +214,10 @@ fn profile(
     let used: Vec<f64> = values.iter().map(|v| v.min(0.0)).collect();
     if values.iter().any(|v| *v > 1e-9) {
         let most = values.iter().copied().fold(0.0, f64::max);
-        out.solver.notes.push(format!(
+        out.solver.notes.push(Note::caution("profile_cut", format!(
             "The curve stands proud of the nominal diameter by up to {:.2} um; the finished profile is cut there.",
             1e6 * most
-        ));
+        )));
     }
     let mut columns = vec![column("ordinate", "m", values), column("finished", "m", used)];
     let mut drawn = vec![
@@ -315,7 +318,7 @@ fn crown(case: &PinCase, c: &Crown, out: &mut RunResult) -> Result<(), BuildErro
     );
     let bore = case.engine.bore.si();
     if 2.0 * rim > bore {
-        out.solver.notes.push("The recess is wider than the piston.".into());
+        out.solver.notes.push(Note::caution("recess", "The recess is wider than the piston."));
     }
     let swept = std::f64::consts::PI * bore * bore / 4.0 * c.stroke.si();
     let clearance = swept / (c.compression_ratio.si() - 1.0);

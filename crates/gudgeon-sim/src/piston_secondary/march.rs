@@ -4,6 +4,7 @@ use std::time::Instant as Clock;
 
 use gudgeon_core::EvalError;
 use gudgeon_core::kinds::Lateral;
+use gudgeon_core::result::Note;
 use gudgeon_numerics::ode::{Flow, IntegrateError, Integrator, OdeSystem, Options, Stats, StepView};
 use gudgeon_numerics::orbit::{CycleMap, OrbitOptions, periodic_orbit};
 use gudgeon_numerics::radau::Radau5;
@@ -26,7 +27,7 @@ pub struct Found {
     /// Estimated distance from the periodic motion \[m\]; the change over the cycle when it was not searched for.
     pub periodicity_error: f64,
     /// Notes for a person.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
     /// Steps, rejected steps, right-hand sides, Jacobians.
     pub stats: Stats,
     /// Wall time of the search \[s\].
@@ -459,19 +460,25 @@ pub fn run(
                     advice: "Raise `solver.max_cycles`, or look at the transient with `solver.cycles`".into(),
                 });
             }
-            notes.push(format!(
+            notes.push(Note::caution("not_periodic", format!(
                 "not periodic within {wanted:.0e} clearances after {} cycles: the estimated error is {:.1e}",
                 report.cycles, report.error_estimate
-            ));
+            )));
         }
         if report.multiplier > 0.9 {
-            notes.push(format!(
-                "a slow mode of the lateral position: {:.3} of a deviation is left after a cycle",
-                report.multiplier
+            notes.push(Note::info(
+                "slow_mode",
+                format!(
+                    "a slow mode of the lateral position: {:.3} of a deviation is left after a cycle",
+                    report.multiplier
+                ),
             ));
         }
         if report.period > 1 {
-            notes.push(format!("the motion repeats only every {} cycles", report.period));
+            notes.push(Note::caution(
+                "subharmonic",
+                format!("the motion repeats only every {} cycles", report.period),
+            ));
         }
         (cycles, error) = (report.cycle_equivalents, Some(report.error_estimate));
     }

@@ -12,7 +12,7 @@ pub mod record;
 use std::time::Instant;
 
 use gudgeon_core::kinds::Lateral;
-use gudgeon_core::result::{ModelUse, RunResult, Skipped, SolverReport};
+use gudgeon_core::result::{ModelUse, Note, RunResult, Skipped, SolverReport};
 use gudgeon_core::{BuildError, Registry};
 
 use crate::load::Loaded;
@@ -137,13 +137,16 @@ impl SceneCase for PistonSecondaryCase {
             counters: search.counters,
             notes: found.notes.clone(),
         };
-        result.solver.notes.push(format!(
-            "Centre of gravity {:.3} mm from the pin on its {} side",
-            1e3 * case.piston.gravity_offset.si(),
-            match case.piston.gravity_side {
-                case::GravitySide::Thrust => "thrust",
-                case::GravitySide::AntiThrust => "anti-thrust",
-            }
+        result.solver.notes.push(Note::info(
+            "centre_of_gravity",
+            format!(
+                "Centre of gravity {:.3} mm from the pin on its {} side",
+                1e3 * case.piston.gravity_offset.si(),
+                match case.piston.gravity_side {
+                    case::GravitySide::Thrust => "thrust",
+                    case::GravitySide::AntiThrust => "anti-thrust",
+                }
+            ),
         ));
         draw::figures(&a, &found.record, &mut result);
         result.series = found.record.series();

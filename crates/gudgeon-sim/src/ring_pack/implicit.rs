@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use std::time::Instant;
 
 use gudgeon_core::EvalError;
-use gudgeon_core::result::{Balance, Column, Series};
+use gudgeon_core::result::{Balance, Column, Note, Series};
 use gudgeon_numerics::ode::{
     Direction, EventAction, Flow, IntegrateError, Integrator, LinearInvariant, OdeSystem, Options, Stats,
     StepView,
@@ -573,11 +573,14 @@ pub(super) fn run(
     };
     let mut notes = Vec::new();
     if report.period == 1 && !report.converged {
-        notes.push(format!(
-            "not periodic within {:.0e} after {} cycles: the estimated error is {:.1e}",
-            s.periodicity.si(),
-            report.cycles,
-            report.error_estimate
+        notes.push(Note::caution(
+            "not_periodic",
+            format!(
+                "not periodic within {:.0e} after {} cycles: the estimated error is {:.1e}",
+                s.periodicity.si(),
+                report.cycles,
+                report.error_estimate
+            ),
         ));
     }
     if report.error_estimate > 0.5 && !discrete {

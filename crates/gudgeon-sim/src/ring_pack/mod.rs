@@ -19,7 +19,7 @@ pub mod substep_march;
 use std::time::Instant;
 
 use gudgeon_core::kinds::Motion;
-use gudgeon_core::result::{Branch, Series, SolverReport};
+use gudgeon_core::result::{Branch, Note, Series, SolverReport};
 use gudgeon_core::{BuildError, EvalError};
 use indexmap::IndexMap;
 
@@ -53,7 +53,7 @@ struct Found {
     period: u32,
     cycles: f64,
     counters: IndexMap<String, u64>,
-    notes: Vec<String>,
+    notes: Vec<Note>,
     seconds: f64,
 }
 
@@ -119,19 +119,26 @@ pub fn solve(
     }
     let mut report = SolverReport { method: method_name(case).into(), ..SolverReport::default() };
     if branches.len() > 1 {
-        report.notes.push(format!(
-            "this case has {} periodic solutions; the results are those of the first start ({})",
-            branches.len(),
-            branches[0].start
+        report.notes.push(Note::caution(
+            "several_solutions",
+            format!(
+                "this case has {} periodic solutions; the results are those of the first start ({})",
+                branches.len(),
+                branches[0].start
+            ),
         ));
     }
     for b in &branches {
         match b.period {
             1 => {}
-            0 => report.notes.push(format!("started with {}, the cycle did not become periodic", b.start)),
-            p => report
-                .notes
-                .push(format!("started with {}, the cycle repeats only every {p} cycles", b.start)),
+            0 => report.notes.push(Note::failure(
+                "not_periodic",
+                format!("started with {}, the cycle did not become periodic", b.start),
+            )),
+            p => report.notes.push(Note::caution(
+                "subharmonic",
+                format!("started with {}, the cycle repeats only every {p} cycles", b.start),
+            )),
         }
     }
     if branches.len() < 2 {
@@ -194,11 +201,11 @@ fn one_start(
             let (totals, steps) = outcome.map_err(at(pack))?;
             let mut notes = Vec::new();
             if totals.periodicity_error > UNSETTLED {
-                notes.push(format!(
+                notes.push(Note::caution("not_periodic", format!(
                     "the gas between the rings still changed by {:.1} % of what passes over cycle {}: raise `solver.cycles`",
                     100.0 * totals.periodicity_error,
                     set.cycles
-                ));
+                )));
             }
             Ok(Found {
                 liner: None,

@@ -9,6 +9,7 @@ use gudgeon_core::kinds::{
     LineThrow, ThrowCtx,
 };
 use gudgeon_core::quantity::quantity;
+use gudgeon_core::result::Note;
 use gudgeon_torsion::CrankEnd;
 use gudgeon_torsion::coupling::Linear;
 use gudgeon_torsion::drive::Reversed;
@@ -27,7 +28,7 @@ pub struct Assembled {
     /// Period of all torques over the angle of the reference shaft \[rad\].
     pub period: f64,
     /// What a person should read.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
 }
 
 /// Builds the throws of a case at the mean speed, on inertias by `find`.
@@ -197,7 +198,7 @@ pub fn assemble(case: &ShaftLineCase, folder: &Path) -> Result<Assembled, Vec<Bu
     if let Some(file) = &case.tors {
         match tors::read(&folder.join(file)) {
             Ok(import) => {
-                out.notes.extend(import.report.iter().map(|r| format!("{file}: {r}")));
+                out.notes.extend(import.report.iter().map(|r| Note::caution("tors", format!("{file}: {r}"))));
                 *line = import.line;
                 out.stress = import.stress;
             }
@@ -368,9 +369,9 @@ pub fn assemble(case: &ShaftLineCase, folder: &Path) -> Result<Assembled, Vec<Bu
         (per - per.round()).abs() > 1e-6
     });
     if let Some(o) = odd {
-        out.notes.push(format!(
+        out.notes.push(Note::caution("window", format!(
             "order {o:.6} of the reference shaft does not repeat within two turns: extremes are those of the window that is looked at"
-        ));
+        )));
     }
     if errors.is_empty() { Ok(out) } else { Err(errors) }
 }

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use gudgeon_core::kinds::{Line, LineThrow, Mode, TorsionOut};
-use gudgeon_core::result::{Bar, Column, Figure, FigureKind, RunResult, Series, Value};
+use gudgeon_core::result::{Bar, Column, Figure, FigureKind, Note, RunResult, Series, Value};
 use gudgeon_numerics::linalg::Complex;
 use gudgeon_torsion::forcing::{gas_period, gas_series};
 use gudgeon_torsion::speed_range::SpeedRange;
@@ -50,7 +50,7 @@ impl<'a> Results<'a> {
         *self.out.solver.counters.entry(name.into()).or_insert(0) += n;
     }
 
-    pub fn note(&mut self, notes: &[String]) {
+    pub fn note(&mut self, notes: &[Note]) {
         self.out.solver.notes.extend_from_slice(notes);
     }
 
@@ -204,9 +204,10 @@ impl<'a> Results<'a> {
             self.result(format!("published.{}.frequency", k + 1), m.omega / (2.0 * PI), "Hz", what.clone());
             self.result(format!("published.{}.omega", k + 1), m.omega, "rad/s", what);
         }
-        self.note(&[format!(
+        let text = format!(
             "`natural_frequencies/{name}` does not give natural frequencies; they stand beside it as `mode.N.frequency`, and everything else uses those"
-        )]);
+        );
+        self.note(&[Note::caution("published_frequencies", text)]);
     }
 
     /// Natural frequencies and shapes.
@@ -1065,15 +1066,20 @@ impl<'a> Results<'a> {
             return;
         }
         let over: Vec<&(String, f64, String, String)> = verdicts.iter().filter(|v| v.1 > 1.0).collect();
-        let mut notes: Vec<String> = over
+        let mut notes: Vec<Note> = over
             .iter()
-            .map(|(what, _, text, source)| format!("beyond the limit: {what}: {text} ({source})"))
+            .map(|(what, _, text, source)| {
+                Note::caution("beyond_limit", format!("beyond the limit: {what}: {text} ({source})"))
+            })
             .collect();
         notes.insert(
             0,
             match over.len() {
-                0 => format!("verdict: all {} limits are kept", verdicts.len()),
-                n => format!("verdict: {n} of {} limits are not kept", verdicts.len()),
+                0 => Note::info("verdict", format!("verdict: all {} limits are kept", verdicts.len())),
+                n => Note::caution(
+                    "verdict",
+                    format!("verdict: {n} of {} limits are not kept", verdicts.len()),
+                ),
             },
         );
         let broken = over.len() as f64;
