@@ -60,11 +60,7 @@ pub fn largest(samples: &[(f64, f64)], mut f: impl FnMut(f64) -> f64) -> (f64, f
 fn at_end(end: (f64, f64), next: (f64, f64), f: &mut impl FnMut(f64) -> f64) -> (f64, f64) {
     let x = end.0 + WIDE * (next.0 - end.0);
     let inside = (x, f(x));
-    if inside.1 > end.1 {
-        narrowed(end.0.min(next.0), inside, end.0.max(next.0), f)
-    } else {
-        end
-    }
+    if inside.1 > end.1 { narrowed(end.0.min(next.0), inside, end.0.max(next.0), f) } else { end }
 }
 
 /// Brent's method for the top between `a` and `b` from a point between them that is higher than both.
@@ -105,10 +101,18 @@ fn narrowed(a: f64, top: (f64, f64), b: f64, f: &mut impl FnMut(f64) -> f64) -> 
         let u = x.0 + if step.abs() >= tolerance { step } else { tolerance.copysign(step) };
         let u = (u, f(u));
         if u.1 >= x.1 {
-            if u.0 >= x.0 { low = x.0 } else { high = x.0 }
+            if u.0 >= x.0 {
+                low = x.0
+            } else {
+                high = x.0
+            }
             (v, w, x) = (w, x, u);
         } else {
-            if u.0 < x.0 { low = u.0 } else { high = u.0 }
+            if u.0 < x.0 {
+                low = u.0
+            } else {
+                high = u.0
+            }
             if u.1 >= w.1 || w.0 == x.0 {
                 (v, w) = (w, u);
             } else if u.1 >= v.1 || v.0 == x.0 || v.0 == w.0 {
