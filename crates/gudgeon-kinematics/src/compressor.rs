@@ -162,7 +162,9 @@ pub(crate) fn check(suction: f64, discharge: f64, exponent: f64, space: &Space) 
     if !(1.0..=HIGHEST_EXPONENT).contains(&exponent) {
         return Err(BuildError::at(
             "exponent",
-            format!("an exponent of {exponent} cannot be, it is between 1 (isothermal) and {HIGHEST_EXPONENT} (no gas has more than 5/3)"),
+            format!(
+                "an exponent of {exponent} cannot be, it is between 1 (isothermal) and {HIGHEST_EXPONENT} (no gas has more than 5/3)"
+            ),
         ));
     }
     if !(suction * (space.most / space.least).powf(exponent)).is_finite() {

@@ -263,7 +263,7 @@ impl Run<'_> {
         let (less, more) = (amplitudes(out), amplitudes(&whole));
         let largest = more.iter().copied().fold(0.0, f64::max);
         // Shafts that hardly vibrate say nothing.
-        let change = |l: usize| if more[l] > 0.01 * largest { less[l] / more[l] - 1.0 } else { 0.0 };
+        let change = |l: usize| if more[l] > 0.05 * largest { less[l] / more[l] - 1.0 } else { 0.0 };
         let Some(l) = (0..more.len()).max_by(|x, y| change(*x).abs().total_cmp(&change(*y).abs())) else {
             return;
         };

@@ -6,10 +6,12 @@ use gudgeon_torsion::critical::Critical;
 use super::assemble::Assembled;
 use super::case::ShaftLineCase;
 use super::machine::{Machine, Point};
-use super::{rpm, told};
+use super::told;
 
 /// Share of a limit that stands for vibration without bound.
 pub const UNBOUNDED: f64 = 1e6;
+/// Shares of limits, by the largest, below which samples are good enough.
+const CLOSE: f64 = 0.7;
 /// Points of the operating range where no diagram gives any.
 const GRID: usize = 97;
 /// Speeds at which natural frequencies that depend on the speed are compared with excitations.
@@ -64,9 +66,9 @@ impl Operating {
     /// In words.
     pub fn words(&self) -> String {
         if self.is_wide() {
-            format!("from {:.6} to {:.6} rpm ({})", rpm(self.from), rpm(self.to), self.given_by)
+            format!("from {} to {} ({})", told(self.from), told(self.to), self.given_by)
         } else {
-            format!("at {:.6} rpm ({})", rpm(self.from), self.given_by)
+            format!("at {} ({})", told(self.from), self.given_by)
         }
     }
 }
@@ -137,15 +139,14 @@ impl Forced {
         }
     }
 
-    /// The quantity at a point.
-    fn value(&self, (at, factor): (usize, f64), p: &Point) -> f64 {
-        factor
-            * match self.quantity {
-                Quantity::Torque | Quantity::Stress => p.links[at].amplitude,
-                Quantity::Peak => p.links[at].peak,
-                Quantity::Heat => p.links[at].heat,
-                Quantity::Irregularity => p.irregularity.get(at).copied().unwrap_or(0.0),
-            }
+    /// The quantity at a point; of a stress the torque, whose tops are known from elsewhere.
+    fn value(&self, at: usize, p: &Point) -> f64 {
+        match self.quantity {
+            Quantity::Torque | Quantity::Stress => p.links[at].amplitude,
+            Quantity::Peak => p.links[at].peak,
+            Quantity::Heat => p.links[at].heat,
+            Quantity::Irregularity => p.irregularity.get(at).copied().unwrap_or(0.0),
+        }
     }
 
     /// Order of the largest torque there; none for what is no torque.
@@ -253,22 +254,28 @@ impl<'m, 'a> Step<'m, 'a> {
         Self { machine, speeds, critical, unbounded }
     }
 
-    /// The limit at its worst between two speeds of the range.
-    fn worst_between(&mut self, limit: &Forced, from: f64, to: f64) -> Option<(f64, f64)> {
-        let place = limit.place(self.machine.a)?;
+    /// The speeds that show peaks between two speeds of the range, these included.
+    fn between(&self, from: f64, to: f64) -> Vec<f64> {
         let mut speeds: Vec<f64> = self.speeds.iter().copied().filter(|w| *w > from && *w < to).collect();
         speeds.insert(0, from);
         if to > from {
             speeds.push(to);
         }
-        let (speed, value) = self.machine.largest(&speeds, &|p| limit.value(place, p));
-        value.is_finite().then_some((speed, value))
+        speeds
+    }
+
+    /// The limit at its worst over some speeds.
+    fn worst_over(&mut self, limit: &Forced, speeds: &[f64]) -> Option<(f64, f64)> {
+        let (at, factor) = limit.place(self.machine.a)?;
+        let (speed, value) = self.machine.largest(speeds, &|p| limit.value(at, p));
+        value.is_finite().then_some((speed, factor * value))
     }
 
     /// One limit on forced vibration over the operating range.
     pub fn judge(&mut self, limit: &Forced, range: &Operating) -> Option<Judged> {
         let place = limit.place(self.machine.a)?;
-        let (speed, value) = self.worst_between(limit, range.from, range.to)?;
+        let speeds = self.between(range.from, range.to);
+        let (speed, value) = self.worst_over(limit, &speeds)?;
         if let Some(c) = self.unbounded.first() {
             let text = format!(
                 "grows without bound at {}: order {} meets mode {}, which nothing damps",
@@ -289,15 +296,23 @@ impl<'m, 'a> Step<'m, 'a> {
         if self.unbounded.iter().any(|c| c.speed >= from && c.speed <= to) {
             return Some((UNBOUNDED, "vibration without bound".into()));
         }
-        let mut worst: Option<(f64, String)> = None;
+        let speeds = self.between(from, to);
+        let mut sampled: Vec<(f64, &Forced)> = Vec::new();
         for l in limits {
-            let Some((_, value)) = self.worst_between(l, from, to) else { continue };
-            let used = value / l.admitted;
-            if worst.as_ref().is_none_or(|w| used > w.0) {
-                worst = Some((used, l.label()));
-            }
+            let Some((at, factor)) = l.place(self.machine.a) else { continue };
+            let values = speeds.iter().filter_map(|w| self.machine.at(*w).map(|p| factor * l.value(at, p)));
+            sampled.push((values.fold(0.0, f64::max) / l.admitted, l));
         }
-        worst
+        sampled.sort_by(|a, b| b.0.total_cmp(&a.0));
+        // Speeds that show the peaks tell whether a limit is broken; how near one comes to it is worth a closer look.
+        if sampled.first().is_some_and(|s| s.0 <= 1.0) {
+            let near = CLOSE * sampled[0].0.max(CLOSE);
+            for s in sampled.iter_mut().filter(|s| s.0 >= near) {
+                s.0 = self.worst_over(s.1, &speeds).map_or(s.0, |w| (w.1 / s.1.admitted).max(s.0));
+            }
+            sampled.sort_by(|a, b| b.0.total_cmp(&a.0));
+        }
+        sampled.first().map(|(used, l)| (*used, l.label()))
     }
 }
 
@@ -474,6 +489,11 @@ pub fn judge_separation(
                     },
                 );
                 accepted.push(Accepted { key: format!("mode{mode}.{}", e.key()), text, used });
+            }
+            // Where they meet, the vibration says by how much it is too large.
+            Some((most, which)) if least == 0.0 => {
+                let text = format!("{text}, and {which} uses {most:.4} of its limit there");
+                return Some(Judged { used: most, text, speed });
             }
             _ => return Some(Judged { used, text, speed }),
         }

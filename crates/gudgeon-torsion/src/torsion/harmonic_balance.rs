@@ -1,3 +1,4 @@
+use std::collections::VecDeque;
 use std::f64::consts::PI;
 
 use gudgeon_core::kinds::{
@@ -123,6 +124,7 @@ impl TorsionSpec for HarmonicBalance {
             even: ctx.line.throws.iter().map(at_even).collect(),
             x: vec![0.0; 2 * active.len() * (harmonics + 1)],
             active,
+            pairs: VecDeque::with_capacity(DEPTH + 1),
             tangents: Vec::new(),
             steady,
         };
@@ -146,6 +148,8 @@ fn active(line: &Line) -> Vec<usize> {
 
 /// Rounds that the acceleration remembers.
 const DEPTH: usize = 24;
+/// Round from which it only counts those of its own speed.
+const STALE: usize = 12;
 
 #[derive(Debug)]
 struct Solver {
@@ -163,6 +167,8 @@ struct Solver {
     active: Vec<usize>,
     /// Torques on these nodes that the linear line does not have, as the last run found them.
     x: Vec<f64>,
+    /// Differences of iterates and of their remainders, newest first: those of one speed serve at the next, where little is different.
+    pairs: VecDeque<[Vec<f64>; 2]>,
     /// Laws of the links as the linear line has them: the tree keeps these, whatever the mean torque turns out to be.
     tangents: Vec<LinearCoupling>,
     steady: Steady,
@@ -340,13 +346,13 @@ impl Torsion for Solver {
         let found = match first {
             // The motion of another speed may be a bad start.
             Err(_) if warm => {
-                self.x.fill(0.0);
+                self.forget();
                 self.iterate(&mut rounds)
             }
             other => other,
         };
         if found.is_err() {
-            self.x.fill(0.0);
+            self.forget();
         }
         let (mut orders, rest) = found?;
         self.complete(&mut orders, &rest);
@@ -365,6 +371,12 @@ impl Torsion for Solver {
 }
 
 impl Solver {
+    /// The next run starts from nothing.
+    fn forget(&mut self) {
+        self.x.fill(0.0);
+        self.pairs.clear();
+    }
+
     /// The unknowns as torques by order and node.
     fn spread(&self) -> Vec<Vec<Complex>> {
         let n = self.steady.tree.len();
@@ -382,13 +394,17 @@ impl Solver {
 
     /// Rounds from the unknowns as they stand to the periodic motion and what the linear line leaves out of it.
     fn iterate(&mut self, rounds: &mut u64) -> Result<(Vec<OrderResponse>, Rest), EvalError> {
-        let (mut xs, mut fs): (Vec<Vec<f64>>, Vec<Vec<f64>>) = (Vec::new(), Vec::new());
+        let mut last: Option<[Vec<f64>; 2]> = None;
         let base_mean = self.steady.excitation.mean.clone();
         let given = self.steady.excitation.orders.iter().flat_map(|o| &o.torque).map(|t| t.abs());
         let scale = given.chain(base_mean.iter().map(|m| m.abs())).fold(f64::MIN_POSITIVE, f64::max);
         let mut change = f64::INFINITY;
-        for _ in 0..self.rounds {
+        for round in 0..self.rounds {
             *rounds += 1;
+            if round == STALE {
+                // What another speed left does not help here.
+                self.pairs.truncate(round - 1);
+            }
             let extra = self.spread();
             // Mean state under the mean of the rest.
             let mean: Vec<f64> = base_mean.iter().zip(&extra[0]).map(|(m, e)| m + e.re).collect();
@@ -409,13 +425,14 @@ impl Solver {
             if change <= self.tolerance {
                 return Ok((orders, rest));
             }
-            xs.push(self.x.clone());
-            fs.push(f);
-            if xs.len() > DEPTH + 1 {
-                xs.remove(0);
-                fs.remove(0);
+            if let Some([x, old]) = last.take() {
+                let moved = self.x.iter().zip(&x).map(|(a, b)| a - b).collect();
+                let changed = f.iter().zip(&old).map(|(a, b)| a - b).collect();
+                self.pairs.push_front([moved, changed]);
+                self.pairs.truncate(DEPTH);
             }
-            self.x = accelerated(&xs, &fs);
+            let next = accelerated(&self.x, &f, &self.pairs);
+            last = Some([std::mem::replace(&mut self.x, next), f]);
         }
         Err(EvalError::fatal(
             "harmonic_balance",
@@ -428,19 +445,15 @@ impl Solver {
     }
 }
 
-/// Next iterate by Anderson's method: the combination of what was tried whose remainder is least, plus that remainder.
-fn accelerated(xs: &[Vec<f64>], fs: &[Vec<f64>]) -> Vec<f64> {
-    let last = xs.len() - 1;
-    let (x, f) = (&xs[last], &fs[last]);
+/// Next iterate by Anderson's method: the combination of what was tried whose remainder is least, plus that remainder. `pairs` are
+/// differences of iterates and of their remainders, newest first.
+fn accelerated(x: &[f64], f: &[f64], pairs: &VecDeque<[Vec<f64>; 2]>) -> Vec<f64> {
     let plain = || x.iter().zip(f).map(|(x, f)| x + f).collect::<Vec<f64>>();
-    if last == 0 {
-        return plain();
-    }
     // Orthonormal differences of the remainders (modified Gram-Schmidt, twice), newest first.
     let mut q: Vec<Vec<f64>> = Vec::new();
-    let mut used: Vec<usize> = Vec::new();
-    for i in (0..last).rev() {
-        let mut d: Vec<f64> = fs[i + 1].iter().zip(&fs[i]).map(|(a, b)| a - b).collect();
+    let mut used: Vec<&[Vec<f64>; 2]> = Vec::new();
+    for pair in pairs {
+        let mut d = pair[1].clone();
         let before = norm(&d);
         for _ in 0..2 {
             for e in &q {
@@ -454,16 +467,18 @@ fn accelerated(xs: &[Vec<f64>], fs: &[Vec<f64>]) -> Vec<f64> {
         }
         d.iter_mut().for_each(|d| *d /= after);
         q.push(d);
-        used.push(i);
+        used.push(pair);
     }
     let k = q.len();
+    if k == 0 {
+        return plain();
+    }
     // Q has the differences as R = Qᵀ ΔF, upper triangular in the order of use.
     let mut r = vec![0.0; k * k];
     let mut rhs: Vec<f64> = q.iter().map(|e| dot(e, f)).collect();
-    for (c, &i) in used.iter().enumerate() {
-        let d: Vec<f64> = fs[i + 1].iter().zip(&fs[i]).map(|(a, b)| a - b).collect();
-        for (row, e) in q.iter().enumerate() {
-            r[row * k + c] = dot(e, &d);
+    for (c, pair) in used.iter().enumerate() {
+        for (row, e) in q.iter().enumerate().take(c + 1) {
+            r[row * k + c] = dot(e, &pair[1]);
         }
     }
     let mut pivots = vec![0; k];
@@ -472,9 +487,9 @@ fn accelerated(xs: &[Vec<f64>], fs: &[Vec<f64>]) -> Vec<f64> {
     }
     lu_solve(&r, k, &pivots, &mut rhs);
     let mut next = plain();
-    for (gamma, &i) in rhs.iter().zip(&used) {
-        for j in 0..next.len() {
-            next[j] -= gamma * ((xs[i + 1][j] - xs[i][j]) + (fs[i + 1][j] - fs[i][j]));
+    for (gamma, [moved, changed]) in rhs.iter().zip(used) {
+        for ((next, x), f) in next.iter_mut().zip(moved).zip(changed) {
+            *next -= gamma * (x + f);
         }
     }
     next

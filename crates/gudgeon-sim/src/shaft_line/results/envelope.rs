@@ -21,7 +21,7 @@ impl Results<'_> {
     pub fn envelope(
         &mut self,
         steps: &mut [Step<'_, '_>],
-        range: &Operating,
+        (range, diagram): (&Operating, &[f64]),
         names: &[String],
         limits: &[Forced],
     ) {
@@ -57,7 +57,7 @@ impl Results<'_> {
         }
         self.large_motion(steps, names);
         if range.is_wide() {
-            self.curves(steps, range, names, limits, &tops);
+            self.curves(steps, (range, diagram), names, limits, &tops);
         }
     }
 
@@ -98,14 +98,14 @@ impl Results<'_> {
     fn curves(
         &mut self,
         steps: &mut [Step<'_, '_>],
-        range: &Operating,
+        (range, diagram): (&Operating, &[f64]),
         names: &[String],
         limits: &[Forced],
         tops: &[(usize, Top)],
     ) {
         let Some(a) = steps.first().map(|s| s.machine.a) else { return };
-        // An even grid, and the places of the peaks.
-        let mut speeds = range.grid(&[]);
+        // The grid, and the places of the peaks.
+        let mut speeds = range.grid(diagram);
         speeds.extend(tops.iter().map(|t| t.1.speed).filter(|w| *w > range.from && *w < range.to));
         speeds.sort_unstable_by(f64::total_cmp);
         speeds.dedup();

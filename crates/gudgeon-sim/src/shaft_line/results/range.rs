@@ -8,6 +8,7 @@ use gudgeon_core::result::{Note, Series};
 use super::{MOST, Results, column};
 use crate::shaft_line::assemble::{Assembled, throws_alone};
 use crate::shaft_line::machine::{Machine, Point};
+use crate::shaft_line::verdict::Operating;
 use crate::shaft_line::{rpm, told};
 
 /// Orders drawn of the shaft that vibrates most.
@@ -32,8 +33,15 @@ impl Results<'_> {
             }
         }
         machine.by_order = false;
-        let critical = machine.critical_speeds(speeds[0], speeds[speeds.len() - 1]);
-        let telling = machine.telling_speeds(speeds, &critical);
+        // Peaks between the points count where the limits do; a wider diagram shows what it draws.
+        let (from, to) = (speeds[0], speeds[speeds.len() - 1]);
+        let judged = Operating::new(self.case);
+        let (telling, of) = if judged.from == from && judged.to == to {
+            let critical = machine.critical_speeds(from, to);
+            (machine.telling_speeds(speeds, &critical), "over the speed range")
+        } else {
+            (Vec::new(), "of the speeds of the diagram")
+        };
         let mut table = Series {
             axis: column("speed", "rpm", speeds.iter().map(|w| rpm(*w)).collect()),
             columns: Vec::new(),
@@ -41,7 +49,12 @@ impl Results<'_> {
         let mut curves = Vec::new();
         let mut top = (0.0, 0, speeds[0]);
         for l in 0..links {
-            let (speed, most) = machine.largest(&telling, &|p| p.links[l].amplitude);
+            let drawn = rows.iter().zip(speeds).map(|(p, w)| (*w, p.links[l].amplitude));
+            let (speed, most) = if telling.is_empty() {
+                drawn.fold((from, 0.0), |best, at| if at.1 > best.1 { at } else { best })
+            } else {
+                machine.largest(&telling, &|p| p.links[l].amplitude)
+            };
             if most > top.0 {
                 top = (most, l, speed);
             }
@@ -49,7 +62,7 @@ impl Results<'_> {
                 format!("range.shaft{}.torque_amplitude", l + 1),
                 most,
                 "N m",
-                format!("largest vibratory torque of {} over the speed range", a.line.links[l].name),
+                format!("largest vibratory torque of {} {of}", a.line.links[l].name),
             );
             let name = format!("shaft{}.torque_amplitude", l + 1);
             table.columns.push(column(

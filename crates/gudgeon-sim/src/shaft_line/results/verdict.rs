@@ -62,7 +62,7 @@ impl Results<'_> {
         }
         self.out.solver.notes.splice(0..0, notes);
         if vibration && (range.is_wide() || names.len() > 1) {
-            self.envelope(&mut judged, &range, &names, &limits);
+            self.envelope(&mut judged, (&range, diagram), &names, &limits);
         }
         for (name, s) in names.iter().zip(&judged) {
             self.answered(s.machine, &slug(name));
