@@ -414,10 +414,12 @@ pub struct Solver {
     /// `implicit`: the whole scene at once, adaptive. `as_published`: the scheme of the source.
     pub method: Method,
     /// `implicit`: relative error per step.
+    #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1, "when": { "method": "implicit" } }))]
     pub tolerance: PosRatio,
     /// `implicit`: time integrator.
     pub integrator: IntegratorName,
     /// `implicit`: true relative error of the periodic state; not below `tolerance`.
+    #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1, "when": { "method": "implicit" } }))]
     pub periodicity: PosRatio,
     /// Most cycles, all phases of the search together, before the run is called unconverged.
     pub max_cycles: u32,

@@ -3,12 +3,12 @@
 use std::path::Path;
 use std::time::Instant;
 
-use gudgeon_core::result::{BenchPoint, BenchTable, Comparison, Variant};
+use gudgeon_core::result::{BenchPoint, BenchTable, Comparison, RunResult, Variant};
 use gudgeon_core::{BuildError, Registry};
 use indexmap::IndexMap;
 
 use crate::load::Report;
-use crate::run::{Checked, Progress, RunError, check, run_alone};
+use crate::run::{Checked, Progress, RunError, check, run_alone, run_alone_verified};
 
 /// `gas_flow`, `models.gas_flow` and `models.gas_flow.model` all mean the model's name; anything else is taken as written.
 fn swap_path(path: &str) -> String {
@@ -30,6 +30,32 @@ fn swap_path(path: &str) -> String {
 /// # Errors
 /// The case itself is wrong, a swap has no values, or no combination is possible.
 pub fn compare(
+    path: &Path,
+    overrides: &[String],
+    swaps: &[(String, Vec<String>)],
+    progress: &mut dyn FnMut(Progress),
+) -> Result<Comparison, Report> {
+    compare_by(run_alone, path, overrides, swaps, progress)
+}
+
+/// As [`compare`], and finds the numerical uncertainty of every result.
+///
+/// # Errors
+/// As [`compare`].
+pub fn compare_verified(
+    path: &Path,
+    overrides: &[String],
+    swaps: &[(String, Vec<String>)],
+    progress: &mut dyn FnMut(Progress),
+) -> Result<Comparison, Report> {
+    compare_by(run_alone_verified, path, overrides, swaps, progress)
+}
+
+/// How one combination is run.
+type Run = fn(&Checked, &mut dyn FnMut(Progress)) -> Result<RunResult, RunError>;
+
+fn compare_by(
+    run: Run,
     path: &Path,
     overrides: &[String],
     swaps: &[(String, Vec<String>)],
@@ -81,7 +107,7 @@ pub fn compare(
                     "refused: {}",
                     report.diagnostics.iter().map(|d| d.headline()).collect::<Vec<_>>().join("; ")
                 )),
-                Ok(c) => run_alone(&c, &mut |p| {
+                Ok(c) => run(&c, &mut |p| {
                     progress(Progress {
                         phase: format!("{label}: {}", p.phase),
                         fraction: (k as f64 + p.fraction) / total,

@@ -2,30 +2,37 @@
 
 use std::fmt::Write as _;
 
-use gudgeon_core::result::Comparison;
+use gudgeon_core::result::{Comparison, RunResult};
 
-use crate::args::{CompareArgs, out_dir};
-use crate::cmd::{check_out, checked};
+use crate::args::CompareArgs;
+use crate::cmd::{checked, open_out};
 use crate::failure::Failure;
 use crate::ui::{Ui, number, table, unit};
 
 pub fn compare(a: &CompareArgs, ui: &Ui) -> Result<(), Failure> {
     let swaps = a.swap.iter().map(|s| swap(s)).collect::<Result<Vec<_>, _>>()?;
     let name = checked(&a.case, ui)?.name;
-    let dir = out_dir(a.out.as_deref(), &name, "-compare");
-    check_out(&dir)?;
+    let folder = open_out(a.out.as_deref(), &a.case.case, &name, "-compare")?;
     let comparison = {
         let bar = ui.bar();
-        gudgeon_sim::compare(&a.case.case, &a.case.set, &swaps, &mut |p| bar.show(p))?
+        let compare = if a.verify { gudgeon_sim::compare_verified } else { gudgeon_sim::compare };
+        compare(&a.case.case, &a.case.set, &swaps, &mut |p| bar.show(p))?
     };
-    let files = gudgeon_report::write_comparison(&comparison, &dir)?;
+    let files = gudgeon_report::write_comparison_in(&comparison, folder)?;
     if !ui.quiet() {
         ui.out(&format!("{}\n{}", text(&comparison), files.report.display()));
     }
-    if comparison.variants.iter().all(|v| v.outcome.is_err()) {
-        return Err(Failure::Run("none of the combinations has a result".into()));
+    let failed = comparison.variants.iter().filter(|v| v.outcome.is_err()).count();
+    match failed {
+        0 => Ok(()),
+        n if n == comparison.variants.len() => {
+            Err(Failure::Run("none of the combinations has a result".into()))
+        }
+        n => Err(Failure::Run(format!(
+            "{n} of {} combinations have no result; the others are written",
+            comparison.variants.len()
+        ))),
     }
-    Ok(())
 }
 
 /// `PATH=A,B,C`. A comma inside brackets or quotes belongs to its value.
@@ -56,6 +63,11 @@ fn swap(text: &str) -> Result<(String, Vec<String>), Failure> {
     Ok((path.trim().to_owned(), all))
 }
 
+/// Numerical uncertainty of a result; 0 where nobody asked for it.
+fn uncertainty(r: &RunResult, name: &str) -> f64 {
+    r.verification.as_ref().and_then(|v| v.uncertainty.get(name)).copied().unwrap_or(0.0)
+}
+
 /// Combinations that fit a terminal side by side.
 const COLUMNS: usize = 4;
 
@@ -84,6 +96,9 @@ fn text(c: &Comparison) -> String {
             let other = r.results.get(name);
             row.push(other.map_or_else(|| "-".into(), |o| number(o.value)));
             row.push(match other {
+                Some(o) if (o.value - v.value).abs() < uncertainty(base, name) + uncertainty(r, name) => {
+                    "numerics".into()
+                }
                 Some(o) if v.value != 0.0 && o.value != v.value => {
                     format!("{:+.2} %", 100.0 * (o.value / v.value - 1.0))
                 }
@@ -92,6 +107,12 @@ fn text(c: &Comparison) -> String {
         }
         rows.push(row);
     }
+    let mut times = vec!["time".to_owned(), "s".to_owned()];
+    for (k, (_, r)) in shown.iter().enumerate() {
+        times.push(r.seconds.get("total").map_or_else(String::new, |t| number(*t)));
+        times.extend((k > 0).then(String::new));
+    }
+    rows.push(times);
     s.push('\n');
     let right: Vec<usize> = (2..2 + 2 * shown.len()).collect();
     s.push_str(&table(&rows, &right));
