@@ -74,7 +74,12 @@ fn the_same_case_gives_the_same_bytes() {
 
 #[test]
 fn every_torsion_model_answers_the_compressor() {
-    let base = ["models.throw_inertia.model=mean", "range={ orders = 12 }", "limits={}"];
+    let base = [
+        "models.torsion={ model = \"orders\" }",
+        "models.throw_inertia.model=mean",
+        "range={ orders = 12 }",
+        "limits={}",
+    ];
     let with = |more: &[&str]| once("compressor-4-throw.toml", &[&base[..], more].concat());
     let orders = with(&[]);
     let amplitude = |r: &RunResult, shaft: usize| r.results[&format!("shaft{shaft}.torque_amplitude")].value;

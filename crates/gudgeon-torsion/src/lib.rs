@@ -21,7 +21,6 @@ pub mod eigen;
 pub mod forcing;
 pub mod natural_frequencies;
 pub mod shaft;
-pub mod speed_range;
 pub mod steady;
 pub mod sweep;
 pub mod throw_inertia;

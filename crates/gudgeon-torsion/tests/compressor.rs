@@ -624,8 +624,7 @@ fn phasors_are_what_the_lanes_and_the_tree_say() {
 #[test]
 fn a_model_at_another_speed_answers_as_if_it_were_built_there() {
     let l = line(Gas::M3, &Exact {}, Some((2000.0, -20.0)), [0.0, PI, PI / 2.0, 1.5 * PI]);
-    let specs: [&dyn TorsionSpec; 3] =
-        [&Orders {}, &Modal::default(), &HarmonicBalance::default()];
+    let specs: [&dyn TorsionSpec; 3] = [&Orders {}, &Modal::default(), &HarmonicBalance::default()];
     for spec in specs {
         let mut moving = spec.build(&context(&l, 60.0, 12.0, &[], &[])).expect("builds");
         for speed in [60.0, 61.0, 104.72, 40.0] {
