@@ -176,14 +176,7 @@ fn pins_that_no_search_can_find() {
 fn memory_of_a_speed_range() {
     let folder = Folder::new("range");
     let said = folder.refused(&case("geared-train.toml"), &["range.orders=2000", "range.points=20000"]);
-    holds(
-        &said,
-        &[
-            "range.points: 20000 speeds times",
-            "times 4000 orders times 13 shafts take 15.5 GiB, at most 1 GiB is kept",
-            "fewer `points`",
-        ],
-    );
+    holds(&said, &["range.points: 20000 speeds of 2000 orders in 13 shafts", "at most 2e7", "fewer points"]);
 }
 
 #[test]
