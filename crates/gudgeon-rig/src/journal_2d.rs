@@ -2,10 +2,12 @@ use std::f64::consts::PI;
 
 use gudgeon_core::kinds::{Film2dGrid, Film2dSpec, Rig, RigCtx, RigOut, RigSpec, RoughnessSpec};
 use gudgeon_core::quantity::{PosAngularSpeed, PosLength, PosRatio, PosViscosity, Pressure, quantity};
+use gudgeon_core::result::Note;
 use gudgeon_core::{BuildError, EvalError};
 use gudgeon_film::SmoothSurfaces;
 use serde::{Deserialize, Serialize};
 
+use crate::along;
 use crate::sheet::{self, Conditions, Sheet};
 use crate::slider_2d::Sides;
 
@@ -107,6 +109,10 @@ impl RigSpec for Journal2dRig {
         if self.supply == JournalSupply::Sides && self.p_supply.si() != 0.0 {
             errors.push(BuildError::at("p_supply", "there is no groove that could have this pressure"));
         }
+        let groove = self.supply == JournalSupply::WidestGap;
+        let edges = [if groove { self.p_supply.si() } else { self.p_side.si() }, self.p_side.si()];
+        let own = if self.sides == Sides::Closed { &edges[..1] } else { &edges[..] };
+        errors.extend(along::cavitation_below(self.p_cav.si(), own));
         let nx = sheet::intervals("intervals_x", self.intervals_x);
         let ny = sheet::intervals("intervals_y", self.intervals_y);
         match (nx, ny) {
@@ -129,6 +135,9 @@ impl RigSpec for Journal2dRig {
         }
     }
 }
+
+/// Load, in `mu omega L R^3/c^2`, below which a film carries nothing but the rounding of its pressures.
+const NOTHING: f64 = 1e-9;
 
 struct Bench {
     sheet: Sheet,
@@ -158,6 +167,15 @@ impl Rig for Bench {
         let along = self.sheet.sum(|k, x, _| found.p[k] * (x / radius).cos());
         let across = self.sheet.sum(|k, x, _| found.p[k] * (x / radius).sin());
         let load = along.hypot(across);
+        let scale = s.viscosity.si() * s.speed.si() * width * radius.powi(3) / clearance.powi(2);
+        if load < NOTHING * scale {
+            out.notes.push(Note::failure(
+                "no_film",
+                format!(
+                    "The film carries nothing ({load:.1e} N, where a full film carries some {scale:.1e} N): what it loses over its sides nothing gives back, so it runs empty. Sides at the cavitation pressure give no oil; raise `p_side` above `p_cav`, or use `supply = \"widest_gap\"`."
+                ),
+            ).amount("load", load, "N"));
+        }
         let per_second = s.speed.si() / (2.0 * PI);
         let sommerfeld =
             s.viscosity.si() * per_second * width * 2.0 * radius / load * (radius / clearance).powi(2);
