@@ -2,7 +2,6 @@ use std::f64::consts::PI;
 
 use gudgeon_core::kinds::{Film2dGrid, Film2dSpec, Rig, RigCtx, RigOut, RigSpec, RoughnessSpec};
 use gudgeon_core::quantity::{PosAngularSpeed, PosLength, PosRatio, PosViscosity, Pressure, quantity};
-use gudgeon_core::result::Note;
 use gudgeon_core::{BuildError, EvalError};
 use gudgeon_film::SmoothSurfaces;
 use serde::{Deserialize, Serialize};
@@ -169,12 +168,12 @@ impl Rig for Bench {
         let load = along.hypot(across);
         let scale = s.viscosity.si() * s.speed.si() * width * radius.powi(3) / clearance.powi(2);
         if load < NOTHING * scale {
-            out.notes.push(Note::failure(
-                "no_film",
+            return Err(EvalError::fatal(
+                "journal_2d",
                 format!(
-                    "The film carries nothing ({load:.1e} N, where a full film carries some {scale:.1e} N): what it loses over its sides nothing gives back, so it runs empty. Sides at the cavitation pressure give no oil; raise `p_side` above `p_cav`, or use `supply = \"widest_gap\"`."
+                    "the bearing runs empty: its film carries {load:.1e} N where a full one carries some {scale:.1e} N, for nothing gives back what it loses over its sides. Sides at the cavitation pressure give no oil; raise `p_side` above `p_cav`, or use `supply = \"widest_gap\"`"
                 ),
-            ).amount("load", load, "N"));
+            ));
         }
         let per_second = s.speed.si() / (2.0 * PI);
         let sommerfeld =
