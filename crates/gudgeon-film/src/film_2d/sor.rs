@@ -224,11 +224,13 @@ impl Film2d for Relaxation {
         for k in 0..self.p.len() {
             let p = if cavitates { self.p[k].max(0.0) } else { self.p[k] };
             self.pressure[k] = inp.p_cav + p;
-            self.fill[k] = 1.0 - self.void[k];
             self.b[k] = p;
         }
         let shown = std::mem::take(&mut self.b);
-        let mut out = self.problem.result(inp, &shown, &self.void, conserves, &mut self.fill);
+        if conserves {
+            self.problem.fill_sides(inp, &shown, &mut self.void);
+        }
+        let mut out = self.problem.result(inp, &shown, &self.void, cavitation, &mut self.fill);
         self.b = shown;
         for (f, v) in self.fill.iter_mut().zip(&self.void) {
             *f = 1.0 - v;

@@ -83,8 +83,8 @@ impl SceneCase for PowerCylinderCase {
         let other = half("skirt", 0.5)?;
         let power = |r: &RunResult| r.results.get("friction_power").map(|v| v.value);
         let total = power(&result).zip(power(&other));
-        let fmep = |r: &RunResult, unit: f64| r.results.get("fmep").map(|v| unit * v.value);
-        let pressure = fmep(&result, 1e5).zip(fmep(&other, 1e3));
+        let fmep = |r: &RunResult| r.results.get("fmep").map(|v| v.value);
+        let pressure = fmep(&result).zip(fmep(&other));
         let mut results = indexmap::IndexMap::new();
         let mut sum = |name: &str, value: Option<f64>, unit: &str, what: &str| {
             if let Some(value) = value {
@@ -99,8 +99,8 @@ impl SceneCase for PowerCylinderCase {
         );
         sum(
             "fmep",
-            pressure.map(|(a, b)| 1e-3 * (a + b)),
-            "kPa",
+            pressure.map(|(a, b)| a + b),
+            "bar",
             "friction work of rings and skirt over swept volume",
         );
         results.extend(result.results.into_iter().map(|(k, v)| (named("rings", &k), v)));
