@@ -2,6 +2,7 @@
 
 pub mod jet;
 pub mod linalg;
+pub mod maximum;
 pub mod multigrid;
 pub mod ode;
 pub mod orbit;

@@ -7,6 +7,7 @@
 pub mod assemble;
 pub mod contact_line;
 pub mod degree_march;
+mod end_gap;
 pub mod geometry;
 pub mod hold;
 pub mod implicit;

@@ -72,7 +72,8 @@ pub struct LinerShape {
 }
 
 impl LinerShape {
-    fn at(&self, x: f64) -> f64 {
+    /// Radial growth at a height \[m\].
+    pub fn at(&self, x: f64) -> f64 {
         let n = self.position.len();
         if n == 0 {
             return 0.0;

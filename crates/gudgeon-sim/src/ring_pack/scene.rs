@@ -65,6 +65,10 @@ impl SceneCase for RingPackCase {
         Ok(result)
     }
 
+    fn result_names(loaded: &Loaded<Self>) -> Option<Vec<String>> {
+        Some(build(loaded).ok()?.plan.wanted)
+    }
+
     fn race(&self) -> Option<Race> {
         let radau = |tolerance: f64| {
             vec![
