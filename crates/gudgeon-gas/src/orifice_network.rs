@@ -29,7 +29,7 @@ use crate::pack::{Elimination, FilmHeight, Openings, Pack, Passages, RingPassage
 /// half directly. A drained groove has no volume of its own: its upper-flank path ends in the land below and there is no lower one.
 /// A sealed ring has no flank paths, and its whole gap is direct.
 ///
-/// `s` is kept within 0 and `c`, and `A_gap` above zero, unless `bounded` is `false`.
+/// `s` is kept within 0 and `c`, and `A_gap` above zero, but for the scheme `substep_march`, which takes them as they come, as published.
 ///
 /// Gas temperatures are those of the walls (isothermal volumes); the flow in an orifice is adiabatic.
 ///
@@ -55,10 +55,6 @@ pub struct OrificeNetwork {
     /// the moment of lift-off, as published, which makes the flow discontinuous there.
     #[serde(default = "default_fade")]
     pub chamfer_fade: Ratio<Fraction>,
-    /// Whether an opening is at least zero. The published program takes lifts and gaps as they come (`false`): a ring at rest on its upper
-    /// flank, whose clearance shrinks as the liner narrows, then leaves a little less than nothing there until it moves again.
-    #[serde(default = "yes")]
-    pub bounded: bool,
     /// Whether spaces behind rings that fill in less than `eliminate_below` are left out of the integration.
     #[serde(default)]
     pub eliminate: Elimination,
@@ -69,9 +65,6 @@ pub struct OrificeNetwork {
     pub eliminate_below: PosTime,
 }
 
-const fn yes() -> bool {
-    true
-}
 fn default_split() -> Ratio<Fraction> {
     quantity(0.5)
 }
@@ -92,7 +85,6 @@ impl Default for OrificeNetwork {
             film_height: FilmHeight::default(),
             nominal_film: default_film(),
             chamfer_fade: default_fade(),
-            bounded: true,
             eliminate: Elimination::default(),
             eliminate_below: crate::pack::ten_nanoseconds(),
         }
@@ -111,15 +103,14 @@ impl OrificeNetwork {
     fn pack(&self, pack: &PackGeometry) -> Result<Pack<Areas>, BuildError> {
         let film = nominal(self.film_height, self.nominal_film);
         let eliminate = self.eliminate.below(self.eliminate_below);
-        let built = Pack::new(
+        Pack::new(
             Areas { split: self.gap_split.si() },
             pack,
             &self.orifice,
             film,
             self.chamfer_fade.si(),
             eliminate,
-        )?;
-        Ok(if self.bounded { built } else { built.unbounded() })
+        )
     }
 }
 
@@ -152,6 +143,7 @@ struct Areas {
 impl Passages for Areas {
     const NAME: &'static str = "orifice_network";
     const FACE: bool = false;
+    const SIGNED: bool = true;
 
     fn passages(&self, _: usize, ring: &RingGeometry, o: &Openings) -> RingPassages {
         let face = TAU * (o.liner_radius - o.h) * ring.leak_face;

@@ -55,6 +55,7 @@ pub fn run(
     progress: &mut dyn FnMut(f64),
 ) -> Result<(Totals, u64), EvalError> {
     let n = pack.n_rings();
+    pack.gas.unbound();
     let mut y = vec![0.0; pack.layout.n];
     pack.initial(start, &mut y);
     // The listing starts every film at 1 µm and every ring at rest on its lower flank.
