@@ -49,8 +49,33 @@ pub enum RunError {
         source: EvalError,
     },
     /// The integrator gave up.
-    #[error("the integration stopped: {0} (crank angles in radians)")]
+    #[error("the integration stopped {}", in_degrees(.0))]
     Integrate(#[from] IntegrateError),
+    /// The integrator of a ring pack needs too many steps.
+    #[error(
+        "at {theta_deg:.3} deg crank angle a cycle has taken {max} steps, the most that `solver.limits.most_steps` lets it take"
+    )]
+    Steps {
+        /// Where \[deg\].
+        theta_deg: f64,
+        /// The limit.
+        max: u64,
+    },
+    /// A ring rests on next to nothing.
+    #[error(
+        "at {theta_deg:.1} deg crank angle {load:.4} N press ring {ring} on a film of {film_nm:.2} nm, which neither oil nor contact carries. \
+         Give the ring a `contact` that can carry it, such as `greenwood_tripp`"
+    )]
+    NothingCarries {
+        /// Ring, from 1.
+        ring: usize,
+        /// Where \[deg\].
+        theta_deg: f64,
+        /// Load that is left \[N\].
+        load: f64,
+        /// Film thickness \[nm\].
+        film_nm: f64,
+    },
     /// The cycle does not close.
     #[error(
         "no periodic cycle after {cycles} cycles: estimated error {error:.2e}, wanted {wanted:.0e}. {advice}"
@@ -71,6 +96,22 @@ pub enum RunError {
     /// The sub-models could not be built a second time.
     #[error("{0}")]
     Refused(String),
+}
+
+/// What an integrator over the crank angle said, with angles in degrees.
+fn in_degrees(e: &IntegrateError) -> String {
+    let at = |t: &f64| format!("at {:.3} deg crank angle", t.to_degrees());
+    match e {
+        IntegrateError::Eval { t, source } => format!("{}: {source}", at(t)),
+        IntegrateError::StepTooSmall { t, h, last } => {
+            let why = last.as_ref().map_or_else(String::new, |e| format!(" ({e})"));
+            format!("{}: the step would have to be smaller than {:.1e} deg{why}", at(t), h.to_degrees())
+        }
+        IntegrateError::TooManySteps { t, max } => format!("{}: a cycle takes more than {max} steps", at(t)),
+        IntegrateError::NonFinite { t } => format!("{}: the rates are not finite", at(t)),
+        IntegrateError::Chatter { t, event } => format!("{}: event {event} repeats without progress", at(t)),
+        other => format!(": {other}"),
+    }
 }
 
 /// Reads, resolves and validates a case.
@@ -157,6 +198,9 @@ pub struct Explanation {
     pub skipped: Vec<Skipped>,
     /// Wanted results.
     pub results: Vec<String>,
+    /// Floors, caps and drags: key, value, reason.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub limits: Vec<(String, String, String)>,
     /// Names of the states that are integrated.
     pub states: Vec<String>,
     /// Notes.
@@ -221,6 +265,12 @@ impl Explanation {
         }
         for r in &self.skipped {
             let _ = writeln!(s, "  {}: {}", r.what, r.why);
+        }
+        if !self.limits.is_empty() {
+            let _ = writeln!(s, "\nFloors, caps and drags (what acts in a run is noted)");
+            for (key, value, reason) in &self.limits {
+                let _ = writeln!(s, "  {key} = {value}\n      {reason}");
+            }
         }
         if !self.states.is_empty() {
             let _ = writeln!(s, "\nStates integrated ({}): {}", self.states.len(), self.states.join(", "));

@@ -19,9 +19,6 @@ use super::pack::{Counters, Instant, Layout, LinerShape, Pack, RingInstant, Ring
 use super::plan::{Facts, Plan, plan, wanted};
 use crate::case::{Method, RingDesign, RingPackCase};
 
-/// Film thickness where the gas model wants one and no film is solved \[m\].
-const NOMINAL_FILM: f64 = 2e-6;
-
 /// A ring without axial clearance.
 struct Clamped;
 impl RingMotion for Clamped {
@@ -196,9 +193,11 @@ pub fn assemble(case: &RingPackCase, folder: &Path) -> Result<Pack, Vec<BuildErr
                     .is_constant()
                     .then(|| oil.viscosity(film_temperature.temperature(i, 0.0)));
                 let kind = motion.motion();
-                let nominal_film = NOMINAL_FILM;
+                let nominal_film = case.solver.limits.nominal_film.si();
+                let resists = films.iter().any(|f| f.resists());
                 rings.push(RingModel {
                     films,
+                    resists,
                     contact,
                     motion,
                     kind,
@@ -283,6 +282,7 @@ pub fn assemble(case: &RingPackCase, folder: &Path) -> Result<Pack, Vec<BuildErr
     let places = vec![gudgeon_core::geometry::RingPlace::default(); n];
     let mut pack = Pack {
         conv: case.conventions,
+        limits: (&case.solver.limits).into(),
         omega,
         kinematics,
         cylinder,

@@ -19,6 +19,7 @@ use super::hold::Hold;
 use super::oil::Ledger;
 use super::pack::{Base, Pack};
 use super::record::{Record, Totals};
+use super::watch::Watch;
 use crate::case::{IntegratorName, RingPackCase};
 use crate::run::RunError;
 
@@ -76,7 +77,7 @@ impl OdeSystem for Problem<'_> {
         // Surfaces that touch carry by their roughness, beside which a film much thinner need not be known to its own size.
         for (i, k) in self.pack.layout.film.iter().enumerate() {
             if let Some(k) = *k {
-                atol[k] *= (self.pack.rings[i].contact.scale() / self.pack.at.places[i].h).max(1.0);
+                atol[k] *= self.pack.rings[i].contact.ease(self.pack.at.places[i].h);
             }
         }
     }
@@ -109,9 +110,6 @@ impl OdeSystem for Problem<'_> {
     }
 }
 
-/// Most steps of a cycle, some thirty times what a pack needs at the default tolerance: beyond it the case asks for something that cannot be followed, such as
-/// the contact of a ring without mass.
-const MOST_STEPS: u64 = 30_000;
 /// First step of a cycle \[rad\].
 const FIRST_STEP: f64 = 1e-3;
 /// Velocity that counts as one in the error norm, in clearances per radian: what matters of a velocity is the distance it covers.
@@ -138,6 +136,10 @@ struct Cycle<'a> {
     stats: Stats,
     q: Vec<f64>,
     full_accuracy: f64,
+    /// Longest step \[rad\]: none may jump over a pressure pulse.
+    longest_step: f64,
+    /// Most steps of a cycle.
+    most_steps: u64,
     failure: Option<IntegrateError>,
     /// Steps of a cycle at full accuracy, when known: the unit of cost.
     progress: &'a mut dyn FnMut(f64),
@@ -154,9 +156,8 @@ impl Cycle<'_> {
     ) -> Result<(), IntegrateError> {
         let mut options = Options::new(rtol, &self.scale);
         options.absolute.clone_from(&self.absolute);
-        // No step may jump over a pressure pulse: 10 degrees at most.
-        options.h_max = 10f64.to_radians();
-        options.max_steps = MOST_STEPS;
+        options.h_max = self.longest_step;
+        options.max_steps = self.most_steps;
         if let Some(oil) = &self.pack.oil_pack {
             // A face takes up what the one before it left in earlier steps.
             let speed = 1.1 * 0.5 * self.pack.kinematics.stroke() * self.pack.omega;
@@ -314,6 +315,7 @@ struct Sampler {
     end: Vec<(f64, f64)>,
     /// Crank angles \[deg\] and the film on the liner there.
     liner: Vec<(u32, Vec<f64>)>,
+    watch: Watch,
 }
 
 impl Sampler {
@@ -332,6 +334,7 @@ impl Sampler {
             start: vec![(0.0, 0.0); n],
             end: vec![(0.0, 0.0); n],
             liner: Vec::new(),
+            watch: Watch::new(pack),
         }
     }
 
@@ -378,12 +381,13 @@ impl Sampler {
             self.record.push(self.grid[self.next], pack);
             self.next += 1;
         }
-        // Simpson's rule over the step for impulse and work of the forces on each ring.
-        if pack.plan.axial {
+        // Simpson's rule over the step for impulse and work of the forces on each ring, and for what limits did.
+        if pack.plan.axial || pack.plan.film {
             let dt = (v.t1() - v.t0()) / pack.omega / 6.0;
             for (t, weight) in [(v.t0(), 1.0), (0.5 * (v.t0() + v.t1()), 4.0), (v.t1(), 1.0)] {
                 v.interpolate(t, &mut y);
                 pack.evaluate(t, &y)?;
+                self.watch.look(pack, weight * dt * pack.omega);
                 for i in 0..pack.n_rings() {
                     if pack.layout.axial[i].is_none() {
                         continue;
@@ -447,6 +451,28 @@ fn film_peaks(pack: &mut Pack) -> Result<(), EvalError> {
 fn momentum(pack: &Pack, i: usize) -> (f64, f64) {
     let (m, v) = (pack.geo.rings[i].mass, pack.at.places[i].v);
     (m * v, 0.5 * m * v * v)
+}
+
+/// Times the wanted error beyond which a cycle is not what was asked for.
+const NOT_PERIODIC: f64 = 10.0;
+
+/// What is said of a cycle that does not close as it should.
+fn not_periodic(error: f64, wanted: f64, cycles: usize) -> Note {
+    let text = format!(
+        "not periodic within {wanted:.0e} after {cycles} cycles: the estimated error is {error:.1e}. Raise `solver.max_cycles`, or look for a mode that \
+         never settles (a ring that flutters)"
+    );
+    let failed = error.is_nan() || error > NOT_PERIODIC * wanted;
+    let note = if failed { Note::failure("not_periodic", text) } else { Note::caution("not_periodic", text) };
+    note.amount("estimated_error", error, "1").amount("wanted", wanted, "1")
+}
+
+/// What stopped an integration.
+fn stopped(e: IntegrateError) -> RunError {
+    match e {
+        IntegrateError::TooManySteps { t, max } => RunError::Steps { theta_deg: t.to_degrees(), max },
+        other => RunError::Integrate(other),
+    }
 }
 
 /// Solves one start.
@@ -513,6 +539,8 @@ pub(super) fn run(
         stats: Stats::default(),
         q: vec![0.0; quads],
         full_accuracy: s.tolerance.si(),
+        longest_step: s.limits.longest_step.si(),
+        most_steps: s.limits.steps_at(s.tolerance.si()),
         failure: None,
         progress,
         done: 0.0,
@@ -529,7 +557,7 @@ pub(super) fn run(
         Ok(r) => r,
         Err(source) => {
             let theta_deg = cycle.pack.at.theta.to_degrees();
-            return Err(cycle.failure.map_or(RunError::Eval { theta_deg, source }, RunError::Integrate));
+            return Err(cycle.failure.map_or(RunError::Eval { theta_deg, source }, stopped));
         }
     };
     let seconds = begin.elapsed().as_secs_f64();
@@ -543,7 +571,7 @@ pub(super) fn run(
         // What the crankcase put on the liner before the first step was counted with the rest.
         o.ledger = Ledger::default();
     }
-    cycle.integrate(&mut y[..dim], s.tolerance.si(), Some(&mut sampler))?;
+    cycle.integrate(&mut y[..dim], s.tolerance.si(), Some(&mut sampler)).map_err(stopped)?;
     let oil_mass = cycle.pack.oil_pack.as_ref().map(|o| {
         let l = &o.ledger;
         let stored = o.total(&y[..dim]) - oil_before;
@@ -571,26 +599,10 @@ pub(super) fn run(
         oil: pack.oil_pack.as_ref().map_or_else(Ledger::default, |o| o.ledger),
         duration: None,
     };
-    let mut notes = Vec::new();
+    sampler.watch.carried(pack)?;
+    let mut notes = sampler.watch.notes(pack);
     if report.period == 1 && !report.converged {
-        notes.push(Note::caution(
-            "not_periodic",
-            format!(
-                "not periodic within {:.0e} after {} cycles: the estimated error is {:.1e}",
-                s.periodicity.si(),
-                report.cycles,
-                report.error_estimate
-            ),
-        ));
-    }
-    if report.error_estimate > 0.5 && !discrete {
-        return Err(RunError::NotPeriodic {
-            cycles: report.cycles as u32,
-            error: report.error_estimate,
-            wanted: s.periodicity.si(),
-            advice: "Raise `solver.max_cycles`, or look for a mode that never settles (a ring that flutters)"
-                .into(),
-        });
+        notes.push(not_periodic(report.error_estimate, options.tolerance, report.cycles));
     }
     let counters = [
         ("steps", work.steps),
@@ -604,7 +616,9 @@ pub(super) fn run(
         liner: liner_table(pack, sampler.liner),
         record: sampler.record,
         totals,
-        period: if report.converged { report.period } else { 0 },
+        // Decisions that do not repeat are told by the caller, for every start.
+        period: if report.converged || !discrete { report.period } else { 0 },
+        retreats: sampler.watch.events(),
         cycles: report.cycle_equivalents,
         counters: counters.into_iter().map(|(k, v)| (k.to_owned(), v)).collect(),
         notes,

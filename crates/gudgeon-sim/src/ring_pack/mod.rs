@@ -9,17 +9,19 @@ pub mod degree_march;
 pub mod geometry;
 pub mod hold;
 pub mod implicit;
+pub mod limits;
 pub mod oil;
 pub mod pack;
 pub mod plan;
 pub mod record;
 mod scene;
 pub mod substep_march;
+pub mod watch;
 
 use std::time::Instant;
 
 use gudgeon_core::kinds::Motion;
-use gudgeon_core::result::{Branch, Note, Series, SolverReport};
+use gudgeon_core::result::{Branch, Event, Note, Series, SolverReport};
 use gudgeon_core::{BuildError, EvalError};
 use indexmap::IndexMap;
 
@@ -27,6 +29,7 @@ use crate::case::{Method, RingPackCase, Scheme};
 use crate::run::{Progress, RunError};
 use pack::Pack;
 use record::{Meter, Record, Totals};
+use watch::Watch;
 
 /// A solved pack: the last cycle of the first start, and what else was found.
 pub struct Solved {
@@ -38,6 +41,8 @@ pub struct Solved {
     pub totals: Totals,
     /// Periodic solutions, when there are several or the start matters.
     pub branches: Vec<Branch>,
+    /// Rings that left the liner.
+    pub retreats: Vec<Event>,
     /// Work.
     pub report: SolverReport,
     /// Wall time of the solver \[s\], recording excluded.
@@ -54,6 +59,7 @@ struct Found {
     cycles: f64,
     counters: IndexMap<String, u64>,
     notes: Vec<Note>,
+    retreats: Vec<Event>,
     seconds: f64,
 }
 
@@ -161,7 +167,15 @@ pub fn solve(
     report.counters.insert("film_evaluations".into(), pack.counters.film);
     report.counters.insert("gas_evaluations".into(), pack.counters.gas);
     let (_, first) = found.swap_remove(0);
-    Ok(Solved { liner: first.liner, record: first.record, totals: first.totals, branches, report, seconds })
+    Ok(Solved {
+        liner: first.liner,
+        record: first.record,
+        totals: first.totals,
+        branches,
+        retreats: first.retreats,
+        report,
+        seconds,
+    })
 }
 
 fn method_name(case: &RingPackCase) -> &'static str {
@@ -197,9 +211,11 @@ fn one_start(
                 passes: s.passes,
                 clamp: s.clamp,
             };
-            let outcome = substep_march::run(pack, set, start, &mut record, progress);
+            let mut watch = Watch::new(pack);
+            let outcome = substep_march::run(pack, set, start, (&mut record, &mut watch), progress);
             let (totals, steps) = outcome.map_err(at(pack))?;
-            let mut notes = Vec::new();
+            watch.carried(pack)?;
+            let mut notes = watch.notes(pack);
             if totals.periodicity_error > UNSETTLED {
                 notes.push(Note::caution("not_periodic", format!(
                     "the gas between the rings still changed by {:.1} % of what passes over cycle {}: raise `solver.cycles`",
@@ -215,6 +231,7 @@ fn one_start(
                 cycles: f64::from(set.cycles),
                 counters: [("steps".to_owned(), steps)].into_iter().collect(),
                 notes,
+                retreats: watch.events(),
                 seconds: begin.elapsed().as_secs_f64(),
             })
         }
@@ -226,7 +243,10 @@ fn one_start(
                 gas_steps: or(s.gas_steps, 10),
                 tolerance: s.periodicity.si(),
             };
-            let outcome = degree_march::run(pack, set, start, &mut record, progress).map_err(at(pack))?;
+            let mut watch = Watch::new(pack);
+            let outcome = degree_march::run(pack, set, start, (&mut record, &mut watch), progress)
+                .map_err(at(pack))?;
+            watch.carried(pack)?;
             Ok(Found {
                 liner: None,
                 record,
@@ -234,7 +254,8 @@ fn one_start(
                 period: outcome.period,
                 cycles: f64::from(outcome.cycles),
                 counters: [("steps".to_owned(), outcome.steps)].into_iter().collect(),
-                notes: Vec::new(),
+                notes: watch.notes(pack),
+                retreats: watch.events(),
                 seconds: begin.elapsed().as_secs_f64(),
             })
         }
@@ -251,6 +272,18 @@ pub fn legal(case: &RingPackCase) -> Vec<BuildError> {
     }
     if s.tolerance.si() > 0.1 || s.tolerance.si() < 1e-12 {
         errors.push(BuildError::at("solver.tolerance", "the tolerance must be between 1e-12 and 0.1"));
+    }
+    let l = &s.limits;
+    for (from, full, key) in [
+        (l.drag_from.si(), l.drag_full.si(), "drag_full"),
+        (l.drag_gap_from.si(), l.drag_gap_full.si(), "drag_gap_full"),
+    ] {
+        if from >= full {
+            errors.push(BuildError::at(
+                format!("solver.limits.{key}"),
+                format!("the drag cannot count in full at {full} when it begins to count at {from}"),
+            ));
+        }
     }
     if s.method == Method::AsPublished {
         if case.models.oil_transport.typetag_name() != "off" {

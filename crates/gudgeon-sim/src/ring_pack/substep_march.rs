@@ -13,8 +13,9 @@ use gudgeon_core::kinds::Motion;
 
 use crate::case::Clamp;
 
-use super::pack::{Pack, THINNEST};
+use super::pack::Pack;
 use super::record::{Record, Totals};
+use super::watch::Watch;
 
 /// Settings; see [`crate::case::Solver`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -49,7 +50,7 @@ pub fn run(
     pack: &mut Pack,
     set: Settings,
     start: f64,
-    record: &mut Record,
+    (record, watch): (&mut Record, &mut Watch),
     progress: &mut dyn FnMut(f64),
 ) -> Result<(Totals, u64), EvalError> {
     let n = pack.n_rings();
@@ -117,6 +118,9 @@ pub fn run(
                         axial(pack, i, r, dt, set.clamp);
                     }
                 }
+                if last && pass < 720 {
+                    watch.look(pack, dt * pack.omega);
+                }
                 steps += 1;
             }
             let whole = f64::from(pass + 1) * degree;
@@ -147,8 +151,8 @@ fn moving(pack: &Pack, i: usize) -> bool {
 
 fn bisect(pack: &mut Pack, i: usize, old: f64, dt: f64, s: (f64, f64)) -> Result<f64, EvalError> {
     let moving = moving(pack, i);
-    let floor = pack.rings[i].contact.floor.unwrap_or(THINNEST);
-    let mut high = pack.geo.rings[i].h_max(pack.at.places[i].liner_radius);
+    let floor = pack.lowest(i).max(BISECTION.0);
+    let mut high = pack.furthest(i);
     let mut low = floor;
     let mut h = old.clamp(low, high);
     for k in 1..=500 {
