@@ -15,7 +15,7 @@ use super::contact_line::ContactLine;
 use super::geometry;
 use super::hold::Hold;
 use super::oil::{FacePlace, OilPack};
-use super::pack::{Counters, Instant, Layout, LinerShape, Pack, RingInstant, RingModel};
+use super::pack::{Counters, Instant, Layout, LinerShape, Pack, RingInstant, RingModel, SeatLog};
 use super::plan::{Facts, Plan, plan, wanted};
 use crate::case::{Method, RingDesign, RingPackCase};
 
@@ -298,6 +298,7 @@ pub fn assemble(case: &RingPackCase, folder: &Path) -> Result<Pack, Vec<BuildErr
         layout,
         mass_scale: vec![1.0; gas_states],
         seats: vec![0.0; n],
+        seat_log: vec![SeatLog::default(); n],
         at: Instant {
             theta: 0.0,
             piston: Default::default(),

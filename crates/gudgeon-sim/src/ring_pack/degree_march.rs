@@ -69,6 +69,9 @@ pub fn run(
     for cycle in 1..=limit {
         let mut totals = Totals { flow_in: vec![0.0; n], friction_work: vec![0.0; n], ..Totals::default() };
         let before: f64 = pack.masses.iter().sum();
+        if recording {
+            *watch = Watch::new(pack);
+        }
         for k in 0..per_cycle {
             let theta = f64::from(k) * step;
             instant(pack, theta, &h);

@@ -319,7 +319,7 @@ struct Sampler {
 }
 
 impl Sampler {
-    fn new(pack: &Pack, step: f64) -> Self {
+    fn new(pack: &mut Pack, step: f64) -> Self {
         let period = pack.period();
         let rows = (period / step).round().max(1.0) as usize;
         let n = pack.n_rings();

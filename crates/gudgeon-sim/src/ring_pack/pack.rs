@@ -203,6 +203,26 @@ pub struct Instant {
     pub rings: Vec<RingInstant>,
 }
 
+/// Decisions on the seat of one ring.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct SeatLog {
+    /// Seat before the last decision, when that changed it.
+    left: Option<f64>,
+    /// Changes of seat.
+    pub changes: u32,
+    /// Changes that the very next decision took back.
+    pub reversals: u32,
+}
+
+impl SeatLog {
+    fn decided(&mut self, before: f64, after: f64) {
+        let changed = before != after;
+        self.changes += u32::from(changed);
+        self.reversals += u32::from(changed && self.left == Some(after));
+        self.left = changed.then_some(before);
+    }
+}
+
 /// Where things are in the state vector.
 #[derive(Debug, Clone, Default)]
 pub struct Layout {
@@ -256,6 +276,8 @@ pub struct Pack {
     pub mass_scale: Vec<f64>,
     /// Seats of the rings whose motion is decided in steps (0, ½, 1).
     pub seats: Vec<f64>,
+    /// What became of the decisions on seats, per ring.
+    pub seat_log: Vec<SeatLog>,
     /// The last instant evaluated.
     pub at: Instant,
     /// Work counters.
@@ -925,6 +947,7 @@ impl Pack {
                 self.axial_forces(i);
                 let e = self.rings[i].motion.seat(&self.at.rings[i].axial);
                 changed |= e != self.seats[i];
+                self.seat_log[i].decided(self.seats[i], e);
                 self.seats[i] = e;
             }
         }

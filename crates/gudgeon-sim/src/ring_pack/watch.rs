@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use gudgeon_core::result::{Event, Note};
 
-use super::pack::{Limited, Pack};
+use super::pack::{Limited, Pack, SeatLog};
 use crate::run::RunError;
 
 /// How long something acted, and how much at most.
@@ -74,9 +74,10 @@ pub struct Watch {
 const COUNTS: f64 = 1e-3;
 
 impl Watch {
-    /// Nothing seen yet.
+    /// Begins a cycle with nothing seen.
     #[must_use]
-    pub fn new(pack: &Pack) -> Self {
+    pub fn new(pack: &mut Pack) -> Self {
+        pack.seat_log.fill(SeatLog::default());
         Self { rings: vec![RingWatch::default(); if pack.plan.film { pack.n_rings() } else { 0 }] }
     }
 
@@ -161,6 +162,7 @@ impl Watch {
             });
             notes.extend(w.left(ring, period, pack.limits.off_the_liner));
         }
+        notes.extend(pack.seat_log.iter().enumerate().filter_map(|(i, l)| chatter(i + 1, l)));
         notes
     }
 
@@ -181,6 +183,20 @@ impl Watch {
         }
         events
     }
+}
+
+/// Seats that are taken back as soon as they are taken.
+fn chatter(ring: usize, log: &SeatLog) -> Option<Note> {
+    (log.reversals > 0).then(|| {
+        let text = format!(
+            "the very next decision takes back {} of {} changes of seat of ring {ring}: its seat moves the pressures that the decision is made from, and the ring \
+             would float between its flanks, which a model with decided seats cannot say",
+            log.reversals, log.changes
+        );
+        Note::caution(format!("seat_chatter.ring{ring}"), text)
+            .amount("reversals", f64::from(log.reversals), "1")
+            .amount("seat_changes", f64::from(log.changes), "1")
+    })
 }
 
 impl RingWatch {
