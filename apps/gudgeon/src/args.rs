@@ -21,6 +21,7 @@ impl Args {
             Command::Run(a) => a.quiet,
             Command::Compare(a) => a.quiet,
             Command::Bench(a) => a.quiet,
+            Command::Validate(a) => a.quiet,
             _ => false,
         }
     }
@@ -44,6 +45,8 @@ pub enum Command {
     Compare(CompareArgs),
     /// Measure run time against error of the solvers on a case
     Bench(BenchArgs),
+    /// Compare cases with the values of their sources
+    Validate(ValidateArgs),
     /// Write report.html of a result folder again
     Report(ReportArgs),
 }
@@ -132,13 +135,30 @@ pub struct BenchArgs {
 }
 
 #[derive(Debug, ClapArgs)]
+pub struct ValidateArgs {
+    /// Cases, files of comparisons or folders of them [default: validation]
+    #[arg(value_name = "CASE")]
+    pub files: Vec<PathBuf>,
+    /// Write the comparisons as pages of Markdown: an index FILE, and a folder beside it with a page for each case
+    #[arg(long, value_name = "FILE")]
+    pub pages: Option<PathBuf>,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+    /// No progress, only what does not hold
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+#[derive(Debug, ClapArgs)]
 pub struct ReportArgs {
     /// Folder with the results of a run, a comparison or a benchmark
     #[arg(value_name = "DIR")]
     pub dir: PathBuf,
 }
 
-/// The folder that results go to.
+/// The folder that results go to. A case whose file is called `...toml` must not get a folder beside `out`.
 pub fn out_dir(given: Option<&Path>, case: &str, suffix: &str) -> PathBuf {
-    given.map_or_else(|| Path::new("out").join(format!("{case}{suffix}")), Path::to_owned)
+    let name = if case.chars().all(|c| c == '.') { "case" } else { case };
+    given.map_or_else(|| Path::new("out").join(format!("{name}{suffix}")), Path::to_owned)
 }

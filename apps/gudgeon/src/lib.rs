@@ -24,7 +24,7 @@ use ui::Ui;
 pub fn main() -> ExitCode {
     let args = Args::parse();
     let ui = Ui::new(args.quiet());
-    match dispatch(&args.command, &ui) {
+    match dispatch(&args.command, &ui).and_then(|()| ui.end()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             ui.failure(&failure);
@@ -47,6 +47,7 @@ fn dispatch(command: &Command, ui: &Ui) -> Result<(), Failure> {
         Command::Schema => cmd::schema::schema(ui),
         Command::Compare(a) => cmd::compare::compare(a, ui),
         Command::Bench(a) => cmd::bench::bench(a, ui),
+        Command::Validate(a) => cmd::validate::validate(a, ui),
         Command::Report(a) => cmd::report::report(a, ui),
     }
 }

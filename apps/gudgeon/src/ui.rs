@@ -3,6 +3,7 @@
 //! Results go to standard output; progress, notes and errors to standard error. A reader that closes the pipe early
 //! (`| head`) is not an error.
 
+use std::cell::RefCell;
 use std::fmt::Write as _;
 use std::io::{self, IsTerminal, Write};
 use std::time::Duration;
@@ -16,6 +17,8 @@ use crate::failure::Failure;
 pub struct Ui {
     quiet: bool,
     color: bool,
+    /// Why standard output lacks something.
+    lost: RefCell<Option<io::Error>>,
 }
 
 /// Width that long texts are broken at.
@@ -24,7 +27,7 @@ pub const WIDTH: usize = 100;
 impl Ui {
     pub fn new(quiet: bool) -> Self {
         let wanted = std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty());
-        Self { quiet, color: wanted && io::stderr().is_terminal() }
+        Self { quiet, color: wanted && io::stderr().is_terminal(), lost: RefCell::new(None) }
     }
 
     /// Whether tables and progress are unwanted.
@@ -32,15 +35,25 @@ impl Ui {
         self.quiet
     }
 
-    /// To standard output.
+    /// To standard output. What could not be written makes the program fail at its end, [`Ui::end`].
     pub fn out(&self, text: &str) {
-        // The only thing to do about a closed pipe or a full disk behind a redirection is to stop writing.
         let mut stdout = io::stdout().lock();
-        let _ = stdout.write_all(text.as_bytes());
-        if !text.ends_with('\n') {
-            let _ = stdout.write_all(b"\n");
+        let end: &[u8] = if text.ends_with('\n') { b"" } else { b"\n" };
+        let written =
+            stdout.write_all(text.as_bytes()).and_then(|()| stdout.write_all(end)).and_then(|()| stdout.flush());
+        if let Err(e) = written {
+            self.lost.borrow_mut().get_or_insert(e);
         }
-        let _ = stdout.flush();
+    }
+
+    /// Whether everything went to standard output. A reader that has seen enough (`| head`) is no failure, a full disk is.
+    pub fn end(&self) -> Result<(), Failure> {
+        match self.lost.borrow_mut().take() {
+            Some(e) if e.kind() != io::ErrorKind::BrokenPipe => {
+                Err(Failure::Run(format!("standard output could not be written: {e}")))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// JSON to standard output.
@@ -68,7 +81,7 @@ impl Ui {
                 text = report.render(self.color);
                 if report.diagnostics.len() > 1 {
                     let _ =
-                        writeln!(text, "\n{} mistakes in {}", report.diagnostics.len(), report.source.name);
+                        writeln!(text, "\n{} in {}", report.count(), report.source.name);
                 }
             }
             Failure::Argument(d) => text = Report::unreadable("", d.clone()).render(self.color),

@@ -178,3 +178,109 @@ fn a_run_writes_its_files_where_it_says() {
     assert!(o.status.success() && folder.join("there/report.html").is_file(), "{}", stderr(&o));
     let _ = fs::remove_dir_all(&folder);
 }
+
+/// A folder for a test, empty at its start.
+fn scratch(name: &str) -> PathBuf {
+    let folder = std::env::temp_dir().join(format!("gudgeon-{name}-{}", std::process::id()));
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("the temporary folder can be written");
+    folder
+}
+
+#[test]
+fn a_run_is_repeated_from_its_summary_to_the_byte() {
+    let folder = scratch("repeat");
+    let run = |at: &Path, args: &[&str]| command(args).current_dir(at).output().expect("the program starts");
+    let case = fs::canonicalize(base()).expect("the base is in the repository");
+    let case = case.to_str().expect("text");
+    let o = run(&folder, &["run", case, "--set", "engine.speed=\"777 rpm\"", "--out", "first", "-q"]);
+    assert_eq!(o.status.code(), Some(0), "{}", stderr(&o));
+    // Elsewhere, from the summary alone.
+    let other = folder.join("elsewhere");
+    fs::create_dir(&other).expect("written");
+    fs::copy(folder.join("first/summary.json"), other.join("kept.json")).expect("copied");
+    let o = run(&other, &["run", "kept.json", "--out", "second", "-q"]);
+    assert_eq!(o.status.code(), Some(0), "{}", stderr(&o));
+    for file in ["summary.json", "series.csv", "report.html"] {
+        let bytes = |p: PathBuf| fs::read(p).expect("written");
+        assert_eq!(bytes(folder.join("first").join(file)), bytes(other.join("second").join(file)), "{file}");
+    }
+    let page = fs::read_to_string(folder.join("first/report.html")).expect("written");
+    assert!(page.contains("<b>Changed</b> <code>engine.speed=&quot;777 rpm&quot;</code>"));
+    let v: Value =
+        serde_json::from_slice(&fs::read(folder.join("first/summary.json")).expect("written")).expect("JSON");
+    let p = &v["provenance"];
+    assert_eq!(p["file"], "base.toml");
+    assert_eq!(p["overrides"][0], "engine.speed=\"777 rpm\"");
+    assert!(
+        (p["resolved"]["engine"]["speed"].as_f64().expect("a number") - 777.0 * 0.104_719_755_119_66).abs()
+            < 1e-9
+    );
+    // A record that was changed is no record.
+    let text = fs::read_to_string(other.join("kept.json")).expect("written").replace("scene = ", "scene  = ");
+    fs::write(other.join("kept.json"), text).expect("written");
+    let o = run(&other, &["run", "kept.json", "-q"]);
+    assert_eq!(o.status.code(), Some(2));
+    assert!(stderr(&o).contains("its hash is another"), "{}", stderr(&o));
+    let _ = fs::remove_dir_all(&folder);
+}
+
+#[test]
+fn a_folder_belongs_to_one_case_and_holds_one_kind_of_results() {
+    let folder = scratch("owner");
+    let run = |args: &[&str]| command(args).current_dir(&folder).output().expect("the program starts");
+    for at in ["a", "b"] {
+        fs::create_dir(folder.join(at)).expect("written");
+        fs::copy(base(), folder.join(at).join("x.toml")).expect("copied");
+    }
+    assert_eq!(run(&["run", "a/x.toml", "-q"]).status.code(), Some(0));
+    let before = fs::read(folder.join("out/x/summary.json")).expect("written");
+    let o = run(&["run", "b/x.toml", "-q"]);
+    assert_eq!(o.status.code(), Some(2));
+    assert!(stderr(&o).contains("holds the results of another case, `a/x.toml`"), "{}", stderr(&o));
+    assert_eq!(fs::read(folder.join("out/x/summary.json")).expect("still there"), before);
+    // The same case under another name of its path; and a comparison into the folder of a run.
+    assert_eq!(run(&["run", "./a/../a/x.toml", "-q"]).status.code(), Some(0));
+    let o = run(&["compare", "a/x.toml", "--swap", "engine.speed=\"900 rpm\"", "--out", "out/x", "-q"]);
+    assert_eq!(o.status.code(), Some(0), "{}", stderr(&o));
+    assert!(folder.join("out/x/comparison.json").is_file() && !folder.join("out/x/summary.json").exists());
+    let _ = fs::remove_dir_all(&folder);
+}
+
+#[test]
+fn a_case_finds_its_comparisons_and_a_broken_one_fails() {
+    let folder = scratch("validate");
+    let run = |args: &[&str]| command(args).current_dir(&folder).output().expect("the program starts");
+    fs::create_dir(folder.join("validation")).expect("written");
+    fs::copy(base(), folder.join("x.toml")).expect("copied");
+    let comparisons = |expect: &str| {
+        let text = format!("case = \"../x.toml\"\n[[checks]]\nexpect = [{expect}]\n");
+        fs::write(folder.join("validation/x.toml"), text).expect("written");
+    };
+    let one = |result: &str, value: &str, verdict: &str| {
+        format!(
+            "{{ result = \"{result}\", value = {value}, tolerance = 0.5, source = \"made up\", verdict = \"{verdict}\" }}"
+        )
+    };
+    comparisons(&one("blow_by", "1e9", "not_reproduced"));
+    let o = run(&["validate", "x.toml", "--json"]);
+    assert_eq!(o.status.code(), Some(0), "{}", stderr(&o));
+    let v: Value = serde_json::from_slice(&o.stdout).expect("JSON");
+    assert_eq!(
+        (&v[0]["runs"], &v[0]["checks"][0]["verdict"]),
+        (&Value::from(1), &Value::from("not_reproduced"))
+    );
+    comparisons(&one("blow_by", "1e9", "reproduced"));
+    let o = run(&["validate"]);
+    assert_eq!(o.status.code(), Some(1));
+    assert!(stderr(&o).contains("blow_by") && stderr(&o).contains("admitted"), "{}", stderr(&o));
+    comparisons(&one("blow_buy", "1", "reproduced"));
+    let o = run(&["validate"]);
+    assert_eq!(o.status.code(), Some(1));
+    assert!(stderr(&o).contains("did you mean `blow_by`?"), "{}", stderr(&o));
+    comparisons("");
+    fs::remove_file(folder.join("x.toml")).expect("there");
+    let o = run(&["validate"]);
+    assert_eq!(o.status.code(), Some(2), "{}", stderr(&o));
+    let _ = fs::remove_dir_all(&folder);
+}

@@ -14,6 +14,7 @@
 
 pub mod error;
 pub mod face;
+pub mod file;
 pub mod geometry;
 pub mod kinds;
 pub mod quantity;

@@ -4,12 +4,16 @@
 //! type parameters say which dimension it has and which values it admits, so that a wrong unit, a negative clearance
 //! or a NaN is refused while the file is being read, where the error can still point at the text.
 
+mod spelling;
+
 use std::borrow::Cow;
 use std::fmt;
 use std::marker::PhantomData;
 
 use serde::de::{self, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+pub use spelling::{nearest_unit, with_decimal_point};
 
 /// One unit of a dimension: `si = value * factor + offset`.
 #[derive(Debug, Clone, Copy)]
@@ -184,6 +188,14 @@ pub enum QuantityError {
         /// The units that would do.
         known: String,
     },
+    /// A decimal comma, or a minus sign of typography.
+    #[error("`{text}` is not a number with a unit; write `{instead}`")]
+    Spelling {
+        /// What was written.
+        text: String,
+        /// The same as it would be read.
+        instead: String,
+    },
     /// Not finite, or outside the admitted range.
     #[error("`{text}` must be {bound}")]
     Range {
@@ -209,8 +221,21 @@ fn admit(
     Ok(si)
 }
 
-/// The SI value that `text` states in one of `units`.
+/// The SI value that `text` states in one of `units`; where it would do with a decimal point, that is what is told.
 fn read(text: &str, dimension: &'static str, units: &'static [Unit]) -> Result<f64, QuantityError> {
+    read_as_written(text, dimension, units).map_err(|e| match with_decimal_point(text) {
+        Some(instead) if read_as_written(&instead, dimension, units).is_ok() => {
+            QuantityError::Spelling { text: text.to_owned(), instead }
+        }
+        _ => e,
+    })
+}
+
+fn read_as_written(
+    text: &str,
+    dimension: &'static str,
+    units: &'static [Unit],
+) -> Result<f64, QuantityError> {
     let t = text.trim();
     // The longest prefix that is a number; "1e3" must not be read as "1" with the unit "e3". No number of a case has more
     // characters than this; without a limit a megabyte of digits would take hours to refuse.
@@ -227,7 +252,7 @@ fn read(text: &str, dimension: &'static str, units: &'static [Unit]) -> Result<f
             example: format!("1.5 {u}").trim_end().to_owned(),
         });
     };
-    let found = if unit.is_empty() { units.first() } else { units.iter().find(|u| u.name == unit) };
+    let found = if unit.is_empty() { units.first() } else { units.iter().find(|u| u.is(unit)) };
     let Some(u) = found else {
         return Err(QuantityError::Unit {
             unit: unit.to_owned(),
@@ -417,6 +442,12 @@ mod tests {
         assert_eq!(Length::<Any>::parse("1e3").map(Quantity::si), Ok(1000.0));
         assert_eq!(PosTemperature::parse("100degC").map(Quantity::si), Ok(373.15));
         assert_eq!(Ratio::<Any>::parse("5 %").map(Quantity::si), Ok(0.05));
+        // The micro sign, the Greek letter, the Latin one; a space that does not break.
+        for text in ["120 \u{b5}m", "120 \u{3bc}m", "120 um", "120\u{a0}um"] {
+            assert_eq!(PosLength::parse(text).map(Quantity::si), Ok(120.0 * 1e-6), "{text}");
+        }
+        assert_eq!(PosTime::parse("2 \u{3bc}s").map(Quantity::si), Ok(2.0 * 1e-6));
+        assert_eq!(PosStiffness::parse("1 N/\u{b5}m").map(Quantity::si), Ok(1e6));
     }
 
     #[test]
@@ -431,6 +462,10 @@ mod tests {
         assert_eq!(
             e(PosLength::parse("mm")),
             "`mm` does not start with a number; write a length like `1.5 mm`"
+        );
+        assert_eq!(
+            e(PosLength::parse("0,5 mm")),
+            "`0,5 mm` is not a number with a unit; write `0.5 mm`"
         );
         assert!(PosLength::new(f64::INFINITY).is_err());
     }

@@ -1,6 +1,7 @@
 //! What a run produces, independent of how it is written: the interface between the simulation and the report.
 
 use indexmap::IndexMap;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A result value.
@@ -16,7 +17,7 @@ pub struct Value {
 }
 
 /// How much a [`Note`] matters.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum NoteLevel {
     /// Good to know.
@@ -406,8 +407,38 @@ pub struct Check {
     pub tolerance: f64,
     /// Where the reference comes from.
     pub source: String,
-    /// Whether it is a known defect of the model or of the source, wanted to be seen, that the deviation is larger than `tolerance`.
-    pub must_fail: bool,
+    /// What the comparison shows.
+    pub verdict: Verdict,
+}
+
+/// What a comparison with a source shows.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// The source's value comes out, within the tolerance.
+    #[default]
+    Reproduced,
+    /// The source, or the published model that the setting selects, is wrong, and the comparison shows by how much: the deviation is
+    /// larger than the tolerance.
+    Refuted,
+    /// The value does not come out, because an input of the source is lost or for a reason that is not known: the deviation is larger
+    /// than the tolerance.
+    NotReproduced,
+}
+
+impl Verdict {
+    /// All of them, in the order in which they are counted.
+    pub const ALL: [Self; 3] = [Self::Reproduced, Self::Refuted, Self::NotReproduced];
+
+    /// In words.
+    #[must_use]
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::Reproduced => "reproduced",
+            Self::Refuted => "refuted",
+            Self::NotReproduced => "not reproduced",
+        }
+    }
 }
 
 impl Check {
@@ -431,12 +462,83 @@ impl Check {
         }
     }
 
-    /// Whether the result is as the case says it must be.
+    /// Whether the comparison comes out as its verdict says.
     #[must_use]
     pub fn holds(&self) -> bool {
         let d = self.deviation();
-        d.is_finite() && (d.abs() <= self.tolerance) != self.must_fail
+        d.is_finite() && (d.abs() <= self.tolerance) == (self.verdict == Verdict::Reproduced)
     }
+}
+
+/// A case beside the values of its sources.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Validated {
+    /// Name of the case.
+    pub case: String,
+    /// The file of comparisons.
+    pub file: String,
+    /// Title of the case.
+    pub title: String,
+    /// Where the case comes from.
+    pub source: String,
+    /// Settings that were run.
+    pub runs: usize,
+    /// The comparisons.
+    pub checks: Vec<Check>,
+}
+
+impl Validated {
+    /// Number of comparisons with a verdict that came out so.
+    #[must_use]
+    pub fn count(&self, verdict: Verdict) -> usize {
+        self.checks.iter().filter(|c| c.verdict == verdict && c.holds()).count()
+    }
+
+    /// Comparisons that did not come out as their verdict says.
+    pub fn broken(&self) -> impl Iterator<Item = &Check> {
+        self.checks.iter().filter(|c| !c.holds())
+    }
+
+    /// The largest deviation among the values that are reproduced, and the part of its tolerance that is used; none where there are
+    /// none.
+    #[must_use]
+    pub fn worst(&self) -> Option<&Check> {
+        let used = |c: &Check| if c.tolerance > 0.0 { c.deviation().abs() / c.tolerance } else { 0.0 };
+        let reproduced = self.checks.iter().filter(|c| c.verdict == Verdict::Reproduced);
+        reproduced.max_by(|a, b| used(a).total_cmp(&used(b)))
+    }
+}
+
+/// A file that a case names, as it was read.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct KeptFile {
+    /// SHA-256 of its bytes.
+    pub sha256: String,
+    /// Its text.
+    pub text: String,
+}
+
+/// What a run was made of: enough to repeat it elsewhere, byte for byte.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Provenance {
+    /// Name of the case file, without its folder.
+    pub file: String,
+    /// Changes to it, as `--set` took them.
+    pub overrides: Vec<String>,
+    /// SHA-256 of the resolved case: equal where two runs computed the same.
+    pub resolved_sha256: String,
+    /// SHA-256 of the text of the case file.
+    pub sha256: String,
+    /// Revision of the program; empty where it was not built from a checkout.
+    #[serde(default)]
+    pub revision: String,
+    /// Text of the case file.
+    pub text: String,
+    /// Further files that the case names, by their names in it.
+    #[serde(default)]
+    pub files: IndexMap<String, KeptFile>,
+    /// Every value of the case in SI units, changes and defaults filled in.
+    pub resolved: serde_json::Value,
 }
 
 /// Everything a run of one case produced.
@@ -454,6 +556,8 @@ pub struct RunResult {
     pub scene: String,
     /// Version of Gudgeon.
     pub gudgeon: String,
+    /// What the run was made of.
+    pub provenance: Provenance,
     /// Models that ran.
     pub models: Vec<ModelUse>,
     /// What was left out.
@@ -474,8 +578,6 @@ pub struct RunResult {
     pub tables: IndexMap<String, Series>,
     /// Drawings of the series and the tables, besides those of curves over the cycle.
     pub figures: Vec<Figure>,
-    /// Results beside the values of a source.
-    pub checks: Vec<Check>,
     /// What happened when.
     pub events: Vec<Event>,
     /// Other periodic solutions.

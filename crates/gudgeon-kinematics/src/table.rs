@@ -1,6 +1,7 @@
 use std::f64::consts::PI;
 
 use gudgeon_core::BuildError;
+use gudgeon_core::file::{MOST_OF_A_TABLE, read_bytes};
 use gudgeon_core::kinds::{CylinderPressure, CylinderPressureCtx, CylinderPressureSpec};
 use gudgeon_core::quantity::{Angle, Dimension, PosAngle, PosRatio, Pressure, dim, quantity};
 use serde::{Deserialize, Serialize};
@@ -139,7 +140,7 @@ impl Table {
         match (&self.file, &self.theta_deg, &self.pressure) {
             (Some(file), None, None) => {
                 let path = ctx.folder.join(file);
-                let text = std::fs::read(&path).map_err(|e| {
+                let text = read_bytes(&path, MOST_OF_A_TABLE).map_err(|e| {
                     BuildError::at("file", format!("cannot read {}: {e}", path.display()))
                         .help("the name is relative to the folder of the case file")
                 })?;

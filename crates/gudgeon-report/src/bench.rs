@@ -8,9 +8,9 @@ use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
+use crate::folder::Folder;
 use crate::number::{count, round_trip, significant, unit};
 use crate::page::{self, Kind, esc};
-use crate::stage::Stage;
 use crate::summary::ResultValue;
 use crate::{REPORT, ReportError, table};
 
@@ -108,12 +108,20 @@ impl File {
 /// # Errors
 /// A file system that refuses; files already in `dir` are then as they were.
 pub fn write_bench(b: &BenchTable, dir: &Path) -> Result<BenchFiles, ReportError> {
+    write_bench_in(b, Folder::open(dir)?)
+}
+
+/// As [`write_bench`], into a folder that was opened before the runs.
+///
+/// # Errors
+/// As [`write_bench`].
+pub fn write_bench_in(b: &BenchTable, mut folder: Folder) -> Result<BenchFiles, ReportError> {
     let file = File::new(b);
-    let mut stage = Stage::new(dir)?;
-    stage.add(TABLE, &csv_table(&file)?)?;
-    stage.add(REPORT, page(&file).as_bytes())?;
-    stage.add(BENCH, (serde_json::to_string_pretty(&file).unwrap_or_default() + "\n").as_bytes())?;
-    stage.commit()?;
+    let dir = folder.path().to_owned();
+    folder.add(TABLE, &csv_table(&file)?)?;
+    folder.add(REPORT, page(&file).as_bytes())?;
+    folder.add(BENCH, (serde_json::to_string_pretty(&file).unwrap_or_default() + "\n").as_bytes())?;
+    folder.commit()?;
     Ok(BenchFiles { bench: dir.join(BENCH), table: dir.join(TABLE), report: dir.join(REPORT) })
 }
 
@@ -123,9 +131,9 @@ pub(crate) fn rewrite(dir: &Path) -> Result<PathBuf, ReportError> {
     let bytes = std::fs::read(&path).map_err(ReportError::io("read", &path))?;
     let file: File = serde_json::from_slice(&bytes)
         .map_err(|e| ReportError::Malformed { path: path.clone(), why: e.to_string() })?;
-    let mut stage = Stage::new(dir)?;
-    stage.add(REPORT, page(&file).as_bytes())?;
-    stage.commit()?;
+    let mut folder = Folder::open(dir)?;
+    folder.add(REPORT, page(&file).as_bytes())?;
+    folder.commit_beside()?;
     Ok(dir.join(REPORT))
 }
 

@@ -3,20 +3,21 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use gudgeon_core::result::{Column, Comparison, Series};
+use gudgeon_core::result::{Column, Comparison, Series, Variant};
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
+use crate::folder::Folder;
 use crate::number::{capital, count, percent, round_trip, significant, unit};
 use crate::page::{self, Arrays, Kind, esc};
-use crate::stage::Stage;
 use crate::summary::{ModelEntry, Summary};
 use crate::{REPORT, ReportError, table};
 
 pub(crate) const COMPARISON: &str = "comparison.json";
 const TABLE: &str = "comparison.csv";
 const SERIES: &str = "series.csv";
+const TIMING: &str = "timing.json";
 
 /// Where [`write_comparison`] put things.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -126,6 +127,15 @@ fn rows(variants: &[VariantEntry]) -> IndexMap<String, Row> {
 /// A column of another length than the crank angles, or a file system that refuses; files already in `dir` are then as
 /// they were.
 pub fn write_comparison(c: &Comparison, dir: &Path) -> Result<ComparisonFiles, ReportError> {
+    write_comparison_in(c, Folder::open(dir)?)
+}
+
+/// As [`write_comparison`], into a folder that was opened before the runs.
+///
+/// # Errors
+/// As [`write_comparison`].
+pub fn write_comparison_in(c: &Comparison, mut folder: Folder) -> Result<ComparisonFiles, ReportError> {
+    let dir = folder.path().to_owned();
     let file = File::new(c);
     let series: Vec<(usize, &Series)> = c
         .variants
@@ -133,18 +143,25 @@ pub fn write_comparison(c: &Comparison, dir: &Path) -> Result<ComparisonFiles, R
         .enumerate()
         .filter_map(|(i, v)| v.outcome.as_ref().ok().map(|r| (i + 1, &r.series)))
         .collect();
-    let mut stage = Stage::new(dir)?;
-    stage.add(SERIES, &table::long_csv(&series)?)?;
-    stage.add(TABLE, &csv_table(&file)?)?;
-    stage.add(REPORT, page(&file, &series).as_bytes())?;
-    stage.add(COMPARISON, (serde_json::to_string_pretty(&file).unwrap_or_default() + "\n").as_bytes())?;
-    stage.commit()?;
+    folder.add(SERIES, &table::long_csv(&series)?)?;
+    folder.add(TABLE, &csv_table(&file)?)?;
+    folder.add(REPORT, page(&file, &series).as_bytes())?;
+    folder.add(TIMING, timing(c).as_bytes())?;
+    folder.add(COMPARISON, (serde_json::to_string_pretty(&file).unwrap_or_default() + "\n").as_bytes())?;
+    folder.commit()?;
     Ok(ComparisonFiles {
         comparison: dir.join(COMPARISON),
         table: dir.join(TABLE),
         series: dir.join(SERIES),
         report: dir.join(REPORT),
     })
+}
+
+/// Wall-clock seconds of every variant by phase: apart, so that the other files of two equal comparisons are equal to the byte.
+fn timing(c: &Comparison) -> String {
+    let of =
+        |v: &Variant| json!({ "variant": v.label, "seconds": v.outcome.as_ref().ok().map(|r| &r.seconds) });
+    format!("{:#}\n", json!(c.variants.iter().map(of).collect::<Vec<_>>()))
 }
 
 /// Rebuilds the page of a comparison.
@@ -156,9 +173,9 @@ pub(crate) fn rewrite(dir: &Path) -> Result<PathBuf, ReportError> {
     let series = dir.join(SERIES);
     let series = if series.is_file() { table::read_long(&series)? } else { Vec::new() };
     let series: Vec<(usize, &Series)> = series.iter().map(|(n, s)| (*n, s)).collect();
-    let mut stage = Stage::new(dir)?;
-    stage.add(REPORT, page(&file, &series).as_bytes())?;
-    stage.commit()?;
+    let mut folder = Folder::open(dir)?;
+    folder.add(REPORT, page(&file, &series).as_bytes())?;
+    folder.commit_beside()?;
     Ok(dir.join(REPORT))
 }
 
@@ -198,14 +215,6 @@ fn csv_table(file: &File) -> Result<Vec<u8>, ReportError> {
         line.extend(file.variants.iter().map(|v| {
             let n = v.run.as_ref().and_then(|r| r.solver.counters.get(name));
             n.map_or_else(String::new, u64::to_string)
-        }));
-        out.push(line);
-    }
-    for name in union(&file.variants, |r| &r.seconds) {
-        let mut line = vec![format!("seconds.{name}"), "s".to_owned()];
-        line.extend(file.variants.iter().map(|v| {
-            let s = v.run.as_ref().and_then(|r| r.seconds.get(name)).copied().flatten();
-            s.map_or_else(String::new, round_trip)
         }));
         out.push(line);
     }
@@ -382,18 +391,6 @@ fn comparison_table(out: &mut String, file: &File, ran: &[&VariantEntry]) {
         let _ = write!(out, "<td class=\"unit\">{}</td></tr>", esc(&unit(&row.unit)));
     }
     out.push_str("</tbody><tbody class=\"work\">");
-    for name in union(&file.variants, |r| &r.seconds) {
-        let value = |v: &VariantEntry| v.run.as_ref().and_then(|r| r.seconds.get(name)).copied().flatten();
-        let first = base.and_then(value);
-        let _ = write!(out, "<tr><th scope=\"row\">{} time</th>", esc(&name.replace('_', " ")));
-        for v in ran {
-            let s = value(v);
-            let ratio =
-                first.zip(s).filter(|(f, _)| *f > 0.0 && v.number > 1).map(|(f, s)| (s / f - 1.0) * 100.0);
-            cell(out, &significant(s, 3), ratio);
-        }
-        out.push_str("<td class=\"unit\">s</td></tr>");
-    }
     out.push_str("<tr><th scope=\"row\">solver</th>");
     for v in ran {
         let _ = write!(

@@ -14,6 +14,12 @@ pub enum ReportError {
         /// What the system said.
         source: std::io::Error,
     },
+    /// Two runs into one folder.
+    #[error("another run is writing `{dir}`", dir = dir.display())]
+    Busy {
+        /// The folder.
+        dir: PathBuf,
+    },
     /// A column has another number of rows than the crank angles.
     #[error("series column `{column}` has {rows} rows, but there are {expected} crank angles")]
     Ragged {

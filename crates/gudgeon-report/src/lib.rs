@@ -5,29 +5,35 @@
 //! | [`write_run`] | `summary.json`, `series.csv`, `report.html` |
 //! | [`write_comparison`] | `comparison.json`, `comparison.csv`, `series.csv`, `report.html` |
 //! | [`write_bench`] | `bench.json`, `bench.csv`, `report.html` |
+//! | [`write_validation`] | an index and a page for each case, in Markdown |
 //! | [`rewrite`] | `report.html` again, from the other files of a directory |
 //!
-//! Files appear whole or not at all: each is written beside its place under a temporary name, and all are renamed once
-//! the last one is complete. The same input gives the same bytes. A page is one file that loads nothing: its style, its
+//! A folder changes whole or not at all ([`Folder`]), and old results never stand beside new ones. The same input gives the same
+//! bytes; wall times stand in `timing.json`. A page is one file that loads nothing: its style, its
 //! script and its data are inside, and its content policy forbids the browser any request. A link may open it at a crank
 //! angle and a range: `report.html#theta=380&view=300,480`.
 
 mod bench;
 mod comparison;
 mod error;
+mod folder;
 mod number;
 mod page;
 mod run;
-mod stage;
 mod summary;
 mod table;
+mod validation;
 
-pub use bench::{BenchFiles, write_bench};
-pub use comparison::{ComparisonFiles, write_comparison};
+pub use bench::{BenchFiles, write_bench, write_bench_in};
+pub use comparison::{ComparisonFiles, write_comparison, write_comparison_in};
 pub use error::ReportError;
-pub use run::{RunFiles, summary_json, write_run};
+pub use folder::Folder;
+pub use run::{RunFiles, summary_json, write_run, write_run_in};
+pub use validation::{page_name, validation_index, validation_page};
 
 use std::path::{Path, PathBuf};
+
+use gudgeon_core::result::Validated;
 
 /// Rebuilds `report.html` of a directory from the data files beside it, after they were edited, copied or written by
 /// another version of the program. Equations and validity texts come from the models linked into this program.
@@ -35,6 +41,7 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// The directory holds none of `summary.json`, `comparison.json`, `bench.json`, or a file in it cannot be read.
 pub fn rewrite(dir: &Path) -> Result<PathBuf, ReportError> {
+    folder::settle(dir)?;
     if dir.join(run::SUMMARY).is_file() {
         run::rewrite(dir)
     } else if dir.join(comparison::COMPARISON).is_file() {
@@ -44,6 +51,21 @@ pub fn rewrite(dir: &Path) -> Result<PathBuf, ReportError> {
     } else {
         Err(ReportError::NothingHere { dir: dir.to_path_buf() })
     }
+}
+
+/// Writes the page of every case into the folder `pages`, and the page that links them as `index`, which stands above or in it.
+///
+/// # Errors
+/// A file system that refuses.
+pub fn write_validation(all: &[Validated], index: &Path, pages: &Path) -> Result<(), ReportError> {
+    let mut folder = Folder::open(pages)?;
+    for v in all {
+        folder.add(&format!("{}.md", page_name(v)), validation_page(v).as_bytes())?;
+    }
+    let below = index.parent().and_then(|above| pages.strip_prefix(above).ok()).unwrap_or(pages);
+    let text = validation_index(all, &below.display().to_string());
+    folder.commit()?;
+    std::fs::write(index, text).map_err(ReportError::io("write", index))
 }
 
 /// Name of the page in every result directory.

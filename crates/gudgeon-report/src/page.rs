@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use gudgeon_core::Registry;
-use gudgeon_core::result::{Column, Note, NoteLevel, Series};
+use gudgeon_core::result::{Column, Note, NoteLevel, Provenance, Series};
 use serde_json::{Value, json};
 
 use crate::number::{count, significant, unit};
@@ -264,11 +264,8 @@ pub(crate) fn skipped_section(skipped: &[SkippedEntry]) -> String {
     out
 }
 
-/// Work of the solver and time by phase.
-pub(crate) fn solver_section(
-    solver: &SolverEntry,
-    seconds: &indexmap::IndexMap<String, Option<f64>>,
-) -> String {
+/// Work of the solver.
+pub(crate) fn solver_section(solver: &SolverEntry) -> String {
     let mut out = String::from("<section id=\"solver\"><h2>Solver</h2><table class=\"plain\"><tbody>");
     let _ =
         write!(out, "<tr><th scope=\"row\">method</th><td class=\"num\">{}</td></tr>", esc(&solver.method));
@@ -278,14 +275,6 @@ pub(crate) fn solver_section(
             "<tr><th scope=\"row\">{}</th><td class=\"num\">{}</td></tr>",
             esc(&name.replace('_', " ")),
             count(*n)
-        );
-    }
-    for (name, s) in seconds {
-        let _ = write!(
-            out,
-            "<tr><th scope=\"row\">{} time</th><td class=\"num\">{}\u{a0}s</td></tr>",
-            esc(&name.replace('_', " ")),
-            significant(*s, 3)
         );
     }
     out.push_str("</tbody></table></section>\n");
@@ -303,6 +292,35 @@ pub(crate) fn notes(notes: &[Note]) -> String {
         format!("<div class=\"note {class}\" role=\"note\">{}</div>\n", items.concat())
     };
     of(NoteLevel::Failure, "failure") + &of(NoteLevel::Caution, "caution") + &of(NoteLevel::Info, "info")
+}
+
+/// What the run was made of.
+pub(crate) fn provenance_section(version: &str, p: &Provenance) -> String {
+    if p.file.is_empty() {
+        return String::new();
+    }
+    let mut rows = vec![
+        ("program", format!("Gudgeon {} {}", esc(version), code(&p.revision))),
+        ("case file", format!("{} <span class=\"hash\">{}</span>", code(&p.file), esc(&p.sha256))),
+    ];
+    for o in &p.overrides {
+        rows.push(("changed", code(o)));
+    }
+    for (name, f) in &p.files {
+        rows.push(("file", format!("{} <span class=\"hash\">{}</span>", code(name), esc(&f.sha256))));
+    }
+    rows.push(("resolved case", format!("<span class=\"hash\">{}</span>", esc(&p.resolved_sha256))));
+    let rows: Vec<String> =
+        rows.iter().map(|(k, v)| format!("<tr><th scope=\"row\">{k}</th><td>{v}</td></tr>")).collect();
+    format!(
+        "<section id=\"provenance\"><h2>Made of</h2><p class=\"hint\"><code>gudgeon run summary.json</code> repeats this run from \
+         the file beside this page. Hashes are SHA-256.</p><table class=\"plain\"><tbody>{}</tbody></table></section>\n",
+        rows.concat()
+    )
+}
+
+fn code(text: &str) -> String {
+    if text.is_empty() { String::new() } else { format!("<code>{}</code>", esc(text)) }
 }
 
 /// Closing line.

@@ -4,18 +4,19 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use gudgeon_core::result::{Check, RunResult, Series};
+use gudgeon_core::result::{RunResult, Series};
 use indexmap::IndexMap;
 use serde_json::json;
 
+use crate::folder::Folder;
 use crate::number::{capital, percent, significant, unit};
 use crate::page::{self, Kind, esc};
-use crate::stage::Stage;
 use crate::summary::{ResultValue, Summary};
 use crate::{REPORT, ReportError, table};
 
 pub(crate) const SUMMARY: &str = "summary.json";
 pub(crate) const SERIES: &str = "series.csv";
+const TIMING: &str = "timing.json";
 
 /// Where [`write_run`] put things.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -28,25 +29,39 @@ pub struct RunFiles {
     pub report: PathBuf,
 }
 
-/// Writes `summary.json`, `series.csv`, the further tables and `report.html` of a run into `dir`, which is made when it does
-/// not exist.
+/// Writes `summary.json`, `series.csv`, the further tables, `report.html` and `timing.json` of a run into `dir`, which is made when it
+/// does not exist. Wall times stand in `timing.json` alone: the other files of two equal runs are equal to the byte.
 ///
 /// # Errors
 /// A column of another length than its axis, or a file system that refuses; files already in `dir` are then as
 /// they were.
 pub fn write_run(run: &RunResult, dir: &Path) -> Result<RunFiles, ReportError> {
+    write_run_in(run, Folder::open(dir)?)
+}
+
+/// As [`write_run`], into a folder that was opened before the run.
+///
+/// # Errors
+/// As [`write_run`].
+pub fn write_run_in(run: &RunResult, mut folder: Folder) -> Result<RunFiles, ReportError> {
     let summary = Summary::new(run);
-    let series = table::series_csv(&run.series)?;
-    let mut stage = Stage::new(dir)?;
-    stage.add(SERIES, &series)?;
+    let dir = folder.path().to_owned();
+    folder.add(SERIES, &table::series_csv(&run.series)?)?;
     for (name, t) in &run.tables {
-        stage.add(&file_of(name), &table::series_csv(t)?)?;
+        folder.add(&file_of(name), &table::series_csv(t)?)?;
     }
-    stage.add(REPORT, page(&summary, &run.series, &run.tables).as_bytes())?;
-    // Last, so that whoever waits for the summary finds the rest complete.
-    stage.add(SUMMARY, text(&summary).as_bytes())?;
-    stage.commit()?;
+    folder.add(REPORT, page(&summary, &run.series, &run.tables).as_bytes())?;
+    folder.add(TIMING, timing(run).as_bytes())?;
+    folder.add(SUMMARY, text(&summary).as_bytes())?;
+    folder.commit()?;
     Ok(RunFiles { summary: dir.join(SUMMARY), series: dir.join(SERIES), report: dir.join(REPORT) })
+}
+
+/// Wall-clock seconds by phase.
+fn timing(run: &RunResult) -> String {
+    let seconds: serde_json::Map<String, serde_json::Value> =
+        run.seconds.iter().map(|(k, v)| (k.clone(), json!(v))).collect();
+    format!("{:#}\n", json!({ "seconds": seconds }))
 }
 
 /// What [`write_run`] writes to `summary.json`: for standard output.
@@ -75,9 +90,9 @@ pub(crate) fn rewrite(dir: &Path) -> Result<PathBuf, ReportError> {
             tables.insert(name.clone(), table::read_series(&path)?);
         }
     }
-    let mut stage = Stage::new(dir)?;
-    stage.add(REPORT, page(&summary, &series, &tables).as_bytes())?;
-    stage.commit()?;
+    let mut folder = Folder::open(dir)?;
+    folder.add(REPORT, page(&summary, &series, &tables).as_bytes())?;
+    folder.commit_beside()?;
     Ok(dir.join(REPORT))
 }
 
@@ -102,7 +117,6 @@ fn page(s: &Summary, series: &Series, tables: &IndexMap<String, Series>) -> Stri
     } else if over_cycle {
         body.push_str("<section id=\"cycle\"><h2>Over the cycle</h2><div id=\"bar\"></div><div id=\"pack\"></div><div id=\"plots\"></div></section>\n");
     }
-    checks(&mut body, &s.checks);
     if !s.events.is_empty() {
         body.push_str("<section id=\"events\"><h2>Events</h2><div id=\"event-list\"><ul>");
         for e in &s.events {
@@ -119,10 +133,11 @@ fn page(s: &Summary, series: &Series, tables: &IndexMap<String, Series>) -> Stri
     branches(&mut body, s);
     body.push_str("<div class=\"pair\">\n");
     body.push_str(&page::balance_section(&s.balance));
-    body.push_str(&page::solver_section(&s.solver, &s.seconds));
+    body.push_str(&page::solver_section(&s.solver));
     body.push_str("</div>\n");
     body.push_str(&page::skipped_section(&s.skipped));
     body.push_str(&page::models_section(&s.models));
+    body.push_str(&page::provenance_section(&s.gudgeon, &s.provenance));
     body.push_str("</main>\n");
     body.push_str(&page::footer(&s.gudgeon));
     let mut arrays = page::Arrays::default();
@@ -164,13 +179,15 @@ fn header(out: &mut String, s: &Summary) {
     if !s.solver.method.is_empty() {
         let _ = write!(out, " · solver {}", esc(&s.solver.method));
     }
-    if let Some(Some(total)) = s.seconds.get("total") {
-        let _ = write!(out, " · {}\u{a0}s", significant(Some(*total), 3));
-    }
     if !s.gudgeon.is_empty() {
         let _ = write!(out, " · Gudgeon {}", esc(&s.gudgeon));
     }
     out.push_str("</p>");
+    if !s.provenance.overrides.is_empty() {
+        let set: Vec<String> =
+            s.provenance.overrides.iter().map(|o| format!("<code>{}</code>", esc(o))).collect();
+        let _ = write!(out, "<p class=\"changed\"><b>Changed</b> {}</p>", set.join(", "));
+    }
     if !s.source.is_empty() {
         let _ = write!(out, "<p class=\"source\"><b>Source</b> {}</p>", page::prose(&s.source));
     }
@@ -188,52 +205,6 @@ fn header(out: &mut String, s: &Summary) {
         out.push_str("</ul></details>");
     }
     out.push_str("</header>\n");
-}
-
-/// Results beside the values of their sources.
-fn checks(out: &mut String, checks: &[Check]) {
-    if checks.is_empty() {
-        return;
-    }
-    let bad = checks.iter().filter(|c| !c.holds()).count();
-    let verdict = if bad == 0 {
-        format!("All {} are as the case says they must be.", checks.len())
-    } else {
-        format!("{bad} of {} are not as the case says they must be.", checks.len())
-    };
-    let _ = write!(
-        out,
-        "<section id=\"checks\"><h2>Against sources</h2><p class=\"hint\">{verdict} A deviation is relative to the source, \
-         or absolute where the source gives zero.</p><div class=\"scroll\"><table class=\"plain\"><thead><tr><th>Setting</th>\
-         <th>Result</th><th class=\"num\">Computed</th><th class=\"num\">Source</th><th></th><th class=\"num\">Deviation</th>\
-         <th class=\"num\">Admitted</th><th></th><th></th></tr></thead><tbody>"
-    );
-    for (i, c) in checks.iter().enumerate() {
-        let same = |d: &Check| d.set == c.set && d.against == c.against;
-        let setting = if i > 0 && same(&checks[i - 1]) {
-            String::new()
-        } else {
-            let rows = checks[i..].iter().take_while(|d| same(d)).count();
-            format!("<th scope=\"rowgroup\" rowspan=\"{rows}\">{}</th>", esc(&c.setting()))
-        };
-        let sign = if c.holds() { "✓" } else { "<b class=\"wrong\">✗</b>" };
-        let why = if c.must_fail { "; known to differ" } else { "" };
-        let _ = write!(
-            out,
-            "<tr>{setting}<td><code>{}</code></td><td class=\"num\">{}</td><td class=\"num\">{}</td>\
-             <td class=\"unit\">{}</td><td class=\"num\">{:.1e}</td><td class=\"num\">{}{:.0e}</td><td>{sign}</td>\
-             <td class=\"what\">{}{why}</td></tr>",
-            esc(&c.result),
-            significant(Some(c.value), 10),
-            significant(Some(c.reference), 10),
-            esc(&unit(&c.unit)),
-            c.deviation(),
-            if c.must_fail { "more than " } else { "" },
-            c.tolerance,
-            page::prose(&c.source),
-        );
-    }
-    out.push_str("</tbody></table></div></section>\n");
 }
 
 /// Parts of a cylinder: what the names of their results begin with, and their titles.

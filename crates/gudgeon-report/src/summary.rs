@@ -1,6 +1,6 @@
 //! `summary.json` as a type of its own: it is read back to rebuild a page, and its shape is a promise to other programs.
 
-use gudgeon_core::result::{Check, Figure, Note, RunResult};
+use gudgeon_core::result::{Figure, Note, Provenance, RunResult};
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
@@ -80,8 +80,6 @@ pub(crate) struct Summary {
     #[serde(default)]
     pub notes: Vec<Note>,
     #[serde(default)]
-    pub seconds: IndexMap<String, Option<f64>>,
-    #[serde(default)]
     pub title: String,
     #[serde(default)]
     pub source: String,
@@ -104,8 +102,9 @@ pub(crate) struct Summary {
     pub tables: Vec<String>,
     #[serde(default)]
     pub figures: Vec<Figure>,
+    /// What the run was made of. Last, because it is long.
     #[serde(default)]
-    pub checks: Vec<Check>,
+    pub provenance: Provenance,
 }
 
 impl Summary {
@@ -140,7 +139,6 @@ impl Summary {
             },
             solver: SolverEntry { method: run.solver.method.clone(), counters: run.solver.counters.clone() },
             notes: run.solver.notes.clone(),
-            seconds: run.seconds.iter().map(|(k, v)| (k.clone(), finite(Some(*v)))).collect(),
             title: run.title.clone(),
             source: run.source.clone(),
             assumptions: run.assumptions.clone(),
@@ -175,7 +173,7 @@ impl Summary {
             section: run.section.as_ref().and_then(|s| serde_json::to_value(s).ok()),
             tables: run.tables.keys().cloned().collect(),
             figures: run.figures.clone(),
-            checks: run.checks.clone(),
+            provenance: run.provenance.clone(),
         }
     }
 

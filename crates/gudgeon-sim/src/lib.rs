@@ -8,6 +8,7 @@ pub mod load;
 pub mod pin;
 pub mod piston_secondary;
 pub mod power_cylinder;
+mod provenance;
 pub mod rig;
 pub mod ring_pack;
 pub mod run;
@@ -15,6 +16,7 @@ pub mod scene;
 pub mod shaft_line;
 pub mod study;
 pub mod sweep;
+pub mod validate;
 
 pub use run::{Checked, Explanation, Progress, RunError, check, explain, run};
 pub use study::{bench, compare};

@@ -9,12 +9,15 @@ use gudgeon_numerics::ode::IntegrateError;
 use serde::Serialize;
 
 use crate::load::{Report, Source, read};
+use crate::provenance::{self, provenance};
 use crate::scene::{self, Scene, SceneCase};
 
 /// A case that was read, resolved and found to be possible.
 pub struct Checked {
     /// Name of the case: the file name without its extension.
     pub name: String,
+    /// Name of the case file without its folder.
+    pub file: String,
     /// What a person should know although nothing is wrong (keys dropped by a model swap).
     pub notes: Vec<String>,
     /// The case.
@@ -114,22 +117,30 @@ fn in_degrees(e: &IntegrateError) -> String {
     }
 }
 
-/// Reads, resolves and validates a case.
+/// Reads, resolves and validates a case, or the case that the `summary.json` of a run recorded.
 ///
 /// # Errors
 /// Everything that is wrong with it, with places.
 pub fn check(path: &Path, overrides: &[String]) -> Result<Checked, Report> {
-    let name = path.file_stem().map_or_else(|| "case".to_owned(), |s| s.to_string_lossy().into_owned());
-    checked(name, read(path)?, overrides)
+    let source = read(path)?;
+    if path.extension().is_some_and(|e| e == "json") {
+        let (file, source, recorded) = provenance::recorded(&source)?;
+        let all: Vec<String> = recorded.iter().chain(overrides).cloned().collect();
+        return checked(file, source, &all);
+    }
+    let file = path.file_name().map_or_else(|| "case".to_owned(), |s| s.to_string_lossy().into_owned());
+    checked(file, source, overrides)
 }
 
-fn checked(name: String, source: Source, overrides: &[String]) -> Result<Checked, Report> {
+fn checked(file: String, source: Source, overrides: &[String]) -> Result<Checked, Report> {
     let case = scene::load(source, overrides)?;
     let errors = case.legal();
     if !errors.is_empty() {
         return Err(case.refuse(&errors));
     }
-    Ok(Checked { name, notes: case.notes().to_vec(), case })
+    let name =
+        Path::new(&file).file_stem().map_or_else(|| file.clone(), |s| s.to_string_lossy().into_owned());
+    Ok(Checked { name, file, notes: case.notes().to_vec(), case })
 }
 
 impl Checked {
@@ -139,7 +150,7 @@ impl Checked {
     /// As [`check`].
     pub fn with(&self, more: &[String]) -> Result<Self, Report> {
         let overrides: Vec<String> = self.case.overrides().iter().chain(more).cloned().collect();
-        checked(self.name.clone(), self.case.source().clone(), &overrides)
+        checked(self.file.clone(), self.case.source().clone(), &overrides)
     }
 
     /// Title.
@@ -308,7 +319,7 @@ fn print_value(s: &mut String, path: &str, v: &serde_json::Value) {
     }
 }
 
-/// Runs a case with its sweeps and its checks.
+/// Runs a case with its sweeps.
 ///
 /// # Errors
 /// What stopped it; nothing has been written.
@@ -317,7 +328,7 @@ pub fn run(c: &Checked, progress: &mut dyn FnMut(Progress)) -> Result<RunResult,
     finish(c, begin, scene::run(c.case.as_ref(), progress)?)
 }
 
-/// Runs a case without its sweeps and its checks.
+/// Runs a case without its sweeps.
 ///
 /// # Errors
 /// As [`run`].
@@ -329,6 +340,7 @@ pub(crate) fn run_alone(c: &Checked, progress: &mut dyn FnMut(Progress)) -> Resu
 fn finish(c: &Checked, begin: Instant, mut result: RunResult) -> Result<RunResult, RunError> {
     result.case.clone_from(&c.name);
     result.gudgeon = env!("CARGO_PKG_VERSION").into();
+    result.provenance = provenance(c);
     result.solver.notes.extend(c.notes.iter().map(|n| Note::caution("dropped_keys", n)));
     if let Some(column) = result.series.columns.iter().find(|c| c.values.iter().any(|v| !v.is_finite())) {
         return Err(RunError::NotANumber(column.name.clone()));

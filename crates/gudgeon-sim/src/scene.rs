@@ -1,15 +1,12 @@
 //! What a scene is: the case it reads, what it refuses, what it explains and how it runs.
 //!
-//! A scene is one implementation of [`SceneCase`] and one line in [`SCENES`]. Sweeps of any input and comparison with the values of a
-//! source are the same for all of them.
+//! A scene is one implementation of [`SceneCase`] and one line in [`SCENES`]. Sweeps of any input are the same for all of them.
 
 use std::any::Any;
-use std::collections::{HashMap, HashSet};
 
 use gudgeon_core::BuildError;
-use gudgeon_core::result::{Check, ModelUse, RunResult, Value};
+use gudgeon_core::result::{ModelUse, Note, RunResult, Value};
 use gudgeon_core::schemars::{Schema, SchemaGenerator};
-use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -64,47 +61,11 @@ pub struct Heading<'a> {
     pub assumptions: &'a [String],
     /// Inputs that are varied.
     pub sweeps: &'a [Sweep],
-    /// Results of a source to compare with.
-    pub checks: &'a [CheckCase],
-}
-
-/// A setting and the results that a source gives for it.
-#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct CheckCase {
-    /// Changes to the case, as `--set` takes them; empty: the case as it stands.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub set: Vec<String>,
-    /// A setting to compare with, as `set`: expected are then changes of results from there.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub against: Option<Vec<String>>,
-    /// With `against`: changes are told as parts of the value there.
-    #[serde(default)]
-    pub relative: bool,
-    /// Expected results.
-    pub expect: Vec<Expect>,
-}
-
-/// A result of a source.
-#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Expect {
-    /// Name of the result.
-    pub result: String,
-    /// The value, in the unit of the result.
-    pub value: f64,
-    /// Admitted deviation: relative, or absolute when the value is zero.
-    pub tolerance: f64,
-    /// Where the value comes from, and why the tolerance is what it is.
-    pub source: String,
-    /// The source or the model is known to be wrong here, and the case shows it: the deviation must be *larger* than `tolerance`.
-    #[serde(default)]
-    pub must_fail: bool,
 }
 
 /// The part of a case that is the same for every scene. `case_file!` implements it.
 pub trait Headed {
-    /// Title, source, sweeps, checks.
+    /// Title, source, sweeps.
     fn heading(&self) -> Heading<'_>;
 }
 
@@ -130,9 +91,6 @@ macro_rules! case_file {
             /// Inputs that are varied, one or two: every combination is run.
             #[serde(default, skip_serializing_if = "Vec::is_empty")]
             pub sweeps: Vec<$crate::sweep::Sweep>,
-            /// Results of a source to compare with.
-            #[serde(default, skip_serializing_if = "Vec::is_empty")]
-            pub checks: Vec<$crate::scene::CheckCase>,
         }
 
         impl $crate::scene::Headed for $name {
@@ -142,7 +100,6 @@ macro_rules! case_file {
                     source: &self.source,
                     assumptions: &self.assumptions,
                     sweeps: &self.sweeps,
-                    checks: &self.checks,
                 }
             }
         }
@@ -154,7 +111,7 @@ pub(crate) use case_file;
 pub trait SceneCase:
     Headed + Serialize + DeserializeOwned + JsonSchema + Send + Sync + Sized + 'static
 {
-    /// Everything that is wrong with a case that could be read, sweeps and checks apart.
+    /// Everything that is wrong with a case that could be read, sweeps apart.
     fn legal(loaded: &Loaded<Self>) -> Vec<BuildError>;
 
     /// The models in use; adds to `told` what runs, what is skipped and which results there are.
@@ -163,7 +120,7 @@ pub trait SceneCase:
     /// The sub-models cannot be built, which [`SceneCase::legal`] would have said.
     fn explain(loaded: &Loaded<Self>, told: &mut Explanation) -> Result<Vec<ModelUse>, RunError>;
 
-    /// Runs the case once, sweeps and checks apart. Title, source and scene are filled in by the caller.
+    /// Runs the case once, sweeps apart. Title, source and scene are filled in by the caller.
     ///
     /// # Errors
     /// What stopped it.
@@ -177,7 +134,7 @@ pub trait SceneCase:
 
 /// A case of any scene with its places in the file. Implemented for every [`SceneCase`] that was read.
 pub trait Scene: Send + Sync {
-    /// Title, source, sweeps, checks.
+    /// Title, source, sweeps.
     fn heading(&self) -> Heading<'_>;
     /// The text it was read from.
     fn source(&self) -> &Source;
@@ -185,7 +142,9 @@ pub trait Scene: Send + Sync {
     fn overrides(&self) -> &[String];
     /// What a person should know although nothing is wrong.
     fn notes(&self) -> &[String];
-    /// Everything that is wrong, the changes that sweeps and checks make included.
+    /// Every value in SI units, changes and defaults filled in.
+    fn resolved(&self) -> serde_json::Value;
+    /// Everything that is wrong, the changes that sweeps make included.
     fn legal(&self) -> Vec<BuildError>;
     /// A report on errors found after the case was read.
     fn refuse(&self, errors: &[BuildError]) -> Report;
@@ -227,6 +186,11 @@ impl<C: SceneCase> Scene for Loaded<C> {
         &self.notes
     }
 
+    fn resolved(&self) -> serde_json::Value {
+        // What a case was read from can be written: a type that cannot would fail its first test.
+        Self::resolved(self).unwrap_or_default()
+    }
+
     fn legal(&self) -> Vec<BuildError> {
         let heading = self.value.heading();
         let mut errors = C::legal(self);
@@ -247,7 +211,7 @@ impl<C: SceneCase> Scene for Loaded<C> {
     }
 
     fn explain(&self, told: &mut Explanation) -> Result<Vec<ModelUse>, RunError> {
-        told.resolved = self.resolved().map_err(|e| RunError::Refused(e.to_string()))?;
+        told.resolved = Scene::resolved(self);
         C::explain(self, told)
     }
 
@@ -307,33 +271,12 @@ pub fn load(source: Source, overrides: &[String]) -> Result<Box<dyn Scene>, Repo
     (entry.read)(source, overrides)
 }
 
-/// What is wrong with the changes that sweeps and checks make.
+/// What is wrong with the changes that sweeps make.
 fn legal_changes(scene: &dyn Scene, heading: Heading<'_>) -> Vec<BuildError> {
     let mut errors = Vec::new();
-    let mut seen = HashSet::new();
     for (k, set) in sweep::first_values(heading.sweeps) {
         if let Err(e) = changed(scene, &[set]) {
             errors.push(BuildError::at(format!("sweeps.{k}.path"), e.to_string()));
-        }
-    }
-    for (k, c) in heading.checks.iter().enumerate() {
-        for (field, set) in [("set", Some(&c.set)), ("against", c.against.as_ref())] {
-            if let Some(set) = set.filter(|s| !s.is_empty() && seen.insert(*s))
-                && let Err(e) = changed(scene, set)
-            {
-                errors.push(BuildError::at(format!("checks.{k}.{field}"), e.to_string()));
-            }
-        }
-        if c.relative && c.against.is_none() {
-            errors.push(BuildError::at(format!("checks.{k}.relative"), "needs `against`"));
-        }
-        for (j, e) in c.expect.iter().enumerate() {
-            if !(e.value.is_finite() && e.tolerance.is_finite() && e.tolerance >= 0.0) {
-                errors.push(BuildError::at(
-                    format!("checks.{k}.expect.{j}"),
-                    "a value and a tolerance of zero or more are needed",
-                ));
-            }
         }
     }
     errors
@@ -350,7 +293,7 @@ pub(crate) fn changed(scene: &dyn Scene, set: &[String]) -> Result<Box<dyn Scene
     })
 }
 
-/// Runs the case without its sweeps and checks.
+/// Runs the case without its sweeps.
 ///
 /// # Errors
 /// What stopped it.
@@ -358,82 +301,37 @@ pub(crate) fn run_alone(
     scene: &dyn Scene,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<RunResult, RunError> {
-    let mut result = scene.once(progress)?;
+    Ok(headed(scene, scene.once(progress)?))
+}
+
+/// A result with what its case says of itself.
+fn headed(scene: &dyn Scene, mut result: RunResult) -> RunResult {
     let heading = scene.heading();
     result.title = heading.title.into();
     result.source = heading.source.into();
     result.assumptions = heading.assumptions.to_vec();
     result.scene = scene_of(scene.source(), scene.overrides()).unwrap_or_default();
-    Ok(result)
+    result
 }
 
-/// Runs the case, its sweeps and its checks.
+/// Runs the case and its sweeps. Where the case itself fails, its sweeps are still run.
 ///
 /// # Errors
-/// What stopped it, or a check names a result that the scene does not have.
+/// What stopped it.
 pub(crate) fn run(scene: &dyn Scene, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
-    let mut result = run_alone(scene, progress)?;
-    let heading = scene.heading();
-    sweep::run(scene, heading.sweeps, &mut result, progress)?;
-    let mut known = Known::new();
-    known.insert(&[], result.results.clone());
-    for (k, c) in heading.checks.iter().enumerate() {
-        progress(Progress {
-            phase: "comparing with the source".into(),
-            fraction: k as f64 / heading.checks.len() as f64,
-        });
-        for set in [Some(&c.set), c.against.as_ref()].into_iter().flatten() {
-            if !known.contains_key(set.as_slice()) {
-                known.insert(set, changed(scene, set)?.once(&mut |_| {})?.results);
-            }
+    let sweeps = scene.heading().sweeps;
+    let mut result = match run_alone(scene, progress) {
+        Err(e) if !sweeps.is_empty() => {
+            let mut result = RunResult::default();
+            result
+                .solver
+                .notes
+                .push(Note::failure("case", format!("the case as it stands has no result: {e}")));
+            headed(scene, result)
         }
-        for e in &c.expect {
-            result.checks.push(check(c, e, &known)?);
-        }
-    }
+        outcome => outcome?,
+    };
+    let points = sweep::run(scene, sweeps, &mut result, progress)?;
+    result.solver.counters.insert("runs".into(), 1 + points as u64);
     Ok(result)
-}
-
-/// Results by the setting that gives them.
-type Known<'a> = HashMap<&'a [String], IndexMap<String, Value>>;
-
-fn check(c: &CheckCase, e: &Expect, known: &Known<'_>) -> Result<Check, RunError> {
-    let name = e.result.as_str();
-    let find = |set: &[String]| -> Result<&Value, RunError> {
-        let results = &known[set];
-        results.get(name).ok_or_else(|| {
-            let names: Vec<&str> = results.keys().map(String::as_str).collect();
-            let near = crate::load::advice(name, &names);
-            RunError::Refused(format!(
-                "a check names the result `{name}`, which this case does not have; {near}"
-            ))
-        })
-    };
-    let own = find(&c.set)?;
-    let (value, unit, result) = match &c.against {
-        None => (own.value, own.unit.clone(), name.to_owned()),
-        Some(from) => {
-            let from = find(from)?.value;
-            if c.relative && from == 0.0 {
-                return Err(RunError::Refused(format!(
-                    "a check wants the relative change of `{name}`, which is 0 with the setting to compare with"
-                )));
-            } else if c.relative {
-                (own.value / from - 1.0, "1".into(), format!("relative change of {name}"))
-            } else {
-                (own.value - from, own.unit.clone(), format!("change of {name}"))
-            }
-        }
-    };
-    Ok(Check {
-        set: c.set.clone(),
-        against: c.against.clone(),
-        result,
-        value,
-        reference: e.value,
-        unit,
-        tolerance: e.tolerance,
-        source: e.source.clone(),
-        must_fail: e.must_fail,
-    })
 }

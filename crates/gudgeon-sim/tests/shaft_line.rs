@@ -9,9 +9,8 @@ fn case(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases").join(name)
 }
 
-/// The case without its checks, which would run it many times.
 fn once(name: &str, set: &[&str]) -> RunResult {
-    let set: Vec<String> = ["checks=[]"].iter().chain(set).map(|s| (*s).to_owned()).collect();
+    let set: Vec<String> = set.iter().map(|s| (*s).to_owned()).collect();
     let c = check(&case(name), &set).unwrap_or_else(|r| panic!("{r}"));
     run(&c, &mut |_| {}).unwrap_or_else(|e| panic!("{e}"))
 }
@@ -221,7 +220,6 @@ fn mistakes_are_told_at_their_place() {
 #[test]
 fn an_undamped_resonance_that_is_hit_is_refused() {
     let set: Vec<String> = [
-        "checks=[]",
         "limits={}",
         "conventions={}",
         "drives=[]",

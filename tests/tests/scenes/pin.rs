@@ -283,7 +283,6 @@ fn extremes_end_in_words_or_in_numbers() {
             for v in ["1e-12", "1e-4", "0.0199", "0.0401", "1e3", "1e15", "1e300"] {
                 let set = [
                     format!("{path}={v}"),
-                    "checks=[]".into(),
                     "optimise.sweep_points=3".into(),
                     "optimise.pareto=[]".into(),
                     "optimise.stock={}".into(),

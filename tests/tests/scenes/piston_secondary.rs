@@ -1,4 +1,4 @@
-//! Secondary motion of the piston: the EA111 cases beyond what their `[[checks]]` say.
+//! Secondary motion of the piston: the EA111 cases beyond their comparisons in `validation/`.
 
 #![allow(clippy::print_stdout, reason = "what became of each case is for reading")]
 

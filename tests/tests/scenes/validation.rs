@@ -1,103 +1,77 @@
-//! Every bench, and every case with checks, against the values of its sources: one table, which stands in VALIDATION.md.
+//! Every file of comparisons in `validation/` holds, and the pages that show them are what the cases give now.
 
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use gudgeon_core::result::Check;
-use gudgeon_sim::{check, run};
+use gudgeon_core::result::Validated;
+use gudgeon_report::{page_name, validation_index, validation_page};
+use gudgeon_sim::validate::{ValidateError, file_of, files, validate};
 
-/// Every bench, and every engine case that compares itself with its source.
-fn cases() -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases");
-    let mut files: Vec<_> = ["", "rigs"]
-        .iter()
-        .flat_map(|f| std::fs::read_dir(folder.join(f)).expect("the folder of the cases"))
-        .map(|e| e.expect("an entry").path())
-        .filter(|p| p.extension().is_some_and(|e| e == "toml"))
-        .filter(|p| {
-            let bench = p.parent().is_some_and(|f| f.ends_with("rigs"));
-            bench || std::fs::read_to_string(p).expect("a case").contains("[[checks]]")
-        })
-        .collect();
-    files.sort();
-    files
+use crate::common::*;
+
+/// A folder or a file of the repository.
+fn here(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(name)
 }
 
-/// Its name below the folder of the cases.
-fn name(path: &Path) -> String {
-    let bench = path.parent().is_some_and(|f| f.ends_with("rigs"));
-    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    if bench { format!("rigs/{stem}") } else { stem.into_owned() }
-}
-
-/// A deviation as the table shows it. Rounding differs between machines, so what is of its size is only called small.
-fn deviation(c: &Check) -> String {
-    let d = c.deviation();
-    if d.abs() < 1e-12 { "< 1e-12".into() } else { format!("{d:+.0e}") }
-}
-
-/// Digits that a check can vouch for: those beyond its tolerance and beyond eight would differ between machines.
-fn value(v: f64) -> String {
-    if v == 0.0 { "0".into() } else { format!("{v:.7e}") }
-}
-
-/// Runs every case and writes its checks as a table. The file in the repository must be what this makes of the cases:
-/// `GUDGEON_WRITE_VALIDATION=1 cargo test -p gudgeon-tests --test scenes validation` writes it anew.
+/// Runs every comparison. Their pages in the repository must be what this gives:
+/// `gudgeon validate --pages VALIDATION.md` writes them anew.
 #[test]
 fn every_case_agrees_with_its_sources() {
-    let mut text = String::from(
-        "# Validation\n\nEvery bench of `cases/rigs` and every other case with checks beside the values of its sources. The test `validation` makes this \
-         file and fails when a deviation is larger than admitted, or when a model or a source that must fail (it does not conserve \
-         mass, say) does not. Deviations are relative, or absolute where the source gives zero. The published engine cases have \
-         tables of their own, made by the tests `zottin` and `tomanik`.\n",
-    );
-    let mut wrong = Vec::new();
-    let mut rows = 0;
-    for path in cases() {
-        let c = check(&path, &[]).unwrap_or_else(|r| panic!("{}: {r}", path.display()));
-        let r = run(&c, &mut |_| {}).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-        let _ = write!(text, "\n## {}\n\n`cases/{}.toml`. {}\n\n", r.title, name(&path), r.source);
-        if r.checks.is_empty() {
-            text.push_str("No values to compare with.\n");
-            continue;
-        }
-        text.push_str("| setting | result | computed | source | unit | deviation | admitted | where from |\n|---|---|---|---|---|---|---|---|\n");
-        for c in &r.checks {
-            rows += 1;
-            let set = c.setting();
-            let admitted = format!("{}{:.0e}", if c.must_fail { "must exceed " } else { "" }, c.tolerance);
-            let _ = writeln!(
-                text,
-                "| {set} | {} | {} | {} | {} | {} | {admitted} | {} |",
-                c.result,
-                value(c.value),
-                value(c.reference),
-                c.unit,
-                deviation(c),
-                c.source
-            );
-            if !c.holds() {
-                wrong.push(format!(
-                    "{}: {set}: {}: {:e} instead of {:e}, deviation {:.1e}, admitted {admitted}",
-                    r.case,
+    let all = files(&here("validation")).expect("the folder of the comparisons");
+    let threads = std::thread::available_parallelism().map_or(1, Into::into);
+    let validated: Vec<Validated> = validate(&all, threads, &|_| {})
+        .into_iter()
+        .map(|v| match v {
+            Ok(v) => v,
+            Err(ValidateError::Input(report)) => panic!("{report}"),
+            Err(ValidateError::Run(file, e)) => panic!("{}: {e}", file.display()),
+        })
+        .collect();
+    let broken: Vec<String> = validated
+        .iter()
+        .flat_map(|v| {
+            v.broken().map(move |c| {
+                let (says, admitted) = (c.verdict.words(), c.tolerance);
+                format!(
+                    "{}: {}: {}: {:e} where the source gives {:e}, deviation {:.1e}, admitted {admitted:.0e}, called {says}",
+                    v.case,
+                    c.setting(),
                     c.result,
                     c.value,
                     c.reference,
                     c.deviation()
-                ));
-            }
+                )
+            })
+        })
+        .collect();
+    assert!(broken.is_empty(), "\n{}", broken.join("\n"));
+    assert!(validated.len() > 40 && validated.iter().all(|v| !v.checks.is_empty()));
+    let mut stale = Vec::new();
+    let mut compare = |file: PathBuf, text: &str| {
+        let stands = std::fs::read_to_string(&file).unwrap_or_default();
+        if stands != text {
+            let differs = stands.lines().zip(text.lines()).find(|(a, b)| a != b);
+            stale.push(format!("{}: {differs:?}", file.display()));
         }
+    };
+    for v in &validated {
+        compare(here("docs/validation").join(format!("{}.md", page_name(v))), &validation_page(v));
     }
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../VALIDATION.md");
-    if std::env::var_os("GUDGEON_WRITE_VALIDATION").is_some() {
-        std::fs::write(&file, &text).expect("VALIDATION.md can be written");
-    }
-    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
-    assert!(rows > 0, "no case has a check");
-    let stands = std::fs::read_to_string(&file).unwrap_or_default();
-    let differs = stands.lines().zip(text.lines()).find(|(a, b)| a != b);
+    compare(here("VALIDATION.md"), &validation_index(&validated, "docs/validation"));
     assert!(
-        stands == text,
-        "VALIDATION.md is not what the cases give now; the first line that differs: {differs:?}. Write it anew with GUDGEON_WRITE_VALIDATION=1"
+        stale.is_empty(),
+        "write the pages anew with `gudgeon validate --pages VALIDATION.md`:\n{}",
+        stale.join("\n")
     );
+}
+
+#[test]
+fn a_case_finds_its_comparisons() {
+    let found = |case: &str| {
+        let f = file_of(&case_file(case)).expect("the folder can be read")?;
+        Some(f.strip_prefix(here("validation").canonicalize().expect("a folder")).expect("below").to_owned())
+    };
+    assert_eq!(found("ea111-1400"), Some("ea111-1400.toml".into()));
+    assert_eq!(found("rigs/kinematics"), Some("rigs/kinematics.toml".into()));
+    assert_eq!(found("turbo-diesel-120"), None);
 }

@@ -4,20 +4,19 @@ use std::fmt::Write as _;
 
 use gudgeon_core::result::BenchTable;
 
-use crate::args::{BenchArgs, out_dir};
-use crate::cmd::{check_out, checked};
+use crate::args::BenchArgs;
+use crate::cmd::{checked, open_out};
 use crate::failure::Failure;
 use crate::ui::{Ui, number, table};
 
 pub fn bench(a: &BenchArgs, ui: &Ui) -> Result<(), Failure> {
     let c = checked(&a.case, ui)?;
-    let dir = out_dir(a.out.as_deref(), &c.name, "-bench");
-    check_out(&dir)?;
+    let folder = open_out(a.out.as_deref(), &a.case.case, &c.name, "-bench")?;
     let measured = {
         let bar = ui.bar();
         gudgeon_sim::bench(&c, &a.results, &mut |p| bar.show(p))?
     };
-    let files = gudgeon_report::write_bench(&measured, &dir)?;
+    let files = gudgeon_report::write_bench_in(&measured, folder)?;
     if !ui.quiet() {
         ui.out(&format!("{}\n{}", text(&measured), files.report.display()));
     }

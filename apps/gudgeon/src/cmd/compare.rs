@@ -4,28 +4,34 @@ use std::fmt::Write as _;
 
 use gudgeon_core::result::Comparison;
 
-use crate::args::{CompareArgs, out_dir};
-use crate::cmd::{check_out, checked};
+use crate::args::CompareArgs;
+use crate::cmd::{checked, open_out};
 use crate::failure::Failure;
 use crate::ui::{Ui, number, table, unit};
 
 pub fn compare(a: &CompareArgs, ui: &Ui) -> Result<(), Failure> {
     let swaps = a.swap.iter().map(|s| swap(s)).collect::<Result<Vec<_>, _>>()?;
     let name = checked(&a.case, ui)?.name;
-    let dir = out_dir(a.out.as_deref(), &name, "-compare");
-    check_out(&dir)?;
+    let folder = open_out(a.out.as_deref(), &a.case.case, &name, "-compare")?;
     let comparison = {
         let bar = ui.bar();
         gudgeon_sim::compare(&a.case.case, &a.case.set, &swaps, &mut |p| bar.show(p))?
     };
-    let files = gudgeon_report::write_comparison(&comparison, &dir)?;
+    let files = gudgeon_report::write_comparison_in(&comparison, folder)?;
     if !ui.quiet() {
         ui.out(&format!("{}\n{}", text(&comparison), files.report.display()));
     }
-    if comparison.variants.iter().all(|v| v.outcome.is_err()) {
-        return Err(Failure::Run("none of the combinations has a result".into()));
+    let failed = comparison.variants.iter().filter(|v| v.outcome.is_err()).count();
+    match failed {
+        0 => Ok(()),
+        n if n == comparison.variants.len() => {
+            Err(Failure::Run("none of the combinations has a result".into()))
+        }
+        n => Err(Failure::Run(format!(
+            "{n} of {} combinations have no result; the others are written",
+            comparison.variants.len()
+        ))),
     }
-    Ok(())
 }
 
 /// `PATH=A,B,C`. A comma inside brackets or quotes belongs to its value.
@@ -92,6 +98,12 @@ fn text(c: &Comparison) -> String {
         }
         rows.push(row);
     }
+    let mut times = vec!["time".to_owned(), "s".to_owned()];
+    for (k, (_, r)) in shown.iter().enumerate() {
+        times.push(r.seconds.get("total").map_or_else(String::new, |t| number(*t)));
+        times.extend((k > 0).then(String::new));
+    }
+    rows.push(times);
     s.push('\n');
     let right: Vec<usize> = (2..2 + 2 * shown.len()).collect();
     s.push_str(&table(&rows, &right));

@@ -2,28 +2,45 @@
 
 use std::fmt::Write as _;
 
-use gudgeon_core::result::RunResult;
+use gudgeon_core::result::{NoteLevel, RunResult};
 
-use crate::args::{RunArgs, out_dir};
-use crate::cmd::{check_out, checked};
+use crate::args::RunArgs;
+use crate::cmd::{checked, open_out};
 use crate::failure::Failure;
 use crate::ui::{Ui, number, table, unit};
 
 pub fn run(a: &RunArgs, ui: &Ui) -> Result<(), Failure> {
     let c = checked(&a.case, ui)?;
-    let dir = out_dir(a.out.as_deref(), &c.name, "");
-    check_out(&dir)?;
-    let result = {
+    let folder = open_out(a.out.as_deref(), &a.case.case, &c.name, "")?;
+    let mut result = {
         let bar = ui.bar();
         gudgeon_sim::run(&c, &mut |p| bar.show(p))?
     };
-    let files = gudgeon_report::write_run(&result, &dir)?;
+    result.provenance.revision = env!("GUDGEON_REVISION").into();
+    let files = gudgeon_report::write_run_in(&result, folder).inspect_err(|_| {
+        // What was computed is not lost with the disk.
+        ui.out(&if a.json { gudgeon_report::summary_json(&result) } else { text(&result) });
+    })?;
     if a.json {
         ui.out(&gudgeon_report::summary_json(&result));
     } else if !ui.quiet() {
         ui.out(&format!("{}\n{}", text(&result), files.report.display()));
+    } else {
+        for n in result.solver.notes.iter().filter(|n| n.level > NoteLevel::Info) {
+            ui.note(&n.text);
+        }
     }
-    Ok(())
+    failure_of(&result)
+}
+
+/// Results that are written and marked as what they are not end a run with the exit code of a failure.
+fn failure_of(r: &RunResult) -> Result<(), Failure> {
+    let failed: Vec<&str> =
+        r.solver.notes.iter().filter(|n| n.level == NoteLevel::Failure).map(|n| n.text.as_str()).collect();
+    if failed.is_empty() {
+        return Ok(());
+    }
+    Err(Failure::Run(format!("{} (the results are written and marked)", failed.join("; "))))
 }
 
 fn text(r: &RunResult) -> String {
@@ -50,22 +67,6 @@ fn text(r: &RunResult) -> String {
     let seconds = r.seconds.get("total").map_or_else(String::new, |t| format!(", {} s", number(*t)));
     let work = if work.is_empty() { String::new() } else { format!(": {}", work.join(", ")) };
     let _ = writeln!(s, "  {}{work}{seconds}", r.solver.method);
-    if !r.checks.is_empty() {
-        let held = r.checks.iter().filter(|c| c.holds()).count();
-        let _ = writeln!(s, "  against sources: {held} of {} as the case says they must be", r.checks.len());
-        for c in r.checks.iter().filter(|c| !c.holds()) {
-            let at = if c.set.is_empty() { String::new() } else { format!(" ({})", c.set.join(", ")) };
-            let _ = writeln!(
-                s,
-                "    {}{at}: {} instead of {}, deviation {:.1e}, admitted {:.0e}",
-                c.result,
-                number(c.value),
-                number(c.reference),
-                c.deviation(),
-                c.tolerance
-            );
-        }
-    }
     if !r.skipped.is_empty() {
         let skipped: Vec<&str> = r.skipped.iter().map(|k| k.what.as_str()).collect();
         let _ = writeln!(s, "  skipped (`gudgeon explain` says why): {}", skipped.join(", "));

@@ -9,6 +9,8 @@
 
 mod near;
 mod overrides;
+mod plain;
+mod published;
 mod report;
 mod schema;
 mod tree;
@@ -16,24 +18,25 @@ mod tree;
 #[cfg(test)]
 mod tests;
 
-use std::io::Read;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use gudgeon_core::BuildError;
+use gudgeon_core::quantity::with_decimal_point;
+use gudgeon_core::file::{MOST_OF_A_CASE, ReadError, read_text};
 use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
 use serde_path_to_error::Segment;
 use toml::de::DeTable;
 
 pub use near::{advice, list, nearest};
-pub use report::{Diagnostic, Origin, Report, Source, line_column};
+pub use published::{one_scene_of, published};
+pub use report::{Diagnostic, MOST_MISTAKES, Origin, Report, Source, line_column};
 
+use plain::plain;
 use schema::{Schema, shorten};
 use tree::{Data, Node, Place, steps};
-
-/// A case file has a few kilobytes; this keeps a wrong argument (a disk image, a device) from filling the memory.
-const MAX_BYTES: u64 = 16 << 20;
 
 /// A value read from a file, with what is needed to point back at the file.
 #[derive(Debug, Clone)]
@@ -47,13 +50,15 @@ pub struct Loaded<T> {
     /// What a person should be told: keys that a changed model made meaningless, numbers that probably lack their unit.
     pub notes: Vec<String>,
     tree: Arc<Node>,
+    /// The tree of the text alone, which studies change again and again.
+    base: Arc<Node>,
 }
 
 /// Reads a case file, changes it by `PATH=VALUE` overrides and checks it.
 ///
 /// # Errors
 /// Every mistake of the file and of the overrides.
-pub fn load<T: DeserializeOwned + JsonSchema>(
+pub fn load<T: DeserializeOwned + JsonSchema + 'static>(
     path: &Path,
     overrides: &[String],
 ) -> Result<Loaded<T>, Report> {
@@ -64,7 +69,7 @@ pub fn load<T: DeserializeOwned + JsonSchema>(
 ///
 /// # Errors
 /// Every mistake of the text and of the overrides.
-pub fn load_str<T: DeserializeOwned + JsonSchema>(
+pub fn load_str<T: DeserializeOwned + JsonSchema + 'static>(
     name: &str,
     text: &str,
     folder: &Path,
@@ -78,78 +83,86 @@ pub fn load_str<T: DeserializeOwned + JsonSchema>(
 ///
 /// # Errors
 /// Every mistake of the text and of the overrides.
-pub fn load_source<T: DeserializeOwned + JsonSchema>(
+pub fn load_source<T: DeserializeOwned + JsonSchema + 'static>(
     source: Source,
     overrides: &[String],
 ) -> Result<Loaded<T>, Report> {
-    let (source, overrides) = (Arc::new(source), Arc::<[String]>::from(overrides));
+    let source = Arc::new(source);
+    let (base, found) =
+        parse(&source.text).map_err(|d| Report::new(d, Arc::clone(&source), Arc::from(overrides)))?;
+    load_tree(source, Arc::new(base), found, overrides)
+}
+
+/// As [`load`], from the tree of a text and what was wrong with it already.
+fn load_tree<T: DeserializeOwned + JsonSchema + 'static>(
+    source: Arc<Source>,
+    base: Arc<Node>,
+    mut found: Vec<Diagnostic>,
+    overrides: &[String],
+) -> Result<Loaded<T>, Report> {
+    let overrides = Arc::<[String]>::from(overrides);
     let refuse = |found: Vec<Diagnostic>| Report::new(found, Arc::clone(&source), Arc::clone(&overrides));
 
-    let schema = Schema::of::<T>(source.text.len());
-    let (mut tree, mut found) = parse(&source.text).map_err(&refuse)?;
+    let schema = Schema::of::<T>();
+    let mut tree = Node::clone(&base);
     if found.is_empty() && matches!(&tree.data, Data::Table(t) if t.is_empty()) {
         let keys = schema.required();
         let d = Diagnostic::new("the file says nothing").at(Origin::File, Some(0..0));
         return Err(refuse(vec![d.help(format!("a case needs at least {}", list(keys)))]));
     }
     let mut notes = Vec::new();
-    let not_applied = overrides::apply(&mut tree, &schema, &overrides, &mut notes);
+    let not_applied = overrides::apply(&mut tree, schema, &overrides, &mut notes);
     found.extend(not_applied);
-    found.extend(schema.check(&tree).into_iter().map(|d| suggest_path(d, &schema, &overrides)));
+    let wrong = schema.check(&tree, source.text.len());
+    found.extend(wrong.into_iter().map(|d| suggest_path(d, schema, &overrides)));
     if !found.is_empty() {
         return Err(refuse(found));
     }
     notes.extend(schema.improbable(&tree));
     match serde_path_to_error::deserialize(tree.to_json()) {
-        Ok(value) => Ok(Loaded { value, source, overrides, notes, tree: Arc::new(tree) }),
+        Ok(value) => Ok(Loaded { value, source, overrides, notes, tree: Arc::new(tree), base }),
         Err(e) => {
             let path: Vec<String> = e.path().iter().filter_map(segment).collect();
             let text = e.inner().to_string();
-            let message = shorten(text.lines().next().unwrap_or_default());
+            let message = plain(&shorten(text.lines().next().unwrap_or_default()));
             Err(refuse(vec![place(&tree, &source, path.join("."), message, None)]))
         }
     }
 }
 
-/// The text of a case file.
+/// The text of a case file: a regular file of at most [`MOST_OF_A_CASE`] bytes.
 ///
 /// # Errors
 /// A file that does not exist, cannot be read, is too large or is not UTF-8 text.
 pub fn read(path: &Path) -> Result<Source, Report> {
     let name = path.display().to_string();
-    let refuse = |d: Diagnostic| Report::unreadable(&name, d);
     let folder = match path.parent() {
         Some(p) if !p.as_os_str().is_empty() => p.to_owned(),
         _ => PathBuf::from("."),
     };
-    let mut bytes = Vec::new();
-    let failed = |e: std::io::Error| {
-        let d = Diagnostic::new(format!("cannot read `{name}`: {e}"));
-        refuse(match neighbour(path, &folder) {
-            Some(near) => d.help(format!("did you mean `{near}`?")),
-            None => d,
-        })
+    let said = match read_text(path, MOST_OF_A_CASE) {
+        Ok(text) => return Ok(Source { name, text, folder }),
+        Err(e) => e,
     };
-    if path.is_dir() {
-        return Err(refuse(
-            Diagnostic::new(format!("`{name}` is a folder")).help("name the case file in it"),
-        ));
-    }
-    let file = std::fs::File::open(path).map_err(failed)?;
-    file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(failed)?;
-    if bytes.len() as u64 > MAX_BYTES {
-        return Err(refuse(Diagnostic::new(format!("`{name}` is too large to be a case file"))));
-    }
-    match String::from_utf8(bytes) {
-        Ok(text) => Ok(Source { name, text, folder }),
-        Err(e) => {
-            let at = e.utf8_error().valid_up_to();
-            let valid = String::from_utf8_lossy(&e.as_bytes()[..at]).into_owned();
-            let (line, column) = line_column(&valid, at);
-            let d = Diagnostic::new(format!("`{name}` is not UTF-8 text: line {line}, column {column}"));
-            Err(refuse(d.help("a case is a TOML file; save it with the encoding UTF-8")))
+    let d = match &said {
+        ReadError::Folder => {
+            Diagnostic::new(format!("`{name}` is a folder")).help("name the case file in it")
         }
-    }
+        ReadError::TooLarge { most } => Diagnostic::new(format!("`{name}` is too large to be a case file"))
+            .help(format!("a case has at most {} MiB; long tables stand in files of their own", most >> 20)),
+        ReadError::NotText { line, column } => {
+            let what = format!("`{name}` is not UTF-8 text: line {line}, column {column}");
+            Diagnostic::new(what).help("a case is a TOML file; save it with the encoding UTF-8")
+        }
+        e => {
+            let d = Diagnostic::new(format!("cannot read `{name}`: {e}"));
+            match neighbour(path, &folder) {
+                Some(near) => d.help(format!("did you mean `{near}`?")),
+                None => d,
+            }
+        }
+    };
+    Err(Report::unreadable(&name, d))
 }
 
 /// The scene that a case names, without checking the rest of it.
@@ -171,57 +184,73 @@ const MAX_SYNTAX_ERRORS: usize = 1;
 /// The tree of a text. Duplicate keys do not keep the rest from being checked, other syntax errors do.
 fn parse(text: &str) -> Result<(Node, Vec<Diagnostic>), Vec<Diagnostic>> {
     let (table, errors) = DeTable::parse_recoverable(text);
-    let mut duplicates = Vec::new();
-    let mut syntax = Vec::new();
-    let mut second_table = None;
-    for e in errors {
-        let span = e.span().map_or(0..0, |s| s.start.min(text.len())..s.end.min(text.len()));
-        let key = text.get(span.clone()).unwrap_or_default().to_owned();
-        let d = Diagnostic::new(e.message()).at(Origin::File, Some(span.clone()));
-        if e.message() == "duplicate key" {
-            // The keys below a table that stands for the second time are not second mistakes.
-            let header = header_above(text, span.start);
-            if second_table.is_some() && second_table == header {
-                continue;
-            }
-            if header.is_some_and(|h| line_column(text, h).0 == line_column(text, span.start).0) {
-                second_table = header;
-            }
-            let first = first_line_of(text, span.start, &key);
-            let d = Diagnostic { message: format!("`{key}` stands here for the second time"), ..d };
-            duplicates.push(match first {
-                Some(n) => {
-                    d.help(format!("the first one is in line {n}; a key may stand in a table only once"))
-                }
-                None => d.help("a key may stand in a table only once"),
-            });
-        } else {
-            syntax.push(match hint(text, &span) {
-                Some(h) => d.help(h),
-                None => d,
-            });
-        }
-    }
+    let (second, mut syntax): (Vec<_>, Vec<_>) =
+        errors.into_iter().partition(|e| e.message() == "duplicate key");
     if syntax.is_empty() {
-        Ok((Node::from_table(&table, Origin::File, 0), duplicates))
-    } else {
-        syntax.sort_by_key(|d| d.span.as_ref().map_or(0, |s| s.start));
-        syntax.truncate(MAX_SYNTAX_ERRORS);
-        Err(syntax)
+        return Ok((Node::from_table(&table, Origin::File, 0), duplicates(text, &second)));
     }
+    syntax.sort_by_key(|e| e.span().map_or(0, |s| s.start));
+    syntax.truncate(MAX_SYNTAX_ERRORS);
+    let told = |e: toml::de::Error| {
+        let span = within(text, e.span());
+        let d = Diagnostic::new(e.message()).at(Origin::File, Some(span.clone()));
+        match hint(text, &span) {
+            Some(h) => d.help(h),
+            None => d,
+        }
+    };
+    Err(syntax.into_iter().map(told).collect())
 }
 
-/// Advice on the commonest reason why a line is not TOML: a value that needs quotes.
-fn hint(text: &str, span: &std::ops::Range<usize>) -> Option<String> {
+fn within(text: &str, span: Option<Range<usize>>) -> Range<usize> {
+    span.map_or(0..0, |s| s.start.min(text.len())..s.end.min(text.len()))
+}
+
+/// The first [`MOST_MISTAKES`] keys and tables that stand for the second time.
+fn duplicates(text: &str, errors: &[toml::de::Error]) -> Vec<Diagnostic> {
+    let mut out = Vec::new();
+    let mut second_table = None;
+    for e in errors {
+        if out.len() >= MOST_MISTAKES {
+            break;
+        }
+        let span = within(text, e.span());
+        let key = text.get(span.clone()).unwrap_or_default();
+        // The keys below a table that stands for the second time are not second mistakes.
+        let header = header_above(text, span.start);
+        if second_table.is_some() && second_table == header {
+            continue;
+        }
+        if header.is_some_and(|h| line_column(text, h).0 == line_column(text, span.start).0) {
+            second_table = header;
+        }
+        let once = "a key may stand in a table only once";
+        let help = match first_line_of(text, span.start, key) {
+            Some(n) => format!("the first one is in line {n}; {once}"),
+            None => once.to_owned(),
+        };
+        let what = format!("`{}` stands here for the second time", shorten(key));
+        out.push(Diagnostic::new(what).at(Origin::File, Some(span)).help(help));
+    }
+    out
+}
+
+/// Advice on the commonest reasons why a line is not TOML: a value that needs quotes, a decimal comma.
+fn hint(text: &str, span: &Range<usize>) -> Option<String> {
     let start = text[..span.start].rfind('\n').map_or(0, |i| i + 1);
     let line = text[start..].lines().next()?;
     let (key, value) = line.split_once('=')?;
-    let value = value.split('#').next()?.trim();
+    let (key, value) = (key.trim(), value.split('#').next()?.trim());
+    if key.is_empty() || !key.chars().all(|c| c.is_alphanumeric() || "_-.".contains(c)) {
+        return None;
+    }
+    if let Some(pointed) = with_decimal_point(value) {
+        let quote = if pointed.parse::<f64>().is_ok() { "" } else { "\"" };
+        return Some(format!("the decimal mark is a point: `{key} = {quote}{}{quote}`", shorten(&pointed)));
+    }
     let plain = |c: char| c.is_alphanumeric() || " ._-+/%°µ()".contains(c);
-    let key_is_plain =
-        key.trim().chars().all(|c| c.is_alphanumeric() || "_-.".contains(c)) && !key.trim().is_empty();
-    (key_is_plain && !value.is_empty() && value.chars().all(plain)).then(|| {
-        format!("text and values with a unit stand in quotes: `{} = \"{}\"`", key.trim(), shorten(value))
+    (!value.is_empty() && value.chars().all(plain)).then(|| {
+        format!("text and values with a unit stand in quotes: `{key} = \"{}\"`", shorten(value))
     })
 }
 
@@ -340,9 +369,13 @@ impl<T> Loaded<T> {
     ///
     /// # Errors
     /// As [`load`].
-    pub fn reload<U: DeserializeOwned + JsonSchema>(&self, more: &[String]) -> Result<Loaded<U>, Report> {
+    pub fn reload<U: DeserializeOwned + JsonSchema + 'static>(
+        &self,
+        more: &[String],
+    ) -> Result<Loaded<U>, Report> {
         let overrides: Vec<String> = self.overrides.iter().chain(more).cloned().collect();
-        load_source(Source::clone(&self.source), &overrides)
+        // A case that was read had no mistake of its text.
+        load_tree(Arc::clone(&self.source), Arc::clone(&self.base), Vec::new(), &overrides)
     }
 }
 

@@ -81,7 +81,10 @@ impl Diagnostic {
     }
 }
 
-/// Everything that is wrong with one case, in the order of the file, then of the `--set` arguments.
+/// Most mistakes that one report tells: a file with more of them is another file.
+pub const MOST_MISTAKES: usize = 50;
+
+/// What is wrong with one case, at most [`MOST_MISTAKES`], in the order of the file, then of the `--set` arguments.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Report {
     /// The mistakes; never empty in a report that is returned as an error.
@@ -98,6 +101,7 @@ impl Report {
     pub fn new(mut diagnostics: Vec<Diagnostic>, source: Arc<Source>, overrides: Arc<[String]>) -> Self {
         diagnostics.sort_by_key(|d| (d.origin, d.span.as_ref().map_or(usize::MAX, |s| s.start)));
         diagnostics.dedup();
+        diagnostics.truncate(MOST_MISTAKES);
         Self { diagnostics, source, overrides }
     }
 
@@ -115,6 +119,16 @@ impl Report {
         let (name, text) = self.text_of(diagnostic.origin)?;
         let (line, column) = line_column(text, span.start);
         Some((name, line, column))
+    }
+
+    /// How many mistakes there are, as a person reads it.
+    #[must_use]
+    pub fn count(&self) -> String {
+        match self.diagnostics.len() {
+            1 => "1 mistake".to_owned(),
+            n if n < MOST_MISTAKES => format!("{n} mistakes"),
+            n => format!("{n} mistakes or more"),
+        }
     }
 
     fn text_of(&self, origin: Origin) -> Option<(String, &str)> {

@@ -3,19 +3,25 @@
 //! Deserialisation stops at the first mistake; this walk does not. The schema comes from the same types, so both agree, and
 //! deserialisation still has the last word.
 
+use std::any::TypeId;
+use std::collections::{HashMap, HashSet};
+use std::sync::{Mutex, PoisonError};
+
 use gudgeon_core::quantity::{self, ALL_DIMENSIONS, QuantityError};
 use serde_json::{Map, Value};
 
 use super::near::{advice, list, nearest};
-use super::report::{Diagnostic, Origin};
+use super::report::{Diagnostic, MOST_MISTAKES, Origin};
 use super::tree::{Data, Entry, Node, Place, join, steps};
 
 /// A root schema with its definitions.
 #[derive(Debug)]
 pub(super) struct Schema {
     root: Value,
-    end_of_file: usize,
 }
+
+/// Most values of an array that does not say its own maximum.
+pub(super) const MOST_ITEMS: usize = 100_000;
 
 /// Nesting of schemas without a value in between (references, options); only a schema that refers to itself has more.
 const MAX_REFERENCES: usize = 32;
@@ -30,8 +36,15 @@ const IMPROBABLE: &[(&str, f64, f64, &str)] = &[
 ];
 
 impl Schema {
-    pub fn of<T: schemars::JsonSchema>(text_length: usize) -> Self {
-        Self { root: schemars::schema_for!(T).to_value(), end_of_file: text_length }
+    /// The schema of a type: generated once and kept, for a study reads its case thousands of times.
+    pub fn of<T: schemars::JsonSchema + 'static>() -> &'static Self {
+        static KNOWN: Mutex<Option<HashMap<TypeId, &'static Schema>>> = Mutex::new(None);
+        // What a panicking thread left is whole: entries are only ever added.
+        let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+        known.get_or_insert_default().entry(TypeId::of::<T>()).or_insert_with(|| {
+            // One a type and program, for the whole life of it.
+            Box::leak(Box::new(Self { root: schemars::schema_for!(T).to_value() }))
+        })
     }
 
     pub const fn root(&self) -> &Value {
@@ -88,10 +101,13 @@ impl Schema {
             .or_else(|| table.get("additionalProperties").filter(|a| a.is_object()))
     }
 
-    /// Every mistake of the document.
-    pub fn check(&self, document: &Node) -> Vec<Diagnostic> {
+    /// The first [`MOST_MISTAKES`] mistakes of the document; what the whole file lacks is told at its end.
+    pub fn check(&self, document: &Node, end_of_file: usize) -> Vec<Diagnostic> {
         let mut out = Vec::new();
         self.value(document, &self.root, "", &mut out);
+        for d in out.iter_mut().filter(|d| d.span.is_none() && d.origin == Origin::File) {
+            d.span = Some(end_of_file..end_of_file);
+        }
         out
     }
 
@@ -140,6 +156,9 @@ impl Schema {
     }
 
     fn value(&self, node: &Node, schema: &Value, path: &str, out: &mut Vec<Diagnostic>) {
+        if out.len() >= MOST_MISTAKES {
+            return;
+        }
         let schema = self.resolve(schema);
         if let Some(dimension) = schema.get("x-dimension").and_then(Value::as_str) {
             let bound = schema.get("x-bound").and_then(Value::as_str).unwrap_or_default();
@@ -156,7 +175,11 @@ impl Schema {
         }
         let types = types_of(schema);
         if !types.is_empty() && !types.iter().any(|t| admits(t, &node.data)) {
-            return out.push(wrong_type(node, &phrase(&types), path));
+            let d = wrong_type(node, &phrase(&types), path);
+            return out.push(match number_in_text(node, &types) {
+                Some(help) => d.help(help),
+                None => d,
+            });
         }
         match &node.data {
             Data::Table(entries) => self.table(node, entries, schema, &[], path, out),
@@ -180,11 +203,15 @@ impl Schema {
         let properties = schema.get("properties").and_then(Value::as_object).unwrap_or(&empty);
         let other = schema.get("additionalProperties");
         let known: Vec<&str> = properties.keys().map(String::as_str).collect();
-        let absent = |key: &&str| !entries.iter().any(|e| e.key == **key);
+        let present: HashSet<&str> = entries.iter().map(|e| e.key.as_str()).collect();
+        let absent = |key: &&str| !present.contains(*key);
         let mut missing: Vec<&str> =
             strings(schema.get("required")).into_iter().filter(|k| absent(k) && !skip.contains(k)).collect();
 
         for e in entries {
+            if out.len() >= MOST_MISTAKES {
+                return;
+            }
             if let Some(s) = properties.get(&e.key) {
                 if !skip.contains(&e.key.as_str()) {
                     self.value(&e.node, s, &join(path, &e.key), out);
@@ -214,13 +241,7 @@ impl Schema {
         if !missing.is_empty() {
             let what = if missing.len() == 1 { "missing key" } else { "missing keys" };
             let mut d = Diagnostic::new(format!("{what} {}", list(missing.iter().copied()))).path(path);
-            d = match (&node.place, path) {
-                // The whole file: where the missing table would be added.
-                (Place { span: None, origin: Origin::File }, "") => {
-                    d.at(Origin::File, Some(self.end_of_file..self.end_of_file))
-                }
-                (place, _) => d.at(place.origin, place.span.clone()),
-            };
+            d = d.at(node.place.origin, node.place.span.clone());
             let texts: Vec<String> =
                 missing.iter().filter_map(|k| self.meaning(k, properties.get(*k)?)).collect();
             if !texts.is_empty() {
@@ -241,19 +262,23 @@ impl Schema {
     }
 
     fn array(&self, node: &Node, items: &[Node], schema: &Value, path: &str, out: &mut Vec<Diagnostic>) {
-        let prefix = schema.get("prefixItems").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
-        for (i, item) in items.iter().enumerate() {
-            if let Some(s) = prefix.get(i).or_else(|| schema.get("items")) {
-                self.value(item, s, &join(path, i), out);
-            }
-        }
         let limit = |key: &str| schema.get(key).and_then(Value::as_u64);
         let n = items.len() as u64;
-        let wanted = match (limit("minItems"), limit("maxItems")) {
-            (Some(a), Some(b)) if a == b && n != a => format!("exactly {a}"),
-            (Some(a), _) if n < a => format!("at least {a}"),
-            (_, Some(b)) if n > b => format!("at most {b}"),
-            _ => return,
+        let most = limit("maxItems").unwrap_or(MOST_ITEMS as u64);
+        let wanted = match limit("minItems") {
+            Some(a) if a == most && n != a => format!("exactly {a}"),
+            Some(a) if n < a => format!("at least {a}"),
+            _ if n > most => format!("at most {most}"),
+            _ => {
+                let prefix = schema.get("prefixItems").and_then(Value::as_array);
+                for (i, item) in items.iter().enumerate() {
+                    let own = prefix.and_then(|p| p.get(i));
+                    if let Some(s) = own.or_else(|| schema.get("items")) {
+                        self.value(item, s, &join(path, i), out);
+                    }
+                }
+                return;
+            }
         };
         let message =
             format!("{n} {} given, {wanted} wanted", if n == 1 { "value is" } else { "values are" });
@@ -495,7 +520,7 @@ fn check_range(node: &Node, v: f64, schema: &Value, path: &str, out: &mut Vec<Di
         Some("finite".to_owned())
     } else if let Some(a) = limit("minimum").filter(|a| v < *a) {
         Some(if a == 0.0 { "zero or greater".to_owned() } else { format!("at least {a}") })
-    } else if let Some(b) = limit("maximum").filter(|b| v > *b) {
+    } else if let Some(b) = limit("maximum").or_else(|| most_of(schema)).filter(|b| v > *b) {
         Some(format!("at most {b}"))
     } else if let Some(a) = limit("exclusiveMinimum").filter(|a| v <= *a) {
         Some(format!("greater than {a}"))
@@ -506,6 +531,33 @@ fn check_range(node: &Node, v: f64, schema: &Value, path: &str, out: &mut Vec<Di
         let d = Diagnostic::new(format!("`{}` must be {w}", number_text(v)));
         out.push(d.path(path).at(node.place.origin, node.place.span.clone()));
     }
+}
+
+/// The greatest value that the type behind a whole number holds.
+fn most_of(schema: &Value) -> Option<f64> {
+    Some(match schema.get("format")?.as_str()? {
+        "uint8" => f64::from(u8::MAX),
+        "uint16" => f64::from(u16::MAX),
+        "uint32" => f64::from(u32::MAX),
+        "int32" => f64::from(i32::MAX),
+        _ => return None,
+    })
+}
+
+/// Advice on a text where a number is wanted: quotes that are one too many, a decimal comma.
+fn number_in_text(node: &Node, types: &[&str]) -> Option<String> {
+    let Data::Text(t) = &node.data else { return None };
+    let pointed = quantity::with_decimal_point(t);
+    let number = pointed.as_deref().unwrap_or(t).trim();
+    let fits = match types {
+        ["number"] => number.parse::<f64>().is_ok_and(f64::is_finite),
+        ["integer"] => number.parse::<i64>().is_ok(),
+        _ => false,
+    };
+    fits.then(|| match pointed {
+        Some(_) => format!("the decimal mark is a point: `{number}`"),
+        None => format!("write it without quotes: `{number}`"),
+    })
 }
 
 fn check_word(node: &Node, words: &[&str], path: &str, out: &mut Vec<Diagnostic>) {
@@ -541,6 +593,10 @@ fn check_quantity(node: &Node, dimension: &str, bound: &str, path: &str, out: &m
             format!("`{}` does not start with a number", shorten(text)),
             Some(format!("write {dimension} like `\"{example}\"`")),
         ),
+        QuantityError::Spelling { text, instead } => (
+            format!("`{}` is not a number with a unit", shorten(text)),
+            Some(format!("the decimal mark is a point, minus a hyphen: `\"{}\"`", shorten(instead))),
+        ),
         QuantityError::Range { text, bound } => (format!("`{}` must be {bound}", shorten(text)), None),
         _ => (shorten(&e.to_string()), None),
     };
@@ -557,18 +613,20 @@ fn units_of(dimension: &str) -> Vec<&'static str> {
 }
 
 fn unit_advice(unit: &str, dimension: &str, known: &str) -> String {
-    let units = units_of(dimension);
-    if units.is_empty() {
+    if units_of(dimension).is_empty() {
         return format!("{dimension} has no unit");
     }
-    // Short names make edit distance meaningless: only the case of the letters is forgiven.
-    if let Some(u) = units.iter().find(|u| u.eq_ignore_ascii_case(unit)) {
-        return format!("did you mean `{u}`? valid: {known}");
+    if ["degF", "°F", "F", "Fahrenheit"].contains(&unit) && dimension == "a temperature" {
+        return format!("in degrees Celsius it is (F - 32)/1.8; valid: {known}");
     }
-    let owner = ALL_DIMENSIONS.iter().find(|(_, us)| us.iter().any(|u| u.name == unit));
-    match owner {
-        Some((other, _)) => format!("`{unit}` is a unit of {other}; valid: {known}"),
-        None => format!("valid: {known}"),
+    let owner = ALL_DIMENSIONS.iter().find(|(_, us)| us.iter().any(|u| u.is(unit)));
+    match (quantity::nearest_unit(dimension, unit), owner) {
+        // Same letters in another case are the better guess; few edits apart are not.
+        (Some((near, true)), _) | (Some((near, false)), None) => {
+            format!("did you mean `{near}`? valid: {known}")
+        }
+        (_, Some((other, _))) => format!("`{unit}` is a unit of {other}; valid: {known}"),
+        (None, None) => format!("valid: {known}"),
     }
 }
 

@@ -9,7 +9,7 @@ use gudgeon_core::result::{ModelUse, RunResult, Value};
 use serde_json::Value as Json;
 
 use crate::case::RingPackCase;
-use crate::load::Loaded;
+use crate::load::{Loaded, Report, read, scene_of};
 use crate::piston_secondary::case::PistonSecondaryCase;
 use crate::run::{Checked, Explanation, Progress, RunError, check, explain};
 use crate::scene::SceneCase;
@@ -121,25 +121,31 @@ fn refused(e: Vec<BuildError>) -> RunError {
 /// Both cases, the skirt's with the crank drive and the gas of the rings'.
 fn parts(loaded: &Loaded<PowerCylinderCase>) -> Result<(Checked, Checked), Vec<BuildError>> {
     let folder = &loaded.source.folder;
-    let read = |part: &Part, field: &str, more: &[String]| {
-        let set: Vec<String> = part.set.iter().chain(more).cloned().collect();
-        check(&folder.join(&part.case), &set).map_err(|report| {
-            let told: Vec<String> = report.diagnostics.iter().map(|d| d.headline()).collect();
-            vec![BuildError::at(format!("{field}.case"), format!("{}: {}", part.case, told.join("; ")))]
-        })
-    };
     let wrong = |field: &str, scene: &str| {
         vec![BuildError::at(format!("{field}.case"), format!("must be a case of the scene `{scene}`"))]
     };
-    let rings = read(&loaded.value.ring_pack, "ring_pack", &[])?;
+    let part_of = |part: &Part, field: &str, more: &[String]| {
+        let set: Vec<String> = part.set.iter().chain(more).cloned().collect();
+        let path = folder.join(&part.case);
+        let told = |report: Report| {
+            let told: Vec<String> = report.diagnostics.iter().map(|d| d.headline()).collect();
+            vec![BuildError::at(format!("{field}.case"), format!("{}: {}", part.case, told.join("; ")))]
+        };
+        // Before the rest of it: a part that is a whole cylinder could be this case itself.
+        if scene_of(&read(&path).map_err(told)?, &set).as_deref() != Some(field) {
+            return Err(wrong(field, field));
+        }
+        check(&path, &set).map_err(told)
+    };
+    let rings = part_of(&loaded.value.ring_pack, "ring_pack", &[])?;
     let pack = rings.of::<RingPackCase>().ok_or_else(|| wrong("ring_pack", "ring_pack"))?;
-    let first = read(&loaded.value.piston_secondary, "piston_secondary", &[])?;
+    let first = part_of(&loaded.value.piston_secondary, "piston_secondary", &[])?;
     let own =
         first.of::<PistonSecondaryCase>().ok_or_else(|| wrong("piston_secondary", "piston_secondary"))?;
     let shared = shared(pack, own).map_err(|e| {
         vec![BuildError::at("ring_pack.case", format!("its models cannot be handed on: {e}"))]
     })?;
-    let skirt = read(&loaded.value.piston_secondary, "piston_secondary", &shared)?;
+    let skirt = part_of(&loaded.value.piston_secondary, "piston_secondary", &shared)?;
     Ok((rings, skirt))
 }
 

@@ -6,6 +6,7 @@
 
 use std::path::Path;
 
+use gudgeon_core::file::{MOST_OF_A_TABLE, read_text};
 use gudgeon_core::kinds::{CouplingSpec, Line, LineLink, LineNode};
 use gudgeon_core::quantity::{NonNegative, Quantity, TorsionalDamping, TorsionalStiffness};
 use gudgeon_torsion::coupling::{Linear, Off};
@@ -31,7 +32,7 @@ const MOST: usize = 100_000;
 /// # Errors
 /// A file that cannot be read or is not TORS, with the place.
 pub fn read(path: &Path) -> Result<Import, String> {
-    let text = std::fs::read_to_string(path).map_err(|e| format!("cannot read {}: {e}", path.display()))?;
+    let text = read_text(path, MOST_OF_A_TABLE).map_err(|e| format!("cannot read {}: {e}", path.display()))?;
     parse(&text)
 }
 

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use gudgeon_core::BuildError;
+use gudgeon_core::file::{MOST_OF_A_TABLE, read_text};
 
 /// Fields over heights × angles; between the points straight lines, beyond them the values of the edge.
 #[derive(Debug)]
@@ -18,7 +19,7 @@ impl Points {
     /// Rows of height \[m\], angle \[deg\] and `columns(rows)` values.
     pub fn read(folder: &Path, file: &str, columns: impl Fn(usize) -> usize) -> Result<Self, BuildError> {
         let path = folder.join(file);
-        let text = std::fs::read_to_string(&path).map_err(|e| {
+        let text = read_text(&path, MOST_OF_A_TABLE).map_err(|e| {
             BuildError::at("file", format!("cannot read {}: {e}", path.display()))
                 .help("the name is relative to the folder of the case file")
         })?;

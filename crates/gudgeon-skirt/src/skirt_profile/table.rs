@@ -1,6 +1,7 @@
 use std::path::Path;
 
 use gudgeon_core::BuildError;
+use gudgeon_core::file::{MOST_OF_A_TABLE, read_text};
 use gudgeon_core::kinds::{SkirtProfile, SkirtProfileCtx, SkirtProfileSpec};
 use gudgeon_core::quantity::{Length, NonNegative, quantity};
 use gudgeon_numerics::table::Pchip;
@@ -88,7 +89,7 @@ type Shape = (Vec<f64>, Vec<f64>);
 
 /// Depths and warm drops of a table that the scene `pin` wrote; nothing when the file is another one.
 fn designed(path: &Path) -> Result<Option<Shape>, BuildError> {
-    let Ok(text) = std::fs::read_to_string(path) else { return Ok(None) };
+    let Ok(text) = read_text(path, MOST_OF_A_TABLE) else { return Ok(None) };
     let mut lines = text.lines().enumerate();
     let names: Vec<&str> = lines.next().map_or(Vec::new(), |(_, l)| l.split(',').collect());
     let place = |name: &str| names.iter().position(|n| *n == name);

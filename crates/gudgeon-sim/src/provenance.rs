@@ -1,0 +1,64 @@
+//! What a run was made of, and a case from what an earlier run recorded.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use gudgeon_core::result::Provenance;
+use sha2::{Digest, Sha256};
+
+use crate::load::{Diagnostic, Report, Source};
+use crate::run::Checked;
+
+/// SHA-256 of some bytes in hexadecimal digits.
+fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().fold(String::new(), |mut s, b| {
+        // Writing to a String cannot fail.
+        let _ = write!(s, "{b:02x}");
+        s
+    })
+}
+
+/// What a run of this case is made of.
+pub fn provenance(c: &Checked) -> Provenance {
+    let source = c.case.source();
+    let resolved = c.case.resolved();
+    Provenance {
+        file: c.file.clone(),
+        overrides: c.case.overrides().to_vec(),
+        resolved_sha256: sha256(resolved.to_string().as_bytes()),
+        sha256: sha256(source.text.as_bytes()),
+        revision: String::new(),
+        text: source.text.clone(),
+        files: Default::default(),
+        resolved,
+    }
+}
+
+/// The case file that a `summary.json` recorded, its text and its overrides.
+///
+/// # Errors
+/// A file that is no summary, or one whose record is not what its hash says.
+pub fn recorded(summary: &Source) -> Result<(String, Source, Vec<String>), Report> {
+    #[derive(serde::Deserialize)]
+    struct Summary {
+        provenance: Provenance,
+    }
+    let refuse = |what: String| {
+        let help = "name a case, or the summary.json of a run that this version or a later one wrote";
+        Report::unreadable(&summary.name, Diagnostic::new(what).help(help))
+    };
+    let Summary { provenance: p } = serde_json::from_str(&summary.text)
+        .map_err(|_| refuse(format!("`{}` does not record what a run was made of", summary.name)))?;
+    if sha256(p.text.as_bytes()) != p.sha256 {
+        return Err(refuse(format!(
+            "the case that `{}` records was changed: its hash is another",
+            summary.name
+        )));
+    }
+    let source = Source {
+        name: format!("{} in {}", p.file, summary.name),
+        text: p.text,
+        folder: PathBuf::from(&summary.folder),
+    };
+    Ok((p.file, source, p.overrides))
+}
