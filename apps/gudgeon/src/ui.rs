@@ -39,8 +39,10 @@ impl Ui {
     pub fn out(&self, text: &str) {
         let mut stdout = io::stdout().lock();
         let end: &[u8] = if text.ends_with('\n') { b"" } else { b"\n" };
-        let written =
-            stdout.write_all(text.as_bytes()).and_then(|()| stdout.write_all(end)).and_then(|()| stdout.flush());
+        let written = stdout
+            .write_all(text.as_bytes())
+            .and_then(|()| stdout.write_all(end))
+            .and_then(|()| stdout.flush());
         if let Err(e) = written {
             self.lost.borrow_mut().get_or_insert(e);
         }
@@ -80,8 +82,7 @@ impl Ui {
             Failure::Input(report) => {
                 text = report.render(self.color);
                 if report.diagnostics.len() > 1 {
-                    let _ =
-                        writeln!(text, "\n{} in {}", report.count(), report.source.name);
+                    let _ = writeln!(text, "\n{} in {}", report.count(), report.source.name);
                 }
             }
             Failure::Argument(d) => text = Report::unreadable("", d.clone()).render(self.color),

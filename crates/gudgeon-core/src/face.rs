@@ -98,7 +98,11 @@ impl Face {
                 if land >= length {
                     return Err(BuildError::at(
                         "land",
-                        format!("a land of {:.4} mm leaves no taper on a face of {:.4} mm", 1e3 * land, 1e3 * length),
+                        format!(
+                            "a land of {:.4} mm leaves no taper on a face of {:.4} mm",
+                            1e3 * land,
+                            1e3 * length
+                        ),
                     )
                     .help("the flat part of a taper face is a few tenths of a millimetre wide"));
                 }

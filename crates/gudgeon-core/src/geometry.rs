@@ -36,7 +36,9 @@ impl FaceProfile {
     #[must_use]
     pub const fn length(&self) -> f64 {
         match self {
-            Self::Parabola { length, .. } | Self::Taper { length, .. } | Self::Table { length, .. } => *length,
+            Self::Parabola { length, .. } | Self::Taper { length, .. } | Self::Table { length, .. } => {
+                *length
+            }
         }
     }
 

@@ -463,10 +463,7 @@ mod tests {
             e(PosLength::parse("mm")),
             "`mm` does not start with a number; write a length like `1.5 mm`"
         );
-        assert_eq!(
-            e(PosLength::parse("0,5 mm")),
-            "`0,5 mm` is not a number with a unit; write `0.5 mm`"
-        );
+        assert_eq!(e(PosLength::parse("0,5 mm")), "`0,5 mm` is not a number with a unit; write `0.5 mm`");
         assert!(PosLength::new(f64::INFINITY).is_err());
     }
 

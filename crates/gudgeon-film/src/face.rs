@@ -876,7 +876,9 @@ impl Shape for Table {
 mod tests {
     /// Nodes at equal spacings.
     fn equal(length: f64, drops: &[f64]) -> Vec<(f64, f64)> {
-        gudgeon_core::geometry::FaceProfile::Table { length, drops: drops.to_vec() }.nodes().unwrap_or_default()
+        gudgeon_core::geometry::FaceProfile::Table { length, drops: drops.to_vec() }
+            .nodes()
+            .unwrap_or_default()
     }
     use super::*;
 

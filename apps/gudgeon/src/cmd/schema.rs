@@ -16,7 +16,8 @@ pub fn schema(ui: &Ui) -> Result<(), Failure> {
     let mut case = one_scene_of(&scenes);
     case["$schema"] = "https://json-schema.org/draft/2020-12/schema".into();
     case["title"] = "A Gudgeon case: one of the scenes".into();
-    let definitions: Map<String, Value> = definitions.iter().map(|(k, v)| (k.clone(), published(v))).collect();
+    let definitions: Map<String, Value> =
+        definitions.iter().map(|(k, v)| (k.clone(), published(v))).collect();
     case["$defs"] = definitions.into();
     ui.json(&case);
     Ok(())

@@ -23,8 +23,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use gudgeon_core::BuildError;
-use gudgeon_core::quantity::with_decimal_point;
 use gudgeon_core::file::{MOST_OF_A_CASE, ReadError, read_text};
+use gudgeon_core::quantity::with_decimal_point;
 use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
 use serde_path_to_error::Segment;
@@ -249,9 +249,8 @@ fn hint(text: &str, span: &Range<usize>) -> Option<String> {
         return Some(format!("the decimal mark is a point: `{key} = {quote}{}{quote}`", shorten(&pointed)));
     }
     let plain = |c: char| c.is_alphanumeric() || " ._-+/%°µ()".contains(c);
-    (!value.is_empty() && value.chars().all(plain)).then(|| {
-        format!("text and values with a unit stand in quotes: `{key} = \"{}\"`", shorten(value))
-    })
+    (!value.is_empty() && value.chars().all(plain))
+        .then(|| format!("text and values with a unit stand in quotes: `{key} = \"{}\"`", shorten(value)))
 }
 
 /// Where the table header starts that a place stands in or below.

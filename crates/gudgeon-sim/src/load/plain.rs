@@ -21,7 +21,11 @@ pub(super) fn plain(message: &str) -> String {
             let mut words = rest.split('`').skip(1).step_by(2);
             let name = words.next().unwrap_or_default();
             let valid: Vec<&str> = words.collect();
-            let name = if valid.is_empty() { format!("`{name}`") } else { format!("`{name}`; {}", advice(name, &valid)) };
+            let name = if valid.is_empty() {
+                format!("`{name}`")
+            } else {
+                format!("`{name}`; {}", advice(name, &valid))
+            };
             return format!("{what} {name}");
         }
     }
@@ -96,9 +100,15 @@ mod tests {
     #[test]
     fn types_of_the_program_are_not_named() {
         for (message, wanted) in [
-            (said::<u32>("5000000000"), "a whole number from 0 to 4294967295 is wanted here, not the number 5000000000"),
+            (
+                said::<u32>("5000000000"),
+                "a whole number from 0 to 4294967295 is wanted here, not the number 5000000000",
+            ),
             (said::<i8>("-200"), "a whole number from -128 to 127 is wanted here, not the number -200"),
-            (said::<u64>("1.5"), "a whole number from 0 to 18446744073709551615 is wanted here, not the number 1.5"),
+            (
+                said::<u64>("1.5"),
+                "a whole number from 0 to 18446744073709551615 is wanted here, not the number 1.5",
+            ),
             (said::<f64>("true"), "a number is wanted here, not `true`"),
             (said::<bool>("\"x\""), "`true` or `false` is wanted here, not the text `x`"),
             (said::<String>("null"), "a text in quotes is wanted here, not nothing"),

@@ -82,7 +82,11 @@ fn words<'a>(all: &[&'a Value]) -> Option<Vec<(&'a Value, Option<&'a str>)>> {
     let mut out = Vec::new();
     for s in all {
         let about = s.get("description").and_then(Value::as_str);
-        match (s.get("const"), s.get("enum").and_then(Value::as_array), s.get("oneOf").and_then(Value::as_array)) {
+        match (
+            s.get("const"),
+            s.get("enum").and_then(Value::as_array),
+            s.get("oneOf").and_then(Value::as_array),
+        ) {
             (Some(word), ..) => out.push((word, about)),
             (_, Some(some), _) => out.extend(some.iter().map(|w| (w, None))),
             (_, _, Some(some)) => out.extend(words(&some.iter().collect::<Vec<_>>())?),
@@ -131,7 +135,8 @@ fn choice(mut out: Map<String, Value>, all: &[&Value]) -> Value {
         }));
         names.push(name);
     }
-    let word = one_word(Map::new(), &names.iter().zip(about.iter().map(|a| Some(a.as_str()))).collect::<Vec<_>>());
+    let word =
+        one_word(Map::new(), &names.iter().zip(about.iter().map(|a| Some(a.as_str()))).collect::<Vec<_>>());
     out.insert("type".into(), "object".into());
     out.insert("properties".into(), json!({ &tag: word }));
     out.insert("required".into(), json!([tag]));
@@ -168,14 +173,18 @@ mod tests {
     fn choices_become_words_and_rules() {
         let a = json!({ "type": "object", "properties": { "model": { "const": "a" }, "x": { "type": ["number", "null"], "default": null } },
             "required": ["model"], "additionalProperties": false, "description": "the first" });
-        let b = json!({ "type": "object", "properties": { "model": { "const": "b" } }, "required": ["model"] });
-        let p = published(&json!({ "anyOf": [{ "oneOf": [a, b] }, { "type": "null" }], "description": "one of two" }));
+        let b =
+            json!({ "type": "object", "properties": { "model": { "const": "b" } }, "required": ["model"] });
+        let p = published(
+            &json!({ "anyOf": [{ "oneOf": [a, b] }, { "type": "null" }], "description": "one of two" }),
+        );
         assert_eq!(p["properties"]["model"]["enum"], json!(["a", "b"]));
         assert_eq!(p["description"], "one of two");
         assert_eq!(p["allOf"][0]["then"]["properties"]["x"], json!({ "type": "number" }));
         assert_eq!(p["allOf"][1]["if"]["properties"]["model"]["const"], "b");
         assert!(p.get("anyOf").is_none() && p.get("oneOf").is_none());
-        let p = published(&json!({ "oneOf": [{ "const": "x", "description": "an x" }, { "enum": ["y", "z"] }] }));
+        let p =
+            published(&json!({ "oneOf": [{ "const": "x", "description": "an x" }, { "enum": ["y", "z"] }] }));
         assert_eq!(p["enum"], json!(["x", "y", "z"]));
         assert_eq!(p["markdownEnumDescriptions"], json!(["an x", "", ""]));
         // A default that looks like a schema stays what it is; a property may be called like a keyword.

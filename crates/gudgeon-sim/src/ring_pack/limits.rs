@@ -1,8 +1,6 @@
 //! Floors, caps and drags of the scene: numbers that stand for physics left out, each a key of the case.
 
-use gudgeon_core::quantity::{
-    PosAngle, PosLength, PosRatio, PosVelocity, PosViscosity, quantity,
-};
+use gudgeon_core::quantity::{PosAngle, PosLength, PosRatio, PosVelocity, PosViscosity, quantity};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -22,6 +20,10 @@ pub struct Limits {
     /// Drag per circumference of a ring off the liner, in place of its inertia: a dry ring of 0.05 kg/m crosses 0.1 mm in about the same time
     /// against ten to fifty times as much. Also what moves a ring with `hydrodynamics = "off"`.
     pub radial_drag: PosViscosity,
+    /// Drag per circumference of surfaces in contact that move apart, at full contact. A film that is drawn apart cavitates and holds nothing, the
+    /// same film resists an approach without bound, and a ring whose contact gives way rides on the corner between the two. The drag rounds it; it
+    /// takes less than a thousandth of the load.
+    pub contact_drag: PosViscosity,
     /// Part of the radial load that the drag has, at the velocity which the film alone allows, from which it counts: the squeeze of films that
     /// carry their ring is left as it is.
     pub drag_from: PosRatio,
@@ -57,6 +59,7 @@ impl Default for Limits {
             least_load: quantity(1e-3),
             radial_speed: quantity(3.0),
             radial_drag: quantity(10.0),
+            contact_drag: quantity(1e5),
             drag_from: quantity(1e-3),
             drag_full: quantity(1e-1),
             drag_gap_from: quantity(2.0),
@@ -116,7 +119,10 @@ mod tests {
         let told = Limits::default().explained();
         assert!(told.len() >= 16);
         for (key, value, reason) in told {
-            assert!(key.starts_with("solver.limits.") && !value.is_empty() && reason.len() > 20, "{key}: {reason}");
+            assert!(
+                key.starts_with("solver.limits.") && !value.is_empty() && reason.len() > 20,
+                "{key}: {reason}"
+            );
         }
     }
 

@@ -157,7 +157,8 @@ pub fn solve(
             *report.counters.entry(name.clone()).or_insert(0) += n;
         }
         for n in &f.notes {
-            if !report.notes.contains(n) {
+            // What acted in the reported cycle; of the other starts only what is new.
+            if !report.notes.iter().any(|m| m.topic == n.topic) {
                 report.notes.push(n.clone());
             }
         }
@@ -244,8 +245,8 @@ fn one_start(
                 tolerance: s.periodicity.si(),
             };
             let mut watch = Watch::new(pack);
-            let outcome = degree_march::run(pack, set, start, (&mut record, &mut watch), progress)
-                .map_err(at(pack))?;
+            let outcome =
+                degree_march::run(pack, set, start, (&mut record, &mut watch), progress).map_err(at(pack))?;
             watch.carried(pack)?;
             Ok(Found {
                 liner: None,

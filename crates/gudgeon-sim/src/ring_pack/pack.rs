@@ -37,6 +37,8 @@ pub struct Bounds {
     pub radial_speed: f64,
     /// See [`Limits::radial_drag`].
     pub radial_drag: f64,
+    /// See [`Limits::contact_drag`].
+    pub contact_drag: f64,
     /// See [`Limits::drag_from`] and `drag_full`.
     pub drag_counts: (f64, f64),
     /// See [`Limits::drag_gap_from`] and `drag_gap_full`.
@@ -60,6 +62,7 @@ impl From<&Limits> for Bounds {
             least_load: l.least_load.si(),
             radial_speed: l.radial_speed.si(),
             radial_drag: l.radial_drag.si(),
+            contact_drag: l.contact_drag.si(),
             drag_counts: (l.drag_from.si(), l.drag_full.si()),
             drag_gap: (l.drag_gap_from.si(), l.drag_gap_full.si()),
             retreat_band: l.retreat_band.si(),
@@ -680,18 +683,10 @@ impl Pack {
         needed: f64,
         soft: impl Fn(f64) -> f64,
     ) -> Result<f64, EvalError> {
-        let carried = soft(needed);
-        let share = self.limits.radial_drag * free.abs() / carried.max(needed.abs());
-        let (begins, full) = self.limits.drag_counts;
-        let (near, far) = self.limits.drag_gap;
-        let rough = self.rings[i].contact.range;
-        let off = ((self.at.places[i].h / rough - near) / (far - near)).min(1.0);
-        if share <= begins || off <= 0.0 {
+        let drag = self.drag(i, free, soft(needed).max(needed.abs()));
+        if drag <= 0.0 {
             return Ok(free);
         }
-        let x = ((share / begins).ln() / (full / begins).ln()).min(1.0);
-        let ramp = |x: f64| x * x * (3.0 - 2.0 * x);
-        let drag = self.limits.radial_drag * ramp(x) * ramp(off);
         // The load of the film falls with v and what it has to carry rises: one zero, between standing still and `free`.
         let (mut lo, mut hi) = if free < 0.0 { (free, 0.0) } else { (0.0, free) };
         let mut v = free.clamp(-self.limits.radial_speed, self.limits.radial_speed);
@@ -713,6 +708,24 @@ impl Pack {
         }
         self.at.rings[i].limited.drag = drag * v.abs();
         Ok(v)
+    }
+
+    /// Drag per circumference \[N s/m²\] of ring `i` at the velocity `free` that its film alone allows; `load` is the size of what it carries.
+    fn drag(&self, i: usize, free: f64, load: f64) -> f64 {
+        let (limits, r) = (&self.limits, &self.at.rings[i]);
+        if free > 0.0 && r.contact > 0.0 {
+            return limits.contact_drag * r.contact / (r.contact + r.load.abs());
+        }
+        let share = limits.radial_drag * free.abs() / load;
+        let ((begins, full), (near, far)) = (limits.drag_counts, limits.drag_gap);
+        let rough = self.rings[i].contact.range;
+        let off = ((self.at.places[i].h / rough - near) / (far - near)).min(1.0);
+        if share <= begins || off <= 0.0 {
+            return 0.0;
+        }
+        let x = ((share / begins).ln() / (full / begins).ln()).min(1.0);
+        let ramp = |x: f64| x * x * (3.0 - 2.0 * x);
+        limits.radial_drag * ramp(x) * ramp(off)
     }
 
     /// Balance of several lands, or with flank friction: film load less needed load falls with `hdot`; bracket and Newton.

@@ -88,7 +88,8 @@ impl Watch {
             let (r, place) = (&pack.at.rings[i], &pack.at.places[i]);
             let circumference = 2.0 * PI * place.r_outer * pack.geo.rings[i].rails as f64;
             let Limited { floor, drag, slowed, lifted, thickest } = r.limited;
-            let tells = |load: f64, of: f64| if load > COUNTS * of.abs() { load * circumference } else { 0.0 };
+            let tells =
+                |load: f64, of: f64| if load > COUNTS * of.abs() { load * circumference } else { 0.0 };
             let before = w.floor.most;
             w.floor.see(tells(floor, r.load), theta, weight);
             if w.floor.most > before {
@@ -131,16 +132,29 @@ impl Watch {
         let mut notes = Vec::new();
         for (i, w) in self.rings.iter().enumerate() {
             let ring = i + 1;
-            let mut tell = |topic: &str, a: &Acted, name: &str, unit: &str, scale: f64, what: &dyn Fn(&str) -> String| {
+            let mut tell = |topic: &str,
+                            a: &Acted,
+                            name: &str,
+                            unit: &str,
+                            scale: f64,
+                            what: &dyn Fn(&str) -> String| {
                 if a.acted() {
                     let share = (a.span / period).min(1.0);
-                    let when = format!("over {:.2} % of the cycle (most at {:.1} deg)", 100.0 * share, a.at.to_degrees());
+                    let when = format!(
+                        "over {:.2} % of the cycle (most at {:.1} deg)",
+                        100.0 * share,
+                        a.at.to_degrees()
+                    );
                     let note = Note::caution(format!("{topic}.ring{ring}"), what(&when));
                     notes.push(note.amount(name, a.most * scale, unit).amount("share_of_cycle", share, "1"));
                 }
             };
             tell("contact_floor", &w.floor, "residual_load", "N", 1.0, &|when| {
-                format!("the floor of the contact model at {:.3} um carries up to {:.4} N of ring {ring} {when}", w.floor_film * 1e6, w.floor.most)
+                format!(
+                    "the floor of the contact model at {:.3} um carries up to {:.4} N of ring {ring} {when}",
+                    w.floor_film * 1e6,
+                    w.floor.most
+                )
             });
             tell("overlap", &w.overlap, "overlap", "um", 1e6, &|when| {
                 format!(
@@ -149,16 +163,28 @@ impl Watch {
                 )
             });
             tell("radial_drag", &w.drag, "drag", "N", 1.0, &|when| {
-                format!("`solver.limits.radial_drag` stands for the inertia of ring {ring}, up to {:.4} N, {when}", w.drag.most)
+                format!(
+                    "`solver.limits.radial_drag` stands for the inertia of ring {ring}, up to {:.4} N, {when}",
+                    w.drag.most
+                )
             });
             tell("radial_speed", &w.slowed, "part_of_velocity", "1", 1.0, &|when| {
-                format!("`solver.limits.radial_speed` takes up to {:.2} % of the radial velocity of ring {ring} {when}", 100.0 * w.slowed.most)
+                format!(
+                    "`solver.limits.radial_speed` takes up to {:.2} % of the radial velocity of ring {ring} {when}",
+                    100.0 * w.slowed.most
+                )
             });
             tell("least_load", &w.lifted, "load", "N", 1.0, &|when| {
-                format!("`solver.limits.least_load` adds up to {:.3e} N to the load of the film of ring {ring} {when}: gas presses the ring off", w.lifted.most)
+                format!(
+                    "`solver.limits.least_load` adds up to {:.3e} N to the load of the film of ring {ring} {when}: gas presses the ring off",
+                    w.lifted.most
+                )
             });
             tell("thickest_film", &w.thickest, "residual_load", "N", 1.0, &|when| {
-                format!("`solver.limits.thickest_film` holds ring {ring} against up to {:.4} N {when}", w.thickest.most)
+                format!(
+                    "`solver.limits.thickest_film` holds ring {ring} against up to {:.4} N {when}",
+                    w.thickest.most
+                )
             });
             notes.extend(w.left(ring, period, pack.limits.off_the_liner));
         }
@@ -173,7 +199,11 @@ impl Watch {
         for (i, w) in self.rings.iter().enumerate() {
             for r in &w.retreats {
                 let mut add = |theta: f64, what: String| {
-                    events.push(Event { theta_deg: theta.to_degrees(), subject: format!("ring{}", i + 1), what });
+                    events.push(Event {
+                        theta_deg: theta.to_degrees(),
+                        subject: format!("ring{}", i + 1),
+                        what,
+                    });
                 };
                 add(r.from, format!("leaves the liner, by up to {:.4} mm", 1e3 * r.most));
                 if let Some(to) = r.to {

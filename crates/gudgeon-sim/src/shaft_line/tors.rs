@@ -32,7 +32,8 @@ const MOST: usize = 100_000;
 /// # Errors
 /// A file that cannot be read or is not TORS, with the place.
 pub fn read(path: &Path) -> Result<Import, String> {
-    let text = read_text(path, MOST_OF_A_TABLE).map_err(|e| format!("cannot read {}: {e}", path.display()))?;
+    let text =
+        read_text(path, MOST_OF_A_TABLE).map_err(|e| format!("cannot read {}: {e}", path.display()))?;
     parse(&text)
 }
 
