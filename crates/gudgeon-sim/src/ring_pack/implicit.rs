@@ -527,6 +527,7 @@ pub(super) fn run(
     for (y, film) in y[dim..].iter_mut().zip(pack.oil_pack.iter().flat_map(|o| &o.film)) {
         *y = film / LINER_SCALE;
     }
+    let cycle_speed = pack.omega;
     let mut cycle = Cycle {
         pack,
         method,
@@ -540,7 +541,7 @@ pub(super) fn run(
         q: vec![0.0; quads],
         full_accuracy: s.tolerance.si(),
         longest_step: s.limits.longest_step.si(),
-        most_steps: s.limits.steps_at(s.tolerance.si()),
+        most_steps: s.limits.steps_at(s.tolerance.si(), cycle_speed),
         failure: None,
         progress,
         done: 0.0,

@@ -21,8 +21,8 @@ pub struct Limits {
     /// against ten to fifty times as much. Also what moves a ring with `hydrodynamics = "off"`.
     pub radial_drag: PosViscosity,
     /// Drag per circumference of surfaces in contact that move apart, at full contact. A film that is drawn apart cavitates and holds nothing, the
-    /// same film resists an approach without bound, and a ring whose contact gives way rides on the corner between the two. The drag rounds it; it
-    /// takes less than a thousandth of the load.
+    /// same film resists an approach without bound, and a ring whose contact gives way rides on the corner between the two. The drag rounds it:
+    /// 1e3 to 1e5 Pa s change the friction of a pack by 1e-4 of itself, and the small ones cost half as many steps again.
     pub contact_drag: PosViscosity,
     /// Part of the radial load that the drag has, at the velocity which the film alone allows, from which it counts: the squeeze of films that
     /// carry their ring is left as it is.
@@ -47,8 +47,8 @@ pub struct Limits {
     pub thickest_film: PosLength,
     /// Longest step: no pulse of pressure is jumped over.
     pub longest_step: PosAngle,
-    /// Most steps of a cycle; a run that needs more fails. 0: 30 000, some thirty times what a pack needs, in proportion to `tolerance^(-1/4)` below the default
-    /// tolerance.
+    /// Most steps of a cycle; a run that needs more fails. 0: 30 000, some thirty times what a pack needs; in proportion to `tolerance^(-1/4)`
+    /// below the default tolerance, and to the duration of the cycle below 100 rad/s, because rings and gas have times of their own.
     pub most_steps: u64,
 }
 
@@ -59,7 +59,7 @@ impl Default for Limits {
             least_load: quantity(1e-3),
             radial_speed: quantity(3.0),
             radial_drag: quantity(10.0),
-            contact_drag: quantity(1e5),
+            contact_drag: quantity(3e4),
             drag_from: quantity(1e-3),
             drag_full: quantity(1e-1),
             drag_gap_from: quantity(2.0),
@@ -76,17 +76,18 @@ impl Default for Limits {
     }
 }
 
-/// Steps of a cycle at the default tolerance, and that tolerance.
-const STEPS: (f64, f64) = (30_000.0, 1e-4);
+/// Steps of a cycle at the default tolerance, that tolerance, and the crank speed \[rad/s\] below which time counts.
+const STEPS: (f64, f64, f64) = (30_000.0, 1e-4, 100.0);
 
 impl Limits {
-    /// Most steps of a cycle at a tolerance.
+    /// Most steps of a cycle at a tolerance and a crank speed \[rad/s\].
     #[must_use]
-    pub fn steps_at(&self, tolerance: f64) -> u64 {
+    pub fn steps_at(&self, tolerance: f64, omega: f64) -> u64 {
         if self.most_steps > 0 {
             return self.most_steps;
         }
-        (STEPS.0 * (STEPS.1 / tolerance).max(1.0).powf(0.25)) as u64
+        let (most, usual, slow) = STEPS;
+        (most * (usual / tolerance).max(1.0).powf(0.25) * (slow / omega).max(1.0)) as u64
     }
 
     /// Every key with its value \[SI\] and its reason.
@@ -129,8 +130,9 @@ mod tests {
     #[test]
     fn steps_follow_the_tolerance_unless_they_are_given() {
         let mut l = Limits::default();
-        assert_eq!((l.steps_at(1e-3), l.steps_at(1e-4), l.steps_at(1e-8)), (30_000, 30_000, 300_000));
+        let most = [(1e-3, 200.0), (1e-4, 100.0), (1e-8, 200.0), (1e-4, 10.0)].map(|(t, w)| l.steps_at(t, w));
+        assert_eq!(most, [30_000, 30_000, 300_000, 300_000]);
         l.most_steps = 17;
-        assert_eq!(l.steps_at(1e-8), 17);
+        assert_eq!(l.steps_at(1e-8, 1.0), 17);
     }
 }

@@ -81,6 +81,8 @@ pub struct Limited {
     pub floor: f64,
     /// Load that the drag took \[N/m\].
     pub drag: f64,
+    /// Load that the drag of surfaces in contact took \[N/m\].
+    pub contact_drag: f64,
     /// Part of the velocity that the cap took.
     pub slowed: f64,
     /// Load that the film is given beyond what it has to carry \[N/m\].
@@ -689,7 +691,13 @@ impl Pack {
         }
         // The load of the film falls with v and what it has to carry rises: one zero, between standing still and `free`.
         let (mut lo, mut hi) = if free < 0.0 { (free, 0.0) } else { (0.0, free) };
-        let mut v = free.clamp(-self.limits.radial_speed, self.limits.radial_speed);
+        // The velocity of the last evaluation, a small step away, is a good start.
+        let last = self.at.rings[i].hdot;
+        let mut v = if last > lo && last < hi {
+            last
+        } else {
+            free.clamp(-self.limits.radial_speed, self.limits.radial_speed)
+        };
         for _ in 0..60 {
             let (load, rate) = self.film_load(i, v)?;
             let w = needed + drag * v;
@@ -706,7 +714,12 @@ impl Pack {
             }
             v = next;
         }
-        self.at.rings[i].limited.drag = drag * v.abs();
+        let r = &mut self.at.rings[i];
+        if v > 0.0 && r.contact > 0.0 {
+            r.limited.contact_drag = drag * v;
+        } else {
+            r.limited.drag = drag * v.abs();
+        }
         Ok(v)
     }
 

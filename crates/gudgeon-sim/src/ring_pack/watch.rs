@@ -53,6 +53,8 @@ struct RingWatch {
     overlap: Acted,
     /// Load that the drag took \[N\].
     drag: Acted,
+    /// Load that the drag of surfaces in contact took \[N\].
+    contact_drag: Acted,
     /// Part of the velocity that the cap took.
     slowed: Acted,
     /// Load given to a film that has none \[N\].
@@ -87,7 +89,7 @@ impl Watch {
         for (i, w) in self.rings.iter_mut().enumerate() {
             let (r, place) = (&pack.at.rings[i], &pack.at.places[i]);
             let circumference = 2.0 * PI * place.r_outer * pack.geo.rings[i].rails as f64;
-            let Limited { floor, drag, slowed, lifted, thickest } = r.limited;
+            let Limited { floor, drag, contact_drag, slowed, lifted, thickest } = r.limited;
             let tells =
                 |load: f64, of: f64| if load > COUNTS * of.abs() { load * circumference } else { 0.0 };
             let before = w.floor.most;
@@ -100,6 +102,7 @@ impl Watch {
                 w.overlap.see(-line.separation(place.h), theta, weight);
             }
             w.drag.see(tells(drag, r.load), theta, weight);
+            w.contact_drag.see(tells(contact_drag, r.load), theta, weight);
             w.slowed.see(if slowed > COUNTS { slowed } else { 0.0 }, theta, weight);
             w.lifted.see(tells(lifted, pack.tension(i)), theta, weight);
             w.thickest.see(tells(thickest, r.load), theta, weight);
@@ -166,6 +169,12 @@ impl Watch {
                 format!(
                     "`solver.limits.radial_drag` stands for the inertia of ring {ring}, up to {:.4} N, {when}",
                     w.drag.most
+                )
+            });
+            tell("contact_drag", &w.contact_drag, "drag", "N", 1.0, &|when| {
+                format!(
+                    "`solver.limits.contact_drag` takes up to {:.4} N of the load of ring {ring}, as its contact gives way, {when}",
+                    w.contact_drag.most
                 )
             });
             tell("radial_speed", &w.slowed, "part_of_velocity", "1", 1.0, &|when| {
