@@ -68,6 +68,9 @@ pub struct RunArgs {
     /// Folder for the results [default: out/<case>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Refine every numerical setting until the uncertainty of each result is known (several runs)
+    #[arg(long)]
+    pub verify: bool,
     /// Print the summary as JSON and nothing else
     #[arg(long)]
     pub json: bool,
@@ -111,6 +114,9 @@ pub struct CompareArgs {
     /// Values to try, the first one being the base: gas_flow=orifice_network,narrow_channel
     #[arg(long, value_name = "PATH=A,B,C", required = true)]
     pub swap: Vec<String>,
+    /// Refine every combination until the uncertainty of its results is known, and mark differences that are within it
+    #[arg(long)]
+    pub verify: bool,
     /// Folder for the results [default: out/<case>-compare]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,

@@ -153,6 +153,18 @@ pub fn number(v: f64) -> String {
     format!("{v:.*}", (DIGITS - 1 - magnitude).max(0) as usize)
 }
 
+/// A number with the digits that its uncertainty leaves, and that uncertainty.
+pub fn certain(v: f64, uncertainty: Option<f64>) -> String {
+    let Some(u) = uncertainty.filter(|u| *u > 0.0 && u.is_finite()) else { return number(v) };
+    // The place of the first digit of the uncertainty is the last one printed.
+    let place = u.log10().floor() as i32;
+    if (-9..7).contains(&place) {
+        let decimals = (-place).max(0) as usize;
+        return format!("{v:.decimals$} ± {u:.decimals$}");
+    }
+    format!("{} ± {u:.0e}", number(v))
+}
+
 /// A unit for a person: results without one carry the unit `1`.
 pub fn unit(unit: &str) -> String {
     if unit == "1" { String::new() } else { unit.to_owned() }
@@ -218,6 +230,14 @@ mod tests {
             shown,
             ["49.877", "0.0012346", "1.0000e-9", "123457", "1", "-2.5000", "0", "2.0000e9", "0"]
         );
+    }
+
+    #[test]
+    fn uncertain_digits_are_not_printed() {
+        assert_eq!(certain(83.412_34, Some(0.021)), "83.41 ± 0.02");
+        assert_eq!(certain(1883.2, Some(600.0)), "1883 ± 600");
+        assert_eq!(certain(83.412_34, None), "83.412");
+        assert_eq!(certain(83.412_34, Some(1e-12)), "83.412 ± 1e-12");
     }
 
     #[test]

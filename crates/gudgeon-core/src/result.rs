@@ -541,6 +541,24 @@ pub struct Provenance {
     pub resolved: serde_json::Value,
 }
 
+/// One group of numerical settings that was refined.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Refined {
+    /// What was refined: `tolerance`, `film grid`.
+    pub what: String,
+    /// The changes of each level.
+    pub levels: Vec<Vec<String>>,
+}
+
+/// How far the results are from those of the equations.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Verification {
+    /// What was refined.
+    pub refined: Vec<Refined>,
+    /// Numerical uncertainty of each result, in its unit.
+    pub uncertainty: IndexMap<String, f64>,
+}
+
 /// Everything a run of one case produced.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct RunResult {
@@ -558,6 +576,8 @@ pub struct RunResult {
     pub gudgeon: String,
     /// What the run was made of.
     pub provenance: Provenance,
+    /// How far the results are from those of the equations, where that was asked for.
+    pub verification: Option<Verification>,
     /// Models that ran.
     pub models: Vec<ModelUse>,
     /// What was left out.

@@ -30,6 +30,8 @@ use crate::pack::{Elimination, FilmHeight, Openings, Pack, Passages, RingPassage
 /// half directly. A drained groove has no volume of its own: its upper-flank path ends in the land below and there is no lower one.
 /// A sealed ring has no flank paths, and its whole gap is direct.
 ///
+/// `s` is kept within 0 and `c`, and `A_gap` above zero, unless `bounded` is `false`.
+///
 /// Gas temperatures are those of the walls (isothermal volumes); the flow in an orifice is adiabatic.
 ///
 /// Source: zottin1992 (areas and network), furuhama1961 (orifices between rings, discharge coefficient).
@@ -58,6 +60,10 @@ pub struct OrificeNetwork {
     /// ring that gas lifts off the liner closes its own end gap and locks in the gas that lifts it.
     #[serde(default = "crate::pack::fifty_micrometres")]
     pub face_oil: PosLength,
+    /// Whether an opening is at least zero. The published program takes lifts and gaps as they come (`false`): a ring at rest on its upper
+    /// flank, whose clearance shrinks as the liner narrows, then leaves a little less than nothing there until it moves again.
+    #[serde(default = "yes")]
+    pub bounded: bool,
     /// Whether spaces behind rings that fill in less than `eliminate_below` are left out of the integration.
     #[serde(default)]
     pub eliminate: Elimination,
@@ -68,6 +74,9 @@ pub struct OrificeNetwork {
     pub eliminate_below: PosTime,
 }
 
+const fn yes() -> bool {
+    true
+}
 fn default_split() -> Ratio<Fraction> {
     quantity(0.5)
 }
@@ -89,6 +98,7 @@ impl Default for OrificeNetwork {
             nominal_film: default_film(),
             chamfer_fade: default_fade(),
             face_oil: crate::pack::fifty_micrometres(),
+            bounded: true,
             eliminate: Elimination::default(),
             eliminate_below: crate::pack::ten_nanoseconds(),
         }
@@ -113,14 +123,15 @@ impl OrificeNetwork {
     fn pack(&self, pack: &PackGeometry) -> Result<Pack<Areas>, BuildError> {
         let film = nominal(self.film_height, self.nominal_film);
         let eliminate = self.eliminate.below(self.eliminate_below);
-        Pack::new(
+        let built = Pack::new(
             Areas { split: self.gap_split.si(), face_oil: self.face_oil.si() },
             pack,
             &self.orifice,
             film,
             self.chamfer_fade.si(),
             eliminate,
-        )
+        )?;
+        Ok(if self.bounded { built } else { built.unbounded() })
     }
 }
 

@@ -5,6 +5,7 @@ pub mod linalg;
 pub mod multigrid;
 pub mod ode;
 pub mod orbit;
+pub mod panel;
 pub mod qp;
 pub mod quadrature;
 pub mod radau;

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::json;
 
 use crate::folder::Folder;
-use crate::number::{capital, count, percent, round_trip, significant, unit};
+use crate::number::{capital, certain, count, percent, round_trip, significant, unit};
 use crate::page::{self, Arrays, Kind, esc};
 use crate::summary::{ModelEntry, Summary};
 use crate::{REPORT, ReportError, table};
@@ -162,6 +162,15 @@ fn timing(c: &Comparison) -> String {
     let of =
         |v: &Variant| json!({ "variant": v.label, "seconds": v.outcome.as_ref().ok().map(|r| &r.seconds) });
     format!("{:#}\n", json!(c.variants.iter().map(of).collect::<Vec<_>>()))
+}
+
+/// Whether a difference is smaller than the numerical uncertainties of both values.
+fn within_numerics(base: Option<&VariantEntry>, v: &VariantEntry, name: &str) -> bool {
+    let of = |v: &VariantEntry| {
+        let r = v.run.as_ref()?.results.get(name)?;
+        Some((r.value?, r.uncertainty?))
+    };
+    base.and_then(of).zip(of(v)).is_some_and(|((a, ua), (b, ub))| (a - b).abs() < ua + ub)
 }
 
 /// Rebuilds the page of a comparison.
@@ -379,8 +388,11 @@ fn comparison_table(out: &mut String, file: &File, ran: &[&VariantEntry]) {
         let value = |k: usize| row.values.get(k).copied().flatten();
         for v in ran {
             let k = v.number - 1;
-            let text = significant(value(k), 4);
-            if row.unit == "deg" {
+            let own = v.run.as_ref().and_then(|r| r.results.get(name));
+            let text = certain(value(k), own.and_then(|r| r.uncertainty), 4);
+            if k > 0 && within_numerics(file.variants.first(), v, name) {
+                let _ = write!(out, "<td class=\"num\">{text} <span class=\"diff\">numerics</span></td>");
+            } else if row.unit == "deg" {
                 // A percentage of an angle says nothing: it would depend on where zero is.
                 let shift = value(0).zip(value(k)).filter(|_| k > 0).map(|(a, b)| b - a);
                 shift_cell(out, &text, shift);

@@ -20,6 +20,26 @@ pub(crate) fn significant(value: Option<f64>, digits: usize) -> String {
     text.replace('-', "−")
 }
 
+/// A value with the digits that hold: as many as its uncertainty leaves, and that uncertainty with one digit. Without one, `digits`.
+pub(crate) fn certain(value: Option<f64>, uncertainty: Option<f64>, digits: usize) -> String {
+    /// More digits than anybody reads.
+    const MOST: i32 = 9;
+    let (Some(v), Some(u)) = (value.filter(|v| v.is_finite()), uncertainty) else {
+        return significant(value, digits);
+    };
+    // Twice the uncertainty fits into one unit of the last digit but one.
+    let held = if u > 0.0 { (v.abs() / u).log10().floor() as i32 + 1 } else { MOST };
+    if v == 0.0 || held <= 0 {
+        return format!(
+            "{} ± {}",
+            significant(Some(if held <= 0 { 0.0 } else { v }), 1),
+            significant(Some(u), 1)
+        );
+    }
+    let text = significant(Some(v), held.clamp(1, MOST) as usize);
+    if held > MOST { text } else { format!("{text} ± {}", significant(Some(u), 1)) }
+}
+
 /// A relative difference in percent with its sign, finer the smaller it is.
 pub(crate) fn percent(value: f64) -> String {
     if !value.is_finite() {
@@ -115,6 +135,16 @@ mod tests {
         assert_eq!(significant(Some(0.0), 4), "0");
         assert_eq!(significant(Some(f64::NAN), 4), "–");
         assert_eq!(significant(None, 4), "–");
+    }
+
+    #[test]
+    fn digits_that_do_not_hold_are_not_printed() {
+        assert_eq!(certain(Some(83.412_34), Some(0.021), 4), "83.41 ± 0.02");
+        assert_eq!(certain(Some(83.412_34), Some(21.0), 4), "83 ± 21");
+        assert_eq!(certain(Some(1294.0), Some(600.0), 4), "1294 ± 600");
+        assert_eq!(certain(Some(0.01), Some(0.3), 4), "0 ± 0.3");
+        assert_eq!(certain(Some(1.0 / 3.0), Some(1e-14), 4), "0.333333333");
+        assert_eq!(certain(Some(49.9), None, 4), "49.90");
     }
 
     #[test]

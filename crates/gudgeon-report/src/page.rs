@@ -3,10 +3,10 @@
 use std::fmt::Write;
 
 use gudgeon_core::Registry;
-use gudgeon_core::result::{Column, Note, NoteLevel, Provenance, Series};
+use gudgeon_core::result::{Column, Note, NoteLevel, Provenance, Refined, Series};
 use serde_json::{Value, json};
 
-use crate::number::{count, significant, unit};
+use crate::number::{certain, count, significant, unit};
 use crate::summary::{BalanceSheet, ModelEntry, ResultValue, SkippedEntry, SolverEntry};
 
 const STYLE: &str = include_str!("assets/style.css");
@@ -173,7 +173,7 @@ pub(crate) fn value_cells(v: Option<&ResultValue>) -> String {
     match v {
         Some(v) => format!(
             "<td class=\"num\">{}</td><td class=\"unit\">{}</td>",
-            significant(v.value, 4),
+            certain(v.value, v.uncertainty, 4),
             esc(&unit(&v.unit))
         ),
         None => "<td class=\"num\">–</td><td></td>".into(),
@@ -292,6 +292,28 @@ pub(crate) fn notes(notes: &[Note]) -> String {
         format!("<div class=\"note {class}\" role=\"note\">{}</div>\n", items.concat())
     };
     of(NoteLevel::Failure, "failure") + &of(NoteLevel::Caution, "caution") + &of(NoteLevel::Info, "info")
+}
+
+/// What was refined to know the uncertainties.
+pub(crate) fn refined_section(refined: &[Refined]) -> String {
+    if refined.is_empty() {
+        return String::new();
+    }
+    let row = |r: &Refined| {
+        let levels: Vec<String> = r.levels.iter().map(|l| esc(&l.join(", "))).collect();
+        format!(
+            "<tr><th scope=\"row\">{}</th><td><code>{}</code></td></tr>",
+            esc(&r.what),
+            levels.join("<br>")
+        )
+    };
+    let rows: Vec<String> = refined.iter().map(row).collect();
+    format!(
+        "<section id=\"refined\"><h2>Refined</h2><p class=\"hint\">The uncertainties beside the results are numerical: the sum, over \
+         these groups of settings, of the distance to the finest level and of what is left behind it. They say nothing of the \
+         models.</p><table class=\"plain\"><tbody>{}</tbody></table></section>\n",
+        rows.concat()
+    )
 }
 
 /// What the run was made of.

@@ -9,7 +9,7 @@ use indexmap::IndexMap;
 use serde_json::json;
 
 use crate::folder::Folder;
-use crate::number::{capital, percent, significant, unit};
+use crate::number::{capital, certain, percent, significant, unit};
 use crate::page::{self, Kind, esc};
 use crate::summary::{ResultValue, Summary};
 use crate::{REPORT, ReportError, table};
@@ -134,6 +134,7 @@ fn page(s: &Summary, series: &Series, tables: &IndexMap<String, Series>) -> Stri
     body.push_str("<div class=\"pair\">\n");
     body.push_str(&page::balance_section(&s.balance));
     body.push_str(&page::solver_section(&s.solver));
+    body.push_str(&page::refined_section(&s.refined));
     body.push_str("</div>\n");
     body.push_str(&page::skipped_section(&s.skipped));
     body.push_str(&page::models_section(&s.models));
@@ -306,7 +307,7 @@ fn part_results(out: &mut String, s: &Summary, own: &[(&str, &str, &ResultValue)
                 esc(rest)
             );
             for n in &numbers {
-                let text = row.get(n).map_or_else(|| "–".into(), |(_, v)| significant(v.value, 4));
+                let text = row.get(n).map_or_else(|| "–".into(), |(_, v)| certain(v.value, v.uncertainty, 4));
                 let _ = write!(out, "<td class=\"num\">{text}</td>");
             }
             let u = first.map_or("", |(_, v)| v.unit.as_str());
@@ -336,7 +337,7 @@ fn at_angles(out: &mut String, s: &Summary, angles: &IndexMap<&str, IndexMap<&st
     for (angle, row) in angles {
         let _ = write!(out, "<tr><th class=\"num\" scope=\"row\">{}°</th>", esc(angle));
         for what in first.keys() {
-            let text = row.get(what).map_or_else(|| "–".into(), |(_, v)| significant(v.value, 4));
+            let text = row.get(what).map_or_else(|| "–".into(), |(_, v)| certain(v.value, v.uncertainty, 4));
             let _ = write!(out, "<td class=\"num\">{text}</td>");
         }
         out.push_str("</tr>");

@@ -1,6 +1,6 @@
 //! `summary.json` as a type of its own: it is read back to rebuild a page, and its shape is a promise to other programs.
 
-use gudgeon_core::result::{Figure, Note, Provenance, RunResult};
+use gudgeon_core::result::{Figure, Note, Provenance, Refined, RunResult, Verification};
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
@@ -9,11 +9,14 @@ use serde::{Deserialize, Serialize};
 pub(crate) struct ResultValue {
     pub value: Option<f64>,
     pub unit: String,
+    /// Numerical uncertainty, where it was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub uncertainty: Option<f64>,
 }
 
 impl From<&gudgeon_core::result::Value> for ResultValue {
     fn from(v: &gudgeon_core::result::Value) -> Self {
-        Self { value: Some(v.value).filter(|v| v.is_finite()), unit: v.unit.clone() }
+        Self { value: Some(v.value).filter(|v| v.is_finite()), unit: v.unit.clone(), uncertainty: None }
     }
 }
 
@@ -97,6 +100,9 @@ pub(crate) struct Summary {
     /// Geometry for the drawn section, as the scene gave it; null when there is none.
     #[serde(default)]
     pub section: Option<serde_json::Value>,
+    /// What was refined to know the uncertainties.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub refined: Vec<Refined>,
     /// Names of the tables beside `series.csv`.
     #[serde(default)]
     pub tables: Vec<String>,
@@ -105,6 +111,19 @@ pub(crate) struct Summary {
     /// What the run was made of. Last, because it is long.
     #[serde(default)]
     pub provenance: Provenance,
+}
+
+/// Results with their uncertainties.
+fn certain(
+    mut results: IndexMap<String, ResultValue>,
+    verification: Option<&Verification>,
+) -> IndexMap<String, ResultValue> {
+    for (name, u) in verification.iter().flat_map(|v| &v.uncertainty).filter(|(_, u)| u.is_finite()) {
+        if let Some(r) = results.get_mut(name) {
+            r.uncertainty = Some(*u);
+        }
+    }
+    results
 }
 
 impl Summary {
@@ -130,7 +149,8 @@ impl Summary {
                 .iter()
                 .map(|s| SkippedEntry { what: s.what.clone(), why: s.why.clone() })
                 .collect(),
-            results: values(&run.results),
+            results: certain(values(&run.results), run.verification.as_ref()),
+            refined: run.verification.as_ref().map(|v| v.refined.clone()).unwrap_or_default(),
             balance: BalanceSheet {
                 gas_mass: finite(run.balance.gas_mass),
                 oil_mass: finite(run.balance.oil_mass),

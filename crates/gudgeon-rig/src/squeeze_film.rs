@@ -152,6 +152,16 @@ impl RigSpec for SqueezeFilmRig {
                 mean.si() + amplitude.si()
             }
         };
+        let scope = self.film_1d.scope();
+        let answers = match &self.motion {
+            Motion::Velocity { .. } | Motion::Fall { .. } => scope.squeeze,
+            Motion::Oscillation { .. } => scope.steps,
+        };
+        if !answers {
+            let what = format!("`{}` knows no gap that changes in this way", self.film_1d.typetag_name());
+            let help = "`complementarity` knows all of them";
+            errors.push(BuildError::at("film_1d.model", what).help(help));
+        }
         let mut keep = |e: BuildError| errors.push(e);
         let line = match (profile::panels(self.panels), face) {
             (Ok(n), Ok(face)) => line(&face, gap, n).map_err(keep).ok(),

@@ -4,6 +4,7 @@
 use gudgeon_models as _;
 
 pub mod case;
+mod foresee;
 pub mod load;
 pub mod pin;
 pub mod piston_secondary;
@@ -17,6 +18,7 @@ pub mod shaft_line;
 pub mod study;
 pub mod sweep;
 pub mod validate;
+mod verify;
 
-pub use run::{Checked, Explanation, Progress, RunError, check, explain, run};
-pub use study::{bench, compare};
+pub use run::{Checked, Explanation, Progress, RunError, check, explain, run, run_verified};
+pub use study::{bench, compare, compare_verified};

@@ -4,13 +4,14 @@ use std::path::Path;
 use std::time::Instant;
 
 use gudgeon_core::result::{ModelUse, Note, RunResult, Skipped};
-use gudgeon_core::{EvalError, Registry};
+use gudgeon_core::{BuildError, EvalError, Registry};
 use gudgeon_numerics::ode::IntegrateError;
 use serde::Serialize;
 
 use crate::load::{Report, Source, read};
 use crate::provenance::{self, provenance};
 use crate::scene::{self, Scene, SceneCase};
+use crate::verify::verify;
 
 /// A case that was read, resolved and found to be possible.
 pub struct Checked {
@@ -52,7 +53,7 @@ pub enum RunError {
         source: EvalError,
     },
     /// The integrator gave up.
-    #[error("the integration stopped {}", in_degrees(.0))]
+    #[error("the integration stopped: {}", in_degrees(.0))]
     Integrate(#[from] IntegrateError),
     /// The integrator of a ring pack needs too many steps.
     #[error(
@@ -101,19 +102,21 @@ pub enum RunError {
     Refused(String),
 }
 
-/// What an integrator over the crank angle said, with angles in degrees.
+/// What an integrator over the crank angle says, with the angle in degrees.
 fn in_degrees(e: &IntegrateError) -> String {
-    let at = |t: &f64| format!("at {:.3} deg crank angle", t.to_degrees());
+    let deg = |t: &f64| format!("{:.3} deg crank angle", t.to_degrees());
     match e {
-        IntegrateError::Eval { t, source } => format!("{}: {source}", at(t)),
+        IntegrateError::Eval { t, source } => format!("at {}: {source}", deg(t)),
         IntegrateError::StepTooSmall { t, h, last } => {
             let why = last.as_ref().map_or_else(String::new, |e| format!(" ({e})"));
-            format!("{}: the step would have to be smaller than {:.1e} deg{why}", at(t), h.to_degrees())
+            format!("at {} the step would have to be smaller than {:e} deg{why}", deg(t), h.to_degrees())
         }
-        IntegrateError::TooManySteps { t, max } => format!("{}: a cycle takes more than {max} steps", at(t)),
-        IntegrateError::NonFinite { t } => format!("{}: the rates are not finite", at(t)),
-        IntegrateError::Chatter { t, event } => format!("{}: event {event} repeats without progress", at(t)),
-        other => format!(": {other}"),
+        IntegrateError::TooManySteps { t, max } => format!("more than {max} steps, stopped at {}", deg(t)),
+        IntegrateError::NonFinite { t } => format!("at {} the rates are not finite", deg(t)),
+        IntegrateError::Chatter { t, event } => {
+            format!("at {} event {event} repeats without progress", deg(t))
+        }
+        other => other.to_string(),
     }
 }
 
@@ -135,8 +138,12 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<Checked, Report> {
 fn checked(file: String, source: Source, overrides: &[String]) -> Result<Checked, Report> {
     let case = scene::load(source, overrides)?;
     let errors = case.legal();
+    legal(file, case, &errors)
+}
+
+fn legal(file: String, case: Box<dyn Scene>, errors: &[BuildError]) -> Result<Checked, Report> {
     if !errors.is_empty() {
-        return Err(case.refuse(&errors));
+        return Err(case.refuse(errors));
     }
     let name =
         Path::new(&file).file_stem().map_or_else(|| file.clone(), |s| s.to_string_lossy().into_owned());
@@ -144,13 +151,14 @@ fn checked(file: String, source: Source, overrides: &[String]) -> Result<Checked
 }
 
 impl Checked {
-    /// The same file with more `--set` arguments.
+    /// The same file with more `--set` arguments, its sweeps apart: what a study does for each of its variants.
     ///
     /// # Errors
     /// As [`check`].
     pub fn with(&self, more: &[String]) -> Result<Self, Report> {
-        let overrides: Vec<String> = self.case.overrides().iter().chain(more).cloned().collect();
-        checked(self.file.clone(), self.case.source().clone(), &overrides)
+        let case = self.case.changed(more)?;
+        let errors = case.legal_alone();
+        legal(self.file.clone(), case, &errors)
     }
 
     /// Title.
@@ -328,6 +336,25 @@ pub fn run(c: &Checked, progress: &mut dyn FnMut(Progress)) -> Result<RunResult,
     finish(c, begin, scene::run(c.case.as_ref(), progress)?)
 }
 
+/// As [`run`], then refines every numerical setting until the uncertainty of each result is known.
+///
+/// # Errors
+/// As [`run`]; a refinement that cannot be run.
+pub fn run_verified(c: &Checked, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
+    verified(c, run(c, progress)?, progress)
+}
+
+fn verified(
+    c: &Checked,
+    mut result: RunResult,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<RunResult, RunError> {
+    let begin = Instant::now();
+    verify(c.case.as_ref(), &mut result, progress)?;
+    result.seconds.insert("verify".into(), begin.elapsed().as_secs_f64());
+    Ok(result)
+}
+
 /// Runs a case without its sweeps.
 ///
 /// # Errors
@@ -335,6 +362,17 @@ pub fn run(c: &Checked, progress: &mut dyn FnMut(Progress)) -> Result<RunResult,
 pub(crate) fn run_alone(c: &Checked, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
     let begin = Instant::now();
     finish(c, begin, scene::run_alone(c.case.as_ref(), progress)?)
+}
+
+/// As [`run_verified`] without the sweeps.
+///
+/// # Errors
+/// As [`run_verified`].
+pub(crate) fn run_alone_verified(
+    c: &Checked,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<RunResult, RunError> {
+    verified(c, run_alone(c, progress)?, progress)
 }
 
 fn finish(c: &Checked, begin: Instant, mut result: RunResult) -> Result<RunResult, RunError> {

@@ -3,12 +3,13 @@
 use std::path::Path;
 use std::time::Instant;
 
-use gudgeon_core::result::{BenchPoint, BenchTable, Comparison, Variant};
+use gudgeon_core::result::{BenchPoint, BenchTable, Comparison, RunResult, Variant};
 use gudgeon_core::{BuildError, Registry};
 use indexmap::IndexMap;
 
+use crate::foresee;
 use crate::load::Report;
-use crate::run::{Checked, Progress, RunError, check, run_alone};
+use crate::run::{Checked, Progress, RunError, check, run_alone, run_alone_verified};
 
 /// `gas_flow`, `models.gas_flow` and `models.gas_flow.model` all mean the model's name; anything else is taken as written.
 fn swap_path(path: &str) -> String {
@@ -23,6 +24,9 @@ fn swap_path(path: &str) -> String {
     }
 }
 
+/// Most combinations of one comparison: each is a run, and all their results are kept.
+const MOST_COMBINATIONS: usize = 1000;
+
 /// Runs every combination of `swaps`, `(path, values)`.
 ///
 /// Every combination is checked before any is run; those that cannot be are kept with the reason.
@@ -35,7 +39,40 @@ pub fn compare(
     swaps: &[(String, Vec<String>)],
     progress: &mut dyn FnMut(Progress),
 ) -> Result<Comparison, Report> {
+    compare_by(run_alone, path, overrides, swaps, progress)
+}
+
+/// As [`compare`], and finds the numerical uncertainty of every result.
+///
+/// # Errors
+/// As [`compare`].
+pub fn compare_verified(
+    path: &Path,
+    overrides: &[String],
+    swaps: &[(String, Vec<String>)],
+    progress: &mut dyn FnMut(Progress),
+) -> Result<Comparison, Report> {
+    compare_by(run_alone_verified, path, overrides, swaps, progress)
+}
+
+/// How one combination is run.
+type Run = fn(&Checked, &mut dyn FnMut(Progress)) -> Result<RunResult, RunError>;
+
+fn compare_by(
+    run: Run,
+    path: &Path,
+    overrides: &[String],
+    swaps: &[(String, Vec<String>)],
+    progress: &mut dyn FnMut(Progress),
+) -> Result<Comparison, Report> {
     let base = check(path, overrides)?;
+    let count = swaps.iter().fold(1usize, |n, (_, v)| n.saturating_mul(v.len()));
+    if count > MOST_COMBINATIONS {
+        let what = format!("the swaps make {count} combinations, at most {MOST_COMBINATIONS} are compared");
+        return Err(base
+            .case
+            .refuse(&[BuildError::new(what).help("fewer values, or one `--swap` after the other")]));
+    }
     let mut combinations: Vec<Vec<(String, String)>> = vec![Vec::new()];
     for (p, values) in swaps {
         if values.is_empty() || values.iter().any(String::is_empty) {
@@ -81,7 +118,7 @@ pub fn compare(
                     "refused: {}",
                     report.diagnostics.iter().map(|d| d.headline()).collect::<Vec<_>>().join("; ")
                 )),
-                Ok(c) => run_alone(&c, &mut |p| {
+                Ok(c) => run(&c, &mut |p| {
                     progress(Progress {
                         phase: format!("{label}: {}", p.phase),
                         fraction: (k as f64 + p.fraction) / total,
@@ -150,6 +187,9 @@ pub fn bench(
                 .into(),
         ));
     };
+    if let Some(known) = base.case.result_names() {
+        foresee::all_known(results, &known).map_err(RunError::Refused)?;
+    }
     let reference = |set: &[String]| -> Result<_, RunError> {
         let c = base.with(set).map_err(|r| RunError::Refused(r.to_string()))?;
         run_alone(&c, &mut |_| {})

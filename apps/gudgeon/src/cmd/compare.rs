@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use gudgeon_core::result::Comparison;
+use gudgeon_core::result::{Comparison, RunResult};
 
 use crate::args::CompareArgs;
 use crate::cmd::{checked, open_out};
@@ -15,7 +15,8 @@ pub fn compare(a: &CompareArgs, ui: &Ui) -> Result<(), Failure> {
     let folder = open_out(a.out.as_deref(), &a.case.case, &name, "-compare")?;
     let comparison = {
         let bar = ui.bar();
-        gudgeon_sim::compare(&a.case.case, &a.case.set, &swaps, &mut |p| bar.show(p))?
+        let compare = if a.verify { gudgeon_sim::compare_verified } else { gudgeon_sim::compare };
+        compare(&a.case.case, &a.case.set, &swaps, &mut |p| bar.show(p))?
     };
     let files = gudgeon_report::write_comparison_in(&comparison, folder)?;
     if !ui.quiet() {
@@ -62,6 +63,11 @@ fn swap(text: &str) -> Result<(String, Vec<String>), Failure> {
     Ok((path.trim().to_owned(), all))
 }
 
+/// Numerical uncertainty of a result; 0 where nobody asked for it.
+fn uncertainty(r: &RunResult, name: &str) -> f64 {
+    r.verification.as_ref().and_then(|v| v.uncertainty.get(name)).copied().unwrap_or(0.0)
+}
+
 /// Combinations that fit a terminal side by side.
 const COLUMNS: usize = 4;
 
@@ -90,6 +96,9 @@ fn text(c: &Comparison) -> String {
             let other = r.results.get(name);
             row.push(other.map_or_else(|| "-".into(), |o| number(o.value)));
             row.push(match other {
+                Some(o) if (o.value - v.value).abs() < uncertainty(base, name) + uncertainty(r, name) => {
+                    "numerics".into()
+                }
                 Some(o) if v.value != 0.0 && o.value != v.value => {
                     format!("{:+.2} %", 100.0 * (o.value / v.value - 1.0))
                 }

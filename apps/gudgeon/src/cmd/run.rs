@@ -7,14 +7,15 @@ use gudgeon_core::result::{NoteLevel, RunResult};
 use crate::args::RunArgs;
 use crate::cmd::{checked, open_out};
 use crate::failure::Failure;
-use crate::ui::{Ui, number, table, unit};
+use crate::ui::{Ui, certain, number, table, unit};
 
 pub fn run(a: &RunArgs, ui: &Ui) -> Result<(), Failure> {
     let c = checked(&a.case, ui)?;
     let folder = open_out(a.out.as_deref(), &a.case.case, &c.name, "")?;
     let mut result = {
         let bar = ui.bar();
-        gudgeon_sim::run(&c, &mut |p| bar.show(p))?
+        let run = if a.verify { gudgeon_sim::run_verified } else { gudgeon_sim::run };
+        run(&c, &mut |p| bar.show(p))?
     };
     result.provenance.revision = env!("GUDGEON_REVISION").into();
     let files = gudgeon_report::write_run_in(&result, folder).inspect_err(|_| {
@@ -48,7 +49,10 @@ fn text(r: &RunResult) -> String {
     let rows: Vec<_> = r
         .results
         .iter()
-        .map(|(name, v)| vec![name.clone(), number(v.value), unit(&v.unit), v.what.clone()])
+        .map(|(name, v)| {
+            let u = r.verification.as_ref().and_then(|w| w.uncertainty.get(name)).copied();
+            vec![name.clone(), certain(v.value, u), unit(&v.unit), v.what.clone()]
+        })
         .collect();
     s.push_str(&table(&rows, &[1]));
     // Writing to a String cannot fail.

@@ -62,6 +62,7 @@ pub struct Engine {
     pub crank_offset: Length,
     /// Number of cylinders, for the engine totals.
     #[serde(default = "one")]
+    #[schemars(range(min = 1, max = 1000))]
     pub cylinders: u32,
 }
 
@@ -228,31 +229,36 @@ pub struct Solver {
     /// Time integrator of the implicit method.
     pub integrator: IntegratorName,
     /// Error per step, relative to the smallest gap.
+    #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1, "when": { "method": "implicit" } }))]
     pub tolerance: PosRatio,
     /// Distance from the periodic motion that is admitted, as part of the clearance.
+    #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1, "when": { "method": "implicit" } }))]
     pub periodicity: PosRatio,
     /// Most cycles of the search for the periodic motion.
+    #[schemars(range(max = 100_000))]
     pub max_cycles: u32,
     /// This many cycles from the start, the last one shown, whether or not it is periodic; 0: until the motion is periodic.
+    #[schemars(range(max = 100_000))]
     pub cycles: u32,
     /// Step of `backward_euler`.
+    #[schemars(extend("x-refine" = { "group": "time step", "factor": 0.5, "when": { "method": "backward_euler" } }))]
     pub step: PosAngle,
     /// Displacement of the upper edge at the start, towards the anti-thrust side.
     pub start_top: Length,
     /// Displacement of the lower edge at the start.
     pub start_bottom: Length,
     /// Intervals of the film along the height of the skirt.
-    #[schemars(range(min = 2, max = 1000))]
+    #[schemars(range(min = 2, max = 1000), extend("x-refine" = { "group": "film grid", "factor": 2 }))]
     pub intervals_along: u32,
     /// Intervals of the film across each side. With an even number, one half of a symmetric side is solved.
-    #[schemars(range(min = 2, max = 1000))]
+    #[schemars(range(min = 2, max = 1000), extend("x-refine" = { "group": "film grid", "factor": 2 }))]
     pub intervals_across: u32,
     /// How much closer nodes lie at half the height than in the mean, 0 to 0.5.
     pub crowding: Ratio,
     /// Distance of the rows in which solid contact is summed, the first one at the upper edge: the pitch of machining grooves.
     pub contact_pitch: PosLength,
     /// Intervals of a row.
-    #[schemars(range(min = 2, max = 1000))]
+    #[schemars(range(min = 2, max = 1000), extend("x-refine" = { "group": "contact grid", "factor": 2 }))]
     pub contact_intervals: u32,
 }
 
@@ -301,6 +307,7 @@ pub struct Outputs {
     pub series_step: PosAngle,
     /// Crank angles at which positions and forces are results of their own: `e_top@390`, `side_force@390`, … They are rounded to rows of the
     /// series.
+    #[schemars(length(max = 1000))]
     pub at: Vec<Angle>,
     /// Crank angle between the maps of film pressure that are kept; they are not kept when absent.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -57,6 +57,11 @@ impl SceneCase for PistonSecondaryCase {
         Ok(models(case))
     }
 
+    fn result_names(loaded: &Loaded<Self>) -> Option<Vec<String>> {
+        let a = assemble(&loaded.value, &loaded.source.folder, true, None).ok()?;
+        Some(wanted(&loaded.value, &a).ok()?.into_iter().map(|r| r.name).collect())
+    }
+
     fn run(loaded: &Loaded<Self>, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
         let begin = Instant::now();
         let case = &loaded.value;
@@ -135,7 +140,7 @@ impl SceneCase for PistonSecondaryCase {
             }
             .into(),
             counters: search.counters,
-            notes: found.notes.clone(),
+            notes: a.cylinder.notes().into_iter().chain(found.notes.iter().cloned()).collect(),
         };
         result.solver.notes.push(Note::info(
             "centre_of_gravity",

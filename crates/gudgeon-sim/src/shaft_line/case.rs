@@ -24,18 +24,23 @@ case_file! {
         pub tors: Option<String>,
         /// Inertias.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        #[schemars(length(max = 2000))]
         pub inertias: Vec<InertiaCase>,
         /// Shafts, couplings and gear meshes between them.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        #[schemars(length(max = 2000))]
         pub shafts: Vec<ShaftCase>,
         /// Dampers, each an inertia on a link of its own.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        #[schemars(length(max = 2000))]
         pub dampers: Vec<DamperCase>,
         /// Crank throws.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        #[schemars(length(max = 2000))]
         pub throws: Vec<ThrowCase>,
         /// Motors, loads and given torques.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        #[schemars(length(max = 2000))]
         pub drives: Vec<DriveCase>,
         /// Sub-models.
         #[serde(default)]
@@ -294,6 +299,7 @@ pub struct Range {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub to: Option<PosAngularSpeed>,
     /// Speeds between them.
+    #[schemars(range(min = 2, max = 20_000))]
     pub points: usize,
 }
 

@@ -30,6 +30,7 @@ impl SceneCase for ShaftLineCase {
         match assemble(case, &loaded.source.folder) {
             Ok(a) => {
                 errors.extend(legal_names(case, &a.line));
+                errors.extend(legal_memory(case, a.period, a.line.links.len()));
                 let start = Start::new(case, a.line.nodes.len());
                 errors.extend(start.errors.iter().cloned());
                 if errors.is_empty() {
@@ -87,6 +88,14 @@ impl SceneCase for ShaftLineCase {
         let a = assemble(case, folder).map_err(refused)?;
         results.count("lines_built", 1);
         results.note(&a.notes);
+        // Once for all throws that share a pressure.
+        let mut told = Vec::new();
+        for note in a.line.throws.iter().flat_map(|t| &t.ends).flat_map(|e| e.pressure.notes()) {
+            if !told.contains(&note) {
+                told.push(note);
+            }
+        }
+        results.note(&told);
         let built = begin.elapsed().as_secs_f64();
         if plan.throws {
             results.throws(&a.line.throws);
@@ -259,6 +268,29 @@ fn legal_values(case: &ShaftLineCase) -> Vec<BuildError> {
         }
     }
     errors
+}
+
+/// Most bytes of torques kept over the speed range.
+const MOST_OF_A_RANGE: f64 = (1u64 << 30) as f64;
+
+/// Torques over speed keep a complex number for every speed, order and shaft.
+fn legal_memory(case: &ShaftLineCase, period: f64, links: usize) -> Option<BuildError> {
+    if !Plan::new(case).range {
+        return None;
+    }
+    let orders = (case.range.orders.si() * period / (2.0 * PI)).round();
+    let bytes = case.range.points as f64 * orders * links as f64 * size_of::<[f64; 2]>() as f64;
+    let gigabytes = |b: f64| b / (1u64 << 30) as f64;
+    let what = || {
+        format!(
+            "{} speeds times {orders} orders times {links} shafts take {:.1} GiB, at most {} GiB is kept",
+            case.range.points,
+            gigabytes(bytes),
+            gigabytes(MOST_OF_A_RANGE)
+        )
+    };
+    (bytes > MOST_OF_A_RANGE)
+        .then(|| BuildError::at("range.points", what()).help("fewer `points` or fewer `orders`"))
 }
 
 fn legal_names(case: &ShaftLineCase, line: &Line) -> Vec<BuildError> {

@@ -31,6 +31,7 @@ pub struct HarmonicBalance {
     pub tolerance: Ratio<Positive>,
     /// Most rounds.
     #[serde(default = "rounds")]
+    #[schemars(range(min = 1, max = 100_000))]
     pub rounds: usize,
 }
 

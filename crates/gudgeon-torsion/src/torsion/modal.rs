@@ -16,6 +16,7 @@ use crate::steady::Steady;
 pub struct Modal {
     /// Number of modes kept, the rigid one included.
     #[serde(default = "ten")]
+    #[schemars(range(min = 1, max = 2000))]
     pub modes: usize,
     /// Damping ratio of all modes, instead of that of the dampers.
     #[serde(default, skip_serializing_if = "Option::is_none")]
