@@ -21,7 +21,7 @@ fn no_floor_acts_on_the_shipped_diesel() {
     let r = run_case(CASE, &[]);
     for n in r.solver.notes.iter().filter(|n| n.level > NoteLevel::Info) {
         assert!(n.topic.starts_with("contact_drag."), "{n:?}");
-        // Of loads of 160 N and more: less than 2 %, for less than 6 % of the cycle.
+        // Of loads of 160 N and more while ring 2 touches: less than 2 %; where the stroke turns and films grow, less than 6 % of the cycle.
         assert!(n.amounts["drag"].value < 3.2 && n.amounts["share_of_cycle"].value < 0.06, "{n:?}");
     }
     assert!(r.events.iter().all(|e| !e.what.contains("liner")), "{:?}", r.events);
@@ -113,7 +113,6 @@ fn documented_models_run_on_the_shipped_diesel() {
     let asked: Vec<(&str, Vec<String>)> = [
         &["models.ring_motion={model=\"seated\"}"][..],
         &["models.ring_motion={model=\"seated\"}", "outputs.results=[\"blow_by\"]"],
-        &["engine.speed=150 rpm"],
         &["models.ring_motion={model=\"three_seat\"}", "solver.starts=[\"1 bar\"]"],
     ]
     .iter()
