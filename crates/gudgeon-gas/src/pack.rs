@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use gudgeon_core::geometry::{BackVolume, PackGeometry, RingGeometry, RingPlace};
 use gudgeon_core::kinds::{GasFlow, GasIn, GasOut, GasSlopes};
-use gudgeon_core::quantity::{PosTime, quantity};
+use gudgeon_core::quantity::{PosLength, PosTime, quantity};
 use gudgeon_core::{BuildError, EvalError};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -33,6 +33,11 @@ pub enum Elimination {
     /// Spaces that fill in less than `eliminate_below` store nothing: what enters past one flank leaves past the other, and the
     /// pressure between follows from that.
     Auto,
+}
+
+/// Thickness that flooded films of rings stay below.
+pub(crate) fn fifty_micrometres() -> PosLength {
+    quantity(50e-6)
 }
 
 /// Default of `eliminate_below`.

@@ -16,12 +16,9 @@ use super::end_gap;
 use super::geometry;
 use super::hold::Hold;
 use super::oil::{FacePlace, OilPack};
-use super::pack::{Counters, Instant, Layout, LinerShape, Pack, RingInstant, RingModel};
+use super::pack::{Counters, Instant, Layout, LinerShape, Pack, RingInstant, RingModel, SeatLog};
 use super::plan::{Facts, Plan, plan, wanted};
 use crate::case::{Method, RingDesign, RingPackCase};
-
-/// Film thickness where the gas model wants one and no film is solved \[m\].
-const NOMINAL_FILM: f64 = 2e-6;
 
 /// A ring without axial clearance.
 struct Clamped;
@@ -203,9 +200,11 @@ pub fn assemble(case: &RingPackCase, folder: &Path) -> Result<Pack, Vec<BuildErr
                     .is_constant()
                     .then(|| oil.viscosity(film_temperature.temperature(i, 0.0)));
                 let kind = motion.motion();
-                let nominal_film = NOMINAL_FILM;
+                let nominal_film = case.solver.limits.nominal_film.si();
+                let resists = films.iter().any(|f| f.resists());
                 rings.push(RingModel {
                     films,
+                    resists,
                     contact,
                     motion,
                     kind,
@@ -296,6 +295,7 @@ pub fn assemble(case: &RingPackCase, folder: &Path) -> Result<Pack, Vec<BuildErr
     let places = vec![gudgeon_core::geometry::RingPlace::default(); n];
     let mut pack = Pack {
         conv: case.conventions,
+        limits: (&case.solver.limits).into(),
         omega,
         kinematics,
         cylinder,
@@ -311,6 +311,7 @@ pub fn assemble(case: &RingPackCase, folder: &Path) -> Result<Pack, Vec<BuildErr
         layout,
         mass_scale: vec![1.0; gas_states],
         seats: vec![0.0; n],
+        seat_log: vec![SeatLog::default(); n],
         at: Instant {
             theta: 0.0,
             piston: Default::default(),

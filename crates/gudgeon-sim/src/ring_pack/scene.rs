@@ -25,6 +25,7 @@ impl SceneCase for RingPackCase {
         told.runs.clone_from(&pack.plan.runs);
         told.skipped = skipped;
         told.results.clone_from(&pack.plan.wanted);
+        told.limits = loaded.value.solver.limits.explained();
         told.states = state_names(&pack);
         Ok(used)
     }
@@ -40,6 +41,8 @@ impl SceneCase for RingPackCase {
         result.results = solved.cycle.results(&pack, meter(case));
         result.balance = solved.cycle.totals.balance.clone();
         result.events = solved.cycle.events();
+        result.events.extend(solved.retreats);
+        result.events.sort_by(|a, b| a.theta_deg.total_cmp(&b.theta_deg));
         result.branches = solved.branches;
         result.solver = solved.report;
         result.series = solved.record.series();
