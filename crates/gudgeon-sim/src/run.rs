@@ -129,13 +129,17 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<Checked, Report> {
     if path.extension().is_some_and(|e| e == "json") {
         let (file, source, recorded) = provenance::recorded(&source)?;
         let all: Vec<String> = recorded.iter().chain(overrides).cloned().collect();
-        return checked(file, source, &all);
+        return check_source(file, source, &all);
     }
     let file = path.file_name().map_or_else(|| "case".to_owned(), |s| s.to_string_lossy().into_owned());
-    checked(file, source, overrides)
+    check_source(file, source, overrides)
 }
 
-fn checked(file: String, source: Source, overrides: &[String]) -> Result<Checked, Report> {
+/// As [`check`], from a text that was read before.
+///
+/// # Errors
+/// As [`check`].
+pub fn check_source(file: String, source: Source, overrides: &[String]) -> Result<Checked, Report> {
     let case = scene::load(source, overrides)?;
     let errors = case.legal();
     legal(file, case, &errors)

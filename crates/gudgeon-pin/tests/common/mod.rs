@@ -1,9 +1,8 @@
 //! The published engine (Reimer 1984) and random ones.
 #![allow(dead_code, reason = "every test uses a part")]
 
-use std::path::Path;
-
 use gudgeon_core::BuildError;
+use gudgeon_core::file::Files;
 use gudgeon_core::kinds::{
     BossBore, EngineCycle, PIN_QUANTITIES, PinForces, PinLoadCase, PinLoadCtx, PinLoadSpec, PinSize,
     PinStrength, PinStrengthCtx, PinStrengthSpec,
@@ -22,7 +21,7 @@ pub fn no_case(_: &str) -> Result<EngineCycle, BuildError> {
 }
 
 pub fn load_ctx(pi: f64) -> PinLoadCtx<'static> {
-    PinLoadCtx { bore: BORE, pi, folder: Path::new("."), cycle_of: &no_case }
+    PinLoadCtx { bore: BORE, pi, files: &Files::default(), cycle_of: &no_case }
 }
 
 pub fn strength_ctx(pi: f64) -> PinStrengthCtx {

@@ -1,9 +1,9 @@
 //! From a case to an assembled [`Pack`]: every sub-model built, every contradiction reported.
 
 use std::f64::consts::PI;
-use std::path::Path;
 
 use gudgeon_core::BuildError;
+use gudgeon_core::file::Files;
 use gudgeon_core::geometry::{BackVolume, PackGeometry};
 use gudgeon_core::kinds::{
     CylinderPressureCtx, FaceCtx, FilmTemperatureCtx, FlankDampingCtx, GasFlowCtx, GasIn, GasOut,
@@ -44,7 +44,7 @@ impl RingMotion for Clamped {
 ///
 /// # Errors
 /// Everything about the case that cannot be, with the place in the case.
-pub fn assemble(case: &RingPackCase, folder: &Path) -> Result<Pack, Vec<BuildError>> {
+pub fn assemble(case: &RingPackCase, files: &Files) -> Result<Pack, Vec<BuildError>> {
     let mut errors = Vec::new();
     let want =
         wanted(&case.outputs.results, case.rings.len(), case.models.oil_transport.typetag_name() != "off")
@@ -90,7 +90,7 @@ pub fn assemble(case: &RingPackCase, folder: &Path) -> Result<Pack, Vec<BuildErr
     let ctx = CylinderPressureCtx {
         kinematics: kinematics.as_ref(),
         piston_area: PI * geo.bore_radius * geo.bore_radius,
-        folder,
+        files,
     };
     let at = |place: &str| {
         let place = place.to_owned();

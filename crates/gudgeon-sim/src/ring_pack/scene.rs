@@ -14,7 +14,7 @@ use crate::study::{Contender, Race};
 
 impl SceneCase for RingPackCase {
     fn legal(loaded: &Loaded<Self>) -> Vec<BuildError> {
-        let mut errors = assemble::assemble(&loaded.value, &loaded.source.folder).err().unwrap_or_default();
+        let mut errors = assemble::assemble(&loaded.value, &loaded.source.files).err().unwrap_or_default();
         errors.extend(legal(&loaded.value));
         errors
     }
@@ -93,7 +93,7 @@ impl SceneCase for RingPackCase {
 }
 
 fn build(loaded: &Loaded<RingPackCase>) -> Result<Pack, RunError> {
-    assemble::assemble(&loaded.value, &loaded.source.folder)
+    assemble::assemble(&loaded.value, &loaded.source.files)
         .map_err(|e| RunError::Refused(e.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")))
 }
 
