@@ -297,7 +297,10 @@ fn note<'a>(r: &'a RunResult, topic: &str) -> &'a str {
 fn the_verdict_counts_every_speed_of_the_operating_range() {
     let r = once("geared-train.toml", &[]);
     let all = note(&r, "verdict");
-    assert!(all.contains("2 of 12 limits are not kept") && all.contains("from 600.00 rpm to 2000.00 rpm"), "{all}");
+    assert!(
+        all.contains("2 of 12 limits are not kept") && all.contains("from 600.00 rpm to 2000.00 rpm"),
+        "{all}"
+    );
     // Neither shows at the mean speed.
     let generator = note(&r, "verdict.stress_in_generator_shaft");
     assert!(generator.contains("order 4") || generator.contains("order 2"), "{generator}");
