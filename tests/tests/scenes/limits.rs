@@ -41,7 +41,7 @@ fn sharp_taper_is_carried_through_zero_separation() {
 fn a_load_that_nothing_carries_is_refused() {
     // A land would ride on the oil it squeezes; a sharp edge has none.
     let set = vec!["models.contact={model=\"off\"}".into(), "rings.1.face.land=0 mm".into()];
-    let e = run_all(&[(CASE, set)]).remove(0).err().expect("refused");
+    let e = run_all(&[(CASE, set)]).remove(0).expect_err("refused");
     assert!(
         e.contains("ring 2") && e.contains("deg crank angle") && e.contains(" N press") && e.contains("nm"),
         "{e}"
@@ -145,7 +145,7 @@ fn undamped_rings_on_a_followed_film_stay_numbers() {
 #[test]
 fn the_cap_of_steps_is_a_key() {
     let set = vec!["solver.limits.most_steps=100".to_owned()];
-    let e = run_all(&[(CASE, set)]).remove(0).err().expect("100 steps are too few");
+    let e = run_all(&[(CASE, set)]).remove(0).expect_err("100 steps are too few");
     assert!(
         e.contains("deg crank angle") && e.contains("100 steps") && e.contains("solver.limits.most_steps"),
         "{e}"
