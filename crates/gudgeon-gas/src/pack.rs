@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use gudgeon_core::geometry::{BackVolume, PackGeometry, RingGeometry, RingPlace};
 use gudgeon_core::kinds::{GasFlow, GasIn, GasOut, GasSlopes};
-use gudgeon_core::quantity::{PosTime, quantity};
+use gudgeon_core::quantity::{PosLength, PosTime, quantity};
 use gudgeon_core::{BuildError, EvalError};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -35,6 +35,11 @@ pub enum Elimination {
     Auto,
 }
 
+/// Thickness that flooded films of rings stay below.
+pub(crate) fn fifty_micrometres() -> PosLength {
+    quantity(50e-6)
+}
+
 /// Default of `eliminate_below`.
 pub(crate) fn ten_nanoseconds() -> PosTime {
     quantity(1e-8)
@@ -54,9 +59,9 @@ pub(crate) struct Openings {
     pub h: f64,
     /// Liner radius \[m\].
     pub liner_radius: f64,
-    /// Axial distance from the lower groove flank \[m\], not negative.
+    /// Axial distance from the lower groove flank \[m\], not negative unless the pack is unbound.
     pub lower: f64,
-    /// Axial distance from the upper groove flank \[m\], not negative.
+    /// Axial distance from the upper groove flank \[m\], likewise.
     pub upper: f64,
     /// Position in the groove, 0 lower flank, 1 upper flank.
     pub e: f64,
@@ -85,6 +90,8 @@ pub(crate) trait Passages: Send {
     const NAME: &'static str;
     /// Whether any ring has a passage past its face.
     const FACE: bool;
+    /// Whether an opening below zero means something: an area does, a height whose cube counts does not.
+    const SIGNED: bool = false;
     /// The passages of ring `i`. Upper and lower flank are ignored for a sealed ring, the lower one for a drained groove.
     fn passages(&self, i: usize, ring: &RingGeometry, o: &Openings) -> RingPassages;
     /// Whether the passages themselves (not gap, clearance and volume) depend on `Openings::h`.
@@ -113,6 +120,8 @@ pub(crate) struct Pack<M> {
     /// `None`: instantaneous.
     nominal_film: Option<f64>,
     chamfer_fade: f64,
+    /// Whether openings end at zero.
+    bounded: bool,
     net: Network,
     links: Vec<RingLinks>,
     /// Nodes of the lands.
@@ -302,7 +311,7 @@ impl<M: Passages> Pack<M> {
                 net.split_link(*upper, pack.gas_constant * pack.rings[i].back_temperature);
             }
         }
-        Ok(Self { model, pack: pack.clone(), nominal_film, chamfer_fade, net, links, lands })
+        Ok(Self { model, pack: pack.clone(), nominal_film, chamfer_fade, bounded: true, net, links, lands })
     }
 
     /// Volume behind ring `i`, not yet checked.
@@ -357,14 +366,20 @@ impl<M: Passages> Pack<M> {
                     ));
                 }
                 // A ring that has retreated behind its land leaves no gap of this kind.
-                running * (radial - h).max(0.0)
+                let radial = radial - h;
+                running * if self.bounded { radial.max(0.0) } else { radial }
             }
+        };
+        let (lower, upper) = if self.bounded {
+            (e * clearance, (1.0 - e) * clearance)
+        } else {
+            (place.s, clearance - place.s)
         };
         Ok(Openings {
             h,
             liner_radius: place.liner_radius,
-            lower: e * clearance,
-            upper: (1.0 - e) * clearance,
+            lower,
+            upper,
             e,
             gap: area + chamfer,
             back_volume: self.volume_behind(i, place),
@@ -448,6 +463,10 @@ impl<M: Passages> Pack<M> {
 }
 
 impl<M: Passages> GasFlow for Pack<M> {
+    fn unbound(&mut self) {
+        self.bounded = !M::SIGNED;
+    }
+
     fn n_states(&self) -> usize {
         self.net.volumes()
     }

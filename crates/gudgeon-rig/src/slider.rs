@@ -127,6 +127,18 @@ impl RigSpec for SliderRig {
         let rough = self.roughness.build().map_err(|e| keep(e.within("roughness"))).ok();
         let piezo = self.piezoviscosity.build().map_err(|e| keep(e.within("piezoviscosity"))).ok();
         let thin = self.shear_thinning.build().map_err(|e| keep(e.within("shear_thinning"))).ok();
+        // The surface enters the gap at one end; what the other one is given has no meaning.
+        let (inlet, place) =
+            if self.speed.si() >= 0.0 { (&self.left, "left") } else { (&self.right, "right") };
+        if inlet.oil_film.is_some() && !self.film_1d.scope().starved {
+            let what =
+                format!("`{}` as it is set here knows no inlet that starves", self.film_1d.typetag_name());
+            keep(
+                BuildError::at(format!("{place}.oil_film"), what)
+                    .help("a model that conserves mass does: `complementarity`, `front_tracking`; without `oil_film` there is a bath"),
+            );
+            return Err(errors);
+        }
         match (line, film, rough, piezo, thin) {
             (Some(line), Some(film), Some(rough), Some(piezo), Some(thin)) if errors.is_empty() => {
                 Ok(Box::new(Bench {

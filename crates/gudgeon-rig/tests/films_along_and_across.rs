@@ -1,8 +1,7 @@
 //! Benches of films along and across the motion: any text gives an error or numbers, and what is symmetric is solved once.
 #![allow(missing_docs)]
 
-use std::path::Path;
-
+use gudgeon_core::file::Files;
 use gudgeon_core::kinds::{RigCtx, RigOut, RigSpec};
 use gudgeon_rig as _;
 
@@ -12,7 +11,7 @@ fn run(text: &str) -> Result<RigOut, String> {
     let errors = |e: Vec<gudgeon_core::BuildError>| {
         e.iter().map(|e| format!("{}: {e}", e.field)).collect::<Vec<_>>().join("\n")
     };
-    let mut rig = spec.build(&RigCtx { folder: Path::new(".") }).map_err(errors)?;
+    let mut rig = spec.build(&RigCtx { files: &Files::default() }).map_err(errors)?;
     let mut out = RigOut::default();
     rig.run(&mut out).map_err(|e| e.to_string())?;
     Ok(out)

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use gudgeon_core::result::{ModelUse, Note, RunResult, Skipped};
-use gudgeon_core::{EvalError, Registry};
+use gudgeon_core::{BuildError, EvalError, Registry};
 use gudgeon_numerics::ode::IntegrateError;
 use serde::Serialize;
 
@@ -53,8 +53,33 @@ pub enum RunError {
         source: EvalError,
     },
     /// The integrator gave up.
-    #[error("the integration stopped: {0} (crank angles in radians)")]
+    #[error("the integration stopped: {}", in_degrees(.0))]
     Integrate(#[from] IntegrateError),
+    /// The integrator of a ring pack needs too many steps.
+    #[error(
+        "at {theta_deg:.3} deg crank angle a cycle has taken {max} steps, the most that `solver.limits.most_steps` lets it take"
+    )]
+    Steps {
+        /// Where \[deg\].
+        theta_deg: f64,
+        /// The limit.
+        max: u64,
+    },
+    /// A ring rests on next to nothing.
+    #[error(
+        "at {theta_deg:.1} deg crank angle {load:.4} N press ring {ring} on a film of {film_nm:.2} nm, which neither oil nor contact carries. \
+         Give the ring a `contact` that can carry it, such as `greenwood_tripp`"
+    )]
+    NothingCarries {
+        /// Ring, from 1.
+        ring: usize,
+        /// Where \[deg\].
+        theta_deg: f64,
+        /// Load that is left \[N\].
+        load: f64,
+        /// Film thickness \[nm\].
+        film_nm: f64,
+    },
     /// The cycle does not close.
     #[error(
         "no periodic cycle after {cycles} cycles: estimated error {error:.2e}, wanted {wanted:.0e}. {advice}"
@@ -77,6 +102,24 @@ pub enum RunError {
     Refused(String),
 }
 
+/// What an integrator over the crank angle says, with the angle in degrees.
+fn in_degrees(e: &IntegrateError) -> String {
+    let deg = |t: &f64| format!("{:.3} deg crank angle", t.to_degrees());
+    match e {
+        IntegrateError::Eval { t, source } => format!("at {}: {source}", deg(t)),
+        IntegrateError::StepTooSmall { t, h, last } => {
+            let why = last.as_ref().map_or_else(String::new, |e| format!(" ({e})"));
+            format!("at {} the step would have to be smaller than {:e} deg{why}", deg(t), h.to_degrees())
+        }
+        IntegrateError::TooManySteps { t, max } => format!("more than {max} steps, stopped at {}", deg(t)),
+        IntegrateError::NonFinite { t } => format!("at {} the rates are not finite", deg(t)),
+        IntegrateError::Chatter { t, event } => {
+            format!("at {} event {event} repeats without progress", deg(t))
+        }
+        other => other.to_string(),
+    }
+}
+
 /// Reads, resolves and validates a case, or the case that the `summary.json` of a run recorded.
 ///
 /// # Errors
@@ -86,17 +129,25 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<Checked, Report> {
     if path.extension().is_some_and(|e| e == "json") {
         let (file, source, recorded) = provenance::recorded(&source)?;
         let all: Vec<String> = recorded.iter().chain(overrides).cloned().collect();
-        return checked(file, source, &all);
+        return check_source(file, source, &all);
     }
     let file = path.file_name().map_or_else(|| "case".to_owned(), |s| s.to_string_lossy().into_owned());
-    checked(file, source, overrides)
+    check_source(file, source, overrides)
 }
 
-fn checked(file: String, source: Source, overrides: &[String]) -> Result<Checked, Report> {
+/// As [`check`], from a text that was read before.
+///
+/// # Errors
+/// As [`check`].
+pub fn check_source(file: String, source: Source, overrides: &[String]) -> Result<Checked, Report> {
     let case = scene::load(source, overrides)?;
     let errors = case.legal();
+    legal(file, case, &errors)
+}
+
+fn legal(file: String, case: Box<dyn Scene>, errors: &[BuildError]) -> Result<Checked, Report> {
     if !errors.is_empty() {
-        return Err(case.refuse(&errors));
+        return Err(case.refuse(errors));
     }
     let name =
         Path::new(&file).file_stem().map_or_else(|| file.clone(), |s| s.to_string_lossy().into_owned());
@@ -104,13 +155,14 @@ fn checked(file: String, source: Source, overrides: &[String]) -> Result<Checked
 }
 
 impl Checked {
-    /// The same file with more `--set` arguments.
+    /// The same file with more `--set` arguments, its sweeps apart: what a study does for each of its variants.
     ///
     /// # Errors
     /// As [`check`].
     pub fn with(&self, more: &[String]) -> Result<Self, Report> {
-        let overrides: Vec<String> = self.case.overrides().iter().chain(more).cloned().collect();
-        checked(self.file.clone(), self.case.source().clone(), &overrides)
+        let case = self.case.changed(more)?;
+        let errors = case.legal_alone();
+        legal(self.file.clone(), case, &errors)
     }
 
     /// Title.
@@ -169,6 +221,9 @@ pub struct Explanation {
     pub skipped: Vec<Skipped>,
     /// Wanted results.
     pub results: Vec<String>,
+    /// Floors, caps and drags: key, value, reason.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub limits: Vec<(String, String, String)>,
     /// Names of the states that are integrated.
     pub states: Vec<String>,
     /// Notes.
@@ -233,6 +288,12 @@ impl Explanation {
         }
         for r in &self.skipped {
             let _ = writeln!(s, "  {}: {}", r.what, r.why);
+        }
+        if !self.limits.is_empty() {
+            let _ = writeln!(s, "\nFloors, caps and drags (what acts in a run is noted)");
+            for (key, value, reason) in &self.limits {
+                let _ = writeln!(s, "  {key} = {value}\n      {reason}");
+            }
         }
         if !self.states.is_empty() {
             let _ = writeln!(s, "\nStates integrated ({}): {}", self.states.len(), self.states.join(", "));

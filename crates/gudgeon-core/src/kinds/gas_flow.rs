@@ -110,6 +110,11 @@ impl GasSlopes {
 /// A running gas-flow model. Its states are the gas masses \[kg\] of its volumes, so that any linear-invariant-preserving
 /// integrator closes the mass balance to round-off: `Σ d_state = flow_in[0] - flow_out[n-1]` holds for every call.
 pub trait GasFlow: Send {
+    /// Whether gas passes through the end gaps of the rings, so that a gap that closes leaves no model.
+    fn uses_end_gaps(&self) -> bool {
+        true
+    }
+
     /// Number of volumes with a mass of their own.
     fn n_states(&self) -> usize;
     /// Name of each state's volume: `land2`, `ring1.back`.
@@ -135,6 +140,11 @@ pub trait GasFlow: Send {
         d_state: &mut [f64],
         out: &mut GasOut,
     ) -> Result<(), EvalError>;
+
+    /// Takes lifts and gaps as they come from now on, below zero too, as a published explicit scheme does: a ring at rest on its upper flank,
+    /// whose clearance shrinks as the liner narrows, then leaves less than nothing there until it moves again. Nothing changes in a model
+    /// for which that means nothing.
+    fn unbound(&mut self) {}
 
     /// Derivatives of all that [`rates`](Self::rates) gives by the masses, all of `out` written. One-sided where the flow has a kink;
     /// always finite. `Ok(false)`, which is what a model gets that says nothing: they are not known, and `out` is as it was.

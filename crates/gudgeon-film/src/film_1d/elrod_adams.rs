@@ -1,4 +1,6 @@
-use gudgeon_core::kinds::{Film1d, Film1dCtx, Film1dIn, Film1dOut, Film1dSpec, FilmEnd, FilmField};
+use gudgeon_core::kinds::{
+    Film1d, Film1dCtx, Film1dIn, Film1dOut, Film1dScope, Film1dSpec, FilmEnd, FilmField,
+};
 use gudgeon_core::quantity::PosPressure;
 use gudgeon_core::{BuildError, EvalError};
 use serde::{Deserialize, Serialize};
@@ -66,6 +68,9 @@ const MODEL: &str = "elrod_adams";
 
 #[typetag::serde(name = "elrod_adams")]
 impl Film1dSpec for ElrodAdams {
+    fn scope(&self) -> Film1dScope {
+        Film1dScope { starved: false, squeeze: false, steps: true }
+    }
     fn build(&self, ctx: &Film1dCtx<'_>) -> Result<Box<dyn Film1d>, BuildError> {
         ctx.check()?;
         if !(1..=100_000).contains(&self.rounds) {

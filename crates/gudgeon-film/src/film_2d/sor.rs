@@ -33,7 +33,7 @@ pub struct Sor {
     pub relaxation: Option<f64>,
     /// Most sweeps, 1 or more.
     #[serde(default = "most_sweeps")]
-    #[schemars(range(min = 1))]
+    #[schemars(range(min = 1, max = 100_000_000))]
     pub most_sweeps: usize,
 }
 

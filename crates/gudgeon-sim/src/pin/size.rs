@@ -1,5 +1,6 @@
 //! The pin: evaluation, published search, exact optimum with its proof, sweeps.
 
+use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{PinQuantity, PinSize};
 use gudgeon_core::result::{Note, RunResult, Series};
 use gudgeon_pin::certificate::certify;
@@ -157,6 +158,37 @@ fn because(forbids: &[Forbids]) -> String {
         }
     };
     forbids.iter().map(one).collect::<Vec<_>>().join(", ")
+}
+
+/// Why no search can find a pin, known before one runs: every limit is easier to keep with a larger outer diameter, so the largest one
+/// of the range decides; the published search keeps the outer diameter of its start.
+pub fn impossible(case: &PinCase, s: &Setup) -> Option<BuildError> {
+    let o = case.optimise.as_ref()?;
+    let d = s.design();
+    match (o.method, s.given) {
+        (Method::Exact, _) => {
+            let high = d.outer.high;
+            let forbids = d.forbids(high);
+            if forbids.is_empty() && d.least_inner(high) <= d.greatest_inner(high) {
+                return None;
+            }
+            let RunError::Refused(what) = no_optimum(&d, NoOptimum::Infeasible(forbids)) else { return None };
+            let help = "a wider range of the outer diameter, a smaller load or a larger limit";
+            Some(BuildError::at("optimise.outer", what).help(help))
+        }
+        // It knows no ranges of the other dimensions.
+        (Method::AsPublished, Some(start)) if o.length.is_none() && o.inner.is_none() => {
+            let forbids = d.forbids(start.outer);
+            let what = format!(
+                "no pin of {:.4} mm outer diameter keeps the limits: {}",
+                1e3 * start.outer,
+                because(&forbids)
+            );
+            (!forbids.is_empty())
+                .then(|| BuildError::at("pin.outer", what).help("a larger outer diameter is needed"))
+        }
+        _ => None,
+    }
 }
 
 fn no_optimum(d: &Design<'_>, e: NoOptimum) -> RunError {

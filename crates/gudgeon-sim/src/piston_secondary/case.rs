@@ -62,6 +62,7 @@ pub struct Engine {
     pub crank_offset: Length,
     /// Number of cylinders, for the engine totals.
     #[serde(default = "one")]
+    #[schemars(range(min = 1, max = 1000))]
     pub cylinders: u32,
 }
 
@@ -234,8 +235,10 @@ pub struct Solver {
     #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1, "when": { "method": "implicit" } }))]
     pub periodicity: PosRatio,
     /// Most cycles of the search for the periodic motion.
+    #[schemars(range(max = 100_000))]
     pub max_cycles: u32,
     /// This many cycles from the start, the last one shown, whether or not it is periodic; 0: until the motion is periodic.
+    #[schemars(range(max = 100_000))]
     pub cycles: u32,
     /// Step of `backward_euler`.
     #[schemars(extend("x-refine" = { "group": "time step", "factor": 0.5, "when": { "method": "backward_euler" } }))]
@@ -310,6 +313,7 @@ pub struct Outputs {
     /// Crank angle between rows of the series. Results do not depend on it.
     pub series_step: PosAngle,
     /// Crank angles at which positions and forces are results of their own: `e_top@390`, `side_force@390`, …
+    #[schemars(length(max = 1000))]
     pub at: Vec<Angle>,
     /// Crank angle between the maps of film pressure that are kept; they are not kept when absent.
     #[serde(skip_serializing_if = "Option::is_none")]

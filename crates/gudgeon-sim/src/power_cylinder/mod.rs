@@ -9,9 +9,9 @@ use gudgeon_core::result::{ModelUse, RunResult, Value};
 use serde_json::Value as Json;
 
 use crate::case::RingPackCase;
-use crate::load::{Loaded, Report, read, scene_of};
+use crate::load::{Loaded, Refinement, Report, read_beside, scene_of};
 use crate::piston_secondary::case::PistonSecondaryCase;
-use crate::run::{Checked, Explanation, Progress, RunError, check, explain};
+use crate::run::{Checked, Explanation, Progress, RunError, check_source, explain};
 use crate::scene::SceneCase;
 use case::{Part, PowerCylinderCase};
 
@@ -32,6 +32,38 @@ impl SceneCase for PowerCylinderCase {
             add_models(&mut models, own.models.into_iter().map(|m| m.used));
         }
         Ok(models)
+    }
+
+    /// Those of both parts, as changes to the parts.
+    fn refinements(loaded: &Loaded<Self>) -> Vec<Refinement> {
+        let Ok((rings, skirt)) = parts(loaded) else { return Vec::new() };
+        let own = &loaded.value;
+        let of = |case: &Checked, part: &Part, field: &str, name: &str| -> Vec<Refinement> {
+            let level = |set: Vec<String>| {
+                let all: Vec<String> = part.set.iter().chain(&set).map(|s| format!("{s:?}")).collect();
+                vec![format!("{field}.set=[{}]", all.join(", "))]
+            };
+            case.case
+                .refinements()
+                .into_iter()
+                .map(|r| Refinement {
+                    what: format!("{} of the {name}", r.what),
+                    levels: r.levels.into_iter().map(level).collect(),
+                })
+                .collect()
+        };
+        let mut all = of(&rings, &own.ring_pack, "ring_pack", "rings");
+        all.extend(of(&skirt, &own.piston_secondary, "piston_secondary", "skirt"));
+        all
+    }
+
+    fn result_names(loaded: &Loaded<Self>) -> Option<Vec<String>> {
+        let (rings, skirt) = parts(loaded).ok()?;
+        let (rings, skirt) = (rings.case.result_names()?, skirt.case.result_names()?);
+        let both = |name: &&str| [&rings, &skirt].iter().all(|p| p.iter().any(|r| r == name));
+        let sums = ["friction_power", "fmep"].into_iter().filter(both).map(str::to_owned);
+        let parts = [("rings", &rings), ("skirt", &skirt)];
+        Some(sums.chain(parts.iter().flat_map(|(p, all)| all.iter().map(|r| named(p, r)))).collect())
     }
 
     fn run(loaded: &Loaded<Self>, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
@@ -80,7 +112,12 @@ impl SceneCase for PowerCylinderCase {
         result.tables.extend(other.tables);
         result.events.extend(other.events);
         result.events.sort_by(|a, b| a.theta_deg.total_cmp(&b.theta_deg));
-        result.solver.notes.extend(other.solver.notes);
+        for note in other.solver.notes {
+            // Both scenes have the same cylinder pressure.
+            if !result.solver.notes.contains(&note) {
+                result.solver.notes.push(note);
+            }
+        }
         let own = std::mem::take(&mut result.solver.counters);
         result.solver.counters = own.into_iter().map(|(k, n)| (named("rings", &k), n)).collect();
         result
@@ -120,22 +157,22 @@ fn refused(e: Vec<BuildError>) -> RunError {
 
 /// Both cases, the skirt's with the crank drive and the gas of the rings'.
 fn parts(loaded: &Loaded<PowerCylinderCase>) -> Result<(Checked, Checked), Vec<BuildError>> {
-    let folder = &loaded.source.folder;
+    let files = &loaded.source.files;
     let wrong = |field: &str, scene: &str| {
         vec![BuildError::at(format!("{field}.case"), format!("must be a case of the scene `{scene}`"))]
     };
     let part_of = |part: &Part, field: &str, more: &[String]| {
         let set: Vec<String> = part.set.iter().chain(more).cloned().collect();
-        let path = folder.join(&part.case);
         let told = |report: Report| {
             let told: Vec<String> = report.diagnostics.iter().map(|d| d.headline()).collect();
             vec![BuildError::at(format!("{field}.case"), format!("{}: {}", part.case, told.join("; ")))]
         };
         // Before the rest of it: a part that is a whole cylinder could be this case itself.
-        if scene_of(&read(&path).map_err(told)?, &set).as_deref() != Some(field) {
+        let source = read_beside(files, &part.case).map_err(told)?;
+        if scene_of(&source, &set).as_deref() != Some(field) {
             return Err(wrong(field, field));
         }
-        check(&path, &set).map_err(told)
+        check_source(part.case.clone(), source, &set).map_err(told)
     };
     let rings = part_of(&loaded.value.ring_pack, "ring_pack", &[])?;
     let pack = rings.of::<RingPackCase>().ok_or_else(|| wrong("ring_pack", "ring_pack"))?;

@@ -1,9 +1,9 @@
 //! From a case to an assembled [`Pack`]: every sub-model built, every contradiction reported.
 
 use std::f64::consts::PI;
-use std::path::Path;
 
 use gudgeon_core::BuildError;
+use gudgeon_core::file::Files;
 use gudgeon_core::geometry::{BackVolume, PackGeometry};
 use gudgeon_core::kinds::{
     CylinderPressureCtx, FaceCtx, FilmTemperatureCtx, FlankDampingCtx, GasFlowCtx, GasIn, GasOut,
@@ -12,15 +12,13 @@ use gudgeon_core::kinds::{
 use gudgeon_core::result::{ModelUse, Skipped};
 
 use super::contact_line::ContactLine;
+use super::end_gap;
 use super::geometry;
 use super::hold::Hold;
 use super::oil::{FacePlace, OilPack};
-use super::pack::{Counters, Instant, Layout, LinerShape, Pack, RingInstant, RingModel};
+use super::pack::{Counters, Instant, Layout, LinerShape, Pack, RingInstant, RingModel, SeatLog};
 use super::plan::{Facts, Plan, plan, wanted};
 use crate::case::{Method, RingDesign, RingPackCase};
-
-/// Film thickness where the gas model wants one and no film is solved \[m\].
-const NOMINAL_FILM: f64 = 2e-6;
 
 /// A ring without axial clearance.
 struct Clamped;
@@ -46,7 +44,7 @@ impl RingMotion for Clamped {
 ///
 /// # Errors
 /// Everything about the case that cannot be, with the place in the case.
-pub fn assemble(case: &RingPackCase, folder: &Path) -> Result<Pack, Vec<BuildError>> {
+pub fn assemble(case: &RingPackCase, files: &Files) -> Result<Pack, Vec<BuildError>> {
     let mut errors = Vec::new();
     let want =
         wanted(&case.outputs.results, case.rings.len(), case.models.oil_transport.typetag_name() != "off")
@@ -83,10 +81,16 @@ pub fn assemble(case: &RingPackCase, folder: &Path) -> Result<Pack, Vec<BuildErr
                 .help("between 0.006 deg and 90 deg"),
         );
     }
+    if case.outputs.seat.si() > 0.5 {
+        errors.push(
+            BuildError::at("outputs.seat", "a ring would be on both flanks at once")
+                .help("at most 0.5 of the clearance; 0.1 when it is left out"),
+        );
+    }
     let ctx = CylinderPressureCtx {
         kinematics: kinematics.as_ref(),
         piston_area: PI * geo.bore_radius * geo.bore_radius,
-        folder,
+        files,
     };
     let at = |place: &str| {
         let place = place.to_owned();
@@ -196,9 +200,11 @@ pub fn assemble(case: &RingPackCase, folder: &Path) -> Result<Pack, Vec<BuildErr
                     .is_constant()
                     .then(|| oil.viscosity(film_temperature.temperature(i, 0.0)));
                 let kind = motion.motion();
-                let nominal_film = NOMINAL_FILM;
+                let nominal_film = case.solver.limits.nominal_film.si();
+                let resists = films.iter().any(|f| f.resists());
                 rings.push(RingModel {
                     films,
+                    resists,
                     contact,
                     motion,
                     kind,
@@ -227,6 +233,12 @@ pub fn assemble(case: &RingPackCase, folder: &Path) -> Result<Pack, Vec<BuildErr
         }
     }
     let liner = liner_shape(case, kinematics.stroke(), spacing).map_err(|e| errors.push(e));
+    if let Ok((shape, pin)) = &liner
+        && gas.uses_end_gaps()
+    {
+        let spacings: Vec<f64> = rings.iter().map(|r| r.spacing).collect();
+        errors.extend(end_gap::closed(case, &geo, shape, *pin, &spacings, kinematics.stroke()));
+    }
     if !errors.is_empty() || rings.len() != n {
         return Err(errors);
     }
@@ -283,6 +295,7 @@ pub fn assemble(case: &RingPackCase, folder: &Path) -> Result<Pack, Vec<BuildErr
     let places = vec![gudgeon_core::geometry::RingPlace::default(); n];
     let mut pack = Pack {
         conv: case.conventions,
+        limits: (&case.solver.limits).into(),
         omega,
         kinematics,
         cylinder,
@@ -298,6 +311,7 @@ pub fn assemble(case: &RingPackCase, folder: &Path) -> Result<Pack, Vec<BuildErr
         layout,
         mass_scale: vec![1.0; gas_states],
         seats: vec![0.0; n],
+        seat_log: vec![SeatLog::default(); n],
         at: Instant {
             theta: 0.0,
             piston: Default::default(),

@@ -11,15 +11,19 @@ use gudgeon_numerics::ode::{
     StepView,
 };
 use gudgeon_numerics::orbit::{CycleMap, OrbitOptions, periodic_orbit};
+use gudgeon_numerics::panel::LOBATTO;
 use gudgeon_numerics::radau::Radau5;
 use gudgeon_numerics::rodas::{Formula, Rodas};
 
-use super::Found;
 use super::hold::Hold;
+use super::measure::{Measures, Peak};
 use super::oil::Ledger;
 use super::pack::{Base, Pack};
-use super::record::{Record, Totals};
-use crate::case::{IntegratorName, RingPackCase};
+use super::record::Totals;
+use super::rows::Rows;
+use super::watch::Watch;
+use super::{Found, NOT_PERIODIC, Recorded, results};
+use crate::case::{IntegratorName, Outputs, RingPackCase};
 use crate::run::RunError;
 
 /// The pack as an initial-value problem in crank angle.
@@ -76,7 +80,7 @@ impl OdeSystem for Problem<'_> {
         // Surfaces that touch carry by their roughness, beside which a film much thinner need not be known to its own size.
         for (i, k) in self.pack.layout.film.iter().enumerate() {
             if let Some(k) = *k {
-                atol[k] *= (self.pack.rings[i].contact.scale() / self.pack.at.places[i].h).max(1.0);
+                atol[k] *= self.pack.rings[i].contact.ease(self.pack.at.places[i].h);
             }
         }
     }
@@ -109,9 +113,6 @@ impl OdeSystem for Problem<'_> {
     }
 }
 
-/// Most steps of a cycle, some thirty times what a pack needs at the default tolerance: beyond it the case asks for something that cannot be followed, such as
-/// the contact of a ring without mass.
-const MOST_STEPS: u64 = 30_000;
 /// First step of a cycle \[rad\].
 const FIRST_STEP: f64 = 1e-3;
 /// Velocity that counts as one in the error norm, in clearances per radian: what matters of a velocity is the distance it covers.
@@ -138,6 +139,10 @@ struct Cycle<'a> {
     stats: Stats,
     q: Vec<f64>,
     full_accuracy: f64,
+    /// Longest step \[rad\]: none may jump over a pressure pulse.
+    longest_step: f64,
+    /// Most steps of a cycle.
+    most_steps: u64,
     failure: Option<IntegrateError>,
     /// Steps of a cycle at full accuracy, when known: the unit of cost.
     progress: &'a mut dyn FnMut(f64),
@@ -145,7 +150,7 @@ struct Cycle<'a> {
 }
 
 impl Cycle<'_> {
-    /// Integrates one cycle from `y`. With a record, the cycle is sampled at `step` \[rad\] and its closures measured.
+    /// Integrates one cycle from `y`; a sampler follows it.
     fn integrate(
         &mut self,
         y: &mut [f64],
@@ -154,9 +159,8 @@ impl Cycle<'_> {
     ) -> Result<(), IntegrateError> {
         let mut options = Options::new(rtol, &self.scale);
         options.absolute.clone_from(&self.absolute);
-        // No step may jump over a pressure pulse: 10 degrees at most.
-        options.h_max = 10f64.to_radians();
-        options.max_steps = MOST_STEPS;
+        options.h_max = self.longest_step;
+        options.max_steps = self.most_steps;
         if let Some(oil) = &self.pack.oil_pack {
             // A face takes up what the one before it left in earlier steps.
             let speed = 1.1 * 0.5 * self.pack.kinematics.stroke() * self.pack.omega;
@@ -191,7 +195,7 @@ impl Cycle<'_> {
             }
             if piece == 0
                 && let Some(s) = sampler.as_deref_mut()
-                && let Err(source) = s.sample(self.pack, span.0, y)
+                && let Err(source) = s.begin(self.pack, span.0, y)
             {
                 outcome = Err(IntegrateError::Eval { t: span.0, source });
                 break;
@@ -301,12 +305,12 @@ impl CycleMap for Cycle<'_> {
     }
 }
 
-/// Samples a cycle on a fixed grid and measures its closures step by step.
+/// Follows the recorded cycle step by step: measures it, closes its balances, and keeps the rows of its series.
 struct Sampler {
-    record: Record,
-    grid: Vec<f64>,
-    next: usize,
+    rows: Rows,
+    measures: Measures,
     y: Vec<f64>,
+    q: Vec<f64>,
     failure: Option<EvalError>,
     impulse: Vec<[f64; 2]>,
     work: Vec<[f64; 2]>,
@@ -314,24 +318,27 @@ struct Sampler {
     end: Vec<(f64, f64)>,
     /// Crank angles \[deg\] and the film on the liner there.
     liner: Vec<(u32, Vec<f64>)>,
+    watch: Watch,
 }
 
 impl Sampler {
-    fn new(pack: &Pack, step: f64) -> Self {
-        let period = pack.period();
-        let rows = (period / step).round().max(1.0) as usize;
+    fn new(pack: &mut Pack, outputs: &Outputs) -> Self {
         let n = pack.n_rings();
+        let mut measures = Measures::new(pack, LOBATTO, outputs.seat.si());
+        let (theta, value) = pack.cylinder.highest();
+        measures.cylinder = Peak { theta, value };
         Self {
-            record: Record::new(pack),
-            grid: (0..=rows).map(|k| period * k as f64 / rows as f64).collect(),
-            next: 0,
+            rows: Rows::new(pack, outputs.series_step.si()),
+            measures,
             y: vec![0.0; pack.layout.n],
+            q: vec![0.0; 2 * n + 1],
             failure: None,
             impulse: vec![[0.0; 2]; n],
             work: vec![[0.0; 2]; n],
             start: vec![(0.0, 0.0); n],
             end: vec![(0.0, 0.0); n],
             liner: Vec::new(),
+            watch: Watch::new(pack),
         }
     }
 
@@ -345,11 +352,9 @@ impl Sampler {
         }
     }
 
-    fn sample(&mut self, pack: &mut Pack, theta: f64, y: &[f64]) -> Result<(), EvalError> {
+    fn begin(&mut self, pack: &mut Pack, theta: f64, y: &[f64]) -> Result<(), EvalError> {
         pack.evaluate(theta, y)?;
-        film_peaks(pack)?;
-        self.record.push(theta, pack);
-        self.next += 1;
+        self.rows.start(pack, y);
         for (i, s) in self.start.iter_mut().enumerate() {
             *s = momentum(pack, i);
         }
@@ -357,7 +362,8 @@ impl Sampler {
     }
 
     fn step(&mut self, pack: &mut Pack, v: &dyn StepView) -> Flow {
-        match self.advance(pack, v) {
+        self.rows.step(pack, v);
+        match self.measure(pack, v) {
             Ok(()) => Flow::Continue,
             Err(e) => {
                 self.failure = Some(e);
@@ -366,48 +372,47 @@ impl Sampler {
         }
     }
 
-    fn advance(&mut self, pack: &mut Pack, v: &dyn StepView) -> Result<(), EvalError> {
-        let mut y = std::mem::take(&mut self.y);
-        let last = *self.grid.last().unwrap_or(&0.0);
-        let slack = 1e-9;
-        while self.next < self.grid.len() && self.grid[self.next] <= v.t1() + slack {
-            let t = self.grid[self.next].min(v.t1());
-            v.interpolate(t, &mut y);
-            pack.evaluate(t, &y)?;
-            film_peaks(pack)?;
-            self.record.push(self.grid[self.next], pack);
-            self.next += 1;
-        }
-        // Simpson's rule over the step for impulse and work of the forces on each ring.
-        if pack.plan.axial {
-            let dt = (v.t1() - v.t0()) / pack.omega / 6.0;
-            for (t, weight) in [(v.t0(), 1.0), (0.5 * (v.t0() + v.t1()), 4.0), (v.t1(), 1.0)] {
-                v.interpolate(t, &mut y);
-                pack.evaluate(t, &y)?;
-                for i in 0..pack.n_rings() {
-                    if pack.layout.axial[i].is_none() {
-                        continue;
-                    }
-                    let r = &pack.at.rings[i];
-                    let a = &r.axial;
-                    let velocity = pack.at.places[i].v;
-                    let parts = [a.gas, a.inertia, a.gravity, a.film, a.damping, r.reaction];
-                    let sum: f64 = parts.iter().sum();
-                    let magnitude: f64 = parts.iter().map(|p| p.abs()).sum();
-                    self.impulse[i][0] += weight * dt * sum;
-                    self.impulse[i][1] += weight * dt * magnitude;
-                    self.work[i][0] += weight * dt * sum * velocity;
-                    self.work[i][1] += weight * dt * parts.iter().map(|p| (p * velocity).abs()).sum::<f64>();
-                }
+    /// Samples the dense output of a step; at its ends and in its middle all forces, for Simpson's rule on impulse and work and on what limits did.
+    fn measure(&mut self, pack: &mut Pack, v: &dyn StepView) -> Result<(), EvalError> {
+        let (t0, t1) = (v.t0(), v.t1());
+        let last = self.measures.nodes().len() - 1;
+        for (k, x) in self.measures.nodes().iter().enumerate() {
+            let t = if k == last { t1 } else { t0 + x * (t1 - t0) };
+            v.interpolate(t, &mut self.y);
+            v.interpolate_quad(t, &mut self.q);
+            if (pack.plan.axial || pack.plan.film) && k.is_multiple_of(2) {
+                pack.evaluate(t, &self.y)?;
+                let weight = if 2 * k == last { 4.0 } else { 1.0 };
+                self.close(pack, weight * (t1 - t0) / pack.omega / 6.0);
+                self.watch.look(pack, weight * (t1 - t0) / 6.0);
+            } else {
+                pack.look(t, &self.y)?;
             }
-            if v.t1() >= last - slack {
-                for (i, e) in self.end.iter_mut().enumerate() {
-                    *e = momentum(pack, i);
-                }
-            }
+            self.measures.sample(k, pack, self.q[0]);
         }
-        self.y = y;
+        self.measures.step(pack, t0, t1);
+        for (i, e) in self.end.iter_mut().enumerate() {
+            *e = momentum(pack, i);
+        }
         Ok(())
+    }
+
+    /// Adds the forces of the instant over `dt` \[s\] to impulse and work.
+    fn close(&mut self, pack: &Pack, dt: f64) {
+        for i in 0..pack.n_rings() {
+            if pack.layout.axial[i].is_none() {
+                continue;
+            }
+            let (r, velocity) = (&pack.at.rings[i], pack.at.places[i].v);
+            let a = &r.axial;
+            let parts = [a.gas, a.inertia, a.gravity, a.film, a.damping, r.reaction];
+            let sum: f64 = parts.iter().sum();
+            let magnitude: f64 = parts.iter().map(|p| p.abs()).sum();
+            self.impulse[i][0] += dt * sum;
+            self.impulse[i][1] += dt * magnitude;
+            self.work[i][0] += dt * sum * velocity;
+            self.work[i][1] += dt * parts.iter().map(|p| (p * velocity).abs()).sum::<f64>();
+        }
     }
 
     fn balance(&self, pack: &Pack) -> (Option<f64>, Option<f64>) {
@@ -439,14 +444,29 @@ fn liner_table(pack: &Pack, films: Vec<(u32, Vec<f64>)>) -> Option<Series> {
     })
 }
 
-fn film_peaks(pack: &mut Pack) -> Result<(), EvalError> {
-    (0..pack.n_rings()).try_for_each(|i| pack.film_peak(i))
-}
-
 /// Momentum and kinetic energy of ring `i` relative to the piston.
 fn momentum(pack: &Pack, i: usize) -> (f64, f64) {
     let (m, v) = (pack.geo.rings[i].mass, pack.at.places[i].v);
     (m * v, 0.5 * m * v * v)
+}
+
+/// What is said of a cycle that does not close as it should.
+fn not_periodic(error: f64, wanted: f64, cycles: usize) -> Note {
+    let text = format!(
+        "not periodic within {wanted:.0e} after {cycles} cycles: the estimated error is {error:.1e}. Raise `solver.max_cycles`, or look for a mode that \
+         never settles (a ring that flutters)"
+    );
+    let failed = error.is_nan() || error > NOT_PERIODIC * wanted;
+    let note = if failed { Note::failure("not_periodic", text) } else { Note::caution("not_periodic", text) };
+    note.amount("estimated_error", error, "1").amount("wanted", wanted, "1")
+}
+
+/// What stopped an integration.
+fn stopped(e: IntegrateError) -> RunError {
+    match e {
+        IntegrateError::TooManySteps { t, max } => RunError::Steps { theta_deg: t.to_degrees(), max },
+        other => RunError::Integrate(other),
+    }
 }
 
 /// Solves one start.
@@ -501,6 +521,7 @@ pub(super) fn run(
     for (y, film) in y[dim..].iter_mut().zip(pack.oil_pack.iter().flat_map(|o| &o.film)) {
         *y = film / LINER_SCALE;
     }
+    let cycle_speed = pack.omega;
     let mut cycle = Cycle {
         pack,
         method,
@@ -513,6 +534,8 @@ pub(super) fn run(
         stats: Stats::default(),
         q: vec![0.0; quads],
         full_accuracy: s.tolerance.si(),
+        longest_step: s.limits.longest_step.si(),
+        most_steps: s.limits.steps_at(s.tolerance.si(), cycle_speed),
         failure: None,
         progress,
         done: 0.0,
@@ -529,13 +552,13 @@ pub(super) fn run(
         Ok(r) => r,
         Err(source) => {
             let theta_deg = cycle.pack.at.theta.to_degrees();
-            return Err(cycle.failure.map_or(RunError::Eval { theta_deg, source }, RunError::Integrate));
+            return Err(cycle.failure.map_or(RunError::Eval { theta_deg, source }, stopped));
         }
     };
     let seconds = begin.elapsed().as_secs_f64();
     let work = cycle.stats;
     // The recorded cycle, at full accuracy.
-    let mut sampler = Sampler::new(cycle.pack, case.outputs.series_step.si());
+    let mut sampler = Sampler::new(cycle.pack, &case.outputs);
     let gas: Vec<f64> = y[..cycle.pack.layout.gas].to_vec();
     cycle.begin(&y);
     let oil_before = cycle.pack.oil_pack.as_ref().map_or(0.0, |o| o.total(&y[..dim]));
@@ -543,7 +566,7 @@ pub(super) fn run(
         // What the crankcase put on the liner before the first step was counted with the rest.
         o.ledger = Ledger::default();
     }
-    cycle.integrate(&mut y[..dim], s.tolerance.si(), Some(&mut sampler))?;
+    cycle.integrate(&mut y[..dim], s.tolerance.si(), Some(&mut sampler)).map_err(stopped)?;
     let oil_mass = cycle.pack.oil_pack.as_ref().map(|o| {
         let l = &o.ledger;
         let stored = o.total(&y[..dim]) - oil_before;
@@ -569,28 +592,11 @@ pub(super) fn run(
         },
         periodicity_error: report.error_estimate,
         oil: pack.oil_pack.as_ref().map_or_else(Ledger::default, |o| o.ledger),
-        duration: None,
     };
-    let mut notes = Vec::new();
+    sampler.watch.carried(pack)?;
+    let mut notes = sampler.watch.notes(pack);
     if report.period == 1 && !report.converged {
-        notes.push(Note::caution(
-            "not_periodic",
-            format!(
-                "not periodic within {:.0e} after {} cycles: the estimated error is {:.1e}",
-                s.periodicity.si(),
-                report.cycles,
-                report.error_estimate
-            ),
-        ));
-    }
-    if report.error_estimate > 0.5 && !discrete {
-        return Err(RunError::NotPeriodic {
-            cycles: report.cycles as u32,
-            error: report.error_estimate,
-            wanted: s.periodicity.si(),
-            advice: "Raise `solver.max_cycles`, or look for a mode that never settles (a ring that flutters)"
-                .into(),
-        });
+        notes.push(not_periodic(report.error_estimate, options.tolerance, report.cycles));
     }
     let counters = [
         ("steps", work.steps),
@@ -602,9 +608,11 @@ pub(super) fn run(
     ];
     Ok(Found {
         liner: liner_table(pack, sampler.liner),
-        record: sampler.record,
-        totals,
-        period: if report.converged { report.period } else { 0 },
+        record: Recorded::Rows(sampler.rows),
+        retreats: sampler.watch.events(),
+        cycle: results::Cycle { totals, measures: sampler.measures },
+        // Decisions that do not repeat are told by the caller, for every start.
+        period: if report.converged || !discrete { report.period } else { 0 },
         cycles: report.cycle_equivalents,
         counters: counters.into_iter().map(|(k, v)| (k.to_owned(), v)).collect(),
         notes,
