@@ -273,7 +273,8 @@ fn a_bearing_that_runs_empty_is_no_bearing() {
         .replace("eccentricity = 0.7", "eccentricity = 0.3")
         .replace("p_supply = \"0 bar\"", "supply = \"sides\"");
     let e = run(&keys).unwrap_err();
-    assert!(e.contains("runs empty"), "{e}");
+    // The solver may find that nothing tells how much oil is left, or a film that carries nothing.
+    assert!(e.contains("no steady film") || e.contains("runs empty"), "{e}");
     let fed = keys.replace("p_side = \"0 bar\"", "p_side = \"1 bar\"");
     assert!(number(&run(&fed).unwrap(), "load") > 100.0);
 }
