@@ -692,13 +692,7 @@ impl Pack {
         }
         // The load of the film falls with v and what it has to carry rises: one zero, between standing still and `free`.
         let (mut lo, mut hi) = if free < 0.0 { (free, 0.0) } else { (0.0, free) };
-        // The velocity of the last evaluation, a small step away, is a good start.
-        let last = self.at.rings[i].hdot;
-        let mut v = if last > lo && last < hi {
-            last
-        } else {
-            free.clamp(-self.limits.radial_speed, self.limits.radial_speed)
-        };
+        let mut v = free.clamp(-self.limits.radial_speed, self.limits.radial_speed);
         for _ in 0..60 {
             let (load, rate) = self.film_load(i, v)?;
             let w = needed + drag * v;
