@@ -158,6 +158,11 @@ pub fn certain(v: f64, uncertainty: Option<f64>) -> String {
     let Some(u) = uncertainty.filter(|u| *u > 0.0 && u.is_finite()) else { return number(v) };
     // The place of the first digit of the uncertainty is the last one printed.
     let place = u.log10().floor() as i32;
+    let size = v.abs().max(u).log10().floor() as i32;
+    if size < -3 {
+        let (scale, decimals) = (10f64.powi(size), (size - place).clamp(0, 9) as usize);
+        return format!("({:.decimals$} ± {:.decimals$})e{size}", v / scale, u / scale);
+    }
     if (-9..7).contains(&place) {
         let decimals = (-place).max(0) as usize;
         return format!("{v:.decimals$} ± {u:.decimals$}");
@@ -236,6 +241,7 @@ mod tests {
     fn uncertain_digits_are_not_printed() {
         assert_eq!(certain(83.412_34, Some(0.021)), "83.41 ± 0.02");
         assert_eq!(certain(1883.2, Some(600.0)), "1883 ± 600");
+        assert_eq!(certain(5.357e-5, Some(4.9e-7)), "(5.36 ± 0.05)e-5");
         assert_eq!(certain(83.412_34, None), "83.412");
         assert_eq!(certain(83.412_34, Some(1e-12)), "83.412 ± 1e-12");
     }

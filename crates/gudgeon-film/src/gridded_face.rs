@@ -32,7 +32,7 @@ pub struct GriddedFace {
     /// Nodes at which the shape of the face is sampled, from 11 to 200. A face given by a table keeps its own nodes; one
     /// with fewer than `points` has its panels divided equally until there are at least so many.
     #[serde(default = "eleven")]
-    #[schemars(range(min = 11, max = 200))]
+    #[schemars(range(min = 11, max = 200), extend("x-refine" = { "group": "film grid", "factor": 2 }))]
     pub points: usize,
 }
 

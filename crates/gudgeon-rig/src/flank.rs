@@ -43,6 +43,7 @@ pub struct FlankRig {
     pub speed: PosVelocity,
     /// Relative error of a step of the integration.
     #[serde(default = "usual")]
+    #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1 }))]
     pub tolerance: PosRatio,
     /// The model.
     pub flank_damping: Box<dyn FlankDampingSpec>,

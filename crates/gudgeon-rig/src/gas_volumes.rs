@@ -42,6 +42,7 @@ pub struct GasVolumesRig {
     pub run: GasRun,
     /// Relative error of a step of the integration, and of the periodic state.
     #[serde(default = "usual")]
+    #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1 }))]
     pub tolerance: PosRatio,
 }
 

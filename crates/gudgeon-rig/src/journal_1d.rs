@@ -34,7 +34,7 @@ pub struct Journal1dRig {
     pub p_cav: Pressure,
     /// Number of panels that the circumference is divided into.
     #[serde(default = "panels")]
-    #[schemars(range(min = 1, max = 100_000))]
+    #[schemars(range(min = 1, max = 100_000), extend("x-refine" = { "group": "film grid", "factor": 2 }))]
     pub panels: u32,
     /// The model.
     pub film_1d: Box<dyn Film1dSpec>,

@@ -43,11 +43,11 @@ pub struct Journal2dRig {
     pub p_cav: Pressure,
     /// Number of intervals between nodes round the journal.
     #[serde(default = "around")]
-    #[schemars(range(min = 3, max = 2000))]
+    #[schemars(range(min = 3, max = 2000), extend("x-refine" = { "group": "film grid", "factor": 2 }))]
     pub intervals_x: u32,
     /// Number of intervals across. With an even number, one half of the film is solved.
     #[serde(default = "across")]
-    #[schemars(range(min = 2, max = 2000))]
+    #[schemars(range(min = 2, max = 2000), extend("x-refine" = { "group": "film grid", "factor": 2 }))]
     pub intervals_y: u32,
     /// Flow and shear factors of rough surfaces; the bearing is the body, the journal the liner.
     #[serde(default = "smooth")]

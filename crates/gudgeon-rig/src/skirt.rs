@@ -55,11 +55,11 @@ pub struct SkirtRig {
     pub pin: Option<Length>,
     /// Number of intervals between nodes along the height.
     #[serde(default = "along")]
-    #[schemars(range(min = 2, max = 2000))]
+    #[schemars(range(min = 2, max = 2000), extend("x-refine" = { "group": "film grid", "factor": 2 }))]
     pub intervals_x: u32,
     /// Number of intervals along the circumference. With an even number, one half of the film is solved.
     #[serde(default = "across")]
-    #[schemars(range(min = 2, max = 2000))]
+    #[schemars(range(min = 2, max = 2000), extend("x-refine" = { "group": "film grid", "factor": 2 }))]
     pub intervals_y: u32,
     /// How much closer nodes lie at half the height than in the mean, 0 for equal spacings, at most 0.5: `x = L/2 (1 + t (1 - g + g t²))`
     /// with `t` equally spaced from -1 to 1.

@@ -21,7 +21,7 @@ pub struct SliderRig {
     pub profile: Profile,
     /// Number of panels that the line is divided into, about.
     #[serde(default = "panels")]
-    #[schemars(range(min = 1, max = 100_000))]
+    #[schemars(range(min = 1, max = 100_000), extend("x-refine" = { "group": "film grid", "factor": 2 }))]
     pub panels: u32,
     /// Velocity of the plane surface, along `x` positive.
     pub speed: Velocity,

@@ -50,11 +50,11 @@ pub struct Slider2dRig {
     pub inlet_fill: Ratio<Fraction>,
     /// Number of intervals between nodes along the motion.
     #[serde(default = "sixty_four")]
-    #[schemars(range(min = 2, max = 2000))]
+    #[schemars(range(min = 2, max = 2000), extend("x-refine" = { "group": "film grid", "factor": 2 }))]
     pub intervals_x: u32,
     /// Number of intervals across; as many as along when absent. With an even number, one half of the film is solved.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 2, max = 2000))]
+    #[schemars(range(min = 2, max = 2000), extend("x-refine" = { "group": "film grid", "factor": 2 }))]
     pub intervals_y: Option<u32>,
     /// What is known of the gap between the nodes.
     #[serde(default)]

@@ -25,7 +25,7 @@ pub struct SqueezeFilmRig {
     pub motion: Motion,
     /// Number of panels that the strip is divided into, about.
     #[serde(default = "panels")]
-    #[schemars(range(min = 1, max = 100_000))]
+    #[schemars(range(min = 1, max = 100_000), extend("x-refine" = { "group": "film grid", "factor": 2 }))]
     pub panels: u32,
     /// Absolute pressure at both ends.
     pub p_ends: Pressure,

@@ -6,6 +6,7 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use gudgeon_core::file::Files;
 use gudgeon_sim::load::{MOST_MISTAKES, Source};
 use gudgeon_sim::scene;
 
@@ -132,7 +133,7 @@ fn cases() -> Vec<(PathBuf, String)> {
 fn read(name: &str, text: String, overrides: &[String], slowest: &mut (Duration, String)) -> bool {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases");
     let begin = Instant::now();
-    let outcome = scene::load(Source { name: name.to_owned(), text, folder }, overrides);
+    let outcome = scene::load(Source { name: name.to_owned(), text, files: Files::of(&folder) }, overrides);
     if let Err(report) = &outcome {
         assert!(!report.diagnostics.is_empty() && report.diagnostics.len() <= MOST_MISTAKES, "{name}");
         let told = report.render(false);

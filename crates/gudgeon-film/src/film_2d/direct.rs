@@ -23,7 +23,7 @@ pub struct Direct {
     pub flux: Flux,
     /// Largest imbalance of a control volume over the largest flow between two or into one, from 1e-14 to 0.1.
     #[serde(default = "super::tolerance")]
-    #[schemars(range(min = 1e-14, max = 0.1))]
+    #[schemars(range(min = 1e-14, max = 0.1), extend("x-refine" = { "group": "film tolerance", "factor": 0.1 }))]
     pub tolerance: f64,
 }
 

@@ -300,6 +300,7 @@ pub struct Conventions {
 #[serde(deny_unknown_fields, default)]
 pub struct Range {
     /// Highest order of forced vibration.
+    #[schemars(extend("x-refine" = { "group": "orders", "factor": 2 }))]
     pub orders: PosRatio,
     /// Highest order of the interference diagram.
     pub interference_orders: PosRatio,

@@ -30,6 +30,7 @@ use crate::steady::Steady;
 pub struct HarmonicBalance {
     /// Change of the torques at which it ends, by the largest torque.
     #[serde(default = "tolerance")]
+    #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1 }))]
     pub tolerance: Ratio<Positive>,
     /// Most rounds.
     #[serde(default = "rounds")]

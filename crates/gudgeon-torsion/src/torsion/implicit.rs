@@ -17,6 +17,7 @@ use crate::dynamics::{Dynamics, record};
 pub struct Implicit {
     /// Relative error per step, against the largest speed and the largest twist.
     #[serde(default = "tolerance")]
+    #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1 }))]
     pub tolerance: Ratio<Positive>,
 }
 
