@@ -45,6 +45,7 @@ fn mirror(face: &FaceProfile) -> FaceProfile {
         FaceProfile::Parabola { length, curvature, apex } => {
             FaceProfile::Parabola { length: *length, curvature: *curvature, apex: length - apex }
         }
+        FaceProfile::Taper { .. } => panic!("a taper turned over is no taper"),
         FaceProfile::Table { length, drops } => {
             FaceProfile::Table { length: *length, drops: drops.iter().rev().copied().collect() }
         }
