@@ -1,0 +1,60 @@
+//! A short campaign, and every case that went wrong once.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use gudgeon_fuzz::campaign::{self, Plan};
+use gudgeon_fuzz::case::command;
+use gudgeon_fuzz::child::Executor;
+use gudgeon_fuzz::class::{Class, classify};
+use gudgeon_fuzz::corpus::{Corpus, shipped};
+use gudgeon_fuzz::execute::Job;
+use gudgeon_fuzz::regression::read;
+use gudgeon_fuzz::tell;
+
+fn program() -> PathBuf {
+    PathBuf::from(env!("CARGO_BIN_EXE_gudgeon-fuzz"))
+}
+
+#[test]
+fn a_short_campaign_ends_without_a_forbidden_class() {
+    let corpus = Corpus::read(&shipped()).unwrap_or_else(|e| panic!("{e}"));
+    // Ten of each scene.
+    let indices = (0..60).collect();
+    let plan = Plan { seed: 1, indices, wild: 0.3, seconds: f64::INFINITY, jobs: 2, program: program() };
+    let records = campaign::run(&plan, &corpus, &|_, _| {}).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(records.len(), 60);
+    let forbidden: Vec<_> = records.iter().filter(|r| r.class.forbidden()).collect();
+    assert!(forbidden.is_empty(), "{}", tell::text(&records));
+    // A campaign that refuses everything shows nothing.
+    let run = records.iter().filter(|r| r.class.honest()).count();
+    assert!(run >= 15, "only {run} of 60 cases have results");
+}
+
+#[test]
+fn regressions_come_out_as_they_should() {
+    let all =
+        read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("regressions")).unwrap_or_else(|e| panic!("{e}"));
+    assert!(!all.is_empty());
+    let mut executor = Executor::new(program(), shipped());
+    let mut wrong = Vec::new();
+    for r in all {
+        let job = Job { base: r.case.clone(), set: r.set.clone(), refine: r.refine, twice: r.twice };
+        // One that hung is given a hundred times what a case of its scene takes, as in a campaign; none here needs more.
+        let outcome =
+            executor.run(&job, Duration::from_secs(60)).unwrap_or_else(|e| panic!("{}: {e}", r.name));
+        let (class, detail) = classify(&outcome);
+        assert!(!r.why.is_empty() && !r.expect.iter().any(|c| Class::forbidden(*c)), "{}", r.name);
+        match (r.expect.contains(&class), r.known) {
+            (true, None) => {}
+            (true, Some(known)) => eprintln!("{}: mended, delete `known = {:?}`", r.name, known.name()),
+            (false, Some(known)) if known == class => {
+                eprintln!("{}: still {}: {detail}", r.name, known.name())
+            }
+            (false, _) => {
+                wrong.push(format!("{}: {}: {detail}\n  {}", r.name, class.name(), command(&r.case, &r.set)))
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
