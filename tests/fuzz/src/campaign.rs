@@ -159,7 +159,8 @@ fn work(
 /// What a child is asked to do with a case.
 #[must_use]
 pub fn job(case: &Case) -> Job {
-    Job { base: case.base.clone(), set: case.set(), refine: case.refine, twice: case.twice }
+    let coarse = case.shortened.iter().map(|c| c.path.clone()).collect();
+    Job { base: case.base.clone(), set: case.set(), refine: case.refine, coarse, twice: case.twice }
 }
 
 /// A case with its class.

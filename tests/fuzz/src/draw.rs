@@ -18,20 +18,20 @@ const REFINED: f64 = 0.05;
 /// Share of all cases that are run twice as they stand.
 const TWICE: f64 = 0.02;
 /// Share of changes of a wild case that are wild, besides the one that makes it so.
-const ALSO_WILD: f64 = 0.3;
+const ALSO_WILD: f64 = 0.15;
 
 /// How often each sort of value is chosen, where the case has it: plausible, wild.
 const fn weight(what: &What, wild: bool) -> f64 {
     let (plausible, absurd) = match what {
-        What::Number { .. } => (0.45, 0.45),
-        What::Model { .. } => (0.22, 0.1),
-        What::Word { .. } => (0.12, 0.05),
+        What::Number { .. } => (0.45, 0.65),
+        What::Model { .. } => (0.22, 0.05),
+        What::Word { .. } => (0.12, 0.02),
         What::Whole(_) => (0.06, 0.15),
         What::Switch(_) => (0.05, 0.02),
-        What::List(_) => (0.04, 0.1),
+        What::List(_) => (0.04, 0.05),
         What::Results => (0.03, 0.03),
         What::Table { .. } => (0.03, 0.02),
-        What::Text => (0.0, 0.08),
+        What::Text => (0.0, 0.03),
         What::Part { .. } => (1.0, 1.0),
     };
     if wild { absurd } else { plausible }

@@ -21,6 +21,8 @@ pub struct Job {
     pub set: Vec<String>,
     /// Whether to run it again one level finer.
     pub refine: bool,
+    /// Paths that are not refined: what shortens a case makes it coarse.
+    pub coarse: Vec<String>,
     /// Whether to run it again as it stands.
     pub twice: bool,
 }
@@ -141,7 +143,7 @@ fn attempt(folder: &Path, job: &Job) -> Outcome {
         };
     }
     if job.refine
-        && let Some(finer) = one_level_finer(&checked)
+        && let Some(finer) = one_level_finer(&checked, &job.coarse)
     {
         o.moved = moved(&result, &finer);
     }
@@ -187,8 +189,9 @@ fn judge(checked: &Checked, r: &RunResult, o: &mut Outcome) {
 }
 
 /// The case with all of its numerical settings refined by one level; none where it has none, or where that cannot be run.
-fn one_level_finer(c: &Checked) -> Option<RunResult> {
-    let set: Vec<String> = c.case.settings().iter().map(|s| s.at(1)).collect();
+fn one_level_finer(c: &Checked, coarse: &[String]) -> Option<RunResult> {
+    let settings = c.case.settings();
+    let set: Vec<String> = settings.iter().filter(|s| !coarse.contains(&s.path)).map(|s| s.at(1)).collect();
     if set.is_empty() {
         return None;
     }

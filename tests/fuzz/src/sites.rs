@@ -167,7 +167,7 @@ impl<'a> Walk<'a> {
         for (key, field) in properties {
             let path = join(path, key);
             match table.get(key) {
-                Some(v) if !(field.get("const").is_some()) => self.value(field, v, &path, out),
+                Some(v) if field.get("const").is_none() => self.value(field, v, &path, out),
                 Some(_) => {}
                 // An optional model that is not there may be.
                 None => {

@@ -39,7 +39,13 @@ fn regressions_come_out_as_they_should() {
     let mut executor = Executor::new(program(), shipped());
     let mut wrong = Vec::new();
     for r in all {
-        let job = Job { base: r.case.clone(), set: r.set.clone(), refine: r.refine, twice: r.twice };
+        let job = Job {
+            base: r.case.clone(),
+            set: r.set.clone(),
+            refine: r.refine,
+            coarse: Vec::new(),
+            twice: r.twice,
+        };
         // One that hung is given a hundred times what a case of its scene takes, as in a campaign; none here needs more.
         let outcome =
             executor.run(&job, Duration::from_secs(60)).unwrap_or_else(|e| panic!("{}: {e}", r.name));

@@ -97,7 +97,7 @@ impl Draw<'_> {
     }
 
     pub(super) fn wild_value(&self, rng: &mut Rng, site: &Site) -> Option<New> {
-        if rng.f64() < 0.15 {
+        if rng.f64() < 0.06 {
             return Some(New::text(*rng.choice(&WRONG)?));
         }
         match &site.what {
