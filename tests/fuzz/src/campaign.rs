@@ -55,7 +55,7 @@ pub struct Record {
 /// A case takes too long beyond this many times the median of its scene.
 const TIMES: f64 = 100.0;
 /// No case takes too long below this \[s\]: other programs run on the machine too.
-const PATIENCE: f64 = 10.0;
+const PATIENCE: f64 = 30.0;
 /// Until so many plausible cases of a scene have ended, nothing is known about its median.
 const KNOWN: usize = 10;
 /// Limit until then \[s\].
