@@ -69,10 +69,16 @@ const EDITS: &[Edit] = edits! {
     "unit of another dimension": "bore = \"100 mm\"" => "bore = \"100 bar\"", at "100 bar": "engine.bore: `bar` is not a unit of a length", "`bar` is a unit of a pressure";
     "unit in capitals": "bore = \"100 mm\"" => "bore = \"100 MM\"", at "100 MM": "engine.bore: `MM` is not a unit", "did you mean `mm`?";
     "unit nobody knows": "speed = \"2000 rpm\"" => "speed = \"2000 furlongs\"", at "furlongs": "engine.speed: `furlongs` is not a unit of a rotational speed", "`rpm`";
-    "Fahrenheit": "temperature = \"220 degC\"" => "temperature = \"430 degF\"", at "degF": "`degF` is not a unit of a temperature", "`degC`";
+    "Fahrenheit": "temperature = \"220 degC\"" => "temperature = \"430 degF\"", at "degF": "`degF` is not a unit of a temperature", "(F - 32)/1.8";
     "no number": "bore = \"100 mm\"" => "bore = \"wide\"", at "wide": "engine.bore: `wide` does not start with a number", "write a length like";
     "empty text": "bore = \"100 mm\"" => "bore = \"\"", at "bore = \"\"": "engine.bore: `` does not start with a number", "write a length like";
-    "decimal comma": "mass = \"20 g\"" => "mass = \"20,5 g\"", at "20,5": "rings.0.mass: `,5 g` is not a unit", "`kg`";
+    "decimal comma": "mass = \"20 g\"" => "mass = \"20,5 g\"", at "20,5": "rings.0.mass: `20,5 g` is not a number with a unit", "the decimal mark is a point, minus a hyphen: `\"20.5 g\"`";
+    "decimal comma without quotes": "gamma = 1.4" => "gamma = 1,4", at "1,4": "", "the decimal mark is a point: `gamma = 1.4`";
+    "decimal comma with a unit, without quotes": "mass = \"20 g\"" => "mass = 20,5 g", at "20,5": "", "`mass = \"20.5 g\"`";
+    "minus of a typesetter": "pin_to_ring1 = \"50 mm\"" => "pin_to_ring1 = \"−50 mm\"", at "−50": "piston.pin_to_ring1: `−50 mm` is not a number with a unit", "`\"-50 mm\"`";
+    "unit written out": "bore = \"100 mm\"" => "bore = \"100 millimetres\"", at "100 milli": "engine.bore: `millimetres` is not a unit of a length", "did you mean `mm`?";
+    "unit with a letter too many": "crankcase_pressure = \"1 bar\"" => "crankcase_pressure = \"1 barr\"", at "barr": "gas.crankcase_pressure: `barr` is not a unit", "did you mean `bar`?";
+    "number in quotes": "eta_beta_sigma = 0.05" => "eta_beta_sigma = \"x\"", at "eta_beta": "models.contact.eta_beta_sigma", "";
     "two numbers": "mass = \"20 g\"" => "mass = \"20 25 g\"", at "20 25": "rings.0.mass: `25 g` is not a unit", "`g`";
     "negative length": "bore = \"100 mm\"" => "bore = \"-100 mm\"", at "-100 mm": "engine.bore: `-100 mm` must be greater than zero", "";
     "zero speed": "speed = \"2000 rpm\"" => "speed = 0", at "speed = 0": "engine.speed: `0` must be greater than zero", "";
@@ -86,8 +92,9 @@ const EDITS: &[Edit] = edits! {
     "overflow": "stroke = \"110 mm\"" => "stroke = \"1e999 mm\"", at "1e999": "engine.stroke: `1e999 mm` must be finite", "";
     "fractional count": "cylinders = 4" => "cylinders = 4.5", at "4.5": "engine.cylinders: a whole number is wanted", "";
     "negative count": "cylinders = 4" => "cylinders = -4", at "-4": "engine.cylinders: `-4` must be", "";
-    "huge count": "cylinders = 4" => "cylinders = 99999999999", at "99999999999": "engine.cylinders", "";
-    "count as text": "cylinders = 4" => "cylinders = \"4\"", at "cylinders": "engine.cylinders: a whole number is wanted here, not a text", "";
+    "huge count": "cylinders = 4" => "cylinders = 99999999999", at "99999999999": "engine.cylinders: `99999999999` must be at most 1000", "";
+    "no cylinder": "cylinders = 4" => "cylinders = 0", at "cylinders = 0": "engine.cylinders: `0` must be at least 1", "";
+    "count as text": "cylinders = 4" => "cylinders = \"4\"", at "cylinders": "engine.cylinders: a whole number is wanted here, not a text", "write it without quotes: `4`";
 
     "missing key": "bore = \"100 mm\"\n" => "", at "[engine]": "engine: missing key `bore`", "Cylinder bore";
     "missing keys": "height = \"2.5 mm\"\nwidth = \"4 mm\"\n" => "", at "[[rings]]": "rings.0: missing keys `height`, `width`", "Axial thickness";
@@ -121,6 +128,7 @@ const EDITS: &[Edit] = edits! {
     "land wider than the bore": "diameter = \"99.5 mm\"" => "diameter = \"105 mm\"", at "105 mm": "piston.lands.1", "";
     "face longer than the ring": "length = \"2.2 mm\"" => "length = \"22 mm\"", at "22 mm": "rings.0.face.length: a face of 22", "";
     "ring thicker than its groove is deep": "width = \"4 mm\"" => "width = \"40 mm\"", at "root_diameter": "rings.0.groove.root_diameter: a ring 40", "";
+    "end gap that closes hot": "cold_gap = \"0.4 mm\"" => "cold_gap = \"0.2 mm\"", at "cold_gap": "rings.1.cold_gap: the end gap of ring 2 closes when hot: 0.2000 mm cold", "a larger gap";
     "more lands than rings": "[[liner.distortion]]\nposition = \"60 mm\"" => "[[piston.lands]]\nclearance = \"1 mm\"\ntemperature = 400\n[[liner.distortion]]\nposition = \"60 mm\"", at "[[piston.lands]]": "piston.lands: there are 2 rings but 3 lands", "one `[[piston.lands]]`";
     "both gaps": "cold_gap = \"0.4 mm\"" => "cold_gap = \"0.4 mm\"\ngap = \"0.3 mm\"", at "gap = \"0.3 mm\"": "rings.1.gap: both `gap` and `cold_gap` are given", "keep one";
     "cold gap without temperature": "cold_gap = \"0.4 mm\"\ntemperature = \"150 degC\"" => "cold_gap = \"0.4 mm\"", at "cold_gap": "rings.1.cold_gap", "";
@@ -161,6 +169,31 @@ const ARGUMENTS: &[(&str, &str, &str)] = &[
     ("models.gas_flw.model=narrow_channel", "unknown key `gas_flw`", "did you mean `gas_flow`?"),
     ("solver.method=fast", "`fast` is not a valid word", "`as_published`"),
     ("engine=1", "engine: a table is wanted", ""),
+    ("rings=[]", "rings: a ring pack needs at least one ring", "`[[rings]]`"),
+    ("rings=[{ mass = \"1 g\" }]", "rings.0: missing keys", ""),
+    ("rings.0.face={ shape = \"parabola\" }", "rings.0.face.shape: a `parabola` needs its `drop`", ""),
+    ("rings.1.face.drops=[\"1 um\"]", "rings.1.face.drops: a table needs at least two drops", ""),
+    ("rings.1.face.drops=[\"1 um\", \"-2 um\"]", "rings.1.face.drops.1: a drop is measured away", ""),
+    (
+        "liner.distortion=[{ position = \"0 mm\", diametral = \"0 mm\" }]",
+        "liner.distortion: a distortion table needs at least two",
+        "",
+    ),
+    (
+        "piston.lands=[{ clearance = \"1 mm\", temperature = 400 }]",
+        "piston.lands: there are 2 rings but 1 lands",
+        "one `[[piston.lands]]`",
+    ),
+    ("models.oil={ model = \"vogel_grade\", table = \"zottin1992\" }", "models.oil: missing key `grade`", ""),
+    ("models={}", "models: missing keys", ""),
+    ("solver.max_cycles=99999999999", "solver.max_cycles: `99999999999` must be at most 100000", ""),
+    ("solver.max_cycles=\"4\"", "solver.max_cycles: a whole number is wanted here, not a text", "`4`"),
+    ("rings.1.cold_gap=0,2 mm", "`0,2 mm` is not a number with a unit", "`\"0.2 mm\"`"),
+    (
+        "rings.1.cold_gap=200 \u{3bc}m",
+        "rings.1.cold_gap: the end gap of ring 2 closes when hot: 0.2000 mm cold",
+        "a larger gap",
+    ),
     ("rings.0.groove.height=2.4 mm", "axial clearance of -0.1", "higher groove"),
 ];
 

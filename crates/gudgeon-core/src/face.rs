@@ -74,6 +74,13 @@ impl Face {
                 let drop =
                     self.drop.ok_or_else(|| BuildError::at("shape", "a `parabola` needs its `drop`"))?.si();
                 let half = length / 2.0;
+                if self.offset.si().abs() > half {
+                    let what = format!(
+                        "the crown would stand beside the face: from its middle to its edge there are {} mm",
+                        1e3 * half
+                    );
+                    return Err(BuildError::at("offset", what));
+                }
                 Ok(FaceProfile::Parabola {
                     length,
                     curvature: drop / (half * half),

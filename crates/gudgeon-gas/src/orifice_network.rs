@@ -29,6 +29,8 @@ use crate::pack::{Elimination, FilmHeight, Openings, Pack, Passages, RingPassage
 /// half directly. A drained groove has no volume of its own: its upper-flank path ends in the land below and there is no lower one.
 /// A sealed ring has no flank paths, and its whole gap is direct.
 ///
+/// `s` is kept within 0 and `c`, and `A_gap` above zero, unless `bounded` is `false`.
+///
 /// Gas temperatures are those of the walls (isothermal volumes); the flow in an orifice is adiabatic.
 ///
 /// Source: zottin1992 (areas and network), furuhama1961 (orifices between rings, discharge coefficient).
@@ -53,6 +55,10 @@ pub struct OrificeNetwork {
     /// the moment of lift-off, as published, which makes the flow discontinuous there.
     #[serde(default = "default_fade")]
     pub chamfer_fade: Ratio<Fraction>,
+    /// Whether an opening is at least zero. The published program takes lifts and gaps as they come (`false`): a ring at rest on its upper
+    /// flank, whose clearance shrinks as the liner narrows, then leaves a little less than nothing there until it moves again.
+    #[serde(default = "yes")]
+    pub bounded: bool,
     /// Whether spaces behind rings that fill in less than `eliminate_below` are left out of the integration.
     #[serde(default)]
     pub eliminate: Elimination,
@@ -63,6 +69,9 @@ pub struct OrificeNetwork {
     pub eliminate_below: PosTime,
 }
 
+const fn yes() -> bool {
+    true
+}
 fn default_split() -> Ratio<Fraction> {
     quantity(0.5)
 }
@@ -83,6 +92,7 @@ impl Default for OrificeNetwork {
             film_height: FilmHeight::default(),
             nominal_film: default_film(),
             chamfer_fade: default_fade(),
+            bounded: true,
             eliminate: Elimination::default(),
             eliminate_below: crate::pack::ten_nanoseconds(),
         }
@@ -101,14 +111,15 @@ impl OrificeNetwork {
     fn pack(&self, pack: &PackGeometry) -> Result<Pack<Areas>, BuildError> {
         let film = nominal(self.film_height, self.nominal_film);
         let eliminate = self.eliminate.below(self.eliminate_below);
-        Pack::new(
+        let built = Pack::new(
             Areas { split: self.gap_split.si() },
             pack,
             &self.orifice,
             film,
             self.chamfer_fade.si(),
             eliminate,
-        )
+        )?;
+        Ok(if self.bounded { built } else { built.unbounded() })
     }
 }
 

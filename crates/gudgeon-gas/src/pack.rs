@@ -54,9 +54,9 @@ pub(crate) struct Openings {
     pub h: f64,
     /// Liner radius \[m\].
     pub liner_radius: f64,
-    /// Axial distance from the lower groove flank \[m\], not negative.
+    /// Axial distance from the lower groove flank \[m\], not negative unless the pack is [`Pack::unbounded`].
     pub lower: f64,
-    /// Axial distance from the upper groove flank \[m\], not negative.
+    /// Axial distance from the upper groove flank \[m\], likewise.
     pub upper: f64,
     /// Position in the groove, 0 lower flank, 1 upper flank.
     pub e: f64,
@@ -113,6 +113,8 @@ pub(crate) struct Pack<M> {
     /// `None`: instantaneous.
     nominal_film: Option<f64>,
     chamfer_fade: f64,
+    /// Whether openings end at zero.
+    bounded: bool,
     net: Network,
     links: Vec<RingLinks>,
     /// Nodes of the lands.
@@ -302,7 +304,13 @@ impl<M: Passages> Pack<M> {
                 net.split_link(*upper, pack.gas_constant * pack.rings[i].back_temperature);
             }
         }
-        Ok(Self { model, pack: pack.clone(), nominal_film, chamfer_fade, net, links, lands })
+        Ok(Self { model, pack: pack.clone(), nominal_film, chamfer_fade, bounded: true, net, links, lands })
+    }
+
+    /// Takes heights and gaps as they come, below zero too.
+    pub(crate) fn unbounded(mut self) -> Self {
+        self.bounded = false;
+        self
     }
 
     /// Volume behind ring `i`, not yet checked.
@@ -357,14 +365,20 @@ impl<M: Passages> Pack<M> {
                     ));
                 }
                 // A ring that has retreated behind its land leaves no gap of this kind.
-                running * (radial - h).max(0.0)
+                let radial = radial - h;
+                running * if self.bounded { radial.max(0.0) } else { radial }
             }
+        };
+        let (lower, upper) = if self.bounded {
+            (e * clearance, (1.0 - e) * clearance)
+        } else {
+            (place.s, clearance - place.s)
         };
         Ok(Openings {
             h,
             liner_radius: place.liner_radius,
-            lower: e * clearance,
-            upper: (1.0 - e) * clearance,
+            lower,
+            upper,
             e,
             gap: area + chamfer,
             back_volume: self.volume_behind(i, place),

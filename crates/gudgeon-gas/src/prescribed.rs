@@ -52,6 +52,9 @@ struct Runtime {
 }
 
 impl GasFlow for Runtime {
+    fn uses_end_gaps(&self) -> bool {
+        false
+    }
     fn n_states(&self) -> usize {
         0
     }

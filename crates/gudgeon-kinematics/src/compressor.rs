@@ -10,6 +10,9 @@ use serde::{Deserialize, Serialize};
 /// Length of a compressor's cycle \[rad\].
 pub const TURN: f64 = 2.0 * PI;
 
+/// Largest exponent of a compression: 5/3 is that of a monatomic gas without heat flow, leakage seems to add some.
+const HIGHEST_EXPONENT: f64 = 2.0;
+
 /// The space left at the dead centre: one of `volume`, `fraction` and `compression_ratio`.
 #[derive(Debug, Clone, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -156,10 +159,12 @@ pub(crate) fn check(suction: f64, discharge: f64, exponent: f64, space: &Space) 
             format!("the discharge pressure ({discharge} Pa) must be above that of suction ({suction} Pa)");
         return Err(BuildError::at("discharge", what));
     }
-    if exponent < 1.0 {
+    if !(1.0..=HIGHEST_EXPONENT).contains(&exponent) {
         return Err(BuildError::at(
             "exponent",
-            format!("an exponent of {exponent} cannot be, it is at least 1"),
+            format!(
+                "an exponent of {exponent} cannot be, it is between 1 (isothermal) and {HIGHEST_EXPONENT} (no gas has more than 5/3)"
+            ),
         ));
     }
     if !(suction * (space.most / space.least).powf(exponent)).is_finite() {

@@ -18,6 +18,7 @@ mod motored;
 mod periodic_cubic;
 mod polytropic_burn;
 mod single_zone_wiebe;
+mod smoothing;
 mod table;
 mod two_harmonic_series;
 mod valve_losses;
@@ -31,7 +32,7 @@ pub use ideal_valves::IdealValves;
 pub use motored::Motored;
 pub use polytropic_burn::PolytropicBurn;
 pub use single_zone_wiebe::{ChamberVolume, SingleZoneWiebe};
-pub use table::{Interpolation, Table};
+pub use table::{Interpolation, Smoothing, Table};
 pub use two_harmonic_series::TwoHarmonicSeries;
 pub use valve_losses::ValveLosses;
 

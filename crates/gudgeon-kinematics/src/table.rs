@@ -4,9 +4,11 @@ use gudgeon_core::BuildError;
 use gudgeon_core::file::{MOST_OF_A_TABLE, read_bytes};
 use gudgeon_core::kinds::{CylinderPressure, CylinderPressureCtx, CylinderPressureSpec};
 use gudgeon_core::quantity::{Angle, Dimension, PosAngle, PosRatio, Pressure, dim, quantity};
+use gudgeon_core::result::Note;
 use serde::{Deserialize, Serialize};
 
 use crate::periodic_cubic::{PeriodicCubic, TooClose};
+use crate::smoothing::{self, Smoothed};
 
 /// A measured or computed trace of cylinder pressure.
 ///
@@ -21,6 +23,12 @@ use crate::periodic_cubic::{PeriodicCubic, TooClose};
 ///
 /// Angles ascend and cover one cycle. A row at the end of the cycle repeats the one at its start; the two are averaged, and
 /// must agree within 5 %. Between the rows runs a periodic monotone cubic, differentiable and without overshoot, or straight lines.
+///
+/// Noise on equally spaced rows is recognised and filtered (`smoothing`): every row would otherwise be a turning point that an integrator has
+/// to follow. Noisy are rows whose median second difference grows by less than 2 over twice the spacing (4 for a smooth curve, 1 for white
+/// noise) and whose noise has a standard deviation above 5e-5 of their range. The filter multiplies harmonic `k` of the cycle by `1/(1 +
+/// (k/k_c)⁶)`: no shift of phase, the mean kept, the peak within some three standard deviations of the noise. A clean trace is left as it
+/// is, to the bit; what was changed is told in a note.
 ///
 /// The pressure used is `scale * p(theta - shift) + offset`.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
@@ -53,6 +61,26 @@ pub struct Table {
     /// Added to the pressures after scaling: the reference pressure of a trace that is not absolute.
     #[serde(default = "no_offset")]
     pub offset: Pressure,
+    /// Whether noise is filtered.
+    #[serde(default)]
+    pub smoothing: Smoothing,
+    /// Wave length \[crank angle\] that the filter halves; with it, `auto` filters clean rows too. Left out: the longest for which the filter bends the
+    /// trace by no more than half of the noise it leaves.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cutoff: Option<PosAngle>,
+}
+
+/// When a [`Table`] is filtered.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Smoothing {
+    /// When its rows are noisy, or `cutoff` is given.
+    #[default]
+    Auto,
+    /// Always; refused when the rows are not noisy and `cutoff` is not given.
+    On,
+    /// Never.
+    Off,
 }
 
 /// Curve between the rows of a [`Table`].
@@ -103,6 +131,8 @@ impl Default for Table {
             shift: no_shift(),
             scale: one(),
             offset: no_offset(),
+            smoothing: Smoothing::default(),
+            cutoff: None,
         }
     }
 }
@@ -122,20 +152,103 @@ impl CylinderPressureSpec for Table {
         };
         let mut rows = self.rows(ctx, period.to_degrees())?;
         rows.check(|p| p * factor * self.scale.si() + self.offset.si(), period.to_degrees())?;
+        let notes: Vec<Note> = self.smooth(&mut rows, period)?.into_iter().collect();
         let angles: Vec<f64> = rows.theta_deg.iter().map(|t| t.to_radians() + self.shift.si()).collect();
         let linear = self.interpolation == Interpolation::Linear;
         let through = if linear { PeriodicCubic::straight } else { PeriodicCubic::new };
         let curve = through(&angles, &rows.pressure, period)
             .map_err(|TooClose(i)| rows.fault(i, Column::Theta, "is too close to the row before"))?;
-        let mut kinks: Vec<f64> =
-            if linear { angles.iter().map(|a| a.rem_euclid(period)).collect() } else { Vec::new() };
+        let within: Vec<f64> = angles.iter().map(|a| a.rem_euclid(period)).collect();
+        let mut kinks = if linear { within.clone() } else { narrow_pulses(&within, &rows.pressure, period) };
         kinks.retain(|k| *k < period);
         kinks.sort_by(f64::total_cmp);
-        Ok(Box::new(Trace { curve, period, kinks }))
+        // Between rows neither curve is above both of them.
+        let top =
+            (0..within.len()).max_by(|a, b| rows.pressure[*a].total_cmp(&rows.pressure[*b]).then(b.cmp(a)));
+        let highest = top.map_or((0.0, 0.0), |k| (within[k], rows.pressure[k]));
+        Ok(Box::new(Trace { curve, period, kinks, highest, notes }))
     }
 }
 
+/// Widest pulse at half of its height \[rad\] that could lie between the ends of two steps: 10 degrees.
+const NARROW: f64 = 10.0 / 180.0 * PI;
+/// Least height of a pulse, over the range of the rows, for which steps stop.
+const LEAST_PULSE: f64 = 0.01;
+
+/// Angles of the tops and bottoms of pulses that no step may pass over: rows that the pressure leaves by more than [`LEAST_PULSE`] of
+/// the range on both sides within [`NARROW`], and that have less than this between the places where half of that is lost.
+fn narrow_pulses(angles: &[f64], p: &[f64], period: f64) -> Vec<f64> {
+    let n = p.len();
+    let (low, high) = p.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), p| (a.min(*p), b.max(*p)));
+    let least = LEAST_PULSE * (high - low);
+    // The largest fall (`sign` 1) or rise from row `k` on one side, before the trace goes beyond it, within the width of a pulse.
+    let side = |k: usize, step: usize, sign: f64| {
+        let (mut fall, mut j) = (0.0_f64, (k + step) % n);
+        loop {
+            let away = if step == 1 { angles[j] - angles[k] } else { angles[k] - angles[j] };
+            let down = sign * (p[k] - p[j]);
+            if j == k || away.rem_euclid(period) > NARROW || down < 0.0 {
+                return fall;
+            }
+            fall = fall.max(down);
+            j = (j + step) % n;
+        }
+    };
+    let narrow = |k: usize, sign: f64| {
+        let height = side(k, 1, sign).min(side(k, n - 1, sign));
+        let half = |step: usize| {
+            let mut j = (k + step) % n;
+            while j != k && sign * (p[k] - p[j]) < 0.5 * height {
+                j = (j + step) % n;
+            }
+            let away = if step == 1 { angles[j] - angles[k] } else { angles[k] - angles[j] };
+            away.rem_euclid(period)
+        };
+        height > least && half(1) + half(n - 1) < NARROW
+    };
+    (0..n)
+        .filter(|&k| {
+            let (before, after) = (p[(k + n - 1) % n], p[(k + 1) % n]);
+            let top = p[k] > before && p[k] >= after;
+            let bottom = p[k] < before && p[k] <= after;
+            top && narrow(k, 1.0) || bottom && narrow(k, -1.0)
+        })
+        .map(|k| angles[k])
+        .collect()
+}
+
 impl Table {
+    /// Filters noisy rows, and says what that changed.
+    fn smooth(&self, rows: &mut Rows, period: f64) -> Result<Option<Note>, BuildError> {
+        let n = rows.pressure.len();
+        let spacing = period.to_degrees() / n as f64;
+        // Angles printed to two decimals.
+        let off = |t: (usize, &f64)| (t.1 - rows.theta_deg[0] - t.0 as f64 * spacing).abs();
+        let equal = rows.theta_deg.iter().enumerate().map(off).fold(0.0, f64::max) <= 0.01 * spacing;
+        let noise = if equal { smoothing::noise(&rows.pressure) } else { None };
+        let harmonic = match (self.smoothing, noise, self.cutoff) {
+            (Smoothing::Auto, None, None) => return Ok(None),
+            (Smoothing::Off, noise, _) => return Ok(noise.map(noisy)),
+            (_, _, Some(_)) if !equal => {
+                return Err(BuildError::at("cutoff", "the filter needs equally spaced rows"));
+            }
+            (_, _, Some(length)) => Some(period / length.si()),
+            (Smoothing::On, None, None) => {
+                return Err(BuildError::at(
+                    "smoothing",
+                    "the rows are smooth, or not equally spaced: there is no noise to go by",
+                )
+                .help("give `cutoff`, the wave length that the filter halves, or leave `smoothing` out"));
+            }
+            (_, Some(_), None) => None,
+        };
+        let done = smoothing::smooth(&mut rows.pressure, harmonic);
+        if let Some(k) = rows.pressure.iter().position(|p| !(*p > 0.0 && p.is_finite())) {
+            return Err(rows.fault(k, Column::Pressure, "is not above zero after the filter"));
+        }
+        Ok(Some(smoothed(done, period.to_degrees())))
+    }
+
     fn rows(&self, ctx: &CylinderPressureCtx<'_>, period_deg: f64) -> Result<Rows, BuildError> {
         match (&self.file, &self.theta_deg, &self.pressure) {
             (Some(file), None, None) => {
@@ -174,6 +287,32 @@ impl Table {
                 .help("keep either `file` or `theta_deg` and `pressure`")),
         }
     }
+}
+
+fn noisy(noise: f64) -> Note {
+    let text = format!(
+        "the cylinder pressure has noise of {:.2} kPa (standard deviation), which was left as `smoothing = \"off\"` asks",
+        noise / 1e3
+    );
+    Note::caution("cylinder_pressure.noise", text).amount("noise", noise, "Pa")
+}
+
+fn smoothed(s: Smoothed, period_deg: f64) -> Note {
+    let cutoff = period_deg / s.harmonic;
+    let text = format!(
+        "the cylinder pressure was smoothed: noise of {:.2} kPa (standard deviation), waves shorter than {cutoff:.1} deg taken off; rows changed \
+         by {:.2} kPa (root mean square), {:.2} kPa at most, the highest pressure by {:+.2} kPa; `smoothing = \"off\"` leaves them as they are",
+        s.noise / 1e3,
+        s.change.0 / 1e3,
+        s.change.1 / 1e3,
+        s.peak / 1e3
+    );
+    Note::caution("cylinder_pressure.smoothed", text)
+        .amount("noise", s.noise, "Pa")
+        .amount("cutoff", cutoff, "deg")
+        .amount("rms_change", s.change.0, "Pa")
+        .amount("largest_change", s.change.1, "Pa")
+        .amount("peak_change", s.peak, "Pa")
 }
 
 fn equally_spaced(n: usize, period_deg: f64) -> Vec<f64> {
@@ -373,6 +512,8 @@ struct Trace {
     curve: PeriodicCubic,
     period: f64,
     kinks: Vec<f64>,
+    highest: (f64, f64),
+    notes: Vec<Note>,
 }
 
 impl CylinderPressure for Trace {
@@ -384,5 +525,11 @@ impl CylinderPressure for Trace {
     }
     fn period(&self) -> f64 {
         self.period
+    }
+    fn highest(&self) -> (f64, f64) {
+        self.highest
+    }
+    fn notes(&self) -> Vec<Note> {
+        self.notes.clone()
     }
 }

@@ -368,6 +368,19 @@ fn kinks_are_where_slopes_jump_and_nowhere_else() {
     }
 }
 
+#[test]
+fn the_highest_pressure_is_known() {
+    let engine = Engine::otto();
+    for text in EVERY {
+        let p = engine.build(text);
+        let (theta, top) = p.highest();
+        let seen = (0..72_000).map(|k| p.pressure((0.01 * f64::from(k)).to_radians())).fold(0.0, f64::max);
+        // A top between the places looked at rises by 1e-8 of it; a kink may lie beside them.
+        assert!(top >= seen * (1.0 - 1e-13) && top < seen * (1.0 + 1e-3), "{text}: {top} {seen}");
+        assert!((p.pressure(theta) / top - 1.0).abs() < 1e-6, "{text}: {theta}");
+    }
+}
+
 // ---------------------------------------------------------------------------------------------------------------------
 // table
 
@@ -671,4 +684,59 @@ fn nanoseconds_per_evaluation() {
         best = best.min(start.elapsed().as_secs_f64() / 1e4);
     }
     println!("motion: {:.1} ns ({sum:.1e})", best * 1e9);
+}
+
+/// Rows every half degree of a firing cycle, with noise of `s` bar.
+fn firing(s: f64, more: &str) -> Box<dyn CylinderPressure> {
+    let mut seed = 7_u64;
+    let rows: Vec<f64> = (0..1440)
+        .map(|k| {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let noise = 12f64.sqrt() * ((seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5);
+            let x = (0.5 * f64::from(k) - 370.0) / 25.0;
+            1.2 + 0.1 * (0.5 * f64::from(k)).to_radians().sin() + 60.0 * (-x * x).exp() + s * noise
+        })
+        .collect();
+    table(&format!("pressure = {rows:?}\nunit = \"bar\"\n{more}")).expect("builds")
+}
+
+#[test]
+fn a_clean_trace_is_left_to_the_bit_and_a_noisy_one_filtered() {
+    let (clean, off) = (firing(0.0, ""), firing(0.0, "smoothing = \"off\""));
+    assert!(clean.notes().is_empty() && off.notes().is_empty());
+    let angles = || (0..7200).map(|k| (0.1 * f64::from(k)).to_radians());
+    assert!(angles().all(|t| clean.pressure(t).to_bits() == off.pressure(t).to_bits()));
+    let noisy = firing(0.03, "");
+    let [note] = &noisy.notes()[..] else { panic!("{:?}", noisy.notes()) };
+    assert_eq!(note.topic, "cylinder_pressure.smoothed");
+    let worst = |p: &dyn CylinderPressure| {
+        angles().map(|t| ((p.pressure(t) - clean.pressure(t)) / 1e5).abs()).fold(0.0, f64::max)
+    };
+    let left = firing(0.03, "smoothing = \"off\"");
+    assert_eq!(left.notes()[0].topic, "cylinder_pressure.noise");
+    // Uniform noise reaches 0.052 bar; the filter leaves a third of it.
+    assert!(worst(&*noisy) < 0.04 && worst(&*left) > 0.05, "{} {}", worst(&*noisy), worst(&*left));
+    assert!((noisy.highest().1 / clean.highest().1 - 1.0).abs() < 1e-3);
+    // A wave length given takes the place of the one found.
+    let given = firing(0.03, "cutoff = \"12 deg\"");
+    assert!((given.notes()[0].amounts["cutoff"].value - 12.0).abs() < 1e-9);
+}
+
+#[test]
+fn filters_that_have_nothing_to_go_by_are_refused() {
+    let uneven = "theta_deg = [0, 180, 300, 350, 370, 400, 450, 540]\npressure = [1, 1, 4, 30, 60, 25, 6, 1.5]\nunit = \"bar\"\n";
+    assert_eq!(refusal(&format!("{uneven}smoothing = \"on\"")).0, "smoothing");
+    assert_eq!(refusal(&format!("{uneven}cutoff = \"5 deg\"")).0, "cutoff");
+}
+
+#[test]
+fn integrators_stop_at_narrow_pulses_only() {
+    assert!(firing(0.0, "").kinks().is_empty());
+    let mut angles: Vec<f64> = (0..720).map(f64::from).collect();
+    let mut values = vec![1.0; 720];
+    angles.splice(204..204, [203.3, 203.4, 203.5]);
+    values.splice(204..204, [1.0, 100.0, 1.0]);
+    let p = table(&format!("theta_deg = {angles:?}\npressure = {values:?}\nunit = \"bar\"")).expect("builds");
+    assert_eq!(p.kinks(), [203.4_f64.to_radians()]);
+    assert_eq!(p.highest(), (203.4_f64.to_radians(), 100.0 * 1e5));
 }

@@ -2,9 +2,11 @@
 
 pub mod jet;
 pub mod linalg;
+pub mod maximum;
 pub mod multigrid;
 pub mod ode;
 pub mod orbit;
+pub mod panel;
 pub mod qp;
 pub mod quadrature;
 pub mod radau;

@@ -1,7 +1,7 @@
 //! A film along a line as rows of a table, with its steps and fronts where they are.
 
-use gudgeon_core::EvalError;
-use gudgeon_core::kinds::{FilmField, RigOut};
+use gudgeon_core::kinds::{Film1dOut, FilmField, RigOut};
+use gudgeon_core::{BuildError, EvalError};
 use gudgeon_film::film_1d::LineProfile;
 
 /// One end of a stretch between steps and fronts.
@@ -80,4 +80,21 @@ pub(crate) fn finite(out: &RigOut, model: &'static str) -> Result<(), EvalError>
         Some(name) => Err(EvalError::fatal(model, format!("{name} is out of range"))),
         None => Ok(()),
     }
+}
+
+/// Refuses a cavitation pressure above that of every edge: nothing but a cavity would be left where the film begins.
+pub(crate) fn cavitation_below(p_cav: f64, edges: &[f64]) -> Option<BuildError> {
+    let most = edges.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    (p_cav > most).then(|| {
+        let what = format!(
+            "must not be above the pressures at all edges, of which {} bar is the highest",
+            1e-5 * most
+        );
+        BuildError::at("p_cav", what)
+    })
+}
+
+/// What a film says of its oil, where it has any.
+pub(crate) fn oil_balance(o: &Film1dOut) -> Option<f64> {
+    (o.flux_in != 0.0 || o.flux_out != 0.0 || o.flux_error != 0.0).then_some(o.flux_error)
 }

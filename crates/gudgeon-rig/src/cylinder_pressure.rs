@@ -97,8 +97,8 @@ impl Rig for Bench {
         // Volume falls as the pin rises.
         let work: f64 =
             (1..theta.len()).map(|i| -self.area * 0.5 * (p[i] + p[i - 1]) * (y[i] - y[i - 1])).sum();
-        let (peak, at) =
-            p.iter().zip(&theta).fold((0.0, 0.0), |m, (p, t)| if *p > m.0 { (*p, *t) } else { m });
+        let (at, peak) = self.pressure.highest();
+        out.notes.extend(self.pressure.notes());
         out.result("p_max", peak / 1e5, "bar", "highest pressure");
         out.result("p_max_angle", at.to_degrees(), "deg", "crank angle of the highest pressure");
         out.result("p", self.pressure.pressure(self.angle) / 1e5, "bar", "pressure at `angle`");

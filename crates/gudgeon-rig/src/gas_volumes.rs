@@ -31,6 +31,7 @@ pub struct GasVolumesRig {
     #[serde(default)]
     pub orifice: Orifice,
     /// Volumes whose pressure is computed.
+    #[schemars(length(max = 200))]
     pub volumes: Vec<GasVolume>,
     /// Surroundings whose pressure is given.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]

@@ -72,6 +72,7 @@ impl RigSpec for Journal1dRig {
         if self.eccentricity.si() >= 1.0 {
             errors.push(BuildError::at("eccentricity", "must be below 1: at 1 shaft and bearing touch"));
         }
+        errors.extend(along::cavitation_below(self.p_cav.si(), &[self.p_supply.si()]));
         let (Some(n), true) = (n, errors.is_empty()) else { return Err(errors) };
         let from = self.groove.si();
         let line = LineProfile::journal(
@@ -230,7 +231,7 @@ impl Rig for Bench {
         );
         out.counters.insert("panels".into(), n as u64);
         out.counters.insert("iterations".into(), o.iterations as u64);
-        out.balance.oil_mass = Some(o.flux_error);
+        out.balance.oil_mass = along::oil_balance(&o);
         out.axis("phi", "deg", rows.iter().map(|r| degrees(r.x)).collect());
         out.column("p", "Pa", rows.iter().map(|r| r.p).collect());
         out.column("h", "m", rows.iter().map(|r| r.h).collect());

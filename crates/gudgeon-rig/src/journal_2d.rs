@@ -6,6 +6,7 @@ use gudgeon_core::{BuildError, EvalError};
 use gudgeon_film::SmoothSurfaces;
 use serde::{Deserialize, Serialize};
 
+use crate::along;
 use crate::sheet::{self, Conditions, Sheet};
 use crate::slider_2d::Sides;
 
@@ -107,6 +108,10 @@ impl RigSpec for Journal2dRig {
         if self.supply == JournalSupply::Sides && self.p_supply.si() != 0.0 {
             errors.push(BuildError::at("p_supply", "there is no groove that could have this pressure"));
         }
+        let groove = self.supply == JournalSupply::WidestGap;
+        let edges = [if groove { self.p_supply.si() } else { self.p_side.si() }, self.p_side.si()];
+        let own = if self.sides == Sides::Closed { &edges[..1] } else { &edges[..] };
+        errors.extend(along::cavitation_below(self.p_cav.si(), own));
         let nx = sheet::intervals("intervals_x", self.intervals_x);
         let ny = sheet::intervals("intervals_y", self.intervals_y);
         match (nx, ny) {
@@ -129,6 +134,9 @@ impl RigSpec for Journal2dRig {
         }
     }
 }
+
+/// Load, in `mu omega L R^3/c^2`, below which a film carries nothing but the rounding of its pressures.
+const NOTHING: f64 = 1e-9;
 
 struct Bench {
     sheet: Sheet,
@@ -158,6 +166,15 @@ impl Rig for Bench {
         let along = self.sheet.sum(|k, x, _| found.p[k] * (x / radius).cos());
         let across = self.sheet.sum(|k, x, _| found.p[k] * (x / radius).sin());
         let load = along.hypot(across);
+        let scale = s.viscosity.si() * s.speed.si() * width * radius.powi(3) / clearance.powi(2);
+        if load < NOTHING * scale {
+            return Err(EvalError::fatal(
+                "journal_2d",
+                format!(
+                    "the bearing runs empty: its film carries {load:.1e} N where a full one carries some {scale:.1e} N, for nothing gives back what it loses over its sides. Sides at the cavitation pressure give no oil; raise `p_side` above `p_cav`, or use `supply = \"widest_gap\"`"
+                ),
+            ));
+        }
         let per_second = s.speed.si() / (2.0 * PI);
         let sommerfeld =
             s.viscosity.si() * per_second * width * 2.0 * radius / load * (radius / clearance).powi(2);

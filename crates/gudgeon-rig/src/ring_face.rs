@@ -4,6 +4,8 @@ use gudgeon_core::quantity::{Force, PosLength, PosViscosity, Pressure, Velocity,
 use gudgeon_core::{BuildError, EvalError};
 use serde::{Deserialize, Serialize};
 
+use crate::along;
+
 /// The film under a running face at one instant: geometry, thickness, speeds and pressures given.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -65,6 +67,7 @@ impl RigSpec for RingFaceRig {
                 "the squeeze velocity follows from `load`; give one of them",
             ));
         }
+        errors.extend(along::cavitation_below(self.p_cav.si(), &[self.p_bottom.si(), self.p_top.si()]));
         let shape = self.face.profile(self.length.si()).map_err(|e| e.within("face"));
         let film = shape.and_then(|f| {
             self.hydrodynamics.build(&FaceCtx { face: &f }).map_err(|e| e.within("hydrodynamics"))

@@ -17,6 +17,7 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 pub struct ShaftLineRig {
     /// Inertias along the chain.
+    #[schemars(length(max = 2000))]
     pub inertias: Vec<Inertia<NonNegative>>,
     /// What joins each to the next.
     pub couplings: Vec<Box<dyn CouplingSpec>>,

@@ -324,6 +324,7 @@ mod tests {
         let waves = SawtoothWaviness {
             amplitude: gudgeon_core::quantity::quantity(4e-7),
             transport: WavinessTransport::Homogenised,
+            closest: gudgeon_core::quantity::quantity(1.02),
         };
         let spec = Multigrid { tolerance: 1e-12, ..Multigrid::default() };
         let gap = |x: f64, y: f64| 1e-6 * (1.5 + 0.5 * (600.0 * x).cos() + 1e4 * (y - 0.004).powi(2));

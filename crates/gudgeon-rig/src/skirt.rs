@@ -7,6 +7,7 @@ use gudgeon_film::SmoothSurfaces;
 use gudgeon_skirt::Panel;
 use serde::{Deserialize, Serialize};
 
+use crate::along;
 use crate::sheet::{self, Conditions, Sheet};
 
 /// The film between one side of a piston skirt and the liner at one instant.
@@ -123,6 +124,7 @@ impl RigSpec for SkirtRig {
             let what = format!("must be between 0 and 0.5, not {}", self.crowding.si());
             errors.push(BuildError::at("crowding", what));
         }
+        errors.extend(along::cavitation_below(self.p_cav.si(), &[self.p_edge.si()]));
         let nx = sheet::intervals("intervals_x", self.intervals_x);
         let ny = sheet::intervals("intervals_y", self.intervals_y);
         match (nx, ny) {

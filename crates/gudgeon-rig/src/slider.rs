@@ -32,7 +32,7 @@ pub struct SliderRig {
     /// Absolute cavitation pressure.
     #[serde(default = "vacuum")]
     pub p_cav: Pressure,
-    /// Absolute ambient pressure, from which `load_gauge` and the pressure of `piezoviscosity` count.
+    /// Absolute ambient pressure, from which the pressure of `piezoviscosity` counts.
     #[serde(default = "ambient")]
     pub p_ambient: Pressure,
     /// Viscosity at ambient pressure and low shear rate.
@@ -93,7 +93,7 @@ fn smooth() -> Box<dyn RoughnessSpec> {
 gudgeon_core::register_model! {
     SliderRig, kind: "rig", name: "slider",
     summary: "steady film along a line of any profile: load, friction, flux, pressure and cavities",
-    equations: "load = int (p - p_cav) dx;  load_gauge = int (p - p_ambient) dx;  centre = int (p - p_cav) x dx/load;  \
+    equations: "load = int (p - p_cav) dx;  load_gauge = int p dx - (p_left + p_right) L/2;  centre = int (p - p_cav) x dx/load;  \
                 shear = int (mu u/h +- h p'/2) dx;  mu = mu0 f_p(p - p_ambient) f_s(u/h)",
     validity: "Narrow gap, no flow across the line, steady, incompressible, isothermal. Factors of roughness and viscosity are \
                constant in each panel.",
@@ -115,6 +115,7 @@ impl RigSpec for SliderRig {
     }
     fn build(&self, _: &RigCtx<'_>) -> Result<Box<dyn Rig>, Vec<BuildError>> {
         let mut errors = Vec::new();
+        errors.extend(along::cavitation_below(self.p_cav.si(), &[self.left.p.si(), self.right.p.si()]));
         let mut keep = |e: BuildError| errors.push(e);
         let line = profile::panels(self.panels)
             .and_then(|n| self.profile.line(n).map_err(|e| e.within("profile")))
@@ -126,19 +127,34 @@ impl RigSpec for SliderRig {
         let rough = self.roughness.build().map_err(|e| keep(e.within("roughness"))).ok();
         let piezo = self.piezoviscosity.build().map_err(|e| keep(e.within("piezoviscosity"))).ok();
         let thin = self.shear_thinning.build().map_err(|e| keep(e.within("shear_thinning"))).ok();
+        // The surface enters the gap at one end; what the other one is given has no meaning.
+        let (inlet, place) =
+            if self.speed.si() >= 0.0 { (&self.left, "left") } else { (&self.right, "right") };
+        if inlet.oil_film.is_some() && !self.film_1d.scope().starved {
+            let what =
+                format!("`{}` as it is set here knows no inlet that starves", self.film_1d.typetag_name());
+            keep(
+                BuildError::at(format!("{place}.oil_film"), what)
+                    .help("a model that conserves mass does: `complementarity`, `front_tracking`; without `oil_film` there is a bath"),
+            );
+            return Err(errors);
+        }
         match (line, film, rough, piezo, thin) {
-            (Some(line), Some(film), Some(rough), Some(piezo), Some(thin)) => Ok(Box::new(Bench {
-                line,
-                film,
-                rough,
-                piezo,
-                thin,
-                u: self.speed.si(),
-                ends: [self.left.end(), self.right.end()],
-                p_cav: self.p_cav.si(),
-                p_ambient: self.p_ambient.si(),
-                mu: self.viscosity.si(),
-            })),
+            (Some(line), Some(film), Some(rough), Some(piezo), Some(thin)) if errors.is_empty() => {
+                Ok(Box::new(Bench {
+                    line,
+                    film,
+                    rough,
+                    piezo,
+                    thin,
+                    u: self.speed.si(),
+                    ends: [self.left.end(), self.right.end()],
+                    p_cav: self.p_cav.si(),
+                    p_ends: 0.5 * (self.left.p.si() + self.right.p.si()),
+                    p_ambient: self.p_ambient.si(),
+                    mu: self.viscosity.si(),
+                }))
+            }
             _ => Err(errors),
         }
     }
@@ -153,6 +169,8 @@ struct Bench {
     u: f64,
     ends: [FilmEnd; 2],
     p_cav: f64,
+    /// Mean of the pressures at both ends.
+    p_ends: f64,
     p_ambient: f64,
     mu: f64,
 }
@@ -230,7 +248,8 @@ impl Rig for Bench {
         out.result("load", o.load, "N/m", "load above the cavitation pressure, per metre of width");
         let above = |p: f64| o.load + (self.p_cav - p) * (last - first);
         out.result("load_absolute", above(0.0), "N/m", "integral of the absolute pressure");
-        out.result("load_gauge", above(self.p_ambient), "N/m", "load above ambient pressure");
+        let what = "load above the straight line between the pressures at the ends";
+        out.result("load_gauge", above(self.p_ends), "N/m", what);
         out.result("p_max", o.p_max / 1e5, "bar", "highest pressure");
         out.result("x_p_max", 1e3 * o.x_p_max, "mm", "place of the highest pressure");
         out.result(
@@ -296,7 +315,7 @@ impl Rig for Bench {
         out.counters.insert("panels".into(), self.line.panels() as u64);
         out.counters.insert("iterations".into(), o.iterations as u64);
         out.counters.insert("film_evaluations".into(), rounds as u64);
-        out.balance.oil_mass = Some(o.flux_error);
+        out.balance.oil_mass = along::oil_balance(&o);
         if o.starved {
             out.notes.push(Note::caution(
                 "starved_inlet",

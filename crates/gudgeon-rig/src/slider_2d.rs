@@ -6,6 +6,7 @@ use gudgeon_core::{BuildError, EvalError};
 use gudgeon_film::SmoothSurfaces;
 use serde::{Deserialize, Serialize};
 
+use crate::along;
 use crate::sheet::{self, Conditions, Sheet};
 
 /// A rectangular pad above a plane that slides along its length: any profile, with or without dimples, smooth or rough, squeezed or not.
@@ -236,6 +237,9 @@ impl RigSpec for Slider2dRig {
         if let Some(d) = &self.dimples {
             errors.extend(d.check(length, width).into_iter().map(|e| e.within("dimples")));
         }
+        let sides = if self.sides == Sides::Closed { self.p_inlet.si() } else { self.p_side.si() };
+        let edges = [self.p_inlet.si(), self.p_outlet.si(), sides];
+        errors.extend(along::cavitation_below(self.p_cav.si(), &edges));
         if self.inlet_fill.si() < 1.0 && self.p_inlet.si() > self.p_cav.si() {
             errors.push(BuildError::at("inlet_fill", "a gap at a pressure above `p_cav` is full"));
         }
@@ -292,8 +296,13 @@ impl Rig for Bench {
         )?;
         let (o, area) = (found.out, length * width);
         out.result("load", o.load, "N", "load above the cavitation pressure");
-        let gauge = o.load + (spec.p_cav.si() - side) * area;
-        out.result("load_gauge", gauge, "N", "load above the pressure at the sides");
+        let around = match spec.sides {
+            Sides::Closed => 0.5 * (spec.p_inlet.si() + spec.p_outlet.si()),
+            _ => side,
+        };
+        let gauge = o.load + (spec.p_cav.si() - around) * area;
+        let what = "load above the pressure at the sides; where they are closed, above the mean of both ends";
+        out.result("load_gauge", gauge, "N", what);
         let sum = self.sheet.sum(|k, _, _| found.p[k] - spec.p_cav.si());
         out.result(
             "load_nodes",

@@ -152,6 +152,17 @@ impl RigSpec for SqueezeFilmRig {
                 mean.si() + amplitude.si()
             }
         };
+        let scope = self.film_1d.scope();
+        let answers = match &self.motion {
+            Motion::Velocity { .. } | Motion::Fall { .. } => scope.squeeze,
+            Motion::Oscillation { .. } => scope.steps,
+        };
+        if !answers {
+            let what = format!("`{}` knows no gap that changes in this way", self.film_1d.typetag_name());
+            let help = "`complementarity` knows all of them";
+            errors.push(BuildError::at("film_1d.model", what).help(help));
+        }
+        errors.extend(along::cavitation_below(self.p_cav.si(), &[self.p_ends.si()]));
         let mut keep = |e: BuildError| errors.push(e);
         let line = match (profile::panels(self.panels), face) {
             (Ok(n), Ok(face)) => line(&face, gap, n).map_err(keep).ok(),
@@ -262,7 +273,7 @@ impl Bench {
         );
         out.result("p_max", o.p_max / 1e5, "bar", "highest pressure");
         out.result("flux_out", o.flux_out - o.flux_in, "m2/s", "flux of oil out of both ends");
-        out.balance.oil_mass = Some(o.flux_error);
+        out.balance.oil_mass = along::oil_balance(&o);
         out.counters.insert("iterations".into(), o.iterations as u64);
         let field = self.film.field();
         out.axis("x", "m", self.line.x.clone());
@@ -427,7 +438,7 @@ impl Bench {
             add("film_part", at(&part), "", "part of the strip under full film");
         }
         let size = through.max(start);
-        out.balance.oil_mass = Some((entered - (stored(&content) - start)) / size);
+        out.balance.oil_mass = (size > 0.0).then(|| (entered - (stored(&content) - start)) / size);
         out.counters.insert("steps".into(), steps as u64);
         out.counters.insert("iterations".into(), passes as u64);
         out.axis("t", "s", t);

@@ -220,3 +220,69 @@ fn starved_pads_carry_less() {
     assert!(number(&starved, "load") < 0.9 * number(&full, "load"));
     assert!(number(&starved, "load") > 0.0 && number(&starved, "cavity") > number(&full, "cavity"));
 }
+
+/// A journal bearing whose supply, sides and cavity stand at one pressure.
+fn bare_journal(around: usize, film: &str) -> String {
+    let keys = text(JOURNAL, "film_2d", film);
+    let keys = keys
+        .replace("\"2 bar\"", "\"0 bar\"")
+        .replace("\"1 bar\"", "\"0 bar\"")
+        .replace("\"0.3 bar\"", "\"0 bar\"");
+    let grid = format!("intervals_x = {around}\nintervals_y = {}", around / 3);
+    keys.replace("intervals_x = 24", &grid).replace("intervals_y = 8\n", "")
+}
+
+#[test]
+fn flow_over_the_sides_is_of_second_order() {
+    for (film, least) in [
+        ("{ model = \"direct\", cavitation = \"mass_conserving\", tolerance = 1e-12 }", 1.6),
+        ("{ model = \"direct\", cavitation = \"swift_stieber\", tolerance = 1e-12 }", 1.6),
+        ("{ model = \"direct\", cavitation = \"half_sommerfeld\", tolerance = 1e-12 }", 1.6),
+    ] {
+        let flow =
+            [24, 48, 96, 192].map(|n| number(&run(&bare_journal(n, film)).unwrap(), "side_flow_number"));
+        let change = [flow[1] - flow[0], flow[2] - flow[1], flow[3] - flow[2]];
+        // Over two halvings; the end of the film moves by whole intervals, which makes single ratios uneven.
+        let order = 0.5 * (change[0] / change[2]).abs().log2();
+        assert!(order > least, "{film}: {flow:?} {order}");
+    }
+}
+
+#[test]
+fn a_bearing_conserves_its_oil() {
+    let r = run(&bare_journal(48, "{ model = \"direct\", tolerance = 1e-13 }")).unwrap();
+    // Steady, full at the groove on both ends of the line: what comes in there leaves over the sides, but for what leaves at the end of the line.
+    let (inflow, side) = (number(&r, "inflow_number"), number(&r, "side_flow_number"));
+    assert!(side > 0.0 && side < inflow, "{side} {inflow}");
+}
+
+#[test]
+fn cavities_are_what_is_torn() {
+    let share = |cavitation: &str| {
+        let film = format!("{{ model = \"direct\", cavitation = \"{cavitation}\" }}");
+        number(&run(&bare_journal(24, &film)).unwrap(), "cavity")
+    };
+    // A film that never ruptures has none, whatever stands at the cavitation pressure at its edges.
+    assert_eq!(share("full_sommerfeld"), 0.0);
+    // By symmetry one half of the film is cut off, the edges beside it with it.
+    assert!((share("half_sommerfeld") - 50.0).abs() < 100.0 / 24.0);
+}
+
+#[test]
+fn a_bearing_that_runs_empty_is_no_bearing() {
+    let keys = bare_journal(24, "{ model = \"multigrid\" }")
+        .replace("eccentricity = 0.7", "eccentricity = 0.3")
+        .replace("p_supply = \"0 bar\"", "supply = \"sides\"");
+    let e = run(&keys).unwrap_err();
+    assert!(e.contains("runs empty"), "{e}");
+    let fed = keys.replace("p_side = \"0 bar\"", "p_side = \"1 bar\"");
+    assert!(number(&run(&fed).unwrap(), "load") > 100.0);
+}
+
+#[test]
+fn a_cavity_above_all_edges_is_refused_at_its_place() {
+    for keys in [SLIDER, JOURNAL] {
+        let e = run(&text(keys, "p_cav", "\"3 bar\"")).unwrap_err();
+        assert!(e.starts_with("p_cav: "), "{e}");
+    }
+}

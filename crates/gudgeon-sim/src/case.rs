@@ -28,6 +28,7 @@ case_file! {
         #[serde(default)]
         pub gas: Gas,
         /// Rings, from the crown down.
+        #[schemars(length(max = 20))]
         pub rings: Vec<Ring>,
         /// Sub-models.
         pub models: Models,
@@ -60,6 +61,7 @@ pub struct Engine {
     pub offset: Length,
     /// Number of cylinders, for the engine totals.
     #[serde(default = "one")]
+    #[schemars(range(min = 1, max = 1000))]
     pub cylinders: u32,
 }
 
@@ -68,6 +70,7 @@ pub struct Engine {
 #[serde(deny_unknown_fields)]
 pub struct Piston {
     /// Lands above each ring, top land first: as many as there are rings.
+    #[schemars(length(max = 20))]
     pub lands: Vec<Land>,
     /// Height of the middle of ring 1 above the gudgeon pin. Needed when the liner is distorted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -422,20 +425,26 @@ pub struct Solver {
     #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1, "when": { "method": "implicit" } }))]
     pub periodicity: PosRatio,
     /// Most cycles, all phases of the search together, before the run is called unconverged.
+    #[schemars(range(max = 100_000))]
     pub max_cycles: u32,
     /// Pressures of all lands from which the cycle is started. Each start is run to its periodic state; those that
     /// differ are reported, the first is the result. Empty: one start at crankcase pressure, and a second at 6 bar when
     /// the axial motion is decided in steps (such models have several periodic states).
+    #[schemars(length(max = 100))]
     pub starts: Vec<PosPressure>,
     /// `as_published`: the scheme.
     pub scheme: Scheme,
     /// `as_published`: cycles to run; 0 takes the source's number (2), or for `degree_march` until periodic.
+    #[schemars(range(max = 100_000))]
     pub cycles: u32,
     /// `as_published`: steps of mechanics per crank degree; 0 takes the source's number (rings + 1; 1 for `degree_march`).
+    #[schemars(range(max = 1_000_000))]
     pub steps_per_degree: u32,
     /// `as_published`: gas sub-steps per step of mechanics; 0 takes the source's number (2^(rings+1); 10).
+    #[schemars(range(max = 1_000_000))]
     pub gas_steps: u32,
     /// `as_published`: one-degree passes per cycle: 721 as in the source's listing, or 720.
+    #[schemars(range(max = 7200))]
     pub passes: u32,
     /// `substep_march`: what becomes of a ring's velocity at a flank.
     pub clamp: Clamp,
@@ -531,13 +540,17 @@ pub enum Scheme {
 pub struct Outputs {
     /// Names of results; `all` for every one that the scene has. What no wanted result needs is not computed.
     pub results: Vec<String>,
-    /// Crank angle between rows of the series.
+    /// Crank angle between rows of the series. No result depends on it.
     pub series_step: PosAngle,
+    /// A ring counts as on a groove flank while its distance from it is at most this share of its axial clearance, in results and
+    /// events. Oil lets a ring come down ever more slowly, the gap going with the time to the power -1/2, so that it never touches; at a
+    /// tenth of the clearance, the default, it rests on its film of oil. At most 0.5.
+    pub seat: Ratio<Fraction>,
 }
 
 impl Default for Outputs {
     fn default() -> Self {
-        Self { results: vec!["all".into()], series_step: quantity(1f64.to_radians()) }
+        Self { results: vec!["all".into()], series_step: quantity(1f64.to_radians()), seat: quantity(0.1) }
     }
 }
 

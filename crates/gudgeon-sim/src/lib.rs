@@ -4,6 +4,7 @@
 use gudgeon_models as _;
 
 pub mod case;
+mod foresee;
 pub mod load;
 pub mod pin;
 pub mod piston_secondary;

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use gudgeon_core::result::{ModelUse, Note, RunResult, Skipped};
-use gudgeon_core::{EvalError, Registry};
+use gudgeon_core::{BuildError, EvalError, Registry};
 use gudgeon_numerics::ode::IntegrateError;
 use serde::Serialize;
 
@@ -53,7 +53,7 @@ pub enum RunError {
         source: EvalError,
     },
     /// The integrator gave up.
-    #[error("the integration stopped: {0} (crank angles in radians)")]
+    #[error("the integration stopped: {}", in_degrees(.0))]
     Integrate(#[from] IntegrateError),
     /// The cycle does not close.
     #[error(
@@ -77,6 +77,24 @@ pub enum RunError {
     Refused(String),
 }
 
+/// What an integrator over the crank angle says, with the angle in degrees.
+fn in_degrees(e: &IntegrateError) -> String {
+    let deg = |t: &f64| format!("{:.3} deg crank angle", t.to_degrees());
+    match e {
+        IntegrateError::Eval { t, source } => format!("at {}: {source}", deg(t)),
+        IntegrateError::StepTooSmall { t, h, last } => {
+            let why = last.as_ref().map_or_else(String::new, |e| format!(" ({e})"));
+            format!("at {} the step would have to be smaller than {:e} deg{why}", deg(t), h.to_degrees())
+        }
+        IntegrateError::TooManySteps { t, max } => format!("more than {max} steps, stopped at {}", deg(t)),
+        IntegrateError::NonFinite { t } => format!("at {} the rates are not finite", deg(t)),
+        IntegrateError::Chatter { t, event } => {
+            format!("at {} event {event} repeats without progress", deg(t))
+        }
+        other => other.to_string(),
+    }
+}
+
 /// Reads, resolves and validates a case, or the case that the `summary.json` of a run recorded.
 ///
 /// # Errors
@@ -95,8 +113,12 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<Checked, Report> {
 fn checked(file: String, source: Source, overrides: &[String]) -> Result<Checked, Report> {
     let case = scene::load(source, overrides)?;
     let errors = case.legal();
+    legal(file, case, &errors)
+}
+
+fn legal(file: String, case: Box<dyn Scene>, errors: &[BuildError]) -> Result<Checked, Report> {
     if !errors.is_empty() {
-        return Err(case.refuse(&errors));
+        return Err(case.refuse(errors));
     }
     let name =
         Path::new(&file).file_stem().map_or_else(|| file.clone(), |s| s.to_string_lossy().into_owned());
@@ -104,13 +126,14 @@ fn checked(file: String, source: Source, overrides: &[String]) -> Result<Checked
 }
 
 impl Checked {
-    /// The same file with more `--set` arguments.
+    /// The same file with more `--set` arguments, its sweeps apart: what a study does for each of its variants.
     ///
     /// # Errors
     /// As [`check`].
     pub fn with(&self, more: &[String]) -> Result<Self, Report> {
-        let overrides: Vec<String> = self.case.overrides().iter().chain(more).cloned().collect();
-        checked(self.file.clone(), self.case.source().clone(), &overrides)
+        let case = self.case.changed(more)?;
+        let errors = case.legal_alone();
+        legal(self.file.clone(), case, &errors)
     }
 
     /// Title.

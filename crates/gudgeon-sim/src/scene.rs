@@ -12,7 +12,8 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use crate::case::RingPackCase;
-use crate::load::{Loaded, Report, Setting, Source, load_source, scene_of};
+use crate::foresee;
+use crate::load::{Loaded, Refinement, Report, Source, load_source, scene_of};
 use crate::pin::case::PinCase;
 use crate::piston_secondary::case::PistonSecondaryCase;
 use crate::power_cylinder::case::PowerCylinderCase;
@@ -126,6 +127,16 @@ pub trait SceneCase:
     /// What stopped it.
     fn run(loaded: &Loaded<Self>, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError>;
 
+    /// How its numerical settings are refined: those that it and its models declare.
+    fn refinements(loaded: &Loaded<Self>) -> Vec<Refinement> {
+        loaded.refinements()
+    }
+
+    /// Names of the results that a run has, when they are known before it. `loaded` is legal.
+    fn result_names(_loaded: &Loaded<Self>) -> Option<Vec<String>> {
+        None
+    }
+
     /// What `bench` races; none when the scene has no solvers to choose from.
     fn race(&self) -> Option<Race> {
         None
@@ -144,10 +155,14 @@ pub trait Scene: Send + Sync {
     fn notes(&self) -> &[String];
     /// Every value in SI units, changes and defaults filled in.
     fn resolved(&self) -> serde_json::Value;
-    /// The numerical settings that refine its results.
-    fn settings(&self) -> Vec<Setting>;
+    /// As [`SceneCase::refinements`].
+    fn refinements(&self) -> Vec<Refinement>;
     /// Everything that is wrong, the changes that sweeps make included.
     fn legal(&self) -> Vec<BuildError>;
+    /// Everything that is wrong, sweeps apart.
+    fn legal_alone(&self) -> Vec<BuildError>;
+    /// As [`SceneCase::result_names`].
+    fn result_names(&self) -> Option<Vec<String>>;
     /// A report on errors found after the case was read.
     fn refuse(&self, errors: &[BuildError]) -> Report;
     /// The same case with some values changed, read but not built.
@@ -193,8 +208,8 @@ impl<C: SceneCase> Scene for Loaded<C> {
         Self::resolved(self).unwrap_or_default()
     }
 
-    fn settings(&self) -> Vec<Setting> {
-        Self::settings(self)
+    fn refinements(&self) -> Vec<Refinement> {
+        C::refinements(self)
     }
 
     fn legal(&self) -> Vec<BuildError> {
@@ -208,11 +223,24 @@ impl<C: SceneCase> Scene for Loaded<C> {
         errors
     }
 
+    fn legal_alone(&self) -> Vec<BuildError> {
+        C::legal(self)
+    }
+
+    fn result_names(&self) -> Option<Vec<String>> {
+        C::result_names(self)
+    }
+
     fn refuse(&self, errors: &[BuildError]) -> Report {
         Self::refuse(self, errors)
     }
 
     fn changed(&self, set: &[String]) -> Result<Box<dyn Scene>, Report> {
+        if set.iter().any(|s| s.split('=').next().is_some_and(|path| path.trim() == "scene")) {
+            // Another scene is another type of case.
+            let all: Vec<String> = self.overrides.iter().chain(set).cloned().collect();
+            return load(Source::clone(&self.source), &all);
+        }
         Ok(Box::new(self.reload::<C>(set)?))
     }
 
@@ -279,12 +307,8 @@ pub fn load(source: Source, overrides: &[String]) -> Result<Box<dyn Scene>, Repo
 
 /// What is wrong with the changes that sweeps make.
 fn legal_changes(scene: &dyn Scene, heading: Heading<'_>) -> Vec<BuildError> {
-    let mut errors = Vec::new();
-    for (k, set) in sweep::first_values(heading.sweeps) {
-        if let Err(e) = changed(scene, &[set]) {
-            errors.push(BuildError::at(format!("sweeps.{k}.path"), e.to_string()));
-        }
-    }
+    let mut errors = foresee::sweeps(scene, heading.sweeps);
+    errors.extend(foresee::drawn(scene, heading.sweeps));
     errors
 }
 

@@ -7,6 +7,7 @@ use gudgeon_core::result::{BenchPoint, BenchTable, Comparison, RunResult, Varian
 use gudgeon_core::{BuildError, Registry};
 use indexmap::IndexMap;
 
+use crate::foresee;
 use crate::load::Report;
 use crate::run::{Checked, Progress, RunError, check, run_alone, run_alone_verified};
 
@@ -22,6 +23,9 @@ fn swap_path(path: &str) -> String {
         _ => path.to_owned(),
     }
 }
+
+/// Most combinations of one comparison: each is a run, and all their results are kept.
+const MOST_COMBINATIONS: usize = 1000;
 
 /// Runs every combination of `swaps`, `(path, values)`.
 ///
@@ -62,6 +66,13 @@ fn compare_by(
     progress: &mut dyn FnMut(Progress),
 ) -> Result<Comparison, Report> {
     let base = check(path, overrides)?;
+    let count = swaps.iter().fold(1usize, |n, (_, v)| n.saturating_mul(v.len()));
+    if count > MOST_COMBINATIONS {
+        let what = format!("the swaps make {count} combinations, at most {MOST_COMBINATIONS} are compared");
+        return Err(base
+            .case
+            .refuse(&[BuildError::new(what).help("fewer values, or one `--swap` after the other")]));
+    }
     let mut combinations: Vec<Vec<(String, String)>> = vec![Vec::new()];
     for (p, values) in swaps {
         if values.is_empty() || values.iter().any(String::is_empty) {
@@ -176,6 +187,9 @@ pub fn bench(
                 .into(),
         ));
     };
+    if let Some(known) = base.case.result_names() {
+        foresee::all_known(results, &known).map_err(RunError::Refused)?;
+    }
     let reference = |set: &[String]| -> Result<_, RunError> {
         let c = base.with(set).map_err(|r| RunError::Refused(r.to_string()))?;
         run_alone(&c, &mut |_| {})

@@ -1,6 +1,7 @@
 //! Sweeps: every combination of one or two varied inputs, each read and built as a case of its own.
 
 use gudgeon_core::BuildError;
+use gudgeon_core::quantity::with_decimal_point;
 use gudgeon_core::result::{Column, Figure, FigureKind, Note, NoteLevel, RunResult, Series, Value};
 use indexmap::IndexMap;
 
@@ -27,6 +28,7 @@ pub struct Sweep {
     pub to: String,
     /// Number of values between `from` and `to`, both included.
     #[serde(default)]
+    #[schemars(range(max = 100_000))]
     pub points: u32,
     /// How they are spaced.
     #[serde(default)]
@@ -59,7 +61,11 @@ fn number(text: &str) -> Option<(f64, &str)> {
     value.parse::<f64>().ok().filter(|v| v.is_finite()).map(|v| (v, unit.trim()))
 }
 
-fn values(s: &Sweep) -> Result<Vec<String>, BuildError> {
+/// The values of a sweep as a case would write them.
+///
+/// # Errors
+/// Values that are given twice or not at all, ends that are no numbers of one unit.
+pub(crate) fn values(s: &Sweep) -> Result<Vec<String>, BuildError> {
     let ends = !s.from.is_empty() || !s.to.is_empty() || s.points != 0;
     if !s.values.is_empty() {
         return if ends {
@@ -69,7 +75,11 @@ fn values(s: &Sweep) -> Result<Vec<String>, BuildError> {
         };
     }
     let (Some((a, unit)), Some((b, unit_b))) = (number(&s.from), number(&s.to)) else {
-        let field = if number(&s.from).is_none() { "from" } else { "to" };
+        let (field, text) = if number(&s.from).is_none() { ("from", &s.from) } else { ("to", &s.to) };
+        if let Some(pointed) = with_decimal_point(text) {
+            return Err(BuildError::at(field, format!("`{text}` is not a number with a unit"))
+                .help(format!("the decimal mark is a point: `\"{pointed}\"`")));
+        }
         return Err(BuildError::at(field, "a sweep needs `values`, or `from` and `to` with a number each")
             .help("for example `from = \"1 um\"`, `to = \"10 um\"`, `points = 10`"));
     };
@@ -120,12 +130,6 @@ pub fn legal(sweeps: &[Sweep]) -> Vec<BuildError> {
         errors.push(BuildError::at("sweeps", format!("{runs} runs are more than {MOST}")));
     }
     errors
-}
-
-/// The change that each sweep begins with, with its number.
-pub fn first_values(sweeps: &[Sweep]) -> Vec<(usize, String)> {
-    let first = |s: &Sweep| values(s).ok().and_then(|v| v.first().map(|v| format!("{}={v}", s.path)));
-    sweeps.iter().enumerate().filter_map(|(k, s)| first(s).map(|f| (k, f))).collect()
 }
 
 /// Name of a swept input as a column: the last part of its path.

@@ -12,6 +12,7 @@ use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::foresee;
 use crate::load::{Loaded, Report, advice, load};
 use crate::run::{Checked, Progress, RunError, check};
 use crate::scene::changed;
@@ -184,6 +185,10 @@ impl Comparisons {
     pub fn run(&self, progress: &mut dyn FnMut(Progress)) -> Result<Validated, RunError> {
         let scene = self.case.case.as_ref();
         let checks = &self.file.value.checks;
+        let unknown = foresee::compared(scene, checks);
+        if !unknown.is_empty() {
+            return Err(RunError::Refused(self.file.refuse(&unknown).render(false)));
+        }
         let mut known = Known::new();
         let mut done = Vec::new();
         for (k, c) in checks.iter().enumerate() {

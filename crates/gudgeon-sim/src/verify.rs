@@ -11,12 +11,10 @@
 use gudgeon_core::result::{Note, Refined, RunResult, Value, Verification};
 use indexmap::IndexMap;
 
-use crate::load::Setting;
+use crate::load::Refinement;
 use crate::run::{Progress, RunError};
 use crate::scene::{Scene, changed};
 
-/// Most levels of a group.
-const LEVELS: i32 = 3;
 /// A group is fine enough when the rest is at most this part of the uncertainty, for every result.
 const KNOWN: f64 = 0.25;
 /// Differences below this part of a value are rounding of the results, not trends.
@@ -37,16 +35,12 @@ pub(crate) fn verify(
     result: &mut RunResult,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<(), RunError> {
-    let settings = scene.settings();
-    let mut groups: IndexMap<&str, Vec<&Setting>> = IndexMap::new();
-    for s in &settings {
-        groups.entry(&s.group).or_default().push(s);
-    }
+    let groups = scene.refinements();
     let mut found = Verification::default();
     let total = groups.len().max(1) as f64;
-    for (k, (what, settings)) in groups.into_iter().enumerate() {
+    for (k, Refinement { what, levels }) in groups.into_iter().enumerate() {
         progress(Progress { phase: format!("refining the {what}"), fraction: k as f64 / total });
-        let levels = levels(scene, &settings, &result.results)?;
+        let levels = refine(scene, levels, &result.results)?;
         let mut unsettled = Vec::new();
         for (name, v) in &result.results {
             let series: Vec<f64> = std::iter::once(v.value)
@@ -63,21 +57,20 @@ pub(crate) fn verify(
             result.solver.notes.push(Note::caution(format!("unsettled.{}", what.replace(' ', "_")), text));
         }
         let levels = levels.into_iter().map(|(set, _)| set).collect();
-        found.refined.push(Refined { what: what.to_owned(), levels });
+        found.refined.push(Refined { what, levels });
     }
     result.verification = Some(found);
     Ok(())
 }
 
 /// Results at each level, until the rest is small for all of them.
-fn levels(
+fn refine(
     scene: &dyn Scene,
-    settings: &[&Setting],
+    levels: Vec<Vec<String>>,
     base: &Results,
 ) -> Result<Vec<(Vec<String>, Results)>, RunError> {
     let mut out: Vec<(Vec<String>, Results)> = Vec::new();
-    for level in 1..=LEVELS {
-        let set: Vec<String> = settings.iter().map(|s| s.at(level)).collect();
+    for set in levels {
         // A level beyond what the settings admit ends the refinement; that the first one fails is worth knowing.
         match changed(scene, &set).and_then(|s| s.once(&mut |_| {})) {
             Ok(r) => out.push((set, r.results)),
@@ -152,7 +145,7 @@ mod tests {
         assert!(!uncertainty(&[1.0, 2.0, 3.0], "N").1);
         assert!(!uncertainty(&[675.0, 1294.0, 1883.0], "bar").1);
         // Rounding is no trend.
-        assert_eq!(uncertainty(&[1.0, 1.0 + 1e-15, 1.0 - 1e-15], "N").1, true);
+        assert!(uncertainty(&[1.0, 1.0 + 1e-15, 1.0 - 1e-15], "N").1);
     }
 
     #[test]

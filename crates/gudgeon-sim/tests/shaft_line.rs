@@ -74,7 +74,12 @@ fn the_same_case_gives_the_same_bytes() {
 
 #[test]
 fn every_torsion_model_answers_the_compressor() {
-    let base = ["models.throw_inertia.model=mean", "range={ orders = 12 }", "limits={}"];
+    let base = [
+        "models.torsion={ model = \"orders\" }",
+        "models.throw_inertia.model=mean",
+        "range={ orders = 12 }",
+        "limits={}",
+    ];
     let with = |more: &[&str]| once("compressor-4-throw.toml", &[&base[..], more].concat());
     let orders = with(&[]);
     let amplitude = |r: &RunResult, shaft: usize| r.results[&format!("shaft{shaft}.torque_amplitude")].value;
@@ -281,4 +286,249 @@ fn gears_over_time_turn_as_one_and_carry_what_is_behind_them() {
     // A throw on a shaft that turns backwards.
     let told = refused_of("geared-train.toml", &["throws.0.at.0=wheel"]);
     assert!(told.contains("turns backwards"), "{told}");
+}
+
+/// The text of a note.
+fn note<'a>(r: &'a RunResult, topic: &str) -> &'a str {
+    r.solver.notes.iter().find(|n| n.topic == topic).map_or("", |n| n.text.as_str())
+}
+
+#[test]
+fn the_verdict_counts_every_speed_of_the_operating_range() {
+    let r = once("geared-train.toml", &[]);
+    let all = note(&r, "verdict");
+    assert!(all.contains("2 of 12 limits are not kept") && all.contains("from 600 to 2000 rpm"), "{all}");
+    // Neither shows at the mean speed.
+    let generator = note(&r, "verdict.stress_in_generator_shaft");
+    assert!(generator.contains("order 4") || generator.contains("order 2"), "{generator}");
+    let crank = note(&r, "verdict.stress_in_crank_4_5");
+    assert!(crank.contains("at 2000.00 rpm") && crank.contains("45.7"), "{crank}");
+    // The envelope is what the mean speed gives when it is set to where the envelope has its top.
+    let speed = r.results["envelope.shaft12.speed"].value;
+    assert!((speed - 760.0).abs() < 10.0, "{speed}");
+    let set = format!("speed=\"{speed:?} rpm\"");
+    let there = once("geared-train.toml", &[&set, "operating={ from = \"600 rpm\", to = \"600 rpm\" }"]);
+    let (top, own) = (
+        r.results["envelope.shaft12.stress_amplitude"].value,
+        there.results["shaft12.stress_amplitude"].value,
+    );
+    // The speed in rpm and back: rounding, at a top where the slope is zero.
+    assert!((top / own - 1.0).abs() < 1e-9, "{top} {own}");
+}
+
+#[test]
+fn a_dense_sweep_finds_no_more_than_the_verdict() {
+    let r = once("geared-train.toml", &[]);
+    let dense =
+        once("geared-train.toml", &["range.points=15001", "limits={}", "outputs.groups=[\"speed_range\"]"]);
+    let table = &dense.tables["speed_range"];
+    for n in 1..=13 {
+        let top = r.results[&format!("envelope.shaft{n}.torque_amplitude")].value;
+        let rows = &table.get(&format!("shaft{n}.torque_amplitude")).expect("a column").values;
+        let brute = rows.iter().copied().fold(0.0, f64::max);
+        // 0.093 rpm apart: of the narrowest peak (1 % damping at 600 rpm, 6 rpm wide) half a step misses (0.047/6)² < 1e-4; and
+        // nothing is above the verdict's by more than its own 1e-6.
+        assert!(top >= brute * (1.0 - 1e-6) && top <= brute * (1.0 + 1e-4), "{n}: {top} {brute}");
+    }
+}
+
+#[test]
+fn the_order_of_listing_changes_nothing() {
+    let text = std::fs::read_to_string(case("geared-train.toml")).expect("the case");
+    let text = text.split("[[checks]]").next().expect("a text");
+    // Blocks of inertias, shafts and drives the other way round.
+    let turned = |text: &str, head: &str| -> String {
+        let parts: Vec<&str> = text.split("\n\n").collect();
+        let places: Vec<usize> =
+            (0..parts.len()).filter(|i| parts[*i].trim_start().starts_with(head)).collect();
+        let mut new = parts.clone();
+        for (i, j) in places.iter().zip(places.iter().rev()) {
+            new[*i] = parts[*j];
+        }
+        new.join("\n\n")
+    };
+    let back =
+        ["[[inertias]]", "[[shafts]]", "[[drives]]"].iter().fold(text.to_owned(), |t, h| turned(&t, h));
+    let folder = std::env::temp_dir().join("gudgeon-shaft-line-backwards");
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let file = folder.join("backwards.toml");
+    std::fs::write(&file, back).expect("written");
+    let c = check(&file, &[]).unwrap_or_else(|r| panic!("{r}"));
+    let there = run(&c, &mut |_| {}).expect("runs");
+    let here = once("geared-train.toml", &[]);
+    // Numbers of names turn round: 12 shafts and 13 inertias, the damper stays the last of both.
+    let renamed = |name: &str| -> String {
+        let of = |part: &str| {
+            for (head, n) in [("shaft", 12), ("inertia", 13)] {
+                if let Some(Ok(k)) = part.strip_prefix(head).map(str::parse::<usize>) {
+                    return format!("{head}{}", if k <= n { n + 1 - k } else { k });
+                }
+            }
+            part.to_owned()
+        };
+        name.split('.').map(of).collect::<Vec<_>>().join(".")
+    };
+    assert_eq!(here.results.len(), there.results.len());
+    for (name, v) in &here.results {
+        let other = there.results.get(&renamed(name)).unwrap_or_else(|| panic!("{name}"));
+        // Signs of torques in a shaft do not turn, for its ends keep their names. A residual is rounding itself; torques that
+        // cancel are judged by the largest of the shafts.
+        let scale = if name == "holzer_residual" { 1.0 } else { v.value.abs() };
+        let slack = if v.unit == "N m" { 1e-12 * 3000.0 } else { 1e-15 };
+        assert!((v.value - other.value).abs() <= 1e-9 * scale + slack, "{name}: {} {}", v.value, other.value);
+    }
+}
+
+#[test]
+fn a_resonance_narrower_than_the_grid_is_found() {
+    // A pulsating torque on the second of two inertias behind a viscously damped shaft, damping ratio 5e-5: at 1000 rpm the peak
+    // is 0.1 rpm wide, on a grid of 12.5 rpm. Torque in the shaft by the torque on J2: k φ = J1/(J1 + J2) T V, V of one inertia.
+    let (j1, j2, zeta, torque) = (2.0_f64, 1.0_f64, 5e-5_f64, 30.0_f64);
+    let j = j1 * j2 / (j1 + j2);
+    // Order 3 meets the mode at 1003.7 rpm, off the grid.
+    let w = 3.0 * 1003.7 * std::f64::consts::PI / 30.0;
+    let (k, c) = (j * w * w, 2.0 * zeta * j * w);
+    let text = format!(
+        r#"scene = "shaft_line"
+speed = "900 rpm"
+[operating]
+from = "600 rpm"
+to = "1800 rpm"
+[[inertias]]
+name = "a"
+inertia = {j1}
+[[inertias]]
+name = "b"
+inertia = {j2}
+[[shafts]]
+name = "ab"
+from = "a"
+to = "b"
+stiffness = {k:?}
+damping = {c:?}
+[[drives]]
+at = "b"
+drive = {{ model = "harmonics", orders = [{{ order = 3, amplitude = {torque} }}] }}
+[models]
+torsion = {{ model = "orders" }}
+[[limits.torque]]
+shaft = "ab"
+amplitude = 100
+source = "a test"
+"#
+    );
+    let folder = std::env::temp_dir().join("gudgeon-shaft-line-narrow");
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let file = folder.join("narrow.toml");
+    std::fs::write(&file, text).expect("written");
+    let c = check(&file, &[]).unwrap_or_else(|r| panic!("{r}"));
+    let r = run(&c, &mut |_| {}).expect("runs");
+    let found = r.results["envelope.shaft1.torque_amplitude"].value;
+    // Spring and damper carry √(1 + (2 ζ r)²) of the spring alone: 5e-9 at the peak.
+    let exact = j1 / (j1 + j2) * torque * 0.5 / (zeta * (1.0 - zeta * zeta).sqrt());
+    assert!((found / exact - 1.0).abs() < 1e-6, "{found} {exact}");
+    assert!((r.results["envelope.shaft1.speed"].value / 1003.7 - 1.0).abs() < 1e-7);
+    assert!(note(&r, "verdict.torque_in_ab").contains("order 3"));
+    // Without any damping it has no bound, which is said and stops nothing.
+    let c = check(&file, &["shafts.0.damping=0".into()]).unwrap_or_else(|r| panic!("{r}"));
+    let r = run(&c, &mut |_| {}).expect("runs");
+    assert!(note(&r, "verdict.torque_in_ab").contains("without bound"), "{:?}", r.solver.notes);
+    assert_eq!(r.results["limits_broken"].value, 1.0);
+}
+
+#[test]
+fn load_steps_are_read_like_set_and_judged_each() {
+    let steps = |set: &str| format!("load_steps=[{{ name = \"head ends open\", set = [{set}] }}]");
+    let open = steps("\"throws.0.ends.0.cylinder_pressure.held_open=true\"");
+    let set = [open.as_str(), "limits.separation=[]"];
+    let r = once("compressor-4-throw.toml", &set);
+    assert_eq!(r.tables["load_steps"].axis.values, [1.0, 2.0]);
+    assert_eq!(r.solver.counters["lines_built"], 2, "each load step is built once");
+    // What the step gives is what the case gives when it is changed.
+    let alone = once(
+        "compressor-4-throw.toml",
+        &["throws.0.ends.0.cylinder_pressure.held_open=true", "limits.separation=[]"],
+    );
+    let column = r.tables["load_steps"].get("stress in crank 2-3").expect("a limit");
+    let own = alone.results["shaft5.stress_amplitude"].value / 35.0;
+    assert!((column.values[1] / own - 1.0).abs() < 1e-9, "{} {own}", column.values[1]);
+    for (set, word) in [
+        ("\"throws.0.ends.0.cylinder_pressure.held_opn=true\"", "held_open"),
+        ("\"drives.0.drive.rated.torque=\\\"5 m\\\"\"", "load step `head ends open`"),
+        ("\"limits={}\"", "one for all load steps"),
+        ("\"shafts.1.to=motor\"", "not connected"),
+    ] {
+        let told = refused(&[&steps(set)]);
+        assert!(told.contains(word) && told.contains("load_steps.0.set"), "{set}: {told}");
+    }
+    let told = refused(&["load_steps=[{ name = \"a\" }, { name = \"a\" }]"]);
+    assert!(told.contains("another load step"), "{told}");
+}
+
+#[test]
+fn orders_say_what_they_leave_out() {
+    let r = once("compressor-4-throw.toml", &[]);
+    // Time integration with an independent program (SciPy): 9666 N m.
+    assert!((r.results["shaft3.torque_max"].value / 9666.0 - 1.0).abs() < 1e-3);
+    assert!(note(&r, "left_out").is_empty());
+    let r =
+        once("compressor-4-throw.toml", &["models.torsion={ model = \"orders\" }", "range={}", "limits={}"]);
+    assert!(note(&r, "left_out").contains("harmonic_balance"), "{:?}", r.solver.notes);
+    // Nothing varies: the default costs what `orders` costs.
+    let set = ["models.throw_inertia.model=mean", "throws=[]", "range={}", "limits={}", "conventions={}"];
+    let [plain, whole] = ["orders", "harmonic_balance"].map(|m| {
+        let model = format!("models.torsion={{ model = \"{m}\" }}");
+        once("compressor-4-throw.toml", &[&set[..], &[model.as_str()]].concat())
+    });
+    assert_eq!(plain.solver.counters["linear_solutions"], whole.solver.counters["linear_solutions"]);
+    assert_eq!(plain.results, whole.results);
+}
+
+#[test]
+fn one_definition_of_separation() {
+    let r = once(
+        "geared-train.toml",
+        &[
+            "limits={ separation = [{ margin = \"5 %\", orders = [1.5], source = \"x\" }] }",
+            "range.interference_orders=1.5",
+            "operating={ from = \"1800 rpm\", to = \"1800 rpm\" }",
+        ],
+    );
+    let distance = r.results["distance_to_critical"].value.abs();
+    let used = r.results["worst_utilisation"].value;
+    // The nearest of the orders 0.5, 1 and 1.5 is that of the limit, or the limit is farther.
+    assert!(5.0 / used >= distance * (1.0 - 1e-12), "{used} {distance}");
+    let critical = r.results["nearest_critical_speed"].value;
+    assert!((distance - 100.0 * (critical / 1800.0 - 1.0).abs()).abs() < 1e-9, "{distance} {critical}");
+    // A critical speed within the range counts as zero, and is accepted where the vibration keeps its limits.
+    let kept = "limits={ separation = [{ margin = \"5 %\", orders = [4.5], source = \"x\" }], stress = [{ amplitude = \"400 MPa\", source = \"y\" }] }";
+    let r = once("geared-train.toml", &[kept]);
+    assert_eq!(r.results["limits_broken"].value, 0.0, "{:?}", r.solver.notes);
+    assert!(
+        r.solver.notes.iter().any(|n| n.topic.starts_with("verdict.accepted.mode")),
+        "{:?}",
+        r.solver.notes
+    );
+    let without = once(
+        "geared-train.toml",
+        &["limits={ separation = [{ margin = \"5 %\", orders = [4.5], source = \"x\" }] }"],
+    );
+    assert_eq!(without.results["limits_broken"].value, 1.0, "no limit says that the vibration is harmless");
+}
+
+#[test]
+fn the_speed_that_is_held_says_where() {
+    let r = once(
+        "compressor-4-throw.toml",
+        &["drives=[]", "range={}", "limits={}", "outputs.groups=[\"response\"]"],
+    );
+    assert!(note(&r, "balance").contains("balance_at"));
+    // Four throws' work through the motor shaft when the motor holds the speed.
+    let set =
+        ["drives=[]", "range={}", "limits={}", "balance_at=motor", "models.torsion={ model = \"orders\" }"];
+    let r = once("compressor-4-throw.toml", &set);
+    let mean = -4.0 * r.results["throw1.mean_torque"].value;
+    assert!((r.results["shaft1.mean_torque"].value / mean - 1.0).abs() < 1e-12);
+    assert!(refused(&["balance_at=moter"]).contains("did you mean `motor`"));
+    assert!(refused(&["throws.0.ends.0.cylinder_pressure.exponent=17"]).contains("between 1"));
 }

@@ -80,6 +80,10 @@ pub struct Piston {
     own_moves: [Vec<f64>; 2],
     beside: [Vec<SideLoads>; 2],
     work: Linear,
+    /// Forces on both edges that the balance leaves for a given acceleration \[N\].
+    inertia: [f64; 2],
+    /// Time \[s\] in which an elastic shape without load comes back to rest.
+    pub relaxation: f64,
     /// Newton steps of balances so far.
     pub newton_steps: u64,
 }
@@ -221,6 +225,8 @@ impl Piston {
             own_rates,
             beside,
             work: Linear::new(n),
+            inertia: [0.0; 2],
+            relaxation: RELAXATION,
             newton_steps: 0,
         }
     }
@@ -296,11 +302,12 @@ impl Piston {
         let (force, moment) = self.others(now, w, loads, None);
         let edges = self.body.on_edges(force, moment);
         for k in 0..2 {
-            r[k] = edges[k] + loads.iter().map(|l| l.film[k] + l.contact[k]).sum::<f64>();
+            r[k] = edges[k] + loads.iter().map(|l| l.film[k] + l.contact[k]).sum::<f64>() - self.inertia[k];
         }
         for side in 0..2 {
             for (m, k) in self.own(side).enumerate() {
-                r[k] = loads[side].elastic[m] - self.sides[side].stiffness[m] * (x[k] + RELAXATION * w[k]);
+                r[k] =
+                    loads[side].elastic[m] - self.sides[side].stiffness[m] * (x[k] + self.relaxation * w[k]);
             }
         }
     }
@@ -377,7 +384,7 @@ impl Piston {
                     self.slope[(own.start + k) * n + column] += s[4 + k];
                 }
                 if m >= 2 {
-                    self.slope[column * n + column] -= RELAXATION * self.sides[side].stiffness[m - 2];
+                    self.slope[column * n + column] -= self.relaxation * self.sides[side].stiffness[m - 2];
                 }
             }
         }
@@ -537,6 +544,63 @@ impl Piston {
                 Ok(())
             }
         }
+    }
+
+    /// Rates of all coordinates at which both edges have the accelerations given \[m/s²\]. `w` holds a guess of the rates and takes them.
+    ///
+    /// # Errors
+    /// A film that cannot be solved, no balance.
+    pub fn rates_under(
+        &mut self,
+        now: &Instant,
+        x: &[f64],
+        acceleration: [f64; 2],
+        w: &mut [f64],
+    ) -> Result<(), EvalError> {
+        self.place(now, x)?;
+        let m = self.body.matrix();
+        self.inertia = [0, 1].map(|k| m[k][0] * acceleration[0] + m[k][1] * acceleration[1]);
+        let outcome = self.balance(now, x, w, 0);
+        self.inertia = [0.0; 2];
+        outcome
+    }
+
+    /// Smallest gap on each side \[m\] at the coordinates `x`; the present place stays.
+    ///
+    /// # Errors
+    /// A gap that is none.
+    pub fn gaps(&mut self, x: &[f64], speed: f64) -> Result<[f64; 2], EvalError> {
+        let mut gaps = [0.0; 2];
+        for (side, gap) in gaps.iter_mut().enumerate() {
+            let own = self.own(side);
+            *gap = self.sides[side].gap_at([x[0], x[1]], &x[own], speed)?;
+        }
+        Ok(gaps)
+    }
+
+    /// Smallest gap where solid contact is summed, less the range of contact, on each side \[m\] at the coordinates `x`.
+    pub fn contact_gaps(&mut self, x: &[f64]) -> [f64; 2] {
+        [0, 1].map(|side: usize| {
+            let own = self.own(side);
+            self.sides[side].contact_gap([x[0], x[1]], &x[own])
+        })
+    }
+
+    /// Oil that leaves both sides at the present place and the rates `w` \[m³/s\]: over the upper edges, over the lower edges, over the flanks.
+    ///
+    /// # Errors
+    /// A film that cannot be solved.
+    pub fn oil_flow(&mut self, now: &Instant, w: &[f64]) -> Result<[f64; 3], EvalError> {
+        let mut oil = [0.0; 3];
+        for side in 0..2 {
+            let own = self.own(side);
+            let rates = &mut self.own_rates[side];
+            rates[..2].copy_from_slice(&w[..2]);
+            rates[2..].copy_from_slice(&w[own]);
+            let flow = self.sides[side].oil_flow(now.speed, now.mu, rates)?;
+            oil.iter_mut().zip(flow).for_each(|(o, f)| *o += f);
+        }
+        Ok(oil)
     }
 
     /// Derivatives of what [`Piston::rates`] just found, at the same arguments: of the rates (`n`), then of the accelerations (2, with inertia), with
@@ -782,8 +846,7 @@ impl Piston {
     }
 }
 
-/// Time \[s\] in which an elastic shape without load comes back to rest: a little inner damping, without which nothing would hold a surface
-/// under a cavity.
+/// [`Piston::relaxation`] of a piston that is not told another: a little inner damping, without which nothing would hold a surface under a cavity.
 const RELAXATION: f64 = 1e-6;
 /// Part of the gap by which a coordinate is changed for a difference quotient: the forces change by three times as much, the films are
 /// solved to 1e-9.

@@ -386,6 +386,18 @@ impl Side {
         self.unfold(&self.now.h)
     }
 
+    /// Gap \[m\] below which the film is held open; none when that depends on more than the gap.
+    #[must_use]
+    pub fn held_open_below(&self) -> Option<f64> {
+        if self.rough.is_smooth() { Some(2.0 * self.floor) } else { self.rough.held_below() }
+    }
+
+    /// By how much the film of the place set last is held open at most \[m\].
+    #[must_use]
+    pub fn held_open(&self) -> f64 {
+        self.now.flow.film.iter().zip(&self.now.h).fold(0.0, |m, (film, h)| m.max(film - h))
+    }
+
     fn unfold(&self, f: &[f64]) -> Vec<f64> {
         let mut all = f.to_vec();
         if self.is_half {
@@ -845,7 +857,10 @@ impl Side {
             let at = [i == 0, i + 1 == nx, j == 0, j + 1 == ny];
             let edges = self.film.grid().edges;
             if let Some(e) = (0..4).find(|&e| at[e] && edges[e] == Edge::Pressure) {
-                out[e] += r;
+                // A flank at the pressure of the cavity beside it gives no oil to a gap that opens.
+                let inner = (i.clamp(1, nx - 2), j.clamp(1, if self.is_half { ny - 1 } else { ny - 2 }));
+                let dry = e >= 2 && self.p_cav >= 0.0 && self.open[inner.1 * nx + inner.0] == 0.0;
+                out[e] += if dry { r.max(0.0) } else { *r };
             }
         }
         out
@@ -915,33 +930,72 @@ impl Side {
         out.film = found;
     }
 
+    /// Smallest gap at the nodes \[m\] at the displacements `e` of both edges and the elastic amplitudes `q`; the present place stays.
+    ///
+    /// # Errors
+    /// A gap that is none.
+    pub fn gap_at(&mut self, e: [f64; 2], q: &[f64], speed: f64) -> Result<f64, EvalError> {
+        self.shape_gap(true, e, q, speed)?;
+        Ok(self.trial.smallest)
+    }
+
+    /// A bound from below of the gap where contact is summed.
+    fn least_contact_gap(&self, e: [f64; 2], q: &[f64]) -> f64 {
+        let (top, bottom) = (self.sign * e[0], self.sign * e[1]);
+        self.clearance + self.least_drop.min(0.0) + top.min(bottom).min(0.0)
+            - q.iter().map(|q| 2.0 * q.abs()).sum::<f64>()
+    }
+
+    /// Smallest gap where contact is summed, less the range of contact \[m\]; a bound from below of it while that is positive. Infinite for
+    /// surfaces that do not touch.
+    pub fn contact_gap(&mut self, e: [f64; 2], q: &[f64]) -> f64 {
+        let range = self.contact.range();
+        if range <= 0.0 {
+            return f64::INFINITY;
+        }
+        let least = self.least_contact_gap(e, q) - range;
+        if least > 0.0 {
+            return least;
+        }
+        let mut smallest = f64::INFINITY;
+        for k in 0..self.rows.len() {
+            self.contact_row(k, e, q);
+            smallest = self.contact_work[0].iter().fold(smallest, |a, &h| a.min(h));
+        }
+        smallest - range
+    }
+
+    /// The gap along row `k` of contact, into the first of `contact_work`.
+    fn contact_row(&mut self, k: usize, e: [f64; 2], q: &[f64]) {
+        let points = self.contact_cos.len();
+        let here = between(self.sign * e[0], self.sign * e[1], self.rows[k]);
+        for (i, h) in self.contact_work[0].iter_mut().enumerate() {
+            *h = self.clearance + here * self.contact_cos[i];
+            if !self.contact_drop.is_empty() {
+                *h += self.contact_drop[k * points + i];
+            }
+            for (m, q) in q.iter().enumerate() {
+                *h += q * self.contact_shapes[(m * self.rows.len() + k) * points + i];
+            }
+        }
+    }
+
     /// Solid contact: forces on both edges, normal force, and its moment arm.
     fn contact_loads(&mut self, e: [f64; 2], q: &[f64]) -> [f64; 4] {
         let range = self.contact.range();
-        let (top, bottom) = (self.sign * e[0], self.sign * e[1]);
-        let least = self.clearance + self.least_drop.min(0.0) + top.min(bottom).min(0.0)
-            - q.iter().map(|q| 2.0 * q.abs()).sum::<f64>();
         let mut sum = [0.0; 4];
-        if range <= 0.0 || least >= range {
+        if range <= 0.0 || self.least_contact_gap(e, q) >= range {
             return sum;
         }
         self.contact_sums += 1;
         let points = self.contact_cos.len();
         let n = self.contact_grid.intervals;
         let doubled = points < n + 1;
-        let [h, p] = &mut self.contact_work;
         let step = self.contact_grid.pitch * self.panel.width() / n as f64;
-        for (k, &s) in self.rows.iter().enumerate() {
-            let here = between(top, bottom, s);
-            for (i, h) in h.iter_mut().enumerate() {
-                *h = self.clearance + here * self.contact_cos[i];
-                if !self.contact_drop.is_empty() {
-                    *h += self.contact_drop[k * points + i];
-                }
-                for (m, q) in q.iter().enumerate() {
-                    *h += q * self.contact_shapes[(m * self.rows.len() + k) * points + i];
-                }
-            }
+        for k in 0..self.rows.len() {
+            self.contact_row(k, e, q);
+            let s = self.rows[k];
+            let [h, p] = &mut self.contact_work;
             if h.iter().all(|h| *h >= range) {
                 continue;
             }

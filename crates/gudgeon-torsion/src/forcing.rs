@@ -135,6 +135,25 @@ impl Excitation {
         }
     }
 
+    /// The sum of [`Excitation::parts`] at `speed` \[rad/s\], the means of drag and drives included.
+    pub(crate) fn of_parts(&mut self, parts: &[Self; 2], line: &Line, speed: f64) {
+        let square = Complex::new(speed * speed, 0.0);
+        let [fixed, masses] = parts;
+        self.mean.clone_from(&fixed.mean);
+        self.at_speed(line, speed);
+        self.orders.clone_from(&fixed.orders);
+        for o in &masses.orders {
+            let at = self.orders.partition_point(|p| p.order < o.order - SAME);
+            if self.orders.get(at).is_none_or(|p| p.order > o.order + SAME) {
+                self.orders
+                    .insert(at, Order { order: o.order, torque: vec![Complex::default(); line.nodes.len()] });
+            }
+            for (t, m) in self.orders[at].torque.iter_mut().zip(&o.torque) {
+                *t = *t + *m * square;
+            }
+        }
+    }
+
     /// The torques that do not depend on the speed, and those of the moving masses at unit speed: the torque at speed Ω is the first
     /// plus Ω² times the second. Means are those of the gas alone.
     #[must_use]

@@ -12,6 +12,8 @@
 
 pub mod coupling;
 mod crank_end;
+pub mod critical;
+pub mod cycle;
 pub mod damper;
 pub mod drive;
 mod dynamics;
@@ -19,7 +21,6 @@ pub mod eigen;
 pub mod forcing;
 pub mod natural_frequencies;
 pub mod shaft;
-pub mod speed_range;
 pub mod steady;
 pub mod sweep;
 pub mod throw_inertia;

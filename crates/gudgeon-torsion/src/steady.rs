@@ -22,10 +22,16 @@ pub struct Steady {
     pub speed: f64,
     /// Mean torques in the links \[N m\].
     pub mean_torque: Vec<f64>,
-    /// Mean angles of the nodes against the one that balances \[rad\].
+    /// Mean angles of the nodes against what balances \[rad\].
     pub mean_angle: Vec<f64>,
-    /// Mean torque that the balancing node adds \[N m\].
+    /// Mean torque \[N m\] that holds the speed, at the reference shaft.
     pub balance_torque: f64,
+    /// Shares of the nodes in that torque, by node.
+    balance: Vec<f64>,
+    /// What excites it at any speed: see [`Excitation::parts`].
+    parts: [Excitation; 2],
+    /// Damping against the ground without that of the drives, by position.
+    drag: Vec<f64>,
     varying: bool,
     work: Work,
     scratch: [Vec<Complex>; 3],
@@ -67,37 +73,88 @@ impl Steady {
     /// Mean torques, excitation and tree.
     ///
     /// # Errors
-    /// As [`Tree::new`].
+    /// As [`Tree::new`]; shares of the balance that are not of this line.
     pub fn new(ctx: &TorsionCtx<'_>) -> Result<Self, BuildError> {
-        Self::with(ctx, Excitation::new(ctx.line, ctx.speed, ctx.orders))
-    }
-
-    /// [`Steady::new`] with an excitation that is known already.
-    pub(crate) fn with(ctx: &TorsionCtx<'_>, excitation: Excitation) -> Result<Self, BuildError> {
         let line = ctx.line.clone();
-        let mut tree = Tree::new(&line)?;
+        let tree = Tree::new(&line)?;
         let n = tree.len();
-        if ctx.balance >= n {
-            return Err(BuildError::at("balance", "the inertia that balances does not exist"));
+        let sum: f64 = ctx.balance.iter().sum();
+        if ctx.balance.len() > n || (sum - 1.0).abs() > 1e-9 || ctx.balance.iter().any(|s| !s.is_finite()) {
+            return Err(BuildError::at(
+                "balance",
+                "the shares of the torque that balances do not add up to 1",
+            ));
         }
-        let (mean_torque, mean_angle, balance_torque) =
-            mean_state(&line, &tree, &excitation.mean, ctx.balance);
-        tree.linearise(&line, 0.0, &mean_torque);
-        drive_damping(&line, &mut tree, ctx.speed);
-        let varying = line.links.iter().any(|l| l.coupling.depends_on_frequency());
+        let mut balance = ctx.balance.to_vec();
+        balance.resize(n, 0.0);
         let z = vec![Complex::default(); n];
-        Ok(Self {
-            tree,
-            excitation,
+        let mut steady = Self {
+            varying: line.links.iter().any(|l| l.coupling.depends_on_frequency()),
+            excitation: Excitation::default(),
             speed: ctx.speed,
-            mean_torque,
-            mean_angle,
-            balance_torque,
-            varying,
+            mean_torque: Vec::new(),
+            mean_angle: Vec::new(),
+            balance_torque: 0.0,
+            balance,
+            parts: Excitation::parts(&line, ctx.orders),
+            drag: tree.damping.clone(),
             work: Work::new(n),
             scratch: [z.clone(), z.clone(), z],
+            tree,
             line,
-        })
+        };
+        steady.set_speed(ctx.speed);
+        Ok(steady)
+    }
+
+    /// Goes to another mean speed \[rad/s\].
+    pub fn set_speed(&mut self, speed: f64) {
+        self.speed = speed;
+        self.excitation.of_parts(&self.parts, &self.line, speed);
+        self.linearise();
+    }
+
+    /// Leaves the torque of the moving masses out of the excitation, and gives it every multiple of `base` up to the harmonic `most`,
+    /// also where nothing excites it.
+    pub(crate) fn whole_orders_without_masses(&mut self, base: f64, most: usize) {
+        let n = self.line.nodes.len();
+        let [fixed, masses] = &mut self.parts;
+        masses.orders.clear();
+        let old = std::mem::take(&mut fixed.orders);
+        fixed.orders = (1..=most)
+            .map(|k| Order { order: k as f64 * base, torque: vec![Complex::default(); n] })
+            .collect();
+        for o in old {
+            let k = (o.order / base).round() as usize;
+            if (1..=most).contains(&k) {
+                fixed.orders[k - 1].torque = o.torque;
+            }
+        }
+        self.set_speed(self.speed);
+    }
+
+    /// The mean state under the means of the excitation, and the tree about it.
+    fn linearise(&mut self) {
+        self.tree.linearise(&self.line, 0.0, &[]);
+        self.tree.damping.clone_from(&self.drag);
+        let mean = std::mem::take(&mut self.excitation.mean);
+        self.take_mean(&mean);
+        self.excitation.mean = mean;
+        self.tree.linearise(&self.line, 0.0, &self.mean_torque);
+        drive_damping(&self.line, &mut self.tree, self.speed);
+    }
+
+    /// The mean state under mean torques by node; the tree stays as it is.
+    pub(crate) fn take_mean(&mut self, mean: &[f64]) {
+        (self.mean_torque, self.mean_angle, self.balance_torque) =
+            mean_state(&self.line, &self.tree, mean, &self.balance);
+    }
+
+    /// Takes the stiffness of the links at angular frequency `omega` \[rad/s\].
+    pub(crate) fn at_frequency(&mut self, omega: f64) {
+        if self.varying {
+            self.tree.linearise(&self.line, omega, &self.mean_torque);
+        }
     }
 
     /// Response to torques of one order (phasors by node).
@@ -106,9 +163,7 @@ impl Steady {
     /// An undamped resonance (Fatal).
     pub fn respond(&mut self, o: &Order) -> Result<OrderResponse, EvalError> {
         let omega = o.order * self.speed;
-        if self.varying {
-            self.tree.linearise(&self.line, omega, &self.mean_torque);
-        }
+        self.at_frequency(omega);
         let t = &self.tree;
         let n = t.len();
         let [f, x, q] = &mut self.scratch;
@@ -151,20 +206,14 @@ impl Steady {
     }
 }
 
-/// Mean torques in the links, angles against the balancing node (against the ground where several places are held) and its torque, for
-/// mean torques by node.
-pub(crate) fn mean_state(
-    line: &Line,
-    tree: &Tree,
-    mean: &[f64],
-    balance: usize,
-) -> (Vec<f64>, Vec<f64>, f64) {
+/// Mean torques in the links, angles against the mean of the nodes that balance (against the ground where several places are held) and
+/// the torque that balances at the reference shaft, for mean torques by node.
+fn mean_state(line: &Line, tree: &Tree, mean: &[f64], balance: &[f64]) -> (Vec<f64>, Vec<f64>, f64) {
     let n = tree.len();
     let mut f: Vec<f64> = (0..n).map(|p| mean[tree.node[p]] * tree.ratio[p]).collect();
-    let at = tree.position[balance];
     let total: f64 = f.iter().sum();
     let held = tree.ground.iter().filter(|g| **g != 0.0).count();
-    let balance_torque = if held > 0 { 0.0 } else { -total / tree.ratio[at] };
+    let balance_torque = if held > 0 { 0.0 } else { -total };
     if held > 1
         && let Some(answer) = held_state(line, tree, &f)
     {
@@ -173,7 +222,7 @@ pub(crate) fn mean_state(
     // A line that is held at one place takes up the rest there.
     match tree.ground.iter().position(|g| *g != 0.0) {
         Some(g) => f[g] -= total,
-        None => f[at] -= total,
+        None => (0..n).for_each(|p| f[p] -= total * balance[tree.node[p]]),
     }
     let mut torque = vec![0.0; line.links.len()];
     let mut twist = vec![0.0; n];
@@ -194,7 +243,7 @@ pub(crate) fn mean_state(
             phi[p] = phi[tree.parent[p]] + twist[p];
         }
     }
-    let zero = phi[at];
+    let zero: f64 = (0..n).map(|p| balance[tree.node[p]] * phi[p]).sum();
     let mut angle = vec![0.0; n];
     for p in 0..n {
         angle[tree.node[p]] = (phi[p] - zero) * tree.ratio[p];

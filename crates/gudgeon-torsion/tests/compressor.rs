@@ -500,7 +500,7 @@ fn a_free_throw_keeps_its_energy() {
             speed: 100.0,
             orders: 1.0,
             period: 2.0 * PI,
-            balance: 0,
+            balance: &[1.0],
             angles: &[0.0],
             speeds: &[100.0],
             times: &times,
@@ -618,5 +618,54 @@ fn phasors_are_what_the_lanes_and_the_tree_say() {
     for p in 0..7 {
         let a = out.orders[0].angle[tree.node[p]];
         assert!((x[p].re - a[0]).abs() < 1e-18 && (x[p].im - a[1]).abs() < 1e-18);
+    }
+}
+
+#[test]
+fn a_model_at_another_speed_answers_as_if_it_were_built_there() {
+    let l = line(Gas::M3, &Exact {}, Some((2000.0, -20.0)), [0.0, PI, PI / 2.0, 1.5 * PI]);
+    let specs: [&dyn TorsionSpec; 3] = [&Orders {}, &Modal::default(), &HarmonicBalance::default()];
+    for spec in specs {
+        let mut moving = spec.build(&context(&l, 60.0, 12.0, &[], &[])).expect("builds");
+        for speed in [60.0, 61.0, 104.72, 40.0] {
+            let mut out = TorsionOut::default();
+            moving.set_speed(speed).expect("periodic");
+            moving.run(&mut out).expect("runs");
+            let there = run(spec, &context(&l, speed, 12.0, &[], &[]));
+            let scale =
+                there.orders.iter().flat_map(|o| &o.torque).map(|t| t[0].hypot(t[1])).fold(0.0, f64::max);
+            for (a, b) in out.orders.iter().zip(&there.orders) {
+                for (a, b) in a.torque.iter().zip(&b.torque) {
+                    // Harmonic balance ends at 1e-10 of the exciting torques, which a resonance magnifies some ten times.
+                    assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 1e-8 * scale, "{speed}: {a:?} {b:?}");
+                }
+            }
+        }
+    }
+    let mut time = RungeKutta { step: quantity(1e-4), look_ahead: false }
+        .build(&context(&l, 60.0, 12.0, &[60.0; 7], &[0.01]))
+        .expect("builds");
+    assert!(time.set_speed(61.0).is_err(), "a motion over time has no mean speed");
+}
+
+#[test]
+fn critical_speeds_are_natural_frequencies_by_orders() {
+    let l = line(Gas::M3, &Mean {}, None, [0.0; 4]);
+    let mut steady =
+        gudgeon_torsion::steady::Steady::new(&context(&l, 100.0, 12.0, &[], &[])).expect("builds");
+    let frequencies = steady.frequencies(40).expect("converges");
+    let (from, to) = (30.0, 130.0);
+    let found = steady.critical_speeds(&[3.0, 8.0], from, to, 10);
+    let mut expected: Vec<(f64, usize)> = Vec::new();
+    for o in [3.0, 8.0] {
+        expected.extend(frequencies.iter().enumerate().map(|(m, w)| (w / o, m + 1)));
+    }
+    expected.retain(|(w, _)| *w >= from && *w <= to);
+    expected.sort_by(|a, b| a.0.total_cmp(&b.0));
+    assert_eq!(found.len(), expected.len());
+    for (c, (speed, mode)) in found.iter().zip(expected) {
+        assert_eq!(c.mode, mode);
+        // Counts and QL iteration agree to rounding of the largest eigenvalue.
+        assert!(close(c.speed, speed, 1e-12), "{} {speed}", c.speed);
     }
 }

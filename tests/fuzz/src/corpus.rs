@@ -16,6 +16,8 @@ const SHORTER: &[(&str, &[&str])] = &[
     ("ea111-1400", &["solver.intervals_along=20", "solver.intervals_across=16"]),
     ("turbo-diesel-120-skirt", &["solver.intervals_along=20", "solver.intervals_across=16"]),
     ("zhu-motored-1000", &["solver.intervals_along=20", "solver.intervals_across=16"]),
+    // Three periods of a cavity on 800 panels.
+    ("squeeze-plates", &["rig.panels=200", "rig.motion.steps=1000"]),
     // A published transient of 5 s, of which a tenth shows the same.
     ("compressor-4-throw-as-published", &["time.duration=0.5 s"]),
 ];

@@ -142,10 +142,8 @@ fn attempt(folder: &Path, job: &Job) -> Outcome {
             Err(e) => vec![format!("the second run failed: {e}")],
         };
     }
-    if job.refine
-        && let Some(finer) = one_level_finer(&checked, &job.coarse)
-    {
-        o.moved = moved(&result, &finer);
+    if job.refine {
+        o.moved = unsettled(&checked, &result, &job.coarse);
     }
     o
 }
@@ -188,14 +186,12 @@ fn judge(checked: &Checked, r: &RunResult, o: &mut Outcome) {
     o.absurd = bounds::broken(&checked.case.resolved(), r);
 }
 
-/// The case with all of its numerical settings refined by one level; none where it has none, or where that cannot be run.
-fn one_level_finer(c: &Checked, coarse: &[String]) -> Option<RunResult> {
-    let settings = c.case.settings();
-    let set: Vec<String> = settings.iter().filter(|s| !coarse.contains(&s.path)).map(|s| s.at(1)).collect();
-    if set.is_empty() {
-        return None;
-    }
-    run(&c.with(&set).ok()?).ok()
+/// Results that move when a group of numerical settings is refined by one level. A level that cannot be run says nothing here.
+fn unsettled(c: &Checked, r: &RunResult, coarse: &[String]) -> Vec<String> {
+    let fine = |set: &&Vec<String>| !set.iter().any(|s| coarse.iter().any(|path| s.contains(path.as_str())));
+    let refinements = c.case.refinements();
+    let first = refinements.iter().filter_map(|group| group.levels.first()).filter(fine);
+    first.filter_map(|set| run(&c.with(set).ok()?).ok()).flat_map(|finer| moved(r, &finer)).collect()
 }
 
 /// What two runs of one case do not share, wall times apart.

@@ -13,6 +13,7 @@ mod pin;
 mod piston_secondary;
 mod reference;
 mod rigs;
+mod sampling;
 mod tomanik;
 mod validation;
 mod zottin;

@@ -86,6 +86,102 @@ fn the_motion_that_is_found_is_the_periodic_one() {
     assert!(off < 1e-9, "{off:e} m");
 }
 
+#[test]
+fn results_do_not_depend_on_the_rows_shown() {
+    let touching =
+        ["engine.pin_offset=0.2 mm", "solver.start_top=2 um", "solver.start_bottom=4 um", "solver.cycles=2"];
+    for motion in ["quasi_static", "full_inertia"] {
+        let told = ["30 deg", "0.7 deg"].map(|step| {
+            let (step, motion) =
+                (format!("outputs.series_step={step}"), format!("models.secondary_motion.model={motion}"));
+            let mut set = coarse(&touching);
+            set.extend([step.as_str(), motion.as_str(), "outputs.map_step=90 deg"]);
+            run_once(&set)
+        });
+        let [few, many] = &told;
+        assert!(few.results.len() > 50 && many.series.axis.values.len() > 20 * few.series.axis.values.len());
+        // No result sees a row: the same numbers, to the last bit.
+        for (name, v) in &few.results {
+            assert_eq!(v.value.to_bits(), many.results[name].value.to_bits(), "{motion} {name}");
+        }
+        assert_eq!(few.events, many.events);
+        // And they are those of the cycle: no row lies beyond an extreme, up to what a parabola is followed to.
+        for name in ["e_top", "e_bottom", "side_force", "friction_force"] {
+            let factor = if name.starts_with('e') { 1e6 } else { 1.0 };
+            let rows = column(many, &format!("skirt.{name}"));
+            let (high, low) = (value(many, &format!("{name}_max")), value(many, &format!("{name}_min")));
+            let most = rows.iter().fold(f64::NEG_INFINITY, |a, b| a.max(factor * b));
+            let least = rows.iter().fold(f64::INFINITY, |a, b| a.min(factor * b));
+            let room = 1e-4 * (high - low);
+            assert!(most <= high + room && most >= high - 50.0 * room, "{motion} {name}: {most} {high}");
+            assert!(least >= low - room && least <= low + 50.0 * room, "{motion} {name}: {least} {low}");
+        }
+        // Simpson's rule on some hundred steps against the trapezoidal one on a thousand rows, with kinks of the trace between.
+        let (theta, power) = (&many.series.axis.values, column(many, "skirt.friction_power"));
+        let sum: f64 =
+            (1..theta.len()).map(|k| 0.5 * (power[k] + power[k - 1]) * (theta[k] - theta[k - 1])).sum();
+        let mean = sum / (theta[theta.len() - 1] - theta[0]);
+        let told = value(many, "friction_power");
+        assert!((mean / told - 1.0).abs() < 1e-3, "{motion}: {mean} {told}");
+    }
+}
+
+#[test]
+fn inertia_that_is_left_out_is_told() {
+    let run = |motion: &str| {
+        let set = [
+            "engine.speed=5500 rpm".to_owned(),
+            format!("models.secondary_motion.model={motion}"),
+            "outputs.map_step=90 deg".to_owned(),
+            "outputs.results=[\"p_max\"]".to_owned(),
+            "solver.cycles=2".to_owned(),
+        ];
+        let set: Vec<&str> = set.iter().map(String::as_str).collect();
+        match checked("turbo-diesel-120-skirt", &set).case.once(&mut |_| {}) {
+            Ok(r) => r,
+            Err(e) => panic!("{motion}: {e}"),
+        }
+    };
+    let note = |r: &RunResult| r.solver.notes.iter().find(|n| n.topic == "inertia_left_out").cloned();
+    let told = note(&run("quasi_static")).expect("a note");
+    // With inertia, its largest force is 11 % of the side force; without it, impacts are more sudden still.
+    let share = told.amounts["inertia_share"].value;
+    assert!((0.05..1.0).contains(&share), "{share}");
+    assert!(note(&run("full_inertia")).is_none());
+}
+
+#[test]
+fn a_motion_that_is_not_periodic_is_told_and_marked() {
+    let r = run_once(&coarse(&["solver.max_cycles=1", "solver.periodicity=1e-6", "solver.start_top=5 um"]));
+    let note = r.solver.notes.iter().find(|n| n.topic == "not_periodic").expect("a note");
+    assert_eq!(note.level, gudgeon_core::result::NoteLevel::Failure);
+    assert!(note.amounts["periodicity_error"].value > 1e-5 && value(&r, "friction_work") > 0.0);
+}
+
+#[test]
+fn a_peak_narrower_than_the_grid_is_told() {
+    let topics = |along: u32, across: u32, clearance: &str| {
+        let set = [
+            format!("solver.intervals_along={along}"),
+            format!("solver.intervals_across={across}"),
+            format!("skirt.clearance={clearance}"),
+            "outputs.map_step=90 deg".to_owned(),
+            "outputs.results=[\"p_max\"]".to_owned(),
+            "solver.cycles=2".to_owned(),
+        ];
+        let set: Vec<&str> = set.iter().map(String::as_str).collect();
+        let r = match checked("turbo-diesel-120-skirt", &set).case.once(&mut |_| {}) {
+            Ok(r) => r,
+            Err(e) => panic!("{along} {across}: {e}"),
+        };
+        r.solver.notes.iter().any(|n| n.topic.starts_with("grid_too_coarse"))
+    };
+    // An edge that strikes the liner: 620, 990 and 1260 bar on 20, 40 and 64 intervals along.
+    assert!(topics(20, 16, "120 um"));
+    // A skirt on its films: 122.9 bar on 20 x 16 intervals, 122.2 on 40 x 32.
+    assert!(!topics(20, 16, "50 um"));
+}
+
 /// The mesh of Loureiro (2009): 10 x 10 nodes of his differences.
 const HIS: [&str; 3] = [
     "models.film_2d={ model = \"central_differences\" }",

@@ -154,7 +154,7 @@ fn parameters(schema: &Value, definitions: &Map<String, Value>, indent: usize, d
         .flatten()
         .filter_map(Value::as_str)
         .collect();
-    for (key, p) in properties.iter().filter(|(k, _)| *k != "model") {
+    for (key, p) in properties.iter().filter(|(_, p)| p.get("const").is_none()) {
         let (inner, name) = resolve(p, definitions);
         let default = match p.get("default") {
             Some(Value::String(t)) => format!(", default {t}"),
@@ -174,10 +174,63 @@ fn parameters(schema: &Value, definitions: &Map<String, Value>, indent: usize, d
             s.push_str(&wrapped(&format!("`{word}`{meaning}"), indent + 6));
         }
         let element = inner.get("items").map_or(inner, |i| resolve(i, definitions).0);
-        if depth < DEPTH {
-            parameters(element, definitions, indent + 4, depth + 1, s);
+        if depth >= DEPTH {
+            continue;
+        }
+        match choice(element) {
+            // A model inside a model has a page of its own.
+            Some(("model", _)) => {}
+            Some((tag, tables)) => {
+                for (word, table) in tables {
+                    let what = table.get("description").and_then(Value::as_str).unwrap_or_default();
+                    s.push_str(&wrapped(&format!("{tag} = \"{word}\": {}", plain(what)), indent + 6));
+                    parameters(table, definitions, indent + 10, depth + 1, s);
+                }
+            }
+            None => parameters(element, definitions, indent + 4, depth + 1, s),
         }
     }
+}
+
+/// The only word that a key of a table may have.
+fn constant<'a>(table: &'a Value, key: &str) -> Option<&'a str> {
+    table.get("properties")?.get(key)?.get("const")?.as_str()
+}
+
+/// The key whose word tells tables apart, with the words and their tables.
+fn choice(schema: &Value) -> Option<(&str, Vec<(&str, &Value)>)> {
+    let all = schema.get("oneOf").and_then(Value::as_array)?;
+    let first = all.first()?.get("properties")?.as_object()?;
+    let tag = first.keys().find(|k| all.iter().all(|s| constant(s, k).is_some()))?;
+    Some((tag, all.iter().filter_map(|s| Some((constant(s, tag)?, s))).collect()))
+}
+
+/// Tables of a model that a word other than `model` tells apart: path, key, words.
+pub fn choices(m: &ModelInfo) -> Vec<(String, String, Vec<String>)> {
+    fn look(
+        schema: &Value,
+        definitions: &Map<String, Value>,
+        path: &str,
+        depth: usize,
+        out: &mut Vec<(String, String, Vec<String>)>,
+    ) {
+        for (key, p) in schema.get("properties").and_then(Value::as_object).into_iter().flatten() {
+            let inner = resolve(p, definitions).0;
+            let element = inner.get("items").map_or(inner, |i| resolve(i, definitions).0);
+            let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
+            match choice(element) {
+                Some((tag, tables)) if tag != "model" => {
+                    out.push((path, tag.to_owned(), tables.iter().map(|(w, _)| (*w).to_owned()).collect()));
+                }
+                None if depth < DEPTH => look(element, definitions, &path, depth + 1, out),
+                _ => {}
+            }
+        }
+    }
+    let (schema, definitions) = schema(m);
+    let mut out = Vec::new();
+    look(&schema, &definitions, "", 0, &mut out);
+    out
 }
 
 /// Rustdoc's escapes and line breaks are for another reader.
@@ -221,7 +274,10 @@ fn type_text(schema: &Value, name: Option<&str>, definitions: &Map<String, Value
         return "one word of".into();
     }
     if schema.get("oneOf").is_some() {
-        return format!("a {} model, a table with the key `model`", name.unwrap_or("sub-"));
+        return match choice(schema) {
+            Some((tag, _)) if tag != "model" => format!("a table with the key `{tag}`, one of"),
+            _ => format!("a {} model, a table with the key `model`", name.unwrap_or("sub-")),
+        };
     }
     if let Some(items) = schema.get("items") {
         let (inner, name) = resolve(items, definitions);

@@ -7,8 +7,9 @@ use gudgeon_sim::load::advice;
 use serde_json::json;
 
 use crate::args::ModelsArgs;
+use crate::cmd::describe::choices;
 use crate::failure::Failure;
-use crate::ui::{Ui, table};
+use crate::ui::{Ui, table, wrapped};
 
 pub fn models(a: &ModelsArgs, registry: &Registry, ui: &Ui) -> Result<(), Failure> {
     let kinds = match &a.kind {
@@ -22,7 +23,13 @@ pub fn models(a: &ModelsArgs, registry: &Registry, ui: &Ui) -> Result<(), Failur
                 let models: Vec<_> = registry
                     .models(k.kind)
                     .iter()
-                    .map(|m| json!({ "model": m.name, "summary": m.summary, "references": m.references }))
+                    .map(|m| {
+                        let tables: Vec<_> = choices(m)
+                            .into_iter()
+                            .map(|(path, key, words)| json!({ "path": path, "key": key, "words": words }))
+                            .collect();
+                        json!({ "model": m.name, "summary": m.summary, "references": m.references, "tables": tables })
+                    })
                     .collect();
                 json!({ "kind": k.kind, "summary": k.summary, "models": models })
             })
@@ -40,6 +47,11 @@ pub fn models(a: &ModelsArgs, registry: &Registry, ui: &Ui) -> Result<(), Failur
         let rows: Vec<_> =
             registry.models(k.kind).iter().map(|m| vec![m.name.to_owned(), m.summary.to_owned()]).collect();
         text.push_str(&table(&rows, &[]));
+        for m in registry.models(k.kind) {
+            for (path, key, words) in choices(m) {
+                text.push_str(&wrapped(&format!("{}: {path}.{key} is {}", m.name, words.join(", ")), 4));
+            }
+        }
     }
     ui.out(&text);
     Ok(())

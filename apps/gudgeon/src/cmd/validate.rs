@@ -61,7 +61,7 @@ fn files(named: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     for p in if named.is_empty() { &default[..] } else { named } {
         if p.is_dir() {
             all.extend(validate::files(p).map_err(|e| unreadable(p, e))?);
-        } else if std::fs::read_to_string(p).map_err(|e| unreadable(p, e))?.contains("[[checks]]") {
+        } else if gudgeon_sim::load::read(p)?.text.contains("[[checks]]") {
             all.push(p.clone());
         } else {
             match validate::file_of(p).map_err(|e| unreadable(p, e))? {

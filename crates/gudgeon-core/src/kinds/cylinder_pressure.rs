@@ -5,6 +5,7 @@ use dyn_clone::DynClone;
 
 use super::Kinematics;
 use crate::BuildError;
+use crate::result::Note;
 
 /// What a [`CylinderPressureSpec`] is built for.
 #[derive(Debug, Clone, Copy)]
@@ -43,9 +44,47 @@ pub trait CylinderPressure: Debug + DynClone + Send + Sync {
         let _ = decided_at;
         self.pressure(theta)
     }
-    /// Crank angles in `[0, period)` \[rad\], ascending, where the pressure or its slope jumps: an integrator restarts there.
+    /// Crank angles in `[0, period)` \[rad\], ascending, where the pressure or its slope jumps, and the tops of pulses so narrow that a
+    /// step could pass over them: an integrator restarts there.
     fn kinks(&self) -> &[f64];
     /// Length of the cycle \[rad\]: 4π for four strokes.
     fn period(&self) -> f64;
+    /// Crank angle \[rad\] in `[0, period]` of the highest pressure, and that pressure \[Pa\]. A model that knows it says so; this looks every
+    /// quarter of a degree and on both sides of every kink, then between the neighbours of the highest value.
+    fn highest(&self) -> (f64, f64) {
+        search_highest(self)
+    }
+    /// What a person should know about how the pressure came about: a filter that acted, with how much.
+    fn notes(&self) -> Vec<Note> {
+        Vec::new()
+    }
 }
 dyn_clone::clone_trait_object!(CylinderPressure);
+
+/// [`CylinderPressure::highest`] of a model that knows nothing but its values.
+fn search_highest<P: CylinderPressure + ?Sized>(model: &P) -> (f64, f64) {
+    /// Steps of golden section: from half a degree to the rounding of the angle of a smooth top, some 1e-8.
+    const STEPS: u32 = 40;
+    const RATIO: f64 = 0.618_033_988_749_894_8;
+    let parts = (model.period().to_degrees() * 4.0).ceil().max(1.0);
+    let width = model.period() / parts;
+    let at = |theta: f64| (theta, model.pressure(theta));
+    let greater = |a: (f64, f64), b: (f64, f64)| if b.1 > a.1 { b } else { a };
+    let grid = (0..parts as usize).map(|k| at(k as f64 * width));
+    // The resolution of an angle near the end of the cycle, twice over, to the left of a kink.
+    let kinks = model.kinks().iter().flat_map(|k| [at(*k), at(k - 2.0 * f64::EPSILON * model.period())]);
+    let best = grid.chain(kinks).reduce(greater).unwrap_or_else(|| at(0.0));
+    let (mut a, mut b) = (best.0 - width, best.0 + width);
+    let (mut c, mut d) = (at(b - RATIO * (b - a)), at(a + RATIO * (b - a)));
+    for _ in 0..STEPS {
+        if c.1 > d.1 {
+            (b, d) = (d.0, c);
+            c = at(b - RATIO * (b - a));
+        } else {
+            (a, c) = (c.0, d);
+            d = at(a + RATIO * (b - a));
+        }
+    }
+    let (theta, p) = greater(best, greater(c, d));
+    (theta.rem_euclid(model.period()), p)
+}

@@ -39,6 +39,17 @@ impl Film1dCtx<'_> {
     }
 }
 
+/// What a film along a line can be asked for besides steady motion between two baths of oil.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Film1dScope {
+    /// [`FilmEnd::Starved`] where the moving surface enters the gap.
+    pub starved: bool,
+    /// [`FilmTime::Squeeze`].
+    pub squeeze: bool,
+    /// [`FilmTime::Step`].
+    pub steps: bool,
+}
+
 /// Configuration of a one-dimensional film.
 #[typetag::serde(tag = "model")]
 pub trait Film1dSpec: Debug + DynClone + Send + Sync {
@@ -47,6 +58,11 @@ pub trait Film1dSpec: Debug + DynClone + Send + Sync {
     /// # Errors
     /// Nodes that make no line, or constants outside their range.
     fn build(&self, ctx: &Film1dCtx<'_>) -> Result<Box<dyn Film1d>, BuildError>;
+
+    /// What the model can be asked for; the rest it refuses whenever it is asked, so a bench refuses it before.
+    fn scope(&self) -> Film1dScope {
+        Film1dScope { starved: true, squeeze: true, steps: true }
+    }
 }
 dyn_clone::clone_trait_object!(Film1dSpec);
 crate::register_kind!(dyn Film1dSpec, "film_1d", "oil film along a line, of any profile, steady or in time");

@@ -110,6 +110,11 @@ impl GasSlopes {
 /// A running gas-flow model. Its states are the gas masses \[kg\] of its volumes, so that any linear-invariant-preserving
 /// integrator closes the mass balance to round-off: `Σ d_state = flow_in[0] - flow_out[n-1]` holds for every call.
 pub trait GasFlow: Send {
+    /// Whether gas passes through the end gaps of the rings, so that a gap that closes leaves no model.
+    fn uses_end_gaps(&self) -> bool {
+        true
+    }
+
     /// Number of volumes with a mass of their own.
     fn n_states(&self) -> usize;
     /// Name of each state's volume: `land2`, `ring1.back`.

@@ -13,6 +13,10 @@ pub trait NaturalFrequenciesSpec: Debug + DynClone + Send + Sync {
     /// # Errors
     /// A shaft line that is not connected, closes on itself or has no inertia.
     fn build(&self, line: &Line) -> Result<Box<dyn NaturalFrequencies>, BuildError>;
+    /// Whether what it gives are the natural frequencies of the line; not so for a published mistake.
+    fn are_of_the_line(&self) -> bool {
+        true
+    }
 }
 dyn_clone::clone_trait_object!(NaturalFrequenciesSpec);
 crate::register_kind!(

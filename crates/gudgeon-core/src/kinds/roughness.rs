@@ -111,6 +111,11 @@ pub trait Roughness: Debug + Send + Sync {
         false
     }
 
+    /// Separation \[m\] below which the film of the flow is held above the separation, because the factors end there; none when it never is.
+    fn held_below(&self) -> Option<f64> {
+        None
+    }
+
     /// Flow factors for separations `h` \[m\]; all buffers of `out` have the length of `h`.
     ///
     /// # Errors

@@ -150,8 +150,9 @@ pub struct TorsionCtx<'a> {
     pub orders: f64,
     /// Period of the torques over the angle of the reference shaft \[rad\].
     pub period: f64,
-    /// Inertia that gives the torque which keeps the mean speed.
-    pub balance: usize,
+    /// Shares of the inertias in the torque that keeps the mean speed, counted at the reference shaft; their sum is 1, missing ones are
+    /// zero. Mean angles count from the mean of the inertias with these shares.
+    pub balance: &'a [f64],
     /// Angles of the inertias at the start of a transient \[rad\].
     pub angles: &'a [f64],
     /// Speeds of the inertias at the start of a transient \[rad/s\].
@@ -170,6 +171,15 @@ pub trait TorsionSpec: Debug + DynClone + Send + Sync {
     fn build(&self, ctx: &TorsionCtx<'_>) -> Result<Box<dyn Torsion>, BuildError>;
     /// What kind of answer it gives.
     fn answers(&self) -> TorsionAnswer;
+    /// The model that has what this one leaves out of a line; `None` when it leaves nothing out.
+    fn fuller(&self, _: &Line) -> Option<Box<dyn TorsionSpec>> {
+        None
+    }
+    /// Whether steps of fixed length `h` make a motion `e^{zt}` grow that the line damps; `zh` is given by its real and imaginary
+    /// part. `None` for models without fixed steps.
+    fn grows(&self, _: [f64; 2]) -> Option<bool> {
+        None
+    }
 }
 dyn_clone::clone_trait_object!(TorsionSpec);
 crate::register_kind!(
@@ -211,9 +221,9 @@ pub struct TorsionOut {
     pub orders: Vec<OrderResponse>,
     /// Mean torques in the links \[N m\].
     pub mean_torque: Vec<f64>,
-    /// Mean twists from the inertia that balances, \[rad\].
+    /// Mean angles of the inertias against what balances, \[rad\].
     pub mean_angle: Vec<f64>,
-    /// Mean torque \[N m\] that holds the speed, on the balancing inertia.
+    /// Mean torque \[N m\] that holds the speed, at the reference shaft.
     pub balance_torque: f64,
     /// Mean speed \[rad/s\] of the periodic motion.
     pub speed: f64,
@@ -237,9 +247,17 @@ pub struct TorsionOut {
 
 /// A running torsion model.
 pub trait Torsion: Debug + Send {
-    /// Computes the response.
+    /// Computes the response. What `out` held before is overwritten.
     ///
     /// # Errors
     /// An undamped resonance that is hit, a step that blows up, no convergence.
     fn run(&mut self, out: &mut TorsionOut) -> Result<(), EvalError>;
+    /// Goes to another mean speed \[rad/s\], where the next [`Torsion::run`] answers as if it had been built there. A model that
+    /// iterates starts from its last motion.
+    ///
+    /// # Errors
+    /// A model whose answer is no periodic motion (Fatal).
+    fn set_speed(&mut self, _: f64) -> Result<(), EvalError> {
+        Err(EvalError::fatal("torsion", "this model gives no periodic motion at a constant mean speed"))
+    }
 }

@@ -1,4 +1,4 @@
-use gudgeon_core::kinds::{Film1d, Film1dCtx, Film1dIn, Film1dOut, Film1dSpec, FilmField};
+use gudgeon_core::kinds::{Film1d, Film1dCtx, Film1dIn, Film1dOut, Film1dScope, Film1dSpec, FilmField};
 use gudgeon_core::{BuildError, EvalError};
 use serde::{Deserialize, Serialize};
 
@@ -70,6 +70,10 @@ const MODEL: &str = "complementarity";
 
 #[typetag::serde(name = "complementarity")]
 impl Film1dSpec for Complementarity {
+    fn scope(&self) -> Film1dScope {
+        let starved = self.cavitation == Cavitation::MassConserving;
+        Film1dScope { starved, squeeze: true, steps: true }
+    }
     fn build(&self, ctx: &Film1dCtx<'_>) -> Result<Box<dyn Film1d>, BuildError> {
         ctx.check()?;
         Ok(Box::new(Film {

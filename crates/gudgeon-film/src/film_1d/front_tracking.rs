@@ -1,4 +1,6 @@
-use gudgeon_core::kinds::{Film1d, Film1dCtx, Film1dIn, Film1dOut, Film1dSpec, FilmField, FilmFront};
+use gudgeon_core::kinds::{
+    Film1d, Film1dCtx, Film1dIn, Film1dOut, Film1dScope, Film1dSpec, FilmField, FilmFront,
+};
 use gudgeon_core::{BuildError, EvalError};
 use serde::{Deserialize, Serialize};
 
@@ -43,6 +45,9 @@ const MODEL: &str = "front_tracking";
 
 #[typetag::serde(name = "front_tracking")]
 impl Film1dSpec for FrontTracking {
+    fn scope(&self) -> Film1dScope {
+        Film1dScope { starved: true, squeeze: false, steps: false }
+    }
     fn build(&self, ctx: &Film1dCtx<'_>) -> Result<Box<dyn Film1d>, BuildError> {
         ctx.check()?;
         Ok(Box::new(Film {

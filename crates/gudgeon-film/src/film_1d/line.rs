@@ -735,9 +735,12 @@ impl Line {
                     x = self.x[i] + self.dx[i] * (fa / (fa - fb));
                 }
             }
+            // A cavity of one node may be as narrow as nothing; its film does not end behind the place where it begins again.
+            let again = self.fronts.iter().filter(|f| !f.film_before && f.x >= self.x[k]);
+            let x = again.map(|f| f.x).fold(x, f64::min);
             self.fronts.push(FilmFront { x, film_before: true });
         }
-        self.fronts.sort_unstable_by(|a, b| a.x.total_cmp(&b.x));
+        self.fronts.sort_unstable_by(|a, b| a.x.total_cmp(&b.x).then(b.film_before.cmp(&a.film_before)));
     }
 
     /// Highest pressure above `p_cav` and where it is: at a node, or at the crest in a panel beside it.

@@ -40,7 +40,8 @@ impl Film1d for NoFilm {
         self.line.field()
     }
 
-    fn full_content(&self, h_a: &[f64], h_b: &[f64], content: &mut [f64]) {
-        self.line.full_content(h_a, h_b, content);
+    fn full_content(&self, _: &[f64], _: &[f64], content: &mut [f64]) {
+        // No film holds no oil.
+        content.fill(0.0);
     }
 }

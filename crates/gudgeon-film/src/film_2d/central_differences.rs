@@ -324,7 +324,7 @@ impl Film2d for Differences {
             self.pressure[k] = inp.p_cav + self.p[k];
         }
         self.problem.drive(inp, inp.u, inp.dhdt, false);
-        let mut out = self.problem.result(inp, &self.p, &self.void, false, &mut self.b);
+        let mut out = self.problem.result(inp, &self.p, &self.void, self.spec.cavitation, &mut self.b);
         (out.iterations, out.cycles, out.residual) = (1, cycles, residual);
         if !(out.load.is_finite() && out.shear_lower.is_finite()) {
             return Err(EvalError::recoverable(MODEL, "the film overflows"));

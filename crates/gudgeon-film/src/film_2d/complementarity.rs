@@ -279,13 +279,18 @@ impl<L: Linear> Solver<L> {
         };
         // For a full film that is cut off, the next search starts from what was not.
         for k in 0..n {
-            let p = if cavitates { self.p[k].max(0.0) } else { self.p[k] };
-            self.z[k] = p;
+            self.z[k] = if cavitates { self.p[k].max(0.0) } else { self.p[k] };
+        }
+        if conserves {
+            self.problem.fill_sides(inp, &self.z, &mut self.void);
+        }
+        for k in 0..n {
+            let p = self.z[k];
             self.void[k] = self.void[k].clamp(0.0, 1.0);
             self.pressure[k] = inp.p_cav + p;
             self.fill[k] = 1.0 - self.void[k];
         }
-        let mut out = self.problem.result(inp, &self.z, &self.void, conserves, &mut self.b);
+        let mut out = self.problem.result(inp, &self.z, &self.void, self.cavitation, &mut self.b);
         (out.iterations, out.cycles) = (iterations, cycles);
         if !(out.load.is_finite() && out.shear_lower.is_finite()) {
             return Err(EvalError::recoverable(self.model, "the film overflows"));

@@ -4,7 +4,7 @@ use gudgeon_core::kinds::{Edge, Film2dGrid, Film2dIn, Film2dOut, FilmMode, Visco
 use gudgeon_core::{BuildError, EvalError};
 use gudgeon_numerics::multigrid::{FivePoint, Role};
 
-use super::Flux;
+use super::{Cavitation, Flux};
 
 /// Most nodes of a grid: one field of 128 MB.
 const MOST: usize = 1 << 24;
@@ -328,6 +328,55 @@ impl Problem {
         }
     }
 
+    /// The node beside an edge node, towards the middle of the film; the node itself elsewhere.
+    fn inner(&self, k: usize) -> usize {
+        let mut k = k;
+        // A corner is beside a side that is an edge itself.
+        for _ in 0..2 {
+            k = match self.edge[k] {
+                0 => k + 1,
+                1 => k - 1,
+                2 => k + self.nx,
+                3 => k - self.nx,
+                _ => k,
+            };
+        }
+        k
+    }
+
+    /// Void along the sides, parallel to sliding, that stand at the pressure of the cavity. Nothing arrives there by sliding but what the side itself
+    /// carries: a node is filled by what comes along the side and out of the film, holds what it can, and lets the rest leave. Were it taken as
+    /// full, a gap that opens would draw oil in over half a volume's width: an error of first order in the flow over the side.
+    pub fn fill_sides(&self, inp: &Film2dIn<'_>, p: &[f64], void: &mut [f64]) {
+        let (nx, ny) = (self.nx, self.ny);
+        for (edge, first) in [(2, 0), (3, (ny - 1) * nx)] {
+            if self.grid.edges[edge] != Edge::Pressure || inp.edge_pressure[edge] > inp.p_cav {
+                continue;
+            }
+            let forward = self.m.qx[first..first + nx].iter().all(|q| *q >= 0.0);
+            // Around a ring twice: what the first round began with is forgotten where the side is full.
+            for step in 0..if self.periodic { 2 * nx } else { nx } {
+                let i = if forward { step % nx } else { nx - 1 - step % nx };
+                let k = first + i;
+                if usize::from(self.edge[k]) != edge {
+                    continue;
+                }
+                let (west, east) = (self.before(i, k), self.after(i, k));
+                let brought =
+                    |from: usize, q: f64| if from == k { 0.0 } else { q.max(0.0) * (1.0 - void[from]) };
+                let taken = |to: usize, q: f64| if to == k { 0.0 } else { q.max(0.0) };
+                let (q_west, q_east) = (if west == k { 0.0 } else { self.m.qx[west] }, self.m.qx[k]);
+                let inner = self.inner(k);
+                let across = self.m.gy[k.min(inner)] * (p[inner] - p[k]);
+                let enters = brought(west, q_west) + brought(east, -q_east) + across - self.fixed[k];
+                let room = taken(east, q_east) + taken(west, -q_west) + self.m.hold[k];
+                if room > 0.0 {
+                    void[k] = 1.0 - (enters / room).clamp(0.0, 1.0);
+                }
+            }
+        }
+    }
+
     /// Volume that leaves each node less what it takes up from: the sum of the flows out of it and of its storage, which is zero for a solution.
     pub fn balance(&self, p: &[f64], void: &[f64], out: &mut [f64]) {
         let (nx, ny) = (self.nx, self.ny);
@@ -412,9 +461,10 @@ impl Problem {
         inp: &Film2dIn<'_>,
         p: &[f64],
         void: &[f64],
-        knows_filling: bool,
+        cavitation: Cavitation,
         balance: &mut [f64],
     ) -> Film2dOut {
+        let torn = |k: usize| cavitation != Cavitation::FullSommerfeld && p[self.inner(k)] <= 0.0;
         let (nx, ny) = (self.nx, self.ny);
         let mut out = Film2dOut::default();
         let mut top = f64::NEG_INFINITY;
@@ -442,13 +492,17 @@ impl Problem {
                     };
                     line[3] += h * (p[next] - p[k]);
                 }
-                let cavity = if knows_filling { void[k] } else { f64::from(u8::from(p[k] <= 0.0)) };
-                line[4] += w * cavity;
+                line[4] += w * match cavitation {
+                    Cavitation::MassConserving => void[k],
+                    _ => f64::from(u8::from(p[k] <= 0.0 && torn(k))),
+                };
                 top = top.max(p[k]);
                 let e = self.edge[k] as usize;
                 out.storage += self.m.hold[k] * (1.0 - void[k]) + self.fixed[k];
                 if e < 4 {
-                    out.outflow[e] -= balance[k];
+                    // A side at the pressure of a cavity beside it gives nothing to a gap that opens.
+                    let dry = e >= 2 && cavitation != Cavitation::MassConserving && p[k] <= 0.0 && torn(k);
+                    out.outflow[e] -= if dry { balance[k].min(0.0) } else { balance[k] };
                 } else {
                     worst = worst.max(balance[k].abs());
                 }

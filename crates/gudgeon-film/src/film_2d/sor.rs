@@ -33,7 +33,7 @@ pub struct Sor {
     pub relaxation: Option<f64>,
     /// Most sweeps, 1 or more.
     #[serde(default = "most_sweeps")]
-    #[schemars(range(min = 1))]
+    #[schemars(range(min = 1, max = 100_000_000))]
     pub most_sweeps: usize,
 }
 
@@ -224,11 +224,13 @@ impl Film2d for Relaxation {
         for k in 0..self.p.len() {
             let p = if cavitates { self.p[k].max(0.0) } else { self.p[k] };
             self.pressure[k] = inp.p_cav + p;
-            self.fill[k] = 1.0 - self.void[k];
             self.b[k] = p;
         }
         let shown = std::mem::take(&mut self.b);
-        let mut out = self.problem.result(inp, &shown, &self.void, conserves, &mut self.fill);
+        if conserves {
+            self.problem.fill_sides(inp, &shown, &mut self.void);
+        }
+        let mut out = self.problem.result(inp, &shown, &self.void, cavitation, &mut self.fill);
         self.b = shown;
         for (f, v) in self.fill.iter_mut().zip(&self.void) {
             *f = 1.0 - v;

@@ -305,6 +305,10 @@ impl AverageFlow {
 }
 
 impl Roughness for AverageFlow {
+    fn held_below(&self) -> Option<f64> {
+        Some(self.sigma * self.limit)
+    }
+
     fn flow(&self, h: &[f64], out: &mut RoughFlow) -> Result<(), EvalError> {
         super::check_flow(MODEL, h, out)?;
         let average = GaussianGap::new();

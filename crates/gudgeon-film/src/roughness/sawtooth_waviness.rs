@@ -1,5 +1,5 @@
 use gudgeon_core::kinds::{RoughFlow, RoughShear, Roughness, RoughnessSpec};
-use gudgeon_core::quantity::PosLength;
+use gudgeon_core::quantity::{PosLength, PosRatio};
 use gudgeon_core::{BuildError, EvalError};
 use serde::{Deserialize, Serialize};
 
@@ -20,7 +20,7 @@ use super::held_above;
 /// ```
 ///
 /// The factors are singular where crests touch, at `h = Ω`. From `1.04 Ω` on they are those of a film that passes with continuous
-/// slope into `1.02 Ω` and stays there; the film content follows the real separation.
+/// slope into `1.02 Ω` (`closest`) and stays there; the film content follows the real separation.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SawtoothWaviness {
@@ -29,6 +29,14 @@ pub struct SawtoothWaviness {
     /// How the waves change the flow that the sliding liner carries along.
     #[serde(default)]
     pub transport: WavinessTransport,
+    /// Film, in amplitudes, that the factors end at: below twice its distance from 1 the film is held open. The nearer to 1, the higher the pressures that a
+    /// film between touching crests takes. From 1.001 to 2.
+    #[serde(default = "closest")]
+    pub closest: PosRatio,
+}
+
+fn closest() -> PosRatio {
+    gudgeon_core::quantity::quantity(1.02)
 }
 
 /// Couette flow between a plane liner and a wavy body.
@@ -49,9 +57,9 @@ gudgeon_core::register_model! {
     SawtoothWaviness, kind: "roughness", name: "sawtooth_waviness",
     summary: "triangular machining grooves across the sliding direction, exactly homogenised",
     equations: "r = Omega/h;  phi_x = (1 - r^2)^2;  phi_y = 1 + r^2;  h_c = h - k Omega r, k = 1 (homogenised), -1 (as_published), 0 (smooth);  phi_f = artanh(r)/r;  phi_fs = 3 (phi_f - 1);  phi_fp = 1 - r^2;  h_T = h, (h + Omega)^2/(4 Omega) for |h| < Omega",
-    validity: "Waves much shorter than the film's length and much longer than its thickness, on the body that the frame moves with; full films, h > 1.04 Omega. Below, all but the film content are those of h = 1.02 Omega.",
+    validity: "Waves much shorter than the film's length and much longer than its thickness, on the body that the frame moves with; full films, h > 1.04 Omega. Below, all but the film content are those of h = 1.02 Omega (closest).",
     references: ["loureiro2009", "elrod1979"],
-    example: "amplitude = \"4 um\"\ntransport = \"homogenised\"\n",
+    example: "amplitude = \"4 um\"\ntransport = \"homogenised\"\nclosest = 1.02\n",
 }
 
 #[typetag::serde(name = "sawtooth_waviness")]
@@ -69,15 +77,15 @@ impl RoughnessSpec for SawtoothWaviness {
             WavinessTransport::AsPublished => -1.0,
             WavinessTransport::Smooth => 0.0,
         };
-        Ok(Box::new(Waves { omega, shear }))
+        let closest = self.closest.si();
+        if !(1.001..=2.0).contains(&closest) {
+            return Err(BuildError::at("closest", format!("must be between 1.001 and 2, not {closest}")));
+        }
+        Ok(Box::new(Waves { omega, shear, closest }))
     }
 }
 
 const MODEL: &str = "sawtooth_waviness";
-
-/// Film that the factors end at, in amplitudes, and the half width of the passage to it.
-const CLOSEST: f64 = 1.02;
-const BLEND: f64 = 0.02;
 
 /// `Ω/h` up to which `artanh(r)/r - 1` is summed: what is left out is of the order `0.2^22` of it, what the closed form would lose is
 /// rounding over `r²/3`.
@@ -87,12 +95,14 @@ const SERIES: f64 = 0.2;
 struct Waves {
     omega: f64,
     shear: f64,
+    /// Film that the factors end at, in amplitudes.
+    closest: f64,
 }
 
 impl Waves {
     #[inline]
     fn film(&self, h: f64) -> f64 {
-        held_above(h, CLOSEST * self.omega, BLEND * self.omega)
+        held_above(h, self.closest * self.omega, (self.closest - 1.0) * self.omega)
     }
 }
 
@@ -107,6 +117,10 @@ fn excess(r: f64) -> f64 {
 }
 
 impl Roughness for Waves {
+    fn held_below(&self) -> Option<f64> {
+        Some((2.0 * self.closest - 1.0) * self.omega)
+    }
+
     fn flow(&self, h: &[f64], out: &mut RoughFlow) -> Result<(), EvalError> {
         super::check_flow(MODEL, h, out)?;
         let omega = self.omega;
@@ -156,7 +170,9 @@ mod tests {
     const OMEGA: f64 = 4e-6;
 
     fn model(transport: WavinessTransport) -> Box<dyn Roughness> {
-        SawtoothWaviness { amplitude: quantity(OMEGA), transport }.build().expect("builds")
+        SawtoothWaviness { amplitude: quantity(OMEGA), transport, closest: closest() }
+            .build()
+            .expect("builds")
     }
 
     #[test]
@@ -250,11 +266,7 @@ mod tests {
             [WavinessTransport::Homogenised, WavinessTransport::AsPublished, WavinessTransport::Smooth]
         {
             let m = model(transport);
-            slopes_are_continuous(
-                &*m,
-                OMEGA,
-                &[-1.0, 0.0, 1.0, CLOSEST - BLEND, CLOSEST, CLOSEST + BLEND, 5.0],
-            );
+            slopes_are_continuous(&*m, OMEGA, &[-1.0, 0.0, 1.0, 1.02, 1.04, 5.0]);
         }
         for h in [-1e300, -1.0, 0.0, 1e-300, 1e-9, 1e300] {
             let (flow, shear) = both(&*model(WavinessTransport::Homogenised), h);
@@ -267,8 +279,11 @@ mod tests {
 
     #[test]
     fn an_amplitude_that_cannot_be_computed_with_is_refused() {
-        let spec =
-            SawtoothWaviness { amplitude: quantity(1e-200), transport: WavinessTransport::Homogenised };
+        let spec = SawtoothWaviness {
+            amplitude: quantity(1e-200),
+            transport: WavinessTransport::Homogenised,
+            closest: closest(),
+        };
         assert_eq!(spec.build().err().map(|e| e.field), Some("amplitude".into()));
     }
 }

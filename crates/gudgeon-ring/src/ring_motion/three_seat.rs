@@ -58,7 +58,7 @@ impl RingMotionSpec for ThreeSeat {
         if interval > std::f64::consts::PI {
             return Err(BuildError::at(
                 "interval",
-                format!("{:.6} rad between decisions is more than half a revolution", interval),
+                format!("{:.3} deg between decisions is more than half a revolution", interval.to_degrees()),
             )
             .help("1 deg is usual"));
         }

@@ -24,7 +24,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use gudgeon_core::BuildError;
-use gudgeon_core::file::{MOST_OF_A_CASE, ReadError, read_text};
+use gudgeon_core::file::{MOST_OF_A_CASE, MOST_OF_A_TABLE, ReadError, read_text};
 use gudgeon_core::quantity::with_decimal_point;
 use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
@@ -33,7 +33,7 @@ use toml::de::DeTable;
 
 pub use near::{advice, list, nearest};
 pub use published::{one_scene_of, published};
-pub use refine::Setting;
+pub use refine::Refinement;
 pub use report::{Diagnostic, MOST_MISTAKES, Origin, Report, Source, line_column};
 
 use plain::plain;
@@ -132,7 +132,8 @@ fn load_tree<T: DeserializeOwned + JsonSchema + 'static>(
     }
 }
 
-/// The text of a case file: a regular file of at most [`MOST_OF_A_CASE`] bytes.
+/// The text of a case file, or of the summary that records one: a regular file of at most [`MOST_OF_A_CASE`] bytes, a summary of
+/// [`MOST_OF_A_TABLE`].
 ///
 /// # Errors
 /// A file that does not exist, cannot be read, is too large or is not UTF-8 text.
@@ -142,7 +143,8 @@ pub fn read(path: &Path) -> Result<Source, Report> {
         Some(p) if !p.as_os_str().is_empty() => p.to_owned(),
         _ => PathBuf::from("."),
     };
-    let said = match read_text(path, MOST_OF_A_CASE) {
+    let most = if path.extension().is_some_and(|e| e == "json") { MOST_OF_A_TABLE } else { MOST_OF_A_CASE };
+    let said = match read_text(path, most) {
         Ok(text) => return Ok(Source { name, text, folder }),
         Err(e) => e,
     };
@@ -311,7 +313,7 @@ fn neighbour(path: &Path, folder: &Path) -> Option<String> {
     let mut names: Vec<String> = std::fs::read_dir(folder)
         .ok()?
         .filter_map(|e| e.ok()?.file_name().into_string().ok())
-        .filter(|n| n.ends_with(".toml"))
+        .filter(|n| n.ends_with(".toml") && n != wanted)
         .collect();
     names.sort_unstable();
     let near = nearest(wanted, names.iter().map(String::as_str))?;
@@ -391,9 +393,9 @@ impl<T: serde::Serialize> Loaded<T> {
 }
 
 impl<T: serde::Serialize + JsonSchema + 'static> Loaded<T> {
-    /// The numerical settings that refine the results of this case.
+    /// How the numerical settings of this case are refined.
     #[must_use]
-    pub fn settings(&self) -> Vec<Setting> {
-        self.resolved().map_or_else(|_| Vec::new(), |v| refine::settings(Schema::of::<T>(), &v))
+    pub fn refinements(&self) -> Vec<Refinement> {
+        self.resolved().map_or_else(|_| Vec::new(), |v| refine::refinements(Schema::of::<T>(), &v))
     }
 }

@@ -4,18 +4,41 @@
 //! refined together), the `factor` of one level, and possibly `when`, the value that another key of the same table must have. So a model
 //! that is registered elsewhere is verified like a built-in one.
 
+use indexmap::IndexMap;
 use serde_json::Value;
 
 use super::schema::{Schema, Tagged};
 use super::tree::join;
 
+/// Most levels of a group.
+const LEVELS: i32 = 3;
+
+/// A group of settings and how it is refined.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Refinement {
+    /// What is refined.
+    pub what: String,
+    /// The changes of each level, as `--set` takes them, the mildest first.
+    pub levels: Vec<Vec<String>>,
+}
+
+/// The settings of a resolved case that refine its results, by what they refine.
+pub(super) fn refinements(schema: &Schema, resolved: &Value) -> Vec<Refinement> {
+    let mut groups: IndexMap<String, Vec<Setting>> = IndexMap::new();
+    for s in settings(schema, resolved) {
+        groups.entry(s.group.clone()).or_default().push(s);
+    }
+    let levels = |s: &[Setting]| (1..=LEVELS).map(|k| s.iter().map(|s| s.at(k)).collect()).collect();
+    groups.into_iter().map(|(what, s)| Refinement { what, levels: levels(&s) }).collect()
+}
+
 /// One setting.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Setting {
+struct Setting {
     /// Its path.
-    pub path: String,
+    path: String,
     /// What is refined.
-    pub group: String,
+    group: String,
     /// Its value.
     value: f64,
     /// Whether it is a count.
@@ -27,9 +50,8 @@ pub struct Setting {
 }
 
 impl Setting {
-    /// The change of a level, as `--set` takes it; level 0 is the case as it stands.
-    #[must_use]
-    pub fn at(&self, level: i32) -> String {
+    /// The change of a level; level 0 is the case as it stands.
+    fn at(&self, level: i32) -> String {
         let value = self.value * self.factor.powi(level);
         // Without the rounding of the product: nobody writes a tolerance of 1.0000000000000001e-5.
         let value = format!("{value:.9e}").parse().unwrap_or(value);
@@ -42,7 +64,7 @@ impl Setting {
 }
 
 /// All settings of a resolved case that refine its results.
-pub(super) fn settings(schema: &Schema, resolved: &Value) -> Vec<Setting> {
+fn settings(schema: &Schema, resolved: &Value) -> Vec<Setting> {
     let mut out = Vec::new();
     walk(schema, schema.root(), resolved, "", &mut out);
     out

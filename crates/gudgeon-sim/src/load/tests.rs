@@ -525,7 +525,7 @@ fn rendering_shows_place_line_and_help() {
  1 │ machine.speed=2000 rpn
    ·               ────────
    ╰────
-  help: valid: `rad/s`, `rpm`, `1/min`, `rev/s`
+  help: did you mean `rpm`? valid: `rad/s`, `rpm`, `1/min`, `rev/s`
 "#
     );
     // The end of the file, a value over several lines, CRLF, a line of a megabyte.

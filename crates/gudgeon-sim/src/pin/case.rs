@@ -205,6 +205,7 @@ pub struct Optimise {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub pareto: Vec<PinQuantity>,
     /// Outer diameters of the sweep, over the admitted range; 0 for none.
+    #[schemars(range(max = 5000))]
     pub sweep_points: u32,
     /// Gap, over the pin's mass, to which it is proved that no lighter pin exists anywhere in the ranges.
     pub certificate: PosRatio,

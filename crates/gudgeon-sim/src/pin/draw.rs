@@ -185,7 +185,7 @@ fn round_step(span: f64, n: f64) -> f64 {
 /// Points of a map along its abscissa.
 const COLUMNS: usize = 160;
 
-/// Length against bore at one outer diameter: what each limit leaves, lines of equal mass, the pin.
+/// Length against bore at one outer diameter: what each limit leaves, lines of equal mass (less relief), the pin.
 pub fn map(d: &Design<'_>, size: &PinSize, out: &mut RunResult) {
     let (w, h) = (110.0, 70.0);
     let from = (0.85 * size.length).max(d.length.low);
@@ -270,7 +270,7 @@ pub fn map(d: &Design<'_>, size: &PinSize, out: &mut RunResult) {
         Anchor::Start,
     ));
     let hint = format!(
-        "at an outer diameter of {:.3} mm: filled, what all limits leave; lines, the greatest bore that each admits; dashed, equal mass",
+        "at an outer diameter of {:.3} mm: filled, what all limits leave; lines, the greatest bore that each admits; dashed, equal mass of the pin, less relief",
         1e3 * size.outer
     );
     figure(out, "Design map", hint, FigureKind::Drawing { fixed, frames: Vec::new() });

@@ -26,7 +26,10 @@ impl SceneCase for PinCase {
                     .help("give one of the tables `pin`, `skirt`, `crown` and `dimensions`"),
             );
         }
-        errors.extend(setup::setup(case, &loaded.source.folder).err().into_iter().flatten());
+        match setup::setup(case, &loaded.source.folder) {
+            Ok(s) => errors.extend(s.and_then(|s| size::impossible(case, &s))),
+            Err(e) => errors.extend(e),
+        }
         errors.extend(skirt::legal(case));
         errors
     }

@@ -1,5 +1,6 @@
 //! The pin: evaluation, published search, exact optimum with its proof, sweeps.
 
+use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{PinQuantity, PinSize};
 use gudgeon_core::result::{Note, RunResult, Series};
 use gudgeon_pin::certificate::certify;
@@ -85,6 +86,9 @@ fn unit(q: PinQuantity) -> (&'static str, f64) {
     if q.is_length() { ("mm", 1e3) } else { ("MPa", 1e-6) }
 }
 
+/// What is made least, with flats on the piston.
+const LESS_RELIEF: &str = "mass of the pin less that of the flats cut from the piston: what is made least, below zero where the flats weigh more";
+
 fn evaluate(
     case: &PinCase,
     s: &Setup,
@@ -101,7 +105,7 @@ fn evaluate(
     result(out, "pin_mass", 1e3 * m.pin, "g", "mass of the pin");
     if s.relief.is_some() {
         result(out, "relieved_mass", 1e3 * m.relieved, "g", "mass of the flats cut from the piston");
-        result(out, "mass_differential", 1e3 * m.differential(), "g", "pin less relief");
+        result(out, "mass_differential", 1e3 * m.differential(), "g", LESS_RELIEF);
     }
     let j = s.pi * (size.outer.powi(4) - size.inner.powi(4)) / 64.0;
     result(out, "second_moment", 1e12 * j, "mm4", "second moment of area");
@@ -154,6 +158,37 @@ fn because(forbids: &[Forbids]) -> String {
         }
     };
     forbids.iter().map(one).collect::<Vec<_>>().join(", ")
+}
+
+/// Why no search can find a pin, known before one runs: every limit is easier to keep with a larger outer diameter, so the largest one
+/// of the range decides; the published search keeps the outer diameter of its start.
+pub fn impossible(case: &PinCase, s: &Setup) -> Option<BuildError> {
+    let o = case.optimise.as_ref()?;
+    let d = s.design();
+    match (o.method, s.given) {
+        (Method::Exact, _) => {
+            let high = d.outer.high;
+            let forbids = d.forbids(high);
+            if forbids.is_empty() && d.least_inner(high) <= d.greatest_inner(high) {
+                return None;
+            }
+            let RunError::Refused(what) = no_optimum(&d, NoOptimum::Infeasible(forbids)) else { return None };
+            let help = "a wider range of the outer diameter, a smaller load or a larger limit";
+            Some(BuildError::at("optimise.outer", what).help(help))
+        }
+        // It knows no ranges of the other dimensions.
+        (Method::AsPublished, Some(start)) if o.length.is_none() && o.inner.is_none() => {
+            let forbids = d.forbids(start.outer);
+            let what = format!(
+                "no pin of {:.4} mm outer diameter keeps the limits: {}",
+                1e3 * start.outer,
+                because(&forbids)
+            );
+            (!forbids.is_empty())
+                .then(|| BuildError::at("pin.outer", what).help("a larger outer diameter is needed"))
+        }
+        _ => None,
+    }
 }
 
 fn no_optimum(d: &Design<'_>, e: NoOptimum) -> RunError {
@@ -232,7 +267,13 @@ fn exact(d: &Design<'_>, s: &Setup, o: &Optimise, out: &mut RunResult) -> Result
     out.solver.notes.push(Note::info("optimum", format!("The optimum is held by {held}. {certified}")));
     if let Some(g) = &s.given {
         let excess = d.masses(g).differential() - best.masses.differential();
-        result(out, "excess_of_given", 1e3 * excess, "g", "mass of the given pin above the optimum");
+        result(
+            out,
+            "excess_of_given",
+            1e3 * excess,
+            "g",
+            "mass, less relief, of the given pin above the optimum",
+        );
         let keeps = d.utilisation(g).is_ok_and(|u| u.iter().all(|u| *u <= 1.0 + 1e-9));
         if keeps {
             out.solver.notes.push(Note::info(
@@ -325,12 +366,18 @@ fn published(d: &Design<'_>, s: &Setup, o: &Optimise, out: &mut RunResult) -> Re
             "excess_here",
             1e3 * (mine - o.masses.differential()),
             "g",
-            "mass above the exact optimum of the same outer diameter",
+            "mass, less relief, above the exact optimum of the same outer diameter",
         );
     }
     if let Some(o) = free {
         let excess = mine - o.masses.differential();
-        result(out, "excess", 1e3 * excess, "g", "mass above the exact optimum of all dimensions");
+        result(
+            out,
+            "excess",
+            1e3 * excess,
+            "g",
+            "mass, less relief, above the exact optimum of all dimensions",
+        );
         out.solver.notes.push(Note::info("exact_optimum", format!(
             "The exact optimum of all dimensions is {:.2} g lighter: length {:.3} mm, outer diameter {:.3} mm, inner diameter {:.3} mm.",
             1e3 * excess,
@@ -454,7 +501,13 @@ fn sweep(d: &Design<'_>, s: &Setup, o: &Optimise, out: &mut RunResult) {
     );
     if s.relief.is_some() {
         // Without the pin itself the curve fills the page: the steps of the published search show.
-        lines(out, "diameter_sweep", "Lightest pin of each outer diameter, less relief", "", &masses[1..]);
+        lines(
+            out,
+            "diameter_sweep",
+            "Least mass of the pin less relief at each outer diameter",
+            "",
+            &masses[1..],
+        );
     }
     lines(
         out,
@@ -478,13 +531,14 @@ fn sweep(d: &Design<'_>, s: &Setup, o: &Optimise, out: &mut RunResult) {
 /// Mass of the lightest pin over one limit.
 fn front(d: &Design<'_>, q: PinQuantity, out: &mut RunResult) {
     let k = q as usize;
-    let mut rows: Vec<[f64; 5]> = Vec::new();
+    let mut rows: Vec<[f64; 6]> = Vec::new();
     for i in 0..FRONT {
         let factor = 0.7 + 0.6 * i as f64 / (FRONT - 1) as f64;
         let mut here = *d;
         here.limits[k] *= factor;
         if let Ok(o) = lightest(&here, None) {
-            rows.push([here.limits[k], o.masses.differential(), o.size.length, o.size.outer, o.size.inner]);
+            let m = o.masses;
+            rows.push([here.limits[k], m.pin, m.differential(), o.size.length, o.size.outer, o.size.inner]);
         }
     }
     if rows.len() < 2 {
@@ -493,21 +547,22 @@ fn front(d: &Design<'_>, q: PinQuantity, out: &mut RunResult) {
     let of = |k: usize| rows.iter().map(|r| r[k]).collect::<Vec<_>>();
     let table = format!("pareto_{}", q.name());
     let columns = vec![
-        column("mass", "kg", of(1)),
-        column("length", "m", of(2)),
-        column("outer", "m", of(3)),
-        column("inner", "m", of(4)),
+        column("pin_mass", "kg", of(1)),
+        column("mass_differential", "kg", of(2)),
+        column("length", "m", of(3)),
+        column("outer", "m", of(4)),
+        column("inner", "m", of(5)),
     ];
     let unit = if q.is_length() { "m" } else { "Pa" };
     out.tables.insert(table.clone(), Series { axis: column(q.name(), unit, of(0)), columns });
     let title = format!("Mass against {}", q.words());
-    lines(
-        out,
-        &table,
-        &title,
-        "lightest pin for each value of the limit; no pin lies below the line",
-        &[("lightest pin", "mass")],
-    );
+    let (hint, drawn) = if d.relief.is_some() {
+        let hint = "what is made least is the pin less the flats cut from the piston, below zero where these weigh more; none lies below its line";
+        (hint, &[("pin", "pin_mass"), ("pin less relief", "mass_differential")][..])
+    } else {
+        ("lightest pin for each value of the limit; no pin lies below the line", &[("pin", "pin_mass")][..])
+    };
+    lines(out, &table, &title, hint, drawn);
 }
 
 fn from_stock(d: &Design<'_>, sizes: &gudgeon_pin::stock::Sizes, best: &PinSize, out: &mut RunResult) {
@@ -521,9 +576,15 @@ fn from_stock(d: &Design<'_>, sizes: &gudgeon_pin::stock::Sizes, best: &PinSize,
     result(out, "stock_length", 1e3 * c.size.length, "mm", "length of the lightest pin of the stock");
     result(out, "stock_outer", 1e3 * c.size.outer, "mm", "its outer diameter");
     result(out, "stock_inner", 1e3 * c.size.inner, "mm", "its inner diameter");
-    result(out, "stock_mass_differential", 1e3 * c.differential, "g", "its mass, less the relief");
+    result(
+        out,
+        "stock_mass_differential",
+        1e3 * c.differential,
+        "g",
+        "mass of that pin less that of the flats cut from the piston",
+    );
     let excess = c.differential - d.masses(best).differential();
-    result(out, "stock_excess", 1e3 * excess, "g", "its mass above the optimum");
+    result(out, "stock_excess", 1e3 * excess, "g", "mass, less relief, of that pin above the optimum");
 }
 
 /// Forces and stress over the cycle, and fatigue.

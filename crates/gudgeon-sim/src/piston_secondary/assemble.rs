@@ -241,8 +241,10 @@ pub fn assemble(
     breakpoints.sort_by(f64::total_cmp);
     breakpoints.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
     let elastic = sides.iter().any(|s| s.elastic() > 0);
+    let mut piston = Piston::new(sides, body, crank, pin, groove);
+    piston.relaxation = case.solver.shape_relaxation.si();
     Ok(Assembly {
-        piston: Piston::new(sides, body, crank, pin, groove),
+        piston,
         kinematics,
         profile,
         cylinder,

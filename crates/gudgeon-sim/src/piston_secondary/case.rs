@@ -7,7 +7,7 @@ use gudgeon_core::kinds::{
 };
 use gudgeon_core::quantity::{
     Angle, Length, NonNegative, PosAngle, PosAngularSpeed, PosExpansion, PosInertia, PosLength, PosMass,
-    PosPressure, PosRatio, PosTemperature, Pressure, Ratio, quantity,
+    PosPressure, PosRatio, PosTemperature, PosTime, Pressure, Ratio, quantity,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -62,6 +62,7 @@ pub struct Engine {
     pub crank_offset: Length,
     /// Number of cylinders, for the engine totals.
     #[serde(default = "one")]
+    #[schemars(range(min = 1, max = 1000))]
     pub cylinders: u32,
 }
 
@@ -234,8 +235,10 @@ pub struct Solver {
     #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1, "when": { "method": "implicit" } }))]
     pub periodicity: PosRatio,
     /// Most cycles of the search for the periodic motion.
+    #[schemars(range(max = 100_000))]
     pub max_cycles: u32,
     /// This many cycles from the start, the last one shown, whether or not it is periodic; 0: until the motion is periodic.
+    #[schemars(range(max = 100_000))]
     pub cycles: u32,
     /// Step of `backward_euler`.
     #[schemars(extend("x-refine" = { "group": "time step", "factor": 0.5, "when": { "method": "backward_euler" } }))]
@@ -257,6 +260,11 @@ pub struct Solver {
     /// Intervals of a row.
     #[schemars(range(min = 2, max = 1000), extend("x-refine" = { "group": "contact grid", "factor": 2 }))]
     pub contact_intervals: u32,
+    /// Part of the gap by which the pressures on a rigid skirt may move the surface of one that yields for it to be taken for rigid; 0: never.
+    pub rigid_below: Ratio<NonNegative>,
+    /// Time in which an elastic shape without load comes back to rest: a little inner damping, without which nothing would hold a surface under
+    /// a cavity. What yields lags by it behind its pressure, 0.015 deg of crank angle at 2500 rpm by the default.
+    pub shape_relaxation: PosTime,
 }
 
 impl Default for Solver {
@@ -276,6 +284,8 @@ impl Default for Solver {
             crowding: quantity(0.0),
             contact_pitch: quantity(0.25e-3),
             contact_intervals: 20,
+            rigid_below: quantity(0.02),
+            shape_relaxation: quantity(1e-6),
         }
     }
 }
@@ -300,10 +310,10 @@ pub enum Method {
 pub struct Outputs {
     /// Names of results; `all` for every one that the scene has. What no wanted result needs is not computed.
     pub results: Vec<String>,
-    /// Crank angle between rows of the series.
+    /// Crank angle between rows of the series. Results do not depend on it.
     pub series_step: PosAngle,
-    /// Crank angles at which positions and forces are results of their own: `e_top@390`, `side_force@390`, … They are rounded to rows of the
-    /// series.
+    /// Crank angles at which positions and forces are results of their own: `e_top@390`, `side_force@390`, …
+    #[schemars(length(max = 1000))]
     pub at: Vec<Angle>,
     /// Crank angle between the maps of film pressure that are kept; they are not kept when absent.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -12,14 +12,14 @@ use gudgeon_numerics::rodas::{Formula, Rodas};
 
 use super::assemble::Assembly;
 use super::case::{Method, PistonSecondaryCase};
-use super::record::{Record, Rows};
+use super::trajectory::{Between, Trajectory};
 use crate::case::IntegratorName;
 use crate::run::RunError;
 
 /// A motion over one cycle.
 pub struct Found {
-    /// The cycle.
-    pub record: Record,
+    /// The cycle; without steps when it was not wanted.
+    pub trajectory: Trajectory,
     /// Coordinates \[m\], then velocities with inertia \[m/s\], at the start of the cycle.
     pub start: Vec<f64>,
     /// Cycles it took, in units of the last one.
@@ -159,17 +159,17 @@ impl Cycle<'_> {
         self.x.len() + if self.inertial { 2 } else { 0 }
     }
 
-    /// One cycle from `y`, recorded into `record`.
+    /// One cycle from `y`, into `trajectory`.
     fn integrate(
         &mut self,
         y: &mut [f64],
         tolerance: f64,
-        record: Option<&mut Record>,
+        trajectory: Option<&mut Trajectory>,
     ) -> Result<(), RunError> {
         self.w.fill(0.0);
         let outcome = match self.engine {
-            Engine::Euler { steps } => self.euler(y, steps, record),
-            _ => self.adaptive(y, tolerance, record),
+            Engine::Euler { steps } => self.euler(y, steps, trajectory),
+            _ => self.adaptive(y, tolerance, trajectory),
         };
         self.done += 1.0;
         (self.progress)(1.0 - 0.75f64.powf(self.done));
@@ -180,7 +180,7 @@ impl Cycle<'_> {
         &mut self,
         y: &mut [f64],
         tolerance: f64,
-        mut record: Option<&mut Record>,
+        mut trajectory: Option<&mut Trajectory>,
     ) -> Result<(), RunError> {
         let (n, states, period) = (self.x.len(), self.states(), self.a.period);
         let mut scale = vec![1.0; states];
@@ -190,14 +190,7 @@ impl Cycle<'_> {
         options.absolute[n..].fill(false);
         (options.h_init, options.h_max, options.max_steps) = (FIRST_STEP, LARGEST_STEP, MOST_STEPS);
         options.event_samples = 0;
-        let mut breakpoints = std::mem::take(&mut self.a.breakpoints);
-        let own = breakpoints.clone();
-        if let (Some(r), true) = (&record, self.inertial) {
-            // Velocities are known where steps end; between them the films would see the error of the interpolation.
-            breakpoints.extend(r.rows().iter().filter(|t| **t > 0.0 && **t < period));
-            breakpoints.sort_by(f64::total_cmp);
-            breakpoints.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
-        }
+        let breakpoints = std::mem::take(&mut self.a.breakpoints);
         let mut problem = Problem {
             a: self.a,
             inertial: self.inertial,
@@ -206,25 +199,12 @@ impl Cycle<'_> {
             w: &mut self.w,
             acceleration: [0.0; 2],
         };
-        let mut failure: Option<(f64, EvalError)> = None;
-        if let Some(r) = record.as_deref_mut()
-            && let Err(e) = row(r, &mut problem, 0.0, y)
-        {
-            failure = Some((0.0, e));
+        if let Some(t) = trajectory.as_deref_mut() {
+            t.start(0.0, y);
         }
-        let mut between = vec![0.0; states];
-        let mut observe = |p: &mut Problem<'_>, view: &dyn StepView| {
-            let Some(r) = record.as_deref_mut() else { return Flow::Continue };
-            while let Some(t) = r.next().filter(|t| *t <= view.t1() + 1e-9) {
-                if t > view.t1() - 1e-9 {
-                    between.copy_from_slice(view.y1());
-                } else {
-                    view.interpolate(t, &mut between);
-                }
-                if let Err(e) = row(r, p, t.min(view.t1()), &between) {
-                    failure = Some((t, e));
-                    return Flow::Stop;
-                }
+        let mut observe = |_: &mut Problem<'_>, view: &dyn StepView| {
+            if let Some(t) = trajectory.as_deref_mut() {
+                t.step(view);
             }
             Flow::Continue
         };
@@ -238,10 +218,7 @@ impl Cycle<'_> {
             }
             Engine::Euler { .. } => Ok(0.0),
         };
-        self.a.breakpoints = own;
-        if let Some((t, source)) = failure {
-            return Err(RunError::Eval { theta_deg: t.to_degrees(), source });
-        }
+        self.a.breakpoints = breakpoints;
         outcome.map(|_| ()).map_err(|e| match e {
             IntegrateError::Eval { t, source } => RunError::Eval { theta_deg: t.to_degrees(), source },
             other => RunError::Integrate(other),
@@ -252,14 +229,22 @@ impl Cycle<'_> {
         &mut self,
         y: &mut [f64],
         steps: usize,
-        mut record: Option<&mut Record>,
+        mut trajectory: Option<&mut Trajectory>,
     ) -> Result<(), RunError> {
         let (c, n, period, omega) = (self.a.clearance, self.x.len(), self.a.period, self.a.omega());
         let speed = c * omega;
         let mut from: Vec<f64> = y[..n].iter().map(|y| c * y).collect();
         let mut v = if self.inertial { [y[n] * speed, y[n + 1] * speed] } else { [0.0; 2] };
         let eval = |t: f64| move |source| RunError::Eval { theta_deg: f64::to_degrees(t), source };
-        if let Some(r) = record.as_deref_mut() {
+        // What stands at the end of a step: coordinates and rates, in clearances and clearances per radian.
+        let mut shown = vec![0.0; 2 * n];
+        let mut show = |x: &[f64], w: &[f64]| {
+            for k in 0..n {
+                (shown[k], shown[n + k]) = (x[k] / c, w[k] / speed);
+            }
+            shown.clone()
+        };
+        if let Some(t) = trajectory.as_deref_mut() {
             self.x.copy_from_slice(&from);
             let now = self.a.instant(0.0);
             if self.inertial {
@@ -267,7 +252,7 @@ impl Cycle<'_> {
             } else {
                 self.a.piston.rates(&now, &self.x, None, &mut self.w, &mut [0.0; 2]).map_err(eval(0.0))?;
             }
-            r.push(self.a, &now, &self.x, &self.w).map_err(eval(0.0))?;
+            t.start(0.0, &show(&self.x, &self.w));
         }
         for k in 0..steps {
             let (mut t, end) = (period * k as f64 / steps as f64, period * (k + 1) as f64 / steps as f64);
@@ -293,11 +278,8 @@ impl Cycle<'_> {
                     Err(e) => return Err(eval(t)(e)),
                 }
             }
-            if let Some(r) = record.as_deref_mut()
-                && r.next().is_some_and(|t| t <= end + 1e-9)
-            {
-                let now = self.a.instant(end);
-                r.push(self.a, &now, &self.x, &self.w).map_err(eval(end))?;
+            if let Some(t) = trajectory.as_deref_mut() {
+                t.end(end, &show(&self.x, &self.w));
             }
         }
         for (y, x) in y.iter_mut().zip(&from) {
@@ -308,12 +290,6 @@ impl Cycle<'_> {
         }
         Ok(())
     }
-}
-
-/// One row of a record.
-fn row(record: &mut Record, p: &mut Problem<'_>, t: f64, y: &[f64]) -> Result<(), EvalError> {
-    let now = p.look_at(t, y)?;
-    record.push(p.a, &now, p.x, p.w)
 }
 
 impl Cycle<'_> {
@@ -360,7 +336,18 @@ impl CycleMap for Cycle<'_> {
     }
 }
 
-/// Runs the case: the skirt as it is built, from `start` when one is known. What is wanted of the last cycle is `rows`.
+/// What a motion is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Purpose {
+    /// To be told.
+    Results,
+    /// To start another one from, and to be looked at.
+    Look,
+    /// To start another one from.
+    Start,
+}
+
+/// Runs the case: the skirt as it is built, from `start` when one is known.
 ///
 /// # Errors
 /// What stopped it.
@@ -368,7 +355,7 @@ pub fn run(
     case: &PistonSecondaryCase,
     a: &mut Assembly,
     start: Option<&[f64]>,
-    rows: Rows,
+    purpose: Purpose,
     progress: &mut dyn FnMut(f64),
 ) -> Result<Found, RunError> {
     let begin = Clock::now();
@@ -376,13 +363,11 @@ pub fn run(
     let n = a.piston.coordinates();
     let inertial = a.lateral == Lateral::Inertial;
     let states = if inertial { n + 2 } else { n };
-    let recorded = !matches!(rows, Rows::None);
     // Where another motion starts from this one, no closer than films of different grids are.
-    let is_start = !matches!(rows, Rows::All { .. });
+    let is_start = purpose != Purpose::Results;
     let periodicity = if is_start { s.periodicity.si().max(START) } else { s.periodicity.si() };
-    let mut record = Record::new(a, case, rows);
     if let Lateral::Held { e_top, e_bottom } = a.lateral {
-        return held(a, [e_top, e_bottom], record, begin);
+        return Ok(held(a, [e_top, e_bottom], begin));
     }
     let integrator = match s.integrator {
         // Order five pays where the films are smooth; the switch is where both need the same films.
@@ -451,19 +436,7 @@ pub fn run(
         cycle.begin(&y[..n]);
         y.copy_from_slice(&cycle.y);
         if !report.converged {
-            let wanted = periodicity;
-            if report.error_estimate > 0.1 {
-                return Err(RunError::NotPeriodic {
-                    cycles: report.cycles as u32,
-                    error: report.error_estimate,
-                    wanted,
-                    advice: "Raise `solver.max_cycles`, or look at the transient with `solver.cycles`".into(),
-                });
-            }
-            notes.push(Note::caution("not_periodic", format!(
-                "not periodic within {wanted:.0e} clearances after {} cycles: the estimated error is {:.1e}",
-                report.cycles, report.error_estimate
-            )));
+            notes.push(not_periodic(report.cycles, report.error_estimate, periodicity));
         }
         if report.multiplier > 0.9 {
             notes.push(Note::info(
@@ -484,8 +457,12 @@ pub fn run(
     }
     let searched = begin.elapsed().as_secs_f64();
     let first = y.clone();
-    if recorded {
-        cycle.integrate(&mut y, s.tolerance.si(), Some(&mut record))?;
+    let mut trajectory = match cycle.engine {
+        Engine::Euler { .. } => Trajectory::new(2 * n, Between::Nothing),
+        _ => Trajectory::new(states, Between::Dense),
+    };
+    if purpose != Purpose::Start {
+        cycle.integrate(&mut y, s.tolerance.si(), Some(&mut trajectory))?;
     }
     let stats = cycle.stats;
     // Of a given number of cycles the last one is that of the record.
@@ -495,7 +472,7 @@ pub fn run(
     let speed = clearance * cycle.a.omega();
     let start = first.iter().enumerate().map(|(k, y)| y * if k < n { clearance } else { speed }).collect();
     Ok(Found {
-        record,
+        trajectory,
         start,
         cycles,
         periodicity_error: clearance * error.unwrap_or(change),
@@ -505,6 +482,20 @@ pub fn run(
     })
 }
 
+/// What a motion that is not periodic says: a caution up to ten times the distance that is admitted, a failure beyond.
+fn not_periodic(cycles: usize, error: f64, wanted: f64) -> Note {
+    let topic = "not_periodic";
+    let text = format!(
+        "The motion is not periodic within {wanted:.0e} clearances after {cycles} cycles: the estimated distance is {error:.1e}. Raise `solver.max_cycles`, or look at the transient with `solver.cycles`."
+    );
+    let note =
+        if error <= ADMITTED * wanted { Note::caution(topic, text) } else { Note::failure(topic, text) };
+    note.amount("periodicity_error", error, "1").amount("wanted", wanted, "1")
+}
+
+/// Multiple of the distance wanted up to which a motion counts as periodic, with a caution.
+const ADMITTED: f64 = 10.0;
+
 /// Tolerance at which the method of order five needs no more films than that of order three.
 const ORDER_FIVE: f64 = 2e-4;
 /// Periodicity of a motion that is a start for another, in clearances.
@@ -512,25 +503,31 @@ const START: f64 = 1e-3;
 /// How repeatable a cycle is, in tolerances.
 const ACCURACY: f64 = 0.1;
 
+/// Way between two looks at a skirt that stands still \[rad\].
+const STILL: f64 = 0.05;
+
 /// A skirt that stands still.
-fn held(a: &mut Assembly, e: [f64; 2], mut record: Record, begin: Clock) -> Result<Found, RunError> {
-    let n = a.piston.coordinates();
-    let mut x = vec![0.0; n];
+fn held(a: &mut Assembly, e: [f64; 2], begin: Clock) -> Found {
+    let mut x = vec![0.0; a.piston.coordinates()];
     x[..2].copy_from_slice(&e);
-    let w = vec![0.0; n];
-    while let Some(t) = record.next() {
-        let now = a.instant(t);
-        let eval = |source| RunError::Eval { theta_deg: t.to_degrees(), source };
-        a.piston.place(&now, &x).map_err(eval)?;
-        record.push(a, &now, &x, &w).map_err(eval)?;
+    let mut ends = vec![0.0];
+    let mut from = 0.0;
+    for &to in a.breakpoints.iter().chain([&a.period]) {
+        let parts = ((to - from) / STILL).ceil().max(1.0) as usize;
+        ends.extend(
+            (1..=parts).map(|k| if k == parts { to } else { from + (to - from) * k as f64 / parts as f64 }),
+        );
+        from = to;
     }
-    Ok(Found {
-        record,
+    ends.dedup_by(|b, a| *b - *a < 1e-9);
+    let scaled: Vec<f64> = x.iter().map(|x| x / a.clearance).collect();
+    Found {
+        trajectory: Trajectory::still(ends, &scaled),
         start: x,
         cycles: 1.0,
         periodicity_error: 0.0,
         notes: Vec::new(),
         stats: Stats::default(),
         seconds: begin.elapsed().as_secs_f64(),
-    })
+    }
 }

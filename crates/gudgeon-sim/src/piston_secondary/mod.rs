@@ -6,8 +6,13 @@ pub mod assemble;
 pub mod case;
 mod draw;
 pub mod march;
+mod notes;
 pub mod plan;
 pub mod record;
+pub mod results;
+pub mod row;
+pub mod survey;
+pub mod trajectory;
 
 use std::time::Instant;
 
@@ -21,11 +26,11 @@ use crate::scene::SceneCase;
 use crate::study::{Contender, Race};
 use assemble::{Assembly, assemble};
 use case::{Method, PistonSecondaryCase};
+use march::Purpose;
 use plan::ResultInfo;
-use record::Rows;
-
-/// Part of the film by which a skirt may yield that is taken for rigid.
-const YIELDING: f64 = 0.02;
+use record::Record;
+use row::Look;
+use survey::Survey;
 
 impl SceneCase for PistonSecondaryCase {
     fn legal(loaded: &Loaded<Self>) -> Vec<BuildError> {
@@ -57,6 +62,11 @@ impl SceneCase for PistonSecondaryCase {
         Ok(models(case))
     }
 
+    fn result_names(loaded: &Loaded<Self>) -> Option<Vec<String>> {
+        let a = assemble(&loaded.value, &loaded.source.folder, true, None).ok()?;
+        Some(wanted(&loaded.value, &a).ok()?.into_iter().map(|r| r.name).collect())
+    }
+
     fn run(loaded: &Loaded<Self>, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
         let begin = Instant::now();
         let case = &loaded.value;
@@ -75,22 +85,23 @@ impl SceneCase for PistonSecondaryCase {
         let mut start: Option<Vec<f64>> = None;
         if elastic {
             let mut hard = built(false, coarse)?;
-            let soft = Box::new(built(true, coarse)?.piston);
+            let soft = built(true, coarse)?.piston;
             let (shapes, inertial) = (soft.coordinates() - 2, hard.lateral == Lateral::Inertial);
             let found = search.run(
                 "rigid skirt",
                 case,
                 &mut hard,
                 None,
-                Rows::Yielding(soft),
+                Purpose::Look,
                 coarse.is_some(),
                 progress,
             )?;
-            elastic = found.record.yielding >= YIELDING;
+            let (yielding, yields_first) = record::yielding(&mut hard, &found.trajectory, &soft)?;
+            elastic = yielding >= case.solver.rigid_below.si();
             if periodic {
                 let mut s = found.start[..2].to_vec();
                 if elastic {
-                    s.extend(&found.record.yields_first);
+                    s.extend(&yields_first);
                     debug_assert_eq!(s.len(), 2 + shapes, "one amplitude a shape");
                 }
                 s.extend(if inertial { &found.start[2..4] } else { &[] });
@@ -100,9 +111,9 @@ impl SceneCase for PistonSecondaryCase {
                 skipped_more.push(Skipped {
                     what: "yielding of the skirt".into(),
                     why: format!(
-                        "the pressures on the rigid skirt would move its surface by {:.2} % of the gap at most, below {:.0} %",
-                        100.0 * found.record.yielding,
-                        100.0 * YIELDING
+                        "the pressures on the rigid skirt would move its surface by {:.2} % of the gap at most, below {:.3} %: `solver.rigid_below`",
+                        100.0 * yielding,
+                        100.0 * case.solver.rigid_below.si()
                     ),
                 });
             }
@@ -112,7 +123,7 @@ impl SceneCase for PistonSecondaryCase {
             // A start that is wrong costs cycles; one that is not found costs nothing more.
             let mut a = built(elastic, coarse)?;
             let from = start.as_deref();
-            if let Ok(found) = search.run("coarse film", case, &mut a, from, Rows::None, true, progress) {
+            if let Ok(found) = search.run("coarse film", case, &mut a, from, Purpose::Start, true, progress) {
                 start = Some(found.start);
             }
         }
@@ -120,13 +131,26 @@ impl SceneCase for PistonSecondaryCase {
             a = built(true, None)?;
         }
         let phase = if elastic { "elastic skirt" } else { "rigid skirt" };
-        let found =
-            search.run(phase, case, &mut a, start.as_deref(), Rows::All { flows }, false, progress)?;
+        let found = search.run(phase, case, &mut a, start.as_deref(), Purpose::Results, false, progress)?;
         let mut result = RunResult { models: models(case), ..RunResult::default() };
         (result.skipped, _) = skipped(case, &a, &wanted);
         result.skipped.extend(skipped_more);
-        result.results = found.record.results(&a, case, &wanted, found.periodicity_error);
-        result.events = found.record.events();
+        let bends = a.breakpoints.clone();
+        let mut look = Look::new(&mut a, &found.trajectory, flows);
+        let before = work(&look.a.piston);
+        // Results come first: no row that is shown can change them.
+        let (told, notes) = Survey::new(&mut look, &bends)
+            .and_then(|s| {
+                let told = results::tell(&s, &mut look, case, &wanted, found.periodicity_error)?;
+                let notes = notes::notes(&s, &mut look, told.peaks)?;
+                Ok((told, notes))
+            })
+            .map_err(|e| look.stopped(e))?;
+        let record = Record::new(&mut look, case, told.peaks, flows).map_err(|e| look.stopped(e))?;
+        for ((name, now), before) in work(&look.a.piston).into_iter().zip(before) {
+            *search.counters.entry(name.to_owned()).or_default() += now - before.1;
+        }
+        (result.results, result.events) = (told.results, told.events);
         result.solver = SolverReport {
             method: match case.solver.method {
                 Method::Implicit => "implicit",
@@ -135,8 +159,9 @@ impl SceneCase for PistonSecondaryCase {
             }
             .into(),
             counters: search.counters,
-            notes: found.notes.clone(),
+            notes: a.cylinder.notes().into_iter().chain(found.notes.iter().cloned()).collect(),
         };
+        result.solver.notes.extend(notes);
         result.solver.notes.push(Note::info(
             "centre_of_gravity",
             format!(
@@ -148,8 +173,8 @@ impl SceneCase for PistonSecondaryCase {
                 }
             ),
         ));
-        draw::figures(&a, &found.record, &mut result);
-        result.series = found.record.series();
+        draw::figures(&a, &record, &mut result);
+        result.series = record.series();
         result.seconds.insert("build".into(), build_time);
         result.seconds.insert("solve".into(), search.seconds);
         Ok(result)
@@ -254,6 +279,15 @@ fn coarse(case: &PistonSecondaryCase) -> Option<[u32; 2]> {
 /// Forces within some percent, at a hundredth of the work of 64 x 48.
 const COARSE: [u32; 2] = [16, 12];
 
+/// What the films of a piston took so far.
+fn work(piston: &gudgeon_skirt::Piston) -> [(&'static str, u64); 3] {
+    [
+        ("film_evaluations", piston.film_evaluations()),
+        ("contact_sums", piston.sides.iter().map(|s| s.contact_sums).sum()),
+        ("newton_steps", piston.newton_steps),
+    ]
+}
+
 /// What all motions of a run took together.
 #[derive(Default)]
 struct Search {
@@ -262,7 +296,7 @@ struct Search {
 }
 
 impl Search {
-    /// A motion, of which `rows` are recorded; `coarse`: on a film that is not that of the case.
+    /// A motion for `purpose`; `coarse`: on a film that is not that of the case.
     #[allow(clippy::too_many_arguments, reason = "a motion and how it is told")]
     fn run(
         &mut self,
@@ -270,12 +304,12 @@ impl Search {
         case: &PistonSecondaryCase,
         a: &mut Assembly,
         start: Option<&[f64]>,
-        rows: Rows,
+        purpose: Purpose,
         coarse: bool,
         progress: &mut dyn FnMut(Progress),
     ) -> Result<march::Found, RunError> {
         let mut tell = |fraction: f64| progress(Progress { phase: phase.to_owned(), fraction });
-        let found = march::run(case, a, start, rows, &mut tell)?;
+        let found = march::run(case, a, start, purpose, &mut tell)?;
         self.seconds += found.seconds;
         let s = &found.stats;
         let cycles = if coarse { "coarse_cycles" } else { "cycles" };
@@ -284,11 +318,11 @@ impl Search {
             ("rejected", s.rejected),
             ("rhs", s.rhs),
             ("jacobians", s.jacobians),
-            ("film_evaluations", a.piston.film_evaluations()),
-            ("contact_sums", a.piston.sides.iter().map(|s| s.contact_sums).sum()),
-            ("newton_steps", a.piston.newton_steps),
             (cycles, found.cycles.ceil() as u64),
-        ] {
+        ]
+        .into_iter()
+        .chain(work(&a.piston))
+        {
             *self.counters.entry(name.to_owned()).or_default() += n;
         }
         let nodes = a.piston.sides.iter().map(|s| s.nodes() as u64).sum();

@@ -74,7 +74,7 @@ pub fn catalogue(case: &PistonSecondaryCase, period_deg: f64, inertial: bool) ->
         ("p_max_angle", "deg", "crank angle of the highest film pressure"),
         ("friction_work", "J", "friction work of a cycle, one cylinder"),
         ("friction_power", "W", "friction power, one cylinder"),
-        ("fmep", "kPa", "friction work over swept volume"),
+        ("fmep", "bar", "friction work over swept volume"),
         ("engine_friction_power", "W", "friction power of all cylinders"),
         ("contact_work", "J", "part of the friction work that rubbing does"),
         ("contact_force_max", "N", "largest force of solid contact on a side"),

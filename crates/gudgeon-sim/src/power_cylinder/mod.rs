@@ -9,7 +9,7 @@ use gudgeon_core::result::{ModelUse, RunResult, Value};
 use serde_json::Value as Json;
 
 use crate::case::RingPackCase;
-use crate::load::{Loaded, Report, read, scene_of};
+use crate::load::{Loaded, Refinement, Report, read, scene_of};
 use crate::piston_secondary::case::PistonSecondaryCase;
 use crate::run::{Checked, Explanation, Progress, RunError, check, explain};
 use crate::scene::SceneCase;
@@ -34,6 +34,38 @@ impl SceneCase for PowerCylinderCase {
         Ok(models)
     }
 
+    /// Those of both parts, as changes to the parts.
+    fn refinements(loaded: &Loaded<Self>) -> Vec<Refinement> {
+        let Ok((rings, skirt)) = parts(loaded) else { return Vec::new() };
+        let own = &loaded.value;
+        let of = |case: &Checked, part: &Part, field: &str, name: &str| -> Vec<Refinement> {
+            let level = |set: Vec<String>| {
+                let all: Vec<String> = part.set.iter().chain(&set).map(|s| format!("{s:?}")).collect();
+                vec![format!("{field}.set=[{}]", all.join(", "))]
+            };
+            case.case
+                .refinements()
+                .into_iter()
+                .map(|r| Refinement {
+                    what: format!("{} of the {name}", r.what),
+                    levels: r.levels.into_iter().map(level).collect(),
+                })
+                .collect()
+        };
+        let mut all = of(&rings, &own.ring_pack, "ring_pack", "rings");
+        all.extend(of(&skirt, &own.piston_secondary, "piston_secondary", "skirt"));
+        all
+    }
+
+    fn result_names(loaded: &Loaded<Self>) -> Option<Vec<String>> {
+        let (rings, skirt) = parts(loaded).ok()?;
+        let (rings, skirt) = (rings.case.result_names()?, skirt.case.result_names()?);
+        let both = |name: &&str| [&rings, &skirt].iter().all(|p| p.iter().any(|r| r == name));
+        let sums = ["friction_power", "fmep"].into_iter().filter(both).map(str::to_owned);
+        let parts = [("rings", &rings), ("skirt", &skirt)];
+        Some(sums.chain(parts.iter().flat_map(|(p, all)| all.iter().map(|r| named(p, r)))).collect())
+    }
+
     fn run(loaded: &Loaded<Self>, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
         let begin = Instant::now();
         let (rings, skirt) = parts(loaded).map_err(refused)?;
@@ -51,8 +83,8 @@ impl SceneCase for PowerCylinderCase {
         let other = half("skirt", 0.5)?;
         let power = |r: &RunResult| r.results.get("friction_power").map(|v| v.value);
         let total = power(&result).zip(power(&other));
-        let fmep = |r: &RunResult, unit: f64| r.results.get("fmep").map(|v| unit * v.value);
-        let pressure = fmep(&result, 1e5).zip(fmep(&other, 1e3));
+        let fmep = |r: &RunResult| r.results.get("fmep").map(|v| v.value);
+        let pressure = fmep(&result).zip(fmep(&other));
         let mut results = indexmap::IndexMap::new();
         let mut sum = |name: &str, value: Option<f64>, unit: &str, what: &str| {
             if let Some(value) = value {
@@ -67,8 +99,8 @@ impl SceneCase for PowerCylinderCase {
         );
         sum(
             "fmep",
-            pressure.map(|(a, b)| 1e-3 * (a + b)),
-            "kPa",
+            pressure.map(|(a, b)| a + b),
+            "bar",
             "friction work of rings and skirt over swept volume",
         );
         results.extend(result.results.into_iter().map(|(k, v)| (named("rings", &k), v)));
@@ -80,7 +112,12 @@ impl SceneCase for PowerCylinderCase {
         result.tables.extend(other.tables);
         result.events.extend(other.events);
         result.events.sort_by(|a, b| a.theta_deg.total_cmp(&b.theta_deg));
-        result.solver.notes.extend(other.solver.notes);
+        for note in other.solver.notes {
+            // Both scenes have the same cylinder pressure.
+            if !result.solver.notes.contains(&note) {
+                result.solver.notes.push(note);
+            }
+        }
         let own = std::mem::take(&mut result.solver.counters);
         result.solver.counters = own.into_iter().map(|(k, n)| (named("rings", &k), n)).collect();
         result

@@ -12,6 +12,7 @@ use gudgeon_core::kinds::{
 use gudgeon_core::result::{ModelUse, Skipped};
 
 use super::contact_line::ContactLine;
+use super::end_gap;
 use super::geometry;
 use super::hold::Hold;
 use super::oil::{FacePlace, OilPack};
@@ -81,6 +82,12 @@ pub fn assemble(case: &RingPackCase, folder: &Path) -> Result<Pack, Vec<BuildErr
         errors.push(
             BuildError::at("outputs.series_step", "rows of a series cannot be that far apart or that close")
                 .help("between 0.006 deg and 90 deg"),
+        );
+    }
+    if case.outputs.seat.si() > 0.5 {
+        errors.push(
+            BuildError::at("outputs.seat", "a ring would be on both flanks at once")
+                .help("at most 0.5 of the clearance; 0.1 when it is left out"),
         );
     }
     let ctx = CylinderPressureCtx {
@@ -227,6 +234,12 @@ pub fn assemble(case: &RingPackCase, folder: &Path) -> Result<Pack, Vec<BuildErr
         }
     }
     let liner = liner_shape(case, kinematics.stroke(), spacing).map_err(|e| errors.push(e));
+    if let Ok((shape, pin)) = &liner
+        && gas.uses_end_gaps()
+    {
+        let spacings: Vec<f64> = rings.iter().map(|r| r.spacing).collect();
+        errors.extend(end_gap::closed(case, &geo, shape, *pin, &spacings, kinematics.stroke()));
+    }
     if !errors.is_empty() || rings.len() != n {
         return Err(errors);
     }
@@ -468,7 +481,7 @@ pub fn models_in_use(case: &RingPackCase, plan: &Plan) -> (Vec<ModelUse>, Vec<Sk
         match r.design {
             RingDesign::ThreePiece => skipped.push(Skipped {
                 what: format!("axial motion of ring {}", i + 1),
-                why: "a three-piece oil ring has no axial clearance".into(),
+                why: "a three-piece oil ring has no axial clearance: its groove is treated as sealed, gas passes its gaps alone, and blow-by is less than past a ring that leaks at its flanks".into(),
             }),
             RingDesign::TwinLand => skipped.push(Skipped {
                 what: format!("gas volume behind ring {}", i + 1),

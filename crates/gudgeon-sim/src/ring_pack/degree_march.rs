@@ -7,6 +7,7 @@
 
 use gudgeon_core::EvalError;
 
+use super::measure::Measures;
 use super::pack::{Pack, THINNEST};
 use super::record::{Record, Totals};
 
@@ -49,7 +50,7 @@ pub fn run(
     pack: &mut Pack,
     set: Settings,
     start: f64,
-    record: &mut Record,
+    (record, measures): (&mut Record, &mut Measures),
     progress: &mut dyn FnMut(f64),
 ) -> Result<Outcome, EvalError> {
     let n = pack.n_rings();
@@ -76,7 +77,8 @@ pub fn run(
             instant(pack, theta, &h);
             if recording {
                 pack.gas(None)?;
-                record.push(theta, pack);
+                record.push(theta, pack, &totals.flow_in, totals.blow_by);
+                measures.march(theta, pack, totals.flow_in[0]);
             }
             for g in 0..set.gas_steps {
                 let p =
@@ -106,7 +108,8 @@ pub fn run(
         }
         if recording {
             pack.gas(None)?;
-            record.push(pack.period(), pack);
+            record.push(pack.period(), pack, &totals.flow_in, totals.blow_by);
+            measures.march(pack.period(), pack, totals.flow_in[0]);
         }
         let after: f64 = pack.masses.iter().sum();
         let through = totals.flow_in[0].abs().max(totals.blow_by.abs()).max(f64::MIN_POSITIVE);

@@ -9,7 +9,7 @@ use gudgeon_core::result::{PackSection, SectionRing};
 use crate::case::{Land, Ring, RingDesign, RingPackCase};
 
 /// Temperature at which cold gaps are measured \[K\] (zottin1992, 20 degC).
-const COLD: f64 = 293.15;
+pub(super) const COLD: f64 = 293.15;
 
 /// Resolves the geometry; reports every contradiction, not only the first.
 pub fn resolve(case: &RingPackCase) -> Result<PackGeometry, Vec<BuildError>> {

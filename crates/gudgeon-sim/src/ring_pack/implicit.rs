@@ -11,15 +11,18 @@ use gudgeon_numerics::ode::{
     StepView,
 };
 use gudgeon_numerics::orbit::{CycleMap, OrbitOptions, periodic_orbit};
+use gudgeon_numerics::panel::LOBATTO;
 use gudgeon_numerics::radau::Radau5;
 use gudgeon_numerics::rodas::{Formula, Rodas};
 
-use super::Found;
 use super::hold::Hold;
+use super::measure::{Measures, Peak};
 use super::oil::Ledger;
 use super::pack::{Base, Pack};
-use super::record::{Record, Totals};
-use crate::case::{IntegratorName, RingPackCase};
+use super::record::Totals;
+use super::rows::Rows;
+use super::{Found, Recorded, results};
+use crate::case::{IntegratorName, Outputs, RingPackCase};
 use crate::run::RunError;
 
 /// The pack as an initial-value problem in crank angle.
@@ -145,7 +148,7 @@ struct Cycle<'a> {
 }
 
 impl Cycle<'_> {
-    /// Integrates one cycle from `y`. With a record, the cycle is sampled at `step` \[rad\] and its closures measured.
+    /// Integrates one cycle from `y`; a sampler follows it.
     fn integrate(
         &mut self,
         y: &mut [f64],
@@ -191,7 +194,7 @@ impl Cycle<'_> {
             }
             if piece == 0
                 && let Some(s) = sampler.as_deref_mut()
-                && let Err(source) = s.sample(self.pack, span.0, y)
+                && let Err(source) = s.begin(self.pack, span.0, y)
             {
                 outcome = Err(IntegrateError::Eval { t: span.0, source });
                 break;
@@ -301,12 +304,12 @@ impl CycleMap for Cycle<'_> {
     }
 }
 
-/// Samples a cycle on a fixed grid and measures its closures step by step.
+/// Follows the recorded cycle step by step: measures it, closes its balances, and keeps the rows of its series.
 struct Sampler {
-    record: Record,
-    grid: Vec<f64>,
-    next: usize,
+    rows: Rows,
+    measures: Measures,
     y: Vec<f64>,
+    q: Vec<f64>,
     failure: Option<EvalError>,
     impulse: Vec<[f64; 2]>,
     work: Vec<[f64; 2]>,
@@ -317,15 +320,16 @@ struct Sampler {
 }
 
 impl Sampler {
-    fn new(pack: &Pack, step: f64) -> Self {
-        let period = pack.period();
-        let rows = (period / step).round().max(1.0) as usize;
+    fn new(pack: &Pack, outputs: &Outputs) -> Self {
         let n = pack.n_rings();
+        let mut measures = Measures::new(pack, LOBATTO, outputs.seat.si());
+        let (theta, value) = pack.cylinder.highest();
+        measures.cylinder = Peak { theta, value };
         Self {
-            record: Record::new(pack),
-            grid: (0..=rows).map(|k| period * k as f64 / rows as f64).collect(),
-            next: 0,
+            rows: Rows::new(pack, outputs.series_step.si()),
+            measures,
             y: vec![0.0; pack.layout.n],
+            q: vec![0.0; 2 * n + 1],
             failure: None,
             impulse: vec![[0.0; 2]; n],
             work: vec![[0.0; 2]; n],
@@ -345,11 +349,9 @@ impl Sampler {
         }
     }
 
-    fn sample(&mut self, pack: &mut Pack, theta: f64, y: &[f64]) -> Result<(), EvalError> {
+    fn begin(&mut self, pack: &mut Pack, theta: f64, y: &[f64]) -> Result<(), EvalError> {
         pack.evaluate(theta, y)?;
-        film_peaks(pack)?;
-        self.record.push(theta, pack);
-        self.next += 1;
+        self.rows.start(pack, y);
         for (i, s) in self.start.iter_mut().enumerate() {
             *s = momentum(pack, i);
         }
@@ -357,7 +359,8 @@ impl Sampler {
     }
 
     fn step(&mut self, pack: &mut Pack, v: &dyn StepView) -> Flow {
-        match self.advance(pack, v) {
+        self.rows.step(pack, v);
+        match self.measure(pack, v) {
             Ok(()) => Flow::Continue,
             Err(e) => {
                 self.failure = Some(e);
@@ -366,48 +369,46 @@ impl Sampler {
         }
     }
 
-    fn advance(&mut self, pack: &mut Pack, v: &dyn StepView) -> Result<(), EvalError> {
-        let mut y = std::mem::take(&mut self.y);
-        let last = *self.grid.last().unwrap_or(&0.0);
-        let slack = 1e-9;
-        while self.next < self.grid.len() && self.grid[self.next] <= v.t1() + slack {
-            let t = self.grid[self.next].min(v.t1());
-            v.interpolate(t, &mut y);
-            pack.evaluate(t, &y)?;
-            film_peaks(pack)?;
-            self.record.push(self.grid[self.next], pack);
-            self.next += 1;
-        }
-        // Simpson's rule over the step for impulse and work of the forces on each ring.
-        if pack.plan.axial {
-            let dt = (v.t1() - v.t0()) / pack.omega / 6.0;
-            for (t, weight) in [(v.t0(), 1.0), (0.5 * (v.t0() + v.t1()), 4.0), (v.t1(), 1.0)] {
-                v.interpolate(t, &mut y);
-                pack.evaluate(t, &y)?;
-                for i in 0..pack.n_rings() {
-                    if pack.layout.axial[i].is_none() {
-                        continue;
-                    }
-                    let r = &pack.at.rings[i];
-                    let a = &r.axial;
-                    let velocity = pack.at.places[i].v;
-                    let parts = [a.gas, a.inertia, a.gravity, a.film, a.damping, r.reaction];
-                    let sum: f64 = parts.iter().sum();
-                    let magnitude: f64 = parts.iter().map(|p| p.abs()).sum();
-                    self.impulse[i][0] += weight * dt * sum;
-                    self.impulse[i][1] += weight * dt * magnitude;
-                    self.work[i][0] += weight * dt * sum * velocity;
-                    self.work[i][1] += weight * dt * parts.iter().map(|p| (p * velocity).abs()).sum::<f64>();
-                }
+    /// Samples the dense output of a step; at its ends and in its middle all forces, for Simpson's rule on impulse and work.
+    fn measure(&mut self, pack: &mut Pack, v: &dyn StepView) -> Result<(), EvalError> {
+        let (t0, t1) = (v.t0(), v.t1());
+        let last = self.measures.nodes().len() - 1;
+        for (k, x) in self.measures.nodes().iter().enumerate() {
+            let t = if k == last { t1 } else { t0 + x * (t1 - t0) };
+            v.interpolate(t, &mut self.y);
+            v.interpolate_quad(t, &mut self.q);
+            if pack.plan.axial && k.is_multiple_of(2) {
+                pack.evaluate(t, &self.y)?;
+                let weight = if 2 * k == last { 4.0 } else { 1.0 };
+                self.close(pack, weight * (t1 - t0) / pack.omega / 6.0);
+            } else {
+                pack.look(t, &self.y)?;
             }
-            if v.t1() >= last - slack {
-                for (i, e) in self.end.iter_mut().enumerate() {
-                    *e = momentum(pack, i);
-                }
-            }
+            self.measures.sample(k, pack, self.q[0]);
         }
-        self.y = y;
+        self.measures.step(pack, t0, t1);
+        for (i, e) in self.end.iter_mut().enumerate() {
+            *e = momentum(pack, i);
+        }
         Ok(())
+    }
+
+    /// Adds the forces of the instant over `dt` \[s\] to impulse and work.
+    fn close(&mut self, pack: &Pack, dt: f64) {
+        for i in 0..pack.n_rings() {
+            if pack.layout.axial[i].is_none() {
+                continue;
+            }
+            let (r, velocity) = (&pack.at.rings[i], pack.at.places[i].v);
+            let a = &r.axial;
+            let parts = [a.gas, a.inertia, a.gravity, a.film, a.damping, r.reaction];
+            let sum: f64 = parts.iter().sum();
+            let magnitude: f64 = parts.iter().map(|p| p.abs()).sum();
+            self.impulse[i][0] += dt * sum;
+            self.impulse[i][1] += dt * magnitude;
+            self.work[i][0] += dt * sum * velocity;
+            self.work[i][1] += dt * parts.iter().map(|p| (p * velocity).abs()).sum::<f64>();
+        }
     }
 
     fn balance(&self, pack: &Pack) -> (Option<f64>, Option<f64>) {
@@ -437,10 +438,6 @@ fn liner_table(pack: &Pack, films: Vec<(u32, Vec<f64>)>) -> Option<Series> {
         axis: column("height".into(), "m", z),
         columns: films.into_iter().map(|(deg, f)| column(format!("film_at_{deg}"), "m", f)).collect(),
     })
-}
-
-fn film_peaks(pack: &mut Pack) -> Result<(), EvalError> {
-    (0..pack.n_rings()).try_for_each(|i| pack.film_peak(i))
 }
 
 /// Momentum and kinetic energy of ring `i` relative to the piston.
@@ -535,7 +532,7 @@ pub(super) fn run(
     let seconds = begin.elapsed().as_secs_f64();
     let work = cycle.stats;
     // The recorded cycle, at full accuracy.
-    let mut sampler = Sampler::new(cycle.pack, case.outputs.series_step.si());
+    let mut sampler = Sampler::new(cycle.pack, &case.outputs);
     let gas: Vec<f64> = y[..cycle.pack.layout.gas].to_vec();
     cycle.begin(&y);
     let oil_before = cycle.pack.oil_pack.as_ref().map_or(0.0, |o| o.total(&y[..dim]));
@@ -569,7 +566,6 @@ pub(super) fn run(
         },
         periodicity_error: report.error_estimate,
         oil: pack.oil_pack.as_ref().map_or_else(Ledger::default, |o| o.ledger),
-        duration: None,
     };
     let mut notes = Vec::new();
     if report.period == 1 && !report.converged {
@@ -602,8 +598,8 @@ pub(super) fn run(
     ];
     Ok(Found {
         liner: liner_table(pack, sampler.liner),
-        record: sampler.record,
-        totals,
+        record: Recorded::Rows(sampler.rows),
+        cycle: results::Cycle { totals, measures: sampler.measures },
         period: if report.converged { report.period } else { 0 },
         cycles: report.cycle_equivalents,
         counters: counters.into_iter().map(|(k, v)| (k.to_owned(), v)).collect(),

@@ -1,18 +1,23 @@
 //! The scene `ring_pack`: one cylinder's rings with their gas, films and axial motion.
 //!
 //! `geometry` resolves dimensions, `plan` decides what must run, `assemble` builds the sub-models into a `pack::Pack`,
-//! one of `implicit`, `substep_march` and `degree_march` solves it, `record` turns the last cycle into results.
+//! one of `implicit`, `substep_march` and `degree_march` solves it. `measure` gathers what the results need on the steps of the last cycle,
+//! `results` says it, `record` holds the series.
 
 pub mod assemble;
 pub mod contact_line;
 pub mod degree_march;
+mod end_gap;
 pub mod geometry;
 pub mod hold;
 pub mod implicit;
+pub mod measure;
 pub mod oil;
 pub mod pack;
 pub mod plan;
 pub mod record;
+pub mod results;
+pub mod rows;
 mod scene;
 pub mod substep_march;
 
@@ -21,21 +26,25 @@ use std::time::Instant;
 use gudgeon_core::kinds::Motion;
 use gudgeon_core::result::{Branch, Note, Series, SolverReport};
 use gudgeon_core::{BuildError, EvalError};
+use gudgeon_numerics::panel::TRAPEZIUM;
 use indexmap::IndexMap;
 
 use crate::case::{Method, RingPackCase, Scheme};
 use crate::run::{Progress, RunError};
+use measure::Measures;
 use pack::Pack;
-use record::{Meter, Record, Totals};
+use record::Record;
+use results::{Cycle, Meter};
+use rows::Rows;
 
 /// A solved pack: the last cycle of the first start, and what else was found.
 pub struct Solved {
     /// Film on the liner at the dead centres, when oil is followed.
     pub liner: Option<Series>,
-    /// The recorded cycle.
+    /// The series of the last cycle.
     pub record: Record,
-    /// Its totals.
-    pub totals: Totals,
+    /// The last cycle.
+    pub cycle: Cycle,
     /// Periodic solutions, when there are several or the start matters.
     pub branches: Vec<Branch>,
     /// Work.
@@ -48,13 +57,19 @@ pub struct Solved {
 struct Found {
     /// Film on the liner at the dead centres, when oil is followed.
     liner: Option<Series>,
-    record: Record,
-    totals: Totals,
+    record: Recorded,
+    cycle: Cycle,
     period: u32,
     cycles: f64,
     counters: IndexMap<String, u64>,
     notes: Vec<Note>,
     seconds: f64,
+}
+
+/// The series of a cycle, or what it is evaluated from.
+enum Recorded {
+    Series(Record),
+    Rows(Rows),
 }
 
 /// Starts when the case names none.
@@ -69,8 +84,28 @@ fn starts(case: &RingPackCase, pack: &Pack) -> Vec<f64> {
     s
 }
 
-/// Change of the stored gas over the last cycle, as part of what passes, above which a marched scheme is said not to have settled.
-const UNSETTLED: f64 = 0.02;
+/// A result whose cycle is farther from repeating than this many times the tolerance is not the periodic one.
+const NOT_PERIODIC: f64 = 10.0;
+
+/// What to say of a marching scheme whose state changed by the part `change` over its last cycle.
+fn unsettled(change: f64, tolerance: f64, cycles: u32, start: f64, advice: &str) -> Option<Note> {
+    if change <= tolerance {
+        return None;
+    }
+    let text = format!(
+        "started with all lands at {:.2} bar, the state still changed by {:.2} % over cycle {cycles}, the last, where `solver.periodicity` asks \
+         for {:.2} %: raise `solver.{advice}`",
+        start / 1e5,
+        100.0 * change,
+        100.0 * tolerance,
+    );
+    let of = if change > NOT_PERIODIC * tolerance { Note::failure } else { Note::caution };
+    Some(of("not_periodic".to_owned(), text).amount("change", change, "1").amount(
+        "tolerance",
+        tolerance,
+        "1",
+    ))
+}
 
 /// Two periodic solutions count as one when their results agree within this relative difference.
 const SAME: f64 = 5e-3;
@@ -96,7 +131,7 @@ pub fn solve(
     let m = meter(case);
     let mut branches: Vec<Branch> = Vec::new();
     for (start, f) in &found {
-        let results = f.record.results(pack, &f.totals, m);
+        let results = f.cycle.results(pack, m);
         let name = format!("{:.2} bar", start / 1e5);
         let alike = |b: &&mut Branch| {
             results.iter().filter(|(k, _)| k.as_str() != "periodicity_error" && !k.ends_with("_angle")).all(
@@ -117,7 +152,11 @@ pub fn solve(
             }
         }
     }
-    let mut report = SolverReport { method: method_name(case).into(), ..SolverReport::default() };
+    let mut report = SolverReport {
+        method: method_name(case).into(),
+        notes: pack.cylinder.notes(),
+        ..SolverReport::default()
+    };
     if branches.len() > 1 {
         report.notes.push(Note::caution(
             "several_solutions",
@@ -131,6 +170,8 @@ pub fn solve(
     for b in &branches {
         match b.period {
             1 => {}
+            // A marching scheme has said by how much.
+            0 if case.solver.method == Method::AsPublished => {}
             0 => report.notes.push(Note::failure(
                 "not_periodic",
                 format!("started with {}, the cycle did not become periodic", b.start),
@@ -161,7 +202,13 @@ pub fn solve(
     report.counters.insert("film_evaluations".into(), pack.counters.film);
     report.counters.insert("gas_evaluations".into(), pack.counters.gas);
     let (_, first) = found.swap_remove(0);
-    Ok(Solved { liner: first.liner, record: first.record, totals: first.totals, branches, report, seconds })
+    let record = match first.record {
+        Recorded::Series(record) => record,
+        Recorded::Rows(rows) => rows
+            .record(pack)
+            .map_err(|source| RunError::Eval { theta_deg: pack.at.theta.to_degrees(), source })?,
+    };
+    Ok(Solved { liner: first.liner, record, cycle: first.cycle, branches, report, seconds })
 }
 
 fn method_name(case: &RingPackCase) -> &'static str {
@@ -181,6 +228,7 @@ fn one_start(
     let s = &case.solver;
     let begin = Instant::now();
     let mut record = Record::new(pack);
+    let mut measures = Measures::new(pack, TRAPEZIUM, case.outputs.seat.si());
     let at = |pack: &Pack| {
         let theta_deg = pack.at.theta.to_degrees();
         move |source: EvalError| RunError::Eval { theta_deg, source }
@@ -197,24 +245,17 @@ fn one_start(
                 passes: s.passes,
                 clamp: s.clamp,
             };
-            let outcome = substep_march::run(pack, set, start, &mut record, progress);
+            let outcome = substep_march::run(pack, set, start, (&mut record, &mut measures), progress);
             let (totals, steps) = outcome.map_err(at(pack))?;
-            let mut notes = Vec::new();
-            if totals.periodicity_error > UNSETTLED {
-                notes.push(Note::caution("not_periodic", format!(
-                    "the gas between the rings still changed by {:.1} % of what passes over cycle {}: raise `solver.cycles`",
-                    100.0 * totals.periodicity_error,
-                    set.cycles
-                )));
-            }
+            let notes = unsettled(totals.periodicity_error, s.periodicity.si(), set.cycles, start, "cycles");
             Ok(Found {
                 liner: None,
-                record,
-                totals,
+                record: Recorded::Series(record),
+                cycle: Cycle { totals, measures },
                 period: 1,
                 cycles: f64::from(set.cycles),
                 counters: [("steps".to_owned(), steps)].into_iter().collect(),
-                notes,
+                notes: notes.into_iter().collect(),
                 seconds: begin.elapsed().as_secs_f64(),
             })
         }
@@ -226,15 +267,21 @@ fn one_start(
                 gas_steps: or(s.gas_steps, 10),
                 tolerance: s.periodicity.si(),
             };
-            let outcome = degree_march::run(pack, set, start, &mut record, progress).map_err(at(pack))?;
+            let outcome = degree_march::run(pack, set, start, (&mut record, &mut measures), progress)
+                .map_err(at(pack))?;
+            let change = outcome.totals.periodicity_error;
+            let advice = if set.cycles > 0 { "cycles" } else { "max_cycles" };
+            let notes = (outcome.period == 0)
+                .then(|| unsettled(change, set.tolerance, outcome.cycles, start, advice))
+                .flatten();
             Ok(Found {
                 liner: None,
-                record,
-                totals: outcome.totals,
+                record: Recorded::Series(record),
+                cycle: Cycle { totals: outcome.totals, measures },
                 period: outcome.period,
                 cycles: f64::from(outcome.cycles),
                 counters: [("steps".to_owned(), outcome.steps)].into_iter().collect(),
-                notes: Vec::new(),
+                notes: notes.into_iter().collect(),
                 seconds: begin.elapsed().as_secs_f64(),
             })
         }

@@ -293,6 +293,13 @@ impl OilPack {
         }
     }
 
+    /// Volumes of the faces as they were at some instant.
+    pub fn hold_volumes(&mut self, held: &[[f64; SIDES]]) {
+        for (f, held) in self.faces.iter_mut().zip(held) {
+            f.volume = *held;
+        }
+    }
+
     /// What the edges of face `k` have passed since the start of the step.
     fn swept(&self, k: usize, pin: f64) -> [f64; SIDES] {
         let f = &self.faces[k];

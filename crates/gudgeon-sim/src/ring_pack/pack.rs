@@ -72,7 +72,8 @@ pub struct LinerShape {
 }
 
 impl LinerShape {
-    fn at(&self, x: f64) -> f64 {
+    /// Radial growth at a height \[m\].
+    pub fn at(&self, x: f64) -> f64 {
         let n = self.position.len();
         if n == 0 {
             return 0.0;
@@ -745,6 +746,16 @@ impl Pack {
 
     /// Evaluates the whole scene at crank angle `theta` for state `y`: `self.at` holds the result.
     pub fn evaluate(&mut self, theta: f64, y: &[f64]) -> Result<(), EvalError> {
+        self.evaluate_holding(theta, y, None)
+    }
+
+    /// The same for an instant of a step that has been booked since, with the oil that the faces held at it.
+    pub fn evaluate_holding(
+        &mut self,
+        theta: f64,
+        y: &[f64],
+        held: Option<&[[f64; 2]]>,
+    ) -> Result<(), EvalError> {
         self.counters.instants += 1;
         if let Some(k) = y.iter().position(|v| !v.is_finite()) {
             return Err(EvalError::recoverable("ring_pack", format!("state {k} is not a number")));
@@ -759,8 +770,10 @@ impl Pack {
         }
         self.state.copy_from_slice(y);
         self.set_places(theta, y);
-        if let Some(oil) = &mut self.oil_pack {
-            oil.set_volumes(y, self.at.piston.y);
+        match (&mut self.oil_pack, held) {
+            (Some(oil), None) => oil.set_volumes(y, self.at.piston.y),
+            (Some(oil), Some(held)) => oil.hold_volumes(held),
+            (None, _) => {}
         }
         for k in 0..self.layout.gas {
             self.masses[k] = y[k] * self.mass_scale[k];
@@ -773,6 +786,25 @@ impl Pack {
             }
             if self.plan.axial {
                 self.axial_forces(i);
+            }
+        }
+        Ok(())
+    }
+
+    /// Places, pressures and the reach of the oil at crank angle `theta` for state `y`, without flows, films and forces: what
+    /// [`super::measure`] asks for.
+    pub fn look(&mut self, theta: f64, y: &[f64]) -> Result<(), EvalError> {
+        // What `self.at` holds is no longer an evaluation of any state.
+        self.state.fill(f64::NAN);
+        self.set_places(theta, y);
+        for k in 0..self.layout.gas {
+            self.masses[k] = y[k] * self.mass_scale[k];
+        }
+        self.gas_pressures(self.cylinder.pressure(theta))?;
+        if let Some(oil) = &mut self.oil_pack {
+            oil.set_volumes(y, self.at.piston.y);
+            for i in 0..self.n_rings() {
+                self.wet(i)?;
             }
         }
         Ok(())

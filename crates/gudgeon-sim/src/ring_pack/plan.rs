@@ -66,13 +66,17 @@ pub fn catalogue(rings: usize, oil: bool) -> Vec<ResultInfo> {
             format!("ring{i}.seat_changes"),
             "1",
             Needs::Axial,
-            format!("arrivals of ring {i} on a groove flank per cycle"),
+            format!(
+                "arrivals of ring {i} on a groove flank (within `outputs.seat` of its clearance) per cycle"
+            ),
         );
         add(
             format!("ring{i}.lifted_share"),
             "1",
             Needs::Axial,
-            format!("share of the cycle that ring {i} is off its lower flank"),
+            format!(
+                "share of the cycle that ring {i} is off its lower flank, farther than `outputs.seat` of its clearance"
+            ),
         );
         add(format!("ring{i}.h_min"), "um", Needs::Film, format!("thinnest film under ring {i}"));
         add(format!("ring{i}.h_max"), "um", Needs::Film, format!("thickest film under ring {i}"));

@@ -37,12 +37,12 @@ impl SceneCase for RingPackCase {
         let solved = solve(case, &mut pack, progress)?;
         let mut result = RunResult::default();
         (result.models, result.skipped) = assemble::models_in_use(case, &pack.plan);
-        result.results = solved.record.results(&pack, &solved.totals, meter(case));
-        result.balance = solved.totals.balance.clone();
-        result.events = solved.record.events(&pack);
+        result.results = solved.cycle.results(&pack, meter(case));
+        result.balance = solved.cycle.totals.balance.clone();
+        result.events = solved.cycle.events();
         result.branches = solved.branches;
         result.solver = solved.report;
-        result.series = solved.record.series(&pack, &solved.totals);
+        result.series = solved.record.series();
         if let Some(liner) = solved.liner {
             let lines =
                 liner.columns.iter().map(|c| (c.name.replace("film_at_", "") + " deg", c.name.clone()));
@@ -63,6 +63,10 @@ impl SceneCase for RingPackCase {
         result.seconds.insert("build".into(), built);
         result.seconds.insert("solve".into(), solved.seconds);
         Ok(result)
+    }
+
+    fn result_names(loaded: &Loaded<Self>) -> Option<Vec<String>> {
+        Some(build(loaded).ok()?.plan.wanted)
     }
 
     fn race(&self) -> Option<Race> {

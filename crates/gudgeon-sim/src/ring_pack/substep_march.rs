@@ -1,7 +1,8 @@
 //! The scheme of zottin1992: mechanics in sub-steps of a crank degree, gas explicit inside them.
 //!
 //! Per sub-step: kinematics, cylinder pressure (linear between whole degrees), areas and volumes from the positions so
-//! far; `gas_steps` explicit Euler steps of the gas masses; then ring by ring the film thickness by bisection on the
+//! far; `gas_steps` explicit Euler steps of the gas masses, the first with the flows of the pressures so far, which do not know the new
+//! volumes; then ring by ring the film thickness by bisection on the
 //! radial balance with `dh/dt = (h - h_old)/Δt`, and the axial position with the groove damping taken implicitly and
 //! the rings clamped, inelastically, at the flanks. `passes` one-degree passes make a cycle: the listing runs 721.
 //!
@@ -13,6 +14,7 @@ use gudgeon_core::kinds::Motion;
 
 use crate::case::Clamp;
 
+use super::measure::Measures;
 use super::pack::{Pack, THINNEST};
 use super::record::{Record, Totals};
 
@@ -49,7 +51,7 @@ pub fn run(
     pack: &mut Pack,
     set: Settings,
     start: f64,
-    record: &mut Record,
+    (record, measures): (&mut Record, &mut Measures),
     progress: &mut dyn FnMut(f64),
 ) -> Result<(Totals, u64), EvalError> {
     let n = pack.n_rings();
@@ -72,9 +74,11 @@ pub fn run(
     let mut totals = Totals::default();
     let mut steps = 0;
     let mut started = false;
+    // Volumes behind the rings that the last pressures belong to.
+    let mut volumes = Vec::with_capacity(n);
     for cycle in 1..=set.cycles {
         totals = Totals { flow_in: vec![0.0; n], friction_work: vec![0.0; n], ..Totals::default() };
-        let before: f64 = if started { pack.masses.iter().sum() } else { 0.0 };
+        let mut before: f64 = pack.masses.iter().sum();
         let last = cycle == set.cycles;
         for pass in 0..set.passes {
             for sub in 1..=set.steps {
@@ -91,9 +95,19 @@ pub fn run(
                 if !started {
                     started = true;
                     pack.fill_masses(start, p_cyl);
+                    before = pack.masses.iter().sum();
+                    volumes.clear();
+                    volumes.extend(pack.at.places.iter().map(|p| p.back_volume));
                 }
-                for _ in 0..set.gas_steps {
+                for g in 0..set.gas_steps {
+                    if g == 0 {
+                        // The listing computes pressures after the masses: its first flows are those of the pressures so far.
+                        swap_volumes(pack, &mut volumes);
+                    }
                     pack.gas(Some(p_cyl))?;
+                    if g == 0 {
+                        swap_volumes(pack, &mut volumes);
+                    }
                     for (m, dm) in pack.masses.iter_mut().zip(&pack.at.dm) {
                         *m += dm * dt_gas;
                     }
@@ -101,6 +115,9 @@ pub fn run(
                         *sum += w * dt_gas;
                     }
                     totals.blow_by += pack.at.gas.flow_out[n - 1] * dt_gas;
+                }
+                for (v, p) in volumes.iter_mut().zip(&pack.at.places) {
+                    *v = p.back_volume;
                 }
                 pack.gas_pressures(p_cyl)?;
                 if pack.plan.film {
@@ -118,14 +135,21 @@ pub fn run(
                     }
                 }
                 steps += 1;
+                if last && pass < 720 {
+                    if pass == 0 && sub == 1 {
+                        // The state before the first step is as nearly as the scheme knows it that after it.
+                        measures.march(0.0, pack, 0.0);
+                    }
+                    measures.march(theta, pack, totals.flow_in[0]);
+                }
             }
             let whole = f64::from(pass + 1) * degree;
             if last && pass < 720 {
                 if pass == 0 {
                     // Row 0 repeats the state before the first pass as nearly as the scheme knows it.
-                    record.push(0.0, pack);
+                    record.push(0.0, pack, &vec![0.0; n], 0.0);
                 }
-                record.push(whole, pack);
+                record.push(whole, pack, &totals.flow_in, totals.blow_by);
             }
             progress(
                 (f64::from(cycle - 1) + f64::from(pass) / f64::from(set.passes)) / f64::from(set.cycles),
@@ -139,6 +163,12 @@ pub fn run(
         totals.periodicity_error = ((after - before) / through).abs();
     }
     Ok((totals, steps))
+}
+
+fn swap_volumes(pack: &mut Pack, volumes: &mut [f64]) {
+    for (place, v) in pack.at.places.iter_mut().zip(volumes) {
+        std::mem::swap(&mut place.back_volume, v);
+    }
 }
 
 fn moving(pack: &Pack, i: usize) -> bool {

@@ -15,6 +15,7 @@ use gudgeon_torsion::coupling::Linear;
 use gudgeon_torsion::drive::Reversed;
 use gudgeon_torsion::shaft::{Piece, stiffness, weakest};
 
+use super::balance::balance;
 use super::case::{ShaftCase, ShaftLineCase, Side};
 use super::tors;
 
@@ -25,16 +26,19 @@ pub struct Assembled {
     pub line: Line,
     /// Nominal shear stress by torque \[Pa/(N m)\] of each link, with its concentration factor; none where no diameter is given.
     pub stress: Vec<Option<f64>>,
+    /// Shares of the inertias in the torque that holds the mean speed, see [`super::balance`].
+    pub balance: Vec<f64>,
     /// Period of all torques over the angle of the reference shaft \[rad\].
     pub period: f64,
     /// What a person should read.
     pub notes: Vec<Note>,
 }
 
-/// Builds the throws of a case at the mean speed, on inertias by `find`.
+/// Builds the throws of a case at a mean speed \[rad/s\], on inertias by `find`.
 fn throws(
     case: &ShaftLineCase,
     folder: &Path,
+    speed: f64,
     find: &dyn Fn(&str) -> Option<(usize, f64)>,
     errors: &mut Vec<BuildError>,
 ) -> Vec<LineThrow> {
@@ -81,7 +85,7 @@ fn throws(
                 crank_radius: t.crank_radius.si(),
                 rod_length: t.rod_length.si(),
                 offset: t.offset.si(),
-                omega: case.speed.si() * ratio.abs(),
+                omega: speed * ratio.abs(),
             });
             let kinematics = match kinematics {
                 Ok(k) => k,
@@ -127,14 +131,18 @@ fn throws(
     all
 }
 
-/// The throws alone, each on its own: for results that need no line.
+/// The throws alone, each on its own, at a mean speed \[rad/s\]: for results that need no line.
 ///
 /// # Errors
 /// As [`assemble`].
-pub fn throws_alone(case: &ShaftLineCase, folder: &Path) -> Result<Vec<LineThrow>, Vec<BuildError>> {
+pub fn throws_alone(
+    case: &ShaftLineCase,
+    folder: &Path,
+    speed: f64,
+) -> Result<Vec<LineThrow>, Vec<BuildError>> {
     let mut errors = Vec::new();
     let ratio = |name: &str| case.inertias.iter().find(|i| i.name == name).map_or(1.0, |i| i.ratio.si());
-    let throws = throws(case, folder, &|name| Some((0, ratio(name))), &mut errors);
+    let throws = throws(case, folder, speed, &|name| Some((0, ratio(name))), &mut errors);
     if errors.is_empty() { Ok(throws) } else { Err(errors) }
 }
 
@@ -271,7 +279,8 @@ pub fn assemble(case: &ShaftLineCase, folder: &Path) -> Result<Assembled, Vec<Bu
         }
     }
     if errors.is_empty() {
-        line.throws = throws(case, folder, &|n| find(n).map(|i| (i, ratios[i])), &mut errors);
+        line.throws =
+            throws(case, folder, case.speed.si(), &|n| find(n).map(|i| (i, ratios[i])), &mut errors);
     }
     let default_damping = match case.conventions.damping_factor {
         Some(factor) => {
@@ -362,6 +371,13 @@ pub fn assemble(case: &ShaftLineCase, folder: &Path) -> Result<Assembled, Vec<Bu
         && let Err(e) = gudgeon_torsion::tree::Tree::new(line)
     {
         errors.push(renamed(e));
+    }
+    match balance(case, line) {
+        Ok((shares, note)) => {
+            out.balance = shares;
+            out.notes.extend(note.filter(|_| errors.is_empty()));
+        }
+        Err(e) => errors.push(e),
     }
     out.period = period(line);
     let odd = gears(line).find(|o| {

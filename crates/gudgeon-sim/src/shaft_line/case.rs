@@ -19,23 +19,33 @@ case_file! {
     pub struct ShaftLineCase {
         /// Mean speed of the reference shaft, that of inertias with ratio 1.
         pub speed: PosAngularSpeed,
+        /// Name of the inertia on which the torque acts that holds the mean speed. Without it the drives give that torque; without a
+        /// drive the cylinders of an engine that has loads, by their mean gas torque; without either all inertias by their size, as in a
+        /// line that speeds up.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub balance_at: Option<String>,
         /// File in openTorsion's TORS format whose inertias and shafts come before those given here.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub tors: Option<String>,
         /// Inertias.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        #[schemars(length(max = 2000))]
         pub inertias: Vec<InertiaCase>,
         /// Shafts, couplings and gear meshes between them.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        #[schemars(length(max = 2000))]
         pub shafts: Vec<ShaftCase>,
         /// Dampers, each an inertia on a link of its own.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        #[schemars(length(max = 2000))]
         pub dampers: Vec<DamperCase>,
         /// Crank throws.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        #[schemars(length(max = 2000))]
         pub throws: Vec<ThrowCase>,
         /// Motors, loads and given torques.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        #[schemars(length(max = 2000))]
         pub drives: Vec<DriveCase>,
         /// Sub-models.
         #[serde(default)]
@@ -46,6 +56,12 @@ case_file! {
         /// Orders and speeds that are looked at.
         #[serde(default)]
         pub range: Range,
+        /// Speeds at which the line runs: limits are judged over all of them.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub operating: Option<Operating>,
+        /// Load steps: limits are judged in each.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        pub load_steps: Vec<LoadStepCase>,
         /// Start and length of a motion over time.
         #[serde(default)]
         pub time: Option<TimeCase>,
@@ -258,7 +274,7 @@ pub struct Models {
 impl Default for Models {
     fn default() -> Self {
         Self {
-            torsion: Box::new(gudgeon_torsion::torsion::Orders {}),
+            torsion: Box::new(gudgeon_torsion::torsion::HarmonicBalance::default()),
             natural_frequencies: Box::new(gudgeon_torsion::natural_frequencies::Eigenvalues::default()),
             throw_inertia: Box::new(gudgeon_torsion::throw_inertia::Exact {}),
             kinematics: Box::new(gudgeon_kinematics::ExactSliderCrank {}),
@@ -287,13 +303,15 @@ pub struct Range {
     pub orders: PosRatio,
     /// Highest order of the interference diagram.
     pub interference_orders: PosRatio,
-    /// Lowest speed of the interference diagram and of the forced vibration over speed.
+    /// Lowest speed of the interference diagram and of the forced vibration over speed; speeds at which limits count are those of
+    /// `operating`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub from: Option<PosAngularSpeed>,
     /// Highest speed of both.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub to: Option<PosAngularSpeed>,
     /// Speeds between them.
+    #[schemars(range(min = 2, max = 20_000))]
     pub points: usize,
 }
 
@@ -307,6 +325,29 @@ impl Default for Range {
             points: 201,
         }
     }
+}
+
+/// Speeds at which a line runs, as the owner of the machine may use them: not those of the diagrams, which `range` gives. Without it
+/// limits are judged over `range` where that has `from` and `to`, otherwise at the mean speed alone.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Operating {
+    /// Lowest speed of the reference shaft.
+    pub from: PosAngularSpeed,
+    /// Highest speed; equal to `from` for a line that runs at one speed.
+    pub to: PosAngularSpeed,
+}
+
+/// A way in which the machine is loaded. The case as it stands is one too, named `as it stands`, unless a step without changes gives it
+/// a name.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LoadStepCase {
+    /// Name for verdict and reports.
+    pub name: String,
+    /// Changes to the machine as `--set` takes them: valves held open, pressures, drives, a failed cylinder.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub set: Vec<String>,
 }
 
 /// Motion over time.
@@ -343,9 +384,15 @@ pub struct Limits {
     pub torque: Vec<TorqueLimit>,
     /// Heat in couplings and dampers.
     pub heat: Vec<HeatLimit>,
+    /// Cyclic speed irregularity.
+    pub irregularity: Vec<IrregularityLimit>,
 }
 
 /// Natural frequencies keep away from multiples of the speed, or from given frequencies.
+///
+/// The distance is that between natural frequency and excitation by the excitation, `|f_n - f|/f`, at the operating speed where it is least;
+/// zero where they meet within the operating range. One that is not kept is accepted where the forced vibration there keeps every
+/// limit on torque, stress, heat and irregularity.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SeparationLimit {
@@ -398,6 +445,18 @@ pub struct HeatLimit {
     pub shaft: String,
     /// Largest admitted heat.
     pub power: Power<gudgeon_core::quantity::Positive>,
+    /// Where the limit comes from.
+    pub source: String,
+}
+
+/// The speed of an inertia stays even.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct IrregularityLimit {
+    /// Name of the inertia: generator, flywheel, propeller.
+    pub inertia: String,
+    /// Largest admitted coefficient of speed fluctuation: highest less lowest speed, by the mean.
+    pub coefficient: PosRatio,
     /// Where the limit comes from.
     pub source: String,
 }

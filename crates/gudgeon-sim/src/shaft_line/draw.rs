@@ -6,8 +6,6 @@ use gudgeon_core::kinds::{Line, Mode};
 use gudgeon_core::result::{Anchor, Figure, FigureKind, Frame, Shape, Style};
 use gudgeon_torsion::tree::Tree;
 
-use super::rpm;
-
 /// Where each inertia is drawn: along the line, branches below each other.
 fn layout(line: &Line) -> Vec<[f64; 2]> {
     let n = line.nodes.len();
@@ -169,14 +167,20 @@ pub fn modes(line: &Line, modes: &[&Mode]) -> Figure {
     }
 }
 
-/// Interference diagram: natural frequencies as levels, orders as rays, marks where they meet.
-pub fn interference(modes: &[&Mode], orders: &[f64], speed: f64, span: (f64, f64)) -> Figure {
-    let (from, to) = span;
+/// Interference diagram over speeds \[rpm\]: natural frequencies \[Hz\] as levels, orders as rays, marks where they meet.
+pub fn interference(
+    speeds: &[f64],
+    levels: &[Vec<f64>],
+    orders: &[f64],
+    marks: &[[f64; 2]],
+    running: f64,
+) -> Figure {
+    let (from, to) = (speeds[0], speeds[speeds.len() - 1]);
     // Modes that an order can reach, and one above.
     let reach = orders.last().copied().unwrap_or(1.0) * to / 60.0;
-    let levels: Vec<f64> = modes.iter().map(|m| m.omega / (2.0 * PI)).collect();
-    let drawn = levels.iter().filter(|f| **f <= reach).count().clamp(1, 12).min(levels.len());
-    let top = 1.15 * levels[drawn - 1];
+    let highest = |level: &Vec<f64>| level.iter().copied().fold(0.0, f64::max);
+    let drawn = levels.iter().filter(|l| highest(l) <= reach).count().clamp(1, 12).min(levels.len());
+    let top = 1.15 * highest(&levels[drawn - 1]);
     // Drawn in a frame of 16 by 9.
     let (width, height) = (16.0, 9.0);
     let x = |rpm: f64| width * (rpm - from) / (to - from);
@@ -194,11 +198,17 @@ pub fn interference(modes: &[&Mode], orders: &[f64], speed: f64, span: (f64, f64
         s.push(Shape::Text { at: [x(at), -0.45], text: format!("{at:.0}"), anchor: Anchor::Middle });
     }
     s.push(Shape::Text { at: [0.5 * width, -1.0], text: "speed, rpm".into(), anchor: Anchor::Middle });
-    for (k, f) in levels.iter().take(drawn).enumerate() {
-        s.push(path(vec![[0.0, y(*f)], [width, y(*f)]], Style::Outline));
+    for (k, level) in levels.iter().take(drawn).enumerate() {
+        let flat = level.iter().all(|f| *f == level[0]);
+        let kept: Vec<usize> = if flat { vec![0, level.len() - 1] } else { (0..level.len()).collect() };
+        s.push(path(kept.iter().map(|i| [x(speeds[*i]), y(level[*i])]).collect(), Style::Outline));
         // Inside the frame, above its line.
-        let text = format!("mode {}: {f:.1} Hz", k + 1);
-        s.push(Shape::Text { at: [0.15, y(*f) + 0.28], text, anchor: Anchor::Start });
+        let text = if flat {
+            format!("mode {}: {:.1} Hz", k + 1, level[0])
+        } else {
+            format!("mode {}: {:.1} to {:.1} Hz", k + 1, level[0], level[level.len() - 1])
+        };
+        s.push(Shape::Text { at: [0.15, y(level[0]) + 0.28], text, anchor: Anchor::Start });
     }
     for o in orders {
         let end = to.min(60.0 * top / o);
@@ -212,20 +222,16 @@ pub fn interference(modes: &[&Mode], orders: &[f64], speed: f64, span: (f64, f64
             (format!("{o}"), [width + 0.15, y(o * end / 60.0)], Anchor::Start)
         };
         s.push(Shape::Text { at: place, text, anchor });
-        for f in levels.iter().take(drawn) {
-            let at = 60.0 * f / o;
-            if at >= from && at <= to {
-                s.push(Shape::Circle { centre: [x(at), y(*f)], radius: 0.09, style: Style::Accent });
-            }
-        }
     }
-    let run = rpm(speed);
-    if run >= from && run <= to {
-        s.push(path(vec![[x(run), 0.0], [x(run), height]], Style::Second));
+    for [at, f] in marks.iter().filter(|m| m[1] <= top) {
+        s.push(Shape::Circle { centre: [x(*at), y(*f)], radius: 0.09, style: Style::Accent });
+    }
+    if running >= from && running <= to {
+        s.push(path(vec![[x(running), 0.0], [x(running), height]], Style::Second));
     }
     Figure {
         title: "Interference diagram".into(),
-        hint: "natural frequencies as levels, orders of the speed as rays (numbers at their ends), critical speeds where they meet; the upright line is the mean speed".into(),
+        hint: "natural frequencies over the speed, orders of the speed as rays (numbers at their ends), critical speeds where they meet; the upright line is the mean speed".into(),
         table: String::new(),
         kind: FigureKind::Drawing { fixed: s, frames: Vec::new() },
     }

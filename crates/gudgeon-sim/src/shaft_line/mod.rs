@@ -1,17 +1,27 @@
 //! The scene `shaft_line`: torsional vibration of compressors and engines.
+//!
+//! A case is assembled once for each load step ([`assemble`], [`steps`]) and each of these lines is asked for its vibration at one
+//! speed after the other ([`machine`]). The case as it stands gives the results at the mean speed and the diagrams ([`results`]); all
+//! of them give the verdict ([`verdict`]).
 
 pub mod assemble;
+mod balance;
 pub mod case;
 mod draw;
+mod legal;
+mod machine;
 pub mod plan;
 mod results;
+mod start;
+mod steps;
 pub mod tors;
+mod verdict;
 
 use std::f64::consts::PI;
 use std::time::Instant;
 
-use gudgeon_core::kinds::{Line, NaturalFrequenciesSpec, TorsionAnswer, TorsionCtx, TorsionOut, TorsionSpec};
-use gudgeon_core::result::{ModelUse, RunResult};
+use gudgeon_core::kinds::{NaturalFrequenciesSpec, TorsionAnswer, TorsionOut, TorsionSpec};
+use gudgeon_core::result::{ModelUse, Note, RunResult};
 use gudgeon_core::{BuildError, EvalError, Registry};
 use gudgeon_torsion::torsion::Orders;
 
@@ -20,29 +30,29 @@ use crate::run::{Explanation, Progress, RunError, model_use};
 use crate::scene::SceneCase;
 use assemble::{Assembled, assemble, renamed};
 use case::ShaftLineCase;
+use machine::{Machine, Point};
 use plan::Plan;
 use results::Results;
+use start::Start;
 
 impl SceneCase for ShaftLineCase {
     fn legal(loaded: &Loaded<Self>) -> Vec<BuildError> {
         let case = &loaded.value;
-        let mut errors = legal_values(case);
+        let mut errors = legal::legal_values(case);
         match assemble(case, &loaded.source.folder) {
             Ok(a) => {
-                errors.extend(legal_names(case, &a.line));
+                errors.extend(legal::legal_names(case, &a.line));
                 let start = Start::new(case, a.line.nodes.len());
                 errors.extend(start.errors.iter().cloned());
                 if errors.is_empty() {
-                    let ctx = start.context(case, &a);
-                    if let Err(e) = case.models.torsion.build(&ctx) {
-                        errors.push(renamed(e).within_model("torsion"));
-                    }
-                    if let Err(e) = case.models.natural_frequencies.build(&a.line) {
-                        errors.push(renamed(e).within_model("natural_frequencies"));
-                    }
+                    errors.extend(legal_machine(case, &a, &start));
                 }
             }
             Err(e) => errors.extend(e),
+        }
+        // What is wrong with the case would come back in every load step.
+        if errors.is_empty() {
+            errors.extend(steps::legal(loaded));
         }
         errors
     }
@@ -66,10 +76,6 @@ impl SceneCase for ShaftLineCase {
         let case = &loaded.value;
         let folder = &loaded.source.folder;
         let plan = Plan::new(case);
-        let model = |source: EvalError| RunError::Model { source };
-        let refused = |e: Vec<BuildError>| {
-            RunError::Refused(e.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))
-        };
         let mut result =
             RunResult { models: models(case, &plan), skipped: plan.skipped.clone(), ..RunResult::default() };
         result.solver.method = case.models.torsion.typetag_name().into();
@@ -79,7 +85,8 @@ impl SceneCase for ShaftLineCase {
         let mut results = Results::new(case, &mut result);
         if !plan.line() {
             if plan.throws {
-                results.throws(&assemble::throws_alone(case, folder).map_err(refused)?);
+                let throws = assemble::throws_alone(case, folder, case.speed.si()).map_err(refused)?;
+                results.throws(&throws);
             }
             result.seconds.insert("solve".into(), begin.elapsed().as_secs_f64());
             return Ok(result);
@@ -87,67 +94,271 @@ impl SceneCase for ShaftLineCase {
         let a = assemble(case, folder).map_err(refused)?;
         results.count("lines_built", 1);
         results.note(&a.notes);
+        // Once for all throws that share a pressure.
+        let mut told = Vec::new();
+        for note in a.line.throws.iter().flat_map(|t| &t.ends).flat_map(|e| e.pressure.notes()) {
+            if !told.contains(&note) {
+                told.push(note);
+            }
+        }
+        results.note(&told);
         let built = begin.elapsed().as_secs_f64();
         if plan.throws {
             results.throws(&a.line.throws);
         }
-        let one = |e: BuildError| refused(vec![e]);
-        let mut modes = Vec::new();
-        let mut start = Start::new(case, a.line.nodes.len());
+        let start = Start::new(case, a.line.nodes.len());
+        let mut run = Run { loaded, plan: &plan, a: &a, start, results };
+        progress(Progress { phase: "natural frequencies".into(), fraction: 0.0 });
         if plan.frequencies {
-            progress(Progress { phase: "natural frequencies".into(), fraction: 0.0 });
-            let wanted = &case.models.natural_frequencies;
-            // Small vibration happens about the mean torque.
-            let line = gudgeon_torsion::steady::about_mean_torque(&start.context(case, &a)).map_err(one)?;
-            modes = if wanted.typetag_name() == "eigenvalues" {
-                wanted.build(&line).map_err(one)?.modes().map_err(model)?
-            } else {
-                // A model that is known to be wrong stands beside the truth.
-                results.published(&wanted.build(&line).map_err(one)?.modes().map_err(model)?, &a.line);
-                gudgeon_torsion::natural_frequencies::Eigenvalues::default()
-                    .build(&line)
-                    .map_err(one)?
-                    .modes()
-                    .map_err(model)?
-            };
-            results.modes(&modes, &a.line);
-            results.critical_speeds(&modes, &a);
-            if case.models.torsion.typetag_name() == "runge_kutta" {
-                results.stable_step(&modes);
-            }
+            run.frequencies()?;
         }
-        let mut response = None;
-        if plan.response {
-            if case.time.as_ref().is_some_and(|t| t.start_steady)
-                && case.models.torsion.answers() == TorsionAnswer::Time
-            {
-                let mut steady = TorsionOut::default();
-                Orders {}.build(&start.context(case, &a)).map_err(one)?.run(&mut steady).map_err(model)?;
-                start.take_steady(&steady);
-            }
-            progress(Progress { phase: "response".into(), fraction: 0.2 });
-            let mut torsion = case.models.torsion.build(&start.context(case, &a)).map_err(one)?;
-            let mut out = TorsionOut::default();
-            torsion.run(&mut out).map_err(model)?;
-            match case.models.torsion.answers() {
-                TorsionAnswer::Periodic => results.periodic(&out, &a),
-                _ => results.transient(&out, &a, start.rows),
-            }
-            response = Some(out);
-        }
-        if plan.range {
-            progress(Progress { phase: "vibration over the speed".into(), fraction: 0.6 });
-            let ctx = start.context(case, &a);
-            let speeds = speeds(case);
-            let range =
-                gudgeon_torsion::speed_range::speed_range(&ctx, &speeds).map_err(one)?.map_err(model)?;
-            results.range(&range, &speeds, &a);
-        }
-        results.verdict(&modes, response.as_ref(), &a);
+        progress(Progress { phase: "response".into(), fraction: 0.1 });
+        run.response_and_verdict(progress)?;
         result.seconds.insert("build".into(), built);
         result.seconds.insert("solve".into(), begin.elapsed().as_secs_f64() - built);
         Ok(result)
     }
+}
+
+fn refused(errors: Vec<BuildError>) -> RunError {
+    RunError::Refused(errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))
+}
+
+fn one(error: BuildError) -> RunError {
+    refused(vec![error])
+}
+
+fn failed(source: EvalError) -> RunError {
+    RunError::Model { source }
+}
+
+/// What is wrong with a line as its models see it.
+fn legal_machine(case: &ShaftLineCase, a: &Assembled, start: &Start) -> Vec<BuildError> {
+    let ctx = start.context(case, a);
+    let mut errors = Vec::new();
+    if let Err(e) = case.models.torsion.build(&ctx) {
+        errors.push(renamed(e).within_model("torsion"));
+    }
+    if let Err(e) = case.models.natural_frequencies.build(&a.line) {
+        errors.push(renamed(e).within_model("natural_frequencies"));
+    }
+    errors
+}
+
+/// A run of a case whose line stands.
+struct Run<'r> {
+    loaded: &'r Loaded<ShaftLineCase>,
+    plan: &'r Plan,
+    a: &'r Assembled,
+    start: Start,
+    results: Results<'r>,
+}
+
+impl Run<'_> {
+    /// Natural frequencies about the mean torque.
+    fn frequencies(&mut self) -> Result<(), RunError> {
+        let (case, a) = (&self.loaded.value, self.a);
+        let wanted = &case.models.natural_frequencies;
+        let ctx = self.start.context(case, a);
+        let line = gudgeon_torsion::steady::about_mean_torque(&ctx).map_err(one)?;
+        let mut modes = wanted.build(&line).map_err(one)?.modes().map_err(failed)?;
+        if !wanted.are_of_the_line() {
+            // A model that is known to be wrong stands beside the truth.
+            self.results.published(&modes, &a.line);
+            let truth = gudgeon_torsion::natural_frequencies::Eigenvalues::default();
+            modes = truth.build(&line).map_err(one)?.modes().map_err(failed)?;
+        }
+        self.results.modes(&modes, &a.line);
+        let mut steady = gudgeon_torsion::steady::Steady::new(&ctx).map_err(one)?;
+        self.results.critical_speeds(&modes, &mut steady, a).map_err(failed)?;
+        self.results.stable_step(&modes);
+        Ok(())
+    }
+
+    /// What the torsion model answers, for the case and its load steps.
+    fn response_and_verdict(&mut self, progress: &mut dyn FnMut(Progress)) -> Result<(), RunError> {
+        let case = &self.loaded.value;
+        match case.models.torsion.answers() {
+            TorsionAnswer::Time => self.over_time(progress),
+            TorsionAnswer::Periodic => self.periodic(progress),
+            TorsionAnswer::Nothing => self.separation_alone(),
+        }
+    }
+
+    /// Vibration at the mean speed, over the diagram's speeds, and the verdict over the operating range.
+    fn periodic(&mut self, progress: &mut dyn FnMut(Progress)) -> Result<(), RunError> {
+        let (case, a, plan) = (&self.loaded.value, self.a, self.plan);
+        let start = self.start.clone();
+        let mut machine = machine_of(&start, case, a)?;
+        machine.irregularity = !case.limits.irregularity.is_empty();
+        if plan.response {
+            let out = machine.motion(case.speed.si()).map_err(failed)?;
+            self.results.periodic(&out, &mut machine);
+            self.left_out(&out, &mut machine);
+        }
+        let speeds = if plan.range { speeds(case) } else { Vec::new() };
+        if plan.range {
+            progress(Progress { phase: "vibration over the speed".into(), fraction: 0.3 });
+            self.results.gas_over_speed(a, &self.loaded.source.folder, &speeds);
+            self.results.range(&mut machine, &speeds).map_err(failed)?;
+        }
+        if !plan.verdict {
+            self.results.count("linear_solutions", machine.solutions);
+            return Ok(());
+        }
+        progress(Progress { phase: "verdict".into(), fraction: 0.6 });
+        let steps = self.load_steps()?;
+        let starts: Vec<Start> =
+            steps.iter().map(|(c, a)| Start::new(&c.value, a.line.nodes.len())).collect();
+        let mut machines = Vec::new();
+        for ((c, a), start) in steps.iter().zip(&starts) {
+            let mut m = machine_of(start, &c.value, a)?;
+            m.irregularity = machine.irregularity;
+            machines.push(m);
+        }
+        let mut own = Some(machine);
+        let mut changed = machines.into_iter();
+        let mut all: Vec<(String, Machine<'_>)> = Vec::new();
+        for (name, step) in steps::all(case) {
+            let next = if step.is_some() { changed.next() } else { own.take() };
+            all.extend(next.map(|m| (name.to_owned(), m)));
+        }
+        self.results.verdict(&mut all, &speeds, plan.forced).map_err(failed)?;
+        for (_, m) in &all {
+            self.results.count("linear_solutions", m.solutions);
+        }
+        Ok(())
+    }
+
+    /// Load steps that change something, each read and assembled once.
+    fn load_steps(&mut self) -> Result<Vec<(Loaded<ShaftLineCase>, Assembled)>, RunError> {
+        let mut all = Vec::new();
+        for (_, step) in steps::all(&self.loaded.value) {
+            let Some(step) = step else { continue };
+            let changed = steps::read(self.loaded, step).map_err(|r| RunError::Refused(r.to_string()))?;
+            let a = assemble(&changed.value, &changed.source.folder).map_err(refused)?;
+            self.results.count("lines_built", 1);
+            all.push((changed, a));
+        }
+        Ok(all)
+    }
+
+    /// Says how much a model leaves out, by the one that has it, at the mean speed.
+    fn left_out(&mut self, out: &TorsionOut, machine: &mut Machine<'_>) {
+        let (case, a) = (&self.loaded.value, self.a);
+        let Some(fuller) = case.models.torsion.fuller(&a.line) else { return };
+        let mut whole = TorsionOut::default();
+        let answer = fuller
+            .build(&self.start.context(case, a))
+            .map_err(|e| e.to_string())
+            .and_then(|mut m| m.run(&mut whole).map_err(|e| e.to_string()));
+        let (name, better) = (case.models.torsion.typetag_name(), fuller.typetag_name());
+        let what = format!(
+            "`{name}` leaves out what variable inertia and stiffness and the true angle do to the vibration"
+        );
+        if let Err(e) = answer {
+            let text = format!("{what}; how much cannot be told: `{better}` gives no answer ({e})");
+            self.results.note(&[Note::caution("left_out", text)]);
+            return;
+        }
+        let mut amplitudes = |o: &TorsionOut| -> Vec<f64> {
+            let cycle = machine.extremes(o);
+            (0..a.line.links.len())
+                .map(|l| cycle.extremes(0.0, |k| o.orders[k].torque[l]))
+                .map(|[top, bottom]| 0.5 * (top - bottom))
+                .collect()
+        };
+        let (less, more) = (amplitudes(out), amplitudes(&whole));
+        let largest = more.iter().copied().fold(0.0, f64::max);
+        // Shafts that hardly vibrate say nothing.
+        let change = |l: usize| if more[l] > 0.05 * largest { less[l] / more[l] - 1.0 } else { 0.0 };
+        let Some(l) = (0..more.len()).max_by(|x, y| change(*x).abs().total_cmp(&change(*y).abs())) else {
+            return;
+        };
+        let text = format!(
+            "{what}: with it ({better}) the torque amplitude of {} at the mean speed is {:.4e} N m instead of {:.4e} N m, {name} has {:+.2} % there",
+            a.line.links[l].name,
+            more[l],
+            less[l],
+            100.0 * change(l)
+        );
+        let note = Note::caution("left_out", text);
+        self.results.note(&[note.amount("largest_change", 100.0 * change(l), "%")]);
+    }
+
+    /// Motion over time, of the case and of its load steps where limits need them.
+    fn over_time(&mut self, progress: &mut dyn FnMut(Progress)) -> Result<(), RunError> {
+        let (case, a, plan) = (&self.loaded.value, self.a, self.plan);
+        let mut judged = Vec::new();
+        if plan.response {
+            let out = motion(case, a, &mut self.start)?;
+            judged.push(self.results.transient(&out, a, self.start.rows));
+        }
+        if !plan.verdict {
+            return Ok(());
+        }
+        let steps = self.load_steps()?;
+        for (k, (changed, a)) in steps.iter().enumerate().filter(|_| plan.response) {
+            let fraction = (k + 1) as f64 / (steps.len() + 1) as f64;
+            progress(Progress { phase: "load steps".into(), fraction });
+            let mut start = Start::new(&changed.value, a.line.nodes.len());
+            let out = motion(&changed.value, a, &mut start)?;
+            let mut aside = RunResult::default();
+            judged.push(Results::new(&changed.value, &mut aside).transient(&out, a, start.rows));
+        }
+        self.verdict_of(&steps, &judged)
+    }
+
+    /// Limits on natural frequencies, without any vibration.
+    fn separation_alone(&mut self) -> Result<(), RunError> {
+        if !self.plan.verdict {
+            return Ok(());
+        }
+        let steps = self.load_steps()?;
+        self.verdict_of(&steps, &[])
+    }
+
+    /// The verdict with vibration that is known already, of the case and of the load steps that change something.
+    fn verdict_of(
+        &mut self,
+        steps: &[(Loaded<ShaftLineCase>, Assembled)],
+        judged: &[Point],
+    ) -> Result<(), RunError> {
+        let case = &self.loaded.value;
+        let mut lines = vec![self.a];
+        lines.extend(steps.iter().map(|(_, a)| a));
+        let starts: Vec<Start> = lines.iter().map(|a| Start::new(case, a.line.nodes.len())).collect();
+        let mut all = Vec::new();
+        let mut next = 1;
+        for (name, step) in steps::all(case) {
+            let k = step.map_or(0, |_| next);
+            next += usize::from(step.is_some());
+            let mut m = Machine::new(starts[k].context(case, lines[k]), lines[k], &Orders {}).map_err(one)?;
+            if let Some(p) = judged.get(k) {
+                m.given(case.speed.si(), p.clone());
+            }
+            all.push((name.to_owned(), m));
+        }
+        self.results.verdict(&mut all, &[], !judged.is_empty()).map_err(failed)
+    }
+}
+
+/// A line with the model of its case.
+fn machine_of<'a>(start: &'a Start, case: &ShaftLineCase, a: &'a Assembled) -> Result<Machine<'a>, RunError> {
+    Machine::new(start.context(case, a), a, &*case.models.torsion).map_err(one)
+}
+
+/// Motion over time of a line.
+fn motion(case: &ShaftLineCase, a: &Assembled, start: &mut Start) -> Result<TorsionOut, RunError> {
+    if case.time.as_ref().is_some_and(|t| t.start_steady) {
+        let mut steady = TorsionOut::default();
+        Orders {}.build(&start.context(case, a)).map_err(one)?.run(&mut steady).map_err(failed)?;
+        start.take_steady(&steady);
+    }
+    let mut torsion = case.models.torsion.build(&start.context(case, a)).map_err(one)?;
+    let mut out = TorsionOut::default();
+    torsion.run(&mut out).map_err(failed)?;
+    Ok(out)
 }
 
 /// Places of errors of models.
@@ -215,160 +426,9 @@ fn models(case: &ShaftLineCase, plan: &Plan) -> Vec<ModelUse> {
     all.into_iter().map(|(k, m)| model_use(&registry, k, m)).collect()
 }
 
-/// Most rows of a motion over time.
-const ROWS: f64 = 4e5;
-/// Most values of a motion over time: half a gigabyte.
-const VALUES: f64 = 6e7;
-
-fn legal_values(case: &ShaftLineCase) -> Vec<BuildError> {
-    let mut errors = Vec::new();
-    let r = &case.range;
-    if r.orders.si() > 2000.0 {
-        errors.push(BuildError::at("range.orders", "at most 2000 orders"));
-    }
-    if r.interference_orders.si() > 100.0 {
-        errors.push(BuildError::at("range.interference_orders", "at most 100 orders"));
-    }
-    match (r.from, r.to) {
-        (Some(a), Some(b)) if a.si() >= b.si() => {
-            errors.push(BuildError::at("range.to", "must be above `from`"));
-        }
-        (Some(_), None) => errors.push(BuildError::at("range.to", "is missing beside `from`")),
-        (None, Some(_)) => errors.push(BuildError::at("range.from", "is missing beside `to`")),
-        _ => {}
-    }
-    if !(2..=20_000).contains(&r.points) {
-        errors.push(BuildError::at("range.points", "between 2 and 20000 speeds"));
-    }
-    for (k, l) in case.limits.separation.iter().enumerate() {
-        if l.orders.is_empty() && l.frequencies.is_empty() {
-            let what = "names neither orders nor frequencies";
-            errors.push(BuildError::at(format!("limits.separation.{k}"), what));
-        }
-        if l.orders.iter().any(|o| !(o.is_finite() && *o > 0.0)) {
-            errors.push(BuildError::at(
-                format!("limits.separation.{k}.orders"),
-                "orders are greater than zero",
-            ));
-        }
-    }
-    for (k, l) in case.limits.torque.iter().enumerate() {
-        if l.amplitude.is_none() && l.peak.is_none() {
-            let what = "gives neither `amplitude` nor `peak`";
-            errors.push(BuildError::at(format!("limits.torque.{k}"), what));
-        }
-    }
-    errors
-}
-
-fn legal_names(case: &ShaftLineCase, line: &Line) -> Vec<BuildError> {
-    let names: Vec<&str> = line.links.iter().map(|l| l.name.as_str()).collect();
-    let l = &case.limits;
-    let stress =
-        l.stress.iter().enumerate().map(|(k, s)| (format!("limits.stress.{k}.shaft"), s.shaft.as_str()));
-    let torque =
-        l.torque.iter().enumerate().map(|(k, s)| (format!("limits.torque.{k}.shaft"), s.shaft.as_str()));
-    let heat = l.heat.iter().enumerate().map(|(k, s)| (format!("limits.heat.{k}.shaft"), s.shaft.as_str()));
-    stress
-        .filter(|(_, n)| !n.is_empty())
-        .chain(torque)
-        .chain(heat)
-        .filter(|(_, n)| !names.contains(n))
-        .map(|(place, n)| {
-            let what = format!("there is no shaft `{n}`; {}", crate::load::advice(n, &names));
-            BuildError::at(place, what)
-        })
-        .collect()
-}
-
-/// Start and instants of a motion over time.
-struct Start {
-    angles: Vec<f64>,
-    speeds: Vec<f64>,
-    times: Vec<f64>,
-    /// How many of the instants are rows of the series; the rest are the window.
-    rows: usize,
-    errors: Vec<BuildError>,
-}
-
-impl Start {
-    fn new(case: &ShaftLineCase, n: usize) -> Self {
-        let mut s = Self {
-            angles: vec![0.0; n],
-            speeds: vec![case.speed.si(); n],
-            times: Vec::new(),
-            rows: 0,
-            errors: Vec::new(),
-        };
-        for (v, i) in s.speeds.iter_mut().zip(&case.inertias) {
-            *v *= i.ratio.si();
-        }
-        let Some(t) = &case.time else {
-            if case.models.torsion.answers() == TorsionAnswer::Time {
-                let what = "a motion over time needs a table `time` with `duration` and `interval`";
-                s.errors.push(BuildError::at("models.torsion", what));
-            }
-            return s;
-        };
-        match t.start_speeds.as_slice() {
-            [] => {}
-            [one] => s.speeds.fill(one.si()),
-            many if many.len() == n => s.speeds = many.iter().map(|v| v.si()).collect(),
-            many => s.errors.push(BuildError::at(
-                "time.start_speeds",
-                format!("{} speeds for {n} inertias; give one for each, one for all, or none", many.len()),
-            )),
-        }
-        let (end, step) = (t.duration.si(), t.interval.si());
-        let window = t.window.map_or(0.1 * end, |w| w.si()).min(end);
-        let fine = t.window_interval.map_or(step, |w| w.si());
-        if end / step + window / fine > ROWS {
-            let what = format!("{:.1e} rows are more than {ROWS:.0e}", end / step + window / fine);
-            s.errors.push(BuildError::at("time.interval", what));
-            return s;
-        }
-        // Angles, speeds and torques of each are kept.
-        let values = (end / step + window / fine) * 3.0 * n as f64;
-        if values > VALUES {
-            let what = format!("{values:.1e} values over time are more than {VALUES:.0e}");
-            s.errors.push(BuildError::at("time.interval", what));
-            return s;
-        }
-        let grid = |from: f64, step: f64| {
-            let n = ((end - from) / step + 1e-9).floor() as usize;
-            (0..=n).map(move |k| from + step * k as f64)
-        };
-        // Rows and window in one ascending list; the window's own instants come on top of the rows there.
-        let begin = end - window;
-        s.times = grid(0.0, step).filter(|t| *t < begin - 1e-12 * end).collect();
-        s.rows = s.times.len();
-        s.times.extend(grid(begin, fine));
-        s
-    }
-
-    fn take_steady(&mut self, out: &TorsionOut) {
-        self.angles.clone_from(&out.mean_angle);
-        for o in &out.orders {
-            for (i, a) in o.angle.iter().enumerate() {
-                self.angles[i] += a[0];
-                self.speeds[i] -= o.order * out.speed * a[1];
-            }
-        }
-    }
-
-    fn context<'a>(&'a self, case: &ShaftLineCase, a: &'a Assembled) -> TorsionCtx<'a> {
-        let balance = a.line.drives.iter().find(|d| d.factor > 0.0 && d.drive.orders().is_empty());
-        TorsionCtx {
-            line: &a.line,
-            speed: case.speed.si(),
-            orders: case.range.orders.si(),
-            period: a.period,
-            balance: balance.map_or(0, |d| d.node),
-            angles: &self.angles,
-            speeds: &self.speeds,
-            times: &self.times,
-        }
-    }
+/// A speed \[rad/s\] in words.
+fn told(omega: f64) -> String {
+    format!("{:.2} rpm", rpm(omega))
 }
 
 /// rad/s to rpm.

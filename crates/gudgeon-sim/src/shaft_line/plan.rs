@@ -4,6 +4,7 @@ use gudgeon_core::kinds::TorsionAnswer;
 use gudgeon_core::result::Skipped;
 
 use super::case::{Group, ShaftLineCase};
+use super::verdict::Operating;
 
 /// What runs.
 #[derive(Debug, Clone, Default)]
@@ -16,6 +17,10 @@ pub struct Plan {
     pub response: bool,
     /// Forced vibration over the speed range.
     pub range: bool,
+    /// Limits, or an operating range or load steps whose largest values are wanted.
+    pub verdict: bool,
+    /// Whether that needs vibration.
+    pub forced: bool,
     /// What runs and why.
     pub runs: Vec<Skipped>,
     /// What does not and why.
@@ -32,7 +37,10 @@ impl Plan {
         let name = case.models.torsion.typetag_name();
         let limits = &case.limits;
         let separation = !limits.separation.is_empty();
-        let torque = !(limits.stress.is_empty() && limits.torque.is_empty() && limits.heat.is_empty());
+        let torque = !(limits.stress.is_empty()
+            && limits.torque.is_empty()
+            && limits.heat.is_empty()
+            && limits.irregularity.is_empty());
         let mut decide = |what: &str, runs: bool, why: String| {
             let entry = Skipped { what: what.into(), why };
             if runs {
@@ -84,16 +92,31 @@ impl Plan {
         if response && answers == TorsionAnswer::Periodic {
             decide("time steps", false, "the periodic motion is solved for directly".into());
         }
-        let line = frequencies || response || range;
+        let nothing_but_time = answers == TorsionAnswer::Time;
+        let over = (case.operating.is_some() || !case.load_steps.is_empty()) && !nothing_but_time;
+        let forced = !nothing && (torque || over && (response || range));
+        let verdict = forced || separation;
+        let why = if verdict {
+            let steps = super::steps::all(case).len();
+            format!(
+                "{} in {steps} load step{}",
+                Operating::new(case).words(),
+                if steps == 1 { "" } else { "s" }
+            )
+        } else {
+            "the case has no limits, no operating range and no load steps".into()
+        };
+        decide("verdict", verdict, why);
+        let line = frequencies || response || range || verdict;
         if !line {
             decide("shaft line", false, "nothing that is wanted needs it".into());
         }
-        Self { throws, frequencies, response, range, ..plan }
+        Self { throws, frequencies, response, range, verdict, forced, ..plan }
     }
 
     /// Whether a line is built at all.
     #[must_use]
     pub const fn line(&self) -> bool {
-        self.frequencies || self.response || self.range
+        self.frequencies || self.response || self.range || self.verdict
     }
 }

@@ -18,6 +18,7 @@ pub struct Modal {
     pub stiffness: Vec<PosStiffness>,
     /// Shapes by formula.
     #[serde(default)]
+    #[schemars(length(max = 100))]
     pub shapes: Vec<Shape>,
     /// Shapes from a text file, relative to the folder of the case.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -29,8 +30,10 @@ pub struct Modal {
 #[serde(deny_unknown_fields)]
 pub struct Shape {
     /// Power of the height: 0 for the same all along, 2 for a skirt that bends from its upper edge.
+    #[schemars(range(max = 100))]
     pub power: u32,
     /// Quarter waves from the middle to the flank: 0 for the same all across, 1 for none at the flanks.
+    #[schemars(range(max = 100))]
     pub waves: u32,
 }
 

@@ -26,6 +26,9 @@ impl NaturalFrequenciesSpec for ClampedNeighbours {
     fn build(&self, line: &Line) -> Result<Box<dyn NaturalFrequencies>, BuildError> {
         Ok(Box::new(Diagonal { tree: Tree::new(line)? }))
     }
+    fn are_of_the_line(&self) -> bool {
+        false
+    }
 }
 
 #[derive(Debug)]

@@ -15,6 +15,7 @@ use crate::tree::Tree;
 pub struct Eigenvalues {
     /// Most modes wanted, the lowest first; rigid ones count.
     #[serde(default = "most")]
+    #[schemars(range(min = 1, max = 2000))]
     pub most: usize,
 }
 

@@ -1,14 +1,16 @@
+use std::collections::VecDeque;
 use std::f64::consts::PI;
 
 use gudgeon_core::kinds::{
-    Line, LinearCoupling, OrderResponse, Torsion, TorsionAnswer, TorsionCtx, TorsionOut, TorsionSpec,
+    Line, LineThrow, LinearCoupling, OrderResponse, Torsion, TorsionAnswer, TorsionCtx, TorsionOut,
+    TorsionSpec,
 };
 use gudgeon_core::quantity::{Positive, Ratio, quantity};
 use gudgeon_core::{BuildError, EvalError};
 use gudgeon_numerics::linalg::{Complex, lu_factor, lu_solve};
 use serde::{Deserialize, Serialize};
 
-use crate::forcing::Order;
+use super::Orders;
 use crate::steady::Steady;
 
 /// The periodic motion at constant mean speed with all that is not linear: variable inertia with its velocity-squared term, gas torques and
@@ -31,6 +33,7 @@ pub struct HarmonicBalance {
     pub tolerance: Ratio<Positive>,
     /// Most rounds.
     #[serde(default = "rounds")]
+    #[schemars(range(min = 1, max = 100_000))]
     pub rounds: usize,
 }
 
@@ -56,80 +59,78 @@ gudgeon_core::register_model! {
     example: "tolerance = 1e-10\n",
 }
 
+impl HarmonicBalance {
+    /// Itself, where a line has something that models by independent orders leave out.
+    pub(crate) fn if_it_has_more(self, line: &Line) -> Option<Box<dyn TorsionSpec>> {
+        (!active(line).is_empty()).then(|| Box::new(self) as Box<dyn TorsionSpec>)
+    }
+}
+
 #[typetag::serde(name = "harmonic_balance")]
 impl TorsionSpec for HarmonicBalance {
     fn build(&self, ctx: &TorsionCtx<'_>) -> Result<Box<dyn Torsion>, BuildError> {
-        let mut steady = Steady::new(ctx)?;
         if self.tolerance.si() < 1e-14 {
             return Err(BuildError::at("tolerance", "cannot be below 1e-14"));
         }
+        let active = active(ctx.line);
+        if active.is_empty() {
+            // What is linear is solved once, whatever its orders are.
+            return Orders {}.build(ctx);
+        }
+        let mut steady = Steady::new(ctx)?;
         let base = 2.0 * PI / ctx.period;
+        let whole = |step: f64| (step - step.round()).abs() <= 1e-6;
         for o in &steady.excitation.orders {
-            let k = o.order / base;
-            if (k - k.round()).abs() > 1e-6 {
+            if !whole(o.order / base) {
                 let what = format!("order {} is no multiple of {base}: the motion is not periodic", o.order);
+                return Err(BuildError::at("model", what).help("use `orders` for gears of any ratio"));
+            }
+        }
+        for t in ctx.line.throws.iter().filter(|t| !t.inertia.is_constant()) {
+            if !whole(ctx.line.nodes[t.node].ratio.abs() / base) {
+                let what = "a geared throw does not repeat with the cycle";
                 return Err(BuildError::at("model", what).help("use `orders` for gears of any ratio"));
             }
         }
         let harmonics = ((ctx.orders / base) + 1e-9).floor() as usize;
         // Taking the torques of a round apart goes with the square of the harmonics.
-        let places = active(ctx.line).len();
+        let places = active.len();
         if harmonics == 0 || harmonics > 4000 || harmonics * harmonics * places > 25_000_000 {
             let what = format!(
                 "{harmonics} harmonics of {places} nonlinear places; between 1 and 4000 are possible, and less for many places"
             );
             return Err(BuildError::at("orders", what));
         }
-        // Every harmonic has an order, even where nothing excites it yet.
-        let n = ctx.line.nodes.len();
-        let old = std::mem::take(&mut steady.excitation.orders);
-        steady.excitation.orders = (1..=harmonics)
-            .map(|k| Order { order: k as f64 * base, torque: vec![Complex::default(); n] })
-            .collect();
-        for o in old {
-            let k = (o.order / base).round() as usize;
-            if (1..=harmonics).contains(&k) {
-                steady.excitation.orders[k - 1].torque.clone_from(&o.torque);
-            }
-        }
-        // The linear excitation must not hold the inertia torque twice: it is part of what is evaluated here.
-        for t in ctx.line.throws.iter().filter(|t| !t.inertia.is_constant()) {
-            let ratio = ctx.line.nodes[t.node].ratio;
-            let per = (1.0 / base).round() as usize;
-            let step = ratio.abs() / base;
-            if (step - step.round()).abs() > 1e-6 {
-                return Err(BuildError::at("model", "a geared throw does not repeat with the cycle"));
-            }
-            let c = crate::forcing::inertia_series(t, harmonics / per.max(1));
-            for (k, c) in c.iter().enumerate().skip(1) {
-                let at = (k as f64 * step).round() as usize;
-                if at <= harmonics {
-                    let (sin, cos) = (k as f64 * t.phase).sin_cos();
-                    let square = (ctx.speed * ratio) * (ctx.speed * ratio);
-                    let mut a = *c * Complex::new(cos * square, sin * square);
-                    if ratio < 0.0 {
-                        a.im = -a.im;
-                    }
-                    let s = &mut steady.excitation.orders[at - 1].torque[t.node];
-                    *s = *s - a;
-                }
-            }
-        }
+        // The moving masses are part of what is evaluated here.
+        steady.whole_orders_without_masses(base, harmonics);
         // Products of three harmonics are still resolved.
         let samples = (8 * harmonics).next_power_of_two().max(64);
-        Ok(Box::new(Solver {
+        let cycle = ctx.period;
+        let at_even = |t: &LineThrow| -> Vec<f64> {
+            let ratio = ctx.line.nodes[t.node].ratio;
+            (0..if t.ends.is_empty() { 0 } else { samples })
+                .map(|s| {
+                    let even = ratio * cycle * s as f64 / samples as f64;
+                    t.gas_torque(even, even)
+                })
+                .collect()
+        };
+        let mut solver = Solver {
             tolerance: self.tolerance.si(),
             rounds: self.rounds.max(2),
             base,
             harmonics,
             samples,
-            balance: ctx.balance,
-            // The tree keeps these, whatever the mean torque turns out to be.
-            tangents: (ctx.line.links.iter().zip(&steady.mean_torque))
-                .map(|(l, mean)| l.coupling.linear(0.0, *mean))
-                .collect(),
+            table: (0..samples).map(|s| (2.0 * PI * s as f64 / samples as f64).sin_cos()).collect(),
+            even: ctx.line.throws.iter().map(at_even).collect(),
+            x: vec![0.0; 2 * active.len() * (harmonics + 1)],
+            active,
+            pairs: VecDeque::with_capacity(DEPTH + 1),
+            tangents: Vec::new(),
             steady,
-        }))
+        };
+        solver.take_tangents();
+        Ok(Box::new(solver))
     }
     fn answers(&self) -> TorsionAnswer {
         TorsionAnswer::Periodic
@@ -148,6 +149,8 @@ fn active(line: &Line) -> Vec<usize> {
 
 /// Rounds that the acceleration remembers.
 const DEPTH: usize = 24;
+/// Round from which it only counts those of its own speed.
+const STALE: usize = 12;
 
 #[derive(Debug)]
 struct Solver {
@@ -155,9 +158,19 @@ struct Solver {
     rounds: usize,
     base: f64,
     harmonics: usize,
+    /// Points over the cycle, a power of two.
     samples: usize,
-    balance: usize,
-    /// Laws of the links as the linear line has them.
+    /// Sine and cosine at these points.
+    table: Vec<(f64, f64)>,
+    /// Gas torque of each throw at these points of even rotation.
+    even: Vec<Vec<f64>>,
+    /// Nodes that have unknowns.
+    active: Vec<usize>,
+    /// Torques on these nodes that the linear line does not have, as the last run found them.
+    x: Vec<f64>,
+    /// Differences of iterates and of their remainders, newest first: those of one speed serve at the next, where little is different.
+    pairs: VecDeque<[Vec<f64>; 2]>,
+    /// Laws of the links as the linear line has them: the tree keeps these, whatever the mean torque turns out to be.
     tangents: Vec<LinearCoupling>,
     steady: Steady,
 }
@@ -190,58 +203,66 @@ impl Solver {
         Ok(out)
     }
 
-    /// Motion of the `active` nodes; nothing for the others.
-    fn waves(&self, orders: &[OrderResponse], active: &[usize], table: &[(f64, f64)]) -> Vec<Wave> {
+    /// Laws of the links about the mean torques of the linear line.
+    fn take_tangents(&mut self) {
+        self.tangents = (self.steady.line.links.iter().zip(&self.steady.mean_torque))
+            .map(|(l, mean)| l.coupling.linear(0.0, *mean))
+            .collect();
+    }
+
+    /// Motion of the active nodes; nothing for the others.
+    fn waves(&self, orders: &[OrderResponse]) -> Vec<Wave> {
         let m = self.samples;
         let omega = self.steady.speed * self.base;
         let mean = &self.steady.mean_angle;
-        (0..mean.len())
-            .map(|node| {
-                if active.binary_search(&node).is_err() {
-                    return Wave::default();
+        let mut waves = vec![Wave::default(); mean.len()];
+        for &node in &self.active {
+            let mut w = Wave { x: vec![mean[node]; m], v: vec![0.0; m], a: vec![0.0; m] };
+            for (k, o) in orders.iter().enumerate() {
+                let [re, im] = o.angle[node];
+                if re == 0.0 && im == 0.0 {
+                    continue;
                 }
-                let mut w = Wave { x: vec![mean[node]; m], v: vec![0.0; m], a: vec![0.0; m] };
-                for (k, o) in orders.iter().enumerate() {
-                    let [re, im] = o.angle[node];
-                    if re == 0.0 && im == 0.0 {
-                        continue;
-                    }
-                    let rate = (k + 1) as f64 * omega;
-                    for s in 0..m {
-                        let (sin, cos) = table[(k + 1) * s % m];
-                        let (x, y) = (re * cos - im * sin, re * sin + im * cos);
-                        w.x[s] += x;
-                        w.v[s] -= rate * y;
-                        w.a[s] -= rate * rate * x;
-                    }
+                let rate = (k + 1) as f64 * omega;
+                let mut at = 0;
+                for s in 0..m {
+                    let (sin, cos) = self.table[at];
+                    let (x, y) = (re * cos - im * sin, re * sin + im * cos);
+                    w.x[s] += x;
+                    w.v[s] -= rate * y;
+                    w.a[s] -= rate * rate * x;
+                    at = (at + k + 1) & (m - 1);
                 }
-                w
-            })
-            .collect()
+            }
+            waves[node] = w;
+        }
+        waves
     }
 
     /// Orders of what is given over the cycle.
-    fn transform(&self, f: &[f64], table: &[(f64, f64)]) -> Vec<Complex> {
+    fn transform(&self, f: &[f64]) -> Vec<Complex> {
         let m = self.samples;
         (0..=self.harmonics)
             .map(|k| {
                 let factor = if k == 0 { 1.0 } else { 2.0 } / m as f64;
-                let mut c = Complex::default();
-                for (s, f) in f.iter().enumerate() {
-                    let (sin, cos) = table[k * s % m];
-                    c = c + Complex::new(f * cos, -f * sin);
+                let (mut re, mut im, mut at) = (0.0, 0.0, 0);
+                for f in f {
+                    let (sin, cos) = self.table[at];
+                    re += f * cos;
+                    im -= f * sin;
+                    at = (at + k) & (m - 1);
                 }
-                c * Complex::new(factor, 0.0)
+                Complex::new(re * factor, im * factor)
             })
             .collect()
     }
 
-    fn rest(&self, waves: &[Wave], table: &[(f64, f64)]) -> Rest {
+    fn rest(&self, waves: &[Wave]) -> Rest {
         let (m, n) = (self.samples, waves.len());
         let line = &self.steady.line;
         let cycle = 2.0 * PI / self.base;
         let mut force = vec![vec![0.0; m]; n];
-        for t in &line.throws {
+        for (t, at_even) in line.throws.iter().zip(&self.even) {
             let ratio = line.nodes[t.node].ratio;
             let w = &waves[t.node];
             let f = &mut force[t.node];
@@ -249,7 +270,7 @@ impl Solver {
                 let even = ratio * cycle * s as f64 / m as f64;
                 let at = even + w.x[s];
                 if !t.ends.is_empty() {
-                    f[s] += t.gas_torque(at, at) - t.gas_torque(even, even);
+                    f[s] += t.gas_torque(at, at) - at_even[s];
                 }
                 if !t.inertia.is_constant() {
                     let (j, dj) = t.inertia.inertia(at + t.phase);
@@ -272,7 +293,7 @@ impl Solver {
         let mut out =
             Rest { nodes: vec![vec![Complex::default(); n]; self.harmonics + 1], links: Vec::new() };
         for (node, f) in force.iter().enumerate().filter(|(_, f)| f.iter().any(|f| *f != 0.0)) {
-            for (o, c) in out.nodes.iter_mut().zip(self.transform(f, table)) {
+            for (o, c) in out.nodes.iter_mut().zip(self.transform(f)) {
                 o[node] = c;
             }
         }
@@ -289,7 +310,7 @@ impl Solver {
                 let linear = mean_torque + tangent.stiffness * (twist - rest) + tangent.damping * rate;
                 *over = link.coupling.torque(twist, rate).torque - linear;
             }
-            let c = self.transform(&over, table);
+            let c = self.transform(&over);
             for (o, c) in out.nodes.iter_mut().zip(&c) {
                 o[a] = o[a] - *c;
                 o[b] = o[b] + *c * Complex::new(gear, 0.0);
@@ -320,113 +341,120 @@ impl Solver {
 
 impl Torsion for Solver {
     fn run(&mut self, out: &mut TorsionOut) -> Result<(), EvalError> {
-        let (m, n) = (self.samples, self.steady.tree.len());
-        let table: Vec<(f64, f64)> = (0..m).map(|s| (2.0 * PI * s as f64 / m as f64).sin_cos()).collect();
-        // Only nodes with something nonlinear have unknowns.
-        let line = &self.steady.line;
-        let active = active(line);
-        let flat = |r: &[Vec<Complex>]| -> Vec<f64> {
-            r.iter().flat_map(|o| active.iter().flat_map(|&i| [o[i].re, o[i].im])).collect()
-        };
-        let unflat = |v: &[f64]| -> Vec<Vec<Complex>> {
-            v.chunks(2 * active.len().max(1))
-                .map(|c| {
-                    let mut o = vec![Complex::default(); n];
-                    for (i, z) in active.iter().zip(c.chunks(2)) {
-                        o[*i] = Complex::new(z[0], z[1]);
-                    }
-                    o
-                })
-                .collect()
-        };
-        let size = 2 * active.len() * (self.harmonics + 1);
-        let mut x = vec![0.0; size];
-        let (mut xs, mut fs): (Vec<Vec<f64>>, Vec<Vec<f64>>) = (Vec::new(), Vec::new());
-        let base_mean = self.steady.excitation.mean.clone();
-        let scale = self
-            .steady
-            .excitation
-            .orders
-            .iter()
-            .flat_map(|o| o.torque.iter().map(|t| t.abs()))
-            .fold(base_mean.iter().map(|m| m.abs()).fold(0.0, f64::max), f64::max);
-        let mut solutions = 0;
-        let mut change = f64::INFINITY;
+        let warm = self.x.iter().any(|x| *x != 0.0);
         let mut rounds = 0;
-        let mut best: Vec<OrderResponse> = Vec::new();
-        let mut rest = Rest::default();
-        while rounds < self.rounds {
-            rounds += 1;
-            let extra = if active.is_empty() {
-                vec![vec![Complex::default(); n]; self.harmonics + 1]
-            } else {
-                unflat(&x)
-            };
-            // Mean state under the mean of the rest.
-            let mean: Vec<f64> = base_mean.iter().zip(&extra[0]).map(|(m, e)| m + e.re).collect();
-            let (torque, angle, hold) =
-                crate::steady::mean_state(&self.steady.line, &self.steady.tree, &mean, self.balance);
-            (self.steady.mean_torque, self.steady.mean_angle, self.steady.balance_torque) =
-                (torque, angle, hold);
-            let orders = self.solve(&extra)?;
-            solutions += self.harmonics as u64;
-            if active.is_empty() {
-                best = orders;
-                change = 0.0;
-                break;
+        let first = self.iterate(&mut rounds);
+        let found = match first {
+            // The motion of another speed may be a bad start.
+            Err(_) if warm => {
+                self.forget();
+                self.iterate(&mut rounds)
             }
-            let waves = self.waves(&orders, &active, &table);
-            rest = self.rest(&waves, &table);
-            let g = flat(&rest.nodes);
-            if g.iter().any(|v| !v.is_finite()) {
-                return Err(EvalError::fatal("harmonic_balance", "the iteration leaves all bounds"));
-            }
-            let f: Vec<f64> = g.iter().zip(&x).map(|(g, x)| g - x).collect();
-            let largest = g.iter().map(|v| v.abs()).fold(scale, f64::max);
-            change = f.iter().map(|v| v.abs()).fold(0.0, f64::max) / largest.max(f64::MIN_POSITIVE);
-            best = orders;
-            if change <= self.tolerance {
-                break;
-            }
-            xs.push(x.clone());
-            fs.push(f.clone());
-            if xs.len() > DEPTH + 1 {
-                xs.remove(0);
-                fs.remove(0);
-            }
-            x = accelerated(&xs, &fs);
+            other => other,
+        };
+        if found.is_err() {
+            self.forget();
         }
-        if change > self.tolerance {
-            return Err(EvalError::fatal(
-                "harmonic_balance",
-                format!(
-                    "no periodic motion after {rounds} rounds: torques still change by {change:.1e} of the largest; a resonance is near, or the motion has a period of its own"
-                ),
-            ));
-        }
-        self.complete(&mut best, &rest);
-        out.orders = best;
+        let (mut orders, rest) = found?;
+        self.complete(&mut orders, &rest);
+        out.orders = orders;
         out.counters.insert("time_steps".into(), 0);
-        out.counters.insert("rounds".into(), rounds as u64);
-        out.counters.insert("linear_solutions".into(), solutions);
+        out.counters.insert("rounds".into(), rounds);
+        out.counters.insert("linear_solutions".into(), rounds * self.harmonics as u64);
         self.steady.describe(out);
+        Ok(())
+    }
+    fn set_speed(&mut self, speed: f64) -> Result<(), EvalError> {
+        self.steady.set_speed(speed);
+        self.take_tangents();
         Ok(())
     }
 }
 
-/// Next iterate by Anderson's method: the combination of what was tried whose remainder is least, plus that remainder.
-fn accelerated(xs: &[Vec<f64>], fs: &[Vec<f64>]) -> Vec<f64> {
-    let last = xs.len() - 1;
-    let (x, f) = (&xs[last], &fs[last]);
-    let plain = || x.iter().zip(f).map(|(x, f)| x + f).collect::<Vec<f64>>();
-    if last == 0 {
-        return plain();
+impl Solver {
+    /// The next run starts from nothing.
+    fn forget(&mut self) {
+        self.x.fill(0.0);
+        self.pairs.clear();
     }
+
+    /// The unknowns as torques by order and node.
+    fn spread(&self) -> Vec<Vec<Complex>> {
+        let n = self.steady.tree.len();
+        self.x
+            .chunks(2 * self.active.len())
+            .map(|c| {
+                let mut o = vec![Complex::default(); n];
+                for (i, z) in self.active.iter().zip(c.chunks(2)) {
+                    o[*i] = Complex::new(z[0], z[1]);
+                }
+                o
+            })
+            .collect()
+    }
+
+    /// Rounds from the unknowns as they stand to the periodic motion and what the linear line leaves out of it.
+    fn iterate(&mut self, rounds: &mut u64) -> Result<(Vec<OrderResponse>, Rest), EvalError> {
+        let mut last: Option<[Vec<f64>; 2]> = None;
+        let base_mean = self.steady.excitation.mean.clone();
+        let given = self.steady.excitation.orders.iter().flat_map(|o| &o.torque).map(|t| t.abs());
+        let scale = given.chain(base_mean.iter().map(|m| m.abs())).fold(f64::MIN_POSITIVE, f64::max);
+        let mut change = f64::INFINITY;
+        for round in 0..self.rounds {
+            *rounds += 1;
+            if round == STALE {
+                // What another speed left does not help here.
+                self.pairs.truncate(round - 1);
+            }
+            let extra = self.spread();
+            // Mean state under the mean of the rest.
+            let mean: Vec<f64> = base_mean.iter().zip(&extra[0]).map(|(m, e)| m + e.re).collect();
+            self.steady.take_mean(&mean);
+            let orders = self.solve(&extra)?;
+            let rest = self.rest(&self.waves(&orders));
+            let g: Vec<f64> = rest
+                .nodes
+                .iter()
+                .flat_map(|o| self.active.iter().flat_map(|&i| [o[i].re, o[i].im]))
+                .collect();
+            if g.iter().any(|v| !v.is_finite()) {
+                return Err(EvalError::fatal("harmonic_balance", "the iteration leaves all bounds"));
+            }
+            let f: Vec<f64> = g.iter().zip(&self.x).map(|(g, x)| g - x).collect();
+            let largest = g.iter().map(|v| v.abs()).fold(scale, f64::max);
+            change = f.iter().map(|v| v.abs()).fold(0.0, f64::max) / largest;
+            if change <= self.tolerance {
+                return Ok((orders, rest));
+            }
+            if let Some([x, old]) = last.take() {
+                let moved = self.x.iter().zip(&x).map(|(a, b)| a - b).collect();
+                let changed = f.iter().zip(&old).map(|(a, b)| a - b).collect();
+                self.pairs.push_front([moved, changed]);
+                self.pairs.truncate(DEPTH);
+            }
+            let next = accelerated(&self.x, &f, &self.pairs);
+            last = Some([std::mem::replace(&mut self.x, next), f]);
+        }
+        Err(EvalError::fatal(
+            "harmonic_balance",
+            format!(
+                "no periodic motion at {:.6} rpm after {} rounds: torques still change by {change:.1e} of the largest; a resonance is near, or the motion has a period of its own",
+                self.steady.speed * 30.0 / PI,
+                self.rounds
+            ),
+        ))
+    }
+}
+
+/// Next iterate by Anderson's method: the combination of what was tried whose remainder is least, plus that remainder. `pairs` are
+/// differences of iterates and of their remainders, newest first.
+fn accelerated(x: &[f64], f: &[f64], pairs: &VecDeque<[Vec<f64>; 2]>) -> Vec<f64> {
+    let plain = || x.iter().zip(f).map(|(x, f)| x + f).collect::<Vec<f64>>();
     // Orthonormal differences of the remainders (modified Gram-Schmidt, twice), newest first.
     let mut q: Vec<Vec<f64>> = Vec::new();
-    let mut used: Vec<usize> = Vec::new();
-    for i in (0..last).rev() {
-        let mut d: Vec<f64> = fs[i + 1].iter().zip(&fs[i]).map(|(a, b)| a - b).collect();
+    let mut used: Vec<&[Vec<f64>; 2]> = Vec::new();
+    for pair in pairs {
+        let mut d = pair[1].clone();
         let before = norm(&d);
         for _ in 0..2 {
             for e in &q {
@@ -440,16 +468,18 @@ fn accelerated(xs: &[Vec<f64>], fs: &[Vec<f64>]) -> Vec<f64> {
         }
         d.iter_mut().for_each(|d| *d /= after);
         q.push(d);
-        used.push(i);
+        used.push(pair);
     }
     let k = q.len();
+    if k == 0 {
+        return plain();
+    }
     // Q has the differences as R = Qᵀ ΔF, upper triangular in the order of use.
     let mut r = vec![0.0; k * k];
     let mut rhs: Vec<f64> = q.iter().map(|e| dot(e, f)).collect();
-    for (c, &i) in used.iter().enumerate() {
-        let d: Vec<f64> = fs[i + 1].iter().zip(&fs[i]).map(|(a, b)| a - b).collect();
-        for (row, e) in q.iter().enumerate() {
-            r[row * k + c] = dot(e, &d);
+    for (c, pair) in used.iter().enumerate() {
+        for (row, e) in q.iter().enumerate().take(c + 1) {
+            r[row * k + c] = dot(e, &pair[1]);
         }
     }
     let mut pivots = vec![0; k];
@@ -458,9 +488,9 @@ fn accelerated(xs: &[Vec<f64>], fs: &[Vec<f64>]) -> Vec<f64> {
     }
     lu_solve(&r, k, &pivots, &mut rhs);
     let mut next = plain();
-    for (gamma, &i) in rhs.iter().zip(&used) {
-        for j in 0..next.len() {
-            next[j] -= gamma * ((xs[i + 1][j] - xs[i][j]) + (fs[i + 1][j] - fs[i][j]));
+    for (gamma, [moved, changed]) in rhs.iter().zip(used) {
+        for ((next, x), f) in next.iter_mut().zip(moved).zip(changed) {
+            *next -= gamma * (x + f);
         }
     }
     next

@@ -1,9 +1,10 @@
-use gudgeon_core::kinds::{Torsion, TorsionAnswer, TorsionCtx, TorsionOut, TorsionSpec};
+use gudgeon_core::kinds::{Line, Torsion, TorsionAnswer, TorsionCtx, TorsionOut, TorsionSpec};
 use gudgeon_core::quantity::{Fraction, Ratio};
 use gudgeon_core::{BuildError, EvalError};
 use gudgeon_numerics::linalg::Complex;
 use serde::{Deserialize, Serialize};
 
+use super::HarmonicBalance;
 use crate::eigen;
 use crate::steady::Steady;
 
@@ -16,6 +17,7 @@ use crate::steady::Steady;
 pub struct Modal {
     /// Number of modes kept, the rigid one included.
     #[serde(default = "ten")]
+    #[schemars(range(min = 1, max = 2000))]
     pub modes: usize,
     /// Damping ratio of all modes, instead of that of the dampers.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -78,6 +80,9 @@ impl TorsionSpec for Modal {
     fn answers(&self) -> TorsionAnswer {
         TorsionAnswer::Periodic
     }
+    fn fuller(&self, line: &Line) -> Option<Box<dyn TorsionSpec>> {
+        HarmonicBalance::default().if_it_has_more(line)
+    }
 }
 
 #[derive(Debug)]
@@ -87,7 +92,12 @@ struct Solver {
 }
 
 impl Torsion for Solver {
+    fn set_speed(&mut self, speed: f64) -> Result<(), EvalError> {
+        self.steady.set_speed(speed);
+        Ok(())
+    }
     fn run(&mut self, out: &mut TorsionOut) -> Result<(), EvalError> {
+        out.orders.clear();
         let t = &self.steady.tree;
         let n = t.len();
         let omega = eigen::natural_frequencies(t, self.spec.modes)?;

@@ -1,7 +1,8 @@
-use gudgeon_core::kinds::{Torsion, TorsionAnswer, TorsionCtx, TorsionOut, TorsionSpec};
+use gudgeon_core::kinds::{Line, Torsion, TorsionAnswer, TorsionCtx, TorsionOut, TorsionSpec};
 use gudgeon_core::{BuildError, EvalError};
 use serde::{Deserialize, Serialize};
 
+use super::HarmonicBalance;
 use crate::steady::Steady;
 
 /// Forced vibration order by order at constant mean speed.
@@ -34,6 +35,9 @@ impl TorsionSpec for Orders {
     fn answers(&self) -> TorsionAnswer {
         TorsionAnswer::Periodic
     }
+    fn fuller(&self, line: &Line) -> Option<Box<dyn TorsionSpec>> {
+        HarmonicBalance::default().if_it_has_more(line)
+    }
 }
 
 #[derive(Debug)]
@@ -44,11 +48,16 @@ struct Solver {
 impl Torsion for Solver {
     fn run(&mut self, out: &mut TorsionOut) -> Result<(), EvalError> {
         let orders = std::mem::take(&mut self.steady.excitation.orders);
-        out.orders = orders.iter().map(|o| self.steady.respond(o)).collect::<Result<_, _>>()?;
-        out.counters.insert("time_steps".into(), 0);
-        out.counters.insert("linear_solutions".into(), orders.len() as u64);
+        let found = orders.iter().map(|o| self.steady.respond(o)).collect::<Result<_, _>>();
         self.steady.excitation.orders = orders;
+        out.orders = found?;
+        out.counters.insert("time_steps".into(), 0);
+        out.counters.insert("linear_solutions".into(), out.orders.len() as u64);
         self.steady.describe(out);
+        Ok(())
+    }
+    fn set_speed(&mut self, speed: f64) -> Result<(), EvalError> {
+        self.steady.set_speed(speed);
         Ok(())
     }
 }

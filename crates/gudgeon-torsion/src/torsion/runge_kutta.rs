@@ -1,6 +1,7 @@
 use gudgeon_core::kinds::{Torsion, TorsionAnswer, TorsionCtx, TorsionOut, TorsionSpec};
 use gudgeon_core::quantity::PosTime;
 use gudgeon_core::{BuildError, EvalError};
+use gudgeon_numerics::linalg::Complex;
 use serde::{Deserialize, Serialize};
 
 use super::{check_in_time, check_start};
@@ -63,6 +64,13 @@ impl TorsionSpec for RungeKutta {
     }
     fn answers(&self) -> TorsionAnswer {
         TorsionAnswer::Time
+    }
+    /// `|1 + x + x²/2 + x³/6 + x⁴/24| > 1`, `x = zh`.
+    fn grows(&self, zh: [f64; 2]) -> Option<bool> {
+        let real = |v: f64| Complex::new(v, 0.0);
+        let x = Complex::new(zh[0], zh[1]);
+        let r = real(1.0) + x * (real(1.0) + x * (real(0.5) + x * (real(1.0 / 6.0) + x * real(1.0 / 24.0))));
+        Some(r.abs() > 1.0 + 1e-12)
     }
 }
 

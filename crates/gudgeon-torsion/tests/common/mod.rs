@@ -166,7 +166,7 @@ pub mod compressor {
             speed,
             orders,
             period: 2.0 * std::f64::consts::PI,
-            balance: 0,
+            balance: &[1.0],
             angles: &[0.0; 7],
             speeds,
             times,

@@ -5,7 +5,6 @@ use gudgeon_core::quantity::quantity;
 use gudgeon_numerics::linalg::Complex;
 use gudgeon_torsion::coupling::{FrequencyDependent, LoadDependent, Piecewise, Progressive};
 use gudgeon_torsion::drive::{Constant, Harmonic, Harmonics, PowerLaw};
-use gudgeon_torsion::speed_range::speed_range;
 use gudgeon_torsion::steady::about_mean_torque;
 use gudgeon_torsion::torsion::{HarmonicBalance, Implicit, Orders, RungeKutta};
 use std::f64::consts::PI;
@@ -38,7 +37,7 @@ fn context<'a>(
         speed,
         orders,
         period: 2.0 * PI,
-        balance: 0,
+        balance: &[1.0],
         angles: start[0],
         speeds: start[1],
         times,
@@ -268,13 +267,12 @@ fn stiffness_under_load_is_the_slope_of_the_twist() {
     let order =
         Harmonic { order: 2.0, amplitude: quantity(70.0), phase: quantity(0.4), factor: quantity(1.0) };
     fan.drives.push(drive(1, 1.0, &Harmonics { mean: quantity(0.0), orders: vec![order] }));
-    let speeds = [60.0, 95.0, 110.0];
-    let range =
-        speed_range(&context(&fan, 100.0, 4.0, [&[], &[]], &[]), &speeds).expect("builds").expect("runs");
-    assert!(!range.lanes);
-    for (s, w) in speeds.iter().enumerate() {
-        let one = run(&Orders {}, &context(&fan, *w, 4.0, [&[], &[]], &[]));
-        assert_eq!(range.torque[s][0], one.orders[0].torque);
+    let mut moving = Orders {}.build(&context(&fan, 100.0, 4.0, [&[], &[]], &[])).expect("builds");
+    for w in [60.0, 95.0, 110.0] {
+        let mut there = TorsionOut::default();
+        moving.set_speed(w).expect("periodic");
+        moving.run(&mut there).expect("runs");
+        assert_eq!(there, run(&Orders {}, &context(&fan, w, 4.0, [&[], &[]], &[])));
     }
 }
 
@@ -335,13 +333,13 @@ fn frequency_dependent_coupling_by_hand() {
         let torque = c(40.0 / n * torque.re.cos(), -40.0 / n * torque.re.sin());
         by_hand(o, c(k, k * eta), n * speed, torque);
     }
-    // Over a range: every speed its own stiffness.
+    // Come from another speed: every speed its own stiffness.
     let ctx = TorsionCtx { period: 4.0 * PI, ..context(&line, 1.0, 20.0, [&[], &[]], &[]) };
-    let range = speed_range(&ctx, &[speed]).expect("builds").expect("runs");
-    assert!(!range.lanes);
-    for (a, b) in range.torque[0].iter().zip(&out.orders) {
-        assert_eq!(a, &b.torque);
-    }
+    let mut moving = Orders {}.build(&ctx).expect("builds");
+    let mut there = TorsionOut::default();
+    moving.set_speed(speed).expect("periodic");
+    moving.run(&mut there).expect("runs");
+    assert_eq!(there, out);
 }
 
 #[test]

@@ -16,7 +16,7 @@ fn context<'a>(line: &'a Line, start: [&'a [f64]; 2], times: &'a [f64]) -> Torsi
         speed: 50.0,
         orders: 6.0,
         period: 2.0 * PI,
-        balance: 0,
+        balance: &[1.0],
         angles: start[0],
         speeds: start[1],
         times,

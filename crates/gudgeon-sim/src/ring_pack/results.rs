@@ -1,0 +1,172 @@
+//! Results and events from what was measured over a cycle.
+
+use std::f64::consts::PI;
+
+use gudgeon_core::kinds::Motion;
+use gudgeon_core::result::{Event, Value};
+use indexmap::IndexMap;
+
+use super::measure::{Measures, Peak, RingMeasure, Seat};
+use super::pack::Pack;
+use super::plan::catalogue;
+use super::record::{Totals, round_deg};
+
+/// How a blow-by mass becomes litres per minute.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Meter {
+    /// Gas density at the meter \[kg/m³\].
+    pub density: f64,
+    /// Cylinders of the engine.
+    pub cylinders: f64,
+}
+
+/// A cycle that was solved.
+#[derive(Debug, Clone)]
+pub struct Cycle {
+    /// What the solver integrated.
+    pub totals: Totals,
+    /// What was measured on its steps.
+    pub measures: Measures,
+}
+
+/// More changes of seat than this are told as one flutter: they would bury everything else.
+const FLUTTER: u32 = 24;
+
+impl Cycle {
+    /// Every wanted result.
+    #[must_use]
+    pub fn results(&self, pack: &Pack, meter: Meter) -> IndexMap<String, Value> {
+        catalogue(pack.n_rings(), pack.oil_pack.is_some())
+            .into_iter()
+            .filter(|r| pack.plan.wanted.contains(&r.name))
+            .map(|r| {
+                let number = |prefix: &str| {
+                    let (subject, what) = r.name.split_once('.')?;
+                    Some((subject.strip_prefix(prefix)?.parse::<usize>().ok()?, what))
+                };
+                let v = match (number("ring"), number("land")) {
+                    (Some((i, what)), _) => self.of_ring(pack, i - 1, what),
+                    (_, Some((k, what))) => of_land(self.measures.lands[k - 2], what),
+                    _ => self.of_pack(pack, &r.name, meter),
+                };
+                // Adding zero turns -0 into 0.
+                (r.name, Value { value: v + 0.0, unit: r.unit.into(), what: r.what })
+            })
+            .collect()
+    }
+
+    /// Length of a cycle \[s\].
+    fn duration(pack: &Pack) -> f64 {
+        pack.period() / pack.omega
+    }
+
+    fn of_pack(&self, pack: &Pack, name: &str, meter: Meter) -> f64 {
+        let (t, m) = (&self.totals, &self.measures);
+        let litres_per_minute = t.blow_by / Self::duration(pack) / meter.density * 6e4;
+        let swept = PI * pack.geo.bore_radius.powi(2) * pack.kinematics.stroke();
+        let work: f64 = t.friction_work.iter().sum();
+        // Per circumference [m²] to mm³.
+        let around = 2.0 * PI * pack.geo.bore_radius * 1e9;
+        match name {
+            "blow_by" => litres_per_minute * meter.cylinders,
+            "blow_by_per_cylinder" => litres_per_minute,
+            "blow_by_mass_per_cycle" => t.blow_by,
+            "blow_back_mass_per_cycle" => m.blow_back,
+            "cylinder.p_max" => m.cylinder.value / 1e5,
+            "friction_power" => work / Self::duration(pack),
+            "fmep" => work / swept / 1e5,
+            "periodicity_error" => t.periodicity_error,
+            "oil_taken" => t.oil.taken * around,
+            "oil_drained" => t.oil.drained * around,
+            "oil_thrown" => t.oil.thrown * around,
+            _ => 0.0,
+        }
+    }
+
+    fn of_ring(&self, pack: &Pack, i: usize, what: &str) -> f64 {
+        let (m, span) = (&self.measures.rings[i], self.measures.span);
+        // Volumes [mm³] that the film would hold over each stroke: `π D ∫ h |v| dt` (tomanik1993, after Yoshida). The film that a ring
+        // leaves is about half of its thickness; the source takes the thickness itself.
+        let strokes = m.strokes.map(|s| s * 2.0 * PI * pack.geo.bore_radius * 1e9);
+        match what {
+            "h_min" => m.film_span().0 * 1e6,
+            "h_max" => m.film_span().1 * 1e6,
+            "h_mean" => m.film / span * 1e6,
+            "friction_power" => {
+                self.totals.friction_work.get(i).copied().unwrap_or(0.0) / Self::duration(pack)
+            }
+            "oil_face_combustion" => strokes[2] - strokes[1],
+            "oil_face_gas_exchange" => strokes[0] - strokes[3],
+            "oil_gap" => gap_oil(pack, i, m),
+            "oil_groove" => groove_oil(pack, i, m),
+            "wetted_share" => m.wetted / span,
+            "seat_changes" => f64::from(m.arrivals),
+            "lifted_share" => m.lifted / span,
+            _ => 0.0,
+        }
+    }
+
+    /// What happened when.
+    #[must_use]
+    pub fn events(&self) -> Vec<Event> {
+        let mut events = Vec::new();
+        let mut add = |theta: f64, subject: String, what: String| {
+            events.push(Event { theta_deg: round_deg(theta.to_degrees()), subject, what });
+        };
+        let flank = |seat: Seat| if seat == Seat::Upper { "upper" } else { "lower" };
+        for (i, m) in self.measures.rings.iter().enumerate() {
+            let subject = format!("ring{}", i + 1);
+            if m.arrivals > FLUTTER {
+                let first = m.changes.first().map_or(0.0, |c| c.theta);
+                add(first, subject, format!("flutters: arrives on a flank {} times", m.arrivals));
+                continue;
+            }
+            for c in &m.changes {
+                if c.from != Seat::Between {
+                    add(c.theta, subject.clone(), format!("leaves the {} flank", flank(c.from)));
+                }
+                if c.to != Seat::Between {
+                    add(c.theta, subject.clone(), format!("seats on the {} flank", flank(c.to)));
+                }
+            }
+        }
+        let highest = |p: Peak| format!("highest pressure, {:.2} bar", p.value / 1e5);
+        let cylinder = self.measures.cylinder;
+        add(cylinder.theta, "cylinder".into(), highest(cylinder));
+        for (k, land) in self.measures.lands.iter().enumerate() {
+            add(land.theta, format!("land{}", k + 2), highest(*land));
+        }
+        events.sort_by(|a, b| a.theta_deg.total_cmp(&b.theta_deg).then_with(|| a.subject.cmp(&b.subject)));
+        events
+    }
+}
+
+fn of_land(peak: Peak, what: &str) -> f64 {
+    match what {
+        "p_max" => peak.value / 1e5,
+        "p_max_angle" => peak.theta.to_degrees(),
+        _ => 0.0,
+    }
+}
+
+/// Oil \[mm³\] that flows up through the gap of ring `i` if it is full of oil: laminar flow in a round pipe of its area,
+/// `∫ A² Δp/(8 π μ b) dt` (tomanik1993 eq. 24). An upper limit far above what a gap lets through.
+fn gap_oil(pack: &Pack, i: usize, m: &RingMeasure) -> f64 {
+    let g = &pack.geo.rings[i];
+    let area = g.gap_area.unwrap_or(g.gap * (pack.geo.bore_radius - g.piston_radius_below).max(0.0));
+    area * area * m.gap_drive / (8.0 * PI * g.height) * 1e9
+}
+
+/// Oil \[mm³\] that ring `i` moves up past its flanks in a groove full of oil:
+/// `∫ (-∂H/∂t L/2 + Δp H³/(12 μ L)) π D dt`, `H` the smaller distance from a flank, `L` the width of the flank (tomanik1993
+/// eq. 25). Zero for rings whose motion is not integrated.
+fn groove_oil(pack: &Pack, i: usize, m: &RingMeasure) -> f64 {
+    let g = &pack.geo.rings[i];
+    if pack.rings[i].kind != Motion::Dynamic || !g.has_clearance {
+        return 0.0;
+    }
+    let mu = pack.oil.viscosity(g.back_temperature);
+    let flow = m.groove_drive / (12.0 * mu * g.width);
+    let squeeze = 0.5 * g.width * (m.nearest.0 - m.nearest.1);
+    (flow + squeeze) * 2.0 * PI * g.piston_radius_below * 1e9
+}

@@ -1,0 +1,104 @@
+//! Instants of a cycle that the series shows, kept as states and evaluated when everything else is done.
+//!
+//! A film finds its edges from where they were at the evaluation before. Rows that were evaluated while the cycle runs would change its
+//! last digits, and so every result would depend on how many rows there are.
+
+use gudgeon_core::EvalError;
+use gudgeon_numerics::ode::StepView;
+
+use super::hold::Hold;
+use super::oil::SIDES;
+use super::pack::Pack;
+use super::record::Record;
+
+/// States at the rows of a series.
+#[derive(Debug, Clone)]
+pub struct Rows {
+    grid: Vec<f64>,
+    /// Angle, states and quadratures of every row so far.
+    theta: Vec<f64>,
+    y: Vec<f64>,
+    q: Vec<f64>,
+    /// Volumes \[m²\] that the faces hold.
+    held: Vec<[f64; SIDES]>,
+    seats: Vec<f64>,
+    holds: Vec<Hold>,
+}
+
+/// A row at the end of a step is its end, \[rad\].
+const SLACK: f64 = 1e-9;
+
+impl Rows {
+    /// Rows `step` \[rad\] apart, or the nearest whole part of a cycle.
+    #[must_use]
+    pub fn new(pack: &Pack, step: f64) -> Self {
+        let period = pack.period();
+        let rows = (period / step).round().max(1.0) as usize;
+        let (n, count) = (pack.n_rings(), rows + 1);
+        let faces = pack.oil_pack.as_ref().map_or(0, |o| o.faces.len());
+        Self {
+            grid: (0..=rows).map(|k| period * k as f64 / rows as f64).collect(),
+            theta: Vec::with_capacity(count),
+            y: Vec::with_capacity(count * pack.layout.n),
+            q: Vec::with_capacity(count * (2 * n + 1)),
+            held: Vec::with_capacity(count * faces),
+            seats: Vec::with_capacity(count * n),
+            holds: Vec::with_capacity(count * n),
+        }
+    }
+
+    /// Keeps the start of the cycle.
+    pub fn start(&mut self, pack: &Pack, y: &[f64]) {
+        self.keep(pack, |to| to.copy_from_slice(y), |q| q.fill(0.0));
+    }
+
+    /// Keeps the rows of an accepted step. To be called before its oil is booked.
+    pub fn step(&mut self, pack: &mut Pack, v: &dyn StepView) {
+        while let Some(&row) = self.grid.get(self.theta.len())
+            && row <= v.t1() + SLACK
+        {
+            let t = row.min(v.t1());
+            self.keep(pack, |y| v.interpolate(t, y), |q| v.interpolate_quad(t, q));
+            let faces = self.held.len() - pack.oil_pack.as_ref().map_or(0, |o| o.faces.len());
+            let y = self.y.len() - pack.layout.n;
+            if let Some(oil) = &mut pack.oil_pack {
+                oil.set_volumes(&self.y[y..], pack.kinematics.motion(t).y);
+                for (held, f) in self.held[faces..].iter_mut().zip(&oil.faces) {
+                    *held = f.volume;
+                }
+            }
+        }
+    }
+
+    fn keep(&mut self, pack: &Pack, states: impl FnOnce(&mut [f64]), passed: impl FnOnce(&mut [f64])) {
+        self.theta.push(self.grid[self.theta.len()]);
+        let (y, q) = (self.y.len(), self.q.len());
+        self.y.resize(y + pack.layout.n, 0.0);
+        self.q.resize(q + 2 * pack.n_rings() + 1, 0.0);
+        states(&mut self.y[y..]);
+        passed(&mut self.q[q..]);
+        self.held.extend(pack.oil_pack.iter().flat_map(|o| o.faces.iter().map(|f| f.volume)));
+        self.seats.extend_from_slice(&pack.seats);
+        self.holds.extend_from_slice(&pack.holds);
+    }
+
+    /// Evaluates the rows.
+    ///
+    /// # Errors
+    /// What a sub-model refuses.
+    pub fn record(&self, pack: &mut Pack) -> Result<Record, EvalError> {
+        let mut record = Record::new(pack);
+        let (n, dim) = (pack.n_rings(), pack.layout.n);
+        let faces = pack.oil_pack.as_ref().map_or(0, |o| o.faces.len());
+        for (k, &theta) in self.theta.iter().enumerate() {
+            pack.seats.copy_from_slice(&self.seats[k * n..][..n]);
+            pack.holds.copy_from_slice(&self.holds[k * n..][..n]);
+            let held = (faces > 0).then(|| &self.held[k * faces..][..faces]);
+            pack.evaluate_holding(theta, &self.y[k * dim..][..dim], held)?;
+            (0..n).try_for_each(|i| pack.film_peak(i))?;
+            let q = &self.q[k * (2 * n + 1)..][..2 * n + 1];
+            record.push(theta, pack, &q[..n], q[n]);
+        }
+        Ok(record)
+    }
+}

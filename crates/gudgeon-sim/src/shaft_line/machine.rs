@@ -1,0 +1,271 @@
+//! A line in one load step, asked for its vibration at one speed after the other.
+
+use std::collections::BTreeMap;
+
+use gudgeon_core::kinds::{Torsion, TorsionCtx, TorsionOut, TorsionSpec};
+use gudgeon_core::{BuildError, EvalError};
+use gudgeon_numerics::maximum::largest;
+use gudgeon_torsion::critical::Critical;
+use gudgeon_torsion::cycle::Cycle;
+use gudgeon_torsion::steady::Steady;
+use gudgeon_torsion::torsion::Orders;
+
+use super::assemble::Assembled;
+
+/// Damping ratio below which a resonance counts as undamped: its peak would be a million times the static answer.
+const UNDAMPED: f64 = 1e-6;
+/// Sum of the amplitudes of all orders above which the exact swing of speeds \[1\] and twists \[rad\] is looked at.
+const LARGE: f64 = 0.5;
+
+/// Vibration in a link at one speed.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct LinkPoint {
+    /// Half of peak to peak torque over the cycle \[N m\].
+    pub amplitude: f64,
+    /// Largest torque, either way \[N m\].
+    pub peak: f64,
+    /// Mean power lost \[W\].
+    pub heat: f64,
+    /// Order of the largest torque.
+    pub order: f64,
+}
+
+/// Vibration at one speed.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Point {
+    /// By link.
+    pub links: Vec<LinkPoint>,
+    /// Peak to peak speed by mean speed, by inertia; empty where nobody asked and it is small.
+    pub irregularity: Vec<f64>,
+    /// Largest vibratory twist of a link (half of peak to peak, \[rad\]); zero where it is small.
+    pub twist: f64,
+    /// Torque amplitudes by order and link \[N m\]; empty unless they are kept.
+    pub orders: Vec<f64>,
+}
+
+/// A line at any speed.
+#[derive(Debug)]
+pub struct Machine<'a> {
+    /// The line as built.
+    pub a: &'a Assembled,
+    /// What is linear in it.
+    pub steady: Steady,
+    /// Whether the degree of irregularity is wanted everywhere.
+    pub irregularity: bool,
+    /// Whether amplitudes by order are kept.
+    pub by_order: bool,
+    /// Orders of the answers, ascending.
+    pub orders: Vec<f64>,
+    /// Work: linear systems solved.
+    pub solutions: u64,
+    /// Speeds \[rad/s\] at which the model found no periodic motion and `orders` answered instead.
+    pub spared: Vec<f64>,
+    /// Speeds \[rad/s\] at which nothing answered, and why.
+    pub failed: Vec<(f64, String)>,
+    ctx: TorsionCtx<'a>,
+    torsion: Box<dyn Torsion>,
+    spare: Option<Box<dyn Torsion>>,
+    cycle: Option<Cycle>,
+    points: BTreeMap<u64, Point>,
+}
+
+impl<'a> Machine<'a> {
+    /// Builds the model of the case once.
+    ///
+    /// # Errors
+    /// As [`TorsionSpec::build`].
+    pub fn new(ctx: TorsionCtx<'a>, a: &'a Assembled, spec: &dyn TorsionSpec) -> Result<Self, BuildError> {
+        Ok(Self {
+            a,
+            steady: Steady::new(&ctx)?,
+            irregularity: false,
+            by_order: false,
+            orders: Vec::new(),
+            solutions: 0,
+            spared: Vec::new(),
+            failed: Vec::new(),
+            torsion: spec.build(&ctx)?,
+            ctx,
+            spare: None,
+            cycle: None,
+            points: BTreeMap::new(),
+        })
+    }
+
+    /// Takes vibration that is known already.
+    pub fn given(&mut self, speed: f64, point: Point) {
+        self.points.insert(speed.to_bits(), point);
+    }
+
+    /// The whole answer at a speed \[rad/s\].
+    ///
+    /// # Errors
+    /// As [`Torsion::run`].
+    pub fn motion(&mut self, speed: f64) -> Result<TorsionOut, EvalError> {
+        let mut out = TorsionOut::default();
+        self.torsion.set_speed(speed)?;
+        self.torsion.run(&mut out)?;
+        Ok(out)
+    }
+
+    /// Vibration at a speed \[rad/s\]; none where there is no periodic motion, which is kept in mind.
+    pub fn at(&mut self, speed: f64) -> Option<&Point> {
+        // Bits of positive numbers ascend with them.
+        let key = speed.to_bits();
+        if !self.points.contains_key(&key) {
+            let out = match self.motion(speed) {
+                Ok(out) => out,
+                Err(e) => match self.spare_motion(speed) {
+                    Some(out) => {
+                        self.spared.push(speed);
+                        out
+                    }
+                    None => {
+                        self.failed.push((speed, e.to_string()));
+                        return None;
+                    }
+                },
+            };
+            self.solutions += out.counters.get("linear_solutions").copied().unwrap_or(0);
+            let point = self.point(&out);
+            self.points.insert(key, point);
+        }
+        self.points.get(&key)
+    }
+
+    /// Why there is no answer at a speed.
+    pub fn why(&self, speed: f64) -> EvalError {
+        let said = self.failed.iter().find(|f| f.0 == speed).map_or("no answer", |f| f.1.as_str());
+        EvalError::fatal("torsion", said.to_owned())
+    }
+
+    fn spare_motion(&mut self, speed: f64) -> Option<TorsionOut> {
+        if self.spare.is_none() {
+            self.spare = Orders {}.build(&self.ctx).ok();
+        }
+        let mut out = TorsionOut::default();
+        let spare = self.spare.as_mut()?;
+        spare.set_speed(speed).ok()?;
+        spare.run(&mut out).ok()?;
+        Some(out)
+    }
+
+    /// Extremes over the cycle for some answer.
+    pub fn extremes(&mut self, out: &TorsionOut) -> &mut Cycle {
+        let same = |c: &Cycle| c.orders().iter().copied().eq(out.orders.iter().map(|o| o.order));
+        if !self.cycle.as_ref().is_some_and(same) {
+            let orders: Vec<f64> = out.orders.iter().map(|o| o.order).collect();
+            self.cycle = None;
+            self.orders.clone_from(&orders);
+        }
+        let (orders, period) = (&self.orders, self.a.period);
+        self.cycle.get_or_insert_with(|| Cycle::new(orders, period))
+    }
+
+    fn point(&mut self, out: &TorsionOut) -> Point {
+        let (links, nodes) = (self.a.line.links.len(), self.a.line.nodes.len());
+        let (irregularity, by_order, a) = (self.irregularity, self.by_order, self.a);
+        let cycle = self.extremes(out);
+        let mut p = Point::default();
+        for l in 0..links {
+            let size = |k: usize| out.orders[k].torque[l][0].hypot(out.orders[k].torque[l][1]);
+            let [top, bottom] = cycle.extremes(out.mean_torque[l], |k| out.orders[k].torque[l]);
+            let strongest = (0..out.orders.len()).max_by(|x, y| size(*x).total_cmp(&size(*y)));
+            p.links.push(LinkPoint {
+                amplitude: 0.5 * (top - bottom),
+                peak: top.abs().max(bottom.abs()),
+                heat: out.orders.iter().map(|o| o.heat[l]).sum(),
+                order: strongest.map_or(0.0, |k| out.orders[k].order),
+            });
+        }
+        if by_order {
+            p.orders = out.orders.iter().flat_map(|o| o.torque.iter().map(|t| t[0].hypot(t[1]))).collect();
+        }
+        // Relative speed of an inertia at the reference shaft: order times angle.
+        let ratio = |i: usize| a.line.nodes[i].ratio;
+        let bound = |i: usize| {
+            out.orders.iter().map(|o| o.order * o.angle[i][0].hypot(o.angle[i][1])).sum::<f64>()
+                / ratio(i).abs()
+        };
+        if irregularity || (0..nodes).any(|i| bound(i) > LARGE) {
+            p.irregularity = (0..nodes).map(|i| irregularity_of(cycle, out, i) / ratio(i).abs()).collect();
+        }
+        for l in 0..links {
+            let twist = |k: usize| twist_of(a, out, l, k);
+            if (0..out.orders.len()).map(|k| twist(k)[0].hypot(twist(k)[1])).sum::<f64>() > LARGE {
+                let [top, bottom] = cycle.extremes(0.0, twist);
+                p.twist = p.twist.max(0.5 * (top - bottom));
+            }
+        }
+        p
+    }
+
+    /// Critical speeds from `from` to `to` of all orders that something excites.
+    pub fn critical_speeds(&mut self, from: f64, to: f64) -> Vec<Critical> {
+        let excited =
+            self.steady.excitation.orders.iter().filter(|o| o.torque.iter().any(|t| t.norm1() != 0.0));
+        let orders: Vec<f64> = excited.map(|o| o.order).collect();
+        self.steady.critical_speeds(&orders, from, to, 64)
+    }
+
+    /// Speeds at which peaks over the speed show: a grid, the critical speeds, and places half and two widths of the resonance beside
+    /// those. Undamped critical speeds stay out.
+    pub fn telling_speeds(&mut self, grid: &[f64], critical: &[Critical]) -> Vec<f64> {
+        let (Some(&from), Some(&to)) = (grid.first(), grid.last()) else { return Vec::new() };
+        let mut all = grid.to_vec();
+        for c in critical.iter().filter(|c| c.damping_ratio > UNDAMPED) {
+            all.extend([-2.0, -0.5, 0.0, 0.5, 2.0].map(|k| c.speed * (1.0 + k * c.damping_ratio.min(0.2))));
+        }
+        all.retain(|w| *w >= from && *w <= to);
+        all.sort_unstable_by(f64::total_cmp);
+        all.dedup_by(|a, b| *a - *b <= 1e-12 * *b);
+        all
+    }
+
+    /// Critical speeds at which vibration grows without bound: no damping, and a torque that grows towards them.
+    pub fn unbounded(&mut self, critical: &[Critical], from: f64, to: f64) -> Vec<Critical> {
+        let mut found = Vec::new();
+        for c in critical.iter().filter(|c| c.damping_ratio <= UNDAMPED && c.speed >= from && c.speed <= to) {
+            let mut near = |part: f64| {
+                self.at(c.speed * (1.0 - part))
+                    .map(|p| p.links.iter().map(|l| l.amplitude).fold(0.0, f64::max))
+            };
+            let (far, close) = (near(1e-4), near(1e-6));
+            if close.is_none_or(|close| far.is_some_and(|far| close > 30.0 * far)) {
+                found.push(*c);
+            }
+        }
+        found
+    }
+
+    /// Speed and value of the largest of some quantity over ascending speeds that show its peaks.
+    pub fn largest(&mut self, speeds: &[f64], quantity: &dyn Fn(&Point) -> f64) -> (f64, f64) {
+        let samples: Vec<(f64, f64)> =
+            speeds.iter().filter_map(|w| self.at(*w).map(|p| (*w, quantity(p)))).collect();
+        largest(&samples, |w| self.at(w).map_or(f64::NEG_INFINITY, quantity))
+    }
+}
+
+/// Peak to peak speed of an inertia by the mean speed of the reference shaft.
+pub fn irregularity_of(cycle: &mut Cycle, out: &TorsionOut, node: usize) -> f64 {
+    let speed = |k: usize| {
+        let o = &out.orders[k];
+        [-o.order * o.angle[node][1], o.order * o.angle[node][0]]
+    };
+    let [top, bottom] = cycle.extremes(0.0, speed);
+    top - bottom
+}
+
+/// Twist of a link in one order.
+fn twist_of(a: &Assembled, out: &TorsionOut, link: usize, k: usize) -> [f64; 2] {
+    let [x, y] = a.line.links[link].nodes;
+    let gear = a.line.nodes[x].ratio / a.line.nodes[y].ratio;
+    let angle = &out.orders[k].angle;
+    [angle[x][0] - gear * angle[y][0], angle[x][1] - gear * angle[y][1]]
+}
+
+/// Largest vibratory twist (half of peak to peak) of a link.
+pub fn twist_amplitude(cycle: &mut Cycle, a: &Assembled, out: &TorsionOut, link: usize) -> f64 {
+    let [top, bottom] = cycle.extremes(0.0, |k| twist_of(a, out, link, k));
+    0.5 * (top - bottom)
+}

@@ -1,0 +1,157 @@
+//! Results do not depend on how densely a cycle is shown, narrow pulses are found, and noise on a trace is taken off.
+
+use gudgeon_core::result::{NoteLevel, RunResult};
+
+use crate::common::*;
+
+const CASE: &str = "turbo-diesel-120";
+
+/// Values and events, to the bit: rows are evaluated when everything else is done.
+fn same(a: &RunResult, b: &RunResult, what: &str) {
+    for (name, v) in &a.results {
+        assert_eq!(v.value, value(b, name), "{what}: {name}");
+    }
+    assert_eq!(a.events, b.events, "{what}");
+    assert_eq!(a.balance, b.balance, "{what}");
+}
+
+#[test]
+fn no_result_sees_the_rows() {
+    for (case, sets) in [
+        (CASE, &[][..]),
+        // Oil on the liner depends on where steps end; an order that loose keeps it quick.
+        (CASE, &["models.oil_transport.model=liner_film", "solver.tolerance=1e-3"][..]),
+        (
+            "alcohol-1600-3000",
+            &["solver.method=implicit", "solver.starts=[\"1 bar\"]", "solver.max_cycles=4"][..],
+        ),
+        ("alcohol-1600-3000", &["solver.starts=[\"1 bar\"]", "solver.cycles=3"][..]),
+        ("turbo-diesel-120-as-published", &["solver.cycles=1"][..]),
+    ] {
+        let at = |step: &str| {
+            let step = format!("outputs.series_step={step}");
+            run_case(case, &[sets, &[&step]].concat())
+        };
+        let dense = at("0.05 deg");
+        same(&dense, &at("30 deg"), &format!("{case} {sets:?}"));
+        if sets.is_empty() {
+            same(&dense, &at("1 deg"), case);
+        }
+    }
+}
+
+/// Integral of `f(row)` over the rows by the trapezoidal rule, over the cycle.
+fn mean(r: &RunResult, f: impl Fn(usize) -> f64) -> f64 {
+    let t = &r.series.axis.values;
+    (1..t.len()).map(|k| 0.5 * (f(k) + f(k - 1)) * (t[k] - t[k - 1])).sum::<f64>() / 720.0
+}
+
+/// What is measured on steps is what dense rows show.
+#[test]
+fn measures_agree_with_dense_rows() {
+    let r = run_case(CASE, &["outputs.series_step=0.05 deg"]);
+    let span = |name: &str| {
+        let v = column(&r, name);
+        v.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(*v), b.max(*v)))
+    };
+    // Between rows 0.05 deg apart an extreme of curvature 1/(0.3 rad)² rises by (0.0009/0.6)²/2 = 1e-6 of it; films near a
+    // reversal are sharper.
+    let near =
+        |a: f64, b: f64, within: f64, what: &str| assert!((a / b - 1.0).abs() < within, "{what}: {a} {b}");
+    near(value(&r, "cylinder.p_max"), span("cylinder.p").1 / 1e5, 1e-5, "cylinder");
+    for k in 2..=3 {
+        near(value(&r, &format!("land{k}.p_max")), span(&format!("land{k}.p")).1 / 1e5, 1e-5, "land");
+    }
+    for i in 1..=3 {
+        let (low, high) = span(&format!("ring{i}.h_min"));
+        near(value(&r, &format!("ring{i}.h_min")), low * 1e6, 1e-4, "thinnest");
+        near(value(&r, &format!("ring{i}.h_max")), high * 1e6, 1e-5, "thickest");
+        let h = column(&r, &format!("ring{i}.h_min"));
+        near(value(&r, &format!("ring{i}.h_mean")), mean(&r, |k| h[k]) * 1e6, 1e-5, "mean");
+        let e = column(&r, &format!("ring{i}.position"));
+        let off = mean(&r, |k| f64::from(u8::from(e[k] > 0.1)));
+        // Each of up to six crossings is a row wide at most: 0.05 of 720 deg.
+        near(value(&r, &format!("ring{i}.lifted_share")), off, 6.0 * 0.05 / 720.0 / off, "lifted");
+    }
+    let entered = column(&r, "ring1.cumulative_mass");
+    let back: f64 = entered.windows(2).map(|w| (w[0] - w[1]).max(0.0)).sum();
+    near(value(&r, "blow_back_mass_per_cycle"), back, 1e-5, "blow-back");
+    // Every event at the row where the position crosses the share of the clearance.
+    let seats: Vec<_> = r.events.iter().filter(|e| e.what.contains("flank")).collect();
+    assert!(seats.len() > 10, "{seats:?}");
+    for event in seats {
+        let e = column(&r, &format!("{}.position", event.subject));
+        let k = (event.theta_deg / 0.05) as usize;
+        let level = if event.what.contains("upper") { 0.9 } else { 0.1 };
+        assert!((e[k] - level) * (e[k + 1] - level) <= 0.0, "{event:?}: {} {}", e[k], e[k + 1]);
+    }
+}
+
+/// A table of cylinder pressures as an override.
+fn table(rows: &[(f64, f64)], more: &str) -> String {
+    let list = |f: &dyn Fn(&(f64, f64)) -> f64| {
+        rows.iter().map(|r| format!("{:?}", f(r))).collect::<Vec<_>>().join(", ")
+    };
+    format!(
+        "models.cylinder_pressure={{ model = \"table\", unit = \"bar\", theta_deg = [{}], pressure = [{}]{more} }}",
+        list(&|r| r.0),
+        list(&|r| r.1)
+    )
+}
+
+#[test]
+fn a_narrow_pulse_is_found() {
+    // One bar, and 100 bar within 0.2 deg.
+    let mut rows: Vec<(f64, f64)> = (0..720).map(|d| (f64::from(d), 1.0)).collect();
+    let k = rows.partition_point(|r| r.0 < 203.3);
+    rows.splice(k..k, [(203.3, 1.0), (203.4, 100.0), (203.5, 1.0)]);
+    let trace = table(&rows, "");
+    let r = run_case(CASE, &[&trace, "outputs.series_step=30 deg"]);
+    assert_eq!(value(&r, "cylinder.p_max"), 100.0);
+    let fine = run_case(CASE, &[&trace, "solver.tolerance=1e-6", "solver.periodicity=1e-6"]);
+    let (a, b) = (value(&r, "land2.p_max"), value(&fine, "land2.p_max"));
+    // What the pulse leaves on the land below, at the default tolerance of 1e-4.
+    assert!((a / b - 1.0).abs() < 1e-3 && b > 1.03, "{a} {b}");
+}
+
+#[test]
+fn noise_on_a_trace_is_taken_off_and_told() {
+    let own = run_case(CASE, &["outputs.series_step=0.5 deg"]);
+    let clean: Vec<(f64, f64)> = own
+        .series
+        .axis
+        .values
+        .iter()
+        .zip(column(&own, "cylinder.p"))
+        .take(1440)
+        .map(|(t, p)| (*t, p / 1e5))
+        .collect();
+    let mut seed = 1_u64;
+    let noisy: Vec<(f64, f64)> = clean
+        .iter()
+        .map(|(t, p)| {
+            // The sum of four uniform numbers, with a standard deviation of 0.03 bar.
+            let sum: f64 = (0..4)
+                .map(|_| {
+                    seed =
+                        seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                    (seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+                })
+                .sum();
+            (*t, p + 0.03 * 3f64.sqrt() * sum)
+        })
+        .collect();
+    for speed in ["2000 rpm", "4000 rpm", "4001 rpm"] {
+        let speed = format!("engine.speed={speed}");
+        let smooth = run_case(CASE, &[&table(&clean, ""), &speed]);
+        assert!(smooth.solver.notes.is_empty(), "{:?}", smooth.solver.notes);
+        let r = run_case(CASE, &[&table(&noisy, ""), &speed]);
+        let [note] = &r.solver.notes[..] else { panic!("{:?}", r.solver.notes) };
+        assert_eq!((note.topic.as_str(), note.level), ("cylinder_pressure.smoothed", NoteLevel::Caution));
+        assert!(note.amounts["peak_change"].value.abs() < 3.0 * 3e3, "{note:?}");
+        let (a, b) = (value(&r, "blow_by"), value(&smooth, "blow_by"));
+        // 0.03 bar is 2e-4 of the peak and a hundredth of the intake pressure, with no mean.
+        assert!((a / b - 1.0).abs() < 1e-3, "{speed}: {a} {b}");
+        assert!(r.solver.counters["steps"] < 2 * smooth.solver.counters["steps"], "{:?}", r.solver.counters);
+    }
+}
