@@ -60,6 +60,8 @@ const PATIENCE: f64 = 30.0;
 const KNOWN: usize = 10;
 /// Limit until then \[s\].
 const AT_FIRST: f64 = 120.0;
+/// Limits of a case after which its reduction stops with what it has: hangs are dear to repeat.
+const LONGEST: u32 = 2;
 /// Cases of one defect that are reduced.
 const SHRUNK: usize = 2;
 
@@ -191,9 +193,12 @@ fn first_of(shared: &Shared, r: &Record) -> bool {
 /// # Errors
 /// No child can be started.
 pub fn reduce(r: &mut Record, executor: &mut Executor, limit: Duration) -> std::io::Result<()> {
-    let (class, defect) = (r.class, r.defect.clone());
+    let (class, defect, begin) = (r.class, r.defect.clone(), Instant::now());
     let mut detail = None;
     let least = shrink(&r.case, |c| {
+        if begin.elapsed() > LONGEST * limit {
+            return Ok(false);
+        }
         let again = record(c.clone(), &executor.run(&job(c), limit)?);
         let same = again.class == class && (again.defect == defect || class != Class::Panic);
         if same {

@@ -68,6 +68,13 @@ impl<'a> Draw<'a> {
         &self.scenes
     }
 
+    /// The indices of a scene, from one on; none of a scene that there is not.
+    pub fn of_scene(&self, scene: &str, from: u64) -> impl Iterator<Item = u64> + use<> {
+        let n = self.scenes.len() as u64;
+        let place = self.scenes.iter().position(|s| *s == scene).map(|p| p as u64);
+        place.into_iter().flat_map(move |p| (from..).filter(move |i| i % n == p))
+    }
+
     /// The case of an index.
     ///
     /// # Errors

@@ -1,12 +1,14 @@
 //! `cargo run -p gudgeon-fuzz --release -- --seed 1 --count 10000`
 
+use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 use clap::Parser;
-use gudgeon_fuzz::campaign::{self, Plan, job, record, reduce};
+use gudgeon_fuzz::campaign::{self, Plan, Record, job, record, reduce};
 use gudgeon_fuzz::child::{Executor, SERVE, serve};
 use gudgeon_fuzz::corpus::{Corpus, shipped};
 use gudgeon_fuzz::draw::Draw;
@@ -38,7 +40,7 @@ struct Args {
     /// Cases at a time.
     #[arg(long, default_value_t = 2)]
     jobs: usize,
-    /// Write `fuzz.json`, with every case, and `fuzz.txt` here.
+    /// Write `fuzz.jsonl` (every case, as it ends), `fuzz.json` and `fuzz.txt` here.
     #[arg(long)]
     out: Option<PathBuf>,
     /// Run one case, reduce it if it is bad, and say everything about it.
@@ -86,7 +88,11 @@ fn fuzz(a: &Args) -> Result<bool, String> {
         program,
     };
     let all = plan.indices.len();
+    let lines = a.out.as_deref().map(stream).transpose()?.map(Mutex::new);
     let records = campaign::run(&plan, &corpus, &|n, r| {
+        if let Some(file) = &lines {
+            keep(&mut file.lock().unwrap_or_else(PoisonError::into_inner), r);
+        }
         if r.class.bad() {
             say(&format!("{n}/{all} {} {}: {}", r.class.name(), r.case.scene, r.defect));
         } else if n % 100 == 0 {
@@ -107,10 +113,10 @@ fn fuzz(a: &Args) -> Result<bool, String> {
 
 fn indices(a: &Args, draw: &Draw<'_>) -> Result<Vec<u64>, String> {
     let Some(scene) = &a.scene else { return Ok((a.from..a.from.saturating_add(a.count)).collect()) };
-    let scenes = draw.scenes();
-    let place = scenes.iter().position(|s| s == scene);
-    let place = place.ok_or_else(|| format!("no scene `{scene}`; there are {}", scenes.join(", ")))?;
-    Ok((a.from..).filter(|i| i % scenes.len() as u64 == place as u64).take(a.count as usize).collect())
+    if !draw.scenes().contains(&scene.as_str()) {
+        return Err(format!("no scene `{scene}`; there are {}", draw.scenes().join(", ")));
+    }
+    Ok(draw.of_scene(scene, a.from).take(a.count as usize).collect())
 }
 
 fn one(draw: &Draw<'_>, index: u64, mut executor: Executor) -> Result<bool, String> {
@@ -128,8 +134,21 @@ fn one(draw: &Draw<'_>, index: u64, mut executor: Executor) -> Result<bool, Stri
     Ok(!r.class.forbidden())
 }
 
+/// The file that keeps every case as soon as it has ended: a campaign that is stopped loses nothing.
+fn stream(folder: &Path) -> Result<File, String> {
+    let told = |e: std::io::Error| format!("{}: {e}", folder.display());
+    std::fs::create_dir_all(folder).map_err(told)?;
+    File::create(folder.join("fuzz.jsonl")).map_err(told)
+}
+
+/// Appends a case. What cannot be written is in the summary at the end.
+fn keep(file: &mut File, r: &Record) {
+    if let Ok(line) = serde_json::to_string(r) {
+        let _ = writeln!(file, "{line}");
+    }
+}
+
 fn write(folder: &Path, text: &str, json: &serde_json::Value) -> std::io::Result<()> {
-    std::fs::create_dir_all(folder)?;
     std::fs::write(folder.join("fuzz.txt"), text)?;
     std::fs::write(folder.join("fuzz.json"), serde_json::to_vec_pretty(json)?)
 }
