@@ -4,10 +4,9 @@ mod common;
 #[path = "common/counting.rs"]
 mod counting;
 
-use std::path::Path;
-
 use common::*;
 use counting::allocations;
+use gudgeon_core::file::Files;
 use gudgeon_sim::case::RingPackCase;
 use gudgeon_sim::ring_pack::assemble::assemble;
 use gudgeon_sim::ring_pack::pack::Base;
@@ -17,7 +16,7 @@ fn a_right_hand_side_allocates_nothing() {
     for gas in ["orifice_network", "gap_orifice", "narrow_channel"] {
         let case = checked("turbo-diesel-120", &[&format!("models.gas_flow.model={gas}")]);
         let mut pack =
-            assemble(case.of::<RingPackCase>().expect("a ring pack"), Path::new(".")).expect("assembles");
+            assemble(case.of::<RingPackCase>().expect("a ring pack"), &Files::default()).expect("assembles");
         let n = pack.layout.n;
         let mut y = vec![0.0; n];
         pack.initial(2e5, &mut y);

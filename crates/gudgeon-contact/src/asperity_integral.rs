@@ -7,7 +7,7 @@
 //!
 //! (Greenwood & Tripp 1970; the second line is the equation of the parabolic cylinder functions.)
 //!
-//! [`asperity_integral`] evaluates the definition by quadrature, for any order. [`f_2`] and [`f_5_2`] are the two orders
+//! [`asperity_integral`] evaluates the definition by quadrature, for any order. [`f_1`], [`f_2`] and [`f_5_2`] are the orders
 //! that contact models need at every point of every film at every step; they read piecewise Taylor polynomials, which
 //! need no exponential, no root and no logarithm.
 
@@ -15,7 +15,7 @@ use std::sync::LazyLock;
 
 /// Below this separation the asymptotic series of `F_n` for deep overlap is exact to rounding.
 const DEEP: f64 = -8.0;
-/// Above this separation [`f_2`] and [`f_5_2`] return zero: their values are below 1e-24 there, 1e-24 of the value at
+/// Above this separation [`f_1`], [`f_2`] and [`f_5_2`] return zero: their values are below 1e-24 there, 1e-24 of the value at
 /// zero separation, and no sum of contact pressures can see them.
 const FAR: f64 = 10.0;
 /// Segments per unit of `λ`, a power of two so that segment bounds are exact.
@@ -139,8 +139,16 @@ fn polynomial(a: &[[f64; 2]; TERMS / 2], x: f64) -> f64 {
     pair[0] + pair[1] * x
 }
 
+static ONE: LazyLock<Pieces> = LazyLock::new(|| Pieces::new(1.0));
 static TWO: LazyLock<Pieces> = LazyLock::new(|| Pieces::new(2.0));
 static FIVE_HALVES: LazyLock<Pieces> = LazyLock::new(|| Pieces::new(2.5));
+
+/// `F_1(λ)`: with `λ = -h/σ`, the mean gap over σ of Gaussian surfaces whose mean planes are `h` apart. Relative error below 1e-9 up to
+/// λ = 10, zero beyond.
+#[must_use]
+pub fn f_1(lambda: f64) -> f64 {
+    ONE.value(lambda)
+}
 
 /// `F_2(λ)`: the real area of contact. Relative error below 1e-9 up to λ = 10, zero beyond.
 #[must_use]
@@ -148,7 +156,8 @@ pub fn f_2(lambda: f64) -> f64 {
     TWO.value(lambda)
 }
 
-/// `F_(5/2)(λ)`: the contact pressure. Relative error below 1e-9 up to λ = 10 (1e-11 up to 6.7), zero beyond.
+/// `F_(5/2)(λ)`: the contact pressure. Relative error below 1e-9 up to λ = 10 (1e-11 up to 6.7, overlapping mean planes of any depth
+/// included), zero beyond.
 #[must_use]
 pub fn f_5_2(lambda: f64) -> f64 {
     FIVE_HALVES.value(lambda)
@@ -196,6 +205,19 @@ mod tests {
         [10.0, 7.619853024160525e-24, 2.117479299141611e-24, 7.474560254589328e-25, 3.101206508673169e-25, 1.4529276957119804e-25, 7.501244003924727e-26],
     ];
 
+    /// (λ, F_(5/2)) of overlapping mean planes, from the same source.
+    const OVERLAP: [(f64, f64); 9] = [
+        (-6.0, 92.766_303_514_607_79),
+        (-5.25, 67.439_804_852_394_24),
+        (-4.5, 46.921_511_256_376_57),
+        (-3.7, 29.922_497_811_960_83),
+        (-3.0, 18.811_329_832_415_762),
+        (-2.3, 10.826_520_024_186_844),
+        (-1.6, 5.536_845_623_213_327),
+        (-0.9, 2.420_923_032_586_102_5),
+        (-0.25, 0.937_889_204_159_909_3),
+    ];
+
     #[test]
     fn quadrature_meets_the_parabolic_cylinder_values() {
         for row in EXACT {
@@ -216,6 +238,24 @@ mod tests {
                 assert!((f_5_2(row[0]) / row[6] - 1.0).abs() < 1e-10, "F_5/2({})", row[0]);
             }
         }
+    }
+
+    #[test]
+    fn overlapping_mean_planes_meet_the_parabolic_cylinder_values() {
+        for (l, exact) in OVERLAP {
+            // As documented: rounding and, between the nodes of the pieces, 1e-11.
+            assert!((f_5_2(l) / exact - 1.0).abs() < 1e-11, "{l}: {:e}", f_5_2(l));
+            assert!((asperity_integral(2.5, l) / exact - 1.0).abs() < 1e-13, "{l}");
+        }
+    }
+
+    #[test]
+    fn mean_gap_is_closed() {
+        // F_1(-H) - F_1(H) = H for every H, and F_1(0) = 1/√(2π); Taylor pieces to 1e-11 of themselves.
+        for h in [0.0, 0.3, 1.7, 4.4, 7.9, 8.1, 12.0] {
+            assert!((f_1(-h) - f_1(h) - h).abs() < 1e-11 * (h + 1.0), "{h}");
+        }
+        assert!((f_1(0.0) * std::f64::consts::TAU.sqrt() - 1.0).abs() < 1e-14);
     }
 
     #[test]

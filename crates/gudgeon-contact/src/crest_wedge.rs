@@ -87,6 +87,15 @@ impl Contact for Wedges {
     fn range(&self) -> f64 {
         self.amplitude
     }
+    /// Of triangular waves, whose heights are spread evenly from trough to crest.
+    fn mean_gap(&self, separation: f64) -> f64 {
+        let over_trough = (separation + self.amplitude).max(0.0);
+        if separation < self.amplitude {
+            over_trough * over_trough / (4.0 * self.amplitude)
+        } else {
+            separation
+        }
+    }
     fn floor(&self) -> Option<f64> {
         None
     }
@@ -125,6 +134,17 @@ mod tests {
         assert_eq!((pressure(&*m, 4e-6), pressure(&*m, 1.0), m.range(), m.floor()), (0.0, 0.0, 4e-6, None));
         // Linear on, through overlapping mean planes.
         assert!((pressure(&*m, -4e-6) / pressure(&*m, 0.0) - 2.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn mean_gap_of_triangular_waves() {
+        let m = skirt();
+        // Half the waves are above their mean: (Ω/2)/2 is left where the mean planes touch; nothing where crests fill the troughs.
+        for (h, gap) in
+            [(0.0, 1e-6), (-2e-6, 0.25e-6), (-4e-6, 0.0), (-5e-6, 0.0), (4e-6, 4e-6), (7e-6, 7e-6)]
+        {
+            assert!((m.mean_gap(h) - gap).abs() < 1e-20, "{h}: {}", m.mean_gap(h));
+        }
     }
 
     #[test]

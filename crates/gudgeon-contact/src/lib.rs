@@ -11,7 +11,7 @@
 //!
 //! The coefficient of these models does not depend on the sliding speed; the kind `boundary_friction` says how one may.
 //!
-//! The integrals behind the asperity models are public: [`asperity_integral()`], [`f_5_2`], [`f_2`], [`real_area_ratio`].
+//! The integrals behind the asperity models are public: [`asperity_integral()`], [`f_5_2`], [`f_2`], [`f_1`], [`real_area_ratio`].
 
 pub mod asperity_integral;
 mod boundary_friction {
@@ -27,7 +27,7 @@ mod linear_penalty;
 mod off;
 mod roughness_threshold;
 
-pub use asperity_integral::{asperity_integral, f_2, f_5_2};
+pub use asperity_integral::{asperity_integral, f_1, f_2, f_5_2};
 pub use boundary_friction::coulomb::Coulomb;
 pub use boundary_friction::off::Off as Frictionless;
 pub use boundary_friction::stribeck::Stribeck;

@@ -3,8 +3,10 @@
 //! A pipe would be waited for without end and a device has none, so both are refused before they are opened. The sizes are far above
 //! what a case or a measured trace has: they keep a wrong argument (a disk image, a log) from filling the memory.
 
+use std::collections::BTreeMap;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Most bytes of a case file: 4 MiB.
 pub const MOST_OF_A_CASE: u64 = 4 << 20;
@@ -71,9 +73,115 @@ pub fn read_text(path: &Path, most: u64) -> Result<String, ReadError> {
     })
 }
 
+/// The files that a case names, by the names it gives them: read from the folder of the case, or from what a run recorded of them.
+///
+/// Each file is read once and kept, so that a run that reads one twice sees one text, and its record can hold it. Clones share what was
+/// read.
+#[derive(Debug, Clone, Default)]
+pub struct Files {
+    store: Arc<Store>,
+    /// What stands before a name: the folder of a case that another case names, from the folder of that one.
+    below: String,
+}
+
+#[derive(Debug, Default)]
+struct Store {
+    folder: PathBuf,
+    /// Whether only what is known may be read.
+    recorded: bool,
+    known: Mutex<BTreeMap<String, Arc<str>>>,
+}
+
+impl Files {
+    /// The files of a folder.
+    #[must_use]
+    pub fn of(folder: &Path) -> Self {
+        let store = Store { folder: folder.to_owned(), ..Store::default() };
+        Self { store: Arc::new(store), below: String::new() }
+    }
+
+    /// Files that a run recorded, and no others.
+    #[must_use]
+    pub fn recorded(files: impl IntoIterator<Item = (String, String)>) -> Self {
+        let known = files.into_iter().map(|(name, text)| (name, text.into())).collect();
+        let store = Store { recorded: true, known: Mutex::new(known), ..Store::default() };
+        Self { store: Arc::new(store), below: String::new() }
+    }
+
+    /// Names as a case gives them that is itself named `case` here.
+    #[must_use]
+    pub fn beside(&self, case: &str) -> Self {
+        let folder = case.rfind('/').map_or("", |k| &case[..=k]);
+        Self { store: Arc::clone(&self.store), below: format!("{}{folder}", self.below) }
+    }
+
+    /// Where a file lies, for messages.
+    #[must_use]
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.store.folder.join(format!("{}{name}", self.below))
+    }
+
+    /// The text of a file of at most [`MOST_OF_A_TABLE`] bytes. Bytes that are not UTF-8, as in comments of old programs, are replaced.
+    ///
+    /// # Errors
+    /// A file that is no regular one, too large, or that the operating system or the record does not have.
+    pub fn text(&self, name: &str) -> Result<Arc<str>, ReadError> {
+        let key = format!("{}{name}", self.below);
+        // What a panicking thread left is whole: entries are only ever added.
+        let mut known = self.store.known.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(text) = known.get(&key) {
+            return Ok(Arc::clone(text));
+        }
+        if self.store.recorded {
+            let what = format!("the record of the run does not hold `{key}`");
+            return Err(ReadError::Io(std::io::Error::new(std::io::ErrorKind::NotFound, what)));
+        }
+        let bytes = read_bytes(&self.path(name), MOST_OF_A_TABLE)?;
+        let text: Arc<str> = String::from_utf8_lossy(&bytes).into();
+        known.insert(key, Arc::clone(&text));
+        Ok(text)
+    }
+
+    /// Everything that was read so far, by name.
+    #[must_use]
+    pub fn read_so_far(&self) -> BTreeMap<String, Arc<str>> {
+        self.store.known.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+}
+
+/// Files of one place are the same files.
+impl PartialEq for Files {
+    fn eq(&self, other: &Self) -> bool {
+        let place = |f: &Self| (f.store.folder.clone(), f.store.recorded, f.below.clone());
+        place(self) == place(other)
+    }
+}
+
+impl Eq for Files {}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn files_are_read_once_and_repeated_from_their_record() {
+        let folder = std::env::temp_dir().join(format!("gudgeon-files-{}", std::process::id()));
+        std::fs::create_dir_all(folder.join("part")).expect("the temporary folder can be written");
+        let write = |name: &str, text: &str| std::fs::write(folder.join(name), text).expect("written");
+        write("a.csv", "1");
+        write("part/b.csv", "2");
+        let files = Files::of(&folder);
+        assert_eq!(&*files.text("a.csv").expect("there"), "1");
+        write("a.csv", "changed");
+        assert_eq!(&*files.text("a.csv").expect("kept"), "1");
+        assert_eq!(&*files.beside("part/case.toml").text("b.csv").expect("there"), "2");
+        let record = files.read_so_far();
+        assert_eq!(record.keys().collect::<Vec<_>>(), ["a.csv", "part/b.csv"]);
+        let _ = std::fs::remove_dir_all(&folder);
+        let again = Files::recorded(record.into_iter().map(|(k, v)| (k, v.to_string())));
+        assert_eq!(&*again.beside("part/case.toml").text("b.csv").expect("recorded"), "2");
+        assert!(again.text("c.csv").is_err_and(|e| e.to_string().contains("does not hold `c.csv`")));
+    }
 
     #[test]
     fn only_regular_files_of_a_bounded_size() {

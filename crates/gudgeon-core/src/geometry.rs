@@ -13,7 +13,16 @@ pub enum FaceProfile {
         /// Position of the apex \[m\]; may lie outside the face.
         apex: f64,
     },
-    /// Piecewise linear through equally spaced nodes, bottom edge first. A straight taper has two nodes.
+    /// Flat over `land` from the bottom edge, then straight to `drop` at the top edge.
+    Taper {
+        /// Axial length of the running face \[m\].
+        length: f64,
+        /// Width of the flat part \[m\], above zero and less than the length.
+        land: f64,
+        /// Drop at the top edge \[m\].
+        drop: f64,
+    },
+    /// Piecewise linear through equally spaced nodes, bottom edge first. A taper without land has two nodes.
     Table {
         /// Axial length of the running face \[m\].
         length: f64,
@@ -27,7 +36,9 @@ impl FaceProfile {
     #[must_use]
     pub const fn length(&self) -> f64 {
         match self {
-            Self::Parabola { length, .. } | Self::Table { length, .. } => *length,
+            Self::Parabola { length, .. } | Self::Taper { length, .. } | Self::Table { length, .. } => {
+                *length
+            }
         }
     }
 
@@ -36,12 +47,27 @@ impl FaceProfile {
     pub fn drop_at(&self, x: f64) -> f64 {
         match self {
             Self::Parabola { curvature, apex, .. } => curvature * (x - apex) * (x - apex),
+            Self::Taper { length, land, drop } => drop * ((x - land) / (length - land)).clamp(0.0, 1.0),
             Self::Table { length, drops } => {
                 let n = drops.len() - 1;
                 let t = (x / length * n as f64).clamp(0.0, n as f64);
                 let i = (t as usize).min(n - 1);
                 let f = t - i as f64;
                 drops[i] + f * (drops[i + 1] - drops[i])
+            }
+        }
+    }
+
+    /// The nodes of a face of straight lines as (`x`, drop) \[m\], bottom edge first; `None` for a curved face.
+    #[must_use]
+    pub fn nodes(&self) -> Option<Vec<(f64, f64)>> {
+        match self {
+            Self::Parabola { .. } => None,
+            Self::Taper { length, land, drop } => Some(vec![(0.0, 0.0), (*land, 0.0), (*length, *drop)]),
+            Self::Table { length, drops } => {
+                let n = drops.len() - 1;
+                let x = |i: usize| if i == n { *length } else { length * i as f64 / n as f64 };
+                Some(drops.iter().enumerate().map(|(i, d)| (x(i), *d)).collect())
             }
         }
     }

@@ -96,18 +96,14 @@ impl HydrodynamicsSpec for ClosedFormFace {
             (CavityShear::Auto, _) => CavityShear::Streamers,
             (s, _) => s,
         };
-        Ok(match ctx.face {
-            FaceProfile::Parabola { length, curvature, apex } => {
-                let up = Parabola::new(*length, *curvature, *apex);
-                let down = up.mirrored();
-                Box::new(Film::new(up, down, self.cavitation, shear))
-            }
-            FaceProfile::Table { length, drops } => {
-                let up = Table::new(*length, drops);
-                let down = up.mirrored();
-                Box::new(Film::new(up, down, self.cavitation, shear))
-            }
-        })
+        if let FaceProfile::Parabola { length, curvature, apex } = ctx.face {
+            let up = Parabola::new(*length, *curvature, *apex);
+            let down = up.mirrored();
+            return Ok(Box::new(Film::new(up, down, self.cavitation, shear)));
+        }
+        let up = Table::new(&ctx.face.nodes().unwrap_or_default());
+        let down = up.mirrored();
+        Ok(Box::new(Film::new(up, down, self.cavitation, shear)))
     }
 }
 

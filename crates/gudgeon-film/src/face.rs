@@ -559,7 +559,7 @@ struct Line {
     slope: f64,
 }
 
-/// Straight lines between equally spaced nodes.
+/// Straight lines between nodes.
 #[derive(Debug, Clone)]
 pub(crate) struct Table {
     len: f64,
@@ -601,11 +601,10 @@ fn straighten(nodes: &mut Vec<f64>, drops: &mut Vec<f64>) {
 }
 
 impl Table {
-    pub fn new(len: f64, drops: &[f64]) -> Self {
-        let n = drops.len() - 1;
-        let mut nodes: Vec<f64> =
-            (0..=n).map(|i| if i == n { len } else { len * i as f64 / n as f64 }).collect();
-        let mut drops = drops.to_vec();
+    /// Through two or more nodes (`x`, drop), the first at 0.
+    pub fn new(points: &[(f64, f64)]) -> Self {
+        let len = points.last().map_or(0.0, |p| p.0);
+        let (mut nodes, mut drops): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
         straighten(&mut nodes, &mut drops);
         let mut low = 0;
         for (i, d) in drops.iter().enumerate() {
@@ -875,6 +874,12 @@ impl Shape for Table {
 
 #[cfg(test)]
 mod tests {
+    /// Nodes at equal spacings.
+    fn equal(length: f64, drops: &[f64]) -> Vec<(f64, f64)> {
+        gudgeon_core::geometry::FaceProfile::Table { length, drops: drops.to_vec() }
+            .nodes()
+            .unwrap_or_default()
+    }
     use super::*;
 
     /// The integrals by Gauss's 10-point rule on `n` panels.
@@ -975,7 +980,7 @@ mod tests {
     fn table_against_quadrature() {
         let l = 1.2e-3;
         let drops = [5e-6, 3e-6, 1e-6, 1e-7, 0.0, 0.0, 1e-9, 2e-7, 4e-6, 3.9e-6, 9e-6];
-        let mut t = Table::new(l, &drops);
+        let mut t = Table::new(&equal(l, &drops));
         for h in [1e-8, 1e-7, 1e-6, 2e-5] {
             t.set_film(h);
             let mut sum = Moments::default();
@@ -1036,18 +1041,18 @@ mod tests {
                     extends(&mut Parabola::new(l, drop / (l * l), apex), h);
                 }
             }
-            extends(&mut Table::new(l, &[5e-6, 3e-6, 1e-6, 1e-7, 0.0, 0.0, 1e-9, 2e-7, 4e-6]), h);
-            extends(&mut Table::new(l, &[0.0, 35e-6]), h);
+            extends(&mut Table::new(&equal(l, &[5e-6, 3e-6, 1e-6, 1e-7, 0.0, 0.0, 1e-9, 2e-7, 4e-6])), h);
+            extends(&mut Table::new(&equal(l, &[0.0, 35e-6])), h);
         }
     }
 
     #[test]
     fn straight_lines_are_one_piece() {
         let rise: Vec<f64> = (0..=10).map(|k| 35e-6 * f64::from(k) / 10.0).collect();
-        assert_eq!(Table::new(2.6e-3, &rise).pieces(), 1);
-        assert_eq!(Table::new(2.6e-3, &[0.0; 7]).pieces(), 1);
+        assert_eq!(Table::new(&equal(2.6e-3, &rise)).pieces(), 1);
+        assert_eq!(Table::new(&equal(2.6e-3, &[0.0; 7])).pieces(), 1);
         // Kinks stay, also one of a hundred roundings.
-        let t = Table::new(4e-3, &[1e-6, 0.0, 0.0, 0.0, 1e-6 * (1.0 + 1e-13), 2e-6 * (1.0 + 3e-13)]);
+        let t = Table::new(&equal(4e-3, &[1e-6, 0.0, 0.0, 0.0, 1e-6 * (1.0 + 1e-13), 2e-6 * (1.0 + 3e-13)]));
         assert_eq!(t.pieces(), 4);
         assert_eq!((t.node(1), t.node(2)), (4e-3 / 5.0, 4e-3 * 3.0 / 5.0));
     }

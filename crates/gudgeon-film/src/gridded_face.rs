@@ -79,7 +79,7 @@ impl HydrodynamicsSpec for GriddedFace {
         }
         check_face(ctx.face)?;
         let base = match ctx.face {
-            FaceProfile::Parabola { .. } => self.points - 1,
+            FaceProfile::Parabola { .. } | FaceProfile::Taper { .. } => self.points - 1,
             FaceProfile::Table { drops, .. } => {
                 let own = drops.len() - 1;
                 own * (self.points - 1).div_ceil(own)
@@ -108,6 +108,7 @@ pub(crate) fn check_face(face: &FaceProfile) -> Result<(), BuildError> {
     }
     let finite = match face {
         FaceProfile::Parabola { curvature, apex, .. } => curvature.is_finite() && apex.is_finite(),
+        FaceProfile::Taper { land, drop, .. } => *land > 0.0 && *land < length && drop.is_finite(),
         FaceProfile::Table { drops, .. } if drops.len() < 2 => {
             return Err(BuildError::new(format!(
                 "a face profile needs two or more points, not {}",
@@ -164,7 +165,9 @@ impl Grid {
         let length = face.length();
         let shape: Vec<f64> = (0..=base)
             .map(|i| match face {
-                FaceProfile::Parabola { .. } => face.drop_at(length * (i as f64 / base as f64)),
+                FaceProfile::Parabola { .. } | FaceProfile::Taper { .. } => {
+                    face.drop_at(length * (i as f64 / base as f64))
+                }
                 // Panels of the table divide evenly into those of the grid: its own nodes stay exact.
                 FaceProfile::Table { drops, .. } => between(drops, i, base / (drops.len() - 1)),
             })

@@ -3,16 +3,17 @@ use gudgeon_core::kinds::{FaceCtx, FaceIn, FaceOut, Hydrodynamics, Hydrodynamics
 use gudgeon_core::{BuildError, EvalError};
 use serde::{Deserialize, Serialize};
 
-/// No oil film: it carries nothing, does not shear and does not squeeze, so the ring keeps the film thickness it was given.
+/// No oil film: it carries nothing, does not shear and does not resist being squeezed. A ring then rides on its solid contact alone; one
+/// without contact as well keeps the film thickness it was given.
 #[derive(Debug, Clone, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Off {}
 
 gudgeon_core::register_model! {
     Off, kind: "hydrodynamics", name: "off",
-    summary: "no film: no load, no friction, constant film thickness",
-    equations: "p = p_cav,  dh/dt = 0",
-    validity: "Gas flow and axial motion alone.",
+    summary: "no film: no load, no friction; rings ride on their solid contact",
+    equations: "p = p_cav",
+    validity: "Dry rings; gas flow and axial motion alone.",
     references: [],
     example: "",
 }
@@ -35,6 +36,9 @@ impl Hydrodynamics for NoFilm {
     }
     fn squeeze_rate(&mut self, _: &FaceIn, _: f64) -> Result<f64, EvalError> {
         Ok(0.0)
+    }
+    fn resists(&self) -> bool {
+        false
     }
     fn profile(&mut self, inp: &FaceIn, _: f64, out: &mut [(f64, f64, f64)]) -> Result<(), EvalError> {
         let dx = self.face.length() / out.len().saturating_sub(1).max(1) as f64;

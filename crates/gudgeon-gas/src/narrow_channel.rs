@@ -5,13 +5,13 @@ use std::f64::consts::{PI, TAU};
 use gudgeon_core::BuildError;
 use gudgeon_core::geometry::{BackVolume, PackGeometry, RingGeometry};
 use gudgeon_core::kinds::{GasFlow, GasFlowCtx, GasFlowSpec};
-use gudgeon_core::quantity::{Length, NonNegative, PosTime, PosViscosity, quantity};
+use gudgeon_core::quantity::{Length, NonNegative, PosLength, PosTime, PosViscosity, quantity};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::network::{Passage, channel_conductance, sutherland_viscosity};
 use crate::orifice::Orifice;
-use crate::orifice_network::{DEFAULT_CHAMFER_FADE, nominal};
+use crate::orifice_network::{DEFAULT_CHAMFER_FADE, lifted, nominal};
 use crate::pack::{Elimination, FilmHeight, Openings, Pack, Passages, RingPassages};
 
 /// How viscous the gas is.
@@ -45,7 +45,7 @@ pub enum ChannelFriction {
 /// ṁ = 2π R H³ (p_a² - p_b²) / (24 μ R_g T w)
 /// upper flank  H = c - s + leak_upper     R = R_p,above            w = radial thickness of the ring
 /// lower flank  H = s + leak_lower         R = R_p,below            w = the same
-/// face         H = leak_face              R = liner radius         w = axial length of the running face
+/// face         H = leak_face + x²/(x + h_o/10)   R = liner radius  w = axial length of the running face;  x = max(h - h_o, 0), h_o = face_oil
 /// ```
 ///
 /// with the mean temperature of the spaces at both ends. The end gap leads directly from land to land, as an orifice of the whole
@@ -77,6 +77,10 @@ pub struct NarrowChannel {
     /// Friction in the channels: laminar whatever the Reynolds number, or turbulent above the transition.
     #[serde(default)]
     pub friction: ChannelFriction,
+    /// Film thickness up to which oil fills the gap between face and liner. Gas passes the face of a ring that is further away: without that a
+    /// ring that gas lifts off the liner closes its own end gap and locks in the gas that lifts it.
+    #[serde(default = "crate::pack::fifty_micrometres")]
+    pub face_oil: PosLength,
     /// Whether spaces behind rings that fill in less than `eliminate_below` are left out of the integration.
     #[serde(default)]
     pub eliminate: Elimination,
@@ -103,6 +107,7 @@ impl Default for NarrowChannel {
             film_height: FilmHeight::default(),
             nominal_film: default_film(),
             friction: ChannelFriction::default(),
+            face_oil: crate::pack::fifty_micrometres(),
             eliminate: Elimination::default(),
             eliminate_below: crate::pack::ten_nanoseconds(),
         }
@@ -152,7 +157,11 @@ impl NarrowChannel {
         }
         let film = nominal(self.film_height, self.nominal_film);
         let eliminate = self.eliminate.below(self.eliminate_below);
-        let channels = Channels { per_ring, blended: self.friction == ChannelFriction::Blended };
+        let channels = Channels {
+            per_ring,
+            blended: self.friction == ChannelFriction::Blended,
+            face_oil: self.face_oil.si(),
+        };
         Pack::new(channels, pack, &self.orifice, film, DEFAULT_CHAMFER_FADE, eliminate)
     }
 }
@@ -199,6 +208,7 @@ struct RingChannels {
 struct Channels {
     per_ring: Vec<RingChannels>,
     blended: bool,
+    face_oil: f64,
 }
 
 impl Passages for Channels {
@@ -226,7 +236,7 @@ impl Passages for Channels {
             upper,
             lower,
             gap: Passage::Orifice { area: o.gap },
-            face: channel(k.face, ring.leak_face),
+            face: channel(k.face, ring.leak_face + lifted(o.h, self.face_oil)),
         }
     }
 

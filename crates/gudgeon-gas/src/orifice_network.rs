@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use gudgeon_core::BuildError;
 use gudgeon_core::geometry::{BackVolume, PackGeometry, RingGeometry};
 use gudgeon_core::kinds::{GasFlow, GasFlowCtx, GasFlowSpec};
-use gudgeon_core::quantity::{Fraction, Length, NonNegative, PosTime, Ratio, quantity};
+use gudgeon_core::quantity::{Fraction, Length, NonNegative, PosLength, PosTime, Ratio, quantity};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -22,14 +22,15 @@ use crate::pack::{Elimination, FilmHeight, Openings, Pack, Passages, RingPassage
 /// A_gap   = (g + 2πδ) (R_c + δ - R_p,above - h) + A_ch
 /// A_upper = 2π R_p,above (c - s + ε_upper) + split A_gap        land above  -> space behind
 /// A_lower = 2π R_p,below (s + ε_lower)     + split A_gap        space behind -> land below
-/// A_face  = 2π (R_c + δ - h) ε_face  + (1 - split) A_gap        land above  -> land below
+/// A_face  = 2π (R_c + δ - h) (ε_face + x²/(x + h_o/10)) + (1 - split) A_gap        land above  -> land below
+/// x       = max(h - h_o, 0)       h_o = face_oil
 /// ```
 ///
 /// With the published split of ½ a ring that seals at its flanks still leaks through one whole gap: half of it through the groove,
 /// half directly. A drained groove has no volume of its own: its upper-flank path ends in the land below and there is no lower one.
 /// A sealed ring has no flank paths, and its whole gap is direct.
 ///
-/// `s` is kept within 0 and `c`, and `A_gap` above zero, unless `bounded` is `false`.
+/// `s` is kept within 0 and `c`, and `A_gap` above zero, but for the scheme `substep_march`, which takes them as they come, as published.
 ///
 /// Gas temperatures are those of the walls (isothermal volumes); the flow in an orifice is adiabatic.
 ///
@@ -55,10 +56,10 @@ pub struct OrificeNetwork {
     /// the moment of lift-off, as published, which makes the flow discontinuous there.
     #[serde(default = "default_fade")]
     pub chamfer_fade: Ratio<Fraction>,
-    /// Whether an opening is at least zero. The published program takes lifts and gaps as they come (`false`): a ring at rest on its upper
-    /// flank, whose clearance shrinks as the liner narrows, then leaves a little less than nothing there until it moves again.
-    #[serde(default = "yes")]
-    pub bounded: bool,
+    /// Film thickness up to which oil fills the gap between face and liner. Gas passes the face of a ring that is further away: without that a
+    /// ring that gas lifts off the liner closes its own end gap and locks in the gas that lifts it.
+    #[serde(default = "crate::pack::fifty_micrometres")]
+    pub face_oil: PosLength,
     /// Whether spaces behind rings that fill in less than `eliminate_below` are left out of the integration.
     #[serde(default)]
     pub eliminate: Elimination,
@@ -69,9 +70,6 @@ pub struct OrificeNetwork {
     pub eliminate_below: PosTime,
 }
 
-const fn yes() -> bool {
-    true
-}
 fn default_split() -> Ratio<Fraction> {
     quantity(0.5)
 }
@@ -92,11 +90,17 @@ impl Default for OrificeNetwork {
             film_height: FilmHeight::default(),
             nominal_film: default_film(),
             chamfer_fade: default_fade(),
-            bounded: true,
+            face_oil: crate::pack::fifty_micrometres(),
             eliminate: Elimination::default(),
             eliminate_below: crate::pack::ten_nanoseconds(),
         }
     }
+}
+
+/// Height of the opening under a ring that is further from the liner than its oil reaches \[m\]; it opens without a corner.
+pub(crate) fn lifted(film: f64, oil: f64) -> f64 {
+    let x = (film - oil).max(0.0);
+    x * x / (x + 0.1 * oil)
 }
 
 /// `None` for the film of the instant.
@@ -111,15 +115,14 @@ impl OrificeNetwork {
     fn pack(&self, pack: &PackGeometry) -> Result<Pack<Areas>, BuildError> {
         let film = nominal(self.film_height, self.nominal_film);
         let eliminate = self.eliminate.below(self.eliminate_below);
-        let built = Pack::new(
-            Areas { split: self.gap_split.si() },
+        Pack::new(
+            Areas { split: self.gap_split.si(), face_oil: self.face_oil.si() },
             pack,
             &self.orifice,
             film,
             self.chamfer_fade.si(),
             eliminate,
-        )?;
-        Ok(if self.bounded { built } else { built.unbounded() })
+        )
     }
 }
 
@@ -137,7 +140,7 @@ gudgeon_core::register_model! {
     summary: "orifices at gap, flanks and face, their areas from the ring positions of the instant",
     equations: "dm_i/dt = sum of flows;  p_i = m_i R T_i / V_i;  m' = C_d A p_u / sqrt(R T_u) psi(p_d/p_u);  \
                 A_gap = (g + 2 pi delta)(R_c + delta - R_p - h) + A_ch;  A_upper = 2 pi R_p (c - s + leak) + A_gap/2;  \
-                A_lower = 2 pi R_p (s + leak) + A_gap/2;  A_direct = 2 pi (R_c + delta - h) leak_face + A_gap/2",
+                A_lower = 2 pi R_p (s + leak) + A_gap/2;  A_direct = 2 pi (R_c + delta - h) (leak_face + what h exceeds face_oil by) + A_gap/2",
     validity: "Gas at wall temperature; one-dimensional adiabatic flow through each opening. The narrow flank passages are longer than they \
                are high: as orifices they pass more than as laminar channels (see narrow_channel). Leak heights of seated flanks and face \
                are the least known inputs; 0.4 um instead of 0.02 um doubles the blow-by of a truck engine.",
@@ -147,14 +150,16 @@ gudgeon_core::register_model! {
 
 struct Areas {
     split: f64,
+    face_oil: f64,
 }
 
 impl Passages for Areas {
     const NAME: &'static str = "orifice_network";
     const FACE: bool = false;
+    const SIGNED: bool = true;
 
     fn passages(&self, _: usize, ring: &RingGeometry, o: &Openings) -> RingPassages {
-        let face = TAU * (o.liner_radius - o.h) * ring.leak_face;
+        let face = TAU * (o.liner_radius - o.h) * (ring.leak_face + lifted(o.h, self.face_oil));
         let orifice = |area| Passage::Orifice { area };
         if ring.back == BackVolume::Sealed {
             return RingPassages { gap: orifice(face + o.gap), ..RingPassages::default() };

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use gudgeon_core::geometry::{BackVolume, PackGeometry, RingGeometry, RingPlace};
 use gudgeon_core::kinds::{GasFlow, GasIn, GasOut, GasSlopes};
-use gudgeon_core::quantity::{PosTime, quantity};
+use gudgeon_core::quantity::{PosLength, PosTime, quantity};
 use gudgeon_core::{BuildError, EvalError};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -35,6 +35,11 @@ pub enum Elimination {
     Auto,
 }
 
+/// Thickness that flooded films of rings stay below.
+pub(crate) fn fifty_micrometres() -> PosLength {
+    quantity(50e-6)
+}
+
 /// Default of `eliminate_below`.
 pub(crate) fn ten_nanoseconds() -> PosTime {
     quantity(1e-8)
@@ -54,7 +59,7 @@ pub(crate) struct Openings {
     pub h: f64,
     /// Liner radius \[m\].
     pub liner_radius: f64,
-    /// Axial distance from the lower groove flank \[m\], not negative unless the pack is [`Pack::unbounded`].
+    /// Axial distance from the lower groove flank \[m\], not negative unless the pack is unbound.
     pub lower: f64,
     /// Axial distance from the upper groove flank \[m\], likewise.
     pub upper: f64,
@@ -85,6 +90,8 @@ pub(crate) trait Passages: Send {
     const NAME: &'static str;
     /// Whether any ring has a passage past its face.
     const FACE: bool;
+    /// Whether an opening below zero means something: an area does, a height whose cube counts does not.
+    const SIGNED: bool = false;
     /// The passages of ring `i`. Upper and lower flank are ignored for a sealed ring, the lower one for a drained groove.
     fn passages(&self, i: usize, ring: &RingGeometry, o: &Openings) -> RingPassages;
     /// Whether the passages themselves (not gap, clearance and volume) depend on `Openings::h`.
@@ -307,12 +314,6 @@ impl<M: Passages> Pack<M> {
         Ok(Self { model, pack: pack.clone(), nominal_film, chamfer_fade, bounded: true, net, links, lands })
     }
 
-    /// Takes heights and gaps as they come, below zero too.
-    pub(crate) fn unbounded(mut self) -> Self {
-        self.bounded = false;
-        self
-    }
-
     /// Volume behind ring `i`, not yet checked.
     fn volume_behind(&self, i: usize, place: &RingPlace) -> f64 {
         let ring = &self.pack.rings[i];
@@ -462,6 +463,10 @@ impl<M: Passages> Pack<M> {
 }
 
 impl<M: Passages> GasFlow for Pack<M> {
+    fn unbound(&mut self) {
+        self.bounded = !M::SIGNED;
+    }
+
     fn n_states(&self) -> usize {
         self.net.volumes()
     }

@@ -954,3 +954,28 @@ fn registered_and_readable() {
         assert!(registry.model("gas_flow", name).is_some(), "{name}");
     }
 }
+
+/// Gas passes the face of a ring further from the liner than its oil reaches, and of no other.
+#[test]
+fn a_ring_off_the_liner_lets_gas_past_its_face() {
+    let mut pack = pack(&[BackVolume::Sealed]);
+    let r = &mut pack.rings[0];
+    (r.gap_area, r.leak_face, r.chamfer) = (Some(1e-8), 0.0, Chamfer::default());
+    let specs: [Box<dyn GasFlowSpec>; 2] =
+        [Box::new(OrificeNetwork::default()), Box::new(NarrowChannel::default())];
+    for spec in specs {
+        let mut gas = build(&*spec, &pack);
+        let mut flow = |h: f64| {
+            let mut out = GasOut::new(1);
+            let inp = GasIn { p_cylinder: 2e5, p_crankcase: 1e5, rings: &[place(&pack, 0, h, 0.5, 0.0)] };
+            gas.rates(&inp, &[], &mut [], &mut out).expect("rates");
+            out.flow_in[0]
+        };
+        let closed = flow(1e-6);
+        assert_eq!(flow(50e-6), closed);
+        // Without a corner: the opening begins with the square of what is beyond, 0.2 um² over 5 um. A channel begins with the cube.
+        assert!(flow(50.2e-6) > closed && flow(50.2e-6) < 1.5 * closed, "{} {closed}", flow(50.2e-6));
+        // 2π 60 mm 0.3 mm is ten thousand times the gap.
+        assert!(flow(350e-6) > 3e3 * closed, "{} {closed}", flow(350e-6));
+    }
+}

@@ -1,7 +1,6 @@
 use std::f64::consts::PI;
 
 use gudgeon_core::BuildError;
-use gudgeon_core::file::{MOST_OF_A_TABLE, read_bytes};
 use gudgeon_core::kinds::{CylinderPressure, CylinderPressureCtx, CylinderPressureSpec};
 use gudgeon_core::quantity::{Angle, Dimension, PosAngle, PosRatio, Pressure, dim, quantity};
 use gudgeon_core::result::Note;
@@ -252,12 +251,11 @@ impl Table {
     fn rows(&self, ctx: &CylinderPressureCtx<'_>, period_deg: f64) -> Result<Rows, BuildError> {
         match (&self.file, &self.theta_deg, &self.pressure) {
             (Some(file), None, None) => {
-                let path = ctx.folder.join(file);
-                let text = read_bytes(&path, MOST_OF_A_TABLE).map_err(|e| {
-                    BuildError::at("file", format!("cannot read {}: {e}", path.display()))
+                let text = ctx.files.text(file).map_err(|e| {
+                    BuildError::at("file", format!("cannot read {}: {e}", ctx.files.path(file).display()))
                         .help("the name is relative to the folder of the case file")
                 })?;
-                Rows::parse(file, &String::from_utf8_lossy(&text), period_deg)
+                Rows::parse(file, &text, period_deg)
             }
             (None, Some(theta), Some(pressure)) => {
                 if theta.len() != pressure.len() {

@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use gudgeon_core::BuildError;
+use gudgeon_core::file::Files;
 use gudgeon_core::kinds::{
     CylinderPressure, CylinderPressureCtx, CylinderPressureSpec, Kinematics, KinematicsCtx, KinematicsSpec,
 };
@@ -35,7 +36,11 @@ impl Engine {
     }
     fn try_build_in(&self, toml: &str, folder: &Path) -> Result<Box<dyn CylinderPressure>, BuildError> {
         let spec: Box<dyn CylinderPressureSpec> = toml::from_str(toml).expect("reads");
-        spec.build(&CylinderPressureCtx { kinematics: &*self.kinematics, piston_area: self.area, folder })
+        spec.build(&CylinderPressureCtx {
+            kinematics: &*self.kinematics,
+            piston_area: self.area,
+            files: &Files::of(folder),
+        })
     }
     fn build(&self, toml: &str) -> Box<dyn CylinderPressure> {
         self.try_build_in(toml, Path::new(".")).expect("builds")
@@ -103,7 +108,7 @@ fn polytropic_burn_without_heat_is_polytropic() {
     let ctx = CylinderPressureCtx {
         kinematics: &*engine.kinematics,
         piston_area: engine.area,
-        folder: Path::new("."),
+        files: &Files::default(),
     };
     let chamber = Chamber::new(&ctx, 16.0).expect("builds");
     // Swept volume of the engine, 1.5834 l, to its printed digits; and the ratio of the volumes.
@@ -177,7 +182,7 @@ fn exact_single_zone(engine: &Engine, i: usize, deg: f64) -> f64 {
     let ctx = CylinderPressureCtx {
         kinematics: &*engine.kinematics,
         piston_area: engine.area,
-        folder: Path::new("."),
+        files: &Files::default(),
     };
     let chamber = Chamber::new(&ctx, 12.0).expect("builds");
     let (heat, start, intake, ..) = CASES[i];
@@ -229,7 +234,7 @@ fn single_zone_wiebe_without_heat_is_adiabatic_and_between_the_steps_too() {
     let ctx = CylinderPressureCtx {
         kinematics: &*engine.kinematics,
         piston_area: engine.area,
-        folder: Path::new("."),
+        files: &Files::default(),
     };
     let chamber = Chamber::new(&ctx, 12.0).expect("builds");
     for step in [0.1, 1.0, 2.0] {
@@ -275,7 +280,7 @@ fn motored_is_smooth_and_polytropic() {
     let ctx = CylinderPressureCtx {
         kinematics: &*engine.kinematics,
         piston_area: engine.area,
-        folder: Path::new("."),
+        files: &Files::default(),
     };
     let chamber = Chamber::new(&ctx, 10.0).expect("builds");
     // Outside the 30° transitions: plateaus and p V^n.
@@ -583,7 +588,7 @@ fn table_of_a_million_rows() {
         .build(&CylinderPressureCtx {
             kinematics: &*engine.kinematics,
             piston_area: engine.area,
-            folder: Path::new("."),
+            files: &Files::default(),
         })
         .expect("builds");
     for k in 0..1000 {
@@ -624,7 +629,7 @@ fn chamber_refuses_nonsense() {
         let ctx = CylinderPressureCtx {
             kinematics: &*engine.kinematics,
             piston_area: area,
-            folder: Path::new("."),
+            files: &Files::default(),
         };
         Chamber::new(&ctx, ratio).is_err()
     };

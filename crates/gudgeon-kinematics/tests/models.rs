@@ -1,8 +1,7 @@
 //! Every model of this crate through the front door: registry, case syntax, defaults.
 
-use std::path::Path;
-
 use gudgeon_core::Registry;
+use gudgeon_core::file::Files;
 use gudgeon_core::kinds::{CylinderPressureCtx, CylinderPressureSpec, KinematicsCtx, KinematicsSpec};
 use gudgeon_kinematics as _;
 
@@ -41,7 +40,7 @@ fn every_model_is_described_and_its_example_runs() {
         assert!(motion.y.is_finite() && motion.v < 0.0 && motion.a.is_finite());
     }
     let kinematics = gudgeon_kinematics::ExactSliderCrank {}.build(&ENGINE).expect("builds");
-    let ctx = CylinderPressureCtx { kinematics: &*kinematics, piston_area: 5e-3, folder: Path::new(".") };
+    let ctx = CylinderPressureCtx { kinematics: &*kinematics, piston_area: 5e-3, files: &Files::default() };
     for m in registry.models("cylinder_pressure") {
         let spec: Box<dyn CylinderPressureSpec> =
             toml::from_str(&format!("model = \"{}\"\n{}", m.name, m.example)).expect(m.name);

@@ -68,7 +68,7 @@ impl RigSpec for CylinderPressureRig {
             .map_err(|e| vec![e])?;
         let pressure = self
             .cylinder_pressure
-            .build(&CylinderPressureCtx { kinematics: &*motion, piston_area: area, folder: ctx.folder })
+            .build(&CylinderPressureCtx { kinematics: &*motion, piston_area: area, files: ctx.files })
             .map_err(|e| vec![e.within("cylinder_pressure")])?;
         Ok(Box::new(Bench { motion, pressure, area, angle: self.angle.si() }))
     }

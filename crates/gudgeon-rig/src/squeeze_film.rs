@@ -198,14 +198,10 @@ const MOST_STEPS: f64 = 1e6;
 /// The line below a face at the given gap.
 fn line(face: &FaceProfile, gap: f64, panels: usize) -> Result<LineProfile, BuildError> {
     let length = face.length();
-    match face {
-        FaceProfile::Parabola { .. } => {
-            LineProfile::pieces(&[0.0, length], panels, |_, x| gap + face.drop_at(x))
-        }
-        FaceProfile::Table { drops, .. } => {
-            let n = (drops.len() - 1) as f64;
-            let points: Vec<_> =
-                drops.iter().enumerate().map(|(i, d)| (length * (i as f64 / n), gap + d)).collect();
+    match face.nodes() {
+        None => LineProfile::pieces(&[0.0, length], panels, |_, x| gap + face.drop_at(x)),
+        Some(nodes) => {
+            let points: Vec<_> = nodes.into_iter().map(|(x, d)| (x, gap + d)).collect();
             LineProfile::table(&points, panels)
         }
     }

@@ -1,9 +1,8 @@
 //! Whatever a case says, a bench refuses it or gives finite numbers; it never panics. Every value of a case that runs is replaced by
 //! nonsense and by extremes, one at a time, and then several at once.
 
-use std::path::Path;
-
 use gudgeon_contact as _;
+use gudgeon_core::file::Files;
 use gudgeon_core::kinds::{RigCtx, RigOut, RigSpec};
 use gudgeon_film as _;
 use gudgeon_rig as _;
@@ -140,7 +139,7 @@ const REPLACEMENTS: &[&str] = &[
 /// Runs a case: `Ok` of finite results, or why it was refused.
 fn attempt(case: &Value) -> Result<RigOut, String> {
     let spec: Box<dyn RigSpec> = case.clone().try_into().map_err(|e: toml::de::Error| e.to_string())?;
-    let ctx = RigCtx { folder: Path::new(".") };
+    let ctx = RigCtx { files: &Files::default() };
     let mut rig = spec.build(&ctx).map_err(|e| {
         assert!(!e.is_empty(), "refused without a reason");
         e.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
@@ -287,7 +286,7 @@ fn several_values_replaced() {
 fn refusals_name_the_place() {
     let fields = |case: &str| {
         let spec: Box<dyn RigSpec> = read(case).try_into().expect("reads");
-        match spec.build(&RigCtx { folder: Path::new(".") }) {
+        match spec.build(&RigCtx { files: &Files::default() }) {
             Ok(_) => panic!("built"),
             Err(e) => e.into_iter().map(|e| e.field).collect::<Vec<_>>(),
         }

@@ -1,8 +1,7 @@
 //! Benches of films along and across the motion: any text gives an error or numbers, and what is symmetric is solved once.
 #![allow(missing_docs)]
 
-use std::path::Path;
-
+use gudgeon_core::file::Files;
 use gudgeon_core::kinds::{RigCtx, RigOut, RigSpec};
 use gudgeon_rig as _;
 
@@ -12,7 +11,7 @@ fn run(text: &str) -> Result<RigOut, String> {
     let errors = |e: Vec<gudgeon_core::BuildError>| {
         e.iter().map(|e| format!("{}: {e}", e.field)).collect::<Vec<_>>().join("\n")
     };
-    let mut rig = spec.build(&RigCtx { folder: Path::new(".") }).map_err(errors)?;
+    let mut rig = spec.build(&RigCtx { files: &Files::default() }).map_err(errors)?;
     let mut out = RigOut::default();
     rig.run(&mut out).map_err(|e| e.to_string())?;
     Ok(out)
@@ -274,7 +273,8 @@ fn a_bearing_that_runs_empty_is_no_bearing() {
         .replace("eccentricity = 0.7", "eccentricity = 0.3")
         .replace("p_supply = \"0 bar\"", "supply = \"sides\"");
     let e = run(&keys).unwrap_err();
-    assert!(e.contains("runs empty"), "{e}");
+    // The solver may find that nothing tells how much oil is left, or a film that carries nothing.
+    assert!(e.contains("no steady film") || e.contains("runs empty"), "{e}");
     let fed = keys.replace("p_side = \"0 bar\"", "p_side = \"1 bar\"");
     assert!(number(&run(&fed).unwrap(), "load") > 100.0);
 }

@@ -1,7 +1,6 @@
 //! The rigs of films along a line: what no input may do, and what the closed forms say.
 
-use std::path::Path;
-
+use gudgeon_core::file::Files;
 use gudgeon_core::kinds::{RigCtx, RigOut, RigSpec};
 use gudgeon_core::result::Series;
 use gudgeon_rig as _;
@@ -74,7 +73,7 @@ fn put(table: &mut Table, path: &str, value: Value) {
 fn run(case: &Table) -> Result<RigOut, String> {
     let spec: Box<dyn RigSpec> = case.clone().try_into().map_err(|e: toml::de::Error| e.to_string())?;
     let mut rig = spec
-        .build(&RigCtx { folder: Path::new(".") })
+        .build(&RigCtx { files: &Files::default() })
         .map_err(|e| e.iter().map(|e| format!("{}: {e}", e.field)).collect::<Vec<_>>().join("; "))?;
     let mut out = RigOut::default();
     rig.run(&mut out).map_err(|e| e.to_string())?;

@@ -1,14 +1,14 @@
 //! What the benches compute themselves: balances, limits and agreement with each other.
 
-use std::path::Path;
-
+use gudgeon_core::file::Files;
 use gudgeon_core::kinds::{RigCtx, RigOut, RigSpec};
 use gudgeon_rig as _;
 use gudgeon_ring as _;
 
 fn run(case: &str) -> RigOut {
     let spec: Box<dyn RigSpec> = toml::from_str(case).unwrap_or_else(|e| panic!("{e}\n{case}"));
-    let mut rig = spec.build(&RigCtx { folder: Path::new(".") }).unwrap_or_else(|e| panic!("{e:?}\n{case}"));
+    let mut rig =
+        spec.build(&RigCtx { files: &Files::default() }).unwrap_or_else(|e| panic!("{e:?}\n{case}"));
     let mut out = RigOut::default();
     rig.run(&mut out).unwrap_or_else(|e| panic!("{e}\n{case}"));
     out
@@ -105,6 +105,6 @@ fn a_light_ring_falls_like_one_without_mass() {
          height = \"30 um\"\nload = \"60 N\"\nduration = \"1 ms\"\nflank_damping = { model = \"off\" }",
     )
     .expect("reads");
-    let mut rig = spec.build(&RigCtx { folder: Path::new(".") }).unwrap_or_else(|e| panic!("{e:?}"));
+    let mut rig = spec.build(&RigCtx { files: &Files::default() }).unwrap_or_else(|e| panic!("{e:?}"));
     assert!(rig.run(&mut RigOut::default()).is_err());
 }

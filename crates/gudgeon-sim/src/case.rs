@@ -12,6 +12,7 @@ use gudgeon_core::quantity::{
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+pub use crate::ring_pack::limits::Limits;
 use crate::scene::case_file;
 
 case_file! {
@@ -448,6 +449,8 @@ pub struct Solver {
     pub passes: u32,
     /// `substep_march`: what becomes of a ring's velocity at a flank.
     pub clamp: Clamp,
+    /// Floors, caps and drags, with their reasons.
+    pub limits: Limits,
 }
 
 impl Default for Solver {
@@ -465,6 +468,7 @@ impl Default for Solver {
             gas_steps: 0,
             passes: 721,
             clamp: Clamp::Stop,
+            limits: Limits::default(),
         }
     }
 }

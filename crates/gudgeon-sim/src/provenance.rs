@@ -1,9 +1,10 @@
 //! What a run was made of, and a case from what an earlier run recorded.
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
 
-use gudgeon_core::result::Provenance;
+use gudgeon_core::file::Files;
+use gudgeon_core::result::{KeptFile, Provenance};
+use indexmap::IndexMap;
 use sha2::{Digest, Sha256};
 
 use crate::load::{Diagnostic, Report, Source};
@@ -29,9 +30,17 @@ pub fn provenance(c: &Checked) -> Provenance {
         sha256: sha256(source.text.as_bytes()),
         revision: String::new(),
         text: source.text.clone(),
-        files: Default::default(),
+        files: files(c),
         resolved,
     }
+}
+
+/// The files that the case named, as they were read.
+fn files(c: &Checked) -> IndexMap<String, KeptFile> {
+    let read = c.case.source().files.read_so_far();
+    read.into_iter()
+        .map(|(name, text)| (name, KeptFile { sha256: sha256(text.as_bytes()), text: text.to_string() }))
+        .collect()
 }
 
 /// The case file that a `summary.json` recorded, its text and its overrides.
@@ -49,16 +58,18 @@ pub fn recorded(summary: &Source) -> Result<(String, Source, Vec<String>), Repor
     };
     let Summary { provenance: p } = serde_json::from_str(&summary.text)
         .map_err(|_| refuse(format!("`{}` does not record what a run was made of", summary.name)))?;
-    if sha256(p.text.as_bytes()) != p.sha256 {
+    let changed = p.files.values().any(|f| sha256(f.text.as_bytes()) != f.sha256);
+    if changed || sha256(p.text.as_bytes()) != p.sha256 {
         return Err(refuse(format!(
             "the case that `{}` records was changed: its hash is another",
             summary.name
         )));
     }
+    let kept = p.files.into_iter().map(|(name, f)| (name, f.text));
     let source = Source {
         name: format!("{} in {}", p.file, summary.name),
         text: p.text,
-        folder: PathBuf::from(&summary.folder),
+        files: Files::recorded(kept),
     };
     Ok((p.file, source, p.overrides))
 }

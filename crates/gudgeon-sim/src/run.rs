@@ -55,6 +55,31 @@ pub enum RunError {
     /// The integrator gave up.
     #[error("the integration stopped: {}", in_degrees(.0))]
     Integrate(#[from] IntegrateError),
+    /// The integrator of a ring pack needs too many steps.
+    #[error(
+        "at {theta_deg:.3} deg crank angle a cycle has taken {max} steps, the most that `solver.limits.most_steps` lets it take"
+    )]
+    Steps {
+        /// Where \[deg\].
+        theta_deg: f64,
+        /// The limit.
+        max: u64,
+    },
+    /// A ring rests on next to nothing.
+    #[error(
+        "at {theta_deg:.1} deg crank angle {load:.4} N press ring {ring} on a film of {film_nm:.2} nm, which neither oil nor contact carries. \
+         Give the ring a `contact` that can carry it, such as `greenwood_tripp`"
+    )]
+    NothingCarries {
+        /// Ring, from 1.
+        ring: usize,
+        /// Where \[deg\].
+        theta_deg: f64,
+        /// Load that is left \[N\].
+        load: f64,
+        /// Film thickness \[nm\].
+        film_nm: f64,
+    },
     /// The cycle does not close.
     #[error(
         "no periodic cycle after {cycles} cycles: estimated error {error:.2e}, wanted {wanted:.0e}. {advice}"
@@ -104,13 +129,17 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<Checked, Report> {
     if path.extension().is_some_and(|e| e == "json") {
         let (file, source, recorded) = provenance::recorded(&source)?;
         let all: Vec<String> = recorded.iter().chain(overrides).cloned().collect();
-        return checked(file, source, &all);
+        return check_source(file, source, &all);
     }
     let file = path.file_name().map_or_else(|| "case".to_owned(), |s| s.to_string_lossy().into_owned());
-    checked(file, source, overrides)
+    check_source(file, source, overrides)
 }
 
-fn checked(file: String, source: Source, overrides: &[String]) -> Result<Checked, Report> {
+/// As [`check`], from a text that was read before.
+///
+/// # Errors
+/// As [`check`].
+pub fn check_source(file: String, source: Source, overrides: &[String]) -> Result<Checked, Report> {
     let case = scene::load(source, overrides)?;
     let errors = case.legal();
     legal(file, case, &errors)
@@ -192,6 +221,9 @@ pub struct Explanation {
     pub skipped: Vec<Skipped>,
     /// Wanted results.
     pub results: Vec<String>,
+    /// Floors, caps and drags: key, value, reason.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub limits: Vec<(String, String, String)>,
     /// Names of the states that are integrated.
     pub states: Vec<String>,
     /// Notes.
@@ -256,6 +288,12 @@ impl Explanation {
         }
         for r in &self.skipped {
             let _ = writeln!(s, "  {}: {}", r.what, r.why);
+        }
+        if !self.limits.is_empty() {
+            let _ = writeln!(s, "\nFloors, caps and drags (what acts in a run is noted)");
+            for (key, value, reason) in &self.limits {
+                let _ = writeln!(s, "  {key} = {value}\n      {reason}");
+            }
         }
         if !self.states.is_empty() {
             let _ = writeln!(s, "\nStates integrated ({}): {}", self.states.len(), self.states.join(", "));

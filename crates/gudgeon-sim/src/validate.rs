@@ -75,7 +75,7 @@ pub struct Comparisons {
 /// Every mistake of the file, of its case and of the changes that its settings make, with places.
 pub fn read(path: &Path) -> Result<Comparisons, Report> {
     let file = load::<ValidationFile>(path, &[])?;
-    let case_path = tidy(&file.source.folder.join(&file.value.case));
+    let case_path = tidy(&file.source.files.path(&file.value.case));
     let case = check(&case_path, &[]).map_err(|report| {
         let told: Vec<String> = report.diagnostics.iter().map(|d| d.headline()).collect();
         file.refuse(&[BuildError::at("case", format!("{}: {}", case_path.display(), told.join("; ")))])
@@ -165,7 +165,7 @@ pub fn file_of(case: &Path) -> std::io::Result<Option<PathBuf>> {
         }
         for f in files(&folder)? {
             let Ok(text) = load::<ValidationFile>(&f, &[]) else { continue };
-            let named = text.source.folder.join(&text.value.case);
+            let named = text.source.files.path(&text.value.case);
             if named.canonicalize().is_ok_and(|n| n == wanted) {
                 return Ok(Some(f));
             }

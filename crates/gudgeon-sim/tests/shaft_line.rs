@@ -297,7 +297,10 @@ fn note<'a>(r: &'a RunResult, topic: &str) -> &'a str {
 fn the_verdict_counts_every_speed_of_the_operating_range() {
     let r = once("geared-train.toml", &[]);
     let all = note(&r, "verdict");
-    assert!(all.contains("2 of 12 limits are not kept") && all.contains("from 600 to 2000 rpm"), "{all}");
+    assert!(
+        all.contains("2 of 12 limits are not kept") && all.contains("from 600.00 rpm to 2000.00 rpm"),
+        "{all}"
+    );
     // Neither shows at the mean speed.
     let generator = note(&r, "verdict.stress_in_generator_shaft");
     assert!(generator.contains("order 4") || generator.contains("order 2"), "{generator}");
@@ -319,16 +322,21 @@ fn the_verdict_counts_every_speed_of_the_operating_range() {
 #[test]
 fn a_dense_sweep_finds_no_more_than_the_verdict() {
     let r = once("geared-train.toml", &[]);
-    let dense =
-        once("geared-train.toml", &["range.points=15001", "limits={}", "outputs.groups=[\"speed_range\"]"]);
+    let set = [
+        "range.points=7001",
+        "limits={}",
+        "outputs.groups=[\"speed_range\"]",
+        "operating={ from = \"600 rpm\", to = \"600 rpm\" }",
+    ];
+    let dense = once("geared-train.toml", &set);
     let table = &dense.tables["speed_range"];
     for n in 1..=13 {
         let top = r.results[&format!("envelope.shaft{n}.torque_amplitude")].value;
         let rows = &table.get(&format!("shaft{n}.torque_amplitude")).expect("a column").values;
         let brute = rows.iter().copied().fold(0.0, f64::max);
-        // 0.093 rpm apart: of the narrowest peak (1 % damping at 600 rpm, 6 rpm wide) half a step misses (0.047/6)² < 1e-4; and
-        // nothing is above the verdict's by more than its own 1e-6.
-        assert!(top >= brute * (1.0 - 1e-6) && top <= brute * (1.0 + 1e-4), "{n}: {top} {brute}");
+        // 0.2 rpm apart: of the narrowest peak (1 % damping at 600 rpm, 6 rpm wide) half a step misses (0.1/6)² < 3e-4; and nothing
+        // is above the verdict's by more than its own 1e-6.
+        assert!(top >= brute * (1.0 - 1e-6) && top <= brute * (1.0 + 3e-4), "{n}: {top} {brute}");
     }
 }
 

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
+use gudgeon_core::file::Files;
 use gudgeon_core::kinds::{SkirtComplianceCtx, SkirtComplianceSpec, SkirtProfileCtx, SkirtProfileSpec};
 use gudgeon_core::quantity::quantity;
 use gudgeon_skirt::{InfluenceMatrix, Panel, Table};
@@ -52,7 +53,7 @@ fn shapes_of_a_matrix_give_its_deflections() {
         length: PANEL.length,
         radius: PANEL.radius,
         half_angle: PANEL.half_angle,
-        folder: &folder,
+        files: &Files::of(&folder),
     };
     let spec = InfluenceMatrix { file: "data.csv".into(), shapes: 35, rest: quantity(0.0) };
     let modes = spec.build(&ctx).expect("shapes");
@@ -94,7 +95,7 @@ fn what_is_no_matrix_is_refused() {
             length: PANEL.length,
             radius: PANEL.radius,
             half_angle: PANEL.half_angle,
-            folder: &folder,
+            files: &Files::of(&folder),
         };
         let spec = InfluenceMatrix { file: "data.csv".into(), shapes: 12, rest: quantity(1e-3) };
         let e = spec.build(&ctx).expect_err("refused").to_string();
@@ -120,7 +121,9 @@ fn profile_from_a_file() {
         ovality: quantity(0.0),
         file: Some("data.csv".into()),
     };
-    let p = spec.build(&SkirtProfileCtx { length: 0.05, radius: 0.04, folder: &folder }).expect("builds");
+    let p = spec
+        .build(&SkirtProfileCtx { length: 0.05, radius: 0.04, files: &Files::of(&folder) })
+        .expect("builds");
     assert!(!p.is_symmetric());
     // At a point, and halfway between two angles: straight lines.
     assert!((p.depth(0.05, 0.3) - (3e-6 + 3e-6)).abs() < 1e-15);
@@ -139,7 +142,7 @@ fn profile_designed_with_the_pin() {
     };
     let build = |name: &str, text: &str| {
         let folder = folder(name, text);
-        let built = spec.build(&SkirtProfileCtx { length: 0.05, radius: 0.04, folder: &folder });
+        let built = spec.build(&SkirtProfileCtx { length: 0.05, radius: 0.04, files: &Files::of(&folder) });
         let _ = std::fs::remove_dir_all(&folder);
         built
     };

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use gudgeon_contact::CrestWedge;
+use gudgeon_core::file::Files;
 use gudgeon_core::kinds::{
     Film2dCtx, Film2dGrid, Film2dIn, Film2dSpec, GrooveFrictionCtx, GrooveFrictionSpec, KinematicsCtx,
     KinematicsSpec, PinFrictionSpec, PistonMotion, RoughnessSpec, SkirtComplianceCtx, SkirtComplianceSpec,
@@ -55,9 +56,9 @@ fn side(which: usize, setup: &Setup<'_>) -> Side {
 }
 
 fn side_of(panel: Panel, sign: f64, setup: &Setup<'_>) -> Side {
-    let folder = std::path::Path::new("");
+    let files = &Files::default();
     let profile =
-        Cylindrical {}.build(&SkirtProfileCtx { length: LENGTH, radius: RADIUS, folder }).expect("builds");
+        Cylindrical {}.build(&SkirtProfileCtx { length: LENGTH, radius: RADIUS, files }).expect("builds");
     let contact = CrestWedge {
         amplitude: quantity(4e-6),
         pitch: quantity(0.25e-3),
@@ -315,7 +316,7 @@ fn flat_plates_and_concentric_drag() {
     let radius = 0.0475 / (2.0 * panel_angle);
     let panel = Panel { radius, length: 0.0303, half_angle: panel_angle };
     let profile = Cylindrical {}
-        .build(&SkirtProfileCtx { length: 0.0303, radius, folder: std::path::Path::new("") })
+        .build(&SkirtProfileCtx { length: 0.0303, radius, files: &Files::default() })
         .expect("builds");
     for (n, printed) in [(9, 1260.8), (20, 1273.4), (40, 1275.7)] {
         let mut plate = Side::new(SideSetup {
@@ -470,7 +471,7 @@ fn derivatives_are_those_of_the_rates() {
 /// A side that yields in two shapes, and the shapes.
 fn yielding_side(film: &dyn Film2dSpec) -> (Side, SkirtModes) {
     let panel = Panel { radius: RADIUS, length: LENGTH, half_angle: HALF[0] };
-    let folder = std::path::Path::new("");
+    let files = &Files::default();
     let modal = Modal {
         stiffness: vec![quantity(3e8), quantity(8e8)],
         shapes: vec![Shape { power: 2, waves: 1 }, Shape { power: 0, waves: 1 }],
@@ -478,7 +479,7 @@ fn yielding_side(film: &dyn Film2dSpec) -> (Side, SkirtModes) {
     };
     let roughness = waves(WavinessTransport::Homogenised);
     let profile =
-        Cylindrical {}.build(&SkirtProfileCtx { length: LENGTH, radius: RADIUS, folder }).expect("builds");
+        Cylindrical {}.build(&SkirtProfileCtx { length: LENGTH, radius: RADIUS, files }).expect("builds");
     let grid = panel.grid(12, 12, 0.0);
     let modes = modal
         .build(&SkirtComplianceCtx {
@@ -486,7 +487,7 @@ fn yielding_side(film: &dyn Film2dSpec) -> (Side, SkirtModes) {
             length: LENGTH,
             radius: RADIUS,
             half_angle: HALF[0],
-            folder,
+            files,
         })
         .expect("shapes");
     let side = Side::new(SideSetup {

@@ -8,6 +8,7 @@ mod compare;
 mod extremes;
 mod implicit;
 mod lazy;
+mod limits;
 mod oil;
 mod pin;
 mod piston_secondary;

@@ -6,9 +6,8 @@
 
 #![allow(clippy::excessive_precision, reason = "reference values stand as they were computed")]
 
-use std::path::Path;
-
 use gudgeon_core::EvalError;
+use gudgeon_core::file::Files;
 use gudgeon_core::geometry::FaceProfile;
 use gudgeon_core::kinds::{FaceCtx, FaceIn, Hydrodynamics, HydrodynamicsSpec, RigCtx, RigOut, RigSpec};
 use gudgeon_models as _;
@@ -47,7 +46,7 @@ fn gas(rtol: f64) -> (u64, f64, f64, f64) {
     let mut rig = case.remove("rig").expect("a rig");
     rig["tolerance"] = rtol.into();
     let spec: Box<dyn RigSpec> = rig.try_into().expect("a specification");
-    let mut bench = spec.build(&RigCtx { folder: Path::new(".") }).expect("builds");
+    let mut bench = spec.build(&RigCtx { files: &Files::default() }).expect("builds");
     let mut out = RigOut::default();
     bench.run(&mut out).expect("a cycle");
     assert!(out.notes.is_empty(), "{:?}", out.notes);

@@ -23,6 +23,12 @@ pub trait Contact: Debug + Send + Sync {
     /// Separation \[m\] above which the pressure is zero or below 1e-12 of its value at zero separation. Zero when the model
     /// carries no load.
     fn range(&self) -> f64;
+    /// Mean gap \[m\] that is left between the rough surfaces at a separation \[m\] of their mean planes: the thickness of a film there.
+    /// Never negative, rises with the separation and is equal to it from [`Contact::range`] on. Where it is above zero at zero
+    /// separation the surfaces may approach further, and the pressure goes on. The separation itself for smooth surfaces.
+    fn mean_gap(&self, separation: f64) -> f64 {
+        separation
+    }
     /// Film thickness \[m\] that a film cannot go below, when this model is a switch and not a pressure: the surfaces then
     /// carry the remaining load.
     fn floor(&self) -> Option<f64>;

@@ -1,10 +1,10 @@
 use std::fmt::Debug;
-use std::path::Path;
 
 use dyn_clone::DynClone;
 
 use super::Kinematics;
 use crate::BuildError;
+use crate::file::Files;
 use crate::result::Note;
 
 /// What a [`CylinderPressureSpec`] is built for.
@@ -14,8 +14,8 @@ pub struct CylinderPressureCtx<'a> {
     pub kinematics: &'a (dyn Kinematics + 'static),
     /// Piston area \[m²\].
     pub piston_area: f64,
-    /// Folder that relative file names in the case refer to.
-    pub folder: &'a Path,
+    /// The files that the case names.
+    pub files: &'a Files,
 }
 
 /// Configuration of a cylinder-pressure model.

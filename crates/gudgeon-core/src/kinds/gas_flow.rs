@@ -141,6 +141,11 @@ pub trait GasFlow: Send {
         out: &mut GasOut,
     ) -> Result<(), EvalError>;
 
+    /// Takes lifts and gaps as they come from now on, below zero too, as a published explicit scheme does: a ring at rest on its upper flank,
+    /// whose clearance shrinks as the liner narrows, then leaves less than nothing there until it moves again. Nothing changes in a model
+    /// for which that means nothing.
+    fn unbound(&mut self) {}
+
     /// Derivatives of all that [`rates`](Self::rates) gives by the masses, all of `out` written. One-sided where the flow has a kink;
     /// always finite. `Ok(false)`, which is what a model gets that says nothing: they are not known, and `out` is as it was.
     ///

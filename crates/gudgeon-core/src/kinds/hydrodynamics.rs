@@ -116,6 +116,11 @@ pub trait Hydrodynamics: Send {
     /// As [`Hydrodynamics::evaluate`], or no convergence.
     fn squeeze_rate(&mut self, inp: &FaceIn, load: f64) -> Result<f64, EvalError>;
 
+    /// Whether there is a film at all, one that resists being squeezed.
+    fn resists(&self) -> bool {
+        true
+    }
+
     /// Confines the film to the face between `from` and `to` \[m\]: beyond, the face is dry and the pressure of the edge reaches
     /// to the end of the film. Until the next call everything else speaks of that part alone, in coordinates of the whole face.
     /// Whether the model can do that; one that cannot stays as it was.

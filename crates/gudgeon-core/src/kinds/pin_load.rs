@@ -1,10 +1,10 @@
 use std::fmt::Debug;
-use std::path::Path;
 
 use dyn_clone::DynClone;
 
 use super::{CylinderPressure, Kinematics, PinForces};
 use crate::BuildError;
+use crate::file::Files;
 
 /// One cylinder over its cycle, as another case describes it.
 #[derive(Debug, Clone)]
@@ -25,9 +25,9 @@ pub struct PinLoadCtx<'a> {
     pub bore: f64,
     /// Ratio of circumference to diameter, as [`PinStrengthCtx::pi`](super::PinStrengthCtx::pi).
     pub pi: f64,
-    /// Folder that relative file names in the case refer to.
-    pub folder: &'a Path,
-    /// Reads the cycle of another case file, named relative to `folder`.
+    /// The files that the case names.
+    pub files: &'a Files,
+    /// Reads the cycle of another case file, by the name that this case gives it.
     pub cycle_of: &'a dyn Fn(&str) -> Result<EngineCycle, BuildError>,
 }
 

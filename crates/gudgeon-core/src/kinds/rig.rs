@@ -1,17 +1,17 @@
 use std::fmt::Debug;
-use std::path::Path;
 
 use dyn_clone::DynClone;
 use indexmap::IndexMap;
 
+use crate::file::Files;
 use crate::result::{Balance, Column, Figure, FigureKind, Note, Series, Value};
 use crate::{BuildError, EvalError};
 
 /// What a [`RigSpec`] is built for.
 #[derive(Debug, Clone, Copy)]
 pub struct RigCtx<'a> {
-    /// Folder that relative file names in the case refer to.
-    pub folder: &'a Path,
+    /// The files that the case names.
+    pub files: &'a Files,
 }
 
 /// Configuration of a test bench: one sub-model, and the conditions it is run under.

@@ -1,10 +1,10 @@
 use std::fmt::Debug;
-use std::path::Path;
 
 use dyn_clone::DynClone;
 
 use super::Film2dGrid;
 use crate::BuildError;
+use crate::file::Files;
 
 /// What a [`SkirtComplianceSpec`] is built for: one side of the skirt.
 #[derive(Debug, Clone, Copy)]
@@ -17,8 +17,8 @@ pub struct SkirtComplianceCtx<'a> {
     pub radius: f64,
     /// Half of the angle that the side covers \[rad\].
     pub half_angle: f64,
-    /// Folder that relative file names in the case refer to.
-    pub folder: &'a Path,
+    /// The files that the case names.
+    pub files: &'a Files,
 }
 
 /// How a side yields to the pressure on it: shapes, each with a stiffness.

@@ -1,9 +1,9 @@
 use std::fmt::Debug;
-use std::path::Path;
 
 use dyn_clone::DynClone;
 
 use crate::BuildError;
+use crate::file::Files;
 
 /// What a [`SkirtProfileSpec`] is built for.
 #[derive(Debug, Clone, Copy)]
@@ -12,8 +12,8 @@ pub struct SkirtProfileCtx<'a> {
     pub length: f64,
     /// Radius of the skirt \[m\].
     pub radius: f64,
-    /// Folder that relative file names in the case refer to.
-    pub folder: &'a Path,
+    /// The files that the case names.
+    pub files: &'a Files,
 }
 
 /// Configuration of a skirt's shape.

@@ -75,7 +75,7 @@ impl PinLoadSpec for Cycle {
         let chamber = CylinderPressureCtx {
             kinematics: kinematics.as_ref(),
             piston_area: ctx.pi * ctx.bore * ctx.bore / 4.0,
-            folder: ctx.folder,
+            files: ctx.files,
         };
         let pressure = self.cylinder_pressure.build(&chamber).map_err(|e| e.within("cylinder_pressure"))?;
         let engine = EngineCycle {

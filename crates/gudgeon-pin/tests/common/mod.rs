@@ -1,9 +1,10 @@
 //! The published engine (Reimer 1984) and random ones.
 #![allow(dead_code, reason = "every test uses a part")]
 
-use std::path::Path;
+use std::sync::LazyLock;
 
 use gudgeon_core::BuildError;
+use gudgeon_core::file::Files;
 use gudgeon_core::kinds::{
     BossBore, EngineCycle, PIN_QUANTITIES, PinForces, PinLoadCase, PinLoadCtx, PinLoadSpec, PinSize,
     PinStrength, PinStrengthCtx, PinStrengthSpec,
@@ -21,8 +22,10 @@ pub fn no_case(_: &str) -> Result<EngineCycle, BuildError> {
     Err(BuildError::new("no other case"))
 }
 
+static NO_FILES: LazyLock<Files> = LazyLock::new(Files::default);
+
 pub fn load_ctx(pi: f64) -> PinLoadCtx<'static> {
-    PinLoadCtx { bore: BORE, pi, folder: Path::new("."), cycle_of: &no_case }
+    PinLoadCtx { bore: BORE, pi, files: &NO_FILES, cycle_of: &no_case }
 }
 
 pub fn strength_ctx(pi: f64) -> PinStrengthCtx {

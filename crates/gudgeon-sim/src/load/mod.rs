@@ -24,7 +24,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use gudgeon_core::BuildError;
-use gudgeon_core::file::{MOST_OF_A_CASE, MOST_OF_A_TABLE, ReadError, read_text};
+use gudgeon_core::file::{Files, MOST_OF_A_CASE, MOST_OF_A_TABLE, ReadError, read_text};
 use gudgeon_core::quantity::with_decimal_point;
 use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
@@ -77,7 +77,7 @@ pub fn load_str<T: DeserializeOwned + JsonSchema + 'static>(
     folder: &Path,
     overrides: &[String],
 ) -> Result<Loaded<T>, Report> {
-    let source = Source { name: name.to_owned(), text: text.to_owned(), folder: folder.to_owned() };
+    let source = Source { name: name.to_owned(), text: text.to_owned(), files: Files::of(folder) };
     load_source(source, overrides)
 }
 
@@ -145,7 +145,7 @@ pub fn read(path: &Path) -> Result<Source, Report> {
     };
     let most = if path.extension().is_some_and(|e| e == "json") { MOST_OF_A_TABLE } else { MOST_OF_A_CASE };
     let said = match read_text(path, most) {
-        Ok(text) => return Ok(Source { name, text, folder }),
+        Ok(text) => return Ok(Source { name, text, files: Files::of(&folder) }),
         Err(e) => e,
     };
     let d = match &said {
@@ -167,6 +167,20 @@ pub fn read(path: &Path) -> Result<Source, Report> {
         }
     };
     Err(Report::unreadable(&name, d))
+}
+
+/// The text of a case file that another case names.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_beside(files: &Files, name: &str) -> Result<Source, Report> {
+    match files.text(name) {
+        Ok(text) => Ok(Source { name: name.to_owned(), text: text.to_string(), files: files.beside(name) }),
+        // What is wrong with a file on the disk is told best by the reading of it.
+        Err(e) => Err(read(&files.path(name)).err().unwrap_or_else(|| {
+            Report::unreadable(name, Diagnostic::new(format!("cannot read `{name}`: {e}")))
+        })),
+    }
 }
 
 /// The scene that a case names, without checking the rest of it.

@@ -2,9 +2,9 @@
 
 use std::fmt;
 use std::ops::Range;
-use std::path::PathBuf;
 use std::sync::Arc;
 
+use gudgeon_core::file::Files;
 use miette::{
     GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteError, MietteSpanContents, SourceCode,
     SourceSpan, SpanContents,
@@ -17,8 +17,8 @@ pub struct Source {
     pub name: String,
     /// Content.
     pub text: String,
-    /// Folder that relative paths inside the case start from.
-    pub folder: PathBuf,
+    /// The files that the case names.
+    pub files: Files,
 }
 
 /// Where a value comes from.
@@ -108,7 +108,7 @@ impl Report {
     /// A report that has nothing but a message: a file that cannot be read.
     #[must_use]
     pub fn unreadable(name: &str, diagnostic: Diagnostic) -> Self {
-        let source = Source { name: name.to_owned(), text: String::new(), folder: PathBuf::new() };
+        let source = Source { name: name.to_owned(), text: String::new(), files: Files::default() };
         Self { diagnostics: vec![diagnostic], source: Arc::new(source), overrides: Arc::new([]) }
     }
 

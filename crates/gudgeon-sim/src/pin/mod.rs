@@ -26,7 +26,7 @@ impl SceneCase for PinCase {
                     .help("give one of the tables `pin`, `skirt`, `crown` and `dimensions`"),
             );
         }
-        match setup::setup(case, &loaded.source.folder) {
+        match setup::setup(case, &loaded.source.files) {
             Ok(s) => errors.extend(s.and_then(|s| size::impossible(case, &s))),
             Err(e) => errors.extend(e),
         }
@@ -66,7 +66,7 @@ impl SceneCase for PinCase {
             axis: Column { name: "x".into(), unit: "m".into(), values: Vec::new() },
             columns: Vec::new(),
         };
-        if let Some(s) = setup::setup(case, &loaded.source.folder).map_err(refused)? {
+        if let Some(s) = setup::setup(case, &loaded.source.files).map_err(refused)? {
             size::run(case, &s, &mut out, progress)?;
         }
         skirt::run(case, &mut out)?;

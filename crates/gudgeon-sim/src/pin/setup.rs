@@ -1,8 +1,7 @@
 //! From a case to a design: models built, load evaluated, contradictions at their places.
 
-use std::path::Path;
-
 use gudgeon_core::BuildError;
+use gudgeon_core::file::Files;
 use gudgeon_core::kinds::{
     CylinderPressureCtx, EngineCycle, Fatigue, KinematicsCtx, PinLoadCase, PinLoadCtx, PinSize, PinStrength,
     PinStrengthCtx,
@@ -13,7 +12,7 @@ use gudgeon_pin::stock::{MOST_COMBINATIONS, Sizes};
 
 use super::case::{Method, Optimise, Pin, PinCase, RangeCase};
 use crate::case::RingPackCase;
-use crate::load::{advice, load_source, read, scene_of};
+use crate::load::{advice, load_source, read_beside, scene_of};
 
 /// What a pin needs besides its dimensions.
 pub struct Setup {
@@ -72,7 +71,7 @@ pub fn alloy(case: &PinCase) -> Result<Option<&'static Alloy>, BuildError> {
 }
 
 /// Builds what the case says of its pin; nothing when it has none.
-pub fn setup(case: &PinCase, folder: &Path) -> Result<Option<Setup>, Vec<BuildError>> {
+pub fn setup(case: &PinCase, files: &Files) -> Result<Option<Setup>, Vec<BuildError>> {
     let mut errors = Vec::new();
     let alloy = alloy(case).map_err(|e| errors.push(e));
     let Some(pin) = &case.pin else {
@@ -90,7 +89,7 @@ pub fn setup(case: &PinCase, folder: &Path) -> Result<Option<Setup>, Vec<BuildEr
     }
     let strength = strength(case, pin, pi).map_err(|e| errors.push(e)).ok();
     let fatigue = case.models.fatigue.build().map_err(|e| errors.push(e.within("models.fatigue"))).ok();
-    let load = load(case, folder, bore, pi).map_err(|e| errors.push(e)).ok();
+    let load = load(case, files, bore, pi).map_err(|e| errors.push(e)).ok();
     // Without its alloy the density of the piston is another mistake's.
     let relief = match alloy {
         Ok(alloy) => relief(pin, alloy, bore).map_err(|e| errors.push(e)).ok().flatten(),
@@ -194,33 +193,32 @@ fn strength(case: &PinCase, pin: &Pin, pi: f64) -> Result<Box<dyn PinStrength>, 
     })
 }
 
-fn load(case: &PinCase, folder: &Path, bore: f64, pi: f64) -> Result<PinLoadCase, BuildError> {
+fn load(case: &PinCase, files: &Files, bore: f64, pi: f64) -> Result<PinLoadCase, BuildError> {
     let Some(spec) = &case.models.pin_load else {
         return Err(BuildError::at("models", "nothing loads the pin: `models.pin_load` is missing")
             .help("for instance `pin_load = { model = \"given\", gas = \"50 kN\" }`"));
     };
-    let cycle_of = |name: &str| other_cycle(&folder.join(name));
-    spec.build(&PinLoadCtx { bore, pi, folder, cycle_of: &cycle_of }).map_err(|e| e.within("models.pin_load"))
+    let cycle_of = |name: &str| other_cycle(files, name);
+    spec.build(&PinLoadCtx { bore, pi, files, cycle_of: &cycle_of }).map_err(|e| e.within("models.pin_load"))
 }
 
 /// Speed, crank drive and cylinder pressure of a ring-pack case.
-fn other_cycle(path: &Path) -> Result<EngineCycle, BuildError> {
+fn other_cycle(files: &Files, name: &str) -> Result<EngineCycle, BuildError> {
     let first = |r: crate::load::Report| match r.diagnostics.into_iter().next() {
-        Some(d) => BuildError {
-            help: d.help.clone(),
-            ..BuildError::new(format!("`{}`: {}", path.display(), d.headline()))
-        },
-        None => BuildError::new(format!("`{}` cannot be read", path.display())),
+        Some(d) => {
+            BuildError { help: d.help.clone(), ..BuildError::new(format!("`{name}`: {}", d.headline())) }
+        }
+        None => BuildError::new(format!("`{name}` cannot be read")),
     };
-    let source = read(path).map_err(first)?;
+    let source = read_beside(files, name).map_err(first)?;
     let scene = scene_of(&source, &[]).unwrap_or_default();
     if scene != "ring_pack" {
-        let what = format!("`{}` is a case of the scene `{scene}`, which describes no cycle", path.display());
+        let what = format!("`{name}` is a case of the scene `{scene}`, which describes no cycle");
         return Err(BuildError::new(what).help("name a case of the scene `ring_pack`"));
     }
     let loaded = load_source::<RingPackCase>(source, &[]).map_err(first)?;
     let c = &loaded.value;
-    let within = |e: BuildError| BuildError::new(format!("`{}`: {e}", path.display()));
+    let within = |e: BuildError| BuildError::new(format!("`{name}`: {e}"));
     let kinematics = c
         .models
         .kinematics
@@ -238,7 +236,7 @@ fn other_cycle(path: &Path) -> Result<EngineCycle, BuildError> {
         .build(&CylinderPressureCtx {
             kinematics: kinematics.as_ref(),
             piston_area: std::f64::consts::PI * bore * bore / 4.0,
-            folder: &loaded.source.folder,
+            files: &loaded.source.files,
         })
         .map_err(within)?;
     Ok(EngineCycle { bore, kinematics, pressure, crankcase_pressure: c.gas.crankcase_pressure.si() })

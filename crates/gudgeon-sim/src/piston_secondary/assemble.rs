@@ -1,9 +1,9 @@
 //! From a case to the running sub-models.
 
 use std::f64::consts::PI;
-use std::path::Path;
 
 use gudgeon_core::BuildError;
+use gudgeon_core::file::Files;
 use gudgeon_core::kinds::{
     CylinderPressure, CylinderPressureCtx, GrooveFrictionCtx, Kinematics, KinematicsCtx, Lateral,
     SkirtComplianceCtx, SkirtModes, SkirtProfile, SkirtProfileCtx,
@@ -71,7 +71,7 @@ pub fn radius(case: &PistonSecondaryCase) -> f64 {
 /// Everything that is wrong, with places.
 pub fn assemble(
     case: &PistonSecondaryCase,
-    folder: &Path,
+    files: &Files,
     elastic: bool,
     intervals: Option<[u32; 2]>,
 ) -> Result<Assembly, Vec<BuildError>> {
@@ -121,14 +121,14 @@ pub fn assemble(
     });
     let cylinder = match &kinematics {
         Ok(k) => {
-            let ctx = CylinderPressureCtx { kinematics: &**k, piston_area: area, folder };
+            let ctx = CylinderPressureCtx { kinematics: &**k, piston_area: area, files };
             Some(m.cylinder_pressure.build(&ctx).map_err(|e| e.within("models.cylinder_pressure")))
         }
         Err(_) => None,
     };
     let profile = m
         .skirt_profile
-        .build(&SkirtProfileCtx { length, radius, folder })
+        .build(&SkirtProfileCtx { length, radius, files })
         .map_err(|e| e.within("models.skirt_profile"));
     let oil = m.oil.build().map_err(|e| e.within("models.oil"));
     let thinning = m.shear_thinning.build().map_err(|e| e.within("models.shear_thinning"));
@@ -168,7 +168,7 @@ pub fn assemble(
                     length,
                     radius,
                     half_angle: panel.half_angle,
-                    folder,
+                    files,
                 })
             } else {
                 Ok(SkirtModes::default())

@@ -34,7 +34,7 @@ use survey::Survey;
 
 impl SceneCase for PistonSecondaryCase {
     fn legal(loaded: &Loaded<Self>) -> Vec<BuildError> {
-        match assemble(&loaded.value, &loaded.source.folder, true, None) {
+        match assemble(&loaded.value, &loaded.source.files, true, None) {
             Ok(a) => plan::wanted(&loaded.value, &a).err().unwrap_or_default(),
             Err(e) => e,
         }
@@ -42,7 +42,7 @@ impl SceneCase for PistonSecondaryCase {
 
     fn explain(loaded: &Loaded<Self>, told: &mut Explanation) -> Result<Vec<ModelUse>, RunError> {
         let case = &loaded.value;
-        let a = assemble(case, &loaded.source.folder, true, None).map_err(refused)?;
+        let a = assemble(case, &loaded.source.files, true, None).map_err(refused)?;
         let wanted = wanted(case, &a)?;
         let why = |what: &str, why: &str| Skipped { what: what.into(), why: why.into() };
         told.runs.push(why("films of both sides", "their forces move the piston"));
@@ -63,7 +63,7 @@ impl SceneCase for PistonSecondaryCase {
     }
 
     fn result_names(loaded: &Loaded<Self>) -> Option<Vec<String>> {
-        let a = assemble(&loaded.value, &loaded.source.folder, true, None).ok()?;
+        let a = assemble(&loaded.value, &loaded.source.files, true, None).ok()?;
         Some(wanted(&loaded.value, &a).ok()?.into_iter().map(|r| r.name).collect())
     }
 
@@ -71,7 +71,7 @@ impl SceneCase for PistonSecondaryCase {
         let begin = Instant::now();
         let case = &loaded.value;
         let built = |elastic: bool, intervals: Option<[u32; 2]>| {
-            assemble(case, &loaded.source.folder, elastic, intervals).map_err(refused)
+            assemble(case, &loaded.source.files, elastic, intervals).map_err(refused)
         };
         let mut a = built(false, None)?;
         let wanted = wanted(case, &a)?;

@@ -145,12 +145,7 @@ impl<'a> Look<'a> {
             }
             (Lateral::QuasiStatic, _) => piston.rates(&now, &self.x, None, &mut self.w, &mut unused)?,
             (Lateral::Inertial, _) => {
-                let v = |y: &[f64]| [speed * y[n], speed * y[n + 1]];
-                if let Some(y) = at_end {
-                    piston.rates(&now, &self.x, Some(&v(y)), &mut self.w, &mut unused)?;
-                    return Ok(now);
-                }
-                // Between the ends of steps the films would see the error of an interpolated velocity; that of an acceleration they do not.
+                // The films would see the error of a velocity, also of one at the end of a step; that of an acceleration they do not.
                 let acceleration = [0, 1].map(|i| speed * omega * self.trajectory.slope(t, n + i));
                 match piston.rates_under(&now, &self.x, acceleration, &mut self.w) {
                     Err(e) if e.is_recoverable() => {

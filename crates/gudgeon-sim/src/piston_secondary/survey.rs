@@ -25,6 +25,9 @@ pub struct Survey {
     omega: f64,
 }
 
+/// Crank angle \[rad\] and value.
+type Place = (f64, f64);
+
 /// Which extreme.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Which {
@@ -60,7 +63,7 @@ fn peak(p: &[(f64, f64)]) -> Option<(f64, f64)> {
     }
     let slope = left + curve * (b - a);
     let t = b - 0.5 * slope / curve;
-    (t > a && t < c).then(|| (t, fb + slope * (t - b) + curve * (t - b) * (t - b)))
+    (t > a && t < c).then_some((t, fb + slope * (t - b) + curve * (t - b) * (t - b)))
 }
 
 impl Survey {
@@ -162,7 +165,7 @@ impl Survey {
                 keep(t, sign * at(look, t)?);
             }
         }
-        let mut ways: Vec<(Vec<(f64, f64)>, (f64, f64))> = Vec::new();
+        let mut ways: Vec<(Vec<Place>, Place)> = Vec::new();
         for k in 1..self.nodes.len().saturating_sub(1) {
             let own = &self.nodes[k - 1..=k + 1];
             if own[1].bent || own[2].bent || own[0].t < window.0 || own[2].t > window.1 {

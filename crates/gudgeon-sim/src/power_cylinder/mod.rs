@@ -9,9 +9,9 @@ use gudgeon_core::result::{ModelUse, RunResult, Value};
 use serde_json::Value as Json;
 
 use crate::case::RingPackCase;
-use crate::load::{Loaded, Refinement, Report, read, scene_of};
+use crate::load::{Loaded, Refinement, Report, read_beside, scene_of};
 use crate::piston_secondary::case::PistonSecondaryCase;
-use crate::run::{Checked, Explanation, Progress, RunError, check, explain};
+use crate::run::{Checked, Explanation, Progress, RunError, check_source, explain};
 use crate::scene::SceneCase;
 use case::{Part, PowerCylinderCase};
 
@@ -157,22 +157,22 @@ fn refused(e: Vec<BuildError>) -> RunError {
 
 /// Both cases, the skirt's with the crank drive and the gas of the rings'.
 fn parts(loaded: &Loaded<PowerCylinderCase>) -> Result<(Checked, Checked), Vec<BuildError>> {
-    let folder = &loaded.source.folder;
+    let files = &loaded.source.files;
     let wrong = |field: &str, scene: &str| {
         vec![BuildError::at(format!("{field}.case"), format!("must be a case of the scene `{scene}`"))]
     };
     let part_of = |part: &Part, field: &str, more: &[String]| {
         let set: Vec<String> = part.set.iter().chain(more).cloned().collect();
-        let path = folder.join(&part.case);
         let told = |report: Report| {
             let told: Vec<String> = report.diagnostics.iter().map(|d| d.headline()).collect();
             vec![BuildError::at(format!("{field}.case"), format!("{}: {}", part.case, told.join("; ")))]
         };
         // Before the rest of it: a part that is a whole cylinder could be this case itself.
-        if scene_of(&read(&path).map_err(told)?, &set).as_deref() != Some(field) {
+        let source = read_beside(files, &part.case).map_err(told)?;
+        if scene_of(&source, &set).as_deref() != Some(field) {
             return Err(wrong(field, field));
         }
-        check(&path, &set).map_err(told)
+        check_source(part.case.clone(), source, &set).map_err(told)
     };
     let rings = part_of(&loaded.value.ring_pack, "ring_pack", &[])?;
     let pack = rings.of::<RingPackCase>().ok_or_else(|| wrong("ring_pack", "ring_pack"))?;

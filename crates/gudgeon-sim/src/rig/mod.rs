@@ -15,7 +15,7 @@ use case::RigCase;
 
 impl SceneCase for RigCase {
     fn legal(loaded: &Loaded<Self>) -> Vec<BuildError> {
-        match loaded.value.rig.build(&RigCtx { folder: &loaded.source.folder }) {
+        match loaded.value.rig.build(&RigCtx { files: &loaded.source.files }) {
             Ok(_) => Vec::new(),
             Err(e) => e.into_iter().map(|e| e.within("rig")).collect(),
         }
@@ -36,7 +36,7 @@ impl SceneCase for RigCase {
         let refused = |e: Vec<BuildError>| {
             RunError::Refused(e.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))
         };
-        let mut rig = case.rig.build(&RigCtx { folder: &loaded.source.folder }).map_err(refused)?;
+        let mut rig = case.rig.build(&RigCtx { files: &loaded.source.files }).map_err(refused)?;
         let mut out = RigOut::default();
         rig.run(&mut out).map_err(|source: EvalError| RunError::Model { source })?;
         let registry = Registry::collect();

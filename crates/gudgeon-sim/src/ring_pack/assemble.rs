@@ -1,9 +1,9 @@
 //! From a case to an assembled [`Pack`]: every sub-model built, every contradiction reported.
 
 use std::f64::consts::PI;
-use std::path::Path;
 
 use gudgeon_core::BuildError;
+use gudgeon_core::file::Files;
 use gudgeon_core::geometry::{BackVolume, PackGeometry};
 use gudgeon_core::kinds::{
     CylinderPressureCtx, FaceCtx, FilmTemperatureCtx, FlankDampingCtx, GasFlowCtx, GasIn, GasOut,
@@ -16,12 +16,9 @@ use super::end_gap;
 use super::geometry;
 use super::hold::Hold;
 use super::oil::{FacePlace, OilPack};
-use super::pack::{Counters, Instant, Layout, LinerShape, Pack, RingInstant, RingModel};
+use super::pack::{Counters, Instant, Layout, LinerShape, Pack, RingInstant, RingModel, SeatLog};
 use super::plan::{Facts, Plan, plan, wanted};
 use crate::case::{Method, RingDesign, RingPackCase};
-
-/// Film thickness where the gas model wants one and no film is solved \[m\].
-const NOMINAL_FILM: f64 = 2e-6;
 
 /// A ring without axial clearance.
 struct Clamped;
@@ -47,7 +44,7 @@ impl RingMotion for Clamped {
 ///
 /// # Errors
 /// Everything about the case that cannot be, with the place in the case.
-pub fn assemble(case: &RingPackCase, folder: &Path) -> Result<Pack, Vec<BuildError>> {
+pub fn assemble(case: &RingPackCase, files: &Files) -> Result<Pack, Vec<BuildError>> {
     let mut errors = Vec::new();
     let want =
         wanted(&case.outputs.results, case.rings.len(), case.models.oil_transport.typetag_name() != "off")
@@ -93,7 +90,7 @@ pub fn assemble(case: &RingPackCase, folder: &Path) -> Result<Pack, Vec<BuildErr
     let ctx = CylinderPressureCtx {
         kinematics: kinematics.as_ref(),
         piston_area: PI * geo.bore_radius * geo.bore_radius,
-        folder,
+        files,
     };
     let at = |place: &str| {
         let place = place.to_owned();
@@ -203,9 +200,11 @@ pub fn assemble(case: &RingPackCase, folder: &Path) -> Result<Pack, Vec<BuildErr
                     .is_constant()
                     .then(|| oil.viscosity(film_temperature.temperature(i, 0.0)));
                 let kind = motion.motion();
-                let nominal_film = NOMINAL_FILM;
+                let nominal_film = case.solver.limits.nominal_film.si();
+                let resists = films.iter().any(|f| f.resists());
                 rings.push(RingModel {
                     films,
+                    resists,
                     contact,
                     motion,
                     kind,
@@ -296,6 +295,7 @@ pub fn assemble(case: &RingPackCase, folder: &Path) -> Result<Pack, Vec<BuildErr
     let places = vec![gudgeon_core::geometry::RingPlace::default(); n];
     let mut pack = Pack {
         conv: case.conventions,
+        limits: (&case.solver.limits).into(),
         omega,
         kinematics,
         cylinder,
@@ -311,6 +311,7 @@ pub fn assemble(case: &RingPackCase, folder: &Path) -> Result<Pack, Vec<BuildErr
         layout,
         mass_scale: vec![1.0; gas_states],
         seats: vec![0.0; n],
+        seat_log: vec![SeatLog::default(); n],
         at: Instant {
             theta: 0.0,
             piston: Default::default(),

@@ -1,7 +1,15 @@
 //! Solid contact of a whole ring face, reduced to a function of one variable at build time.
 //!
-//! `load(h) = ∫ p_c(h + drop(x)) dx` over the running lands \[N/m\]: the face never changes during a run, so the integral
-//! is tabulated once and costs a few nanoseconds afterwards.
+//! `load = ∫ p_c(s + drop(x)) dx` over the running lands \[N/m\], with the separation `s` of the mean planes at the nearest point. What the
+//! film knows is its thickness there, the mean gap `h` of the rough surfaces ([`Contact::mean_gap`]), which stays above zero where the mean
+//! planes overlap; load and separation are tabulated over
+//!
+//! ```text
+//! w = ln(exp(h/S) - 1)        S ≈ one roughness;  h/S far from the surfaces, ln(h/S) where they overlap
+//! ```
+//!
+//! in which both are smooth on either side of zero separation. The face never changes during a run, so the integral costs a few
+//! nanoseconds afterwards.
 
 use gudgeon_core::geometry::FaceProfile;
 use gudgeon_core::kinds::Contact;
@@ -10,46 +18,44 @@ use gudgeon_numerics::quadrature::GaussLegendre;
 /// Line load against film thickness.
 #[derive(Debug, Clone, Default)]
 pub struct ContactLine {
-    /// `load^(1/4)` at equal steps of `h` from 0 to `range`: the root keeps the table smooth where the load fades out.
-    root: Vec<f64>,
-    step: f64,
+    /// `load^(1/4)`: the root keeps the table smooth where the load fades out.
+    root: Spline,
+    /// Separation of the mean planes \[m\].
+    separation: Spline,
+    /// The length `S` \[m\].
+    unit: f64,
     /// Film thickness above which there is no contact \[m\].
     pub range: f64,
-    /// Hard lower limit of the film thickness \[m\].
+    /// Whether the contact takes any load before the film is gone: its mean planes may overlap.
+    pub open: bool,
+    /// Film thickness that the contact model names as the least one \[m\].
     pub floor: Option<f64>,
-    /// Fraction of the floor over which the approach to it fades out.
-    pub band: f64,
     /// Whether on the floor the film contributes no shear.
     pub floor_replaces_film: bool,
     /// Friction coefficient of the solid load.
     pub friction: f64,
 }
 
-/// Intervals of the table: cubic interpolation between them is good to about 1e-6 of the load.
-const POINTS: usize = 512;
-/// A pressure law loses its meaning when the mean planes touch: at this fraction of its range the surfaces carry whatever
-/// load is left (an edge would wear until they do).
-const TOUCHING: f64 = 0.01;
-/// Fading out above a floor that the contact model itself names, and above [`TOUCHING`].
+/// Parts of a least film thickness over which the approach to it fades out: of one that a contact model names, and of another.
 const BANDS: (f64, f64) = (0.02, 1.0);
-
+/// Intervals of the tables: cubic interpolation between them is good to about 1e-7 of the load.
+const POINTS: usize = 1024;
+/// The table begins at `exp(DEEPEST)` of the unit: mean planes of Gaussian surfaces overlap by eight roughness heights there.
+const DEEPEST: f64 = -37.0;
+/// Part of the range that is the unit `S`: one roughness of Gaussian surfaces.
+const UNIT: f64 = 0.152;
 /// Part of the range over which a load that fades out with its sixth to eighth power changes by its own size, halfway.
 const SCALE: f64 = 0.1;
+/// Panels of Gauss's rule on each straight or curved piece of a face.
+const PANELS: usize = 24;
 
 impl ContactLine {
-    /// Film thickness over which the load of surfaces in contact changes by about its own size \[m\].
-    #[must_use]
-    pub fn scale(&self) -> f64 {
-        SCALE * self.range
-    }
-
     /// Tabulates the contact of `lands` equal faces.
     #[must_use]
     pub fn new(contact: &dyn Contact, face: &FaceProfile, lands: usize) -> Self {
         let range = contact.range();
         let mut line = Self {
-            floor: contact.floor().or((range > 0.0).then_some(TOUCHING * range)),
-            band: if contact.floor().is_some() { BANDS.0 } else { BANDS.1 },
+            floor: contact.floor(),
             floor_replaces_film: contact.floor_replaces_film(),
             friction: contact.friction_coefficient(),
             ..Self::default()
@@ -57,65 +63,253 @@ impl ContactLine {
         if range <= 0.0 {
             return line;
         }
-        // Where the face is within reach of the liner is all that is integrated, panel by panel with Gauss's rule.
-        let panels = 24;
-        let (mut xs, mut ws) = (Vec::new(), Vec::new());
-        let rule = GaussLegendre::new(6);
-        let length = face.length();
-        let reach: Vec<f64> = (0..=4000)
-            .map(|k| length * f64::from(k) / 4000.0)
-            .filter(|x| face.drop_at(*x) <= range)
-            .collect();
-        let (Some(first), Some(last)) = (reach.first(), reach.last()) else { return line };
-        let (a, b) = ((first - length / 4000.0).max(0.0), (last + length / 4000.0).min(length));
-        let width = (b - a) / f64::from(panels);
-        for k in 0..panels {
-            let mid = a + (f64::from(k) + 0.5) * width;
-            for (x, w) in rule.nodes().iter().zip(rule.weights()) {
-                xs.push(mid + 0.5 * width * x);
-                ws.push(0.5 * width * w);
-            }
-        }
-        let drops: Vec<f64> = xs.iter().map(|x| face.drop_at(*x)).collect();
-        let (mut gap, mut p) = (vec![0.0; xs.len()], vec![0.0; xs.len()]);
-        line.step = range / POINTS as f64;
         line.range = range;
-        line.root = (0..=POINTS + 2)
-            .map(|k| {
-                let h = line.step * k as f64;
-                for (g, d) in gap.iter_mut().zip(&drops) {
-                    *g = h + d;
-                }
-                contact.pressure(&gap, &mut p);
-                let load: f64 = p.iter().zip(&ws).map(|(p, w)| p * w).sum();
-                (load * lands as f64).max(0.0).sqrt().sqrt()
-            })
-            .collect();
+        line.unit = UNIT * range;
+        line.open = contact.mean_gap(0.0) > 0.0;
+        let top = (range / line.unit).exp_m1().ln();
+        let step = (top - DEEPEST) / POINTS as f64;
+        let rule = GaussLegendre::new(6);
+        let (mut roots, mut separations) = (Vec::with_capacity(POINTS + 1), Vec::with_capacity(POINTS + 1));
+        for k in 0..=POINTS {
+            let film = line.unit * (DEEPEST + step * k as f64).exp().ln_1p();
+            let s = separation(contact, film);
+            let load = lands as f64 * face_load(contact, face, s, &rule);
+            roots.push(load.max(0.0).sqrt().sqrt());
+            separations.push(s);
+        }
+        line.root = Spline::new(DEEPEST, step, &roots);
+        line.separation = Spline::new(DEEPEST, step, &separations);
         line
+    }
+
+    fn place(&self, h: f64) -> f64 {
+        (h / self.unit).exp_m1().ln()
     }
 
     /// Load per circumference \[N/m\] at film thickness `h` \[m\].
     #[must_use]
     pub fn load(&self, h: f64) -> f64 {
-        if self.root.is_empty() {
+        if h >= self.range {
             return 0.0;
         }
-        let t = h.max(0.0) / self.step;
-        let i = t as usize;
-        if i >= POINTS {
-            return 0.0;
+        let r = self.root.at(self.place(h)).0.max(0.0);
+        (r * r) * (r * r)
+    }
+
+    /// Separation of the mean planes at the nearest point \[m\].
+    #[must_use]
+    pub fn separation(&self, h: f64) -> f64 {
+        if h >= self.range { h } else { self.separation.at(self.place(h)).0 }
+    }
+
+    /// Part of the least film thickness over which the approach to it fades out.
+    #[must_use]
+    pub fn band(&self) -> f64 {
+        if self.floor.is_some() { BANDS.0 } else { BANDS.1 }
+    }
+
+    /// How much less well than to its own size the logarithm of a film need be known, at least 1: surfaces that touch carry by their
+    /// separation, which has to be known to a tenth of the range.
+    #[must_use]
+    pub fn ease(&self, h: f64) -> f64 {
+        if h >= self.range {
+            return 1.0;
         }
+        let x = h / self.unit;
+        // ds/d ln h = ds/dw dw/d ln h, dw/d ln h = x exp(x)/(exp(x) - 1).
+        let rate = self.separation.at(self.place(h)).1 * x / -(-x).exp_m1();
+        (SCALE * self.range / rate).max(1.0)
+    }
+}
+
+/// Separation \[m\] at which the mean gap is `film` \[m\], by bisection on a function that rises.
+fn separation(contact: &dyn Contact, film: f64) -> f64 {
+    let (mut lo, mut hi) = (-film.max(contact.range()), film);
+    for _ in 0..40 {
+        if contact.mean_gap(lo) < film {
+            break;
+        }
+        (lo, hi) = (2.0 * lo, lo);
+    }
+    for _ in 0..80 {
+        let mid = 0.5 * (lo + hi);
+        if mid <= lo || mid >= hi {
+            break;
+        }
+        if contact.mean_gap(mid) < film { lo = mid } else { hi = mid }
+    }
+    0.5 * (lo + hi)
+}
+
+/// `∫ p_c(s + drop(x)) dx` over a face, piece by piece where it is within reach of the liner \[N/m\].
+fn face_load(contact: &dyn Contact, face: &FaceProfile, s: f64, rule: &GaussLegendre) -> f64 {
+    let reach = contact.range() - s;
+    let pressure = |a: f64, b: f64, panels: usize| {
+        let width = (b - a) / panels as f64;
+        let mut sum = 0.0;
+        for k in 0..panels {
+            let mid = a + (k as f64 + 0.5) * width;
+            for (x, w) in rule.nodes().iter().zip(rule.weights()) {
+                let mut p = [0.0];
+                contact.pressure(&[s + face.drop_at(mid + 0.5 * width * x)], &mut p);
+                sum += 0.5 * width * w * p[0];
+            }
+        }
+        sum
+    };
+    let length = face.length();
+    match (face, face.nodes()) {
+        (_, Some(nodes)) => nodes
+            .windows(2)
+            .map(|n| {
+                let ((x0, d0), (x1, d1)) = (n[0], n[1]);
+                if d0 == d1 {
+                    return if d0 < reach { pressure(x0, x1, 1) } else { 0.0 };
+                }
+                let end = x0 + (reach - d0) / (d1 - d0) * (x1 - x0);
+                let (a, b) = if d1 > d0 { (x0, x1.min(end)) } else { (x0.max(end), x1) };
+                if b > a { pressure(a, b, PANELS) } else { 0.0 }
+            })
+            .sum(),
+        (FaceProfile::Parabola { curvature, apex, .. }, None) if *curvature > 0.0 => {
+            let half = (reach.max(0.0) / curvature).sqrt();
+            let (a, b) = ((apex - half).max(0.0), (apex + half).min(length));
+            // The apex is a place like any other; a piece on either side of it.
+            let mid = apex.clamp(a.min(b), b.max(a));
+            if b > a { pressure(a, mid, PANELS / 2) + pressure(mid, b, PANELS / 2) } else { 0.0 }
+        }
+        _ => pressure(0.0, length, PANELS),
+    }
+}
+
+/// A natural cubic spline through equally spaced points: its second derivative is continuous.
+#[derive(Debug, Clone, Default)]
+struct Spline {
+    start: f64,
+    step: f64,
+    /// Coefficients of every interval in units of the step.
+    pieces: Vec<[f64; 4]>,
+}
+
+impl Spline {
+    fn new(start: f64, step: f64, y: &[f64]) -> Self {
+        let n = y.len();
+        // Second derivatives times step² over 6: m_(i-1) + 4 m_i + m_(i+1) = y_(i-1) - 2 y_i + y_(i+1), zero at the ends.
+        let (mut m, mut c) = (vec![0.0; n], vec![0.0; n]);
+        for i in 1..n - 1 {
+            let pivot = 4.0 - c[i - 1];
+            c[i] = 1.0 / pivot;
+            m[i] = (y[i - 1] - 2.0 * y[i] + y[i + 1] - m[i - 1]) / pivot;
+        }
+        for i in (1..n - 1).rev() {
+            m[i] -= c[i] * m[i + 1];
+        }
+        let pieces = (0..n - 1)
+            .map(|i| {
+                let (a, b) = (m[i], m[i + 1]);
+                [y[i], y[i + 1] - y[i] - 2.0 * a - b, 3.0 * a, b - a]
+            })
+            .collect();
+        Self { start, step, pieces }
+    }
+
+    /// Value and slope; straight on below the table.
+    fn at(&self, w: f64) -> (f64, f64) {
+        let t = (w - self.start) / self.step;
+        let i = (t.max(0.0) as usize).min(self.pieces.len().saturating_sub(1));
+        let Some(c) = self.pieces.get(i) else { return (0.0, 0.0) };
         let f = t - i as f64;
-        // Catmull-Rom through four neighbours, mirrored at the left end by extrapolation.
-        let p1 = self.root[i];
-        let p2 = self.root[i + 1];
-        let p3 = self.root[i + 2];
-        let p0 = if i == 0 { 3.0 * p1 - 3.0 * p2 + p3 } else { self.root[i - 1] };
-        let m1 = 0.5 * (p2 - p0);
-        let m2 = 0.5 * (p3 - p1);
-        let d = p2 - p1;
-        let r = p1 + f * (m1 + f * ((3.0 * d - 2.0 * m1 - m2) + f * (m1 + m2 - 2.0 * d)));
-        let r2 = r.max(0.0) * r.max(0.0);
-        r2 * r2
+        if f < 0.0 {
+            return (c[0] + c[1] * f, c[1] / self.step);
+        }
+        let slope = c[1] + f * (2.0 * c[2] + 3.0 * f * c[3]);
+        (c[0] + f * (c[1] + f * (c[2] + f * c[3])), slope / self.step)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gudgeon_contact::{GreenwoodTripp, asperity_integral};
+    use gudgeon_core::kinds::ContactSpec;
+
+    const SIGMA: f64 = 0.3e-6;
+
+    fn rough(more: &str) -> Box<dyn Contact> {
+        let text = format!(
+            "roughness = {SIGMA:e}\ncomposite_modulus = 115e9\neta_beta_sigma = 0.05\nsigma_over_beta = 1e-3\n{more}"
+        );
+        let spec: GreenwoodTripp = toml::from_str(&text).expect("a model");
+        spec.build().expect("builds")
+    }
+
+    /// `p/F_(5/2)` \[Pa\].
+    fn scale() -> f64 {
+        16.0 * 2f64.sqrt() * std::f64::consts::PI / 15.0 * 0.05 * 0.05 * 1e-3f64.sqrt() * 115e9
+    }
+
+    #[test]
+    fn sharp_taper_carries_on_through_zero_separation() {
+        // ∫ F_(5/2)(λ + t) dt from 0 = F_(7/2)(λ)/3.5: the load of an edge whose face falls by `slope`.
+        let (length, drop) = (2.6e-3, 35e-6);
+        let slope = drop / length;
+        let face = FaceProfile::Table { length, drops: vec![0.0, drop] };
+        let line = ContactLine::new(&*rough(""), &face, 1);
+        assert!(line.open && line.floor.is_none());
+        for k in -60..=40 {
+            let l = f64::from(k) / 10.0;
+            let film = SIGMA * asperity_integral(1.0, -l);
+            let exact = scale() * SIGMA / slope * asperity_integral(3.5, l) / 3.5;
+            // Cubic interpolation of the fourth root as documented at POINTS, its fourth power, and the end of the range beyond 4.
+            assert!((line.load(film) / exact - 1.0).abs() < 3e-6, "{l}: {} {exact}", line.load(film));
+            assert!((line.separation(film) / SIGMA - l).abs() < 1e-6, "{l}");
+        }
+    }
+
+    #[test]
+    fn land_carries_its_width_and_the_flank_behind_it() {
+        let (length, land, drop) = (2.6e-3, 0.2e-3, 35e-6);
+        let line = ContactLine::new(&*rough(""), &FaceProfile::Taper { length, land, drop }, 1);
+        for l in [-3.0, -1.0, 0.0, 0.7, 2.0, 3.5] {
+            let flank = SIGMA * (length - land) / drop * asperity_integral(3.5, l) / 3.5;
+            let exact = scale() * (land * asperity_integral(2.5, l) + flank);
+            let got = line.load(SIGMA * asperity_integral(1.0, -l));
+            // As for the sharp edge.
+            assert!((got / exact - 1.0).abs() < 3e-6, "{l}: {got} {exact}");
+        }
+    }
+
+    #[test]
+    fn load_rises_without_end_as_the_film_thins() {
+        let barrel = FaceProfile::Parabola { length: 3e-3, curvature: 6e-6 / 2.25e-6, apex: 1.2e-3 };
+        let edge = FaceProfile::Table { length: 2.6e-3, drops: vec![0.0, 35e-6] };
+        for face in [barrel, edge] {
+            for fit in ["", "integral = \"polynomial\"", "integral = \"hu1994\"", "integral = \"quintic\""] {
+                let line = ContactLine::new(&*rough(fit), &face, 2);
+                let mut last = (0.0, line.separation(line.range));
+                // From beyond the range down to e^-45 of a metre, below the table.
+                for k in 0..3000 {
+                    let h = (-13.0 - 32.0 * f64::from(k) / 3000.0).exp();
+                    let (load, s) = (line.load(h), line.separation(h));
+                    assert!(load >= last.0 && (load > last.0 || load == 0.0), "{fit} {h:e}");
+                    assert!(h >= line.range || s < last.1, "{fit} {h:e}");
+                    last = (load, s);
+                }
+                assert!(last.1 < -6.0 * SIGMA && last.0 > 1e5, "{fit}: {last:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn tolerance_of_a_film_follows_its_separation() {
+        let face = FaceProfile::Table { length: 2.6e-3, drops: vec![0.0, 35e-6] };
+        let line = ContactLine::new(&*rough(""), &face, 1);
+        assert_eq!(line.ease(2.0 * line.range), 1.0);
+        for l in [-4.0, -2.0, 0.0, 0.3] {
+            // ds/d ln h = h/Φ(l): by the closed forms of the mean gap and its slope, interpolation as above.
+            let (gap, slope) = (asperity_integral(1.0, -l), asperity_integral(0.0, -l));
+            let exact = (SCALE * line.range / (SIGMA * gap / slope)).max(1.0);
+            assert!((line.ease(SIGMA * gap) / exact - 1.0).abs() < 1e-3, "{l}");
+        }
     }
 }

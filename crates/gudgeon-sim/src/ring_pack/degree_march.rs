@@ -2,14 +2,15 @@
 //!
 //! At each whole degree the seats follow from the axial balance with the pressures and the film force known there; the
 //! gas network is marched explicitly over the degree with that geometry; then the film of each ring is found at the end
-//! of the degree by bisection between the floor and 60 µm with `dh/dt = (h - h_old)/Δt`. Cycles repeat until the state
+//! of the degree by bisection between the floor and `solver.limits.thickest_film`, 60 µm in the source, with `dh/dt = (h - h_old)/Δt`. Cycles repeat until the state
 //! does, or for the number asked.
 
 use gudgeon_core::EvalError;
 
 use super::measure::Measures;
-use super::pack::{Pack, THINNEST};
+use super::pack::Pack;
 use super::record::{Record, Totals};
+use super::watch::Watch;
 
 /// Settings; see [`crate::case::Solver`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,8 +27,8 @@ pub struct Settings {
     pub tolerance: f64,
 }
 
-/// Upper end of the bisection \[m\].
-const THICKEST: f64 = 60e-6;
+/// Interval at which the bisection stops \[m\].
+const RESOLUTION: f64 = 1e-13;
 
 /// What a run found.
 #[derive(Debug, Clone, Default)]
@@ -50,7 +51,7 @@ pub fn run(
     pack: &mut Pack,
     set: Settings,
     start: f64,
-    (record, measures): (&mut Record, &mut Measures),
+    (record, measures, watch): (&mut Record, &mut Measures, &mut Watch),
     progress: &mut dyn FnMut(f64),
 ) -> Result<Outcome, EvalError> {
     let n = pack.n_rings();
@@ -69,6 +70,9 @@ pub fn run(
     for cycle in 1..=limit {
         let mut totals = Totals { flow_in: vec![0.0; n], friction_work: vec![0.0; n], ..Totals::default() };
         let before: f64 = pack.masses.iter().sum();
+        if recording {
+            *watch = Watch::new(pack);
+        }
         for k in 0..per_cycle {
             let theta = f64::from(k) * step;
             instant(pack, theta, &h);
@@ -102,7 +106,15 @@ pub fn run(
                     pack.set_place(i, *h, None);
                     pack.friction_at(i, (*h - old) / dt)?;
                     totals.friction_work[i] += pack.at.rings[i].power * dt;
+                    // Held at the end of the interval against what presses it further off.
+                    if *h >= pack.limits.thickest_film - 2.0 * RESOLUTION {
+                        let r = &mut pack.at.rings[i];
+                        r.limited.thickest = (r.film.load + r.contact - r.load).max(0.0);
+                    }
                 }
+            }
+            if recording {
+                watch.look(pack, step);
             }
             out.steps += 1;
         }
@@ -156,7 +168,7 @@ fn instant(pack: &mut Pack, theta: f64, h: &[f64]) {
 }
 
 fn bisect(pack: &mut Pack, i: usize, old: f64, dt: f64) -> Result<f64, EvalError> {
-    let floor = pack.rings[i].contact.floor.unwrap_or(THINNEST);
+    let floor = pack.lowest(i).max(RESOLUTION);
     let needed = pack.radial_load(i);
     let excess = |p: &mut Pack, h: f64| -> Result<f64, EvalError> {
         p.set_place(i, h, None);
@@ -166,8 +178,8 @@ fn bisect(pack: &mut Pack, i: usize, old: f64, dt: f64) -> Result<f64, EvalError
     if excess(pack, floor)? <= 0.0 {
         return Ok(floor);
     }
-    let (mut low, mut high) = (floor, THICKEST);
-    while high - low > 1e-13 {
+    let (mut low, mut high) = (floor, pack.limits.thickest_film);
+    while high - low > RESOLUTION {
         let mid = 0.5 * (low + high);
         if excess(pack, mid)? > 0.0 { low = mid } else { high = mid }
     }

@@ -61,6 +61,8 @@ struct Balance<'a> {
     area: f64,
     damping: &'a dyn FlankDamping,
     motion: &'a dyn RingMotion,
+    /// Velocity towards a flank that nothing shields \[m/s\].
+    fall: f64,
 }
 
 impl Balance<'_> {
@@ -99,6 +101,10 @@ impl Balance<'_> {
             // Squeeze films are linear in the approach: the first guess is the root, but for the rounding of its slope, and the
             // chord to it leads there.
             let guess = still / self.stiffness(-0.0, still);
+            if !(guess < 0.0 && guess.is_finite()) {
+                // Nothing between ring and flank resists: it falls onto the flank, in next to no time.
+                return -self.fall;
+            }
             let f = self.force(guess);
             start = guess * still / (still - f);
             if f.abs() <= START * still.abs() && self.force(start).abs() <= RESOLUTION * still.abs() {
@@ -133,6 +139,7 @@ impl Pack {
             area: place.flank_area(),
             damping: &*ring.damping,
             motion: &*ring.motion,
+            fall: self.unit_speed(i),
         }
     }
 
@@ -273,6 +280,7 @@ mod tests {
                     area: A,
                     damping: &*damping,
                     motion: &*motion,
+                    fall: 0.02,
                 };
                 // A film that the load tears apart, and a flank that pushes harder than the load, let go.
                 if b.force(1e-3) >= 0.0 {
@@ -305,6 +313,7 @@ mod tests {
                 area: A,
                 damping: &*damping,
                 motion: &*motion,
+                fall: 0.02,
             }
             .velocity(release)
         };
@@ -321,5 +330,26 @@ mod tests {
         // Straight from there: twice the excess, twice the speed.
         let (one, two) = (at(1.5 * hi) - release, at(2.0 * hi) - release);
         assert!((two / one - 2.0).abs() < 1e-6, "{one:e} {two:e}");
+    }
+
+    #[test]
+    fn a_ring_that_nothing_resists_falls_at_a_finite_speed() {
+        let (_, motion) = models();
+        let none: Box<dyn FlankDamping> = gudgeon_ring::DampingOff {}
+            .build(&FlankDampingCtx { ring: 0, rings: 1, oil_fill: 0.6, width: 5e-3, mu: 0.01 })
+            .expect("builds");
+        for (away, s) in [(1.0, 1e-9), (1.0, 0.0), (-1.0, C - 1e-9)] {
+            let b = Balance {
+                away,
+                external: -away * 300.0,
+                s,
+                clearance: C,
+                area: A,
+                damping: &*none,
+                motion: &*motion,
+                fall: 0.02,
+            };
+            assert_eq!(b.velocity(1e-5), -0.02);
+        }
     }
 }

@@ -21,7 +21,8 @@ use super::oil::Ledger;
 use super::pack::{Base, Pack};
 use super::record::Totals;
 use super::rows::Rows;
-use super::{Found, Recorded, results};
+use super::watch::Watch;
+use super::{Found, NOT_PERIODIC, Recorded, results};
 use crate::case::{IntegratorName, Outputs, RingPackCase};
 use crate::run::RunError;
 
@@ -79,7 +80,7 @@ impl OdeSystem for Problem<'_> {
         // Surfaces that touch carry by their roughness, beside which a film much thinner need not be known to its own size.
         for (i, k) in self.pack.layout.film.iter().enumerate() {
             if let Some(k) = *k {
-                atol[k] *= (self.pack.rings[i].contact.scale() / self.pack.at.places[i].h).max(1.0);
+                atol[k] *= self.pack.rings[i].contact.ease(self.pack.at.places[i].h);
             }
         }
     }
@@ -112,9 +113,6 @@ impl OdeSystem for Problem<'_> {
     }
 }
 
-/// Most steps of a cycle, some thirty times what a pack needs at the default tolerance: beyond it the case asks for something that cannot be followed, such as
-/// the contact of a ring without mass.
-const MOST_STEPS: u64 = 30_000;
 /// First step of a cycle \[rad\].
 const FIRST_STEP: f64 = 1e-3;
 /// Velocity that counts as one in the error norm, in clearances per radian: what matters of a velocity is the distance it covers.
@@ -141,6 +139,10 @@ struct Cycle<'a> {
     stats: Stats,
     q: Vec<f64>,
     full_accuracy: f64,
+    /// Longest step \[rad\]: none may jump over a pressure pulse.
+    longest_step: f64,
+    /// Most steps of a cycle.
+    most_steps: u64,
     failure: Option<IntegrateError>,
     /// Steps of a cycle at full accuracy, when known: the unit of cost.
     progress: &'a mut dyn FnMut(f64),
@@ -157,9 +159,8 @@ impl Cycle<'_> {
     ) -> Result<(), IntegrateError> {
         let mut options = Options::new(rtol, &self.scale);
         options.absolute.clone_from(&self.absolute);
-        // No step may jump over a pressure pulse: 10 degrees at most.
-        options.h_max = 10f64.to_radians();
-        options.max_steps = MOST_STEPS;
+        options.h_max = self.longest_step;
+        options.max_steps = self.most_steps;
         if let Some(oil) = &self.pack.oil_pack {
             // A face takes up what the one before it left in earlier steps.
             let speed = 1.1 * 0.5 * self.pack.kinematics.stroke() * self.pack.omega;
@@ -317,10 +318,11 @@ struct Sampler {
     end: Vec<(f64, f64)>,
     /// Crank angles \[deg\] and the film on the liner there.
     liner: Vec<(u32, Vec<f64>)>,
+    watch: Watch,
 }
 
 impl Sampler {
-    fn new(pack: &Pack, outputs: &Outputs) -> Self {
+    fn new(pack: &mut Pack, outputs: &Outputs) -> Self {
         let n = pack.n_rings();
         let mut measures = Measures::new(pack, LOBATTO, outputs.seat.si());
         let (theta, value) = pack.cylinder.highest();
@@ -336,6 +338,7 @@ impl Sampler {
             start: vec![(0.0, 0.0); n],
             end: vec![(0.0, 0.0); n],
             liner: Vec::new(),
+            watch: Watch::new(pack),
         }
     }
 
@@ -369,7 +372,7 @@ impl Sampler {
         }
     }
 
-    /// Samples the dense output of a step; at its ends and in its middle all forces, for Simpson's rule on impulse and work.
+    /// Samples the dense output of a step; at its ends and in its middle all forces, for Simpson's rule on impulse and work and on what limits did.
     fn measure(&mut self, pack: &mut Pack, v: &dyn StepView) -> Result<(), EvalError> {
         let (t0, t1) = (v.t0(), v.t1());
         let last = self.measures.nodes().len() - 1;
@@ -377,10 +380,11 @@ impl Sampler {
             let t = if k == last { t1 } else { t0 + x * (t1 - t0) };
             v.interpolate(t, &mut self.y);
             v.interpolate_quad(t, &mut self.q);
-            if pack.plan.axial && k.is_multiple_of(2) {
+            if (pack.plan.axial || pack.plan.film) && k.is_multiple_of(2) {
                 pack.evaluate(t, &self.y)?;
                 let weight = if 2 * k == last { 4.0 } else { 1.0 };
                 self.close(pack, weight * (t1 - t0) / pack.omega / 6.0);
+                self.watch.look(pack, weight * (t1 - t0) / 6.0);
             } else {
                 pack.look(t, &self.y)?;
             }
@@ -446,6 +450,25 @@ fn momentum(pack: &Pack, i: usize) -> (f64, f64) {
     (m * v, 0.5 * m * v * v)
 }
 
+/// What is said of a cycle that does not close as it should.
+fn not_periodic(error: f64, wanted: f64, cycles: usize) -> Note {
+    let text = format!(
+        "not periodic within {wanted:.0e} after {cycles} cycles: the estimated error is {error:.1e}. Raise `solver.max_cycles`, or look for a mode that \
+         never settles (a ring that flutters)"
+    );
+    let failed = error.is_nan() || error > NOT_PERIODIC * wanted;
+    let note = if failed { Note::failure("not_periodic", text) } else { Note::caution("not_periodic", text) };
+    note.amount("estimated_error", error, "1").amount("wanted", wanted, "1")
+}
+
+/// What stopped an integration.
+fn stopped(e: IntegrateError) -> RunError {
+    match e {
+        IntegrateError::TooManySteps { t, max } => RunError::Steps { theta_deg: t.to_degrees(), max },
+        other => RunError::Integrate(other),
+    }
+}
+
 /// Solves one start.
 pub(super) fn run(
     case: &RingPackCase,
@@ -498,6 +521,7 @@ pub(super) fn run(
     for (y, film) in y[dim..].iter_mut().zip(pack.oil_pack.iter().flat_map(|o| &o.film)) {
         *y = film / LINER_SCALE;
     }
+    let cycle_speed = pack.omega;
     let mut cycle = Cycle {
         pack,
         method,
@@ -510,6 +534,8 @@ pub(super) fn run(
         stats: Stats::default(),
         q: vec![0.0; quads],
         full_accuracy: s.tolerance.si(),
+        longest_step: s.limits.longest_step.si(),
+        most_steps: s.limits.steps_at(s.tolerance.si(), cycle_speed),
         failure: None,
         progress,
         done: 0.0,
@@ -526,7 +552,7 @@ pub(super) fn run(
         Ok(r) => r,
         Err(source) => {
             let theta_deg = cycle.pack.at.theta.to_degrees();
-            return Err(cycle.failure.map_or(RunError::Eval { theta_deg, source }, RunError::Integrate));
+            return Err(cycle.failure.map_or(RunError::Eval { theta_deg, source }, stopped));
         }
     };
     let seconds = begin.elapsed().as_secs_f64();
@@ -540,7 +566,7 @@ pub(super) fn run(
         // What the crankcase put on the liner before the first step was counted with the rest.
         o.ledger = Ledger::default();
     }
-    cycle.integrate(&mut y[..dim], s.tolerance.si(), Some(&mut sampler))?;
+    cycle.integrate(&mut y[..dim], s.tolerance.si(), Some(&mut sampler)).map_err(stopped)?;
     let oil_mass = cycle.pack.oil_pack.as_ref().map(|o| {
         let l = &o.ledger;
         let stored = o.total(&y[..dim]) - oil_before;
@@ -567,26 +593,10 @@ pub(super) fn run(
         periodicity_error: report.error_estimate,
         oil: pack.oil_pack.as_ref().map_or_else(Ledger::default, |o| o.ledger),
     };
-    let mut notes = Vec::new();
+    sampler.watch.carried(pack)?;
+    let mut notes = sampler.watch.notes(pack);
     if report.period == 1 && !report.converged {
-        notes.push(Note::caution(
-            "not_periodic",
-            format!(
-                "not periodic within {:.0e} after {} cycles: the estimated error is {:.1e}",
-                s.periodicity.si(),
-                report.cycles,
-                report.error_estimate
-            ),
-        ));
-    }
-    if report.error_estimate > 0.5 && !discrete {
-        return Err(RunError::NotPeriodic {
-            cycles: report.cycles as u32,
-            error: report.error_estimate,
-            wanted: s.periodicity.si(),
-            advice: "Raise `solver.max_cycles`, or look for a mode that never settles (a ring that flutters)"
-                .into(),
-        });
+        notes.push(not_periodic(report.error_estimate, options.tolerance, report.cycles));
     }
     let counters = [
         ("steps", work.steps),
@@ -599,8 +609,10 @@ pub(super) fn run(
     Ok(Found {
         liner: liner_table(pack, sampler.liner),
         record: Recorded::Rows(sampler.rows),
+        retreats: sampler.watch.events(),
         cycle: results::Cycle { totals, measures: sampler.measures },
-        period: if report.converged { report.period } else { 0 },
+        // Decisions that do not repeat are told by the caller, for every start.
+        period: if report.converged || !discrete { report.period } else { 0 },
         cycles: report.cycle_equivalents,
         counters: counters.into_iter().map(|(k, v)| (k.to_owned(), v)).collect(),
         notes,

@@ -11,6 +11,7 @@ mod end_gap;
 pub mod geometry;
 pub mod hold;
 pub mod implicit;
+pub mod limits;
 pub mod measure;
 pub mod oil;
 pub mod pack;
@@ -20,11 +21,12 @@ pub mod results;
 pub mod rows;
 mod scene;
 pub mod substep_march;
+pub mod watch;
 
 use std::time::Instant;
 
 use gudgeon_core::kinds::Motion;
-use gudgeon_core::result::{Branch, Note, Series, SolverReport};
+use gudgeon_core::result::{Branch, Event, Note, Series, SolverReport};
 use gudgeon_core::{BuildError, EvalError};
 use gudgeon_numerics::panel::TRAPEZIUM;
 use indexmap::IndexMap;
@@ -36,6 +38,7 @@ use pack::Pack;
 use record::Record;
 use results::{Cycle, Meter};
 use rows::Rows;
+use watch::Watch;
 
 /// A solved pack: the last cycle of the first start, and what else was found.
 pub struct Solved {
@@ -47,6 +50,8 @@ pub struct Solved {
     pub cycle: Cycle,
     /// Periodic solutions, when there are several or the start matters.
     pub branches: Vec<Branch>,
+    /// Rings that left the liner.
+    pub retreats: Vec<Event>,
     /// Work.
     pub report: SolverReport,
     /// Wall time of the solver \[s\], recording excluded.
@@ -63,6 +68,7 @@ struct Found {
     cycles: f64,
     counters: IndexMap<String, u64>,
     notes: Vec<Note>,
+    retreats: Vec<Event>,
     seconds: f64,
 }
 
@@ -192,7 +198,9 @@ pub fn solve(
             *report.counters.entry(name.clone()).or_insert(0) += n;
         }
         for n in &f.notes {
-            if !report.notes.contains(n) {
+            // What acted is told once, for the reported cycle; how well a cycle repeats, for every start.
+            let told = n.topic != "not_periodic" && report.notes.iter().any(|m| m.topic == n.topic);
+            if !told && !report.notes.contains(n) {
                 report.notes.push(n.clone());
             }
         }
@@ -208,7 +216,15 @@ pub fn solve(
             .record(pack)
             .map_err(|source| RunError::Eval { theta_deg: pack.at.theta.to_degrees(), source })?,
     };
-    Ok(Solved { liner: first.liner, record, cycle: first.cycle, branches, report, seconds })
+    Ok(Solved {
+        liner: first.liner,
+        record,
+        cycle: first.cycle,
+        branches,
+        retreats: first.retreats,
+        report,
+        seconds,
+    })
 }
 
 fn method_name(case: &RingPackCase) -> &'static str {
@@ -245,9 +261,19 @@ fn one_start(
                 passes: s.passes,
                 clamp: s.clamp,
             };
-            let outcome = substep_march::run(pack, set, start, (&mut record, &mut measures), progress);
+            let mut watch = Watch::new(pack);
+            let outcome =
+                substep_march::run(pack, set, start, (&mut record, &mut measures, &mut watch), progress);
             let (totals, steps) = outcome.map_err(at(pack))?;
-            let notes = unsettled(totals.periodicity_error, s.periodicity.si(), set.cycles, start, "cycles");
+            watch.carried(pack)?;
+            let mut notes = watch.notes(pack);
+            notes.extend(unsettled(
+                totals.periodicity_error,
+                s.periodicity.si(),
+                set.cycles,
+                start,
+                "cycles",
+            ));
             Ok(Found {
                 liner: None,
                 record: Recorded::Series(record),
@@ -255,7 +281,8 @@ fn one_start(
                 period: 1,
                 cycles: f64::from(set.cycles),
                 counters: [("steps".to_owned(), steps)].into_iter().collect(),
-                notes: notes.into_iter().collect(),
+                notes,
+                retreats: watch.events(),
                 seconds: begin.elapsed().as_secs_f64(),
             })
         }
@@ -267,13 +294,17 @@ fn one_start(
                 gas_steps: or(s.gas_steps, 10),
                 tolerance: s.periodicity.si(),
             };
-            let outcome = degree_march::run(pack, set, start, (&mut record, &mut measures), progress)
-                .map_err(at(pack))?;
+            let mut watch = Watch::new(pack);
+            let outcome =
+                degree_march::run(pack, set, start, (&mut record, &mut measures, &mut watch), progress)
+                    .map_err(at(pack))?;
+            watch.carried(pack)?;
+            let mut notes = watch.notes(pack);
             let change = outcome.totals.periodicity_error;
             let advice = if set.cycles > 0 { "cycles" } else { "max_cycles" };
-            let notes = (outcome.period == 0)
-                .then(|| unsettled(change, set.tolerance, outcome.cycles, start, advice))
-                .flatten();
+            if outcome.period == 0 {
+                notes.extend(unsettled(change, set.tolerance, outcome.cycles, start, advice));
+            }
             Ok(Found {
                 liner: None,
                 record: Recorded::Series(record),
@@ -281,7 +312,8 @@ fn one_start(
                 period: outcome.period,
                 cycles: f64::from(outcome.cycles),
                 counters: [("steps".to_owned(), outcome.steps)].into_iter().collect(),
-                notes: notes.into_iter().collect(),
+                notes,
+                retreats: watch.events(),
                 seconds: begin.elapsed().as_secs_f64(),
             })
         }
@@ -298,6 +330,18 @@ pub fn legal(case: &RingPackCase) -> Vec<BuildError> {
     }
     if s.tolerance.si() > 0.1 || s.tolerance.si() < 1e-12 {
         errors.push(BuildError::at("solver.tolerance", "the tolerance must be between 1e-12 and 0.1"));
+    }
+    let l = &s.limits;
+    for (from, full, key) in [
+        (l.drag_from.si(), l.drag_full.si(), "drag_full"),
+        (l.drag_gap_from.si(), l.drag_gap_full.si(), "drag_gap_full"),
+    ] {
+        if from >= full {
+            errors.push(BuildError::at(
+                format!("solver.limits.{key}"),
+                format!("the drag cannot count in full at {full} when it begins to count at {from}"),
+            ));
+        }
     }
     if s.method == Method::AsPublished {
         if case.models.oil_transport.typetag_name() != "off" {

@@ -165,6 +165,7 @@ impl OilPack {
                 let length = p.profile.length();
                 let narrowest = match &p.profile {
                     FaceProfile::Parabola { apex, .. } => apex.clamp(0.0, length),
+                    FaceProfile::Taper { land, .. } => 0.5 * land,
                     FaceProfile::Table { drops, .. } => {
                         let low = drops.iter().copied().fold(f64::INFINITY, f64::min);
                         // The middle of a flat bottom.
@@ -465,6 +466,11 @@ impl OilFace {
             FaceProfile::Parabola { curvature, apex, .. } => {
                 let e = (self.narrowest - apex) * if side == 0 { -1.0 } else { 1.0 };
                 h * t + curvature * t * (e * e + t * (e + t / 3.0))
+            }
+            FaceProfile::Taper { length, land, drop } => {
+                // Only above its narrowest place, the middle of the land, does the face fall.
+                let over = (self.narrowest + t - land).max(0.0) * if side == 0 { 0.0 } else { 1.0 };
+                h * t + 0.5 * over * over * drop / (length - land)
             }
             FaceProfile::Table { length, drops } => {
                 let n = drops.len() - 1;

@@ -18,38 +18,78 @@ use super::hold::Hold;
 use super::oil::OilPack;
 use super::plan::Plan;
 use crate::case::{
-    AxialGas, CavitationDatum, Conventions, Drag, FilmForce, Hoop, RadialGas, TwinLandFriction,
+    AxialGas, CavitationDatum, Conventions, Drag, FilmForce, Hoop, Limits, RadialGas, TwinLandFriction,
 };
 
 /// Standard acceleration used by both sources \[m/s²\].
 const GRAVITY: f64 = 9.8;
-/// Sliding speed over which boundary friction changes sign \[m/s\]; 1e-3 of a typical piston speed.
-const FRICTION_SPEED: f64 = 0.01;
-/// Fraction of a hard limit of the film over which the motion towards it fades out.
-const LIMIT_BAND: f64 = 0.02;
-/// Least film load as a fraction of the ring's own tension load: a ring pushed off the liner by gas moves away fast
-/// instead of infinitely fast.
-const LOAD_FLOOR: f64 = 1e-3;
-
-/// Radial speed that a ring does not exceed \[m/s\]: gas that lifts a ring off the liner meets its inertia, which the radial
-/// balance leaves out. Normal squeeze velocities are a thousand times smaller and not affected (relative 1e-7).
-const RADIAL_SPEED: f64 = 3.0;
-/// What moves a ring that has left the liner works against this \[N s/m²\], in place of its inertia: with next to no film the velocity
-/// otherwise jumps from one limit to the other where the load changes sign. A dry ring of 0.05 kg/m crosses 0.1 mm in about the same
-/// time against ten to fifty times as much.
-const RADIAL_DRAG: f64 = 10.0;
-/// Part that the drag has of the load, at the velocity which the film alone allows, where it begins to count and where it counts in
-/// full: the squeeze of films that carry their ring is left as it is.
-const DRAG_COUNTS: (f64, f64) = (1e-3, 1e-1);
-/// Film thickness beside that at which surfaces begin to touch, where the drag begins to count and where it counts in full.
-const OFF_THE_LINER: (f64, f64) = (2.0, 5.0);
-
-/// Film thickness below which nothing goes when there is no contact model \[m\]: a molecule or two.
-pub const THINNEST: f64 = 1e-9;
-/// Film thickness beyond which a trial state is refused \[m\].
+/// Film thickness beyond which a trial state of an integrator is refused, which then takes a smaller step \[m\]: no groove is that deep.
 const THICKEST: f64 = 0.1;
-/// Radial gap left behind a ring that touches the groove root \[m\].
-const BOTTOMED: f64 = 1e-6;
+
+/// [`Limits`] as numbers.
+#[derive(Debug, Clone, Copy)]
+pub struct Bounds {
+    /// See [`Limits::least_film`].
+    pub least_film: f64,
+    /// See [`Limits::least_load`].
+    pub least_load: f64,
+    /// See [`Limits::radial_speed`].
+    pub radial_speed: f64,
+    /// See [`Limits::radial_drag`].
+    pub radial_drag: f64,
+    /// See [`Limits::contact_drag`].
+    pub contact_drag: f64,
+    /// See [`Limits::drag_from`] and `drag_full`.
+    pub drag_counts: (f64, f64),
+    /// See [`Limits::drag_gap_from`] and `drag_gap_full`.
+    pub drag_gap: (f64, f64),
+    /// See [`Limits::retreat_band`].
+    pub retreat_band: f64,
+    /// See [`Limits::least_room`].
+    pub least_room: f64,
+    /// See [`Limits::off_the_liner`].
+    pub off_the_liner: f64,
+    /// See [`Limits::friction_speed`].
+    pub friction_speed: f64,
+    /// See [`Limits::thickest_film`].
+    pub thickest_film: f64,
+}
+
+impl From<&Limits> for Bounds {
+    fn from(l: &Limits) -> Self {
+        Self {
+            least_film: l.least_film.si(),
+            least_load: l.least_load.si(),
+            radial_speed: l.radial_speed.si(),
+            radial_drag: l.radial_drag.si(),
+            contact_drag: l.contact_drag.si(),
+            drag_counts: (l.drag_from.si(), l.drag_full.si()),
+            drag_gap: (l.drag_gap_from.si(), l.drag_gap_full.si()),
+            retreat_band: l.retreat_band.si(),
+            least_room: l.least_room.si(),
+            off_the_liner: l.off_the_liner.si(),
+            friction_speed: l.friction_speed.si(),
+            thickest_film: l.thickest_film.si(),
+        }
+    }
+}
+
+/// What limits did to a ring at an instant.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Limited {
+    /// Load on the least film or on the floor of a contact model \[N/m\].
+    pub floor: f64,
+    /// Load that the drag took \[N/m\].
+    pub drag: f64,
+    /// Load that the drag of surfaces in contact took \[N/m\].
+    pub contact_drag: f64,
+    /// Part of the velocity that the cap took.
+    pub slowed: f64,
+    /// Load that the film is given beyond what it has to carry \[N/m\].
+    pub lifted: f64,
+    /// Load that the upper end of a search interval took \[N/m\].
+    pub thickest: f64,
+}
 
 /// Work counters.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -88,6 +128,8 @@ impl LinerShape {
 pub struct RingModel {
     /// One film per running land, upper land first. Empty when no film is needed.
     pub films: Vec<Box<dyn Hydrodynamics>>,
+    /// Whether the films resist being squeezed; without them the ring rides on its contact alone.
+    pub resists: bool,
     /// Solid contact of the whole face as a function of film thickness.
     pub contact: ContactLine,
     /// Axial motion.
@@ -146,6 +188,8 @@ pub struct RingInstant {
     pub axial: AxialForces,
     /// Reaction of the flanks \[N\].
     pub reaction: f64,
+    /// What limits did.
+    pub limited: Limited,
 }
 
 /// Everything at an instant.
@@ -163,6 +207,26 @@ pub struct Instant {
     pub places: Vec<RingPlace>,
     /// The rings.
     pub rings: Vec<RingInstant>,
+}
+
+/// Decisions on the seat of one ring.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct SeatLog {
+    /// Seat before the last decision, when that changed it.
+    left: Option<f64>,
+    /// Changes of seat.
+    pub changes: u32,
+    /// Changes that the very next decision took back.
+    pub reversals: u32,
+}
+
+impl SeatLog {
+    fn decided(&mut self, before: f64, after: f64) {
+        let changed = before != after;
+        self.changes += u32::from(changed);
+        self.reversals += u32::from(changed && self.left == Some(after));
+        self.left = changed.then_some(before);
+    }
 }
 
 /// Where things are in the state vector.
@@ -186,6 +250,8 @@ pub struct Pack {
     pub geo: PackGeometry,
     /// Conventions.
     pub conv: Conventions,
+    /// Floors, caps and drags.
+    pub limits: Bounds,
     /// Crank speed \[rad/s\].
     pub omega: f64,
     /// Piston motion.
@@ -216,6 +282,8 @@ pub struct Pack {
     pub mass_scale: Vec<f64>,
     /// Seats of the rings whose motion is decided in steps (0, ½, 1).
     pub seats: Vec<f64>,
+    /// What became of the decisions on seats, per ring.
+    pub seat_log: Vec<SeatLog>,
     /// The last instant evaluated.
     pub at: Instant,
     /// Work counters.
@@ -266,7 +334,7 @@ impl Pack {
     pub fn place(&self, i: usize, liner_radius: f64, h: f64, s: Option<(f64, f64)>) -> RingPlace {
         let g = &self.geo.rings[i];
         // A ring that has bottomed in its groove keeps a sliver of gas behind it.
-        let behind = (g.h_max(liner_radius) - h).max(BOTTOMED);
+        let behind = (g.h_max(liner_radius) - h).max(self.limits.least_room);
         let slope = g.slope_upper + g.slope_lower;
         let clearance = (g.clearance_inner + slope * behind).max(0.0);
         let r_inner = g.root_radius + behind;
@@ -382,7 +450,7 @@ impl Pack {
     }
 
     /// Load of tension alone, per circumference \[N/m\] of one rail.
-    fn tension(&self, i: usize) -> f64 {
+    pub fn tension(&self, i: usize) -> f64 {
         let g = &self.geo.rings[i];
         let f = g.tangential_force / g.rails as f64;
         match self.conv.hoop {
@@ -521,25 +589,45 @@ impl Pack {
         }
     }
 
+    /// Film thickness at which ring `i` is flush with its land or touches the groove root \[m\]: it cannot retreat further.
+    #[must_use]
+    pub fn furthest(&self, i: usize) -> f64 {
+        let (g, liner) = (&self.geo.rings[i], self.at.places[i].liner_radius);
+        g.h_max(liner).min(liner - g.piston_radius_above)
+    }
+
+    /// Film thickness that ring `i` does not go below \[m\]: the floor that its contact model names, the least film under surfaces that
+    /// do not take any load, else none.
+    #[must_use]
+    pub fn lowest(&self, i: usize) -> f64 {
+        let line = &self.rings[i].contact;
+        line.floor.unwrap_or(if line.open { 0.0 } else { self.limits.least_film })
+    }
+
     /// Squeeze velocity \[m/s\] from the radial balance. Sets `load`, `contact` and `hdot` of the ring.
     pub fn radial_balance(&mut self, i: usize) -> Result<(), EvalError> {
         self.wet(i)?;
         let load = self.radial_load(i);
         let h = self.at.places[i].h;
         let contact = self.rings[i].contact.load(h);
-        let floor = LOAD_FLOOR * self.tension(i);
-        // Smooth maximum: equal to the load within floor²/load.
-        let soft = |w: f64| 0.5 * (w + (w * w + 4.0 * floor * floor).sqrt());
+        let least = self.limits.least_load * self.tension(i);
+        // Smooth maximum: equal to the load within least²/load.
+        let soft = |w: f64| 0.5 * (w + (w * w + 4.0 * least * least).sqrt());
         let needed = load - contact - self.at.rings[i].dry.0;
-        let line = &self.rings[i].contact;
-        let (lowest, band) = line.floor.map_or((THINNEST, 1.0), |f| (f, line.band));
+        let r = &mut self.at.rings[i];
+        (r.load, r.contact, r.limited) = (load, contact, Limited::default());
+        if !self.rings[i].resists {
+            self.dry_balance(i, needed);
+            return Ok(());
+        }
+        let lowest = self.lowest(i);
         if h <= lowest {
             // On the floor: does the film at rest carry less than it must?
             let film = self.film(i, 0.0)?;
-            if film.load <= soft(needed + self.radial_friction(i, 0.0)) {
+            let all = soft(needed + self.radial_friction(i, 0.0));
+            if film.load <= all {
                 let r = &mut self.at.rings[i];
-                (r.load, r.contact, r.hdot) = (load, contact, 0.0);
-                (r.film, r.film_known) = (film, true);
+                (r.hdot, r.film, r.film_known) = (0.0, film, true);
                 return Ok(());
             }
         }
@@ -552,23 +640,42 @@ impl Pack {
         } else {
             (self.solve_balance(i, needed, soft)?, None)
         };
-        let mut hdot = self.dragged(i, found, needed, soft)?;
-        hdot /= (1.0 + (hdot / RADIAL_SPEED) * (hdot / RADIAL_SPEED)).sqrt();
-        let g = &self.geo.rings[i];
-        if hdot > 0.0 {
-            // A ring can retreat until it touches the groove root or is flush with its land.
-            let liner = self.at.places[i].liner_radius;
-            let furthest = g.h_max(liner).min(liner - g.piston_radius_above);
-            hdot *= ((furthest - h) / (LIMIT_BAND * furthest)).clamp(0.0, 1.0);
-        } else {
-            hdot *= ((h - lowest) / (band * lowest)).clamp(0.0, 1.0);
-        }
+        let dragged = self.dragged(i, found, needed, soft)?;
+        let hdot = self.bounded(i, dragged, lowest);
         // Off its limits a ring moves as its film allows, and the film found with the velocity is the film of the instant.
         let film = film.filter(|_| (hdot - found).abs() <= 1e-6 * found.abs());
         let r = &mut self.at.rings[i];
-        (r.load, r.contact, r.hdot, r.film_known) = (load, contact, hdot, film.is_some());
+        (r.hdot, r.film_known) = (hdot, film.is_some());
         r.film = film.unwrap_or(r.film);
+        r.limited.lifted = soft(needed) - needed;
         Ok(())
+    }
+
+    /// A ring without a film: its contact carries it, and the drag in place of its inertia brings it there.
+    fn dry_balance(&mut self, i: usize, needed: f64) {
+        let line = &self.rings[i].contact;
+        let nothing = line.range <= 0.0 && line.floor.is_none();
+        let free = if nothing { 0.0 } else { -needed / self.limits.radial_drag };
+        let hdot = self.bounded(i, free, self.lowest(i));
+        let r = &mut self.at.rings[i];
+        (r.hdot, r.film, r.film_known) = (hdot, FaceForces::default(), true);
+        r.limited.drag = self.limits.radial_drag * hdot.abs();
+    }
+
+    /// A radial velocity within its cap and within the ends of the way.
+    fn bounded(&mut self, i: usize, free: f64, lowest: f64) -> f64 {
+        let h = self.at.places[i].h;
+        let part = 1.0 / (1.0 + (free / self.limits.radial_speed).powi(2)).sqrt();
+        self.at.rings[i].limited.slowed = 1.0 - part;
+        if free > 0.0 {
+            let furthest = self.furthest(i);
+            free * part * ((furthest - h) / (self.limits.retreat_band * furthest)).clamp(0.0, 1.0)
+        } else if lowest > 0.0 {
+            let band = self.rings[i].contact.band();
+            free * part * ((h - lowest) / (band * lowest)).clamp(0.0, 1.0)
+        } else {
+            free * part
+        }
     }
 
     /// Squeeze velocity with the drag of a ring in place of its inertia: `W(v) = needed + D v`; `free` is that without.
@@ -579,21 +686,13 @@ impl Pack {
         needed: f64,
         soft: impl Fn(f64) -> f64,
     ) -> Result<f64, EvalError> {
-        let carried = soft(needed);
-        let share = RADIAL_DRAG * free.abs() / carried.max(needed.abs());
-        let (begins, full) = DRAG_COUNTS;
-        let rough = self.rings[i].contact.range;
-        let off =
-            ((self.at.places[i].h / rough - OFF_THE_LINER.0) / (OFF_THE_LINER.1 - OFF_THE_LINER.0)).min(1.0);
-        if share <= begins || off <= 0.0 {
+        let drag = self.drag(i, free, soft(needed).max(needed.abs()));
+        if drag <= 0.0 {
             return Ok(free);
         }
-        let x = ((share / begins).ln() / (full / begins).ln()).min(1.0);
-        let ramp = |x: f64| x * x * (3.0 - 2.0 * x);
-        let drag = RADIAL_DRAG * ramp(x) * ramp(off);
         // The load of the film falls with v and what it has to carry rises: one zero, between standing still and `free`.
         let (mut lo, mut hi) = if free < 0.0 { (free, 0.0) } else { (0.0, free) };
-        let mut v = free.clamp(-RADIAL_SPEED, RADIAL_SPEED);
+        let mut v = free.clamp(-self.limits.radial_speed, self.limits.radial_speed);
         for _ in 0..60 {
             let (load, rate) = self.film_load(i, v)?;
             let w = needed + drag * v;
@@ -610,7 +709,31 @@ impl Pack {
             }
             v = next;
         }
+        let r = &mut self.at.rings[i];
+        if v > 0.0 && r.contact > 0.0 {
+            r.limited.contact_drag = drag * v;
+        } else {
+            r.limited.drag = drag * v.abs();
+        }
         Ok(v)
+    }
+
+    /// Drag per circumference \[N s/m²\] of ring `i` at the velocity `free` that its film alone allows; `load` is the size of what it carries.
+    fn drag(&self, i: usize, free: f64, load: f64) -> f64 {
+        let (limits, r) = (&self.limits, &self.at.rings[i]);
+        if free > 0.0 && r.contact > 0.0 {
+            return limits.contact_drag * r.contact / (r.contact + r.load.abs());
+        }
+        let share = limits.radial_drag * free.abs() / load;
+        let ((begins, full), (near, far)) = (limits.drag_counts, limits.drag_gap);
+        let rough = self.rings[i].contact.range;
+        let off = ((self.at.places[i].h / rough - near) / (far - near)).min(1.0);
+        if share <= begins || off <= 0.0 {
+            return 0.0;
+        }
+        let x = ((share / begins).ln() / (full / begins).ln()).min(1.0);
+        let ramp = |x: f64| x * x * (3.0 - 2.0 * x);
+        limits.radial_drag * ramp(x) * ramp(off)
     }
 
     /// Balance of several lands, or with flank friction: film load less needed load falls with `hdot`; bracket and Newton.
@@ -677,26 +800,31 @@ impl Pack {
         };
         let u = -self.at.piston.v;
         let perimeter = self.perimeter(i) * self.geo.rings[i].rails as f64;
+        let lowest = self.lowest(i);
         let line = &self.rings[i].contact;
         let r = &mut self.at.rings[i];
         r.film = o;
-        // On a hard floor the surfaces carry what the film does not.
+        // On a floor the surfaces carry what the film does not; under the least film nothing real does.
         let mut viscous = 1.0;
-        if let Some(f) = line.floor {
-            let above = self.at.places[i].h - f;
+        if lowest > 0.0 {
+            let above = self.at.places[i].h - lowest;
             let weight = if self.hard_floor {
-                f64::from(u8::from(above <= 1e-6 * f))
+                f64::from(u8::from(above <= 1e-6 * lowest))
             } else {
-                1.0 - (above / (line.band * f)).clamp(0.0, 1.0)
+                1.0 - (above / (line.band() * lowest)).clamp(0.0, 1.0)
             };
             if line.floor_replaces_film {
                 viscous = 1.0 - weight;
                 r.contact = weight * r.load.max(0.0);
+                r.limited.floor = r.contact;
             } else {
-                r.contact += weight * (r.load - r.dry.0 - r.contact - o.load).max(0.0);
+                r.limited.floor = weight * (r.load - r.dry.0 - r.contact - o.load).max(0.0);
+                if line.floor.is_some() {
+                    r.contact += r.limited.floor;
+                }
             }
         }
-        let rubbing = line.friction * r.contact * (u / FRICTION_SPEED).tanh();
+        let rubbing = line.friction * r.contact * (u / self.limits.friction_speed).tanh();
         let shear = match self.conv.drag {
             Drag::Liner => o.liner_shear,
             Drag::FaceShear => o.ring_shear,
@@ -871,6 +999,7 @@ impl Pack {
                 self.axial_forces(i);
                 let e = self.rings[i].motion.seat(&self.at.rings[i].axial);
                 changed |= e != self.seats[i];
+                self.seat_log[i].decided(self.seats[i], e);
                 self.seats[i] = e;
             }
         }
@@ -940,6 +1069,7 @@ impl Pack {
         let contact = self.rings[i].contact.load(self.at.places[i].h);
         let r = &mut self.at.rings[i];
         (r.hdot, r.film_known, r.load, r.contact) = (hdot, false, load, contact);
+        r.limited = Limited::default();
         self.friction(i)?;
         self.film_peak(i)
     }

@@ -14,7 +14,7 @@ use crate::study::{Contender, Race};
 
 impl SceneCase for RingPackCase {
     fn legal(loaded: &Loaded<Self>) -> Vec<BuildError> {
-        let mut errors = assemble::assemble(&loaded.value, &loaded.source.folder).err().unwrap_or_default();
+        let mut errors = assemble::assemble(&loaded.value, &loaded.source.files).err().unwrap_or_default();
         errors.extend(legal(&loaded.value));
         errors
     }
@@ -25,6 +25,7 @@ impl SceneCase for RingPackCase {
         told.runs.clone_from(&pack.plan.runs);
         told.skipped = skipped;
         told.results.clone_from(&pack.plan.wanted);
+        told.limits = loaded.value.solver.limits.explained();
         told.states = state_names(&pack);
         Ok(used)
     }
@@ -40,6 +41,8 @@ impl SceneCase for RingPackCase {
         result.results = solved.cycle.results(&pack, meter(case));
         result.balance = solved.cycle.totals.balance.clone();
         result.events = solved.cycle.events();
+        result.events.extend(solved.retreats);
+        result.events.sort_by(|a, b| a.theta_deg.total_cmp(&b.theta_deg));
         result.branches = solved.branches;
         result.solver = solved.report;
         result.series = solved.record.series();
@@ -90,7 +93,7 @@ impl SceneCase for RingPackCase {
 }
 
 fn build(loaded: &Loaded<RingPackCase>) -> Result<Pack, RunError> {
-    assemble::assemble(&loaded.value, &loaded.source.folder)
+    assemble::assemble(&loaded.value, &loaded.source.files)
         .map_err(|e| RunError::Refused(e.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")))
 }
 

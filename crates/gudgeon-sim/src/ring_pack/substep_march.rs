@@ -15,8 +15,9 @@ use gudgeon_core::kinds::Motion;
 use crate::case::Clamp;
 
 use super::measure::Measures;
-use super::pack::{Pack, THINNEST};
+use super::pack::Pack;
 use super::record::{Record, Totals};
+use super::watch::Watch;
 
 /// Settings; see [`crate::case::Solver`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -51,10 +52,11 @@ pub fn run(
     pack: &mut Pack,
     set: Settings,
     start: f64,
-    (record, measures): (&mut Record, &mut Measures),
+    (record, measures, watch): (&mut Record, &mut Measures, &mut Watch),
     progress: &mut dyn FnMut(f64),
 ) -> Result<(Totals, u64), EvalError> {
     let n = pack.n_rings();
+    pack.gas.unbound();
     let mut y = vec![0.0; pack.layout.n];
     pack.initial(start, &mut y);
     // The listing starts every film at 1 µm and every ring at rest on its lower flank.
@@ -134,6 +136,9 @@ pub fn run(
                         axial(pack, i, r, dt, set.clamp);
                     }
                 }
+                if last && pass < 720 {
+                    watch.look(pack, dt * pack.omega);
+                }
                 steps += 1;
                 if last && pass < 720 {
                     if pass == 0 && sub == 1 {
@@ -177,8 +182,8 @@ fn moving(pack: &Pack, i: usize) -> bool {
 
 fn bisect(pack: &mut Pack, i: usize, old: f64, dt: f64, s: (f64, f64)) -> Result<f64, EvalError> {
     let moving = moving(pack, i);
-    let floor = pack.rings[i].contact.floor.unwrap_or(THINNEST);
-    let mut high = pack.geo.rings[i].h_max(pack.at.places[i].liner_radius);
+    let floor = pack.lowest(i).max(BISECTION.0);
+    let mut high = pack.furthest(i);
     let mut low = floor;
     let mut h = old.clamp(low, high);
     for k in 1..=500 {

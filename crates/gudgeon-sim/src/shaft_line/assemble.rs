@@ -1,9 +1,9 @@
 //! From a case to a line: specs become runtimes, names become indices, contradictions go back to their place in the file.
 
 use std::f64::consts::PI;
-use std::path::Path;
 
 use gudgeon_core::BuildError;
+use gudgeon_core::file::Files;
 use gudgeon_core::kinds::{
     CouplingSpec, CylinderPressureCtx, Drive, GasEnd, KinematicsCtx, Line, LineDrive, LineLink, LineNode,
     LineThrow, ThrowCtx,
@@ -37,7 +37,7 @@ pub struct Assembled {
 /// Builds the throws of a case at a mean speed \[rad/s\], on inertias by `find`.
 fn throws(
     case: &ShaftLineCase,
-    folder: &Path,
+    files: &Files,
     speed: f64,
     find: &dyn Fn(&str) -> Option<(usize, f64)>,
     errors: &mut Vec<BuildError>,
@@ -108,7 +108,7 @@ fn throws(
                     Side::Head => kinematics.clone(),
                     Side::Crank => Box::new(CrankEnd { head: kinematics.clone() }),
                 };
-                let ctx = CylinderPressureCtx { kinematics: &*motion, piston_area: area, folder };
+                let ctx = CylinderPressureCtx { kinematics: &*motion, piston_area: area, files };
                 match e.cylinder_pressure.build(&ctx) {
                     Ok(pressure) => ends.push(GasEnd {
                         pressure,
@@ -137,12 +137,12 @@ fn throws(
 /// As [`assemble`].
 pub fn throws_alone(
     case: &ShaftLineCase,
-    folder: &Path,
+    files: &Files,
     speed: f64,
 ) -> Result<Vec<LineThrow>, Vec<BuildError>> {
     let mut errors = Vec::new();
     let ratio = |name: &str| case.inertias.iter().find(|i| i.name == name).map_or(1.0, |i| i.ratio.si());
-    let throws = throws(case, folder, speed, &|name| Some((0, ratio(name))), &mut errors);
+    let throws = throws(case, files, speed, &|name| Some((0, ratio(name))), &mut errors);
     if errors.is_empty() { Ok(throws) } else { Err(errors) }
 }
 
@@ -199,12 +199,12 @@ fn pieces(s: &ShaftCase) -> Vec<Piece> {
 ///
 /// # Errors
 /// Everything that is wrong, each at its place in the case.
-pub fn assemble(case: &ShaftLineCase, folder: &Path) -> Result<Assembled, Vec<BuildError>> {
+pub fn assemble(case: &ShaftLineCase, files: &Files) -> Result<Assembled, Vec<BuildError>> {
     let mut errors = Vec::new();
     let mut out = Assembled::default();
     let line = &mut out.line;
     if let Some(file) = &case.tors {
-        match tors::read(&folder.join(file)) {
+        match tors::read(files, file) {
             Ok(import) => {
                 out.notes.extend(import.report.iter().map(|r| Note::caution("tors", format!("{file}: {r}"))));
                 *line = import.line;
@@ -279,8 +279,7 @@ pub fn assemble(case: &ShaftLineCase, folder: &Path) -> Result<Assembled, Vec<Bu
         }
     }
     if errors.is_empty() {
-        line.throws =
-            throws(case, folder, case.speed.si(), &|n| find(n).map(|i| (i, ratios[i])), &mut errors);
+        line.throws = throws(case, files, case.speed.si(), &|n| find(n).map(|i| (i, ratios[i])), &mut errors);
     }
     let default_damping = match case.conventions.damping_factor {
         Some(factor) => {

@@ -39,7 +39,7 @@ impl SceneCase for ShaftLineCase {
     fn legal(loaded: &Loaded<Self>) -> Vec<BuildError> {
         let case = &loaded.value;
         let mut errors = legal::legal_values(case);
-        match assemble(case, &loaded.source.folder) {
+        match assemble(case, &loaded.source.files) {
             Ok(a) => {
                 errors.extend(legal::legal_names(case, &a.line));
                 let start = Start::new(case, a.line.nodes.len());
@@ -74,7 +74,7 @@ impl SceneCase for ShaftLineCase {
     fn run(loaded: &Loaded<Self>, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
         let begin = Instant::now();
         let case = &loaded.value;
-        let folder = &loaded.source.folder;
+        let files = &loaded.source.files;
         let plan = Plan::new(case);
         let mut result =
             RunResult { models: models(case, &plan), skipped: plan.skipped.clone(), ..RunResult::default() };
@@ -85,13 +85,13 @@ impl SceneCase for ShaftLineCase {
         let mut results = Results::new(case, &mut result);
         if !plan.line() {
             if plan.throws {
-                let throws = assemble::throws_alone(case, folder, case.speed.si()).map_err(refused)?;
+                let throws = assemble::throws_alone(case, files, case.speed.si()).map_err(refused)?;
                 results.throws(&throws);
             }
             result.seconds.insert("solve".into(), begin.elapsed().as_secs_f64());
             return Ok(result);
         }
-        let a = assemble(case, folder).map_err(refused)?;
+        let a = assemble(case, files).map_err(refused)?;
         results.count("lines_built", 1);
         results.note(&a.notes);
         // Once for all throws that share a pressure.
@@ -199,7 +199,7 @@ impl Run<'_> {
         let speeds = if plan.range { speeds(case) } else { Vec::new() };
         if plan.range {
             progress(Progress { phase: "vibration over the speed".into(), fraction: 0.3 });
-            self.results.gas_over_speed(a, &self.loaded.source.folder, &speeds);
+            self.results.gas_over_speed(a, &self.loaded.source.files, &speeds);
             self.results.range(&mut machine, &speeds).map_err(failed)?;
         }
         if !plan.verdict {
@@ -236,7 +236,7 @@ impl Run<'_> {
         for (_, step) in steps::all(&self.loaded.value) {
             let Some(step) = step else { continue };
             let changed = steps::read(self.loaded, step).map_err(|r| RunError::Refused(r.to_string()))?;
-            let a = assemble(&changed.value, &changed.source.folder).map_err(refused)?;
+            let a = assemble(&changed.value, &changed.source.files).map_err(refused)?;
             self.results.count("lines_built", 1);
             all.push((changed, a));
         }

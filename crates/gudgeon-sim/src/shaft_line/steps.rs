@@ -86,7 +86,7 @@ fn legal_step(loaded: &Loaded<ShaftLineCase>, step: &LoadStepCase, here: &str) -
     };
     let report = match read(loaded, step) {
         Err(report) => report,
-        Ok(changed) => match assemble::assemble(&changed.value, &changed.source.folder) {
+        Ok(changed) => match assemble::assemble(&changed.value, &changed.source.files) {
             Err(e) => changed.refuse(&e),
             Ok(a) => {
                 let start = Start::new(&changed.value, a.line.nodes.len());

@@ -4,9 +4,7 @@
 //! goes on from one of its elements with the component it names. What the format says and this program does not take over is
 //! reported, never dropped in silence.
 
-use std::path::Path;
-
-use gudgeon_core::file::{MOST_OF_A_TABLE, read_text};
+use gudgeon_core::file::Files;
 use gudgeon_core::kinds::{CouplingSpec, Line, LineLink, LineNode};
 use gudgeon_core::quantity::{NonNegative, Quantity, TorsionalDamping, TorsionalStiffness};
 use gudgeon_torsion::coupling::{Linear, Off};
@@ -31,9 +29,8 @@ const MOST: usize = 100_000;
 ///
 /// # Errors
 /// A file that cannot be read or is not TORS, with the place.
-pub fn read(path: &Path) -> Result<Import, String> {
-    let text =
-        read_text(path, MOST_OF_A_TABLE).map_err(|e| format!("cannot read {}: {e}", path.display()))?;
+pub fn read(files: &Files, file: &str) -> Result<Import, String> {
+    let text = files.text(file).map_err(|e| format!("cannot read {}: {e}", files.path(file).display()))?;
     parse(&text)
 }
 

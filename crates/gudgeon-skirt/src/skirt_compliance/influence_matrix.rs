@@ -52,7 +52,7 @@ impl SkirtComplianceSpec for InfluenceMatrix {
         if !(1..=100).contains(&self.shapes) {
             return Err(BuildError::at("shapes", format!("must be between 1 and 100, not {}", self.shapes)));
         }
-        let points = Points::read(ctx.folder, &self.file, |rows| rows)?;
+        let points = Points::read(ctx.files, &self.file, |rows| rows)?;
         let n = points.len();
         let given = DMatrix::from_fn(n, n, |i, j| points.values[j * n + i]);
         let largest = given.amax();

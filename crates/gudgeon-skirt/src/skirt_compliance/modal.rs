@@ -60,7 +60,7 @@ impl SkirtComplianceSpec for Modal {
                 return Err(BuildError::at("file", "the shapes are given twice, in a file and by formula"));
             }
             let count = self.stiffness.len();
-            let points = Points::read(ctx.folder, file, |_| count)?;
+            let points = Points::read(ctx.files, file, |_| count)?;
             (0..count).for_each(|m| add(&|x, a| points.value(m, x, a)));
             count
         } else {

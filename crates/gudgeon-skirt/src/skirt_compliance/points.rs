@@ -1,9 +1,7 @@
 //! Values at the points of a rectangular grid over the side, read from a text file.
 
-use std::path::Path;
-
 use gudgeon_core::BuildError;
-use gudgeon_core::file::{MOST_OF_A_TABLE, read_text};
+use gudgeon_core::file::Files;
 
 /// Fields over heights × angles; between the points straight lines, beyond them the values of the edge.
 #[derive(Debug)]
@@ -17,10 +15,9 @@ pub(crate) struct Points {
 
 impl Points {
     /// Rows of height \[m\], angle \[deg\] and `columns(rows)` values.
-    pub fn read(folder: &Path, file: &str, columns: impl Fn(usize) -> usize) -> Result<Self, BuildError> {
-        let path = folder.join(file);
-        let text = read_text(&path, MOST_OF_A_TABLE).map_err(|e| {
-            BuildError::at("file", format!("cannot read {}: {e}", path.display()))
+    pub fn read(files: &Files, file: &str, columns: impl Fn(usize) -> usize) -> Result<Self, BuildError> {
+        let text = files.text(file).map_err(|e| {
+            BuildError::at("file", format!("cannot read {}: {e}", files.path(file).display()))
                 .help("the name is relative to the folder of the case file")
         })?;
         let fault =

@@ -81,8 +81,8 @@ mod tests {
             widest: quantity(0.4),
             ovality: quantity(1e-4),
         };
-        let folder = std::path::Path::new("");
-        let p = spec.build(&SkirtProfileCtx { length: 0.05, radius: 0.04, folder }).expect("builds");
+        let files = &gudgeon_core::file::Files::default();
+        let p = spec.build(&SkirtProfileCtx { length: 0.05, radius: 0.04, files }).expect("builds");
         // A product and a sum or two.
         let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-19, "{a} {b}");
         near(p.depth(0.0, 0.0), 2e-5);

@@ -1,7 +1,5 @@
-use std::path::Path;
-
 use gudgeon_core::BuildError;
-use gudgeon_core::file::{MOST_OF_A_TABLE, read_text};
+use gudgeon_core::file::Files;
 use gudgeon_core::kinds::{SkirtProfile, SkirtProfileCtx, SkirtProfileSpec};
 use gudgeon_core::quantity::{Length, NonNegative, quantity};
 use gudgeon_numerics::table::Pchip;
@@ -52,10 +50,10 @@ impl SkirtProfileSpec for Table {
             if !self.heights.is_empty() || !self.drops.is_empty() {
                 return Err(BuildError::at("file", "the shape is given twice, in a file and inline"));
             }
-            if let Some((x, y)) = designed(&ctx.folder.join(file))? {
+            if let Some((x, y)) = designed(ctx.files, file)? {
                 return self.curve(x, y, "file");
             }
-            let points = Points::read(ctx.folder, file, |_| 1)?;
+            let points = Points::read(ctx.files, file, |_| 1)?;
             return Ok(Box::new(Map { oval: self.ovality.si(), points }));
         }
         if self.heights.len() != self.drops.len() || self.heights.len() < 2 {
@@ -88,8 +86,8 @@ impl Table {
 type Shape = (Vec<f64>, Vec<f64>);
 
 /// Depths and warm drops of a table that the scene `pin` wrote; nothing when the file is another one.
-fn designed(path: &Path) -> Result<Option<Shape>, BuildError> {
-    let Ok(text) = read_text(path, MOST_OF_A_TABLE) else { return Ok(None) };
+fn designed(files: &Files, file: &str) -> Result<Option<Shape>, BuildError> {
+    let Ok(text) = files.text(file) else { return Ok(None) };
     let mut lines = text.lines().enumerate();
     let names: Vec<&str> = lines.next().map_or(Vec::new(), |(_, l)| l.split(',').collect());
     let place = |name: &str| names.iter().position(|n| *n == name);
@@ -100,7 +98,7 @@ fn designed(path: &Path) -> Result<Option<Shape>, BuildError> {
         let number =
             |i: usize| cells.get(i).and_then(|c| c.trim().parse::<f64>().ok()).filter(|v| v.is_finite());
         let (Some(x), Some(y)) = (number(x), number(y)) else {
-            let what = format!("{}, line {}: a depth and a warm drop are needed", path.display(), k + 1);
+            let what = format!("{file}, line {}: a depth and a warm drop are needed", k + 1);
             return Err(BuildError::at("file", what));
         };
         columns.0.push(x);

@@ -1,8 +1,7 @@
 //! Vibration over the speed.
 
-use std::path::Path;
-
 use gudgeon_core::EvalError;
+use gudgeon_core::file::Files;
 use gudgeon_core::result::{Note, Series};
 
 use super::{MOST, Results, column};
@@ -129,10 +128,10 @@ impl Results<'_> {
     }
 
     /// Says by how much the gas torque at the ends of the range differs from that at the mean speed, which is taken everywhere.
-    pub fn gas_over_speed(&mut self, a: &Assembled, folder: &Path, speeds: &[f64]) {
+    pub fn gas_over_speed(&mut self, a: &Assembled, files: &Files, speeds: &[f64]) {
         let mut worst = (0.0, 0.0);
         for w in [speeds.first(), speeds.last()].into_iter().flatten() {
-            let Ok(throws) = throws_alone(self.case, folder, *w) else { continue };
+            let Ok(throws) = throws_alone(self.case, files, *w) else { continue };
             for (mean, here) in a.line.throws.iter().zip(&throws) {
                 let at = |k: i32| f64::from(k).to_radians() - mean.phase;
                 let largest = (0..720).map(|k| mean.gas_torque(at(k), at(k)).abs()).fold(0.0, f64::max);
