@@ -64,7 +64,7 @@ fn regressions_come_out_as_they_should() {
         };
         // One that hung is given a hundred times what a case of its scene takes, as in a campaign; none here needs more.
         let outcome =
-            executor.run(&job, Duration::from_secs(60)).unwrap_or_else(|e| panic!("{}: {e}", r.name));
+            executor.run(&job, Duration::from_secs(120)).unwrap_or_else(|e| panic!("{}: {e}", r.name));
         let (class, detail) = classify(&outcome);
         assert!(!r.why.is_empty() && !r.expect.iter().any(|c| Class::forbidden(*c)), "{}", r.name);
         match (r.expect.contains(&class), r.known) {
