@@ -20,6 +20,8 @@ const SHORTER: &[(&str, &[&str])] = &[
     ("squeeze-plates", &["rig.panels=200", "rig.motion.steps=1000"]),
     // A published transient of 5 s, of which a tenth shows the same.
     ("compressor-4-throw-as-published", &["time.duration=0.5 s"]),
+    // Four load steps, each over a wide range of speeds.
+    ("compressor-6-throw", &["range.points=31", "operating.from=950 rpm"]),
     // Fine diagrams over the speed, each point with the orders of a whole response.
     ("compressor-", &["range.points=31"]),
 ];
