@@ -114,7 +114,11 @@ fn rough_surfaces() -> Vec<Contender> {
         liner_pattern: None,
         body_pattern: None,
     };
-    let waves = SawtoothWaviness { amplitude: quantity(SIGMA), transport: WavinessTransport::Homogenised };
+    let waves = SawtoothWaviness {
+        amplitude: quantity(SIGMA),
+        transport: WavinessTransport::Homogenised,
+        closest: quantity(1.02),
+    };
     let specs: [(&str, Box<dyn RoughnessSpec>); 3] = [
         ("patir_cheng 1", Box::new(patir_cheng(Pattern::One))),
         ("patir_cheng 1/9", Box::new(patir_cheng(Pattern::Ninth))),

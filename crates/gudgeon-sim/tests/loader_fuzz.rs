@@ -164,7 +164,7 @@ fn no_text_brings_the_loader_down() {
         for k in 0..5 {
             let piece = |dice: &mut Dice| dice.of(PIECES).to_owned();
             let line = text.lines().nth(dice.below(text.lines().count())).unwrap_or_default().to_owned();
-            let set = vec![line, format!("models.x={}", piece(&mut dice)), piece(&mut dice)];
+            let set = [line, format!("models.x={}", piece(&mut dice)), piece(&mut dice)];
             read(&format!("{name}, overrides {k}"), text.clone(), &set[dice.below(3)..], &mut slowest);
         }
     }

@@ -3,7 +3,6 @@
 
 pub mod reference;
 
-use gudgeon_core::file::Files;
 use gudgeon_core::kinds::{CouplingSpec, Line, LineLink, LineNode};
 use gudgeon_core::quantity::quantity;
 use gudgeon_torsion::coupling::{Linear, Off};
@@ -80,7 +79,11 @@ pub mod compressor {
         let ctx = KinematicsCtx { crank_radius: 0.09, rod_length: 0.562, offset: 0.0, omega: 100.0 };
         let kinematics = ExactSliderCrank {}.build(&ctx).expect("builds");
         let area = std::f64::consts::PI * 0.305 * 0.305 / 4.0;
-        let c = CylinderPressureCtx { kinematics: &*kinematics, piston_area: area, files: &Files::default() };
+        let c = CylinderPressureCtx {
+            kinematics: &*kinematics,
+            piston_area: area,
+            files: &gudgeon_core::file::Files::default(),
+        };
         let clearance = Clearance {
             compression_ratio: Some(quantity(17.5)),
             stroke: Some(quantity(0.145)),
