@@ -250,9 +250,19 @@ fn same_input_same_bytes_and_no_temporary_file_is_left() {
         write_bench(&common::bench(), &dir.join("b")).unwrap();
     }
     for (sub, names) in [
-        (".", vec!["report.html", "series.csv", "summary.json"]),
-        ("c", vec!["comparison.csv", "comparison.json", "report.html", "series.csv"]),
-        ("b", vec!["bench.csv", "bench.json", "report.html"]),
+        (".", vec![".gudgeon.json", "report.html", "series.csv", "summary.json", "timing.json"]),
+        (
+            "c",
+            vec![
+                ".gudgeon.json",
+                "comparison.csv",
+                "comparison.json",
+                "report.html",
+                "series.csv",
+                "timing.json",
+            ],
+        ),
+        ("b", vec![".gudgeon.json", "bench.csv", "bench.json", "report.html"]),
     ] {
         let mut found: Vec<String> = fs::read_dir(a.join(sub))
             .unwrap()

@@ -3,7 +3,9 @@
 //! Every numerical setting that a case and its models declare (`x-refine` in their schemas) is refined, one group after the other, until
 //! what is left to gain is small beside what was gained. The uncertainty of a result is the sum over the groups of
 //!
-//!     |R_0 - R_k| + |R_k - R_{k-1}| q/(1 - q),   q = |R_k - R_{k-1}| / |R_{k-1} - R_{k-2}|,
+//! ```text
+//! |R_0 - R_k| + |R_k - R_{k-1}| q/(1 - q),   q = |R_k - R_{k-1}| / |R_{k-1} - R_{k-2}|,
+//! ```
 //!
 //! the difference between the case as it stands and its finest level, and the rest of a geometric series behind that one (q is taken as
 //! 1/2 with one level, and as at most 9/10: a series that does not shrink is named). Periodic angles are compared around the cycle.

@@ -200,7 +200,7 @@ fn mistakes_are_told_at_their_place() {
         ("throws.0.phases=[0]", "1 phases for 4 throws"),
         ("throws.0.ends.0.cylinder_pressure.discharge=\"1 bar\"", "must be above"),
         ("models.torsion={ model = \"runge_kutta\", step = 1e-5 }", "needs a table `time`"),
-        ("models.torsion={ model = \"modal\", modes = 0 }", "at least one mode"),
+        ("models.torsion={ model = \"modal\", modes = 0 }", "`0` must be at least 1"),
         ("limits.torque.0.shaft=x", "there is no shaft `x`"),
         ("range.to=\"100 rpm\"", "must be above `from`"),
         ("inertias.0.ratio=0", "would not turn"),

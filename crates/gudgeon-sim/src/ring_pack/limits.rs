@@ -49,6 +49,7 @@ pub struct Limits {
     pub longest_step: PosAngle,
     /// Most steps of a cycle; a run that needs more fails. 0: 30 000, some thirty times what a pack needs; in proportion to `tolerance^(-1/4)`
     /// below the default tolerance, and to the duration of the cycle below 100 rad/s, because rings and gas have times of their own.
+    #[schemars(range(max = 1_000_000_000))]
     pub most_steps: u64,
 }
 
