@@ -206,7 +206,7 @@ fn mistakes_are_told_at_their_place() {
         ("inertias.0.ratio=0", "would not turn"),
         ("shafts.0.pieces=[{ length = 1, diameter = 0.1 }]", "exactly one of"),
         ("drives.0.drive={ model = \"linear\", intercept = 1 }", "`intercept` and `slope`"),
-        ("range.points=1", "between 2 and 20000"),
+        ("range.points=1", "`1` must be at least 2"),
     ] {
         let told = refused(&[set]);
         assert!(told.contains(word), "{set}: {told}");

@@ -2,6 +2,7 @@
 
 use crate::common::*;
 use gudgeon_core::result::FigureKind;
+use gudgeon_sim::load::Diagnostic;
 use gudgeon_sim::{check, compare};
 
 const GIVEN: &str = "pin-85-alcohol";
@@ -100,7 +101,11 @@ fn a_search_without_a_pin_names_the_limit() {
     let fails = |case: &str, set: &[&str]| {
         let set: Vec<String> = set.iter().map(|s| (*s).to_owned()).collect();
         match check(&case_file(case), &set) {
-            Err(report) => report.diagnostics.iter().map(|d| d.headline()).collect::<Vec<_>>().join("; "),
+            Err(report) => {
+                let told =
+                    |d: &Diagnostic| format!("{}; {}", d.headline(), d.help.clone().unwrap_or_default());
+                report.diagnostics.iter().map(told).collect()
+            }
             Ok(c) => match gudgeon_sim::run(&c, &mut |_| {}) {
                 Ok(_) => panic!("{case} {set:?} ran"),
                 Err(e) => e.to_string(),

@@ -154,8 +154,9 @@ fn noise_on_a_trace_is_taken_off_and_told() {
         assert_eq!((note.topic.as_str(), note.level), ("cylinder_pressure.smoothed", NoteLevel::Caution));
         assert!(note.amounts["peak_change"].value.abs() < 3.0 * 3e3, "{note:?}");
         let (a, b) = (value(&r, "blow_by"), value(&smooth, "blow_by"));
-        // 0.03 bar is 2e-4 of the peak and a hundredth of the intake pressure, with no mean.
-        assert!((a / b - 1.0).abs() < 1e-3, "{speed}: {a} {b}");
+        // 0.03 bar is 2e-4 of the peak but a hundredth of the intake pressure. What the filter leaves of it moves the lift of ring 1 in
+        // the gas exchange: 1.4e-3 at most with three seeds, the same at a tolerance of 1e-6.
+        assert!((a / b - 1.0).abs() < 3e-3, "{speed}: {a} {b}");
         assert!(r.solver.counters["steps"] < 2 * smooth.solver.counters["steps"], "{:?}", r.solver.counters);
     }
 }
