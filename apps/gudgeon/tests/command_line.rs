@@ -416,3 +416,23 @@ fn a_case_finds_its_comparisons_and_a_broken_one_fails() {
     assert_eq!(o.status.code(), Some(2), "{}", stderr(&o));
     let _ = fs::remove_dir_all(&folder);
 }
+
+#[test]
+fn a_point_that_fails_is_a_row_of_its_sweep() {
+    let folder = scratch("sweep");
+    let case = fs::canonicalize(base()).expect("the base is in the repository");
+    let o = command(&["run", case.to_str().expect("text"), "--out", "out", "-q"])
+        // The cycle does not close at the first speed.
+        .args(["--set", "sweeps=[{path=\"engine.speed\", values=[\"777 rpm\", \"2000 rpm\"]}]"])
+        .current_dir(&folder)
+        .output()
+        .expect("the program starts");
+    assert_eq!(o.status.code(), Some(1), "{}", stderr(&o));
+    assert!(stderr(&o).contains("1 of 2 points of the sweep"), "{}", stderr(&o));
+    let text = fs::read_to_string(folder.join("out/sweep.csv")).expect("written");
+    let rows: Vec<Vec<&str>> = text.lines().map(|l| l.split(',').collect()).collect();
+    assert_eq!(rows[0].last(), Some(&"exit[1]"));
+    let ends: Vec<(&str, &str)> = rows[1..].iter().map(|r| (r[0], r[r.len() - 1])).collect();
+    assert_eq!(ends, [("777", "1"), ("2000", "0")]);
+    let _ = fs::remove_dir_all(&folder);
+}
