@@ -26,7 +26,7 @@ pub struct Assembled {
     pub line: Line,
     /// Nominal shear stress by torque \[Pa/(N m)\] of each link, with its concentration factor; none where no diameter is given.
     pub stress: Vec<Option<f64>>,
-    /// Shares of the inertias in the torque that holds the mean speed, see [`super::balance`].
+    /// Shares of the inertias in the torque that holds the mean speed, see `balance`.
     pub balance: Vec<f64>,
     /// Period of all torques over the angle of the reference shaft \[rad\].
     pub period: f64,

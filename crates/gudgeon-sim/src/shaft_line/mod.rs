@@ -1,8 +1,8 @@
 //! The scene `shaft_line`: torsional vibration of compressors and engines.
 //!
-//! A case is assembled once for each load step ([`assemble`], [`steps`]) and each of these lines is asked for its vibration at one
-//! speed after the other ([`machine`]). The case as it stands gives the results at the mean speed and the diagrams ([`results`]); all
-//! of them give the verdict ([`verdict`]).
+//! A case is assembled once for each load step (`assemble`, `steps`) and each of these lines is asked for its vibration at one
+//! speed after the other (`machine`). The case as it stands gives the results at the mean speed and the diagrams (`results`); all
+//! of them give the verdict (`verdict`).
 
 pub mod assemble;
 mod balance;
