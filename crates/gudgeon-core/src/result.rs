@@ -418,8 +418,8 @@ pub enum Verdict {
     /// The source's value comes out, within the tolerance.
     #[default]
     Reproduced,
-    /// The source, or the published model that the setting selects, is wrong, and the comparison shows by how much: the deviation is
-    /// larger than the tolerance.
+    /// The source is wrong, and what shows it stands with the comparison: an exact solution, its own numbers, two of its statements
+    /// that contradict each other, or an independent calculation. The deviation is larger than the tolerance.
     Refuted,
     /// The value does not come out, because an input of the source is lost or for a reason that is not known: the deviation is larger
     /// than the tolerance.

@@ -34,8 +34,9 @@ pub fn validation_index(all: &[Validated], folder: &str) -> String {
     let mut out = String::from(
         "# Validation\n\n`gudgeon validate` compares the cases with the values of their sources and of exact solutions, and makes \
          these pages (`--pages`). *Reproduced*: the value comes out, within a tolerance whose reason stands beside it. *Refuted*: the \
-         source, or a published model, is wrong, and the comparison shows by how much. *Not reproduced*: the value does not come out, \
-         for a lost input or for a reason that is not known.\n\n",
+         source is wrong, and what shows it stands beside the value. *Not reproduced*: the value does not come out, for a lost input or \
+         for a reason that is not known. Models that are coarser than others are compared with their own solutions, and what they \
+         miss with the difference of both.\n\n",
     );
     let total = |v| all.iter().map(|a| a.count(v)).sum::<usize>();
     let runs: usize = all.iter().map(|a| a.runs).sum();

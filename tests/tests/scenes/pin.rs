@@ -127,6 +127,9 @@ fn a_search_without_a_pin_names_the_limit() {
     );
     let said = fails(PUBLISHED, &["pin.outer=19.55 mm", "limits.rod_pressure=20 kgf/mm2"]);
     assert!(said.contains("boss pressure needs a length of"), "{said}");
+    // Such pins exist, only not of this length, which the published search never reduces.
+    let said = fails(PUBLISHED, &["pin.length=80 mm"]);
+    assert!(said.contains("the bore vanished while deflection") && said.contains("shorter"), "{said}");
     let said = fails(EXACT, &["optimise.least_wall=10 mm", "optimise.inner={from=\"5 mm\", to=\"9 mm\"}"]);
     assert!(said.contains("wall of 10 mm"), "{said}");
 }
@@ -289,7 +292,7 @@ fn extremes_end_in_words_or_in_numbers() {
         "models.pin_load.piston_mass",
         "models.pin_load.rod_length",
     ];
-    let (mut ran, mut refused, mut failed) = (0, 0, 0);
+    let (mut ran, mut refused, mut failed) = (0, 0, Vec::new());
     for case in [EXACT, PUBLISHED] {
         for path in paths {
             for v in ["1e-12", "1e-4", "0.0199", "0.0401", "1e3", "1e15", "1e300"] {
@@ -303,7 +306,7 @@ fn extremes_end_in_words_or_in_numbers() {
                 match check(&case_file(case), &set) {
                     Err(_) => refused += 1,
                     Ok(c) => match gudgeon_sim::run(&c, &mut |_| {}) {
-                        Err(_) => failed += 1,
+                        Err(e) => failed.push((case, path, v, e.to_string())),
                         Ok(r) => {
                             ran += 1;
                             assert!(r.results.values().all(|v| v.value.is_finite()), "{case} {path}={v}");
@@ -313,6 +316,21 @@ fn extremes_end_in_words_or_in_numbers() {
             }
         }
     }
-    // What no search could find is refused by `check` now; the rest fails in the search.
-    assert!(ran > 60 && refused > 150 && failed > 5, "{ran} ran, {refused} refused, {failed} failed");
+    // What no search could find is refused by `check`. What is left to fail in a search, and how often:
+    let mut counts = [0; 3];
+    for (case, path, v, said) in &failed {
+        let (kind, words) = match (*case, *path) {
+            // A pin that weighs next to nothing, or a relief of light years: one part of the mass drowns in the other, and so do the
+            // multipliers of its limits in the rounding of the whole.
+            (EXACT, "pin.density") => (0, "could not be proved"),
+            (EXACT, "pin.relief.height") => (1, "could not be proved"),
+            // The published search steps over every pin with steps larger than its bore.
+            (PUBLISHED, "optimise.steps.coarse") => (2, "the bore vanished"),
+            _ => panic!("{case} {path}={v}: {said}"),
+        };
+        assert!(said.contains(words), "{case} {path}={v}: {said}");
+        counts[kind] += 1;
+    }
+    assert_eq!(counts, [4, 2, 5]);
+    assert!(ran > 60 && refused > 150, "{ran} ran, {refused} refused");
 }

@@ -1,4 +1,5 @@
-//! The ring-pack program of tomanik1993, as published: axial seats, gas, films and friction of a 1.6 l ethanol engine.
+//! The ring-pack program of tomanik1993, as published: axial seats, gas, films and friction of a 1.6 l ethanol engine. Here stand the
+//! comparisons that need values over the cycle or two cases at once; those of results stand in `validation/alcohol-1600-*.toml`.
 //!
 //! `P1`, `A1`, … are numbers and statements of the dissertation; `7.3`, `7.4` and `8.2` those of an independent prototype with the same
 //! fills for the inputs that the dissertation does not give (cylinder pressure, bore, temperatures, oil, roughness), which are
@@ -73,72 +74,27 @@ fn variant(case: &'static str, set: &[&str]) -> (&'static str, Vec<String>) {
 
 const LOW: &str = "solver.starts=[\"1 bar\"]";
 const HIGH: &str = "solver.starts=[\"6 bar\"]";
-/// Runs in which only a trend or a second decimal matters: the source's own number of cycles to settle, twice.
-const SHORT: &str = "solver.cycles=8";
-
-/// Oil volumes of section 2.13 for case 1 (3000 rpm): the difference of the strokes that another program by the same equations gave,
-/// -3.1e-8 m³ a cycle for ring 1. Two digits: half a unit of the second is 1.6 %.
-#[test]
-fn oil_left_by_the_top_ring_between_compression_and_expansion() {
-    let r = run_case("alcohol-1600-3000", &[]);
-    let v = value(&r, "ring1.oil_face_combustion");
-    assert!((v / -31.0 - 1.0).abs() < 0.016, "{v} mm3");
-    // The film is thinner while the pressure loads the ring.
-    assert!(v < 0.0);
-}
 
 #[test]
 fn as_published() {
-    let gas = |a: &'static str, b: &'static str, c: &'static str| {
-        [
-            format!("piston.lands.0.temperature={a}"),
-            format!("piston.lands.1.temperature={b}"),
-            format!("piston.lands.2.temperature={c}"),
-            format!("rings.0.groove.temperature={a}"),
-            format!("rings.1.groove.temperature={b}"),
-            format!("rings.2.groove.temperature={c}"),
-        ]
-    };
-    let cooler = |case: &'static str, start: &str, heat: &str, angle: &str| {
-        let mut set: Vec<String> = gas("473 K", "473 K", "423 K").to_vec();
-        set.push(start.to_owned());
-        set.push(format!("models.cylinder_pressure.heat={heat}"));
-        set.push(format!("models.cylinder_pressure.burn_start={angle}"));
-        (case, set)
-    };
-    let no_film = "models.ring_motion.film_force=false";
-    let gas_only = "outputs.results=[\"blow_by\", \"land2.p_max\", \"land2.p_max_angle\"]";
-    let mut asked = vec![
+    let asked = [
         variant(CASES[0], &[HIGH]),
         variant(CASES[1], &[HIGH]),
         variant(CASES[2], &[HIGH]),
         variant(CASES[3], &[LOW]),
-        variant(CASES[0], &[LOW]),
         variant(CASES[1], &[LOW]),
         variant(CASES[2], &[LOW]),
-        variant(CASES[3], &[HIGH]),
-        // 8..: variations.
-        variant(CASES[0], &[HIGH, "solver.gas_steps=10"]),
-        variant(CASES[0], &[HIGH, SHORT, "conventions.cavitation_datum=absolute"]),
-        variant(CASES[3], &[LOW, SHORT, "conventions.cavitation_datum=absolute"]),
-        variant(CASES[0], &[HIGH, SHORT, no_film, gas_only]),
         variant(
             CASES[0],
-            &[HIGH, SHORT, gas_only, no_film, "rings.0.gap_area=0.052 mm2", "rings.1.gap_area=0.091 mm2"],
+            &[
+                HIGH,
+                "solver.cycles=1",
+                "models.ring_motion.film_force=false",
+                "outputs.results=[\"blow_by\"]",
+            ],
         ),
-        variant(CASES[0], &[HIGH, SHORT, gas_only, "models.gas_flow.orifice.discharge=0.65"]),
-        variant(CASES[0], &[HIGH, SHORT, gas_only, "models.gas_flow.orifice.discharge=1.0"]),
-        variant(CASES[0], &[HIGH, SHORT, gas_only, "models.ring_motion.band=0"]),
-        variant(CASES[0], &[HIGH, SHORT, gas_only, "engine.rod_length=136 mm"]),
-        cooler(CASES[0], HIGH, "0.8592 kJ", "337.42 deg"),
-        cooler(CASES[3], LOW, "0.8101 kJ", "333.63 deg"),
-        variant(CASES[0], &["solver.starts=[\"1 bar\"]", "solver.cycles=0", "solver.periodicity=5e-3"]),
+        variant(CASES[0], &[LOW, "solver.cycles=0", "solver.periodicity=5e-3"]),
     ];
-    for a in &mut asked[8..] {
-        if a.1.iter().all(|s| !s.starts_with("solver.cycles")) {
-            a.1.push(SHORT.into());
-        }
-    }
     let runs: Vec<RunResult> = run_all(&asked)
         .into_iter()
         .zip(&asked)
@@ -147,15 +103,15 @@ fn as_published() {
             Err(e) => panic!("{a:?}: {e}"),
         })
         .collect();
-    let (published, other, more) = (&runs[..4], &runs[4..8], &runs[8..]);
+    let (published, other, more) = (&runs[..4], &runs[4..6], &runs[6..]);
     let mut t = Table::default();
     pressures(&mut t, published);
-    seats(&mut t, published, &more[4]);
+    seats(&mut t, published);
     branches(&mut t, published, other);
     blow_by(&mut t, published);
     films(&mut t, published);
     friction(&mut t, published);
-    variations(&mut t, published, more);
+    counts(&mut t, more);
     t.finish("tomanik1993, as published: ethanol engine, 1.6 l, 3000 to 5600 rpm", "validation-tomanik.md");
 }
 
@@ -177,23 +133,6 @@ fn earlier_maximum(r: &RunResult) -> (f64, f64) {
 
 fn pressures(t: &mut Table, runs: &[RunResult]) {
     let all: Vec<(f64, f64)> = runs.iter().map(land2).collect();
-    // The prototype's numbers: 1 % and 1 deg, the accuracy of one marching step.
-    for (k, (p, angle)) in
-        [(1008.0, 435.0), (936.0, 441.0), (915.0, 440.0), (489.0, 480.0)].into_iter().enumerate()
-    {
-        let s = format!("7.3, {} rpm", RPM[k]);
-        t.compare(&s, "land 2, highest pressure, kPa", p, all[k].0, Within::Relative(0.01));
-        t.compare(&s, "its angle, deg", angle, all[k].1, Within::Absolute(1.0));
-        let (p3, a3) = [(340.0, 491.0), (313.0, 517.0), (304.0, 536.0), (462.0, 434.0)][k];
-        let ours = peak(&runs[k], "land3.p", 300.0, 720.0);
-        t.compare(&s, "land 3, highest pressure, kPa", p3, ours.0 / 1e3, Within::Relative(0.01));
-        t.compare(&s, "its angle, deg", a3, ours.1, Within::Absolute(1.0));
-    }
-    // The source's numbers with calibrated gas temperatures.
-    t.compare("P1, 3000 rpm", "land 2, highest pressure, kPa", 1020.0, all[0].0, Within::Relative(0.03));
-    t.compare("P1, 3000 rpm", "its angle, deg", 435.0, all[0].1, Within::Absolute(3.0));
-    t.compare("P2, 5600 rpm", "land 2, highest pressure, kPa", 504.0, all[3].0, Within::Relative(0.04));
-    t.compare("P2, 5600 rpm", "its angle, deg", 475.0, all[3].1, Within::Absolute(6.0));
     t.compare(
         "P3",
         "pressure at 5600 over that at 3000 rpm",
@@ -285,29 +224,7 @@ fn pressures(t: &mut Table, runs: &[RunResult]) {
     );
 }
 
-fn seats(t: &mut Table, runs: &[RunResult], swapped: &RunResult) {
-    let lifted = angles(&runs[0], 2, |e| e > 0.01);
-    t.claim(
-        "A1, 3000 rpm",
-        "ring 2 on the lower flank for all 720 deg",
-        &format!("{} deg off it", lifted.len()),
-        lifted.is_empty(),
-    );
-    let up = share(&angles(&runs[0], 1, |e| e > 0.99));
-    t.claim(
-        "A2, 3000 rpm",
-        "ring 1 on the upper flank most of the cycle",
-        &format!("{:.1} %", 100.0 * up),
-        up > 0.5,
-    );
-    t.compare("7.3, 3000 rpm", "ring 1 on the upper flank, share", 0.79, up, Within::Absolute(0.01));
-    let up_swapped = share(&angles(swapped, 1, |e| e > 0.99));
-    t.claim(
-        "A3, 3000 rpm",
-        "swapped gap areas weaken it",
-        &format!("{:.1} %", 100.0 * up_swapped),
-        up_swapped < up,
-    );
+fn seats(t: &mut Table, runs: &[RunResult]) {
     for ring in 1..=2 {
         let n = angles(&runs[0], ring, unstable).len();
         t.claim(
@@ -346,16 +263,6 @@ fn seats(t: &mut Table, runs: &[RunResult], swapped: &RunResult) {
         down[down.len() - 1] + 1.0,
         Within::Absolute(1.0),
     );
-    for k in 1..3 {
-        let n = angles(&runs[k], 2, |e| e > 0.01).len();
-        t.claim(
-            &format!("7.3, {} rpm", RPM[k]),
-            "ring 2 on the lower flank for all 720 deg",
-            &format!("{n} deg off it"),
-            n == 0,
-        );
-    }
-
     let r = &runs[3];
     let (u1, u2) = (angles(r, 1, unstable), angles(r, 2, unstable));
     let near =
@@ -427,39 +334,8 @@ fn seats(t: &mut Table, runs: &[RunResult], swapped: &RunResult) {
 }
 
 fn branches(t: &mut Table, published: &[RunResult], other: &[RunResult]) {
-    let same = |a: &RunResult, b: &RunResult| (land2(a).0 / land2(b).0 - 1.0).abs() < 5e-3;
-    t.claim(
-        "7.4, 3000 rpm",
-        "1 bar and 6 bar lead to one solution",
-        &format!("{:.1} and {:.1} kPa", land2(&published[0]).0, land2(&other[0]).0),
-        same(&published[0], &other[0]),
-    );
-    t.claim(
-        "7.4, 5600 rpm",
-        "1 bar and 6 bar lead to one solution",
-        &format!("{:.1} and {:.1} kPa", land2(&published[3]).0, land2(&other[3]).0),
-        same(&published[3], &other[3]),
-    );
-    for (k, p, angle, powers) in
-        [(1, 645.0, 464.0, [0.168, 0.117, 0.156]), (2, 562.0, 473.0, [0.213, 0.166, 0.225])]
-    {
-        let r = &other[k];
+    for (r, k) in other.iter().zip([1, 2]) {
         let s = format!("7.4, {} rpm, floating", RPM[k]);
-        t.compare(&s, "land 2, later maximum, kPa", p, land2(r).0, Within::Relative(0.01));
-        t.compare(&s, "its angle, deg", angle, land2(r).1, Within::Absolute(1.0));
-        for (i, p) in powers.into_iter().enumerate() {
-            // Of the prototype, which integrates with 120 panels and marches as we do.
-            t.compare(
-                &s,
-                &format!("ring {}, friction, kW", i + 1),
-                p,
-                kilowatts(r, i + 1),
-                // Half a unit of the last digit, and 0.5 % for its own integration.
-                Within::Rounded(0.005, 5e-4),
-            );
-        }
-        let lifted = angles(r, 2, |e| e > 0.01).len();
-        t.claim(&s, "ring 2 leaves its lower flank", &format!("{lifted} deg off it"), lifted > 0);
         let ours = [1, 2, 3].map(|i| kilowatts(r, i));
         let seated = [1, 2, 3].map(|i| kilowatts(&published[k], i));
         t.claim(
@@ -469,7 +345,7 @@ fn branches(t: &mut Table, published: &[RunResult], other: &[RunResult]) {
             (seated[1] - POWERS[k][1]).abs() < (ours[1] - POWERS[k][1]).abs(),
         );
     }
-    let (first, p) = (earlier_maximum(&other[1]), land2(&other[1]));
+    let (first, p) = (earlier_maximum(&other[0]), land2(&other[0]));
     t.compare(
         "7.4, 4000 rpm, floating",
         "land 2, earlier maximum, kPa",
@@ -490,33 +366,9 @@ fn branches(t: &mut Table, published: &[RunResult], other: &[RunResult]) {
 }
 
 fn blow_by(t: &mut Table, runs: &[RunResult]) {
-    let printed =
-        [(1.637, 0.00982, 7.9), (1.308, 0.01046, 8.4), (1.113, 0.01113, 8.9), (0.506, 0.00567, 4.5)];
     for (k, r) in runs.iter().enumerate() {
         let s = format!("7.3, {} rpm", RPM[k]);
         let mass = value(r, "blow_by_mass_per_cycle");
-        // 1 %, as for the pressures that drive it.
-        t.compare(
-            &s,
-            "gas past the pack, mg per cycle",
-            printed[k].0,
-            1e6 * mass,
-            Within::Rounded(0.01, 5e-4),
-        );
-        t.compare(
-            &s,
-            "blow-by, kg/min",
-            printed[k].1,
-            4.0 * mass * RPM[k] / 2.0,
-            Within::Rounded(0.01, 5e-6),
-        );
-        t.compare(
-            &s,
-            "blow-by, l/min at 1.25 kg/m3",
-            printed[k].2,
-            value(r, "blow_by"),
-            Within::Rounded(0.01, 0.05),
-        );
         let ends: Vec<f64> = (1..=3)
             .map(|i| column(r, &format!("ring{i}.cumulative_mass")).last().copied().unwrap_or(0.0))
             .collect();
@@ -617,7 +469,6 @@ fn films(t: &mut Table, runs: &[RunResult]) {
     }
     let r = &runs[0];
     let thick = peak(r, "ring1.h_min", 0.0, 720.0);
-    t.compare("F2, 3000 rpm", "ring 1, thickest film, um", 4.0, thick.0 * 1e6, Within::Absolute(1.5));
     t.claim(
         "F2, 3000 rpm",
         "in 280 to 300 deg",
@@ -631,13 +482,6 @@ fn films(t: &mut Table, runs: &[RunResult]) {
         strokes(r, 1)[2],
         Within::Absolute(0.7),
     );
-    // No single set of the missing inputs meets F4 and the friction powers together.
-    t.note(
-        "F4, 3000 rpm",
-        "oil ring below 1 um",
-        &format!("{:.2} um", value(r, "ring3.h_max")),
-        value(r, "ring3.h_max") <= 1.0,
-    );
     let after = |r: &RunResult| peak(r, "ring2.h_min", 360.0, 380.0).0 * 1e6;
     t.compare("F6, 5600 rpm", "ring 2, film after firing, um", 12.0, after(&runs[3]), Within::Absolute(2.0));
     t.claim(
@@ -646,46 +490,16 @@ fn films(t: &mut Table, runs: &[RunResult]) {
         &format!("{:.2} um", after(r)),
         after(r) < 3.0,
     );
-    let (thin, thick) = (value(r, "ring1.h_min"), value(&runs[3], "ring1.h_max"));
-    t.claim(
-        "F1",
-        "below 1 um at reversals, up to about 10 um in mid-stroke",
-        &format!("{thin:.2} to {thick:.2} um"),
-        thin < 1.0 && (5.0..15.0).contains(&thick),
-    );
 }
 
 fn friction(t: &mut Table, runs: &[RunResult]) {
-    let prototype =
-        [[0.137, 0.108, 0.099], [0.194, 0.181, 0.158], [0.266, 0.270, 0.227], [0.230, 0.196, 0.272]];
     let mut squares = 0.0;
     for (k, r) in runs.iter().enumerate() {
         for i in 1..=3 {
             let (printed, ours) = (POWERS[k][i - 1], kilowatts(r, i));
             squares += (ours / printed - 1.0).powi(2) / 12.0;
-            t.compare(
-                &format!("W1, {} rpm", RPM[k]),
-                &format!("ring {i}, friction, kW"),
-                printed,
-                ours,
-                Within::Relative(0.20),
-            );
-            t.compare(
-                &format!("7.3, {} rpm", RPM[k]),
-                &format!("ring {i}, friction, kW"),
-                prototype[k][i - 1],
-                kilowatts(r, i),
-                Within::Rounded(0.005, 5e-4),
-            );
         }
         let sum: f64 = (1..=3).map(|i| kilowatts(r, i)).sum();
-        t.compare(
-            &format!("W1, {} rpm", RPM[k]),
-            "pack, friction, kW",
-            [0.35, 0.54, 0.76, 0.74][k],
-            sum,
-            Within::Relative(0.20),
-        );
         let measured = [0.91, 0.96, 1.26, 2.17][k];
         t.claim(
             &format!("W3, {} rpm", RPM[k]),
@@ -724,94 +538,14 @@ fn friction(t: &mut Table, runs: &[RunResult]) {
     );
 }
 
-fn variations(t: &mut Table, runs: &[RunResult], more: &[RunResult]) {
-    let (p, angle) = land2(&runs[0]);
-    let (p10, angle10) = land2(&more[0]);
-    // Printed as a whole per cent; the march chatters with steps so long, and the noise is not the same in two programs.
-    t.compare(
-        "3, 3000 rpm",
-        "10 gas steps per degree: land 2, change, %",
-        1.0,
-        100.0 * (p10 / p - 1.0),
-        Within::Absolute(1.0),
-    );
-    t.compare(
-        "3, 3000 rpm",
-        "10 gas steps per degree: angle, change, deg",
-        5.0,
-        angle10 - angle,
-        Within::Absolute(1.0),
-    );
-    let film = |r: &RunResult, ring: usize| value(r, &format!("ring{ring}.h_max"));
-    // One decimal is printed.
-    t.compare(
-        "7.3, absolute datum, 3000 rpm",
-        "ring 1, thickest film, um",
-        4.2,
-        film(&more[1], 1),
-        Within::Rounded(0.01, 0.05),
-    );
-    t.compare(
-        "7.3, absolute datum, 3000 rpm",
-        "ring 2, thickest film, um",
-        5.3,
-        film(&more[1], 2),
-        Within::Rounded(0.01, 0.05),
-    );
-    t.compare(
-        "7.3, absolute datum, 5600 rpm",
-        "ring 2, thickest film, um",
-        9.5,
-        film(&more[2], 2),
-        Within::Shown,
-    );
-    t.compare(
-        "7.3, absolute datum, 5600 rpm",
-        "ring 2, film after firing, um",
-        8.3,
-        peak(&more[2], "ring2.h_min", 360.0, 380.0).0 * 1e6,
-        Within::Shown,
-    );
-    t.compare(
-        "7.3, absolute datum, 5600 rpm",
-        "ring 2, friction, kW",
-        0.225,
-        kilowatts(&more[2], 2),
-        Within::Rounded(0.03, 5e-4),
-    );
-    for i in 1..=3 {
-        let change = kilowatts(&more[1], i) / kilowatts(&runs[0], i) - 1.0;
-        t.claim(
-            "7.3, absolute datum, 3000 rpm",
-            &format!("ring {i}, friction within 7 %"),
-            &format!("{:+.1} %", 100.0 * change),
-            change.abs() < 0.07,
-        );
-    }
-    let no_film = land2(&more[3]);
-    t.compare("W6, 3000 rpm", "land 2 without film force, kPa", p, no_film.0, Within::Relative(0.02));
+fn counts(t: &mut Table, more: &[RunResult]) {
     t.claim(
         "W6, 3000 rpm",
-        "no film is solved then",
-        &format!("{} film evaluations", more[3].solver.counters["film_evaluations"]),
-        more[3].solver.counters["film_evaluations"] == 0,
+        "no film is solved without film force",
+        &format!("{} film evaluations", more[0].solver.counters["film_evaluations"]),
+        more[0].solver.counters["film_evaluations"] == 0,
     );
-    for (k, what, printed, slack) in [
-        // The printed changes belong to cooler gas and a lower pressure: the sign is asserted and the size within a third.
-        (5, "discharge coefficient 0.65: land 2, change, kPa", -104.0, 35.0),
-        (6, "discharge coefficient 1.0: land 2, change, kPa", 72.0, 24.0),
-        (7, "instability band 0: land 2, change, kPa", 0.0, 3.0),
-        (8, "rod 136 mm: land 2, change, kPa", -4.0, 3.0),
-    ] {
-        t.compare("7.3, 3000 rpm", what, printed, land2(&more[k]).0 - p, Within::Absolute(slack));
-    }
-    for (k, rpm, p, angle) in [(9, 3000, 938.0, 434.0), (10, 5600, 449.0, 481.0)] {
-        let s = format!("8.2, {rpm} rpm, gas 100 K cooler");
-        let ours = land2(&more[k]);
-        t.compare(&s, "land 2, highest pressure, kPa", p, ours.0, Within::Relative(0.01));
-        t.compare(&s, "its angle, deg", angle, ours.1, Within::Absolute(1.0));
-    }
-    let cycles = more[11].solver.counters["cycles"];
+    let cycles = more[1].solver.counters["cycles"];
     t.compare(
         "3, 3000 rpm",
         "cycles until the state repeats within 0.5 %",

@@ -325,10 +325,16 @@ fn published(d: &Design<'_>, s: &Setup, o: &Optimise, out: &mut RunResult) -> Re
     };
     if let Some(why) = why {
         let also = because(&d.forbids(start.outer));
+        // Nothing forbids such a pin: the search went past it.
+        let advice = if matches!(found.end, End::Bore(_)) && also.is_empty() {
+            "no limit forbids such a pin: start from a shorter one, for the search never shortens it, or take smaller steps"
+        } else {
+            "a larger outer diameter is needed"
+        };
         let also =
             if also.is_empty() { String::new() } else { format!(" No search could do better: {also}.") };
         return Err(RunError::Refused(format!(
-            "the published search ends without a pin of {:.4} mm outer diameter: {why}; a larger outer diameter is needed.{also}",
+            "the published search ends without a pin of {:.4} mm outer diameter: {why}; {advice}.{also}",
             1e3 * start.outer
         )));
     }
