@@ -32,6 +32,9 @@ pub trait Dimension: 'static {
     const NAME: &'static str;
     /// Accepted units, the SI unit first.
     const UNITS: &'static [Unit];
+    /// Largest magnitude that is read, in SI: some thousand times what any machine, or anything that stands for infinite in one, has. What
+    /// is larger is a slip of the pen, and its powers overflow.
+    const MOST: f64;
 }
 
 /// Which values of a dimension are admitted.
@@ -68,7 +71,7 @@ bounds! {
 }
 
 macro_rules! dimensions {
-    ($($(#[$doc:meta])* $name:ident, $alias:ident, $pos:ident, $text:literal, [$(($unit:literal, $factor:expr, $offset:expr)),* $(,)?];)*) => {
+    ($($(#[$doc:meta])* $name:ident, $alias:ident, $pos:ident, $text:literal, $most:expr, [$(($unit:literal, $factor:expr, $offset:expr)),* $(,)?];)*) => {
         /// Marker types of the dimensions.
         pub mod dim {
             use super::{Dimension, PI, Unit};
@@ -78,6 +81,7 @@ macro_rules! dimensions {
                 pub enum $name {}
                 impl Dimension for $name {
                     const NAME: &'static str = $text;
+                    const MOST: f64 = $most;
                     const UNITS: &'static [Unit] = &[$(Unit { name: $unit, factor: $factor, offset: $offset }),*];
                 }
             )*
@@ -90,70 +94,70 @@ macro_rules! dimensions {
             /// Strictly positive.
             pub type $pos = Quantity<dim::$name, Positive>;
         )*
-        /// Every dimension with its units, for documentation: (name, units).
-        pub const ALL_DIMENSIONS: &[(&str, &[Unit])] = &[$((dim::$name::NAME, dim::$name::UNITS)),*];
+        /// Every dimension with its units, for documentation: (name, units, largest value).
+        pub const ALL_DIMENSIONS: &[(&str, &[Unit], f64)] = &[$((dim::$name::NAME, dim::$name::UNITS, dim::$name::MOST)),*];
     };
 }
 const PI: f64 = std::f64::consts::PI;
 dimensions! {
     /// Length \[m\].
-    Length, Length, PosLength, "a length", [("m", 1.0, 0.0), ("cm", 1e-2, 0.0), ("mm", 1e-3, 0.0), ("um", 1e-6, 0.0), ("µm", 1e-6, 0.0), ("nm", 1e-9, 0.0), ("in", 0.0254, 0.0)];
+    Length, Length, PosLength, "a length", 1e6, [("m", 1.0, 0.0), ("cm", 1e-2, 0.0), ("mm", 1e-3, 0.0), ("um", 1e-6, 0.0), ("µm", 1e-6, 0.0), ("nm", 1e-9, 0.0), ("in", 0.0254, 0.0)];
     /// Area \[m²\].
-    Area, Area, PosArea, "an area", [("m2", 1.0, 0.0), ("cm2", 1e-4, 0.0), ("mm2", 1e-6, 0.0)];
+    Area, Area, PosArea, "an area", 1e12, [("m2", 1.0, 0.0), ("cm2", 1e-4, 0.0), ("mm2", 1e-6, 0.0)];
     /// Volume \[m³\].
-    Volume, Volume, PosVolume, "a volume", [("m3", 1.0, 0.0), ("l", 1e-3, 0.0), ("cm3", 1e-6, 0.0), ("mm3", 1e-9, 0.0)];
+    Volume, Volume, PosVolume, "a volume", 1e12, [("m3", 1.0, 0.0), ("l", 1e-3, 0.0), ("cm3", 1e-6, 0.0), ("mm3", 1e-9, 0.0)];
     /// Mass \[kg\].
-    Mass, Mass, PosMass, "a mass", [("kg", 1.0, 0.0), ("g", 1e-3, 0.0), ("mg", 1e-6, 0.0)];
+    Mass, Mass, PosMass, "a mass", 1e12, [("kg", 1.0, 0.0), ("g", 1e-3, 0.0), ("mg", 1e-6, 0.0)];
     /// Moment of inertia \[kg m²\].
-    Inertia, Inertia, PosInertia, "a moment of inertia", [("kg m2", 1.0, 0.0), ("kg cm2", 1e-4, 0.0), ("kg mm2", 1e-6, 0.0), ("g mm2", 1e-9, 0.0)];
+    Inertia, Inertia, PosInertia, "a moment of inertia", 1e15, [("kg m2", 1.0, 0.0), ("kg cm2", 1e-4, 0.0), ("kg mm2", 1e-6, 0.0), ("g mm2", 1e-9, 0.0)];
     /// Density \[kg/m³\].
-    Density, Density, PosDensity, "a density", [("kg/m3", 1.0, 0.0), ("g/cm3", 1e3, 0.0), ("g/mm3", 1e6, 0.0)];
+    Density, Density, PosDensity, "a density", 1e9, [("kg/m3", 1.0, 0.0), ("g/cm3", 1e3, 0.0), ("g/mm3", 1e6, 0.0)];
     /// Force \[N\].
-    Force, Force, PosForce, "a force", [("N", 1.0, 0.0), ("kN", 1e3, 0.0), ("kgf", 9.80665, 0.0)];
+    Force, Force, PosForce, "a force", 1e15, [("N", 1.0, 0.0), ("kN", 1e3, 0.0), ("kgf", 9.80665, 0.0)];
     /// Pressure \[Pa\], absolute unless the key says otherwise.
-    Pressure, Pressure, PosPressure, "a pressure", [("Pa", 1.0, 0.0), ("kPa", 1e3, 0.0), ("MPa", 1e6, 0.0), ("GPa", 1e9, 0.0), ("bar", 1e5, 0.0), ("mbar", 1e2, 0.0), ("atm", 101_325.0, 0.0), ("psi", 6_894.757_293_168, 0.0), ("kgf/mm2", 9_806_650.0, 0.0), ("kgf/cm2", 98_066.5, 0.0)];
+    Pressure, Pressure, PosPressure, "a pressure", 1e18, [("Pa", 1.0, 0.0), ("kPa", 1e3, 0.0), ("MPa", 1e6, 0.0), ("GPa", 1e9, 0.0), ("bar", 1e5, 0.0), ("mbar", 1e2, 0.0), ("atm", 101_325.0, 0.0), ("psi", 6_894.757_293_168, 0.0), ("kgf/mm2", 9_806_650.0, 0.0), ("kgf/cm2", 98_066.5, 0.0)];
     /// Temperature \[K\].
-    Temperature, Temperature, PosTemperature, "a temperature", [("K", 1.0, 0.0), ("degC", 1.0, 273.15), ("°C", 1.0, 273.15)];
+    Temperature, Temperature, PosTemperature, "a temperature", 1e6, [("K", 1.0, 0.0), ("degC", 1.0, 273.15), ("°C", 1.0, 273.15)];
     /// Angular speed \[rad/s\].
-    AngularSpeed, AngularSpeed, PosAngularSpeed, "a rotational speed", [("rad/s", 1.0, 0.0), ("rpm", PI / 30.0, 0.0), ("1/min", PI / 30.0, 0.0), ("rev/s", 2.0 * PI, 0.0)];
+    AngularSpeed, AngularSpeed, PosAngularSpeed, "a rotational speed", 1e6, [("rad/s", 1.0, 0.0), ("rpm", PI / 30.0, 0.0), ("1/min", PI / 30.0, 0.0), ("rev/s", 2.0 * PI, 0.0)];
     /// Angle \[rad\].
-    Angle, Angle, PosAngle, "an angle", [("rad", 1.0, 0.0), ("deg", PI / 180.0, 0.0)];
+    Angle, Angle, PosAngle, "an angle", 1e6, [("rad", 1.0, 0.0), ("deg", PI / 180.0, 0.0)];
     /// Time \[s\].
-    Time, Time, PosTime, "a time", [("s", 1.0, 0.0), ("ms", 1e-3, 0.0), ("us", 1e-6, 0.0)];
+    Time, Time, PosTime, "a time", 1e12, [("s", 1.0, 0.0), ("ms", 1e-3, 0.0), ("us", 1e-6, 0.0)];
     /// Velocity \[m/s\].
-    Velocity, Velocity, PosVelocity, "a velocity", [("m/s", 1.0, 0.0), ("cm/s", 1e-2, 0.0), ("mm/s", 1e-3, 0.0)];
+    Velocity, Velocity, PosVelocity, "a velocity", 1e7, [("m/s", 1.0, 0.0), ("cm/s", 1e-2, 0.0), ("mm/s", 1e-3, 0.0)];
     /// Dynamic viscosity \[Pa s\].
-    Viscosity, Viscosity, PosViscosity, "a dynamic viscosity", [("Pa s", 1.0, 0.0), ("mPa s", 1e-3, 0.0), ("cP", 1e-3, 0.0)];
+    Viscosity, Viscosity, PosViscosity, "a dynamic viscosity", 1e9, [("Pa s", 1.0, 0.0), ("mPa s", 1e-3, 0.0), ("cP", 1e-3, 0.0)];
     /// Energy \[J\].
-    Energy, Energy, PosEnergy, "an energy", [("J", 1.0, 0.0), ("kJ", 1e3, 0.0)];
+    Energy, Energy, PosEnergy, "an energy", 1e15, [("J", 1.0, 0.0), ("kJ", 1e3, 0.0)];
     /// Specific gas constant \[J/(kg K)\].
-    GasConstant, GasConstant, PosGasConstant, "a specific gas constant", [("J/(kg K)", 1.0, 0.0), ("kJ/(kg K)", 1e3, 0.0)];
+    GasConstant, GasConstant, PosGasConstant, "a specific gas constant", 1e9, [("J/(kg K)", 1.0, 0.0), ("kJ/(kg K)", 1e3, 0.0)];
     /// Coefficient of thermal expansion \[1/K\].
-    Expansion, Expansion, PosExpansion, "a thermal expansion coefficient", [("1/K", 1.0, 0.0)];
+    Expansion, Expansion, PosExpansion, "a thermal expansion coefficient", 1e3, [("1/K", 1.0, 0.0)];
     /// Stiffness \[N/m\].
-    Stiffness, Stiffness, PosStiffness, "a stiffness", [("N/m", 1.0, 0.0), ("N/mm", 1e3, 0.0), ("N/um", 1e6, 0.0)];
+    Stiffness, Stiffness, PosStiffness, "a stiffness", 1e21, [("N/m", 1.0, 0.0), ("N/mm", 1e3, 0.0), ("N/um", 1e6, 0.0)];
     /// Force per area and velocity \[N s/m³\].
-    AreaDamping, AreaDamping, PosAreaDamping, "a damping per area", [("N s/m3", 1.0, 0.0), ("N/(m2 m/s)", 1.0, 0.0)];
+    AreaDamping, AreaDamping, PosAreaDamping, "a damping per area", 1e24, [("N s/m3", 1.0, 0.0), ("N/(m2 m/s)", 1.0, 0.0)];
     /// Pressure per approach \[N/m³\].
-    AreaStiffness, AreaStiffness, PosAreaStiffness, "a stiffness per area", [("N/m3", 1.0, 0.0), ("Pa/m", 1.0, 0.0), ("MPa/um", 1e12, 0.0)];
+    AreaStiffness, AreaStiffness, PosAreaStiffness, "a stiffness per area", 1e27, [("N/m3", 1.0, 0.0), ("Pa/m", 1.0, 0.0), ("MPa/um", 1e12, 0.0)];
     /// Surface density \[1/m²\].
-    SurfaceDensity, SurfaceDensity, PosSurfaceDensity, "a surface density", [("1/m2", 1.0, 0.0), ("1/mm2", 1e6, 0.0)];
+    SurfaceDensity, SurfaceDensity, PosSurfaceDensity, "a surface density", 1e24, [("1/m2", 1.0, 0.0), ("1/mm2", 1e6, 0.0)];
     /// Relative change per pressure \[1/Pa\].
-    PressureCoefficient, PressureCoefficient, PosPressureCoefficient, "a pressure coefficient", [("1/Pa", 1.0, 0.0), ("1/MPa", 1e-6, 0.0), ("1/GPa", 1e-9, 0.0)];
+    PressureCoefficient, PressureCoefficient, PosPressureCoefficient, "a pressure coefficient", 1e3, [("1/Pa", 1.0, 0.0), ("1/MPa", 1e-6, 0.0), ("1/GPa", 1e-9, 0.0)];
     /// Shear rate \[1/s\].
-    ShearRate, ShearRate, PosShearRate, "a shear rate", [("1/s", 1.0, 0.0)];
+    ShearRate, ShearRate, PosShearRate, "a shear rate", 1e18, [("1/s", 1.0, 0.0)];
     /// Torque \[N m\].
-    Torque, Torque, PosTorque, "a torque", [("N m", 1.0, 0.0), ("kN m", 1e3, 0.0), ("MN m", 1e6, 0.0)];
+    Torque, Torque, PosTorque, "a torque", 1e15, [("N m", 1.0, 0.0), ("kN m", 1e3, 0.0), ("MN m", 1e6, 0.0)];
     /// Torsional stiffness \[N m/rad\].
-    TorsionalStiffness, TorsionalStiffness, PosTorsionalStiffness, "a torsional stiffness", [("N m/rad", 1.0, 0.0), ("kN m/rad", 1e3, 0.0), ("MN m/rad", 1e6, 0.0)];
+    TorsionalStiffness, TorsionalStiffness, PosTorsionalStiffness, "a torsional stiffness", 1e21, [("N m/rad", 1.0, 0.0), ("kN m/rad", 1e3, 0.0), ("MN m/rad", 1e6, 0.0)];
     /// Torsional damping \[N m s/rad\].
-    TorsionalDamping, TorsionalDamping, PosTorsionalDamping, "a torsional damping", [("N m s/rad", 1.0, 0.0), ("kN m s/rad", 1e3, 0.0)];
+    TorsionalDamping, TorsionalDamping, PosTorsionalDamping, "a torsional damping", 1e18, [("N m s/rad", 1.0, 0.0), ("kN m s/rad", 1e3, 0.0)];
     /// Frequency \[Hz\].
-    Frequency, Frequency, PosFrequency, "a frequency", [("Hz", 1.0, 0.0), ("cpm", 1.0 / 60.0, 0.0)];
+    Frequency, Frequency, PosFrequency, "a frequency", 1e9, [("Hz", 1.0, 0.0), ("cpm", 1.0 / 60.0, 0.0)];
     /// Power \[W\].
-    Power, Power, PosPower, "a power", [("W", 1.0, 0.0), ("kW", 1e3, 0.0), ("MW", 1e6, 0.0)];
+    Power, Power, PosPower, "a power", 1e15, [("W", 1.0, 0.0), ("kW", 1e3, 0.0), ("MW", 1e6, 0.0)];
     /// Dimensionless number.
-    Ratio, Ratio, PosRatio, "a number", [("", 1.0, 0.0), ("%", 1e-2, 0.0)];
+    Ratio, Ratio, PosRatio, "a number", 1e30, [("", 1.0, 0.0), ("%", 1e-2, 0.0)];
 }
 
 /// An SI value of dimension `D` that satisfies `B`.
@@ -196,6 +200,18 @@ pub enum QuantityError {
         /// The same as it would be read.
         instead: String,
     },
+    /// Larger than anything of its dimension in a machine.
+    #[error("`{text}` is beyond any machine: {dimension} is at most {most:e}{unit}")]
+    TooLarge {
+        /// What was written.
+        text: String,
+        /// The dimension wanted.
+        dimension: &'static str,
+        /// Largest magnitude in SI.
+        most: f64,
+        /// The SI unit, with a space before it; nothing of a number.
+        unit: String,
+    },
     /// Not finite, or outside the admitted range.
     #[error("`{text}` must be {bound}")]
     Range {
@@ -204,21 +220,6 @@ pub enum QuantityError {
         /// What it must be.
         bound: &'static str,
     },
-}
-
-fn admit(
-    si: f64,
-    bound: &'static str,
-    admits: fn(f64) -> bool,
-    text: impl Fn() -> String,
-) -> Result<f64, QuantityError> {
-    if !si.is_finite() {
-        return Err(QuantityError::Range { text: text(), bound: "finite" });
-    }
-    if !admits(si) {
-        return Err(QuantityError::Range { text: text(), bound });
-    }
-    Ok(si)
 }
 
 /// The SI value that `text` states in one of `units`; where it would do with a decimal point, that is what is told.
@@ -275,13 +276,14 @@ fn read_as_written(
 /// # Errors
 /// As [`Quantity::parse`] and [`Quantity::new`].
 pub fn check(dimension: &str, bound: &str, text: &str, number: Option<f64>) -> Result<(), QuantityError> {
-    let Some((name, units)) = ALL_DIMENSIONS.iter().find(|(name, _)| *name == dimension) else {
+    let Some(&(name, units, most)) = ALL_DIMENSIONS.iter().find(|(name, ..)| *name == dimension) else {
         return Ok(());
     };
-    let si = number.map_or_else(|| read(text, name, units), Ok)?;
     let (bound, admits) =
         ALL_BOUNDS.iter().find(|(t, _)| *t == bound).copied().unwrap_or((Any::TEXT, <Any as Bound>::admits));
-    admit(si, bound, admits, || text.to_owned()).map(|_| ())
+    let wanted = Wanted { name, units, most, bound, admits };
+    let si = number.map_or_else(|| read(text, name, units), Ok)?;
+    wanted.admit(si, || text.to_owned()).map(|_| ())
 }
 
 impl<D: Dimension, B: Bound> Quantity<D, B> {
@@ -357,23 +359,40 @@ impl<D: Dimension, B: Bound> Serialize for Quantity<D, B> {
 struct Wanted {
     name: &'static str,
     units: &'static [Unit],
+    most: f64,
     bound: &'static str,
     admits: fn(f64) -> bool,
 }
 
 impl Wanted {
     const fn of<D: Dimension, B: Bound>() -> Self {
-        Self { name: D::NAME, units: D::UNITS, bound: B::TEXT, admits: B::admits }
+        Self { name: D::NAME, units: D::UNITS, most: D::MOST, bound: B::TEXT, admits: B::admits }
+    }
+
+    /// An SI value that may stand here; `text` is what was written.
+    fn admit(&self, si: f64, text: impl Fn() -> String) -> Result<f64, QuantityError> {
+        if !si.is_finite() {
+            return Err(QuantityError::Range { text: text(), bound: "finite" });
+        }
+        if !(self.admits)(si) {
+            return Err(QuantityError::Range { text: text(), bound: self.bound });
+        }
+        if si.abs() > self.most {
+            let unit = self.units[0].name;
+            let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+            return Err(QuantityError::TooLarge { text: text(), dimension: self.name, most: self.most, unit });
+        }
+        Ok(si)
     }
 
     /// See [`Quantity::new`].
     fn number(&self, si: f64) -> Result<f64, QuantityError> {
-        admit(si, self.bound, self.admits, || format!("{si} {}", self.units[0].name).trim_end().to_owned())
+        self.admit(si, || format!("{si} {}", self.units[0].name).trim_end().to_owned())
     }
 
     /// See [`Quantity::parse`].
     fn text(&self, text: &str) -> Result<f64, QuantityError> {
-        admit(read(text, self.name, self.units)?, self.bound, self.admits, || text.to_owned())
+        self.admit(read(text, self.name, self.units)?, || text.to_owned())
     }
 
     fn schema(&self) -> schemars::Schema {
@@ -465,6 +484,10 @@ mod tests {
         );
         assert_eq!(e(PosLength::parse("0,5 mm")), "`0,5 mm` is not a number with a unit; write `0.5 mm`");
         assert!(PosLength::new(f64::INFINITY).is_err());
+        let far = AngularSpeed::<Any>::parse("-1e300 rad/s").expect_err("must be refused").to_string();
+        assert_eq!(far, "`-1e300 rad/s` is beyond any machine: a rotational speed is at most 1e6 rad/s");
+        let far = Ratio::<Any>::new(1e31).expect_err("must be refused").to_string();
+        assert!(far.ends_with("a number is at most 1e30"), "{far}");
     }
 
     #[test]
@@ -472,7 +495,7 @@ mod tests {
         let schema = schemars::schema_for!(PosLength).to_value();
         let (d, b) = (schema["x-dimension"].as_str(), schema["x-bound"].as_str());
         let (d, b) = (d.expect("present"), b.expect("present"));
-        for text in ["120 mm", "3 bar", "-3 mm", "NaN mm", "mm", "0", "1e400 m"] {
+        for text in ["120 mm", "3 bar", "-3 mm", "NaN mm", "mm", "0", "1e400 m", "1e300 m"] {
             assert_eq!(check(d, b, text, None).err(), PosLength::parse(text).err());
         }
         assert!(check(d, b, "-1", Some(-1.0)).is_err());

@@ -8,7 +8,7 @@ use gudgeon_core::{BuildError, EvalError};
 use gudgeon_film::film_1d::LineProfile;
 use serde::{Deserialize, Serialize};
 
-use crate::{along, profile};
+use crate::{along, profile, validity};
 
 /// A long journal bearing at a given eccentricity: the film around the shaft, unrolled.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
@@ -242,6 +242,7 @@ impl Rig for Bench {
         if rows.iter().any(|r| r.fill < 1.0) {
             out.curves("Filled fraction of the gap", "", &[("fill", "fill")]);
         }
+        validity::tell(out);
         along::finite(out, "journal_1d")
     }
 }

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::along;
 use crate::sheet::{self, Conditions, Sheet};
 use crate::slider_2d::Sides;
+use crate::validity;
 
 /// A journal bearing of finite width at a given eccentricity.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
@@ -228,6 +229,7 @@ impl Rig for Bench {
             ("y", "m", ys.iter().map(|j| grid.y[*j]).collect()),
             maps,
         );
+        validity::tell(out);
         sheet::finite("journal_2d", out)
     }
 }

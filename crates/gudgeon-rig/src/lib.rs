@@ -20,6 +20,7 @@ mod skirt;
 mod slider;
 mod slider_2d;
 mod squeeze_film;
+mod validity;
 
 pub use contact_pair::ContactPairRig;
 pub use cylinder_pressure::CylinderPressureRig;

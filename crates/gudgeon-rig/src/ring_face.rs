@@ -4,7 +4,7 @@ use gudgeon_core::quantity::{Force, PosLength, PosViscosity, Pressure, Velocity,
 use gudgeon_core::{BuildError, EvalError};
 use serde::{Deserialize, Serialize};
 
-use crate::along;
+use crate::{along, validity};
 
 /// The film under a running face at one instant: geometry, thickness, speeds and pressures given.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
@@ -146,6 +146,7 @@ impl Rig for Bench {
             &[("pressure", "p")],
         );
         out.curves("Film thickness", "", &[("film", "h")]);
+        validity::tell(out);
         Ok(())
     }
 }

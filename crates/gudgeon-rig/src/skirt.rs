@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::along;
 use crate::sheet::{self, Conditions, Sheet};
+use crate::validity;
 
 /// The film between one side of a piston skirt and the liner at one instant.
 ///
@@ -227,6 +228,7 @@ impl Rig for Bench {
             ("height", "m", xs.iter().map(|i| length - grid.x[*i]).collect()),
             maps,
         );
+        validity::tell(out);
         sheet::finite("skirt", out)
     }
 }

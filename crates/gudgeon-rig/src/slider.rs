@@ -10,8 +10,8 @@ use gudgeon_film::film_1d::{LineProfile, ViscosityLoop};
 use gudgeon_film::{Isoviscous, Newtonian, SmoothSurfaces};
 use serde::{Deserialize, Serialize};
 
-use crate::along;
 use crate::profile::{self, Profile};
+use crate::{along, validity};
 
 /// A steady film along a line: any profile, flooded or starved, smooth or rough.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
@@ -370,6 +370,7 @@ impl Rig for Bench {
                 },
             );
         }
+        validity::tell(out);
         along::finite(out, "slider")
     }
 }

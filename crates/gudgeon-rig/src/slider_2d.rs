@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::along;
 use crate::sheet::{self, Conditions, Sheet};
+use crate::validity;
 
 /// A rectangular pad above a plane that slides along its length: any profile, with or without dimples, smooth or rough, squeezed or not.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
@@ -370,6 +371,7 @@ impl Rig for Bench {
             ("y", "m", ys.iter().map(|j| grid.y[*j]).collect()),
             maps,
         );
+        validity::tell(out);
         sheet::finite("slider_2d", out)
     }
 }

@@ -10,7 +10,7 @@ use gudgeon_core::{BuildError, EvalError};
 use gudgeon_film::film_1d::LineProfile;
 use serde::{Deserialize, Serialize};
 
-use crate::{along, profile};
+use crate::{along, profile, validity};
 
 /// A film between a plane and a strip or a ring face that move towards each other or apart, without sliding.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
@@ -177,16 +177,26 @@ impl RigSpec for SqueezeFilmRig {
             built.map_err(|e| errors.push(e.within("film_1d"))).ok()
         });
         match (line, film) {
-            (Some(line), Some(film)) if errors.is_empty() => Ok(Box::new(Bench {
-                mu: vec![self.viscosity.si(); line.panels()],
-                still: line.clone(),
-                line,
-                gap,
-                film,
-                motion: self.motion.clone(),
-                p: self.p_ends.si(),
-                p_cav: self.p_cav.si(),
-            })),
+            (Some(line), Some(film)) if errors.is_empty() => {
+                let mut bench = Bench {
+                    mu: vec![self.viscosity.si(); line.panels()],
+                    still: line.clone(),
+                    line,
+                    gap,
+                    film,
+                    motion: self.motion.clone(),
+                    p: self.p_ends.si(),
+                    p_cav: self.p_cav.si(),
+                };
+                if let Motion::Fall { load, .. } = &self.motion
+                    && let Ok((_, carried, _)) = bench.pressed(gap, load.si())
+                    && carried <= 0.0
+                {
+                    let what = "carries nothing: under a load the gap would close at once";
+                    return Err(vec![BuildError::at("film_1d.model", what)]);
+                }
+                Ok(Box::new(bench))
+            }
             _ => Err(errors),
         }
     }
@@ -280,14 +290,18 @@ impl Bench {
         Ok(())
     }
 
+    /// A velocity of the size that a flat strip has under a load, the load that the film carries at it, and its highest pressure.
+    fn pressed(&mut self, gap: f64, load: f64) -> Result<(f64, f64, f64), EvalError> {
+        self.open(gap);
+        let scale = (gap / self.length()).powi(3) * load / self.mu[0];
+        let o = self.solve(FilmTime::Squeeze(&vec![-scale; self.mu.len()]))?;
+        Ok((scale, self.above(&o), o.p_max))
+    }
+
     /// Velocity at which the strip falls under a load, and the highest pressure: a film that is pressed is full, and its load
     /// grows with the velocity in proportion.
     fn falling(&mut self, gap: f64, load: f64) -> Result<(f64, f64), EvalError> {
-        self.open(gap);
-        // Of the size that a flat strip has: nothing overflows.
-        let scale = (gap / self.length()).powi(3) * load / self.mu[0];
-        let o = self.solve(FilmTime::Squeeze(&vec![-scale; self.mu.len()]))?;
-        let carried = self.above(&o);
+        let (scale, carried, p_max) = self.pressed(gap, load)?;
         let ratio = load / carried;
         if !(carried > 0.0 && ratio.is_finite() && scale > 0.0) {
             return Err(EvalError::recoverable(
@@ -295,7 +309,7 @@ impl Bench {
                 format!("the film of {gap:e} m carries nothing"),
             ));
         }
-        Ok((scale * ratio, self.p + (o.p_max - self.p) * ratio))
+        Ok((scale * ratio, self.p + (p_max - self.p) * ratio))
     }
 
     fn fall(&mut self, out: &mut RigOut, gap_end: f64, load: f64) -> Result<(), EvalError> {
@@ -489,6 +503,7 @@ impl Rig for Bench {
                 },
             ),
         }?;
+        validity::tell(out);
         along::finite(out, "squeeze_film")
     }
 }

@@ -75,7 +75,7 @@ pub enum Slopes {
     None,
     /// Of the film as it is.
     Film,
-    /// Of a film that does not cavitate, where the film is one that is cut off: larger than the others.
+    /// Of a film that does not cavitate: larger than those of the film as it is.
     Full,
 }
 
@@ -557,21 +557,31 @@ impl Side {
             }
         }
         if self.superposition != Superposition::None {
-            let inp = film_input(&self.now, n);
-            let [top, bottom] = [&self.modes_of_rates[..n], &self.modes_of_rates[n..2 * n]];
-            let mode = |u: f64, dhdt| FilmMode { u, dhdt, edge_pressure: [0.0; 4] };
-            let first = [mode(-1.0, &[]), mode(0.0, top), mode(0.0, bottom)];
-            if self.elastic == 0 {
-                self.film.solve_many(&inp, &first, &mut self.fields)?;
-            } else {
-                let mut all = first.to_vec();
-                all.extend(self.modes_of_rates[2 * n..].chunks_exact(n).map(|r| mode(0.0, r)));
-                self.film.solve_many(&inp, &all, &mut self.fields)?;
-            }
-            self.evaluations += 1;
+            self.full_films()?;
         }
         self.placed.extend_from_slice(&[e[0], e[1], key]);
         self.placed.extend_from_slice(q);
+        Ok(())
+    }
+
+    /// Pressures of full films at the present place, for sliding at one metre a second and for each rate of one metre a second, into `fields`.
+    ///
+    /// # Errors
+    /// A film that cannot be solved.
+    fn full_films(&mut self) -> Result<(), EvalError> {
+        let n = self.nodes();
+        let inp = film_input(&self.now, n);
+        let [top, bottom] = [&self.modes_of_rates[..n], &self.modes_of_rates[n..2 * n]];
+        let mode = |u: f64, dhdt| FilmMode { u, dhdt, edge_pressure: [0.0; 4] };
+        let first = [mode(-1.0, &[]), mode(0.0, top), mode(0.0, bottom)];
+        if self.elastic == 0 {
+            self.film.solve_many(&inp, &first, &mut self.fields)?;
+        } else {
+            let mut all = first.to_vec();
+            all.extend(self.modes_of_rates[2 * n..].chunks_exact(n).map(|r| mode(0.0, r)));
+            self.film.solve_many(&inp, &all, &mut self.fields)?;
+        }
+        self.evaluations += 1;
         Ok(())
     }
 
@@ -615,7 +625,10 @@ impl Side {
         }
         let (n, width) = (self.nodes(), 4 + self.elastic);
         out.slope.resize(rates.len() * width, 0.0);
-        if self.is_superposed() {
+        if slopes == Slopes::Full && !self.is_superposed() {
+            self.full_films()?;
+        }
+        if self.is_superposed() || slopes == Slopes::Full {
             let all = if slopes == Slopes::Full { 1.0 } else { 0.0 };
             for (m, row) in out.slope.chunks_exact_mut(width).enumerate() {
                 let field = &self.fields[(1 + m) * n..(2 + m) * n];

@@ -114,7 +114,7 @@ fn folded(unit: &str) -> String {
 /// off).
 #[must_use]
 pub fn nearest_unit(dimension: &str, text: &str) -> Option<(&'static str, bool)> {
-    let (_, units) = ALL_DIMENSIONS.iter().find(|(name, _)| *name == dimension)?;
+    let (_, units, _) = ALL_DIMENSIONS.iter().find(|(name, ..)| *name == dimension)?;
     let wanted = folded(text);
     // `MPa` and `mPa s` differ by case alone: the same letters in the same case come first.
     let same = |u: &&Unit| !u.name.is_empty() && folded(u.name) == wanted;

@@ -15,7 +15,8 @@ use super::{Cavitation, Flux};
 ///
 /// in control volumes round the nodes of a grid that may be graded. Multigrid smooths whole lines along `x`, odd and even ones in turn, and
 /// coarsens across: a cycle costs some ten operations per node and leaves about a tenth of the error, whatever the size of the grid, the ratio
-/// of its spacings and the film. What is cavitated is carried along the lines and solved with them.
+/// of its spacings and the film. What is cavitated is carried along the lines and solved with them. A grid of up to a thousand nodes is its own
+/// coarsest grid: elimination solves it in the time of a few cycles.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Multigrid {
@@ -55,9 +56,11 @@ impl Film2dSpec for Multigrid {
     fn build(&self, ctx: &Film2dCtx<'_>) -> Result<Box<dyn Film2d>, BuildError> {
         super::check_tolerance(self.tolerance)?;
         let problem = Problem::new(ctx.grid, self.flux)?;
+        let small = problem.nx * problem.ny <= SMALL;
         let linear = Cycling {
+            small,
             grids: LineMultigrid::new(problem.nx, problem.ny, problem.periodic),
-            fallback: None,
+            fallback: small.then(|| Elimination::new(&problem.m, true)),
             failed: None,
             symmetric: true,
         };
@@ -65,7 +68,12 @@ impl Film2dSpec for Multigrid {
     }
 }
 
+/// Nodes up to which elimination is faster than cycles: on 378 nodes of a skirt a mass-conserving film took 60 times less time with it.
+const SMALL: usize = 1000;
+
 struct Cycling {
+    /// Whether elimination solves it.
+    small: bool,
     grids: LineMultigrid,
     /// Elimination, made when it is first needed: where the film changes a thousandfold from node to node, cycles may not help.
     fallback: Option<Elimination>,
@@ -77,6 +85,9 @@ struct Cycling {
 impl Linear for Cycling {
     fn factor(&mut self, m: &FivePoint, symmetric: bool) -> Result<(), Singular> {
         self.symmetric = symmetric;
+        if let Some(own) = self.fallback.as_mut().filter(|_| self.small) {
+            return own.factor(m, symmetric);
+        }
         self.failed = self.grids.setup(m).err();
         match self.failed {
             // Too large for elimination.
@@ -86,6 +97,9 @@ impl Linear for Cycling {
     }
 
     fn solve(&mut self, m: &FivePoint, b: &[f64], z: &mut [f64], target: f64) -> (usize, f64) {
+        if let Some(own) = self.fallback.as_mut().filter(|_| self.small) {
+            return own.solve(m, b, z, target);
+        }
         let mut cycles = 0;
         let mut left = f64::INFINITY;
         if self.failed.is_none() {
@@ -101,5 +115,9 @@ impl Linear for Cycling {
         }
         let (more, residual) = fallback.solve(m, b, z, target);
         (cycles + more, residual)
+    }
+
+    fn solve_block(&mut self, m: &FivePoint, b: &mut [f64]) -> bool {
+        self.fallback.as_mut().filter(|_| self.small).is_some_and(|own| own.solve_block(m, b))
     }
 }

@@ -608,8 +608,8 @@ fn check_quantity(node: &Node, dimension: &str, bound: &str, path: &str, out: &m
 fn units_of(dimension: &str) -> Vec<&'static str> {
     ALL_DIMENSIONS
         .iter()
-        .find(|(n, _)| *n == dimension)
-        .map_or_else(Vec::new, |(_, u)| u.iter().map(|u| u.name).filter(|n| !n.is_empty()).collect())
+        .find(|(n, ..)| *n == dimension)
+        .map_or_else(Vec::new, |(_, u, _)| u.iter().map(|u| u.name).filter(|n| !n.is_empty()).collect())
 }
 
 fn unit_advice(unit: &str, dimension: &str, known: &str) -> String {
@@ -619,13 +619,13 @@ fn unit_advice(unit: &str, dimension: &str, known: &str) -> String {
     if ["degF", "°F", "F", "Fahrenheit"].contains(&unit) && dimension == "a temperature" {
         return format!("in degrees Celsius it is (F - 32)/1.8; valid: {known}");
     }
-    let owner = ALL_DIMENSIONS.iter().find(|(_, us)| us.iter().any(|u| u.is(unit)));
+    let owner = ALL_DIMENSIONS.iter().find(|(_, us, _)| us.iter().any(|u| u.is(unit)));
     match (quantity::nearest_unit(dimension, unit), owner) {
         // Same letters in another case are the better guess; few edits apart are not.
         (Some((near, true)), _) | (Some((near, false)), None) => {
             format!("did you mean `{near}`? valid: {known}")
         }
-        (_, Some((other, _))) => format!("`{unit}` is a unit of {other}; valid: {known}"),
+        (_, Some((other, ..))) => format!("`{unit}` is a unit of {other}; valid: {known}"),
         (None, None) => format!("valid: {known}"),
     }
 }
