@@ -524,10 +524,6 @@ impl Bench {
     /// rounding would take that away: there the sum stands in place of one of their balances.
     fn settle(&mut self, y: &mut [f64]) -> Result<u64, EvalError> {
         const STEPS: u64 = 2_000;
-        const ROUNDING: f64 = 1e-14;
-        // The slope at a relative drop of 1e-8 stands for the infinite one: a drop of rounding, 1e-16, is then answered by twice the root of both,
-        // 2e-12, in each of the openings on the way.
-        const ROOT_OF_ROUNDING: f64 = 1e-10;
         let n = y.len();
         let rows = n + self.gas.openings;
         let (mut f, mut jac) = (vec![0.0; rows], vec![0.0; rows * n]);
@@ -569,22 +565,38 @@ impl Bench {
                 continue;
             }
             // A step much longer than the slowest volume needs is Newton's. Flow goes with the root of a pressure drop that vanishes, and of a root
-            // Newton's steps lead from one side to the other, as far again: half of such a step ends at nothing.
+            // Newton's steps lead from one side to the other, as far again: from then on the flows left over must fall.
             let newton = h * fastest > 1e9;
-            let around = newton && change >= 0.5 * last;
-            root |= around;
-            let part = if around { 0.5 } else { 1.0 };
+            root |= newton && change >= 0.5 * last;
+            let part = if root { self.shorter(y, &d, &f[..n])? } else { 1.0 };
             for (y, d) in y.iter_mut().zip(&d) {
                 *y += part * d;
             }
-            // What is left of the change is rounding; around a root, the root of rounding.
-            if newton && change < if root { ROOT_OF_ROUNDING } else { ROUNDING } {
+            // What is left of the change is rounding.
+            if newton && part * change < 1e-14 {
                 return Ok(step);
             }
             last = change;
             h = (2.0 * h).min(1e15 / fastest);
         }
         Err(EvalError::fatal(MODEL, format!("no steady state in {STEPS} steps")))
+    }
+
+    /// The part of the step `d` from `y` behind which the largest of the rates left over, now `f`, has fallen; halved until then.
+    fn shorter(&mut self, y: &[f64], d: &[f64], f: &[f64]) -> Result<f64, EvalError> {
+        let largest = |f: &[f64]| f.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+        let (now, n) = (largest(f), y.len());
+        let mut rates = vec![0.0; n + self.gas.openings];
+        let mut part = 1.0;
+        while part > 1e-6 {
+            let there: Vec<f64> = y.iter().zip(d).map(|(y, d)| y + part * d).collect();
+            self.gas.rhs(0.0, &there, &mut rates)?;
+            if largest(&rates[..n]) < now {
+                break;
+            }
+            part *= 0.5;
+        }
+        Ok(part)
     }
 
     fn steady(&mut self, out: &mut RigOut) -> Result<(), EvalError> {

@@ -139,6 +139,8 @@ pub struct Side {
     trial: Gap,
     /// Where `now` is: displacements, elastic amplitudes, speed (when viscosity depends on it).
     placed: Vec<f64>,
+    /// Whether the skirt moves away from the head (1) or towards it (-1).
+    sense: f64,
     /// Pressure per viscosity and cause: sliding, then every rate.
     fields: Vec<f64>,
     rates: Vec<f64>,
@@ -319,7 +321,8 @@ impl Side {
             work: [vec![0.0; n], vec![0.0; n], vec![0.0; n]],
             now: empty(),
             trial: empty(),
-            placed: Vec::with_capacity(3 + elastic),
+            placed: Vec::with_capacity(4 + elastic),
+            sense: 1.0,
             fields: vec![0.0; (3 + elastic) * n],
             rates: vec![0.0; n],
             modes_of_rates: vec![0.0; (2 + elastic) * n],
@@ -540,13 +543,16 @@ impl Side {
     /// A gap that is none, a film that cannot be solved.
     pub fn place(&mut self, e: [f64; 2], q: &[f64], speed: f64) -> Result<(), EvalError> {
         let key = if self.thinning.is_some() { speed } else { 0.0 };
-        let same = self.placed.len() == 3 + q.len()
-            && self.placed[..3] == [e[0], e[1], key]
-            && self.placed[3..] == *q;
+        // Oil comes from upstream: a film may know which way that is.
+        let sense = if speed < 0.0 { -1.0 } else { 1.0 };
+        let same = self.placed.len() == 4 + q.len()
+            && self.placed[..4] == [e[0], e[1], key, sense]
+            && self.placed[4..] == *q;
         if same {
             return Ok(());
         }
         self.placed.clear();
+        self.sense = sense;
         self.shape_gap(false, e, q, speed)?;
         self.contact_now = self.contact_loads(e, q);
         let n = self.nodes();
@@ -559,12 +565,13 @@ impl Side {
         if self.superposition != Superposition::None {
             self.full_films()?;
         }
-        self.placed.extend_from_slice(&[e[0], e[1], key]);
+        self.placed.extend_from_slice(&[e[0], e[1], key, sense]);
         self.placed.extend_from_slice(q);
         Ok(())
     }
 
-    /// Pressures of full films at the present place, for sliding at one metre a second and for each rate of one metre a second, into `fields`.
+    /// Pressures of full films at the present place, for sliding at one metre a second in the present sense and for each rate of one metre a second, into
+    /// `fields`.
     ///
     /// # Errors
     /// A film that cannot be solved.
@@ -573,7 +580,7 @@ impl Side {
         let inp = film_input(&self.now, n);
         let [top, bottom] = [&self.modes_of_rates[..n], &self.modes_of_rates[n..2 * n]];
         let mode = |u: f64, dhdt| FilmMode { u, dhdt, edge_pressure: [0.0; 4] };
-        let first = [mode(-1.0, &[]), mode(0.0, top), mode(0.0, bottom)];
+        let first = [mode(-self.sense, &[]), mode(0.0, top), mode(0.0, bottom)];
         if self.elastic == 0 {
             self.film.solve_many(&inp, &first, &mut self.fields)?;
         } else {
@@ -883,7 +890,7 @@ impl Side {
     fn superpose(&mut self, speed: f64, rates: &[f64]) {
         let n = self.nodes();
         let (sliding, rest) = self.fields.split_at(n);
-        self.raw.iter_mut().zip(sliding).for_each(|(p, f)| *p = speed * f);
+        self.raw.iter_mut().zip(sliding).for_each(|(p, f)| *p = speed.abs() * f);
         for (rate, field) in rates.iter().zip(rest.chunks_exact(n)) {
             self.raw.iter_mut().zip(field).for_each(|(p, f)| *p += rate * f);
         }

@@ -10,7 +10,7 @@ use gudgeon_core::kinds::{
     SkirtModes, SkirtProfileCtx, SkirtProfileSpec,
 };
 use gudgeon_core::quantity::quantity;
-use gudgeon_film::film_2d::{Cavitation, CentralDifferences, Direct, Equations, Multigrid};
+use gudgeon_film::film_2d::{Cavitation, CentralDifferences, Direct, Equations, Flux, Multigrid};
 use gudgeon_film::{SawtoothWaviness, SmoothSurfaces, WavinessTransport};
 use gudgeon_skirt::{
     Body, ContactGrid, Crank, Cylindrical, Instant, Modal, NoGrooveFriction, NoPinFriction, Panel, Piston,
@@ -528,6 +528,14 @@ fn shapes_yield_as_their_stiffness_says() {
         // Rounding of a hundred terms; the weights of the half are those of the whole.
         assert!((sum / f - 1.0).abs() < 1e-9, "{k}: {f} {sum}");
     }
+    // The full film of one that ruptures otherwise is the same.
+    let other = Direct { cavitation: Cavitation::SwiftStieber, ..Direct::default() };
+    let (mut ruptured, _) = yielding_side(&other);
+    ruptured.place(e, &q, 5.0).expect("a film");
+    let (mut own, mut full) = (SideLoads::default(), SideLoads::default());
+    ruptured.loads(5.0, 0.016, &w, Slopes::Full, &mut own).expect("a film");
+    s.loads(5.0, 0.016, &w, Slopes::Full, &mut full).expect("a film");
+    assert_eq!(own.slope, full.slope);
     // What a full film does is symmetric: the force on one motion by another is that on the other by the one.
     s.loads(5.0, 0.016, &w, Slopes::Full, &mut l).expect("a film");
     let slope = |rate: usize, force: usize| l.slope[rate * 6 + if force < 2 { force } else { force + 2 }];
@@ -548,18 +556,26 @@ fn shapes_yield_as_their_stiffness_says() {
 
 #[test]
 fn loads_beside_are_those_of_a_film_there() {
+    // Up and down, with the film of the nodes too: there the sense of motion says which node a flow has its film from.
+    let ways = [Flux::Face, Flux::Node].into_iter().flat_map(|flux| [(flux, 5.0), (flux, -5.0)]);
+    for (flux, speed) in ways {
+        let film = Direct { cavitation: Cavitation::HalfSommerfeld, flux, ..Direct::default() };
+        loads_beside_of(&film, speed);
+    }
+}
+
+fn loads_beside_of(film: &dyn Film2dSpec, speed: f64) {
     // All coordinates, with a cavity and two shapes: the error of one Newton step is of second order in the way.
-    let film = Direct { cavitation: Cavitation::HalfSommerfeld, ..Direct::default() };
-    let (mut s, _) = yielding_side(&film);
+    let (mut s, _) = yielding_side(film);
     let (e, q, w) = ([-1e-6, -2e-6], [4e-7, 2e-7], [-2e-4, -1e-4, 1e-5, -2e-5]);
     let all = |l: &SideLoads| [&l.film[..], &l.elastic[..]].concat();
     let mut now = SideLoads::default();
     let mut far = [[0.0; 4]; 2];
     for (far, d) in far.iter_mut().zip([2e-9, 1e-9]) {
-        s.place(e, &q, 5.0).expect("a film");
-        s.loads(5.0, 0.016, &w, Slopes::None, &mut now).expect("a film");
+        s.place(e, &q, speed).expect("a film");
+        s.loads(speed, 0.016, &w, Slopes::None, &mut now).expect("a film");
         let mut beside = vec![SideLoads::default(); 4];
-        s.loads_beside(e, &q, &[d; 4], 5.0, 0.016, &w, &mut beside).expect("films");
+        s.loads_beside(e, &q, &[d; 4], speed, 0.016, &w, &mut beside).expect("films");
         for c in 0..4 {
             let (mut e, mut q) = (e, q);
             if c < 2 {
@@ -567,9 +583,9 @@ fn loads_beside_are_those_of_a_film_there() {
             } else {
                 q[c - 2] += d
             }
-            s.place(e, &q, 5.0).expect("a film");
+            s.place(e, &q, speed).expect("a film");
             let mut there = SideLoads::default();
-            s.loads(5.0, 0.016, &w, Slopes::None, &mut there).expect("a film");
+            s.loads(speed, 0.016, &w, Slopes::None, &mut there).expect("a film");
             let (now, found, there) = (all(&now), all(&beside[c]), all(&there));
             let change = now.iter().zip(&there).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             let error = found.iter().zip(&there).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
