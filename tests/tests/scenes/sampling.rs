@@ -114,6 +114,43 @@ fn a_narrow_pulse_is_found() {
     assert!((a / b - 1.0).abs() < 1e-3 && b > 1.03, "{a} {b}");
 }
 
+/// Adds noise with a standard deviation of 0.03 bar: sums of four uniform numbers.
+fn with_noise(clean: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let mut seed = 1_u64;
+    let mut uniform = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+    };
+    clean.iter().map(|(t, p)| (*t, p + 0.03 * 3f64.sqrt() * (0..4).map(|_| uniform()).sum::<f64>())).collect()
+}
+
+#[test]
+fn noise_on_the_trace_of_a_pin_is_told() {
+    let clean: Vec<(f64, f64)> = (0..1440)
+        .map(|k| 0.5 * f64::from(k))
+        .map(|t| (t, 1.0 + 60.0 * (-((t - 370.0) / 20.0).powi(2)).exp()))
+        .collect();
+    let load = |rows: &[(f64, f64)]| {
+        let pressure = table(rows, "");
+        format!(
+            "models.pin_load={{ model = \"cycle\", speed = \"2000 rpm\", stroke = \"140 mm\", rod_length = \"240 mm\", piston_mass = \"2.1 kg\", \
+             kinematics = {{ model = \"exact_slider_crank\" }}, cylinder_pressure = {} }}",
+            pressure.trim_start_matches("models.cylinder_pressure=")
+        )
+    };
+    let topics = |rows: &[(f64, f64)]| -> Vec<String> {
+        let r = run_case("pin-120-turbo-diesel", &[&load(rows)]);
+        r.solver
+            .notes
+            .iter()
+            .map(|n| n.topic.clone())
+            .filter(|t| t.starts_with("cylinder_pressure"))
+            .collect()
+    };
+    assert!(topics(&clean).is_empty());
+    assert_eq!(topics(&with_noise(&clean)), ["cylinder_pressure.smoothed"]);
+}
+
 #[test]
 fn noise_on_a_trace_is_taken_off_and_told() {
     let own = run_case(CASE, &["outputs.series_step=0.5 deg"]);
@@ -126,21 +163,7 @@ fn noise_on_a_trace_is_taken_off_and_told() {
         .take(1440)
         .map(|(t, p)| (*t, p / 1e5))
         .collect();
-    let mut seed = 1_u64;
-    let noisy: Vec<(f64, f64)> = clean
-        .iter()
-        .map(|(t, p)| {
-            // The sum of four uniform numbers, with a standard deviation of 0.03 bar.
-            let sum: f64 = (0..4)
-                .map(|_| {
-                    seed =
-                        seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-                    (seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
-                })
-                .sum();
-            (*t, p + 0.03 * 3f64.sqrt() * sum)
-        })
-        .collect();
+    let noisy = with_noise(&clean);
     // What noise does to blow-by, as one standard deviation. Blow-by takes part in the pressure where ring 1 leaves a flank: at 77, 471 and
     // 489 deg with 2000 rpm, at 81 and 659 with 4000. Small triangles added to the trace, 2 deg apart, give its derivative `s(theta)` by the
     // pressure, up to 0.012 per bar and degree there; white noise on rows 0.5 deg apart gives `0.03 bar (0.5 deg int s^2 dtheta)^(1/2)`,

@@ -5,6 +5,7 @@ use dyn_clone::DynClone;
 use super::{CylinderPressure, Kinematics, PinForces};
 use crate::BuildError;
 use crate::file::Files;
+use crate::result::Note;
 
 /// One cylinder over its cycle, as another case describes it.
 #[derive(Debug, Clone)]
@@ -53,6 +54,8 @@ pub struct PinLoadCase {
     pub crank_ratio: Option<f64>,
     /// The cycle at equal distances, end excluded; empty when the model knows one instant only.
     pub cycle: Vec<PinInstant>,
+    /// What a person should know about how the load came about: a filter of the cylinder pressure that acted.
+    pub notes: Vec<Note>,
 }
 
 /// Configuration of a model of the force on the gudgeon pin.

@@ -104,7 +104,7 @@ impl PinLoadSpec for PeakPressureRule {
             design: PinInstant { theta: 2.0 * std::f64::consts::PI, pressure, forces },
             omega: Some(omega),
             crank_ratio: Some(ratio),
-            cycle: Vec::new(),
+            ..PinLoadCase::default()
         })
     }
 }

@@ -63,5 +63,6 @@ pub fn over_cycle(e: &EngineCycle, pi: f64, mass: f64) -> Result<PinLoadCase, Bu
         omega: Some(k.omega()),
         crank_ratio: (rod > 0.0).then(|| radius / rod),
         cycle,
+        notes: e.pressure.notes(),
     })
 }

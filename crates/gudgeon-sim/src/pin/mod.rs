@@ -67,6 +67,7 @@ impl SceneCase for PinCase {
             columns: Vec::new(),
         };
         if let Some(s) = setup::setup(case, &loaded.source.files).map_err(refused)? {
+            out.solver.notes.extend(s.load.notes.iter().cloned());
             size::run(case, &s, &mut out, progress)?;
         }
         skirt::run(case, &mut out)?;
