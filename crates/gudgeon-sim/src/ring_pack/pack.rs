@@ -468,16 +468,30 @@ impl Pack {
             + match self.conv.radial_gas {
                 RadialGas::BorePerimeter => back,
                 RadialGas::BackOnly => back * inner,
-                RadialGas::BackAndFace => {
-                    let rest = g.height - g.lands as f64 * g.face.length();
-                    let face = if g.lands == 2 {
-                        rest * (r.p_below - r.p_cav)
-                    } else {
-                        0.5 * rest * (r.p_above + r.p_below - 2.0 * r.p_cav)
-                    };
-                    back * inner - face
-                }
+                RadialGas::BackAndFace => back * inner - self.gas_beside_face(i),
+                RadialGas::BackFaceAndGap => back * inner + self.gas_in_gap(i) - self.gas_beside_face(i),
             }
+    }
+
+    /// Load of the lands above `p_cav` on the parts of the face outside the running face, per circumference \[N/m\].
+    fn gas_beside_face(&self, i: usize) -> f64 {
+        let (g, r) = (&self.geo.rings[i], &self.at.rings[i]);
+        let rest = g.height - g.lands as f64 * g.face.length();
+        if g.lands == 2 {
+            rest * (r.p_below - r.p_cav)
+        } else {
+            0.5 * rest * (r.p_above + r.p_below - 2.0 * r.p_cav)
+        }
+    }
+
+    /// Radial load of the gas on the end faces of the gap above `p_cav`, per circumference \[N/m\]: their force over the outer radius.
+    fn gas_in_gap(&self, i: usize) -> f64 {
+        let (g, r, place) = (&self.geo.rings[i], &self.at.rings[i], &self.at.places[i]);
+        let land = 0.5 * (g.piston_radius_above + g.piston_radius_below);
+        let land = land.clamp(place.r_inner, place.r_outer);
+        let between = 0.5 * (r.p_above + r.p_below) - r.p_cav;
+        let force = (r.p_back - r.p_cav) * (land - place.r_inner) + between * (place.r_outer - land);
+        g.height * force / place.r_outer
     }
 
     /// Axial load that presses the flanks together, as the radial friction laws take it \[N\].
