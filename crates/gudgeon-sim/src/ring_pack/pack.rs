@@ -150,6 +150,14 @@ pub struct RingModel {
     pub nominal_film: f64,
 }
 
+impl RingModel {
+    /// Whether anything could carry the ring against the liner: a film, or contact.
+    #[must_use]
+    pub fn carries(&self) -> bool {
+        self.resists || self.contact.range > 0.0 || self.contact.floor.is_some()
+    }
+}
+
 /// One ring at an instant.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct RingInstant {
@@ -667,9 +675,7 @@ impl Pack {
 
     /// A ring without a film: its contact carries it, and the drag in place of its inertia brings it there.
     fn dry_balance(&mut self, i: usize, needed: f64) {
-        let line = &self.rings[i].contact;
-        let nothing = line.range <= 0.0 && line.floor.is_none();
-        let free = if nothing { 0.0 } else { -needed / self.limits.radial_drag };
+        let free = if self.rings[i].carries() { -needed / self.limits.radial_drag } else { 0.0 };
         let hdot = self.bounded(i, free, self.lowest(i));
         let r = &mut self.at.rings[i];
         (r.hdot, r.film, r.film_known) = (hdot, FaceForces::default(), true);
@@ -1059,6 +1065,17 @@ impl Pack {
 
 /// What solvers need that keep their own state and march through the parts one by one.
 impl Pack {
+    /// [`Pack::gas`] within explicit gas steps.
+    ///
+    /// # Errors
+    /// What the gas model refuses: after a step that was too long, a volume that holds less than nothing.
+    pub fn gas_step(&mut self, p_cylinder: f64) -> Result<(), EvalError> {
+        self.gas(Some(p_cylinder)).map_err(|e| {
+            let advice = "explicit gas steps may be too long for it: raise `solver.gas_steps`";
+            EvalError::fatal("as_published", format!("{e}; {advice}"))
+        })
+    }
+
     /// Sets place and viscosity of one ring for the piston position of `self.at`.
     pub fn refresh_ring(&mut self, i: usize, h: f64, s: Option<(f64, f64)>) {
         self.set_place(i, h, s);
