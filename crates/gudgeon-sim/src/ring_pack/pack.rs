@@ -653,16 +653,9 @@ impl Pack {
                 return Ok(());
             }
         }
-        let (found, film) = if self.rings[i].films.len() == 1 && self.rings[i].friction.is_off() {
-            self.counters.film += 1;
-            let inp = self.face_in(i, 0);
-            let (hdot, film) = self.rings[i].films[0].carry(&inp, soft(needed))?;
-            self.at.rings[i].flux[0] = film.flux;
-            (hdot, Some(film))
-        } else {
-            (self.solve_balance(i, needed, soft)?, None)
-        };
-        let dragged = self.dragged(i, found, needed, soft)?;
+        let (found, film) = self.balanced(i, needed, soft)?;
+        let parts = contact > 0.0 && found > 0.0;
+        let dragged = if parts { found } else { self.dragged(i, found, needed, soft)? };
         let hdot = self.bounded(i, dragged, lowest);
         // Off its limits a ring moves as its film allows, and the film found with the velocity is the film of the instant.
         let film = film.filter(|_| (hdot - found).abs() <= 1e-6 * found.abs());
@@ -670,7 +663,35 @@ impl Pack {
         (r.hdot, r.film_known) = (hdot, film.is_some());
         r.film = film.unwrap_or(r.film);
         r.limited.lifted = soft(needed) - needed;
+        if parts {
+            self.at.rings[i].limited.contact_drag = self.contact_drag(i) * found;
+        }
         Ok(())
+    }
+
+    /// The velocity at which film and contact carry `needed`, surfaces that part against their drag; and the film, where it came with the velocity.
+    fn balanced(
+        &mut self,
+        i: usize,
+        needed: f64,
+        soft: impl Fn(f64) -> f64,
+    ) -> Result<(f64, Option<FaceForces>), EvalError> {
+        let drag = self.contact_drag(i);
+        if self.rings[i].films.len() > 1 || !self.rings[i].friction.is_off() {
+            return Ok((self.solve_balance(i, needed, drag, soft)?, None));
+        }
+        // A ring that parted from the liner an instant ago still does, most often.
+        if drag == 0.0 || self.at.rings[i].hdot <= 0.0 || !self.at.rings[i].hdot.is_finite() {
+            self.counters.film += 1;
+            let inp = self.face_in(i, 0);
+            let (hdot, film) = self.rings[i].films[0].carry(&inp, soft(needed))?;
+            self.at.rings[i].flux[0] = film.flux;
+            if drag == 0.0 || hdot <= 0.0 {
+                return Ok((hdot, Some(film)));
+            }
+            self.at.rings[i].hdot = 0.0;
+        }
+        Ok((self.solve_balance(i, needed, drag, soft)?, None))
     }
 
     /// A ring without a film: its contact carries it, and the drag in place of its inertia brings it there.
@@ -729,21 +750,13 @@ impl Pack {
             }
             v = next;
         }
-        let r = &mut self.at.rings[i];
-        if v > 0.0 && r.contact > 0.0 {
-            r.limited.contact_drag = drag * v;
-        } else {
-            r.limited.drag = drag * v.abs();
-        }
+        self.at.rings[i].limited.drag = drag * v.abs();
         Ok(v)
     }
 
     /// Drag per circumference \[N s/m²\] of ring `i` at the velocity `free` that its film alone allows; `load` is the size of what it carries.
     fn drag(&self, i: usize, free: f64, load: f64) -> f64 {
-        let (limits, r) = (&self.limits, &self.at.rings[i]);
-        if free > 0.0 && r.contact > 0.0 {
-            return limits.contact_drag * r.contact / (r.contact + r.load.abs());
-        }
+        let limits = &self.limits;
         let share = limits.radial_drag * free.abs() / load;
         let ((begins, full), (near, far)) = (limits.drag_counts, limits.drag_gap);
         let rough = self.rings[i].contact.range;
@@ -756,8 +769,21 @@ impl Pack {
         limits.radial_drag * ramp(x) * ramp(off)
     }
 
-    /// Balance of several lands, or with flank friction: film load less needed load falls with `hdot`; bracket and Newton.
-    fn solve_balance(&mut self, i: usize, needed: f64, soft: impl Fn(f64) -> f64) -> Result<f64, EvalError> {
+    /// Drag per circumference \[N s/m²\] of the surfaces of ring `i` in contact, while they part.
+    fn contact_drag(&self, i: usize) -> f64 {
+        let r = &self.at.rings[i];
+        if r.contact > 0.0 { self.limits.contact_drag * r.contact / (r.contact + r.load.abs()) } else { 0.0 }
+    }
+
+    /// Balance of several lands, with flank friction, or with the drag of surfaces that part: film load less needed load falls with `hdot`; bracket
+    /// and Newton.
+    fn solve_balance(
+        &mut self,
+        i: usize,
+        needed: f64,
+        drag: f64,
+        soft: impl Fn(f64) -> f64,
+    ) -> Result<f64, EvalError> {
         let perimeter = self.perimeter(i) * self.geo.rings[i].rails as f64;
         let axial = self.flank_load(i);
         let residual = |p: &mut Self, x: f64| -> Result<(f64, f64), EvalError> {
@@ -768,7 +794,9 @@ impl Pack {
             } else {
                 (f.force(x, axial) / perimeter, f.slope(x, axial) / perimeter)
             };
-            Ok((load - soft(needed + fa), rate - dfa))
+            let (w, slope) = if x > 0.0 { (needed + fa + drag * x, dfa + drag) } else { (needed + fa, dfa) };
+            let all = soft(w);
+            Ok((load - all, rate - slope * all / (2.0 * all - w)))
         };
         let (mut lo, mut hi) = (f64::NEG_INFINITY, f64::INFINITY);
         // The velocity of the last evaluation, a small step away, is a good start.
@@ -784,8 +812,9 @@ impl Pack {
                 return Ok(x);
             }
             // Newton's method squares a small error: the next step from here ends within 1e-9.
-            if f.abs() <= 1e-5 * scale && (x - f / d).is_finite() {
-                return Ok(x - f / d);
+            let next = x - f / d;
+            if f.abs() <= 1e-5 * scale && next.is_finite() && (drag == 0.0 || (next > 0.0) == (x > 0.0)) {
+                return Ok(next);
             }
             if f > 0.0 {
                 lo = x
