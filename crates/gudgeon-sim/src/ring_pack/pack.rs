@@ -188,6 +188,8 @@ pub struct RingInstant {
     pub film_p_max: f64,
     /// Whether `film` belongs to `hdot`.
     pub film_known: bool,
+    /// Whether `hdot` is a root of the balance of film, contact and friction that nothing else has changed.
+    pub balanced: bool,
     /// Friction that the convention counts \[N\], whole ring, along the liner's velocity.
     pub friction: f64,
     /// Friction power \[W\].
@@ -637,7 +639,7 @@ impl Pack {
         let soft = |w: f64| 0.5 * (w + (w * w + 4.0 * least * least).sqrt());
         let needed = load - contact - self.at.rings[i].dry.0;
         let r = &mut self.at.rings[i];
-        (r.load, r.contact, r.limited) = (load, contact, Limited::default());
+        (r.load, r.contact, r.limited, r.balanced) = (load, contact, Limited::default(), false);
         if !self.rings[i].resists {
             self.dry_balance(i, needed);
             return Ok(());
@@ -658,9 +660,10 @@ impl Pack {
         let dragged = if parts { found } else { self.dragged(i, found, needed, soft)? };
         let hdot = self.bounded(i, dragged, lowest);
         // Off its limits a ring moves as its film allows, and the film found with the velocity is the film of the instant.
-        let film = film.filter(|_| (hdot - found).abs() <= 1e-6 * found.abs());
+        let balanced = (hdot - found).abs() <= 1e-6 * found.abs();
+        let film = film.filter(|_| balanced);
         let r = &mut self.at.rings[i];
-        (r.hdot, r.film_known) = (hdot, film.is_some());
+        (r.hdot, r.film_known, r.balanced) = (hdot, film.is_some(), balanced);
         r.film = film.unwrap_or(r.film);
         r.limited.lifted = soft(needed) - needed;
         if parts {
@@ -1152,9 +1155,52 @@ impl Pack {
     }
 }
 
+/// How the balance of a ring and its film change with its velocity, about the velocity of the instant.
+#[derive(Debug, Clone, Copy, Default)]
+struct Tangent {
+    /// Balance left at that velocity \[N/m\]; searches end near zero, not there.
+    left: f64,
+    /// Its derivative \[N s/m²\], below zero.
+    slope: f64,
+    /// Derivatives of the film.
+    film: FaceForces,
+    /// Derivatives of the fluxes.
+    flux: [f64; 2],
+}
+
+/// Part of its load over which the derivatives of a film by its velocity are taken: the root of the accuracy that films are found with.
+const FILM_DIFFERENCE: f64 = 1e-6;
+
+impl Tangent {
+    fn between(a: &FaceForces, b: &FaceForces, d: f64) -> FaceForces {
+        FaceForces {
+            load: (b.load - a.load) / d,
+            load_rate: (b.load_rate - a.load_rate) / d,
+            ring_shear: (b.ring_shear - a.ring_shear) / d,
+            liner_shear: (b.liner_shear - a.liner_shear) / d,
+            slope_force: (b.slope_force - a.slope_force) / d,
+            flux: (b.flux - a.flux) / d,
+        }
+    }
+
+    /// The film `f` after a change of velocity.
+    fn moved(&self, f: &FaceForces, change: f64) -> FaceForces {
+        let t = &self.film;
+        FaceForces {
+            load: f.load + t.load * change,
+            load_rate: f.load_rate + t.load_rate * change,
+            ring_shear: f.ring_shear + t.ring_shear * change,
+            liner_shear: f.liner_shear + t.liner_shear * change,
+            slope_force: f.slope_force + t.slope_force * change,
+            flux: f.flux + t.flux * change,
+        }
+    }
+}
+
 /// Scratch of [`Pack::jacobian`].
 #[derive(Debug, Clone, Default)]
 pub struct Base {
+    tangents: Vec<Option<Tangent>>,
     rings: Vec<RingInstant>,
     places: Vec<RingPlace>,
     dm: Vec<f64>,
@@ -1209,6 +1255,12 @@ impl Pack {
         base.oil.extend(self.oil_pack.iter().flat_map(|o| o.faces.iter().map(|f| f.rate)));
         let p_cylinder = self.at.gas.p_land[0];
         debug_assert!(theta.is_finite());
+        base.tangents.clear();
+        for i in 0..self.n_rings() {
+            let tangent = self.tangent(i)?;
+            base.tangents.push(tangent);
+            self.at.rings[i] = base.rings[i];
+        }
         if base.slopes.d_state.len() != self.layout.gas * self.layout.gas {
             base.slopes = GasSlopes::new(self.n_rings(), self.layout.gas);
         }
@@ -1282,6 +1334,63 @@ impl Pack {
                 outcome?;
             }
         }
+        Ok(())
+    }
+
+    /// Balance of film, contact, friction and the drag of surfaces that part at `hdot`, and its derivative but for that of the film; sets `load` and
+    /// `contact` of the ring.
+    fn left_over(&mut self, i: usize, hdot: f64, film: f64) -> (f64, f64) {
+        let load = self.radial_load(i);
+        let contact = self.rings[i].contact.load(self.at.places[i].h);
+        let r = &mut self.at.rings[i];
+        (r.load, r.contact) = (load, contact);
+        let drag = if hdot > 0.0 { self.contact_drag(i) } else { 0.0 };
+        let f = &self.rings[i].friction;
+        let (fa, dfa) = if f.is_off() {
+            (0.0, 0.0)
+        } else {
+            let (perimeter, axial) = (self.perimeter(i) * self.geo.rings[i].rails as f64, self.flank_load(i));
+            (f.force(hdot, axial) / perimeter, f.slope(hdot, axial) / perimeter)
+        };
+        let w = load - contact - self.at.rings[i].dry.0 + fa + drag * hdot;
+        let least = self.limits.least_load * self.tension(i);
+        let root = (w * w + 4.0 * least * least).sqrt();
+        (film - 0.5 * (w + root), -(dfa + drag) * 0.5 * (1.0 + w / root))
+    }
+
+    /// The tangent of ring `i` about the instant; `None` where its velocity is not that of the balance alone, or came with its film by a search that is
+    /// as cheap as one evaluation.
+    fn tangent(&mut self, i: usize) -> Result<Option<Tangent>, EvalError> {
+        let r = self.at.rings[i];
+        let pull = r.film.load.abs() / r.film.load_rate.abs();
+        if !self.plan.film || !r.balanced || r.film_known || !(pull > 0.0 && pull.is_finite()) || r.limited.drag > 0.0 {
+            return Ok(None);
+        }
+        let free = self.drag(i, r.hdot, r.load.abs().max(r.film.load.abs())) <= 0.0;
+        if !free || self.at.places[i].h <= self.lowest(i) || self.at.rings[i].limited.floor > 0.0 {
+            return Ok(None);
+        }
+        let d = (FILM_DIFFERENCE * pull).max(FILM_DIFFERENCE * r.hdot.abs());
+        let (fluxes, film) = (r.flux, self.film(i, r.hdot + d)?);
+        let slope = Tangent::between(&r.film, &film, d);
+        let flux = [0, 1].map(|k: usize| (self.at.rings[i].flux[k] - fluxes[k]) / d);
+        let (left, rest) = self.left_over(i, r.hdot, r.film.load);
+        let all = slope.load + rest;
+        Ok((all < 0.0 && all.is_finite()).then_some(Tangent { left, slope: all, film: slope, flux }))
+    }
+
+    /// [`Pack::radial_balance`] after a small change, by one step of Newton from the velocity `hdot` before: one evaluation of the film.
+    fn moved_balance(&mut self, i: usize, hdot: f64, tangent: &Tangent) -> Result<(), EvalError> {
+        self.wet(i)?;
+        let film = self.film(i, hdot)?;
+        let (left, _) = self.left_over(i, hdot, film.load);
+        let change = (tangent.left - left) / tangent.slope;
+        let r = &mut self.at.rings[i];
+        for (flux, slope) in r.flux.iter_mut().zip(&tangent.flux) {
+            *flux += slope * change;
+        }
+        (r.hdot, r.film, r.film_known, r.limited) =
+            (hdot + change, tangent.moved(&film, change), true, Limited::default());
         Ok(())
     }
 
@@ -1362,7 +1471,10 @@ impl Pack {
                 continue;
             }
             if self.plan.film {
-                self.radial_balance(i)?;
+                match base.tangents[i] {
+                    Some(tangent) => self.moved_balance(i, base.rings[i].hdot, &tangent)?,
+                    None => self.radial_balance(i)?,
+                }
                 self.friction(i)?;
                 let rate = |r: &RingInstant, h: f64| r.hdot / (h * self.omega);
                 if let Some(k) = self.layout.film[i] {
