@@ -323,7 +323,9 @@ impl<M: Passages> Pack<M> {
         let (ring, rt) = (&self.pack.rings[i], |node: usize| self.net.rt(node));
         let volume = match ring.back {
             BackVolume::Fixed(v) => v,
-            BackVolume::Geometric => back_volume(ring, self.pack.bore_radius, self.nominal_film.unwrap_or(0.0)),
+            BackVolume::Geometric => {
+                back_volume(ring, self.pack.bore_radius, self.nominal_film.unwrap_or(0.0))
+            }
             _ => 0.0,
         };
         let behind = self.links[i].back.map_or(0.0, |node| volume / rt(node));

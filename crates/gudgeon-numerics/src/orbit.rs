@@ -72,6 +72,10 @@ const PROBE: usize = 8;
 const NUDGE: f64 = 0.03;
 /// Cycles in the noise of the map after which nothing more is expected of another.
 const IDLE: usize = 5;
+/// Cycles that acceleration has before plain repetition may take its place.
+const PATIENCE: usize = 60;
+/// Cycles over which plain repetition shows that it has come to rest in a band, and the width of a band over the noise of the map below which it is one.
+const BAND: (usize, f64) = (12, 30.0);
 /// Largest factor by which a residual is taken to understate an error.
 const MOST_GAIN: f64 = 3000.0;
 
@@ -101,6 +105,11 @@ pub fn periodic_orbit(
         return Ok(search.finish());
     }
     search.accelerated(map, y, options, 1)?;
+    if !search.report.converged && search.report.cycles >= patience(options) {
+        // Extrapolation has had its time: what the secants of a strongly bent map say can lead astray for ever.
+        search.plain(map, y, options)?;
+        return Ok(search.finish());
+    }
     if !search.suspect || !search.report.converged {
         return Ok(search.finish());
     }
@@ -125,6 +134,11 @@ pub fn periodic_orbit(
     search.plain(map, &mut other, options)?;
     y.copy_from_slice(&other);
     Ok(search.finish())
+}
+
+/// Cycles after which acceleration makes room for plain repetition: half of all, and as many as it usually needs several times over.
+fn patience(options: &OrbitOptions) -> usize {
+    (options.max_cycles / 2).max(PATIENCE)
 }
 
 struct Search {
@@ -206,7 +220,9 @@ impl Search {
         let mut last = 0.0_f64;
         self.report.converged = false;
         for k in 0.. {
-            if self.report.cycles + times > options.max_cycles {
+            let most =
+                if times == 1 { options.max_cycles.min(patience(options)) } else { options.max_cycles };
+            if self.report.cycles + times > most {
                 break;
             }
             // Far from the orbit a rough map does: the first cycle only has to leave the arbitrary start.
@@ -378,12 +394,34 @@ impl Search {
                 };
             }
             seen.push(g.clone());
-            if seen.len() > MAX_PERIOD {
+            if seen.len() > BAND.0 {
                 seen.remove(0);
             }
         }
+        // Decay says nothing of states that have come to rest in the noise of the map; the band in which they stay does.
+        if let Some(width) = band(&seen, &s, options).filter(|w| *w < self.report.error_estimate) {
+            self.report.error_estimate = width;
+            self.report.converged = width <= options.tolerance;
+        }
         Ok(())
     }
+}
+
+/// The width of the band in which the last states lie, once they come no nearer to each other: a map less smooth than its accuracy says moves on for ever
+/// about its orbit, which lies among them. `None` while they still move along, or too far for noise.
+fn band(seen: &[Vec<f64>], s: &[f64], options: &OrbitOptions) -> Option<f64> {
+    let half = BAND.0 / 2;
+    if seen.len() < BAND.0 {
+        return None;
+    }
+    let width = |states: &[Vec<f64>]| {
+        let pairs =
+            states.iter().enumerate().flat_map(|(k, a)| states[..k].iter().map(move |b| norm(a, b, s)));
+        pairs.fold(0.0, f64::max)
+    };
+    let (all, before, after) = (width(seen), width(&seen[..half]), width(&seen[half..]));
+    // States that move along are farther apart than either half is wide; states that come nearer leave a narrower half.
+    (all <= BAND.1 * options.accuracy && all <= 1.5 * before.min(after)).then_some(all)
 }
 
 /// Whether an estimate, falling from cycle to cycle as it does now, stands for an error below the tolerance.

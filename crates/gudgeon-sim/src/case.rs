@@ -437,7 +437,8 @@ pub struct Solver {
     /// `implicit`: true relative error of the periodic state; not below `tolerance`.
     #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1, "when": { "method": "implicit" } }))]
     pub periodicity: PosRatio,
-    /// Most cycles, all phases of the search together, before the run is called unconverged.
+    /// Most cycles, all phases of the search together, before the run is called unconverged. Half of them, but at least 60, are accelerated; the
+    /// rest, and those of models with decided seats, repeat plainly.
     #[schemars(range(max = 100_000))]
     pub max_cycles: u32,
     /// Pressures of all lands from which the cycle is started. Each start is run to its periodic state; those that
@@ -472,7 +473,7 @@ impl Default for Solver {
             tolerance: quantity(1e-4),
             integrator: IntegratorName::Rodas,
             periodicity: quantity(1e-4),
-            max_cycles: 40,
+            max_cycles: 120,
             starts: Vec::new(),
             scheme: Scheme::SubstepMarch,
             cycles: 0,
