@@ -75,7 +75,9 @@ const IDLE: usize = 5;
 /// Cycles that acceleration has before plain repetition may take its place.
 const PATIENCE: usize = 60;
 /// Cycles over which plain repetition shows that it has come to rest in a band, and the width of a band over the noise of the map below which it is one.
-const BAND: (usize, f64) = (12, 30.0);
+const BAND: (usize, f64) = (24, 30.0);
+/// States that move along or come nearer lie at least twice as far apart as the narrower half of them; noise, hardly farther.
+const APART: f64 = 1.9;
 /// Largest factor by which a residual is taken to understate an error.
 const MOST_GAIN: f64 = 3000.0;
 
@@ -421,7 +423,7 @@ fn band(seen: &[Vec<f64>], s: &[f64], options: &OrbitOptions) -> Option<f64> {
     };
     let (all, before, after) = (width(seen), width(&seen[..half]), width(&seen[half..]));
     // States that move along are farther apart than either half is wide; states that come nearer leave a narrower half.
-    (all <= BAND.1 * options.accuracy && all <= 1.5 * before.min(after)).then_some(all)
+    (all <= BAND.1 * options.accuracy && all <= APART * before.min(after)).then_some(all)
 }
 
 /// Whether an estimate, falling from cycle to cycle as it does now, stands for an error below the tolerance.

@@ -452,9 +452,10 @@ fn momentum(pack: &Pack, i: usize) -> (f64, f64) {
 
 /// What is said of a cycle that does not close as it should.
 fn not_periodic(error: f64, wanted: f64, cycles: usize) -> Note {
+    let seen = if error <= wanted { " only since the last cycle" } else { "" };
     let text = format!(
-        "not periodic within {wanted:.0e} after {cycles} cycles: the estimated error is {error:.1e}. Raise `solver.max_cycles`, or look for a mode that \
-         never settles (a ring that flutters)"
+        "not periodic within {wanted:.0e} after {cycles} cycles: the estimated error is {error:.1e}{seen}. Raise `solver.max_cycles`, tighten \
+         `solver.tolerance`, or look for a mode that never settles (a ring that flutters)"
     );
     let failed = error.is_nan() || error > NOT_PERIODIC * wanted;
     let note = if failed { Note::failure("not_periodic", text) } else { Note::caution("not_periodic", text) };
