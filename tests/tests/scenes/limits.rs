@@ -204,9 +204,9 @@ fn low_speeds_are_solved_with_the_rings_on_the_liner() {
 fn films_are_evaluated_as_often_as_their_balance_needs() {
     let r = run_case(CASE, &[]);
     let each = r.solver.counters["film_evaluations"] as f64 / r.solver.counters["rhs"] as f64;
-    // Four faces, two of them searched in three evaluations and looked at in a fourth, and a Jacobian for every five right-hand sides: 16.8 when this
+    // Four faces, two of them searched in three evaluations and looked at in a fourth, and a Jacobian for every five right-hand sides: 17.9 when this
     // was written, 28 when the drag was searched apart.
-    assert!(each < 19.0, "{each} evaluations of films for a right-hand side");
+    assert!(each < 20.0, "{each} evaluations of films for a right-hand side");
 }
 
 /// Neither film nor contact: what was asked of the films is not there, what was asked of the gas is.

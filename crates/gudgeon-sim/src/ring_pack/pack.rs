@@ -23,6 +23,8 @@ use crate::case::{
 
 /// Standard acceleration used by both sources \[m/s²\].
 const GRAVITY: f64 = 9.8;
+/// Part of the velocity of surfaces that part within which one step of Newton ends at the root.
+const PARTING: f64 = 1e-5;
 /// Film thickness beyond which a trial state of an integrator is refused, which then takes a smaller step \[m\]: no groove is that deep.
 const THICKEST: f64 = 0.1;
 
@@ -684,17 +686,22 @@ impl Pack {
             return Ok((self.solve_balance(i, needed, drag, soft)?, None));
         }
         // A ring that parted from the liner an instant ago still does, most often.
-        if drag == 0.0 || self.at.rings[i].hdot <= 0.0 || !self.at.rings[i].hdot.is_finite() {
-            self.counters.film += 1;
-            let inp = self.face_in(i, 0);
-            let (hdot, film) = self.rings[i].films[0].carry(&inp, soft(needed))?;
-            self.at.rings[i].flux[0] = film.flux;
-            if drag == 0.0 || hdot <= 0.0 {
-                return Ok((hdot, Some(film)));
+        let parting = drag > 0.0 && self.at.rings[i].hdot > 0.0;
+        if parting {
+            let hdot = self.solve_balance(i, needed, drag, &soft)?;
+            if hdot > 0.0 {
+                return Ok((hdot, None));
             }
-            self.at.rings[i].hdot = 0.0;
         }
-        Ok((self.solve_balance(i, needed, drag, soft)?, None))
+        self.counters.film += 1;
+        let inp = self.face_in(i, 0);
+        let (hdot, film) = self.rings[i].films[0].carry(&inp, soft(needed))?;
+        self.at.rings[i].flux[0] = film.flux;
+        if drag == 0.0 || hdot <= 0.0 || parting {
+            return Ok((hdot, Some(film)));
+        }
+        self.at.rings[i].hdot = 0.0;
+        Ok((self.solve_balance(i, needed, drag, &soft)?, None))
     }
 
     /// A ring without a film: its contact carries it, and the drag in place of its inertia brings it there.
@@ -816,7 +823,10 @@ impl Pack {
             }
             // Newton's method squares a small error: the next step from here ends within 1e-9.
             let next = x - f / d;
-            if f.abs() <= 1e-5 * scale && next.is_finite() && (drag == 0.0 || (next > 0.0) == (x > 0.0)) {
+            // A film that is drawn apart is nearly flat in its velocity, which a small part of the load says little of.
+            let parts = drag > 0.0 && x > 0.0;
+            let near = if parts { (next - x).abs() <= PARTING * x } else { f.abs() <= 1e-5 * scale };
+            if near && next.is_finite() && (drag == 0.0 || (next > 0.0) == (x > 0.0)) {
                 return Ok(next);
             }
             if f > 0.0 {
