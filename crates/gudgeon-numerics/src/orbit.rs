@@ -32,6 +32,9 @@ pub struct OrbitOptions {
     pub accuracy: f64,
     /// Most cycles, those of all phases of the search together (a probe of stability, once begun, runs to its end).
     pub max_cycles: usize,
+    /// How many times the map may be asked for a tenth of its error where its noise is all that keeps the search from its end. 0 for maps
+    /// that have one accuracy.
+    pub finer: usize,
     /// Whether to accelerate. Maps with discrete decisions are not smooth and are repeated plainly.
     pub accelerate: bool,
 }
@@ -106,7 +109,16 @@ pub fn periodic_orbit(
         search.plain(map, y, options)?;
         return Ok(search.finish());
     }
-    search.accelerated(map, y, options, 1)?;
+    let mut options = *options;
+    search.accelerated(map, y, &options, 1)?;
+    for _ in 0..options.finer {
+        if search.report.converged || !search.noisy {
+            break;
+        }
+        options.accuracy *= 0.1;
+        search.accelerated(map, y, &options, 1)?;
+    }
+    let options = &options;
     if !search.report.converged && search.report.cycles >= patience(options) {
         // Extrapolation has had its time: what the secants of a strongly bent map say can lead astray for ever.
         search.plain(map, y, options)?;
@@ -149,6 +161,8 @@ struct Search {
     last_cost: f64,
     /// Whether the multipliers leave it open if the fixed point is stable.
     suspect: bool,
+    /// Whether the last phase ended in the noise of the map.
+    noisy: bool,
 }
 
 impl Search {
@@ -167,6 +181,7 @@ impl Search {
             cost: 0.0,
             last_cost: 1.0,
             suspect: false,
+            noisy: false,
         }
     }
 
@@ -221,14 +236,15 @@ impl Search {
         let mut passed = 0.0;
         let mut last = 0.0_f64;
         self.report.converged = false;
+        self.noisy = false;
+        // Far from the orbit a rough map does: the first cycle only has to leave the arbitrary start.
+        let rough = if self.report.cycles == 0 { options.accuracy.max(1e-3) } else { options.accuracy };
         for k in 0.. {
             let most =
                 if times == 1 { options.max_cycles.min(patience(options)) } else { options.max_cycles };
             if self.report.cycles + times > most {
                 break;
             }
-            // Far from the orbit a rough map does: the first cycle only has to leave the arbitrary start.
-            let rough = options.accuracy.max(1e-3);
             let accuracy = if k == 0 && times == 1 { rough } else { options.accuracy };
             self.apply(map, y, &mut g, accuracy, times)?;
             let before = s.clone();
@@ -295,6 +311,7 @@ impl Search {
             }
             if idle > IDLE {
                 // Too near the edge of stability for the noise of the map.
+                self.noisy = true;
                 break;
             }
             passed = if k > 0 && estimate <= options.tolerance { estimate } else { 0.0 };
