@@ -163,6 +163,8 @@ struct Search {
     suspect: bool,
     /// Whether the last phase ended in the noise of the map.
     noisy: bool,
+    /// Largest factor by which a residual was seen to understate an error in a phase that ended in noise.
+    gain: f64,
 }
 
 impl Search {
@@ -182,6 +184,7 @@ impl Search {
             last_cost: 1.0,
             suspect: false,
             noisy: false,
+            gain: 1.0,
         }
     }
 
@@ -237,6 +240,7 @@ impl Search {
         let mut last = 0.0_f64;
         self.report.converged = false;
         self.noisy = false;
+        let mut slowest = 1.0_f64;
         // Far from the orbit a rough map does: the first cycle only has to leave the arbitrary start.
         let rough = if self.report.cycles == 0 { options.accuracy.max(1e-3) } else { options.accuracy };
         for k in 0.. {
@@ -293,6 +297,9 @@ impl Search {
             let (largest, gain, suspect) = spectrum(&secants);
             self.report.multiplier = largest;
             self.suspect = suspect;
+            // What was seen of slow modes before the map became more accurate still holds near the orbit.
+            slowest = slowest.max(gain);
+            let gain = gain.max(self.gain);
             let (correction, rest) = explain(&secants[trusted..], &r);
             let gain = gain.max(1.0 / (1.0 - ratio.clamp(0.0, 1.0 - 1.0 / MOST_GAIN)));
             // y + r - correction would be on the orbit, but for what the secants leave unexplained, and for the noise that
@@ -312,6 +319,7 @@ impl Search {
             if idle > IDLE {
                 // Too near the edge of stability for the noise of the map.
                 self.noisy = true;
+                self.gain = self.gain.max(slowest);
                 break;
             }
             passed = if k > 0 && estimate <= options.tolerance { estimate } else { 0.0 };

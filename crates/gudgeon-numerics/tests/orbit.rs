@@ -320,7 +320,7 @@ fn noise_that_keeps_a_search_from_its_end_is_lessened() {
             let mut map = Linear::new(0.9, 1.0, seed);
             let mut y = map.start.clone();
             let wanted =
-                OrbitOptions { tolerance: 1e-4, accuracy: 1e-4, max_cycles: 60, finer, accelerate: true };
+                OrbitOptions { tolerance: 1e-4, accuracy: 1e-4, max_cycles: 120, finer, accelerate: true };
             let r = periodic_orbit(&mut map, &mut y, &wanted).unwrap();
             (map.error(&y), r)
         };

@@ -1373,12 +1373,8 @@ impl Pack {
     fn tangent(&mut self, i: usize) -> Result<Option<Tangent>, EvalError> {
         let r = self.at.rings[i];
         let pull = r.film.load.abs() / r.film.load_rate.abs();
-        if !self.plan.film
-            || !r.balanced
-            || r.film_known
-            || !(pull > 0.0 && pull.is_finite())
-            || r.limited.drag > 0.0
-        {
+        let searched = self.plan.film && r.balanced && !r.film_known && r.limited.drag <= 0.0;
+        if !(searched && pull > 0.0 && pull.is_finite()) {
             return Ok(None);
         }
         let free = self.drag(i, r.hdot, r.load.abs().max(r.film.load.abs())) <= 0.0;
