@@ -25,6 +25,8 @@ use crate::case::{
 const GRAVITY: f64 = 9.8;
 /// Part of the velocity of surfaces that part within which one step of Newton ends at the root.
 const PARTING: f64 = 1e-5;
+/// Radial velocity over its limit at which a film holds nothing that it would let go of at a higher one.
+const AWAY: f64 = 1e3;
 /// Film thickness beyond which a trial state of an integrator is refused, which then takes a smaller step \[m\]: no groove is that deep.
 const THICKEST: f64 = 0.1;
 
@@ -695,13 +697,25 @@ impl Pack {
         }
         self.counters.film += 1;
         let inp = self.face_in(i, 0);
-        let (hdot, film) = self.rings[i].films[0].carry(&inp, soft(needed))?;
-        self.at.rings[i].flux[0] = film.flux;
+        let (hdot, film) = match self.rings[i].films[0].carry(&inp, soft(needed)) {
+            Ok((hdot, film)) => (hdot, Some(film)),
+            Err(e) => (self.lets_go(i, soft(needed), e)?, None),
+        };
+        self.at.rings[i].flux[0] = film.map_or(0.0, |f| f.flux);
         if drag == 0.0 || hdot <= 0.0 || parting {
-            return Ok((hdot, Some(film)));
+            return Ok((hdot, film));
         }
         self.at.rings[i].hdot = 0.0;
         Ok((self.solve_balance(i, needed, drag, &soft)?, None))
+    }
+
+    /// A velocity beyond every limit, for a film that carries more than `load` however fast it is drawn apart: on a coarse grid the pressures at the
+    /// edges reach as far in as a point. The limits of the velocity, which it nears as the load falls, then decide; any other failure stays one.
+    fn lets_go(&mut self, i: usize, load: f64, failure: EvalError) -> Result<f64, EvalError> {
+        let away = AWAY * self.limits.radial_speed;
+        let carries =
+            failure.is_recoverable() && self.film_load(i, away).is_ok_and(|(carried, _)| carried > load);
+        if carries { Ok(away) } else { Err(failure) }
     }
 
     /// A ring without a film: its contact carries it, and the drag in place of its inertia brings it there.
