@@ -85,6 +85,7 @@ impl GapOrifice {
                 .iter()
                 .map(|r| merge.map_or(0.0, |tau| 1.0 / (pack.gas_constant * r.back_temperature * tau)))
                 .collect(),
+            merge_time: merge,
         };
         Pack::new(areas, pack, &self.orifice, Some(0.0), DEFAULT_CHAMFER_FADE, None)
     }
@@ -114,11 +115,17 @@ struct Areas {
     circumference: f64,
     /// `1 / (R T τ)`; 0 when volumes are separate.
     leak_per_volume: Vec<f64>,
+    /// `τ`, of merged volumes.
+    merge_time: Option<f64>,
 }
 
 impl Passages for Areas {
     const NAME: &'static str = "gap_orifice";
     const FACE: bool = false;
+
+    fn tie_time(&self) -> Option<f64> {
+        self.merge_time
+    }
 
     fn passages(&self, i: usize, ring: &RingGeometry, o: &Openings) -> RingPassages {
         let gap = Passage::Orifice { area: o.gap };

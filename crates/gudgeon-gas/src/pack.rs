@@ -94,6 +94,10 @@ pub(crate) trait Passages: Send {
     const SIGNED: bool = false;
     /// The passages of ring `i`. Upper and lower flank are ignored for a sealed ring, the lower one for a drained groove.
     fn passages(&self, i: usize, ring: &RingGeometry, o: &Openings) -> RingPassages;
+    /// Time \[s\] within which the space behind a seated ring takes on the pressure of the land it faces, when the model ties them.
+    fn tie_time(&self) -> Option<f64> {
+        None
+    }
     /// Whether the passages themselves (not gap, clearance and volume) depend on `Openings::h`.
     fn uses_film_height(&self, ring: &RingGeometry) -> bool;
 }
@@ -314,6 +318,21 @@ impl<M: Passages> Pack<M> {
         Ok(Self { model, pack: pack.clone(), nominal_film, chamfer_fade, bounded: true, net, links, lands })
     }
 
+    /// Capacity `V/(R T)` of the space behind ring `i`, and of land `i + 1` when that has a volume, in the nominal liner \[kg/Pa\].
+    fn capacities(&self, i: usize) -> (f64, Option<f64>) {
+        let (ring, rt) = (&self.pack.rings[i], |node: usize| self.net.rt(node));
+        let volume = match ring.back {
+            BackVolume::Fixed(v) => v,
+            BackVolume::Geometric => {
+                back_volume(ring, self.pack.bore_radius, self.nominal_film.unwrap_or(0.0))
+            }
+            _ => 0.0,
+        };
+        let behind = self.links[i].back.map_or(0.0, |node| volume / rt(node));
+        let land = (i + 1 < self.links.len()).then(|| self.pack.lands[i + 1].volume / rt(self.lands[i + 1]));
+        (behind, land)
+    }
+
     /// Volume behind ring `i`, not yet checked.
     fn volume_behind(&self, i: usize, place: &RingPlace) -> f64 {
         let ring = &self.pack.rings[i];
@@ -463,6 +482,17 @@ impl<M: Passages> Pack<M> {
 }
 
 impl<M: Passages> GasFlow for Pack<M> {
+    /// Spaces of capacity `C_k` tied to a land of capacity `C_0`, each by `C_k/τ`, come together at `1/τ` and `(1 + Σ C_k/C_0)/τ`; the quickest
+    /// has the rings above and below a land both seated against it.
+    fn longest_explicit_step(&self) -> Option<f64> {
+        let tau = self.model.tie_time()?;
+        let most = (1..self.links.len()).fold(1.0_f64, |most, i| {
+            let ((above, land), (below, _)) = (self.capacities(i - 1), self.capacities(i));
+            most.max(1.0 + land.map_or(0.0, |land| (above + below) / land))
+        });
+        Some(tau / most)
+    }
+
     fn unbound(&mut self) {
         self.bounded = !M::SIGNED;
     }

@@ -32,6 +32,9 @@ pub struct OrbitOptions {
     pub accuracy: f64,
     /// Most cycles, those of all phases of the search together (a probe of stability, once begun, runs to its end).
     pub max_cycles: usize,
+    /// How many times the map may be asked for a tenth of its error where its noise is all that keeps the search from its end. 0 for maps
+    /// that have one accuracy.
+    pub finer: usize,
     /// Whether to accelerate. Maps with discrete decisions are not smooth and are repeated plainly.
     pub accelerate: bool,
 }
@@ -72,6 +75,12 @@ const PROBE: usize = 8;
 const NUDGE: f64 = 0.03;
 /// Cycles in the noise of the map after which nothing more is expected of another.
 const IDLE: usize = 5;
+/// Cycles that acceleration has before plain repetition may take its place.
+const PATIENCE: usize = 60;
+/// Cycles over which plain repetition shows that it has come to rest in a band, and the width of a band over the noise of the map below which it is one.
+const BAND: (usize, f64) = (24, 30.0);
+/// States that move along or come nearer lie at least twice as far apart as the narrower half of them; noise, hardly farther.
+const APART: f64 = 1.9;
 /// Largest factor by which a residual is taken to understate an error.
 const MOST_GAIN: f64 = 3000.0;
 
@@ -100,7 +109,21 @@ pub fn periodic_orbit(
         search.plain(map, y, options)?;
         return Ok(search.finish());
     }
-    search.accelerated(map, y, options, 1)?;
+    let mut options = *options;
+    search.accelerated(map, y, &options, 1)?;
+    for _ in 0..options.finer {
+        if search.report.converged || !search.noisy {
+            break;
+        }
+        options.accuracy *= 0.1;
+        search.accelerated(map, y, &options, 1)?;
+    }
+    let options = &options;
+    if !search.report.converged && search.report.cycles >= patience(options) {
+        // Extrapolation has had its time: what the secants of a strongly bent map say can lead astray for ever.
+        search.plain(map, y, options)?;
+        return Ok(search.finish());
+    }
     if !search.suspect || !search.report.converged {
         return Ok(search.finish());
     }
@@ -127,12 +150,21 @@ pub fn periodic_orbit(
     Ok(search.finish())
 }
 
+/// Cycles after which acceleration makes room for plain repetition: half of all, and as many as it usually needs several times over.
+fn patience(options: &OrbitOptions) -> usize {
+    (options.max_cycles / 2).max(PATIENCE)
+}
+
 struct Search {
     report: OrbitReport,
     cost: f64,
     last_cost: f64,
     /// Whether the multipliers leave it open if the fixed point is stable.
     suspect: bool,
+    /// Whether the last phase ended in the noise of the map.
+    noisy: bool,
+    /// Largest factor by which a residual was seen to understate an error in a phase that ended in noise.
+    gain: f64,
 }
 
 impl Search {
@@ -151,6 +183,8 @@ impl Search {
             cost: 0.0,
             last_cost: 1.0,
             suspect: false,
+            noisy: false,
+            gain: 1.0,
         }
     }
 
@@ -205,12 +239,16 @@ impl Search {
         let mut passed = 0.0;
         let mut last = 0.0_f64;
         self.report.converged = false;
+        self.noisy = false;
+        let mut slowest = 1.0_f64;
+        // Far from the orbit a rough map does: the first cycle only has to leave the arbitrary start.
+        let rough = if self.report.cycles == 0 { options.accuracy.max(1e-3) } else { options.accuracy };
         for k in 0.. {
-            if self.report.cycles + times > options.max_cycles {
+            let most =
+                if times == 1 { options.max_cycles.min(patience(options)) } else { options.max_cycles };
+            if self.report.cycles + times > most {
                 break;
             }
-            // Far from the orbit a rough map does: the first cycle only has to leave the arbitrary start.
-            let rough = options.accuracy.max(1e-3);
             let accuracy = if k == 0 && times == 1 { rough } else { options.accuracy };
             self.apply(map, y, &mut g, accuracy, times)?;
             let before = s.clone();
@@ -259,6 +297,9 @@ impl Search {
             let (largest, gain, suspect) = spectrum(&secants);
             self.report.multiplier = largest;
             self.suspect = suspect;
+            // What was seen of slow modes before the map became more accurate still holds near the orbit.
+            slowest = slowest.max(gain);
+            let gain = gain.max(self.gain);
             let (correction, rest) = explain(&secants[trusted..], &r);
             let gain = gain.max(1.0 / (1.0 - ratio.clamp(0.0, 1.0 - 1.0 / MOST_GAIN)));
             // y + r - correction would be on the orbit, but for what the secants leave unexplained, and for the noise that
@@ -277,6 +318,8 @@ impl Search {
             }
             if idle > IDLE {
                 // Too near the edge of stability for the noise of the map.
+                self.noisy = true;
+                self.gain = self.gain.max(slowest);
                 break;
             }
             passed = if k > 0 && estimate <= options.tolerance { estimate } else { 0.0 };
@@ -378,12 +421,34 @@ impl Search {
                 };
             }
             seen.push(g.clone());
-            if seen.len() > MAX_PERIOD {
+            if seen.len() > BAND.0 {
                 seen.remove(0);
             }
         }
+        // Decay says nothing of states that have come to rest in the noise of the map; the band in which they stay does.
+        if let Some(width) = band(&seen, &s, options).filter(|w| *w < self.report.error_estimate) {
+            self.report.error_estimate = width;
+            self.report.converged = width <= options.tolerance;
+        }
         Ok(())
     }
+}
+
+/// The width of the band in which the last states lie, once they come no nearer to each other: a map less smooth than its accuracy says moves on for ever
+/// about its orbit, which lies among them. `None` while they still move along, or too far for noise.
+fn band(seen: &[Vec<f64>], s: &[f64], options: &OrbitOptions) -> Option<f64> {
+    let half = BAND.0 / 2;
+    if seen.len() < BAND.0 {
+        return None;
+    }
+    let width = |states: &[Vec<f64>]| {
+        let pairs =
+            states.iter().enumerate().flat_map(|(k, a)| states[..k].iter().map(move |b| norm(a, b, s)));
+        pairs.fold(0.0, f64::max)
+    };
+    let (all, before, after) = (width(seen), width(&seen[..half]), width(&seen[half..]));
+    // States that move along are farther apart than either half is wide; states that come nearer leave a narrower half.
+    (all <= BAND.1 * options.accuracy && all <= APART * before.min(after)).then_some(all)
 }
 
 /// Whether an estimate, falling from cycle to cycle as it does now, stands for an error below the tolerance.

@@ -72,6 +72,7 @@ fn options(tolerance: f64, accelerate: bool) -> OrbitOptions {
     OrbitOptions {
         tolerance,
         accuracy: tolerance / 30.0,
+        finer: 0,
         max_cycles: if accelerate { 60 } else { 300 },
         accelerate,
     }
@@ -290,5 +291,40 @@ fn failures_are_reported() {
         let report = periodic_orbit(&mut Bad(false), &mut y, &options(1e-4, accelerate)).unwrap();
         assert!(!report.converged && report.error_estimate > 0.1, "{accelerate} {report:?}");
         assert_eq!(report.cycle_equivalents, report.cycles as f64);
+    }
+}
+
+/// A map whose noise is eight times what its accuracy says: plain repetition takes over when acceleration has had its cycles, and tells the band in which
+/// the states stay, which is not the tolerance and holds the orbit.
+#[test]
+fn a_map_noisier_than_it_says_is_known_by_its_band() {
+    for seed in 1..=20 {
+        let mut map = Linear::new(0.5, 8.0, seed);
+        let mut y = map.start.clone();
+        let wanted =
+            OrbitOptions { tolerance: 1e-5, accuracy: 1e-5, max_cycles: 120, finer: 0, accelerate: true };
+        let r = periodic_orbit(&mut map, &mut y, &wanted).unwrap();
+        let error = map.error(&y);
+        assert!(!r.converged && r.period == 1 && r.cycles == 120, "{seed}: {r:?}");
+        // Noise of 8e-5 a cycle and multipliers of a half and less: states within twice that of the orbit, in bands of at most twice as much again.
+        assert!(error < 1.6e-4 && r.error_estimate < 3.2e-4, "{seed}: {error:e} {r:?}");
+        assert!(error <= 3.0 * r.error_estimate, "{seed}: {error:e} {r:?}");
+    }
+}
+
+/// A multiplier of 0.9 makes noise of the tolerance an error ten times as large: the search asks for a more accurate map where it may, and ends.
+#[test]
+fn noise_that_keeps_a_search_from_its_end_is_lessened() {
+    for seed in 1..=20 {
+        let ends = |finer: usize| {
+            let mut map = Linear::new(0.9, 1.0, seed);
+            let mut y = map.start.clone();
+            let wanted =
+                OrbitOptions { tolerance: 1e-4, accuracy: 1e-4, max_cycles: 120, finer, accelerate: true };
+            let r = periodic_orbit(&mut map, &mut y, &wanted).unwrap();
+            (map.error(&y), r)
+        };
+        let (error, r) = ends(2);
+        assert!(r.converged && error <= 3.0 * r.error_estimate, "{seed}: {error:e} {r:?}");
     }
 }

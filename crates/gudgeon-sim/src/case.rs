@@ -356,8 +356,20 @@ pub enum AxialGas {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum RadialGas {
-    /// Pressure behind the ring on its inner cylinder; the parts of the face outside the running face see their land.
+    /// Equilibrium of half a split ring of inner and outer radius `r_i` and `r_o`: pressure behind it on its inner cylinder, the lands on the parts
+    /// of the face outside the running face, and gas on the two end faces of the gap, `w` deep, which closes the ring like a hoop:
+    ///
+    /// ```text
+    /// r_o W = F_t + p_back b r_i + p_gap b w - r_o ∫ p dx (outside the running face),    p_gap w = p_back (r_l - r_i) + ½ (p_above + p_below) (r_o - r_l)
+    /// ```
+    ///
+    /// `W` the load of the running face per circumference \[N/m\], `r_l` the radius of the neighbouring lands: as deep as the gap lies in the groove it
+    /// sees the pressure behind the ring, outside it leads from land to land. Under one pressure everywhere `W` is tension plus that pressure on the
+    /// running face, as it must be; without the end faces `p b w / r_o` is missing, 8 % of `p b` of a usual ring, and gas pushes a ring
+    /// off the liner that nothing pushes. For sections much smaller than the radius; a ring that rotates or twists is not meant.
     #[default]
+    BackFaceAndGap,
+    /// The same without the end faces of the gap.
     BackAndFace,
     /// Pressure behind the ring on its inner cylinder only (zottin1992 eq. 3.4).
     BackOnly,
@@ -425,7 +437,8 @@ pub struct Solver {
     /// `implicit`: true relative error of the periodic state; not below `tolerance`.
     #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1, "when": { "method": "implicit" } }))]
     pub periodicity: PosRatio,
-    /// Most cycles, all phases of the search together, before the run is called unconverged.
+    /// Most cycles, all phases of the search together, before the run is called unconverged. Half of them, but at least 60, are accelerated; the
+    /// rest, and those of models with decided seats, repeat plainly.
     #[schemars(range(max = 100_000))]
     pub max_cycles: u32,
     /// Pressures of all lands from which the cycle is started. Each start is run to its periodic state; those that
@@ -460,7 +473,7 @@ impl Default for Solver {
             tolerance: quantity(1e-4),
             integrator: IntegratorName::Rodas,
             periodicity: quantity(1e-4),
-            max_cycles: 40,
+            max_cycles: 120,
             starts: Vec::new(),
             scheme: Scheme::SubstepMarch,
             cycles: 0,

@@ -141,6 +141,12 @@ pub trait GasFlow: Send {
         out: &mut GasOut,
     ) -> Result<(), EvalError>;
 
+    /// Longest explicit step \[s\] over which volumes that the model ties to each other come together without passing each other; `None` when
+    /// it ties none. What passages allow depends on the pressures and is not said.
+    fn longest_explicit_step(&self) -> Option<f64> {
+        None
+    }
+
     /// Takes lifts and gaps as they come from now on, below zero too, as a published explicit scheme does: a ring at rest on its upper flank,
     /// whose clearance shrinks as the liner narrows, then leaves less than nothing there until it moves again. Nothing changes in a model
     /// for which that means nothing.

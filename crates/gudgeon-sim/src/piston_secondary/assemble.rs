@@ -42,6 +42,8 @@ pub struct Assembly {
 
 /// Smallest and largest admitted intervals of a grid.
 const INTERVALS: std::ops::RangeInclusive<u32> = 2..=1000;
+/// Most maps of a cycle: each is as large as the grid of a side, and a page holds them all.
+const MOST_MAPS: f64 = 20_000.0;
 
 impl Assembly {
     /// What acts on the piston at crank angle `theta` \[rad\].
@@ -335,11 +337,9 @@ fn legal(case: &PistonSecondaryCase) -> Vec<BuildError> {
     if !(8.0..=1e6).contains(&rows) {
         say("outputs.series_step", format!("a series of {rows:.0} rows a cycle is none"));
     }
-    if case.outputs.map_step.is_some_and(|m| m.si() < case.outputs.series_step.si() * (1.0 - 1e-9)) {
-        say(
-            "outputs.map_step",
-            "maps are kept at rows of the series: not below `outputs.series_step`".into(),
-        );
+    let maps = case.outputs.map_step.map_or(0.0, |m| 4.0 * PI / m.si());
+    if maps > MOST_MAPS {
+        say("outputs.map_step", format!("{maps:.0} maps a cycle are more than {MOST_MAPS:.0}"));
     }
     if radius(case) <= 0.0 {
         say("skirt.clearance", "the clearance is larger than the bore".into());

@@ -41,6 +41,32 @@ fn angles(period: f64, step: f64) -> Vec<f64> {
     (0..=count).map(|k| period * k as f64 / count as f64).collect()
 }
 
+/// Crank angles closer than this are one \[rad\].
+const SAME: f64 = 1e-9;
+
+/// A crank angle that is looked at, for a row of the series, for a map, or for both.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Place {
+    theta: f64,
+    row: bool,
+    map: bool,
+}
+
+/// Rows and maps in the order of their crank angles, which both ascend.
+fn places(rows: &[f64], maps: &[f64]) -> Vec<Place> {
+    let mut all = Vec::with_capacity(rows.len() + maps.len());
+    let mut maps = maps.iter().copied().peekable();
+    for &theta in rows {
+        while let Some(theta) = maps.next_if(|m| *m < theta - SAME) {
+            all.push(Place { theta, row: false, map: true });
+        }
+        let map = maps.next_if(|m| *m <= theta + SAME).is_some();
+        all.push(Place { theta, row: true, map });
+    }
+    all.extend(maps.map(|theta| Place { theta, row: false, map: true }));
+    all
+}
+
 impl Record {
     /// Looks at the cycle row by row; `peaks` are the crank angles \[rad\] of the highest pressure of each side, `flows`: with the oil that crosses the
     /// edges.
@@ -54,18 +80,19 @@ impl Record {
         flows: bool,
     ) -> Result<Self, EvalError> {
         let grid = angles(look.a.period, case.outputs.series_step.si());
-        let step = grid[1] - grid[0];
-        let every = case.outputs.map_step.map_or(0, |m| (m.si() / step).round().max(1.0) as usize);
+        let mapped = case.outputs.map_step.map_or_else(Vec::new, |m| angles(look.a.period, m.si()));
         let mut columns: Vec<Column> = COLUMNS
             .iter()
             .map(|(name, unit)| Column { name: (*name).into(), unit: (*unit).into(), values: Vec::new() })
             .collect();
         let mut maps: [Vec<Map>; 2] = Default::default();
-        for (k, &t) in grid.iter().enumerate() {
-            let row = look.row(t, 0.0)?;
-            columns.iter_mut().zip(row).for_each(|(c, v)| c.values.push(v));
-            if every > 0 && k.is_multiple_of(every) {
-                let theta_deg = tidy(t.to_degrees());
+        for place in places(&grid, &mapped) {
+            let row = look.row(place.theta, 0.0)?;
+            if place.row {
+                columns.iter_mut().zip(row).for_each(|(c, v)| c.values.push(v));
+            }
+            if place.map {
+                let theta_deg = tidy(place.theta.to_degrees());
                 for (maps, side) in maps.iter_mut().zip(&look.a.piston.sides) {
                     maps.push(Map { theta_deg, p: side.pressure() });
                 }
@@ -73,7 +100,7 @@ impl Record {
         }
         let mut peak: [Map; 2] = Default::default();
         for (k, t) in peaks.into_iter().enumerate() {
-            if let Some(t) = t.filter(|_| every > 0) {
+            if let Some(t) = t.filter(|_| !mapped.is_empty()) {
                 let [thrust, anti_thrust] = look.pressures(t)?;
                 let p = if k == 0 { thrust } else { anti_thrust };
                 peak[k] = Map { theta_deg: tidy(t.to_degrees()), p };
@@ -134,4 +161,25 @@ pub fn yielding(
         }
     }
     Ok((part, first))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn maps_stand_at_their_own_angles_whatever_the_rows_are() {
+        let degrees = |step: f64| angles(4.0 * std::f64::consts::PI, step.to_radians());
+        for (rows, maps, looks) in
+            [(1.0, 5.0, 721), (30.0, 5.0, 145), (7.2, 5.0, 101 + 145 - 21), (0.05, 90.0, 14_401)]
+        {
+            let (rows, maps) = (degrees(rows), degrees(maps));
+            let all = places(&rows, &maps);
+            assert_eq!(all.len(), looks);
+            assert_eq!(all.iter().filter(|p| p.row).count(), rows.len());
+            assert_eq!(all.iter().filter(|p| p.map).count(), maps.len());
+            assert!(all.windows(2).all(|w| w[0].theta < w[1].theta - SAME));
+        }
+        assert!(places(&degrees(1.0), &[]).iter().all(|p| p.row && !p.map));
+    }
 }

@@ -343,6 +343,9 @@ pub fn assemble(case: &RingPackCase, files: &Files) -> Result<Pack, Vec<BuildErr
                 .help("check land heights and diameters, groove depth and ring thickness"),
         ]);
     }
+    if let Some(e) = super::too_long(case, &pack) {
+        return Err(vec![e]);
+    }
     Ok(pack)
 }
 

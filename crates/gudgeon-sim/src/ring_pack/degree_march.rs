@@ -87,7 +87,7 @@ pub fn run(
             for g in 0..set.gas_steps {
                 let p =
                     pack.cylinder.pressure(theta + step * (f64::from(g) + 0.5) / f64::from(set.gas_steps));
-                pack.gas(Some(p))?;
+                pack.gas_step(p)?;
                 for (m, dm) in pack.masses.iter_mut().zip(&pack.at.dm) {
                     *m += dm * dt_gas;
                 }

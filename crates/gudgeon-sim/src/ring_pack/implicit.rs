@@ -138,7 +138,6 @@ struct Cycle<'a> {
     h: f64,
     stats: Stats,
     q: Vec<f64>,
-    full_accuracy: f64,
     /// Longest step \[rad\]: none may jump over a pressure pulse.
     longest_step: f64,
     /// Most steps of a cycle.
@@ -256,6 +255,10 @@ impl Cycle<'_> {
     }
 }
 
+/// How many times the search of a periodic state may tighten the tolerance tenfold: rings that float amplify the error of a cycle.
+const FINER: usize = 2;
+/// Tightest tolerance of a cycle: a hundred times the rounding of its states.
+const FINEST: f64 = 1e-13;
 /// How much less repeatable than its integration a cycle with oil on the liner is.
 const OIL_NOISE: f64 = 10.0;
 /// Unit of the film on the liner \[m\].
@@ -274,7 +277,7 @@ impl CycleMap for Cycle<'_> {
         for k in &mut y1[..self.pack.layout.gas] {
             *k = k.max(0.01);
         }
-        let rtol = accuracy.max(self.full_accuracy);
+        let rtol = accuracy.max(FINEST);
         let n = self.pack.layout.n;
         self.begin(y1);
         if let Err(e) = self.integrate(&mut y1[..n], rtol, None) {
@@ -452,9 +455,10 @@ fn momentum(pack: &Pack, i: usize) -> (f64, f64) {
 
 /// What is said of a cycle that does not close as it should.
 fn not_periodic(error: f64, wanted: f64, cycles: usize) -> Note {
+    let seen = if error <= wanted { " only since the last cycle" } else { "" };
     let text = format!(
-        "not periodic within {wanted:.0e} after {cycles} cycles: the estimated error is {error:.1e}. Raise `solver.max_cycles`, or look for a mode that \
-         never settles (a ring that flutters)"
+        "not periodic within {wanted:.0e} after {cycles} cycles: the estimated error is {error:.1e}{seen}. Raise `solver.max_cycles`, tighten \
+         `solver.tolerance`, or look for a mode that never settles (a ring that flutters)"
     );
     let failed = error.is_nan() || error > NOT_PERIODIC * wanted;
     let note = if failed { Note::failure("not_periodic", text) } else { Note::caution("not_periodic", text) };
@@ -533,7 +537,6 @@ pub(super) fn run(
         h: FIRST_STEP,
         stats: Stats::default(),
         q: vec![0.0; quads],
-        full_accuracy: s.tolerance.si(),
         longest_step: s.limits.longest_step.si(),
         most_steps: s.limits.steps_at(s.tolerance.si(), cycle_speed),
         failure: None,
@@ -546,6 +549,7 @@ pub(super) fn run(
         tolerance: s.periodicity.si().max(repeatable),
         accuracy: s.tolerance.si(),
         max_cycles: s.max_cycles as usize,
+        finer: FINER,
         accelerate: !discrete && cycle.pack.oil_pack.is_none(),
     };
     let report = match periodic_orbit(&mut cycle, &mut y, &options) {

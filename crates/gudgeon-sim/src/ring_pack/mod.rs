@@ -235,6 +235,35 @@ fn method_name(case: &RingPackCase) -> &'static str {
     }
 }
 
+/// Steps of mechanics per crank degree, and of gas per step of mechanics, of a published scheme.
+fn marching_steps(case: &RingPackCase, rings: usize) -> (u32, u32) {
+    let s = &case.solver;
+    let own = match s.scheme {
+        Scheme::SubstepMarch => (rings as u32 + 1, 1 << (rings + 1).min(20)),
+        Scheme::DegreeMarch => (1, 10),
+    };
+    let or = |given: u32, own: u32| if given == 0 { own } else { given };
+    (or(s.steps_per_degree, own.0), or(s.gas_steps, own.1))
+}
+
+/// Gas steps of a published scheme that are longer than the gas model can be marched with.
+fn too_long(case: &RingPackCase, pack: &Pack) -> Option<BuildError> {
+    let (steps, gas_steps) = marching_steps(case, pack.n_rings());
+    let mechanics = 1f64.to_radians() / pack.omega / f64::from(steps);
+    let (own, longest) = (mechanics / f64::from(gas_steps), pack.gas.longest_explicit_step()?);
+    (case.solver.method == Method::AsPublished && own > longest).then(|| {
+        let (enough, ratio) = ((mechanics / longest).ceil(), own / longest);
+        let what = format!(
+            "an explicit gas step of {own:.2e} s is longer than the {longest:.2e} s within which `models.gas_flow` lets merged volumes come together: \
+             masses would fall below zero"
+        );
+        BuildError::at("solver.gas_steps", what).help(format!(
+            "`solver.gas_steps = {enough}`, or a `models.gas_flow.merge_time` {:.2} times as long, or `solver.method = \"implicit\"`",
+            ratio * 1.01
+        ))
+    })
+}
+
 fn one_start(
     case: &RingPackCase,
     pack: &mut Pack,
@@ -249,15 +278,14 @@ fn one_start(
         let theta_deg = pack.at.theta.to_degrees();
         move |source: EvalError| RunError::Eval { theta_deg, source }
     };
-    let or = |given: u32, own: u32| if given == 0 { own } else { given };
     match (s.method, s.scheme) {
         (Method::Implicit, _) => implicit::run(case, pack, start, progress),
         (Method::AsPublished, Scheme::SubstepMarch) => {
-            let n = pack.n_rings() as u32;
+            let (steps, gas_steps) = marching_steps(case, pack.n_rings());
             let set = substep_march::Settings {
-                cycles: or(s.cycles, 2),
-                steps: or(s.steps_per_degree, n + 1),
-                gas_steps: or(s.gas_steps, 1 << (n + 1)),
+                cycles: if s.cycles == 0 { 2 } else { s.cycles },
+                steps,
+                gas_steps,
                 passes: s.passes,
                 clamp: s.clamp,
             };
@@ -287,11 +315,12 @@ fn one_start(
             })
         }
         (Method::AsPublished, Scheme::DegreeMarch) => {
+            let (steps, gas_steps) = marching_steps(case, pack.n_rings());
             let set = degree_march::Settings {
                 cycles: s.cycles,
                 max_cycles: s.max_cycles,
-                steps: or(s.steps_per_degree, 1),
-                gas_steps: or(s.gas_steps, 10),
+                steps,
+                gas_steps,
                 tolerance: s.periodicity.si(),
             };
             let mut watch = Watch::new(pack);

@@ -23,6 +23,10 @@ use crate::case::{
 
 /// Standard acceleration used by both sources \[m/s²\].
 const GRAVITY: f64 = 9.8;
+/// Part of the velocity of surfaces that part within which one step of Newton ends at the root.
+const PARTING: f64 = 1e-5;
+/// Radial velocity over its limit at which a film holds nothing that it would let go of at a higher one.
+const AWAY: f64 = 1e3;
 /// Film thickness beyond which a trial state of an integrator is refused, which then takes a smaller step \[m\]: no groove is that deep.
 const THICKEST: f64 = 0.1;
 
@@ -150,6 +154,14 @@ pub struct RingModel {
     pub nominal_film: f64,
 }
 
+impl RingModel {
+    /// Whether anything could carry the ring against the liner: a film, or contact.
+    #[must_use]
+    pub fn carries(&self) -> bool {
+        self.resists || self.contact.range > 0.0 || self.contact.floor.is_some()
+    }
+}
+
 /// One ring at an instant.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct RingInstant {
@@ -180,6 +192,8 @@ pub struct RingInstant {
     pub film_p_max: f64,
     /// Whether `film` belongs to `hdot`.
     pub film_known: bool,
+    /// Whether `hdot` is a root of the balance of film, contact and friction that nothing else has changed.
+    pub balanced: bool,
     /// Friction that the convention counts \[N\], whole ring, along the liner's velocity.
     pub friction: f64,
     /// Friction power \[W\].
@@ -468,16 +482,30 @@ impl Pack {
             + match self.conv.radial_gas {
                 RadialGas::BorePerimeter => back,
                 RadialGas::BackOnly => back * inner,
-                RadialGas::BackAndFace => {
-                    let rest = g.height - g.lands as f64 * g.face.length();
-                    let face = if g.lands == 2 {
-                        rest * (r.p_below - r.p_cav)
-                    } else {
-                        0.5 * rest * (r.p_above + r.p_below - 2.0 * r.p_cav)
-                    };
-                    back * inner - face
-                }
+                RadialGas::BackAndFace => back * inner - self.gas_beside_face(i),
+                RadialGas::BackFaceAndGap => back * inner + self.gas_in_gap(i) - self.gas_beside_face(i),
             }
+    }
+
+    /// Load of the lands above `p_cav` on the parts of the face outside the running face, per circumference \[N/m\].
+    fn gas_beside_face(&self, i: usize) -> f64 {
+        let (g, r) = (&self.geo.rings[i], &self.at.rings[i]);
+        let rest = g.height - g.lands as f64 * g.face.length();
+        if g.lands == 2 {
+            rest * (r.p_below - r.p_cav)
+        } else {
+            0.5 * rest * (r.p_above + r.p_below - 2.0 * r.p_cav)
+        }
+    }
+
+    /// Radial load of the gas on the end faces of the gap above `p_cav`, per circumference \[N/m\]: their force over the outer radius.
+    fn gas_in_gap(&self, i: usize) -> f64 {
+        let (g, r, place) = (&self.geo.rings[i], &self.at.rings[i], &self.at.places[i]);
+        let land = 0.5 * (g.piston_radius_above + g.piston_radius_below);
+        let land = land.clamp(place.r_inner, place.r_outer);
+        let between = 0.5 * (r.p_above + r.p_below) - r.p_cav;
+        let force = (r.p_back - r.p_cav) * (land - place.r_inner) + between * (place.r_outer - land);
+        g.height * force / place.r_outer
     }
 
     /// Axial load that presses the flanks together, as the radial friction laws take it \[N\].
@@ -615,7 +643,7 @@ impl Pack {
         let soft = |w: f64| 0.5 * (w + (w * w + 4.0 * least * least).sqrt());
         let needed = load - contact - self.at.rings[i].dry.0;
         let r = &mut self.at.rings[i];
-        (r.load, r.contact, r.limited) = (load, contact, Limited::default());
+        (r.load, r.contact, r.limited, r.balanced) = (load, contact, Limited::default(), false);
         if !self.rings[i].resists {
             self.dry_balance(i, needed);
             return Ok(());
@@ -631,31 +659,68 @@ impl Pack {
                 return Ok(());
             }
         }
-        let (found, film) = if self.rings[i].films.len() == 1 && self.rings[i].friction.is_off() {
-            self.counters.film += 1;
-            let inp = self.face_in(i, 0);
-            let (hdot, film) = self.rings[i].films[0].carry(&inp, soft(needed))?;
-            self.at.rings[i].flux[0] = film.flux;
-            (hdot, Some(film))
-        } else {
-            (self.solve_balance(i, needed, soft)?, None)
-        };
-        let dragged = self.dragged(i, found, needed, soft)?;
+        let (found, film) = self.balanced(i, needed, soft)?;
+        let parts = contact > 0.0 && found > 0.0;
+        let dragged = if parts { found } else { self.dragged(i, found, needed, soft)? };
         let hdot = self.bounded(i, dragged, lowest);
         // Off its limits a ring moves as its film allows, and the film found with the velocity is the film of the instant.
-        let film = film.filter(|_| (hdot - found).abs() <= 1e-6 * found.abs());
+        let balanced = (hdot - found).abs() <= 1e-6 * found.abs();
+        let film = film.filter(|_| balanced);
         let r = &mut self.at.rings[i];
-        (r.hdot, r.film_known) = (hdot, film.is_some());
+        (r.hdot, r.film_known, r.balanced) = (hdot, film.is_some(), balanced);
         r.film = film.unwrap_or(r.film);
         r.limited.lifted = soft(needed) - needed;
+        if parts {
+            self.at.rings[i].limited.contact_drag = self.contact_drag(i) * found;
+        }
         Ok(())
+    }
+
+    /// The velocity at which film and contact carry `needed`, surfaces that part against their drag; and the film, where it came with the velocity.
+    fn balanced(
+        &mut self,
+        i: usize,
+        needed: f64,
+        soft: impl Fn(f64) -> f64,
+    ) -> Result<(f64, Option<FaceForces>), EvalError> {
+        let drag = self.contact_drag(i);
+        if self.rings[i].films.len() > 1 || !self.rings[i].friction.is_off() {
+            return Ok((self.solve_balance(i, needed, drag, soft)?, None));
+        }
+        // A ring that parted from the liner an instant ago still does, most often.
+        let parting = drag > 0.0 && self.at.rings[i].hdot > 0.0;
+        if parting {
+            let hdot = self.solve_balance(i, needed, drag, &soft)?;
+            if hdot > 0.0 {
+                return Ok((hdot, None));
+            }
+        }
+        self.counters.film += 1;
+        let inp = self.face_in(i, 0);
+        let (hdot, film) = match self.rings[i].films[0].carry(&inp, soft(needed)) {
+            Ok((hdot, film)) => (hdot, Some(film)),
+            Err(e) => (self.lets_go(i, soft(needed), e)?, None),
+        };
+        self.at.rings[i].flux[0] = film.map_or(0.0, |f| f.flux);
+        if drag == 0.0 || hdot <= 0.0 || parting {
+            return Ok((hdot, film));
+        }
+        self.at.rings[i].hdot = 0.0;
+        Ok((self.solve_balance(i, needed, drag, &soft)?, None))
+    }
+
+    /// A velocity beyond every limit, for a film that carries more than `load` however fast it is drawn apart: on a coarse grid the pressures at the
+    /// edges reach as far in as a point. The limits of the velocity, which it nears as the load falls, then decide; any other failure stays one.
+    fn lets_go(&mut self, i: usize, load: f64, failure: EvalError) -> Result<f64, EvalError> {
+        let away = AWAY * self.limits.radial_speed;
+        let carries =
+            failure.is_recoverable() && self.film_load(i, away).is_ok_and(|(carried, _)| carried > load);
+        if carries { Ok(away) } else { Err(failure) }
     }
 
     /// A ring without a film: its contact carries it, and the drag in place of its inertia brings it there.
     fn dry_balance(&mut self, i: usize, needed: f64) {
-        let line = &self.rings[i].contact;
-        let nothing = line.range <= 0.0 && line.floor.is_none();
-        let free = if nothing { 0.0 } else { -needed / self.limits.radial_drag };
+        let free = if self.rings[i].carries() { -needed / self.limits.radial_drag } else { 0.0 };
         let hdot = self.bounded(i, free, self.lowest(i));
         let r = &mut self.at.rings[i];
         (r.hdot, r.film, r.film_known) = (hdot, FaceForces::default(), true);
@@ -709,21 +774,13 @@ impl Pack {
             }
             v = next;
         }
-        let r = &mut self.at.rings[i];
-        if v > 0.0 && r.contact > 0.0 {
-            r.limited.contact_drag = drag * v;
-        } else {
-            r.limited.drag = drag * v.abs();
-        }
+        self.at.rings[i].limited.drag = drag * v.abs();
         Ok(v)
     }
 
     /// Drag per circumference \[N s/m²\] of ring `i` at the velocity `free` that its film alone allows; `load` is the size of what it carries.
     fn drag(&self, i: usize, free: f64, load: f64) -> f64 {
-        let (limits, r) = (&self.limits, &self.at.rings[i]);
-        if free > 0.0 && r.contact > 0.0 {
-            return limits.contact_drag * r.contact / (r.contact + r.load.abs());
-        }
+        let limits = &self.limits;
         let share = limits.radial_drag * free.abs() / load;
         let ((begins, full), (near, far)) = (limits.drag_counts, limits.drag_gap);
         let rough = self.rings[i].contact.range;
@@ -736,8 +793,21 @@ impl Pack {
         limits.radial_drag * ramp(x) * ramp(off)
     }
 
-    /// Balance of several lands, or with flank friction: film load less needed load falls with `hdot`; bracket and Newton.
-    fn solve_balance(&mut self, i: usize, needed: f64, soft: impl Fn(f64) -> f64) -> Result<f64, EvalError> {
+    /// Drag per circumference \[N s/m²\] of the surfaces of ring `i` in contact, while they part.
+    fn contact_drag(&self, i: usize) -> f64 {
+        let r = &self.at.rings[i];
+        if r.contact > 0.0 { self.limits.contact_drag * r.contact / (r.contact + r.load.abs()) } else { 0.0 }
+    }
+
+    /// Balance of several lands, with flank friction, or with the drag of surfaces that part: film load less needed load falls with `hdot`; bracket
+    /// and Newton.
+    fn solve_balance(
+        &mut self,
+        i: usize,
+        needed: f64,
+        drag: f64,
+        soft: impl Fn(f64) -> f64,
+    ) -> Result<f64, EvalError> {
         let perimeter = self.perimeter(i) * self.geo.rings[i].rails as f64;
         let axial = self.flank_load(i);
         let residual = |p: &mut Self, x: f64| -> Result<(f64, f64), EvalError> {
@@ -748,7 +818,9 @@ impl Pack {
             } else {
                 (f.force(x, axial) / perimeter, f.slope(x, axial) / perimeter)
             };
-            Ok((load - soft(needed + fa), rate - dfa))
+            let (w, slope) = if x > 0.0 { (needed + fa + drag * x, dfa + drag) } else { (needed + fa, dfa) };
+            let all = soft(w);
+            Ok((load - all, rate - slope * all / (2.0 * all - w)))
         };
         let (mut lo, mut hi) = (f64::NEG_INFINITY, f64::INFINITY);
         // The velocity of the last evaluation, a small step away, is a good start.
@@ -764,8 +836,12 @@ impl Pack {
                 return Ok(x);
             }
             // Newton's method squares a small error: the next step from here ends within 1e-9.
-            if f.abs() <= 1e-5 * scale && (x - f / d).is_finite() {
-                return Ok(x - f / d);
+            let next = x - f / d;
+            // A film that is drawn apart is nearly flat in its velocity, which a small part of the load says little of.
+            let parts = drag > 0.0 && x > 0.0;
+            let near = if parts { (next - x).abs() <= PARTING * x } else { f.abs() <= 1e-5 * scale };
+            if near && next.is_finite() && (drag == 0.0 || (next > 0.0) == (x > 0.0)) {
+                return Ok(next);
             }
             if f > 0.0 {
                 lo = x
@@ -1045,6 +1121,17 @@ impl Pack {
 
 /// What solvers need that keep their own state and march through the parts one by one.
 impl Pack {
+    /// [`Pack::gas`] within explicit gas steps.
+    ///
+    /// # Errors
+    /// What the gas model refuses: after a step that was too long, a volume that holds less than nothing.
+    pub fn gas_step(&mut self, p_cylinder: f64) -> Result<(), EvalError> {
+        self.gas(Some(p_cylinder)).map_err(|e| {
+            let advice = "explicit gas steps may be too long for it: raise `solver.gas_steps`";
+            EvalError::fatal("as_published", format!("{e}; {advice}"))
+        })
+    }
+
     /// Sets place and viscosity of one ring for the piston position of `self.at`.
     pub fn refresh_ring(&mut self, i: usize, h: f64, s: Option<(f64, f64)>) {
         self.set_place(i, h, s);
@@ -1092,9 +1179,52 @@ impl Pack {
     }
 }
 
+/// How the balance of a ring and its film change with its velocity, about the velocity of the instant.
+#[derive(Debug, Clone, Copy, Default)]
+struct Tangent {
+    /// Balance left at that velocity \[N/m\]; searches end near zero, not there.
+    left: f64,
+    /// Its derivative \[N s/m²\], below zero.
+    slope: f64,
+    /// Derivatives of the film.
+    film: FaceForces,
+    /// Derivatives of the fluxes.
+    flux: [f64; 2],
+}
+
+/// Part of its load over which the derivatives of a film by its velocity are taken: the root of the accuracy that films are found with.
+const FILM_DIFFERENCE: f64 = 1e-6;
+
+impl Tangent {
+    fn between(a: &FaceForces, b: &FaceForces, d: f64) -> FaceForces {
+        FaceForces {
+            load: (b.load - a.load) / d,
+            load_rate: (b.load_rate - a.load_rate) / d,
+            ring_shear: (b.ring_shear - a.ring_shear) / d,
+            liner_shear: (b.liner_shear - a.liner_shear) / d,
+            slope_force: (b.slope_force - a.slope_force) / d,
+            flux: (b.flux - a.flux) / d,
+        }
+    }
+
+    /// The film `f` after a change of velocity.
+    fn moved(&self, f: &FaceForces, change: f64) -> FaceForces {
+        let t = &self.film;
+        FaceForces {
+            load: f.load + t.load * change,
+            load_rate: f.load_rate + t.load_rate * change,
+            ring_shear: f.ring_shear + t.ring_shear * change,
+            liner_shear: f.liner_shear + t.liner_shear * change,
+            slope_force: f.slope_force + t.slope_force * change,
+            flux: f.flux + t.flux * change,
+        }
+    }
+}
+
 /// Scratch of [`Pack::jacobian`].
 #[derive(Debug, Clone, Default)]
 pub struct Base {
+    tangents: Vec<Option<Tangent>>,
     rings: Vec<RingInstant>,
     places: Vec<RingPlace>,
     dm: Vec<f64>,
@@ -1149,6 +1279,12 @@ impl Pack {
         base.oil.extend(self.oil_pack.iter().flat_map(|o| o.faces.iter().map(|f| f.rate)));
         let p_cylinder = self.at.gas.p_land[0];
         debug_assert!(theta.is_finite());
+        base.tangents.clear();
+        for i in 0..self.n_rings() {
+            let tangent = self.tangent(i)?;
+            base.tangents.push(tangent);
+            self.at.rings[i] = base.rings[i];
+        }
         if base.slopes.d_state.len() != self.layout.gas * self.layout.gas {
             base.slopes = GasSlopes::new(self.n_rings(), self.layout.gas);
         }
@@ -1222,6 +1358,64 @@ impl Pack {
                 outcome?;
             }
         }
+        Ok(())
+    }
+
+    /// Balance of film, contact, friction and the drag of surfaces that part at `hdot`, and its derivative but for that of the film; sets `load` and
+    /// `contact` of the ring.
+    fn left_over(&mut self, i: usize, hdot: f64, film: f64) -> (f64, f64) {
+        let load = self.radial_load(i);
+        let contact = self.rings[i].contact.load(self.at.places[i].h);
+        let r = &mut self.at.rings[i];
+        (r.load, r.contact) = (load, contact);
+        let drag = if hdot > 0.0 { self.contact_drag(i) } else { 0.0 };
+        let f = &self.rings[i].friction;
+        let (fa, dfa) = if f.is_off() {
+            (0.0, 0.0)
+        } else {
+            let (perimeter, axial) = (self.perimeter(i) * self.geo.rings[i].rails as f64, self.flank_load(i));
+            (f.force(hdot, axial) / perimeter, f.slope(hdot, axial) / perimeter)
+        };
+        let w = load - contact - self.at.rings[i].dry.0 + fa + drag * hdot;
+        let least = self.limits.least_load * self.tension(i);
+        let root = (w * w + 4.0 * least * least).sqrt();
+        (film - 0.5 * (w + root), -(dfa + drag) * 0.5 * (1.0 + w / root))
+    }
+
+    /// The tangent of ring `i` about the instant; `None` where its velocity is not that of the balance alone, or came with its film by a search that is
+    /// as cheap as one evaluation.
+    fn tangent(&mut self, i: usize) -> Result<Option<Tangent>, EvalError> {
+        let r = self.at.rings[i];
+        let pull = r.film.load.abs() / r.film.load_rate.abs();
+        let searched = self.plan.film && r.balanced && !r.film_known && r.limited.drag <= 0.0;
+        if !(searched && pull > 0.0 && pull.is_finite()) {
+            return Ok(None);
+        }
+        let free = self.drag(i, r.hdot, r.load.abs().max(r.film.load.abs())) <= 0.0;
+        if !free || self.at.places[i].h <= self.lowest(i) || self.at.rings[i].limited.floor > 0.0 {
+            return Ok(None);
+        }
+        let d = (FILM_DIFFERENCE * pull).max(FILM_DIFFERENCE * r.hdot.abs());
+        let (fluxes, film) = (r.flux, self.film(i, r.hdot + d)?);
+        let slope = Tangent::between(&r.film, &film, d);
+        let flux = [0, 1].map(|k: usize| (self.at.rings[i].flux[k] - fluxes[k]) / d);
+        let (left, rest) = self.left_over(i, r.hdot, r.film.load);
+        let all = slope.load + rest;
+        Ok((all < 0.0 && all.is_finite()).then_some(Tangent { left, slope: all, film: slope, flux }))
+    }
+
+    /// [`Pack::radial_balance`] after a small change, by one step of Newton from the velocity `hdot` before: one evaluation of the film.
+    fn moved_balance(&mut self, i: usize, hdot: f64, tangent: &Tangent) -> Result<(), EvalError> {
+        self.wet(i)?;
+        let film = self.film(i, hdot)?;
+        let (left, _) = self.left_over(i, hdot, film.load);
+        let change = (tangent.left - left) / tangent.slope;
+        let r = &mut self.at.rings[i];
+        for (flux, slope) in r.flux.iter_mut().zip(&tangent.flux) {
+            *flux += slope * change;
+        }
+        (r.hdot, r.film, r.film_known, r.limited) =
+            (hdot + change, tangent.moved(&film, change), true, Limited::default());
         Ok(())
     }
 
@@ -1302,7 +1496,10 @@ impl Pack {
                 continue;
             }
             if self.plan.film {
-                self.radial_balance(i)?;
+                match base.tangents[i] {
+                    Some(tangent) => self.moved_balance(i, base.rings[i].hdot, &tangent)?,
+                    None => self.radial_balance(i)?,
+                }
                 self.friction(i)?;
                 let rate = |r: &RingInstant, h: f64| r.hdot / (h * self.omega);
                 if let Some(k) = self.layout.film[i] {

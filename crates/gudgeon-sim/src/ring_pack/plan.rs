@@ -153,6 +153,8 @@ pub struct Plan {
     pub wanted: Vec<String>,
     /// Whether films are solved.
     pub film: bool,
+    /// Whether a wanted result is one of a film, and not only what it depends on.
+    pub film_wanted: bool,
     /// Whether axial forces are evaluated.
     pub axial: bool,
     /// What runs, and why.
@@ -216,6 +218,7 @@ pub fn plan(wanted: &[ResultInfo], facts: Facts<'_>) -> Plan {
     let (motion, motion_film) = facts.motion;
     let (gas, gas_film) = facts.gas;
     p.axial = facts.moving > 0;
+    p.film_wanted = !film_results.is_empty();
     p.film = !film_results.is_empty() || (p.axial && motion_film) || gas_film;
     if p.film {
         let mut why = Vec::new();

@@ -106,7 +106,7 @@ pub fn run(
                         // The listing computes pressures after the masses: its first flows are those of the pressures so far.
                         swap_volumes(pack, &mut volumes);
                     }
-                    pack.gas(Some(p_cyl))?;
+                    pack.gas_step(p_cyl)?;
                     if g == 0 {
                         swap_volumes(pack, &mut volumes);
                     }

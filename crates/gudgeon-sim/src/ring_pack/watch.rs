@@ -61,6 +61,8 @@ struct RingWatch {
     lifted: Acted,
     /// Load that the end of a search interval took \[N\].
     thickest: Acted,
+    /// Load of a ring that has neither film nor contact \[N\].
+    uncarried: Acted,
     retreats: Vec<Retreat>,
     /// Angle and film thickness seen last.
     last: Option<(f64, f64)>,
@@ -106,6 +108,9 @@ impl Watch {
             w.slowed.see(if slowed > COUNTS { slowed } else { 0.0 }, theta, weight);
             w.lifted.see(tells(lifted, pack.tension(i)), theta, weight);
             w.thickest.see(tells(thickest, r.load), theta, weight);
+            if !pack.rings[i].carries() {
+                w.uncarried.see(r.load.max(0.0) * circumference, theta, weight);
+            }
             w.retreat(theta, place.h, away);
         }
     }
@@ -195,6 +200,7 @@ impl Watch {
                     w.thickest.most
                 )
             });
+            notes.extend(w.nothing_carries(ring, pack.plan.film_wanted));
             notes.extend(w.left(ring, period, pack.limits.off_the_liner));
         }
         notes.extend(pack.seat_log.iter().enumerate().filter_map(|(i, l)| chatter(i + 1, l)));
@@ -253,6 +259,22 @@ impl RingWatch {
             None if h > away => self.retreats.push(Retreat { from: crossing(), to: None, most: h }),
             None => {}
         }
+    }
+
+    /// A ring without film and contact keeps the film it starts with: results of films are then none, and what depends on them is told.
+    fn nothing_carries(&self, ring: usize, wanted: bool) -> Option<Note> {
+        let a = self.uncarried;
+        a.acted().then(|| {
+            let text = format!(
+                "nothing carries ring {ring} against the liner, up to {:.4} N (at {:.1} deg): `hydrodynamics` and `contact` are both off, so the ring keeps the \
+                 film it starts with, and neither its film nor its friction is computed. Give it one of the two, or ask only for results of gas and of axial \
+                 motion (`outputs.results`)",
+                a.most,
+                a.at.to_degrees()
+            );
+            let note = if wanted { Note::failure } else { Note::caution };
+            note(format!("nothing_carries.ring{ring}"), text).amount("load", a.most, "N")
+        })
     }
 
     fn left(&self, ring: usize, period: f64, away: f64) -> Option<Note> {
