@@ -99,44 +99,60 @@ impl Fourier {
     }
 }
 
+/// One step: `n` points are left of each of `s` sequences.
 fn step_by_four(from: &[Vec<f64>; 2], to: &mut [Vec<f64>; 2], turn: &[Vec<f64>; 2], n: usize, s: usize) {
     let quarter = n / 4;
-    let block = quarter * s;
     let stride = turn[0].len() / n;
     let [re, im] = from;
     let [to_re, to_im] = to;
-    for p in 0..quarter {
-        let w = |j: usize| (turn[0][j * p * stride], turn[1][j * p * stride]);
-        let ((c1, s1), (c2, s2), (c3, s3)) = (w(1), w(2), w(3));
-        let part = |x: &[f64], j: usize| -> std::ops::Range<usize> {
-            debug_assert!(x.len() >= (j + 1) * block);
-            j * block + p * s..j * block + (p + 1) * s
-        };
-        let (ar, br, cr, dr) = (&re[part(re, 0)], &re[part(re, 1)], &re[part(re, 2)], &re[part(re, 3)]);
-        let (ai, bi, ci, di) = (&im[part(im, 0)], &im[part(im, 1)], &im[part(im, 2)], &im[part(im, 3)]);
-        let (r0, r) = to_re[4 * p * s..4 * (p + 1) * s].split_at_mut(s);
-        let (r1, r) = r.split_at_mut(s);
-        let (r2, r3) = r.split_at_mut(s);
-        let (i0, i) = to_im[4 * p * s..4 * (p + 1) * s].split_at_mut(s);
-        let (i1, i) = i.split_at_mut(s);
-        let (i2, i3) = i.split_at_mut(s);
+    let blocks = to_re.chunks_exact_mut(4 * s).zip(to_im.chunks_exact_mut(4 * s));
+    for (p, (to_re, to_im)) in blocks.enumerate() {
+        let w = |j: usize| [turn[0][j * p * stride], turn[1][j * p * stride]];
+        let w = [w(1), w(2), w(3)];
+        if s == 1 {
+            let at = |x: &[f64], j: usize| x[j * quarter + p];
+            let input = [0, 1, 2, 3].map(|j| [at(re, j), at(im, j)]);
+            let output = butterfly(input, w);
+            for j in 0..4 {
+                (to_re[j], to_im[j]) = (output[j][0], output[j][1]);
+            }
+            continue;
+        }
+        let part = |j: usize| (j * quarter + p) * s..(j * quarter + p + 1) * s;
+        let [ar, br, cr, dr] = [0, 1, 2, 3].map(|j| &re[part(j)][..s]);
+        let [ai, bi, ci, di] = [0, 1, 2, 3].map(|j| &im[part(j)][..s]);
+        let ([r0, r1, r2, r3], [i0, i1, i2, i3]) = (quarters(to_re, s), quarters(to_im, s));
         for q in 0..s {
-            let (xr, xi, yr, yi) = (ar[q] + cr[q], ai[q] + ci[q], ar[q] - cr[q], ai[q] - ci[q]);
-            let (ur, ui, vr, vi) = (br[q] + dr[q], bi[q] + di[q], br[q] - dr[q], bi[q] - di[q]);
-            r0[q] = xr + ur;
-            i0[q] = xi + ui;
-            // -i (b - d) = (vi, -vr)
-            let (er, ei) = (yr + vi, yi - vr);
-            r1[q] = c1 * er - s1 * ei;
-            i1[q] = c1 * ei + s1 * er;
-            let (er, ei) = (xr - ur, xi - ui);
-            r2[q] = c2 * er - s2 * ei;
-            i2[q] = c2 * ei + s2 * er;
-            let (er, ei) = (yr - vi, yi + vr);
-            r3[q] = c3 * er - s3 * ei;
-            i3[q] = c3 * ei + s3 * er;
+            let input = [[ar[q], ai[q]], [br[q], bi[q]], [cr[q], ci[q]], [dr[q], di[q]]];
+            let output = butterfly(input, w);
+            (r0[q], i0[q]) = (output[0][0], output[0][1]);
+            (r1[q], i1[q]) = (output[1][0], output[1][1]);
+            (r2[q], i2[q]) = (output[2][0], output[2][1]);
+            (r3[q], i3[q]) = (output[3][0], output[3][1]);
         }
     }
+}
+
+#[inline(always)]
+fn quarters(x: &mut [f64], s: usize) -> [&mut [f64]; 4] {
+    let (a, x) = x.split_at_mut(s);
+    let (b, x) = x.split_at_mut(s);
+    let (c, d) = x.split_at_mut(s);
+    [a, b, c, &mut d[..s]]
+}
+
+/// Transform of four numbers, and the turn of three of them.
+#[inline(always)]
+fn butterfly([a, b, c, d]: [[f64; 2]; 4], [w1, w2, w3]: [[f64; 2]; 3]) -> [[f64; 2]; 4] {
+    let (x, y) = ([a[0] + c[0], a[1] + c[1]], [a[0] - c[0], a[1] - c[1]]);
+    let (u, v) = ([b[0] + d[0], b[1] + d[1]], [b[0] - d[0], b[1] - d[1]]);
+    let turned = |w: [f64; 2], z: [f64; 2]| [w[0] * z[0] - w[1] * z[1], w[0] * z[1] + w[1] * z[0]];
+    [
+        [x[0] + u[0], x[1] + u[1]],
+        turned(w1, [y[0] + v[1], y[1] - v[0]]),
+        turned(w2, [x[0] - u[0], x[1] - u[1]]),
+        turned(w3, [y[0] - v[1], y[1] + v[0]]),
+    ]
 }
 
 #[cfg(test)]

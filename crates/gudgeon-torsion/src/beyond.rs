@@ -10,8 +10,10 @@ use crate::forcing::gas_period;
 use crate::patches::Patches;
 use crate::steady::Steady;
 
-/// Products of this many harmonics are still resolved.
+/// Points over the cycle by harmonics: products of three are still resolved.
 const RESOLVED: usize = 8;
+/// Points over the cycle by those of which a change of the motion is looked at: it only has to point the right way.
+const COARSER: usize = 2;
 
 /// Nodes with something that is not linear, ascending.
 pub(crate) fn active(line: &Line) -> Vec<usize> {
@@ -29,14 +31,17 @@ pub(crate) struct Beyond {
     pub active: Vec<usize>,
     pub harmonics: usize,
     fourier: Fourier,
+    coarse: Fourier,
     cycle: f64,
     throws: Vec<Throw>,
     links: Vec<Link>,
     /// Deviation from the mean rotation, its first and second derivative in time.
     motion: [Vec<f64>; 3],
-    /// Derivatives of the torques by these.
-    slopes: [Vec<f64>; 3],
     force: Vec<f64>,
+    /// Derivatives of the torques by the motion, a change of the motion and what it makes of the torques, at the coarse points.
+    slopes: [Vec<f64>; 3],
+    swing: [Vec<f64>; 3],
+    changed: Vec<f64>,
     spectrum: [Vec<Complex>; 2],
     spare: Vec<f64>,
 }
@@ -73,6 +78,8 @@ impl Beyond {
         let active = active(line);
         let fourier = Fourier::new((RESOLVED * harmonics).max(64));
         let m = fourier.points();
+        let coarse = Fourier::new(m / COARSER);
+        let few = coarse.points();
         let row = |node: usize| active.binary_search(&node).unwrap_or(0);
         let zero = |n: usize| vec![0.0; n * m];
         let mut throws: Vec<Throw> = (line.throws.iter().enumerate())
@@ -105,7 +112,7 @@ impl Beyond {
                 rows: l.nodes.map(row),
                 gear: line.nodes[l.nodes[0]].ratio / line.nodes[l.nodes[1]].ratio,
                 over: zero(1),
-                slopes: [zero(1), zero(1)],
+                slopes: [vec![0.0; few], vec![0.0; few]],
                 by_load: 0.0,
                 orders: vec![Complex::default(); harmonics + 1],
             })
@@ -118,8 +125,11 @@ impl Beyond {
             throws,
             links,
             motion: [zero(n), zero(n), zero(n)],
-            slopes: [zero(n), zero(n), zero(n)],
             force: zero(n),
+            slopes: [vec![0.0; n * few], vec![0.0; n * few], vec![0.0; n * few]],
+            swing: [vec![0.0; n * few], vec![0.0; n * few], vec![0.0; n * few]],
+            changed: vec![0.0; n * few],
+            coarse,
             spectrum: [spectrum(), spectrum()],
             spare: zero(1),
             active,
@@ -134,30 +144,8 @@ impl Beyond {
 
     /// Takes a motion: angles by row and order, the mean first; `omega` is the angular frequency of the first order.
     pub fn take_motion(&mut self, angle: &[Complex], omega: f64) {
-        let (m, orders) = (self.fourier.points(), self.orders());
-        let [x, v, a] = &mut self.motion;
-        let [first, second] = &mut self.spectrum;
-        let rows = self.active.len();
-        for i in 0..rows {
-            let own = &angle[i * orders..(i + 1) * orders];
-            for (k, (z, x)) in first.iter_mut().zip(own).enumerate() {
-                let rate = k as f64 * omega;
-                *z = Complex::new(-rate * x.im, rate * x.re);
-            }
-            self.fourier.waves(own, first, &mut x[i * m..(i + 1) * m], &mut v[i * m..(i + 1) * m]);
-        }
-        // Accelerations of two rows at once.
-        for i in (0..rows).step_by(2) {
-            for (k, (p, q)) in first.iter_mut().zip(second.iter_mut()).enumerate() {
-                let factor = Complex::new(-(k as f64 * omega).powi(2), 0.0);
-                *p = factor * angle[i * orders + k];
-                let next = (i + 1) * orders + k;
-                *q = if i + 1 < rows { factor * angle[next] } else { Complex::default() };
-            }
-            let (low, high) = a.split_at_mut(((i + 1) * m).min(rows * m));
-            let other = if i + 1 < rows { &mut high[..m] } else { &mut self.spare[..] };
-            self.fourier.waves(first, second, &mut low[i * m..], other);
-        }
+        let room = (&mut self.spectrum, &mut self.spare[..]);
+        waves(&mut self.fourier, angle, omega, &mut self.motion, room);
     }
 
     /// The torques of the motion beyond the linear line, by row and order.
@@ -166,7 +154,7 @@ impl Beyond {
         self.of_throws(steady);
         self.of_drives(steady);
         self.of_links(steady, tangents);
-        self.take_apart(out);
+        take_apart(&mut self.fourier, &self.force, out, &mut self.spectrum[0]);
     }
 
     fn of_throws(&mut self, steady: &Steady) {
@@ -229,21 +217,6 @@ impl Beyond {
         }
     }
 
-    /// The orders of the force, two rows at once.
-    fn take_apart(&mut self, out: &mut [Complex]) {
-        let (m, orders, rows) = (self.fourier.points(), self.orders(), self.active.len());
-        for i in (0..rows).step_by(2) {
-            let own = &self.force[i * m..(i + 1) * m];
-            let (low, high) = out.split_at_mut(((i + 1) * orders).min(rows * orders));
-            if i + 1 < rows {
-                let other = &self.force[(i + 1) * m..(i + 2) * m];
-                self.fourier.orders(own, other, &mut low[i * orders..], &mut high[..orders]);
-            } else {
-                self.fourier.orders(own, own, &mut low[i * orders..], &mut self.spectrum[0]);
-            }
-        }
-    }
-
     /// Orders of what the couplings that are not linear carry beside their tangents, at the motion last taken.
     pub fn beside_tangents(&mut self) -> Vec<(usize, Vec<Complex>)> {
         let spare = &mut self.spectrum[0];
@@ -255,85 +228,148 @@ impl Beyond {
 
     /// Takes the derivatives of the torques at the motion last taken.
     pub fn take_slopes(&mut self, steady: &Steady, tangents: &[LinearCoupling]) {
-        let m = self.fourier.points();
-        let line = &steady.line;
         self.slopes.iter_mut().for_each(|s| s.fill(0.0));
+        self.slopes_of_throws(steady);
+        self.slopes_of_drives(steady);
+        self.slopes_of_links(steady, tangents);
+    }
+
+    fn slopes_of_throws(&mut self, steady: &Steady) {
+        let (m, few) = (self.fourier.points(), self.coarse.points());
+        let line = &steady.line;
         let [x, v, a] = &self.motion;
         let [by_angle, by_speed, by_acceleration] = &mut self.slopes;
         for t in &mut self.throws {
             let throw = &line.throws[t.throw];
             let speed = steady.speed * line.nodes[throw.node].ratio;
-            for s in 0..m {
-                let i = t.row * m + s;
-                let at = even(line, t.throw, self.cycle, s, m) + x[i];
+            for s in 0..few {
+                let (i, o) = (t.row * m + COARSER * s, t.row * few + s);
+                let at = even(line, t.throw, self.cycle, s, few) + x[i];
                 if let Some(p) = &mut t.gas {
-                    by_angle[i] += p.slope(at, |a| gas(line, t.throw, a));
+                    by_angle[o] += p.slope(at, |a| gas(line, t.throw, a));
                 }
                 if let Some([inertia, slope]) = &mut t.inertia {
                     let j = inertia.value(at, |a| throw.inertia.inertia(a).0);
                     let dj = slope.value(at, |a| throw.inertia.inertia(a).1);
                     let ddj = slope.slope(at, |a| throw.inertia.inertia(a).1);
                     let w = speed + v[i];
-                    by_angle[i] -= dj * a[i] + 0.5 * ddj * w * w;
-                    by_speed[i] -= dj * w;
-                    by_acceleration[i] -= j - throw.inertia.mean();
+                    by_angle[o] -= dj * a[i] + 0.5 * ddj * w * w;
+                    by_speed[o] -= dj * w;
+                    by_acceleration[o] -= j - throw.inertia.mean();
                 }
             }
         }
-        // What of a drive goes with the angle is small beside what goes with its speed.
-        for d in line.drives.iter().filter(|d| !d.drive.is_linear()) {
-            let ratio = line.nodes[d.node].ratio;
-            let here = self.active.binary_search(&d.node).unwrap_or(0) * m;
+    }
+
+    /// What of a drive goes with its speed; what goes with the angle is small beside it.
+    fn slopes_of_drives(&mut self, steady: &Steady) {
+        let (m, few) = (self.fourier.points(), self.coarse.points());
+        let [x, v, _] = &self.motion;
+        for d in steady.line.drives.iter().filter(|d| !d.drive.is_linear()) {
+            let ratio = steady.line.nodes[d.node].ratio;
+            let row = self.active.binary_search(&d.node).unwrap_or(0);
             let speed = steady.speed * ratio;
-            for s in 0..m {
-                let even = ratio * self.cycle * s as f64 / m as f64 + d.phase;
-                let now = d.drive.torque(even + x[here + s], speed + v[here + s]);
-                by_speed[here + s] += d.factor * (now.slope - d.drive.torque(even, speed).slope);
+            for s in 0..few {
+                let i = row * m + COARSER * s;
+                let even = ratio * self.cycle * s as f64 / few as f64 + d.phase;
+                let now = d.drive.torque(even + x[i], speed + v[i]);
+                self.slopes[1][row * few + s] += d.factor * (now.slope - d.drive.torque(even, speed).slope);
             }
         }
+    }
+
+    fn slopes_of_links(&mut self, steady: &Steady, tangents: &[LinearCoupling]) {
+        let (m, few) = (self.fourier.points(), self.coarse.points());
+        let [x, v, _] = &self.motion;
         for l in &mut self.links {
-            let coupling = &line.links[l.link].coupling;
+            let coupling = &steady.line.links[l.link].coupling;
             let tangent = tangents[l.link];
-            let [p, q] = l.rows.map(|r| r * m);
             let mean = steady.mean_torque[l.link];
             let own = 1e-6 * (1.0 + mean.abs());
             let give = (coupling.static_twist(mean + own) - coupling.static_twist(mean - own)) / (2.0 * own);
             l.by_load = give * tangent.stiffness - 1.0;
-            for s in 0..m {
-                let (twist, rate) = (x[p + s] - l.gear * x[q + s], v[p + s] - l.gear * v[q + s]);
-                let c = coupling.torque(twist, rate);
+            for s in 0..few {
+                let [p, q] = l.rows.map(|r| r * m + COARSER * s);
+                let c = coupling.torque(x[p] - l.gear * x[q], v[p] - l.gear * v[q]);
                 l.slopes[0][s] = c.stiffness - tangent.stiffness;
                 l.slopes[1][s] = c.damping - tangent.damping;
             }
         }
     }
 
-    /// What a small change of the motion, the one last taken, makes of the torques; `load` is the change of the mean torque of each link.
-    pub fn change(&mut self, load: &[f64], out: &mut [Complex]) {
-        let m = self.fourier.points();
-        let [x, v, a] = &self.motion;
+    /// What a small change of the motion makes of the torques: `angle` as in [`Self::take_motion`], `load` the change of the mean torque
+    /// of each link.
+    pub fn change(&mut self, angle: &[Complex], omega: f64, load: &[f64], out: &mut [Complex]) {
+        let few = self.coarse.points();
+        let room = (&mut self.spectrum, &mut self.spare[..few]);
+        waves(&mut self.coarse, angle, omega, &mut self.swing, room);
+        let [x, v, a] = &self.swing;
         let [by_angle, by_speed, by_acceleration] = &self.slopes;
-        for (i, f) in self.force.iter_mut().enumerate() {
-            *f = by_angle[i] * x[i] + by_speed[i] * v[i] + by_acceleration[i] * a[i];
+        let by = by_angle.iter().zip(by_speed).zip(by_acceleration);
+        for ((f, ((bx, bv), ba)), ((x, v), a)) in self.changed.iter_mut().zip(by).zip(x.iter().zip(v).zip(a)) {
+            *f = bx * x + bv * v + ba * a;
         }
         for l in &self.links {
-            let [p, q] = l.rows.map(|r| r * m);
+            let [p, q] = l.rows.map(|r| r * few);
             let shift = load[l.link] * l.by_load;
-            for s in 0..m {
+            for s in 0..few {
                 let (twist, rate) = (x[p + s] - l.gear * x[q + s], v[p + s] - l.gear * v[q + s]);
                 let over = l.slopes[0][s] * twist + l.slopes[1][s] * rate + shift;
-                self.force[p + s] -= over;
-                self.force[q + s] += l.gear * over;
+                self.changed[p + s] -= over;
+                self.changed[q + s] += l.gear * over;
             }
         }
-        self.take_apart(out);
+        take_apart(&mut self.coarse, &self.changed, out, &mut self.spectrum[0]);
+    }
+}
+
+/// Angles, rates and accelerations over the cycle of angles by row and order; `omega` is the angular frequency of the first order.
+fn waves(
+    fourier: &mut Fourier,
+    angle: &[Complex],
+    omega: f64,
+    [x, v, a]: &mut [Vec<f64>; 3],
+    ([first, second], spare): (&mut [Vec<Complex>; 2], &mut [f64]),
+) {
+    let (m, orders) = (fourier.points(), first.len());
+    for ((own, x), v) in angle.chunks_exact(orders).zip(x.chunks_exact_mut(m)).zip(v.chunks_exact_mut(m)) {
+        for (k, (z, x)) in first.iter_mut().zip(own).enumerate() {
+            let rate = k as f64 * omega;
+            *z = Complex::new(-rate * x.im, rate * x.re);
+        }
+        fourier.waves(own, first, x, v);
+    }
+    // Accelerations of two rows at once.
+    for (own, a) in angle.chunks(2 * orders).zip(a.chunks_mut(2 * m)) {
+        for k in 0..orders {
+            let factor = Complex::new(-(k as f64 * omega).powi(2), 0.0);
+            first[k] = factor * own[k];
+            second[k] = own.get(orders + k).map_or(Complex::default(), |z| factor * *z);
+        }
+        let (low, high) = a.split_at_mut(m);
+        fourier.waves(first, second, low, if high.is_empty() { &mut *spare } else { high });
+    }
+}
+
+/// Orders of forces by row, two rows at once.
+fn take_apart(fourier: &mut Fourier, force: &[f64], out: &mut [Complex], spare: &mut [Complex]) {
+    let (m, orders) = (fourier.points(), spare.len());
+    for (f, out) in force.chunks(2 * m).zip(out.chunks_mut(2 * orders)) {
+        let (low, high) = out.split_at_mut(orders);
+        let (own, other) = f.split_at(m);
+        if other.is_empty() {
+            fourier.orders(own, own, low, &mut *spare);
+        } else {
+            fourier.orders(own, other, low, high);
+        }
     }
 }
 
 /// Angle of a throw at point `s` of `m` of the cycle of even rotation.
 fn even(line: &Line, throw: usize, cycle: f64, s: usize, m: usize) -> f64 {
     let t = &line.throws[throw];
-    line.nodes[t.node].ratio * cycle * s as f64 / m as f64 + t.phase
+    // The points are a power of two: their inverse is exact.
+    line.nodes[t.node].ratio * cycle * (s as f64 * (1.0 / m as f64)) + t.phase
 }
 
 /// Gas torque of a throw at its own angle.

@@ -52,8 +52,9 @@ impl Patches {
     /// Patch of an angle and the place in it, from -1 to 1.
     fn place(&self, at: f64) -> (usize, f64) {
         let u = at * self.per_radian;
-        let i = u.floor();
-        ((i as i64 & (self.kinds.len() as i64 - 1)) as usize, 2.0 * (u - i) - 1.0)
+        // The floor, which is no machine instruction everywhere.
+        let i = u as i64 - i64::from(u < 0.0);
+        ((i & (self.kinds.len() as i64 - 1)) as usize, 2.0 * (u - i as f64) - 1.0)
     }
 
     /// Value at an angle.

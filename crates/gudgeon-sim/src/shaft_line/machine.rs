@@ -168,7 +168,7 @@ impl<'a> Machine<'a> {
         let cycle = self.extremes(out);
         let mut p = Point::default();
         for l in 0..links {
-            let size = |k: usize| out.orders[k].torque[l][0].hypot(out.orders[k].torque[l][1]);
+            let size = |k: usize| square(out.orders[k].torque[l]);
             let [top, bottom] = cycle.extremes(out.mean_torque[l], |k| out.orders[k].torque[l]);
             let strongest = (0..out.orders.len()).max_by(|x, y| size(*x).total_cmp(&size(*y)));
             p.links.push(LinkPoint {
@@ -184,7 +184,7 @@ impl<'a> Machine<'a> {
         // Relative speed of an inertia at the reference shaft: order times angle.
         let ratio = |i: usize| a.line.nodes[i].ratio;
         let bound = |i: usize| {
-            out.orders.iter().map(|o| o.order * o.angle[i][0].hypot(o.angle[i][1])).sum::<f64>()
+            out.orders.iter().map(|o| o.order * square(o.angle[i]).sqrt()).sum::<f64>()
                 / ratio(i).abs()
         };
         if irregularity || (0..nodes).any(|i| bound(i) > LARGE) {
@@ -192,7 +192,7 @@ impl<'a> Machine<'a> {
         }
         for l in 0..links {
             let twist = |k: usize| twist_of(a, out, l, k);
-            if (0..out.orders.len()).map(|k| twist(k)[0].hypot(twist(k)[1])).sum::<f64>() > LARGE {
+            if (0..out.orders.len()).map(|k| square(twist(k)).sqrt()).sum::<f64>() > LARGE {
                 let [top, bottom] = cycle.extremes(0.0, twist);
                 p.twist = p.twist.max(0.5 * (top - bottom));
             }
@@ -244,6 +244,10 @@ impl<'a> Machine<'a> {
             speeds.iter().filter_map(|w| self.at(*w).map(|p| (*w, quantity(p)))).collect();
         largest(&samples, |w| self.at(w).map_or(f64::NEG_INFINITY, quantity))
     }
+}
+
+fn square([re, im]: [f64; 2]) -> f64 {
+    re * re + im * im
 }
 
 /// Peak to peak speed of an inertia by the mean speed of the reference shaft.

@@ -163,11 +163,11 @@ struct Known {
 
 /// Speeds that are kept, and how many of them a guess goes through.
 const KEPT: usize = 24;
-const THROUGH: usize = 6;
+const THROUGH: usize = 8;
 /// Distance of the speeds that a guess goes through, by that of the nearest.
 const NEAR: f64 = 10.0;
 /// Sum of the weights up to which a guess is worth more than the nearest speed.
-const TRUSTED: f64 = 70.0;
+const TRUSTED: f64 = 300.0;
 
 impl Known {
     fn keep(&mut self, speed: f64, x: &[Complex]) {
@@ -288,7 +288,8 @@ impl Solver {
                 (r[0], r[1]) = (g.re - x.re, g.im - x.im);
             }
             self.linearise(&base_mean, scale);
-            let forcing = (0.1 * self.tolerance / change).max(change.min(0.1));
+            // A vector of the Krylov space costs less than another evaluation; what is beyond the square of the change is lost anyway.
+            let forcing = (0.3 * self.tolerance / change).max((0.01 * change).min(0.01));
             self.newton_step(&rest, &mut step, forcing, work);
             for (x, d) in self.x.iter_mut().zip(step.chunks_exact(2)) {
                 *x = *x + Complex::new(d[0], d[1]);
@@ -437,8 +438,7 @@ impl Solver {
         }
         let load: Vec<f64> = (0..self.tangents.len()).map(|l| by(&self.load, l, &self.x)).collect();
         let omega = self.steady.speed * self.base;
-        self.beyond.take_motion(&self.angle, omega);
-        self.beyond.change(&load, made);
+        self.beyond.change(&self.angle, omega, &load, made);
     }
 
     /// The whole answer of each order.
