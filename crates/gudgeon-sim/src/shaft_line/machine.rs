@@ -112,6 +112,9 @@ impl<'a> Machine<'a> {
     pub fn at(&mut self, speed: f64) -> Option<&Point> {
         // Bits of positive numbers ascend with them.
         let key = speed.to_bits();
+        if self.failed.iter().any(|f| f.0 == speed) {
+            return None;
+        }
         if !self.points.contains_key(&key) {
             let out = match self.motion(speed) {
                 Ok(out) => out,
@@ -131,6 +134,19 @@ impl<'a> Machine<'a> {
             self.points.insert(key, point);
         }
         self.points.get(&key)
+    }
+
+    /// Vibration at ascending speeds, every second one after those beside it: a model that iterates starts from what is known on both
+    /// sides.
+    pub fn prepare(&mut self, speeds: &[f64]) {
+        let mut stride = speeds.len().next_power_of_two();
+        while stride > 0 {
+            // Where there is no answer, whoever asks for it finds out.
+            if speeds.iter().step_by(stride).any(|w| self.at(*w).is_none()) {
+                return;
+            }
+            stride /= 2;
+        }
     }
 
     /// Why there is no answer at a speed.

@@ -155,41 +155,64 @@ struct Solver {
     steady: Steady,
 }
 
-/// Torques at speeds that were solved, the last ones.
+/// Torques at speeds that were solved.
 #[derive(Debug, Default)]
 struct Known {
-    at: std::collections::VecDeque<(f64, Vec<Complex>)>,
+    /// Speed, when it was put here, torques; ascending.
+    at: Vec<(f64, u64, Vec<Complex>)>,
+    count: u64,
 }
 
-/// Speeds that are kept, and how many of them a guess goes through.
+/// Numbers that are kept, and the fewest speeds.
+const ROOM: usize = 1 << 19;
 const KEPT: usize = 24;
+/// Speeds that a guess goes through, and their distance by that of the nearest.
 const THROUGH: usize = 8;
-/// Distance of the speeds that a guess goes through, by that of the nearest.
 const NEAR: f64 = 10.0;
 /// Sum of the weights up to which a guess is worth more than the nearest speed.
 const TRUSTED: f64 = 300.0;
 
 impl Known {
     fn keep(&mut self, speed: f64, x: &[Complex]) {
-        if let Some(old) = self.at.iter_mut().find(|k| k.0 == speed) {
-            old.1.copy_from_slice(x);
-            return;
+        self.count += 1;
+        if self.at.len() >= KEPT.max(ROOM / x.len().max(1)) {
+            let oldest = (0..self.at.len()).min_by_key(|i| self.at[*i].1);
+            oldest.map(|i| self.at.remove(i));
         }
-        let mut own = if self.at.len() >= KEPT { self.at.pop_back().map(|k| k.1) } else { None };
-        let mut room = own.take().unwrap_or_default();
-        room.clear();
-        room.extend_from_slice(x);
-        self.at.push_front((speed, room));
+        let place = self.at.partition_point(|k| k.0 < speed);
+        let own = (speed, self.count, x.to_vec());
+        match self.at.get_mut(place) {
+            Some(old) if old.0 == speed => *old = own,
+            _ => self.at.insert(place, own),
+        }
+    }
+
+    /// The speeds next to one, nearest first.
+    fn near(&self, speed: f64) -> Vec<usize> {
+        let mut above = self.at.partition_point(|k| k.0 < speed);
+        let mut below = above;
+        let mut near = Vec::with_capacity(THROUGH);
+        while near.len() < THROUGH.min(self.at.len()) {
+            let up = self.at.get(above).map_or(f64::INFINITY, |k| k.0 - speed);
+            let down = if below > 0 { speed - self.at[below - 1].0 } else { f64::INFINITY };
+            if up <= down {
+                near.push(above);
+                above += 1;
+            } else {
+                below -= 1;
+                near.push(below);
+            }
+        }
+        near
     }
 
     /// The polynomial through the torques at the nearest speeds.
     fn guess(&self, speed: f64, x: &mut [Complex]) {
         x.fill(Complex::default());
-        let mut near: Vec<&(f64, Vec<Complex>)> = self.at.iter().collect();
-        near.sort_by(|a, b| (a.0 - speed).abs().total_cmp(&(b.0 - speed).abs()));
+        let near: Vec<&(f64, u64, Vec<Complex>)> = self.near(speed).iter().map(|i| &self.at[*i]).collect();
         let Some(first) = near.first() else { return };
         let reach = NEAR * (first.0 - speed).abs();
-        let mut count = near.iter().take(THROUGH).take_while(|k| (k.0 - speed).abs() <= reach).count();
+        let mut count = near.iter().take_while(|k| (k.0 - speed).abs() <= reach).count();
         let weights = |count: usize| -> Vec<f64> {
             let part = |i: usize, j: usize| (speed - near[j].0) / (near[i].0 - near[j].0);
             (0..count).map(|i| (0..count).filter(|j| *j != i).map(|j| part(i, j)).product()).collect()
@@ -197,7 +220,7 @@ impl Known {
         while count > 1 && weights(count).iter().map(|w: &f64| w.abs()).sum::<f64>() > TRUSTED {
             count -= 1;
         }
-        for (w, (_, known)) in weights(count.max(1)).into_iter().zip(&near) {
+        for (w, (_, _, known)) in weights(count.max(1)).into_iter().zip(&near) {
             let w = Complex::new(w, 0.0);
             x.iter_mut().zip(known).for_each(|(x, k)| *x = *x + w * *k);
         }
