@@ -105,6 +105,7 @@ impl<'a> Machine<'a> {
         let mut out = TorsionOut::default();
         self.torsion.set_speed(speed)?;
         self.torsion.run(&mut out)?;
+        finite(&out)?;
         Ok(out)
     }
 
@@ -163,6 +164,7 @@ impl<'a> Machine<'a> {
         let spare = self.spare.as_mut()?;
         spare.set_speed(speed).ok()?;
         spare.run(&mut out).ok()?;
+        finite(&out).ok()?;
         Some(out)
     }
 
@@ -260,6 +262,16 @@ impl<'a> Machine<'a> {
             speeds.iter().filter_map(|w| self.at(*w).map(|p| (*w, quantity(p)))).collect();
         largest(&samples, |w| self.at(w).map_or(f64::NEG_INFINITY, quantity))
     }
+}
+
+/// An answer of numbers.
+fn finite(out: &TorsionOut) -> Result<(), EvalError> {
+    let orders = out.orders.iter().flat_map(|o| o.torque.iter().chain(&o.angle)).flatten();
+    let mut all = orders.chain(&out.mean_torque).chain(&out.mean_angle).chain([&out.balance_torque]);
+    if all.all(|v| v.is_finite()) {
+        return Ok(());
+    }
+    Err(EvalError::fatal("torsion", "torques or angles of this speed are beyond all numbers"))
 }
 
 fn square([re, im]: [f64; 2]) -> f64 {
