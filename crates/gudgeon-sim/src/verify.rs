@@ -177,11 +177,14 @@ mod tests {
     #[test]
     fn what_is_left_over_of_a_balance_is_rounding() {
         let value = |value: f64, unit: &str| Value { value, unit: unit.into(), what: String::new() };
-        let results: Results =
-            [("load", value(1e4, "N")), ("out_of_balance", value(1e-11, "N")), ("flux_error", value(1e-16, ""))]
-                .into_iter()
-                .map(|(k, v)| (k.to_owned(), v))
-                .collect();
+        let results: Results = [
+            ("load", value(1e4, "N")),
+            ("out_of_balance", value(1e-11, "N")),
+            ("flux_error", value(1e-16, "")),
+        ]
+        .into_iter()
+        .map(|(k, v)| (k.to_owned(), v))
+        .collect();
         let floors = floors(&results);
         assert!(uncertainty(&[1e-16, 3e-16, 9e-16], "", floors[""]).1);
         assert!(uncertainty(&[1e-11, 4e-10, 9e-9], "N", floors["N"]).1);

@@ -306,7 +306,8 @@ impl Beyond {
         let [x, v, a] = &self.swing;
         let [by_angle, by_speed, by_acceleration] = &self.slopes;
         let by = by_angle.iter().zip(by_speed).zip(by_acceleration);
-        for ((f, ((bx, bv), ba)), ((x, v), a)) in self.changed.iter_mut().zip(by).zip(x.iter().zip(v).zip(a)) {
+        for ((f, ((bx, bv), ba)), ((x, v), a)) in self.changed.iter_mut().zip(by).zip(x.iter().zip(v).zip(a))
+        {
             *f = bx * x + bv * v + ba * a;
         }
         for l in &self.links {

@@ -202,8 +202,7 @@ impl<'a> Machine<'a> {
         // Relative speed of an inertia at the reference shaft: order times angle.
         let ratio = |i: usize| a.line.nodes[i].ratio;
         let bound = |i: usize| {
-            out.orders.iter().map(|o| o.order * square(o.angle[i]).sqrt()).sum::<f64>()
-                / ratio(i).abs()
+            out.orders.iter().map(|o| o.order * square(o.angle[i]).sqrt()).sum::<f64>() / ratio(i).abs()
         };
         if irregularity || (0..nodes).any(|i| bound(i) > LARGE) {
             p.irregularity = (0..nodes).map(|i| irregularity_of(cycle, out, i) / ratio(i).abs()).collect();

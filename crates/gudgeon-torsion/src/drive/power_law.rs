@@ -39,7 +39,10 @@ gudgeon_core::register_model! {
 impl DriveSpec for PowerLaw {
     fn build(&self) -> Result<Box<dyn Drive>, BuildError> {
         if self.exponent.si() > STEEPEST {
-            let what = format!("no load goes with the power {} of the speed: at most {STEEPEST}", self.exponent.si());
+            let what = format!(
+                "no load goes with the power {} of the speed: at most {STEEPEST}",
+                self.exponent.si()
+            );
             return Err(BuildError::at("exponent", what).help("fans and propellers have 2"));
         }
         Ok(Box::new(Power { torque: self.torque.si(), speed: self.speed.si(), n: self.exponent.si() }))
@@ -72,7 +75,9 @@ mod tests {
 
     #[test]
     fn a_power_that_no_load_has_is_refused_at_its_place() {
-        let law = |n: f64| PowerLaw { torque: quantity(1e3), speed: quantity(100.0), exponent: quantity(n) }.build();
+        let law = |n: f64| {
+            PowerLaw { torque: quantity(1e3), speed: quantity(100.0), exponent: quantity(n) }.build()
+        };
         assert!(law(3.0).is_ok());
         assert_eq!(law(81100.0).unwrap_err().field, "exponent");
     }
