@@ -9,7 +9,6 @@ use gudgeon_core::kinds::TorsionAnswer;
 use super::assemble::Assembled;
 use super::case::ShaftLineCase;
 use super::plan::Plan;
-use super::verdict::MODES;
 
 /// Orders of a shaft's torque that are results.
 pub const ORDERS: usize = 12;
@@ -46,7 +45,7 @@ pub fn names(case: &ShaftLineCase, plan: &Plan, a: &Assembled, excited: &[f64]) 
 }
 
 fn frequencies(all: &mut Names, case: &ShaftLineCase, a: &Assembled) {
-    let modes = MODES.max(a.line.nodes.len());
+    let modes = a.line.nodes.len();
     all.plain(&["rigid_modes", "holzer_residual", "critical_speeds", "nearest_critical_speed"]);
     all.plain(&["distance_to_critical", "stable_step"]);
     if !case.models.natural_frequencies.are_of_the_line() {
