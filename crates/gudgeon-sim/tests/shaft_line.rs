@@ -544,15 +544,16 @@ fn the_speed_that_is_held_says_where() {
 #[test]
 fn every_result_was_known_before_the_run() {
     // Steady answers, over time with a published model of frequencies, and without torsion: a sweep may ask for each result.
-    for name in
-        ["compressor-4-throw", "compressor-2-throw-coupling", "compressor-4-throw-as-published-500", "geared-train"]
-    {
+    for name in [
+        "compressor-4-throw",
+        "compressor-2-throw-coupling",
+        "compressor-4-throw-as-published-500",
+        "geared-train",
+    ] {
         let file = format!("{name}.toml");
         let names: Vec<String> = once(&file, &[]).results.keys().map(|n| format!("{n:?}")).collect();
-        let sweep = format!(
-            "sweeps=[{{ path = \"title\", values = [\"a\"], results = [{}] }}]",
-            names.join(", ")
-        );
+        let sweep =
+            format!("sweeps=[{{ path = \"title\", values = [\"a\"], results = [{}] }}]", names.join(", "));
         assert_eq!(refused_of(&file, &[&sweep]), "accepted", "{name}");
     }
 }
