@@ -120,6 +120,7 @@ impl TorsionSpec for HarmonicBalance {
             load: Vec::new(),
             tangents: Vec::new(),
             known: Known::default(),
+            share: 1.0,
             steady,
         }))
     }
@@ -133,6 +134,9 @@ const VECTORS: usize = 200;
 /// Growth of the remainder by which a step is not taken, and how often it is halved then.
 const GROWTH: f64 = 1.5;
 const HALVINGS: usize = 8;
+/// First share of the torques beyond the linear line when all at once is too much, and the least by which it is raised.
+const FIRST: f64 = 0.25;
+const LEAST: f64 = 1.0 / 1024.0;
 
 #[derive(Debug)]
 struct Solver {
@@ -152,6 +156,8 @@ struct Solver {
     /// Laws of the links as the linear line has them: the tree keeps these, whatever the mean torque turns out to be.
     tangents: Vec<LinearCoupling>,
     known: Known,
+    /// Share of the torques beyond the linear line that is asked for.
+    share: f64,
     steady: Steady,
 }
 
@@ -240,7 +246,9 @@ impl Torsion for Solver {
             self.x.fill(Complex::default());
             found = self.iterate(&mut work);
         }
-        found?;
+        if let Err(e) = found {
+            self.by_degrees(&mut work, e)?;
+        }
         self.known.keep(speed, &self.x);
         let rest = self.beyond.beside_tangents();
         out.orders = self.responses()?;
@@ -273,6 +281,28 @@ impl Solver {
             .collect();
     }
 
+    /// Raises the share of the torques beyond the linear line from nothing to the whole, each solution the start of the next.
+    fn by_degrees(&mut self, work: &mut Work, failed: EvalError) -> Result<(), EvalError> {
+        self.x.fill(Complex::default());
+        let (mut reached, mut step) = (0.0, FIRST);
+        while reached < 1.0 {
+            let start = self.x.clone();
+            self.share = (reached + step).min(1.0);
+            let found = self.iterate(work);
+            let share = std::mem::replace(&mut self.share, 1.0);
+            if found.is_ok() {
+                (reached, step) = (share, 2.0 * step);
+                continue;
+            }
+            self.x = start;
+            step *= 0.5;
+            if step < LEAST {
+                return Err(failed);
+            }
+        }
+        Ok(())
+    }
+
     /// Newton's method from the torques as they stand.
     fn iterate(&mut self, work: &mut Work) -> Result<(), EvalError> {
         let base_mean = self.steady.excitation.mean.clone();
@@ -303,6 +333,9 @@ impl Solver {
                 }
                 continue;
             }
+            if change > GROWTH * last {
+                return Err(self.fails(change, work.rounds));
+            }
             if bad {
                 return Err(EvalError::fatal("harmonic_balance", "the iteration leaves all bounds"));
             }
@@ -318,14 +351,15 @@ impl Solver {
                 *x = *x + Complex::new(d[0], d[1]);
             }
         }
-        Err(EvalError::fatal(
-            "harmonic_balance",
-            format!(
-                "no periodic motion at {:.6} rpm after {} rounds: torques still change by {change:.1e} of the largest; a resonance is near, or the motion has a period of its own",
-                self.steady.speed * 30.0 / PI,
-                self.rounds
-            ),
-        ))
+        Err(self.fails(change, work.rounds))
+    }
+
+    fn fails(&self, change: f64, rounds: u64) -> EvalError {
+        let what = format!(
+            "no periodic motion at {:.6} rpm after {rounds} rounds: torques still change by {change:.1e} of the largest; a resonance is near, or the motion has a period of its own",
+            self.steady.speed * 30.0 / PI
+        );
+        EvalError::fatal("harmonic_balance", what)
     }
 
     /// The motion under the torques `x`, and the torques that it makes.
@@ -340,6 +374,7 @@ impl Solver {
         let omega = self.steady.speed * self.base;
         self.beyond.take_motion(&self.angle, omega);
         self.beyond.torques(&self.steady, &self.tangents, g);
+        g.iter_mut().for_each(|g| *g = *g * Complex::new(self.share, 0.0));
         Ok(())
     }
 
@@ -462,6 +497,7 @@ impl Solver {
         let load: Vec<f64> = (0..self.tangents.len()).map(|l| by(&self.load, l, &self.x)).collect();
         let omega = self.steady.speed * self.base;
         self.beyond.change(&self.angle, omega, &load, made);
+        made.iter_mut().for_each(|g| *g = *g * Complex::new(self.share, 0.0));
     }
 
     /// The whole answer of each order.
