@@ -1,5 +1,7 @@
 //! Fallible stiff integrators, periodic-orbit solver, roots, tables and small linear algebra. No physics lives here.
 
+pub mod fourier;
+pub mod gmres;
 pub mod jet;
 pub mod linalg;
 pub mod maximum;

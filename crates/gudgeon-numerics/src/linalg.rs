@@ -23,18 +23,21 @@ pub struct Complex {
 
 impl Complex {
     /// `re + i im`.
+    #[inline]
     #[must_use]
     pub const fn new(re: f64, im: f64) -> Self {
         Self { re, im }
     }
 
     /// `|re| + |im|`: within √2 of the modulus, enough to choose a pivot.
+    #[inline]
     #[must_use]
     pub fn norm1(self) -> f64 {
         self.re.abs() + self.im.abs()
     }
 
     /// The modulus.
+    #[inline]
     #[must_use]
     pub fn abs(self) -> f64 {
         self.re.hypot(self.im)
@@ -43,6 +46,7 @@ impl Complex {
 
 impl Add for Complex {
     type Output = Self;
+    #[inline]
     fn add(self, o: Self) -> Self {
         Self::new(self.re + o.re, self.im + o.im)
     }
@@ -50,6 +54,7 @@ impl Add for Complex {
 
 impl Sub for Complex {
     type Output = Self;
+    #[inline]
     fn sub(self, o: Self) -> Self {
         Self::new(self.re - o.re, self.im - o.im)
     }
@@ -57,6 +62,7 @@ impl Sub for Complex {
 
 impl Mul for Complex {
     type Output = Self;
+    #[inline]
     fn mul(self, o: Self) -> Self {
         Self::new(self.re * o.re - self.im * o.im, self.re * o.im + self.im * o.re)
     }
@@ -64,6 +70,7 @@ impl Mul for Complex {
 
 impl Neg for Complex {
     type Output = Self;
+    #[inline]
     fn neg(self) -> Self {
         Self::new(-self.re, -self.im)
     }
@@ -72,6 +79,7 @@ impl Neg for Complex {
 impl Div for Complex {
     type Output = Self;
     /// Smith's division: no overflow unless the quotient itself overflows.
+    #[inline]
     fn div(self, o: Self) -> Self {
         if o.re.abs() >= o.im.abs() {
             let r = o.im / o.re;

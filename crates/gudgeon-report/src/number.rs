@@ -25,7 +25,11 @@ pub(crate) fn certain(value: Option<f64>, uncertainty: Option<f64>, digits: usiz
     /// More digits than anybody reads.
     const MOST: i32 = 9;
     let (Some(v), Some(u)) = (value.filter(|v| v.is_finite()), uncertainty) else {
-        return significant(value, digits);
+        return match value {
+            // Counts and orders are whole, and no measure is so by chance.
+            Some(v) if v.fract() == 0.0 && v.abs() < 1e6 => format!("{v}").replace('-', "−"),
+            _ => significant(value, digits),
+        };
     };
     // Twice the uncertainty fits into one unit of the last digit but one.
     let held = if u > 0.0 { (v.abs() / u).log10().floor() as i32 + 1 } else { MOST };
@@ -124,6 +128,14 @@ pub(crate) fn round_trip(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn whole_numbers_stand_as_they_are() {
+        assert_eq!(certain(Some(9.0), None, 4), "9");
+        assert_eq!(certain(Some(-12.0), None, 4), "−12");
+        assert_eq!(certain(Some(0.5), None, 4), "0.5000");
+        assert_eq!(certain(None, None, 4), "–");
+    }
 
     #[test]
     fn significant_digits_survive_rounding_up_and_extremes() {

@@ -286,13 +286,13 @@ fn part_results(out: &mut String, s: &Summary, own: &[(&str, &str, &ResultValue)
         numbers.dedup();
         let _ = write!(
             out,
-            "<div class=\"scroll\"><table class=\"plain\"><thead><tr><th>Per {}</th>",
+            "<div class=\"scroll\"><table class=\"plain\"><thead><tr><th>Per {}</th><th></th>",
             esc(family)
         );
         for n in &numbers {
             let _ = write!(out, "<th class=\"num\">{} {n}</th>", esc(family));
         }
-        out.push_str("<th></th></tr></thead><tbody>");
+        out.push_str("</tr></thead><tbody>");
         for (rest, row) in rows {
             let first = row.values().next();
             let told: Vec<String> = row
@@ -306,12 +306,14 @@ fn part_results(out: &mut String, s: &Summary, own: &[(&str, &str, &ResultValue)
                 if what.is_empty() { String::new() } else { format!("{} ", esc(&capital(&what))) },
                 esc(rest)
             );
+            // Before the numbers, where it stays in sight when there are many.
+            let u = first.map_or("", |(_, v)| v.unit.as_str());
+            let _ = write!(out, "<td class=\"unit\">{}</td>", esc(&unit(u)));
             for n in &numbers {
                 let text = row.get(n).map_or_else(|| "–".into(), |(_, v)| certain(v.value, v.uncertainty, 4));
                 let _ = write!(out, "<td class=\"num\">{text}</td>");
             }
-            let u = first.map_or("", |(_, v)| v.unit.as_str());
-            let _ = write!(out, "<td class=\"unit\">{}</td></tr>", esc(&unit(u)));
+            out.push_str("</tr>");
         }
         out.push_str("</tbody></table></div>");
     }

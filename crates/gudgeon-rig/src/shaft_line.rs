@@ -41,11 +41,14 @@ pub struct ShaftLineRig {
     pub natural_frequencies: Box<dyn NaturalFrequenciesSpec>,
 }
 
+/// As many modes as the longest chain has inertias.
+const MOST: usize = 2000;
+
 fn free() -> [TorsionalStiffness<NonNegative>; 2] {
     [quantity(0.0), quantity(0.0)]
 }
 fn eigenvalues() -> Box<dyn NaturalFrequenciesSpec> {
-    Box::new(Eigenvalues { most: usize::MAX })
+    Box::new(Eigenvalues { most: MOST })
 }
 
 gudgeon_core::register_model! {

@@ -452,7 +452,7 @@ pub struct Solver {
     #[schemars(range(max = 100_000))]
     pub cycles: u32,
     /// `as_published`: steps of mechanics per crank degree; 0 takes the source's number (rings + 1; 1 for `degree_march`).
-    #[schemars(range(max = 1_000_000))]
+    #[schemars(range(max = 1_000_000), extend("x-refine" = { "group": "crank-angle step", "factor": 2, "when": { "method": "as_published" } }))]
     pub steps_per_degree: u32,
     /// `as_published`: gas sub-steps per step of mechanics; 0 takes the source's number (2^(rings+1); 10).
     #[schemars(range(max = 1_000_000))]

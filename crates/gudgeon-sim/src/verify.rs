@@ -21,6 +21,9 @@ use crate::scene::{Scene, changed};
 const KNOWN: f64 = 0.25;
 /// Differences below this part of a value are rounding of the results, not trends.
 const ROUNDING: f64 = 1e-10;
+/// Differences below this part of the largest result of the same unit, and of 1 where there is none, are rounding as well: what is left
+/// over of balances among such numbers carries the rounding of some thousand of them.
+const LEFT_OVER: f64 = 1e-12;
 /// The largest ratio of two differences that a series is believed to shrink by.
 const SLOWEST: f64 = 0.9;
 /// Ratio of differences that is assumed where there is but one.
@@ -40,15 +43,16 @@ pub(crate) fn verify(
     let groups = scene.refinements();
     let mut found = Verification::default();
     let total = groups.len().max(1) as f64;
+    let floors = floors(&result.results);
     for (k, Refinement { what, levels }) in groups.into_iter().enumerate() {
         progress(Progress { phase: format!("refining the {what}"), fraction: k as f64 / total });
-        let levels = refine(scene, levels, &result.results)?;
+        let levels = refine(scene, levels, &result.results, &floors)?;
         let mut unsettled = Vec::new();
         for (name, v) in &result.results {
             let series: Vec<f64> = std::iter::once(v.value)
                 .chain(levels.iter().filter_map(|(_, r)| r.get(name)).map(|v| v.value))
                 .collect();
-            let (u, settles) = uncertainty(&series, &v.unit);
+            let (u, settles) = uncertainty(&series, &v.unit, floors[v.unit.as_str()]);
             *found.uncertainty.entry(name.clone()).or_insert(0.0) += u;
             if !settles && u > KNOWN * v.value.abs() {
                 unsettled.push(name.as_str());
@@ -70,6 +74,7 @@ fn refine(
     scene: &dyn Scene,
     levels: Vec<Vec<String>>,
     base: &Results,
+    floors: &IndexMap<String, f64>,
 ) -> Result<Vec<(Vec<String>, Results)>, RunError> {
     let mut out: Vec<(Vec<String>, Results)> = Vec::new();
     for set in levels {
@@ -83,14 +88,28 @@ fn refine(
             let series: Vec<f64> = std::iter::once(v.value)
                 .chain(out.iter().filter_map(|(_, r)| r.get(name)).map(|v| v.value))
                 .collect();
-            rest(&series, &v.unit).0 <= KNOWN * uncertainty(&series, &v.unit).0
-                || uncertainty(&series, &v.unit).0 <= ROUNDING * v.value.abs()
+            let floor = floors[v.unit.as_str()];
+            let u = uncertainty(&series, &v.unit, floor).0;
+            rest(&series, &v.unit, floor).0 <= KNOWN * u || u <= (ROUNDING * v.value.abs()).max(floor)
         });
         if known {
             break;
         }
     }
     Ok(out)
+}
+
+/// By unit what is nothing but rounding.
+fn floors(results: &Results) -> IndexMap<String, f64> {
+    let mut floors = IndexMap::new();
+    for v in results.values() {
+        let least = if matches!(v.unit.as_str(), "" | "1" | "%") { 1.0 } else { 0.0 };
+        let floor = floors.entry(v.unit.clone()).or_insert(LEFT_OVER * least);
+        if v.value.is_finite() {
+            *floor = floor.max(LEFT_OVER * v.value.abs());
+        }
+    }
+    floors
 }
 
 /// Distance of two values; of angles around the cycle the shorter way.
@@ -101,14 +120,14 @@ fn distance(a: f64, b: f64, unit: &str) -> f64 {
 }
 
 /// What may be left behind the last of a series, and whether it shrinks.
-fn rest(series: &[f64], unit: &str) -> (f64, bool) {
+fn rest(series: &[f64], unit: &str, floor: f64) -> (f64, bool) {
     let last = |k: usize| {
         let n = series.len();
         (n > k + 1).then(|| distance(series[n - 1 - k], series[n - 2 - k], unit))
     };
     let Some(d) = last(0) else { return (0.0, true) };
     let scale = series.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-    if d <= ROUNDING * scale {
+    if d <= (ROUNDING * scale).max(floor) {
         return (d, true);
     }
     let ratio = last(1).filter(|before| *before > 0.0).map_or(ASSUMED, |before| d / before);
@@ -117,9 +136,9 @@ fn rest(series: &[f64], unit: &str) -> (f64, bool) {
 }
 
 /// Uncertainty of the first of a series that is refined, and whether the series settles.
-fn uncertainty(series: &[f64], unit: &str) -> (f64, bool) {
+fn uncertainty(series: &[f64], unit: &str, floor: f64) -> (f64, bool) {
     let (Some(first), Some(last)) = (series.first(), series.last()) else { return (0.0, true) };
-    let (rest, settles) = rest(series, unit);
+    let (rest, settles) = rest(series, unit, floor);
     (distance(*first, *last, unit) + rest, settles)
 }
 
@@ -133,25 +152,43 @@ mod tests {
         for q in [0.7, 0.5, 0.25, 0.0625] {
             let series: Vec<f64> = (0..4).map(|k| 1.0 + 0.1 * f64::powi(q, k)).collect();
             for n in 3..=4 {
-                let (u, settles) = uncertainty(&series[..n], "N");
+                let (u, settles) = uncertainty(&series[..n], "N", 0.0);
                 // A geometric series is summed exactly, within rounding of its differences.
                 assert!(settles && (u - 0.1).abs() < 1e-9, "{q} {n} {u}");
             }
-            let (u, _) = uncertainty(&series[..2], "N");
+            let (u, _) = uncertainty(&series[..2], "N", 0.0);
             assert!(q > ASSUMED || u >= 0.1 - 1e-12, "{q} {u}");
         }
     }
 
     #[test]
     fn a_series_that_does_not_shrink_is_named() {
-        assert!(!uncertainty(&[1.0, 2.0, 3.0], "N").1);
-        assert!(!uncertainty(&[675.0, 1294.0, 1883.0], "bar").1);
+        assert!(!uncertainty(&[1.0, 2.0, 3.0], "N", 0.0).1);
+        assert!(!uncertainty(&[675.0, 1294.0, 1883.0], "bar", 0.0).1);
         // Rounding is no trend.
-        assert!(uncertainty(&[1.0, 1.0 + 1e-15, 1.0 - 1e-15], "N").1);
+        assert!(uncertainty(&[1.0, 1.0 + 1e-15, 1.0 - 1e-15], "N", 0.0).1);
     }
 
     #[test]
     fn angles_go_the_shorter_way() {
-        assert!((uncertainty(&[719.9, 0.1], "deg").0 - 0.4).abs() < 1e-9);
+        assert!((uncertainty(&[719.9, 0.1], "deg", 0.0).0 - 0.4).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_is_left_over_of_a_balance_is_rounding() {
+        let value = |value: f64, unit: &str| Value { value, unit: unit.into(), what: String::new() };
+        let results: Results = [
+            ("load", value(1e4, "N")),
+            ("out_of_balance", value(1e-11, "N")),
+            ("flux_error", value(1e-16, "")),
+        ]
+        .into_iter()
+        .map(|(k, v)| (k.to_owned(), v))
+        .collect();
+        let floors = floors(&results);
+        assert!(uncertainty(&[1e-16, 3e-16, 9e-16], "", floors[""]).1);
+        assert!(uncertainty(&[1e-11, 4e-10, 9e-9], "N", floors["N"]).1);
+        // A trend above the rounding is still one.
+        assert!(!uncertainty(&[1e-16, 3e-10, 9e-10], "", floors[""]).1);
     }
 }

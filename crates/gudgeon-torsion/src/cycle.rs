@@ -16,6 +16,8 @@ pub struct Cycle {
     orders: Vec<f64>,
     period: f64,
     samples: usize,
+    /// Orders as multiples of the order of the period; empty where they are none.
+    multiples: Vec<usize>,
     /// Cosine and sine by order and point; empty where it would be too large.
     table: Vec<[f64; 2]>,
     wave: Vec<f64>,
@@ -27,8 +29,14 @@ impl Cycle {
     pub fn new(orders: &[f64], period: f64) -> Self {
         let highest = orders.iter().copied().fold(0.0, f64::max) * period / (2.0 * PI);
         let samples = (POINTS * highest.ceil() as usize).next_power_of_two().max(64);
-        let mut own =
-            Self { orders: orders.to_vec(), period, samples, table: Vec::new(), wave: vec![0.0; samples] };
+        let mut own = Self {
+            orders: orders.to_vec(),
+            period,
+            samples,
+            multiples: multiples(orders, period),
+            table: Vec::new(),
+            wave: vec![0.0; samples],
+        };
         if samples * orders.len() <= KEPT {
             own.table = orders.iter().flat_map(|o| own.row(*o)).collect();
         }
@@ -106,14 +114,13 @@ impl Cycle {
         let mut best = f64::NEG_INFINITY;
         for _ in 0..20 {
             let (mut value, mut slope, mut curve) = (0.0, 0.0, 0.0);
-            for (k, o) in self.orders.iter().enumerate() {
+            self.each_order(at, |k, o, sin, cos| {
                 let [re, im] = phasors(k);
-                let (sin, cos) = (o * at).sin_cos();
                 let (x, y) = (re * cos - im * sin, re * sin + im * cos);
                 value += sign * x;
                 slope -= sign * o * y;
                 curve -= sign * o * o * x;
-            }
+            });
             best = best.max(value);
             let newton = if curve < 0.0 { -slope / curve } else { 0.25 * step * slope.signum() };
             let next = (at + newton).clamp(from, to);
@@ -125,6 +132,40 @@ impl Cycle {
         }
         best
     }
+
+    /// Every order with its sine and cosine at an angle. Multiples of one order are turned from one to the next.
+    #[inline]
+    fn each_order(&self, at: f64, mut f: impl FnMut(usize, f64, f64, f64)) {
+        let (sin, cos) = (2.0 * PI / self.period * at).sin_cos();
+        let (mut multiple, mut x, mut y) = (0, 1.0, 0.0);
+        for (k, o) in self.orders.iter().enumerate() {
+            match self.multiples.get(k) {
+                Some(m) if m - multiple < AFRESH && m / AFRESH == multiple / AFRESH => {
+                    for _ in multiple..*m {
+                        (x, y) = (x * cos - y * sin, x * sin + y * cos);
+                    }
+                    multiple = *m;
+                }
+                m => {
+                    (y, x) = (o * at).sin_cos();
+                    multiple = m.copied().unwrap_or(multiple);
+                }
+            }
+            f(k, *o, y, x);
+        }
+    }
+}
+
+/// Multiple at which turning starts afresh, so that rounding does not add up.
+const AFRESH: usize = 32;
+
+/// Orders as ascending multiples of that of the period; nothing where one is none.
+fn multiples(orders: &[f64], period: f64) -> Vec<usize> {
+    let base = 2.0 * PI / period;
+    let whole: Vec<f64> = orders.iter().map(|o| (o / base).round()).collect();
+    let same = orders.iter().zip(&whole).all(|(o, w)| (w * base - o).abs() <= 4.0 * f64::EPSILON * o);
+    let ascending = whole.windows(2).all(|w| w[0] < w[1]) && whole.first().is_none_or(|w| *w >= 0.0);
+    if same && ascending { whole.into_iter().map(|w| w as usize).collect() } else { Vec::new() }
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@
 //!
 //! Everything rests on one data structure, the line as a tree in the order of its elimination: see [`tree`].
 
+mod beyond;
 pub mod coupling;
 mod crank_end;
 pub mod critical;
@@ -20,6 +21,8 @@ mod dynamics;
 pub mod eigen;
 pub mod forcing;
 pub mod natural_frequencies;
+mod patches;
+mod receptance;
 pub mod shaft;
 pub mod steady;
 pub mod sweep;

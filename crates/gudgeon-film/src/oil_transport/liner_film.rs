@@ -35,6 +35,7 @@ pub struct LinerFilm {
     /// Highest wave of oil that stands before an edge, at most the clearance of the land.
     pub wave: PosLength,
     /// Axial spacing of the film on the liner, at most; half the shortest face or gap between faces if that is less.
+    #[schemars(extend("x-refine" = { "group": "liner grid", "factor": 0.5 }))]
     pub spacing: PosLength,
     /// Film on the liner at the start of the first cycle.
     pub initial: Length<NonNegative>,

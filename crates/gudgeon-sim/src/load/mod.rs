@@ -410,6 +410,13 @@ impl<T: serde::Serialize + JsonSchema + 'static> Loaded<T> {
     /// How the numerical settings of this case are refined.
     #[must_use]
     pub fn refinements(&self) -> Vec<Refinement> {
-        self.resolved().map_or_else(|_| Vec::new(), |v| refine::refinements(Schema::of::<T>(), &v))
+        self.refinements_with(|_| ())
+    }
+
+    /// The same, with the numbers put in that the case leaves to its model.
+    pub(crate) fn refinements_with(&self, fill: impl FnOnce(&mut serde_json::Value)) -> Vec<Refinement> {
+        let Ok(mut resolved) = self.resolved() else { return Vec::new() };
+        fill(&mut resolved);
+        refine::refinements(Schema::of::<T>(), &resolved)
     }
 }

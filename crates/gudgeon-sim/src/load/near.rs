@@ -42,13 +42,32 @@ pub fn advice(word: &str, names: &[&str]) -> String {
     let all = match names {
         [] => "nothing is valid here".to_owned(),
         [one] => format!("the only valid one is `{one}`"),
-        many => format!("valid: {}", list(many.iter().copied())),
+        many if many.len() <= LISTED => format!("valid: {}", list(many.iter().copied())),
+        many => {
+            let few = akin(word, many);
+            format!("valid, among {} in all: {}", many.len(), list(few.into_iter()))
+        }
     };
     match nearest(word, names.iter().copied()) {
         Some(near) if names.len() > 1 => format!("did you mean `{near}`? {all}"),
         Some(near) => format!("did you mean `{near}`?"),
         None => all,
     }
+}
+
+/// Names that are all listed, and as many as stand for more.
+const LISTED: usize = 60;
+const SHOWN: usize = 12;
+
+/// Names that begin like a word, up to its first point; the first of all where none does.
+fn akin<'a>(word: &str, names: &[&'a str]) -> Vec<&'a str> {
+    let head = word.split_once('.').map_or(word, |w| w.0);
+    let mut few: Vec<&str> =
+        names.iter().filter(|n| n.split('.').next() == Some(head)).take(SHOWN).copied().collect();
+    if few.is_empty() {
+        few.extend(names.iter().take(SHOWN));
+    }
+    few
 }
 
 #[cfg(test)]

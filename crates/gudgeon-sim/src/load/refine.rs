@@ -1,8 +1,9 @@
 //! The numerical settings of a case that refine its results: tolerances, grids, orders.
 //!
 //! A field says so itself, in its schema: `x-refine` holds the name of what is refined (`tolerance`, `film grid`; settings of one name are
-//! refined together), the `factor` of one level, and possibly `when`, the value that another key of the same table must have. So a model
-//! that is registered elsewhere is verified like a built-in one.
+//! refined together), the `factor` of one level, possibly `levels`, how many of them are worth their time (a plane grid has four times the
+//! nodes a level), and possibly `when`, the value that another key of the same table must have. So a model that is registered elsewhere is
+//! verified like a built-in one.
 
 use indexmap::IndexMap;
 use serde_json::Value;
@@ -28,7 +29,8 @@ pub(super) fn refinements(schema: &Schema, resolved: &Value) -> Vec<Refinement> 
     for s in settings(schema, resolved) {
         groups.entry(s.group.clone()).or_default().push(s);
     }
-    let levels = |s: &[Setting]| (1..=LEVELS).map(|k| s.iter().map(|s| s.at(k)).collect()).collect();
+    let most = |s: &[Setting]| s.iter().map(|s| s.levels).min().unwrap_or(LEVELS);
+    let levels = |s: &[Setting]| (1..=most(s)).map(|k| s.iter().map(|s| s.at(k)).collect()).collect();
     groups.into_iter().map(|(what, s)| Refinement { what, levels: levels(&s) }).collect()
 }
 
@@ -47,6 +49,8 @@ struct Setting {
     unit: String,
     /// By how much one level changes it.
     factor: f64,
+    /// Most levels.
+    levels: i32,
 }
 
 impl Setting {
@@ -124,6 +128,7 @@ fn setting(
         whole: value.is_u64(),
         unit: unit.to_owned(),
         factor: how.get("factor")?.as_f64()?,
+        levels: how.get("levels").and_then(Value::as_i64).map_or(LEVELS, |n| n.clamp(1, 3) as i32),
     })
 }
 
@@ -149,6 +154,21 @@ mod tests {
     struct Outer {
         parts: Vec<Inner>,
         name: String,
+    }
+
+    #[test]
+    fn a_group_has_as_many_levels_as_its_dearest_setting() {
+        #[derive(Serialize, JsonSchema)]
+        struct Plane {
+            #[schemars(extend("x-refine" = { "group": "grid", "factor": 2, "levels": 2 }))]
+            along: u32,
+            #[schemars(extend("x-refine" = { "group": "grid", "factor": 2 }))]
+            across: u32,
+        }
+        let case = serde_json::to_value(Plane { along: 20, across: 16 }).expect("values");
+        let found = refinements(Schema::of::<Plane>(), &case);
+        assert_eq!(found.len(), 1);
+        assert_eq!(found[0].levels, [["along=40", "across=32"], ["along=80", "across=64"]]);
     }
 
     #[test]

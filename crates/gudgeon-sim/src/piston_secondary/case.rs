@@ -248,10 +248,10 @@ pub struct Solver {
     /// Displacement of the lower edge at the start.
     pub start_bottom: Length,
     /// Intervals of the film along the height of the skirt.
-    #[schemars(range(min = 2, max = 1000), extend("x-refine" = { "group": "film grid", "factor": 2 }))]
+    #[schemars(range(min = 2, max = 1000), extend("x-refine" = { "group": "film grid", "factor": 2, "levels": 2 }))]
     pub intervals_along: u32,
     /// Intervals of the film across each side. With an even number, one half of a symmetric side is solved.
-    #[schemars(range(min = 2, max = 1000), extend("x-refine" = { "group": "film grid", "factor": 2 }))]
+    #[schemars(range(min = 2, max = 1000), extend("x-refine" = { "group": "film grid", "factor": 2, "levels": 2 }))]
     pub intervals_across: u32,
     /// How much closer nodes lie at half the height than in the mean, 0 to 0.5.
     pub crowding: Ratio,

@@ -6,8 +6,8 @@ use gudgeon_core::BuildError;
 use gudgeon_core::result::{Figure, FigureKind, ModelUse, RunResult};
 
 use super::{assemble, geometry, legal, meter, pack::Pack, solve, state_names};
-use crate::case::{IntegratorName, Method, RingPackCase};
-use crate::load::Loaded;
+use crate::case::{IntegratorName, Method, RingPackCase, Scheme};
+use crate::load::{Loaded, Refinement};
 use crate::run::{Explanation, Progress, RunError};
 use crate::scene::SceneCase;
 use crate::study::{Contender, Race};
@@ -66,6 +66,20 @@ impl SceneCase for RingPackCase {
         result.seconds.insert("build".into(), built);
         result.seconds.insert("solve".into(), solved.seconds);
         Ok(result)
+    }
+
+    /// The steps of a published scheme are the source's where the case names none.
+    fn refinements(loaded: &Loaded<Self>) -> Vec<Refinement> {
+        let case = &loaded.value;
+        loaded.refinements_with(|resolved| {
+            if case.solver.steps_per_degree == 0 {
+                let own = match case.solver.scheme {
+                    Scheme::SubstepMarch => case.rings.len() + 1,
+                    Scheme::DegreeMarch => 1,
+                };
+                resolved["solver"]["steps_per_degree"] = own.into();
+            }
+        })
     }
 
     fn result_names(loaded: &Loaded<Self>) -> Option<Vec<String>> {

@@ -105,6 +105,7 @@ impl<'a> Machine<'a> {
         let mut out = TorsionOut::default();
         self.torsion.set_speed(speed)?;
         self.torsion.run(&mut out)?;
+        finite(&out)?;
         Ok(out)
     }
 
@@ -112,6 +113,9 @@ impl<'a> Machine<'a> {
     pub fn at(&mut self, speed: f64) -> Option<&Point> {
         // Bits of positive numbers ascend with them.
         let key = speed.to_bits();
+        if self.failed.iter().any(|f| f.0 == speed) {
+            return None;
+        }
         if !self.points.contains_key(&key) {
             let out = match self.motion(speed) {
                 Ok(out) => out,
@@ -133,6 +137,19 @@ impl<'a> Machine<'a> {
         self.points.get(&key)
     }
 
+    /// Vibration at ascending speeds, every second one after those beside it: a model that iterates starts from what is known on both
+    /// sides.
+    pub fn prepare(&mut self, speeds: &[f64]) {
+        let mut stride = speeds.len().next_power_of_two();
+        while stride > 0 {
+            // Where there is no answer, whoever asks for it finds out.
+            if speeds.iter().step_by(stride).any(|w| self.at(*w).is_none()) {
+                return;
+            }
+            stride /= 2;
+        }
+    }
+
     /// Why there is no answer at a speed.
     pub fn why(&self, speed: f64) -> EvalError {
         let said = self.failed.iter().find(|f| f.0 == speed).map_or("no answer", |f| f.1.as_str());
@@ -147,6 +164,7 @@ impl<'a> Machine<'a> {
         let spare = self.spare.as_mut()?;
         spare.set_speed(speed).ok()?;
         spare.run(&mut out).ok()?;
+        finite(&out).ok()?;
         Some(out)
     }
 
@@ -168,7 +186,7 @@ impl<'a> Machine<'a> {
         let cycle = self.extremes(out);
         let mut p = Point::default();
         for l in 0..links {
-            let size = |k: usize| out.orders[k].torque[l][0].hypot(out.orders[k].torque[l][1]);
+            let size = |k: usize| square(out.orders[k].torque[l]);
             let [top, bottom] = cycle.extremes(out.mean_torque[l], |k| out.orders[k].torque[l]);
             let strongest = (0..out.orders.len()).max_by(|x, y| size(*x).total_cmp(&size(*y)));
             p.links.push(LinkPoint {
@@ -184,15 +202,14 @@ impl<'a> Machine<'a> {
         // Relative speed of an inertia at the reference shaft: order times angle.
         let ratio = |i: usize| a.line.nodes[i].ratio;
         let bound = |i: usize| {
-            out.orders.iter().map(|o| o.order * o.angle[i][0].hypot(o.angle[i][1])).sum::<f64>()
-                / ratio(i).abs()
+            out.orders.iter().map(|o| o.order * square(o.angle[i]).sqrt()).sum::<f64>() / ratio(i).abs()
         };
         if irregularity || (0..nodes).any(|i| bound(i) > LARGE) {
             p.irregularity = (0..nodes).map(|i| irregularity_of(cycle, out, i) / ratio(i).abs()).collect();
         }
         for l in 0..links {
             let twist = |k: usize| twist_of(a, out, l, k);
-            if (0..out.orders.len()).map(|k| twist(k)[0].hypot(twist(k)[1])).sum::<f64>() > LARGE {
+            if (0..out.orders.len()).map(|k| square(twist(k)).sqrt()).sum::<f64>() > LARGE {
                 let [top, bottom] = cycle.extremes(0.0, twist);
                 p.twist = p.twist.max(0.5 * (top - bottom));
             }
@@ -244,6 +261,20 @@ impl<'a> Machine<'a> {
             speeds.iter().filter_map(|w| self.at(*w).map(|p| (*w, quantity(p)))).collect();
         largest(&samples, |w| self.at(w).map_or(f64::NEG_INFINITY, quantity))
     }
+}
+
+/// An answer of numbers.
+fn finite(out: &TorsionOut) -> Result<(), EvalError> {
+    let orders = out.orders.iter().flat_map(|o| o.torque.iter().chain(&o.angle)).flatten();
+    let mut all = orders.chain(&out.mean_torque).chain(&out.mean_angle).chain([&out.balance_torque]);
+    if all.all(|v| v.is_finite()) {
+        return Ok(());
+    }
+    Err(EvalError::fatal("torsion", "torques or angles of this speed are beyond all numbers"))
+}
+
+fn square([re, im]: [f64; 2]) -> f64 {
+    re * re + im * im
 }
 
 /// Peak to peak speed of an inertia by the mean speed of the reference shaft.

@@ -10,6 +10,7 @@ pub mod case;
 mod draw;
 mod legal;
 mod machine;
+mod names;
 pub mod plan;
 mod results;
 mod start;
@@ -69,6 +70,16 @@ impl SceneCase for ShaftLineCase {
             told.states.extend(names.iter().map(|n| format!("speed of {n}")));
         }
         Ok(models(case, &plan))
+    }
+
+    fn result_names(loaded: &Loaded<Self>) -> Option<Vec<String>> {
+        let case = &loaded.value;
+        let plan = Plan::new(case);
+        let a = assemble(case, &loaded.source.files).ok()?;
+        let start = Start::new(case, a.line.nodes.len());
+        let excited = gudgeon_torsion::steady::Steady::new(&start.context(case, &a)).ok()?.excitation;
+        let orders: Vec<f64> = excited.orders.iter().map(|o| o.order).collect();
+        Some(names::names(case, &plan, &a, &orders))
     }
 
     fn run(loaded: &Loaded<Self>, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {

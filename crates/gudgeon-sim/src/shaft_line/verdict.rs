@@ -250,6 +250,7 @@ impl<'m, 'a> Step<'m, 'a> {
         let critical =
             if range.is_wide() { machine.critical_speeds(range.from, range.to) } else { Vec::new() };
         let speeds = machine.telling_speeds(&grid, &critical);
+        machine.prepare(&speeds);
         let unbounded = machine.unbounded(&critical, range.from, range.to);
         Self { machine, speeds, critical, unbounded }
     }

@@ -13,10 +13,14 @@ pub struct PowerLaw {
     pub torque: Torque,
     /// Reference speed ω_r.
     pub speed: PosAngularSpeed,
-    /// Exponent n.
+    /// Exponent n, at most 10: bodies in a fluid ask for two, and the steepest that is measured (a hull before it planes) for about five.
     #[serde(default = "square")]
+    #[schemars(range(min = 0.0, max = 10.0))]
     pub exponent: Ratio<NonNegative>,
 }
+
+/// Twice the steepest law that loads are known to follow, a hull before it planes with about the fifth power.
+const STEEPEST: f64 = 10.0;
 
 fn square() -> Ratio<NonNegative> {
     quantity(2.0)
@@ -34,6 +38,13 @@ gudgeon_core::register_model! {
 #[typetag::serde(name = "power_law")]
 impl DriveSpec for PowerLaw {
     fn build(&self) -> Result<Box<dyn Drive>, BuildError> {
+        if self.exponent.si() > STEEPEST {
+            let what = format!(
+                "no load goes with the power {} of the speed: at most {STEEPEST}",
+                self.exponent.si()
+            );
+            return Err(BuildError::at("exponent", what).help("fans and propellers have 2"));
+        }
         Ok(Box::new(Power { torque: self.torque.si(), speed: self.speed.si(), n: self.exponent.si() }))
     }
 }
@@ -55,5 +66,19 @@ impl Drive for Power {
     }
     fn is_linear(&self) -> bool {
         self.n == 1.0 || self.n == 0.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_power_that_no_load_has_is_refused_at_its_place() {
+        let law = |n: f64| {
+            PowerLaw { torque: quantity(1e3), speed: quantity(100.0), exponent: quantity(n) }.build()
+        };
+        assert!(law(3.0).is_ok());
+        assert_eq!(law(81100.0).unwrap_err().field, "exponent");
     }
 }

@@ -1,16 +1,17 @@
-use std::collections::VecDeque;
 use std::f64::consts::PI;
 
 use gudgeon_core::kinds::{
-    Line, LineThrow, LinearCoupling, OrderResponse, Torsion, TorsionAnswer, TorsionCtx, TorsionOut,
-    TorsionSpec,
+    Line, LinearCoupling, OrderResponse, Torsion, TorsionAnswer, TorsionCtx, TorsionOut, TorsionSpec,
 };
 use gudgeon_core::quantity::{Positive, Ratio, quantity};
 use gudgeon_core::{BuildError, EvalError};
-use gudgeon_numerics::linalg::{Complex, lu_factor, lu_solve};
+use gudgeon_numerics::gmres::Gmres;
+use gudgeon_numerics::linalg::Complex;
 use serde::{Deserialize, Serialize};
 
 use super::Orders;
+use crate::beyond::{Beyond, active};
+use crate::receptance::Receptance;
 use crate::steady::Steady;
 
 /// The periodic motion at constant mean speed with all that is not linear: variable inertia with its velocity-squared term, gas torques and
@@ -23,8 +24,9 @@ use crate::steady::Steady;
 /// of a coupling: its torque less that of its tangent at the mean torque,
 /// ```
 ///
-/// evaluated over the cycle and taken apart into orders again. The iteration is accelerated (walker2011) and ends when the torques of
-/// two rounds agree to `tolerance`.
+/// evaluated over the cycle and taken apart into orders again. That is an equation for the torques of all orders at once, solved by
+/// Newton's method; its linear systems are known by what they do to a motion and solved in a Krylov space (saad1986). It ends when the
+/// torques of a motion are those that made it, to `tolerance`.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HarmonicBalance {
@@ -32,7 +34,7 @@ pub struct HarmonicBalance {
     #[serde(default = "tolerance")]
     #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1 }))]
     pub tolerance: Ratio<Positive>,
-    /// Most rounds.
+    /// Most evaluations of the motion.
     #[serde(default = "rounds")]
     #[schemars(range(min = 1, max = 100_000))]
     pub rounds: usize,
@@ -56,7 +58,7 @@ gudgeon_core::register_model! {
     summary: "periodic motion with variable inertia and nonlinear couplings, by orders",
     equations: "(K + i omega C - omega^2 J) a_n = T_n + T_nl,n;  T_nl = dQ - (I - I_m) theta'' - I' theta'^2/2",
     validity: "Constant mean speed; all orders multiples of one. One periodic motion, not the choice between several.",
-    references: ["gomes2021", "walker2011"],
+    references: ["gomes2021", "saad1986"],
     example: "tolerance = 1e-10\n",
 }
 
@@ -94,7 +96,7 @@ impl TorsionSpec for HarmonicBalance {
             }
         }
         let harmonics = ((ctx.orders / base) + 1e-9).floor() as usize;
-        // Taking the torques of a round apart goes with the square of the harmonics.
+        // The Krylov space holds many motions at once.
         let places = active.len();
         if harmonics == 0 || harmonics > 4000 || harmonics * harmonics * places > 25_000_000 {
             let what = format!(
@@ -104,106 +106,174 @@ impl TorsionSpec for HarmonicBalance {
         }
         // The moving masses are part of what is evaluated here.
         steady.whole_orders_without_masses(base, harmonics);
-        // Products of three harmonics are still resolved.
-        let samples = (8 * harmonics).next_power_of_two().max(64);
-        let cycle = ctx.period;
-        let at_even = |t: &LineThrow| -> Vec<f64> {
-            let ratio = ctx.line.nodes[t.node].ratio;
-            (0..if t.ends.is_empty() { 0 } else { samples })
-                .map(|s| {
-                    let even = ratio * cycle * s as f64 / samples as f64;
-                    t.gas_torque(even, even)
-                })
-                .collect()
-        };
-        let mut solver = Solver {
+        let unknowns = places * (harmonics + 1);
+        Ok(Box::new(Solver {
             tolerance: self.tolerance.si(),
             rounds: self.rounds.max(2),
             base,
-            harmonics,
-            samples,
-            table: (0..samples).map(|s| (2.0 * PI * s as f64 / samples as f64).sin_cos()).collect(),
-            even: ctx.line.throws.iter().map(at_even).collect(),
-            x: vec![0.0; 2 * active.len() * (harmonics + 1)],
-            active,
-            pairs: VecDeque::with_capacity(DEPTH + 1),
+            beyond: Beyond::new(ctx.line, ctx.period, harmonics),
+            receptance: Receptance::default(),
+            gmres: Gmres::default(),
+            x: vec![Complex::default(); unknowns],
+            angle: vec![Complex::default(); unknowns],
+            give: Vec::new(),
+            load: Vec::new(),
             tangents: Vec::new(),
+            known: Known::default(),
+            share: 1.0,
             steady,
-        };
-        solver.take_tangents();
-        Ok(Box::new(solver))
+        }))
     }
     fn answers(&self) -> TorsionAnswer {
         TorsionAnswer::Periodic
     }
 }
 
-/// Nodes with something that is not linear, ascending.
-fn active(line: &Line) -> Vec<usize> {
-    let mut nodes: Vec<usize> = line.throws.iter().map(|t| t.node).collect();
-    nodes.extend(line.drives.iter().filter(|d| !d.drive.is_linear()).map(|d| d.node));
-    nodes.extend(line.links.iter().filter(|l| !l.coupling.is_linear()).flat_map(|l| l.nodes));
-    nodes.sort_unstable();
-    nodes.dedup();
-    nodes
-}
-
-/// Rounds that the acceleration remembers.
-const DEPTH: usize = 24;
-/// Round from which it only counts those of its own speed.
-const STALE: usize = 12;
+/// Vectors that a linear solution may use.
+const VECTORS: usize = 200;
+/// Growth of the remainder by which a step is not taken, and how often it is halved then.
+const GROWTH: f64 = 1.5;
+const HALVINGS: usize = 8;
+/// First share of the torques beyond the linear line when all at once is too much, and the least by which it is raised.
+const FIRST: f64 = 0.25;
+const LEAST: f64 = 1.0 / 1024.0;
 
 #[derive(Debug)]
 struct Solver {
     tolerance: f64,
     rounds: usize,
     base: f64,
-    harmonics: usize,
-    /// Points over the cycle, a power of two.
-    samples: usize,
-    /// Sine and cosine at these points.
-    table: Vec<(f64, f64)>,
-    /// Gas torque of each throw at these points of even rotation.
-    even: Vec<Vec<f64>>,
-    /// Nodes that have unknowns.
-    active: Vec<usize>,
-    /// Torques on these nodes that the linear line does not have, as the last run found them.
-    x: Vec<f64>,
-    /// Differences of iterates and of their remainders, newest first: those of one speed serve at the next, where little is different.
-    pairs: VecDeque<[Vec<f64>; 2]>,
+    beyond: Beyond,
+    receptance: Receptance,
+    gmres: Gmres,
+    /// Torques on the active nodes that the linear line does not have, by node and order with the mean.
+    x: Vec<Complex>,
+    /// Angles of the active nodes in the same order.
+    angle: Vec<Complex>,
+    /// Change of mean angles by mean torques on the active nodes, a row for each angle; of the mean torques of the links in the same way.
+    give: Vec<f64>,
+    load: Vec<f64>,
     /// Laws of the links as the linear line has them: the tree keeps these, whatever the mean torque turns out to be.
     tangents: Vec<LinearCoupling>,
+    known: Known,
+    /// Share of the torques beyond the linear line that is asked for.
+    share: f64,
     steady: Steady,
 }
 
-/// What the linear line leaves out, in orders from 0: torques by order and node, and those of each nonlinear link by order.
+/// Torques at speeds that were solved.
 #[derive(Debug, Default)]
-struct Rest {
-    nodes: Vec<Vec<Complex>>,
-    links: Vec<(usize, Vec<Complex>)>,
+struct Known {
+    /// Speed, when it was put here, torques; ascending.
+    at: Vec<(f64, u64, Vec<Complex>)>,
+    count: u64,
 }
 
-/// Motion of one node over the cycle: deviation from the mean rotation, its first and second derivative in time.
-#[derive(Debug, Clone, Default)]
-struct Wave {
-    x: Vec<f64>,
-    v: Vec<f64>,
-    a: Vec<f64>,
+/// Numbers that are kept, and the fewest speeds.
+const ROOM: usize = 1 << 19;
+const KEPT: usize = 24;
+/// Speeds that a guess goes through, and their distance by that of the nearest.
+const THROUGH: usize = 8;
+const NEAR: f64 = 10.0;
+/// Sum of the weights up to which a guess is worth more than the nearest speed.
+const TRUSTED: f64 = 300.0;
+
+impl Known {
+    fn keep(&mut self, speed: f64, x: &[Complex]) {
+        self.count += 1;
+        if self.at.len() >= KEPT.max(ROOM / x.len().max(1)) {
+            let oldest = (0..self.at.len()).min_by_key(|i| self.at[*i].1);
+            oldest.map(|i| self.at.remove(i));
+        }
+        let place = self.at.partition_point(|k| k.0 < speed);
+        let own = (speed, self.count, x.to_vec());
+        match self.at.get_mut(place) {
+            Some(old) if old.0 == speed => *old = own,
+            _ => self.at.insert(place, own),
+        }
+    }
+
+    /// The speeds next to one, nearest first.
+    fn near(&self, speed: f64) -> Vec<usize> {
+        let mut above = self.at.partition_point(|k| k.0 < speed);
+        let mut below = above;
+        let mut near = Vec::with_capacity(THROUGH);
+        while near.len() < THROUGH.min(self.at.len()) {
+            let up = self.at.get(above).map_or(f64::INFINITY, |k| k.0 - speed);
+            let down = if below > 0 { speed - self.at[below - 1].0 } else { f64::INFINITY };
+            if up <= down {
+                near.push(above);
+                above += 1;
+            } else {
+                below -= 1;
+                near.push(below);
+            }
+        }
+        near
+    }
+
+    /// The polynomial through the torques at the nearest speeds.
+    fn guess(&self, speed: f64, x: &mut [Complex]) {
+        x.fill(Complex::default());
+        let near: Vec<&(f64, u64, Vec<Complex>)> = self.near(speed).iter().map(|i| &self.at[*i]).collect();
+        let Some(first) = near.first() else { return };
+        let reach = NEAR * (first.0 - speed).abs();
+        let mut count = near.iter().take_while(|k| (k.0 - speed).abs() <= reach).count();
+        let weights = |count: usize| -> Vec<f64> {
+            let part = |i: usize, j: usize| (speed - near[j].0) / (near[i].0 - near[j].0);
+            (0..count).map(|i| (0..count).filter(|j| *j != i).map(|j| part(i, j)).product()).collect()
+        };
+        while count > 1 && weights(count).iter().map(|w: &f64| w.abs()).sum::<f64>() > TRUSTED {
+            count -= 1;
+        }
+        for (w, (_, _, known)) in weights(count.max(1)).into_iter().zip(&near) {
+            let w = Complex::new(w, 0.0);
+            x.iter_mut().zip(known).for_each(|(x, k)| *x = *x + w * *k);
+        }
+    }
+}
+
+impl Torsion for Solver {
+    fn run(&mut self, out: &mut TorsionOut) -> Result<(), EvalError> {
+        self.take_tangents();
+        self.receptance.factor(&mut self.steady, self.base, self.beyond.harmonics);
+        let speed = self.steady.speed;
+        self.known.guess(speed, &mut self.x);
+        let mut work = Work::default();
+        let mut found = self.iterate(&mut work);
+        if found.is_err() && !self.known.at.is_empty() {
+            // The motion of another speed may be a bad start.
+            self.x.fill(Complex::default());
+            found = self.iterate(&mut work);
+        }
+        if let Err(e) = found {
+            self.by_degrees(&mut work, e)?;
+        }
+        self.known.keep(speed, &self.x);
+        let rest = self.beyond.beside_tangents();
+        out.orders = self.responses()?;
+        self.complete(&mut out.orders, &rest);
+        out.counters.insert("time_steps".into(), 0);
+        out.counters.insert("rounds".into(), work.rounds);
+        out.counters.insert("linear_solutions".into(), work.solutions);
+        self.steady.describe(out);
+        Ok(())
+    }
+    fn set_speed(&mut self, speed: f64) -> Result<(), EvalError> {
+        self.steady.set_speed(speed);
+        Ok(())
+    }
+}
+
+/// What a run has cost.
+#[derive(Debug, Default)]
+struct Work {
+    rounds: u64,
+    /// Orders solved.
+    solutions: u64,
 }
 
 impl Solver {
-    fn solve(&mut self, extra: &[Vec<Complex>]) -> Result<Vec<OrderResponse>, EvalError> {
-        let mut out = Vec::with_capacity(self.harmonics);
-        for k in 0..self.harmonics {
-            let mut o = self.steady.excitation.orders[k].clone();
-            for (t, e) in o.torque.iter_mut().zip(&extra[k + 1]) {
-                *t = *t + *e;
-            }
-            out.push(self.steady.respond(&o)?);
-        }
-        Ok(out)
-    }
-
     /// Laws of the links about the mean torques of the linear line.
     fn take_tangents(&mut self) {
         self.tangents = (self.steady.line.links.iter().zip(&self.steady.mean_torque))
@@ -211,120 +281,243 @@ impl Solver {
             .collect();
     }
 
-    /// Motion of the active nodes; nothing for the others.
-    fn waves(&self, orders: &[OrderResponse]) -> Vec<Wave> {
-        let m = self.samples;
+    /// Raises the share of the torques beyond the linear line from nothing to the whole, each solution the start of the next.
+    fn by_degrees(&mut self, work: &mut Work, failed: EvalError) -> Result<(), EvalError> {
+        self.x.fill(Complex::default());
+        let (mut reached, mut step) = (0.0, FIRST);
+        while reached < 1.0 {
+            let start = self.x.clone();
+            self.share = (reached + step).min(1.0);
+            let found = self.iterate(work);
+            let share = std::mem::replace(&mut self.share, 1.0);
+            if found.is_ok() {
+                (reached, step) = (share, 2.0 * step);
+                continue;
+            }
+            self.x = start;
+            step *= 0.5;
+            if step < LEAST {
+                return Err(failed);
+            }
+        }
+        Ok(())
+    }
+
+    /// Newton's method from the torques as they stand.
+    fn iterate(&mut self, work: &mut Work) -> Result<(), EvalError> {
+        let base_mean = self.steady.excitation.mean.clone();
+        let given = self.steady.excitation.orders.iter().flat_map(|o| &o.torque).map(|t| t.abs());
+        let scale = given.chain(base_mean.iter().map(|m| m.abs())).fold(f64::MIN_POSITIVE, f64::max);
+        let n = self.x.len();
+        let mut g = vec![Complex::default(); n];
+        let (mut rest, mut step) = (vec![0.0; 2 * n], vec![0.0; 2 * n]);
+        let (mut last, mut halved) = (f64::INFINITY, 0);
+        let mut change = f64::INFINITY;
+        for _ in 0..self.rounds {
+            work.rounds += 1;
+            work.solutions += self.beyond.harmonics as u64;
+            self.evaluate(&base_mean, &mut g)?;
+            let sizes = g.iter().map(|g| g.abs()).fold(0.0, larger);
+            let misses = g.iter().zip(&self.x).map(|(g, x)| (*g - *x).abs()).fold(0.0, larger);
+            change = misses / sizes.max(scale);
+            if change <= self.tolerance {
+                return Ok(());
+            }
+            let bad = !change.is_finite();
+            if (bad || change > GROWTH * last) && halved < HALVINGS && last.is_finite() {
+                // Back half of the step.
+                halved += 1;
+                let part = 0.5_f64.powi(halved as i32);
+                for (x, d) in self.x.iter_mut().zip(step.chunks_exact(2)) {
+                    *x = *x - Complex::new(part * d[0], part * d[1]);
+                }
+                continue;
+            }
+            if change > GROWTH * last {
+                return Err(self.fails(change, work.rounds));
+            }
+            if bad {
+                return Err(EvalError::fatal("harmonic_balance", "the iteration leaves all bounds"));
+            }
+            (last, halved) = (change, 0);
+            for (r, (g, x)) in rest.chunks_exact_mut(2).zip(g.iter().zip(&self.x)) {
+                (r[0], r[1]) = (g.re - x.re, g.im - x.im);
+            }
+            self.linearise(&base_mean, scale);
+            // A vector of the Krylov space costs less than another evaluation; what is beyond the square of the change is lost anyway.
+            let forcing = (0.3 * self.tolerance / change).max((0.01 * change).min(0.01));
+            self.newton_step(&rest, &mut step, forcing, work);
+            for (x, d) in self.x.iter_mut().zip(step.chunks_exact(2)) {
+                *x = *x + Complex::new(d[0], d[1]);
+            }
+        }
+        Err(self.fails(change, work.rounds))
+    }
+
+    fn fails(&self, change: f64, rounds: u64) -> EvalError {
+        let what = format!(
+            "no periodic motion at {:.6} rpm after {rounds} rounds: torques still change by {change:.1e} of the largest; a resonance is near, or the motion has a period of its own",
+            self.steady.speed * 30.0 / PI
+        );
+        EvalError::fatal("harmonic_balance", what)
+    }
+
+    /// The motion under the torques `x`, and the torques that it makes.
+    fn evaluate(&mut self, base_mean: &[f64], g: &mut [Complex]) -> Result<(), EvalError> {
+        self.take_mean(base_mean);
+        self.spread(true);
+        self.solved()?;
+        for (i, node) in self.beyond.active.iter().enumerate() {
+            let at = i * self.beyond.orders();
+            self.angle[at] = Complex::new(self.steady.mean_angle[*node], 0.0);
+        }
         let omega = self.steady.speed * self.base;
-        let mean = &self.steady.mean_angle;
-        let mut waves = vec![Wave::default(); mean.len()];
-        for &node in &self.active {
-            let mut w = Wave { x: vec![mean[node]; m], v: vec![0.0; m], a: vec![0.0; m] };
-            for (k, o) in orders.iter().enumerate() {
-                let [re, im] = o.angle[node];
-                if re == 0.0 && im == 0.0 {
-                    continue;
-                }
-                let rate = (k + 1) as f64 * omega;
-                let mut at = 0;
-                for s in 0..m {
-                    let (sin, cos) = self.table[at];
-                    let (x, y) = (re * cos - im * sin, re * sin + im * cos);
-                    w.x[s] += x;
-                    w.v[s] -= rate * y;
-                    w.a[s] -= rate * rate * x;
-                    at = (at + k + 1) & (m - 1);
-                }
-            }
-            waves[node] = w;
-        }
-        waves
+        self.beyond.take_motion(&self.angle, omega);
+        self.beyond.torques(&self.steady, &self.tangents, g);
+        g.iter_mut().for_each(|g| *g = *g * Complex::new(self.share, 0.0));
+        Ok(())
     }
 
-    /// Orders of what is given over the cycle.
-    fn transform(&self, f: &[f64]) -> Vec<Complex> {
-        let m = self.samples;
-        (0..=self.harmonics)
-            .map(|k| {
-                let factor = if k == 0 { 1.0 } else { 2.0 } / m as f64;
-                let (mut re, mut im, mut at) = (0.0, 0.0, 0);
-                for f in f {
-                    let (sin, cos) = self.table[at];
-                    re += f * cos;
-                    im -= f * sin;
-                    at = (at + k) & (m - 1);
-                }
-                Complex::new(re * factor, im * factor)
-            })
-            .collect()
+    /// The mean state under the mean torques in `x`.
+    fn take_mean(&mut self, base_mean: &[f64]) {
+        let mut mean = base_mean.to_vec();
+        for (i, node) in self.beyond.active.iter().enumerate() {
+            mean[*node] += self.x[i * self.beyond.orders()].re;
+        }
+        self.steady.take_mean(&mean);
     }
 
-    fn rest(&self, waves: &[Wave]) -> Rest {
-        let (m, n) = (self.samples, waves.len());
-        let line = &self.steady.line;
-        let cycle = 2.0 * PI / self.base;
-        let mut force = vec![vec![0.0; m]; n];
-        for (t, at_even) in line.throws.iter().zip(&self.even) {
-            let ratio = line.nodes[t.node].ratio;
-            let w = &waves[t.node];
-            let f = &mut force[t.node];
-            for s in 0..m {
-                let even = ratio * cycle * s as f64 / m as f64;
-                let at = even + w.x[s];
-                if !t.ends.is_empty() {
-                    f[s] += t.gas_torque(at, at) - at_even[s];
-                }
-                if !t.inertia.is_constant() {
-                    let (j, dj) = t.inertia.inertia(at + t.phase);
-                    let speed = self.steady.speed * ratio + w.v[s];
-                    f[s] -= (j - t.inertia.mean()) * w.a[s] + 0.5 * dj * speed * speed;
+    /// Puts torques of `x`, with those that are given where `given` says so, in the place of the right-hand sides.
+    fn spread(&mut self, given: bool) {
+        let (tree, m) = (&self.steady.tree, self.beyond.harmonics);
+        let [re, im] = &mut self.receptance.field;
+        if given {
+            for (k, o) in self.steady.excitation.orders.iter().enumerate() {
+                for p in 0..tree.len() {
+                    let t = o.torque[tree.node[p]];
+                    (re[p * m + k], im[p * m + k]) = (tree.ratio[p] * t.re, tree.ratio[p] * t.im);
                 }
             }
+        } else {
+            re.fill(0.0);
+            im.fill(0.0);
         }
-        for d in line.drives.iter().filter(|d| !d.drive.is_linear()) {
-            let ratio = line.nodes[d.node].ratio;
-            let w = &waves[d.node];
-            let speed = self.steady.speed * ratio;
-            for (s, f) in force[d.node].iter_mut().enumerate() {
-                let even = ratio * cycle * s as f64 / m as f64 + d.phase;
-                let mean = d.drive.torque(even, speed);
-                let here = d.drive.torque(even + w.x[s], speed + w.v[s]);
-                *f += d.factor * (here.torque - mean.torque - mean.slope * w.v[s]);
+        for (own, node) in self.x.chunks_exact(m + 1).zip(&self.beyond.active) {
+            let p = tree.position[*node];
+            let ratio = tree.ratio[p];
+            for (k, x) in own[1..].iter().enumerate() {
+                re[p * m + k] += ratio * x.re;
+                im[p * m + k] += ratio * x.im;
             }
         }
-        let mut out =
-            Rest { nodes: vec![vec![Complex::default(); n]; self.harmonics + 1], links: Vec::new() };
-        for (node, f) in force.iter().enumerate().filter(|(_, f)| f.iter().any(|f| *f != 0.0)) {
-            for (o, c) in out.nodes.iter_mut().zip(self.transform(f)) {
-                o[node] = c;
+    }
+
+    /// Solves what [`Self::spread`] put there: the angles of the active nodes.
+    fn solved(&mut self) -> Result<(), EvalError> {
+        let m = self.beyond.harmonics;
+        if let Err((k, _)) = self.receptance.solve(&mut self.steady) {
+            // The careful elimination says it in its own words.
+            let order = self.steady.excitation.orders[k].clone();
+            self.steady.respond(&order)?;
+            return Err(EvalError::fatal("harmonic_balance", "an undamped resonance is hit"));
+        }
+        let (tree, [re, im]) = (&self.steady.tree, &self.receptance.field);
+        for (own, node) in self.angle.chunks_exact_mut(m + 1).zip(&self.beyond.active) {
+            let p = tree.position[*node];
+            let ratio = tree.ratio[p];
+            for (k, x) in own[1..].iter_mut().enumerate() {
+                *x = Complex::new(ratio * re[p * m + k], ratio * im[p * m + k]);
             }
         }
-        let mut over = vec![0.0; m];
-        for (l, link) in line.links.iter().enumerate().filter(|(_, l)| !l.coupling.is_linear()) {
-            let [a, b] = link.nodes;
-            let gear = line.nodes[a].ratio / line.nodes[b].ratio;
-            let mean_torque = self.steady.mean_torque[l];
-            let tangent = self.tangents[l];
-            let rest = link.coupling.static_twist(mean_torque);
-            for (s, over) in over.iter_mut().enumerate() {
-                let twist = waves[a].x[s] - gear * waves[b].x[s];
-                let rate = waves[a].v[s] - gear * waves[b].v[s];
-                let linear = mean_torque + tangent.stiffness * (twist - rest) + tangent.damping * rate;
-                *over = link.coupling.torque(twist, rate).torque - linear;
-            }
-            let c = self.transform(&over);
-            for (o, c) in out.nodes.iter_mut().zip(&c) {
-                o[a] = o[a] - *c;
-                o[b] = o[b] + *c * Complex::new(gear, 0.0);
-            }
-            out.links.push((l, c));
+        Ok(())
+    }
+
+    /// Derivatives at the motion of the last evaluation.
+    fn linearise(&mut self, base_mean: &[f64], scale: f64) {
+        self.beyond.take_slopes(&self.steady, &self.tangents);
+        let active = &self.beyond.active;
+        let (n, links) = (active.len(), self.tangents.len());
+        self.give.resize(n * n, 0.0);
+        self.load.resize(links * n, 0.0);
+        let [angle, torque] = [self.steady.mean_angle.clone(), self.steady.mean_torque.clone()];
+        let mut mean = base_mean.to_vec();
+        for (i, node) in active.iter().enumerate() {
+            mean[*node] += self.x[i * self.beyond.orders()].re;
         }
-        out
+        // The mean state goes straight with the torque, but for couplings that stiffen.
+        let h = 1e-3 * scale;
+        for j in 0..n {
+            let before = mean[active[j]];
+            mean[active[j]] = before + h;
+            self.steady.take_mean(&mean);
+            mean[active[j]] = before;
+            for (i, node) in active.iter().enumerate() {
+                self.give[i * n + j] = (self.steady.mean_angle[*node] - angle[*node]) / h;
+            }
+            for l in 0..links {
+                self.load[l * n + j] = (self.steady.mean_torque[l] - torque[l]) / h;
+            }
+        }
+        (self.steady.mean_angle, self.steady.mean_torque) = (angle, torque);
+    }
+
+    /// Solves `step - (change of the torques by step) = rest` to a part `forcing` of it.
+    fn newton_step(&mut self, rest: &[f64], step: &mut [f64], forcing: f64, work: &mut Work) {
+        let mut gmres = std::mem::take(&mut self.gmres);
+        let kept = self.x.clone();
+        let mut made = vec![Complex::default(); kept.len()];
+        gmres.solve(rest, step, forcing, VECTORS, |v, out| {
+            self.x.iter_mut().zip(v.chunks_exact(2)).for_each(|(x, v)| *x = Complex::new(v[0], v[1]));
+            self.moved(&mut made);
+            for (o, (x, g)) in out.chunks_exact_mut(2).zip(self.x.iter().zip(&made)) {
+                (o[0], o[1]) = (x.re - g.re, x.im - g.im);
+            }
+        });
+        work.solutions += (gmres.spent * self.beyond.harmonics) as u64;
+        self.x = kept;
+        self.gmres = gmres;
+    }
+
+    /// What torques `x` beside those of the last evaluation change in the torques.
+    fn moved(&mut self, made: &mut [Complex]) {
+        let orders = self.beyond.orders();
+        let n = self.beyond.active.len();
+        self.spread(false);
+        // The evaluation before has met no resonance in the same systems.
+        if self.solved().is_err() {
+            made.fill(Complex::default());
+            return;
+        }
+        let by = |matrix: &[f64], i: usize, x: &[Complex]| -> f64 {
+            (0..n).map(|j| matrix[i * n + j] * x[j * orders].re).sum()
+        };
+        for i in 0..n {
+            self.angle[i * orders] = Complex::new(by(&self.give, i, &self.x), 0.0);
+        }
+        let load: Vec<f64> = (0..self.tangents.len()).map(|l| by(&self.load, l, &self.x)).collect();
+        let omega = self.steady.speed * self.base;
+        self.beyond.change(&self.angle, omega, &load, made);
+        made.iter_mut().for_each(|g| *g = *g * Complex::new(self.share, 0.0));
+    }
+
+    /// The whole answer of each order.
+    fn responses(&mut self) -> Result<Vec<OrderResponse>, EvalError> {
+        let orders = self.beyond.orders();
+        let mut out = Vec::with_capacity(orders);
+        for k in 1..orders {
+            let mut o = self.steady.excitation.orders[k - 1].clone();
+            for (i, node) in self.beyond.active.iter().enumerate() {
+                o.torque[*node] = o.torque[*node] + self.x[i * orders + k];
+            }
+            out.push(self.steady.respond(&o)?);
+        }
+        Ok(out)
     }
 
     /// Puts what nonlinear links carry beside their tangents into their torques, and their loss.
-    fn complete(&mut self, orders: &mut [OrderResponse], rest: &Rest) {
+    fn complete(&mut self, orders: &mut [OrderResponse], rest: &[(usize, Vec<Complex>)]) {
         let line = &self.steady.line;
-        for (l, c) in &rest.links {
+        for (l, c) in rest {
             let [a, b] = line.links[*l].nodes;
             let gear = line.nodes[a].ratio / line.nodes[b].ratio;
             self.steady.mean_torque[*l] += c[0].re;
@@ -340,167 +533,7 @@ impl Solver {
     }
 }
 
-impl Torsion for Solver {
-    fn run(&mut self, out: &mut TorsionOut) -> Result<(), EvalError> {
-        let warm = self.x.iter().any(|x| *x != 0.0);
-        let mut rounds = 0;
-        let first = self.iterate(&mut rounds);
-        let found = match first {
-            // The motion of another speed may be a bad start.
-            Err(_) if warm => {
-                self.forget();
-                self.iterate(&mut rounds)
-            }
-            other => other,
-        };
-        if found.is_err() {
-            self.forget();
-        }
-        let (mut orders, rest) = found?;
-        self.complete(&mut orders, &rest);
-        out.orders = orders;
-        out.counters.insert("time_steps".into(), 0);
-        out.counters.insert("rounds".into(), rounds);
-        out.counters.insert("linear_solutions".into(), rounds * self.harmonics as u64);
-        self.steady.describe(out);
-        Ok(())
-    }
-    fn set_speed(&mut self, speed: f64) -> Result<(), EvalError> {
-        self.steady.set_speed(speed);
-        self.take_tangents();
-        Ok(())
-    }
-}
-
-impl Solver {
-    /// The next run starts from nothing.
-    fn forget(&mut self) {
-        self.x.fill(0.0);
-        self.pairs.clear();
-    }
-
-    /// The unknowns as torques by order and node.
-    fn spread(&self) -> Vec<Vec<Complex>> {
-        let n = self.steady.tree.len();
-        self.x
-            .chunks(2 * self.active.len())
-            .map(|c| {
-                let mut o = vec![Complex::default(); n];
-                for (i, z) in self.active.iter().zip(c.chunks(2)) {
-                    o[*i] = Complex::new(z[0], z[1]);
-                }
-                o
-            })
-            .collect()
-    }
-
-    /// Rounds from the unknowns as they stand to the periodic motion and what the linear line leaves out of it.
-    fn iterate(&mut self, rounds: &mut u64) -> Result<(Vec<OrderResponse>, Rest), EvalError> {
-        let mut last: Option<[Vec<f64>; 2]> = None;
-        let base_mean = self.steady.excitation.mean.clone();
-        let given = self.steady.excitation.orders.iter().flat_map(|o| &o.torque).map(|t| t.abs());
-        let scale = given.chain(base_mean.iter().map(|m| m.abs())).fold(f64::MIN_POSITIVE, f64::max);
-        let mut change = f64::INFINITY;
-        for round in 0..self.rounds {
-            *rounds += 1;
-            if round == STALE {
-                // What another speed left does not help here.
-                self.pairs.truncate(round - 1);
-            }
-            let extra = self.spread();
-            // Mean state under the mean of the rest.
-            let mean: Vec<f64> = base_mean.iter().zip(&extra[0]).map(|(m, e)| m + e.re).collect();
-            self.steady.take_mean(&mean);
-            let orders = self.solve(&extra)?;
-            let rest = self.rest(&self.waves(&orders));
-            let g: Vec<f64> = rest
-                .nodes
-                .iter()
-                .flat_map(|o| self.active.iter().flat_map(|&i| [o[i].re, o[i].im]))
-                .collect();
-            if g.iter().any(|v| !v.is_finite()) {
-                return Err(EvalError::fatal("harmonic_balance", "the iteration leaves all bounds"));
-            }
-            let f: Vec<f64> = g.iter().zip(&self.x).map(|(g, x)| g - x).collect();
-            let largest = g.iter().map(|v| v.abs()).fold(scale, f64::max);
-            change = f.iter().map(|v| v.abs()).fold(0.0, f64::max) / largest;
-            if change <= self.tolerance {
-                return Ok((orders, rest));
-            }
-            if let Some([x, old]) = last.take() {
-                let moved = self.x.iter().zip(&x).map(|(a, b)| a - b).collect();
-                let changed = f.iter().zip(&old).map(|(a, b)| a - b).collect();
-                self.pairs.push_front([moved, changed]);
-                self.pairs.truncate(DEPTH);
-            }
-            let next = accelerated(&self.x, &f, &self.pairs);
-            last = Some([std::mem::replace(&mut self.x, next), f]);
-        }
-        Err(EvalError::fatal(
-            "harmonic_balance",
-            format!(
-                "no periodic motion at {:.6} rpm after {} rounds: torques still change by {change:.1e} of the largest; a resonance is near, or the motion has a period of its own",
-                self.steady.speed * 30.0 / PI,
-                self.rounds
-            ),
-        ))
-    }
-}
-
-/// Next iterate by Anderson's method: the combination of what was tried whose remainder is least, plus that remainder. `pairs` are
-/// differences of iterates and of their remainders, newest first.
-fn accelerated(x: &[f64], f: &[f64], pairs: &VecDeque<[Vec<f64>; 2]>) -> Vec<f64> {
-    let plain = || x.iter().zip(f).map(|(x, f)| x + f).collect::<Vec<f64>>();
-    // Orthonormal differences of the remainders (modified Gram-Schmidt, twice), newest first.
-    let mut q: Vec<Vec<f64>> = Vec::new();
-    let mut used: Vec<&[Vec<f64>; 2]> = Vec::new();
-    for pair in pairs {
-        let mut d = pair[1].clone();
-        let before = norm(&d);
-        for _ in 0..2 {
-            for e in &q {
-                let s = dot(e, &d);
-                d.iter_mut().zip(e).for_each(|(d, e)| *d -= s * e);
-            }
-        }
-        let after = norm(&d);
-        if after <= 1e-10 * before || before == 0.0 {
-            continue;
-        }
-        d.iter_mut().for_each(|d| *d /= after);
-        q.push(d);
-        used.push(pair);
-    }
-    let k = q.len();
-    if k == 0 {
-        return plain();
-    }
-    // Q has the differences as R = Qᵀ ΔF, upper triangular in the order of use.
-    let mut r = vec![0.0; k * k];
-    let mut rhs: Vec<f64> = q.iter().map(|e| dot(e, f)).collect();
-    for (c, pair) in used.iter().enumerate() {
-        for (row, e) in q.iter().enumerate().take(c + 1) {
-            r[row * k + c] = dot(e, &pair[1]);
-        }
-    }
-    let mut pivots = vec![0; k];
-    if lu_factor(&mut r, k, &mut pivots).is_err() {
-        return plain();
-    }
-    lu_solve(&r, k, &pivots, &mut rhs);
-    let mut next = plain();
-    for (gamma, [moved, changed]) in rhs.iter().zip(used) {
-        for ((next, x), f) in next.iter_mut().zip(moved).zip(changed) {
-            *next -= gamma * (x + f);
-        }
-    }
-    next
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-fn norm(a: &[f64]) -> f64 {
-    dot(a, a).sqrt()
+/// The larger of two numbers; what is no number stays.
+fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a > b { a } else { b }
 }

@@ -167,7 +167,7 @@ impl Results<'_> {
         self.out.tables.insert("critical_speeds".into(), table);
         // The diagram: orders as rays, modes as levels.
         let at: Vec<f64> = (0..=GRID).map(|i| from + (to - from) * i as f64 / GRID as f64).collect();
-        let mut levels = vec![Vec::with_capacity(at.len()); here.len()];
+        let mut levels: Vec<Vec<f64>> = vec![Vec::with_capacity(at.len()); here.len()];
         for w in &at {
             let omega = if steady.depends_on_speed() {
                 steady.set_speed(*w);
@@ -180,6 +180,8 @@ impl Results<'_> {
             }
         }
         steady.set_speed(speed);
+        // Modes that are there at every speed.
+        levels.retain(|l| l.len() == at.len());
         if levels.is_empty() {
             return Ok(());
         }

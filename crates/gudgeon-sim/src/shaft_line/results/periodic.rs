@@ -7,6 +7,7 @@ use gudgeon_core::result::{Bar, Figure, FigureKind, Note, Series};
 
 use super::{DRAWN, MOST, Results, TURN, column};
 use crate::shaft_line::machine::{Machine, irregularity_of, twist_amplitude};
+use crate::shaft_line::names::ORDERS;
 
 /// Vibratory twist \[rad\] and speed fluctuation beyond which small vibration about an even rotation is no longer what is computed.
 pub const LINEAR: f64 = 1.0;
@@ -199,7 +200,7 @@ impl Results<'_> {
             let rows = out.orders.iter().map(|o| o.angle[i][0].hypot(o.angle[i][1])).collect();
             table.columns.push(column(format!("inertia{}.angle", i + 1), "rad", rows));
         }
-        for o in out.orders.iter().take(12) {
+        for o in out.orders.iter().take(ORDERS) {
             for l in 0..links {
                 let size = o.torque[l][0].hypot(o.torque[l][1]);
                 let name = format!("shaft{}.order{}", l + 1, o.order);

@@ -24,6 +24,7 @@ impl Results<'_> {
         let a = machine.a;
         let links = a.line.links.len();
         machine.by_order = true;
+        machine.prepare(speeds);
         let mut rows: Vec<Point> = Vec::with_capacity(speeds.len());
         for w in speeds {
             match machine.at(*w) {

@@ -141,11 +141,11 @@ impl Results<'_> {
             };
             self.out.tables.insert("load_steps".into(), table);
             let each = (DRAWN / names.len()).max(3);
-            let bars = names.iter().enumerate().flat_map(|(k, name)| {
+            let bars = (0..names.len()).flat_map(|k| {
                 let mut own: Vec<(f64, &Row)> =
                     rows.iter().filter_map(|r| r.steps[k].as_ref().map(|j| (j.used, r))).collect();
                 own.sort_by(|a, b| b.0.total_cmp(&a.0));
-                own.into_iter().take(each).map(move |(used, r)| bar(format!("{name}: {}", r.label), used))
+                own.into_iter().take(each).map(move |(used, r)| bar(format!("{}: {}", k + 1, r.label), used))
             });
             figures.push(Figure {
                 title: "Load steps".into(),
