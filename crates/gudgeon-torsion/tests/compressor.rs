@@ -524,6 +524,29 @@ fn a_free_throw_keeps_its_energy() {
 }
 
 #[test]
+fn harmonic_balance_after_other_speeds_is_that_of_its_own() {
+    let l = line(Gas::M3, &Exact {}, None, [0.0, PI, PI / 2.0, 1.5 * PI]);
+    let spec = HarmonicBalance { tolerance: quantity(1e-11), rounds: 100 };
+    let mut swept = spec.build(&context(&l, 60.0, 24.0, &[], &[])).expect("builds");
+    let mut out = TorsionOut::default();
+    // From coarse to fine and back over places that are known: guesses between and beyond speeds.
+    for speed in [60.0, 62.0, 61.0, 60.5, 61.5, 64.0, 61.5, 62.8] {
+        swept.set_speed(speed).expect("a periodic motion has any speed");
+        swept.run(&mut out).expect("converges");
+        // A good guess leaves few evaluations; none may need as many as a start from nothing took by plain rounds.
+        assert!(out.counters["rounds"] <= 8, "{speed}: {}", out.counters["rounds"]);
+    }
+    let alone = run(&spec, &context(&l, 62.8, 24.0, &[], &[]));
+    let largest = alone.orders.iter().map(|o| o.torque[3][0].hypot(o.torque[3][1])).fold(0.0, f64::max);
+    for (a, b) in alone.orders.iter().zip(&out.orders) {
+        for (a, b) in a.torque.iter().zip(&b.torque) {
+            // Both are within the tolerance, which the line magnifies by less than a hundred here.
+            assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 1e-9 * largest, "{a:?} {b:?}");
+        }
+    }
+}
+
+#[test]
 fn harmonic_balance_is_the_periodic_motion_with_variable_inertia() {
     // 600 rpm, ideal valves, exact inertia: the motion from the orders, started in itself and integrated with all that is
     // nonlinear, comes back after a turn.
