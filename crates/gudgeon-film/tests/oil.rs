@@ -120,8 +120,8 @@ fn vogel_is_finite_and_falls_with_temperature() {
         assert!(mu.is_finite() && mu >= 0.15014e-3 && mu <= before, "{t} K: {mu}");
         before = mu;
     }
-    // An `a` that overflows, and a `b` that no oil has.
-    for (a, b) in [(1e300, 1e5), (1e-4, 1e300)] {
+    // An `a` and a `b` that no oil has.
+    for (a, b) in [(1e9, 1e5), (1e-4, 1e6)] {
         let bad = Vogel { a: quantity(a), b: quantity(b), c: quantity(100.0) }.build();
         assert!(bad.is_err_and(|e| e.message.contains("no viscosity")), "{a} {b}");
     }

@@ -317,20 +317,19 @@ fn extremes_end_in_words_or_in_numbers() {
         }
     }
     // What no search could find is refused by `check`. What is left to fail in a search, and how often:
-    let mut counts = [0; 3];
+    let mut counts = [0; 2];
     for (case, path, v, said) in &failed {
         let (kind, words) = match (*case, *path) {
-            // A pin that weighs next to nothing, or a relief of light years: one part of the mass drowns in the other, and so do the
-            // multipliers of its limits in the rounding of the whole.
+            // A pin that weighs next to nothing beside its relief: its part of the mass drowns in the other, and so do the multipliers of
+            // its limits in the rounding of the whole.
             (EXACT, "pin.density") => (0, "could not be proved"),
-            (EXACT, "pin.relief.height") => (1, "could not be proved"),
             // The published search steps over every pin with steps larger than its bore.
-            (PUBLISHED, "optimise.steps.coarse") => (2, "the bore vanished"),
+            (PUBLISHED, "optimise.steps.coarse") => (1, "the bore vanished"),
             _ => panic!("{case} {path}={v}: {said}"),
         };
         assert!(said.contains(words), "{case} {path}={v}: {said}");
         counts[kind] += 1;
     }
-    assert_eq!(counts, [4, 2, 5]);
+    assert_eq!(counts, [4, 3]);
     assert!(ran > 60 && refused > 150, "{ran} ran, {refused} refused");
 }
