@@ -423,7 +423,7 @@ fn a_point_that_fails_is_a_row_of_its_sweep() {
     let case = fs::canonicalize(base()).expect("the base is in the repository");
     let o = command(&["run", case.to_str().expect("text"), "--out", "out", "-q"])
         // One cycle does not come to the periodic motion.
-        .args(["--set", "sweeps=[{path=\"solver.max_cycles\", values=[1, 40]}]"])
+        .args(["--set", "sweeps=[{path=\"solver.max_cycles\", values=[\"1\", \"40\"]}]"])
         .current_dir(&folder)
         .output()
         .expect("the program starts");
