@@ -523,6 +523,52 @@ fn causes_of_pressure_add_up() {
 }
 
 #[test]
+fn a_film_answers_to_its_squeeze_velocity() {
+    let grid = skirt(32, 24);
+    let n = grid.len();
+    let h = field(&grid, |x, y| skirt_film(x, y, [18e-6, 10e-6]));
+    let shape = skirt_squeeze(&grid, [1.0, -0.3]);
+    // Closing above, opening below: cavities of either sort, and oil that slides through them.
+    let at = |film: &mut dyn Film2d, d: f64| {
+        let dhdt = skirt_squeeze(&grid, [0.02 + d, -0.03 - 0.3 * d]);
+        film.solve(&Film2dIn { dhdt: &dhdt, ..Film2dIn::new(&h, -6.0, 0.01) }).unwrap();
+        (film.pressure().to_vec(), film.fill().to_vec())
+    };
+    for cavitation in CONDITIONS {
+        let specs: [&dyn Film2dSpec; 2] =
+            [&multigrid(cavitation), &Direct { cavitation, tolerance: 1e-12, ..Direct::default() }];
+        for spec in specs {
+            let mut film = build(spec, &grid);
+            let d = 1e-7;
+            let (more, less) = (at(&mut *film, d), at(&mut *film, -d));
+            let slope =
+                |a: &[f64], b: &[f64]| -> Vec<f64> { (0..n).map(|k| (a[k] - b[k]) / (2.0 * d)).collect() };
+            at(&mut *film, 0.0);
+            let (mut p, mut fill) = (shape.clone(), vec![0.0; n]);
+            assert!(film.answer(&mut p, &mut fill).unwrap(), "{spec:?}");
+            // Films of 1e-12 over twice a relative step of 5e-6.
+            let far = apart(&p, &slope(&more.0, &less.0));
+            assert!(far < 1e-6, "{spec:?}: {far}");
+            // Sides that stand at the pressure of the cavity keep account of their own filling.
+            let inner = |f: &[f64]| -> Vec<f64> {
+                let within = |k: &usize| (1..32).contains(&(k % 33)) && (1..24).contains(&(k / 33));
+                (0..n).filter(within).map(|k| f[k]).collect()
+            };
+            if cavitation == Cavitation::MassConserving {
+                let far = apart(&inner(&fill), &inner(&slope(&more.1, &less.1)));
+                assert!(far < 1e-5, "{spec:?}: {far}");
+                assert!(inner(&fill).iter().any(|f| *f != 0.0));
+            } else {
+                assert!(fill.iter().all(|f| *f == 0.0));
+            }
+            assert!(film.answer(&mut p, &mut fill[1..]).is_err());
+            film.reset();
+            assert!(!film.answer(&mut p, &mut fill).unwrap(), "{spec:?}");
+        }
+    }
+}
+
+#[test]
 fn the_film_beside_is_one_newton_step_away() {
     let grid = skirt(32, 24);
     let n = grid.len();

@@ -48,7 +48,7 @@ pub struct Table {
     /// Curve between the rows.
     #[serde(default)]
     pub interpolation: Interpolation,
-    /// Length of the cycle: 720 deg for four strokes, 360 deg for two.
+    /// Length of the cycle: 720 deg for four strokes, 360 deg for two. Whole turns, without which the piston does not come back to where it began.
     #[serde(default = "four_strokes")]
     pub cycle: PosAngle,
     /// Added to the angles of the rows: 360 deg for a trace whose angle 0 is the firing top dead centre.
@@ -139,10 +139,14 @@ impl Default for Table {
 #[typetag::serde(name = "table")]
 impl CylinderPressureSpec for Table {
     fn build(&self, ctx: &CylinderPressureCtx<'_>) -> Result<Box<dyn CylinderPressure>, BuildError> {
-        let period = self.cycle.si();
+        let turns = (self.cycle.si() / (2.0 * PI)).round();
         // `720 deg` may be one ulp from 4π; everything else in the program uses the exact double.
-        let period =
-            [2.0 * PI, 4.0 * PI].into_iter().find(|p| (p - period).abs() < 1e-12 * p).unwrap_or(period);
+        let period = 2.0 * PI * turns;
+        if turns < 1.0 || (period - self.cycle.si()).abs() > WHOLE * period {
+            let what =
+                format!("a cycle is a number of whole turns, not {} deg", self.cycle.si().to_degrees());
+            return Err(BuildError::at("cycle", what).help("720 deg for four strokes, 360 deg for two"));
+        }
         let factor = dim::Pressure::UNITS.iter().find(|u| u.name == self.unit).map(|u| u.factor);
         let Some(factor) = factor else {
             let known: Vec<_> = dim::Pressure::UNITS.iter().map(|u| format!("`{}`", u.name)).collect();
@@ -169,6 +173,10 @@ impl CylinderPressureSpec for Table {
     }
 }
 
+/// Highest pressure of a gas that is read \[Pa\]: ten times that of a gun.
+const MOST: f64 = 1e10;
+/// Part of a cycle by which it may miss whole turns: 12.566 rad, four digits, count as two.
+const WHOLE: f64 = 5e-5;
 /// Widest pulse at half of its height \[rad\] that could lie between the ends of two steps: 10 degrees.
 const NARROW: f64 = 10.0 / 180.0 * PI;
 /// Least height of a pulse, over the range of the rows, for which steps stop.
@@ -433,6 +441,10 @@ impl Rows {
             let si = pascal(p);
             if !(si.is_finite() && si > 0.0) {
                 let what = format!("is {si} Pa absolute, it must be greater than zero");
+                return Err(self.fault(i, Column::Pressure, &what));
+            }
+            if si > MOST {
+                let what = format!("is {si:e} Pa absolute, more than the {MOST:e} Pa of any machine");
                 return Err(self.fault(i, Column::Pressure, &what));
             }
         }

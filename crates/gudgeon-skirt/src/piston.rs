@@ -7,6 +7,10 @@ use gudgeon_numerics::linalg::{lu_factor, lu_solve};
 use crate::body::{Body, Crank, Instant};
 use crate::side::{Side, SideLoads, Slopes};
 
+mod balance;
+
+use balance::Follow;
+
 const MODEL: &str = "piston";
 
 /// Forces on the piston at an instant, as a person looks at them. Thrust side first.
@@ -80,6 +84,7 @@ pub struct Piston {
     own_moves: [Vec<f64>; 2],
     beside: [Vec<SideLoads>; 2],
     work: Linear,
+    follow: Follow,
     /// Forces on both edges that the balance leaves for a given acceleration \[N\].
     inertia: [f64; 2],
     /// Time \[s\] in which an elastic shape without load comes back to rest.
@@ -173,23 +178,6 @@ impl Linear {
     }
 }
 
-/// Newton steps of a balance before it is given up.
-const MOST_STEPS: usize = 400;
-/// Steps after which the size of the forces decides.
-const PATIENCE: usize = 30;
-/// Places along a step that are looked at.
-const LINE_STEPS: usize = 20;
-/// Part of the forces that a balance leaves: what the films leave of theirs.
-const CLOSED: f64 = 1e-11;
-/// The same of a step of the backward Euler method, and its iterations.
-const EULER_CLOSED: f64 = 1e-8;
-const EULER_STEPS: usize = 25;
-const CLOSED_CAVITIES: f64 = 1e-7;
-/// Part of the forces that is left of a balance which cavities let come slowly.
-const SLOW: f64 = 1e-6;
-/// Multiple of it at which a balance that no step improves is one.
-const ROUNDED: f64 = 1e3;
-
 impl Piston {
     /// Puts the parts together.
     #[must_use]
@@ -225,6 +213,7 @@ impl Piston {
             own_rates,
             beside,
             work: Linear::new(n),
+            follow: Follow::new(n),
             inertia: [0.0; 2],
             relaxation: RELAXATION,
             newton_steps: 0,
@@ -397,117 +386,6 @@ impl Piston {
                 self.slope[k * n + 1] += edges[k] * part;
             }
         }
-    }
-
-    /// Finds the rates at which all forces from coordinate `first` on are in balance, the rates before it being given. `w` holds a guess.
-    ///
-    /// The films resist motion the more the faster it is, so there is one balance. Newton's method on forces that are linear in the rates but
-    /// for what cavitates ends in a few steps; where cavities leave nothing that resists, the steps are those of full films.
-    ///
-    /// # Errors
-    /// No balance.
-    pub fn balance(
-        &mut self,
-        now: &Instant,
-        x: &[f64],
-        w: &mut [f64],
-        first: usize,
-    ) -> Result<(), EvalError> {
-        let n = self.n;
-        if first == n {
-            return Ok(());
-        }
-        let m = n - first;
-        let size = |r: &[f64]| r[first..].iter().map(|r| r * r).sum::<f64>().sqrt();
-        let superposed = self.sides.iter().all(Side::is_superposed);
-        let closed = if superposed { CLOSED } else { CLOSED_CAVITIES };
-        self.residual(now, x, w, Slopes::None)?;
-        for count in 0..MOST_STEPS {
-            let before = size(&self.r);
-            let scale = self.force_scale(now);
-            if !before.is_finite() {
-                return Err(EvalError::recoverable(MODEL, "the forces are not finite"));
-            }
-            if before <= closed * scale {
-                return Ok(());
-            }
-            self.best[first..].copy_from_slice(&w[first..]);
-            self.tangent(now, w, Slopes::Film)?;
-            if !self.newton(first) || self.along_step(first) <= 0.0 {
-                // Where cavities leave nothing that resists, full films tell the way.
-                self.tangent(now, w, Slopes::Full)?;
-                if !self.newton(first) {
-                    return Err(EvalError::recoverable(MODEL, "nothing resists the motion of the piston"));
-                }
-            }
-            // The forces left over are nearly the slope of a convex potential of the rates: its lowest place along the step lies where they no
-            // longer point along it.
-            let ahead = self.along_step(first);
-            let (mut low, mut high) = ((0.0, ahead), (f64::INFINITY, 0.0));
-            let mut part = 1.0;
-            for _ in 0..LINE_STEPS {
-                for i in 0..m {
-                    w[first + i] = self.best[first + i] + part * self.step[i];
-                }
-                self.residual(now, x, w, Slopes::None)?;
-                let here = self.along_step(first);
-                if count >= PATIENCE {
-                    // A film that is cut off is not quite the slope of anything, and may send the search in circles: the forces themselves must
-                    // fall then, which Newton's step lets them do if it is short enough.
-                    if size(&self.r) < before {
-                        break;
-                    }
-                    part *= 0.5;
-                    continue;
-                }
-                if here.abs() <= 0.5 * ahead || size(&self.r) <= 0.5 * before {
-                    break;
-                }
-                if here > 0.0 {
-                    low = (part, here);
-                } else {
-                    high = (part, here);
-                }
-                part = if high.0.is_finite() {
-                    let straight = low.0 + (high.0 - low.0) * low.1 / (low.1 - high.1);
-                    // A kink may hold one end where it is.
-                    straight.clamp(low.0 + 0.1 * (high.0 - low.0), high.0 - 0.1 * (high.0 - low.0))
-                } else {
-                    3.0 * part
-                };
-            }
-            if size(&self.r) >= before && before <= ROUNDED * closed * scale {
-                // Rounding: no step leads further.
-                w[first..].copy_from_slice(&self.best[first..]);
-                return self.residual(now, x, w, Slopes::None);
-            }
-        }
-        if size(&self.r) <= SLOW * self.force_scale(now) {
-            return Ok(());
-        }
-        Err(EvalError::recoverable(MODEL, "no velocity was found at which the forces are in balance"))
-    }
-
-    /// Forces left over, along the step.
-    fn along_step(&self, first: usize) -> f64 {
-        self.r[first..].iter().zip(&self.step).map(|(r, s)| r * s).sum()
-    }
-
-    /// Newton's step for the forces left over from coordinate `first` on, into `step`. Whether there is one.
-    fn newton(&mut self, first: usize) -> bool {
-        let (n, m) = (self.n, self.n - first);
-        self.newton_steps += 1;
-        for i in 0..m {
-            self.step[i] = -self.r[first + i];
-            for j in 0..m {
-                self.lu[i * m + j] = self.slope[(first + i) * n + first + j];
-            }
-        }
-        if lu_factor(&mut self.lu[..m * m], m, &mut self.piv[..m]).is_err() {
-            return false;
-        }
-        lu_solve(&self.lu[..m * m], m, &self.piv[..m], &mut self.step[..m]);
-        self.step[..m].iter().all(|s| s.is_finite())
     }
 
     /// What counts as one when forces are compared.
@@ -742,79 +620,6 @@ impl Piston {
     fn increment(&self, w: &[f64], column: usize) -> f64 {
         let d = DIFFERENCE * self.smallest_gap().abs().max(1e-8);
         if w[column] < 0.0 { -d } else { d }
-    }
-
-    /// One step of the backward Euler method from the coordinates `from`, over `dt` \[s\] to the instant `now`; with inertia, from the
-    /// velocities `v` of both edges. `w` holds a guess of the rates and takes them; the coordinates are then `from + dt w`, into `x`.
-    ///
-    /// # Errors
-    /// A film that cannot be solved, no convergence.
-    pub fn euler_step(
-        &mut self,
-        now: &Instant,
-        from: &[f64],
-        v: Option<[f64; 2]>,
-        dt: f64,
-        w: &mut [f64],
-        x: &mut [f64],
-    ) -> Result<(), EvalError> {
-        let n = self.n;
-        let mass = self.body.matrix();
-        let mut work = std::mem::take(&mut self.work);
-        let mut outcome =
-            Err(EvalError::recoverable(MODEL, "a step of the backward Euler method does not converge"));
-        let mut before = f64::INFINITY;
-        for _ in 0..EULER_STEPS {
-            for k in 0..n {
-                x[k] = from[k] + dt * w[k];
-            }
-            if let Err(e) = self.place(now, x).and_then(|()| self.residual(now, x, w, Slopes::Film)) {
-                outcome = Err(e);
-                break;
-            }
-            work.base.copy_from_slice(&self.r);
-            if let Some(v) = v {
-                for k in 0..2 {
-                    self.r[k] -= (mass[k][0] * (w[0] - v[0]) + mass[k][1] * (w[1] - v[1])) / dt;
-                }
-            }
-            let left = self.r.iter().fold(0.0_f64, |a, r| a.max(r.abs()));
-            if !left.is_finite() {
-                break;
-            }
-            if left <= EULER_CLOSED * self.force_scale(now) {
-                outcome = Ok(());
-                break;
-            }
-            // The Jacobian serves as long as the forces fall tenfold.
-            if left > 0.1 * before || before.is_infinite() {
-                let told = self.look_beside(now, x, w);
-                for column in 0..if told.is_ok() { n } else { 0 } {
-                    self.change_beside(now, x, w, column, &work.base, &mut work.dr);
-                    for k in 0..n {
-                        let inertia =
-                            if v.is_some() && k < 2 && column < 2 { mass[k][column] / dt } else { 0.0 };
-                        work.slope[k * n + column] = self.slope[k * n + column] + dt * work.dr[k] - inertia;
-                    }
-                }
-                work.lu.copy_from_slice(&work.slope);
-                if told.is_err() || lu_factor(&mut work.lu, n, &mut work.piv).is_err() {
-                    outcome = told.and(outcome);
-                    break;
-                }
-            }
-            before = left;
-            for k in 0..n {
-                work.d[k] = -self.r[k];
-            }
-            lu_solve(&work.lu, n, &work.piv, &mut work.d);
-            for k in 0..n {
-                w[k] += work.d[k];
-            }
-            self.newton_steps += 1;
-        }
-        self.work = work;
-        outcome
     }
 
     /// Forces at the present place for rates that [`Piston::rates`] found.

@@ -143,6 +143,8 @@ pub struct Side {
     sense: f64,
     /// Pressure per viscosity and cause: sliding, then every rate.
     fields: Vec<f64>,
+    /// Changes of the filling per rate.
+    fills: Vec<f64>,
     rates: Vec<f64>,
     modes_of_rates: Vec<f64>,
     /// Uncut pressure per viscosity, flows left over beside the present place, coordinates there, one row of sums.
@@ -324,6 +326,7 @@ impl Side {
             placed: Vec::with_capacity(4 + elastic),
             sense: 1.0,
             fields: vec![0.0; (3 + elastic) * n],
+            fills: Vec::new(),
             rates: vec![0.0; n],
             modes_of_rates: vec![0.0; (2 + elastic) * n],
             raw: vec![0.0; n],
@@ -647,8 +650,54 @@ impl Side {
             }
             return Ok(());
         }
+        let kept = (std::mem::take(&mut self.p), std::mem::take(&mut self.fill));
+        let outcome = self.slopes_of_whole(speed, mu, rates, out);
+        (self.p, self.fill) = kept;
+        outcome
+    }
+
+    /// Derivatives of a film that is found with its cavities: what its model tells, or difference quotients.
+    fn slopes_of_whole(
+        &mut self,
+        speed: f64,
+        mu: f64,
+        rates: &[f64],
+        out: &mut SideLoads,
+    ) -> Result<(), EvalError> {
+        let (n, width) = (self.nodes(), 4 + self.elastic);
+        let mut changes = std::mem::take(&mut self.fields);
+        changes[..rates.len() * n].copy_from_slice(&self.modes_of_rates);
+        self.fills.resize(rates.len() * n, 0.0);
+        let told = self.film.answer(&mut changes[..rates.len() * n], &mut self.fills);
+        let mut there = SideLoads::default();
+        let mut outcome = told;
+        if let Ok(true) = outcome {
+            for m in 0..rates.len() {
+                (self.p, self.fill) =
+                    (changes[m * n..(m + 1) * n].to_vec(), self.fills[m * n..(m + 1) * n].to_vec());
+                self.sums(false, speed, mu, &mut there);
+                let row = &mut out.slope[m * width..(m + 1) * width];
+                row[..4].copy_from_slice(&there.film);
+                row[4..].copy_from_slice(&there.elastic);
+            }
+        } else if outcome.is_ok() {
+            (self.p, self.fill) = (vec![0.0; n], vec![0.0; n]);
+            outcome = self.difference_quotients(speed, mu, rates, out).map(|()| false);
+        }
+        self.fields = changes;
+        outcome.map(|_| ())
+    }
+
+    /// Derivatives by films at rates beside the present ones.
+    fn difference_quotients(
+        &mut self,
+        speed: f64,
+        mu: f64,
+        rates: &[f64],
+        out: &mut SideLoads,
+    ) -> Result<(), EvalError> {
+        let width = 4 + self.elastic;
         let mut moved = rates.to_vec();
-        let kept = (self.p.clone(), self.fill.clone());
         let mut there = SideLoads::default();
         for m in 0..rates.len() {
             // Rates matter against the clearance per millisecond; the film is found to some 1e-9.
@@ -665,7 +714,6 @@ impl Side {
                 row[4 + k] = (there.elastic[k] - out.elastic[k]) / d;
             }
         }
-        (self.p, self.fill) = kept;
         Ok(())
     }
 
@@ -777,6 +825,8 @@ impl Side {
             let n = self.nodes();
             let inp = film_input(&self.trial, n);
             let mode = FilmMode { u: -speed, dhdt: &self.rates, edge_pressure: [0.0; 4] };
+            // Close to that of the present place.
+            self.p.iter_mut().zip(&kept).for_each(|(p, kept)| *p = kept / mu);
             let r = self.film.solve_many(&inp, &[mode], &mut self.p).map(|_| ());
             self.evaluations += 1;
             let cut =

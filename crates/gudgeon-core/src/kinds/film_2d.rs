@@ -336,7 +336,7 @@ pub trait Film2d: Send {
 
     /// Pressures of a full film for several causes with one setup: without cavitation the pressure is linear in `u`, `dhdt` and
     /// the pressures of the edges. Film thickness, viscosity and factors are those of `inp`, whose `u`, `dhdt`, pressures and history are not
-    /// read. `p` takes the pressures \[Pa\] mode after mode. Returns the cycles of all modes together.
+    /// read. `p` takes the pressures \[Pa\] mode after mode; what it holds before may be where iterations start. Returns the cycles of all modes together.
     ///
     /// # Errors
     /// As [`Film2d::solve`], and a `p` of the wrong length (Fatal).
@@ -370,6 +370,16 @@ pub trait Film2d: Send {
     /// Nothing is set up, or no solution (Recoverable); a length that is no multiple of the nodes (Fatal).
     fn respond(&mut self, _r: &mut [f64]) -> Result<(), EvalError> {
         Err(EvalError::recoverable("film_2d", "this model does not tell how a film answers to flows"))
+    }
+
+    /// Changes of the film that [`Film2d::solve`] found last per change of its squeeze velocity, field after field: `p` holds changes of `dhdt` \[m/s\] and
+    /// takes those of the pressure \[Pa\], `fill` takes those of the filling. Cavities keep their nodes. Returns whether the model can tell; `p` is untouched
+    /// when it cannot.
+    ///
+    /// # Errors
+    /// Fields of the wrong length (Fatal), no solution (Recoverable).
+    fn answer(&mut self, _p: &mut [f64], _fill: &mut [f64]) -> Result<bool, EvalError> {
+        Ok(false)
     }
 
     /// Whether the film is the sum of what [`Film2d::solve_many`] finds.

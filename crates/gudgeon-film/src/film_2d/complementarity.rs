@@ -47,6 +47,8 @@ pub(super) struct Solver<L> {
     fill: Vec<f64>,
     /// Whether `p`, `void` and `cavitated` hold a film.
     warm: bool,
+    /// Whether that film follows from a squeeze velocity.
+    by_rate: bool,
     /// Whether the matrix is that of a full film without cavitation, as `solve_many` leaves it.
     set_up: bool,
     /// A film beside that one, once it is asked for.
@@ -76,6 +78,7 @@ impl<L: Linear> Solver<L> {
             pressure: vec![0.0; n],
             fill: vec![1.0; n],
             warm: false,
+            by_rate: false,
             set_up: false,
             beside: None,
         }
@@ -320,6 +323,7 @@ impl<L: Linear> Film2d for Solver<L> {
             found = self.find(inp);
         }
         self.warm = found.is_ok();
+        self.by_rate = inp.history.is_none();
         found
     }
 
@@ -412,6 +416,41 @@ impl<L: Linear> Film2d for Solver<L> {
             r.copy_from_slice(&self.z);
         }
         Ok(())
+    }
+
+    fn answer(&mut self, p: &mut [f64], fill: &mut [f64]) -> Result<bool, EvalError> {
+        let n = self.p.len();
+        if !(p.len().is_multiple_of(n) && p.len() == fill.len()) {
+            let what = format!("{} and {} values are no fields over {n} nodes", p.len(), fill.len());
+            return Err(EvalError::fatal(self.model, what));
+        }
+        if !(self.warm && self.by_rate) {
+            return Ok(false);
+        }
+        for (p, fill) in p.chunks_exact_mut(n).zip(fill.chunks_exact_mut(n)) {
+            for k in 0..n {
+                // What the balance of the node leaves over for a rate of one.
+                let taken = if self.problem.m.hold[k] > 0.0 { 1.0 - self.void[k] } else { 1.0 };
+                let flow = self.problem.area(k) * taken;
+                self.b[k] = if self.problem.edge[k] == 4 { -flow * p[k] } else { 0.0 };
+            }
+            let most = self.b.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+            self.z.fill(0.0);
+            let (_, left) = self.linear.solve(&self.problem.m, &self.b, &mut self.z, self.tolerance * most);
+            if left.is_nan() || left > 1e-6 * most {
+                return Err(EvalError::recoverable(self.model, "no convergence of the linear system"));
+            }
+            for k in 0..n {
+                let cut = self.problem.edge[k] < 4
+                    || self.cavitation == Cavitation::HalfSommerfeld && self.p[k] < 0.0;
+                (p[k], fill[k]) = match (cut, self.cavitated[k]) {
+                    (true, _) => (0.0, 0.0),
+                    (false, true) => (0.0, -self.z[k]),
+                    (false, false) => (self.z[k], 0.0),
+                };
+            }
+        }
+        Ok(true)
     }
 
     fn superposition(&self) -> Superposition {

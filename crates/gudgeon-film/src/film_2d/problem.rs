@@ -328,6 +328,11 @@ impl Problem {
         }
     }
 
+    /// Area of the control volume of node `k` \[m²\].
+    pub fn area(&self, k: usize) -> f64 {
+        self.wx[k % self.nx] * self.wy[k / self.nx]
+    }
+
     /// The node beside an edge node, towards the middle of the film; the node itself elsewhere.
     fn inner(&self, k: usize) -> usize {
         let mut k = k;

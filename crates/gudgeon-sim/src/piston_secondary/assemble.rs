@@ -2,12 +2,12 @@
 
 use std::f64::consts::PI;
 
-use gudgeon_core::BuildError;
 use gudgeon_core::file::Files;
 use gudgeon_core::kinds::{
     CylinderPressure, CylinderPressureCtx, GrooveFrictionCtx, Kinematics, KinematicsCtx, Lateral,
     SkirtComplianceCtx, SkirtModes, SkirtProfile, SkirtProfileCtx,
 };
+use gudgeon_core::{BuildError, EvalError};
 use gudgeon_skirt::{Body, ContactGrid, Crank, Instant, Panel, Piston, Rod, Side, SideSetup};
 
 use super::case::{GravitySide, Method, PistonSecondaryCase};
@@ -38,6 +38,8 @@ pub struct Assembly {
     pub breakpoints: Vec<f64>,
     /// Whether the skirt yields.
     pub elastic: bool,
+    /// Film evaluations after which a search is given up.
+    pub most_films: u64,
 }
 
 /// Smallest and largest admitted intervals of a grid.
@@ -52,6 +54,21 @@ impl Assembly {
         let p = self.cylinder.pressure(theta) - self.p_crankcase;
         let motion = self.kinematics.motion(theta);
         self.piston.crank.instant(theta, &motion, p, self.area, self.mu)
+    }
+
+    /// Whether the films may be asked once more.
+    ///
+    /// # Errors
+    /// They were asked too often.
+    pub fn go_on(&self) -> Result<(), EvalError> {
+        if self.piston.film_evaluations() <= self.most_films {
+            return Ok(());
+        }
+        let what = format!(
+            "given up after {} film evaluations: raise `solver.max_film_evaluations` to go on",
+            self.most_films
+        );
+        Err(EvalError::fatal("piston_secondary", what))
     }
 
     /// Crank speed \[rad/s\].
@@ -245,7 +262,7 @@ pub fn assemble(
     let elastic = sides.iter().any(|s| s.elastic() > 0);
     let mut piston = Piston::new(sides, body, crank, pin, groove);
     piston.relaxation = case.solver.shape_relaxation.si();
-    Ok(Assembly {
+    let mut assembly = Assembly {
         piston,
         kinematics,
         profile,
@@ -258,7 +275,45 @@ pub fn assemble(
         period,
         breakpoints,
         elastic,
-    })
+        most_films: case.solver.max_film_evaluations,
+    };
+    let errors = impossible(case, &mut assembly);
+    if errors.is_empty() { Ok(assembly) } else { Err(errors) }
+}
+
+/// What cannot move, or not from where it begins.
+fn impossible(case: &PistonSecondaryCase, a: &mut Assembly) -> Vec<BuildError> {
+    let mut errors = Vec::new();
+    let s = &case.solver;
+    let now = a.instant(0.0);
+    let (inertial, moves) = (a.lateral == Lateral::Inertial, !matches!(a.lateral, Lateral::Held { .. }));
+    // A film that cannot be solved between centred surfaces tells so when it runs.
+    if moves && matches!(a.piston.resists(&now, inertial), Ok(false)) {
+        let nothing = "this film does not resist the motion across the bore";
+        if !inertial {
+            let help = "`quasi_static` finds the velocities at which films carry the load: use another film, or `full_inertia` for a dry skirt";
+            errors.push(BuildError::at("models.film_2d", nothing).help(help));
+        } else if s.cycles == 0 {
+            let what = format!("{nothing}: without damping it does not become periodic");
+            errors.push(
+                BuildError::at("models.film_2d", what).help("look at the transient with `solver.cycles`"),
+            );
+        }
+    }
+    let (place, start) = match a.lateral {
+        Lateral::Held { e_top, e_bottom } => ("models.secondary_motion.e_", [e_top, e_bottom]),
+        _ => ("solver.start_", [s.start_top.si(), s.start_bottom.si()]),
+    };
+    let mut x = vec![0.0; a.piston.coordinates()];
+    x[..2].copy_from_slice(&start);
+    if let Err(e) = a.piston.gaps(&x, now.speed) {
+        let edge = if start[0].abs() >= start[1].abs() { "top" } else { "bottom" };
+        errors.push(BuildError::at(format!("{place}{edge}"), e.to_string()));
+    }
+    // What was looked at is no work of the run.
+    a.piston.sides.iter_mut().for_each(|s| (s.evaluations, s.contact_sums) = (0, 0));
+    a.piston.newton_steps = 0;
+    errors
 }
 
 /// Radial clearance of the running engine \[m\].

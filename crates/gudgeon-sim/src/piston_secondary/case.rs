@@ -240,6 +240,9 @@ pub struct Solver {
     /// This many cycles from the start, the last one shown, whether or not it is periodic; 0: until the motion is periodic.
     #[schemars(range(max = 100_000))]
     pub cycles: u32,
+    /// Film evaluations after which a search is given up, some ten seconds on small grids: a motion takes some thousand where its films follow by
+    /// superposition, some hundred thousand where they do not.
+    pub max_film_evaluations: u64,
     /// Step of `backward_euler`.
     #[schemars(extend("x-refine" = { "group": "time step", "factor": 0.5, "when": { "method": "backward_euler" } }))]
     pub step: PosAngle,
@@ -276,6 +279,7 @@ impl Default for Solver {
             periodicity: quantity(1e-4),
             max_cycles: 60,
             cycles: 0,
+            max_film_evaluations: 300_000,
             step: quantity(0.5f64.to_radians()),
             start_top: quantity(0.0),
             start_bottom: quantity(0.0),

@@ -48,6 +48,7 @@ struct Problem<'a> {
 
 impl Problem<'_> {
     fn look_at(&mut self, t: f64, y: &[f64]) -> Result<gudgeon_skirt::Instant, EvalError> {
+        self.a.go_on()?;
         let (c, n) = (self.a.clearance, self.x.len());
         let speed = c * self.a.omega();
         for (x, y) in self.x.iter_mut().zip(y) {
@@ -259,6 +260,7 @@ impl Cycle<'_> {
             let mut h = end - t;
             let mut halved = 0;
             while t < end {
+                self.a.go_on().map_err(eval(t))?;
                 let now = self.a.instant(t + h);
                 let given = self.inertial.then_some(v);
                 match self.a.piston.euler_step(&now, &from, given, h / omega, &mut self.w, &mut self.x) {

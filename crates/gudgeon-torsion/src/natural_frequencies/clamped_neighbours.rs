@@ -24,39 +24,36 @@ gudgeon_core::register_model! {
 #[typetag::serde(name = "clamped_neighbours")]
 impl NaturalFrequenciesSpec for ClampedNeighbours {
     fn build(&self, line: &Line) -> Result<Box<dyn NaturalFrequencies>, BuildError> {
-        Ok(Box::new(Diagonal { tree: Tree::new(line)? }))
+        let modes = modes(&Tree::new(line)?)
+            .ok_or("a rigid link or an inertia of zero has no frequency between clamped neighbours")
+            .map_err(|e| BuildError::at("", e).help("use `eigenvalues`, which joins them"))?;
+        Ok(Box::new(Diagonal { modes }))
     }
     fn are_of_the_line(&self) -> bool {
         false
     }
 }
 
+/// The frequency of every inertia; none where one has no stiffness or no inertia that is finite.
+fn modes(t: &Tree) -> Option<Vec<Mode>> {
+    let mut diagonal = t.ground.clone();
+    for i in 0..t.len() {
+        if t.parent[i] < t.len() {
+            diagonal[i] += t.k[i];
+            diagonal[t.parent[i]] += t.k[i];
+        }
+    }
+    let omegas = t.position.iter().take(t.len()).map(|&p| (diagonal[p] / t.inertia[p]).sqrt());
+    omegas.map(|omega| omega.is_finite().then(|| Mode { omega, ..Mode::default() })).collect()
+}
+
 #[derive(Debug)]
 struct Diagonal {
-    tree: Tree,
+    modes: Vec<Mode>,
 }
 
 impl NaturalFrequencies for Diagonal {
     fn modes(&mut self) -> Result<Vec<Mode>, EvalError> {
-        let t = &self.tree;
-        let mut diagonal = t.ground.clone();
-        for i in 0..t.len() {
-            if t.parent[i] < t.len() {
-                diagonal[i] += t.k[i];
-                diagonal[t.parent[i]] += t.k[i];
-            }
-        }
-        (0..t.len())
-            .map(|node| {
-                let p = t.position[node];
-                let omega = (diagonal[p] / t.inertia[p]).sqrt();
-                if !omega.is_finite() {
-                    let what =
-                        "a rigid link or an inertia of zero has no frequency between clamped neighbours";
-                    return Err(EvalError::fatal("clamped_neighbours", what));
-                }
-                Ok(Mode { omega, ..Mode::default() })
-            })
-            .collect()
+        Ok(self.modes.clone())
     }
 }
