@@ -242,6 +242,7 @@ pub struct Solver {
     pub cycles: u32,
     /// Film evaluations after which a search is given up, some ten seconds on small grids: a motion takes some thousand where its films follow by
     /// superposition, some hundred thousand where they do not.
+    #[schemars(range(max = 1_000_000_000))]
     pub max_film_evaluations: u64,
     /// Step of `backward_euler`.
     #[schemars(extend("x-refine" = { "group": "time step", "factor": 0.5, "when": { "method": "backward_euler" } }))]
