@@ -1,5 +1,5 @@
 use gudgeon_core::kinds::{
-    BoundaryFriction, BoundaryFrictionSpec, Contact, ContactSpec, Rig, RigCtx, RigOut, RigSpec,
+    BoundaryFriction, BoundaryFrictionSpec, Contact, ContactSpec, Rig, RigCtx, RigOut, RigSpec, named,
 };
 use gudgeon_core::quantity::{Length, Velocity, quantity};
 use gudgeon_core::{BuildError, EvalError};
@@ -91,6 +91,12 @@ const MODEL: &str = "contact_pair";
 const POINTS: usize = 201;
 
 impl Rig for Bench {
+    fn results(&self) -> Vec<String> {
+        let mut names = named(&["pressure", "real_area", "friction_coefficient", "shear", "range"]);
+        names.extend(self.contact.floor().map(|_| "floor".into()));
+        names
+    }
+
     fn run(&mut self, out: &mut RigOut) -> Result<(), EvalError> {
         let coefficient = |speed: f64| -> Result<f64, EvalError> {
             let Some(f) = &self.friction else { return Ok(self.contact.friction_coefficient()) };

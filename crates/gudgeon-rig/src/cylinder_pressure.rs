@@ -1,6 +1,6 @@
 use gudgeon_core::kinds::{
     CylinderPressure, CylinderPressureCtx, CylinderPressureSpec, Kinematics, KinematicsCtx, KinematicsSpec,
-    Rig, RigCtx, RigOut, RigSpec,
+    Rig, RigCtx, RigOut, RigSpec, named,
 };
 use gudgeon_core::quantity::{Angle, Length, PosAngularSpeed, PosLength, quantity};
 use gudgeon_core::{BuildError, EvalError};
@@ -85,6 +85,10 @@ struct Bench {
 const PER_DEGREE: f64 = 2.0;
 
 impl Rig for Bench {
+    fn results(&self) -> Vec<String> {
+        named(&["p_max", "p_max_angle", "p", "work", "imep"])
+    }
+
     fn run(&mut self, out: &mut RigOut) -> Result<(), EvalError> {
         let period = self.pressure.period();
         let n = (period.to_degrees() * PER_DEGREE).round().max(2.0) as usize;

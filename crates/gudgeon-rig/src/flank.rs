@@ -1,4 +1,6 @@
-use gudgeon_core::kinds::{FlankDamping, FlankDampingCtx, FlankDampingSpec, Rig, RigCtx, RigOut, RigSpec};
+use gudgeon_core::kinds::{
+    FlankDamping, FlankDampingCtx, FlankDampingSpec, Rig, RigCtx, RigOut, RigSpec, named,
+};
 use gudgeon_core::quantity::{
     Force, Fraction, Mass, NonNegative, PosArea, PosLength, PosRatio, PosTime, PosVelocity, PosViscosity,
     Ratio, Velocity, quantity,
@@ -255,6 +257,10 @@ impl Bench {
 }
 
 impl Rig for Bench {
+    fn results(&self) -> Vec<String> {
+        named(&["force", "pull", "time", "end_height", "end_velocity"])
+    }
+
     fn run(&mut self, out: &mut RigOut) -> Result<(), EvalError> {
         let (s, v) = self.start;
         out.result(

@@ -1,4 +1,4 @@
-use gudgeon_core::kinds::{Rig, RigCtx, RigOut, RigSpec};
+use gudgeon_core::kinds::{Rig, RigCtx, RigOut, RigSpec, named};
 use gudgeon_core::quantity::{
     PosArea, PosGasConstant, PosLength, PosPressure, PosRatio, PosTemperature, PosViscosity, quantity,
 };
@@ -203,6 +203,12 @@ impl Bench {
 }
 
 impl Rig for Bench {
+    fn results(&self) -> Vec<String> {
+        let mut names = named(&["flow", "nozzle", "effective", "flow_to_vacuum", "choking_ratio"]);
+        names.extend(self.unit_flow.map(|_| "reynolds".into()));
+        names
+    }
+
     fn run(&mut self, out: &mut RigOut) -> Result<(), EvalError> {
         let (flow, nozzle, effective) = self.flow(self.ratio)?;
         let (choked, ..) = self.flow(1e-12)?;

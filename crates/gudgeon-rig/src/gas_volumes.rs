@@ -779,6 +779,16 @@ impl Bench {
 }
 
 impl Rig for Bench {
+    fn results(&self) -> Vec<String> {
+        let (inside, outside) = match self.until {
+            Until::Steady => (&["p"][..], "flow"),
+            Until::Time | Until::Periodic => (&["p", "p_max"][..], "received"),
+        };
+        let of = |name: &String| inside.iter().map(move |what| format!("{name}.{what}")).collect::<Vec<_>>();
+        let taken = self.names.1.iter().map(|name| format!("{name}.{outside}"));
+        self.names.0.iter().flat_map(of).chain(taken).collect()
+    }
+
     fn run(&mut self, out: &mut RigOut) -> Result<(), EvalError> {
         match self.until {
             Until::Steady => self.steady(out)?,

@@ -1,5 +1,5 @@
 use gudgeon_core::kinds::{
-    Film1d, Film1dCtx, Film1dIn, Film1dSpec, FilmEnd, FilmTime, Rig, RigCtx, RigOut, RigSpec,
+    Film1d, Film1dCtx, Film1dIn, Film1dSpec, FilmEnd, FilmTime, Rig, RigCtx, RigOut, RigSpec, named,
 };
 use gudgeon_core::quantity::{
     Angle, AngularSpeed, Fraction, PosLength, PosViscosity, Pressure, Ratio, quantity,
@@ -151,6 +151,23 @@ impl Bench {
 }
 
 impl Rig for Bench {
+    fn results(&self) -> Vec<String> {
+        named(&[
+            "load",
+            "load_number",
+            "attitude",
+            "p_max",
+            "phi_p_max",
+            "torque",
+            "torque_number",
+            "friction_coefficient",
+            "flux",
+            "phi_rupture",
+            "phi_reform",
+            "flux_error",
+        ])
+    }
+
     fn run(&mut self, out: &mut RigOut) -> Result<(), EvalError> {
         let n = self.line.panels();
         let u = self.omega * self.radius;

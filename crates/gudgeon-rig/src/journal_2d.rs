@@ -1,6 +1,6 @@
 use std::f64::consts::PI;
 
-use gudgeon_core::kinds::{Film2dGrid, Film2dSpec, Rig, RigCtx, RigOut, RigSpec, RoughnessSpec};
+use gudgeon_core::kinds::{Film2dGrid, Film2dSpec, Rig, RigCtx, RigOut, RigSpec, RoughnessSpec, named};
 use gudgeon_core::quantity::{PosAngularSpeed, PosLength, PosRatio, PosViscosity, Pressure, quantity};
 use gudgeon_core::{BuildError, EvalError};
 use gudgeon_film::SmoothSurfaces;
@@ -145,6 +145,24 @@ struct Bench {
 }
 
 impl Rig for Bench {
+    fn results(&self) -> Vec<String> {
+        named(&[
+            "load",
+            "sommerfeld",
+            "attitude",
+            "p_max",
+            "p_ratio",
+            "film_min",
+            "friction",
+            "friction_number",
+            "side_flow",
+            "side_flow_number",
+            "inflow_number",
+            "cavity",
+            "residual",
+        ])
+    }
+
     fn run(&mut self, out: &mut RigOut) -> Result<(), EvalError> {
         let s = &self.spec;
         let (radius, width, clearance) = (s.radius.si(), s.width.si(), s.clearance.si());

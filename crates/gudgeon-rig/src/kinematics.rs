@@ -1,4 +1,4 @@
-use gudgeon_core::kinds::{KinematicsCtx, KinematicsSpec, Rig, RigCtx, RigOut, RigSpec};
+use gudgeon_core::kinds::{KinematicsCtx, KinematicsSpec, Rig, RigCtx, RigOut, RigSpec, named};
 use gudgeon_core::quantity::{Angle, Length, PosAngularSpeed, PosLength, quantity};
 use gudgeon_core::{BuildError, EvalError};
 use serde::{Deserialize, Serialize};
@@ -65,6 +65,10 @@ struct Bench {
 const ROWS: usize = 720;
 
 impl Rig for Bench {
+    fn results(&self) -> Vec<String> {
+        named(&["stroke", "y_tdc", "y", "v", "a", "rod_angle", "v_max", "a_max"])
+    }
+
     fn run(&mut self, out: &mut RigOut) -> Result<(), EvalError> {
         let k = &self.motion;
         let at = k.motion(self.angle);

@@ -1,6 +1,6 @@
 use gudgeon_core::kinds::{
     Compressibility, CompressibilitySpec, Oil, OilSpec, Piezoviscosity, PiezoviscositySpec, Rig, RigCtx,
-    RigOut, RigSpec, ShearThinning, ShearThinningSpec,
+    RigOut, RigSpec, ShearThinning, ShearThinningSpec, named,
 };
 use gudgeon_core::quantity::{
     NonNegative, PosPressure, PosShearRate, PosTemperature, Pressure, ShearRate, quantity,
@@ -170,6 +170,17 @@ impl Bench {
 }
 
 impl Rig for Bench {
+    fn results(&self) -> Vec<String> {
+        named(&[
+            "viscosity",
+            "base_viscosity",
+            "pressure_factor",
+            "shear_factor",
+            "pressure_viscosity",
+            "density_ratio",
+        ])
+    }
+
     fn run(&mut self, out: &mut RigOut) -> Result<(), EvalError> {
         let (t, p, rate) = self.at;
         let here = self.state(t, p, rate)?;

@@ -1,5 +1,7 @@
 use gudgeon_core::face::Face;
-use gudgeon_core::kinds::{FaceCtx, FaceIn, Hydrodynamics, HydrodynamicsSpec, Rig, RigCtx, RigOut, RigSpec};
+use gudgeon_core::kinds::{
+    FaceCtx, FaceIn, Hydrodynamics, HydrodynamicsSpec, Rig, RigCtx, RigOut, RigSpec, named,
+};
 use gudgeon_core::quantity::{Force, PosLength, PosViscosity, Pressure, Velocity, quantity};
 use gudgeon_core::{BuildError, EvalError};
 use serde::{Deserialize, Serialize};
@@ -106,6 +108,10 @@ struct Bench {
 const POINTS: usize = 401;
 
 impl Rig for Bench {
+    fn results(&self) -> Vec<String> {
+        named(&["load", "squeeze", "load_rate", "ring_shear", "liner_shear", "p_max", "film_from", "film_to"])
+    }
+
     fn run(&mut self, out: &mut RigOut) -> Result<(), EvalError> {
         let hdot = match self.load {
             Some(l) => self.film.squeeze_rate(&self.inp, l)?,

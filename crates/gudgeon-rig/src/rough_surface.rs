@@ -110,6 +110,10 @@ impl Bench {
 }
 
 impl Rig for Bench {
+    fn results(&self) -> Vec<String> {
+        FACTORS.iter().map(|(name, _)| (*name).to_owned()).collect()
+    }
+
     fn run(&mut self, out: &mut RigOut) -> Result<(), EvalError> {
         let here = self.factors(&[self.at])?;
         for ((name, what), v) in FACTORS.iter().zip(here) {

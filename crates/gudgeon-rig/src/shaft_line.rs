@@ -1,7 +1,7 @@
 use std::f64::consts::PI;
 
 use gudgeon_core::kinds::{
-    CouplingSpec, Line, LineLink, LineNode, NaturalFrequenciesSpec, Rig, RigCtx, RigOut, RigSpec,
+    CouplingSpec, Line, LineLink, LineNode, NaturalFrequenciesSpec, Rig, RigCtx, RigOut, RigSpec, named,
 };
 use gudgeon_core::quantity::{
     Inertia, NonNegative, PosFrequency, Torque, TorsionalDamping, TorsionalStiffness, quantity,
@@ -138,6 +138,23 @@ struct Bench {
 }
 
 impl Rig for Bench {
+    fn results(&self) -> Vec<String> {
+        let n = self.tree.len();
+        let mode = |k: usize| {
+            ["omega", "frequency", "decay", "damped_omega", "damping_ratio"]
+                .map(|what| format!("mode.{k}.{what}"))
+        };
+        let mut names = named(&["rigid_modes"]);
+        names.extend((1..=n).flat_map(mode));
+        if self.spec.frequency.is_some() {
+            names.extend(
+                (1..=n).flat_map(|i| ["amplitude", "phase"].map(|what| format!("inertia{i}.{what}"))),
+            );
+            names.extend((1..=self.line.links.len()).map(|i| format!("shaft{i}.torque")));
+        }
+        names
+    }
+
     fn run(&mut self, out: &mut RigOut) -> Result<(), EvalError> {
         let n = self.tree.len();
         let refused = |e: BuildError| EvalError::fatal("shaft_line", e.to_string());

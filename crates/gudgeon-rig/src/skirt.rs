@@ -1,4 +1,4 @@
-use gudgeon_core::kinds::{Film2dSpec, Rig, RigCtx, RigOut, RigSpec, RoughnessSpec};
+use gudgeon_core::kinds::{Film2dSpec, Rig, RigCtx, RigOut, RigSpec, RoughnessSpec, named};
 use gudgeon_core::quantity::{
     Length, NonNegative, PosAngle, PosLength, PosViscosity, Pressure, Ratio, Velocity, quantity,
 };
@@ -155,6 +155,10 @@ struct Bench {
 }
 
 impl Rig for Bench {
+    fn results(&self) -> Vec<String> {
+        named(&["thrust", "moment", "p_max", "film_min", "liner_shear", "skirt_shear", "cavity", "residual"])
+    }
+
     fn run(&mut self, out: &mut RigOut) -> Result<(), EvalError> {
         let spec = &self.spec;
         let (radius, length, edge) = (spec.radius.si(), spec.length.si(), spec.p_edge.si());

@@ -1,7 +1,7 @@
 use gudgeon_core::kinds::{
     Film1d, Film1dCtx, Film1dIn, Film1dOut, Film1dSpec, FilmEnd, FilmTime, PanelFactors, Piezoviscosity,
     PiezoviscositySpec, Rig, RigCtx, RigOut, RigSpec, RoughFlow, RoughShear, Roughness, RoughnessSpec,
-    ShearThinning, ShearThinningSpec,
+    ShearThinning, ShearThinningSpec, named,
 };
 use gudgeon_core::quantity::{Length, NonNegative, PosViscosity, Pressure, Velocity, quantity};
 use gudgeon_core::result::{Column, Note, Series};
@@ -240,6 +240,29 @@ impl Bench {
 }
 
 impl Rig for Bench {
+    fn results(&self) -> Vec<String> {
+        named(&[
+            "load",
+            "load_absolute",
+            "load_gauge",
+            "p_max",
+            "x_p_max",
+            "moving_shear",
+            "fixed_shear",
+            "slope_force",
+            "centre",
+            "friction_coefficient",
+            "flux_in",
+            "flux_out",
+            "ruptures",
+            "x_rupture",
+            "x_reform",
+            "starved",
+            "flux_error",
+            "iterations",
+        ])
+    }
+
     fn run(&mut self, out: &mut RigOut) -> Result<(), EvalError> {
         let factors = if self.rough.is_smooth() { None } else { Some(factors(&*self.rough, &self.line)?) };
         let (o, rounds, mu) = self.solve(factors.as_deref())?;

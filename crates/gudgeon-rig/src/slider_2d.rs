@@ -1,4 +1,4 @@
-use gudgeon_core::kinds::{Edge, Film2dGrid, Film2dSpec, Rig, RigCtx, RigOut, RigSpec, RoughnessSpec};
+use gudgeon_core::kinds::{Edge, Film2dGrid, Film2dSpec, Rig, RigCtx, RigOut, RigSpec, RoughnessSpec, named};
 use gudgeon_core::quantity::{
     Fraction, Length, NonNegative, PosLength, PosViscosity, Pressure, Ratio, Velocity, quantity,
 };
@@ -273,6 +273,24 @@ struct Bench {
 }
 
 impl Rig for Bench {
+    fn results(&self) -> Vec<String> {
+        named(&[
+            "load",
+            "load_gauge",
+            "load_nodes",
+            "centre",
+            "p_max",
+            "film_min",
+            "plane_shear",
+            "pad_shear",
+            "cavity",
+            "fill_min",
+            "inflow",
+            "side_flow",
+            "residual",
+        ])
+    }
+
     fn run(&mut self, out: &mut RigOut) -> Result<(), EvalError> {
         let spec = &self.spec;
         let (length, width) = (spec.length.si(), spec.width.si());

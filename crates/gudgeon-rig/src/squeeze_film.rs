@@ -2,6 +2,7 @@ use gudgeon_core::face::Face;
 use gudgeon_core::geometry::FaceProfile;
 use gudgeon_core::kinds::{
     Film1d, Film1dCtx, Film1dIn, Film1dOut, Film1dSpec, FilmEnd, FilmTime, Rig, RigCtx, RigOut, RigSpec,
+    named,
 };
 use gudgeon_core::quantity::{
     Force, PosLength, PosTime, PosViscosity, Positive, Pressure, Time, Velocity, quantity,
@@ -487,6 +488,20 @@ struct Oscillation {
 }
 
 impl Rig for Bench {
+    fn results(&self) -> Vec<String> {
+        match &self.motion {
+            Motion::Velocity { .. } => named(&["load", "p_max", "flux_out"]),
+            Motion::Fall { .. } => named(&["fall_time", "v_start", "v_end", "v_max", "p_max"]),
+            Motion::Oscillation { at, .. } => {
+                let mut names = named(&["load_max", "load_min", "p_max", "film_part_min"]);
+                names.extend(named(&["t_cavity", "t_film_part_min", "t_closed"]));
+                let moment = |k| [format!("load_cav_{k}"), format!("film_part_{k}")];
+                names.extend((1..=at.len()).flat_map(moment));
+                names
+            }
+        }
+    }
+
     fn run(&mut self, out: &mut RigOut) -> Result<(), EvalError> {
         match self.motion.clone() {
             Motion::Velocity { velocity, .. } => self.velocity(out, velocity.si()),

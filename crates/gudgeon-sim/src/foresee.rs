@@ -89,7 +89,7 @@ fn combinations(lengths: &[usize]) -> Vec<Vec<usize>> {
     (0..tried).map(|k| lengths.iter().map(|l| spread(k, *l)).collect()).collect()
 }
 
-/// Results that sweeps name and that the case does not have; nothing where only a run tells its results.
+/// Results that sweeps name and that the case does not have.
 pub(crate) fn drawn(scene: &dyn Scene, sweeps: &[Sweep]) -> Vec<BuildError> {
     let asks = sweeps.iter().any(|s| !s.results.is_empty());
     let Some(own) = asks.then(|| scene.result_names()).flatten() else { return Vec::new() };
@@ -100,7 +100,7 @@ pub(crate) fn drawn(scene: &dyn Scene, sweeps: &[Sweep]) -> Vec<BuildError> {
     sweeps.iter().enumerate().flat_map(wrong).collect()
 }
 
-/// Results that comparisons name and that the case does not have with their changes; nothing where only a run tells its results.
+/// Results that comparisons name and that the case does not have with their changes.
 pub(crate) fn compared(scene: &dyn Scene, checks: &[CheckCase]) -> Vec<BuildError> {
     let Some(own) = scene.result_names() else { return Vec::new() };
     let mut errors = Vec::new();

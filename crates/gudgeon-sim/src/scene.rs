@@ -132,10 +132,8 @@ pub trait SceneCase:
         loaded.refinements()
     }
 
-    /// Names of the results that a run has, when they are known before it. `loaded` is legal.
-    fn result_names(_loaded: &Loaded<Self>) -> Option<Vec<String>> {
-        None
-    }
+    /// Names of all results that a run may tell, known before it; none for a case that is not legal.
+    fn result_names(loaded: &Loaded<Self>) -> Option<Vec<String>>;
 
     /// What `bench` races; none when the scene has no solvers to choose from.
     fn race(&self) -> Option<Race> {

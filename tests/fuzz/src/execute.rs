@@ -1,5 +1,6 @@
 //! Runs one case in this process and says what came out of it.
 
+use std::collections::HashSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
@@ -184,6 +185,10 @@ fn judge(checked: &Checked, r: &RunResult, o: &mut Outcome) {
     let tables = [("series", &r.series)].into_iter().chain(r.tables.iter().map(|(n, t)| (n.as_str(), t)));
     o.not_finite.extend(tables.filter(|(_, t)| !finite(t)).map(|(n, _)| format!("table {n}")));
     o.absurd = bounds::broken(&checked.case.resolved(), r);
+    // A name that is not known before a run is refused where a sweep or a comparison asks for it.
+    let known: Option<HashSet<String>> = checked.case.result_names().map(|names| names.into_iter().collect());
+    let unforeseen = r.results.keys().filter(|n| known.as_ref().is_some_and(|k| !k.contains(*n)));
+    o.absurd.extend(unforeseen.map(|n| format!("result `{n}` is not among those told before the run")));
 }
 
 /// Results that move when a group of numerical settings is refined by one level. A level that cannot be run says nothing here.

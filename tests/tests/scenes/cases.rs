@@ -2,7 +2,7 @@
 
 use crate::common::*;
 use gudgeon_sim::case::RingPackCase;
-use gudgeon_sim::{check, explain};
+use gudgeon_sim::{check, explain, run};
 
 #[test]
 fn every_case_is_possible_and_explains_itself() {
@@ -22,4 +22,37 @@ fn every_case_is_possible_and_explains_itself() {
         seen += 1;
     }
     assert!(seen >= 6, "only {seen} cases");
+}
+
+#[test]
+fn results_are_known_before_a_run() {
+    let folder = case_file("x").parent().expect("a folder").to_owned();
+    let files = |below: &str| -> Vec<_> {
+        let mut all: Vec<_> = std::fs::read_dir(folder.join(below))
+            .expect("the folder")
+            .map(|e| e.expect("an entry").path())
+            .filter(|p| p.extension().is_some_and(|e| e == "toml"))
+            .collect();
+        all.sort();
+        all
+    };
+    let quick = |p: &std::path::PathBuf| {
+        let name = p.file_name().expect("a file").to_string_lossy();
+        ["pin-", "skirt-profile", "geared", "compressor-4", "turbo-diesel-120.toml"]
+            .iter()
+            .any(|n| name.starts_with(n))
+    };
+    let mut seen = 0;
+    for path in files("rigs").into_iter().chain(files("").into_iter().filter(quick)) {
+        let checked = check(&path, &[]).unwrap_or_else(|r| panic!("{}: {r}", path.display()));
+        let known = checked.case.result_names().expect("a case that is legal");
+        let single: std::collections::HashSet<&String> = known.iter().collect();
+        assert_eq!(single.len(), known.len(), "{}: a name twice", path.display());
+        let told = run(&checked, &mut |_| {}).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        for name in told.results.keys() {
+            assert!(single.contains(name), "{}: `{name}` was not known", path.display());
+        }
+        seen += 1;
+    }
+    assert!(seen >= 40, "only {seen} cases");
 }

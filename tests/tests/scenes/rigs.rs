@@ -14,6 +14,7 @@ fn mistakes_in_sweeps_are_found_before_anything_runs() {
         ("sweeps=[{path=\"rig.spede\", values=[\"1 rpm\"]}]", "spede"),
         ("sweeps=[{path=\"rig.speed\", from=\"1 rpm\", to=\"2 rad/s\", points=3}]", "same unit"),
         ("sweeps=[{path=\"rig.speed\", from=\"1 rpm\", to=\"2 rpm\", points=1}]", "2 to"),
+        ("sweeps=[{path=\"rig.speed\", values=[\"1 rpm\"], results=[\"strok\"]}]", "did you mean `stroke`"),
     ] {
         let text = refused(set);
         assert!(text.contains(says), "{set}: {text}");

@@ -30,11 +30,20 @@ crate::register_kind!(dyn RigSpec, "rig", "test bench: one sub-model alone under
 
 /// A test bench.
 pub trait Rig: Send {
+    /// Names of all results that [`Rig::run`] may tell, in its order. Some are told only where there is something to tell, as the place where a film
+    /// ruptures.
+    fn results(&self) -> Vec<String>;
     /// Runs it.
     ///
     /// # Errors
     /// The sub-model refused.
     fn run(&mut self, out: &mut RigOut) -> Result<(), EvalError>;
+}
+
+/// Names as [`Rig::results`] tells them.
+#[must_use]
+pub fn named(names: &[&str]) -> Vec<String> {
+    names.iter().map(|n| (*n).to_owned()).collect()
 }
 
 /// What a bench measured.

@@ -2,6 +2,7 @@
 
 pub mod case;
 mod draw;
+mod names;
 mod setup;
 mod size;
 mod skirt;
@@ -55,6 +56,11 @@ impl SceneCase for PinCase {
         }
         told.skipped = skipped(case);
         Ok(models(case))
+    }
+
+    fn result_names(loaded: &Loaded<Self>) -> Option<Vec<String>> {
+        let setup = setup::setup(&loaded.value, &loaded.source.files).ok()?;
+        Some(names::names(&loaded.value, setup.as_ref()))
     }
 
     fn run(loaded: &Loaded<Self>, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {

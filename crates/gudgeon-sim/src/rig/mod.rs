@@ -30,6 +30,10 @@ impl SceneCase for RigCase {
         Ok(models.into_iter().map(|(k, m)| model_use(&registry, k, m)).collect())
     }
 
+    fn result_names(loaded: &Loaded<Self>) -> Option<Vec<String>> {
+        Some(loaded.value.rig.build(&RigCtx { files: &loaded.source.files }).ok()?.results())
+    }
+
     fn run(loaded: &Loaded<Self>, _: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
         let case = &loaded.value;
         let begin = Instant::now();
