@@ -186,7 +186,7 @@ const ARGUMENTS: &[(&str, &str, &str)] = &[
     ),
     ("models.oil={ model = \"vogel_grade\", table = \"zottin1992\" }", "models.oil: missing key `grade`", ""),
     ("models={}", "models: missing keys", ""),
-    ("solver.max_cycles=99999999999", "solver.max_cycles: `99999999999` must be at most 100000", ""),
+    ("solver.max_cycles=99999999999", "solver.max_cycles: `99999999999` must be at most 1000", ""),
     ("solver.max_cycles=\"4\"", "solver.max_cycles: a whole number is wanted here, not a text", "`4`"),
     ("rings.1.cold_gap=0,2 mm", "`0,2 mm` is not a number with a unit", "`\"0.2 mm\"`"),
     (

@@ -439,7 +439,7 @@ pub struct Solver {
     pub periodicity: PosRatio,
     /// Most cycles, all phases of the search together, before the run is called unconverged. Half of them, but at least 60, are accelerated; the
     /// rest, and those of models with decided seats, repeat plainly.
-    #[schemars(range(max = 100_000))]
+    #[schemars(range(max = 1000))]
     pub max_cycles: u32,
     /// Pressures of all lands from which the cycle is started. Each start is run to its periodic state; those that
     /// differ are reported, the first is the result. Empty: one start at crankcase pressure, and a second at 6 bar when
@@ -449,7 +449,7 @@ pub struct Solver {
     /// `as_published`: the scheme.
     pub scheme: Scheme,
     /// `as_published`: cycles to run; 0 takes the source's number (2), or for `degree_march` until periodic.
-    #[schemars(range(max = 100_000))]
+    #[schemars(range(max = 200))]
     pub cycles: u32,
     /// `as_published`: steps of mechanics per crank degree; 0 takes the source's number (rings + 1; 1 for `degree_march`).
     #[schemars(range(max = 1_000_000), extend("x-refine" = { "group": "crank-angle step", "factor": 2, "when": { "method": "as_published" } }))]

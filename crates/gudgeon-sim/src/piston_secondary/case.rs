@@ -235,10 +235,10 @@ pub struct Solver {
     #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1, "when": { "method": "implicit" } }))]
     pub periodicity: PosRatio,
     /// Most cycles of the search for the periodic motion.
-    #[schemars(range(max = 100_000))]
+    #[schemars(range(max = 1000))]
     pub max_cycles: u32,
     /// This many cycles from the start, the last one shown, whether or not it is periodic; 0: until the motion is periodic.
-    #[schemars(range(max = 100_000))]
+    #[schemars(range(max = 1000))]
     pub cycles: u32,
     /// Film evaluations after which a search is given up, some ten seconds on small grids: a motion takes some thousand where its films follow by
     /// superposition, some hundred thousand where they do not.
@@ -280,7 +280,7 @@ impl Default for Solver {
             periodicity: quantity(1e-4),
             max_cycles: 60,
             cycles: 0,
-            max_film_evaluations: 300_000,
+            max_film_evaluations: 200_000,
             step: quantity(0.5f64.to_radians()),
             start_top: quantity(0.0),
             start_bottom: quantity(0.0),

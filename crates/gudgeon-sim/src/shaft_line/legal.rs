@@ -10,10 +10,40 @@ const MOST_KEPT: f64 = 2e7;
 /// Most load steps: each is a machine of its own.
 const MOST_STEPS: usize = 200;
 
+/// Speed ratios of an inertia, and of one that carries throws: the gas torques of a throw that turns slowly are as many orders of the reference.
+const RATIOS: [(f64, f64); 2] = [(1e-3, 1e3), (0.1, 10.0)];
+/// Highest speed of the diagrams over that of the case.
+const FASTEST: f64 = 20.0;
+
+/// Speed ratios that no gear of one machine has.
+fn ratios(case: &ShaftLineCase) -> Vec<BuildError> {
+    let carries = |name: &str| case.throws.iter().any(|t| t.at.iter().any(|at| at == name));
+    let wrong = case.inertias.iter().enumerate().filter_map(|(k, i)| {
+        let (ratio, throws) = (i.ratio.si().abs(), carries(&i.name));
+        let (low, high) = RATIOS[usize::from(throws)];
+        // Zero is told where the line is built.
+        (ratio != 0.0 && !(low..=high).contains(&ratio)).then(|| {
+            let of = if throws { "an inertia with throws" } else { "an inertia" };
+            let what =
+                format!("the speed of {of} is between {low} and {high} of that of the reference shaft");
+            BuildError::at(format!("inertias.{k}.ratio"), format!("{what}, not {ratio:e}"))
+        })
+    });
+    wrong.collect()
+}
+
 /// Values that contradict each other.
 pub fn legal_values(case: &ShaftLineCase) -> Vec<BuildError> {
-    let mut errors = Vec::new();
+    let mut errors = ratios(case);
     let r = &case.range;
+    if let Some(to) = r.to.filter(|to| to.si() > FASTEST * case.speed.si()) {
+        let what = format!(
+            "{:.6} rpm are more than {FASTEST} times `speed`, {:.6} rpm",
+            super::rpm(to.si()),
+            super::rpm(case.speed.si())
+        );
+        errors.push(BuildError::at("range.to", what));
+    }
     if r.orders.si() > 2000.0 {
         errors.push(BuildError::at("range.orders", "at most 2000 orders"));
     }

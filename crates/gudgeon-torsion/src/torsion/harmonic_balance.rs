@@ -131,6 +131,8 @@ impl TorsionSpec for HarmonicBalance {
 
 /// Vectors that a linear solution may use.
 const VECTORS: usize = 200;
+/// Rounds in which Newton's method must halve what is left: where it does not, it circles.
+const STALLED: usize = 20;
 /// Growth of the remainder by which a step is not taken, and how often it is halved then.
 const GROWTH: f64 = 1.5;
 const HALVINGS: usize = 8;
@@ -313,7 +315,14 @@ impl Solver {
         let (mut rest, mut step) = (vec![0.0; 2 * n], vec![0.0; 2 * n]);
         let (mut last, mut halved) = (f64::INFINITY, 0);
         let mut change = f64::INFINITY;
-        for _ in 0..self.rounds {
+        let mut before = f64::INFINITY;
+        for round in 0..self.rounds {
+            if round % STALLED == STALLED - 1 {
+                if last > 0.5 * before {
+                    break;
+                }
+                before = last;
+            }
             work.rounds += 1;
             work.solutions += self.beyond.harmonics as u64;
             self.evaluate(&base_mean, &mut g)?;
