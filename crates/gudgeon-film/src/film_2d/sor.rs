@@ -124,9 +124,9 @@ impl Relaxation {
     fn sweep(&mut self, signed: bool, carried: bool) -> Result<usize, EvalError> {
         let omega = self.relaxation();
         let n = self.problem.len();
+        // Fillings travel along with the oil; sweeps to and fro would settle pressures half as fast.
+        let forward = signed || self.problem.m.qx.iter().sum::<f64>() >= 0.0;
         for sweep in 1..=self.spec.most_sweeps {
-            // Fillings travel to and fro; pressures settle faster by sweeps of one direction.
-            let forward = signed || sweep % 2 == 1;
             for step in 0..n {
                 let k = if forward { step } else { n - 1 - step };
                 if self.problem.edge[k] == 4 {
