@@ -280,7 +280,7 @@ impl Default for Solver {
             periodicity: quantity(1e-4),
             max_cycles: 60,
             cycles: 0,
-            max_film_evaluations: 200_000,
+            max_film_evaluations: 300_000,
             step: quantity(0.5f64.to_radians()),
             start_top: quantity(0.0),
             start_bottom: quantity(0.0),
