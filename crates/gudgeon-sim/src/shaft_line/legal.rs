@@ -13,7 +13,7 @@ const MOST_STEPS: usize = 200;
 /// Speed ratios of an inertia, and of one that carries throws: the gas torques of a throw that turns slowly are as many orders of the reference.
 const RATIOS: [(f64, f64); 2] = [(1e-3, 1e3), (0.1, 10.0)];
 /// Highest speed of the diagrams over that of the case.
-const FASTEST: f64 = 20.0;
+const FASTEST: f64 = 30.0;
 
 /// Speed ratios that no gear of one machine has.
 fn ratios(case: &ShaftLineCase) -> Vec<BuildError> {
