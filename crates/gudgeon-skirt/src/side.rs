@@ -650,10 +650,18 @@ impl Side {
             }
             return Ok(());
         }
-        let kept = (std::mem::take(&mut self.p), std::mem::take(&mut self.fill));
+        // The film of now waits where nothing else is kept meanwhile.
+        self.set_aside();
         let outcome = self.slopes_of_whole(speed, mu, rates, out);
-        (self.p, self.fill) = kept;
+        self.set_aside();
         outcome
+    }
+
+    /// Changes pressure and filling for what waits in their place.
+    fn set_aside(&mut self) {
+        let [_, p, fill] = &mut self.work;
+        std::mem::swap(&mut self.p, p);
+        std::mem::swap(&mut self.fill, fill);
     }
 
     /// Derivatives of a film that is found with its cavities: what its model tells, or difference quotients.
@@ -673,15 +681,14 @@ impl Side {
         let mut outcome = told;
         if let Ok(true) = outcome {
             for m in 0..rates.len() {
-                (self.p, self.fill) =
-                    (changes[m * n..(m + 1) * n].to_vec(), self.fills[m * n..(m + 1) * n].to_vec());
+                self.p.copy_from_slice(&changes[m * n..(m + 1) * n]);
+                self.fill.copy_from_slice(&self.fills[m * n..(m + 1) * n]);
                 self.sums(false, speed, mu, &mut there);
                 let row = &mut out.slope[m * width..(m + 1) * width];
                 row[..4].copy_from_slice(&there.film);
                 row[4..].copy_from_slice(&there.elastic);
             }
         } else if outcome.is_ok() {
-            (self.p, self.fill) = (vec![0.0; n], vec![0.0; n]);
             outcome = self.difference_quotients(speed, mu, rates, out).map(|()| false);
         }
         self.fields = changes;

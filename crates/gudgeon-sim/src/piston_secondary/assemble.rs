@@ -262,7 +262,7 @@ pub fn assemble(
     let elastic = sides.iter().any(|s| s.elastic() > 0);
     let mut piston = Piston::new(sides, body, crank, pin, groove);
     piston.relaxation = case.solver.shape_relaxation.si();
-    let mut assembly = Assembly {
+    Ok(Assembly {
         piston,
         kinematics,
         profile,
@@ -276,13 +276,11 @@ pub fn assemble(
         breakpoints,
         elastic,
         most_films: case.solver.max_film_evaluations,
-    };
-    let errors = impossible(case, &mut assembly);
-    if errors.is_empty() { Ok(assembly) } else { Err(errors) }
+    })
 }
 
 /// What cannot move, or not from where it begins.
-fn impossible(case: &PistonSecondaryCase, a: &mut Assembly) -> Vec<BuildError> {
+pub fn impossible(case: &PistonSecondaryCase, a: &mut Assembly) -> Vec<BuildError> {
     let mut errors = Vec::new();
     let s = &case.solver;
     let now = a.instant(0.0);
@@ -310,9 +308,6 @@ fn impossible(case: &PistonSecondaryCase, a: &mut Assembly) -> Vec<BuildError> {
         let edge = if start[0].abs() >= start[1].abs() { "top" } else { "bottom" };
         errors.push(BuildError::at(format!("{place}{edge}"), e.to_string()));
     }
-    // What was looked at is no work of the run.
-    a.piston.sides.iter_mut().for_each(|s| (s.evaluations, s.contact_sums) = (0, 0));
-    a.piston.newton_steps = 0;
     errors
 }
 

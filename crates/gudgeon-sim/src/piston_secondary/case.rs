@@ -240,8 +240,8 @@ pub struct Solver {
     /// This many cycles from the start, the last one shown, whether or not it is periodic; 0: until the motion is periodic.
     #[schemars(range(max = 1000))]
     pub cycles: u32,
-    /// Film evaluations after which a search is given up, some ten seconds on small grids: a motion takes some thousand where its films follow by
-    /// superposition, some hundred thousand where they do not.
+    /// Film evaluations after which a search is given up, ten to twenty seconds on 20 x 16 intervals; each search of a run (rigid, coarse, the skirt as
+    /// it is) counts its own. A motion takes some thousand where its films follow by superposition, some hundred thousand where they do not.
     #[schemars(range(max = 1_000_000_000))]
     pub max_film_evaluations: u64,
     /// Step of `backward_euler`.

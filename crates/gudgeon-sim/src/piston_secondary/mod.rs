@@ -24,7 +24,7 @@ use crate::load::Loaded;
 use crate::run::{Explanation, Progress, RunError, model_use};
 use crate::scene::SceneCase;
 use crate::study::{Contender, Race};
-use assemble::{Assembly, assemble};
+use assemble::{Assembly, assemble, impossible};
 use case::{Method, PistonSecondaryCase};
 use march::Purpose;
 use plan::ResultInfo;
@@ -35,7 +35,11 @@ use survey::Survey;
 impl SceneCase for PistonSecondaryCase {
     fn legal(loaded: &Loaded<Self>) -> Vec<BuildError> {
         match assemble(&loaded.value, &loaded.source.files, true, None) {
-            Ok(a) => plan::wanted(&loaded.value, &a).err().unwrap_or_default(),
+            Ok(mut a) => {
+                let mut errors = impossible(&loaded.value, &mut a);
+                errors.extend(plan::wanted(&loaded.value, &a).err().unwrap_or_default());
+                errors
+            }
             Err(e) => e,
         }
     }

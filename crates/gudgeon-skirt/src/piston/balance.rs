@@ -23,7 +23,7 @@ const CLOSED: f64 = 1e-11;
 const CLOSED_CAVITIES: f64 = 1e-7;
 /// Part of the forces that is left of a balance which cavities let come slowly.
 const SLOW: f64 = 1e-6;
-/// The same where cavities are found by iteration: their films differ by up to 2e-5 with the film they start from.
+/// The same where cavities are found by iteration: of balances that no shorter step improved, nine in ten stood below 2e-5.
 const SLOW_CAVITIES: f64 = 1e-4;
 /// Multiple of [`CLOSED`] at which a balance that no step improves is one.
 const ROUNDED: f64 = 1e3;
