@@ -20,8 +20,8 @@ const RUNS: usize = 3;
 
 fn run(overrides: &[&str]) -> Result<RunResult, String> {
     let overrides: Vec<String> = overrides.iter().map(|s| (*s).to_owned()).collect();
-    let checked = gudgeon_sim::check(Path::new(CASE), &overrides).map_err(|e| e.to_string())?;
-    gudgeon_sim::run(&checked, &mut |_| {}).map_err(|e| e.to_string())
+    let checked = gudgeon_scene::check(Path::new(CASE), &overrides).map_err(|e| e.to_string())?;
+    gudgeon_scene::run(&checked, &mut |_| {}).map_err(|e| e.to_string())
 }
 
 fn value(r: &RunResult, name: &str) -> f64 {
@@ -147,8 +147,8 @@ fn main() {
         .measurement_time(Duration::from_secs(2))
         .configure_from_args();
     let mut group = criterion.benchmark_group("ring_pack");
-    if let Ok(checked) = gudgeon_sim::check(Path::new(CASE), &[]) {
-        group.bench_function("turbo-diesel-120", |b| b.iter(|| gudgeon_sim::run(&checked, &mut |_| {})));
+    if let Ok(checked) = gudgeon_scene::check(Path::new(CASE), &[]) {
+        group.bench_function("turbo-diesel-120", |b| b.iter(|| gudgeon_scene::run(&checked, &mut |_| {})));
     }
     group.finish();
     if let Err(e) = faces(&mut criterion) {

@@ -7,9 +7,9 @@ mod counting;
 use common::*;
 use counting::allocations;
 use gudgeon_core::file::Files;
-use gudgeon_sim::case::RingPackCase;
-use gudgeon_sim::ring_pack::assemble::assemble;
-use gudgeon_sim::ring_pack::pack::Base;
+use gudgeon_scene_ring_pack::assemble::assemble;
+use gudgeon_scene_ring_pack::case::RingPackCase;
+use gudgeon_scene_ring_pack::pack::Base;
 
 #[test]
 fn a_right_hand_side_allocates_nothing() {

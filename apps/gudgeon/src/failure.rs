@@ -2,10 +2,10 @@
 
 use std::process::ExitCode;
 
+use gudgeon_case::{Diagnostic, Report};
 use gudgeon_core::registry::RegistryError;
 use gudgeon_report::ReportError;
-use gudgeon_sim::RunError;
-use gudgeon_sim::load::{Diagnostic, Report};
+use gudgeon_scene::RunError;
 
 #[derive(Debug)]
 pub enum Failure {

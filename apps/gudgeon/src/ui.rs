@@ -8,8 +8,8 @@ use std::fmt::Write as _;
 use std::io::{self, IsTerminal, Write};
 use std::time::Duration;
 
-use gudgeon_sim::Progress;
-use gudgeon_sim::load::Report;
+use gudgeon_case::Report;
+use gudgeon_scene::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::failure::Failure;

@@ -17,12 +17,11 @@ pub mod face;
 pub mod file;
 pub mod geometry;
 pub mod kinds;
-pub mod quantity;
 pub mod registry;
-pub mod result;
 
 #[doc(hidden)]
 pub use {inventory, schemars, serde_json};
 
 pub use error::{BuildError, EvalError};
 pub use registry::{KindInfo, ModelInfo, Registry};
+pub use {gudgeon_result as result, gudgeon_units as quantity};

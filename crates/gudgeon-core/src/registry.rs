@@ -44,6 +44,53 @@ pub struct KindInfo {
 }
 inventory::collect!(KindInfo);
 
+/// The configuration of a kind of sub-model, as a trait object.
+pub trait Kind {
+    /// Name in a case file, `gas_flow`.
+    const NAME: &'static str;
+}
+
+/// A model that stands where a case names none.
+#[derive(Debug)]
+pub struct DefaultModel {
+    /// Its kind.
+    pub kind: &'static str,
+    /// Its name.
+    pub name: &'static str,
+    /// Source file of the default.
+    pub file: &'static str,
+    /// Source line of the default.
+    pub line: u32,
+}
+inventory::collect!(DefaultModel);
+
+/// Functions that give default models by name, read the way a case file would; [`Registry::verify`] finds a default that does not exist.
+///
+/// ```ignore
+/// default_model! {
+///     default_kinematics: dyn KinematicsSpec = "exact_slider_crank";
+/// }
+/// ```
+#[macro_export]
+macro_rules! default_model {
+    ($($f:ident: $t:ty = $name:literal;)*) => {$(
+        $crate::inventory::submit! {
+            $crate::registry::DefaultModel {
+                kind: <$t as $crate::registry::Kind>::NAME,
+                name: $name,
+                file: file!(),
+                line: line!(),
+            }
+        }
+        fn $f() -> Box<$t> {
+            match $crate::serde_json::from_value($crate::serde_json::json!({ "model": $name })) {
+                Ok(m) => m,
+                Err(e) => panic!("the default `{}`: {e}", $name),
+            }
+        }
+    )*};
+}
+
 /// Registers a kind: the trait object, its name in a case file and what it answers.
 #[macro_export]
 macro_rules! register_kind {
@@ -57,6 +104,9 @@ macro_rules! register_kind {
                     $crate::serde_json::to_value(&spec)
                 },
             }
+        }
+        impl $crate::registry::Kind for $spec {
+            const NAME: &'static str = $kind;
         }
         impl $crate::schemars::JsonSchema for $spec {
             fn inline_schema() -> bool {
@@ -128,6 +178,18 @@ pub enum RegistryError {
     Kind {
         /// The kind.
         kind: String,
+        /// What is wrong with it.
+        what: String,
+    },
+    /// A default names a model that does not exist or that needs settings.
+    #[error("{place} takes the {kind} model `{name}` as a default: {what}")]
+    Default {
+        /// The kind.
+        kind: &'static str,
+        /// The name.
+        name: &'static str,
+        /// `file:line` of the default.
+        place: String,
         /// What is wrong with it.
         what: String,
     },
@@ -256,6 +318,17 @@ impl Registry {
                 if !models.iter().any(|m| m.name == r) {
                     errors.push(RegistryError::NotDescribed { kind: kind.kind, name: r.clone() });
                 }
+            }
+        }
+        for d in inventory::iter::<DefaultModel>() {
+            let read = |k: &KindInfo| (k.resolve)(serde_json::json!({ "model": d.name })).err();
+            let what = match self.kind(d.kind) {
+                None => Some("there is no such kind".to_owned()),
+                Some(k) => read(k).map(|e| e.to_string()),
+            };
+            if let Some(what) = what {
+                let place = format!("{}:{}", d.file, d.line);
+                errors.push(RegistryError::Default { kind: d.kind, name: d.name, place, what });
             }
         }
         if errors.is_empty() { Ok(()) } else { Err(errors) }

@@ -1,5 +1,6 @@
 //! Fallible stiff integrators, periodic-orbit solver, roots, tables and small linear algebra. No physics lives here.
 
+mod error;
 pub mod fourier;
 pub mod gmres;
 pub mod jet;
@@ -15,3 +16,5 @@ pub mod radau;
 pub mod rodas;
 pub mod roots;
 pub mod table;
+
+pub use error::EvalError;

@@ -24,7 +24,7 @@
 //! sampled geometrically from its start, so that a flight much shorter than the step is still seen. Nothing depends on
 //! waiting times.
 
-use gudgeon_core::EvalError;
+use crate::EvalError;
 
 mod driver;
 mod events;

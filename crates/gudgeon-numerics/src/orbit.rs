@@ -6,7 +6,7 @@
 //! taken from the differences of the iterates. A fixed point with |λ| > 1 is not what the machine does: when the multiplier
 //! comes near, plain repetition decides, and a cycle that repeats only every second or third time is reported as such.
 
-use gudgeon_core::EvalError;
+use crate::EvalError;
 use nalgebra::{DMatrix, DVector, Schur};
 
 /// The map of a cycle.

@@ -26,7 +26,7 @@
     reason = "coefficients as published; small fixed index ranges over several arrays"
 )]
 
-use gudgeon_core::EvalError;
+use crate::EvalError;
 
 use crate::linalg::{lu_factor, lu_solve};
 use crate::ode::{

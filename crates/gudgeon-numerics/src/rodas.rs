@@ -5,7 +5,7 @@
 //! y' = y + Σ m_j u_j,    error estimate: the last u
 //! ```
 
-use gudgeon_core::EvalError;
+use crate::EvalError;
 
 use crate::linalg::{dot, lu_factor_weighted, lu_solve};
 use crate::ode::{

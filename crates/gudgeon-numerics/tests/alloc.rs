@@ -3,7 +3,7 @@
 #[path = "../../../tests/tests/common/counting.rs"]
 mod counting;
 
-use gudgeon_core::EvalError;
+use gudgeon_numerics::EvalError;
 use gudgeon_numerics::ode::{ColumnGroups, Flow, Integrator, OdeSystem, Options, Stats};
 use gudgeon_numerics::radau::Radau5;
 use gudgeon_numerics::rodas::Rodas;

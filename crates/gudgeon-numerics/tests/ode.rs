@@ -6,7 +6,7 @@
 
 #![allow(clippy::excessive_precision, reason = "reference digits as computed")]
 
-use gudgeon_core::EvalError;
+use gudgeon_numerics::EvalError;
 use gudgeon_numerics::ode::{
     ColumnGroups, Direction, EventAction, Flow, IntegrateError, Integrator, LinearInvariant, OdeSystem,
     Options, Stats, StepView,

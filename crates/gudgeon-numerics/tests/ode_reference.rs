@@ -3,7 +3,7 @@
 //! closed form.
 #![allow(clippy::excessive_precision, reason = "17 digits, as the independent solution gives them")]
 
-use gudgeon_core::EvalError;
+use gudgeon_numerics::EvalError;
 use gudgeon_numerics::ode::{Flow, Integrator, OdeSystem, Options, Stats};
 use gudgeon_numerics::radau::Radau5;
 use gudgeon_numerics::rodas::Rodas;

@@ -1,6 +1,6 @@
 //! Orbits of maps whose fixed points and multipliers are known: the true error against the reported one.
 
-use gudgeon_core::EvalError;
+use gudgeon_numerics::EvalError;
 use gudgeon_numerics::orbit::{CycleMap, OrbitOptions, periodic_orbit};
 use nalgebra::{DMatrix, DVector};
 

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use custom_model as _;
+use gudgeon_case::load_str;
 use gudgeon_core::Registry;
 use gudgeon_core::kinds::{Oil, OilSpec};
-use gudgeon_sim::case::RingPackCase;
-use gudgeon_sim::load::load_str;
+use gudgeon_scene_ring_pack::case::RingPackCase;
 use serde_json::json;
 
 fn folder() -> PathBuf {
@@ -53,9 +53,9 @@ fn the_command_line_knows_it() {
 
 #[test]
 fn a_case_picks_it() {
-    let c = gudgeon_sim::check(&case_file(), &[]).map_err(|r| r.to_string()).expect("a valid case");
+    let c = gudgeon_scene::check(&case_file(), &[]).map_err(|r| r.to_string()).expect("a valid case");
     assert_eq!(c.of::<RingPackCase>().expect("a ring pack").models.oil.typetag_name(), "walther");
-    let e = gudgeon_sim::explain(&c).expect("a possible case");
+    let e = gudgeon_scene::explain(&c).expect("a possible case");
     let m = e.models.iter().find(|m| m.used.kind == "oil").expect("friction needs an oil");
     assert_eq!((m.used.model.as_str(), m.used.references[0].as_str()), ("walther", "walther1931"));
     // Defaults of the specification are filled in.
@@ -86,7 +86,7 @@ fn mistakes_are_found_at_their_place() {
 
     // What only the model itself can see: every value is possible alone.
     let report =
-        gudgeon_sim::check(&case_file(), &["models.oil.nu_hot=200".into()]).err().expect("must be refused");
+        gudgeon_scene::check(&case_file(), &["models.oil.nu_hot=200".into()]).err().expect("must be refused");
     let d = &report.diagnostics[0];
     assert_eq!(d.path, "models.oil.nu_hot");
     assert!(d.message.contains("thinner"), "{}", d.message);
@@ -95,7 +95,7 @@ fn mistakes_are_found_at_their_place() {
 #[test]
 fn it_runs_and_is_compared() {
     let swaps = [("models.oil.nu_hot".to_owned(), vec!["10.7".to_owned(), "14.5".to_owned()])];
-    let c = gudgeon_sim::compare(&case_file(), &[], &swaps, &mut |_| {})
+    let c = gudgeon_study::compare(&case_file(), &[], &swaps, &mut |_| {})
         .map_err(|r| r.to_string())
         .expect("both oils are possible");
     let film = |k: usize| {
@@ -111,7 +111,7 @@ fn it_runs_and_is_compared() {
 fn it_is_swapped_for_a_built_in_model_and_back() {
     // A model whose required keys the case does not have is a variant with a reason, not a failure of the comparison.
     let swaps = [("oil".to_owned(), vec!["walther".to_owned(), "constant".to_owned()])];
-    let c = gudgeon_sim::compare(&case_file(), &[], &swaps, &mut |_| {})
+    let c = gudgeon_study::compare(&case_file(), &[], &swaps, &mut |_| {})
         .map_err(|r| r.to_string())
         .expect("one oil is possible");
     assert!(c.variants[0].outcome.is_ok());
@@ -119,7 +119,7 @@ fn it_is_swapped_for_a_built_in_model_and_back() {
     assert!(why.contains("viscosity"), "{why}");
     // With its key it is a case like any other.
     let set = [r#"models.oil={ model = "constant", viscosity = "5 mPa s" }"#.to_owned()];
-    let c = gudgeon_sim::check(&case_file(), &set).map_err(|r| r.to_string()).expect("a valid case");
+    let c = gudgeon_scene::check(&case_file(), &set).map_err(|r| r.to_string()).expect("a valid case");
     assert_eq!(c.of::<RingPackCase>().expect("a ring pack").models.oil.typetag_name(), "constant");
 }
 

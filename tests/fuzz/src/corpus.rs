@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use gudgeon_case::scene_of;
 use gudgeon_core::schemars::SchemaGenerator;
-use gudgeon_sim::load::scene_of;
-use gudgeon_sim::scene::SCENES;
+use gudgeon_scene::scenes;
 use serde_json::Value;
 
 /// What shortens cases whose name begins so. The physics stays; what is left out is length alone.
@@ -68,7 +68,7 @@ impl Corpus {
     pub fn read(folder: &Path) -> Result<Self, String> {
         let mut generator = SchemaGenerator::default();
         let schemas =
-            SCENES.iter().map(|s| (s.name.to_owned(), s.schema(&mut generator).to_value())).collect();
+            scenes().iter().map(|s| (s.name.to_owned(), (s.schema)(&mut generator).to_value())).collect();
         let definitions = Value::Object(generator.take_definitions(true));
         let mut files = Vec::new();
         collect(folder, "", &mut files)?;
@@ -110,12 +110,12 @@ fn base(folder: &Path, file: &str) -> Result<Base, String> {
     let shorter = SHORTER.iter().find(|(start, _)| stem.starts_with(start)).map_or(&[][..], |(_, set)| set);
     // A sweep repeats the case; its points are cases that the fuzzer draws anyway.
     let mut shortened: Vec<String> = shorter.iter().map(|s| (*s).to_owned()).collect();
-    let plain = gudgeon_sim::check(&path, &shortened).map_err(|r| r.to_string())?;
+    let plain = gudgeon_scene::check(&path, &shortened).map_err(|r| r.to_string())?;
     if !plain.case.heading().sweeps.is_empty() {
         shortened.push("sweeps=[]".into());
     }
-    let checked = gudgeon_sim::check(&path, &shortened).map_err(|r| r.to_string())?;
-    let told = gudgeon_sim::explain(&checked).map_err(|e| format!("{file}: {e}"))?;
+    let checked = gudgeon_scene::check(&path, &shortened).map_err(|r| r.to_string())?;
+    let told = gudgeon_scene::explain(&checked).map_err(|e| format!("{file}: {e}"))?;
     let scene = scene_of(checked.case.source(), &[]).unwrap_or_default();
     Ok(Base { file: file.to_owned(), scene, shortened, resolved: told.resolved, results: told.results })
 }

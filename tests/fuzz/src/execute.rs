@@ -6,9 +6,9 @@ use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
+use gudgeon_case::Report;
 use gudgeon_core::result::{NoteLevel, RunResult, Series, Value};
-use gudgeon_sim::load::Report;
-use gudgeon_sim::{Checked, RunError};
+use gudgeon_scene::{Checked, RunError};
 use serde::{Deserialize, Serialize};
 
 use crate::bounds;
@@ -121,7 +121,7 @@ pub fn execute(folder: &Path, job: &Job) -> Outcome {
 fn attempt(folder: &Path, job: &Job) -> Outcome {
     let begin = Instant::now();
     let mut o = Outcome::default();
-    let checked = match gudgeon_sim::check(&folder.join(&job.base), &job.set) {
+    let checked = match gudgeon_scene::check(&folder.join(&job.base), &job.set) {
         Ok(c) => c,
         Err(report) => {
             o.end = refused(&report);
@@ -150,7 +150,7 @@ fn attempt(folder: &Path, job: &Job) -> Outcome {
 }
 
 fn run(c: &Checked) -> Result<RunResult, RunError> {
-    gudgeon_sim::run(c, &mut |_| {})
+    gudgeon_scene::run(c, &mut |_| {})
 }
 
 fn refused(report: &Report) -> End {

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use gudgeon_core::result::RunResult;
 use gudgeon_models as _;
-use gudgeon_sim::{Checked, RunError, check, run};
+use gudgeon_scene::{Checked, RunError, check, run};
 
 /// The file of a case that ships with Gudgeon.
 pub fn case_file(name: &str) -> PathBuf {

@@ -1,8 +1,8 @@
 //! The cases that ship with Gudgeon.
 
 use crate::common::*;
-use gudgeon_sim::case::RingPackCase;
-use gudgeon_sim::{check, explain, run};
+use gudgeon_scene::{check, explain, run};
+use gudgeon_scene_ring_pack::case::RingPackCase;
 
 #[test]
 fn every_case_is_possible_and_explains_itself() {

@@ -1,7 +1,7 @@
 //! One case with several models side by side.
 
 use crate::common::*;
-use gudgeon_sim::compare;
+use gudgeon_study::compare;
 
 fn swap(path: &str, values: &[&str]) -> (String, Vec<String>) {
     (path.to_owned(), values.iter().map(|v| (*v).to_owned()).collect())

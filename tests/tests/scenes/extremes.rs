@@ -8,7 +8,7 @@ use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
 use crate::common::*;
-use gudgeon_sim::{check, run};
+use gudgeon_scene::{check, run};
 
 const CASE: &str = "turbo-diesel-120";
 const LIMIT: Duration = Duration::from_secs(60);

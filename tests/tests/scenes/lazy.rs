@@ -1,7 +1,7 @@
 //! What no wanted result needs is neither built nor evaluated, and it is said so.
 
 use crate::common::*;
-use gudgeon_sim::explain;
+use gudgeon_scene::explain;
 
 const GAS_ONLY: &str = "outputs.results=[\"blow_by\"]";
 /// The published march, as short as it can be.

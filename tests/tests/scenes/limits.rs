@@ -235,7 +235,7 @@ fn gas_steps_too_long_for_merged_volumes_are_refused_with_those_that_do() {
     let set = ["solver.gas_steps=40", "solver.starts=[\"1 bar\"]", merged];
     let refused = |set: &[&str]| {
         let set: Vec<String> = set.iter().map(|s| (*s).to_owned()).collect();
-        gudgeon_sim::check(&case_file(name), &set).map(drop).map_err(|e| e.to_string())
+        gudgeon_scene::check(&case_file(name), &set).map(drop).map_err(|e| e.to_string())
     };
     let e = refused(&set).expect_err("too long");
     assert!(e.contains("gas_steps = 1381") && e.contains("merge_time"), "{e}");

@@ -1,7 +1,7 @@
 //! Oil on the liner: starved faces, the balance of oil, and what the case may not ask for.
 
 use crate::common::*;
-use gudgeon_sim::check;
+use gudgeon_scene::check;
 
 const FILM: &str = "models.oil_transport.model=liner_film";
 

@@ -1,9 +1,10 @@
 //! The scene `pin`: what it refuses, how it fails, what it shows besides the checks of its cases.
 
 use crate::common::*;
+use gudgeon_case::Diagnostic;
 use gudgeon_core::result::FigureKind;
-use gudgeon_sim::load::Diagnostic;
-use gudgeon_sim::{check, compare};
+use gudgeon_scene::check;
+use gudgeon_study::compare;
 
 const GIVEN: &str = "pin-85-alcohol";
 const EXACT: &str = "pin-85-alcohol-optimise";
@@ -106,7 +107,7 @@ fn a_search_without_a_pin_names_the_limit() {
                     |d: &Diagnostic| format!("{}; {}", d.headline(), d.help.clone().unwrap_or_default());
                 report.diagnostics.iter().map(told).collect()
             }
-            Ok(c) => match gudgeon_sim::run(&c, &mut |_| {}) {
+            Ok(c) => match gudgeon_scene::run(&c, &mut |_| {}) {
                 Ok(_) => panic!("{case} {set:?} ran"),
                 Err(e) => e.to_string(),
             },
@@ -305,7 +306,7 @@ fn extremes_end_in_words_or_in_numbers() {
                 ];
                 match check(&case_file(case), &set) {
                     Err(_) => refused += 1,
-                    Ok(c) => match gudgeon_sim::run(&c, &mut |_| {}) {
+                    Ok(c) => match gudgeon_scene::run(&c, &mut |_| {}) {
                         Err(e) => failed.push((case, path, v, e.to_string())),
                         Ok(r) => {
                             ran += 1;

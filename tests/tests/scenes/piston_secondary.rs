@@ -467,12 +467,12 @@ fn published_scheme_is_refused_with_the_reason() {
 /// Runs the case once, or says why not.
 fn attempt(set: &[&str]) -> Result<RunResult, String> {
     let set: Vec<String> = set.iter().map(|s| (*s).to_owned()).collect();
-    let c = gudgeon_sim::check(&case_file(CASE), &set).map_err(|r| format!("refused: {r}"))?;
+    let c = gudgeon_scene::check(&case_file(CASE), &set).map_err(|r| format!("refused: {r}"))?;
     c.case.once(&mut |_| {}).map_err(|e| format!("failed: {e}"))
 }
 
 fn try_check(case: &str, set: &str) -> String {
-    match gudgeon_sim::check(&case_file(case), &[set.to_owned()]) {
+    match gudgeon_scene::check(&case_file(case), &[set.to_owned()]) {
         Ok(_) => String::new(),
         Err(r) => r.to_string(),
     }

@@ -2,7 +2,7 @@
 
 use crate::common::*;
 use gudgeon_core::result::{Check, Verdict};
-use gudgeon_sim::check;
+use gudgeon_scene::check;
 
 #[test]
 fn mistakes_in_sweeps_are_found_before_anything_runs() {

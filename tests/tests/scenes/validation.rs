@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use gudgeon_core::result::Validated;
 use gudgeon_report::{page_name, validation_index, validation_page};
-use gudgeon_sim::validate::{ValidateError, file_of, files, validate};
+use gudgeon_study::validate::{ValidateError, file_of, files, validate};
 
 use crate::common::*;
 

@@ -14,7 +14,7 @@ pub fn bench(a: &BenchArgs, ui: &Ui) -> Result<(), Failure> {
     let folder = open_out(a.out.as_deref(), &a.case.case, &c.name, "-bench")?;
     let measured = {
         let bar = ui.bar();
-        gudgeon_sim::bench(&c, &a.results, &mut |p| bar.show(p))?
+        gudgeon_study::bench(&c, &a.results, &mut |p| bar.show(p))?
     };
     let files = gudgeon_report::write_bench_in(&measured, folder)?;
     if !ui.quiet() {

@@ -9,7 +9,7 @@ use crate::ui::Ui;
 
 pub fn check(a: &CheckArgs, ui: &Ui) -> Result<(), Failure> {
     if a.json {
-        return match gudgeon_sim::check(&a.case.case, &a.case.set) {
+        return match gudgeon_scene::check(&a.case.case, &a.case.set) {
             Ok(c) => {
                 ui.json(&json!({ "case": c.name, "ok": true, "notes": c.notes, "mistakes": [] }));
                 Ok(())

@@ -15,7 +15,7 @@ pub fn compare(a: &CompareArgs, ui: &Ui) -> Result<(), Failure> {
     let folder = open_out(a.out.as_deref(), &a.case.case, &name, "-compare")?;
     let comparison = {
         let bar = ui.bar();
-        let compare = if a.verify { gudgeon_sim::compare_verified } else { gudgeon_sim::compare };
+        let compare = if a.verify { gudgeon_study::compare_verified } else { gudgeon_study::compare };
         compare(&a.case.case, &a.case.set, &swaps, &mut |p| bar.show(p))?
     };
     let files = gudgeon_report::write_comparison_in(&comparison, folder)?;

@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
+use gudgeon_case::{advice, list};
 use gudgeon_core::schemars::SchemaGenerator;
 use gudgeon_core::{ModelInfo, Registry};
-use gudgeon_sim::load::{advice, list};
 use serde_json::{Map, Value, json};
 
 use crate::args::{DescribeArgs, ModelsArgs};

@@ -14,7 +14,7 @@ pub mod validate;
 use std::path::Path;
 
 use gudgeon_report::Folder;
-use gudgeon_sim::Checked;
+use gudgeon_scene::Checked;
 
 use crate::args::{CaseArgs, out_dir};
 use crate::failure::Failure;
@@ -22,7 +22,7 @@ use crate::ui::Ui;
 
 /// Reads and validates the case; its notes are told at once.
 fn checked(a: &CaseArgs, ui: &Ui) -> Result<Checked, Failure> {
-    let checked = gudgeon_sim::check(&a.case, &a.set)?;
+    let checked = gudgeon_scene::check(&a.case, &a.set)?;
     for note in &checked.notes {
         ui.note(note);
     }

@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
+use gudgeon_case::advice;
 use gudgeon_core::{KindInfo, Registry};
-use gudgeon_sim::load::advice;
 use serde_json::json;
 
 use crate::args::ModelsArgs;

@@ -14,7 +14,7 @@ pub fn run(a: &RunArgs, ui: &Ui) -> Result<(), Failure> {
     let folder = open_out(a.out.as_deref(), &a.case.case, &c.name, "")?;
     let mut result = {
         let bar = ui.bar();
-        let run = if a.verify { gudgeon_sim::run_verified } else { gudgeon_sim::run };
+        let run = if a.verify { gudgeon_scene::run_verified } else { gudgeon_scene::run };
         run(&c, &mut |p| bar.show(p))?
     };
     result.provenance.revision = env!("GUDGEON_REVISION").into();

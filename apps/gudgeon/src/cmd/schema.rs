@@ -1,8 +1,8 @@
 //! `gudgeon schema`
 
+use gudgeon_case::{one_scene_of, published};
 use gudgeon_core::schemars::SchemaGenerator;
-use gudgeon_sim::load::{one_scene_of, published};
-use gudgeon_sim::scene::SCENES;
+use gudgeon_scene::scenes;
 use serde_json::{Map, Value};
 
 use crate::failure::Failure;
@@ -11,7 +11,7 @@ use crate::ui::Ui;
 pub fn schema(ui: &Ui) -> Result<(), Failure> {
     let mut generator = SchemaGenerator::default();
     let scenes: Vec<_> =
-        SCENES.iter().map(|s| (s.name, published(&s.schema(&mut generator).to_value()))).collect();
+        scenes().iter().map(|s| (s.name, published(&(s.schema)(&mut generator).to_value()))).collect();
     let definitions = generator.take_definitions(true);
     let mut case = one_scene_of(&scenes);
     case["$schema"] = "https://json-schema.org/draft/2020-12/schema".into();

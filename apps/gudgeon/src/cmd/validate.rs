@@ -3,9 +3,9 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
+use gudgeon_case::Diagnostic;
 use gudgeon_core::result::{Check, Validated, Verdict};
-use gudgeon_sim::load::Diagnostic;
-use gudgeon_sim::validate::{self, ValidateError};
+use gudgeon_study::validate::{self, ValidateError};
 
 use crate::args::ValidateArgs;
 use crate::failure::Failure;
@@ -61,7 +61,7 @@ fn files(named: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     for p in if named.is_empty() { &default[..] } else { named } {
         if p.is_dir() {
             all.extend(validate::files(p).map_err(|e| unreadable(p, e))?);
-        } else if gudgeon_sim::load::read(p)?.text.contains("[[checks]]") {
+        } else if gudgeon_case::read(p)?.text.contains("[[checks]]") {
             all.push(p.clone());
         } else {
             match validate::file_of(p).map_err(|e| unreadable(p, e))? {

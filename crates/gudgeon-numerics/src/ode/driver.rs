@@ -1,6 +1,6 @@
 //! The step loop shared by all one-step methods: step-size control, breakpoints, failed evaluations, events, observers.
 
-use gudgeon_core::EvalError;
+use crate::EvalError;
 
 use super::events::{Events, ScanEnd};
 use super::{

@@ -5,7 +5,7 @@
 //! leaves a band of rounding width around zero; the steps after such an event are sampled geometrically from their start, so that
 //! a flight much shorter than the step is still seen.
 
-use gudgeon_core::EvalError;
+use crate::EvalError;
 
 use super::driver::Core;
 use super::{Direction, EventAction, Flow, IntegrateError, OdeSystem, Options, Stats, StepView};

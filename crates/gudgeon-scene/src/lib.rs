@@ -1,0 +1,26 @@
+//! What a scene is, and what is the same for all scenes: reading and checking a case, explaining, running, sweeping and verifying it.
+
+mod error;
+mod explanation;
+pub mod foresee;
+mod heading;
+mod integrator;
+mod provenance;
+pub mod run;
+mod scene;
+mod sweep;
+mod sweep_input;
+mod verify;
+mod work_precision;
+
+#[doc(hidden)]
+pub use gudgeon_core::inventory;
+
+pub use error::{Progress, RunError};
+pub use explanation::{ExplainedModel, Explanation, model_use};
+pub use heading::{Headed, Heading};
+pub use integrator::IntegratorName;
+pub use run::{Checked, check, check_source, explain, run, run_verified};
+pub use scene::{Scene, SceneCase, SceneInfo, SceneName, changed, load, read_case, scenes, verify_scenes};
+pub use sweep_input::{Spacing, Sweep};
+pub use work_precision::{MethodSetting, WorkPrecision};

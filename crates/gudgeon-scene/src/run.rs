@@ -1,0 +1,219 @@
+//! From a file to results: the functions behind `check`, `explain` and `run`.
+
+use std::path::Path;
+use std::time::Instant;
+
+use gudgeon_case::{Report, Source, read, scene_of};
+use gudgeon_core::result::{Note, RunResult};
+use gudgeon_core::{BuildError, Registry};
+
+use crate::error::{Progress, RunError};
+use crate::explanation::{ExplainedModel, Explanation};
+use crate::foresee;
+use crate::provenance::{self, provenance};
+use crate::scene::{Scene, SceneCase, load};
+use crate::verify::verify;
+use crate::{sweep, sweep_input};
+
+/// A case that was read, resolved and found to be possible.
+pub struct Checked {
+    /// Name of the case: the file name without its extension.
+    pub name: String,
+    /// Name of the case file without its folder.
+    pub file: String,
+    /// What a person should know although nothing is wrong (keys dropped by a model swap).
+    pub notes: Vec<String>,
+    /// The case.
+    pub case: Box<dyn Scene>,
+}
+
+/// Reads, resolves and validates a case, or the case that the `summary.json` of a run recorded.
+///
+/// # Errors
+/// Everything that is wrong with it, with places.
+pub fn check(path: &Path, overrides: &[String]) -> Result<Checked, Report> {
+    let source = read(path)?;
+    if path.extension().is_some_and(|e| e == "json") {
+        let (file, source, recorded) = provenance::recorded(&source)?;
+        let all: Vec<String> = recorded.iter().chain(overrides).cloned().collect();
+        return check_source(file, source, &all);
+    }
+    let file = path.file_name().map_or_else(|| "case".to_owned(), |s| s.to_string_lossy().into_owned());
+    check_source(file, source, overrides)
+}
+
+/// As [`check`], from a text that was read before.
+///
+/// # Errors
+/// As [`check`].
+pub fn check_source(file: String, source: Source, overrides: &[String]) -> Result<Checked, Report> {
+    let case = load(source, overrides)?;
+    let mut errors = case.legal();
+    errors.extend(sweep_input::legal(case.heading().sweeps));
+    // The file itself comes first: its mistakes would come back with every change.
+    if errors.is_empty() {
+        let sweeps = case.heading().sweeps;
+        errors.extend(foresee::sweeps(case.as_ref(), sweeps));
+        errors.extend(foresee::drawn(case.as_ref(), sweeps));
+    }
+    legal(file, case, &errors)
+}
+
+fn legal(file: String, case: Box<dyn Scene>, errors: &[BuildError]) -> Result<Checked, Report> {
+    if !errors.is_empty() {
+        return Err(case.refuse(errors));
+    }
+    let name =
+        Path::new(&file).file_stem().map_or_else(|| file.clone(), |s| s.to_string_lossy().into_owned());
+    Ok(Checked { name, file, notes: case.notes().to_vec(), case })
+}
+
+impl Checked {
+    /// The same file with more `--set` arguments, its sweeps apart: what a study does for each of its variants.
+    ///
+    /// # Errors
+    /// As [`check`].
+    pub fn with(&self, more: &[String]) -> Result<Self, Report> {
+        let case = self.case.changed(more)?;
+        let errors = case.legal();
+        legal(self.file.clone(), case, &errors)
+    }
+
+    /// Title.
+    #[must_use]
+    pub fn title(&self) -> &str {
+        self.case.heading().title
+    }
+
+    /// The case, when it is one of the scene `C`.
+    #[must_use]
+    pub fn of<C: SceneCase>(&self) -> Option<&C> {
+        self.case.value().downcast_ref()
+    }
+}
+
+/// Explains a case without running it.
+///
+/// # Errors
+/// When the sub-models cannot be built (which [`check`] would have said).
+pub fn explain(c: &Checked) -> Result<Explanation, RunError> {
+    let registry = Registry::collect();
+    let mut told = Explanation {
+        case: c.name.clone(),
+        title: c.title().into(),
+        notes: c.notes.clone(),
+        ..Explanation::default()
+    };
+    let used = c.case.explain(&mut told)?;
+    told.models = used
+        .into_iter()
+        .map(|used| {
+            let info = registry.model(&used.kind, &used.model);
+            let text = |f: fn(&gudgeon_core::ModelInfo) -> &'static str| info.map_or("", f).to_owned();
+            ExplainedModel {
+                summary: text(|i| i.summary),
+                equations: text(|i| i.equations),
+                validity: text(|i| i.validity),
+                used,
+            }
+        })
+        .collect();
+    Ok(told)
+}
+
+/// Runs a case with its sweeps.
+///
+/// # Errors
+/// What stopped it; nothing has been written.
+pub fn run(c: &Checked, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
+    let begin = Instant::now();
+    finish(c, begin, with_sweeps(c.case.as_ref(), progress)?)
+}
+
+/// As [`run`], then refines every numerical setting until the uncertainty of each result is known.
+///
+/// # Errors
+/// As [`run`]; a refinement that cannot be run.
+pub fn run_verified(c: &Checked, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
+    verified(c, run(c, progress)?, progress)
+}
+
+fn verified(
+    c: &Checked,
+    mut result: RunResult,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<RunResult, RunError> {
+    let begin = Instant::now();
+    verify(c.case.as_ref(), &mut result, progress)?;
+    result.seconds.insert("verify".into(), begin.elapsed().as_secs_f64());
+    Ok(result)
+}
+
+/// Runs a case without its sweeps.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_alone(c: &Checked, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
+    let begin = Instant::now();
+    finish(c, begin, once(c.case.as_ref(), progress)?)
+}
+
+/// As [`run_verified`] without the sweeps.
+///
+/// # Errors
+/// As [`run_verified`].
+pub fn run_alone_verified(c: &Checked, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
+    verified(c, run_alone(c, progress)?, progress)
+}
+
+fn finish(c: &Checked, begin: Instant, mut result: RunResult) -> Result<RunResult, RunError> {
+    result.case.clone_from(&c.name);
+    result.gudgeon = env!("CARGO_PKG_VERSION").into();
+    result.provenance = provenance(&c.file, c.case.as_ref());
+    result.solver.notes.extend(c.notes.iter().map(|n| Note::caution("dropped_keys", n)));
+    if let Some(column) = result.series.columns.iter().find(|c| c.values.iter().any(|v| !v.is_finite())) {
+        return Err(RunError::NotANumber(column.name.clone()));
+    }
+    result.seconds.insert("total".into(), begin.elapsed().as_secs_f64());
+    Ok(result)
+}
+
+/// Runs the case without its sweeps.
+///
+/// # Errors
+/// What stopped it.
+fn once(scene: &dyn Scene, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
+    Ok(headed(scene, scene.once(progress)?))
+}
+
+/// A result with what its case says of itself.
+fn headed(scene: &dyn Scene, mut result: RunResult) -> RunResult {
+    let heading = scene.heading();
+    result.title = heading.title.into();
+    result.source = heading.source.into();
+    result.assumptions = heading.assumptions.to_vec();
+    result.scene = scene_of(scene.source(), scene.overrides()).unwrap_or_default();
+    result
+}
+
+/// Runs the case and its sweeps. Where the case itself fails, its sweeps are still run.
+///
+/// # Errors
+/// What stopped it.
+fn with_sweeps(scene: &dyn Scene, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
+    let sweeps = scene.heading().sweeps;
+    let mut result = match once(scene, progress) {
+        Err(e) if !sweeps.is_empty() => {
+            let mut result = RunResult::default();
+            result
+                .solver
+                .notes
+                .push(Note::failure("case", format!("the case as it stands has no result: {e}")));
+            headed(scene, result)
+        }
+        outcome => outcome?,
+    };
+    let points = sweep::run(scene, sweeps, &mut result, progress)?;
+    result.solver.counters.insert("runs".into(), 1 + points as u64);
+    Ok(result)
+}

@@ -1,0 +1,321 @@
+//! What a scene is: the case it reads, what it refuses, what it explains and how it runs.
+//!
+//! A scene is one implementation of [`SceneCase`] and one [`register_scene!`](crate::register_scene) beside it. Sweeps of any input are the
+//! same for all of them.
+
+use std::any::Any;
+use std::borrow::Cow;
+use std::sync::OnceLock;
+
+use gudgeon_case::{Loaded, Refinement, Report, Source, load_source, nearest, scene_of, top_level_keys};
+use gudgeon_core::BuildError;
+use gudgeon_core::result::{ModelUse, RunResult, Value};
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Progress, RunError};
+use crate::explanation::Explanation;
+use crate::heading::{Headed, Heading};
+use crate::work_precision::WorkPrecision;
+
+/// What a case of one scene says and does.
+pub trait SceneCase:
+    Headed + Serialize + DeserializeOwned + JsonSchema + Send + Sync + Sized + 'static
+{
+    /// Everything that is wrong with a case that could be read, sweeps apart.
+    fn legal(loaded: &Loaded<Self>) -> Vec<BuildError>;
+
+    /// The models in use; adds to `told` what runs, what is skipped and which results there are.
+    ///
+    /// # Errors
+    /// The sub-models cannot be built, which [`SceneCase::legal`] would have said.
+    fn explain(loaded: &Loaded<Self>, told: &mut Explanation) -> Result<Vec<ModelUse>, RunError>;
+
+    /// Runs the case once, sweeps apart. Title, source and scene are filled in by the caller.
+    ///
+    /// # Errors
+    /// What stopped it.
+    fn run(loaded: &Loaded<Self>, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError>;
+
+    /// How its numerical settings are refined: those that it and its models declare.
+    fn refinements(loaded: &Loaded<Self>) -> Vec<Refinement> {
+        loaded.refinements()
+    }
+
+    /// Names of all results that a run may tell, known before it; none for a case that is not legal.
+    fn result_names(loaded: &Loaded<Self>) -> Option<Vec<String>>;
+
+    /// Its solvers at their settings, for `bench`; none when the scene has no solvers to choose from.
+    fn work_precision(&self) -> Option<WorkPrecision> {
+        None
+    }
+}
+
+/// A case of any scene with its places in the file. Implemented for every [`SceneCase`] that was read.
+pub trait Scene: Send + Sync {
+    /// Title, source, sweeps.
+    fn heading(&self) -> Heading<'_>;
+    /// The text it was read from.
+    fn source(&self) -> &Source;
+    /// The `--set` arguments that changed it.
+    fn overrides(&self) -> &[String];
+    /// What a person should know although nothing is wrong.
+    fn notes(&self) -> &[String];
+    /// Every value in SI units, changes and defaults filled in.
+    fn resolved(&self) -> serde_json::Value;
+    /// As [`SceneCase::refinements`].
+    fn refinements(&self) -> Vec<Refinement>;
+    /// Everything that is wrong, sweeps apart.
+    fn legal(&self) -> Vec<BuildError>;
+    /// As [`SceneCase::result_names`].
+    fn result_names(&self) -> Option<Vec<String>>;
+    /// A report on errors found after the case was read.
+    fn refuse(&self, errors: &[BuildError]) -> Report;
+    /// The same case with some values changed, read but not built.
+    ///
+    /// # Errors
+    /// Every mistake of the changes.
+    fn changed(&self, set: &[String]) -> Result<Box<dyn Scene>, Report>;
+    /// As [`SceneCase::explain`], with the resolved case.
+    ///
+    /// # Errors
+    /// As [`SceneCase::explain`].
+    fn explain(&self, told: &mut Explanation) -> Result<Vec<ModelUse>, RunError>;
+    /// As [`SceneCase::run`].
+    ///
+    /// # Errors
+    /// As [`SceneCase::run`]; a result that is not a number.
+    fn once(&self, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError>;
+    /// As [`SceneCase::work_precision`].
+    fn work_precision(&self) -> Option<WorkPrecision>;
+    /// The typed case, for callers that know the scene.
+    fn value(&self) -> &dyn Any;
+}
+
+impl<C: SceneCase> Scene for Loaded<C> {
+    fn heading(&self) -> Heading<'_> {
+        self.value.heading()
+    }
+
+    fn source(&self) -> &Source {
+        &self.source
+    }
+
+    fn overrides(&self) -> &[String] {
+        &self.overrides
+    }
+
+    fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    fn resolved(&self) -> serde_json::Value {
+        // What a case was read from can be written: a type that cannot would fail its first test.
+        Self::resolved(self).unwrap_or_default()
+    }
+
+    fn refinements(&self) -> Vec<Refinement> {
+        C::refinements(self)
+    }
+
+    fn legal(&self) -> Vec<BuildError> {
+        C::legal(self)
+    }
+
+    fn result_names(&self) -> Option<Vec<String>> {
+        C::result_names(self)
+    }
+
+    fn refuse(&self, errors: &[BuildError]) -> Report {
+        Self::refuse(self, errors)
+    }
+
+    fn changed(&self, set: &[String]) -> Result<Box<dyn Scene>, Report> {
+        if set.iter().any(|s| s.split('=').next().is_some_and(|path| path.trim() == "scene")) {
+            // Another scene is another type of case.
+            let all: Vec<String> = self.overrides.iter().chain(set).cloned().collect();
+            return load(Source::clone(&self.source), &all);
+        }
+        Ok(Box::new(self.reload::<C>(set)?))
+    }
+
+    fn explain(&self, told: &mut Explanation) -> Result<Vec<ModelUse>, RunError> {
+        told.resolved = Scene::resolved(self);
+        C::explain(self, told)
+    }
+
+    fn once(&self, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
+        let result = C::run(self, progress)?;
+        let not_finite = |(_, v): &(&String, &Value)| !v.value.is_finite();
+        match result.results.iter().find(not_finite) {
+            Some((name, _)) => Err(RunError::NotANumber(name.clone())),
+            None => Ok(result),
+        }
+    }
+
+    fn work_precision(&self) -> Option<WorkPrecision> {
+        self.value.work_precision()
+    }
+
+    fn value(&self) -> &dyn Any {
+        &self.value
+    }
+}
+
+/// Reads a case from a text and `--set` arguments.
+type Read = fn(Source, &[String]) -> Result<Box<dyn Scene>, Report>;
+
+/// A registered scene.
+#[derive(Debug)]
+pub struct SceneInfo {
+    /// Name, as the key `scene` gives it.
+    pub name: &'static str,
+    /// One line.
+    pub summary: &'static str,
+    /// The governing equations, as text.
+    pub equations: &'static str,
+    /// Where it holds and where it does not.
+    pub validity: &'static str,
+    /// Keys into `REFERENCES.bib`.
+    pub references: &'static [&'static str],
+    /// Source file.
+    pub file: &'static str,
+    /// Source line.
+    pub line: u32,
+    /// Reads a case.
+    #[doc(hidden)]
+    pub read: Read,
+    /// JSON schema of a case.
+    #[doc(hidden)]
+    pub schema: fn(&mut SchemaGenerator) -> Schema,
+}
+gudgeon_core::inventory::collect!(SceneInfo);
+
+/// Reads a case of the scene `C`: what [`register_scene!`](crate::register_scene) hands over.
+#[doc(hidden)]
+pub fn read_case<C: SceneCase>(source: Source, overrides: &[String]) -> Result<Box<dyn Scene>, Report> {
+    Ok(Box::new(load_source::<C>(source, overrides)?))
+}
+
+/// Registers a scene, beside the implementation of [`SceneCase`].
+///
+/// ```ignore
+/// register_scene! {
+///     RingPackCase, name: "ring_pack",
+///     summary: "…", equations: "…", validity: "…", references: ["key"],
+/// }
+/// ```
+#[macro_export]
+macro_rules! register_scene {
+    ($case:ty, name: $name:literal, summary: $summary:expr, equations: $equations:expr, validity: $validity:expr,
+     references: [$($r:literal),* $(,)?] $(,)?) => {
+        $crate::inventory::submit! {
+            $crate::SceneInfo {
+                name: $name,
+                summary: $summary,
+                equations: $equations,
+                validity: $validity,
+                references: &[$($r),*],
+                file: file!(),
+                line: line!(),
+                read: $crate::read_case::<$case>,
+                schema: |g| g.subschema_for::<$case>(),
+            }
+        }
+    };
+}
+
+/// All scenes linked into this program, by name.
+pub fn scenes() -> &'static [&'static SceneInfo] {
+    static ALL: OnceLock<Vec<&'static SceneInfo>> = OnceLock::new();
+    ALL.get_or_init(|| {
+        let mut all: Vec<_> = gudgeon_core::inventory::iter::<SceneInfo>().collect();
+        all.sort_by_key(|s| (s.name, s.file, s.line));
+        all
+    })
+}
+
+/// Checks that no two scenes share a name.
+///
+/// # Errors
+/// The places of both.
+pub fn verify_scenes() -> Result<(), String> {
+    match scenes().windows(2).find(|p| p[0].name == p[1].name) {
+        None => Ok(()),
+        Some(p) => Err(format!(
+            "the scene `{}` is registered twice: {}:{} and {}:{}",
+            p[0].name, p[0].file, p[0].line, p[1].file, p[1].line
+        )),
+    }
+}
+
+/// Name of a scene.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct SceneName(String);
+
+impl JsonSchema for SceneName {
+    fn schema_name() -> Cow<'static, str> {
+        "SceneName".into()
+    }
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let word = |s: &&SceneInfo| serde_json::json!({ "const": s.name, "description": s.summary, "type": "string" });
+        let words: Vec<_> = scenes().iter().map(word).collect();
+        schemars::json_schema!({ "description": "Scenes.", "oneOf": words })
+    }
+}
+
+/// Reads a case of the scene it names. One that names none, or none that exists, is read as the scene that knows most of its keys, so
+/// that the rest of what is wrong is reported too.
+///
+/// # Errors
+/// Every mistake of the text and of the overrides.
+pub fn load(source: Source, overrides: &[String]) -> Result<Box<dyn Scene>, Report> {
+    let name = scene_of(&source, overrides);
+    let all = scenes();
+    let named = |n: &str| all.iter().find(|s| s.name == n);
+    let entry = name
+        .as_deref()
+        .and_then(|n| named(n).or_else(|| named(nearest(n, all.iter().map(|s| s.name))?)))
+        .or_else(|| most_alike(&source, all));
+    match entry {
+        Some(s) => (s.read)(source, overrides),
+        None => {
+            let what = "no scene is linked into this program";
+            Err(Report::unreadable(&source.name, gudgeon_case::Diagnostic::new(what)))
+        }
+    }
+}
+
+/// The scene that knows most of the tables of a text.
+fn most_alike<'a>(source: &Source, all: &'a [&'static SceneInfo]) -> Option<&'a &'static SceneInfo> {
+    let keys = top_level_keys(&source.text);
+    let known = |s: &SceneInfo| {
+        let mut generator = SchemaGenerator::default();
+        let _ = (s.schema)(&mut generator);
+        let definitions = generator.take_definitions(true);
+        let own = |k: &&String| {
+            definitions
+                .values()
+                .any(|d| d["properties"]["scene"].is_object() && d["properties"][k.as_str()].is_object())
+        };
+        keys.iter().filter(own).count()
+    };
+    // The first of those that know equally many.
+    all.iter().rev().max_by_key(|s| known(s))
+}
+
+/// The case with some values changed; a refusal in one line.
+///
+/// # Errors
+/// Every mistake of the changes.
+pub fn changed(scene: &dyn Scene, set: &[String]) -> Result<Box<dyn Scene>, RunError> {
+    scene.changed(set).map_err(|report| {
+        RunError::Refused(format!(
+            "{}: {}",
+            set.join(", "),
+            report.diagnostics.iter().map(|d| d.headline()).collect::<Vec<_>>().join("; ")
+        ))
+    })
+}

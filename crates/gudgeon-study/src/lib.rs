@@ -1,0 +1,8 @@
+//! Many runs: comparisons of models and settings, run time against error of solvers, validation against sources.
+
+mod bench;
+mod compare;
+pub mod validate;
+
+pub use bench::bench;
+pub use compare::{compare, compare_verified};

@@ -1,0 +1,326 @@
+//! Comparisons of a case with the values of a source. They stand in files of their own, `validation/<case>.toml`, apart from the case
+//! that a person copies, and run only when they are asked for.
+
+use std::collections::HashMap;
+use std::path::{Component, Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use gudgeon_case::{Loaded, Report, advice, load};
+use gudgeon_core::BuildError;
+use gudgeon_core::result::{Check, Validated, Value, Verdict};
+use gudgeon_scene::{Checked, Progress, RunError, Scene, changed, check, foresee};
+use indexmap::IndexMap;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A file of comparisons.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ValidationFile {
+    /// Case file, relative to the folder of this file.
+    pub case: String,
+    /// Settings of the case and what a source gives for them.
+    pub checks: Vec<CheckCase>,
+}
+
+/// A setting and the results that a source gives for it.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CheckCase {
+    /// Changes to the case, as `--set` takes them; empty: the case as it stands.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub set: Vec<String>,
+    /// A setting to compare with, as `set`: expected are then changes of results from there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub against: Option<Vec<String>>,
+    /// With `against`: changes are told as parts of the value there.
+    #[serde(default)]
+    pub relative: bool,
+    /// Expected results.
+    pub expect: Vec<Expect>,
+}
+
+/// A result of a source.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Expect {
+    /// Name of the result.
+    pub result: String,
+    /// The value, in the unit of the result.
+    pub value: f64,
+    /// Admitted deviation: relative, or absolute when the value is zero.
+    pub tolerance: f64,
+    /// Where the value comes from, and why the tolerance is what it is.
+    pub source: String,
+    /// What the comparison shows.
+    #[serde(default)]
+    pub verdict: Verdict,
+}
+
+/// A file of comparisons that was read, with its case.
+pub struct Comparisons {
+    file: Loaded<ValidationFile>,
+    case: Checked,
+    /// Its path.
+    path: PathBuf,
+}
+
+/// Reads a file of comparisons and its case.
+///
+/// # Errors
+/// Every mistake of the file, of its case and of the changes that its settings make, with places.
+pub fn read(path: &Path) -> Result<Comparisons, Report> {
+    let file = load::<ValidationFile>(path, &[])?;
+    let case_path = tidy(&file.source.files.path(&file.value.case));
+    let case = check(&case_path, &[]).map_err(|report| {
+        let told: Vec<String> = report.diagnostics.iter().map(|d| d.headline()).collect();
+        file.refuse(&[BuildError::at("case", format!("{}: {}", case_path.display(), told.join("; ")))])
+    })?;
+    let errors = legal(&file.value, &case);
+    if errors.is_empty() {
+        Ok(Comparisons { file, case, path: path.to_owned() })
+    } else {
+        Err(file.refuse(&errors))
+    }
+}
+
+/// A path without the steps that lead back.
+fn tidy(path: &Path) -> PathBuf {
+    let mut out = PathBuf::new();
+    for c in path.components() {
+        match c {
+            Component::ParentDir if matches!(out.components().next_back(), Some(Component::Normal(_))) => {
+                out.pop();
+            }
+            Component::CurDir => {}
+            c => out.push(c),
+        }
+    }
+    out
+}
+
+fn legal(file: &ValidationFile, case: &Checked) -> Vec<BuildError> {
+    let mut errors = Vec::new();
+    for (k, c) in file.checks.iter().enumerate() {
+        for (field, set) in [("set", Some(&c.set)), ("against", c.against.as_ref())] {
+            if let Some(set) = set.filter(|s| !s.is_empty())
+                && let Err(e) = changed(case.case.as_ref(), set)
+            {
+                errors.push(BuildError::at(format!("checks.{k}.{field}"), e.to_string()));
+            }
+        }
+        if c.relative && c.against.is_none() {
+            errors.push(BuildError::at(format!("checks.{k}.relative"), "needs `against`"));
+        }
+        for (j, e) in c.expect.iter().enumerate() {
+            if !(e.value.is_finite() && e.tolerance.is_finite() && e.tolerance >= 0.0) {
+                let what = "a value and a tolerance of zero or more are needed";
+                errors.push(BuildError::at(format!("checks.{k}.expect.{j}"), what));
+            }
+        }
+    }
+    errors
+}
+
+/// The files of comparisons below a folder, in the order of their names.
+///
+/// # Errors
+/// A folder that cannot be read.
+pub fn files(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
+    let mut found = Vec::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(f) = folders.pop() {
+        for entry in std::fs::read_dir(&f)? {
+            let entry = entry?;
+            // What a link leads to may lie above.
+            let kind = entry.file_type()?;
+            if kind.is_dir() {
+                folders.push(entry.path());
+            } else if kind.is_file() && entry.path().extension().is_some_and(|e| e == "toml") {
+                found.push(entry.path());
+            }
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
+/// Where a folder of the name `validation` is looked for: beside the folders that a case lies in.
+const FOLDER: &str = "validation";
+
+/// The file of comparisons of a case: in the nearest folder `validation` above it, the one that names it.
+///
+/// # Errors
+/// A folder that cannot be read.
+pub fn file_of(case: &Path) -> std::io::Result<Option<PathBuf>> {
+    let wanted = case.canonicalize()?;
+    for above in wanted.ancestors().skip(1) {
+        let folder = above.join(FOLDER);
+        if !folder.is_dir() {
+            continue;
+        }
+        for f in files(&folder)? {
+            let Ok(text) = load::<ValidationFile>(&f, &[]) else { continue };
+            let named = text.source.files.path(&text.value.case);
+            if named.canonicalize().is_ok_and(|n| n == wanted) {
+                return Ok(Some(f));
+            }
+        }
+    }
+    Ok(None)
+}
+
+/// Results by the setting that gives them.
+type Known<'a> = HashMap<&'a [String], IndexMap<String, Value>>;
+
+impl Comparisons {
+    /// Runs every setting once and compares.
+    ///
+    /// # Errors
+    /// What stopped a run, or a comparison of a result that the case does not have.
+    pub fn run(&self, progress: &mut dyn FnMut(Progress)) -> Result<Validated, RunError> {
+        let scene = self.case.case.as_ref();
+        let checks = &self.file.value.checks;
+        let unknown = compared(scene, checks);
+        if !unknown.is_empty() {
+            return Err(RunError::Refused(self.file.refuse(&unknown).render(false)));
+        }
+        let mut known = Known::new();
+        let mut done = Vec::new();
+        for (k, c) in checks.iter().enumerate() {
+            for set in [Some(&c.set), c.against.as_ref()].into_iter().flatten() {
+                if !known.contains_key(set.as_slice()) {
+                    progress(Progress {
+                        phase: format!("{}: {}", self.case.name, set.join(", ")),
+                        fraction: k as f64 / checks.len() as f64,
+                    });
+                    let out = if set.is_empty() {
+                        scene.once(&mut |_| {})?
+                    } else {
+                        changed(scene, set)?.once(&mut |_| {})?
+                    };
+                    known.insert(set, out.results);
+                }
+            }
+            for (j, e) in c.expect.iter().enumerate() {
+                done.push(compare(c, e, &known).map_err(|e| self.refused(k, j, e))?);
+            }
+        }
+        let heading = scene.heading();
+        Ok(Validated {
+            case: self.case.name.clone(),
+            file: self.path.display().to_string(),
+            title: heading.title.into(),
+            source: heading.source.into(),
+            runs: known.len(),
+            checks: done,
+        })
+    }
+
+    fn refused(&self, check: usize, expect: usize, what: String) -> RunError {
+        let e = BuildError::at(format!("checks.{check}.expect.{expect}.result"), what);
+        RunError::Refused(self.file.refuse(&[e]).render(false))
+    }
+}
+
+fn compare(c: &CheckCase, e: &Expect, known: &Known<'_>) -> Result<Check, String> {
+    let name = e.result.as_str();
+    let find = |set: &[String]| -> Result<&Value, String> {
+        let results = &known[set];
+        results.get(name).ok_or_else(|| {
+            let names: Vec<&str> = results.keys().map(String::as_str).collect();
+            format!("this setting has no result `{name}`; {}", advice(name, &names))
+        })
+    };
+    let own = find(&c.set)?;
+    let (value, unit, result) = match &c.against {
+        None => (own.value, own.unit.clone(), name.to_owned()),
+        Some(from) => {
+            let from = find(from)?.value;
+            if c.relative && from == 0.0 {
+                return Err(format!(
+                    "`{name}` is 0 with the setting to compare with: there is no relative change"
+                ));
+            } else if c.relative {
+                (own.value / from - 1.0, "1".into(), format!("relative change of {name}"))
+            } else {
+                (own.value - from, own.unit.clone(), format!("change of {name}"))
+            }
+        }
+    };
+    Ok(Check {
+        set: c.set.clone(),
+        against: c.against.clone(),
+        result,
+        value,
+        reference: e.value,
+        unit,
+        tolerance: e.tolerance,
+        source: e.source.clone(),
+        verdict: e.verdict,
+    })
+}
+
+/// Results that comparisons name and that the case does not have with their changes.
+fn compared(scene: &dyn Scene, checks: &[CheckCase]) -> Vec<BuildError> {
+    let Some(own) = scene.result_names() else { return Vec::new() };
+    let mut errors = Vec::new();
+    for (k, c) in checks.iter().enumerate() {
+        let names: Vec<String> = c.expect.iter().map(|e| e.result.clone()).collect();
+        if foresee::unknown(&names, &own).next().is_none() {
+            continue;
+        }
+        // Another model may have results of its own; a change that cannot be is another mistake.
+        let Ok(there) = scene.changed(&c.set) else { continue };
+        let Some(there) = there.legal().is_empty().then(|| there.result_names()).flatten() else {
+            continue;
+        };
+        let wrong = foresee::unknown(&names, &there);
+        errors.extend(wrong.map(|(j, e)| e.within(&format!("checks.{k}.expect.{j}.result"))));
+    }
+    errors
+}
+
+/// Why a file of comparisons has no answer.
+#[derive(Debug)]
+pub enum ValidateError {
+    /// It is wrong.
+    Input(Report),
+    /// A run failed.
+    Run(PathBuf, RunError),
+}
+
+/// Runs files of comparisons side by side on `threads` threads. Answers stand in the order of the files, whatever ended first.
+pub fn validate(
+    files: &[PathBuf],
+    threads: usize,
+    progress: &(dyn Fn(Progress) + Sync),
+) -> Vec<Result<Validated, ValidateError>> {
+    let next = AtomicUsize::new(0);
+    let done = AtomicUsize::new(0);
+    let answers: Vec<Mutex<Option<Result<Validated, ValidateError>>>> =
+        files.iter().map(|_| Mutex::new(None)).collect();
+    let work = || {
+        while let Some(k) = Some(next.fetch_add(1, Ordering::Relaxed)).filter(|k| *k < files.len()) {
+            let mut show = |p: Progress| {
+                let fraction = (done.load(Ordering::Relaxed) as f64 + p.fraction) / files.len() as f64;
+                progress(Progress { fraction, ..p });
+            };
+            let answer = read(&files[k])
+                .map_err(ValidateError::Input)
+                .and_then(|c| c.run(&mut show).map_err(|e| ValidateError::Run(files[k].clone(), e)));
+            done.fetch_add(1, Ordering::Relaxed);
+            if let Ok(mut place) = answers[k].lock() {
+                *place = Some(answer);
+            }
+        }
+    };
+    std::thread::scope(|s| {
+        for _ in 1..threads.clamp(1, files.len().max(1)) {
+            s.spawn(work);
+        }
+        work();
+    });
+    answers.into_iter().filter_map(|a| a.into_inner().unwrap_or_else(|e| e.into_inner())).collect()
+}

@@ -1,0 +1,167 @@
+//! The scene `pin`: a gudgeon pin evaluated or sized, and the piston around it.
+
+pub mod case;
+mod draw;
+mod names;
+mod setup;
+mod size;
+mod skirt;
+
+use std::time::Instant;
+
+use gudgeon_core::result::{Column, Figure, FigureKind, ModelUse, RunResult, Series, Skipped, Value};
+use gudgeon_core::{BuildError, EvalError, Registry};
+
+use case::{Method, PinCase};
+use gudgeon_case::Loaded;
+use gudgeon_scene::{Explanation, Progress, RunError, SceneCase, model_use};
+
+impl SceneCase for PinCase {
+    fn legal(loaded: &Loaded<Self>) -> Vec<BuildError> {
+        let case = &loaded.value;
+        let mut errors = Vec::new();
+        if case.pin.is_none() && case.skirt.is_none() && case.crown.is_none() && case.dimensions.is_none() {
+            errors.push(
+                BuildError::new("the case designs nothing")
+                    .help("give one of the tables `pin`, `skirt`, `crown` and `dimensions`"),
+            );
+        }
+        match setup::setup(case, &loaded.source.files) {
+            Ok(s) => errors.extend(s.and_then(|s| size::impossible(case, &s))),
+            Err(e) => errors.extend(e),
+        }
+        errors.extend(skirt::legal(case));
+        errors
+    }
+
+    fn explain(loaded: &Loaded<Self>, told: &mut Explanation) -> Result<Vec<ModelUse>, RunError> {
+        let case = &loaded.value;
+        let mut say = |what: &str, why: &str| told.runs.push(Skipped { what: what.into(), why: why.into() });
+        if case.pin.is_some() {
+            match case.optimise.as_ref().map(|o| o.method) {
+                None => say("evaluation", "`pin` is given with its dimensions"),
+                Some(Method::Exact) => say("exact optimum and its proof", "`optimise` is given"),
+                Some(Method::AsPublished) => say("published search", "`optimise.method` asks for it"),
+            }
+        }
+        for (given, what) in [
+            (case.skirt.is_some(), "skirt"),
+            (case.crown.is_some(), "crown"),
+            (case.dimensions.is_some(), "dimensions"),
+        ] {
+            if given {
+                say(what, "its table is given");
+            }
+        }
+        told.skipped = skipped(case);
+        Ok(models(case))
+    }
+
+    fn result_names(loaded: &Loaded<Self>) -> Option<Vec<String>> {
+        let setup = setup::setup(&loaded.value, &loaded.source.files).ok()?;
+        Some(names::names(&loaded.value, setup.as_ref()))
+    }
+
+    fn run(loaded: &Loaded<Self>, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
+        let case = &loaded.value;
+        let begin = Instant::now();
+        let mut out = RunResult { models: models(case), skipped: skipped(case), ..RunResult::default() };
+        // Nothing here runs over the crank angle unless the load does.
+        out.series = Series {
+            axis: Column { name: "x".into(), unit: "m".into(), values: Vec::new() },
+            columns: Vec::new(),
+        };
+        if let Some(s) = setup::setup(case, &loaded.source.files).map_err(refused)? {
+            out.solver.notes.extend(s.load.notes.iter().cloned());
+            size::run(case, &s, &mut out, progress)?;
+        }
+        skirt::run(case, &mut out)?;
+        if out.solver.method.is_empty() {
+            out.solver.method = "closed forms".into();
+        }
+        out.seconds.insert("solve".into(), begin.elapsed().as_secs_f64());
+        Ok(out)
+    }
+}
+
+/// What is wrong, in one line.
+fn refused(errors: Vec<BuildError>) -> RunError {
+    RunError::Refused(errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))
+}
+
+fn model(source: EvalError) -> RunError {
+    RunError::Model { source }
+}
+
+fn models(case: &PinCase) -> Vec<ModelUse> {
+    let registry = Registry::collect();
+    let mut all = Vec::new();
+    if case.pin.is_some() {
+        if let Some(load) = &case.models.pin_load {
+            all.push(("pin_load", load.typetag_name()));
+            all.extend(load.models());
+        }
+        all.push(("pin_strength", case.models.pin_strength.typetag_name()));
+        if case.models.fatigue.typetag_name() != "off" {
+            all.push(("fatigue", case.models.fatigue.typetag_name()));
+        }
+    }
+    if case.skirt.is_some() {
+        all.push(("profile_curve", case.models.profile_curve.typetag_name()));
+    }
+    all.into_iter().map(|(k, m)| model_use(&registry, k, m)).collect()
+}
+
+fn skipped(case: &PinCase) -> Vec<Skipped> {
+    let mut out = Vec::new();
+    let mut say = |what: &str, why: &str| out.push(Skipped { what: what.into(), why: why.into() });
+    if case.pin.is_some() {
+        if case.optimise.is_none() {
+            say("optimum", "no table `optimise`");
+        }
+        if case.models.fatigue.typetag_name() == "off" {
+            say("fatigue", "`models.fatigue` is off");
+        }
+    } else {
+        say("pin", "no table `pin`");
+    }
+    if case.skirt.is_none() {
+        say("skirt", "no table `skirt`");
+    }
+    out
+}
+
+/// Adds a result.
+fn result(out: &mut RunResult, name: impl Into<String>, value: f64, unit: &str, what: impl Into<String>) {
+    out.results.insert(name.into(), Value { value, unit: unit.into(), what: what.into() });
+}
+
+/// A column: name, SI unit, values.
+fn column(name: &str, unit: &str, values: Vec<f64>) -> Column {
+    Column { name: name.into(), unit: unit.into(), values }
+}
+
+/// Draws `(label, column)` of a table over its axis.
+fn lines(out: &mut RunResult, table: &str, title: &str, hint: &str, lines: &[(&str, &str)]) {
+    let Some(t) = out.tables.get(table) else { return };
+    out.figures.push(Figure {
+        title: title.into(),
+        hint: hint.into(),
+        table: table.into(),
+        kind: FigureKind::Lines {
+            x: t.axis.name.clone(),
+            lines: lines.iter().map(|(l, c)| ((*l).into(), (*c).into())).collect(),
+            log_x: false,
+            log_y: false,
+        },
+    });
+}
+
+gudgeon_scene::register_scene! {
+    PinCase,
+    name: "pin",
+    summary: "gudgeon pin and piston design",
+    equations: "stresses and deformations of the pin by closed forms of its load and dimensions, each within its limit; smallest mass under these limits",
+    validity: "Design rules for a floating pin under its largest load; no contact pressure distribution, no dynamics.",
+    references: ["reimer1984"],
+}

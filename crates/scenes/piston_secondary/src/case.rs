@@ -1,0 +1,380 @@
+//! What a case of the scene `piston_secondary` may say.
+
+use gudgeon_core::kinds::{
+    ContactSpec, CylinderPressureSpec, Film2dSpec, GrooveFrictionSpec, KinematicsSpec, OilSpec,
+    PinFrictionSpec, RoughnessSpec, SecondaryMotionSpec, ShearThinningSpec, SkirtComplianceSpec,
+    SkirtProfileSpec,
+};
+use gudgeon_core::quantity::{
+    Angle, Length, NonNegative, PosAngle, PosAngularSpeed, PosExpansion, PosInertia, PosLength, PosMass,
+    PosPressure, PosRatio, PosTemperature, PosTime, Pressure, Ratio, quantity,
+};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use gudgeon_scene::{IntegratorName, case_file};
+
+case_file! {
+    /// The lateral motion and the tilt of a piston in its bore.
+    pub struct PistonSecondaryCase {
+        /// Crank drive.
+        pub engine: Engine,
+        /// Piston and pin.
+        pub piston: Piston,
+        /// Connecting rod; without mass when absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub rod: Option<Rod>,
+        /// Skirt.
+        pub skirt: Skirt,
+        /// Crankcase.
+        #[serde(default)]
+        pub gas: Gas,
+        /// Sub-models.
+        pub models: Models,
+        /// How the equations are solved.
+        #[serde(default)]
+        pub solver: Solver,
+        /// What is wanted.
+        #[serde(default)]
+        pub outputs: Outputs,
+    }
+}
+
+/// Crank drive.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Engine {
+    /// Crankshaft speed.
+    pub speed: PosAngularSpeed,
+    /// Cylinder bore: the area under the gas.
+    pub bore: PosLength,
+    /// Crank radius.
+    pub crank_radius: PosLength,
+    /// Connecting-rod length between centres.
+    pub rod_length: PosLength,
+    /// Distance of the pin from the axis of the bore, towards the thrust side positive. After top dead centre the crank pin moves to the other
+    /// side.
+    #[serde(default = "zero")]
+    pub pin_offset: Length,
+    /// Distance of the crank axis from the axis of the bore, towards the thrust side positive.
+    #[serde(default = "zero")]
+    pub crank_offset: Length,
+    /// Number of cylinders, for the engine totals.
+    #[serde(default = "one")]
+    #[schemars(range(min = 1, max = 1000))]
+    pub cylinders: u32,
+}
+
+/// Side of the pin on which the centre of gravity stands. Loureiro (2009) gives its distance alone, and none of the two sides meets all his
+/// figures.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum GravitySide {
+    /// Towards the anti-thrust side: between a pin offset to the thrust side and the axis of the bore (the source's `s_G = -1`). The inertia of
+    /// the piston along the bore counteracts the moment of the gas about the pin. The EA111 piston is periodic within 8 cycles, its upper edge
+    /// crosses to the anti-thrust side about firing top dead centre, and lower waves drag less, as in the source; the motored piston of Zhu rests
+    /// on the wrong side.
+    #[default]
+    AntiThrust,
+    /// Towards the thrust side, beyond a pin offset to that side (`s_G = +1`: the source's equation 59 with its own sign of the inertia
+    /// force). Both moments add. The motored piston rests on the side of the source. The mean lateral position of the EA111 piston restores itself over
+    /// some 20 cycles, passes the source's values near his fourth one, and ends nearer to the thrust side with half as much friction again; lower
+    /// waves then drag more.
+    Thrust,
+}
+
+/// Piston and pin.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Piston {
+    /// Mass of the piston without pin.
+    pub mass: PosMass,
+    /// Moment of inertia of the piston about its centre of gravity, for tilting.
+    pub inertia: PosInertia,
+    /// Mass of the pin.
+    pub pin_mass: PosMass,
+    /// Depth of the pin below the upper edge of the skirt.
+    pub pin_depth: Length,
+    /// Depth of the centre of gravity below the upper edge of the skirt.
+    pub gravity_depth: Length,
+    /// Distance of the centre of gravity from the pin across the bore.
+    #[serde(default = "no_distance")]
+    pub gravity_offset: Length<NonNegative>,
+    /// On which side of the pin.
+    #[serde(default)]
+    pub gravity_side: GravitySide,
+}
+
+/// Connecting rod.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Rod {
+    /// Mass.
+    pub mass: PosMass,
+    /// Distance of its centre of gravity from the gudgeon pin.
+    pub gravity_distance: Length<NonNegative>,
+    /// Moment of inertia about its centre of gravity.
+    pub inertia: PosInertia,
+}
+
+/// Skirt.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Skirt {
+    /// Radius; that of the bore less the clearance when absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub radius: Option<PosLength>,
+    /// Height from the upper to the lower edge.
+    pub length: PosLength,
+    /// Angle that the thrust side covers to the left and to the right of its middle, below 90 degrees.
+    pub half_angle_thrust: PosAngle,
+    /// The same of the anti-thrust side; that of the thrust side when absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub half_angle_anti_thrust: Option<PosAngle>,
+    /// Radial clearance: in the running engine, or cold with `thermal`.
+    pub clearance: PosLength,
+    /// Thermal growth that changes a cold clearance.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub thermal: Option<Thermal>,
+    /// Temperature of the oil.
+    #[serde(default = "warm")]
+    pub oil_temperature: PosTemperature,
+    /// Film that smooth surfaces cannot squeeze out. Models of rough surfaces have a limit of their own.
+    #[serde(default = "film_floor")]
+    pub film_floor: PosLength,
+}
+
+/// Thermal growth of skirt and bore.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Thermal {
+    /// Temperature of the skirt.
+    pub skirt: PosTemperature,
+    /// Temperature of the bore.
+    pub bore: PosTemperature,
+    /// Temperature at which the clearance was measured.
+    #[serde(default = "room")]
+    pub measured_at: PosTemperature,
+    /// Expansion coefficient of the skirt.
+    #[serde(default = "aluminium")]
+    pub skirt_expansion: PosExpansion,
+    /// Expansion coefficient of the bore.
+    #[serde(default = "cast_iron")]
+    pub bore_expansion: PosExpansion,
+}
+
+/// Crankcase.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Gas {
+    /// Pressure in the crankcase, and at all edges of the skirt.
+    pub crankcase_pressure: PosPressure,
+    /// Pressure at which films cavitate; that of the crankcase when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cavitation_pressure: Option<Pressure>,
+}
+
+impl Default for Gas {
+    fn default() -> Self {
+        Self { crankcase_pressure: quantity(101_325.0), cavitation_pressure: None }
+    }
+}
+
+/// Sub-models.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Models {
+    /// Piston motion along the bore.
+    #[serde(default = "default_kinematics")]
+    pub kinematics: Box<dyn KinematicsSpec>,
+    /// Cylinder pressure.
+    pub cylinder_pressure: Box<dyn CylinderPressureSpec>,
+    /// Motion across the bore.
+    #[serde(default = "default_secondary_motion")]
+    pub secondary_motion: Box<dyn SecondaryMotionSpec>,
+    /// Film of either side. `half_sommerfeld` and `full_sommerfeld` cavitation is found by superposition, much faster than the others.
+    #[serde(default = "default_film_2d")]
+    pub film_2d: Box<dyn Film2dSpec>,
+    /// Rough or wavy surfaces; the skirt is the body.
+    #[serde(default = "default_roughness")]
+    pub roughness: Box<dyn RoughnessSpec>,
+    /// Solid contact of skirt and liner. No default: it needs the roughness of the surfaces.
+    pub contact: Box<dyn ContactSpec>,
+    /// Shape of the skirt.
+    #[serde(default = "default_skirt_profile")]
+    pub skirt_profile: Box<dyn SkirtProfileSpec>,
+    /// How the skirt yields.
+    #[serde(default = "default_skirt_compliance")]
+    pub skirt_compliance: Box<dyn SkirtComplianceSpec>,
+    /// Friction of the gudgeon pin.
+    #[serde(default = "default_pin_friction")]
+    pub pin_friction: Box<dyn PinFrictionSpec>,
+    /// Friction of the rings in their grooves.
+    #[serde(default = "default_groove_friction")]
+    pub groove_friction: Box<dyn GrooveFrictionSpec>,
+    /// Lubricant.
+    pub oil: Box<dyn OilSpec>,
+    /// Fall of its viscosity with the shear rate of sliding.
+    #[serde(default = "default_shear_thinning")]
+    pub shear_thinning: Box<dyn ShearThinningSpec>,
+}
+
+/// How the equations are solved.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Solver {
+    /// Method.
+    pub method: Method,
+    /// Time integrator of the implicit method.
+    pub integrator: IntegratorName,
+    /// Error per step, relative to the smallest gap.
+    #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1, "when": { "method": "implicit" } }))]
+    pub tolerance: PosRatio,
+    /// Distance from the periodic motion that is admitted, as part of the clearance.
+    #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1, "when": { "method": "implicit" } }))]
+    pub periodicity: PosRatio,
+    /// Most cycles of the search for the periodic motion.
+    #[schemars(range(max = 1000))]
+    pub max_cycles: u32,
+    /// This many cycles from the start, the last one shown, whether or not it is periodic; 0: until the motion is periodic.
+    #[schemars(range(max = 1000))]
+    pub cycles: u32,
+    /// Film evaluations after which a search is given up, ten to twenty seconds on 20 x 16 intervals; each search of a run (rigid, coarse, the skirt as
+    /// it is) counts its own. A motion takes some thousand where its films follow by superposition, some hundred thousand where they do not.
+    #[schemars(range(max = 1_000_000_000))]
+    pub max_film_evaluations: u64,
+    /// Step of `backward_euler`.
+    #[schemars(extend("x-refine" = { "group": "time step", "factor": 0.5, "when": { "method": "backward_euler" } }))]
+    pub step: PosAngle,
+    /// Displacement of the upper edge at the start, towards the anti-thrust side.
+    pub start_top: Length,
+    /// Displacement of the lower edge at the start.
+    pub start_bottom: Length,
+    /// Intervals of the film along the height of the skirt.
+    #[schemars(range(min = 2, max = 1000), extend("x-refine" = { "group": "film grid", "factor": 2, "levels": 2 }))]
+    pub intervals_along: u32,
+    /// Intervals of the film across each side. With an even number, one half of a symmetric side is solved.
+    #[schemars(range(min = 2, max = 1000), extend("x-refine" = { "group": "film grid", "factor": 2, "levels": 2 }))]
+    pub intervals_across: u32,
+    /// How much closer nodes lie at half the height than in the mean, 0 to 0.5.
+    pub crowding: Ratio,
+    /// Distance of the rows in which solid contact is summed, the first one at the upper edge: the pitch of machining grooves.
+    pub contact_pitch: PosLength,
+    /// Intervals of a row.
+    #[schemars(range(min = 2, max = 1000), extend("x-refine" = { "group": "contact grid", "factor": 2 }))]
+    pub contact_intervals: u32,
+    /// Part of the gap by which the pressures on a rigid skirt may move the surface of one that yields for it to be taken for rigid; 0: never.
+    pub rigid_below: Ratio<NonNegative>,
+    /// Time in which an elastic shape without load comes back to rest: a little inner damping, without which nothing would hold a surface under
+    /// a cavity. What yields lags by it behind its pressure, 0.015 deg of crank angle at 2500 rpm by the default.
+    pub shape_relaxation: PosTime,
+}
+
+impl Default for Solver {
+    fn default() -> Self {
+        Self {
+            method: Method::Implicit,
+            integrator: IntegratorName::Rodas,
+            tolerance: quantity(1e-3),
+            periodicity: quantity(1e-4),
+            max_cycles: 60,
+            cycles: 0,
+            max_film_evaluations: 300_000,
+            step: quantity(0.5f64.to_radians()),
+            start_top: quantity(0.0),
+            start_bottom: quantity(0.0),
+            intervals_along: 20,
+            intervals_across: 16,
+            crowding: quantity(0.0),
+            contact_pitch: quantity(0.25e-3),
+            contact_intervals: 20,
+            rigid_below: quantity(0.02),
+            shape_relaxation: quantity(1e-6),
+        }
+    }
+}
+
+/// Methods.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Method {
+    /// Adaptive L-stable integration with error control; the cycle is closed by a periodic-orbit solver.
+    #[default]
+    Implicit,
+    /// Backward Euler in equal steps of crank angle, cycle after cycle: the simplest scheme that stands the stiffness of the films.
+    BackwardEuler,
+    /// The published scheme: an explicit Runge-Kutta method on accelerations behind a low-pass filter. Refused: it cannot run, because the
+    /// films damp the motion at 1e6 to 5e7 1/s, and the filter in the loop makes that damping an instability at any step.
+    AsPublished,
+}
+
+/// What is wanted.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Outputs {
+    /// Names of results; `all` for every one that the scene has. What no wanted result needs is not computed.
+    pub results: Vec<String>,
+    /// Crank angle between rows of the series. Results do not depend on it.
+    pub series_step: PosAngle,
+    /// Crank angles at which positions and forces are results of their own: `e_top@390`, `side_force@390`, …
+    #[schemars(length(max = 1000))]
+    pub at: Vec<Angle>,
+    /// Crank angle between the maps of film pressure that are kept; they are not kept when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub map_step: Option<PosAngle>,
+}
+
+impl Default for Outputs {
+    fn default() -> Self {
+        Self {
+            results: vec!["all".into()],
+            series_step: quantity(1f64.to_radians()),
+            at: Vec::new(),
+            map_step: Some(quantity(5f64.to_radians())),
+        }
+    }
+}
+
+const fn one() -> u32 {
+    1
+}
+fn zero() -> Length {
+    quantity(0.0)
+}
+fn no_distance() -> Length<NonNegative> {
+    quantity(0.0)
+}
+fn warm() -> PosTemperature {
+    quantity(373.15)
+}
+fn room() -> PosTemperature {
+    quantity(293.15)
+}
+fn film_floor() -> PosLength {
+    quantity(1e-7)
+}
+fn aluminium() -> PosExpansion {
+    quantity(21e-6)
+}
+fn cast_iron() -> PosExpansion {
+    quantity(11e-6)
+}
+
+gudgeon_core::default_model! {
+    default_kinematics: dyn KinematicsSpec = "exact_slider_crank";
+    default_secondary_motion: dyn SecondaryMotionSpec = "quasi_static";
+    default_roughness: dyn RoughnessSpec = "off";
+    default_skirt_profile: dyn SkirtProfileSpec = "cylindrical";
+    default_skirt_compliance: dyn SkirtComplianceSpec = "rigid";
+    default_pin_friction: dyn PinFrictionSpec = "off";
+    default_groove_friction: dyn GrooveFrictionSpec = "off";
+    default_shear_thinning: dyn ShearThinningSpec = "off";
+}
+
+fn default_film_2d() -> Box<dyn Film2dSpec> {
+    let spec = serde_json::json!({ "model": "direct", "cavitation": "half_sommerfeld" });
+    match serde_json::from_value(spec) {
+        Ok(m) => m,
+        Err(e) => panic!("built-in default `direct`: {e}"),
+    }
+}

@@ -1,0 +1,226 @@
+//! What is told of one instant of a cycle.
+
+use gudgeon_core::EvalError;
+use gudgeon_core::kinds::Lateral;
+
+use super::assemble::Assembly;
+use super::trajectory::{Between, Trajectory};
+use gudgeon_scene::RunError;
+
+/// Columns of the series: name and unit.
+pub const COLUMNS: [(&str, &str); 33] = [
+    ("piston.v", "m/s"),
+    ("piston.a", "m/s2"),
+    ("cylinder.p", "Pa"),
+    ("skirt.e_top", "m"),
+    ("skirt.e_bottom", "m"),
+    ("skirt.e_top_rate", "m/s"),
+    ("skirt.e_bottom_rate", "m/s"),
+    ("skirt.tilt", "rad"),
+    ("skirt.side_force", "N"),
+    ("skirt.side_moment", "N m"),
+    ("skirt.friction_force", "N"),
+    ("skirt.friction_power", "W"),
+    ("skirt.lateral_energy", "J"),
+    ("rod.side_force", "N"),
+    ("pin.moment", "N m"),
+    ("rings.side_force", "N"),
+    ("inertia.force", "N"),
+    ("thrust.film_force", "N"),
+    ("thrust.contact_force", "N"),
+    ("thrust.viscous_force", "N"),
+    ("thrust.rubbing_force", "N"),
+    ("thrust.h_min", "m"),
+    ("thrust.p_max", "Pa"),
+    ("anti_thrust.film_force", "N"),
+    ("anti_thrust.contact_force", "N"),
+    ("anti_thrust.viscous_force", "N"),
+    ("anti_thrust.rubbing_force", "N"),
+    ("anti_thrust.h_min", "m"),
+    ("anti_thrust.p_max", "Pa"),
+    ("skirt.oil_up", "m3/s"),
+    ("skirt.oil_down", "m3/s"),
+    ("skirt.oil_aside", "m3/s"),
+    ("skirt.yield", "m"),
+];
+/// Of these, the ones of inertia across the bore, of oil flow and of yielding, which are not always there.
+pub const INERTIA: usize = 16;
+/// Flow of oil over the edges.
+pub const OIL: std::ops::Range<usize> = 29..32;
+/// Yielding of the skirt.
+pub const YIELD: usize = 32;
+
+/// Values of all columns at an instant.
+pub type Row = [f64; COLUMNS.len()];
+
+/// Where a column stands.
+#[must_use]
+pub fn index(name: &str) -> usize {
+    COLUMNS.iter().position(|c| c.0 == name).unwrap_or(0)
+}
+
+/// Distance from a crank angle at which one of its sides is looked at \[rad\]: where the gas or the sense of motion jumps.
+const ASIDE: f64 = 1e-9;
+
+/// A cycle and the piston that made it, looked at.
+pub struct Look<'a> {
+    /// The piston, at the place looked at last.
+    pub a: &'a mut Assembly,
+    /// The cycle.
+    pub trajectory: &'a Trajectory,
+    flows: bool,
+    x: Vec<f64>,
+    w: Vec<f64>,
+    /// Crank angle looked at last \[rad\].
+    theta: f64,
+}
+
+impl<'a> Look<'a> {
+    /// At `trajectory` of `a`; `flows`: with the oil that crosses the edges.
+    #[must_use]
+    pub fn new(a: &'a mut Assembly, trajectory: &'a Trajectory, flows: bool) -> Self {
+        let n = a.piston.coordinates();
+        Self { a, trajectory, flows, x: vec![0.0; n], w: vec![0.0; n], theta: 0.0 }
+    }
+
+    /// What stopped a look.
+    #[must_use]
+    pub fn stopped(&self, source: EvalError) -> RunError {
+        RunError::Eval { theta_deg: self.theta.to_degrees(), source }
+    }
+
+    /// Goes to the coordinates at `t`.
+    fn go(&mut self, t: f64) {
+        self.theta = t;
+        let c = self.a.clearance;
+        for (i, x) in self.x.iter_mut().enumerate() {
+            *x = c * self.trajectory.state(t, i);
+        }
+    }
+
+    /// Displacements of the upper and the lower edge at `t` \[m\].
+    #[must_use]
+    pub fn edges(&self, t: f64) -> [f64; 2] {
+        [0, 1].map(|i| self.a.clearance * self.trajectory.state(t, i))
+    }
+
+    /// Smallest gap on each side at `t` \[m\]; no film is solved.
+    ///
+    /// # Errors
+    /// A gap that is none.
+    pub fn gaps(&mut self, t: f64) -> Result<[f64; 2], EvalError> {
+        self.go(t);
+        let speed = self.a.instant(t).speed;
+        self.a.piston.gaps(&self.x, speed)
+    }
+
+    /// Smallest gap where solid contact is summed, less the range of contact, on each side at `t` \[m\].
+    pub fn contact_gaps(&mut self, t: f64) -> [f64; 2] {
+        self.go(t);
+        self.a.piston.contact_gaps(&self.x)
+    }
+
+    /// Sets the piston in motion as at `t`, just before it (`side` below 0), there, or just after it.
+    ///
+    /// # Errors
+    /// A film that cannot be solved, no balance.
+    fn move_as(&mut self, t: f64, side: f64) -> Result<gudgeon_skirt::Instant, EvalError> {
+        self.go(t);
+        let (n, omega) = (self.x.len(), self.a.omega());
+        let speed = self.a.clearance * omega;
+        let now = self.a.instant(t + side * ASIDE);
+        let mut unused = [0.0; 2];
+        let at_end = self.trajectory.end_at(t).map(|k| self.trajectory.at_end(k));
+        let piston = &mut self.a.piston;
+        match (self.a.lateral, self.trajectory.between) {
+            (Lateral::Held { .. }, _) => {
+                self.w.fill(0.0);
+                piston.place(&now, &self.x)?;
+            }
+            (_, Between::Nothing) => {
+                for (i, w) in self.w.iter_mut().enumerate() {
+                    *w = speed * at_end.map_or_else(|| self.trajectory.state(t, n + i), |y| y[n + i]);
+                }
+                piston.place(&now, &self.x)?;
+            }
+            (Lateral::QuasiStatic, _) => piston.rates(&now, &self.x, None, &mut self.w, &mut unused)?,
+            (Lateral::Inertial, _) => {
+                // The films would see the error of a velocity, also of one at the end of a step; that of an acceleration they do not.
+                let acceleration = [0, 1].map(|i| speed * omega * self.trajectory.slope(t, n + i));
+                match piston.rates_under(&now, &self.x, acceleration, &mut self.w) {
+                    Err(e) if e.is_recoverable() => {
+                        let v = [0, 1].map(|i| speed * self.trajectory.state(t, n + i));
+                        piston.rates(&now, &self.x, Some(&v), &mut self.w, &mut unused)?;
+                    }
+                    done => done?,
+                }
+            }
+        }
+        Ok(now)
+    }
+
+    /// Pressures of both sides at `t`, above that of the crankcase, at the nodes of the whole sides \[Pa\].
+    ///
+    /// # Errors
+    /// A film that cannot be solved.
+    pub fn pressures(&mut self, t: f64) -> Result<[Vec<f64>; 2], EvalError> {
+        self.row(t, 0.0)?;
+        Ok([0, 1].map(|k: usize| self.a.piston.sides[k].pressure()))
+    }
+
+    /// The row at `t`, just before it (`side` below 0), there, or just after it.
+    ///
+    /// # Errors
+    /// A film that cannot be solved, no balance.
+    pub fn row(&mut self, t: f64, side: f64) -> Result<Row, EvalError> {
+        let now = self.move_as(t, side)?;
+        let (x, w) = (&self.x, &self.w);
+        let s = self.a.piston.summary(&now, x, w)?;
+        let friction = s.friction();
+        let moment: f64 = s.film_moment.iter().chain(&s.contact_moment).sum();
+        let mut oil = [0.0; 3];
+        if self.flows {
+            let own = self.a.piston.oil_flow(&now, w)?;
+            oil.iter_mut().zip(own).for_each(|(o, f)| *o += f);
+        }
+        let yields = x[2..].iter().fold(0.0_f64, |y, q| y.max(q.abs()));
+        let mut row = [
+            now.speed,
+            now.acceleration,
+            now.pressure + self.a.p_crankcase,
+            x[0],
+            x[1],
+            w[0],
+            w[1],
+            (x[0] - x[1]) / self.a.piston.body.length,
+            s.side_force(),
+            moment,
+            friction,
+            -friction * now.speed,
+            self.a.piston.lateral_energy([w[0], w[1]]),
+            s.rod,
+            s.pin_moment,
+            s.groove,
+            s.net[0],
+            s.film[0],
+            s.contact[0],
+            s.film_friction[0],
+            s.contact_friction[0],
+            s.gap[0],
+            s.p_max[0],
+            s.film[1],
+            s.contact[1],
+            s.film_friction[1],
+            s.contact_friction[1],
+            s.gap[1],
+            s.p_max[1],
+            oil[0],
+            oil[1],
+            oil[2],
+            yields,
+        ];
+        // Adding zero turns -0 into 0.
+        row.iter_mut().for_each(|v| *v += 0.0);
+        Ok(row)
+    }
+}

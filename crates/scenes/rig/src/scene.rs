@@ -1,0 +1,79 @@
+//! The scene `rig`: one sub-model on a test bench.
+
+use std::time::Instant;
+
+use gudgeon_core::kinds::{RigCtx, RigOut};
+use gudgeon_core::result::{ModelUse, RunResult, Skipped};
+use gudgeon_core::{BuildError, EvalError, Registry};
+
+use crate::case::RigCase;
+use gudgeon_case::Loaded;
+use gudgeon_scene::{Explanation, Progress, RunError, SceneCase, model_use};
+
+impl SceneCase for RigCase {
+    fn legal(loaded: &Loaded<Self>) -> Vec<BuildError> {
+        match loaded.value.rig.build(&RigCtx { files: &loaded.source.files }) {
+            Ok(_) => Vec::new(),
+            Err(e) => e.into_iter().map(|e| e.within("rig")).collect(),
+        }
+    }
+
+    fn explain(loaded: &Loaded<Self>, told: &mut Explanation) -> Result<Vec<ModelUse>, RunError> {
+        let models = models(&loaded.value);
+        let stands =
+            |(k, m): &(&str, &str)| Skipped { what: format!("{k}/{m}"), why: "stands on the bench".into() };
+        told.runs = models.iter().map(stands).collect();
+        let registry = Registry::collect();
+        Ok(models.into_iter().map(|(k, m)| model_use(&registry, k, m)).collect())
+    }
+
+    fn result_names(loaded: &Loaded<Self>) -> Option<Vec<String>> {
+        Some(loaded.value.rig.build(&RigCtx { files: &loaded.source.files }).ok()?.results())
+    }
+
+    fn run(loaded: &Loaded<Self>, _: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
+        let case = &loaded.value;
+        let begin = Instant::now();
+        let refused = |e: Vec<BuildError>| {
+            RunError::Refused(e.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))
+        };
+        let mut rig = case.rig.build(&RigCtx { files: &loaded.source.files }).map_err(refused)?;
+        let mut out = RigOut::default();
+        rig.run(&mut out).map_err(|source: EvalError| RunError::Model { source })?;
+        let registry = Registry::collect();
+        let mut result = RunResult {
+            models: models(case).into_iter().map(|(k, m)| model_use(&registry, k, m)).collect(),
+            results: out.results,
+            balance: out.balance,
+            series: out.series,
+            tables: out.tables,
+            figures: out.figures,
+            ..RunResult::default()
+        };
+        result.solver.method = case.rig.typetag_name().into();
+        result.solver.counters = out.counters;
+        result.solver.notes = out.notes;
+        result.seconds.insert("solve".into(), begin.elapsed().as_secs_f64());
+        Ok(result)
+    }
+}
+
+/// The models on the bench, in the order the rig names them, the rig itself first.
+fn models(case: &RigCase) -> Vec<(&'static str, &'static str)> {
+    let mut all = vec![("rig", case.rig.typetag_name())];
+    for m in case.rig.models() {
+        if !all.contains(&m) {
+            all.push(m);
+        }
+    }
+    all
+}
+
+gudgeon_scene::register_scene! {
+    RigCase,
+    name: "rig",
+    summary: "one sub-model on a test bench",
+    equations: "those of the sub-model under prescribed conditions",
+    validity: "That of the sub-model.",
+    references: [],
+}

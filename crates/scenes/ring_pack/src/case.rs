@@ -1,0 +1,571 @@
+//! What a case file may say. Every field's doc comment is its documentation in `gudgeon schema`.
+
+use gudgeon_core::face::Face;
+use gudgeon_core::kinds::{
+    ContactSpec, CylinderPressureSpec, FilmTemperatureSpec, FlankDampingSpec, FlankFrictionSpec, GasFlowSpec,
+    HydrodynamicsSpec, KinematicsSpec, OilSpec, OilTransportSpec, RingMotionSpec,
+};
+use gudgeon_core::quantity::{
+    Angle, Fraction, Length, NonNegative, PosAngle, PosAngularSpeed, PosArea, PosExpansion, PosForce,
+    PosGasConstant, PosLength, PosMass, PosPressure, PosRatio, PosTemperature, PosVolume, Ratio, quantity,
+};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+pub use crate::limits::Limits;
+use gudgeon_scene::{IntegratorName, case_file};
+
+case_file! {
+    /// A piston ring pack in one cylinder.
+    pub struct RingPackCase {
+        /// Engine.
+        pub engine: Engine,
+        /// Piston, from the crown down.
+        pub piston: Piston,
+        /// Cylinder liner.
+        #[serde(default)]
+        pub liner: Liner,
+        /// Gas and crankcase.
+        #[serde(default)]
+        pub gas: Gas,
+        /// Rings, from the crown down.
+        #[schemars(length(max = 20))]
+        pub rings: Vec<Ring>,
+        /// Sub-models.
+        pub models: Models,
+        /// Conventions in which published programs differ. The defaults are the physically correct ones.
+        #[serde(default)]
+        pub conventions: Conventions,
+        /// How the equations are solved.
+        #[serde(default)]
+        pub solver: Solver,
+        /// What is wanted.
+        #[serde(default)]
+        pub outputs: Outputs,
+    }
+}
+
+/// Engine.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Engine {
+    /// Crankshaft speed.
+    pub speed: PosAngularSpeed,
+    /// Cylinder bore.
+    pub bore: PosLength,
+    /// Twice the crank radius.
+    pub stroke: PosLength,
+    /// Connecting-rod length between centres.
+    pub rod_length: PosLength,
+    /// Offset of the pin's line of motion from the crank axis (pin offset plus crank offset).
+    #[serde(default = "zero_length")]
+    pub offset: Length,
+    /// Number of cylinders, for the engine totals.
+    #[serde(default = "one")]
+    #[schemars(range(min = 1, max = 1000))]
+    pub cylinders: u32,
+}
+
+/// Piston.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Piston {
+    /// Lands above each ring, top land first: as many as there are rings.
+    #[schemars(length(max = 20))]
+    pub lands: Vec<Land>,
+    /// Height of the middle of ring 1 above the gudgeon pin. Needed when the liner is distorted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pin_to_ring1: Option<Length>,
+}
+
+/// A piston land, running (hot) dimensions.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Land {
+    /// Diameter. Give this or `clearance`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub diameter: Option<PosLength>,
+    /// Radial clearance to the bore. Give this or `diameter`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub clearance: Option<PosLength>,
+    /// Axial height. Gives the gas volume with the clearance, unless `volume` is given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub height: Option<PosLength>,
+    /// Gas volume.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub volume: Option<PosVolume>,
+    /// Gas temperature (that of the piston surface).
+    pub temperature: PosTemperature,
+}
+
+/// Cylinder liner.
+#[derive(Debug, Clone, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Liner {
+    /// Growth of the bore along the liner, thermal growth included; linear between the points.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub distortion: Vec<Distortion>,
+}
+
+/// Bore growth at one height.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Distortion {
+    /// Height above the gudgeon pin at top dead centre.
+    pub position: Length,
+    /// Growth of the diameter.
+    pub diametral: Length,
+}
+
+/// Gas and crankcase.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Gas {
+    /// Ratio of specific heats.
+    pub gamma: PosRatio,
+    /// Specific gas constant.
+    pub gas_constant: PosGasConstant,
+    /// Crankcase pressure.
+    pub crankcase_pressure: PosPressure,
+    /// Crankcase gas temperature.
+    pub crankcase_temperature: PosTemperature,
+    /// Gas temperature at the blow-by meter; turns a mass flow into litres per minute.
+    pub meter_temperature: PosTemperature,
+    /// Pressure at the blow-by meter.
+    pub meter_pressure: PosPressure,
+}
+
+impl Default for Gas {
+    fn default() -> Self {
+        Self {
+            gamma: quantity(1.4),
+            gas_constant: quantity(287.0),
+            crankcase_pressure: quantity(101_325.0),
+            crankcase_temperature: quantity(373.15),
+            meter_temperature: quantity(298.15),
+            meter_pressure: quantity(101_325.0),
+        }
+    }
+}
+
+/// A ring with its groove.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Ring {
+    /// Name for reports.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub name: String,
+    /// Kind of ring.
+    #[serde(default)]
+    pub design: RingDesign,
+    /// Mass of the whole ring.
+    pub mass: PosMass,
+    /// Axial thickness; of one rail for a three-piece oil ring.
+    pub height: PosLength,
+    /// Radial thickness.
+    pub width: PosLength,
+    /// Tangential (closing) force of the whole ring.
+    pub tangential_force: PosForce,
+    /// End gap in the running engine at the undistorted bore. Give this, or `cold_gap` with temperature and expansion.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gap: Option<PosLength>,
+    /// End gap in the undistorted bore at 20 degC.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cold_gap: Option<PosLength>,
+    /// Running temperature of the ring (closes a cold gap).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub temperature: Option<PosTemperature>,
+    /// Thermal expansion coefficient of the ring (closes a cold gap).
+    #[serde(default = "cast_iron_expansion")]
+    pub expansion: PosExpansion,
+    /// Flow area of the end gap, instead of gap times land clearance.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gap_area: Option<PosArea>,
+    /// Running face.
+    pub face: Face,
+    /// Groove.
+    pub groove: Groove,
+    /// Equivalent leak height between running face and liner.
+    #[serde(default = "zero_nn")]
+    pub face_leak: Length<NonNegative>,
+    /// Models of this ring alone, instead of those of the pack.
+    #[serde(default)]
+    pub models: RingModels,
+}
+
+/// Kinds of ring.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum RingDesign {
+    /// One running face, gas behind the ring.
+    #[default]
+    Compression,
+    /// Oil ring with two lands; the space between them and the groove drain to below the ring.
+    TwinLand,
+    /// Two rails on an expander: one rail is modelled with half the force and counted twice; no axial clearance.
+    ThreePiece,
+}
+
+/// A ring groove, running dimensions.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Groove {
+    /// Axial height at the outer diameter of the piston. Gives the axial clearance, unless `clearance` is given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub height: Option<PosLength>,
+    /// Axial clearance of the ring.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub clearance: Option<PosLength>,
+    /// Diameter of the groove root. Gives the volume behind the ring, unless `back_volume` is given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub root_diameter: Option<PosLength>,
+    /// Volume behind the ring, axial clearance included.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub back_volume: Option<PosVolume>,
+    /// Inclination of the upper flank, positive when the groove opens outwards (keystone).
+    #[serde(default = "zero_angle")]
+    pub upper_angle: Angle,
+    /// Inclination of the lower flank.
+    #[serde(default = "zero_angle")]
+    pub lower_angle: Angle,
+    /// Gas temperature behind the ring.
+    pub temperature: PosTemperature,
+    /// Equivalent leak height of the ring seated on the upper flank.
+    #[serde(default = "zero_nn")]
+    pub leak_upper: Length<NonNegative>,
+    /// Equivalent leak height of the ring seated on the lower flank.
+    #[serde(default = "zero_nn")]
+    pub leak_lower: Length<NonNegative>,
+    /// Oil-filled fraction of the flanks.
+    #[serde(default = "half")]
+    pub oil_fill: Ratio<Fraction>,
+    /// Chamfer of the upper groove edge.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub chamfer_upper: Option<ChamferShape>,
+    /// Chamfer of the lower groove edge.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub chamfer_lower: Option<ChamferShape>,
+}
+
+/// A chamfer of a groove edge; opens an area `length² tan(angle) / 2` at the end gap of a ring seated on that side.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ChamferShape {
+    /// Angle to the flank.
+    pub angle: PosAngle,
+    /// Radial length.
+    pub length: PosLength,
+}
+
+/// Models of one ring.
+#[derive(Debug, Clone, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct RingModels {
+    /// Axial motion of this ring.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ring_motion: Option<Box<dyn RingMotionSpec>>,
+    /// Film of this ring.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hydrodynamics: Option<Box<dyn HydrodynamicsSpec>>,
+    /// Solid contact of this ring.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contact: Option<Box<dyn ContactSpec>>,
+}
+
+/// Models of the pack.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Models {
+    /// Piston motion.
+    #[serde(default = "default_kinematics")]
+    pub kinematics: Box<dyn KinematicsSpec>,
+    /// Cylinder pressure.
+    pub cylinder_pressure: Box<dyn CylinderPressureSpec>,
+    /// Gas flow between lands.
+    #[serde(default = "default_gas_flow")]
+    pub gas_flow: Box<dyn GasFlowSpec>,
+    /// Axial motion of the rings.
+    #[serde(default = "default_ring_motion")]
+    pub ring_motion: Box<dyn RingMotionSpec>,
+    /// Oil between ring and groove flanks.
+    #[serde(default = "default_flank_damping")]
+    pub flank_damping: Box<dyn FlankDampingSpec>,
+    /// Friction of the groove flanks against radial motion.
+    #[serde(default = "default_flank_friction")]
+    pub flank_friction: Box<dyn FlankFrictionSpec>,
+    /// Film under the ring faces.
+    #[serde(default = "default_hydrodynamics")]
+    pub hydrodynamics: Box<dyn HydrodynamicsSpec>,
+    /// Oil on the liner and under the faces.
+    #[serde(default = "default_oil_transport")]
+    pub oil_transport: Box<dyn OilTransportSpec>,
+    /// Solid contact of ring faces and liner. No default: it needs the roughness of the surfaces.
+    pub contact: Box<dyn ContactSpec>,
+    /// Lubricant.
+    pub oil: Box<dyn OilSpec>,
+    /// Temperature of the films.
+    pub film_temperature: Box<dyn FilmTemperatureSpec>,
+}
+
+/// Conventions in which published programs differ.
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Conventions {
+    /// Contact pressure from the tangential force.
+    pub hoop: Hoop,
+    /// Area and pressure distribution of the axial gas force.
+    pub axial_gas: AxialGas,
+    /// Where gas presses radially.
+    pub radial_gas: RadialGas,
+    /// Force of the film in the ring's axial balance.
+    pub film_force: FilmForce,
+    /// Friction that friction power counts.
+    pub drag: Drag,
+    /// Pressure at which films cavitate.
+    pub cavitation_datum: CavitationDatum,
+    /// Friction of a twin-land ring.
+    pub twin_land_friction: TwinLandFriction,
+}
+
+/// Contact pressure from the tangential force.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Hoop {
+    /// Equilibrium of half a ring: `p = 2 F / (D b)`, radial force `2 π F`.
+    #[default]
+    Correct,
+    /// `p = 2 F / (2 π r b)`, too small by π: radial force `2 F` (tomanik1993 eq. 10).
+    AsPrinted,
+}
+
+/// Area and pressure distribution of the axial gas force.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum AxialGas {
+    /// Flank annulus, each flank gap with the mean of a laminar pressure profile (p² linear) between the pressure behind
+    /// the ring and that of its land.
+    #[default]
+    LaminarProfile,
+    /// Flank annulus, linear profile on both flanks: half of the pressure difference (zottin1992 eq. 4.2).
+    LinearProfile,
+    /// Full pressure difference on `π D w` (tomanik1993 eq. 4).
+    FullPerimeter,
+}
+
+/// Where gas presses radially.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum RadialGas {
+    /// Equilibrium of half a split ring of inner and outer radius `r_i` and `r_o`: pressure behind it on its inner cylinder, the lands on the parts
+    /// of the face outside the running face, and gas on the two end faces of the gap, `w` deep, which closes the ring like a hoop:
+    ///
+    /// ```text
+    /// r_o W = F_t + p_back b r_i + p_gap b w - r_o ∫ p dx (outside the running face),    p_gap w = p_back (r_l - r_i) + ½ (p_above + p_below) (r_o - r_l)
+    /// ```
+    ///
+    /// `W` the load of the running face per circumference \[N/m\], `r_l` the radius of the neighbouring lands: as deep as the gap lies in the groove it
+    /// sees the pressure behind the ring, outside it leads from land to land. Under one pressure everywhere `W` is tension plus that pressure on the
+    /// running face, as it must be; without the end faces `p b w / r_o` is missing, 8 % of `p b` of a usual ring, and gas pushes a ring
+    /// off the liner that nothing pushes. For sections much smaller than the radius; a ring that rotates or twists is not meant.
+    #[default]
+    BackFaceAndGap,
+    /// The same without the end faces of the gap.
+    BackAndFace,
+    /// Pressure behind the ring on its inner cylinder only (zottin1992 eq. 3.4).
+    BackOnly,
+    /// Pressure behind the ring on `π D b` (tomanik1993 eq. 5).
+    BorePerimeter,
+}
+
+/// Force of the film in the ring's axial balance.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum FilmForce {
+    /// Shear on the ring face and pressure on its slope.
+    #[default]
+    Total,
+    /// Reaction to the shear on the liner (zottin1992 eq. 4.7): the total but for the end term `[p h]`.
+    LinerReaction,
+    /// Shear on the ring face alone (tomanik1993 eq. 15).
+    FaceShear,
+}
+
+/// Friction that friction power counts.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Drag {
+    /// Shear on the liner: what the crank pays for.
+    #[default]
+    Liner,
+    /// Shear on the ring face alone (tomanik1993).
+    FaceShear,
+}
+
+/// Pressure at which films cavitate.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum CavitationDatum {
+    /// Crankcase pressure (or the lower of the two edge pressures, when that is below).
+    #[default]
+    Gauge,
+    /// Absolute zero.
+    Absolute,
+}
+
+/// Friction of a twin-land ring.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum TwinLandFriction {
+    /// Sum over both lands.
+    #[default]
+    BothLands,
+    /// Twice the lower land (zottin1992 listing).
+    LowerTwice,
+}
+
+/// How the equations are solved.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Solver {
+    /// `implicit`: the whole scene at once, adaptive. `as_published`: the scheme of the source.
+    pub method: Method,
+    /// `implicit`: relative error per step.
+    #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1, "when": { "method": "implicit" } }))]
+    pub tolerance: PosRatio,
+    /// `implicit`: time integrator.
+    pub integrator: IntegratorName,
+    /// `implicit`: true relative error of the periodic state; not below `tolerance`.
+    #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1, "when": { "method": "implicit" } }))]
+    pub periodicity: PosRatio,
+    /// Most cycles, all phases of the search together, before the run is called unconverged. Half of them, but at least 60, are accelerated; the
+    /// rest, and those of models with decided seats, repeat plainly.
+    #[schemars(range(max = 1000))]
+    pub max_cycles: u32,
+    /// Pressures of all lands from which the cycle is started. Each start is run to its periodic state; those that
+    /// differ are reported, the first is the result. Empty: one start at crankcase pressure, and a second at 6 bar when
+    /// the axial motion is decided in steps (such models have several periodic states).
+    #[schemars(length(max = 100))]
+    pub starts: Vec<PosPressure>,
+    /// `as_published`: the scheme.
+    pub scheme: Scheme,
+    /// `as_published`: cycles to run; 0 takes the source's number (2), or for `degree_march` until periodic.
+    #[schemars(range(max = 200))]
+    pub cycles: u32,
+    /// `as_published`: steps of mechanics per crank degree; 0 takes the source's number (rings + 1; 1 for `degree_march`).
+    #[schemars(range(max = 1_000_000), extend("x-refine" = { "group": "crank-angle step", "factor": 2, "when": { "method": "as_published" } }))]
+    pub steps_per_degree: u32,
+    /// `as_published`: gas sub-steps per step of mechanics; 0 takes the source's number (2^(rings+1); 10).
+    #[schemars(range(max = 1_000_000))]
+    pub gas_steps: u32,
+    /// `as_published`: one-degree passes per cycle: 721 as in the source's listing, or 720.
+    #[schemars(range(max = 7200))]
+    pub passes: u32,
+    /// `substep_march`: what becomes of a ring's velocity at a flank.
+    pub clamp: Clamp,
+    /// Floors, caps and drags, with their reasons.
+    pub limits: Limits,
+}
+
+impl Default for Solver {
+    fn default() -> Self {
+        Self {
+            method: Method::Implicit,
+            tolerance: quantity(1e-4),
+            integrator: IntegratorName::Rodas,
+            periodicity: quantity(1e-4),
+            max_cycles: 120,
+            starts: Vec::new(),
+            scheme: Scheme::SubstepMarch,
+            cycles: 0,
+            steps_per_degree: 0,
+            gas_steps: 0,
+            passes: 721,
+            clamp: Clamp::Stop,
+            limits: Limits::default(),
+        }
+    }
+}
+
+/// Velocity of a ring that reaches a flank, in the scheme `substep_march`.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Clamp {
+    /// Zero (zottin1992 as far as its listing can be read). In a keystone groove the flank moves with the film, a ring
+    /// clamped so sticks to it the longer the smaller the steps are, and the scheme has no limit.
+    #[default]
+    Stop,
+    /// Only motion into the flank is stopped: converges as the steps shrink.
+    Inward,
+}
+
+/// Solvers.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Method {
+    /// The whole scene at once, adaptive and error-controlled; the cycle closed by a periodic-orbit solver.
+    #[default]
+    Implicit,
+    /// The scheme of the source document.
+    AsPublished,
+}
+
+/// Published schemes.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Scheme {
+    /// Mechanics in sub-steps of a degree, gas explicit inside them, film by bisection, axial motion with implicit damping
+    /// (zottin1992).
+    #[default]
+    SubstepMarch,
+    /// Degree by degree: seats from force balance, gas explicit in sub-steps, film by bisection (tomanik1993).
+    DegreeMarch,
+}
+
+/// What is wanted.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Outputs {
+    /// Names of results; `all` for every one that the scene has. What no wanted result needs is not computed.
+    pub results: Vec<String>,
+    /// Crank angle between rows of the series. No result depends on it.
+    pub series_step: PosAngle,
+    /// A ring counts as on a groove flank while its distance from it is at most this share of its axial clearance, in results and
+    /// events. Oil lets a ring come down ever more slowly, the gap going with the time to the power -1/2, so that it never touches; at a
+    /// tenth of the clearance, the default, it rests on its film of oil. At most 0.5.
+    pub seat: Ratio<Fraction>,
+}
+
+impl Default for Outputs {
+    fn default() -> Self {
+        Self { results: vec!["all".into()], series_step: quantity(1f64.to_radians()), seat: quantity(0.1) }
+    }
+}
+
+const fn one() -> u32 {
+    1
+}
+fn zero_length() -> Length {
+    quantity(0.0)
+}
+fn zero_nn() -> Length<NonNegative> {
+    quantity(0.0)
+}
+fn zero_angle() -> Angle {
+    quantity(0.0)
+}
+fn half() -> Ratio<Fraction> {
+    quantity(0.5)
+}
+fn cast_iron_expansion() -> PosExpansion {
+    quantity(11e-6)
+}
+
+gudgeon_core::default_model! {
+    default_kinematics: dyn KinematicsSpec = "exact_slider_crank";
+    default_gas_flow: dyn GasFlowSpec = "orifice_network";
+    default_ring_motion: dyn RingMotionSpec = "newton_groove";
+    default_flank_damping: dyn FlankDampingSpec = "squeeze_film";
+    default_flank_friction: dyn FlankFrictionSpec = "off";
+    default_oil_transport: dyn OilTransportSpec = "off";
+    default_hydrodynamics: dyn HydrodynamicsSpec = "closed_form_face";
+}

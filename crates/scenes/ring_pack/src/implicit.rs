@@ -1,0 +1,628 @@
+//! The default solver: the whole scene at once, adaptive, with an L-stable integrator; the cycle closed by a
+//! periodic-orbit solver.
+
+use std::f64::consts::PI;
+use std::time::Instant;
+
+use gudgeon_core::EvalError;
+use gudgeon_core::result::{Balance, Column, Note, Series};
+use gudgeon_numerics::ode::{
+    Direction, EventAction, Flow, IntegrateError, Integrator, LinearInvariant, OdeSystem, Options, Stats,
+    StepView,
+};
+use gudgeon_numerics::orbit::{CycleMap, OrbitOptions, periodic_orbit};
+use gudgeon_numerics::panel::LOBATTO;
+use gudgeon_numerics::radau::Radau5;
+use gudgeon_numerics::rodas::{Formula, Rodas};
+
+use super::error::RingPackError;
+use super::hold::Hold;
+use super::measure::{Measures, Peak};
+use super::oil::Ledger;
+use super::pack::{Base, Pack};
+use super::record::Totals;
+use super::rows::Rows;
+use super::watch::Watch;
+use super::{Found, NOT_PERIODIC, Recorded, results};
+use crate::case::{Outputs, RingPackCase};
+use gudgeon_scene::{IntegratorName, RunError};
+
+/// The pack as an initial-value problem in crank angle.
+struct Problem<'a> {
+    pack: &'a mut Pack,
+    base: &'a mut Base,
+    scale: &'a [f64],
+    balance: &'a [LinearInvariant],
+}
+
+impl Problem<'_> {
+    /// Has the instant evaluated that the integrator asks about, which it usually just did.
+    fn look_at(&mut self, t: f64, y: &[f64]) -> Result<(), EvalError> {
+        if self.pack.at.theta == t && self.pack.state == y { Ok(()) } else { self.pack.evaluate(t, y) }
+    }
+}
+
+impl OdeSystem for Problem<'_> {
+    fn dim(&self) -> usize {
+        self.pack.layout.n
+    }
+    fn quad_dim(&self) -> usize {
+        2 * self.pack.n_rings() + 1
+    }
+    fn rhs(&mut self, t: f64, y: &[f64], f: &mut [f64]) -> Result<(), EvalError> {
+        self.pack.rates(t, y, f)
+    }
+    fn jacobian(&mut self, t: f64, y: &[f64], _: &[f64], jac: &mut [f64]) -> Result<bool, EvalError> {
+        self.look_at(t, y)?;
+        let scale = self.scale;
+        // Square root of the rounding error times the magnitude of the state.
+        let increment = |k: usize| {
+            let y = y[k];
+            (y + 1.5e-8 * y.abs().max(1e-3 * scale[k])) - y
+        };
+        self.pack.jacobian(y, increment, jac, self.base)?;
+        Ok(true)
+    }
+    fn invariants(&self) -> &[LinearInvariant] {
+        self.balance
+    }
+    fn tolerances(&mut self, t: f64, y: &[f64], atol: &mut [f64]) {
+        // Where the instant cannot be evaluated the step will say so.
+        if self.look_at(t, y).is_err() {
+            return;
+        }
+        for (i, k) in self.pack.layout.axial.iter().enumerate() {
+            if let Some(k) = *k {
+                let (place, c0) = (&self.pack.at.places[i], self.pack.rings[i].clearance0);
+                let gap = place.s.min(place.clearance - place.s) / c0;
+                atol[k] *= (gap / POSITION_SCALE).max(1.0);
+            }
+        }
+        // Surfaces that touch carry by their roughness, beside which a film much thinner need not be known to its own size.
+        for (i, k) in self.pack.layout.film.iter().enumerate() {
+            if let Some(k) = *k {
+                atol[k] *= self.pack.rings[i].contact.ease(self.pack.at.places[i].h);
+            }
+        }
+    }
+    fn n_events(&self) -> usize {
+        let moves = self.pack.layout.axial.iter().any(Option::is_some);
+        if moves && self.pack.hold_tolerance > 0.0 { self.pack.n_rings() } else { 0 }
+    }
+    fn events(&mut self, t: f64, y: &[f64], g: &mut [f64]) -> Result<(), EvalError> {
+        self.look_at(t, y)?;
+        for (i, g) in g.iter_mut().enumerate() {
+            *g = if self.pack.layout.axial[i].is_some() { self.pack.hold_event(i) } else { -1.0 };
+        }
+        Ok(())
+    }
+    fn event_direction(&self, _: usize) -> Direction {
+        Direction::Rising
+    }
+    fn event_located(&self, k: usize) -> bool {
+        // A ring may be held any time after it is ready, but has to be let go in time.
+        self.pack.holds[k] != Hold::Free
+    }
+    fn on_event(&mut self, k: usize, t: f64, y: &mut [f64]) -> Result<EventAction, EvalError> {
+        self.look_at(t, y)?;
+        if let Some(v) = self.pack.layout.axial[k] {
+            self.pack.switch_hold(k, &mut y[v + 1]);
+            // The instant belongs to the other mode.
+            self.pack.state.fill(f64::NAN);
+        }
+        Ok(EventAction::Restart)
+    }
+}
+
+/// First step of a cycle \[rad\].
+const FIRST_STEP: f64 = 1e-3;
+/// Velocity that counts as one in the error norm, in clearances per radian: what matters of a velocity is the distance it covers.
+const VELOCITY_SCALE: f64 = 100.0;
+/// Height that counts as one in the error norm, in clearances: the films on the flanks are a hundredth of a clearance thick, and
+/// their force goes with the cube.
+const POSITION_SCALE: f64 = 0.01;
+
+enum Method {
+    Rodas(Box<Rodas>),
+    Radau(Box<Radau5>),
+}
+
+/// The map from the state at the start of a cycle to that at its end.
+struct Cycle<'a> {
+    pack: &'a mut Pack,
+    method: Method,
+    breakpoints: Vec<f64>,
+    scale: Vec<f64>,
+    absolute: Vec<bool>,
+    balance: Vec<LinearInvariant>,
+    base: Base,
+    h: f64,
+    stats: Stats,
+    q: Vec<f64>,
+    /// Longest step \[rad\]: none may jump over a pressure pulse.
+    longest_step: f64,
+    /// Most steps of a cycle.
+    most_steps: u64,
+    failure: Option<IntegrateError>,
+    /// Steps of a cycle at full accuracy, when known: the unit of cost.
+    progress: &'a mut dyn FnMut(f64),
+    done: f64,
+}
+
+impl Cycle<'_> {
+    /// Integrates one cycle from `y`; a sampler follows it.
+    fn integrate(
+        &mut self,
+        y: &mut [f64],
+        rtol: f64,
+        mut sampler: Option<&mut Sampler>,
+    ) -> Result<(), IntegrateError> {
+        let mut options = Options::new(rtol, &self.scale);
+        options.absolute.clone_from(&self.absolute);
+        options.h_max = self.longest_step;
+        options.max_steps = self.most_steps;
+        if let Some(oil) = &self.pack.oil_pack {
+            // A face takes up what the one before it left in earlier steps.
+            let speed = 1.1 * 0.5 * self.pack.kinematics.stroke() * self.pack.omega;
+            options.h_max = options.h_max.min(0.8 * oil.least_gap * self.pack.omega / speed);
+        }
+        // Rings turn slowly beside the steps that their motion allows.
+        options.event_samples = 0;
+        // The reference integrates every ring with its inertia.
+        self.pack.hold_tolerance = if matches!(self.method, Method::Rodas(_)) { rtol } else { 0.0 };
+        // Every cycle starts with the same step: the map must depend on nothing but the state.
+        self.h = FIRST_STEP;
+        self.q.fill(0.0);
+        let period = self.pack.period();
+        let interval = self.pack.decision_interval();
+        let pieces = interval.map_or(1, |i| (period / i).round().max(1.0) as usize);
+        let mut q = std::mem::take(&mut self.q);
+        let mut outcome = Ok(0.0);
+        for piece in 0..pieces {
+            let span = (period * piece as f64 / pieces as f64, period * (piece + 1) as f64 / pieces as f64);
+            if interval.is_some()
+                && let Err(source) = self.pack.evaluate(span.0, y)
+            {
+                outcome = Err(IntegrateError::Eval { t: span.0, source });
+                break;
+            }
+            if interval.is_some() {
+                self.pack.decide_seats();
+            }
+            if let Err(source) = self.pack.start_holds(span.0, y) {
+                outcome = Err(IntegrateError::Eval { t: span.0, source });
+                break;
+            }
+            if piece == 0
+                && let Some(s) = sampler.as_deref_mut()
+                && let Err(source) = s.begin(self.pack, span.0, y)
+            {
+                outcome = Err(IntegrateError::Eval { t: span.0, source });
+                break;
+            }
+            options.h_init = self.h;
+            let mut problem =
+                Problem { pack: self.pack, base: &mut self.base, scale: &self.scale, balance: &self.balance };
+            let mut observe = |p: &mut Problem<'_>, v: &dyn StepView| {
+                let flow = match sampler.as_deref_mut() {
+                    Some(s) => s.step(p.pack, v),
+                    None => Flow::Continue,
+                };
+                p.pack.book_oil(v);
+                if let Some(s) = sampler.as_deref_mut() {
+                    s.look_at_liner(p.pack, v.t1());
+                }
+                flow
+            };
+            let (b, st) = (&self.breakpoints, &mut self.stats);
+            outcome = match &mut self.method {
+                Method::Rodas(m) => m.integrate(&mut problem, span, b, y, &mut q, &options, st, &mut observe),
+                Method::Radau(m) => m.integrate(&mut problem, span, b, y, &mut q, &options, st, &mut observe),
+            };
+            match &outcome {
+                Ok(h) => self.h = *h,
+                Err(_) => break,
+            }
+        }
+        self.q = q;
+        self.done += 1.0;
+        (self.progress)(1.0 - 0.8f64.powf(self.done));
+        outcome.map(|_| ())
+    }
+}
+
+impl Cycle<'_> {
+    /// Takes the film on the liner from behind the states and begins a cycle with it.
+    fn begin(&mut self, y: &[f64]) {
+        let (n, pin) = (self.pack.layout.n, self.pack.kinematics.motion(0.0).y);
+        if let Some(oil) = &mut self.pack.oil_pack {
+            // An extrapolated film may be less than none.
+            for (film, y) in oil.film.iter_mut().zip(&y[n..]) {
+                *film = (y * LINER_SCALE).max(0.0);
+            }
+            oil.begin(pin);
+        }
+    }
+
+    /// Puts the film on the liner behind the states, and what the faces took up into them.
+    fn end(&mut self, y: &mut [f64]) {
+        let n = self.pack.layout.n;
+        if let Some(oil) = &mut self.pack.oil_pack {
+            oil.fold(&mut y[..n]);
+            for (film, y) in oil.film.iter().zip(&mut y[n..]) {
+                *y = film / LINER_SCALE;
+            }
+        }
+    }
+}
+
+/// How many times the search of a periodic state may tighten the tolerance tenfold: rings that float amplify the error of a cycle.
+const FINER: usize = 2;
+/// Tightest tolerance of a cycle: a hundred times the rounding of its states.
+const FINEST: f64 = 1e-13;
+/// How much less repeatable than its integration a cycle with oil on the liner is.
+const OIL_NOISE: f64 = 10.0;
+/// Unit of the film on the liner \[m\].
+const LINER_SCALE: f64 = 1e-6;
+/// Film of one cell that counts as one, in its unit: which cells a step ends in differs from cycle to cycle, and a face is as long
+/// as many of them.
+const CELL_SCALE: f64 = 100.0;
+
+impl CycleMap for Cycle<'_> {
+    fn dim(&self) -> usize {
+        self.pack.layout.n + self.pack.oil_pack.as_ref().map_or(0, |o| o.film.len())
+    }
+    fn map(&mut self, y0: &[f64], y1: &mut [f64], accuracy: f64) -> Result<f64, EvalError> {
+        y1.copy_from_slice(y0);
+        // An extrapolated state may have lost its gas: a hundredth of a bar is the least that a cycle starts with.
+        for k in &mut y1[..self.pack.layout.gas] {
+            *k = k.max(0.01);
+        }
+        let rtol = accuracy.max(FINEST);
+        let n = self.pack.layout.n;
+        self.begin(y1);
+        if let Err(e) = self.integrate(&mut y1[..n], rtol, None) {
+            self.failure = Some(e);
+            return Err(EvalError::fatal("ring_pack", "the cycle could not be integrated"));
+        }
+        // The velocity of a ring that could be held says nothing.
+        self.pack.start_holds(self.pack.period(), &mut y1[..n])?;
+        self.end(y1);
+        Ok(1.0)
+    }
+    fn scale(&self, y: &[f64], s: &mut [f64]) {
+        // Gas states relative to their value (at least 1 bar), film thickness relative (its state is a logarithm), heights by
+        // the clearance, velocities by the clearance per radian.
+        s.fill(1.0);
+        for k in 0..self.pack.layout.gas {
+            s[k] = y[k].abs().max(1.0);
+        }
+        for k in self.pack.layout.axial.iter().flatten() {
+            s[k + 1] = VELOCITY_SCALE;
+        }
+        if let Some(k) = self.pack.layout.oil {
+            for (s, y) in s[k..self.pack.layout.n].iter_mut().zip(&y[k..]) {
+                *s = y.abs().max(1.0);
+            }
+            s[self.pack.layout.n..].fill(CELL_SCALE);
+        }
+    }
+}
+
+/// Follows the recorded cycle step by step: measures it, closes its balances, and keeps the rows of its series.
+struct Sampler {
+    rows: Rows,
+    measures: Measures,
+    y: Vec<f64>,
+    q: Vec<f64>,
+    failure: Option<EvalError>,
+    impulse: Vec<[f64; 2]>,
+    work: Vec<[f64; 2]>,
+    start: Vec<(f64, f64)>,
+    end: Vec<(f64, f64)>,
+    /// Crank angles \[deg\] and the film on the liner there.
+    liner: Vec<(u32, Vec<f64>)>,
+    watch: Watch,
+}
+
+impl Sampler {
+    fn new(pack: &mut Pack, outputs: &Outputs) -> Self {
+        let n = pack.n_rings();
+        let mut measures = Measures::new(pack, LOBATTO, outputs.seat.si());
+        let (theta, value) = pack.cylinder.highest();
+        measures.cylinder = Peak { theta, value };
+        Self {
+            rows: Rows::new(pack, outputs.series_step.si()),
+            measures,
+            y: vec![0.0; pack.layout.n],
+            q: vec![0.0; 2 * n + 1],
+            failure: None,
+            impulse: vec![[0.0; 2]; n],
+            work: vec![[0.0; 2]; n],
+            start: vec![(0.0, 0.0); n],
+            end: vec![(0.0, 0.0); n],
+            liner: Vec::new(),
+            watch: Watch::new(pack),
+        }
+    }
+
+    /// Keeps the film on the liner at every dead centre.
+    fn look_at_liner(&mut self, pack: &Pack, theta: f64) {
+        let turns = theta / PI;
+        if let Some(oil) = &pack.oil_pack
+            && (turns - turns.round()).abs() < 1e-9
+        {
+            self.liner.push((turns.round() as u32 * 180, oil.film.clone()));
+        }
+    }
+
+    fn begin(&mut self, pack: &mut Pack, theta: f64, y: &[f64]) -> Result<(), EvalError> {
+        pack.evaluate(theta, y)?;
+        self.rows.start(pack, y);
+        for (i, s) in self.start.iter_mut().enumerate() {
+            *s = momentum(pack, i);
+        }
+        Ok(())
+    }
+
+    fn step(&mut self, pack: &mut Pack, v: &dyn StepView) -> Flow {
+        self.rows.step(pack, v);
+        match self.measure(pack, v) {
+            Ok(()) => Flow::Continue,
+            Err(e) => {
+                self.failure = Some(e);
+                Flow::Stop
+            }
+        }
+    }
+
+    /// Samples the dense output of a step; at its ends and in its middle all forces, for Simpson's rule on impulse and work and on what limits did.
+    fn measure(&mut self, pack: &mut Pack, v: &dyn StepView) -> Result<(), EvalError> {
+        let (t0, t1) = (v.t0(), v.t1());
+        let last = self.measures.nodes().len() - 1;
+        for (k, x) in self.measures.nodes().iter().enumerate() {
+            let t = if k == last { t1 } else { t0 + x * (t1 - t0) };
+            v.interpolate(t, &mut self.y);
+            v.interpolate_quad(t, &mut self.q);
+            if (pack.plan.axial || pack.plan.film) && k.is_multiple_of(2) {
+                pack.evaluate(t, &self.y)?;
+                let weight = if 2 * k == last { 4.0 } else { 1.0 };
+                self.close(pack, weight * (t1 - t0) / pack.omega / 6.0);
+                self.watch.look(pack, weight * (t1 - t0) / 6.0);
+            } else {
+                pack.look(t, &self.y)?;
+            }
+            self.measures.sample(k, pack, self.q[0]);
+        }
+        self.measures.step(pack, t0, t1);
+        for (i, e) in self.end.iter_mut().enumerate() {
+            *e = momentum(pack, i);
+        }
+        Ok(())
+    }
+
+    /// Adds the forces of the instant over `dt` \[s\] to impulse and work.
+    fn close(&mut self, pack: &Pack, dt: f64) {
+        for i in 0..pack.n_rings() {
+            if pack.layout.axial[i].is_none() {
+                continue;
+            }
+            let (r, velocity) = (&pack.at.rings[i], pack.at.places[i].v);
+            let a = &r.axial;
+            let parts = [a.gas, a.inertia, a.gravity, a.film, a.damping, r.reaction];
+            let sum: f64 = parts.iter().sum();
+            let magnitude: f64 = parts.iter().map(|p| p.abs()).sum();
+            self.impulse[i][0] += dt * sum;
+            self.impulse[i][1] += dt * magnitude;
+            self.work[i][0] += dt * sum * velocity;
+            self.work[i][1] += dt * parts.iter().map(|p| (p * velocity).abs()).sum::<f64>();
+        }
+    }
+
+    fn balance(&self, pack: &Pack) -> (Option<f64>, Option<f64>) {
+        if pack.layout.axial.iter().all(Option::is_none) {
+            return (None, None);
+        }
+        let worst = |sums: &[[f64; 2]], change: &dyn Fn(usize) -> f64| {
+            sums.iter()
+                .enumerate()
+                .filter(|(_, s)| s[1] > 0.0)
+                .map(|(i, s)| ((s[0] - change(i)) / s[1]).abs())
+                .fold(0.0, f64::max)
+        };
+        let momentum = worst(&self.impulse, &|i| self.end[i].0 - self.start[i].0);
+        let energy = worst(&self.work, &|i| self.end[i].1 - self.start[i].1);
+        (Some(energy), Some(momentum))
+    }
+}
+
+/// The film on the liner at the dead centres over the height above the lowest place of the pin.
+fn liner_table(pack: &Pack, films: Vec<(u32, Vec<f64>)>) -> Option<Series> {
+    let oil = pack.oil_pack.as_ref()?;
+    let lowest = pack.kinematics.y_tdc() - pack.kinematics.stroke();
+    let z = (0..oil.film.len()).map(|k| oil.bottom + (k as f64 + 0.5) * oil.cell - lowest).collect();
+    let column = |name: String, unit: &str, values| Column { name, unit: unit.into(), values };
+    Some(Series {
+        axis: column("height".into(), "m", z),
+        columns: films.into_iter().map(|(deg, f)| column(format!("film_at_{deg}"), "m", f)).collect(),
+    })
+}
+
+/// Momentum and kinetic energy of ring `i` relative to the piston.
+fn momentum(pack: &Pack, i: usize) -> (f64, f64) {
+    let (m, v) = (pack.geo.rings[i].mass, pack.at.places[i].v);
+    (m * v, 0.5 * m * v * v)
+}
+
+/// What is said of a cycle that does not close as it should.
+fn not_periodic(error: f64, wanted: f64, cycles: usize) -> Note {
+    let seen = if error <= wanted { " only since the last cycle" } else { "" };
+    let text = format!(
+        "not periodic within {wanted:.0e} after {cycles} cycles: the estimated error is {error:.1e}{seen}. Raise `solver.max_cycles`, tighten \
+         `solver.tolerance`, or look for a mode that never settles (a ring that flutters)"
+    );
+    let failed = error.is_nan() || error > NOT_PERIODIC * wanted;
+    let note = if failed { Note::failure("not_periodic", text) } else { Note::caution("not_periodic", text) };
+    note.amount("estimated_error", error, "1").amount("wanted", wanted, "1")
+}
+
+/// What stopped an integration.
+fn stopped(e: IntegrateError) -> RunError {
+    match e {
+        IntegrateError::TooManySteps { t, max } => {
+            RunError::scene(RingPackError::Steps { theta_deg: t.to_degrees(), max })
+        }
+        other => RunError::Integrate(other),
+    }
+}
+
+/// Solves one start.
+pub(super) fn run(
+    case: &RingPackCase,
+    pack: &mut Pack,
+    start: f64,
+    progress: &mut dyn FnMut(f64),
+) -> Result<Found, RunError> {
+    let begin = Instant::now();
+    let s = &case.solver;
+    let dim = pack.layout.n;
+    let quads = 2 * pack.n_rings() + 1;
+    let rosenbrock = |formula| Method::Rodas(Box::new(Rodas::with(formula, dim, quads, None)));
+    let method = match s.integrator.at(s.tolerance.si()) {
+        IntegratorName::Rodas3 => rosenbrock(Formula::Rodas3),
+        IntegratorName::Rodas | IntegratorName::Rodas5p => rosenbrock(Formula::Rodas5P),
+        IntegratorName::Radau5 => Method::Radau(Box::new(Radau5::new(dim, quads, None))),
+    };
+    // The pressure has kinks of its own; the sliding speed of the films changes sign at the dead centres.
+    let period = pack.period();
+    let mut breakpoints: Vec<f64> = pack.cylinder.kinks().to_vec();
+    breakpoints.extend((1..(period / PI).round() as usize).map(|k| k as f64 * PI));
+    breakpoints.sort_by(f64::total_cmp);
+    breakpoints.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
+    let mut scale = vec![1.0; dim];
+    for k in &mut scale[..pack.layout.gas] {
+        *k = 0.1;
+    }
+    let mut absolute = vec![false; dim];
+    for k in pack.layout.axial.iter().flatten() {
+        absolute[*k] = true;
+        scale[k + 1] = VELOCITY_SCALE;
+        scale[*k] = POSITION_SCALE;
+    }
+    // What a face took up stands beside its states, which may therefore be anything.
+    if let Some(k) = pack.layout.oil {
+        absolute[k..].fill(true);
+    }
+    // Gas in, less gas out, is gas stored.
+    let mut balance = Vec::new();
+    if pack.layout.gas > 0 {
+        let (first, last) = (dim, dim + pack.n_rings());
+        let mut terms = vec![(first, -1.0), (last, 1.0)];
+        terms.extend(pack.mass_scale.iter().copied().enumerate());
+        balance.push(LinearInvariant { pivot: last, terms });
+    }
+    let discrete = pack.decision_interval().is_some();
+    let cells = pack.oil_pack.as_ref().map_or(0, |o| o.film.len());
+    let mut y = vec![0.0; dim + cells];
+    pack.initial(start, &mut y[..dim]);
+    for (y, film) in y[dim..].iter_mut().zip(pack.oil_pack.iter().flat_map(|o| &o.film)) {
+        *y = film / LINER_SCALE;
+    }
+    let cycle_speed = pack.omega;
+    let mut cycle = Cycle {
+        pack,
+        method,
+        breakpoints,
+        scale,
+        absolute,
+        balance,
+        base: Base::default(),
+        h: FIRST_STEP,
+        stats: Stats::default(),
+        q: vec![0.0; quads],
+        longest_step: s.limits.longest_step.si(),
+        most_steps: s.limits.steps_at(s.tolerance.si(), cycle_speed),
+        failure: None,
+        progress,
+        done: 0.0,
+    };
+    // A map is only as repeatable as its integration is accurate, and where a film ends on the liner depends on where steps end.
+    let repeatable = if cycle.pack.oil_pack.is_some() { OIL_NOISE } else { 1.0 } * s.tolerance.si();
+    let options = OrbitOptions {
+        tolerance: s.periodicity.si().max(repeatable),
+        accuracy: s.tolerance.si(),
+        max_cycles: s.max_cycles as usize,
+        finer: FINER,
+        accelerate: !discrete && cycle.pack.oil_pack.is_none(),
+    };
+    let report = match periodic_orbit(&mut cycle, &mut y, &options) {
+        Ok(r) => r,
+        Err(source) => {
+            let theta_deg = cycle.pack.at.theta.to_degrees();
+            return Err(cycle.failure.map_or(RunError::Eval { theta_deg, source }, stopped));
+        }
+    };
+    let seconds = begin.elapsed().as_secs_f64();
+    let work = cycle.stats;
+    // The recorded cycle, at full accuracy.
+    let mut sampler = Sampler::new(cycle.pack, &case.outputs);
+    let gas: Vec<f64> = y[..cycle.pack.layout.gas].to_vec();
+    cycle.begin(&y);
+    let oil_before = cycle.pack.oil_pack.as_ref().map_or(0.0, |o| o.total(&y[..dim]));
+    if let Some(o) = &mut cycle.pack.oil_pack {
+        // What the crankcase put on the liner before the first step was counted with the rest.
+        o.ledger = Ledger::default();
+    }
+    cycle.integrate(&mut y[..dim], s.tolerance.si(), Some(&mut sampler)).map_err(stopped)?;
+    let oil_mass = cycle.pack.oil_pack.as_ref().map(|o| {
+        let l = &o.ledger;
+        let stored = o.total(&y[..dim]) - oil_before;
+        (l.supplied - l.drained - l.thrown - stored).abs() / l.taken.max(f64::MIN_POSITIVE)
+    });
+    if let Some(source) = sampler.failure.take() {
+        return Err(RunError::Eval { theta_deg: cycle.pack.at.theta.to_degrees(), source });
+    }
+    let q = cycle.q;
+    let n = pack.n_rings();
+    let stored: f64 = gas.iter().zip(&y).zip(&pack.mass_scale).map(|((a, b), m)| (b - a) * m).sum();
+    let through = q[0].abs().max(q[n].abs()).max(f64::MIN_POSITIVE);
+    let (energy, momentum) = sampler.balance(pack);
+    let totals = Totals {
+        flow_in: q[..n].to_vec(),
+        blow_by: q[n],
+        friction_work: q[n + 1..].to_vec(),
+        balance: Balance {
+            gas_mass: Some((q[0] - q[n] - stored).abs() / through),
+            oil_mass,
+            energy,
+            momentum,
+        },
+        periodicity_error: report.error_estimate,
+        oil: pack.oil_pack.as_ref().map_or_else(Ledger::default, |o| o.ledger),
+    };
+    sampler.watch.carried(pack)?;
+    let mut notes = sampler.watch.notes(pack);
+    if report.period == 1 && !report.converged {
+        notes.push(not_periodic(report.error_estimate, options.tolerance, report.cycles));
+    }
+    let counters = [
+        ("steps", work.steps),
+        ("rejected", work.rejected),
+        ("rhs", work.rhs),
+        ("jacobians", work.jacobians),
+        ("factorisations", work.lu),
+        ("events", work.events),
+    ];
+    Ok(Found {
+        liner: liner_table(pack, sampler.liner),
+        record: Recorded::Rows(sampler.rows),
+        retreats: sampler.watch.events(),
+        cycle: results::Cycle { totals, measures: sampler.measures },
+        // Decisions that do not repeat are told by the caller, for every start.
+        period: if report.converged || !discrete { report.period } else { 0 },
+        cycles: report.cycle_equivalents,
+        counters: counters.into_iter().map(|(k, v)| (k.to_owned(), v)).collect(),
+        notes,
+        seconds,
+    })
+}

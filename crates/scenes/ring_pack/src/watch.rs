@@ -1,0 +1,330 @@
+//! What floors, caps and drags did over the reported cycle, and the ways of rings that left the liner.
+
+use std::f64::consts::PI;
+
+use gudgeon_core::result::{Event, Note};
+
+use super::error::RingPackError;
+use super::pack::{Limited, Pack, SeatLog};
+use gudgeon_scene::RunError;
+
+/// How long something acted, and how much at most.
+#[derive(Debug, Clone, Copy, Default)]
+struct Acted {
+    /// Crank angle over which it did \[rad\].
+    span: f64,
+    most: f64,
+    /// Where it did most \[rad\].
+    at: f64,
+}
+
+impl Acted {
+    fn see(&mut self, amount: f64, theta: f64, weight: f64) {
+        if amount > 0.0 {
+            self.span += weight;
+            if amount > self.most {
+                (self.most, self.at) = (amount, theta);
+            }
+        }
+    }
+
+    fn acted(&self) -> bool {
+        self.span > 0.0
+    }
+}
+
+/// One time that a ring was off the liner.
+#[derive(Debug, Clone, Copy)]
+struct Retreat {
+    from: f64,
+    /// Where it was back; `None` when the cycle ended before.
+    to: Option<f64>,
+    /// Furthest film thickness \[m\].
+    most: f64,
+}
+
+/// One ring.
+#[derive(Debug, Clone, Default)]
+struct RingWatch {
+    /// Residual load on the least film, or on the floor of a contact model \[N\].
+    floor: Acted,
+    /// Film thickness where that was most \[m\].
+    floor_film: f64,
+    /// Overlap of the mean planes \[m\].
+    overlap: Acted,
+    /// Load that the drag took \[N\].
+    drag: Acted,
+    /// Load that the drag of surfaces in contact took \[N\].
+    contact_drag: Acted,
+    /// Part of the velocity that the cap took.
+    slowed: Acted,
+    /// Load given to a film that has none \[N\].
+    lifted: Acted,
+    /// Load that the end of a search interval took \[N\].
+    thickest: Acted,
+    /// Load of a ring that has neither film nor contact \[N\].
+    uncarried: Acted,
+    retreats: Vec<Retreat>,
+    /// Angle and film thickness seen last.
+    last: Option<(f64, f64)>,
+}
+
+/// The watch over one cycle.
+#[derive(Debug, Clone, Default)]
+pub struct Watch {
+    rings: Vec<RingWatch>,
+}
+
+/// Parts of a load or of a velocity below which nothing is said to have acted: what smooth limits leave far from themselves.
+const COUNTS: f64 = 1e-3;
+
+impl Watch {
+    /// Begins a cycle with nothing seen.
+    #[must_use]
+    pub fn new(pack: &mut Pack) -> Self {
+        pack.seat_log.fill(SeatLog::default());
+        Self { rings: vec![RingWatch::default(); if pack.plan.film { pack.n_rings() } else { 0 }] }
+    }
+
+    /// Looks at the instant of `pack`, which stands for `weight` \[rad\].
+    pub fn look(&mut self, pack: &Pack, weight: f64) {
+        let (theta, away) = (pack.at.theta, pack.limits.off_the_liner);
+        for (i, w) in self.rings.iter_mut().enumerate() {
+            let (r, place) = (&pack.at.rings[i], &pack.at.places[i]);
+            let circumference = 2.0 * PI * place.r_outer * pack.geo.rings[i].rails as f64;
+            let Limited { floor, drag, contact_drag, slowed, lifted, thickest } = r.limited;
+            let tells =
+                |load: f64, of: f64| if load > COUNTS * of.abs() { load * circumference } else { 0.0 };
+            let before = w.floor.most;
+            w.floor.see(tells(floor, r.load), theta, weight);
+            if w.floor.most > before {
+                w.floor_film = place.h;
+            }
+            let line = &pack.rings[i].contact;
+            if line.open {
+                w.overlap.see(-line.separation(place.h), theta, weight);
+            }
+            w.drag.see(tells(drag, r.load), theta, weight);
+            w.contact_drag.see(tells(contact_drag, r.load), theta, weight);
+            w.slowed.see(if slowed > COUNTS { slowed } else { 0.0 }, theta, weight);
+            w.lifted.see(tells(lifted, pack.tension(i)), theta, weight);
+            w.thickest.see(tells(thickest, r.load), theta, weight);
+            if !pack.rings[i].carries() {
+                w.uncarried.see(r.load.max(0.0) * circumference, theta, weight);
+            }
+            w.retreat(theta, place.h, away);
+        }
+    }
+
+    /// The first ring that rests on next to nothing, as an error.
+    ///
+    /// # Errors
+    /// When there is one.
+    pub fn carried(&self, pack: &Pack) -> Result<(), RunError> {
+        for (i, w) in self.rings.iter().enumerate() {
+            if w.floor.acted() && pack.rings[i].contact.floor.is_none() {
+                return Err(RunError::scene(RingPackError::NothingCarries {
+                    ring: i + 1,
+                    theta_deg: w.floor.at.to_degrees(),
+                    load: w.floor.most,
+                    film_nm: w.floor_film * 1e9,
+                }));
+            }
+        }
+        Ok(())
+    }
+
+    /// What acted, with how much and for how long.
+    #[must_use]
+    pub fn notes(&self, pack: &Pack) -> Vec<Note> {
+        let period = pack.period();
+        let mut notes = Vec::new();
+        for (i, w) in self.rings.iter().enumerate() {
+            let ring = i + 1;
+            let mut tell = |topic: &str,
+                            a: &Acted,
+                            name: &str,
+                            unit: &str,
+                            scale: f64,
+                            what: &dyn Fn(&str) -> String| {
+                if a.acted() {
+                    let share = (a.span / period).min(1.0);
+                    let when = format!(
+                        "over {:.2} % of the cycle (most at {:.1} deg)",
+                        100.0 * share,
+                        a.at.to_degrees()
+                    );
+                    let note = Note::caution(format!("{topic}.ring{ring}"), what(&when));
+                    notes.push(note.amount(name, a.most * scale, unit).amount("share_of_cycle", share, "1"));
+                }
+            };
+            tell("contact_floor", &w.floor, "residual_load", "N", 1.0, &|when| {
+                format!(
+                    "the floor of the contact model at {:.3} um carries up to {:.4} N of ring {ring} {when}",
+                    w.floor_film * 1e6,
+                    w.floor.most
+                )
+            });
+            tell("overlap", &w.overlap, "overlap", "um", 1e6, &|when| {
+                format!(
+                    "the mean planes of ring {ring} and liner overlap by up to {:.3} um {when}: elastic contact of roughness no longer describes surfaces there",
+                    w.overlap.most * 1e6
+                )
+            });
+            tell("radial_drag", &w.drag, "drag", "N", 1.0, &|when| {
+                format!(
+                    "`solver.limits.radial_drag` stands for the inertia of ring {ring}, up to {:.4} N, {when}",
+                    w.drag.most
+                )
+            });
+            tell("contact_drag", &w.contact_drag, "drag", "N", 1.0, &|when| {
+                format!(
+                    "`solver.limits.contact_drag` takes up to {:.4} N of the load of ring {ring}, as its contact gives way, {when}",
+                    w.contact_drag.most
+                )
+            });
+            tell("radial_speed", &w.slowed, "part_of_velocity", "1", 1.0, &|when| {
+                format!(
+                    "`solver.limits.radial_speed` takes up to {:.2} % of the radial velocity of ring {ring} {when}",
+                    100.0 * w.slowed.most
+                )
+            });
+            tell("least_load", &w.lifted, "load", "N", 1.0, &|when| {
+                format!(
+                    "`solver.limits.least_load` adds up to {:.3e} N to the load of the film of ring {ring} {when}: gas presses the ring off",
+                    w.lifted.most
+                )
+            });
+            tell("thickest_film", &w.thickest, "residual_load", "N", 1.0, &|when| {
+                format!(
+                    "`solver.limits.thickest_film` holds ring {ring} against up to {:.4} N {when}",
+                    w.thickest.most
+                )
+            });
+            notes.extend(w.nothing_carries(ring, pack.plan.film_wanted));
+            notes.extend(w.left(ring, period, pack.limits.off_the_liner));
+        }
+        notes.extend(pack.seat_log.iter().enumerate().filter_map(|(i, l)| chatter(i + 1, l)));
+        notes
+    }
+
+    /// Leaving and coming back as events.
+    #[must_use]
+    pub fn events(&self) -> Vec<Event> {
+        let mut events = Vec::new();
+        for (i, w) in self.rings.iter().enumerate() {
+            for r in &w.retreats {
+                let mut add = |theta: f64, what: String| {
+                    events.push(Event {
+                        theta_deg: theta.to_degrees(),
+                        subject: format!("ring{}", i + 1),
+                        what,
+                    });
+                };
+                add(r.from, format!("leaves the liner, by up to {:.4} mm", 1e3 * r.most));
+                if let Some(to) = r.to {
+                    add(to, format!("is back on the liner after {:.1} deg", (to - r.from).to_degrees()));
+                }
+            }
+        }
+        events
+    }
+}
+
+/// Seats that are taken back as soon as they are taken.
+fn chatter(ring: usize, log: &SeatLog) -> Option<Note> {
+    (log.reversals > 0).then(|| {
+        let text = format!(
+            "the very next decision takes back {} of {} changes of seat of ring {ring}: its seat moves the pressures that the decision is made from, and the ring \
+             would float between its flanks, which a model with decided seats cannot say",
+            log.reversals, log.changes
+        );
+        Note::caution(format!("seat_chatter.ring{ring}"), text)
+            .amount("reversals", f64::from(log.reversals), "1")
+            .amount("seat_changes", f64::from(log.changes), "1")
+    })
+}
+
+impl RingWatch {
+    fn retreat(&mut self, theta: f64, h: f64, away: f64) {
+        let (before, thickness) = self.last.unwrap_or((theta, h));
+        self.last = Some((theta, h));
+        // The logarithm of the film is nearly straight between two looks.
+        let crossing = || {
+            let (a, b) = (thickness.ln(), h.ln());
+            before + if b == a { 0.0 } else { ((away.ln() - a) / (b - a)).clamp(0.0, 1.0) } * (theta - before)
+        };
+        match self.retreats.last_mut().filter(|r| r.to.is_none()) {
+            Some(r) if h <= away => r.to = Some(crossing()),
+            Some(r) => r.most = r.most.max(h),
+            None if h > away => self.retreats.push(Retreat { from: crossing(), to: None, most: h }),
+            None => {}
+        }
+    }
+
+    /// A ring without film and contact keeps the film it starts with: results of films are then none, and what depends on them is told.
+    fn nothing_carries(&self, ring: usize, wanted: bool) -> Option<Note> {
+        let a = self.uncarried;
+        a.acted().then(|| {
+            let text = format!(
+                "nothing carries ring {ring} against the liner, up to {:.4} N (at {:.1} deg): `hydrodynamics` and `contact` are both off, so the ring keeps the \
+                 film it starts with, and neither its film nor its friction is computed. Give it one of the two, or ask only for results of gas and of axial \
+                 motion (`outputs.results`)",
+                a.most,
+                a.at.to_degrees()
+            );
+            let note = if wanted { Note::failure } else { Note::caution };
+            note(format!("nothing_carries.ring{ring}"), text).amount("load", a.most, "N")
+        })
+    }
+
+    fn left(&self, ring: usize, period: f64, away: f64) -> Option<Note> {
+        let most = self.retreats.iter().map(|r| r.most).reduce(f64::max)?;
+        let span: f64 = self.retreats.iter().map(|r| r.to.unwrap_or(period) - r.from).sum();
+        let share = (span / period).min(1.0);
+        let times = match self.retreats.len() {
+            1 => "once".to_owned(),
+            n => format!("{n} times"),
+        };
+        let text = format!(
+            "ring {ring} leaves the liner {times}, by up to {:.4} mm, for {:.2} % of the cycle (more than {:.0} um away)",
+            1e3 * most,
+            100.0 * share,
+            1e6 * away
+        );
+        let note = Note::caution(format!("off_the_liner.ring{ring}"), text);
+        Some(note.amount("retreat", 1e3 * most, "mm").amount("share_of_cycle", share, "1"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_retreat_begins_and_ends_where_the_film_passes_the_limit() {
+        let mut w = RingWatch::default();
+        // ln h rises and falls by 1 per 0.1 rad about the limit of 1: from 0.2 to 0.6, most e^2.
+        for (k, log) in [-2.0, -1.0, 0.0, 1.0, 2.0, 1.0, 0.0, -1.0].into_iter().enumerate() {
+            w.retreat(0.1 * k as f64, f64::exp(log - 1e-12), 1.0);
+        }
+        let [r] = w.retreats[..] else { panic!("{:?}", w.retreats) };
+        // Straight lines in ln h; the limit is passed 1e-13 later than at a sample.
+        assert!((r.from - 0.2).abs() < 1e-9 && r.to.is_some_and(|t| (t - 0.6).abs() < 1e-9), "{r:?}");
+        assert!((r.most - 2f64.exp()).abs() < 1e-9);
+        let note = w.left(2, 4.0, 1.0).expect("left");
+        assert_eq!(note.topic, "off_the_liner.ring2");
+        assert!((note.amounts["share_of_cycle"].value - 0.1).abs() < 1e-9);
+    }
+
+    #[test]
+    fn nothing_is_said_of_what_did_not_act() {
+        let mut a = Acted::default();
+        a.see(0.0, 1.0, 0.5);
+        a.see(-1.0, 1.0, 0.5);
+        assert!(!a.acted());
+        a.see(3.0, 1.0, 0.5);
+        a.see(2.0, 2.0, 0.25);
+        assert!(a.acted() && a.most == 3.0 && a.at == 1.0 && a.span == 0.75);
+    }
+}

@@ -1,0 +1,224 @@
+//! The largest vibration over the operating range and all load steps.
+
+use gudgeon_core::result::{Note, Series};
+
+use super::periodic::LINEAR;
+use super::verdict::numbered;
+use super::{MOST, Results, column};
+use crate::verdict::{Forced, Operating, Quantity, Step};
+use crate::{rpm, told};
+
+/// Largest torque amplitude of a link: value, speed, load step, order.
+struct Top {
+    amplitude: f64,
+    speed: f64,
+    step: usize,
+    order: f64,
+}
+
+impl Results<'_> {
+    /// Largest torque of each link with its place, curves of it over the speed, one a load step.
+    pub fn envelope(
+        &mut self,
+        steps: &mut [Step<'_, '_>],
+        (range, diagram): (&Operating, &[f64]),
+        names: &[String],
+        limits: &[Forced],
+    ) {
+        let Some(a) = steps.first().map(|s| s.machine.a) else { return };
+        let mut tops = Vec::new();
+        for (l, link) in a.line.links.iter().enumerate() {
+            let Some(top) = top_of(steps, &link.name) else { continue };
+            let n = l + 1;
+            let name = &link.name;
+            self.result(
+                format!("envelope.shaft{n}.torque_amplitude"),
+                top.amplitude,
+                "N m",
+                format!("largest vibratory torque of {name} over operating range and load steps"),
+            );
+            if let Some(s) = a.stress[l] {
+                self.result(
+                    format!("envelope.shaft{n}.stress_amplitude"),
+                    s * top.amplitude / 1e6,
+                    "MPa",
+                    format!("largest vibratory stress of {name} over operating range and load steps"),
+                );
+            }
+            let what = format!("speed of the largest vibratory torque of {name}");
+            self.result(format!("envelope.shaft{n}.speed"), rpm(top.speed), "rpm", what);
+            let what = format!("strongest order of {name} there");
+            self.result(format!("envelope.shaft{n}.order"), top.order, "", what);
+            if names.len() > 1 {
+                let what = format!("load step there: {}", names[top.step]);
+                self.result(format!("envelope.shaft{n}.load_step"), (top.step + 1) as f64, "", what);
+            }
+            tops.push((l, top));
+        }
+        self.large_motion(steps, names);
+        if range.is_wide() {
+            self.curves(steps, (range, diagram), names, limits, &tops);
+        }
+    }
+
+    /// Says where vibration is larger than what is computed can be.
+    fn large_motion(&mut self, steps: &mut [Step<'_, '_>], names: &[String]) {
+        let mut worst = [(0.0, 0.0, 0); 2];
+        for (k, s) in steps.iter_mut().enumerate() {
+            for w in s.speeds.clone() {
+                let Some(p) = s.machine.at(w) else { continue };
+                let fluctuation = p.irregularity.iter().copied().fold(0.0, f64::max);
+                for (worst, value) in worst.iter_mut().zip([p.twist, fluctuation]) {
+                    if value > worst.0 {
+                        *worst = (value, w, k);
+                    }
+                }
+            }
+        }
+        for ((value, speed, step), (topic, what, unit)) in worst.into_iter().zip([
+            ("linear_twist.operating_range", "a shaft twists by", "rad"),
+            ("linear_speed.operating_range", "the speed of an inertia goes up and down by", "of its mean"),
+        ]) {
+            if value > LINEAR {
+                let text = format!(
+                    "{what} {value:.3e} {unit} at {} (load step `{}`): small vibration about even rotation ends at about {LINEAR}",
+                    told(speed),
+                    names[step]
+                );
+                self.note(&[Note::caution(topic, text).amount(
+                    "largest",
+                    value,
+                    if unit == "rad" { "rad" } else { "1" },
+                )]);
+            }
+        }
+    }
+
+    /// Table `envelope`, the envelope of all shafts, and the curves of the one that uses its limit most.
+    fn curves(
+        &mut self,
+        steps: &mut [Step<'_, '_>],
+        (range, diagram): (&Operating, &[f64]),
+        names: &[String],
+        limits: &[Forced],
+        tops: &[(usize, Top)],
+    ) {
+        let Some(a) = steps.first().map(|s| s.machine.a) else { return };
+        // The grid, and the places of the peaks.
+        let mut speeds = range.grid(diagram);
+        speeds.extend(tops.iter().map(|t| t.1.speed).filter(|w| *w > range.from && *w < range.to));
+        speeds.sort_unstable_by(f64::total_cmp);
+        speeds.dedup();
+        speeds.retain(|w| steps.iter_mut().all(|s| s.machine.at(*w).is_some()));
+        let axis = column("speed", "rpm", speeds.iter().map(|w| rpm(*w)).collect());
+        let mut table = Series { axis, columns: Vec::new() };
+        let stressed = a.stress.iter().any(Option::is_some);
+        let (unit, what) = if stressed { ("MPa", "stress") } else { ("N m", "torque") };
+        let mut all = Vec::new();
+        let mut most: Option<(f64, usize)> = None;
+        for (l, top) in tops {
+            let link = &a.line.links[*l];
+            let factor = if stressed { a.stress[*l].map(|s| s / 1e6) } else { Some(1.0) };
+            let Some(factor) = factor else { continue };
+            let mut envelope = vec![0.0_f64; speeds.len()];
+            for (k, s) in steps.iter_mut().enumerate() {
+                let Some(at) = s.machine.a.line.links.iter().position(|x| x.name == link.name) else {
+                    continue;
+                };
+                let row: Vec<f64> = speeds
+                    .iter()
+                    .map(|w| s.machine.at(*w).map_or(0.0, |p| factor * p.links[at].amplitude))
+                    .collect();
+                envelope.iter_mut().zip(&row).for_each(|(e, r)| *e = e.max(*r));
+                if names.len() > 1 {
+                    table.columns.push(column(
+                        format!("shaft{}.step{}.{what}_amplitude", l + 1, k + 1),
+                        unit,
+                        row,
+                    ));
+                }
+            }
+            let name = format!("shaft{}.{what}_amplitude", l + 1);
+            table.columns.push(column(name.clone(), unit, envelope));
+            if all.len() < MOST {
+                all.push((link.name.clone(), name));
+            }
+            let limit = limit_of(limits, &link.name, stressed);
+            let used = limit.map_or(0.0, |limit| factor * top.amplitude / limit);
+            if most.is_none_or(|m| used > m.0) {
+                most = Some((used, *l));
+            }
+        }
+        let Some((_, l)) = most else { return };
+        let name = a.line.links[l].name.clone();
+        let limit = limit_of(limits, &name, stressed);
+        if let Some(limit) = limit {
+            table.columns.push(column(
+                format!("shaft{}.{what}_limit", l + 1),
+                unit,
+                vec![limit; speeds.len()],
+            ));
+        }
+        let limit_line =
+            || limit.map(|_| (format!("limit of {name}"), format!("shaft{}.{what}_limit", l + 1)));
+        let before = self.out.figures.len();
+        let mut lines = all;
+        lines.extend(limit_line());
+        let title = if stressed { "Envelope of stress" } else { "Envelope of torque" };
+        self.lines(
+            title,
+            &format!(
+                "largest amplitude (half of peak to peak) of all load steps over the operating range: {}",
+                numbered(names)
+            ),
+            "envelope",
+            "speed",
+            lines,
+            false,
+        );
+        if names.len() > 1 {
+            let step = |k: usize| format!("shaft{}.step{}.{what}_amplitude", l + 1, k + 1);
+            let mut lines: Vec<(String, String)> =
+                names.iter().enumerate().map(|(k, n)| (n.clone(), step(k))).collect();
+            lines.retain(|(_, column)| table.get(column).is_some());
+            lines.extend(limit_line());
+            self.lines(
+                &format!("Load steps: {what} in {name}"),
+                "amplitude (half of peak to peak) over the operating range, in the shaft that uses its limit most",
+                "envelope",
+                "speed",
+                lines,
+                false,
+            );
+        }
+        // Behind the verdict's bars.
+        let own = self.out.figures.split_off(before);
+        let bars =
+            self.out.figures.iter().take_while(|f| f.title == "Verdict" || f.title == "Load steps").count();
+        self.out.figures.splice(bars..bars, own);
+        self.out.tables.insert("envelope".into(), table);
+    }
+}
+
+/// The largest torque amplitude of a link over all load steps that have it.
+fn top_of(steps: &mut [Step<'_, '_>], name: &str) -> Option<Top> {
+    let mut best: Option<Top> = None;
+    for (k, s) in steps.iter_mut().enumerate() {
+        let Some(l) = s.machine.a.line.links.iter().position(|x| x.name == name) else { continue };
+        let speeds = s.speeds.clone();
+        let (speed, amplitude) = s.machine.largest(&speeds, &|p| p.links[l].amplitude);
+        if amplitude.is_finite() && best.as_ref().is_none_or(|b| amplitude > b.amplitude) {
+            let order = s.machine.at(speed).map_or(0.0, |p| p.links[l].order);
+            best = Some(Top { amplitude, speed, step: k, order });
+        }
+    }
+    best
+}
+
+/// The limit on the amplitude in a shaft, as drawn.
+fn limit_of(limits: &[Forced], name: &str, stressed: bool) -> Option<f64> {
+    let (quantity, factor) = if stressed { (Quantity::Stress, 1e-6) } else { (Quantity::Torque, 1.0) };
+    let found =
+        limits.iter().filter(|l| l.subject == name && l.quantity == quantity).map(|l| factor * l.admitted);
+    found.reduce(f64::min)
+}

@@ -1,0 +1,247 @@
+//! Natural frequencies, shapes, critical speeds.
+
+use std::f64::consts::PI;
+
+use gudgeon_core::EvalError;
+use gudgeon_core::kinds::{Line, Mode};
+use gudgeon_core::result::{Note, Series};
+use gudgeon_torsion::steady::Steady;
+
+use super::{MOST, Results, column};
+use crate::assemble::Assembled;
+use crate::verdict::{MODES, separation};
+use crate::{draw, rpm};
+
+/// Intervals of the diagram, and of the search for critical speeds where they move with the speed.
+const GRID: usize = 60;
+
+impl Results<'_> {
+    /// The frequencies of a model that is wrong on purpose.
+    pub fn published(&mut self, modes: &[Mode], line: &Line) {
+        let name = self.case.models.natural_frequencies.typetag_name();
+        for (k, m) in modes.iter().enumerate() {
+            let of = &line.nodes[k.min(line.nodes.len() - 1)].name;
+            let what = format!("`{name}` of {of}: not a natural frequency of the line");
+            self.result(format!("published.{}.frequency", k + 1), m.omega / (2.0 * PI), "Hz", what.clone());
+            self.result(format!("published.{}.omega", k + 1), m.omega, "rad/s", what);
+        }
+        let text = format!(
+            "`natural_frequencies/{name}` does not give natural frequencies; they stand beside it as `mode.N.frequency`, and everything else uses those"
+        );
+        self.note(&[Note::caution("published_frequencies", text)]);
+    }
+
+    /// Natural frequencies and shapes.
+    pub fn modes(&mut self, modes: &[Mode], line: &Line) {
+        let elastic: Vec<&Mode> = modes.iter().filter(|m| m.omega > 0.0).collect();
+        self.result(
+            "rigid_modes",
+            (modes.len() - elastic.len()) as f64,
+            "",
+            "number of modes at frequency zero",
+        );
+        let mut table = Series {
+            axis: column("inertia", "", (1..=line.nodes.len()).map(|i| i as f64).collect()),
+            columns: Vec::new(),
+        };
+        for (k, m) in elastic.iter().enumerate() {
+            let n = k + 1;
+            self.result(
+                format!("mode.{n}.frequency"),
+                m.omega / (2.0 * PI),
+                "Hz",
+                format!("natural frequency of mode {n}, undamped"),
+            );
+            self.result(
+                format!("mode.{n}.omega"),
+                m.omega,
+                "rad/s",
+                format!("the same as angular frequency, mode {n}"),
+            );
+            if let Some((decay, omega)) = m.damped {
+                self.result(
+                    format!("mode.{n}.damping_ratio"),
+                    decay / decay.hypot(omega),
+                    "",
+                    format!("damping ratio of mode {n}"),
+                );
+                self.result(format!("mode.{n}.decay"), decay, "1/s", format!("decay rate of mode {n}"));
+                self.result(
+                    format!("mode.{n}.damped_frequency"),
+                    omega / (2.0 * PI),
+                    "Hz",
+                    format!("frequency of mode {n} with damping"),
+                );
+            }
+            self.result(
+                format!("mode.{n}.nodes"),
+                draw::nodes(line, &m.shape).len() as f64,
+                "",
+                format!("places at rest in mode {n}"),
+            );
+            table.columns.push(column(format!("mode{n}"), "", m.shape.clone()));
+        }
+        let worst = modes.iter().map(|m| m.residual).fold(0.0, f64::max);
+        self.result(
+            "holzer_residual",
+            worst,
+            "",
+            "torque left over at the end of the line, by the largest, worst mode",
+        );
+        self.out.tables.insert("modes".into(), table);
+        if !elastic.is_empty() {
+            self.out.figures.push(draw::modes(line, &elastic[..elastic.len().min(MOST)]));
+        }
+    }
+
+    /// Interference table and diagram: natural frequencies about the mean torque of each speed, with the stiffness that links have at
+    /// that frequency.
+    ///
+    /// # Errors
+    /// No convergence.
+    pub fn critical_speeds(
+        &mut self,
+        modes: &[Mode],
+        steady: &mut Steady,
+        a: &Assembled,
+    ) -> Result<(), EvalError> {
+        let r = &self.case.range;
+        let speed = self.case.speed.si();
+        let to = r.to.map_or(2.0 * speed, |v| v.si());
+        // Nothing is critical at rest.
+        let from = r.from.map_or(0.0, |v| v.si());
+        let elastic = modes.iter().filter(|m| m.omega > 0.0).count();
+        let step = 2.0 * PI / a.period;
+        let most = (r.interference_orders.si() / step + 1e-9).floor() as usize;
+        let orders: Vec<f64> = (1..=most).map(|k| k as f64 * step).collect();
+        let mut found = steady.critical_speeds(&orders, from.max(1e-6 * to), to, GRID);
+        found.retain(|c| c.mode <= elastic);
+        self.result(
+            "critical_speeds",
+            found.len() as f64,
+            "",
+            "number of critical speeds within the range, table `critical_speeds`",
+        );
+        for c in &found {
+            let name = format!("critical_speed.mode{}.order{}", c.mode, c.order);
+            self.result(
+                name,
+                rpm(c.speed),
+                "rpm",
+                format!("speed at which order {} excites mode {}", c.order, c.mode),
+            );
+        }
+        let here: Vec<f64> = steady.frequencies(MODES)?;
+        let all = here.iter().enumerate().flat_map(|(m, w)| orders.iter().map(move |o| (m + 1, *o, *w)));
+        let nearest = all.map(|(m, o, w)| (separation(w, o * speed), m, o, w)).fold(
+            None,
+            |best: Option<(f64, usize, f64, f64)>, c| match best {
+                Some((d, ..)) if f64::abs(d) <= c.0.abs() => best,
+                _ => Some(c),
+            },
+        );
+        if let Some((distance, mode, order, omega)) = nearest {
+            self.result(
+                "nearest_critical_speed",
+                rpm(omega / order),
+                "rpm",
+                format!("critical speed next to the mean speed: order {order} and mode {mode}"),
+            );
+            self.result(
+                "distance_to_critical",
+                100.0 * distance,
+                "%",
+                "of that critical speed from the mean speed, by the mean speed: what `limits.separation` goes by",
+            );
+        }
+        let of = |f: &dyn Fn(usize) -> f64| (0..found.len()).map(f).collect::<Vec<f64>>();
+        let table = Series {
+            axis: column("speed", "rpm", of(&|k| rpm(found[k].speed))),
+            columns: vec![
+                column("mode", "", of(&|k| found[k].mode as f64)),
+                column("order", "", of(&|k| found[k].order)),
+                column("frequency", "Hz", of(&|k| found[k].omega / (2.0 * PI))),
+                column("damping_ratio", "", of(&|k| found[k].damping_ratio)),
+            ],
+        };
+        self.out.tables.insert("critical_speeds".into(), table);
+        // The diagram: orders as rays, modes as levels.
+        let at: Vec<f64> = (0..=GRID).map(|i| from + (to - from) * i as f64 / GRID as f64).collect();
+        let mut levels: Vec<Vec<f64>> = vec![Vec::with_capacity(at.len()); here.len()];
+        for w in &at {
+            let omega = if steady.depends_on_speed() {
+                steady.set_speed(*w);
+                steady.frequencies(MODES)?
+            } else {
+                here.clone()
+            };
+            for (level, w) in levels.iter_mut().zip(omega) {
+                level.push(w / (2.0 * PI));
+            }
+        }
+        steady.set_speed(speed);
+        // Modes that are there at every speed.
+        levels.retain(|l| l.len() == at.len());
+        if levels.is_empty() {
+            return Ok(());
+        }
+        let rows: Vec<f64> = at.iter().map(|w| rpm(*w)).collect();
+        let marks: Vec<[f64; 2]> = found.iter().map(|c| [rpm(c.speed), c.omega / (2.0 * PI)]).collect();
+        self.out.figures.push(draw::interference(&rows, &levels, &orders, &marks, rpm(speed)));
+        let mut table = Series { axis: column("speed", "rpm", rows.clone()), columns: Vec::new() };
+        for (k, level) in levels.into_iter().enumerate() {
+            table.columns.push(column(format!("mode{}", k + 1), "Hz", level));
+        }
+        for o in &orders {
+            table.columns.push(column(
+                format!("order{o}"),
+                "Hz",
+                rows.iter().map(|s| o * s / 60.0).collect(),
+            ));
+        }
+        self.out.tables.insert("interference".into(), table);
+        Ok(())
+    }
+
+    /// Largest step of a method with fixed steps that lets no mode grow that the line damps.
+    pub fn stable_step(&mut self, modes: &[Mode]) {
+        let torsion = &self.case.models.torsion;
+        let grows = |re: f64, im: f64| torsion.grows([re, im]).unwrap_or(false);
+        if torsion.grows([0.0, 0.0]).is_none() {
+            return;
+        }
+        let limit = |m: &Mode| {
+            let (decay, w) = m.damped.unwrap_or((0.0, m.omega));
+            let (mut low, mut high) = (0.0, 4.0 / decay.hypot(w));
+            for k in 1..=400 {
+                let h = high * f64::from(k) / 400.0;
+                if grows(-decay * h, w * h) {
+                    (low, high) = (high * f64::from(k - 1) / 400.0, h);
+                    break;
+                }
+            }
+            for _ in 0..60 {
+                let middle = 0.5 * (low + high);
+                if grows(-decay * middle, w * middle) {
+                    high = middle;
+                } else {
+                    low = middle;
+                }
+            }
+            low
+        };
+        let least = modes
+            .iter()
+            .filter(|m| m.omega > 0.0 && m.damped.is_some())
+            .map(limit)
+            .fold(f64::INFINITY, f64::min);
+        if least.is_finite() {
+            self.result(
+                "stable_step",
+                least,
+                "s",
+                "largest step of the method at which no mode grows by the method",
+            );
+        }
+    }
+}

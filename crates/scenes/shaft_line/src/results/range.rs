@@ -1,0 +1,182 @@
+//! Vibration over the speed.
+
+use gudgeon_core::EvalError;
+use gudgeon_core::file::Files;
+use gudgeon_core::result::{Note, Series};
+
+use super::{MOST, Results, column};
+use crate::assemble::{Assembled, throws_alone};
+use crate::machine::{Machine, Point};
+use crate::verdict::Operating;
+use crate::{rpm, told};
+
+/// Orders drawn of the shaft that vibrates most.
+const ORDERS: usize = 6;
+/// Part of the largest gas torque by which it may change over the speed without a word.
+const SAME_GAS: f64 = 1e-6;
+
+impl Results<'_> {
+    /// Vibratory torque over the speed.
+    ///
+    /// # Errors
+    /// No answer at a speed.
+    pub fn range(&mut self, machine: &mut Machine<'_>, speeds: &[f64]) -> Result<(), EvalError> {
+        let a = machine.a;
+        let links = a.line.links.len();
+        machine.by_order = true;
+        machine.prepare(speeds);
+        let mut rows: Vec<Point> = Vec::with_capacity(speeds.len());
+        for w in speeds {
+            match machine.at(*w) {
+                Some(p) => rows.push(p.clone()),
+                None => return Err(machine.why(*w)),
+            }
+        }
+        machine.by_order = false;
+        // Peaks between the points count where the limits do; a wider diagram shows what it draws.
+        let (from, to) = (speeds[0], speeds[speeds.len() - 1]);
+        let judged = Operating::new(self.case);
+        let (telling, of) = if judged.from == from && judged.to == to {
+            let critical = machine.critical_speeds(from, to);
+            (machine.telling_speeds(speeds, &critical), "over the speed range")
+        } else {
+            (Vec::new(), "of the speeds of the diagram")
+        };
+        let mut table = Series {
+            axis: column("speed", "rpm", speeds.iter().map(|w| rpm(*w)).collect()),
+            columns: Vec::new(),
+        };
+        let mut curves = Vec::new();
+        let mut top = (0.0, 0, speeds[0]);
+        for l in 0..links {
+            let drawn = rows.iter().zip(speeds).map(|(p, w)| (*w, p.links[l].amplitude));
+            let (speed, most) = if telling.is_empty() {
+                drawn.fold((from, 0.0), |best, at| if at.1 > best.1 { at } else { best })
+            } else {
+                machine.largest(&telling, &|p| p.links[l].amplitude)
+            };
+            if most > top.0 {
+                top = (most, l, speed);
+            }
+            self.result(
+                format!("range.shaft{}.torque_amplitude", l + 1),
+                most,
+                "N m",
+                format!("largest vibratory torque of {} {of}", a.line.links[l].name),
+            );
+            let name = format!("shaft{}.torque_amplitude", l + 1);
+            table.columns.push(column(
+                name.clone(),
+                "N m",
+                rows.iter().map(|p| p.links[l].amplitude).collect(),
+            ));
+            if l < MOST {
+                curves.push((a.line.links[l].name.clone(), name));
+            }
+        }
+        let what = "speed of the largest vibratory torque of any shaft";
+        self.result("range.worst_speed", rpm(top.2), "rpm", what);
+        self.lines(
+            "Vibratory torque over the speed",
+            "half of peak to peak",
+            "speed_range",
+            "speed",
+            curves,
+            false,
+        );
+        let curves = orders_of(top.1, &machine.orders, links, &rows, &mut table);
+        if let Some(l) = a.line.links.get(top.1) {
+            self.lines(
+                &format!("Orders of {} over the speed", l.name),
+                "torque amplitude of the strongest orders",
+                "speed_range",
+                "speed",
+                curves,
+                false,
+            );
+        }
+        self.out.tables.insert("speed_range".into(), table);
+        self.answered(machine, "speed_range");
+        Ok(())
+    }
+
+    /// Says at how many speeds the model found no periodic motion.
+    pub fn answered(&mut self, machine: &Machine<'_>, subject: &str) {
+        let span = |speeds: &[f64]| {
+            let low = speeds.iter().copied().fold(f64::INFINITY, f64::min);
+            let high = speeds.iter().copied().fold(0.0, f64::max);
+            format!("from {} to {}", told(low), told(high))
+        };
+        let n = machine.spared.len();
+        if n > 0 {
+            let text = format!(
+                "at {n} of the speeds looked at ({}) the model found no periodic motion: `orders` answers there",
+                span(&machine.spared)
+            );
+            let note = Note::caution(format!("no_periodic_motion.{subject}"), text);
+            self.note(&[note.amount("speeds", n as f64, "1")]);
+        }
+        if let Some((_, why)) = machine.failed.first() {
+            let speeds: Vec<f64> = machine.failed.iter().map(|f| f.0).collect();
+            let text = format!(
+                "at {} of the speeds looked at ({}) there is no answer, and nothing is judged: {why}",
+                speeds.len(),
+                span(&speeds)
+            );
+            let note = Note::caution(format!("no_answer.{subject}"), text);
+            self.note(&[note.amount("speeds", speeds.len() as f64, "1")]);
+        }
+    }
+
+    /// Says by how much the gas torque at the ends of the range differs from that at the mean speed, which is taken everywhere.
+    pub fn gas_over_speed(&mut self, a: &Assembled, files: &Files, speeds: &[f64]) {
+        let mut worst = (0.0, 0.0);
+        for w in [speeds.first(), speeds.last()].into_iter().flatten() {
+            let Ok(throws) = throws_alone(self.case, files, *w) else { continue };
+            for (mean, here) in a.line.throws.iter().zip(&throws) {
+                let at = |k: i32| f64::from(k).to_radians() - mean.phase;
+                let largest = (0..720).map(|k| mean.gas_torque(at(k), at(k)).abs()).fold(0.0, f64::max);
+                let change = (0..720)
+                    .map(|k| (here.gas_torque(at(k), at(k)) - mean.gas_torque(at(k), at(k))).abs())
+                    .fold(0.0, f64::max);
+                if change > worst.0 * largest {
+                    worst = (change / largest, *w);
+                }
+            }
+        }
+        if worst.0 > SAME_GAS {
+            let text = format!(
+                "cylinder pressures are those of the mean speed at all speeds; at {} the gas torque of a throw would differ by up to {:.2} % of its largest",
+                told(worst.1),
+                100.0 * worst.0
+            );
+            let note = Note::caution("gas_over_speed", text);
+            self.note(&[note.amount("largest_change", 100.0 * worst.0, "%")]);
+        }
+    }
+}
+
+/// Columns of the strongest orders of a shaft over the speed, with their labels.
+fn orders_of(
+    link: usize,
+    orders: &[f64],
+    links: usize,
+    rows: &[Point],
+    table: &mut Series,
+) -> Vec<(String, String)> {
+    let strength = |k: usize| {
+        rows.iter()
+            .flat_map(|p| p.orders.get(k * links..(k + 1) * links).into_iter().flatten())
+            .fold(0.0, |a, b| f64::max(a, *b))
+    };
+    let mut strongest: Vec<(f64, usize)> = (0..orders.len()).map(|k| (strength(k), k)).collect();
+    strongest.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut curves = Vec::new();
+    for (_, k) in strongest.iter().take(ORDERS) {
+        let name = format!("shaft{}.order{}", link + 1, orders[*k]);
+        let column_of = rows.iter().map(|p| p.orders.get(k * links + link).copied().unwrap_or(0.0)).collect();
+        table.columns.push(column(name.clone(), "N m", column_of));
+        curves.push((format!("order {}", orders[*k]), name));
+    }
+    curves
+}

@@ -1,0 +1,566 @@
+//! The scene `shaft_line`: what runs, what is skipped, what is refused, transients and limits.
+
+use std::path::{Path, PathBuf};
+
+use gudgeon_core::result::RunResult;
+use gudgeon_scene::{check, explain, run};
+
+fn case(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases").join(name)
+}
+
+fn once(name: &str, set: &[&str]) -> RunResult {
+    let set: Vec<String> = set.iter().map(|s| (*s).to_owned()).collect();
+    let c = check(&case(name), &set).unwrap_or_else(|r| panic!("{r}"));
+    run(&c, &mut |_| {}).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn refused(set: &[&str]) -> String {
+    refused_of("compressor-4-throw.toml", set)
+}
+
+fn refused_of(name: &str, set: &[&str]) -> String {
+    let set: Vec<String> = set.iter().map(|s| (*s).to_owned()).collect();
+    match check(&case(name), &set) {
+        Ok(_) => "accepted".into(),
+        Err(r) => r.to_string() + &r.diagnostics.iter().map(|d| d.headline()).collect::<Vec<_>>().join("; "),
+    }
+}
+
+#[test]
+fn constant_speed_without_torsion_builds_no_line() {
+    let r = once(
+        "compressor-4-throw.toml",
+        &["models.torsion.model=off", "outputs.groups=[\"throws\"]", "limits={}"],
+    );
+    for counter in ["lines_built", "time_steps", "linear_solutions"] {
+        assert_eq!(r.solver.counters[counter], 0, "{counter}");
+    }
+    assert!((r.results["throw1.mean_torque"].value + 430.622294).abs() < 1e-5);
+    assert!(!r.results.contains_key("mode.1.frequency"));
+    assert!(r.skipped.iter().any(|s| s.what == "shaft line"));
+    // Asked for frequencies the line is built, and nothing but that.
+    let r = once(
+        "compressor-4-throw.toml",
+        &["models.torsion.model=off", "outputs.groups=[\"natural_frequencies\"]", "limits={}"],
+    );
+    assert_eq!(r.solver.counters["lines_built"], 1);
+    assert_eq!(r.solver.counters["linear_solutions"], 0);
+    assert!(!r.results.contains_key("throw1.mean_torque") && r.results.contains_key("mode.6.frequency"));
+}
+
+#[test]
+fn a_linear_steady_question_takes_no_time_step() {
+    let r = once("compressor-4-throw.toml", &[]);
+    assert_eq!(r.solver.counters["time_steps"], 0);
+    assert!(r.solver.counters["linear_solutions"] > 24, "orders and the speed range");
+    assert!(r.results["limits_broken"].value >= 1.0 && r.solver.notes[0].topic == "verdict");
+    assert!(r.tables.contains_key("critical_speeds") && r.tables.contains_key("orders"));
+    for title in ["Verdict", "Mode shapes", "Interference diagram", "Torque in the shafts", "Shear stress"] {
+        assert!(r.figures.iter().any(|f| f.title == title), "{title}");
+    }
+    // The free motion of a linear line in closed form neither.
+    let r = once("compressor-4-throw-as-published-free.toml", &["models.torsion={ model = \"propagator\" }"]);
+    assert_eq!(r.solver.counters["time_steps"], 0);
+    assert!((r.results["mean_speed"].value - 268.766_776_629).abs() < 1e-8);
+}
+
+#[test]
+fn the_same_case_gives_the_same_bytes() {
+    let a = once("compressor-4-throw.toml", &[]);
+    let b = once("compressor-4-throw.toml", &[]);
+    assert_eq!((a.results, a.series, a.tables), (b.results, b.series, b.tables));
+}
+
+#[test]
+fn every_torsion_model_answers_the_compressor() {
+    let base = [
+        "models.torsion={ model = \"orders\" }",
+        "models.throw_inertia.model=mean",
+        "range={ orders = 12 }",
+        "limits={}",
+    ];
+    let with = |more: &[&str]| once("compressor-4-throw.toml", &[&base[..], more].concat());
+    let orders = with(&[]);
+    let amplitude = |r: &RunResult, shaft: usize| r.results[&format!("shaft{shaft}.torque_amplitude")].value;
+    let balance = with(&["models.torsion={ model = \"harmonic_balance\" }"]);
+    let modal = with(&["models.torsion={ model = \"modal\" }"]);
+    for s in 1..=6 {
+        let a = amplitude(&orders, s);
+        // Gas by the true angle against the mean one; modes without coupling by damping.
+        assert!((amplitude(&balance, s) / a - 1.0).abs() < 0.03, "{s}");
+        assert!((amplitude(&modal, s) / a - 1.0).abs() < 0.1, "{s}");
+    }
+    // Started in its periodic motion the line keeps it: closed form to rounding (the kinks beyond order 12 are the
+    // same in both), error control nearly.
+    let time =
+        "time={ duration = \"0.12 s\", interval = \"0.2 ms\", window = \"0.06 s\", start_steady = true }";
+    let hold = format!(
+        "drives=[{{ at = \"motor\", drive = {{ model = \"constant\", torque = {} }} }}]",
+        -4.0 * orders.results["throw1.mean_torque"].value
+    );
+    let held = with(&[&hold]);
+    let closed = with(&[time, &hold, "models.torsion={ model = \"propagator\" }"]);
+    let stepped = with(&[time, &hold, "models.torsion={ model = \"implicit\", tolerance = 1e-7 }"]);
+    for i in 1..=7 {
+        let name = format!("inertia{i}.speed_swing");
+        let a = held.results[&name].value;
+        assert!((closed.results[&name].value / a - 1.0).abs() < 2e-3, "{name}: rows 0.2 ms apart");
+        assert!((stepped.results[&name].value / a - 1.0).abs() < 0.05, "{name}: gas by the true angle");
+    }
+}
+
+#[test]
+fn a_start_from_rest_reaches_the_speed_of_the_motor() {
+    let set = [
+        "range={ orders = 12 }",
+        "limits={}",
+        "models.torsion={ model = \"implicit\", tolerance = 1e-5 }",
+        "drives=[{ at = \"motor\", drive = { model = \"induction_motor\", synchronous = \"1015 rpm\", breakdown_torque = \"12 kN m\", breakdown_slip = \"30 %\" } }]",
+        "time={ duration = \"12 s\", interval = \"20 ms\", window = \"1 s\", start_speeds = [\"1 rad/s\"] }",
+    ];
+    let r = once("compressor-4-throw.toml", &set);
+    let speed = r.results["mean_speed"].value;
+    // Between the slip of the mean load and synchronous speed.
+    assert!(speed > 100.0 && speed < 106.3, "{speed}");
+    assert!(r.solver.counters["time_steps"] > 100);
+    // Mean motor torque carries the mean of the gas, 1722 N m, once the speed stands.
+    assert!(
+        (r.results["drive1.torque"].value - 1722.5).abs() < 100.0,
+        "{}",
+        r.results["drive1.torque"].value
+    );
+    assert!(r.results["shaft1.torque_peak"].value > r.results["shaft1.torque_amplitude"].value);
+}
+
+#[test]
+fn double_acting_unloading_and_staging() {
+    let end = |side: &str, model: &str| {
+        format!(
+            "{{ side = \"{side}\", bore = \"0.305 m\", rod_diameter = \"{}\", cylinder_pressure = {model} }}",
+            if side == "crank" { "0.06 m" } else { "0 m" }
+        )
+    };
+    let ideal = "{ model = \"ideal_valves\", suction = \"1 bar\", discharge = \"6 bar\", clearance = { fraction = 0.08 } }";
+    let open = "{ model = \"ideal_valves\", suction = \"1 bar\", discharge = \"6 bar\", clearance = { fraction = 0.08 }, held_open = true }";
+    let lossy = "{ model = \"valve_losses\", suction = \"1 bar\", discharge = \"6 bar\", clearance = { fraction = 0.08 }, suction_area = \"80 cm2\", discharge_area = \"60 cm2\" }";
+    let work = |ends: &[String]| {
+        let set = format!("throws.0.ends=[{}]", ends.join(", "));
+        let r = once("compressor-4-throw.toml", &[&set, "outputs.groups=[\"throws\"]", "limits={}"]);
+        -r.results["throw1.work"].value
+    };
+    let (head, crank) = (work(&[end("head", ideal)]), work(&[end("crank", ideal)]));
+    // The crank end has the same cycle on an area smaller by the rod: work goes with the swept volume.
+    let area = 1.0 - (0.06_f64 / 0.305).powi(2);
+    assert!((crank / head - area).abs() < 1e-9, "{crank} {head}");
+    assert!((work(&[end("head", ideal), end("crank", ideal)]) - head - crank).abs() < 1e-9 * head);
+    // An unloaded end takes no work, valve losses add some.
+    assert!(work(&[end("head", open)]).abs() < 1e-9 * head);
+    let with_losses = work(&[end("head", lossy)]);
+    assert!(with_losses > head && with_losses < 1.2 * head, "{with_losses} {head}");
+    // Closed form: n/(n-1) p_s (V_max - V_4) ((p_d/p_s)^((n-1)/n) - 1).
+    let swept = std::f64::consts::PI * 0.305 * 0.305 / 4.0 * 0.18;
+    let v4 = 0.08 * swept * 6.0_f64.powf(1.0 / 1.4);
+    let exact = 3.5 * 1e5 * (1.08 * swept - v4) * (6.0_f64.powf(0.4 / 1.4) - 1.0);
+    assert!((head / exact - 1.0).abs() < 1e-10, "{head} {exact}");
+}
+
+#[test]
+fn tors_files_are_imported_with_a_report() {
+    let folder = std::env::temp_dir().join("gudgeon-shaft-line-tors");
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let tors = r#"{"components": [{"name": "e", "elements": [
+        {"name": "a", "type": "Disk", "inertia": 0.8, "damping": 0},
+        {"name": "s", "type": "ShaftDiscrete", "stiffness": 200000, "damping": 1, "colour": "red"},
+        {"name": "b", "type": "Disk", "inertia": 0.05, "damping": 0}]}], "structure": []}"#;
+    std::fs::write(folder.join("two.json"), tors).expect("written");
+    let text = "scene = \"shaft_line\"\nspeed = \"1000 rpm\"\ntors = \"two.json\"\n\n[[inertias]]\nname = \"pump\"\ninertia = \"0.4 kg m2\"\n\n[[shafts]]\nfrom = \"e.b\"\nto = \"pump\"\nstiffness = \"1 kN m/rad\"\n";
+    let file = folder.join("case.toml");
+    std::fs::write(&file, text).expect("written");
+    let c = check(&file, &[]).unwrap_or_else(|r| panic!("{r}"));
+    let r = run(&c, &mut |_| {}).expect("runs");
+    assert!(r.solver.notes.iter().any(|n| n.text.contains("e.s: colour not read")), "{:?}", r.solver.notes);
+    assert!(r.results.contains_key("mode.2.frequency") && !r.results.contains_key("mode.3.frequency"));
+    let c = check(&file, &["shafts=[]".into(), "inertias=[]".into()]).unwrap_or_else(|r| panic!("{r}"));
+    let r = run(&c, &mut |_| {}).expect("runs");
+    // Two discs: ω = √(k (1/J₁ + 1/J₂)).
+    assert!((r.results["mode.1.omega"].value / 2_061.552_812_808_830_3 - 1.0).abs() < 1e-14);
+    let lost = check(&file, &["tors=\"none.json\"".into()]);
+    assert!(lost.err().is_some_and(|r| r.to_string().contains("none.json")
+        || r.diagnostics.iter().any(|d| d.headline().contains("none.json"))));
+}
+
+#[test]
+fn mistakes_are_told_at_their_place() {
+    for (set, word) in [
+        ("shafts.0.to=couplin", "did you mean `coupling`"),
+        ("shafts.1.to=motor", "not connected"),
+        ("shafts.0.stiffness=-1", "zero or greater"),
+        ("throws.0.rod_length=\"0.05 m\"", "cannot turn"),
+        ("throws.0.phases=[0]", "1 phases for 4 throws"),
+        ("throws.0.ends.0.cylinder_pressure.discharge=\"1 bar\"", "must be above"),
+        ("models.torsion={ model = \"runge_kutta\", step = 1e-5 }", "needs a table `time`"),
+        ("models.torsion={ model = \"modal\", modes = 0 }", "`0` must be at least 1"),
+        ("limits.torque.0.shaft=x", "there is no shaft `x`"),
+        ("range.to=\"100 rpm\"", "must be above `from`"),
+        ("inertias.0.ratio=0", "would not turn"),
+        ("shafts.0.pieces=[{ length = 1, diameter = 0.1 }]", "exactly one of"),
+        ("drives.0.drive={ model = \"linear\", intercept = 1 }", "`intercept` and `slope`"),
+        ("range.points=1", "`1` must be at least 2"),
+    ] {
+        let told = refused(&[set]);
+        assert!(told.contains(word), "{set}: {told}");
+    }
+    let time = "time={ duration = 1, interval = 1e-3 }";
+    for (set, word) in [
+        (["models.torsion={ model = \"propagator\" }", time], "varies with the angle"),
+        (["models.torsion={ model = \"runge_kutta\", step = 1e-9 }", time], "steps"),
+        (["models.torsion={ model = \"implicit\" }", "time={ duration = 1, interval = 1e-7 }"], "rows"),
+    ] {
+        let told = refused(&set);
+        assert!(told.contains(word), "{set:?}: {told}");
+    }
+}
+
+#[test]
+fn an_undamped_resonance_that_is_hit_is_refused() {
+    let set: Vec<String> = [
+        "limits={}",
+        "conventions={}",
+        "drives=[]",
+        "models.throw_inertia.model=mean",
+        "throws.0.phases=[]",
+        "range={ orders = 1 }",
+        // The exact first frequency of the line, within rounding.
+        "speed=\"261.5183528700733 rad/s\"",
+        "outputs.groups=[\"response\"]",
+    ]
+    .map(String::from)
+    .to_vec();
+    let c = check(&case("compressor-4-throw.toml"), &set).unwrap_or_else(|r| panic!("{r}"));
+    let told = explain(&c).expect("explains");
+    assert!(told.skipped.iter().any(|s| s.what == "time steps"));
+    // The speed to the last digit comes from the line itself.
+    let omega = {
+        let set: Vec<String> =
+            set[..6].iter().cloned().chain(["outputs.groups=[\"natural_frequencies\"]".into()]).collect();
+        let c = check(&case("compressor-4-throw.toml"), &set).unwrap_or_else(|r| panic!("{r}"));
+        run(&c, &mut |_| {}).expect("runs").results["mode.1.omega"].value
+    };
+    let mut exact = set.clone();
+    exact[7] = format!("speed={omega:?}");
+    let c = check(&case("compressor-4-throw.toml"), &exact).unwrap_or_else(|r| panic!("{r}"));
+    let e = run(&c, &mut |_| {}).expect_err("a resonance").to_string();
+    assert!(e.contains("undamped natural frequency") && e.contains("order 1"), "{e}");
+}
+
+#[test]
+fn gears_over_time_turn_as_one_and_carry_what_is_behind_them() {
+    let mut set: Vec<String> = [
+        r#"models.torsion={ model = "implicit" }"#,
+        r#"time={ duration = "0.3 s", interval = "1 ms", window = "0.2 s", start_steady = true }"#,
+        r#"shafts.7.coupling={ model = "linear", stiffness = "20 kN m/rad", damping = "40 N m s/rad" }"#,
+        r#"dampers.0.coupling={ model = "linear", stiffness = "20 kN m/rad", damping = "60 N m s/rad" }"#,
+        r#"outputs.groups=["response"]"#,
+    ]
+    .map(String::from)
+    .to_vec();
+    set.extend([0, 1, 2, 3, 4, 5, 6, 9, 11].map(|k| format!("shafts.{k}.loss_factor=0")));
+    let r = once("geared-train.toml", &set.iter().map(String::as_str).collect::<Vec<_>>());
+    let of = |name: &str| r.results[name].value;
+    let pinion = of("inertia9.speed_end");
+    for (i, ratio) in [(10, -0.5), (12, -1.5)] {
+        // Rigid meshes: one state, so exactly.
+        assert!((of(&format!("inertia{i}.speed_end")) - ratio * pinion).abs() < 1e-12 * pinion);
+    }
+    // Loads act against the rotation, also where that is backwards: the generator's torque brakes.
+    assert!((of("drive4.torque") - 110.0).abs() < 1e-9, "{}", of("drive4.torque"));
+    // The mesh carries the generator's torque and its vibration; a rigid link has a torque though it has no twist.
+    let mesh = of("shaft11.torque_peak") - of("shaft11.torque_amplitude");
+    assert!((mesh - 165.0).abs() < 0.3 * 165.0, "{mesh}");
+    assert!(of("shaft11.twist_peak") < 1e-9 && !r.results.contains_key("shaft11.stiffness"));
+    // A loss factor has no meaning there, and the refusal says what has.
+    let short: Vec<&str> = set[..2].iter().map(String::as_str).collect();
+    let told = refused_of("geared-train.toml", &short);
+    assert!(told.contains("harmonic motion only"), "{told}");
+    // A throw on a shaft that turns backwards.
+    let told = refused_of("geared-train.toml", &["throws.0.at.0=wheel"]);
+    assert!(told.contains("turns backwards"), "{told}");
+}
+
+/// The text of a note.
+fn note<'a>(r: &'a RunResult, topic: &str) -> &'a str {
+    r.solver.notes.iter().find(|n| n.topic == topic).map_or("", |n| n.text.as_str())
+}
+
+#[test]
+fn the_verdict_counts_every_speed_of_the_operating_range() {
+    let r = once("geared-train.toml", &[]);
+    let all = note(&r, "verdict");
+    assert!(
+        all.contains("2 of 12 limits are not kept") && all.contains("from 600.00 rpm to 2000.00 rpm"),
+        "{all}"
+    );
+    // Neither shows at the mean speed.
+    let generator = note(&r, "verdict.stress_in_generator_shaft");
+    assert!(generator.contains("order 4") || generator.contains("order 2"), "{generator}");
+    let crank = note(&r, "verdict.stress_in_crank_4_5");
+    assert!(crank.contains("at 2000.00 rpm") && crank.contains("45.7"), "{crank}");
+    // The envelope is what the mean speed gives when it is set to where the envelope has its top.
+    let speed = r.results["envelope.shaft12.speed"].value;
+    assert!((speed - 760.0).abs() < 10.0, "{speed}");
+    let set = format!("speed=\"{speed:?} rpm\"");
+    let there = once("geared-train.toml", &[&set, "operating={ from = \"600 rpm\", to = \"600 rpm\" }"]);
+    let (top, own) = (
+        r.results["envelope.shaft12.stress_amplitude"].value,
+        there.results["shaft12.stress_amplitude"].value,
+    );
+    // The speed in rpm and back: rounding, at a top where the slope is zero.
+    assert!((top / own - 1.0).abs() < 1e-9, "{top} {own}");
+}
+
+#[test]
+fn a_dense_sweep_finds_no_more_than_the_verdict() {
+    let r = once("geared-train.toml", &[]);
+    let set = [
+        "range.points=7001",
+        "limits={}",
+        "outputs.groups=[\"speed_range\"]",
+        "operating={ from = \"600 rpm\", to = \"600 rpm\" }",
+    ];
+    let dense = once("geared-train.toml", &set);
+    let table = &dense.tables["speed_range"];
+    for n in 1..=13 {
+        let top = r.results[&format!("envelope.shaft{n}.torque_amplitude")].value;
+        let rows = &table.get(&format!("shaft{n}.torque_amplitude")).expect("a column").values;
+        let brute = rows.iter().copied().fold(0.0, f64::max);
+        // 0.2 rpm apart: of the narrowest peak (1 % damping at 600 rpm, 6 rpm wide) half a step misses (0.1/6)² < 3e-4; and nothing
+        // is above the verdict's by more than its own 1e-6.
+        assert!(top >= brute * (1.0 - 1e-6) && top <= brute * (1.0 + 3e-4), "{n}: {top} {brute}");
+    }
+}
+
+#[test]
+fn the_order_of_listing_changes_nothing() {
+    let text = std::fs::read_to_string(case("geared-train.toml")).expect("the case");
+    let text = text.split("[[checks]]").next().expect("a text");
+    // Blocks of inertias, shafts and drives the other way round.
+    let turned = |text: &str, head: &str| -> String {
+        let parts: Vec<&str> = text.split("\n\n").collect();
+        let places: Vec<usize> =
+            (0..parts.len()).filter(|i| parts[*i].trim_start().starts_with(head)).collect();
+        let mut new = parts.clone();
+        for (i, j) in places.iter().zip(places.iter().rev()) {
+            new[*i] = parts[*j];
+        }
+        new.join("\n\n")
+    };
+    let back =
+        ["[[inertias]]", "[[shafts]]", "[[drives]]"].iter().fold(text.to_owned(), |t, h| turned(&t, h));
+    let folder = std::env::temp_dir().join("gudgeon-shaft-line-backwards");
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let file = folder.join("backwards.toml");
+    std::fs::write(&file, back).expect("written");
+    let c = check(&file, &[]).unwrap_or_else(|r| panic!("{r}"));
+    let there = run(&c, &mut |_| {}).expect("runs");
+    let here = once("geared-train.toml", &[]);
+    // Numbers of names turn round: 12 shafts and 13 inertias, the damper stays the last of both.
+    let renamed = |name: &str| -> String {
+        let of = |part: &str| {
+            for (head, n) in [("shaft", 12), ("inertia", 13)] {
+                if let Some(Ok(k)) = part.strip_prefix(head).map(str::parse::<usize>) {
+                    return format!("{head}{}", if k <= n { n + 1 - k } else { k });
+                }
+            }
+            part.to_owned()
+        };
+        name.split('.').map(of).collect::<Vec<_>>().join(".")
+    };
+    assert_eq!(here.results.len(), there.results.len());
+    for (name, v) in &here.results {
+        let other = there.results.get(&renamed(name)).unwrap_or_else(|| panic!("{name}"));
+        // Signs of torques in a shaft do not turn, for its ends keep their names. A residual is rounding itself; torques that
+        // cancel are judged by the largest of the shafts.
+        let scale = if name == "holzer_residual" { 1.0 } else { v.value.abs() };
+        let slack = if v.unit == "N m" { 1e-12 * 3000.0 } else { 1e-15 };
+        assert!((v.value - other.value).abs() <= 1e-9 * scale + slack, "{name}: {} {}", v.value, other.value);
+    }
+}
+
+#[test]
+fn a_resonance_narrower_than_the_grid_is_found() {
+    // A pulsating torque on the second of two inertias behind a viscously damped shaft, damping ratio 5e-5: at 1000 rpm the peak
+    // is 0.1 rpm wide, on a grid of 12.5 rpm. Torque in the shaft by the torque on J2: k φ = J1/(J1 + J2) T V, V of one inertia.
+    let (j1, j2, zeta, torque) = (2.0_f64, 1.0_f64, 5e-5_f64, 30.0_f64);
+    let j = j1 * j2 / (j1 + j2);
+    // Order 3 meets the mode at 1003.7 rpm, off the grid.
+    let w = 3.0 * 1003.7 * std::f64::consts::PI / 30.0;
+    let (k, c) = (j * w * w, 2.0 * zeta * j * w);
+    let text = format!(
+        r#"scene = "shaft_line"
+speed = "900 rpm"
+[operating]
+from = "600 rpm"
+to = "1800 rpm"
+[[inertias]]
+name = "a"
+inertia = {j1}
+[[inertias]]
+name = "b"
+inertia = {j2}
+[[shafts]]
+name = "ab"
+from = "a"
+to = "b"
+stiffness = {k:?}
+damping = {c:?}
+[[drives]]
+at = "b"
+drive = {{ model = "harmonics", orders = [{{ order = 3, amplitude = {torque} }}] }}
+[models]
+torsion = {{ model = "orders" }}
+[[limits.torque]]
+shaft = "ab"
+amplitude = 100
+source = "a test"
+"#
+    );
+    let folder = std::env::temp_dir().join("gudgeon-shaft-line-narrow");
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let file = folder.join("narrow.toml");
+    std::fs::write(&file, text).expect("written");
+    let c = check(&file, &[]).unwrap_or_else(|r| panic!("{r}"));
+    let r = run(&c, &mut |_| {}).expect("runs");
+    let found = r.results["envelope.shaft1.torque_amplitude"].value;
+    // Spring and damper carry √(1 + (2 ζ r)²) of the spring alone: 5e-9 at the peak.
+    let exact = j1 / (j1 + j2) * torque * 0.5 / (zeta * (1.0 - zeta * zeta).sqrt());
+    assert!((found / exact - 1.0).abs() < 1e-6, "{found} {exact}");
+    assert!((r.results["envelope.shaft1.speed"].value / 1003.7 - 1.0).abs() < 1e-7);
+    assert!(note(&r, "verdict.torque_in_ab").contains("order 3"));
+    // Without any damping it has no bound, which is said and stops nothing.
+    let c = check(&file, &["shafts.0.damping=0".into()]).unwrap_or_else(|r| panic!("{r}"));
+    let r = run(&c, &mut |_| {}).expect("runs");
+    assert!(note(&r, "verdict.torque_in_ab").contains("without bound"), "{:?}", r.solver.notes);
+    assert_eq!(r.results["limits_broken"].value, 1.0);
+}
+
+#[test]
+fn load_steps_are_read_like_set_and_judged_each() {
+    let steps = |set: &str| format!("load_steps=[{{ name = \"head ends open\", set = [{set}] }}]");
+    let open = steps("\"throws.0.ends.0.cylinder_pressure.held_open=true\"");
+    let set = [open.as_str(), "limits.separation=[]"];
+    let r = once("compressor-4-throw.toml", &set);
+    assert_eq!(r.tables["load_steps"].axis.values, [1.0, 2.0]);
+    assert_eq!(r.solver.counters["lines_built"], 2, "each load step is built once");
+    // What the step gives is what the case gives when it is changed.
+    let alone = once(
+        "compressor-4-throw.toml",
+        &["throws.0.ends.0.cylinder_pressure.held_open=true", "limits.separation=[]"],
+    );
+    let column = r.tables["load_steps"].get("stress in crank 2-3").expect("a limit");
+    let own = alone.results["shaft5.stress_amplitude"].value / 35.0;
+    assert!((column.values[1] / own - 1.0).abs() < 1e-9, "{} {own}", column.values[1]);
+    for (set, word) in [
+        ("\"throws.0.ends.0.cylinder_pressure.held_opn=true\"", "held_open"),
+        ("\"drives.0.drive.rated.torque=\\\"5 m\\\"\"", "load step `head ends open`"),
+        ("\"limits={}\"", "one for all load steps"),
+        ("\"shafts.1.to=motor\"", "not connected"),
+    ] {
+        let told = refused(&[&steps(set)]);
+        assert!(told.contains(word) && told.contains("load_steps.0.set"), "{set}: {told}");
+    }
+    let told = refused(&["load_steps=[{ name = \"a\" }, { name = \"a\" }]"]);
+    assert!(told.contains("another load step"), "{told}");
+}
+
+#[test]
+fn orders_say_what_they_leave_out() {
+    let r = once("compressor-4-throw.toml", &[]);
+    // Time integration with an independent program (SciPy): 9666 N m.
+    assert!((r.results["shaft3.torque_max"].value / 9666.0 - 1.0).abs() < 1e-3);
+    assert!(note(&r, "left_out").is_empty());
+    let r =
+        once("compressor-4-throw.toml", &["models.torsion={ model = \"orders\" }", "range={}", "limits={}"]);
+    assert!(note(&r, "left_out").contains("harmonic_balance"), "{:?}", r.solver.notes);
+    // Nothing varies: the default costs what `orders` costs.
+    let set = ["models.throw_inertia.model=mean", "throws=[]", "range={}", "limits={}", "conventions={}"];
+    let [plain, whole] = ["orders", "harmonic_balance"].map(|m| {
+        let model = format!("models.torsion={{ model = \"{m}\" }}");
+        once("compressor-4-throw.toml", &[&set[..], &[model.as_str()]].concat())
+    });
+    assert_eq!(plain.solver.counters["linear_solutions"], whole.solver.counters["linear_solutions"]);
+    assert_eq!(plain.results, whole.results);
+}
+
+#[test]
+fn one_definition_of_separation() {
+    let r = once(
+        "geared-train.toml",
+        &[
+            "limits={ separation = [{ margin = \"5 %\", orders = [1.5], source = \"x\" }] }",
+            "range.interference_orders=1.5",
+            "operating={ from = \"1800 rpm\", to = \"1800 rpm\" }",
+        ],
+    );
+    let distance = r.results["distance_to_critical"].value.abs();
+    let used = r.results["worst_utilisation"].value;
+    // The nearest of the orders 0.5, 1 and 1.5 is that of the limit, or the limit is farther.
+    assert!(5.0 / used >= distance * (1.0 - 1e-12), "{used} {distance}");
+    let critical = r.results["nearest_critical_speed"].value;
+    assert!((distance - 100.0 * (critical / 1800.0 - 1.0).abs()).abs() < 1e-9, "{distance} {critical}");
+    // A critical speed within the range counts as zero, and is accepted where the vibration keeps its limits.
+    let kept = "limits={ separation = [{ margin = \"5 %\", orders = [4.5], source = \"x\" }], stress = [{ amplitude = \"400 MPa\", source = \"y\" }] }";
+    let r = once("geared-train.toml", &[kept]);
+    assert_eq!(r.results["limits_broken"].value, 0.0, "{:?}", r.solver.notes);
+    assert!(
+        r.solver.notes.iter().any(|n| n.topic.starts_with("verdict.accepted.mode")),
+        "{:?}",
+        r.solver.notes
+    );
+    let without = once(
+        "geared-train.toml",
+        &["limits={ separation = [{ margin = \"5 %\", orders = [4.5], source = \"x\" }] }"],
+    );
+    assert_eq!(without.results["limits_broken"].value, 1.0, "no limit says that the vibration is harmless");
+}
+
+#[test]
+fn the_speed_that_is_held_says_where() {
+    let r = once(
+        "compressor-4-throw.toml",
+        &["drives=[]", "range={}", "limits={}", "outputs.groups=[\"response\"]"],
+    );
+    assert!(note(&r, "balance").contains("balance_at"));
+    // Four throws' work through the motor shaft when the motor holds the speed.
+    let set =
+        ["drives=[]", "range={}", "limits={}", "balance_at=motor", "models.torsion={ model = \"orders\" }"];
+    let r = once("compressor-4-throw.toml", &set);
+    let mean = -4.0 * r.results["throw1.mean_torque"].value;
+    assert!((r.results["shaft1.mean_torque"].value / mean - 1.0).abs() < 1e-12);
+    assert!(refused(&["balance_at=moter"]).contains("did you mean `motor`"));
+    assert!(refused(&["throws.0.ends.0.cylinder_pressure.exponent=17"]).contains("between 1"));
+}
+
+#[test]
+fn every_result_was_known_before_the_run() {
+    // Steady answers, over time with a published model of frequencies, and without torsion: a sweep may ask for each result.
+    for name in [
+        "compressor-4-throw",
+        "compressor-2-throw-coupling",
+        "compressor-4-throw-as-published-500",
+        "geared-train",
+    ] {
+        let file = format!("{name}.toml");
+        let names: Vec<String> = once(&file, &[]).results.keys().map(|n| format!("{n:?}")).collect();
+        let sweep =
+            format!("sweeps=[{{ path = \"title\", values = [\"a\"], results = [{}] }}]", names.join(", "));
+        assert_eq!(refused_of(&file, &[&sweep]), "accepted", "{name}");
+    }
+}
+
+#[test]
+fn a_sweep_of_a_result_that_is_none_is_refused_with_the_nearest() {
+    let sweep = "sweeps=[{ path = \"title\", values = [\"a\"], results = [\"shaft2.torque_amplitud\"] }]";
+    let told = refused_of("geared-train.toml", &[sweep]);
+    assert!(told.contains("there is no result `shaft2.torque_amplitud`"), "{told}");
+}
