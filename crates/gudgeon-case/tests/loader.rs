@@ -1,12 +1,11 @@
-//! The loader against a small schema of its own: two tables, an array of tables, words, and a model kind as
-//! `register_kind!` describes it to the schema.
+//! The loader against a small schema of its own: two tables, an array of tables, words, and a kind of model.
 
-use std::borrow::Cow;
 use std::path::Path;
 
-use gudgeon_core::BuildError;
+use dyn_clone::DynClone;
 use gudgeon_core::quantity::{Length, PosAngularSpeed, PosLength, PosPressure, Ratio, quantity};
-use schemars::{JsonSchema, SchemaGenerator};
+use gudgeon_core::{BuildError, register_kind, register_model};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use gudgeon_case::{Loaded, Origin, Report, load_str};
@@ -84,31 +83,9 @@ impl Default for Solver {
     }
 }
 
-#[typetag::serde(tag = "model")]
-trait GasSpec: std::fmt::Debug + dyn_clone::DynClone {
+#[register_kind(name = "gas", summary = "a kind with three models")]
+trait GasSpec: std::fmt::Debug + DynClone {
     fn cd(&self) -> Option<f64>;
-}
-dyn_clone::clone_trait_object!(GasSpec);
-impl JsonSchema for dyn GasSpec {
-    fn schema_name() -> Cow<'static, str> {
-        "gas".into()
-    }
-    fn json_schema(g: &mut SchemaGenerator) -> schemars::Schema {
-        let tag = |mut s: serde_json::Value, name: &str| {
-            if s.get("properties").is_none() {
-                s["properties"] = serde_json::json!({});
-            }
-            s["properties"]["model"] = serde_json::json!({ "const": name });
-            let mut required = s["required"].as_array().cloned().unwrap_or_default();
-            required.push("model".into());
-            s["required"] = required.into();
-            s
-        };
-        let a = tag(Orifice::json_schema(g).to_value(), "orifice");
-        let b = tag(Channel::json_schema(g).to_value(), "channel");
-        let c = tag(Off::json_schema(g).to_value(), "off");
-        schemars::json_schema!({ "oneOf": [a, b, c] })
-    }
 }
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -120,7 +97,7 @@ struct Orifice {
 fn area() -> Ratio {
     quantity(2.0)
 }
-#[typetag::serde(name = "orifice")]
+#[register_model(name = "orifice", summary = "", equations = "", validity = "", references = [], example = "")]
 impl GasSpec for Orifice {
     fn cd(&self) -> Option<f64> {
         Some(self.cd)
@@ -134,7 +111,7 @@ struct Channel {
     #[serde(default)]
     thickness: Option<PosLength>,
 }
-#[typetag::serde(name = "channel")]
+#[register_model(name = "channel", summary = "", equations = "", validity = "", references = [], example = "")]
 impl GasSpec for Channel {
     fn cd(&self) -> Option<f64> {
         None
@@ -143,7 +120,7 @@ impl GasSpec for Channel {
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct Off {}
-#[typetag::serde(name = "off")]
+#[register_model(name = "off", summary = "", equations = "", validity = "", references = [], example = "")]
 impl GasSpec for Off {
     fn cd(&self) -> Option<f64> {
         None

@@ -1,6 +1,6 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{Contact, ContactSpec};
 use gudgeon_core::quantity::{NonNegative, PosLength, PosPressure, PosRatio, Ratio, quantity};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// Elastic contact of the crests of triangular machining grooves with a plane.
@@ -43,16 +43,14 @@ fn boundary() -> Ratio<NonNegative> {
     quantity(0.15)
 }
 
-gudgeon_core::register_model! {
-    CrestWedge, kind: "contact", name: "crest_wedge",
-    summary: "elastic wedges: crests of machining grooves on a plane",
-    equations: "p = max(Omega - h, 0) E' / (1.077 lambda);  1/E' = sum (1-nu^2)/E",
-    validity: "Elastic crests, contact much narrower than the pitch. The slope of the pressure jumps where the crests touch, at h = Omega.",
-    references: ["loureiro2009", "johnson1985"],
-    example: "amplitude = \"4 um\"\npitch = \"0.25 mm\"\ncomposite_modulus = \"44.52 GPa\"\n",
-}
-
-#[typetag::serde(name = "crest_wedge")]
+#[register_model(
+ name = "crest_wedge",
+    summary = "elastic wedges: crests of machining grooves on a plane",
+    equations = "p = max(Omega - h, 0) E' / (1.077 lambda);  1/E' = sum (1-nu^2)/E",
+    validity = "Elastic crests, contact much narrower than the pitch. The slope of the pressure jumps where the crests touch, at h = Omega.",
+    references = ["loureiro2009", "johnson1985"],
+    example = "amplitude = \"4 um\"\npitch = \"0.25 mm\"\ncomposite_modulus = \"44.52 GPa\"\n",
+)]
 impl ContactSpec for CrestWedge {
     fn build(&self) -> Result<Box<dyn Contact>, BuildError> {
         let stiffness = self.composite_modulus.si() / (self.deflection.si() * self.pitch.si());

@@ -1,6 +1,6 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{Contact, ContactSpec};
 use gudgeon_core::quantity::{NonNegative, PosLength, Ratio, quantity};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// The film cannot become thinner than a given thickness; friction stays viscous.
@@ -31,16 +31,14 @@ impl Default for FilmFloor {
     }
 }
 
-gudgeon_core::register_model! {
-    FilmFloor, kind: "contact", name: "film_floor",
-    summary: "a smallest film thickness that carries the remaining load without rubbing",
-    equations: "h >= thickness;  friction is that of the film at h, plus friction_coefficient times the load on the floor (0)",
-    validity: "A numerical stop, not a surface: underestimates friction wherever the floor carries load.",
-    references: ["zottin1992"],
-    example: "thickness = \"0.1 um\"\n",
-}
-
-#[typetag::serde(name = "film_floor")]
+#[register_model(
+ name = "film_floor",
+    summary = "a smallest film thickness that carries the remaining load without rubbing",
+    equations = "h >= thickness;  friction is that of the film at h, plus friction_coefficient times the load on the floor (0)",
+    validity = "A numerical stop, not a surface: underestimates friction wherever the floor carries load.",
+    references = ["zottin1992"],
+    example = "thickness = \"0.1 um\"\n",
+)]
 impl ContactSpec for FilmFloor {
     fn build(&self) -> Result<Box<dyn Contact>, BuildError> {
         Ok(Box::new(Floor {

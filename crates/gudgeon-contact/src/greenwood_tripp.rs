@@ -1,8 +1,8 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{Contact, ContactSpec};
 use gudgeon_core::quantity::{
     NonNegative, PosLength, PosPressure, PosRatio, PosSurfaceDensity, Ratio, quantity,
 };
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 use crate::asperity_integral::{f_1, f_2, f_5_2_field};
@@ -99,16 +99,14 @@ pub fn real_area_ratio(eta_beta_sigma: f64, lambda: f64) -> f64 {
     (std::f64::consts::PI * eta_beta_sigma).powi(2) * f_2(lambda)
 }
 
-gudgeon_core::register_model! {
-    GreenwoodTripp, kind: "contact", name: "greenwood_tripp",
-    summary: "elastic contact pressure of Gaussian rough surfaces",
-    equations: "p = (16 sqrt(2) pi/15) (eta beta sigma)^2 sqrt(sigma/beta) E' F_5/2(h/sigma);  F_n(l) = (2 pi)^-1/2 int_l^inf (s-l)^n exp(-s^2/2) ds;  1/E' = sum (1-nu^2)/E",
-    validity: "Elastic, isotropic Gaussian roughness; separations between about 0.5 and 4 roughness heights. The fits `hu1994` and `quintic` deviate by more than 11 % there and expect E' in the convention of this model.",
-    references: ["greenwood1970", "hu1994"],
-    example: "roughness = \"0.4 um\"\ncomposite_modulus = \"115 GPa\"\neta_beta_sigma = 0.05\nsigma_over_beta = 1e-3\n",
-}
-
-#[typetag::serde(name = "greenwood_tripp")]
+#[register_model(
+ name = "greenwood_tripp",
+    summary = "elastic contact pressure of Gaussian rough surfaces",
+    equations = "p = (16 sqrt(2) pi/15) (eta beta sigma)^2 sqrt(sigma/beta) E' F_5/2(h/sigma);  F_n(l) = (2 pi)^-1/2 int_l^inf (s-l)^n exp(-s^2/2) ds;  1/E' = sum (1-nu^2)/E",
+    validity = "Elastic, isotropic Gaussian roughness; separations between about 0.5 and 4 roughness heights. The fits `hu1994` and `quintic` deviate by more than 11 % there and expect E' in the convention of this model.",
+    references = ["greenwood1970", "hu1994"],
+    example = "roughness = \"0.4 um\"\ncomposite_modulus = \"115 GPa\"\neta_beta_sigma = 0.05\nsigma_over_beta = 1e-3\n",
+)]
 impl ContactSpec for GreenwoodTripp {
     fn build(&self) -> Result<Box<dyn Contact>, BuildError> {
         let sigma = self.roughness.si();

@@ -1,6 +1,6 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{Contact, ContactSpec};
 use gudgeon_core::quantity::{AreaStiffness, Length, NonNegative, Positive, Ratio, quantity};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// A layer of springs: `p = k max(h_0 - h, 0)`.
@@ -22,16 +22,14 @@ fn boundary() -> Ratio<NonNegative> {
     quantity(0.10)
 }
 
-gudgeon_core::register_model! {
-    LinearPenalty, kind: "contact", name: "linear_penalty",
-    summary: "a pressure proportional to the approach",
-    equations: "p = k max(h_0 - h, 0)",
-    validity: "A numerical contact. The stiffness is no property of surfaces: results must not depend on it. The slope of the pressure jumps where the surfaces touch.",
-    references: [],
-    example: "stiffness = \"1e14 N/m3\"\ntouching = \"0.5 um\"\n",
-}
-
-#[typetag::serde(name = "linear_penalty")]
+#[register_model(
+ name = "linear_penalty",
+    summary = "a pressure proportional to the approach",
+    equations = "p = k max(h_0 - h, 0)",
+    validity = "A numerical contact. The stiffness is no property of surfaces: results must not depend on it. The slope of the pressure jumps where the surfaces touch.",
+    references = [],
+    example = "stiffness = \"1e14 N/m3\"\ntouching = \"0.5 um\"\n",
+)]
 impl ContactSpec for LinearPenalty {
     fn build(&self) -> Result<Box<dyn Contact>, BuildError> {
         Ok(Box::new(Springs {

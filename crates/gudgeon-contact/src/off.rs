@@ -1,5 +1,5 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{Contact, ContactSpec};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// No solid contact: only the film carries load, however thin it becomes.
@@ -7,16 +7,14 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 pub struct Off {}
 
-gudgeon_core::register_model! {
-    Off, kind: "contact", name: "off",
-    summary: "no solid contact, the film carries everything",
-    equations: "p_contact = 0",
-    validity: "Films that stay thicker than the roughness. A film that no load-carrying surface stops may become as thin as the equations make it.",
-    references: [],
-    example: "",
-}
-
-#[typetag::serde(name = "off")]
+#[register_model(
+ name = "off",
+    summary = "no solid contact, the film carries everything",
+    equations = "p_contact = 0",
+    validity = "Films that stay thicker than the roughness. A film that no load-carrying surface stops may become as thin as the equations make it.",
+    references = [],
+    example = "",
+)]
 impl ContactSpec for Off {
     fn build(&self) -> Result<Box<dyn Contact>, BuildError> {
         Ok(Box::new(NoContact))

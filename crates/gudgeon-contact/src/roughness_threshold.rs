@@ -1,6 +1,6 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{Contact, ContactSpec};
 use gudgeon_core::quantity::{NonNegative, PosLength, Ratio, quantity};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// The surfaces touch when the film is as thin as the roughness.
@@ -22,16 +22,14 @@ fn boundary() -> Ratio<NonNegative> {
     quantity(0.10)
 }
 
-gudgeon_core::register_model! {
-    RoughnessThreshold, kind: "contact", name: "roughness_threshold",
-    summary: "boundary friction of the whole load once the film is as thin as the roughness",
-    equations: "h > roughness: film alone;  h = roughness: F_friction = f W, W the whole radial load, no film shear",
-    validity: "Hydrodynamic films with short contact near the dead centres. Knows no mixed regime: friction jumps at the threshold, and friction power is low where asperities share the load with a film that is thicker than the threshold.",
-    references: ["tomanik1993"],
-    example: "roughness = \"0.2 um\"\nfriction_coefficient = 0.10\n",
-}
-
-#[typetag::serde(name = "roughness_threshold")]
+#[register_model(
+ name = "roughness_threshold",
+    summary = "boundary friction of the whole load once the film is as thin as the roughness",
+    equations = "h > roughness: film alone;  h = roughness: F_friction = f W, W the whole radial load, no film shear",
+    validity = "Hydrodynamic films with short contact near the dead centres. Knows no mixed regime: friction jumps at the threshold, and friction power is low where asperities share the load with a film that is thicker than the threshold.",
+    references = ["tomanik1993"],
+    example = "roughness = \"0.2 um\"\nfriction_coefficient = 0.10\n",
+)]
 impl ContactSpec for RoughnessThreshold {
     fn build(&self) -> Result<Box<dyn Contact>, BuildError> {
         Ok(Box::new(Threshold {

@@ -19,8 +19,18 @@ pub mod geometry;
 pub mod kinds;
 pub mod registry;
 
+// The attributes name this crate by its name, also inside it.
+extern crate self as gudgeon_core;
+
+/// What the registering attributes and macros name.
+#[doc(hidden)]
+pub mod __private {
+    pub use {dyn_clone, inventory, schemars, serde_json, typetag};
+}
 #[doc(hidden)]
 pub use {inventory, schemars, serde_json};
+
+pub use gudgeon_macros::{register_kind, register_model};
 
 pub use error::{BuildError, EvalError};
 pub use registry::{KindInfo, ModelInfo, Registry};

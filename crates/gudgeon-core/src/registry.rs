@@ -1,8 +1,50 @@
 //! The registry: which kinds of sub-model exist, which models each has, and everything a person may ask about them.
 //!
-//! A model announces itself with one [`register_model!`](crate::register_model) in its own file; the commands
-//! `models`, `describe`, `schema`, the contract tests and the documentation read nothing else. Reading a model from a
-//! case file is typetag's business; [`Registry::verify`] checks that both lists agree.
+//! A kind is registered on the trait of its configuration, a model on its implementation of that trait:
+//!
+//! ```
+//! use gudgeon_core::kinds::{Oil, OilSpec};
+//! use gudgeon_core::quantity::PosViscosity;
+//! use gudgeon_core::{BuildError, register_model};
+//! use schemars::JsonSchema;
+//! use serde::{Deserialize, Serialize};
+//!
+//! /// The same viscosity at every temperature.
+//! #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+//! #[serde(deny_unknown_fields)]
+//! struct Syrup {
+//!     /// Dynamic viscosity.
+//!     viscosity: PosViscosity,
+//! }
+//!
+//! #[register_model(
+//!     name = "syrup",
+//!     summary = "an oil that does not know its temperature",
+//!     equations = "mu = constant",
+//!     validity = "Comparisons with closed forms.",
+//!     references = [],
+//!     example = "viscosity = \"0.1 Pa s\"\n",
+//! )]
+//! impl OilSpec for Syrup {
+//!     fn build(&self) -> Result<Box<dyn Oil>, BuildError> {
+//!         Ok(Box::new(Running(self.viscosity.si())))
+//!     }
+//! }
+//!
+//! #[derive(Debug)]
+//! struct Running(f64);
+//! impl Oil for Running {
+//!     fn viscosity(&self, _temperature: f64) -> f64 {
+//!         self.0
+//!     }
+//! }
+//!
+//! let all = gudgeon_core::Registry::collect();
+//! assert_eq!(all.model("oil", "syrup").map(|m| m.summary), Some("an oil that does not know its temperature"));
+//! ```
+//!
+//! [`register_model`](crate::register_model) makes the model readable from a case file and describes it: the commands `models`, `describe`
+//! and `schema`, the contract tests and the documentation read nothing else.
 
 use std::collections::BTreeMap;
 
@@ -91,66 +133,6 @@ macro_rules! default_model {
     )*};
 }
 
-/// Registers a kind: the trait object, its name in a case file and what it answers.
-#[macro_export]
-macro_rules! register_kind {
-    ($spec:ty, $kind:literal, $summary:literal) => {
-        $crate::inventory::submit! {
-            $crate::registry::KindInfo {
-                kind: $kind,
-                summary: $summary,
-                resolve: |v| {
-                    let spec: Box<$spec> = $crate::serde_json::from_value(v)?;
-                    $crate::serde_json::to_value(&spec)
-                },
-            }
-        }
-        impl $crate::registry::Kind for $spec {
-            const NAME: &'static str = $kind;
-        }
-        impl $crate::schemars::JsonSchema for $spec {
-            fn inline_schema() -> bool {
-                false
-            }
-            fn schema_name() -> ::std::borrow::Cow<'static, str> {
-                $kind.into()
-            }
-            fn json_schema(g: &mut $crate::schemars::SchemaGenerator) -> $crate::schemars::Schema {
-                $crate::registry::kind_schema($kind, g)
-            }
-        }
-    };
-}
-
-/// Registers a model. Stands next to `#[typetag::serde(name = "…")] impl …Spec for …`, with the same name.
-///
-/// ```ignore
-/// register_model! {
-///     ExactSliderCrank, kind: "kinematics", name: "exact_slider_crank",
-///     summary: "…", equations: "…", validity: "…", references: ["key"], example: "",
-/// }
-/// ```
-#[macro_export]
-macro_rules! register_model {
-    ($ty:ty, kind: $kind:literal, name: $name:literal, summary: $summary:expr, equations: $equations:expr,
-     validity: $validity:expr, references: [$($r:literal),* $(,)?], example: $example:expr $(,)?) => {
-        $crate::inventory::submit! {
-            $crate::registry::ModelInfo {
-                kind: $kind,
-                name: $name,
-                summary: $summary,
-                equations: $equations,
-                validity: $validity,
-                references: &[$($r),*],
-                example: $example,
-                schema: |g| <$ty as $crate::schemars::JsonSchema>::json_schema(g),
-                file: file!(),
-                line: line!(),
-            }
-        }
-    };
-}
-
 /// Everything registered in this program, sorted by kind and name.
 #[derive(Debug)]
 pub struct Registry {
@@ -192,26 +174,6 @@ pub enum RegistryError {
         place: String,
         /// What is wrong with it.
         what: String,
-    },
-    /// `register_model!` without `#[typetag::serde]`, or with another name there.
-    #[error(
-        "the {kind} model `{name}` ({place}) is described but cannot be read from a case file: no `#[typetag::serde(name = \"{name}\")]` for it"
-    )]
-    NotReadable {
-        /// The kind.
-        kind: &'static str,
-        /// The name.
-        name: String,
-        /// `file:line` of the description.
-        place: String,
-    },
-    /// `#[typetag::serde]` without `register_model!`.
-    #[error("the {kind} model `{name}` can be read from a case file but has no `register_model!` entry")]
-    NotDescribed {
-        /// The kind.
-        kind: &'static str,
-        /// The name.
-        name: String,
     },
 }
 
@@ -291,34 +253,6 @@ impl Registry {
                     });
                 }
             }
-            let mut readable = readable_names(kind);
-            readable.sort_unstable();
-            for pair in readable.windows(2) {
-                if pair[0] == pair[1] && models.iter().filter(|m| m.name == pair[0]).count() < 2 {
-                    let first = models.iter().find(|m| m.name == pair[0]).map_or("?".into(), |m| place(m));
-                    errors.push(RegistryError::Duplicate {
-                        kind: kind.kind,
-                        name: pair[0].clone(),
-                        first,
-                        second: "a type without `register_model!`".into(),
-                    });
-                }
-            }
-            readable.dedup();
-            for m in models {
-                if !readable.iter().any(|r| r == m.name) {
-                    errors.push(RegistryError::NotReadable {
-                        kind: kind.kind,
-                        name: m.name.into(),
-                        place: place(m),
-                    });
-                }
-            }
-            for r in &readable {
-                if !models.iter().any(|m| m.name == r) {
-                    errors.push(RegistryError::NotDescribed { kind: kind.kind, name: r.clone() });
-                }
-            }
         }
         for d in inventory::iter::<DefaultModel>() {
             let read = |k: &KindInfo| (k.resolve)(serde_json::json!({ "model": d.name })).err();
@@ -332,19 +266,6 @@ impl Registry {
             }
         }
         if errors.is_empty() { Ok(()) } else { Err(errors) }
-    }
-}
-
-/// The names typetag would accept, taken from its own error text: it offers no other way to ask.
-fn readable_names(kind: &KindInfo) -> Vec<String> {
-    let probe = serde_json::json!({ "model": "?" });
-    match (kind.resolve)(probe) {
-        Ok(_) => Vec::new(),
-        Err(e) => {
-            let text = e.to_string();
-            // "unknown variant `?`, expected `a` or `b`": the first quoted word is the probe itself.
-            text.split('`').skip(1).step_by(2).skip(1).map(str::to_owned).collect()
-        }
     }
 }
 

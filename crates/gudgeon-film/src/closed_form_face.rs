@@ -1,6 +1,6 @@
 use gudgeon_core::geometry::FaceProfile;
 use gudgeon_core::kinds::{FaceCtx, FaceForces, FaceIn, FaceOut, Hydrodynamics, HydrodynamicsSpec};
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
 use crate::crown::{Asked, Crowned};
@@ -70,24 +70,22 @@ pub enum CavityShear {
     None,
 }
 
-gudgeon_core::register_model! {
-    ClosedFormFace, kind: "hydrodynamics", name: "closed_form_face",
-    summary: "exact Reynolds film on parabola or straight pieces, with a choice of cavitation conditions",
-    equations: "q = u h/2 - h^3 p'/(12 mu) = q0 - hdot x;  p' = 12 mu (u h/2 + hdot x - q0)/h^3, integrated in closed form;  \
+const MODEL: &str = "closed_form_face";
+
+#[register_model(
+ name = "closed_form_face",
+    summary = "exact Reynolds film on parabola or straight pieces, with a choice of cavitation conditions",
+    equations = "q = u h/2 - h^3 p'/(12 mu) = q0 - hdot x;  p' = 12 mu (u h/2 + hdot x - q0)/h^3, integrated in closed form;  \
                 mass_conserving: p = p' = 0 at rupture, flux carried through the cavity u h_r/2 - hdot (x - x_r) >= 0, \
                 same flux at reformation;  swift_stieber: p = p_cav from the rupture to the trailing edge;  \
                 half_sommerfeld: max(p, p_cav);  load = int (p - p_cav) dx;  shear = int (mu u/h -+ h p'/2) dx, \
                 in the cavity weighted with the filled fraction",
-    validity: "Smooth surfaces, fully flooded, narrow face (no flow along the circumference), constant viscosity. \
+    validity = "Smooth surfaces, fully flooded, narrow face (no flow along the circumference), constant viscosity. \
                A face that waves up and down has one film under swift_stieber, the one at the leading edge. \
                The cavity has no history: transients shorter than the passage over the face are not resolved.",
-    references: ["reynolds1886", "jakobsson1957", "cameron1966", "dowson1979"],
-    example: "cavitation = \"mass_conserving\"\ncavity_shear = \"streamers\"\n",
-}
-
-const MODEL: &str = "closed_form_face";
-
-#[typetag::serde(name = "closed_form_face")]
+    references = ["reynolds1886", "jakobsson1957", "cameron1966", "dowson1979"],
+    example = "cavitation = \"mass_conserving\"\ncavity_shear = \"streamers\"\n",
+)]
 impl HydrodynamicsSpec for ClosedFormFace {
     fn build(&self, ctx: &FaceCtx<'_>) -> Result<Box<dyn Hydrodynamics>, BuildError> {
         crate::gridded_face::check_face(ctx.face)?;

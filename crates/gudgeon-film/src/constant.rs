@@ -1,6 +1,6 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{Oil, OilSpec};
 use gudgeon_core::quantity::PosViscosity;
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// A viscosity that does not depend on temperature.
@@ -11,16 +11,14 @@ pub struct Constant {
     pub viscosity: PosViscosity,
 }
 
-gudgeon_core::register_model! {
-    Constant, kind: "oil", name: "constant",
-    summary: "one viscosity at every temperature",
-    equations: "mu = viscosity",
-    validity: "Test benches and films of nearly constant temperature.",
-    references: [],
-    example: "viscosity = \"5 mPa s\"\n",
-}
-
-#[typetag::serde(name = "constant")]
+#[register_model(
+ name = "constant",
+    summary = "one viscosity at every temperature",
+    equations = "mu = viscosity",
+    validity = "Test benches and films of nearly constant temperature.",
+    references = [],
+    example = "viscosity = \"5 mPa s\"\n",
+)]
 impl OilSpec for Constant {
     fn build(&self) -> Result<Box<dyn Oil>, BuildError> {
         Ok(Box::new(ConstantOil(self.viscosity.si())))

@@ -1,6 +1,6 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{FilmTemperature, FilmTemperatureCtx, FilmTemperatureSpec};
 use gudgeon_core::quantity::PosTemperature;
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// A given film temperature for each ring, the same all along the stroke.
@@ -11,16 +11,14 @@ pub struct Given {
     pub temperatures: Vec<PosTemperature>,
 }
 
-gudgeon_core::register_model! {
-    Given, kind: "film_temperature", name: "given",
-    summary: "a given film temperature for each ring",
-    equations: "T = temperatures[ring]",
-    validity: "Temperatures known from elsewhere; no change along the stroke.",
-    references: [],
-    example: "temperatures = [\"150 degC\", \"130 degC\", \"110 degC\"]\n",
-}
-
-#[typetag::serde(name = "given")]
+#[register_model(
+ name = "given",
+    summary = "a given film temperature for each ring",
+    equations = "T = temperatures[ring]",
+    validity = "Temperatures known from elsewhere; no change along the stroke.",
+    references = [],
+    example = "temperatures = [\"150 degC\", \"130 degC\", \"110 degC\"]\n",
+)]
 impl FilmTemperatureSpec for Given {
     fn build(&self, ctx: &FilmTemperatureCtx<'_>) -> Result<Box<dyn FilmTemperature>, BuildError> {
         let of_ring = self.temperatures.iter().map(|t| t.si()).collect();

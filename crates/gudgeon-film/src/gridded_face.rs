@@ -1,6 +1,6 @@
 use gudgeon_core::geometry::FaceProfile;
 use gudgeon_core::kinds::{FaceCtx, FaceIn, FaceOut, Hydrodynamics, HydrodynamicsSpec};
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// Film under a ring face from trapezoid integrals on equally spaced nodes, clipped at the cavitation pressure.
@@ -49,26 +49,24 @@ impl Default for GriddedFace {
     }
 }
 
-gudgeon_core::register_model! {
-    GriddedFace, kind: "hydrodynamics", name: "gridded_face",
-    summary: "Reynolds equation by trapezoid integrals on equally spaced nodes, clipped at the cavitation pressure",
-    equations: "d/dx(h^3 dp/dx) = 6 mu u dh/dx + 12 mu dh/dt;  \
-                p = 6 mu u [I1 - (J1/J3) I3] + 12 mu dh/dt [I2 - (J2/J3) I3] + (p_top - p_bottom) I3/J3 + p_bottom, \
-                I1 = int dx/h^2, I2 = int x dx/h^3, I3 = int dx/h^3, J = I(top edge);  p := max(p, p_cav);  \
-                shear = int (mu u/h -+ h/2 dp/dx) dx",
-    validity: "Fully flooded, smooth, narrow face. The clip does not conserve oil and has no separated exit. \
-               Second order in the node spacing: 11 nodes lose some 6 % of the load of a barrel.",
-    references: ["zottin1992", "reynolds1886", "dowson1979"],
-    example: "refine = 1\npoints = 11\n",
-}
-
 const MODEL: &str = "gridded_face";
 /// Nodes of the published program.
 const PUBLISHED: usize = 11;
 /// Most nodes of a refined grid.
 const MOST: usize = 400;
 
-#[typetag::serde(name = "gridded_face")]
+#[register_model(
+ name = "gridded_face",
+    summary = "Reynolds equation by trapezoid integrals on equally spaced nodes, clipped at the cavitation pressure",
+    equations = "d/dx(h^3 dp/dx) = 6 mu u dh/dx + 12 mu dh/dt;  \
+                p = 6 mu u [I1 - (J1/J3) I3] + 12 mu dh/dt [I2 - (J2/J3) I3] + (p_top - p_bottom) I3/J3 + p_bottom, \
+                I1 = int dx/h^2, I2 = int x dx/h^3, I3 = int dx/h^3, J = I(top edge);  p := max(p, p_cav);  \
+                shear = int (mu u/h -+ h/2 dp/dx) dx",
+    validity = "Fully flooded, smooth, narrow face. The clip does not conserve oil and has no separated exit. \
+               Second order in the node spacing: 11 nodes lose some 6 % of the load of a barrel.",
+    references = ["zottin1992", "reynolds1886", "dowson1979"],
+    example = "refine = 1\npoints = 11\n",
+)]
 impl HydrodynamicsSpec for GriddedFace {
     fn build(&self, ctx: &FaceCtx<'_>) -> Result<Box<dyn Hydrodynamics>, BuildError> {
         if !(1..=19).contains(&self.refine) {

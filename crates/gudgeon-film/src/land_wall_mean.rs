@@ -1,6 +1,6 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{FilmTemperature, FilmTemperatureCtx, FilmTemperatureSpec};
 use gudgeon_core::quantity::{PosTemperature, quantity};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 use crate::given::PerRing;
@@ -21,16 +21,14 @@ fn hundred_celsius() -> PosTemperature {
     quantity(373.15)
 }
 
-gudgeon_core::register_model! {
-    LandWallMean, kind: "film_temperature", name: "land_wall_mean",
-    summary: "mean of the land above the ring and a uniform liner wall",
-    equations: "T = (T_land + T_wall) / 2",
-    validity: "An estimate where neither surface temperature is known along the stroke.",
-    references: ["tomanik1993"],
-    example: "wall = \"100 degC\"\nlands = [\"200 degC\", \"160 degC\", \"120 degC\"]\n",
-}
-
-#[typetag::serde(name = "land_wall_mean")]
+#[register_model(
+ name = "land_wall_mean",
+    summary = "mean of the land above the ring and a uniform liner wall",
+    equations = "T = (T_land + T_wall) / 2",
+    validity = "An estimate where neither surface temperature is known along the stroke.",
+    references = ["tomanik1993"],
+    example = "wall = \"100 degC\"\nlands = [\"200 degC\", \"160 degC\", \"120 degC\"]\n",
+)]
 impl FilmTemperatureSpec for LandWallMean {
     fn build(&self, ctx: &FilmTemperatureCtx<'_>) -> Result<Box<dyn FilmTemperature>, BuildError> {
         let lands: Vec<f64> = match &self.lands {

@@ -1,6 +1,6 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{FilmTemperature, FilmTemperatureCtx, FilmTemperatureSpec};
 use gudgeon_core::quantity::PosTemperature;
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// The film has the temperature of the liner, which changes linearly along the stroke.
@@ -16,16 +16,14 @@ pub struct LinerLinear {
     pub bdc: PosTemperature,
 }
 
-gudgeon_core::register_model! {
-    LinerLinear, kind: "film_temperature", name: "liner_linear",
-    summary: "liner temperature, linear along the stroke",
-    equations: "T = T_tdc + (T_bdc - T_tdc) travel / stroke, extrapolated below bottom dead centre",
-    validity: "Films that take the liner temperature at once; measured liners are hotter near top dead centre than a line.",
-    references: ["zottin1992"],
-    example: "tdc = \"180 degC\"\nbdc = \"110 degC\"\n",
-}
-
-#[typetag::serde(name = "liner_linear")]
+#[register_model(
+ name = "liner_linear",
+    summary = "liner temperature, linear along the stroke",
+    equations = "T = T_tdc + (T_bdc - T_tdc) travel / stroke, extrapolated below bottom dead centre",
+    validity = "Films that take the liner temperature at once; measured liners are hotter near top dead centre than a line.",
+    references = ["zottin1992"],
+    example = "tdc = \"180 degC\"\nbdc = \"110 degC\"\n",
+)]
 impl FilmTemperatureSpec for LinerLinear {
     fn build(&self, ctx: &FilmTemperatureCtx<'_>) -> Result<Box<dyn FilmTemperature>, BuildError> {
         if !(ctx.stroke.is_finite() && ctx.stroke > 0.0) {

@@ -1,6 +1,6 @@
 use gudgeon_core::geometry::FaceProfile;
 use gudgeon_core::kinds::{FaceCtx, FaceIn, FaceOut, Hydrodynamics, HydrodynamicsSpec};
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// No oil film: it carries nothing, does not shear and does not resist being squeezed. A ring then rides on its solid contact alone; one
@@ -9,16 +9,14 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 pub struct Off {}
 
-gudgeon_core::register_model! {
-    Off, kind: "hydrodynamics", name: "off",
-    summary: "no film: no load, no friction; rings ride on their solid contact",
-    equations: "p = p_cav",
-    validity: "Dry rings; gas flow and axial motion alone.",
-    references: [],
-    example: "",
-}
-
-#[typetag::serde(name = "off")]
+#[register_model(
+ name = "off",
+    summary = "no film: no load, no friction; rings ride on their solid contact",
+    equations = "p = p_cav",
+    validity = "Dry rings; gas flow and axial motion alone.",
+    references = [],
+    example = "",
+)]
 impl HydrodynamicsSpec for Off {
     fn build(&self, ctx: &FaceCtx<'_>) -> Result<Box<dyn Hydrodynamics>, BuildError> {
         crate::gridded_face::check_face(ctx.face)?;

@@ -1,6 +1,6 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{Oil, OilSpec};
 use gudgeon_core::quantity::{PosRatio, PosViscosity};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// The Vogel equation with constants of one's own: `μ = a exp(b / (T - 273.15 K + c))`.
@@ -18,16 +18,14 @@ pub struct Vogel {
     pub c: PosRatio,
 }
 
-gudgeon_core::register_model! {
-    Vogel, kind: "oil", name: "vogel",
-    summary: "Vogel equation with given constants",
-    equations: "mu = a exp(b / (T_C + c)),  T_C = T - 273.15 K",
-    validity: "The range of temperatures to which a, b and c were fitted, at low shear rate and ambient pressure.",
-    references: ["vogel1921", "cameron1966"],
-    example: "a = \"0.15014 mPa s\"\nb = 720.015\nc = 71.123\n",
-}
-
-#[typetag::serde(name = "vogel")]
+#[register_model(
+ name = "vogel",
+    summary = "Vogel equation with given constants",
+    equations = "mu = a exp(b / (T_C + c)),  T_C = T - 273.15 K",
+    validity = "The range of temperatures to which a, b and c were fitted, at low shear rate and ambient pressure.",
+    references = ["vogel1921", "cameron1966"],
+    example = "a = \"0.15014 mPa s\"\nb = 720.015\nc = 71.123\n",
+)]
 impl OilSpec for Vogel {
     fn build(&self) -> Result<Box<dyn Oil>, BuildError> {
         Ok(Box::new(VogelOil::new(self.a.si(), self.b.si(), self.c.si())?))

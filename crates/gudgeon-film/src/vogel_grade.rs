@@ -1,5 +1,5 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{Oil, OilSpec};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 use crate::vogel::VogelOil;
@@ -151,16 +151,14 @@ grades! {
     Sae20w50 = "sae_20w50",
 }
 
-gudgeon_core::register_model! {
-    VogelGrade, kind: "oil", name: "vogel_grade",
-    summary: "Vogel equation with the published constants of an oil grade",
-    equations: "mu = a exp(b / (T_C + c)),  T_C = T - 273.15 K",
-    validity: "About 40 to 150 degC, at low shear rate and ambient pressure: no shear thinning, no rise with pressure.",
-    references: ["vogel1921", "cameron1966", "zottin1992", "tomanik1993"],
-    example: "table = \"zottin1992\"\ngrade = \"sae_30\"\n",
-}
-
-#[typetag::serde(name = "vogel_grade")]
+#[register_model(
+ name = "vogel_grade",
+    summary = "Vogel equation with the published constants of an oil grade",
+    equations = "mu = a exp(b / (T_C + c)),  T_C = T - 273.15 K",
+    validity = "About 40 to 150 degC, at low shear rate and ambient pressure: no shear thinning, no rise with pressure.",
+    references = ["vogel1921", "cameron1966", "zottin1992", "tomanik1993"],
+    example = "table = \"zottin1992\"\ngrade = \"sae_30\"\n",
+)]
 impl OilSpec for VogelGrade {
     fn build(&self) -> Result<Box<dyn Oil>, BuildError> {
         let Some(&(_, a, b, c)) = self.table.rows().iter().find(|r| r.0 == self.grade) else {

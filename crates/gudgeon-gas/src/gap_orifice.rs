@@ -2,10 +2,10 @@
 
 use std::f64::consts::PI;
 
-use gudgeon_core::BuildError;
 use gudgeon_core::geometry::{BackVolume, PackGeometry, RingGeometry};
 use gudgeon_core::kinds::{GasFlow, GasFlowCtx, GasFlowSpec};
 use gudgeon_core::quantity::{PosTime, quantity};
+use gudgeon_core::{BuildError, register_model};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -91,24 +91,20 @@ impl GapOrifice {
     }
 }
 
-#[typetag::serde(name = "gap_orifice")]
+#[register_model(
+    name = "gap_orifice",
+    summary = "end gaps as orifices; flanks leak only while the ring is off its seat",
+    equations = "dm_i/dt = sum of flows;  p_i = m_i R T_i / V_i;  m' = C_d A p_u / sqrt(R T_u) psi(p_d/p_u);  \
+                A_gap given or gap x land clearance;  A_upper = pi D c (1 - e);  A_lower = pi D c e",
+    validity = "Needs no film. Leaves out leaks past face and seated flanks, so it is a lower bound: models of this kind compute 2 to 6 times \
+               less blow-by than is measured. Near the speed where rings start to float it has two periodic solutions.",
+    references = ["tomanik1993", "furuhama1961", "smith1999"],
+    example = "back_volumes = \"separate\"\n",
+)]
 impl GasFlowSpec for GapOrifice {
     fn build(&self, ctx: &GasFlowCtx<'_>) -> Result<Box<dyn GasFlow>, BuildError> {
         Ok(Box::new(self.pack(ctx.pack)?))
     }
-}
-
-gudgeon_core::register_model! {
-    GapOrifice,
-    kind: "gas_flow",
-    name: "gap_orifice",
-    summary: "end gaps as orifices; flanks leak only while the ring is off its seat",
-    equations: "dm_i/dt = sum of flows;  p_i = m_i R T_i / V_i;  m' = C_d A p_u / sqrt(R T_u) psi(p_d/p_u);  \
-                A_gap given or gap x land clearance;  A_upper = pi D c (1 - e);  A_lower = pi D c e",
-    validity: "Needs no film. Leaves out leaks past face and seated flanks, so it is a lower bound: models of this kind compute 2 to 6 times \
-               less blow-by than is measured. Near the speed where rings start to float it has two periodic solutions.",
-    references: ["tomanik1993", "furuhama1961", "smith1999"],
-    example: "back_volumes = \"separate\"\n",
 }
 
 struct Areas {

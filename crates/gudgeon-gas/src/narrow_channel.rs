@@ -2,10 +2,10 @@
 
 use std::f64::consts::{PI, TAU};
 
-use gudgeon_core::BuildError;
 use gudgeon_core::geometry::{BackVolume, PackGeometry, RingGeometry};
 use gudgeon_core::kinds::{GasFlow, GasFlowCtx, GasFlowSpec};
 use gudgeon_core::quantity::{Length, NonNegative, PosLength, PosTime, PosViscosity, quantity};
+use gudgeon_core::{BuildError, register_model};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -166,25 +166,21 @@ impl NarrowChannel {
     }
 }
 
-#[typetag::serde(name = "narrow_channel")]
+#[register_model(
+    name = "narrow_channel",
+    summary = "flanks and face as compressible laminar channels, end gaps as orifices",
+    equations = "dm_i/dt = sum of flows;  p_i = m_i R T_i / V_i;  gap: m' = C_d A p_u / sqrt(R T_u) psi(p_d/p_u);  \
+                channel: m' = 2 pi R H^3 (p_a^2 - p_b^2) / (24 mu R_g T w), limited by the orifice of area 2 pi R H;  \
+                blended friction: times [1 + (Re/2039)^3]^(-1/7), Re = m'/(pi R mu)",
+    validity = "Isothermal, inertia-free flow in the channels, laminar unless `friction` says otherwise, which holds up to heights of about 10 to \
+               20 um; wider passages pass over to the orifice law. Flanks parallel, dry.",
+    references = ["tian1996", "kuo1989", "sutherland1893", "furuhama1961", "blasius1913", "smith1999"],
+    example = "gas_viscosity = \"sutherland\"\n",
+)]
 impl GasFlowSpec for NarrowChannel {
     fn build(&self, ctx: &GasFlowCtx<'_>) -> Result<Box<dyn GasFlow>, BuildError> {
         Ok(Box::new(self.pack(ctx.pack)?))
     }
-}
-
-gudgeon_core::register_model! {
-    NarrowChannel,
-    kind: "gas_flow",
-    name: "narrow_channel",
-    summary: "flanks and face as compressible laminar channels, end gaps as orifices",
-    equations: "dm_i/dt = sum of flows;  p_i = m_i R T_i / V_i;  gap: m' = C_d A p_u / sqrt(R T_u) psi(p_d/p_u);  \
-                channel: m' = 2 pi R H^3 (p_a^2 - p_b^2) / (24 mu R_g T w), limited by the orifice of area 2 pi R H;  \
-                blended friction: times [1 + (Re/2039)^3]^(-1/7), Re = m'/(pi R mu)",
-    validity: "Isothermal, inertia-free flow in the channels, laminar unless `friction` says otherwise, which holds up to heights of about 10 to \
-               20 um; wider passages pass over to the orifice law. Flanks parallel, dry.",
-    references: ["tian1996", "kuo1989", "sutherland1893", "furuhama1961", "blasius1913", "smith1999"],
-    example: "gas_viscosity = \"sutherland\"\n",
 }
 
 /// One passage but for its height.

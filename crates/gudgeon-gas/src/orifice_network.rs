@@ -2,10 +2,10 @@
 
 use std::f64::consts::TAU;
 
-use gudgeon_core::BuildError;
 use gudgeon_core::geometry::{BackVolume, PackGeometry, RingGeometry};
 use gudgeon_core::kinds::{GasFlow, GasFlowCtx, GasFlowSpec};
 use gudgeon_core::quantity::{Fraction, Length, NonNegative, PosLength, PosTime, Ratio, quantity};
+use gudgeon_core::{BuildError, register_model};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -126,26 +126,22 @@ impl OrificeNetwork {
     }
 }
 
-#[typetag::serde(name = "orifice_network")]
+#[register_model(
+    name = "orifice_network",
+    summary = "orifices at gap, flanks and face, their areas from the ring positions of the instant",
+    equations = "dm_i/dt = sum of flows;  p_i = m_i R T_i / V_i;  m' = C_d A p_u / sqrt(R T_u) psi(p_d/p_u);  \
+                A_gap = (g + 2 pi delta)(R_c + delta - R_p - h) + A_ch;  A_upper = 2 pi R_p (c - s + leak) + A_gap/2;  \
+                A_lower = 2 pi R_p (s + leak) + A_gap/2;  A_direct = 2 pi (R_c + delta - h) (leak_face + what h exceeds face_oil by) + A_gap/2",
+    validity = "Gas at wall temperature; one-dimensional adiabatic flow through each opening. The narrow flank passages are longer than they \
+               are high: as orifices they pass more than as laminar channels (see narrow_channel). Leak heights of seated flanks and face \
+               are the least known inputs; 0.4 um instead of 0.02 um doubles the blow-by of a truck engine.",
+    references = ["zottin1992", "furuhama1961", "smith1999"],
+    example = "gap_split = 0.5\nfilm_height = \"instantaneous\"\norifice = { discharge = 0.86, law = \"isentropic\", laminar = 1e-3 }\n",
+)]
 impl GasFlowSpec for OrificeNetwork {
     fn build(&self, ctx: &GasFlowCtx<'_>) -> Result<Box<dyn GasFlow>, BuildError> {
         Ok(Box::new(self.pack(ctx.pack)?))
     }
-}
-
-gudgeon_core::register_model! {
-    OrificeNetwork,
-    kind: "gas_flow",
-    name: "orifice_network",
-    summary: "orifices at gap, flanks and face, their areas from the ring positions of the instant",
-    equations: "dm_i/dt = sum of flows;  p_i = m_i R T_i / V_i;  m' = C_d A p_u / sqrt(R T_u) psi(p_d/p_u);  \
-                A_gap = (g + 2 pi delta)(R_c + delta - R_p - h) + A_ch;  A_upper = 2 pi R_p (c - s + leak) + A_gap/2;  \
-                A_lower = 2 pi R_p (s + leak) + A_gap/2;  A_direct = 2 pi (R_c + delta - h) (leak_face + what h exceeds face_oil by) + A_gap/2",
-    validity: "Gas at wall temperature; one-dimensional adiabatic flow through each opening. The narrow flank passages are longer than they \
-               are high: as orifices they pass more than as laminar channels (see narrow_channel). Leak heights of seated flanks and face \
-               are the least known inputs; 0.4 um instead of 0.02 um doubles the blow-by of a truck engine.",
-    references: ["zottin1992", "furuhama1961", "smith1999"],
-    example: "gap_split = 0.5\nfilm_height = \"instantaneous\"\norifice = { discharge = 0.86, law = \"isentropic\", laminar = 1e-3 }\n",
 }
 
 struct Areas {

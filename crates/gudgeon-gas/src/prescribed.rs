@@ -2,7 +2,7 @@
 
 use gudgeon_core::kinds::{GasFlow, GasFlowCtx, GasFlowSpec, GasIn, GasOut};
 use gudgeon_core::quantity::PosPressure;
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -18,7 +18,14 @@ pub struct Prescribed {
     pub lands: Vec<PosPressure>,
 }
 
-#[typetag::serde(name = "prescribed")]
+#[register_model(
+    name = "prescribed",
+    summary = "given constant pressures between the rings; no flow is computed",
+    equations = "p_land given;  p_back = (1 - e) p_above + e p_below;  m' = 0",
+    validity = "Studies of films and rings under known pressures. Blow-by is zero by definition.",
+    references = [],
+    example = "lands = [\"6 bar\", \"2 bar\"]\n",
+)]
 impl GasFlowSpec for Prescribed {
     fn build(&self, ctx: &GasFlowCtx<'_>) -> Result<Box<dyn GasFlow>, BuildError> {
         let between = ctx.pack.rings.len().saturating_sub(1);
@@ -34,17 +41,6 @@ impl GasFlowSpec for Prescribed {
         }
         Ok(Box::new(Runtime { lands: self.lands.iter().map(|p| p.si()).collect() }))
     }
-}
-
-gudgeon_core::register_model! {
-    Prescribed,
-    kind: "gas_flow",
-    name: "prescribed",
-    summary: "given constant pressures between the rings; no flow is computed",
-    equations: "p_land given;  p_back = (1 - e) p_above + e p_below;  m' = 0",
-    validity: "Studies of films and rings under known pressures. Blow-by is zero by definition.",
-    references: [],
-    example: "lands = [\"6 bar\", \"2 bar\"]\n",
 }
 
 struct Runtime {

@@ -1,6 +1,6 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{CylinderPressure, CylinderPressureCtx, CylinderPressureSpec};
 use gudgeon_core::quantity::{PosAngle, PosPressure, PosRatio, quantity};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 use crate::compressor::{Clearance, Space, TURN, check};
@@ -45,16 +45,14 @@ fn discharge_opens() -> PosAngle {
     quantity(5.362)
 }
 
-gudgeon_core::register_model! {
-    AngleWindows, kind: "cylinder_pressure", name: "angle_windows",
-    summary: "compressor cylinder with valves that act at fixed crank angles, as published",
-    equations: "p = p_d (V_c/V)^n | p_s | p_s (V_max/V)^n | p_d in four windows of the crank angle",
-    validity: "For reproduction: right for one geometry and one pressure ratio; elsewhere the pressure jumps.",
-    references: ["gomes2021"],
-    example: "suction = \"101325 Pa\"\ndischarge = \"601325 Pa\"\nclearance = { compression_ratio = 17.5 }\n",
-}
-
-#[typetag::serde(name = "angle_windows")]
+#[register_model(
+ name = "angle_windows",
+    summary = "compressor cylinder with valves that act at fixed crank angles, as published",
+    equations = "p = p_d (V_c/V)^n | p_s | p_s (V_max/V)^n | p_d in four windows of the crank angle",
+    validity = "For reproduction: right for one geometry and one pressure ratio; elsewhere the pressure jumps.",
+    references = ["gomes2021"],
+    example = "suction = \"101325 Pa\"\ndischarge = \"601325 Pa\"\nclearance = { compression_ratio = 17.5 }\n",
+)]
 impl CylinderPressureSpec for AngleWindows {
     fn build(&self, ctx: &CylinderPressureCtx<'_>) -> Result<Box<dyn CylinderPressure>, BuildError> {
         let space = Space::new(ctx, &self.clearance)?;

@@ -1,6 +1,6 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{CylinderPressure, CylinderPressureCtx, CylinderPressureSpec};
 use gudgeon_core::quantity::{PosPressure, quantity};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// One pressure at all crank angles: an engine motored without valves or cylinder head, a compressor shut off.
@@ -22,16 +22,14 @@ impl Default for Constant {
     }
 }
 
-gudgeon_core::register_model! {
-    Constant, kind: "cylinder_pressure", name: "constant",
-    summary: "the same pressure at all crank angles, for motoring without valves",
-    equations: "p = const",
-    validity: "Motored rigs without gas exchange or head.",
-    references: [],
-    example: "pressure = \"1 bar\"\n",
-}
-
-#[typetag::serde(name = "constant")]
+#[register_model(
+ name = "constant",
+    summary = "the same pressure at all crank angles, for motoring without valves",
+    equations = "p = const",
+    validity = "Motored rigs without gas exchange or head.",
+    references = [],
+    example = "pressure = \"1 bar\"\n",
+)]
 impl CylinderPressureSpec for Constant {
     fn build(&self, _: &CylinderPressureCtx<'_>) -> Result<Box<dyn CylinderPressure>, BuildError> {
         Ok(Box::new(Level { pressure: self.pressure.si() }))

@@ -1,5 +1,5 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{Kinematics, KinematicsCtx, KinematicsSpec, PistonMotion};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// The slider-crank mechanism as it is, offset included.
@@ -17,16 +17,14 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 pub struct ExactSliderCrank {}
 
-gudgeon_core::register_model! {
-    ExactSliderCrank, kind: "kinematics", name: "exact_slider_crank",
-    summary: "exact slider-crank with crank or pin offset",
-    equations: "y = r cos(theta) + l cos(phi);  sin(phi) = (r sin(theta) - e)/l;  v = -omega r sin(theta + phi)/cos(phi);  a = dv/dt",
-    validity: "Rigid parts, constant crank speed, rod longer than crank radius plus offset.",
-    references: ["zottin1992", "heywood1988"],
-    example: "",
-}
-
-#[typetag::serde(name = "exact_slider_crank")]
+#[register_model(
+ name = "exact_slider_crank",
+    summary = "exact slider-crank with crank or pin offset",
+    equations = "y = r cos(theta) + l cos(phi);  sin(phi) = (r sin(theta) - e)/l;  v = -omega r sin(theta + phi)/cos(phi);  a = dv/dt",
+    validity = "Rigid parts, constant crank speed, rod longer than crank radius plus offset.",
+    references = ["zottin1992", "heywood1988"],
+    example = "",
+)]
 impl KinematicsSpec for ExactSliderCrank {
     fn build(&self, ctx: &KinematicsCtx) -> Result<Box<dyn Kinematics>, BuildError> {
         super::check_mechanism(ctx)?;

@@ -1,6 +1,6 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{CylinderPressure, CylinderPressureCtx, CylinderPressureSpec};
 use gudgeon_core::quantity::{PosPressure, PosRatio, quantity};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 use crate::compressor::{Clearance, Space, TURN, check};
@@ -36,16 +36,14 @@ pub(crate) fn air() -> PosRatio {
     quantity(1.4)
 }
 
-gudgeon_core::register_model! {
-    IdealValves, kind: "cylinder_pressure", name: "ideal_valves",
-    summary: "compressor cylinder with ideal valves and clearance, per cylinder end",
-    equations: "p = max(p_s, p_d (V_c/V)^n) away from the head;  p = min(p_d, p_s (V_max/V)^n) towards it",
-    validity: "Two-stroke cycle of a compressor end; no valve losses, no leakage, constant plenum pressures.",
-    references: ["gomes2021"],
-    example: "suction = \"101325 Pa\"\ndischarge = \"601325 Pa\"\nclearance = { fraction = 0.05 }\n",
-}
-
-#[typetag::serde(name = "ideal_valves")]
+#[register_model(
+ name = "ideal_valves",
+    summary = "compressor cylinder with ideal valves and clearance, per cylinder end",
+    equations = "p = max(p_s, p_d (V_c/V)^n) away from the head;  p = min(p_d, p_s (V_max/V)^n) towards it",
+    validity = "Two-stroke cycle of a compressor end; no valve losses, no leakage, constant plenum pressures.",
+    references = ["gomes2021"],
+    example = "suction = \"101325 Pa\"\ndischarge = \"601325 Pa\"\nclearance = { fraction = 0.05 }\n",
+)]
 impl CylinderPressureSpec for IdealValves {
     fn build(&self, ctx: &CylinderPressureCtx<'_>) -> Result<Box<dyn CylinderPressure>, BuildError> {
         let space = Space::new(ctx, &self.clearance)?;

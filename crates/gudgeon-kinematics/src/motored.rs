@@ -1,8 +1,8 @@
 use std::f64::consts::PI;
 
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{CylinderPressure, CylinderPressureCtx, CylinderPressureSpec};
 use gudgeon_core::quantity::{PosAngle, PosPressure, PosRatio, quantity};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 use crate::polytropic_burn::check_order;
@@ -58,16 +58,14 @@ fn transition() -> PosAngle {
     quantity(30_f64.to_radians())
 }
 
-gudgeon_core::register_model! {
-    Motored, kind: "cylinder_pressure", name: "motored",
-    summary: "motored engine: polytropic compression and expansion, smooth valve events",
-    equations: "ln p = ln p_i + s n ln(V_ic/V) while the valves are closed, blended to ln p_e and back over `transition`",
-    validity: "Motored operation without heat loss: expansion retraces compression. No gas exchange dynamics.",
-    references: ["heywood1988"],
-    example: "compression_ratio = 10\nintake_pressure = \"1 bar\"\nexhaust_pressure = \"1.05 bar\"\n",
-}
-
-#[typetag::serde(name = "motored")]
+#[register_model(
+ name = "motored",
+    summary = "motored engine: polytropic compression and expansion, smooth valve events",
+    equations = "ln p = ln p_i + s n ln(V_ic/V) while the valves are closed, blended to ln p_e and back over `transition`",
+    validity = "Motored operation without heat loss: expansion retraces compression. No gas exchange dynamics.",
+    references = ["heywood1988"],
+    example = "compression_ratio = 10\nintake_pressure = \"1 bar\"\nexhaust_pressure = \"1.05 bar\"\n",
+)]
 impl CylinderPressureSpec for Motored {
     fn build(&self, ctx: &CylinderPressureCtx<'_>) -> Result<Box<dyn CylinderPressure>, BuildError> {
         let chamber = Chamber::new(ctx, self.compression_ratio.si())?;

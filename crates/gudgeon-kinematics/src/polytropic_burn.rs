@@ -1,6 +1,6 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{CylinderPressure, CylinderPressureCtx, CylinderPressureSpec};
 use gudgeon_core::quantity::{PosAngle, PosPressure, PosRatio, quantity};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 use crate::{Chamber, FOUR_STROKE, reduced};
@@ -128,16 +128,14 @@ impl Default for PolytropicBurn {
     }
 }
 
-gudgeon_core::register_model! {
-    PolytropicBurn, kind: "cylinder_pressure", name: "polytropic_burn",
-    summary: "closed-form pressure: polytropic compression plus a Wiebe-shaped burn, exponential blow-down",
-    equations: "p = p_i (V_ic/V)^n_c + p_b x (V_c/V)^n_e;  x = 1 - exp(-k ((theta - theta_s)/d)^m);  p = p_e + (p_eo - p_e) exp(-(theta - theta_eo)/c)",
-    validity: "A stand-in for a measured trace: shape and level of a turbo-charged diesel engine, no gas exchange dynamics, no heat balance.",
-    references: ["zottin1992", "heywood1988"],
-    example: "compression_ratio = 16\nintake_pressure = \"2.5 bar\"\nburn_pressure = \"194 bar\"\nburn_start = \"352 deg\"\n",
-}
-
-#[typetag::serde(name = "polytropic_burn")]
+#[register_model(
+ name = "polytropic_burn",
+    summary = "closed-form pressure: polytropic compression plus a Wiebe-shaped burn, exponential blow-down",
+    equations = "p = p_i (V_ic/V)^n_c + p_b x (V_c/V)^n_e;  x = 1 - exp(-k ((theta - theta_s)/d)^m);  p = p_e + (p_eo - p_e) exp(-(theta - theta_eo)/c)",
+    validity = "A stand-in for a measured trace: shape and level of a turbo-charged diesel engine, no gas exchange dynamics, no heat balance.",
+    references = ["zottin1992", "heywood1988"],
+    example = "compression_ratio = 16\nintake_pressure = \"2.5 bar\"\nburn_pressure = \"194 bar\"\nburn_start = \"352 deg\"\n",
+)]
 impl CylinderPressureSpec for PolytropicBurn {
     fn build(&self, ctx: &CylinderPressureCtx<'_>) -> Result<Box<dyn CylinderPressure>, BuildError> {
         let chamber = Chamber::new(ctx, self.compression_ratio.si())?;

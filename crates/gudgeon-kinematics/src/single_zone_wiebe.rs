@@ -1,8 +1,8 @@
 use std::f64::consts::PI;
 
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{CylinderPressure, CylinderPressureCtx, CylinderPressureSpec};
 use gudgeon_core::quantity::{Energy, NonNegative, PosAngle, PosPressure, PosRatio, quantity};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 use crate::exact_slider_crank::Exact;
@@ -130,21 +130,19 @@ fn step() -> PosAngle {
     quantity(0.1_f64.to_radians())
 }
 
-gudgeon_core::register_model! {
-    SingleZoneWiebe, kind: "cylinder_pressure", name: "single_zone_wiebe",
-    summary: "single-zone heat release along a Wiebe curve",
-    equations: "dp = -gamma p dV/V + (gamma - 1) dQ/V;  Q = heat (1 - exp(-a ((theta - theta_s)/d)^(m+1)));  steps p <- p (V/V+)^gamma + (gamma - 1) dQ/V+",
-    validity: "A stand-in for a measured trace of a spark-ignition engine: ideal gas with one gamma before and one after the firing dead centre, no heat loss, no gas exchange dynamics.",
-    references: ["tomanik1993", "heywood1988"],
-    example: "compression_ratio = 12\nheat = \"0.9802 kJ\"\nburn_start = \"340.11 deg\"\n",
-}
-
 /// The published traces are tables of whole degrees; the last interval before `intake_reached` is drawn straight.
 const STRAIGHT: f64 = PI / 180.0;
 /// More steps than this per part of the cycle are a typing error, not a wish for accuracy.
 const MOST_STEPS: f64 = 1e7;
 
-#[typetag::serde(name = "single_zone_wiebe")]
+#[register_model(
+ name = "single_zone_wiebe",
+    summary = "single-zone heat release along a Wiebe curve",
+    equations = "dp = -gamma p dV/V + (gamma - 1) dQ/V;  Q = heat (1 - exp(-a ((theta - theta_s)/d)^(m+1)));  steps p <- p (V/V+)^gamma + (gamma - 1) dQ/V+",
+    validity = "A stand-in for a measured trace of a spark-ignition engine: ideal gas with one gamma before and one after the firing dead centre, no heat loss, no gas exchange dynamics.",
+    references = ["tomanik1993", "heywood1988"],
+    example = "compression_ratio = 12\nheat = \"0.9802 kJ\"\nburn_start = \"340.11 deg\"\n",
+)]
 impl CylinderPressureSpec for SingleZoneWiebe {
     fn build(&self, ctx: &CylinderPressureCtx<'_>) -> Result<Box<dyn CylinderPressure>, BuildError> {
         let chamber = match self.volume {

@@ -1,9 +1,9 @@
 use std::f64::consts::PI;
 
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{CylinderPressure, CylinderPressureCtx, CylinderPressureSpec};
 use gudgeon_core::quantity::{Angle, Dimension, PosAngle, PosRatio, Pressure, dim, quantity};
 use gudgeon_core::result::Note;
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 use crate::periodic_cubic::{PeriodicCubic, TooClose};
@@ -109,15 +109,6 @@ fn no_offset() -> Pressure {
     quantity(0.0)
 }
 
-gudgeon_core::register_model! {
-    Table, kind: "cylinder_pressure", name: "table",
-    summary: "a measured trace, inline or from a file, by periodic monotone cubic or linear interpolation",
-    equations: "p = scale * P(theta - shift) + offset;  P: monotone piecewise cubic Hermite (or straight lines) through the rows, periodic",
-    validity: "As good as the trace; at least 4 rows per cycle, absolute pressures after scale and offset. Interpolation does not overshoot; it cuts an extremum that lies between rows.",
-    references: ["fritsch1980"],
-    example: "theta_deg = [0, 180, 300, 350, 370, 400, 450, 540]\npressure = [1, 1, 4, 30, 60, 25, 6, 1.5]\nunit = \"bar\"\n",
-}
-
 impl Default for Table {
     fn default() -> Self {
         Self {
@@ -136,7 +127,14 @@ impl Default for Table {
     }
 }
 
-#[typetag::serde(name = "table")]
+#[register_model(
+ name = "table",
+    summary = "a measured trace, inline or from a file, by periodic monotone cubic or linear interpolation",
+    equations = "p = scale * P(theta - shift) + offset;  P: monotone piecewise cubic Hermite (or straight lines) through the rows, periodic",
+    validity = "As good as the trace; at least 4 rows per cycle, absolute pressures after scale and offset. Interpolation does not overshoot; it cuts an extremum that lies between rows.",
+    references = ["fritsch1980"],
+    example = "theta_deg = [0, 180, 300, 350, 370, 400, 450, 540]\npressure = [1, 1, 4, 30, 60, 25, 6, 1.5]\nunit = \"bar\"\n",
+)]
 impl CylinderPressureSpec for Table {
     fn build(&self, ctx: &CylinderPressureCtx<'_>) -> Result<Box<dyn CylinderPressure>, BuildError> {
         let turns = (self.cycle.si() / (2.0 * PI)).round();

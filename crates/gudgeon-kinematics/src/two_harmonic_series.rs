@@ -1,5 +1,5 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{Kinematics, KinematicsCtx, KinematicsSpec, PistonMotion};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// The slider-crank mechanism to first order in the ratio of crank radius to rod length.
@@ -17,16 +17,14 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 pub struct TwoHarmonicSeries {}
 
-gudgeon_core::register_model! {
-    TwoHarmonicSeries, kind: "kinematics", name: "two_harmonic_series",
-    summary: "slider-crank as two harmonics, first order in r/l",
-    equations: "a = -r omega^2 (cos(theta) + lambda cos(2 theta));  v = -r omega (sin(theta) + lambda/2 sin(2 theta));  y = l - r lambda/4 + r (cos(theta) + lambda/4 cos(2 theta));  lambda = r/l",
-    validity: "No offset. Error of order (r/l)^3: 1.1 % of r omega^2 at r/l = 0.27.",
-    references: ["tomanik1993", "heywood1988"],
-    example: "",
-}
-
-#[typetag::serde(name = "two_harmonic_series")]
+#[register_model(
+ name = "two_harmonic_series",
+    summary = "slider-crank as two harmonics, first order in r/l",
+    equations = "a = -r omega^2 (cos(theta) + lambda cos(2 theta));  v = -r omega (sin(theta) + lambda/2 sin(2 theta));  y = l - r lambda/4 + r (cos(theta) + lambda/4 cos(2 theta));  lambda = r/l",
+    validity = "No offset. Error of order (r/l)^3: 1.1 % of r omega^2 at r/l = 0.27.",
+    references = ["tomanik1993", "heywood1988"],
+    example = "",
+)]
 impl KinematicsSpec for TwoHarmonicSeries {
     fn build(&self, ctx: &KinematicsCtx) -> Result<Box<dyn Kinematics>, BuildError> {
         super::check_mechanism(ctx)?;

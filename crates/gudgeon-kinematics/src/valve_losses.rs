@@ -1,8 +1,8 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{CylinderPressure, CylinderPressureCtx, CylinderPressureSpec};
 use gudgeon_core::quantity::{
     GasConstant, PosArea, PosPressure, PosRatio, PosTemperature, Positive, quantity,
 };
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 use crate::compressor::{Clearance, Space, TURN, check};
@@ -54,16 +54,14 @@ fn gas() -> GasConstant<Positive> {
     quantity(287.05)
 }
 
-gudgeon_core::register_model! {
-    ValveLosses, kind: "cylinder_pressure", name: "valve_losses",
-    summary: "compressor cylinder with clearance and the pressure drop of its valves",
-    equations: "p = max(p_s - dp_s, p_d (V_c/V)^n) away from the head;  p = min(p_d + dp_d, p_s (V_max/V)^n) towards it;  dp = rho (A v/A_v)^2/2",
-    validity: "Quasi-steady incompressible drop: small against the plenum pressure. No valve dynamics, no pulsation.",
-    references: ["gomes2021", "heywood1988"],
-    example: "suction = \"1 bar\"\ndischarge = \"6 bar\"\nclearance = { fraction = 0.1 }\nsuction_area = \"80 cm2\"\ndischarge_area = \"60 cm2\"\n",
-}
-
-#[typetag::serde(name = "valve_losses")]
+#[register_model(
+ name = "valve_losses",
+    summary = "compressor cylinder with clearance and the pressure drop of its valves",
+    equations = "p = max(p_s - dp_s, p_d (V_c/V)^n) away from the head;  p = min(p_d + dp_d, p_s (V_max/V)^n) towards it;  dp = rho (A v/A_v)^2/2",
+    validity = "Quasi-steady incompressible drop: small against the plenum pressure. No valve dynamics, no pulsation.",
+    references = ["gomes2021", "heywood1988"],
+    example = "suction = \"1 bar\"\ndischarge = \"6 bar\"\nclearance = { fraction = 0.1 }\nsuction_area = \"80 cm2\"\ndischarge_area = \"60 cm2\"\n",
+)]
 impl CylinderPressureSpec for ValveLosses {
     fn build(&self, ctx: &CylinderPressureCtx<'_>) -> Result<Box<dyn CylinderPressure>, BuildError> {
         let space = Space::new(ctx, &self.clearance)?;

@@ -1,8 +1,8 @@
 //! An oil given by its data sheet. This file is the whole sub-model.
 
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{Oil, OilSpec};
 use gudgeon_core::quantity::{Expansion, NonNegative, PosRatio, PosTemperature, quantity};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// The Walther equation between two measured viscosities (walther1931, the base of ASTM D341).
@@ -43,16 +43,14 @@ fn expansion() -> Expansion<NonNegative> {
     quantity(7e-4)
 }
 
-gudgeon_core::register_model! {
-    Walther, kind: "oil", name: "walther",
-    summary: "Walther equation through two kinematic viscosities of a data sheet, with density",
-    equations: "log10 log10(nu + 0.7) = A - B log10 T,  nu in mm2/s;  rho = rho15 (1 - alpha (T - 288.15 K));  mu = nu rho",
-    validity: "Mineral and most synthetic oils from about 0 degC to 200 degC, nu above 2 mm2/s; low shear rate, ambient pressure.",
-    references: ["walther1931"],
-    example: "nu_cold = 95.0\nnu_hot = 10.7\n",
-}
-
-#[typetag::serde(name = "walther")]
+#[register_model(
+ name = "walther",
+    summary = "Walther equation through two kinematic viscosities of a data sheet, with density",
+    equations = "log10 log10(nu + 0.7) = A - B log10 T,  nu in mm2/s;  rho = rho15 (1 - alpha (T - 288.15 K));  mu = nu rho",
+    validity = "Mineral and most synthetic oils from about 0 degC to 200 degC, nu above 2 mm2/s; low shear rate, ambient pressure.",
+    references = ["walther1931"],
+    example = "nu_cold = 95.0\nnu_hot = 10.7\n",
+)]
 impl OilSpec for Walther {
     fn build(&self) -> Result<Box<dyn Oil>, BuildError> {
         let (t1, t2) = (self.cold.si(), self.hot.si());

@@ -132,7 +132,8 @@ fn cases() -> Vec<(PathBuf, String)> {
 fn read(name: &str, text: String, overrides: &[String], slowest: &mut (Duration, String)) -> bool {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases");
     let begin = Instant::now();
-    let outcome = gudgeon_scene::load(Source { name: name.to_owned(), text, files: Files::of(&folder) }, overrides);
+    let outcome =
+        gudgeon_scene::load(Source { name: name.to_owned(), text, files: Files::of(&folder) }, overrides);
     if let Err(report) = &outcome {
         assert!(!report.diagnostics.is_empty() && report.diagnostics.len() <= MOST_MISTAKES, "{name}");
         let told = report.render(false);

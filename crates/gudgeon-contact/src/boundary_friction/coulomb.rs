@@ -1,6 +1,6 @@
 use gudgeon_core::kinds::{BoundaryFriction, BoundaryFrictionSpec};
 use gudgeon_core::quantity::{NonNegative, Ratio, Velocity, quantity};
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
 use crate::check;
@@ -24,16 +24,14 @@ fn slow() -> Velocity<NonNegative> {
     quantity(0.01)
 }
 
-gudgeon_core::register_model! {
-    Coulomb, kind: "boundary_friction", name: "coulomb",
-    summary: "constant coefficient of friction, rounded at rest",
-    equations: "mu(v) = mu_c v/sqrt(v^2 + v_0^2)",
-    validity: "Sliding at speeds above v_0; surfaces at rest creep instead of sticking. v_0 = 0 is for schemes that find the reversal themselves.",
-    references: [],
-    example: "friction_coefficient = 0.12\nrounding_speed = \"1 cm/s\"\n",
-}
-
-#[typetag::serde(name = "coulomb")]
+#[register_model(
+ name = "coulomb",
+    summary = "constant coefficient of friction, rounded at rest",
+    equations = "mu(v) = mu_c v/sqrt(v^2 + v_0^2)",
+    validity = "Sliding at speeds above v_0; surfaces at rest creep instead of sticking. v_0 = 0 is for schemes that find the reversal themselves.",
+    references = [],
+    example = "friction_coefficient = 0.12\nrounding_speed = \"1 cm/s\"\n",
+)]
 impl BoundaryFrictionSpec for Coulomb {
     fn build(&self) -> Result<Box<dyn BoundaryFriction>, BuildError> {
         Ok(Box::new(Rounded {

@@ -1,5 +1,5 @@
 use gudgeon_core::kinds::{BoundaryFriction, BoundaryFrictionSpec};
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
 use crate::check;
@@ -9,16 +9,14 @@ use crate::check;
 #[serde(deny_unknown_fields)]
 pub struct Off {}
 
-gudgeon_core::register_model! {
-    Off, kind: "boundary_friction", name: "off",
-    summary: "solid contact without friction",
-    equations: "mu = 0",
-    validity: "Comparisons.",
-    references: [],
-    example: "",
-}
-
-#[typetag::serde(name = "off")]
+#[register_model(
+ name = "off",
+    summary = "solid contact without friction",
+    equations = "mu = 0",
+    validity = "Comparisons.",
+    references = [],
+    example = "",
+)]
 impl BoundaryFrictionSpec for Off {
     fn build(&self) -> Result<Box<dyn BoundaryFriction>, BuildError> {
         Ok(Box::new(Frictionless))

@@ -1,6 +1,6 @@
 use gudgeon_core::kinds::{BoundaryFriction, BoundaryFrictionSpec};
 use gudgeon_core::quantity::{NonNegative, PosRatio, PosVelocity, Ratio, Velocity, quantity};
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
 use super::coulomb::rounded_sign;
@@ -35,16 +35,14 @@ fn slow() -> Velocity<NonNegative> {
     quantity(0.01)
 }
 
-gudgeon_core::register_model! {
-    Stribeck, kind: "boundary_friction", name: "stribeck",
-    summary: "coefficient that falls from a static to a kinetic value, rounded at rest",
-    equations: "mu(v) = {mu_k + (mu_s - mu_k) exp[-(|v|/v_s)^n]} v/sqrt(v^2 + v_0^2)",
-    validity: "Empirical. Falls with speed below v_s, which can make motion unstable. Of the solid contact alone: not to be added to a film that has a Stribeck curve of its own.",
-    references: ["armstrong1994"],
-    example: "static_coefficient = 0.15\nkinetic_coefficient = 0.10\nstribeck_speed = \"10 cm/s\"\nrounding_speed = \"1 cm/s\"\n",
-}
-
-#[typetag::serde(name = "stribeck")]
+#[register_model(
+ name = "stribeck",
+    summary = "coefficient that falls from a static to a kinetic value, rounded at rest",
+    equations = "mu(v) = {mu_k + (mu_s - mu_k) exp[-(|v|/v_s)^n]} v/sqrt(v^2 + v_0^2)",
+    validity = "Empirical. Falls with speed below v_s, which can make motion unstable. Of the solid contact alone: not to be added to a film that has a Stribeck curve of its own.",
+    references = ["armstrong1994"],
+    example = "static_coefficient = 0.15\nkinetic_coefficient = 0.10\nstribeck_speed = \"10 cm/s\"\nrounding_speed = \"1 cm/s\"\n",
+)]
 impl BoundaryFrictionSpec for Stribeck {
     fn build(&self) -> Result<Box<dyn BoundaryFriction>, BuildError> {
         let (exponent, inverse) = (self.exponent.si(), self.stribeck_speed.si().recip());

@@ -2,10 +2,10 @@ use std::fmt::Debug;
 
 use dyn_clone::DynClone;
 
-use crate::{BuildError, EvalError};
+use crate::{BuildError, EvalError, register_kind};
 
 /// Configuration of a model of the friction of solid contact.
-#[typetag::serde(tag = "model")]
+#[register_kind(name = "boundary_friction", summary = "friction of solid contact against sliding speed")]
 pub trait BoundaryFrictionSpec: Debug + DynClone + Send + Sync {
     /// Builds the running model.
     ///
@@ -13,12 +13,6 @@ pub trait BoundaryFrictionSpec: Debug + DynClone + Send + Sync {
     /// Constants outside their range.
     fn build(&self) -> Result<Box<dyn BoundaryFriction>, BuildError>;
 }
-dyn_clone::clone_trait_object!(BoundaryFrictionSpec);
-crate::register_kind!(
-    dyn BoundaryFrictionSpec,
-    "boundary_friction",
-    "friction of solid contact against sliding speed"
-);
 
 /// A running friction model of solid contact.
 pub trait BoundaryFriction: Debug + Send + Sync {

@@ -2,10 +2,10 @@ use std::fmt::Debug;
 
 use dyn_clone::DynClone;
 
-use crate::{BuildError, EvalError};
+use crate::{BuildError, EvalError, register_kind};
 
 /// Configuration of a pressure dependence of density.
-#[typetag::serde(tag = "model")]
+#[register_kind(name = "compressibility", summary = "rise of the density of oil with pressure")]
 pub trait CompressibilitySpec: Debug + DynClone + Send + Sync {
     /// Builds the running model.
     ///
@@ -13,8 +13,6 @@ pub trait CompressibilitySpec: Debug + DynClone + Send + Sync {
     /// Constants outside their range.
     fn build(&self) -> Result<Box<dyn Compressibility>, BuildError>;
 }
-dyn_clone::clone_trait_object!(CompressibilitySpec);
-crate::register_kind!(dyn CompressibilitySpec, "compressibility", "rise of the density of oil with pressure");
 
 /// A running pressure dependence of density.
 pub trait Compressibility: Debug + Send + Sync {

@@ -2,10 +2,10 @@ use std::fmt::Debug;
 
 use dyn_clone::DynClone;
 
-use crate::BuildError;
+use crate::{BuildError, register_kind};
 
 /// Configuration of a contact model.
-#[typetag::serde(tag = "model")]
+#[register_kind(name = "contact", summary = "solid contact of asperities and boundary friction")]
 pub trait ContactSpec: Debug + DynClone + Send + Sync {
     /// Builds the running model.
     ///
@@ -13,8 +13,6 @@ pub trait ContactSpec: Debug + DynClone + Send + Sync {
     /// Constants outside their range.
     fn build(&self) -> Result<Box<dyn Contact>, BuildError>;
 }
-dyn_clone::clone_trait_object!(ContactSpec);
-crate::register_kind!(dyn ContactSpec, "contact", "solid contact of asperities and boundary friction");
 
 /// A running contact model.
 pub trait Contact: Debug + Send + Sync {

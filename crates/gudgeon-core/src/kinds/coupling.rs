@@ -2,10 +2,13 @@ use std::fmt::Debug;
 
 use dyn_clone::DynClone;
 
-use crate::BuildError;
+use crate::{BuildError, register_kind};
 
 /// Configuration of what joins two inertias of a shaft line: a shaft, a coupling, a damper.
-#[typetag::serde(tag = "model")]
+#[register_kind(
+    name = "coupling",
+    summary = "torque between two inertias of a shaft line by their twist and its rate"
+)]
 pub trait CouplingSpec: Debug + DynClone + Send + Sync {
     /// Checks the numbers and builds the running model.
     ///
@@ -13,12 +16,6 @@ pub trait CouplingSpec: Debug + DynClone + Send + Sync {
     /// Tables that are not monotone or not positive; numbers that contradict each other.
     fn build(&self) -> Result<Box<dyn Coupling>, BuildError>;
 }
-dyn_clone::clone_trait_object!(CouplingSpec);
-crate::register_kind!(
-    dyn CouplingSpec,
-    "coupling",
-    "torque between two inertias of a shaft line by their twist and its rate"
-);
 
 /// Torque of a coupling with its derivatives.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -3,9 +3,9 @@ use std::fmt::Debug;
 use dyn_clone::DynClone;
 
 use super::Kinematics;
-use crate::BuildError;
 use crate::file::Files;
 use crate::result::Note;
+use crate::{BuildError, register_kind};
 
 /// What a [`CylinderPressureSpec`] is built for.
 #[derive(Debug, Clone, Copy)]
@@ -19,7 +19,7 @@ pub struct CylinderPressureCtx<'a> {
 }
 
 /// Configuration of a cylinder-pressure model.
-#[typetag::serde(tag = "model")]
+#[register_kind(name = "cylinder_pressure", summary = "gas pressure in the cylinder over the cycle")]
 pub trait CylinderPressureSpec: Debug + DynClone + Send + Sync {
     /// Checks the numbers and builds the running model.
     ///
@@ -27,12 +27,6 @@ pub trait CylinderPressureSpec: Debug + DynClone + Send + Sync {
     /// Tables that are not monotone or not positive, files that cannot be read, a compression ratio that cannot be.
     fn build(&self, ctx: &CylinderPressureCtx<'_>) -> Result<Box<dyn CylinderPressure>, BuildError>;
 }
-dyn_clone::clone_trait_object!(CylinderPressureSpec);
-crate::register_kind!(
-    dyn CylinderPressureSpec,
-    "cylinder_pressure",
-    "gas pressure in the cylinder over the cycle"
-);
 
 /// A running cylinder-pressure model.
 pub trait CylinderPressure: Debug + DynClone + Send + Sync {

@@ -2,10 +2,10 @@ use std::fmt::Debug;
 
 use dyn_clone::DynClone;
 
-use crate::BuildError;
+use crate::{BuildError, register_kind};
 
 /// Configuration of a torque on one inertia of a shaft line: a motor, an engine given by its harmonics, a load.
-#[typetag::serde(tag = "model")]
+#[register_kind(name = "drive", summary = "torque of a motor, an engine or a load on one inertia")]
 pub trait DriveSpec: Debug + DynClone + Send + Sync {
     /// Checks the numbers and builds the running model.
     ///
@@ -13,8 +13,6 @@ pub trait DriveSpec: Debug + DynClone + Send + Sync {
     /// Tables that are not monotone; speeds and torques that contradict each other.
     fn build(&self) -> Result<Box<dyn Drive>, BuildError>;
 }
-dyn_clone::clone_trait_object!(DriveSpec);
-crate::register_kind!(dyn DriveSpec, "drive", "torque of a motor, an engine or a load on one inertia");
 
 /// Torque of a drive with its derivative by the speed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

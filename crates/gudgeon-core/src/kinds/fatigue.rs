@@ -2,10 +2,10 @@ use std::fmt::Debug;
 
 use dyn_clone::DynClone;
 
-use crate::{BuildError, EvalError};
+use crate::{BuildError, EvalError, register_kind};
 
 /// Configuration of a fatigue criterion.
-#[typetag::serde(tag = "model")]
+#[register_kind(name = "fatigue", summary = "safety of an alternating stress against fatigue")]
 pub trait FatigueSpec: Debug + DynClone + Send + Sync {
     /// Builds the running criterion.
     ///
@@ -13,8 +13,6 @@ pub trait FatigueSpec: Debug + DynClone + Send + Sync {
     /// Strengths that contradict each other.
     fn build(&self) -> Result<Box<dyn Fatigue>, BuildError>;
 }
-dyn_clone::clone_trait_object!(FatigueSpec);
-crate::register_kind!(dyn FatigueSpec, "fatigue", "safety of an alternating stress against fatigue");
 
 /// A running fatigue criterion.
 pub trait Fatigue: Debug + Send + Sync {

@@ -2,7 +2,7 @@ use std::fmt::Debug;
 
 use dyn_clone::DynClone;
 
-use crate::{BuildError, EvalError};
+use crate::{BuildError, EvalError, register_kind};
 
 /// What a [`Film1dSpec`] is built for: the places where the film is looked at.
 #[derive(Debug, Clone, Copy)]
@@ -51,7 +51,7 @@ pub struct Film1dScope {
 }
 
 /// Configuration of a one-dimensional film.
-#[typetag::serde(tag = "model")]
+#[register_kind(name = "film_1d", summary = "oil film along a line, of any profile, steady or in time")]
 pub trait Film1dSpec: Debug + DynClone + Send + Sync {
     /// Builds the running model of one line.
     ///
@@ -64,8 +64,6 @@ pub trait Film1dSpec: Debug + DynClone + Send + Sync {
         Film1dScope { starved: true, squeeze: true, steps: true }
     }
 }
-dyn_clone::clone_trait_object!(Film1dSpec);
-crate::register_kind!(dyn Film1dSpec, "film_1d", "oil film along a line, of any profile, steady or in time");
 
 /// What there is at one end of a line.
 #[derive(Debug, Clone, Copy, PartialEq)]

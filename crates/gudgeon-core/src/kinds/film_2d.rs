@@ -2,7 +2,7 @@ use std::fmt::Debug;
 
 use dyn_clone::DynClone;
 
-use crate::{BuildError, EvalError};
+use crate::{BuildError, EvalError, register_kind};
 
 /// What an edge of a two-dimensional film does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -160,7 +160,10 @@ pub struct Film2dCtx<'a> {
 }
 
 /// Configuration of a solver of the Reynolds equation in two dimensions.
-#[typetag::serde(tag = "model")]
+#[register_kind(
+    name = "film_2d",
+    summary = "oil film between two surfaces, resolved along and across the motion"
+)]
 pub trait Film2dSpec: Debug + DynClone + Send + Sync {
     /// Builds the running solver for one grid.
     ///
@@ -168,12 +171,6 @@ pub trait Film2dSpec: Debug + DynClone + Send + Sync {
     /// A grid that is none (too few nodes, not increasing, no edge with a pressure), or options that contradict each other.
     fn build(&self, ctx: &Film2dCtx<'_>) -> Result<Box<dyn Film2d>, BuildError>;
 }
-dyn_clone::clone_trait_object!(Film2dSpec);
-crate::register_kind!(
-    dyn Film2dSpec,
-    "film_2d",
-    "oil film between two surfaces, resolved along and across the motion"
-);
 
 /// Viscosity of a film.
 #[derive(Debug, Clone, Copy, PartialEq)]

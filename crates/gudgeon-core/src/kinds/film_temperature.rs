@@ -2,7 +2,7 @@ use std::fmt::Debug;
 
 use dyn_clone::DynClone;
 
-use crate::BuildError;
+use crate::{BuildError, register_kind};
 
 /// What a [`FilmTemperatureSpec`] is built for.
 #[derive(Debug, Clone, Copy)]
@@ -14,7 +14,7 @@ pub struct FilmTemperatureCtx<'a> {
 }
 
 /// Configuration of a film-temperature model.
-#[typetag::serde(tag = "model")]
+#[register_kind(name = "film_temperature", summary = "temperature of the oil film under each ring")]
 pub trait FilmTemperatureSpec: Debug + DynClone + Send + Sync {
     /// Builds the running model.
     ///
@@ -22,12 +22,6 @@ pub trait FilmTemperatureSpec: Debug + DynClone + Send + Sync {
     /// Lists whose length does not fit the number of rings.
     fn build(&self, ctx: &FilmTemperatureCtx<'_>) -> Result<Box<dyn FilmTemperature>, BuildError>;
 }
-dyn_clone::clone_trait_object!(FilmTemperatureSpec);
-crate::register_kind!(
-    dyn FilmTemperatureSpec,
-    "film_temperature",
-    "temperature of the oil film under each ring"
-);
 
 /// A running film-temperature model.
 pub trait FilmTemperature: Debug + Send + Sync {

@@ -2,10 +2,13 @@ use std::fmt::Debug;
 
 use dyn_clone::DynClone;
 
-use crate::BuildError;
+use crate::{BuildError, register_kind};
 
 /// Configuration of a model of the oil between ring and groove flanks.
-#[typetag::serde(tag = "model")]
+#[register_kind(
+    name = "flank_damping",
+    summary = "resistance of the oil in the groove to the ring's axial motion"
+)]
 pub trait FlankDampingSpec: Debug + DynClone + Send + Sync {
     /// Builds the running model.
     ///
@@ -13,12 +16,6 @@ pub trait FlankDampingSpec: Debug + DynClone + Send + Sync {
     /// Constants outside their range.
     fn build(&self, ctx: &FlankDampingCtx) -> Result<Box<dyn FlankDamping>, BuildError>;
 }
-dyn_clone::clone_trait_object!(FlankDampingSpec);
-crate::register_kind!(
-    dyn FlankDampingSpec,
-    "flank_damping",
-    "resistance of the oil in the groove to the ring's axial motion"
-);
 
 /// What a [`FlankDampingSpec`] is built for.
 #[derive(Debug, Clone, Copy)]

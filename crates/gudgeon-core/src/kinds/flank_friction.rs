@@ -2,10 +2,13 @@ use std::fmt::Debug;
 
 use dyn_clone::DynClone;
 
-use crate::BuildError;
+use crate::{BuildError, register_kind};
 
 /// Configuration of a model of the friction between ring and groove flanks, which resists radial motion.
-#[typetag::serde(tag = "model")]
+#[register_kind(
+    name = "flank_friction",
+    summary = "friction on the groove flanks against the ring's radial motion"
+)]
 pub trait FlankFrictionSpec: Debug + DynClone + Send + Sync {
     /// Builds the running model.
     ///
@@ -13,12 +16,6 @@ pub trait FlankFrictionSpec: Debug + DynClone + Send + Sync {
     /// Constants outside their range.
     fn build(&self) -> Result<Box<dyn FlankFriction>, BuildError>;
 }
-dyn_clone::clone_trait_object!(FlankFrictionSpec);
-crate::register_kind!(
-    dyn FlankFrictionSpec,
-    "flank_friction",
-    "friction on the groove flanks against the ring's radial motion"
-);
 
 /// A running flank-friction model.
 pub trait FlankFriction: Send {

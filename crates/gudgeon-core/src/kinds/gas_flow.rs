@@ -3,7 +3,7 @@ use std::fmt::Debug;
 use dyn_clone::DynClone;
 
 use crate::geometry::{PackGeometry, RingPlace};
-use crate::{BuildError, EvalError};
+use crate::{BuildError, EvalError, register_kind};
 
 /// What a [`GasFlowSpec`] is built for.
 #[derive(Debug, Clone, Copy)]
@@ -13,7 +13,7 @@ pub struct GasFlowCtx<'a> {
 }
 
 /// Configuration of an inter-ring gas-flow model.
-#[typetag::serde(tag = "model")]
+#[register_kind(name = "gas_flow", summary = "gas flow between the lands, past and behind the rings")]
 pub trait GasFlowSpec: Debug + DynClone + Send + Sync {
     /// Checks the geometry it needs and builds the running model.
     ///
@@ -21,8 +21,6 @@ pub trait GasFlowSpec: Debug + DynClone + Send + Sync {
     /// A volume or gap that the geometry does not give.
     fn build(&self, ctx: &GasFlowCtx<'_>) -> Result<Box<dyn GasFlow>, BuildError>;
 }
-dyn_clone::clone_trait_object!(GasFlowSpec);
-crate::register_kind!(dyn GasFlowSpec, "gas_flow", "gas flow between the lands, past and behind the rings");
 
 /// The boundary and the rings at an instant.
 #[derive(Debug, Clone, Copy)]

@@ -2,7 +2,7 @@ use std::fmt::Debug;
 
 use dyn_clone::DynClone;
 
-use crate::BuildError;
+use crate::{BuildError, register_kind};
 
 /// What a [`GrooveFrictionSpec`] is built for.
 #[derive(Debug, Clone, Copy)]
@@ -12,7 +12,10 @@ pub struct GrooveFrictionCtx {
 }
 
 /// Configuration of a friction between rings and their grooves that hinders the lateral motion of the piston.
-#[typetag::serde(tag = "model")]
+#[register_kind(
+    name = "groove_friction",
+    summary = "force of the rings on the piston when it moves across the bore"
+)]
 pub trait GrooveFrictionSpec: Debug + DynClone + Send + Sync {
     /// Builds the running model.
     ///
@@ -20,12 +23,6 @@ pub trait GrooveFrictionSpec: Debug + DynClone + Send + Sync {
     /// Constants outside their range.
     fn build(&self, ctx: &GrooveFrictionCtx) -> Result<Box<dyn GrooveFriction>, BuildError>;
 }
-dyn_clone::clone_trait_object!(GrooveFrictionSpec);
-crate::register_kind!(
-    dyn GrooveFrictionSpec,
-    "groove_friction",
-    "force of the rings on the piston when it moves across the bore"
-);
 
 /// A running friction between rings and grooves.
 pub trait GrooveFriction: Debug + Send + Sync {

@@ -3,7 +3,7 @@ use std::fmt::Debug;
 use dyn_clone::DynClone;
 
 use crate::geometry::FaceProfile;
-use crate::{BuildError, EvalError};
+use crate::{BuildError, EvalError, register_kind};
 
 /// What a [`HydrodynamicsSpec`] is built for: one running face of one ring.
 #[derive(Debug, Clone, Copy)]
@@ -13,7 +13,7 @@ pub struct FaceCtx<'a> {
 }
 
 /// Configuration of a ring-face film model.
-#[typetag::serde(tag = "model")]
+#[register_kind(name = "hydrodynamics", summary = "oil film between a ring face and the liner")]
 pub trait HydrodynamicsSpec: Debug + DynClone + Send + Sync {
     /// Builds the running model of one face.
     ///
@@ -21,8 +21,6 @@ pub trait HydrodynamicsSpec: Debug + DynClone + Send + Sync {
     /// A face shape that the model cannot represent.
     fn build(&self, ctx: &FaceCtx<'_>) -> Result<Box<dyn Hydrodynamics>, BuildError>;
 }
-dyn_clone::clone_trait_object!(HydrodynamicsSpec);
-crate::register_kind!(dyn HydrodynamicsSpec, "hydrodynamics", "oil film between a ring face and the liner");
 
 /// One film at an instant, in the frame of the ring, `x` from the bottom edge to the top edge.
 #[derive(Debug, Clone, Copy, PartialEq)]

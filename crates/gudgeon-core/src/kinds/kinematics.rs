@@ -2,7 +2,7 @@ use std::fmt::Debug;
 
 use dyn_clone::DynClone;
 
-use crate::BuildError;
+use crate::{BuildError, register_kind};
 
 /// What a [`KinematicsSpec`] is built for.
 #[derive(Debug, Clone, Copy)]
@@ -32,7 +32,10 @@ pub struct PistonMotion {
 }
 
 /// Configuration of a kinematics model.
-#[typetag::serde(tag = "model")]
+#[register_kind(
+    name = "kinematics",
+    summary = "position, velocity and acceleration of the piston at a crank angle"
+)]
 pub trait KinematicsSpec: Debug + DynClone + Send + Sync {
     /// Checks the numbers and builds the running model.
     ///
@@ -40,12 +43,6 @@ pub trait KinematicsSpec: Debug + DynClone + Send + Sync {
     /// When the mechanism cannot turn (rod shorter than crank radius plus offset).
     fn build(&self, ctx: &KinematicsCtx) -> Result<Box<dyn Kinematics>, BuildError>;
 }
-dyn_clone::clone_trait_object!(KinematicsSpec);
-crate::register_kind!(
-    dyn KinematicsSpec,
-    "kinematics",
-    "position, velocity and acceleration of the piston at a crank angle"
-);
 
 /// A running kinematics model.
 pub trait Kinematics: Debug + DynClone + Send + Sync {

@@ -3,10 +3,13 @@ use std::fmt::Debug;
 use dyn_clone::DynClone;
 
 use super::Line;
-use crate::{BuildError, EvalError};
+use crate::{BuildError, EvalError, register_kind};
 
 /// Configuration of how natural frequencies are found.
-#[typetag::serde(tag = "model")]
+#[register_kind(
+    name = "natural_frequencies",
+    summary = "natural frequencies and mode shapes of a shaft line"
+)]
 pub trait NaturalFrequenciesSpec: Debug + DynClone + Send + Sync {
     /// Builds the running model for a shaft line.
     ///
@@ -18,12 +21,6 @@ pub trait NaturalFrequenciesSpec: Debug + DynClone + Send + Sync {
         true
     }
 }
-dyn_clone::clone_trait_object!(NaturalFrequenciesSpec);
-crate::register_kind!(
-    dyn NaturalFrequenciesSpec,
-    "natural_frequencies",
-    "natural frequencies and mode shapes of a shaft line"
-);
 
 /// One natural mode.
 #[derive(Debug, Clone, Default, PartialEq)]

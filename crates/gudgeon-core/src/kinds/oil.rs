@@ -2,10 +2,10 @@ use std::fmt::Debug;
 
 use dyn_clone::DynClone;
 
-use crate::BuildError;
+use crate::{BuildError, register_kind};
 
 /// Configuration of an oil.
-#[typetag::serde(tag = "model")]
+#[register_kind(name = "oil", summary = "dynamic viscosity of the lubricant")]
 pub trait OilSpec: Debug + DynClone + Send + Sync {
     /// Builds the running model.
     ///
@@ -13,8 +13,6 @@ pub trait OilSpec: Debug + DynClone + Send + Sync {
     /// Constants that give no positive viscosity.
     fn build(&self) -> Result<Box<dyn Oil>, BuildError>;
 }
-dyn_clone::clone_trait_object!(OilSpec);
-crate::register_kind!(dyn OilSpec, "oil", "dynamic viscosity of the lubricant");
 
 /// A running oil.
 pub trait Oil: Debug + Send + Sync {

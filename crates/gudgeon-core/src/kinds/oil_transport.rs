@@ -2,10 +2,13 @@ use std::fmt::Debug;
 
 use dyn_clone::DynClone;
 
-use crate::BuildError;
+use crate::{BuildError, register_kind};
 
 /// Configuration of a model of the oil on the liner and under the rings.
-#[typetag::serde(tag = "model")]
+#[register_kind(
+    name = "oil_transport",
+    summary = "oil left on the liner, carried from ring to ring and from stroke to stroke"
+)]
 pub trait OilTransportSpec: Debug + DynClone + Send + Sync {
     /// Builds the running model; `None` when every face is fully flooded and no oil is followed.
     ///
@@ -13,12 +16,6 @@ pub trait OilTransportSpec: Debug + DynClone + Send + Sync {
     /// Constants outside their range.
     fn build(&self) -> Result<Option<Box<dyn OilTransport>>, BuildError>;
 }
-dyn_clone::clone_trait_object!(OilTransportSpec);
-crate::register_kind!(
-    dyn OilTransportSpec,
-    "oil_transport",
-    "oil left on the liner, carried from ring to ring and from stroke to stroke"
-);
 
 /// A running oil-transport model. The scene keeps the volumes; the model says what follows from them.
 pub trait OilTransport: Debug + Send + Sync {

@@ -2,10 +2,10 @@ use std::fmt::Debug;
 
 use dyn_clone::DynClone;
 
-use crate::{BuildError, EvalError};
+use crate::{BuildError, EvalError, register_kind};
 
 /// Configuration of a pressure dependence of viscosity.
-#[typetag::serde(tag = "model")]
+#[register_kind(name = "piezoviscosity", summary = "rise of viscosity with pressure")]
 pub trait PiezoviscositySpec: Debug + DynClone + Send + Sync {
     /// Builds the running model.
     ///
@@ -13,8 +13,6 @@ pub trait PiezoviscositySpec: Debug + DynClone + Send + Sync {
     /// Constants outside their range.
     fn build(&self) -> Result<Box<dyn Piezoviscosity>, BuildError>;
 }
-dyn_clone::clone_trait_object!(PiezoviscositySpec);
-crate::register_kind!(dyn PiezoviscositySpec, "piezoviscosity", "rise of viscosity with pressure");
 
 /// A running pressure dependence of viscosity.
 pub trait Piezoviscosity: Debug + Send + Sync {

@@ -2,10 +2,10 @@ use std::fmt::Debug;
 
 use dyn_clone::DynClone;
 
-use crate::BuildError;
+use crate::{BuildError, register_kind};
 
 /// Configuration of a friction of the gudgeon pin.
-#[typetag::serde(tag = "model")]
+#[register_kind(name = "pin_friction", summary = "moment of the gudgeon pin on the piston")]
 pub trait PinFrictionSpec: Debug + DynClone + Send + Sync {
     /// Builds the running model.
     ///
@@ -13,8 +13,6 @@ pub trait PinFrictionSpec: Debug + DynClone + Send + Sync {
     /// Constants outside their range.
     fn build(&self) -> Result<Box<dyn PinFriction>, BuildError>;
 }
-dyn_clone::clone_trait_object!(PinFrictionSpec);
-crate::register_kind!(dyn PinFrictionSpec, "pin_friction", "moment of the gudgeon pin on the piston");
 
 /// A running friction of the gudgeon pin.
 pub trait PinFriction: Debug + Send + Sync {

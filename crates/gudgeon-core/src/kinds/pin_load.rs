@@ -3,9 +3,9 @@ use std::fmt::Debug;
 use dyn_clone::DynClone;
 
 use super::{CylinderPressure, Kinematics, PinForces};
-use crate::BuildError;
 use crate::file::Files;
 use crate::result::Note;
+use crate::{BuildError, register_kind};
 
 /// One cylinder over its cycle, as another case describes it.
 #[derive(Debug, Clone)]
@@ -59,7 +59,7 @@ pub struct PinLoadCase {
 }
 
 /// Configuration of a model of the force on the gudgeon pin.
-#[typetag::serde(tag = "model")]
+#[register_kind(name = "pin_load", summary = "force of gas and inertia on the gudgeon pin")]
 pub trait PinLoadSpec: Debug + DynClone + Send + Sync {
     /// Kind and name of the models inside.
     fn models(&self) -> Vec<(&'static str, &'static str)> {
@@ -71,5 +71,3 @@ pub trait PinLoadSpec: Debug + DynClone + Send + Sync {
     /// An engine that cannot be, another case that cannot be read, a load without any force.
     fn build(&self, ctx: &PinLoadCtx<'_>) -> Result<PinLoadCase, BuildError>;
 }
-dyn_clone::clone_trait_object!(PinLoadSpec);
-crate::register_kind!(dyn PinLoadSpec, "pin_load", "force of gas and inertia on the gudgeon pin");

@@ -4,7 +4,7 @@ use dyn_clone::DynClone;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::{BuildError, EvalError};
+use crate::{BuildError, EvalError, register_kind};
 
 /// What limits a gudgeon pin, in the order in which the published program tests it (`reimer1984`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
@@ -161,7 +161,10 @@ pub struct PinExpansion {
 }
 
 /// Configuration of a model of pin strength.
-#[typetag::serde(tag = "model")]
+#[register_kind(
+    name = "pin_strength",
+    summary = "pressures, deformations and stresses of a gudgeon pin under its force"
+)]
 pub trait PinStrengthSpec: Debug + DynClone + Send + Sync {
     /// Builds the running model.
     ///
@@ -169,12 +172,6 @@ pub trait PinStrengthSpec: Debug + DynClone + Send + Sync {
     /// Constants outside their range, a small end wider than the gap between the bosses.
     fn build(&self, ctx: &PinStrengthCtx) -> Result<Box<dyn PinStrength>, BuildError>;
 }
-dyn_clone::clone_trait_object!(PinStrengthSpec);
-crate::register_kind!(
-    dyn PinStrengthSpec,
-    "pin_strength",
-    "pressures, deformations and stresses of a gudgeon pin under its force"
-);
 
 /// A running model of pin strength.
 ///

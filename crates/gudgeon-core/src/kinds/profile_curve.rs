@@ -2,10 +2,10 @@ use std::fmt::Debug;
 
 use dyn_clone::DynClone;
 
-use crate::BuildError;
+use crate::{BuildError, register_kind};
 
 /// Configuration of a curve through the ordinates of a piston skirt.
-#[typetag::serde(tag = "model")]
+#[register_kind(name = "profile_curve", summary = "curve of a skirt profile through a few ordinates")]
 pub trait ProfileCurveSpec: Debug + DynClone + Send + Sync {
     /// The curve through `(x, y)`, `x` \[m\] increasing.
     ///
@@ -13,12 +13,6 @@ pub trait ProfileCurveSpec: Debug + DynClone + Send + Sync {
     /// Fewer than two points, points that do not increase, more points than the method admits.
     fn build(&self, x: &[f64], y: &[f64]) -> Result<Box<dyn ProfileCurve>, BuildError>;
 }
-dyn_clone::clone_trait_object!(ProfileCurveSpec);
-crate::register_kind!(
-    dyn ProfileCurveSpec,
-    "profile_curve",
-    "curve of a skirt profile through a few ordinates"
-);
 
 /// A running profile curve.
 pub trait ProfileCurve: Debug + Send + Sync {

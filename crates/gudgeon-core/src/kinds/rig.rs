@@ -5,7 +5,7 @@ use indexmap::IndexMap;
 
 use crate::file::Files;
 use crate::result::{Balance, Column, Figure, FigureKind, Note, Series, Value};
-use crate::{BuildError, EvalError};
+use crate::{BuildError, EvalError, register_kind};
 
 /// What a [`RigSpec`] is built for.
 #[derive(Debug, Clone, Copy)]
@@ -15,7 +15,7 @@ pub struct RigCtx<'a> {
 }
 
 /// Configuration of a test bench: one sub-model, and the conditions it is run under.
-#[typetag::serde(tag = "model")]
+#[register_kind(name = "rig", summary = "test bench: one sub-model alone under prescribed conditions")]
 pub trait RigSpec: Debug + DynClone + Send + Sync {
     /// Kind and name of the models on the bench.
     fn models(&self) -> Vec<(&'static str, &'static str)>;
@@ -25,8 +25,6 @@ pub trait RigSpec: Debug + DynClone + Send + Sync {
     /// Everything that is wrong, each with the path of its value.
     fn build(&self, ctx: &RigCtx<'_>) -> Result<Box<dyn Rig>, Vec<BuildError>>;
 }
-dyn_clone::clone_trait_object!(RigSpec);
-crate::register_kind!(dyn RigSpec, "rig", "test bench: one sub-model alone under prescribed conditions");
 
 /// A test bench.
 pub trait Rig: Send {

@@ -2,7 +2,7 @@ use std::fmt::Debug;
 
 use dyn_clone::DynClone;
 
-use crate::BuildError;
+use crate::{BuildError, register_kind};
 
 /// What a [`RingMotionSpec`] is built for.
 #[derive(Debug, Clone, Copy)]
@@ -18,7 +18,7 @@ pub struct RingMotionCtx {
 }
 
 /// Configuration of a ring-motion model.
-#[typetag::serde(tag = "model")]
+#[register_kind(name = "ring_motion", summary = "axial motion of a ring in its groove")]
 pub trait RingMotionSpec: Debug + DynClone + Send + Sync {
     /// Builds the running model of one ring.
     ///
@@ -26,8 +26,6 @@ pub trait RingMotionSpec: Debug + DynClone + Send + Sync {
     /// Constants outside their range.
     fn build(&self, ctx: &RingMotionCtx) -> Result<Box<dyn RingMotion>, BuildError>;
 }
-dyn_clone::clone_trait_object!(RingMotionSpec);
-crate::register_kind!(dyn RingMotionSpec, "ring_motion", "axial motion of a ring in its groove");
 
 /// How a ring's axial position comes about.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,10 +2,10 @@ use std::fmt::Debug;
 
 use dyn_clone::DynClone;
 
-use crate::{BuildError, EvalError};
+use crate::{BuildError, EvalError, register_kind};
 
 /// Configuration of a model of rough surfaces in a film.
-#[typetag::serde(tag = "model")]
+#[register_kind(name = "roughness", summary = "flow and shear factors of a film between rough surfaces")]
 pub trait RoughnessSpec: Debug + DynClone + Send + Sync {
     /// Builds the running model.
     ///
@@ -13,12 +13,6 @@ pub trait RoughnessSpec: Debug + DynClone + Send + Sync {
     /// Constants outside their range.
     fn build(&self) -> Result<Box<dyn Roughness>, BuildError>;
 }
-dyn_clone::clone_trait_object!(RoughnessSpec);
-crate::register_kind!(
-    dyn RoughnessSpec,
-    "roughness",
-    "flow and shear factors of a film between rough surfaces"
-);
 
 /// What roughness does to the flow in a film, one value per point. See [`Roughness`] for the equations.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -2,10 +2,13 @@ use std::fmt::Debug;
 
 use dyn_clone::DynClone;
 
-use crate::BuildError;
+use crate::{BuildError, register_kind};
 
 /// Configuration of a model of the piston's lateral motion.
-#[typetag::serde(tag = "model")]
+#[register_kind(
+    name = "secondary_motion",
+    summary = "how the lateral position and the tilt of the piston follow from the forces on it"
+)]
 pub trait SecondaryMotionSpec: Debug + DynClone + Send + Sync {
     /// Builds the running model.
     ///
@@ -13,12 +16,6 @@ pub trait SecondaryMotionSpec: Debug + DynClone + Send + Sync {
     /// Constants outside their range.
     fn build(&self) -> Result<Box<dyn SecondaryMotion>, BuildError>;
 }
-dyn_clone::clone_trait_object!(SecondaryMotionSpec);
-crate::register_kind!(
-    dyn SecondaryMotionSpec,
-    "secondary_motion",
-    "how the lateral position and the tilt of the piston follow from the forces on it"
-);
 
 /// How lateral position and tilt come about.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,10 +2,10 @@ use std::fmt::Debug;
 
 use dyn_clone::DynClone;
 
-use crate::{BuildError, EvalError};
+use crate::{BuildError, EvalError, register_kind};
 
 /// Configuration of a shear dependence of viscosity.
-#[typetag::serde(tag = "model")]
+#[register_kind(name = "shear_thinning", summary = "fall of viscosity with shear rate")]
 pub trait ShearThinningSpec: Debug + DynClone + Send + Sync {
     /// Builds the running model.
     ///
@@ -13,8 +13,6 @@ pub trait ShearThinningSpec: Debug + DynClone + Send + Sync {
     /// Constants outside their range.
     fn build(&self) -> Result<Box<dyn ShearThinning>, BuildError>;
 }
-dyn_clone::clone_trait_object!(ShearThinningSpec);
-crate::register_kind!(dyn ShearThinningSpec, "shear_thinning", "fall of viscosity with shear rate");
 
 /// A running shear dependence of viscosity.
 pub trait ShearThinning: Debug + Send + Sync {

@@ -3,8 +3,8 @@ use std::fmt::Debug;
 use dyn_clone::DynClone;
 
 use super::Film2dGrid;
-use crate::BuildError;
 use crate::file::Files;
+use crate::{BuildError, register_kind};
 
 /// What a [`SkirtComplianceSpec`] is built for: one side of the skirt.
 #[derive(Debug, Clone, Copy)]
@@ -34,7 +34,7 @@ pub struct SkirtModes {
 }
 
 /// Configuration of a compliance of the skirt.
-#[typetag::serde(tag = "model")]
+#[register_kind(name = "skirt_compliance", summary = "how the skirt yields to the pressure on it")]
 pub trait SkirtComplianceSpec: Debug + DynClone + Send + Sync {
     /// The shapes of one side; none for a rigid skirt.
     ///
@@ -42,9 +42,3 @@ pub trait SkirtComplianceSpec: Debug + DynClone + Send + Sync {
     /// Files that cannot be read or hold no compliance, shapes that are none.
     fn build(&self, ctx: &SkirtComplianceCtx<'_>) -> Result<SkirtModes, BuildError>;
 }
-dyn_clone::clone_trait_object!(SkirtComplianceSpec);
-crate::register_kind!(
-    dyn SkirtComplianceSpec,
-    "skirt_compliance",
-    "how the skirt yields to the pressure on it"
-);

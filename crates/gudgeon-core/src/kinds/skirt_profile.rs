@@ -2,8 +2,8 @@ use std::fmt::Debug;
 
 use dyn_clone::DynClone;
 
-use crate::BuildError;
 use crate::file::Files;
+use crate::{BuildError, register_kind};
 
 /// What a [`SkirtProfileSpec`] is built for.
 #[derive(Debug, Clone, Copy)]
@@ -17,7 +17,7 @@ pub struct SkirtProfileCtx<'a> {
 }
 
 /// Configuration of a skirt's shape.
-#[typetag::serde(tag = "model")]
+#[register_kind(name = "skirt_profile", summary = "shape of the piston skirt, hot")]
 pub trait SkirtProfileSpec: Debug + DynClone + Send + Sync {
     /// Builds the running model.
     ///
@@ -25,8 +25,6 @@ pub trait SkirtProfileSpec: Debug + DynClone + Send + Sync {
     /// Tables that are none, files that cannot be read.
     fn build(&self, ctx: &SkirtProfileCtx<'_>) -> Result<Box<dyn SkirtProfile>, BuildError>;
 }
-dyn_clone::clone_trait_object!(SkirtProfileSpec);
-crate::register_kind!(dyn SkirtProfileSpec, "skirt_profile", "shape of the piston skirt, hot");
 
 /// A running skirt shape.
 pub trait SkirtProfile: Debug + Send + Sync {

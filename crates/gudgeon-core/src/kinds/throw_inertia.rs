@@ -2,7 +2,7 @@ use std::fmt::Debug;
 
 use dyn_clone::DynClone;
 
-use crate::BuildError;
+use crate::{BuildError, register_kind};
 
 /// Geometry and masses of one throw with its rod and piston.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,7 +26,10 @@ pub struct ThrowCtx {
 }
 
 /// Configuration of the inertia that a throw shows to the shaft.
-#[typetag::serde(tag = "model")]
+#[register_kind(
+    name = "throw_inertia",
+    summary = "inertia of crank, rod and piston as the shaft feels it, over the crank angle"
+)]
 pub trait ThrowInertiaSpec: Debug + DynClone + Send + Sync {
     /// Checks the numbers and builds the running model.
     ///
@@ -34,12 +37,6 @@ pub trait ThrowInertiaSpec: Debug + DynClone + Send + Sync {
     /// A mechanism that cannot turn.
     fn build(&self, ctx: &ThrowCtx) -> Result<Box<dyn ThrowInertia>, BuildError>;
 }
-dyn_clone::clone_trait_object!(ThrowInertiaSpec);
-crate::register_kind!(
-    dyn ThrowInertiaSpec,
-    "throw_inertia",
-    "inertia of crank, rod and piston as the shaft feels it, over the crank angle"
-);
 
 /// A running throw inertia.
 pub trait ThrowInertia: Debug + DynClone + Send + Sync {

@@ -5,7 +5,7 @@ use indexmap::IndexMap;
 
 use super::{Coupling, CylinderPressure, Drive, Kinematics, ThrowInertia};
 use crate::result::Note;
-use crate::{BuildError, EvalError};
+use crate::{BuildError, EvalError, register_kind};
 
 /// One inertia of a shaft line.
 #[derive(Debug, Clone, PartialEq)]
@@ -162,7 +162,7 @@ pub struct TorsionCtx<'a> {
 }
 
 /// Configuration of how the response of a shaft line is computed.
-#[typetag::serde(tag = "model")]
+#[register_kind(name = "torsion", summary = "response of a shaft line to its torques, steady or in time")]
 pub trait TorsionSpec: Debug + DynClone + Send + Sync {
     /// Builds the running model.
     ///
@@ -181,12 +181,6 @@ pub trait TorsionSpec: Debug + DynClone + Send + Sync {
         None
     }
 }
-dyn_clone::clone_trait_object!(TorsionSpec);
-crate::register_kind!(
-    dyn TorsionSpec,
-    "torsion",
-    "response of a shaft line to its torques, steady or in time"
-);
 
 /// Kinds of answer of a [`TorsionSpec`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

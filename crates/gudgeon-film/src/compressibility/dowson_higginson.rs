@@ -1,6 +1,6 @@
 use gudgeon_core::kinds::{Compressibility, CompressibilitySpec};
 use gudgeon_core::quantity::{PosPressureCoefficient, quantity};
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
 use crate::slices::check;
@@ -24,16 +24,14 @@ fn saturation() -> PosPressureCoefficient {
     quantity(1.7e-9)
 }
 
-gudgeon_core::register_model! {
-    DowsonHigginson, kind: "compressibility", name: "dowson_higginson",
-    summary: "density of mineral oil under pressure",
-    equations: "rho/rho0 = 1 + a p/(1 + b p),  a = 0.6 1/GPa, b = 1.7 1/GPa",
-    validity: "Mineral oils to about 0.4 GPa; the density never exceeds 1.35 times that at ambient pressure. Pressures above -1/(2 b).",
-    references: ["dowson1966"],
-    example: "a = \"0.6 1/GPa\"\nb = \"1.7 1/GPa\"\n",
-}
-
-#[typetag::serde(name = "dowson_higginson")]
+#[register_model(
+ name = "dowson_higginson",
+    summary = "density of mineral oil under pressure",
+    equations = "rho/rho0 = 1 + a p/(1 + b p),  a = 0.6 1/GPa, b = 1.7 1/GPa",
+    validity = "Mineral oils to about 0.4 GPa; the density never exceeds 1.35 times that at ambient pressure. Pressures above -1/(2 b).",
+    references = ["dowson1966"],
+    example = "a = \"0.6 1/GPa\"\nb = \"1.7 1/GPa\"\n",
+)]
 impl CompressibilitySpec for DowsonHigginson {
     fn build(&self) -> Result<Box<dyn Compressibility>, BuildError> {
         let (a, b) = (self.a.si(), self.b.si());

@@ -1,5 +1,5 @@
 use gudgeon_core::kinds::{Compressibility, CompressibilitySpec};
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
 use crate::slices::check;
@@ -9,16 +9,14 @@ use crate::slices::check;
 #[serde(deny_unknown_fields)]
 pub struct Off {}
 
-gudgeon_core::register_model! {
-    Off, kind: "compressibility", name: "off",
-    summary: "density does not depend on pressure",
-    equations: "rho = rho0",
-    validity: "Film pressures below about 50 MPa, where oil is 3 % denser.",
-    references: [],
-    example: "",
-}
-
-#[typetag::serde(name = "off")]
+#[register_model(
+ name = "off",
+    summary = "density does not depend on pressure",
+    equations = "rho = rho0",
+    validity = "Film pressures below about 50 MPa, where oil is 3 % denser.",
+    references = [],
+    example = "",
+)]
 impl CompressibilitySpec for Off {
     fn build(&self) -> Result<Box<dyn Compressibility>, BuildError> {
         Ok(Box::new(Incompressible))

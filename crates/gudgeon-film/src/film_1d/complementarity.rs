@@ -1,5 +1,5 @@
 use gudgeon_core::kinds::{Film1d, Film1dCtx, Film1dIn, Film1dOut, Film1dScope, Film1dSpec, FilmField};
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
 use super::line::{Change, Line, LineCavityShear, Shear};
@@ -51,24 +51,22 @@ pub enum LineSolver {
     FischerBurmeister,
 }
 
-gudgeon_core::register_model! {
-    Complementarity, kind: "film_1d", name: "complementarity",
-    summary: "mass-conserving film along a line: pressure or void at each node, steady without iteration",
-    equations: "q_i = c_i theta_i + g_i (p_i - p_(i+1)),  1/g = 12 mu/phi_p int dx/h^3,  c = u phi_s/2 int dx/h^2 / int dx/h^3;  \
+const MODEL: &str = "complementarity";
+
+#[register_model(
+ name = "complementarity",
+    summary = "mass-conserving film along a line: pressure or void at each node, steady without iteration",
+    equations = "q_i = c_i theta_i + g_i (p_i - p_(i+1)),  1/g = 12 mu/phi_p int dx/h^3,  c = u phi_s/2 int dx/h^2 / int dx/h^3;  \
                 d(V theta)/dt = q_(i-1) - q_i;  p - p_cav >= 0, 1 - theta >= 0, (p - p_cav)(1 - theta) = 0;  \
                 steady: q = min_k (p_0 - p_k + sum c/g)/(sum 1/g), p_i = max(0, p_(i+1) + (q - c_i)/g_i);  \
                 swift_stieber: p = p_cav from the rupture to the trailing end;  half_sommerfeld: max(p, p_cav);  \
                 load = int (p - p_cav) dx;  shear = int (mu u/h -+ h p'/2) dx, in the cavity weighted with the filled fraction",
-    validity: "Narrow gap, no flow across the line, viscosity constant across the gap and in each panel, incompressible oil. \
+    validity = "Narrow gap, no flow across the line, viscosity constant across the gap and in each panel, incompressible oil. \
                Steady films with a profile linear in each panel are exact but for the place of the fronts; steps in time are of \
                first order.",
-    references: ["reynolds1886", "jakobsson1957", "elrod1981", "giacopini2010", "woloszynski2015"],
-    example: "cavitation = \"mass_conserving\"\ncavity_shear = \"streamers\"\nsolver = \"direct\"\n",
-}
-
-const MODEL: &str = "complementarity";
-
-#[typetag::serde(name = "complementarity")]
+    references = ["reynolds1886", "jakobsson1957", "elrod1981", "giacopini2010", "woloszynski2015"],
+    example = "cavitation = \"mass_conserving\"\ncavity_shear = \"streamers\"\nsolver = \"direct\"\n",
+)]
 impl Film1dSpec for Complementarity {
     fn scope(&self) -> Film1dScope {
         let starved = self.cavitation == Cavitation::MassConserving;

@@ -2,7 +2,7 @@ use gudgeon_core::kinds::{
     Film1d, Film1dCtx, Film1dIn, Film1dOut, Film1dScope, Film1dSpec, FilmEnd, FilmField,
 };
 use gudgeon_core::quantity::PosPressure;
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
 use super::line::{Change, Line, LineCavityShear, Shear};
@@ -51,22 +51,20 @@ impl Default for ElrodAdams {
     }
 }
 
-gudgeon_core::register_model! {
-    ElrodAdams, kind: "film_1d", name: "elrod_adams",
-    summary: "universal variable with switch function and bulk modulus, along a line",
-    equations: "p - p_cav = beta g (theta - 1),  g = 1 where theta >= 1 else 0;  \
-                q_i = c_i theta_i + G_i beta [g_i (theta_i - 1) - g_(i+1) (theta_(i+1) - 1)];  d(V theta)/dt = q_(i-1) - q_i;  \
-                linear for given g, repeated until g stays",
-    validity: "As complementarity, with compressible oil: errors of the order of p/beta in flux and of (p/beta) h/(change of h) in pressure \
-               and load, large in films that hardly converge. Flooded ends, steady or steps in time. \
-               Switches that never settle are an error.",
-    references: ["elrod1981", "jakobsson1957"],
-    example: "bulk_modulus = \"1.5 GPa\"\nrounds = 200\ncavity_shear = \"streamers\"\n",
-}
-
 const MODEL: &str = "elrod_adams";
 
-#[typetag::serde(name = "elrod_adams")]
+#[register_model(
+ name = "elrod_adams",
+    summary = "universal variable with switch function and bulk modulus, along a line",
+    equations = "p - p_cav = beta g (theta - 1),  g = 1 where theta >= 1 else 0;  \
+                q_i = c_i theta_i + G_i beta [g_i (theta_i - 1) - g_(i+1) (theta_(i+1) - 1)];  d(V theta)/dt = q_(i-1) - q_i;  \
+                linear for given g, repeated until g stays",
+    validity = "As complementarity, with compressible oil: errors of the order of p/beta in flux and of (p/beta) h/(change of h) in pressure \
+               and load, large in films that hardly converge. Flooded ends, steady or steps in time. \
+               Switches that never settle are an error.",
+    references = ["elrod1981", "jakobsson1957"],
+    example = "bulk_modulus = \"1.5 GPa\"\nrounds = 200\ncavity_shear = \"streamers\"\n",
+)]
 impl Film1dSpec for ElrodAdams {
     fn scope(&self) -> Film1dScope {
         Film1dScope { starved: false, squeeze: false, steps: true }

@@ -1,7 +1,7 @@
 use gudgeon_core::kinds::{
     Film1d, Film1dCtx, Film1dIn, Film1dOut, Film1dScope, Film1dSpec, FilmField, FilmFront,
 };
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
 use super::line::{Change, Line, LineCavityShear, Shear, Stretch, Sums};
@@ -29,21 +29,19 @@ pub struct FrontTracking {
     pub cavity_shear: LineCavityShear,
 }
 
-gudgeon_core::register_model! {
-    FrontTracking, kind: "film_1d", name: "front_tracking",
-    summary: "steady mass-conserving film along a line, exact for profiles of straight pieces",
-    equations: "p' = 12 mu/phi_p (u phi_s h/2 - q)/h^3, integrated in closed form;  rupture: p = p_cav, u phi_s h/2 = q;  \
-                reformation: p = p_cav counted back from the end of the film;  q = min_x (p_0 - p(x) + C(x))/R(x);  \
-                load = int (p - p_cav) dx;  shear = int (mu u/h -+ h p'/2) dx, in the cavity with 2 q/(u h) of the width",
-    validity: "Steady films: a gap that changes with time is refused. Narrow gap, no flow across the line, incompressible oil, \
-               viscosity and roughness constant in each panel.",
-    references: ["reynolds1886", "jakobsson1957"],
-    example: "cavity_shear = \"streamers\"\n",
-}
-
 const MODEL: &str = "front_tracking";
 
-#[typetag::serde(name = "front_tracking")]
+#[register_model(
+ name = "front_tracking",
+    summary = "steady mass-conserving film along a line, exact for profiles of straight pieces",
+    equations = "p' = 12 mu/phi_p (u phi_s h/2 - q)/h^3, integrated in closed form;  rupture: p = p_cav, u phi_s h/2 = q;  \
+                reformation: p = p_cav counted back from the end of the film;  q = min_x (p_0 - p(x) + C(x))/R(x);  \
+                load = int (p - p_cav) dx;  shear = int (mu u/h -+ h p'/2) dx, in the cavity with 2 q/(u h) of the width",
+    validity = "Steady films: a gap that changes with time is refused. Narrow gap, no flow across the line, incompressible oil, \
+               viscosity and roughness constant in each panel.",
+    references = ["reynolds1886", "jakobsson1957"],
+    example = "cavity_shear = \"streamers\"\n",
+)]
 impl Film1dSpec for FrontTracking {
     fn scope(&self) -> Film1dScope {
         Film1dScope { starved: true, squeeze: false, steps: false }

@@ -1,5 +1,5 @@
 use gudgeon_core::kinds::{Film1d, Film1dCtx, Film1dIn, Film1dOut, Film1dSpec, FilmField};
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
 use super::line::Line;
@@ -9,16 +9,14 @@ use super::line::Line;
 #[serde(deny_unknown_fields)]
 pub struct Off {}
 
-gudgeon_core::register_model! {
-    Off, kind: "film_1d", name: "off",
-    summary: "no film: no load, no friction, no flux",
-    equations: "p = p_cav,  theta = 0",
-    validity: "Solid contact and gas alone.",
-    references: [],
-    example: "",
-}
-
-#[typetag::serde(name = "off")]
+#[register_model(
+ name = "off",
+    summary = "no film: no load, no friction, no flux",
+    equations = "p = p_cav,  theta = 0",
+    validity = "Solid contact and gas alone.",
+    references = [],
+    example = "",
+)]
 impl Film1dSpec for Off {
     fn build(&self, ctx: &Film1dCtx<'_>) -> Result<Box<dyn Film1d>, BuildError> {
         ctx.check()?;

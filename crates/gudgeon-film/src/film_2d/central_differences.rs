@@ -1,7 +1,7 @@
 use gudgeon_core::kinds::{
     Edge, Film2d, Film2dCtx, Film2dGrid, Film2dIn, Film2dOut, Film2dSpec, FilmMode, Superposition, Viscosity,
 };
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use gudgeon_numerics::linalg::Banded;
 use serde::{Deserialize, Serialize};
 
@@ -50,22 +50,20 @@ impl Default for CentralDifferences {
     }
 }
 
-gudgeon_core::register_model! {
-    CentralDifferences, kind: "film_2d", name: "central_differences",
-    summary: "central differences of the expanded equation, cut off at the cavitation pressure, as published programs have it",
-    equations: "a d2p/dx2 + a' dp/dx + g d2p/dy2 + g' dp/dy = 6 mu u dh_c/dx + 12 mu dh_T/dt,  a = phi_x h^3,  g = phi_y h^3;  \
-                half_sommerfeld: max(p, p_cav)",
-    validity: "Equally spaced nodes, five or more each way, a pressure or a wall at every edge, uniform viscosity, no history. Second order, but flows between nodes do not balance.",
-    references: ["loureiro2009", "zhu1992"],
-    example: "cavitation = \"half_sommerfeld\"\nequations = \"elimination\"\n",
-}
-
 const MODEL: &str = "central_differences";
 const MOST_SWEEPS: usize = 10_000;
 /// Change of the pressures in a sweep \[Pa\] at which the sweeps end.
 const SETTLED: f64 = 1e-5;
 
-#[typetag::serde(name = "central_differences")]
+#[register_model(
+ name = "central_differences",
+    summary = "central differences of the expanded equation, cut off at the cavitation pressure, as published programs have it",
+    equations = "a d2p/dx2 + a' dp/dx + g d2p/dy2 + g' dp/dy = 6 mu u dh_c/dx + 12 mu dh_T/dt,  a = phi_x h^3,  g = phi_y h^3;  \
+                half_sommerfeld: max(p, p_cav)",
+    validity = "Equally spaced nodes, five or more each way, a pressure or a wall at every edge, uniform viscosity, no history. Second order, but flows between nodes do not balance.",
+    references = ["loureiro2009", "zhu1992"],
+    example = "cavitation = \"half_sommerfeld\"\nequations = \"elimination\"\n",
+)]
 impl Film2dSpec for CentralDifferences {
     fn build(&self, ctx: &Film2dCtx<'_>) -> Result<Box<dyn Film2d>, BuildError> {
         if self.cavitation.superposition() == Superposition::None {

@@ -1,5 +1,5 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{Film2d, Film2dCtx, Film2dSpec};
+use gudgeon_core::{BuildError, register_model};
 use gudgeon_numerics::linalg::{Banded, Singular, SymmetricBanded};
 use gudgeon_numerics::multigrid::{FivePoint, Role};
 use serde::{Deserialize, Serialize};
@@ -33,22 +33,20 @@ impl Default for Direct {
     }
 }
 
-gudgeon_core::register_model! {
-    Direct, kind: "film_2d", name: "direct",
-    summary: "finite volumes with banded elimination, mass-conserving or other cavitation",
-    equations: "d/dx(phi_x h^3/(12 mu) dp/dx) + d/dy(phi_y h^3/(12 mu) dp/dy) = d/dx(u h_T theta/2) + d/dt(h_T theta);  \
-                mass_conserving: min(p - p_cav, 1 - theta) = 0, theta carried from upstream;  \
-                swift_stieber: p >= p_cav, residual >= 0, one of them an equality;  half_sommerfeld: max(p, p_cav);  \
-                load = int (p - p_cav) dA;  shear = int (theta mu u/h -+ h/2 dp/dx) dA",
-    validity: "As multigrid. Grids whose band needs more than 1 GB are refused.",
-    references: ["reynolds1886", "jakobsson1957", "hintermuller2003"],
-    example: "cavitation = \"swift_stieber\"\nflux = \"face\"\ntolerance = 1e-9\n",
-}
-
 /// Most entries of the band: 1 GB.
 const MOST: usize = 1 << 27;
 
-#[typetag::serde(name = "direct")]
+#[register_model(
+ name = "direct",
+    summary = "finite volumes with banded elimination, mass-conserving or other cavitation",
+    equations = "d/dx(phi_x h^3/(12 mu) dp/dx) + d/dy(phi_y h^3/(12 mu) dp/dy) = d/dx(u h_T theta/2) + d/dt(h_T theta);  \
+                mass_conserving: min(p - p_cav, 1 - theta) = 0, theta carried from upstream;  \
+                swift_stieber: p >= p_cav, residual >= 0, one of them an equality;  half_sommerfeld: max(p, p_cav);  \
+                load = int (p - p_cav) dA;  shear = int (theta mu u/h -+ h/2 dp/dx) dA",
+    validity = "As multigrid. Grids whose band needs more than 1 GB are refused.",
+    references = ["reynolds1886", "jakobsson1957", "hintermuller2003"],
+    example = "cavitation = \"swift_stieber\"\nflux = \"face\"\ntolerance = 1e-9\n",
+)]
 impl Film2dSpec for Direct {
     fn build(&self, ctx: &Film2dCtx<'_>) -> Result<Box<dyn Film2d>, BuildError> {
         super::check_tolerance(self.tolerance)?;

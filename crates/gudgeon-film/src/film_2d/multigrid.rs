@@ -1,5 +1,5 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{Film2d, Film2dCtx, Film2dSpec};
+use gudgeon_core::{BuildError, register_model};
 use gudgeon_numerics::linalg::Singular;
 use gudgeon_numerics::multigrid::{FivePoint, LineMultigrid};
 use serde::{Deserialize, Serialize};
@@ -38,20 +38,18 @@ impl Default for Multigrid {
     }
 }
 
-gudgeon_core::register_model! {
-    Multigrid, kind: "film_2d", name: "multigrid",
-    summary: "finite volumes with line multigrid, mass-conserving or other cavitation",
-    equations: "d/dx(phi_x h^3/(12 mu) dp/dx) + d/dy(phi_y h^3/(12 mu) dp/dy) = d/dx(u h_T theta/2) + d/dt(h_T theta);  \
+#[register_model(
+ name = "multigrid",
+    summary = "finite volumes with line multigrid, mass-conserving or other cavitation",
+    equations = "d/dx(phi_x h^3/(12 mu) dp/dx) + d/dy(phi_y h^3/(12 mu) dp/dy) = d/dx(u h_T theta/2) + d/dt(h_T theta);  \
                 mass_conserving: min(p - p_cav, 1 - theta) = 0, theta carried from upstream;  \
                 swift_stieber: p >= p_cav, residual >= 0, one of them an equality;  half_sommerfeld: max(p, p_cav);  \
                 load = int (p - p_cav) dA;  shear = int (theta mu u/h -+ h/2 dp/dx) dA",
-    validity: "Thin laminar film, viscosity constant through its thickness. Second order in the spacing where the film is full, first order at the ends of cavities. \
+    validity = "Thin laminar film, viscosity constant through its thickness. Second order in the spacing where the film is full, first order at the ends of cavities. \
                A cavity closed in itself, without an edge that gives a pressure above p_cav, may hold any amount of oil.",
-    references: ["reynolds1886", "jakobsson1957", "woloszynski2015", "hintermuller2003", "schaffer1998", "eisenstat1983"],
-    example: "cavitation = \"mass_conserving\"\nflux = \"face\"\ntolerance = 1e-9\n",
-}
-
-#[typetag::serde(name = "multigrid")]
+    references = ["reynolds1886", "jakobsson1957", "woloszynski2015", "hintermuller2003", "schaffer1998", "eisenstat1983"],
+    example = "cavitation = \"mass_conserving\"\nflux = \"face\"\ntolerance = 1e-9\n",
+)]
 impl Film2dSpec for Multigrid {
     fn build(&self, ctx: &Film2dCtx<'_>) -> Result<Box<dyn Film2d>, BuildError> {
         super::check_tolerance(self.tolerance)?;

@@ -1,5 +1,5 @@
 use gudgeon_core::kinds::{Film2d, Film2dCtx, Film2dGrid, Film2dIn, Film2dOut, Film2dSpec, FilmMode};
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
 use super::Flux;
@@ -10,16 +10,14 @@ use super::problem::Problem;
 #[serde(deny_unknown_fields)]
 pub struct Off {}
 
-gudgeon_core::register_model! {
-    Off, kind: "film_2d", name: "off",
-    summary: "no film: no load, no friction",
-    equations: "p = p_cav,  theta = 0",
-    validity: "Dry surfaces, or a part whose film does not matter.",
-    references: [],
-    example: "",
-}
-
-#[typetag::serde(name = "off")]
+#[register_model(
+ name = "off",
+    summary = "no film: no load, no friction",
+    equations = "p = p_cav,  theta = 0",
+    validity = "Dry surfaces, or a part whose film does not matter.",
+    references = [],
+    example = "",
+)]
 impl Film2dSpec for Off {
     fn build(&self, ctx: &Film2dCtx<'_>) -> Result<Box<dyn Film2d>, BuildError> {
         let problem = Problem::new(ctx.grid, Flux::Face)?;

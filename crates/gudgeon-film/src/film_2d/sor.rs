@@ -1,7 +1,7 @@
 use gudgeon_core::kinds::{
     Film2d, Film2dCtx, Film2dGrid, Film2dIn, Film2dOut, Film2dSpec, FilmMode, Superposition,
 };
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
 use super::problem::Problem;
@@ -53,20 +53,18 @@ impl Default for Sor {
     }
 }
 
-gudgeon_core::register_model! {
-    Sor, kind: "film_2d", name: "sor",
-    summary: "finite volumes with projected successive over-relaxation",
-    equations: "p := p + omega (p* - p), p* from the balance of the node;  swift_stieber: p := max(p, p_cav);  \
-                mass_conserving: where p* < p_cav, theta from the balance;  half_sommerfeld: max(p, p_cav) at the end;  \
-                omega = 2/(1 + sqrt(1 - rho^2))",
-    validity: "As multigrid, at many times its cost.",
-    references: ["reynolds1886", "cryer1971", "ausas2009", "loureiro2009"],
-    example: "cavitation = \"half_sommerfeld\"\nflux = \"face\"\ntolerance = 1e-9\nmost_sweeps = 100000\n",
-}
-
 const MODEL: &str = "sor";
 
-#[typetag::serde(name = "sor")]
+#[register_model(
+ name = "sor",
+    summary = "finite volumes with projected successive over-relaxation",
+    equations = "p := p + omega (p* - p), p* from the balance of the node;  swift_stieber: p := max(p, p_cav);  \
+                mass_conserving: where p* < p_cav, theta from the balance;  half_sommerfeld: max(p, p_cav) at the end;  \
+                omega = 2/(1 + sqrt(1 - rho^2))",
+    validity = "As multigrid, at many times its cost.",
+    references = ["reynolds1886", "cryer1971", "ausas2009", "loureiro2009"],
+    example = "cavitation = \"half_sommerfeld\"\nflux = \"face\"\ntolerance = 1e-9\nmost_sweeps = 100000\n",
+)]
 impl Film2dSpec for Sor {
     fn build(&self, ctx: &Film2dCtx<'_>) -> Result<Box<dyn Film2d>, BuildError> {
         super::check_tolerance(self.tolerance)?;

@@ -1,6 +1,6 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{OilTransport, OilTransportSpec};
 use gudgeon_core::quantity::{Fraction, Length, NonNegative, PosLength, Ratio, quantity};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 use crate::roughness::GaussianGap;
@@ -54,19 +54,17 @@ impl Default for LinerFilm {
     }
 }
 
-gudgeon_core::register_model! {
-    LinerFilm, kind: "oil_transport", name: "liner_film",
-    summary: "starved faces fed by the film that earlier rings and strokes left on the liner; oil mass is conserved",
-    equations: "V_b = int_a^x0 h dx, V_a = int_x0^b h dx;  dV_b/dt = in_b - out_b - q(x0);  dV_a/dt = in_a - out_a + q(x0);  \
+#[register_model(
+ name = "liner_film",
+    summary = "starved faces fed by the film that earlier rings and strokes left on the liner; oil mass is conserved",
+    equations = "V_b = int_a^x0 h dx, V_a = int_x0^b h dx;  dV_b/dt = in_b - out_b - q(x0);  dV_a/dt = in_a - out_a + q(x0);  \
                 in = |u| h_liner at the leading side, out = |u| split h(meniscus) at the trailing side;  \
                 Reynolds equation between the menisci, at their ends the gas pressures",
-    validity: "Axisymmetric films. Oil moves with the liner, the faces and their waves only: no flow along the gaps or in the \
+    validity = "Axisymmetric films. Oil moves with the liner, the faces and their waves only: no flow along the gaps or in the \
                grooves, no evaporation, no mist. All the oil that passes a meniscus stays on the liner.",
-    references: ["reynolds1886", "tomanik1993"],
-    example: "supply = \"10 um\"\nsplit = 0.5\nroughness = \"0.4 um\"\nwave = \"50 um\"\nspacing = \"0.25 mm\"\ninitial = \"0.1 um\"\n",
-}
-
-#[typetag::serde(name = "liner_film")]
+    references = ["reynolds1886", "tomanik1993"],
+    example = "supply = \"10 um\"\nsplit = 0.5\nroughness = \"0.4 um\"\nwave = \"50 um\"\nspacing = \"0.25 mm\"\ninitial = \"0.1 um\"\n",
+)]
 impl OilTransportSpec for LinerFilm {
     fn build(&self) -> Result<Option<Box<dyn OilTransport>>, BuildError> {
         if self.split.si() <= 0.0 {

@@ -1,5 +1,5 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{OilTransport, OilTransportSpec};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// No oil is followed: every running face has all the oil it can take, on both sides.
@@ -7,16 +7,14 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 pub struct Off {}
 
-gudgeon_core::register_model! {
-    Off, kind: "oil_transport", name: "off",
-    summary: "fully flooded faces, nothing carried",
-    equations: "the film reaches from edge to edge",
-    validity: "An upper limit of film thickness; friction of a starved face is larger or smaller than this.",
-    references: [],
-    example: "",
-}
-
-#[typetag::serde(name = "off")]
+#[register_model(
+ name = "off",
+    summary = "fully flooded faces, nothing carried",
+    equations = "the film reaches from edge to edge",
+    validity = "An upper limit of film thickness; friction of a starved face is larger or smaller than this.",
+    references = [],
+    example = "",
+)]
 impl OilTransportSpec for Off {
     fn build(&self) -> Result<Option<Box<dyn OilTransport>>, BuildError> {
         Ok(None)

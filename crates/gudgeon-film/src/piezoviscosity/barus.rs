@@ -1,6 +1,6 @@
 use gudgeon_core::kinds::{Piezoviscosity, PiezoviscositySpec};
 use gudgeon_core::quantity::PosPressureCoefficient;
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
 use super::tame_exp;
@@ -16,16 +16,14 @@ pub struct Barus {
     pub pressure_viscosity: PosPressureCoefficient,
 }
 
-gudgeon_core::register_model! {
-    Barus, kind: "piezoviscosity", name: "barus",
-    summary: "viscosity grows exponentially with pressure",
-    equations: "mu = mu0 exp(alpha p)",
-    validity: "Pressures up to about 100 MPa; above, it overstates viscosity more and more (see roelands). Follows its tangent beyond alpha p = 30.",
-    references: ["barus1893"],
-    example: "pressure_viscosity = \"18 1/GPa\"\n",
-}
-
-#[typetag::serde(name = "barus")]
+#[register_model(
+ name = "barus",
+    summary = "viscosity grows exponentially with pressure",
+    equations = "mu = mu0 exp(alpha p)",
+    validity = "Pressures up to about 100 MPa; above, it overstates viscosity more and more (see roelands). Follows its tangent beyond alpha p = 30.",
+    references = ["barus1893"],
+    example = "pressure_viscosity = \"18 1/GPa\"\n",
+)]
 impl PiezoviscositySpec for Barus {
     fn build(&self) -> Result<Box<dyn Piezoviscosity>, BuildError> {
         Ok(Box::new(Exponential { alpha: self.pressure_viscosity.si() }))

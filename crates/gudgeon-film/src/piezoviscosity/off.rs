@@ -1,5 +1,5 @@
 use gudgeon_core::kinds::{Piezoviscosity, PiezoviscositySpec};
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
 use crate::slices::check;
@@ -9,16 +9,14 @@ use crate::slices::check;
 #[serde(deny_unknown_fields)]
 pub struct Off {}
 
-gudgeon_core::register_model! {
-    Off, kind: "piezoviscosity", name: "off",
-    summary: "viscosity does not depend on pressure",
-    equations: "mu = mu0",
-    validity: "Film pressures below about 10 MPa.",
-    references: [],
-    example: "",
-}
-
-#[typetag::serde(name = "off")]
+#[register_model(
+ name = "off",
+    summary = "viscosity does not depend on pressure",
+    equations = "mu = mu0",
+    validity = "Film pressures below about 10 MPa.",
+    references = [],
+    example = "",
+)]
 impl PiezoviscositySpec for Off {
     fn build(&self) -> Result<Box<dyn Piezoviscosity>, BuildError> {
         Ok(Box::new(Isoviscous))

@@ -1,6 +1,6 @@
 use gudgeon_core::kinds::{Piezoviscosity, PiezoviscositySpec};
 use gudgeon_core::quantity::{PosPressureCoefficient, PosRatio};
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
 use super::tame_exp;
@@ -26,16 +26,14 @@ pub struct Roelands {
     pub pressure_viscosity: Option<PosPressureCoefficient>,
 }
 
-gudgeon_core::register_model! {
-    Roelands, kind: "piezoviscosity", name: "roelands",
-    summary: "viscosity under pressure by Roelands",
-    equations: "ln(mu/mu0) = (ln mu0 + 9.67) [(1 + p/p_r)^Z - 1],  p_r = 0.1962 GPa;  Z = alpha p_r/(ln mu0 + 9.67)",
-    validity: "Mineral oils to about 1 GPa. Needs mu0 above 6.4e-5 Pa s and pressures above -p_r/2.",
-    references: ["roelands1966"],
-    example: "exponent = 0.6\n",
-}
-
-#[typetag::serde(name = "roelands")]
+#[register_model(
+ name = "roelands",
+    summary = "viscosity under pressure by Roelands",
+    equations = "ln(mu/mu0) = (ln mu0 + 9.67) [(1 + p/p_r)^Z - 1],  p_r = 0.1962 GPa;  Z = alpha p_r/(ln mu0 + 9.67)",
+    validity = "Mineral oils to about 1 GPa. Needs mu0 above 6.4e-5 Pa s and pressures above -p_r/2.",
+    references = ["roelands1966"],
+    example = "exponent = 0.6\n",
+)]
 impl PiezoviscositySpec for Roelands {
     fn build(&self) -> Result<Box<dyn Piezoviscosity>, BuildError> {
         let rise = match (self.exponent, self.pressure_viscosity) {

@@ -1,5 +1,5 @@
 use gudgeon_core::kinds::{RoughFlow, RoughShear, Roughness, RoughnessSpec};
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// Smooth surfaces: the Reynolds equation as it is.
@@ -7,16 +7,14 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 pub struct Off {}
 
-gudgeon_core::register_model! {
-    Off, kind: "roughness", name: "off",
-    summary: "smooth surfaces",
-    equations: "h_p = h_c = h_T = h,  phi_x = phi_y = phi_f = phi_fp = 1,  phi_fs = 0",
-    validity: "Films several times thicker than the roughness.",
-    references: [],
-    example: "",
-}
-
-#[typetag::serde(name = "off")]
+#[register_model(
+ name = "off",
+    summary = "smooth surfaces",
+    equations = "h_p = h_c = h_T = h,  phi_x = phi_y = phi_f = phi_fp = 1,  phi_fs = 0",
+    validity = "Films several times thicker than the roughness.",
+    references = [],
+    example = "",
+)]
 impl RoughnessSpec for Off {
     fn build(&self) -> Result<Box<dyn Roughness>, BuildError> {
         Ok(Box::new(Smooth))

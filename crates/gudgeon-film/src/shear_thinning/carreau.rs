@@ -1,6 +1,6 @@
 use gudgeon_core::kinds::{ShearThinning, ShearThinningSpec};
 use gudgeon_core::quantity::{Fraction, PosShearRate, Ratio, quantity};
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
 use crate::slices::check;
@@ -22,16 +22,14 @@ fn none() -> Ratio<Fraction> {
     quantity(0.0)
 }
 
-gudgeon_core::register_model! {
-    Carreau, kind: "shear_thinning", name: "carreau",
-    summary: "shear thinning between two plateaus, by Carreau",
-    equations: "mu/mu0 = m + (1 - m) [1 + (gamma/gamma_c)^2]^((n-1)/2)",
-    validity: "Multigrade oils; gamma_c and n from a flow curve of the oil at its temperature. Generalised Newtonian: no elasticity.",
-    references: ["carreau1972"],
-    example: "critical_shear_rate = \"1e5 1/s\"\nexponent = 0.7\nhigh_shear_ratio = 0.5\n",
-}
-
-#[typetag::serde(name = "carreau")]
+#[register_model(
+ name = "carreau",
+    summary = "shear thinning between two plateaus, by Carreau",
+    equations = "mu/mu0 = m + (1 - m) [1 + (gamma/gamma_c)^2]^((n-1)/2)",
+    validity = "Multigrade oils; gamma_c and n from a flow curve of the oil at its temperature. Generalised Newtonian: no elasticity.",
+    references = ["carreau1972"],
+    example = "critical_shear_rate = \"1e5 1/s\"\nexponent = 0.7\nhigh_shear_ratio = 0.5\n",
+)]
 impl ShearThinningSpec for Carreau {
     fn build(&self) -> Result<Box<dyn ShearThinning>, BuildError> {
         let inverse = self.critical_shear_rate.si().recip();

@@ -1,6 +1,6 @@
 use gudgeon_core::kinds::{ShearThinning, ShearThinningSpec};
 use gudgeon_core::quantity::{Fraction, PosRatio, PosShearRate, Ratio, quantity};
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
 use crate::slices::check;
@@ -28,16 +28,14 @@ fn none() -> Ratio<Fraction> {
     quantity(0.0)
 }
 
-gudgeon_core::register_model! {
-    Cross, kind: "shear_thinning", name: "cross",
-    summary: "shear thinning between two plateaus, by Cross",
-    equations: "mu/mu0 = m + (1 - m)/[1 + (gamma/gamma_c)^k]",
-    validity: "Multigrade oils; gamma_c and k from a flow curve of the oil at its temperature. For k <= 1 the slope has a corner at rest. Generalised Newtonian: no elasticity.",
-    references: ["cross1965"],
-    example: "critical_shear_rate = \"5e5 1/s\"\nexponent = 1.0\nhigh_shear_ratio = 0.5\n",
-}
-
-#[typetag::serde(name = "cross")]
+#[register_model(
+ name = "cross",
+    summary = "shear thinning between two plateaus, by Cross",
+    equations = "mu/mu0 = m + (1 - m)/[1 + (gamma/gamma_c)^k]",
+    validity = "Multigrade oils; gamma_c and k from a flow curve of the oil at its temperature. For k <= 1 the slope has a corner at rest. Generalised Newtonian: no elasticity.",
+    references = ["cross1965"],
+    example = "critical_shear_rate = \"5e5 1/s\"\nexponent = 1.0\nhigh_shear_ratio = 0.5\n",
+)]
 impl ShearThinningSpec for Cross {
     fn build(&self) -> Result<Box<dyn ShearThinning>, BuildError> {
         let inverse = self.critical_shear_rate.si().recip();

@@ -1,5 +1,5 @@
 use gudgeon_core::kinds::{ShearThinning, ShearThinningSpec};
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
 use crate::slices::check;
@@ -9,16 +9,14 @@ use crate::slices::check;
 #[serde(deny_unknown_fields)]
 pub struct Off {}
 
-gudgeon_core::register_model! {
-    Off, kind: "shear_thinning", name: "off",
-    summary: "viscosity does not depend on shear rate",
-    equations: "mu = mu0",
-    validity: "Oils without polymers, or shear rates below about 1e5 1/s.",
-    references: [],
-    example: "",
-}
-
-#[typetag::serde(name = "off")]
+#[register_model(
+ name = "off",
+    summary = "viscosity does not depend on shear rate",
+    equations = "mu = mu0",
+    validity = "Oils without polymers, or shear rates below about 1e5 1/s.",
+    references = [],
+    example = "",
+)]
 impl ShearThinningSpec for Off {
     fn build(&self) -> Result<Box<dyn ShearThinning>, BuildError> {
         Ok(Box::new(Newtonian))

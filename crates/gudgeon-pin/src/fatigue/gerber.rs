@@ -1,6 +1,6 @@
 use gudgeon_core::kinds::{Fatigue, FatigueSpec};
 use gudgeon_core::quantity::PosPressure;
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
 use super::{ordered, tension};
@@ -15,16 +15,14 @@ pub struct Gerber {
     pub tensile_strength: PosPressure,
 }
 
-gudgeon_core::register_model! {
-    Gerber, kind: "fatigue", name: "gerber",
-    summary: "parabola to the tensile strength",
-    equations: "n s_a/S_e + (n s_m/S_u)^2 = 1",
-    validity: "Follows the middle of test results of ductile metals; not on the safe side.",
-    references: ["budynas2011"],
-    example: "endurance_limit = \"350 MPa\"\ntensile_strength = \"1000 MPa\"\n",
-}
-
-#[typetag::serde(name = "gerber")]
+#[register_model(
+ name = "gerber",
+    summary = "parabola to the tensile strength",
+    equations = "n s_a/S_e + (n s_m/S_u)^2 = 1",
+    validity = "Follows the middle of test results of ductile metals; not on the safe side.",
+    references = ["budynas2011"],
+    example = "endurance_limit = \"350 MPa\"\ntensile_strength = \"1000 MPa\"\n",
+)]
 impl FatigueSpec for Gerber {
     fn build(&self) -> Result<Box<dyn Fatigue>, BuildError> {
         ordered(self.endurance_limit.si(), self.tensile_strength.si(), "tensile strength")?;

@@ -1,6 +1,6 @@
 use gudgeon_core::kinds::{Fatigue, FatigueSpec};
 use gudgeon_core::quantity::PosPressure;
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
 use super::{ordered, tension};
@@ -15,16 +15,14 @@ pub struct Goodman {
     pub tensile_strength: PosPressure,
 }
 
-gudgeon_core::register_model! {
-    Goodman, kind: "fatigue", name: "goodman",
-    summary: "straight line to the tensile strength",
-    equations: "1/n = s_a/S_e + s_m/S_u",
-    validity: "On the safe side for ductile steel; a compressive mean counts as none.",
-    references: ["budynas2011"],
-    example: "endurance_limit = \"350 MPa\"\ntensile_strength = \"1000 MPa\"\n",
-}
-
-#[typetag::serde(name = "goodman")]
+#[register_model(
+ name = "goodman",
+    summary = "straight line to the tensile strength",
+    equations = "1/n = s_a/S_e + s_m/S_u",
+    validity = "On the safe side for ductile steel; a compressive mean counts as none.",
+    references = ["budynas2011"],
+    example = "endurance_limit = \"350 MPa\"\ntensile_strength = \"1000 MPa\"\n",
+)]
 impl FatigueSpec for Goodman {
     fn build(&self) -> Result<Box<dyn Fatigue>, BuildError> {
         ordered(self.endurance_limit.si(), self.tensile_strength.si(), "tensile strength")?;

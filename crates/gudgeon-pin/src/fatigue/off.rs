@@ -1,5 +1,5 @@
 use gudgeon_core::kinds::{Fatigue, FatigueSpec};
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// No judgement of fatigue.
@@ -7,16 +7,14 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 pub struct Off {}
 
-gudgeon_core::register_model! {
-    Off, kind: "fatigue", name: "off",
-    summary: "no judgement of fatigue",
-    equations: "none",
-    validity: "Always.",
-    references: [],
-    example: "",
-}
-
-#[typetag::serde(name = "off")]
+#[register_model(
+ name = "off",
+    summary = "no judgement of fatigue",
+    equations = "none",
+    validity = "Always.",
+    references = [],
+    example = "",
+)]
 impl FatigueSpec for Off {
     fn build(&self) -> Result<Box<dyn Fatigue>, BuildError> {
         Ok(Box::new(Unjudged))

@@ -1,6 +1,6 @@
 use gudgeon_core::kinds::{Fatigue, FatigueSpec};
 use gudgeon_core::quantity::PosPressure;
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
 use super::{ordered, tension};
@@ -15,16 +15,14 @@ pub struct Soderberg {
     pub yield_strength: PosPressure,
 }
 
-gudgeon_core::register_model! {
-    Soderberg, kind: "fatigue", name: "soderberg",
-    summary: "straight line to the yield strength",
-    equations: "1/n = s_a/S_e + s_m/S_y",
-    validity: "Excludes yielding too; the most cautious of the criteria.",
-    references: ["budynas2011"],
-    example: "endurance_limit = \"350 MPa\"\nyield_strength = \"800 MPa\"\n",
-}
-
-#[typetag::serde(name = "soderberg")]
+#[register_model(
+ name = "soderberg",
+    summary = "straight line to the yield strength",
+    equations = "1/n = s_a/S_e + s_m/S_y",
+    validity = "Excludes yielding too; the most cautious of the criteria.",
+    references = ["budynas2011"],
+    example = "endurance_limit = \"350 MPa\"\nyield_strength = \"800 MPa\"\n",
+)]
 impl FatigueSpec for Soderberg {
     fn build(&self) -> Result<Box<dyn Fatigue>, BuildError> {
         ordered(self.endurance_limit.si(), self.yield_strength.si(), "yield strength")?;

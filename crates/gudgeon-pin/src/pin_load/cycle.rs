@@ -1,9 +1,9 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{
     CylinderPressureCtx, CylinderPressureSpec, EngineCycle, KinematicsCtx, KinematicsSpec, PinLoadCase,
     PinLoadCtx, PinLoadSpec,
 };
 use gudgeon_core::quantity::{Length, Mass, NonNegative, PosAngularSpeed, PosLength, PosPressure, quantity};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 use super::search::over_cycle;
@@ -39,16 +39,14 @@ fn atmosphere() -> PosPressure {
     quantity(101_325.0)
 }
 
-gudgeon_core::register_model! {
-    Cycle, kind: "pin_load", name: "cycle",
-    summary: "gas and inertia over the cycle of an engine described in place",
-    equations: "F_gas = (p - p_crankcase) pi D^2/4;  F_in = m a;  sized for max |F_gas + F_in|",
-    validity: "Constant speed. The piston's whole mass without the pin loads the bosses.",
-    references: [],
-    example: "speed = \"4000 rpm\"\nstroke = \"79.3 mm\"\nrod_length = \"138.5 mm\"\npiston_mass = \"335 g\"\nkinematics = { model = \"exact_slider_crank\" }\ncylinder_pressure = { model = \"constant\", pressure = \"60 bar\" }\n",
-}
-
-#[typetag::serde(name = "cycle")]
+#[register_model(
+ name = "cycle",
+    summary = "gas and inertia over the cycle of an engine described in place",
+    equations = "F_gas = (p - p_crankcase) pi D^2/4;  F_in = m a;  sized for max |F_gas + F_in|",
+    validity = "Constant speed. The piston's whole mass without the pin loads the bosses.",
+    references = [],
+    example = "speed = \"4000 rpm\"\nstroke = \"79.3 mm\"\nrod_length = \"138.5 mm\"\npiston_mass = \"335 g\"\nkinematics = { model = \"exact_slider_crank\" }\ncylinder_pressure = { model = \"constant\", pressure = \"60 bar\" }\n",
+)]
 impl PinLoadSpec for Cycle {
     fn models(&self) -> Vec<(&'static str, &'static str)> {
         vec![

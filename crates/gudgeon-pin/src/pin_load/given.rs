@@ -1,6 +1,6 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{PinForces, PinInstant, PinLoadCase, PinLoadCtx, PinLoadSpec};
 use gudgeon_core::quantity::{Force, PosForce, quantity};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// Forces that are given.
@@ -18,16 +18,14 @@ fn none() -> Force {
     quantity(0.0)
 }
 
-gudgeon_core::register_model! {
-    Given, kind: "pin_load", name: "given",
-    summary: "gas and inertia force as given",
-    equations: "F = F_gas + F_in",
-    validity: "One instant; the pressure shown is the gas force over the bore's area.",
-    references: [],
-    example: "gas = \"49.5 kN\"\ninertia = \"-1 kN\"\n",
-}
-
-#[typetag::serde(name = "given")]
+#[register_model(
+ name = "given",
+    summary = "gas and inertia force as given",
+    equations = "F = F_gas + F_in",
+    validity = "One instant; the pressure shown is the gas force over the bore's area.",
+    references = [],
+    example = "gas = \"49.5 kN\"\ninertia = \"-1 kN\"\n",
+)]
 impl PinLoadSpec for Given {
     fn build(&self, ctx: &PinLoadCtx<'_>) -> Result<PinLoadCase, BuildError> {
         let forces = PinForces { gas: self.gas.si(), inertia: self.inertia.si() };

@@ -1,6 +1,6 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{PinLoadCase, PinLoadCtx, PinLoadSpec};
 use gudgeon_core::quantity::{Mass, NonNegative};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 use super::search::over_cycle;
@@ -15,16 +15,14 @@ pub struct OtherCase {
     pub piston_mass: Mass<NonNegative>,
 }
 
-gudgeon_core::register_model! {
-    OtherCase, kind: "pin_load", name: "other_case",
-    summary: "gas and inertia over the cycle of the engine of another case file",
-    equations: "F_gas = (p - p_crankcase) pi D^2/4;  F_in = m a;  sized for max |F_gas + F_in|",
-    validity: "The bore of both cases must be the same. Only cylinder pressure and piston motion of the other case are evaluated.",
-    references: [],
-    example: "case = \"turbo-diesel-120.toml\"\npiston_mass = \"2.1 kg\"\n",
-}
-
-#[typetag::serde(name = "other_case")]
+#[register_model(
+ name = "other_case",
+    summary = "gas and inertia over the cycle of the engine of another case file",
+    equations = "F_gas = (p - p_crankcase) pi D^2/4;  F_in = m a;  sized for max |F_gas + F_in|",
+    validity = "The bore of both cases must be the same. Only cylinder pressure and piston motion of the other case are evaluated.",
+    references = [],
+    example = "case = \"turbo-diesel-120.toml\"\npiston_mass = \"2.1 kg\"\n",
+)]
 impl PinLoadSpec for OtherCase {
     fn build(&self, ctx: &PinLoadCtx<'_>) -> Result<PinLoadCase, BuildError> {
         let engine = (ctx.cycle_of)(&self.case).map_err(|e| BuildError { field: "case".into(), ..e })?;

@@ -1,8 +1,8 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{PinForces, PinInstant, PinLoadCase, PinLoadCtx, PinLoadSpec};
 use gudgeon_core::quantity::{
     Fraction, Mass, NonNegative, PosAngularSpeed, PosLength, PosPressure, PosRatio, Ratio, quantity,
 };
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// Peak pressure from the compression ratio, with the inertia of the piston at the dead centre (`reimer1984`).
@@ -53,16 +53,14 @@ const KGF_PER_MM2: f64 = 9_806_650.0;
 /// \[m/s²\].
 const STANDARD_GRAVITY: f64 = 9.80665;
 
-gudgeon_core::register_model! {
-    PeakPressureRule, kind: "pin_load", name: "peak_pressure_rule",
-    summary: "peak pressure from the compression ratio, inertia at the dead centre",
-    equations: "p_max = K r_c p_1, p_1 = 9.391e-3 kgf/mm2;  F_gas = p_max pi D^2/4;  F_in = -k m omega^2 (S/2) (1 + lambda) 9.80665/g, lambda = S/(2 l)",
-    validity: "A first estimate: K is known for alcohol engines only (7.9). Pressure over that of the crankcase.",
-    references: ["reimer1984"],
-    example: "compression_ratio = 12\nspeed = \"2700 rpm\"\nstroke = \"79.3 mm\"\nrod_length = \"138.5 mm\"\npiston_mass = \"335 g\"\n",
-}
-
-#[typetag::serde(name = "peak_pressure_rule")]
+#[register_model(
+ name = "peak_pressure_rule",
+    summary = "peak pressure from the compression ratio, inertia at the dead centre",
+    equations = "p_max = K r_c p_1, p_1 = 9.391e-3 kgf/mm2;  F_gas = p_max pi D^2/4;  F_in = -k m omega^2 (S/2) (1 + lambda) 9.80665/g, lambda = S/(2 l)",
+    validity = "A first estimate: K is known for alcohol engines only (7.9). Pressure over that of the crankcase.",
+    references = ["reimer1984"],
+    example = "compression_ratio = 12\nspeed = \"2700 rpm\"\nstroke = \"79.3 mm\"\nrod_length = \"138.5 mm\"\npiston_mass = \"335 g\"\n",
+)]
 impl PinLoadSpec for PeakPressureRule {
     fn build(&self, ctx: &PinLoadCtx<'_>) -> Result<PinLoadCase, BuildError> {
         if self.compression_ratio.si() <= 1.0 {

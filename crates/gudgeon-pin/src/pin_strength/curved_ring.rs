@@ -1,7 +1,7 @@
 use std::f64::consts::PI;
 
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{PIN_QUANTITIES, PinStrength, PinStrengthCtx, PinStrengthSpec};
+use gudgeon_core::{BuildError, register_model};
 use gudgeon_numerics::jet::Real;
 use serde::{Deserialize, Serialize};
 
@@ -16,16 +16,14 @@ use super::formula::{Evaluated, Formula, Loaded, Surroundings};
 #[serde(deny_unknown_fields)]
 pub struct CurvedRing {}
 
-gudgeon_core::register_model! {
-    CurvedRing, kind: "pin_strength", name: "curved_ring",
-    summary: "ring as a thick curved bar in closed form; beam with shear",
-    equations: "h = (d_o - d_i)/2, R = (d_o + d_i)/4, r_n = h/ln(d_o/d_i), e = R - r_n, A = h L, m = (F/2)(R - d_o/4);  dO = 4/(E A) (I1/e + I2 - I3 + 1.2 (E/G) I4);  I1 = (R/2)(m/6 - e F (pi/2 - 1)/4), I2 = F R/6, I3 = (m/6 + e F/4)/2 - F R (pi/4 - 2/3)/4, I4 = F R/12;  s_o = F/(2 A) + (m/2 + e F/4)(r_n - d_i/2)/(A e d_i/2);  f and tau as shear_beam, the rest as thin_ring",
-    validity: "d_i of 0.25 d_o or more. Against plane elasticity: ovalisation +4 %, hoop stress -3 % at d_i = 0.64 d_o; +7 %, -5 % at 0.5 d_o.",
-    references: ["budynas2011", "cowper1966", "reimer1984"],
-    example: "",
-}
-
-#[typetag::serde(name = "curved_ring")]
+#[register_model(
+ name = "curved_ring",
+    summary = "ring as a thick curved bar in closed form; beam with shear",
+    equations = "h = (d_o - d_i)/2, R = (d_o + d_i)/4, r_n = h/ln(d_o/d_i), e = R - r_n, A = h L, m = (F/2)(R - d_o/4);  dO = 4/(E A) (I1/e + I2 - I3 + 1.2 (E/G) I4);  I1 = (R/2)(m/6 - e F (pi/2 - 1)/4), I2 = F R/6, I3 = (m/6 + e F/4)/2 - F R (pi/4 - 2/3)/4, I4 = F R/12;  s_o = F/(2 A) + (m/2 + e F/4)(r_n - d_i/2)/(A e d_i/2);  f and tau as shear_beam, the rest as thin_ring",
+    validity = "d_i of 0.25 d_o or more. Against plane elasticity: ovalisation +4 %, hoop stress -3 % at d_i = 0.64 d_o; +7 %, -5 % at 0.5 d_o.",
+    references = ["budynas2011", "cowper1966", "reimer1984"],
+    example = "",
+)]
 impl PinStrengthSpec for CurvedRing {
     fn build(&self, ctx: &PinStrengthCtx) -> Result<Box<dyn PinStrength>, BuildError> {
         Ok(Box::new(Evaluated(CurvedBar(Surroundings::new(ctx)?))))

@@ -1,7 +1,7 @@
 use std::f64::consts::PI;
 
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{PIN_QUANTITIES, PinStrength, PinStrengthCtx, PinStrengthSpec};
+use gudgeon_core::{BuildError, register_model};
 use gudgeon_numerics::jet::Real;
 use serde::{Deserialize, Serialize};
 
@@ -20,16 +20,14 @@ pub struct ElasticRing {
     pub plane_strain: bool,
 }
 
-gudgeon_core::register_model! {
-    ElasticRing, kind: "pin_strength", name: "elastic_ring",
-    summary: "exact plane elasticity of a ring of any thickness; beam with shear",
-    equations: "q = d_i/d_o, p = F/(2 d_o L);  dO = p d_o/E (((1+nu)(1 + q^2 + 3 q^4 - q^6) + 4 (1-nu) q^2 + 4 q^4 + 4 q^6)/(1 - q^2)^3 + (1 + q^2)/(1 - q^2) - nu);  s_o = 6 p (1 + q^2)/(1 - q^2)^2;  plane strain: E/(1 - nu^2) for E, nu/(1 - nu) for nu;  f and tau as shear_beam, the rest as thin_ring",
-    validity: "Load uniform over the projection of the outer surface, total force. Exact for every wall, the solid pin's ovalisation included; the hoop stress of a solid pin is that at a vanishing bore.",
-    references: ["timoshenko1970", "cowper1966", "reimer1984"],
-    example: "plane_strain = false\n",
-}
-
-#[typetag::serde(name = "elastic_ring")]
+#[register_model(
+ name = "elastic_ring",
+    summary = "exact plane elasticity of a ring of any thickness; beam with shear",
+    equations = "q = d_i/d_o, p = F/(2 d_o L);  dO = p d_o/E (((1+nu)(1 + q^2 + 3 q^4 - q^6) + 4 (1-nu) q^2 + 4 q^4 + 4 q^6)/(1 - q^2)^3 + (1 + q^2)/(1 - q^2) - nu);  s_o = 6 p (1 + q^2)/(1 - q^2)^2;  plane strain: E/(1 - nu^2) for E, nu/(1 - nu) for nu;  f and tau as shear_beam, the rest as thin_ring",
+    validity = "Load uniform over the projection of the outer surface, total force. Exact for every wall, the solid pin's ovalisation included; the hoop stress of a solid pin is that at a vanishing bore.",
+    references = ["timoshenko1970", "cowper1966", "reimer1984"],
+    example = "plane_strain = false\n",
+)]
 impl PinStrengthSpec for ElasticRing {
     fn build(&self, ctx: &PinStrengthCtx) -> Result<Box<dyn PinStrength>, BuildError> {
         let at = Surroundings::new(ctx)?;

@@ -1,7 +1,7 @@
 use std::f64::consts::PI;
 
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{PIN_QUANTITIES, PinStrength, PinStrengthCtx, PinStrengthSpec};
+use gudgeon_core::{BuildError, register_model};
 use gudgeon_numerics::jet::Real;
 use serde::{Deserialize, Serialize};
 
@@ -20,16 +20,14 @@ fn yes() -> bool {
     true
 }
 
-gudgeon_core::register_model! {
-    ShearBeam, kind: "pin_strength", name: "shear_beam",
-    summary: "deflection of the beam under its spread load, with shear; ring as in thin_ring",
-    equations: "f = F a^3/(48 E J) (1 - b^2/2 + b^3/8) + F (a/4 - B/8)/(kappa A G), b = B/a;  kappa = 6 (1+nu) (1+rho^2)^2/((7+6 nu) (1+rho^2)^2 + (20+12 nu) rho^2);  tau = 8/(3 pi) F (1 + rho + rho^2)/(d_o^2 (1 - rho^4));  the rest as thin_ring",
-    validity: "A pin is a short beam: shear more than doubles the deflection, so limits calibrated on thin_ring do not apply to it.",
-    references: ["cowper1966", "reimer1984"],
-    example: "shear = true\n",
-}
-
-#[typetag::serde(name = "shear_beam")]
+#[register_model(
+ name = "shear_beam",
+    summary = "deflection of the beam under its spread load, with shear; ring as in thin_ring",
+    equations = "f = F a^3/(48 E J) (1 - b^2/2 + b^3/8) + F (a/4 - B/8)/(kappa A G), b = B/a;  kappa = 6 (1+nu) (1+rho^2)^2/((7+6 nu) (1+rho^2)^2 + (20+12 nu) rho^2);  tau = 8/(3 pi) F (1 + rho + rho^2)/(d_o^2 (1 - rho^4));  the rest as thin_ring",
+    validity = "A pin is a short beam: shear more than doubles the deflection, so limits calibrated on thin_ring do not apply to it.",
+    references = ["cowper1966", "reimer1984"],
+    example = "shear = true\n",
+)]
 impl PinStrengthSpec for ShearBeam {
     fn build(&self, ctx: &PinStrengthCtx) -> Result<Box<dyn PinStrength>, BuildError> {
         Ok(Box::new(Evaluated(Beam { at: Surroundings::new(ctx)?, shear: self.shear })))

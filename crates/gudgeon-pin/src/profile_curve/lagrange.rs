@@ -1,5 +1,5 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{ProfileCurve, ProfileCurveSpec};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// The polynomial through all points, as the published program draws it (`reimer1984`).
@@ -12,16 +12,14 @@ pub struct Lagrange {}
 /// Points beyond which a polynomial through given ordinates means nothing.
 const MOST: usize = 12;
 
-gudgeon_core::register_model! {
-    Lagrange, kind: "profile_curve", name: "lagrange",
-    summary: "polynomial through all points",
-    equations: "y(x) = sum_i y_i prod_{j != i} (x - x_j)/(x_i - x_j)",
-    validity: "A few points, at most 12; overshoots between equal ordinates and extrapolates with its highest power.",
-    references: ["reimer1984"],
-    example: "",
-}
-
-#[typetag::serde(name = "lagrange")]
+#[register_model(
+ name = "lagrange",
+    summary = "polynomial through all points",
+    equations = "y(x) = sum_i y_i prod_{j != i} (x - x_j)/(x_i - x_j)",
+    validity = "A few points, at most 12; overshoots between equal ordinates and extrapolates with its highest power.",
+    references = ["reimer1984"],
+    example = "",
+)]
 impl ProfileCurveSpec for Lagrange {
     fn build(&self, x: &[f64], y: &[f64]) -> Result<Box<dyn ProfileCurve>, BuildError> {
         super::check(x, y)?;

@@ -1,5 +1,5 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{ProfileCurve, ProfileCurveSpec};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// Straight between neighbouring points and beyond the outermost ones.
@@ -7,16 +7,14 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 pub struct Linear {}
 
-gudgeon_core::register_model! {
-    Linear, kind: "profile_curve", name: "linear",
-    summary: "straight lines between the points",
-    equations: "y(x) = y_i + (y_{i+1} - y_i)(x - x_i)/(x_{i+1} - x_i)",
-    validity: "Any number of points; has corners.",
-    references: [],
-    example: "",
-}
-
-#[typetag::serde(name = "linear")]
+#[register_model(
+ name = "linear",
+    summary = "straight lines between the points",
+    equations = "y(x) = y_i + (y_{i+1} - y_i)(x - x_i)/(x_{i+1} - x_i)",
+    validity = "Any number of points; has corners.",
+    references = [],
+    example = "",
+)]
 impl ProfileCurveSpec for Linear {
     fn build(&self, x: &[f64], y: &[f64]) -> Result<Box<dyn ProfileCurve>, BuildError> {
         super::check(x, y)?;

@@ -1,5 +1,5 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{ProfileCurve, ProfileCurveSpec};
+use gudgeon_core::{BuildError, register_model};
 use gudgeon_numerics::table::Pchip;
 use serde::{Deserialize, Serialize};
 
@@ -8,16 +8,14 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 pub struct MonotoneCubic {}
 
-gudgeon_core::register_model! {
-    MonotoneCubic, kind: "profile_curve", name: "monotone_cubic",
-    summary: "shape-preserving cubic, straight beyond the points",
-    equations: "cubic between neighbours with slopes from the weighted harmonic mean of the secants",
-    validity: "Any number of points; slope continuous, curvature not.",
-    references: ["fritsch1980"],
-    example: "",
-}
-
-#[typetag::serde(name = "monotone_cubic")]
+#[register_model(
+ name = "monotone_cubic",
+    summary = "shape-preserving cubic, straight beyond the points",
+    equations = "cubic between neighbours with slopes from the weighted harmonic mean of the secants",
+    validity = "Any number of points; slope continuous, curvature not.",
+    references = ["fritsch1980"],
+    example = "",
+)]
 impl ProfileCurveSpec for MonotoneCubic {
     fn build(&self, x: &[f64], y: &[f64]) -> Result<Box<dyn ProfileCurve>, BuildError> {
         super::check(x, y)?;

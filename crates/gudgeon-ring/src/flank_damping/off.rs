@@ -1,7 +1,7 @@
 //! No oil in the groove.
 
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{FlankDamping, FlankDampingCtx, FlankDampingSpec};
+use gudgeon_core::{BuildError, register_model};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -10,22 +10,18 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 pub struct Off {}
 
-#[typetag::serde(name = "off")]
+#[register_model(
+    name = "off",
+    summary = "dry groove: no resistance to axial motion",
+    equations = "F = 0",
+    validity = "Upper bound of ring mobility.",
+    references = [],
+    example = "",
+)]
 impl FlankDampingSpec for Off {
     fn build(&self, _: &FlankDampingCtx) -> Result<Box<dyn FlankDamping>, BuildError> {
         Ok(Box::new(Runtime))
     }
-}
-
-gudgeon_core::register_model! {
-    Off,
-    kind: "flank_damping",
-    name: "off",
-    summary: "dry groove: no resistance to axial motion",
-    equations: "F = 0",
-    validity: "Upper bound of ring mobility.",
-    references: [],
-    example: "",
 }
 
 struct Runtime;

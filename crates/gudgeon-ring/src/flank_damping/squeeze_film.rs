@@ -1,8 +1,8 @@
 //! Squeeze films between ring and groove flanks.
 
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{FlankDamping, FlankDampingCtx, FlankDampingSpec};
 use gudgeon_core::quantity::{Fraction, PosLength, PosPressure, Ratio, quantity};
+use gudgeon_core::{BuildError, register_model};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -56,7 +56,16 @@ impl Default for SqueezeFilm {
     }
 }
 
-#[typetag::serde(name = "squeeze_film")]
+#[register_model(
+    name = "squeeze_film",
+    summary = "physical: oil squeezed out between ring and both groove flanks, with cavitation when drawn apart",
+    equations = "approach: F = mu A w^2 f^3 v / (h + sigma)^3;  separation: X/(1 + X/(p_t f A)), X = chi mu A w^2 f^3 v / (h + sigma)^3;  \
+                h = s and c - s",
+    validity = "Parallel flanks, the same oil-filled strip on both at all times, thin compared with its width; no oil transport, no twist. \
+               Sensitive to the oil fill (cube) and, for seated rings, to the roughness distance (inverse cube).",
+    references = ["reynolds1886", "cameron1966"],
+    example = "roughness = \"0.4 um\"\nseparation = 0.1\n",
+)]
 impl FlankDampingSpec for SqueezeFilm {
     fn build(&self, ctx: &FlankDampingCtx) -> Result<Box<dyn FlankDamping>, BuildError> {
         crate::check_fill(ctx)?;
@@ -70,19 +79,6 @@ impl FlankDampingSpec for SqueezeFilm {
             tension: self.tension.si() * ctx.oil_fill,
         }))
     }
-}
-
-gudgeon_core::register_model! {
-    SqueezeFilm,
-    kind: "flank_damping",
-    name: "squeeze_film",
-    summary: "physical: oil squeezed out between ring and both groove flanks, with cavitation when drawn apart",
-    equations: "approach: F = mu A w^2 f^3 v / (h + sigma)^3;  separation: X/(1 + X/(p_t f A)), X = chi mu A w^2 f^3 v / (h + sigma)^3;  \
-                h = s and c - s",
-    validity: "Parallel flanks, the same oil-filled strip on both at all times, thin compared with its width; no oil transport, no twist. \
-               Sensitive to the oil fill (cube) and, for seated rings, to the roughness distance (inverse cube).",
-    references: ["reynolds1886", "cameron1966"],
-    example: "roughness = \"0.4 um\"\nseparation = 0.1\n",
 }
 
 struct Runtime {

@@ -1,8 +1,8 @@
 //! Empirical damping with the tangent of an angle in degrees.
 
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{FlankDamping, FlankDampingCtx, FlankDampingSpec};
 use gudgeon_core::quantity::{PosAreaDamping, quantity};
+use gudgeon_core::{BuildError, register_model};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -41,7 +41,15 @@ impl Default for TangentDegrees {
     }
 }
 
-#[typetag::serde(name = "tangent_degrees")]
+#[register_model(
+    name = "tangent_degrees",
+    summary = "empirical: proportional to velocity, largest at the flanks, zero in mid-groove",
+    equations = "F = -A v F_s |tan((100 e - 50)/1.1 deg)|^(10 |1 - f_o|)",
+    validity = "Empirical; the constants go with f_o = 0.6 for compression rings and 0.9 for the oil ring. Does not depend on the oil's viscosity, and is \
+               finite at the flanks: it delays a ring, it does not hold it.",
+    references = ["zottin1992"],
+    example = "coefficient = \"1e7 N s/m3\"\ncoefficient_last = \"2e7 N s/m3\"\n",
+)]
 impl FlankDampingSpec for TangentDegrees {
     fn build(&self, ctx: &FlankDampingCtx) -> Result<Box<dyn FlankDamping>, BuildError> {
         crate::check_fill(ctx)?;
@@ -51,18 +59,6 @@ impl FlankDampingSpec for TangentDegrees {
             exponent: 10.0 * (1.0 - ctx.oil_fill).abs(),
         }))
     }
-}
-
-gudgeon_core::register_model! {
-    TangentDegrees,
-    kind: "flank_damping",
-    name: "tangent_degrees",
-    summary: "empirical: proportional to velocity, largest at the flanks, zero in mid-groove",
-    equations: "F = -A v F_s |tan((100 e - 50)/1.1 deg)|^(10 |1 - f_o|)",
-    validity: "Empirical; the constants go with f_o = 0.6 for compression rings and 0.9 for the oil ring. Does not depend on the oil's viscosity, and is \
-               finite at the flanks: it delays a ring, it does not hold it.",
-    references: ["zottin1992"],
-    example: "coefficient = \"1e7 N s/m3\"\ncoefficient_last = \"2e7 N s/m3\"\n",
 }
 
 struct Runtime {

@@ -1,8 +1,8 @@
 //! Empirical damping with the tangent of an angle in radians and the oil's viscosity.
 
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{FlankDamping, FlankDampingCtx, FlankDampingSpec};
 use gudgeon_core::quantity::{PosRatio, quantity};
+use gudgeon_core::{BuildError, register_model};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -34,7 +34,14 @@ impl Default for TangentRadians {
     }
 }
 
-#[typetag::serde(name = "tangent_radians")]
+#[register_model(
+    name = "tangent_radians",
+    summary = "empirical: proportional to velocity and viscosity, zero in mid-groove",
+    equations = "F = -(A/w) mu v F_a0 tan(|2 e - 1|)^(10 (1.1 - f_o))",
+    validity = "The constant F_a0 is known within four orders of magnitude only (1e4 to 1e8).",
+    references = ["kornprobst1989", "tomanik1993"],
+    example = "adhesion = 1e6\n",
+)]
 impl FlankDampingSpec for TangentRadians {
     fn build(&self, ctx: &FlankDampingCtx) -> Result<Box<dyn FlankDamping>, BuildError> {
         crate::check_fill(ctx)?;
@@ -44,17 +51,6 @@ impl FlankDampingSpec for TangentRadians {
             exponent: 10.0 * (1.1 - ctx.oil_fill),
         }))
     }
-}
-
-gudgeon_core::register_model! {
-    TangentRadians,
-    kind: "flank_damping",
-    name: "tangent_radians",
-    summary: "empirical: proportional to velocity and viscosity, zero in mid-groove",
-    equations: "F = -(A/w) mu v F_a0 tan(|2 e - 1|)^(10 (1.1 - f_o))",
-    validity: "The constant F_a0 is known within four orders of magnitude only (1e4 to 1e8).",
-    references: ["kornprobst1989", "tomanik1993"],
-    example: "adhesion = 1e6\n",
 }
 
 struct Runtime {

@@ -1,7 +1,7 @@
 //! No friction on the flanks.
 
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{FlankFriction, FlankFrictionSpec};
+use gudgeon_core::{BuildError, register_model};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -10,22 +10,18 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 pub struct Off {}
 
-#[typetag::serde(name = "off")]
+#[register_model(
+    name = "off",
+    summary = "no friction between ring and groove flank",
+    equations = "F = 0",
+    validity = "Radial velocities of rings are a few mm/s; the friction left out is at most about a tenth of the axial load.",
+    references = [],
+    example = "",
+)]
 impl FlankFrictionSpec for Off {
     fn build(&self) -> Result<Box<dyn FlankFriction>, BuildError> {
         Ok(Box::new(Runtime))
     }
-}
-
-gudgeon_core::register_model! {
-    Off,
-    kind: "flank_friction",
-    name: "off",
-    summary: "no friction between ring and groove flank",
-    equations: "F = 0",
-    validity: "Radial velocities of rings are a few mm/s; the friction left out is at most about a tenth of the axial load.",
-    references: [],
-    example: "",
 }
 
 struct Runtime;

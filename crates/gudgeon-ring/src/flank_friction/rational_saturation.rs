@@ -1,8 +1,8 @@
 //! Flank friction that saturates by a rational function.
 
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{FlankFriction, FlankFrictionSpec};
 use gudgeon_core::quantity::{NonNegative, PosVelocity, Ratio, quantity};
+use gudgeon_core::{BuildError, register_model};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -40,22 +40,18 @@ impl Default for RationalSaturation {
     }
 }
 
-#[typetag::serde(name = "rational_saturation")]
+#[register_model(
+    name = "rational_saturation",
+    summary = "proportional to velocity when slow, a constant coefficient when fast",
+    equations = "F = f_max h' / (|h'| + v_h) N",
+    validity = "Empirical. No static friction: a ring at rest is not held.",
+    references = ["zottin1992"],
+    example = "coefficient = 0.05\nhalf_velocity = \"1 mm/s\"\n",
+)]
 impl FlankFrictionSpec for RationalSaturation {
     fn build(&self) -> Result<Box<dyn FlankFriction>, BuildError> {
         Ok(Box::new(Runtime { coefficient: self.coefficient.si(), half: self.half_velocity.si() }))
     }
-}
-
-gudgeon_core::register_model! {
-    RationalSaturation,
-    kind: "flank_friction",
-    name: "rational_saturation",
-    summary: "proportional to velocity when slow, a constant coefficient when fast",
-    equations: "F = f_max h' / (|h'| + v_h) N",
-    validity: "Empirical. No static friction: a ring at rest is not held.",
-    references: ["zottin1992"],
-    example: "coefficient = 0.05\nhalf_velocity = \"1 mm/s\"\n",
 }
 
 struct Runtime {

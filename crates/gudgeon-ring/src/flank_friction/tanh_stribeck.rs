@@ -1,8 +1,8 @@
 //! Flank friction with a Stribeck peak.
 
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{FlankFriction, FlankFrictionSpec};
 use gudgeon_core::quantity::{NonNegative, PosVelocity, Ratio, quantity};
+use gudgeon_core::{BuildError, register_model};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -43,22 +43,18 @@ impl Default for TanhStribeck {
     }
 }
 
-#[typetag::serde(name = "tanh_stribeck")]
+#[register_model(
+    name = "tanh_stribeck",
+    summary = "steep but continuous passage through rest, a Stribeck peak, then a constant coefficient",
+    equations = "F = mu_0 N tanh(y) {1 + |y|/2 (coth(|y|/3) - 1)},  y = h'/V_0",
+    validity = "Empirical. Decreases with velocity between 1.5 V_0 and 20 V_0 (1.5 to 20 cm/s by default), far above usual radial ring velocities.",
+    references = ["tomanik1993"],
+    example = "coefficient = 0.1\nvelocity = \"1 cm/s\"\n",
+)]
 impl FlankFrictionSpec for TanhStribeck {
     fn build(&self) -> Result<Box<dyn FlankFriction>, BuildError> {
         Ok(Box::new(Runtime { coefficient: self.coefficient.si(), velocity: self.velocity.si() }))
     }
-}
-
-gudgeon_core::register_model! {
-    TanhStribeck,
-    kind: "flank_friction",
-    name: "tanh_stribeck",
-    summary: "steep but continuous passage through rest, a Stribeck peak, then a constant coefficient",
-    equations: "F = mu_0 N tanh(y) {1 + |y|/2 (coth(|y|/3) - 1)},  y = h'/V_0",
-    validity: "Empirical. Decreases with velocity between 1.5 V_0 and 20 V_0 (1.5 to 20 cm/s by default), far above usual radial ring velocities.",
-    references: ["tomanik1993"],
-    example: "coefficient = 0.1\nvelocity = \"1 cm/s\"\n",
 }
 
 struct Runtime {

@@ -1,8 +1,8 @@
 //! The ring as a mass that moves between the groove flanks.
 
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{AxialForces, Motion, RingMotion, RingMotionCtx, RingMotionSpec};
 use gudgeon_core::quantity::{PosStiffness, PosVelocity, quantity};
+use gudgeon_core::{BuildError, register_model};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -64,7 +64,16 @@ impl Default for NewtonGroove {
     }
 }
 
-#[typetag::serde(name = "newton_groove")]
+#[register_model(
+    name = "newton_groove",
+    summary = "the ring as a free mass between stiff, nearly plastic groove flanks",
+    equations = "ds/dt = v;  m dv/dt = F_gas - m a_piston - m g + F_film + F_damping + F_flank;  \
+                F_flank = k d max(0, 1 + d'/v_r) for the depth d > 0 beyond the flank",
+    validity = "Ring untwisted and rigid axially, flanks parallel to it. The stiffness is numerical: results do not depend on it as long as \
+               the indentation stays small against the clearance.",
+    references = ["hunt1975", "zottin1992"],
+    example = "flank_stiffness = \"1e10 N/m\"\nrebound_velocity = \"0.01 m/s\"\n",
+)]
 impl RingMotionSpec for NewtonGroove {
     fn build(&self, ctx: &RingMotionCtx) -> Result<Box<dyn RingMotion>, BuildError> {
         if !(ctx.mass > 0.0 && ctx.mass.is_finite()) {
@@ -89,19 +98,6 @@ impl RingMotionSpec for NewtonGroove {
             film_force: self.film_force,
         }))
     }
-}
-
-gudgeon_core::register_model! {
-    NewtonGroove,
-    kind: "ring_motion",
-    name: "newton_groove",
-    summary: "the ring as a free mass between stiff, nearly plastic groove flanks",
-    equations: "ds/dt = v;  m dv/dt = F_gas - m a_piston - m g + F_film + F_damping + F_flank;  \
-                F_flank = k d max(0, 1 + d'/v_r) for the depth d > 0 beyond the flank",
-    validity: "Ring untwisted and rigid axially, flanks parallel to it. The stiffness is numerical: results do not depend on it as long as \
-               the indentation stays small against the clearance.",
-    references: ["hunt1975", "zottin1992"],
-    example: "flank_stiffness = \"1e10 N/m\"\nrebound_velocity = \"0.01 m/s\"\n",
 }
 
 struct Runtime {

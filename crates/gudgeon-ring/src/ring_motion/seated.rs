@@ -1,7 +1,7 @@
 //! A ring that never leaves its seat.
 
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{AxialForces, Motion, RingMotion, RingMotionCtx, RingMotionSpec};
+use gudgeon_core::{BuildError, register_model};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -25,7 +25,14 @@ pub struct Seated {
     pub flank: Flank,
 }
 
-#[typetag::serde(name = "seated")]
+#[register_model(
+    name = "seated",
+    summary = "the ring rests on one flank for the whole cycle",
+    equations = "s = 0 (lower flank) or s = c (upper flank)",
+    validity = "Top rings at low speed and high load; every ring when only gas flow or film is of interest.",
+    references = [],
+    example = "flank = \"lower\"\n",
+)]
 impl RingMotionSpec for Seated {
     fn build(&self, _: &RingMotionCtx) -> Result<Box<dyn RingMotion>, BuildError> {
         Ok(Box::new(Runtime {
@@ -35,17 +42,6 @@ impl RingMotionSpec for Seated {
             },
         }))
     }
-}
-
-gudgeon_core::register_model! {
-    Seated,
-    kind: "ring_motion",
-    name: "seated",
-    summary: "the ring rests on one flank for the whole cycle",
-    equations: "s = 0 (lower flank) or s = c (upper flank)",
-    validity: "Top rings at low speed and high load; every ring when only gas flow or film is of interest.",
-    references: [],
-    example: "flank = \"lower\"\n",
 }
 
 struct Runtime {

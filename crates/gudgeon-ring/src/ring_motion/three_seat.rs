@@ -1,8 +1,8 @@
 //! Three seats: lower flank, upper flank, unstable in between.
 
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{AxialForces, Motion, RingMotion, RingMotionCtx, RingMotionSpec};
 use gudgeon_core::quantity::{Fraction, PosAngle, Ratio, quantity};
+use gudgeon_core::{BuildError, register_model};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -51,7 +51,15 @@ impl Default for ThreeSeat {
     }
 }
 
-#[typetag::serde(name = "three_seat")]
+#[register_model(
+    name = "three_seat",
+    summary = "on the lower flank, on the upper flank, or unstable, decided at fixed crank angles",
+    equations = "R = F_gas - m a_piston + F_film;  e = 1/2 for |R| <= band |F_gas|, else 1 for R > 0, 0 for R < 0",
+    validity = "Seat changes that are short against the interval. Gives no trajectory and no impact; groove oil has no influence. Near the \
+               speed where rings start to float there are two periodic solutions, and cycles of more than one period.",
+    references = ["tomanik1993", "ruddy1981"],
+    example = "interval = \"1 deg\"\nband = 0.1\n",
+)]
 impl RingMotionSpec for ThreeSeat {
     fn build(&self, _: &RingMotionCtx) -> Result<Box<dyn RingMotion>, BuildError> {
         let interval = self.interval.si();
@@ -69,18 +77,6 @@ impl RingMotionSpec for ThreeSeat {
             film_force: self.film_force,
         }))
     }
-}
-
-gudgeon_core::register_model! {
-    ThreeSeat,
-    kind: "ring_motion",
-    name: "three_seat",
-    summary: "on the lower flank, on the upper flank, or unstable, decided at fixed crank angles",
-    equations: "R = F_gas - m a_piston + F_film;  e = 1/2 for |R| <= band |F_gas|, else 1 for R > 0, 0 for R < 0",
-    validity: "Seat changes that are short against the interval. Gives no trajectory and no impact; groove oil has no influence. Near the \
-               speed where rings start to float there are two periodic solutions, and cycles of more than one period.",
-    references: ["tomanik1993", "ruddy1981"],
-    example: "interval = \"1 deg\"\nband = 0.1\n",
 }
 
 struct Runtime {

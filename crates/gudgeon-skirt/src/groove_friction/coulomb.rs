@@ -1,8 +1,8 @@
 use std::f64::consts::PI;
 
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{GrooveFriction, GrooveFrictionCtx, GrooveFrictionSpec};
 use gudgeon_core::quantity::{Length, NonNegative, PosForce, PosLength, PosVelocity, Ratio, quantity};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// Dry friction on the flank that the gas presses the top ring onto.
@@ -30,16 +30,14 @@ fn creep() -> PosVelocity {
     quantity(1e-3)
 }
 
-gudgeon_core::register_model! {
-    Coulomb, kind: "groove_friction", name: "coulomb",
-    summary: "dry friction of the top ring on its flank against motion of the piston across the bore",
-    equations: "F = -mu (pi D w p + F0) tanh(v/v0)",
-    validity: "One ring carries the gas pressure; the friction reverses within v0.",
-    references: [],
-    example: "coefficient = 0.05\nheight = \"12 mm\"\nwidth = \"3 mm\"\n",
-}
-
-#[typetag::serde(name = "coulomb")]
+#[register_model(
+ name = "coulomb",
+    summary = "dry friction of the top ring on its flank against motion of the piston across the bore",
+    equations = "F = -mu (pi D w p + F0) tanh(v/v0)",
+    validity = "One ring carries the gas pressure; the friction reverses within v0.",
+    references = [],
+    example = "coefficient = 0.05\nheight = \"12 mm\"\nwidth = \"3 mm\"\n",
+)]
 impl GrooveFrictionSpec for Coulomb {
     fn build(&self, ctx: &GrooveFrictionCtx) -> Result<Box<dyn GrooveFriction>, BuildError> {
         Ok(Box::new(Dry {

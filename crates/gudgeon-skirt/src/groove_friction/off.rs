@@ -1,5 +1,5 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{GrooveFriction, GrooveFrictionCtx, GrooveFrictionSpec};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// The rings do not hinder the piston across the bore.
@@ -7,16 +7,14 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 pub struct Off {}
 
-gudgeon_core::register_model! {
-    Off, kind: "groove_friction", name: "off",
-    summary: "rings do not hinder the piston across the bore",
-    equations: "F = 0",
-    validity: "Rings that slide freely in their grooves.",
-    references: [],
-    example: "",
-}
-
-#[typetag::serde(name = "off")]
+#[register_model(
+ name = "off",
+    summary = "rings do not hinder the piston across the bore",
+    equations = "F = 0",
+    validity = "Rings that slide freely in their grooves.",
+    references = [],
+    example = "",
+)]
 impl GrooveFrictionSpec for Off {
     fn build(&self, _: &GrooveFrictionCtx) -> Result<Box<dyn GrooveFriction>, BuildError> {
         Ok(Box::new(Free))

@@ -1,6 +1,6 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{PinFriction, PinFrictionSpec};
 use gudgeon_core::quantity::{NonNegative, PosLength, PosVelocity, Ratio, quantity};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// Dry friction of the pin: the rod drags the piston along as it turns.
@@ -22,16 +22,14 @@ fn creep() -> PosVelocity {
     quantity(0.01)
 }
 
-gudgeon_core::register_model! {
-    Coulomb, kind: "pin_friction", name: "coulomb",
-    summary: "dry friction of the gudgeon pin",
-    equations: "M = mu R F tanh(R omega/v0)",
-    validity: "Boundary lubrication; the friction reverses within v0.",
-    references: [],
-    example: "coefficient = 0.05\nradius = \"9 mm\"\n",
-}
-
-#[typetag::serde(name = "coulomb")]
+#[register_model(
+ name = "coulomb",
+    summary = "dry friction of the gudgeon pin",
+    equations = "M = mu R F tanh(R omega/v0)",
+    validity = "Boundary lubrication; the friction reverses within v0.",
+    references = [],
+    example = "coefficient = 0.05\nradius = \"9 mm\"\n",
+)]
 impl PinFrictionSpec for Coulomb {
     fn build(&self) -> Result<Box<dyn PinFriction>, BuildError> {
         Ok(Box::new(Dry {

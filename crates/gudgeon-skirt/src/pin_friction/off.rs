@@ -1,5 +1,5 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{PinFriction, PinFrictionSpec};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// The pin turns freely.
@@ -7,16 +7,14 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 pub struct Off {}
 
-gudgeon_core::register_model! {
-    Off, kind: "pin_friction", name: "off",
-    summary: "the gudgeon pin turns freely",
-    equations: "M = 0",
-    validity: "Pins whose friction does not matter.",
-    references: [],
-    example: "",
-}
-
-#[typetag::serde(name = "off")]
+#[register_model(
+ name = "off",
+    summary = "the gudgeon pin turns freely",
+    equations = "M = 0",
+    validity = "Pins whose friction does not matter.",
+    references = [],
+    example = "",
+)]
 impl PinFrictionSpec for Off {
     fn build(&self) -> Result<Box<dyn PinFriction>, BuildError> {
         Ok(Box::new(Free))

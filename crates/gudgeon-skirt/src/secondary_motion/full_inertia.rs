@@ -1,5 +1,5 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{Lateral, SecondaryMotion, SecondaryMotionSpec};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// Newton's law for the lateral motion and the tilt.
@@ -10,17 +10,15 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 pub struct FullInertia {}
 
-gudgeon_core::register_model! {
-    FullInertia, kind: "secondary_motion", name: "full_inertia",
-    summary: "piston and pin with their inertia across the bore",
-    equations: "M d2(e_t, e_b)/dt2 = film + contact + rod + gas and inertia about the pin + friction;  \
+#[register_model(
+ name = "full_inertia",
+    summary = "piston and pin with their inertia across the bore",
+    equations = "M d2(e_t, e_b)/dt2 = film + contact + rod + gas and inertia about the pin + friction;  \
                 M = sum m grad(e) grad(e) + I/L^2 (1, -1)(1, -1)",
-    validity: "Rigid piston whose pin is fixed in it; small angles; constant crank speed.",
-    references: ["zhu1992", "loureiro2009"],
-    example: "",
-}
-
-#[typetag::serde(name = "full_inertia")]
+    validity = "Rigid piston whose pin is fixed in it; small angles; constant crank speed.",
+    references = ["zhu1992", "loureiro2009"],
+    example = "",
+)]
 impl SecondaryMotionSpec for FullInertia {
     fn build(&self) -> Result<Box<dyn SecondaryMotion>, BuildError> {
         Ok(Box::new(Inertial))

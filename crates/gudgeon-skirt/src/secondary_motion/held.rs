@@ -1,6 +1,6 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{Lateral, SecondaryMotion, SecondaryMotionSpec};
 use gudgeon_core::quantity::{Length, quantity};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// No motion across the bore: the skirt stands where it is told.
@@ -21,16 +21,14 @@ fn centred() -> Length {
     quantity(0.0)
 }
 
-gudgeon_core::register_model! {
-    Held, kind: "secondary_motion", name: "held",
-    summary: "no motion across the bore: the skirt stands where it is told",
-    equations: "e_t, e_b constant",
-    validity: "Friction and pressures of a given place; forces are not in balance.",
-    references: [],
-    example: "e_top = \"-1 um\"\ne_bottom = \"-2 um\"\n",
-}
-
-#[typetag::serde(name = "held")]
+#[register_model(
+ name = "held",
+    summary = "no motion across the bore: the skirt stands where it is told",
+    equations = "e_t, e_b constant",
+    validity = "Friction and pressures of a given place; forces are not in balance.",
+    references = [],
+    example = "e_top = \"-1 um\"\ne_bottom = \"-2 um\"\n",
+)]
 impl SecondaryMotionSpec for Held {
     fn build(&self) -> Result<Box<dyn SecondaryMotion>, BuildError> {
         Ok(Box::new(Still { e_top: self.e_top.si(), e_bottom: self.e_bottom.si() }))

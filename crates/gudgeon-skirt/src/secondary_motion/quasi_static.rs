@@ -1,5 +1,5 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{Lateral, SecondaryMotion, SecondaryMotionSpec};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// Balance of forces at every instant, without the inertia of the motion across the bore.
@@ -11,16 +11,14 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 pub struct QuasiStatic {}
 
-gudgeon_core::register_model! {
-    QuasiStatic, kind: "secondary_motion", name: "quasi_static",
-    summary: "films, contact and rod in balance at every instant; the inertia across the bore is left out",
-    equations: "0 = film + contact + rod + gas and inertia about the pin + friction, solved for (de_t/dt, de_b/dt)",
-    validity: "A film on both sides; the forces of lateral inertia (m e/dt^2) small against the side force.",
-    references: ["loureiro2009"],
-    example: "",
-}
-
-#[typetag::serde(name = "quasi_static")]
+#[register_model(
+ name = "quasi_static",
+    summary = "films, contact and rod in balance at every instant; the inertia across the bore is left out",
+    equations = "0 = film + contact + rod + gas and inertia about the pin + friction, solved for (de_t/dt, de_b/dt)",
+    validity = "A film on both sides; the forces of lateral inertia (m e/dt^2) small against the side force.",
+    references = ["loureiro2009"],
+    example = "",
+)]
 impl SecondaryMotionSpec for QuasiStatic {
     fn build(&self) -> Result<Box<dyn SecondaryMotion>, BuildError> {
         Ok(Box::new(Balanced))

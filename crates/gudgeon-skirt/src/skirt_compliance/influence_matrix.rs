@@ -1,6 +1,6 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{SkirtComplianceCtx, SkirtComplianceSpec, SkirtModes};
 use gudgeon_core::quantity::{Fraction, Ratio, quantity};
+use gudgeon_core::{BuildError, register_model};
 use nalgebra::{DMatrix, SymmetricEigen};
 use serde::{Deserialize, Serialize};
 
@@ -34,19 +34,17 @@ fn rest() -> Ratio<Fraction> {
     quantity(1e-3)
 }
 
-gudgeon_core::register_model! {
-    InfluenceMatrix, kind: "skirt_compliance", name: "influence_matrix",
-    summary: "deflections by unit forces from a file, reduced to the shapes that matter",
-    equations: "C = sum lambda_k v_k v_k';  delta = sum lambda_k phi_k int phi_k (p - p_crankcase) dA;  lambda_k >= rest lambda_1",
-    validity: "Linear elasticity without inertia; deflections by film pressure alone.",
-    references: [],
-    example: "file = \"skirt-compliance.csv\"\n",
-}
-
 /// Asymmetry of a matrix, relative to its largest entry, that is taken for rounding of the file.
 const ASYMMETRY: f64 = 1e-3;
 
-#[typetag::serde(name = "influence_matrix")]
+#[register_model(
+ name = "influence_matrix",
+    summary = "deflections by unit forces from a file, reduced to the shapes that matter",
+    equations = "C = sum lambda_k v_k v_k';  delta = sum lambda_k phi_k int phi_k (p - p_crankcase) dA;  lambda_k >= rest lambda_1",
+    validity = "Linear elasticity without inertia; deflections by film pressure alone.",
+    references = [],
+    example = "file = \"skirt-compliance.csv\"\n",
+)]
 impl SkirtComplianceSpec for InfluenceMatrix {
     fn build(&self, ctx: &SkirtComplianceCtx<'_>) -> Result<SkirtModes, BuildError> {
         if !(1..=100).contains(&self.shapes) {

@@ -1,8 +1,8 @@
 use std::f64::consts::FRAC_PI_2;
 
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{SkirtComplianceCtx, SkirtComplianceSpec, SkirtModes};
 use gudgeon_core::quantity::PosStiffness;
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 use super::points::Points;
@@ -37,16 +37,14 @@ pub struct Shape {
     pub waves: u32,
 }
 
-gudgeon_core::register_model! {
-    Modal, kind: "skirt_compliance", name: "modal",
-    summary: "shapes in which the skirt yields, each with a stiffness of its own",
-    equations: "delta = sum q_k phi_k;  K_k q_k = int phi_k (p - p_crankcase) dA;  phi = (x/L)^m cos(n pi phi/(2 phi0)), or from a file",
-    validity: "Linear elasticity without inertia; deflections by film pressure alone.",
-    references: [],
-    example: "stiffness = [\"300 N/um\", \"800 N/um\"]\nshapes = [{ power = 2, waves = 1 }, { power = 0, waves = 1 }]\n",
-}
-
-#[typetag::serde(name = "modal")]
+#[register_model(
+ name = "modal",
+    summary = "shapes in which the skirt yields, each with a stiffness of its own",
+    equations = "delta = sum q_k phi_k;  K_k q_k = int phi_k (p - p_crankcase) dA;  phi = (x/L)^m cos(n pi phi/(2 phi0)), or from a file",
+    validity = "Linear elasticity without inertia; deflections by film pressure alone.",
+    references = [],
+    example = "stiffness = [\"300 N/um\", \"800 N/um\"]\nshapes = [{ power = 2, waves = 1 }, { power = 0, waves = 1 }]\n",
+)]
 impl SkirtComplianceSpec for Modal {
     fn build(&self, ctx: &SkirtComplianceCtx<'_>) -> Result<SkirtModes, BuildError> {
         let stiffness: Vec<f64> = self.stiffness.iter().map(|k| k.si()).collect();

@@ -1,5 +1,5 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{SkirtComplianceCtx, SkirtComplianceSpec, SkirtModes};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// A skirt that does not yield.
@@ -7,16 +7,14 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 pub struct Rigid {}
 
-gudgeon_core::register_model! {
-    Rigid, kind: "skirt_compliance", name: "rigid",
-    summary: "a skirt that does not yield",
-    equations: "h has no elastic part",
-    validity: "Deflections small against the film.",
-    references: [],
-    example: "",
-}
-
-#[typetag::serde(name = "rigid")]
+#[register_model(
+ name = "rigid",
+    summary = "a skirt that does not yield",
+    equations = "h has no elastic part",
+    validity = "Deflections small against the film.",
+    references = [],
+    example = "",
+)]
 impl SkirtComplianceSpec for Rigid {
     fn build(&self, _: &SkirtComplianceCtx<'_>) -> Result<SkirtModes, BuildError> {
         Ok(SkirtModes::default())

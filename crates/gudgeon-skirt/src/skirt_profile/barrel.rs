@@ -1,6 +1,6 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{SkirtProfile, SkirtProfileCtx, SkirtProfileSpec};
 use gudgeon_core::quantity::{Fraction, Length, NonNegative, Ratio, quantity};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// Barrel of two parabolas, and oval.
@@ -31,16 +31,14 @@ fn half() -> Ratio<Fraction> {
     quantity(0.5)
 }
 
-gudgeon_core::register_model! {
-    Barrel, kind: "skirt_profile", name: "barrel",
-    summary: "barrel of two parabolas, and oval",
-    equations: "f = t ((s0 - s)/s0)^2 above s0, b ((s - s0)/(1 - s0))^2 below;  + o sin^2(phi)",
-    validity: "Hot shape.",
-    references: ["loureiro2009"],
-    example: "top = \"20 um\"\nbottom = \"10 um\"\novality = \"150 um\"\n",
-}
-
-#[typetag::serde(name = "barrel")]
+#[register_model(
+ name = "barrel",
+    summary = "barrel of two parabolas, and oval",
+    equations = "f = t ((s0 - s)/s0)^2 above s0, b ((s - s0)/(1 - s0))^2 below;  + o sin^2(phi)",
+    validity = "Hot shape.",
+    references = ["loureiro2009"],
+    example = "top = \"20 um\"\nbottom = \"10 um\"\novality = \"150 um\"\n",
+)]
 impl SkirtProfileSpec for Barrel {
     fn build(&self, ctx: &SkirtProfileCtx<'_>) -> Result<Box<dyn SkirtProfile>, BuildError> {
         Ok(Box::new(Shape { spec: self.clone(), length: ctx.length }))

@@ -1,5 +1,5 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{SkirtProfile, SkirtProfileCtx, SkirtProfileSpec};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// A cylinder.
@@ -7,16 +7,14 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 pub struct Cylindrical {}
 
-gudgeon_core::register_model! {
-    Cylindrical, kind: "skirt_profile", name: "cylindrical",
-    summary: "a cylinder",
-    equations: "f = 0",
-    validity: "Comparison with programs that have no profile; real skirts have one.",
-    references: ["loureiro2009"],
-    example: "",
-}
-
-#[typetag::serde(name = "cylindrical")]
+#[register_model(
+ name = "cylindrical",
+    summary = "a cylinder",
+    equations = "f = 0",
+    validity = "Comparison with programs that have no profile; real skirts have one.",
+    references = ["loureiro2009"],
+    example = "",
+)]
 impl SkirtProfileSpec for Cylindrical {
     fn build(&self, _: &SkirtProfileCtx<'_>) -> Result<Box<dyn SkirtProfile>, BuildError> {
         Ok(Box::new(Straight))

@@ -1,7 +1,7 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::file::Files;
 use gudgeon_core::kinds::{SkirtProfile, SkirtProfileCtx, SkirtProfileSpec};
 use gudgeon_core::quantity::{Length, NonNegative, quantity};
+use gudgeon_core::{BuildError, register_model};
 use gudgeon_numerics::table::Pchip;
 use serde::{Deserialize, Serialize};
 
@@ -34,16 +34,14 @@ fn none() -> Length<NonNegative> {
     quantity(0.0)
 }
 
-gudgeon_core::register_model! {
-    Table, kind: "skirt_profile", name: "table",
-    summary: "a measured shape, by height or over the whole side",
-    equations: "f = P(x) + o sin^2(phi), P a monotone cubic;  or bilinear between the points of a file",
-    validity: "Hot shape. The ends of the table count beyond it.",
-    references: ["fritsch1980"],
-    example: "heights = [\"0 mm\", \"10 mm\", \"25 mm\", \"40 mm\"]\ndrops = [\"25 um\", \"4 um\", \"0 um\", \"12 um\"]\n",
-}
-
-#[typetag::serde(name = "table")]
+#[register_model(
+ name = "table",
+    summary = "a measured shape, by height or over the whole side",
+    equations = "f = P(x) + o sin^2(phi), P a monotone cubic;  or bilinear between the points of a file",
+    validity = "Hot shape. The ends of the table count beyond it.",
+    references = ["fritsch1980"],
+    example = "heights = [\"0 mm\", \"10 mm\", \"25 mm\", \"40 mm\"]\ndrops = [\"25 um\", \"4 um\", \"0 um\", \"12 um\"]\n",
+)]
 impl SkirtProfileSpec for Table {
     fn build(&self, ctx: &SkirtProfileCtx<'_>) -> Result<Box<dyn SkirtProfile>, BuildError> {
         if let Some(file) = &self.file {

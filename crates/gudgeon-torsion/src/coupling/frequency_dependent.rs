@@ -1,5 +1,5 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{Coupling, CouplingSpec, CouplingTorque, LinearCoupling};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 use super::{check_table, interpolate};
@@ -19,16 +19,14 @@ pub struct FrequencyDependent {
     pub loss_factor: Vec<f64>,
 }
 
-gudgeon_core::register_model! {
-    FrequencyDependent, kind: "coupling", name: "frequency_dependent",
-    summary: "stiffness and loss factor over the frequency, from a table",
-    equations: "T = K(omega) (1 + i eta(omega)) dtheta",
-    validity: "Harmonic motion; models in time refuse it. Natural frequencies are those of the first row.",
-    references: [],
-    example: "frequency = [1, 50, 200]\nstiffness = [2e4, 3e4, 4e4]\nloss_factor = [0.1, 0.4, 0.9]\n",
-}
-
-#[typetag::serde(name = "frequency_dependent")]
+#[register_model(
+ name = "frequency_dependent",
+    summary = "stiffness and loss factor over the frequency, from a table",
+    equations = "T = K(omega) (1 + i eta(omega)) dtheta",
+    validity = "Harmonic motion; models in time refuse it. Natural frequencies are those of the first row.",
+    references = [],
+    example = "frequency = [1, 50, 200]\nstiffness = [2e4, 3e4, 4e4]\nloss_factor = [0.1, 0.4, 0.9]\n",
+)]
 impl CouplingSpec for FrequencyDependent {
     fn build(&self) -> Result<Box<dyn Coupling>, BuildError> {
         let columns =

@@ -1,6 +1,6 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{Coupling, CouplingSpec, CouplingTorque, LinearCoupling};
 use gudgeon_core::quantity::{NonNegative, Ratio, TorsionalDamping, TorsionalStiffness, quantity};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// A linear spring and damper side by side: a shaft, a coupling of steel, the fluid of a viscous damper (stiffness 0).
@@ -31,16 +31,14 @@ fn no_loss() -> Ratio<NonNegative> {
     quantity(0.0)
 }
 
-gudgeon_core::register_model! {
-    Linear, kind: "coupling", name: "linear",
-    summary: "linear spring and damper, with a loss factor for harmonic motion",
-    equations: "T = k dtheta + c domega;  in vibration T = (k (1 + i eta) + i omega c) dtheta",
-    validity: "Small twists of steel shafts and couplings. The loss factor has no meaning in time.",
-    references: ["den_hartog1956"],
-    example: "stiffness = \"8 MN m/rad\"\ndamping = \"492.5 N m s/rad\"\nloss_factor = 0\n",
-}
-
-#[typetag::serde(name = "linear")]
+#[register_model(
+ name = "linear",
+    summary = "linear spring and damper, with a loss factor for harmonic motion",
+    equations = "T = k dtheta + c domega;  in vibration T = (k (1 + i eta) + i omega c) dtheta",
+    validity = "Small twists of steel shafts and couplings. The loss factor has no meaning in time.",
+    references = ["den_hartog1956"],
+    example = "stiffness = \"8 MN m/rad\"\ndamping = \"492.5 N m s/rad\"\nloss_factor = 0\n",
+)]
 impl CouplingSpec for Linear {
     fn build(&self) -> Result<Box<dyn Coupling>, BuildError> {
         Ok(Box::new(Spring {

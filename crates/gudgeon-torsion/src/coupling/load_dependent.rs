@@ -1,6 +1,6 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{Coupling, CouplingSpec, CouplingTorque, LinearCoupling};
 use gudgeon_core::quantity::{NonNegative, Ratio, quantity};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 use super::{check_table, interpolate};
@@ -31,16 +31,14 @@ fn cold() -> Ratio<NonNegative> {
     quantity(1.0)
 }
 
-gudgeon_core::register_model! {
-    LoadDependent, kind: "coupling", name: "load_dependent",
-    summary: "dynamic stiffness and relative damping over the mean torque",
-    equations: "T = K(T_mean) (1 + i psi/(2 pi)) dtheta",
-    validity: "Harmonic motion about a mean torque; models in time refuse it.",
-    references: [],
-    example: "mean_torque = [0, 1000, 2000]\nstiffness = [1e4, 2e4, 4e4]\nrelative_damping = [1.1, 1.0, 0.9]\nheat_factor = 1\n",
-}
-
-#[typetag::serde(name = "load_dependent")]
+#[register_model(
+ name = "load_dependent",
+    summary = "dynamic stiffness and relative damping over the mean torque",
+    equations = "T = K(T_mean) (1 + i psi/(2 pi)) dtheta",
+    validity = "Harmonic motion about a mean torque; models in time refuse it.",
+    references = [],
+    example = "mean_torque = [0, 1000, 2000]\nstiffness = [1e4, 2e4, 4e4]\nrelative_damping = [1.1, 1.0, 0.9]\nheat_factor = 1\n",
+)]
 impl CouplingSpec for LoadDependent {
     fn build(&self) -> Result<Box<dyn Coupling>, BuildError> {
         let columns = [

@@ -1,5 +1,5 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{Coupling, CouplingSpec, CouplingTorque, LinearCoupling};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// A rigid link: both ends turn as one. Elimination passes it without ever forming a large number; in time its
@@ -8,16 +8,14 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 pub struct Off {}
 
-gudgeon_core::register_model! {
-    Off, kind: "coupling", name: "off",
-    summary: "no elasticity: a rigid link",
-    equations: "theta_1 = theta_2",
-    validity: "Flanges, hubs, gear meshes without elasticity.",
-    references: [],
-    example: "",
-}
-
-#[typetag::serde(name = "off")]
+#[register_model(
+ name = "off",
+    summary = "no elasticity: a rigid link",
+    equations = "theta_1 = theta_2",
+    validity = "Flanges, hubs, gear meshes without elasticity.",
+    references = [],
+    example = "",
+)]
 impl CouplingSpec for Off {
     fn build(&self) -> Result<Box<dyn Coupling>, BuildError> {
         Ok(Box::new(Rigid))

@@ -1,6 +1,6 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{Coupling, CouplingSpec, CouplingTorque, LinearCoupling};
 use gudgeon_core::quantity::{NonNegative, Ratio, TorsionalDamping, quantity};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 use super::check_table;
@@ -31,16 +31,14 @@ fn no_time() -> Ratio<NonNegative> {
     quantity(0.0)
 }
 
-gudgeon_core::register_model! {
-    Piecewise, kind: "coupling", name: "piecewise",
-    summary: "stiffness by pieces: stages, stops, play",
-    equations: "T = T_i + k_i (x - x_i) + (c + tau k_i) dx/dt between the rows x_i <= x < x_{i+1}",
-    validity: "Spring couplings, gear play. `orders` and `modal` take the piece of the mean torque, right while the vibration stays in it; `harmonic_balance` and models in time take all.",
-    references: ["den_hartog1956"],
-    example: "twist = [-0.02, -0.01, 0.01, 0.02]\ntorque = [-300, -100, 100, 300]\ndamping = \"2 N m s/rad\"\nloss_time = 0\n",
-}
-
-#[typetag::serde(name = "piecewise")]
+#[register_model(
+ name = "piecewise",
+    summary = "stiffness by pieces: stages, stops, play",
+    equations = "T = T_i + k_i (x - x_i) + (c + tau k_i) dx/dt between the rows x_i <= x < x_{i+1}",
+    validity = "Spring couplings, gear play. `orders` and `modal` take the piece of the mean torque, right while the vibration stays in it; `harmonic_balance` and models in time take all.",
+    references = ["den_hartog1956"],
+    example = "twist = [-0.02, -0.01, 0.01, 0.02]\ntorque = [-300, -100, 100, 300]\ndamping = \"2 N m s/rad\"\nloss_time = 0\n",
+)]
 impl CouplingSpec for Piecewise {
     fn build(&self) -> Result<Box<dyn Coupling>, BuildError> {
         check_table("twist", &self.twist, &[("torque", &self.torque)], 2)?;

@@ -1,8 +1,8 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{Coupling, CouplingSpec, CouplingTorque, LinearCoupling};
 use gudgeon_core::quantity::{
     NonNegative, PosTorque, PosTorsionalStiffness, Ratio, TorsionalDamping, quantity,
 };
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// A coupling that stiffens with its torque, as rubber in compression does.
@@ -30,16 +30,14 @@ fn none() -> TorsionalDamping<NonNegative> {
     quantity(0.0)
 }
 
-gudgeon_core::register_model! {
-    Progressive, kind: "coupling", name: "progressive",
-    summary: "stiffness that grows with the torque, cubic",
-    equations: "T = k x + k3 x^3 + c dx/dt;  3 k3 x_n^2 = (gain - 1) k;  x_n = 3 T_n/(k (2 + gain))",
-    validity: "Rubber couplings up to about their largest torque. `orders` and `modal` take the tangent at the mean torque; `harmonic_balance` and models in time take all.",
-    references: ["den_hartog1956"],
-    example: "stiffness = \"20 kN m/rad\"\nnominal_torque = \"2 kN m\"\ngain = 2\ndamping = \"20 N m s/rad\"\n",
-}
-
-#[typetag::serde(name = "progressive")]
+#[register_model(
+ name = "progressive",
+    summary = "stiffness that grows with the torque, cubic",
+    equations = "T = k x + k3 x^3 + c dx/dt;  3 k3 x_n^2 = (gain - 1) k;  x_n = 3 T_n/(k (2 + gain))",
+    validity = "Rubber couplings up to about their largest torque. `orders` and `modal` take the tangent at the mean torque; `harmonic_balance` and models in time take all.",
+    references = ["den_hartog1956"],
+    example = "stiffness = \"20 kN m/rad\"\nnominal_torque = \"2 kN m\"\ngain = 2\ndamping = \"20 N m s/rad\"\n",
+)]
 impl CouplingSpec for Progressive {
     fn build(&self) -> Result<Box<dyn Coupling>, BuildError> {
         let (k, gain) = (self.stiffness.si(), self.gain.si());

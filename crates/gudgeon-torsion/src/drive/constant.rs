@@ -1,6 +1,6 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{Drive, DriveSpec, DriveTorque};
 use gudgeon_core::quantity::Torque;
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// The same torque at all speeds and angles.
@@ -11,16 +11,14 @@ pub struct Constant {
     pub torque: Torque,
 }
 
-gudgeon_core::register_model! {
-    Constant, kind: "drive", name: "constant",
-    summary: "the same torque at all speeds",
-    equations: "T = const",
-    validity: "Studies about one speed.",
-    references: [],
-    example: "torque = \"2 kN m\"\n",
-}
-
-#[typetag::serde(name = "constant")]
+#[register_model(
+ name = "constant",
+    summary = "the same torque at all speeds",
+    equations = "T = const",
+    validity = "Studies about one speed.",
+    references = [],
+    example = "torque = \"2 kN m\"\n",
+)]
 impl DriveSpec for Constant {
     fn build(&self) -> Result<Box<dyn Drive>, BuildError> {
         Ok(Box::new(Same { torque: self.torque.si() }))

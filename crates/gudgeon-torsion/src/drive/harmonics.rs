@@ -1,6 +1,6 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{Drive, DriveSpec, DriveTorque, OrderTorque};
 use gudgeon_core::quantity::{Angle, Ratio, Torque, quantity};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// A torque given by its harmonics over the angle of its inertia: harmonic tables of engine makers, propeller blades, torque ripple.
@@ -43,16 +43,14 @@ fn one() -> Ratio {
     quantity(1.0)
 }
 
-gudgeon_core::register_model! {
-    Harmonics, kind: "drive", name: "harmonics",
-    summary: "torque by its harmonics over the angle",
-    equations: "T = T_0 + sum_n A_n cos(n theta - phi_n)",
-    validity: "Orders are multiples of a half.",
-    references: ["den_hartog1956"],
-    example: "mean = \"100 N m\"\norders = [{ order = 3, amplitude = \"160 N m\" }, { order = 4.5, amplitude = \"90 N m\", phase = \"30 deg\" }]\n",
-}
-
-#[typetag::serde(name = "harmonics")]
+#[register_model(
+ name = "harmonics",
+    summary = "torque by its harmonics over the angle",
+    equations = "T = T_0 + sum_n A_n cos(n theta - phi_n)",
+    validity = "Orders are multiples of a half.",
+    references = ["den_hartog1956"],
+    example = "mean = \"100 N m\"\norders = [{ order = 3, amplitude = \"160 N m\" }, { order = 4.5, amplitude = \"90 N m\", phase = \"30 deg\" }]\n",
+)]
 impl DriveSpec for Harmonics {
     fn build(&self) -> Result<Box<dyn Drive>, BuildError> {
         let mut orders = Vec::new();

@@ -1,6 +1,6 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{Drive, DriveSpec, DriveTorque};
 use gudgeon_core::quantity::{NonNegative, PosAngularSpeed, PosRatio, PosTorque, Torque, quantity};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// An induction motor over its whole range of speed, by the formula of Kloss.
@@ -29,16 +29,14 @@ fn none() -> Torque<NonNegative> {
     quantity(0.0)
 }
 
-gudgeon_core::register_model! {
-    InductionMotor, kind: "drive", name: "induction_motor",
-    summary: "induction motor from rest to synchronous speed, by the formula of Kloss",
-    equations: "T = 2 T_b/(s/s_b + s_b/s);  s = (omega_s - omega)/omega_s",
-    validity: "Quasi-steady torque: slow against the electrical time constants. No alternating torque at line frequency.",
-    references: ["kloss1916"],
-    example: "synchronous = \"1200 rpm\"\nbreakdown_torque = \"5 kN m\"\nbreakdown_slip = \"8 %\"\n",
-}
-
-#[typetag::serde(name = "induction_motor")]
+#[register_model(
+ name = "induction_motor",
+    summary = "induction motor from rest to synchronous speed, by the formula of Kloss",
+    equations = "T = 2 T_b/(s/s_b + s_b/s);  s = (omega_s - omega)/omega_s",
+    validity = "Quasi-steady torque: slow against the electrical time constants. No alternating torque at line frequency.",
+    references = ["kloss1916"],
+    example = "synchronous = \"1200 rpm\"\nbreakdown_torque = \"5 kN m\"\nbreakdown_slip = \"8 %\"\n",
+)]
 impl DriveSpec for InductionMotor {
     fn build(&self) -> Result<Box<dyn Drive>, BuildError> {
         Ok(Box::new(Kloss {

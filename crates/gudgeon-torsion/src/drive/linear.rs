@@ -1,6 +1,6 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{Drive, DriveSpec, DriveTorque};
 use gudgeon_core::quantity::{PosAngularSpeed, Torque, TorsionalDamping};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// A straight torque-speed line `T = C₀ + C₁ ω`: an induction motor near its synchronous speed.
@@ -33,16 +33,14 @@ pub struct Rated {
     pub synchronous: PosAngularSpeed,
 }
 
-gudgeon_core::register_model! {
-    Linear, kind: "drive", name: "linear",
-    summary: "straight torque-speed line, as of an induction motor near synchronous speed",
-    equations: "T = C0 + C1 omega;  from the rated point C1 = -T_r/(omega_s - omega_r), C0 = -C1 omega_s",
-    validity: "Small changes of speed about the rated point.",
-    references: ["gomes2021", "doughty1988"],
-    example: "intercept = \"2 kN m\"\nslope = \"-0.2 N m s/rad\"\n",
-}
-
-#[typetag::serde(name = "linear")]
+#[register_model(
+ name = "linear",
+    summary = "straight torque-speed line, as of an induction motor near synchronous speed",
+    equations = "T = C0 + C1 omega;  from the rated point C1 = -T_r/(omega_s - omega_r), C0 = -C1 omega_s",
+    validity = "Small changes of speed about the rated point.",
+    references = ["gomes2021", "doughty1988"],
+    example = "intercept = \"2 kN m\"\nslope = \"-0.2 N m s/rad\"\n",
+)]
 impl DriveSpec for Linear {
     fn build(&self) -> Result<Box<dyn Drive>, BuildError> {
         let (c0, c1) = match (&self.intercept, &self.slope, &self.rated) {

@@ -1,5 +1,5 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{Drive, DriveSpec, DriveTorque};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// No torque: a free end, a machine that coasts.
@@ -7,16 +7,14 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 pub struct Off {}
 
-gudgeon_core::register_model! {
-    Off, kind: "drive", name: "off",
-    summary: "no torque",
-    equations: "T = 0",
-    validity: "Coasting machines, free vibration.",
-    references: [],
-    example: "",
-}
-
-#[typetag::serde(name = "off")]
+#[register_model(
+ name = "off",
+    summary = "no torque",
+    equations = "T = 0",
+    validity = "Coasting machines, free vibration.",
+    references = [],
+    example = "",
+)]
 impl DriveSpec for Off {
     fn build(&self) -> Result<Box<dyn Drive>, BuildError> {
         Ok(Box::new(Nothing))

@@ -1,6 +1,6 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{Drive, DriveSpec, DriveTorque};
 use gudgeon_core::quantity::{NonNegative, PosAngularSpeed, Ratio, Torque, quantity};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// A torque that goes with a power of the speed: fan and propeller (2), generator on a resistance (1), hoist (0).
@@ -26,16 +26,14 @@ fn square() -> Ratio<NonNegative> {
     quantity(2.0)
 }
 
-gudgeon_core::register_model! {
-    PowerLaw, kind: "drive", name: "power_law",
-    summary: "torque by a power of the speed: fan, propeller, generator",
-    equations: "T = T_r sign(omega) |omega/omega_r|^n",
-    validity: "Loads without a part that goes with the angle.",
-    references: [],
-    example: "torque = \"1 kN m\"\nspeed = \"1000 rpm\"\nexponent = 2\n",
-}
-
-#[typetag::serde(name = "power_law")]
+#[register_model(
+ name = "power_law",
+    summary = "torque by a power of the speed: fan, propeller, generator",
+    equations = "T = T_r sign(omega) |omega/omega_r|^n",
+    validity = "Loads without a part that goes with the angle.",
+    references = [],
+    example = "torque = \"1 kN m\"\nspeed = \"1000 rpm\"\nexponent = 2\n",
+)]
 impl DriveSpec for PowerLaw {
     fn build(&self) -> Result<Box<dyn Drive>, BuildError> {
         if self.exponent.si() > STEEPEST {

@@ -1,5 +1,5 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{Drive, DriveSpec, DriveTorque};
+use gudgeon_core::{BuildError, register_model};
 use gudgeon_numerics::table::Pchip;
 use serde::{Deserialize, Serialize};
 
@@ -13,16 +13,14 @@ pub struct Table {
     pub torque: Vec<f64>,
 }
 
-gudgeon_core::register_model! {
-    Table, kind: "drive", name: "table",
-    summary: "measured torque-speed curve",
-    equations: "T(omega): monotone piecewise cubic through the rows, straight beyond the ends",
-    validity: "As good as the curve; at least two rows.",
-    references: ["fritsch1980"],
-    example: "speed_rpm = [0, 900, 1140, 1180, 1200]\ntorque = [1800, 2400, 4200, 2100, 0]\n",
-}
-
-#[typetag::serde(name = "table")]
+#[register_model(
+ name = "table",
+    summary = "measured torque-speed curve",
+    equations = "T(omega): monotone piecewise cubic through the rows, straight beyond the ends",
+    validity = "As good as the curve; at least two rows.",
+    references = ["fritsch1980"],
+    example = "speed_rpm = [0, 900, 1140, 1180, 1200]\ntorque = [1800, 2400, 4200, 2100, 0]\n",
+)]
 impl DriveSpec for Table {
     fn build(&self) -> Result<Box<dyn Drive>, BuildError> {
         crate::coupling::check_table("speed_rpm", &self.speed_rpm, &[("torque", &self.torque)], 2)?;

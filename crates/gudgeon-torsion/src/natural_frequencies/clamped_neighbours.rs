@@ -1,5 +1,5 @@
 use gudgeon_core::kinds::{Line, Mode, NaturalFrequencies, NaturalFrequenciesSpec};
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
 use crate::tree::Tree;
@@ -12,16 +12,14 @@ use crate::tree::Tree;
 #[serde(deny_unknown_fields)]
 pub struct ClampedNeighbours {}
 
-gudgeon_core::register_model! {
-    ClampedNeighbours, kind: "natural_frequencies", name: "clamped_neighbours",
-    summary: "wrong on purpose: each inertia between neighbours that stand still, as published",
-    equations: "omega_i = sqrt(K_ii/J_i)",
-    validity: "For reproduction only: not the natural frequencies of the line. Listed by inertia, not by mode.",
-    references: ["gomes2021"],
-    example: "",
-}
-
-#[typetag::serde(name = "clamped_neighbours")]
+#[register_model(
+ name = "clamped_neighbours",
+    summary = "wrong on purpose: each inertia between neighbours that stand still, as published",
+    equations = "omega_i = sqrt(K_ii/J_i)",
+    validity = "For reproduction only: not the natural frequencies of the line. Listed by inertia, not by mode.",
+    references = ["gomes2021"],
+    example = "",
+)]
 impl NaturalFrequenciesSpec for ClampedNeighbours {
     fn build(&self, line: &Line) -> Result<Box<dyn NaturalFrequencies>, BuildError> {
         let modes = modes(&Tree::new(line)?)

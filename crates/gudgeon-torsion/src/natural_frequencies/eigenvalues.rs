@@ -1,5 +1,5 @@
 use gudgeon_core::kinds::{Line, Mode, NaturalFrequencies, NaturalFrequenciesSpec};
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
 use crate::eigen;
@@ -29,16 +29,14 @@ impl Default for Eigenvalues {
     }
 }
 
-gudgeon_core::register_model! {
-    Eigenvalues, kind: "natural_frequencies", name: "eigenvalues",
-    summary: "eigenvalues of the whole line with shapes, undamped and damped",
-    equations: "(K - omega^2 J) phi = 0;  det(K + z C + z^2 J) = 0, z = -decay + i omega_d",
-    validity: "Small vibration; inertia of throws at its mean, couplings over the frequency at their first row, drives without their slope. The scene takes couplings that depend on their load at the mean torque.",
-    references: ["holzer1921", "reinsch1973", "wilkinson1971", "aberth1973"],
-    example: "",
-}
-
-#[typetag::serde(name = "eigenvalues")]
+#[register_model(
+ name = "eigenvalues",
+    summary = "eigenvalues of the whole line with shapes, undamped and damped",
+    equations = "(K - omega^2 J) phi = 0;  det(K + z C + z^2 J) = 0, z = -decay + i omega_d",
+    validity = "Small vibration; inertia of throws at its mean, couplings over the frequency at their first row, drives without their slope. The scene takes couplings that depend on their load at the mean torque.",
+    references = ["holzer1921", "reinsch1973", "wilkinson1971", "aberth1973"],
+    example = "",
+)]
 impl NaturalFrequenciesSpec for Eigenvalues {
     fn build(&self, line: &Line) -> Result<Box<dyn NaturalFrequencies>, BuildError> {
         if self.most == 0 {

@@ -1,5 +1,5 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{ThrowCtx, ThrowInertia, ThrowInertiaSpec};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 use super::Lumped;
@@ -16,16 +16,14 @@ use super::Lumped;
 #[serde(deny_unknown_fields)]
 pub struct Exact {}
 
-gudgeon_core::register_model! {
-    Exact, kind: "throw_inertia", name: "exact",
-    summary: "inertia of crank, rod and piston as it is at each crank angle",
-    equations: "I = I_c + m_1 r^2 + I_2 (dphi/dtheta)^2 + (m_2 + m_p) (dx/dtheta)^2",
-    validity: "Rigid parts; offset included.",
-    references: ["gomes2021", "heywood1988"],
-    example: "",
-}
-
-#[typetag::serde(name = "exact")]
+#[register_model(
+ name = "exact",
+    summary = "inertia of crank, rod and piston as it is at each crank angle",
+    equations = "I = I_c + m_1 r^2 + I_2 (dphi/dtheta)^2 + (m_2 + m_p) (dx/dtheta)^2",
+    validity = "Rigid parts; offset included.",
+    references = ["gomes2021", "heywood1988"],
+    example = "",
+)]
 impl ThrowInertiaSpec for Exact {
     fn build(&self, ctx: &ThrowCtx) -> Result<Box<dyn ThrowInertia>, BuildError> {
         let mut m = Mechanism { p: Lumped::new(ctx)?, mean: 0.0 };

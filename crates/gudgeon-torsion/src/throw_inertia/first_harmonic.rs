@@ -1,5 +1,5 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{ThrowCtx, ThrowInertia, ThrowInertiaSpec};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 use super::Lumped;
@@ -12,16 +12,14 @@ use super::Lumped;
 #[serde(deny_unknown_fields)]
 pub struct FirstHarmonic {}
 
-gudgeon_core::register_model! {
-    FirstHarmonic, kind: "throw_inertia", name: "first_harmonic",
-    summary: "mean inertia and its part of twice the crank angle, for a long rod",
-    equations: "I = I_0 (1 - eps cos(2 theta));  eps I_0 = (j m_r + m_p) r^2/2",
-    validity: "Rod much longer than the crank radius: orders 1 and 3 of the inertia torque are missing.",
-    references: ["gomes2021"],
-    example: "",
-}
-
-#[typetag::serde(name = "first_harmonic")]
+#[register_model(
+ name = "first_harmonic",
+    summary = "mean inertia and its part of twice the crank angle, for a long rod",
+    equations = "I = I_0 (1 - eps cos(2 theta));  eps I_0 = (j m_r + m_p) r^2/2",
+    validity = "Rod much longer than the crank radius: orders 1 and 3 of the inertia torque are missing.",
+    references = ["gomes2021"],
+    example = "",
+)]
 impl ThrowInertiaSpec for FirstHarmonic {
     fn build(&self, ctx: &ThrowCtx) -> Result<Box<dyn ThrowInertia>, BuildError> {
         let p = Lumped::new(ctx)?;

@@ -1,5 +1,5 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{ThrowCtx, ThrowInertia, ThrowInertiaSpec};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 use super::Lumped;
@@ -12,16 +12,14 @@ use super::Lumped;
 #[serde(deny_unknown_fields)]
 pub struct Mean {}
 
-gudgeon_core::register_model! {
-    Mean, kind: "throw_inertia", name: "mean",
-    summary: "constant mean inertia, for a long rod",
-    equations: "I_0 = I_c + (1 - j) m_r r^2 + (j m_r + m_p) r^2/2",
-    validity: "Leaves out the inertia torque, which at the speeds of most machines is larger than that of the gas.",
-    references: ["gomes2021"],
-    example: "",
-}
-
-#[typetag::serde(name = "mean")]
+#[register_model(
+ name = "mean",
+    summary = "constant mean inertia, for a long rod",
+    equations = "I_0 = I_c + (1 - j) m_r r^2 + (j m_r + m_p) r^2/2",
+    validity = "Leaves out the inertia torque, which at the speeds of most machines is larger than that of the gas.",
+    references = ["gomes2021"],
+    example = "",
+)]
 impl ThrowInertiaSpec for Mean {
     fn build(&self, ctx: &ThrowCtx) -> Result<Box<dyn ThrowInertia>, BuildError> {
         let p = Lumped::new(ctx)?;

@@ -1,5 +1,5 @@
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{ThrowCtx, ThrowInertia, ThrowInertiaSpec};
+use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 use super::mean::Same;
@@ -9,16 +9,14 @@ use super::mean::Same;
 #[serde(deny_unknown_fields)]
 pub struct Off {}
 
-gudgeon_core::register_model! {
-    Off, kind: "throw_inertia", name: "off",
-    summary: "inertia of the crank alone",
-    equations: "I = I_c",
-    validity: "Lines whose inertias are given as sums already.",
-    references: [],
-    example: "",
-}
-
-#[typetag::serde(name = "off")]
+#[register_model(
+ name = "off",
+    summary = "inertia of the crank alone",
+    equations = "I = I_c",
+    validity = "Lines whose inertias are given as sums already.",
+    references = [],
+    example = "",
+)]
 impl ThrowInertiaSpec for Off {
     fn build(&self, ctx: &ThrowCtx) -> Result<Box<dyn ThrowInertia>, BuildError> {
         Ok(Box::new(Same { inertia: ctx.crank_inertia }))

@@ -4,7 +4,7 @@ use gudgeon_core::kinds::{
     Line, LinearCoupling, OrderResponse, Torsion, TorsionAnswer, TorsionCtx, TorsionOut, TorsionSpec,
 };
 use gudgeon_core::quantity::{Positive, Ratio, quantity};
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use gudgeon_numerics::gmres::Gmres;
 use gudgeon_numerics::linalg::Complex;
 use serde::{Deserialize, Serialize};
@@ -53,15 +53,6 @@ impl Default for HarmonicBalance {
     }
 }
 
-gudgeon_core::register_model! {
-    HarmonicBalance, kind: "torsion", name: "harmonic_balance",
-    summary: "periodic motion with variable inertia and nonlinear couplings, by orders",
-    equations: "(K + i omega C - omega^2 J) a_n = T_n + T_nl,n;  T_nl = dQ - (I - I_m) theta'' - I' theta'^2/2",
-    validity: "Constant mean speed; all orders multiples of one. One periodic motion, not the choice between several.",
-    references: ["gomes2021", "saad1986"],
-    example: "tolerance = 1e-10\n",
-}
-
 impl HarmonicBalance {
     /// Itself, where a line has something that models by independent orders leave out.
     pub(crate) fn if_it_has_more(self, line: &Line) -> Option<Box<dyn TorsionSpec>> {
@@ -69,7 +60,14 @@ impl HarmonicBalance {
     }
 }
 
-#[typetag::serde(name = "harmonic_balance")]
+#[register_model(
+ name = "harmonic_balance",
+    summary = "periodic motion with variable inertia and nonlinear couplings, by orders",
+    equations = "(K + i omega C - omega^2 J) a_n = T_n + T_nl,n;  T_nl = dQ - (I - I_m) theta'' - I' theta'^2/2",
+    validity = "Constant mean speed; all orders multiples of one. One periodic motion, not the choice between several.",
+    references = ["gomes2021", "saad1986"],
+    example = "tolerance = 1e-10\n",
+)]
 impl TorsionSpec for HarmonicBalance {
     fn build(&self, ctx: &TorsionCtx<'_>) -> Result<Box<dyn Torsion>, BuildError> {
         if self.tolerance.si() < 1e-14 {

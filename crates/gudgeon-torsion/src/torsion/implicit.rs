@@ -1,6 +1,6 @@
 use gudgeon_core::kinds::{Torsion, TorsionAnswer, TorsionCtx, TorsionOut, TorsionSpec};
 use gudgeon_core::quantity::{Positive, Ratio, quantity};
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use gudgeon_numerics::ode::{Flow, Integrator, OdeSystem, Options, Stats};
 use gudgeon_numerics::rodas::{Formula, Rodas};
 use serde::{Deserialize, Serialize};
@@ -31,16 +31,14 @@ impl Default for Implicit {
     }
 }
 
-gudgeon_core::register_model! {
-    Implicit, kind: "torsion", name: "implicit",
-    summary: "motion over time with error control, for anything nonlinear",
-    equations: "J(theta) domega/dt + J'(theta) omega^2/2 = T(theta, omega) - coupling torques",
-    validity: "Viscous damping; every inertia greater than zero but for those on rigid links.",
-    references: ["gomes2021", "steinebach2023"],
-    example: "tolerance = 1e-6\n",
-}
-
-#[typetag::serde(name = "implicit")]
+#[register_model(
+ name = "implicit",
+    summary = "motion over time with error control, for anything nonlinear",
+    equations = "J(theta) domega/dt + J'(theta) omega^2/2 = T(theta, omega) - coupling torques",
+    validity = "Viscous damping; every inertia greater than zero but for those on rigid links.",
+    references = ["gomes2021", "steinebach2023"],
+    example = "tolerance = 1e-6\n",
+)]
 impl TorsionSpec for Implicit {
     fn build(&self, ctx: &TorsionCtx<'_>) -> Result<Box<dyn Torsion>, BuildError> {
         let dynamics = Dynamics::new(ctx.line)?;

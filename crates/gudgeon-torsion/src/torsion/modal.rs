@@ -1,6 +1,6 @@
 use gudgeon_core::kinds::{Line, Torsion, TorsionAnswer, TorsionCtx, TorsionOut, TorsionSpec};
 use gudgeon_core::quantity::{Fraction, Ratio};
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use gudgeon_numerics::linalg::Complex;
 use serde::{Deserialize, Serialize};
 
@@ -40,16 +40,14 @@ impl Default for Modal {
     }
 }
 
-gudgeon_core::register_model! {
-    Modal, kind: "torsion", name: "modal",
-    summary: "forced vibration by superposition of modes, with static correction",
-    equations: "q_m = phi_m^T T/(omega_m^2 - omega^2 + i omega c_m);  theta = sum phi_m q_m",
-    validity: "Light damping that hardly couples the modes. For long lines of which few modes matter.",
-    references: ["gomes2021", "den_hartog1956"],
-    example: "modes = 6\n",
-}
-
-#[typetag::serde(name = "modal")]
+#[register_model(
+ name = "modal",
+    summary = "forced vibration by superposition of modes, with static correction",
+    equations = "q_m = phi_m^T T/(omega_m^2 - omega^2 + i omega c_m);  theta = sum phi_m q_m",
+    validity = "Light damping that hardly couples the modes. For long lines of which few modes matter.",
+    references = ["gomes2021", "den_hartog1956"],
+    example = "modes = 6\n",
+)]
 impl TorsionSpec for Modal {
     fn build(&self, ctx: &TorsionCtx<'_>) -> Result<Box<dyn Torsion>, BuildError> {
         if self.modes == 0 {

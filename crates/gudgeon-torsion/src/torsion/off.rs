@@ -1,5 +1,5 @@
 use gudgeon_core::kinds::{Torsion, TorsionAnswer, TorsionCtx, TorsionOut, TorsionSpec};
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// No torsion: the shaft turns at constant speed and does not twist.
@@ -7,16 +7,14 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 pub struct Off {}
 
-gudgeon_core::register_model! {
-    Off, kind: "torsion", name: "off",
-    summary: "constant speed, no twist",
-    equations: "theta_i = ratio_i Omega t",
-    validity: "Where neither speed fluctuation nor torque is asked for.",
-    references: [],
-    example: "",
-}
-
-#[typetag::serde(name = "off")]
+#[register_model(
+ name = "off",
+    summary = "constant speed, no twist",
+    equations = "theta_i = ratio_i Omega t",
+    validity = "Where neither speed fluctuation nor torque is asked for.",
+    references = [],
+    example = "",
+)]
 impl TorsionSpec for Off {
     fn build(&self, _: &TorsionCtx<'_>) -> Result<Box<dyn Torsion>, BuildError> {
         Ok(Box::new(Nothing))

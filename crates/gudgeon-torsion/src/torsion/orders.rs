@@ -1,5 +1,5 @@
 use gudgeon_core::kinds::{Line, Torsion, TorsionAnswer, TorsionCtx, TorsionOut, TorsionSpec};
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
 use super::HarmonicBalance;
@@ -18,16 +18,14 @@ use crate::steady::Steady;
 #[serde(deny_unknown_fields)]
 pub struct Orders {}
 
-gudgeon_core::register_model! {
-    Orders, kind: "torsion", name: "orders",
-    summary: "forced vibration per order, exact orders, elimination in linear time",
-    equations: "(K(omega)(1 + i eta) + i omega C - omega^2 J) a_n = T_n;  omega = n Omega",
-    validity: "Small vibration about constant mean speed. Torques follow the mean angle; variable inertia to first order.",
-    references: ["gomes2021", "den_hartog1956"],
-    example: "",
-}
-
-#[typetag::serde(name = "orders")]
+#[register_model(
+ name = "orders",
+    summary = "forced vibration per order, exact orders, elimination in linear time",
+    equations = "(K(omega)(1 + i eta) + i omega C - omega^2 J) a_n = T_n;  omega = n Omega",
+    validity = "Small vibration about constant mean speed. Torques follow the mean angle; variable inertia to first order.",
+    references = ["gomes2021", "den_hartog1956"],
+    example = "",
+)]
 impl TorsionSpec for Orders {
     fn build(&self, ctx: &TorsionCtx<'_>) -> Result<Box<dyn Torsion>, BuildError> {
         Ok(Box::new(Solver { steady: Steady::new(ctx)? }))

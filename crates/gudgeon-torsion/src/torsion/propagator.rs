@@ -1,5 +1,5 @@
 use gudgeon_core::kinds::{Torsion, TorsionAnswer, TorsionCtx, TorsionOut, TorsionSpec};
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use gudgeon_numerics::linalg::Complex;
 use serde::{Deserialize, Serialize};
 
@@ -23,16 +23,14 @@ use crate::tree::{Singular, Tree, Work};
 #[serde(deny_unknown_fields)]
 pub struct Propagator {}
 
-gudgeon_core::register_model! {
-    Propagator, kind: "torsion", name: "propagator",
-    summary: "motion over time in closed form: damped modes on the periodic motion, no steps",
-    equations: "theta(t) = theta_p(t) + sum_j c_j v_j exp(z_j t);  det(z^2 J + z C + K) = 0",
-    validity: "Linear couplings with stiffness, constant inertia, straight torque-speed lines, gas torques by the mean angle. No double damped eigenvalue (critical damping).",
-    references: ["gomes2021"],
-    example: "",
-}
-
-#[typetag::serde(name = "propagator")]
+#[register_model(
+ name = "propagator",
+    summary = "motion over time in closed form: damped modes on the periodic motion, no steps",
+    equations = "theta(t) = theta_p(t) + sum_j c_j v_j exp(z_j t);  det(z^2 J + z C + K) = 0",
+    validity = "Linear couplings with stiffness, constant inertia, straight torque-speed lines, gas torques by the mean angle. No double damped eigenvalue (critical damping).",
+    references = ["gomes2021"],
+    example = "",
+)]
 impl TorsionSpec for Propagator {
     fn build(&self, ctx: &TorsionCtx<'_>) -> Result<Box<dyn Torsion>, BuildError> {
         let line = ctx.line;

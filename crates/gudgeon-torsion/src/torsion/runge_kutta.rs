@@ -1,6 +1,6 @@
 use gudgeon_core::kinds::{Torsion, TorsionAnswer, TorsionCtx, TorsionOut, TorsionSpec};
 use gudgeon_core::quantity::PosTime;
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use gudgeon_numerics::linalg::Complex;
 use serde::{Deserialize, Serialize};
 
@@ -24,19 +24,17 @@ pub struct RungeKutta {
     pub look_ahead: bool,
 }
 
-gudgeon_core::register_model! {
-    RungeKutta, kind: "torsion", name: "runge_kutta",
-    summary: "motion over time, fixed-step Runge-Kutta of order 4, as published",
-    equations: "dtheta/dt = omega;  J domega/dt = T - C omega - K theta - J' omega^2/2",
-    validity: "Explicit: stable below a step of 2.785 over the highest angular frequency.",
-    references: ["gomes2021"],
-    example: "step = \"50 us\"\nlook_ahead = true\n",
-}
-
 /// Most steps of a run: 17 s of 1 µs.
 const MOST: f64 = 2e7;
 
-#[typetag::serde(name = "runge_kutta")]
+#[register_model(
+ name = "runge_kutta",
+    summary = "motion over time, fixed-step Runge-Kutta of order 4, as published",
+    equations = "dtheta/dt = omega;  J domega/dt = T - C omega - K theta - J' omega^2/2",
+    validity = "Explicit: stable below a step of 2.785 over the highest angular frequency.",
+    references = ["gomes2021"],
+    example = "step = \"50 us\"\nlook_ahead = true\n",
+)]
 impl TorsionSpec for RungeKutta {
     fn build(&self, ctx: &TorsionCtx<'_>) -> Result<Box<dyn Torsion>, BuildError> {
         let dynamics = Dynamics::new(ctx.line)?;

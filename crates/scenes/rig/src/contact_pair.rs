@@ -2,7 +2,7 @@ use gudgeon_core::kinds::{
     BoundaryFriction, BoundaryFrictionSpec, Contact, ContactSpec, Rig, RigCtx, RigOut, RigSpec, named,
 };
 use gudgeon_core::quantity::{Length, Velocity, quantity};
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
 use crate::draw::{self, Scales, line};
@@ -35,17 +35,15 @@ fn one() -> Velocity {
     quantity(1.0)
 }
 
-gudgeon_core::register_model! {
-    ContactPairRig, kind: "rig", name: "contact_pair",
-    summary: "solid contact over the separation of the surfaces: pressure, real area, friction",
-    equations: "p(h);  A_c/A (h) where the model knows it;  tau = mu p",
-    validity: "Nominally flat surfaces at rest or sliding; no film between them.",
-    references: [],
-    example: "to = \"2 um\"\nseparation = \"0.4 um\"\n\
+#[register_model(
+ name = "contact_pair",
+    summary = "solid contact over the separation of the surfaces: pressure, real area, friction",
+    equations = "p(h);  A_c/A (h) where the model knows it;  tau = mu p",
+    validity = "Nominally flat surfaces at rest or sliding; no film between them.",
+    references = [],
+    example = "to = \"2 um\"\nseparation = \"0.4 um\"\n\
               contact = { model = \"linear_penalty\", stiffness = \"1e14 N/m3\", touching = \"0.5 um\" }\n",
-}
-
-#[typetag::serde(name = "contact_pair")]
+)]
 impl RigSpec for ContactPairRig {
     fn models(&self) -> Vec<(&'static str, &'static str)> {
         let mut all = vec![("contact", self.contact.typetag_name())];

@@ -3,7 +3,7 @@ use gudgeon_core::kinds::{
     Rig, RigCtx, RigOut, RigSpec, named,
 };
 use gudgeon_core::quantity::{Angle, Length, PosAngularSpeed, PosLength, quantity};
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// Cylinder pressure over one cycle.
@@ -37,17 +37,15 @@ fn firing() -> Angle {
     quantity(2.0 * std::f64::consts::PI)
 }
 
-gudgeon_core::register_model! {
-    CylinderPressureRig, kind: "rig", name: "cylinder_pressure",
-    summary: "cylinder pressure over one cycle, with its peak and work",
-    equations: "imep = (1/V_d) int p dV over the cycle",
-    validity: "The work is a sum over the rows of the series and the kinks of the model.",
-    references: [],
-    example: "speed = \"2000 rpm\"\nbore = \"120 mm\"\nstroke = \"140 mm\"\nrod_length = \"220 mm\"\n\
+#[register_model(
+ name = "cylinder_pressure",
+    summary = "cylinder pressure over one cycle, with its peak and work",
+    equations = "imep = (1/V_d) int p dV over the cycle",
+    validity = "The work is a sum over the rows of the series and the kinks of the model.",
+    references = [],
+    example = "speed = \"2000 rpm\"\nbore = \"120 mm\"\nstroke = \"140 mm\"\nrod_length = \"220 mm\"\n\
               kinematics = { model = \"exact_slider_crank\" }\ncylinder_pressure = { model = \"constant\", pressure = \"2 bar\" }\n",
-}
-
-#[typetag::serde(name = "cylinder_pressure")]
+)]
 impl RigSpec for CylinderPressureRig {
     fn models(&self) -> Vec<(&'static str, &'static str)> {
         vec![

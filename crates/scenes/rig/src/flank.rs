@@ -5,7 +5,7 @@ use gudgeon_core::quantity::{
     Force, Fraction, Mass, NonNegative, PosArea, PosLength, PosRatio, PosTime, PosVelocity, PosViscosity,
     Ratio, Velocity, quantity,
 };
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use gudgeon_numerics::ode::{Direction, EventAction, Flow, Integrator, OdeSystem, Options, Stats};
 use gudgeon_numerics::rodas::Rodas;
 use gudgeon_numerics::roots::itp;
@@ -67,20 +67,18 @@ fn usual() -> PosRatio {
     quantity(1e-8)
 }
 
-gudgeon_core::register_model! {
-    FlankRig, kind: "rig", name: "flank",
-    summary: "oil between ring and groove flanks: force over the height, and a ring landing under a load",
-    equations: "m dv/dt = -load + F(s, v);  without mass: F(s, v) = load",
-    validity: "A ring that stays parallel to the flanks; flanks are rigid, and the run ends when it lands.",
-    references: [],
-    example: "clearance = \"0.1 mm\"\narea = \"1000 mm2\"\nwidth = \"3 mm\"\nviscosity = \"10 mPa s\"\nmass = \"12 g\"\nload = \"60 N\"\n\
-              height = \"30 um\"\nduration = \"20 ms\"\nflank_damping = { model = \"squeeze_film\" }\n",
-}
-
 /// Loosest and tightest tolerance of the integration.
 const TOLERANCES: (f64, f64) = (1e-12, 1e-1);
 
-#[typetag::serde(name = "flank")]
+#[register_model(
+ name = "flank",
+    summary = "oil between ring and groove flanks: force over the height, and a ring landing under a load",
+    equations = "m dv/dt = -load + F(s, v);  without mass: F(s, v) = load",
+    validity = "A ring that stays parallel to the flanks; flanks are rigid, and the run ends when it lands.",
+    references = [],
+    example = "clearance = \"0.1 mm\"\narea = \"1000 mm2\"\nwidth = \"3 mm\"\nviscosity = \"10 mPa s\"\nmass = \"12 g\"\nload = \"60 N\"\n\
+              height = \"30 um\"\nduration = \"20 ms\"\nflank_damping = { model = \"squeeze_film\" }\n",
+)]
 impl RigSpec for FlankRig {
     fn models(&self) -> Vec<(&'static str, &'static str)> {
         vec![("flank_damping", self.flank_damping.typetag_name())]

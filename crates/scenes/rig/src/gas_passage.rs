@@ -2,7 +2,7 @@ use gudgeon_core::kinds::{Rig, RigCtx, RigOut, RigSpec, named};
 use gudgeon_core::quantity::{
     PosArea, PosGasConstant, PosLength, PosPressure, PosRatio, PosTemperature, PosViscosity, quantity,
 };
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use gudgeon_gas::{FlowFunction, Network, Orifice, Passage, channel_conductance, sutherland_viscosity};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -74,16 +74,6 @@ fn diatomic() -> PosRatio {
 }
 fn air() -> PosGasConstant {
     quantity(287.0)
-}
-
-gudgeon_core::register_model! {
-    GasPassageRig, kind: "rig", name: "gas_passage",
-    summary: "gas flow through one opening or narrow channel over the pressure ratio",
-    equations: "orifice: m' = C_d A p_u/sqrt(R T) psi(p_d/p_u);  channel: m' = w H^3 (p_a^2 - p_b^2)/(24 mu R T L);  \
-                effective = m' sqrt(R T)/(A p_u psi_exact)",
-    validity: "Perfect gas at one temperature; isothermal in channels.",
-    references: ["tian1996", "blasius1913", "sutherland1893"],
-    example: "pressure = \"50 bar\"\nratio = 0.5\ntemperature = \"400 K\"\npassage = { law = \"orifice\", area = \"0.3 mm2\" }\n",
 }
 
 /// The keys of a channel.
@@ -161,7 +151,15 @@ impl GasPassageRig {
     }
 }
 
-#[typetag::serde(name = "gas_passage")]
+#[register_model(
+ name = "gas_passage",
+    summary = "gas flow through one opening or narrow channel over the pressure ratio",
+    equations = "orifice: m' = C_d A p_u/sqrt(R T) psi(p_d/p_u);  channel: m' = w H^3 (p_a^2 - p_b^2)/(24 mu R T L);  \
+                effective = m' sqrt(R T)/(A p_u psi_exact)",
+    validity = "Perfect gas at one temperature; isothermal in channels.",
+    references = ["tian1996", "blasius1913", "sutherland1893"],
+    example = "pressure = \"50 bar\"\nratio = 0.5\ntemperature = \"400 K\"\npassage = { law = \"orifice\", area = \"0.3 mm2\" }\n",
+)]
 impl RigSpec for GasPassageRig {
     fn models(&self) -> Vec<(&'static str, &'static str)> {
         Vec::new()

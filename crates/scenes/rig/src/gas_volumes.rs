@@ -6,7 +6,7 @@ use gudgeon_core::quantity::{
     PosTime, PosVolume, Pressure, quantity,
 };
 use gudgeon_core::result::Note;
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use gudgeon_gas::{Network, Orifice, Passage};
 use gudgeon_numerics::linalg::{lu_factor, lu_solve};
 use gudgeon_numerics::ode::{Flow, Integrator, OdeSystem, Options, Stats};
@@ -145,18 +145,6 @@ fn two_turns() -> PosAngle {
 }
 fn nothing() -> Angle {
     quantity(0.0)
-}
-
-gudgeon_core::register_model! {
-    GasVolumesRig, kind: "rig", name: "gas_volumes",
-    summary: "gas volumes joined by openings: blow-down, steady leakage, periodic cycle",
-    equations: "dm_i/dt = sum of flows;  p_i = m_i R T_i/V_i;  m' = C_d A p_u/sqrt(R T_u) psi(p_d/p_u)",
-    validity: "Every volume of constant size, at the constant temperature of its walls.",
-    references: [],
-    example: "run = { until = \"time\", duration = \"0.1 s\" }\n\
-              volumes = [{ name = \"vessel\", volume = \"200 mm3\", temperature = \"400 K\", pressure = \"50 bar\" }]\n\
-              boundaries = [{ name = \"ambient\", temperature = \"400 K\", pressure = \"1 bar\" }]\n\
-              openings = [{ from = \"vessel\", to = \"ambient\", area = \"0.02 mm2\" }]\n",
 }
 
 /// Most volumes: the Jacobian is dense.
@@ -302,7 +290,17 @@ impl GasVolumesRig {
     }
 }
 
-#[typetag::serde(name = "gas_volumes")]
+#[register_model(
+ name = "gas_volumes",
+    summary = "gas volumes joined by openings: blow-down, steady leakage, periodic cycle",
+    equations = "dm_i/dt = sum of flows;  p_i = m_i R T_i/V_i;  m' = C_d A p_u/sqrt(R T_u) psi(p_d/p_u)",
+    validity = "Every volume of constant size, at the constant temperature of its walls.",
+    references = [],
+    example = "run = { until = \"time\", duration = \"0.1 s\" }\n\
+              volumes = [{ name = \"vessel\", volume = \"200 mm3\", temperature = \"400 K\", pressure = \"50 bar\" }]\n\
+              boundaries = [{ name = \"ambient\", temperature = \"400 K\", pressure = \"1 bar\" }]\n\
+              openings = [{ from = \"vessel\", to = \"ambient\", area = \"0.02 mm2\" }]\n",
+)]
 impl RigSpec for GasVolumesRig {
     fn models(&self) -> Vec<(&'static str, &'static str)> {
         Vec::new()

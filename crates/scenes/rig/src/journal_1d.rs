@@ -4,7 +4,7 @@ use gudgeon_core::kinds::{
 use gudgeon_core::quantity::{
     Angle, AngularSpeed, Fraction, PosLength, PosViscosity, Pressure, Ratio, quantity,
 };
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use gudgeon_film::film_1d::LineProfile;
 use serde::{Deserialize, Serialize};
 
@@ -50,18 +50,16 @@ fn panels() -> u32 {
     720
 }
 
-gudgeon_core::register_model! {
-    Journal1dRig, kind: "rig", name: "journal_1d",
-    summary: "long journal bearing at a given eccentricity: load, attitude, friction, pressure and rupture around the shaft",
-    equations: "h = c (1 + e cos phi);  W cos(attitude) = -int (p - p_supply) cos(phi) R dphi,  W sin(attitude) = int (p - p_supply) sin(phi) R dphi;  \
+#[register_model(
+ name = "journal_1d",
+    summary = "long journal bearing at a given eccentricity: load, attitude, friction, pressure and rupture around the shaft",
+    equations = "h = c (1 + e cos phi);  W cos(attitude) = -int (p - p_supply) cos(phi) R dphi,  W sin(attitude) = int (p - p_supply) sin(phi) R dphi;  \
                 load_number = W c^2/(mu omega R^3);  torque = R int (mu u/h + h p'/2) dx",
-    validity: "Length far above the diameter, parallel axes, one axial groove as long as the bearing, steady, isothermal.",
-    references: ["reynolds1886"],
-    example: "radius = \"25 mm\"\nclearance = \"25 um\"\neccentricity = 0.6\nspeed = \"3000 rpm\"\nviscosity = \"10 mPa s\"\n\
+    validity = "Length far above the diameter, parallel axes, one axial groove as long as the bearing, steady, isothermal.",
+    references = ["reynolds1886"],
+    example = "radius = \"25 mm\"\nclearance = \"25 um\"\neccentricity = 0.6\nspeed = \"3000 rpm\"\nviscosity = \"10 mPa s\"\n\
               p_supply = \"1 bar\"\nfilm_1d = { model = \"complementarity\" }\n",
-}
-
-#[typetag::serde(name = "journal_1d")]
+)]
 impl RigSpec for Journal1dRig {
     fn models(&self) -> Vec<(&'static str, &'static str)> {
         vec![("film_1d", self.film_1d.typetag_name())]

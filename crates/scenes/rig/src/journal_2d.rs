@@ -2,7 +2,7 @@ use std::f64::consts::PI;
 
 use gudgeon_core::kinds::{Film2dGrid, Film2dSpec, Rig, RigCtx, RigOut, RigSpec, RoughnessSpec, named};
 use gudgeon_core::quantity::{PosAngularSpeed, PosLength, PosRatio, PosViscosity, Pressure, quantity};
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use gudgeon_film::SmoothSurfaces;
 use serde::{Deserialize, Serialize};
 
@@ -81,18 +81,16 @@ fn smooth() -> Box<dyn RoughnessSpec> {
     Box::new(SmoothSurfaces {})
 }
 
-gudgeon_core::register_model! {
-    Journal2dRig, kind: "rig", name: "journal_2d",
-    summary: "journal bearing of finite width: load, attitude, Sommerfeld number, friction and side flow over the eccentricity",
-    equations: "h = c (1 + eps cos phi), phi from the widest gap in the direction of rotation;  W = (sum p cos phi dA, sum p sin phi dA);  \
+#[register_model(
+ name = "journal_2d",
+    summary = "journal bearing of finite width: load, attitude, Sommerfeld number, friction and side flow over the eccentricity",
+    equations = "h = c (1 + eps cos phi), phi from the widest gap in the direction of rotation;  W = (sum p cos phi dA, sum p sin phi dA);  \
                 S = mu N L D/|W| (R/c)^2;  attitude = atan2(W_sin, -W_cos);  friction_number = T/(|W| c);  side_flow_number = Q_s/(R c N L)",
-    validity: "Axes parallel, steady, c much smaller than R. The places where the film ends fall on nodes.",
-    references: ["reynolds1886"],
-    example: "radius = \"25 mm\"\nwidth = \"50 mm\"\nclearance = \"25 um\"\neccentricity = 0.6\nspeed = \"3000 rpm\"\nviscosity = \"10 mPa s\"\n\
+    validity = "Axes parallel, steady, c much smaller than R. The places where the film ends fall on nodes.",
+    references = ["reynolds1886"],
+    example = "radius = \"25 mm\"\nwidth = \"50 mm\"\nclearance = \"25 um\"\neccentricity = 0.6\nspeed = \"3000 rpm\"\nviscosity = \"10 mPa s\"\n\
               film_2d = { model = \"multigrid\" }\n",
-}
-
-#[typetag::serde(name = "journal_2d")]
+)]
 impl RigSpec for Journal2dRig {
     fn models(&self) -> Vec<(&'static str, &'static str)> {
         vec![("film_2d", self.film_2d.typetag_name()), ("roughness", self.roughness.typetag_name())]

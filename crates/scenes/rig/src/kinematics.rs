@@ -1,6 +1,6 @@
 use gudgeon_core::kinds::{KinematicsCtx, KinematicsSpec, Rig, RigCtx, RigOut, RigSpec, named};
 use gudgeon_core::quantity::{Angle, Length, PosAngularSpeed, PosLength, quantity};
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// Piston motion over one turn of the crank.
@@ -30,16 +30,14 @@ fn right_angle() -> Angle {
     quantity(std::f64::consts::FRAC_PI_2)
 }
 
-gudgeon_core::register_model! {
-    KinematicsRig, kind: "rig", name: "kinematics",
-    summary: "piston position, velocity and acceleration over one turn",
-    equations: "y(theta), v = dy/dt, a = dv/dt over one turn",
-    validity: "Constant crank speed.",
-    references: [],
-    example: "speed = \"3000 rpm\"\nstroke = \"90 mm\"\nrod_length = \"144 mm\"\nkinematics = { model = \"exact_slider_crank\" }\n",
-}
-
-#[typetag::serde(name = "kinematics")]
+#[register_model(
+ name = "kinematics",
+    summary = "piston position, velocity and acceleration over one turn",
+    equations = "y(theta), v = dy/dt, a = dv/dt over one turn",
+    validity = "Constant crank speed.",
+    references = [],
+    example = "speed = \"3000 rpm\"\nstroke = \"90 mm\"\nrod_length = \"144 mm\"\nkinematics = { model = \"exact_slider_crank\" }\n",
+)]
 impl RigSpec for KinematicsRig {
     fn models(&self) -> Vec<(&'static str, &'static str)> {
         vec![("kinematics", self.kinematics.typetag_name())]

@@ -5,7 +5,7 @@ use gudgeon_core::kinds::{
 use gudgeon_core::quantity::{
     NonNegative, PosPressure, PosShearRate, PosTemperature, Pressure, ShearRate, quantity,
 };
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
 use crate::draw::{self, Scales, line};
@@ -66,16 +66,14 @@ fn fast() -> PosShearRate {
     quantity(1e8)
 }
 
-gudgeon_core::register_model! {
-    LubricantRig, kind: "rig", name: "lubricant",
-    summary: "viscosity and density of an oil over temperature, pressure and shear rate",
-    equations: "mu = mu_0(T) f_p(mu_0, p) f_s(gamma);  rho/rho_0 = f_rho(p)",
-    validity: "Factors of pressure and shear rate are taken as independent, as in the films.",
-    references: [],
-    example: "temperature = \"100 degC\"\noil = { model = \"constant\", viscosity = \"10 mPa s\" }\n",
-}
-
-#[typetag::serde(name = "lubricant")]
+#[register_model(
+ name = "lubricant",
+    summary = "viscosity and density of an oil over temperature, pressure and shear rate",
+    equations = "mu = mu_0(T) f_p(mu_0, p) f_s(gamma);  rho/rho_0 = f_rho(p)",
+    validity = "Factors of pressure and shear rate are taken as independent, as in the films.",
+    references = [],
+    example = "temperature = \"100 degC\"\noil = { model = \"constant\", viscosity = \"10 mPa s\" }\n",
+)]
 impl RigSpec for LubricantRig {
     fn models(&self) -> Vec<(&'static str, &'static str)> {
         let mut all = vec![("oil", self.oil.typetag_name())];

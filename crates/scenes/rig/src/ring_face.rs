@@ -3,7 +3,7 @@ use gudgeon_core::kinds::{
     FaceCtx, FaceIn, Hydrodynamics, HydrodynamicsSpec, Rig, RigCtx, RigOut, RigSpec, named,
 };
 use gudgeon_core::quantity::{Force, PosLength, PosViscosity, Pressure, Velocity, quantity};
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
 use crate::{along, validity};
@@ -46,17 +46,15 @@ fn vacuum() -> Pressure {
     quantity(0.0)
 }
 
-gudgeon_core::register_model! {
-    RingFaceRig, kind: "rig", name: "ring_face",
-    summary: "film of a ring face at one instant: load, friction and pressure along the face",
-    equations: "load = int (p - p_cav) dx;  shear = int (mu u/h -+ h p'/2) dx",
-    validity: "One instant; the film has no history.",
-    references: [],
-    example: "length = \"1.2 mm\"\nface = { shape = \"parabola\", drop = \"6 um\" }\nfilm = \"2 um\"\nspeed = \"10 m/s\"\n\
+#[register_model(
+ name = "ring_face",
+    summary = "film of a ring face at one instant: load, friction and pressure along the face",
+    equations = "load = int (p - p_cav) dx;  shear = int (mu u/h -+ h p'/2) dx",
+    validity = "One instant; the film has no history.",
+    references = [],
+    example = "length = \"1.2 mm\"\nface = { shape = \"parabola\", drop = \"6 um\" }\nfilm = \"2 um\"\nspeed = \"10 m/s\"\n\
               p_bottom = \"1 bar\"\np_top = \"1 bar\"\nviscosity = \"10 mPa s\"\nhydrodynamics = { model = \"closed_form_face\" }\n",
-}
-
-#[typetag::serde(name = "ring_face")]
+)]
 impl RigSpec for RingFaceRig {
     fn models(&self) -> Vec<(&'static str, &'static str)> {
         vec![("hydrodynamics", self.hydrodynamics.typetag_name())]

@@ -1,6 +1,6 @@
 use gudgeon_core::kinds::{Rig, RigCtx, RigOut, RigSpec, RoughFlow, RoughShear, Roughness, RoughnessSpec};
 use gudgeon_core::quantity::{PosLength, Ratio, quantity};
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
 use crate::draw::{self, Scales, line};
@@ -30,16 +30,14 @@ fn eight() -> Ratio {
     quantity(8.0)
 }
 
-gudgeon_core::register_model! {
-    RoughSurfaceRig, kind: "rig", name: "rough_surface",
-    summary: "flow and shear factors of rough surfaces over their separation",
-    equations: "phi_x, phi_y, phi_f, phi_fs, phi_fp and h_T over H = h/height;  phi_s = (h_c - h_T)/height",
-    validity: "That of the model. phi_s is that of Patir and Cheng when `height` is the composite roughness of the model.",
-    references: ["patir1978", "patir1979"],
-    example: "height = \"4 um\"\nseparation = 2.5\nroughness = { model = \"sawtooth_waviness\", amplitude = \"4 um\" }\n",
-}
-
-#[typetag::serde(name = "rough_surface")]
+#[register_model(
+ name = "rough_surface",
+    summary = "flow and shear factors of rough surfaces over their separation",
+    equations = "phi_x, phi_y, phi_f, phi_fs, phi_fp and h_T over H = h/height;  phi_s = (h_c - h_T)/height",
+    validity = "That of the model. phi_s is that of Patir and Cheng when `height` is the composite roughness of the model.",
+    references = ["patir1978", "patir1979"],
+    example = "height = \"4 um\"\nseparation = 2.5\nroughness = { model = \"sawtooth_waviness\", amplitude = \"4 um\" }\n",
+)]
 impl RigSpec for RoughSurfaceRig {
     fn models(&self) -> Vec<(&'static str, &'static str)> {
         vec![("roughness", self.roughness.typetag_name())]

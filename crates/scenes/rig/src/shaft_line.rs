@@ -6,7 +6,7 @@ use gudgeon_core::kinds::{
 use gudgeon_core::quantity::{
     Inertia, NonNegative, PosFrequency, Torque, TorsionalDamping, TorsionalStiffness, quantity,
 };
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use gudgeon_numerics::linalg::Complex;
 use gudgeon_torsion::natural_frequencies::Eigenvalues;
 use gudgeon_torsion::tree::{Singular, Tree, Work};
@@ -51,16 +51,14 @@ fn eigenvalues() -> Box<dyn NaturalFrequenciesSpec> {
     Box::new(Eigenvalues { most: MOST })
 }
 
-gudgeon_core::register_model! {
-    ShaftLineRig, kind: "rig", name: "shaft_line",
-    summary: "natural frequencies and harmonic response of a chain of inertias",
-    equations: "(K - omega^2 J) phi = 0;  (K (1 + i eta) + i omega C - omega^2 J) a = T",
-    validity: "Chains with linear or linearised couplings.",
-    references: ["holzer1921"],
-    example: "inertias = [\"0.5 kg m2\", \"0.2 kg m2\"]\ncouplings = [{ model = \"linear\", stiffness = \"10 kN m/rad\" }]\n",
-}
-
-#[typetag::serde(name = "shaft_line")]
+#[register_model(
+ name = "shaft_line",
+    summary = "natural frequencies and harmonic response of a chain of inertias",
+    equations = "(K - omega^2 J) phi = 0;  (K (1 + i eta) + i omega C - omega^2 J) a = T",
+    validity = "Chains with linear or linearised couplings.",
+    references = ["holzer1921"],
+    example = "inertias = [\"0.5 kg m2\", \"0.2 kg m2\"]\ncouplings = [{ model = \"linear\", stiffness = \"10 kN m/rad\" }]\n",
+)]
 impl RigSpec for ShaftLineRig {
     fn models(&self) -> Vec<(&'static str, &'static str)> {
         let couplings = self.couplings.iter().map(|c| ("coupling", c.typetag_name()));

@@ -2,7 +2,7 @@ use gudgeon_core::kinds::{Film2dSpec, Rig, RigCtx, RigOut, RigSpec, RoughnessSpe
 use gudgeon_core::quantity::{
     Length, NonNegative, PosAngle, PosLength, PosViscosity, Pressure, Ratio, Velocity, quantity,
 };
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use gudgeon_film::SmoothSurfaces;
 use gudgeon_skirt::Panel;
 use serde::{Deserialize, Serialize};
@@ -98,19 +98,17 @@ fn smooth() -> Box<dyn RoughnessSpec> {
     Box::new(SmoothSurfaces {})
 }
 
-gudgeon_core::register_model! {
-    SkirtRig, kind: "rig", name: "skirt",
-    summary: "film of one side of a piston skirt at one instant: thrust force, moment, friction and pressure map",
-    equations: "h = c - (e_t (1 - s) + e_b s) cos phi + B (2 s - 1)^2;  thrust = int (p - p_edge) cos phi dA;  \
+#[register_model(
+ name = "skirt",
+    summary = "film of one side of a piston skirt at one instant: thrust force, moment, friction and pressure map",
+    equations = "h = c - (e_t (1 - s) + e_b s) cos phi + B (2 s - 1)^2;  thrust = int (p - p_edge) cos phi dA;  \
                 moment = int (p - p_edge) (x_pin - x) cos phi dA;  \
                 liner_shear = int (theta mu u/h (phi_f + phi_fs) + phi_fp h/2 dp/dx) dA",
-    validity: "The piston feels the opposite of liner_shear: skirt_shear, and the pressure on what is tilted. Rigid skirt, flooded on all edges, no history. The gap must be open everywhere, or held open by the roughness model.",
-    references: ["loureiro2009"],
-    example: "radius = \"43 mm\"\nlength = \"50 mm\"\nhalf_angle = \"50 deg\"\nclearance = \"30 um\"\nbarrel = \"20 um\"\ne_top = \"18 um\"\n\
+    validity = "The piston feels the opposite of liner_shear: skirt_shear, and the pressure on what is tilted. Rigid skirt, flooded on all edges, no history. The gap must be open everywhere, or held open by the roughness model.",
+    references = ["loureiro2009"],
+    example = "radius = \"43 mm\"\nlength = \"50 mm\"\nhalf_angle = \"50 deg\"\nclearance = \"30 um\"\nbarrel = \"20 um\"\ne_top = \"18 um\"\n\
               e_bottom = \"10 um\"\nspeed = \"-8 m/s\"\nviscosity = \"10 mPa s\"\nfilm_2d = { model = \"multigrid\" }\n",
-}
-
-#[typetag::serde(name = "skirt")]
+)]
 impl RigSpec for SkirtRig {
     fn models(&self) -> Vec<(&'static str, &'static str)> {
         vec![("film_2d", self.film_2d.typetag_name()), ("roughness", self.roughness.typetag_name())]

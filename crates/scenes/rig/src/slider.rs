@@ -5,7 +5,7 @@ use gudgeon_core::kinds::{
 };
 use gudgeon_core::quantity::{Length, NonNegative, PosViscosity, Pressure, Velocity, quantity};
 use gudgeon_core::result::{Column, Note, Series};
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use gudgeon_film::film_1d::{LineProfile, ViscosityLoop};
 use gudgeon_film::{Isoviscous, Newtonian, SmoothSurfaces};
 use serde::{Deserialize, Serialize};
@@ -90,20 +90,18 @@ fn smooth() -> Box<dyn RoughnessSpec> {
     Box::new(SmoothSurfaces {})
 }
 
-gudgeon_core::register_model! {
-    SliderRig, kind: "rig", name: "slider",
-    summary: "steady film along a line of any profile: load, friction, flux, pressure and cavities",
-    equations: "load = int (p - p_cav) dx;  load_gauge = int p dx - (p_left + p_right) L/2;  centre = int (p - p_cav) x dx/load;  \
+#[register_model(
+ name = "slider",
+    summary = "steady film along a line of any profile: load, friction, flux, pressure and cavities",
+    equations = "load = int (p - p_cav) dx;  load_gauge = int p dx - (p_left + p_right) L/2;  centre = int (p - p_cav) x dx/load;  \
                 shear = int (mu u/h +- h p'/2) dx;  mu = mu0 f_p(p - p_ambient) f_s(u/h)",
-    validity: "Narrow gap, no flow across the line, steady, incompressible, isothermal. Factors of roughness and viscosity are \
+    validity = "Narrow gap, no flow across the line, steady, incompressible, isothermal. Factors of roughness and viscosity are \
                constant in each panel.",
-    references: ["reynolds1886"],
-    example: "profile = { shape = \"linear\", length = \"1.5 mm\", h_in = \"2 um\", h_out = \"1 um\" }\nspeed = \"12 m/s\"\n\
+    references = ["reynolds1886"],
+    example = "profile = { shape = \"linear\", length = \"1.5 mm\", h_in = \"2 um\", h_out = \"1 um\" }\nspeed = \"12 m/s\"\n\
               left = { p = \"1 bar\" }\nright = { p = \"1 bar\" }\nviscosity = \"8 mPa s\"\n\
               film_1d = { model = \"complementarity\" }\n",
-}
-
-#[typetag::serde(name = "slider")]
+)]
 impl RigSpec for SliderRig {
     fn models(&self) -> Vec<(&'static str, &'static str)> {
         vec![

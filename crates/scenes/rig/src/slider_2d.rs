@@ -2,7 +2,7 @@ use gudgeon_core::kinds::{Edge, Film2dGrid, Film2dSpec, Rig, RigCtx, RigOut, Rig
 use gudgeon_core::quantity::{
     Fraction, Length, NonNegative, PosLength, PosViscosity, Pressure, Ratio, Velocity, quantity,
 };
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use gudgeon_film::SmoothSurfaces;
 use serde::{Deserialize, Serialize};
 
@@ -163,17 +163,6 @@ fn smooth() -> Box<dyn RoughnessSpec> {
     Box::new(SmoothSurfaces {})
 }
 
-gudgeon_core::register_model! {
-    Slider2dRig, kind: "rig", name: "slider_2d",
-    summary: "film of a rectangular pad along and across the motion: load, friction, side flow, pressure and cavities",
-    equations: "load = int (p - p_cav) dA;  load_gauge = int (p - p_side) dA;  load_nodes = sum (p - p_cav) dx dy;  centre = int (p - p_cav) x dA/load;  \
-                shear = int (theta mu u/h (phi_f +- phi_fs) +- phi_fp h/2 dp/dx) dA",
-    validity: "One instant; the film has no history. A step or the edge of a dimple is best on a node or halfway between two.",
-    references: ["reynolds1886"],
-    example: "length = \"80 mm\"\nwidth = \"80 mm\"\nprofile = { shape = \"linear\", h_in = \"30 um\", h_out = \"15 um\" }\nspeed = \"5 m/s\"\n\
-              viscosity = \"30 mPa s\"\nfilm_2d = { model = \"multigrid\" }\n",
-}
-
 impl PadProfile {
     /// Gap \[m\] at `s`, the part of the length that lies before.
     fn gap(&self, s: f64) -> f64 {
@@ -227,7 +216,16 @@ impl Dimples {
     }
 }
 
-#[typetag::serde(name = "slider_2d")]
+#[register_model(
+ name = "slider_2d",
+    summary = "film of a rectangular pad along and across the motion: load, friction, side flow, pressure and cavities",
+    equations = "load = int (p - p_cav) dA;  load_gauge = int (p - p_side) dA;  load_nodes = sum (p - p_cav) dx dy;  centre = int (p - p_cav) x dA/load;  \
+                shear = int (theta mu u/h (phi_f +- phi_fs) +- phi_fp h/2 dp/dx) dA",
+    validity = "One instant; the film has no history. A step or the edge of a dimple is best on a node or halfway between two.",
+    references = ["reynolds1886"],
+    example = "length = \"80 mm\"\nwidth = \"80 mm\"\nprofile = { shape = \"linear\", h_in = \"30 um\", h_out = \"15 um\" }\nspeed = \"5 m/s\"\n\
+              viscosity = \"30 mPa s\"\nfilm_2d = { model = \"multigrid\" }\n",
+)]
 impl RigSpec for Slider2dRig {
     fn models(&self) -> Vec<(&'static str, &'static str)> {
         vec![("film_2d", self.film_2d.typetag_name()), ("roughness", self.roughness.typetag_name())]

@@ -7,7 +7,7 @@ use gudgeon_core::kinds::{
 use gudgeon_core::quantity::{
     Force, PosLength, PosTime, PosViscosity, Positive, Pressure, Time, Velocity, quantity,
 };
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use gudgeon_film::film_1d::LineProfile;
 use serde::{Deserialize, Serialize};
 
@@ -89,18 +89,16 @@ fn vacuum() -> Pressure {
     quantity(0.0)
 }
 
-gudgeon_core::register_model! {
-    SqueezeFilmRig, kind: "rig", name: "squeeze_film",
-    summary: "squeeze film of a strip or ring face: load at a velocity, fall under a load, oscillation with cavitation",
-    equations: "load = int (p - p_ends) dx;  strip: load = -mu L^3 (dh/dt)/h^3;  fall: t = int dh/(-dh/dt) at that load, \
+#[register_model(
+ name = "squeeze_film",
+    summary = "squeeze film of a strip or ring face: load at a velocity, fall under a load, oscillation with cavitation",
+    equations = "load = int (p - p_ends) dx;  strip: load = -mu L^3 (dh/dt)/h^3;  fall: t = int dh/(-dh/dt) at that load, \
                 strip: t = mu L^3/(2 W) (1/h_end^2 - 1/h^2);  oscillation: h = mean + amplitude cos(2 pi t/period), implicit Euler steps",
-    validity: "Narrow gap, no sliding, no flow across the line, no inertia. The mode `oscillation` is of first order in the step.",
-    references: ["reynolds1886"],
-    example: "length = \"1.2 mm\"\nmotion = { mode = \"fall\", gap = \"10 um\", gap_end = \"1 um\", load = \"1 kN\" }\n\
+    validity = "Narrow gap, no sliding, no flow across the line, no inertia. The mode `oscillation` is of first order in the step.",
+    references = ["reynolds1886"],
+    example = "length = \"1.2 mm\"\nmotion = { mode = \"fall\", gap = \"10 um\", gap_end = \"1 um\", load = \"1 kN\" }\n\
               p_ends = \"1 bar\"\nviscosity = \"10 mPa s\"\nfilm_1d = { model = \"complementarity\" }\n",
-}
-
-#[typetag::serde(name = "squeeze_film")]
+)]
 impl RigSpec for SqueezeFilmRig {
     fn models(&self) -> Vec<(&'static str, &'static str)> {
         vec![("film_1d", self.film_1d.typetag_name())]
