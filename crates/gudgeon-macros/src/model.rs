@@ -10,7 +10,7 @@ pub fn expand(fields: Fields, item: TokenStream) -> syn::Result<TokenStream> {
     let [name, summary, equations, validity, references, example] =
         fields.take(["name", "summary", "equations", "validity", "references", "example"])?;
     let item: ItemImpl = syn::parse2(item)?;
-    let Some((_, spec, _)) = &item.trait_ else {
+    let Some((spec, _)) = &item.trait_ else {
         return Err(Error::new_spanned(&item.self_ty, "stands on `impl …Spec for …`"));
     };
     let Expr::Array(references) = references else {
