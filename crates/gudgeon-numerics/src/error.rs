@@ -1,23 +1,28 @@
-//! What a function says that could not be evaluated.
+//! The error of a function that is integrated, iterated or searched.
 
 use std::borrow::Cow;
 
-/// A model could not answer for these inputs.
+/// A function could not be evaluated for the given arguments.
+///
+/// The functions that a method of this crate calls (right-hand sides, Jacobians, event functions, maps of a cycle) return this error. Its
+/// variant decides what the method does next: a [`EvalError::Recoverable`] one makes an integrator reject the step and try a smaller
+/// one, a [`EvalError::Fatal`] one ends the computation and is handed to the caller.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EvalError {
-    /// A smaller step may succeed (no convergence, a trial state outside the range). The integrator retries.
+    /// Arguments closer to the last accepted state may succeed: an inner iteration did not converge, or a trial state lies outside the
+    /// range of the function.
     #[error("{model}: {what}")]
     Recoverable {
-        /// The model that could not answer.
+        /// Name of the function or of the model it belongs to.
         model: &'static str,
         /// What went wrong, with the offending values.
         what: Cow<'static, str>,
     },
-    /// No step size can help. The run stops.
+    /// No step size can help: the function has no value here, or its parameters are wrong.
     #[error("{model}: {what}")]
     Fatal {
-        /// The model that could not answer.
+        /// Name of the function or of the model it belongs to.
         model: &'static str,
         /// What went wrong, with the offending values.
         what: Cow<'static, str>,
@@ -25,17 +30,17 @@ pub enum EvalError {
 }
 
 impl EvalError {
-    /// A [`EvalError::Recoverable`].
+    /// An [`EvalError::Recoverable`] of the function `model`.
     pub fn recoverable(model: &'static str, what: impl Into<Cow<'static, str>>) -> Self {
         Self::Recoverable { model, what: what.into() }
     }
 
-    /// A [`EvalError::Fatal`].
+    /// An [`EvalError::Fatal`] of the function `model`.
     pub fn fatal(model: &'static str, what: impl Into<Cow<'static, str>>) -> Self {
         Self::Fatal { model, what: what.into() }
     }
 
-    /// Whether a smaller step may help.
+    /// Whether smaller steps may help.
     #[must_use]
     pub const fn is_recoverable(&self) -> bool {
         matches!(self, Self::Recoverable { .. })

@@ -397,6 +397,22 @@ pub trait Integrator<S: OdeSystem + ?Sized> {
         stats: &mut Stats,
         observer: &mut dyn FnMut(&mut S, &dyn StepView) -> Flow,
     ) -> Result<f64, IntegrateError>;
+
+    /// [`Integrator::integrate`] of a system without quadratures, without breakpoints and without an observer. Returns the work.
+    ///
+    /// # Errors
+    /// [`IntegrateError`]; `y` then holds the last accepted state.
+    fn solve(
+        &mut self,
+        sys: &mut S,
+        interval: (f64, f64),
+        y: &mut [f64],
+        options: &Options,
+    ) -> Result<Stats, IntegrateError> {
+        let mut stats = Stats::default();
+        self.integrate(sys, interval, &[], y, &mut [], options, &mut stats, &mut |_, _| Flow::Continue)?;
+        Ok(stats)
+    }
 }
 
 /// Increment for a difference quotient in state `y` of absolute tolerance `atol` at relative tolerance `rtol`.
