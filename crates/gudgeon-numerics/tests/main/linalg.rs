@@ -1,0 +1,143 @@
+//! Linear systems: residuals, agreement of independent solvers, refusals.
+
+use gudgeon_numerics::linalg::{
+    Banded, Complex, Singular, SymmetricBanded, dot, lu_factor, lu_factor_complex, lu_factor_weighted,
+    lu_solve, lu_solve_complex, solve_tridiagonal,
+};
+
+/// A fixed sequence of numbers in [-1, 1) (Weyl sequence): a reproducible dense matrix.
+fn weyl(k: usize) -> f64 {
+    2.0 * (k as f64 * 0.618_033_988_749_894_9 + 0.3 * (k as f64).sqrt()).fract() - 1.0
+}
+
+#[test]
+fn dense_lu_solves_and_reports_singularity() {
+    for n in [1, 2, 5, 16, 37, 60] {
+        let a: Vec<f64> = (0..n * n).map(|k| weyl(k + 1)).collect();
+        let x: Vec<f64> = (0..n).map(|k| weyl(7 * k + 3)).collect();
+        let mut b: Vec<f64> = (0..n).map(|i| dot(&a[i * n..i * n + n], &x)).collect();
+        let b0 = b.clone();
+        let (mut lu, mut piv) = (a.clone(), vec![0; n]);
+        lu_factor(&mut lu, n, &mut piv).unwrap();
+        lu_solve(&lu, n, &piv, &mut b);
+        // Backward stable: the residual is n times rounding, whatever the condition.
+        for i in 0..n {
+            let r = dot(&a[i * n..i * n + n], &b) - b0[i];
+            let size: f64 = a[i * n..i * n + n].iter().zip(&b).map(|(a, b)| (a * b).abs()).sum();
+            assert!(r.abs() <= 20.0 * n as f64 * f64::EPSILON * size, "{n} {r}");
+        }
+    }
+    let mut a = vec![1.0, 2.0, 2.0, 4.0];
+    assert_eq!(lu_factor(&mut a, 2, &mut [0; 2]), Err(Singular { column: 1 }));
+    let mut a = vec![f64::NAN, 2.0, f64::NAN, 4.0];
+    assert!(lu_factor(&mut a, 2, &mut [0; 2]).is_err());
+}
+
+#[test]
+fn weights_make_pivots_independent_of_units() {
+    // The same matrix with row 1 in other units: the weight undoes the scaling, so the pivots are the same.
+    let a = [1.0, 2.0, 3.0, 4.0];
+    let (mut p, mut q) = ([0; 2], [0; 2]);
+    lu_factor(&mut a.clone(), 2, &mut p).unwrap();
+    let mut scaled = [1e9, 2e9, 3.0, 4.0];
+    lu_factor_weighted(&mut scaled, 2, &mut q, Some(&mut [1e-9, 1.0])).unwrap();
+    assert_eq!(p, q);
+}
+
+#[test]
+fn complex_lu_solves() {
+    let n = 9;
+    let a: Vec<Complex> = (0..n * n).map(|k| Complex::new(weyl(k + 1), weyl(3 * k + 2))).collect();
+    let x: Vec<Complex> = (0..n).map(|k| Complex::new(weyl(k), weyl(5 * k))).collect();
+    let mut b: Vec<Complex> =
+        (0..n).map(|i| (0..n).fold(Complex::default(), |s, j| s + a[i * n + j] * x[j])).collect();
+    let (mut lu, mut piv) = (a, vec![0; n]);
+    lu_factor_complex(&mut lu, n, &mut piv, None).unwrap();
+    lu_solve_complex(&lu, n, &piv, &mut b);
+    for (b, x) in b.iter().zip(&x) {
+        // Condition number of this matrix is below 1e3.
+        assert!((*b - *x).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn banded_agrees_with_dense() {
+    for (n, kl, ku) in [(1, 0, 0), (5, 1, 1), (12, 2, 1), (12, 1, 3), (30, 4, 4), (6, 5, 5)] {
+        let mut band = Banded::new(n, kl, ku);
+        let mut dense = vec![0.0; n * n];
+        for i in 0..n {
+            for j in i.saturating_sub(kl)..=(i + ku).min(n - 1) {
+                // A small diagonal, so that rows are exchanged.
+                let v = weyl(i * n + j + 1) * if i == j { 0.1 } else { 1.0 };
+                band.add(i, j, v);
+                dense[i * n + j] = v;
+                assert_eq!(band.get(i, j), v);
+            }
+        }
+        let b: Vec<f64> = (0..n).map(|k| weyl(k + 11)).collect();
+        let (mut x, mut y, mut piv) = (b.clone(), b, vec![0; n]);
+        band.factor().unwrap();
+        band.solve(&mut x);
+        lu_factor(&mut dense, n, &mut piv).unwrap();
+        lu_solve(&dense, n, &piv, &mut y);
+        for (x, y) in x.iter().zip(&y) {
+            // Same pivots, same operations but for the order of sums; condition below 1e4.
+            assert!((x - y).abs() <= 1e-11 * (1.0 + y.abs()), "{n} {kl} {ku}: {x} {y}");
+        }
+    }
+    assert!(Banded::new(3, 1, 1).factor().is_err());
+}
+
+#[test]
+fn symmetric_banded_agrees_with_the_general_one() {
+    for (n, half) in [(1, 0), (6, 0), (7, 1), (9, 2), (40, 6), (41, 7), (30, 29)] {
+        let (mut a, mut b) = (SymmetricBanded::new(n, half), Banded::new(n, half, half));
+        for i in 0..n {
+            for j in i.saturating_sub(half)..i {
+                let v = weyl(i * 31 + j);
+                a.add(i, j, v);
+                b.add(i, j, v);
+                b.add(j, i, v);
+            }
+            // Diagonally dominant, so positive definite.
+            let v = 2.0 * half as f64 + 1.0;
+            a.add(i, i, v);
+            b.add(i, i, v);
+        }
+        let f: Vec<f64> = (0..n).map(|k| weyl(k + 11)).collect();
+        a.factor().unwrap();
+        b.factor().unwrap();
+        for columns in 1..=9 {
+            let (mut x, mut work) = (Vec::new(), Vec::new());
+            (0..columns).for_each(|c| x.extend(f.iter().map(|f| f + c as f64)));
+            let mut y = x.clone();
+            a.solve_block(&mut x, &mut work);
+            y.chunks_exact_mut(n).for_each(|y| b.solve(y));
+            for (x, y) in x.iter().zip(&y) {
+                // Condition of a dominant matrix: a few; the rest is rounding of right-hand sides up to nine.
+                assert!((x - y).abs() < 1e-12, "{n} {half} {columns}: {x} {y}");
+            }
+        }
+    }
+    let mut indefinite = SymmetricBanded::new(2, 1);
+    indefinite.add(0, 0, 1.0);
+    indefinite.add(1, 1, 1.0);
+    indefinite.add(1, 0, 2.0);
+    assert!(indefinite.factor().is_err());
+}
+
+#[test]
+fn tridiagonal_solves_the_discrete_laplacian() {
+    // -u'' = 2, u(0) = u(1) = 0: the central difference is exact for the parabola x (1 - x).
+    let n = 99;
+    let h = 1.0 / (n + 1) as f64;
+    let (off, diagonal) = (vec![-1.0; n], vec![2.0; n]);
+    let mut u = vec![2.0 * h * h; n];
+    solve_tridiagonal(&off, &diagonal, &off, &mut u, &mut vec![0.0; n]).unwrap();
+    for (i, u) in u.iter().enumerate() {
+        let x = (i + 1) as f64 * h;
+        // Condition number 4/(π h)² = 4e3 times rounding.
+        assert!((u - x * (1.0 - x)).abs() < 1e-12);
+    }
+    assert!(solve_tridiagonal(&[0.0], &[0.0], &[0.0], &mut [1.0], &mut [0.0]).is_err());
+}

@@ -1,0 +1,18 @@
+//! Tests of the numerical methods, one module a topic. Allocations are counted in a program of their own.
+
+mod fourier;
+mod gmres;
+mod jet;
+mod linalg;
+mod maximum;
+mod multigrid;
+mod ode;
+mod ode_reference;
+mod orbit;
+mod panel;
+mod qp;
+mod quadrature;
+mod radau;
+mod rodas;
+mod roots;
+mod table;

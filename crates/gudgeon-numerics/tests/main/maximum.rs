@@ -1,0 +1,46 @@
+//! Maxima of sampled functions against closed forms.
+
+use gudgeon_numerics::maximum::largest;
+
+/// Amplitude of one inertia on a spring, `1/√((1 - r²)² + (2 ζ r)²)`: largest `1/(2 ζ √(1 - ζ²))` at `r = √(1 - 2 ζ²)`.
+fn resonance(zeta: f64) -> impl Fn(f64) -> f64 {
+    move |r| 1.0 / (1.0 - r * r).hypot(2.0 * zeta * r)
+}
+
+#[test]
+fn the_top_of_a_resonance_is_found_to_its_closed_form() {
+    for zeta in [0.3, 0.05, 1e-3, 1e-5] {
+        let f = resonance(zeta);
+        // Samples far from the top, and the natural frequency with places beside it.
+        let mut at: Vec<f64> = (0..=20).map(|i| 0.2 + 0.08 * f64::from(i)).collect();
+        at.extend([-2.0, -0.5, 0.0, 0.5, 2.0].map(|k| 1.0 + k * zeta));
+        at.sort_by(f64::total_cmp);
+        let samples: Vec<(f64, f64)> = at.iter().map(|r| (*r, f(*r))).collect();
+        let mut calls = 0;
+        let (r, top) = largest(&samples, |x| {
+            calls += 1;
+            f(x)
+        });
+        let exact = 0.5 / (zeta * (1.0 - zeta * zeta).sqrt());
+        // The value is flat at the top: 1e-7 of the distance of the samples, squared, and the rounding of the formula.
+        assert!((top / exact - 1.0).abs() < 1e-10, "{zeta}: {top} {exact}");
+        // Of the width ζ of the resonance: the cubic part of the curve over the thousandth that the parabola spans.
+        assert!((r - (1.0 - 2.0 * zeta * zeta).sqrt()).abs() < 1e-4 * zeta, "{zeta}: {r}");
+        assert!(calls < 60, "{calls}");
+    }
+}
+
+#[test]
+fn ends_and_flat_functions_are_their_own_tops() {
+    let ramp: Vec<(f64, f64)> = (0..5).map(|i| (f64::from(i), f64::from(i))).collect();
+    assert_eq!(largest(&ramp, |x| x), (4.0, 4.0));
+    let flat: Vec<(f64, f64)> = (0..5).map(|i| (f64::from(i), 1.0)).collect();
+    assert_eq!(largest(&flat, |_| 1.0).1, 1.0);
+    assert_eq!(largest(&[(2.0, 3.0)], |_| 9.0), (2.0, 3.0));
+    assert_eq!(largest(&[], |x| x).1, f64::NEG_INFINITY);
+    // A top between the end and the sample beside it.
+    let f = |x: f64| 1.0 - (x - 0.2) * (x - 0.2);
+    let samples: Vec<(f64, f64)> = (0..3).map(|i| (f64::from(i), f(f64::from(i)))).collect();
+    let (x, top) = largest(&samples, f);
+    assert!((x - 0.2).abs() < 1e-9 && top > 1.0 - 1e-15, "{x} {top}");
+}
