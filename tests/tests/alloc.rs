@@ -9,7 +9,7 @@ use counting::allocations;
 use gudgeon_core::file::Files;
 use gudgeon_scene_ring_pack::assemble::assemble;
 use gudgeon_scene_ring_pack::case::RingPackCase;
-use gudgeon_scene_ring_pack::pack::Base;
+use gudgeon_scene_ring_pack::jacobian::Base;
 
 #[test]
 fn a_right_hand_side_allocates_nothing() {

@@ -220,7 +220,7 @@ rtol = inf
             "11:18 rings.1.drops.1: `x` does not start with a number | write a length like `\"1.5 mm\"`",
             "11:23 rings.1.drops.2: `nan` must be finite",
             "12:10 rings.1.window: 1 value is given, exactly 2 wanted",
-            "14:27 models.gas: there is no gas model `orifise` | did you mean `orifice`? valid: `orifice`, `channel`, `off`",
+            "14:27 models.gas: there is no gas model `orifise` | did you mean `orifice`? valid: `channel`, `off`, `orifice`",
             "15:28 models.oil: unknown key `tickness` | did you mean `thickness`? valid: `area`, `thickness`, `model`",
             "17:8 solver.rtol: `inf` must be finite",
         ]
@@ -236,7 +236,7 @@ fn missing_keys_are_told_with_their_meaning() {
     assert_eq!(
         mistakes("title = \"x\"\n[models]\n", &[]),
         [
-            "2:1 models: missing key `gas` | `gas`: one of the models `orifice`, `channel`, `off`",
+            "2:1 models: missing key `gas` | `gas`: one of the models `channel`, `off`, `orifice`",
             "3:1 missing keys `machine`, `rings` | `machine`: The machine",
         ]
     );
@@ -246,7 +246,7 @@ fn missing_keys_are_told_with_their_meaning() {
     );
     assert_eq!(
         mistakes(&edited("model = \"orifice\", ", ""), &[]),
-        ["16:7 models.gas: missing key `model` | valid: `orifice`, `channel`, `off`"]
+        ["16:7 models.gas: missing key `model` | valid: `channel`, `off`, `orifice`"]
     );
 }
 
@@ -270,7 +270,7 @@ fn wrong_shapes() {
     );
     assert_eq!(
         one("model = \"orifice\"", "model = 3"),
-        "16:27 models.gas.model: a name is wanted here, not an integer | valid: `orifice`, `channel`, `off`"
+        "16:27 models.gas.model: a name is wanted here, not an integer | valid: `channel`, `off`, `orifice`"
     );
     assert_eq!(
         one("\"120 mm\"", "2020-01-01"),
@@ -373,7 +373,7 @@ fn overrides_are_blamed_where_they_are_wrong() {
     );
     assert_eq!(
         one("models.gas.model=nothing"),
-        "--set:1:18 models.gas: there is no gas model `nothing` | valid: `orifice`, `channel`, `off`"
+        "--set:1:18 models.gas: there is no gas model `nothing` | valid: `channel`, `off`, `orifice`"
     );
     assert_eq!(one("rings.2.gap=1"), "--set:1:7 rings: no entry `2` | it has 2 entries, numbered 0 to 1");
     assert_eq!(one("machine.bore.x=1"), "--set:1:14 machine.bore: is a text, which has no `x`");

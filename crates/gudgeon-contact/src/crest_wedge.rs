@@ -44,7 +44,7 @@ fn boundary() -> Ratio<NonNegative> {
 }
 
 #[register_model(
- name = "crest_wedge",
+    name = "crest_wedge",
     summary = "elastic wedges: crests of machining grooves on a plane",
     equations = "p = max(Omega - h, 0) E' / (1.077 lambda);  1/E' = sum (1-nu^2)/E",
     validity = "Elastic crests, contact much narrower than the pitch. The slope of the pressure jumps where the crests touch, at h = Omega.",

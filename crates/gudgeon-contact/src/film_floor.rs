@@ -32,7 +32,7 @@ impl Default for FilmFloor {
 }
 
 #[register_model(
- name = "film_floor",
+    name = "film_floor",
     summary = "a smallest film thickness that carries the remaining load without rubbing",
     equations = "h >= thickness;  friction is that of the film at h, plus friction_coefficient times the load on the floor (0)",
     validity = "A numerical stop, not a surface: underestimates friction wherever the floor carries load.",

@@ -100,7 +100,7 @@ pub fn real_area_ratio(eta_beta_sigma: f64, lambda: f64) -> f64 {
 }
 
 #[register_model(
- name = "greenwood_tripp",
+    name = "greenwood_tripp",
     summary = "elastic contact pressure of Gaussian rough surfaces",
     equations = "p = (16 sqrt(2) pi/15) (eta beta sigma)^2 sqrt(sigma/beta) E' F_5/2(h/sigma);  F_n(l) = (2 pi)^-1/2 int_l^inf (s-l)^n exp(-s^2/2) ds;  1/E' = sum (1-nu^2)/E",
     validity = "Elastic, isotropic Gaussian roughness; separations between about 0.5 and 4 roughness heights. The fits `hu1994` and `quintic` deviate by more than 11 % there and expect E' in the convention of this model.",

@@ -23,7 +23,7 @@ fn boundary() -> Ratio<NonNegative> {
 }
 
 #[register_model(
- name = "linear_penalty",
+    name = "linear_penalty",
     summary = "a pressure proportional to the approach",
     equations = "p = k max(h_0 - h, 0)",
     validity = "A numerical contact. The stiffness is no property of surfaces: results must not depend on it. The slope of the pressure jumps where the surfaces touch.",

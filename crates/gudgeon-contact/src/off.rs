@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub struct Off {}
 
 #[register_model(
- name = "off",
+    name = "off",
     summary = "no solid contact, the film carries everything",
     equations = "p_contact = 0",
     validity = "Films that stay thicker than the roughness. A film that no load-carrying surface stops may become as thin as the equations make it.",

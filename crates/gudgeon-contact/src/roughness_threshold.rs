@@ -23,7 +23,7 @@ fn boundary() -> Ratio<NonNegative> {
 }
 
 #[register_model(
- name = "roughness_threshold",
+    name = "roughness_threshold",
     summary = "boundary friction of the whole load once the film is as thin as the roughness",
     equations = "h > roughness: film alone;  h = roughness: F_friction = f W, W the whole radial load, no film shear",
     validity = "Hydrodynamic films with short contact near the dead centres. Knows no mixed regime: friction jumps at the threshold, and friction power is low where asperities share the load with a film that is thicker than the threshold.",

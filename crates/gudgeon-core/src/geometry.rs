@@ -151,6 +151,7 @@ pub struct RingGeometry {
 
 impl RingGeometry {
     /// Film thickness at which the ring touches the groove root \[m\], for a local liner radius.
+    #[inline]
     #[must_use]
     pub fn h_max(&self, liner_radius: f64) -> f64 {
         liner_radius - self.root_radius - self.width
@@ -194,6 +195,10 @@ pub struct RingPlace {
     pub clearance: f64,
     /// `s / clearance` clamped to 0…1; for a discrete motion model 0, ½ or 1.
     pub e: f64,
+    /// Twist of the section \[rad\], positive when the outer edge rises towards the head. The gap at a flank is then a wedge.
+    pub twist: f64,
+    /// Its rate \[rad/s\].
+    pub twist_rate: f64,
     /// Liner radius here \[m\], distortion included.
     pub liner_radius: f64,
     /// Inner radius of the ring \[m\].
@@ -206,6 +211,7 @@ pub struct RingPlace {
 
 impl RingPlace {
     /// Flank annulus `π (r_outer² - r_inner²)` \[m²\].
+    #[inline]
     #[must_use]
     pub fn flank_area(&self) -> f64 {
         std::f64::consts::PI * (self.r_outer * self.r_outer - self.r_inner * self.r_inner)

@@ -18,6 +18,7 @@ pub mod file;
 pub mod geometry;
 pub mod kinds;
 pub mod registry;
+pub mod states;
 
 // The attributes name this crate by its name, also inside it.
 extern crate self as gudgeon_core;

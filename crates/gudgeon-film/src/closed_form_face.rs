@@ -73,7 +73,7 @@ pub enum CavityShear {
 const MODEL: &str = "closed_form_face";
 
 #[register_model(
- name = "closed_form_face",
+    name = "closed_form_face",
     summary = "exact Reynolds film on parabola or straight pieces, with a choice of cavitation conditions",
     equations = "q = u h/2 - h^3 p'/(12 mu) = q0 - hdot x;  p' = 12 mu (u h/2 + hdot x - q0)/h^3, integrated in closed form;  \
                 mass_conserving: p = p' = 0 at rupture, flux carried through the cavity u h_r/2 - hdot (x - x_r) >= 0, \

@@ -12,7 +12,7 @@ pub struct Constant {
 }
 
 #[register_model(
- name = "constant",
+    name = "constant",
     summary = "one viscosity at every temperature",
     equations = "mu = viscosity",
     validity = "Test benches and films of nearly constant temperature.",

@@ -1,5 +1,6 @@
 use gudgeon_core::kinds::{FilmTemperature, FilmTemperatureCtx, FilmTemperatureSpec};
 use gudgeon_core::quantity::PosTemperature;
+use gudgeon_core::states::Stateful;
 use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
@@ -12,7 +13,7 @@ pub struct Given {
 }
 
 #[register_model(
- name = "given",
+    name = "given",
     summary = "a given film temperature for each ring",
     equations = "T = temperatures[ring]",
     validity = "Temperatures known from elsewhere; no change along the stroke.",
@@ -49,8 +50,10 @@ impl PerRing {
     }
 }
 
+impl Stateful for PerRing {}
+
 impl FilmTemperature for PerRing {
-    fn temperature(&self, ring: usize, _: f64) -> f64 {
+    fn temperature(&self, ring: usize, _: f64, _: &[f64]) -> f64 {
         // `new` leaves no empty list; a ring below the last has no film of its own and takes the nearest.
         self.of_ring[ring.min(self.of_ring.len() - 1)]
     }

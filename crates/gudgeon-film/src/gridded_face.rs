@@ -56,7 +56,7 @@ const PUBLISHED: usize = 11;
 const MOST: usize = 400;
 
 #[register_model(
- name = "gridded_face",
+    name = "gridded_face",
     summary = "Reynolds equation by trapezoid integrals on equally spaced nodes, clipped at the cavitation pressure",
     equations = "d/dx(h^3 dp/dx) = 6 mu u dh/dx + 12 mu dh/dt;  \
                 p = 6 mu u [I1 - (J1/J3) I3] + 12 mu dh/dt [I2 - (J2/J3) I3] + (p_top - p_bottom) I3/J3 + p_bottom, \

@@ -22,7 +22,7 @@ fn hundred_celsius() -> PosTemperature {
 }
 
 #[register_model(
- name = "land_wall_mean",
+    name = "land_wall_mean",
     summary = "mean of the land above the ring and a uniform liner wall",
     equations = "T = (T_land + T_wall) / 2",
     validity = "An estimate where neither surface temperature is known along the stroke.",

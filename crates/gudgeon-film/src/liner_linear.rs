@@ -1,5 +1,6 @@
 use gudgeon_core::kinds::{FilmTemperature, FilmTemperatureCtx, FilmTemperatureSpec};
 use gudgeon_core::quantity::PosTemperature;
+use gudgeon_core::states::Stateful;
 use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
@@ -17,7 +18,7 @@ pub struct LinerLinear {
 }
 
 #[register_model(
- name = "liner_linear",
+    name = "liner_linear",
     summary = "liner temperature, linear along the stroke",
     equations = "T = T_tdc + (T_bdc - T_tdc) travel / stroke, extrapolated below bottom dead centre",
     validity = "Films that take the liner temperature at once; measured liners are hotter near top dead centre than a line.",
@@ -41,8 +42,10 @@ struct Line {
     slope: f64,
 }
 
+impl Stateful for Line {}
+
 impl FilmTemperature for Line {
-    fn temperature(&self, _: usize, travel: f64) -> f64 {
+    fn temperature(&self, _: usize, travel: f64, _: &[f64]) -> f64 {
         self.tdc + self.slope * travel
     }
     fn is_constant(&self) -> bool {

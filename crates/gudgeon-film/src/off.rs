@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 pub struct Off {}
 
 #[register_model(
- name = "off",
+    name = "off",
     summary = "no film: no load, no friction; rings ride on their solid contact",
     equations = "p = p_cav",
     validity = "Dry rings; gas flow and axial motion alone.",

@@ -19,7 +19,7 @@ pub struct Vogel {
 }
 
 #[register_model(
- name = "vogel",
+    name = "vogel",
     summary = "Vogel equation with given constants",
     equations = "mu = a exp(b / (T_C + c)),  T_C = T - 273.15 K",
     validity = "The range of temperatures to which a, b and c were fitted, at low shear rate and ambient pressure.",

@@ -152,7 +152,7 @@ grades! {
 }
 
 #[register_model(
- name = "vogel_grade",
+    name = "vogel_grade",
     summary = "Vogel equation with the published constants of an oil grade",
     equations = "mu = a exp(b / (T_C + c)),  T_C = T - 273.15 K",
     validity = "About 40 to 150 degC, at low shear rate and ambient pressure: no shear thinning, no rise with pressure.",

@@ -89,6 +89,7 @@ fn place(p: &PackGeometry, i: usize, h: f64, e: f64, delta: f64) -> RingPlace {
         back_volume: (r.groove_height_inner + 0.5 * slope * behind)
             * PI
             * (r_inner * r_inner - r.root_radius * r.root_radius),
+        ..RingPlace::default()
     }
 }
 

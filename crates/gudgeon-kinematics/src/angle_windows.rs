@@ -46,7 +46,7 @@ fn discharge_opens() -> PosAngle {
 }
 
 #[register_model(
- name = "angle_windows",
+    name = "angle_windows",
     summary = "compressor cylinder with valves that act at fixed crank angles, as published",
     equations = "p = p_d (V_c/V)^n | p_s | p_s (V_max/V)^n | p_d in four windows of the crank angle",
     validity = "For reproduction: right for one geometry and one pressure ratio; elsewhere the pressure jumps.",

@@ -23,7 +23,7 @@ impl Default for Constant {
 }
 
 #[register_model(
- name = "constant",
+    name = "constant",
     summary = "the same pressure at all crank angles, for motoring without valves",
     equations = "p = const",
     validity = "Motored rigs without gas exchange or head.",

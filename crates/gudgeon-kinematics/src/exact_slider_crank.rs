@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 pub struct ExactSliderCrank {}
 
 #[register_model(
- name = "exact_slider_crank",
+    name = "exact_slider_crank",
     summary = "exact slider-crank with crank or pin offset",
     equations = "y = r cos(theta) + l cos(phi);  sin(phi) = (r sin(theta) - e)/l;  v = -omega r sin(theta + phi)/cos(phi);  a = dv/dt",
     validity = "Rigid parts, constant crank speed, rod longer than crank radius plus offset.",

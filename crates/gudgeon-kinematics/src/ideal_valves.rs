@@ -37,7 +37,7 @@ pub(crate) fn air() -> PosRatio {
 }
 
 #[register_model(
- name = "ideal_valves",
+    name = "ideal_valves",
     summary = "compressor cylinder with ideal valves and clearance, per cylinder end",
     equations = "p = max(p_s, p_d (V_c/V)^n) away from the head;  p = min(p_d, p_s (V_max/V)^n) towards it",
     validity = "Two-stroke cycle of a compressor end; no valve losses, no leakage, constant plenum pressures.",

@@ -59,7 +59,7 @@ fn transition() -> PosAngle {
 }
 
 #[register_model(
- name = "motored",
+    name = "motored",
     summary = "motored engine: polytropic compression and expansion, smooth valve events",
     equations = "ln p = ln p_i + s n ln(V_ic/V) while the valves are closed, blended to ln p_e and back over `transition`",
     validity = "Motored operation without heat loss: expansion retraces compression. No gas exchange dynamics.",

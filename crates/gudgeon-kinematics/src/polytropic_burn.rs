@@ -129,7 +129,7 @@ impl Default for PolytropicBurn {
 }
 
 #[register_model(
- name = "polytropic_burn",
+    name = "polytropic_burn",
     summary = "closed-form pressure: polytropic compression plus a Wiebe-shaped burn, exponential blow-down",
     equations = "p = p_i (V_ic/V)^n_c + p_b x (V_c/V)^n_e;  x = 1 - exp(-k ((theta - theta_s)/d)^m);  p = p_e + (p_eo - p_e) exp(-(theta - theta_eo)/c)",
     validity = "A stand-in for a measured trace: shape and level of a turbo-charged diesel engine, no gas exchange dynamics, no heat balance.",

@@ -136,7 +136,7 @@ const STRAIGHT: f64 = PI / 180.0;
 const MOST_STEPS: f64 = 1e7;
 
 #[register_model(
- name = "single_zone_wiebe",
+    name = "single_zone_wiebe",
     summary = "single-zone heat release along a Wiebe curve",
     equations = "dp = -gamma p dV/V + (gamma - 1) dQ/V;  Q = heat (1 - exp(-a ((theta - theta_s)/d)^(m+1)));  steps p <- p (V/V+)^gamma + (gamma - 1) dQ/V+",
     validity = "A stand-in for a measured trace of a spark-ignition engine: ideal gas with one gamma before and one after the firing dead centre, no heat loss, no gas exchange dynamics.",

@@ -128,7 +128,7 @@ impl Default for Table {
 }
 
 #[register_model(
- name = "table",
+    name = "table",
     summary = "a measured trace, inline or from a file, by periodic monotone cubic or linear interpolation",
     equations = "p = scale * P(theta - shift) + offset;  P: monotone piecewise cubic Hermite (or straight lines) through the rows, periodic",
     validity = "As good as the trace; at least 4 rows per cycle, absolute pressures after scale and offset. Interpolation does not overshoot; it cuts an extremum that lies between rows.",

@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 pub struct TwoHarmonicSeries {}
 
 #[register_model(
- name = "two_harmonic_series",
+    name = "two_harmonic_series",
     summary = "slider-crank as two harmonics, first order in r/l",
     equations = "a = -r omega^2 (cos(theta) + lambda cos(2 theta));  v = -r omega (sin(theta) + lambda/2 sin(2 theta));  y = l - r lambda/4 + r (cos(theta) + lambda/4 cos(2 theta));  lambda = r/l",
     validity = "No offset. Error of order (r/l)^3: 1.1 % of r omega^2 at r/l = 0.27.",

@@ -55,7 +55,7 @@ fn gas() -> GasConstant<Positive> {
 }
 
 #[register_model(
- name = "valve_losses",
+    name = "valve_losses",
     summary = "compressor cylinder with clearance and the pressure drop of its valves",
     equations = "p = max(p_s - dp_s, p_d (V_c/V)^n) away from the head;  p = min(p_d + dp_d, p_s (V_max/V)^n) towards it;  dp = rho (A v/A_v)^2/2",
     validity = "Quasi-steady incompressible drop: small against the plenum pressure. No valve dynamics, no pulsation.",

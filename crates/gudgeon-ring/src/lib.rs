@@ -15,8 +15,11 @@ mod flank_friction {
     pub mod rational_saturation;
     pub mod tanh_stribeck;
 }
+mod radial_motion;
 mod ring_motion {
-    //! Axial motion.
+    //! Motion in the groove.
+    mod flank;
+    mod hold;
     pub mod newton_groove;
     pub mod seated;
     pub mod three_seat;
@@ -29,6 +32,7 @@ pub use flank_damping::tangent_radians::TangentRadians;
 pub use flank_friction::off::Off as FrictionOff;
 pub use flank_friction::rational_saturation::RationalSaturation;
 pub use flank_friction::tanh_stribeck::TanhStribeck;
+pub use radial_motion::film_balance::FilmBalance;
 pub use ring_motion::newton_groove::NewtonGroove;
 pub use ring_motion::seated::{Flank, Seated};
 pub use ring_motion::three_seat::ThreeSeat;

@@ -5,7 +5,8 @@
 
 use std::any::Any;
 use std::borrow::Cow;
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock, PoisonError};
+use std::time::Instant;
 
 use gudgeon_case::{Loaded, Refinement, Report, Source, load_source, nearest, scene_of, top_level_keys};
 use gudgeon_core::BuildError;
@@ -23,31 +24,45 @@ use crate::work_precision::WorkPrecision;
 pub trait SceneCase:
     Headed + Serialize + DeserializeOwned + JsonSchema + Send + Sync + Sized + 'static
 {
+    /// The case with its sub-models built. What is checked is what is run.
+    type Built: Send;
+
+    /// Builds the sub-models.
+    ///
+    /// # Errors
     /// Everything that is wrong with a case that could be read, sweeps apart.
-    fn legal(loaded: &Loaded<Self>) -> Vec<BuildError>;
+    fn build(loaded: &Loaded<Self>) -> Result<Self::Built, Vec<BuildError>>;
 
     /// The models in use; adds to `told` what runs, what is skipped and which results there are.
     ///
     /// # Errors
-    /// The sub-models cannot be built, which [`SceneCase::legal`] would have said.
-    fn explain(loaded: &Loaded<Self>, told: &mut Explanation) -> Result<Vec<ModelUse>, RunError>;
+    /// What only shows when the models are asked.
+    fn explain(
+        loaded: &Loaded<Self>,
+        built: &mut Self::Built,
+        told: &mut Explanation,
+    ) -> Result<Vec<ModelUse>, RunError>;
+
+    /// Names of all results that a run may tell, known before it.
+    fn result_names(loaded: &Loaded<Self>, built: &mut Self::Built) -> Option<Vec<String>>;
 
     /// Runs the case once, sweeps apart. Title, source and scene are filled in by the caller.
     ///
     /// # Errors
     /// What stopped it.
-    fn run(loaded: &Loaded<Self>, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError>;
+    fn run(
+        loaded: &Loaded<Self>,
+        built: Self::Built,
+        progress: &mut dyn FnMut(Progress),
+    ) -> Result<RunResult, RunError>;
 
     /// How its numerical settings are refined: those that it and its models declare.
     fn refinements(loaded: &Loaded<Self>) -> Vec<Refinement> {
         loaded.refinements()
     }
 
-    /// Names of all results that a run may tell, known before it; none for a case that is not legal.
-    fn result_names(loaded: &Loaded<Self>) -> Option<Vec<String>>;
-
     /// Its solvers at their settings, for `bench`; none when the scene has no solvers to choose from.
-    fn work_precision(&self) -> Option<WorkPrecision> {
+    fn work_precision(_loaded: &Loaded<Self>, _built: &mut Self::Built) -> Option<WorkPrecision> {
         None
     }
 }
@@ -93,60 +108,90 @@ pub trait Scene: Send + Sync {
     fn value(&self) -> &dyn Any;
 }
 
-impl<C: SceneCase> Scene for Loaded<C> {
+/// A case that was read, and its sub-models once they were built.
+struct Read<C: SceneCase> {
+    loaded: Loaded<C>,
+    built: Mutex<Option<C::Built>>,
+}
+
+impl<C: SceneCase> Read<C> {
+    fn new(loaded: Loaded<C>) -> Self {
+        Self { loaded, built: Mutex::new(None) }
+    }
+
+    /// The sub-models, built if they are not yet or were used up by a run.
+    fn take(&self) -> Result<C::Built, Vec<BuildError>> {
+        let ready = self.built.lock().unwrap_or_else(PoisonError::into_inner).take();
+        ready.map_or_else(|| C::build(&self.loaded), Ok)
+    }
+
+    /// Has `f` look at the sub-models, and keeps them.
+    fn look<T>(&self, f: impl FnOnce(&mut C::Built) -> T) -> Result<T, Vec<BuildError>> {
+        let mut built = self.take()?;
+        let out = f(&mut built);
+        *self.built.lock().unwrap_or_else(PoisonError::into_inner) = Some(built);
+        Ok(out)
+    }
+}
+
+impl<C: SceneCase> Scene for Read<C> {
     fn heading(&self) -> Heading<'_> {
-        self.value.heading()
+        self.loaded.value.heading()
     }
 
     fn source(&self) -> &Source {
-        &self.source
+        &self.loaded.source
     }
 
     fn overrides(&self) -> &[String] {
-        &self.overrides
+        &self.loaded.overrides
     }
 
     fn notes(&self) -> &[String] {
-        &self.notes
+        &self.loaded.notes
     }
 
     fn resolved(&self) -> serde_json::Value {
         // What a case was read from can be written: a type that cannot would fail its first test.
-        Self::resolved(self).unwrap_or_default()
+        self.loaded.resolved().unwrap_or_default()
     }
 
     fn refinements(&self) -> Vec<Refinement> {
-        C::refinements(self)
+        C::refinements(&self.loaded)
     }
 
     fn legal(&self) -> Vec<BuildError> {
-        C::legal(self)
+        self.look(|_| ()).err().unwrap_or_default()
     }
 
     fn result_names(&self) -> Option<Vec<String>> {
-        C::result_names(self)
+        self.look(|built| C::result_names(&self.loaded, built)).ok().flatten()
     }
 
     fn refuse(&self, errors: &[BuildError]) -> Report {
-        Self::refuse(self, errors)
+        self.loaded.refuse(errors)
     }
 
     fn changed(&self, set: &[String]) -> Result<Box<dyn Scene>, Report> {
         if set.iter().any(|s| s.split('=').next().is_some_and(|path| path.trim() == "scene")) {
             // Another scene is another type of case.
-            let all: Vec<String> = self.overrides.iter().chain(set).cloned().collect();
-            return load(Source::clone(&self.source), &all);
+            let all: Vec<String> = self.overrides().iter().chain(set).cloned().collect();
+            return load(Source::clone(&self.loaded.source), &all);
         }
-        Ok(Box::new(self.reload::<C>(set)?))
+        Ok(Box::new(Self::new(self.loaded.reload::<C>(set)?)))
     }
 
     fn explain(&self, told: &mut Explanation) -> Result<Vec<ModelUse>, RunError> {
-        told.resolved = Scene::resolved(self);
-        C::explain(self, told)
+        told.resolved = self.resolved();
+        self.look(|built| C::explain(&self.loaded, built, told)).map_err(|e| RunError::refused(&e))?
     }
 
     fn once(&self, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
-        let result = C::run(self, progress)?;
+        let begin = Instant::now();
+        let built = self.take().map_err(|e| RunError::refused(&e))?;
+        let seconds = begin.elapsed().as_secs_f64();
+        let mut result = C::run(&self.loaded, built, progress)?;
+        result.seconds.insert("build".into(), seconds);
         let not_finite = |(_, v): &(&String, &Value)| !v.value.is_finite();
         match result.results.iter().find(not_finite) {
             Some((name, _)) => Err(RunError::NotANumber(name.clone())),
@@ -155,16 +200,16 @@ impl<C: SceneCase> Scene for Loaded<C> {
     }
 
     fn work_precision(&self) -> Option<WorkPrecision> {
-        self.value.work_precision()
+        self.look(|built| C::work_precision(&self.loaded, built)).ok().flatten()
     }
 
     fn value(&self) -> &dyn Any {
-        &self.value
+        &self.loaded.value
     }
 }
 
 /// Reads a case from a text and `--set` arguments.
-type Read = fn(Source, &[String]) -> Result<Box<dyn Scene>, Report>;
+type ReadCase = fn(Source, &[String]) -> Result<Box<dyn Scene>, Report>;
 
 /// A registered scene.
 #[derive(Debug)]
@@ -185,7 +230,7 @@ pub struct SceneInfo {
     pub line: u32,
     /// Reads a case.
     #[doc(hidden)]
-    pub read: Read,
+    pub read: ReadCase,
     /// JSON schema of a case.
     #[doc(hidden)]
     pub schema: fn(&mut SchemaGenerator) -> Schema,
@@ -195,7 +240,7 @@ gudgeon_core::inventory::collect!(SceneInfo);
 /// Reads a case of the scene `C`: what [`register_scene!`](crate::register_scene) hands over.
 #[doc(hidden)]
 pub fn read_case<C: SceneCase>(source: Source, overrides: &[String]) -> Result<Box<dyn Scene>, Report> {
-    Ok(Box::new(load_source::<C>(source, overrides)?))
+    Ok(Box::new(Read::new(load_source::<C>(source, overrides)?)))
 }
 
 /// Registers a scene, beside the implementation of [`SceneCase`].

@@ -6,6 +6,8 @@ use std::process::Command;
 
 use custom_model as _;
 use gudgeon_case::load_str;
+// Links the models.
+use gudgeon as _;
 use gudgeon_core::Registry;
 use gudgeon_core::kinds::{Oil, OilSpec};
 use gudgeon_scene_ring_pack::case::RingPackCase;

@@ -25,7 +25,7 @@ fn slow() -> Velocity<NonNegative> {
 }
 
 #[register_model(
- name = "coulomb",
+    name = "coulomb",
     summary = "constant coefficient of friction, rounded at rest",
     equations = "mu(v) = mu_c v/sqrt(v^2 + v_0^2)",
     validity = "Sliding at speeds above v_0; surfaces at rest creep instead of sticking. v_0 = 0 is for schemes that find the reversal themselves.",

@@ -10,7 +10,7 @@ use crate::check;
 pub struct Off {}
 
 #[register_model(
- name = "off",
+    name = "off",
     summary = "solid contact without friction",
     equations = "mu = 0",
     validity = "Comparisons.",

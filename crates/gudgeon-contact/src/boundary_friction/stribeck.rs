@@ -36,7 +36,7 @@ fn slow() -> Velocity<NonNegative> {
 }
 
 #[register_model(
- name = "stribeck",
+    name = "stribeck",
     summary = "coefficient that falls from a static to a kinetic value, rounded at rest",
     equations = "mu(v) = {mu_k + (mu_s - mu_k) exp[-(|v|/v_s)^n]} v/sqrt(v^2 + v_0^2)",
     validity = "Empirical. Falls with speed below v_s, which can make motion unstable. Of the solid contact alone: not to be added to a film that has a Stribeck curve of its own.",

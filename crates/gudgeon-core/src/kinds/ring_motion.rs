@@ -2,10 +2,13 @@ use std::fmt::Debug;
 
 use dyn_clone::DynClone;
 
-use crate::{BuildError, register_kind};
+use super::FlankDamping;
+use crate::geometry::RingPlace;
+use crate::states::Stateful;
+use crate::{BuildError, EvalError, register_kind};
 
 /// What a [`RingMotionSpec`] is built for.
-#[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
 pub struct RingMotionCtx {
     /// Mass of the ring \[kg\].
     pub mass: f64,
@@ -13,35 +16,83 @@ pub struct RingMotionCtx {
     pub clearance: f64,
     /// Area of the flanks \[m²\].
     pub flank_area: f64,
+    /// Axial thickness of the ring \[m\].
+    pub height: f64,
+    /// Radial thickness of the ring \[m\].
+    pub width: f64,
+    /// Radius of the middle of the section \[m\].
+    pub radius: f64,
     /// Zero-based number of the ring.
     pub ring: usize,
+    /// Crank speed \[rad/s\].
+    pub omega: f64,
+    /// Oil between the ring and the flanks of its groove.
+    pub damping: Box<dyn FlankDamping>,
+}
+
+impl RingMotionCtx {
+    /// A ring of a mass \[kg\] with a nominal clearance \[m\], at a crank speed \[rad/s\]; sections and areas are zero until they are set.
+    #[must_use]
+    pub fn new(ring: usize, mass: f64, clearance: f64, omega: f64, damping: Box<dyn FlankDamping>) -> Self {
+        Self { mass, clearance, flank_area: 0.0, height: 0.0, width: 0.0, radius: 0.0, ring, omega, damping }
+    }
+
+    /// Sets axial and radial thickness, the radius of the middle of the section \[m\] and the area of a flank \[m²\].
+    #[must_use]
+    pub fn section(mut self, height: f64, width: f64, radius: f64, flank_area: f64) -> Self {
+        (self.height, self.width, self.radius, self.flank_area) = (height, width, radius, flank_area);
+        self
+    }
 }
 
 /// Configuration of a ring-motion model.
-#[register_kind(name = "ring_motion", summary = "axial motion of a ring in its groove")]
+#[register_kind(name = "ring_motion", summary = "motion of a ring in its groove")]
 pub trait RingMotionSpec: Debug + DynClone + Send + Sync {
     /// Builds the running model of one ring.
     ///
     /// # Errors
     /// Constants outside their range.
-    fn build(&self, ctx: &RingMotionCtx) -> Result<Box<dyn RingMotion>, BuildError>;
+    fn build(&self, ctx: RingMotionCtx) -> Result<Box<dyn RingMotion>, BuildError>;
 }
 
-/// How a ring's axial position comes about.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Motion {
-    /// Position and velocity are states of the scene (two per ring).
-    Dynamic,
-    /// A seat is chosen every `interval` \[rad\] of crank angle from the forces then and held in between.
-    Discrete {
-        /// Crank angle between decisions \[rad\].
-        interval: f64,
-    },
-    /// Always at this fraction of the clearance (0 lower flank, 1 upper flank): no state, no force needed.
-    Fixed {
-        /// Fraction of the clearance.
-        e: f64,
-    },
+/// Where a ring is in its groove.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+pub struct RingPose {
+    /// Height of the middle of the section above the lower flank \[m\].
+    pub s: f64,
+    /// Its velocity \[m/s\], towards the head positive.
+    pub v: f64,
+    /// `s` over the clearance, 0 on the lower flank to 1 on the upper one.
+    pub lift_fraction: f64,
+    /// Twist of the section \[rad\], positive when the outer edge rises towards the head.
+    pub twist: f64,
+    /// Its rate \[rad/s\].
+    pub twist_rate: f64,
+}
+
+impl RingPose {
+    /// A ring at height `s` \[m\] with velocity `v` \[m/s\] in a groove that leaves it a `clearance` \[m\].
+    #[inline]
+    #[must_use]
+    pub fn at_height(s: f64, v: f64, clearance: f64) -> Self {
+        let lift_fraction = if clearance > 0.0 { (s / clearance).clamp(0.0, 1.0) } else { 0.0 };
+        Self { s, v, lift_fraction, ..Self::default() }
+    }
+
+    /// A ring that rests at a fraction of its `clearance` \[m\].
+    #[inline]
+    #[must_use]
+    pub fn seated(lift_fraction: f64, clearance: f64) -> Self {
+        Self { s: lift_fraction * clearance, v: 0.0, lift_fraction, ..Self::default() }
+    }
+
+    /// The same, twisted by an angle \[rad\] that changes at a rate \[rad/s\].
+    #[must_use]
+    pub const fn twisted(mut self, twist: f64, twist_rate: f64) -> Self {
+        (self.twist, self.twist_rate) = (twist, twist_rate);
+        self
+    }
 }
 
 /// Axial forces on a ring \[N\], towards the head positive, without the reaction of the flanks.
@@ -61,22 +112,118 @@ pub struct AxialForces {
 
 impl AxialForces {
     /// Their sum.
+    #[inline]
     #[must_use]
     pub fn sum(&self) -> f64 {
         self.gas + self.inertia + self.gravity + self.film + self.damping
     }
 }
 
-/// A running ring-motion model of one ring.
-pub trait RingMotion: Send {
-    /// How the position comes about.
-    fn motion(&self) -> Motion;
+/// Moments about the middle of the section of the whole ring \[N m\], positive where they twist the outer edge towards the head.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+pub struct TwistMoments {
+    /// Gas pressure on the flanks, on the back and on the face.
+    pub gas: f64,
+    /// Film and rubbing on the running face.
+    pub film: f64,
+}
+
+/// What acts on a ring at an instant.
+#[derive(Debug, Clone, Copy, Default)]
+#[non_exhaustive]
+pub struct RingForces {
+    /// Geometry that follows from the pose and the film thickness.
+    pub place: RingPlace,
+    /// Axial forces; that of the oil in the groove is the model's to find.
+    pub axial: AxialForces,
+    /// Moments that twist the section; zero until the scene knows them.
+    pub twist: TwistMoments,
+}
+
+impl RingForces {
+    /// Axial forces at a place.
+    #[inline]
+    #[must_use]
+    pub fn new(place: RingPlace, axial: AxialForces) -> Self {
+        Self { place, axial, ..Self::default() }
+    }
+
+    /// The same with moments.
+    #[must_use]
+    pub const fn with_twist(mut self, twist: TwistMoments) -> Self {
+        self.twist = twist;
+        self
+    }
+}
+
+/// What the motion adds to the forces.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+pub struct RingResponse {
+    /// Axial velocity \[m/s\]: that of the states, or of the balance of forces while it follows from that.
+    pub v: f64,
+    /// Force of the oil in the groove \[N\].
+    pub damping: f64,
+    /// Reaction of the flanks \[N\].
+    pub reaction: f64,
+}
+
+impl RingResponse {
+    /// Velocity \[m/s\], force of the oil and reaction of the flanks \[N\].
+    #[inline]
+    #[must_use]
+    pub const fn new(v: f64, damping: f64, reaction: f64) -> Self {
+        Self { v, damping, reaction }
+    }
+}
+
+/// A running ring-motion model of one ring. Its states, when it has some, are its own; rates are by crank angle \[1/rad\].
+pub trait RingMotion: Stateful + Send {
+    /// Whether the ring can change its place: otherwise no axial force is needed.
+    fn moves(&self) -> bool;
+
     /// Whether the force of the film on the face is part of the balance. When it is not, no film is needed for the motion.
     fn uses_film_force(&self) -> bool;
+
     /// Whether gravity is part of the balance.
     fn uses_gravity(&self) -> bool;
-    /// Reaction of the groove flanks \[N\] at height `s`, velocity `v` and clearance `c` (a [`Motion::Dynamic`] model).
-    fn flank_reaction(&self, s: f64, v: f64, clearance: f64) -> f64;
-    /// The seat (0 lower, ½ unstable, 1 upper) for these forces (a [`Motion::Discrete`] model).
-    fn seat(&self, forces: &AxialForces) -> f64;
+
+    /// Whether the oil in the groove is part of the balance.
+    fn uses_damping(&self) -> bool {
+        false
+    }
+
+    /// Where the ring is for its states `y`, in a groove that leaves it a `clearance` \[m\].
+    fn pose(&self, y: &[f64], clearance: f64) -> RingPose;
+
+    /// Rates `dy` of the states `y`, and what the motion adds to the forces.
+    ///
+    /// # Errors
+    /// States for which the model has no answer.
+    fn rates(&mut self, y: &[f64], forces: &RingForces, dy: &mut [f64]) -> Result<RingResponse, EvalError>;
+
+    /// Decides what the model holds until the next decision, from the forces of now; whether it is something else than before.
+    fn decide(&mut self, _forces: &AxialForces) -> bool {
+        false
+    }
+
+    /// Until [`RingMotion::end_differences`], rates are asked for states and forces that differ by little from the last instant: what is searched
+    /// for may be found by one step of Newton's method from there.
+    fn begin_differences(&mut self) {}
+
+    /// Ends what [`RingMotion::begin_differences`] began.
+    fn end_differences(&mut self) {}
+
+    /// The same law as one of second order in the height, `m s'' = F + F_damping(s, v)` between rigid flanks, for schemes that step it
+    /// themselves; `None` for a model that is anything else.
+    fn second_order(&self) -> Option<&dyn SecondOrder> {
+        None
+    }
+}
+
+/// A ring as a mass between rigid flanks.
+pub trait SecondOrder {
+    /// Force of the oil in the groove \[N\] at height `s` \[m\] and velocity `v` \[m/s\], for a clearance \[m\] and an area of the flanks \[m²\].
+    fn damping(&self, s: f64, v: f64, clearance: f64, area: f64) -> f64;
 }

@@ -25,7 +25,7 @@ fn saturation() -> PosPressureCoefficient {
 }
 
 #[register_model(
- name = "dowson_higginson",
+    name = "dowson_higginson",
     summary = "density of mineral oil under pressure",
     equations = "rho/rho0 = 1 + a p/(1 + b p),  a = 0.6 1/GPa, b = 1.7 1/GPa",
     validity = "Mineral oils to about 0.4 GPa; the density never exceeds 1.35 times that at ambient pressure. Pressures above -1/(2 b).",

@@ -10,7 +10,7 @@ use crate::slices::check;
 pub struct Off {}
 
 #[register_model(
- name = "off",
+    name = "off",
     summary = "density does not depend on pressure",
     equations = "rho = rho0",
     validity = "Film pressures below about 50 MPa, where oil is 3 % denser.",

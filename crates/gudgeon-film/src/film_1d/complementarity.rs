@@ -54,7 +54,7 @@ pub enum LineSolver {
 const MODEL: &str = "complementarity";
 
 #[register_model(
- name = "complementarity",
+    name = "complementarity",
     summary = "mass-conserving film along a line: pressure or void at each node, steady without iteration",
     equations = "q_i = c_i theta_i + g_i (p_i - p_(i+1)),  1/g = 12 mu/phi_p int dx/h^3,  c = u phi_s/2 int dx/h^2 / int dx/h^3;  \
                 d(V theta)/dt = q_(i-1) - q_i;  p - p_cav >= 0, 1 - theta >= 0, (p - p_cav)(1 - theta) = 0;  \

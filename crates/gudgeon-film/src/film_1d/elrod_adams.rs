@@ -54,7 +54,7 @@ impl Default for ElrodAdams {
 const MODEL: &str = "elrod_adams";
 
 #[register_model(
- name = "elrod_adams",
+    name = "elrod_adams",
     summary = "universal variable with switch function and bulk modulus, along a line",
     equations = "p - p_cav = beta g (theta - 1),  g = 1 where theta >= 1 else 0;  \
                 q_i = c_i theta_i + G_i beta [g_i (theta_i - 1) - g_(i+1) (theta_(i+1) - 1)];  d(V theta)/dt = q_(i-1) - q_i;  \

@@ -32,7 +32,7 @@ pub struct FrontTracking {
 const MODEL: &str = "front_tracking";
 
 #[register_model(
- name = "front_tracking",
+    name = "front_tracking",
     summary = "steady mass-conserving film along a line, exact for profiles of straight pieces",
     equations = "p' = 12 mu/phi_p (u phi_s h/2 - q)/h^3, integrated in closed form;  rupture: p = p_cav, u phi_s h/2 = q;  \
                 reformation: p = p_cav counted back from the end of the film;  q = min_x (p_0 - p(x) + C(x))/R(x);  \

@@ -10,7 +10,7 @@ use super::line::Line;
 pub struct Off {}
 
 #[register_model(
- name = "off",
+    name = "off",
     summary = "no film: no load, no friction, no flux",
     equations = "p = p_cav,  theta = 0",
     validity = "Solid contact and gas alone.",

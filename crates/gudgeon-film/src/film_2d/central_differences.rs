@@ -56,7 +56,7 @@ const MOST_SWEEPS: usize = 10_000;
 const SETTLED: f64 = 1e-5;
 
 #[register_model(
- name = "central_differences",
+    name = "central_differences",
     summary = "central differences of the expanded equation, cut off at the cavitation pressure, as published programs have it",
     equations = "a d2p/dx2 + a' dp/dx + g d2p/dy2 + g' dp/dy = 6 mu u dh_c/dx + 12 mu dh_T/dt,  a = phi_x h^3,  g = phi_y h^3;  \
                 half_sommerfeld: max(p, p_cav)",

@@ -37,7 +37,7 @@ impl Default for Direct {
 const MOST: usize = 1 << 27;
 
 #[register_model(
- name = "direct",
+    name = "direct",
     summary = "finite volumes with banded elimination, mass-conserving or other cavitation",
     equations = "d/dx(phi_x h^3/(12 mu) dp/dx) + d/dy(phi_y h^3/(12 mu) dp/dy) = d/dx(u h_T theta/2) + d/dt(h_T theta);  \
                 mass_conserving: min(p - p_cav, 1 - theta) = 0, theta carried from upstream;  \

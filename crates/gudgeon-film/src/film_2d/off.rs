@@ -11,7 +11,7 @@ use super::problem::Problem;
 pub struct Off {}
 
 #[register_model(
- name = "off",
+    name = "off",
     summary = "no film: no load, no friction",
     equations = "p = p_cav,  theta = 0",
     validity = "Dry surfaces, or a part whose film does not matter.",

@@ -56,7 +56,7 @@ impl Default for Sor {
 const MODEL: &str = "sor";
 
 #[register_model(
- name = "sor",
+    name = "sor",
     summary = "finite volumes with projected successive over-relaxation",
     equations = "p := p + omega (p* - p), p* from the balance of the node;  swift_stieber: p := max(p, p_cav);  \
                 mass_conserving: where p* < p_cav, theta from the balance;  half_sommerfeld: max(p, p_cav) at the end;  \

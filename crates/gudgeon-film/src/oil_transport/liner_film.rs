@@ -1,8 +1,10 @@
-use gudgeon_core::kinds::{OilTransport, OilTransportSpec};
+use gudgeon_core::kinds::{OilTransport, OilTransportCtx, OilTransportSpec};
 use gudgeon_core::quantity::{Fraction, Length, NonNegative, PosLength, Ratio, quantity};
 use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
+use super::carried::Carried;
+use super::law::Law;
 use crate::roughness::GaussianGap;
 
 /// Every face holds the oil it has, takes up what lies on the liner before it and leaves a film behind it.
@@ -55,7 +57,7 @@ impl Default for LinerFilm {
 }
 
 #[register_model(
- name = "liner_film",
+    name = "liner_film",
     summary = "starved faces fed by the film that earlier rings and strokes left on the liner; oil mass is conserved",
     equations = "V_b = int_a^x0 h dx, V_a = int_x0^b h dx;  dV_b/dt = in_b - out_b - q(x0);  dV_a/dt = in_a - out_a + q(x0);  \
                 in = |u| h_liner at the leading side, out = |u| split h(meniscus) at the trailing side;  \
@@ -66,7 +68,7 @@ impl Default for LinerFilm {
     example = "supply = \"10 um\"\nsplit = 0.5\nroughness = \"0.4 um\"\nwave = \"50 um\"\nspacing = \"0.25 mm\"\ninitial = \"0.1 um\"\n",
 )]
 impl OilTransportSpec for LinerFilm {
-    fn build(&self) -> Result<Option<Box<dyn OilTransport>>, BuildError> {
+    fn build(&self, ctx: &OilTransportCtx<'_>) -> Result<Option<Box<dyn OilTransport>>, BuildError> {
         if self.split.si() <= 0.0 {
             return Err(BuildError::at(
                 "split",
@@ -76,7 +78,7 @@ impl OilTransportSpec for LinerFilm {
         if self.spacing.si() < 1e-6 {
             return Err(BuildError::at("spacing", "a liner is not resolved below 1 um"));
         }
-        Ok(Some(Box::new(Carried {
+        let law = Law {
             supply: self.supply.si(),
             split: self.split.si(),
             roughness: self.roughness.si(),
@@ -84,51 +86,7 @@ impl OilTransportSpec for LinerFilm {
             wave: self.wave.si(),
             spacing: self.spacing.si(),
             initial: self.initial.si(),
-        })))
-    }
-}
-
-impl Carried {
-    /// Mean gap of two Gaussian surfaces less the distance of their mean planes, `σ F_1(h/σ)` (Patir and Cheng): where they overlap
-    /// there is no gap.
-    fn valleys(&self, h: f64) -> f64 {
-        if self.roughness > 0.0 {
-            let over = h / self.roughness;
-            self.roughness * (self.mean_gap.at(over).0 - over).max(0.0)
-        } else {
-            0.0
-        }
-    }
-}
-
-#[derive(Debug)]
-struct Carried {
-    supply: f64,
-    split: f64,
-    roughness: f64,
-    mean_gap: GaussianGap,
-    wave: f64,
-    spacing: f64,
-    initial: f64,
-}
-
-impl OilTransport for Carried {
-    fn left_behind(&self, gap: f64, _speed: f64) -> f64 {
-        self.split * (gap + self.valleys(gap))
-    }
-    fn through_valleys(&self, gap: f64, speed: f64) -> f64 {
-        0.5 * speed * self.valleys(gap)
-    }
-    fn supply(&self) -> f64 {
-        self.supply
-    }
-    fn spacing(&self) -> f64 {
-        self.spacing
-    }
-    fn highest_wave(&self) -> f64 {
-        self.wave
-    }
-    fn initial(&self) -> f64 {
-        self.initial
+        };
+        Ok(Some(Box::new(Carried::new(law, ctx))))
     }
 }

@@ -1,5 +1,9 @@
 //! Models of the oil on the liner.
 
+mod carried;
+mod face;
+mod law;
+mod liner;
 mod liner_film;
 mod off;
 

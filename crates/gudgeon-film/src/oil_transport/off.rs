@@ -1,4 +1,4 @@
-use gudgeon_core::kinds::{OilTransport, OilTransportSpec};
+use gudgeon_core::kinds::{OilTransport, OilTransportCtx, OilTransportSpec};
 use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub struct Off {}
 
 #[register_model(
- name = "off",
+    name = "off",
     summary = "fully flooded faces, nothing carried",
     equations = "the film reaches from edge to edge",
     validity = "An upper limit of film thickness; friction of a starved face is larger or smaller than this.",
@@ -16,7 +16,11 @@ pub struct Off {}
     example = "",
 )]
 impl OilTransportSpec for Off {
-    fn build(&self) -> Result<Option<Box<dyn OilTransport>>, BuildError> {
+    fn follows_oil(&self) -> bool {
+        false
+    }
+
+    fn build(&self, _: &OilTransportCtx<'_>) -> Result<Option<Box<dyn OilTransport>>, BuildError> {
         Ok(None)
     }
 }

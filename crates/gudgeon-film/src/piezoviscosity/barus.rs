@@ -17,7 +17,7 @@ pub struct Barus {
 }
 
 #[register_model(
- name = "barus",
+    name = "barus",
     summary = "viscosity grows exponentially with pressure",
     equations = "mu = mu0 exp(alpha p)",
     validity = "Pressures up to about 100 MPa; above, it overstates viscosity more and more (see roelands). Follows its tangent beyond alpha p = 30.",

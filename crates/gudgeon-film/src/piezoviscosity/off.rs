@@ -10,7 +10,7 @@ use crate::slices::check;
 pub struct Off {}
 
 #[register_model(
- name = "off",
+    name = "off",
     summary = "viscosity does not depend on pressure",
     equations = "mu = mu0",
     validity = "Film pressures below about 10 MPa.",

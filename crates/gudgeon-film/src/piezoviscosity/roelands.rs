@@ -27,7 +27,7 @@ pub struct Roelands {
 }
 
 #[register_model(
- name = "roelands",
+    name = "roelands",
     summary = "viscosity under pressure by Roelands",
     equations = "ln(mu/mu0) = (ln mu0 + 9.67) [(1 + p/p_r)^Z - 1],  p_r = 0.1962 GPa;  Z = alpha p_r/(ln mu0 + 9.67)",
     validity = "Mineral oils to about 1 GPa. Needs mu0 above 6.4e-5 Pa s and pressures above -p_r/2.",

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub struct Off {}
 
 #[register_model(
- name = "off",
+    name = "off",
     summary = "smooth surfaces",
     equations = "h_p = h_c = h_T = h,  phi_x = phi_y = phi_f = phi_fp = 1,  phi_fs = 0",
     validity = "Films several times thicker than the roughness.",

@@ -97,7 +97,7 @@ impl Pattern {
 }
 
 #[register_model(
- name = "patir_cheng",
+    name = "patir_cheng",
     summary = "flow and shear factors of Gaussian rough surfaces by Patir and Cheng",
     equations = "H = h/sigma;  phi_x = 1 - C exp(-r H) (gamma <= 1), 1 + C H^-r (gamma > 1);  phi_y(gamma) = phi_x(1/gamma);  h_T = h/2 [1 + erf(H/sqrt 2)] + sigma exp(-H^2/2)/sqrt(2 pi);  h_c = h_T + sigma phi_s;  Phi_s = A1 H^a1 exp(-a2 H + a3 H^2), A2 exp(-H/4) for H > 5;  Phi_fs = A3 H^a4 exp(-a5 H + a6 H^2);  phi_fp = 1 - D exp(-s H);  phi_f = mean of h/h_local",
     validity = "Gaussian heights, gamma 1/9, 1/6, 1/3, 1, 3, 6 or 9, full films; H above 1 (gamma or 1/gamma of 6 and 9), 0.75 (3) or 0.5 (1). Below, the factors stay at those of 0.05 less than that limit.",

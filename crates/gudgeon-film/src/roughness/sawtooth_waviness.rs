@@ -54,7 +54,7 @@ pub enum WavinessTransport {
 }
 
 #[register_model(
- name = "sawtooth_waviness",
+    name = "sawtooth_waviness",
     summary = "triangular machining grooves across the sliding direction, exactly homogenised",
     equations = "r = Omega/h;  phi_x = (1 - r^2)^2;  phi_y = 1 + r^2;  h_c = h - k Omega r, k = 1 (homogenised), -1 (as_published), 0 (smooth);  phi_f = artanh(r)/r;  phi_fs = 3 (phi_f - 1);  phi_fp = 1 - r^2;  h_T = h, (h + Omega)^2/(4 Omega) for |h| < Omega",
     validity = "Waves much shorter than the film's length and much longer than its thickness, on the body that the frame moves with; full films, h > 1.04 Omega. Below, all but the film content are those of h = 1.02 Omega (closest).",

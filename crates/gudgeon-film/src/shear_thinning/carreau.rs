@@ -23,7 +23,7 @@ fn none() -> Ratio<Fraction> {
 }
 
 #[register_model(
- name = "carreau",
+    name = "carreau",
     summary = "shear thinning between two plateaus, by Carreau",
     equations = "mu/mu0 = m + (1 - m) [1 + (gamma/gamma_c)^2]^((n-1)/2)",
     validity = "Multigrade oils; gamma_c and n from a flow curve of the oil at its temperature. Generalised Newtonian: no elasticity.",

@@ -29,7 +29,7 @@ fn none() -> Ratio<Fraction> {
 }
 
 #[register_model(
- name = "cross",
+    name = "cross",
     summary = "shear thinning between two plateaus, by Cross",
     equations = "mu/mu0 = m + (1 - m)/[1 + (gamma/gamma_c)^k]",
     validity = "Multigrade oils; gamma_c and k from a flow curve of the oil at its temperature. For k <= 1 the slope has a corner at rest. Generalised Newtonian: no elasticity.",

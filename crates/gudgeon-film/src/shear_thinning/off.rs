@@ -10,7 +10,7 @@ use crate::slices::check;
 pub struct Off {}
 
 #[register_model(
- name = "off",
+    name = "off",
     summary = "viscosity does not depend on shear rate",
     equations = "mu = mu0",
     validity = "Oils without polymers, or shear rates below about 1e5 1/s.",

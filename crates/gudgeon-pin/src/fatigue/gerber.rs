@@ -16,7 +16,7 @@ pub struct Gerber {
 }
 
 #[register_model(
- name = "gerber",
+    name = "gerber",
     summary = "parabola to the tensile strength",
     equations = "n s_a/S_e + (n s_m/S_u)^2 = 1",
     validity = "Follows the middle of test results of ductile metals; not on the safe side.",

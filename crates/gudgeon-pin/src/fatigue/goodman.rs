@@ -16,7 +16,7 @@ pub struct Goodman {
 }
 
 #[register_model(
- name = "goodman",
+    name = "goodman",
     summary = "straight line to the tensile strength",
     equations = "1/n = s_a/S_e + s_m/S_u",
     validity = "On the safe side for ductile steel; a compressive mean counts as none.",

@@ -16,7 +16,7 @@ pub struct Soderberg {
 }
 
 #[register_model(
- name = "soderberg",
+    name = "soderberg",
     summary = "straight line to the yield strength",
     equations = "1/n = s_a/S_e + s_m/S_y",
     validity = "Excludes yielding too; the most cautious of the criteria.",

@@ -40,7 +40,7 @@ fn atmosphere() -> PosPressure {
 }
 
 #[register_model(
- name = "cycle",
+    name = "cycle",
     summary = "gas and inertia over the cycle of an engine described in place",
     equations = "F_gas = (p - p_crankcase) pi D^2/4;  F_in = m a;  sized for max |F_gas + F_in|",
     validity = "Constant speed. The piston's whole mass without the pin loads the bosses.",

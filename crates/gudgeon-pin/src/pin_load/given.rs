@@ -19,7 +19,7 @@ fn none() -> Force {
 }
 
 #[register_model(
- name = "given",
+    name = "given",
     summary = "gas and inertia force as given",
     equations = "F = F_gas + F_in",
     validity = "One instant; the pressure shown is the gas force over the bore's area.",

@@ -16,7 +16,7 @@ pub struct OtherCase {
 }
 
 #[register_model(
- name = "other_case",
+    name = "other_case",
     summary = "gas and inertia over the cycle of the engine of another case file",
     equations = "F_gas = (p - p_crankcase) pi D^2/4;  F_in = m a;  sized for max |F_gas + F_in|",
     validity = "The bore of both cases must be the same. Only cylinder pressure and piston motion of the other case are evaluated.",

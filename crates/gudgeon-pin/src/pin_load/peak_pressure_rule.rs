@@ -54,7 +54,7 @@ const KGF_PER_MM2: f64 = 9_806_650.0;
 const STANDARD_GRAVITY: f64 = 9.80665;
 
 #[register_model(
- name = "peak_pressure_rule",
+    name = "peak_pressure_rule",
     summary = "peak pressure from the compression ratio, inertia at the dead centre",
     equations = "p_max = K r_c p_1, p_1 = 9.391e-3 kgf/mm2;  F_gas = p_max pi D^2/4;  F_in = -k m omega^2 (S/2) (1 + lambda) 9.80665/g, lambda = S/(2 l)",
     validity = "A first estimate: K is known for alcohol engines only (7.9). Pressure over that of the crankcase.",

@@ -17,7 +17,7 @@ use super::formula::{Evaluated, Formula, Loaded, Surroundings};
 pub struct CurvedRing {}
 
 #[register_model(
- name = "curved_ring",
+    name = "curved_ring",
     summary = "ring as a thick curved bar in closed form; beam with shear",
     equations = "h = (d_o - d_i)/2, R = (d_o + d_i)/4, r_n = h/ln(d_o/d_i), e = R - r_n, A = h L, m = (F/2)(R - d_o/4);  dO = 4/(E A) (I1/e + I2 - I3 + 1.2 (E/G) I4);  I1 = (R/2)(m/6 - e F (pi/2 - 1)/4), I2 = F R/6, I3 = (m/6 + e F/4)/2 - F R (pi/4 - 2/3)/4, I4 = F R/12;  s_o = F/(2 A) + (m/2 + e F/4)(r_n - d_i/2)/(A e d_i/2);  f and tau as shear_beam, the rest as thin_ring",
     validity = "d_i of 0.25 d_o or more. Against plane elasticity: ovalisation +4 %, hoop stress -3 % at d_i = 0.64 d_o; +7 %, -5 % at 0.5 d_o.",

@@ -21,7 +21,7 @@ pub struct ElasticRing {
 }
 
 #[register_model(
- name = "elastic_ring",
+    name = "elastic_ring",
     summary = "exact plane elasticity of a ring of any thickness; beam with shear",
     equations = "q = d_i/d_o, p = F/(2 d_o L);  dO = p d_o/E (((1+nu)(1 + q^2 + 3 q^4 - q^6) + 4 (1-nu) q^2 + 4 q^4 + 4 q^6)/(1 - q^2)^3 + (1 + q^2)/(1 - q^2) - nu);  s_o = 6 p (1 + q^2)/(1 - q^2)^2;  plane strain: E/(1 - nu^2) for E, nu/(1 - nu) for nu;  f and tau as shear_beam, the rest as thin_ring",
     validity = "Load uniform over the projection of the outer surface, total force. Exact for every wall, the solid pin's ovalisation included; the hoop stress of a solid pin is that at a vanishing bore.",

@@ -21,7 +21,7 @@ fn yes() -> bool {
 }
 
 #[register_model(
- name = "shear_beam",
+    name = "shear_beam",
     summary = "deflection of the beam under its spread load, with shear; ring as in thin_ring",
     equations = "f = F a^3/(48 E J) (1 - b^2/2 + b^3/8) + F (a/4 - B/8)/(kappa A G), b = B/a;  kappa = 6 (1+nu) (1+rho^2)^2/((7+6 nu) (1+rho^2)^2 + (20+12 nu) rho^2);  tau = 8/(3 pi) F (1 + rho + rho^2)/(d_o^2 (1 - rho^4));  the rest as thin_ring",
     validity = "A pin is a short beam: shear more than doubles the deflection, so limits calibrated on thin_ring do not apply to it.",

@@ -16,7 +16,7 @@ use super::formula::{Evaluated, Formula, Loaded, Surroundings};
 pub struct ThinRing {}
 
 #[register_model(
- name = "thin_ring",
+    name = "thin_ring",
     summary = "beam and thin ring with the coefficients of practice, on which limits were calibrated",
     equations = "p_boss = F/(d_o (L - D3));  p_rod = F/(d_o B);  a = (L + D3)/2, gamma = 1 - B/(2 a);  f = gamma a^3 F/(48 E J);  s_b = gamma F a/(4 Z);  dO = F_gas ((1 + rho)/(1 - rho))^3/(8 E L), rho = d_i/d_o;  s_o = 0.75 F (d_o + d_i)/(L (d_o - d_i)^2);  tau = 0.85 F (1 + rho + rho^2)/(d_o^2 (1 - rho^4));  s_r = sqrt(s_b^2 + s_o^2)",
     validity = "For comparison with limits of the same formulas. The deflection is 16 % below the beam's and leaves out shear, the hoop stress of a wall of a sixth of the diameter 28 % below plane elasticity.",

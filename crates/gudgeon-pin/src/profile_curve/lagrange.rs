@@ -13,7 +13,7 @@ pub struct Lagrange {}
 const MOST: usize = 12;
 
 #[register_model(
- name = "lagrange",
+    name = "lagrange",
     summary = "polynomial through all points",
     equations = "y(x) = sum_i y_i prod_{j != i} (x - x_j)/(x_i - x_j)",
     validity = "A few points, at most 12; overshoots between equal ordinates and extrapolates with its highest power.",

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub struct Linear {}
 
 #[register_model(
- name = "linear",
+    name = "linear",
     summary = "straight lines between the points",
     equations = "y(x) = y_i + (y_{i+1} - y_i)(x - x_i)/(x_{i+1} - x_i)",
     validity = "Any number of points; has corners.",

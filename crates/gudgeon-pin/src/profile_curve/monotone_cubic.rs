@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 pub struct MonotoneCubic {}
 
 #[register_model(
- name = "monotone_cubic",
+    name = "monotone_cubic",
     summary = "shape-preserving cubic, straight beyond the points",
     equations = "cubic between neighbours with slopes from the weighted harmonic mean of the secants",
     validity = "Any number of points; slope continuous, curvature not.",

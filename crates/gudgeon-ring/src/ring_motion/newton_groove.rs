@@ -1,10 +1,16 @@
 //! The ring as a mass that moves between the groove flanks.
 
-use gudgeon_core::kinds::{AxialForces, Motion, RingMotion, RingMotionCtx, RingMotionSpec};
+use gudgeon_core::kinds::{
+    FlankDamping, RingForces, RingMotion, RingMotionCtx, RingMotionSpec, RingPose, RingResponse, SecondOrder,
+};
 use gudgeon_core::quantity::{PosStiffness, PosVelocity, quantity};
-use gudgeon_core::{BuildError, register_model};
+use gudgeon_core::states::{Signals, StateInfo, Stateful};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+
+use super::flank::Flank;
+use super::hold::{Balance, Hold, Holding};
 
 /// Newton's law for the ring in its groove, `m dv/dt = ΣF`, with stiff flanks.
 ///
@@ -75,7 +81,7 @@ impl Default for NewtonGroove {
     example = "flank_stiffness = \"1e10 N/m\"\nrebound_velocity = \"0.01 m/s\"\n",
 )]
 impl RingMotionSpec for NewtonGroove {
-    fn build(&self, ctx: &RingMotionCtx) -> Result<Box<dyn RingMotion>, BuildError> {
+    fn build(&self, ctx: RingMotionCtx) -> Result<Box<dyn RingMotion>, BuildError> {
         if !(ctx.mass > 0.0 && ctx.mass.is_finite()) {
             return Err(BuildError::new(format!(
                 "ring {} has the mass {:e} kg, which must be greater than zero to move",
@@ -91,84 +97,249 @@ impl RingMotionSpec for NewtonGroove {
             ))
             .help("give it a clearance, or the ring motion `seated`"));
         }
+        let ring = ctx.ring + 1;
+        let unit_speed = ctx.clearance * ctx.omega;
         Ok(Box::new(Runtime {
-            stiffness: self.flank_stiffness.si(),
-            per_rebound: self.rebound_velocity.si().recip(),
+            states: [
+                StateInfo::new(format!("lift of ring{ring}")).absolute(HEIGHT_SCALE).changes(Signals::LIFT),
+                StateInfo::new(format!("axial velocity of ring{ring}"))
+                    .relative(VELOCITY_SCALE)
+                    .over_cycle(VELOCITY_SCALE, false)
+                    .changes(Signals::AXIAL_VELOCITY),
+            ],
+            flank: Flank {
+                stiffness: self.flank_stiffness.si(),
+                per_rebound: self.rebound_velocity.si().recip(),
+            },
             gravity: self.gravity,
             film_force: self.film_force,
+            damping: ctx.damping,
+            mass: ctx.mass,
+            clearance: ctx.clearance,
+            omega: ctx.omega,
+            holding: Holding::new(ctx.mass, unit_speed, ctx.omega),
+            forces: RingForces::default(),
+            v: 0.0,
         }))
     }
 }
 
+/// Velocity that counts as one in the error norm, in clearances per radian: what matters of a velocity is the distance it covers.
+const VELOCITY_SCALE: f64 = 100.0;
+/// Height that counts as one in the error norm, in clearances: the films on the flanks are a hundredth of a clearance thick, and
+/// their force goes with the cube.
+const HEIGHT_SCALE: f64 = 0.01;
+
+/// States: height over the nominal clearance, and its derivative by crank angle.
 struct Runtime {
-    stiffness: f64,
-    per_rebound: f64,
+    states: [StateInfo; 2],
+    flank: Flank,
     gravity: bool,
     film_force: bool,
+    damping: Box<dyn FlankDamping>,
+    mass: f64,
+    clearance: f64,
+    omega: f64,
+    holding: Holding,
+    /// Forces of the last instant.
+    forces: RingForces,
+    /// Velocity \[m/s\] of the last instant.
+    v: f64,
+}
+
+impl Runtime {
+    fn balance(&self, forces: &RingForces, hold: Hold) -> Balance<'_> {
+        let (place, a) = (&forces.place, &forces.axial);
+        Balance {
+            away: hold.away(),
+            external: a.gas + a.inertia + a.gravity + a.film,
+            s: place.s,
+            clearance: place.clearance,
+            area: place.flank_area(),
+            damping: &*self.damping,
+            flank: &self.flank,
+            fall: self.holding.unit_speed,
+        }
+    }
 }
 
 impl RingMotion for Runtime {
-    fn motion(&self) -> Motion {
-        Motion::Dynamic
+    fn moves(&self) -> bool {
+        true
     }
-
     fn uses_film_force(&self) -> bool {
         self.film_force
     }
-
     fn uses_gravity(&self) -> bool {
         self.gravity
     }
-
-    fn flank_reaction(&self, s: f64, v: f64, clearance: f64) -> f64 {
-        let push = |depth: f64, rate: f64| {
-            self.stiffness * depth.max(0.0) * (1.0 + self.per_rebound * rate).max(0.0)
-        };
-        push(-s, -v) - push(s - clearance, v)
+    fn uses_damping(&self) -> bool {
+        true
     }
 
-    fn seat(&self, _: &AxialForces) -> f64 {
-        0.0
+    fn pose(&self, y: &[f64], clearance: f64) -> RingPose {
+        RingPose::at_height(y[0] * self.clearance, y[1] * self.clearance * self.omega, clearance)
+    }
+
+    fn rates(&mut self, y: &[f64], forces: &RingForces, dy: &mut [f64]) -> Result<RingResponse, EvalError> {
+        let place = &forces.place;
+        let hold = self.holding.hold;
+        let v = match hold {
+            Hold::Free => place.v,
+            _ => self.holding.velocity(&self.balance(forces, hold), self.v),
+        };
+        let damping = self.damping.force(place.s, v, place.clearance, place.flank_area());
+        let reaction = self.flank.reaction(place.s, v, place.clearance);
+        let (c0, omega) = (self.clearance, self.omega);
+        if hold == Hold::Free {
+            let mut axial = forces.axial;
+            axial.damping = damping;
+            dy.copy_from_slice(&[y[1], (axial.sum() + reaction) / self.mass / (c0 * omega * omega)]);
+        } else {
+            dy.copy_from_slice(&[v / (c0 * omega), 0.0]);
+        }
+        if !self.holding.differences {
+            (self.forces, self.v) = (*forces, v);
+        }
+        Ok(RingResponse::new(v, damping, reaction))
+    }
+
+    fn begin_differences(&mut self) {
+        let hold = self.holding.hold;
+        let stiffness = match hold {
+            Hold::Free => 0.0,
+            _ => {
+                let b = self.balance(&self.forces, hold);
+                let w = b.away * self.v;
+                b.stiffness(w, b.force(w))
+            }
+        };
+        (self.holding.differences, self.holding.tangent) = (true, stiffness);
+    }
+
+    fn end_differences(&mut self) {
+        (self.holding.differences, self.holding.tangent) = (false, 0.0);
+    }
+
+    fn second_order(&self) -> Option<&dyn SecondOrder> {
+        Some(self)
+    }
+}
+
+impl SecondOrder for Runtime {
+    fn damping(&self, s: f64, v: f64, clearance: f64, area: f64) -> f64 {
+        self.damping.force(s, v, clearance, area)
+    }
+}
+
+impl Stateful for Runtime {
+    fn states(&self) -> &[StateInfo] {
+        &self.states
+    }
+
+    fn reads(&self) -> Signals {
+        let own = Signals::LIFT | Signals::AXIAL_VELOCITY | Signals::FILM_THICKNESS | Signals::PRESSURE;
+        if self.film_force { own | Signals::FILM_FORCE } else { own }
+    }
+
+    fn set_accuracy(&mut self, tolerance: f64) {
+        self.holding.tolerance = tolerance;
+    }
+
+    /// The position is judged by the distance from the flank.
+    fn ease(&self, atol: &mut [f64]) {
+        let place = &self.forces.place;
+        let gap = place.s.min(place.clearance - place.s) / self.clearance;
+        atol[0] *= (gap / HEIGHT_SCALE).max(1.0);
+    }
+
+    fn is_integrated(&self, k: usize) -> bool {
+        k == 0 || self.holding.hold == Hold::Free
+    }
+
+    fn n_events(&self) -> usize {
+        usize::from(self.holding.tolerance > 0.0)
+    }
+
+    fn event(&self, _: usize) -> f64 {
+        match self.holding.hold {
+            Hold::Free => {
+                let b = self.balance(&self.forces, Hold::nearest(&self.forces.place));
+                self.holding.readiness(&b, self.v, false)
+            }
+            hold => self.holding.wants_to_leave(&self.balance(&self.forces, hold)),
+        }
+    }
+
+    fn event_is_located(&self, _: usize) -> bool {
+        // A ring may be held any time after it is ready, but has to be let go in time.
+        self.holding.hold != Hold::Free
+    }
+
+    fn switch(&mut self, _: usize, y: &mut [f64]) {
+        y[1] = self.holding.switch(Hold::nearest(&self.forces.place));
+    }
+
+    fn free(&mut self) {
+        self.holding.hold = Hold::Free;
+    }
+
+    fn start(&mut self, y: &mut [f64]) {
+        let nearest = Hold::nearest(&self.forces.place);
+        if self.holding.readiness(&self.balance(&self.forces, nearest), self.v, true) > 0.0 {
+            y[1] = self.holding.switch(nearest);
+        }
+    }
+
+    fn save(&self, out: &mut Vec<f64>) {
+        out.push(self.holding.hold.code());
+    }
+
+    fn restore(&mut self, saved: &[f64]) -> usize {
+        self.holding.hold = Hold::from_code(saved[0]);
+        1
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use gudgeon_core::kinds::{FlankDampingCtx, FlankDampingSpec};
 
-    const CTX: RingMotionCtx = RingMotionCtx { mass: 0.043, clearance: 1e-4, flank_area: 1.8e-3, ring: 0 };
+    const MASS: f64 = 0.043;
+    const CLEARANCE: f64 = 1e-4;
 
-    fn built(spec: &NewtonGroove) -> Box<dyn RingMotion> {
-        spec.build(&CTX).expect("default builds")
+    fn flank(spec: &NewtonGroove) -> Flank {
+        Flank { stiffness: spec.flank_stiffness.si(), per_rebound: spec.rebound_velocity.si().recip() }
     }
 
     #[test]
     fn flanks_only_push_and_meet_zero_continuously() {
-        let m = built(&NewtonGroove::default());
-        let c = CTX.clearance;
+        let m = flank(&NewtonGroove::default());
+        let c = CLEARANCE;
         for v in [-3.0, -1e-3, 0.0, 1e-3, 3.0] {
-            assert_eq!(m.flank_reaction(0.5 * c, v, c), 0.0);
-            assert_eq!(m.flank_reaction(0.0, v, c), 0.0);
-            assert_eq!(m.flank_reaction(c, v, c), 0.0);
+            assert_eq!(m.reaction(0.5 * c, v, c), 0.0);
+            assert_eq!(m.reaction(0.0, v, c), 0.0);
+            assert_eq!(m.reaction(c, v, c), 0.0);
             for d in [1e-15, 1e-9, 1e-7, 1e-6] {
-                let lower = m.flank_reaction(-d, v, c);
-                let upper = m.flank_reaction(c + d, v, c);
+                let lower = m.reaction(-d, v, c);
+                let upper = m.reaction(c + d, v, c);
                 assert!(lower >= 0.0 && upper <= 0.0);
                 // The factor of k d is at most 1 + 3/0.01.
                 assert!(lower.max(-upper) <= 1.0001e10 * d * 301.0);
                 // Up and down are mirrored; the depth at the upper flank carries the rounding of c + d, 1e-20 m.
-                let mirrored = -m.flank_reaction(c + d, -v, c);
+                let mirrored = -m.reaction(c + d, -v, c);
                 assert!((lower - mirrored).abs() <= 1e10 * 2e-20 * 301.0, "{lower} {mirrored}");
             }
         }
         // 10 kN indents 1 µm.
-        assert!((m.flank_reaction(-1e-6, 0.0, c) - 1e4).abs() < 1e-8);
+        assert!((m.reaction(-1e-6, 0.0, c) - 1e4).abs() < 1e-8);
     }
 
     /// Depth and velocity after one contact by a classical Runge-Kutta scheme with tiny steps, until the ring has left.
-    fn rebound(m: &dyn RingMotion, mass: f64, v_in: f64, dt: f64) -> f64 {
-        let c = CTX.clearance;
-        let f = |y: [f64; 2]| [y[1], m.flank_reaction(y[0], y[1], c) / mass];
+    fn rebound(m: &Flank, mass: f64, v_in: f64, dt: f64) -> f64 {
+        let c = CLEARANCE;
+        let f = |y: [f64; 2]| [y[1], m.reaction(y[0], y[1], c) / mass];
         let add = |y: [f64; 2], k: [f64; 2], h: f64| [y[0] + h * k[0], y[1] + h * k[1]];
         let mut y = [0.0, -v_in];
         for _ in 0..20_000_000 {
@@ -203,10 +374,10 @@ mod tests {
     fn rebound_follows_the_closed_form_and_loses_energy() {
         let v_r = 0.5;
         let spec = NewtonGroove { rebound_velocity: quantity(v_r), ..NewtonGroove::default() };
-        let m = built(&spec);
+        let m = flank(&spec);
         let mut last = 0.0;
         for v_in in [0.01, 0.1, 0.5, 2.0] {
-            let v_out = rebound(m.as_ref(), CTX.mass, v_in, 1e-10);
+            let v_out = rebound(&m, MASS, v_in, 1e-10);
             let exact = closed_form(v_in, v_r);
             // The contact ends inside one step of 1e-10 s, in which the force, at most k·v·dt, changes the velocity by less than
             // 1e10·0.5·1e-10/0.043·1e-10 ~ 1e-9 m/s; the scheme itself is far better than that.
@@ -224,9 +395,11 @@ mod tests {
 
     #[test]
     fn refuses_what_cannot_move() {
-        let spec = NewtonGroove::default();
-        assert!(spec.build(&RingMotionCtx { clearance: 0.0, ..CTX }).is_err());
-        assert!(spec.build(&RingMotionCtx { mass: 0.0, ..CTX }).is_err());
-        assert!(spec.build(&RingMotionCtx { mass: f64::NAN, ..CTX }).is_err());
+        for (mass, clearance) in [(MASS, 0.0), (0.0, CLEARANCE), (f64::NAN, CLEARANCE)] {
+            let oil = FlankDampingCtx { ring: 0, rings: 1, oil_fill: 0.6, width: 5e-3, mu: 0.01 };
+            let damping = crate::SqueezeFilm::default().build(&oil).expect("builds");
+            let ctx = RingMotionCtx::new(0, mass, clearance, 200.0, damping);
+            assert!(NewtonGroove::default().build(ctx).is_err());
+        }
     }
 }

@@ -1,7 +1,8 @@
 //! A ring that never leaves its seat.
 
-use gudgeon_core::kinds::{AxialForces, Motion, RingMotion, RingMotionCtx, RingMotionSpec};
-use gudgeon_core::{BuildError, register_model};
+use gudgeon_core::kinds::{RingForces, RingMotion, RingMotionCtx, RingMotionSpec, RingPose, RingResponse};
+use gudgeon_core::states::Stateful;
+use gudgeon_core::{BuildError, EvalError, register_model};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -34,7 +35,7 @@ pub struct Seated {
     example = "flank = \"lower\"\n",
 )]
 impl RingMotionSpec for Seated {
-    fn build(&self, _: &RingMotionCtx) -> Result<Box<dyn RingMotion>, BuildError> {
+    fn build(&self, _: RingMotionCtx) -> Result<Box<dyn RingMotion>, BuildError> {
         Ok(Box::new(Runtime {
             e: match self.flank {
                 Flank::Lower => 0.0,
@@ -48,9 +49,11 @@ struct Runtime {
     e: f64,
 }
 
+impl Stateful for Runtime {}
+
 impl RingMotion for Runtime {
-    fn motion(&self) -> Motion {
-        Motion::Fixed { e: self.e }
+    fn moves(&self) -> bool {
+        false
     }
     fn uses_film_force(&self) -> bool {
         false
@@ -58,26 +61,29 @@ impl RingMotion for Runtime {
     fn uses_gravity(&self) -> bool {
         false
     }
-    fn flank_reaction(&self, _: f64, _: f64, _: f64) -> f64 {
-        0.0
+    fn pose(&self, _: &[f64], clearance: f64) -> RingPose {
+        RingPose::seated(self.e, clearance)
     }
-    fn seat(&self, _: &AxialForces) -> f64 {
-        self.e
+    fn rates(&mut self, _: &[f64], _: &RingForces, _: &mut [f64]) -> Result<RingResponse, EvalError> {
+        Ok(RingResponse::default())
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use gudgeon_core::kinds::{FlankDampingCtx, FlankDampingSpec};
 
     #[test]
     fn rests_where_it_is_told() {
-        let ctx = RingMotionCtx { mass: 0.0, clearance: 0.0, flank_area: 0.0, ring: 2 };
+        let oil = FlankDampingCtx { ring: 2, rings: 3, oil_fill: 0.6, width: 5e-3, mu: 0.01 };
         for (flank, e) in [(Flank::Lower, 0.0), (Flank::Upper, 1.0)] {
-            let m = Seated { flank }.build(&ctx).expect("always builds");
-            assert_eq!(m.motion(), Motion::Fixed { e });
-            assert_eq!(m.seat(&AxialForces { gas: 1e4, ..AxialForces::default() }), e);
-            assert!(!m.uses_film_force());
+            let damping = crate::DampingOff {}.build(&oil).expect("builds");
+            let m =
+                Seated { flank }.build(RingMotionCtx::new(2, 0.0, 0.0, 1.0, damping)).expect("always builds");
+            let pose = m.pose(&[], 1e-4);
+            assert_eq!((pose.s, pose.lift_fraction), (e * 1e-4, e));
+            assert!(!m.moves() && !m.uses_film_force() && m.states().is_empty());
         }
     }
 }

@@ -31,7 +31,7 @@ fn creep() -> PosVelocity {
 }
 
 #[register_model(
- name = "coulomb",
+    name = "coulomb",
     summary = "dry friction of the top ring on its flank against motion of the piston across the bore",
     equations = "F = -mu (pi D w p + F0) tanh(v/v0)",
     validity = "One ring carries the gas pressure; the friction reverses within v0.",

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub struct Off {}
 
 #[register_model(
- name = "off",
+    name = "off",
     summary = "rings do not hinder the piston across the bore",
     equations = "F = 0",
     validity = "Rings that slide freely in their grooves.",

@@ -23,7 +23,7 @@ fn creep() -> PosVelocity {
 }
 
 #[register_model(
- name = "coulomb",
+    name = "coulomb",
     summary = "dry friction of the gudgeon pin",
     equations = "M = mu R F tanh(R omega/v0)",
     validity = "Boundary lubrication; the friction reverses within v0.",

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub struct Off {}
 
 #[register_model(
- name = "off",
+    name = "off",
     summary = "the gudgeon pin turns freely",
     equations = "M = 0",
     validity = "Pins whose friction does not matter.",

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 pub struct FullInertia {}
 
 #[register_model(
- name = "full_inertia",
+    name = "full_inertia",
     summary = "piston and pin with their inertia across the bore",
     equations = "M d2(e_t, e_b)/dt2 = film + contact + rod + gas and inertia about the pin + friction;  \
                 M = sum m grad(e) grad(e) + I/L^2 (1, -1)(1, -1)",

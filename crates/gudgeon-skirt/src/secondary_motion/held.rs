@@ -22,7 +22,7 @@ fn centred() -> Length {
 }
 
 #[register_model(
- name = "held",
+    name = "held",
     summary = "no motion across the bore: the skirt stands where it is told",
     equations = "e_t, e_b constant",
     validity = "Friction and pressures of a given place; forces are not in balance.",

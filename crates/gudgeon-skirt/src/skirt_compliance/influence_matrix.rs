@@ -38,7 +38,7 @@ fn rest() -> Ratio<Fraction> {
 const ASYMMETRY: f64 = 1e-3;
 
 #[register_model(
- name = "influence_matrix",
+    name = "influence_matrix",
     summary = "deflections by unit forces from a file, reduced to the shapes that matter",
     equations = "C = sum lambda_k v_k v_k';  delta = sum lambda_k phi_k int phi_k (p - p_crankcase) dA;  lambda_k >= rest lambda_1",
     validity = "Linear elasticity without inertia; deflections by film pressure alone.",

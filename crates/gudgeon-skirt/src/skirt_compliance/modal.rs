@@ -38,7 +38,7 @@ pub struct Shape {
 }
 
 #[register_model(
- name = "modal",
+    name = "modal",
     summary = "shapes in which the skirt yields, each with a stiffness of its own",
     equations = "delta = sum q_k phi_k;  K_k q_k = int phi_k (p - p_crankcase) dA;  phi = (x/L)^m cos(n pi phi/(2 phi0)), or from a file",
     validity = "Linear elasticity without inertia; deflections by film pressure alone.",

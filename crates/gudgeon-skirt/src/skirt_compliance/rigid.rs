@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub struct Rigid {}
 
 #[register_model(
- name = "rigid",
+    name = "rigid",
     summary = "a skirt that does not yield",
     equations = "h has no elastic part",
     validity = "Deflections small against the film.",

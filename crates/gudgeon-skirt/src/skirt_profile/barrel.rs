@@ -32,7 +32,7 @@ fn half() -> Ratio<Fraction> {
 }
 
 #[register_model(
- name = "barrel",
+    name = "barrel",
     summary = "barrel of two parabolas, and oval",
     equations = "f = t ((s0 - s)/s0)^2 above s0, b ((s - s0)/(1 - s0))^2 below;  + o sin^2(phi)",
     validity = "Hot shape.",

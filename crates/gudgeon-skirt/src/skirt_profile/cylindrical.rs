@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub struct Cylindrical {}
 
 #[register_model(
- name = "cylindrical",
+    name = "cylindrical",
     summary = "a cylinder",
     equations = "f = 0",
     validity = "Comparison with programs that have no profile; real skirts have one.",

@@ -35,7 +35,7 @@ fn none() -> Length<NonNegative> {
 }
 
 #[register_model(
- name = "table",
+    name = "table",
     summary = "a measured shape, by height or over the whole side",
     equations = "f = P(x) + o sin^2(phi), P a monotone cubic;  or bilinear between the points of a file",
     validity = "Hot shape. The ends of the table count beyond it.",

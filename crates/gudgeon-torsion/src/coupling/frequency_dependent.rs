@@ -20,7 +20,7 @@ pub struct FrequencyDependent {
 }
 
 #[register_model(
- name = "frequency_dependent",
+    name = "frequency_dependent",
     summary = "stiffness and loss factor over the frequency, from a table",
     equations = "T = K(omega) (1 + i eta(omega)) dtheta",
     validity = "Harmonic motion; models in time refuse it. Natural frequencies are those of the first row.",

@@ -32,7 +32,7 @@ fn no_loss() -> Ratio<NonNegative> {
 }
 
 #[register_model(
- name = "linear",
+    name = "linear",
     summary = "linear spring and damper, with a loss factor for harmonic motion",
     equations = "T = k dtheta + c domega;  in vibration T = (k (1 + i eta) + i omega c) dtheta",
     validity = "Small twists of steel shafts and couplings. The loss factor has no meaning in time.",

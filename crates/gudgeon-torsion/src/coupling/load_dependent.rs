@@ -32,7 +32,7 @@ fn cold() -> Ratio<NonNegative> {
 }
 
 #[register_model(
- name = "load_dependent",
+    name = "load_dependent",
     summary = "dynamic stiffness and relative damping over the mean torque",
     equations = "T = K(T_mean) (1 + i psi/(2 pi)) dtheta",
     validity = "Harmonic motion about a mean torque; models in time refuse it.",

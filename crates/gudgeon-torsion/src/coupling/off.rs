@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 pub struct Off {}
 
 #[register_model(
- name = "off",
+    name = "off",
     summary = "no elasticity: a rigid link",
     equations = "theta_1 = theta_2",
     validity = "Flanges, hubs, gear meshes without elasticity.",

@@ -32,7 +32,7 @@ fn no_time() -> Ratio<NonNegative> {
 }
 
 #[register_model(
- name = "piecewise",
+    name = "piecewise",
     summary = "stiffness by pieces: stages, stops, play",
     equations = "T = T_i + k_i (x - x_i) + (c + tau k_i) dx/dt between the rows x_i <= x < x_{i+1}",
     validity = "Spring couplings, gear play. `orders` and `modal` take the piece of the mean torque, right while the vibration stays in it; `harmonic_balance` and models in time take all.",

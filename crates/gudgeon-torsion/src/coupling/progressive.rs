@@ -31,7 +31,7 @@ fn none() -> TorsionalDamping<NonNegative> {
 }
 
 #[register_model(
- name = "progressive",
+    name = "progressive",
     summary = "stiffness that grows with the torque, cubic",
     equations = "T = k x + k3 x^3 + c dx/dt;  3 k3 x_n^2 = (gain - 1) k;  x_n = 3 T_n/(k (2 + gain))",
     validity = "Rubber couplings up to about their largest torque. `orders` and `modal` take the tangent at the mean torque; `harmonic_balance` and models in time take all.",

@@ -12,7 +12,7 @@ pub struct Constant {
 }
 
 #[register_model(
- name = "constant",
+    name = "constant",
     summary = "the same torque at all speeds",
     equations = "T = const",
     validity = "Studies about one speed.",

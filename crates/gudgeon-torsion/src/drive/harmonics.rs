@@ -44,7 +44,7 @@ fn one() -> Ratio {
 }
 
 #[register_model(
- name = "harmonics",
+    name = "harmonics",
     summary = "torque by its harmonics over the angle",
     equations = "T = T_0 + sum_n A_n cos(n theta - phi_n)",
     validity = "Orders are multiples of a half.",

@@ -30,7 +30,7 @@ fn none() -> Torque<NonNegative> {
 }
 
 #[register_model(
- name = "induction_motor",
+    name = "induction_motor",
     summary = "induction motor from rest to synchronous speed, by the formula of Kloss",
     equations = "T = 2 T_b/(s/s_b + s_b/s);  s = (omega_s - omega)/omega_s",
     validity = "Quasi-steady torque: slow against the electrical time constants. No alternating torque at line frequency.",

@@ -34,7 +34,7 @@ pub struct Rated {
 }
 
 #[register_model(
- name = "linear",
+    name = "linear",
     summary = "straight torque-speed line, as of an induction motor near synchronous speed",
     equations = "T = C0 + C1 omega;  from the rated point C1 = -T_r/(omega_s - omega_r), C0 = -C1 omega_s",
     validity = "Small changes of speed about the rated point.",

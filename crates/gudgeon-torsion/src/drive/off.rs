@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub struct Off {}
 
 #[register_model(
- name = "off",
+    name = "off",
     summary = "no torque",
     equations = "T = 0",
     validity = "Coasting machines, free vibration.",

@@ -27,7 +27,7 @@ fn square() -> Ratio<NonNegative> {
 }
 
 #[register_model(
- name = "power_law",
+    name = "power_law",
     summary = "torque by a power of the speed: fan, propeller, generator",
     equations = "T = T_r sign(omega) |omega/omega_r|^n",
     validity = "Loads without a part that goes with the angle.",

@@ -14,7 +14,7 @@ pub struct Table {
 }
 
 #[register_model(
- name = "table",
+    name = "table",
     summary = "measured torque-speed curve",
     equations = "T(omega): monotone piecewise cubic through the rows, straight beyond the ends",
     validity = "As good as the curve; at least two rows.",

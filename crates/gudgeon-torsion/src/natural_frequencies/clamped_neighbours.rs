@@ -13,7 +13,7 @@ use crate::tree::Tree;
 pub struct ClampedNeighbours {}
 
 #[register_model(
- name = "clamped_neighbours",
+    name = "clamped_neighbours",
     summary = "wrong on purpose: each inertia between neighbours that stand still, as published",
     equations = "omega_i = sqrt(K_ii/J_i)",
     validity = "For reproduction only: not the natural frequencies of the line. Listed by inertia, not by mode.",

@@ -30,7 +30,7 @@ impl Default for Eigenvalues {
 }
 
 #[register_model(
- name = "eigenvalues",
+    name = "eigenvalues",
     summary = "eigenvalues of the whole line with shapes, undamped and damped",
     equations = "(K - omega^2 J) phi = 0;  det(K + z C + z^2 J) = 0, z = -decay + i omega_d",
     validity = "Small vibration; inertia of throws at its mean, couplings over the frequency at their first row, drives without their slope. The scene takes couplings that depend on their load at the mean torque.",

@@ -17,7 +17,7 @@ use super::Lumped;
 pub struct Exact {}
 
 #[register_model(
- name = "exact",
+    name = "exact",
     summary = "inertia of crank, rod and piston as it is at each crank angle",
     equations = "I = I_c + m_1 r^2 + I_2 (dphi/dtheta)^2 + (m_2 + m_p) (dx/dtheta)^2",
     validity = "Rigid parts; offset included.",

@@ -13,7 +13,7 @@ use super::Lumped;
 pub struct FirstHarmonic {}
 
 #[register_model(
- name = "first_harmonic",
+    name = "first_harmonic",
     summary = "mean inertia and its part of twice the crank angle, for a long rod",
     equations = "I = I_0 (1 - eps cos(2 theta));  eps I_0 = (j m_r + m_p) r^2/2",
     validity = "Rod much longer than the crank radius: orders 1 and 3 of the inertia torque are missing.",

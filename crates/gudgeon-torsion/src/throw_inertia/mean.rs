@@ -13,7 +13,7 @@ use super::Lumped;
 pub struct Mean {}
 
 #[register_model(
- name = "mean",
+    name = "mean",
     summary = "constant mean inertia, for a long rod",
     equations = "I_0 = I_c + (1 - j) m_r r^2 + (j m_r + m_p) r^2/2",
     validity = "Leaves out the inertia torque, which at the speeds of most machines is larger than that of the gas.",

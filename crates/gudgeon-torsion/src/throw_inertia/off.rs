@@ -10,7 +10,7 @@ use super::mean::Same;
 pub struct Off {}
 
 #[register_model(
- name = "off",
+    name = "off",
     summary = "inertia of the crank alone",
     equations = "I = I_c",
     validity = "Lines whose inertias are given as sums already.",

@@ -61,7 +61,7 @@ impl HarmonicBalance {
 }
 
 #[register_model(
- name = "harmonic_balance",
+    name = "harmonic_balance",
     summary = "periodic motion with variable inertia and nonlinear couplings, by orders",
     equations = "(K + i omega C - omega^2 J) a_n = T_n + T_nl,n;  T_nl = dQ - (I - I_m) theta'' - I' theta'^2/2",
     validity = "Constant mean speed; all orders multiples of one. One periodic motion, not the choice between several.",

@@ -32,7 +32,7 @@ impl Default for Implicit {
 }
 
 #[register_model(
- name = "implicit",
+    name = "implicit",
     summary = "motion over time with error control, for anything nonlinear",
     equations = "J(theta) domega/dt + J'(theta) omega^2/2 = T(theta, omega) - coupling torques",
     validity = "Viscous damping; every inertia greater than zero but for those on rigid links.",

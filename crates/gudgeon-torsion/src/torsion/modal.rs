@@ -41,7 +41,7 @@ impl Default for Modal {
 }
 
 #[register_model(
- name = "modal",
+    name = "modal",
     summary = "forced vibration by superposition of modes, with static correction",
     equations = "q_m = phi_m^T T/(omega_m^2 - omega^2 + i omega c_m);  theta = sum phi_m q_m",
     validity = "Light damping that hardly couples the modes. For long lines of which few modes matter.",

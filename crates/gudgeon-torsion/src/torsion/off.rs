@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub struct Off {}
 
 #[register_model(
- name = "off",
+    name = "off",
     summary = "constant speed, no twist",
     equations = "theta_i = ratio_i Omega t",
     validity = "Where neither speed fluctuation nor torque is asked for.",

@@ -19,7 +19,7 @@ use crate::steady::Steady;
 pub struct Orders {}
 
 #[register_model(
- name = "orders",
+    name = "orders",
     summary = "forced vibration per order, exact orders, elimination in linear time",
     equations = "(K(omega)(1 + i eta) + i omega C - omega^2 J) a_n = T_n;  omega = n Omega",
     validity = "Small vibration about constant mean speed. Torques follow the mean angle; variable inertia to first order.",

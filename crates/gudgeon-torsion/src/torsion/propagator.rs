@@ -24,7 +24,7 @@ use crate::tree::{Singular, Tree, Work};
 pub struct Propagator {}
 
 #[register_model(
- name = "propagator",
+    name = "propagator",
     summary = "motion over time in closed form: damped modes on the periodic motion, no steps",
     equations = "theta(t) = theta_p(t) + sum_j c_j v_j exp(z_j t);  det(z^2 J + z C + K) = 0",
     validity = "Linear couplings with stiffness, constant inertia, straight torque-speed lines, gas torques by the mean angle. No double damped eigenvalue (critical damping).",

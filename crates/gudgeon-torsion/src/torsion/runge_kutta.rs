@@ -28,7 +28,7 @@ pub struct RungeKutta {
 const MOST: f64 = 2e7;
 
 #[register_model(
- name = "runge_kutta",
+    name = "runge_kutta",
     summary = "motion over time, fixed-step Runge-Kutta of order 4, as published",
     equations = "dtheta/dt = omega;  J domega/dt = T - C omega - K theta - J' omega^2/2",
     validity = "Explicit: stable below a step of 2.785 over the highest angular frequency.",

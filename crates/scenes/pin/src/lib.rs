@@ -15,9 +15,13 @@ use gudgeon_core::{BuildError, EvalError, Registry};
 use case::{Method, PinCase};
 use gudgeon_case::Loaded;
 use gudgeon_scene::{Explanation, Progress, RunError, SceneCase, model_use};
+use setup::Setup;
 
 impl SceneCase for PinCase {
-    fn legal(loaded: &Loaded<Self>) -> Vec<BuildError> {
+    /// Load and strength of the pin, where one is designed.
+    type Built = Option<Setup>;
+
+    fn build(loaded: &Loaded<Self>) -> Result<Option<Setup>, Vec<BuildError>> {
         let case = &loaded.value;
         let mut errors = Vec::new();
         if case.pin.is_none() && case.skirt.is_none() && case.crown.is_none() && case.dimensions.is_none() {
@@ -26,15 +30,20 @@ impl SceneCase for PinCase {
                     .help("give one of the tables `pin`, `skirt`, `crown` and `dimensions`"),
             );
         }
-        match setup::setup(case, &loaded.source.files) {
-            Ok(s) => errors.extend(s.and_then(|s| size::impossible(case, &s))),
-            Err(e) => errors.extend(e),
+        let built = setup::setup(case, &loaded.source.files);
+        match &built {
+            Ok(s) => errors.extend(s.as_ref().and_then(|s| size::impossible(case, s))),
+            Err(e) => errors.extend(e.iter().cloned()),
         }
         errors.extend(skirt::legal(case));
-        errors
+        built.and_then(|s| if errors.is_empty() { Ok(s) } else { Err(Vec::new()) }).map_err(|_| errors)
     }
 
-    fn explain(loaded: &Loaded<Self>, told: &mut Explanation) -> Result<Vec<ModelUse>, RunError> {
+    fn explain(
+        loaded: &Loaded<Self>,
+        _: &mut Option<Setup>,
+        told: &mut Explanation,
+    ) -> Result<Vec<ModelUse>, RunError> {
         let case = &loaded.value;
         let mut say = |what: &str, why: &str| told.runs.push(Skipped { what: what.into(), why: why.into() });
         if case.pin.is_some() {
@@ -57,12 +66,15 @@ impl SceneCase for PinCase {
         Ok(models(case))
     }
 
-    fn result_names(loaded: &Loaded<Self>) -> Option<Vec<String>> {
-        let setup = setup::setup(&loaded.value, &loaded.source.files).ok()?;
+    fn result_names(loaded: &Loaded<Self>, setup: &mut Option<Setup>) -> Option<Vec<String>> {
         Some(names::names(&loaded.value, setup.as_ref()))
     }
 
-    fn run(loaded: &Loaded<Self>, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
+    fn run(
+        loaded: &Loaded<Self>,
+        setup: Option<Setup>,
+        progress: &mut dyn FnMut(Progress),
+    ) -> Result<RunResult, RunError> {
         let case = &loaded.value;
         let begin = Instant::now();
         let mut out = RunResult { models: models(case), skipped: skipped(case), ..RunResult::default() };
@@ -71,7 +83,7 @@ impl SceneCase for PinCase {
             axis: Column { name: "x".into(), unit: "m".into(), values: Vec::new() },
             columns: Vec::new(),
         };
-        if let Some(s) = setup::setup(case, &loaded.source.files).map_err(refused)? {
+        if let Some(s) = setup {
             out.solver.notes.extend(s.load.notes.iter().cloned());
             size::run(case, &s, &mut out, progress)?;
         }

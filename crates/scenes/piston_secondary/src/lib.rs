@@ -14,8 +14,6 @@ pub mod row;
 pub mod survey;
 pub mod trajectory;
 
-use std::time::Instant;
-
 use gudgeon_core::kinds::Lateral;
 use gudgeon_core::result::{ModelUse, Note, RunResult, Skipped, SolverReport};
 use gudgeon_core::{BuildError, Registry};
@@ -31,24 +29,26 @@ use row::Look;
 use survey::Survey;
 
 impl SceneCase for PistonSecondaryCase {
-    fn legal(loaded: &Loaded<Self>) -> Vec<BuildError> {
-        match assemble(&loaded.value, &loaded.source.files, true, None) {
-            Ok(mut a) => {
-                let mut errors = impossible(&loaded.value, &mut a);
-                errors.extend(plan::wanted(&loaded.value, &a).err().unwrap_or_default());
-                errors
-            }
-            Err(e) => e,
-        }
+    /// The piston as its models have it. A run builds others beside it: on coarser films, or with a rigid skirt.
+    type Built = Assembly;
+
+    fn build(loaded: &Loaded<Self>) -> Result<Assembly, Vec<BuildError>> {
+        let mut a = assemble(&loaded.value, &loaded.source.files, true, None)?;
+        let mut errors = impossible(&loaded.value, &mut a);
+        errors.extend(plan::wanted(&loaded.value, &a).err().unwrap_or_default());
+        if errors.is_empty() { Ok(a) } else { Err(errors) }
     }
 
-    fn explain(loaded: &Loaded<Self>, told: &mut Explanation) -> Result<Vec<ModelUse>, RunError> {
+    fn explain(
+        loaded: &Loaded<Self>,
+        a: &mut Assembly,
+        told: &mut Explanation,
+    ) -> Result<Vec<ModelUse>, RunError> {
         let case = &loaded.value;
-        let a = assemble(case, &loaded.source.files, true, None).map_err(refused)?;
-        let wanted = wanted(case, &a)?;
+        let wanted = wanted(case, a)?;
         let why = |what: &str, why: &str| Skipped { what: what.into(), why: why.into() };
         told.runs.push(why("films of both sides", "their forces move the piston"));
-        let (mut skipped, more) = skipped(case, &a, &wanted);
+        let (mut skipped, more) = skipped(case, a, &wanted);
         told.runs.extend(more);
         told.skipped.append(&mut skipped);
         told.results = wanted.into_iter().map(|r| r.name).collect();
@@ -64,13 +64,15 @@ impl SceneCase for PistonSecondaryCase {
         Ok(models(case))
     }
 
-    fn result_names(loaded: &Loaded<Self>) -> Option<Vec<String>> {
-        let a = assemble(&loaded.value, &loaded.source.files, true, None).ok()?;
-        Some(wanted(&loaded.value, &a).ok()?.into_iter().map(|r| r.name).collect())
+    fn result_names(loaded: &Loaded<Self>, a: &mut Assembly) -> Option<Vec<String>> {
+        Some(wanted(&loaded.value, a).ok()?.into_iter().map(|r| r.name).collect())
     }
 
-    fn run(loaded: &Loaded<Self>, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
-        let begin = Instant::now();
+    fn run(
+        loaded: &Loaded<Self>,
+        _: Assembly,
+        progress: &mut dyn FnMut(Progress),
+    ) -> Result<RunResult, RunError> {
         let case = &loaded.value;
         let built = |elastic: bool, intervals: Option<[u32; 2]>| {
             assemble(case, &loaded.source.files, elastic, intervals).map_err(refused)
@@ -78,7 +80,6 @@ impl SceneCase for PistonSecondaryCase {
         let mut a = built(false, None)?;
         let wanted = wanted(case, &a)?;
         let flows = wanted.iter().any(|r| r.flow);
-        let build_time = begin.elapsed().as_secs_f64();
         let periodic = case.solver.cycles == 0 && !matches!(a.lateral, Lateral::Held { .. });
         let coarse = coarse(case);
         let mut search = Search::default();
@@ -177,12 +178,11 @@ impl SceneCase for PistonSecondaryCase {
         ));
         draw::figures(&a, &record, &mut result);
         result.series = record.series();
-        result.seconds.insert("build".into(), build_time);
         result.seconds.insert("solve".into(), search.seconds);
         Ok(result)
     }
 
-    fn work_precision(&self) -> Option<WorkPrecision> {
+    fn work_precision(loaded: &Loaded<Self>, _: &mut Assembly) -> Option<WorkPrecision> {
         let fine = |tolerance: f64, along: u32, across: u32| {
             vec![
                 "solver.method=implicit".into(),
@@ -194,7 +194,7 @@ impl SceneCase for PistonSecondaryCase {
         };
         Some(WorkPrecision {
             methods: METHODS.to_vec(),
-            settings: settings(self),
+            settings: settings(&loaded.value),
             reference: fine(1e-6, 80, 64),
             reference_check: fine(1e-5, 56, 48),
             reference_is: "implicit, order 5, tolerance 1e-6 and 80 x 64 intervals of the film; differs from 1e-5 and 56 x 48",

@@ -15,14 +15,20 @@ use gudgeon_scene_piston_secondary::case::PistonSecondaryCase;
 use gudgeon_scene_ring_pack::case::RingPackCase;
 
 impl SceneCase for PowerCylinderCase {
-    fn legal(loaded: &Loaded<Self>) -> Vec<BuildError> {
-        parts(loaded).err().unwrap_or_default()
+    /// The rings and the skirt.
+    type Built = (Checked, Checked);
+
+    fn build(loaded: &Loaded<Self>) -> Result<(Checked, Checked), Vec<BuildError>> {
+        parts(loaded)
     }
 
-    fn explain(loaded: &Loaded<Self>, told: &mut Explanation) -> Result<Vec<ModelUse>, RunError> {
-        let (rings, skirt) = parts(loaded).map_err(refused)?;
+    fn explain(
+        _: &Loaded<Self>,
+        (rings, skirt): &mut (Checked, Checked),
+        told: &mut Explanation,
+    ) -> Result<Vec<ModelUse>, RunError> {
         let mut models = Vec::new();
-        for (part, name) in [(&rings, "rings"), (&skirt, "skirt")] {
+        for (part, name) in [(&*rings, "rings"), (&*skirt, "skirt")] {
             let own = explain(part)?;
             told.runs.extend(own.runs);
             told.skipped.extend(own.skipped);
@@ -56,8 +62,7 @@ impl SceneCase for PowerCylinderCase {
         all
     }
 
-    fn result_names(loaded: &Loaded<Self>) -> Option<Vec<String>> {
-        let (rings, skirt) = parts(loaded).ok()?;
+    fn result_names(_: &Loaded<Self>, (rings, skirt): &mut (Checked, Checked)) -> Option<Vec<String>> {
         let (rings, skirt) = (rings.case.result_names()?, skirt.case.result_names()?);
         let both = |name: &&str| [&rings, &skirt].iter().all(|p| p.iter().any(|r| r == name));
         let sums = ["friction_power", "fmep"].into_iter().filter(both).map(str::to_owned);
@@ -65,9 +70,12 @@ impl SceneCase for PowerCylinderCase {
         Some(sums.chain(parts.iter().flat_map(|(p, all)| all.iter().map(|r| named(p, r)))).collect())
     }
 
-    fn run(loaded: &Loaded<Self>, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
+    fn run(
+        _: &Loaded<Self>,
+        (rings, skirt): (Checked, Checked),
+        progress: &mut dyn FnMut(Progress),
+    ) -> Result<RunResult, RunError> {
         let begin = Instant::now();
-        let (rings, skirt) = parts(loaded).map_err(refused)?;
         let mut half = |name: &'static str, from: f64| {
             let mut tell = |p: Progress| {
                 progress(Progress {
@@ -148,10 +156,6 @@ fn add_models(to: &mut Vec<ModelUse>, more: impl IntoIterator<Item = ModelUse>) 
             to.push(m);
         }
     }
-}
-
-fn refused(e: Vec<BuildError>) -> RunError {
-    RunError::Refused(e.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))
 }
 
 /// Both cases, the skirt's with the crank drive and the gas of the rings'.

@@ -36,7 +36,7 @@ fn one() -> Velocity {
 }
 
 #[register_model(
- name = "contact_pair",
+    name = "contact_pair",
     summary = "solid contact over the separation of the surfaces: pressure, real area, friction",
     equations = "p(h);  A_c/A (h) where the model knows it;  tau = mu p",
     validity = "Nominally flat surfaces at rest or sliding; no film between them.",

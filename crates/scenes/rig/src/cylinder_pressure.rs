@@ -38,7 +38,7 @@ fn firing() -> Angle {
 }
 
 #[register_model(
- name = "cylinder_pressure",
+    name = "cylinder_pressure",
     summary = "cylinder pressure over one cycle, with its peak and work",
     equations = "imep = (1/V_d) int p dV over the cycle",
     validity = "The work is a sum over the rows of the series and the kinks of the model.",

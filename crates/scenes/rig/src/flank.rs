@@ -71,7 +71,7 @@ fn usual() -> PosRatio {
 const TOLERANCES: (f64, f64) = (1e-12, 1e-1);
 
 #[register_model(
- name = "flank",
+    name = "flank",
     summary = "oil between ring and groove flanks: force over the height, and a ring landing under a load",
     equations = "m dv/dt = -load + F(s, v);  without mass: F(s, v) = load",
     validity = "A ring that stays parallel to the flanks; flanks are rigid, and the run ends when it lands.",

@@ -152,7 +152,7 @@ impl GasPassageRig {
 }
 
 #[register_model(
- name = "gas_passage",
+    name = "gas_passage",
     summary = "gas flow through one opening or narrow channel over the pressure ratio",
     equations = "orifice: m' = C_d A p_u/sqrt(R T) psi(p_d/p_u);  channel: m' = w H^3 (p_a^2 - p_b^2)/(24 mu R T L);  \
                 effective = m' sqrt(R T)/(A p_u psi_exact)",

@@ -291,7 +291,7 @@ impl GasVolumesRig {
 }
 
 #[register_model(
- name = "gas_volumes",
+    name = "gas_volumes",
     summary = "gas volumes joined by openings: blow-down, steady leakage, periodic cycle",
     equations = "dm_i/dt = sum of flows;  p_i = m_i R T_i/V_i;  m' = C_d A p_u/sqrt(R T_u) psi(p_d/p_u)",
     validity = "Every volume of constant size, at the constant temperature of its walls.",

@@ -51,7 +51,7 @@ fn panels() -> u32 {
 }
 
 #[register_model(
- name = "journal_1d",
+    name = "journal_1d",
     summary = "long journal bearing at a given eccentricity: load, attitude, friction, pressure and rupture around the shaft",
     equations = "h = c (1 + e cos phi);  W cos(attitude) = -int (p - p_supply) cos(phi) R dphi,  W sin(attitude) = int (p - p_supply) sin(phi) R dphi;  \
                 load_number = W c^2/(mu omega R^3);  torque = R int (mu u/h + h p'/2) dx",

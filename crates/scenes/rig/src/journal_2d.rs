@@ -82,7 +82,7 @@ fn smooth() -> Box<dyn RoughnessSpec> {
 }
 
 #[register_model(
- name = "journal_2d",
+    name = "journal_2d",
     summary = "journal bearing of finite width: load, attitude, Sommerfeld number, friction and side flow over the eccentricity",
     equations = "h = c (1 + eps cos phi), phi from the widest gap in the direction of rotation;  W = (sum p cos phi dA, sum p sin phi dA);  \
                 S = mu N L D/|W| (R/c)^2;  attitude = atan2(W_sin, -W_cos);  friction_number = T/(|W| c);  side_flow_number = Q_s/(R c N L)",

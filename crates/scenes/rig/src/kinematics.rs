@@ -31,7 +31,7 @@ fn right_angle() -> Angle {
 }
 
 #[register_model(
- name = "kinematics",
+    name = "kinematics",
     summary = "piston position, velocity and acceleration over one turn",
     equations = "y(theta), v = dy/dt, a = dv/dt over one turn",
     validity = "Constant crank speed.",

@@ -67,7 +67,7 @@ fn fast() -> PosShearRate {
 }
 
 #[register_model(
- name = "lubricant",
+    name = "lubricant",
     summary = "viscosity and density of an oil over temperature, pressure and shear rate",
     equations = "mu = mu_0(T) f_p(mu_0, p) f_s(gamma);  rho/rho_0 = f_rho(p)",
     validity = "Factors of pressure and shear rate are taken as independent, as in the films.",

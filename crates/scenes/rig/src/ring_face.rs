@@ -47,7 +47,7 @@ fn vacuum() -> Pressure {
 }
 
 #[register_model(
- name = "ring_face",
+    name = "ring_face",
     summary = "film of a ring face at one instant: load, friction and pressure along the face",
     equations = "load = int (p - p_cav) dx;  shear = int (mu u/h -+ h p'/2) dx",
     validity = "One instant; the film has no history.",

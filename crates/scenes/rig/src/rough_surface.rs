@@ -31,7 +31,7 @@ fn eight() -> Ratio {
 }
 
 #[register_model(
- name = "rough_surface",
+    name = "rough_surface",
     summary = "flow and shear factors of rough surfaces over their separation",
     equations = "phi_x, phi_y, phi_f, phi_fs, phi_fp and h_T over H = h/height;  phi_s = (h_c - h_T)/height",
     validity = "That of the model. phi_s is that of Patir and Cheng when `height` is the composite roughness of the model.",

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use gudgeon_core::kinds::{RigCtx, RigOut};
+use gudgeon_core::kinds::{Rig, RigCtx, RigOut};
 use gudgeon_core::result::{ModelUse, RunResult, Skipped};
 use gudgeon_core::{BuildError, EvalError, Registry};
 
@@ -11,14 +11,18 @@ use gudgeon_case::Loaded;
 use gudgeon_scene::{Explanation, Progress, RunError, SceneCase, model_use};
 
 impl SceneCase for RigCase {
-    fn legal(loaded: &Loaded<Self>) -> Vec<BuildError> {
-        match loaded.value.rig.build(&RigCtx { files: &loaded.source.files }) {
-            Ok(_) => Vec::new(),
-            Err(e) => e.into_iter().map(|e| e.within("rig")).collect(),
-        }
+    type Built = Box<dyn Rig>;
+
+    fn build(loaded: &Loaded<Self>) -> Result<Box<dyn Rig>, Vec<BuildError>> {
+        let built = loaded.value.rig.build(&RigCtx { files: &loaded.source.files });
+        built.map_err(|e| e.into_iter().map(|e| e.within("rig")).collect())
     }
 
-    fn explain(loaded: &Loaded<Self>, told: &mut Explanation) -> Result<Vec<ModelUse>, RunError> {
+    fn explain(
+        loaded: &Loaded<Self>,
+        _: &mut Box<dyn Rig>,
+        told: &mut Explanation,
+    ) -> Result<Vec<ModelUse>, RunError> {
         let models = models(&loaded.value);
         let stands =
             |(k, m): &(&str, &str)| Skipped { what: format!("{k}/{m}"), why: "stands on the bench".into() };
@@ -27,17 +31,17 @@ impl SceneCase for RigCase {
         Ok(models.into_iter().map(|(k, m)| model_use(&registry, k, m)).collect())
     }
 
-    fn result_names(loaded: &Loaded<Self>) -> Option<Vec<String>> {
-        Some(loaded.value.rig.build(&RigCtx { files: &loaded.source.files }).ok()?.results())
+    fn result_names(_: &Loaded<Self>, rig: &mut Box<dyn Rig>) -> Option<Vec<String>> {
+        Some(rig.results())
     }
 
-    fn run(loaded: &Loaded<Self>, _: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
+    fn run(
+        loaded: &Loaded<Self>,
+        mut rig: Box<dyn Rig>,
+        _: &mut dyn FnMut(Progress),
+    ) -> Result<RunResult, RunError> {
         let case = &loaded.value;
         let begin = Instant::now();
-        let refused = |e: Vec<BuildError>| {
-            RunError::Refused(e.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))
-        };
-        let mut rig = case.rig.build(&RigCtx { files: &loaded.source.files }).map_err(refused)?;
         let mut out = RigOut::default();
         rig.run(&mut out).map_err(|source: EvalError| RunError::Model { source })?;
         let registry = Registry::collect();

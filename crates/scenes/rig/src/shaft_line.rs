@@ -52,7 +52,7 @@ fn eigenvalues() -> Box<dyn NaturalFrequenciesSpec> {
 }
 
 #[register_model(
- name = "shaft_line",
+    name = "shaft_line",
     summary = "natural frequencies and harmonic response of a chain of inertias",
     equations = "(K - omega^2 J) phi = 0;  (K (1 + i eta) + i omega C - omega^2 J) a = T",
     validity = "Chains with linear or linearised couplings.",

@@ -99,7 +99,7 @@ fn smooth() -> Box<dyn RoughnessSpec> {
 }
 
 #[register_model(
- name = "skirt",
+    name = "skirt",
     summary = "film of one side of a piston skirt at one instant: thrust force, moment, friction and pressure map",
     equations = "h = c - (e_t (1 - s) + e_b s) cos phi + B (2 s - 1)^2;  thrust = int (p - p_edge) cos phi dA;  \
                 moment = int (p - p_edge) (x_pin - x) cos phi dA;  \

@@ -91,7 +91,7 @@ fn smooth() -> Box<dyn RoughnessSpec> {
 }
 
 #[register_model(
- name = "slider",
+    name = "slider",
     summary = "steady film along a line of any profile: load, friction, flux, pressure and cavities",
     equations = "load = int (p - p_cav) dx;  load_gauge = int p dx - (p_left + p_right) L/2;  centre = int (p - p_cav) x dx/load;  \
                 shear = int (mu u/h +- h p'/2) dx;  mu = mu0 f_p(p - p_ambient) f_s(u/h)",

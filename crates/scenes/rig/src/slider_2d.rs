@@ -217,7 +217,7 @@ impl Dimples {
 }
 
 #[register_model(
- name = "slider_2d",
+    name = "slider_2d",
     summary = "film of a rectangular pad along and across the motion: load, friction, side flow, pressure and cavities",
     equations = "load = int (p - p_cav) dA;  load_gauge = int (p - p_side) dA;  load_nodes = sum (p - p_cav) dx dy;  centre = int (p - p_cav) x dA/load;  \
                 shear = int (theta mu u/h (phi_f +- phi_fs) +- phi_fp h/2 dp/dx) dA",

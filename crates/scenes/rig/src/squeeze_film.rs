@@ -90,7 +90,7 @@ fn vacuum() -> Pressure {
 }
 
 #[register_model(
- name = "squeeze_film",
+    name = "squeeze_film",
     summary = "squeeze film of a strip or ring face: load at a velocity, fall under a load, oscillation with cavitation",
     equations = "load = int (p - p_ends) dx;  strip: load = -mu L^3 (dh/dt)/h^3;  fall: t = int dh/(-dh/dt) at that load, \
                 strip: t = mu L^3/(2 W) (1/h_end^2 - 1/h^2);  oscillation: h = mean + amplitude cos(2 pi t/period), implicit Euler steps",

@@ -3,7 +3,7 @@
 use gudgeon_core::face::Face;
 use gudgeon_core::kinds::{
     ContactSpec, CylinderPressureSpec, FilmTemperatureSpec, FlankDampingSpec, FlankFrictionSpec, GasFlowSpec,
-    HydrodynamicsSpec, KinematicsSpec, OilSpec, OilTransportSpec, RingMotionSpec,
+    HydrodynamicsSpec, KinematicsSpec, OilSpec, OilTransportSpec, RadialMotionSpec, RingMotionSpec,
 };
 use gudgeon_core::quantity::{
     Angle, Fraction, Length, NonNegative, PosAngle, PosAngularSpeed, PosArea, PosExpansion, PosForce,
@@ -287,6 +287,9 @@ pub struct Models {
     /// Axial motion of the rings.
     #[serde(default = "default_ring_motion")]
     pub ring_motion: Box<dyn RingMotionSpec>,
+    /// Motion of the rings towards the liner and off it.
+    #[serde(default = "default_radial_motion")]
+    pub radial_motion: Box<dyn RadialMotionSpec>,
     /// Oil between ring and groove flanks.
     #[serde(default = "default_flank_damping")]
     pub flank_damping: Box<dyn FlankDampingSpec>,
@@ -564,6 +567,7 @@ gudgeon_core::default_model! {
     default_kinematics: dyn KinematicsSpec = "exact_slider_crank";
     default_gas_flow: dyn GasFlowSpec = "orifice_network";
     default_ring_motion: dyn RingMotionSpec = "newton_groove";
+    default_radial_motion: dyn RadialMotionSpec = "film_balance";
     default_flank_damping: dyn FlankDampingSpec = "squeeze_film";
     default_flank_friction: dyn FlankFrictionSpec = "off";
     default_oil_transport: dyn OilTransportSpec = "off";

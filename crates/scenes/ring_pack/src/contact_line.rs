@@ -102,6 +102,19 @@ impl ContactLine {
         if h >= self.range { h } else { self.separation.at(self.place(h)).0 }
     }
 
+    /// Film thickness that a ring does not go below \[m\], where surfaces that do not take any load stop at `least`: the floor that the contact
+    /// model names, `least`, or none.
+    #[must_use]
+    pub fn lowest(&self, least: f64) -> f64 {
+        self.floor.unwrap_or(if self.open { 0.0 } else { least })
+    }
+
+    /// Whether contact could carry the ring.
+    #[must_use]
+    pub fn carries(&self) -> bool {
+        self.range > 0.0 || self.floor.is_some()
+    }
+
     /// Part of the least film thickness over which the approach to it fades out.
     #[must_use]
     pub fn band(&self) -> f64 {

@@ -133,7 +133,7 @@ pub fn run(
             .zip(&pack.mass_scale)
             .map(|(m, s)| m / s)
             .chain(h.iter().map(|h| h / 1e-6))
-            .chain(pack.seats.iter().copied())
+            .chain(pack.rings.iter().flat_map(|r| r.motion.decided().iter().copied()))
             .collect();
         let change = |a: &[f64]| {
             a.iter().zip(&state).map(|(a, b)| (a - b).abs() / b.abs().max(0.1)).fold(0.0, f64::max)

@@ -7,7 +7,7 @@ use gudgeon_core::BuildError;
 use gudgeon_core::geometry::PackGeometry;
 
 use super::geometry::COLD;
-use super::pack::LinerShape;
+use super::liner::LinerShape;
 use crate::case::RingPackCase;
 
 /// What closes in a liner of this shape: `g + 2π δ ≤ 0` for a ring, or a land that the liner touches, anywhere on the way of a ring.

@@ -5,7 +5,9 @@ use std::f64::consts::PI;
 use std::time::Instant;
 
 use gudgeon_core::EvalError;
+use gudgeon_core::kinds::OilLedger;
 use gudgeon_core::result::{Balance, Column, Note, Series};
+use gudgeon_core::states::Signals;
 use gudgeon_numerics::ode::{
     Direction, EventAction, Flow, IntegrateError, Integrator, LinearInvariant, OdeSystem, Options, Stats,
     StepView,
@@ -16,10 +18,10 @@ use gudgeon_numerics::radau::Radau5;
 use gudgeon_numerics::rodas::{Formula, Rodas};
 
 use super::error::RingPackError;
-use super::hold::Hold;
+use super::jacobian::Base;
 use super::measure::{Measures, Peak};
-use super::oil::Ledger;
-use super::pack::{Base, Pack};
+use super::modes::EventOf;
+use super::pack::Pack;
 use super::record::Totals;
 use super::rows::Rows;
 use super::watch::Watch;
@@ -33,6 +35,7 @@ struct Problem<'a> {
     base: &'a mut Base,
     scale: &'a [f64],
     balance: &'a [LinearInvariant],
+    events: &'a [EventOf],
 }
 
 impl Problem<'_> {
@@ -71,28 +74,23 @@ impl OdeSystem for Problem<'_> {
         if self.look_at(t, y).is_err() {
             return;
         }
-        for (i, k) in self.pack.layout.axial.iter().enumerate() {
-            if let Some(k) = *k {
-                let (place, c0) = (&self.pack.at.places[i], self.pack.rings[i].clearance0);
-                let gap = place.s.min(place.clearance - place.s) / c0;
-                atol[k] *= (gap / POSITION_SCALE).max(1.0);
-            }
-        }
+        self.pack.each_block(|b, own| b.ease(&mut atol[own]));
         // Surfaces that touch carry by their roughness, beside which a film much thinner need not be known to its own size.
-        for (i, k) in self.pack.layout.film.iter().enumerate() {
-            if let Some(k) = *k {
-                atol[k] *= self.pack.rings[i].contact.ease(self.pack.at.places[i].h);
+        for (i, own) in self.pack.layout.radial.iter().enumerate() {
+            for k in own.clone() {
+                if self.pack.layout.states[k].changes.meets(Signals::FILM_THICKNESS) {
+                    atol[k] *= self.pack.rings[i].contact.ease(self.pack.at.places[i].h);
+                }
             }
         }
     }
     fn n_events(&self) -> usize {
-        let moves = self.pack.layout.axial.iter().any(Option::is_some);
-        if moves && self.pack.hold_tolerance > 0.0 { self.pack.n_rings() } else { 0 }
+        self.events.len()
     }
     fn events(&mut self, t: f64, y: &[f64], g: &mut [f64]) -> Result<(), EvalError> {
         self.look_at(t, y)?;
-        for (i, g) in g.iter_mut().enumerate() {
-            *g = if self.pack.layout.axial[i].is_some() { self.pack.hold_event(i) } else { -1.0 };
+        for (g, e) in g.iter_mut().zip(self.events) {
+            *g = self.pack.block(e.block).event(e.event);
         }
         Ok(())
     }
@@ -100,27 +98,22 @@ impl OdeSystem for Problem<'_> {
         Direction::Rising
     }
     fn event_located(&self, k: usize) -> bool {
-        // A ring may be held any time after it is ready, but has to be let go in time.
-        self.pack.holds[k] != Hold::Free
+        let e = self.events[k];
+        self.pack.block(e.block).event_is_located(e.event)
     }
     fn on_event(&mut self, k: usize, t: f64, y: &mut [f64]) -> Result<EventAction, EvalError> {
         self.look_at(t, y)?;
-        if let Some(v) = self.pack.layout.axial[k] {
-            self.pack.switch_hold(k, &mut y[v + 1]);
-            // The instant belongs to the other mode.
-            self.pack.state.fill(f64::NAN);
-        }
+        let e = self.events[k];
+        let own = self.pack.range(e.block);
+        self.pack.block_mut(e.block).switch(e.event, &mut y[own]);
+        // The instant belongs to the other mode.
+        self.pack.state.fill(f64::NAN);
         Ok(EventAction::Restart)
     }
 }
 
 /// First step of a cycle \[rad\].
 const FIRST_STEP: f64 = 1e-3;
-/// Velocity that counts as one in the error norm, in clearances per radian: what matters of a velocity is the distance it covers.
-const VELOCITY_SCALE: f64 = 100.0;
-/// Height that counts as one in the error norm, in clearances: the films on the flanks are a hundredth of a clearance thick, and
-/// their force goes with the cube.
-const POSITION_SCALE: f64 = 0.01;
 
 enum Method {
     Rodas(Box<Rodas>),
@@ -135,6 +128,7 @@ struct Cycle<'a> {
     scale: Vec<f64>,
     absolute: Vec<bool>,
     balance: Vec<LinearInvariant>,
+    events: Vec<EventOf>,
     base: Base,
     h: f64,
     stats: Stats,
@@ -164,12 +158,14 @@ impl Cycle<'_> {
         if let Some(oil) = &self.pack.oil_pack {
             // A face takes up what the one before it left in earlier steps.
             let speed = 1.1 * 0.5 * self.pack.kinematics.stroke() * self.pack.omega;
-            options.h_max = options.h_max.min(0.8 * oil.least_gap * self.pack.omega / speed);
+            options.h_max = options.h_max.min(oil.longest_way() * self.pack.omega / speed);
         }
         // Rings turn slowly beside the steps that their motion allows.
         options.event_samples = 0;
         // The reference integrates every ring with its inertia.
-        self.pack.hold_tolerance = if matches!(self.method, Method::Rodas(_)) { rtol } else { 0.0 };
+        let accuracy = if matches!(self.method, Method::Rodas(_)) { rtol } else { 0.0 };
+        self.pack.each_block(|b, _| b.set_accuracy(accuracy));
+        self.pack.events(&mut self.events);
         // Every cycle starts with the same step: the map must depend on nothing but the state.
         self.h = FIRST_STEP;
         self.q.fill(0.0);
@@ -189,7 +185,7 @@ impl Cycle<'_> {
             if interval.is_some() {
                 self.pack.decide_seats();
             }
-            if let Err(source) = self.pack.start_holds(span.0, y) {
+            if let Err(source) = self.pack.start_modes(span.0, y) {
                 outcome = Err(IntegrateError::Eval { t: span.0, source });
                 break;
             }
@@ -201,8 +197,13 @@ impl Cycle<'_> {
                 break;
             }
             options.h_init = self.h;
-            let mut problem =
-                Problem { pack: self.pack, base: &mut self.base, scale: &self.scale, balance: &self.balance };
+            let mut problem = Problem {
+                pack: self.pack,
+                base: &mut self.base,
+                scale: &self.scale,
+                balance: &self.balance,
+                events: &self.events,
+            };
             let mut observe = |p: &mut Problem<'_>, v: &dyn StepView| {
                 let flow = match sampler.as_deref_mut() {
                     Some(s) => s.step(p.pack, v),
@@ -236,11 +237,7 @@ impl Cycle<'_> {
     fn begin(&mut self, y: &[f64]) {
         let (n, pin) = (self.pack.layout.n, self.pack.kinematics.motion(0.0).y);
         if let Some(oil) = &mut self.pack.oil_pack {
-            // An extrapolated film may be less than none.
-            for (film, y) in oil.film.iter_mut().zip(&y[n..]) {
-                *film = (y * LINER_SCALE).max(0.0);
-            }
-            oil.begin(pin);
+            oil.begin_cycle(&y[n..], pin);
         }
     }
 
@@ -248,10 +245,8 @@ impl Cycle<'_> {
     fn end(&mut self, y: &mut [f64]) {
         let n = self.pack.layout.n;
         if let Some(oil) = &mut self.pack.oil_pack {
-            oil.fold(&mut y[..n]);
-            for (film, y) in oil.film.iter().zip(&mut y[n..]) {
-                *y = film / LINER_SCALE;
-            }
+            let (states, field) = y.split_at_mut(n);
+            oil.end_cycle(&mut states[self.pack.layout.oil.clone()], field);
         }
     }
 }
@@ -262,21 +257,15 @@ const FINER: usize = 2;
 const FINEST: f64 = 1e-13;
 /// How much less repeatable than its integration a cycle with oil on the liner is.
 const OIL_NOISE: f64 = 10.0;
-/// Unit of the film on the liner \[m\].
-const LINER_SCALE: f64 = 1e-6;
-/// Film of one cell that counts as one, in its unit: which cells a step ends in differs from cycle to cycle, and a face is as long
-/// as many of them.
-const CELL_SCALE: f64 = 100.0;
 
 impl CycleMap for Cycle<'_> {
     fn dim(&self) -> usize {
-        self.pack.layout.n + self.pack.oil_pack.as_ref().map_or(0, |o| o.film.len())
+        self.pack.layout.n + self.pack.layout.carried
     }
     fn map(&mut self, y0: &[f64], y1: &mut [f64], accuracy: f64) -> Result<f64, EvalError> {
         y1.copy_from_slice(y0);
-        // An extrapolated state may have lost its gas: a hundredth of a bar is the least that a cycle starts with.
-        for k in &mut y1[..self.pack.layout.gas] {
-            *k = k.max(0.01);
+        for (y, s) in y1.iter_mut().zip(&self.pack.layout.states) {
+            *y = y.max(s.least);
         }
         let rtol = accuracy.max(FINEST);
         let n = self.pack.layout.n;
@@ -286,25 +275,16 @@ impl CycleMap for Cycle<'_> {
             return Err(EvalError::fatal("ring_pack", "the cycle could not be integrated"));
         }
         // The velocity of a ring that could be held says nothing.
-        self.pack.start_holds(self.pack.period(), &mut y1[..n])?;
+        self.pack.start_modes(self.pack.period(), &mut y1[..n])?;
         self.end(y1);
         Ok(1.0)
     }
     fn scale(&self, y: &[f64], s: &mut [f64]) {
-        // Gas states relative to their value (at least 1 bar), film thickness relative (its state is a logarithm), heights by
-        // the clearance, velocities by the clearance per radian.
-        s.fill(1.0);
-        for k in 0..self.pack.layout.gas {
-            s[k] = y[k].abs().max(1.0);
+        for ((s, y), info) in s.iter_mut().zip(y).zip(&self.pack.layout.states) {
+            *s = if info.cycle_relative { y.abs().max(info.cycle_scale) } else { info.cycle_scale };
         }
-        for k in self.pack.layout.axial.iter().flatten() {
-            s[k + 1] = VELOCITY_SCALE;
-        }
-        if let Some(k) = self.pack.layout.oil {
-            for (s, y) in s[k..self.pack.layout.n].iter_mut().zip(&y[k..]) {
-                *s = y.abs().max(1.0);
-            }
-            s[self.pack.layout.n..].fill(CELL_SCALE);
+        if let Some(oil) = &self.pack.oil_pack {
+            s[self.pack.layout.n..].fill(oil.carried_scale());
         }
     }
 }
@@ -352,7 +332,7 @@ impl Sampler {
         if let Some(oil) = &pack.oil_pack
             && (turns - turns.round()).abs() < 1e-9
         {
-            self.liner.push((turns.round() as u32 * 180, oil.film.clone()));
+            self.liner.push((turns.round() as u32 * 180, oil.liner().1));
         }
     }
 
@@ -404,7 +384,7 @@ impl Sampler {
     /// Adds the forces of the instant over `dt` \[s\] to impulse and work.
     fn close(&mut self, pack: &Pack, dt: f64) {
         for i in 0..pack.n_rings() {
-            if pack.layout.axial[i].is_none() {
+            if pack.layout.motion[i].is_empty() {
                 continue;
             }
             let (r, velocity) = (&pack.at.rings[i], pack.at.places[i].v);
@@ -420,7 +400,7 @@ impl Sampler {
     }
 
     fn balance(&self, pack: &Pack) -> (Option<f64>, Option<f64>) {
-        if pack.layout.axial.iter().all(Option::is_none) {
+        if pack.layout.motion.iter().all(|m| m.is_empty()) {
             return (None, None);
         }
         let worst = |sums: &[[f64; 2]], change: &dyn Fn(usize) -> f64| {
@@ -440,7 +420,7 @@ impl Sampler {
 fn liner_table(pack: &Pack, films: Vec<(u32, Vec<f64>)>) -> Option<Series> {
     let oil = pack.oil_pack.as_ref()?;
     let lowest = pack.kinematics.y_tdc() - pack.kinematics.stroke();
-    let z = (0..oil.film.len()).map(|k| oil.bottom + (k as f64 + 0.5) * oil.cell - lowest).collect();
+    let z = oil.liner().0.into_iter().map(|z| z - lowest).collect();
     let column = |name: String, unit: &str, values| Column { name, unit: unit.into(), values };
     Some(Series {
         axis: column("height".into(), "m", z),
@@ -499,34 +479,21 @@ pub(super) fn run(
     breakpoints.extend((1..(period / PI).round() as usize).map(|k| k as f64 * PI));
     breakpoints.sort_by(f64::total_cmp);
     breakpoints.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
-    let mut scale = vec![1.0; dim];
-    for k in &mut scale[..pack.layout.gas] {
-        *k = 0.1;
-    }
-    let mut absolute = vec![false; dim];
-    for k in pack.layout.axial.iter().flatten() {
-        absolute[*k] = true;
-        scale[k + 1] = VELOCITY_SCALE;
-        scale[*k] = POSITION_SCALE;
-    }
-    // What a face took up stands beside its states, which may therefore be anything.
-    if let Some(k) = pack.layout.oil {
-        absolute[k..].fill(true);
-    }
+    let scale: Vec<f64> = pack.layout.states.iter().map(|s| s.scale).collect();
+    let absolute: Vec<bool> = pack.layout.states.iter().map(|s| !s.relative).collect();
     // Gas in, less gas out, is gas stored.
     let mut balance = Vec::new();
-    if pack.layout.gas > 0 {
+    if !pack.layout.gas.is_empty() {
         let (first, last) = (dim, dim + pack.n_rings());
         let mut terms = vec![(first, -1.0), (last, 1.0)];
         terms.extend(pack.mass_scale.iter().copied().enumerate());
         balance.push(LinearInvariant { pivot: last, terms });
     }
     let discrete = pack.decision_interval().is_some();
-    let cells = pack.oil_pack.as_ref().map_or(0, |o| o.film.len());
-    let mut y = vec![0.0; dim + cells];
+    let mut y = vec![0.0; dim + pack.layout.carried];
     pack.initial(start, &mut y[..dim]);
-    for (y, film) in y[dim..].iter_mut().zip(pack.oil_pack.iter().flat_map(|o| &o.film)) {
-        *y = film / LINER_SCALE;
+    if let Some(oil) = &pack.oil_pack {
+        oil.field(&mut y[dim..]);
     }
     let cycle_speed = pack.omega;
     let mut cycle = Cycle {
@@ -536,6 +503,7 @@ pub(super) fn run(
         scale,
         absolute,
         balance,
+        events: Vec::new(),
         base: Base::default(),
         h: FIRST_STEP,
         stats: Stats::default(),
@@ -566,17 +534,17 @@ pub(super) fn run(
     let work = cycle.stats;
     // The recorded cycle, at full accuracy.
     let mut sampler = Sampler::new(cycle.pack, &case.outputs);
-    let gas: Vec<f64> = y[..cycle.pack.layout.gas].to_vec();
+    let gas: Vec<f64> = y[cycle.pack.layout.gas.clone()].to_vec();
     cycle.begin(&y);
-    let oil_before = cycle.pack.oil_pack.as_ref().map_or(0.0, |o| o.total(&y[..dim]));
+    let oil_before = cycle.pack.oil_total(&y);
     if let Some(o) = &mut cycle.pack.oil_pack {
         // What the crankcase put on the liner before the first step was counted with the rest.
-        o.ledger = Ledger::default();
+        o.clear_ledger();
     }
     cycle.integrate(&mut y[..dim], s.tolerance.si(), Some(&mut sampler)).map_err(stopped)?;
     let oil_mass = cycle.pack.oil_pack.as_ref().map(|o| {
-        let l = &o.ledger;
-        let stored = o.total(&y[..dim]) - oil_before;
+        let l = o.ledger();
+        let stored = cycle.pack.oil_total(&y) - oil_before;
         (l.supplied - l.drained - l.thrown - stored).abs() / l.taken.max(f64::MIN_POSITIVE)
     });
     if let Some(source) = sampler.failure.take() {
@@ -598,7 +566,7 @@ pub(super) fn run(
             momentum,
         },
         periodicity_error: report.error_estimate,
-        oil: pack.oil_pack.as_ref().map_or_else(Ledger::default, |o| o.ledger),
+        oil: pack.oil_pack.as_ref().map_or_else(OilLedger::default, |o| o.ledger()),
     };
     sampler.watch.carried(pack)?;
     let mut notes = sampler.watch.notes(pack);

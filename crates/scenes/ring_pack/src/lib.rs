@@ -10,24 +10,32 @@ pub mod contact_line;
 pub mod degree_march;
 mod end_gap;
 mod error;
+mod forces;
 pub mod geometry;
-pub mod hold;
 pub mod implicit;
+pub mod instant;
+pub mod jacobian;
+pub mod layout;
 pub mod limits;
+pub mod liner;
+mod loads;
 pub mod measure;
-pub mod oil;
+pub mod modes;
+mod oil_faces;
 pub mod pack;
 pub mod plan;
 pub mod record;
 pub mod results;
+pub mod ring;
 pub mod rows;
 mod scene;
+mod stepping;
 pub mod substep_march;
+mod used;
 pub mod watch;
 
 use std::time::Instant;
 
-use gudgeon_core::kinds::Motion;
 use gudgeon_core::result::{Branch, Event, Note, Series, SolverReport};
 use gudgeon_core::{BuildError, EvalError};
 use gudgeon_numerics::panel::TRAPEZIUM;
@@ -376,7 +384,7 @@ pub fn legal(case: &RingPackCase) -> Vec<BuildError> {
         }
     }
     if s.method == Method::AsPublished {
-        if case.models.oil_transport.typetag_name() != "off" {
+        if case.models.oil_transport.follows_oil() {
             errors.push(
                 BuildError::at(
                     "models.oil_transport",
@@ -427,20 +435,9 @@ pub fn legal(case: &RingPackCase) -> Vec<BuildError> {
 /// Names of the states in the order of the state vector.
 #[must_use]
 pub fn state_names(pack: &Pack) -> Vec<String> {
-    let mut names: Vec<String> = pack.gas.state_names().iter().map(|n| format!("mass of {n}")).collect();
-    for (i, k) in pack.layout.film.iter().enumerate() {
-        if k.is_some() {
-            names.push(format!("film of ring{}", i + 1));
-        }
-    }
-    for (i, k) in pack.layout.axial.iter().enumerate() {
-        if k.is_some() {
-            names.push(format!("lift of ring{}", i + 1));
-            names.push(format!("axial velocity of ring{}", i + 1));
-        }
-    }
+    let mut names: Vec<String> = pack.layout.states.iter().map(|s| s.name.clone()).collect();
     for (i, r) in pack.rings.iter().enumerate() {
-        if matches!(r.kind, Motion::Discrete { .. }) {
+        if r.is_decided() {
             names.push(format!("seat of ring{} (decided in steps)", i + 1));
         }
     }

@@ -1,5 +1,6 @@
 //! Floors, caps and drags of the scene: numbers that stand for physics left out, each a key of the case.
 
+use gudgeon_core::kinds::RadialLimits;
 use gudgeon_core::quantity::{PosAngle, PosLength, PosRatio, PosVelocity, PosViscosity, quantity};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -73,6 +74,20 @@ impl Default for Limits {
             thickest_film: quantity(60e-6),
             longest_step: quantity(10f64.to_radians()),
             most_steps: 0,
+        }
+    }
+}
+
+impl From<&Limits> for RadialLimits {
+    fn from(l: &Limits) -> Self {
+        Self {
+            least_load: l.least_load.si(),
+            radial_speed: l.radial_speed.si(),
+            radial_drag: l.radial_drag.si(),
+            contact_drag: l.contact_drag.si(),
+            drag_counts: (l.drag_from.si(), l.drag_full.si()),
+            drag_gap: (l.drag_gap_from.si(), l.drag_gap_full.si()),
+            retreat_band: l.retreat_band.si(),
         }
     }
 }

@@ -11,7 +11,6 @@
 
 use std::f64::consts::PI;
 
-use gudgeon_core::kinds::Motion;
 use gudgeon_numerics::panel::{MOST_NODES, Rule, TRAPEZIUM};
 
 use super::pack::Pack;
@@ -182,9 +181,11 @@ impl Measures {
         for (i, ring) in self.rings.iter_mut().enumerate() {
             let (place, at, s) = (&pack.at.places[i], &pack.at.rings[i], &mut ring.samples);
             s.ln_h[k] = place.h.ln();
-            s.e[k] = match pack.rings[i].kind {
-                Motion::Dynamic if place.clearance > 0.0 => place.s / place.clearance,
-                _ => place.e,
+            // A ring that is integrated may stand a little beyond a flank.
+            s.e[k] = if pack.rings[i].is_integrated() && place.clearance > 0.0 {
+                place.s / place.clearance
+            } else {
+                place.e
             };
             let lift = place.s.clamp(0.0, place.clearance);
             s.nearest[k] = lift.min(place.clearance - lift);
@@ -208,7 +209,7 @@ impl Measures {
             ring.integrate(rule, &self.speed, stroke, dt);
             if pack.geo.rings[i].has_clearance {
                 let mut e = ring.samples.e;
-                if matches!(pack.rings[i].kind, Motion::Discrete { .. }) {
+                if pack.rings[i].is_decided() {
                     e.fill(ring.samples.e[0]);
                 }
                 ring.seats(rule, &e[..rule.nodes.len()], self.seat, (t0, t1), self.omega);

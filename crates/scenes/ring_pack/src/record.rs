@@ -2,11 +2,10 @@
 
 use std::f64::consts::PI;
 
-use gudgeon_core::kinds::Motion;
+use gudgeon_core::kinds::OilLedger;
 use gudgeon_core::result::{Balance, Column, Series};
 
 use super::assemble::has_back_volume;
-use super::oil::Ledger;
 use super::pack::Pack;
 
 /// Totals of a cycle, integrated by the solver itself.
@@ -23,7 +22,7 @@ pub struct Totals {
     /// True error estimate of the periodic state.
     pub periodicity_error: f64,
     /// Oil that came and went, per circumference \[m²\].
-    pub oil: Ledger,
+    pub oil: OilLedger,
 }
 
 /// A recorded cycle.
@@ -63,18 +62,21 @@ impl Record {
             if pack.geo.rings[i - 1].has_clearance {
                 add(format!("ring{i}.position"), "-");
                 add(format!("ring{i}.lift"), "m");
-                if ring.kind == Motion::Dynamic {
+                if ring.is_integrated() {
                     add(format!("ring{i}.axial_velocity"), "m/s");
                 }
             }
-            if pack.plan.axial && !matches!(ring.kind, Motion::Fixed { .. }) {
+            if pack.plan.axial && ring.motion.moves() {
                 for f in ["gas", "inertia", "film"] {
                     add(format!("ring{i}.force_{f}"), "N");
                 }
-                if ring.kind == Motion::Dynamic {
+                if ring.is_integrated() {
                     add(format!("ring{i}.force_damping"), "N");
                     add(format!("ring{i}.force_flank"), "N");
                 }
+            }
+            for c in ring.motion.columns() {
+                add(format!("ring{i}.{}", c.name), c.unit);
             }
             if pack.plan.film {
                 for (name, unit) in [
@@ -111,6 +113,7 @@ impl Record {
             }
         };
         let n = pack.n_rings();
+        let mut own = Vec::new();
         put(at.piston.y);
         put(at.piston.v);
         put(at.piston.a);
@@ -132,19 +135,22 @@ impl Record {
             if pack.geo.rings[i].has_clearance {
                 put(place.e);
                 put(place.s.clamp(0.0, place.clearance));
-                if ring.kind == Motion::Dynamic {
+                if ring.is_integrated() {
                     put(place.v);
                 }
             }
-            if pack.plan.axial && !matches!(ring.kind, Motion::Fixed { .. }) {
+            if pack.plan.axial && ring.motion.moves() {
                 put(r.axial.gas);
                 put(r.axial.inertia);
                 put(r.axial.film);
-                if ring.kind == Motion::Dynamic {
+                if ring.is_integrated() {
                     put(r.axial.damping);
                     put(r.reaction);
                 }
             }
+            own.clear();
+            ring.motion.record(&pack.state[pack.layout.motion[i].clone()], &mut own);
+            own.iter().for_each(|v| put(*v));
             if pack.plan.film {
                 let circumference = 2.0 * PI * place.r_outer * pack.geo.rings[i].rails as f64;
                 put(place.h);

@@ -2,7 +2,6 @@
 
 use std::f64::consts::PI;
 
-use gudgeon_core::kinds::Motion;
 use gudgeon_core::result::{Event, Value};
 use indexmap::IndexMap;
 
@@ -162,7 +161,7 @@ fn gap_oil(pack: &Pack, i: usize, m: &RingMeasure) -> f64 {
 /// eq. 25). Zero for rings whose motion is not integrated.
 fn groove_oil(pack: &Pack, i: usize, m: &RingMeasure) -> f64 {
     let g = &pack.geo.rings[i];
-    if pack.rings[i].kind != Motion::Dynamic || !g.has_clearance {
+    if !pack.rings[i].is_integrated() || !g.has_clearance {
         return 0.0;
     }
     let mu = pack.oil.viscosity(g.back_temperature);

@@ -6,8 +6,6 @@
 use gudgeon_core::EvalError;
 use gudgeon_numerics::ode::StepView;
 
-use super::hold::Hold;
-use super::oil::SIDES;
 use super::pack::Pack;
 use super::record::Record;
 
@@ -19,10 +17,8 @@ pub struct Rows {
     theta: Vec<f64>,
     y: Vec<f64>,
     q: Vec<f64>,
-    /// Volumes \[m²\] that the faces hold.
-    held: Vec<[f64; SIDES]>,
-    seats: Vec<f64>,
-    holds: Vec<Hold>,
+    /// What the models remember beside their states.
+    memory: Vec<f64>,
 }
 
 /// A row at the end of a step is its end, \[rad\].
@@ -31,25 +27,27 @@ const SLACK: f64 = 1e-9;
 impl Rows {
     /// Rows `step` \[rad\] apart, or the nearest whole part of a cycle.
     #[must_use]
-    pub fn new(pack: &Pack, step: f64) -> Self {
+    pub fn new(pack: &mut Pack, step: f64) -> Self {
         let period = pack.period();
         let rows = (period / step).round().max(1.0) as usize;
         let (n, count) = (pack.n_rings(), rows + 1);
-        let faces = pack.oil_pack.as_ref().map_or(0, |o| o.faces.len());
+        let mut memory = Vec::new();
+        pack.save(&mut memory);
+        let kept = memory.len();
+        memory.clear();
+        memory.reserve(count * kept);
         Self {
             grid: (0..=rows).map(|k| period * k as f64 / rows as f64).collect(),
             theta: Vec::with_capacity(count),
             y: Vec::with_capacity(count * pack.layout.n),
             q: Vec::with_capacity(count * (2 * n + 1)),
-            held: Vec::with_capacity(count * faces),
-            seats: Vec::with_capacity(count * n),
-            holds: Vec::with_capacity(count * n),
+            memory,
         }
     }
 
     /// Keeps the start of the cycle.
-    pub fn start(&mut self, pack: &Pack, y: &[f64]) {
-        self.keep(pack, |to| to.copy_from_slice(y), |q| q.fill(0.0));
+    pub fn start(&mut self, pack: &mut Pack, y: &[f64]) {
+        self.keep(pack, 0.0, |to| to.copy_from_slice(y), |q| q.fill(0.0));
     }
 
     /// Keeps the rows of an accepted step. To be called before its oil is booked.
@@ -58,28 +56,27 @@ impl Rows {
             && row <= v.t1() + SLACK
         {
             let t = row.min(v.t1());
-            self.keep(pack, |y| v.interpolate(t, y), |q| v.interpolate_quad(t, q));
-            let faces = self.held.len() - pack.oil_pack.as_ref().map_or(0, |o| o.faces.len());
-            let y = self.y.len() - pack.layout.n;
-            if let Some(oil) = &mut pack.oil_pack {
-                oil.set_volumes(&self.y[y..], pack.kinematics.motion(t).y);
-                for (held, f) in self.held[faces..].iter_mut().zip(&oil.faces) {
-                    *held = f.volume;
-                }
-            }
+            self.keep(pack, t, |y| v.interpolate(t, y), |q| v.interpolate_quad(t, q));
         }
     }
 
-    fn keep(&mut self, pack: &Pack, states: impl FnOnce(&mut [f64]), passed: impl FnOnce(&mut [f64])) {
+    fn keep(
+        &mut self,
+        pack: &mut Pack,
+        t: f64,
+        states: impl FnOnce(&mut [f64]),
+        passed: impl FnOnce(&mut [f64]),
+    ) {
         self.theta.push(self.grid[self.theta.len()]);
         let (y, q) = (self.y.len(), self.q.len());
         self.y.resize(y + pack.layout.n, 0.0);
         self.q.resize(q + 2 * pack.n_rings() + 1, 0.0);
         states(&mut self.y[y..]);
         passed(&mut self.q[q..]);
-        self.held.extend(pack.oil_pack.iter().flat_map(|o| o.faces.iter().map(|f| f.volume)));
-        self.seats.extend_from_slice(&pack.seats);
-        self.holds.extend_from_slice(&pack.holds);
+        if let Some(oil) = &mut pack.oil_pack {
+            oil.place(&self.y[y..][pack.layout.oil.clone()], pack.kinematics.motion(t).y);
+        }
+        pack.save(&mut self.memory);
     }
 
     /// Evaluates the rows.
@@ -89,12 +86,10 @@ impl Rows {
     pub fn record(&self, pack: &mut Pack) -> Result<Record, EvalError> {
         let mut record = Record::new(pack);
         let (n, dim) = (pack.n_rings(), pack.layout.n);
-        let faces = pack.oil_pack.as_ref().map_or(0, |o| o.faces.len());
+        let kept = self.memory.len() / self.theta.len().max(1);
         for (k, &theta) in self.theta.iter().enumerate() {
-            pack.seats.copy_from_slice(&self.seats[k * n..][..n]);
-            pack.holds.copy_from_slice(&self.holds[k * n..][..n]);
-            let held = (faces > 0).then(|| &self.held[k * faces..][..faces]);
-            pack.evaluate_holding(theta, &self.y[k * dim..][..dim], held)?;
+            let memory = &self.memory[k * kept..][..kept];
+            pack.evaluate_again(theta, &self.y[k * dim..][..dim], Some(memory))?;
             (0..n).try_for_each(|i| pack.film_peak(i))?;
             let q = &self.q[k * (2 * n + 1)..][..2 * n + 1];
             record.push(theta, pack, &q[..n], q[n]);

@@ -1,10 +1,9 @@
 //! The ring pack as a scene: what it refuses, explains, runs and races.
 
-use std::time::Instant;
-
 use gudgeon_core::BuildError;
 use gudgeon_core::result::{Figure, FigureKind, ModelUse, RunResult};
 
+use super::used::models_in_use;
 use super::{assemble, geometry, legal, meter, pack::Pack, solve, state_names};
 use crate::case::{Method, RingPackCase, Scheme};
 use gudgeon_case::{Loaded, Refinement};
@@ -13,31 +12,41 @@ use gudgeon_scene::{
 };
 
 impl SceneCase for RingPackCase {
-    fn legal(loaded: &Loaded<Self>) -> Vec<BuildError> {
-        let mut errors = assemble::assemble(&loaded.value, &loaded.source.files).err().unwrap_or_default();
-        errors.extend(legal(&loaded.value));
-        errors
+    type Built = Pack;
+
+    fn build(loaded: &Loaded<Self>) -> Result<Pack, Vec<BuildError>> {
+        let built = assemble::assemble(&loaded.value, &loaded.source.files);
+        let also = legal(&loaded.value);
+        match built {
+            Ok(pack) if also.is_empty() => Ok(pack),
+            Ok(_) => Err(also),
+            Err(e) => Err(e.into_iter().chain(also).collect()),
+        }
     }
 
-    fn explain(loaded: &Loaded<Self>, told: &mut Explanation) -> Result<Vec<ModelUse>, RunError> {
-        let pack = build(loaded)?;
-        let (used, skipped) = assemble::models_in_use(&loaded.value, &pack.plan);
+    fn explain(
+        loaded: &Loaded<Self>,
+        pack: &mut Pack,
+        told: &mut Explanation,
+    ) -> Result<Vec<ModelUse>, RunError> {
+        let (used, skipped) = models_in_use(&loaded.value, &pack.plan);
         told.runs.clone_from(&pack.plan.runs);
         told.skipped = skipped;
         told.results.clone_from(&pack.plan.wanted);
         told.limits = loaded.value.solver.limits.explained();
-        told.states = state_names(&pack);
+        told.states = state_names(pack);
         Ok(used)
     }
 
-    fn run(loaded: &Loaded<Self>, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
-        let begin = Instant::now();
-        let mut pack = build(loaded)?;
-        let built = begin.elapsed().as_secs_f64();
+    fn run(
+        loaded: &Loaded<Self>,
+        mut pack: Pack,
+        progress: &mut dyn FnMut(Progress),
+    ) -> Result<RunResult, RunError> {
         let case = &loaded.value;
         let solved = solve(case, &mut pack, progress)?;
         let mut result = RunResult::default();
-        (result.models, result.skipped) = assemble::models_in_use(case, &pack.plan);
+        (result.models, result.skipped) = models_in_use(case, &pack.plan);
         result.results = solved.cycle.results(&pack, meter(case));
         result.balance = solved.cycle.totals.balance.clone();
         result.events = solved.cycle.events();
@@ -63,7 +72,6 @@ impl SceneCase for RingPackCase {
             result.tables.insert("liner".into(), liner);
         }
         result.section = Some(geometry::section(case, &pack.geo));
-        result.seconds.insert("build".into(), built);
         result.seconds.insert("solve".into(), solved.seconds);
         Ok(result)
     }
@@ -82,11 +90,11 @@ impl SceneCase for RingPackCase {
         })
     }
 
-    fn result_names(loaded: &Loaded<Self>) -> Option<Vec<String>> {
-        Some(build(loaded).ok()?.plan.wanted)
+    fn result_names(_: &Loaded<Self>, pack: &mut Pack) -> Option<Vec<String>> {
+        Some(pack.plan.wanted.clone())
     }
 
-    fn work_precision(&self) -> Option<WorkPrecision> {
+    fn work_precision(loaded: &Loaded<Self>, pack: &mut Pack) -> Option<WorkPrecision> {
         let radau = |tolerance: f64| {
             vec![
                 "solver.method=implicit".into(),
@@ -97,7 +105,7 @@ impl SceneCase for RingPackCase {
         };
         Some(WorkPrecision {
             methods: METHODS.to_vec(),
-            settings: settings(self),
+            settings: settings(&loaded.value, pack.decision_interval().is_some()),
             reference: radau(1e-8),
             reference_check: radau(1e-7),
             reference_is: "implicit system, Radau IIA order 5, tolerance 1e-8; differs from the same at 1e-7",
@@ -106,16 +114,11 @@ impl SceneCase for RingPackCase {
     }
 }
 
-fn build(loaded: &Loaded<RingPackCase>) -> Result<Pack, RunError> {
-    assemble::assemble(&loaded.value, &loaded.source.files)
-        .map_err(|e| RunError::Refused(e.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")))
-}
-
-/// Methods of the race.
+/// Methods that are compared.
 const METHODS: [&str; 3] = ["implicit, order 3", "implicit, order 5", "as_published"];
 
 /// Every solver at every accuracy.
-fn settings(case: &RingPackCase) -> Vec<MethodSetting> {
+fn settings(case: &RingPackCase, discrete: bool) -> Vec<MethodSetting> {
     let mut all = Vec::new();
     let default = case.solver.tolerance.si();
     let orders: [(&str, &str, IntegratorName, &[f64]); 2] = [
@@ -140,8 +143,7 @@ fn settings(case: &RingPackCase) -> Vec<MethodSetting> {
     }
     let rings = case.rings.len() as u32;
     let published = case.solver.method == Method::AsPublished;
-    // The published scheme and its own refinement. The scheme follows from the axial motion.
-    let discrete = case.models.ring_motion.typetag_name() == "three_seat";
+    // The published scheme and its own refinement. The scheme follows from whether anything is decided in steps.
     let (scheme, own) = if discrete { ("degree_march", 1) } else { ("substep_march", rings + 1) };
     for factor in [1u32, 2, 4, 8] {
         let steps = own * factor;

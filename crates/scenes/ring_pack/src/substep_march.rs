@@ -10,7 +10,6 @@
 //! it tends to the solution of the same equations as the implicit solver.
 
 use gudgeon_core::EvalError;
-use gudgeon_core::kinds::Motion;
 
 use crate::case::Clamp;
 
@@ -177,7 +176,7 @@ fn swap_volumes(pack: &mut Pack, volumes: &mut [f64]) {
 }
 
 fn moving(pack: &Pack, i: usize) -> bool {
-    pack.rings[i].kind == Motion::Dynamic
+    pack.rings[i].motion.second_order().is_some()
 }
 
 fn bisect(pack: &mut Pack, i: usize, old: f64, dt: f64, s: (f64, f64)) -> Result<f64, EvalError> {
@@ -207,16 +206,18 @@ fn bisect(pack: &mut Pack, i: usize, old: f64, dt: f64, s: (f64, f64)) -> Result
 
 /// One step of `m a = F`, damping at the new velocity and position: `v' = v + a Δt`, `s' = s + v Δt + a Δt²/2`.
 fn axial(pack: &mut Pack, i: usize, r: &mut RingState, dt: f64, clamp: Clamp) {
-    pack.axial_forces(i);
+    pack.external_forces(i);
+    let Some(law) = pack.rings[i].motion.second_order() else { return };
     let mass = pack.geo.rings[i].mass;
     let place = pack.at.places[i];
-    let f = &pack.at.rings[i].axial;
-    let rest = f.sum() - f.damping;
     let (v0, s0, area, c) = (r.v, r.s, place.flank_area(), place.clearance);
+    let mut f = pack.at.rings[i].axial;
+    f.damping = law.damping(place.s, place.v, c, area);
+    let rest = f.sum() - f.damping;
     let trial = |a: f64| (s0 + v0 * dt + 0.5 * a * dt * dt, v0 + a * dt);
     let residual = |a: f64| {
         let (s, v) = trial(a);
-        mass * a - rest - pack.rings[i].damping.force(s.clamp(0.0, c), v, c, area)
+        mass * a - rest - law.damping(s.clamp(0.0, c), v, c, area)
     };
     // Damping opposes the motion, so the root lies between free flight and standing still.
     let (mut lo, mut hi) = (rest / mass, -v0 / dt);
@@ -252,8 +253,8 @@ fn axial(pack: &mut Pack, i: usize, r: &mut RingState, dt: f64, clamp: Clamp) {
     } else {
         (s, v)
     };
+    let damping = law.damping(r.s, r.v, c, area);
     pack.set_place(i, r.h, Some((r.s, r.v)));
-    let damping = pack.rings[i].damping.force(r.s, r.v, c, area);
     let ring = &mut pack.at.rings[i];
     ring.axial.damping = damping;
     ring.reaction = 0.0;

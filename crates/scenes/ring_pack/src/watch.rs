@@ -5,7 +5,8 @@ use std::f64::consts::PI;
 use gudgeon_core::result::{Event, Note};
 
 use super::error::RingPackError;
-use super::pack::{Limited, Pack, SeatLog};
+use super::instant::SeatLog;
+use super::pack::Pack;
 use gudgeon_scene::RunError;
 
 /// How long something acted, and how much at most.
@@ -82,7 +83,7 @@ impl Watch {
     /// Begins a cycle with nothing seen.
     #[must_use]
     pub fn new(pack: &mut Pack) -> Self {
-        pack.seat_log.fill(SeatLog::default());
+        pack.seat_log.iter_mut().for_each(SeatLog::clear);
         Self { rings: vec![RingWatch::default(); if pack.plan.film { pack.n_rings() } else { 0 }] }
     }
 
@@ -92,7 +93,9 @@ impl Watch {
         for (i, w) in self.rings.iter_mut().enumerate() {
             let (r, place) = (&pack.at.rings[i], &pack.at.places[i]);
             let circumference = 2.0 * PI * place.r_outer * pack.geo.rings[i].rails as f64;
-            let Limited { floor, drag, contact_drag, slowed, lifted, thickest } = r.limited;
+            let l = r.limited;
+            let (floor, drag, contact_drag) = (l.floor, l.drag, l.contact_drag);
+            let (slowed, lifted, thickest) = (l.slowed, l.lifted, l.thickest);
             let tells =
                 |load: f64, of: f64| if load > COUNTS * of.abs() { load * circumference } else { 0.0 };
             let before = w.floor.most;

@@ -12,10 +12,11 @@
 //! speed, and held again when its velocity has come as close to that of the balance as the tolerance asks. Both limits are
 //! proportional to the tolerance: the tighter it is, the more of the motion is integrated with its inertia.
 
-use gudgeon_core::kinds::{FlankDamping, RingMotion};
+use gudgeon_core::geometry::RingPlace;
+use gudgeon_core::kinds::FlankDamping;
 use gudgeon_numerics::roots;
 
-use super::pack::Pack;
+use super::flank::Flank;
 
 /// What holds a ring.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -31,10 +32,33 @@ pub enum Hold {
 
 impl Hold {
     /// Direction away from the flank.
-    const fn away(self) -> f64 {
+    pub const fn away(self) -> f64 {
         match self {
             Self::Upper => -1.0,
             _ => 1.0,
+        }
+    }
+
+    /// The flank that could hold a ring.
+    pub fn nearest(place: &RingPlace) -> Self {
+        if place.s < 0.5 * place.clearance { Self::Lower } else { Self::Upper }
+    }
+
+    /// As a number, for the memory of a model.
+    pub const fn code(self) -> f64 {
+        match self {
+            Self::Free => 0.0,
+            Self::Lower => 1.0,
+            Self::Upper => 2.0,
+        }
+    }
+
+    /// From such a number.
+    pub fn from_code(code: f64) -> Self {
+        match code as u8 {
+            0 => Self::Free,
+            1 => Self::Lower,
+            _ => Self::Upper,
         }
     }
 }
@@ -53,37 +77,44 @@ const RESOLUTION: f64 = 1e-13;
 const START: f64 = 1e-3;
 
 /// Axial balance of one ring against the velocity away from a flank.
-struct Balance<'a> {
-    away: f64,
-    external: f64,
-    s: f64,
-    clearance: f64,
-    area: f64,
-    damping: &'a dyn FlankDamping,
-    motion: &'a dyn RingMotion,
+pub struct Balance<'a> {
+    /// Direction away from the flank.
+    pub away: f64,
+    /// Gas, inertia, weight and film \[N\].
+    pub external: f64,
+    /// Height \[m\].
+    pub s: f64,
+    /// Clearance \[m\].
+    pub clearance: f64,
+    /// Area of a flank \[m²\].
+    pub area: f64,
+    /// Oil in the groove.
+    pub damping: &'a dyn FlankDamping,
+    /// The flanks.
+    pub flank: &'a Flank,
     /// Velocity towards a flank that nothing shields \[m/s\].
-    fall: f64,
+    pub fall: f64,
 }
 
 impl Balance<'_> {
     /// Force away from the flank \[N\] at velocity `w` \[m/s\] away from it.
-    fn force(&self, w: f64) -> f64 {
+    pub fn force(&self, w: f64) -> f64 {
         let v = self.away * w;
         self.away
             * (self.external
                 + self.damping.force(self.s, v, self.clearance, self.area)
-                + self.motion.flank_reaction(self.s, v, self.clearance))
+                + self.flank.reaction(self.s, v, self.clearance))
     }
 
     /// How fast the force falls with the velocity \[N s/m\] at `w`, on the side away from zero; `f` is the force there.
-    fn stiffness(&self, w: f64, f: f64) -> f64 {
+    pub fn stiffness(&self, w: f64, f: f64) -> f64 {
         let d = (DIFFERENCE.0 * w.abs()).max(DIFFERENCE.1).copysign(w);
         (f - self.force(w + d)) / d
     }
 
     /// The velocity away from the flank that balances the forces; beyond `release` along the tangent there, so that a step
     /// that went too far still sees a smooth motion.
-    fn velocity(&self, release: f64) -> f64 {
+    pub fn velocity(&self, release: f64) -> f64 {
         let still = self.force(0.0);
         if still == 0.0 {
             return 0.0;
@@ -128,146 +159,101 @@ impl Balance<'_> {
     }
 }
 
-impl Pack {
-    fn axial_balance(&self, i: usize, hold: Hold) -> Balance<'_> {
-        let (place, ring, a) = (&self.at.places[i], &self.rings[i], &self.at.rings[i].axial);
-        Balance {
-            away: hold.away(),
-            external: a.gas + a.inertia + a.gravity + a.film,
-            s: place.s,
-            clearance: place.clearance,
-            area: place.flank_area(),
-            damping: &*ring.damping,
-            motion: &*ring.motion,
-            fall: self.unit_speed(i),
-        }
-    }
-
+/// What holds a ring, and the limits of holding it.
+#[derive(Debug, Clone, Copy)]
+pub struct Holding {
+    /// What holds it.
+    pub hold: Hold,
+    /// Tolerance that the holding goes by; 0: the ring is never held.
+    pub tolerance: f64,
     /// One clearance per radian \[m/s\].
-    fn unit_speed(&self, i: usize) -> f64 {
-        self.rings[i].clearance0 * self.omega
+    pub unit_speed: f64,
+    mass: f64,
+    omega: f64,
+    /// Whether small changes from an instant are asked for.
+    pub differences: bool,
+    /// How fast the axial balance falls with the velocity \[N s/m\] at that instant.
+    pub tangent: f64,
+}
+
+impl Holding {
+    /// A free ring.
+    pub const fn new(mass: f64, unit_speed: f64, omega: f64) -> Self {
+        Self { hold: Hold::Free, tolerance: 0.0, unit_speed, mass, omega, differences: false, tangent: 0.0 }
     }
 
-    fn release_speed(&self, i: usize) -> f64 {
-        RELEASE * self.hold_tolerance * self.unit_speed(i)
+    fn release_speed(&self) -> f64 {
+        RELEASE * self.tolerance * self.unit_speed
     }
 
-    /// Velocity of a held ring \[m/s\], the forces at the instant known.
-    pub(super) fn held_velocity(&self, i: usize) -> f64 {
-        let b = self.axial_balance(i, self.holds[i]);
-        b.away * b.velocity(self.release_speed(i))
-    }
-
-    /// How fast the balance of a held ring falls with its velocity \[N s/m\], at the velocity found last.
-    pub(super) fn held_stiffness(&self, i: usize) -> f64 {
-        let b = self.axial_balance(i, self.holds[i]);
-        let w = b.away * self.at.places[i].v;
-        b.stiffness(w, b.force(w))
-    }
-
-    /// Velocity of a held ring \[m/s\] after a small change of its forces or its place, by one step of Newton from before.
-    pub(super) fn moved_velocity(&self, i: usize) -> f64 {
-        let b = self.axial_balance(i, self.holds[i]);
-        let w = b.away * self.at.places[i].v;
-        b.away * (w + b.force(w) / self.tangents[i])
-    }
-
-    /// Goes through zero from below where ring `i` is let go, or held again; the forces at the instant known.
-    pub(super) fn hold_event(&self, i: usize) -> f64 {
-        match self.holds[i] {
-            Hold::Free => self.readiness(i, false),
-            hold => {
-                let b = self.axial_balance(i, hold);
-                let scale = self.geo.rings[i].mass * self.unit_speed(i) * self.omega;
-                b.force(self.release_speed(i)) / scale
-            }
+    /// Velocity of a held ring \[m/s\]; after a small change of its forces or its place by one step of Newton from the velocity `before`.
+    pub fn velocity(&self, b: &Balance<'_>, before: f64) -> f64 {
+        if self.tangent > 0.0 {
+            let w = b.away * before;
+            return b.away * (w + b.force(w) / self.tangent);
         }
+        b.away * b.velocity(self.release_speed())
     }
 
-    /// The flank that could hold ring `i`.
-    fn nearest(&self, i: usize) -> Hold {
-        let p = &self.at.places[i];
-        if p.s < 0.5 * p.clearance { Hold::Lower } else { Hold::Upper }
+    /// Goes through zero from below where a held ring is let go.
+    pub fn wants_to_leave(&self, b: &Balance<'_>) -> f64 {
+        let scale = self.mass * self.unit_speed * self.omega;
+        b.force(self.release_speed()) / scale
     }
 
-    /// Positive when the free ring `i` can be held: the film is stiff, the balance keeps the ring, and the velocity has settled,
+    /// Positive when a free ring with the velocity `v` can be held: the film is stiff, the balance keeps the ring, and the velocity has settled,
     /// which it does within a fraction of a degree when a cycle `starts`.
-    fn readiness(&self, i: usize, starts: bool) -> f64 {
-        if self.hold_tolerance <= 0.0 {
+    pub fn readiness(&self, b: &Balance<'_>, v: f64, starts: bool) -> f64 {
+        if self.tolerance <= 0.0 {
             return -1.0;
         }
-        let b = self.axial_balance(i, self.nearest(i));
-        let w = b.away * self.at.places[i].v;
-        let rate = b.stiffness(w, b.force(w)) / (self.geo.rings[i].mass * self.omega);
+        let w = b.away * v;
+        let rate = b.stiffness(w, b.force(w)) / (self.mass * self.omega);
         let stiff = rate / LEAST_RATE - 1.0;
         if stiff.is_nan() || stiff <= 0.0 {
             return -1.0;
         }
-        let release = self.release_speed(i);
+        let release = self.release_speed();
         let balanced = b.velocity(release);
         // A ring just let go is not held again at once; one that was held when the last cycle ended still is.
         let kept = 1.0 - if starts { 1.0 } else { 2.0 } * balanced / release;
-        let settled = 1.0 - (w - balanced).abs() / (self.hold_tolerance * self.unit_speed(i));
+        let settled = 1.0 - (w - balanced).abs() / (self.tolerance * self.unit_speed);
         stiff.min(kept).min(if starts { 1.0 } else { settled }).max(-1.0)
     }
 
-    /// Lets ring `i` go or holds it; `v` is its velocity state \[clearances per radian\].
-    pub(super) fn switch_hold(&mut self, i: usize, v: &mut f64) {
-        match self.holds[i] {
+    /// Lets the ring go, or has it held by the flank `nearest`; its velocity then \[clearances per radian\].
+    pub fn switch(&mut self, nearest: Hold) -> f64 {
+        match self.hold {
             Hold::Free => {
-                self.holds[i] = self.nearest(i);
-                *v = 0.0;
+                self.hold = nearest;
+                0.0
             }
             hold => {
-                *v = hold.away() * RELEASE * self.hold_tolerance;
-                self.holds[i] = Hold::Free;
+                self.hold = Hold::Free;
+                hold.away() * RELEASE * self.tolerance
             }
         }
-    }
-
-    /// Which rings are held where one cycle ends and the next starts: a function of the state alone, without the velocities that
-    /// the films decide. Evaluates the instant.
-    ///
-    /// # Errors
-    /// What a sub-model refuses.
-    pub(super) fn start_holds(&mut self, theta: f64, y: &mut [f64]) -> Result<(), gudgeon_core::EvalError> {
-        self.holds.fill(Hold::Free);
-        if self.hold_tolerance <= 0.0 || self.layout.axial.iter().all(Option::is_none) {
-            return Ok(());
-        }
-        self.evaluate(theta, y)?;
-        for i in 0..self.n_rings() {
-            if let Some(k) = self.layout.axial[i]
-                && self.readiness(i, true) > 0.0
-            {
-                self.switch_hold(i, &mut y[k + 1]);
-            }
-        }
-        Ok(())
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use gudgeon_core::kinds::{FlankDampingCtx, FlankDampingSpec, RingMotionCtx, RingMotionSpec};
-    use gudgeon_ring::{NewtonGroove, SqueezeFilm};
+    use crate::SqueezeFilm;
+    use gudgeon_core::kinds::{FlankDampingCtx, FlankDampingSpec};
 
     const C: f64 = 1e-4;
     const A: f64 = 1.8e-3;
 
-    fn models() -> (Box<dyn FlankDamping>, Box<dyn RingMotion>) {
+    fn models() -> (Box<dyn FlankDamping>, Flank) {
         let ctx = FlankDampingCtx { ring: 0, rings: 1, oil_fill: 0.6, width: 5e-3, mu: 0.01 };
-        let motion = RingMotionCtx { mass: 0.043, clearance: C, flank_area: A, ring: 0 };
-        (
-            SqueezeFilm::default().build(&ctx).expect("builds"),
-            NewtonGroove::default().build(&motion).expect("builds"),
-        )
+        let damping = SqueezeFilm::default().build(&ctx).expect("builds");
+        (damping, Flank { stiffness: 1e10, per_rebound: 100.0 })
     }
 
     #[test]
     fn velocity_balances_the_forces_on_both_flanks() {
-        let (damping, motion) = models();
+        let (damping, flank) = models();
         let mut held = 0;
         for (away, s) in [(1.0, 0.0), (1.0, 1e-7), (1.0, -2e-8), (1.0, 3e-6), (-1.0, C), (-1.0, C - 2e-7)] {
             for load in [-1e4, -300.0, -1.0, -1e-6, 1e-6, 1.0, 50.0] {
@@ -279,7 +265,7 @@ mod tests {
                     clearance: C,
                     area: A,
                     damping: &*damping,
-                    motion: &*motion,
+                    flank: &flank,
                     fall: 0.02,
                 };
                 // A film that the load tears apart, and a flank that pushes harder than the load, let go.
@@ -302,7 +288,7 @@ mod tests {
 
     #[test]
     fn beyond_the_release_speed_the_velocity_goes_on_along_the_tangent() {
-        let (damping, motion) = models();
+        let (damping, flank) = models();
         let release = 1e-5;
         let at = |load: f64| {
             Balance {
@@ -312,7 +298,7 @@ mod tests {
                 clearance: C,
                 area: A,
                 damping: &*damping,
-                motion: &*motion,
+                flank: &flank,
                 fall: 0.02,
             }
             .velocity(release)
@@ -334,8 +320,8 @@ mod tests {
 
     #[test]
     fn a_ring_that_nothing_resists_falls_at_a_finite_speed() {
-        let (_, motion) = models();
-        let none: Box<dyn FlankDamping> = gudgeon_ring::DampingOff {}
+        let (_, flank) = models();
+        let none: Box<dyn FlankDamping> = crate::DampingOff {}
             .build(&FlankDampingCtx { ring: 0, rings: 1, oil_fill: 0.6, width: 5e-3, mu: 0.01 })
             .expect("builds");
         for (away, s) in [(1.0, 1e-9), (1.0, 0.0), (-1.0, C - 1e-9)] {
@@ -346,7 +332,7 @@ mod tests {
                 clearance: C,
                 area: A,
                 damping: &*none,
-                motion: &*motion,
+                flank: &flank,
                 fall: 0.02,
             };
             assert_eq!(b.velocity(1e-5), -0.02);

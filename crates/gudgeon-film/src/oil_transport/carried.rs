@@ -1,0 +1,485 @@
+//! Oil on the liner and under the faces: who holds it, who takes it up, who leaves it behind.
+//!
+//! Each running face has two states, the volumes of oil per circumference that it holds below and above its narrowest place.
+//! They say how far the film reaches (`extent`), and the flux of the film moves oil from one to the other (`rates`). The liner
+//! carries a film on a fixed grid. What a leading edge takes up is known before it gets there: it is added to the state as the
+//! integral of the film over the way it went, so that no step needs to resolve the film it passes. What a trailing edge leaves
+//! is what the states of its face lost over a step, laid down over the way the edge went. Nothing is therefore ever gained or
+//! lost, whatever the tolerance.
+
+use gudgeon_core::kinds::{OilExtent, OilFaceIn, OilLedger, OilStep, OilTransport, OilTransportCtx, RingOil};
+use gudgeon_core::states::{Signals, StateInfo, Stateful};
+
+use super::face::{Exit, LEAST_REACH, OilFace, SIDES};
+use super::law::Law;
+use super::liner::Liner;
+
+/// Part of each side of a face that is wetted at the start.
+const FIRST_REACH: f64 = 0.1;
+/// Film of the unit of the volume states \[m\].
+const UNIT_FILM: f64 = 1e-6;
+/// Unit of the film on the liner, where it is handed out \[m\].
+const LINER_UNIT: f64 = 1e-6;
+/// Film of one cell that counts as one, in its unit: which cells a step ends in differs from cycle to cycle, and a face is as long
+/// as many of them.
+const CELL_SCALE: f64 = 100.0;
+/// Part of the smallest distance between two faces over which a step may go: a face takes up what the one before it left in earlier steps.
+const WAY: f64 = 0.8;
+
+/// All oil of a pack.
+#[derive(Debug)]
+pub struct Carried {
+    law: Law,
+    /// Faces, from the top down.
+    pub faces: Vec<OilFace>,
+    /// Ring and land of every face.
+    places: Vec<(usize, usize)>,
+    states: Vec<StateInfo>,
+    /// Film on the liner.
+    pub liner: Liner,
+    ledger: OilLedger,
+    /// Smallest distance between two faces \[m\].
+    least_gap: f64,
+    /// Seconds per radian.
+    per: f64,
+}
+
+impl Carried {
+    /// Sets up the oil of faces listed from the top down.
+    pub fn new(law: Law, ctx: &OilTransportCtx<'_>) -> Self {
+        let mut least = law.spacing;
+        let mut least_gap = f64::INFINITY;
+        for p in ctx.faces {
+            least = least.min(0.5 * p.profile.length());
+        }
+        for w in ctx.faces.windows(2) {
+            let gap = w[0].offset - (w[1].offset + w[1].profile.length());
+            least_gap = least_gap.min(gap);
+        }
+        // A cell holds the edge of one face at most.
+        let least = least.min(0.5 * least_gap.max(1e-6));
+        let faces: Vec<OilFace> =
+            ctx.faces.iter().enumerate().map(|(k, p)| OilFace::new(p, k == 0, law.wave)).collect();
+        let (lowest, highest) = ctx.pin;
+        let top = faces.first().map_or(0.0, |f| f.offset + f.length) + highest;
+        let low = faces.last().map_or(0.0, |f| f.offset) + lowest;
+        Self {
+            liner: Liner::new(low, top, least, law.initial),
+            places: faces.iter().map(|f| (f.ring, f.land)).collect(),
+            states: states(&faces),
+            faces,
+            law,
+            ledger: OilLedger::default(),
+            least_gap,
+            per: 1.0 / ctx.omega,
+        }
+    }
+
+    /// Volume of one unit of the states of face `k` \[m²\].
+    #[must_use]
+    pub fn unit(&self, k: usize) -> f64 {
+        UNIT_FILM * self.faces[k].length
+    }
+
+    /// What the edges of face `k` have passed since the start of the step.
+    fn swept(&self, k: usize, pin: f64) -> [f64; SIDES] {
+        let (f, liner) = (&self.faces[k], &self.liner);
+        let e = f.edges(pin);
+        [
+            if e[0] < f.edge[0] { liner.below(f.edge[0]) - liner.below(e[0]) } else { 0.0 },
+            if e[1] > f.edge[1] { liner.below(e[1]) - liner.below(f.edge[1]) } else { 0.0 },
+        ]
+    }
+
+    /// The crankcase wets what the lowest ring uncovers.
+    fn supply(&mut self) {
+        if let Some(z) = self.faces.last().map(|f| f.edge[0]) {
+            self.ledger.supplied += self.liner.cover(self.liner.bottom, z, self.law.supply);
+        }
+        self.liner.add_up();
+    }
+
+    /// Books face `k` over a step: `y0`, `y1` its two states, `h` its film at the end.
+    fn book_face(&mut self, k: usize, y0: &[f64], y1: &[f64], pin: f64, h: f64) {
+        let (unit, swept, from) = (self.unit(k), self.swept(k, pin), self.faces[k].edge);
+        let f = &mut self.faces[k];
+        let to = f.edges(pin);
+        for side in 0..SIDES {
+            f.taken[side] += swept[side];
+            self.ledger.taken += swept[side];
+        }
+        // What the face lost stays behind its trailing edge. Integration errors may make it less than nothing: that is owed,
+        // for the volumes must not jump, which would spoil the time derivatives of the next step.
+        let lost = f.owed - ((y1[0] - y0[0]) + (y1[1] - y0[1])) * unit;
+        let trailing = usize::from(to[1] < from[1]);
+        let way = (to[trailing] - from[trailing]).abs();
+        // The wave before the leading edge, beyond what there is room for, goes; nothing else depends on it.
+        let leading = 1 - trailing;
+        let volume = y1[leading] * unit + f.taken[leading];
+        let left = (volume - f.capacity(h, leading) - f.room[leading]).max(0.0);
+        f.taken[leading] -= left;
+        let laid = if way > 0.0 { lost.max(0.0) } else { 0.0 };
+        f.owed = lost - laid;
+        match f.exit[leading] {
+            Exit::Crankcase => self.ledger.drained += left,
+            Exit::Chamber => self.ledger.thrown += left,
+        }
+        f.edge = to;
+        if way > 0.0 {
+            self.liner.lay(from[trailing], to[trailing], laid / way, trailing);
+        }
+    }
+}
+
+/// Two volumes a face.
+fn states(faces: &[OilFace]) -> Vec<StateInfo> {
+    let side = |f: &OilFace, where_: &str| {
+        // What a face took up stands beside its states, which may therefore be anything.
+        StateInfo::new(format!(
+            "oil {where_} the narrowest place of face {} of ring{}",
+            f.land + 1,
+            f.ring + 1
+        ))
+        .absolute(1.0)
+        .over_cycle(1.0, true)
+        .changes(Signals::EXTENT)
+    };
+    faces.iter().flat_map(|f| [side(f, "below"), side(f, "above")]).collect()
+}
+
+impl Stateful for Carried {
+    fn states(&self) -> &[StateInfo] {
+        &self.states
+    }
+
+    fn reads(&self) -> Signals {
+        Signals::EXTENT | Signals::FILM_THICKNESS | Signals::FILM_FORCE
+    }
+
+    /// The volumes of the last instant, which the states alone do not say.
+    fn save(&self, out: &mut Vec<f64>) {
+        out.extend(self.faces.iter().flat_map(|f| f.volume));
+    }
+
+    fn restore(&mut self, saved: &[f64]) -> usize {
+        for (f, v) in self.faces.iter_mut().zip(saved.chunks_exact(SIDES)) {
+            f.volume.copy_from_slice(v);
+        }
+        SIDES * self.faces.len()
+    }
+}
+
+impl OilTransport for Carried {
+    fn faces(&self) -> &[(usize, usize)] {
+        &self.places
+    }
+
+    fn ring_of(&self, k: usize) -> usize {
+        self.faces[k / SIDES].ring
+    }
+
+    fn place(&mut self, y: &[f64], pin: f64) {
+        for k in 0..self.faces.len() {
+            let unit = self.unit(k);
+            let swept = self.swept(k, pin);
+            let f = &mut self.faces[k];
+            for side in 0..SIDES {
+                f.volume[side] = y[SIDES * k + side] * unit + f.taken[side] + swept[side];
+            }
+        }
+    }
+
+    fn extent(&mut self, k: usize, h: f64) -> OilExtent {
+        self.faces[k].set_reach(h)
+    }
+
+    fn rates(&mut self, k: usize, face: &OilFaceIn, dy: &mut [f64]) {
+        let unit = self.unit(k);
+        let f = &self.faces[k];
+        let OilFaceIn { h, hdot, u, flux } = *face;
+        let least = h * LEAST_REACH * f.length;
+        // A side that has no oil gives none; one that errors have made owe some takes it back in the same time. With a corner at zero,
+        // near which a nearly dry side rests, every other step would be wrong.
+        let has = |side: usize| {
+            let x = (f.volume[side] / least).clamp(-1.0, 1.0);
+            x * (2.0 - x.abs())
+        };
+        let through = flux - hdot * f.reach[0].length + self.law.through_valleys(h, u.abs()).copysign(u);
+        let through = through * if through > 0.0 { has(0) } else { has(1) };
+        let mut rate = [-through, through];
+        let trailing = usize::from(u > 0.0);
+        rate[trailing] -= u.abs() * self.law.deposited(f.reach[trailing].gap) * has(trailing);
+        for side in 0..SIDES {
+            dy[SIDES * k + side] = rate[side] / unit * self.per;
+        }
+    }
+
+    fn first(&mut self, films: &[f64], y: &mut [f64]) {
+        // Oil comes with the first stroke, and what there is too much of takes many cycles to go.
+        for k in 0..self.faces.len() {
+            let f = &self.faces[k];
+            let (h, unit) = (films[f.ring], self.unit(k));
+            for side in 0..SIDES {
+                y[SIDES * k + side] = f.held(h, FIRST_REACH * f.span(side), side) / unit;
+            }
+        }
+        self.liner.film.fill(self.law.initial);
+    }
+
+    fn carried(&self) -> usize {
+        self.liner.film.len()
+    }
+
+    fn carried_scale(&self) -> f64 {
+        CELL_SCALE
+    }
+
+    fn field(&self, out: &mut [f64]) {
+        for (out, film) in out.iter_mut().zip(&self.liner.film) {
+            *out = film / LINER_UNIT;
+        }
+    }
+
+    fn begin_cycle(&mut self, field: &[f64], pin: f64) {
+        // An extrapolated film may be less than none.
+        for (film, y) in self.liner.film.iter_mut().zip(field) {
+            *film = (y * LINER_UNIT).max(0.0);
+        }
+        self.ledger = OilLedger::default();
+        for f in &mut self.faces {
+            (f.taken, f.owed) = ([0.0; SIDES], 0.0);
+            f.edge = f.edges(pin);
+        }
+        self.supply();
+    }
+
+    fn end_cycle(&mut self, y: &mut [f64], field: &mut [f64]) {
+        for k in 0..self.faces.len() {
+            let unit = self.unit(k);
+            let f = &mut self.faces[k];
+            for side in 0..SIDES {
+                y[SIDES * k + side] += f.taken[side] / unit;
+                f.taken[side] = 0.0;
+            }
+            y[SIDES * k] += f.owed / unit;
+            f.owed = 0.0;
+        }
+        self.field(field);
+    }
+
+    fn book(&mut self, step: &OilStep<'_>) {
+        for k in 0..self.faces.len() {
+            let own = SIDES * k..SIDES * (k + 1);
+            let h = step.films[self.faces[k].ring];
+            self.book_face(k, &step.y0[own.clone()], &step.y1[own], step.pin, h);
+        }
+        self.supply();
+    }
+
+    fn longest_way(&self) -> f64 {
+        WAY * self.least_gap
+    }
+
+    fn ring(&self, i: usize, v: f64) -> RingOil {
+        let (mut wetted, mut length) = (0.0, 0.0);
+        let mut out = RingOil::default();
+        let trailing = usize::from(v < 0.0);
+        for f in self.faces.iter().filter(|f| f.ring == i) {
+            wetted += f.reach[0].length + f.reach[1].length;
+            length += f.length;
+            out.held += f.volume[0] + f.volume[1];
+            // The last land to pass decides what stays: the upper one on the way down.
+            if out.left == 0.0 || trailing == 0 {
+                out.left = self.law.deposited(f.reach[trailing].gap);
+            }
+        }
+        out.wetted = if length > 0.0 { wetted / length } else { 0.0 };
+        out
+    }
+
+    fn total(&self, y: &[f64]) -> f64 {
+        let mut sum = 0.0;
+        for (k, film) in self.liner.film.iter().enumerate() {
+            let (low, high) = self.liner.ends(k);
+            let covered: f64 =
+                self.faces.iter().map(|f| (high.min(f.edge[1]) - low.max(f.edge[0])).max(0.0)).sum();
+            sum += film * (self.liner.cell - covered);
+        }
+        for (k, f) in self.faces.iter().enumerate() {
+            for side in 0..SIDES {
+                sum += y[SIDES * k + side] * self.unit(k) + f.taken[side];
+            }
+            sum += f.owed;
+        }
+        sum
+    }
+
+    fn ledger(&self) -> OilLedger {
+        self.ledger
+    }
+
+    fn clear_ledger(&mut self) {
+        self.ledger = OilLedger::default();
+    }
+
+    fn liner(&self) -> (Vec<f64>, Vec<f64>) {
+        let l = &self.liner;
+        let z = (0..l.film.len()).map(|k| l.bottom + (k as f64 + 0.5) * l.cell).collect();
+        (z, l.film.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::oil_transport::face::WAVE_SLOPE;
+    use crate::roughness::GaussianGap;
+    use gudgeon_core::geometry::FaceProfile;
+    use gudgeon_core::kinds::OilFacePlace;
+
+    fn pack() -> Carried {
+        let barrel = FaceProfile::Parabola { length: 1.2e-3, curvature: 15.0, apex: 0.5e-3 };
+        let table = FaceProfile::Table { length: 0.8e-3, drops: vec![3e-6, 0.0, 0.0, 2e-6] };
+        let place = |ring, profile: &FaceProfile, offset, clearance| OilFacePlace {
+            ring,
+            land: 0,
+            profile: profile.clone(),
+            offset,
+            clearance,
+        };
+        let law = Law {
+            supply: 5e-6,
+            split: 0.5,
+            roughness: 0.0,
+            mean_gap: GaussianGap::new(),
+            wave: 50e-6,
+            spacing: 0.2e-3,
+            initial: 1e-6,
+        };
+        let faces = [place(0, &barrel, 8e-3, [Some(0.2e-3); 2]), place(1, &table, 0.0, [None, Some(0.2e-3)])];
+        Carried::new(law, &OilTransportCtx { faces: &faces, pin: (0.0, 0.1), omega: 1.0 })
+    }
+
+    fn begin(p: &mut Carried) {
+        let mut field = vec![0.0; p.carried()];
+        p.field(&mut field);
+        p.begin_cycle(&field, 0.1);
+    }
+
+    /// A step under films of 2 um.
+    fn book(p: &mut Carried, y0: &[f64], y1: &[f64], pin: f64) {
+        p.book(&OilStep { y0, y1, pin, films: &[2e-6; 2] });
+    }
+
+    #[test]
+    fn a_reach_holds_its_volume() {
+        let mut p = pack();
+        for k in 0..2 {
+            for side in 0..SIDES {
+                let h = 1.3e-6;
+                let full = p.faces[k].capacity(h, side);
+                for part in [0.1, 0.5, 0.99] {
+                    p.faces[k].volume[side] = part * full;
+                    let r = p.faces[k].reach_of(h, side);
+                    // Joined to the least reach without a corner, and not beyond the edge.
+                    let least = (LEAST_REACH * p.faces[k].length).min(p.faces[k].span(side));
+                    if r.length >= p.faces[k].span(side) {
+                        continue;
+                    }
+                    let t = (r.length * r.length - least * least).sqrt();
+                    let held = p.faces[k].held(h, t, side);
+                    // Newton's method ends where the length no longer changes by a rounding; the difference of squares loses a digit or two.
+                    assert!((held - part * full).abs() <= 1e-13 * full, "{k} {side} {part}");
+                    let gap = h + p.faces[k].drop_at(r.length, side);
+                    assert_eq!(r.gap, gap);
+                }
+                p.faces[k].volume[side] = full + 2e-9;
+                let r = p.faces[k].reach_of(h, side);
+                assert_eq!(r.length, p.faces[k].span(side));
+                let edge = h + p.faces[k].drop_at(r.length, side);
+                let wave = 0.5 * (r.gap * r.gap - edge * edge) / WAVE_SLOPE;
+                assert!((wave - 2e-9).abs() < 1e-20, "{wave:e}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_volume_under_a_table_is_that_of_its_trapezoids() {
+        let p = pack();
+        // From the middle of the flat bottom, 0.4 mm, to the bottom edge: 0.1333 mm flat, then a triangle of 3 um by 0.2667 mm.
+        let v = p.faces[1].held(1e-6, 0.4e-3, 0);
+        let exact = 1e-6 * 0.4e-3 + 0.5 * 3e-6 * (0.8e-3 / 3.0);
+        assert!((v - exact).abs() <= 1e-14 * exact);
+    }
+
+    /// Edges that go up and down by odd steps, with faces that lose what they are told to lose: all oil is accounted for.
+    #[test]
+    fn nothing_is_gained_or_lost() {
+        let mut p = pack();
+        let mut y = vec![0.0; p.states().len()];
+        p.first(&[2e-6; 2], &mut y);
+        begin(&mut p);
+        let before = p.total(&y);
+        let supplied = p.ledger().supplied;
+        let mut pin: f64 = 0.1;
+        let mut seed = 1u64;
+        let mut random = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 40) as f64 / (1u64 << 24) as f64
+        };
+        for stroke in 0..8 {
+            let down = stroke % 2 == 0;
+            loop {
+                let next = (pin + (random() + 0.01) * if down { -3e-3 } else { 3e-3 }).clamp(0.0, 0.1);
+                let y0 = y.clone();
+                for k in 0..2 {
+                    // Moves oil through the face and loses some.
+                    y[2 * k] += 0.01 * (random() - 0.5);
+                    y[2 * k + 1] -= 0.02 * random();
+                }
+                book(&mut p, &y0, &y, next);
+                pin = next;
+                if pin <= 0.0 || pin >= 0.1 {
+                    break;
+                }
+            }
+        }
+        let l = p.ledger();
+        let stored = p.total(&y) - before;
+        let closure = (l.supplied - supplied) - l.drained - l.thrown - stored;
+        // A few hundred steps of additions, each exact to rounding.
+        assert!(l.taken > 1e-7, "the faces took up {:e}", l.taken);
+        assert!(closure.abs() <= 1e-12 * l.taken, "{closure:e} of {:e}", l.taken);
+        assert!(p.liner.film.iter().all(|h| *h >= 0.0));
+    }
+
+    /// A film that an edge lays down in several steps is what another takes up in others.
+    #[test]
+    fn what_is_laid_down_is_taken_up() {
+        let mut p = pack();
+        let mut y = vec![5.0; p.states().len()];
+        p.liner.film.fill(0.0);
+        begin(&mut p);
+        // Down to 60 mm in uneven steps, the upper face losing 2 units of volume for every mm.
+        let unit = p.unit(0);
+        let mut pin: f64 = 0.1;
+        let mut lost = 0.0;
+        for d in [0.3e-3, 1.1e-3, 0.05e-3, 2.0e-3, 3.3e-3, 0.7e-3].into_iter().cycle() {
+            let next = (pin - d).max(0.06);
+            let y0 = y.clone();
+            y[1] -= 2.0 * (pin - next) / 1e-3;
+            lost += 2.0 * (pin - next) / 1e-3 * unit;
+            book(&mut p, &y0, &y, next);
+            pin = next;
+            if pin <= 0.06 {
+                break;
+            }
+        }
+        let taken = p.faces[0].taken[1];
+        let (y0, y1) = (y.clone(), y.clone());
+        book(&mut p, &y0, &y1, 0.1);
+        let back = p.faces[0].taken[1] - taken;
+        // Some forty cells added up.
+        assert!((back - lost).abs() <= 1e-12 * lost, "{back:e} of {lost:e}");
+    }
+}

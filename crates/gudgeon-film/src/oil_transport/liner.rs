@@ -1,0 +1,87 @@
+//! The film on the liner, on a fixed grid.
+//!
+//! In a cell that an edge of a face stands in, the thickness is that of the part outside the face.
+
+/// Film by height.
+#[derive(Debug, Clone)]
+pub struct Liner {
+    /// Film \[m\], from the lowest cell up.
+    pub film: Vec<f64>,
+    /// Height of the lower end of the lowest cell \[m\].
+    pub bottom: f64,
+    /// Height of a cell \[m\].
+    pub cell: f64,
+    /// Volume of the film below each cell.
+    sum: Vec<f64>,
+}
+
+/// Way beyond the outermost edges that the grid covers \[m\].
+const MARGIN: f64 = 2e-3;
+
+impl Liner {
+    /// A liner between two heights \[m\] with cells of at most `spacing`, under a film of `initial` \[m\].
+    pub fn new(low: f64, top: f64, spacing: f64, initial: f64) -> Self {
+        let cells = (((top - low + 2.0 * MARGIN) / spacing).ceil() as usize).max(8);
+        let cell = (top - low + 2.0 * MARGIN) / cells as f64;
+        Self { film: vec![initial; cells], bottom: low - MARGIN, cell, sum: vec![0.0; cells + 1] }
+    }
+
+    /// Adds the volumes up again, after the film has changed.
+    pub fn add_up(&mut self) {
+        let mut sum = 0.0;
+        for (s, h) in self.sum.iter_mut().zip(&self.film) {
+            *s = sum;
+            sum += h * self.cell;
+        }
+        if let Some(last) = self.sum.last_mut() {
+            *last = sum;
+        }
+    }
+
+    /// Volume of the film on the liner below height `z`.
+    pub fn below(&self, z: f64) -> f64 {
+        let x = ((z - self.bottom) / self.cell).clamp(0.0, self.film.len() as f64);
+        let k = (x as usize).min(self.film.len() - 1);
+        self.sum[k] + (x - k as f64) * self.cell * self.film[k]
+    }
+
+    /// Lays a film of `thickness` where an edge went from `a` to `b`; outside the face is above a top edge (`side` 1), below a
+    /// bottom edge.
+    pub fn lay(&mut self, a: f64, b: f64, thickness: f64, side: usize) {
+        let (lo, hi) = (a.min(b), a.max(b));
+        let n = self.film.len();
+        let first = (((lo - self.bottom) / self.cell).max(0.0) as usize).min(n - 1);
+        let last = (((hi - self.bottom) / self.cell).max(0.0) as usize).min(n - 1);
+        for k in first..=last {
+            let (low, high) = (self.bottom + k as f64 * self.cell, self.bottom + (k + 1) as f64 * self.cell);
+            let new = hi.min(high) - lo.max(low);
+            if new <= 0.0 {
+                continue;
+            }
+            // The part that was outside before.
+            let old =
+                if side == 1 { (high - a).clamp(0.0, self.cell) } else { (a - low).clamp(0.0, self.cell) };
+            self.film[k] = (self.film[k] * old + thickness * new) / (old + new);
+        }
+    }
+
+    /// Sets the film between `lo` and `hi` to `film` \[m\]; what that adds \[m²\].
+    pub fn cover(&mut self, lo: f64, hi: f64, film: f64) -> f64 {
+        let mut added = 0.0;
+        let n = self.film.len();
+        let last = (((hi - self.bottom) / self.cell).max(0.0) as usize).min(n - 1);
+        let first = (((lo - self.bottom) / self.cell).max(0.0) as usize).min(n - 1);
+        for k in first..=last {
+            let low = self.bottom + k as f64 * self.cell;
+            let outside = (hi - low).clamp(0.0, self.cell);
+            added += (film - self.film[k]) * outside;
+            self.film[k] = film;
+        }
+        added
+    }
+
+    /// Lower and upper end of cell `k` \[m\].
+    pub fn ends(&self, k: usize) -> (f64, f64) {
+        (self.bottom + k as f64 * self.cell, self.bottom + (k + 1) as f64 * self.cell)
+    }
+}

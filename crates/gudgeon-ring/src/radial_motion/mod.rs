@@ -1,0 +1,5 @@
+//! Motion towards the liner and off it.
+
+pub mod film_balance;
+mod search;
+mod tangent;

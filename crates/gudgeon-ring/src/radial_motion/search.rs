@@ -1,0 +1,251 @@
+//! The search of the squeeze velocity at which a ring is in balance.
+
+use gudgeon_core::EvalError;
+use gudgeon_core::kinds::{FaceForces, Limited, RadialLimits, RadialLoads, RadialResponse};
+
+/// Part of the velocity of surfaces that part within which one step of Newton ends at the root.
+const PARTING: f64 = 1e-5;
+/// Radial velocity over its limit at which a film holds nothing that it would let go of at a higher one.
+const AWAY: f64 = 1e3;
+
+/// Largest of a load `w` and zero, smoothed over `least`: equal to the load within `least²/w`.
+pub fn soft(w: f64, least: f64) -> f64 {
+    0.5 * (w + (w * w + 4.0 * least * least).sqrt())
+}
+
+/// What is left of the load for the film, and how little of it a film is asked to carry \[N/m\].
+#[derive(Debug, Clone, Copy)]
+struct Needed {
+    load: f64,
+    least: f64,
+}
+
+impl Needed {
+    fn soft(&self) -> f64 {
+        soft(self.load, self.least)
+    }
+}
+
+/// The search of one instant.
+pub struct Search<'a> {
+    pub limits: &'a RadialLimits,
+    pub ring: usize,
+    /// Velocity of the last instant \[m/s\], a small step away: a good start.
+    pub hdot: f64,
+    /// Whether what was found is a root of the balance that no limit has changed.
+    pub balanced: bool,
+}
+
+impl Search<'_> {
+    /// Squeeze velocity from the radial balance.
+    pub fn rate(&mut self, loads: &mut dyn RadialLoads) -> Result<RadialResponse, EvalError> {
+        let least = self.limits.least_load * loads.tension();
+        let needed = Needed { load: loads.load() - loads.contact() - loads.dry(), least };
+        if !loads.resists() {
+            return Ok(self.without_film(loads, needed.load));
+        }
+        let (lowest, _) = loads.lowest();
+        if loads.thickness() <= lowest
+            && let Some(film) = on_floor(loads, needed)?
+        {
+            self.hdot = 0.0;
+            return Ok(RadialResponse::new(0.0, Some(film), Limited::default()));
+        }
+        let mut limited = Limited::default();
+        let (found, film) = self.balance(loads, needed)?;
+        let parts = loads.contact() > 0.0 && found > 0.0;
+        let dragged = if parts { found } else { self.dragged(loads, found, needed, &mut limited)? };
+        let hdot = self.bounded(loads, dragged, &mut limited);
+        // Off its limits a ring moves as its film allows, and the film found with the velocity is the film of the instant.
+        self.balanced = (hdot - found).abs() <= 1e-6 * found.abs();
+        limited.lifted = needed.soft() - needed.load;
+        if parts {
+            limited.contact_drag = self.contact_drag(loads) * found;
+        }
+        self.hdot = hdot;
+        Ok(RadialResponse::new(hdot, film.filter(|_| self.balanced), limited))
+    }
+
+    /// The velocity at which film and contact carry what is needed, surfaces that part against their drag; and the film, where it came with the
+    /// velocity.
+    fn balance(
+        &mut self,
+        loads: &mut dyn RadialLoads,
+        needed: Needed,
+    ) -> Result<(f64, Option<FaceForces>), EvalError> {
+        let drag = self.contact_drag(loads);
+        if loads.faces() > 1 || loads.has_friction() {
+            return Ok((self.root(loads, needed, drag)?, None));
+        }
+        // A ring that parted from the liner an instant ago still does, most often.
+        let parting = drag > 0.0 && self.hdot > 0.0;
+        if parting {
+            let hdot = self.root(loads, needed, drag)?;
+            if hdot > 0.0 {
+                return Ok((hdot, None));
+            }
+        }
+        let (hdot, film) = match loads.carry(needed.soft()) {
+            Ok((hdot, film)) => (hdot, Some(film)),
+            Err(e) => (self.lets_go(loads, needed.soft(), e)?, None),
+        };
+        loads.flux()[0] = film.map_or(0.0, |f| f.flux);
+        if drag == 0.0 || hdot <= 0.0 || parting {
+            return Ok((hdot, film));
+        }
+        self.hdot = 0.0;
+        Ok((self.root(loads, needed, drag)?, None))
+    }
+
+    /// A velocity beyond every limit, for a film that carries more than `load` however fast it is drawn apart: on a coarse grid the pressures at the
+    /// edges reach as far in as a point. The limits of the velocity, which it nears as the load falls, then decide; any other failure stays one.
+    fn lets_go(&self, loads: &mut dyn RadialLoads, load: f64, failure: EvalError) -> Result<f64, EvalError> {
+        let away = AWAY * self.limits.radial_speed;
+        let carries =
+            failure.is_recoverable() && loads.film_load(away).is_ok_and(|(carried, _)| carried > load);
+        if carries { Ok(away) } else { Err(failure) }
+    }
+
+    /// A ring without a film: its contact carries it, and the drag in place of its inertia brings it there.
+    fn without_film(&mut self, loads: &dyn RadialLoads, needed: f64) -> RadialResponse {
+        let mut limited = Limited::default();
+        let free = if loads.carries() { -needed / self.limits.radial_drag } else { 0.0 };
+        let hdot = self.bounded(loads, free, &mut limited);
+        limited.drag = self.limits.radial_drag * hdot.abs();
+        self.hdot = hdot;
+        RadialResponse::new(hdot, Some(FaceForces::default()), limited)
+    }
+
+    /// A radial velocity within its cap and within the ends of the way.
+    fn bounded(&self, loads: &dyn RadialLoads, free: f64, limited: &mut Limited) -> f64 {
+        let h = loads.thickness();
+        let (lowest, band) = loads.lowest();
+        let part = 1.0 / (1.0 + (free / self.limits.radial_speed).powi(2)).sqrt();
+        limited.slowed = 1.0 - part;
+        if free > 0.0 {
+            let furthest = loads.furthest();
+            free * part * ((furthest - h) / (self.limits.retreat_band * furthest)).clamp(0.0, 1.0)
+        } else if lowest > 0.0 {
+            free * part * ((h - lowest) / (band * lowest)).clamp(0.0, 1.0)
+        } else {
+            free * part
+        }
+    }
+
+    /// Squeeze velocity with the drag of a ring in place of its inertia: `W(v) = needed + D v`; `free` is that without.
+    fn dragged(
+        &self,
+        loads: &mut dyn RadialLoads,
+        free: f64,
+        needed: Needed,
+        limited: &mut Limited,
+    ) -> Result<f64, EvalError> {
+        let drag = self.drag(loads, free, needed.soft().max(needed.load.abs()));
+        if drag <= 0.0 {
+            return Ok(free);
+        }
+        // The load of the film falls with v and what it has to carry rises: one zero, between standing still and `free`.
+        let (mut lo, mut hi) = if free < 0.0 { (free, 0.0) } else { (0.0, free) };
+        let mut v = free.clamp(-self.limits.radial_speed, self.limits.radial_speed);
+        for _ in 0..60 {
+            let (load, rate) = loads.film_load(v)?;
+            let w = needed.load + drag * v;
+            let all = soft(w, needed.least);
+            let (g, slope) = (load - all, rate - drag * all / (2.0 * all - w));
+            if g > 0.0 {
+                lo = v
+            } else {
+                hi = v
+            }
+            let next = v - g / slope;
+            let next = if next > lo && next < hi { next } else { 0.5 * (lo + hi) };
+            if (next - v).abs() <= 1e-10 * v.abs() {
+                break;
+            }
+            v = next;
+        }
+        limited.drag = drag * v.abs();
+        Ok(v)
+    }
+
+    /// Drag per circumference \[N s/m²\] at the velocity `free` that the film alone allows; `load` is the size of what it carries.
+    pub fn drag(&self, loads: &dyn RadialLoads, free: f64, load: f64) -> f64 {
+        let limits = self.limits;
+        let share = limits.radial_drag * free.abs() / load;
+        let ((begins, full), (near, far)) = (limits.drag_counts, limits.drag_gap);
+        let off = ((loads.thickness() / loads.contact_range() - near) / (far - near)).min(1.0);
+        if share <= begins || off <= 0.0 {
+            return 0.0;
+        }
+        let x = ((share / begins).ln() / (full / begins).ln()).min(1.0);
+        let ramp = |x: f64| x * x * (3.0 - 2.0 * x);
+        limits.radial_drag * ramp(x) * ramp(off)
+    }
+
+    /// Drag per circumference \[N s/m²\] of surfaces in contact, while they part.
+    pub fn contact_drag(&self, loads: &dyn RadialLoads) -> f64 {
+        let (contact, load) = (loads.contact(), loads.load());
+        if contact > 0.0 { self.limits.contact_drag * contact / (contact + load.abs()) } else { 0.0 }
+    }
+
+    /// Balance of several faces, with flank friction, or with the drag of surfaces that part: film load less needed load falls with `hdot`; bracket
+    /// and Newton.
+    fn root(&self, loads: &mut dyn RadialLoads, needed: Needed, drag: f64) -> Result<f64, EvalError> {
+        let (mut lo, mut hi) = (f64::NEG_INFINITY, f64::INFINITY);
+        let mut x = if self.hdot.is_finite() { self.hdot } else { 0.0 };
+        let scale = needed.soft().abs().max(1e-300);
+        let mut stride = 1e-4;
+        for _ in 0..200 {
+            let (f, d) = residual(loads, needed, drag, x)?;
+            if f.abs() <= 1e-12 * scale {
+                return Ok(x);
+            }
+            // Newton's method squares a small error: the next step from here ends within 1e-9.
+            let newton = x - f / d;
+            // A film that is drawn apart is nearly flat in its velocity, which a small part of the load says little of.
+            let parts = drag > 0.0 && x > 0.0;
+            let near = if parts { (newton - x).abs() <= PARTING * x } else { f.abs() <= 1e-5 * scale };
+            if near && newton.is_finite() && (drag == 0.0 || (newton > 0.0) == (x > 0.0)) {
+                return Ok(newton);
+            }
+            if f > 0.0 {
+                lo = x
+            } else {
+                hi = x
+            }
+            let bracketed = lo.is_finite() && hi.is_finite();
+            let inside = newton.is_finite() && newton > lo && newton < hi;
+            let next = if inside && (bracketed || (newton - x).abs() <= 1e3 * stride) {
+                newton
+            } else if bracketed {
+                0.5 * (lo + hi)
+            } else {
+                stride *= 8.0;
+                if f > 0.0 { x + stride } else { x - stride }
+            };
+            if bracketed && (hi - lo) <= 1e-14 * (hi.abs().max(lo.abs())) + 1e-18 || next == x {
+                return Ok(x);
+            }
+            x = next;
+        }
+        let what = format!("radial balance of ring {} did not converge", self.ring + 1);
+        Err(EvalError::recoverable("ring_pack", what))
+    }
+}
+
+/// On the floor: the film at rest, where it carries less than it must.
+fn on_floor(loads: &mut dyn RadialLoads, needed: Needed) -> Result<Option<FaceForces>, EvalError> {
+    let film = loads.film(0.0)?;
+    let all = soft(needed.load + loads.friction(0.0).0, needed.least);
+    Ok((film.load <= all).then_some(film))
+}
+
+/// Load of the film less what it has to carry at `x`, and its derivative.
+fn residual(loads: &mut dyn RadialLoads, needed: Needed, drag: f64, x: f64) -> Result<(f64, f64), EvalError> {
+    let (load, rate) = loads.film_load(x)?;
+    let (fa, dfa) = loads.friction(x);
+    let (w, slope) =
+        if x > 0.0 { (needed.load + fa + drag * x, dfa + drag) } else { (needed.load + fa, dfa) };
+    let all = soft(w, needed.least);
+    Ok((load - all, rate - slope * all / (2.0 * all - w)))
+}

@@ -1,0 +1,20 @@
+//! A groove flank as a stiff, nearly plastic wall.
+
+/// Both flanks of a groove.
+#[derive(Debug, Clone, Copy)]
+pub struct Flank {
+    /// Stiffness \[N/m\].
+    pub stiffness: f64,
+    /// One over the velocity that no rebound exceeds \[s/m\].
+    pub per_rebound: f64,
+}
+
+impl Flank {
+    /// Reaction \[N\] of both on a ring at height `s` \[m\] with velocity `v` \[m/s\] and a clearance \[m\], towards the head positive.
+    pub fn reaction(&self, s: f64, v: f64, clearance: f64) -> f64 {
+        let push = |depth: f64, rate: f64| {
+            self.stiffness * depth.max(0.0) * (1.0 + self.per_rebound * rate).max(0.0)
+        };
+        push(-s, -v) - push(s - clearance, v)
+    }
+}

@@ -1,0 +1,285 @@
+//! Forces on the rings at an instant.
+
+use std::f64::consts::PI;
+
+use gudgeon_core::EvalError;
+use gudgeon_core::kinds::{FaceForces, OilFaceIn, RadialLoads, RadialMotion, RingForces};
+
+use super::case::{AxialGas, Drag, FilmForce, Hoop, RadialGas, TwinLandFriction};
+use super::loads::{Loads, face_in, furthest};
+use super::pack::Pack;
+
+/// Standard acceleration used by both sources \[m/s²\].
+const GRAVITY: f64 = 9.8;
+
+impl Pack {
+    /// Circumference that turns forces per length into forces \[m\].
+    pub(super) fn perimeter(&self, i: usize) -> f64 {
+        match self.conv.radial_gas {
+            RadialGas::BorePerimeter => 2.0 * PI * self.geo.bore_radius,
+            _ => 2.0 * PI * self.at.places[i].r_outer,
+        }
+    }
+
+    /// Load of tension alone, per circumference \[N/m\] of one rail.
+    pub fn tension(&self, i: usize) -> f64 {
+        let g = &self.geo.rings[i];
+        let f = g.tangential_force / g.rails as f64;
+        match self.conv.hoop {
+            Hoop::Correct => 2.0 * PI * f / self.perimeter(i),
+            Hoop::AsPrinted => 2.0 * f / self.perimeter(i),
+        }
+    }
+
+    /// Radial load that the face must carry above `p_cav`, per circumference \[N/m\] of one rail, without flank friction.
+    pub fn radial_load(&self, i: usize) -> f64 {
+        self.tension(i) + self.gas_load(i)
+    }
+
+    /// The part of it that gas presses on.
+    fn gas_load(&self, i: usize) -> f64 {
+        let (g, r, place) = (&self.geo.rings[i], &self.at.rings[i], &self.at.places[i]);
+        let back = g.height * (r.p_back - r.p_cav);
+        let inner = place.r_inner / place.r_outer;
+        match self.conv.radial_gas {
+            RadialGas::BorePerimeter => back,
+            RadialGas::BackOnly => back * inner,
+            RadialGas::BackAndFace => back * inner - self.gas_beside_face(i),
+            RadialGas::BackFaceAndGap => back * inner + self.gas_in_gap(i) - self.gas_beside_face(i),
+        }
+    }
+
+    /// Load of the lands above `p_cav` on the parts of the face outside the running face, per circumference \[N/m\].
+    fn gas_beside_face(&self, i: usize) -> f64 {
+        let (g, r) = (&self.geo.rings[i], &self.at.rings[i]);
+        let rest = g.height - g.lands as f64 * g.face.length();
+        if g.lands == 2 {
+            rest * (r.p_below - r.p_cav)
+        } else {
+            0.5 * rest * (r.p_above + r.p_below - 2.0 * r.p_cav)
+        }
+    }
+
+    /// Radial load of the gas on the end faces of the gap above `p_cav`, per circumference \[N/m\]: their force over the outer radius.
+    fn gas_in_gap(&self, i: usize) -> f64 {
+        let (g, r, place) = (&self.geo.rings[i], &self.at.rings[i], &self.at.places[i]);
+        let land = 0.5 * (g.piston_radius_above + g.piston_radius_below);
+        let land = land.clamp(place.r_inner, place.r_outer);
+        let between = 0.5 * (r.p_above + r.p_below) - r.p_cav;
+        let force = (r.p_back - r.p_cav) * (land - place.r_inner) + between * (place.r_outer - land);
+        g.height * force / place.r_outer
+    }
+
+    /// What presses ring `i` against the liner and what carries it, and its radial motion, which asks for that.
+    pub(super) fn loads(&mut self, i: usize) -> (Loads<'_>, &mut dyn RadialMotion) {
+        let tension = self.tension(i);
+        let load = tension + self.gas_load(i);
+        let perimeter = self.perimeter(i) * self.geo.rings[i].rails as f64;
+        let place = &self.at.places[i];
+        let ring = &mut self.rings[i];
+        let loads = Loads {
+            geo: &self.geo.rings[i],
+            place,
+            at: &self.at.rings[i],
+            u: -self.at.piston.v,
+            load,
+            tension,
+            contact: ring.contact.load(place.h),
+            line: &ring.contact,
+            least_film: self.limits.least_film,
+            resists: ring.resists,
+            perimeter,
+            shares: shares(ring.films.len(), self.conv.twin_land_friction),
+            films: &mut ring.films,
+            friction: &*ring.friction,
+            flux: self.at.rings[i].flux,
+            count: &mut self.counters.film,
+        };
+        (loads, &mut *ring.radial)
+    }
+
+    /// Film of ring `i` at squeeze velocity `hdot`, summed over the lands.
+    ///
+    /// # Errors
+    /// What the film refuses.
+    pub fn film(&mut self, i: usize, hdot: f64) -> Result<FaceForces, EvalError> {
+        let (mut loads, _) = self.loads(i);
+        let (film, flux) = (loads.film(hdot), loads.flux);
+        self.at.rings[i].flux = flux;
+        film
+    }
+
+    /// Sets the highest film pressure of ring `i`, which only records need.
+    ///
+    /// # Errors
+    /// What the film refuses.
+    pub fn film_peak(&mut self, i: usize) -> Result<(), EvalError> {
+        let mut high = 0.0_f64;
+        for land in 0..self.rings[i].films.len() {
+            let inp =
+                face_in(&self.geo.rings[i], &self.at.places[i], &self.at.rings[i], -self.at.piston.v, land);
+            self.counters.film += 1;
+            high = high.max(self.rings[i].films[land].evaluate(&inp, self.at.rings[i].hdot)?.p_max);
+        }
+        self.at.rings[i].film_p_max = high;
+        Ok(())
+    }
+
+    /// Lets the films of ring `i` reach as far as its oil does.
+    pub(super) fn wet(&mut self, i: usize) -> Result<(), EvalError> {
+        let Some(oil) = &mut self.oil_pack else { return Ok(()) };
+        let (r, h) = (&mut self.at.rings[i], self.at.places[i].h);
+        r.dry = (0.0, 0.0);
+        for k in 0..oil.faces().len() {
+            let (ring, land) = oil.faces()[k];
+            if ring != i {
+                continue;
+            }
+            let e = oil.extent(k, h);
+            if !self.rings[i].films[land].set_extent(e.from, e.to) {
+                let what = "this film cannot be confined to a part of its face";
+                return Err(EvalError::fatal("ring_pack", what));
+            }
+            let upper = self.geo.rings[i].lands == 2 && land == 1;
+            let (bottom, top) = (r.p_below - r.p_cav, if upper { r.p_below } else { r.p_above } - r.p_cav);
+            let (d, length) = (e.drops, self.geo.rings[i].face.length());
+            r.dry.0 += bottom * e.from + top * (length - e.to);
+            r.dry.1 -= bottom * (d[1] - d[0]) + top * (d[3] - d[2]);
+        }
+        Ok(())
+    }
+
+    /// Film thickness at which ring `i` is flush with its land or touches the groove root \[m\]: it cannot retreat further.
+    #[must_use]
+    pub fn furthest(&self, i: usize) -> f64 {
+        furthest(&self.geo.rings[i], &self.at.places[i])
+    }
+
+    /// Film thickness that ring `i` does not go below \[m\].
+    #[must_use]
+    pub fn lowest(&self, i: usize) -> f64 {
+        self.rings[i].contact.lowest(self.limits.least_film)
+    }
+
+    /// Radial motion of ring `i` for its states `y`: sets `load`, `contact`, `hdot` and the rates of the states.
+    pub(super) fn radial_rates(&mut self, i: usize, y: &[f64]) -> Result<(), EvalError> {
+        self.wet(i)?;
+        let own = self.layout.radial[i].clone();
+        let mut dy = std::mem::take(&mut self.dy);
+        let (mut loads, radial) = self.loads(i);
+        let outcome = radial.rates(&y[own.clone()], &mut loads, &mut dy[own]);
+        let (load, contact, flux) = (loads.load, loads.contact, loads.flux);
+        self.dy = dy;
+        let r = &mut self.at.rings[i];
+        r.flux = flux;
+        let found = outcome?;
+        (r.load, r.contact, r.limited) = (load, contact, found.limited);
+        (r.hdot, r.film_known) = (found.hdot, found.film.is_some());
+        r.film = found.film.unwrap_or(r.film);
+        Ok(())
+    }
+
+    /// Friction and film force of ring `i` at its `hdot`. Needs its radial motion or a given `hdot` and `load`.
+    pub(super) fn friction(&mut self, i: usize) -> Result<(), EvalError> {
+        let o = if self.at.rings[i].film_known {
+            self.at.rings[i].film
+        } else {
+            self.film(i, self.at.rings[i].hdot)?
+        };
+        let u = -self.at.piston.v;
+        let perimeter = self.perimeter(i) * self.geo.rings[i].rails as f64;
+        let lowest = self.lowest(i);
+        let line = &self.rings[i].contact;
+        let r = &mut self.at.rings[i];
+        r.film = o;
+        // On a floor the surfaces carry what the film does not; under the least film nothing real does.
+        let mut viscous = 1.0;
+        if lowest > 0.0 {
+            let above = self.at.places[i].h - lowest;
+            let weight = if self.hard_floor {
+                f64::from(u8::from(above <= 1e-6 * lowest))
+            } else {
+                1.0 - (above / (line.band() * lowest)).clamp(0.0, 1.0)
+            };
+            if line.floor_replaces_film {
+                viscous = 1.0 - weight;
+                r.contact = weight * r.load.max(0.0);
+                r.limited.floor = r.contact;
+            } else {
+                r.limited.floor = weight * (r.load - r.dry.0 - r.contact - o.load).max(0.0);
+                if line.floor.is_some() {
+                    r.contact += r.limited.floor;
+                }
+            }
+        }
+        let rubbing = line.friction * r.contact * (u / self.limits.friction_speed).tanh();
+        let shear = match self.conv.drag {
+            Drag::Liner => o.liner_shear,
+            Drag::FaceShear => o.ring_shear,
+        };
+        r.friction = perimeter * (viscous * shear + rubbing);
+        r.power = match self.conv.drag {
+            Drag::Liner => r.friction * u,
+            Drag::FaceShear => (r.friction * u).abs(),
+        };
+        let force = match self.conv.film_force {
+            FilmForce::Total => o.ring_shear + o.slope_force + r.dry.1,
+            FilmForce::LinerReaction => o.liner_shear,
+            FilmForce::FaceShear => o.ring_shear,
+        };
+        r.axial.film = perimeter * (viscous * force + rubbing);
+        Ok(())
+    }
+
+    /// Rates of the oil under ring `i` for the film of the instant.
+    pub(super) fn oil_rates(&mut self, i: usize) {
+        let Some(oil) = &mut self.oil_pack else { return };
+        let (r, h, u) = (&self.at.rings[i], self.at.places[i].h, -self.at.piston.v);
+        let dy = &mut self.dy[self.layout.oil.clone()];
+        for k in 0..oil.faces().len() {
+            let (ring, land) = oil.faces()[k];
+            if ring == i {
+                oil.rates(k, &OilFaceIn { h, hdot: r.hdot, u, flux: r.flux[land] }, dy);
+            }
+        }
+    }
+
+    /// Axial forces on ring `i`, film excepted, and what its motion adds to them; the rates of its states.
+    pub(super) fn axial_forces(&mut self, i: usize, y: &[f64]) -> Result<(), EvalError> {
+        self.external_forces(i);
+        let own = self.layout.motion[i].clone();
+        if own.is_empty() {
+            return Ok(());
+        }
+        let forces = RingForces::new(self.at.places[i], self.at.rings[i].axial);
+        let response = self.rings[i].motion.rates(&y[own.clone()], &forces, &mut self.dy[own])?;
+        self.at.places[i].v = response.v;
+        let r = &mut self.at.rings[i];
+        (r.axial.damping, r.reaction) = (response.damping, response.reaction);
+        Ok(())
+    }
+
+    /// Gas, inertia and weight on ring `i`; its film counts where its motion counts it.
+    pub(super) fn external_forces(&mut self, i: usize) {
+        let (g, place, ring) = (&self.geo.rings[i], self.at.places[i], &self.rings[i]);
+        let r = &mut self.at.rings[i];
+        r.axial.gas = match self.conv.axial_gas {
+            AxialGas::FullPerimeter => 2.0 * PI * self.geo.bore_radius * g.width * (r.p_below - r.p_above),
+            AxialGas::LinearProfile => 0.5 * place.flank_area() * (r.p_below - r.p_above),
+            AxialGas::LaminarProfile => {
+                let mean = |a: f64, b: f64| 2.0 / 3.0 * (a * a + a * b + b * b) / (a + b);
+                place.flank_area() * (mean(r.p_back, r.p_below) - mean(r.p_back, r.p_above))
+            }
+        };
+        r.axial.inertia = -g.mass * self.at.piston.a;
+        r.axial.gravity = if ring.motion.uses_gravity() { -GRAVITY * g.mass } else { 0.0 };
+        if !ring.motion.uses_film_force() {
+            r.axial.film = 0.0;
+        }
+    }
+}
+
+/// Parts of the friction of each of `lands` running faces that are counted.
+fn shares(lands: usize, twin_land: TwinLandFriction) -> [f64; 2] {
+    if lands == 2 && twin_land == TwinLandFriction::LowerTwice { [0.0, 2.0] } else { [1.0; 2] }
+}

@@ -1,0 +1,86 @@
+//! Where the states of the models stand in the state vector.
+
+use std::ops::Range;
+
+use gudgeon_core::kinds::{FilmTemperature, GasFlow, OilTransport};
+use gudgeon_core::states::{Signals, StateInfo};
+
+use super::ring::Ring;
+
+/// Where things are in the state vector: gas masses, each over its mass at 1 bar; the radial motion of every ring; the motion of every ring in its
+/// groove; the oil; the film temperatures.
+#[derive(Debug, Clone, Default)]
+pub struct Layout {
+    /// Gas masses.
+    pub gas: Range<usize>,
+    /// Radial motion per ring.
+    pub radial: Vec<Range<usize>>,
+    /// Motion in the groove per ring.
+    pub motion: Vec<Range<usize>>,
+    /// Oil.
+    pub oil: Range<usize>,
+    /// Film temperatures.
+    pub temperature: Range<usize>,
+    /// Number of states.
+    pub n: usize,
+    /// Values that are carried from step to step behind the states.
+    pub carried: usize,
+    /// What the models say of the states.
+    pub states: Vec<StateInfo>,
+    /// What the film of each ring depends on, and what moves with it: radial motion, oil, temperature.
+    pub film_reads: Vec<Signals>,
+    /// What the motion of each ring in its groove depends on.
+    pub motion_reads: Vec<Signals>,
+}
+
+/// Part of its mass at 1 bar that counts as one in the error of a gas volume.
+const GAS_SCALE: f64 = 0.1;
+/// Least mass with which a cycle starts, over that at 1 bar: an extrapolated state may have lost its gas.
+const LEAST_GAS: f64 = 0.01;
+
+impl Layout {
+    /// Lays out the states of all models; radial motion and oil only where films are solved.
+    #[must_use]
+    pub fn new(
+        gas: &dyn GasFlow,
+        rings: &[Ring],
+        films: bool,
+        oil: Option<&dyn OilTransport>,
+        temperature: &dyn FilmTemperature,
+    ) -> Self {
+        let mut layout = Self { carried: oil.map_or(0, OilTransport::carried), ..Self::default() };
+        let mass = |name: String| {
+            StateInfo::new(format!("mass of {name}"))
+                .relative(GAS_SCALE)
+                .over_cycle(1.0, true)
+                .at_least(LEAST_GAS)
+        };
+        layout.gas = layout.add(gas.state_names().into_iter().map(mass));
+        for r in rings {
+            let own = if films && !r.films.is_empty() { r.radial.states() } else { &[] };
+            let range = layout.add(own.iter().cloned());
+            layout.radial.push(range);
+        }
+        for r in rings {
+            let range = layout.add(r.motion.states().iter().cloned());
+            layout.motion.push(range);
+        }
+        layout.oil = layout.add(oil.into_iter().flat_map(|o| o.states().iter().cloned()));
+        let own = if films { temperature.states() } else { &[] };
+        layout.temperature = layout.add(own.iter().cloned());
+        let mut also = oil.map_or(Signals::NONE, |o| o.reads());
+        if !layout.temperature.is_empty() {
+            also |= temperature.reads();
+        }
+        layout.film_reads = rings.iter().map(|r| r.radial.reads() | also).collect();
+        layout.motion_reads = rings.iter().map(|r| r.motion.reads()).collect();
+        layout
+    }
+
+    fn add(&mut self, states: impl Iterator<Item = StateInfo>) -> Range<usize> {
+        let first = self.states.len();
+        self.states.extend(states);
+        self.n = self.states.len();
+        first..self.n
+    }
+}

@@ -1,0 +1,153 @@
+//! What presses a ring against the liner and what carries it, as its radial motion asks for it.
+
+use gudgeon_core::EvalError;
+use gudgeon_core::geometry::{RingGeometry, RingPlace};
+use gudgeon_core::kinds::{FaceForces, FaceIn, FlankFriction, Hydrodynamics, RadialLoads};
+
+use super::contact_line::ContactLine;
+use super::instant::RingInstant;
+
+/// One ring at an instant, with the models that answer for it.
+pub struct Loads<'a> {
+    /// Geometry.
+    pub geo: &'a RingGeometry,
+    /// Where it is.
+    pub place: &'a RingPlace,
+    /// Pressures and viscosity.
+    pub at: &'a RingInstant,
+    /// Velocity of the liner seen from the ring, towards the top edge positive \[m/s\].
+    pub u: f64,
+    /// Load of tension and gas \[N/m\].
+    pub load: f64,
+    /// Load of tension alone \[N/m\].
+    pub tension: f64,
+    /// Load of the solid contact \[N/m\].
+    pub contact: f64,
+    /// Solid contact of the whole face.
+    pub line: &'a ContactLine,
+    /// Film thickness that surfaces which take no load do not go below \[m\].
+    pub least_film: f64,
+    /// Whether the films resist being squeezed.
+    pub resists: bool,
+    /// Circumference of all rails, which turns forces per length into forces \[m\].
+    pub perimeter: f64,
+    /// Parts of the friction of each land that are counted.
+    pub shares: [f64; 2],
+    /// Films of the lands.
+    pub films: &'a mut [Box<dyn Hydrodynamics>],
+    /// Friction on the flanks.
+    pub friction: &'a dyn FlankFriction,
+    /// Flux at the lower end of each film \[m²/s\].
+    pub flux: [f64; 2],
+    /// Counter of film evaluations.
+    pub count: &'a mut u64,
+}
+
+/// Conditions of a running face: `lands` of a ring at a place between pressures.
+#[inline]
+pub fn face_in(geo: &RingGeometry, place: &RingPlace, r: &RingInstant, u: f64, land: usize) -> FaceIn {
+    // The space between the lands of a twin-land ring is drained to below the ring.
+    let p_top = if geo.lands == 2 && land == 1 { r.p_below } else { r.p_above };
+    FaceIn { h: place.h, u, p_bottom: r.p_below, p_top, p_cav: r.p_cav, mu: r.mu }
+}
+
+/// Axial load that presses the flanks together, as the radial friction laws take it \[N\].
+pub fn flank_load(place: &RingPlace, r: &RingInstant) -> f64 {
+    0.5 * place.flank_area() * (r.p_below - r.p_above).abs()
+}
+
+impl Loads<'_> {
+    fn face(&self, land: usize) -> FaceIn {
+        face_in(self.geo, self.place, self.at, self.u, land)
+    }
+}
+
+impl RadialLoads for Loads<'_> {
+    fn thickness(&self) -> f64 {
+        self.place.h
+    }
+    fn load(&self) -> f64 {
+        self.load
+    }
+    fn tension(&self) -> f64 {
+        self.tension
+    }
+    fn contact(&self) -> f64 {
+        self.contact
+    }
+    fn contact_range(&self) -> f64 {
+        self.line.range
+    }
+    fn dry(&self) -> f64 {
+        self.at.dry.0
+    }
+    fn lowest(&self) -> (f64, f64) {
+        (self.line.lowest(self.least_film), self.line.band())
+    }
+    fn furthest(&self) -> f64 {
+        furthest(self.geo, self.place)
+    }
+    fn resists(&self) -> bool {
+        self.resists
+    }
+    fn carries(&self) -> bool {
+        self.resists || self.line.carries()
+    }
+    fn has_friction(&self) -> bool {
+        !self.friction.is_off()
+    }
+    fn friction(&self, hdot: f64) -> (f64, f64) {
+        if self.friction.is_off() {
+            return (0.0, 0.0);
+        }
+        let axial = flank_load(self.place, self.at);
+        let f = self.friction;
+        (f.force(hdot, axial) / self.perimeter, f.slope(hdot, axial) / self.perimeter)
+    }
+    fn faces(&self) -> usize {
+        self.films.len()
+    }
+
+    fn film(&mut self, hdot: f64) -> Result<FaceForces, EvalError> {
+        let mut sum = FaceForces::default();
+        for land in 0..self.films.len() {
+            *self.count += 1;
+            let inp = self.face(land);
+            let o = self.films[land].forces(&inp, hdot)?;
+            let share = self.shares[land];
+            self.flux[land] = o.flux;
+            sum.load += o.load;
+            sum.load_rate += o.load_rate;
+            sum.ring_shear += share * o.ring_shear;
+            sum.liner_shear += share * o.liner_shear;
+            sum.slope_force += share * o.slope_force;
+        }
+        Ok(sum)
+    }
+
+    fn film_load(&mut self, hdot: f64) -> Result<(f64, f64), EvalError> {
+        let mut sum = (0.0, 0.0);
+        for land in 0..self.films.len() {
+            *self.count += 1;
+            let inp = self.face(land);
+            let (load, rate) = self.films[land].load(&inp, hdot)?;
+            sum = (sum.0 + load, sum.1 + rate);
+        }
+        Ok(sum)
+    }
+
+    fn carry(&mut self, load: f64) -> Result<(f64, FaceForces), EvalError> {
+        *self.count += 1;
+        let inp = self.face(0);
+        self.films[0].carry(&inp, load)
+    }
+
+    fn flux(&mut self) -> &mut [f64; 2] {
+        &mut self.flux
+    }
+}
+
+/// Film thickness at which a ring is flush with its land or touches the groove root \[m\]: it cannot retreat further.
+pub fn furthest(geo: &RingGeometry, place: &RingPlace) -> f64 {
+    geo.h_max(place.liner_radius).min(place.liner_radius - geo.piston_radius_above)
+}

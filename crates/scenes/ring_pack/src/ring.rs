@@ -1,0 +1,47 @@
+//! One ring with its models.
+
+use gudgeon_core::kinds::{FlankFriction, Hydrodynamics, RadialMotion, RingMotion};
+
+use super::contact_line::ContactLine;
+
+/// One ring with its models.
+pub struct Ring {
+    /// One film per running land, upper land first. Empty when no film is needed.
+    pub films: Vec<Box<dyn Hydrodynamics>>,
+    /// Whether the films resist being squeezed; without them the ring rides on its contact alone.
+    pub resists: bool,
+    /// Solid contact of the whole face as a function of film thickness.
+    pub contact: ContactLine,
+    /// Motion in the groove, the oil in the groove included.
+    pub motion: Box<dyn RingMotion>,
+    /// Motion towards the liner; asked only while films are solved.
+    pub radial: Box<dyn RadialMotion>,
+    /// Radial friction.
+    pub friction: Box<dyn FlankFriction>,
+    /// Distance below ring 1 \[m\].
+    pub spacing: f64,
+    /// Viscosity when it does not change over the cycle \[Pa s\].
+    pub mu: Option<f64>,
+    /// Film thickness used when there is no film \[m\].
+    pub nominal_film: f64,
+}
+
+impl Ring {
+    /// Whether anything could carry the ring against the liner: a film, or contact.
+    #[must_use]
+    pub fn carries(&self) -> bool {
+        self.resists || self.contact.carries()
+    }
+
+    /// Whether the place of the ring in its groove is integrated.
+    #[must_use]
+    pub fn is_integrated(&self) -> bool {
+        !self.motion.states().is_empty()
+    }
+
+    /// Whether the place of the ring in its groove is decided in steps.
+    #[must_use]
+    pub fn is_decided(&self) -> bool {
+        self.motion.decision_interval().is_some()
+    }
+}

@@ -1,0 +1,74 @@
+//! The models in use and what is left out, for `explain` and the results.
+
+use gudgeon_core::result::{ModelUse, Skipped};
+
+use super::case::{RingDesign, RingModels, RingPackCase};
+use super::plan::Plan;
+
+/// The models that run and the parts that do not, for `explain` and the results.
+#[must_use]
+pub fn models_in_use(case: &RingPackCase, plan: &Plan) -> (Vec<ModelUse>, Vec<Skipped>) {
+    let registry = gudgeon_core::Registry::collect();
+    let m = &case.models;
+    let own = |f: fn(&RingModels) -> Option<&'static str>| -> Vec<&'static str> {
+        case.rings.iter().filter_map(|r| f(&r.models)).collect()
+    };
+    let mut used: Vec<(&str, &str)> = vec![
+        ("kinematics", m.kinematics.typetag_name()),
+        ("cylinder_pressure", m.cylinder_pressure.typetag_name()),
+        ("gas_flow", m.gas_flow.typetag_name()),
+    ];
+    let mut pack_and_own = |kind: &'static str, name: &'static str, own: Vec<&'static str>| {
+        if own.len() < case.rings.len() {
+            used.push((kind, name));
+        }
+        for o in own {
+            if !used.contains(&(kind, o)) {
+                used.push((kind, o));
+            }
+        }
+    };
+    let mut skipped = plan.skipped.clone();
+    if plan.axial {
+        pack_and_own(
+            "ring_motion",
+            m.ring_motion.typetag_name(),
+            own(|r| r.ring_motion.as_ref().map(|s| s.typetag_name())),
+        );
+        if !plan.skipped.iter().any(|s| s.what == "flank_damping") {
+            pack_and_own("flank_damping", m.flank_damping.typetag_name(), Vec::new());
+        }
+    }
+    if plan.film {
+        pack_and_own(
+            "hydrodynamics",
+            m.hydrodynamics.typetag_name(),
+            own(|r| r.hydrodynamics.as_ref().map(|s| s.typetag_name())),
+        );
+        pack_and_own(
+            "contact",
+            m.contact.typetag_name(),
+            own(|r| r.contact.as_ref().map(|s| s.typetag_name())),
+        );
+        pack_and_own("oil", m.oil.typetag_name(), Vec::new());
+        pack_and_own("oil_transport", m.oil_transport.typetag_name(), Vec::new());
+        pack_and_own("film_temperature", m.film_temperature.typetag_name(), Vec::new());
+        pack_and_own("flank_friction", m.flank_friction.typetag_name(), Vec::new());
+    }
+    for (i, r) in case.rings.iter().enumerate() {
+        match r.design {
+            RingDesign::ThreePiece => skipped.push(Skipped {
+                what: format!("axial motion of ring {}", i + 1),
+                why: "a three-piece oil ring has no axial clearance: its groove is treated as sealed, gas passes its gaps alone, and blow-by is less than past a ring that leaks at its flanks".into(),
+            }),
+            RingDesign::TwinLand => skipped.push(Skipped {
+                what: format!("gas volume behind ring {}", i + 1),
+                why: "the groove of an oil ring drains to below the ring".into(),
+            }),
+            RingDesign::Compression => {}
+        }
+    }
+    let models =
+        used.into_iter().map(|(kind, model)| gudgeon_scene::model_use(&registry, kind, model)).collect();
+    (models, skipped)
+}
