@@ -9,7 +9,7 @@ const LANDS: [f64; 4] = [573.15, 573.15, 523.15, 373.15];
 
 fn build(text: &str) -> Result<Box<dyn FilmTemperature>, BuildError> {
     let spec: Box<dyn FilmTemperatureSpec> = toml::from_str(text).expect("a valid specification");
-    spec.build(&FilmTemperatureCtx { land_temperatures: &LANDS, stroke: 0.14 })
+    spec.build(&FilmTemperatureCtx::new(&LANDS, 0.14))
 }
 
 fn close(a: f64, b: f64) {
@@ -22,8 +22,8 @@ fn liner_linear() {
     let t = build("model = \"liner_linear\"\ntdc = \"180 degC\"\nbdc = \"110 degC\"\n").expect("valid");
     assert!(!t.is_constant());
     for (travel, celsius) in [(0.0, 180.0), (0.035, 162.5), (0.14, 110.0), (0.16, 100.0)] {
-        close(t.temperature(0, travel), celsius + 273.15);
-        assert_eq!(t.temperature(2, travel), t.temperature(0, travel));
+        close(t.temperature(0, travel, &[]), celsius + 273.15);
+        assert_eq!(t.temperature(2, travel, &[]), t.temperature(0, travel, &[]));
     }
     assert!(
         build("model = \"liner_linear\"\ntdc = \"150 degC\"\nbdc = \"150 degC\"\n")
@@ -32,7 +32,7 @@ fn liner_linear() {
     let spec: Box<dyn FilmTemperatureSpec> =
         toml::from_str("model = \"liner_linear\"\ntdc = 450\nbdc = 380\n").expect("valid");
     for stroke in [0.0, -1.0, f64::NAN] {
-        assert!(spec.build(&FilmTemperatureCtx { land_temperatures: &LANDS, stroke }).is_err());
+        assert!(spec.build(&FilmTemperatureCtx::new(&LANDS, stroke)).is_err());
     }
 }
 
@@ -43,12 +43,12 @@ fn land_wall_mean() {
         .expect("valid");
     assert!(t.is_constant());
     for (ring, celsius) in [150.0, 130.0, 110.0].into_iter().enumerate() {
-        close(t.temperature(ring, 0.1), celsius + 273.15);
+        close(t.temperature(ring, 0.1, &[]), celsius + 273.15);
     }
     // Without a list, the gas temperatures of the lands above the rings.
     let t = build("model = \"land_wall_mean\"\nwall = \"120 degC\"\n").expect("valid");
     for (ring, land) in LANDS[..3].iter().enumerate() {
-        close(t.temperature(ring, 0.0), 0.5 * (land + 393.15));
+        close(t.temperature(ring, 0.0, &[]), 0.5 * (land + 393.15));
     }
     let e = build("model = \"land_wall_mean\"\nlands = [400, 380]\n").expect_err("two for three rings");
     assert_eq!((e.field.as_str(), e.message.as_str()), ("lands", "2 temperatures for 3 rings"));
@@ -58,13 +58,13 @@ fn land_wall_mean() {
 fn given() {
     let t = build("model = \"given\"\ntemperatures = [\"150 degC\", \"130 degC\", 400]\n").expect("valid");
     assert!(t.is_constant());
-    close(t.temperature(1, 0.1), 403.15);
-    assert_eq!(t.temperature(2, 0.0), 400.0);
+    close(t.temperature(1, 0.1, &[]), 403.15);
+    assert_eq!(t.temperature(2, 0.0, &[]), 400.0);
     for list in ["[]", "[400]", "[400, 400, 400, 400]"] {
         let e = build(&format!("model = \"given\"\ntemperatures = {list}\n")).expect_err("wrong length");
         assert_eq!(e.field, "temperatures");
     }
     let none = toml::from_str::<Box<dyn FilmTemperatureSpec>>("model = \"given\"\ntemperatures = []\n")
         .expect("valid");
-    assert!(none.build(&FilmTemperatureCtx { land_temperatures: &[], stroke: 0.1 }).is_err());
+    assert!(none.build(&FilmTemperatureCtx::new(&[], 0.1)).is_err());
 }
