@@ -128,7 +128,7 @@ impl OdeSystem for GasNet {
 
     fn jacobian(&mut self, t: f64, y: &[f64], _: &[f64], jac: &mut [f64]) -> Result<bool, EvalError> {
         self.set(t, y)?;
-        self.net.update_slopes();
+        self.net.update_partials();
         let (rates, quadratures) = jac.split_at_mut(N * N);
         self.net.jacobian(rates);
         quadratures.fill(0.0);
@@ -137,7 +137,7 @@ impl OdeSystem for GasNet {
         }
         // Time enters by the pressure in the chamber alone.
         let rate = chamber(t * OMEGA).1 * OMEGA;
-        let into = [0, 1].map(|link| self.net.slope(link)[0] * rate);
+        let into = [0, 1].map(|link| self.net.partials(link)[0] * rate);
         self.at = t;
         self.by_time = [into[0], into[1], 0.0, 0.0, 0.0, 0.0, into[0] + into[1]];
         Ok(true)

@@ -2,17 +2,17 @@
 
 use std::f64::consts::PI;
 
-use gudgeon_core::geometry::{BackVolume, PackGeometry, RingGeometry};
+use gudgeon_core::geometry::{BackVolume, RingGeometry};
 use gudgeon_core::kinds::{GasFlow, GasFlowCtx, GasFlowSpec};
 use gudgeon_core::quantity::{PosTime, quantity};
 use gudgeon_core::{BuildError, register_model};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::network::Passage;
 use crate::orifice::Orifice;
-use crate::orifice_network::DEFAULT_CHAMFER_FADE;
-use crate::pack::{Openings, Pack, Passages, RingPassages};
+use crate::pack_network::{PackOptions, with_orifice_law};
+use crate::passage::Passage;
+use crate::ring_passages::{Openings, PassageModel, RingPassages};
 
 /// Whether the space behind a seated ring is a volume of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
@@ -75,22 +75,6 @@ impl Default for GapOrifice {
     }
 }
 
-impl GapOrifice {
-    fn pack(&self, pack: &PackGeometry) -> Result<Pack<Areas>, BuildError> {
-        let merge = (self.back_volumes == BackVolumes::Merged).then(|| self.merge_time.si());
-        let areas = Areas {
-            circumference: 2.0 * PI * pack.bore_radius,
-            leak_per_volume: pack
-                .rings
-                .iter()
-                .map(|r| merge.map_or(0.0, |tau| 1.0 / (pack.gas_constant * r.back_temperature * tau)))
-                .collect(),
-            merge_time: merge,
-        };
-        Pack::new(areas, pack, &self.orifice, Some(0.0), DEFAULT_CHAMFER_FADE, None)
-    }
-}
-
 #[register_model(
     name = "gap_orifice",
     summary = "end gaps as orifices; flanks leak only while the ring is off its seat",
@@ -103,7 +87,17 @@ impl GapOrifice {
 )]
 impl GasFlowSpec for GapOrifice {
     fn build(&self, ctx: &GasFlowCtx<'_>) -> Result<Box<dyn GasFlow>, BuildError> {
-        Ok(Box::new(self.pack(ctx.pack)?))
+        let pack = ctx.pack;
+        let merge = (self.back_volumes == BackVolumes::Merged).then(|| self.merge_time.si());
+        let leak = |t: f64| merge.map_or(0.0, |tau| 1.0 / (pack.gas_constant * t * tau));
+        let areas = Areas {
+            circumference: 2.0 * PI * pack.bore_radius,
+            leak_per_volume: pack.rings.iter().map(|r| leak(r.back_temperature)).collect(),
+            merge_time: merge,
+        };
+        // Face and seated flanks leak nothing: without a film.
+        let options = PackOptions { nominal_film: Some(0.0), ..PackOptions::default() };
+        Ok(Box::new(with_orifice_law("gap_orifice", areas, &self.orifice, pack, options)?))
     }
 }
 
@@ -115,15 +109,12 @@ struct Areas {
     merge_time: Option<f64>,
 }
 
-impl Passages for Areas {
-    const NAME: &'static str = "gap_orifice";
-    const FACE: bool = false;
-
-    fn tie_time(&self) -> Option<f64> {
+impl PassageModel<Passage> for Areas {
+    fn merge_time(&self) -> Option<f64> {
         self.merge_time
     }
 
-    fn passages(&self, i: usize, ring: &RingGeometry, o: &Openings) -> RingPassages {
+    fn ring_passages(&self, i: usize, ring: &RingGeometry, o: &Openings) -> RingPassages<Passage> {
         let gap = Passage::Orifice { area: o.gap };
         if ring.back == BackVolume::Sealed {
             return RingPassages { gap, ..RingPassages::default() };

@@ -1,7 +1,20 @@
-//! Inter-ring gas flow.
+//! Gas flow between, behind and past piston rings.
 //!
-//! All models share one kernel, the [`Network`] of gas volumes joined by [`Passage`]s, and one law for sharp openings, the
-//! [`OrificeLaw`]. They differ in what they take for the passages around a ring:
+//! Gas spaces hold gas at the temperature of their walls, so the mass of each is its only state; passages between them let gas
+//! through by a law of pressures. The crate has one interface for each half of that, and everything built in is an instance of it.
+//!
+//! | to do | use |
+//! |---|---|
+//! | compute the flow through one opening | [`Orifice::build`], then [`OrificeLaw::flow`]; an example is at [`OrificeLaw`] |
+//! | compute the flow through a narrow channel | a [`Passage`] with [`OrificeLaw::mass_flow`](PassageLaw::mass_flow), [`channel_conductance`] |
+//! | fill and empty vessels | [`Network`]: volumes, boundaries, passages; rates and their Jacobian |
+//! | write a new law of flow | implement [`PassageLaw`]: flow and partial derivatives of one passage |
+//! | put it on a ring pack | [`PackNetwork`] with [`OrificeAreas`]; the example there is a whole model |
+//! | choose other passages around a ring | implement [`PassageModel`] |
+//! | run a built-in model | [`OrificeNetwork`], [`NarrowChannel`], [`GapOrifice`], [`Prescribed`] |
+//!
+//! The built-in models of the kind [`gas_flow`](gudgeon_core::kinds::GasFlowSpec) share the [`OrificeLaw`] with its [`Passage`]s and
+//! differ in their passages around a ring:
 //!
 //! | model | end gap | past the flanks | past the face |
 //! |---|---|---|---|
@@ -10,22 +23,42 @@
 //! | [`NarrowChannel`] | orifice | laminar channel | laminar channel |
 //! | [`Prescribed`] | closed: land pressures are given | | |
 //!
-//! The gas in each volume is at the temperature of its walls, so its state is its mass alone.
+//! Units are SI, pressures are absolute, flows are positive towards the crankcase.
 
+mod channel;
+mod flow_function;
 mod gap_orifice;
 mod heat_capacity;
 mod narrow_channel;
 mod network;
+mod options;
 mod orifice;
+mod orifice_law;
 mod orifice_network;
-mod pack;
+mod pack_gas_flow;
+mod pack_network;
+mod passage;
+mod passage_law;
+mod plain_pack;
 mod prescribed;
+mod ring_passages;
+mod series;
+mod spaces;
+mod validate;
 
+pub use channel::{TRANSITION, channel_conductance, sutherland_viscosity, turbulent_share};
+pub use flow_function::{FlowFunction, MIN_DROP, critical_ratio};
 pub use gap_orifice::{BackVolumes, GapOrifice};
 pub use heat_capacity::Gamma;
 pub use narrow_channel::{ChannelFriction, GasViscosity, NarrowChannel};
-pub use network::{Network, Passage, TRANSITION, channel_conductance, sutherland_viscosity};
-pub use orifice::{FlowFunction, FlowSlopes, Orifice, OrificeFormula, OrificeLaw, Side, critical_ratio};
-pub use orifice_network::OrificeNetwork;
-pub use pack::{Elimination, FilmHeight};
+pub use network::Network;
+pub use options::{Elimination, FilmHeight};
+pub use orifice::{Orifice, OrificeFormula};
+pub use orifice_law::{OrificeLaw, TRUNCATED_RATIO};
+pub use orifice_network::{OrificeAreas, OrificeNetwork};
+pub use pack_network::{PackNetwork, PackOptions};
+pub use passage::Passage;
+pub use passage_law::{Area, FlowPartials, GasState, LANES, LaneWork, Link, Node, PassageLaw};
+pub use plain_pack::plain_pack;
 pub use prescribed::Prescribed;
+pub use ring_passages::{Openings, PassageModel, RingPassages};

@@ -9,10 +9,13 @@ use gudgeon_core::{BuildError, register_model};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::network::{Passage, channel_conductance, sutherland_viscosity};
+use crate::channel::{channel_conductance, sutherland_viscosity};
+use crate::options::{Elimination, FilmHeight};
 use crate::orifice::Orifice;
-use crate::orifice_network::{DEFAULT_CHAMFER_FADE, lifted, nominal};
-use crate::pack::{Elimination, FilmHeight, Openings, Pack, Passages, RingPassages};
+use crate::pack_network::{PackOptions, with_orifice_law};
+use crate::passage::Passage;
+use crate::ring_passages::{Openings, PassageModel, RingPassages};
+use crate::spaces::lifted;
 
 /// How viscous the gas is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
@@ -79,7 +82,7 @@ pub struct NarrowChannel {
     pub friction: ChannelFriction,
     /// Film thickness up to which oil fills the gap between face and liner. Gas passes the face of a ring that is further away: without that a
     /// ring that gas lifts off the liner closes its own end gap and locks in the gas that lifts it.
-    #[serde(default = "crate::pack::fifty_micrometres")]
+    #[serde(default = "crate::options::fifty_micrometres")]
     pub face_oil: PosLength,
     /// Whether spaces behind rings that fill in less than `eliminate_below` are left out of the integration.
     #[serde(default)]
@@ -87,7 +90,7 @@ pub struct NarrowChannel {
     /// Filling time for `eliminate = "auto"`, at a pressure difference of a tenth. What a space stores is left out, so the limit is
     /// much shorter than the time that accuracy asks of the pressures: spaces that fill in the default 10 ns change the blow-by of a
     /// ring that floats between its flanks by a few millionths.
-    #[serde(default = "crate::pack::ten_nanoseconds")]
+    #[serde(default = "crate::options::ten_nanoseconds")]
     pub eliminate_below: PosTime,
 }
 
@@ -107,15 +110,16 @@ impl Default for NarrowChannel {
             film_height: FilmHeight::default(),
             nominal_film: default_film(),
             friction: ChannelFriction::default(),
-            face_oil: crate::pack::fifty_micrometres(),
+            face_oil: crate::options::fifty_micrometres(),
             eliminate: Elimination::default(),
-            eliminate_below: crate::pack::ten_nanoseconds(),
+            eliminate_below: crate::options::ten_nanoseconds(),
         }
     }
 }
 
 impl NarrowChannel {
-    fn pack(&self, pack: &PackGeometry) -> Result<Pack<Channels>, BuildError> {
+    /// The channels of a pack, but for their heights.
+    fn channels(&self, pack: &PackGeometry) -> Result<Channels, BuildError> {
         let channel = |perimeter: f64, length: f64, t_a: f64, t_b: f64| {
             let t = 0.5 * (t_a + t_b);
             let mu = match self.gas_viscosity {
@@ -137,7 +141,7 @@ impl NarrowChannel {
             }
             let Some([above, below]) = pack.lands.get(i..i + 2).and_then(|s| <&[_; 2]>::try_from(s).ok())
             else {
-                break; // Pack::new reports the missing land.
+                break; // The network reports the missing land.
             };
             let behind = match ring.back {
                 BackVolume::Geometric | BackVolume::Fixed(_) => ring.back_temperature,
@@ -155,14 +159,11 @@ impl NarrowChannel {
                 ),
             });
         }
-        let film = nominal(self.film_height, self.nominal_film);
-        let eliminate = self.eliminate.below(self.eliminate_below);
-        let channels = Channels {
+        Ok(Channels {
             per_ring,
             blended: self.friction == ChannelFriction::Blended,
             face_oil: self.face_oil.si(),
-        };
-        Pack::new(channels, pack, &self.orifice, film, DEFAULT_CHAMFER_FADE, eliminate)
+        })
     }
 }
 
@@ -179,7 +180,13 @@ impl NarrowChannel {
 )]
 impl GasFlowSpec for NarrowChannel {
     fn build(&self, ctx: &GasFlowCtx<'_>) -> Result<Box<dyn GasFlow>, BuildError> {
-        Ok(Box::new(self.pack(ctx.pack)?))
+        let channels = self.channels(ctx.pack)?;
+        let options = PackOptions {
+            nominal_film: self.film_height.nominal(self.nominal_film),
+            eliminate_below: self.eliminate.below(self.eliminate_below),
+            ..PackOptions::default()
+        };
+        Ok(Box::new(with_orifice_law("narrow_channel", channels, &self.orifice, ctx.pack, options)?))
     }
 }
 
@@ -207,11 +214,10 @@ struct Channels {
     face_oil: f64,
 }
 
-impl Passages for Channels {
-    const NAME: &'static str = "narrow_channel";
-    const FACE: bool = true;
+impl PassageModel<Passage> for Channels {
+    const HAS_FACE: bool = true;
 
-    fn passages(&self, i: usize, ring: &RingGeometry, o: &Openings) -> RingPassages {
+    fn ring_passages(&self, i: usize, ring: &RingGeometry, o: &Openings) -> RingPassages<Passage> {
         let k = self.per_ring[i];
         let channel = |Channel { perimeter, conductance, unit_flow }: Channel, height: f64| {
             let (conductance, area) = (conductance * height * height * height, perimeter * height);

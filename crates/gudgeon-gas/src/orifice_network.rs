@@ -2,16 +2,19 @@
 
 use std::f64::consts::TAU;
 
-use gudgeon_core::geometry::{BackVolume, PackGeometry, RingGeometry};
+use gudgeon_core::geometry::{BackVolume, RingGeometry};
 use gudgeon_core::kinds::{GasFlow, GasFlowCtx, GasFlowSpec};
 use gudgeon_core::quantity::{Fraction, Length, NonNegative, PosLength, PosTime, Ratio, quantity};
 use gudgeon_core::{BuildError, register_model};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::network::Passage;
+use crate::options::{Elimination, FilmHeight};
 use crate::orifice::Orifice;
-use crate::pack::{Elimination, FilmHeight, Openings, Pack, Passages, RingPassages};
+use crate::pack_network::{PackOptions, with_orifice_law};
+use crate::passage_law::Area;
+use crate::ring_passages::{Openings, PassageModel, RingPassages};
+use crate::spaces::lifted;
 
 /// Every passage around a ring is an orifice whose area follows from where the ring is.
 ///
@@ -58,7 +61,7 @@ pub struct OrificeNetwork {
     pub chamfer_fade: Ratio<Fraction>,
     /// Film thickness up to which oil fills the gap between face and liner. Gas passes the face of a ring that is further away: without that a
     /// ring that gas lifts off the liner closes its own end gap and locks in the gas that lifts it.
-    #[serde(default = "crate::pack::fifty_micrometres")]
+    #[serde(default = "crate::options::fifty_micrometres")]
     pub face_oil: PosLength,
     /// Whether spaces behind rings that fill in less than `eliminate_below` are left out of the integration.
     #[serde(default)]
@@ -66,7 +69,7 @@ pub struct OrificeNetwork {
     /// Filling time for `eliminate = "auto"`, at a pressure difference of a tenth. What a space stores is left out, so the limit is
     /// much shorter than the time that accuracy asks of the pressures: spaces that fill in the default 10 ns change the blow-by of a
     /// ring that floats between its flanks by a few millionths.
-    #[serde(default = "crate::pack::ten_nanoseconds")]
+    #[serde(default = "crate::options::ten_nanoseconds")]
     pub eliminate_below: PosTime,
 }
 
@@ -77,10 +80,8 @@ fn default_film() -> Length<NonNegative> {
     quantity(0.0)
 }
 fn default_fade() -> Ratio<Fraction> {
-    quantity(DEFAULT_CHAMFER_FADE)
+    quantity(PackOptions::default().chamfer_fade)
 }
-/// Fraction of the clearance over which a chamfer closes in models that do not ask for it.
-pub(crate) const DEFAULT_CHAMFER_FADE: f64 = 0.01;
 
 impl Default for OrificeNetwork {
     fn default() -> Self {
@@ -90,39 +91,10 @@ impl Default for OrificeNetwork {
             film_height: FilmHeight::default(),
             nominal_film: default_film(),
             chamfer_fade: default_fade(),
-            face_oil: crate::pack::fifty_micrometres(),
+            face_oil: crate::options::fifty_micrometres(),
             eliminate: Elimination::default(),
-            eliminate_below: crate::pack::ten_nanoseconds(),
+            eliminate_below: crate::options::ten_nanoseconds(),
         }
-    }
-}
-
-/// Height of the opening under a ring that is further from the liner than its oil reaches \[m\]; it opens without a corner.
-pub(crate) fn lifted(film: f64, oil: f64) -> f64 {
-    let x = (film - oil).max(0.0);
-    x * x / (x + 0.1 * oil)
-}
-
-/// `None` for the film of the instant.
-pub(crate) fn nominal(height: FilmHeight, film: Length<NonNegative>) -> Option<f64> {
-    match height {
-        FilmHeight::Instantaneous => None,
-        FilmHeight::Nominal => Some(film.si()),
-    }
-}
-
-impl OrificeNetwork {
-    fn pack(&self, pack: &PackGeometry) -> Result<Pack<Areas>, BuildError> {
-        let film = nominal(self.film_height, self.nominal_film);
-        let eliminate = self.eliminate.below(self.eliminate_below);
-        Pack::new(
-            Areas { split: self.gap_split.si(), face_oil: self.face_oil.si() },
-            pack,
-            &self.orifice,
-            film,
-            self.chamfer_fade.si(),
-            eliminate,
-        )
     }
 }
 
@@ -140,32 +112,49 @@ impl OrificeNetwork {
 )]
 impl GasFlowSpec for OrificeNetwork {
     fn build(&self, ctx: &GasFlowCtx<'_>) -> Result<Box<dyn GasFlow>, BuildError> {
-        Ok(Box::new(self.pack(ctx.pack)?))
+        let areas = OrificeAreas { gap_split: self.gap_split.si(), face_oil: self.face_oil.si() };
+        let options = PackOptions {
+            nominal_film: self.film_height.nominal(self.nominal_film),
+            chamfer_fade: self.chamfer_fade.si(),
+            eliminate_below: self.eliminate.below(self.eliminate_below),
+        };
+        Ok(Box::new(with_orifice_law("orifice_network", areas, &self.orifice, ctx.pack, options)?))
     }
 }
 
-struct Areas {
-    split: f64,
-    face_oil: f64,
+/// The areas of [`OrificeNetwork`], for any law of a passage that is described by an [`Area`].
+///
+/// For the equations see there. The defaults are those of the model: half of the end gap leads through the groove, and oil fills the
+/// gap between face and liner up to 50 µm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OrificeAreas {
+    /// Share of the end-gap area that leads through the groove, 0 to 1.
+    pub gap_split: f64,
+    /// Film thickness \[m\] up to which oil fills the gap between face and liner, above zero.
+    pub face_oil: f64,
 }
 
-impl Passages for Areas {
-    const NAME: &'static str = "orifice_network";
-    const FACE: bool = false;
+impl Default for OrificeAreas {
+    fn default() -> Self {
+        Self { gap_split: default_split().si(), face_oil: crate::options::fifty_micrometres().si() }
+    }
+}
+
+impl<P: From<Area> + Default> PassageModel<P> for OrificeAreas {
     const SIGNED: bool = true;
 
-    fn passages(&self, _: usize, ring: &RingGeometry, o: &Openings) -> RingPassages {
+    fn ring_passages(&self, _: usize, ring: &RingGeometry, o: &Openings) -> RingPassages<P> {
         let face = TAU * (o.liner_radius - o.h) * (ring.leak_face + lifted(o.h, self.face_oil));
-        let orifice = |area| Passage::Orifice { area };
+        let orifice = |area| P::from(Area(area));
         if ring.back == BackVolume::Sealed {
             return RingPassages { gap: orifice(face + o.gap), ..RingPassages::default() };
         }
-        let through_groove = self.split * o.gap;
+        let through_groove = self.gap_split * o.gap;
         RingPassages {
             upper: orifice(TAU * ring.piston_radius_above * (o.upper + ring.leak_upper) + through_groove),
             lower: orifice(TAU * ring.piston_radius_below * (o.lower + ring.leak_lower) + through_groove),
             gap: orifice(face + (o.gap - through_groove)),
-            face: Passage::Closed,
+            face: P::default(),
         }
     }
 

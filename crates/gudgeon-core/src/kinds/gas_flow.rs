@@ -75,10 +75,10 @@ impl GasOut {
     }
 }
 
-/// Derivatives of pressures and flows by the gas masses, the places of the rings and the boundary pressures kept: one row per
+/// Partial derivatives of pressures and flows by the gas masses, the places of the rings and the boundary pressures kept: one row per
 /// quantity, row-major, one column per mass.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct GasSlopes {
+pub struct GasPartials {
     /// Of the rates of the masses \[1/s\].
     pub d_state: Vec<f64>,
     /// Of the `n + 1` land pressures \[Pa/kg\].
@@ -91,7 +91,7 @@ pub struct GasSlopes {
     pub flow_out: Vec<f64>,
 }
 
-impl GasSlopes {
+impl GasPartials {
     /// Zeros for `rings` rings and `states` masses.
     #[must_use]
     pub fn new(rings: usize, states: usize) -> Self {
@@ -139,9 +139,9 @@ pub trait GasFlow: Send {
         out: &mut GasOut,
     ) -> Result<(), EvalError>;
 
-    /// Longest explicit step \[s\] over which volumes that the model ties to each other come together without passing each other; `None` when
-    /// it ties none. What passages allow depends on the pressures and is not said.
-    fn longest_explicit_step(&self) -> Option<f64> {
+    /// Largest explicit time step \[s\] at which the pressures of volumes that the model couples by a linear leak approach each other without
+    /// overshoot; `None` when it couples none. The limit set by the other passages depends on the pressures and is not part of it.
+    fn max_explicit_step(&self) -> Option<f64> {
         None
     }
 
@@ -150,17 +150,17 @@ pub trait GasFlow: Send {
     /// for which that means nothing.
     fn unbound(&mut self) {}
 
-    /// Derivatives of all that [`rates`](Self::rates) gives by the masses, all of `out` written. One-sided where the flow has a kink;
-    /// always finite. `Ok(false)`, which is what a model gets that says nothing: they are not known, and `out` is as it was.
+    /// Partial derivatives of all that [`rates`](Self::rates) gives by the masses, all of `out` written. One-sided where the flow has a
+    /// kink; always finite. `Ok(false)`, the default: they are not known, and `out` is as it was.
     ///
     /// # Errors
     /// As [`rates`](Self::rates).
-    fn slopes(&mut self, _inp: &GasIn<'_>, _state: &[f64], _out: &mut GasSlopes) -> Result<bool, EvalError> {
+    fn partials(&mut self, _inp: &GasIn<'_>, _state: &[f64], _out: &mut GasPartials) -> Result<bool, EvalError> {
         Ok(false)
     }
 
     /// The same as [`rates`](Self::rates) to the last bit, when nothing but the place of one ring has changed since the last call of
-    /// `rates` or [`slopes`](Self::slopes), and that one succeeded: a model may compute anew only what the ring touches. Such
+    /// `rates` or [`partials`](Self::partials), and that one succeeded: a model may compute anew only what the ring touches. Such
     /// calls may follow each other for any rings; each means that last call, with no ring moved but its own.
     ///
     /// # Errors

@@ -251,7 +251,7 @@ impl GasVolumesRig {
                 return Err(errors);
             }
         };
-        net.set_laws(laws);
+        net.set_source_laws(laws);
         for (k, o) in self.openings.iter().enumerate() {
             net.set_passage(k, Passage::Orifice { area: o.area.si() });
         }
@@ -378,7 +378,7 @@ impl OdeSystem for Gas {
     }
     fn jacobian(&mut self, at: f64, y: &[f64], _: &[f64], jac: &mut [f64]) -> Result<bool, EvalError> {
         self.set(at, y)?;
-        self.net.update_slopes();
+        self.net.update_partials();
         let n = self.volumes.len();
         jac.fill(0.0);
         self.net.jacobian(&mut jac[..n * n]);

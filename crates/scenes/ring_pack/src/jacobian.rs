@@ -6,7 +6,7 @@
 
 use gudgeon_core::EvalError;
 use gudgeon_core::geometry::RingPlace;
-use gudgeon_core::kinds::{GasOut, GasSlopes};
+use gudgeon_core::kinds::{GasOut, GasPartials};
 use gudgeon_core::states::Signals;
 
 use super::instant::RingInstant;
@@ -24,7 +24,7 @@ pub struct Base {
     places: Vec<RingPlace>,
     dm: Vec<f64>,
     gas: GasOut,
-    slopes: GasSlopes,
+    gas_partials: GasPartials,
     dy: Vec<f64>,
 }
 
@@ -107,10 +107,10 @@ impl Pack {
     ) -> Result<(), EvalError> {
         let p_cylinder = self.at.gas.p_land[0];
         let gas = self.layout.gas.len();
-        if base.slopes.d_state.len() != gas * gas {
-            base.slopes = GasSlopes::new(self.n_rings(), gas);
+        if base.gas_partials.d_state.len() != gas * gas {
+            base.gas_partials = GasPartials::new(self.n_rings(), gas);
         }
-        let known = self.gas_slopes(p_cylinder, &mut base.slopes)?;
+        let known = self.gas_partials(p_cylinder, &mut base.gas_partials)?;
         for k in 0..gas {
             let d = increment(k);
             let outcome = if known {
@@ -295,7 +295,7 @@ impl Pack {
 
     /// Rows of the gas in the column of mass `k`, from the derivatives in `base`.
     fn gas_column(&self, k: usize, base: &Base, jac: &mut [f64]) {
-        let (n, rings, m, s) = (self.layout.n, self.n_rings(), self.layout.gas.len(), &base.slopes);
+        let (n, rings, m, s) = (self.layout.n, self.n_rings(), self.layout.gas.len(), &base.gas_partials);
         let per = self.mass_scale[k] / self.omega;
         for r in 0..m {
             jac[r * n + k] = s.d_state[r * m + k] / self.mass_scale[r] * per;
@@ -321,7 +321,7 @@ impl Pack {
 
     /// Pressures after a small change of mass `k` \[kg\] from `base`.
     fn shift_pressures(&mut self, k: usize, d_mass: f64, base: &Base) {
-        let (m, s) = (self.layout.gas.len(), &base.slopes);
+        let (m, s) = (self.layout.gas.len(), &base.gas_partials);
         for (i, p) in self.at.gas.p_land.iter_mut().enumerate() {
             *p = base.gas.p_land[i] + s.p_land[i * m + k] * d_mass;
         }

@@ -261,7 +261,7 @@ fn marching_steps(case: &RingPackCase, rings: usize) -> (u32, u32) {
 fn too_long(case: &RingPackCase, pack: &Pack) -> Option<BuildError> {
     let (steps, gas_steps) = marching_steps(case, pack.n_rings());
     let mechanics = 1f64.to_radians() / pack.omega / f64::from(steps);
-    let (own, longest) = (mechanics / f64::from(gas_steps), pack.gas.longest_explicit_step()?);
+    let (own, longest) = (mechanics / f64::from(gas_steps), pack.gas.max_explicit_step()?);
     (case.solver.method == Method::AsPublished && own > longest).then(|| {
         let (enough, ratio) = ((mechanics / longest).ceil(), own / longest);
         let what = format!(

@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 use gudgeon_core::EvalError;
 use gudgeon_core::geometry::{BackVolume, PackGeometry, RingPlace};
 use gudgeon_core::kinds::{
-    AxialForces, CylinderPressure, FilmHeat, FilmTemperature, GasFlow, GasIn, GasSlopes, Kinematics, Oil,
+    AxialForces, CylinderPressure, FilmHeat, FilmTemperature, GasFlow, GasIn, GasPartials, Kinematics, Oil,
     OilStep, OilTransport, RingPose,
 };
 use gudgeon_core::states::Stateful;
@@ -260,10 +260,10 @@ impl Pack {
     }
 
     /// Derivatives of the gas model by the masses at the state of `self.at`, into `out`; `false` when it has none.
-    pub(super) fn gas_slopes(&mut self, p_cylinder: f64, out: &mut GasSlopes) -> Result<bool, EvalError> {
+    pub(super) fn gas_partials(&mut self, p_cylinder: f64, out: &mut GasPartials) -> Result<bool, EvalError> {
         let inp = GasIn { p_cylinder, p_crankcase: self.p_crankcase, rings: &self.at.places };
         self.counters.gas += 1;
-        self.gas.slopes(&inp, &self.masses, out)
+        self.gas.partials(&inp, &self.masses, out)
     }
 
     pub(super) fn share_pressures(&mut self) {

@@ -1,0 +1,213 @@
+//! The orifice law made ready for a gas: flow through a sharp opening.
+
+use crate::flow_function::{FlowFunction, MIN_DROP};
+use crate::passage_law::{FlowPartials, GasState};
+
+/// Pressure ratio below which [`OrificeFormula::IsentropicTruncated`](crate::OrificeFormula::IsentropicTruncated) is choked, as printed.
+pub const TRUNCATED_RATIO: f64 = 0.53;
+/// Its choking factor, as printed.
+const TRUNCATED_FACTOR: f64 = 0.259;
+
+/// An orifice law made ready for a gas, see [`Orifice::build`](crate::Orifice::build).
+///
+/// ```text
+/// ṁ = C_d A p_u / sqrt(R T_u) ψ_ε(p_d / p_u)
+/// ```
+///
+/// `u` is the side of the higher pressure, `d` the other one. The flow from `a` to `b` is positive for `p_a > p_b`, changes its
+/// sign when pressures and temperatures are exchanged, and is continuous through `p_a = p_b`.
+///
+/// An orifice alone:
+///
+/// ```
+/// use gudgeon_gas::{GasState, Orifice};
+///
+/// # fn main() -> Result<(), gudgeon_core::BuildError> {
+/// let gas_constant = 287.0; // J/(kg K)
+/// let law = Orifice::default().build(1.4, gas_constant)?;
+/// let state = |bar: f64, kelvin: f64| GasState::new(bar * 1e5, gas_constant * kelvin);
+///
+/// // The end gap of a ring, 0.1 mm², from 20 bar at 500 K to 1 bar: choked.
+/// let flow = law.flow(1e-7, &state(20.0, 500.0), &state(1.0, 450.0)); // kg/s
+/// let choked = 0.86 * 1e-7 * 20e5 / (gas_constant * 500.0f64).sqrt() * 0.68473;
+/// assert!((flow / choked - 1.0).abs() < 1e-3); // the laminar branch takes off ε/2
+///
+/// // Choked flow does not depend on the pressure downstream.
+/// let partials = law.flow_partials(1e-7, &state(20.0, 500.0), &state(1.0, 450.0));
+/// assert!(partials.by_a > 0.0 && partials.by_b.abs() < 1e-3 * partials.by_a);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct OrificeLaw {
+    flow_function: FlowFunction,
+    discharge: f64,
+    /// `ε` of the laminar branch, above zero.
+    laminar: f64,
+    /// Whether the truncated form stands in for the isentropic one.
+    truncated: bool,
+}
+
+impl OrificeLaw {
+    /// `laminar` is `ε`; values below the smallest number stand for zero.
+    pub(crate) const fn new(
+        flow_function: FlowFunction,
+        discharge: f64,
+        laminar: f64,
+        truncated: bool,
+    ) -> Self {
+        // Zero over zero must not arise where the pressures are equal; beside any other pressure difference this vanishes.
+        Self { flow_function, discharge, laminar: laminar.max(f64::MIN_POSITIVE), truncated }
+    }
+
+    /// Flow \[kg/s\] from `a` to `b` through the geometric area \[m²\]. Pressures must not be negative.
+    #[inline]
+    #[must_use]
+    pub fn flow(&self, area: f64, a: &GasState, b: &GasState) -> f64 {
+        self.directed(area, a, b, |law, u| law.psi_laminar(u, self.laminar))
+    }
+
+    /// The same without the laminar branch: what an opening in series with a laminar resistance needs.
+    #[inline]
+    #[must_use]
+    pub fn flow_bare(&self, area: f64, a: &GasState, b: &GasState) -> f64 {
+        self.directed(area, a, b, FlowFunction::psi)
+    }
+
+    /// The same as [`flow`](Self::flow), by logarithms and exponentials.
+    #[must_use]
+    pub fn flow_exact(&self, area: f64, a: &GasState, b: &GasState) -> f64 {
+        self.directed(area, a, b, |law, u| law.psi_exact(u) * (u / (u + self.laminar)).sqrt())
+    }
+
+    /// [`flow`](Self::flow) with its partial derivatives by both pressures, one-sided where the law has a kink (at equal pressures
+    /// between sides of different temperature). With `C = C_d A / sqrt(R T_u)`:
+    ///
+    /// ```text
+    /// ∂ṁ/∂p_u = C [ ψ + (1 - u) dψ/du ]        ∂ṁ/∂p_d = -C dψ/du
+    /// ```
+    ///
+    /// Where the derivative of the law is infinite, at equal pressures without a laminar branch, that at `u` = [`MIN_DROP`] stands
+    /// for it.
+    #[inline]
+    #[must_use]
+    pub fn flow_partials(&self, area: f64, a: &GasState, b: &GasState) -> FlowPartials {
+        self.directed_partials(area, a, b, |law, u| law.psi_laminar_derivative(u, self.laminar))
+    }
+
+    /// [`flow_bare`](Self::flow_bare) with its partial derivatives, as [`flow_partials`](Self::flow_partials).
+    #[inline]
+    #[must_use]
+    pub fn flow_bare_partials(&self, area: f64, a: &GasState, b: &GasState) -> FlowPartials {
+        self.directed_partials(area, a, b, FlowFunction::psi_derivative)
+    }
+
+    /// `C_d p / sqrt(R T)`: what stands before `ψ`, per area, for gas of this state upstream \[kg/(s m²)\].
+    #[inline]
+    pub(crate) fn strength(&self, up: &GasState) -> f64 {
+        self.discharge * up.pressure() * up.inv_sqrt_rt()
+    }
+
+    /// `ψ_ε` of the isentropic form at relative pressure drops of either sign, for several openings at once.
+    #[inline]
+    pub(crate) fn psi_lanes<const N: usize>(&self, u: [f64; N]) -> [f64; N] {
+        std::array::from_fn(|i| self.flow_function.psi_laminar(u[i].abs(), self.laminar))
+    }
+
+    /// `ψ_ε` of the isentropic form at the relative pressure drop `u`, and the derivatives of `p_u ψ_ε` by the pressures upstream
+    /// and downstream.
+    #[inline]
+    pub(crate) fn psi_partials(&self, u: f64) -> (f64, f64, f64) {
+        let (psi, derivative) = self.flow_function.psi_laminar_derivative(u, self.laminar);
+        (psi, psi + (1.0 - u) * derivative, -derivative)
+    }
+
+    /// Whether the truncated form stands in for the isentropic one.
+    pub(crate) const fn is_truncated(&self) -> bool {
+        self.truncated
+    }
+
+    #[inline]
+    fn directed(
+        &self,
+        area: f64,
+        a: &GasState,
+        b: &GasState,
+        psi: impl Fn(&FlowFunction, f64) -> f64,
+    ) -> f64 {
+        let forward = a.pressure() >= b.pressure();
+        let (up, down) = if forward { (a, b) } else { (b, a) };
+        let (p, back) = (up.pressure(), down.pressure());
+        if p <= 0.0 {
+            return 0.0;
+        }
+        let psi =
+            if self.truncated { self.truncated(back / p) } else { psi(&self.flow_function, (p - back) / p) };
+        let magnitude = self.discharge * area * p * up.inv_sqrt_rt() * psi;
+        if forward { magnitude } else { -magnitude }
+    }
+
+    #[inline]
+    fn directed_partials(
+        &self,
+        area: f64,
+        a: &GasState,
+        b: &GasState,
+        psi: impl Fn(&FlowFunction, f64) -> (f64, f64),
+    ) -> FlowPartials {
+        let forward = a.pressure() >= b.pressure();
+        let (up, down) = if forward { (a, b) } else { (b, a) };
+        let (p, back) = (up.pressure(), down.pressure());
+        if p <= 0.0 {
+            return FlowPartials::default();
+        }
+        let u = (p - back) / p;
+        let (psi, derivative) =
+            if self.truncated { self.truncated_derivative(back / p) } else { psi(&self.flow_function, u) };
+        let flow = self.discharge * area * p * up.inv_sqrt_rt() * psi;
+        let front = self.discharge * area * up.inv_sqrt_rt();
+        let (by_up, by_down) = (front * (psi + (1.0 - u) * derivative), -front * derivative);
+        if forward {
+            FlowPartials { flow, by_a: by_up, by_b: by_down }
+        } else {
+            FlowPartials { flow: -flow, by_a: -by_down, by_b: -by_up }
+        }
+    }
+
+    /// `ψ` of the printed form, `sqrt(2) sqrt(γ/(γ-1) [r^(2/γ) - r^((γ+1)/γ)])`, choked `0.259` in place of the root of the bracket.
+    fn truncated(&self, r: f64) -> f64 {
+        let g = self.gamma();
+        let root = if r >= TRUNCATED_RATIO {
+            // Rounding can make the bracket negative at r = 1.
+            (r.powf(2.0 / g) - r.powf((g + 1.0) / g)).max(0.0).sqrt()
+        } else {
+            TRUNCATED_FACTOR
+        };
+        (2.0 * g / (g - 1.0)).sqrt() * root
+    }
+
+    /// The same and its derivative by `u = 1 - r`, limited to that at `u` = [`MIN_DROP`].
+    fn truncated_derivative(&self, r: f64) -> (f64, f64) {
+        let g = self.gamma();
+        let psi = self.truncated(r);
+        if r < TRUNCATED_RATIO {
+            return (psi, 0.0);
+        }
+        // ψ² = k [r^a - r^b], and k (b - a) u near r = 1.
+        let (a, b, k) = (2.0 / g, (g + 1.0) / g, 2.0 * g / (g - 1.0));
+        let rise = k * (b * r.powf(b - 1.0) - a * r.powf(a - 1.0));
+        (psi, 0.5 * rise / psi.max((k * (b - a) * MIN_DROP).sqrt()))
+    }
+
+    /// Ratio of specific heats.
+    #[must_use]
+    pub const fn gamma(&self) -> f64 {
+        self.flow_function.gamma()
+    }
+
+    /// The flow function.
+    #[must_use]
+    pub const fn flow_function(&self) -> &FlowFunction {
+        &self.flow_function
+    }
+}

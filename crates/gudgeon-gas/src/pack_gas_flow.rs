@@ -1,0 +1,199 @@
+//! A [`PackNetwork`] as a running model of the kind `gas_flow`.
+
+use gudgeon_core::EvalError;
+use gudgeon_core::geometry::BackVolume;
+use gudgeon_core::kinds::{GasFlow, GasIn, GasOut, GasPartials};
+
+use crate::pack_network::{PackNetwork, RingLinks};
+use crate::passage_law::PassageLaw;
+use crate::ring_passages::PassageModel;
+
+impl<L: PassageLaw, M: PassageModel<L::Passage>> PackNetwork<M, L> {
+    /// Everything the flows follow from.
+    fn set(&mut self, inp: &GasIn<'_>, state: &[f64]) -> Result<(), EvalError> {
+        self.set_pressures(inp, state)?;
+        for (i, place) in inp.rings.iter().enumerate().take(self.links.len()) {
+            self.set_passages(i, place)?;
+        }
+        Ok(())
+    }
+
+    fn write_pressures(&self, out: &mut GasOut) {
+        for (p, &node) in out.p_land.iter_mut().zip(&self.lands) {
+            *p = self.net.pressure(node);
+        }
+        for (p, links) in out.p_back.iter_mut().zip(&self.links) {
+            *p = match links.upper {
+                Some(upper) if links.through => self.net.middle_pressure(upper),
+                _ => {
+                    let [a, b] = links.behind;
+                    0.5 * (self.net.pressure(a) + self.net.pressure(b))
+                }
+            };
+        }
+    }
+
+    fn write_flows(&self, d_state: &mut [f64], out: &mut GasOut) {
+        self.net.rates(d_state);
+        for (i, links) in self.links.iter().enumerate() {
+            let flow = |link: Option<usize>| link.map_or(0.0, |l| self.net.flow(l));
+            let direct = self.net.flow(links.gap) + flow(links.face);
+            let upper = flow(links.upper);
+            out.flow_in[i] = direct + upper;
+            out.flow_out[i] = direct + if links.back.is_some() { flow(links.lower) } else { upper };
+        }
+    }
+}
+
+impl<L: PassageLaw, M: PassageModel<L::Passage>> GasFlow for PackNetwork<M, L> {
+    /// Spaces of capacity `C_k` tied to a land of capacity `C_0`, each by `C_k/τ`, come together at `1/τ` and `(1 + Σ C_k/C_0)/τ`; the quickest
+    /// has the rings above and below a land both seated against it.
+    fn max_explicit_step(&self) -> Option<f64> {
+        let tau = self.model.merge_time()?;
+        let max = (1..self.links.len()).fold(1.0_f64, |max, i| {
+            let ((above, land), (below, _)) = (self.capacities(i - 1), self.capacities(i));
+            max.max(1.0 + land.map_or(0.0, |land| (above + below) / land))
+        });
+        Some(tau / max)
+    }
+
+    fn unbound(&mut self) {
+        self.spaces.bounded = !M::SIGNED;
+    }
+
+    fn n_states(&self) -> usize {
+        self.net.volumes()
+    }
+
+    fn state_names(&self) -> Vec<String> {
+        let mut names = vec![String::new(); self.net.volumes()];
+        for i in 0..self.links.len() {
+            if i > 0 {
+                names[self.lands[i]] = format!("land{}", i + 1);
+            }
+            if let Some(node) = self.links[i].back {
+                names[node] = format!("ring{}.back", i + 1);
+            }
+        }
+        names
+    }
+
+    fn uses_film_height(&self) -> bool {
+        self.spaces.nominal_film.is_none()
+            && self.spaces.pack.rings.iter().any(|r| {
+                r.gap_area.is_none()
+                    || r.back == BackVolume::Geometric
+                    || (r.has_clearance && r.slope_upper + r.slope_lower != 0.0)
+                    || self.model.uses_film_height(r)
+            })
+    }
+
+    fn initial(&self, inp: &GasIn<'_>, p_land: &[f64], state: &mut [f64]) {
+        for i in 0..self.links.len() {
+            if i > 0 {
+                let node = self.lands[i];
+                state[node] = p_land[i] * self.spaces.pack.lands[i].volume / self.net.rt(node);
+            }
+            if let Some(node) = self.links[i].back {
+                let p = 0.5 * (p_land[i] + p_land[i + 1]);
+                state[node] = p * self.spaces.volume_behind(i, &inp.rings[i]) / self.net.rt(node);
+            }
+        }
+    }
+
+    fn pressures(&mut self, inp: &GasIn<'_>, state: &[f64], out: &mut GasOut) -> Result<(), EvalError> {
+        self.set_pressures(inp, state)?;
+        for (i, place) in inp.rings.iter().enumerate().take(self.links.len()) {
+            if let RingLinks { through: true, upper: Some(upper), .. } = self.links[i] {
+                self.set_passages(i, place)?;
+                self.net.update_flow(upper);
+            }
+        }
+        self.write_pressures(out);
+        Ok(())
+    }
+
+    fn rates(
+        &mut self,
+        inp: &GasIn<'_>,
+        state: &[f64],
+        d_state: &mut [f64],
+        out: &mut GasOut,
+    ) -> Result<(), EvalError> {
+        self.set(inp, state)?;
+        self.net.update_flows();
+        self.write_pressures(out);
+        self.write_flows(d_state, out);
+        Ok(())
+    }
+
+    fn partials(&mut self, inp: &GasIn<'_>, state: &[f64], out: &mut GasPartials) -> Result<bool, EvalError> {
+        self.set(inp, state)?;
+        self.net.update_partials();
+        self.net.jacobian(&mut out.d_state);
+        let m = self.net.volumes();
+        for rows in [&mut out.p_land, &mut out.p_back, &mut out.flow_in, &mut out.flow_out] {
+            rows.fill(0.0);
+        }
+        // A pressure follows from the mass of its own volume, the boundaries from none.
+        let add = |row: &mut [f64], node: usize, factor: f64| {
+            if let Some(slot) = row.get_mut(node) {
+                *slot += factor * self.net.pressure_per_mass(node);
+            }
+        };
+        for (i, &node) in self.lands.iter().enumerate() {
+            add(&mut out.p_land[i * m..(i + 1) * m], node, 1.0);
+        }
+        for (i, links) in self.links.iter().enumerate() {
+            let columns = i * m..(i + 1) * m;
+            let behind = match links.upper {
+                Some(upper) if links.through => {
+                    let [above, below] = self.net.middle_partials(upper);
+                    [(self.lands[i], above), (self.lands[i + 1], below)]
+                }
+                _ => links.behind.map(|node| (node, 0.5)),
+            };
+            for (node, weight) in behind {
+                add(&mut out.p_back[columns.clone()], node, weight);
+            }
+            let arriving = if links.back.is_some() { links.lower } else { links.upper };
+            for (last, rows) in [(links.upper, &mut out.flow_in), (arriving, &mut out.flow_out)] {
+                for link in [Some(links.gap), links.face, last].into_iter().flatten() {
+                    self.net.add_flow_gradient(link, 1.0, &mut rows[columns.clone()]);
+                }
+            }
+        }
+        Ok(true)
+    }
+
+    fn rates_moved(
+        &mut self,
+        ring: usize,
+        inp: &GasIn<'_>,
+        state: &[f64],
+        d_state: &mut [f64],
+        out: &mut GasOut,
+    ) -> Result<(), EvalError> {
+        // A ring touches its own passages and the space behind it, which no other ring's passage reaches.
+        let RingLinks { upper, lower, gap, face, back, .. } = self.links[ring];
+        let place = &inp.rings[ring];
+        let before = back.map(|node| (node, self.net.node_memo(node)));
+        if let Some(node) = back {
+            self.net.set_mass(self.name, node, state[node], self.spaces.volume_behind(ring, place))?;
+        }
+        let outcome = self.set_passages(ring, place);
+        if outcome.is_ok() {
+            let links = [Some(gap), face, upper, lower];
+            let flows = links.map(|l| l.map(|l| (l, self.net.update_flow(l))));
+            self.write_pressures(out);
+            self.write_flows(d_state, out);
+            for (link, flow) in flows.into_iter().flatten() {
+                self.net.restore_flow(link, flow);
+            }
+        }
+        if let Some((node, before)) = before {
+            self.net.restore_node(node, before);
+        }
+        outcome
+    }
+}

@@ -1,0 +1,301 @@
+//! The network of lands and spaces behind rings: any law of a passage and any passages around the rings as one gas-flow model.
+
+use gudgeon_core::geometry::{BackVolume, PackGeometry, RingGeometry, RingPlace};
+use gudgeon_core::kinds::GasIn;
+use gudgeon_core::{BuildError, EvalError};
+
+use crate::network::Network;
+use crate::orifice::Orifice;
+use crate::orifice_law::OrificeLaw;
+use crate::passage_law::{GasState, PassageLaw};
+use crate::ring_passages::PassageModel;
+use crate::spaces::Spaces;
+use crate::validate::validate;
+
+/// What a [`PackNetwork`] takes as constant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PackOptions {
+    /// Film thickness \[m\] for gap area, clearance and volume behind the rings; `None` for that of the instant.
+    pub nominal_film: Option<f64>,
+    /// Lift, as a fraction of the axial clearance, over which the leak of a groove-edge chamfer fades away linearly; 0 closes it at
+    /// the moment of lift-off.
+    pub chamfer_fade: f64,
+    /// Filling time \[s\] below which a space behind a ring stores nothing; `None`: all of them do.
+    pub eliminate_below: Option<f64>,
+}
+
+impl Default for PackOptions {
+    fn default() -> Self {
+        Self { nominal_film: None, chamfer_fade: 0.01, eliminate_below: None }
+    }
+}
+
+/// The links of one ring.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RingLinks {
+    pub upper: Option<usize>,
+    pub lower: Option<usize>,
+    pub gap: usize,
+    pub face: Option<usize>,
+    /// Whether the upper link goes on past the lower flank, through a space behind the ring that stores nothing.
+    pub through: bool,
+    /// Node of the space behind the ring.
+    pub back: Option<usize>,
+    /// The pressure behind the ring is the mean of these two nodes': its own volume twice, the land below twice when it is drained
+    /// into that, both lands when it has no room.
+    pub behind: [usize; 2],
+}
+
+/// A gas-flow model of a ring pack from two halves: the [law](PassageLaw) of a passage, and the [passages](PassageModel) around a ring.
+///
+/// The lands between the rings and the spaces behind rings with room are the volumes of a [`Network`]; cylinder and crankcase are its
+/// boundaries. Where the rings are, their end gaps and the sizes of the volumes come from the geometry of the pack. The result is a
+/// [`GasFlow`](gudgeon_core::kinds::GasFlow): states, rates, and their Jacobian from the partial derivatives of the law. The models
+/// [`OrificeNetwork`](crate::OrificeNetwork), [`NarrowChannel`](crate::NarrowChannel) and [`GapOrifice`](crate::GapOrifice) are built
+/// with it.
+///
+/// A new gas law on a pack of two rings:
+///
+/// ```
+/// use gudgeon_core::kinds::{GasFlow, GasIn, GasOut};
+/// use gudgeon_gas::{Area, FlowPartials, GasState, OrificeAreas, PackNetwork, PackOptions, PassageLaw, plain_pack};
+///
+/// /// Darcy flow through passages that are full of deposits: `ṁ = k A (p_a² - p_b²) / (R T_a + R T_b)`, `k` in s.
+/// struct Darcy { k: f64 }
+///
+/// impl PassageLaw for Darcy {
+///     type Passage = Area;
+///     fn mass_flow_partials(&self, Area(area): Area, a: &GasState, b: &GasState) -> FlowPartials {
+///         let c = self.k * area / (a.rt() + b.rt());
+///         let (p, q) = (a.pressure(), b.pressure());
+///         FlowPartials { flow: c * (p * p - q * q), by_a: 2.0 * c * p, by_b: -2.0 * c * q }
+///     }
+/// }
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let (pack, places) = plain_pack(2);
+/// let mut gas = PackNetwork::new("darcy", OrificeAreas::default(), Darcy { k: 1e-4 }, &pack, PackOptions::default())?;
+/// let inputs = GasIn { p_cylinder: 20e5, p_crankcase: 1e5, rings: &places };
+/// let (mut masses, mut rates) = (vec![0.0; gas.n_states()], vec![0.0; gas.n_states()]);
+/// let mut out = GasOut::new(2);
+/// gas.initial(&inputs, &[20e5, 5e5, 1e5], &mut masses);
+/// gas.rates(&inputs, &masses, &mut rates, &mut out)?;
+/// // What flows in and not out is stored.
+/// let stored: f64 = rates.iter().sum();
+/// assert!((stored - (out.flow_in[0] - out.flow_out[1])).abs() < 1e-14 * out.flow_in[0]);
+/// # Ok(())
+/// # }
+/// ```
+///
+/// A specification that implements [`GasFlowSpec`](gudgeon_core::kinds::GasFlowSpec), boxes this in its `build` and is registered
+/// makes the law a model that a case file can name.
+#[derive(Debug, Clone)]
+pub struct PackNetwork<M, L: PassageLaw = OrificeLaw> {
+    /// Name of the model, for errors.
+    pub(crate) name: &'static str,
+    pub(crate) model: M,
+    pub(crate) spaces: Spaces,
+    pub(crate) net: Network<L>,
+    pub(crate) links: Vec<RingLinks>,
+    /// Nodes of the lands.
+    pub(crate) lands: Vec<usize>,
+    /// Of all nodes \[K\].
+    temperatures: Vec<f64>,
+}
+
+/// Nodes and links of a pack.
+struct Layout {
+    temperatures: Vec<f64>,
+    volumes: usize,
+    lands: Vec<usize>,
+    ends: Vec<(usize, usize)>,
+    links: Vec<RingLinks>,
+}
+
+impl Layout {
+    /// Volumes from the top: behind ring 1, land 2, behind ring 2, ...; then chamber and crankcase. `fast` says which spaces behind
+    /// rings store nothing.
+    fn new(pack: &PackGeometry, fast: &[bool], has_face: bool) -> Self {
+        let n = pack.rings.len();
+        let mut temperatures = Vec::with_capacity(2 * n + 1);
+        let mut backs = vec![None; n];
+        let mut lands = vec![0; n + 1];
+        for (i, ring) in pack.rings.iter().enumerate() {
+            if i > 0 {
+                lands[i] = temperatures.len();
+                temperatures.push(pack.lands[i].temperature);
+            }
+            if has_room(ring) && !fast[i] {
+                backs[i] = Some(temperatures.len());
+                temperatures.push(ring.back_temperature);
+            }
+        }
+        let volumes = temperatures.len();
+        for i in [0, n] {
+            lands[i] = temperatures.len();
+            temperatures.push(pack.lands[i].temperature);
+        }
+        let mut ends = Vec::with_capacity(4 * n);
+        let mut link = |a: usize, b: usize| {
+            ends.push((a, b));
+            ends.len() - 1
+        };
+        let links = (0..n)
+            .map(|i| {
+                let (above, below) = (lands[i], lands[i + 1]);
+                RingLinks {
+                    upper: match pack.rings[i].back {
+                        BackVolume::Sealed => None,
+                        _ => Some(link(above, backs[i].unwrap_or(below))),
+                    },
+                    lower: backs[i].map(|b| link(b, below)),
+                    through: fast[i],
+                    gap: link(above, below),
+                    face: has_face.then(|| link(above, below)),
+                    back: backs[i],
+                    behind: match (backs[i], pack.rings[i].back) {
+                        (Some(node), _) => [node; 2],
+                        (None, BackVolume::Drained) => [below; 2],
+                        (None, _) => [above, below],
+                    },
+                }
+            })
+            .collect();
+        Self { temperatures, volumes, lands, ends, links }
+    }
+}
+
+/// Whether there is a volume behind a ring.
+fn has_room(ring: &RingGeometry) -> bool {
+    matches!(ring.back, BackVolume::Geometric | BackVolume::Fixed(_))
+}
+
+/// Time \[s\] in which the space behind ring `i` fills when the pressures around differ by a tenth at 1 bar, at its longest over the
+/// positions of the ring: `V/(R T Σ ṁ/Δp)`.
+fn filling_time<L: PassageLaw>(
+    model: &impl PassageModel<L::Passage>,
+    law: &L,
+    spaces: &Spaces,
+    i: usize,
+) -> f64 {
+    let ring = &spaces.pack.rings[i];
+    let rt = spaces.pack.gas_constant * ring.back_temperature;
+    let [full, less] = [1e5, 0.9e5].map(|p| GasState::new(p, rt));
+    let volume = spaces.nominal_volume(i);
+    [0.0, 0.5, 1.0].into_iter().fold(0.0, |longest: f64, e| {
+        let passages = model.ring_passages(i, ring, &spaces.nominal_openings(i, e));
+        let flow = law.mass_flow(passages.upper, &full, &less) + law.mass_flow(passages.lower, &full, &less);
+        longest.max(volume * 1e4 / (rt * flow))
+    })
+}
+
+impl<L: PassageLaw, M: PassageModel<L::Passage>> PackNetwork<M, L> {
+    /// A gas-flow model called `name` (errors say so) over a pack.
+    ///
+    /// # Errors
+    /// A pack without rings, or whose lands, end gaps, volumes or temperatures are not possible; each with its numbers.
+    pub fn new(
+        name: &'static str,
+        model: M,
+        law: L,
+        pack: &PackGeometry,
+        options: PackOptions,
+    ) -> Result<Self, BuildError> {
+        let PackOptions { nominal_film, chamfer_fade, eliminate_below } = options;
+        let spaces = Spaces { pack: pack.clone(), nominal_film, chamfer_fade, bounded: true };
+        validate(pack, spaces.film())?;
+        let is_fast = |i: usize| {
+            has_room(&pack.rings[i])
+                && eliminate_below.is_some_and(|limit| filling_time(&model, &law, &spaces, i) < limit)
+        };
+        let fast: Vec<bool> = (0..pack.rings.len()).map(is_fast).collect();
+        let Layout { temperatures, volumes, lands, ends, links } = Layout::new(pack, &fast, M::HAS_FACE);
+        let mut net = Network::new(law, pack.gas_constant, &temperatures, volumes, &ends)?;
+        for (i, link) in links.iter().enumerate() {
+            if let RingLinks { through: true, upper: Some(upper), .. } = link {
+                net.split_link(*upper, pack.gas_constant * pack.rings[i].back_temperature);
+            }
+        }
+        Ok(Self { name, model, spaces, net, links, lands, temperatures })
+    }
+
+    /// Gives every gas space the law that `law_at` has for gas of its temperature \[K\], for what flows out of it.
+    ///
+    /// # Errors
+    /// What `law_at` refuses.
+    pub fn with_source_laws(
+        mut self,
+        law_at: impl FnMut(f64) -> Result<L, BuildError>,
+    ) -> Result<Self, BuildError> {
+        let laws: Result<Vec<L>, BuildError> = self.temperatures.iter().copied().map(law_at).collect();
+        self.net.set_source_laws(laws?);
+        Ok(self)
+    }
+
+    /// Capacity `V/(R T)` of the space behind ring `i`, and of land `i + 1` when that has a volume, in the nominal liner \[kg/Pa\].
+    pub(crate) fn capacities(&self, i: usize) -> (f64, Option<f64>) {
+        let rt = |node: usize| self.net.rt(node);
+        let behind = self.links[i].back.map_or(0.0, |node| self.spaces.nominal_volume(i) / rt(node));
+        let land =
+            (i + 1 < self.links.len()).then(|| self.spaces.pack.lands[i + 1].volume / rt(self.lands[i + 1]));
+        (behind, land)
+    }
+
+    /// Pressures of all nodes.
+    pub(crate) fn set_pressures(&mut self, inp: &GasIn<'_>, state: &[f64]) -> Result<(), EvalError> {
+        let n = self.links.len();
+        self.net.set_pressure(self.name, self.lands[0], inp.p_cylinder)?;
+        self.net.set_pressure(self.name, self.lands[n], inp.p_crankcase)?;
+        for i in 0..n {
+            if i > 0 {
+                let node = self.lands[i];
+                self.net.set_mass(self.name, node, state[node], self.spaces.pack.lands[i].volume)?;
+            }
+            if let Some(node) = self.links[i].back {
+                let volume = self.spaces.volume_behind(i, &inp.rings[i]);
+                self.net.set_mass(self.name, node, state[node], volume)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The passages of ring `i` as they are now.
+    pub(crate) fn set_passages(&mut self, i: usize, place: &RingPlace) -> Result<(), EvalError> {
+        let openings = self.spaces.openings(self.name, i, place)?;
+        let links = self.links[i];
+        let p = self.model.ring_passages(i, &self.spaces.pack.rings[i], &openings);
+        if let Some(l) = links.upper {
+            if links.through {
+                self.net.set_split_passages(l, p.upper, p.lower);
+            } else {
+                self.net.set_passage(l, p.upper);
+            }
+        }
+        if let Some(l) = links.lower {
+            self.net.set_passage(l, p.lower);
+        }
+        self.net.set_passage(links.gap, p.gap);
+        if let Some(l) = links.face {
+            self.net.set_passage(l, p.face);
+        }
+        Ok(())
+    }
+}
+
+/// The network of a built-in model: its law is the orifice law, for gas of each temperature if it is to be.
+pub(crate) fn with_orifice_law<M: PassageModel<<OrificeLaw as PassageLaw>::Passage>>(
+    name: &'static str,
+    model: M,
+    orifice: &Orifice,
+    pack: &PackGeometry,
+    options: PackOptions,
+) -> Result<PackNetwork<M>, BuildError> {
+    // Before the law, so that what is wrong with the pack is said first.
+    validate(pack, options.nominal_film.unwrap_or(0.0))?;
+    let within = |e: BuildError| e.within("orifice");
+    let law = orifice.build(pack.gamma, pack.gas_constant).map_err(within)?;
+    let mut network = PackNetwork::new(name, model, law, pack, options)?;
+    let laws = orifice.laws(&network.temperatures, pack.gamma, pack.gas_constant).map_err(within)?;
+    network.net.set_source_laws(laws);
+    Ok(network)
+}

@@ -1,0 +1,16 @@
+//! Tests of the crate, one module a topic.
+#![allow(clippy::excessive_precision, reason = "reference values stand as they were computed")]
+
+mod balance;
+mod elimination;
+mod heat_capacity;
+mod models;
+mod network;
+mod network_cycle;
+mod orifice;
+mod packs;
+mod partials;
+mod passages;
+mod refusals;
+mod series;
+mod support;
