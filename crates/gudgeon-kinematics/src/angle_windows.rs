@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::compressor::{Clearance, Space, TURN, check};
 use crate::ideal_valves::air;
+use crate::periodic::reduced;
 
 /// A compressor cylinder whose valves act at fixed crank angles, as in a published program.
 ///
@@ -67,7 +68,7 @@ impl CylinderPressureSpec for AngleWindows {
             let what = "discharge opens after the lower dead centre and before the end of the turn";
             return Err(BuildError::at("discharge_opens", what));
         }
-        let mut kinks = [0.0, a, space.down, b].map(|x| crate::reduced(space.top + x, TURN)).to_vec();
+        let mut kinks = [0.0, a, space.down, b].map(|x| reduced(space.top + x, TURN)).to_vec();
         kinks.sort_unstable_by(f64::total_cmp);
         Ok(Box::new(Windows { space, suction, discharge, n, a, b, kinks }))
     }
@@ -91,11 +92,11 @@ impl CylinderPressure for Windows {
     fn pressure_decided_at(&self, decided_at: f64, theta: f64) -> f64 {
         let at = self.space.since_top(decided_at);
         if at < self.a {
-            self.discharge * (self.space.least / self.space.volume(theta)).powf(self.n)
+            self.discharge * (self.space.v_min / self.space.volume(theta)).powf(self.n)
         } else if at < self.space.down {
             self.suction
         } else if at < self.b {
-            self.suction * (self.space.most / self.space.volume(theta)).powf(self.n)
+            self.suction * (self.space.v_max / self.space.volume(theta)).powf(self.n)
         } else {
             self.discharge
         }

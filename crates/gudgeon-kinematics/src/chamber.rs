@@ -52,7 +52,7 @@ impl Chamber {
 
     /// Volume \[m³\] and its derivative \[m³/rad\].
     #[must_use]
-    pub fn volume_and_slope(&self, theta: f64) -> (f64, f64) {
+    pub fn volume_and_derivative(&self, theta: f64) -> (f64, f64) {
         let m = self.kinematics.motion(theta);
         (
             self.area * (self.kinematics.y_tdc() - m.y) + self.clearance,

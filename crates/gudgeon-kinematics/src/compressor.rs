@@ -7,11 +7,13 @@ use gudgeon_core::kinds::{CylinderPressureCtx, Kinematics};
 use gudgeon_core::quantity::{PosLength, PosRatio, PosVolume};
 use serde::{Deserialize, Serialize};
 
+use crate::periodic::reduced;
+
 /// Length of a compressor's cycle \[rad\].
 pub const TURN: f64 = 2.0 * PI;
 
 /// Largest exponent of a compression: 5/3 is that of a monatomic gas without heat flow, leakage seems to add some.
-const HIGHEST_EXPONENT: f64 = 2.0;
+const MAX_EXPONENT: f64 = 2.0;
 
 /// The space left at the dead centre: one of `volume`, `fraction` and `compression_ratio`.
 #[derive(Debug, Clone, Default, Serialize, Deserialize, schemars::JsonSchema)]
@@ -60,9 +62,9 @@ pub(crate) struct Space {
     kinematics: Box<dyn Kinematics>,
     area: f64,
     /// Volume at the upper dead centre \[m³\].
-    pub least: f64,
+    pub v_min: f64,
     /// Volume at the lower dead centre \[m³\].
-    pub most: f64,
+    pub v_max: f64,
     /// Crank angle of the smallest volume, in `[0, 2π)`.
     pub top: f64,
     /// Crank angle from there to the largest volume.
@@ -79,24 +81,24 @@ impl Space {
                 format!("the swept volume is {swept} m³: area {} m², stroke {stroke} m", ctx.piston_area);
             return Err(BuildError::new(what));
         }
-        let least = clearance.volume_of(ctx.piston_area, stroke)?;
-        if !(least.is_finite() && least > 0.0) {
-            return Err(BuildError::at("clearance", format!("a clearance volume of {least} m³ cannot be")));
+        let v_min = clearance.volume_of(ctx.piston_area, stroke)?;
+        if !(v_min.is_finite() && v_min > 0.0) {
+            return Err(BuildError::at("clearance", format!("a clearance volume of {v_min} m³ cannot be")));
         }
         let top = dead_centre(&*kinematics, 1.0);
         let bottom = dead_centre(&*kinematics, -1.0);
-        let down = crate::reduced(bottom - top, TURN);
-        Ok(Self { kinematics, area: ctx.piston_area, least, most: least + swept, top, down })
+        let down = reduced(bottom - top, TURN);
+        Ok(Self { kinematics, area: ctx.piston_area, v_min, v_max: v_min + swept, top, down })
     }
 
     /// Angle since the smallest volume, in `[0, 2π)`.
     pub fn since_top(&self, theta: f64) -> f64 {
-        crate::reduced(theta - self.top, TURN)
+        reduced(theta - self.top, TURN)
     }
 
     pub fn volume(&self, theta: f64) -> f64 {
         // At least the clearance, up to rounding.
-        (self.area * (self.kinematics.y_tdc() - self.kinematics.motion(theta).y) + self.least).max(self.least)
+        (self.area * (self.kinematics.y_tdc() - self.kinematics.motion(theta).y) + self.v_min).max(self.v_min)
     }
 
     /// Piston speed by its largest, squared: 0 at the dead centres.
@@ -149,7 +151,7 @@ fn dead_centre(k: &dyn Kinematics, sign: f64) -> f64 {
             b = m;
         }
     }
-    crate::reduced(b, TURN)
+    reduced(b, TURN)
 }
 
 /// Checks the pressures and the exponent that all compressor models have.
@@ -159,15 +161,15 @@ pub(crate) fn check(suction: f64, discharge: f64, exponent: f64, space: &Space) 
             format!("the discharge pressure ({discharge} Pa) must be above that of suction ({suction} Pa)");
         return Err(BuildError::at("discharge", what));
     }
-    if !(1.0..=HIGHEST_EXPONENT).contains(&exponent) {
+    if !(1.0..=MAX_EXPONENT).contains(&exponent) {
         return Err(BuildError::at(
             "exponent",
             format!(
-                "an exponent of {exponent} cannot be, it is between 1 (isothermal) and {HIGHEST_EXPONENT} (no gas has more than 5/3)"
+                "an exponent of {exponent} cannot be, it is between 1 (isothermal) and {MAX_EXPONENT} (no gas has more than 5/3)"
             ),
         ));
     }
-    if !(suction * (space.most / space.least).powf(exponent)).is_finite() {
+    if !(suction * (space.v_max / space.v_min).powf(exponent)).is_finite() {
         return Err(BuildError::at("exponent", "the exponent makes the pressure infinite"));
     }
     Ok(())

@@ -49,6 +49,6 @@ impl CylinderPressure for Level {
         &[]
     }
     fn period(&self) -> f64 {
-        super::FOUR_STROKE
+        crate::periodic::FOUR_STROKE
     }
 }

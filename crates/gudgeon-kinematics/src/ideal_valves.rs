@@ -4,6 +4,7 @@ use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 use crate::compressor::{Clearance, Space, TURN, check};
+use crate::periodic::reduced;
 
 /// A compressor cylinder with valves that open and close without loss.
 ///
@@ -52,12 +53,12 @@ impl CylinderPressureSpec for IdealValves {
         let mut m =
             Ideal { space, suction, discharge, n, top: discharge, open: self.held_open, kinks: Vec::new() };
         // Never reached: what is at the dead centre expands again.
-        m.top = m.discharge.min(m.suction * (m.space.most / m.space.least).powf(n));
+        m.top = m.discharge.min(m.suction * (m.space.v_max / m.space.v_min).powf(n));
         if !m.open {
             let (t, d) = (m.space.top, m.space.down);
             let suction_opens = m.space.crossing(t, t + d, |x| m.expansion(x) - m.suction);
             let discharge_opens = m.space.crossing(t + d, t + TURN, |x| m.discharge - m.compression(x));
-            m.kinks = [t, suction_opens, t + d, discharge_opens].map(|x| crate::reduced(x, TURN)).to_vec();
+            m.kinks = [t, suction_opens, t + d, discharge_opens].map(|x| reduced(x, TURN)).to_vec();
             m.kinks.sort_unstable_by(f64::total_cmp);
             m.kinks.dedup();
         }
@@ -79,10 +80,10 @@ struct Ideal {
 
 impl Ideal {
     fn expansion(&self, theta: f64) -> f64 {
-        self.top * (self.space.least / self.space.volume(theta)).powf(self.n)
+        self.top * (self.space.v_min / self.space.volume(theta)).powf(self.n)
     }
     fn compression(&self, theta: f64) -> f64 {
-        self.suction * (self.space.most / self.space.volume(theta)).powf(self.n)
+        self.suction * (self.space.v_max / self.space.volume(theta)).powf(self.n)
     }
 }
 

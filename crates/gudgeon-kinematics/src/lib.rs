@@ -1,12 +1,45 @@
 //! Piston motion and cylinder pressure.
 //!
+//! | to do | use |
+//! |---|---|
+//! | follow a piston over the crank angle | [`ExactSliderCrank`] or [`TwoHarmonicSeries`], [`build`](gudgeon_core::kinds::KinematicsSpec::build), then [`Kinematics::motion`](gudgeon_core::kinds::Kinematics::motion) |
+//! | know the volume above a piston | [`Chamber`] |
+//! | have the pressure in a cylinder | a model below, then [`CylinderPressure::pressure`](gudgeon_core::kinds::CylinderPressure::pressure) |
+//! | read a measured trace | [`Table`]; its curve is a [`PeriodicCubic`], its filter [`smoothing`] |
+//!
 //! | kind | models |
 //! |---|---|
 //! | `kinematics` | [`ExactSliderCrank`], [`TwoHarmonicSeries`] |
-//! | `cylinder_pressure` | [`Table`], [`PolytropicBurn`], [`SingleZoneWiebe`], [`Motored`], [`Constant`]; compressors: [`IdealValves`], [`ValveLosses`], [`AngleWindows`] |
+//! | `cylinder_pressure`, engines | [`Table`], [`PolytropicBurn`], [`SingleZoneWiebe`], [`Motored`], [`Constant`] |
+//! | `cylinder_pressure`, compressors | [`IdealValves`], [`ValveLosses`], [`AngleWindows`] |
 //!
 //! Crank angle 0 is the gas-exchange top dead centre, 2π the firing one; the crank angle counts from the throw pointing at
-//! the head. With an offset crank the piston is highest a little after (or before) that.
+//! the head. With an offset crank the piston is highest a little after (or before) that. Units are SI, angles radians, pressures
+//! absolute.
+//!
+//! A piston and its cylinder pressure alone:
+//!
+//! ```
+//! use gudgeon_core::file::Files;
+//! use gudgeon_core::kinds::{CylinderPressureCtx, CylinderPressureSpec, KinematicsCtx, KinematicsSpec};
+//! use gudgeon_kinematics::{Constant, ExactSliderCrank, PolytropicBurn};
+//!
+//! # fn main() -> Result<(), gudgeon_core::BuildError> {
+//! let omega = 2000.0 * std::f64::consts::PI / 30.0; // rad/s at 2000 1/min
+//! let crank = KinematicsCtx { crank_radius: 0.07, rod_length: 0.24, offset: 0.0, omega };
+//! let piston = ExactSliderCrank {}.build(&crank)?;
+//! assert!((piston.stroke() - 0.14).abs() < 1e-15);
+//! assert!(piston.motion(0.0).v == 0.0 && piston.motion(0.0).a < 0.0); // top dead centre
+//!
+//! let cylinder = CylinderPressureCtx { kinematics: &*piston, piston_area: 0.0113, files: &Files::of(".".as_ref()) };
+//! let firing = PolytropicBurn::default().build(&cylinder)?;
+//! let (theta, p) = firing.highest(); // rad, Pa
+//! assert!(theta > 2.0 * std::f64::consts::PI && p > 100e5);
+//! let shut_off = Constant::default().build(&cylinder)?;
+//! assert_eq!(shut_off.pressure(theta), 1e5);
+//! # Ok(())
+//! # }
+//! ```
 
 mod angle_windows;
 mod chamber;
@@ -14,12 +47,16 @@ mod compressor;
 mod constant;
 mod exact_slider_crank;
 mod ideal_valves;
+mod mechanism;
 mod motored;
+mod periodic;
 mod periodic_cubic;
 mod polytropic_burn;
+mod pulses;
 mod single_zone_wiebe;
-mod smoothing;
+pub mod smoothing;
 mod table;
+mod table_rows;
 mod two_harmonic_series;
 mod valve_losses;
 
@@ -30,49 +67,10 @@ pub use constant::Constant;
 pub use exact_slider_crank::ExactSliderCrank;
 pub use ideal_valves::IdealValves;
 pub use motored::Motored;
+pub use periodic::FOUR_STROKE;
+pub use periodic_cubic::{PeriodicCubic, TooClose};
 pub use polytropic_burn::PolytropicBurn;
 pub use single_zone_wiebe::{ChamberVolume, SingleZoneWiebe};
 pub use table::{Interpolation, Smoothing, Table};
 pub use two_harmonic_series::TwoHarmonicSeries;
 pub use valve_losses::ValveLosses;
-
-use gudgeon_core::BuildError;
-use gudgeon_core::kinds::KinematicsCtx;
-
-/// Length of a four-stroke cycle \[rad\].
-pub const FOUR_STROKE: f64 = 4.0 * std::f64::consts::PI;
-
-/// Checks that the mechanism exists and turns all the way round.
-fn check_mechanism(ctx: &KinematicsCtx) -> Result<(), BuildError> {
-    let KinematicsCtx { crank_radius: r, rod_length: l, offset: e, omega } = *ctx;
-    for (name, v) in [("crank_radius", r), ("rod_length", l), ("omega", omega)] {
-        if !(v.is_finite() && v > 0.0) {
-            return Err(BuildError::at(
-                name,
-                format!("{name} is {v}, it must be a number greater than zero"),
-            ));
-        }
-    }
-    if !e.is_finite() {
-        return Err(BuildError::at("offset", format!("offset is {e}, it must be a number")));
-    }
-    if l <= r + e.abs() {
-        let what = format!(
-            "the crank cannot turn: the rod ({l} m) must be longer than the crank radius ({r} m) plus the offset ({} m)",
-            e.abs()
-        );
-        return Err(BuildError::at("rod_length", what));
-    }
-    Ok(())
-}
-
-/// `theta` reduced to one period, `0 <= result < period`.
-fn reduced(theta: f64, period: f64) -> f64 {
-    if (0.0..period).contains(&theta) {
-        return theta;
-    }
-    // The quotient may be rounded across a whole number, and the result by an ulp to either side of the interval.
-    let x = theta - period * (theta / period).floor();
-    // (A `theta` that is not a number stays one.)
-    if x >= period || x < 0.0 { 0.0 } else { x }
-}

@@ -5,8 +5,9 @@ use gudgeon_core::quantity::{PosAngle, PosPressure, PosRatio, quantity};
 use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
+use crate::chamber::Chamber;
+use crate::periodic::{FOUR_STROKE, reduced};
 use crate::polytropic_burn::check_order;
-use crate::{Chamber, FOUR_STROKE, reduced};
 
 /// A motored engine: polytropic compression and expansion between an intake and an exhaust plateau.
 ///

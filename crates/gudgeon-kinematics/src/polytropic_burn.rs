@@ -3,7 +3,8 @@ use gudgeon_core::quantity::{PosAngle, PosPressure, PosRatio, quantity};
 use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
-use crate::{Chamber, FOUR_STROKE, reduced};
+use crate::chamber::Chamber;
+use crate::periodic::{FOUR_STROKE, reduced};
 
 /// Cylinder pressure in closed form: polytropic compression, plus a Wiebe-shaped burn that expands polytropically.
 ///

@@ -5,9 +5,10 @@ use gudgeon_core::quantity::{Energy, NonNegative, PosAngle, PosPressure, PosRati
 use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
+use crate::chamber::Chamber;
 use crate::exact_slider_crank::Exact;
+use crate::periodic::{FOUR_STROKE, reduced};
 use crate::polytropic_burn::check_order;
-use crate::{Chamber, FOUR_STROKE, reduced};
 
 /// Single-zone heat-release cycle: an ideal gas of two constant `γ` takes up heat along a Wiebe curve.
 ///
@@ -133,7 +134,7 @@ fn step() -> PosAngle {
 /// The published traces are tables of whole degrees; the last interval before `intake_reached` is drawn straight.
 const STRAIGHT: f64 = PI / 180.0;
 /// More steps than this per part of the cycle are a typing error, not a wish for accuracy.
-const MOST_STEPS: f64 = 1e7;
+const MAX_STEPS: f64 = 1e7;
 
 #[register_model(
     name = "single_zone_wiebe",
@@ -204,14 +205,14 @@ impl SingleZoneWiebe {
     ) -> Result<Part, BuildError> {
         // A hair of tolerance so that 140° in steps of 0.1° are 1400 and not 1401.
         let n = ((to - from) / self.step.si() - 1e-6).ceil().max(1.0);
-        if n > MOST_STEPS {
+        if n > MAX_STEPS {
             let what = format!("a step of {} deg makes {n} steps", self.step.si().to_degrees());
-            return Err(BuildError::at("step", what).help(format!("at most {MOST_STEPS} steps are taken")));
+            return Err(BuildError::at("step", what).help(format!("at most {MAX_STEPS} steps are taken")));
         }
         let (n, h) = (n as usize, (to - from) / n);
         let node = |i: usize, p: f64| {
             let theta = from + h * i as f64;
-            let (v, dv) = chamber.volume_and_slope(theta);
+            let (v, dv) = chamber.volume_and_derivative(theta);
             let (q, dq) = self.heat(theta);
             (v, q, p, (-gamma * p * dv + (gamma - 1.0) * dq) / v)
         };

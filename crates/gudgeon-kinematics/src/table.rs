@@ -7,7 +7,9 @@ use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
 use crate::periodic_cubic::{PeriodicCubic, TooClose};
+use crate::pulses::narrow_pulses;
 use crate::smoothing::{self, Smoothed};
+use crate::table_rows::{Column, Rows, equally_spaced};
 
 /// A measured or computed trace of cylinder pressure.
 ///
@@ -97,7 +99,7 @@ fn pascal() -> String {
     "Pa".into()
 }
 fn four_strokes() -> PosAngle {
-    quantity(crate::FOUR_STROKE)
+    quantity(crate::periodic::FOUR_STROKE)
 }
 fn no_shift() -> Angle {
     quantity(0.0)
@@ -171,57 +173,8 @@ impl CylinderPressureSpec for Table {
     }
 }
 
-/// Highest pressure of a gas that is read \[Pa\]: ten times that of a gun.
-const MOST: f64 = 1e10;
 /// Part of a cycle by which it may miss whole turns: 12.566 rad, four digits, count as two.
 const WHOLE: f64 = 5e-5;
-/// Widest pulse at half of its height \[rad\] that could lie between the ends of two steps: 10 degrees.
-const NARROW: f64 = 10.0 / 180.0 * PI;
-/// Least height of a pulse, over the range of the rows, for which steps stop.
-const LEAST_PULSE: f64 = 0.01;
-
-/// Angles of the tops and bottoms of pulses that no step may pass over: rows that the pressure leaves by more than [`LEAST_PULSE`] of
-/// the range on both sides within [`NARROW`], and that have less than this between the places where half of that is lost.
-fn narrow_pulses(angles: &[f64], p: &[f64], period: f64) -> Vec<f64> {
-    let n = p.len();
-    let (low, high) = p.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), p| (a.min(*p), b.max(*p)));
-    let least = LEAST_PULSE * (high - low);
-    // The largest fall (`sign` 1) or rise from row `k` on one side, before the trace goes beyond it, within the width of a pulse.
-    let side = |k: usize, step: usize, sign: f64| {
-        let (mut fall, mut j) = (0.0_f64, (k + step) % n);
-        loop {
-            let away = if step == 1 { angles[j] - angles[k] } else { angles[k] - angles[j] };
-            let down = sign * (p[k] - p[j]);
-            if j == k || away.rem_euclid(period) > NARROW || down < 0.0 {
-                return fall;
-            }
-            fall = fall.max(down);
-            j = (j + step) % n;
-        }
-    };
-    let narrow = |k: usize, sign: f64| {
-        let height = side(k, 1, sign).min(side(k, n - 1, sign));
-        let half = |step: usize| {
-            let mut j = (k + step) % n;
-            while j != k && sign * (p[k] - p[j]) < 0.5 * height {
-                j = (j + step) % n;
-            }
-            let away = if step == 1 { angles[j] - angles[k] } else { angles[k] - angles[j] };
-            away.rem_euclid(period)
-        };
-        height > least && half(1) + half(n - 1) < NARROW
-    };
-    (0..n)
-        .filter(|&k| {
-            let (before, after) = (p[(k + n - 1) % n], p[(k + 1) % n]);
-            let top = p[k] > before && p[k] >= after;
-            let bottom = p[k] < before && p[k] <= after;
-            top && narrow(k, 1.0) || bottom && narrow(k, -1.0)
-        })
-        .map(|k| angles[k])
-        .collect()
-}
-
 impl Table {
     /// Filters noisy rows, and says what that changed.
     fn smooth(&self, rows: &mut Rows, period: f64) -> Result<Option<Note>, BuildError> {
@@ -317,202 +270,6 @@ fn smoothed(s: Smoothed, period_deg: f64) -> Note {
         .amount("rms_change", s.change.0, "Pa")
         .amount("largest_change", s.change.1, "Pa")
         .amount("peak_change", s.peak, "Pa")
-}
-
-fn equally_spaced(n: usize, period_deg: f64) -> Vec<f64> {
-    let closed = n > 1 && (n - 1).is_multiple_of(90);
-    let intervals = (if closed { n - 1 } else { n }) as f64;
-    (0..n).map(|i| period_deg * i as f64 / intervals).collect()
-}
-
-#[derive(Clone, Copy)]
-enum Column {
-    Theta,
-    Pressure,
-}
-
-#[derive(Debug)]
-struct Rows {
-    /// The name of the file the rows come from.
-    file: Option<String>,
-    /// Line of each row in that file.
-    lines: Vec<usize>,
-    theta_deg: Vec<f64>,
-    pressure: Vec<f64>,
-}
-
-impl Rows {
-    fn parse(file: &str, text: &str, period_deg: f64) -> Result<Self, BuildError> {
-        let fault =
-            |line: usize, what: String| BuildError::at("file", format!("{file}, line {line}: {what}"));
-        let mut rows =
-            Self { file: Some(file.into()), lines: Vec::new(), theta_deg: Vec::new(), pressure: Vec::new() };
-        let mut format: Option<(Separator, usize)> = None;
-        for (number, line) in text.strip_prefix('\u{feff}').unwrap_or(text).lines().enumerate() {
-            let (number, line) = (number + 1, line.trim());
-            if line.is_empty() || line.starts_with('#') {
-                continue;
-            }
-            let separator = format.map_or_else(|| Separator::of(line), |f| f.0);
-            let mut values = [0.0; 2];
-            let mut count = 0;
-            for field in separator.split(line) {
-                match separator.number(field) {
-                    Some(v) if count < 2 => values[count] = v,
-                    Some(_) => {}
-                    None if format.is_none()
-                        && !field.starts_with(|c: char| c.is_ascii_digit() || "+-.,".contains(c)) =>
-                    {
-                        // A header. Anything that begins like a number but is none is a fault, not a header.
-                        count = 0;
-                        break;
-                    }
-                    None => return Err(fault(number, format!("`{field}` is not a number"))),
-                }
-                count += 1;
-            }
-            if count == 0 {
-                continue;
-            }
-            let columns = format.map_or(count, |f| f.1);
-            if count > 2 || count != columns {
-                let what = if count == columns { 2 } else { columns };
-                return Err(fault(number, format!("{count} columns where {what} are expected")));
-            }
-            format = Some((separator, columns));
-            rows.lines.push(number);
-            if columns == 2 {
-                rows.theta_deg.push(values[0]);
-            }
-            rows.pressure.push(values[columns - 1]);
-        }
-        if format.is_some_and(|f| f.1 == 1) {
-            rows.theta_deg = equally_spaced(rows.pressure.len(), period_deg);
-        }
-        Ok(rows)
-    }
-
-    fn fault(&self, row: usize, column: Column, what: &str) -> BuildError {
-        let (name, value) = match column {
-            Column::Theta => ("theta_deg", self.theta_deg.get(row)),
-            Column::Pressure => ("pressure", self.pressure.get(row)),
-        };
-        let value = value.copied().unwrap_or(f64::NAN);
-        match &self.file {
-            Some(file) => {
-                let line = self.lines.get(row).copied().unwrap_or(0);
-                BuildError::at("file", format!("{file}, line {line}: {name} {value} {what}"))
-            }
-            None => {
-                BuildError::at(format!("{name}.{row}"), format!("row {}: {name} {value} {what}", row + 1))
-            }
-        }
-    }
-
-    fn place(&self) -> (&'static str, String) {
-        match &self.file {
-            Some(file) => ("file", format!("{file}: ")),
-            None => ("pressure", String::new()),
-        }
-    }
-
-    /// Checks the rows, converts the pressures to pascal, and merges a row at the end of the cycle into the first one.
-    fn check(&mut self, pascal: impl Fn(f64) -> f64, period_deg: f64) -> Result<(), BuildError> {
-        for (i, t) in self.theta_deg.iter().enumerate() {
-            if !t.is_finite() {
-                return Err(self.fault(i, Column::Theta, "is not a finite number"));
-            }
-            match i.checked_sub(1).map(|before| t - self.theta_deg[before]) {
-                Some(0.0) => return Err(self.fault(i, Column::Theta, "repeats the row before")),
-                Some(d) if d < 0.0 => {
-                    let what =
-                        format!("is below {}, the row before; angles must ascend", self.theta_deg[i - 1]);
-                    return Err(self.fault(i, Column::Theta, &what));
-                }
-                _ => {}
-            }
-        }
-        for (i, &p) in self.pressure.iter().enumerate() {
-            if !p.is_finite() {
-                return Err(self.fault(i, Column::Pressure, "is not a finite number"));
-            }
-            let si = pascal(p);
-            if !(si.is_finite() && si > 0.0) {
-                let what = format!("is {si} Pa absolute, it must be greater than zero");
-                return Err(self.fault(i, Column::Pressure, &what));
-            }
-            if si > MOST {
-                let what = format!("is {si:e} Pa absolute, more than the {MOST:e} Pa of any machine");
-                return Err(self.fault(i, Column::Pressure, &what));
-            }
-        }
-        let (field, place) = self.place();
-        let too_few = |n: usize| {
-            BuildError::at(field, format!("{place}{n} rows over the cycle, at least 4 are needed"))
-        };
-        let n = self.theta_deg.len();
-        if n < 4 {
-            return Err(too_few(n));
-        }
-        self.pressure.iter_mut().for_each(|p| *p = pascal(*p));
-        let span = self.theta_deg[n - 1] - self.theta_deg[0];
-        // Degrees. Angles written with single precision are 6e-5 apart near 720.
-        let slack = 1e-4;
-        if span > period_deg + slack {
-            let what = format!("{place}the rows span {span} deg, the cycle {period_deg} deg");
-            return Err(BuildError::at(field, what).help("`cycle` sets the length of the cycle"));
-        }
-        if span >= period_deg - slack {
-            let (first, last) = (self.pressure[0], self.pressure[n - 1]);
-            if (first - last).abs() > 0.05 * first.min(last) {
-                let what = format!(
-                    "{place}the first and the last row are one cycle apart, but their pressures are {first} and {last} Pa"
-                );
-                return Err(BuildError::at(field, what)
-                    .help("drop the last row, or mend the trace: a cycle is periodic"));
-            }
-            self.pressure[0] = 0.5 * (first + last);
-            self.pressure.pop();
-            self.theta_deg.pop();
-            if n - 1 < 4 {
-                return Err(too_few(n - 1));
-            }
-        } else {
-            let widest = self.theta_deg.windows(2).map(|w| w[1] - w[0]).fold(0.0_f64, f64::max);
-            if period_deg - span > 2.0 * widest + slack {
-                let what = format!(
-                    "{place}the rows span {span} deg of a cycle of {period_deg} deg and leave the rest empty, more than twice the widest gap between them ({widest} deg)"
-                );
-                return Err(BuildError::at(field, what).help(
-                    "add the missing rows, repeat the first row at the end of the cycle, or set `cycle`",
-                ));
-            }
-        }
-        Ok(())
-    }
-}
-
-#[derive(Clone, Copy)]
-enum Separator {
-    Char(char),
-    Blank,
-}
-
-impl Separator {
-    fn of(line: &str) -> Self {
-        [';', '\t', ','].into_iter().find(|&c| line.contains(c)).map_or(Self::Blank, Self::Char)
-    }
-    fn split(self, line: &str) -> impl Iterator<Item = &str> {
-        let on = move |c: char| match self {
-            Self::Char(s) => c == s,
-            Self::Blank => c.is_whitespace(),
-        };
-        line.split(on).map(str::trim).filter(move |f| !(f.is_empty() && matches!(self, Self::Blank)))
-    }
-    fn number(self, field: &str) -> Option<f64> {
-        let decimal_comma = matches!(self, Self::Char(';' | '\t')) && field.contains(',');
-        if decimal_comma { field.replace(',', ".").parse().ok() } else { field.parse().ok() }
-    }
 }
 
 #[derive(Debug, Clone)]

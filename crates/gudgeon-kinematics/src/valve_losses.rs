@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::compressor::{Clearance, Space, TURN, check};
 use crate::ideal_valves::air;
+use crate::periodic::reduced;
 
 /// A compressor cylinder with the pressure drop of its valves.
 ///
@@ -77,7 +78,7 @@ impl CylinderPressureSpec for ValveLosses {
                 drop(density, self.suction_area.si()),
                 drop(density * (discharge / suction).powf(1.0 / n), self.discharge_area.si()),
             ],
-            top: discharge.min(suction * (space.most / space.least).powf(n)),
+            top: discharge.min(suction * (space.v_max / space.v_min).powf(n)),
             open: self.held_open,
             space,
             kinks: Vec::new(),
@@ -96,7 +97,7 @@ impl CylinderPressureSpec for ValveLosses {
             m.kinks.push(m.space.crossing(t, t + d, |x| m.expansion(x) - m.intake(x)));
             m.kinks.push(m.space.crossing(t + d, t + TURN, |x| m.outlet(x) - m.compression(x)));
         }
-        m.kinks.iter_mut().for_each(|x| *x = crate::reduced(*x, TURN));
+        m.kinks.iter_mut().for_each(|x| *x = reduced(*x, TURN));
         m.kinks.sort_unstable_by(f64::total_cmp);
         m.kinks.dedup();
         Ok(Box::new(m))
@@ -118,10 +119,10 @@ struct Throttled {
 
 impl Throttled {
     fn expansion(&self, theta: f64) -> f64 {
-        self.top * (self.space.least / self.space.volume(theta)).powf(self.n)
+        self.top * (self.space.v_min / self.space.volume(theta)).powf(self.n)
     }
     fn compression(&self, theta: f64) -> f64 {
-        self.suction * (self.space.most / self.space.volume(theta)).powf(self.n)
+        self.suction * (self.space.v_max / self.space.volume(theta)).powf(self.n)
     }
     fn intake(&self, theta: f64) -> f64 {
         self.suction - self.drops[0] * self.space.speed(theta).powi(2)

@@ -3,7 +3,8 @@ use gudgeon_core::quantity::{NonNegative, Ratio, Velocity, quantity};
 use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
-use crate::check;
+use super::check::check;
+use super::rounded_sign::rounded_sign;
 
 /// A constant coefficient against the direction of sliding, rounded at rest: `μ(v) = μ_c v/√(v² + v_0²)`.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
@@ -47,19 +48,6 @@ struct Rounded {
     rounding: f64,
 }
 
-/// `v/√(v² + v_0²)` and its derivative `(v_0/√)²/√`; the sign of `v`, and zero, for `v_0 = 0`.
-#[inline]
-pub(super) fn rounded_sign(speed: f64, rounding: f64) -> (f64, f64) {
-    let root = speed.hypot(rounding).min(f64::MAX);
-    if root > 0.0 {
-        let r = rounding / root;
-        // Bounded for a rounding speed so small that the slope has no number.
-        (speed / root, (r * r / root).min(f64::MAX))
-    } else {
-        (0.0, 0.0)
-    }
-}
-
 impl BoundaryFriction for Rounded {
     fn is_off(&self) -> bool {
         self.coefficient == 0.0
@@ -77,34 +65,5 @@ impl BoundaryFriction for Rounded {
             slope[i] = self.coefficient * rise;
         }
         Ok(())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::test::{friction, odd_with_its_slope};
-
-    fn model(rounding: f64) -> Box<dyn BoundaryFriction> {
-        Coulomb { friction_coefficient: boundary(), rounding_speed: quantity(rounding) }
-            .build()
-            .expect("builds")
-    }
-
-    #[test]
-    fn constant_away_from_rest() {
-        let m = model(0.01);
-        assert_eq!(friction(&*m, 0.0), (0.0, 10.0));
-        // 1 - v_0²/(2 v²) at 10 m/s.
-        assert!((friction(&*m, 10.0).0 - 0.1 * (1.0 - 0.5e-6)).abs() < 1e-12);
-        // 1/√2 at v_0.
-        assert!((friction(&*m, 0.01).0 - 0.1 * std::f64::consts::FRAC_1_SQRT_2).abs() < 1e-16);
-        odd_with_its_slope(&*m, 0.01);
-    }
-
-    #[test]
-    fn a_bare_jump() {
-        let m = model(0.0);
-        assert_eq!([-2.0, 0.0, 1e-300].map(|v| friction(&*m, v)), [(-0.1, 0.0), (0.0, 0.0), (0.1, 0.0)]);
     }
 }

@@ -2,7 +2,7 @@ use gudgeon_core::kinds::{BoundaryFriction, BoundaryFrictionSpec};
 use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
-use crate::check;
+use super::check::check;
 
 /// Solid contact without friction.
 #[derive(Debug, Clone, Default, Serialize, Deserialize, schemars::JsonSchema)]

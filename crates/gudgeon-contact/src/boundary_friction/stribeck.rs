@@ -3,8 +3,8 @@ use gudgeon_core::quantity::{NonNegative, PosRatio, PosVelocity, Ratio, Velocity
 use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
-use super::coulomb::rounded_sign;
-use crate::check;
+use super::check::check;
+use super::rounded_sign::rounded_sign;
 
 /// A coefficient that falls from a static to a kinetic value with the sliding speed:
 ///
@@ -116,40 +116,5 @@ impl BoundaryFriction for Falling {
             slope[i] = value * rise + fall * sign;
         }
         Ok(())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::test::{friction, odd_with_its_slope};
-
-    fn spec(exponent: f64, rounding: f64) -> Stribeck {
-        Stribeck {
-            static_coefficient: quantity(0.15),
-            kinetic_coefficient: quantity(0.10),
-            stribeck_speed: quantity(0.1),
-            exponent: quantity(exponent),
-            rounding_speed: quantity(rounding),
-        }
-    }
-
-    #[test]
-    fn from_static_to_kinetic() {
-        for n in [1.0, 2.0, 3.5] {
-            let bare = spec(n, 0.0).build().expect("builds");
-            // 1/e of the way at the Stribeck speed, whatever the exponent.
-            assert!((friction(&*bare, 0.1).0 - 0.1 - 0.05 / std::f64::consts::E).abs() < 1e-16);
-            // exp(-1e-6) of the surplus at most is lost at 1e-7 m/s.
-            assert!((friction(&*bare, 1e-7).0 - 0.15).abs() < 1e-7);
-            assert_eq!(friction(&*bare, 1e300), (0.1, 0.0));
-            assert_eq!(friction(&*bare, 0.0).0, 0.0);
-            odd_with_its_slope(&*spec(n, 0.01).build().expect("builds"), 0.1);
-        }
-    }
-
-    #[test]
-    fn refuses_a_corner() {
-        assert_eq!(spec(0.5, 0.01).build().err().map(|e| e.field), Some("exponent".into()));
     }
 }

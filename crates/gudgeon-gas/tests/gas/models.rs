@@ -2,12 +2,12 @@
 
 use std::f64::consts::{PI, TAU};
 
-use gudgeon_core::geometry::{BackVolume, Chamfer};
+use gudgeon_core::geometry::{BackVolume, Chamfer, RingPlace};
 use gudgeon_core::kinds::{GasFlowCtx, GasFlowSpec, GasIn, GasOut};
 use gudgeon_core::quantity::quantity;
 use gudgeon_gas::{
-    BackVolumes, Gamma, GapOrifice, GasState, GasViscosity, NarrowChannel, Orifice, OrificeNetwork,
-    Prescribed, channel_conductance,
+    BackVolumes, ChannelFriction, Gamma, GapOrifice, GasState, GasViscosity, NarrowChannel, Orifice,
+    OrificeNetwork, Prescribed, TRANSITION, channel_conductance, sutherland_viscosity,
 };
 
 use crate::packs::{build, pack, place};
@@ -294,4 +294,91 @@ fn a_ring_off_the_liner_lets_gas_past_its_face() {
         // 2π 60 mm 0.3 mm is ten thousand times the gap.
         assert!(flow(350e-6) > 3e3 * closed, "{} {closed}", flow(350e-6));
     }
+}
+
+/// A sealed ring has its gap, and what passes its face, in every model.
+#[test]
+fn sealed_rings_leak_at_gap_and_face() {
+    let mut pack = pack(&[BackVolume::Sealed]);
+    {
+        let r = &mut pack.rings[0];
+        (r.gap_area, r.chamfer, r.leak_face) = (Some(2e-7), Chamfer::default(), 3e-6);
+    }
+    let (p, t) = ((20e5, 1e5), (523.15, 503.15));
+    let specs: [(Box<dyn GasFlowSpec>, f64); 3] = [
+        (Box::new(GapOrifice::default()), orifice(2e-7, p, t)),
+        (Box::new(OrificeNetwork::default()), orifice(2e-7 + TAU * 0.06 * 3e-6, p, t)),
+        (Box::new(NarrowChannel::default()), {
+            // The channel along the face of 3 mm, at the mean temperature, limited by its mouth: losses add as c and o².
+            let mean = 513.15;
+            let mu = sutherland_viscosity(mean);
+            let c = channel_conductance(TAU * 0.06, 3e-6, 3e-3, mu, R * mean) * (p.0 * p.0 - p.1 * p.1);
+            let law = Orifice { laminar: quantity(0.0), ..Orifice::default() }.build(1.4, R).expect("builds");
+            let o = law.flow(TAU * 0.06 * 3e-6, &GasState::new(p.0, R * t.0), &GasState::new(p.1, R * t.1));
+            orifice(2e-7, p, t) + 2.0 * c * o / (o + (o * o + 4.0 * c * c).sqrt())
+        }),
+    ];
+    for (spec, flow) in specs {
+        let mut gas = build(spec.as_ref(), &pack);
+        assert_eq!(gas.n_states(), 0);
+        let mut out = GasOut::new(1);
+        let inp = GasIn { p_cylinder: p.0, p_crankcase: p.1, rings: &[place(&pack, 0, 0.0, 0.0, 0.0)] };
+        gas.rates(&inp, &[], &mut [], &mut out).expect("rates");
+        // The fast flow function is right within 2e-9.
+        assert!((out.flow_in[0] / flow - 1.0).abs() < 3e-9, "{spec:?}: {:e} {flow:e}", out.flow_in[0]);
+        assert_eq!(out.flow_in, out.flow_out);
+    }
+}
+
+/// Friction that turns turbulent takes off what its law says, and nothing where the flow is slow.
+#[test]
+fn blended_friction_of_a_face() {
+    let mut pack = pack(&[BackVolume::Sealed]);
+    {
+        let r = &mut pack.rings[0];
+        (r.gap_area, r.chamfer) = (Some(0.0), Chamfer::default());
+    }
+    for (height, p0) in [(1e-6, 2e5), (3e-5, 60e5), (3e-4, 60e5)] {
+        pack.rings[0].leak_face = height;
+        let spec = NarrowChannel {
+            friction: ChannelFriction::Blended,
+            gas_viscosity: GasViscosity::Constant,
+            viscosity: quantity(2.5e-5),
+            ..NarrowChannel::default()
+        };
+        let mut gas = build(&spec, &pack);
+        let mut out = GasOut::new(1);
+        let inp = GasIn { p_cylinder: p0, p_crankcase: 1e5, rings: &[place(&pack, 0, 0.0, 0.0, 0.0)] };
+        gas.rates(&inp, &[], &mut [], &mut out).expect("rates");
+        let laminar = channel_conductance(TAU * 0.06, height, 3e-3, 2.5e-5, R * 513.15) * (p0 * p0 - 1e10);
+        // Re = ṁ/(π R μ), and the flow [1 + (Re/Re_c)³]^(-1/7) times the laminar one, behind its mouth.
+        let reynolds = laminar / (PI * 0.06 * 2.5e-5);
+        let c = laminar * (1.0 + (reynolds / TRANSITION).powi(3)).powf(-1.0 / 7.0);
+        let law = Orifice { laminar: quantity(0.0), ..Orifice::default() }.build(1.4, R).expect("builds");
+        let o =
+            law.flow(TAU * 0.06 * height, &GasState::new(p0, R * 523.15), &GasState::new(1e5, R * 503.15));
+        let flow = 2.0 * c * o / (o + (o * o + 4.0 * c * c).sqrt());
+        // A few roundings of a power.
+        assert!((out.flow_in[0] / flow - 1.0).abs() < 1e-12, "{height}: {:e} {flow:e}", out.flow_in[0]);
+    }
+}
+
+/// Prescribed pressures refuse boundaries that are none, and take positions between the flanks.
+#[test]
+fn prescribed_pressures_of_impossible_boundaries() {
+    let pack = pack(&[BackVolume::Geometric]);
+    let mut gas = build(&Prescribed::default(), &pack);
+    assert!(!gas.uses_end_gaps() && !gas.uses_film_height() && gas.state_names().is_empty());
+    let mut at = |p_cylinder: f64, p_crankcase: f64, e: f64| {
+        let rings = [RingPlace { e, ..place(&pack, 0, 0.0, 0.5, 0.0) }];
+        let mut out = GasOut::new(1);
+        gas.pressures(&GasIn { p_cylinder, p_crankcase, rings: &rings }, &[], &mut out)
+            .map(|()| out.p_back[0])
+    };
+    for p in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(at(p, 1e5, 0.5).is_err_and(|e| e.is_recoverable()));
+        assert!(at(1e5, p, 0.5).is_err_and(|e| e.is_recoverable()));
+    }
+    assert_eq!(at(4e5, 1e5, -1.0).ok(), Some(4e5));
+    assert_eq!(at(4e5, 1e5, 2.0).ok(), Some(1e5));
 }

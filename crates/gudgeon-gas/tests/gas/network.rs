@@ -174,6 +174,9 @@ fn says_what_is_wrong() {
     let law = isentropic(1e-3);
     assert!(Network::new(law.clone(), R, &[300.0, 0.0], 1, &[]).is_err());
     assert!(Network::new(law.clone(), R, &[300.0], 1, &[(0, 1)]).is_err());
+    assert!(Network::new(law.clone(), R, &[300.0], 2, &[]).is_err());
+    assert!(Network::new(law.clone(), R, &[300.0, f64::INFINITY], 1, &[]).is_err());
+    assert!(Network::new(law.clone(), -R, &[-300.0], 1, &[]).is_ok_and(|net| net.volumes() == 1));
     let mut net = Network::new(law, R, &[300.0, 300.0], 1, &[(0, 1)]).expect("builds");
     for (m, v) in [(0.0, 1.0), (-1.0, 1.0), (1.0, 0.0), (f64::NAN, 1.0), (f64::MAX, f64::MIN_POSITIVE)] {
         assert!(net.set_mass("test", 0, m, v).expect_err("refused").is_recoverable());

@@ -1,6 +1,5 @@
 //! Every contact model of this crate through the front door: registry, case syntax, defaults, refusals.
 
-use gudgeon_contact as _;
 use gudgeon_core::Registry;
 use gudgeon_core::kinds::{Contact, ContactSpec};
 

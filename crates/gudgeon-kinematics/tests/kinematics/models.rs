@@ -3,7 +3,6 @@
 use gudgeon_core::Registry;
 use gudgeon_core::file::Files;
 use gudgeon_core::kinds::{CylinderPressureCtx, CylinderPressureSpec, KinematicsCtx, KinematicsSpec};
-use gudgeon_kinematics as _;
 
 const ENGINE: KinematicsCtx =
     KinematicsCtx { crank_radius: 0.0387, rod_length: 0.144, offset: 0.0, omega: 314.0 };

@@ -1,0 +1,10 @@
+//! Tests of the crate, one module a topic.
+
+use gudgeon_contact as _;
+
+mod asperity_integral;
+mod boundary_friction;
+mod crest_wedge;
+mod greenwood_tripp;
+mod linear_penalty;
+mod models;
