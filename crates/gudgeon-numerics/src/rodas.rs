@@ -106,6 +106,102 @@ impl Rodas {
         }
     }
 
+    /// Factors `diagonal I - J`; false when it is singular.
+    fn factor<S: OdeSystem + ?Sized>(&mut self, sys: &mut S, diagonal: f64) -> bool {
+        if self.core.structured {
+            return sys.factor(diagonal);
+        }
+        let n = self.core.n;
+        for (w, j) in self.lu.iter_mut().zip(&self.core.jac) {
+            *w = -j;
+        }
+        for i in 0..n {
+            self.lu[i * n + i] += diagonal;
+        }
+        self.weight.copy_from_slice(&self.core.weight);
+        lu_factor_weighted(&mut self.lu, n, &mut self.piv, Some(&mut self.weight)).is_ok()
+    }
+
+    /// Stage `i` of a step of size `h` from `t`; its point is left in `y_tmp`.
+    fn stage<S: OdeSystem + ?Sized>(
+        &mut self,
+        sys: &mut S,
+        i: usize,
+        t: f64,
+        h: f64,
+        stats: &mut Stats,
+    ) -> Result<(), EvalError> {
+        let (n, nq) = (self.core.n, self.core.m - self.core.n);
+        let tableau = self.tableau;
+        let (done, rest) = self.u.split_at_mut(i * n);
+        let ui = &mut rest[..n];
+        if tableau.a[i].iter().all(|a| *a == 0.0) {
+            // The start itself.
+            ui.copy_from_slice(&self.core.f0[..n]);
+            self.g[i * nq..i * nq + nq].copy_from_slice(&self.core.f0[n..]);
+        } else {
+            let y = &mut self.core.y_tmp[..n];
+            if i < tableau.chained {
+                y.copy_from_slice(&self.core.x0[..n]);
+                for (j, &a) in tableau.a[i].iter().enumerate() {
+                    add(y, a, &done[j * n..j * n + n]);
+                }
+            } else {
+                // The point of the stage before, plus that stage.
+                for (y, u) in y.iter_mut().zip(&done[(i - 1) * n..i * n]) {
+                    *y += u;
+                }
+            }
+            let te = self.core.clamp_time(t + tableau.alpha[i] * h);
+            Core::checked_rhs(sys, te, &self.core.y_tmp[..n], &mut self.f, stats)?;
+            ui.copy_from_slice(&self.f[..n]);
+            self.g[i * nq..i * nq + nq].copy_from_slice(&self.f[n..]);
+        }
+        let inv_h = 1.0 / h;
+        for (j, &c) in tableau.c[i].iter().enumerate() {
+            add(ui, c * inv_h, &done[j * n..j * n + n]);
+        }
+        let d = tableau.d[i] * h;
+        if d != 0.0 {
+            add(ui, d, &self.core.dfdt[..n]);
+        }
+        if self.core.structured {
+            sys.solve(ui);
+        } else {
+            lu_solve(&self.lu, n, &self.piv, ui);
+        }
+        Ok(())
+    }
+
+    /// The end of the step in `x1` from its stages, and the error norm.
+    fn finish(&mut self, h: f64, opts: &Options) -> f64 {
+        let (n, nq) = (self.core.n, self.core.m - self.core.n);
+        let tableau = self.tableau;
+        // y_tmp is the point of the last stage; adding its stage gives the result.
+        let last = (tableau.alpha.len() - 1) * n;
+        let mut error = 0.0_f64;
+        for i in 0..n {
+            self.core.x1[i] = self.core.y_tmp[i] + self.u[last + i];
+        }
+        for i in 0..n {
+            error = larger(error, self.u[last + i] / self.core.scale(opts, i));
+        }
+        if nq > 0 {
+            self.combine(tableau.slopes);
+            for r in 0..nq {
+                self.core.x1[n + r] = self.core.x0[n + r] + self.quadrature(r, tableau.slopes, h);
+            }
+            if !opts.atol_quad.is_empty() {
+                self.combine(tableau.slopes_error);
+                for r in 0..nq {
+                    let e = self.quadrature(r, tableau.slopes_error, h);
+                    error = larger(error, e / self.core.scale(opts, n + r));
+                }
+            }
+        }
+        error
+    }
+
     /// Adds `h Σ_i b_i (g_i + J_q u_i + h d_i ∂g/∂t)` for quadrature `r` and slope weights `b`; `w` holds `Σ_i b_i u_i`.
     fn quadrature(&self, r: usize, b: &[f64], h: f64) -> f64 {
         let (n, nq) = (self.core.n, self.core.m - self.core.n);
@@ -124,9 +220,7 @@ impl Rodas {
         let n = self.core.n;
         self.w.fill(0.0);
         for (i, &b) in b.iter().enumerate() {
-            for (w, u) in self.w.iter_mut().zip(&self.u[i * n..i * n + n]) {
-                *w += b * u;
-            }
+            add(&mut self.w, b, &self.u[i * n..i * n + n]);
         }
     }
 }
@@ -154,104 +248,20 @@ impl Scheme for Rodas {
         opts: &Options,
         stats: &mut Stats,
     ) -> Result<Trial, EvalError> {
-        let (n, m) = (self.core.n, self.core.m);
-        let nq = m - n;
-        let tableau = self.tableau;
-        let stages = tableau.alpha.len();
         if !self.core.jac_current {
-            self.core.linearise(sys, t, h, opts, true, stats)?;
+            self.core.linearise(sys, t, h, opts, stats)?;
             self.core.set_weights(opts);
             self.core.jac_current = true;
         }
-        let diagonal = 1.0 / (h * tableau.gamma);
         stats.lu += 1;
-        let structured = self.core.structured;
-        if structured {
-            if !sys.factor(diagonal) {
-                return Ok(Trial::Retry(0.5));
-            }
-        } else {
-            for (w, j) in self.lu.iter_mut().zip(&self.core.jac) {
-                *w = -j;
-            }
-            for i in 0..n {
-                self.lu[i * n + i] += diagonal;
-            }
-            self.weight.copy_from_slice(&self.core.weight);
-            if lu_factor_weighted(&mut self.lu, n, &mut self.piv, Some(&mut self.weight)).is_err() {
-                return Ok(Trial::Retry(0.5));
-            }
+        if !self.factor(sys, 1.0 / (h * self.tableau.gamma)) {
+            return Ok(Trial::Retry(0.5));
         }
-        let inv_h = 1.0 / h;
-        for i in 0..stages {
-            let (done, rest) = self.u.split_at_mut(i * n);
-            let ui = &mut rest[..n];
-            if tableau.a[i].iter().all(|a| *a == 0.0) {
-                // The start itself.
-                ui.copy_from_slice(&self.core.f0[..n]);
-                self.g[i * nq..i * nq + nq].copy_from_slice(&self.core.f0[n..]);
-            } else {
-                let y = &mut self.core.y_tmp[..n];
-                if i < tableau.chained {
-                    y.copy_from_slice(&self.core.x0[..n]);
-                    for (j, &a) in tableau.a[i].iter().enumerate() {
-                        for (y, u) in y.iter_mut().zip(&done[j * n..j * n + n]) {
-                            *y += a * u;
-                        }
-                    }
-                } else {
-                    // The point of the stage before, plus that stage.
-                    for (y, u) in y.iter_mut().zip(&done[(i - 1) * n..i * n]) {
-                        *y += u;
-                    }
-                }
-                let te = self.core.clamp_time(t + tableau.alpha[i] * h);
-                Core::checked_rhs(sys, te, &self.core.y_tmp[..n], &mut self.f, stats)?;
-                ui.copy_from_slice(&self.f[..n]);
-                self.g[i * nq..i * nq + nq].copy_from_slice(&self.f[n..]);
-            }
-            for (j, &c) in tableau.c[i].iter().enumerate() {
-                let c = c * inv_h;
-                for (x, u) in ui.iter_mut().zip(&done[j * n..j * n + n]) {
-                    *x += c * u;
-                }
-            }
-            let d = tableau.d[i] * h;
-            if d != 0.0 {
-                for (x, ft) in ui.iter_mut().zip(&self.core.dfdt) {
-                    *x += d * ft;
-                }
-            }
-            if structured {
-                sys.solve(ui);
-            } else {
-                lu_solve(&self.lu, n, &self.piv, ui);
-            }
+        for i in 0..self.tableau.alpha.len() {
+            self.stage(sys, i, t, h, stats)?;
             stats.solves += 1;
         }
-        // y_tmp is the point of the last stage; adding its stage gives the result.
-        let last = (stages - 1) * n;
-        let mut error = 0.0_f64;
-        for i in 0..n {
-            self.core.x1[i] = self.core.y_tmp[i] + self.u[last + i];
-        }
-        for i in 0..n {
-            error = worst(error, self.u[last + i] / self.core.scale(opts, i));
-        }
-        if nq > 0 {
-            self.combine(tableau.slopes);
-            for r in 0..nq {
-                self.core.x1[n + r] = self.core.x0[n + r] + self.quadrature(r, tableau.slopes, h);
-            }
-            if !opts.atol_quad.is_empty() {
-                self.combine(tableau.slopes_error);
-                for r in 0..nq {
-                    let e = self.quadrature(r, tableau.slopes_error, h);
-                    error = worst(error, e / self.core.scale(opts, n + r));
-                }
-            }
-        }
-        Ok(Trial::Done { error, safety: 0.9 })
+        Ok(Trial::Done { error: self.finish(h, opts) })
     }
 
     fn dense(&mut self, h: f64) {
@@ -261,9 +271,7 @@ impl Scheme for Rodas {
             let mut out = std::mem::take(&mut self.core.cont[p]);
             out[..n].fill(0.0);
             for (i, &w) in tableau.dense[p].iter().enumerate() {
-                for (c, u) in out[..n].iter_mut().zip(&self.u[i * n..i * n + n]) {
-                    *c += w * u;
-                }
+                add(&mut out[..n], w, &self.u[i * n..i * n + n]);
             }
             if nq > 0 {
                 self.combine(tableau.slopes_dense[p]);
@@ -274,14 +282,18 @@ impl Scheme for Rodas {
             self.core.cont[p] = out;
         }
     }
+}
 
-    fn accepted(&mut self, _h: f64) -> bool {
-        false
+/// `x += a u`.
+#[inline]
+fn add(x: &mut [f64], a: f64, u: &[f64]) {
+    for (x, u) in x.iter_mut().zip(u) {
+        *x += a * u;
     }
 }
 
-/// Largest magnitude; a NaN wins.
-pub(crate) fn worst(a: f64, b: f64) -> f64 {
+/// The larger of `a` and `|b|`; a NaN wins.
+fn larger(a: f64, b: f64) -> f64 {
     let b = b.abs();
     if b > a || b.is_nan() { b } else { a }
 }

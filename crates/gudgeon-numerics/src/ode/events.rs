@@ -7,10 +7,14 @@
 
 use crate::EvalError;
 
-use super::driver::Core;
-use super::{Direction, EventAction, Flow, IntegrateError, OdeSystem, Options, Stats, StepView};
+use super::dense::{Dense, Piece};
+use super::integrator::{Flow, StepView};
+use super::options::{IntegrateError, Options, Stats};
+use super::samples::Samples;
+use super::system::{Direction, EventAction, OdeSystem};
 use crate::roots;
 
+/// What is known of the event functions, and work arrays.
 #[derive(Debug, Clone)]
 pub(crate) struct Events {
     /// Values at the last sample, at a trial point.
@@ -25,6 +29,8 @@ pub(crate) struct Events {
     band_tmp: Vec<f64>,
     /// Largest |g| seen in the current step.
     size: Vec<f64>,
+    /// Time at which the current piece of the step begins.
+    from: f64,
     /// States at the two ends of a piece, and a copy for the handler.
     xa: Vec<f64>,
     xb: Vec<f64>,
@@ -40,72 +46,64 @@ const MAX_REPEATS: u32 = 20;
 /// Restarts in a row within the resolution of time.
 const MAX_IDLE: u32 = 100;
 
-pub(crate) enum ScanEnd {
+/// How the search through a step ended.
+pub(super) enum ScanEnd {
+    /// At the end of the step.
     Through,
-    Restart { t: f64 },
+    /// At the end of the step, where the observer stops the integration.
+    StoppedAtEnd,
+    /// The integration stops in the state [`Events::state`].
     Stopped,
+    /// An event at `t` left the state [`Events::state`], from which to go on.
+    Restart { t: f64 },
+    /// Event `event` repeats at `t` without progress, in the state [`Events::state`].
+    Chatter { t: f64, event: usize },
 }
 
-/// `x(θ) = (1-θ) x0 + θ (x1 + (1-θ)(c0 + θ (c1 + θ c2)))`, states first, then quadratures.
-#[derive(Clone, Copy)]
-struct Dense<'a> {
-    t: f64,
-    h: f64,
-    x0: &'a [f64],
-    x1: &'a [f64],
-    c: [&'a [f64]; 3],
+/// An accepted step: its dense output, and its end time, which `t + h` may miss by rounding.
+pub(super) struct Step<'a> {
+    pub n: usize,
+    pub dense: Dense<'a>,
+    pub t_new: f64,
 }
 
-impl Dense<'_> {
-    fn eval(&self, t: f64, from: usize, out: &mut [f64]) {
-        let th = (t - self.t) / self.h;
-        let om = 1.0 - th;
-        let k = out.len();
-        let r = from..from + k;
-        let (x0, x1) = (&self.x0[r.clone()], &self.x1[r.clone()]);
-        let (c0, c1, c2) = (&self.c[0][r.clone()], &self.c[1][r.clone()], &self.c[2][r]);
-        for i in 0..k {
-            // Written around x0 so that a constant stays that constant.
-            out[i] = x0[i] + th * ((x1[i] - x0[i]) + om * (c0[i] + th * (c1[i] + th * c2[i])));
+impl Step<'_> {
+    /// Time at θ; exact at the end of the step, so that the pieces join without gaps.
+    fn time(&self, theta: f64) -> f64 {
+        if theta >= 1.0 { self.t_new } else { self.dense.t + theta * self.dense.h }
+    }
+
+    /// The first components at θ, as many as `x` holds.
+    fn state(&self, theta: f64, x: &mut [f64]) {
+        if theta >= 1.0 {
+            x.copy_from_slice(&self.dense.x1[..x.len()]);
+        } else {
+            self.dense.eval(self.time(theta), 0, x);
         }
     }
+
+    /// Spacing of the numbers at the times of the step.
+    fn ulp(&self) -> f64 {
+        f64::EPSILON * self.dense.t.abs().max(self.t_new.abs())
+    }
+
+    /// Resolution of θ.
+    fn resolution(&self) -> f64 {
+        (2.0 * self.ulp() / self.dense.h).max(2.0 * f64::EPSILON)
+    }
+
+    fn fail(&self, source: EvalError) -> IntegrateError {
+        IntegrateError::Eval { t: self.dense.t, source }
+    }
 }
 
-struct View<'a> {
-    t0: f64,
-    t1: f64,
-    y0: &'a [f64],
-    y1: &'a [f64],
-    q0: &'a [f64],
-    q1: &'a [f64],
-    dense: Dense<'a>,
-}
-
-impl StepView for View<'_> {
-    fn t0(&self) -> f64 {
-        self.t0
-    }
-    fn t1(&self) -> f64 {
-        self.t1
-    }
-    fn y0(&self) -> &[f64] {
-        self.y0
-    }
-    fn y1(&self) -> &[f64] {
-        self.y1
-    }
-    fn q0(&self) -> &[f64] {
-        self.q0
-    }
-    fn q1(&self) -> &[f64] {
-        self.q1
-    }
-    fn interpolate(&self, t: f64, y: &mut [f64]) {
-        self.dense.eval(t, 0, y);
-    }
-    fn interpolate_quad(&self, t: f64, q: &mut [f64]) {
-        self.dense.eval(t, self.y0.len(), q);
-    }
+/// Event function `k` changes its side at θ.
+#[derive(Clone, Copy)]
+struct Crossing {
+    theta: f64,
+    k: usize,
+    /// The function left zero on the far side after a state change: the same event once more.
+    again: bool,
 }
 
 fn sign(v: f64) -> i8 {
@@ -128,7 +126,8 @@ fn counts(d: Direction, side: i8) -> bool {
 }
 
 impl Events {
-    pub(crate) fn new(m: usize) -> Self {
+    /// For states and quadratures of `m` components together.
+    pub(super) fn new(m: usize) -> Self {
         let v = Vec::new;
         Self {
             g: v(),
@@ -138,6 +137,7 @@ impl Events {
             band: v(),
             band_tmp: v(),
             size: v(),
+            from: 0.0,
             xa: vec![0.0; m],
             xb: vec![0.0; m],
             y: vec![0.0; m],
@@ -147,7 +147,8 @@ impl Events {
         }
     }
 
-    pub(crate) fn resize(&mut self, k: usize) {
+    /// Prepares an integration with `k` event functions.
+    pub(super) fn resize(&mut self, k: usize) {
         for v in [&mut self.g, &mut self.trial, &mut self.band, &mut self.band_tmp, &mut self.size] {
             v.resize(k, 0.0);
         }
@@ -159,7 +160,7 @@ impl Events {
     }
 
     /// Sides at the start of an integration.
-    pub(crate) fn start<S: OdeSystem + ?Sized>(
+    pub(super) fn start<S: OdeSystem + ?Sized>(
         &mut self,
         sys: &mut S,
         t: f64,
@@ -170,265 +171,276 @@ impl Events {
         }
         sys.events(t, y, &mut self.g)?;
         for k in 0..self.g.len() {
-            self.side[k] = sign(self.g[k]);
-            self.repeat[k] = false;
-            self.band[k] = 0.0;
+            self.set_side(k, sign(self.g[k]));
         }
         Ok(())
     }
 
+    /// States and quadratures where a scan ended inside the step.
+    pub(super) fn state(&self) -> &[f64] {
+        &self.xb
+    }
+
     /// Hands the step to the observer, in pieces between events, and lets the events act.
-    ///
-    /// On [`ScanEnd::Restart`] and [`ScanEnd::Stopped`] the state at the event is in `core.x0`.
-    #[expect(clippy::too_many_arguments, reason = "one call site, in the step loop")]
-    pub(crate) fn scan<S: OdeSystem + ?Sized>(
-        core: &mut Core,
+    pub(super) fn scan<S: OdeSystem + ?Sized>(
+        &mut self,
+        step: &Step<'_>,
         sys: &mut S,
-        t: f64,
-        h: f64,
-        t_new: f64,
         opts: &Options,
         observer: &mut dyn FnMut(&mut S, &dyn StepView) -> Flow,
         stats: &mut Stats,
     ) -> Result<ScanEnd, IntegrateError> {
-        let n = core.n;
-        let dense =
-            Dense { t, h, x0: &core.x0, x1: &core.x1, c: [&core.cont[0], &core.cont[1], &core.cont[2]] };
-        let fail = |e: EvalError| IntegrateError::Eval { t, source: e };
-        let ev = &mut core.events;
-        if ev.g.is_empty() {
-            let view = View {
-                t0: t,
-                t1: t_new,
-                y0: &core.x0[..n],
-                y1: &core.x1[..n],
-                q0: &core.x0[n..],
-                q1: &core.x1[n..],
-                dense,
-            };
-            return Ok(match observer(sys, &view) {
-                Flow::Continue => ScanEnd::Through,
-                Flow::Stop => {
-                    std::mem::swap(&mut core.x0, &mut core.x1);
-                    ScanEnd::Stopped
-                }
-            });
+        let start = (step.dense.t, step.dense.x0);
+        if self.g.is_empty() {
+            return Ok(last_piece(step, start, sys, observer));
         }
-        // `tb` is exact at the end of the step, so that the pieces join without gaps.
-        let time = |th: f64| if th >= 1.0 { t_new } else { t + th * h };
-        let ulp = f64::EPSILON * t.abs().max(t_new.abs());
-        let tol = (2.0 * ulp / h).max(2.0 * f64::EPSILON);
-        for k in 0..ev.g.len() {
-            ev.size[k] = ev.g[k].abs();
+        for k in 0..self.g.len() {
+            self.size[k] = self.g[k].abs();
         }
-        ev.xa.copy_from_slice(&core.x0);
+        self.from = step.dense.t;
+        self.xa.copy_from_slice(step.dense.x0);
+        let unknown = self.side.contains(&0);
+        // No event lies before this θ.
         let mut a = 0.0;
-        let mut piece_start = t;
-        let unknown = ev.side.contains(&0);
-        // Samples: geometric while a side is unknown, then equidistant, then the end.
-        let interior = f64::from(opts.event_samples) + 1.0;
-        let mut next_geometric = if unknown { tol.max(1e-13) * 2.0 } else { f64::INFINITY };
-        let mut next_even = 1.0;
-        loop {
-            let even = next_even / interior;
-            let b = if next_geometric < even.min(1.0) {
-                let b = next_geometric;
-                next_geometric *= 4.0;
-                b
-            } else {
-                next_even += 1.0;
-                even.min(1.0)
-            };
-            let at_end = b >= 1.0;
-            if at_end {
-                ev.y[..n].copy_from_slice(&core.x1[..n]);
-            } else {
-                dense.eval(time(b), 0, &mut ev.y[..n]);
-            }
-            sys.events(time(b), &ev.y[..n], &mut ev.g).map_err(fail)?;
-            for k in 0..ev.g.len() {
-                if ev.g[k].is_nan() {
-                    return Err(IntegrateError::Eval {
-                        t,
-                        source: EvalError::fatal("events", "an event function is not a number"),
-                    });
-                }
-                ev.size[k] = ev.size[k].max(ev.g[k].abs());
-            }
+        for b in Samples::new(opts.event_samples, unknown.then(|| step.resolution())) {
+            self.sample(step, sys, b)?;
             // All crossings in (a, b], in order.
-            loop {
-                let mut first: Option<(f64, usize, bool)> = None;
-                for k in 0..ev.g.len() {
-                    let d = sys.event_direction(k);
-                    let now = sign(ev.g[k]);
-                    if ev.side[k] == 0 {
-                        if ev.g[k].abs() <= ev.band[k] {
-                            continue;
-                        }
-                        // Out of the band. On the far side of a directed event after a state change: it happens again.
-                        let again = ev.repeat[k] && d != Direction::Either && counts(d, -now);
-                        if !again {
-                            ev.side[k] = now;
-                            ev.repeat[k] = false;
-                        } else if first.is_none_or(|(x, ..)| b < x) {
-                            first = Some((b, k, true));
-                        }
-                        continue;
-                    }
-                    if i32::from(ev.side[k]) * i32::from(now) > 0 {
-                        continue;
-                    }
-                    if !counts(d, ev.side[k]) {
-                        // Crossed against its direction: only the side changes. A zero leaves the side open.
-                        if now != 0 {
-                            ev.side[k] = now;
-                        }
-                        continue;
-                    }
-                    let s = f64::from(ev.side[k]);
-                    let root = if !sys.event_located(k) {
-                        b
-                    } else {
-                        let (y, g) = (&mut ev.y, &mut ev.trial);
-                        let mut failure = None;
-                        let r = roots::itp(
-                            |th| {
-                                if th >= 1.0 {
-                                    y[..n].copy_from_slice(&dense.x1[..n]);
-                                } else {
-                                    dense.eval(time(th), 0, &mut y[..n]);
-                                }
-                                sys.events(time(th), &y[..n], g).map(|()| s * g[k])
-                            },
-                            a,
-                            b,
-                            tol,
-                        );
-                        let x = match r {
-                            Ok(r) => r.x,
-                            // Already across at the left end (a second event at the same time).
-                            Err(roots::RootError::NoBracket { .. }) => a,
-                            Err(roots::RootError::Function(e)) => {
-                                failure = Some(e);
-                                a
-                            }
-                            Err(_) => b,
-                        };
-                        if let Some(e) = failure {
-                            return Err(fail(e));
-                        }
-                        x
-                    };
-                    if first.is_none_or(|(x, ..)| root < x) {
-                        first = Some((root, k, false));
-                    }
+            while let Some(crossing) = self.first_crossing(step, sys, a, b)? {
+                if self.deliver(step, sys, crossing.theta, observer) == Flow::Stop {
+                    return Ok(ScanEnd::Stopped);
                 }
-                let Some((th, k, again)) = first else { break };
-                // Deliver what comes before the event, then let it act.
-                let te = time(th);
-                if th >= 1.0 {
-                    ev.xb.copy_from_slice(&core.x1);
-                } else {
-                    dense.eval(te, 0, &mut ev.xb);
+                if let Some(end) = self.act(step, sys, crossing, stats)? {
+                    return Ok(end);
                 }
-                if te > piece_start {
-                    let view = View {
-                        t0: piece_start,
-                        t1: te,
-                        y0: &ev.xa[..n],
-                        y1: &ev.xb[..n],
-                        q0: &ev.xa[n..],
-                        q1: &ev.xb[n..],
-                        dense,
-                    };
-                    if observer(sys, &view) == Flow::Stop {
-                        core.x0.copy_from_slice(&ev.xb);
-                        return Ok(ScanEnd::Stopped);
-                    }
-                    piece_start = te;
-                    ev.xa.copy_from_slice(&ev.xb);
-                }
-                sys.events(te, &ev.xb[..n], &mut ev.trial).map_err(fail)?;
-                stats.events += 1;
-                ev.y[..n].copy_from_slice(&ev.xb[..n]);
-                let action = sys
-                    .on_event(k, te, &mut ev.y[..n])
-                    .map_err(|e| IntegrateError::Eval { t: te, source: e })?;
-                match action {
-                    EventAction::Continue => {
-                        ev.side[k] = sign(ev.g[k]);
-                        ev.repeat[k] = false;
-                        ev.band[k] = 0.0;
-                        a = th;
-                    }
-                    EventAction::Stop => {
-                        core.x0.copy_from_slice(&ev.xb);
-                        core.x0[..n].copy_from_slice(&ev.y[..n]);
-                        return Ok(ScanEnd::Stopped);
-                    }
-                    EventAction::Restart => {
-                        if ev.y[..n].iter().any(|v| !v.is_finite()) {
-                            return Err(IntegrateError::NonFinite { t: te });
-                        }
-                        let changed = ev.y[..n] != ev.xb[..n];
-                        // xb keeps the quadratures, y brings the states.
-                        ev.xb[..n].copy_from_slice(&ev.y[..n]);
-                        sys.events(te, &ev.xb[..n], &mut ev.g).map_err(fail)?;
-                        // What rounding of the time and of the interpolated state can make of a zero; the latter
-                        // loses against the larger end of the step.
-                        sys.events(t_new, &core.x1[..n], &mut ev.band_tmp).map_err(fail)?;
-                        let size = ev.size[k].max(ev.band_tmp[k].abs());
-                        let size = if size.is_finite() { size } else { ev.size[k] };
-                        let resolved = (64.0 * f64::EPSILON + 8.0 * ulp / (te - t).max(8.0 * ulp)).min(1.0);
-                        for j in 0..ev.g.len() {
-                            let now = sign(ev.g[j]);
-                            if j == k && again {
-                                // Deeper each time, so that a function that never comes back is told from rounding.
-                                ev.band[j] = 2.0 * ev.g[j].abs().max(ev.band[j]);
-                                (ev.side[j], ev.repeat[j]) = (0, changed);
-                            } else if j == k {
-                                ev.band[j] = resolved * size;
-                                let out = ev.g[j].abs() > ev.band[j];
-                                ev.side[j] = if out { now } else { 0 };
-                                ev.repeat[j] = !out && changed;
-                            } else if now != sign(ev.trial[j]) {
-                                // Moved across by the handler: not a crossing.
-                                ev.side[j] = now;
-                                ev.repeat[j] = false;
-                                ev.band[j] = 0.0;
-                            }
-                        }
-                        core.x0.copy_from_slice(&ev.xb);
-                        ev.repeats = if again { ev.repeats + 1 } else { 0 };
-                        ev.idle = if te - ev.last_restart <= 64.0 * ulp { ev.idle + 1 } else { 0 };
-                        if ev.repeats >= MAX_REPEATS || ev.idle >= MAX_IDLE {
-                            return Err(IntegrateError::Chatter { t: te, event: k });
-                        }
-                        ev.last_restart = te;
-                        return Ok(ScanEnd::Restart { t: te });
-                    }
-                }
+                a = crossing.theta;
             }
             a = b;
-            if at_end {
-                break;
-            }
         }
-        if t_new > piece_start {
-            let view = View {
-                t0: piece_start,
-                t1: t_new,
-                y0: &ev.xa[..n],
-                y1: &core.x1[..n],
-                q0: &ev.xa[n..],
-                q1: &core.x1[n..],
-                dense,
-            };
-            if observer(sys, &view) == Flow::Stop {
-                std::mem::swap(&mut core.x0, &mut core.x1);
-                return Ok(ScanEnd::Stopped);
-            }
+        if step.t_new > self.from {
+            return Ok(last_piece(step, (self.from, &self.xa), sys, observer));
         }
         Ok(ScanEnd::Through)
+    }
+
+    /// Evaluates the event functions at θ.
+    fn sample<S: OdeSystem + ?Sized>(
+        &mut self,
+        step: &Step<'_>,
+        sys: &mut S,
+        theta: f64,
+    ) -> Result<(), IntegrateError> {
+        step.state(theta, &mut self.y[..step.n]);
+        sys.events(step.time(theta), &self.y[..step.n], &mut self.g).map_err(|e| step.fail(e))?;
+        for k in 0..self.g.len() {
+            if self.g[k].is_nan() {
+                return Err(step.fail(EvalError::fatal("events", "an event function is not a number")));
+            }
+            self.size[k] = self.size[k].max(self.g[k].abs());
+        }
+        Ok(())
+    }
+
+    /// The earliest crossing that counts between θ of `a` and `b`, where the last sample is that at `b`.
+    fn first_crossing<S: OdeSystem + ?Sized>(
+        &mut self,
+        step: &Step<'_>,
+        sys: &mut S,
+        a: f64,
+        b: f64,
+    ) -> Result<Option<Crossing>, IntegrateError> {
+        let mut first: Option<Crossing> = None;
+        for k in 0..self.g.len() {
+            let direction = sys.event_direction(k);
+            let found = if self.side[k] == 0 {
+                self.leaves_band(k, direction).then_some((b, true))
+            } else if !self.crosses(k, direction) {
+                None
+            } else if sys.event_located(k) {
+                Some((self.locate(step, sys, k, a, b)?, false))
+            } else {
+                Some((b, false))
+            };
+            if let Some((theta, again)) = found
+                && first.is_none_or(|c| theta < c.theta)
+            {
+                first = Some(Crossing { theta, k, again });
+            }
+        }
+        Ok(first)
+    }
+
+    /// Takes note of a function whose side is unknown and that is now beyond its band; answers whether that repeats its event.
+    fn leaves_band(&mut self, k: usize, direction: Direction) -> bool {
+        if self.g[k].abs() <= self.band[k] {
+            return false;
+        }
+        // Out of the band. On the far side of a directed event after a state change: it happens again.
+        let now = sign(self.g[k]);
+        let again = self.repeat[k] && direction != Direction::Either && counts(direction, -now);
+        if !again {
+            self.side[k] = now;
+            self.repeat[k] = false;
+        }
+        again
+    }
+
+    /// Whether a function whose side is known has crossed zero in a direction that counts; takes note when it does not.
+    fn crosses(&mut self, k: usize, direction: Direction) -> bool {
+        let now = sign(self.g[k]);
+        if i32::from(self.side[k]) * i32::from(now) > 0 {
+            return false;
+        }
+        if counts(direction, self.side[k]) {
+            return true;
+        }
+        // Crossed against its direction: only the side changes. A zero leaves the side open.
+        if now != 0 {
+            self.side[k] = now;
+        }
+        false
+    }
+
+    /// θ between `a` and `b` at which function `k` goes through zero, to the resolution of time.
+    fn locate<S: OdeSystem + ?Sized>(
+        &mut self,
+        step: &Step<'_>,
+        sys: &mut S,
+        k: usize,
+        a: f64,
+        b: f64,
+    ) -> Result<f64, IntegrateError> {
+        let s = f64::from(self.side[k]);
+        let (y, g) = (&mut self.y[..step.n], &mut self.trial);
+        let f = |theta: f64| {
+            step.state(theta, y);
+            sys.events(step.time(theta), y, g).map(|()| s * g[k])
+        };
+        match roots::itp(f, a, b, step.resolution()) {
+            Ok(r) => Ok(r.x),
+            // Already across at the left end (a second event at the same time).
+            Err(roots::RootError::NoBracket { .. }) => Ok(a),
+            Err(roots::RootError::Function(e)) => Err(step.fail(e)),
+            Err(_) => Ok(b),
+        }
+    }
+
+    /// Hands what comes before θ to the observer; leaves the state there in `xb`.
+    fn deliver<S: OdeSystem + ?Sized>(
+        &mut self,
+        step: &Step<'_>,
+        sys: &mut S,
+        theta: f64,
+        observer: &mut dyn FnMut(&mut S, &dyn StepView) -> Flow,
+    ) -> Flow {
+        step.state(theta, &mut self.xb);
+        let te = step.time(theta);
+        if te > self.from {
+            let piece = Piece::new(step.n, (self.from, &self.xa), (te, &self.xb), step.dense);
+            if observer(sys, &piece) == Flow::Stop {
+                return Flow::Stop;
+            }
+            self.from = te;
+            self.xa.copy_from_slice(&self.xb);
+        }
+        Flow::Continue
+    }
+
+    /// Lets an event act on the state in `xb`; `None` when the scan goes on behind it.
+    fn act<S: OdeSystem + ?Sized>(
+        &mut self,
+        step: &Step<'_>,
+        sys: &mut S,
+        crossing: Crossing,
+        stats: &mut Stats,
+    ) -> Result<Option<ScanEnd>, IntegrateError> {
+        let (n, k, te) = (step.n, crossing.k, step.time(crossing.theta));
+        sys.events(te, &self.xb[..n], &mut self.trial).map_err(|e| step.fail(e))?;
+        stats.events += 1;
+        self.y[..n].copy_from_slice(&self.xb[..n]);
+        let action =
+            sys.on_event(k, te, &mut self.y[..n]).map_err(|e| IntegrateError::Eval { t: te, source: e })?;
+        match action {
+            EventAction::Continue => {
+                self.set_side(k, sign(self.g[k]));
+                Ok(None)
+            }
+            EventAction::Stop => {
+                self.xb[..n].copy_from_slice(&self.y[..n]);
+                Ok(Some(ScanEnd::Stopped))
+            }
+            EventAction::Restart => self.restart(step, sys, crossing).map(Some),
+        }
+    }
+
+    /// The handler of an event has left a new state in `y`, from which the integration starts again.
+    fn restart<S: OdeSystem + ?Sized>(
+        &mut self,
+        step: &Step<'_>,
+        sys: &mut S,
+        Crossing { theta, k, again }: Crossing,
+    ) -> Result<ScanEnd, IntegrateError> {
+        let (n, te, ulp) = (step.n, step.time(theta), step.ulp());
+        if self.y[..n].iter().any(|v| !v.is_finite()) {
+            return Err(IntegrateError::NonFinite { t: te });
+        }
+        let changed = self.y[..n] != self.xb[..n];
+        // xb keeps the quadratures, y brings the states.
+        self.xb[..n].copy_from_slice(&self.y[..n]);
+        sys.events(te, &self.xb[..n], &mut self.g).map_err(|e| step.fail(e))?;
+        // What rounding of the time and of the interpolated state can make of a zero; the latter
+        // loses against the larger end of the step.
+        sys.events(step.t_new, &step.dense.x1[..n], &mut self.band_tmp).map_err(|e| step.fail(e))?;
+        let size = self.size[k].max(self.band_tmp[k].abs());
+        let size = if size.is_finite() { size } else { self.size[k] };
+        let resolved = (64.0 * f64::EPSILON + 8.0 * ulp / (te - step.dense.t).max(8.0 * ulp)).min(1.0);
+        self.rearm(k, again, changed, resolved * size);
+        self.repeats = if again { self.repeats + 1 } else { 0 };
+        self.idle = if te - self.last_restart <= 64.0 * ulp { self.idle + 1 } else { 0 };
+        if self.repeats >= MAX_REPEATS || self.idle >= MAX_IDLE {
+            return Ok(ScanEnd::Chatter { t: te, event: k });
+        }
+        self.last_restart = te;
+        Ok(ScanEnd::Restart { t: te })
+    }
+
+    /// Sides after event `k` has changed the state or the equations: `g` are the values behind it, `trial` those before.
+    fn rearm(&mut self, k: usize, again: bool, changed: bool, band: f64) {
+        for j in 0..self.g.len() {
+            let now = sign(self.g[j]);
+            if j == k && again {
+                // Deeper each time, so that a function that never comes back is told from rounding.
+                self.band[j] = 2.0 * self.g[j].abs().max(self.band[j]);
+                (self.side[j], self.repeat[j]) = (0, changed);
+            } else if j == k {
+                self.band[j] = band;
+                let out = self.g[j].abs() > self.band[j];
+                self.side[j] = if out { now } else { 0 };
+                self.repeat[j] = !out && changed;
+            } else if now != sign(self.trial[j]) {
+                // Moved across by the handler: not a crossing.
+                self.set_side(j, now);
+            }
+        }
+    }
+
+    /// The side of function `k` is known, no repeat is expected.
+    fn set_side(&mut self, k: usize, side: i8) {
+        self.side[k] = side;
+        self.repeat[k] = false;
+        self.band[k] = 0.0;
+    }
+}
+
+/// Hands what is left of the step to the observer.
+fn last_piece<S: ?Sized>(
+    step: &Step<'_>,
+    start: (f64, &[f64]),
+    sys: &mut S,
+    observer: &mut dyn FnMut(&mut S, &dyn StepView) -> Flow,
+) -> ScanEnd {
+    let piece = Piece::new(step.n, start, (step.t_new, step.dense.x1), step.dense);
+    match observer(sys, &piece) {
+        Flow::Continue => ScanEnd::Through,
+        Flow::Stop => ScanEnd::StoppedAtEnd,
     }
 }
