@@ -8,23 +8,31 @@ pub struct Gmres {
     r: Vec<Vec<f64>>,
     rotations: Vec<[f64; 2]>,
     rhs: Vec<f64>,
-    /// Vectors spent on the last solution.
-    pub spent: usize,
+    /// Vectors of the Krylov space that the last solution took: the products with A.
+    pub iterations: usize,
+}
+
+/// What a new vector brought.
+enum Grown {
+    /// Nothing: it is not finite, or A takes the vector before it to zero.
+    Nothing,
+    /// One dimension more; the space ends here when `last`.
+    Vector { last: bool },
 }
 
 impl Gmres {
-    /// Solves `A x = b` to a residual of `tolerance` times that of b, or as far as `most` vectors go: A is what `apply` makes of its
+    /// Solves `A x = b` to a residual of `tolerance` times that of b, or as far as `max_vectors` vectors go: A is what `apply` makes of its
     /// first argument in the second. Returns the part of the residual that is left. (Saad and Schultz 1986)
     pub fn solve(
         &mut self,
         b: &[f64],
         x: &mut [f64],
         tolerance: f64,
-        most: usize,
+        max_vectors: usize,
         mut apply: impl FnMut(&[f64], &mut [f64]),
     ) -> f64 {
         x.fill(0.0);
-        self.spent = 0;
+        self.iterations = 0;
         let size = norm(b);
         if size == 0.0 || !size.is_finite() {
             return if size == 0.0 { 0.0 } else { 1.0 };
@@ -36,50 +44,65 @@ impl Gmres {
         self.basis[0].iter_mut().zip(b).for_each(|(v, b)| *v = b / size);
         let mut left = 1.0;
         let mut k = 0;
-        while k < most.min(b.len()) && left > tolerance {
-            self.vector(k + 1, b.len());
-            let (old, new) = self.basis.split_at_mut(k + 1);
-            let w = &mut new[0];
-            apply(&old[k], w);
-            let before = norm(w);
-            if self.r.len() <= k {
-                self.r.push(Vec::new());
-            }
-            let column = &mut self.r[k];
-            column.clear();
-            for v in old.iter() {
-                let h = dot(v, w);
-                w.iter_mut().zip(v).for_each(|(w, v)| *w -= h * v);
-                column.push(h);
-            }
-            let after = norm(w);
-            if !after.is_finite() {
-                break;
-            }
-            for (i, [c, s]) in self.rotations.iter().enumerate() {
-                let (p, q) = (column[i], column[i + 1]);
-                column[i] = c * p + s * q;
-                column[i + 1] = c * q - s * p;
-            }
-            let pivot = column[k].hypot(after);
-            if pivot <= f64::EPSILON * before {
-                // A takes this vector to nothing: the space ends before it.
-                break;
-            }
-            let (c, s) = (column[k] / pivot, after / pivot);
-            column[k] = pivot;
-            self.rotations.push([c, s]);
-            let top = self.rhs[k];
-            self.rhs[k] = c * top;
-            self.rhs.push(-s * top);
-            left = (s * top).abs() / size;
+        while k < max_vectors.min(b.len()) && left > tolerance {
+            let Grown::Vector { last } = self.grow(k, b.len(), &mut apply) else { break };
+            left = self.rhs[k + 1].abs() / size;
             k += 1;
-            if after <= f64::EPSILON * before {
+            if last {
                 break;
             }
+        }
+        self.iterations = k;
+        self.combine(k, x);
+        left
+    }
+
+    /// Adds the image of vector `k` to the space, orthogonal to what is there, and eliminates it from the least-squares problem.
+    fn grow(&mut self, k: usize, n: usize, apply: &mut impl FnMut(&[f64], &mut [f64])) -> Grown {
+        self.vector(k + 1, n);
+        let (old, new) = self.basis.split_at_mut(k + 1);
+        let w = &mut new[0];
+        apply(&old[k], w);
+        let before = norm(w);
+        if self.r.len() <= k {
+            self.r.push(Vec::new());
+        }
+        let column = &mut self.r[k];
+        column.clear();
+        for v in old.iter() {
+            let h = dot(v, w);
+            w.iter_mut().zip(v).for_each(|(w, v)| *w -= h * v);
+            column.push(h);
+        }
+        let after = norm(w);
+        if !after.is_finite() {
+            return Grown::Nothing;
+        }
+        for (i, [c, s]) in self.rotations.iter().enumerate() {
+            let (p, q) = (column[i], column[i + 1]);
+            column[i] = c * p + s * q;
+            column[i + 1] = c * q - s * p;
+        }
+        let pivot = column[k].hypot(after);
+        if pivot <= f64::EPSILON * before {
+            // A takes this vector to nothing: the space ends before it.
+            return Grown::Nothing;
+        }
+        let (c, s) = (column[k] / pivot, after / pivot);
+        column[k] = pivot;
+        self.rotations.push([c, s]);
+        let top = self.rhs[k];
+        self.rhs[k] = c * top;
+        self.rhs.push(-s * top);
+        let last = after <= f64::EPSILON * before;
+        if !last {
             w.iter_mut().for_each(|w| *w /= after);
         }
-        self.spent = k;
+        Grown::Vector { last }
+    }
+
+    /// Adds the combination of the first `k` vectors with the smallest residual to `x`.
+    fn combine(&mut self, k: usize, x: &mut [f64]) {
         for i in (0..k).rev() {
             self.rhs[i] /= self.r[i][i];
             let y = self.rhs[i];
@@ -90,7 +113,6 @@ impl Gmres {
         for (y, v) in self.rhs.iter().zip(&self.basis).take(k) {
             x.iter_mut().zip(v).for_each(|(x, v)| *x += y * v);
         }
-        left
     }
 
     /// Makes room for a vector of the basis.

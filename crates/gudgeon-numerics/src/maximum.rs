@@ -9,15 +9,15 @@ const NARROW: f64 = 1e-7;
 const WIDE: f64 = 1e-3;
 /// Samples closer than this part of the whole range are one: no top lies between them, and none may hide behind such a pair.
 const SAME: f64 = 1e-9;
-/// Most evaluations for one top.
-const MOST: usize = 80;
+/// Maximum number of evaluations for one top.
+const MAX_EVALUATIONS: usize = 80;
 
 /// Place and largest value of `f` between the first and the last of `samples`, `(x, f(x))` with x ascending.
 ///
 /// Every local top among the samples is narrowed down by Brent's method (parabolas, golden sections). A parabola through three points a
 /// little apart then gives the place, which the values alone would leave to their rounding. A top that no sample shows is not found.
 /// Without samples, and where `f` gives nothing but NaN, the value is minus infinity.
-pub fn largest(samples: &[(f64, f64)], mut f: impl FnMut(f64) -> f64) -> (f64, f64) {
+pub fn maximise(samples: &[(f64, f64)], mut f: impl FnMut(f64) -> f64) -> (f64, f64) {
     let span = samples.last().zip(samples.first()).map_or(0.0, |(b, a)| b.0 - a.0);
     let mut best = (f64::NAN, f64::NEG_INFINITY);
     let mut points: Vec<(f64, f64)> = Vec::with_capacity(samples.len());
@@ -71,7 +71,7 @@ fn narrowed(a: f64, top: (f64, f64), b: f64, f: &mut impl FnMut(f64) -> f64) -> 
     let (mut x, mut w, mut v) = (top, top, top);
     let (mut step, mut before) = (0.0_f64, 0.0_f64);
     let tolerance = NARROW * (b - a);
-    for _ in 0..MOST {
+    for _ in 0..MAX_EVALUATIONS {
         let middle = 0.5 * (low + high);
         if (x.0 - middle).abs() <= 2.0 * tolerance - 0.5 * (high - low) {
             break;

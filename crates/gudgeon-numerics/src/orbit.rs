@@ -30,11 +30,11 @@ pub struct OrbitOptions {
     pub tolerance: f64,
     /// Accuracy of the map.
     pub accuracy: f64,
-    /// Most cycles, those of all phases of the search together (a probe of stability, once begun, runs to its end).
+    /// Maximum number of cycles, those of all phases of the search together (a probe of stability, once begun, runs to its end).
     pub max_cycles: usize,
     /// How many times the map may be asked for a tenth of its error where its noise is all that keeps the search from its end. 0 for maps
     /// that have one accuracy.
-    pub finer: usize,
+    pub refinements: usize,
     /// Whether to accelerate. Maps with discrete decisions are not smooth and are repeated plainly.
     pub accelerate: bool,
 }
@@ -82,7 +82,7 @@ const BAND: (usize, f64) = (24, 30.0);
 /// States that move along or come nearer lie at least twice as far apart as the narrower half of them; noise, hardly farther.
 const APART: f64 = 1.9;
 /// Largest factor by which a residual is taken to understate an error.
-const MOST_GAIN: f64 = 3000.0;
+const MAX_GAIN: f64 = 3000.0;
 
 fn norm(a: &[f64], b: &[f64], s: &[f64]) -> f64 {
     a.iter()
@@ -111,7 +111,7 @@ pub fn periodic_orbit(
     }
     let mut options = *options;
     search.accelerated(map, y, &options, 1)?;
-    for _ in 0..options.finer {
+    for _ in 0..options.refinements {
         if search.report.converged || !search.noisy {
             break;
         }
@@ -228,111 +228,75 @@ impl Search {
         options: &OrbitOptions,
         times: usize,
     ) -> Result<(), EvalError> {
-        let n = y.len();
-        let mut g = vec![0.0; n];
-        let mut s = vec![1.0; n];
-        let mut secants: Vec<Secant> = Vec::new();
-        let (mut trusted, mut idle) = (0, 0);
-        let mut previous: Option<(DVector<f64>, DVector<f64>, DVector<f64>)> = None;
-        let mut best = f64::INFINITY;
-        // The estimate of the last cycle if it was good enough, else 0.
-        let mut passed = 0.0;
-        let mut last = 0.0_f64;
+        let mut g = vec![0.0; y.len()];
+        let mut state = Anderson::new(y.len());
         self.report.converged = false;
         self.noisy = false;
-        let mut slowest = 1.0_f64;
         // Far from the orbit a rough map does: the first cycle only has to leave the arbitrary start.
         let rough = if self.report.cycles == 0 { options.accuracy.max(1e-3) } else { options.accuracy };
+        let limit = if times == 1 { options.max_cycles.min(patience(options)) } else { options.max_cycles };
         for k in 0.. {
-            let most =
-                if times == 1 { options.max_cycles.min(patience(options)) } else { options.max_cycles };
-            if self.report.cycles + times > most {
+            if self.report.cycles + times > limit {
                 break;
             }
-            let accuracy = if k == 0 && times == 1 { rough } else { options.accuracy };
-            self.apply(map, y, &mut g, accuracy, times)?;
-            let before = s.clone();
-            map.scale(&g, &mut s);
-            // What was kept in the scales of the last cycle, in those of this one.
-            let rescale = DVector::from_iterator(n, before.iter().zip(&s).map(|(before, s)| before / s));
-            for secant in &mut secants {
-                secant.dy.component_mul_assign(&rescale);
-                secant.dr.component_mul_assign(&rescale);
-            }
-            if let Some((at, r, rest)) = &mut previous {
-                for v in [at, r, rest] {
-                    v.component_mul_assign(&rescale);
-                }
-            }
-            let at = DVector::from_iterator(n, y.iter().zip(&s).map(|(y, s)| y / s));
-            let r = DVector::from_iterator(n, g.iter().zip(y.iter()).zip(&s).map(|((g, y), s)| (g - y) / s));
+            let accuracy = |cycle: usize| if cycle == 0 && times == 1 { rough } else { options.accuracy };
+            self.apply(map, y, &mut g, accuracy(k), times)?;
+            let (at, r) = state.scaled(map, y, &g);
             let residual = r.amax();
             self.report.residual = residual;
             self.report.history.push(residual);
-            if residual > 4.0 * best {
-                // The secants mislead: step with newer ones only. What they say of the multipliers is still of use.
-                trusted = secants.len();
-            }
-            // Cycles since the residual came down to the noise of the map and stays there.
-            let falls = residual > 3.0 * options.accuracy || residual < 0.5 * best;
-            idle = if falls { 0 } else { idle + 1 };
-            best = best.min(residual);
-            let mut ratio = 0.0_f64;
-            if let Some((at_before, r_before, rest)) = &previous {
-                let noise = if k == 1 && times == 1 { rough } else { options.accuracy };
-                let secant = Secant { dy: &at - at_before, dr: &r - r_before, noise };
-                // In the noise the older ones know more.
-                if idle == 0 && secant.dy.amax() > 10.0 * noise {
-                    secants.push(secant);
-                }
-                if secants.len() > DEPTH {
-                    secants.remove(0);
-                    trusted = trusted.saturating_sub(1);
-                }
-                // For a linear map r = M rest: how slowly does what the secants did not explain decay? Modes that change their sign
-                // do not let a residual understate an error.
-                let floor = (0.1 * r_before.norm()).max(options.accuracy);
-                ratio = if r.dot(rest) > 0.0 { r.norm() / rest.norm().max(floor) } else { 0.0 };
-            }
-            let (largest, gain, suspect) = spectrum(&secants);
-            self.report.multiplier = largest;
-            self.suspect = suspect;
-            // What was seen of slow modes before the map became more accurate still holds near the orbit.
-            slowest = slowest.max(gain);
-            let gain = gain.max(self.gain);
-            let (correction, rest) = explain(&secants[trusted..], &r);
-            let gain = gain.max(1.0 / (1.0 - ratio.clamp(0.0, 1.0 - 1.0 / MOST_GAIN)));
-            // y + r - correction would be on the orbit, but for what the secants leave unexplained, and for the noise that
-            // may be all that they explain.
-            let noise = residual.max(last).min(options.accuracy);
-            last = residual;
-            let estimate = (correction.amax() + rest.amax() * gain).max(residual).max(noise * gain);
-            self.report.error_estimate = estimate;
+            let ratio = state.learn(&at, &r, accuracy(k.saturating_sub(1)), options);
+            let (correction, rest) = explain(&state.secants[state.trusted..], &r);
+            let estimate = self.judge(&mut state, residual, correction.amax(), rest.amax(), ratio, options);
             // A slow mode can hide behind faster ones for a cycle: what passes must pass twice, and go on falling as if it would
             // end below the tolerance, unless nothing but the noise of the map is left, which a further cycle would not lessen.
             let settled = k > 0 && residual <= 3.0 * options.accuracy;
-            if settled && estimate <= options.tolerance || sinks(estimate, passed, options) {
+            if settled && estimate <= options.tolerance || sinks(estimate, state.passed, options) {
                 self.report.converged = true;
-                y.copy_from_slice(&g);
-                return Ok(());
-            }
-            if idle > IDLE {
-                // Too near the edge of stability for the noise of the map.
-                self.noisy = true;
-                self.gain = self.gain.max(slowest);
                 break;
             }
-            passed = if k > 0 && estimate <= options.tolerance { estimate } else { 0.0 };
+            if state.idle > IDLE {
+                // Too near the edge of stability for the noise of the map.
+                self.noisy = true;
+                self.gain = self.gain.max(state.slowest);
+                break;
+            }
+            state.passed = if k > 0 && estimate <= options.tolerance { estimate } else { 0.0 };
             // Not further than the states are large.
             let damping = (1.0 / correction.amax().max(1e-300)).min(1.0);
             let next = &at + &r - correction * damping;
-            for ((y, n), s) in y.iter_mut().zip(next.iter()).zip(&s) {
+            for ((y, n), s) in y.iter_mut().zip(next.iter()).zip(&state.s) {
                 *y = n * s;
             }
-            previous = Some((at, r, rest));
+            state.previous = Some([at, r, rest]);
         }
         y.copy_from_slice(&g);
         Ok(())
+    }
+
+    /// The estimated error after a cycle, from the parts of its residual that the secants explain and leave over.
+    fn judge(
+        &mut self,
+        state: &mut Anderson,
+        residual: f64,
+        explained: f64,
+        rest: f64,
+        ratio: f64,
+        options: &OrbitOptions,
+    ) -> f64 {
+        let (largest, gain, suspect) = spectrum(&state.secants);
+        self.report.multiplier = largest;
+        self.suspect = suspect;
+        // What was seen of slow modes before the map became more accurate still holds near the orbit.
+        state.slowest = state.slowest.max(gain);
+        let gain = gain.max(self.gain).max(1.0 / (1.0 - ratio.clamp(0.0, 1.0 - 1.0 / MAX_GAIN)));
+        // y + r - correction would be on the orbit, but for what the secants leave unexplained, and for the noise that
+        // may be all that they explain.
+        let noise = residual.max(state.last).min(options.accuracy);
+        state.last = residual;
+        let estimate = (explained + rest * gain).max(residual).max(noise * gain);
+        self.report.error_estimate = estimate;
+        estimate
     }
 
     /// Whether plain repetition leaves the neighbourhood of the fixed point `y`; `y` is then where it went.
@@ -386,7 +350,7 @@ impl Search {
             for p in 1..=MAX_PERIOD.min(seen.len()) {
                 changes[p - 1].push(norm(&g, &seen[seen.len() - p], &s));
                 let (per_cycle, change) = decay(&changes[p - 1], options.accuracy);
-                let lambda = per_cycle.powi(p as i32).min(1.0 - 1.0 / MOST_GAIN);
+                let lambda = per_cycle.powi(p as i32).min(1.0 - 1.0 / MAX_GAIN);
                 // The second term: noise of the last cycle alone.
                 estimates[p - 1] = change * lambda.max(0.5) / (1.0 - lambda) + change.min(options.accuracy);
                 // What noise could have hidden.
@@ -453,7 +417,7 @@ fn band(seen: &[Vec<f64>], s: &[f64], options: &OrbitOptions) -> Option<f64> {
 
 /// Whether an estimate, falling from cycle to cycle as it does now, stands for an error below the tolerance.
 fn sinks(estimate: f64, before: f64, options: &OrbitOptions) -> bool {
-    let fall = (estimate / before).min(1.0 - 1.0 / MOST_GAIN);
+    let fall = (estimate / before).min(1.0 - 1.0 / MAX_GAIN);
     estimate * (fall / (1.0 - fall)).max(1.0) <= options.tolerance
 }
 
@@ -462,6 +426,87 @@ struct Secant {
     dy: DVector<f64>,
     dr: DVector<f64>,
     noise: f64,
+}
+
+/// What the acceleration keeps from cycle to cycle, in scaled states.
+struct Anderson {
+    /// Scales of the states in the last cycle.
+    s: Vec<f64>,
+    secants: Vec<Secant>,
+    /// The first secant that is stepped with.
+    trusted: usize,
+    /// Cycles since the residual came down to the noise of the map and stays there.
+    idle: usize,
+    /// Start and residual of the cycle before, and what its secants left over of the latter.
+    previous: Option<[DVector<f64>; 3]>,
+    /// Smallest residual.
+    best: f64,
+    /// The estimate of the last cycle if it was good enough, else 0.
+    passed: f64,
+    /// The last residual.
+    last: f64,
+    /// Largest factor by which a residual was seen to understate an error.
+    slowest: f64,
+}
+
+impl Anderson {
+    fn new(n: usize) -> Self {
+        Self {
+            s: vec![1.0; n],
+            secants: Vec::new(),
+            trusted: 0,
+            idle: 0,
+            previous: None,
+            best: f64::INFINITY,
+            passed: 0.0,
+            last: 0.0,
+            slowest: 1.0,
+        }
+    }
+
+    /// Start and residual of the cycle from `y` to `g` in its scales; what was kept is brought to the same scales.
+    fn scaled(&mut self, map: &dyn CycleMap, y: &[f64], g: &[f64]) -> (DVector<f64>, DVector<f64>) {
+        let n = y.len();
+        let before = self.s.clone();
+        map.scale(g, &mut self.s);
+        let rescale = DVector::from_iterator(n, before.iter().zip(&self.s).map(|(before, s)| before / s));
+        for secant in &mut self.secants {
+            secant.dy.component_mul_assign(&rescale);
+            secant.dr.component_mul_assign(&rescale);
+        }
+        for v in self.previous.iter_mut().flatten() {
+            v.component_mul_assign(&rescale);
+        }
+        let at = DVector::from_iterator(n, y.iter().zip(&self.s).map(|(y, s)| y / s));
+        let r = DVector::from_iterator(n, g.iter().zip(y).zip(&self.s).map(|((g, y), s)| (g - y) / s));
+        (at, r)
+    }
+
+    /// Takes the secant to the cycle before, whose map was as accurate as `noise`. Returns how slowly decays what the secants did not
+    /// explain.
+    fn learn(&mut self, at: &DVector<f64>, r: &DVector<f64>, noise: f64, options: &OrbitOptions) -> f64 {
+        let residual = r.amax();
+        if residual > 4.0 * self.best {
+            // The secants mislead: step with newer ones only. What they say of the multipliers is still of use.
+            self.trusted = self.secants.len();
+        }
+        let falls = residual > 3.0 * options.accuracy || residual < 0.5 * self.best;
+        self.idle = if falls { 0 } else { self.idle + 1 };
+        self.best = self.best.min(residual);
+        let Some([at_before, r_before, rest]) = &self.previous else { return 0.0 };
+        let secant = Secant { dy: at - at_before, dr: r - r_before, noise };
+        // In the noise the older ones know more.
+        if self.idle == 0 && secant.dy.amax() > 10.0 * noise {
+            self.secants.push(secant);
+        }
+        if self.secants.len() > DEPTH {
+            self.secants.remove(0);
+            self.trusted = self.trusted.saturating_sub(1);
+        }
+        // For a linear map r = M rest. Modes that change their sign do not let a residual understate an error.
+        let floor = (0.1 * r_before.norm()).max(options.accuracy);
+        if r.dot(rest) > 0.0 { r.norm() / rest.norm().max(floor) } else { 0.0 }
+    }
 }
 
 /// Decay per cycle of a sequence of changes, and the last change. The shortest stretch that shows a decay beyond the noise
@@ -533,7 +578,7 @@ fn spectrum(secants: &[Secant]) -> (f64, f64, bool) {
     for l in eigenvalues.iter().flat_map(|e| e.iter()) {
         largest = largest.max(l.norm());
         suspect |= l.norm() > if l.re < 0.9 * l.norm() { SUSPECT_TURNING } else { SUSPECT };
-        gain = gain.max(1.0 / (l - 1.0).norm().max(1.0 / MOST_GAIN));
+        gain = gain.max(1.0 / (l - 1.0).norm().max(1.0 / MAX_GAIN));
     }
     (largest, gain, suspect)
 }

@@ -60,11 +60,11 @@ impl Rule {
         self.weights.iter().zip(values).map(|(w, v)| w * v).sum()
     }
 
-    /// Where the polynomial is highest, and its value there, when that is above `least`.
+    /// Where the polynomial is highest, and its value there, when that is above `floor`.
     #[must_use]
-    pub fn highest(&self, values: &[f64], least: f64) -> Option<(f64, f64)> {
+    pub fn maximum(&self, values: &[f64], floor: f64) -> Option<(f64, f64)> {
         let (low, high) = span(values);
-        if high + OVERSHOOT * (high - low) <= least {
+        if high + OVERSHOOT * (high - low) <= floor {
             return None;
         }
         let mut best = (0.0, values[0]);
@@ -86,17 +86,17 @@ impl Rule {
                 best = (*x, *v);
             }
         }
-        (best.1 > least).then_some(best)
+        (best.1 > floor).then_some(best)
     }
 
-    /// Where the polynomial is lowest, and its value there, when that is below `most`.
+    /// Where the polynomial is lowest, and its value there, when that is below `ceiling`.
     #[must_use]
-    pub fn lowest(&self, values: &[f64], most: f64) -> Option<(f64, f64)> {
-        let mut turned = [0.0; MOST_NODES];
+    pub fn minimum(&self, values: &[f64], ceiling: f64) -> Option<(f64, f64)> {
+        let mut turned = [0.0; MAX_NODES];
         for (t, v) in turned.iter_mut().zip(values) {
             *t = -v;
         }
-        self.highest(&turned[..values.len()], -most).map(|(x, v)| (x, -v))
+        self.maximum(&turned[..values.len()], -ceiling).map(|(x, v)| (x, -v))
     }
 
     /// Calls `cross` at every place where the polynomial goes through `level`, in order, with whether it rises there.
@@ -168,8 +168,8 @@ impl Rule {
     }
 }
 
-/// Nodes of the largest rule.
-pub const MOST_NODES: usize = 5;
+/// Maximum number of nodes of a rule.
+pub const MAX_NODES: usize = 5;
 
 fn span(values: &[f64]) -> (f64, f64) {
     values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(*v), b.max(*v)))

@@ -3,8 +3,8 @@
 /// Variables of a program.
 pub const VARIABLES: usize = 3;
 
-/// Most constraints of a program.
-pub const MOST_CONSTRAINTS: usize = 32;
+/// Maximum number of constraints of a program.
+pub const MAX_CONSTRAINTS: usize = 32;
 
 /// `a·x <= b`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -21,7 +21,7 @@ pub struct Minimum {
     /// The point.
     pub x: [f64; VARIABLES],
     /// A multiplier of zero or more for each constraint; those of inactive constraints are zero.
-    pub multipliers: [f64; MOST_CONSTRAINTS],
+    pub multipliers: [f64; MAX_CONSTRAINTS],
 }
 
 /// Why there is no minimum.
@@ -106,97 +106,157 @@ pub fn solve(mut m: [[f64; 3]; 3], mut r: [f64; 3], n: usize) -> Option<[f64; 3]
     Some(x)
 }
 
+/// Constraints that hold with equality, in the order they came, with their multipliers.
+#[derive(Default)]
+struct ActiveSet {
+    index: [usize; VARIABLES],
+    u: [f64; VARIABLES],
+    len: usize,
+}
+
+impl ActiveSet {
+    #[inline]
+    fn indices(&self) -> &[usize] {
+        &self.index[..self.len]
+    }
+
+    #[inline]
+    fn push(&mut self, index: usize, u: f64) {
+        (self.index[self.len], self.u[self.len]) = (index, u);
+        self.len += 1;
+    }
+
+    /// Takes out the constraint in place `j`; the others move up.
+    #[inline]
+    fn remove(&mut self, j: usize) {
+        for j in j + 1..self.len {
+            (self.index[j - 1], self.u[j - 1]) = (self.index[j], self.u[j]);
+        }
+        self.len -= 1;
+    }
+
+    /// The constraint violated most, by its own scale, among those that are not active.
+    #[inline]
+    fn violated(&self, constraints: &[HalfSpace], x: &[f64; 3]) -> Option<usize> {
+        let mut worst = (0.0, None);
+        for (k, c) in constraints.iter().enumerate() {
+            if self.indices().contains(&k) {
+                continue;
+            }
+            let size = dot(&c.a, &c.a).sqrt().max(f64::MIN_POSITIVE);
+            let by = (dot(&c.a, x) - c.b) / size;
+            if by > worst.0 && by > 1e-15 * (1.0 + c.b.abs() / size) {
+                worst = (by, Some(k));
+            }
+        }
+        worst.1
+    }
+
+    /// For the normal `n` of a constraint, and `hn = h⁻¹ n`: the direction in which it is approached along the active ones, and the rates
+    /// at which their multipliers fall.
+    #[inline]
+    fn direction(
+        &self,
+        inv: &[[f64; 3]; 3],
+        constraints: &[HalfSpace],
+        n: &[f64; 3],
+        hn: [f64; 3],
+    ) -> Option<([f64; 3], [f64; 3])> {
+        let inward = |k: usize| constraints[k].a.map(|v| -v);
+        let mut gram = [[0.0; 3]; 3];
+        let mut right = [0.0; 3];
+        for (i, &k) in self.indices().iter().enumerate() {
+            let hi = apply(inv, &inward(k));
+            for (j, &k) in self.indices().iter().enumerate() {
+                gram[i][j] = dot(&hi, &inward(k));
+            }
+            right[i] = dot(&hi, n);
+        }
+        let r = solve(gram, right, self.len)?;
+        let mut z = hn;
+        for (j, &k) in self.indices().iter().enumerate() {
+            let hj = apply(inv, &inward(k));
+            for (zi, hji) in z.iter_mut().zip(hj) {
+                *zi -= r[j] * hji;
+            }
+        }
+        Some((z, r))
+    }
+
+    /// The longest step before a multiplier that falls at the rate `r` reaches zero, and its place.
+    #[inline]
+    fn longest(&self, r: &[f64; 3]) -> (f64, usize) {
+        let mut longest = (f64::INFINITY, 0);
+        for j in 0..self.len {
+            if r[j] > 0.0 && self.u[j] / r[j] < longest.0 {
+                longest = (self.u[j] / r[j], j);
+            }
+        }
+        longest
+    }
+}
+
 /// Minimises `½ xᵀ h x + gᵀ x` subject to `constraints`. Allocates nothing.
 ///
 /// # Errors
 /// [`QpError`].
 pub fn minimise(h: &[[f64; 3]; 3], g: &[f64; 3], constraints: &[HalfSpace]) -> Result<Minimum, QpError> {
-    if constraints.len() > MOST_CONSTRAINTS {
+    if constraints.len() > MAX_CONSTRAINTS {
         return Err(QpError::Stalled);
     }
     let inv = inverse(h).ok_or(QpError::NotConvex)?;
     let mut x = apply(&inv, g).map(|v| -v);
-    // Active constraints in the order they came, with their multipliers.
-    let (mut active, mut u, mut q) = ([0usize; 3], [0.0; 3], 0usize);
+    let mut active = ActiveSet::default();
     for _ in 0..20 * (constraints.len() + 1) {
-        // The constraint violated most, by its own scale.
-        let mut worst = (0.0, usize::MAX);
-        for (k, c) in constraints.iter().enumerate() {
-            if active[..q].contains(&k) {
-                continue;
-            }
-            let size = dot(&c.a, &c.a).sqrt().max(f64::MIN_POSITIVE);
-            let by = (dot(&c.a, &x) - c.b) / size;
-            if by > worst.0 && by > 1e-15 * (1.0 + c.b.abs() / size) {
-                worst = (by, k);
-            }
-        }
-        let p = worst.1;
-        if p == usize::MAX {
-            let mut multipliers = [0.0; MOST_CONSTRAINTS];
-            for j in 0..q {
-                multipliers[active[j]] = u[j];
+        let Some(p) = active.violated(constraints, &x) else {
+            let mut multipliers = [0.0; MAX_CONSTRAINTS];
+            for (&k, u) in active.indices().iter().zip(active.u) {
+                multipliers[k] = u;
             }
             return Ok(Minimum { x, multipliers });
-        }
-        let n = constraints[p].a.map(|v| -v);
-        let mut up = 0.0;
-        loop {
-            // Direction in primal space and its effect on the multipliers.
-            let hn = apply(&inv, &n);
-            let mut gram = [[0.0; 3]; 3];
-            let mut right = [0.0; 3];
-            for i in 0..q {
-                let hi = apply(&inv, &constraints[active[i]].a.map(|v| -v));
-                for j in 0..q {
-                    gram[i][j] = dot(&hi, &constraints[active[j]].a.map(|v| -v));
-                }
-                right[i] = dot(&hi, &n);
-            }
-            let r = solve(gram, right, q).ok_or(QpError::Stalled)?;
-            let mut z = hn;
-            for j in 0..q {
-                let hj = apply(&inv, &constraints[active[j]].a.map(|v| -v));
-                for (zi, hji) in z.iter_mut().zip(hj) {
-                    *zi -= r[j] * hji;
-                }
-            }
-            let zn = dot(&z, &n);
-            // Nothing is left of the direction when the normals depend on each other.
-            let free = q < VARIABLES && zn > 1e-13 * dot(&hn, &n);
-            let mut partial = (f64::INFINITY, 0usize);
-            for j in 0..q {
-                if r[j] > 0.0 && u[j] / r[j] < partial.0 {
-                    partial = (u[j] / r[j], j);
-                }
-            }
-            let full =
-                if free { (dot(&constraints[p].a, &x) - constraints[p].b) / zn } else { f64::INFINITY };
-            let t = partial.0.min(full);
-            if !t.is_finite() {
-                return Err(QpError::Infeasible);
-            }
-            if free {
-                for (xi, zi) in x.iter_mut().zip(z) {
-                    *xi += t * zi;
-                }
-            }
-            for j in 0..q {
-                // The step ends where the first of them reaches zero: below lies rounding.
-                u[j] = (u[j] - t * r[j]).max(0.0);
-            }
-            up += t;
-            if full <= partial.0 {
-                (active[q], u[q]) = (p, up);
-                q += 1;
-                break;
-            }
-            // The multiplier that reached zero leaves; the others move up.
-            for j in partial.1 + 1..q {
-                (active[j - 1], u[j - 1]) = (active[j], u[j]);
-            }
-            q -= 1;
-        }
+        };
+        satisfy(p, &inv, constraints, &mut x, &mut active)?;
     }
     Err(QpError::Stalled)
+}
+
+/// Goes to the minimum over the active constraints and constraint `p`, which joins them; others may leave on the way.
+#[inline]
+fn satisfy(
+    p: usize,
+    inv: &[[f64; 3]; 3],
+    constraints: &[HalfSpace],
+    x: &mut [f64; 3],
+    active: &mut ActiveSet,
+) -> Result<(), QpError> {
+    let n = constraints[p].a.map(|v| -v);
+    let hn = apply(inv, &n);
+    let mut up = 0.0;
+    loop {
+        let (z, r) = active.direction(inv, constraints, &n, hn).ok_or(QpError::Stalled)?;
+        let zn = dot(&z, &n);
+        // Nothing is left of the direction when the normals depend on each other.
+        let free = active.len < VARIABLES && zn > 1e-13 * dot(&hn, &n);
+        let partial = active.longest(&r);
+        let full = if free { (dot(&constraints[p].a, x) - constraints[p].b) / zn } else { f64::INFINITY };
+        let t = partial.0.min(full);
+        if !t.is_finite() {
+            return Err(QpError::Infeasible);
+        }
+        if free {
+            for (xi, zi) in x.iter_mut().zip(z) {
+                *xi += t * zi;
+            }
+        }
+        for j in 0..active.len {
+            // The step ends where the first of them reaches zero: below lies rounding.
+            active.u[j] = (active.u[j] - t * r[j]).max(0.0);
+        }
+        up += t;
+        if full <= partial.0 {
+            active.push(p, up);
+            return Ok(());
+        }
+        active.remove(partial.1);
+    }
 }

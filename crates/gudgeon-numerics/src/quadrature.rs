@@ -21,7 +21,7 @@ impl GaussLegendre {
             if 2 * i + 1 == n {
                 x = 0.0;
             }
-            let mut slope = 1.0;
+            let mut derivative = 1.0;
             // Converges quadratically from 1e-2 or better: four steps reach rounding.
             for _ in 0..6 {
                 let (mut p0, mut p1) = (1.0, x);
@@ -29,10 +29,10 @@ impl GaussLegendre {
                     let k = k as f64;
                     (p0, p1) = (p1, ((2.0 * k - 1.0) * x * p1 - (k - 1.0) * p0) / k);
                 }
-                slope = n as f64 * (p0 - x * p1) / (1.0 - x * x);
-                x -= p1 / slope;
+                derivative = n as f64 * (p0 - x * p1) / (1.0 - x * x);
+                x -= p1 / derivative;
             }
-            let w = 2.0 / ((1.0 - x * x) * slope * slope);
+            let w = 2.0 / ((1.0 - x * x) * derivative * derivative);
             (nodes[i], nodes[n - 1 - i]) = (-x, x);
             (weights[i], weights[n - 1 - i]) = (w, w);
         }
@@ -144,8 +144,8 @@ pub fn integrate_adaptive(
         if error <= abs_tol.max(rel_tol * value.abs()).max(floor) {
             return Ok(value);
         }
-        let worst = (0..parts.len()).max_by(|i, j| parts[*i].3.total_cmp(&parts[*j].3)).unwrap_or(0);
-        let (a, b, _, _) = parts.swap_remove(worst);
+        let largest = (0..parts.len()).max_by(|i, j| parts[*i].3.total_cmp(&parts[*j].3)).unwrap_or(0);
+        let (a, b, _, _) = parts.swap_remove(largest);
         let mid = 0.5 * (a + b);
         add(&mut parts, a, mid)?;
         add(&mut parts, mid, b)?;

@@ -187,14 +187,14 @@ impl Rodas {
             error = larger(error, self.u[last + i] / self.core.scale(opts, i));
         }
         if nq > 0 {
-            self.combine(tableau.slopes);
+            self.combine(tableau.weights);
             for r in 0..nq {
-                self.core.x1[n + r] = self.core.x0[n + r] + self.quadrature(r, tableau.slopes, h);
+                self.core.x1[n + r] = self.core.x0[n + r] + self.quadrature(r, tableau.weights, h);
             }
             if !opts.atol_quad.is_empty() {
-                self.combine(tableau.slopes_error);
+                self.combine(tableau.weights_error);
                 for r in 0..nq {
-                    let e = self.quadrature(r, tableau.slopes_error, h);
+                    let e = self.quadrature(r, tableau.weights_error, h);
                     error = larger(error, e / self.core.scale(opts, n + r));
                 }
             }
@@ -202,7 +202,7 @@ impl Rodas {
         error
     }
 
-    /// Adds `h Σ_i b_i (g_i + J_q u_i + h d_i ∂g/∂t)` for quadrature `r` and slope weights `b`; `w` holds `Σ_i b_i u_i`.
+    /// Adds `h Σ_i b_i (g_i + J_q u_i + h d_i ∂g/∂t)` for quadrature `r` and weights `b` of the stage rates; `w` holds `Σ_i b_i u_i`.
     fn quadrature(&self, r: usize, b: &[f64], h: f64) -> f64 {
         let (n, nq) = (self.core.n, self.core.m - self.core.n);
         let mut s = 0.0;
@@ -274,9 +274,9 @@ impl Scheme for Rodas {
                 add(&mut out[..n], w, &self.u[i * n..i * n + n]);
             }
             if nq > 0 {
-                self.combine(tableau.slopes_dense[p]);
+                self.combine(tableau.weights_dense[p]);
                 for r in 0..nq {
-                    out[n + r] = self.quadrature(r, tableau.slopes_dense[p], h);
+                    out[n + r] = self.quadrature(r, tableau.weights_dense[p], h);
                 }
             }
             self.core.cont[p] = out;

@@ -124,7 +124,7 @@ pub fn itp<E>(
 
 /// Newton's method kept inside a bracket: a step that leaves the bracket, or that shrinks it too slowly, becomes a bisection.
 ///
-/// `f` returns value and slope; `f(lo)` and `f(hi)` must differ in sign (they are not evaluated unless Newton leaves the
+/// `f` returns value and derivative; `f(lo)` and `f(hi)` must differ in sign (they are not evaluated unless Newton leaves the
 /// bracket: with a good start `x0` the cost is 2 to 3 evaluations). Converged when the Newton step is at most `tol`.
 ///
 /// # Errors
@@ -143,7 +143,7 @@ pub fn newton_bracketed<E>(
     let mut width = b - a;
     let mut evaluations = 0;
     loop {
-        let (v, slope) = f(x).map_err(RootError::Function)?;
+        let (v, derivative) = f(x).map_err(RootError::Function)?;
         evaluations += 1;
         if v.is_nan() {
             return Err(RootError::NotANumber { x });
@@ -151,7 +151,7 @@ pub fn newton_bracketed<E>(
         if v == 0.0 {
             return Ok(Root { x, other: x, evaluations });
         }
-        let step = -v / slope;
+        let step = -v / derivative;
         let trial = x + step;
         let inside = trial.is_finite() && trial > a && trial < b;
         if inside && step.abs() <= tol {

@@ -1,6 +1,6 @@
 //! Interpolation of tabulated functions of one variable: monotone cubic and periodic cubic spline.
 //!
-//! Both are piecewise cubics given by values and slopes at the nodes and return value and derivative. Look-up is a
+//! Both are piecewise cubics given by values and derivatives at the nodes and return value and derivative. Look-up is a
 //! multiplication on a uniform grid, otherwise a search that starts from a hint (the interval found last).
 
 /// A table that cannot be interpolated.
@@ -48,7 +48,7 @@ pub enum TableError {
     },
 }
 
-/// A piecewise cubic through `(x, y)` with slopes `d`.
+/// A piecewise cubic through `(x, y)` with derivatives `d`.
 #[derive(Debug, Clone, PartialEq)]
 struct Hermite {
     x: Vec<f64>,
@@ -143,11 +143,11 @@ impl Hermite {
         *hint = i;
         let h = self.x[i + 1] - self.x[i];
         let t = (x - self.x[i]) / h;
-        let slope = (self.y[i + 1] - self.y[i]) / h;
+        let secant = (self.y[i + 1] - self.y[i]) / h;
         let (d0, d1) = (self.d[i], self.d[i + 1]);
         // Newton form around the left node: y = y0 + h t (d0 + t (c + t b)).
-        let c = 3.0 * slope - 2.0 * d0 - d1;
-        let b = d0 + d1 - 2.0 * slope;
+        let c = 3.0 * secant - 2.0 * d0 - d1;
+        let b = d0 + d1 - 2.0 * secant;
         let value = self.y[i] + h * t * (d0 + t * (c + t * b));
         (value, d0 + t * (2.0 * c + 3.0 * t * b))
     }
@@ -157,10 +157,10 @@ impl Hermite {
     }
 }
 
-/// Monotone piecewise cubic: no overshoot, continuous first derivative (`fritsch1980`; slopes by the weighted harmonic mean).
+/// Monotone piecewise cubic: no overshoot, continuous first derivative (`fritsch1980`; derivatives at the nodes by the weighted harmonic mean).
 ///
 /// Between two nodes the interpolant never leaves the range of their values. Second order at extrema of the data, third to fourth
-/// order elsewhere. Outside the table the end value is held, with derivative 0; [`Pchip::contains`] tells. A NaN
+/// order elsewhere. Outside the table the end value is held, with derivative 0; see [`Pchip::contains`]. A NaN
 /// argument gives NaN.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pchip(Hermite);
@@ -234,7 +234,7 @@ impl Pchip {
     }
 }
 
-/// Slope at an inner node: zero at an extremum, else the harmonic mean of the secants, weighted for unequal intervals.
+/// Derivative at an inner node: zero at an extremum, else the harmonic mean of the secants, weighted for unequal intervals.
 fn harmonic(h0: f64, h1: f64, s0: f64, s1: f64) -> f64 {
     if s0 * s1 <= 0.0 {
         return 0.0;
@@ -243,7 +243,7 @@ fn harmonic(h0: f64, h1: f64, s0: f64, s1: f64) -> f64 {
     (w0 + w1) / (w0 / s0 + w1 / s1)
 }
 
-/// Slope at an end: the three-point formula, limited so that the first interval stays monotone.
+/// Derivative at an end: the three-point formula, limited so that the first interval stays monotone.
 fn one_sided(h0: f64, h1: f64, s0: f64, s1: f64) -> f64 {
     let d = ((2.0 * h0 + h1) * s0 - h0 * s1) / (h0 + h1);
     if d * s0 <= 0.0 {

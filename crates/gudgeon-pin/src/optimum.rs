@@ -7,7 +7,7 @@
 use gudgeon_core::EvalError;
 use gudgeon_core::kinds::{PIN_QUANTITIES, PinQuantity, PinSize};
 use gudgeon_numerics::jet::{Jet, Real};
-use gudgeon_numerics::qp::{self, HalfSpace, MOST_CONSTRAINTS, QpError};
+use gudgeon_numerics::qp::{self, HalfSpace, MAX_CONSTRAINTS, QpError};
 
 use crate::design::{Design, Forbids, Masses, corners, grows_with_length};
 
@@ -327,8 +327,8 @@ fn descend(d: &Design<'_>, from: PinSize) -> Result<Optimum, NoOptimum> {
     let mut settled = 0;
     while iterations < MOST_STEPS {
         iterations += 1;
-        let mut rows = [HalfSpace::default(); MOST_CONSTRAINTS];
-        let mut from = [0usize; MOST_CONSTRAINTS];
+        let mut rows = [HalfSpace::default(); MAX_CONSTRAINTS];
+        let mut from = [0usize; MAX_CONSTRAINTS];
         let mut n = 0;
         for (k, c) in at.limits.iter().enumerate().filter(|(k, _)| limits[*k].is_finite()) {
             let a = std::array::from_fn(|i| if p.fixed[i] { 0.0 } else { c.g[i] });

@@ -20,7 +20,7 @@ pub struct Options {
     pub h_max: f64,
     /// Smallest step.
     pub h_min: f64,
-    /// Most steps, rejected ones included.
+    /// Maximum number of steps, rejected ones included.
     pub max_steps: u64,
     /// Points inside each step at which event functions are looked at, beside its ends.
     pub event_samples: u32,
@@ -95,7 +95,7 @@ pub enum IntegrateError {
     Eval {
         /// Where.
         t: f64,
-        /// What it said.
+        /// Its error.
         source: EvalError,
     },
     /// The step would have to be smaller than allowed.

@@ -265,8 +265,8 @@ impl<'a, S: OdeSystem + ?Sized> Run<'a, S> {
 
 /// Safety factor of the next step: a step that took many iterations should not grow much.
 fn safety(iterations: usize) -> f64 {
-    let most = 2.0 * ITERATIONS as f64;
-    0.9 * ((most + 1.0) / (most + iterations as f64)).min(1.0)
+    let scale = 2.0 * ITERATIONS as f64;
+    0.9 * ((scale + 1.0) / (scale + iterations as f64)).min(1.0)
 }
 
 /// An accepted step with the collocation polynomial as dense output.

@@ -1,7 +1,7 @@
 //! Coefficients of linearly implicit Rosenbrock methods, L-stable and stiffly accurate.
 //!
-//! In the notation of Hairer & Wanner (1996, IV.7): slopes `k_i = f(t + α_i h, y + h Σ α_ij k_j) + J h Σ γ_ij k_j + d_i h ∂f/∂t`,
-//! solved for `u_i = h Σ γ_ij k_j`. The tables give the form in `u`; the weights of the slopes, used for the quadratures, follow
+//! In the notation of Hairer & Wanner (1996, IV.7): stage rates `k_i = f(t + α_i h, y + h Σ α_ij k_j) + J h Σ γ_ij k_j + d_i h ∂f/∂t`,
+//! solved for `u_i = h Σ γ_ij k_j`. The tables give the form in `u`; the weights of the stage rates, used for the quadratures, follow
 //! from it with `Γ = (I/γ - C)⁻¹` in exact rational arithmetic of the printed digits.
 
 /// One method.
@@ -24,12 +24,12 @@ pub(super) struct Tableau {
     pub d: &'static [f64],
     /// Weights of the stages `u` in the three coefficients of the dense output.
     pub dense: [&'static [f64]; 3],
-    /// Weights of the slopes `k` in the step, `M Γ`.
-    pub slopes: &'static [f64],
-    /// Weights of the slopes `k` in the error estimate, the last row of `Γ`.
-    pub slopes_error: &'static [f64],
-    /// Weights of the slopes `k` in the dense output.
-    pub slopes_dense: [&'static [f64]; 3],
+    /// Weights of the stage rates `k` in the step, `M Γ`.
+    pub weights: &'static [f64],
+    /// Weights of the stage rates `k` in the error estimate, the last row of `Γ`.
+    pub weights_error: &'static [f64],
+    /// Weights of the stage rates `k` in the dense output.
+    pub weights_dense: [&'static [f64]; 3],
 }
 
 /// Rodas5P (Steinebach 2023): 8 stages, order 5(4), dense output of order 4.
@@ -145,7 +145,7 @@ pub(super) static RODAS5P: Tableau = Tableau {
             4.883087185713722,
         ],
     ],
-    slopes: &[
+    weights: &[
         0.12236007991300493,
         0.050238881884182705,
         1.3238392208663745,
@@ -155,7 +155,7 @@ pub(super) static RODAS5P: Tableau = Tableau {
         -0.21426766071346695,
         0.21193756319429014,
     ],
-    slopes_error: &[
+    weights_error: &[
         0.12584733011226948,
         0.1802058530898284,
         -0.20210253993990515,
@@ -165,7 +165,7 @@ pub(super) static RODAS5P: Tableau = Tableau {
         -0.42620522390775706,
         0.21193756319429014,
     ],
-    slopes_dense: [
+    weights_dense: [
         &[
             0.8232744916805114,
             -0.3181483349120229,
@@ -210,9 +210,9 @@ pub(super) static RODAS3: Tableau = Tableau {
     alpha: &[0.0, 0.0, 1.0, 1.0],
     d: &[0.5, 1.5, 0.0, 0.0],
     dense: [&[3.0, -1.0, -2.0 / 3.0, 0.0], &[0.0, 0.0, -2.0 / 3.0, 0.0], &[0.0; 4]],
-    slopes: &[5.0 / 6.0, -1.0 / 6.0, -1.0 / 6.0, 0.5],
-    slopes_error: &[1.0 / 12.0, 1.0 / 12.0, -2.0 / 3.0, 0.5],
-    slopes_dense: [
+    weights: &[5.0 / 6.0, -1.0 / 6.0, -1.0 / 6.0, 0.5],
+    weights_error: &[1.0 / 12.0, 1.0 / 12.0, -2.0 / 3.0, 0.5],
+    weights_dense: [
         &[2.0 / 3.0, -1.0 / 3.0, -1.0 / 3.0, 0.0],
         &[1.0 / 6.0, 1.0 / 6.0, -1.0 / 3.0, 0.0],
         &[0.0; 4],

@@ -21,7 +21,7 @@ fn a_system_is_solved_within_as_many_vectors_as_it_has_eigenvalues() {
     let mut g = Gmres::default();
     let mut x = vec![0.0; n];
     let left = g.solve(&b, &mut x, 1e-13, 10, apply);
-    assert!(left <= 1e-13 && g.spent <= 4, "{left} {}", g.spent);
+    assert!(left <= 1e-13 && g.iterations <= 4, "{left} {}", g.iterations);
     // The residual by the condition of this matrix, below a hundred.
     for (x, e) in x.iter().zip(&exact) {
         assert!((x - e).abs() < 1e-11, "{x} {e}");

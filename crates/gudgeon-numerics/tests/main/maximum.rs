@@ -1,8 +1,8 @@
 //! Maxima of sampled functions against closed forms.
 
-use gudgeon_numerics::maximum::largest;
+use gudgeon_numerics::maximum::maximise;
 
-/// Amplitude of one inertia on a spring, `1/√((1 - r²)² + (2 ζ r)²)`: largest `1/(2 ζ √(1 - ζ²))` at `r = √(1 - 2 ζ²)`.
+/// Amplitude of one inertia on a spring, `1/√((1 - r²)² + (2 ζ r)²)`: maximum `1/(2 ζ √(1 - ζ²))` at `r = √(1 - 2 ζ²)`.
 fn resonance(zeta: f64) -> impl Fn(f64) -> f64 {
     move |r| 1.0 / (1.0 - r * r).hypot(2.0 * zeta * r)
 }
@@ -17,7 +17,7 @@ fn the_top_of_a_resonance_is_found_to_its_closed_form() {
         at.sort_by(f64::total_cmp);
         let samples: Vec<(f64, f64)> = at.iter().map(|r| (*r, f(*r))).collect();
         let mut calls = 0;
-        let (r, top) = largest(&samples, |x| {
+        let (r, top) = maximise(&samples, |x| {
             calls += 1;
             f(x)
         });
@@ -33,14 +33,14 @@ fn the_top_of_a_resonance_is_found_to_its_closed_form() {
 #[test]
 fn ends_and_flat_functions_are_their_own_tops() {
     let ramp: Vec<(f64, f64)> = (0..5).map(|i| (f64::from(i), f64::from(i))).collect();
-    assert_eq!(largest(&ramp, |x| x), (4.0, 4.0));
+    assert_eq!(maximise(&ramp, |x| x), (4.0, 4.0));
     let flat: Vec<(f64, f64)> = (0..5).map(|i| (f64::from(i), 1.0)).collect();
-    assert_eq!(largest(&flat, |_| 1.0).1, 1.0);
-    assert_eq!(largest(&[(2.0, 3.0)], |_| 9.0), (2.0, 3.0));
-    assert_eq!(largest(&[], |x| x).1, f64::NEG_INFINITY);
+    assert_eq!(maximise(&flat, |_| 1.0).1, 1.0);
+    assert_eq!(maximise(&[(2.0, 3.0)], |_| 9.0), (2.0, 3.0));
+    assert_eq!(maximise(&[], |x| x).1, f64::NEG_INFINITY);
     // A top between the end and the sample beside it.
     let f = |x: f64| 1.0 - (x - 0.2) * (x - 0.2);
     let samples: Vec<(f64, f64)> = (0..3).map(|i| (f64::from(i), f(f64::from(i)))).collect();
-    let (x, top) = largest(&samples, f);
+    let (x, top) = maximise(&samples, f);
     assert!((x - 0.2).abs() < 1e-9 && top > 1.0 - 1e-15, "{x} {top}");
 }

@@ -72,7 +72,7 @@ fn options(tolerance: f64, accelerate: bool) -> OrbitOptions {
     OrbitOptions {
         tolerance,
         accuracy: tolerance / 30.0,
-        finer: 0,
+        refinements: 0,
         max_cycles: if accelerate { 60 } else { 300 },
         accelerate,
     }
@@ -301,8 +301,13 @@ fn a_map_noisier_than_it_says_is_known_by_its_band() {
     for seed in 1..=20 {
         let mut map = Linear::new(0.5, 8.0, seed);
         let mut y = map.start.clone();
-        let wanted =
-            OrbitOptions { tolerance: 1e-5, accuracy: 1e-5, max_cycles: 120, finer: 0, accelerate: true };
+        let wanted = OrbitOptions {
+            tolerance: 1e-5,
+            accuracy: 1e-5,
+            max_cycles: 120,
+            refinements: 0,
+            accelerate: true,
+        };
         let r = periodic_orbit(&mut map, &mut y, &wanted).unwrap();
         let error = map.error(&y);
         assert!(!r.converged && r.period == 1 && r.cycles == 120, "{seed}: {r:?}");
@@ -316,11 +321,16 @@ fn a_map_noisier_than_it_says_is_known_by_its_band() {
 #[test]
 fn noise_that_keeps_a_search_from_its_end_is_lessened() {
     for seed in 1..=20 {
-        let ends = |finer: usize| {
+        let ends = |refinements: usize| {
             let mut map = Linear::new(0.9, 1.0, seed);
             let mut y = map.start.clone();
-            let wanted =
-                OrbitOptions { tolerance: 1e-4, accuracy: 1e-4, max_cycles: 120, finer, accelerate: true };
+            let wanted = OrbitOptions {
+                tolerance: 1e-4,
+                accuracy: 1e-4,
+                max_cycles: 120,
+                refinements,
+                accelerate: true,
+            };
             let r = periodic_orbit(&mut map, &mut y, &wanted).unwrap();
             (map.error(&y), r)
         };

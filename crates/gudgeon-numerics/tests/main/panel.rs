@@ -27,16 +27,16 @@ fn extremes_lie_between_the_samples() {
     // Turns at 0.3 and 0.83, between nodes.
     let p = |x: f64| x * (3.0 * 0.3 * 0.83 - 1.5 * (0.3 + 0.83) * x + x * x);
     let v = sampled(p);
-    let (x, top) = LOBATTO.highest(&v, -1.0).expect("above");
+    let (x, top) = LOBATTO.maximum(&v, -1.0).expect("above");
     // A turning point is known to the root of the rounding of the value, the value to its rounding.
     assert!((x - 0.3).abs() < 1e-7 && (top - p(0.3)).abs() < 1e-15, "{x} {top}");
     let down: Vec<f64> = v.iter().map(|v| -v).collect();
-    assert_eq!(LOBATTO.lowest(&down, 1.0), Some((x, -top)));
+    assert_eq!(LOBATTO.minimum(&down, 1.0), Some((x, -top)));
     // The end is lower than where it turns back up.
-    assert_eq!(LOBATTO.lowest(&v, 1.0), Some((0.0, 0.0)));
-    assert_eq!(LOBATTO.highest(&v, top + 1e-9), None);
-    assert_eq!(TRAPEZIUM.highest(&[1.0, 4.0], 0.0), Some((1.0, 4.0)));
-    assert_eq!(TRAPEZIUM.lowest(&[1.0, 4.0], 2.0), Some((0.0, 1.0)));
+    assert_eq!(LOBATTO.minimum(&v, 1.0), Some((0.0, 0.0)));
+    assert_eq!(LOBATTO.maximum(&v, top + 1e-9), None);
+    assert_eq!(TRAPEZIUM.maximum(&[1.0, 4.0], 0.0), Some((1.0, 4.0)));
+    assert_eq!(TRAPEZIUM.minimum(&[1.0, 4.0], 2.0), Some((0.0, 1.0)));
 }
 
 #[test]

@@ -480,7 +480,7 @@ impl Solver {
                 (o[0], o[1]) = (x.re - g.re, x.im - g.im);
             }
         });
-        work.solutions += (gmres.spent * self.beyond.harmonics) as u64;
+        work.solutions += (gmres.iterations * self.beyond.harmonics) as u64;
         self.x = kept;
         self.gmres = gmres;
     }

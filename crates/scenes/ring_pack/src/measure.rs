@@ -11,7 +11,7 @@
 
 use std::f64::consts::PI;
 
-use gudgeon_numerics::panel::{MOST_NODES, Rule, TRAPEZIUM};
+use gudgeon_numerics::panel::{MAX_NODES, Rule, TRAPEZIUM};
 
 use super::pack::Pack;
 
@@ -90,7 +90,7 @@ impl RingMeasure {
     }
 }
 
-type Column = [f64; MOST_NODES];
+type Column = [f64; MAX_NODES];
 
 /// Samples of one ring over a step.
 #[derive(Debug, Clone, Copy, Default)]
@@ -158,9 +158,9 @@ impl Measures {
             cylinder: Peak::default(),
             blow_back: 0.0,
             span: 0.0,
-            speed: [0.0; MOST_NODES],
-            entered: [0.0; MOST_NODES],
-            pressures: vec![[0.0; MOST_NODES]; n],
+            speed: [0.0; MAX_NODES],
+            entered: [0.0; MAX_NODES],
+            pressures: vec![[0.0; MAX_NODES]; n],
             last: None,
         }
     }
@@ -245,7 +245,7 @@ impl Measures {
 }
 
 fn raise(peak: &mut Peak, rule: Rule, values: &[f64], t0: f64, t1: f64) {
-    if let Some((x, value)) = rule.highest(values, peak.value) {
+    if let Some((x, value)) = rule.maximum(values, peak.value) {
         *peak = Peak { theta: t0 + x * (t1 - t0), value };
     }
 }
@@ -253,10 +253,10 @@ fn raise(peak: &mut Peak, rule: Rule, values: &[f64], t0: f64, t1: f64) {
 impl RingMeasure {
     fn integrate(&mut self, rule: Rule, speed: &Column, stroke: usize, dt: f64) {
         let (n, s) = (rule.nodes.len(), &self.samples);
-        if let Some((_, low)) = rule.lowest(&s.ln_h[..n], self.ln_h.0) {
+        if let Some((_, low)) = rule.minimum(&s.ln_h[..n], self.ln_h.0) {
             self.ln_h.0 = low;
         }
-        if let Some((_, high)) = rule.highest(&s.ln_h[..n], self.ln_h.1) {
+        if let Some((_, high)) = rule.maximum(&s.ln_h[..n], self.ln_h.1) {
             self.ln_h.1 = high;
         }
         let over = |f: &dyn Fn(usize) -> f64| -> f64 {

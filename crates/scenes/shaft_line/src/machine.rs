@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use gudgeon_core::kinds::{Torsion, TorsionCtx, TorsionOut, TorsionSpec};
 use gudgeon_core::{BuildError, EvalError};
-use gudgeon_numerics::maximum::largest;
+use gudgeon_numerics::maximum::maximise;
 use gudgeon_torsion::critical::Critical;
 use gudgeon_torsion::cycle::Cycle;
 use gudgeon_torsion::steady::Steady;
@@ -259,7 +259,7 @@ impl<'a> Machine<'a> {
     pub fn largest(&mut self, speeds: &[f64], quantity: &dyn Fn(&Point) -> f64) -> (f64, f64) {
         let samples: Vec<(f64, f64)> =
             speeds.iter().filter_map(|w| self.at(*w).map(|p| (*w, quantity(p)))).collect();
-        largest(&samples, |w| self.at(w).map_or(f64::NEG_INFINITY, quantity))
+        maximise(&samples, |w| self.at(w).map_or(f64::NEG_INFINITY, quantity))
     }
 }
 
