@@ -2,6 +2,10 @@
 //!
 //! A formula written once over [`Real`] gives, with `f64`, its value, and with [`Jet`] its value, gradient and Hessian as exact
 //! as the value itself: nothing is differenced, and no derivative can disagree with its function.
+//!
+//! Why not the crate num-dual: its `Dual2SVec64<3>` (0.15) agrees with [`Jet`] to rounding and takes 1.7 times as long on roots, logarithms
+//! and arc cosines, 1.8 times on sums, products and quotients (117 ns against 68 ns, 130 ns against 71 ns; 11 ns and 4 ns for the values
+//! alone). It holds 120 bytes instead of 80, because it stores a symmetric Hessian twice, and brings five more crates.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 

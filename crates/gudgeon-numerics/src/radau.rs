@@ -21,7 +21,6 @@
 //! 1e-3, better from about 1e-7 on, and the reference the other is measured against.
 
 mod coefficients;
-mod complex_lu;
 mod method;
 mod newton;
 mod run;

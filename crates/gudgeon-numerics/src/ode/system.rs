@@ -65,7 +65,7 @@ pub enum EventAction {
     /// The state or the equations changed: the step ends here and integration goes on from the new state.
     ///
     /// When `y` was changed and the function then leaves zero on the far side without having come back (a ball that is
-    /// pushed into the floor), the event happens again; 100 such repeats without progress in time are [`IntegrateError::Chatter`].
+    /// pushed into the floor), the event happens again; 100 such repeats without progress in time are [`super::IntegrateError::Chatter`].
     Restart,
     /// The integration ends here, successfully. Changes to `y` are kept.
     Stop,
@@ -130,7 +130,7 @@ pub trait OdeSystem {
     }
 
     /// Absolute errors per step at the state where a step begins, for systems whose accuracy depends on where they are (a
-    /// position beside a wall): `atol` comes as [`Options::atol`] and may be changed. Taken by `Rodas`.
+    /// position beside a wall): `atol` comes as [`super::Options::atol`] and may be changed. Taken by `Rodas`.
     fn tolerances(&mut self, _t: f64, _y: &[f64], _atol: &mut [f64]) {}
 
     /// Linear relations between the rates that hold for all arguments (see the module documentation).

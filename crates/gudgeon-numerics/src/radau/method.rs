@@ -1,10 +1,9 @@
 //! One step of the method: work arrays, linear algebra and the stages.
 
 use super::coefficients::{C, IM, RE, REAL, T, T_INV, newton_form};
-use super::complex_lu::ComplexLu;
 use super::tolerance::{larger, scaled_norm};
 use crate::EvalError;
-use crate::linalg::{lu_factor, lu_solve};
+use crate::linalg::{ComplexLu, lu_factor, lu_solve};
 use crate::ode::{ColumnGroups, OdeSystem, Options, Stats, difference};
 
 /// Work arrays of a system of one size.
@@ -104,11 +103,26 @@ impl Method {
         }
         stats.lu += 1;
         let real = lu_factor(&mut self.lu, n, &mut self.pivot).is_ok();
-        if real && self.complex.factor(&self.jac, RE / h, IM / h) {
+        if real && self.factor_complex(h) {
             Ok(())
         } else {
             Err(EvalError::recoverable("radau5", "singular iteration matrix"))
         }
+    }
+
+    /// Factors `λ/h - J` for the complex eigenvalue; false when it is singular.
+    fn factor_complex(&mut self, h: f64) -> bool {
+        let n = self.n;
+        let (re, im) = self.complex.parts();
+        for (l, j) in re.iter_mut().zip(&self.jac) {
+            *l = -j;
+        }
+        im.fill(0.0);
+        for i in 0..n {
+            re[i * n + i] += RE / h;
+            im[i * n + i] += IM / h;
+        }
+        self.complex.factor().is_ok()
     }
 
     /// First guess of the stages: the last step's polynomial continued, or no change at all.

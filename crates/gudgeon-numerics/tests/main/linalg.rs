@@ -1,8 +1,8 @@
 //! Linear systems: residuals, agreement of independent solvers, refusals.
 
 use gudgeon_numerics::linalg::{
-    Banded, Complex, Singular, SymmetricBanded, dot, lu_factor, lu_factor_complex, lu_factor_weighted,
-    lu_solve, lu_solve_complex, solve_tridiagonal,
+    Banded, Complex, ComplexLu, Singular, SymmetricBanded, dot, lu_factor, lu_factor_weighted, lu_solve,
+    solve_tridiagonal,
 };
 
 /// A fixed sequence of numbers in [-1, 1) (Weyl sequence): a reproducible dense matrix.
@@ -45,19 +45,41 @@ fn weights_make_pivots_independent_of_units() {
 }
 
 #[test]
-fn complex_lu_solves() {
-    let n = 9;
-    let a: Vec<Complex> = (0..n * n).map(|k| Complex::new(weyl(k + 1), weyl(3 * k + 2))).collect();
-    let x: Vec<Complex> = (0..n).map(|k| Complex::new(weyl(k), weyl(5 * k))).collect();
-    let mut b: Vec<Complex> =
-        (0..n).map(|i| (0..n).fold(Complex::default(), |s, j| s + a[i * n + j] * x[j])).collect();
-    let (mut lu, mut piv) = (a, vec![0; n]);
-    lu_factor_complex(&mut lu, n, &mut piv, None).unwrap();
-    lu_solve_complex(&lu, n, &piv, &mut b);
-    for (b, x) in b.iter().zip(&x) {
-        // Condition number of this matrix is below 1e3.
-        assert!((*b - *x).abs() < 1e-12);
+fn complex_lu_solves_and_reports_singularity() {
+    for n in [1, 2, 9, 24] {
+        let a: Vec<Complex> = (0..n * n).map(|k| Complex::new(weyl(k + 1), weyl(3 * k + 2))).collect();
+        let x: Vec<Complex> = (0..n).map(|k| Complex::new(weyl(k), weyl(5 * k))).collect();
+        let b: Vec<Complex> =
+            (0..n).map(|i| (0..n).fold(Complex::default(), |s, j| s + a[i * n + j] * x[j])).collect();
+        let mut lu = ComplexLu::new(n);
+        let (re, im) = lu.parts();
+        for (k, a) in a.iter().enumerate() {
+            (re[k], im[k]) = (a.re, a.im);
+        }
+        lu.factor().unwrap();
+        let (mut re, mut im): (Vec<f64>, Vec<f64>) = b.iter().map(|b| (b.re, b.im)).unzip();
+        lu.solve(&mut re, &mut im);
+        for i in 0..n {
+            let sum = (0..n).fold(Complex::default(), |s, j| s + a[i * n + j] * Complex::new(re[j], im[j]));
+            let size: f64 = (0..n).map(|j| a[i * n + j].abs() * Complex::new(re[j], im[j]).abs()).sum();
+            // Backward stable: the residual is n times rounding, whatever the condition.
+            assert!((sum - b[i]).abs() <= 40.0 * n as f64 * f64::EPSILON * size, "{n} {i}");
+        }
     }
+    let fill = |values: [f64; 8]| {
+        let mut lu = ComplexLu::new(2);
+        let (re, im) = lu.parts();
+        re.copy_from_slice(&values[..4]);
+        im.copy_from_slice(&values[4..]);
+        lu.factor()
+    };
+    // Rows (1, i) and (i, -1): the second is i times the first.
+    assert_eq!(fill([1.0, 0.0, 0.0, -1.0, 0.0, 1.0, 1.0, 0.0]), Err(Singular { column: 1 }));
+    assert_eq!(fill([0.0; 8]), Err(Singular { column: 0 }));
+    assert_eq!(fill([f64::NAN; 8]), Err(Singular { column: 0 }));
+    assert_eq!(fill([f64::INFINITY; 8]), Err(Singular { column: 0 }));
+    // A zero first pivot in both parts: rows are exchanged.
+    assert_eq!(fill([0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0]), Ok(()));
 }
 
 #[test]

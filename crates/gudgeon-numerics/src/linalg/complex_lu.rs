@@ -1,8 +1,14 @@
-//! Solution with the complex matrix of the iteration.
+//! Dense LU factorisation of complex matrices: the one of the workspace.
+//!
+//! Time of other factorisations over this one's (one core, random matrices): interleaved real and imaginary parts 0.8 at n = 4, 0.9 at 8,
+//! 1.1 at 12, 1.3 at 16, 1.4 at 20 to 60; `nalgebra::LU` (0.35) 1.2 at n = 4, 1.0 at 8, 1.3 at 12, 1.6 at 20, 1.9 at 60. Solutions: 1.0 to
+//! 1.1 and 1.1 to 1.4.
 
-/// LU factors of the complex matrix `(re + i im) I - J` with partial pivoting; real and imaginary parts in arrays of their
-/// own, which keeps the inner loops free of shuffles.
-#[derive(Debug)]
+use super::Singular;
+
+/// LU factors of a complex matrix with partial pivoting. Real and imaginary parts stand in arrays of their own, row-major, which keeps
+/// the inner loops free of shuffles. Allocates only when made.
+#[derive(Debug, Clone)]
 pub struct ComplexLu {
     n: usize,
     re: Vec<f64>,
@@ -11,46 +17,33 @@ pub struct ComplexLu {
 }
 
 impl ComplexLu {
+    /// For matrices of `n` rows and columns.
+    #[must_use]
     pub fn new(n: usize) -> Self {
         Self { n, re: vec![0.0; n * n], im: vec![0.0; n * n], pivot: vec![0; n] }
     }
 
-    /// Answers whether every column had a usable pivot. Rows of `jac` beyond the first `n` are ignored.
-    pub fn factor(&mut self, jac: &[f64], re: f64, im: f64) -> bool {
+    /// Real and imaginary parts of the matrix, row-major, to be written before [`ComplexLu::factor`], which puts the factors in their
+    /// place.
+    pub fn parts(&mut self) -> (&mut [f64], &mut [f64]) {
+        (&mut self.re, &mut self.im)
+    }
+
+    /// LU factorisation in place.
+    ///
+    /// # Errors
+    /// [`Singular`] when a column has no finite non-zero pivot.
+    pub fn factor(&mut self) -> Result<(), Singular> {
         let n = self.n;
-        for (l, j) in self.re.iter_mut().zip(jac) {
-            *l = -j;
-        }
-        self.im.fill(0.0);
-        for i in 0..n {
-            self.re[i * n + i] += re;
-            self.im[i * n + i] += im;
-        }
         for k in 0..n {
-            let (mut best, mut size) = (k, -1.0);
-            for i in k..n {
-                // Within √2 of the modulus: enough to choose a pivot.
-                let candidate = self.re[i * n + k].abs() + self.im[i * n + k].abs();
-                if candidate > size {
-                    (best, size) = (i, candidate);
-                }
-            }
-            if !(size > 0.0 && size < f64::INFINITY) {
-                return false;
-            }
-            self.pivot[k] = best;
-            if best != k {
-                for j in 0..n {
-                    self.re.swap(k * n + j, best * n + j);
-                    self.im.swap(k * n + j, best * n + j);
-                }
-            }
+            self.exchange(k)?;
             let (inv_re, inv_im) = reciprocal(self.re[k * n + k], self.im[k * n + k]);
             let (top_re, low_re) = self.re.split_at_mut((k + 1) * n);
             let (top_im, low_im) = self.im.split_at_mut((k + 1) * n);
             let (pivot_re, pivot_im) = (&top_re[k * n + k + 1..], &top_im[k * n + k + 1..]);
             for (row_re, row_im) in low_re.chunks_exact_mut(n).zip(low_im.chunks_exact_mut(n)) {
                 let (a, b) = (row_re[k], row_im[k]);
+                // Sparse Jacobians are common: a zero multiplier needs no row operation.
                 if a == 0.0 && b == 0.0 {
                     continue;
                 }
@@ -63,10 +56,35 @@ impl ComplexLu {
                 }
             }
         }
-        true
+        Ok(())
     }
 
-    /// Solves in place.
+    /// Brings the row with the largest entry of column `k` to place `k`.
+    fn exchange(&mut self, k: usize) -> Result<(), Singular> {
+        let n = self.n;
+        let (mut best, mut size) = (k, -1.0);
+        for i in k..n {
+            // Within √2 of the modulus: enough to choose a pivot.
+            let candidate = self.re[i * n + k].abs() + self.im[i * n + k].abs();
+            if candidate > size {
+                (best, size) = (i, candidate);
+            }
+        }
+        // Written so that a NaN pivot also fails.
+        if !(size > 0.0 && size < f64::INFINITY) {
+            return Err(Singular { column: k });
+        }
+        self.pivot[k] = best;
+        if best != k {
+            for j in 0..n {
+                self.re.swap(k * n + j, best * n + j);
+                self.im.swap(k * n + j, best * n + j);
+            }
+        }
+        Ok(())
+    }
+
+    /// Solves `A z = b` in place with the factors of [`ComplexLu::factor`]: `x` and `y` hold the real and the imaginary part of b, then of z.
     pub fn solve(&self, x: &mut [f64], y: &mut [f64]) {
         let n = self.n;
         for k in 0..n {
