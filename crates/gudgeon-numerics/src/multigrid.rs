@@ -50,6 +50,8 @@ impl LineMultigrid {
     /// Work space for a grid of `ny` lines of `nx` nodes: some 60 values per node.
     #[must_use]
     pub fn new(nx: usize, ny: usize, periodic: bool) -> Self {
+        // A line of one node has no neighbour, not itself.
+        let periodic = periodic && nx > 1;
         let mut levels = vec![Level::new(nx, ny, periodic)];
         let mut lines = ny;
         while lines > 1 {
@@ -69,7 +71,7 @@ impl LineMultigrid {
     pub fn setup(&mut self, m: &FivePoint) -> Result<(), Singular> {
         let fine = &mut self.levels[0];
         let (nx, ny) = (fine.nx, fine.ny);
-        assert!(m.nx == nx && m.ny == ny && m.periodic == fine.periodic, "another grid");
+        assert!(m.nx == nx && m.ny == ny && (m.periodic && nx > 1) == fine.periodic, "another grid");
         let carries = m.role.contains(&Role::Carried);
         // Eight columns at a time: each side of the transposition stays in the cache.
         for block in (0..nx).step_by(8) {
@@ -207,7 +209,7 @@ impl LineMultigrid {
         let (head, tail) = levels.split_at_mut(l + 1);
         let level = &mut head[l];
         level.relax(true);
-        let Some(coarse) = tail.first_mut() else { return 0.0 };
+        let Some(coarse) = tail.first_mut() else { return level.line_residual() };
         let mut largest = 0.0_f64;
         for i in 0..level.nx {
             for k in 0..level.even {

@@ -1,6 +1,6 @@
 //! One grid: elimination and relaxation along its lines.
 
-use super::five_point::Role;
+use super::five_point::{Role, larger};
 use crate::linalg::Singular;
 
 /// `own = b + f0 x0 + f1 x1 + f2 x2`.
@@ -309,6 +309,12 @@ impl Level {
                 }
             }
         }
+    }
+
+    /// Largest residual of a grid of one line.
+    pub fn line_residual(&self) -> f64 {
+        let nodes = (0..self.nx).filter(|&i| self.d[i * self.ny] != 0.0);
+        nodes.fold(0.0, |largest, i| larger(largest, self.even_residual(i, 0).abs()))
     }
 
     /// Residual of even line `k` at node `i`, after the odd lines were solved.

@@ -198,7 +198,10 @@ impl<'a, S: OdeSystem + ?Sized> Run<'a, S> {
         self.h = if step.cut { self.h.max(wanted) } else { wanted }.min(self.options.h_max);
         self.t = step.t1;
         if self.t >= step.stop && step.stop < self.end {
-            self.next_break += 1;
+            // A breakpoint may stand in the list more than once.
+            while self.breakpoints.get(self.next_break).is_some_and(|b| *b <= self.t) {
+                self.next_break += 1;
+            }
             (self.previous, self.polynomial) = (None, None);
             (self.edge, self.jacobian_usable) = (true, false);
         }
