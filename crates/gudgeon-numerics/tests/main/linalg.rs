@@ -163,3 +163,91 @@ fn tridiagonal_solves_the_discrete_laplacian() {
     }
     assert!(solve_tridiagonal(&[0.0], &[0.0], &[0.0], &mut [1.0], &mut [0.0]).is_err());
 }
+
+#[test]
+fn singular_matrices_are_named_by_their_column() {
+    let mut banded = Banded::new(3, 1, 1);
+    (0..2).for_each(|i| banded.add(i, i, 1.0));
+    assert_eq!(banded.factor(), Err(Singular { column: 2 }));
+    assert_eq!((banded.size(), banded.get(0, 2), banded.get(2, 0)), (3, 0.0, 0.0));
+    banded.clear();
+    (0..3).for_each(|i| banded.add(i, i, 2.0));
+    assert_eq!((banded.get(1, 1), banded.get(0, 1), banded.factor()), (2.0, 0.0, Ok(())));
+    let mut b = [2.0, 4.0, 6.0];
+    banded.solve(&mut b);
+    assert_eq!(b, [1.0, 2.0, 3.0]);
+    for bad in [f64::NAN, f64::INFINITY, 0.0, -1.0] {
+        let mut s = SymmetricBanded::new(6, 1);
+        (0..6).for_each(|i| s.add(i, i, if i == 4 { bad } else { 1.0 }));
+        assert_eq!(s.factor(), Err(Singular { column: 4 }), "{bad}");
+        s.clear();
+        (0..6).for_each(|i| s.add(i, i, 4.0));
+        assert_eq!(s.factor(), Ok(()));
+        let mut a = [1.0, 0.0, 0.0, if bad == -1.0 { 0.0 } else { bad }];
+        assert_eq!(lu_factor(&mut a, 2, &mut [0; 2]), Err(Singular { column: 1 }), "{bad}");
+        let pivot = if bad == -1.0 { 0.0 } else { bad };
+        let two = solve_tridiagonal(&[0.0; 2], &[1.0, pivot], &[0.0; 2], &mut [1.0; 2], &mut [0.0; 2]);
+        assert_eq!(two, Err(Singular { column: 1 }), "{bad}");
+    }
+    assert_eq!(solve_tridiagonal(&[], &[], &[], &mut [], &mut []), Ok(()));
+}
+
+#[test]
+fn weights_choose_the_pivots() {
+    // Rows (1, 0) and (2, 1): the largest entry is in the second, the largest weighted one in the first.
+    let (mut a, mut pivots, mut weights) = ([1.0, 0.0, 2.0, 1.0], [9; 2], [3.0, 1.0]);
+    lu_factor_weighted(&mut a, 2, &mut pivots, Some(&mut weights)).unwrap();
+    assert_eq!((pivots, weights), ([0, 1], [3.0, 1.0]));
+    let (mut a, mut weights) = ([1.0, 0.0, 2.0, 1.0], [1.0, 0.75]);
+    lu_factor_weighted(&mut a, 2, &mut pivots, Some(&mut weights)).unwrap();
+    assert_eq!((pivots, weights), ([1, 1], [0.75, 1.0]));
+    assert_eq!(a, [2.0, 1.0, 0.5, -0.5]);
+}
+
+#[test]
+fn inner_products_take_the_shorter_length() {
+    for n in 0..12 {
+        let a: Vec<f64> = (0..n).map(|k| k as f64 + 1.0).collect();
+        let b = vec![2.0; 15];
+        // Sums of small integers.
+        assert_eq!((dot(&a, &b), dot(&b, &a)), ((n * (n + 1)) as f64, (n * (n + 1)) as f64));
+    }
+}
+
+#[test]
+#[should_panic(expected = "outside the band")]
+fn entries_left_of_the_band_are_a_mistake() {
+    Banded::new(5, 1, 2).add(3, 1, 1.0);
+}
+
+#[test]
+#[should_panic(expected = "outside the band")]
+fn entries_right_of_the_band_are_a_mistake() {
+    Banded::new(5, 1, 2).add(1, 4, 1.0);
+}
+
+#[test]
+#[should_panic(expected = "outside the lower half")]
+fn entries_above_the_diagonal_are_a_mistake() {
+    SymmetricBanded::new(5, 2).add(1, 2, 1.0);
+}
+
+#[test]
+#[should_panic(expected = "solve before factor")]
+fn changed_matrices_must_be_factored_again() {
+    let mut a = Banded::new(2, 0, 0);
+    (0..2).for_each(|i| a.add(i, i, 1.0));
+    a.factor().unwrap();
+    a.add(0, 0, 1.0);
+    a.solve(&mut [1.0; 2]);
+}
+
+#[test]
+#[should_panic(expected = "solve before factor")]
+fn changed_symmetric_matrices_must_be_factored_again() {
+    let mut a = SymmetricBanded::new(2, 0);
+    (0..2).for_each(|i| a.add(i, i, 1.0));
+    a.factor().unwrap();
+    a.clear();
+    a.solve(&mut [1.0; 2]);
+}

@@ -1,5 +1,6 @@
 //! Tests of the numerical methods, one module a topic. Allocations are counted in a program of their own.
 
+mod complex;
 mod fourier;
 mod gmres;
 mod jet;
@@ -13,6 +14,8 @@ mod panel;
 mod qp;
 mod quadrature;
 mod radau;
+mod refusals;
 mod rodas;
 mod roots;
+mod scaling;
 mod table;

@@ -1,5 +1,6 @@
 //! Five-point matrices and their multigrid solver.
 
+use gudgeon_numerics::linalg::{lu_factor, lu_solve};
 use gudgeon_numerics::multigrid::{FivePoint, LineMultigrid, Role};
 
 /// A Poisson problem with pressure on all sides and the ratio `a` of diffusion along to across.
@@ -109,4 +110,157 @@ fn a_singular_line_is_an_error() {
     // Neither tied to anything nor zero.
     m.gx.fill(f64::NAN);
     assert!(LineMultigrid::new(4, 4, false).setup(&m).is_err());
+}
+
+/// Entries of the matrix, row by row, from its definition: what the sum of all that leaves a node is made of.
+fn dense(m: &FivePoint) -> Vec<f64> {
+    let n = m.nx * m.ny;
+    let mut a = vec![0.0; n * n];
+    let mut exchange = |from: usize, to: usize, g: f64| {
+        // g (v_from - v_to) leaves one and enters the other; what does not diffuse counts as zero.
+        let diffused = |k: usize| m.role[k] == Role::Diffused;
+        for (row, other) in [(from, to), (to, from)] {
+            a[row * n + row] += if diffused(row) { g } else { 0.0 };
+            a[row * n + other] -= if diffused(other) { g } else { 0.0 };
+        }
+    };
+    for j in 0..m.ny {
+        for i in 0..m.nx {
+            let k = j * m.nx + i;
+            if i + 1 < m.nx || m.periodic {
+                exchange(k, j * m.nx + (i + 1) % m.nx, m.gx[k]);
+            }
+            if j + 1 < m.ny {
+                exchange(k, k + m.nx, m.gy[k]);
+            }
+        }
+    }
+    for j in 0..m.ny {
+        for i in 0..m.nx {
+            let (k, next) = (j * m.nx + i, j * m.nx + (i + 1) % m.nx);
+            if i + 1 < m.nx || m.periodic {
+                // -q v leaves the node upstream and enters the one downstream.
+                let q = m.qx[k];
+                let (up, down) = if q > 0.0 { (k, next) } else { (next, k) };
+                if m.role[up] == Role::Carried {
+                    a[up * n + up] -= q.abs();
+                    a[down * n + up] += q.abs();
+                }
+            }
+            if m.role[k] == Role::Carried {
+                a[k * n + k] -= m.hold[k];
+            }
+        }
+    }
+    a
+}
+
+/// A grid with every kind of node and coefficients that differ from node to node.
+fn mixed(nx: usize, ny: usize, periodic: bool) -> FivePoint {
+    let mut m = FivePoint::new(nx, ny, periodic);
+    for k in 0..nx * ny {
+        m.gx[k] = 1.0 + ((3 * k) % 7) as f64;
+        m.gy[k] = 0.5 + ((5 * k) % 11) as f64;
+        m.qx[k] = if (k / nx).is_multiple_of(2) { 1.5 + (k % 3) as f64 } else { -2.0 - (k % 2) as f64 };
+        m.hold[k] = 0.25 + (k % 4) as f64;
+        m.role[k] = match k {
+            _ if k % 13 == 4 || k + 1 == nx * ny => Role::Fixed,
+            _ if k % 5 == 2 => Role::Carried,
+            _ => Role::Diffused,
+        };
+    }
+    m
+}
+
+#[test]
+fn rows_are_the_balances_of_their_nodes() {
+    for (nx, ny, periodic) in [(6, 5, false), (6, 5, true), (4, 1, true), (1, 6, false), (3, 2, false)] {
+        let m = mixed(nx, ny, periodic);
+        let (a, n) = (dense(&m), nx * ny);
+        let v: Vec<f64> =
+            (0..n).map(|k| if m.role[k] == Role::Fixed { 0.0 } else { ((7 * k) % 5) as f64 - 1.5 }).collect();
+        let b: Vec<f64> = (0..n).map(|k| (k % 3) as f64).collect();
+        let mut largest = 0.0_f64;
+        for k in 0..n {
+            let (i, j) = (k % nx, k / nx);
+            let row = m.row(i, j);
+            let mut sum = row.c * v[k];
+            let (west, east) = (m.before(i, k), m.after(i, k));
+            sum -=
+                if west != k { row.w * v[west] } else { 0.0 } + if east != k { row.e * v[east] } else { 0.0 };
+            sum -= if j > 0 { row.s * v[k - nx] } else { 0.0 }
+                + if j + 1 < ny { row.n * v[k + nx] } else { 0.0 };
+            if m.role[k] == Role::Fixed {
+                continue;
+            }
+            let exact: f64 = (0..n).map(|c| a[k * n + c] * v[c]).sum();
+            // Sums of multiples of an eighth: nothing is rounded.
+            assert_eq!(sum, exact, "{nx} {ny} {periodic} {k}");
+            largest = largest.max((b[k] - exact).abs());
+        }
+        assert_eq!(m.residual(&b, &v), largest);
+    }
+}
+
+#[test]
+fn solutions_are_those_of_a_dense_solver() {
+    for (nx, ny) in [(6, 5), (5, 8), (4, 1), (3, 2), (7, 3), (1, 6), (2, 5)] {
+        for periodic in [false, true] {
+            for carried in [false, true] {
+                let mut m = mixed(nx, ny, periodic);
+                for role in &mut m.role {
+                    if *role == Role::Carried && !carried {
+                        *role = Role::Diffused;
+                    }
+                }
+                // What a carried unknown loses on the spot makes its row a sink like the others.
+                let (mut a, n) = (dense(&m), nx * ny);
+                let mut x: Vec<f64> = (0..n).map(|k| 1.0 + (k % 4) as f64).collect();
+                let b = x.clone();
+                for k in (0..n).filter(|k| m.role[*k] == Role::Fixed) {
+                    (0..n).for_each(|c| a[k * n + c] = f64::from(u8::from(c == k)));
+                    x[k] = 0.0;
+                }
+                let mut pivots = vec![0; n];
+                lu_factor(&mut a, n, &mut pivots).unwrap();
+                lu_solve(&a, n, &pivots, &mut x);
+                let mut mg = LineMultigrid::new(nx, ny, periodic);
+                mg.setup(&m).unwrap();
+                let mut v = vec![0.0; n];
+                let done = mg.solve(&b, &mut v, 1e-12, 60);
+                assert!(done.residual <= 1e-12, "{nx} {ny} {periodic} {carried} {done:?}");
+                for (v, x) in v.iter().zip(&x) {
+                    // The residual by the norm of the inverse, below ten thousand.
+                    assert!((v - x).abs() < 1e-8, "{nx} {ny} {periodic} {carried}: {v} {x}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn cycles_are_counted_and_limited() {
+    let m = poisson(40, 40, 1.0, false);
+    let mut mg = LineMultigrid::new(40, 40, false);
+    mg.setup(&m).unwrap();
+    let b = vec![1.0; 1600];
+    for limit in [1, 2, 3] {
+        let mut v = vec![0.0; 1600];
+        let done = mg.solve(&b, &mut v, 0.0, limit);
+        assert_eq!(done.cycles, limit);
+        assert!(done.rate > 0.0 && done.rate < 0.12, "{done:?}");
+    }
+    // A factor of ten a cycle and better, from residuals of 1.
+    let mut v = vec![0.0; 1600];
+    let done = mg.solve(&b, &mut v, 1e-9, 40);
+    assert!((4..=12).contains(&done.cycles) && done.residual <= 1e-9, "{done:?}");
+    // A solution needs none.
+    let done = mg.solve(&b, &mut v, 1e-8, 10);
+    assert!(done.cycles == 0 && done.rate == 0.0 && done.residual < 1e-8, "{done:?}");
+}
+
+#[test]
+#[should_panic(expected = "another grid")]
+fn a_matrix_of_another_grid_is_a_mistake() {
+    let _ = LineMultigrid::new(4, 5, false).setup(&FivePoint::new(5, 4, false));
 }

@@ -338,3 +338,74 @@ fn noise_that_keeps_a_search_from_its_end_is_lessened() {
         assert!(r.converged && error <= 3.0 * r.error_estimate, "{seed}: {error:e} {r:?}");
     }
 }
+
+/// The logistic map `y -> a y (1 - y)`, which costs less when it may be rough.
+struct Costly(f64);
+
+impl CycleMap for Costly {
+    fn dim(&self) -> usize {
+        1
+    }
+    fn map(&mut self, y0: &[f64], y1: &mut [f64], accuracy: f64) -> Result<f64, EvalError> {
+        y1[0] = self.0 * y0[0] * (1.0 - y0[0]);
+        // A rough first cycle costs half.
+        Ok(if accuracy > 1e-6 { 1.0 } else { 2.0 })
+    }
+    fn scale(&self, _: &[f64], s: &mut [f64]) {
+        s[0] = 1.0;
+    }
+}
+
+#[test]
+fn periods_and_multipliers_of_the_logistic_map() {
+    // Stable cycles of one, two, four and three (May 1976), and the fixed point 1 - 1/a with the multiplier 2 - a. The search with
+    // acceleration looks for cycles of one and two.
+    for (a, period) in [(2.5, 1), (3.2, 2), (3.5, 4), (3.83, 3)] {
+        for accelerate in [false, true].into_iter().filter(|accelerate| period <= 2 || !accelerate) {
+            let options = OrbitOptions {
+                tolerance: 1e-8,
+                accuracy: 1e-12,
+                max_cycles: 300,
+                refinements: 0,
+                accelerate,
+            };
+            let mut y = [0.3];
+            let report = periodic_orbit(&mut Costly(a), &mut y, &options).unwrap();
+            assert!(report.converged && report.period == period, "{a} {accelerate} {report:?}");
+            let mut end = y;
+            for _ in 0..period {
+                Costly(a).map(&end.clone(), &mut end, 0.0).unwrap();
+            }
+            // On a cycle to the tolerance, and on none of a shorter period.
+            assert!(
+                (end[0] - y[0]).abs() < 1e-8 && report.error_estimate <= 1e-8,
+                "{a} {accelerate} {y:?} {end:?}"
+            );
+            assert!(report.cycles <= 300 && report.history.len() <= report.cycles);
+            if period == 1 {
+                assert!((y[0] - 0.6).abs() < 1e-8, "{y:?}");
+                // From secants of the approach, which bend: to a tenth.
+                assert!((report.multiplier - 0.5).abs() < 0.1, "{report:?}");
+                assert_eq!(report.residual, *report.history.last().unwrap());
+            }
+        }
+    }
+}
+
+#[test]
+fn costs_are_counted_in_last_cycles() {
+    let mut options =
+        OrbitOptions { tolerance: 1e-8, accuracy: 1e-12, max_cycles: 300, refinements: 0, accelerate: true };
+    let report = periodic_orbit(&mut Costly(2.5), &mut [0.3], &options).unwrap();
+    // The first cycle is rough and costs half of the others.
+    assert_eq!(report.cycle_equivalents, report.cycles as f64 - 0.5);
+    options.accelerate = false;
+    let plain = periodic_orbit(&mut Costly(2.5), &mut [0.3], &options).unwrap();
+    assert_eq!(plain.cycle_equivalents, plain.cycles as f64);
+    assert!(report.cycles < plain.cycles);
+    for accelerate in [false, true] {
+        let few = OrbitOptions { max_cycles: 3, accelerate, ..options };
+        let report = periodic_orbit(&mut Costly(2.5), &mut [0.3], &few).unwrap();
+        assert!(!report.converged && report.cycles == 3 && report.history.len() == 3, "{report:?}");
+    }
+}

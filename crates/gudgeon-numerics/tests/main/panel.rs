@@ -70,3 +70,77 @@ fn falls_add_up() {
     assert_eq!(LOBATTO.fall(&sampled(|x| x)), 0.0);
     assert_eq!(TRAPEZIUM.fall(&[3.0, 1.0]), 2.0);
 }
+
+#[test]
+fn rules_are_consistent() {
+    for rule in [LOBATTO, TRAPEZIUM] {
+        // Rounding of five weights.
+        assert!((rule.weights.iter().sum::<f64>() - 1.0).abs() < 4e-16);
+        assert!(rule.nodes.windows(2).all(|w| w[0] < w[1]) && rule.nodes[0] == 0.0);
+        assert_eq!(rule.nodes[rule.nodes.len() - 1], 1.0);
+        // At a node the value is that of the node, not of a quotient by zero.
+        let v: Vec<f64> = (0..rule.nodes.len()).map(|k| (k * k) as f64 - 1.0).collect();
+        for (x, v_k) in rule.nodes.iter().zip(&v) {
+            assert_eq!(rule.value(&v, *x), *v_k);
+        }
+    }
+}
+
+#[test]
+fn extremes_and_crossings_of_straight_lines() {
+    let down = [3.0, 1.0];
+    let mut seen = Vec::new();
+    TRAPEZIUM.crossings(&down, 1.5, |x, up| seen.push((x, up)));
+    // Halved to the rounding of a sixteenth.
+    assert!(seen.len() == 1 && (seen[0].0 - 0.75).abs() < 1e-15 && !seen[0].1, "{seen:?}");
+    for level in [0.9, 1.0, 3.0, 3.1] {
+        let mut count = 0;
+        TRAPEZIUM.crossings(&down, level, |_, _| count += 1);
+        // A level that is reached and not passed is crossed where the line comes from above it.
+        assert_eq!(count, usize::from(level == 1.0), "{level}");
+    }
+    let mut count = 0;
+    TRAPEZIUM.crossings(&[1.0, 3.0], 3.0, |_, _| count += 1);
+    assert_eq!(count, 0);
+    // An extreme must lie beyond the bound, not on it.
+    assert_eq!(TRAPEZIUM.maximum(&down, 3.0), None);
+    assert_eq!(TRAPEZIUM.maximum(&down, 2.9), Some((0.0, 3.0)));
+    assert_eq!(TRAPEZIUM.minimum(&down, 1.0), None);
+    assert_eq!(TRAPEZIUM.minimum(&down, 1.1), Some((1.0, 1.0)));
+    assert_eq!(
+        (TRAPEZIUM.fall(&down), TRAPEZIUM.fall(&[1.0, 1.0]), TRAPEZIUM.fall(&[1.0, 3.0])),
+        (2.0, 0.0, 0.0)
+    );
+}
+
+#[test]
+fn rises_and_falls_differ_by_the_change() {
+    // Polynomials of degree 4 with turning points at a, b and c: what falls less what rises is the fall from end to end.
+    for (a, b, c) in
+        [(0.1, 0.4, 0.85), (0.3, 0.5, 0.7), (-0.2, 0.6, 0.9), (0.25, 1.4, 1.7), (0.15, 0.45, 1.2)]
+    {
+        let p = |x: f64| {
+            let (s, d, q) = (a + b + c, a * b + b * c + c * a, a * b * c);
+            x.powi(4) / 4.0 - s * x.powi(3) / 3.0 + d * x * x / 2.0 - q * x
+        };
+        let v = sampled(p);
+        let turned: Vec<f64> = v.iter().map(|v| -v).collect();
+        let (fall, rise) = (LOBATTO.fall(&v), LOBATTO.fall(&turned));
+        assert!((fall - rise - (p(0.0) - p(1.0))).abs() < 1e-14, "{a} {b} {c}");
+        let mut points = vec![0.0, 1.0];
+        points.extend([a, b, c].iter().filter(|x| (0.0..1.0).contains(*x)));
+        points.sort_by(f64::total_cmp);
+        let exact: f64 = points.windows(2).map(|w| (p(w[0]) - p(w[1])).max(0.0)).sum();
+        // Turning values to rounding.
+        assert!((fall - exact).abs() < 1e-14, "{a} {b} {c}: {fall} {exact}");
+        let top = points.iter().fold(f64::MIN, |m, x| m.max(p(*x)));
+        let (at, found) = LOBATTO.maximum(&v, f64::NEG_INFINITY).unwrap();
+        assert!(
+            (found - top).abs() < 1e-15 && (p(at) - top).abs() < 1e-14,
+            "{a} {b} {c}: {at} {found} {top}"
+        );
+        let bottom = points.iter().fold(f64::MAX, |m, x| m.min(p(*x)));
+        let (at, found) = LOBATTO.minimum(&v, f64::INFINITY).unwrap();
+        assert!((found - bottom).abs() < 1e-15 && (p(at) - bottom).abs() < 1e-14, "{a} {b} {c}");
+    }
+}

@@ -96,3 +96,71 @@ fn bad_tables_are_refused() {
         assert!(matches!(p, Err(TableError::Period { .. })));
     }
 }
+
+#[test]
+fn end_values_are_held_with_derivative_zero_beyond() {
+    // Unequal intervals; y = (x + 1)², whose derivative the three-point formula at the ends knows exactly.
+    let x = vec![0.0, 0.5, 2.0, 3.0];
+    let y: Vec<f64> = x.iter().map(|x| (x + 1.0) * (x + 1.0)).collect();
+    let p = Pchip::new(x, y).unwrap();
+    for (at, value, derivative) in [(-1.0, 1.0, 0.0), (0.0, 1.0, 2.0), (3.0, 16.0, 8.0), (4.0, 16.0, 0.0)] {
+        let (v, d) = p.eval(at);
+        // Rounding of secants up to 8.
+        assert!(v == value && (d - derivative).abs() < 1e-14, "{at}: {v} {d}");
+    }
+    assert!(p.contains(0.0) && p.contains(3.0) && !p.contains(-1e-9) && !p.contains(3.0 + 1e-9));
+    assert!(!p.contains(f64::NAN) && p.value(f64::NAN).is_nan());
+    // Inner derivatives: the harmonic mean of 2.5 and 4.5 over intervals of 0.5 and 1.5, weights (2·1.5 + 0.5), (1.5 + 2·0.5).
+    let d = p.eval(0.5).1;
+    assert!((d - 6.0 / (3.5 / 2.5 + 2.5 / 4.5)).abs() < 1e-14, "{d}");
+}
+
+#[test]
+fn ends_stay_monotone() {
+    // The three-point formula would turn round before the first node, or overshoot beyond it.
+    let flat = Pchip::new(vec![0.0, 1.0, 2.0], vec![0.0, 0.1, 1.0]).unwrap();
+    assert_eq!(flat.eval(0.0).1, 0.0);
+    // Secants 1 and -10: the formula gives 6.5, limited to three times the secant.
+    let steep = Pchip::new(vec![0.0, 1.0, 2.0], vec![0.0, 1.0, -9.0]).unwrap();
+    assert_eq!(steep.eval(0.0).1, 3.0);
+    // Secants 1 and -2: the formula gives 2.5, within the limit.
+    let mild = Pchip::new(vec![0.0, 1.0, 2.0], vec![0.0, 1.0, -1.0]).unwrap();
+    assert_eq!(mild.eval(0.0).1, 2.5);
+    // An extremum of the data is one of the curve.
+    assert_eq!(
+        (mild.eval(1.0), Pchip::new(vec![0.0, 2.0], vec![1.0, 5.0]).unwrap().eval(0.5).1),
+        ((1.0, 0.0), 2.0)
+    );
+}
+
+#[test]
+fn hints_change_the_way_and_not_the_result() {
+    for stretch in [0.0, 0.5] {
+        let x = grid(23, stretch);
+        let y: Vec<f64> = x.iter().map(|x| x.sin() + 0.2 * (3.0 * x).cos()).collect();
+        let tables = (
+            Pchip::new(x.clone(), y.clone()).unwrap(),
+            Pchip::periodic(x.clone(), y.clone(), TAU).unwrap(),
+            PeriodicCubic::new(x.clone(), y.clone(), TAU).unwrap(),
+        );
+        for k in 0..400 {
+            let t = -1.0 + 0.021 * f64::from(k);
+            for hint in [0, 1, 11, 21, 22, 500] {
+                let mut h = hint;
+                assert_eq!(tables.0.eval_near(t, &mut h), tables.0.eval(t));
+                h = hint;
+                assert_eq!(tables.1.eval_near(t, &mut h), tables.1.eval(t));
+                h = hint;
+                assert_eq!(tables.2.eval_near(t, &mut h), tables.2.eval(t));
+                // The interval that was found is the one of the argument.
+                let wrapped = t.rem_euclid(TAU);
+                assert!(h < 23 && x[h] <= wrapped && (h == 22 || wrapped < x[h + 1]), "{t} {h}");
+            }
+        }
+        // At the nodes the value is that of the table.
+        for (x, y) in x.iter().zip(&y) {
+            assert_eq!((tables.0.value(*x), tables.1.value(*x), tables.2.value(*x)), (*y, *y, *y));
+        }
+        assert!(tables.1.contains(1e9) && !tables.1.contains(f64::INFINITY));
+    }
+}
