@@ -428,7 +428,7 @@ pub fn run(
             tolerance: periodicity,
             accuracy: (ACCURACY * s.tolerance.si()).min(0.3 * periodicity),
             max_cycles: s.max_cycles as usize,
-            refinements: 0,
+            finer: 0,
             accelerate: true,
         };
         let report = match periodic_orbit(&mut cycle, &mut y[..n], &options) {

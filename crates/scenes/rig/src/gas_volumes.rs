@@ -681,7 +681,7 @@ impl Bench {
                 tolerance: self.tolerance,
                 accuracy: self.tolerance,
                 max_cycles: CYCLES,
-                refinements: 0,
+                finer: 0,
                 accelerate: true,
             };
             let report = periodic_orbit(&mut march, &mut y, &options)?;

@@ -520,7 +520,7 @@ pub(super) fn run(
         tolerance: s.periodicity.si().max(repeatable),
         accuracy: s.tolerance.si(),
         max_cycles: s.max_cycles as usize,
-        refinements: FINER,
+        finer: FINER,
         accelerate: !discrete && cycle.pack.oil_pack.is_none(),
     };
     let report = match periodic_orbit(&mut cycle, &mut y, &options) {
