@@ -42,8 +42,7 @@ fn table() -> Result<(), String> {
         (
             "as published, 16 per degree",
             vec![
-                "solver.method=as_published",
-                "solver.scheme=substep_march",
+                "solver.method=substep_march",
                 "solver.passes=720",
                 "solver.cycles=3",
                 "solver.clamp=inward",

@@ -63,7 +63,7 @@ const EDITS: &[Edit] = edits! {
     "scene nobody knows": "scene = \"ring_pack\"" => "scene = \"gearbox\"", at "gearbox": "scene: `gearbox` is not a valid word here", "`ring_pack`";
     "wrong word": "design = \"twin_land\"" => "design = \"two_lands\"", at "two_lands": "rings.1.design: `two_lands` is not a valid word here", "`compression`, `twin_land`, `three_piece`";
     "misspelt word": "shape = \"parabola\"" => "shape = \"parabla\"", at "parabla": "rings.0.face.shape: `parabla`", "did you mean `parabola`?";
-    "boolean for a word": "method = \"implicit\"" => "method = true", at "method = true": "solver.method: a word in quotes is wanted here, not a boolean", "`as_published`";
+    "boolean for a word": "method = \"implicit\"" => "method = true", at "method = true": "solver.method: a name is wanted here, not a boolean", "`substep_march`";
     "wrong oil grade": "grade = \"sae_30\"" => "grade = \"sae_35\"", at "sae_35": "models.oil.grade: `sae_35`", "`sae_30`";
 
     "unit of another dimension": "bore = \"100 mm\"" => "bore = \"100 bar\"", at "100 bar": "engine.bore: `bar` is not a unit of a length", "`bar` is a unit of a pressure";
@@ -142,7 +142,8 @@ const EDITS: &[Edit] = edits! {
 
     "hopeless tolerance": "tolerance = 1e-4" => "tolerance = 1e-30", at "1e-30": "solver.tolerance", "";
     "endless rows": "series_step = \"1 deg\"" => "series_step = \"1e-9 deg\"", at "1e-9": "outputs.series_step", "between";
-    "scheme that cannot move a ring": "method = \"implicit\"" => "method = \"as_published\"\nscheme = \"degree_march\"", at "degree_march": "solver.scheme", "substep_march";
+    "scheme that cannot move a ring": "method = \"implicit\"" => "method = \"degree_march\"", at "degree_march": "solver.method", "substep_march";
+    "scheme that became a method": "method = \"implicit\"" => "method = \"as_published\"", at "as_published": "solver: `as_published` is no longer a method", "`method = \"substep_march\"`";
 };
 
 /// `--set` arguments, and what must be said about them.
@@ -167,7 +168,7 @@ const ARGUMENTS: &[(&str, &str, &str)] = &[
         "models.gas_flow.model=narrow_channel",
     ),
     ("models.gas_flw.model=narrow_channel", "unknown key `gas_flw`", "did you mean `gas_flow`?"),
-    ("solver.method=fast", "`fast` is not a valid word", "`as_published`"),
+    ("solver.method=fast", "unknown method `fast`", "`substep_march`"),
     ("engine=1", "engine: a table is wanted", ""),
     ("rings=[]", "rings: a ring pack needs at least one ring", "`[[rings]]`"),
     ("rings=[{ mass = \"1 g\" }]", "rings.0: missing keys", ""),

@@ -198,6 +198,7 @@ fn change_variant(
         Data::Text(t) => Some(t.clone()),
         _ => None,
     });
+    let old = old.or_else(|| tagged.default.map(str::to_owned));
     if old.as_deref() == Some(new) {
         return;
     }

@@ -123,25 +123,38 @@ fn tag_of(all: &[&Value]) -> Option<String> {
 fn choice(mut out: Map<String, Value>, all: &[&Value]) -> Value {
     drop_null(&mut out);
     let Some(tag) = tag_of(all) else { return Value::Object(out) };
+    let default = out.remove("x-default");
+    out.remove("x-renamed");
     let mut names = Vec::new();
     let mut about = Vec::new();
     let mut rules = Vec::new();
     for s in all {
         let name = s["properties"][&tag]["const"].clone();
         about.push(s.get("description").and_then(Value::as_str).unwrap_or_default().to_owned());
-        rules.push(json!({
-            "if": { "properties": { &tag: { "const": &name } }, "required": [&tag] },
-            "then": published(s),
-        }));
+        let mut when = json!({ "properties": { &tag: { "const": &name } }, "required": [&tag] });
+        let mut then = published(s);
+        if default.as_ref() == Some(&name) {
+            // The one that is meant where the tag is missing.
+            when = json!({ "properties": { &tag: { "const": &name } } });
+            then["required"] = without(&then["required"], &tag);
+        }
+        rules.push(json!({ "if": when, "then": then }));
         names.push(name);
     }
     let word =
         one_word(Map::new(), &names.iter().zip(about.iter().map(|a| Some(a.as_str()))).collect::<Vec<_>>());
     out.insert("type".into(), "object".into());
     out.insert("properties".into(), json!({ &tag: word }));
-    out.insert("required".into(), json!([tag]));
+    if default.is_none() {
+        out.insert("required".into(), json!([tag]));
+    }
     out.insert("allOf".into(), rules.into());
     Value::Object(out)
+}
+
+/// A list of words without one of them.
+fn without(words: &Value, word: &str) -> Value {
+    words.as_array().into_iter().flatten().filter(|w| *w != word).cloned().collect::<Vec<_>>().into()
 }
 
 /// The schema of a case of any scene: the scene's name decides, and only its schema is looked at. `scenes`: name and schema, rewritten.

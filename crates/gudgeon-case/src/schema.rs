@@ -302,6 +302,9 @@ impl Schema {
             return out.push(d);
         };
         let Some(chosen) = entries.iter().find(|e| e.key == tag) else {
+            if let Some(variant) = tagged.default.and_then(|name| tagged.variant(name)) {
+                return self.table(node, entries, variant, &[tag], path, out);
+            }
             let what = Diagnostic::new(format!("missing key `{tag}`"));
             let near = entries.iter().find(|e| nearest(&e.key, [tag]).is_some() && !tagged.has_key(&e.key));
             return out.push(match near {
@@ -313,9 +316,13 @@ impl Schema {
         let Data::Text(name) = &chosen.node.data else {
             return out.push(wrong_type(&chosen.node, "a name", &join(path, tag)).help(advice("", &names)));
         };
-        match tagged.variants.iter().find(|(n, _)| n == name) {
-            Some((_, variant)) => self.table(node, entries, variant, &[tag], path, out),
+        match tagged.variant(name) {
+            Some(variant) => self.table(node, entries, variant, &[tag], path, out),
             None => {
+                if let Some(now) = tagged.renamed.and_then(|r| r.get(name)).and_then(Value::as_str) {
+                    let what = Diagnostic::new(format!("`{name}` is no longer a {tag}"));
+                    return out.push(here(what, &chosen.node.place).help(now));
+                }
                 let what = if tag == "model" {
                     format!("there is no {} model `{name}`", path.rsplit('.').next().unwrap_or_default())
                 } else {
@@ -414,6 +421,10 @@ type Visit<'a> = dyn FnMut(&str, bool, &Map<String, Value>) + 'a;
 /// Tables told apart by the constant value of one key.
 pub(super) struct Tagged<'a> {
     pub tag: &'a str,
+    /// The one that is meant where the key is missing (`x-default`).
+    pub default: Option<&'a str>,
+    /// What became of names that were valid once (`x-renamed`).
+    renamed: Option<&'a Map<String, Value>>,
     /// Name and schema of each.
     pub variants: Vec<(&'a str, &'a Value)>,
 }
@@ -424,7 +435,9 @@ impl<'a> Tagged<'a> {
         let properties = |s: &'a Value| s.get("properties").and_then(Value::as_object);
         let constant = |s: &'a Value, key: &str| properties(s)?.get(key)?.get("const")?.as_str();
         let tag = properties(all.first()?)?.keys().find(|k| all.iter().all(|s| constant(s, k).is_some()))?;
-        Some(Self { tag, variants: all.iter().filter_map(|s| Some((constant(s, tag)?, *s))).collect() })
+        let variants = all.iter().filter_map(|s| Some((constant(s, tag)?, *s))).collect();
+        let default = schema.get("x-default").and_then(Value::as_str);
+        Some(Self { tag, default, renamed: schema.get("x-renamed").and_then(Value::as_object), variants })
     }
 
     pub fn names(&self) -> Vec<&'a str> {
@@ -437,10 +450,16 @@ impl<'a> Tagged<'a> {
 
     /// The alternative that a table asks for.
     pub fn chosen(&self, node: &Node) -> Option<&'a Value> {
-        match &node.child(self.tag)?.data {
-            Data::Text(name) => self.variants.iter().find(|(n, _)| n == name).map(|(_, s)| *s),
-            _ => None,
+        match node.child(self.tag).map(|n| &n.data) {
+            Some(Data::Text(name)) => self.variant(name),
+            Some(_) => None,
+            None => self.variant(self.default?),
         }
+    }
+
+    /// The alternative of a name.
+    pub fn variant(&self, name: &str) -> Option<&'a Value> {
+        self.variants.iter().find(|(n, _)| *n == name).map(|(_, s)| *s)
     }
 }
 

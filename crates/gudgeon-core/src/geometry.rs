@@ -58,6 +58,21 @@ impl FaceProfile {
         }
     }
 
+    /// Distance of the narrowest place from the bottom edge \[m\]: the middle of a flat one.
+    #[must_use]
+    pub fn narrowest(&self) -> f64 {
+        match self {
+            Self::Parabola { apex, length, .. } => apex.clamp(0.0, *length),
+            Self::Taper { land, .. } => 0.5 * land,
+            Self::Table { drops, length } => {
+                let low = drops.iter().copied().fold(f64::INFINITY, f64::min);
+                let first = drops.iter().position(|d| *d == low).unwrap_or(0);
+                let last = drops.iter().rposition(|d| *d == low).unwrap_or(0);
+                0.5 * (first + last) as f64 * length / (drops.len() - 1) as f64
+            }
+        }
+    }
+
     /// The nodes of a face of straight lines as (`x`, drop) \[m\], bottom edge first; `None` for a curved face.
     #[must_use]
     pub fn nodes(&self) -> Option<Vec<(f64, f64)>> {

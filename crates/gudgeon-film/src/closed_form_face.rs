@@ -270,6 +270,14 @@ impl<S: Shape> Side<S> {
         self.from = from;
     }
 
+    /// Tilts the face; the search of the next film starts anew.
+    fn tilt(&mut self, angle: f64) -> bool {
+        (self.lead, self.trail, self.warm) = (None, None, None);
+        self.starts = Default::default();
+        self.cuts = [f64::NAN; 2];
+        self.face.tilt(angle)
+    }
+
     fn set_film(&mut self, h: f64) {
         if self.face.film().to_bits() != h.to_bits() {
             self.face.set_film(h);
@@ -1074,6 +1082,11 @@ impl<S: Shape> Hydrodynamics for Film<S> {
         self.down.set_extent(self.whole - to, self.whole - from);
         self.from = from;
         true
+    }
+
+    fn set_tilt(&mut self, tilt: f64) -> bool {
+        // The mirrored face tilts the other way.
+        self.up.tilt(tilt) && self.down.tilt(-tilt)
     }
 
     fn evaluate(&mut self, inp: &FaceIn, hdot: f64) -> Result<FaceOut, EvalError> {

@@ -212,6 +212,10 @@ pub(crate) trait Shape: Send {
     /// Confines the face to what lies between `from` and `to` of the whole; `x` then counts from `from`. The film has to be set
     /// again.
     fn crop(&mut self, from: f64, to: f64);
+    /// Tilts the face by an angle \[rad\], its top edge towards the liner positive, about its narrowest place: whether the shape can be tilted.
+    fn tilt(&mut self, _angle: f64) -> bool {
+        false
+    }
     /// Fixes the film thickness at zero drop and prepares the integrals of the pieces.
     fn set_film(&mut self, h: f64);
     /// Film thickness at zero drop.
@@ -304,6 +308,10 @@ pub(crate) struct Parabola {
     radius: f64,
     /// Apex on the whole face.
     uncropped_apex: f64,
+    /// How far a tilt has moved it towards the top edge.
+    moved: f64,
+    /// Where the part begins that the film is confined to.
+    from: f64,
 }
 
 impl Parabola {
@@ -321,6 +329,8 @@ impl Parabola {
             crown: None,
             radius: 1.0 / curvature,
             uncropped_apex: apex,
+            moved: 0.0,
+            from: 0.0,
         };
         face.place(len, apex);
         face
@@ -336,6 +346,10 @@ impl Parabola {
         self.about_apex = inside;
         self.lowest = if inside { a.min(b).min(0.0) } else { a.min(b) };
         (self.h, self.whole, self.crown) = (f64::NAN, None, None);
+    }
+
+    fn apex_on_whole(&self) -> f64 {
+        self.uncropped_apex + self.moved
     }
 
     #[must_use]
@@ -485,7 +499,17 @@ impl Shape for Parabola {
         if (xa..=xb).contains(&self.apex) { ends.min(0.0) } else { ends }
     }
     fn crop(&mut self, from: f64, to: f64) {
-        self.place(to - from, self.uncropped_apex - from);
+        self.from = from;
+        self.place(to - from, self.apex_on_whole() - from);
+    }
+    /// A parabola stays one, its apex moves by `angle / 2κ`.
+    fn tilt(&mut self, angle: f64) -> bool {
+        if self.curvature <= 0.0 {
+            return false;
+        }
+        self.moved = 0.5 * angle * self.radius;
+        self.place(self.len, self.apex_on_whole() - self.from);
+        true
     }
     #[inline]
     fn convex(&self) -> bool {
@@ -576,6 +600,10 @@ pub(crate) struct Table {
     whole: Moments,
     /// Nodes and drops of the whole face.
     uncropped: (Vec<f64>, Vec<f64>),
+    /// Drops of the whole face that is not tilted.
+    upright: Vec<f64>,
+    /// Where the part begins that the film is confined to.
+    from: f64,
 }
 
 /// Leaves out the nodes of a straight line: those that lie on the line through their neighbours but for the rounding of the
@@ -624,6 +652,8 @@ impl Table {
             convex: false,
             lines: Vec::with_capacity(n),
             uncropped: (nodes.clone(), drops.clone()),
+            upright: drops.clone(),
+            from: 0.0,
             nodes,
             drops,
             h: f64::NAN,
@@ -798,7 +828,19 @@ impl Shape for Table {
         self.tails.resize(pieces + 1, Three::default());
         self.tails[pieces] = Three::default();
         self.join();
-        self.h = f64::NAN;
+        (self.from, self.h) = (from, f64::NAN);
+    }
+    /// Straight lines stay straight; the drops count from the narrowest place again.
+    fn tilt(&mut self, angle: f64) -> bool {
+        let (x, d) = &mut self.uncropped;
+        for ((d, x), base) in d.iter_mut().zip(x.iter()).zip(&self.upright) {
+            *d = base - angle * x;
+        }
+        let lowest = |d: &[f64]| d.iter().copied().fold(f64::INFINITY, f64::min);
+        let low = lowest(d) - lowest(&self.upright);
+        d.iter_mut().for_each(|d| *d -= low);
+        self.crop(self.from, self.from + self.len);
+        true
     }
     fn set_film(&mut self, h: f64) {
         if self.h.to_bits() == h.to_bits() {

@@ -61,4 +61,4 @@ pub use passage::Passage;
 pub use passage_law::{Area, FlowPartials, GasState, LANES, LaneWork, Link, Node, PassageLaw};
 pub use plain_pack::plain_pack;
 pub use prescribed::Prescribed;
-pub use ring_passages::{Openings, PassageModel, RingPassages};
+pub use ring_passages::{FlankGap, Openings, PassageModel, RingPassages};

@@ -232,7 +232,10 @@ impl PassageModel<Passage> for Channels {
         let (upper, lower) = if ring.back == BackVolume::Sealed {
             (Passage::Closed, Passage::Closed)
         } else {
-            (channel(k.upper, o.upper + ring.leak_upper), channel(k.lower, o.lower + ring.leak_lower))
+            (
+                channel(k.upper, o.upper.laminar() + ring.leak_upper),
+                channel(k.lower, o.lower.laminar() + ring.leak_lower),
+            )
         };
         RingPassages {
             upper,

@@ -2,6 +2,49 @@
 
 use gudgeon_core::geometry::RingGeometry;
 
+/// Gap between a ring and a flank of its groove: a wedge where the ring is twisted.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct FlankGap {
+    /// Height at the inner edge of the ring \[m\].
+    pub inner: f64,
+    /// Height at its outer edge \[m\].
+    pub outer: f64,
+}
+
+impl FlankGap {
+    /// A gap of the same height \[m\] everywhere.
+    #[must_use]
+    pub const fn parallel(height: f64) -> Self {
+        Self { inner: height, outer: height }
+    }
+
+    /// A gap of a mean height \[m\] that opens outwards by `rise` \[m\] from its middle to its outer edge; ends that would be below zero are closed.
+    #[must_use]
+    pub fn wedge(mean: f64, rise: f64) -> Self {
+        if rise == 0.0 {
+            return Self::parallel(mean);
+        }
+        Self { inner: (mean - rise).max(0.0), outer: (mean + rise).max(0.0) }
+    }
+
+    /// Smallest height \[m\]: what an orifice sees.
+    #[must_use]
+    pub fn narrowest(&self) -> f64 {
+        self.inner.min(self.outer)
+    }
+
+    /// Height \[m\] of the parallel gap that lets the same laminar flow through: `h³ = 2 a² b²/(a + b)` for a wedge from `a` to `b`, the mean of
+    /// `1/h³` over its width.
+    #[must_use]
+    pub fn laminar(&self) -> f64 {
+        let (a, b) = (self.inner, self.outer);
+        if a == b {
+            return a;
+        }
+        if a <= 0.0 || b <= 0.0 { 0.0 } else { (2.0 * a * a * b * b / (a + b)).cbrt() }
+    }
+}
+
 /// The openings around one ring at an instant, from which a [`PassageModel`] makes passages.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
@@ -10,10 +53,10 @@ pub struct Openings {
     pub h: f64,
     /// Liner radius \[m\], distortion included.
     pub liner_radius: f64,
-    /// Axial distance from the lower groove flank \[m\], not negative unless the pack is unbound.
-    pub lower: f64,
-    /// Axial distance from the upper groove flank \[m\], likewise.
-    pub upper: f64,
+    /// Distance from the lower groove flank, not negative unless the pack is unbound.
+    pub lower: FlankGap,
+    /// Distance from the upper groove flank, likewise.
+    pub upper: FlankGap,
     /// Position in the groove, 0 lower flank, 1 upper flank.
     pub e: f64,
     /// End-gap area \[m²\], with the chamfer.

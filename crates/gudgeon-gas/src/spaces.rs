@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use gudgeon_core::EvalError;
 use gudgeon_core::geometry::{BackVolume, PackGeometry, RingGeometry, RingPlace};
 
-use crate::ring_passages::Openings;
+use crate::ring_passages::{FlankGap, Openings};
 
 /// `½ [B_in + B_in + (c_1 + c_2) DR] π (R_int² - R_root²)`, the groove behind the ring.
 pub(crate) fn back_volume(ring: &RingGeometry, liner_radius: f64, film: f64) -> f64 {
@@ -59,8 +59,8 @@ impl Spaces {
         Openings {
             h: film,
             liner_radius: pack.bore_radius,
-            lower: e * clearance,
-            upper: (1.0 - e) * clearance,
+            lower: FlankGap::parallel(e * clearance),
+            upper: FlankGap::parallel((1.0 - e) * clearance),
             e,
             gap: ring.gap_area.unwrap_or(ring.gap * radial),
             back_volume: self.nominal_volume(i),
@@ -97,11 +97,13 @@ impl Spaces {
             Some(a) => a,
             None => self.gap_area(model, i, place, h)?,
         };
+        // A ring whose outer edge rises opens the lower gap outwards and closes the upper one.
+        let rise = 0.5 * place.twist * (place.r_outer - place.r_inner);
         Ok(Openings {
             h,
             liner_radius: place.liner_radius,
-            lower,
-            upper,
+            lower: FlankGap::wedge(lower, rise),
+            upper: FlankGap::wedge(upper, -rise),
             e,
             gap: area + chamfer,
             back_volume: self.volume_behind(i, place),

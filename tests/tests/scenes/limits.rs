@@ -78,13 +78,8 @@ fn dry_rings_ride_on_their_contact() {
 fn a_ring_that_leaves_the_liner_is_told_by_every_solver() {
     let ways: [&[&str]; 3] = [
         &[],
-        &["solver.method=as_published", "solver.cycles=3", "solver.passes=720", "solver.gas_steps=64"],
-        &[
-            "solver.method=as_published",
-            "solver.scheme=degree_march",
-            "solver.cycles=3",
-            "solver.gas_steps=400",
-        ],
+        &["solver.method=substep_march", "solver.cycles=3", "solver.passes=720", "solver.gas_steps=64"],
+        &["solver.method=degree_march", "solver.cycles=3", "solver.gas_steps=400"],
     ];
     let asked: Vec<(&str, Vec<String>)> = ways
         .iter()

@@ -81,7 +81,7 @@ fn a_film_that_cannot_be_confined_is_refused_with_its_place() {
     };
     let text = refused(&[FILM, "models.hydrodynamics.model=gridded_face"]);
     assert!(text.contains("cannot be confined") && text.contains("closed_form_face"), "{text}");
-    let text = refused(&[FILM, "solver.method=as_published"]);
+    let text = refused(&[FILM, "solver.method=substep_march"]);
     assert!(text.contains("flooded faces"), "{text}");
     let text = refused(&[FILM, "models.oil_transport.split=0"]);
     assert!(text.contains("split") || text.contains("leaves nothing"), "{text}");

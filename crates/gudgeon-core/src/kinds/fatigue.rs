@@ -7,6 +7,11 @@ use crate::{BuildError, EvalError, register_kind};
 /// Configuration of a fatigue criterion.
 #[register_kind(name = "fatigue", summary = "safety of an alternating stress against fatigue")]
 pub trait FatigueSpec: Debug + DynClone + Send + Sync {
+    /// Whether nothing is judged.
+    fn is_off(&self) -> bool {
+        false
+    }
+
     /// Builds the running criterion.
     ///
     /// # Errors

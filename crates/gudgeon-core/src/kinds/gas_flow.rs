@@ -155,7 +155,12 @@ pub trait GasFlow: Send {
     ///
     /// # Errors
     /// As [`rates`](Self::rates).
-    fn partials(&mut self, _inp: &GasIn<'_>, _state: &[f64], _out: &mut GasPartials) -> Result<bool, EvalError> {
+    fn partials(
+        &mut self,
+        _inp: &GasIn<'_>,
+        _state: &[f64],
+        _out: &mut GasPartials,
+    ) -> Result<bool, EvalError> {
         Ok(false)
     }
 

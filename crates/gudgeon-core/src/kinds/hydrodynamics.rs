@@ -126,6 +126,13 @@ pub trait Hydrodynamics: Send {
         false
     }
 
+    /// Tilts the face by an angle \[rad\], positive when its top edge comes closer to the liner, about its narrowest place: `h` stays the film thickness
+    /// at the narrowest place, which moves. Until the next call everything else speaks of that face. Whether the model can do that; one that cannot
+    /// stays as it was.
+    fn set_tilt(&mut self, tilt: f64) -> bool {
+        tilt == 0.0
+    }
+
     /// [`Hydrodynamics::evaluate`] without pressures and extent.
     ///
     /// # Errors

@@ -129,6 +129,14 @@ pub struct TwistMoments {
     pub film: f64,
 }
 
+impl TwistMoments {
+    /// Moments of gas and film \[N m\].
+    #[must_use]
+    pub const fn new(gas: f64, film: f64) -> Self {
+        Self { gas, film }
+    }
+}
+
 /// What acts on a ring at an instant.
 #[derive(Debug, Clone, Copy, Default)]
 #[non_exhaustive]

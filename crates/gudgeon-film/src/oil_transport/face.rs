@@ -61,22 +61,6 @@ pub enum Exit {
     Chamber,
 }
 
-/// Distance of the narrowest place of a face from its bottom edge \[m\].
-fn narrowest(profile: &FaceProfile) -> f64 {
-    let length = profile.length();
-    match profile {
-        FaceProfile::Parabola { apex, .. } => apex.clamp(0.0, length),
-        FaceProfile::Taper { land, .. } => 0.5 * land,
-        FaceProfile::Table { drops, .. } => {
-            let low = drops.iter().copied().fold(f64::INFINITY, f64::min);
-            // The middle of a flat bottom.
-            let first = drops.iter().position(|d| *d == low).unwrap_or(0);
-            let last = drops.iter().rposition(|d| *d == low).unwrap_or(0);
-            0.5 * (first + last) as f64 * length / (drops.len() - 1) as f64
-        }
-    }
-}
-
 impl OilFace {
     /// A face without oil; `top`: whether it is the highest one, and `wave` the highest wave \[m\] that stands before an edge.
     pub fn new(p: &OilFacePlace, top: bool, wave: f64) -> Self {
@@ -84,7 +68,7 @@ impl OilFace {
             ring: p.ring,
             land: p.land,
             length: p.profile.length(),
-            narrowest: narrowest(&p.profile),
+            narrowest: p.profile.narrowest(),
             profile: p.profile.clone(),
             offset: p.offset,
             room: p.clearance.map(|c| c.map_or(0.0, |c| 0.5 * c.min(wave).powi(2) / WAVE_SLOPE)),

@@ -301,13 +301,8 @@ fn a_map_noisier_than_it_says_is_known_by_its_band() {
     for seed in 1..=20 {
         let mut map = Linear::new(0.5, 8.0, seed);
         let mut y = map.start.clone();
-        let wanted = OrbitOptions {
-            tolerance: 1e-5,
-            accuracy: 1e-5,
-            max_cycles: 120,
-            finer: 0,
-            accelerate: true,
-        };
+        let wanted =
+            OrbitOptions { tolerance: 1e-5, accuracy: 1e-5, max_cycles: 120, finer: 0, accelerate: true };
         let r = periodic_orbit(&mut map, &mut y, &wanted).unwrap();
         let error = map.error(&y);
         assert!(!r.converged && r.period == 1 && r.cycles == 120, "{seed}: {r:?}");
@@ -324,13 +319,8 @@ fn noise_that_keeps_a_search_from_its_end_is_lessened() {
         let ends = |finer: usize| {
             let mut map = Linear::new(0.9, 1.0, seed);
             let mut y = map.start.clone();
-            let wanted = OrbitOptions {
-                tolerance: 1e-4,
-                accuracy: 1e-4,
-                max_cycles: 120,
-                finer,
-                accelerate: true,
-            };
+            let wanted =
+                OrbitOptions { tolerance: 1e-4, accuracy: 1e-4, max_cycles: 120, finer, accelerate: true };
             let r = periodic_orbit(&mut map, &mut y, &wanted).unwrap();
             (map.error(&y), r)
         };
@@ -362,13 +352,8 @@ fn periods_and_multipliers_of_the_logistic_map() {
     // acceleration looks for cycles of one and two.
     for (a, period) in [(2.5, 1), (3.2, 2), (3.5, 4), (3.83, 3)] {
         for accelerate in [false, true].into_iter().filter(|accelerate| period <= 2 || !accelerate) {
-            let options = OrbitOptions {
-                tolerance: 1e-8,
-                accuracy: 1e-12,
-                max_cycles: 300,
-                finer: 0,
-                accelerate,
-            };
+            let options =
+                OrbitOptions { tolerance: 1e-8, accuracy: 1e-12, max_cycles: 300, finer: 0, accelerate };
             let mut y = [0.3];
             let report = periodic_orbit(&mut Costly(a), &mut y, &options).unwrap();
             assert!(report.converged && report.period == period, "{a} {accelerate} {report:?}");

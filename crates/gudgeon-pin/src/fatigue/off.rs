@@ -16,6 +16,10 @@ pub struct Off {}
     example = "",
 )]
 impl FatigueSpec for Off {
+    fn is_off(&self) -> bool {
+        true
+    }
+
     fn build(&self) -> Result<Box<dyn Fatigue>, BuildError> {
         Ok(Box::new(Unjudged))
     }

@@ -114,7 +114,7 @@ fn models(case: &PinCase) -> Vec<ModelUse> {
             all.extend(load.models());
         }
         all.push(("pin_strength", case.models.pin_strength.typetag_name()));
-        if case.models.fatigue.typetag_name() != "off" {
+        if !case.models.fatigue.is_off() {
             all.push(("fatigue", case.models.fatigue.typetag_name()));
         }
     }
@@ -131,7 +131,7 @@ fn skipped(case: &PinCase) -> Vec<Skipped> {
         if case.optimise.is_none() {
             say("optimum", "no table `optimise`");
         }
-        if case.models.fatigue.typetag_name() == "off" {
+        if case.models.fatigue.is_off() {
             say("fatigue", "`models.fatigue` is off");
         }
     } else {

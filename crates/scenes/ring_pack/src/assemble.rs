@@ -10,7 +10,7 @@ use gudgeon_core::kinds::{
     OilTransport, OilTransportCtx, RadialMotion, RadialMotionCtx, RingForces, RingMotion, RingMotionCtx,
     RingPose, RingResponse,
 };
-use gudgeon_core::states::Stateful;
+use gudgeon_core::states::{Signals, Stateful};
 use gudgeon_core::{BuildError, EvalError};
 
 use super::case::RingPackCase;
@@ -64,9 +64,25 @@ pub fn assemble(case: &RingPackCase, files: &Files) -> Result<Pack, Vec<BuildErr
     };
     let plan = plan(&drive.wanted, facts);
     let mut rings = rings(case, &drive, &oils, &plan, motions)?;
+    if let Some(e) = rings.iter_mut().enumerate().find_map(|(i, r)| untiltable(i, r)) {
+        return Err(vec![e]);
+    }
     let (liner, pin_to_ring1) = liner(case, &drive, &rings)?;
     let oil_pack = oil_pack(case, &drive, &plan, &mut rings, pin_to_ring1)?;
     pack(case, drive, oils, plan, rings, (liner, pin_to_ring1), oil_pack)
+}
+
+/// A ring that twists on a film that cannot be tilted.
+fn untiltable(i: usize, ring: &mut Ring) -> Option<BuildError> {
+    let twists = ring.motion.states().iter().any(|s| s.changes.meets(Signals::TWIST));
+    let tilts = |ring: &mut Ring, tilt: f64| ring.films.iter_mut().all(|f| f.set_tilt(tilt));
+    // An angle like any other; the film stands upright again afterwards.
+    if !twists || tilts(ring, 1e-6) && tilts(ring, 0.0) {
+        return None;
+    }
+    let what = format!("ring {} twists, and its film cannot be tilted", i + 1);
+    let help = "use `hydrodynamics = { model = \"closed_form_face\" }` on a face that is not flat";
+    Some(BuildError::at("models.hydrodynamics", what).help(help))
 }
 
 /// Crank drive and gas: what everything else is built for.
@@ -440,17 +456,14 @@ fn pack(
         dy: vec![0.0; states],
         counters: Counters::default(),
         masses: vec![0.0; masses],
-        hard_floor: case.solver.method == super::case::Method::AsPublished,
+        hard_floor: false,
         state: vec![f64::NAN; states],
         films: vec![0.0; n],
         trial: Vec::with_capacity(states),
         geo,
     };
     weigh(&mut pack)?;
-    match super::too_long(case, &pack) {
-        None => Ok(pack),
-        Some(e) => Err(vec![e]),
-    }
+    Ok(pack)
 }
 
 /// Masses at 1 bar, the scale of the gas states; also the first evaluation of every geometry-dependent number.

@@ -13,7 +13,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use crate::limits::Limits;
-use gudgeon_scene::{IntegratorName, case_file};
+pub use crate::solver::RingPackSolverSpec;
+use gudgeon_scene::{SolverCommon, SolverTable, case_file};
 
 case_file! {
     /// A piston ring pack in one cylinder.
@@ -426,103 +427,30 @@ pub enum TwinLandFriction {
     LowerTwice,
 }
 
-/// How the equations are solved.
-#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+/// What every solver of a ring pack is told.
+#[derive(Debug, Clone, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub struct Solver {
-    /// `implicit`: the whole scene at once, adaptive. `as_published`: the scheme of the source.
-    pub method: Method,
-    /// `implicit`: relative error per step.
-    #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1, "when": { "method": "implicit" } }))]
-    pub tolerance: PosRatio,
-    /// `implicit`: time integrator.
-    pub integrator: IntegratorName,
-    /// `implicit`: true relative error of the periodic state; not below `tolerance`.
-    #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1, "when": { "method": "implicit" } }))]
-    pub periodicity: PosRatio,
-    /// Most cycles, all phases of the search together, before the run is called unconverged. Half of them, but at least 60, are accelerated; the
-    /// rest, and those of models with decided seats, repeat plainly.
-    #[schemars(range(max = 1000))]
-    pub max_cycles: u32,
+pub struct SolverKeys {
     /// Pressures of all lands from which the cycle is started. Each start is run to its periodic state; those that
     /// differ are reported, the first is the result. Empty: one start at crankcase pressure, and a second at 6 bar when
     /// the axial motion is decided in steps (such models have several periodic states).
     #[schemars(length(max = 100))]
     pub starts: Vec<PosPressure>,
-    /// `as_published`: the scheme.
-    pub scheme: Scheme,
-    /// `as_published`: cycles to run; 0 takes the source's number (2), or for `degree_march` until periodic.
-    #[schemars(range(max = 200))]
-    pub cycles: u32,
-    /// `as_published`: steps of mechanics per crank degree; 0 takes the source's number (rings + 1; 1 for `degree_march`).
-    #[schemars(range(max = 1_000_000), extend("x-refine" = { "group": "crank-angle step", "factor": 2, "when": { "method": "as_published" } }))]
-    pub steps_per_degree: u32,
-    /// `as_published`: gas sub-steps per step of mechanics; 0 takes the source's number (2^(rings+1); 10).
-    #[schemars(range(max = 1_000_000))]
-    pub gas_steps: u32,
-    /// `as_published`: one-degree passes per cycle: 721 as in the source's listing, or 720.
-    #[schemars(range(max = 7200))]
-    pub passes: u32,
-    /// `substep_march`: what becomes of a ring's velocity at a flank.
-    pub clamp: Clamp,
     /// Floors, caps and drags, with their reasons.
     pub limits: Limits,
 }
 
-impl Default for Solver {
-    fn default() -> Self {
-        Self {
-            method: Method::Implicit,
-            tolerance: quantity(1e-4),
-            integrator: IntegratorName::Rodas,
-            periodicity: quantity(1e-4),
-            max_cycles: 120,
-            starts: Vec::new(),
-            scheme: Scheme::SubstepMarch,
-            cycles: 0,
-            steps_per_degree: 0,
-            gas_steps: 0,
-            passes: 721,
-            clamp: Clamp::Stop,
-            limits: Limits::default(),
-        }
-    }
+impl SolverCommon for SolverKeys {
+    const DEFAULT: &'static str = "implicit";
+    const RENAMED: &'static [(&'static str, &'static str)] = &[(
+        "as_published",
+        "the published schemes are methods of their own: write `method = \"substep_march\"` (zottin1992) or `method = \"degree_march\"` (tomanik1993) \
+         and leave `scheme` out",
+    )];
 }
 
-/// Velocity of a ring that reaches a flank, in the scheme `substep_march`.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Clamp {
-    /// Zero (zottin1992 as far as its listing can be read). In a keystone groove the flank moves with the film, a ring
-    /// clamped so sticks to it the longer the smaller the steps are, and the scheme has no limit.
-    #[default]
-    Stop,
-    /// Only motion into the flank is stopped: converges as the steps shrink.
-    Inward,
-}
-
-/// Solvers.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Method {
-    /// The whole scene at once, adaptive and error-controlled; the cycle closed by a periodic-orbit solver.
-    #[default]
-    Implicit,
-    /// The scheme of the source document.
-    AsPublished,
-}
-
-/// Published schemes.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Scheme {
-    /// Mechanics in sub-steps of a degree, gas explicit inside them, film by bisection, axial motion with implicit damping
-    /// (zottin1992).
-    #[default]
-    SubstepMarch,
-    /// Degree by degree: seats from force balance, gas explicit in sub-steps, film by bisection (tomanik1993).
-    DegreeMarch,
-}
+/// How the equations are solved.
+pub type Solver = SolverTable<SolverKeys, dyn RingPackSolverSpec>;
 
 /// What is wanted.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
@@ -572,4 +500,5 @@ gudgeon_core::default_model! {
     default_flank_friction: dyn FlankFrictionSpec = "off";
     default_oil_transport: dyn OilTransportSpec = "off";
     default_hydrodynamics: dyn HydrodynamicsSpec = "closed_form_face";
+    default_solver: dyn RingPackSolverSpec = "implicit";
 }

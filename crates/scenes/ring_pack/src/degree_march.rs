@@ -5,55 +5,124 @@
 //! of the degree by bisection between the floor and `solver.limits.thickest_film`, 60 µm in the source, with `dh/dt = (h - h_old)/Δt`. Cycles repeat until the state
 //! does, or for the number asked.
 
-use gudgeon_core::EvalError;
+use gudgeon_core::quantity::{PosRatio, quantity};
+use gudgeon_core::{BuildError, EvalError, register_model};
+use gudgeon_scene::{MethodSetting, RunError};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
-use super::measure::Measures;
+use super::marching::{Books, Ended, Steps, refined, refuses, steps, unsettled};
 use super::pack::Pack;
-use super::record::{Record, Totals};
+use super::record::Totals;
+use super::solver::{RingPackSolverSpec, Solution, Wanted};
 use super::watch::Watch;
 
-/// Settings; see [`crate::case::Solver`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
-    /// Cycles; 0 until periodic.
+/// The scheme of tomanik1993.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct DegreeMarch {
+    /// Cycles to run; 0: until periodic.
+    #[schemars(range(max = 200))]
     pub cycles: u32,
-    /// Most cycles when running until periodic.
+    /// Cycles after which the search of a periodic one is given up.
+    #[schemars(range(max = 1000))]
     pub max_cycles: u32,
-    /// Marching steps per degree (the source has one).
-    pub steps: u32,
-    /// Gas steps per marching step.
+    /// Marching steps per crank degree; 0 takes the source's number (1).
+    #[schemars(range(max = 1_000_000), extend("x-refine" = { "group": "crank-angle step", "factor": 2 }))]
+    pub steps_per_degree: u32,
+    /// Gas steps per marching step; 0 takes the source's number (10).
+    #[schemars(range(max = 1_000_000))]
     pub gas_steps: u32,
-    /// Relative change of the state over a cycle that ends the run.
-    pub tolerance: f64,
+    /// Relative change of the state over a cycle below which the cycle is periodic.
+    pub periodicity: PosRatio,
+}
+
+impl Default for DegreeMarch {
+    fn default() -> Self {
+        Self { cycles: 0, max_cycles: 120, steps_per_degree: 0, gas_steps: 0, periodicity: quantity(1e-4) }
+    }
+}
+
+/// Steps of the source.
+const OWN: Steps = (1, 10);
+
+#[register_model(
+    name = "degree_march",
+    summary = "the published scheme: seats decided once per degree, explicit gas steps, films by bisection at its end",
+    equations = "m' = m + dt_gas dm/dt;  W_film(h, (h - h_old)/dt) + W_contact(h) = W by bisection between the floor and `limits.thickest_film`",
+    validity = "Rings whose seats are decided in steps, or that rest; flooded films. First order in the step.",
+    references = ["tomanik1993"],
+    example = "steps_per_degree = 1\ngas_steps = 10\n",
+)]
+impl RingPackSolverSpec for DegreeMarch {
+    fn refuses(&self, pack: &Pack) -> Vec<BuildError> {
+        let mut errors = refuses(pack, (self.steps_per_degree, self.gas_steps), OWN);
+        if self.max_cycles == 0 {
+            errors.push(BuildError::at("solver.max_cycles", "at least one cycle is needed"));
+        }
+        if pack.rings.iter().any(|r| r.is_integrated()) {
+            let what =
+                "`degree_march` decides seats by the degree, and this `ring_motion` has to be integrated";
+            errors.push(BuildError::at("solver.method", what).help(
+                "use `method = \"implicit\"` or `method = \"substep_march\"`, or `ring_motion` `three_seat` or `seated`",
+            ));
+        }
+        errors
+    }
+
+    fn solve(
+        &self,
+        pack: &mut Pack,
+        start: f64,
+        wanted: &Wanted<'_>,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<Solution, RunError> {
+        let (steps, gas_steps) = steps((self.steps_per_degree, self.gas_steps), OWN);
+        let tolerance = self.periodicity.si();
+        let set = Settings { cycles: self.cycles, max_cycles: self.max_cycles, steps, gas_steps, tolerance };
+        let mut books = Books::open(pack, wanted);
+        let ended = run(pack, set, start, &mut books, progress);
+        let advice = if self.cycles > 0 { "cycles" } else { "max_cycles" };
+        books.close(pack, ended, |e| {
+            let change = e.totals.periodicity_error;
+            if e.period == 0 { unsettled(change, tolerance, e.cycles, start, advice) } else { None }
+        })
+    }
+
+    fn resolve(&self, _: usize, table: &mut Value) {
+        if self.steps_per_degree == 0 {
+            table["steps_per_degree"] = OWN.0.into();
+        }
+    }
+
+    fn settings(&self, _: &Pack, own: Option<&Value>) -> Vec<MethodSetting> {
+        refined("degree_march", OWN.0, own, &["solver.cycles=8"])
+    }
+}
+
+/// The numbers of a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Settings {
+    /// Cycles; 0 until periodic.
+    cycles: u32,
+    max_cycles: u32,
+    steps: u32,
+    gas_steps: u32,
+    tolerance: f64,
 }
 
 /// Interval at which the bisection stops \[m\].
 const RESOLUTION: f64 = 1e-13;
 
-/// What a run found.
-#[derive(Debug, Clone, Default)]
-pub struct Outcome {
-    /// Totals of the last cycle.
-    pub totals: Totals,
-    /// Marching steps.
-    pub steps: u64,
-    /// Cycles run.
-    pub cycles: u32,
-    /// Cycles after which the state repeats: 1 normally, more for a periodic state of higher order, 0 when none was seen.
-    pub period: u32,
-}
-
 /// Runs the scheme; calls `progress` with the fraction done.
-///
-/// # Errors
-/// What a sub-model refuses.
-pub fn run(
+fn run(
     pack: &mut Pack,
     set: Settings,
     start: f64,
-    (record, measures, watch): (&mut Record, &mut Measures, &mut Watch),
+    books: &mut Books,
     progress: &mut dyn FnMut(f64),
-) -> Result<Outcome, EvalError> {
+) -> Result<Ended, EvalError> {
     let n = pack.n_rings();
     let mut y = vec![0.0; pack.layout.n];
     pack.initial(start, &mut y);
@@ -63,7 +132,7 @@ pub fn run(
     let dt = step / pack.omega;
     let dt_gas = dt / f64::from(set.gas_steps);
     let limit = if set.cycles > 0 { set.cycles } else { set.max_cycles };
-    let mut out = Outcome::default();
+    let mut out = Ended { totals: Totals::default(), steps: 0, cycles: 0, period: 0 };
     // States at the starts of the last cycles, to see when one comes back.
     let mut history: Vec<Vec<f64>> = Vec::new();
     let mut recording = set.cycles == 1;
@@ -71,7 +140,7 @@ pub fn run(
         let mut totals = Totals { flow_in: vec![0.0; n], friction_work: vec![0.0; n], ..Totals::default() };
         let before: f64 = pack.masses.iter().sum();
         if recording {
-            *watch = Watch::new(pack);
+            books.watch = Watch::new(pack);
         }
         for k in 0..per_cycle {
             let theta = f64::from(k) * step;
@@ -81,8 +150,8 @@ pub fn run(
             instant(pack, theta, &h);
             if recording {
                 pack.gas(None)?;
-                record.push(theta, pack, &totals.flow_in, totals.blow_by);
-                measures.march(theta, pack, totals.flow_in[0]);
+                books.record.push(theta, pack, &totals.flow_in, totals.blow_by);
+                books.measures.march(theta, pack, totals.flow_in[0]);
             }
             for g in 0..set.gas_steps {
                 let p =
@@ -114,14 +183,14 @@ pub fn run(
                 }
             }
             if recording {
-                watch.look(pack, step);
+                books.watch.look(pack, step);
             }
             out.steps += 1;
         }
         if recording {
             pack.gas(None)?;
-            record.push(pack.period(), pack, &totals.flow_in, totals.blow_by);
-            measures.march(pack.period(), pack, totals.flow_in[0]);
+            books.record.push(pack.period(), pack, &totals.flow_in, totals.blow_by);
+            books.measures.march(pack.period(), pack, totals.flow_in[0]);
         }
         let after: f64 = pack.masses.iter().sum();
         let through = totals.flow_in[0].abs().max(totals.blow_by.abs()).max(f64::MIN_POSITIVE);

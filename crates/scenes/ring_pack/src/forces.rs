@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use gudgeon_core::EvalError;
-use gudgeon_core::kinds::{FaceForces, OilFaceIn, RadialLoads, RadialMotion, RingForces};
+use gudgeon_core::kinds::{FaceForces, OilFaceIn, RadialLoads, RadialMotion, RingForces, TwistMoments};
 
 use super::case::{AxialGas, Drag, FilmForce, Hoop, RadialGas, TwinLandFriction};
 use super::loads::{Loads, face_in, furthest};
@@ -125,8 +125,15 @@ impl Pack {
         Ok(())
     }
 
-    /// Lets the films of ring `i` reach as far as its oil does.
+    /// Tilts the films of ring `i` as it twists, and lets them reach as far as its oil does.
     pub(super) fn wet(&mut self, i: usize) -> Result<(), EvalError> {
+        if self.layout.twists[i] {
+            // Where the outer edge rises, the top of the face leaves the liner.
+            let tilt = -self.at.places[i].twist;
+            if !self.rings[i].films.iter_mut().all(|f| f.set_tilt(tilt)) {
+                return Err(EvalError::fatal("ring_pack", "this film cannot be tilted"));
+            }
+        }
         let Some(oil) = &mut self.oil_pack else { return Ok(()) };
         let (r, h) = (&mut self.at.rings[i], self.at.places[i].h);
         r.dry = (0.0, 0.0);
@@ -251,12 +258,35 @@ impl Pack {
         if own.is_empty() {
             return Ok(());
         }
-        let forces = RingForces::new(self.at.places[i], self.at.rings[i].axial);
+        let mut forces = RingForces::new(self.at.places[i], self.at.rings[i].axial);
+        if self.layout.twists[i] {
+            forces = forces.with_twist(self.twist_moments(i));
+        }
         let response = self.rings[i].motion.rates(&y[own.clone()], &forces, &mut self.dy[own])?;
         self.at.places[i].v = response.v;
         let r = &mut self.at.rings[i];
         (r.axial.damping, r.reaction) = (response.damping, response.reaction);
         Ok(())
+    }
+
+    /// Moments about the middle of the section of ring `i`, those of the flanks and of the oil on them apart. The gas on a flank has a linear profile
+    /// from the pressure behind the ring to that of the land; the load of the film acts at the narrowest place of the face.
+    ///
+    /// ```text
+    /// M_gas = 2π r_m w²/12 (p_below - p_above) + 2π r_o (p_above z_u b_u - p_below z_l b_l),   M_film = 2π r_o z_f W + w/2 F_film
+    /// ```
+    ///
+    /// `z_u b_u` first moment of the part of the face above the running face about the middle, `z_f` height of the narrowest place above it.
+    fn twist_moments(&self, i: usize) -> TwistMoments {
+        let (g, r, place) = (&self.geo.rings[i], &self.at.rings[i], &self.at.places[i]);
+        let around = 2.0 * PI * place.r_outer * g.rails as f64;
+        let middle = PI * (place.r_inner + place.r_outer);
+        let flanks = middle * g.width * g.width / 12.0 * (r.p_below - r.p_above);
+        let half = 0.5 * g.face.length();
+        let (top, bottom) = (0.5 * g.height - half, 0.5 * (0.5 * g.height + half));
+        let beside = around * top * bottom * (r.p_above - r.p_below);
+        let offset = g.face.narrowest() - half;
+        TwistMoments::new(flanks + beside, around * offset * r.load + 0.5 * g.width * r.axial.film)
     }
 
     /// Gas, inertia and weight on ring `i`; its film counts where its motion counts it.

@@ -4,10 +4,11 @@
 use std::f64::consts::PI;
 use std::time::Instant;
 
-use gudgeon_core::EvalError;
 use gudgeon_core::kinds::OilLedger;
+use gudgeon_core::quantity::{PosRatio, quantity};
 use gudgeon_core::result::{Balance, Column, Note, Series};
 use gudgeon_core::states::Signals;
+use gudgeon_core::{BuildError, EvalError, register_model};
 use gudgeon_numerics::ode::{
     Direction, EventAction, Flow, IntegrateError, Integrator, LinearInvariant, OdeSystem, Options, Stats,
     StepView,
@@ -23,11 +24,100 @@ use super::measure::{Measures, Peak};
 use super::modes::EventOf;
 use super::pack::Pack;
 use super::record::Totals;
+use super::results;
 use super::rows::Rows;
+use super::solver::{NOT_PERIODIC, Recorded, RingPackSolverSpec, Solution, Wanted};
 use super::watch::Watch;
-use super::{Found, NOT_PERIODIC, Recorded, results};
-use crate::case::{Outputs, RingPackCase};
-use gudgeon_scene::{IntegratorName, RunError};
+use gudgeon_scene::{IntegratorName, MethodSetting, RunError};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+/// The whole scene at once, adaptive and error-controlled; the cycle closed by a periodic-orbit solver.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Implicit {
+    /// Relative error per step.
+    #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1 }))]
+    pub tolerance: PosRatio,
+    /// Time integrator.
+    pub integrator: IntegratorName,
+    /// True relative error of the periodic state; not below `tolerance`.
+    #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1 }))]
+    pub periodicity: PosRatio,
+    /// Most cycles, all phases of the search together, before the run is called unconverged. Half of them, but at least 60, are accelerated; the
+    /// rest, and those of models with decided seats, repeat plainly.
+    #[schemars(range(max = 1000))]
+    pub max_cycles: u32,
+}
+
+impl Default for Implicit {
+    fn default() -> Self {
+        Self {
+            tolerance: quantity(1e-4),
+            integrator: IntegratorName::Rodas,
+            periodicity: quantity(1e-4),
+            max_cycles: 120,
+        }
+    }
+}
+
+#[register_model(
+    name = "implicit",
+    summary = "the whole scene as one stiff system, adaptive, the cycle closed by a periodic-orbit solver",
+    equations = "dy/dtheta = f(theta, y) by Rosenbrock methods of order 3 or 5, or Radau IIA;  y(theta + cycle) = y(theta) by Anderson acceleration",
+    validity = "Every pack. Errors are controlled: results differ from those of the equations by about the tolerance.",
+    references = ["sandu1997", "steinebach2023", "hairer1996", "walker2011"],
+    example = "tolerance = 1e-4\n",
+)]
+impl RingPackSolverSpec for Implicit {
+    fn refuses(&self, _: &Pack) -> Vec<BuildError> {
+        let mut errors = Vec::new();
+        if self.max_cycles == 0 {
+            errors.push(BuildError::at("solver.max_cycles", "at least one cycle is needed"));
+        }
+        if self.tolerance.si() > 0.1 || self.tolerance.si() < 1e-12 {
+            errors.push(BuildError::at("solver.tolerance", "the tolerance must be between 1e-12 and 0.1"));
+        }
+        errors
+    }
+
+    fn solve(
+        &self,
+        pack: &mut Pack,
+        start: f64,
+        wanted: &Wanted<'_>,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<Solution, RunError> {
+        run(self, pack, start, wanted, progress)
+    }
+
+    /// Both orders at the tolerances that they are made for.
+    fn settings(&self, _: &Pack, own: Option<&Value>) -> Vec<MethodSetting> {
+        let given = own.and_then(|v| serde_json::from_value::<Self>(v.clone()).ok());
+        let default = given.as_ref().unwrap_or(self);
+        let tolerance = default.tolerance.si();
+        let orders: [(&str, &str, IntegratorName, &[f64]); 2] = [
+            ("implicit, order 3", "rodas3", IntegratorName::Rodas3, &[1e-2, 3e-3, 1e-3, 3e-4, 1e-4]),
+            ("implicit, order 5", "rodas5p", IntegratorName::Rodas5p, &[1e-2, 1e-3, 1e-4, 1e-5, 1e-6]),
+        ];
+        let setting =
+            |(method, name, integrator, t): (&'static str, &str, IntegratorName, f64)| MethodSetting {
+                method,
+                setting: format!("tolerance {t:.0e}"),
+                is_default: (t / tolerance - 1.0).abs() < 1e-9
+                    && default.integrator.at(tolerance) == integrator,
+                set: vec![
+                    "solver.method=implicit".into(),
+                    format!("solver.integrator={name}"),
+                    format!("solver.tolerance={t:e}"),
+                    format!("solver.periodicity={t:e}"),
+                ],
+            };
+        let all = orders.into_iter().flat_map(|(m, n, i, all)| all.iter().map(move |t| (m, n, i, *t)));
+        all.map(setting).collect()
+    }
+}
 
 /// The pack as an initial-value problem in crank angle.
 struct Problem<'a> {
@@ -306,13 +396,13 @@ struct Sampler {
 }
 
 impl Sampler {
-    fn new(pack: &mut Pack, outputs: &Outputs) -> Self {
+    fn new(pack: &mut Pack, wanted: &Wanted<'_>) -> Self {
         let n = pack.n_rings();
-        let mut measures = Measures::new(pack, LOBATTO, outputs.seat.si());
+        let mut measures = Measures::new(pack, LOBATTO, wanted.seat);
         let (theta, value) = pack.cylinder.highest();
         measures.cylinder = Peak { theta, value };
         Self {
-            rows: Rows::new(pack, outputs.series_step.si()),
+            rows: Rows::new(pack, wanted.series_step),
             measures,
             y: vec![0.0; pack.layout.n],
             q: vec![0.0; 2 * n + 1],
@@ -457,14 +547,14 @@ fn stopped(e: IntegrateError) -> RunError {
 }
 
 /// Solves one start.
-pub(super) fn run(
-    case: &RingPackCase,
+fn run(
+    s: &Implicit,
     pack: &mut Pack,
     start: f64,
+    wanted: &Wanted<'_>,
     progress: &mut dyn FnMut(f64),
-) -> Result<Found, RunError> {
+) -> Result<Solution, RunError> {
     let begin = Instant::now();
-    let s = &case.solver;
     let dim = pack.layout.n;
     let quads = 2 * pack.n_rings() + 1;
     let rosenbrock = |formula| Method::Rodas(Box::new(Rodas::with(formula, dim, quads, None)));
@@ -508,8 +598,8 @@ pub(super) fn run(
         h: FIRST_STEP,
         stats: Stats::default(),
         q: vec![0.0; quads],
-        longest_step: s.limits.longest_step.si(),
-        most_steps: s.limits.steps_at(s.tolerance.si(), cycle_speed),
+        longest_step: wanted.limits.longest_step.si(),
+        most_steps: wanted.limits.steps_at(s.tolerance.si(), cycle_speed),
         failure: None,
         progress,
         done: 0.0,
@@ -533,7 +623,7 @@ pub(super) fn run(
     let seconds = begin.elapsed().as_secs_f64();
     let work = cycle.stats;
     // The recorded cycle, at full accuracy.
-    let mut sampler = Sampler::new(cycle.pack, &case.outputs);
+    let mut sampler = Sampler::new(cycle.pack, wanted);
     let gas: Vec<f64> = y[cycle.pack.layout.gas.clone()].to_vec();
     cycle.begin(&y);
     let oil_before = cycle.pack.oil_total(&y);
@@ -581,7 +671,7 @@ pub(super) fn run(
         ("factorisations", work.lu),
         ("events", work.events),
     ];
-    Ok(Found {
+    Ok(Solution {
         liner: liner_table(pack, sampler.liner),
         record: Recorded::Rows(sampler.rows),
         retreats: sampler.watch.events(),

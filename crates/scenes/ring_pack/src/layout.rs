@@ -29,6 +29,8 @@ pub struct Layout {
     pub states: Vec<StateInfo>,
     /// What the film of each ring depends on, and what moves with it: radial motion, oil, temperature.
     pub film_reads: Vec<Signals>,
+    /// Whether each ring twists.
+    pub twists: Vec<bool>,
     /// What the motion of each ring in its groove depends on.
     pub motion_reads: Vec<Signals>,
 }
@@ -72,7 +74,10 @@ impl Layout {
         if !layout.temperature.is_empty() {
             also |= temperature.reads();
         }
-        layout.film_reads = rings.iter().map(|r| r.radial.reads() | also).collect();
+        let twists = |r: &Ring| r.motion.states().iter().any(|s| s.changes.meets(Signals::TWIST));
+        layout.twists = rings.iter().map(twists).collect();
+        let of_twist = |r: &Ring| if twists(r) { Signals::TWIST } else { Signals::NONE };
+        layout.film_reads = rings.iter().map(|r| r.radial.reads() | also | of_twist(r)).collect();
         layout.motion_reads = rings.iter().map(|r| r.motion.reads()).collect();
         layout
     }

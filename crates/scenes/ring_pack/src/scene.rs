@@ -3,24 +3,30 @@
 use gudgeon_core::BuildError;
 use gudgeon_core::result::{Figure, FigureKind, ModelUse, RunResult};
 
+use super::pack::Pack;
+use super::solve::solve;
+use super::solver::RingPackSolverSpec;
 use super::used::models_in_use;
-use super::{assemble, geometry, legal, meter, pack::Pack, solve, state_names};
-use crate::case::{Method, RingPackCase, Scheme};
+use super::{assemble, geometry, legal, meter, state_names};
+use crate::case::RingPackCase;
 use gudgeon_case::{Loaded, Refinement};
 use gudgeon_scene::{
-    Explanation, IntegratorName, MethodSetting, Progress, RunError, SceneCase, WorkPrecision,
+    Explanation, MethodSetting, Progress, RunError, SceneCase, WorkPrecision, default_solvers,
 };
 
 impl SceneCase for RingPackCase {
     type Built = Pack;
 
     fn build(loaded: &Loaded<Self>) -> Result<Pack, Vec<BuildError>> {
-        let built = assemble::assemble(&loaded.value, &loaded.source.files);
-        let also = legal(&loaded.value);
+        let case = &loaded.value;
+        let built = assemble::assemble(case, &loaded.source.files);
+        let mut errors = legal(case);
         match built {
-            Ok(pack) if also.is_empty() => Ok(pack),
-            Ok(_) => Err(also),
-            Err(e) => Err(e.into_iter().chain(also).collect()),
+            Ok(pack) => {
+                errors.extend(case.solver.method.refuses(&pack));
+                if errors.is_empty() { Ok(pack) } else { Err(errors) }
+            }
+            Err(e) => Err(e.into_iter().chain(errors).collect()),
         }
     }
 
@@ -76,18 +82,10 @@ impl SceneCase for RingPackCase {
         Ok(result)
     }
 
-    /// The steps of a published scheme are the source's where the case names none.
+    /// Numbers that the case leaves to its solver are filled in.
     fn refinements(loaded: &Loaded<Self>) -> Vec<Refinement> {
         let case = &loaded.value;
-        loaded.refinements_with(|resolved| {
-            if case.solver.steps_per_degree == 0 {
-                let own = match case.solver.scheme {
-                    Scheme::SubstepMarch => case.rings.len() + 1,
-                    Scheme::DegreeMarch => 1,
-                };
-                resolved["solver"]["steps_per_degree"] = own.into();
-            }
-        })
+        loaded.refinements_with(|all| case.solver.method.resolve(case.rings.len(), &mut all["solver"]))
     }
 
     fn result_names(_: &Loaded<Self>, pack: &mut Pack) -> Option<Vec<String>> {
@@ -103,9 +101,12 @@ impl SceneCase for RingPackCase {
                 format!("solver.periodicity={tolerance:e}"),
             ]
         };
+        let settings = settings(&loaded.value, pack);
+        let mut methods: Vec<&'static str> = settings.iter().map(|s| s.method).collect();
+        methods.dedup();
         Some(WorkPrecision {
-            methods: METHODS.to_vec(),
-            settings: settings(&loaded.value, pack.decision_interval().is_some()),
+            methods,
+            settings,
             reference: radau(1e-8),
             reference_check: radau(1e-7),
             reference_is: "implicit system, Radau IIA order 5, tolerance 1e-8; differs from the same at 1e-7",
@@ -114,57 +115,21 @@ impl SceneCase for RingPackCase {
     }
 }
 
-/// Methods that are compared.
-const METHODS: [&str; 3] = ["implicit, order 3", "implicit, order 5", "as_published"];
-
-/// Every solver at every accuracy.
-fn settings(case: &RingPackCase, discrete: bool) -> Vec<MethodSetting> {
-    let mut all = Vec::new();
-    let default = case.solver.tolerance.si();
-    let orders: [(&str, &str, IntegratorName, &[f64]); 2] = [
-        (METHODS[0], "rodas3", IntegratorName::Rodas3, &[1e-2, 3e-3, 1e-3, 3e-4, 1e-4]),
-        (METHODS[1], "rodas5p", IntegratorName::Rodas5p, &[1e-2, 1e-3, 1e-4, 1e-5, 1e-6]),
-    ];
-    for (method, name, integrator, tolerances) in orders {
-        for &t in tolerances {
-            all.push(MethodSetting {
-                method,
-                setting: format!("tolerance {t:.0e}"),
-                is_default: (t / default - 1.0).abs() < 1e-9
-                    && case.solver.integrator.at(default) == integrator,
-                set: vec![
-                    "solver.method=implicit".into(),
-                    format!("solver.integrator={name}"),
-                    format!("solver.tolerance={t:e}"),
-                    format!("solver.periodicity={t:e}"),
-                ],
-            });
-        }
-    }
-    let rings = case.rings.len() as u32;
-    let published = case.solver.method == Method::AsPublished;
-    // The published scheme and its own refinement. The scheme follows from whether anything is decided in steps.
-    let (scheme, own) = if discrete { ("degree_march", 1) } else { ("substep_march", rings + 1) };
-    for factor in [1u32, 2, 4, 8] {
-        let steps = own * factor;
-        let gas = if published && case.solver.gas_steps > 0 { case.solver.gas_steps } else { 0 };
-        all.push(MethodSetting {
-            method: METHODS[2],
-            setting: format!("{steps} steps per degree"),
-            is_default: factor == 1,
-            set: vec![
-                "solver.method=as_published".into(),
-                format!("solver.scheme={scheme}"),
-                format!("solver.steps_per_degree={steps}"),
-                format!("solver.gas_steps={gas}"),
-                "solver.passes=720".into(),
-                // The scheme as printed has no limit in a keystone groove; this variant of its flank rule has.
-                "solver.clamp=inward".into(),
-                format!("solver.cycles={}", if discrete { 8 } else { 3 }),
-            ],
-        });
-    }
-    all
+/// Every registered solver that can solve the pack, at every accuracy.
+fn settings(case: &RingPackCase, pack: &Pack) -> Vec<MethodSetting> {
+    let own = case.solver.method.typetag_name();
+    let table = serde_json::to_value(&case.solver.method).ok();
+    default_solvers::<dyn RingPackSolverSpec>()
+        .into_iter()
+        .filter(|(_, s)| s.refuses(pack).is_empty())
+        .flat_map(|(name, s)| {
+            let mut given = table.clone().filter(|_| name == own);
+            if let Some(o) = given.as_mut().and_then(|v| v.as_object_mut()) {
+                o.remove("model");
+            }
+            s.settings(pack, given.as_ref())
+        })
+        .collect()
 }
 
 gudgeon_scene::register_scene! {

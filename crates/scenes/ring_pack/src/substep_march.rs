@@ -9,28 +9,146 @@
 //! The sub-models are those of the case: with the published ones this is the published program, and with finer steps
 //! it tends to the solution of the same equations as the implicit solver.
 
-use gudgeon_core::EvalError;
+use gudgeon_core::quantity::{PosRatio, quantity};
+use gudgeon_core::{BuildError, EvalError, register_model};
+use gudgeon_scene::{MethodSetting, RunError};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
-use crate::case::Clamp;
-
-use super::measure::Measures;
+use super::marching::{Books, Ended, Steps, refined, refuses, steps, unsettled};
 use super::pack::Pack;
-use super::record::{Record, Totals};
-use super::watch::Watch;
+use super::record::Totals;
+use super::solver::{RingPackSolverSpec, Solution, Wanted};
 
-/// Settings; see [`crate::case::Solver`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Settings {
-    /// Cycles.
+/// The scheme of zottin1992.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct SubstepMarch {
+    /// Cycles to run; 0 takes the source's number (2).
+    #[schemars(range(max = 200))]
     pub cycles: u32,
-    /// Sub-steps of mechanics per degree.
-    pub steps: u32,
-    /// Gas steps per sub-step.
+    /// Steps of mechanics per crank degree; 0 takes the source's number (rings + 1).
+    #[schemars(range(max = 1_000_000), extend("x-refine" = { "group": "crank-angle step", "factor": 2 }))]
+    pub steps_per_degree: u32,
+    /// Gas sub-steps per step of mechanics; 0 takes the source's number (2^(rings+1)).
+    #[schemars(range(max = 1_000_000))]
     pub gas_steps: u32,
-    /// Passes of one degree per cycle.
+    /// One-degree passes per cycle: 721 as in the source's listing, or 720.
+    #[schemars(range(max = 7200))]
     pub passes: u32,
-    /// Velocity at a flank.
+    /// What becomes of a ring's velocity at a flank.
     pub clamp: Clamp,
+    /// Relative change of the stored gas over the last cycle below which the cycle counts as periodic.
+    pub periodicity: PosRatio,
+}
+
+impl Default for SubstepMarch {
+    fn default() -> Self {
+        Self {
+            cycles: 0,
+            steps_per_degree: 0,
+            gas_steps: 0,
+            passes: 721,
+            clamp: Clamp::Stop,
+            periodicity: quantity(1e-4),
+        }
+    }
+}
+
+/// Velocity of a ring that reaches a flank.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Clamp {
+    /// Zero (zottin1992 as far as its listing can be read). In a keystone groove the flank moves with the film, a ring
+    /// clamped so sticks to it the longer the smaller the steps are, and the scheme has no limit.
+    #[default]
+    Stop,
+    /// Only motion into the flank is stopped: converges as the steps shrink.
+    Inward,
+}
+
+/// Cycles of the source.
+const CYCLES: u32 = 2;
+
+impl SubstepMarch {
+    /// Steps of the source.
+    fn own(rings: usize) -> Steps {
+        (rings as u32 + 1, 1 << (rings + 1).min(20))
+    }
+}
+
+#[register_model(
+    name = "substep_march",
+    summary = "the published scheme: mechanics in sub-steps of a crank degree, explicit gas steps inside them",
+    equations = "m' = m + dt_gas dm/dt;  W_film(h, (h - h_old)/dt) + W_contact(h) = W by bisection;  m a = F + F_damping(s + v dt + a dt^2/2, v + a dt), \
+                clamped at the flanks",
+    validity = "Rings that are seated or move as masses between rigid flanks; flooded films. First order in the step; converges to the implicit solution \
+               with `clamp = \"inward\"` and `passes = 720`.",
+    references = ["zottin1992"],
+    example = "cycles = 2\nsteps_per_degree = 4\n",
+)]
+impl RingPackSolverSpec for SubstepMarch {
+    fn refuses(&self, pack: &Pack) -> Vec<BuildError> {
+        let given = (self.steps_per_degree, self.gas_steps);
+        let mut errors = refuses(pack, given, Self::own(pack.n_rings()));
+        if pack.rings.iter().any(|r| r.motion.moves() && r.motion.second_order().is_none()) {
+            let what = "`substep_march` integrates rings as masses between flanks, and this `ring_motion` is something else";
+            errors.push(BuildError::at("solver.method", what).help(
+                "use `method = \"implicit\"`, `method = \"degree_march\"` for seats that are decided in steps, or `ring_motion` `newton_groove` or `seated`",
+            ));
+        }
+        if self.passes == 0 || self.passes > 7200 {
+            let what = format!("{} one-degree passes do not make a cycle", self.passes);
+            errors
+                .push(BuildError::at("solver.passes", what).help("720, or 721 as the source's listing runs"));
+        }
+        errors
+    }
+
+    fn solve(
+        &self,
+        pack: &mut Pack,
+        start: f64,
+        wanted: &Wanted<'_>,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<Solution, RunError> {
+        let (steps, gas_steps) = steps((self.steps_per_degree, self.gas_steps), Self::own(pack.n_rings()));
+        let cycles = if self.cycles == 0 { CYCLES } else { self.cycles };
+        let set = Settings { cycles, steps, gas_steps, passes: self.passes, clamp: self.clamp };
+        let mut books = Books::open(pack, wanted);
+        let ended = run(pack, set, start, &mut books, progress).map(|(totals, steps)| Ended {
+            totals,
+            steps,
+            cycles,
+            period: 1,
+        });
+        let tolerance = self.periodicity.si();
+        books
+            .close(pack, ended, |e| unsettled(e.totals.periodicity_error, tolerance, cycles, start, "cycles"))
+    }
+
+    fn resolve(&self, rings: usize, table: &mut Value) {
+        if self.steps_per_degree == 0 {
+            table["steps_per_degree"] = Self::own(rings).0.into();
+        }
+    }
+
+    /// The scheme as printed has no limit in a keystone groove; the variant of its flank rule that has one is refined.
+    fn settings(&self, pack: &Pack, own: Option<&Value>) -> Vec<MethodSetting> {
+        let more = ["solver.passes=720", "solver.clamp=inward", "solver.cycles=3"];
+        refined("substep_march", Self::own(pack.n_rings()).0, own, &more)
+    }
+}
+
+/// The numbers of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Settings {
+    cycles: u32,
+    steps: u32,
+    gas_steps: u32,
+    passes: u32,
+    clamp: Clamp,
 }
 
 /// Interval at which the bisection stops \[m\], and its least number of halvings.
@@ -44,14 +162,11 @@ struct RingState {
 }
 
 /// Runs the scheme; calls `progress` with the fraction done.
-///
-/// # Errors
-/// What a sub-model refuses.
-pub fn run(
+fn run(
     pack: &mut Pack,
     set: Settings,
     start: f64,
-    (record, measures, watch): (&mut Record, &mut Measures, &mut Watch),
+    books: &mut Books,
     progress: &mut dyn FnMut(f64),
 ) -> Result<(Totals, u64), EvalError> {
     let n = pack.n_rings();
@@ -136,24 +251,24 @@ pub fn run(
                     }
                 }
                 if last && pass < 720 {
-                    watch.look(pack, dt * pack.omega);
+                    books.watch.look(pack, dt * pack.omega);
                 }
                 steps += 1;
                 if last && pass < 720 {
                     if pass == 0 && sub == 1 {
                         // The state before the first step is as nearly as the scheme knows it that after it.
-                        measures.march(0.0, pack, 0.0);
+                        books.measures.march(0.0, pack, 0.0);
                     }
-                    measures.march(theta, pack, totals.flow_in[0]);
+                    books.measures.march(theta, pack, totals.flow_in[0]);
                 }
             }
             let whole = f64::from(pass + 1) * degree;
             if last && pass < 720 {
                 if pass == 0 {
                     // Row 0 repeats the state before the first pass as nearly as the scheme knows it.
-                    record.push(0.0, pack, &vec![0.0; n], 0.0);
+                    books.record.push(0.0, pack, &vec![0.0; n], 0.0);
                 }
-                record.push(whole, pack, &totals.flow_in, totals.blow_by);
+                books.record.push(whole, pack, &totals.flow_in, totals.blow_by);
             }
             progress(
                 (f64::from(cycle - 1) + f64::from(pass) / f64::from(set.passes)) / f64::from(set.cycles),
