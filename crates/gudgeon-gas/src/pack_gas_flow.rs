@@ -51,8 +51,8 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> GasFlow for PackNetwork<M, L> {
     fn max_explicit_step(&self) -> Option<f64> {
         let tau = self.model.merge_time()?;
         let max = (1..self.links.len()).fold(1.0_f64, |max, i| {
-            let ((above, land), (below, _)) = (self.capacities(i - 1), self.capacities(i));
-            max.max(1.0 + land.map_or(0.0, |land| (above + below) / land))
+            let around = self.back_capacity(i - 1) + self.back_capacity(i);
+            max.max(1.0 + around / self.land_capacity(i))
         });
         Some(tau / max)
     }

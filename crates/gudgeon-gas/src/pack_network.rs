@@ -232,13 +232,14 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> PackNetwork<M, L> {
         Ok(self)
     }
 
-    /// Capacity `V/(R T)` of the space behind ring `i`, and of land `i + 1` when that has a volume, in the nominal liner \[kg/Pa\].
-    pub(crate) fn capacities(&self, i: usize) -> (f64, Option<f64>) {
-        let rt = |node: usize| self.net.rt(node);
-        let behind = self.links[i].back.map_or(0.0, |node| self.spaces.nominal_volume(i) / rt(node));
-        let land =
-            (i + 1 < self.links.len()).then(|| self.spaces.pack.lands[i + 1].volume / rt(self.lands[i + 1]));
-        (behind, land)
+    /// Capacity `V/(R T)` of the space behind ring `i` in the nominal liner \[kg/Pa\]; 0 where it has no room.
+    pub(crate) fn back_capacity(&self, i: usize) -> f64 {
+        self.links[i].back.map_or(0.0, |node| self.spaces.nominal_volume(i) / self.net.rt(node))
+    }
+
+    /// Capacity `V/(R T)` of a land between rings \[kg/Pa\].
+    pub(crate) fn land_capacity(&self, land: usize) -> f64 {
+        self.spaces.pack.lands[land].volume / self.net.rt(self.lands[land])
     }
 
     /// Pressures of all nodes.
