@@ -264,3 +264,23 @@ fn cycles_are_counted_and_limited() {
 fn a_matrix_of_another_grid_is_a_mistake() {
     let _ = LineMultigrid::new(4, 5, false).setup(&FivePoint::new(5, 4, false));
 }
+
+#[test]
+fn cycles_of_both_phases_add_up() {
+    // No residual is small enough: cycles alone come to a halt, and directions of the minimisation take the rest.
+    let m = poisson(40, 40, 1.0, false);
+    let mut mg = LineMultigrid::new(40, 40, false);
+    mg.setup(&m).unwrap();
+    let mut v = vec![0.0; 1600];
+    assert_eq!(mg.solve(&vec![1.0; 1600], &mut v, 0.0, 40).cycles, 40);
+    let m = mixed(12, 9, false);
+    let mut mg = LineMultigrid::new(12, 9, false);
+    mg.setup(&m).unwrap();
+    for limit in [1, 2, 3, 12] {
+        let mut v = vec![0.0; 108];
+        let done = mg.solve(&vec![1.0; 108], &mut v, 0.0, limit);
+        assert_eq!(done.cycles, limit);
+        // What the minimisation says of the residual is true, to rounding.
+        assert!((m.residual(&vec![1.0; 108], &v) - done.residual).abs() < 1e-11, "{done:?}");
+    }
+}

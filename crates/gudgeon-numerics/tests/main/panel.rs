@@ -144,3 +144,11 @@ fn rises_and_falls_differ_by_the_change() {
         assert!((found - bottom).abs() < 1e-15 && (p(at) - bottom).abs() < 1e-14, "{a} {b} {c}");
     }
 }
+
+#[test]
+fn monotone_samples_are_taken_by_their_ends() {
+    // The polynomials through these turn between the samples.
+    assert_eq!(LOBATTO.fall(&[0.0, 0.0, 0.0, 0.0, 1.0]), 0.0);
+    assert_eq!(LOBATTO.fall(&[1.0, 0.0, 0.0, 0.0, 0.0]), 1.0);
+    assert!(LOBATTO.fall(&[0.0, 0.0, 1.0, 0.0, 0.0]) > 1.0);
+}

@@ -1,6 +1,6 @@
 //! Quadrature rules: degrees of exactness, adaptive integrals.
 
-use gudgeon_numerics::quadrature::{GaussLegendre, integrate_adaptive};
+use gudgeon_numerics::quadrature::{GaussLegendre, QuadratureError, integrate_adaptive};
 
 #[test]
 fn gauss_is_exact_to_its_degree() {
@@ -39,4 +39,24 @@ fn adaptive_handles_peaks_and_end_singularities() {
     assert!((v - 2.0 / 3.0).abs() < 1e-10);
     assert!(integrate_adaptive(|_| f64::NAN, 0.0, 1.0, 0.0, 1e-9).is_err());
     assert!(integrate_adaptive(|x| 1.0 / x, -1.0, 1.0, 0.0, 1e-9).is_err());
+}
+
+#[test]
+fn integrands_without_a_value_are_named_by_their_place() {
+    let nan = integrate_adaptive(|_| f64::NAN, 0.5, 2.0, 0.0, 1e-9);
+    assert_eq!(nan, Err(QuadratureError::NotFinite { x: 1.25 }));
+    let late = integrate_adaptive(|x| if x > 1.9 { f64::INFINITY } else { x.sqrt() }, 0.0, 2.0, 0.0, 1e-9);
+    assert_eq!(late, Err(QuadratureError::NotFinite { x: 1.0 }));
+    // A function that no polynomial fits: the best value, and how far it is off.
+    let rough = integrate_adaptive(|x| (1e9 * x * x).sin().signum(), 0.0, 1.0, 0.0, 1e-14);
+    assert!(matches!(rough, Err(QuadratureError::NoConvergence { error, .. }) if error > 0.0), "{rough:?}");
+    // Tolerances may be absolute, and need not be both.
+    let loose = integrate_adaptive(|x| (50.0 * x).sin().abs(), 0.0, 1.0, 0.5, 0.0).unwrap();
+    let tight = integrate_adaptive(|x| (50.0 * x).sin().abs(), 0.0, 1.0, 1e-8, 0.0).unwrap();
+    // 15 full half waves of area 2/50, and what is left of the next.
+    let exact = (15.0 * 2.0 + 1.0 - (50.0 - 15.0 * std::f64::consts::PI).cos()) / 50.0;
+    assert!(
+        (tight - exact).abs() < 1e-8 && (loose - exact).abs() < 0.5 && loose != tight,
+        "{loose} {tight} {exact}"
+    );
 }

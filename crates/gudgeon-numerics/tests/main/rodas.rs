@@ -255,3 +255,75 @@ fn stops_exactly_at_breakpoints() {
     assert!(r.is_ok());
     assert!([0.5, 1.25, 2.0].iter().all(|b| seen.contains(b)), "{seen:?}");
 }
+
+/// A linear system with its Jacobian and the derivative by time: nothing is differenced.
+struct Given;
+impl OdeSystem for Given {
+    fn dim(&self) -> usize {
+        2
+    }
+    fn rhs(&mut self, t: f64, y: &[f64], f: &mut [f64]) -> Result<(), EvalError> {
+        (f[0], f[1]) = (-50.0 * (y[0] - t.cos()), y[0] - y[1]);
+        Ok(())
+    }
+    fn jacobian(&mut self, _: f64, _: &[f64], _: &[f64], jac: &mut [f64]) -> Result<bool, EvalError> {
+        jac.copy_from_slice(&[-50.0, 0.0, 1.0, -1.0]);
+        Ok(true)
+    }
+    fn time_derivative(&mut self, t: f64, _: &[f64], _: &[f64], d: &mut [f64]) -> Result<bool, EvalError> {
+        (d[0], d[1]) = (-50.0 * t.sin(), 0.0);
+        Ok(true)
+    }
+}
+
+#[test]
+fn the_work_of_a_step_is_that_of_its_stages() {
+    for (formula, calls, solves) in [(Formula::Rodas5P, 7, 8), (Formula::Rodas3, 2, 4)] {
+        let o = Options { h_init: 0.5, ..Options::new(1e-6, &[1.0; 2]) };
+        let s = Rodas::with(formula, 2, 0, None).solve(&mut Given, (0.0, 10.0), &mut [0.0; 2], &o).unwrap();
+        let tried = s.steps + s.rejected;
+        assert_eq!((s.jacobians, s.lu, s.solves), (s.steps, tried, solves * tried));
+        // One at the start, one at the end of every step that is accepted.
+        assert_eq!(s.rhs, 1 + calls * tried + s.steps);
+        assert!(s.rejected > 0 && s.rejected * 5 < s.steps, "{s:?}");
+    }
+}
+
+#[test]
+fn first_steps_fit_the_solution() {
+    // Without a first step the integrator finds one: it loses neither many steps to growth nor many to rejection, whatever the rate.
+    for rate in [1e-3, 1.0, 1e3, 1e6] {
+        struct Decay(f64);
+        impl OdeSystem for Decay {
+            fn dim(&self) -> usize {
+                1
+            }
+            fn rhs(&mut self, _: f64, y: &[f64], f: &mut [f64]) -> Result<(), EvalError> {
+                f[0] = -self.0 * y[0];
+                Ok(())
+            }
+        }
+        let mut first = 0.0;
+        let (mut y, mut s) = ([1.0], Stats::default());
+        let o = Options::new(1e-6, &[1.0]);
+        let mut r = Rodas::new(1, 0, None);
+        let done = r.integrate(
+            &mut Decay(rate),
+            (0.0, 5.0 / rate),
+            &[],
+            &mut y,
+            &mut [],
+            &o,
+            &mut s,
+            &mut |_, v| {
+                if first == 0.0 {
+                    first = v.t1() * rate;
+                }
+                Flow::Continue
+            },
+        );
+        assert!(done.is_ok() && (y[0] - (-5.0_f64).exp()).abs() < 1e-6, "{y:?}");
+        // The guess is that of a method of order 1, raised towards one of order 5: cautious, but growth by six a step makes it good soon.
+        assert!((1e-5..0.1).contains(&first) && s.rejected == 0 && s.steps < 20, "{rate}: {first} {s:?}");
+    }
+}
