@@ -93,4 +93,12 @@ fn no_friction_at_any_speed() {
     // A coefficient of zero is no friction either, any other is.
     let of = |mu: f64| Coulomb { friction_coefficient: quantity(mu), rounding_speed: quantity(0.01) };
     assert!(of(0.0).build().expect("builds").is_off() && !of(0.1).build().expect("builds").is_off());
+    let falling = |statics: f64, kinetic: f64| {
+        let (static_coefficient, kinetic_coefficient) = (quantity(statics), quantity(kinetic));
+        Stribeck { static_coefficient, kinetic_coefficient, ..stribeck(1.0, 0.01) }
+            .build()
+            .expect("builds")
+            .is_off()
+    };
+    assert!(falling(0.0, 0.0) && !falling(0.1, 0.0) && !falling(0.1, 0.1));
 }

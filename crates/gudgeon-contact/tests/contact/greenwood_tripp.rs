@@ -57,6 +57,18 @@ fn worked_example() {
 }
 
 #[test]
+fn the_real_area_is_known() {
+    let model = spec(AsperityIntegralFormula::Hu1994).build().expect("builds");
+    let h = EXAMPLE.map(|e| e.0 * 0.4e-6);
+    let mut ratio = [f64::NAN; 6];
+    assert!(model.real_area(&h, &mut ratio));
+    for (ratio, (l, _, area)) in ratio.into_iter().zip(EXAMPLE) {
+        // By the exact integral whatever the fit; rounding of separation over roughness as above.
+        assert!((ratio / area - 1.0).abs() < 1e-13, "{l}");
+    }
+}
+
+#[test]
 fn separate_parameters_equal_their_products() {
     let (sigma, beta, eta) = (0.4e-6, 0.4e-3, 0.05 / (0.4e-3 * 0.4e-6));
     let separate = GreenwoodTripp {

@@ -6,8 +6,8 @@ use gudgeon_core::geometry::{BackVolume, Chamfer, PackGeometry, RingPlace};
 use gudgeon_core::kinds::{GasFlowSpec, GasIn, GasOut};
 use gudgeon_core::quantity::quantity;
 use gudgeon_gas::{
-    BackVolumes, Elimination, FilmHeight, GapOrifice, GasState, NarrowChannel, Orifice, OrificeFormula,
-    OrificeNetwork,
+    BackVolumes, Elimination, FilmHeight, FlankGap, GapOrifice, GasState, NarrowChannel, Orifice,
+    OrificeFormula, OrificeNetwork,
 };
 
 use crate::packs::{build, pack, place};
@@ -176,4 +176,33 @@ fn spaces_are_eliminated_below_their_filling_time() {
             assert_eq!((states(longest * (1.0 - 1e-8)), states(longest * (1.0 + 1e-8))), (1, 0), "{back:?}");
         }
     }
+}
+
+/// A wedge passes what parallel gaps in series along its width pass.
+#[test]
+fn wedges_at_the_flanks() {
+    for (mean, rise) in [(3e-5, 1e-5), (3e-5, -1e-5), (2e-6, 1.9e-6), (5e-5, 0.0)] {
+        let gap = FlankGap::wedge(mean, rise);
+        assert!((gap.outer - gap.inner - 2.0 * rise).abs() < 1e-20);
+        assert!((0.5 * (gap.outer + gap.inner) - mean).abs() < 1e-20);
+        assert_eq!(gap.narrowest(), mean - rise.abs());
+        // Mean of 1/h³ over the width by the midpoint rule in ln h, which makes the integrand smooth: dx/width = h d(ln h)/(b - a).
+        let resistance = if rise == 0.0 {
+            mean.powi(-3)
+        } else {
+            let (a, b, n) = (gap.inner.ln(), gap.outer.ln(), 4000);
+            let step = (b - a) / f64::from(n);
+            (0..n).map(|k| (-2.0 * (a + (f64::from(k) + 0.5) * step)).exp() * step).sum::<f64>()
+                / (gap.outer - gap.inner)
+        };
+        // Midpoint rule of exp(-2x): relative error step²/6, below 2e-7 for steps of 1e-3.
+        assert!((gap.laminar().powi(-3) / resistance - 1.0).abs() < 1e-6, "{mean} {rise}");
+    }
+    // Closed at one edge: nothing gets through either way. A gap below zero stays what it is while it is parallel.
+    for rise in [4e-5, -4e-5] {
+        let gap = FlankGap::wedge(3e-5, rise);
+        assert_eq!((gap.narrowest(), gap.laminar()), (0.0, 0.0));
+    }
+    assert_eq!(FlankGap::wedge(-1e-6, 0.0), FlankGap::parallel(-1e-6));
+    assert_eq!((FlankGap::parallel(-1e-6).narrowest(), FlankGap::parallel(2e-6).laminar()), (-1e-6, 2e-6));
 }

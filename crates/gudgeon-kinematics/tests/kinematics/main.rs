@@ -2,6 +2,7 @@
 
 use gudgeon_kinematics as _;
 
+mod compressors;
 mod cylinder_pressure;
 mod exact_slider_crank;
 mod models;
