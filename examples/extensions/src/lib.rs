@@ -1,0 +1,1 @@
+//! Plug-ins outside of Gudgeon, one file each.

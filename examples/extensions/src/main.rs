@@ -1,0 +1,10 @@
+//! The `gudgeon` program with the plug-ins of this crate added.
+
+use std::process::ExitCode;
+
+// A crate that no code names is not linked, and its models would be missing.
+use extensions as _;
+
+fn main() -> ExitCode {
+    gudgeon::main()
+}
