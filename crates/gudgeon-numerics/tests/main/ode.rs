@@ -661,3 +661,73 @@ fn absolute_states_ignore_their_value_and_tolerances_follow_the_state() {
     // A tolerance by distance saves steps at the start and is as good at the end, where the distance is one.
     assert!(distant.1 < strict.1 && distant.0 < 1e-5, "{distant:?} {strict:?}");
 }
+
+#[test]
+fn views_join_and_interpolate_their_ends() {
+    for h_init in [0.0, 0.1] {
+        let mut s = system(2, 1, smooth);
+        let mut o = Options::new(1e-6, &[1.0, 1.0]);
+        o.h_init = h_init;
+        let (mut y, mut q, mut stats) = ([1.0, 1.0], [0.25], Stats::default());
+        let mut last = (0.0, vec![1.0, 1.0], vec![0.25]);
+        let (mut a, mut b) = ([0.0; 2], [0.0]);
+        let done = Rodas::new(2, 1, None).integrate(
+            &mut s,
+            (0.0, 2.0),
+            &[0.7],
+            &mut y,
+            &mut q,
+            &o,
+            &mut stats,
+            &mut |_, v| {
+                assert_eq!((v.t0(), v.y0(), v.q0()), (last.0, &last.1[..], &last.2[..]));
+                v.interpolate(v.t0(), &mut a);
+                v.interpolate_quad(v.t0(), &mut b);
+                assert!(a == *v.y0() && b == *v.q0());
+                v.interpolate(v.t1(), &mut a);
+                v.interpolate_quad(v.t1(), &mut b);
+                for (x, y) in a.iter().zip(v.y1()).chain(b.iter().zip(v.q1())) {
+                    // Rounding of the place in the step.
+                    assert!((x - y).abs() < 1e-14, "{x} {y}");
+                }
+                last = (v.t1(), v.y1().to_vec(), v.q1().to_vec());
+                Flow::Continue
+            },
+        );
+        assert!(done.is_ok());
+        assert_eq!(last, (2.0, y.to_vec(), q.to_vec()));
+    }
+}
+
+/// A step that knows the ends of its quadrature alone.
+struct Ends;
+impl StepView for Ends {
+    fn t0(&self) -> f64 {
+        2.0
+    }
+    fn t1(&self) -> f64 {
+        6.0
+    }
+    fn y0(&self) -> &[f64] {
+        &[]
+    }
+    fn y1(&self) -> &[f64] {
+        &[]
+    }
+    fn interpolate(&self, _: f64, _: &mut [f64]) {}
+    fn q0(&self) -> &[f64] {
+        &[1.0]
+    }
+    fn q1(&self) -> &[f64] {
+        &[3.0]
+    }
+}
+
+#[test]
+fn quadratures_of_other_views_are_straight_lines() {
+    let mut q = [0.0];
+    for (t, value) in [(2.0, 1.0), (3.0, 1.5), (6.0, 3.0)] {
+        Ends.interpolate_quad(t, &mut q);
+        assert_eq!(q[0], value);
+    }
+}
