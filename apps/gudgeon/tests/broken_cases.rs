@@ -142,7 +142,7 @@ const EDITS: &[Edit] = edits! {
 
     "hopeless tolerance": "tolerance = 1e-4" => "tolerance = 1e-30", at "1e-30": "solver.tolerance", "";
     "endless rows": "series_step = \"1 deg\"" => "series_step = \"1e-9 deg\"", at "1e-9": "outputs.series_step", "between";
-    "scheme that cannot move a ring": "method = \"implicit\"" => "method = \"degree_march\"", at "degree_march": "solver.method", "substep_march";
+    "scheme that cannot move a ring": "method = \"implicit\"\ntolerance = 1e-4\n" => "method = \"degree_march\"\n", at "degree_march": "solver.method", "substep_march";
     "scheme that became a method": "method = \"implicit\"" => "method = \"as_published\"", at "as_published": "solver: `as_published` is no longer a method", "`method = \"substep_march\"`";
 };
 

@@ -304,6 +304,12 @@ fn ring(
         films,
         contact,
         motion,
+        motion_name: case.rings[i]
+            .models
+            .ring_motion
+            .as_ref()
+            .unwrap_or(&case.models.ring_motion)
+            .typetag_name(),
         friction,
         spacing,
         mu: fixed.then(|| oils.oil.viscosity(oils.temperature.temperature(i, 0.0, &[]))),

@@ -61,9 +61,11 @@ impl RingPackSolverSpec for DegreeMarch {
         if self.max_cycles == 0 {
             errors.push(BuildError::at("solver.max_cycles", "at least one cycle is needed"));
         }
-        if pack.rings.iter().any(|r| r.is_integrated()) {
-            let what =
-                "`degree_march` decides seats by the degree, and this `ring_motion` has to be integrated";
+        if let Some(ring) = pack.rings.iter().find(|r| r.is_integrated()) {
+            let what = format!(
+                "`degree_march` decides seats by the degree, and `ring_motion` `{}` has to be integrated",
+                ring.motion_name
+            );
             errors.push(BuildError::at("solver.method", what).help(
                 "use `method = \"implicit\"` or `method = \"substep_march\"`, or `ring_motion` `three_seat` or `seated`",
             ));

@@ -14,6 +14,8 @@ pub struct Ring {
     pub contact: ContactLine,
     /// Motion in the groove, the oil in the groove included.
     pub motion: Box<dyn RingMotion>,
+    /// The name of that model, for messages.
+    pub motion_name: &'static str,
     /// Motion towards the liner; asked only while films are solved.
     pub radial: Box<dyn RadialMotion>,
     /// Radial friction.
