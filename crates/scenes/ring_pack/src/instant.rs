@@ -40,7 +40,7 @@ pub struct RingInstant {
     pub film: FaceForces,
     /// Flux at the lower end of each land's film \[m²/s\].
     pub flux: [f64; 2],
-    /// Highest pressure of the film \[Pa\], as of the last [`Pack::film_peak`].
+    /// Highest pressure of the film \[Pa\], as of the last [`Pack::film_peak`](crate::pack::Pack::film_peak).
     pub film_p_max: f64,
     /// Whether `film` belongs to `hdot`.
     pub film_known: bool,
