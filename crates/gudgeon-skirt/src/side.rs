@@ -1,27 +1,27 @@
 //! One side of the skirt: gap, film, contact, and the forces that belong to the motions of the gap.
 
 use gudgeon_core::kinds::{
-    Contact, ContactSpec, Edge, Film2d, Film2dCtx, Film2dGrid, Film2dIn, Film2dOut, Film2dSpec, FilmMode,
-    FlowFactors, RoughFlow, RoughShear, Roughness, RoughnessSpec, ShearThinning, SkirtModes, SkirtProfile,
+    ContactSpec, Edge, Film2d, Film2dCtx, Film2dGrid, Film2dIn, Film2dOut, Film2dSpec, FilmMode, FlowFactors,
+    RoughFlow, RoughShear, Roughness, RoughnessSpec, ShearThinning, SkirtCompliance, SkirtProfile,
     Superposition, Viscosity,
 };
 use gudgeon_core::{BuildError, EvalError};
+
+mod contact;
+mod loads;
+mod nodes;
+
+pub use contact::ContactGrid;
+pub use loads::{SideLoads, Slopes};
+
+use contact::ContactRows;
+use nodes::Nodes;
 
 use crate::geometry::{Panel, between};
 
 const MODEL: &str = "skirt";
 /// How deep a skirt may stand inside the liner \[m\]: far beyond what contact allows, and yet within a start that is given wrongly.
 const DEEPEST: f64 = 1e-4;
-
-/// Where the pressure of solid contact is summed.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ContactGrid {
-    /// Distance of the rows \[m\], the first one on the upper edge: the pitch of machining grooves whose crests touch. Every row stands for one
-    /// distance.
-    pub pitch: f64,
-    /// Intervals along the arc, summed by the trapezoidal rule.
-    pub intervals: usize,
-}
 
 /// What a [`Side`] is made of.
 pub struct SideSetup<'a> {
@@ -43,40 +43,14 @@ pub struct SideSetup<'a> {
     pub contact_grid: ContactGrid,
     /// Shape.
     pub profile: &'a dyn SkirtProfile,
-    /// Shapes in which it yields, on the whole grid; none: rigid.
-    pub modes: &'a SkirtModes,
+    /// How it yields, in shapes on the whole grid.
+    pub compliance: Box<dyn SkirtCompliance>,
     /// Shear dependence of the viscosity; none: Newtonian.
     pub shear_thinning: Option<Box<dyn ShearThinning>>,
     /// Cavitation pressure above that of the crankcase \[Pa\], not positive.
     pub p_cav: f64,
     /// Film between smooth surfaces that the gap is held above \[m\].
     pub floor: f64,
-}
-
-/// Forces of one side and their derivatives with respect to the rates: `[top edge, bottom edge, axial force, axial force times R cos φ]`, then
-/// one value per elastic shape.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct SideLoads {
-    /// Film, forces on the displacements of the upper and lower edge \[N\]; the axial force on the skirt away from the head \[N\] and its moment
-    /// arm `∫ τ R cos φ dA` \[N m\].
-    pub film: [f64; 4],
-    /// Forces on the elastic shapes \[N\].
-    pub elastic: Vec<f64>,
-    /// Solid contact: forces on both edges \[N\], normal force `∫ p dA` \[N\], `∫ p R cos φ dA` \[N m\].
-    pub contact: [f64; 4],
-    /// Derivative of `film`, then of `elastic`, with respect to the rates, rate after rate.
-    pub slope: Vec<f64>,
-}
-
-/// Derivatives of the forces with respect to the rates.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Slopes {
-    /// Not wanted.
-    None,
-    /// Of the film as it is.
-    Film,
-    /// Of a film that does not cavitate: larger than those of the film as it is.
-    Full,
 }
 
 /// A film and what it depends on besides the rates.
@@ -96,6 +70,23 @@ struct Gap {
     is_rough: bool,
 }
 
+impl Gap {
+    fn new(n: usize, is_rough: bool) -> Self {
+        let v = || vec![0.0; n];
+        Self {
+            h: v(),
+            flow: RoughFlow::new(n),
+            face_x: v(),
+            face_y: v(),
+            drag: v(),
+            lever: v(),
+            thinning: Vec::new(),
+            smallest: f64::INFINITY,
+            is_rough,
+        }
+    }
+}
+
 /// One side of a skirt in its liner. Allocates when built.
 pub struct Side {
     /// Surface.
@@ -106,16 +97,7 @@ pub struct Side {
     floor: f64,
     whole: Film2dGrid,
     is_half: bool,
-    nx: usize,
-    ny: usize,
-    /// Part of the height at nodes and halfway to the next ones.
-    s: Vec<f64>,
-    s_face: Vec<f64>,
-    cos: Vec<f64>,
-    cos_face: Vec<f64>,
-    /// Area of every node, both halves counted.
-    weight: Vec<f64>,
-    line_weight: Vec<f64>,
+    nodes: Nodes,
     /// Drop of the profile at nodes, at faces along `x` and along `y`; empty for a cylinder.
     drop: [Vec<f64>; 3],
     least_drop: f64,
@@ -125,12 +107,12 @@ pub struct Side {
     /// Elastic shapes at faces along `x` and along `y`.
     face_shapes: [Vec<f64>; 2],
     elastic: usize,
-    /// Stiffness of the elastic shapes \[N/m\].
-    pub stiffness: Vec<f64>,
+    /// How the surface yields.
+    pub compliance: Box<dyn SkirtCompliance>,
     film: Box<dyn Film2d>,
     superposition: Superposition,
     rough: Box<dyn Roughness>,
-    contact: Box<dyn Contact>,
+    rows: ContactRows,
     thinning: Option<Box<dyn ShearThinning>>,
     p_cav: f64,
     shear: RoughShear,
@@ -156,17 +138,9 @@ pub struct Side {
     p: Vec<f64>,
     open: Vec<f64>,
     fill: Vec<f64>,
-    contact_grid: ContactGrid,
-    rows: Vec<f64>,
-    contact_cos: Vec<f64>,
-    contact_drop: Vec<f64>,
-    contact_shapes: Vec<f64>,
-    contact_work: [Vec<f64>; 2],
     contact_now: [f64; 4],
     /// Film evaluations so far: linear systems set up.
     pub evaluations: u64,
-    /// Contact sums so far.
-    pub contact_sums: u64,
 }
 
 /// A gap held above `floor`: itself from twice the floor on, with continuous slope, and the floor where surfaces touch.
@@ -180,13 +154,6 @@ fn held_above(h: f64, floor: f64) -> f64 {
     }
 }
 
-/// Values halfway between neighbours; the last one stands at the end.
-fn halfway(v: &[f64]) -> Vec<f64> {
-    let mut m: Vec<f64> = v.windows(2).map(|w| 0.5 * (w[0] + w[1])).collect();
-    m.extend(v.last());
-    m
-}
-
 impl Side {
     /// Builds the side.
     ///
@@ -195,13 +162,11 @@ impl Side {
     pub fn new(setup: SideSetup<'_>) -> Result<Self, Vec<BuildError>> {
         let SideSetup { panel, sign, clearance, .. } = setup;
         let whole = setup.grid.clone();
-        let elastic = setup.modes.stiffness.len();
-        let symmetric = setup.profile.is_symmetric() && modes_are_symmetric(&whole, setup.modes);
+        let elastic = setup.compliance.states().len();
+        let symmetric = setup.profile.is_symmetric() && are_symmetric(&whole, setup.compliance.shapes());
         let half = if symmetric { Panel::half(&whole) } else { None };
         let is_half = half.is_some();
         let grid = half.unwrap_or_else(|| whole.clone());
-        let (nx, ny) = (grid.x.len(), grid.y.len());
-        let n = nx * ny;
         let film = setup.film.build(&Film2dCtx { grid: &grid }).map_err(|e| e.within("film_2d"));
         let rough = setup.roughness.build().map_err(|e| e.within("roughness"));
         let contact = setup.contact.build().map_err(|e| e.within("contact"));
@@ -211,118 +176,44 @@ impl Side {
                 return Err(film.err().into_iter().chain(rough.err()).chain(contact.err()).collect());
             }
         };
-        let s: Vec<f64> = grid.x.iter().map(|x| x / panel.length).collect();
-        let angle: Vec<f64> = grid.y.iter().map(|y| y / panel.radius).collect();
-        let cos: Vec<f64> = angle.iter().map(|a| a.cos()).collect();
-        let angle_face = halfway(&angle);
-        let cos_face: Vec<f64> = angle_face.iter().map(|a| a.cos()).collect();
-        let s_face = halfway(&s);
-        let (wx, wy) = grid.weights();
-        let both = if is_half { 2.0 } else { 1.0 };
-        let line_weight: Vec<f64> = wy.iter().map(|w| both * w).collect();
-        let mut weight = vec![0.0; n];
-        let mut shapes = vec![0.0; (2 + elastic) * n];
-        for j in 0..ny {
-            for i in 0..nx {
-                let k = j * nx + i;
-                weight[k] = wx[i] * line_weight[j];
-                shapes[k] = sign * cos[j] * (1.0 - s[i]);
-                shapes[n + k] = sign * cos[j] * s[i];
-            }
-        }
-        // The half of a grid is its first half.
-        for k in 0..elastic {
-            let from = &setup.modes.shapes[k * whole.len()..][..n];
-            shapes[(2 + k) * n..(3 + k) * n].copy_from_slice(from);
-        }
-        let tests: Vec<f64> = shapes.iter().enumerate().map(|(k, v)| v * weight[k % n]).collect();
-        let mut face_shapes = [vec![0.0; elastic * n], vec![0.0; elastic * n]];
-        for m in 0..elastic {
-            let shape = &shapes[(2 + m) * n..(3 + m) * n];
-            for k in 0..n {
-                let (east, north) =
-                    (if k % nx + 1 < nx { k + 1 } else { k }, if k + nx < n { k + nx } else { k });
-                face_shapes[0][m * n + k] = 0.5 * (shape[k] + shape[east]);
-                face_shapes[1][m * n + k] = 0.5 * (shape[k] + shape[north]);
-            }
-        }
-        let field = |x: &[f64], a: &[f64]| -> Vec<f64> {
-            a.iter().flat_map(|&a| x.iter().map(move |&x| setup.profile.depth(x * panel.length, a))).collect()
-        };
-        let mut drop = [field(&s, &angle), field(&s_face, &angle), field(&s, &angle_face)];
+        let nodes = Nodes::new(&grid, &panel, is_half);
+        let n = nodes.len();
+        let shapes = nodes.shapes(sign, setup.compliance.shapes(), whole.len());
+        let tests: Vec<f64> = shapes.iter().enumerate().map(|(k, v)| v * nodes.weight[k % n]).collect();
+        let mut drop = nodes.drops(&panel, setup.profile);
         let least_drop = drop[0].iter().chain(&drop[1]).fold(f64::INFINITY, |a, &b| a.min(b));
-        if drop.iter().flatten().all(|d| *d == 0.0) {
+        let is_cylinder = drop.iter().flatten().all(|d| *d == 0.0);
+        if is_cylinder {
             drop = Default::default();
         }
-        // Rows of contact, and what they need.
-        let cg = setup.contact_grid;
-        let count = (panel.length / cg.pitch * (1.0 + 1e-12)).floor() as usize + 1;
-        let rows: Vec<f64> = (0..count).map(|k| k as f64 * cg.pitch / panel.length).collect();
-        let across =
-            if symmetric && cg.intervals.is_multiple_of(2) { cg.intervals / 2 } else { cg.intervals };
-        let contact_angle: Vec<f64> =
-            (0..=across).map(|i| panel.half_angle * (2.0 * i as f64 / cg.intervals as f64 - 1.0)).collect();
-        let contact_cos: Vec<f64> = contact_angle.iter().map(|a| a.cos()).collect();
-        let contact_drop = if drop[0].is_empty() {
-            Vec::new()
-        } else {
-            rows.iter()
-                .flat_map(|&s| contact_angle.iter().map(move |&a| setup.profile.depth(s * panel.length, a)))
-                .collect()
-        };
-        let mut contact_shapes = Vec::new();
-        for m in 0..elastic {
-            let shape = &shapes[(2 + m) * n..(3 + m) * n];
-            for &row in &rows {
-                for &a in &contact_angle {
-                    contact_shapes.push(bilinear(shape, &s, &angle, row, a));
-                }
-            }
-        }
+        let profile = (!is_cylinder).then_some(setup.profile);
+        let (cg, own) = (setup.contact_grid, &shapes[2 * n..]);
+        let rows = ContactRows::new(panel, sign, clearance, cg, contact, symmetric, profile, &nodes, own);
         let is_rough = !rough.is_smooth();
-        let empty = || Gap {
-            h: vec![0.0; n],
-            flow: RoughFlow::new(n),
-            face_x: vec![0.0; n],
-            face_y: vec![0.0; n],
-            drag: vec![0.0; n],
-            lever: vec![0.0; n],
-            thinning: Vec::new(),
-            smallest: f64::INFINITY,
-            is_rough,
-        };
-        let points = contact_cos.len();
-        let over = Over { tests, arm: cos.iter().map(|c| panel.radius * c).collect(), nx };
+        let over = Over { tests, arm: nodes.cos.iter().map(|c| panel.radius * c).collect(), nx: nodes.nx };
         Ok(Self {
             panel,
             sign,
             clearance,
             floor: setup.floor,
             is_half,
-            nx,
-            ny,
-            s,
-            s_face,
-            cos,
-            cos_face,
-            weight,
-            line_weight,
             drop,
             least_drop,
             over,
-            face_shapes,
+            face_shapes: nodes.at_faces(own),
+            nodes,
             elastic,
-            stiffness: setup.modes.stiffness.clone(),
+            compliance: setup.compliance,
             superposition: film.superposition(),
             film,
             rough,
-            contact,
+            rows,
             thinning: setup.shear_thinning.filter(|t| !t.is_off()),
             p_cav: setup.p_cav,
             shear: RoughShear::new(n),
             work: [vec![0.0; n], vec![0.0; n], vec![0.0; n]],
-            now: empty(),
-            trial: empty(),
+            now: Gap::new(n, is_rough),
+            trial: Gap::new(n, is_rough),
             placed: Vec::with_capacity(4 + elastic),
             sense: 1.0,
             fields: vec![0.0; (3 + elastic) * n],
@@ -337,15 +228,8 @@ impl Side {
             p: vec![0.0; n],
             open: vec![0.0; n],
             fill: vec![1.0; n],
-            contact_grid: cg,
-            rows,
-            contact_cos,
-            contact_drop,
-            contact_shapes,
-            contact_work: [vec![0.0; points], vec![0.0; points]],
             contact_now: [0.0; 4],
             evaluations: 0,
-            contact_sums: 0,
             whole,
         })
     }
@@ -365,7 +249,7 @@ impl Side {
     /// Nodes that are solved.
     #[must_use]
     pub fn nodes(&self) -> usize {
-        self.nx * self.ny
+        self.nodes.len()
     }
 
     /// Whole grid.
@@ -407,7 +291,8 @@ impl Side {
     fn unfold(&self, f: &[f64]) -> Vec<f64> {
         let mut all = f.to_vec();
         if self.is_half {
-            (0..self.ny - 1).rev().for_each(|j| all.extend_from_slice(&f[j * self.nx..(j + 1) * self.nx]));
+            let (nx, ny) = (self.nodes.nx, self.nodes.ny);
+            (0..ny - 1).rev().for_each(|j| all.extend_from_slice(&f[j * nx..(j + 1) * nx]));
         }
         all
     }
@@ -423,8 +308,9 @@ impl Side {
     pub fn yields_to(&self, other: &Self) -> Vec<f64> {
         let n = self.nodes();
         let full = other.pressure();
-        let shapes = self.over.tests[2 * n..].chunks_exact(n.max(1)).zip(&self.stiffness);
-        shapes.map(|(test, k)| test.iter().zip(&full).map(|(t, p)| t * p).sum::<f64>() / k).collect()
+        let load = |test: &[f64]| test.iter().zip(&full).map(|(t, p)| t * p).sum::<f64>();
+        let tests = self.over.tests[2 * n..].chunks_exact(n.max(1)).enumerate();
+        tests.map(|(k, test)| self.compliance.rest(k, load(test))).collect()
     }
 
     /// Largest elastic displacement with the amplitudes `q` over the gap of `other`, the same side without shapes.
@@ -442,21 +328,47 @@ impl Side {
 
     /// Gap and factors at the displacements `e` of both edges and the elastic amplitudes `q`.
     fn shape_gap(&mut self, trial: bool, e: [f64; 2], q: &[f64], speed: f64) -> Result<(), EvalError> {
-        let (nx, ny, n) = (self.nx, self.ny, self.nx * self.ny);
-        let gap = if trial { &mut self.trial } else { &mut self.now };
-        let (c, top, bottom) = (self.clearance, self.sign * e[0], self.sign * e[1]);
-        if !(top.is_finite() && bottom.is_finite() && q.iter().all(|q| q.is_finite())) {
+        if !(e.iter().all(|e| e.is_finite()) && q.iter().all(|q| q.is_finite())) {
             return Err(EvalError::recoverable(MODEL, "a displacement is not finite"));
         }
+        // Work arrays and a gap of the same side: taken apart for the while.
+        let mut gap = std::mem::take(if trial { &mut self.trial } else { &mut self.now });
+        self.open_gap(&mut gap, e, q);
+        let outcome = self.fill_gap(&mut gap, speed);
+        *(if trial { &mut self.trial } else { &mut self.now }) = gap;
+        outcome
+    }
+
+    /// The film in a gap that is open, and what depends on it.
+    fn fill_gap(&mut self, gap: &mut Gap, speed: f64) -> Result<(), EvalError> {
+        gap.smallest = gap.h.iter().fold(f64::INFINITY, |a, &b| a.min(b));
+        if gap.smallest < -DEEPEST {
+            let what = format!("the skirt would stand {:.0} um inside the liner", -1e6 * gap.smallest);
+            return Err(EvalError::recoverable(MODEL, what));
+        }
+        if self.rough.is_smooth() {
+            self.smooth_film(gap)
+        } else {
+            self.rough_film(gap)?
+        }
+        self.axial_levers(gap);
+        self.thin(gap, speed)
+    }
+
+    /// Distance of the surfaces at nodes and faces.
+    fn open_gap(&self, gap: &mut Gap, e: [f64; 2], q: &[f64]) {
+        let nodes = &self.nodes;
+        let (nx, ny, n) = (nodes.nx, nodes.ny, nodes.len());
+        let (c, top, bottom) = (self.clearance, self.sign * e[0], self.sign * e[1]);
         for j in 0..ny {
-            let (own, next) = (self.cos[j], self.cos_face[j]);
+            let (own, next) = (nodes.cos[j], nodes.cos_face[j]);
             let line = j * nx..(j + 1) * nx;
             let (h, fx, fy) =
                 (&mut gap.h[line.clone()], &mut gap.face_x[line.clone()], &mut gap.face_y[line]);
             for i in 0..nx {
-                let here = between(top, bottom, self.s[i]);
+                let here = between(top, bottom, nodes.s[i]);
                 h[i] = c + here * own;
-                fx[i] = c + between(top, bottom, self.s_face[i]) * own;
+                fx[i] = c + between(top, bottom, nodes.s_face[i]) * own;
                 fy[i] = c + here * next;
             }
         }
@@ -475,51 +387,55 @@ impl Side {
                 f.iter_mut().zip(shape).for_each(|(f, s)| *f += q * s);
             }
         }
-        gap.smallest = gap.h.iter().fold(f64::INFINITY, |a, &b| a.min(b));
-        if gap.smallest < -DEEPEST {
-            let what = format!("the skirt would stand {:.0} um inside the liner", -1e6 * gap.smallest);
-            return Err(EvalError::recoverable(MODEL, what));
-        }
-        // Films for the flow, at and between the nodes, and shear.
+    }
+
+    /// Film between smooth surfaces; the axial lever of the pressure into `work[0]`.
+    fn smooth_film(&mut self, gap: &mut Gap) {
+        let floor = self.floor;
+        let held = |h: f64| held_above(h, floor);
         let lever = &mut self.work[0];
-        if self.rough.is_smooth() {
-            let floor = self.floor;
-            let held = |h: f64| held_above(h, floor);
-            for k in 0..n {
-                let film = held(gap.h[k]);
-                gap.flow.film[k] = film;
-                gap.flow.transport[k] = film;
-                gap.flow.content_slope[k] = 1.0;
-                gap.drag[k] = 1.0 / film;
-                lever[k] = film;
-            }
-            if gap.smallest < 2.0 * floor {
-                gap.face_x.iter_mut().chain(&mut gap.face_y).for_each(|h| *h = held(*h));
-            }
-        } else {
-            self.rough.flow(&gap.h, &mut gap.flow)?;
-            self.rough.shear(&gap.h, &mut self.shear)?;
-            for k in 0..n {
-                gap.drag[k] = (self.shear.phi_f[k] + self.shear.phi_fs[k]) / self.shear.film[k];
-                lever[k] = self.shear.phi_fp[k] * self.shear.film[k];
-            }
-            if gap.flow.film.iter().zip(&gap.h).any(|(f, h)| f != h) {
-                // Where the model holds the film above contact, it does so between the nodes too.
-                for k in 0..n {
-                    let east = if k % nx + 1 < nx { k + 1 } else { k };
-                    let north = if k + nx < n { k + nx } else { k };
-                    let raise = |a: usize, b: usize| {
-                        0.5 * ((gap.flow.film[a] - gap.h[a]) + (gap.flow.film[b] - gap.h[b]))
-                    };
-                    let least = |a: usize, b: usize| 0.5 * gap.flow.film[a].min(gap.flow.film[b]);
-                    gap.face_x[k] = (gap.face_x[k] + raise(k, east)).max(least(k, east));
-                    gap.face_y[k] = (gap.face_y[k] + raise(k, north)).max(least(k, north));
-                }
+        for k in 0..lever.len() {
+            let film = held(gap.h[k]);
+            gap.flow.film[k] = film;
+            gap.flow.transport[k] = film;
+            gap.flow.content_slope[k] = 1.0;
+            gap.drag[k] = 1.0 / film;
+            lever[k] = film;
+        }
+        if gap.smallest < 2.0 * floor {
+            gap.face_x.iter_mut().chain(&mut gap.face_y).for_each(|h| *h = held(*h));
+        }
+    }
+
+    /// Film between rough surfaces; the axial lever of the pressure into `work[0]`.
+    fn rough_film(&mut self, gap: &mut Gap) -> Result<(), EvalError> {
+        self.rough.flow(&gap.h, &mut gap.flow)?;
+        self.rough.shear(&gap.h, &mut self.shear)?;
+        let (shear, lever) = (&self.shear, &mut self.work[0]);
+        for k in 0..lever.len() {
+            gap.drag[k] = (shear.phi_f[k] + shear.phi_fs[k]) / shear.film[k];
+            lever[k] = shear.phi_fp[k] * shear.film[k];
+        }
+        if gap.flow.film.iter().zip(&gap.h).any(|(f, h)| f != h) {
+            // Where the model holds the film above contact, it does so between the nodes too.
+            for k in 0..self.nodes.len() {
+                let (east, north) = self.nodes.next(k);
+                let (film, h) = (&gap.flow.film, &gap.h);
+                let raise = |a: usize, b: usize| 0.5 * ((film[a] - h[a]) + (film[b] - h[b]));
+                let least = |a: usize, b: usize| 0.5 * film[a].min(film[b]);
+                gap.face_x[k] = (gap.face_x[k] + raise(k, east)).max(least(k, east));
+                gap.face_y[k] = (gap.face_y[k] + raise(k, north)).max(least(k, north));
             }
         }
-        for j in 0..ny {
-            let w = 0.5 * self.line_weight[j];
-            let own = &lever[j * nx..(j + 1) * nx];
+        Ok(())
+    }
+
+    /// Axial force per pressure of every node, from the levers in `work[0]`.
+    fn axial_levers(&self, gap: &mut Gap) {
+        let nx = self.nodes.nx;
+        for (j, weight) in self.nodes.line_weight.iter().enumerate() {
+            let w = 0.5 * weight;
+            let own = &self.work[0][j * nx..(j + 1) * nx];
             for i in 0..nx {
                 // Half the mean of both neighbours, for the face before and for the face after.
                 let before = if i > 0 { 0.5 * (own[i - 1] + own[i]) } else { 0.0 };
@@ -527,15 +443,18 @@ impl Side {
                 gap.lever[j * nx + i] = w * (before - after);
             }
         }
-        if let Some(model) = &self.thinning {
-            gap.thinning.resize(n, 1.0);
-            let [rate, slope, _] = &mut self.work;
-            for k in 0..n {
-                rate[k] = speed / gap.flow.film[k];
-            }
-            model.factor(rate, &mut gap.thinning, slope)?;
-            gap.drag.iter_mut().zip(&gap.thinning).for_each(|(d, t)| *d *= t);
+    }
+
+    /// Viscosity that falls with the shear rate of sliding.
+    fn thin(&mut self, gap: &mut Gap, speed: f64) -> Result<(), EvalError> {
+        let Some(model) = &self.thinning else { return Ok(()) };
+        let [rate, slope, _] = &mut self.work;
+        gap.thinning.resize(rate.len(), 1.0);
+        for (rate, film) in rate.iter_mut().zip(&gap.flow.film) {
+            *rate = speed / film;
         }
+        model.factor(rate, &mut gap.thinning, slope)?;
+        gap.drag.iter_mut().zip(&gap.thinning).for_each(|(d, t)| *d *= t);
         Ok(())
     }
 
@@ -927,7 +846,7 @@ impl Side {
 
     /// Flow over every edge that the first field of `self.beside` leaves over there.
     fn outflow(&self) -> [f64; 4] {
-        let (nx, ny) = (self.nx, self.ny);
+        let (nx, ny) = (self.nodes.nx, self.nodes.ny);
         let mut out = [0.0; 4];
         for (k, r) in self.beside[..nx * ny].iter().enumerate() {
             let (i, j) = (k % nx, k / nx);
@@ -986,23 +905,23 @@ impl Side {
     fn sums(&mut self, trial: bool, speed: f64, mu: f64, out: &mut SideLoads) {
         let width = 4 + self.elastic;
         let gap = if trial { &self.trial } else { &self.now };
-        let nx = self.nx;
+        let nx = self.nodes.nx;
         self.over.sums(&self.p, &gap.lever, &mut self.row[..width]);
         let mut found = [0.0; 4];
         found.copy_from_slice(&self.row[..4]);
         out.elastic.resize(self.elastic, 0.0);
         out.elastic.copy_from_slice(&self.row[4..width]);
         // Couette drag: the liner slides against the piston.
-        for j in 0..self.ny {
+        for j in 0..self.nodes.ny {
             let line = j * nx..(j + 1) * nx;
-            let full: f64 = self.weight[line.clone()]
+            let full: f64 = self.nodes.weight[line.clone()]
                 .iter()
                 .zip(&gap.drag[line.clone()])
                 .zip(&self.fill[line])
                 .map(|((w, d), f)| w * d * f)
                 .sum();
             found[2] -= mu * speed * full;
-            found[3] -= mu * speed * full * self.panel.radius * self.cos[j];
+            found[3] -= mu * speed * full * self.panel.radius * self.nodes.cos[j];
         }
         out.film = found;
     }
@@ -1026,80 +945,39 @@ impl Side {
     /// Smallest gap where contact is summed, less the range of contact \[m\]; a bound from below of it while that is positive. Infinite for
     /// surfaces that do not touch.
     pub fn contact_gap(&mut self, e: [f64; 2], q: &[f64]) -> f64 {
-        let range = self.contact.range();
+        let range = self.rows.range();
         if range <= 0.0 {
             return f64::INFINITY;
         }
         let least = self.least_contact_gap(e, q) - range;
-        if least > 0.0 {
-            return least;
-        }
-        let mut smallest = f64::INFINITY;
-        for k in 0..self.rows.len() {
-            self.contact_row(k, e, q);
-            smallest = self.contact_work[0].iter().fold(smallest, |a, &h| a.min(h));
-        }
-        smallest - range
-    }
-
-    /// The gap along row `k` of contact, into the first of `contact_work`.
-    fn contact_row(&mut self, k: usize, e: [f64; 2], q: &[f64]) {
-        let points = self.contact_cos.len();
-        let here = between(self.sign * e[0], self.sign * e[1], self.rows[k]);
-        for (i, h) in self.contact_work[0].iter_mut().enumerate() {
-            *h = self.clearance + here * self.contact_cos[i];
-            if !self.contact_drop.is_empty() {
-                *h += self.contact_drop[k * points + i];
-            }
-            for (m, q) in q.iter().enumerate() {
-                *h += q * self.contact_shapes[(m * self.rows.len() + k) * points + i];
-            }
-        }
+        if least > 0.0 { least } else { self.rows.smallest(e, q) - range }
     }
 
     /// Solid contact: forces on both edges, normal force, and its moment arm.
     fn contact_loads(&mut self, e: [f64; 2], q: &[f64]) -> [f64; 4] {
-        let range = self.contact.range();
-        let mut sum = [0.0; 4];
+        let range = self.rows.range();
         if range <= 0.0 || self.least_contact_gap(e, q) >= range {
-            return sum;
+            return [0.0; 4];
         }
-        self.contact_sums += 1;
-        let points = self.contact_cos.len();
-        let n = self.contact_grid.intervals;
-        let doubled = points < n + 1;
-        let step = self.contact_grid.pitch * self.panel.width() / n as f64;
-        for k in 0..self.rows.len() {
-            self.contact_row(k, e, q);
-            let s = self.rows[k];
-            let [h, p] = &mut self.contact_work;
-            if h.iter().all(|h| *h >= range) {
-                continue;
-            }
-            self.contact.pressure(h, p);
-            for (i, p) in p.iter().enumerate() {
-                let end = i == 0 || (!doubled && i + 1 == points);
-                let middle = doubled && i + 1 == points;
-                let w = match (end, middle, doubled) {
-                    (true, _, true) | (_, true, _) | (false, false, false) => 1.0,
-                    (true, _, false) => 0.5,
-                    _ => 2.0,
-                };
-                let load = step * w * p;
-                let side = self.sign * load * self.contact_cos[i];
-                sum[0] += side * (1.0 - s);
-                sum[1] += side * s;
-                sum[2] += load;
-                sum[3] += load * self.panel.radius * self.contact_cos[i];
-            }
-        }
-        sum
+        self.rows.loads(e, q)
+    }
+
+    /// Contact sums so far.
+    #[must_use]
+    pub fn contact_sums(&self) -> u64 {
+        self.rows.sums
+    }
+
+    /// Whether solid contact can carry anything.
+    #[must_use]
+    pub fn has_contact(&self) -> bool {
+        self.rows.range() > 0.0
     }
 
     /// Coefficient of friction of solid contact.
     #[must_use]
     pub fn friction_coefficient(&self) -> f64 {
-        self.contact.friction_coefficient()
+        self.rows.friction_coefficient()
     }
 }
 
@@ -1151,18 +1029,7 @@ impl Over {
 }
 
 /// Whether all shapes are their own mirror images.
-fn modes_are_symmetric(grid: &Film2dGrid, modes: &SkirtModes) -> bool {
-    let fields: Vec<&[f64]> = modes.shapes.chunks(grid.len().max(1)).collect();
+fn are_symmetric(grid: &Film2dGrid, shapes: &[f64]) -> bool {
+    let fields: Vec<&[f64]> = shapes.chunks(grid.len().max(1)).collect();
     grid.is_symmetric_in_y(&[0.0; 4], &fields, 1e-9)
-}
-
-/// Value of a field over `x` × `y` between its nodes; beyond the last ones that of the mirror image or of the edge.
-fn bilinear(f: &[f64], x: &[f64], y: &[f64], at_x: f64, at_y: f64) -> f64 {
-    let find = |line: &[f64], at: f64| {
-        let i = line.partition_point(|v| *v < at).clamp(1, line.len() - 1);
-        (i - 1, ((at - line[i - 1]) / (line[i] - line[i - 1])).clamp(0.0, 1.0))
-    };
-    let ((i, a), (j, b)) = (find(x, at_x), find(y, at_y));
-    let row = |j: usize| f[j * x.len() + i] * (1.0 - a) + f[j * x.len() + i + 1] * a;
-    row(j) * (1.0 - b) + row(j + 1) * b
 }

@@ -1,6 +1,10 @@
-use gudgeon_core::kinds::{Lateral, SecondaryMotion, SecondaryMotionSpec};
+use gudgeon_core::kinds::{
+    LateralLoads, LateralPartials, LateralPose, MotionPart, SecondaryMotion, SecondaryMotionCtx,
+    SecondaryMotionSpec,
+};
 use gudgeon_core::quantity::{Length, quantity};
-use gudgeon_core::{BuildError, register_model};
+use gudgeon_core::states::Stateful;
+use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
 /// No motion across the bore: the skirt stands where it is told.
@@ -30,19 +34,44 @@ fn centred() -> Length {
     example = "e_top = \"-1 um\"\ne_bottom = \"-2 um\"\n",
 )]
 impl SecondaryMotionSpec for Held {
-    fn build(&self) -> Result<Box<dyn SecondaryMotion>, BuildError> {
-        Ok(Box::new(Still { e_top: self.e_top.si(), e_bottom: self.e_bottom.si() }))
+    fn build(&self, _: &SecondaryMotionCtx) -> Result<Box<dyn SecondaryMotion>, BuildError> {
+        Ok(Box::new(Still { e: [self.e_top.si(), self.e_bottom.si()] }))
     }
 }
 
 #[derive(Debug)]
 struct Still {
-    e_top: f64,
-    e_bottom: f64,
+    e: [f64; 2],
 }
 
+impl Stateful for Still {}
+
 impl SecondaryMotion for Still {
-    fn lateral(&self) -> Lateral {
-        Lateral::Held { e_top: self.e_top, e_bottom: self.e_bottom }
+    fn pose(&self, _: &[f64]) -> LateralPose {
+        LateralPose::new(self.e).moving([0.0; 2])
+    }
+
+    fn rates(&mut self, _: &[f64], _: &mut dyn LateralLoads, _: &mut [f64]) -> Result<(), EvalError> {
+        Ok(())
+    }
+
+    fn partials(&mut self, _: &[f64], _: &LateralPartials<'_>, _: &mut [f64]) -> bool {
+        true
+    }
+
+    fn time_partials(&mut self, _: [f64; 2], _: &mut [f64]) -> bool {
+        true
+    }
+
+    fn moves(&self) -> bool {
+        false
+    }
+
+    fn start_keys(&self) -> Option<[&'static str; 2]> {
+        Some(["e_top", "e_bottom"])
+    }
+
+    fn parts(&self) -> Vec<MotionPart> {
+        vec![MotionPart::left_out("motion across the bore", "`held`: the skirt stands where it is told")]
     }
 }

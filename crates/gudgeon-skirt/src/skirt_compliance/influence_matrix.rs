@@ -1,9 +1,10 @@
-use gudgeon_core::kinds::{SkirtComplianceCtx, SkirtComplianceSpec, SkirtModes};
+use gudgeon_core::kinds::{SkirtCompliance, SkirtComplianceCtx, SkirtComplianceSpec};
 use gudgeon_core::quantity::{Fraction, Ratio, quantity};
 use gudgeon_core::{BuildError, register_model};
 use nalgebra::{DMatrix, SymmetricEigen};
 use serde::{Deserialize, Serialize};
 
+use super::QuasiStaticShapes;
 use super::points::Points;
 
 /// Deflections by unit forces, as a finite-element program gives them.
@@ -46,31 +47,13 @@ const ASYMMETRY: f64 = 1e-3;
     example = "file = \"skirt-compliance.csv\"\n",
 )]
 impl SkirtComplianceSpec for InfluenceMatrix {
-    fn build(&self, ctx: &SkirtComplianceCtx<'_>) -> Result<SkirtModes, BuildError> {
+    fn build(&self, ctx: &SkirtComplianceCtx<'_>) -> Result<Box<dyn SkirtCompliance>, BuildError> {
         if !(1..=100).contains(&self.shapes) {
             return Err(BuildError::at("shapes", format!("must be between 1 and 100, not {}", self.shapes)));
         }
         let points = Points::read(ctx.files, &self.file, |rows| rows)?;
+        let eigen = SymmetricEigen::new(self.compliance(&points)?);
         let n = points.len();
-        let given = DMatrix::from_fn(n, n, |i, j| points.values[j * n + i]);
-        let largest = given.amax();
-        let skew = (&given - given.transpose()).amax();
-        if skew > ASYMMETRY * largest {
-            let what = format!("{}: the matrix is not symmetric, by {skew:e} m/N", self.file);
-            return Err(BuildError::at("file", what).help("force on i moves j as force on j moves i"));
-        }
-        let mut c = (&given + given.transpose()) * 0.5;
-        if let Some(to) = points.mirror() {
-            // What is its own mirror image is loaded symmetrically: the other shapes are never seen.
-            let mirrored = DMatrix::from_fn(n, n, |i, j| c[(to[i], to[j])]);
-            if (&mirrored - &c).amax() < ASYMMETRY * largest {
-                let half = DMatrix::from_fn(n, n, |i, j| {
-                    0.25 * (c[(i, j)] + c[(to[i], j)] + c[(i, to[j])] + c[(to[i], to[j])])
-                });
-                c = half;
-            }
-        }
-        let eigen = SymmetricEigen::new(c);
         let mut order: Vec<usize> = (0..n).collect();
         order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]).then(a.cmp(b)));
         let top = eigen.eigenvalues[order[0]];
@@ -78,7 +61,7 @@ impl SkirtComplianceSpec for InfluenceMatrix {
             let what = format!("{}: a skirt with this matrix would push back where it is pushed", self.file);
             return Err(BuildError::at("file", what));
         }
-        let mut modes = SkirtModes::default();
+        let (mut shapes, mut stiffness) = (Vec::new(), Vec::new());
         for &m in order.iter().take(self.shapes as usize) {
             let lambda = eigen.eigenvalues[m];
             if lambda < self.rest.si().max(1e-9) * top {
@@ -89,11 +72,33 @@ impl SkirtComplianceSpec for InfluenceMatrix {
             for y in &ctx.grid.y {
                 for x in &ctx.grid.x {
                     let at = points.weights(*x, y / ctx.radius);
-                    modes.shapes.push(at.iter().map(|(k, w)| w * v[*k]).sum::<f64>() / largest);
+                    shapes.push(at.iter().map(|(k, w)| w * v[*k]).sum::<f64>() / largest);
                 }
             }
-            modes.stiffness.push(1.0 / (lambda * largest * largest));
+            stiffness.push(1.0 / (lambda * largest * largest));
         }
-        Ok(modes)
+        Ok(Box::new(QuasiStaticShapes::new(ctx, shapes, stiffness)))
+    }
+}
+
+impl InfluenceMatrix {
+    /// The symmetric matrix of the file, and of its shapes those alone that a symmetric load excites where it is its own mirror image.
+    fn compliance(&self, points: &Points) -> Result<DMatrix<f64>, BuildError> {
+        let n = points.len();
+        let given = DMatrix::from_fn(n, n, |i, j| points.values[j * n + i]);
+        let largest = given.amax();
+        let skew = (&given - given.transpose()).amax();
+        if skew > ASYMMETRY * largest {
+            let what = format!("{}: the matrix is not symmetric, by {skew:e} m/N", self.file);
+            return Err(BuildError::at("file", what).help("force on i moves j as force on j moves i"));
+        }
+        let c = (&given + given.transpose()) * 0.5;
+        let Some(to) = points.mirror() else { return Ok(c) };
+        let mirrored = DMatrix::from_fn(n, n, |i, j| c[(to[i], to[j])]);
+        if (&mirrored - &c).amax() >= ASYMMETRY * largest {
+            return Ok(c);
+        }
+        let sum = |i: usize, j: usize| c[(i, j)] + c[(to[i], j)] + c[(i, to[j])] + c[(to[i], to[j])];
+        Ok(DMatrix::from_fn(n, n, |i, j| 0.25 * sum(i, j)))
     }
 }

@@ -1,10 +1,11 @@
 use std::f64::consts::FRAC_PI_2;
 
-use gudgeon_core::kinds::{SkirtComplianceCtx, SkirtComplianceSpec, SkirtModes};
+use gudgeon_core::kinds::{SkirtCompliance, SkirtComplianceCtx, SkirtComplianceSpec};
 use gudgeon_core::quantity::PosStiffness;
 use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
+use super::QuasiStaticShapes;
 use super::points::Points;
 
 /// Shapes in which the skirt yields, each with a stiffness of its own.
@@ -46,21 +47,20 @@ pub struct Shape {
     example = "stiffness = [\"300 N/um\", \"800 N/um\"]\nshapes = [{ power = 2, waves = 1 }, { power = 0, waves = 1 }]\n",
 )]
 impl SkirtComplianceSpec for Modal {
-    fn build(&self, ctx: &SkirtComplianceCtx<'_>) -> Result<SkirtModes, BuildError> {
+    fn build(&self, ctx: &SkirtComplianceCtx<'_>) -> Result<Box<dyn SkirtCompliance>, BuildError> {
         let stiffness: Vec<f64> = self.stiffness.iter().map(|k| k.si()).collect();
-        let mut modes = SkirtModes { shapes: Vec::new(), stiffness };
+        let mut shapes = Vec::new();
         let (x, y) = (&ctx.grid.x, &ctx.grid.y);
         let mut add = |f: &dyn Fn(f64, f64) -> f64| {
-            modes.shapes.extend(y.iter().flat_map(|y| x.iter().map(move |x| f(*x, y / ctx.radius))));
+            shapes.extend(y.iter().flat_map(|y| x.iter().map(move |x| f(*x, y / ctx.radius))));
         };
         let given = if let Some(file) = &self.file {
             if !self.shapes.is_empty() {
                 return Err(BuildError::at("file", "the shapes are given twice, in a file and by formula"));
             }
-            let count = self.stiffness.len();
-            let points = Points::read(ctx.files, file, |_| count)?;
-            (0..count).for_each(|m| add(&|x, a| points.value(m, x, a)));
-            count
+            let points = Points::read(ctx.files, file, |_| stiffness.len())?;
+            (0..stiffness.len()).for_each(|m| add(&|x, a| points.value(m, x, a)));
+            stiffness.len()
         } else {
             for s in &self.shapes {
                 let (power, waves) = (f64::from(s.power), f64::from(s.waves));
@@ -71,10 +71,10 @@ impl SkirtComplianceSpec for Modal {
             }
             self.shapes.len()
         };
-        if given != modes.stiffness.len() || given == 0 {
-            let what = format!("{given} shapes and {} stiffnesses", modes.stiffness.len());
+        if given != stiffness.len() || given == 0 {
+            let what = format!("{given} shapes and {} stiffnesses", stiffness.len());
             return Err(BuildError::at("stiffness", what).help("every shape needs one"));
         }
-        Ok(modes)
+        Ok(Box::new(QuasiStaticShapes::new(ctx, shapes, stiffness)))
     }
 }

@@ -1,6 +1,8 @@
-use gudgeon_core::kinds::{SkirtComplianceCtx, SkirtComplianceSpec, SkirtModes};
+use gudgeon_core::kinds::{SkirtCompliance, SkirtComplianceCtx, SkirtComplianceSpec};
 use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
+
+use super::QuasiStaticShapes;
 
 /// A skirt that does not yield.
 #[derive(Debug, Clone, Default, Serialize, Deserialize, schemars::JsonSchema)]
@@ -16,7 +18,10 @@ pub struct Rigid {}
     example = "",
 )]
 impl SkirtComplianceSpec for Rigid {
-    fn build(&self, _: &SkirtComplianceCtx<'_>) -> Result<SkirtModes, BuildError> {
-        Ok(SkirtModes::default())
+    fn is_rigid(&self) -> bool {
+        true
+    }
+    fn build(&self, ctx: &SkirtComplianceCtx<'_>) -> Result<Box<dyn SkirtCompliance>, BuildError> {
+        Ok(Box::new(QuasiStaticShapes::new(ctx, Vec::new(), Vec::new())))
     }
 }

@@ -4,13 +4,16 @@ use std::f64::consts::PI;
 
 use gudgeon_core::file::Files;
 use gudgeon_core::kinds::{
-    CylinderPressure, CylinderPressureCtx, GrooveFrictionCtx, Kinematics, KinematicsCtx, Lateral,
-    SkirtComplianceCtx, SkirtModes, SkirtProfile, SkirtProfileCtx,
+    CylinderPressure, CylinderPressureCtx, GrooveFriction, GrooveFrictionCtx, Kinematics, KinematicsCtx, Oil,
+    PinFriction, SecondaryMotion, SecondaryMotionCtx, ShearThinning, SkirtComplianceCtx, SkirtComplianceSpec,
+    SkirtProfile, SkirtProfileCtx,
 };
 use gudgeon_core::{BuildError, EvalError};
-use gudgeon_skirt::{Body, ContactGrid, Crank, Instant, Panel, Piston, Rod, Side, SideSetup};
+use gudgeon_skirt::{Body, ContactGrid, Crank, Instant, Panel, Piston, Rigid, Rod, Side, SideSetup};
 
-use super::case::{GravitySide, Method, PistonSecondaryCase};
+use super::case::{GravitySide, PistonSecondaryCase};
+use super::layout::Layout;
+use super::legal::{legal, radius, running_clearance};
 
 /// The piston with what drives it.
 pub struct Assembly {
@@ -22,8 +25,12 @@ pub struct Assembly {
     pub profile: Box<dyn SkirtProfile>,
     /// Gas.
     pub cylinder: Box<dyn CylinderPressure>,
-    /// How the motion across the bore comes about.
-    pub lateral: Lateral,
+    /// Motion across the bore.
+    pub motion: Box<dyn SecondaryMotion>,
+    /// Name of its model, for people.
+    pub motion_name: &'static str,
+    /// Where the states stand.
+    pub layout: Layout,
     /// Area under the gas \[m²\].
     pub area: f64,
     /// Viscosity \[Pa s\].
@@ -41,11 +48,6 @@ pub struct Assembly {
     /// Film evaluations after which a search is given up.
     pub most_films: u64,
 }
-
-/// Smallest and largest admitted intervals of a grid.
-const INTERVALS: std::ops::RangeInclusive<u32> = 2..=1000;
-/// Most maps of a cycle: each is as large as the grid of a side, and a page holds them all.
-const MOST_MAPS: f64 = 20_000.0;
 
 impl Assembly {
     /// What acts on the piston at crank angle `theta` \[rad\].
@@ -76,13 +78,31 @@ impl Assembly {
     pub fn omega(&self) -> f64 {
         self.kinematics.omega()
     }
+
+    /// Coordinates of the piston \[m\] for the states `y`, into `x`.
+    pub fn coordinates(&self, y: &[f64], x: &mut [f64]) {
+        let pose = self.motion.pose(&y[self.layout.motion.clone()]);
+        x[..2].copy_from_slice(&pose.e);
+        for (x, y) in x[2..].iter_mut().zip(&y[self.layout.shapes.clone()]) {
+            *x = self.clearance * y;
+        }
+    }
+
+    /// States with which the first cycle starts.
+    pub fn initial(&mut self, y: &mut [f64]) {
+        let (motion, shapes) = y.split_at_mut(self.layout.shapes.start);
+        self.motion.initial(motion);
+        let mut rest = shapes;
+        for side in &mut self.piston.sides {
+            let (own, others) = rest.split_at_mut(side.elastic());
+            side.compliance.initial(own);
+            rest = others;
+        }
+    }
 }
 
-/// Radius of the skirt \[m\].
-#[must_use]
-pub fn radius(case: &PistonSecondaryCase) -> f64 {
-    case.skirt.radius.map_or(0.5 * case.engine.bore.si() - case.skirt.clearance.si(), |r| r.si())
-}
+/// Sides of the skirt, for people.
+const SIDES: [&str; 2] = ["thrust side", "anti-thrust side"];
 
 /// Builds the sub-models; with `elastic`, the skirt yields as its model says. `intervals` along and across each side take the place of those of the case.
 ///
@@ -95,9 +115,53 @@ pub fn assemble(
     intervals: Option<[u32; 2]>,
 ) -> Result<Assembly, Vec<BuildError>> {
     let mut errors = legal(case);
-    let (e, p, s, m) = (&case.engine, &case.piston, &case.skirt, &case.models);
-    let (radius, length) = (radius(case), s.length.si());
-    let crank = Crank {
+    let clearance = running_clearance(case, radius(case));
+    let (crank, body) = (crank(case), body(case));
+    let area = 0.25 * PI * case.engine.bore.si() * case.engine.bore.si();
+    let parts = Parts::build(case, files, &crank, &body, area, clearance);
+    // The mistakes of the common models are told once.
+    let sides = match (&parts.profile, &parts.thinning) {
+        (Ok(profile), Ok(_)) if errors.is_empty() => {
+            both_sides(case, files, &**profile, elastic, intervals, clearance)
+        }
+        _ => Err(Vec::new()),
+    };
+    let sides = sides.map_err(|e| errors.extend(e)).ok();
+    let parts = parts.checked(&mut errors);
+    let (Some(parts), Some(sides)) = (parts, sides) else { return Err(errors) };
+    let mu = parts.oil.viscosity(case.skirt.oil_temperature.si());
+    if !(mu > 0.0 && mu.is_finite()) {
+        errors.push(BuildError::at(
+            "models.oil",
+            format!("the viscosity at the oil's temperature is {mu} Pa s"),
+        ));
+    }
+    if !errors.is_empty() {
+        return Err(errors);
+    }
+    let period = parts.cylinder.period();
+    Ok(Assembly {
+        layout: Layout::new(&*parts.motion, &sides),
+        elastic: sides.iter().any(|s| s.elastic() > 0),
+        piston: Piston::new(sides, body, crank, parts.pin, parts.groove),
+        breakpoints: breakpoints(&*parts.kinematics, &*parts.cylinder),
+        kinematics: parts.kinematics,
+        profile: parts.profile,
+        cylinder: parts.cylinder,
+        motion: parts.motion,
+        motion_name: case.models.secondary_motion.typetag_name(),
+        area,
+        mu,
+        p_crankcase: case.gas.crankcase_pressure.si(),
+        clearance,
+        period,
+        most_films: case.solver.max_film_evaluations,
+    })
+}
+
+fn crank(case: &PistonSecondaryCase) -> Crank {
+    let e = &case.engine;
+    Crank {
         radius: e.crank_radius.si(),
         rod_length: e.rod_length.si(),
         omega: e.speed.si(),
@@ -108,218 +172,158 @@ pub fn assemble(
             centre: r.gravity_distance.si(),
             inertia: r.inertia.si(),
         }),
-    };
+    }
+}
+
+fn body(case: &PistonSecondaryCase) -> Body {
+    let p = &case.piston;
     let side = match p.gravity_side {
         GravitySide::Thrust => 1.0,
         GravitySide::AntiThrust => -1.0,
     };
-    let body = Body {
+    Body {
         piston_mass: p.mass.si(),
         pin_mass: p.pin_mass.si(),
         inertia: p.inertia.si(),
-        length,
+        length: case.skirt.length.si(),
         pin: p.pin_depth.si(),
         centre: p.gravity_depth.si(),
         centre_offset: side * p.gravity_offset.si(),
-    };
-    let area = 0.25 * PI * e.bore.si() * e.bore.si();
-    let mut keep = |r: Result<(), BuildError>| {
-        if let Err(e) = r {
-            errors.push(e);
-        }
-    };
-    let ctx = KinematicsCtx {
-        crank_radius: crank.radius,
-        rod_length: crank.rod_length,
-        offset: crank.crank_offset - crank.pin_offset,
-        omega: crank.omega,
-    };
-    let kinematics = m.kinematics.build(&ctx).map_err(|e| match e.field.as_str() {
-        "" => e.within("models.kinematics"),
-        _ => e.within("engine"),
-    });
-    let cylinder = match &kinematics {
-        Ok(k) => {
-            let ctx = CylinderPressureCtx { kinematics: &**k, piston_area: area, files };
-            Some(m.cylinder_pressure.build(&ctx).map_err(|e| e.within("models.cylinder_pressure")))
-        }
-        Err(_) => None,
-    };
-    let profile = m
-        .skirt_profile
-        .build(&SkirtProfileCtx { length, radius, files })
-        .map_err(|e| e.within("models.skirt_profile"));
-    let oil = m.oil.build().map_err(|e| e.within("models.oil"));
-    let thinning = m.shear_thinning.build().map_err(|e| e.within("models.shear_thinning"));
-    let motion = m.secondary_motion.build().map_err(|e| e.within("models.secondary_motion"));
-    let pin = m.pin_friction.build().map_err(|e| e.within("models.pin_friction"));
-    let groove = m
-        .groove_friction
-        .build(&GrooveFrictionCtx { bore: e.bore.si() })
-        .map_err(|e| e.within("models.groove_friction"));
-    let mut sides = Vec::new();
-    let clearance = running_clearance(case, radius);
-    if clearance.is_nan() || clearance <= 0.0 {
-        keep(Err(BuildError::at(
-            "skirt.thermal",
-            format!("the running clearance is {:.3} um", 1e6 * clearance),
-        )));
     }
-    let p_cav = case.gas.cavitation_pressure.map_or(0.0, |p| p.si() - case.gas.crankcase_pressure.si());
-    if p_cav > 0.0 {
-        let what = "films would cavitate above the pressure of the crankcase, which is that of their edges";
-        keep(Err(BuildError::at("gas.cavitation_pressure", what)));
-    }
-    // The mistakes of the common models are told once.
-    if let (Ok(profile), Ok(_), true) = (&profile, &thinning, errors.is_empty()) {
-        let half = |side: usize| match (side, s.half_angle_anti_thrust) {
-            (1, Some(a)) => a.si(),
-            _ => s.half_angle_thrust.si(),
+}
+
+/// Running sub-models beside the sides of the skirt, or why there is none.
+struct Parts {
+    kinematics: Result<Box<dyn Kinematics>, BuildError>,
+    /// None where it cannot be built without kinematics.
+    cylinder: Option<Result<Box<dyn CylinderPressure>, BuildError>>,
+    profile: Result<Box<dyn SkirtProfile>, BuildError>,
+    oil: Result<Box<dyn Oil>, BuildError>,
+    thinning: Result<Box<dyn ShearThinning>, BuildError>,
+    motion: Result<Box<dyn SecondaryMotion>, BuildError>,
+    pin: Result<Box<dyn PinFriction>, BuildError>,
+    groove: Result<Box<dyn GrooveFriction>, BuildError>,
+}
+
+/// The same, all of them built.
+struct Checked {
+    kinematics: Box<dyn Kinematics>,
+    cylinder: Box<dyn CylinderPressure>,
+    profile: Box<dyn SkirtProfile>,
+    oil: Box<dyn Oil>,
+    motion: Box<dyn SecondaryMotion>,
+    pin: Box<dyn PinFriction>,
+    groove: Box<dyn GrooveFriction>,
+}
+
+impl Parts {
+    fn build(
+        case: &PistonSecondaryCase,
+        files: &Files,
+        crank: &Crank,
+        body: &Body,
+        area: f64,
+        clearance: f64,
+    ) -> Self {
+        let m = &case.models;
+        let ctx = KinematicsCtx {
+            crank_radius: crank.radius,
+            rod_length: crank.rod_length,
+            offset: crank.crank_offset - crank.pin_offset,
+            omega: crank.omega,
         };
-        for which in 0..2 {
-            let panel = Panel { radius, length, half_angle: half(which) };
-            let solver = &case.solver;
-            let [nx, ny] = intervals.unwrap_or([solver.intervals_along, solver.intervals_across]);
-            let grid = panel.grid(nx as usize, ny as usize, solver.crowding.si());
-            let modes = if elastic {
-                m.skirt_compliance.build(&SkirtComplianceCtx {
-                    grid: &grid,
-                    length,
-                    radius,
-                    half_angle: panel.half_angle,
-                    files,
-                })
-            } else {
-                Ok(SkirtModes::default())
-            };
-            let modes = match modes {
-                Ok(modes) => modes,
-                Err(e) => {
-                    errors.push(e.within("models.skirt_compliance"));
-                    break;
-                }
-            };
-            let built = Side::new(SideSetup {
-                panel,
-                sign: [1.0, -1.0][which],
-                clearance,
-                grid: &grid,
-                film: &*m.film_2d,
-                roughness: &*m.roughness,
-                contact: &*m.contact,
-                contact_grid: ContactGrid {
-                    pitch: solver.contact_pitch.si(),
-                    intervals: solver.contact_intervals as usize,
-                },
-                profile: &**profile,
-                modes: &modes,
-                shear_thinning: m.shear_thinning.build().ok(),
-                p_cav,
-                floor: s.film_floor.si(),
-            });
-            match built {
-                Ok(side) => sides.push(side),
-                Err(e) => {
-                    errors.extend(e.into_iter().map(|e| e.within("models")));
-                    break;
-                }
-            }
+        let kinematics = m.kinematics.build(&ctx).map_err(|e| match e.field.as_str() {
+            "" => e.within("models.kinematics"),
+            _ => e.within("engine"),
+        });
+        let cylinder = kinematics.as_ref().ok().map(|k| {
+            let ctx = CylinderPressureCtx { kinematics: &**k, piston_area: area, files };
+            m.cylinder_pressure.build(&ctx).map_err(|e| e.within("models.cylinder_pressure"))
+        });
+        let profile = SkirtProfileCtx { length: body.length, radius: radius(case), files };
+        let start = [case.solver.start_top.si(), case.solver.start_bottom.si()];
+        let motion = SecondaryMotionCtx::new(clearance, crank.omega, body.matrix()).starting_at(start);
+        let groove = GrooveFrictionCtx { bore: case.engine.bore.si() };
+        Self {
+            kinematics,
+            cylinder,
+            profile: m.skirt_profile.build(&profile).map_err(|e| e.within("models.skirt_profile")),
+            oil: m.oil.build().map_err(|e| e.within("models.oil")),
+            thinning: m.shear_thinning.build().map_err(|e| e.within("models.shear_thinning")),
+            motion: m.secondary_motion.build(&motion).map_err(|e| e.within("models.secondary_motion")),
+            pin: m.pin_friction.build().map_err(|e| e.within("models.pin_friction")),
+            groove: m.groove_friction.build(&groove).map_err(|e| e.within("models.groove_friction")),
         }
     }
-    let mut told = |e: Option<BuildError>| errors.extend(e);
-    let kinematics = kinematics.map_err(|e| told(Some(e))).ok();
-    let cylinder = cylinder.and_then(|c| c.map_err(|e| told(Some(e))).ok());
-    let oil = oil.map_err(|e| told(Some(e))).ok();
-    let motion = motion.map_err(|e| told(Some(e))).ok();
-    let pin = pin.map_err(|e| told(Some(e))).ok();
-    let groove = groove.map_err(|e| told(Some(e))).ok();
-    let profile = profile.map_err(|e| told(Some(e))).ok();
-    told(thinning.err());
-    let sides: Result<[Side; 2], _> = sides.try_into();
-    let (Some(kinematics), Some(profile), Some(cylinder), Some(oil), Some(motion)) =
-        (kinematics, profile, cylinder, oil, motion)
-    else {
-        return Err(errors);
-    };
-    let (Some(pin), Some(groove), Ok(sides)) = (pin, groove, sides) else {
-        return Err(errors);
-    };
-    let mu = oil.viscosity(s.oil_temperature.si());
-    if !(mu > 0.0 && mu.is_finite()) {
-        errors.push(BuildError::at(
-            "models.oil",
-            format!("the viscosity at the oil's temperature is {mu} Pa s"),
-        ));
-    }
-    if !errors.is_empty() {
-        return Err(errors);
-    }
-    let period = cylinder.period();
-    let mut breakpoints = cylinder.kinks().to_vec();
-    breakpoints.extend(dead_centres(&*kinematics, period));
-    breakpoints.sort_by(f64::total_cmp);
-    breakpoints.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
-    let elastic = sides.iter().any(|s| s.elastic() > 0);
-    let mut piston = Piston::new(sides, body, crank, pin, groove);
-    piston.relaxation = case.solver.shape_relaxation.si();
-    Ok(Assembly {
-        piston,
-        kinematics,
-        profile,
-        cylinder,
-        lateral: motion.lateral(),
-        area,
-        mu,
-        p_crankcase: case.gas.crankcase_pressure.si(),
-        clearance,
-        period,
-        breakpoints,
-        elastic,
-        most_films: case.solver.max_film_evaluations,
-    })
-}
 
-/// What cannot move, or not from where it begins.
-pub fn impossible(case: &PistonSecondaryCase, a: &mut Assembly) -> Vec<BuildError> {
-    let mut errors = Vec::new();
-    let s = &case.solver;
-    let now = a.instant(0.0);
-    let (inertial, moves) = (a.lateral == Lateral::Inertial, !matches!(a.lateral, Lateral::Held { .. }));
-    // A film that cannot be solved between centred surfaces tells so when it runs.
-    if moves && matches!(a.piston.resists(&now, inertial), Ok(false)) {
-        let nothing = "this film does not resist the motion across the bore";
-        if !inertial {
-            let help = "`quasi_static` finds the velocities at which films carry the load: use another film, or `full_inertia` for a dry skirt";
-            errors.push(BuildError::at("models.film_2d", nothing).help(help));
-        } else if s.cycles == 0 {
-            let what = format!("{nothing}: without damping it does not become periodic");
-            errors.push(
-                BuildError::at("models.film_2d", what).help("look at the transient with `solver.cycles`"),
-            );
+    /// All models; what is wrong with them goes to `errors`.
+    fn checked(self, errors: &mut Vec<BuildError>) -> Option<Checked> {
+        fn keep<T>(built: Result<T, BuildError>, errors: &mut Vec<BuildError>) -> Option<T> {
+            built.map_err(|e| errors.push(e)).ok()
         }
+        let kinematics = keep(self.kinematics, errors);
+        let cylinder = self.cylinder.and_then(|c| keep(c, errors));
+        let oil = keep(self.oil, errors);
+        let motion = keep(self.motion, errors);
+        let pin = keep(self.pin, errors);
+        let groove = keep(self.groove, errors);
+        let profile = keep(self.profile, errors);
+        keep(self.thinning, errors)?;
+        Some(Checked {
+            kinematics: kinematics?,
+            cylinder: cylinder?,
+            profile: profile?,
+            oil: oil?,
+            motion: motion?,
+            pin: pin?,
+            groove: groove?,
+        })
     }
-    let (place, start) = match a.lateral {
-        Lateral::Held { e_top, e_bottom } => ("models.secondary_motion.e_", [e_top, e_bottom]),
-        _ => ("solver.start_", [s.start_top.si(), s.start_bottom.si()]),
-    };
-    let mut x = vec![0.0; a.piston.coordinates()];
-    x[..2].copy_from_slice(&start);
-    if let Err(e) = a.piston.gaps(&x, now.speed) {
-        let edge = if start[0].abs() >= start[1].abs() { "top" } else { "bottom" };
-        errors.push(BuildError::at(format!("{place}{edge}"), e.to_string()));
-    }
-    errors
 }
 
-/// Radial clearance of the running engine \[m\].
-#[must_use]
-pub fn running_clearance(case: &PistonSecondaryCase, radius: f64) -> f64 {
-    let cold = case.skirt.clearance.si();
-    case.skirt.thermal.as_ref().map_or(cold, |t| {
-        let grown = |expansion: f64, temperature: f64| expansion * (temperature - t.measured_at.si());
-        cold + (radius + cold) * grown(t.bore_expansion.si(), t.bore.si())
-            - radius * grown(t.skirt_expansion.si(), t.skirt.si())
-    })
+/// Both sides of the skirt.
+fn both_sides(
+    case: &PistonSecondaryCase,
+    files: &Files,
+    profile: &dyn SkirtProfile,
+    elastic: bool,
+    intervals: Option<[u32; 2]>,
+    clearance: f64,
+) -> Result<[Side; 2], Vec<BuildError>> {
+    let (s, m, solver) = (&case.skirt, &case.models, &case.solver);
+    let thrust = s.half_angle_thrust;
+    let half_angles = [thrust.si(), s.half_angle_anti_thrust.unwrap_or(thrust).si()];
+    let one = |which: usize| {
+        let panel = Panel { radius: radius(case), length: s.length.si(), half_angle: half_angles[which] };
+        let [nx, ny] = intervals.unwrap_or([solver.intervals_along, solver.intervals_across]);
+        let grid = panel.grid(nx as usize, ny as usize, solver.crowding.si());
+        let ctx = SkirtComplianceCtx::new(&grid, panel.length, panel.radius, panel.half_angle, files)
+            .named(SIDES[which])
+            .relaxing(solver.shape_relaxation.si());
+        let spec: &dyn SkirtComplianceSpec = if elastic { &*m.skirt_compliance } else { &Rigid {} };
+        let compliance = spec.build(&ctx).map_err(|e| vec![e.within("models.skirt_compliance")])?;
+        let pressure = |p: f64| p - case.gas.crankcase_pressure.si();
+        Side::new(SideSetup {
+            panel,
+            sign: [1.0, -1.0][which],
+            clearance,
+            grid: &grid,
+            film: &*m.film_2d,
+            roughness: &*m.roughness,
+            contact: &*m.contact,
+            contact_grid: ContactGrid {
+                pitch: solver.contact_pitch.si(),
+                intervals: solver.contact_intervals as usize,
+            },
+            profile,
+            compliance,
+            shear_thinning: m.shear_thinning.build().ok(),
+            p_cav: case.gas.cavitation_pressure.map_or(0.0, |p| pressure(p.si())),
+            floor: s.film_floor.si(),
+        })
+        .map_err(|e| e.into_iter().map(|e| e.within("models")).collect::<Vec<_>>())
+    };
+    Ok([one(0)?, one(1)?])
 }
 
 /// Crank angles at which the piston turns round: with an offset pin not quite at multiples of half a turn.
@@ -339,69 +343,11 @@ fn dead_centres(kinematics: &dyn Kinematics, period: f64) -> Vec<f64> {
     found
 }
 
-/// What is wrong with a case by itself.
-fn legal(case: &PistonSecondaryCase) -> Vec<BuildError> {
-    let mut errors = Vec::new();
-    let mut say = |place: &str, what: String| errors.push(BuildError::at(place, what));
-    let s = &case.solver;
-    for (place, a) in [
-        ("skirt.half_angle_thrust", Some(case.skirt.half_angle_thrust)),
-        ("skirt.half_angle_anti_thrust", case.skirt.half_angle_anti_thrust),
-    ] {
-        if let Some(a) = a.filter(|a| a.si() >= 0.5 * PI) {
-            say(place, format!("must be below 90 degrees, not {}", a.si().to_degrees()));
-        }
-    }
-    for (place, n) in [
-        ("solver.intervals_along", s.intervals_along),
-        ("solver.intervals_across", s.intervals_across),
-        ("solver.contact_intervals", s.contact_intervals),
-    ] {
-        if !INTERVALS.contains(&n) {
-            say(place, format!("must be between {} and {}, not {n}", INTERVALS.start(), INTERVALS.end()));
-        }
-    }
-    if !(0.0..=0.5).contains(&s.crowding.si()) {
-        say("solver.crowding", format!("must be between 0 and 0.5, not {}", s.crowding.si()));
-    }
-    for (place, t) in [("solver.tolerance", s.tolerance.si()), ("solver.periodicity", s.periodicity.si())] {
-        if !(1e-12..=0.1).contains(&t) {
-            say(place, format!("must be between 1e-12 and 0.1, not {t}"));
-        }
-    }
-    if s.max_cycles == 0 {
-        say("solver.max_cycles", "at least one cycle is needed".into());
-    }
-    let steps = 4.0 * PI / s.step.si();
-    if s.method == Method::BackwardEuler && !(36.0..=1e6).contains(&steps) {
-        say("solver.step", format!("a cycle of {steps:.0} steps is none: between 7e-4 and 20 degrees"));
-    }
-    let parts = case.outputs.series_step.si() / s.step.si();
-    if s.method == Method::BackwardEuler && (parts - parts.round()).abs() > 1e-6 {
-        say("outputs.series_step", "rows of the series must be a whole number of `solver.step` apart".into());
-    }
-    if case.skirt.length.si() / s.contact_pitch.si() > 1e5 {
-        say("solver.contact_pitch", "more than 100 000 rows of contact on the skirt".into());
-    }
-    let rows = 4.0 * PI / case.outputs.series_step.si();
-    if !(8.0..=1e6).contains(&rows) {
-        say("outputs.series_step", format!("a series of {rows:.0} rows a cycle is none"));
-    }
-    let maps = case.outputs.map_step.map_or(0.0, |m| 4.0 * PI / m.si());
-    if maps > MOST_MAPS {
-        say("outputs.map_step", format!("{maps:.0} maps a cycle are more than {MOST_MAPS:.0}"));
-    }
-    if radius(case) <= 0.0 {
-        say("skirt.clearance", "the clearance is larger than the bore".into());
-    }
-    if s.method == Method::AsPublished {
-        errors.push(
-            BuildError::at(
-                "solver.method",
-                "the published scheme cannot run: an explicit method on accelerations behind a 500 Hz low-pass diverges within five degrees of crank angle",
-            )
-            .help("the films damp the motion at 1e6 to 5e7 1/s; use `implicit`, or `backward_euler` for the simplest scheme that can"),
-        );
-    }
-    errors
+/// Crank angles where a right-hand side jumps or has a kink \[rad\].
+fn breakpoints(kinematics: &dyn Kinematics, cylinder: &dyn CylinderPressure) -> Vec<f64> {
+    let mut all = cylinder.kinks().to_vec();
+    all.extend(dead_centres(kinematics, cylinder.period()));
+    all.sort_by(f64::total_cmp);
+    all.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
+    all
 }

@@ -2,7 +2,6 @@
 //! does not resolve.
 
 use gudgeon_core::EvalError;
-use gudgeon_core::kinds::Lateral;
 use gudgeon_core::result::Note;
 
 use super::row::{Look, Row, index};
@@ -23,7 +22,7 @@ const SIDES: [(&str, &str); 2] = [("thrust", "thrust side"), ("anti_thrust", "an
 /// A film that cannot be solved.
 pub fn notes(survey: &Survey, look: &mut Look<'_>, peaks: [Option<f64>; 2]) -> Result<Vec<Note>, EvalError> {
     let mut all = Vec::new();
-    if look.a.lateral == Lateral::QuasiStatic {
+    if look.a.motion.moves() && !look.a.motion.has_inertia() {
         all.extend(inertia(survey, look)?);
     }
     for (side, peak) in peaks.into_iter().enumerate() {
@@ -51,7 +50,8 @@ fn inertia(survey: &Survey, look: &mut Look<'_>) -> Result<Option<Note>, EvalErr
     let part = if side > 0.0 { most / side } else { 0.0 };
     Ok((part > INERTIA_TOLD).then(|| {
         let text = format!(
-            "`quasi_static` leaves out the inertia across the bore, which the motion found asks for with up to {most:.0} N at {:.0} deg, {:.1} % of the largest side force: impacts and solid contact come out too gentle. `full_inertia` counts it.",
+            "`{}` leaves out the inertia across the bore, which the motion found asks for with up to {most:.0} N at {:.0} deg, {:.1} % of the largest side force: impacts and solid contact come out too gentle. `full_inertia` counts it.",
+            look.a.motion_name,
             theta.to_degrees(),
             100.0 * part
         );

@@ -1,7 +1,6 @@
 //! Results of the scene, and what they need.
 
 use gudgeon_core::BuildError;
-use gudgeon_core::kinds::Lateral;
 
 use super::assemble::Assembly;
 use super::case::PistonSecondaryCase;
@@ -122,7 +121,7 @@ pub fn tidy(deg: f64) -> f64 {
 /// # Errors
 /// Names that the scene does not have.
 pub fn wanted(case: &PistonSecondaryCase, a: &Assembly) -> Result<Vec<ResultInfo>, Vec<BuildError>> {
-    let all = catalogue(case, a.period.to_degrees(), a.lateral == Lateral::Inertial);
+    let all = catalogue(case, a.period.to_degrees(), a.motion.has_inertia());
     if case.outputs.results.iter().any(|r| r == "all") {
         return Ok(all);
     }

@@ -1,7 +1,6 @@
 //! What is shown of a cycle: rows in equal steps of crank angle, and maps of the films.
 
 use gudgeon_core::EvalError;
-use gudgeon_core::kinds::Lateral;
 use gudgeon_core::result::{Column, Series};
 use gudgeon_skirt::Piston;
 
@@ -110,7 +109,7 @@ impl Record {
             .map(|k| {
                 (flows || !OIL.contains(&k))
                     && (look.a.elastic || k != YIELD)
-                    && (look.a.lateral == Lateral::Inertial || k != INERTIA)
+                    && (look.a.motion.has_inertia() || k != INERTIA)
             })
             .collect();
         Ok(Self { grid, columns, shown, maps, peak })

@@ -130,9 +130,7 @@ impl Teller<'_, '_, '_> {
 
     /// Means and extremes that the coordinates alone tell.
     fn positions(&mut self) -> Result<(), EvalError> {
-        let c = self.look.a.clearance;
-        for (k, name) in ["e_top_mean", "e_bottom_mean"].into_iter().enumerate() {
-            let mean = c * self.look.trajectory.mean(k);
+        for (name, mean) in ["e_top_mean", "e_bottom_mean"].into_iter().zip(self.look.mean_edges()) {
             self.put(name, 1e6 * mean);
         }
         let [top, bottom] = [index("skirt.e_top"), index("skirt.e_bottom")];

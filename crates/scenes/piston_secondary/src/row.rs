@@ -1,7 +1,6 @@
 //! What is told of one instant of a cycle.
 
 use gudgeon_core::EvalError;
-use gudgeon_core::kinds::Lateral;
 
 use super::assemble::Assembly;
 use super::trajectory::{Between, Trajectory};
@@ -69,6 +68,7 @@ pub struct Look<'a> {
     /// The cycle.
     pub trajectory: &'a Trajectory,
     flows: bool,
+    y: Vec<f64>,
     x: Vec<f64>,
     w: Vec<f64>,
     /// Crank angle looked at last \[rad\].
@@ -80,7 +80,8 @@ impl<'a> Look<'a> {
     #[must_use]
     pub fn new(a: &'a mut Assembly, trajectory: &'a Trajectory, flows: bool) -> Self {
         let n = a.piston.coordinates();
-        Self { a, trajectory, flows, x: vec![0.0; n], w: vec![0.0; n], theta: 0.0 }
+        let y = vec![0.0; a.layout.n];
+        Self { a, trajectory, flows, y, x: vec![0.0; n], w: vec![0.0; n], theta: 0.0 }
     }
 
     /// What stopped a look.
@@ -89,19 +90,31 @@ impl<'a> Look<'a> {
         RunError::Eval { theta_deg: self.theta.to_degrees(), source }
     }
 
-    /// Goes to the coordinates at `t`.
+    /// Goes to the states and the coordinates at `t`.
     fn go(&mut self, t: f64) {
         self.theta = t;
-        let c = self.a.clearance;
-        for (i, x) in self.x.iter_mut().enumerate() {
-            *x = c * self.trajectory.state(t, i);
+        for (i, y) in self.y.iter_mut().enumerate() {
+            *y = self.trajectory.state(t, i);
         }
+        self.a.coordinates(&self.y, &mut self.x);
     }
 
     /// Displacements of the upper and the lower edge at `t` \[m\].
     #[must_use]
     pub fn edges(&self, t: f64) -> [f64; 2] {
-        [0, 1].map(|i| self.a.clearance * self.trajectory.state(t, i))
+        self.edges_of(|i| self.trajectory.state(t, i))
+    }
+
+    /// Their means over the cycle \[m\].
+    #[must_use]
+    pub fn mean_edges(&self) -> [f64; 2] {
+        self.edges_of(|i| self.trajectory.mean(i))
+    }
+
+    /// Displacements of both edges for the states of the lateral motion \[m\].
+    fn edges_of(&self, state: impl Fn(usize) -> f64) -> [f64; 2] {
+        let y: Vec<f64> = self.a.layout.motion.clone().map(state).collect();
+        self.a.motion.pose(&y).e
     }
 
     /// Smallest gap on each side at `t` \[m\]; no film is solved.
@@ -126,36 +139,22 @@ impl<'a> Look<'a> {
     /// A film that cannot be solved, no balance.
     fn move_as(&mut self, t: f64, side: f64) -> Result<gudgeon_skirt::Instant, EvalError> {
         self.go(t);
-        let (n, omega) = (self.x.len(), self.a.omega());
-        let speed = self.a.clearance * omega;
         let now = self.a.instant(t + side * ASIDE);
-        let mut unused = [0.0; 2];
-        let at_end = self.trajectory.end_at(t).map(|k| self.trajectory.at_end(k));
-        let piston = &mut self.a.piston;
-        match (self.a.lateral, self.trajectory.between) {
-            (Lateral::Held { .. }, _) => {
-                self.w.fill(0.0);
-                piston.place(&now, &self.x)?;
+        let (n, speed) = (self.a.layout.n, self.a.clearance * self.a.omega());
+        let (motion, piston) = (&mut self.a.motion, &mut self.a.piston);
+        let own = &self.y[self.a.layout.motion.clone()];
+        piston.add(motion.added(own));
+        if self.trajectory.between == Between::Nothing {
+            let at_end = self.trajectory.end_at(t).map(|k| self.trajectory.at_end(k));
+            for (i, w) in self.w.iter_mut().enumerate() {
+                *w = speed * at_end.map_or_else(|| self.trajectory.state(t, n + i), |y| y[n + i]);
             }
-            (_, Between::Nothing) => {
-                for (i, w) in self.w.iter_mut().enumerate() {
-                    *w = speed * at_end.map_or_else(|| self.trajectory.state(t, n + i), |y| y[n + i]);
-                }
-                piston.place(&now, &self.x)?;
-            }
-            (Lateral::QuasiStatic, _) => piston.rates(&now, &self.x, None, &mut self.w, &mut unused)?,
-            (Lateral::Inertial, _) => {
-                // The films would see the error of a velocity, also of one at the end of a step; that of an acceleration they do not.
-                let acceleration = [0, 1].map(|i| speed * omega * self.trajectory.slope(t, n + i));
-                match piston.rates_under(&now, &self.x, acceleration, &mut self.w) {
-                    Err(e) if e.is_recoverable() => {
-                        let v = [0, 1].map(|i| speed * self.trajectory.state(t, n + i));
-                        piston.rates(&now, &self.x, Some(&v), &mut self.w, &mut unused)?;
-                    }
-                    done => done?,
-                }
-            }
+            piston.place(&now, &self.x)?;
+            return Ok(now);
         }
+        let mut asked = piston.ask(&now, &self.x, &mut self.w);
+        let v = motion.velocities(own, &|k| self.trajectory.slope(t, k), &mut asked)?;
+        asked.end(v)?;
         Ok(now)
     }
 

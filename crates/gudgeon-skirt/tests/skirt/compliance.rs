@@ -48,13 +48,8 @@ fn file(skew: f64) -> String {
 fn shapes_of_a_matrix_give_its_deflections() {
     let folder = folder("matrix", &file(0.0));
     let grid = PANEL.grid(6, 4, 0.0);
-    let ctx = SkirtComplianceCtx {
-        grid: &grid,
-        length: PANEL.length,
-        radius: PANEL.radius,
-        half_angle: PANEL.half_angle,
-        files: &Files::of(&folder),
-    };
+    let files = Files::of(&folder);
+    let ctx = SkirtComplianceCtx::new(&grid, PANEL.length, PANEL.radius, PANEL.half_angle, &files);
     let spec = InfluenceMatrix { file: "data.csv".into(), shapes: 35, rest: quantity(0.0) };
     let modes = spec.build(&ctx).expect("shapes");
     // The nodes of this grid are the points. A force on point 10, and its mirror image 24: both, because half of a symmetric side is solved.
@@ -63,14 +58,11 @@ fn shapes_of_a_matrix_give_its_deflections() {
     let all = points();
     for at in [0, 6, 13, 27, 34] {
         let by_matrix: f64 = (0..n).map(|k| compliance(all[at], all[k]) * force(k)).sum();
-        let by_shapes: f64 = modes
-            .stiffness
-            .iter()
-            .enumerate()
-            .map(|(m, stiffness)| {
-                let shape = &modes.shapes[m * n..(m + 1) * n];
+        let by_shapes: f64 = (0..modes.states().len())
+            .map(|m| {
+                let shape = &modes.shapes()[m * n..(m + 1) * n];
                 let load: f64 = (0..n).map(|k| shape[k] * force(k)).sum();
-                shape[at] * load / stiffness
+                shape[at] * modes.rest(m, load)
             })
             .sum();
         // Rounding of the file's digits and of the eigenvectors.
@@ -81,7 +73,7 @@ fn shapes_of_a_matrix_give_its_deflections() {
     }
     // Of its shapes, two matter.
     let few = InfluenceMatrix { file: "data.csv".into(), shapes: 12, rest: quantity(0.02) };
-    assert_eq!(few.build(&ctx).expect("shapes").stiffness.len(), 2);
+    assert_eq!(few.build(&ctx).expect("shapes").states().len(), 2);
     let _ = std::fs::remove_dir_all(&folder);
 }
 
@@ -90,13 +82,8 @@ fn what_is_no_matrix_is_refused() {
     let grid = PANEL.grid(6, 4, 0.0);
     let refused = |name: &str, text: &str| {
         let folder = folder(name, text);
-        let ctx = SkirtComplianceCtx {
-            grid: &grid,
-            length: PANEL.length,
-            radius: PANEL.radius,
-            half_angle: PANEL.half_angle,
-            files: &Files::of(&folder),
-        };
+        let files = Files::of(&folder);
+        let ctx = SkirtComplianceCtx::new(&grid, PANEL.length, PANEL.radius, PANEL.half_angle, &files);
         let spec = InfluenceMatrix { file: "data.csv".into(), shapes: 12, rest: quantity(1e-3) };
         let e = spec.build(&ctx).expect_err("refused").to_string();
         let _ = std::fs::remove_dir_all(&folder);

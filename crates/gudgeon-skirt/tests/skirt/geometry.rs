@@ -1,0 +1,26 @@
+//! Grids over a side.
+
+use gudgeon_core::kinds::Edge;
+use gudgeon_skirt::Panel;
+
+#[test]
+fn grid_covers_the_side_and_is_its_own_mirror_image() {
+    let panel = Panel { radius: 0.04, length: 0.03, half_angle: 0.6 };
+    for (nx, ny, g) in [(9, 9, 0.0), (16, 24, 0.3), (7, 8, 0.5)] {
+        let grid = panel.grid(nx, ny, g);
+        assert_eq!((grid.x.len(), grid.y.len()), (nx + 1, ny + 1));
+        // Rounding of the ends.
+        assert!(grid.x[0].abs() < 1e-17 && (grid.x[nx] - 0.03).abs() < 1e-17);
+        assert!((grid.y[ny] - 0.024).abs() < 1e-17);
+        assert!((0..=ny).all(|j| grid.y[j] == -grid.y[ny - j]));
+        assert!(grid.x.windows(2).chain(grid.y.windows(2)).all(|w| w[1] > w[0]));
+        match Panel::half(&grid) {
+            Some(half) => assert!(ny % 2 == 0 && half.y[ny / 2] == 0.0 && half.edges[3] == Edge::Wall),
+            None => assert!(ny % 2 == 1),
+        }
+    }
+    // The area of the side by the weights of its grid.
+    let (wx, wy) = panel.grid(9, 9, 0.0).weights();
+    let area: f64 = wx.iter().sum::<f64>() * wy.iter().sum::<f64>();
+    assert!((area / panel.area() - 1.0).abs() < 1e-14);
+}

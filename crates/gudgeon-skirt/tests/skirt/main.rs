@@ -1,0 +1,11 @@
+//! Tests of the piston skirt.
+
+mod body;
+mod common;
+mod compliance;
+mod friction;
+mod geometry;
+mod motions;
+mod piston;
+mod profiles;
+mod published_points;

@@ -1,0 +1,142 @@
+//! A cycle in equal steps of the backward Euler method.
+
+use gudgeon_core::EvalError;
+use gudgeon_core::kinds::LateralLoads;
+use gudgeon_numerics::ode::Stats;
+use gudgeon_scene::RunError;
+use gudgeon_skirt::Momentum;
+
+use super::assemble::Assembly;
+use super::equations::Work;
+use super::trajectory::Trajectory;
+
+/// Halvings of a step.
+const HALVINGS: u32 = 12;
+
+/// A piston whose lateral motion is a law of the displacements of both edges alone, stepped by the backward Euler method.
+pub struct Euler<'a> {
+    a: &'a mut Assembly,
+    work: &'a mut Work,
+    stats: &'a mut Stats,
+    /// Mass matrix of both edges \[kg\], for a motion with inertia.
+    mass: Option<[[f64; 2]; 2]>,
+    /// Coordinates \[m\] and velocities of both edges \[m/s\] at the start of a step.
+    from: Vec<f64>,
+    v: [f64; 2],
+}
+
+fn stopped(t: f64) -> impl Fn(EvalError) -> RunError {
+    move |source| RunError::Eval { theta_deg: t.to_degrees(), source }
+}
+
+impl<'a> Euler<'a> {
+    /// Starts from the states `y`.
+    ///
+    /// # Errors
+    /// A motion that is anything else than a law of the displacements of both edges.
+    pub fn new(
+        a: &'a mut Assembly,
+        work: &'a mut Work,
+        stats: &'a mut Stats,
+        y: &[f64],
+    ) -> Result<Self, RunError> {
+        let Some(mass) = a.motion.edge_law().map(|law| law.mass()) else {
+            return Err(stopped(0.0)(EvalError::fatal("piston_secondary", NO_LAW)));
+        };
+        let mut from = work.x.clone();
+        a.coordinates(y, &mut from);
+        let v = a.motion.pose(&y[a.layout.motion.clone()]).v.unwrap_or_default();
+        Ok(Self { a, work, stats, mass, from, v })
+    }
+
+    /// One cycle in `steps` steps, into `trajectory`; the states at its end, into `y`.
+    ///
+    /// # Errors
+    /// A step that cannot be solved.
+    pub fn cycle(
+        mut self,
+        steps: usize,
+        mut trajectory: Option<&mut Trajectory>,
+        y: &mut [f64],
+    ) -> Result<(), RunError> {
+        if let Some(t) = trajectory.as_deref_mut() {
+            self.first_rates()?;
+            t.start(0.0, &self.shown());
+        }
+        let period = self.a.period;
+        for k in 0..steps {
+            let (t, end) = (period * k as f64 / steps as f64, period * (k + 1) as f64 / steps as f64);
+            self.step(t, end)?;
+            if let Some(t) = trajectory.as_deref_mut() {
+                t.end(end, &self.shown());
+            }
+        }
+        self.states(y);
+        Ok(())
+    }
+
+    /// Rates at the start of the cycle.
+    fn first_rates(&mut self) -> Result<(), RunError> {
+        let Work { x, w, .. } = &mut *self.work;
+        x.copy_from_slice(&self.from);
+        if self.mass.is_some() {
+            w[..2].copy_from_slice(&self.v);
+            return Ok(());
+        }
+        let now = self.a.instant(0.0);
+        self.a.piston.ask(&now, x, w).balance().map(|_| ()).map_err(stopped(0.0))
+    }
+
+    /// One step, halved where it has to be.
+    fn step(&mut self, mut t: f64, end: f64) -> Result<(), RunError> {
+        let omega = self.a.omega();
+        let mut h = end - t;
+        let mut halved = 0;
+        while t < end {
+            self.a.go_on().map_err(stopped(t))?;
+            let now = self.a.instant(t + h);
+            let momentum = self.mass.map(|mass| Momentum { mass, v: self.v });
+            let Work { x, w, .. } = &mut *self.work;
+            match self.a.piston.euler_step(&now, &self.from, momentum, h / omega, w, x) {
+                Ok(()) => {
+                    self.from.copy_from_slice(x);
+                    self.v = [w[0], w[1]];
+                    t = if end - (t + h) < 1e-12 { end } else { t + h };
+                    h = h.min(end - t);
+                    self.stats.steps += 1;
+                }
+                Err(e) if e.is_recoverable() && halved < HALVINGS => {
+                    h *= 0.5;
+                    halved += 1;
+                    self.stats.rejected += 1;
+                    w[..2].copy_from_slice(&self.v);
+                }
+                Err(e) => return Err(stopped(t)(e)),
+            }
+        }
+        Ok(())
+    }
+
+    /// The states of now, into `y`.
+    fn states(&self, y: &mut [f64]) {
+        let layout = &self.a.layout;
+        if let Some(law) = self.a.motion.edge_law() {
+            law.states_at([self.from[0], self.from[1]], self.v, &mut y[layout.motion.clone()]);
+        }
+        for (y, q) in y[layout.shapes.clone()].iter_mut().zip(&self.from[2..]) {
+            *y = q / self.a.clearance;
+        }
+    }
+
+    /// What a trajectory keeps: the states, then the rates of all coordinates in clearances per radian.
+    fn shown(&self) -> Vec<f64> {
+        let speed = self.a.clearance * self.a.omega();
+        let mut shown = vec![0.0; self.a.layout.n];
+        self.states(&mut shown);
+        shown.extend(self.work.w.iter().map(|w| w / speed));
+        shown
+    }
+}
+
+/// Why a motion cannot be stepped by the backward Euler method.
+pub const NO_LAW: &str = "`backward_euler` steps lateral motions that are a law of the displacements of both edges alone, which this one is not";

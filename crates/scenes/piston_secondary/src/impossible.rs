@@ -1,0 +1,44 @@
+//! What an assembly cannot do.
+
+use gudgeon_core::BuildError;
+
+use super::assemble::Assembly;
+use super::case::{Method, PistonSecondaryCase};
+use super::euler::NO_LAW;
+
+/// What cannot move, or not from where it begins.
+pub fn impossible(case: &PistonSecondaryCase, a: &mut Assembly) -> Vec<BuildError> {
+    let mut errors = Vec::new();
+    let s = &case.solver;
+    let now = a.instant(0.0);
+    let inertial = a.motion.has_inertia();
+    if s.method == Method::BackwardEuler && a.layout.n > 0 && a.motion.edge_law().is_none() {
+        errors.push(BuildError::at("solver.method", NO_LAW).help("use `implicit`"));
+    }
+    // A film that cannot be solved between centred surfaces tells so when it runs.
+    if a.motion.moves() && matches!(a.piston.resists(&now, inertial), Ok(false)) {
+        let nothing = "this film does not resist the motion across the bore";
+        if !inertial {
+            let help = "`quasi_static` finds the velocities at which films carry the load: use another film, or `full_inertia` for a dry skirt";
+            errors.push(BuildError::at("models.film_2d", nothing).help(help));
+        } else if s.cycles == 0 {
+            let what = format!("{nothing}: without damping it does not become periodic");
+            errors.push(
+                BuildError::at("models.film_2d", what).help("look at the transient with `solver.cycles`"),
+            );
+        }
+    }
+    let mut y = vec![0.0; a.layout.n];
+    a.initial(&mut y);
+    let mut x = vec![0.0; a.piston.coordinates()];
+    a.coordinates(&y, &mut x);
+    if let Err(e) = a.piston.gaps(&x, now.speed) {
+        let edge = if x[0].abs() >= x[1].abs() { 0 } else { 1 };
+        let place = match a.motion.start_keys() {
+            Some(keys) => format!("models.secondary_motion.{}", keys[edge]),
+            None => ["solver.start_top", "solver.start_bottom"][edge].into(),
+        };
+        errors.push(BuildError::at(place, e.to_string()));
+    }
+    errors
+}
