@@ -1,27 +1,30 @@
 //! One side of the skirt: gap, film, contact, and the forces that belong to the motions of the gap.
 
 use gudgeon_core::kinds::{
-    ContactSpec, Edge, Film2d, Film2dCtx, Film2dGrid, Film2dIn, Film2dOut, Film2dSpec, FilmMode, FlowFactors,
-    RoughFlow, RoughShear, Roughness, RoughnessSpec, ShearThinning, SkirtCompliance, SkirtProfile,
-    Superposition, Viscosity,
+    ContactSpec, Film2d, Film2dCtx, Film2dGrid, Film2dIn, Film2dOut, Film2dSpec, FilmMode, RoughShear,
+    Roughness, RoughnessSpec, ShearThinning, SkirtCompliance, SkirtProfile, Superposition, Viscosity,
 };
 use gudgeon_core::{BuildError, EvalError};
 
+mod beside;
 mod contact;
+mod gap;
 mod loads;
 mod nodes;
+mod outflow;
+mod shape;
+mod slopes;
 
 pub use contact::ContactGrid;
 pub use loads::{SideLoads, Slopes};
 
 use contact::ContactRows;
+use gap::{Gap, film_input};
 use nodes::Nodes;
 
-use crate::geometry::{Panel, between};
+use crate::geometry::Panel;
 
 const MODEL: &str = "skirt";
-/// How deep a skirt may stand inside the liner \[m\]: far beyond what contact allows, and yet within a start that is given wrongly.
-const DEEPEST: f64 = 1e-4;
 
 /// What a [`Side`] is made of.
 pub struct SideSetup<'a> {
@@ -51,40 +54,6 @@ pub struct SideSetup<'a> {
     pub p_cav: f64,
     /// Film between smooth surfaces that the gap is held above \[m\].
     pub floor: f64,
-}
-
-/// A film and what it depends on besides the rates.
-#[derive(Default)]
-struct Gap {
-    h: Vec<f64>,
-    flow: RoughFlow,
-    face_x: Vec<f64>,
-    face_y: Vec<f64>,
-    /// Shear stress on the liner per viscosity and speed, without the filling.
-    drag: Vec<f64>,
-    /// Axial force per pressure of a node.
-    lever: Vec<f64>,
-    /// Relative viscosity, when it varies.
-    thinning: Vec<f64>,
-    smallest: f64,
-    is_rough: bool,
-}
-
-impl Gap {
-    fn new(n: usize, is_rough: bool) -> Self {
-        let v = || vec![0.0; n];
-        Self {
-            h: v(),
-            flow: RoughFlow::new(n),
-            face_x: v(),
-            face_y: v(),
-            drag: v(),
-            lever: v(),
-            thinning: Vec::new(),
-            smallest: f64::INFINITY,
-            is_rough,
-        }
-    }
 }
 
 /// One side of a skirt in its liner. Allocates when built.
@@ -141,17 +110,6 @@ pub struct Side {
     contact_now: [f64; 4],
     /// Film evaluations so far: linear systems set up.
     pub evaluations: u64,
-}
-
-/// A gap held above `floor`: itself from twice the floor on, with continuous slope, and the floor where surfaces touch.
-fn held_above(h: f64, floor: f64) -> f64 {
-    if h >= 2.0 * floor {
-        h
-    } else if h <= 0.0 {
-        floor
-    } else {
-        floor + 0.25 * h * h / floor
-    }
 }
 
 impl Side {
@@ -326,138 +284,6 @@ impl Side {
             .fold(0.0, f64::max)
     }
 
-    /// Gap and factors at the displacements `e` of both edges and the elastic amplitudes `q`.
-    fn shape_gap(&mut self, trial: bool, e: [f64; 2], q: &[f64], speed: f64) -> Result<(), EvalError> {
-        if !(e.iter().all(|e| e.is_finite()) && q.iter().all(|q| q.is_finite())) {
-            return Err(EvalError::recoverable(MODEL, "a displacement is not finite"));
-        }
-        // Work arrays and a gap of the same side: taken apart for the while.
-        let mut gap = std::mem::take(if trial { &mut self.trial } else { &mut self.now });
-        self.open_gap(&mut gap, e, q);
-        let outcome = self.fill_gap(&mut gap, speed);
-        *(if trial { &mut self.trial } else { &mut self.now }) = gap;
-        outcome
-    }
-
-    /// The film in a gap that is open, and what depends on it.
-    fn fill_gap(&mut self, gap: &mut Gap, speed: f64) -> Result<(), EvalError> {
-        gap.smallest = gap.h.iter().fold(f64::INFINITY, |a, &b| a.min(b));
-        if gap.smallest < -DEEPEST {
-            let what = format!("the skirt would stand {:.0} um inside the liner", -1e6 * gap.smallest);
-            return Err(EvalError::recoverable(MODEL, what));
-        }
-        if self.rough.is_smooth() {
-            self.smooth_film(gap)
-        } else {
-            self.rough_film(gap)?
-        }
-        self.axial_levers(gap);
-        self.thin(gap, speed)
-    }
-
-    /// Distance of the surfaces at nodes and faces.
-    fn open_gap(&self, gap: &mut Gap, e: [f64; 2], q: &[f64]) {
-        let nodes = &self.nodes;
-        let (nx, ny, n) = (nodes.nx, nodes.ny, nodes.len());
-        let (c, top, bottom) = (self.clearance, self.sign * e[0], self.sign * e[1]);
-        for j in 0..ny {
-            let (own, next) = (nodes.cos[j], nodes.cos_face[j]);
-            let line = j * nx..(j + 1) * nx;
-            let (h, fx, fy) =
-                (&mut gap.h[line.clone()], &mut gap.face_x[line.clone()], &mut gap.face_y[line]);
-            for i in 0..nx {
-                let here = between(top, bottom, nodes.s[i]);
-                h[i] = c + here * own;
-                fx[i] = c + between(top, bottom, nodes.s_face[i]) * own;
-                fy[i] = c + here * next;
-            }
-        }
-        if !self.drop[0].is_empty() {
-            for (f, d) in [(&mut gap.h, 0), (&mut gap.face_x, 1), (&mut gap.face_y, 2)] {
-                f.iter_mut().zip(&self.drop[d]).for_each(|(f, d)| *f += d);
-            }
-        }
-        for (m, q) in q.iter().enumerate() {
-            let shapes = [
-                &self.shapes[(2 + m) * n..(3 + m) * n],
-                &self.face_shapes[0][m * n..(m + 1) * n],
-                &self.face_shapes[1][m * n..(m + 1) * n],
-            ];
-            for (f, shape) in [&mut gap.h, &mut gap.face_x, &mut gap.face_y].into_iter().zip(shapes) {
-                f.iter_mut().zip(shape).for_each(|(f, s)| *f += q * s);
-            }
-        }
-    }
-
-    /// Film between smooth surfaces; the axial lever of the pressure into `work[0]`.
-    fn smooth_film(&mut self, gap: &mut Gap) {
-        let floor = self.floor;
-        let held = |h: f64| held_above(h, floor);
-        let lever = &mut self.work[0];
-        for k in 0..lever.len() {
-            let film = held(gap.h[k]);
-            gap.flow.film[k] = film;
-            gap.flow.transport[k] = film;
-            gap.flow.content_slope[k] = 1.0;
-            gap.drag[k] = 1.0 / film;
-            lever[k] = film;
-        }
-        if gap.smallest < 2.0 * floor {
-            gap.face_x.iter_mut().chain(&mut gap.face_y).for_each(|h| *h = held(*h));
-        }
-    }
-
-    /// Film between rough surfaces; the axial lever of the pressure into `work[0]`.
-    fn rough_film(&mut self, gap: &mut Gap) -> Result<(), EvalError> {
-        self.rough.flow(&gap.h, &mut gap.flow)?;
-        self.rough.shear(&gap.h, &mut self.shear)?;
-        let (shear, lever) = (&self.shear, &mut self.work[0]);
-        for k in 0..lever.len() {
-            gap.drag[k] = (shear.phi_f[k] + shear.phi_fs[k]) / shear.film[k];
-            lever[k] = shear.phi_fp[k] * shear.film[k];
-        }
-        if gap.flow.film.iter().zip(&gap.h).any(|(f, h)| f != h) {
-            // Where the model holds the film above contact, it does so between the nodes too.
-            for k in 0..self.nodes.len() {
-                let (east, north) = self.nodes.next(k);
-                let (film, h) = (&gap.flow.film, &gap.h);
-                let raise = |a: usize, b: usize| 0.5 * ((film[a] - h[a]) + (film[b] - h[b]));
-                let least = |a: usize, b: usize| 0.5 * film[a].min(film[b]);
-                gap.face_x[k] = (gap.face_x[k] + raise(k, east)).max(least(k, east));
-                gap.face_y[k] = (gap.face_y[k] + raise(k, north)).max(least(k, north));
-            }
-        }
-        Ok(())
-    }
-
-    /// Axial force per pressure of every node, from the levers in `work[0]`.
-    fn axial_levers(&self, gap: &mut Gap) {
-        let nx = self.nodes.nx;
-        for (j, weight) in self.nodes.line_weight.iter().enumerate() {
-            let w = 0.5 * weight;
-            let own = &self.work[0][j * nx..(j + 1) * nx];
-            for i in 0..nx {
-                // Half the mean of both neighbours, for the face before and for the face after.
-                let before = if i > 0 { 0.5 * (own[i - 1] + own[i]) } else { 0.0 };
-                let after = if i + 1 < nx { 0.5 * (own[i] + own[i + 1]) } else { 0.0 };
-                gap.lever[j * nx + i] = w * (before - after);
-            }
-        }
-    }
-
-    /// Viscosity that falls with the shear rate of sliding.
-    fn thin(&mut self, gap: &mut Gap, speed: f64) -> Result<(), EvalError> {
-        let Some(model) = &self.thinning else { return Ok(()) };
-        let [rate, slope, _] = &mut self.work;
-        gap.thinning.resize(rate.len(), 1.0);
-        for (rate, film) in rate.iter_mut().zip(&gap.flow.film) {
-            *rate = speed / film;
-        }
-        model.factor(rate, &mut gap.thinning, slope)?;
-        gap.drag.iter_mut().zip(&gap.thinning).for_each(|(d, t)| *d *= t);
-        Ok(())
-    }
-
     /// Puts the skirt at the displacements `e` of both edges \[m\], with the elastic amplitudes `q` \[m\]; `speed` is that of the piston away from the
     /// head \[m/s\]. What is linear in the rates is solved here, once.
     ///
@@ -537,237 +363,6 @@ impl Side {
         self.slopes(speed, mu, rates, slopes, out)
     }
 
-    /// Derivatives of the forces that [`Side::loads`] just found, with the same arguments, into `out.slope`.
-    ///
-    /// # Errors
-    /// A film that cannot be solved.
-    pub fn slopes(
-        &mut self,
-        speed: f64,
-        mu: f64,
-        rates: &[f64],
-        slopes: Slopes,
-        out: &mut SideLoads,
-    ) -> Result<(), EvalError> {
-        if slopes == Slopes::None {
-            return Ok(());
-        }
-        let (n, width) = (self.nodes(), 4 + self.elastic);
-        out.slope.resize(rates.len() * width, 0.0);
-        if slopes == Slopes::Full && !self.is_superposed() {
-            self.full_films()?;
-        }
-        if self.is_superposed() || slopes == Slopes::Full {
-            let all = if slopes == Slopes::Full { 1.0 } else { 0.0 };
-            for (m, row) in out.slope.chunks_exact_mut(width).enumerate() {
-                let field = &self.fields[(1 + m) * n..(2 + m) * n];
-                let taken = &mut self.work[0];
-                for k in 0..n {
-                    taken[k] = mu * self.open[k].max(all) * field[k];
-                }
-                self.over.sums(taken, &self.now.lever, row);
-            }
-            return Ok(());
-        }
-        // The film of now waits where nothing else is kept meanwhile.
-        self.set_aside();
-        let outcome = self.slopes_of_whole(speed, mu, rates, out);
-        self.set_aside();
-        outcome
-    }
-
-    /// Changes pressure and filling for what waits in their place.
-    fn set_aside(&mut self) {
-        let [_, p, fill] = &mut self.work;
-        std::mem::swap(&mut self.p, p);
-        std::mem::swap(&mut self.fill, fill);
-    }
-
-    /// Derivatives of a film that is found with its cavities: what its model tells, or difference quotients.
-    fn slopes_of_whole(
-        &mut self,
-        speed: f64,
-        mu: f64,
-        rates: &[f64],
-        out: &mut SideLoads,
-    ) -> Result<(), EvalError> {
-        let (n, width) = (self.nodes(), 4 + self.elastic);
-        let mut changes = std::mem::take(&mut self.fields);
-        changes[..rates.len() * n].copy_from_slice(&self.modes_of_rates);
-        self.fills.resize(rates.len() * n, 0.0);
-        let told = self.film.answer(&mut changes[..rates.len() * n], &mut self.fills);
-        let mut there = SideLoads::default();
-        let mut outcome = told;
-        if let Ok(true) = outcome {
-            for m in 0..rates.len() {
-                self.p.copy_from_slice(&changes[m * n..(m + 1) * n]);
-                self.fill.copy_from_slice(&self.fills[m * n..(m + 1) * n]);
-                self.sums(false, speed, mu, &mut there);
-                let row = &mut out.slope[m * width..(m + 1) * width];
-                row[..4].copy_from_slice(&there.film);
-                row[4..].copy_from_slice(&there.elastic);
-            }
-        } else if outcome.is_ok() {
-            outcome = self.difference_quotients(speed, mu, rates, out).map(|()| false);
-        }
-        self.fields = changes;
-        outcome.map(|_| ())
-    }
-
-    /// Derivatives by films at rates beside the present ones.
-    fn difference_quotients(
-        &mut self,
-        speed: f64,
-        mu: f64,
-        rates: &[f64],
-        out: &mut SideLoads,
-    ) -> Result<(), EvalError> {
-        let width = 4 + self.elastic;
-        let mut moved = rates.to_vec();
-        let mut there = SideLoads::default();
-        for m in 0..rates.len() {
-            // Rates matter against the clearance per millisecond; the film is found to some 1e-9.
-            let d = 1e-4 * rates[m].abs().max(1e-2 * self.clearance / 1e-3);
-            moved[m] = rates[m] + d;
-            self.solve_whole(false, speed, mu, &moved)?;
-            moved[m] = rates[m];
-            self.sums(false, speed, mu, &mut there);
-            let row = &mut out.slope[m * width..(m + 1) * width];
-            for k in 0..4 {
-                row[k] = (there.film[k] - out.film[k]) / d;
-            }
-            for k in 0..self.elastic {
-                row[4 + k] = (there.elastic[k] - out.elastic[k]) / d;
-            }
-        }
-        Ok(())
-    }
-
-    /// Forces at places beside the present one, at `e` and `q`: coordinate after coordinate (upper edge, lower edge, elastic amplitudes) is moved by its `d`
-    /// alone; to first order in it.
-    ///
-    /// The pressures of now leave a flow over in the film beside; the matrix that is set up says what pressures take it up.
-    ///
-    /// # Errors
-    /// A film that cannot be solved.
-    #[allow(clippy::too_many_arguments, reason = "a place, a motion and a step")]
-    pub fn loads_beside(
-        &mut self,
-        e: [f64; 2],
-        q: &[f64],
-        d: &[f64],
-        speed: f64,
-        mu: f64,
-        rates: &[f64],
-        out: &mut [SideLoads],
-    ) -> Result<(), EvalError> {
-        let n = self.nodes();
-        let count = 2 + self.elastic;
-        if self.is_superposed() {
-            self.superpose(speed, rates);
-            self.cut(mu);
-        }
-        let mut moved = std::mem::take(&mut self.moved);
-        let mut outcome = Ok(true);
-        for (c, out) in out.iter_mut().enumerate().take(count) {
-            let at = |k: usize, x: f64| if k == c { x + d[k] } else { x };
-            let there = [at(0, e[0]), at(1, e[1])];
-            moved.clear();
-            moved.extend(q.iter().enumerate().map(|(m, q)| at(2 + m, *q)));
-            outcome = if self.is_superposed() {
-                self.begin_beside(there, &moved, speed, mu, rates, c, out)
-            } else {
-                Ok(false)
-            };
-            if let Ok(false) = outcome {
-                outcome = self.loads_elsewhere(there, &moved, speed, mu, rates, out).map(|()| false);
-            }
-            if outcome.is_err() {
-                break;
-            }
-        }
-        self.moved = moved;
-        if !outcome? {
-            return Ok(());
-        }
-        self.film.respond(&mut self.beside)?;
-        let width = 4 + self.elastic;
-        for (c, out) in out.iter_mut().enumerate().take(count) {
-            let change = &self.beside[c * n..(c + 1) * n];
-            let taken = &mut self.work[0];
-            for k in 0..n {
-                taken[k] = mu * self.open[k] * change[k];
-            }
-            self.over.sums(taken, &self.now.lever, &mut self.row[..width]);
-            out.film.iter_mut().zip(&self.row).for_each(|(f, d)| *f += d);
-            out.elastic.iter_mut().zip(&self.row[4..]).for_each(|(f, d)| *f += d);
-        }
-        Ok(())
-    }
-
-    /// The part of [`Side::loads_beside`] that needs no solution: forces of the pressures of now in the film beside, and the flow that they leave
-    /// over. Whether the film's model can tell.
-    #[allow(clippy::too_many_arguments, reason = "a place, a motion and a column")]
-    fn begin_beside(
-        &mut self,
-        e: [f64; 2],
-        q: &[f64],
-        speed: f64,
-        mu: f64,
-        rates: &[f64],
-        column: usize,
-        out: &mut SideLoads,
-    ) -> Result<bool, EvalError> {
-        self.shape_gap(true, e, q, speed)?;
-        out.contact = self.contact_loads(e, q);
-        self.sums(true, speed, mu, out);
-        self.left_over(true, speed, rates, column)
-    }
-
-    /// Forces at another place for rates that are given: one film alone. The present place stays.
-    fn loads_elsewhere(
-        &mut self,
-        e: [f64; 2],
-        q: &[f64],
-        speed: f64,
-        mu: f64,
-        rates: &[f64],
-        out: &mut SideLoads,
-    ) -> Result<(), EvalError> {
-        self.shape_gap(true, e, q, speed)?;
-        out.contact = self.contact_loads(e, q);
-        let kept = std::mem::take(&mut self.p);
-        self.p = std::mem::take(&mut self.open);
-        let outcome = if self.superposition == Superposition::None {
-            let filled = self.fill.clone();
-            let r = self.solve_whole(true, speed, mu, rates);
-            if r.is_ok() {
-                self.sums(true, speed, mu, out);
-            }
-            self.fill = filled;
-            r.map(|_| ())
-        } else {
-            self.combine_rates(true, rates);
-            let n = self.nodes();
-            let inp = film_input(&self.trial, n);
-            let mode = FilmMode { u: -speed, dhdt: &self.rates, edge_pressure: [0.0; 4] };
-            // Close to that of the present place.
-            self.p.iter_mut().zip(&kept).for_each(|(p, kept)| *p = kept / mu);
-            let r = self.film.solve_many(&inp, &[mode], &mut self.p).map(|_| ());
-            self.evaluations += 1;
-            let cut =
-                if self.superposition == Superposition::CutOff { self.p_cav } else { f64::NEG_INFINITY };
-            self.p.iter_mut().for_each(|p| *p = (mu * *p).max(cut));
-            if r.is_ok() {
-                self.sums(true, speed, mu, out);
-            }
-            r
-        };
-        self.open = std::mem::take(&mut self.p);
-        self.p = kept;
-        outcome
-    }
-
     /// Rate of the gap's content at every node, into `self.rates`.
     fn combine_rates(&mut self, trial: bool, rates: &[f64]) {
         let n = self.nodes();
@@ -814,54 +409,6 @@ impl Side {
         Ok(found)
     }
 
-    /// Oil that leaves the side at the rates given \[m³/s\]: over the upper edge, over the lower edge, over the flanks.
-    ///
-    /// # Errors
-    /// A film that cannot be solved.
-    pub fn oil_flow(&mut self, speed: f64, mu: f64, rates: &[f64]) -> Result<[f64; 3], EvalError> {
-        let out = if self.is_superposed() {
-            self.superpose(speed, rates);
-            self.cut(mu);
-            self.p.iter_mut().for_each(|p| *p /= mu);
-            let known = self.left_over(false, speed, rates, 0);
-            self.p.iter_mut().for_each(|p| *p *= mu);
-            if known? { self.outflow() } else { self.whole_outflow(speed, mu, rates)? }
-        } else {
-            self.whole_outflow(speed, mu, rates)?
-        };
-        let both = if self.is_half { 2.0 } else { 1.0 };
-        let flanks = if self.is_half { 2.0 * out[2] } else { out[2] + out[3] };
-        Ok([both * out[0], both * out[1], flanks])
-    }
-
-    /// Flow over every edge, by a film of its own.
-    fn whole_outflow(&mut self, speed: f64, mu: f64, rates: &[f64]) -> Result<[f64; 4], EvalError> {
-        let kept = (self.p.clone(), self.fill.clone());
-        let found = self.solve_whole(false, speed, mu, rates);
-        (self.p, self.fill) = kept;
-        // The matrix is no longer that of the present place.
-        self.placed.clear();
-        Ok(found?.outflow)
-    }
-
-    /// Flow over every edge that the first field of `self.beside` leaves over there.
-    fn outflow(&self) -> [f64; 4] {
-        let (nx, ny) = (self.nodes.nx, self.nodes.ny);
-        let mut out = [0.0; 4];
-        for (k, r) in self.beside[..nx * ny].iter().enumerate() {
-            let (i, j) = (k % nx, k / nx);
-            let at = [i == 0, i + 1 == nx, j == 0, j + 1 == ny];
-            let edges = self.film.grid().edges;
-            if let Some(e) = (0..4).find(|&e| at[e] && edges[e] == Edge::Pressure) {
-                // A flank at the pressure of the cavity beside it gives no oil to a gap that opens.
-                let inner = (i.clamp(1, nx - 2), j.clamp(1, if self.is_half { ny - 1 } else { ny - 2 }));
-                let dry = e >= 2 && self.p_cav >= 0.0 && self.open[inner.1 * nx + inner.0] == 0.0;
-                out[e] += if dry { r.max(0.0) } else { *r };
-            }
-        }
-        out
-    }
-
     /// Uncut pressure per viscosity for the rates, into `self.raw`.
     fn superpose(&mut self, speed: f64, rates: &[f64]) {
         let n = self.nodes();
@@ -882,23 +429,6 @@ impl Side {
             *open = if is_open { 1.0 } else { 0.0 };
             *p = if is_open { full } else { cut };
         }
-    }
-
-    /// Flow per viscosity that a pressure per viscosity leaves over in the film, into field `column` of `self.beside`: `self.raw` for the film beside the
-    /// present place, `self.p` for the present one. Whether the film's model can tell.
-    fn left_over(
-        &mut self,
-        trial: bool,
-        speed: f64,
-        rates: &[f64],
-        column: usize,
-    ) -> Result<bool, EvalError> {
-        self.combine_rates(trial, rates);
-        let n = self.nodes();
-        let gap = if trial { &self.trial } else { &self.now };
-        let mode = FilmMode { u: -speed, dhdt: &self.rates, edge_pressure: [0.0; 4] };
-        let p = if trial { &self.raw } else { &self.p };
-        self.film.imbalance(&film_input(gap, n), &mode, p, &mut self.beside[column * n..(column + 1) * n])
     }
 
     /// Sums over the film in `self.p`.
@@ -978,25 +508,6 @@ impl Side {
     #[must_use]
     pub fn friction_coefficient(&self) -> f64 {
         self.rows.friction_coefficient()
-    }
-}
-
-/// A film of unit viscosity without causes.
-fn film_input<'a>(gap: &'a Gap, n: usize) -> Film2dIn<'a> {
-    let flow = &gap.flow;
-    let factor = |f: &'a [f64]| if gap.is_rough { f } else { &[] };
-    Film2dIn {
-        h_face_x: &gap.face_x,
-        h_face_y: &gap.face_y,
-        mu: if gap.thinning.len() == n { Viscosity::Nodes(&gap.thinning) } else { Viscosity::Uniform(1.0) },
-        p_cav: 0.0,
-        factors: FlowFactors {
-            pressure_x: factor(&flow.phi_x),
-            pressure_y: factor(&flow.phi_y),
-            transport: factor(&flow.transport),
-            content: &[],
-        },
-        ..Film2dIn::new(&flow.film, 0.0, 1.0)
     }
 }
 

@@ -96,111 +96,168 @@ fn text(at: [f64; 2], text: String, anchor: Anchor) -> Shape {
     Shape::Text { at, text, anchor }
 }
 
+/// Sizes of the picture \[m\]. Heights count from the crank axis.
+struct Picture<'a> {
+    a: &'a Assembly,
+    record: &'a Record,
+    radius: f64,
+    /// Factor of everything that happens across the bore.
+    magnified: f64,
+    /// Distance of the liner from the axis.
+    wall: f64,
+    /// Thickness of the liner.
+    thick: f64,
+    /// Upper and lower end of the liner.
+    head: f64,
+    end: f64,
+    /// Height of the crown above the upper edge of the skirt, negative as a depth, and half its width.
+    up: f64,
+    land: f64,
+    /// Highest film pressure \[Pa\].
+    highest: f64,
+}
+
 /// The piston in its bore, to scale but for what happens across it.
 fn piston(a: &Assembly, record: &Record) -> Figure {
-    let body = &a.piston.body;
-    let crank = &a.piston.crank;
-    let radius = a.piston.sides[0].panel.radius;
-    let magnified = SHOWN * radius / a.clearance;
-    let wall = radius + SHOWN * radius;
-    // Heights count from the crank axis.
-    let (top, stroke) = (a.kinematics.y_tdc(), a.kinematics.stroke());
-    let crown = body.pin.max(0.0) + 0.5 * radius;
-    let (head, end) = (top + crown + 0.1 * radius, top - stroke - (body.length - body.pin) - 0.1 * radius);
-    let thick = 0.12 * radius;
-    let highest = record.maps.iter().flatten().flat_map(|m| &m.p).fold(1.0_f64, |m, p| m.max(*p));
-    let mut fixed =
-        vec![line(vec![[0.0, head + 0.2 * radius], [0.0, -1.2 * crank.radius]], false, Style::Axis)];
-    for side in [-1.0, 1.0] {
-        let x = side * wall;
-        fixed.push(line(
-            vec![[x, head], [x + side * thick, head], [x + side * thick, end], [x, end]],
-            true,
-            Style::Cut,
-        ));
-    }
-    fixed.push(text([-wall - thick, head + 0.2 * radius], "thrust side".into(), Anchor::Middle));
-    fixed.push(text([wall + thick, head + 0.2 * radius], "anti-thrust side".into(), Anchor::Middle));
-    let centre = [-crank.crank_offset, 0.0];
-    fixed.push(Shape::Circle { centre, radius: crank.radius, style: Style::Thin });
-    fixed.push(Shape::Dimension {
-        from: [-wall, end],
-        to: [-radius, end],
-        offset: -0.45 * radius,
-        text: String::new(),
-    });
-    // Beside the arrows, which leave no room for it.
-    let clearance = format!("{} µm", tidy(1e6 * a.clearance));
-    fixed.push(text([-wall - 0.1 * radius, end - 0.45 * radius], clearance, Anchor::End));
-    let (et, eb) = (record.column("skirt.e_top"), record.column("skirt.e_bottom"));
-    let force = record.column("skirt.side_force");
+    let p = Picture::new(a, record);
     let rows = record.rows();
     let every = ((FRAME.to_radians() / (rows[1] - rows[0])).round() as usize).max(1);
-    // Displacement at a depth below the upper edge of the skirt, magnified, and how far the skirt stands back there.
-    let moved = |k: usize, depth: f64| magnified * (et[k] + (eb[k] - et[k]) * depth / body.length);
-    let relief = |depth: f64| magnified * a.profile.depth(depth, 0.0);
-    // The crown is much farther from the liner than the skirt: as wide as leaves it free at this magnification.
-    let up = body.pin - crown;
-    let farthest = (0..et.len()).map(|k| moved(k, up).abs().max(moved(k, 0.0).abs())).fold(0.0, f64::max);
-    let land = (wall - farthest - 0.05 * radius).clamp(0.4 * radius, 0.985 * radius);
-    let mut frames = Vec::new();
-    for k in (0..et.len()).step_by(every) {
-        let theta = rows[k];
-        let motion = a.kinematics.motion(theta);
-        let height = |depth: f64| motion.y + body.pin - depth;
-        let at = |across: f64, depth: f64| [across + moved(k, depth), height(depth)];
+    let frames = (0..rows.len()).step_by(every).map(|k| p.frame(k)).collect();
+    Figure {
+        title: "The piston in its bore".into(),
+        hint: format!(
+            "displacement, tilt, clearance and profile magnified {:.0} times; film pressure along the middle of both sides, {:.1} bar at most",
+            p.magnified,
+            1e-5 * p.highest
+        ),
+        table: String::new(),
+        kind: FigureKind::Drawing { fixed: p.fixed(), frames },
+    }
+}
+
+impl<'a> Picture<'a> {
+    fn new(a: &'a Assembly, record: &'a Record) -> Self {
+        let body = &a.piston.body;
+        let radius = a.piston.sides[0].panel.radius;
+        let magnified = SHOWN * radius / a.clearance;
+        let wall = radius + SHOWN * radius;
+        let (top, stroke) = (a.kinematics.y_tdc(), a.kinematics.stroke());
+        let crown = body.pin.max(0.0) + 0.5 * radius;
+        let mut p = Self {
+            a,
+            record,
+            radius,
+            magnified,
+            wall,
+            thick: 0.12 * radius,
+            head: top + crown + 0.1 * radius,
+            end: top - stroke - (body.length - body.pin) - 0.1 * radius,
+            up: body.pin - crown,
+            land: 0.0,
+            highest: record.maps.iter().flatten().flat_map(|m| &m.p).fold(1.0_f64, |m, p| m.max(*p)),
+        };
+        // The crown is much farther from the liner than the skirt: as wide as leaves it free at this magnification.
+        let farthest = (0..record.rows().len())
+            .map(|k| p.moved(k, p.up).abs().max(p.moved(k, 0.0).abs()))
+            .fold(0.0, f64::max);
+        p.land = (wall - farthest - 0.05 * radius).clamp(0.4 * radius, 0.985 * radius);
+        p
+    }
+
+    /// Displacement at a depth below the upper edge of the skirt in row `k`, magnified.
+    fn moved(&self, k: usize, depth: f64) -> f64 {
+        let (et, eb) = (self.record.column("skirt.e_top"), self.record.column("skirt.e_bottom"));
+        self.magnified * (et[k] + (eb[k] - et[k]) * depth / self.a.piston.body.length)
+    }
+
+    /// The liner, the way of the crank pin, and what is written on them.
+    fn fixed(&self) -> Vec<Shape> {
+        let Self { radius, wall, thick, head, end, .. } = *self;
+        let crank = &self.a.piston.crank;
+        let mut fixed =
+            vec![line(vec![[0.0, head + 0.2 * radius], [0.0, -1.2 * crank.radius]], false, Style::Axis)];
+        for side in [-1.0, 1.0] {
+            let x = side * wall;
+            fixed.push(line(
+                vec![[x, head], [x + side * thick, head], [x + side * thick, end], [x, end]],
+                true,
+                Style::Cut,
+            ));
+        }
+        fixed.push(text([-wall - thick, head + 0.2 * radius], "thrust side".into(), Anchor::Middle));
+        fixed.push(text([wall + thick, head + 0.2 * radius], "anti-thrust side".into(), Anchor::Middle));
+        fixed.push(Shape::Circle { centre: self.centre(), radius: crank.radius, style: Style::Thin });
+        fixed.push(Shape::Dimension {
+            from: [-wall, end],
+            to: [-radius, end],
+            offset: -0.45 * radius,
+            text: String::new(),
+        });
+        // Beside the arrows, which leave no room for it.
+        let clearance = format!("{} µm", tidy(1e6 * self.a.clearance));
+        fixed.push(text([-wall - 0.1 * radius, end - 0.45 * radius], clearance, Anchor::End));
+        fixed
+    }
+
+    /// The crank axis.
+    fn centre(&self) -> [f64; 2] {
+        [-self.a.piston.crank.crank_offset, 0.0]
+    }
+
+    /// The piston, the rod and the pressures of row `k`.
+    fn frame(&self, k: usize) -> Frame {
+        let (body, crank, radius) = (&self.a.piston.body, &self.a.piston.crank, self.radius);
+        let theta = self.record.rows()[k];
+        let y = self.a.kinematics.motion(theta).y;
+        let height = |depth: f64| y + body.pin - depth;
+        let at = |across: f64, depth: f64| [across + self.moved(k, depth), height(depth)];
         let depth = |i: usize| body.length * i as f64 / OUTLINE as f64;
+        // How far the skirt stands back.
+        let relief = |depth: f64| self.magnified * self.a.profile.depth(depth, 0.0);
+        let (land, up) = (self.land, self.up);
         let mut outline = vec![at(-land, 0.0), at(-land, up), at(land, up), at(land, 0.0)];
         outline.extend((0..=OUTLINE).map(|i| at(radius - relief(depth(i)), depth(i))));
         outline.extend((0..=OUTLINE).rev().map(|i| at(relief(depth(i)) - radius, depth(i))));
         let mut shapes = vec![line(outline, true, Style::Metal)];
         let pin = at(-crank.pin_offset, body.pin);
         let (sin, cos) = theta.sin_cos();
+        let centre = self.centre();
         let crank_pin = [centre[0] + crank.radius * sin, crank.radius * cos];
         shapes.push(line(vec![pin, crank_pin, centre], false, Style::Outline));
         shapes.push(Shape::Circle { centre: pin, radius: 0.22 * radius, style: Style::Hollow });
         shapes.push(Shape::Circle { centre: crank_pin, radius: 0.1 * radius, style: Style::Hollow });
-        // Film pressure along the middle of both sides, standing on the liner.
         let deg = tidy(theta.to_degrees());
+        self.pressures(deg, height, &mut shapes);
+        let (et, eb) = (self.record.column("skirt.e_top"), self.record.column("skirt.e_bottom"));
+        let force = self.record.column("skirt.side_force");
+        // Adding zero turns -0 into 0.
+        let told = format!(
+            "upper edge {:.2} µm, lower edge {:.2} µm, side force {:.0} N",
+            1e6 * et[k] + 0.0,
+            1e6 * eb[k] + 0.0,
+            force[k].round() + 0.0
+        );
+        shapes.push(text([0.0, self.head + 0.55 * radius], told, Anchor::Middle));
+        Frame { label: format!("{deg}°"), shapes }
+    }
+
+    /// Film pressure along the middle of both sides, standing on the liner.
+    fn pressures(&self, deg: f64, height: impl Fn(f64) -> f64, shapes: &mut Vec<Shape>) {
         for (side, direction) in [(0, -1.0), (1, 1.0)] {
-            let Some(map) = record.maps[side].iter().find(|m| (m.theta_deg - deg).abs() < 1e-6) else {
+            let Some(map) = self.record.maps[side].iter().find(|m| (m.theta_deg - deg).abs() < 1e-6) else {
                 continue;
             };
-            let p = middle(&a.piston.sides[side], &map.p);
+            let own = &self.a.piston.sides[side];
+            let p = middle(own, &map.p);
             if p.iter().all(|p| *p <= 0.0) {
                 continue;
             }
-            let x = &a.piston.sides[side].grid().x;
-            let from = direction * (wall + thick);
+            let from = direction * (self.wall + self.thick);
+            let reach = |p: f64| from + direction * PRESSURE * self.radius * p.max(0.0) / self.highest;
             let mut points = vec![[from, height(0.0)]];
-            points.extend(
-                x.iter()
-                    .zip(&p)
-                    .map(|(x, p)| [from + direction * PRESSURE * radius * p.max(0.0) / highest, height(*x)]),
-            );
-            points.push([from, height(body.length)]);
+            points.extend(own.grid().x.iter().zip(&p).map(|(x, p)| [reach(*p), height(*x)]));
+            points.push([from, height(self.a.piston.body.length)]);
             shapes.push(line(points, true, Style::Oil));
         }
-        shapes.push(text(
-            [0.0, head + 0.55 * radius],
-            // Adding zero turns -0 into 0.
-            format!(
-                "upper edge {:.2} µm, lower edge {:.2} µm, side force {:.0} N",
-                1e6 * et[k] + 0.0,
-                1e6 * eb[k] + 0.0,
-                force[k].round() + 0.0
-            ),
-            Anchor::Middle,
-        ));
-        frames.push(Frame { label: format!("{deg}°"), shapes });
-    }
-    Figure {
-        title: "The piston in its bore".into(),
-        hint: format!(
-            "displacement, tilt, clearance and profile magnified {magnified:.0} times; film pressure along the middle of both sides, {:.1} bar at most",
-            1e-5 * highest
-        ),
-        table: String::new(),
-        kind: FigureKind::Drawing { fixed, frames },
     }
 }

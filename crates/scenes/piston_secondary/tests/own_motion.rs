@@ -175,15 +175,18 @@ fn a_damper_slows_the_motion_across_the_bore() {
         let e = &r.series.get("skirt.e_top").expect("a column").values;
         e.iter().fold(f64::NEG_INFINITY, |m, v| m.max(*v)) - e.iter().fold(f64::INFINITY, |m, v| m.min(*v))
     };
-    let damped = motion("{ model = \"damped\", damping = 1e6, exact = true }", &[]);
-    assert!(range(&damped) < 0.8 * range(&none), "{} {}", range(&damped), range(&none));
+    // The first turn from the middle: with so much damping deviations from the periodic motion fade over more cycles than its search takes.
+    let first = ["solver.cycles=1"];
+    let free = motion("{ model = \"damped\", damping = 0.0, exact = true }", &first);
+    let damped = motion("{ model = \"damped\", damping = 1e6, exact = true }", &first);
+    assert!(range(&damped) < 0.8 * range(&free), "{} {}", range(&damped), range(&free));
     // Without partial derivatives of its own, by difference quotients: the same motion.
-    let quotients = motion("{ model = \"damped\", damping = 1e6 }", &[]);
+    let quotients = motion("{ model = \"damped\", damping = 1e6 }", &first);
     for name in RESULTS {
         let (a, b) = (value(&damped, name), value(&quotients, name));
         assert!((a - b).abs() < 5e-3 * (1.0 + b.abs()), "{name}: {a} {b}");
     }
-    // The model is told by its name, and its inertia is judged like that of the built-in one.
+    // The model is told by its name.
     assert!(damped.models.iter().any(|m| m.model == "damped"));
 }
 
@@ -207,5 +210,5 @@ fn backward_euler_refuses_what_it_cannot_step() {
         ["models.secondary_motion={ model = \"damped\", damping = 1e4 }", "solver.method=backward_euler"]
             .map(String::from);
     let refused = check(&case, &set).err().expect("refused").to_string();
-    assert!(refused.contains("displacements of both edges alone"), "{refused}");
+    assert!(refused.contains("`backward_euler` steps lateral motions"), "{refused}");
 }

@@ -1,0 +1,67 @@
+//! A gap and the film in it.
+
+use gudgeon_core::kinds::{Film2dIn, FlowFactors, RoughFlow, Viscosity};
+
+/// A film and what it depends on besides the rates.
+#[derive(Default)]
+pub(super) struct Gap {
+    pub(super) h: Vec<f64>,
+    pub(super) flow: RoughFlow,
+    pub(super) face_x: Vec<f64>,
+    pub(super) face_y: Vec<f64>,
+    /// Shear stress on the liner per viscosity and speed, without the filling.
+    pub(super) drag: Vec<f64>,
+    /// Axial force per pressure of a node.
+    pub(super) lever: Vec<f64>,
+    /// Relative viscosity, when it varies.
+    pub(super) thinning: Vec<f64>,
+    pub(super) smallest: f64,
+    pub(super) is_rough: bool,
+}
+
+impl Gap {
+    pub(super) fn new(n: usize, is_rough: bool) -> Self {
+        let v = || vec![0.0; n];
+        Self {
+            h: v(),
+            flow: RoughFlow::new(n),
+            face_x: v(),
+            face_y: v(),
+            drag: v(),
+            lever: v(),
+            thinning: Vec::new(),
+            smallest: f64::INFINITY,
+            is_rough,
+        }
+    }
+}
+
+/// A gap held above `floor`: itself from twice the floor on, with continuous slope, and the floor where surfaces touch.
+pub(super) fn held_above(h: f64, floor: f64) -> f64 {
+    if h >= 2.0 * floor {
+        h
+    } else if h <= 0.0 {
+        floor
+    } else {
+        floor + 0.25 * h * h / floor
+    }
+}
+
+/// A film of unit viscosity without causes.
+pub(super) fn film_input<'a>(gap: &'a Gap, n: usize) -> Film2dIn<'a> {
+    let flow = &gap.flow;
+    let factor = |f: &'a [f64]| if gap.is_rough { f } else { &[] };
+    Film2dIn {
+        h_face_x: &gap.face_x,
+        h_face_y: &gap.face_y,
+        mu: if gap.thinning.len() == n { Viscosity::Nodes(&gap.thinning) } else { Viscosity::Uniform(1.0) },
+        p_cav: 0.0,
+        factors: FlowFactors {
+            pressure_x: factor(&flow.phi_x),
+            pressure_y: factor(&flow.phi_y),
+            transport: factor(&flow.transport),
+            content: &[],
+        },
+        ..Film2dIn::new(&flow.film, 0.0, 1.0)
+    }
+}
