@@ -342,7 +342,7 @@ impl Piston {
         Ok(oil)
     }
 
-    /// Forces at the present place for rates that [`Piston::rates`] found.
+    /// Forces at the present place for rates that [`Piston::ask`] found.
     ///
     /// # Errors
     /// A film that cannot be solved.

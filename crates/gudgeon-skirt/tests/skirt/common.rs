@@ -126,6 +126,18 @@ pub fn yielding(
     stiffness: [f64; 2],
     relaxation: f64,
 ) -> Side {
+    yielding_at(film, sign, half_angle, stiffness, relaxation, 0.0)
+}
+
+/// The same with a film that cavitates at `p_cav` above the pressure of the crankcase \[Pa\].
+pub fn yielding_at(
+    film: &dyn Film2dSpec,
+    sign: f64,
+    half_angle: f64,
+    stiffness: [f64; 2],
+    relaxation: f64,
+    p_cav: f64,
+) -> Side {
     let panel = Panel { radius: RADIUS, length: LENGTH, half_angle };
     let files = &Files::default();
     let modal = Modal {
@@ -151,7 +163,7 @@ pub fn yielding(
         profile: &*profile,
         compliance,
         shear_thinning: None,
-        p_cav: 0.0,
+        p_cav,
         floor: 1e-7,
     })
     .expect("builds")

@@ -24,3 +24,13 @@ fn grid_covers_the_side_and_is_its_own_mirror_image() {
     let area: f64 = wx.iter().sum::<f64>() * wy.iter().sum::<f64>();
     assert!((area / panel.area() - 1.0).abs() < 1e-14);
 }
+
+#[test]
+fn gap_of_a_skirt_that_stands_towards_the_liner() {
+    let panel = Panel { radius: 0.04, length: 0.03, half_angle: 0.6 };
+    for (x, angle) in [(0.0, 0.0), (0.03, 0.3), (0.012, -0.6)] {
+        // `c - (top (1 - x/L) + bottom x/L) cos`: products and sums of some micrometres.
+        let exact = 1e-5 - (3e-6 * (1.0 - x / 0.03) - 2e-6 * x / 0.03) * f64::cos(angle);
+        assert!((panel.gap(1e-5, 3e-6, -2e-6, x, angle) - exact).abs() < 1e-20, "{x} {angle}");
+    }
+}

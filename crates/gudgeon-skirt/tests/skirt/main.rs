@@ -9,3 +9,4 @@ mod motions;
 mod piston;
 mod profiles;
 mod published_points;
+mod sides;

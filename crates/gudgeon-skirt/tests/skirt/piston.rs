@@ -76,6 +76,86 @@ fn frictions_add_their_forces_and_moments() {
 }
 
 #[test]
+fn derivatives_know_the_friction_of_the_rings() {
+    let groove = GrooveCoulomb {
+        coefficient: quantity(0.1),
+        height: quantity(0.012),
+        width: quantity(3e-3),
+        preload: None,
+        reversal_speed: quantity(1e-3),
+    };
+    let other = piston(WavinessTransport::AsPublished, -3.25e-4);
+    let ring = groove.build(&GrooveFrictionCtx { bore: 0.0765 }).expect("builds");
+    let mut p = Piston::new(other.sides, body(), crank(), NoPinFriction {}.build().expect("builds"), ring);
+    let now = instant(401.0, 2e6);
+    let d = 1e-8;
+    let mut quotients = [[0.0; 2]; 2];
+    for k in 0..2 {
+        let mut at = |d: f64| {
+            let mut v = W;
+            v[k] += d;
+            p.ask(&now, &X, &mut [0.0; 2]).forces(v).expect("films")
+        };
+        let (high, low) = (at(d), at(-d));
+        quotients[k] = [0, 1].map(|r| (high[r] - low[r]) / (2.0 * d));
+    }
+    p.ask(&now, &X, &mut [0.0; 2]).forces(W).expect("films");
+    let mut found = Partials::new(2);
+    p.partials(&now, &X, &W, true, &mut found).expect("derivatives");
+    for k in 0..2 {
+        for row in 0..2 {
+            let (a, b) = (found.answer_by_v[k][row], quotients[k][row]);
+            // Films are linear between their cuts; friction bends over a hundred-thousandth of its reversal speed; rounding of kilonewtons over it.
+            assert!(
+                (a - b).abs() < 1e-4 * quotients[k].iter().fold(0.0_f64, |m, q| m.max(q.abs())),
+                "{k} {row}: {a} {b}"
+            );
+        }
+    }
+}
+
+#[test]
+fn surfaces_yield_to_a_pressure_by_its_integral_over_their_shapes() {
+    let d = film(Cavitation::HalfSommerfeld);
+    let soft = yielding_side(&d, 1e-6);
+    let roughness = waves(WavinessTransport::Homogenised);
+    let mut hard = side(0, &Setup { film: &d, roughness: &roughness, intervals: 12 });
+    hard.place([-1e-6, -2e-6], &[], 5.0).expect("a film");
+    let mut l = gudgeon_skirt::SideLoads::default();
+    hard.loads(5.0, 0.016, &W, Slopes::None, &mut l).expect("a film");
+    let q = soft.yields_to(&hard);
+    let (grid, p, gap) = (hard.grid().clone(), hard.pressure(), hard.gap());
+    let (wx, wy) = grid.weights();
+    let n = grid.len();
+    let shapes = soft.compliance.shapes();
+    for (k, stiffness) in [3e8, 8e8].into_iter().enumerate() {
+        let load: f64 = (0..n).map(|i| wx[i % 13] * wy[i / 13] * shapes[k * n + i] * p[i]).sum();
+        // Rounding of a hundred terms.
+        assert!((q[k] * stiffness / load - 1.0).abs() < 1e-9 && load > 100.0, "{k}: {q:?} {load}");
+    }
+    let part = (0..n).map(|i| ((q[0] * shapes[i] + q[1] * shapes[n + i]) / gap[i]).abs()).fold(0.0, f64::max);
+    assert!((soft.part_of_gap(&q, &hard) / part - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn films_cavitate_at_the_pressure_given() {
+    // Below that of the crankcase by a bar: no film goes further down, and some go there.
+    for cavitation in [Cavitation::HalfSommerfeld, Cavitation::SwiftStieber, Cavitation::FullSommerfeld] {
+        let mut s = yielding_at(&film(cavitation), 1.0, HALF[0], [3e8, 8e8], 1e-6, -1e5);
+        s.place([-1e-6, -2e-6], &[0.0; 2], 5.0).expect("a film");
+        let mut l = gudgeon_skirt::SideLoads::default();
+        s.loads(5.0, 0.016, &[4e-3, 3e-3, 0.0, 0.0], Slopes::None, &mut l).expect("a film");
+        let low = s.pressure().into_iter().fold(f64::INFINITY, f64::min);
+        if cavitation == Cavitation::FullSommerfeld {
+            assert!(low < -2e5, "{low}");
+        } else {
+            // Rounding of the pressure.
+            assert!((low + 1e5).abs() < 1e-6, "{cavitation:?}: {low}");
+        }
+    }
+}
+
+#[test]
 fn net_force_is_the_sum_of_what_is_told() {
     let b = body();
     for (deg, pressure) in [(401.0, 2e6), (200.0, 0.0)] {

@@ -1,0 +1,205 @@
+//! One side: rows of contact on a shape that yields, and films that are held open.
+
+use gudgeon_core::file::Files;
+use gudgeon_core::kinds::ShearThinningSpec as _;
+use gudgeon_core::kinds::{
+    SkirtComplianceCtx, SkirtComplianceSpec, SkirtProfile, SkirtProfileCtx, SkirtProfileSpec,
+};
+use gudgeon_core::quantity::quantity;
+use gudgeon_film::SmoothSurfaces;
+use gudgeon_film::film_2d::{Cavitation, Direct};
+use gudgeon_skirt::{
+    Barrel, ContactGrid, Cylindrical, Modal, Panel, Shape, Side, SideLoads, SideSetup, Slopes,
+};
+
+use crate::common::*;
+
+fn profile(barrel: bool) -> Box<dyn SkirtProfile> {
+    let files = &Files::default();
+    let ctx = SkirtProfileCtx { length: LENGTH, radius: RADIUS, files };
+    let barrelled = Barrel {
+        top: quantity(3e-6),
+        bottom: quantity(2e-6),
+        widest: quantity(0.4),
+        ovality: quantity(4e-6),
+    };
+    if barrel { barrelled.build(&ctx) } else { Cylindrical {}.build(&ctx) }.expect("builds")
+}
+
+fn built(panel: Panel, barrel: bool, shape: Shape, contact: ContactGrid, floor: f64) -> Side {
+    let grid = panel.grid(12, 12, 0.0);
+    let files = Files::default();
+    let ctx = SkirtComplianceCtx::new(&grid, LENGTH, RADIUS, panel.half_angle, &files);
+    let modal = Modal { stiffness: vec![quantity(3e8)], shapes: vec![shape], file: None };
+    let crests = gudgeon_contact::CrestWedge {
+        amplitude: quantity(4e-6),
+        pitch: quantity(0.25e-3),
+        composite_modulus: quantity(44.52e9),
+        deflection: quantity(1.077),
+        friction_coefficient: quantity(0.15),
+    };
+    Side::new(SideSetup {
+        panel,
+        sign: 1.0,
+        clearance: 1e-5,
+        grid: &grid,
+        film: &Direct { cavitation: Cavitation::HalfSommerfeld, ..Direct::default() },
+        roughness: &SmoothSurfaces {},
+        contact: &crests,
+        contact_grid: contact,
+        profile: &*profile(barrel),
+        compliance: modal.build(&ctx).expect("a shape"),
+        shear_thinning: None,
+        p_cav: 0.0,
+        floor,
+    })
+    .expect("builds")
+}
+
+#[test]
+fn contact_sees_profile_and_shapes() {
+    let panel = Panel { radius: RADIUS, length: LENGTH, half_angle: 0.6 };
+    // Between nodes a shape runs in straight lines: one that is straight along the height, and one that bends across but is asked at nodes alone.
+    let straight = (Shape { power: 1, waves: 0 }, 24);
+    let bent = (Shape { power: 1, waves: 1 }, 12);
+    for (shape, intervals) in [straight, bent] {
+        for barrel in [false, true] {
+            let pitch = LENGTH / 24.0;
+            let mut side = built(panel, barrel, shape, ContactGrid { pitch, intervals }, 1e-7);
+            let (e, q, p) = ([-4e-6, -7.5e-6], 1e-6, profile(barrel));
+            let mut smallest = f64::INFINITY;
+            for k in 0..=24 {
+                for i in 0..=intervals {
+                    let (s, a) = (k as f64 / 24.0, 0.6 * (2.0 * i as f64 / intervals as f64 - 1.0));
+                    let phi = s * f64::cos(f64::from(shape.waves) * std::f64::consts::FRAC_PI_2 * a / 0.6);
+                    let h = 1e-5 + (e[0] + (e[1] - e[0]) * s) * a.cos() + p.depth(s * LENGTH, a) + q * phi;
+                    smallest = smallest.min(h);
+                }
+            }
+            let found = side.contact_gap(e, &[q]);
+            // Sums of micrometres; angles and heights of nodes are rounded.
+            assert!(
+                (found - (smallest - 4e-6)).abs() < 1e-17 && found < 4e-6,
+                "{barrel} {intervals}: {found} {smallest}"
+            );
+            // Forces begin where the gap is within the range of contact.
+            side.place(e, &[q], 1.0).expect("a film");
+            let mut l = SideLoads::default();
+            side.loads(1.0, 0.016, &[0.0; 3], Slopes::None, &mut l).expect("a film");
+            assert!((l.contact[0] + l.contact[1] > 0.0) == (found < 0.0), "{l:?}");
+        }
+    }
+}
+
+#[test]
+fn contact_of_half_a_side_is_that_of_the_whole() {
+    let panel = Panel { radius: RADIUS, length: LENGTH, half_angle: 0.6 };
+    let load = |intervals: usize| {
+        let grid = ContactGrid { pitch: 0.25e-3, intervals };
+        let mut side = built(panel, true, Shape { power: 1, waves: 1 }, grid, 1e-7);
+        side.place([-7e-6, -7e-6], &[0.0], 1.0).expect("a film");
+        let mut l = SideLoads::default();
+        side.loads(1.0, 0.016, &[0.0; 3], Slopes::None, &mut l).expect("a film");
+        l.contact
+    };
+    let (even, odd) = (load(200), load(201));
+    for k in 0..4 {
+        // The trapezoidal rule errs with the square of a two-hundredth of the arc where contact begins.
+        assert!((even[k] / odd[k] - 1.0).abs() < 2e-3 && even[k] > 0.0, "{k}: {even:?} {odd:?}");
+    }
+}
+
+#[test]
+fn a_film_is_held_open_smoothly_above_its_floor() {
+    let panel = Panel { radius: RADIUS, length: LENGTH, half_angle: 0.6 };
+    let grid = ContactGrid { pitch: 0.25e-3, intervals: 20 };
+    let mut side = built(panel, false, Shape { power: 1, waves: 1 }, grid, 2e-6);
+    assert_eq!(side.held_open_below(), Some(4e-6));
+    // `h` from twice the floor on, `f + h^2/(4 f)` below it, the floor where surfaces touch: the film stands farthest above the smallest gap.
+    for (e, raised) in [(-5.9e-6, 0.0), (-7e-6, 2e-6 + 9e-12 / 8e-6 - 3e-6), (-1.05e-5, 2.5e-6)] {
+        side.place([e; 2], &[0.0], 1.0).expect("a film");
+        assert!((side.smallest_gap() - (1e-5 + e)).abs() < 1e-20);
+        // Rounding of micrometres.
+        assert!((side.held_open() - raised).abs() < 1e-18, "{e}: {} {raised}", side.held_open());
+    }
+}
+
+/// A side that does not yield, without contact.
+fn bare(
+    panel: Panel,
+    n: usize,
+    profile: &dyn SkirtProfile,
+    thinning: Option<&gudgeon_film::Carreau>,
+) -> Side {
+    let grid = panel.grid(n, n, 0.0);
+    Side::new(SideSetup {
+        panel,
+        sign: 1.0,
+        clearance: 1e-5,
+        grid: &grid,
+        film: &Direct { cavitation: Cavitation::FullSommerfeld, ..Direct::default() },
+        roughness: &SmoothSurfaces {},
+        contact: &gudgeon_contact::Off {},
+        contact_grid: ContactGrid { pitch: 1e-3, intervals: 4 },
+        profile,
+        compliance: rigid(&grid),
+        shear_thinning: thinning.map(|t| t.build().expect("builds")),
+        p_cav: 0.0,
+        floor: 1e-7,
+    })
+    .expect("builds")
+}
+
+fn forces(side: &mut Side, e: [f64; 2], speed: f64, rates: [f64; 2]) -> SideLoads {
+    side.place(e, &[], speed).expect("a film");
+    let mut l = SideLoads::default();
+    side.loads(speed, 0.016, &rates, Slopes::None, &mut l).expect("a film");
+    l
+}
+
+#[test]
+fn films_under_a_profile_converge() {
+    // Nodes and the faces between them see the same profile: forces change little when the nodes come twice as close, whatever the profile is.
+    let panel = Panel { radius: RADIUS, length: LENGTH, half_angle: 0.6 };
+    let steep = Barrel {
+        top: quantity(2e-5),
+        bottom: quantity(1.5e-5),
+        widest: quantity(0.5),
+        ovality: quantity(3e-5),
+    };
+    let files = &Files::default();
+    let steep = steep.build(&SkirtProfileCtx { length: LENGTH, radius: RADIUS, files }).expect("builds");
+    let (e, speed, rates) = ([-3e-6, -6e-6], 8.0, [-2e-4, 1e-4]);
+    let [a, b, c] = [12, 24, 48].map(|n| forces(&mut bare(panel, n, &*steep, None), e, speed, rates).film);
+    for k in 0..3 {
+        // Second order: what a halving changes is some percent on twelve intervals, and falls about fourfold.
+        let scale = c[0].abs().max(c[1].abs()) * if k == 2 { 0.02 } else { 1.0 };
+        let (first, second) = ((a[k] - b[k]).abs(), (b[k] - c[k]).abs());
+        assert!(first < 0.1 * scale && second < 0.5 * first + 1e-3 * scale, "{k}: {a:?} {b:?} {c:?}");
+    }
+}
+
+#[test]
+fn thinner_oil_carries_and_drags_less_in_the_same_measure() {
+    // Between plates the gap is the same everywhere, and so is the viscosity: forces go with it. The side of a skirt so narrow that it is flat.
+    let panel = Panel { radius: 0.0475 / 2e-3, length: LENGTH, half_angle: 1e-3 };
+    let thinning = gudgeon_film::Carreau {
+        critical_shear_rate: quantity(1e5),
+        exponent: quantity(0.6),
+        high_shear_ratio: quantity(0.3),
+    };
+    let flat = profile(false);
+    let (speed, rates) = (6.0, [-1e-4, -1e-4]);
+    let newtonian = forces(&mut bare(panel, 12, &*flat, None), [0.0; 2], speed, rates);
+    let thinned = forces(&mut bare(panel, 12, &*flat, Some(&thinning)), [0.0; 2], speed, rates);
+    let x = f64::powi(6.0 / 1e-5 / 1e5, 2);
+    let factor = 0.3 + 0.7 * (1.0 + x).powf(0.5 * (0.6 - 1.0));
+    for k in 0..3 {
+        // Rounding of sums over a hundred nodes; the curvature of the plate is 1e-6 of the gap's.
+        let ratio = thinned.film[k] / newtonian.film[k];
+        assert!(
+            (ratio / factor - 1.0).abs() < 1e-5 && newtonian.film[k].abs() > 1.0,
+            "{k}: {ratio} {factor}"
+        );
+    }
+}
