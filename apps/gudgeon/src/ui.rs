@@ -8,6 +8,7 @@ use std::fmt::Write as _;
 use std::io::{self, IsTerminal, Write};
 use std::time::Duration;
 
+use console::Term;
 use gudgeon_case::Report;
 use gudgeon_scene::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -17,6 +18,8 @@ use crate::failure::Failure;
 pub struct Ui {
     quiet: bool,
     color: bool,
+    /// Columns for mistakes.
+    width: usize,
     /// Why standard output lacks something.
     lost: RefCell<Option<io::Error>>,
 }
@@ -27,7 +30,14 @@ pub const WIDTH: usize = 100;
 impl Ui {
     pub fn new(quiet: bool) -> Self {
         let wanted = std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty());
-        Self { quiet, color: wanted && io::stderr().is_terminal(), lost: RefCell::new(None) }
+        // A line longer than that of a book is hard to read, however wide the terminal.
+        let width = Term::stderr().size_checked().map_or(gudgeon_case::WIDTH, |(_, columns)| columns.into());
+        Self {
+            quiet,
+            color: wanted && io::stderr().is_terminal(),
+            width: width.min(gudgeon_case::WIDTH),
+            lost: RefCell::new(None),
+        }
     }
 
     /// Whether tables and progress are unwanted.
@@ -80,12 +90,14 @@ impl Ui {
         let mut text = String::new();
         match failure {
             Failure::Input(report) => {
-                text = report.render(self.color);
+                text = report.render_within(self.width, self.color);
                 if report.diagnostics.len() > 1 {
                     let _ = writeln!(text, "\n{} in {}", report.count(), report.source.name);
                 }
             }
-            Failure::Argument(d) => text = Report::unreadable("", d.clone()).render(self.color),
+            Failure::Argument(d) => {
+                text = Report::unreadable("", d.clone()).render_within(self.width, self.color);
+            }
             Failure::Run(what) => {
                 let _ = writeln!(text, "the run failed: {what}");
             }

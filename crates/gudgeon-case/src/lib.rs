@@ -12,6 +12,7 @@ mod overrides;
 mod plain;
 mod published;
 mod refine;
+mod render;
 mod report;
 mod schema;
 mod tree;
@@ -31,7 +32,7 @@ use toml::de::DeTable;
 pub use near::{advice, list, nearest};
 pub use published::{one_scene_of, published};
 pub use refine::Refinement;
-pub use report::{Diagnostic, MOST_MISTAKES, Origin, Report, Source, line_column};
+pub use report::{Diagnostic, MOST_MISTAKES, Origin, Report, Source, WIDTH, line_column};
 
 use plain::plain;
 use schema::{Schema, shorten};

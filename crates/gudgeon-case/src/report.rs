@@ -5,10 +5,8 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use gudgeon_core::file::Files;
-use miette::{
-    GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteError, MietteSpanContents, SourceCode,
-    SourceSpan, SpanContents,
-};
+
+use crate::render::{Drawing, Excerpt};
 
 /// The text of a case.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -84,6 +82,9 @@ impl Diagnostic {
 /// Most mistakes that one report tells: a file with more of them is another file.
 pub const MOST_MISTAKES: usize = 50;
 
+/// Columns that a report takes where nobody says how wide the terminal is.
+pub const WIDTH: usize = 110;
+
 /// What is wrong with one case, at most [`MOST_MISTAKES`], in the order of the file, then of the `--set` arguments.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Report {
@@ -139,24 +140,20 @@ impl Report {
         }
     }
 
-    /// The report as a person reads it: each mistake with its place, the text underlined, and the advice.
+    /// The report as a person reads it, in [`WIDTH`] columns: each mistake with its place, the text underlined, and the advice.
     #[must_use]
     pub fn render(&self, color: bool) -> String {
-        let theme = if color { GraphicalTheme::unicode() } else { GraphicalTheme::unicode_nocolor() };
-        let handler = GraphicalReportHandler::new_themed(theme).with_width(110).with_context_lines(1);
-        let mut out = String::new();
+        self.render_within(WIDTH, color)
+    }
+
+    /// As [`Report::render`], in at most `width` columns of a terminal (40 at least; a single word may be longer).
+    #[must_use]
+    pub fn render_within(&self, width: usize, color: bool) -> String {
+        let mut drawing = Drawing::new(width, color);
         for d in &self.diagnostics {
-            if !out.is_empty() {
-                out.push('\n');
-            }
-            let shown = Shown { headline: d.headline(), diagnostic: d, source: self.excerpt(d) };
-            if handler.render_report(&mut out, &shown).is_err() {
-                // Only a writer can fail, and a String does not; the text must not be lost in any case.
-                out.push_str(&shown.headline);
-                out.push('\n');
-            }
+            drawing.mistake(&d.headline(), self.excerpt(d).as_ref(), d.help.as_deref());
         }
-        out
+        drawing.finish()
     }
 
     /// The mistakes for a program to read: `message`, `help`, `path`, `in` (file name or `--set`), `line`, `column`.
@@ -176,14 +173,18 @@ impl Report {
             .collect()
     }
 
+    /// The line that a mistake stands in; of several lines the first.
     fn excerpt(&self, d: &Diagnostic) -> Option<Excerpt<'_>> {
         let span = d.span.clone()?;
         let (name, text) = self.text_of(d.origin)?;
         let start = floor(text, span.start);
-        let line_end = text[start..].find('\n').map_or(text.len(), |i| start + i);
-        let end = floor(text, span.end.min(start + LABEL)).clamp(start, line_end.max(start));
-        let end = if text[start..end].ends_with('\r') { end - 1 } else { end };
-        Some(Excerpt { name, text, start, end })
+        let from = text[..start].rfind('\n').map_or(0, |i| i + 1);
+        let to = text[start..].find('\n').map_or(text.len(), |i| start + i);
+        let line = &text[from..to];
+        let line = line.strip_suffix('\r').unwrap_or(line);
+        let start = (start - from).min(line.len());
+        let end = floor(line, span.end.saturating_sub(from)).max(start);
+        Some(Excerpt { name, place: line_column(text, span.start), line, span: start..end })
     }
 }
 
@@ -209,66 +210,4 @@ fn floor(text: &str, offset: usize) -> usize {
         offset -= 1;
     }
     offset
-}
-
-/// Bytes of a line that are underlined, and shown before and after that, at most: a line may be a megabyte.
-const LABEL: usize = 100;
-const AROUND: usize = 100;
-
-/// The one line that a mistake stands in.
-#[derive(Debug)]
-struct Excerpt<'a> {
-    name: String,
-    text: &'a str,
-    start: usize,
-    end: usize,
-}
-
-impl SourceCode for Excerpt<'_> {
-    fn read_span<'a>(
-        &'a self,
-        _: &SourceSpan,
-        context_before: usize,
-        _: usize,
-    ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
-        let (line, column) = line_column(self.text, self.start);
-        // miette asks without context for the header's line and column, with context for what it draws.
-        let (from, to, column) = if context_before == 0 {
-            (self.start, self.end, column - 1)
-        } else {
-            let line_start = self.text[..self.start].rfind('\n').map_or(0, |i| i + 1);
-            let line_end = self.text[self.end..].find('\n').map_or(self.text.len(), |i| self.end + i);
-            let from = floor(self.text, line_start.max(self.start.saturating_sub(AROUND)));
-            (from.max(line_start), floor(self.text, line_end.min(self.end + AROUND)), 0)
-        };
-        let data = self.text[from..to].trim_end_matches('\r').as_bytes();
-        let span = SourceSpan::new(from.into(), data.len());
-        Ok(Box::new(MietteSpanContents::new_named(self.name.clone(), data, span, line - 1, column, 1)))
-    }
-}
-
-/// One mistake as miette sees it.
-#[derive(Debug)]
-struct Shown<'a> {
-    headline: String,
-    diagnostic: &'a Diagnostic,
-    source: Option<Excerpt<'a>>,
-}
-impl fmt::Display for Shown<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.headline)
-    }
-}
-impl std::error::Error for Shown<'_> {}
-impl miette::Diagnostic for Shown<'_> {
-    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        self.diagnostic.help.as_ref().map(|h| Box::new(h) as Box<dyn fmt::Display>)
-    }
-    fn source_code(&self) -> Option<&dyn miette::SourceCode> {
-        self.source.as_ref().map(|s| s as &dyn miette::SourceCode)
-    }
-    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let span = self.source.as_ref().map(|s| s.start..s.end)?;
-        Some(Box::new(std::iter::once(LabeledSpan::new_with_span(None, span))))
-    }
 }

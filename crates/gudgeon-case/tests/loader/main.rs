@@ -1,5 +1,7 @@
 //! The loader against a small schema of its own: two tables, an array of tables, words, and a kind of model.
 
+mod render;
+
 use std::path::Path;
 
 use dyn_clone::DynClone;
