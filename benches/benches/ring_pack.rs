@@ -13,6 +13,7 @@ use gudgeon_core::geometry::FaceProfile;
 use gudgeon_core::kinds::{FaceCtx, FaceIn, HydrodynamicsSpec};
 use gudgeon_core::result::RunResult;
 use gudgeon_film::{ClosedFormFace, GriddedFace};
+use gudgeon_models as _;
 
 const CASE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../cases/turbo-diesel-120.toml");
 /// Runs of each setting; the fastest solve counts.
