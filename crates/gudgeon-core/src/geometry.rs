@@ -232,3 +232,62 @@ impl RingPlace {
         std::f64::consts::PI * (self.r_outer * self.r_outer - self.r_inner * self.r_inner)
     }
 }
+
+/// The section of a ring between the pressures around it: what the laws of its gas forces read.
+#[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
+pub struct RingSection<'a> {
+    /// The ring and its groove.
+    pub geometry: &'a RingGeometry,
+    /// Where it is.
+    pub place: &'a RingPlace,
+    /// Radius of the nominal bore \[m\].
+    pub bore_radius: f64,
+    /// Absolute pressure of the land above the ring \[Pa\].
+    pub p_above: f64,
+    /// Absolute pressure of the land below the ring \[Pa\].
+    pub p_below: f64,
+    /// Absolute pressure behind the ring \[Pa\].
+    pub p_back: f64,
+    /// Absolute pressure below which its film cavitates \[Pa\].
+    pub p_cav: f64,
+}
+
+impl<'a> RingSection<'a> {
+    /// A ring in a bore, under no pressure.
+    #[must_use]
+    pub const fn new(geometry: &'a RingGeometry, place: &'a RingPlace, bore_radius: f64) -> Self {
+        Self { geometry, place, bore_radius, p_above: 0.0, p_below: 0.0, p_back: 0.0, p_cav: 0.0 }
+    }
+
+    /// The same ring between absolute pressures \[Pa\]: above it, below it, behind it, and that below which its film cavitates.
+    #[must_use]
+    pub const fn under(mut self, above: f64, below: f64, back: f64, cavitation: f64) -> Self {
+        (self.p_above, self.p_below, self.p_back, self.p_cav) = (above, below, back, cavitation);
+        self
+    }
+
+    /// Outer circumference `2 π r_outer` \[m\].
+    #[must_use]
+    pub fn outer_circumference(&self) -> f64 {
+        2.0 * std::f64::consts::PI * self.place.r_outer
+    }
+
+    /// Load of the gas behind the ring above `p_cav`, on its inner cylinder and per outer circumference \[N/m\].
+    #[must_use]
+    pub fn gas_on_back(&self) -> f64 {
+        self.geometry.height * (self.p_back - self.p_cav) * (self.place.r_inner / self.place.r_outer)
+    }
+
+    /// Load of the lands above `p_cav` on the parts of the face beside the running face, per circumference \[N/m\].
+    #[must_use]
+    pub fn gas_beside_face(&self) -> f64 {
+        let g = self.geometry;
+        let rest = g.height - g.lands as f64 * g.face.length();
+        if g.lands == 2 {
+            rest * (self.p_below - self.p_cav)
+        } else {
+            0.5 * rest * (self.p_above + self.p_below - 2.0 * self.p_cav)
+        }
+    }
+}

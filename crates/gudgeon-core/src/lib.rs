@@ -19,6 +19,7 @@ pub mod geometry;
 pub mod kinds;
 pub mod registry;
 pub mod states;
+mod word;
 
 // The attributes name this crate by its name, also inside it.
 extern crate self as gudgeon_core;
@@ -35,4 +36,5 @@ pub use gudgeon_macros::{register_kind, register_model};
 
 pub use error::{BuildError, EvalError};
 pub use registry::{KindInfo, ModelInfo, Registry};
+pub use word::Word;
 pub use {gudgeon_result as result, gudgeon_units as quantity};

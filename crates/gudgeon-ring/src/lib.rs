@@ -2,6 +2,38 @@
 //!
 //! Heights `s` are measured from the lower groove flank, velocities and forces are positive towards the head.
 
+pub mod axial_gas {
+    //! Axial gas force on a ring.
+    mod full_perimeter;
+    mod laminar_profile;
+    mod linear_profile;
+    pub use full_perimeter::FullPerimeter;
+    pub use laminar_profile::LaminarProfile;
+    pub use linear_profile::LinearProfile;
+}
+pub mod cavitation_datum {
+    //! Pressure at which films of rings cavitate.
+    mod absolute;
+    mod gauge;
+    pub use absolute::Absolute;
+    pub use gauge::Gauge;
+}
+pub mod drag {
+    //! Friction that friction power counts.
+    mod face_shear;
+    mod liner;
+    pub use face_shear::FaceShear;
+    pub use liner::Liner;
+}
+pub mod film_force {
+    //! Film in the axial balance of a ring.
+    mod face_shear;
+    mod liner_reaction;
+    mod total;
+    pub use face_shear::FaceShear;
+    pub use liner_reaction::LinerReaction;
+    pub use total::Total;
+}
 mod flank_damping {
     //! Resistance of the oil in the groove to axial motion.
     pub mod off;
@@ -15,6 +47,24 @@ mod flank_friction {
     pub mod rational_saturation;
     pub mod tanh_stribeck;
 }
+pub mod hoop {
+    //! Force of a ring by its own tension.
+    mod as_printed;
+    mod correct;
+    pub use as_printed::AsPrinted;
+    pub use correct::Correct;
+}
+pub mod radial_gas {
+    //! Surfaces on which gas presses radially.
+    mod back_and_face;
+    mod back_face_and_gap;
+    mod back_only;
+    mod bore_perimeter;
+    pub use back_and_face::BackAndFace;
+    pub use back_face_and_gap::BackFaceAndGap;
+    pub use back_only::BackOnly;
+    pub use bore_perimeter::BorePerimeter;
+}
 mod radial_motion;
 mod ring_motion {
     //! Motion in the groove.
@@ -23,6 +73,13 @@ mod ring_motion {
     pub mod newton_groove;
     pub mod seated;
     pub mod three_seat;
+}
+pub mod twin_land_friction {
+    //! Friction of a twin-land ring.
+    mod both_lands;
+    mod lower_twice;
+    pub use both_lands::BothLands;
+    pub use lower_twice::LowerTwice;
 }
 
 pub use flank_damping::off::Off as DampingOff;

@@ -434,7 +434,7 @@ fn pack(
     let layout = Layout::new(&*gas, &rings, plan.film, oil_pack.as_deref(), &*temperature);
     let (n, states, masses) = (rings.len(), layout.n, layout.gas.len());
     let mut pack = Pack {
-        conv: case.conventions,
+        laws: case.conventions.build()?,
         limits: (&case.solver.limits).into(),
         omega,
         kinematics,

@@ -12,6 +12,7 @@ use gudgeon_core::quantity::{
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+pub use crate::conventions::Conventions;
 pub use crate::limits::Limits;
 pub use crate::solver::RingPackSolverSpec;
 use gudgeon_scene::{SolverCommon, SolverTable, case_file};
@@ -309,122 +310,6 @@ pub struct Models {
     pub oil: Box<dyn OilSpec>,
     /// Temperature of the films.
     pub film_temperature: Box<dyn FilmTemperatureSpec>,
-}
-
-/// Conventions in which published programs differ.
-#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct Conventions {
-    /// Contact pressure from the tangential force.
-    pub hoop: Hoop,
-    /// Area and pressure distribution of the axial gas force.
-    pub axial_gas: AxialGas,
-    /// Where gas presses radially.
-    pub radial_gas: RadialGas,
-    /// Force of the film in the ring's axial balance.
-    pub film_force: FilmForce,
-    /// Friction that friction power counts.
-    pub drag: Drag,
-    /// Pressure at which films cavitate.
-    pub cavitation_datum: CavitationDatum,
-    /// Friction of a twin-land ring.
-    pub twin_land_friction: TwinLandFriction,
-}
-
-/// Contact pressure from the tangential force.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Hoop {
-    /// Equilibrium of half a ring: `p = 2 F / (D b)`, radial force `2 π F`.
-    #[default]
-    Correct,
-    /// `p = 2 F / (2 π r b)`, too small by π: radial force `2 F` (tomanik1993 eq. 10).
-    AsPrinted,
-}
-
-/// Area and pressure distribution of the axial gas force.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum AxialGas {
-    /// Flank annulus, each flank gap with the mean of a laminar pressure profile (p² linear) between the pressure behind
-    /// the ring and that of its land.
-    #[default]
-    LaminarProfile,
-    /// Flank annulus, linear profile on both flanks: half of the pressure difference (zottin1992 eq. 4.2).
-    LinearProfile,
-    /// Full pressure difference on `π D w` (tomanik1993 eq. 4).
-    FullPerimeter,
-}
-
-/// Where gas presses radially.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum RadialGas {
-    /// Equilibrium of half a split ring of inner and outer radius `r_i` and `r_o`: pressure behind it on its inner cylinder, the lands on the parts
-    /// of the face outside the running face, and gas on the two end faces of the gap, `w` deep, which closes the ring like a hoop:
-    ///
-    /// ```text
-    /// r_o W = F_t + p_back b r_i + p_gap b w - r_o ∫ p dx (outside the running face),    p_gap w = p_back (r_l - r_i) + ½ (p_above + p_below) (r_o - r_l)
-    /// ```
-    ///
-    /// `W` the load of the running face per circumference \[N/m\], `r_l` the radius of the neighbouring lands: as deep as the gap lies in the groove it
-    /// sees the pressure behind the ring, outside it leads from land to land. Under one pressure everywhere `W` is tension plus that pressure on the
-    /// running face, as it must be; without the end faces `p b w / r_o` is missing, 8 % of `p b` of a usual ring, and gas pushes a ring
-    /// off the liner that nothing pushes. For sections much smaller than the radius; a ring that rotates or twists is not meant.
-    #[default]
-    BackFaceAndGap,
-    /// The same without the end faces of the gap.
-    BackAndFace,
-    /// Pressure behind the ring on its inner cylinder only (zottin1992 eq. 3.4).
-    BackOnly,
-    /// Pressure behind the ring on `π D b` (tomanik1993 eq. 5).
-    BorePerimeter,
-}
-
-/// Force of the film in the ring's axial balance.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum FilmForce {
-    /// Shear on the ring face and pressure on its slope.
-    #[default]
-    Total,
-    /// Reaction to the shear on the liner (zottin1992 eq. 4.7): the total but for the end term `[p h]`.
-    LinerReaction,
-    /// Shear on the ring face alone (tomanik1993 eq. 15).
-    FaceShear,
-}
-
-/// Friction that friction power counts.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Drag {
-    /// Shear on the liner: what the crank pays for.
-    #[default]
-    Liner,
-    /// Shear on the ring face alone (tomanik1993).
-    FaceShear,
-}
-
-/// Pressure at which films cavitate.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum CavitationDatum {
-    /// Crankcase pressure (or the lower of the two edge pressures, when that is below).
-    #[default]
-    Gauge,
-    /// Absolute zero.
-    Absolute,
-}
-
-/// Friction of a twin-land ring.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum TwinLandFriction {
-    /// Sum over both lands.
-    #[default]
-    BothLands,
-    /// Twice the lower land (zottin1992 listing).
-    LowerTwice,
 }
 
 /// What every solver of a ring pack is told.

@@ -3,9 +3,9 @@
 use std::f64::consts::PI;
 
 use gudgeon_core::EvalError;
+use gudgeon_core::geometry::RingSection;
 use gudgeon_core::kinds::{FaceForces, OilFaceIn, RadialLoads, RadialMotion, RingForces, TwistMoments};
 
-use super::case::{AxialGas, Drag, FilmForce, Hoop, RadialGas, TwinLandFriction};
 use super::loads::{Loads, face_in, furthest};
 use super::pack::Pack;
 
@@ -13,22 +13,22 @@ use super::pack::Pack;
 const GRAVITY: f64 = 9.8;
 
 impl Pack {
+    /// Ring `i` between the pressures of the instant.
+    fn section(&self, i: usize) -> RingSection<'_> {
+        let r = &self.at.rings[i];
+        RingSection::new(&self.geo.rings[i], &self.at.places[i], self.geo.bore_radius)
+            .under(r.p_above, r.p_below, r.p_back, r.p_cav)
+    }
+
     /// Circumference that turns forces per length into forces \[m\].
     pub(super) fn perimeter(&self, i: usize) -> f64 {
-        match self.conv.radial_gas {
-            RadialGas::BorePerimeter => 2.0 * PI * self.geo.bore_radius,
-            _ => 2.0 * PI * self.at.places[i].r_outer,
-        }
+        self.laws.radial_gas.circumference(&self.section(i))
     }
 
     /// Load of tension alone, per circumference \[N/m\] of one rail.
     pub fn tension(&self, i: usize) -> f64 {
         let g = &self.geo.rings[i];
-        let f = g.tangential_force / g.rails as f64;
-        match self.conv.hoop {
-            Hoop::Correct => 2.0 * PI * f / self.perimeter(i),
-            Hoop::AsPrinted => 2.0 * f / self.perimeter(i),
-        }
+        self.laws.hoop.radial_force(g.tangential_force / g.rails as f64) / self.perimeter(i)
     }
 
     /// Radial load that the face must carry above `p_cav`, per circumference \[N/m\] of one rail, without flank friction.
@@ -38,36 +38,7 @@ impl Pack {
 
     /// The part of it that gas presses on.
     fn gas_load(&self, i: usize) -> f64 {
-        let (g, r, place) = (&self.geo.rings[i], &self.at.rings[i], &self.at.places[i]);
-        let back = g.height * (r.p_back - r.p_cav);
-        let inner = place.r_inner / place.r_outer;
-        match self.conv.radial_gas {
-            RadialGas::BorePerimeter => back,
-            RadialGas::BackOnly => back * inner,
-            RadialGas::BackAndFace => back * inner - self.gas_beside_face(i),
-            RadialGas::BackFaceAndGap => back * inner + self.gas_in_gap(i) - self.gas_beside_face(i),
-        }
-    }
-
-    /// Load of the lands above `p_cav` on the parts of the face outside the running face, per circumference \[N/m\].
-    fn gas_beside_face(&self, i: usize) -> f64 {
-        let (g, r) = (&self.geo.rings[i], &self.at.rings[i]);
-        let rest = g.height - g.lands as f64 * g.face.length();
-        if g.lands == 2 {
-            rest * (r.p_below - r.p_cav)
-        } else {
-            0.5 * rest * (r.p_above + r.p_below - 2.0 * r.p_cav)
-        }
-    }
-
-    /// Radial load of the gas on the end faces of the gap above `p_cav`, per circumference \[N/m\]: their force over the outer radius.
-    fn gas_in_gap(&self, i: usize) -> f64 {
-        let (g, r, place) = (&self.geo.rings[i], &self.at.rings[i], &self.at.places[i]);
-        let land = 0.5 * (g.piston_radius_above + g.piston_radius_below);
-        let land = land.clamp(place.r_inner, place.r_outer);
-        let between = 0.5 * (r.p_above + r.p_below) - r.p_cav;
-        let force = (r.p_back - r.p_cav) * (land - place.r_inner) + between * (place.r_outer - land);
-        g.height * force / place.r_outer
+        self.laws.radial_gas.load(&self.section(i))
     }
 
     /// What presses ring `i` against the liner and what carries it, and its radial motion, which asks for that.
@@ -89,7 +60,7 @@ impl Pack {
             least_film: self.limits.least_film,
             resists: ring.resists,
             perimeter,
-            shares: shares(ring.films.len(), self.conv.twin_land_friction),
+            shares: if ring.films.len() == 2 { self.laws.twin_land_friction.shares() } else { [1.0; 2] },
             films: &mut ring.films,
             friction: &*ring.friction,
             flux: self.at.rings[i].flux,
@@ -147,8 +118,8 @@ impl Pack {
                 let what = "this film cannot be confined to a part of its face";
                 return Err(EvalError::fatal("ring_pack", what));
             }
-            let upper = self.geo.rings[i].lands == 2 && land == 1;
-            let (bottom, top) = (r.p_below - r.p_cav, if upper { r.p_below } else { r.p_above } - r.p_cav);
+            let lower = self.geo.rings[i].lands == 2 && land == 1;
+            let (bottom, top) = (r.p_below - r.p_cav, if lower { r.p_below } else { r.p_above } - r.p_cav);
             let (d, length) = (e.drops, self.geo.rings[i].face.length());
             r.dry.0 += bottom * e.from + top * (length - e.to);
             r.dry.1 -= bottom * (d[1] - d[0]) + top * (d[3] - d[2]);
@@ -220,20 +191,9 @@ impl Pack {
             }
         }
         let rubbing = line.friction * r.contact * (u / self.limits.friction_speed).tanh();
-        let shear = match self.conv.drag {
-            Drag::Liner => o.liner_shear,
-            Drag::FaceShear => o.ring_shear,
-        };
-        r.friction = perimeter * (viscous * shear + rubbing);
-        r.power = match self.conv.drag {
-            Drag::Liner => r.friction * u,
-            Drag::FaceShear => (r.friction * u).abs(),
-        };
-        let force = match self.conv.film_force {
-            FilmForce::Total => o.ring_shear + o.slope_force + r.dry.1,
-            FilmForce::LinerReaction => o.liner_shear,
-            FilmForce::FaceShear => o.ring_shear,
-        };
+        r.friction = perimeter * (viscous * self.laws.drag.shear(&o) + rubbing);
+        r.power = self.laws.drag.power(r.friction, u);
+        let force = self.laws.film_force.per_length(&o, r.dry.1);
         r.axial.film = perimeter * (viscous * force + rubbing);
         Ok(())
     }
@@ -291,25 +251,14 @@ impl Pack {
 
     /// Gas, inertia and weight on ring `i`; its film counts where its motion counts it.
     pub(super) fn external_forces(&mut self, i: usize) {
-        let (g, place, ring) = (&self.geo.rings[i], self.at.places[i], &self.rings[i]);
+        let gas = self.laws.axial_gas.force(&self.section(i));
+        let (g, ring) = (&self.geo.rings[i], &self.rings[i]);
         let r = &mut self.at.rings[i];
-        r.axial.gas = match self.conv.axial_gas {
-            AxialGas::FullPerimeter => 2.0 * PI * self.geo.bore_radius * g.width * (r.p_below - r.p_above),
-            AxialGas::LinearProfile => 0.5 * place.flank_area() * (r.p_below - r.p_above),
-            AxialGas::LaminarProfile => {
-                let mean = |a: f64, b: f64| 2.0 / 3.0 * (a * a + a * b + b * b) / (a + b);
-                place.flank_area() * (mean(r.p_back, r.p_below) - mean(r.p_back, r.p_above))
-            }
-        };
+        r.axial.gas = gas;
         r.axial.inertia = -g.mass * self.at.piston.a;
         r.axial.gravity = if ring.motion.uses_gravity() { -GRAVITY * g.mass } else { 0.0 };
         if !ring.motion.uses_film_force() {
             r.axial.film = 0.0;
         }
     }
-}
-
-/// Parts of the friction of each of `lands` running faces that are counted.
-fn shares(lands: usize, twin_land: TwinLandFriction) -> [f64; 2] {
-    if lands == 2 && twin_land == TwinLandFriction::LowerTwice { [0.0, 2.0] } else { [1.0; 2] }
 }

@@ -7,6 +7,7 @@
 pub mod assemble;
 pub mod case;
 pub mod contact_line;
+pub mod conventions;
 pub mod degree_march;
 mod end_gap;
 mod error;

@@ -13,7 +13,8 @@ use gudgeon_core::kinds::{
 };
 use gudgeon_core::states::Stateful;
 
-use super::case::{CavitationDatum, Conventions, Limits};
+use super::case::Limits;
+use super::conventions::Laws;
 use super::instant::{Counters, Instant, SeatLog};
 use super::layout::Layout;
 use super::liner::LinerShape;
@@ -56,8 +57,8 @@ impl From<&Limits> for Bounds {
 pub struct Pack {
     /// Geometry.
     pub geo: PackGeometry,
-    /// Conventions.
-    pub conv: Conventions,
+    /// Laws of the forces on rings.
+    pub laws: Laws,
     /// Floors, caps and drags.
     pub limits: Bounds,
     /// Crank speed \[rad/s\].
@@ -271,10 +272,7 @@ impl Pack {
             let r = &mut self.at.rings[i];
             (r.p_above, r.p_below, r.p_back) =
                 (self.at.gas.p_land[i], self.at.gas.p_land[i + 1], self.at.gas.p_back[i]);
-            r.p_cav = match self.conv.cavitation_datum {
-                CavitationDatum::Absolute => 0.0,
-                CavitationDatum::Gauge => self.p_crankcase.min(r.p_above).min(r.p_below),
-            };
+            r.p_cav = self.laws.cavitation_datum.pressure(self.p_crankcase, r.p_above, r.p_below);
         }
     }
 

@@ -38,6 +38,9 @@ pub fn models_in_use(case: &RingPackCase, plan: &Plan) -> (Vec<ModelUse>, Vec<Sk
         if !plan.skipped.iter().any(|s| s.what == "flank_damping") {
             pack_and_own("flank_damping", m.flank_damping.typetag_name(), Vec::new());
         }
+        for (kind, name) in case.conventions.axial() {
+            pack_and_own(kind, name, Vec::new());
+        }
     }
     if plan.film {
         pack_and_own(
@@ -54,6 +57,9 @@ pub fn models_in_use(case: &RingPackCase, plan: &Plan) -> (Vec<ModelUse>, Vec<Sk
         pack_and_own("oil_transport", m.oil_transport.typetag_name(), Vec::new());
         pack_and_own("film_temperature", m.film_temperature.typetag_name(), Vec::new());
         pack_and_own("flank_friction", m.flank_friction.typetag_name(), Vec::new());
+        for (kind, name) in case.conventions.film() {
+            pack_and_own(kind, name, Vec::new());
+        }
     }
     for (i, r) in case.rings.iter().enumerate() {
         match r.design {
