@@ -10,9 +10,14 @@ use serde_json::{Map, Value};
 
 /// Every built-in model. A model that is missing here was added without anyone noticing, or is no longer linked.
 const MODELS: &[&str] = &[
+    "axial_gas/full_perimeter",
+    "axial_gas/laminar_profile",
+    "axial_gas/linear_profile",
     "boundary_friction/coulomb",
     "boundary_friction/off",
     "boundary_friction/stribeck",
+    "cavitation_datum/absolute",
+    "cavitation_datum/gauge",
     "compressibility/dowson_higginson",
     "compressibility/off",
     "contact/crest_wedge",
@@ -35,6 +40,8 @@ const MODELS: &[&str] = &[
     "cylinder_pressure/single_zone_wiebe",
     "cylinder_pressure/table",
     "cylinder_pressure/valve_losses",
+    "drag/face_shear",
+    "drag/liner",
     "drive/constant",
     "drive/harmonics",
     "drive/induction_motor",
@@ -55,6 +62,9 @@ const MODELS: &[&str] = &[
     "film_2d/multigrid",
     "film_2d/off",
     "film_2d/sor",
+    "film_force/face_shear",
+    "film_force/liner_reaction",
+    "film_force/total",
     "film_temperature/given",
     "film_temperature/land_wall_mean",
     "film_temperature/liner_linear",
@@ -71,6 +81,8 @@ const MODELS: &[&str] = &[
     "gas_flow/prescribed",
     "groove_friction/coulomb",
     "groove_friction/off",
+    "hoop/as_printed",
+    "hoop/correct",
     "hydrodynamics/closed_form_face",
     "hydrodynamics/gridded_face",
     "hydrodynamics/off",
@@ -99,6 +111,10 @@ const MODELS: &[&str] = &[
     "profile_curve/lagrange",
     "profile_curve/linear",
     "profile_curve/monotone_cubic",
+    "radial_gas/back_and_face",
+    "radial_gas/back_face_and_gap",
+    "radial_gas/back_only",
+    "radial_gas/bore_perimeter",
     "radial_motion/film_balance",
     "rig/contact_pair",
     "rig/cylinder_pressure",
@@ -148,26 +164,33 @@ const MODELS: &[&str] = &[
     "torsion/orders",
     "torsion/propagator",
     "torsion/runge_kutta",
+    "twin_land_friction/both_lands",
+    "twin_land_friction/lower_twice",
 ];
 
 /// How the physics of each kind is switched off: its `off` model, or the model that takes its place by giving the
 /// answer instead of computing it. A piston always moves and a pin always
-/// bears, so `kinematics` and `pin_strength` have none; a bench without a model is none.
+/// bears, so `kinematics` and `pin_strength` have none; a bench without a model is none; of two conventions one holds.
 const SWITCHED_OFF: &[(&str, Option<&str>)] = &[
+    ("axial_gas", None),
     ("boundary_friction", Some("off")),
+    ("cavitation_datum", None),
     ("compressibility", Some("off")),
     ("contact", Some("off")),
     ("coupling", Some("off")),
     ("cylinder_pressure", Some("constant")),
+    ("drag", None),
     ("drive", Some("off")),
     ("fatigue", Some("off")),
     ("film_1d", Some("off")),
     ("film_2d", Some("off")),
+    ("film_force", None),
     ("film_temperature", Some("given")),
     ("flank_damping", Some("off")),
     ("flank_friction", Some("off")),
     ("gas_flow", Some("prescribed")),
     ("groove_friction", Some("off")),
+    ("hoop", None),
     ("hydrodynamics", Some("off")),
     ("kinematics", None),
     ("natural_frequencies", None),
@@ -178,6 +201,7 @@ const SWITCHED_OFF: &[(&str, Option<&str>)] = &[
     ("pin_load", Some("given")),
     ("pin_strength", None),
     ("profile_curve", None),
+    ("radial_gas", None),
     ("radial_motion", None),
     ("rig", None),
     ("ring_motion", Some("seated")),
@@ -189,6 +213,7 @@ const SWITCHED_OFF: &[(&str, Option<&str>)] = &[
     ("skirt_profile", Some("cylindrical")),
     ("throw_inertia", Some("off")),
     ("torsion", Some("off")),
+    ("twin_land_friction", None),
 ];
 
 fn path(m: &ModelInfo) -> String {

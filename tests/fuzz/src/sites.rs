@@ -100,6 +100,10 @@ impl<'a> Walk<'a> {
                 some.into_iter().flatten().filter(|s| s.get("type").and_then(Value::as_str) != Some("null"));
             match (rest.next(), rest.next()) {
                 (Some(only), None) => schema = only,
+                // A model or its name: as the resolved case writes it, a model.
+                (Some(word), Some(model)) if word.get("enum").is_some() && model.get("$ref").is_some() => {
+                    schema = model
+                }
                 _ => break,
             }
         }
