@@ -96,7 +96,11 @@ fn set(
         let field = schema.and_then(|s| schemas.field(s, Some(node), &step.text));
         node = descend(node, field, step, &path, origin)?;
         path = join(&path, &step.text);
-        schema = field;
+        let model = field.and_then(|f| schemas.model_of_word(f));
+        if let Some(tagged) = model.and_then(|m| Tagged::of(schemas, schemas.resolve(m))) {
+            word_to_table(node, tagged.tag);
+        }
+        schema = model.or(field);
     }
 
     let field = schema.and_then(|s| schemas.field(s, Some(node), &last.text));
@@ -123,6 +127,15 @@ fn set(
         _ => return Err(not_a_table(node, last, &path, origin)),
     }
     Ok(())
+}
+
+/// `hoop = "as_printed"` becomes `hoop = { model = "as_printed" }`, which has keys to change.
+fn word_to_table(node: &mut Node, tag: &str) {
+    if matches!(node.data, Data::Text(_)) {
+        let place = node.place.clone();
+        let word = std::mem::replace(node, Node { data: Data::Table(Vec::new()), place: place.clone() });
+        node.data = Data::Table(vec![Entry { key: tag.to_owned(), key_place: place, node: word }]);
+    }
 }
 
 /// The child that a step leads to, made from the schema's default when the document does not have it.

@@ -88,6 +88,7 @@ impl Schema {
     /// The schema of one field or element, before references are followed (its `default` stands there).
     pub fn field<'a>(&'a self, schema: &'a Value, node: Option<&Node>, step: &str) -> Option<&'a Value> {
         let schema = self.resolve(schema);
+        let schema = self.model_of_word(schema).unwrap_or(schema);
         if step.parse::<usize>().is_ok() && schema.get("items").is_some() {
             return schema.get("items");
         }
@@ -99,6 +100,14 @@ impl Schema {
         properties
             .and_then(|p| p.get(step))
             .or_else(|| table.get("additionalProperties").filter(|a| a.is_object()))
+    }
+
+    /// The models that a word of this schema names: what `hoop = "as_printed"` says as the table `hoop = { model = "as_printed" }`.
+    pub fn model_of_word<'a>(&'a self, schema: &'a Value) -> Option<&'a Value> {
+        let all: Vec<&Value> =
+            alternatives(self.resolve(schema))?.into_iter().map(|s| self.resolve(s)).collect();
+        let [word, table] = all[..] else { return None };
+        (words_of(word).is_some() && Tagged::of(self, table).is_some()).then_some(table)
     }
 
     /// The first [`MOST_MISTAKES`] mistakes of the document; what the whole file lacks is told at its end.

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use dyn_clone::DynClone;
 use gudgeon_core::quantity::{Length, PosAngularSpeed, PosLength, PosPressure, Ratio, quantity};
-use gudgeon_core::{BuildError, register_kind, register_model};
+use gudgeon_core::{BuildError, Word, register_kind, register_model};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -68,6 +68,11 @@ struct Models {
     gas: Box<dyn GasSpec>,
     #[serde(default = "default_oil")]
     oil: Box<dyn GasSpec>,
+    #[serde(default = "default_wall")]
+    wall: Word<dyn GasSpec>,
+}
+fn default_wall() -> Word<dyn GasSpec> {
+    Word(Box::new(Off {}))
 }
 fn default_oil() -> Box<dyn GasSpec> {
     Box::new(Orifice { cd: 0.65, area: quantity(2.0) })
@@ -363,6 +368,26 @@ fn another_model_keeps_what_it_knows_and_tells_what_it_drops() {
     assert!(c.resolved().expect("serialises")["models"]["oil"]["thickness"].is_string());
     let c = good(&["models.gas.model=orifice"]);
     assert_eq!((c.notes.len(), c.value.models.gas.cd()), (0, Some(0.6)), "no change");
+}
+
+#[test]
+fn a_model_chosen_by_a_word_has_keys_to_change() {
+    let word = format!("{GOOD}wall = \"channel\"\n");
+    let table = format!("{GOOD}wall = {{ model = \"channel\", area = 2.0 }}\n");
+    for text in [GOOD, &word, &table] {
+        for change in ["models.wall=channel", "models.wall.model=channel"] {
+            let c =
+                try_set(text, &[change, "models.wall.area=4"]).unwrap_or_else(|r| panic!("{change}: {r}"));
+            let wall = c.resolved().expect("serialises")["models"]["wall"].clone();
+            assert_eq!(
+                (wall["model"].as_str(), wall["area"].as_f64()),
+                (Some("channel"), Some(4.0)),
+                "{change}"
+            );
+        }
+    }
+    let wrong = try_set(&word, &["models.wall.model=chanel"]).expect_err("no such model").to_string();
+    assert!(wrong.contains("channel"), "{wrong}");
 }
 
 #[test]
