@@ -164,11 +164,27 @@ impl Schema {
         }
     }
 
+    /// The schema of a table that stands in several places, with the keys that this one requires (`required` beside `$ref`).
+    fn requiring(&self, schema: &Value) -> Option<Value> {
+        schema.get("$ref")?;
+        let here = schema.get("required")?.as_array()?;
+        let mut table = self.resolve(schema).clone();
+        let keys = table.as_object_mut()?.entry("required").or_insert_with(|| Value::Array(Vec::new()));
+        let keys = keys.as_array_mut()?;
+        for key in here {
+            if !keys.contains(key) {
+                keys.push(key.clone());
+            }
+        }
+        Some(table)
+    }
+
     fn value(&self, node: &Node, schema: &Value, path: &str, out: &mut Vec<Diagnostic>) {
         if out.len() >= MOST_MISTAKES {
             return;
         }
-        let schema = self.resolve(schema);
+        let demanding = self.requiring(schema);
+        let schema = demanding.as_ref().unwrap_or_else(|| self.resolve(schema));
         if let Some(dimension) = schema.get("x-dimension").and_then(Value::as_str) {
             let bound = schema.get("x-bound").and_then(Value::as_str).unwrap_or_default();
             return check_quantity(node, dimension, bound, path, out);
@@ -234,6 +250,11 @@ impl Schema {
                 let mut d = Diagnostic::new(format!("unknown key `{}`", e.key))
                     .path(path)
                     .at(e.key_place.origin, e.key_place.span.clone());
+                if let Some(now) = renamed(schema, &e.key) {
+                    missing.retain(|m| *m != now);
+                    out.push(d.help(format!("it is called `{now}` now")));
+                    continue;
+                }
                 let elsewhere = if near.is_some() { Vec::new() } else { self.homes_of(&e.key, path) };
                 d = d.help(match (near, elsewhere.first()) {
                     (None, Some(home)) => {
@@ -470,6 +491,11 @@ impl<'a> Tagged<'a> {
     pub fn variant(&self, name: &str) -> Option<&'a Value> {
         self.variants.iter().find(|(n, _)| *n == name).map(|(_, s)| *s)
     }
+}
+
+/// What a key is called today that had another name once (`x-renamed`).
+fn renamed<'a>(schema: &'a Value, key: &str) -> Option<&'a str> {
+    schema.get("x-renamed")?.get(key)?.as_str()
 }
 
 fn alternatives(schema: &Value) -> Option<Vec<&Value>> {

@@ -47,7 +47,14 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<Checked, Report> {
 /// # Errors
 /// As [`check`].
 pub fn check_source(file: String, source: Source, overrides: &[String]) -> Result<Checked, Report> {
-    let case = load(source, overrides)?;
+    check_case(file, load(source, overrides)?)
+}
+
+/// As [`check`], of a case that was read before.
+///
+/// # Errors
+/// Everything that is wrong with it, with places.
+pub fn check_case(file: String, case: Box<dyn Scene>) -> Result<Checked, Report> {
     let mut errors = case.legal();
     errors.extend(sweep_input::legal(case.heading().sweeps));
     // The file itself comes first: its mistakes would come back with every change.

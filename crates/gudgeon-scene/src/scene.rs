@@ -10,6 +10,7 @@ use std::time::Instant;
 
 use gudgeon_case::{Loaded, Refinement, Report, Source, load_source, nearest, scene_of, top_level_keys};
 use gudgeon_core::BuildError;
+use gudgeon_core::kinds::EngineCycle;
 use gudgeon_core::result::{ModelUse, RunResult, Value};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::de::DeserializeOwned;
@@ -56,6 +57,11 @@ pub trait SceneCase:
         progress: &mut dyn FnMut(Progress),
     ) -> Result<RunResult, RunError>;
 
+    /// The cycle of one cylinder, for cases of other scenes that take it from here; none when the scene describes no cylinder.
+    fn cycle(_loaded: &Loaded<Self>) -> Option<Result<EngineCycle, BuildError>> {
+        None
+    }
+
     /// How its numerical settings are refined: those that it and its models declare.
     fn refinements(loaded: &Loaded<Self>) -> Vec<Refinement> {
         loaded.refinements()
@@ -79,6 +85,8 @@ pub trait Scene: Send + Sync {
     fn notes(&self) -> &[String];
     /// Every value in SI units, changes and defaults filled in.
     fn resolved(&self) -> serde_json::Value;
+    /// As [`SceneCase::cycle`].
+    fn cycle(&self) -> Option<Result<EngineCycle, BuildError>>;
     /// As [`SceneCase::refinements`].
     fn refinements(&self) -> Vec<Refinement>;
     /// Everything that is wrong, sweeps apart.
@@ -154,6 +162,10 @@ impl<C: SceneCase> Scene for Read<C> {
     fn resolved(&self) -> serde_json::Value {
         // What a case was read from can be written: a type that cannot would fail its first test.
         self.loaded.resolved().unwrap_or_default()
+    }
+
+    fn cycle(&self) -> Option<Result<EngineCycle, BuildError>> {
+        C::cycle(&self.loaded)
     }
 
     fn refinements(&self) -> Vec<Refinement> {
@@ -240,7 +252,13 @@ gudgeon_core::inventory::collect!(SceneInfo);
 /// Reads a case of the scene `C`: what [`register_scene!`](crate::register_scene) hands over.
 #[doc(hidden)]
 pub fn read_case<C: SceneCase>(source: Source, overrides: &[String]) -> Result<Box<dyn Scene>, Report> {
-    Ok(Box::new(Read::new(load_source::<C>(source, overrides)?)))
+    Ok(case_of(load_source::<C>(source, overrides)?))
+}
+
+/// A case from what was read of it, its values changed or not: how a scene makes cases of its parts.
+#[must_use]
+pub fn case_of<C: SceneCase>(loaded: Loaded<C>) -> Box<dyn Scene> {
+    Box::new(Read::new(loaded))
 }
 
 /// Registers a scene, beside the implementation of [`SceneCase`].

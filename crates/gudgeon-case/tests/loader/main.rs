@@ -27,6 +27,7 @@ struct Bench {
 
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("x-renamed" = { "pin_shift": "offset" }))]
 struct Machine {
     /// Crankshaft speed. More text.
     speed: PosAngularSpeed,
@@ -368,6 +369,35 @@ fn another_model_keeps_what_it_knows_and_tells_what_it_drops() {
     assert!(c.resolved().expect("serialises")["models"]["oil"]["thickness"].is_string());
     let c = good(&["models.gas.model=orifice"]);
     assert_eq!((c.notes.len(), c.value.models.gas.cd()), (0, Some(0.6)), "no change");
+}
+
+/// A case whose machine needs its offset.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct Offset {
+    #[schemars(extend("required" = ["offset"]))]
+    machine: Machine,
+}
+
+fn offset(keys: &str) -> Result<Loaded<Offset>, Report> {
+    let text = format!("[machine]\nspeed = 1.0\nbore = 0.1\n{keys}\n");
+    load_str("offset.toml", &text, Path::new("."), &[])
+}
+
+#[test]
+fn a_table_may_be_asked_for_more_where_it_stands() {
+    let read = offset("offset = \"1 mm\"").unwrap_or_else(|r| panic!("{r}"));
+    assert_eq!(read.value.machine.offset.map(|o| o.si()), Some(1e-3));
+    let told = offset("").expect_err("no offset").to_string();
+    assert!(told.contains("missing key `offset`") && told.contains("offset.toml:1:1"), "{told}");
+    assert!(try_set(GOOD, &[]).is_ok(), "elsewhere it is not asked for");
+}
+
+#[test]
+fn a_key_that_had_another_name_is_told_the_new_one() {
+    let told = offset("pin_shift = \"1 mm\"").expect_err("an old name").to_string();
+    assert!(told.contains("unknown key `pin_shift`") && told.contains("it is called `offset` now"), "{told}");
+    assert!(!told.contains("missing"), "{told}");
 }
 
 #[test]

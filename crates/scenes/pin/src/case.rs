@@ -10,12 +10,13 @@ use gudgeon_core::quantity::{
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use gudgeon_machine::{Engine, Piston};
 use gudgeon_scene::case_file;
 
 case_file! {
     /// Design of a gudgeon pin and of the piston around it. Give any of `pin`, `skirt`, `crown` and `dimensions`.
     pub struct PinCase {
-        /// Engine.
+        /// Engine, whose bore is the nominal diameter of the piston.
         pub engine: Engine,
         /// Piston.
         #[serde(default)]
@@ -44,31 +45,6 @@ case_file! {
         /// Constants in which a published program differs.
         #[serde(default)]
         pub conventions: Conventions,
-    }
-}
-
-/// Engine.
-#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Engine {
-    /// Nominal piston diameter: the cylinder bore.
-    pub bore: PosLength,
-}
-
-/// Piston.
-#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct Piston {
-    /// Alloy, which gives density and thermal expansion where they are not given: `m124_cast`, `m124_forged`, `m138_cast`, …
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub alloy: Option<String>,
-    /// Mass over the cube of the diameter, for the estimate of the piston's mass: 0.55 g/cm3 for light pistons.
-    pub apparent_density: PosDensity,
-}
-
-impl Default for Piston {
-    fn default() -> Self {
-        Self { alloy: None, apparent_density: quantity(550.0) }
     }
 }
 

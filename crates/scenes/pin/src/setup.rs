@@ -3,16 +3,14 @@
 use gudgeon_core::BuildError;
 use gudgeon_core::file::Files;
 use gudgeon_core::kinds::{
-    CylinderPressureCtx, EngineCycle, Fatigue, KinematicsCtx, PinLoadCase, PinLoadCtx, PinSize, PinStrength,
-    PinStrengthCtx,
+    EngineCycle, Fatigue, PinLoadCase, PinLoadCtx, PinSize, PinStrength, PinStrengthCtx,
 };
 use gudgeon_pin::design::{Design, Range, Relief};
 use gudgeon_pin::piston::{ALLOYS, Alloy, find_alloy};
 use gudgeon_pin::stock::{MOST_COMBINATIONS, Sizes};
 
 use super::case::{Method, Optimise, Pin, PinCase, RangeCase};
-use gudgeon_case::{advice, load_source, read_beside, scene_of};
-use gudgeon_scene_ring_pack::case::RingPackCase;
+use gudgeon_case::{advice, read_beside, scene_of};
 
 /// What a pin needs besides its dimensions.
 pub struct Setup {
@@ -202,7 +200,7 @@ fn load(case: &PinCase, files: &Files, bore: f64, pi: f64) -> Result<PinLoadCase
     spec.build(&PinLoadCtx { bore, pi, files, cycle_of: &cycle_of }).map_err(|e| e.within("models.pin_load"))
 }
 
-/// Speed, crank drive and cylinder pressure of a ring-pack case.
+/// The cycle of one cylinder that a case of another scene describes.
 fn other_cycle(files: &Files, name: &str) -> Result<EngineCycle, BuildError> {
     let first = |r: gudgeon_case::Report| match r.diagnostics.into_iter().next() {
         Some(d) => {
@@ -212,34 +210,12 @@ fn other_cycle(files: &Files, name: &str) -> Result<EngineCycle, BuildError> {
     };
     let source = read_beside(files, name).map_err(first)?;
     let scene = scene_of(&source, &[]).unwrap_or_default();
-    if scene != "ring_pack" {
+    let case = gudgeon_scene::load(source, &[]).map_err(first)?;
+    let Some(cycle) = case.cycle() else {
         let what = format!("`{name}` is a case of the scene `{scene}`, which describes no cycle");
-        return Err(BuildError::new(what).help("name a case of the scene `ring_pack`"));
-    }
-    let loaded = load_source::<RingPackCase>(source, &[]).map_err(first)?;
-    let c = &loaded.value;
-    let within = |e: BuildError| BuildError::new(format!("`{name}`: {e}"));
-    let kinematics = c
-        .models
-        .kinematics
-        .build(&KinematicsCtx {
-            crank_radius: 0.5 * c.engine.stroke.si(),
-            rod_length: c.engine.rod_length.si(),
-            offset: c.engine.offset.si(),
-            omega: c.engine.speed.si(),
-        })
-        .map_err(within)?;
-    let bore = c.engine.bore.si();
-    let pressure = c
-        .models
-        .cylinder_pressure
-        .build(&CylinderPressureCtx {
-            kinematics: kinematics.as_ref(),
-            piston_area: std::f64::consts::PI * bore * bore / 4.0,
-            files: &loaded.source.files,
-        })
-        .map_err(within)?;
-    Ok(EngineCycle { bore, kinematics, pressure, crankcase_pressure: c.gas.crankcase_pressure.si() })
+        return Err(BuildError::new(what).help("name a case with an engine and a cylinder pressure"));
+    };
+    cycle.map_err(|e| BuildError::new(format!("`{name}`: {e}")))
 }
 
 fn relief(pin: &Pin, alloy: Option<&Alloy>, bore: f64) -> Result<Option<Relief>, BuildError> {

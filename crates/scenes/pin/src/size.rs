@@ -77,7 +77,7 @@ fn loads(case: &PinCase, s: &Setup, out: &mut RunResult) {
         let angle = l.design.theta.to_degrees();
         result(out, "design_angle", angle, "deg", "crank angle of the greatest force on the pin");
     }
-    let mass = mass_estimate(case.piston.apparent_density.si(), s.bore);
+    let mass = mass_estimate(case.piston.apparent_density(), s.bore);
     result(out, "piston_mass_estimate", 1e3 * mass, "g", "apparent density times the cube of the diameter");
 }
 

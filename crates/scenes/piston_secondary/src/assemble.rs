@@ -4,14 +4,14 @@ use std::f64::consts::PI;
 
 use gudgeon_core::file::Files;
 use gudgeon_core::kinds::{
-    CylinderPressure, CylinderPressureCtx, GrooveFriction, GrooveFrictionCtx, Kinematics, KinematicsCtx, Oil,
-    PinFriction, SecondaryMotion, SecondaryMotionCtx, ShearThinning, SkirtComplianceCtx, SkirtComplianceSpec,
-    SkirtProfile, SkirtProfileCtx,
+    CylinderPressure, GrooveFriction, GrooveFrictionCtx, Kinematics, Oil, PinFriction, SecondaryMotion,
+    SecondaryMotionCtx, ShearThinning, SkirtComplianceCtx, SkirtComplianceSpec, SkirtProfile,
+    SkirtProfileCtx,
 };
 use gudgeon_core::{BuildError, EvalError};
 use gudgeon_skirt::{Body, ContactGrid, Crank, Instant, Panel, Piston, Rigid, Rod, Side, SideSetup};
 
-use super::case::{GravitySide, PistonSecondaryCase};
+use super::case::PistonSecondaryCase;
 use super::layout::Layout;
 use super::legal::{legal, radius, running_clearance};
 
@@ -116,9 +116,8 @@ pub fn assemble(
 ) -> Result<Assembly, Vec<BuildError>> {
     let mut errors = legal(case);
     let clearance = running_clearance(case, radius(case));
-    let (crank, body) = (crank(case), body(case));
-    let area = 0.25 * PI * case.engine.bore.si() * case.engine.bore.si();
-    let parts = Parts::build(case, files, &crank, &body, area, clearance);
+    let (crank, body) = (crank(case).map_err(|e| vec![e])?, body(case).map_err(|e| vec![e])?);
+    let parts = Parts::build(case, files, &crank, &body, clearance);
     // The mistakes of the common models are told once.
     let sides = match (&parts.profile, &parts.thinning) {
         (Ok(profile), Ok(_)) if errors.is_empty() => {
@@ -150,7 +149,7 @@ pub fn assemble(
         cylinder: parts.cylinder,
         motion: parts.motion,
         motion_name: case.models.secondary_motion.typetag_name(),
-        area,
+        area: case.engine.area(),
         mu,
         p_crankcase: case.gas.crankcase_pressure.si(),
         clearance,
@@ -159,37 +158,33 @@ pub fn assemble(
     })
 }
 
-fn crank(case: &PistonSecondaryCase) -> Crank {
-    let e = &case.engine;
-    Crank {
-        radius: e.crank_radius.si(),
-        rod_length: e.rod_length.si(),
-        omega: e.speed.si(),
-        pin_offset: e.pin_offset.si(),
-        crank_offset: e.crank_offset.si(),
+fn crank(case: &PistonSecondaryCase) -> Result<Crank, BuildError> {
+    let c = case.engine.crank()?;
+    Ok(Crank {
+        radius: c.radius,
+        rod_length: c.rod_length,
+        omega: c.omega,
+        pin_offset: c.pin_offset,
+        crank_offset: c.crank_offset,
         rod: case.rod.as_ref().map_or_else(Rod::default, |r| Rod {
             mass: r.mass.si(),
             centre: r.gravity_distance.si(),
             inertia: r.inertia.si(),
         }),
-    }
+    })
 }
 
-fn body(case: &PistonSecondaryCase) -> Body {
-    let p = &case.piston;
-    let side = match p.gravity_side {
-        GravitySide::Thrust => 1.0,
-        GravitySide::AntiThrust => -1.0,
-    };
-    Body {
-        piston_mass: p.mass.si(),
-        pin_mass: p.pin_mass.si(),
-        inertia: p.inertia.si(),
+fn body(case: &PistonSecondaryCase) -> Result<Body, BuildError> {
+    let p = case.piston.body()?;
+    Ok(Body {
+        piston_mass: p.mass,
+        pin_mass: p.pin_mass,
+        inertia: p.inertia,
         length: case.skirt.length.si(),
-        pin: p.pin_depth.si(),
-        centre: p.gravity_depth.si(),
-        centre_offset: side * p.gravity_offset.si(),
-    }
+        pin: p.pin_depth,
+        centre: p.gravity_depth,
+        centre_offset: p.gravity_offset,
+    })
 }
 
 /// Running sub-models beside the sides of the skirt, or why there is none.
@@ -217,29 +212,10 @@ struct Checked {
 }
 
 impl Parts {
-    fn build(
-        case: &PistonSecondaryCase,
-        files: &Files,
-        crank: &Crank,
-        body: &Body,
-        area: f64,
-        clearance: f64,
-    ) -> Self {
+    fn build(case: &PistonSecondaryCase, files: &Files, crank: &Crank, body: &Body, clearance: f64) -> Self {
         let m = &case.models;
-        let ctx = KinematicsCtx {
-            crank_radius: crank.radius,
-            rod_length: crank.rod_length,
-            offset: crank.crank_offset - crank.pin_offset,
-            omega: crank.omega,
-        };
-        let kinematics = m.kinematics.build(&ctx).map_err(|e| match e.field.as_str() {
-            "" => e.within("models.kinematics"),
-            _ => e.within("engine"),
-        });
-        let cylinder = kinematics.as_ref().ok().map(|k| {
-            let ctx = CylinderPressureCtx { kinematics: &**k, piston_area: area, files };
-            m.cylinder_pressure.build(&ctx).map_err(|e| e.within("models.cylinder_pressure"))
-        });
+        let kinematics = case.engine.motion(&*m.kinematics);
+        let cylinder = kinematics.as_ref().ok().map(|k| case.engine.gas(&*m.cylinder_pressure, &**k, files));
         let profile = SkirtProfileCtx { length: body.length, radius: radius(case), files };
         let start = [case.solver.start_top.si(), case.solver.start_bottom.si()];
         let motion = SecondaryMotionCtx::new(clearance, crank.omega, body.matrix()).starting_at(start);

@@ -6,20 +6,23 @@ use gudgeon_core::kinds::{
     SkirtProfileSpec,
 };
 use gudgeon_core::quantity::{
-    Angle, Length, NonNegative, PosAngle, PosAngularSpeed, PosExpansion, PosInertia, PosLength, PosMass,
-    PosPressure, PosRatio, PosTemperature, PosTime, Pressure, Ratio, quantity,
+    Angle, Length, NonNegative, PosAngle, PosExpansion, PosInertia, PosLength, PosMass, PosPressure,
+    PosRatio, PosTemperature, PosTime, Pressure, Ratio, quantity,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use gudgeon_machine::{Engine, Piston};
 use gudgeon_scene::{IntegratorName, case_file};
 
 case_file! {
     /// The lateral motion and the tilt of a piston in its bore.
     pub struct PistonSecondaryCase {
         /// Crank drive.
+        #[schemars(extend("required" = ["speed", "bore", "rod_length"]))]
         pub engine: Engine,
         /// Piston and pin.
+        #[schemars(extend("required" = ["mass", "inertia", "pin_mass", "pin_depth", "gravity_depth"]))]
         pub piston: Piston,
         /// Connecting rod; without mass when absent.
         #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -38,71 +41,6 @@ case_file! {
         #[serde(default)]
         pub outputs: Outputs,
     }
-}
-
-/// Crank drive.
-#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Engine {
-    /// Crankshaft speed.
-    pub speed: PosAngularSpeed,
-    /// Cylinder bore: the area under the gas.
-    pub bore: PosLength,
-    /// Crank radius.
-    pub crank_radius: PosLength,
-    /// Connecting-rod length between centres.
-    pub rod_length: PosLength,
-    /// Distance of the pin from the axis of the bore, towards the thrust side positive. After top dead centre the crank pin moves to the other
-    /// side.
-    #[serde(default = "zero")]
-    pub pin_offset: Length,
-    /// Distance of the crank axis from the axis of the bore, towards the thrust side positive.
-    #[serde(default = "zero")]
-    pub crank_offset: Length,
-    /// Number of cylinders, for the engine totals.
-    #[serde(default = "one")]
-    #[schemars(range(min = 1, max = 1000))]
-    pub cylinders: u32,
-}
-
-/// Side of the pin on which the centre of gravity stands. Loureiro (2009) gives its distance alone, and none of the two sides meets all his
-/// figures.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum GravitySide {
-    /// Towards the anti-thrust side: between a pin offset to the thrust side and the axis of the bore (the source's `s_G = -1`). The inertia of
-    /// the piston along the bore counteracts the moment of the gas about the pin. The EA111 piston is periodic within 8 cycles, its upper edge
-    /// crosses to the anti-thrust side about firing top dead centre, and lower waves drag less, as in the source; the motored piston of Zhu rests
-    /// on the wrong side.
-    #[default]
-    AntiThrust,
-    /// Towards the thrust side, beyond a pin offset to that side (`s_G = +1`: the source's equation 59 with its own sign of the inertia
-    /// force). Both moments add. The motored piston rests on the side of the source. The mean lateral position of the EA111 piston restores itself over
-    /// some 20 cycles, passes the source's values near his fourth one, and ends nearer to the thrust side with half as much friction again; lower
-    /// waves then drag more.
-    Thrust,
-}
-
-/// Piston and pin.
-#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Piston {
-    /// Mass of the piston without pin.
-    pub mass: PosMass,
-    /// Moment of inertia of the piston about its centre of gravity, for tilting.
-    pub inertia: PosInertia,
-    /// Mass of the pin.
-    pub pin_mass: PosMass,
-    /// Depth of the pin below the upper edge of the skirt.
-    pub pin_depth: Length,
-    /// Depth of the centre of gravity below the upper edge of the skirt.
-    pub gravity_depth: Length,
-    /// Distance of the centre of gravity from the pin across the bore.
-    #[serde(default = "no_distance")]
-    pub gravity_offset: Length<NonNegative>,
-    /// On which side of the pin.
-    #[serde(default)]
-    pub gravity_side: GravitySide,
 }
 
 /// Connecting rod.
@@ -335,15 +273,6 @@ impl Default for Outputs {
     }
 }
 
-const fn one() -> u32 {
-    1
-}
-fn zero() -> Length {
-    quantity(0.0)
-}
-fn no_distance() -> Length<NonNegative> {
-    quantity(0.0)
-}
 fn warm() -> PosTemperature {
     quantity(373.15)
 }

@@ -2,11 +2,13 @@
 
 use gudgeon_case::Loaded;
 use gudgeon_core::BuildError;
+use gudgeon_core::kinds::EngineCycle;
 use gudgeon_core::result::{ModelUse, Note, RunResult, Skipped, SolverReport};
+use gudgeon_machine::GravitySide;
 use gudgeon_scene::{Explanation, Progress, RunError, SceneCase, WorkPrecision};
 
 use super::assemble::{Assembly, assemble};
-use super::case::{GravitySide, Method, PistonSecondaryCase};
+use super::case::{Method, PistonSecondaryCase};
 use super::explained::{Explained, models};
 use super::impossible::impossible;
 use super::march::{Found, Purpose};
@@ -43,6 +45,12 @@ impl SceneCase for PistonSecondaryCase {
         told.results = wanted.into_iter().map(|r| r.name).collect();
         told.states = a.layout.states.iter().map(|s| s.name.clone()).collect();
         Ok(models(case))
+    }
+
+    fn cycle(loaded: &Loaded<Self>) -> Option<Result<EngineCycle, BuildError>> {
+        let (c, files) = (&loaded.value, &loaded.source.files);
+        let (motion, gas) = (&*c.models.kinematics, &*c.models.cylinder_pressure);
+        Some(c.engine.cycle(motion, gas, c.gas.crankcase_pressure, files))
     }
 
     fn result_names(loaded: &Loaded<Self>, a: &mut Assembly) -> Option<Vec<String>> {
@@ -125,11 +133,11 @@ fn name(method: Method) -> &'static str {
 }
 
 fn centre_of_gravity(case: &PistonSecondaryCase) -> Note {
-    let side = match case.piston.gravity_side {
+    let side = match case.piston.gravity_side() {
         GravitySide::Thrust => "thrust",
         GravitySide::AntiThrust => "anti-thrust",
     };
-    let offset = 1e3 * case.piston.gravity_offset.si();
+    let offset = 1e3 * case.piston.gravity_offset.map_or(0.0, |d| d.si());
     Note::info(
         "centre_of_gravity",
         format!("Centre of gravity {offset:.3} mm from the pin on its {side} side"),

@@ -5,12 +5,15 @@ pub mod case;
 use std::time::Instant;
 
 use gudgeon_core::BuildError;
+use gudgeon_core::file::Files;
+use gudgeon_core::kinds::EngineCycle;
+use gudgeon_core::quantity::quantity;
 use gudgeon_core::result::{ModelUse, RunResult, Value};
-use serde_json::Value as Json;
 
 use case::{Part, PowerCylinderCase};
-use gudgeon_case::{Loaded, Refinement, Report, read_beside, scene_of};
-use gudgeon_scene::{Checked, Explanation, Progress, RunError, SceneCase, check_source, explain};
+use gudgeon_case::{Loaded, Refinement, Report, load_source, read_beside, scene_of};
+use gudgeon_machine::Engine;
+use gudgeon_scene::{Checked, Explanation, Progress, RunError, SceneCase, case_of, check_case, explain};
 use gudgeon_scene_piston_secondary::case::PistonSecondaryCase;
 use gudgeon_scene_ring_pack::case::RingPackCase;
 
@@ -37,6 +40,15 @@ impl SceneCase for PowerCylinderCase {
             add_models(&mut models, own.models.into_iter().map(|m| m.used));
         }
         Ok(models)
+    }
+
+    /// That of the rings.
+    fn cycle(loaded: &Loaded<Self>) -> Option<Result<EngineCycle, BuildError>> {
+        let field = "ring_pack";
+        match read_part::<RingPackCase>(&loaded.source.files, &loaded.value.ring_pack, field) {
+            Ok(rings) => RingPackCase::cycle(&rings),
+            Err(wrong) => wrong.into_iter().next().map(Err),
+        }
     }
 
     /// Those of both parts, as changes to the parts.
@@ -160,68 +172,46 @@ fn add_models(to: &mut Vec<ModelUse>, more: impl IntoIterator<Item = ModelUse>) 
 
 /// Both cases, the skirt's with the crank drive and the gas of the rings'.
 fn parts(loaded: &Loaded<PowerCylinderCase>) -> Result<(Checked, Checked), Vec<BuildError>> {
-    let files = &loaded.source.files;
-    let wrong = |field: &str, scene: &str| {
-        vec![BuildError::at(format!("{field}.case"), format!("must be a case of the scene `{scene}`"))]
-    };
-    let part_of = |part: &Part, field: &str, more: &[String]| {
-        let set: Vec<String> = part.set.iter().chain(more).cloned().collect();
-        let told = |report: Report| {
-            let told: Vec<String> = report.diagnostics.iter().map(|d| d.headline()).collect();
-            vec![BuildError::at(format!("{field}.case"), format!("{}: {}", part.case, told.join("; ")))]
-        };
-        // Before the rest of it: a part that is a whole cylinder could be this case itself.
-        let source = read_beside(files, &part.case).map_err(told)?;
-        if scene_of(&source, &set).as_deref() != Some(field) {
-            return Err(wrong(field, field));
-        }
-        check_source(part.case.clone(), source, &set).map_err(told)
-    };
-    let rings = part_of(&loaded.value.ring_pack, "ring_pack", &[])?;
-    let pack = rings.of::<RingPackCase>().ok_or_else(|| wrong("ring_pack", "ring_pack"))?;
-    let first = part_of(&loaded.value.piston_secondary, "piston_secondary", &[])?;
-    let own =
-        first.of::<PistonSecondaryCase>().ok_or_else(|| wrong("piston_secondary", "piston_secondary"))?;
-    let shared = shared(pack, own).map_err(|e| {
-        vec![BuildError::at("ring_pack.case", format!("its models cannot be handed on: {e}"))]
-    })?;
-    let skirt = part_of(&loaded.value.piston_secondary, "piston_secondary", &shared)?;
-    Ok((rings, skirt))
+    let (own, files) = (&loaded.value, &loaded.source.files);
+    let rings: Loaded<RingPackCase> = read_part(files, &own.ring_pack, "ring_pack")?;
+    let pack = rings.value.clone();
+    let rings = checked(rings, &own.ring_pack, "ring_pack")?;
+    let mut skirt: Loaded<PistonSecondaryCase> = read_part(files, &own.piston_secondary, "piston_secondary")?;
+    share(&pack, &mut skirt.value);
+    Ok((rings, checked(skirt, &own.piston_secondary, "piston_secondary")?))
 }
 
-/// What the skirt takes from the rings' case, as `--set` takes it.
-fn shared(pack: &RingPackCase, skirt: &PistonSecondaryCase) -> Result<Vec<String>, serde_json::Error> {
-    let e = &pack.engine;
-    // The ring pack knows the distance of the pin's line from the crank axis, towards the anti-thrust side positive.
-    let crank_offset = e.offset.si() + skirt.engine.pin_offset.si();
-    Ok(vec![
-        format!("engine.speed={:e} rad/s", e.speed.si()),
-        format!("engine.bore={:e} m", e.bore.si()),
-        format!("engine.crank_radius={:e} m", 0.5 * e.stroke.si()),
-        format!("engine.rod_length={:e} m", e.rod_length.si()),
-        format!("engine.crank_offset={crank_offset:e} m"),
-        format!("engine.cylinders={}", e.cylinders),
-        format!("gas.crankcase_pressure={:e} Pa", pack.gas.crankcase_pressure.si()),
-        format!("models.kinematics={}", inline(&serde_json::to_value(&pack.models.kinematics)?)),
-        format!(
-            "models.cylinder_pressure={}",
-            inline(&serde_json::to_value(&pack.models.cylinder_pressure)?)
-        ),
-    ])
-}
-
-/// A value as TOML on one line; what is null is left out.
-fn inline(v: &Json) -> String {
-    match v {
-        Json::Object(o) => {
-            let fields = o.iter().filter(|(_, v)| !v.is_null());
-            let fields: Vec<String> = fields.map(|(k, v)| format!("{k} = {}", inline(v))).collect();
-            format!("{{ {} }}", fields.join(", "))
-        }
-        Json::Array(a) => format!("[{}]", a.iter().map(inline).collect::<Vec<_>>().join(", ")),
-        // JSON and TOML write text and numbers the same.
-        other => other.to_string(),
+/// A part as its file and its changes give it; the part at `field` is of the scene of that name.
+fn read_part<C: SceneCase>(files: &Files, part: &Part, field: &str) -> Result<Loaded<C>, Vec<BuildError>> {
+    // Before the rest of it: a part that is a whole cylinder could be this case itself.
+    let source = read_beside(files, &part.case).map_err(|r| refused(&r, part, field))?;
+    if scene_of(&source, &part.set).as_deref() != Some(field) {
+        let what = format!("must be a case of the scene `{field}`");
+        return Err(vec![BuildError::at(format!("{field}.case"), what)]);
     }
+    load_source(source, &part.set).map_err(|r| refused(&r, part, field))
+}
+
+fn checked<C: SceneCase>(case: Loaded<C>, part: &Part, field: &str) -> Result<Checked, Vec<BuildError>> {
+    check_case(part.case.clone(), case_of(case)).map_err(|r| refused(&r, part, field))
+}
+
+/// What is wrong with a part, told of the key that names it.
+fn refused(report: &Report, part: &Part, field: &str) -> Vec<BuildError> {
+    let told: Vec<String> = report.diagnostics.iter().map(|d| d.headline()).collect();
+    vec![BuildError::at(format!("{field}.case"), format!("{}: {}", part.case, told.join("; ")))]
+}
+
+/// Gives the skirt the crank drive and the gas of the rings. Where the pin stands in the piston, the skirt's case says.
+fn share(pack: &RingPackCase, skirt: &mut PistonSecondaryCase) {
+    let pin_offset = skirt.engine.pin_offset;
+    // The line of the pin stays where the rings' case has it.
+    let moved = pin_offset.si() - pack.engine.pin_offset.si();
+    let crank_offset = quantity(pack.engine.crank_offset.si() + moved);
+    skirt.engine = Engine { pin_offset, crank_offset, ..pack.engine.clone() };
+    skirt.gas.crankcase_pressure = pack.gas.crankcase_pressure;
+    skirt.models.kinematics = pack.models.kinematics.clone();
+    skirt.models.cylinder_pressure = pack.models.cylinder_pressure.clone();
 }
 
 gudgeon_scene::register_scene! {

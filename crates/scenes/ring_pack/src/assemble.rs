@@ -5,10 +5,9 @@ use std::f64::consts::PI;
 use gudgeon_core::file::Files;
 use gudgeon_core::geometry::{BackVolume, PackGeometry, RingGeometry};
 use gudgeon_core::kinds::{
-    CylinderPressure, CylinderPressureCtx, FaceCtx, FilmTemperature, FilmTemperatureCtx, FlankDampingCtx,
-    FlankFriction, GasFlow, GasFlowCtx, GasIn, GasOut, Hydrodynamics, Kinematics, KinematicsCtx, Oil,
-    OilTransport, OilTransportCtx, RadialMotion, RadialMotionCtx, RingForces, RingMotion, RingMotionCtx,
-    RingPose, RingResponse,
+    CylinderPressure, FaceCtx, FilmTemperature, FilmTemperatureCtx, FlankDampingCtx, FlankFriction, GasFlow,
+    GasFlowCtx, GasIn, GasOut, Hydrodynamics, Kinematics, Oil, OilTransport, OilTransportCtx, RadialMotion,
+    RadialMotionCtx, RingForces, RingMotion, RingMotionCtx, RingPose, RingResponse,
 };
 use gudgeon_core::states::{Signals, Stateful};
 use gudgeon_core::{BuildError, EvalError};
@@ -101,24 +100,19 @@ impl Drive {
         let follows_oil = case.models.oil_transport.follows_oil();
         let wanted = kept(&mut errors, wanted(&case.outputs.results, case.rings.len(), follows_oil));
         let geo = kept(&mut errors, geometry::resolve(case));
-        let kinematics = kept(&mut errors, kinematics(case).map_err(|e| vec![e]));
+        let motion = case.engine.motion(&*case.models.kinematics);
+        let kinematics = kept(&mut errors, motion.map_err(|e| vec![e]));
         let (Some(wanted), Some(geo), Some(kinematics)) = (wanted, geo, kinematics) else {
             return Err(errors);
         };
         errors.extend(improper(case));
-        let ctx = CylinderPressureCtx {
-            kinematics: kinematics.as_ref(),
-            piston_area: PI * geo.bore_radius * geo.bore_radius,
-            files,
-        };
         let m = &case.models;
-        let cylinder =
-            m.cylinder_pressure.build(&ctx).map_err(|e| vec![e.within("models.cylinder_pressure")]);
+        let cylinder = case.engine.gas(&*m.cylinder_pressure, &*kinematics, files).map_err(|e| vec![e]);
         let gas = m.gas_flow.build(&GasFlowCtx { pack: &geo }).map_err(|e| vec![e.within("models.gas_flow")]);
         let (cylinder, gas) = (kept(&mut errors, cylinder), kept(&mut errors, gas));
         match (cylinder, gas) {
             (Some(cylinder), Some(gas)) if errors.is_empty() => {
-                let omega = case.engine.speed.si();
+                let omega = kinematics.omega();
                 Ok(Self { wanted, geo, omega, kinematics, cylinder, gas })
             }
             _ => Err(errors),
@@ -134,24 +128,6 @@ impl Drive {
 /// The value, or nothing with its errors kept.
 fn kept<T>(errors: &mut Vec<BuildError>, found: Result<T, Vec<BuildError>>) -> Option<T> {
     found.map_err(|e| errors.extend(e)).ok()
-}
-
-fn kinematics(case: &RingPackCase) -> Result<Box<dyn Kinematics>, BuildError> {
-    let ctx = KinematicsCtx {
-        crank_radius: case.engine.stroke.si() / 2.0,
-        rod_length: case.engine.rod_length.si(),
-        offset: case.engine.offset.si(),
-        omega: case.engine.speed.si(),
-    };
-    case.models.kinematics.build(&ctx).map_err(|e| {
-        // The mechanism is the engine's, not the model's.
-        let place = match e.field.as_str() {
-            "crank_radius" => "engine.stroke",
-            "offset" => "engine.offset",
-            _ => "engine.rod_length",
-        };
-        BuildError { field: place.into(), ..e }
-    })
 }
 
 /// Numbers of the case that mean nothing.

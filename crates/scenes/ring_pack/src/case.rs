@@ -6,8 +6,8 @@ use gudgeon_core::kinds::{
     HydrodynamicsSpec, KinematicsSpec, OilSpec, OilTransportSpec, RadialMotionSpec, RingMotionSpec,
 };
 use gudgeon_core::quantity::{
-    Angle, Fraction, Length, NonNegative, PosAngle, PosAngularSpeed, PosArea, PosExpansion, PosForce,
-    PosGasConstant, PosLength, PosMass, PosPressure, PosRatio, PosTemperature, PosVolume, Ratio, quantity,
+    Angle, Fraction, Length, NonNegative, PosAngle, PosArea, PosExpansion, PosForce, PosGasConstant,
+    PosLength, PosMass, PosPressure, PosRatio, PosTemperature, PosVolume, Ratio, quantity,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -15,14 +15,17 @@ use serde::{Deserialize, Serialize};
 pub use crate::conventions::Conventions;
 pub use crate::limits::Limits;
 pub use crate::solver::RingPackSolverSpec;
+use gudgeon_machine::{Engine, Piston};
 use gudgeon_scene::{SolverCommon, SolverTable, case_file};
 
 case_file! {
     /// A piston ring pack in one cylinder.
     pub struct RingPackCase {
         /// Engine.
+        #[schemars(extend("required" = ["speed", "bore", "rod_length"]))]
         pub engine: Engine,
         /// Piston, from the crown down.
+        #[schemars(extend("required" = ["lands"]))]
         pub piston: Piston,
         /// Cylinder liner.
         #[serde(default)]
@@ -45,59 +48,6 @@ case_file! {
         #[serde(default)]
         pub outputs: Outputs,
     }
-}
-
-/// Engine.
-#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Engine {
-    /// Crankshaft speed.
-    pub speed: PosAngularSpeed,
-    /// Cylinder bore.
-    pub bore: PosLength,
-    /// Twice the crank radius.
-    pub stroke: PosLength,
-    /// Connecting-rod length between centres.
-    pub rod_length: PosLength,
-    /// Offset of the pin's line of motion from the crank axis (pin offset plus crank offset).
-    #[serde(default = "zero_length")]
-    pub offset: Length,
-    /// Number of cylinders, for the engine totals.
-    #[serde(default = "one")]
-    #[schemars(range(min = 1, max = 1000))]
-    pub cylinders: u32,
-}
-
-/// Piston.
-#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Piston {
-    /// Lands above each ring, top land first: as many as there are rings.
-    #[schemars(length(max = 20))]
-    pub lands: Vec<Land>,
-    /// Height of the middle of ring 1 above the gudgeon pin. Needed when the liner is distorted.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub pin_to_ring1: Option<Length>,
-}
-
-/// A piston land, running (hot) dimensions.
-#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Land {
-    /// Diameter. Give this or `clearance`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub diameter: Option<PosLength>,
-    /// Radial clearance to the bore. Give this or `diameter`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub clearance: Option<PosLength>,
-    /// Axial height. Gives the gas volume with the clearance, unless `volume` is given.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub height: Option<PosLength>,
-    /// Gas volume.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub volume: Option<PosVolume>,
-    /// Gas temperature (that of the piston surface).
-    pub temperature: PosTemperature,
 }
 
 /// Cylinder liner.
@@ -357,12 +307,6 @@ impl Default for Outputs {
     }
 }
 
-const fn one() -> u32 {
-    1
-}
-fn zero_length() -> Length {
-    quantity(0.0)
-}
 fn zero_nn() -> Length<NonNegative> {
     quantity(0.0)
 }

@@ -6,7 +6,8 @@ use gudgeon_core::BuildError;
 use gudgeon_core::geometry::{BackVolume, Chamfer, LandGeometry, PackGeometry, RingGeometry};
 use gudgeon_core::result::{PackSection, SectionRing};
 
-use crate::case::{Land, Ring, RingDesign, RingPackCase};
+use crate::case::{Ring, RingDesign, RingPackCase};
+use gudgeon_machine::Land;
 
 /// Temperature at which cold gaps are measured \[K\] (zottin1992, 20 degC).
 pub(super) const COLD: f64 = 293.15;
@@ -283,7 +284,7 @@ fn ok_number(v: f64) -> bool {
 }
 
 /// The section that reports draw.
-pub fn section(case: &RingPackCase, pack: &PackGeometry) -> PackSection {
+pub fn section(case: &RingPackCase, pack: &PackGeometry, stroke: f64) -> PackSection {
     let top_land = case.piston.lands[0].height.map_or(6e-3, |h| h.si());
     let mut y = top_land;
     let mut rings = Vec::with_capacity(pack.rings.len());
@@ -321,5 +322,5 @@ pub fn section(case: &RingPackCase, pack: &PackGeometry) -> PackSection {
             None => 6e-3,
         };
     }
-    PackSection { bore_radius: pack.bore_radius, top_land, length: y, stroke: case.engine.stroke.si(), rings }
+    PackSection { bore_radius: pack.bore_radius, top_land, length: y, stroke, rings }
 }

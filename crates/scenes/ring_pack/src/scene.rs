@@ -1,6 +1,7 @@
 //! The ring pack as a scene: what it refuses, explains, runs and races.
 
 use gudgeon_core::BuildError;
+use gudgeon_core::kinds::EngineCycle;
 use gudgeon_core::result::{Figure, FigureKind, ModelUse, RunResult};
 
 use super::pack::Pack;
@@ -77,7 +78,8 @@ impl SceneCase for RingPackCase {
             });
             result.tables.insert("liner".into(), liner);
         }
-        result.section = Some(geometry::section(case, &pack.geo));
+        let stroke = case.engine.crank().map_err(|e| RunError::refused(&[e]))?.radius * 2.0;
+        result.section = Some(geometry::section(case, &pack.geo, stroke));
         result.seconds.insert("solve".into(), solved.seconds);
         Ok(result)
     }
@@ -86,6 +88,12 @@ impl SceneCase for RingPackCase {
     fn refinements(loaded: &Loaded<Self>) -> Vec<Refinement> {
         let case = &loaded.value;
         loaded.refinements_with(|all| case.solver.method.resolve(case.rings.len(), &mut all["solver"]))
+    }
+
+    fn cycle(loaded: &Loaded<Self>) -> Option<Result<EngineCycle, BuildError>> {
+        let (c, files) = (&loaded.value, &loaded.source.files);
+        let (motion, gas) = (&*c.models.kinematics, &*c.models.cylinder_pressure);
+        Some(c.engine.cycle(motion, gas, c.gas.crankcase_pressure, files))
     }
 
     fn result_names(_: &Loaded<Self>, pack: &mut Pack) -> Option<Vec<String>> {

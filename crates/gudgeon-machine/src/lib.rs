@@ -1,0 +1,19 @@
+//! One description of an engine and its piston, shared by every scene.
+//!
+//! A case has the tables `[engine]` and `[piston]` in whatever scene it is of, and a table that one scene reads is valid in all others. What a scene
+//! cannot do without it requires where it declares the table, in the schema:
+//!
+//! ```ignore
+//! /// Engine.
+//! #[schemars(extend("required" = ["speed", "rod_length"]))]
+//! pub engine: Engine,
+//! ```
+//!
+//! so that a case without it is refused with its line; the accessors here ([`Engine::crank`], [`Piston::body`]) refuse it too, for cases that no
+//! file was read for.
+
+mod engine;
+mod piston;
+
+pub use engine::{Crank, Engine};
+pub use piston::{Body, GravitySide, Land, Piston};
