@@ -3,9 +3,6 @@
 //!
 //! Exit codes: 0 done, 1 the run failed, 2 the input is wrong.
 
-// Links every built-in model.
-use gudgeon_models as _;
-
 mod args;
 mod cmd;
 mod failure;
@@ -22,6 +19,7 @@ use ui::Ui;
 
 /// Reads the command line of this process, does what it says, and tells how it went.
 pub fn main() -> ExitCode {
+    gudgeon_models::link();
     let args = Args::parse();
     let ui = Ui::new(args.quiet());
     match dispatch(&args.command, &ui).and_then(|()| ui.end()) {

@@ -79,3 +79,15 @@ pub use greenwood_tripp::{GreenwoodTripp, composite_modulus, composite_roughness
 pub use linear_penalty::LinearPenalty;
 pub use off::Off;
 pub use roughness_threshold::RoughnessThreshold;
+
+gudgeon_core::link!(
+    Coulomb,
+    CrestWedge,
+    FilmFloor,
+    Frictionless,
+    GreenwoodTripp,
+    LinearPenalty,
+    Off,
+    RoughnessThreshold,
+    Stribeck,
+);

@@ -47,6 +47,7 @@
 //! and `schema`, the contract tests and the documentation read nothing else.
 
 use std::collections::BTreeMap;
+use std::fmt;
 
 /// One registered model.
 #[derive(Debug)]
@@ -67,12 +68,22 @@ pub struct ModelInfo {
     pub example: &'static str,
     /// JSON schema of the specification without its `model` key.
     pub schema: fn(&mut schemars::SchemaGenerator) -> schemars::Schema,
+    /// Module that registers it, `gudgeon_gas::orifice_network`; its first word is the crate.
+    pub module: &'static str,
     /// Source file.
     pub file: &'static str,
     /// Source line.
     pub line: u32,
 }
 inventory::collect!(ModelInfo);
+
+impl ModelInfo {
+    /// The crate that registers it, `gudgeon_gas`.
+    #[must_use]
+    pub fn crate_name(&self) -> &'static str {
+        crate_of(self.module)
+    }
+}
 
 /// One kind of sub-model.
 #[derive(Debug)]
@@ -83,13 +94,91 @@ pub struct KindInfo {
     pub summary: &'static str,
     /// Reads a specification (with its `model` key) and writes it back with every default filled in.
     pub resolve: fn(serde_json::Value) -> Result<serde_json::Value, serde_json::Error>,
+    /// Module that registers it.
+    pub module: &'static str,
 }
 inventory::collect!(KindInfo);
+
+impl KindInfo {
+    /// The crate that registers it, `gudgeon_core`.
+    #[must_use]
+    pub fn crate_name(&self) -> &'static str {
+        crate_of(self.module)
+    }
+}
+
+fn crate_of(module: &'static str) -> &'static str {
+    module.split("::").next().unwrap_or(module)
+}
 
 /// The configuration of a kind of sub-model, as a trait object.
 pub trait Kind {
     /// Name in a case file, `gas_flow`.
     const NAME: &'static str;
+}
+
+/// A type whose registration the linker can be made to keep; `R` is what it is registered as. The registering attributes and macros
+/// implement it.
+pub trait Linked<R: ?Sized> {
+    /// A function that is compiled beside the registration. Whoever holds its address holds the registration too.
+    #[doc(hidden)]
+    const ANCHOR: fn();
+}
+
+/// Writes `pub fn link() -> usize`, which keeps the registrations of all listed types: every model and scene that a crate
+/// registers. Stands once in the crate's root.
+///
+/// A linker drops parts of a library that nothing refers to. A registration is such a part: nothing calls it, it runs before `main`. On
+/// Linux, macOS and Windows it is kept when the program names its crate at all, by this call or by `use the_crate as _;`. On WebAssembly
+/// each compiled part of a crate is kept or dropped by itself, and only a reference to every registration keeps them all.
+///
+/// ```
+/// mod oils {
+///     # use gudgeon_core::kinds::{Oil, OilSpec};
+///     # use gudgeon_core::{BuildError, register_model};
+///     # #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
+///     # #[serde(deny_unknown_fields)]
+///     pub struct Water {}
+///     # #[register_model(name = "water", summary = "1 mPa s", equations = "mu = 1e-3", validity = "20 degC", references = [], example = "")]
+///     # impl OilSpec for Water {
+///     #     fn build(&self) -> Result<Box<dyn Oil>, BuildError> {
+///     #         Ok(Box::new(Thin))
+///     #     }
+///     # }
+///     # #[derive(Debug)]
+///     # struct Thin;
+///     # impl Oil for Thin {
+///     #     fn viscosity(&self, _: f64) -> f64 {
+///     #         1e-3
+///     #     }
+///     # }
+///     // … with `#[register_model(…)] impl OilSpec for Water`
+/// }
+///
+/// gudgeon_core::link!(oils::Water);
+///
+/// assert_eq!(link(), 1);
+/// ```
+///
+/// A WebAssembly module has no `main`, before which registrations could run. Either its linker makes every exported function run them first
+/// (it does so where the module does not run them itself; running twice does no harm), or the module exports a function that calls
+/// `__wasm_call_ctors` and the host calls that once, before all others; `tests/wasm` is such a module.
+#[macro_export]
+macro_rules! link {
+    ($($registered:ty),* $(,)?) => {
+        /// Makes the linker keep every model and scene that this crate registers, on every target, and gives their number
+        /// ([`gudgeon_core::link!`]). Calling it once, anywhere in a program, is enough.
+        pub fn link() -> usize {
+            $crate::registry::keep(&[$(<$registered as $crate::registry::Linked<_>>::ANCHOR),*])
+        }
+    };
+}
+
+/// What [`link!`](crate::link) calls: the optimiser must take the addresses for used.
+#[doc(hidden)]
+#[must_use]
+pub fn keep(anchors: &[fn()]) -> usize {
+    std::hint::black_box(anchors).len()
 }
 
 /// A model that stands where a case names none.
@@ -266,6 +355,19 @@ impl Registry {
             }
         }
         if errors.is_empty() { Ok(()) } else { Err(errors) }
+    }
+}
+
+/// One line for every kind and every model, sorted, with the crate that registers it: the same text from the same models, on any target.
+impl fmt::Display for Registry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for kind in self.kinds() {
+            writeln!(f, "{} ({})", kind.kind, kind.crate_name())?;
+            for m in self.models(kind.kind) {
+                writeln!(f, "    {} ({})", m.name, m.crate_name())?;
+            }
+        }
+        Ok(())
     }
 }
 

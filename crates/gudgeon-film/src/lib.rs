@@ -50,3 +50,37 @@ pub use shear_thinning::cross::Cross;
 pub use shear_thinning::off::Off as Newtonian;
 pub use vogel::Vogel;
 pub use vogel_grade::{Grade, VogelGrade, VogelTable};
+
+gudgeon_core::link!(
+    Barus,
+    Carreau,
+    ClosedFormFace,
+    Constant,
+    Cross,
+    DowsonHigginson,
+    Given,
+    GriddedFace,
+    Incompressible,
+    Isoviscous,
+    LandWallMean,
+    LinerLinear,
+    Newtonian,
+    Off,
+    PatirCheng,
+    Roelands,
+    SawtoothWaviness,
+    SmoothSurfaces,
+    Vogel,
+    VogelGrade,
+    film_1d::Complementarity,
+    film_1d::ElrodAdams,
+    film_1d::FrontTracking,
+    film_1d::Off,
+    film_2d::CentralDifferences,
+    film_2d::Direct,
+    film_2d::Multigrid,
+    film_2d::Off,
+    film_2d::Sor,
+    oil_transport::LinerFilm,
+    oil_transport::Off,
+);

@@ -62,3 +62,5 @@ pub use passage_law::{Area, FlowPartials, GasState, LANES, LaneWork, Link, Node,
 pub use plain_pack::plain_pack;
 pub use prescribed::Prescribed;
 pub use ring_passages::{FlankGap, Openings, PassageModel, RingPassages};
+
+gudgeon_core::link!(GapOrifice, NarrowChannel, OrificeNetwork, Prescribed,);

@@ -74,3 +74,16 @@ pub use single_zone_wiebe::{ChamberVolume, SingleZoneWiebe};
 pub use table::{Interpolation, Smoothing, Table};
 pub use two_harmonic_series::TwoHarmonicSeries;
 pub use valve_losses::ValveLosses;
+
+gudgeon_core::link!(
+    AngleWindows,
+    Constant,
+    ExactSliderCrank,
+    IdealValves,
+    Motored,
+    PolytropicBurn,
+    SingleZoneWiebe,
+    Table,
+    TwoHarmonicSeries,
+    ValveLosses,
+);

@@ -41,6 +41,7 @@ pub fn expand(fields: Fields, item: TokenStream) -> syn::Result<TokenStream> {
                         let spec: ::std::boxed::Box<dyn #spec> = serde_json::from_value(v)?;
                         serde_json::to_value(&spec)
                     },
+                    module: module_path!(),
                 }
             }
         };

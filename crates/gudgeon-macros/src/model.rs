@@ -34,9 +34,17 @@ pub fn expand(fields: Fields, item: TokenStream) -> syn::Result<TokenStream> {
                     references: &#references,
                     example: #example,
                     schema: |g| <#own as schemars::JsonSchema>::json_schema(g),
+                    module: module_path!(),
                     file: file!(),
                     line: line!(),
                 }
+            }
+
+            // Stands in the same object file as the registration.
+            #[inline(never)]
+            fn anchor() {}
+            impl ::gudgeon_core::registry::Linked<dyn #spec> for #own {
+                const ANCHOR: fn() = anchor;
             }
         };
     })

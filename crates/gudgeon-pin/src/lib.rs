@@ -36,3 +36,21 @@ pub use pin_strength::thin_ring::ThinRing;
 pub use profile_curve::lagrange::Lagrange;
 pub use profile_curve::linear::Linear;
 pub use profile_curve::monotone_cubic::MonotoneCubic;
+
+gudgeon_core::link!(
+    CurvedRing,
+    Cycle,
+    ElasticRing,
+    Gerber,
+    Given,
+    Goodman,
+    Lagrange,
+    Linear,
+    MonotoneCubic,
+    Off,
+    OtherCase,
+    PeakPressureRule,
+    ShearBeam,
+    Soderberg,
+    ThinRing,
+);

@@ -161,3 +161,35 @@ mod tests {
         }
     }
 }
+
+gudgeon_core::link!(
+    DampingOff,
+    FilmBalance,
+    FrictionOff,
+    NewtonGroove,
+    RationalSaturation,
+    Seated,
+    SqueezeFilm,
+    TangentDegrees,
+    TangentRadians,
+    TanhStribeck,
+    ThreeSeat,
+    axial_gas::FullPerimeter,
+    axial_gas::LaminarProfile,
+    axial_gas::LinearProfile,
+    cavitation_datum::Absolute,
+    cavitation_datum::Gauge,
+    drag::FaceShear,
+    drag::Liner,
+    film_force::FaceShear,
+    film_force::LinerReaction,
+    film_force::Total,
+    hoop::AsPrinted,
+    hoop::Correct,
+    radial_gas::BackAndFace,
+    radial_gas::BackFaceAndGap,
+    radial_gas::BackOnly,
+    radial_gas::BorePerimeter,
+    twin_land_friction::BothLands,
+    twin_land_friction::LowerTwice,
+);

@@ -15,7 +15,7 @@ mod verify;
 mod work_precision;
 
 #[doc(hidden)]
-pub use gudgeon_core::inventory;
+pub use gudgeon_core::{inventory, registry::Linked};
 
 pub use error::{Progress, RunError};
 pub use explanation::{ExplainedModel, Explanation, model_use};

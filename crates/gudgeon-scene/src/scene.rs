@@ -236,6 +236,8 @@ pub struct SceneInfo {
     pub validity: &'static str,
     /// Keys into `REFERENCES.bib`.
     pub references: &'static [&'static str],
+    /// Module that registers it; its first word is the crate.
+    pub module: &'static str,
     /// Source file.
     pub file: &'static str,
     /// Source line.
@@ -248,6 +250,14 @@ pub struct SceneInfo {
     pub schema: fn(&mut SchemaGenerator) -> Schema,
 }
 gudgeon_core::inventory::collect!(SceneInfo);
+
+impl SceneInfo {
+    /// The crate that registers it, `gudgeon_scene_ring_pack`.
+    #[must_use]
+    pub fn crate_name(&self) -> &'static str {
+        self.module.split("::").next().unwrap_or(self.module)
+    }
+}
 
 /// Reads a case of the scene `C`: what [`register_scene!`](crate::register_scene) hands over.
 #[doc(hidden)]
@@ -280,12 +290,21 @@ macro_rules! register_scene {
                 equations: $equations,
                 validity: $validity,
                 references: &[$($r),*],
+                module: module_path!(),
                 file: file!(),
                 line: line!(),
                 read: $crate::read_case::<$case>,
                 schema: |g| g.subschema_for::<$case>(),
             }
         }
+        const _: () = {
+            // Stands in the same object file as the registration.
+            #[inline(never)]
+            fn anchor() {}
+            impl $crate::Linked<$crate::SceneInfo> for $case {
+                const ANCHOR: fn() = anchor;
+            }
+        };
     };
 }
 

@@ -64,3 +64,19 @@ pub use secondary_motion::{FullInertia, Held, QuasiStatic};
 pub use side::{ContactGrid, Side, SideLoads, SideSetup, Slopes};
 pub use skirt_compliance::{InfluenceMatrix, Modal, QuasiStaticShapes, Rigid, Shape};
 pub use skirt_profile::{Barrel, Cylindrical, Table};
+
+gudgeon_core::link!(
+    Barrel,
+    Cylindrical,
+    FullInertia,
+    GrooveCoulomb,
+    Held,
+    InfluenceMatrix,
+    Modal,
+    NoGrooveFriction,
+    NoPinFriction,
+    PinCoulomb,
+    QuasiStatic,
+    Rigid,
+    Table,
+);

@@ -31,3 +31,32 @@ pub mod torsion;
 pub mod tree;
 
 pub use crank_end::CrankEnd;
+
+gudgeon_core::link!(
+    coupling::FrequencyDependent,
+    coupling::Linear,
+    coupling::LoadDependent,
+    coupling::Off,
+    coupling::Piecewise,
+    coupling::Progressive,
+    drive::Constant,
+    drive::Harmonics,
+    drive::InductionMotor,
+    drive::Linear,
+    drive::Off,
+    drive::PowerLaw,
+    drive::Table,
+    natural_frequencies::ClampedNeighbours,
+    natural_frequencies::Eigenvalues,
+    throw_inertia::Exact,
+    throw_inertia::FirstHarmonic,
+    throw_inertia::Mean,
+    throw_inertia::Off,
+    torsion::HarmonicBalance,
+    torsion::Implicit,
+    torsion::Modal,
+    torsion::Off,
+    torsion::Orders,
+    torsion::Propagator,
+    torsion::RungeKutta,
+);

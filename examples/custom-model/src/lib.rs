@@ -6,3 +6,5 @@
 mod walther;
 
 pub use walther::Walther;
+
+gudgeon_core::link!(Walther,);

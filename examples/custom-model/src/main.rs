@@ -2,9 +2,8 @@
 
 use std::process::ExitCode;
 
-// A crate that no code names is not linked, and its models would be missing.
-use custom_model as _;
-
 fn main() -> ExitCode {
+    // A crate that no code names is not linked, and its models would be missing.
+    custom_model::link();
     gudgeon::main()
 }

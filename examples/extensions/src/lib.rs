@@ -14,3 +14,11 @@ pub mod euler_march;
 pub mod heat_balance;
 pub mod inertia_force;
 pub mod lift_and_twist;
+
+gudgeon_core::link!(
+    bernoulli_network::BernoulliNetwork,
+    euler_march::EulerMarch,
+    heat_balance::HeatBalance,
+    inertia_force::InertiaForceCase,
+    lift_and_twist::LiftAndTwist,
+);

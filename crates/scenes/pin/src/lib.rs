@@ -177,3 +177,5 @@ gudgeon_scene::register_scene! {
     validity: "Design rules for a floating pin under its largest load; no contact pressure distribution, no dynamics.",
     references: ["reimer1984"],
 }
+
+gudgeon_core::link!(case::PinCase,);

@@ -34,3 +34,5 @@ gudgeon_scene::register_scene! {
     validity: "Motion in the plane of the rod; one viscosity for both sides; inertia of shapes left out.",
     references: ["loureiro2009", "zhu1992"],
 }
+
+gudgeon_core::link!(PistonSecondaryCase,);

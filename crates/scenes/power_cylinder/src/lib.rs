@@ -222,3 +222,5 @@ gudgeon_scene::register_scene! {
     validity: "Rings and skirt do not act on each other but through the drive and the gas that they share.",
     references: [],
 }
+
+gudgeon_core::link!(PowerCylinderCase,);

@@ -41,3 +41,23 @@ pub use skirt::SkirtRig;
 pub use slider::{LineEnd, SliderRig};
 pub use slider_2d::{BetweenNodes, Dimples, PadProfile, Sides, Slider2dRig};
 pub use squeeze_film::{Motion, SqueezeFilmRig};
+
+gudgeon_core::link!(
+    case::RigCase,
+    ContactPairRig,
+    CylinderPressureRig,
+    FlankRig,
+    GasPassageRig,
+    GasVolumesRig,
+    Journal1dRig,
+    Journal2dRig,
+    KinematicsRig,
+    LubricantRig,
+    RingFaceRig,
+    RoughSurfaceRig,
+    ShaftLineRig,
+    SkirtRig,
+    Slider2dRig,
+    SliderRig,
+    SqueezeFilmRig,
+);

@@ -85,3 +85,5 @@ pub fn meter(case: &RingPackCase) -> Meter {
         cylinders: f64::from(case.engine.cylinders),
     }
 }
+
+gudgeon_core::link!(RingPackCase, degree_march::DegreeMarch, implicit::Implicit, substep_march::SubstepMarch,);

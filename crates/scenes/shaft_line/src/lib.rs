@@ -461,3 +461,5 @@ gudgeon_scene::register_scene! {
     validity: "Torsion alone: no bending, no axial vibration; rigid throws.",
     references: ["gomes2021"],
 }
+
+gudgeon_core::link!(case::ShaftLineCase,);
