@@ -12,8 +12,9 @@ use gudgeon_core::quantity::{
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+pub use crate::solver::PistonSolverSpec;
 use gudgeon_machine::{Engine, Piston};
-use gudgeon_scene::{IntegratorName, case_file};
+use gudgeon_scene::{SolverCommon, SolverTable, case_file};
 
 case_file! {
     /// The lateral motion and the tilt of a piston in its bore.
@@ -157,19 +158,12 @@ pub struct Models {
     pub shear_thinning: Box<dyn ShearThinningSpec>,
 }
 
-/// How the equations are solved.
+/// What every solver of a piston in its bore is told.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub struct Solver {
-    /// Method.
-    pub method: Method,
-    /// Time integrator of the implicit method.
-    pub integrator: IntegratorName,
-    /// Error per step, relative to the smallest gap.
-    #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1, "when": { "method": "implicit" } }))]
-    pub tolerance: PosRatio,
+pub struct SolverKeys {
     /// Distance from the periodic motion that is admitted, as part of the clearance.
-    #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1, "when": { "method": "implicit" } }))]
+    #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1 }))]
     pub periodicity: PosRatio,
     /// Most cycles of the search for the periodic motion.
     #[schemars(range(max = 1000))]
@@ -181,9 +175,6 @@ pub struct Solver {
     /// it is) counts its own. A motion takes some thousand where its films follow by superposition, some hundred thousand where they do not.
     #[schemars(range(max = 1_000_000_000))]
     pub max_film_evaluations: u64,
-    /// Step of `backward_euler`.
-    #[schemars(extend("x-refine" = { "group": "time step", "factor": 0.5, "when": { "method": "backward_euler" } }))]
-    pub step: PosAngle,
     /// Displacement of the upper edge at the start, towards the anti-thrust side.
     pub start_top: Length,
     /// Displacement of the lower edge at the start.
@@ -208,17 +199,13 @@ pub struct Solver {
     pub shape_relaxation: PosTime,
 }
 
-impl Default for Solver {
+impl Default for SolverKeys {
     fn default() -> Self {
         Self {
-            method: Method::Implicit,
-            integrator: IntegratorName::Rodas,
-            tolerance: quantity(1e-3),
             periodicity: quantity(1e-4),
             max_cycles: 60,
             cycles: 0,
             max_film_evaluations: 300_000,
-            step: quantity(0.5f64.to_radians()),
             start_top: quantity(0.0),
             start_bottom: quantity(0.0),
             intervals_along: 20,
@@ -232,19 +219,17 @@ impl Default for Solver {
     }
 }
 
-/// Methods.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Method {
-    /// Adaptive L-stable integration with error control; the cycle is closed by a periodic-orbit solver.
-    #[default]
-    Implicit,
-    /// Backward Euler in equal steps of crank angle, cycle after cycle: the simplest scheme that stands the stiffness of the films.
-    BackwardEuler,
-    /// The published scheme: an explicit Runge-Kutta method on accelerations behind a low-pass filter. Refused: it cannot run, because the
-    /// films damp the motion at 1e6 to 5e7 1/s, and the filter in the loop makes that damping an instability at any step.
-    AsPublished,
+impl SolverCommon for SolverKeys {
+    const DEFAULT: &'static str = "implicit";
+    const RENAMED: &'static [(&'static str, &'static str)] = &[(
+        "as_published",
+        "the published scheme cannot run: an explicit method on accelerations behind a 500 Hz low-pass diverges within five degrees of crank angle, \
+         for the films damp the motion at 1e6 to 5e7 1/s; use `implicit`, or `backward_euler` for the simplest scheme that can",
+    )];
 }
+
+/// How the equations are solved.
+pub type Solver = SolverTable<SolverKeys, dyn PistonSolverSpec>;
 
 /// What is wanted.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
@@ -298,6 +283,7 @@ gudgeon_core::default_model! {
     default_pin_friction: dyn PinFrictionSpec = "off";
     default_groove_friction: dyn GrooveFrictionSpec = "off";
     default_shear_thinning: dyn ShearThinningSpec = "off";
+    default_solver: dyn PistonSolverSpec = "implicit";
 }
 
 fn default_film_2d() -> Box<dyn Film2dSpec> {

@@ -3,8 +3,7 @@
 use gudgeon_core::BuildError;
 
 use super::assemble::Assembly;
-use super::case::{Method, PistonSecondaryCase};
-use super::euler::NO_LAW;
+use super::case::PistonSecondaryCase;
 
 /// What cannot move, or not from where it begins.
 pub fn impossible(case: &PistonSecondaryCase, a: &mut Assembly) -> Vec<BuildError> {
@@ -12,9 +11,7 @@ pub fn impossible(case: &PistonSecondaryCase, a: &mut Assembly) -> Vec<BuildErro
     let s = &case.solver;
     let now = a.instant(0.0);
     let inertial = a.motion.has_inertia();
-    if s.method == Method::BackwardEuler && a.layout.n > 0 && a.motion.edge_law().is_none() {
-        errors.push(BuildError::at("solver.method", NO_LAW).help("use `implicit`"));
-    }
+    errors.extend(s.method.refuses(a));
     // A film that cannot be solved between centred surfaces tells so when it runs.
     if a.motion.moves() && matches!(a.piston.resists(&now, inertial), Ok(false)) {
         let nothing = "this film does not resist the motion across the bore";

@@ -4,7 +4,8 @@ use std::f64::consts::PI;
 
 use gudgeon_core::BuildError;
 
-use super::case::{Method, PistonSecondaryCase};
+use super::case::PistonSecondaryCase;
+use super::solver::check_tolerance;
 
 /// Smallest and largest admitted intervals of a grid.
 const INTERVALS: std::ops::RangeInclusive<u32> = 2..=1000;
@@ -34,7 +35,7 @@ pub fn legal(case: &PistonSecondaryCase) -> Vec<BuildError> {
     of_skirt(case, &mut errors);
     of_solver(case, &mut errors);
     of_outputs(case, &mut errors);
-    of_method(case, &mut errors);
+    errors.extend(case.solver.method.wrong(case));
     errors
 }
 
@@ -76,17 +77,13 @@ fn of_solver(case: &PistonSecondaryCase, errors: &mut Vec<BuildError>) {
     if !(0.0..=0.5).contains(&s.crowding.si()) {
         say("solver.crowding", format!("must be between 0 and 0.5, not {}", s.crowding.si()));
     }
-    for (place, t) in [("solver.tolerance", s.tolerance.si()), ("solver.periodicity", s.periodicity.si())] {
-        if !(1e-12..=0.1).contains(&t) {
-            say(place, format!("must be between 1e-12 and 0.1, not {t}"));
-        }
-    }
     if s.max_cycles == 0 {
         say("solver.max_cycles", "at least one cycle is needed".into());
     }
     if case.skirt.length.si() / s.contact_pitch.si() > 1e5 {
         say("solver.contact_pitch", "more than 100 000 rows of contact on the skirt".into());
     }
+    errors.extend(check_tolerance("periodicity", s.periodicity.si()));
 }
 
 fn of_outputs(case: &PistonSecondaryCase, errors: &mut Vec<BuildError>) {
@@ -98,31 +95,5 @@ fn of_outputs(case: &PistonSecondaryCase, errors: &mut Vec<BuildError>) {
     let maps = case.outputs.map_step.map_or(0.0, |m| 4.0 * PI / m.si());
     if maps > MOST_MAPS {
         say("outputs.map_step", format!("{maps:.0} maps a cycle are more than {MOST_MAPS:.0}"));
-    }
-}
-
-/// What methods other than `implicit` ask for.
-fn of_method(case: &PistonSecondaryCase, errors: &mut Vec<BuildError>) {
-    let s = &case.solver;
-    let mut say = |place: &str, what: String| errors.push(BuildError::at(place, what));
-    match s.method {
-        Method::Implicit => {}
-        Method::BackwardEuler => {
-            let steps = 4.0 * PI / s.step.si();
-            if !(36.0..=1e6).contains(&steps) {
-                let what = format!("a cycle of {steps:.0} steps is none: between 7e-4 and 20 degrees");
-                say("solver.step", what);
-            }
-            let parts = case.outputs.series_step.si() / s.step.si();
-            if (parts - parts.round()).abs() > 1e-6 {
-                let what = "rows of the series must be a whole number of `solver.step` apart";
-                say("outputs.series_step", what.into());
-            }
-        }
-        Method::AsPublished => {
-            let what = "the published scheme cannot run: an explicit method on accelerations behind a 500 Hz low-pass diverges within five degrees of crank angle";
-            let help = "the films damp the motion at 1e6 to 5e7 1/s; use `implicit`, or `backward_euler` for the simplest scheme that can";
-            errors.push(BuildError::at("solver.method", what).help(help));
-        }
     }
 }

@@ -1,14 +1,15 @@
 //! The scene `piston_secondary`: lateral motion and tilt of one piston on the films and crests of its skirt.
 //!
-//! `assemble` builds the sub-models and `layout` places their states, `equations` gives the rates of all states, `march` finds the periodic motion and
-//! `search` the motions on the way to it, `row` and `survey` look at a cycle, `results`, `record` and `draw` turn it into results, rows and pictures.
+//! `assemble` builds the sub-models and `layout` places their states, `equations` gives the rates of all states, `implicit` and `backward_euler` integrate
+//! them, `march` finds the periodic motion and `search` the motions on the way to it, `row` and `survey` look at a cycle, `results`, `record` and `draw` turn it into results, rows and pictures.
 
 pub mod assemble;
+pub mod backward_euler;
 pub mod case;
 mod draw;
 pub mod equations;
-mod euler;
 mod explained;
+pub mod implicit;
 mod impossible;
 pub mod layout;
 mod legal;
@@ -21,6 +22,7 @@ pub mod results;
 pub mod row;
 mod scene;
 mod search;
+pub mod solver;
 pub mod survey;
 pub mod trajectory;
 
@@ -35,4 +37,4 @@ gudgeon_scene::register_scene! {
     references: ["loureiro2009", "zhu1992"],
 }
 
-gudgeon_core::link!(PistonSecondaryCase,);
+gudgeon_core::link!(PistonSecondaryCase, backward_euler::BackwardEuler, implicit::Implicit);

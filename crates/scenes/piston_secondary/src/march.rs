@@ -4,17 +4,15 @@ use std::time::Instant as Clock;
 
 use gudgeon_core::EvalError;
 use gudgeon_core::result::Note;
-use gudgeon_numerics::ode::{Flow, IntegrateError, Integrator, Options, Stats, StepView};
+use gudgeon_numerics::ode::Stats;
 use gudgeon_numerics::orbit::{CycleMap, OrbitOptions, OrbitReport, periodic_orbit};
-use gudgeon_numerics::radau::Radau5;
-use gudgeon_numerics::rodas::{Formula, Rodas};
 
 use super::assemble::Assembly;
-use super::case::{Method, PistonSecondaryCase};
-use super::equations::{Equations, Work};
-use super::euler::Euler;
-use super::trajectory::{Between, Trajectory};
-use gudgeon_scene::{IntegratorName, RunError};
+use super::case::PistonSecondaryCase;
+use super::equations::Work;
+use super::solver::{Cycled, PistonSolver};
+use super::trajectory::Trajectory;
+use gudgeon_scene::RunError;
 
 /// A motion over one cycle.
 pub struct Found {
@@ -34,24 +32,11 @@ pub struct Found {
     pub seconds: f64,
 }
 
-/// First step of a cycle \[rad\].
-const FIRST_STEP: f64 = 1e-2;
-/// Largest step \[rad\]: no pulse of the pressure is passed over.
-const LARGEST_STEP: f64 = 0.2;
-/// Most steps of a cycle.
-const MOST_STEPS: u64 = 200_000;
-
-enum Engine {
-    Rodas(Box<Rodas>),
-    Radau(Box<Radau5>),
-    Euler { steps: usize },
-}
-
 struct Cycle<'a> {
     a: &'a mut Assembly,
-    engine: Engine,
+    solver: Box<dyn PistonSolver>,
     work: Work,
-    tolerance: f64,
+    repeatable_to: f64,
     max_cycles: usize,
     stats: Stats,
     y: Vec<f64>,
@@ -61,62 +46,19 @@ struct Cycle<'a> {
 }
 
 impl Cycle<'_> {
-    /// One cycle from `y`, into `trajectory`.
+    /// One cycle from `y`, into `trajectory`, to the accuracy of the solver or a coarser one.
     fn integrate(
         &mut self,
         y: &mut [f64],
-        tolerance: f64,
+        accuracy: f64,
         trajectory: Option<&mut Trajectory>,
     ) -> Result<(), RunError> {
         self.work.w.fill(0.0);
-        let outcome = match self.engine {
-            Engine::Euler { steps } => Euler::new(self.a, &mut self.work, &mut self.stats, y)
-                .and_then(|euler| euler.cycle(steps, trajectory, y)),
-            _ => self.adaptive(y, tolerance, trajectory),
-        };
+        let mut of = Cycled { a: self.a, work: &mut self.work, stats: &mut self.stats };
+        let outcome = self.solver.cycle(&mut of, y, accuracy, trajectory);
         self.done += 1.0;
         (self.progress)(1.0 - 0.75f64.powf(self.done));
         outcome
-    }
-
-    fn adaptive(
-        &mut self,
-        y: &mut [f64],
-        tolerance: f64,
-        mut trajectory: Option<&mut Trajectory>,
-    ) -> Result<(), RunError> {
-        let period = self.a.period;
-        let scale: Vec<f64> = self.a.layout.states.iter().map(|s| s.scale).collect();
-        let mut options = Options::new(tolerance, &scale);
-        options.absolute = self.a.layout.states.iter().map(|s| !s.relative).collect();
-        (options.h_init, options.h_max, options.max_steps) = (FIRST_STEP, LARGEST_STEP, MOST_STEPS);
-        options.event_samples = 0;
-        let breakpoints = std::mem::take(&mut self.a.breakpoints);
-        let mut problem = Equations { a: self.a, work: &mut self.work };
-        if let Some(t) = trajectory.as_deref_mut() {
-            t.start(0.0, y);
-        }
-        let mut observe = |_: &mut Equations<'_>, view: &dyn StepView| {
-            if let Some(t) = trajectory.as_deref_mut() {
-                t.step(view);
-            }
-            Flow::Continue
-        };
-        let (span, st) = ((0.0, period), &mut self.stats);
-        let outcome = match &mut self.engine {
-            Engine::Rodas(m) => {
-                m.integrate(&mut problem, span, &breakpoints, y, &mut [], &options, st, &mut observe)
-            }
-            Engine::Radau(m) => {
-                m.integrate(&mut problem, span, &breakpoints, y, &mut [], &options, st, &mut observe)
-            }
-            Engine::Euler { .. } => Ok(0.0),
-        };
-        self.a.breakpoints = breakpoints;
-        outcome.map(|_| ()).map_err(|e| match e {
-            IntegrateError::Eval { t, source } => RunError::Eval { theta_deg: t.to_degrees(), source },
-            other => RunError::Integrate(other),
-        })
     }
 
     /// The states that make up the periodic motion.
@@ -147,7 +89,7 @@ impl CycleMap for Cycle<'_> {
         let before = self.a.piston.film_evaluations();
         self.begin(y0);
         let mut y = std::mem::take(&mut self.y);
-        let outcome = self.integrate(&mut y, accuracy.max(self.tolerance), None);
+        let outcome = self.integrate(&mut y, accuracy, None);
         for (y1, k) in y1.iter_mut().zip(&self.a.layout.periodic) {
             *y1 = y[*k];
         }
@@ -198,7 +140,7 @@ pub fn run(
     let (cycles, error);
     if s.cycles > 0 {
         for _ in 1..s.cycles {
-            cycle.integrate(&mut y, s.tolerance.si(), None)?;
+            cycle.integrate(&mut y, 0.0, None)?;
         }
         (cycles, error) = (f64::from(s.cycles), None);
     } else {
@@ -211,9 +153,9 @@ pub fn run(
     }
     let searched = begin.elapsed().as_secs_f64();
     let start = y.clone();
-    let mut trajectory = cycle.trajectory();
+    let mut trajectory = cycle.solver.trajectory(cycle.a, &cycle.work);
     if purpose != Purpose::Start {
-        cycle.integrate(&mut y, s.tolerance.si(), Some(&mut trajectory))?;
+        cycle.integrate(&mut y, 0.0, Some(&mut trajectory))?;
     }
     // Of a given number of cycles the last one is that of the record.
     let seconds = if s.cycles > 0 { begin.elapsed().as_secs_f64() } else { searched };
@@ -234,27 +176,13 @@ impl<'a> Cycle<'a> {
     fn new(case: &PistonSecondaryCase, a: &'a mut Assembly, progress: &'a mut dyn FnMut(f64)) -> Self {
         let s = &case.solver;
         let states = a.layout.n;
-        let integrator = match s.integrator {
-            // Order five pays where the films are smooth; the switch is where both need the same films.
-            IntegratorName::Rodas if s.tolerance.si() >= ORDER_FIVE => IntegratorName::Rodas3,
-            IntegratorName::Rodas => IntegratorName::Rodas5p,
-            other => other,
-        };
-        let rodas = |formula| Engine::Rodas(Box::new(Rodas::with(formula, states, 0, None)));
-        let engine = match (s.method, integrator) {
-            (Method::BackwardEuler, _) => {
-                Engine::Euler { steps: (a.period / s.step.si()).round().max(1.0) as usize }
-            }
-            (_, IntegratorName::Rodas5p | IntegratorName::Rodas) => rodas(Formula::Rodas5P),
-            (_, IntegratorName::Rodas3) => rodas(Formula::Rodas3),
-            (_, IntegratorName::Radau5) => Engine::Radau(Box::new(Radau5::new(states, 0, None))),
-        };
+        let solver = s.method.build(a);
         let work = Work::new(a);
         Cycle {
             a,
-            engine,
+            solver,
             work,
-            tolerance: s.tolerance.si(),
+            repeatable_to: s.method.repeatable_to(),
             max_cycles: s.max_cycles as usize,
             stats: Stats::default(),
             y: vec![0.0; states],
@@ -279,7 +207,7 @@ impl<'a> Cycle<'a> {
     fn close(&mut self, y: &mut [f64], wanted: f64) -> Result<OrbitReport, RunError> {
         let options = OrbitOptions {
             tolerance: wanted,
-            accuracy: (ACCURACY * self.tolerance).min(0.3 * wanted),
+            accuracy: self.repeatable_to.min(0.3 * wanted),
             max_cycles: self.max_cycles,
             finer: 0,
             accelerate: true,
@@ -294,15 +222,6 @@ impl<'a> Cycle<'a> {
         self.begin(&z);
         y.copy_from_slice(&self.y);
         Ok(report)
-    }
-
-    /// An empty cycle, as the method fills it.
-    fn trajectory(&self) -> Trajectory {
-        let states = self.a.layout.n;
-        match self.engine {
-            Engine::Euler { .. } => Trajectory::new(states + self.work.w.len(), Between::Nothing),
-            _ => Trajectory::new(states, Between::Dense),
-        }
     }
 }
 
@@ -344,12 +263,8 @@ fn not_periodic(cycles: usize, error: f64, wanted: f64) -> Note {
 /// Multiple of the distance wanted up to which a motion counts as periodic, with a caution.
 const ADMITTED: f64 = 10.0;
 
-/// Tolerance at which the method of order five needs no more films than that of order three.
-const ORDER_FIVE: f64 = 2e-4;
 /// Periodicity of a motion that is a start for another, in clearances.
 const START: f64 = 1e-3;
-/// How repeatable a cycle is, in tolerances.
-const ACCURACY: f64 = 0.1;
 
 /// Way between two looks at a skirt that stands still \[rad\].
 const STILL: f64 = 0.05;

@@ -8,7 +8,7 @@ use gudgeon_machine::GravitySide;
 use gudgeon_scene::{Explanation, Progress, RunError, SceneCase, WorkPrecision};
 
 use super::assemble::{Assembly, assemble};
-use super::case::{Method, PistonSecondaryCase};
+use super::case::PistonSecondaryCase;
 use super::explained::{Explained, models};
 use super::impossible::impossible;
 use super::march::{Found, Purpose};
@@ -112,7 +112,7 @@ fn look_at(
     }
     (result.results, result.events) = (told.results, told.events);
     result.solver = SolverReport {
-        method: name(case.solver.method).into(),
+        method: case.solver.method.typetag_name().into(),
         counters: std::mem::take(&mut search.counters),
         notes: a.cylinder.notes().into_iter().chain(found.notes.iter().cloned()).collect(),
     };
@@ -122,14 +122,6 @@ fn look_at(
     result.series = record.series();
     result.seconds.insert("solve".into(), search.seconds);
     Ok(())
-}
-
-fn name(method: Method) -> &'static str {
-    match method {
-        Method::Implicit => "implicit",
-        Method::BackwardEuler => "backward_euler",
-        Method::AsPublished => "as_published",
-    }
 }
 
 fn centre_of_gravity(case: &PistonSecondaryCase) -> Note {

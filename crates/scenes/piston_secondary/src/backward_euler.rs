@@ -1,20 +1,135 @@
 //! A cycle in equal steps of the backward Euler method.
 
-use gudgeon_core::EvalError;
+use std::f64::consts::PI;
+
 use gudgeon_core::kinds::LateralLoads;
+use gudgeon_core::quantity::{PosAngle, quantity};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use gudgeon_numerics::ode::Stats;
-use gudgeon_scene::RunError;
+use gudgeon_scene::{MethodSetting, RunError};
 use gudgeon_skirt::Momentum;
+use serde::{Deserialize, Serialize};
 
 use super::assemble::Assembly;
+use super::case::PistonSecondaryCase;
 use super::equations::Work;
-use super::trajectory::Trajectory;
+use super::solver::{Cycled, PistonSolver, PistonSolverSpec, mesh};
+use super::trajectory::{Between, Trajectory};
+
+/// Equal steps of crank angle, cycle after cycle: the simplest scheme that stands the stiffness of the films.
+#[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct BackwardEuler {
+    /// Step.
+    #[schemars(extend("x-refine" = { "group": "time step", "factor": 0.5 }))]
+    pub step: PosAngle,
+}
+
+impl Default for BackwardEuler {
+    fn default() -> Self {
+        Self { step: quantity(0.5f64.to_radians()) }
+    }
+}
+
+/// How repeatable a cycle is, in clearances: its steps are the same each time, and their equations are solved closer than that.
+const REPEATABLE: f64 = 1e-4;
+
+#[register_model(
+    name = "backward_euler",
+    summary = "equal steps of the backward Euler method",
+    equations = "y(t + h) = y(t) + h f(t + h, y(t + h))",
+    validity = "Lateral motions that are a law of the displacements of both edges alone.",
+    references = ["hairer1996"],
+    example = "",
+)]
+impl PistonSolverSpec for BackwardEuler {
+    fn wrong(&self, case: &PistonSecondaryCase) -> Vec<BuildError> {
+        let mut errors = Vec::new();
+        let steps = 4.0 * PI / self.step.si();
+        if !(36.0..=1e6).contains(&steps) {
+            let what = format!("a cycle of {steps:.0} steps is none: between 7e-4 and 20 degrees");
+            errors.push(BuildError::at("solver.step", what));
+        }
+        let parts = case.outputs.series_step.si() / self.step.si();
+        if (parts - parts.round()).abs() > 1e-6 {
+            let what = "rows of the series must be a whole number of `solver.step` apart";
+            errors.push(BuildError::at("outputs.series_step", what));
+        }
+        errors
+    }
+
+    fn refuses(&self, a: &Assembly) -> Option<BuildError> {
+        let possible = a.layout.n == 0 || a.motion.edge_law().is_some();
+        (!possible).then(|| BuildError::at("solver.method", NO_LAW).help("use `implicit`"))
+    }
+
+    fn repeatable_to(&self) -> f64 {
+        REPEATABLE
+    }
+
+    fn build(&self, a: &Assembly) -> Box<dyn PistonSolver> {
+        Box::new(EqualSteps { steps: (a.period / self.step.si()).round().max(1.0) as usize })
+    }
+
+    fn settings(&self, _: Option<&PistonSecondaryCase>) -> Vec<MethodSetting> {
+        let mut all = Vec::new();
+        for (method, film, points) in [
+            (
+                "backward Euler",
+                "{ model = \"direct\", cavitation = \"half_sommerfeld\" }",
+                &[(2.0, 12, 10), (1.0, 16, 12), (0.5, 20, 16)][..],
+            ),
+            (
+                "backward Euler, published film",
+                "{ model = \"central_differences\" }",
+                &[(0.5, 9, 9), (0.5, 13, 13)],
+            ),
+        ] {
+            for &(step, along, across) in points {
+                let mut set = vec![
+                    "solver.method=backward_euler".into(),
+                    format!("solver.step={step} deg"),
+                    format!("models.film_2d={film}"),
+                    "outputs.series_step=2 deg".into(),
+                ];
+                set.extend(mesh(along, across));
+                all.push(MethodSetting {
+                    method,
+                    setting: format!("steps of {step} deg, {along} x {across}"),
+                    is_default: false,
+                    set,
+                });
+            }
+        }
+        all
+    }
+}
+
+struct EqualSteps {
+    steps: usize,
+}
+
+impl PistonSolver for EqualSteps {
+    fn cycle(
+        &mut self,
+        of: &mut Cycled<'_>,
+        y: &mut [f64],
+        _: f64,
+        trajectory: Option<&mut Trajectory>,
+    ) -> Result<(), RunError> {
+        Euler::new(of.a, of.work, of.stats, y)?.cycle(self.steps, trajectory, y)
+    }
+
+    fn trajectory(&self, a: &Assembly, work: &Work) -> Trajectory {
+        Trajectory::new(a.layout.n + work.w.len(), Between::Nothing)
+    }
+}
 
 /// Halvings of a step.
 const HALVINGS: u32 = 12;
 
 /// A piston whose lateral motion is a law of the displacements of both edges alone, stepped by the backward Euler method.
-pub struct Euler<'a> {
+struct Euler<'a> {
     a: &'a mut Assembly,
     work: &'a mut Work,
     stats: &'a mut Stats,
@@ -34,7 +149,7 @@ impl<'a> Euler<'a> {
     ///
     /// # Errors
     /// A motion that is anything else than a law of the displacements of both edges.
-    pub fn new(
+    fn new(
         a: &'a mut Assembly,
         work: &'a mut Work,
         stats: &'a mut Stats,
@@ -53,7 +168,7 @@ impl<'a> Euler<'a> {
     ///
     /// # Errors
     /// A step that cannot be solved.
-    pub fn cycle(
+    fn cycle(
         mut self,
         steps: usize,
         mut trajectory: Option<&mut Trajectory>,
@@ -139,4 +254,4 @@ impl<'a> Euler<'a> {
 }
 
 /// Why a motion cannot be stepped by the backward Euler method.
-pub const NO_LAW: &str = "`backward_euler` steps lateral motions that are a law of the displacements of both edges alone, which this one is not";
+const NO_LAW: &str = "`backward_euler` steps lateral motions that are a law of the displacements of both edges alone, which this one is not";

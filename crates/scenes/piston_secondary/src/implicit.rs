@@ -1,0 +1,181 @@
+//! Adaptive L-stable integration of the motion.
+
+use gudgeon_core::quantity::{PosRatio, quantity};
+use gudgeon_core::{BuildError, register_model};
+use gudgeon_numerics::ode::{Flow, IntegrateError, Integrator, Options, StepView};
+use gudgeon_numerics::radau::Radau5;
+use gudgeon_numerics::rodas::{Formula, Rodas};
+use gudgeon_scene::{IntegratorName, MethodSetting, RunError};
+use serde::{Deserialize, Serialize};
+
+use super::assemble::Assembly;
+use super::case::PistonSecondaryCase;
+use super::equations::{Equations, Work};
+use super::solver::{Cycled, PistonSolver, PistonSolverSpec, check_tolerance, mesh};
+use super::trajectory::{Between, Trajectory};
+
+/// First step of a cycle \[rad\].
+const FIRST_STEP: f64 = 1e-2;
+/// Largest step \[rad\]: no pulse of the pressure is passed over.
+const LARGEST_STEP: f64 = 0.2;
+/// Most steps of a cycle.
+const MAX_STEPS: u64 = 200_000;
+/// Tolerance at which the method of order five needs no more films than that of order three.
+const ORDER_FIVE: f64 = 2e-4;
+/// How repeatable a cycle is, in tolerances.
+const ACCURACY: f64 = 0.1;
+
+/// Adaptive L-stable integration with error control.
+#[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Implicit {
+    /// Time integrator.
+    pub integrator: IntegratorName,
+    /// Error per step, relative to the smallest gap.
+    #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1 }))]
+    pub tolerance: PosRatio,
+}
+
+impl Default for Implicit {
+    fn default() -> Self {
+        Self { integrator: IntegratorName::Rodas, tolerance: quantity(1e-3) }
+    }
+}
+
+impl Implicit {
+    /// The integrator that `rodas` stands for at the tolerance. Order five pays where the films are smooth; the switch is where both need the
+    /// same films.
+    fn integrator(&self) -> IntegratorName {
+        match self.integrator {
+            IntegratorName::Rodas if self.tolerance.si() >= ORDER_FIVE => IntegratorName::Rodas3,
+            IntegratorName::Rodas => IntegratorName::Rodas5p,
+            other => other,
+        }
+    }
+}
+
+#[register_model(
+    name = "implicit",
+    summary = "adaptive L-stable integration with error control",
+    equations = "y' = f(t, y) by Rodas3, Rodas5P or Radau IIA, the error of a step below the tolerance",
+    validity = "Any lateral motion and any compliance.",
+    references = ["hairer1996"],
+    example = "",
+)]
+impl PistonSolverSpec for Implicit {
+    fn wrong(&self, _: &PistonSecondaryCase) -> Vec<BuildError> {
+        check_tolerance("tolerance", self.tolerance.si()).into_iter().collect()
+    }
+
+    fn repeatable_to(&self) -> f64 {
+        ACCURACY * self.tolerance.si()
+    }
+
+    fn build(&self, a: &Assembly) -> Box<dyn PistonSolver> {
+        let states = a.layout.n;
+        let rodas = |formula| Method::Rodas(Box::new(Rodas::with(formula, states, 0, None)));
+        let method = match self.integrator() {
+            IntegratorName::Rodas5p | IntegratorName::Rodas => rodas(Formula::Rodas5P),
+            IntegratorName::Rodas3 => rodas(Formula::Rodas3),
+            IntegratorName::Radau5 => Method::Radau(Box::new(Radau5::new(states, 0, None))),
+        };
+        Box::new(Adaptive { method, tolerance: self.tolerance.si() })
+    }
+
+    fn settings(&self, own: Option<&PistonSecondaryCase>) -> Vec<MethodSetting> {
+        let mut all = Vec::new();
+        for (method, name, points) in [
+            (
+                "implicit, order 3",
+                IntegratorName::Rodas3,
+                &[(1e-2, 12, 10), (3e-3, 16, 12), (1e-3, 20, 16), (3e-4, 32, 20)][..],
+            ),
+            ("implicit, order 5", IntegratorName::Rodas5p, &[(1e-3, 20, 16), (1e-4, 32, 20), (1e-5, 48, 32)]),
+        ] {
+            for &(t, along, across) in points {
+                let same_film = own.is_some_and(|c| {
+                    (along, across) == (c.solver.intervals_along, c.solver.intervals_across)
+                });
+                let same_error = (t / self.tolerance.si() - 1.0).abs() < 1e-9;
+                let mut set = vec![
+                    "solver.method=implicit".into(),
+                    format!("solver.integrator={}", word(name)),
+                    format!("solver.tolerance={t:e}"),
+                ];
+                set.extend(mesh(along, across));
+                all.push(MethodSetting {
+                    method,
+                    setting: format!("tolerance {t:.0e}, {along} x {across}"),
+                    is_default: same_film && same_error && self.integrator() == name,
+                    set,
+                });
+            }
+        }
+        all
+    }
+}
+
+const fn word(name: IntegratorName) -> &'static str {
+    match name {
+        IntegratorName::Rodas => "rodas",
+        IntegratorName::Rodas3 => "rodas3",
+        IntegratorName::Rodas5p => "rodas5p",
+        IntegratorName::Radau5 => "radau5",
+    }
+}
+
+enum Method {
+    Rodas(Box<Rodas>),
+    Radau(Box<Radau5>),
+}
+
+struct Adaptive {
+    method: Method,
+    tolerance: f64,
+}
+
+impl PistonSolver for Adaptive {
+    fn cycle(
+        &mut self,
+        of: &mut Cycled<'_>,
+        y: &mut [f64],
+        accuracy: f64,
+        mut trajectory: Option<&mut Trajectory>,
+    ) -> Result<(), RunError> {
+        let layout = &of.a.layout;
+        let scale: Vec<f64> = layout.states.iter().map(|s| s.scale).collect();
+        let mut options = Options::new(accuracy.max(self.tolerance), &scale);
+        options.absolute = layout.states.iter().map(|s| !s.relative).collect();
+        (options.h_init, options.h_max, options.max_steps) = (FIRST_STEP, LARGEST_STEP, MAX_STEPS);
+        options.event_samples = 0;
+        let span = (0.0, of.a.period);
+        let breakpoints = std::mem::take(&mut of.a.breakpoints);
+        let mut problem = Equations { a: of.a, work: of.work };
+        if let Some(t) = trajectory.as_deref_mut() {
+            t.start(0.0, y);
+        }
+        let mut observe = |_: &mut Equations<'_>, view: &dyn StepView| {
+            if let Some(t) = trajectory.as_deref_mut() {
+                t.step(view);
+            }
+            Flow::Continue
+        };
+        let outcome = match &mut self.method {
+            Method::Rodas(m) => {
+                m.integrate(&mut problem, span, &breakpoints, y, &mut [], &options, of.stats, &mut observe)
+            }
+            Method::Radau(m) => {
+                m.integrate(&mut problem, span, &breakpoints, y, &mut [], &options, of.stats, &mut observe)
+            }
+        };
+        of.a.breakpoints = breakpoints;
+        outcome.map(|_| ()).map_err(|e| match e {
+            IntegrateError::Eval { t, source } => RunError::Eval { theta_deg: t.to_degrees(), source },
+            other => RunError::Integrate(other),
+        })
+    }
+
+    fn trajectory(&self, a: &Assembly, _: &Work) -> Trajectory {
+        Trajectory::new(a.layout.n, Between::Dense)
+    }
+}

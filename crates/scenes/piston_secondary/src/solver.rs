@@ -1,0 +1,80 @@
+//! What a solver of a piston in its bore is.
+
+use std::fmt::Debug;
+
+use dyn_clone::DynClone;
+use gudgeon_core::{BuildError, register_kind};
+use gudgeon_numerics::ode::Stats;
+use gudgeon_scene::{MethodSetting, RunError};
+
+use super::assemble::Assembly;
+use super::case::PistonSecondaryCase;
+use super::equations::Work;
+use super::trajectory::Trajectory;
+
+/// Configuration of a solver: the keys of the table `solver` that are its own.
+///
+/// It integrates one cycle at a time; the search of the periodic motion calls it again and again.
+#[register_kind(
+    name = "piston_solver",
+    summary = "integrates the motion of a piston in its bore over a cycle"
+)]
+pub trait PistonSolverSpec: Debug + DynClone + Send + Sync {
+    /// What is wrong with its own numbers and with what the case asks of it, with places in the case.
+    fn wrong(&self, case: &PistonSecondaryCase) -> Vec<BuildError>;
+
+    /// Why it cannot integrate this motion, with its place in the case.
+    fn refuses(&self, _a: &Assembly) -> Option<BuildError> {
+        None
+    }
+
+    /// How repeatable a cycle is, in clearances: a search of the periodic motion looks no closer.
+    fn repeatable_to(&self) -> f64;
+
+    /// The solver, ready for cycles of `a`.
+    fn build(&self, a: &Assembly) -> Box<dyn PistonSolver>;
+
+    /// Its settings from coarse to fine, for diagrams of run time against error; `own` is the case where it has this solver.
+    fn settings(&self, own: Option<&PistonSecondaryCase>) -> Vec<MethodSetting>;
+}
+
+/// A solver of one piston, its work arrays allocated.
+pub trait PistonSolver {
+    /// One cycle from the states `y`, into `trajectory` where one is wanted; `y` are the states at its end. Where a search asks for less,
+    /// `accuracy` (in clearances) is coarser than the solver's own.
+    ///
+    /// # Errors
+    /// A step that cannot be taken.
+    fn cycle(
+        &mut self,
+        of: &mut Cycled<'_>,
+        y: &mut [f64],
+        accuracy: f64,
+        trajectory: Option<&mut Trajectory>,
+    ) -> Result<(), RunError>;
+
+    /// An empty cycle, as the solver fills it.
+    fn trajectory(&self, a: &Assembly, work: &Work) -> Trajectory;
+}
+
+/// The piston that is integrated, with what it is integrated in.
+pub struct Cycled<'a> {
+    /// The piston.
+    pub a: &'a mut Assembly,
+    /// Coordinates and their rates; rates of zero at the start of a cycle.
+    pub work: &'a mut Work,
+    /// Steps, rejected steps, right-hand sides, Jacobians.
+    pub stats: &'a mut Stats,
+}
+
+/// Intervals of the film along and across, as changes of a case.
+pub(crate) fn mesh(along: u32, across: u32) -> [String; 2] {
+    [format!("solver.intervals_along={along}"), format!("solver.intervals_across={across}")]
+}
+
+/// The complaint about a tolerance that is none.
+pub(crate) fn check_tolerance(key: &str, value: f64) -> Option<BuildError> {
+    let admitted = (1e-12..=0.1).contains(&value);
+    let what = || format!("must be between 1e-12 and 0.1, not {value}");
+    (!admitted).then(|| BuildError::at(format!("solver.{key}"), what()))
+}
