@@ -39,6 +39,7 @@ const SWITCHED_OFF: &[(&str, Option<&str>)] = &[
     ("pin_friction", Some("off")),
     ("pin_load", Some("given")),
     ("pin_strength", None),
+    ("piston_solver", None),
     ("profile_curve", None),
     ("radial_gas", None),
     ("radial_motion", None),

@@ -16,6 +16,8 @@ mod legal;
 pub mod march;
 mod methods;
 mod notes;
+pub mod peak_width;
+pub mod places;
 pub mod plan;
 pub mod record;
 pub mod results;

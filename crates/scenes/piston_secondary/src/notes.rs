@@ -4,6 +4,7 @@
 use gudgeon_core::EvalError;
 use gudgeon_core::result::Note;
 
+use super::peak_width::half_height;
 use super::row::{Look, Row, index};
 use super::survey::{Survey, Which};
 
@@ -128,47 +129,4 @@ fn unresolved(look: &mut Look<'_>, side: usize, t: f64) -> Result<Option<Note>, 
             .amount("intervals_along_peak", along, "1")
             .amount("intervals_across_peak", across, "1")
     }))
-}
-
-/// Intervals on which the highest peak of a field over `nx` nodes along stands at half its height: along, across.
-fn half_height(p: &[f64], nx: usize) -> [f64; 2] {
-    let top = (0..p.len()).fold(0, |m, k| if p[k] > p[m] { k } else { m });
-    let (i, j, half) = (top % nx, top / nx, 0.5 * p[top]);
-    let along: Vec<f64> = p[j * nx..(j + 1) * nx].to_vec();
-    let across: Vec<f64> = p.iter().skip(i).step_by(nx).copied().collect();
-    let width = |line: &[f64], at: usize| {
-        let reach = |ways: &mut dyn Iterator<Item = usize>| {
-            let mut from = line[at];
-            let mut steps = 0.0;
-            for k in ways {
-                if line[k] < half {
-                    return steps + (from - half) / (from - line[k]);
-                }
-                (from, steps) = (line[k], steps + 1.0);
-            }
-            steps
-        };
-        reach(&mut (0..at).rev()) + reach(&mut (at + 1..line.len()))
-    };
-    [width(&along, i), width(&across, j)]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn width_of_a_tent() {
-        // A tent over 9 x 7 nodes, at half its height four intervals wide along and two across.
-        let (nx, ny) = (9, 7);
-        let p: Vec<f64> = (0..nx * ny)
-            .map(|k| {
-                let (i, j) = ((k % nx) as f64, (k / nx) as f64);
-                (1.0 - (i - 4.0).abs() / 4.0).max(0.0) * (1.0 - (j - 3.0).abs() / 2.0).max(0.0)
-            })
-            .collect();
-        let [along, across] = half_height(&p, nx);
-        // Straight lines between nodes: rounding.
-        assert!((along - 4.0).abs() < 1e-12 && (across - 2.0).abs() < 1e-12, "{along} {across}");
-    }
 }

@@ -6,6 +6,7 @@ use gudgeon_skirt::Piston;
 
 use super::assemble::Assembly;
 use super::case::PistonSecondaryCase;
+use super::places::{angles, places};
 use super::plan::tidy;
 use super::row::{COLUMNS, INERTIA, Look, OIL, YIELD, index};
 use super::trajectory::Trajectory;
@@ -32,38 +33,6 @@ pub struct Record {
     pub maps: [Vec<Map>; 2],
     /// The map with the highest pressure of each side.
     pub peak: [Map; 2],
-}
-
-/// Crank angles in equal steps of about `step` \[rad\] over a cycle.
-fn angles(period: f64, step: f64) -> Vec<f64> {
-    let count = (period / step).round().max(1.0) as usize;
-    (0..=count).map(|k| period * k as f64 / count as f64).collect()
-}
-
-/// Crank angles closer than this are one \[rad\].
-const SAME: f64 = 1e-9;
-
-/// A crank angle that is looked at, for a row of the series, for a map, or for both.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Place {
-    theta: f64,
-    row: bool,
-    map: bool,
-}
-
-/// Rows and maps in the order of their crank angles, which both ascend.
-fn places(rows: &[f64], maps: &[f64]) -> Vec<Place> {
-    let mut all = Vec::with_capacity(rows.len() + maps.len());
-    let mut maps = maps.iter().copied().peekable();
-    for &theta in rows {
-        while let Some(theta) = maps.next_if(|m| *m < theta - SAME) {
-            all.push(Place { theta, row: false, map: true });
-        }
-        let map = maps.next_if(|m| *m <= theta + SAME).is_some();
-        all.push(Place { theta, row: true, map });
-    }
-    all.extend(maps.map(|theta| Place { theta, row: false, map: true }));
-    all
 }
 
 impl Record {
@@ -160,25 +129,4 @@ pub fn yielding(
         }
     }
     Ok((part, first))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn maps_stand_at_their_own_angles_whatever_the_rows_are() {
-        let degrees = |step: f64| angles(4.0 * std::f64::consts::PI, step.to_radians());
-        for (rows, maps, looks) in
-            [(1.0, 5.0, 721), (30.0, 5.0, 145), (7.2, 5.0, 101 + 145 - 5), (0.05, 90.0, 14_401)]
-        {
-            let (rows, maps) = (degrees(rows), degrees(maps));
-            let all = places(&rows, &maps);
-            assert_eq!(all.len(), looks);
-            assert_eq!(all.iter().filter(|p| p.row).count(), rows.len());
-            assert_eq!(all.iter().filter(|p| p.map).count(), maps.len());
-            assert!(all.windows(2).all(|w| w[0].theta < w[1].theta - SAME));
-        }
-        assert!(places(&degrees(1.0), &[]).iter().all(|p| p.row && !p.map));
-    }
 }

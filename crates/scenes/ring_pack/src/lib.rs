@@ -4,6 +4,7 @@
 //! one of `implicit`, `substep_march` and `degree_march` solves it. `measure` gathers what the results need on the steps of the last cycle,
 //! `results` says it, `record` holds the series.
 
+pub mod acted;
 pub mod assemble;
 pub mod case;
 pub mod contact_line;

@@ -4,45 +4,11 @@ use std::f64::consts::PI;
 
 use gudgeon_core::result::{Event, Note};
 
+use super::acted::{Acted, Retreats};
 use super::error::RingPackError;
 use super::instant::SeatLog;
 use super::pack::Pack;
 use gudgeon_scene::RunError;
-
-/// How long something acted, and how much at most.
-#[derive(Debug, Clone, Copy, Default)]
-struct Acted {
-    /// Crank angle over which it did \[rad\].
-    span: f64,
-    most: f64,
-    /// Where it did most \[rad\].
-    at: f64,
-}
-
-impl Acted {
-    fn see(&mut self, amount: f64, theta: f64, weight: f64) {
-        if amount > 0.0 {
-            self.span += weight;
-            if amount > self.most {
-                (self.most, self.at) = (amount, theta);
-            }
-        }
-    }
-
-    fn acted(&self) -> bool {
-        self.span > 0.0
-    }
-}
-
-/// One time that a ring was off the liner.
-#[derive(Debug, Clone, Copy)]
-struct Retreat {
-    from: f64,
-    /// Where it was back; `None` when the cycle ended before.
-    to: Option<f64>,
-    /// Furthest film thickness \[m\].
-    most: f64,
-}
 
 /// One ring.
 #[derive(Debug, Clone, Default)]
@@ -65,9 +31,7 @@ struct RingWatch {
     thickest: Acted,
     /// Load of a ring that has neither film nor contact \[N\].
     uncarried: Acted,
-    retreats: Vec<Retreat>,
-    /// Angle and film thickness seen last.
-    last: Option<(f64, f64)>,
+    retreats: Retreats,
 }
 
 /// The watch over one cycle.
@@ -115,7 +79,7 @@ impl Watch {
             if !pack.rings[i].carries() {
                 w.uncarried.see(r.load.max(0.0) * circumference, theta, weight);
             }
-            w.retreat(theta, place.h, away);
+            w.retreats.see(theta, place.h, away);
         }
     }
 
@@ -205,7 +169,7 @@ impl Watch {
                 )
             });
             notes.extend(w.nothing_carries(ring, pack.plan.film_wanted));
-            notes.extend(w.left(ring, period, pack.limits.off_the_liner));
+            notes.extend(w.retreats.note(ring, period, pack.limits.off_the_liner));
         }
         notes.extend(pack.seat_log.iter().enumerate().filter_map(|(i, l)| chatter(i + 1, l)));
         notes
@@ -216,7 +180,7 @@ impl Watch {
     pub fn events(&self) -> Vec<Event> {
         let mut events = Vec::new();
         for (i, w) in self.rings.iter().enumerate() {
-            for r in &w.retreats {
+            for r in &w.retreats.all {
                 let mut add = |theta: f64, what: String| {
                     events.push(Event {
                         theta_deg: theta.to_degrees(),
@@ -249,22 +213,6 @@ fn chatter(ring: usize, log: &SeatLog) -> Option<Note> {
 }
 
 impl RingWatch {
-    fn retreat(&mut self, theta: f64, h: f64, away: f64) {
-        let (before, thickness) = self.last.unwrap_or((theta, h));
-        self.last = Some((theta, h));
-        // The logarithm of the film is nearly straight between two looks.
-        let crossing = || {
-            let (a, b) = (thickness.ln(), h.ln());
-            before + if b == a { 0.0 } else { ((away.ln() - a) / (b - a)).clamp(0.0, 1.0) } * (theta - before)
-        };
-        match self.retreats.last_mut().filter(|r| r.to.is_none()) {
-            Some(r) if h <= away => r.to = Some(crossing()),
-            Some(r) => r.most = r.most.max(h),
-            None if h > away => self.retreats.push(Retreat { from: crossing(), to: None, most: h }),
-            None => {}
-        }
-    }
-
     /// A ring without film and contact keeps the film it starts with: results of films are then none, and what depends on them is told.
     fn nothing_carries(&self, ring: usize, wanted: bool) -> Option<Note> {
         let a = self.uncarried;
@@ -279,55 +227,5 @@ impl RingWatch {
             let note = if wanted { Note::failure } else { Note::caution };
             note(format!("nothing_carries.ring{ring}"), text).amount("load", a.most, "N")
         })
-    }
-
-    fn left(&self, ring: usize, period: f64, away: f64) -> Option<Note> {
-        let most = self.retreats.iter().map(|r| r.most).reduce(f64::max)?;
-        let span: f64 = self.retreats.iter().map(|r| r.to.unwrap_or(period) - r.from).sum();
-        let share = (span / period).min(1.0);
-        let times = match self.retreats.len() {
-            1 => "once".to_owned(),
-            n => format!("{n} times"),
-        };
-        let text = format!(
-            "ring {ring} leaves the liner {times}, by up to {:.4} mm, for {:.2} % of the cycle (more than {:.0} um away)",
-            1e3 * most,
-            100.0 * share,
-            1e6 * away
-        );
-        let note = Note::caution(format!("off_the_liner.ring{ring}"), text);
-        Some(note.amount("retreat", 1e3 * most, "mm").amount("share_of_cycle", share, "1"))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_retreat_begins_and_ends_where_the_film_passes_the_limit() {
-        let mut w = RingWatch::default();
-        // ln h rises and falls by 1 per 0.1 rad about the limit of 1: from 0.2 to 0.6, most e^2.
-        for (k, log) in [-2.0, -1.0, 0.0, 1.0, 2.0, 1.0, 0.0, -1.0].into_iter().enumerate() {
-            w.retreat(0.1 * k as f64, f64::exp(log - 1e-12), 1.0);
-        }
-        let [r] = w.retreats[..] else { panic!("{:?}", w.retreats) };
-        // Straight lines in ln h; the limit is passed 1e-13 later than at a sample.
-        assert!((r.from - 0.2).abs() < 1e-9 && r.to.is_some_and(|t| (t - 0.6).abs() < 1e-9), "{r:?}");
-        assert!((r.most - 2f64.exp()).abs() < 1e-9);
-        let note = w.left(2, 4.0, 1.0).expect("left");
-        assert_eq!(note.topic, "off_the_liner.ring2");
-        assert!((note.amounts["share_of_cycle"].value - 0.1).abs() < 1e-9);
-    }
-
-    #[test]
-    fn nothing_is_said_of_what_did_not_act() {
-        let mut a = Acted::default();
-        a.see(0.0, 1.0, 0.5);
-        a.see(-1.0, 1.0, 0.5);
-        assert!(!a.acted());
-        a.see(3.0, 1.0, 0.5);
-        a.see(2.0, 2.0, 0.25);
-        assert!(a.acted() && a.most == 3.0 && a.at == 1.0 && a.span == 0.75);
     }
 }
