@@ -17,6 +17,12 @@ pub struct DowsonHigginson {
     pub b: PosPressureCoefficient,
 }
 
+impl Default for DowsonHigginson {
+    fn default() -> Self {
+        Self { a: initial(), b: saturation() }
+    }
+}
+
 fn initial() -> PosPressureCoefficient {
     quantity(0.6e-9)
 }
@@ -69,41 +75,5 @@ impl Compressibility for Saturating {
             slope[i] = self.a * inverse * inverse;
         }
         Ok(())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn at(p: f64) -> (f64, f64) {
-        let m = DowsonHigginson { a: initial(), b: saturation() }.build().expect("builds");
-        let (mut f, mut s) = ([0.0], [0.0]);
-        m.factor(&[p], &mut f, &mut s).expect("in range");
-        (f[0], s[0])
-    }
-
-    #[test]
-    fn the_published_curve() {
-        // (1 + 2.3 p)/(1 + 1.7 p), p in GPa: the same curve as one fraction.
-        for p in [0.0, 0.05, 0.4, 1.0, 3.0, -0.1] {
-            let (f, s) = at(p * 1e9);
-            assert!((f - (1.0 + 2.3 * p) / (1.0 + 1.7 * p)).abs() < 1e-15, "{p}");
-            // Slope 0.6/(1 + 1.7 p)² per GPa.
-            assert!((s * 1e9 - 0.6 / (1.0 + 1.7 * p).powi(2)).abs() < 1e-15, "{p}");
-        }
-        // Its limit 1 + 6/17.
-        assert!((at(1e300).0 - 1.0 - 6.0 / 17.0).abs() < 1e-15 && at(1e308).1 >= 0.0);
-    }
-
-    #[test]
-    fn refuses_tension_and_nonsense() {
-        let m = DowsonHigginson { a: initial(), b: saturation() }.build().expect("builds");
-        let (mut f, mut s) = ([0.0], [0.0]);
-        for p in [-4e8, f64::NAN, f64::INFINITY] {
-            assert!(m.factor(&[p], &mut f, &mut s).is_err_and(|e| e.is_recoverable()));
-        }
-        let soft = DowsonHigginson { a: quantity(2e-9), b: quantity(1e-9) };
-        assert_eq!(soft.build().err().map(|e| e.field), Some("a".into()));
     }
 }

@@ -2,9 +2,11 @@ use gudgeon_core::kinds::{Film1d, Film1dCtx, Film1dIn, Film1dOut, Film1dScope, F
 use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
-use super::line::{Change, Line, LineCavityShear, Shear};
+use super::cavity_shear::{LineCavityShear, Shear};
+use super::line::{Change, Line};
+use super::line_solver::LineSolver;
 use super::rows::Rows;
-use crate::Cavitation;
+use crate::cavitation::Cavitation;
 
 /// Film along a line as a complementarity problem on its nodes: pressure or void, never both.
 ///
@@ -38,17 +40,6 @@ pub struct Complementarity {
     /// How the complementarity problem of `mass_conserving` is solved. The answer does not depend on it.
     #[serde(default)]
     pub solver: LineSolver,
-}
-
-/// Solver of the complementarity problem of a line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum LineSolver {
-    /// Steady films directly, all others by semi-smooth Newton steps from the last film.
-    #[default]
-    Direct,
-    /// Newton's method on `p + r - √(p² + r²)`, `r = 1 - θ`, from a full film or the last one.
-    FischerBurmeister,
 }
 
 const MODEL: &str = "complementarity";

@@ -5,8 +5,9 @@ use gudgeon_core::quantity::PosPressure;
 use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
-use super::line::{Change, Line, LineCavityShear, Shear};
-use crate::Cavitation;
+use super::cavity_shear::{LineCavityShear, Shear};
+use super::line::{Change, Line};
+use crate::cavitation::Cavitation;
 
 /// Elrod and Adams' algorithm: one unknown for each node, the content `θ` of the gap, which is the filled fraction in a
 /// cavity and the density over that at `p_cav` in the film.

@@ -4,8 +4,11 @@ use gudgeon_core::kinds::{
 use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
-use super::line::{Change, Line, LineCavityShear, Shear, Stretch, Sums};
-use crate::Cavitation;
+use super::cavity_shear::{LineCavityShear, Shear};
+use super::line::{Change, Line};
+use super::panel::Stretch;
+use super::sums::Sums;
+use crate::cavitation::Cavitation;
 
 /// Steady mass-conserving film along a line with its fronts where they are, between nodes too: exact for a gap that is linear
 /// in each panel, with any number of cavities.

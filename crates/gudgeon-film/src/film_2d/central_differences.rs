@@ -5,8 +5,10 @@ use gudgeon_core::{BuildError, EvalError, register_model};
 use gudgeon_numerics::linalg::Banded;
 use serde::{Deserialize, Serialize};
 
+use super::cavitation::Cavitation;
+use super::checks::check_modes;
+use super::flux::Flux;
 use super::problem::Problem;
-use super::{Cavitation, Flux};
 
 /// Full film by central differences of the expanded equation, cut off at `p_cav`: the film of published programs.
 ///
@@ -345,7 +347,7 @@ impl Film2d for Differences {
         p: &mut [f64],
     ) -> Result<usize, EvalError> {
         let n = self.p.len();
-        super::check_modes(MODEL, n, modes, p.len())?;
+        check_modes(MODEL, n, modes, p.len())?;
         self.assemble(inp)?;
         let Viscosity::Uniform(mu) = inp.mu else { return Err(EvalError::fatal(MODEL, "no viscosity")) };
         let mut cycles = 0;

@@ -5,7 +5,8 @@ use gudgeon_core::kinds::{Film2d, Film2dGrid, Film2dIn, Film2dOut, FilmMode, Sup
 use gudgeon_numerics::linalg::Singular;
 use gudgeon_numerics::multigrid::FivePoint;
 
-use super::Cavitation;
+use super::cavitation::Cavitation;
+use super::checks::check_modes;
 use super::problem::{Problem, cause_of};
 
 /// Solves linear systems with a [`FivePoint`] matrix.
@@ -342,7 +343,7 @@ impl<L: Linear> Film2d for Solver<L> {
         p: &mut [f64],
     ) -> Result<usize, EvalError> {
         let n = self.p.len();
-        super::check_modes(self.model, n, modes, p.len())?;
+        check_modes(self.model, n, modes, p.len())?;
         (self.warm, self.set_up) = (false, false);
         self.problem.assemble(self.model, inp)?;
         self.cavitated.fill(false);
@@ -380,8 +381,8 @@ impl<L: Linear> Film2d for Solver<L> {
         r: &mut [f64],
     ) -> Result<bool, EvalError> {
         let n = self.p.len();
-        super::check_modes(self.model, n, &[*mode], p.len())?;
-        super::check_modes(self.model, n, &[*mode], r.len())?;
+        check_modes(self.model, n, &[*mode], p.len())?;
+        check_modes(self.model, n, &[*mode], r.len())?;
         let beside = self.beside.get_or_insert_with(|| self.problem.clone());
         beside.assemble(self.model, inp)?;
         beside.drive(&cause_of(inp, mode), mode.u, mode.dhdt, false);

@@ -4,9 +4,11 @@ use gudgeon_numerics::linalg::{Banded, Singular, SymmetricBanded};
 use gudgeon_numerics::multigrid::{FivePoint, Role};
 use serde::{Deserialize, Serialize};
 
+use super::cavitation::Cavitation;
+use super::checks::{check_tolerance, tolerance};
 use super::complementarity::{Linear, Solver};
+use super::flux::Flux;
 use super::problem::Problem;
-use super::{Cavitation, Flux};
 
 /// Film by finite volumes, its linear systems solved by elimination within the band.
 ///
@@ -22,14 +24,14 @@ pub struct Direct {
     #[serde(default)]
     pub flux: Flux,
     /// Largest imbalance of a control volume over the largest flow between two or into one, from 1e-14 to 0.1.
-    #[serde(default = "super::tolerance")]
+    #[serde(default = "tolerance")]
     #[schemars(range(min = 1e-14, max = 0.1), extend("x-refine" = { "group": "film tolerance", "factor": 0.1 }))]
     pub tolerance: f64,
 }
 
 impl Default for Direct {
     fn default() -> Self {
-        Self { cavitation: Cavitation::default(), flux: Flux::default(), tolerance: super::tolerance() }
+        Self { cavitation: Cavitation::default(), flux: Flux::default(), tolerance: tolerance() }
     }
 }
 
@@ -49,7 +51,7 @@ const MOST: usize = 1 << 27;
 )]
 impl Film2dSpec for Direct {
     fn build(&self, ctx: &Film2dCtx<'_>) -> Result<Box<dyn Film2d>, BuildError> {
-        super::check_tolerance(self.tolerance)?;
+        check_tolerance(self.tolerance)?;
         let problem = Problem::new(ctx.grid, self.flux)?;
         if !Elimination::fits(&problem.m) {
             let what = format!("{} x {} nodes are too many for banded elimination", problem.nx, problem.ny);

@@ -4,10 +4,12 @@ use gudgeon_numerics::linalg::Singular;
 use gudgeon_numerics::multigrid::{FivePoint, LineMultigrid};
 use serde::{Deserialize, Serialize};
 
+use super::cavitation::Cavitation;
+use super::checks::{check_tolerance, tolerance};
 use super::complementarity::{Linear, Solver};
 use super::direct::Elimination;
+use super::flux::Flux;
 use super::problem::Problem;
-use super::{Cavitation, Flux};
 
 /// Film by finite volumes, its linear systems solved by multigrid.
 ///
@@ -27,14 +29,14 @@ pub struct Multigrid {
     #[serde(default)]
     pub flux: Flux,
     /// Largest imbalance of a control volume over the largest flow between two or into one, from 1e-14 to 0.1.
-    #[serde(default = "super::tolerance")]
+    #[serde(default = "tolerance")]
     #[schemars(range(min = 1e-14, max = 0.1), extend("x-refine" = { "group": "film tolerance", "factor": 0.1 }))]
     pub tolerance: f64,
 }
 
 impl Default for Multigrid {
     fn default() -> Self {
-        Self { cavitation: Cavitation::default(), flux: Flux::default(), tolerance: super::tolerance() }
+        Self { cavitation: Cavitation::default(), flux: Flux::default(), tolerance: tolerance() }
     }
 }
 
@@ -52,7 +54,7 @@ impl Default for Multigrid {
 )]
 impl Film2dSpec for Multigrid {
     fn build(&self, ctx: &Film2dCtx<'_>) -> Result<Box<dyn Film2d>, BuildError> {
-        super::check_tolerance(self.tolerance)?;
+        check_tolerance(self.tolerance)?;
         let problem = Problem::new(ctx.grid, self.flux)?;
         let small = problem.nx * problem.ny <= SMALL;
         let linear = Cycling {

@@ -2,7 +2,7 @@ use gudgeon_core::kinds::{Film2d, Film2dCtx, Film2dGrid, Film2dIn, Film2dOut, Fi
 use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
-use super::Flux;
+use super::flux::Flux;
 use super::problem::Problem;
 
 /// No oil between the surfaces: the pressure is `p_cav`, nothing shears.

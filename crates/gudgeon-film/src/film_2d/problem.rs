@@ -4,7 +4,8 @@ use gudgeon_core::kinds::{Edge, Film2dGrid, Film2dIn, Film2dOut, FilmMode, Visco
 use gudgeon_core::{BuildError, EvalError};
 use gudgeon_numerics::multigrid::{FivePoint, Role};
 
-use super::{Cavitation, Flux};
+use super::cavitation::Cavitation;
+use super::flux::Flux;
 
 /// Most nodes of a grid: one field of 128 MB.
 const MOST: usize = 1 << 24;

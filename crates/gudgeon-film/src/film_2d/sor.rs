@@ -4,8 +4,10 @@ use gudgeon_core::kinds::{
 use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
+use super::cavitation::Cavitation;
+use super::checks::{check_modes, check_tolerance, tolerance};
+use super::flux::Flux;
 use super::problem::Problem;
-use super::{Cavitation, Flux};
 
 /// Film by finite volumes, solved node by node with over-relaxation.
 ///
@@ -23,7 +25,7 @@ pub struct Sor {
     #[serde(default)]
     pub flux: Flux,
     /// Largest imbalance of a control volume over the largest flow between two or into one, from 1e-14 to 0.1.
-    #[serde(default = "super::tolerance")]
+    #[serde(default = "tolerance")]
     #[schemars(range(min = 1e-14, max = 0.1), extend("x-refine" = { "group": "film tolerance", "factor": 0.1 }))]
     pub tolerance: f64,
     /// Over-relaxation, above 0 and below 2. By default `2/(1 + √(1 - ρ²))` with `ρ` the spectral radius of Jacobi's iteration for a film of uniform
@@ -46,7 +48,7 @@ impl Default for Sor {
         Self {
             cavitation: Cavitation::default(),
             flux: Flux::default(),
-            tolerance: super::tolerance(),
+            tolerance: tolerance(),
             relaxation: None,
             most_sweeps: most_sweeps(),
         }
@@ -67,7 +69,7 @@ const MODEL: &str = "sor";
 )]
 impl Film2dSpec for Sor {
     fn build(&self, ctx: &Film2dCtx<'_>) -> Result<Box<dyn Film2d>, BuildError> {
-        super::check_tolerance(self.tolerance)?;
+        check_tolerance(self.tolerance)?;
         if let Some(w) = self.relaxation.filter(|w| !(*w > 0.0 && *w < 2.0)) {
             return Err(BuildError::at("relaxation", format!("must be between 0 and 2, not {w}")));
         }
@@ -253,7 +255,7 @@ impl Film2d for Relaxation {
         p: &mut [f64],
     ) -> Result<usize, EvalError> {
         let n = self.p.len();
-        super::check_modes(MODEL, n, modes, p.len())?;
+        check_modes(MODEL, n, modes, p.len())?;
         self.problem.assemble(MODEL, inp)?;
         self.warm = false;
         let mut sweeps = 0;

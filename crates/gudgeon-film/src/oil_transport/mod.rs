@@ -1,8 +1,8 @@
 //! Models of the oil on the liner.
 
-mod carried;
-mod face;
-mod law;
+pub(crate) mod carried;
+pub(crate) mod face;
+pub(crate) mod law;
 mod liner;
 mod liner_film;
 mod off;

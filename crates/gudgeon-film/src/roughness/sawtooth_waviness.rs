@@ -1,9 +1,12 @@
+//! Waves on the body across the sliding direction.
+
 use gudgeon_core::kinds::{RoughFlow, RoughShear, Roughness, RoughnessSpec};
 use gudgeon_core::quantity::{PosLength, PosRatio};
 use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
-use super::held_above;
+use super::checks::{check_flow, check_shear};
+use super::held_above::held_above;
 
 /// Machining grooves of triangular profile across the sliding direction on the body, exactly homogenised.
 ///
@@ -35,7 +38,8 @@ pub struct SawtoothWaviness {
     pub closest: PosRatio,
 }
 
-fn closest() -> PosRatio {
+/// Default of [`SawtoothWaviness::closest`].
+pub fn closest() -> PosRatio {
     gudgeon_core::quantity::quantity(1.02)
 }
 
@@ -87,7 +91,7 @@ const MODEL: &str = "sawtooth_waviness";
 
 /// `Ω/h` up to which `artanh(r)/r - 1` is summed: what is left out is of the order `0.2^22` of it, what the closed form would lose is
 /// rounding over `r²/3`.
-const SERIES: f64 = 0.2;
+pub const SERIES: f64 = 0.2;
 
 #[derive(Debug)]
 struct Waves {
@@ -105,7 +109,7 @@ impl Waves {
 }
 
 /// `artanh(r)/r - 1`, `0 <= r < 1`.
-fn excess(r: f64) -> f64 {
+pub fn excess(r: f64) -> f64 {
     if r < SERIES {
         let rr = r * r;
         rr * (0..11).rev().fold(0.0, |s, k| s * rr + 1.0 / f64::from(2 * k + 3))
@@ -120,7 +124,7 @@ impl Roughness for Waves {
     }
 
     fn flow(&self, h: &[f64], out: &mut RoughFlow) -> Result<(), EvalError> {
-        super::check_flow(MODEL, h, out)?;
+        check_flow(MODEL, h, out)?;
         let omega = self.omega;
         for (i, &h) in h.iter().enumerate() {
             let film = self.film(h);
@@ -143,7 +147,7 @@ impl Roughness for Waves {
     }
 
     fn shear(&self, h: &[f64], out: &mut RoughShear) -> Result<(), EvalError> {
-        super::check_shear(MODEL, h, out)?;
+        check_shear(MODEL, h, out)?;
         for (i, &h) in h.iter().enumerate() {
             let film = self.film(h);
             let r = self.omega / film;
@@ -154,134 +158,5 @@ impl Roughness for Waves {
             out.phi_fp[i] = 1.0 - r * r;
         }
         Ok(())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use gudgeon_core::quantity::quantity;
-    use gudgeon_numerics::quadrature::GaussLegendre;
-
-    use super::*;
-    use crate::roughness::test::{both, slopes_are_continuous};
-
-    const OMEGA: f64 = 4e-6;
-
-    fn model(transport: WavinessTransport) -> Box<dyn Roughness> {
-        SawtoothWaviness { amplitude: quantity(OMEGA), transport, closest: closest() }
-            .build()
-            .expect("builds")
-    }
-
-    #[test]
-    fn listed_values() {
-        // Flow and friction factors for Ω = 4 µm as printed by Loureiro's equations, seven decimals.
-        let listed = [
-            (10e-6, [1.16, 0.7056, 0.4, 1.0591223, 0.1773670, 0.84]),
-            (6.5e-6, [1.3786982, 0.3860158, 0.6153846, 1.1660062, 0.4980185, 0.6213018]),
-        ];
-        for (h, [phi_y, phi_x, phi_s, phi_f, phi_fs, phi_fp]) in listed {
-            let (flow, shear) = both(&*model(WavinessTransport::Homogenised), h);
-            let got = [
-                (flow.phi_y[0], phi_y),
-                (flow.phi_x[0], phi_x),
-                ((h - flow.transport[0]) / OMEGA, phi_s),
-                (shear.phi_f[0], phi_f),
-                (shear.phi_fs[0], phi_fs),
-                (shear.phi_fp[0], phi_fp),
-            ];
-            for (got, listed) in got {
-                // A unit of the last decimal: some are cut, not rounded.
-                assert!((got - listed).abs() < 1e-7, "{h}: {got} {listed}");
-            }
-        }
-    }
-
-    #[test]
-    fn factors_are_the_averages() {
-        let rule = GaussLegendre::new(60);
-        for r in [1e-4, 0.01, 0.19, 0.21, 0.4, 0.6, 0.8] {
-            let h = OMEGA / r;
-            // The mean over an even spread of films; 60 nodes resolve (1 - 0.8 t)^-3 to rounding.
-            let mean = |n: i32| 0.5 * rule.integrate(-1.0, 1.0, |t| (1.0 + r * t).powi(n));
-            let (m1, m2, m3) = (mean(-1), mean(-2), mean(-3));
-            let (flow, shear) = both(&*model(WavinessTransport::Homogenised), h);
-            let pairs = [
-                (flow.phi_x[0], 1.0 / m3),
-                (flow.phi_y[0], mean(3)),
-                (flow.transport[0] / h, m2 / m3),
-                (shear.phi_f[0], m1),
-                (shear.phi_fp[0], m2 / m3),
-                (flow.content[0] / h, mean(1)),
-            ];
-            for (i, (got, exact)) in pairs.into_iter().enumerate() {
-                // Sums of 60 terms of order one to 124.
-                assert!((got - exact).abs() < 1e-13, "{i} at r = {r}: {got} {exact}");
-            }
-            // The difference of means cancels: the same absolute bound.
-            assert!((shear.phi_fs[0] - 3.0 * (m1 - m2 * m2 / m3)).abs() < 3e-13, "{r}");
-        }
-    }
-
-    #[test]
-    fn series_meets_the_closed_form() {
-        // Rounding of 1e-16 over the excess 0.0135 at the joint.
-        let (below, above) = (excess(SERIES.next_down()), excess(SERIES));
-        assert!((below / above - 1.0).abs() < 3e-14, "{below} {above}");
-        // r²/3 + r⁴/5 where the closed form has no digit left.
-        assert!((excess(1e-7) / (1e-14 / 3.0) - 1.0).abs() < 1e-13);
-        assert_eq!(excess(0.0), 0.0);
-    }
-
-    #[test]
-    fn signs_of_the_transport() {
-        let at = |t| both(&*model(t), 8e-6).0.transport[0];
-        // h ∓ Ω²/h = 8 ∓ 2 µm, two roundings.
-        assert!((at(WavinessTransport::Homogenised) - 6e-6).abs() < 4e-21);
-        assert!((at(WavinessTransport::AsPublished) - 10e-6).abs() < 4e-21);
-        assert_eq!(at(WavinessTransport::Smooth), 8e-6);
-        // Thick films know nothing of it.
-        let (flow, shear) = both(&*model(WavinessTransport::Homogenised), 1.0);
-        assert!((flow.phi_x[0] - 1.0).abs() < 1e-9 && (flow.transport[0] - 1.0).abs() < 1e-9);
-        assert!(shear.phi_fs[0] > 0.0 && shear.phi_fs[0] < 1e-9);
-    }
-
-    #[test]
-    fn content_is_the_average_gap() {
-        let rule = GaussLegendre::new(4);
-        for x in [-0.9, -0.3, 0.0, 0.5, 0.999, 1.0, 1.3] {
-            // Mean of max(h + Ωt, 0) over -1 < t < 1, from where it opens: a polynomial of degree 1.
-            let from = f64::max(-x, -1.0);
-            let mean = 0.5 * rule.integrate(from, 1.0, |t| x + t);
-            let (flow, _) = both(&*model(WavinessTransport::Smooth), x * OMEGA);
-            assert!((flow.content[0] / OMEGA - mean).abs() < 1e-15, "{x}");
-        }
-    }
-
-    #[test]
-    fn smooth_everywhere_and_never_negative() {
-        for transport in
-            [WavinessTransport::Homogenised, WavinessTransport::AsPublished, WavinessTransport::Smooth]
-        {
-            let m = model(transport);
-            slopes_are_continuous(&*m, OMEGA, &[-1.0, 0.0, 1.0, 1.02, 1.04, 5.0]);
-        }
-        for h in [-1e300, -1.0, 0.0, 1e-300, 1e-9, 1e300] {
-            let (flow, shear) = both(&*model(WavinessTransport::Homogenised), h);
-            let values =
-                [flow.film, flow.phi_x, flow.phi_y, flow.transport, shear.film, shear.phi_f, shear.phi_fp];
-            assert!(values.iter().all(|v| v[0].is_finite() && v[0] > 0.0), "{h}: {values:?}");
-            assert!(flow.content[0].is_finite() && flow.content[0] >= 0.0 && shear.phi_fs[0].is_finite());
-        }
-    }
-
-    #[test]
-    fn an_amplitude_that_cannot_be_computed_with_is_refused() {
-        let spec = SawtoothWaviness {
-            amplitude: quantity(1e-200),
-            transport: WavinessTransport::Homogenised,
-            closest: closest(),
-        };
-        assert_eq!(spec.build().err().map(|e| e.field), Some("amplitude".into()));
     }
 }

@@ -3,6 +3,8 @@ use gudgeon_core::kinds::{FaceCtx, FaceIn, FaceOut, Hydrodynamics, Hydrodynamics
 use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
+use super::check_face::check_face;
+
 /// Film under a ring face from trapezoid integrals on equally spaced nodes, clipped at the cavitation pressure.
 ///
 /// With `h(x) = h + drop(x)`, `u` the velocity of the liner along `+x` seen from the ring and `ḣ` the squeeze velocity,
@@ -94,28 +96,6 @@ impl HydrodynamicsSpec for GriddedFace {
         }
         Ok(Box::new(Grid::new(ctx.face, base, self.refine)))
     }
-}
-
-/// Whether a face is one at all: positive length, finite drops.
-pub(crate) fn check_face(face: &FaceProfile) -> Result<(), BuildError> {
-    let length = face.length();
-    if !(length.is_finite() && length > 0.0) {
-        return Err(BuildError::new(format!(
-            "the length of a running face must be positive, not {length} m"
-        )));
-    }
-    let finite = match face {
-        FaceProfile::Parabola { curvature, apex, .. } => curvature.is_finite() && apex.is_finite(),
-        FaceProfile::Taper { land, drop, .. } => *land > 0.0 && *land < length && drop.is_finite(),
-        FaceProfile::Table { drops, .. } if drops.len() < 2 => {
-            return Err(BuildError::new(format!(
-                "a face profile needs two or more points, not {}",
-                drops.len()
-            )));
-        }
-        FaceProfile::Table { drops, .. } => drops.iter().all(|d| d.is_finite()),
-    };
-    if finite { Ok(()) } else { Err(BuildError::new("the drops of a running face must be finite")) }
 }
 
 /// Nodes that are worked on together: sums of four lanes do not wait for one another, and fill vector registers.

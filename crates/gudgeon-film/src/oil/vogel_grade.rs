@@ -2,7 +2,7 @@ use gudgeon_core::kinds::{Oil, OilSpec};
 use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
-use crate::vogel::VogelOil;
+use super::vogel::VogelOil;
 
 /// The Vogel equation with the published constants of an oil grade: `μ = a exp(b / (T_C + c))`.
 ///

@@ -10,108 +10,26 @@
 //!
 //! all differences written as `t2 - t1` times something. Pressure over `12 μ`, from the edge `a` on: `p = p_a + α X + β M3 - γ P3` with
 //! `α = U ℓ/h²`, `β = ḣ ℓ²/h³` and the flux `γ`. What still loses digits, a face nearly flat at its film and a film of nearly no
-//! length, is left to the general way ([`crate::face::Parabola`]).
+//! length, is left to the general way ([`super::parabola::Parabola`]).
 
-use crate::face::{Moments, angle};
+use super::moments::Moments;
+use super::stretch::{End, Stretch, Sums};
 
-/// Least `X` beside `P2` and least `P3` beside `P1`: three digits are lost there.
-const LEAST: f64 = 1e-3;
 /// Least lever of the rupture, `t P3 - M3`, beside its parts: of a film much shorter than its distance from the apex, differences of
 /// differences decide.
 const LEVER: f64 = 0.05;
-/// Farthest an angle is moved by the series of the arc tangent up to `z⁷/7`: what is left out is 6e-17.
-const SHORT: f64 = 2e-2;
+
 /// Step beside what it is a step of, after which one of fourth or of second order has left only rounding.
 const FOURTH: f64 = 1e-4;
+
 const SECOND: f64 = 1e-8;
+
 /// Steps before the search is left to the general way.
 const STEPS: usize = 6;
 
-/// A stretch of the face whose one end is fixed.
-#[derive(Debug, Clone, Copy)]
-struct Stretch {
-    /// The moving end and `1/D` there.
-    t: f64,
-    r: f64,
-    /// The fixed end.
-    end: End,
-    /// From the lower end to the upper one.
-    angle: f64,
-}
-
-/// An edge of the face.
-#[derive(Debug, Clone, Copy, Default)]
-struct End {
-    t: f64,
-    r: f64,
-    /// 1 when it is the lower end of its stretch, -1 when it is the upper one.
-    side: f64,
-}
-
-/// Integrals over a stretch.
-#[derive(Debug, Clone, Copy, Default)]
-struct Sums {
-    p1: f64,
-    p2: f64,
-    p3: f64,
-    m2: f64,
-    m3: f64,
-    x: f64,
-    e: f64,
-}
-
-impl Sums {
-    /// Whether the differences they are made of leave digits enough.
-    #[inline(always)]
-    fn sound(&self) -> bool {
-        self.x > LEAST * self.p2 && self.p3 > LEAST * self.p1
-    }
-}
-
-impl Stretch {
-    #[inline(always)]
-    fn new(end: End, t: f64) -> Self {
-        let r = 1.0 / (1.0 + t * t);
-        Self { t, r, end, angle: angle(end.side * (t - end.t), 1.0 + t * end.t) }
-    }
-
-    /// With its free end moved by `d`.
-    #[inline(always)]
-    fn moved(self, d: f64) -> Self {
-        let t = self.t + d;
-        let z = self.end.side * d / (1.0 + self.t * t);
-        if z.abs() > SHORT {
-            return Self::new(self.end, t);
-        }
-        let y = z * z;
-        let angle = self.angle + (z - z * y * (1.0 / 3.0 - y * (0.2 - y * (1.0 / 7.0))));
-        Self { t, r: 1.0 / (1.0 + t * t), angle, ..self }
-    }
-
-    #[inline(always)]
-    fn sums(&self) -> Sums {
-        let (End { t: t1, r: r1, side }, t2, r2) = (self.end, self.t, self.r);
-        let rr = r1 * r2 * (side * (t2 - t1));
-        // Differences of t r, r and t r², upper end less lower end.
-        let (d_tr, d_r) = (rr * (1.0 - t1 * t2), -rr * (t1 + t2));
-        let d_trr = r2 * d_tr + t1 * r1 * d_r;
-        let p2 = 0.5 * (self.angle + d_tr);
-        let p3 = 0.75 * p2 + 0.25 * d_trr;
-        Sums {
-            p1: self.angle,
-            p2,
-            p3,
-            m2: -0.5 * d_r,
-            m3: -0.25 * d_r * (r1 + r2),
-            x: p2 - p3,
-            e: -0.25 * d_r * (t1 * t1 * r1 + t2 * t2 * r2),
-        }
-    }
-}
-
 /// A crowned face under one film.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Crown {
+pub struct Crown {
     apex: f64,
     h: f64,
     /// `1/h`
@@ -125,16 +43,16 @@ pub(crate) struct Crown {
 
 /// What is asked: half the sliding velocity, the edges' pressures over `12 μ`, and whether a film at the trailing edge is looked for.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Asked {
+pub struct Asked {
     pub u: f64,
     pub pa: f64,
     pub pb: f64,
     pub trailing: bool,
 }
 
-/// A ruptured film, as [`crate::closed_form_face`] wants it: `s` counts from the apex, the flux constant is `q - ḣ s + U h`.
+/// A ruptured film, as [`super::quick`] wants it: `s` counts from the apex, the flux constant is `q - ḣ s + U h`.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Crowned {
+pub struct Crowned {
     pub v: f64,
     pub x: f64,
     pub q: f64,

@@ -3,6 +3,8 @@ use gudgeon_core::kinds::{FaceCtx, FaceIn, FaceOut, Hydrodynamics, Hydrodynamics
 use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
+use super::check_face::check_face;
+
 /// No oil film: it carries nothing, does not shear and does not resist being squeezed. A ring then rides on its solid contact alone; one
 /// without contact as well keeps the film thickness it was given.
 #[derive(Debug, Clone, Default, Serialize, Deserialize, schemars::JsonSchema)]
@@ -19,7 +21,7 @@ pub struct Off {}
 )]
 impl HydrodynamicsSpec for Off {
     fn build(&self, ctx: &FaceCtx<'_>) -> Result<Box<dyn Hydrodynamics>, BuildError> {
-        crate::gridded_face::check_face(ctx.face)?;
+        check_face(ctx.face)?;
         Ok(Box::new(NoFilm { face: ctx.face.clone() }))
     }
 }

@@ -3,7 +3,7 @@ use gudgeon_core::quantity::{PosTemperature, quantity};
 use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
-use crate::given::PerRing;
+use super::given::PerRing;
 
 /// The mean of the temperature of the land above a ring and of a uniform liner wall: `T = (T_land + T_wall)/2`.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]

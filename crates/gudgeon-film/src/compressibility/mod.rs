@@ -1,0 +1,4 @@
+//! Density under pressure.
+
+pub mod dowson_higginson;
+pub mod off;

@@ -1,0 +1,9 @@
+//! Temperature of the film under each ring.
+
+mod given;
+mod land_wall_mean;
+mod liner_linear;
+
+pub use given::Given;
+pub use land_wall_mean::LandWallMean;
+pub use liner_linear::LinerLinear;

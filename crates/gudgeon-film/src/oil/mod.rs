@@ -1,0 +1,9 @@
+//! Viscosity of the oil over its temperature.
+
+mod constant;
+mod vogel;
+mod vogel_grade;
+
+pub use constant::Constant;
+pub use vogel::Vogel;
+pub use vogel_grade::{Grade, VogelGrade, VogelTable};

@@ -1,0 +1,6 @@
+//! Viscosity under pressure.
+
+pub mod barus;
+pub mod off;
+pub mod roelands;
+pub mod tame_exp;

@@ -1,0 +1,5 @@
+//! Viscosity under shear.
+
+pub mod carreau;
+pub mod cross;
+pub mod off;

@@ -1,0 +1,4 @@
+//! Density under pressure.
+
+mod dowson_higginson;
+mod off;

@@ -1,0 +1,15 @@
+//! Tests of the crate, one module a topic.
+
+mod closed_form_face;
+mod compressibility;
+mod film_1d;
+mod film_2d;
+mod film_temperature;
+mod gridded_face;
+mod moments;
+mod oil;
+mod oil_transport;
+mod piezoviscosity;
+mod roughness;
+mod rows;
+mod shear_thinning;

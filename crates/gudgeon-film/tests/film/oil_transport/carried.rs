@@ -1,0 +1,153 @@
+//! Oil on the liner and under the faces.
+
+use gudgeon_core::geometry::FaceProfile;
+use gudgeon_core::kinds::{OilFacePlace, OilStep, OilTransport, OilTransportCtx};
+use gudgeon_core::states::Stateful;
+use gudgeon_film::parts::{Carried, GaussianGap, Law};
+use gudgeon_film::parts::{LEAST_REACH, SIDES, WAVE_SLOPE};
+
+fn pack() -> Carried {
+    let barrel = FaceProfile::Parabola { length: 1.2e-3, curvature: 15.0, apex: 0.5e-3 };
+    let table = FaceProfile::Table { length: 0.8e-3, drops: vec![3e-6, 0.0, 0.0, 2e-6] };
+    let place = |ring, profile: &FaceProfile, offset, clearance| OilFacePlace {
+        ring,
+        land: 0,
+        profile: profile.clone(),
+        offset,
+        clearance,
+    };
+    let law = Law {
+        supply: 5e-6,
+        split: 0.5,
+        roughness: 0.0,
+        mean_gap: GaussianGap::new(),
+        wave: 50e-6,
+        spacing: 0.2e-3,
+        initial: 1e-6,
+    };
+    let faces = [place(0, &barrel, 8e-3, [Some(0.2e-3); 2]), place(1, &table, 0.0, [None, Some(0.2e-3)])];
+    Carried::new(law, &OilTransportCtx { faces: &faces, pin: (0.0, 0.1), omega: 1.0 })
+}
+
+fn begin(p: &mut Carried) {
+    let mut field = vec![0.0; p.carried()];
+    p.field(&mut field);
+    p.begin_cycle(&field, 0.1);
+}
+
+/// A step under films of 2 um.
+fn book(p: &mut Carried, y0: &[f64], y1: &[f64], pin: f64) {
+    p.book(&OilStep { y0, y1, pin, films: &[2e-6; 2] });
+}
+
+#[test]
+fn a_reach_holds_its_volume() {
+    let mut p = pack();
+    for k in 0..2 {
+        for side in 0..SIDES {
+            let h = 1.3e-6;
+            let full = p.faces[k].capacity(h, side);
+            for part in [0.1, 0.5, 0.99] {
+                p.faces[k].volume[side] = part * full;
+                let r = p.faces[k].reach_of(h, side);
+                // Joined to the least reach without a corner, and not beyond the edge.
+                let least = (LEAST_REACH * p.faces[k].length).min(p.faces[k].span(side));
+                if r.length >= p.faces[k].span(side) {
+                    continue;
+                }
+                let t = (r.length * r.length - least * least).sqrt();
+                let held = p.faces[k].held(h, t, side);
+                // Newton's method ends where the length no longer changes by a rounding; the difference of squares loses a digit or two.
+                assert!((held - part * full).abs() <= 1e-13 * full, "{k} {side} {part}");
+                let gap = h + p.faces[k].drop_at(r.length, side);
+                assert_eq!(r.gap, gap);
+            }
+            p.faces[k].volume[side] = full + 2e-9;
+            let r = p.faces[k].reach_of(h, side);
+            assert_eq!(r.length, p.faces[k].span(side));
+            let edge = h + p.faces[k].drop_at(r.length, side);
+            let wave = 0.5 * (r.gap * r.gap - edge * edge) / WAVE_SLOPE;
+            assert!((wave - 2e-9).abs() < 1e-20, "{wave:e}");
+        }
+    }
+}
+
+#[test]
+fn a_volume_under_a_table_is_that_of_its_trapezoids() {
+    let p = pack();
+    // From the middle of the flat bottom, 0.4 mm, to the bottom edge: 0.1333 mm flat, then a triangle of 3 um by 0.2667 mm.
+    let v = p.faces[1].held(1e-6, 0.4e-3, 0);
+    let exact = 1e-6 * 0.4e-3 + 0.5 * 3e-6 * (0.8e-3 / 3.0);
+    assert!((v - exact).abs() <= 1e-14 * exact);
+}
+
+/// Edges that go up and down by odd steps, with faces that lose what they are told to lose: all oil is accounted for.
+#[test]
+fn nothing_is_gained_or_lost() {
+    let mut p = pack();
+    let mut y = vec![0.0; p.states().len()];
+    p.first(&[2e-6; 2], &mut y);
+    begin(&mut p);
+    let before = p.total(&y);
+    let supplied = p.ledger().supplied;
+    let mut pin: f64 = 0.1;
+    let mut seed = 1u64;
+    let mut random = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 40) as f64 / (1u64 << 24) as f64
+    };
+    for stroke in 0..8 {
+        let down = stroke % 2 == 0;
+        loop {
+            let next = (pin + (random() + 0.01) * if down { -3e-3 } else { 3e-3 }).clamp(0.0, 0.1);
+            let y0 = y.clone();
+            for k in 0..2 {
+                // Moves oil through the face and loses some.
+                y[2 * k] += 0.01 * (random() - 0.5);
+                y[2 * k + 1] -= 0.02 * random();
+            }
+            book(&mut p, &y0, &y, next);
+            pin = next;
+            if pin <= 0.0 || pin >= 0.1 {
+                break;
+            }
+        }
+    }
+    let l = p.ledger();
+    let stored = p.total(&y) - before;
+    let closure = (l.supplied - supplied) - l.drained - l.thrown - stored;
+    // A few hundred steps of additions, each exact to rounding.
+    assert!(l.taken > 1e-7, "the faces took up {:e}", l.taken);
+    assert!(closure.abs() <= 1e-12 * l.taken, "{closure:e} of {:e}", l.taken);
+    assert!(p.liner.film.iter().all(|h| *h >= 0.0));
+}
+
+/// A film that an edge lays down in several steps is what another takes up in others.
+#[test]
+fn what_is_laid_down_is_taken_up() {
+    let mut p = pack();
+    let mut y = vec![5.0; p.states().len()];
+    p.liner.film.fill(0.0);
+    begin(&mut p);
+    // Down to 60 mm in uneven steps, the upper face losing 2 units of volume for every mm.
+    let unit = p.unit(0);
+    let mut pin: f64 = 0.1;
+    let mut lost = 0.0;
+    for d in [0.3e-3, 1.1e-3, 0.05e-3, 2.0e-3, 3.3e-3, 0.7e-3].into_iter().cycle() {
+        let next = (pin - d).max(0.06);
+        let y0 = y.clone();
+        y[1] -= 2.0 * (pin - next) / 1e-3;
+        lost += 2.0 * (pin - next) / 1e-3 * unit;
+        book(&mut p, &y0, &y, next);
+        pin = next;
+        if pin <= 0.06 {
+            break;
+        }
+    }
+    let taken = p.faces[0].taken[1];
+    let (y0, y1) = (y.clone(), y.clone());
+    book(&mut p, &y0, &y1, 0.1);
+    let back = p.faces[0].taken[1] - taken;
+    // Some forty cells added up.
+    assert!((back - lost).abs() <= 1e-12 * lost, "{back:e} of {lost:e}");
+}

@@ -1,0 +1,3 @@
+//! Oil on the liner.
+
+mod carried;

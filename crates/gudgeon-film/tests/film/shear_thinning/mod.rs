@@ -1,0 +1,5 @@
+//! Viscosity under shear.
+
+mod carreau;
+mod cross;
+mod off;
