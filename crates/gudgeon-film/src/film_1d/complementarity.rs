@@ -137,7 +137,7 @@ fn flux(line: &mut Line, ruptured: bool) -> (f64, usize) {
     let n = line.n;
     let (mut resistance, mut rise) = (0.0, line.p_in);
     // The smallest of the quotients, without dividing for each.
-    let (mut least, mut over, mut at) = (f64::INFINITY, 1.0, n);
+    let (mut smallest, mut over, mut at) = (f64::INFINITY, 1.0, n);
     let changing = line.change != Change::Steady;
     if changing {
         drained(line);
@@ -148,12 +148,12 @@ fn flux(line: &mut Line, ruptured: bool) -> (f64, usize) {
         resistance += d;
         rise += (line.c[i] - extra) * d;
         let end = if i + 1 == n { rise - line.p_out } else { rise };
-        if (ruptured || i + 1 == n) && (end * over < least * resistance || at == n && least == f64::INFINITY)
+        if (ruptured || i + 1 == n) && (end * over < smallest * resistance || at == n && smallest == f64::INFINITY)
         {
-            (least, over, at) = (end, resistance, i + 1);
+            (smallest, over, at) = (end, resistance, i + 1);
         }
     }
-    (least / over, at)
+    (smallest / over, at)
 }
 
 /// The film without cavitation.

@@ -30,7 +30,7 @@ pub struct ElrodAdams {
     /// β: bulk modulus of the oil.
     #[serde(default = "oil")]
     pub bulk_modulus: PosPressure,
-    /// Most rounds of setting switches.
+    /// Maximum number of rounds of setting switches.
     #[serde(default = "rounds")]
     #[schemars(range(min = 1, max = 100_000))]
     pub rounds: usize,

@@ -9,16 +9,7 @@ impl Line {
     /// Takes the inputs, turned into the direction of sliding, and computes the coefficients of the panels. With `clip` an end
     /// pressure below `p_cav` counts as `p_cav`.
     pub fn enter(&mut self, inp: &Film1dIn<'_>, clip: bool) -> Result<(), EvalError> {
-        let n = self.n;
-        let fits = inp.h_a.len() == n
-            && inp.h_b.len() == n
-            && inp.mu.len() == n
-            && inp.factors.is_none_or(|f| f.len() == n);
-        if !fits {
-            return Err(
-                self.fatal(format!("film, viscosity and roughness must be given for each of {n} panels"))
-            );
-        }
+        self.check_sizes(inp)?;
         let [first, last] = inp.ends.map(FilmEnd::pressure);
         if !(first + last + inp.p_cav + inp.u).is_finite() {
             return Err(self.fatal(format!(
@@ -26,20 +17,57 @@ impl Line {
                 inp.u, inp.p_cav
             )));
         }
-        let turned = inp.u < 0.0;
-        if turned != self.turned {
-            self.turned = turned;
-            if turned {
-                self.x.iter_mut().zip(self.nodes.iter().rev()).for_each(|(x, n)| *x = -n);
-            } else {
-                self.x.copy_from_slice(&self.nodes);
-            }
-            self.dx.iter_mut().zip(self.x.windows(2)).for_each(|(d, w)| *d = w[1] - w[0]);
-            self.per_dx.iter_mut().zip(&self.dx).for_each(|(r, d)| *r = 1.0 / d);
-        }
+        self.turn(inp.u < 0.0);
         self.u = inp.u.abs();
         self.p_cav = inp.p_cav;
+        self.enter_gap(inp)?;
+        self.enter_roughness(inp.factors)?;
+        self.coefficients();
+        let floor = if clip { 0.0 } else { f64::NEG_INFINITY };
+        let (p0, p1) = ((first - inp.p_cav).max(floor), (last - inp.p_cav).max(floor));
+        (self.p_in, self.p_out) = if self.turned { (p1, p0) } else { (p0, p1) };
+        self.supply = match inp.ends[usize::from(self.turned)] {
+            FilmEnd::Flooded { .. } => None,
+            FilmEnd::Starved { h_oil, .. } if h_oil.is_finite() && h_oil >= 0.0 => Some(self.u * h_oil),
+            FilmEnd::Starved { h_oil, .. } => {
+                return Err(self.fatal(format!("no layer of oil is {h_oil} m thick")));
+            }
+        };
+        self.lead = 0;
+        self.starved = false;
+        self.enter_time(&inp.time)
+    }
+
+    fn check_sizes(&self, inp: &Film1dIn<'_>) -> Result<(), EvalError> {
+        let n = self.n;
+        let fits = inp.h_a.len() == n
+            && inp.h_b.len() == n
+            && inp.mu.len() == n
+            && inp.factors.is_none_or(|f| f.len() == n);
+        if fits {
+            Ok(())
+        } else {
+            Err(self.fatal(format!("film, viscosity and roughness must be given for each of {n} panels")))
+        }
+    }
+
+    /// Turns the coordinates into the direction of sliding, when that has changed.
+    fn turn(&mut self, turned: bool) {
+        if turned == self.turned {
+            return;
+        }
+        self.turned = turned;
         if turned {
+            self.x.iter_mut().zip(self.nodes.iter().rev()).for_each(|(x, n)| *x = -n);
+        } else {
+            self.x.copy_from_slice(&self.nodes);
+        }
+        self.dx.iter_mut().zip(self.x.windows(2)).for_each(|(d, w)| *d = w[1] - w[0]);
+        self.per_dx.iter_mut().zip(&self.dx).for_each(|(r, d)| *r = 1.0 / d);
+    }
+
+    fn enter_gap(&mut self, inp: &Film1dIn<'_>) -> Result<(), EvalError> {
+        if self.turned {
             copy_back(&mut self.ha, inp.h_b);
             copy_back(&mut self.hb, inp.h_a);
             copy_back(&mut self.mu, inp.mu);
@@ -55,48 +83,35 @@ impl Line {
             return Err(self.fatal("film thickness and viscosity must be finite, viscosity positive"));
         }
         if !positive(&self.ha) || !positive(&self.hb) {
-            let least = self.ha.iter().chain(&self.hb).copied().fold(f64::INFINITY, f64::min);
-            return Err(self.recoverable(format!("a film of {least} m leaves no gap")));
+            let smallest = self.ha.iter().chain(&self.hb).copied().fold(f64::INFINITY, f64::min);
+            return Err(self.recoverable(format!("a film of {smallest} m leaves no gap")));
         }
-        match inp.factors {
-            Some(f) => {
-                let bad = |f: &PanelFactors| {
-                    let shear = f.sliding_shear + f.pressure_shear + f.shear_difference;
-                    let all = f.pressure_flow + f.sliding_flow + shear;
-                    !all.is_finite() || f.pressure_flow <= 0.0 || f.sliding_flow < 0.0
-                };
-                if f.iter().any(bad) {
-                    return Err(
-                        self.fatal("roughness factors must be finite, that of the pressure flow positive")
-                    );
-                }
-                self.smooth = false;
-                if turned {
-                    copy_back(&mut self.rough, f);
-                } else {
-                    self.rough.copy_from_slice(f);
-                }
-            }
-            None if !self.smooth => {
+        Ok(())
+    }
+
+    fn enter_roughness(&mut self, factors: Option<&[PanelFactors]>) -> Result<(), EvalError> {
+        let Some(factors) = factors else {
+            if !self.smooth {
                 self.rough.fill(PanelFactors::SMOOTH);
                 self.smooth = true;
             }
-            None => {}
-        }
-        self.coefficients();
-        let least = if clip { 0.0 } else { f64::NEG_INFINITY };
-        let (p0, p1) = ((first - inp.p_cav).max(least), (last - inp.p_cav).max(least));
-        (self.p_in, self.p_out) = if turned { (p1, p0) } else { (p0, p1) };
-        self.supply = match inp.ends[usize::from(turned)] {
-            FilmEnd::Flooded { .. } => None,
-            FilmEnd::Starved { h_oil, .. } if h_oil.is_finite() && h_oil >= 0.0 => Some(self.u * h_oil),
-            FilmEnd::Starved { h_oil, .. } => {
-                return Err(self.fatal(format!("no layer of oil is {h_oil} m thick")));
-            }
+            return Ok(());
         };
-        self.lead = 0;
-        self.starved = false;
-        self.enter_time(&inp.time)
+        let bad = |f: &PanelFactors| {
+            let shear = f.sliding_shear + f.pressure_shear + f.shear_difference;
+            let all = f.pressure_flow + f.sliding_flow + shear;
+            !all.is_finite() || f.pressure_flow <= 0.0 || f.sliding_flow < 0.0
+        };
+        if factors.iter().any(bad) {
+            return Err(self.fatal("roughness factors must be finite, that of the pressure flow positive"));
+        }
+        self.smooth = false;
+        if self.turned {
+            copy_back(&mut self.rough, factors);
+        } else {
+            self.rough.copy_from_slice(factors);
+        }
+        Ok(())
     }
 
     fn enter_time(&mut self, time: &FilmTime<'_>) -> Result<(), EvalError> {

@@ -31,7 +31,7 @@ struct NoFilm {
 impl Film1d for NoFilm {
     fn solve(&mut self, inp: &Film1dIn<'_>) -> Result<Film1dOut, EvalError> {
         self.line.enter(inp, true)?;
-        Ok(self.line.nothing())
+        Ok(self.line.without_oil())
     }
 
     fn field(&self) -> FilmField<'_> {

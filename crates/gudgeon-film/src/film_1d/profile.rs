@@ -17,8 +17,8 @@ pub struct LineProfile {
     pub h_b: Vec<f64>,
 }
 
-/// Most panels of a line.
-const MOST: usize = 1_000_000;
+/// Maximum number of panels of a line.
+const MAX_PANELS: usize = 1_000_000;
 
 fn positive(field: &str, v: f64) -> Result<(), BuildError> {
     if v.is_finite() && v > 0.0 {
@@ -41,10 +41,10 @@ impl LineProfile {
         }
         let length = breaks[breaks.len() - 1] - breaks[0];
         positive("length", length)?;
-        if panels == 0 || panels.max(breaks.len()) > MOST {
+        if panels == 0 || panels.max(breaks.len()) > MAX_PANELS {
             return Err(BuildError::at(
                 "panels",
-                format!("between 1 and {MOST} panels are possible, not {panels}"),
+                format!("between 1 and {MAX_PANELS} panels are possible, not {panels}"),
             ));
         }
         let mut line = Self { x: vec![breaks[0]], h_a: Vec::new(), h_b: Vec::new() };
@@ -161,8 +161,8 @@ impl LineProfile {
         depth: f64,
         panels: usize,
     ) -> Result<Self, BuildError> {
-        if !(count > 0 && count <= MOST) {
-            return Err(BuildError::at("count", format!("must be between 1 and {MOST}, not {count}")));
+        if !(count > 0 && count <= MAX_PANELS) {
+            return Err(BuildError::at("count", format!("must be between 1 and {MAX_PANELS}, not {count}")));
         }
         if !(fraction > 0.0 && fraction < 1.0) {
             return Err(BuildError::at("fraction", format!("must lie between 0 and 1, not {fraction}")));

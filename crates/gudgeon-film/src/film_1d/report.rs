@@ -102,7 +102,7 @@ impl Line {
         let i1 = s.i1();
         let wet = match shear {
             Shear::Full => i1,
-            // The flux of a film that is cut off says nothing of what is left of it.
+            // The flux of a film that is cut off does not tell how much oil is left there.
             Shear::None | Shear::Streamers => part * i1,
         };
         sums.void(s, self.u, 0.0, wet);
@@ -129,7 +129,7 @@ impl Line {
             return Err(self.recoverable("film out of range"));
         }
         let sign = if self.turned { -1.0 } else { 1.0 };
-        self.tell();
+        self.write_field();
         Ok(Film1dOut {
             load: s.load,
             moment: sign * s.moment,
@@ -213,7 +213,7 @@ impl Line {
         let scale = |i: usize| self.c[i].max(self.g[i] * self.p[i].abs().max(self.p[i + 1].abs()));
         let stored = |i: usize| if self.change == Change::Steady { 0.0 } else { self.rate[i] };
         let (mut before, mut size) = (flux(0), scale(0));
-        let mut worst: f64 = 0.0;
+        let mut largest: f64 = 0.0;
         for i in 1..n {
             let (now, here) = (flux(i), scale(i));
             let off = (before - now - stored(i)).abs();
@@ -223,19 +223,19 @@ impl Line {
                     Change::Rates => self.rate[i].abs(),
                     Change::Step(dt) => self.volume[i] / dt,
                 };
-                let most = size.max(here).max(kept);
+                let scale_here = size.max(here).max(kept);
                 // A division only where it counts.
-                if off > worst * most {
-                    worst = off / most;
+                if off > largest * scale_here {
+                    largest = off / scale_here;
                 }
             }
             (before, size) = (now, here);
         }
-        worst
+        largest
     }
 
     /// Writes the answers in the direction of `x`.
-    fn tell(&mut self) {
+    fn write_field(&mut self) {
         let cav = self.p_cav;
         if self.change == Change::Steady || self.change == Change::Rates {
             volumes(&self.dx, &self.ha, &self.hb, &mut self.volume);
@@ -264,12 +264,12 @@ impl Line {
     }
 
     /// A line without oil, of the inputs taken last.
-    pub fn nothing(&mut self) -> Film1dOut {
+    pub fn without_oil(&mut self) -> Film1dOut {
         self.fronts.clear();
         for v in [&mut self.p, &mut self.fill, &mut self.q] {
             v.fill(0.0);
         }
-        self.tell();
+        self.write_field();
         Film1dOut { p_max: self.p_cav, x_p_max: self.nodes[0], ..Film1dOut::default() }
     }
 }

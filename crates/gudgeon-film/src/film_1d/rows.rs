@@ -39,7 +39,6 @@ pub struct Rows {
     pub p: Vec<f64>,
     pub theta: Vec<f64>,
     pub r: Vec<f64>,
-    pub dp: Vec<f64>,
     pub dr: Vec<f64>,
     /// The states are those of a film that was found.
     pub warm: bool,
@@ -63,7 +62,6 @@ impl Rows {
             p: v(),
             theta: v(),
             r: v(),
-            dp: v(),
             dr: v(),
             warm: false,
             turned: false,
@@ -73,6 +71,17 @@ impl Rows {
 
     /// Solves for the mass-conserving film. Returns the passes over the line.
     pub fn solve(&mut self, line: &mut Line, solver: LineSolver) -> Result<usize, EvalError> {
+        self.prepare(line);
+        let warm = std::mem::take(&mut self.warm);
+        let mut passes = self.find(line, solver, warm)?;
+        passes += self.starve(line, solver)?;
+        self.warm = true;
+        self.write(line);
+        Ok(passes)
+    }
+
+    /// Coefficients of the rows, and the states to start from.
+    fn prepare(&mut self, line: &mut Line) {
         let n = line.n;
         for i in 0..=n {
             (self.s[i], self.b[i]) = match line.change {
@@ -84,7 +93,7 @@ impl Rows {
         self.floor.fill(0.0);
         line.lead = 0;
         line.starved = false;
-        // A bath first: what it would have to give says whether the layer that arrives is enough.
+        // A bath first: what it would have to give shows whether the layer that arrives is enough.
         self.first = 1;
         self.p[0] = line.p_in;
         self.theta[0] = 1.0;
@@ -94,29 +103,33 @@ impl Rows {
             self.state.fill(Node::Film);
             self.turned = line.turned();
         }
-        let warm = std::mem::take(&mut self.warm);
-        let mut passes = self.find(line, solver, warm)?;
-        if let Some(supply) = line.supply {
-            let asked = line.c[0] + line.g[0] * (self.p[0] - self.p[1]) + self.s[0] - self.b[0];
-            if supply < asked {
-                line.starved = true;
-                self.first = 0;
-                self.b[0] += supply;
-                passes += self.find(line, solver, true)?;
-                if line.p_in > 0.0 {
-                    // Before the first node with the pressure of the gas there is gas; that only raises pressures, so that the
-                    // node keeps it out.
-                    line.lead = self.p[..n].iter().position(|p| *p >= line.p_in).unwrap_or(n);
-                    if line.lead == n {
-                        // Nowhere sealed: the gas reaches the other end.
-                        line.p_out = line.p_out.max(line.p_in);
-                    }
-                    self.floor[..line.lead].fill(line.p_in);
-                    passes += self.find(line, solver, true)?;
-                }
+    }
+
+    /// The film of a starved inlet, when the layer that arrives is less than a bath would have to give. Returns the passes over the line.
+    fn starve(&mut self, line: &mut Line, solver: LineSolver) -> Result<usize, EvalError> {
+        let n = line.n;
+        let asked = line.c[0] + line.g[0] * (self.p[0] - self.p[1]) + self.s[0] - self.b[0];
+        let Some(supply) = line.supply.filter(|s| *s < asked) else { return Ok(0) };
+        line.starved = true;
+        self.first = 0;
+        self.b[0] += supply;
+        let mut passes = self.find(line, solver, true)?;
+        if line.p_in > 0.0 {
+            // Before the first node with the pressure of the gas there is gas; that only raises pressures, so that the node keeps it out.
+            line.lead = self.p[..n].iter().position(|p| *p >= line.p_in).unwrap_or(n);
+            if line.lead == n {
+                // Nowhere sealed: the gas reaches the other end.
+                line.p_out = line.p_out.max(line.p_in);
             }
+            self.floor[..line.lead].fill(line.p_in);
+            passes += self.find(line, solver, true)?;
         }
-        self.warm = true;
+        Ok(passes)
+    }
+
+    /// Hands the film that was found to the line.
+    fn write(&self, line: &mut Line) {
+        let n = line.n;
         line.p[..n].copy_from_slice(&self.p[..n]);
         line.p[n] = line.p_out;
         for i in 0..n {
@@ -133,7 +146,6 @@ impl Rows {
                 }
             }
         }
-        Ok(passes)
     }
 
     pub fn find(&mut self, line: &Line, solver: LineSolver, warm: bool) -> Result<usize, EvalError> {

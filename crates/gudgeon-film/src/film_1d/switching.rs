@@ -59,7 +59,21 @@ impl Rows {
             }
             (self.lower[i], self.upper[i], self.rhs[i]) = (lower, upper, rhs);
         }
-        // Elimination without pivots: columns are dominated by their diagonals.
+        if !self.eliminate(from, to) {
+            return Err(line.recoverable("film out of range"));
+        }
+        for i in from..to {
+            (self.p[i], self.theta[i]) = match self.state[i] {
+                Node::Film => (self.rhs[i], 1.0),
+                _ => (self.floor[i], self.rhs[i]),
+            };
+        }
+        Ok(())
+    }
+
+    /// Solves the tridiagonal rows `from..to` in place of their right-hand sides: `false` when the solution is not finite. Needs no pivots,
+    /// for columns are dominated by their diagonals.
+    pub(super) fn eliminate(&mut self, from: usize, to: usize) -> bool {
         for i in from + 1..to {
             let w = self.lower[i] / self.diag[i - 1];
             self.diag[i] -= w * self.upper[i - 1];
@@ -69,14 +83,11 @@ impl Rows {
         for i in (from..to).rev() {
             next = (self.rhs[i] - self.upper[i] * next) / self.diag[i];
             if !next.is_finite() {
-                return Err(line.recoverable("film out of range"));
+                return false;
             }
-            (self.p[i], self.theta[i]) = match self.state[i] {
-                Node::Film => (next, 1.0),
-                _ => (self.floor[i], next),
-            };
+            self.rhs[i] = next;
         }
-        Ok(())
+        true
     }
 
     /// What row `i` has to hold at `p_i` at its floor: oil that arrives less oil that pressure drives away.

@@ -20,7 +20,7 @@ const LEAP: f64 = 1.5;
 pub struct ViscosityLoop {
     /// Largest relative change of any viscosity in the last round.
     pub tolerance: f64,
-    /// Most rounds.
+    /// Maximum number of rounds.
     pub rounds: usize,
     mu: Vec<f64>,
     y: Vec<f64>,
@@ -85,14 +85,14 @@ impl ViscosityLoop {
         for (y, mu) in self.y.iter_mut().zip(&self.mu) {
             *y = mu.ln();
         }
-        let mut least = f64::INFINITY;
+        let mut smallest = f64::INFINITY;
         for round in 1..=self.rounds {
             for (mu, y) in self.mu.iter_mut().zip(&self.y) {
                 *mu = y.exp();
             }
             let out = film.solve(&Film1dIn { mu: &self.mu, ..*inp })?;
             let p = film.field().p;
-            let mut worst: f64 = 0.0;
+            let mut largest: f64 = 0.0;
             for i in 0..n {
                 let rate = inp.u.abs() / log_mean(inp.h_a[i], inp.h_b[i]);
                 let mut fluidity = 0.0;
@@ -106,20 +106,20 @@ impl ViscosityLoop {
                         format!("no viscosity at {:e} Pa and {rate:e} 1/s", p[i].max(p[i + 1])),
                     ));
                 }
-                worst = worst.max(f.abs());
+                largest = largest.max(f.abs());
                 self.f[i] = f;
             }
-            if worst <= self.tolerance {
+            if largest <= self.tolerance {
                 self.ready = true;
                 return Ok((out, round));
             }
             // Far worse than before: what was learned elsewhere misleads.
-            if worst > 10.0 * least {
+            if largest > 10.0 * smallest {
                 self.used = 0;
             } else if round > 1 {
                 self.learn();
             }
-            least = least.min(worst);
+            smallest = smallest.min(largest);
             self.advance();
         }
         Err(EvalError::recoverable(MODEL, format!("no convergence in {} rounds", self.rounds)))
@@ -147,7 +147,7 @@ impl ViscosityLoop {
             }
         }
         let size = dot(df, df);
-        // A direction that is all rounding teaches nothing.
+        // A direction that is all rounding adds nothing.
         if size > 1e-16 * whole {
             let scale = 1.0 / size.sqrt();
             df.iter_mut().chain(dy.iter_mut()).for_each(|x| *x *= scale);

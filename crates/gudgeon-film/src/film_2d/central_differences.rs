@@ -53,7 +53,7 @@ impl Default for CentralDifferences {
 }
 
 const MODEL: &str = "central_differences";
-const MOST_SWEEPS: usize = 10_000;
+const MAX_SWEEPS: usize = 10_000;
 /// Change of the pressures in a sweep \[Pa\] at which the sweeps end.
 const SETTLED: f64 = 1e-5;
 
@@ -254,7 +254,7 @@ impl Differences {
         let (wx, wy) = (weight(0), weight(2));
         let rho = (wx * lines(nx, [e[0], e[1]]) + wy * lines(self.problem.ny, [e[2], e[3]])) / (wx + wy);
         let omega = 2.0 / (1.0 + (1.0 - rho * rho).max(0.0).sqrt());
-        for sweep in 1..=MOST_SWEEPS {
+        for sweep in 1..=MAX_SWEEPS {
             let mut moved = 0.0;
             for k in 0..n {
                 if self.problem.edge[k] < 4 {
@@ -278,19 +278,19 @@ impl Differences {
                 break;
             }
         }
-        Err(EvalError::recoverable(MODEL, format!("no convergence in {MOST_SWEEPS} sweeps")))
+        Err(EvalError::recoverable(MODEL, format!("no convergence in {MAX_SWEEPS} sweeps")))
     }
 
     /// Largest imbalance of the equations over the largest term.
     fn residual(&self) -> f64 {
         let nx = self.problem.nx;
-        let (mut worst, mut most) = (0.0_f64, 0.0_f64);
+        let (mut worst, mut size) = (0.0_f64, 0.0_f64);
         for (k, c) in self.coefficient.iter().enumerate() {
             if self.problem.edge[k] < 4 {
                 continue;
             }
             let mut sum = c[4] * self.p[k] - self.b[k];
-            most = most.max((c[4] * self.p[k]).abs()).max(self.b[k].abs());
+            size = size.max((c[4] * self.p[k]).abs()).max(self.b[k].abs());
             for (c, to) in c.iter().zip([k.wrapping_sub(1), k + 1, k.wrapping_sub(nx), k + nx]) {
                 if *c != 0.0 {
                     sum += c * self.p[to];
@@ -298,7 +298,7 @@ impl Differences {
             }
             worst = worst.max(sum.abs());
         }
-        if most > 0.0 { worst / most } else { 0.0 }
+        if size > 0.0 { worst / size } else { 0.0 }
     }
 }
 

@@ -22,7 +22,7 @@ pub(super) trait Linear: Send {
 }
 
 /// Most changes of the set of cavitated nodes.
-const MOST: usize = 100;
+const MAX_STEPS: usize = 100;
 
 /// A film found by Newton's method on the complementarity of pressure and void.
 ///
@@ -91,8 +91,8 @@ impl<L: Linear> Solver<L> {
 
     /// Residual to aim at: the tolerance times the largest flow of the present film, or what rounding leaves.
     fn target(&self) -> f64 {
-        let (most, rounding) = self.problem.largest_flow(&self.p, &self.void);
-        rounding.max(self.tolerance * most)
+        let (flow, rounding) = self.problem.largest_flow(&self.p, &self.void);
+        rounding.max(self.tolerance * flow)
     }
 
     /// One correction of the unknowns of the present matrix by the balances in `b`. Returns the largest residual that is left.
@@ -161,8 +161,8 @@ impl<L: Linear> Solver<L> {
     fn swift_stieber(&mut self) -> Result<(usize, usize), EvalError> {
         let mut cycles = 0;
         // A film that grows again after the first cut does so by one line of nodes a step.
-        let most = MOST + self.problem.nx + self.problem.ny;
-        for iteration in 1..=most {
+        let limit = MAX_STEPS + self.problem.nx + self.problem.ny;
+        for iteration in 1..=limit {
             for k in 0..self.p.len() {
                 if self.cavitated[k] {
                     self.p[k] = 0.0;
@@ -190,7 +190,7 @@ impl<L: Linear> Solver<L> {
                 return Ok((iteration, cycles));
             }
         }
-        Err(self.restless(most, cycles))
+        Err(self.restless(limit, cycles))
     }
 
     fn restless(&self, steps: usize, cycles: usize) -> EvalError {
@@ -202,7 +202,7 @@ impl<L: Linear> Solver<L> {
 
     fn mass_conserving(&mut self) -> Result<(usize, usize), EvalError> {
         let mut cycles = 0;
-        for iteration in 1..=MOST {
+        for iteration in 1..=MAX_STEPS {
             let mut any = false;
             for k in 0..self.p.len() {
                 if self.problem.edge[k] < 4 {
@@ -242,8 +242,8 @@ impl<L: Linear> Solver<L> {
             };
             if changed == 0 {
                 // More void than room is no film, however well the equations hold.
-                let most = self.void.iter().fold(0.0_f64, |a, &b| a.max(b));
-                return if most <= 1.0 + 1e-6 { Ok((iteration, cycles)) } else { Err(self.slow(cycles)) };
+                let fullest = self.void.iter().fold(0.0_f64, |a, &b| a.max(b));
+                return if fullest <= 1.0 + 1e-6 { Ok((iteration, cycles)) } else { Err(self.slow(cycles)) };
             }
             let top = self.p.iter().fold(0.0_f64, |a, &b| a.max(b));
             for k in 0..self.p.len() {
@@ -252,7 +252,7 @@ impl<L: Linear> Solver<L> {
                 }
             }
         }
-        Err(self.restless(MOST, cycles))
+        Err(self.restless(MAX_STEPS, cycles))
     }
 
     /// Whether a node has a negative pressure or a negative void, beyond what rounding does.
@@ -406,12 +406,12 @@ impl<L: Linear> Film2d for Solver<L> {
             return Ok(());
         }
         for r in r.chunks_exact_mut(n) {
-            let most = r.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+            let largest = r.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
             self.b.copy_from_slice(r);
             self.z.fill(0.0);
-            let (_, left) = self.linear.solve(&self.problem.m, &self.b, &mut self.z, self.tolerance * most);
+            let (_, left) = self.linear.solve(&self.problem.m, &self.b, &mut self.z, self.tolerance * largest);
             // Rounding may end the cycles a little short of a strict tolerance.
-            if left.is_nan() || left > 1e-6 * most {
+            if left.is_nan() || left > 1e-6 * largest {
                 return Err(EvalError::recoverable(self.model, "no convergence of the linear system"));
             }
             r.copy_from_slice(&self.z);
@@ -435,10 +435,10 @@ impl<L: Linear> Film2d for Solver<L> {
                 let flow = self.problem.area(k) * taken;
                 self.b[k] = if self.problem.edge[k] == 4 { -flow * p[k] } else { 0.0 };
             }
-            let most = self.b.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+            let largest = self.b.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
             self.z.fill(0.0);
-            let (_, left) = self.linear.solve(&self.problem.m, &self.b, &mut self.z, self.tolerance * most);
-            if left.is_nan() || left > 1e-6 * most {
+            let (_, left) = self.linear.solve(&self.problem.m, &self.b, &mut self.z, self.tolerance * largest);
+            if left.is_nan() || left > 1e-6 * largest {
                 return Err(EvalError::recoverable(self.model, "no convergence of the linear system"));
             }
             for k in 0..n {

@@ -36,7 +36,7 @@ impl Default for Direct {
 }
 
 /// Most entries of the band: 1 GB.
-const MOST: usize = 1 << 27;
+const MAX_ENTRIES: usize = 1 << 27;
 
 #[register_model(
     name = "direct",
@@ -79,7 +79,7 @@ impl Elimination {
     }
 
     pub fn fits(m: &FivePoint) -> bool {
-        (m.nx * m.ny).saturating_mul(4 * Self::half(m) + 2) <= MOST
+        (m.nx * m.ny).saturating_mul(4 * Self::half(m) + 2) <= MAX_ENTRIES
     }
 
     /// Work space; `general` for matrices that are not symmetric.

@@ -7,8 +7,8 @@ use gudgeon_numerics::multigrid::{FivePoint, Role};
 use super::cavitation::Cavitation;
 use super::flux::Flux;
 
-/// Most nodes of a grid: one field of 128 MB.
-const MOST: usize = 1 << 24;
+/// Maximum number of nodes of a grid: one field of 128 MB.
+const MAX_NODES: usize = 1 << 24;
 
 /// The control volumes of one film: how much flows between them per pressure, what the sliding surface carries, what squeezing takes up.
 ///
@@ -85,8 +85,8 @@ impl Problem {
                 return Err(BuildError::new(format!("the nodes along {name} must be finite and increase")));
             }
         }
-        if nx.saturating_mul(ny) > MOST {
-            return Err(BuildError::new(format!("{nx} x {ny} nodes are more than {MOST}")));
+        if nx.saturating_mul(ny) > MAX_NODES {
+            return Err(BuildError::new(format!("{nx} x {ny} nodes are more than {MAX_NODES}")));
         }
         let e = &grid.edges;
         if (e[0] == Edge::Periodic) != (e[1] == Edge::Periodic) || e[2..].contains(&Edge::Periodic) {
@@ -428,9 +428,9 @@ impl Problem {
             }
         }
         let top = |lanes: [f64; LANES]| lanes.into_iter().fold(0.0, f64::max);
-        let (most, product) = (top(found.flow).max(self.scale), top(found.product));
+        let (largest_flow, product) = (top(found.flow).max(self.scale), top(found.product));
         // A row sums eight such products, each rounded to 1e-16.
-        (most, 2e-15 * product)
+        (largest_flow, 2e-15 * product)
     }
 
     /// What is unknown at each node: the void of the nodes `cavitated`, the pressure of the others. With `carried` false, cavitated nodes have no
@@ -522,8 +522,8 @@ impl Problem {
             out.cavity += w * line[4];
         }
         out.p_max = inp.p_cav + top;
-        let (most, _) = self.largest_flow(p, void);
-        out.residual = if most > 0.0 { worst / most } else { worst };
+        let (largest_flow, _) = self.largest_flow(p, void);
+        out.residual = if largest_flow > 0.0 { worst / largest_flow } else { worst };
         out
     }
 }

@@ -144,8 +144,8 @@ impl Relaxation {
                         worst = if r <= worst { worst } else { r };
                     }
                 }
-                let (most, rounding) = self.problem.largest_flow(&self.p, &self.void);
-                if worst <= rounding.max(self.spec.tolerance * most) {
+                let (flow, rounding) = self.problem.largest_flow(&self.p, &self.void);
+                if worst <= rounding.max(self.spec.tolerance * flow) {
                     return Ok(sweep);
                 }
                 if !worst.is_finite() {

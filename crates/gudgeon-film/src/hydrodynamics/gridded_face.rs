@@ -54,8 +54,8 @@ impl Default for GriddedFace {
 const MODEL: &str = "gridded_face";
 /// Nodes of the published program.
 const PUBLISHED: usize = 11;
-/// Most nodes of a refined grid.
-const MOST: usize = 400;
+/// Maximum number of nodes of a refined grid.
+const MAX_NODES: usize = 400;
 
 #[register_model(
     name = "gridded_face",
@@ -86,11 +86,11 @@ impl HydrodynamicsSpec for GriddedFace {
             }
         };
         let n = base * self.refine + 1;
-        if n > MOST {
-            let field = if base < MOST { "refine" } else { "points" };
+        if n > MAX_NODES {
+            let field = if base < MAX_NODES { "refine" } else { "points" };
             return Err(BuildError::at(
                 field,
-                format!("the grid has {n} nodes, at most {MOST} are possible"),
+                format!("the grid has {n} nodes, at most {MAX_NODES} are possible"),
             )
             .help("use fewer points or a smaller refine"));
         }
@@ -374,7 +374,7 @@ fn solve(inp: &FaceIn, hdot: f64, dx: f64, n: usize, nodes: &[Nodes], work: &mut
         }
         w.p[(n - 1) % LANES] = top;
     }
-    // Once a running sum has left the finite numbers it never comes back, so its end tells of every node.
+    // Once a running sum has left the finite numbers it never comes back, so its end shows the state of every node.
     (p + q + sum_r).is_finite().then_some(sum_r)
 }
 

@@ -10,7 +10,7 @@
 use gudgeon_core::kinds::{OilExtent, OilFaceIn, OilLedger, OilStep, OilTransport, OilTransportCtx, RingOil};
 use gudgeon_core::states::{Signals, StateInfo, Stateful};
 
-use super::face::{Exit, LEAST_REACH, OilFace, SIDES};
+use super::face::{Exit, MIN_REACH, OilFace, SIDES};
 use super::law::Law;
 use super::liner::Liner;
 
@@ -197,7 +197,7 @@ impl OilTransport for Carried {
         let unit = self.unit(k);
         let f = &self.faces[k];
         let OilFaceIn { h, hdot, u, flux } = *face;
-        let least = h * LEAST_REACH * f.length;
+        let least = h * MIN_REACH * f.length;
         // A side that has no oil gives none; one that errors have made owe some takes it back in the same time. With a corner at zero,
         // near which a nearly dry side rests, every other step would be wrong.
         let has = |side: usize| {

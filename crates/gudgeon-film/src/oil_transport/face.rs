@@ -5,7 +5,7 @@ use gudgeon_core::kinds::{OilExtent, OilFacePlace};
 
 /// Least reach of a film to either side of the narrowest place, as a part of the face: a face without oil still has a film to
 /// evaluate, which carries next to nothing.
-pub const LEAST_REACH: f64 = 0.1;
+pub const MIN_REACH: f64 = 0.1;
 /// How steeply the gap opens before an edge, where oil stands as a wave.
 pub const WAVE_SLOPE: f64 = 0.02;
 
@@ -142,7 +142,7 @@ impl OilFace {
             let edge = h + self.drop_at(span, side);
             return Reach { length: span, gap: (edge * edge + 2.0 * WAVE_SLOPE * (volume - full)).sqrt() };
         }
-        let least = (LEAST_REACH * self.length).min(span);
+        let least = (MIN_REACH * self.length).min(span);
         // What there is reaches so far, and never less than the least: joined without a corner.
         let joined = |t: f64| {
             let length = (t * t + least * least).sqrt().min(span);

@@ -63,6 +63,12 @@ pub struct GaussianGap {
     pieces: &'static [[f64; TERMS]],
 }
 
+impl Default for GaussianGap {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl GaussianGap {
     /// The table, computed once in a program.
     pub fn new() -> Self {

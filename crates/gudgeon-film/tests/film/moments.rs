@@ -133,7 +133,7 @@ fn table_against_quadrature() {
 /// `nearby` from every place to every other that it accepts, against the integrals themselves.
 fn extends<S: Shape>(face: &mut S, film: f64) {
     face.set_film(film);
-    let l = face.len();
+    let l = face.length();
     let mut accepted = 0;
     for i in 0..face.pieces() {
         let (a, b) = (face.node(i), face.node(i + 1));

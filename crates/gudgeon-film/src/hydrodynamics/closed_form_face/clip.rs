@@ -9,121 +9,154 @@ impl<S: Shape> Side<S> {
     pub(super) fn clip(&mut self, f: &Flow) {
         let q = self.full_q(f);
         let whole = self.face.whole();
-        let w = whole.x3 / whole.i3;
-        let len = self.face.len();
-        let mid = self.face.x_ref();
-        let last = self.face.pieces() - 1;
-        // (pressure, ∂p/∂v); counted from the nearer end, for the sake of digits.
-        let at = |i: usize, x: f64| {
-            if x >= len {
-                (f.pb, 0.0)
-            } else if x <= 0.0 {
-                (f.pa, 0.0)
-            } else if x <= mid {
-                let t = S::three(&self.face.head(i, x));
-                (f.pa + t.rise(f.u, f.v, q), t.x3 - w * t.i3)
-            } else {
-                let t = self.face.tail(i, x);
-                (f.pb - t.rise(f.u, f.v, q), w * t.i3 - t.x3)
-            }
+        let full = Full { face: &self.face, f, q, w: whole.x3 / whole.i3 };
+        let start = Cut { i: 0, x: 0.0, p: f.pa, rate: 0.0 };
+        let mut clip = Clip {
+            full,
+            cuts: self.cuts,
+            open: (f.pa > 0.0).then_some(start),
+            last: start,
+            islands: &mut self.islands,
         };
-        let mut cuts = self.cuts;
-        let mut open: Option<(usize, f64, f64, f64)> = (f.pa > 0.0).then_some((0, 0.0, f.pa, 0.0));
-        let (mut i0, mut x0, mut p0) = (0, 0.0, f.pa);
-        let islands = &mut self.islands;
-        let face = &self.face;
-        let mut visit = |i: usize, x: f64, islands: &mut Vec<Island>| {
-            let (p, r) = at(i, x);
-            let island = |a: (usize, f64, f64, f64), b: (usize, f64, f64, f64)| Island {
-                ia: a.0,
-                xa: a.1,
-                pa: a.2,
-                ib: b.0,
-                xb: b.1,
-                pb: b.2,
-                q,
-                w,
-                ra: a.3,
-                rb: b.3,
-                upwards: a.1 <= 0.0,
-                m: face.span(a.0, a.1, b.0, b.1),
-            };
-            // Rises or falls monotonically since the last visit.
-            if p > 0.0 && open.is_none() {
-                let z = if p0 < 0.0 { clip_zero(face, f, q, i, (x0, p0), (x, p), cuts[1], &at) } else { x0 };
-                cuts[1] = z;
-                open = Some((if z > x0 { i } else { i0 }, z, 0.0, if z > 0.0 { at(i, z).1 } else { 0.0 }));
-            } else if p <= 0.0
-                && let Some(a) = open
-            {
-                let z = if p < 0.0 { clip_zero(face, f, q, i, (x0, p0), (x, p), cuts[0], &at) } else { x };
-                cuts[0] = z;
-                let rb = if z < len { at(i, z).1 } else { 0.0 };
-                islands.push(island(a, (i, z, 0.0, rb)));
-                open = None;
-            }
-            if x >= len
-                && let Some(a) = open
-            {
-                islands.push(island(a, (i, x, p, r)));
-                open = None;
-            }
-            (i0, x0, p0) = (i, x, p);
-        };
-        for i in 0..=last {
-            let c = self.face.crest(i, f.u, f.v, q);
-            let v = self.face.valley(i, f.u, f.v, q);
-            let (first, second) = match (c, v) {
-                (Some(c), Some(v)) if c > v => (Some(v), Some(c)),
+        for i in 0..self.face.pieces() {
+            let maximum = self.face.pressure_maximum(i, f.u, f.v, q);
+            let minimum = self.face.pressure_minimum(i, f.u, f.v, q);
+            let (first, second) = match (maximum, minimum) {
+                (Some(a), Some(b)) if a > b => (Some(b), Some(a)),
                 both => both,
             };
             for x in [first, second].into_iter().flatten() {
-                visit(i, x, islands);
+                clip.visit(i, x);
             }
-            visit(i, self.face.node(i + 1), islands);
+            clip.visit(i, self.face.node(i + 1));
         }
-        self.cuts = cuts;
+        self.cuts = clip.cuts;
     }
 }
 
-/// Zero of the pressure between `(x0, p0)` and `(x1, p1)`, where it is monotone.
-#[allow(clippy::too_many_arguments)]
-fn clip_zero<S: Shape>(
-    face: &S,
-    f: &Flow,
+/// The full film before it is cut off.
+struct Full<'a, S> {
+    face: &'a S,
+    f: &'a Flow,
     q: f64,
-    i: usize,
-    (x0, p0): (f64, f64),
-    (x1, p1): (f64, f64),
-    guess: f64,
-    at: &impl Fn(usize, f64) -> (f64, f64),
-) -> f64 {
-    let (mut lo, mut hi) = (x0, x1);
-    let falls = p0 > p1;
-    let mut x = if guess > x0 && guess < x1 { guess } else { x0 + (x1 - x0) * (p0 / (p0 - p1)) };
-    for _ in 0..200 {
-        let p = at(i, x).0;
-        if (p > 0.0) == falls {
-            lo = x;
+    /// `∂q/∂v`
+    w: f64,
+}
+
+impl<S: Shape> Full<'_, S> {
+    /// Pressure and `∂p/∂v`, counted from the nearer end, which keeps the digits.
+    fn pressure(&self, i: usize, x: f64) -> (f64, f64) {
+        let f = self.f;
+        if x >= self.face.length() {
+            (f.pb, 0.0)
+        } else if x <= 0.0 {
+            (f.pa, 0.0)
+        } else if x <= self.face.x_ref() {
+            let t = S::three(&self.face.head(i, x));
+            (f.pa + t.rise(f.u, f.v, self.q), t.x3 - self.w * t.i3)
         } else {
-            hi = x;
-        }
-        let h = face.film() + face.drop(i, x);
-        let slope = (f.u * face.drop(i, x) + f.v * face.s(x) - q) / (h * h * h);
-        let step = -p / slope;
-        let next = x + step;
-        if p == 0.0 || hi - lo <= 2.0 * f64::EPSILON * face.len() {
-            return x;
-        }
-        if next > lo && next < hi {
-            x = next;
-            // Second order: what is left is below rounding.
-            if step.abs() <= 1e-9 * (x1 - x).min(x - x0) {
-                return x;
-            }
-        } else {
-            x = 0.5 * (lo + hi);
+            let t = self.face.tail(i, x);
+            (f.pb - t.rise(f.u, f.v, self.q), self.w * t.i3 - t.x3)
         }
     }
-    x
+
+    /// Zero of the pressure between `(x0, p0)` and `(x1, p1)` in piece `i`, where it is monotone; `guess` is the start if it lies between.
+    fn zero(&self, i: usize, (x0, p0): (f64, f64), (x1, p1): (f64, f64), guess: f64) -> f64 {
+        let (face, f) = (self.face, self.f);
+        let (mut lo, mut hi) = (x0, x1);
+        let falls = p0 > p1;
+        let mut x = if guess > x0 && guess < x1 { guess } else { x0 + (x1 - x0) * (p0 / (p0 - p1)) };
+        for _ in 0..200 {
+            let p = self.pressure(i, x).0;
+            if (p > 0.0) == falls {
+                lo = x;
+            } else {
+                hi = x;
+            }
+            let h = face.film() + face.drop(i, x);
+            let slope = (f.u * face.drop(i, x) + f.v * face.s(x) - self.q) / (h * h * h);
+            let step = -p / slope;
+            let next = x + step;
+            if p == 0.0 || hi - lo <= 2.0 * f64::EPSILON * face.length() {
+                return x;
+            }
+            if next > lo && next < hi {
+                x = next;
+                // Second order: what is left is below rounding.
+                if step.abs() <= 1e-9 * (x1 - x).min(x - x0) {
+                    return x;
+                }
+            } else {
+                x = 0.5 * (lo + hi);
+            }
+        }
+        x
+    }
+}
+
+/// A place on the full film: its pressure and `∂p/∂v`.
+#[derive(Clone, Copy)]
+struct Cut {
+    i: usize,
+    x: f64,
+    p: f64,
+    rate: f64,
+}
+
+/// The search for the parts above zero, from one extremum of the pressure to the next.
+struct Clip<'a, S> {
+    full: Full<'a, S>,
+    /// Where the pressure fell below zero last and where it rose above it, this time or in the film before.
+    cuts: [f64; 2],
+    /// Beginning of the part that has not ended yet.
+    open: Option<Cut>,
+    last: Cut,
+    islands: &'a mut Vec<Island>,
+}
+
+impl<S: Shape> Clip<'_, S> {
+    /// Goes on to `x` in piece `i`: since the last visit the pressure rises or falls monotonically.
+    fn visit(&mut self, i: usize, x: f64) {
+        let (full, last) = (&self.full, self.last);
+        let (p, rate) = full.pressure(i, x);
+        let len = full.face.length();
+        if p > 0.0 && self.open.is_none() {
+            let z = if last.p < 0.0 { full.zero(i, (last.x, last.p), (x, p), self.cuts[1]) } else { last.x };
+            self.cuts[1] = z;
+            let rate = if z > 0.0 { full.pressure(i, z).1 } else { 0.0 };
+            self.open = Some(Cut { i: if z > last.x { i } else { last.i }, x: z, p: 0.0, rate });
+        } else if p <= 0.0
+            && let Some(from) = self.open.take()
+        {
+            let z = if p < 0.0 { full.zero(i, (last.x, last.p), (x, p), self.cuts[0]) } else { x };
+            self.cuts[0] = z;
+            let rate = if z < len { full.pressure(i, z).1 } else { 0.0 };
+            self.keep(from, Cut { i, x: z, p: 0.0, rate });
+        }
+        if x >= len
+            && let Some(from) = self.open.take()
+        {
+            self.keep(from, Cut { i, x, p, rate });
+        }
+        self.last = Cut { i, x, p, rate };
+    }
+
+    /// Keeps the part from `a` to `b`.
+    fn keep(&mut self, a: Cut, b: Cut) {
+        let Full { face, q, w, .. } = self.full;
+        self.islands.push(Island {
+            ia: a.i,
+            xa: a.x,
+            pa: a.p,
+            ib: b.i,
+            xb: b.x,
+            pb: b.p,
+            q,
+            w,
+            ra: a.rate,
+            rb: b.rate,
+            upwards: a.x <= 0.0,
+            m: face.span(a.i, a.x, b.i, b.x),
+        });
+    }
 }

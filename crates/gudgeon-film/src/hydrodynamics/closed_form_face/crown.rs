@@ -107,9 +107,28 @@ impl Crown {
         let (mut lead, mut trail) = self.starts(f, xr, xf)?;
         // Beside the search, not after it: what the film would rise by if it went on to the edge.
         let on = self.rest(f, &lead).map(|s| (lead.t, s));
-        let mut k = 0;
-        // Where pressure and gradient vanish: dp = -(2 α t + β) P3 dt along the places without gradient.
-        loop {
+        lead = self.rupture_at_rate(f, alpha, beta, lead)?;
+        let gamma = lead.t * (alpha * lead.t + beta);
+        if let Some(trail) = &mut trail {
+            *trail = self.front_at_rate(f, (alpha, beta, gamma), lead.t, *trail)?;
+        }
+        if let Some((from, s)) = on {
+            let rise = alpha * s.x + beta * s.m3 - gamma * s.p3;
+            // From where the gradient vanishes the pressure has risen or fallen in second order.
+            let d = lead.t - from;
+            let steep = 2.0 * alpha * lead.t.abs().max(from.abs()) + beta.abs();
+            if rise - steep * d * d < f.pb && !self.ruptures(f, alpha, beta, &lead) {
+                return None;
+            }
+        }
+        self.crowned(f, v, alpha, beta, &lead, trail.as_ref())
+    }
+
+    /// Moves the end of the film at the leading edge to where pressure and gradient vanish: `dp = -(2 α t + β) P3 dt` along the places
+    /// without gradient.
+    #[inline(always)]
+    fn rupture_at_rate(&self, f: &Asked, alpha: f64, beta: f64, mut lead: Stretch) -> Option<Stretch> {
+        for _ in 0..STEPS {
             let (t, r, s) = (lead.t, lead.r, lead.sums());
             let rising = 2.0 * alpha * t + beta;
             if !(rising > 0.0 && s.sound() && t * s.p3 - s.m3 > LEVER * s.p3.max(s.m3.abs())) {
@@ -131,64 +150,55 @@ impl Crown {
                 return None;
             }
             if size <= FOURTH {
-                break;
+                return Some(lead);
             }
-            k += 1;
-            if k == STEPS {
+        }
+        None
+    }
+
+    /// Moves the beginning of the film at the trailing edge to where its pressure vanishes, behind the rupture at `from`.
+    #[inline(always)]
+    fn front_at_rate(
+        &self,
+        f: &Asked,
+        (alpha, beta, gamma): (f64, f64, f64),
+        from: f64,
+        mut trail: Stretch,
+    ) -> Option<Stretch> {
+        for _ in 0..STEPS {
+            let (t, r, s) = (trail.t, trail.r, trail.sums());
+            let rising = 2.0 * alpha * t + beta;
+            // Pressure gradient, over `r³`, and what of it follows the place.
+            let n = t * (alpha * t + beta) - gamma;
+            let p = f.pb - (alpha * s.x + beta * s.m3 - gamma * s.p3);
+            if !(n > 0.0 && s.sound()) {
                 return None;
             }
-        }
-        let gamma = lead.t * (alpha * lead.t + beta);
-        if let Some(trail) = &mut trail {
-            k = 0;
-            loop {
-                let (t, r, s) = (trail.t, trail.r, trail.sums());
-                let rising = 2.0 * alpha * t + beta;
-                // Pressure gradient, over `r³`, and what of it follows the place.
-                let n = t * (alpha * t + beta) - gamma;
-                let p = f.pb - (alpha * s.x + beta * s.m3 - gamma * s.p3);
-                if !(n > 0.0 && s.sound()) {
-                    return None;
-                }
-                let (i, tr) = (1.0 / n, 6.0 * t * r);
-                let bend = rising - tr * n;
-                let newton = -p * i / (r * r * r);
-                let a2 = 0.5 * i * bend;
-                let a3 = i / 6.0 * (2.0 * alpha - 6.0 * r * n + 2.0 * t * r * tr * n - tr * (rising + bend));
-                let step = fourth(newton, a2, a3);
-                let size = newton.abs() * (1.0 + a2.abs()).max(1.0 / (self.b.t - t));
-                if size.is_nan() || size > 0.3 {
-                    return None;
-                }
-                *trail = trail.moved(step);
-                if !(trail.t > lead.t && trail.t < self.b.t) {
-                    return None;
-                }
-                if size <= FOURTH {
-                    break;
-                }
-                k += 1;
-                if k == STEPS {
-                    return None;
-                }
-            }
-        }
-        if let Some((from, s)) = on {
-            let rise = alpha * s.x + beta * s.m3 - gamma * s.p3;
-            // From where the gradient vanishes the pressure has risen or fallen in second order.
-            let d = lead.t - from;
-            let steep = 2.0 * alpha * lead.t.abs().max(from.abs()) + beta.abs();
-            if rise - steep * d * d < f.pb && !self.ruptures(f, alpha, beta, &lead) {
+            let (i, tr) = (1.0 / n, 6.0 * t * r);
+            let bend = rising - tr * n;
+            let newton = -p * i / (r * r * r);
+            let a2 = 0.5 * i * bend;
+            let a3 = i / 6.0 * (2.0 * alpha - 6.0 * r * n + 2.0 * t * r * tr * n - tr * (rising + bend));
+            let step = fourth(newton, a2, a3);
+            let size = newton.abs() * (1.0 + a2.abs()).max(1.0 / (self.b.t - t));
+            if size.is_nan() || size > 0.3 {
                 return None;
             }
+            trail = trail.moved(step);
+            if !(trail.t > from && trail.t < self.b.t) {
+                return None;
+            }
+            if size <= FOURTH {
+                return Some(trail);
+            }
         }
-        self.told(f, v, alpha, beta, &lead, trail.as_ref())
+        None
     }
 
     /// The film that carries `load` (over `12 μ`), from a rupture near `xr` and a reformation near `xf`. `None` as in
     /// [`Self::at_rate`].
     ///
-    /// The place of the rupture tells the squeeze velocity, `β = (p_a + α (X - t² P3))/(t P3 - M3)`, so that Newton's method has one
+    /// The squeeze velocity follows from the place of the rupture, `β = (p_a + α (X - t² P3))/(t P3 - M3)`, so that Newton's method has one
     /// unknown, and a second one follows it: the front, on whose place the load depends in second order only.
     #[inline(always)]
     pub fn under_load(&self, f: &Asked, load: f64, xr: f64, xf: f64) -> Option<Crowned> {
@@ -252,7 +262,7 @@ impl Crown {
                 if trail.is_none() && f.pb > 0.0 && !self.ruptures(f, alpha, beta, &lead) {
                     return None;
                 }
-                return self.told(f, v, alpha, beta, &lead, trail.as_ref());
+                return self.crowned(f, v, alpha, beta, &lead, trail.as_ref());
             }
         }
         None
@@ -280,7 +290,7 @@ impl Crown {
     }
 
     #[inline(always)]
-    fn told(
+    fn crowned(
         &self,
         f: &Asked,
         v: f64,

@@ -23,7 +23,7 @@ pub(super) struct Film<S> {
 
 impl<S: Shape> Film<S> {
     pub fn new(up: S, down: S, cavitation: Cavitation, shear: CavityShear) -> Self {
-        let whole = up.len();
+        let whole = up.length();
         Self { up: Side::new(up), down: Side::new(down), whole, from: 0.0, cavitation, shear }
     }
 
@@ -49,17 +49,17 @@ impl<S: Shape> Film<S> {
             ));
         }
         side.set_film(inp.h);
-        let least = if self.cavitation == Cavitation::FullSommerfeld { f64::NEG_INFINITY } else { 0.0 };
+        let floor = if self.cavitation == Cavitation::FullSommerfeld { f64::NEG_INFINITY } else { 0.0 };
         let scale = 1.0 / (12.0 * inp.mu);
-        let bottom = (inp.p_bottom - inp.p_cav).max(least) * scale;
-        let top = (inp.p_top - inp.p_cav).max(least) * scale;
+        let bottom = (inp.p_bottom - inp.p_cav).max(floor) * scale;
+        let top = (inp.p_top - inp.p_cav).max(floor) * scale;
         let (pa, pb) = if turned { (top, bottom) } else { (bottom, top) };
         Ok((side, Flow { u: 0.5 * inp.u.abs(), v, pa, pb }, turned))
     }
 }
 
 /// Forces in the frame of the ring, when they are numbers.
-fn told<S: Shape>(
+fn checked<S: Shape>(
     mut o: FaceForces,
     turned: bool,
     side: &Side<S>,
@@ -67,7 +67,7 @@ fn told<S: Shape>(
 ) -> Result<FaceForces, EvalError> {
     if turned {
         // The lower end is the trailing one then; the flux changes along the film with what it squeezes out.
-        o.flux = f.v * side.face.len() - o.flux;
+        o.flux = f.v * side.face.length() - o.flux;
         o.ring_shear = -o.ring_shear;
         o.liner_shear = -o.liner_shear;
         o.slope_force = -o.slope_force;
@@ -96,9 +96,9 @@ impl<S: Shape> Hydrodynamics for Film<S> {
         let (cavitation, shear, from) = (self.cavitation, self.shear, self.from);
         let (side, mut f, turned) = self.enter(inp, hdot)?;
         side.solve(&mut f, cavitation)?;
-        let o = told(side.forces(&f, cavitation, shear, inp.mu), turned, side, &f)?;
+        let o = checked(side.forces(&f, cavitation, shear, inp.mu), turned, side, &f)?;
         let (high, (a, b)) = side.peak(&f);
-        let len = side.face.len();
+        let len = side.face.length();
         Ok(FaceOut {
             load: o.load,
             load_rate: o.load_rate,
@@ -115,7 +115,7 @@ impl<S: Shape> Hydrodynamics for Film<S> {
         let (cavitation, shear) = (self.cavitation, self.shear);
         let (side, mut f, turned) = self.enter(inp, hdot)?;
         side.solve(&mut f, cavitation)?;
-        told(side.forces(&f, cavitation, shear, inp.mu), turned, side, &f)
+        checked(side.forces(&f, cavitation, shear, inp.mu), turned, side, &f)
     }
 
     fn load(&mut self, inp: &FaceIn, hdot: f64) -> Result<(f64, f64), EvalError> {
@@ -143,7 +143,7 @@ impl<S: Shape> Hydrodynamics for Film<S> {
         let target = load / (12.0 * inp.mu);
         f.v = 0.0;
         side.squeeze(&mut f, cavitation, target)?;
-        Ok((f.v, told(side.forces(&f, cavitation, shear, inp.mu), turned, side, &f)?))
+        Ok((f.v, checked(side.forces(&f, cavitation, shear, inp.mu), turned, side, &f)?))
     }
 
     fn profile(&mut self, inp: &FaceIn, hdot: f64, out: &mut [(f64, f64, f64)]) -> Result<(), EvalError> {
@@ -151,7 +151,7 @@ impl<S: Shape> Hydrodynamics for Film<S> {
         let (side, mut f, turned) = self.enter(inp, hdot)?;
         side.solve(&mut f, cavitation)?;
         let n = out.len();
-        let len = side.face.len();
+        let len = side.face.length();
         let steps = n.saturating_sub(1).max(1);
         for (j, o) in out.iter_mut().enumerate() {
             let x = if j == steps { len } else { len * j as f64 / steps as f64 };

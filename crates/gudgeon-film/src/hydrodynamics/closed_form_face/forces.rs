@@ -63,7 +63,7 @@ impl<S: Shape> Side<S> {
         for l in &self.islands {
             let mut p = l.pa.max(l.pb);
             for i in l.ia..=l.ib {
-                if let Some(x) = self.face.crest(i, f.u, f.v, l.q)
+                if let Some(x) = self.face.pressure_maximum(i, f.u, f.v, l.q)
                     && x > l.xa
                     && x < l.xb
                 {
@@ -80,7 +80,7 @@ impl<S: Shape> Side<S> {
 
     /// `∫ u w/h dx` over the gaps between the films, in order along the face.
     pub(super) fn gaps_shear(&mut self, f: &Flow, cavitation: Cavitation, shear: CavityShear) -> f64 {
-        let (last, len) = (self.face.pieces() - 1, self.face.len());
+        let (last, len) = (self.face.pieces() - 1, self.face.length());
         let lead = self.islands.first().filter(|l| l.xa <= 0.0).map(|l| (l.q, l.ib, l.xb));
         if let (
             Some((q, i, x)),

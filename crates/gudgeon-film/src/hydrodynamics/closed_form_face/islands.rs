@@ -9,7 +9,7 @@ use super::side::Side;
 impl<S: Shape> Side<S> {
     pub(super) fn push_full(&mut self, f: &Flow, q: f64) {
         let m = self.face.whole();
-        self.push_lead(f, self.face.pieces() - 1, self.face.len(), f.pb, q, m.x3 / m.i3, m);
+        self.push_lead(f, self.face.pieces() - 1, self.face.length(), f.pb, q, m.x3 / m.i3, m);
     }
 
     /// The film at the leading edge, to `x` in piece `i`.
@@ -81,8 +81,8 @@ impl<S: Shape> Side<S> {
         let (mut i, mut below) = (from.i, from.x);
         // At a minimum the film carries u h/2 > 0: the cavity before it has not run dry.
         loop {
-            let valley = self.face.valley(i, f.u, f.v, q).filter(|x| *x < below && (i > ir || *x > xr));
-            if let Some(xe) = valley
+            let minimum = self.face.pressure_minimum(i, f.u, f.v, q).filter(|x| *x < below && (i > ir || *x > xr));
+            if let Some(xe) = minimum
                 && i > ir
             {
                 let start = self.reform(f, q, ir, xr, i, xe, 0.0, false);

@@ -1,7 +1,7 @@
 //! Load and pressure of the films found last.
 
 use super::flow::{Flow, Island};
-use super::moments::Three;
+use super::moments::PressureMoments;
 use super::shape::Shape;
 use super::side::Side;
 
@@ -52,7 +52,7 @@ impl<S: Shape> Side<S> {
         } else if l.upwards {
             l.pa + S::three(&self.face.head(i, x)).rise(f.u, f.v, l.q)
         } else {
-            let end = if l.xb >= self.face.len() { Three::default() } else { self.face.tail(l.ib, l.xb) };
+            let end = if l.xb >= self.face.length() { PressureMoments::default() } else { self.face.tail(l.ib, l.xb) };
             l.pb - self.face.tail(i, x).minus(end).rise(f.u, f.v, l.q)
         }
     }

@@ -69,20 +69,20 @@ impl Moments {
     }
 
     /// The three that the pressure needs.
-    pub const fn pressure(&self) -> Three {
-        Three { i3: self.i3, x3: self.x3, d2: self.d2 }
+    pub const fn pressure(&self) -> PressureMoments {
+        PressureMoments { i3: self.i3, x3: self.x3, d2: self.d2 }
     }
 }
 
 /// The part of [`Moments`] that the pressure needs.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Three {
+pub struct PressureMoments {
     pub i3: f64,
     pub x3: f64,
     pub d2: f64,
 }
 
-impl Three {
+impl PressureMoments {
     #[must_use]
     pub fn plus(self, o: Self) -> Self {
         Self { i3: self.i3 + o.i3, x3: self.x3 + o.x3, d2: self.d2 + o.d2 }

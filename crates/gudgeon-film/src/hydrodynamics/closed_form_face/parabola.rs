@@ -1,7 +1,7 @@
 //! A face that is one parabola.
 
 use super::crown::Crown;
-use super::moments::{Moments, SERIES, Three, core};
+use super::moments::{Moments, SERIES, PressureMoments, core};
 use super::shape::Shape;
 
 /// One parabola, `d = κ (x - apex)²`.
@@ -182,7 +182,7 @@ impl Shape for Parabola {
     type Head = Moments;
 
     #[inline]
-    fn len(&self) -> f64 {
+    fn length(&self) -> f64 {
         self.len
     }
     #[inline]
@@ -270,7 +270,7 @@ impl Shape for Parabola {
         self.moments(0.0, x)
     }
     #[inline]
-    fn three(head: &Moments) -> Three {
+    fn three(head: &Moments) -> PressureMoments {
         head.pressure()
     }
     #[inline]
@@ -278,15 +278,15 @@ impl Shape for Parabola {
         *head
     }
     #[inline]
-    fn tail(&self, _: usize, x: f64) -> Three {
+    fn tail(&self, _: usize, x: f64) -> PressureMoments {
         self.moments(x, self.len).pressure()
     }
     #[inline]
-    fn valley(&self, _: usize, u: f64, v: f64, q: f64) -> Option<f64> {
+    fn pressure_minimum(&self, _: usize, u: f64, v: f64, q: f64) -> Option<f64> {
         self.zero(u, v, q, true)
     }
     #[inline]
-    fn crest(&self, _: usize, u: f64, v: f64, q: f64) -> Option<f64> {
+    fn pressure_maximum(&self, _: usize, u: f64, v: f64, q: f64) -> Option<f64> {
         self.zero(u, v, q, false)
     }
 }

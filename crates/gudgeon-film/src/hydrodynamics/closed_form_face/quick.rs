@@ -27,13 +27,13 @@ impl<S: Shape> Side<S> {
     pub(super) fn full_v(&mut self, f: &Flow, target: f64) -> f64 {
         let m = self.face.whole();
         let w = m.x3 / m.i3;
-        let ends = self.face.s(self.face.len()) * f.pb - self.face.s(0.0) * f.pa;
+        let ends = self.face.s(self.face.length()) * f.pb - self.face.s(0.0) * f.pa;
         let still = ends - f.u * m.e2 + w * (f.pa - f.pb + f.u * m.d2);
         (still - target) / (m.xx3 - m.x3 * w)
     }
 
     /// Fills `islands` with what a quick search found and keeps it as a start.
-    pub(super) fn lay(&mut self, f: &Flow, found: &Quick, ask: Ask) {
+    pub(super) fn keep_found(&mut self, f: &Flow, found: &Quick, ask: Ask) {
         self.islands.clear();
         self.starts[ask as usize] = match found {
             Quick::Full { q, .. } => {
@@ -46,7 +46,7 @@ impl<S: Shape> Side<S> {
                 self.push_lead(f, r.i, r.x, 0.0, r.q, w, m);
                 let rising = f.u * self.face.slope(r.i, r.x) + f.v;
                 let xr_v = (w - self.face.s(r.x)) / rising;
-                let (mut xf, mut xf_v) = (self.face.len(), 0.0);
+                let (mut xf, mut xf_v) = (self.face.length(), 0.0);
                 if let Some(start) = r.front {
                     let m = self.trail_from(start.i, start.x);
                     self.push_behind(f, start, self.face.pieces() - 1, xf, f.pb, w, m);
@@ -123,7 +123,7 @@ impl<S: Shape> Side<S> {
         f.v = v;
         self.islands.clear();
         self.push_lead(f, 0, x, 0.0, q, w, *lead);
-        let mut xf = self.face.len();
+        let mut xf = self.face.length();
         if let Some((x, m)) = front {
             self.push_behind(f, Start { i: 0, x: *x, q, dry: false }, 0, xf, f.pb, w, *m);
             xf = *x;
@@ -139,7 +139,7 @@ impl<S: Shape> Side<S> {
             return None;
         }
         for i in 0..self.face.pieces() {
-            if let Some(x) = self.face.valley(i, f.u, f.v, q) {
+            if let Some(x) = self.face.pressure_minimum(i, f.u, f.v, q) {
                 let m = self.lead_to(i, x);
                 let p = f.pa + m.pressure().rise(f.u, f.v, q);
                 if p >= 0.0 {
@@ -155,6 +155,6 @@ impl<S: Shape> Side<S> {
     pub(super) fn behind(&self, f: &Flow, i: usize, x: f64, p: f64) -> f64 {
         let h = self.face.film() + self.face.drop(i, x);
         let rising = f.u * self.face.slope(i, x) + f.v;
-        (x + (-2.0 * p * h * h * h / rising).sqrt()).min(0.5 * (x + self.face.len()))
+        (x + (-2.0 * p * h * h * h / rising).sqrt()).min(0.5 * (x + self.face.length()))
     }
 }

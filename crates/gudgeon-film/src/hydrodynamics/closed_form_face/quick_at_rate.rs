@@ -10,13 +10,29 @@ use crate::cavitation::Cavitation;
 impl<S: Shape> Side<S> {
     /// The ruptured film at `f.v`, by third-order steps from `start`.
     pub(super) fn ruptured(&mut self, f: &Flow, cavitation: Cavitation, start: Warm) -> Option<Ruptured> {
-        let len = self.face.len();
+        let len = self.face.length();
         // Straight on from the last film, when that is not far.
         let on = |x: f64, slope: f64| {
             let (step, room) = (slope * (f.v - start.v), 0.2 * x.min(len - x));
             if step.abs() <= room { x + step } else { x }
         };
-        let mut x = on(start.xr, start.xr_v);
+        let found = self.rupture_from(f, on(start.xr, start.xr_v))?;
+        if f.pb <= 0.0 {
+            return Some(found);
+        }
+        if cavitation == Cavitation::SwiftStieber {
+            return self.has_ruptured(f, &found).then_some(found);
+        }
+        let mut xf = on(start.xf, start.xf_v);
+        if !(xf > found.x && xf < len) {
+            xf = 0.5 * (found.x + len);
+        }
+        self.front_from(f, found, xf)
+    }
+
+    /// The film at the leading edge, with a rupture near `x`.
+    fn rupture_from(&mut self, f: &Flow, mut x: f64) -> Option<Ruptured> {
+        let len = self.face.length();
         let mut settled = false;
         for _ in 0..10 {
             let i = self.face.piece_of(x);
@@ -45,17 +61,13 @@ impl<S: Shape> Side<S> {
         if !settled || f.u * self.face.slope(i, x) + f.v <= 0.0 {
             return None;
         }
-        let found = Ruptured { v: f.v, i, x, q, front: None };
-        if f.pb <= 0.0 {
-            return Some(found);
-        }
-        if cavitation == Cavitation::SwiftStieber {
-            return self.let_go(f, &found).then_some(found);
-        }
-        let mut xf = on(start.xf, start.xf_v);
-        if !(xf > x && xf < len) {
-            xf = 0.5 * (x + len);
-        }
+        Some(Ruptured { v: f.v, i, x, q, front: None })
+    }
+
+    /// Completes `found` by the film at the trailing edge, with a front near `xf`.
+    fn front_from(&mut self, f: &Flow, found: Ruptured, mut xf: f64) -> Option<Ruptured> {
+        let len = self.face.length();
+        let Ruptured { x, q, .. } = found;
         for k in 0..10 {
             let j = self.face.piece_of(xf);
             let n = self.trail_from(j, xf).pressure();
@@ -73,7 +85,7 @@ impl<S: Shape> Side<S> {
             let r = newton * bend / p_x;
             let dx = newton / (1.0 + 0.5 * r).max(0.25);
             let next = xf + dx;
-            if next.is_nan() || (next <= x && k > 0 && !self.let_go(f, &found)) {
+            if next.is_nan() || (next <= x && k > 0 && !self.has_ruptured(f, &found)) {
                 return None;
             }
             let inside = next > x && next < len && self.face.piece_of(next) == j;

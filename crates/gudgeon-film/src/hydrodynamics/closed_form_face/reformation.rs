@@ -1,7 +1,7 @@
 //! Where a film forms again behind a cavity: the search that always ends.
 
 use super::flow::Flow;
-use super::moments::Three;
+use super::moments::PressureMoments;
 use super::shape::Shape;
 use super::side::Side;
 
@@ -32,7 +32,7 @@ impl<S: Shape> Side<S> {
         pe: f64,
         may_dry: bool,
     ) -> Start {
-        let end = if xe >= self.face.len() { Three::default() } else { self.face.tail(ie, xe) };
+        let end = if xe >= self.face.length() { PressureMoments::default() } else { self.face.tail(ie, xe) };
         // Pressure at x counted back from the end, with its first and second derivative there.
         let at = |i: usize, x: f64| {
             let t = self.face.tail(i, x).minus(end);
@@ -52,17 +52,17 @@ impl<S: Shape> Side<S> {
         let mut hi = xe;
         loop {
             let mut lo = if i == ir { xr } else { self.face.node(i) };
-            let valley = if i == ir {
+            let minimum = if i == ir {
                 // The pressure there is zero or, counted back from the end, less: the film has ruptured.
                 Some(xr)
             } else {
-                self.face.valley(i, f.u, f.v, q).filter(|x| *x > lo && *x < hi && at(i, *x).0 <= 0.0)
+                self.face.pressure_minimum(i, f.u, f.v, q).filter(|x| *x > lo && *x < hi && at(i, *x).0 <= 0.0)
             };
-            if valley.is_some() || at(i, lo).0 <= 0.0 {
-                lo = valley.unwrap_or(lo);
+            if minimum.is_some() || at(i, lo).0 <= 0.0 {
+                lo = minimum.unwrap_or(lo);
                 // From here the pressure only rises as far as its maximum, if it has one.
-                let crest = self.face.crest(i, f.u, f.v, q).filter(|x| *x > lo && *x < hi);
-                let x = self.reform_between(i, lo, crest.unwrap_or(hi), xe, at);
+                let maximum = self.face.pressure_maximum(i, f.u, f.v, q).filter(|x| *x > lo && *x < hi);
+                let x = self.reform_between(i, lo, maximum.unwrap_or(hi), xe, at);
                 let (q, dry) = self.carried_to(f, q, x, may_dry);
                 return Start { i, x, q, dry };
             }
@@ -97,7 +97,7 @@ impl<S: Shape> Side<S> {
             } else {
                 lo = x;
             }
-            if p == 0.0 || hi - lo <= 2.0 * f64::EPSILON * self.face.len() {
+            if p == 0.0 || hi - lo <= 2.0 * f64::EPSILON * self.face.length() {
                 return x;
             }
             // Halley's step, third order.

@@ -8,39 +8,39 @@ use super::shape::Shape;
 use super::side::Side;
 
 /// A pressure minimum, and the integrals up to it.
-pub(super) struct Valley<S: Shape> {
+pub(super) struct Minimum<S: Shape> {
     pub p: f64,
     pub i: usize,
     pub x: f64,
     pub head: S::Head,
 }
 
-impl<S: Shape> Clone for Valley<S> {
+impl<S: Shape> Clone for Minimum<S> {
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<S: Shape> Copy for Valley<S> {}
+impl<S: Shape> Copy for Minimum<S> {}
 
 /// How the film that begins at the leading edge ends.
 pub(super) enum Lead<S: Shape> {
     /// At the trailing edge.
     Full { q: f64 },
     /// Where pressure and gradient vanish.
-    Rupture { q: f64, at: Valley<S> },
+    Rupture { q: f64, at: Minimum<S> },
 }
 
 impl<S: Shape> Side<S> {
     /// The lowest of the pressure minima of the film that starts with `pa` at 0 and has the flux `q`.
-    pub(super) fn lowest_valley(&self, f: &Flow, q: f64) -> Option<Valley<S>> {
-        let mut low: Option<Valley<S>> = None;
+    pub(super) fn lowest_minimum(&self, f: &Flow, q: f64) -> Option<Minimum<S>> {
+        let mut low: Option<Minimum<S>> = None;
         for i in 0..self.face.pieces() {
-            if let Some(x) = self.face.valley(i, f.u, f.v, q) {
+            if let Some(x) = self.face.pressure_minimum(i, f.u, f.v, q) {
                 let head = self.face.head(i, x);
                 let p = f.pa + S::three(&head).rise(f.u, f.v, q);
                 if low.as_ref().is_none_or(|l| p < l.p) {
-                    low = Some(Valley { p, i, x, head });
+                    low = Some(Minimum { p, i, x, head });
                 }
             }
         }
@@ -63,7 +63,7 @@ impl<S: Shape> Side<S> {
             let i = self.face.piece_of(w.xr);
             let q = f.u * self.face.drop(i, w.xr) + f.v * self.face.s(w.xr);
             if (f.pa > 0.0 || q < limit)
-                && let Some(Lead::Rupture { q, at }) = self.touch(f, q, f64::NAN)
+                && let Some(Lead::Rupture { q, at }) = self.film_with_zero_minimum(f, q, f64::NAN)
                 && self.face.tail(at.i, at.x).rise(f.u, f.v, q) >= f.pb
             {
                 return Ok(Lead::Rupture { q, at });
@@ -72,28 +72,28 @@ impl<S: Shape> Side<S> {
         let full = self.full_q(f);
         let held = f.pa <= 0.0 && full > limit;
         let q = if held { limit } else { full };
-        let valley = self.lowest_valley(f, q);
-        if valley.is_none_or(|v| v.p >= 0.0) {
+        let minimum = self.lowest_minimum(f, q);
+        if minimum.is_none_or(|v| v.p >= 0.0) {
             return Ok(if held {
                 let head = self.face.head(0, 0.0);
-                Lead::Rupture { q, at: Valley { p: 0.0, i: 0, x: 0.0, head } }
+                Lead::Rupture { q, at: Minimum { p: 0.0, i: 0, x: 0.0, head } }
             } else {
                 Lead::Full { q }
             });
         }
-        self.touch(f, q, q).ok_or_else(|| no_convergence("rupture"))
+        self.film_with_zero_minimum(f, q, q).ok_or_else(|| no_convergence("rupture"))
     }
 
     /// The film whose lowest minimum is zero, from the flux `q`; `hi` is a flux known to be too large, if any. `None`: no
     /// convergence.
-    pub(super) fn touch(&self, f: &Flow, mut q: f64, mut hi: f64) -> Option<Lead<S>> {
+    pub(super) fn film_with_zero_minimum(&self, f: &Flow, mut q: f64, mut hi: f64) -> Option<Lead<S>> {
         let mut lo = f64::NAN;
-        let mut valley = self.lowest_valley(f, q);
+        let mut minimum = self.lowest_minimum(f, q);
         for _ in 0..200 {
             let mut close = None;
-            let next = match valley {
+            let next = match minimum {
                 Some(at) => {
-                    let Valley { p, i, x, head } = at;
+                    let Minimum { p, i, x, head } = at;
                     let t = S::three(&head);
                     let scale = f.pa.abs() + (f.u * t.d2).abs() + (f.v * t.x3).abs() + (q * t.i3).abs();
                     if p.abs() <= 2.0 * f64::EPSILON * scale {
@@ -131,12 +131,12 @@ impl<S: Shape> Side<S> {
             }
             if next == q || next == hi || next == lo {
                 // The bracket has closed to neighbouring numbers.
-                return valley.map(|at| Lead::Rupture { q, at });
+                return minimum.map(|at| Lead::Rupture { q, at });
             }
             q = next;
-            valley = self.lowest_valley(f, q);
+            minimum = self.lowest_minimum(f, q);
             // The step was of third order if it stayed in one piece: what is left is below rounding.
-            if let (Some(c), Some(at)) = (close, valley)
+            if let (Some(c), Some(at)) = (close, minimum)
                 && c == at.i
                 && inside
             {

@@ -19,7 +19,7 @@ pub(super) struct Ruptured {
 impl<S: Shape> Side<S> {
     /// Whether the film that ends at `r.x` would, if it went on, need more than the pressure there is at the trailing edge:
     /// whether it has ruptured.
-    pub(super) fn let_go(&self, f: &Flow, r: &Ruptured) -> bool {
+    pub(super) fn has_ruptured(&self, f: &Flow, r: &Ruptured) -> bool {
         self.face.tail(r.i, r.x).rise(f.u, f.v, r.q) >= f.pb
     }
 }

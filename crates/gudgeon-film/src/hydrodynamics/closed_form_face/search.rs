@@ -6,7 +6,7 @@ use super::errors::{MODEL, finite, no_convergence};
 use super::flow::Flow;
 use super::quick::Quick;
 use super::reformation::Start;
-use super::rupture::{Lead, Valley};
+use super::rupture::{Lead, Minimum};
 use super::ruptured::Ruptured;
 use super::shape::Shape;
 use super::side::{Ask, Side, Warm};
@@ -20,7 +20,7 @@ impl<S: Shape> Side<S> {
         }
         self.warm = self.starts[Ask::Rate as usize];
         if let Some(found) = self.quick_rate(f, cavitation) {
-            self.lay(f, &found, Ask::Rate);
+            self.keep_found(f, &found, Ask::Rate);
             return Ok(());
         }
         self.search(f, cavitation)?;
@@ -32,7 +32,7 @@ impl<S: Shape> Side<S> {
     pub(super) fn search(&mut self, f: &Flow, cavitation: Cavitation) -> Result<(), EvalError> {
         self.islands.clear();
         let last = self.face.pieces() - 1;
-        let len = self.face.len();
+        let len = self.face.length();
         match cavitation {
             Cavitation::FullSommerfeld => {
                 let q = self.full_q(f);
@@ -44,7 +44,7 @@ impl<S: Shape> Side<S> {
                     self.warm = None;
                     self.push_full(f, q);
                 }
-                Lead::Rupture { q, at: Valley { i, x, head, .. } } => {
+                Lead::Rupture { q, at: Minimum { i, x, head, .. } } => {
                     let m = self.face.complete(i, x, &head);
                     let w = if x > 0.0 { m.x3 / m.i3 } else { self.face.s(0.0) };
                     self.push_lead(f, i, x, 0.0, q, w, m);
@@ -85,7 +85,7 @@ impl<S: Shape> Side<S> {
             f.v = match found {
                 Quick::Full { v, .. } | Quick::Ruptured(Ruptured { v, .. }) => v,
             };
-            self.lay(f, &found, Ask::Load);
+            self.keep_found(f, &found, Ask::Load);
             return Ok(());
         }
         let full = finite(self.full_v(f, target), "squeeze velocity")?;
@@ -103,7 +103,7 @@ impl<S: Shape> Side<S> {
         f.v = full;
         self.search(f, cavitation)?;
         if cavitation != Cavitation::FullSommerfeld
-            && !matches!(self.islands.as_slice(), [l] if l.xa <= 0.0 && l.xb >= self.face.len())
+            && !matches!(self.islands.as_slice(), [l] if l.xa <= 0.0 && l.xb >= self.face.length())
         {
             self.bracketed(f, cavitation, target, unit)?;
             self.v_cut = Some(f.v);
@@ -151,7 +151,7 @@ impl<S: Shape> Side<S> {
                     }
                 }
             } else {
-                // A film that carries next to nothing does not say where it would carry more.
+                // A film that carries next to nothing does not show where it would carry more.
                 reach = (4.0 * reach).max(v.abs()).max(unit);
                 next = next.clamp(v - reach, v + reach);
             }

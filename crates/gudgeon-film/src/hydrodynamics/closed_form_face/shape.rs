@@ -1,14 +1,14 @@
 //! What the film solver asks of a face.
 
 use super::crown::Crown;
-use super::moments::{Moments, Three};
+use super::moments::{Moments, PressureMoments};
 
-/// What the film solver asks of a face. Coordinates `x` from 0 to [`Shape::len`]; piece `i` lies between nodes `i` and `i + 1`.
+/// What the film solver asks of a face. Coordinates `x` from 0 to [`Shape::length`]; piece `i` lies between nodes `i` and `i + 1`.
 pub trait Shape: Send {
     /// Integrals from 0 as far as they come for free with the pressure.
     type Head: Copy;
     /// Length of the face.
-    fn len(&self) -> f64;
+    fn length(&self) -> f64;
     /// Number of pieces.
     fn pieces(&self) -> usize;
     /// Position of node `i`.
@@ -45,19 +45,19 @@ pub trait Shape: Send {
     /// Integrals from 0 to `x` in piece `i`.
     fn head(&self, i: usize, x: f64) -> Self::Head;
     /// The part of a head that the pressure needs.
-    fn three(head: &Self::Head) -> Three;
+    fn three(head: &Self::Head) -> PressureMoments;
     /// All integrals from 0 to `x` in piece `i`, of which the head is known.
     fn complete(&self, i: usize, x: f64, head: &Self::Head) -> Moments;
     /// Pressure integrals from `x` in piece `i` to the end.
-    fn tail(&self, i: usize, x: f64) -> Three;
+    fn tail(&self, i: usize, x: f64) -> PressureMoments;
     /// The face as one crown under the present film, if it is one whose film has a natural coordinate.
     fn crown(&mut self) -> Option<&Crown> {
         None
     }
     /// Where `U d + V s - q` goes from negative to positive inside piece `i`: a minimum of pressure.
-    fn valley(&self, i: usize, u: f64, v: f64, q: f64) -> Option<f64>;
+    fn pressure_minimum(&self, i: usize, u: f64, v: f64, q: f64) -> Option<f64>;
     /// Where it goes from positive to negative: a maximum of pressure.
-    fn crest(&self, i: usize, u: f64, v: f64, q: f64) -> Option<f64>;
+    fn pressure_maximum(&self, i: usize, u: f64, v: f64, q: f64) -> Option<f64>;
 
     /// `s` at `x`.
     #[inline]

@@ -120,7 +120,7 @@ impl<S: Shape> Side<S> {
     pub(super) fn trail_from(&mut self, i: usize, x: f64) -> Moments {
         if let Some(a) = &self.trail
             && a.i == i
-            && let Some(m) = self.face.nearby(&a.m, self.face.len() - x, i, x, a.x)
+            && let Some(m) = self.face.nearby(&a.m, self.face.length() - x, i, x, a.x)
         {
             return m;
         }
@@ -129,7 +129,7 @@ impl<S: Shape> Side<S> {
 
     #[inline(never)]
     pub(super) fn trail_anew(&mut self, i: usize, x: f64) -> Moments {
-        let m = self.face.span(i, x, self.face.pieces() - 1, self.face.len());
+        let m = self.face.span(i, x, self.face.pieces() - 1, self.face.length());
         self.trail = Some(Anchor { i, x, m });
         m
     }

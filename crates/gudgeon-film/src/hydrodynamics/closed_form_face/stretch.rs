@@ -2,8 +2,8 @@
 
 use super::moments::angle;
 
-/// Least `X` beside `P2` and least `P3` beside `P1`: three digits are lost there.
-const LEAST: f64 = 1e-3;
+/// Smallest `X` beside `P2` and smallest `P3` beside `P1`: three digits are lost there.
+const MIN_PART: f64 = 1e-3;
 
 /// Farthest an angle is moved by the series of the arc tangent up to `z⁷/7`: what is left out is 6e-17.
 const SHORT: f64 = 2e-2;
@@ -45,7 +45,7 @@ impl Sums {
     /// Whether the differences they are made of leave digits enough.
     #[inline(always)]
     pub(super) fn sound(&self) -> bool {
-        self.x > LEAST * self.p2 && self.p3 > LEAST * self.p1
+        self.x > MIN_PART * self.p2 && self.p3 > MIN_PART * self.p1
     }
 }
 

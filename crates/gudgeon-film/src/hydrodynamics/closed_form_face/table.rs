@@ -1,6 +1,6 @@
 //! A face of straight lines between nodes.
 
-use super::moments::{Moments, SERIES, Three, core};
+use super::moments::{Moments, SERIES, PressureMoments, core};
 use super::shape::Shape;
 
 /// One straight line: its ends, the drops there, and its slope.
@@ -25,8 +25,8 @@ pub struct Table {
     convex: bool,
     h: f64,
     parts: Vec<Moments>,
-    heads: Vec<Three>,
-    tails: Vec<Three>,
+    heads: Vec<PressureMoments>,
+    tails: Vec<PressureMoments>,
     whole: Moments,
     /// Nodes and drops of the whole face.
     uncropped: (Vec<f64>, Vec<f64>),
@@ -88,8 +88,8 @@ impl Table {
             drops,
             h: f64::NAN,
             parts: vec![Moments::default(); n],
-            heads: vec![Three::default(); n + 1],
-            tails: vec![Three::default(); n + 1],
+            heads: vec![PressureMoments::default(); n + 1],
+            tails: vec![PressureMoments::default(); n + 1],
             whole: Moments::default(),
         };
         face.join();
@@ -128,12 +128,12 @@ impl Table {
         }
     }
 
-    fn stretch(&self, i: usize, xa: f64, xb: f64) -> Three {
+    fn stretch(&self, i: usize, xa: f64, xb: f64) -> PressureMoments {
         let (l, dn, df, c, side) = self.sides(i, xa, xb);
         let (hn, hf) = (self.h + dn, self.h + df);
         let ip = 1.0 / (hn * hf);
         let i3 = l * 0.5 * (hn + hf) * ip * ip;
-        Three {
+        PressureMoments {
             i3,
             x3: side * (c * i3 + 0.5 * l * l * ip / hf),
             d2: l * ip * ip * (0.5 * self.h * (dn + df) + dn * df),
@@ -185,10 +185,10 @@ impl Table {
 }
 
 impl Shape for Table {
-    type Head = Three;
+    type Head = PressureMoments;
 
     #[inline]
-    fn len(&self) -> f64 {
+    fn length(&self) -> f64 {
         self.len
     }
     #[inline]
@@ -255,9 +255,9 @@ impl Shape for Table {
         (self.len, self.x_ref, self.lowest) = (to - from, self.nodes[low], self.drops[low]);
         let pieces = self.drops.len() - 1;
         self.parts.resize(pieces, Moments::default());
-        self.heads.resize(pieces + 1, Three::default());
-        self.tails.resize(pieces + 1, Three::default());
-        self.tails[pieces] = Three::default();
+        self.heads.resize(pieces + 1, PressureMoments::default());
+        self.tails.resize(pieces + 1, PressureMoments::default());
+        self.tails[pieces] = PressureMoments::default();
         self.join();
         (self.from, self.h) = (from, f64::NAN);
     }
@@ -315,30 +315,30 @@ impl Shape for Table {
         m
     }
     #[inline]
-    fn head(&self, i: usize, x: f64) -> Three {
+    fn head(&self, i: usize, x: f64) -> PressureMoments {
         self.heads[i].plus(self.stretch(i, self.nodes[i], x))
     }
     #[inline]
-    fn three(head: &Three) -> Three {
+    fn three(head: &PressureMoments) -> PressureMoments {
         *head
     }
     #[inline]
-    fn complete(&self, i: usize, x: f64, _: &Three) -> Moments {
+    fn complete(&self, i: usize, x: f64, _: &PressureMoments) -> Moments {
         self.span(0, 0.0, i, x)
     }
     #[inline]
-    fn tail(&self, i: usize, x: f64) -> Three {
+    fn tail(&self, i: usize, x: f64) -> PressureMoments {
         self.tails[i + 1].plus(self.stretch(i, x, self.nodes[i + 1]))
     }
     #[inline]
-    fn valley(&self, i: usize, u: f64, v: f64, q: f64) -> Option<f64> {
+    fn pressure_minimum(&self, i: usize, u: f64, v: f64, q: f64) -> Option<f64> {
         let (n0, n1) = self.slope_term(i, u, v, q);
         (n0 < 0.0 && n1 >= 0.0)
             .then(|| self.nodes[i] + (self.nodes[i + 1] - self.nodes[i]) * (n0 / (n0 - n1)))
             .filter(|x| *x < self.len)
     }
     #[inline]
-    fn crest(&self, i: usize, u: f64, v: f64, q: f64) -> Option<f64> {
+    fn pressure_maximum(&self, i: usize, u: f64, v: f64, q: f64) -> Option<f64> {
         let (n0, n1) = self.slope_term(i, u, v, q);
         (n0 > 0.0 && n1 <= 0.0)
             .then(|| self.nodes[i] + (self.nodes[i + 1] - self.nodes[i]) * (n0 / (n0 - n1)))

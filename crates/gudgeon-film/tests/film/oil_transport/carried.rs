@@ -4,7 +4,7 @@ use gudgeon_core::geometry::FaceProfile;
 use gudgeon_core::kinds::{OilFacePlace, OilStep, OilTransport, OilTransportCtx};
 use gudgeon_core::states::Stateful;
 use gudgeon_film::parts::{Carried, GaussianGap, Law};
-use gudgeon_film::parts::{LEAST_REACH, SIDES, WAVE_SLOPE};
+use gudgeon_film::parts::{MIN_REACH, SIDES, WAVE_SLOPE};
 
 fn pack() -> Carried {
     let barrel = FaceProfile::Parabola { length: 1.2e-3, curvature: 15.0, apex: 0.5e-3 };
@@ -51,7 +51,7 @@ fn a_reach_holds_its_volume() {
                 p.faces[k].volume[side] = part * full;
                 let r = p.faces[k].reach_of(h, side);
                 // Joined to the least reach without a corner, and not beyond the edge.
-                let least = (LEAST_REACH * p.faces[k].length).min(p.faces[k].span(side));
+                let least = (MIN_REACH * p.faces[k].length).min(p.faces[k].span(side));
                 if r.length >= p.faces[k].span(side) {
                     continue;
                 }

@@ -1,10 +1,10 @@
 //! The exponential that does not overflow.
 
-use gudgeon_film::parts::tame_exp::{LEAST, MOST, tame_exp};
+use gudgeon_film::parts::tame_exp::{MIN_EXPONENT, MAX_EXPONENT, tame_exp};
 
 #[test]
 fn the_exponential_is_continued_with_its_slope() {
-    for joint in [MOST, LEAST] {
+    for joint in [MAX_EXPONENT, MIN_EXPONENT] {
         let (l, r) = (tame_exp(joint.next_down()), tame_exp(joint.next_up()));
         // One ulp of the argument 30 is 4e-15.
         assert!((l.0 / r.0 - 1.0).abs() < 1e-14 && (l.1 / r.1 - 1.0).abs() < 1e-14);
