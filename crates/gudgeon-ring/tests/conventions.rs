@@ -170,7 +170,7 @@ fn axial_gas_force_has_the_mean_of_a_laminar_profile() {
 fn films_push_and_rub_as_the_convention_says() {
     let film = FaceForces {
         load: 1e3,
-        load_rate: -1.0,
+        squeeze_damping: 1.0,
         ring_shear: 2.0,
         liner_shear: 3.0,
         slope_force: 5.0,

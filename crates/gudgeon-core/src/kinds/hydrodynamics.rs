@@ -44,8 +44,8 @@ pub struct FaceIn {
 pub struct FaceOut {
     /// `∫ (p - p_cav) dx` \[N/m\].
     pub load: f64,
-    /// `∂load/∂ḣ` \[N s/m²\], never positive.
-    pub load_rate: f64,
+    /// Squeeze damping `-∂load/∂ḣ` \[N s/m²\], never negative.
+    pub squeeze_damping: f64,
     /// Viscous force on the **ring** along `+x`, `∫ (μu/h - h p'/2) dx` \[N/m\].
     pub ring_shear: f64,
     /// Viscous force on the **liner** along `-x`, `∫ (μu/h + h p'/2) dx` \[N/m\]: what a liner load cell feels, and what the
@@ -66,8 +66,8 @@ pub struct FaceOut {
 pub struct FaceForces {
     /// See [`FaceOut::load`].
     pub load: f64,
-    /// See [`FaceOut::load_rate`].
-    pub load_rate: f64,
+    /// See [`FaceOut::squeeze_damping`].
+    pub squeeze_damping: f64,
     /// See [`FaceOut::ring_shear`].
     pub ring_shear: f64,
     /// See [`FaceOut::liner_shear`].
@@ -85,7 +85,7 @@ impl FaceOut {
     pub const fn forces(&self) -> FaceForces {
         FaceForces {
             load: self.load,
-            load_rate: self.load_rate,
+            squeeze_damping: self.squeeze_damping,
             ring_shear: self.ring_shear,
             liner_shear: self.liner_shear,
             slope_force: self.slope_force,
@@ -141,13 +141,13 @@ pub trait Hydrodynamics: Send {
         Ok(self.evaluate(inp, hdot)?.forces())
     }
 
-    /// [`FaceOut::load`] \[N/m\] and [`FaceOut::load_rate`] \[N s/m²\] alone.
+    /// [`FaceOut::load`] \[N/m\] and [`FaceOut::squeeze_damping`] \[N s/m²\] alone.
     ///
     /// # Errors
     /// As [`Hydrodynamics::evaluate`].
     fn load(&mut self, inp: &FaceIn, hdot: f64) -> Result<(f64, f64), EvalError> {
         let o = self.forces(inp, hdot)?;
-        Ok((o.load, o.load_rate))
+        Ok((o.load, o.squeeze_damping))
     }
 
     /// [`Hydrodynamics::squeeze_rate`] and [`Hydrodynamics::forces`] there, in one call: a model that has the film in hand

@@ -148,7 +148,8 @@ fn flux(line: &mut Line, ruptured: bool) -> (f64, usize) {
         resistance += d;
         rise += (line.c[i] - extra) * d;
         let end = if i + 1 == n { rise - line.p_out } else { rise };
-        if (ruptured || i + 1 == n) && (end * over < smallest * resistance || at == n && smallest == f64::INFINITY)
+        if (ruptured || i + 1 == n)
+            && (end * over < smallest * resistance || at == n && smallest == f64::INFINITY)
         {
             (smallest, over, at) = (end, resistance, i + 1);
         }

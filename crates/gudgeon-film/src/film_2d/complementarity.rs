@@ -409,7 +409,8 @@ impl<L: Linear> Film2d for Solver<L> {
             let largest = r.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
             self.b.copy_from_slice(r);
             self.z.fill(0.0);
-            let (_, left) = self.linear.solve(&self.problem.m, &self.b, &mut self.z, self.tolerance * largest);
+            let (_, left) =
+                self.linear.solve(&self.problem.m, &self.b, &mut self.z, self.tolerance * largest);
             // Rounding may end the cycles a little short of a strict tolerance.
             if left.is_nan() || left > 1e-6 * largest {
                 return Err(EvalError::recoverable(self.model, "no convergence of the linear system"));
@@ -437,7 +438,8 @@ impl<L: Linear> Film2d for Solver<L> {
             }
             let largest = self.b.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
             self.z.fill(0.0);
-            let (_, left) = self.linear.solve(&self.problem.m, &self.b, &mut self.z, self.tolerance * largest);
+            let (_, left) =
+                self.linear.solve(&self.problem.m, &self.b, &mut self.z, self.tolerance * largest);
             if left.is_nan() || left > 1e-6 * largest {
                 return Err(EvalError::recoverable(self.model, "no convergence of the linear system"));
             }

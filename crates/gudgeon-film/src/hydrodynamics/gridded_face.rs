@@ -241,7 +241,7 @@ impl Grid {
         FaceOut {
             load: self.dx * sum(load),
             // Rounding must not turn a film that cannot yield into one that pushes.
-            load_rate: (self.dx * sum(rate)).min(0.0),
+            squeeze_damping: -(self.dx * sum(rate)).min(0.0),
             ring_shear: shear - half_drag,
             liner_shear: shear + half_drag,
             slope_force,
@@ -392,7 +392,10 @@ impl Hydrodynamics for Grid {
                 .map(|s| self.result(inp, s, &self.nodes, &self.work)),
         };
         match out {
-            Some(o) if (o.load + o.load_rate + o.ring_shear + o.liner_shear + o.slope_force).is_finite() => {
+            Some(o)
+                if (o.load + o.squeeze_damping + o.ring_shear + o.liner_shear + o.slope_force)
+                    .is_finite() =>
+            {
                 Ok(o)
             }
             _ => Err(overflow(inp, hdot)),

@@ -434,7 +434,7 @@ fn plane_faces() {
             let o = f.evaluate(&dry, -1e-3).expect("solvable");
             close("squeeze", o.load, mu * 1e-3 * l.powi(3) / h.powi(3), tol);
             close("squeeze", o.load, 1_481.481_481_481_481_5, tol);
-            close("rate", o.load_rate, -1e3 * o.load, tol);
+            close("damping", o.squeeze_damping, 1e3 * o.load, tol);
             close("peak", o.p_max, 1.5 * o.load / l, tol);
             close("inverse", f.squeeze_rate(&dry, o.load).expect("solvable"), -1e-3, tol);
             // Gas on both sides, no motion: the mean pressure.
@@ -642,9 +642,9 @@ fn shear_identity_and_mirror() {
                 // The rate is a variance; of a film that has shrunk to the edge, about the apex, a thousand times its size.
                 same(
                     "rate",
-                    o.load_rate,
-                    m.load_rate,
-                    1e3 * o.load_rate.abs() + 1e-18 * squeeze * face.length(),
+                    o.squeeze_damping,
+                    m.squeeze_damping,
+                    1e3 * o.squeeze_damping + 1e-18 * squeeze * face.length(),
                 );
                 same("p_max", o.p_max, m.p_max, o.p_max.abs());
                 let size = size + 1e-6 * i.mu * i.u.abs() * face.length() / i.h;
@@ -708,7 +708,7 @@ fn load_falls_with_the_squeeze_velocity() {
                 // Rounding of the largest pressures in play.
                 let noise = 1e-12 * (o.load.abs() + (wedge + squeeze * v.abs()) * face.length());
                 assert!(o.load <= before + noise, "{n} {c:?} {before} {} at {v}\n{face:?} {i:?}", o.load);
-                assert!(o.load_rate <= 0.0);
+                assert!(o.squeeze_damping >= 0.0);
                 assert!(c == FullSommerfeld || o.load >= -noise, "{n} {c:?} {}", o.load);
                 before = o.load;
                 // The analytic derivative against a central difference, away from kinks: compare with both sides.
@@ -717,8 +717,8 @@ fn load_falls_with_the_squeeze_velocity() {
                     (f.evaluate(&i, v - d).expect("solvable"), f.evaluate(&i, v + d).expect("solvable"));
                 let slope = (b.load - a.load) / (2.0 * d);
                 let (lo, hi) = (
-                    a.load_rate.min(b.load_rate).min(o.load_rate),
-                    a.load_rate.max(b.load_rate).max(o.load_rate),
+                    -a.squeeze_damping.max(b.squeeze_damping).max(o.squeeze_damping),
+                    -a.squeeze_damping.min(b.squeeze_damping).min(o.squeeze_damping),
                 );
                 let slack = 1e-4 * lo.abs() + 3.0 * noise / d;
                 let jump = c == SwiftStieber && slope < lo;
@@ -765,7 +765,7 @@ fn squeeze_rate_inverts_the_load() {
                 let other = FaceIn { h: i.h * k, ..i };
                 f.squeeze_rate(&other, l * load).expect("solvable");
                 let warm = f.squeeze_rate(&i, load).expect("solvable");
-                let rate = o.load_rate.abs().max(1e-300);
+                let rate = o.squeeze_damping.max(1e-300);
                 let again = f.evaluate(&i, cold).expect("solvable");
                 let fresh = film(&face, c).evaluate(&i, cold).expect("solvable");
                 let gas = (i.p_top + i.p_bottom - 2.0 * i.p_cav) * face.length();
@@ -891,12 +891,12 @@ fn short_answers_agree_with_the_long_one() {
             // The same film found again from itself.
             let tol = known_to(&face, &i, v, &o);
             let forces = f.forces(&i, v).expect("solvable");
-            let (load, rate) = f.load(&i, v).expect("solvable");
+            let (load, damping) = f.load(&i, v).expect("solvable");
             assert!((forces.load - o.load).abs() <= tol && (load - o.load).abs() <= tol, "{n} {c:?}");
             assert!(
-                (rate - o.load_rate).abs() <= 1e-9 * o.load_rate.abs(),
-                "{n} {c:?} {rate} {}",
-                o.load_rate
+                (damping - o.squeeze_damping).abs() <= 1e-9 * o.squeeze_damping,
+                "{n} {c:?} {damping} {}",
+                o.squeeze_damping
             );
             if o.load <= 1e6 * tol {
                 continue;
@@ -910,7 +910,7 @@ fn short_answers_agree_with_the_long_one() {
             if jump {
                 continue;
             }
-            let slack = 10.0 * tol / o.load_rate.abs().max(1e-300) + 1e-13 * apart.abs();
+            let slack = 10.0 * tol / o.squeeze_damping.max(1e-300) + 1e-13 * apart.abs();
             assert!((hdot - apart).abs() <= slack, "{n} {c:?} {hdot} {apart} {slack:e}\n{face:?} {i:?} {v}");
             assert!((carried.load - o.load).abs() <= 10.0 * tol, "{n} {c:?} {} {}", carried.load, o.load);
             let size = two.ring_shear.abs() + two.liner_shear.abs() + two.slope_force.abs();
@@ -1074,7 +1074,8 @@ fn extremes() {
             }
             match f.evaluate(&i, v) {
                 Ok(o) => {
-                    let all = [o.load, o.load_rate, o.ring_shear, o.liner_shear, o.slope_force, o.p_max];
+                    let all =
+                        [o.load, o.squeeze_damping, o.ring_shear, o.liner_shear, o.slope_force, o.p_max];
                     assert!(all.iter().all(|x| x.is_finite()), "{n} {c:?} {o:?}");
                     assert!(o.full_film.0 >= 0.0 && o.full_film.0 <= o.full_film.1, "{n} {c:?} {o:?}");
                     assert!(o.full_film.1 <= face.length());
@@ -1125,7 +1126,7 @@ fn load_is_continuous_through_rest_and_first_rupture() {
             let o = f.evaluate(&inp(2e-6, u, 3e5, 1e5), v).expect("solvable");
             // Sliding of 1 nm/s adds a wedge of the order u/v over slope, at most 1e-7 here.
             close("load", o.load, rest.load, 1e-6);
-            close("rate", o.load_rate, rest.load_rate, 1e-6);
+            close("damping", o.squeeze_damping, rest.squeeze_damping, 1e-6);
         }
     }
     // Growing speed ruptures the film; steps of 1e-4 in speed may change the load by about as much.

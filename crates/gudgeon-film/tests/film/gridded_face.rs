@@ -159,7 +159,7 @@ fn flat_squeeze_wedge_and_pressure_difference() {
         close(squeeze(refine).load, exact * (1.0 - 1.0 / (panels * panels)), 1e-12); // rounding
     }
     close(squeeze(1).load, 1466.67, 4e-6); // printed to 6 digits
-    close(squeeze(1).load_rate, -squeeze(1).load / 1e-3, 1e-12); // the load is proportional to hdot
+    close(squeeze(1).squeeze_damping, squeeze(1).load / 1e-3, 1e-12); // the load is proportional to hdot
 
     // The piston moves up at 10 m/s: the liner seen from the ring goes down, into the narrowing gap.
     let w = |refine| {
@@ -181,7 +181,7 @@ fn flat_squeeze_wedge_and_pressure_difference() {
 fn reversed_wedge_carries_nothing_and_parallel_film_shears() {
     let out =
         build(&wedge(2e-3, 3e-6), 11, 1).evaluate(&film(3e-6, 10.0, 0.0, 0.0, 5e-3), 0.0).expect("film");
-    assert_eq!((out.load, out.load_rate, out.slope_force), (0.0, 0.0, 0.0));
+    assert_eq!((out.load, out.squeeze_damping, out.slope_force), (0.0, 0.0, 0.0));
     assert_eq!((out.p_max, out.full_film), (0.0, (0.0, 0.0)));
 
     let (radius, mu, piston, l, h) = (0.06, 5e-3, 7.0, 3e-3, 2e-6);
@@ -346,7 +346,7 @@ fn second_order() {
         let v = grids.map(|(points, refine)| {
             let o = build(&face, points, refine).evaluate(&inp, -2e-3).expect("film");
             assert_eq!(o.full_film, (0.0, 1.5e-3));
-            [o.load, o.ring_shear, o.liner_shear, o.slope_force, o.load_rate]
+            [o.load, o.ring_shear, o.liner_shear, o.slope_force, o.squeeze_damping]
         });
         (0..5).map(|k| ((v[0][k] - v[1][k]) / (v[1][k] - v[2][k])).log2()).collect::<Vec<_>>()
     };
@@ -393,7 +393,7 @@ fn mirror_symmetry() {
             // Rounding of sums that are taken in the opposite order.
             let size = a.ring_shear.abs() + a.liner_shear.abs() + a.slope_force.abs();
             assert!((a.load - b.load).abs() <= 1e-11 * (1.0 + a.load), "{} {}", a.load, b.load);
-            assert!((a.load_rate - b.load_rate).abs() <= 1e-11 * (1.0 - a.load_rate));
+            assert!((a.squeeze_damping - b.squeeze_damping).abs() <= 1e-11 * (1.0 + a.squeeze_damping));
             assert!((a.ring_shear + b.ring_shear).abs() <= 1e-11 * size);
             assert!((a.liner_shear + b.liner_shear).abs() <= 1e-11 * size);
             assert!((a.slope_force + b.slope_force).abs() <= 1e-11 * size);
@@ -403,27 +403,27 @@ fn mirror_symmetry() {
     }
 }
 
-/// The load falls with `hdot`, is convex, and `load_rate` is its slope.
+/// The load falls with `hdot`, is convex, and `squeeze_damping` is minus its derivative.
 #[test]
 fn load_falls_with_squeeze_velocity() {
     for (face, inp, _) in cases() {
         let mut model = build(&face, 11, 3);
         let scale = 0.02 / 400.0;
         let mut before = model.evaluate(&inp, -200.0 * scale).expect("film");
-        let largest = before.load + before.load_rate.abs() * 200.0 * scale;
+        let largest = before.load + before.squeeze_damping * 200.0 * scale;
         for i in -199..=200 {
             let now = model.evaluate(&inp, f64::from(i) * scale).expect("film");
-            assert!(now.load_rate <= 0.0 && now.load_rate.is_finite());
+            assert!(now.squeeze_damping >= 0.0 && now.squeeze_damping.is_finite());
             let secant = (now.load - before.load) / scale;
             // Rounding of the difference of two loads. Each is the sum of a wedge and a squeeze part, and the pressure in turn
             // the sum of gradients that cancel each other.
             let noise =
                 1e-13 * (largest + 6.0 * inp.mu * inp.u.abs() * (face.length() / inp.h).powi(2)) / scale;
             assert!(
-                before.load_rate <= secant + noise && secant <= now.load_rate + noise,
+                -before.squeeze_damping <= secant + noise && secant <= noise - now.squeeze_damping,
                 "{inp:?} {i}: {} {secant} {} +- {noise}",
-                before.load_rate,
-                now.load_rate
+                before.squeeze_damping,
+                now.squeeze_damping
             );
             before = now;
         }
@@ -509,14 +509,17 @@ fn extremes_never_give_nan() {
                                 if let Ok(o) = model.evaluate(&inp, hdot) {
                                     let all = [
                                         o.load,
-                                        o.load_rate,
+                                        o.squeeze_damping,
                                         o.ring_shear,
                                         o.liner_shear,
                                         o.slope_force,
                                         o.p_max,
                                     ];
                                     assert!(all.iter().all(|v| v.is_finite()), "{inp:?} {hdot}: {o:?}");
-                                    assert!(o.load >= 0.0 && o.load_rate <= 0.0, "{inp:?} {hdot}: {o:?}");
+                                    assert!(
+                                        o.load >= 0.0 && o.squeeze_damping >= 0.0,
+                                        "{inp:?} {hdot}: {o:?}"
+                                    );
                                     let (a, b) = o.full_film;
                                     assert!(
                                         0.0 <= a && a <= b && b <= face.length(),
@@ -599,7 +602,7 @@ fn off_carries_nothing_and_stays() {
     let inp = FaceIn { p_cav: 2e4, ..film(1e-6, 10.0, 1e5, 5e5, 5e-3) };
     let out = model.evaluate(&inp, -1e-3).expect("off");
     assert_eq!(
-        (out.load, out.load_rate, out.ring_shear, out.liner_shear, out.slope_force),
+        (out.load, out.squeeze_damping, out.ring_shear, out.liner_shear, out.slope_force),
         (0.0, 0.0, 0.0, 0.0, 0.0)
     );
     assert_eq!(model.squeeze_rate(&inp, 300.0), Ok(0.0));

@@ -29,7 +29,7 @@ impl Tangent {
         hdot: f64,
         film: &FaceForces,
     ) -> Result<Option<Self>, EvalError> {
-        let pull = film.load.abs() / film.load_rate.abs();
+        let pull = film.load.abs() / film.squeeze_damping;
         if !(pull > 0.0 && pull.is_finite()) {
             return Ok(None);
         }
@@ -64,7 +64,7 @@ impl Tangent {
         let t = &self.film;
         FaceForces {
             load: f.load + t.load * change,
-            load_rate: f.load_rate + t.load_rate * change,
+            squeeze_damping: f.squeeze_damping + t.squeeze_damping * change,
             ring_shear: f.ring_shear + t.ring_shear * change,
             liner_shear: f.liner_shear + t.liner_shear * change,
             slope_force: f.slope_force + t.slope_force * change,
@@ -86,7 +86,7 @@ fn left_over(search: &Search<'_>, loads: &dyn RadialLoads, hdot: f64, film: f64)
 fn between(a: &FaceForces, b: &FaceForces, d: f64) -> FaceForces {
     FaceForces {
         load: (b.load - a.load) / d,
-        load_rate: (b.load_rate - a.load_rate) / d,
+        squeeze_damping: (b.squeeze_damping - a.squeeze_damping) / d,
         ring_shear: (b.ring_shear - a.ring_shear) / d,
         liner_shear: (b.liner_shear - a.liner_shear) / d,
         slope_force: (b.slope_force - a.slope_force) / d,

@@ -118,7 +118,7 @@ impl Rig for Bench {
         let o = self.film.evaluate(&self.inp, hdot)?;
         out.result("load", o.load, "N/m", "load above the cavitation pressure, per metre of circumference");
         out.result("squeeze", hdot, "m/s", "squeeze velocity, opening positive");
-        out.result("load_rate", o.load_rate, "N s/m2", "change of the load with the squeeze velocity");
+        out.result("load_rate", -o.squeeze_damping, "N s/m2", "change of the load with the squeeze velocity");
         out.result(
             "ring_shear",
             o.ring_shear,

@@ -117,7 +117,7 @@ impl RadialLoads for Loads<'_> {
             let share = self.shares[land];
             self.flux[land] = o.flux;
             sum.load += o.load;
-            sum.load_rate += o.load_rate;
+            sum.squeeze_damping += o.squeeze_damping;
             sum.ring_shear += share * o.ring_shear;
             sum.liner_shear += share * o.liner_shear;
             sum.slope_force += share * o.slope_force;
@@ -130,8 +130,8 @@ impl RadialLoads for Loads<'_> {
         for land in 0..self.films.len() {
             *self.count += 1;
             let inp = self.face(land);
-            let (load, rate) = self.films[land].load(&inp, hdot)?;
-            sum = (sum.0 + load, sum.1 + rate);
+            let (load, damping) = self.films[land].load(&inp, hdot)?;
+            sum = (sum.0 + load, sum.1 - damping);
         }
         Ok(sum)
     }

@@ -72,7 +72,7 @@ fn checked<S: Shape>(
         o.liner_shear = -o.liner_shear;
         o.slope_force = -o.slope_force;
     }
-    finite(o.load + o.load_rate + o.ring_shear + o.liner_shear + o.slope_force + o.flux, "film")?;
+    finite(o.load + o.squeeze_damping + o.ring_shear + o.liner_shear + o.slope_force + o.flux, "film")?;
     Ok(o)
 }
 
@@ -101,7 +101,7 @@ impl<S: Shape> Hydrodynamics for Film<S> {
         let len = side.face.length();
         Ok(FaceOut {
             load: o.load,
-            load_rate: o.load_rate,
+            squeeze_damping: o.squeeze_damping,
             ring_shear: o.ring_shear,
             liner_shear: o.liner_shear,
             slope_force: o.slope_force,
@@ -125,7 +125,7 @@ impl<S: Shape> Hydrodynamics for Film<S> {
         let c = side.carried(&f);
         let k = 12.0 * inp.mu;
         finite(c.load + c.rate, "film")?;
-        Ok((k * c.load, (k * c.rate).min(0.0)))
+        Ok((k * c.load, -(k * c.rate).min(0.0)))
     }
 
     fn squeeze_rate(&mut self, inp: &FaceIn, load: f64) -> Result<f64, EvalError> {

@@ -42,7 +42,7 @@ impl<S: Shape> Side<S> {
         let (j, viscous) = (k * gradient, mu * couette);
         FaceForces {
             load: k * c.load,
-            load_rate: (k * c.rate).min(0.0),
+            squeeze_damping: -(k * c.rate).min(0.0),
             ring_shear: viscous - 0.5 * j,
             liner_shear: viscous + 0.5 * j,
             slope_force: j - k * ends,

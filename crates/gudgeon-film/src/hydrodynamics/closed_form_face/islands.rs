@@ -81,7 +81,8 @@ impl<S: Shape> Side<S> {
         let (mut i, mut below) = (from.i, from.x);
         // At a minimum the film carries u h/2 > 0: the cavity before it has not run dry.
         loop {
-            let minimum = self.face.pressure_minimum(i, f.u, f.v, q).filter(|x| *x < below && (i > ir || *x > xr));
+            let minimum =
+                self.face.pressure_minimum(i, f.u, f.v, q).filter(|x| *x < below && (i > ir || *x > xr));
             if let Some(xe) = minimum
                 && i > ir
             {

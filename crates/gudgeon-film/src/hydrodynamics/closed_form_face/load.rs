@@ -52,7 +52,11 @@ impl<S: Shape> Side<S> {
         } else if l.upwards {
             l.pa + S::three(&self.face.head(i, x)).rise(f.u, f.v, l.q)
         } else {
-            let end = if l.xb >= self.face.length() { PressureMoments::default() } else { self.face.tail(l.ib, l.xb) };
+            let end = if l.xb >= self.face.length() {
+                PressureMoments::default()
+            } else {
+                self.face.tail(l.ib, l.xb)
+            };
             l.pb - self.face.tail(i, x).minus(end).rise(f.u, f.v, l.q)
         }
     }

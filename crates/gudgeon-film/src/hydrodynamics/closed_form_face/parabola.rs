@@ -1,7 +1,7 @@
 //! A face that is one parabola.
 
 use super::crown::Crown;
-use super::moments::{Moments, SERIES, PressureMoments, core};
+use super::moments::{Moments, PressureMoments, SERIES, core};
 use super::shape::Shape;
 
 /// One parabola, `d = κ (x - apex)²`.

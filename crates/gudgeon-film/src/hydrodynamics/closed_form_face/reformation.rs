@@ -56,7 +56,9 @@ impl<S: Shape> Side<S> {
                 // The pressure there is zero or, counted back from the end, less: the film has ruptured.
                 Some(xr)
             } else {
-                self.face.pressure_minimum(i, f.u, f.v, q).filter(|x| *x > lo && *x < hi && at(i, *x).0 <= 0.0)
+                self.face
+                    .pressure_minimum(i, f.u, f.v, q)
+                    .filter(|x| *x > lo && *x < hi && at(i, *x).0 <= 0.0)
             };
             if minimum.is_some() || at(i, lo).0 <= 0.0 {
                 lo = minimum.unwrap_or(lo);

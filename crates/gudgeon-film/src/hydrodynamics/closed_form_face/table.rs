@@ -1,6 +1,6 @@
 //! A face of straight lines between nodes.
 
-use super::moments::{Moments, SERIES, PressureMoments, core};
+use super::moments::{Moments, PressureMoments, SERIES, core};
 use super::shape::Shape;
 
 /// One straight line: its ends, the drops there, and its slope.

@@ -1,6 +1,6 @@
 //! The exponential that does not overflow.
 
-use gudgeon_film::parts::tame_exp::{MIN_EXPONENT, MAX_EXPONENT, tame_exp};
+use gudgeon_film::parts::tame_exp::{MAX_EXPONENT, MIN_EXPONENT, tame_exp};
 
 #[test]
 fn the_exponential_is_continued_with_its_slope() {
