@@ -63,10 +63,10 @@ struct Runtime {
 }
 
 /// `y > 0` below which `z coth z` is taken by its series, `z = y/3`.
-const SERIES: f64 = 0.03;
+pub const SERIES: f64 = 0.03;
 
 /// The factor in braces and its derivative, for `y >= 0`.
-fn stribeck(y: f64) -> (f64, f64) {
+pub fn stribeck(y: f64) -> (f64, f64) {
     let z = y / 3.0;
     // z coth z and its derivative coth z - z / sinh² z.
     let (z_coth, d) = if y < SERIES {
@@ -96,40 +96,5 @@ impl FlankFriction for Runtime {
 
     fn is_off(&self) -> bool {
         self.coefficient == 0.0
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn tabulated_values() {
-        let m =
-            TanhStribeck { coefficient: quantity(1.0), ..TanhStribeck::default() }.build().expect("builds");
-        assert_eq!(m.force(0.0, 1.0), 0.0);
-        // Known with two decimals.
-        for (v, f) in [(0.01, 1.57), (0.02, 1.65), (0.05, 1.18), (0.2, 1.00)] {
-            assert!((m.force(v, 1.0) - f).abs() < 0.0051, "{v} {}", m.force(v, 1.0));
-            assert_eq!(m.force(-v, 2.0), -m.force(v, 2.0));
-        }
-        let peak = (0..1000).map(|i| m.force(1e-4 * f64::from(i), 1.0)).fold(0.0, f64::max);
-        // tanh(1.5) (1 + 0.75 (coth 0.5 - 1)) = 1.6954 bounds the maximum from below; it lies close by and is flat.
-        assert!((1.6953..1.6970).contains(&peak), "{peak}");
-    }
-
-    #[test]
-    fn slope_is_the_derivative() {
-        let m = TanhStribeck::default().build().expect("builds");
-        crate::check_slope(m.as_ref(), 0.01);
-        assert!(m.slope(0.05, 1.0) < 0.0, "the falling branch");
-    }
-
-    #[test]
-    fn series_meets_the_closed_form() {
-        let below = stribeck(SERIES * (1.0 - 1e-12));
-        let above = stribeck(SERIES);
-        // Cancellation in coth z - z/sinh² z at z = 0.01: 100 times the rounding of 100.
-        assert!((below.0 - above.0).abs() < 1e-12 && (below.1 - above.1).abs() < 1e-11);
     }
 }

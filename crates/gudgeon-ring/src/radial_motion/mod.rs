@@ -1,5 +1,5 @@
 //! Motion towards the liner and off it.
 
 pub mod film_balance;
-mod search;
+pub mod search;
 mod tangent;

@@ -5,24 +5,24 @@ use gudgeon_core::kinds::{FaceForces, Limited, RadialLimits, RadialLoads, Radial
 
 /// Part of the velocity of surfaces that part within which one step of Newton ends at the root.
 const PARTING: f64 = 1e-5;
-/// Radial velocity over its limit at which a film holds nothing that it would let go of at a higher one.
+/// Radial velocity over its limit at which a film carries nothing that it would lose at a higher one.
 const AWAY: f64 = 1e3;
 
-/// Largest of a load `w` and zero, smoothed over `least`: equal to the load within `least²/w`.
-pub fn soft(w: f64, least: f64) -> f64 {
-    0.5 * (w + (w * w + 4.0 * least * least).sqrt())
+/// Largest of a load `w` and zero, smoothed over `floor`: equal to the load within `least²/w`.
+pub fn soft(w: f64, floor: f64) -> f64 {
+    0.5 * (w + (w * w + 4.0 * floor * floor).sqrt())
 }
 
 /// What is left of the load for the film, and how little of it a film is asked to carry \[N/m\].
 #[derive(Debug, Clone, Copy)]
 struct Needed {
     load: f64,
-    least: f64,
+    floor: f64,
 }
 
 impl Needed {
     fn soft(&self) -> f64 {
-        soft(self.load, self.least)
+        soft(self.load, self.floor)
     }
 }
 
@@ -39,8 +39,8 @@ pub struct Search<'a> {
 impl Search<'_> {
     /// Squeeze velocity from the radial balance.
     pub fn rate(&mut self, loads: &mut dyn RadialLoads) -> Result<RadialResponse, EvalError> {
-        let least = self.limits.least_load * loads.tension();
-        let needed = Needed { load: loads.load() - loads.contact() - loads.dry(), least };
+        let floor = self.limits.least_load * loads.tension();
+        let needed = Needed { load: loads.load() - loads.contact() - loads.dry(), floor };
         if !loads.resists() {
             return Ok(self.without_film(loads, needed.load));
         }
@@ -87,7 +87,7 @@ impl Search<'_> {
         }
         let (hdot, film) = match loads.carry(needed.soft()) {
             Ok((hdot, film)) => (hdot, Some(film)),
-            Err(e) => (self.lets_go(loads, needed.soft(), e)?, None),
+            Err(e) => (self.beyond_limits(loads, needed.soft(), e)?, None),
         };
         loads.flux()[0] = film.map_or(0.0, |f| f.flux);
         if drag == 0.0 || hdot <= 0.0 || parting {
@@ -99,7 +99,12 @@ impl Search<'_> {
 
     /// A velocity beyond every limit, for a film that carries more than `load` however fast it is drawn apart: on a coarse grid the pressures at the
     /// edges reach as far in as a point. The limits of the velocity, which it nears as the load falls, then decide; any other failure stays one.
-    fn lets_go(&self, loads: &mut dyn RadialLoads, load: f64, failure: EvalError) -> Result<f64, EvalError> {
+    fn beyond_limits(
+        &self,
+        loads: &mut dyn RadialLoads,
+        load: f64,
+        failure: EvalError,
+    ) -> Result<f64, EvalError> {
         let away = AWAY * self.limits.radial_speed;
         let carries =
             failure.is_recoverable() && loads.film_load(away).is_ok_and(|(carried, _)| carried > load);
@@ -150,14 +155,14 @@ impl Search<'_> {
         for _ in 0..60 {
             let (load, rate) = loads.film_load(v)?;
             let w = needed.load + drag * v;
-            let all = soft(w, needed.least);
-            let (g, slope) = (load - all, rate - drag * all / (2.0 * all - w));
+            let all = soft(w, needed.floor);
+            let (g, derivative) = (load - all, rate - drag * all / (2.0 * all - w));
             if g > 0.0 {
                 lo = v
             } else {
                 hi = v
             }
-            let next = v - g / slope;
+            let next = v - g / derivative;
             let next = if next > lo && next < hi { next } else { 0.5 * (lo + hi) };
             if (next - v).abs() <= 1e-10 * v.abs() {
                 break;
@@ -202,7 +207,7 @@ impl Search<'_> {
             }
             // Newton's method squares a small error: the next step from here ends within 1e-9.
             let newton = x - f / d;
-            // A film that is drawn apart is nearly flat in its velocity, which a small part of the load says little of.
+            // A film that is drawn apart is nearly flat in its velocity, which a small part of the load determines poorly.
             let parts = drag > 0.0 && x > 0.0;
             let near = if parts { (newton - x).abs() <= PARTING * x } else { f.abs() <= 1e-5 * scale };
             if near && newton.is_finite() && (drag == 0.0 || (newton > 0.0) == (x > 0.0)) {
@@ -236,7 +241,7 @@ impl Search<'_> {
 /// On the floor: the film at rest, where it carries less than it must.
 fn on_floor(loads: &mut dyn RadialLoads, needed: Needed) -> Result<Option<FaceForces>, EvalError> {
     let film = loads.film(0.0)?;
-    let all = soft(needed.load + loads.friction(0.0).0, needed.least);
+    let all = soft(needed.load + loads.friction(0.0).0, needed.floor);
     Ok((film.load <= all).then_some(film))
 }
 
@@ -244,8 +249,8 @@ fn on_floor(loads: &mut dyn RadialLoads, needed: Needed) -> Result<Option<FaceFo
 fn residual(loads: &mut dyn RadialLoads, needed: Needed, drag: f64, x: f64) -> Result<(f64, f64), EvalError> {
     let (load, rate) = loads.film_load(x)?;
     let (fa, dfa) = loads.friction(x);
-    let (w, slope) =
+    let (w, derivative) =
         if x > 0.0 { (needed.load + fa + drag * x, dfa + drag) } else { (needed.load + fa, dfa) };
-    let all = soft(w, needed.least);
-    Ok((load - all, rate - slope * all / (2.0 * all - w)))
+    let all = soft(w, needed.floor);
+    Ok((load - all, rate - derivative * all / (2.0 * all - w)))
 }

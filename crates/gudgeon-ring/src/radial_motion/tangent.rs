@@ -5,7 +5,7 @@ use gudgeon_core::kinds::{FaceForces, Limited, RadialLoads, RadialResponse};
 
 use super::search::Search;
 
-/// Part of its load over which the derivatives of a film by its velocity are taken: the root of the accuracy that films are found with.
+/// Part of its load over which the derivatives of a film by its velocity are taken: the square root of the accuracy that films are found with.
 const FILM_DIFFERENCE: f64 = 1e-6;
 
 /// Derivatives about the velocity of an instant.
@@ -14,7 +14,7 @@ pub struct Tangent {
     /// Balance left at that velocity \[N/m\]; searches end near zero, not there.
     left: f64,
     /// Its derivative \[N s/m²\], below zero.
-    slope: f64,
+    derivative: f64,
     /// Derivatives of the film.
     film: FaceForces,
     /// Derivatives of the fluxes.
@@ -22,7 +22,7 @@ pub struct Tangent {
 }
 
 impl Tangent {
-    /// The derivatives at `hdot`, where the film is `film`; `None` where they say nothing.
+    /// The derivatives at `hdot`, where the film is `film`; `None` where they are of no use.
     pub fn new(
         search: &Search<'_>,
         loads: &mut dyn RadialLoads,
@@ -36,11 +36,11 @@ impl Tangent {
         let d = (FILM_DIFFERENCE * pull).max(FILM_DIFFERENCE * hdot.abs());
         let fluxes = *loads.flux();
         let moved = loads.film(hdot + d)?;
-        let slope = between(film, &moved, d);
+        let change = between(film, &moved, d);
         let flux = [0, 1].map(|k: usize| (loads.flux()[k] - fluxes[k]) / d);
         let (left, rest) = left_over(search, loads, hdot, film.load);
-        let all = slope.load + rest;
-        Ok((all < 0.0 && all.is_finite()).then_some(Self { left, slope: all, film: slope, flux }))
+        let all = change.load + rest;
+        Ok((all < 0.0 && all.is_finite()).then_some(Self { left, derivative: all, film: change, flux }))
     }
 
     /// The balance after a small change, by one step of Newton's method from the velocity `hdot` before: one evaluation of the film.
@@ -52,9 +52,9 @@ impl Tangent {
     ) -> Result<RadialResponse, EvalError> {
         let film = loads.film(hdot)?;
         let (left, _) = left_over(search, loads, hdot, film.load);
-        let change = (self.left - left) / self.slope;
-        for (flux, slope) in loads.flux().iter_mut().zip(&self.flux) {
-            *flux += slope * change;
+        let change = (self.left - left) / self.derivative;
+        for (flux, derivative) in loads.flux().iter_mut().zip(&self.flux) {
+            *flux += derivative * change;
         }
         Ok(RadialResponse::new(hdot + change, Some(self.moved(&film, change)), Limited::default()))
     }
@@ -78,8 +78,8 @@ fn left_over(search: &Search<'_>, loads: &dyn RadialLoads, hdot: f64, film: f64)
     let drag = if hdot > 0.0 { search.contact_drag(loads) } else { 0.0 };
     let (fa, dfa) = loads.friction(hdot);
     let w = loads.load() - loads.contact() - loads.dry() + fa + drag * hdot;
-    let least = search.limits.least_load * loads.tension();
-    let root = (w * w + 4.0 * least * least).sqrt();
+    let floor = search.limits.least_load * loads.tension();
+    let root = (w * w + 4.0 * floor * floor).sqrt();
     (film - 0.5 * (w + root), -(dfa + drag) * 0.5 * (1.0 + w / root))
 }
 

@@ -2,14 +2,14 @@
 
 /// Both flanks of a groove.
 #[derive(Debug, Clone, Copy)]
-pub struct Flank {
+pub struct GrooveFlank {
     /// Stiffness \[N/m\].
     pub stiffness: f64,
     /// One over the velocity that no rebound exceeds \[s/m\].
     pub per_rebound: f64,
 }
 
-impl Flank {
+impl GrooveFlank {
     /// Reaction \[N\] of both on a ring at height `s` \[m\] with velocity `v` \[m/s\] and a clearance \[m\], towards the head positive.
     pub fn reaction(&self, s: f64, v: f64, clearance: f64) -> f64 {
         let push = |depth: f64, rate: f64| {

@@ -1,0 +1,5 @@
+//! Oil in the groove.
+
+mod squeeze_film;
+mod tangent_degrees;
+mod tangent_radians;

@@ -1,0 +1,14 @@
+//! The models are registered.
+
+#[test]
+fn registered() {
+    let registry = gudgeon_core::Registry::collect();
+    for (kind, names) in [
+        ("ring_motion", &["newton_groove", "seated", "three_seat"][..]),
+        ("flank_damping", &["off", "squeeze_film", "tangent_degrees", "tangent_radians"]),
+        ("flank_friction", &["off", "rational_saturation", "tanh_stribeck"]),
+    ] {
+        let found: Vec<_> = registry.models(kind).iter().map(|m| m.name).collect();
+        assert_eq!(found, names);
+    }
+}
