@@ -79,6 +79,7 @@ pub use roughness::sawtooth_waviness::{SawtoothWaviness, WavinessTransport};
 pub use shear_thinning::carreau::Carreau;
 pub use shear_thinning::cross::Cross;
 pub use shear_thinning::off::Off as Newtonian;
+
 gudgeon_core::link!(
     Barus,
     Carreau,
