@@ -11,6 +11,14 @@
 //! * Rings count from the crown, ring 1 first; `land 1` is the top land above ring 1, `land n+1` the space below ring n.
 //!   Slices are zero-based: `lands[0]` is land 1.
 //! * Pressures are absolute unless said otherwise. `p_cav` is the pressure below which a film cannot go.
+//!
+//! # What a physics crate brings along
+//!
+//! `gudgeon-film`, `-gas` or `-torsion` alone are 48 packages with all they depend on (`cargo tree -p gudgeon-film -e normal`): 20 are
+//! `gudgeon-numerics` and its linear algebra, most of the others serde and schemars, because a specification can be read, written and described
+//! wherever it is used, and models that hold others (`Box<dyn …Spec>`) are read through typetag. There is no feature to leave that out: it would
+//! stand on every specification and save 6 packages. Reading case files (TOML, places, diagnostics) is `gudgeon-case`, which no physics crate
+//! depends on; the program as a whole is 104 packages.
 
 pub mod error;
 pub mod face;

@@ -35,6 +35,14 @@ fn the_registry_lists_and_describes_it() {
     assert!(registry.model("oil", "vogel_grade").is_some());
 }
 
+/// What every model of Gudgeon keeps; an oil that nothing makes infinite.
+#[test]
+fn it_keeps_the_contract_of_a_model() {
+    assert_eq!(gudgeon_testkit::check_crate("custom_model"), 1);
+    let data_sheet = oil(json!({ "model": "walther", "nu_cold": 95.0, "nu_hot": 10.7 }));
+    gudgeon_testkit::assert_none(gudgeon_testkit::oil(&*data_sheet));
+}
+
 #[test]
 fn the_command_line_knows_it() {
     let run = |args: &[&str]| {

@@ -3,14 +3,19 @@
 
 use std::path::{Path, PathBuf};
 
-use extensions as _;
+use extensions::bernoulli_network::BernoulliNetwork;
 use gudgeon as _;
 use gudgeon_core::Registry;
+use gudgeon_core::kinds::{
+    FilmHeat, FilmTemperatureCtx, FilmTemperatureSpec, GasFlowCtx, GasFlowSpec, GasIn,
+};
 use gudgeon_core::result::RunResult;
+use gudgeon_core::states::Signals;
 use gudgeon_scene::{check, explain, run};
 use gudgeon_scene_ring_pack::assemble::assemble;
 use gudgeon_scene_ring_pack::case::RingPackCase;
 use gudgeon_scene_ring_pack::jacobian::Base;
+use gudgeon_testkit::{Tolerance, assert_none, gas_flow, reads, stateful};
 
 /// Kind, name, and the `--set` argument that has the diesel use it.
 const MODELS: [(&str, &str, &str); 4] = [
@@ -113,6 +118,44 @@ fn they_are_compared_with_built_in_ones() {
             assert!(v.outcome.is_ok(), "{}: {:?}", v.label, v.outcome.as_ref().err());
         }
     }
+}
+
+/// What every model of Gudgeon keeps, and what every gas flow does.
+#[test]
+fn they_keep_the_contract_of_a_model() {
+    assert_eq!(gudgeon_testkit::check_crate("extensions"), MODELS.len());
+    let (pack, rings) = gudgeon_gas::plain_pack(2);
+    let mut gas = BernoulliNetwork::default().build(&GasFlowCtx { pack: &pack }).expect("a plain pack");
+    let inp = GasIn { p_cylinder: 40e5, p_crankcase: 1e5, rings: &rings };
+    // Flows of the root of a pressure difference: over 1e-5 of the pressure, quotients and derivative differ in the third derivative, 1e-10
+    // of them; rounding of pressures that are differences of masses adds 1e-16/1e-5.
+    let tolerance = Tolerance { relative: 1e-8, ..Tolerance::default() };
+    assert_none(gas_flow(&mut *gas, &inp, &[40e5, 15e5, 1e5], tolerance));
+}
+
+/// The film temperature has states and reads them, the power of its films, and nothing else.
+#[test]
+fn states_are_declared_as_they_are_read() {
+    let spec = r#"{ "model": "heat_balance", "tdc": "180 degC", "bdc": "110 degC" }"#;
+    let spec: Box<dyn FilmTemperatureSpec> = serde_json::from_str(spec).expect("a specification");
+    let ctx = FilmTemperatureCtx::new(&[450.0, 400.0], 0.14).faces(&[2e-3], 0.38, 200.0);
+    let mut films = spec.build(&ctx).expect("one film");
+    assert_none(stateful(&mut *films));
+    let inputs = [
+        (Signals::FILM_THICKNESS, 1e-6, 2e-6),
+        (Signals::FILM_FORCE, 100.0, 200.0),
+        (Signals::AXIAL_VELOCITY, 5.0, 6.0),
+        (Signals::TEMPERATURE, 4.0, 4.1),
+    ];
+    let mut read = |declared| {
+        let rates = |x: &[f64], dy: &mut [f64]| {
+            films.rates(0, &x[3..], &FilmHeat::new(x[0], x[1], x[2], 0.05), dy).expect("rates");
+        };
+        reads(declared, &inputs, 1, rates)
+    };
+    assert_eq!(read(Signals::NONE).len(), 2, "the check sees what is read");
+    assert_none(read(Signals::TEMPERATURE | Signals::FILM_FORCE));
+    assert_eq!(films.reads(), Signals::TEMPERATURE | Signals::FILM_FORCE);
 }
 
 /// A compressible orifice chokes at 0.685 of `C_d A p/√(RT)`, an incompressible one goes on to `√2` of it: gaps and flanks of the same size let more

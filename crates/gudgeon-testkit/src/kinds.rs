@@ -1,0 +1,117 @@
+//! Running models of single kinds.
+
+use gudgeon_core::kinds::{GasFlow, GasIn, GasOut, GasPartials, Oil};
+
+use crate::differences::{Tolerance, partials};
+
+/// Complaints about an oil: a viscosity between 1 K and 2000 K that is not positive and finite, or that changes when it is asked again.
+#[must_use]
+pub fn oil(model: &dyn Oil) -> Vec<String> {
+    let mut wrong = Vec::new();
+    for t in [1.0, 200.0, 250.0, 273.15, 313.15, 373.15, 473.15, 600.0, 1000.0, 2000.0] {
+        let mu = model.viscosity(t);
+        if !(mu > 0.0 && mu.is_finite()) {
+            wrong.push(format!("the viscosity at {t} K is {mu} Pa s"));
+        }
+        if model.viscosity(t).to_bits() != mu.to_bits() {
+            wrong.push(format!("the viscosity at {t} K changes"));
+        }
+    }
+    wrong
+}
+
+/// Complaints about a running gas flow at one instant `inp` with the land pressures `p_land` \[Pa\] (one a land, cylinder first, crankcase last):
+///
+/// - a result that is not finite, or that changes when it is asked again after another instant;
+/// - gas that appears or vanishes: the rates of the masses do not add up to what comes in less what goes out;
+/// - [`GasFlow::rates_moved`] that differs from [`GasFlow::rates`];
+/// - partial derivatives that differ from differences over 1e-5 of each mass by more than `tolerance`.
+///
+/// Choose pressures that differ from land to land: at equal ones many laws have a kink.
+///
+/// A refusal of the model is a complaint too.
+#[must_use]
+pub fn gas_flow(
+    model: &mut dyn GasFlow,
+    inp: &GasIn<'_>,
+    p_land: &[f64],
+    tolerance: Tolerance,
+) -> Vec<String> {
+    gas(model, inp, p_land, tolerance).unwrap_or_else(|e| vec![e.to_string()])
+}
+
+fn gas(
+    model: &mut dyn GasFlow,
+    inp: &GasIn<'_>,
+    p_land: &[f64],
+    tolerance: Tolerance,
+) -> Result<Vec<String>, gudgeon_core::EvalError> {
+    let (n, rings) = (model.n_states(), inp.rings.len());
+    let mut wrong = Vec::new();
+    if model.state_names().len() != n {
+        wrong.push(format!("{} names for {n} volumes", model.state_names().len()));
+    }
+    let mut m = vec![0.0; n];
+    model.initial(inp, p_land, &mut m);
+    let asked = |model: &mut dyn GasFlow, m: &[f64], inp: &GasIn<'_>| {
+        let (mut d, mut out) = (vec![0.0; n], GasOut::new(rings));
+        model.rates(inp, m, &mut d, &mut out).map(|()| (d, out))
+    };
+    let (d, out) = asked(model, &m, inp)?;
+    let other = GasIn { p_cylinder: 2.0 * inp.p_cylinder, ..*inp };
+    asked(model, &m, &other)?;
+    if asked(model, &m, inp)? != (d.clone(), out.clone()) {
+        wrong.push("the same instant has other rates after another instant".into());
+    }
+    let all = [&d, &out.p_land, &out.p_back, &out.flow_in, &out.flow_out];
+    if all.iter().any(|v| v.iter().any(|x| !x.is_finite())) {
+        wrong.push(format!("not finite: {d:?}, {out:?}"));
+    }
+    if rings > 0 {
+        let stored: f64 = d.iter().sum();
+        let passed = out.flow_in[0] - out.flow_out[rings - 1];
+        // Each rate is a sum of a few flows, each rounded once.
+        let size: f64 =
+            d.iter().map(|x| x.abs()).sum::<f64>() + out.flow_in[0].abs() + out.flow_out[rings - 1].abs();
+        let admitted = 16.0 * f64::EPSILON * size;
+        if (stored - passed).abs() > admitted {
+            wrong.push(format!("the volumes gain {stored:e} kg/s, {passed:e} kg/s come in"));
+        }
+    }
+    for ring in 0..rings {
+        let (mut moved, mut moved_out) = (vec![0.0; n], GasOut::new(rings));
+        model.rates_moved(ring, inp, &m, &mut moved, &mut moved_out)?;
+        if (&moved, &moved_out) != (&d, &out) {
+            wrong.push(format!("rates_moved of ring {ring} differs from rates, nothing having moved"));
+        }
+    }
+    let mut p = GasPartials::new(rings, n);
+    if n > 0 && model.partials(inp, &m, &mut p)? {
+        wrong.extend(gas_partials(model, inp, &m, &p, tolerance)?);
+    }
+    Ok(wrong)
+}
+
+fn gas_partials(
+    model: &mut dyn GasFlow,
+    inp: &GasIn<'_>,
+    m: &[f64],
+    p: &GasPartials,
+    tolerance: Tolerance,
+) -> Result<Vec<String>, gudgeon_core::EvalError> {
+    let (n, rings) = (m.len(), inp.rings.len());
+    let given = [&p.d_state, &p.p_land, &p.p_back, &p.flow_in, &p.flow_out].map(|v| v.as_slice()).concat();
+    let step: Vec<f64> = m.iter().map(|m| 1e-5 * m.abs()).collect();
+    let mut failed = None;
+    let (mut d, mut out) = (vec![0.0; n], GasOut::new(rings));
+    let f = |m: &[f64], all: &mut [f64]| {
+        if let Err(e) = model.rates(inp, m, &mut d, &mut out) {
+            failed = Some(e);
+        }
+        all.copy_from_slice(
+            &[&d, &out.p_land, &out.p_back, &out.flow_in, &out.flow_out].map(|v| v.as_slice()).concat(),
+        );
+    };
+    let wrong = partials(f, m, &step, &given, tolerance);
+    failed.map_or(Ok(wrong), Err)
+}

@@ -1,0 +1,6 @@
+//! Every check passes what is right and complains about what is wrong.
+
+mod contract;
+mod gas;
+mod numbers;
+mod states;
