@@ -3,12 +3,12 @@
 use std::fmt::Write as _;
 
 use gudgeon_case::{advice, list};
-use gudgeon_core::schemars::SchemaGenerator;
 use gudgeon_core::{ModelInfo, Registry};
 use serde_json::{Map, Value, json};
 
 use crate::args::{DescribeArgs, ModelsArgs};
 use crate::cmd::models;
+use crate::cmd::tables::{DEPTH, choice, resolve, schema};
 use crate::failure::Failure;
 use crate::ui::{Ui, wrapped};
 
@@ -71,12 +71,6 @@ fn find(registry: &Registry, what: &str) -> Result<&'static ModelInfo, Failure> 
     }
 }
 
-fn schema(m: &ModelInfo) -> (Value, Map<String, Value>) {
-    let mut g = SchemaGenerator::default();
-    let schema = (m.schema)(&mut g).to_value();
-    (schema, g.take_definitions(true))
-}
-
 fn equations(m: &ModelInfo) -> impl Iterator<Item = &'static str> {
     m.equations.split(";  ").map(str::trim).filter(|e| !e.is_empty())
 }
@@ -117,32 +111,6 @@ fn page(registry: &Registry, m: &ModelInfo) -> String {
     );
     let _ = writeln!(s, "\nSource\n  {}:{}", m.file, m.line);
     s
-}
-
-/// Tables inside tables that are shown; a model inside a model names its kind instead.
-const DEPTH: usize = 4;
-
-/// Follows references and the non-null alternative of an optional value; with the name of the last reference.
-fn resolve<'a>(mut schema: &'a Value, definitions: &'a Map<String, Value>) -> (&'a Value, Option<&'a str>) {
-    let mut name = None;
-    for _ in 0..DEPTH {
-        if let Some(r) = schema.get("$ref").and_then(Value::as_str) {
-            name = r.rsplit('/').next();
-            match name.and_then(|n| definitions.get(n)) {
-                Some(s) => schema = s,
-                None => break,
-            }
-        } else if let Some(any) = schema.get("anyOf").and_then(Value::as_array) {
-            let is_null = |s: &&Value| s.get("type").and_then(Value::as_str) == Some("null");
-            match any.iter().find(|s| !is_null(s)) {
-                Some(s) if any.len() == 2 => schema = s,
-                _ => break,
-            }
-        } else {
-            break;
-        }
-    }
-    (schema, name)
 }
 
 fn parameters(schema: &Value, definitions: &Map<String, Value>, indent: usize, depth: usize, s: &mut String) {
@@ -190,47 +158,6 @@ fn parameters(schema: &Value, definitions: &Map<String, Value>, indent: usize, d
             None => parameters(element, definitions, indent + 4, depth + 1, s),
         }
     }
-}
-
-/// The only word that a key of a table may have.
-fn constant<'a>(table: &'a Value, key: &str) -> Option<&'a str> {
-    table.get("properties")?.get(key)?.get("const")?.as_str()
-}
-
-/// The key whose word tells tables apart, with the words and their tables.
-fn choice(schema: &Value) -> Option<(&str, Vec<(&str, &Value)>)> {
-    let all = schema.get("oneOf").and_then(Value::as_array)?;
-    let first = all.first()?.get("properties")?.as_object()?;
-    let tag = first.keys().find(|k| all.iter().all(|s| constant(s, k).is_some()))?;
-    Some((tag, all.iter().filter_map(|s| Some((constant(s, tag)?, s))).collect()))
-}
-
-/// Tables of a model that a word other than `model` tells apart: path, key, words.
-pub fn choices(m: &ModelInfo) -> Vec<(String, String, Vec<String>)> {
-    fn look(
-        schema: &Value,
-        definitions: &Map<String, Value>,
-        path: &str,
-        depth: usize,
-        out: &mut Vec<(String, String, Vec<String>)>,
-    ) {
-        for (key, p) in schema.get("properties").and_then(Value::as_object).into_iter().flatten() {
-            let inner = resolve(p, definitions).0;
-            let element = inner.get("items").map_or(inner, |i| resolve(i, definitions).0);
-            let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
-            match choice(element) {
-                Some((tag, tables)) if tag != "model" => {
-                    out.push((path, tag.to_owned(), tables.iter().map(|(w, _)| (*w).to_owned()).collect()));
-                }
-                None if depth < DEPTH => look(element, definitions, &path, depth + 1, out),
-                _ => {}
-            }
-        }
-    }
-    let (schema, definitions) = schema(m);
-    let mut out = Vec::new();
-    look(&schema, &definitions, "", 0, &mut out);
-    out
 }
 
 /// Rustdoc's escapes and line breaks are for another reader.

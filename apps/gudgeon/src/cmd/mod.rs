@@ -9,6 +9,7 @@ pub mod models;
 pub mod report;
 pub mod run;
 pub mod schema;
+pub mod tables;
 pub mod validate;
 
 use std::path::Path;

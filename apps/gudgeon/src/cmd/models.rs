@@ -7,7 +7,7 @@ use gudgeon_core::{KindInfo, Registry};
 use serde_json::json;
 
 use crate::args::ModelsArgs;
-use crate::cmd::describe::choices;
+use crate::cmd::tables::choices;
 use crate::failure::Failure;
 use crate::ui::{Ui, table, wrapped};
 

@@ -1,0 +1,4 @@
+//! Files and grids.
+
+mod file;
+mod film_2d;

@@ -1,0 +1,4 @@
+//! Quantities and their spelling.
+
+mod quantities;
+mod spelling;
