@@ -34,6 +34,13 @@ pub use published::{one_scene_of, published};
 pub use refine::Refinement;
 pub use report::{Diagnostic, MOST_MISTAKES, Origin, Report, Source, WIDTH, line_column};
 
+/// What the tests of this crate look at and nobody else needs.
+#[doc(hidden)]
+pub mod for_tests {
+    pub use crate::plain::plain;
+    pub use crate::tree::{Step, steps};
+}
+
 use plain::plain;
 use schema::{Schema, shorten};
 use tree::{Data, Node, Place, steps};

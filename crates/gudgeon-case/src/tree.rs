@@ -43,14 +43,15 @@ pub(super) struct Entry {
 
 /// One step of a path.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Step {
+pub struct Step {
+    /// Its text.
     pub text: String,
     /// Range of the step in the text that the path was read from.
     pub span: Range<usize>,
 }
 
 /// Reads `rings.0.gap` or `rings[0].gap`; steps keep their byte ranges, shifted by `base`.
-pub(super) fn steps(path: &str, base: usize) -> Vec<Step> {
+pub fn steps(path: &str, base: usize) -> Vec<Step> {
     let mut out = Vec::new();
     let mut start = 0;
     let mut push = |from: usize, to: usize, keep_empty: bool| {
@@ -208,21 +209,4 @@ fn table(t: &DeTable<'_>, origin: Origin, base: usize) -> Data {
             })
             .collect(),
     )
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn paths_in_both_styles() {
-        let texts = |p: &str| steps(p, 0).into_iter().map(|s| s.text).collect::<Vec<_>>();
-        assert_eq!(texts("rings.0.gap"), ["rings", "0", "gap"]);
-        assert_eq!(texts("rings[0].gap"), ["rings", "0", "gap"]);
-        assert_eq!(texts("a[1][2]"), ["a", "1", "2"]);
-        assert_eq!(texts("a..b"), ["a", "", "b"]);
-        assert_eq!(texts("a."), ["a", ""]);
-        assert_eq!(texts(""), [""]);
-        assert_eq!(steps(" a . bc", 10)[1], Step { text: "bc".into(), span: 15..17 });
-    }
 }

@@ -1,5 +1,10 @@
 //! The loader against a small schema of its own: two tables, an array of tables, words, and a kind of model.
 
+mod near;
+mod paths;
+mod plain;
+mod published;
+mod refine;
 mod render;
 
 use std::path::Path;

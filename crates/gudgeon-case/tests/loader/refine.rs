@@ -1,0 +1,55 @@
+//! Settings that --verify refines.
+
+use gudgeon_case::{Loaded, load_str};
+use schemars::JsonSchema;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+fn loaded<T: DeserializeOwned + Serialize + JsonSchema + 'static>(text: &str) -> Loaded<T> {
+    load_str("refine.toml", text, ".".as_ref(), &[]).unwrap_or_else(|r| panic!("{r}"))
+}
+
+#[derive(Serialize, Deserialize, JsonSchema)]
+struct Inner {
+    method: String,
+    #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1, "when": { "method": "implicit" } }))]
+    tolerance: f64,
+    #[schemars(extend("x-refine" = { "group": "grid", "factor": 2 }))]
+    cells: u32,
+    #[schemars(extend("x-refine" = { "group": "grid", "factor": 2 }))]
+    automatic: u32,
+}
+
+#[derive(Serialize, Deserialize, JsonSchema)]
+struct Outer {
+    parts: Vec<Inner>,
+    name: String,
+}
+
+#[test]
+fn a_group_has_as_many_levels_as_its_dearest_setting() {
+    #[derive(Serialize, Deserialize, JsonSchema)]
+    struct Plane {
+        #[schemars(extend("x-refine" = { "group": "grid", "factor": 2, "levels": 2 }))]
+        along: u32,
+        #[schemars(extend("x-refine" = { "group": "grid", "factor": 2 }))]
+        across: u32,
+    }
+    let found = loaded::<Plane>("along = 20\nacross = 16\n").refinements();
+    assert_eq!(found.len(), 1);
+    assert_eq!(found[0].levels, [["along=40", "across=32"], ["along=80", "across=64"]]);
+}
+
+#[test]
+fn settings_are_found_where_they_apply() {
+    let part = |method: &str| {
+        format!("[[parts]]\nmethod = \"{method}\"\ntolerance = 1e-4\ncells = 20\nautomatic = 0\n")
+    };
+    let text = format!("name = \"x\"\n{}{}", part("implicit"), part("march"));
+    let found = loaded::<Outer>(&text).refinements();
+    let what: Vec<&str> = found.iter().map(|r| r.what.as_str()).collect();
+    assert_eq!(what, ["tolerance", "grid"]);
+    assert_eq!(found[0].levels[0], ["parts.0.tolerance=1e-5"]);
+    assert_eq!(found[1].levels[0], ["parts.0.cells=40", "parts.1.cells=40"]);
+    assert_eq!(found[1].levels[1], ["parts.0.cells=80", "parts.1.cells=80"]);
+}
