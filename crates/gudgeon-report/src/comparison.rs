@@ -365,6 +365,15 @@ fn comparison_table(out: &mut String, file: &File, ran: &[&VariantEntry]) {
             "<p class=\"hint\">The first variant did not run: there is nothing to take differences to.</p>",
         ),
     }
+    comparison_heads(out, ran);
+    comparison_rows(out, file, ran);
+    comparison_work(out, file, ran);
+    comparison_balances(out, ran);
+    out.push_str("</tbody></table></div></section>\n");
+}
+
+/// The head of the table: a column for every variant that ran, with what it swaps.
+fn comparison_heads(out: &mut String, ran: &[&VariantEntry]) {
     out.push_str("<div class=\"scroll\"><table class=\"plain compare\"><thead><tr><th>Result</th>");
     for v in ran {
         let parts: Vec<String> = v
@@ -379,6 +388,10 @@ fn comparison_table(out: &mut String, file: &File, ran: &[&VariantEntry]) {
         let _ = write!(out, "<th class=\"num variant\">{}<br>{label}</th>", badge(v.number));
     }
     out.push_str("<th></th></tr></thead><tbody>");
+}
+
+/// A row for every result.
+fn comparison_rows(out: &mut String, file: &File, ran: &[&VariantEntry]) {
     for (name, row) in &file.results {
         let what = ran
             .iter()
@@ -402,6 +415,11 @@ fn comparison_table(out: &mut String, file: &File, ran: &[&VariantEntry]) {
         }
         let _ = write!(out, "<td class=\"unit\">{}</td></tr>", esc(&unit(&row.unit)));
     }
+}
+
+/// What the solvers did.
+fn comparison_work(out: &mut String, file: &File, ran: &[&VariantEntry]) {
+    let base = file.variants.first().filter(|v| v.run.is_some());
     out.push_str("</tbody><tbody class=\"work\">");
     out.push_str("<tr><th scope=\"row\">solver</th>");
     for v in ran {
@@ -426,6 +444,10 @@ fn comparison_table(out: &mut String, file: &File, ran: &[&VariantEntry]) {
         }
         out.push_str("<td></td></tr>");
     }
+}
+
+/// How well the balances close, where one is known.
+fn comparison_balances(out: &mut String, ran: &[&VariantEntry]) {
     type Closure = (&'static str, fn(&Summary) -> Option<f64>);
     let balances: [Closure; 4] = [
         ("gas mass closure", |r| r.balance.gas_mass),
@@ -443,7 +465,6 @@ fn comparison_table(out: &mut String, file: &File, ran: &[&VariantEntry]) {
         }
         out.push_str("<td></td></tr>");
     }
-    out.push_str("</tbody></table></div></section>\n");
 }
 
 /// An angle with its shift.
