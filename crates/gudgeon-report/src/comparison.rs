@@ -259,79 +259,16 @@ fn page(file: &File, series: &[(usize, &Series)]) -> String {
     let heading = if file.title.trim().is_empty() { &file.case } else { &file.title };
     let ran: Vec<&VariantEntry> = file.variants.iter().filter(|v| v.run.is_some()).collect();
     let mut body = String::new();
-    let _ = write!(
-        body,
-        "<header><h1>{}</h1><p class=\"meta\"><code>{}</code> · comparison of {} variants</p>",
-        esc(heading),
-        esc(&file.case),
-        file.variants.len()
-    );
-    for s in &file.swaps {
-        let values: Vec<String> = s.values.iter().map(|v| format!("<code>{}</code>", esc(v))).collect();
-        let _ = write!(body, "<p class=\"source\"><b>{}</b> {}</p>", esc(&s.path), values.join(" "));
-    }
-    body.push_str("</header>\n<main>\n");
-    let missing: Vec<&VariantEntry> = file.variants.iter().filter(|v| v.run.is_none()).collect();
-    if !missing.is_empty() {
-        body.push_str(
-            "<section id=\"refused\" class=\"note\"><h2>Did not run</h2><table class=\"plain\"><tbody>",
-        );
-        for v in missing {
-            let _ = write!(
-                body,
-                "<tr><th scope=\"row\">{} {}</th><td><pre class=\"error\">{}</pre></td></tr>",
-                badge(v.number),
-                esc(&v.label),
-                esc(v.error.as_deref().unwrap_or("no reason is recorded").trim())
-            );
-        }
-        body.push_str("</tbody></table></section>\n");
-    }
+    page_header(&mut body, file, heading);
+    refused_variants(&mut body, file);
     if ran.is_empty() {
         body.push_str("<section><h2>Results</h2><p class=\"hint\">No variant ran.</p></section>\n");
     } else {
         comparison_table(&mut body, file, &ran);
     }
-    let noted: Vec<&&VariantEntry> =
-        ran.iter().filter(|v| v.run.as_ref().is_some_and(|r| !r.notes.is_empty())).collect();
-    if !noted.is_empty() {
-        body.push_str("<section id=\"notes\"><h2>Notes of the runs</h2><table class=\"plain\"><tbody>");
-        for v in noted {
-            let notes: Vec<String> = v
-                .run
-                .iter()
-                .flat_map(|r| &r.notes)
-                .map(|n| format!("<p>{}</p>", page::prose(&n.text)))
-                .collect();
-            let _ = write!(
-                body,
-                "<tr><th scope=\"row\">{} {}</th><td>{}</td></tr>",
-                badge(v.number),
-                esc(&v.label),
-                notes.concat()
-            );
-        }
-        body.push_str("</tbody></table></section>\n");
-    }
-    let drawn: Vec<_> =
-        series.iter().filter(|(_, s)| !s.axis.values.is_empty() && !s.columns.is_empty()).collect();
-    if drawn.iter().any(|(_, s)| s.is_over_cycle()) {
-        body.push_str(
-            "<section id=\"cycle\"><h2>Over the cycle</h2><div id=\"bar\"></div><div id=\"plots\"></div></section>\n",
-        );
-    } else if !drawn.is_empty() {
-        body.push_str("<section id=\"curves\"><h2>Curves</h2><div id=\"overlay\"></div></section>\n");
-    }
-    let mut models: Vec<ModelEntry> = Vec::new();
-    for m in ran.iter().filter_map(|v| v.run.as_ref()).flat_map(|r| &r.models) {
-        if !models.iter().any(|k| k.kind == m.kind && k.model == m.model) {
-            models.push(m.clone());
-        }
-    }
-    if !models.is_empty() {
-        models.sort_by(|a, b| (&a.kind, &a.model).cmp(&(&b.kind, &b.model)));
-        body.push_str(&page::models_section(&models));
-    }
+    notes_of_runs(&mut body, &ran);
+    curves(&mut body, series);
+    models_of_runs(&mut body, &ran);
     body.push_str("</main>\n");
     let version = ran.first().and_then(|v| v.run.as_ref()).map_or("", |r| r.gudgeon.as_str());
     body.push_str(&page::footer(version));
@@ -347,6 +284,92 @@ fn page(file: &File, series: &[(usize, &Series)]) -> String {
         .collect();
     let data = json!({ "variants": variants, "arrays": arrays.into_json() });
     page::document(Kind::Comparison, heading, &body, &data)
+}
+
+fn page_header(out: &mut String, file: &File, heading: &str) {
+    let _ = write!(
+        out,
+        "<header><h1>{}</h1><p class=\"meta\"><code>{}</code> · comparison of {} variants</p>",
+        esc(heading),
+        esc(&file.case),
+        file.variants.len()
+    );
+    for s in &file.swaps {
+        let values: Vec<String> = s.values.iter().map(|v| format!("<code>{}</code>", esc(v))).collect();
+        let _ = write!(out, "<p class=\"source\"><b>{}</b> {}</p>", esc(&s.path), values.join(" "));
+    }
+    out.push_str("</header>\n<main>\n");
+}
+
+/// Variants that did not run, with the reasons.
+fn refused_variants(out: &mut String, file: &File) {
+    let missing: Vec<&VariantEntry> = file.variants.iter().filter(|v| v.run.is_none()).collect();
+    if !missing.is_empty() {
+        out.push_str(
+            "<section id=\"refused\" class=\"note\"><h2>Did not run</h2><table class=\"plain\"><tbody>",
+        );
+        for v in missing {
+            let _ = write!(
+                out,
+                "<tr><th scope=\"row\">{} {}</th><td><pre class=\"error\">{}</pre></td></tr>",
+                badge(v.number),
+                esc(&v.label),
+                esc(v.error.as_deref().unwrap_or("no reason is recorded").trim())
+            );
+        }
+        out.push_str("</tbody></table></section>\n");
+    }
+}
+
+fn notes_of_runs(out: &mut String, ran: &[&VariantEntry]) {
+    let noted: Vec<&&VariantEntry> =
+        ran.iter().filter(|v| v.run.as_ref().is_some_and(|r| !r.notes.is_empty())).collect();
+    if !noted.is_empty() {
+        out.push_str("<section id=\"notes\"><h2>Notes of the runs</h2><table class=\"plain\"><tbody>");
+        for v in noted {
+            let notes: Vec<String> = v
+                .run
+                .iter()
+                .flat_map(|r| &r.notes)
+                .map(|n| format!("<p>{}</p>", page::prose(&n.text)))
+                .collect();
+            let _ = write!(
+                out,
+                "<tr><th scope=\"row\">{} {}</th><td>{}</td></tr>",
+                badge(v.number),
+                esc(&v.label),
+                notes.concat()
+            );
+        }
+        out.push_str("</tbody></table></section>\n");
+    }
+}
+
+/// Places for the curves, which the script draws.
+fn curves(out: &mut String, series: &[(usize, &Series)]) {
+    let drawn: Vec<_> =
+        series.iter().filter(|(_, s)| !s.axis.values.is_empty() && !s.columns.is_empty()).collect();
+    if drawn.iter().any(|(_, s)| s.is_over_cycle()) {
+        out.push_str(
+            "<section id=\"cycle\"><h2>Over the cycle</h2><div id=\"bar\"></div><div id=\"plots\"></div></section>\n",
+        );
+    } else if !drawn.is_empty() {
+        out.push_str("<section id=\"curves\"><h2>Curves</h2><div id=\"overlay\"></div></section>\n");
+    }
+}
+
+/// Every model that any variant uses, once.
+fn models_of_runs(out: &mut String, ran: &[&VariantEntry]) {
+    let mut models: Vec<ModelEntry> = Vec::new();
+    for m in ran.iter().filter_map(|v| v.run.as_ref()).flat_map(|r| &r.models) {
+        if !models.iter().any(|k| k.kind == m.kind && k.model == m.model) {
+            models.push(m.clone());
+        }
+    }
+    if !models.is_empty() {
+        models.sort_by(|a, b| (&a.kind, &a.model).cmp(&(&b.kind, &b.model)));
+        out.push_str(&page::models_section(&models));
+    }
 }
 
 fn comparison_table(out: &mut String, file: &File, ran: &[&VariantEntry]) {

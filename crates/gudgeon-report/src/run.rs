@@ -263,6 +263,19 @@ fn part_results(out: &mut String, s: &Summary, own: &[(&str, &str, &ResultValue)
     // A long list stands in two columns, when nothing else stands beside it.
     let column =
         if families.is_empty() && plain.len() > LONG { plain.len().div_ceil(2) } else { plain.len() };
+    plain_tables(out, s, &plain, column);
+    if !families.is_empty() {
+        out.push_str("<div class=\"families\">");
+    }
+    for (family, rows) in &families {
+        family_table(out, s, family, rows);
+    }
+    out.push_str(if families.is_empty() { "</div>" } else { "</div></div>" });
+    at_angles(out, s, &angles);
+}
+
+/// Results that stand alone, `column` to a table.
+fn plain_tables(out: &mut String, s: &Summary, plain: &[(&str, &ResultValue)], column: usize) {
     for part in plain.chunks(column.max(1)) {
         out.push_str("<table class=\"plain key\"><tbody>");
         for (name, v) in part {
@@ -277,48 +290,45 @@ fn part_results(out: &mut String, s: &Summary, own: &[(&str, &str, &ResultValue)
         }
         out.push_str("</tbody></table>");
     }
-    if !families.is_empty() {
-        out.push_str("<div class=\"families\">");
+}
+
+/// Results that every member of a family has: a column a member.
+fn family_table(out: &mut String, s: &Summary, family: &str, rows: &Family<'_>) {
+    let mut numbers: Vec<u32> = rows.values().flat_map(|r| r.keys().copied()).collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    let _ = write!(
+        out,
+        "<div class=\"scroll\"><table class=\"plain\"><thead><tr><th>Per {}</th><th></th>",
+        esc(family)
+    );
+    for n in &numbers {
+        let _ = write!(out, "<th class=\"num\">{} {n}</th>", esc(family));
     }
-    for (family, rows) in &families {
-        let mut numbers: Vec<u32> = rows.values().flat_map(|r| r.keys().copied()).collect();
-        numbers.sort_unstable();
-        numbers.dedup();
+    out.push_str("</tr></thead><tbody>");
+    for (rest, row) in rows {
+        let first = row.values().next();
+        let told: Vec<String> = row
+            .iter()
+            .filter_map(|(n, (name, _))| Some(without_member(s.descriptions.get(*name)?, family, *n)))
+            .collect();
+        let what = shared(&told, family);
         let _ = write!(
             out,
-            "<div class=\"scroll\"><table class=\"plain\"><thead><tr><th>Per {}</th><th></th>",
-            esc(family)
+            "<tr><th scope=\"row\">{}<code>{}</code></th>",
+            if what.is_empty() { String::new() } else { format!("{} ", esc(&capital(&what))) },
+            esc(rest)
         );
+        // Before the numbers, where it stays in sight when there are many.
+        let u = first.map_or("", |(_, v)| v.unit.as_str());
+        let _ = write!(out, "<td class=\"unit\">{}</td>", esc(&unit(u)));
         for n in &numbers {
-            let _ = write!(out, "<th class=\"num\">{} {n}</th>", esc(family));
+            let text = row.get(n).map_or_else(|| "–".into(), |(_, v)| certain(v.value, v.uncertainty, 4));
+            let _ = write!(out, "<td class=\"num\">{text}</td>");
         }
-        out.push_str("</tr></thead><tbody>");
-        for (rest, row) in rows {
-            let first = row.values().next();
-            let told: Vec<String> = row
-                .iter()
-                .filter_map(|(n, (name, _))| Some(without_member(s.descriptions.get(*name)?, family, *n)))
-                .collect();
-            let what = shared(&told, family);
-            let _ = write!(
-                out,
-                "<tr><th scope=\"row\">{}<code>{}</code></th>",
-                if what.is_empty() { String::new() } else { format!("{} ", esc(&capital(&what))) },
-                esc(rest)
-            );
-            // Before the numbers, where it stays in sight when there are many.
-            let u = first.map_or("", |(_, v)| v.unit.as_str());
-            let _ = write!(out, "<td class=\"unit\">{}</td>", esc(&unit(u)));
-            for n in &numbers {
-                let text = row.get(n).map_or_else(|| "–".into(), |(_, v)| certain(v.value, v.uncertainty, 4));
-                let _ = write!(out, "<td class=\"num\">{text}</td>");
-            }
-            out.push_str("</tr>");
-        }
-        out.push_str("</tbody></table></div>");
+        out.push_str("</tr>");
     }
-    out.push_str(if families.is_empty() { "</div>" } else { "</div></div>" });
-    at_angles(out, s, &angles);
+    out.push_str("</tbody></table></div>");
 }
 
 /// Results at crank angles: one row each.
