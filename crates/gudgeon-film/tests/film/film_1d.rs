@@ -1460,3 +1460,54 @@ fn a_starved_inlet_empties_in_time_and_keeps_the_ledger() {
         }
     }
 }
+
+#[test]
+fn laws_of_viscosity_see_the_mean_shear_rate_of_each_panel() {
+    // Panels from 3 to 1 µm, and one of parallel surfaces: |u| ln(h_a/h_b)/(h_a - h_b), |u|/h.
+    let line = LineProfile {
+        x: vec![0.0, 1e-3, 2e-3, 3e-3],
+        h_a: vec![3e-6, 2e-6, 1e-6],
+        h_b: vec![2e-6, 1e-6, 1e-6],
+    };
+    let bench = Bench::new(line, 0.01, -4.0, (1e5, 1e5));
+    let mut film = bench.build(&mass_conserving());
+    let mu = [0.01; 3];
+    let inp = Film1dIn {
+        h_a: &bench.line.h_a,
+        h_b: &bench.line.h_b,
+        mu: &mu,
+        factors: None,
+        u: -4.0,
+        ends: bench.ends,
+        p_cav: 0.0,
+        time: FilmTime::Steady,
+    };
+    let mut rates = Vec::new();
+    let law = |_: f64, rate: f64| {
+        rates.push(rate);
+        0.01
+    };
+    ViscosityLoop::new(3).solve(&mut *film, &inp, law).expect("a film");
+    let want = [4e6 * 1.5_f64.ln(), 4e6 * 2.0_f64.ln(), 4e6];
+    assert_eq!(rates.len() % 9, 0);
+    for (k, rate) in rates.iter().enumerate() {
+        // Rounding of an inverse hyperbolic tangent of 0.2.
+        close("shear rate", *rate, want[k % 9 / 3], 1e-14);
+    }
+}
+
+#[test]
+fn a_textured_line_is_a_wedge_with_pockets() {
+    let line = LineProfile::textured(0.01, 3e-6, 1e-6, 5, 0.4, 2e-6, 250).expect("a line");
+    let mut pockets = 0;
+    for (i, x) in line.x.windows(2).enumerate() {
+        let part = (0.5 * (x[0] + x[1]) / 0.002).fract();
+        let pocket = (0.3..0.7).contains(&part);
+        pockets += usize::from(pocket);
+        for (x, h) in [(x[0], line.h_a[i]), (x[1], line.h_b[i])] {
+            // Straight panels: rounding alone.
+            close("gap", h, 3e-6 - 2e-6 * x / 0.01 + if pocket { 2e-6 } else { 0.0 }, 1e-13);
+        }
+    }
+    assert_eq!(pockets, 100);
+}

@@ -1,5 +1,6 @@
 //! Tests of the crate, one module a topic.
 
+mod central_differences;
 mod closed_form_face;
 mod compressibility;
 mod film_1d;

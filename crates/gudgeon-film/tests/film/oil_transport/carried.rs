@@ -151,3 +151,32 @@ fn what_is_laid_down_is_taken_up() {
     // Some forty cells added up.
     assert!((back - lost).abs() <= 1e-12 * lost, "{back:e} of {lost:e}");
 }
+
+#[test]
+fn the_film_on_the_liner_stands_at_the_middle_of_its_cells() {
+    let p = pack();
+    let (z, film) = OilTransport::liner(&p);
+    assert_eq!((z.len(), &film), (p.liner.film.len(), &p.liner.film));
+    for (k, z) in z.iter().enumerate() {
+        let (low, high) = p.liner.ends(k);
+        // A few roundings of a liner of 0.1 m.
+        assert!((z - 0.5 * (low + high)).abs() < 1e-16, "{k}");
+    }
+}
+
+#[test]
+fn volumes_of_the_last_instant_are_remembered() {
+    let mut p = pack();
+    let mut y = vec![5.0; p.states().len()];
+    begin(&mut p);
+    p.place(&y, 0.1);
+    let want: Vec<f64> = p.faces.iter().flat_map(|f| f.volume).collect();
+    assert!(want.iter().all(|v| *v > 0.0));
+    let mut saved = Vec::new();
+    p.save(&mut saved);
+    y.fill(1.0);
+    p.place(&y, 0.1);
+    saved.push(7.0);
+    assert_eq!(p.restore(&saved), want.len());
+    assert_eq!(p.faces.iter().flat_map(|f| f.volume).collect::<Vec<_>>(), want);
+}

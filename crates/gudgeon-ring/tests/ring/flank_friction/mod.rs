@@ -21,3 +21,13 @@ fn check_derivative(m: &dyn gudgeon_core::kinds::FlankFriction, scale: f64) {
         );
     }
 }
+
+#[test]
+fn only_off_is_off() {
+    use gudgeon_core::kinds::FlankFrictionSpec;
+    let off = |spec: &dyn FlankFrictionSpec| spec.build().expect("builds").is_off();
+    assert!(off(&gudgeon_ring::FrictionOff {}));
+    assert!(
+        !off(&gudgeon_ring::RationalSaturation::default()) && !off(&gudgeon_ring::TanhStribeck::default())
+    );
+}

@@ -5,6 +5,7 @@ use gudgeon_core::kinds::{
     AxialForces, FlankDamping, FlankDampingCtx, FlankDampingSpec, RingForces, RingMotion, RingMotionCtx,
     RingMotionSpec, RingResponse,
 };
+use gudgeon_core::quantity::quantity;
 use gudgeon_core::states::Signals;
 use gudgeon_ring::{DampingOff, NewtonGroove, SqueezeFilm};
 
@@ -237,4 +238,60 @@ fn small_changes_follow_the_tangent_of_the_balance() {
         assert!(change > 0.0);
         near(near_by.v - base.v, change, 1e-5);
     }
+}
+
+#[test]
+fn a_ring_near_its_release_is_not_held_at_once() {
+    // Pulled off the flank by less than the oil holds; the velocity of the balance is a part of the release speed.
+    let release = 10.0 * TOLERANCE * C * OMEGA;
+    let (mut m, f) = held(false, 300.0);
+    let mut parts = 0;
+    for pull in [20.0, 60.0, 90.0, 100.0] {
+        let (mut other, _) = held(false, 300.0);
+        let (_, balanced) = rates(&mut *other, &forces(f.place.s, 0.0, pull));
+        let part = balanced.v / release;
+        if part >= 1.0 {
+            continue;
+        }
+        parts += 1;
+        m.free();
+        rates(&mut *m, &forces(f.place.s, balanced.v, pull));
+        // Half the release speed and more is too fast to be held again; a cycle may start up to the release speed itself.
+        near(m.event(0), (1.0 - 2.0 * part).max(-1.0), 1e-6);
+        let mut y = [1e-3, 0.3];
+        m.start(&mut y);
+        assert!(!m.is_integrated(1), "{pull}: {part}");
+        m.free();
+    }
+    assert!(parts >= 2, "{parts}");
+}
+
+#[test]
+fn a_film_holds_where_it_is_stiff() {
+    // Between the flanks the films soften; a rate of 100 per radian is the least that holds.
+    let spec = SqueezeFilm { separation: quantity(0.0), ..SqueezeFilm::default() };
+    let squeeze = oil(&spec);
+    let mut m = built(&NewtonGroove::default(), oil(&spec));
+    m.set_accuracy(TOLERANCE);
+    let (mut stiff, mut soft) = (0, 0);
+    for k in 0..100 {
+        let s = C * (0.3 + 0.00195 * f64::from(k));
+        let area = forces(s, 0.0, 0.0).place.flank_area();
+        // The film is linear in the approach to the lower flank.
+        let v = 1e-6;
+        let stiffness = (squeeze.force(s, -2.0 * v, C, area) - squeeze.force(s, -v, C, area)) / v;
+        let rate = stiffness / (MASS * OMEGA * 100.0) - 1.0;
+        let balanced = -1.0 / stiffness;
+        m.free();
+        rates(&mut *m, &forces(s, balanced, -1.0));
+        if rate < 0.0 {
+            soft += 1;
+            assert_eq!(m.event(0), -1.0, "{s}");
+        } else if rate < 0.9 {
+            stiff += 1;
+            // A derivative over a millionth of the velocity.
+            assert!((m.event(0) - rate).abs() < 1e-6, "{s}: {} {rate}", m.event(0));
+        }
+    }
+    assert!(stiff >= 2 && soft >= 3, "{stiff} {soft}");
 }

@@ -2,6 +2,7 @@
 
 use gudgeon_core::kinds::{AxialForces, RingMotion, RingMotionCtx, RingMotionSpec};
 use gudgeon_core::kinds::{FlankDampingCtx, FlankDampingSpec};
+use gudgeon_core::states::Signals;
 use gudgeon_ring::{DampingOff, ThreeSeat};
 
 fn built(spec: &ThreeSeat) -> Box<dyn RingMotion> {
@@ -41,4 +42,42 @@ fn counts_only_what_it_is_told_to() {
     let f = AxialForces { gas: -10.0, film: 1e3, gravity: 1e3, damping: 1e3, ..AxialForces::default() };
     assert_eq!(seat(&mut *m, &f), 0.0);
     assert!(!m.uses_film_force() && !m.uses_gravity());
+}
+
+#[test]
+fn weight_and_film_count_with_their_signs() {
+    let mut m = built(&ThreeSeat { gravity: true, ..ThreeSeat::default() });
+    assert!(m.uses_gravity() && m.uses_film_force() && m.moves());
+    let mut at = |gravity, film| {
+        let f = AxialForces { gas: 100.0, inertia: -120.0, gravity, film, ..AxialForces::default() };
+        seat(&mut *m, &f)
+    };
+    // The resultant of -20 N, beyond the band of 10 N, and what moves it to the other side.
+    assert_eq!((at(0.0, 0.0), at(40.0, 0.0), at(0.0, 40.0), at(25.0, -25.0)), (0.0, 1.0, 1.0, 0.0));
+    assert_eq!((at(60.0, -25.0), at(-25.0, 60.0), at(15.0, 0.0)), (1.0, 1.0, 0.5));
+}
+
+#[test]
+fn a_case_that_names_the_model_alone_has_its_defaults() {
+    use serde::Deserialize as _;
+    use serde::de::value::{Error, MapDeserializer};
+    let empty = MapDeserializer::<_, Error>::new(std::iter::empty::<(&str, bool)>());
+    let read = ThreeSeat::deserialize(empty).expect("no key is needed");
+    assert!(read.film_force && !read.gravity);
+    let (a, b) = (built(&read), built(&ThreeSeat::default()));
+    assert_eq!(a.decision_interval(), b.decision_interval());
+}
+
+#[test]
+fn the_seat_is_remembered() {
+    let mut m = built(&ThreeSeat::default());
+    assert_eq!(seat(&mut *m, &AxialForces { gas: 5.0, ..AxialForces::default() }), 1.0);
+    let mut saved = Vec::new();
+    m.save(&mut saved);
+    m.initial(&mut []);
+    assert_eq!(m.decided(), [0.0]);
+    assert_eq!((m.restore(&saved), m.decided()), (1, &[1.0][..]));
+    assert_eq!(m.reads(), Signals::PRESSURE | Signals::FILM_FORCE);
+    let alone = built(&ThreeSeat { film_force: false, ..ThreeSeat::default() });
+    assert_eq!(alone.reads(), Signals::PRESSURE);
 }
