@@ -208,8 +208,8 @@ pub struct RingPlace {
     pub v: f64,
     /// Axial clearance now \[m\].
     pub clearance: f64,
-    /// `s / clearance` clamped to 0…1; for a discrete motion model 0, ½ or 1.
-    pub e: f64,
+    /// Lift fraction: `s / clearance` clamped to 0…1, 0 on the lower flank and 1 on the upper; for a discrete motion model 0, ½ or 1.
+    pub lift_fraction: f64,
     /// Twist of the section \[rad\], positive when the outer edge rises towards the head. The gap at a flank is then a wedge.
     pub twist: f64,
     /// Its rate \[rad/s\].

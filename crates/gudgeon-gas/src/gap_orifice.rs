@@ -125,8 +125,8 @@ impl PassageModel<Passage> for Areas {
         };
         let leak = self.leak_per_volume[i] * o.back_volume;
         RingPassages {
-            upper: flank(o.upper.narrowest(), leak * (1.0 - 2.0 * o.e)),
-            lower: flank(o.lower.narrowest(), leak * (2.0 * o.e - 1.0)),
+            upper: flank(o.upper.narrowest(), leak * (1.0 - 2.0 * o.lift_fraction)),
+            lower: flank(o.lower.narrowest(), leak * (2.0 * o.lift_fraction - 1.0)),
             gap,
             face: Passage::Closed,
         }

@@ -76,7 +76,7 @@ impl GasFlow for Runtime {
         out.p_land[1..n].copy_from_slice(&self.lands);
         out.p_land[n] = inp.p_crankcase;
         for (i, ring) in inp.rings.iter().enumerate() {
-            let e = ring.e.clamp(0.0, 1.0);
+            let e = ring.lift_fraction.clamp(0.0, 1.0);
             out.p_back[i] = (1.0 - e) * out.p_land[i] + e * out.p_land[i + 1];
         }
         Ok(())

@@ -58,7 +58,7 @@ pub struct Openings {
     /// Distance from the upper groove flank, likewise.
     pub upper: FlankGap,
     /// Position in the groove, 0 lower flank, 1 upper flank.
-    pub e: f64,
+    pub lift_fraction: f64,
     /// End-gap area \[m²\], with the chamfer.
     pub gap: f64,
     /// Volume behind the ring \[m³\].

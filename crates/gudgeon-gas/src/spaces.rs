@@ -61,7 +61,7 @@ impl Spaces {
             liner_radius: pack.bore_radius,
             lower: FlankGap::parallel(e * clearance),
             upper: FlankGap::parallel((1.0 - e) * clearance),
-            e,
+            lift_fraction: e,
             gap: ring.gap_area.unwrap_or(ring.gap * radial),
             back_volume: self.nominal_volume(i),
         }
@@ -86,7 +86,7 @@ impl Spaces {
         let ring = &self.pack.rings[i];
         let h = self.nominal_film.unwrap_or(place.h);
         let clearance = self.clearance(ring, place);
-        let e = place.e.clamp(0.0, 1.0);
+        let e = place.lift_fraction.clamp(0.0, 1.0);
         let (lower, upper) = if self.bounded {
             (e * clearance, (1.0 - e) * clearance)
         } else {
@@ -104,7 +104,7 @@ impl Spaces {
             liner_radius: place.liner_radius,
             lower: FlankGap::wedge(lower, rise),
             upper: FlankGap::wedge(upper, -rise),
-            e,
+            lift_fraction: e,
             gap: area + chamfer,
             back_volume: self.volume_behind(i, place),
         })

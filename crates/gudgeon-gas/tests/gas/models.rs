@@ -81,7 +81,7 @@ fn chamfers_can_close_at_lift_off_as_published() {
     let mut gas = build(&spec, &pack);
     let mut flow = |e: f64| {
         let mut at = place(&pack, 0, 0.0, 0.5, 0.0);
-        at.e = e;
+        at.lift_fraction = e;
         let mut out = GasOut::new(1);
         let inp = GasIn { p_cylinder: 2e5, p_crankcase: 1e5, rings: &[at] };
         gas.rates(&inp, &[], &mut [], &mut out).expect("rates");
@@ -370,7 +370,7 @@ fn prescribed_pressures_of_impossible_boundaries() {
     let mut gas = build(&Prescribed::default(), &pack);
     assert!(!gas.uses_end_gaps() && !gas.uses_film_height() && gas.state_names().is_empty());
     let mut at = |p_cylinder: f64, p_crankcase: f64, e: f64| {
-        let rings = [RingPlace { e, ..place(&pack, 0, 0.0, 0.5, 0.0) }];
+        let rings = [RingPlace { lift_fraction: e, ..place(&pack, 0, 0.0, 0.5, 0.0) }];
         let mut out = GasOut::new(1);
         gas.pressures(&GasIn { p_cylinder, p_crankcase, rings: &rings }, &[], &mut out)
             .map(|()| out.p_back[0])

@@ -67,7 +67,7 @@ pub fn place(p: &PackGeometry, i: usize, h: f64, e: f64, delta: f64) -> RingPlac
         s: e * clearance,
         v: 0.0,
         clearance,
-        e,
+        lift_fraction: e,
         liner_radius,
         r_inner,
         r_outer: r_inner + r.width,

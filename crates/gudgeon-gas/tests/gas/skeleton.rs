@@ -336,7 +336,7 @@ fn the_plain_pack_is_as_described() {
     let (pack, places) = plain_pack(3);
     assert_eq!((pack.rings.len(), pack.lands.len(), places.len()), (3, 4, 3));
     for (ring, place) in pack.rings.iter().zip(&places) {
-        assert_eq!((place.h, place.s, place.e, place.liner_radius), (2e-6, 0.0, 0.0, 0.05));
+        assert_eq!((place.h, place.s, place.lift_fraction, place.liner_radius), (2e-6, 0.0, 0.0, 0.05));
         assert_eq!((ring.clearance_inner, place.clearance, ring.gap_area), (50e-6, 50e-6, Some(5e-8)));
         assert_eq!((ring.back, place.back_volume), (BackVolume::Fixed(3e-7), 3e-7));
         // The flanks of a ring of this radial thickness; the groove is higher than the ring by the clearance.

@@ -46,7 +46,7 @@ fn place() -> RingPlace {
         s: 0.0,
         v: 0.0,
         clearance: 1e-4,
-        e: 0.0,
+        lift_fraction: 0.0,
         twist: 0.0,
         twist_rate: 0.0,
         liner_radius: BORE_RADIUS,

@@ -185,7 +185,7 @@ impl Measures {
             s.e[k] = if pack.rings[i].is_integrated() && place.clearance > 0.0 {
                 place.s / place.clearance
             } else {
-                place.e
+                place.lift_fraction
             };
             let lift = place.s.clamp(0.0, place.clearance);
             s.nearest[k] = lift.min(place.clearance - lift);

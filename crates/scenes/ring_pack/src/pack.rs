@@ -192,7 +192,7 @@ impl Pack {
             s: p.s,
             v: p.v,
             clearance,
-            e: p.lift_fraction,
+            lift_fraction: p.lift_fraction,
             twist: p.twist,
             twist_rate: p.twist_rate,
             liner_radius,

@@ -133,7 +133,7 @@ impl Record {
         for i in 0..n {
             let (ring, place, r) = (&pack.rings[i], &at.places[i], &at.rings[i]);
             if pack.geo.rings[i].has_clearance {
-                put(place.e);
+                put(place.lift_fraction);
                 put(place.s.clamp(0.0, place.clearance));
                 if ring.is_integrated() {
                     put(place.v);
