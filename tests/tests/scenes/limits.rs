@@ -141,10 +141,10 @@ fn undamped_rings_on_a_followed_film_stay_numbers() {
 /// A cap that is too low names its key, with the angle in degrees.
 #[test]
 fn the_cap_of_steps_is_a_key() {
-    let set = vec!["solver.limits.most_steps=100".to_owned()];
+    let set = vec!["solver.limits.max_steps=100".to_owned()];
     let e = run_all(&[(CASE, set)]).remove(0).expect_err("100 steps are too few");
     assert!(
-        e.contains("deg crank angle") && e.contains("100 steps") && e.contains("solver.limits.most_steps"),
+        e.contains("deg crank angle") && e.contains("100 steps") && e.contains("solver.limits.max_steps"),
         "{e}"
     );
 }

@@ -43,7 +43,7 @@ impl RadialMotionCtx {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RadialLimits {
     /// Least load of a film over that of the ring's tension.
-    pub least_load: f64,
+    pub min_load: f64,
     /// Radial speed that a ring does not exceed \[m/s\].
     pub radial_speed: f64,
     /// Drag per circumference of a ring off the liner \[N s/m²\].

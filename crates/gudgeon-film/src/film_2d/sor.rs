@@ -17,6 +17,7 @@ use super::problem::Problem;
 /// without the best relaxation with its square: for comparison with published schemes.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("x-renamed" = { "most_sweeps": "max_sweeps" }))]
 pub struct Sor {
     /// What happens where the pressure would fall below `p_cav`.
     #[serde(default)]
@@ -33,13 +34,13 @@ pub struct Sor {
     #[serde(default)]
     #[schemars(range(min = 0.0, max = 2.0))]
     pub relaxation: Option<f64>,
-    /// Most sweeps, 1 or more.
-    #[serde(default = "most_sweeps")]
+    /// Maximum number of sweeps, 1 or more.
+    #[serde(default = "max_sweeps")]
     #[schemars(range(min = 1, max = 100_000_000))]
-    pub most_sweeps: usize,
+    pub max_sweeps: usize,
 }
 
-fn most_sweeps() -> usize {
+fn max_sweeps() -> usize {
     100_000
 }
 
@@ -50,7 +51,7 @@ impl Default for Sor {
             flux: Flux::default(),
             tolerance: tolerance(),
             relaxation: None,
-            most_sweeps: most_sweeps(),
+            max_sweeps: max_sweeps(),
         }
     }
 }
@@ -73,8 +74,8 @@ impl Film2dSpec for Sor {
         if let Some(w) = self.relaxation.filter(|w| !(*w > 0.0 && *w < 2.0)) {
             return Err(BuildError::at("relaxation", format!("must be between 0 and 2, not {w}")));
         }
-        if self.most_sweeps == 0 {
-            return Err(BuildError::at("most_sweeps", "must be 1 or more"));
+        if self.max_sweeps == 0 {
+            return Err(BuildError::at("max_sweeps", "must be 1 or more"));
         }
         let problem = Problem::new(ctx.grid, self.flux)?;
         let n = problem.len();
@@ -126,14 +127,14 @@ impl Relaxation {
         let n = self.problem.len();
         // Fillings travel along with the oil; sweeps to and fro would settle pressures half as fast.
         let forward = signed || self.problem.m.qx.iter().sum::<f64>() >= 0.0;
-        for sweep in 1..=self.spec.most_sweeps {
+        for sweep in 1..=self.spec.max_sweeps {
             for step in 0..n {
                 let k = if forward { step } else { n - 1 - step };
                 if self.problem.edge[k] == 4 {
                     self.visit(k, omega, signed, carried);
                 }
             }
-            if sweep % 10 == 0 || sweep == self.spec.most_sweeps {
+            if sweep % 10 == 0 || sweep == self.spec.max_sweeps {
                 self.problem.balance(&self.p, &self.void, &mut self.b);
                 let mut worst = 0.0_f64;
                 for k in 0..n {
@@ -153,7 +154,7 @@ impl Relaxation {
                 }
             }
         }
-        Err(EvalError::recoverable(MODEL, format!("no convergence in {} sweeps", self.spec.most_sweeps)))
+        Err(EvalError::recoverable(MODEL, format!("no convergence in {} sweeps", self.spec.max_sweeps)))
     }
 
     #[inline]

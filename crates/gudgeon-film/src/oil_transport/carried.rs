@@ -39,7 +39,7 @@ pub struct Carried {
     pub liner: Liner,
     ledger: OilLedger,
     /// Smallest distance between two faces \[m\].
-    least_gap: f64,
+    min_gap: f64,
     /// Seconds per radian.
     per: f64,
 }
@@ -48,16 +48,16 @@ impl Carried {
     /// Sets up the oil of faces listed from the top down.
     pub fn new(law: Law, ctx: &OilTransportCtx<'_>) -> Self {
         let mut least = law.spacing;
-        let mut least_gap = f64::INFINITY;
+        let mut min_gap = f64::INFINITY;
         for p in ctx.faces {
             least = least.min(0.5 * p.profile.length());
         }
         for w in ctx.faces.windows(2) {
             let gap = w[0].offset - (w[1].offset + w[1].profile.length());
-            least_gap = least_gap.min(gap);
+            min_gap = min_gap.min(gap);
         }
         // A cell holds the edge of one face at most.
-        let least = least.min(0.5 * least_gap.max(1e-6));
+        let least = least.min(0.5 * min_gap.max(1e-6));
         let faces: Vec<OilFace> =
             ctx.faces.iter().enumerate().map(|(k, p)| OilFace::new(p, k == 0, law.wave)).collect();
         let (lowest, highest) = ctx.pin;
@@ -70,7 +70,7 @@ impl Carried {
             faces,
             law,
             ledger: OilLedger::default(),
-            least_gap,
+            min_gap,
             per: 1.0 / ctx.omega,
         }
     }
@@ -277,7 +277,7 @@ impl OilTransport for Carried {
     }
 
     fn longest_way(&self) -> f64 {
-        WAY * self.least_gap
+        WAY * self.min_gap
     }
 
     fn ring(&self, i: usize, v: f64) -> RingOil {

@@ -39,7 +39,7 @@ pub struct Search<'a> {
 impl Search<'_> {
     /// Squeeze velocity from the radial balance.
     pub fn rate(&mut self, loads: &mut dyn RadialLoads) -> Result<RadialResponse, EvalError> {
-        let floor = self.limits.least_load * loads.tension();
+        let floor = self.limits.min_load * loads.tension();
         let needed = Needed { load: loads.load() - loads.contact() - loads.dry(), floor };
         if !loads.resists() {
             return Ok(self.without_film(loads, needed.load));

@@ -78,7 +78,7 @@ fn left_over(search: &Search<'_>, loads: &dyn RadialLoads, hdot: f64, film: f64)
     let drag = if hdot > 0.0 { search.contact_drag(loads) } else { 0.0 };
     let (fa, dfa) = loads.friction(hdot);
     let w = loads.load() - loads.contact() - loads.dry() + fa + drag * hdot;
-    let floor = search.limits.least_load * loads.tension();
+    let floor = search.limits.min_load * loads.tension();
     let root = (w * w + 4.0 * floor * floor).sqrt();
     (film - 0.5 * (w + root), -(dfa + drag) * 0.5 * (1.0 + w / root))
 }

@@ -128,7 +128,7 @@ impl RadialLoads for Ring {
 /// Limits that nothing reaches.
 fn far() -> RadialLimits {
     RadialLimits {
-        least_load: 1e-9,
+        min_load: 1e-9,
         radial_speed: 1e9,
         radial_drag: 1e5,
         contact_drag: 0.0,
@@ -197,7 +197,7 @@ fn one_film_carries_what_contact_and_dry_gas_leave() {
         near(film.load, 1000.0 - contact - dry, 1e-12);
     }
     // A film is asked for a small load at least, of which the response tells.
-    let floor = RadialLimits { least_load: 0.5, ..far() };
+    let floor = RadialLimits { min_load: 0.5, ..far() };
     let r = once(floor, Ring { load: 30.0, ..Ring::new() });
     let asked = 15.0 + (225.0_f64 + 2500.0).sqrt();
     near(r.hdot, (1300.0 - asked) / 1e6, 1e-12);
@@ -330,7 +330,7 @@ fn a_film_that_never_carries_so_little_leaves_the_velocity_to_its_limits() {
 fn small_changes_are_followed_along_the_tangent() {
     let base = Ring { faces: 2, bend: 1e8, friction: Some((20.0, 3e5)), contact: 100.0, ..Ring::new() };
     for (load, contact_drag) in [(1000.0, 2e6), (1700.0, 2e6), (1000.0, 0.0)] {
-        let limits = RadialLimits { contact_drag, least_load: 0.05, ..far() };
+        let limits = RadialLimits { contact_drag, min_load: 0.05, ..far() };
         let mut m = motion(limits);
         let mut ring = Ring { load, ..base.clone() };
         let r = answer(&mut *m, &mut ring);

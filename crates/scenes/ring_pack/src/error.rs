@@ -6,7 +6,7 @@
 pub enum RingPackError {
     /// The integrator needs too many steps.
     #[error(
-        "at {theta_deg:.3} deg crank angle a cycle has taken {max} steps, the most that `solver.limits.most_steps` lets it take"
+        "at {theta_deg:.3} deg crank angle a cycle has taken {max} steps, the most that `solver.limits.max_steps` lets it take"
     )]
     Steps {
         /// Where \[deg\].

@@ -57,7 +57,7 @@ impl Pack {
             tension,
             contact: ring.contact.load(place.h),
             line: &ring.contact,
-            least_film: self.limits.least_film,
+            min_film: self.limits.min_film,
             resists: ring.resists,
             perimeter,
             shares: if ring.films.len() == 2 { self.laws.twin_land_friction.shares() } else { [1.0; 2] },
@@ -136,7 +136,7 @@ impl Pack {
     /// Film thickness that ring `i` does not go below \[m\].
     #[must_use]
     pub fn lowest(&self, i: usize) -> f64 {
-        self.rings[i].contact.lowest(self.limits.least_film)
+        self.rings[i].contact.lowest(self.limits.min_film)
     }
 
     /// Radial motion of ring `i` for its states `y`: sets `load`, `contact`, `hdot` and the rates of the states.

@@ -226,7 +226,7 @@ struct Cycle<'a> {
     /// Longest step \[rad\]: none may jump over a pressure pulse.
     longest_step: f64,
     /// Most steps of a cycle.
-    most_steps: u64,
+    max_steps: u64,
     failure: Option<IntegrateError>,
     /// Steps of a cycle at full accuracy, when known: the unit of cost.
     progress: &'a mut dyn FnMut(f64),
@@ -244,7 +244,7 @@ impl Cycle<'_> {
         let mut options = Options::new(rtol, &self.scale);
         options.absolute.clone_from(&self.absolute);
         options.h_max = self.longest_step;
-        options.max_steps = self.most_steps;
+        options.max_steps = self.max_steps;
         if let Some(oil) = &self.pack.oil_pack {
             // A face takes up what the one before it left in earlier steps.
             let speed = 1.1 * 0.5 * self.pack.kinematics.stroke() * self.pack.omega;
@@ -599,7 +599,7 @@ fn run(
         stats: Stats::default(),
         q: vec![0.0; quads],
         longest_step: wanted.limits.longest_step.si(),
-        most_steps: wanted.limits.steps_at(s.tolerance.si(), cycle_speed),
+        max_steps: wanted.limits.steps_at(s.tolerance.si(), cycle_speed),
         failure: None,
         progress,
         done: 0.0,

@@ -8,13 +8,16 @@ use serde::{Deserialize, Serialize};
 /// Floors, caps and drags. What acted in the reported cycle is noted, with how much and for how long.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
+#[schemars(extend("x-renamed" = {
+    "least_film": "min_film", "least_load": "min_load", "least_room": "min_room", "most_steps": "max_steps",
+}))]
 pub struct Limits {
     /// Film thickness at which there is no oil left between smooth surfaces: a molecule or two. With a contact model that has no roughness
     /// of its own (`off`, `linear_penalty`) a run in which a ring rests there under load fails.
-    pub least_film: PosLength,
+    pub min_film: PosLength,
     /// Least load of a film over that of the ring's tension. A cavitating film cannot pull: a ring that gas presses off the liner moves away
     /// fast, not infinitely fast.
-    pub least_load: PosRatio,
+    pub min_load: PosRatio,
     /// Radial speed that a ring does not exceed. Gas that lifts a ring off the liner meets its inertia, which the radial balance leaves out;
     /// normal squeeze velocities are a thousand times smaller.
     pub radial_speed: PosVelocity,
@@ -37,7 +40,7 @@ pub struct Limits {
     /// Part of the way of a retreating ring, before it is flush with its land or at the groove root, over which it comes to rest.
     pub retreat_band: PosRatio,
     /// Radial gap kept behind a ring at the groove root, so that its gas volume stays one.
-    pub least_room: PosLength,
+    pub min_room: PosLength,
     /// Film thickness beyond which a ring has left the liner: flooded films of rings stay below 40 um. Only events and notes know it.
     pub off_the_liner: PosLength,
     /// Sliding speed over which boundary friction changes its sign: a thousandth of a usual piston speed.
@@ -51,14 +54,14 @@ pub struct Limits {
     /// Most steps of a cycle; a run that needs more fails. 0: 30 000, some thirty times what a pack needs; in proportion to `tolerance^(-1/4)`
     /// below the default tolerance, and to the duration of the cycle below 100 rad/s, because rings and gas have times of their own.
     #[schemars(range(max = 1_000_000_000))]
-    pub most_steps: u64,
+    pub max_steps: u64,
 }
 
 impl Default for Limits {
     fn default() -> Self {
         Self {
-            least_film: quantity(1e-9),
-            least_load: quantity(1e-3),
+            min_film: quantity(1e-9),
+            min_load: quantity(1e-3),
             radial_speed: quantity(3.0),
             radial_drag: quantity(10.0),
             contact_drag: quantity(3e4),
@@ -67,13 +70,13 @@ impl Default for Limits {
             drag_gap_from: quantity(2.0),
             drag_gap_full: quantity(5.0),
             retreat_band: quantity(0.02),
-            least_room: quantity(1e-6),
+            min_room: quantity(1e-6),
             off_the_liner: quantity(50e-6),
             friction_speed: quantity(0.01),
             nominal_film: quantity(2e-6),
             thickest_film: quantity(60e-6),
             longest_step: quantity(10f64.to_radians()),
-            most_steps: 0,
+            max_steps: 0,
         }
     }
 }
@@ -81,7 +84,7 @@ impl Default for Limits {
 impl From<&Limits> for RadialLimits {
     fn from(l: &Limits) -> Self {
         Self {
-            least_load: l.least_load.si(),
+            min_load: l.min_load.si(),
             radial_speed: l.radial_speed.si(),
             radial_drag: l.radial_drag.si(),
             contact_drag: l.contact_drag.si(),
@@ -99,8 +102,8 @@ impl Limits {
     /// Most steps of a cycle at a tolerance and a crank speed \[rad/s\].
     #[must_use]
     pub fn steps_at(&self, tolerance: f64, omega: f64) -> u64 {
-        if self.most_steps > 0 {
-            return self.most_steps;
+        if self.max_steps > 0 {
+            return self.max_steps;
         }
         let (most, usual, slow) = STEPS;
         (most * (usual / tolerance).max(1.0).powf(0.25) * (slow / omega).max(1.0)) as u64

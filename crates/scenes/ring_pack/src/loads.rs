@@ -26,7 +26,7 @@ pub struct Loads<'a> {
     /// Solid contact of the whole face.
     pub line: &'a ContactLine,
     /// Film thickness that surfaces which take no load do not go below \[m\].
-    pub least_film: f64,
+    pub min_film: f64,
     /// Whether the films resist being squeezed.
     pub resists: bool,
     /// Circumference of all rails, which turns forces per length into forces \[m\].
@@ -82,7 +82,7 @@ impl RadialLoads for Loads<'_> {
         self.at.dry.0
     }
     fn lowest(&self) -> (f64, f64) {
-        (self.line.lowest(self.least_film), self.line.band())
+        (self.line.lowest(self.min_film), self.line.band())
     }
     fn furthest(&self) -> f64 {
         furthest(self.geo, self.place)

@@ -29,10 +29,10 @@ const THINNEST: f64 = 8.756e-27;
 /// Floors, caps and drags as numbers.
 #[derive(Debug, Clone, Copy)]
 pub struct Bounds {
-    /// See [`Limits::least_film`].
-    pub least_film: f64,
-    /// See [`Limits::least_room`].
-    pub least_room: f64,
+    /// See [`Limits::min_film`].
+    pub min_film: f64,
+    /// See [`Limits::min_room`].
+    pub min_room: f64,
     /// See [`Limits::off_the_liner`].
     pub off_the_liner: f64,
     /// See [`Limits::friction_speed`].
@@ -44,8 +44,8 @@ pub struct Bounds {
 impl From<&Limits> for Bounds {
     fn from(l: &Limits) -> Self {
         Self {
-            least_film: l.least_film.si(),
-            least_room: l.least_room.si(),
+            min_film: l.min_film.si(),
+            min_room: l.min_room.si(),
             off_the_liner: l.off_the_liner.si(),
             friction_speed: l.friction_speed.si(),
             thickest_film: l.thickest_film.si(),
@@ -172,7 +172,7 @@ impl Pack {
     ) -> RingPlace {
         let g = &self.geo.rings[i];
         // A ring that has bottomed in its groove keeps a sliver of gas behind it.
-        let behind = (g.h_max(liner_radius) - h).max(self.limits.least_room);
+        let behind = (g.h_max(liner_radius) - h).max(self.limits.min_room);
         let slope = g.slope_upper + g.slope_lower;
         let clearance = (g.clearance_inner + slope * behind).max(0.0);
         let r_inner = g.root_radius + behind;

@@ -156,9 +156,9 @@ impl Watch {
                     100.0 * w.slowed.most
                 )
             });
-            tell("least_load", &w.lifted, "load", "N", 1.0, &|when| {
+            tell("min_load", &w.lifted, "load", "N", 1.0, &|when| {
                 format!(
-                    "`solver.limits.least_load` adds up to {:.3e} N to the load of the film of ring {ring} {when}: gas presses the ring off",
+                    "`solver.limits.min_load` adds up to {:.3e} N to the load of the film of ring {ring} {when}: gas presses the ring off",
                     w.lifted.most
                 )
             });

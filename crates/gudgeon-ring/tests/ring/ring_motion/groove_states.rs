@@ -29,7 +29,7 @@ fn forces(s: f64, v: f64, gas: f64) -> RingForces {
         s,
         v,
         clearance: C,
-        e: (s / C).clamp(0.0, 1.0),
+        lift_fraction: (s / C).clamp(0.0, 1.0),
         r_inner: 0.055,
         r_outer: 0.06,
         ..RingPlace::default()

@@ -19,6 +19,6 @@ fn steps_follow_the_tolerance_unless_they_are_given() {
     let mut l = Limits::default();
     let most = [(1e-3, 200.0), (1e-4, 100.0), (1e-8, 200.0), (1e-4, 10.0)].map(|(t, w)| l.steps_at(t, w));
     assert_eq!(most, [30_000, 30_000, 300_000, 300_000]);
-    l.most_steps = 17;
+    l.max_steps = 17;
     assert_eq!(l.steps_at(1e-8, 1.0), 17);
 }
