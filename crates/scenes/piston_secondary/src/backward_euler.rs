@@ -10,8 +10,7 @@ use gudgeon_scene::{MethodSetting, RunError};
 use gudgeon_skirt::Momentum;
 use serde::{Deserialize, Serialize};
 
-use super::assemble::Assembly;
-use super::case::PistonSecondaryCase;
+use super::assembly::Assembly;
 use super::equations::Work;
 use super::solver::{Cycled, PistonSolver, PistonSolverSpec, mesh};
 use super::trajectory::{Between, Trajectory};
@@ -43,14 +42,14 @@ const REPEATABLE: f64 = 1e-4;
     example = "",
 )]
 impl PistonSolverSpec for BackwardEuler {
-    fn wrong(&self, case: &PistonSecondaryCase) -> Vec<BuildError> {
+    fn wrong(&self, series_step: f64) -> Vec<BuildError> {
         let mut errors = Vec::new();
         let steps = 4.0 * PI / self.step.si();
         if !(36.0..=1e6).contains(&steps) {
             let what = format!("a cycle of {steps:.0} steps is none: between 7e-4 and 20 degrees");
             errors.push(BuildError::at("solver.step", what));
         }
-        let parts = case.outputs.series_step.si() / self.step.si();
+        let parts = series_step / self.step.si();
         if (parts - parts.round()).abs() > 1e-6 {
             let what = "rows of the series must be a whole number of `solver.step` apart";
             errors.push(BuildError::at("outputs.series_step", what));
@@ -71,7 +70,7 @@ impl PistonSolverSpec for BackwardEuler {
         Box::new(EqualSteps { steps: (a.period / self.step.si()).round().max(1.0) as usize })
     }
 
-    fn settings(&self, _: Option<&PistonSecondaryCase>) -> Vec<MethodSetting> {
+    fn settings(&self, _: Option<[u32; 2]>) -> Vec<MethodSetting> {
         let mut all = Vec::new();
         for (method, film, points) in [
             (

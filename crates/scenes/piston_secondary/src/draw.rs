@@ -3,7 +3,7 @@
 use gudgeon_core::result::{Anchor, Column, Figure, FigureKind, Frame, RunResult, Series, Shape, Style};
 use gudgeon_skirt::Side;
 
-use super::assemble::Assembly;
+use super::assembly::Assembly;
 use super::plan::tidy;
 use super::record::{Map, Record};
 

@@ -4,7 +4,7 @@ use gudgeon_core::EvalError;
 use gudgeon_numerics::ode::OdeSystem;
 use gudgeon_skirt::{Instant, Partials};
 
-use super::assemble::Assembly;
+use super::assembly::Assembly;
 
 /// Work arrays of the equations.
 pub struct Work {

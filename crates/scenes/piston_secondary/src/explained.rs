@@ -4,7 +4,7 @@ use gudgeon_core::Registry;
 use gudgeon_core::result::{ModelUse, Skipped};
 use gudgeon_scene::model_use;
 
-use super::assemble::Assembly;
+use super::assembly::Assembly;
 use super::case::PistonSecondaryCase;
 use super::plan::ResultInfo;
 

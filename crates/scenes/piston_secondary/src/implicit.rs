@@ -8,8 +8,7 @@ use gudgeon_numerics::rodas::{Formula, Rodas};
 use gudgeon_scene::{IntegratorName, MethodSetting, RunError};
 use serde::{Deserialize, Serialize};
 
-use super::assemble::Assembly;
-use super::case::PistonSecondaryCase;
+use super::assembly::Assembly;
 use super::equations::{Equations, Work};
 use super::solver::{Cycled, PistonSolver, PistonSolverSpec, check_tolerance, mesh};
 use super::trajectory::{Between, Trajectory};
@@ -63,7 +62,7 @@ impl Implicit {
     example = "",
 )]
 impl PistonSolverSpec for Implicit {
-    fn wrong(&self, _: &PistonSecondaryCase) -> Vec<BuildError> {
+    fn wrong(&self, _: f64) -> Vec<BuildError> {
         check_tolerance("tolerance", self.tolerance.si()).into_iter().collect()
     }
 
@@ -82,7 +81,7 @@ impl PistonSolverSpec for Implicit {
         Box::new(Adaptive { method, tolerance: self.tolerance.si() })
     }
 
-    fn settings(&self, own: Option<&PistonSecondaryCase>) -> Vec<MethodSetting> {
+    fn settings(&self, own: Option<[u32; 2]>) -> Vec<MethodSetting> {
         let mut all = Vec::new();
         for (method, name, points) in [
             (
@@ -93,9 +92,7 @@ impl PistonSolverSpec for Implicit {
             ("implicit, order 5", IntegratorName::Rodas5p, &[(1e-3, 20, 16), (1e-4, 32, 20), (1e-5, 48, 32)]),
         ] {
             for &(t, along, across) in points {
-                let same_film = own.is_some_and(|c| {
-                    (along, across) == (c.solver.intervals_along, c.solver.intervals_across)
-                });
+                let same_film = own == Some([along, across]);
                 let same_error = (t / self.tolerance.si() - 1.0).abs() < 1e-9;
                 let mut set = vec![
                     "solver.method=implicit".into(),

@@ -35,7 +35,7 @@ pub fn legal(case: &PistonSecondaryCase) -> Vec<BuildError> {
     of_skirt(case, &mut errors);
     of_solver(case, &mut errors);
     of_outputs(case, &mut errors);
-    errors.extend(case.solver.method.wrong(case));
+    errors.extend(case.solver.method.wrong(case.outputs.series_step.si()));
     errors
 }
 

@@ -1,9 +1,10 @@
 //! The scene `piston_secondary`: lateral motion and tilt of one piston on the films and crests of its skirt.
 //!
-//! `assemble` builds the sub-models and `layout` places their states, `equations` gives the rates of all states, `implicit` and `backward_euler` integrate
+//! `assemble` builds the sub-models into an `assembly`, `layout` places their states, `equations` gives the rates of all states, `implicit` and `backward_euler` integrate
 //! them, `march` finds the periodic motion and `search` the motions on the way to it, `row` and `survey` look at a cycle, `results`, `record` and `draw` turn it into results, rows and pictures.
 
 pub mod assemble;
+pub mod assembly;
 pub mod backward_euler;
 pub mod case;
 mod draw;

@@ -7,7 +7,7 @@ use gudgeon_core::result::Note;
 use gudgeon_numerics::ode::Stats;
 use gudgeon_numerics::orbit::{CycleMap, OrbitOptions, OrbitReport, periodic_orbit};
 
-use super::assemble::Assembly;
+use super::assembly::Assembly;
 use super::case::PistonSecondaryCase;
 use super::equations::Work;
 use super::solver::{Cycled, PistonSolver};

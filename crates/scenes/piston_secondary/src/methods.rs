@@ -34,8 +34,9 @@ fn fine(tolerance: f64, along: u32, across: u32) -> Vec<String> {
 /// The settings of the solver of the case stand for the case where they are its own.
 fn settings(case: &PistonSecondaryCase) -> Vec<MethodSetting> {
     let own = case.solver.method.typetag_name();
+    let film = [case.solver.intervals_along, case.solver.intervals_across];
     let of = |(name, default): (&str, Box<dyn PistonSolverSpec>)| {
-        if name == own { case.solver.method.settings(Some(case)) } else { default.settings(None) }
+        if name == own { case.solver.method.settings(Some(film)) } else { default.settings(None) }
     };
     default_solvers::<dyn PistonSolverSpec>().into_iter().flat_map(of).collect()
 }

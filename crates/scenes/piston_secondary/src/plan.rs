@@ -2,7 +2,7 @@
 
 use gudgeon_core::BuildError;
 
-use super::assemble::Assembly;
+use super::assembly::Assembly;
 use super::case::PistonSecondaryCase;
 
 /// One result.

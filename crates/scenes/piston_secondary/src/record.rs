@@ -4,7 +4,7 @@ use gudgeon_core::EvalError;
 use gudgeon_core::result::{Column, Series};
 use gudgeon_skirt::Piston;
 
-use super::assemble::Assembly;
+use super::assembly::Assembly;
 use super::case::PistonSecondaryCase;
 use super::places::{angles, places};
 use super::plan::tidy;

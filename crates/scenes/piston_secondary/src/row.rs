@@ -2,7 +2,7 @@
 
 use gudgeon_core::EvalError;
 
-use super::assemble::Assembly;
+use super::assembly::Assembly;
 use super::trajectory::{Between, Trajectory};
 use gudgeon_scene::RunError;
 

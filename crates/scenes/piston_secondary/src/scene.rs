@@ -7,7 +7,8 @@ use gudgeon_core::result::{ModelUse, Note, RunResult, Skipped, SolverReport};
 use gudgeon_machine::GravitySide;
 use gudgeon_scene::{Explanation, Progress, RunError, SceneCase, WorkPrecision};
 
-use super::assemble::{Assembly, assemble};
+use super::assemble::assemble;
+use super::assembly::Assembly;
 use super::case::PistonSecondaryCase;
 use super::explained::{Explained, models};
 use super::impossible::impossible;

@@ -6,7 +6,8 @@ use gudgeon_scene::{Progress, RunError};
 
 use gudgeon_case::Loaded;
 
-use super::assemble::{Assembly, assemble};
+use super::assemble::assemble;
+use super::assembly::Assembly;
 use super::case::PistonSecondaryCase;
 use super::march::{self, Purpose};
 use super::record;

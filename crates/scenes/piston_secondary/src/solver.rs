@@ -7,8 +7,7 @@ use gudgeon_core::{BuildError, register_kind};
 use gudgeon_numerics::ode::Stats;
 use gudgeon_scene::{MethodSetting, RunError};
 
-use super::assemble::Assembly;
-use super::case::PistonSecondaryCase;
+use super::assembly::Assembly;
 use super::equations::Work;
 use super::trajectory::Trajectory;
 
@@ -20,8 +19,8 @@ use super::trajectory::Trajectory;
     summary = "integrates the motion of a piston in its bore over a cycle"
 )]
 pub trait PistonSolverSpec: Debug + DynClone + Send + Sync {
-    /// What is wrong with its own numbers and with what the case asks of it, with places in the case.
-    fn wrong(&self, case: &PistonSecondaryCase) -> Vec<BuildError>;
+    /// What is wrong with its own numbers, or with rows of the series every `series_step` \[rad\], with places in the case.
+    fn wrong(&self, series_step: f64) -> Vec<BuildError>;
 
     /// Why it cannot integrate this motion, with its place in the case.
     fn refuses(&self, _a: &Assembly) -> Option<BuildError> {
@@ -34,8 +33,9 @@ pub trait PistonSolverSpec: Debug + DynClone + Send + Sync {
     /// The solver, ready for cycles of `a`.
     fn build(&self, a: &Assembly) -> Box<dyn PistonSolver>;
 
-    /// Its settings from coarse to fine, for diagrams of run time against error; `own` is the case where it has this solver.
-    fn settings(&self, own: Option<&PistonSecondaryCase>) -> Vec<MethodSetting>;
+    /// Its settings from coarse to fine, for diagrams of run time against error; where a case has this
+    /// solver, `own` are the intervals of its film along and across.
+    fn settings(&self, own: Option<[u32; 2]>) -> Vec<MethodSetting>;
 }
 
 /// A solver of one piston, its work arrays allocated.

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use gudgeon_core::file::Files;
-use gudgeon_core::geometry::{BackVolume, PackGeometry, RingGeometry};
+use gudgeon_core::geometry::{PackGeometry, RingGeometry};
 use gudgeon_core::kinds::{
     CylinderPressure, FaceCtx, FilmTemperature, FilmTemperatureCtx, FlankDampingCtx, FlankFriction, GasFlow,
     GasFlowCtx, GasIn, GasOut, Hydrodynamics, Kinematics, Oil, OilTransport, OilTransportCtx, RadialMotion,
@@ -14,9 +14,10 @@ use gudgeon_core::{BuildError, EvalError};
 
 use super::case::RingPackCase;
 use super::contact_line::ContactLine;
+use super::distortion::liner_shape;
 use super::instant::{Counters, Instant, RingInstant, SeatLog};
 use super::layout::Layout;
-use super::liner::{LinerShape, liner_shape};
+use super::liner::LinerShape;
 use super::pack::Pack;
 use super::plan::{Facts, Plan, plan, wanted};
 use super::ring::Ring;
@@ -462,10 +463,4 @@ fn weigh(pack: &mut Pack) -> Result<(), Vec<BuildError>> {
         BuildError::new(format!("the gas volume `{name}` is not positive"))
             .help("check land heights and diameters, groove depth and ring thickness"),
     ])
-}
-
-/// Whether a ring keeps gas behind it.
-#[must_use]
-pub fn has_back_volume(back: BackVolume) -> bool {
-    matches!(back, BackVolume::Geometric | BackVolume::Fixed(_))
 }

@@ -10,6 +10,7 @@ pub mod case;
 pub mod contact_line;
 pub mod conventions;
 pub mod degree_march;
+pub mod distortion;
 mod end_gap;
 mod error;
 mod forces;

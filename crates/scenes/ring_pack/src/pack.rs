@@ -13,10 +13,10 @@ use gudgeon_core::kinds::{
 };
 use gudgeon_core::states::Stateful;
 
-use super::case::Limits;
 use super::conventions::Laws;
 use super::instant::{Counters, Instant, SeatLog};
 use super::layout::Layout;
+use super::limits::Limits;
 use super::liner::LinerShape;
 use super::plan::Plan;
 use super::ring::Ring;

@@ -2,10 +2,10 @@
 
 use std::f64::consts::PI;
 
+use gudgeon_core::geometry::BackVolume;
 use gudgeon_core::kinds::OilLedger;
 use gudgeon_core::result::{Balance, Column, Series};
 
-use super::assemble::has_back_volume;
 use super::pack::Pack;
 
 /// Totals of a cycle, integrated by the solver itself.
@@ -183,4 +183,9 @@ impl Record {
 pub(super) fn round_deg(deg: f64) -> f64 {
     let r = (deg * 1e3).round() / 1e3;
     if (r - deg).abs() < 1e-9 { r } else { deg }
+}
+
+/// Whether a ring keeps gas behind it.
+fn has_back_volume(back: BackVolume) -> bool {
+    matches!(back, BackVolume::Geometric | BackVolume::Fixed(_))
 }
