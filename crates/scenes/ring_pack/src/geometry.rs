@@ -6,7 +6,7 @@ use gudgeon_core::BuildError;
 use gudgeon_core::geometry::{BackVolume, Chamfer, LandGeometry, PackGeometry, RingGeometry};
 use gudgeon_core::result::{PackSection, SectionRing};
 
-use crate::case::{Ring, RingDesign, RingPackCase};
+use crate::case::{ChamferShape, Ring, RingDesign, RingPackCase};
 use gudgeon_machine::Land;
 
 /// Temperature at which cold gaps are measured \[K\] (zottin1992, 20 degC).
@@ -141,91 +141,26 @@ fn ring(
     };
     let (width, height) = (r.width.si(), r.height.si());
     let g = &r.groove;
-    let (c1, c2) = (g.upper_angle.si().tan(), g.lower_angle.si().tan());
+    let slopes = (g.upper_angle.si().tan(), g.lower_angle.si().tan());
     let sealed = r.design == RingDesign::ThreePiece;
-
-    // Running gap: given, or the cold gap less the growth of the ring's circumference.
-    let gap = match (r.gap, r.cold_gap, r.temperature) {
-        (Some(_), Some(_), _) => {
-            check(Err(BuildError::at("gap", "both `gap` and `cold_gap` are given").help("keep one of them")));
-            0.0
-        }
-        (Some(g), None, _) => g.si(),
-        (None, Some(g0), Some(t)) => {
-            g0.si() - r.expansion.si() * (2.0 * PI * bore_radius - g0.si()) * (t.si() - COLD)
-        }
-        (None, Some(_), None) => {
-            check(Err(BuildError::at("cold_gap", "a `cold_gap` needs the ring's running `temperature`")));
-            0.0
-        }
-        (None, None, _) if r.gap_area.is_some() => 0.0,
-        (None, None, _) => {
-            check(Err(BuildError::new("the ring has no end gap")
-                .help("give `gap`, or `cold_gap` with `temperature`, or `gap_area`")));
-            0.0
-        }
-    };
-    let root_radius = match (g.root_diameter, g.back_volume) {
-        (Some(d), _) => d.si() / 2.0,
-        // Lumped data: the root radius follows from the volume behind the ring, π (R_in² - R_g²) b.
-        (None, Some(v)) => {
-            let r_in = bore_radius - width;
-            (r_in * r_in - v.si() / (PI * height)).max(0.0).sqrt()
-        }
-        (None, None) if sealed => bore_radius - width - 0.5e-3,
-        (None, None) => {
-            check(Err(BuildError::at("groove", "the groove has neither `root_diameter` nor `back_volume`")));
-            0.0
-        }
-    };
-    if root_radius + width >= bore_radius {
-        check(Err(BuildError::at(
-            "groove.root_diameter",
-            format!(
-                "a ring {:.3} mm thick on a root of {:.3} mm does not fit a bore of {:.3} mm",
-                1e3 * width,
-                2e3 * root_radius,
-                2e3 * bore_radius
-            ),
-        )));
-    }
-    // Axial clearance: `b_in` and `B_in` are ring and groove at their inner ends (zottin1992 section 2.2).
-    let b_in = height - (c1 + c2) * width;
-    let (groove_height_inner, clearance_inner) = match (g.height, g.clearance) {
-        (Some(_), Some(_)) => {
-            check(Err(BuildError::at("groove.clearance", "both `height` and `clearance` are given")
-                .help("keep one of them")));
-            (b_in, 0.0)
-        }
-        (Some(b), None) => {
-            let inner = b.si() - (c1 * (above - root_radius) + c2 * (below - root_radius));
-            (inner, inner - b_in)
-        }
-        (None, Some(c)) => {
-            let behind = bore_radius - root_radius - width;
-            let rc = c.si() - (c1 + c2) * behind;
-            (b_in + rc, rc)
-        }
-        (None, None) => {
-            if !sealed {
-                check(Err(BuildError::at("groove", "the groove has neither `height` nor `clearance`")));
-            }
-            (b_in, 0.0)
-        }
-    };
+    // A number that is not known is complained about once and stands as zero until the end.
+    let gap = running_gap(r, bore_radius).unwrap_or_else(|e| {
+        check(Err(e));
+        0.0
+    });
+    let root_radius = root_radius(r, bore_radius).unwrap_or_else(|e| {
+        check(Err(e));
+        0.0
+    });
+    check(fits(root_radius, width, bore_radius));
     let behind = bore_radius - root_radius - width;
-    let clearance = clearance_inner + (c1 + c2) * behind;
-    if !sealed && ok_number(behind) && clearance <= 0.0 {
-        check(Err(BuildError::at(
-            if g.height.is_some() { "groove.height" } else { "groove.clearance" },
-            format!("the ring has an axial clearance of {:.4} mm in its groove", 1e3 * clearance),
-        )
-        .help(format!("a ring of {:.4} mm needs a higher groove", 1e3 * height))));
-    }
-    let chamfer = |c: Option<crate::case::ChamferShape>| {
-        c.map_or(0.0, |c| 0.5 * c.length.si() * c.length.si() * c.angle.si().tan())
-    };
-    let profile = match r.face.profile(height) {
+    let axial = Axial::new(r, slopes, (above - root_radius, below - root_radius), behind);
+    let axial = axial.unwrap_or_else(|e| {
+        check(Err(e));
+        Axial::tight(r, slopes)
+    });
+    check(axial.moves(r, slopes, behind));
+    let face = match r.face.profile(height) {
         Ok(p) => p,
         Err(e) => {
             check(Err(e.within("face")));
@@ -233,24 +168,7 @@ fn ring(
         }
     };
     let lands = if r.design == RingDesign::TwinLand { 2 } else { 1 };
-    if lands == 2 && 2.0 * profile.length() > height * (1.0 + 1e-9) {
-        check(Err(BuildError::at(
-            "face.length",
-            format!(
-                "two lands of {:.4} mm do not fit a ring of {:.4} mm",
-                1e3 * profile.length(),
-                1e3 * height
-            ),
-        )));
-    }
-    let back = match r.design {
-        RingDesign::ThreePiece => BackVolume::Sealed,
-        RingDesign::TwinLand => BackVolume::Drained,
-        RingDesign::Compression => match g.back_volume {
-            Some(v) => BackVolume::Fixed(v.si()),
-            None => BackVolume::Geometric,
-        },
-    };
+    check(faces_fit(lands, face.length(), height));
     ok.then(|| RingGeometry {
         height,
         width,
@@ -261,22 +179,153 @@ fn ring(
         piston_radius_above: above,
         piston_radius_below: below,
         root_radius,
-        slope_upper: c1,
-        slope_lower: c2,
-        groove_height_inner,
-        clearance_inner,
+        slope_upper: slopes.0,
+        slope_lower: slopes.1,
+        groove_height_inner: axial.groove_inner,
+        clearance_inner: axial.clearance_inner,
         leak_upper: g.leak_upper.si(),
         leak_lower: g.leak_lower.si(),
         leak_face: r.face_leak.si(),
         chamfer: Chamfer { area_lower: chamfer(g.chamfer_lower), area_upper: chamfer(g.chamfer_upper) },
-        back,
+        back: back(r),
         back_temperature: g.temperature.si(),
         oil_fill: g.oil_fill.si(),
-        face: profile,
+        face,
         lands,
         rails: if sealed { 2 } else { 1 },
         has_clearance: !sealed,
     })
+}
+
+/// End gap in the running engine \[m\]: given, or the cold gap less the growth of the ring's circumference.
+fn running_gap(r: &Ring, bore_radius: f64) -> Result<f64, BuildError> {
+    match (r.gap, r.cold_gap, r.temperature) {
+        (Some(_), Some(_), _) => {
+            Err(BuildError::at("gap", "both `gap` and `cold_gap` are given").help("keep one of them"))
+        }
+        (Some(g), None, _) => Ok(g.si()),
+        (None, Some(g0), Some(t)) => {
+            Ok(g0.si() - r.expansion.si() * (2.0 * PI * bore_radius - g0.si()) * (t.si() - COLD))
+        }
+        (None, Some(_), None) => {
+            Err(BuildError::at("cold_gap", "a `cold_gap` needs the ring's running `temperature`"))
+        }
+        (None, None, _) if r.gap_area.is_some() => Ok(0.0),
+        (None, None, _) => Err(BuildError::new("the ring has no end gap")
+            .help("give `gap`, or `cold_gap` with `temperature`, or `gap_area`")),
+    }
+}
+
+/// Radius of the root of the groove \[m\]: given, or by the volume behind the ring.
+fn root_radius(r: &Ring, bore_radius: f64) -> Result<f64, BuildError> {
+    let (width, g) = (r.width.si(), &r.groove);
+    match (g.root_diameter, g.back_volume) {
+        (Some(d), _) => Ok(d.si() / 2.0),
+        // Lumped data: π (R_in² - R_g²) b.
+        (None, Some(v)) => {
+            let r_in = bore_radius - width;
+            Ok((r_in * r_in - v.si() / (PI * r.height.si())).max(0.0).sqrt())
+        }
+        (None, None) if r.design == RingDesign::ThreePiece => Ok(bore_radius - width - 0.5e-3),
+        (None, None) => {
+            Err(BuildError::at("groove", "the groove has neither `root_diameter` nor `back_volume`"))
+        }
+    }
+}
+
+fn fits(root_radius: f64, width: f64, bore_radius: f64) -> Result<(), BuildError> {
+    if root_radius + width < bore_radius {
+        return Ok(());
+    }
+    Err(BuildError::at(
+        "groove.root_diameter",
+        format!(
+            "a ring {:.3} mm thick on a root of {:.3} mm does not fit a bore of {:.3} mm",
+            1e3 * width,
+            2e3 * root_radius,
+            2e3 * bore_radius
+        ),
+    ))
+}
+
+/// Heights of groove and ring at their inner ends (zottin1992 section 2.2).
+struct Axial {
+    /// Height of the groove at its root \[m\].
+    groove_inner: f64,
+    /// Axial clearance at the inner end of the ring \[m\].
+    clearance_inner: f64,
+}
+
+impl Axial {
+    /// A groove as high as the ring.
+    fn tight(r: &Ring, (c1, c2): (f64, f64)) -> Self {
+        Self { groove_inner: r.height.si() - (c1 + c2) * r.width.si(), clearance_inner: 0.0 }
+    }
+
+    /// By flank slopes, the `depths` of the groove below both lands and the distance `behind` the ring \[m\].
+    fn new(
+        r: &Ring,
+        (c1, c2): (f64, f64),
+        (depth_above, depth_below): (f64, f64),
+        behind: f64,
+    ) -> Result<Self, BuildError> {
+        let g = &r.groove;
+        let tight = Self::tight(r, (c1, c2));
+        match (g.height, g.clearance) {
+            (Some(_), Some(_)) => {
+                Err(BuildError::at("groove.clearance", "both `height` and `clearance` are given")
+                    .help("keep one of them"))
+            }
+            (Some(b), None) => {
+                let inner = b.si() - (c1 * depth_above + c2 * depth_below);
+                Ok(Self { groove_inner: inner, clearance_inner: inner - tight.groove_inner })
+            }
+            (None, Some(c)) => {
+                let rc = c.si() - (c1 + c2) * behind;
+                Ok(Self { groove_inner: tight.groove_inner + rc, clearance_inner: rc })
+            }
+            (None, None) if r.design == RingDesign::ThreePiece => Ok(tight),
+            (None, None) => Err(BuildError::at("groove", "the groove has neither `height` nor `clearance`")),
+        }
+    }
+
+    /// Whether the ring has room to move.
+    fn moves(&self, r: &Ring, (c1, c2): (f64, f64), behind: f64) -> Result<(), BuildError> {
+        let clearance = self.clearance_inner + (c1 + c2) * behind;
+        let sealed = r.design == RingDesign::ThreePiece;
+        if sealed || !ok_number(behind) || clearance > 0.0 {
+            return Ok(());
+        }
+        Err(BuildError::at(
+            if r.groove.height.is_some() { "groove.height" } else { "groove.clearance" },
+            format!("the ring has an axial clearance of {:.4} mm in its groove", 1e3 * clearance),
+        )
+        .help(format!("a ring of {:.4} mm needs a higher groove", 1e3 * r.height.si())))
+    }
+}
+
+fn faces_fit(lands: usize, length: f64, height: f64) -> Result<(), BuildError> {
+    if lands != 2 || 2.0 * length <= height * (1.0 + 1e-9) {
+        return Ok(());
+    }
+    Err(BuildError::at(
+        "face.length",
+        format!("two lands of {:.4} mm do not fit a ring of {:.4} mm", 1e3 * length, 1e3 * height),
+    ))
+}
+
+/// Area that a chamfer opens at the end gap \[m²\].
+fn chamfer(c: Option<ChamferShape>) -> f64 {
+    c.map_or(0.0, |c| 0.5 * c.length.si() * c.length.si() * c.angle.si().tan())
+}
+
+fn back(r: &Ring) -> BackVolume {
+    match (r.design, r.groove.back_volume) {
+        (RingDesign::ThreePiece, _) => BackVolume::Sealed,
+        (RingDesign::TwinLand, _) => BackVolume::Drained,
+        (RingDesign::Compression, Some(v)) => BackVolume::Fixed(v.si()),
+        (RingDesign::Compression, None) => BackVolume::Geometric,
+    }
 }
 
 fn ok_number(v: f64) -> bool {

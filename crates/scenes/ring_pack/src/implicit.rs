@@ -13,7 +13,7 @@ use gudgeon_numerics::ode::{
     Direction, EventAction, Flow, IntegrateError, Integrator, LinearInvariant, OdeSystem, Options, Stats,
     StepView,
 };
-use gudgeon_numerics::orbit::{CycleMap, OrbitOptions, periodic_orbit};
+use gudgeon_numerics::orbit::{CycleMap, OrbitOptions, OrbitReport, periodic_orbit};
 use gudgeon_numerics::panel::LOBATTO;
 use gudgeon_numerics::radau::Radau5;
 use gudgeon_numerics::rodas::{Formula, Rodas};
@@ -29,6 +29,7 @@ use super::rows::Rows;
 use super::solver::{NOT_PERIODIC, Recorded, RingPackSolverSpec, Solution, Wanted};
 use super::watch::Watch;
 use gudgeon_scene::{IntegratorName, MethodSetting, RunError};
+use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -546,6 +547,108 @@ fn stopped(e: IntegrateError) -> RunError {
     }
 }
 
+/// Crank angles where a right-hand side has a kink: those of the pressure, and the dead centres, where the sliding speed changes its sign.
+fn breakpoints(pack: &Pack) -> Vec<f64> {
+    let mut all: Vec<f64> = pack.cylinder.kinks().to_vec();
+    all.extend((1..(pack.period() / PI).round() as usize).map(|k| k as f64 * PI));
+    all.sort_by(f64::total_cmp);
+    all.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
+    all
+}
+
+/// Gas in, less gas out, is gas stored.
+fn gas_balance(pack: &Pack) -> Vec<LinearInvariant> {
+    if pack.layout.gas.is_empty() {
+        return Vec::new();
+    }
+    let (first, last) = (pack.layout.n, pack.layout.n + pack.n_rings());
+    let mut terms = vec![(first, -1.0), (last, 1.0)];
+    terms.extend(pack.mass_scale.iter().copied().enumerate());
+    vec![LinearInvariant { pivot: last, terms }]
+}
+
+impl<'a> Cycle<'a> {
+    fn new(s: &Implicit, pack: &'a mut Pack, wanted: &Wanted<'_>, progress: &'a mut dyn FnMut(f64)) -> Self {
+        let dim = pack.layout.n;
+        let quads = 2 * pack.n_rings() + 1;
+        let rosenbrock = |formula| Method::Rodas(Box::new(Rodas::with(formula, dim, quads, None)));
+        let method = match s.integrator.at(s.tolerance.si()) {
+            IntegratorName::Rodas3 => rosenbrock(Formula::Rodas3),
+            IntegratorName::Rodas | IntegratorName::Rodas5p => rosenbrock(Formula::Rodas5P),
+            IntegratorName::Radau5 => Method::Radau(Box::new(Radau5::new(dim, quads, None))),
+        };
+        Cycle {
+            method,
+            breakpoints: breakpoints(pack),
+            scale: pack.layout.states.iter().map(|s| s.scale).collect(),
+            absolute: pack.layout.states.iter().map(|s| !s.relative).collect(),
+            balance: gas_balance(pack),
+            events: Vec::new(),
+            base: Base::default(),
+            h: FIRST_STEP,
+            stats: Stats::default(),
+            q: vec![0.0; quads],
+            longest_step: wanted.limits.longest_step.si(),
+            max_steps: wanted.limits.steps_at(s.tolerance.si(), pack.omega),
+            failure: None,
+            progress,
+            done: 0.0,
+            pack,
+        }
+    }
+
+    /// Searches the periodic state from `y`.
+    fn close(&mut self, y: &mut [f64], options: &OrbitOptions) -> Result<OrbitReport, RunError> {
+        periodic_orbit(self, y, options).map_err(|source| {
+            let theta_deg = self.pack.at.theta.to_degrees();
+            self.failure.take().map_or(RunError::Eval { theta_deg, source }, stopped)
+        })
+    }
+
+    /// The cycle from `y` once more, at full accuracy, into `sampler`; the error of its mass balances of gas and of oil.
+    fn record(
+        &mut self,
+        y: &mut [f64],
+        tolerance: f64,
+        sampler: &mut Sampler,
+    ) -> Result<(f64, Option<f64>), RunError> {
+        let dim = self.pack.layout.n;
+        let gas: Vec<f64> = y[self.pack.layout.gas.clone()].to_vec();
+        self.begin(y);
+        let oil_before = self.pack.oil_total(y);
+        if let Some(o) = &mut self.pack.oil_pack {
+            // What the crankcase put on the liner before the first step was counted with the rest.
+            o.clear_ledger();
+        }
+        self.integrate(&mut y[..dim], tolerance, Some(sampler)).map_err(stopped)?;
+        let oil_mass = self.pack.oil_pack.as_ref().map(|o| {
+            let l = o.ledger();
+            let stored = self.pack.oil_total(y) - oil_before;
+            (l.supplied - l.drained - l.thrown - stored).abs() / l.taken.max(f64::MIN_POSITIVE)
+        });
+        if let Some(source) = sampler.failure.take() {
+            return Err(RunError::Eval { theta_deg: self.pack.at.theta.to_degrees(), source });
+        }
+        let (q, n) = (&self.q, self.pack.n_rings());
+        let stored: f64 = gas.iter().zip(&*y).zip(&self.pack.mass_scale).map(|((a, b), m)| (b - a) * m).sum();
+        let through = q[0].abs().max(q[n].abs()).max(f64::MIN_POSITIVE);
+        Ok(((q[0] - q[n] - stored).abs() / through, oil_mass))
+    }
+}
+
+/// Work counters of a search.
+fn counters(work: &Stats) -> IndexMap<String, u64> {
+    let all = [
+        ("steps", work.steps),
+        ("rejected", work.rejected),
+        ("rhs", work.rhs),
+        ("jacobians", work.jacobians),
+        ("factorisations", work.lu),
+        ("events", work.events),
+    ];
+    all.into_iter().map(|(k, v)| (k.to_owned(), v)).collect()
+}
+
 /// Solves one start.
 fn run(
     s: &Implicit,
@@ -556,105 +659,36 @@ fn run(
 ) -> Result<Solution, RunError> {
     let begin = Instant::now();
     let dim = pack.layout.n;
-    let quads = 2 * pack.n_rings() + 1;
-    let rosenbrock = |formula| Method::Rodas(Box::new(Rodas::with(formula, dim, quads, None)));
-    let method = match s.integrator.at(s.tolerance.si()) {
-        IntegratorName::Rodas3 => rosenbrock(Formula::Rodas3),
-        IntegratorName::Rodas | IntegratorName::Rodas5p => rosenbrock(Formula::Rodas5P),
-        IntegratorName::Radau5 => Method::Radau(Box::new(Radau5::new(dim, quads, None))),
-    };
-    // The pressure has kinks of its own; the sliding speed of the films changes sign at the dead centres.
-    let period = pack.period();
-    let mut breakpoints: Vec<f64> = pack.cylinder.kinks().to_vec();
-    breakpoints.extend((1..(period / PI).round() as usize).map(|k| k as f64 * PI));
-    breakpoints.sort_by(f64::total_cmp);
-    breakpoints.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
-    let scale: Vec<f64> = pack.layout.states.iter().map(|s| s.scale).collect();
-    let absolute: Vec<bool> = pack.layout.states.iter().map(|s| !s.relative).collect();
-    // Gas in, less gas out, is gas stored.
-    let mut balance = Vec::new();
-    if !pack.layout.gas.is_empty() {
-        let (first, last) = (dim, dim + pack.n_rings());
-        let mut terms = vec![(first, -1.0), (last, 1.0)];
-        terms.extend(pack.mass_scale.iter().copied().enumerate());
-        balance.push(LinearInvariant { pivot: last, terms });
-    }
     let discrete = pack.decision_interval().is_some();
     let mut y = vec![0.0; dim + pack.layout.carried];
     pack.initial(start, &mut y[..dim]);
     if let Some(oil) = &pack.oil_pack {
         oil.field(&mut y[dim..]);
     }
-    let cycle_speed = pack.omega;
-    let mut cycle = Cycle {
-        pack,
-        method,
-        breakpoints,
-        scale,
-        absolute,
-        balance,
-        events: Vec::new(),
-        base: Base::default(),
-        h: FIRST_STEP,
-        stats: Stats::default(),
-        q: vec![0.0; quads],
-        longest_step: wanted.limits.longest_step.si(),
-        max_steps: wanted.limits.steps_at(s.tolerance.si(), cycle_speed),
-        failure: None,
-        progress,
-        done: 0.0,
-    };
     // A map is only as repeatable as its integration is accurate, and where a film ends on the liner depends on where steps end.
-    let repeatable = if cycle.pack.oil_pack.is_some() { OIL_NOISE } else { 1.0 } * s.tolerance.si();
+    let tolerance = s.tolerance.si();
+    let repeatable = if pack.oil_pack.is_some() { OIL_NOISE } else { 1.0 } * tolerance;
     let options = OrbitOptions {
         tolerance: s.periodicity.si().max(repeatable),
-        accuracy: s.tolerance.si(),
+        accuracy: tolerance,
         max_cycles: s.max_cycles as usize,
         finer: FINER,
-        accelerate: !discrete && cycle.pack.oil_pack.is_none(),
+        accelerate: !discrete && pack.oil_pack.is_none(),
     };
-    let report = match periodic_orbit(&mut cycle, &mut y, &options) {
-        Ok(r) => r,
-        Err(source) => {
-            let theta_deg = cycle.pack.at.theta.to_degrees();
-            return Err(cycle.failure.map_or(RunError::Eval { theta_deg, source }, stopped));
-        }
-    };
+    let mut cycle = Cycle::new(s, pack, wanted, progress);
+    let report = cycle.close(&mut y, &options)?;
     let seconds = begin.elapsed().as_secs_f64();
-    let work = cycle.stats;
-    // The recorded cycle, at full accuracy.
+    let counters = counters(&cycle.stats);
     let mut sampler = Sampler::new(cycle.pack, wanted);
-    let gas: Vec<f64> = y[cycle.pack.layout.gas.clone()].to_vec();
-    cycle.begin(&y);
-    let oil_before = cycle.pack.oil_total(&y);
-    if let Some(o) = &mut cycle.pack.oil_pack {
-        // What the crankcase put on the liner before the first step was counted with the rest.
-        o.clear_ledger();
-    }
-    cycle.integrate(&mut y[..dim], s.tolerance.si(), Some(&mut sampler)).map_err(stopped)?;
-    let oil_mass = cycle.pack.oil_pack.as_ref().map(|o| {
-        let l = o.ledger();
-        let stored = cycle.pack.oil_total(&y) - oil_before;
-        (l.supplied - l.drained - l.thrown - stored).abs() / l.taken.max(f64::MIN_POSITIVE)
-    });
-    if let Some(source) = sampler.failure.take() {
-        return Err(RunError::Eval { theta_deg: cycle.pack.at.theta.to_degrees(), source });
-    }
+    let (gas_mass, oil_mass) = cycle.record(&mut y, tolerance, &mut sampler)?;
     let q = cycle.q;
     let n = pack.n_rings();
-    let stored: f64 = gas.iter().zip(&y).zip(&pack.mass_scale).map(|((a, b), m)| (b - a) * m).sum();
-    let through = q[0].abs().max(q[n].abs()).max(f64::MIN_POSITIVE);
     let (energy, momentum) = sampler.balance(pack);
     let totals = Totals {
         flow_in: q[..n].to_vec(),
         blow_by: q[n],
         friction_work: q[n + 1..].to_vec(),
-        balance: Balance {
-            gas_mass: Some((q[0] - q[n] - stored).abs() / through),
-            oil_mass,
-            energy,
-            momentum,
-        },
+        balance: Balance { gas_mass: Some(gas_mass), oil_mass, energy, momentum },
         periodicity_error: report.error_estimate,
         oil: pack.oil_pack.as_ref().map_or_else(OilLedger::default, |o| o.ledger()),
     };
@@ -663,14 +697,6 @@ fn run(
     if report.period == 1 && !report.converged {
         notes.push(not_periodic(report.error_estimate, options.tolerance, report.cycles));
     }
-    let counters = [
-        ("steps", work.steps),
-        ("rejected", work.rejected),
-        ("rhs", work.rhs),
-        ("jacobians", work.jacobians),
-        ("factorisations", work.lu),
-        ("events", work.events),
-    ];
     Ok(Solution {
         liner: liner_table(pack, sampler.liner),
         record: Recorded::Rows(sampler.rows),
@@ -679,7 +705,7 @@ fn run(
         // Decisions that do not repeat are told by the caller, for every start.
         period: if report.converged || !discrete { report.period } else { 0 },
         cycles: report.cycle_equivalents,
-        counters: counters.into_iter().map(|(k, v)| (k.to_owned(), v)).collect(),
+        counters,
         notes,
         seconds,
     })
