@@ -9,6 +9,8 @@
 //! The sub-models are those of the case: with the published ones this is the published program, and with finer steps
 //! it tends to the solution of the same equations as the implicit solver.
 
+use std::f64::consts::PI;
+
 use gudgeon_core::quantity::{PosRatio, quantity};
 use gudgeon_core::{BuildError, EvalError, register_model};
 use gudgeon_scene::{MethodSetting, RunError};
@@ -161,6 +163,151 @@ struct RingState {
     a: f64,
 }
 
+/// The pack on its way through the cycles.
+struct March<'a> {
+    pack: &'a mut Pack,
+    set: Settings,
+    rings: Vec<RingState>,
+    /// Cylinder pressure at whole degrees \[Pa\].
+    p_table: Vec<f64>,
+    /// Sub-step \[s\].
+    dt: f64,
+    totals: Totals,
+    /// Volumes behind the rings that the last pressures belong to \[m³\].
+    volumes: Vec<f64>,
+}
+
+/// One degree \[rad\].
+const DEGREE: f64 = PI / 180.0;
+
+impl<'a> March<'a> {
+    fn new(pack: &'a mut Pack, set: Settings, start: f64) -> Self {
+        pack.gas.unbound();
+        let mut y = vec![0.0; pack.layout.n];
+        pack.initial(start, &mut y);
+        // The listing starts every film at 1 µm and every ring at rest on its lower flank.
+        let film = |i: usize| if pack.plan.film { 1e-6 } else { pack.rings[i].nominal_film };
+        let rings: Vec<RingState> =
+            (0..pack.n_rings()).map(|i| RingState { h: film(i), s: 0.0, v: 0.0, a: 0.0 }).collect();
+        // Whole-degree values, wrapped: the listing reads one beyond its table.
+        let p_table = (0..=set.passes).map(|k| pack.cylinder.pressure(f64::from(k) * DEGREE)).collect();
+        let dt = DEGREE / pack.omega / f64::from(set.steps);
+        let volumes = Vec::with_capacity(rings.len());
+        Self { pack, set, rings, p_table, dt, totals: Totals::default(), volumes }
+    }
+
+    /// Motion of the piston and place of the rings at sub-step `sub` of a pass; crank angle \[rad\] and cylinder pressure \[Pa\].
+    fn look(&mut self, pass: u32, sub: u32) -> (f64, f64) {
+        let f = f64::from(sub) / f64::from(self.set.steps);
+        let theta = (f64::from(pass) + f) * DEGREE;
+        let pack = &mut *self.pack;
+        pack.at.theta = theta;
+        pack.at.piston = pack.kinematics.motion(theta);
+        let k = pass as usize;
+        let p_cyl = self.p_table[k] + (self.p_table[k + 1] - self.p_table[k]) * f;
+        pack.counters.instants += 1;
+        for (i, r) in self.rings.iter().enumerate() {
+            pack.refresh_ring(i, r.h, moving(pack, i).then_some((r.s, r.v)));
+        }
+        (theta, p_cyl)
+    }
+
+    /// Fills all volumes to `start` \[Pa\].
+    fn fill(&mut self, start: f64, p_cyl: f64) {
+        self.pack.fill_masses(start, p_cyl);
+        self.volumes.clear();
+        self.volumes.extend(self.pack.at.places.iter().map(|p| p.back_volume));
+    }
+
+    fn stored(&self) -> f64 {
+        self.pack.masses.iter().sum()
+    }
+
+    /// The explicit steps of the gas in a sub-step.
+    fn gas(&mut self, p_cyl: f64) -> Result<(), EvalError> {
+        let (pack, totals) = (&mut *self.pack, &mut self.totals);
+        let dt = self.dt / f64::from(self.set.gas_steps);
+        for g in 0..self.set.gas_steps {
+            if g == 0 {
+                // The listing computes pressures after the masses: its first flows are those of the pressures so far.
+                swap_volumes(pack, &mut self.volumes);
+            }
+            pack.gas_step(p_cyl)?;
+            if g == 0 {
+                swap_volumes(pack, &mut self.volumes);
+            }
+            for (m, dm) in pack.masses.iter_mut().zip(&pack.at.dm) {
+                *m += dm * dt;
+            }
+            for (sum, w) in totals.flow_in.iter_mut().zip(&pack.at.gas.flow_in) {
+                *sum += w * dt;
+            }
+            totals.blow_by += pack.at.gas.flow_out[self.rings.len() - 1] * dt;
+        }
+        for (v, p) in self.volumes.iter_mut().zip(&pack.at.places) {
+            *v = p.back_volume;
+        }
+        pack.gas_pressures(p_cyl)
+    }
+
+    /// The radial balance and the friction of each ring.
+    fn films(&mut self) -> Result<(), EvalError> {
+        let (pack, dt) = (&mut *self.pack, self.dt);
+        if !pack.plan.film {
+            return Ok(());
+        }
+        for (i, r) in self.rings.iter_mut().enumerate() {
+            let old = r.h;
+            r.h = bisect(pack, i, old, dt, (r.s, r.v))?;
+            pack.set_place(i, r.h, moving(pack, i).then_some((r.s, r.v)));
+            pack.friction_at(i, (r.h - old) / dt)?;
+            self.totals.friction_work[i] += pack.at.rings[i].power * dt;
+        }
+        Ok(())
+    }
+
+    fn grooves(&mut self) {
+        for (i, r) in self.rings.iter_mut().enumerate() {
+            if moving(self.pack, i) {
+                axial(self.pack, i, r, self.dt, self.set.clamp);
+            }
+        }
+    }
+
+    /// What a sub-step of the last cycle leaves in the books.
+    fn note(&self, books: &mut Books, pass: u32, sub: u32, theta: f64) {
+        books.watch.look(self.pack, self.dt * self.pack.omega);
+        if pass == 0 && sub == 1 {
+            // The state before the first step is as nearly as the scheme knows it that after it.
+            books.measures.march(0.0, self.pack, 0.0);
+        }
+        books.measures.march(theta, self.pack, self.totals.flow_in[0]);
+    }
+
+    /// The row of the series at the end of a pass of the last cycle.
+    fn row(&self, books: &mut Books, pass: u32) {
+        if pass == 0 {
+            // Row 0 repeats the state before the first pass as nearly as the scheme knows it.
+            books.record.push(0.0, self.pack, &vec![0.0; self.rings.len()], 0.0);
+        }
+        let whole = f64::from(pass + 1) * DEGREE;
+        books.record.push(whole, self.pack, &self.totals.flow_in, self.totals.blow_by);
+    }
+
+    /// Ends a cycle that began with `before` \[kg\] of gas; `known`: that it began where the one before ended.
+    fn balance(&mut self, before: f64, known: bool) {
+        let after = self.stored();
+        let t = &mut self.totals;
+        let through = t.flow_in[0].abs().max(t.blow_by.abs()).max(f64::MIN_POSITIVE);
+        t.balance.gas_mass = known.then(|| ((t.flow_in[0] - t.blow_by) - (after - before)).abs() / through);
+        // Change of the stored gas over the cycle: how far the state is from repeating.
+        t.periodicity_error = ((after - before) / through).abs();
+    }
+}
+
+/// Passes of a whole cycle; the listing's further ones are not shown.
+const WHOLE: u32 = 720;
+
 /// Runs the scheme; calls `progress` with the fraction done.
 fn run(
     pack: &mut Pack,
@@ -169,119 +316,37 @@ fn run(
     books: &mut Books,
     progress: &mut dyn FnMut(f64),
 ) -> Result<(Totals, u64), EvalError> {
-    let n = pack.n_rings();
-    pack.gas.unbound();
-    let mut y = vec![0.0; pack.layout.n];
-    pack.initial(start, &mut y);
-    // The listing starts every film at 1 µm and every ring at rest on its lower flank.
-    let mut rings: Vec<RingState> = (0..n)
-        .map(|i| RingState {
-            h: if pack.plan.film { 1e-6 } else { pack.rings[i].nominal_film },
-            s: 0.0,
-            v: 0.0,
-            a: 0.0,
-        })
-        .collect();
-    let degree = 1f64.to_radians();
-    let dt = degree / pack.omega / f64::from(set.steps);
-    let dt_gas = dt / f64::from(set.gas_steps);
-    // Whole-degree values, wrapped: the listing reads one beyond its table.
-    let p_table: Vec<f64> = (0..=set.passes).map(|k| pack.cylinder.pressure(f64::from(k) * degree)).collect();
-    let mut totals = Totals::default();
+    let mut march = March::new(pack, set, start);
+    let n = march.rings.len();
     let mut steps = 0;
-    let mut started = false;
-    // Volumes behind the rings that the last pressures belong to.
-    let mut volumes = Vec::with_capacity(n);
     for cycle in 1..=set.cycles {
-        totals = Totals { flow_in: vec![0.0; n], friction_work: vec![0.0; n], ..Totals::default() };
-        let mut before: f64 = pack.masses.iter().sum();
-        let last = cycle == set.cycles;
+        march.totals = Totals { flow_in: vec![0.0; n], friction_work: vec![0.0; n], ..Totals::default() };
+        let mut before = march.stored();
         for pass in 0..set.passes {
+            let shown = cycle == set.cycles && pass < WHOLE;
             for sub in 1..=set.steps {
-                let f = f64::from(sub) / f64::from(set.steps);
-                let theta = (f64::from(pass) + f) * degree;
-                pack.at.theta = theta;
-                pack.at.piston = pack.kinematics.motion(theta);
-                let k = pass as usize;
-                let p_cyl = p_table[k] + (p_table[k + 1] - p_table[k]) * f;
-                pack.counters.instants += 1;
-                for (i, r) in rings.iter().enumerate() {
-                    pack.refresh_ring(i, r.h, moving(pack, i).then_some((r.s, r.v)));
+                let (theta, p_cyl) = march.look(pass, sub);
+                if steps == 0 {
+                    march.fill(start, p_cyl);
+                    before = march.stored();
                 }
-                if !started {
-                    started = true;
-                    pack.fill_masses(start, p_cyl);
-                    before = pack.masses.iter().sum();
-                    volumes.clear();
-                    volumes.extend(pack.at.places.iter().map(|p| p.back_volume));
-                }
-                for g in 0..set.gas_steps {
-                    if g == 0 {
-                        // The listing computes pressures after the masses: its first flows are those of the pressures so far.
-                        swap_volumes(pack, &mut volumes);
-                    }
-                    pack.gas_step(p_cyl)?;
-                    if g == 0 {
-                        swap_volumes(pack, &mut volumes);
-                    }
-                    for (m, dm) in pack.masses.iter_mut().zip(&pack.at.dm) {
-                        *m += dm * dt_gas;
-                    }
-                    for (sum, w) in totals.flow_in.iter_mut().zip(&pack.at.gas.flow_in) {
-                        *sum += w * dt_gas;
-                    }
-                    totals.blow_by += pack.at.gas.flow_out[n - 1] * dt_gas;
-                }
-                for (v, p) in volumes.iter_mut().zip(&pack.at.places) {
-                    *v = p.back_volume;
-                }
-                pack.gas_pressures(p_cyl)?;
-                if pack.plan.film {
-                    for (i, r) in rings.iter_mut().enumerate() {
-                        let old = r.h;
-                        r.h = bisect(pack, i, old, dt, (r.s, r.v))?;
-                        pack.set_place(i, r.h, moving(pack, i).then_some((r.s, r.v)));
-                        pack.friction_at(i, (r.h - old) / dt)?;
-                        totals.friction_work[i] += pack.at.rings[i].power * dt;
-                    }
-                }
-                for (i, r) in rings.iter_mut().enumerate() {
-                    if moving(pack, i) {
-                        axial(pack, i, r, dt, set.clamp);
-                    }
-                }
-                if last && pass < 720 {
-                    books.watch.look(pack, dt * pack.omega);
-                }
+                march.gas(p_cyl)?;
+                march.films()?;
+                march.grooves();
                 steps += 1;
-                if last && pass < 720 {
-                    if pass == 0 && sub == 1 {
-                        // The state before the first step is as nearly as the scheme knows it that after it.
-                        books.measures.march(0.0, pack, 0.0);
-                    }
-                    books.measures.march(theta, pack, totals.flow_in[0]);
+                if shown {
+                    march.note(books, pass, sub, theta);
                 }
             }
-            let whole = f64::from(pass + 1) * degree;
-            if last && pass < 720 {
-                if pass == 0 {
-                    // Row 0 repeats the state before the first pass as nearly as the scheme knows it.
-                    books.record.push(0.0, pack, &vec![0.0; n], 0.0);
-                }
-                books.record.push(whole, pack, &totals.flow_in, totals.blow_by);
+            if shown {
+                march.row(books, pass);
             }
-            progress(
-                (f64::from(cycle - 1) + f64::from(pass) / f64::from(set.passes)) / f64::from(set.cycles),
-            );
+            let done = f64::from(cycle - 1) + f64::from(pass) / f64::from(set.passes);
+            progress(done / f64::from(set.cycles));
         }
-        let after: f64 = pack.masses.iter().sum();
-        let through = totals.flow_in[0].abs().max(totals.blow_by.abs()).max(f64::MIN_POSITIVE);
-        totals.balance.gas_mass =
-            (cycle > 1).then(|| ((totals.flow_in[0] - totals.blow_by) - (after - before)).abs() / through);
-        // Change of the stored gas over the cycle: how far the state is from repeating.
-        totals.periodicity_error = ((after - before) / through).abs();
+        march.balance(before, cycle > 1);
     }
-    Ok((totals, steps))
+    Ok((march.totals, steps))
 }
 
 fn swap_volumes(pack: &mut Pack, volumes: &mut [f64]) {
@@ -316,7 +381,7 @@ fn bisect(pack: &mut Pack, i: usize, old: f64, dt: f64, s: (f64, f64)) -> Result
             return Ok(if low == floor { floor } else { h });
         }
     }
-    Err(EvalError::fatal("as_published", format!("bisection of the film of ring {} did not end", i + 1)))
+    Err(EvalError::fatal("substep_march", format!("bisection of the film of ring {} did not end", i + 1)))
 }
 
 /// One step of `m a = F`, damping at the new velocity and position: `v' = v + a Δt`, `s' = s + v Δt + a Δt²/2`.
