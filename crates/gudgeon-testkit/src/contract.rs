@@ -1,5 +1,6 @@
 //! What every registered model keeps: `models`, `describe`, `schema`, case files and reports rely on nothing else.
 
+use std::ffi::OsStr;
 use std::path::Path;
 
 use gudgeon_core::{ModelInfo, Registry};
@@ -78,10 +79,13 @@ fn names(m: &ModelInfo) -> Vec<String> {
     if !m.name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_') {
         wrong.push("the name is not snake_case".into());
     }
-    let stem = Path::new(m.file).file_stem().and_then(|s| s.to_str()).unwrap_or_default();
+    let file = Path::new(m.file);
+    let text = |s: Option<&OsStr>| s.and_then(OsStr::to_str).unwrap_or_default().to_owned();
+    // A large model has a folder of its name.
+    let (stem, folder) = (text(file.file_stem()), text(file.parent().and_then(Path::file_name)));
     // `off` and `constant` exist in several kinds; a crate with more than one puts them into a folder or module.
-    if stem != m.name {
-        wrong.push(format!("stands in {}, the file should be {}.rs", m.file, m.name));
+    if stem != m.name && folder != m.name {
+        wrong.push(format!("stands in {}, the file should be {}.rs, or a folder {}", m.file, m.name, m.name));
     }
     wrong
 }

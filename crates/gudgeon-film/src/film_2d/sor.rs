@@ -66,7 +66,7 @@ const MODEL: &str = "sor";
                 omega = 2/(1 + sqrt(1 - rho^2))",
     validity = "As multigrid, at many times its cost.",
     references = ["reynolds1886", "cryer1971", "ausas2009", "loureiro2009"],
-    example = "cavitation = \"half_sommerfeld\"\nflux = \"face\"\ntolerance = 1e-9\nmost_sweeps = 100000\n",
+    example = "cavitation = \"half_sommerfeld\"\nflux = \"face\"\ntolerance = 1e-9\nmax_sweeps = 100000\n",
 )]
 impl Film2dSpec for Sor {
     fn build(&self, ctx: &Film2dCtx<'_>) -> Result<Box<dyn Film2d>, BuildError> {
