@@ -7,7 +7,7 @@ use gudgeon_numerics::fourier::Fourier;
 use gudgeon_numerics::linalg::Complex;
 
 use crate::forcing::gas_period;
-use crate::patches::Patches;
+use crate::interpolant::Interpolant;
 use crate::steady::Steady;
 
 /// Points over the cycle by harmonics: products of three are still resolved.
@@ -51,9 +51,9 @@ struct Throw {
     /// Place among those of the line, and row.
     throw: usize,
     row: usize,
-    gas: Option<Patches>,
+    gas: Option<Interpolant>,
     /// Inertia and its derivative by the angle.
-    inertia: Option<[Patches; 2]>,
+    inertia: Option<[Interpolant; 2]>,
     /// Gas torque of even rotation.
     even: Vec<f64>,
 }
@@ -90,9 +90,10 @@ impl Beyond {
                 Throw {
                     throw: k,
                     row: row(t.node),
-                    gas: (!t.ends.is_empty()).then(|| Patches::new(turns, |a| gas(line, k, a))),
-                    inertia: varies
-                        .then(|| [Patches::new(1, |a| inertia(a).0), Patches::new(1, |a| inertia(a).1)]),
+                    gas: (!t.ends.is_empty()).then(|| Interpolant::new(turns, |a| gas(line, k, a))),
+                    inertia: varies.then(|| {
+                        [Interpolant::new(1, |a| inertia(a).0), Interpolant::new(1, |a| inertia(a).1)]
+                    }),
                     even: zero(1),
                 }
             })
@@ -246,12 +247,12 @@ impl Beyond {
                 let (i, o) = (t.row * m + COARSER * s, t.row * few + s);
                 let at = even(line, t.throw, self.cycle, s, few) + x[i];
                 if let Some(p) = &mut t.gas {
-                    by_angle[o] += p.slope(at, |a| gas(line, t.throw, a));
+                    by_angle[o] += p.derivative(at, |a| gas(line, t.throw, a));
                 }
                 if let Some([inertia, slope]) = &mut t.inertia {
                     let j = inertia.value(at, |a| throw.inertia.inertia(a).0);
                     let dj = slope.value(at, |a| throw.inertia.inertia(a).1);
-                    let ddj = slope.slope(at, |a| throw.inertia.inertia(a).1);
+                    let ddj = slope.derivative(at, |a| throw.inertia.inertia(a).1);
                     let w = speed + v[i];
                     by_angle[o] -= dj * a[i] + 0.5 * ddj * w * w;
                     by_speed[o] -= dj * w;

@@ -9,8 +9,8 @@ use gudgeon_torsion::steady::about_mean_torque;
 use gudgeon_torsion::torsion::{HarmonicBalance, Implicit, Orders, RungeKutta};
 use std::f64::consts::PI;
 
-use super::common::compressor::run;
-use super::common::node;
+use crate::common::compressor::run;
+use crate::common::node;
 
 fn c(re: f64, im: f64) -> Complex {
     Complex::new(re, im)

@@ -1,13 +1,7 @@
 //! Forced vibration against exact solutions, conservation and special cases.
 
-mod common;
-#[path = "forced/couplings.rs"]
-mod couplings;
-#[path = "forced/time.rs"]
-mod time;
-
-use common::reference::*;
-use common::{chain, engine, link, node};
+use crate::common::reference::*;
+use crate::common::{chain, engine, link, node};
 use gudgeon_core::kinds::{Line, LineNode};
 use gudgeon_numerics::linalg::Complex;
 use gudgeon_torsion::sweep::{LANES, Sweep};

@@ -1,9 +1,7 @@
 //! Eigenvalues and shapes against exact solutions.
 
-mod common;
-
-use common::reference::*;
-use common::{chain, engine, link, node};
+use crate::common::reference::*;
+use crate::common::{chain, engine, link, node};
 use gudgeon_core::kinds::Line;
 use gudgeon_torsion::eigen::{
     damped_eigenvalues, holzer_residual, modes, natural_frequencies, roots, shapes,

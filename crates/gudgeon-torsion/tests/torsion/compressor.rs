@@ -2,10 +2,8 @@
 //! what must hold whatever the numbers (momentum, energy, closed forms). Values without a word on where they come from are of that
 //! implementation (NumPy and SciPy, matrix exponentials, compiled Runge-Kutta).
 
-mod common;
-
-use common::Gas;
-use common::compressor::*;
+use crate::common::Gas;
+use crate::common::compressor::*;
 use gudgeon_core::kinds::*;
 use gudgeon_core::quantity::quantity;
 use gudgeon_numerics::linalg::Complex;
@@ -463,8 +461,8 @@ fn orders_are_what_the_time_domain_settles_to() {
     // Modes, all of them, without the coupling of modes by damping: with light damping the same to some percent; without damping
     // and without order at a resonance the same to rounding.
     let mut bare = base.clone();
-    bare.links.iter_mut().zip(common::COMPRESSOR_K).for_each(|(k, stiffness)| {
-        *k = common::link(k.nodes[0], k.nodes[1], stiffness, 0.0, 0.0);
+    bare.links.iter_mut().zip(crate::common::COMPRESSOR_K).for_each(|(k, stiffness)| {
+        *k = crate::common::link(k.nodes[0], k.nodes[1], stiffness, 0.0, 0.0);
     });
     let a = run(&Orders {}, &context(&bare, speed, 24.0, &[], &[]));
     for (modes, tolerance) in [(7, 1e-10), (5, 5e-3)] {
@@ -490,7 +488,7 @@ fn a_free_throw_keeps_its_energy() {
     {
         let inertia = model.build(&THROW).expect("builds");
         let l = Line {
-            nodes: vec![common::node(0.0, 0.0)],
+            nodes: vec![crate::common::node(0.0, 0.0)],
             throws: vec![LineThrow { node: 0, phase: 0.0, inertia: inertia.clone(), ends: Vec::new() }],
             ..Line::default()
         };
@@ -597,7 +595,7 @@ fn energy_balances_without_gas() {
     let energy = |r: usize| {
         let kinetic: f64 = (0..7).map(|i| 0.5 * l.mean_inertia(i) * out.speeds[r][i].powi(2)).sum();
         let elastic: f64 = (0..6)
-            .map(|i| 0.5 * common::COMPRESSOR_K[i] * (out.angles[r][i] - out.angles[r][i + 1]).powi(2))
+            .map(|i| 0.5 * crate::common::COMPRESSOR_K[i] * (out.angles[r][i] - out.angles[r][i + 1]).powi(2))
             .sum();
         kinetic + elastic
     };

@@ -7,8 +7,8 @@ use gudgeon_torsion::drive::{Constant, Harmonic, Harmonics};
 use gudgeon_torsion::torsion::{Implicit, Modal, Orders, Propagator, RungeKutta};
 use std::f64::consts::PI;
 
-use super::common::compressor::{THROW, run};
-use super::common::{chain, link, node};
+use crate::common::compressor::{THROW, run};
+use crate::common::{chain, link, node};
 
 fn context<'a>(line: &'a Line, start: [&'a [f64]; 2], times: &'a [f64]) -> TorsionCtx<'a> {
     TorsionCtx {

@@ -1,0 +1,31 @@
+//! Interpolation of periodic functions of the crank angle.
+
+use std::f64::consts::PI;
+
+use gudgeon_torsion::interpolant::Interpolant;
+
+#[test]
+fn a_function_with_a_corner_is_evaluated_there_and_a_polynomial_elsewhere() {
+    // Smooth but for a corner at 1.234, period two turns.
+    let f = |a: f64| {
+        let a = a.rem_euclid(4.0 * PI);
+        1e4 * ((0.5 * a).sin() / (1.2 + a.cos()) + 0.1 * (a - 1.234).max(0.0) * (4.0 * PI - a))
+    };
+    let mut p = Interpolant::new(2, f);
+    for k in 0..40_000 {
+        let at = -20.0 + 0.001 * f64::from(k);
+        // Twice: the segment is built first, and used then.
+        p.value(at, f);
+        let error = (p.value(at, f) - f(at)).abs();
+        // What a polynomial promises, and the rounding of the angle by a derivative of 2e4 per radian.
+        assert!(error < 1.5 * p.tolerance() + 2e4 * 4e-15, "{at}: {error:e}");
+    }
+    let direct = p.direct_segments();
+    // The corner and the jump of the derivative where the period ends, which touch two segments each at most.
+    assert!((1..=4).contains(&direct), "{direct}");
+    // The derivative of sin(a/2)/(1.2 + cos a) at 0.5 in closed form; interpolation loses the sixth power of the segment.
+    let exact = 1e4
+        * (0.5 * 0.25_f64.cos() / (1.2 + 0.5_f64.cos())
+            + 0.25_f64.sin() * 0.5_f64.sin() / (1.2 + 0.5_f64.cos()).powi(2));
+    assert!((p.derivative(0.5, f) / exact - 1.0).abs() < 1e-9);
+}
