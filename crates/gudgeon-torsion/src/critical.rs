@@ -7,7 +7,7 @@ use crate::steady::Steady;
 
 /// A speed at which an order excites a mode at its natural frequency.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Critical {
+pub struct CriticalSpeed {
     /// Speed of the reference shaft \[rad/s\].
     pub speed: f64,
     /// The order.
@@ -20,8 +20,10 @@ pub struct Critical {
     pub damping_ratio: f64,
 }
 
-/// Halvings that place a speed to rounding.
-const HALVINGS: usize = 60;
+/// Halvings of an interval that place a frequency to rounding.
+const BISECTIONS: usize = 60;
+/// Doublings of a guess until it lies above the frequency.
+const DOUBLINGS: usize = 40;
 
 impl Steady {
     /// Whether natural frequencies depend on the speed: by the mean torque of a coupling, which drives and drag change.
@@ -31,14 +33,14 @@ impl Steady {
             && (!self.line.drives.is_empty() || self.line.nodes.iter().any(|n| n.damping != 0.0))
     }
 
-    /// Undamped natural frequencies \[rad/s\] of the elastic modes at the speed it stands at, ascending, at most `most` modes with the
+    /// Undamped natural frequencies \[rad/s\] of the elastic modes at the speed it stands at, ascending, at most `max_modes` modes with the
     /// rigid ones. A law over the frequency is taken at the natural frequency itself.
     ///
     /// # Errors
     /// No convergence (Fatal).
-    pub fn frequencies(&mut self, most: usize) -> Result<Vec<f64>, EvalError> {
+    pub fn frequencies(&mut self, max_modes: usize) -> Result<Vec<f64>, EvalError> {
         self.at_frequency(0.0);
-        let first = natural_frequencies(&self.tree, most)?;
+        let first = natural_frequencies(&self.tree, max_modes)?;
         let rigid = rigid_modes(&self.tree);
         let elastic = first.iter().skip(rigid);
         if !self.line.links.iter().any(|l| l.coupling.depends_on_frequency()) {
@@ -50,13 +52,13 @@ impl Steady {
             let below = |s: &mut Self, w: f64| s.count_at(w) <= rigid + k;
             let (mut low, mut high) = (0.0, guess);
             // Stiffer with the frequency, mostly: look further up.
-            for _ in 0..40 {
+            for _ in 0..DOUBLINGS {
                 if !below(self, high) {
                     break;
                 }
                 (low, high) = (high, 2.0 * high);
             }
-            for _ in 0..HALVINGS {
+            for _ in 0..BISECTIONS {
                 let middle = 0.5 * (low + high);
                 if below(self, middle) { low = middle } else { high = middle }
             }
@@ -72,54 +74,25 @@ impl Steady {
         self.tree.count_below(omega * omega, &mut work)
     }
 
-    /// All speeds from `from` to `to` at which one of `orders` meets a natural frequency; ascending. `grid` says at how many speeds
-    /// between them the stiffness of a line that depends on the speed is looked at.
+    /// All speeds from `from` to `to` \[rad/s\] at which one of `orders` meets a natural frequency; ascending. `grid` is the number of
+    /// intervals at whose ends the stiffness of a line that depends on the speed is evaluated.
     ///
-    /// Counts of negative pivots at both ends of an interval tell how many natural frequencies the order passes in it; halving places
-    /// them to rounding. An order that passes a frequency forth and back within one interval is not seen.
-    pub fn critical_speeds(&mut self, orders: &[f64], from: f64, to: f64, grid: usize) -> Vec<Critical> {
+    /// Counts of negative pivots at both ends of an interval give the number of natural frequencies that the order passes in it; bisection
+    /// places them to rounding. An order that passes a frequency forth and back within one interval is not seen.
+    pub fn critical_speeds(&mut self, orders: &[f64], from: f64, to: f64, grid: usize) -> Vec<CriticalSpeed> {
         let speed = self.speed;
-        let rigid = rigid_modes(&self.tree);
         let steps = if self.depends_on_speed() { grid.max(2) } else { 1 };
         let mut found = Vec::new();
         for &order in orders {
-            let count = |s: &mut Self, at: f64| {
-                if s.depends_on_speed() {
-                    s.set_speed(at);
-                }
-                s.count_at(order * at)
-            };
             let at = |i: usize| from + (to - from) * i as f64 / steps as f64;
             let mut open: Vec<[(f64, usize); 2]> = Vec::new();
-            let mut last = (at(0), count(self, at(0)));
+            let mut last = (at(0), self.count_by_order(order, at(0)));
             for i in 1..=steps {
-                let next = (at(i), count(self, at(i)));
+                let next = (at(i), self.count_by_order(order, at(i)));
                 open.push([last, next]);
                 last = next;
             }
-            while let Some([a, b]) = open.pop() {
-                if a.1 == b.1 {
-                    continue;
-                }
-                let middle = 0.5 * (a.0 + b.0);
-                if middle <= a.0 || middle >= b.0 || b.0 - a.0 <= 4.0 * f64::EPSILON * b.0 {
-                    let (low, high) = (a.1.min(b.1).max(rigid), a.1.max(b.1));
-                    for k in low..high {
-                        let mode = k + 1 - rigid;
-                        found.push(Critical {
-                            speed: b.0,
-                            order,
-                            mode,
-                            omega: order * b.0,
-                            damping_ratio: 0.0,
-                        });
-                    }
-                    continue;
-                }
-                let m = (middle, count(self, middle));
-                open.push([a, m]);
-                open.push([m, b]);
-            }
+            self.bisect(order, open, &mut found);
         }
         found.sort_unstable_by(|a, b| {
             a.speed.total_cmp(&b.speed).then(a.order.total_cmp(&b.order)).then(a.mode.cmp(&b.mode))
@@ -134,5 +107,38 @@ impl Steady {
         }
         self.set_speed(speed);
         found
+    }
+
+    /// Number of natural frequencies below the frequency of an order at a speed, with the stiffness that holds there.
+    fn count_by_order(&mut self, order: f64, speed: f64) -> usize {
+        if self.depends_on_speed() {
+            self.set_speed(speed);
+        }
+        self.count_at(order * speed)
+    }
+
+    /// Halves intervals, each given by speeds and counts at its ends, down to the speeds at which the count changes.
+    fn bisect(&mut self, order: f64, mut open: Vec<[(f64, usize); 2]>, found: &mut Vec<CriticalSpeed>) {
+        let rigid = rigid_modes(&self.tree);
+        while let Some([a, b]) = open.pop() {
+            if a.1 == b.1 {
+                continue;
+            }
+            let middle = 0.5 * (a.0 + b.0);
+            if middle <= a.0 || middle >= b.0 || b.0 - a.0 <= 4.0 * f64::EPSILON * b.0 {
+                let (low, high) = (a.1.min(b.1).max(rigid), a.1.max(b.1));
+                found.extend((low..high).map(|k| CriticalSpeed {
+                    speed: b.0,
+                    order,
+                    mode: k + 1 - rigid,
+                    omega: order * b.0,
+                    damping_ratio: 0.0,
+                }));
+                continue;
+            }
+            let m = (middle, self.count_by_order(order, middle));
+            open.push([a, m]);
+            open.push([m, b]);
+        }
     }
 }

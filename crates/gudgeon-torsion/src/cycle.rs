@@ -1,4 +1,4 @@
-//! Extremes over the cycle of sums of orders.
+//! Maximum and minimum over the cycle of a sum of orders.
 
 use std::f64::consts::PI;
 
@@ -57,7 +57,7 @@ impl Cycle {
         (0..self.samples).map(turn).collect()
     }
 
-    /// Largest and smallest value, for a mean and the phasors of the orders.
+    /// Maximum and minimum, for a mean and the phasors of the orders.
     pub fn extremes(&mut self, mean: f64, phasors: impl Fn(usize) -> [f64; 2]) -> [f64; 2] {
         let mut wave = std::mem::take(&mut self.wave);
         wave.fill(0.0);
@@ -77,14 +77,14 @@ impl Cycle {
                 *w += re * cos - im * sin;
             }
         }
-        let top = self.highest(&wave, 1.0, &phasors);
-        let bottom = -self.highest(&wave, -1.0, &phasors);
+        let top = self.maximum(&wave, 1.0, &phasors);
+        let bottom = -self.maximum(&wave, -1.0, &phasors);
         self.wave = wave;
         [mean + top, mean + bottom]
     }
 
-    /// Largest value of `sign` times the wave.
-    fn highest(&self, wave: &[f64], sign: f64, phasors: &impl Fn(usize) -> [f64; 2]) -> f64 {
+    /// Maximum of `sign` times the wave.
+    fn maximum(&self, wave: &[f64], sign: f64, phasors: &impl Fn(usize) -> [f64; 2]) -> f64 {
         let n = self.samples;
         let (high, low) = wave
             .iter()
@@ -92,12 +92,12 @@ impl Cycle {
         if high <= low {
             return high.max(0.0);
         }
-        let worth = high - MISSED * (high - low);
+        let threshold = high - MISSED * (high - low);
         let mut best = high;
         for s in 0..n {
             let (before, here, after) =
                 (sign * wave[(s + n - 1) % n], sign * wave[s], sign * wave[(s + 1) % n]);
-            if here >= worth && here >= before && here > after {
+            if here >= threshold && here >= before && here > after {
                 let curve = before - 2.0 * here + after;
                 let shift = if curve < 0.0 { 0.5 * (before - after) / curve } else { 0.0 };
                 best = best.max(self.climb(s as f64 + shift, sign, phasors));
@@ -106,23 +106,23 @@ impl Cycle {
         best
     }
 
-    /// The top near the point `s`, by Newton's method on the slope, at most one point away.
+    /// The top near the point `s`, by Newton's method on the derivative, at most one point away.
     fn climb(&self, s: f64, sign: f64, phasors: &impl Fn(usize) -> [f64; 2]) -> f64 {
         let step = self.period / self.samples as f64;
         let mut at = s * step;
         let (from, to) = (at - step, at + step);
         let mut best = f64::NEG_INFINITY;
         for _ in 0..20 {
-            let (mut value, mut slope, mut curve) = (0.0, 0.0, 0.0);
+            let (mut value, mut first, mut second) = (0.0, 0.0, 0.0);
             self.each_order(at, |k, o, sin, cos| {
                 let [re, im] = phasors(k);
                 let (x, y) = (re * cos - im * sin, re * sin + im * cos);
                 value += sign * x;
-                slope -= sign * o * y;
-                curve -= sign * o * o * x;
+                first -= sign * o * y;
+                second -= sign * o * o * x;
             });
             best = best.max(value);
-            let newton = if curve < 0.0 { -slope / curve } else { 0.25 * step * slope.signum() };
+            let newton = if second < 0.0 { -first / second } else { 0.25 * step * first.signum() };
             let next = (at + newton).clamp(from, to);
             // The value is flat there: an error of the place counts squared.
             if (next - at).abs() <= 1e-8 * step {

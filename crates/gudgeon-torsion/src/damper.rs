@@ -15,7 +15,7 @@ pub struct Optimum {
     pub amplitude: f64,
 }
 
-/// Viscous damper without a spring: `ζ = 1/√(2 (1+μ)(2+μ))`, largest amplitude `1 + 2/μ` at `ω/ω_main = √(2/(2+μ))`.
+/// Viscous damper without a spring: `ζ = 1/√(2 (1+μ)(2+μ))`, maximum amplitude `1 + 2/μ` at `ω/ω_main = √(2/(2+μ))`.
 #[must_use]
 pub fn viscous(mu: f64) -> Optimum {
     Optimum {

@@ -33,14 +33,14 @@ pub struct Excitation {
 
 /// Fourier coefficients `c_k`, `f = c_0 + Re Σ c_k e^{i k b α}`, of a function that is smooth between `kinks`, `b = 2π/period`.
 #[must_use]
-pub fn series(f: impl Fn(f64) -> f64, period: f64, kinks: &[f64], most: usize) -> Vec<Complex> {
+pub fn series(f: impl Fn(f64) -> f64, period: f64, kinks: &[f64], max_harmonic: usize) -> Vec<Complex> {
     let base = 2.0 * PI / period;
-    let panels = (PANELS as f64 * period / (2.0 * PI)).ceil().max(most as f64 / 4.0) as usize;
+    let panels = (PANELS as f64 * period / (2.0 * PI)).ceil().max(max_harmonic as f64 / 4.0) as usize;
     let mut stops: Vec<f64> = (0..=panels).map(|i| period * i as f64 / panels as f64).collect();
     stops.extend(kinks.iter().map(|k| k.rem_euclid(period)));
     stops.sort_unstable_by(f64::total_cmp);
     let gauss = GaussLegendre::new(POINTS);
-    let mut c = vec![Complex::default(); most + 1];
+    let mut c = vec![Complex::default(); max_harmonic + 1];
     for w in stops.windows(2) {
         let (a, b) = (w[0], w[1]);
         if b - a < 1e-14 * period {
@@ -90,34 +90,34 @@ fn kinks(t: &LineThrow) -> Vec<f64> {
 
 /// Fourier coefficients of the gas torque of a throw over the angle of the throw; the base order is `2π/period`.
 #[must_use]
-pub fn gas_series(t: &LineThrow, most: usize) -> Vec<Complex> {
+pub fn gas_series(t: &LineThrow, max_harmonic: usize) -> Vec<Complex> {
     let torque = |a: f64| t.ends.iter().map(|e| e.torque(a, a)).sum();
-    series(torque, gas_period(t), &kinks(t), most)
+    series(torque, gas_period(t), &kinks(t), max_harmonic)
 }
 
 /// Fourier coefficients of `-½ dI/dθ`, the torque of the moving masses at unit speed.
 #[must_use]
-pub fn inertia_series(t: &LineThrow, most: usize) -> Vec<Complex> {
+pub fn inertia_series(t: &LineThrow, max_harmonic: usize) -> Vec<Complex> {
     if t.inertia.is_constant() {
         return vec![Complex::default(); 1];
     }
-    series(|a| -0.5 * t.inertia.inertia(a).1, 2.0 * PI, &[], most)
+    series(|a| -0.5 * t.inertia.inertia(a).1, 2.0 * PI, &[], max_harmonic)
 }
 
-/// Number of harmonics of a throw up to order `most` of the reference shaft.
-fn wanted(line: &Line, t: &LineThrow, base: f64, most: f64) -> usize {
-    (most / (base * line.nodes[t.node].ratio.abs()) + SAME).floor() as usize
+/// Number of harmonics of a throw up to order `max_order` of the reference shaft.
+fn wanted(line: &Line, t: &LineThrow, base: f64, max_order: f64) -> usize {
+    (max_order / (base * line.nodes[t.node].ratio.abs()) + SAME).floor() as usize
 }
 
 impl Excitation {
-    /// All torques of a line that turns at `speed` \[rad/s\], to order `most` of the reference shaft.
+    /// All torques of a line that turns at `speed` \[rad/s\], to order `max_order` of the reference shaft.
     #[must_use]
-    pub fn new(line: &Line, speed: f64, most: f64) -> Self {
+    pub fn new(line: &Line, speed: f64, max_order: f64) -> Self {
         let mut e = Self { orders: Vec::new(), mean: vec![0.0; line.nodes.len()] };
-        e.gas(line, most);
-        e.masses(line, speed, most);
+        e.gas(line, max_order);
+        e.masses(line, speed, max_order);
         e.at_speed(line, speed);
-        e.given(line, most);
+        e.given(line, max_order);
         e.orders.sort_unstable_by(|a, b| a.order.total_cmp(&b.order));
         e
     }
@@ -157,40 +157,40 @@ impl Excitation {
     /// The torques that do not depend on the speed, and those of the moving masses at unit speed: the torque at speed Ω is the first
     /// plus Ω² times the second. Means are those of the gas alone.
     #[must_use]
-    pub fn parts(line: &Line, most: f64) -> [Self; 2] {
+    pub fn parts(line: &Line, max_order: f64) -> [Self; 2] {
         let empty = || Self { orders: Vec::new(), mean: vec![0.0; line.nodes.len()] };
         let (mut fixed, mut square) = (empty(), empty());
-        fixed.gas(line, most);
-        fixed.given(line, most);
-        square.masses(line, 1.0, most);
+        fixed.gas(line, max_order);
+        fixed.given(line, max_order);
+        square.masses(line, 1.0, max_order);
         for e in [&mut fixed, &mut square] {
             e.orders.sort_unstable_by(|a, b| a.order.total_cmp(&b.order));
         }
         [fixed, square]
     }
 
-    fn gas(&mut self, line: &Line, most: f64) {
+    fn gas(&mut self, line: &Line, max_order: f64) {
         for t in line.throws.iter().filter(|t| !t.ends.is_empty()) {
             let base = 2.0 * PI / gas_period(t);
-            let c = gas_series(t, wanted(line, t, base, most));
+            let c = gas_series(t, wanted(line, t, base, max_order));
             self.mean[t.node] += c[0].re;
             self.insert(line, t.node, t.phase, base, &c);
         }
     }
 
-    fn masses(&mut self, line: &Line, speed: f64, most: f64) {
+    fn masses(&mut self, line: &Line, speed: f64, max_order: f64) {
         for t in line.throws.iter().filter(|t| !t.inertia.is_constant()) {
-            let mut c = inertia_series(t, wanted(line, t, 1.0, most));
+            let mut c = inertia_series(t, wanted(line, t, 1.0, max_order));
             let turn = speed * line.nodes[t.node].ratio;
             c.iter_mut().for_each(|c| *c = *c * Complex::new(turn * turn, 0.0));
             self.insert(line, t.node, t.phase, 1.0, &c);
         }
     }
 
-    fn given(&mut self, line: &Line, most: f64) {
+    fn given(&mut self, line: &Line, max_order: f64) {
         for d in &line.drives {
             for o in d.drive.orders() {
-                if o.order * line.nodes[d.node].ratio.abs() <= most + SAME {
+                if o.order * line.nodes[d.node].ratio.abs() <= max_order + SAME {
                     let a = Complex::new(o.cosine * d.factor, -o.sine * d.factor);
                     self.add(line, d.node, d.phase, o.order, a);
                 }

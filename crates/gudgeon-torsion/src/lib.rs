@@ -10,7 +10,6 @@
 //!
 //! Everything rests on one data structure, the line as a tree in the order of its elimination: see [`tree`].
 
-mod beyond;
 pub mod coupling;
 mod crank_end;
 pub mod critical;

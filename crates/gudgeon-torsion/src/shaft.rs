@@ -28,7 +28,7 @@ impl Piece {
         density * self.length * self.polar_moment()
     }
 
-    /// Largest shear stress \[Pa\] under a torque \[N m\]: `T d/(2 I_p)`.
+    /// Maximum shear stress \[Pa\] under a torque \[N m\]: `T d/(2 I_p)`.
     #[must_use]
     pub fn stress(&self, torque: f64) -> f64 {
         torque * 0.5 * self.diameter / self.polar_moment()
@@ -41,7 +41,7 @@ pub fn stiffness(pieces: &[Piece], shear_modulus: f64) -> f64 {
     shear_modulus / pieces.iter().map(|p| p.length / p.polar_moment()).sum::<f64>()
 }
 
-/// The piece of largest stress under a torque.
+/// The piece of maximum stress under a torque.
 #[must_use]
 pub fn weakest(pieces: &[Piece]) -> Option<&Piece> {
     pieces.iter().max_by(|a, b| a.stress(1.0).total_cmp(&b.stress(1.0)))

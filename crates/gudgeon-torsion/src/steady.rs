@@ -14,7 +14,7 @@ use crate::tree::{Singular, Tree, Work};
 pub struct Steady {
     /// The line.
     pub line: Line,
-    /// Its tree, linearised about the mean torques, with the slopes of the drives as damping.
+    /// Its tree, linearised about the mean torques, with the derivatives of the drive torques by the speed as damping.
     pub tree: Tree,
     /// What excites it.
     pub excitation: Excitation,
@@ -37,7 +37,7 @@ pub struct Steady {
     scratch: [Vec<Complex>; 3],
 }
 
-/// Damping of the drives: the slopes of their torques at the mean speed, by position.
+/// Damping of the drives: the negative derivatives of their torques by the speed at the mean speed, by position.
 pub(crate) fn drive_damping(line: &Line, tree: &mut Tree, speed: f64) {
     for d in &line.drives {
         let p = tree.position[d.node];
@@ -114,19 +114,19 @@ impl Steady {
         self.linearise();
     }
 
-    /// Leaves the torque of the moving masses out of the excitation, and gives it every multiple of `base` up to the harmonic `most`,
+    /// Leaves the torque of the moving masses out of the excitation, and gives it every multiple of `base` up to the harmonic `count`,
     /// also where nothing excites it.
-    pub(crate) fn whole_orders_without_masses(&mut self, base: f64, most: usize) {
+    pub(crate) fn whole_orders_without_masses(&mut self, base: f64, count: usize) {
         let n = self.line.nodes.len();
         let [fixed, masses] = &mut self.parts;
         masses.orders.clear();
         let old = std::mem::take(&mut fixed.orders);
-        fixed.orders = (1..=most)
+        fixed.orders = (1..=count)
             .map(|k| Order { order: k as f64 * base, torque: vec![Complex::default(); n] })
             .collect();
         for o in old {
             let k = (o.order / base).round() as usize;
-            if (1..=most).contains(&k) {
+            if (1..=count).contains(&k) {
                 fixed.orders[k - 1].torque = o.torque;
             }
         }

@@ -103,11 +103,23 @@ impl Sweep {
 
     /// Plain elimination; false when a pivot is small.
     fn fast(&mut self, tree: &Tree, omega: &Lane, torque: &[[f64; 2]]) -> bool {
+        self.coefficients(tree, omega, torque);
+        let mut margin = [f64::INFINITY; LANES];
+        let brought = self.eliminate(tree, omega, &mut margin);
+        self.root(tree, omega, &brought, &mut margin);
+        if margin.iter().any(|m| *m <= 0.0) {
+            return false;
+        }
+        self.substitute(tree);
+        true
+    }
+
+    /// Dynamic stiffness of every node by itself, and its torque.
+    #[inline(always)]
+    fn coefficients(&mut self, tree: &Tree, omega: &Lane, torque: &[[f64; 2]]) {
         let n = tree.len();
         let (inertia, damping, ground) = (&tree.inertia[..n], &tree.damping[..n], &tree.ground[..n]);
-        let (k, c, eta, parent) = (&tree.k[..n], &tree.c[..n], &tree.eta[..n], &tree.parent[..n]);
-        let (s, f, t) = (&mut self.s[..n], &mut self.f[..n], &mut self.t[..n]);
-        let (angle, transmitted) = (&mut self.angle[..n], &mut self.transmitted[..n]);
+        let (s, f) = (&mut self.s[..n], &mut self.f[..n]);
         for i in 0..n {
             for l in 0..LANES {
                 let w = omega[l];
@@ -117,75 +129,72 @@ impl Sweep {
                 f[i][1][l] = torque[i][1];
             }
         }
-        // Smallest of all pivots against their limits, by lane: a minimum has no branch.
-        let mut margin = [f64::INFINITY; LANES];
-        // What the branches bring to the last pivot, beside which it may vanish.
+    }
+
+    /// Eliminates all nodes but the root. `margin` receives the smallest of all pivots against their limits, by lane: a minimum has no
+    /// branch. Returned is what the branches bring to the last pivot, beside which it may vanish.
+    #[inline(always)]
+    fn eliminate(&mut self, tree: &Tree, omega: &Lane, margin: &mut Lane) -> Lane {
+        let n = tree.len();
+        let (k, parent) = (&tree.k[..n], &tree.parent[..n]);
+        let (s, f, t) = (&mut self.s[..n], &mut self.f[..n], &mut self.t[..n]);
+        let angle = &mut self.angle[..n];
         let mut brought = [0.0; LANES];
         for i in 0..n - 1 {
             let p = parent[i];
             let (own, force) = (s[i], f[i]);
+            // Of a rigid link the branch as it is, of another one springs in series.
+            let series;
             if k[i] == f64::INFINITY {
-                add(&mut s[p], &own);
+                series = own;
                 add(&mut f[p], &force);
-                if p == n - 1 {
-                    for l in 0..LANES {
-                        brought[l] += own[0][l].abs() + own[1][l].abs();
-                    }
-                }
-                for l in 0..LANES {
-                    t[i][0][l] = 1.0;
-                    t[i][1][l] = 0.0;
-                    angle[i][0][l] = 0.0;
-                    angle[i][1][l] = 0.0;
-                }
-                continue;
+                t[i] = [[1.0; LANES], [0.0; LANES]];
+                angle[i] = [[0.0; LANES]; 2];
+            } else {
+                let (kappa, inverse) = link(tree, i, omega, &own, margin);
+                let ti = mul(&kappa, &inverse);
+                t[i] = ti;
+                series = mul(&ti, &own);
+                add(&mut f[p], &mul(&ti, &force));
+                angle[i] = mul(&force, &inverse);
             }
-            let (ki, ki_loss) = (k[i], k[i] * eta[i]);
-            let mut kappa = [[0.0; LANES]; 2];
-            let mut inv = [[0.0; LANES]; 2];
-            for l in 0..LANES {
-                kappa[0][l] = ki;
-                kappa[1][l] = ki_loss + omega[l] * c[i];
-                let re = ki + own[0][l];
-                let im = kappa[1][l] + own[1][l];
-                let d2 = re * re + im * im;
-                let size = ki * ki + own[0][l] * own[0][l];
-                let m = d2 - SMALL2 * size;
-                margin[l] = if m < margin[l] { m } else { margin[l] };
-                let r = 1.0 / d2;
-                inv[0][l] = re * r;
-                inv[1][l] = -im * r;
-            }
-            let ti = mul(&kappa, &inv);
-            t[i] = ti;
-            let series = mul(&ti, &own);
+            add(&mut s[p], &series);
             if p == n - 1 {
                 for l in 0..LANES {
                     brought[l] += series[0][l].abs() + series[1][l].abs();
                 }
             }
-            add(&mut s[p], &series);
-            add(&mut f[p], &mul(&ti, &force));
-            angle[i] = mul(&force, &inv);
         }
-        let r = n - 1;
-        let mut inv = [[0.0; LANES]; 2];
+        brought
+    }
+
+    /// The last pivot, and the angle of the root.
+    #[inline(always)]
+    fn root(&mut self, tree: &Tree, omega: &Lane, brought: &Lane, margin: &mut Lane) {
+        let r = tree.len() - 1;
+        let mut inverse = [[0.0; LANES]; 2];
         for l in 0..LANES {
-            let (re, im) = (s[r][0][l], s[r][1][l]);
+            let (re, im) = (self.s[r][0][l], self.s[r][1][l]);
             let d2 = re * re + im * im;
-            let size = omega[l] * omega[l] * inertia[r] + ground[r] + brought[l];
+            let size = omega[l] * omega[l] * tree.inertia[r] + tree.ground[r] + brought[l];
             let m = d2 - SMALL2 * size * size;
             margin[l] = if m < margin[l] { m } else { margin[l] };
             let q = 1.0 / d2;
-            inv[0][l] = re * q;
-            inv[1][l] = -im * q;
+            inverse[0][l] = re * q;
+            inverse[1][l] = -im * q;
         }
-        if margin.iter().any(|m| *m <= 0.0) {
-            return false;
-        }
-        angle[r] = mul(&f[r], &inv);
-        transmitted[r] = [[0.0; LANES]; 2];
-        for i in (0..r).rev() {
+        self.angle[r] = mul(&self.f[r], &inverse);
+        self.transmitted[r] = [[0.0; LANES]; 2];
+    }
+
+    /// Angles from the root to the leaves, and the torques in the links.
+    #[inline(always)]
+    fn substitute(&mut self, tree: &Tree) {
+        let n = tree.len();
+        let parent = &tree.parent[..n];
+        let (s, f, t) = (&self.s[..n], &self.f[..n], &self.t[..n]);
+        let (angle, transmitted) = (&mut self.angle[..n], &mut self.transmitted[..n]);
+        for i in (0..n - 1).rev() {
             let above = angle[parent[i]];
             let turn = mul(&t[i], &above);
             add(&mut angle[i], &turn);
@@ -197,6 +206,27 @@ impl Sweep {
             }
             transmitted[i] = own;
         }
-        true
     }
+}
+
+/// Dynamic stiffness of the link of node `i` and the inverse of its pivot.
+#[inline(always)]
+fn link(tree: &Tree, i: usize, omega: &Lane, own: &[Lane; 2], margin: &mut Lane) -> ([Lane; 2], [Lane; 2]) {
+    let (ki, ki_loss, ci) = (tree.k[i], tree.k[i] * tree.eta[i], tree.c[i]);
+    let mut kappa = [[0.0; LANES]; 2];
+    let mut inverse = [[0.0; LANES]; 2];
+    for l in 0..LANES {
+        kappa[0][l] = ki;
+        kappa[1][l] = ki_loss + omega[l] * ci;
+        let re = ki + own[0][l];
+        let im = kappa[1][l] + own[1][l];
+        let d2 = re * re + im * im;
+        let size = ki * ki + own[0][l] * own[0][l];
+        let m = d2 - SMALL2 * size;
+        margin[l] = if m < margin[l] { m } else { margin[l] };
+        let r = 1.0 / d2;
+        inverse[0][l] = re * r;
+        inverse[1][l] = -im * r;
+    }
+    (kappa, inverse)
 }

@@ -16,15 +16,15 @@ pub use progressive::Progressive;
 
 use gudgeon_core::BuildError;
 
-/// Checks a table: at least `least` rows, columns of one length, finite, the first one ascending.
+/// Checks a table: at least `min_rows` rows, columns of one length, finite, the first one ascending.
 pub(crate) fn check_table(
     name: &str,
     x: &[f64],
     columns: &[(&str, &[f64])],
-    least: usize,
+    min_rows: usize,
 ) -> Result<(), BuildError> {
-    if x.len() < least {
-        return Err(BuildError::at(name, format!("{} rows, at least {least} are needed", x.len())));
+    if x.len() < min_rows {
+        return Err(BuildError::at(name, format!("{} rows, at least {min_rows} are needed", x.len())));
     }
     for (other, c) in columns {
         if c.len() != x.len() {

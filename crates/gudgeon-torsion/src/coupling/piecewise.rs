@@ -42,22 +42,22 @@ fn no_time() -> Ratio<NonNegative> {
 impl CouplingSpec for Piecewise {
     fn build(&self) -> Result<Box<dyn Coupling>, BuildError> {
         check_table("twist", &self.twist, &[("torque", &self.torque)], 2)?;
-        let slopes: Vec<f64> = self
+        let stiffness: Vec<f64> = self
             .twist
             .windows(2)
             .zip(self.torque.windows(2))
             .map(|(x, t)| (t[1] - t[0]) / (x[1] - x[0]))
             .collect();
-        if let Some(i) = slopes.iter().position(|s| !(s.is_finite() && *s >= 0.0)) {
+        if let Some(i) = stiffness.iter().position(|s| !(s.is_finite() && *s >= 0.0)) {
             return Err(BuildError::at(format!("torque.{}", i + 1), "the torque falls over the twist"));
         }
-        if slopes[0] == 0.0 || slopes[slopes.len() - 1] == 0.0 {
+        if stiffness[0] == 0.0 || stiffness[stiffness.len() - 1] == 0.0 {
             return Err(BuildError::at("torque", "the first and the last piece must carry torque"));
         }
         Ok(Box::new(Stages {
             x: self.twist.clone(),
             t: self.torque.clone(),
-            k: slopes,
+            k: stiffness,
             c: self.damping.si(),
             tau: self.loss_time.si(),
         }))

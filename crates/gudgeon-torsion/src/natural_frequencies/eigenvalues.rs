@@ -13,19 +13,19 @@ use crate::tree::Tree;
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Eigenvalues {
-    /// Most modes wanted, the lowest first; rigid ones count.
-    #[serde(default = "most")]
+    /// Maximum number of modes, the lowest first; rigid ones count.
+    #[serde(default = "max_modes", rename = "most")]
     #[schemars(range(min = 1, max = 2000))]
-    pub most: usize,
+    pub max_modes: usize,
 }
 
-fn most() -> usize {
+fn max_modes() -> usize {
     40
 }
 
 impl Default for Eigenvalues {
     fn default() -> Self {
-        Self { most: most() }
+        Self { max_modes: max_modes() }
     }
 }
 
@@ -33,27 +33,27 @@ impl Default for Eigenvalues {
     name = "eigenvalues",
     summary = "eigenvalues of the whole line with shapes, undamped and damped",
     equations = "(K - omega^2 J) phi = 0;  det(K + z C + z^2 J) = 0, z = -decay + i omega_d",
-    validity = "Small vibration; inertia of throws at its mean, couplings over the frequency at their first row, drives without their slope. The scene takes couplings that depend on their load at the mean torque.",
+    validity = "Small vibration; inertia of throws at its mean, couplings over the frequency at their first row, drives without damping. The scene takes couplings that depend on their load at the mean torque.",
     references = ["holzer1921", "reinsch1973", "wilkinson1971", "aberth1973"],
     example = "",
 )]
 impl NaturalFrequenciesSpec for Eigenvalues {
     fn build(&self, line: &Line) -> Result<Box<dyn NaturalFrequencies>, BuildError> {
-        if self.most == 0 {
+        if self.max_modes == 0 {
             return Err(BuildError::at("most", "at least one mode must be wanted"));
         }
-        Ok(Box::new(Solver { tree: Tree::new(line)?, most: self.most }))
+        Ok(Box::new(Solver { tree: Tree::new(line)?, max_modes: self.max_modes }))
     }
 }
 
 #[derive(Debug)]
 struct Solver {
     tree: Tree,
-    most: usize,
+    max_modes: usize,
 }
 
 impl NaturalFrequencies for Solver {
     fn modes(&mut self) -> Result<Vec<Mode>, EvalError> {
-        eigen::modes(&self.tree, self.most, true)
+        eigen::modes(&self.tree, self.max_modes, true)
     }
 }

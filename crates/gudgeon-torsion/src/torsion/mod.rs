@@ -2,6 +2,7 @@
 
 mod harmonic_balance;
 mod implicit;
+mod independent_orders;
 mod modal;
 mod off;
 mod orders;

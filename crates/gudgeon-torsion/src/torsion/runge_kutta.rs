@@ -24,8 +24,8 @@ pub struct RungeKutta {
     pub look_ahead: bool,
 }
 
-/// Most steps of a run: 17 s of 1 µs.
-const MOST: f64 = 2e7;
+/// Maximum number of steps of a run: 20 s of 1 µs.
+const MAX_STEPS: f64 = 2e7;
 
 #[register_model(
     name = "runge_kutta",
@@ -42,8 +42,8 @@ impl TorsionSpec for RungeKutta {
         check_start(ctx)?;
         let h = self.step.si();
         let end = ctx.times[ctx.times.len() - 1];
-        if end / h > MOST {
-            let what = format!("{:.3e} steps to {end} s are more than {MOST:.0e}", end / h);
+        if end / h > MAX_STEPS {
+            let what = format!("{:.3e} steps to {end} s are more than {MAX_STEPS:.0e}", end / h);
             return Err(BuildError::at("step", what));
         }
         let row = vec![0.0; dynamics.len()];

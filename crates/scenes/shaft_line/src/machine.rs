@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use gudgeon_core::kinds::{Torsion, TorsionCtx, TorsionOut, TorsionSpec};
 use gudgeon_core::{BuildError, EvalError};
 use gudgeon_numerics::maximum::maximise;
-use gudgeon_torsion::critical::Critical;
+use gudgeon_torsion::critical::CriticalSpeed;
 use gudgeon_torsion::cycle::Cycle;
 use gudgeon_torsion::steady::Steady;
 use gudgeon_torsion::torsion::Orders;
@@ -218,7 +218,7 @@ impl<'a> Machine<'a> {
     }
 
     /// Critical speeds from `from` to `to` of all orders that something excites.
-    pub fn critical_speeds(&mut self, from: f64, to: f64) -> Vec<Critical> {
+    pub fn critical_speeds(&mut self, from: f64, to: f64) -> Vec<CriticalSpeed> {
         let excited =
             self.steady.excitation.orders.iter().filter(|o| o.torque.iter().any(|t| t.norm1() != 0.0));
         let orders: Vec<f64> = excited.map(|o| o.order).collect();
@@ -227,7 +227,7 @@ impl<'a> Machine<'a> {
 
     /// Speeds at which peaks over the speed show: a grid, the critical speeds, and places half and two widths of the resonance beside
     /// those. Undamped critical speeds stay out.
-    pub fn telling_speeds(&mut self, grid: &[f64], critical: &[Critical]) -> Vec<f64> {
+    pub fn telling_speeds(&mut self, grid: &[f64], critical: &[CriticalSpeed]) -> Vec<f64> {
         let (Some(&from), Some(&to)) = (grid.first(), grid.last()) else { return Vec::new() };
         let mut all = grid.to_vec();
         for c in critical.iter().filter(|c| c.damping_ratio > UNDAMPED) {
@@ -240,7 +240,7 @@ impl<'a> Machine<'a> {
     }
 
     /// Critical speeds at which vibration grows without bound: no damping, and a torque that grows towards them.
-    pub fn unbounded(&mut self, critical: &[Critical], from: f64, to: f64) -> Vec<Critical> {
+    pub fn unbounded(&mut self, critical: &[CriticalSpeed], from: f64, to: f64) -> Vec<CriticalSpeed> {
         let mut found = Vec::new();
         for c in critical.iter().filter(|c| c.damping_ratio <= UNDAMPED && c.speed >= from && c.speed <= to) {
             let mut near = |part: f64| {

@@ -1,7 +1,7 @@
 //! Holds a line against its limits over its operating range, in all its load steps.
 
 use gudgeon_core::kinds::TorsionAnswer;
-use gudgeon_torsion::critical::Critical;
+use gudgeon_torsion::critical::CriticalSpeed;
 
 use super::assemble::Assembled;
 use super::case::ShaftLineCase;
@@ -238,9 +238,9 @@ pub struct Step<'m, 'a> {
     /// Speeds that show its peaks.
     pub speeds: Vec<f64>,
     /// Its critical speeds within the operating range.
-    pub critical: Vec<Critical>,
+    pub critical: Vec<CriticalSpeed>,
     /// Those of them without damping.
-    pub unbounded: Vec<Critical>,
+    pub unbounded: Vec<CriticalSpeed>,
 }
 
 impl<'m, 'a> Step<'m, 'a> {

@@ -1,0 +1,172 @@
+//! Motion over time: recorded torques against the laws, closed form against steps, starts that cannot be.
+
+use crate::common::compressor::run;
+use crate::common::{chain, link, node};
+use gudgeon_core::kinds::*;
+use gudgeon_core::quantity::quantity;
+use gudgeon_torsion::coupling::Progressive;
+use gudgeon_torsion::drive::{Harmonic, Harmonics, Linear, PowerLaw};
+use gudgeon_torsion::torsion::{Implicit, Propagator, RungeKutta};
+use std::f64::consts::PI;
+
+fn context<'a>(line: &'a Line, start: [&'a [f64]; 2], times: &'a [f64]) -> TorsionCtx<'a> {
+    TorsionCtx {
+        line,
+        speed: 50.0,
+        orders: 10.0,
+        period: 4.0 * PI,
+        balance: &[1.0],
+        angles: start[0],
+        speeds: start[1],
+        times,
+    }
+}
+
+fn drive(node: usize, factor: f64, phase: f64, spec: &dyn DriveSpec) -> LineDrive {
+    LineDrive { node, phase, factor, drive: spec.build().expect("builds") }
+}
+
+/// A motor with a straight torque-speed line, a gear to a shaft that turns backwards, a branch, drag, and a pulsating load.
+fn geared() -> Line {
+    let mut line = chain(&[2.0, 0.5, 0.2, 1.0], &[3e3, 5e4, 2e3], &[4.0, 6.0, 3.0], &[0.2, 0.0, 0.1, 0.3]);
+    line.nodes[2].ratio = -2.5;
+    line.nodes[3].ratio = -2.5;
+    line.nodes.push(node(0.7, 0.4));
+    line.links.push(link(4, 1, 1e3, 2.0, 0.0));
+    let motor = Linear { intercept: Some(quantity(900.0)), slope: Some(quantity(-12.0)), rated: None };
+    let order =
+        Harmonic { order: 1.5, amplitude: quantity(60.0), phase: quantity(0.4), factor: quantity(1.0) };
+    let load = Harmonics { mean: quantity(100.0), orders: vec![order] };
+    line.drives = vec![drive(0, 1.0, 0.0, &motor), drive(4, -1.0, 0.2, &load)];
+    line
+}
+
+const SPEEDS: [f64; 5] = [55.0, 50.0, -125.0, -120.0, 48.0];
+const ANGLES: [f64; 5] = [0.1, 0.0, 0.02, 0.0, -0.05];
+
+/// Every recorded torque is that of its law at the recorded motion, and momentum changes by what acts.
+fn torques_are_those_of_the_laws(line: &Line, out: &TorsionOut) {
+    for r in 0..out.times.len() {
+        for (l, torque) in line.links.iter().zip(&out.torque[r]) {
+            let [a, b] = l.nodes;
+            let gear = line.nodes[a].ratio / line.nodes[b].ratio;
+            let twist = out.angles[r][a] - gear * out.angles[r][b];
+            let rate = out.speeds[r][a] - gear * out.speeds[r][b];
+            let law = l.coupling.torque(twist, rate).torque;
+            assert!((torque - law).abs() < 1e-9 * (1.0 + law.abs()), "{r} {}: {torque} {law}", l.name);
+        }
+    }
+}
+
+#[test]
+fn recorded_torques_are_those_of_the_laws() {
+    let mut line = geared();
+    let law = Progressive {
+        stiffness: quantity(2e3),
+        nominal_torque: quantity(300.0),
+        gain: quantity(4.0),
+        damping: quantity(3.0),
+    };
+    line.links[2].coupling = law.build().expect("builds");
+    let fan = PowerLaw { torque: quantity(50.0), speed: quantity(100.0), exponent: quantity(2.0) };
+    line.drives.push(drive(3, -1.0, 0.0, &fan));
+    let times: Vec<f64> = (0..30).map(|i| 0.01 * f64::from(i)).collect();
+    let ctx = context(&line, [&ANGLES, &SPEEDS], &times);
+    let a = run(&Implicit { tolerance: quantity(1e-9) }, &ctx);
+    let b = run(&RungeKutta { step: quantity(2e-5), look_ahead: false }, &ctx);
+    torques_are_those_of_the_laws(&line, &a);
+    torques_are_those_of_the_laws(&line, &b);
+    for r in 0..times.len() {
+        for i in 0..5 {
+            // Tolerance over some hundred steps; the fourth power of 2e-5 times 500 rad/s is 1e-8.
+            assert!(
+                (a.speeds[r][i] - b.speeds[r][i]).abs() < 2e-5,
+                "{r} {i}: {} {}",
+                a.speeds[r][i],
+                b.speeds[r][i]
+            );
+            assert!((a.angles[r][i] - b.angles[r][i]).abs() < 2e-6, "{r} {i}");
+        }
+        for (d, (x, t)) in line.drives.iter().zip(a.drive[r].iter().zip(&b.drive[r])) {
+            let i = d.node;
+            let torque = d.factor * d.drive.torque(a.angles[r][i] + d.phase, a.speeds[r][i]).torque;
+            assert!((x - torque).abs() < 1e-9 * (1.0 + torque.abs()), "{r} {i}: {x} {torque}");
+            // As the method used it, in its last stage: at the end of the step.
+            assert!(r == 0 || (t - torque).abs() < 1e-2, "{r} {i}: {t} {torque}");
+        }
+    }
+}
+
+#[test]
+fn the_closed_form_is_what_small_steps_come_to() {
+    // A harmonic torque by the angle of the mean speed and by that of the shaft differ to second order in the vibration: nearly none here.
+    let mut line = geared();
+    let order =
+        Harmonic { order: 1.5, amplitude: quantity(1e-4), phase: quantity(0.4), factor: quantity(1.0) };
+    line.drives[1] = drive(4, -1.0, 0.2, &Harmonics { mean: quantity(100.0), orders: vec![order] });
+    let times: Vec<f64> = (0..25).map(|i| 0.02 * f64::from(i)).collect();
+    for braked in [true, false] {
+        if !braked {
+            // Without drag and motor the line runs away under constant torque.
+            line.nodes.iter_mut().for_each(|n| n.damping = 0.0);
+            line.drives.remove(0);
+        }
+        let ctx = context(&line, [&ANGLES, &SPEEDS], &times);
+        let a = run(&Propagator {}, &ctx);
+        let b = run(&Implicit { tolerance: quantity(1e-11) }, &ctx);
+        assert_eq!(a.times, times);
+        for r in 0..times.len() {
+            for i in 0..5 {
+                // Tolerance over some hundred steps, and 1e-4 N m by an angle that is a radian off at the end.
+                assert!(
+                    (a.speeds[r][i] - b.speeds[r][i]).abs() < 2e-4,
+                    "{r} {i}: {} {}",
+                    a.speeds[r][i],
+                    b.speeds[r][i]
+                );
+                assert!(
+                    (a.angles[r][i] - b.angles[r][i]).abs() < 2e-5,
+                    "{r} {i}: {} {}",
+                    a.angles[r][i],
+                    b.angles[r][i]
+                );
+            }
+            for (x, y) in a.torque[r].iter().zip(&b.torque[r]) {
+                assert!((x - y).abs() < 1e-2, "{r}: {x} {y}");
+            }
+        }
+        torques_are_those_of_the_laws(&line, &a);
+    }
+}
+
+#[test]
+fn a_critically_damped_pair_is_no_sum_of_exponentials() {
+    // c = 2 √(k J) of the relative motion, to the last digit: a double eigenvalue.
+    let line = chain(&[1.0, 1.0], &[200.0], &[20.0], &[]);
+    let mut model = Propagator {}.build(&context(&line, [&[0.1, -0.1], &[50.0; 2]], &[0.1])).expect("builds");
+    assert!(model.run(&mut TorsionOut::default()).is_err());
+}
+
+#[test]
+fn starts_that_cannot_be_are_refused() {
+    let mut line = chain(&[1.0, 2.0, 1.0], &[1e3, f64::INFINITY], &[1.0], &[]);
+    line.nodes[2].ratio = 2.0;
+    let implicit = Implicit::default();
+    let field = |angles: &[f64], speeds: &[f64], times: &[f64]| {
+        implicit.build(&context(&line, [angles, speeds], times)).err().map(|e| e.field)
+    };
+    let ok = [[0.1, 0.2, 0.4], [50.0, 50.0, 100.0]];
+    assert_eq!(field(&ok[0], &ok[1], &[1.0]), None);
+    assert_eq!(field(&ok[0][..2], &ok[1], &[1.0]).as_deref(), Some("start"));
+    assert_eq!(field(&ok[0], &ok[1][..2], &[1.0]).as_deref(), Some("start"));
+    assert_eq!(field(&ok[0], &ok[1], &[]).as_deref(), Some("time"));
+    assert_eq!(field(&[0.1, 0.2, 0.401], &ok[1], &[1.0]).as_deref(), Some("start"));
+    assert_eq!(field(&ok[0], &[50.0, 50.0, 50.0], &[1.0]).as_deref(), Some("start"));
+    for tolerance in [1e-14, 0.1] {
+        let spec = Implicit { tolerance: quantity(tolerance) };
+        let e = spec.build(&context(&line, [&ok[0], &ok[1]], &[1.0])).expect_err("refused");
+        assert_eq!(e.field, "tolerance");
+    }
+    let steps = RungeKutta { step: quantity(1e-8), look_ahead: false };
+    assert_eq!(steps.build(&context(&line, [&ok[0], &ok[1]], &[1.0])).expect_err("refused").field, "step");
+}

@@ -1,0 +1,277 @@
+//! Lines at constant mean speed: mean torques, modes against orders, natural frequencies over the frequency and the speed.
+
+use crate::common::compressor::run;
+use crate::common::{chain, link, node};
+use gudgeon_core::kinds::*;
+use gudgeon_core::quantity::quantity;
+use gudgeon_torsion::coupling::FrequencyDependent;
+use gudgeon_torsion::drive::{Constant, Harmonic, Harmonics, Linear};
+use gudgeon_torsion::steady::Steady;
+use gudgeon_torsion::torsion::{HarmonicBalance, Modal, Orders};
+use std::f64::consts::PI;
+
+fn context<'a>(line: &'a Line, speed: f64, balance: &'a [f64]) -> TorsionCtx<'a> {
+    TorsionCtx { line, speed, orders: 20.0, period: 4.0 * PI, balance, angles: &[], speeds: &[], times: &[] }
+}
+
+fn drive(node: usize, factor: f64, spec: &dyn DriveSpec) -> LineDrive {
+    LineDrive { node, phase: 0.0, factor, drive: spec.build().expect("builds") }
+}
+
+fn harmonics(orders: &[(f64, f64)]) -> Harmonics {
+    let one = |&(order, a): &(f64, f64)| Harmonic {
+        order,
+        amplitude: quantity(a),
+        phase: quantity(0.3 * order),
+        factor: quantity(1.0),
+    };
+    Harmonics { mean: quantity(0.0), orders: orders.iter().map(one).collect() }
+}
+
+/// A motor, a gear to a shaft that turns backwards at 2.5 times the speed, and two loads, one on a branch.
+fn geared() -> Line {
+    let mut line = chain(&[2.0, 0.5, 0.2, 1.0], &[3e4, 5e5, 2e4], &[4.0, 0.0, 3.0], &[0.2, 0.0, 0.1, 0.3]);
+    line.nodes[2].ratio = -2.5;
+    line.nodes[3].ratio = -2.5;
+    line.nodes.push(node(0.7, 0.0));
+    line.links.push(link(4, 1, 1e4, 2.0, 0.0));
+    line.drives = vec![
+        drive(0, 1.0, &Constant { torque: quantity(900.0) }),
+        drive(3, 1.0, &Constant { torque: quantity(150.0) }),
+        drive(4, -1.0, &Constant { torque: quantity(200.0) }),
+    ];
+    line
+}
+
+#[test]
+fn mean_torques_and_angles_are_in_equilibrium() {
+    let (line, speed) = (geared(), 60.0);
+    let balance = [0.7, 0.0, 0.0, 0.0, 0.3];
+    let out = run(&Orders {}, &context(&line, speed, &balance));
+    // Counted at the reference shaft the torques, the drag and what balances make zero.
+    let own: Vec<f64> = (0..5)
+        .map(|i| {
+            let given = [900.0, 0.0, 0.0, 150.0, -200.0][i];
+            given - line.nodes[i].damping * speed * line.nodes[i].ratio
+        })
+        .collect();
+    let total: f64 = own.iter().zip(&line.nodes).map(|(t, n)| t * n.ratio).sum();
+    assert!((out.balance_torque + total).abs() < 1e-10 && out.speed == speed);
+    let mut left: Vec<f64> =
+        (0..5).map(|i| own[i] + balance[i] * out.balance_torque / line.nodes[i].ratio).collect();
+    for (l, t) in line.links.iter().zip(&out.mean_torque) {
+        let [a, b] = l.nodes;
+        let gear = line.nodes[a].ratio / line.nodes[b].ratio;
+        left[a] -= t;
+        left[b] += gear * t;
+        // The twist is the torque by the stiffness.
+        let twist = out.mean_angle[a] - gear * out.mean_angle[b];
+        assert!((twist * l.coupling.linear(0.0, 0.0).stiffness - t).abs() < 1e-9, "{}", l.name);
+    }
+    assert!(left.iter().all(|t| t.abs() < 1e-9), "{left:?}");
+    let zero: f64 = (0..5).map(|i| balance[i] * out.mean_angle[i] / line.nodes[i].ratio).sum();
+    assert!(zero.abs() < 1e-15, "{zero}");
+}
+
+#[test]
+fn a_held_line_rests_on_its_springs() {
+    for held in [vec![(3, 5e3)], vec![(0, 2e3), (4, 7e3)]] {
+        let mut line = geared();
+        for (i, k) in &held {
+            line.nodes[*i].ground = *k;
+        }
+        let out = run(&Orders {}, &context(&line, 60.0, &[1.0]));
+        assert_eq!(out.balance_torque, 0.0);
+        let mut left: Vec<f64> = (0..5)
+            .map(|i| [900.0, 0.0, 0.0, 150.0, -200.0][i] - line.nodes[i].damping * 60.0 * line.nodes[i].ratio)
+            .collect();
+        for (l, t) in line.links.iter().zip(&out.mean_torque) {
+            let [a, b] = l.nodes;
+            left[a] -= t;
+            left[b] += line.nodes[a].ratio / line.nodes[b].ratio * t;
+        }
+        if held.len() > 1 {
+            for (i, k) in &held {
+                left[*i] -= k * out.mean_angle[*i];
+            }
+        } else {
+            // One place takes up the rest, whatever its spring.
+            left[held[0].0] = 0.0;
+        }
+        assert!(left.iter().all(|t| t.abs() < 1e-8), "{left:?}");
+    }
+}
+
+/// A line whose dampers are proportional to its springs and inertias: its modes are those without damping.
+fn proportional(tau: f64, alpha: f64) -> Line {
+    let j = [1.5, 0.4, 0.9, 0.3, 0.6];
+    let mut line = chain(&j, &[2e4, 5e4, 1e4], &[2e4 * tau, 5e4 * tau, 1e4 * tau], &j.map(|j| alpha * j));
+    line.nodes.truncate(4);
+    line.nodes.push(LineNode { ratio: -2.0, ..node(j[4], alpha * j[4]) });
+    line.links.push(link(4, 1, 3e3, 3e3 * tau, 0.0));
+    line.drives = vec![
+        drive(0, 1.0, &harmonics(&[(0.5, 40.0), (2.0, 90.0)])),
+        drive(4, 1.0, &harmonics(&[(2.0, 30.0)])),
+    ];
+    line
+}
+
+#[test]
+fn all_modes_of_proportional_damping_are_the_orders() {
+    let line = proportional(2e-4, 0.8);
+    let ctx = context(&line, 70.0, &[1.0]);
+    let exact = run(&Orders {}, &ctx);
+    for static_correction in [true, false] {
+        let out = run(&Modal { modes: 5, damping_ratio: None, static_correction }, &ctx);
+        // Order 2 of the geared shaft is order 4 of the reference shaft.
+        assert_eq!(out.orders.len(), 3);
+        for (a, b) in out.orders.iter().zip(&exact.orders) {
+            let size = |v: &[[f64; 2]]| v.iter().map(|x| x[0].hypot(x[1])).fold(0.0, f64::max);
+            for (x, y) in a.angle.iter().zip(&b.angle) {
+                // Rounding of the modes, orthogonal to about 1e-13.
+                assert!((x[0] - y[0]).hypot(x[1] - y[1]) < 1e-10 * size(&b.angle), "{x:?} {y:?}");
+            }
+            for ((x, y), [h, g]) in
+                a.torque.iter().zip(&b.torque).zip(a.heat.iter().zip(&b.heat).map(|(h, g)| [h, g]))
+            {
+                assert!((x[0] - y[0]).hypot(x[1] - y[1]) < 1e-8 * size(&b.torque), "{x:?} {y:?}");
+                assert!((h - g).abs() < 1e-7 * b.heat.iter().sum::<f64>(), "{h} {g}");
+            }
+            assert_eq!((a.order, &a.excitation), (b.order, &b.excitation));
+        }
+    }
+    // Modes left out that follow statically are wrong by (w/ω)², 35 rad/s by the fourth frequency, instead of altogether.
+    let error = |static_correction: bool| {
+        let out = run(&Modal { modes: 3, damping_ratio: None, static_correction }, &ctx);
+        let pairs = out.orders[0].angle.iter().zip(&exact.orders[0].angle);
+        pairs.map(|(x, y)| (x[0] - y[0]).hypot(x[1] - y[1])).fold(0.0, f64::max)
+    };
+    let fourth = Steady::new(&ctx).expect("builds").frequencies(9).expect("found")[2];
+    let (with, without) = (error(true), error(false));
+    // Between the static answer and the modes there is the damping as well, 2ζ w/ω of the same size.
+    assert!(with < 2.0 * (35.0 / fourth).powi(2) * without && without > 0.0, "{with} {without} {fourth}");
+}
+
+#[test]
+fn a_damping_ratio_stands_for_that_of_every_mode() {
+    // Two inertias: q = φᵀT/(ω² - w² + 2iζωw), by hand for the one elastic mode, and the rigid one beside it.
+    let mut line = chain(&[2.0, 0.5], &[8e3], &[], &[]);
+    line.drives.push(drive(1, 1.0, &harmonics(&[(2.0, 50.0)])));
+    let (w, zeta) = (2.0 * 30.0, 0.07);
+    let modal = Modal { modes: 2, damping_ratio: Some(quantity(zeta)), static_correction: true };
+    let out = run(&modal, &context(&line, 30.0, &[1.0]));
+    let square = 8e3 * (1.0 / 2.0 + 1.0 / 0.5);
+    let natural = f64::sqrt(square);
+    // The second inertia in the elastic mode: φ₂² = (1/J₂) J₁/(J₁ + J₂); rigid 1/(J₁ + J₂).
+    let (elastic, rigid) = ((1.0 / 0.5) * 2.0 / 2.5, 1.0 / 2.5);
+    let (re, im) = (square - w * w, 2.0 * zeta * natural * w);
+    let torque = [50.0 * f64::cos(0.6), -50.0 * f64::sin(0.6)];
+    let d = re * re + im * im;
+    let (gr, gi) = (elastic * re / d - rigid / (w * w), -elastic * im / d);
+    let exact = [gr * torque[0] - gi * torque[1], gr * torque[1] + gi * torque[0]];
+    let found = out.orders[0].angle[1];
+    assert!(
+        (found[0] - exact[0]).hypot(found[1] - exact[1]) < 1e-12 * exact[0].hypot(exact[1]),
+        "{found:?} {exact:?}"
+    );
+    assert_eq!(out.counters["modes"], 2);
+}
+
+#[test]
+fn modes_refuse_what_they_cannot_carry() {
+    let line = proportional(0.0, 0.0);
+    let field = |spec: &dyn TorsionSpec, line: &Line| {
+        spec.build(&context(line, 70.0, &[1.0])).expect_err("refused").field
+    };
+    assert_eq!(field(&Modal { modes: 0, ..Modal::default() }, &line), "modes");
+    let mut held = line.clone();
+    held.nodes[1].ground = 10.0;
+    assert_eq!(field(&Modal::default(), &held), "static_correction");
+    assert!(
+        Modal { static_correction: false, ..Modal::default() }.build(&context(&held, 70.0, &[1.0])).is_ok()
+    );
+    let mut slack = line.clone();
+    slack.nodes[4].inertia = 0.0;
+    slack.links[3] = link(4, 1, 0.0, 1.0, 0.0);
+    assert_eq!(field(&Modal::default(), &slack), "inertias.4");
+    // An order that hits a natural frequency without damping.
+    let mut bare = chain(&[1.0, 1.0], &[800.0], &[], &[]);
+    bare.drives.push(drive(0, 1.0, &harmonics(&[(2.0, 1.0)])));
+    let mut model = Modal::default().build(&context(&bare, 20.0, &[1.0])).expect("builds");
+    assert!(model.run(&mut TorsionOut::default()).is_err());
+}
+
+#[test]
+fn harmonic_balance_wants_orders_that_repeat_with_the_cycle() {
+    let mut line = proportional(1e-4, 0.1);
+    let law = gudgeon_torsion::coupling::Progressive {
+        stiffness: quantity(2e4),
+        nominal_torque: quantity(1e3),
+        gain: quantity(2.0),
+        damping: quantity(5.0),
+    };
+    line.links[0].coupling = law.build().expect("builds");
+    let hb = HarmonicBalance::default();
+    let field = |line: &Line, orders: f64, period: f64| {
+        hb.build(&TorsionCtx { orders, period, ..context(line, 70.0, &[1.0]) }).err().map(|e| e.field)
+    };
+    assert_eq!(field(&line, 20.0, 4.0 * PI), None);
+    // Half orders do not repeat after one turn.
+    assert_eq!(field(&line, 20.0, 2.0 * PI).as_deref(), Some("model"));
+    assert_eq!(field(&line, 0.4, 4.0 * PI).as_deref(), Some("orders"));
+    assert_eq!(field(&line, 2001.0, 4.0 * PI).as_deref(), Some("orders"));
+    // Three places (the ends of the coupling, and the drive on the branch) with 2900 harmonics: 25.2 million numbers in the Krylov space.
+    assert_eq!(field(&line, 1450.0, 4.0 * PI).as_deref(), Some("orders"));
+    assert_eq!(field(&line, 1400.0, 4.0 * PI), None);
+    let strict = HarmonicBalance { tolerance: quantity(1e-15), rounds: 10 };
+    assert_eq!(strict.build(&context(&line, 70.0, &[1.0])).expect_err("refused").field, "tolerance");
+}
+
+#[test]
+fn frequencies_hold_with_the_stiffness_that_they_have() {
+    let mut line = chain(&[1.0, 0.5, 2.0], &[1e4, 1e4], &[], &[]);
+    let law = FrequencyDependent {
+        frequency: vec![0.0, 10.0, 60.0],
+        stiffness: vec![5e3, 2e4, 9e4],
+        loss_factor: vec![0.1, 0.1, 0.1],
+    };
+    line.links[1].coupling = law.build().expect("builds");
+    let mut steady = Steady::new(&context(&line, 50.0, &[1.0])).expect("builds");
+    let found = steady.frequencies(9).expect("found");
+    assert_eq!(found.len(), 2);
+    for (m, w) in found.iter().enumerate() {
+        // The line with the stiffness of this frequency has it as its own.
+        let k = line.links[1].coupling.linear(*w, 0.0).stiffness;
+        let fixed = chain(&[1.0, 0.5, 2.0], &[1e4, k], &[], &[]);
+        let own = Steady::new(&context(&fixed, 50.0, &[1.0])).expect("builds").frequencies(9).expect("found");
+        assert!((own[m] / w - 1.0).abs() < 1e-12, "{found:?} {own:?}");
+    }
+    assert!(!steady.depends_on_speed());
+}
+
+#[test]
+fn critical_speeds_have_the_damping_of_their_mode() {
+    // Proportional damping: the ratio of a mode is ½ (τω + α/ω).
+    let line = proportional(2e-4, 0.8);
+    let mut steady = Steady::new(&context(&line, 70.0, &[1.0])).expect("builds");
+    let natural = steady.frequencies(9).expect("found");
+    let found = steady.critical_speeds(&[0.5, 2.0], 1.0, 1e3, 10);
+    assert_eq!(found.len(), 2 * natural.len());
+    assert!(found.windows(2).all(|c| c[0].speed <= c[1].speed) && steady.speed == 70.0);
+    for c in &found {
+        let w = natural[c.mode - 1];
+        // Halving ends at a few digits of rounding.
+        assert!(
+            (c.omega / w - 1.0).abs() < 1e-14 && (c.speed * c.order / c.omega - 1.0).abs() < 1e-15,
+            "{c:?}"
+        );
+        assert!((c.damping_ratio / (0.5 * (2e-4 * w + 0.8 / w)) - 1.0).abs() < 1e-10, "{c:?}");
+    }
+    // Damping by the derivative of a motor's torque-speed line, c = -C₁ ratio².
+    let mut motor = chain(&[1.0, 1.0], &[800.0], &[], &[]);
+    motor.nodes[1].ratio = -2.0;
+    let law = Linear { intercept: Some(quantity(10.0)), slope: Some(quantity(-0.5)), rated: None };
+    motor.drives.push(drive(1, 3.0, &law));
+    let s = Steady::new(&context(&motor, 70.0, &[1.0])).expect("builds");
+    assert!((s.tree.damping[s.tree.position[1]] - 3.0 * 0.5 * 4.0).abs() < 1e-15);
+}
