@@ -1,4 +1,4 @@
-//! The answers of a line to torques of many orders at one speed: eliminated once, solved often.
+//! Angles of a line per torque at many orders of one speed: eliminated once, solved for as many torques as are wanted.
 
 use gudgeon_numerics::linalg::Complex;
 
@@ -25,7 +25,10 @@ pub struct Receptance {
 }
 
 impl Receptance {
-    /// Eliminates at the speed that the line stands at.
+    /// Eliminates at the speed that the line stands at, for `orders` orders that are multiples of `base`. Storage of before is used again.
+    ///
+    /// Torques are then put into [`Receptance::field`] at `position * orders + (multiple - 1)`, times the speed ratio of their inertia, and
+    /// [`Receptance::solve`] turns them into angles divided by the speed ratio.
     pub fn factor(&mut self, steady: &mut Steady, base: f64, orders: usize) {
         let n = steady.tree.len();
         let room = |v: &mut [Vec<f64>; 2]| v.iter_mut().for_each(|v| v.resize(n * orders, 0.0));

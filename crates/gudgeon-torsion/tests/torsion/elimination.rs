@@ -4,6 +4,7 @@ use crate::common::{link, node};
 use gudgeon_core::kinds::{Line, LineNode};
 use gudgeon_numerics::linalg::Complex;
 use gudgeon_torsion::eigen::{natural_frequencies, shapes};
+use gudgeon_torsion::sweep::{LANES, Sweep};
 use gudgeon_torsion::tree::{Resonance, Singular, Tree, Work};
 
 fn c(re: f64, im: f64) -> Complex {
@@ -256,4 +257,49 @@ fn shapes_do_not_know_of_damping() {
         let omega = natural_frequencies(&t, 9).expect("found");
         assert_eq!(shapes(&t, &omega), shapes(&Tree::new(&bare).expect("builds"), &omega));
     }
+}
+
+#[test]
+fn lanes_of_any_tree_are_the_careful_elimination() {
+    let mut r = Numbers(23);
+    for case in 0..60 {
+        let n = 1 + case % 6;
+        let mut line = random_line(n, &mut r);
+        if case % 3 == 0 {
+            // Without damping, with a rigid link and an inertia of zero.
+            line.nodes.iter_mut().for_each(|n| n.damping = 0.0);
+            for l in &mut line.links {
+                *l = link(l.nodes[0], l.nodes[1], l.coupling.linear(0.0, 0.0).stiffness, 0.0, 0.0);
+            }
+            if let Some(l) = line.links.last_mut() {
+                *l = link(l.nodes[0], l.nodes[1], f64::INFINITY, 0.0, 0.0);
+            }
+            line.nodes[0].ground = 500.0;
+        }
+        let t = Tree::new(&line).expect("builds");
+        let torque: Vec<[f64; 2]> = (0..n).map(|_| [r.between(-9.0, 9.0), r.between(-9.0, 9.0)]).collect();
+        let omega: [f64; LANES] = std::array::from_fn(|l| 30.0 * l as f64 + r.between(5.0, 25.0));
+        let mut sweep = Sweep::new(n);
+        sweep.solve(&t, &omega, &torque).expect("no resonance");
+        let f: Vec<Complex> = torque.iter().map(|f| c(f[0], f[1])).collect();
+        let (mut x, mut q) = (vec![Complex::default(); n], vec![Complex::default(); n]);
+        for (l, w) in omega.iter().enumerate() {
+            t.solve(c(0.0, *w), &f, &mut x, &mut q, Singular::Refuse, &mut Work::new(n))
+                .expect("no resonance");
+            let top = x.iter().map(|x| x.abs()).fold(0.0, f64::max);
+            let size = q.iter().map(|x| x.abs()).fold(0.0, f64::max);
+            for i in 0..n {
+                // Rounding, times the magnification of an undamped resonance in the neighbourhood.
+                let lane = c(sweep.angle[i][0][l], sweep.angle[i][1][l]);
+                assert!((lane - x[i]).abs() < 1e-10 * top, "{case} {l} {i}: {lane:?} {:?}", x[i]);
+                let lane = c(sweep.transmitted[i][0][l], sweep.transmitted[i][1][l]);
+                assert!((lane - q[i]).abs() <= 1e-10 * size, "{case} {l} {i}: {lane:?} {:?}", q[i]);
+            }
+        }
+    }
+    // One inertia on a spring, and its resonance in one lane: 9 rad/s, which is a number without rounding.
+    let line = Line { nodes: vec![LineNode { ground: 162.0, ..node(2.0, 0.0) }], ..Line::default() };
+    let t = Tree::new(&line).expect("builds");
+    let omega: [f64; LANES] = std::array::from_fn(|l| 6.0 + l as f64);
+    assert_eq!(Sweep::new(1).solve(&t, &omega, &[[1.0, 0.0]]), Err((3, Resonance)));
 }

@@ -74,6 +74,15 @@ fn drives_have_the_derivatives_of_their_torques() {
     let p = power(2.0).build().expect("builds");
     assert_eq!((p.torque(0.0, -80.0).torque, p.torque(0.0, 160.0).torque), (-900.0, 3600.0));
     assert_eq!(p.torque(0.0, 0.0), DriveTorque::default());
+    let t = curve.build().expect("builds");
+    for (rpm, torque) in curve.speed_rpm.iter().zip(&curve.torque) {
+        // Through the rows; at the ends of the table straight on.
+        assert!((t.torque(0.0, rpm * PI / 30.0).torque - torque).abs() < 1e-9);
+    }
+    let end = 1200.0 * PI / 30.0;
+    let slope = t.torque(0.0, end).slope;
+    assert!(slope < 0.0 && (t.torque(0.0, end + 10.0).torque - 10.0 * slope).abs() < 1e-9);
+    assert_eq!(constant.build().expect("builds").torque(1.0, 2.0).torque, 5.0);
     let r = rated.build().expect("builds");
     assert!((r.torque(0.0, 110.0).torque - 500.0).abs() < 1e-9 && r.torque(0.0, 125.0).torque.abs() < 1e-9);
 }
@@ -396,6 +405,19 @@ fn torques_of_a_line_are_those_of_its_parts_whichever_way_it_turns() {
             Harmonic { order: 1.5, amplitude: quantity(9.0), phase: quantity(0.2), factor: quantity(1.0) };
         let drive = Harmonics { mean: quantity(20.0), orders: vec![order] }.build().expect("builds");
         line.drives.push(LineDrive { node: 1, phase: 0.3, factor: -2.0, drive });
+        let motor = Linear { intercept: Some(quantity(300.0)), slope: Some(quantity(-0.8)), rated: None };
+        line.drives.push(LineDrive {
+            node: 0,
+            phase: 0.0,
+            factor: 1.5,
+            drive: motor.build().expect("builds"),
+        });
+        line.drives.push(LineDrive {
+            node: 1,
+            phase: 0.0,
+            factor: 1.5,
+            drive: motor.build().expect("builds"),
+        });
         let (speed, top) = (40.0, 120.0);
         let e = Excitation::new(&line, speed, top);
         // Smooth torques: those of the masses and the drive; that of ideal valves has corners, whose orders beyond 120 are below 1e-4.
@@ -414,15 +436,16 @@ fn torques_of_a_line_are_those_of_its_parts_whichever_way_it_turns() {
             let at = ratio * theta;
             let masses = -0.5 * throw.inertia.inertia(at + 0.8).1 * (ratio * speed).powi(2);
             let gas: f64 = throw.ends.iter().map(|e| e.torque(at + 0.8, at + 0.8)).sum();
-            let exact =
-                masses + gas - 2.0 * drive.drive.torque(at + 0.3, ratio * speed).torque - 2.0 * speed * ratio;
+            let exact = masses + gas - 2.0 * drive.drive.torque(at + 0.3, ratio * speed).torque
+                + 1.5 * (300.0 - 0.8 * ratio * speed)
+                - 2.0 * speed * ratio;
             assert!(
                 (e.mean[1] + sum - exact).abs() < 1e-3 * scale,
                 "{ratio} {theta}: {} {exact}",
                 e.mean[1] + sum
             );
         }
-        assert_eq!(e.mean[0], -3.0 * speed);
+        assert!((e.mean[0] - (1.5 * (300.0 - 0.8 * speed) - 3.0 * speed)).abs() < 1e-10);
         assert!(e.orders.windows(2).all(|o| o[0].order < o[1].order));
         assert!(e.orders.iter().all(|o| o.order <= top + 1e-6 && o.torque[0].abs() == 0.0));
         // The parts at rest and at unit speed are the whole at any speed.

@@ -170,3 +170,41 @@ fn starts_that_cannot_be_are_refused() {
     let steps = RungeKutta { step: quantity(1e-8), look_ahead: false };
     assert_eq!(steps.build(&context(&line, [&ok[0], &ok[1]], &[1.0])).expect_err("refused").field, "step");
 }
+
+#[test]
+fn rigid_links_carry_what_moves_the_parts_behind_them() {
+    // A geared shaft on rigid links with a throw at its end, whose inertia varies: the mesh carries the rates of momentum behind it.
+    use crate::common::Gas;
+    use crate::common::compressor::{THROW, end};
+    let mut line =
+        chain(&[3.0, 0.5, 0.2, 0.4], &[4e3, f64::INFINITY, f64::INFINITY], &[8.0], &[0.3, 0.2, 0.1, 0.6]);
+    line.nodes[2].ratio = 1.5;
+    line.nodes[3].ratio = 1.5;
+    let inertia = gudgeon_torsion::throw_inertia::Exact {}.build(&THROW).expect("builds");
+    line.throws.push(LineThrow { node: 3, phase: 0.4, inertia, ends: end(Gas::M3) });
+    let fan = PowerLaw { torque: quantity(70.0), speed: quantity(100.0), exponent: quantity(2.0) };
+    line.drives.push(drive(2, -1.0, 0.0, &fan));
+    let (h, first) = (1e-5, 2000);
+    let times: Vec<f64> = (first..first + 5).map(|i| h * f64::from(i)).collect();
+    let start: [&[f64]; 2] = [&[0.0; 4], &[40.0, 40.0, 60.0, 60.0]];
+    let ctx = context(&line, start, &times);
+    let out = run(&RungeKutta { step: quantity(h), look_ahead: false }, &ctx);
+    let (r, t) = (2, &line.throws[0]);
+    let (w, a) = (&out.speeds[r], &out.angles[r]);
+    // Accelerations by differences of fourth order over steps of 1e-5: forces change within 1e-3.
+    let alpha = |i: usize| {
+        let v = |k: usize| out.speeds[k][i];
+        (8.0 * (v(3) - v(1)) - (v(4) - v(0))) / (12.0 * h)
+    };
+    let (j, dj) = t.inertia.inertia(a[3] + t.phase);
+    let last = t.gas_torque(a[3], a[3]) - 0.6 * w[3] - (0.4 + j) * alpha(3) - 0.5 * dj * w[3] * w[3];
+    let load = -70.0 * (w[2] / 100.0).powi(2);
+    let before = load - 0.1 * w[2] - 0.2 * alpha(2);
+    // The torque in a link is that on its first inertia, against the motion.
+    let found = &out.torque[r];
+    assert!((found[2] + last).abs() < 1e-4 * last.abs(), "{} {last}", found[2]);
+    assert!((found[1] + 1.5 * (last + before)).abs() < 1e-4 * last.abs(), "{} {}", found[1], last + before);
+    let shaft = 4e3 * (a[0] - a[1]) + 8.0 * (w[0] - w[1]);
+    assert!((found[0] - shaft).abs() < 1e-9 * shaft.abs(), "{} {shaft}", found[0]);
+    assert!((w[2] / w[1] - 1.5).abs() < 1e-13 && (a[3] / a[1] - 1.5).abs() < 1e-13);
+}

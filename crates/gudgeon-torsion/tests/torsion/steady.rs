@@ -6,6 +6,7 @@ use gudgeon_core::kinds::*;
 use gudgeon_core::quantity::quantity;
 use gudgeon_torsion::coupling::FrequencyDependent;
 use gudgeon_torsion::drive::{Constant, Harmonic, Harmonics, Linear};
+use gudgeon_torsion::receptance::Receptance;
 use gudgeon_torsion::steady::Steady;
 use gudgeon_torsion::torsion::{HarmonicBalance, Modal, Orders};
 use std::f64::consts::PI;
@@ -274,4 +275,56 @@ fn critical_speeds_have_the_damping_of_their_mode() {
     motor.drives.push(drive(1, 3.0, &law));
     let s = Steady::new(&context(&motor, 70.0, &[1.0])).expect("builds");
     assert!((s.tree.damping[s.tree.position[1]] - 3.0 * 0.5 * 4.0).abs() < 1e-15);
+}
+
+#[test]
+fn receptances_are_the_response_order_by_order() {
+    // An undamped absorber tuned to order 3 of one of the speeds: a pivot that vanishes there.
+    let mut line = proportional(2e-4, 0.0);
+    line.nodes[4].damping = 0.0;
+    line.nodes.push(LineNode { ratio: 2.0, ..node(0.25, 0.0) });
+    line.links.push(link(5, 2, 0.25 * 210.0 * 210.0, 0.0, 0.0));
+    line.drives.clear();
+    let mut steady = Steady::new(&context(&line, 70.0, &[1.0])).expect("builds");
+    let mut receptance = Receptance::default();
+    let (orders, n) = (12, 6);
+    // From speed to speed the same storage, also of fewer orders.
+    for (speed, base, orders) in [(70.0, 1.0, orders), (33.0, 0.5, orders), (70.0, 0.5, 7), (140.0, 1.5, 3)] {
+        steady.set_speed(speed);
+        receptance.factor(&mut steady, base, orders);
+        let torque = |i: usize, k: usize| {
+            let at = (1 + i * 7 + k * 3) as f64;
+            gudgeon_numerics::linalg::Complex::new(10.0 * at.sin(), 10.0 * at.cos())
+        };
+        for p in 0..n {
+            for k in 0..orders {
+                let t = torque(steady.tree.node[p], k);
+                let at = p * orders + k;
+                receptance.field[0][at] = steady.tree.ratio[p] * t.re;
+                receptance.field[1][at] = steady.tree.ratio[p] * t.im;
+            }
+        }
+        receptance.solve(&mut steady).expect("no resonance");
+        for k in 0..orders {
+            let given = (0..n).map(|i| torque(i, k)).collect();
+            let order = gudgeon_torsion::forcing::Order { order: base * (k + 1) as f64, torque: given };
+            let exact = steady.respond(&order).expect("no resonance");
+            let top = exact.angle.iter().map(|a| a[0].hypot(a[1])).fold(0.0, f64::max);
+            for p in 0..n {
+                let [re, im] = exact.angle[steady.tree.node[p]];
+                let (at, ratio) = (p * orders + k, steady.tree.ratio[p]);
+                let error =
+                    (receptance.field[0][at] * ratio - re).hypot(receptance.field[1][at] * ratio - im);
+                // Rounding, times the magnification of resonances nearby.
+                assert!(error < 1e-10 * top, "{speed} order {} node {p}: {error:e} of {top:e}", order.order);
+            }
+        }
+    }
+    // Without damping the order that meets a natural frequency: √(k (1/J + 1/J)) = 40 rad/s at order 4.
+    let bare = chain(&[1.0, 1.0], &[800.0], &[], &[]);
+    let mut steady = Steady::new(&context(&bare, 10.0, &[1.0])).expect("builds");
+    receptance.factor(&mut steady, 1.0, 6);
+    receptance.field[0].fill(1.0);
+    receptance.field[0][..6].fill(2.0);
+    assert_eq!(receptance.solve(&mut steady).expect_err("a resonance").0, 3);
 }

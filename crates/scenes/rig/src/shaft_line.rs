@@ -48,7 +48,7 @@ fn free() -> [TorsionalStiffness<NonNegative>; 2] {
     [quantity(0.0), quantity(0.0)]
 }
 fn eigenvalues() -> Box<dyn NaturalFrequenciesSpec> {
-    Box::new(Eigenvalues { most: MOST })
+    Box::new(Eigenvalues { max_modes: MOST })
 }
 
 #[register_model(
