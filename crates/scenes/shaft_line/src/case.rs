@@ -385,15 +385,15 @@ pub struct Limits {
     pub torque: Vec<TorqueLimit>,
     /// Heat in couplings and dampers.
     pub heat: Vec<HeatLimit>,
-    /// Cyclic speed irregularity.
-    pub irregularity: Vec<IrregularityLimit>,
+    /// Coefficient of speed fluctuation.
+    pub irregularity: Vec<SpeedFluctuationLimit>,
 }
 
 /// Natural frequencies keep away from multiples of the speed, or from given frequencies.
 ///
 /// The distance is that between natural frequency and excitation by the excitation, `|f_n - f|/f`, at the operating speed where it is least;
 /// zero where they meet within the operating range. One that is not kept is accepted where the forced vibration there keeps every
-/// limit on torque, stress, heat and irregularity.
+/// limit on torque, stress, heat and speed fluctuation.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SeparationLimit {
@@ -453,7 +453,7 @@ pub struct HeatLimit {
 /// The speed of an inertia stays even.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct IrregularityLimit {
+pub struct SpeedFluctuationLimit {
     /// Name of the inertia: generator, flywheel, propeller.
     pub inertia: String,
     /// Largest admitted coefficient of speed fluctuation: highest less lowest speed, by the mean.

@@ -207,7 +207,7 @@ impl Run<'_> {
         let (case, a, plan) = (&self.loaded.value, self.a, self.plan);
         let start = self.start.clone();
         let mut machine = machine_of(&start, case, a)?;
-        machine.irregularity = !case.limits.irregularity.is_empty();
+        machine.speed_fluctuation = !case.limits.irregularity.is_empty();
         if plan.response {
             let out = machine.motion(case.speed.si()).map_err(failed)?;
             self.results.periodic(&out, &mut machine);
@@ -230,7 +230,7 @@ impl Run<'_> {
         let mut machines = Vec::new();
         for ((c, a), start) in steps.iter().zip(&starts) {
             let mut m = machine_of(start, &c.value, a)?;
-            m.irregularity = machine.irregularity;
+            m.speed_fluctuation = machine.speed_fluctuation;
             machines.push(m);
         }
         let mut own = Some(machine);

@@ -36,7 +36,7 @@ pub struct Point {
     /// By link.
     pub links: Vec<LinkPoint>,
     /// Peak to peak speed by mean speed, by inertia; empty where nobody asked and it is small.
-    pub irregularity: Vec<f64>,
+    pub speed_fluctuation: Vec<f64>,
     /// Largest vibratory twist of a link (half of peak to peak, \[rad\]); zero where it is small.
     pub twist: f64,
     /// Torque amplitudes by order and link \[N m\]; empty unless they are kept.
@@ -50,8 +50,8 @@ pub struct Machine<'a> {
     pub a: &'a Assembled,
     /// What is linear in it.
     pub steady: Steady,
-    /// Whether the degree of irregularity is wanted everywhere.
-    pub irregularity: bool,
+    /// Whether the coefficient of speed fluctuation is wanted everywhere.
+    pub speed_fluctuation: bool,
     /// Whether amplitudes by order are kept.
     pub by_order: bool,
     /// Orders of the answers, ascending.
@@ -78,7 +78,7 @@ impl<'a> Machine<'a> {
         Ok(Self {
             a,
             steady: Steady::new(&ctx)?,
-            irregularity: false,
+            speed_fluctuation: false,
             by_order: false,
             orders: Vec::new(),
             solutions: 0,
@@ -182,7 +182,7 @@ impl<'a> Machine<'a> {
 
     fn point(&mut self, out: &TorsionOut) -> Point {
         let (links, nodes) = (self.a.line.links.len(), self.a.line.nodes.len());
-        let (irregularity, by_order, a) = (self.irregularity, self.by_order, self.a);
+        let (fluctuation, by_order, a) = (self.speed_fluctuation, self.by_order, self.a);
         let cycle = self.extremes(out);
         let mut p = Point::default();
         for l in 0..links {
@@ -204,8 +204,9 @@ impl<'a> Machine<'a> {
         let bound = |i: usize| {
             out.orders.iter().map(|o| o.order * square(o.angle[i]).sqrt()).sum::<f64>() / ratio(i).abs()
         };
-        if irregularity || (0..nodes).any(|i| bound(i) > LARGE) {
-            p.irregularity = (0..nodes).map(|i| irregularity_of(cycle, out, i) / ratio(i).abs()).collect();
+        if fluctuation || (0..nodes).any(|i| bound(i) > LARGE) {
+            p.speed_fluctuation =
+                (0..nodes).map(|i| speed_fluctuation(cycle, out, i) / ratio(i).abs()).collect();
         }
         for l in 0..links {
             let twist = |k: usize| twist_of(a, out, l, k);
@@ -278,7 +279,7 @@ fn square([re, im]: [f64; 2]) -> f64 {
 }
 
 /// Peak to peak speed of an inertia by the mean speed of the reference shaft.
-pub fn irregularity_of(cycle: &mut Cycle, out: &TorsionOut, node: usize) -> f64 {
+pub fn speed_fluctuation(cycle: &mut Cycle, out: &TorsionOut, node: usize) -> f64 {
     let speed = |k: usize| {
         let o = &out.orders[k];
         [-o.order * o.angle[node][1], o.order * o.angle[node][0]]

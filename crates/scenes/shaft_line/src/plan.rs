@@ -31,87 +31,36 @@ impl Plan {
     /// Closure of the wanted groups.
     #[must_use]
     pub fn new(case: &ShaftLineCase) -> Self {
-        let wanted = |g: Group| case.outputs.groups.is_empty() || case.outputs.groups.contains(&g);
         let mut plan = Self::default();
-        let answers = case.models.torsion.answers();
-        let name = case.models.torsion.typetag_name();
-        let limits = &case.limits;
-        let separation = !limits.separation.is_empty();
-        let torque = !(limits.stress.is_empty()
-            && limits.torque.is_empty()
-            && limits.heat.is_empty()
-            && limits.irregularity.is_empty());
-        let mut decide = |what: &str, runs: bool, why: String| {
-            let entry = Skipped { what: what.into(), why };
-            if runs {
-                plan.runs.push(entry)
-            } else {
-                plan.skipped.push(entry)
-            }
-            runs
-        };
-        let asked = |g: Group| {
-            if case.outputs.groups.is_empty() {
-                "all groups are wanted".to_owned()
-            } else if wanted(g) {
-                "`outputs.groups` names it".to_owned()
-            } else {
-                "`outputs.groups` does not name it".to_owned()
-            }
-        };
-        let throws = wanted(Group::Throws) && !case.throws.is_empty();
-        let why = if case.throws.is_empty() { "there are no throws".into() } else { asked(Group::Throws) };
-        let throws = decide("throws at constant speed", throws, why);
-        let frequencies = wanted(Group::NaturalFrequencies) || separation;
-        let why = if separation && !wanted(Group::NaturalFrequencies) {
-            "`limits.separation` needs it".into()
-        } else {
-            asked(Group::NaturalFrequencies)
-        };
-        let frequencies = decide("natural frequencies", frequencies, why);
-        let nothing = answers == TorsionAnswer::Nothing;
-        let response = (wanted(Group::Response) || torque) && !nothing;
-        let why = if nothing {
-            "`torsion/off`: the speed is constant".into()
-        } else if torque && !wanted(Group::Response) {
-            "`limits` need it".into()
-        } else {
-            asked(Group::Response)
-        };
-        let response = decide(&format!("response by `{name}`"), response, why);
-        let given = case.range.from.is_some() && case.range.to.is_some();
-        let range = wanted(Group::SpeedRange) && given && answers == TorsionAnswer::Periodic;
-        let why = if !given {
-            "`range.from` and `range.to` are not given".into()
-        } else if answers != TorsionAnswer::Periodic {
-            format!("`torsion/{name}` gives no vibration at constant speed")
-        } else {
-            asked(Group::SpeedRange)
-        };
-        let range = decide("vibration over the speed range", range, why);
-        if response && answers == TorsionAnswer::Periodic {
-            decide("time steps", false, "the periodic motion is solved for directly".into());
+        let torsion = &case.models.torsion;
+        let (answers, name) = (torsion.answers(), torsion.typetag_name());
+        plan.throws = plan.decide("throws at constant speed", throws(case));
+        plan.frequencies = plan.decide("natural frequencies", frequencies(case));
+        plan.response = plan.decide(&format!("response by `{name}`"), response(case, answers));
+        plan.range = plan.decide("vibration over the speed range", range(case, answers, name));
+        if plan.response && answers == TorsionAnswer::Periodic {
+            plan.decide("time steps", (false, "the periodic motion is solved for directly".into()));
         }
-        let nothing_but_time = answers == TorsionAnswer::Time;
-        let over = (case.operating.is_some() || !case.load_steps.is_empty()) && !nothing_but_time;
-        let forced = !nothing && (torque || over && (response || range));
-        let verdict = forced || separation;
-        let why = if verdict {
-            let steps = super::steps::all(case).len();
-            format!(
-                "{} in {steps} load step{}",
-                Operating::new(case).words(),
-                if steps == 1 { "" } else { "s" }
-            )
-        } else {
-            "the case has no limits, no operating range and no load steps".into()
-        };
-        decide("verdict", verdict, why);
-        let line = frequencies || response || range || verdict;
-        if !line {
-            decide("shaft line", false, "nothing that is wanted needs it".into());
+        let over = case.operating.is_some() || !case.load_steps.is_empty();
+        let over = over && answers != TorsionAnswer::Time && (plan.response || plan.range);
+        plan.forced = answers != TorsionAnswer::Nothing && (forced_limits(case) || over);
+        let judged = plan.forced || !case.limits.separation.is_empty();
+        plan.verdict = plan.decide("verdict", (judged, verdict(case, judged)));
+        if !plan.line() {
+            plan.decide("shaft line", (false, "nothing that is wanted needs it".into()));
         }
-        Self { throws, frequencies, response, range, verdict, forced, ..plan }
+        plan
+    }
+
+    /// Notes what runs or not, and why.
+    fn decide(&mut self, what: &str, (runs, why): (bool, String)) -> bool {
+        let entry = Skipped { what: what.into(), why };
+        if runs {
+            self.runs.push(entry)
+        } else {
+            self.skipped.push(entry)
+        }
+        runs
     }
 
     /// Whether a line is built at all.
@@ -119,4 +68,73 @@ impl Plan {
     pub const fn line(&self) -> bool {
         self.frequencies || self.response || self.range || self.verdict
     }
+}
+
+fn wanted(case: &ShaftLineCase, g: Group) -> bool {
+    case.outputs.groups.is_empty() || case.outputs.groups.contains(&g)
+}
+
+/// Why a group is wanted or not.
+fn asked(case: &ShaftLineCase, g: Group) -> String {
+    if case.outputs.groups.is_empty() {
+        "all groups are wanted".to_owned()
+    } else if wanted(case, g) {
+        "`outputs.groups` names it".to_owned()
+    } else {
+        "`outputs.groups` does not name it".to_owned()
+    }
+}
+
+/// Whether the case has limits on vibration.
+fn forced_limits(case: &ShaftLineCase) -> bool {
+    let limits = &case.limits;
+    !(limits.stress.is_empty()
+        && limits.torque.is_empty()
+        && limits.heat.is_empty()
+        && limits.irregularity.is_empty())
+}
+
+fn throws(case: &ShaftLineCase) -> (bool, String) {
+    if case.throws.is_empty() {
+        return (false, "there are no throws".into());
+    }
+    (wanted(case, Group::Throws), asked(case, Group::Throws))
+}
+
+fn frequencies(case: &ShaftLineCase) -> (bool, String) {
+    let own = wanted(case, Group::NaturalFrequencies);
+    if !case.limits.separation.is_empty() && !own {
+        return (true, "`limits.separation` needs it".into());
+    }
+    (own, asked(case, Group::NaturalFrequencies))
+}
+
+fn response(case: &ShaftLineCase, answers: TorsionAnswer) -> (bool, String) {
+    let own = wanted(case, Group::Response);
+    if answers == TorsionAnswer::Nothing {
+        (false, "`torsion/off`: the speed is constant".into())
+    } else if forced_limits(case) && !own {
+        (true, "`limits` need it".into())
+    } else {
+        (own, asked(case, Group::Response))
+    }
+}
+
+fn range(case: &ShaftLineCase, answers: TorsionAnswer, name: &str) -> (bool, String) {
+    if case.range.from.is_none() || case.range.to.is_none() {
+        (false, "`range.from` and `range.to` are not given".into())
+    } else if answers != TorsionAnswer::Periodic {
+        (false, format!("`torsion/{name}` gives no vibration at constant speed"))
+    } else {
+        (wanted(case, Group::SpeedRange), asked(case, Group::SpeedRange))
+    }
+}
+
+fn verdict(case: &ShaftLineCase, judged: bool) -> String {
+    if !judged {
+        return "the case has no limits, no operating range and no load steps".into();
+    }
+    let steps = super::steps::all(case).len();
+    let s = if steps == 1 { "" } else { "s" };
+    format!("{} in {steps} load step{s}", Operating::new(case).words())
 }

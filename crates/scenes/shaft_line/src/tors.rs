@@ -22,8 +22,8 @@ pub struct Import {
     pub report: Vec<String>,
 }
 
-/// Most elements of a file: a loop of connections is found here at the latest.
-const MOST: usize = 100_000;
+/// Maximum number of elements of a file: a loop of connections is found here at the latest.
+const MAX_ELEMENTS: usize = 100_000;
 
 /// Reads a file.
 ///
@@ -105,6 +105,10 @@ impl<'a> Reader<'a> {
             .ok_or_else(|| format!("{place}: `{key}` is not a number"))
     }
 
+    fn optional(e: &Value, key: &str, default: f64, place: &str) -> Result<f64, String> {
+        if e.get(key).is_some() { Self::number(e, key, place) } else { Ok(default) }
+    }
+
     fn new_node(&mut self, name: String, ratio: f64) -> usize {
         let mut unique = name.clone();
         let mut k = 2;
@@ -147,7 +151,7 @@ impl<'a> Reader<'a> {
         let mut node = at;
         for (k, e) in elements.iter().enumerate() {
             self.elements += 1;
-            if self.elements > MOST {
+            if self.elements > MAX_ELEMENTS {
                 return Err("structure: the connections go round in circles".into());
             }
             let own = e
@@ -156,128 +160,11 @@ impl<'a> Reader<'a> {
                 .map_or_else(|| format!("element {}", k + 1), str::to_owned);
             let place = format!("{name}.{own}");
             let kind = e.get("type").and_then(Value::as_str).unwrap_or_default();
-            let known: &[&str] = match kind {
-                "Disk" => &["inertia", "damping"],
-                "ShaftDiscrete" => &["stiffness", "damping"],
-                "ShaftContinuous" => {
-                    &["length", "innerDiameter", "outerDiameter", "density", "shearModulus", "damping"]
-                }
-                "GearElement" => &["inertia", "teeth", "diameter", "parent", "damping"],
-                _ => &[],
-            };
-            let unread: Vec<&str> = e
-                .as_object()
-                .into_iter()
-                .flat_map(|o| o.keys())
-                .map(String::as_str)
-                .filter(|key| !["name", "type"].contains(key) && !known.contains(key))
-                .collect();
-            if known.is_empty() {
-                self.out
-                    .report
-                    .push(format!("{place}: elements of type `{kind}` are not known; it was left out"));
-            } else if !unread.is_empty() {
-                self.out.report.push(format!("{place}: {} not read", unread.join(", ")));
-            }
-            let ratio = |r: &Self, n: Option<usize>| n.map_or(1.0, |n| r.out.line.nodes[n].ratio);
+            self.report_unread(e, kind, &place);
             match kind {
-                "Disk" => {
-                    let n = match node {
-                        Some(n) => n,
-                        None => self.new_node(place.clone(), 1.0),
-                    };
-                    node = Some(n);
-                    let inertia = Self::number(e, "inertia", &place)?;
-                    let damping =
-                        if e.get("damping").is_some() { Self::number(e, "damping", &place)? } else { 0.0 };
-                    if inertia < 0.0 {
-                        return Err(format!("{place}: an inertia of {inertia} cannot be"));
-                    }
-                    let target = &mut self.out.line.nodes[n];
-                    // The end of a shaft is called after what sits on it.
-                    if target.name.ends_with(" end") || target.name.ends_with(" begin") {
-                        target.name.clone_from(&place);
-                    }
-                    target.inertia += inertia;
-                    target.damping += damping;
-                }
-                "ShaftDiscrete" | "ShaftContinuous" => {
-                    let r = ratio(self, node);
-                    let a = match node {
-                        Some(n) => n,
-                        None => self.new_node(format!("{place} begin"), r),
-                    };
-                    let b = self.new_node(format!("{place} end"), r);
-                    let (k, c, stress) = if kind == "ShaftDiscrete" {
-                        let c = if e.get("damping").is_some() {
-                            Self::number(e, "damping", &place)?
-                        } else {
-                            0.0
-                        };
-                        (Self::number(e, "stiffness", &place)?, c, None)
-                    } else {
-                        // Lengths are in millimetres there.
-                        let mm = |key: &str| Self::number(e, key, &place).map(|v| v * 1e-3);
-                        let optional = |key: &str, default: f64| match e.get(key) {
-                            Some(_) => Self::number(e, key, &place),
-                            None => Ok(default),
-                        };
-                        let piece = Piece {
-                            length: mm("length")?,
-                            diameter: mm("outerDiameter")?,
-                            bore: mm("innerDiameter")?,
-                        };
-                        if !(piece.length > 0.0 && piece.diameter > piece.bore && piece.bore >= 0.0) {
-                            return Err(format!("{place}: length and diameters do not make a shaft"));
-                        }
-                        let half = 0.5 * piece.inertia(optional("density", 8000.0)?);
-                        self.out.line.nodes[a].inertia += half;
-                        self.out.line.nodes[b].inertia += half;
-                        self.out.report.push(format!(
-                            "{place}: half of the shaft's inertia stands at each end; openTorsion spreads it over a linear element"
-                        ));
-                        let k = stiffness(&[piece], optional("shearModulus", 80e9)?);
-                        (k, optional("damping", 0.0)?, Some(piece.stress(1.0)))
-                    };
-                    let quantity = |v: f64| Quantity::new(v).map_err(|e| format!("{place}: {e}"));
-                    let stiffness: TorsionalStiffness<NonNegative> = quantity(k)?;
-                    let damping: TorsionalDamping<NonNegative> =
-                        Quantity::new(c).map_err(|e| format!("{place}: {e}"))?;
-                    let law =
-                        Linear { stiffness, damping, loss_factor: gudgeon_core::quantity::quantity(0.0) };
-                    self.link(place.clone(), [a, b], &law, stress)?;
-                    node = Some(b);
-                }
-                "GearElement" => {
-                    let size =
-                        Self::number(e, if e.get("teeth").is_some() { "teeth" } else { "diameter" }, &place)?;
-                    if size <= 0.0 {
-                        return Err(format!("{place}: a gear of size {size} cannot be"));
-                    }
-                    let parent = e.get("parent").and_then(Value::as_str).and_then(|p| {
-                        let full = format!("{name}.{p}");
-                        self.gears.iter().find(|g| g.0 == full).map(|g| (g.1, g.2))
-                    });
-                    let n = match (parent, node) {
-                        (Some((mate, mate_size)), _) => {
-                            let r = -self.out.line.nodes[mate].ratio * mate_size / size;
-                            let n = self.new_node(place.clone(), r);
-                            self.link(format!("{place} mesh"), [mate, n], &Off {}, None)?;
-                            n
-                        }
-                        (None, Some(n)) => n,
-                        (None, None) => self.new_node(place.clone(), 1.0),
-                    };
-                    if e.get("parent").is_some() && parent.is_none() {
-                        self.out.report.push(format!(
-                            "{place}: its parent gear does not come before it and was not meshed"
-                        ));
-                    }
-                    let inertia = Self::number(e, "inertia", &place)?;
-                    self.out.line.nodes[n].inertia += inertia.max(0.0);
-                    self.gears.push((place.clone(), n, size));
-                    node = Some(n);
-                }
+                "Disk" => node = Some(self.disk(e, node, &place)?),
+                "ShaftDiscrete" | "ShaftContinuous" => node = Some(self.shaft(e, kind, node, &place)?),
+                "GearElement" => node = Some(self.gear(e, name, node, &place)?),
                 _ => {}
             }
             let next: Vec<&'a str> = self
@@ -292,62 +179,135 @@ impl<'a> Reader<'a> {
         }
         Ok(())
     }
-}
 
-#[cfg(test)]
-mod tests {
-    use std::f64::consts::PI;
-
-    use super::*;
-
-    const ENGINE: &str = r#"{
-        "components": [
-            {"name": "engine", "elements": [
-                {"name": "flywheel", "type": "Disk", "inertia": 1.6, "damping": 0.5},
-                {"name": "shaft", "type": "ShaftDiscrete", "stiffness": 1.8e6, "damping": 2.0, "colour": "red"},
-                {"name": "throw", "type": "Disk", "inertia": 0.055, "damping": 1.5, "excitation": {"values": [1, 2]}},
-                {"name": "pinion", "type": "GearElement", "inertia": 0.01, "teeth": 20},
-                {"name": "wheel", "type": "GearElement", "inertia": 0.2, "teeth": 60, "parent": "pinion"}]},
-            {"name": "pump", "elements": [
-                {"name": "quill", "type": "ShaftContinuous", "length": 500, "innerDiameter": 0, "outerDiameter": 40},
-                {"name": "rotor", "type": "Disk", "inertia": 0.3, "damping": 0.0},
-                {"name": "magic", "type": "Wormhole"}]}],
-        "structure": [["engine.wheel", "pump.quill"]],
-        "author": "somebody"}"#;
-
-    #[test]
-    fn reads_disks_shafts_and_gears_and_tells_the_rest() {
-        let i = parse(ENGINE).expect("reads");
-        let names: Vec<&str> = i.line.nodes.iter().map(|n| n.name.as_str()).collect();
-        assert_eq!(names, ["engine.flywheel", "engine.throw", "engine.wheel", "pump.rotor"]);
-        assert!((i.line.nodes[1].inertia - 0.065).abs() < 1e-15, "disk and pinion on one node");
-        assert!(
-            (i.line.nodes[2].ratio + 1.0 / 3.0).abs() < 1e-15,
-            "the wheel turns slower and the other way"
-        );
-        let quill = i.line.links[2].coupling.linear(0.0, 0.0).stiffness;
-        assert!((quill / (80e9 * PI * 0.04_f64.powi(4) / 32.0 / 0.5) - 1.0).abs() < 1e-14);
-        let half = 8000.0 * PI * 0.04_f64.powi(4) / 32.0 * 0.25;
-        assert!((i.line.nodes[3].inertia - 0.3 - half).abs() < 1e-15);
-        let told = i.report.join("\n");
-        for word in ["author", "colour", "excitation", "Wormhole", "half of the shaft's inertia"] {
-            assert!(told.contains(word), "{word} in {told}");
+    /// Tells what of an element is not taken over.
+    fn report_unread(&mut self, e: &Value, kind: &str, place: &str) {
+        let known: &[&str] = match kind {
+            "Disk" => &["inertia", "damping"],
+            "ShaftDiscrete" => &["stiffness", "damping"],
+            "ShaftContinuous" => {
+                &["length", "innerDiameter", "outerDiameter", "density", "shearModulus", "damping"]
+            }
+            "GearElement" => &["inertia", "teeth", "diameter", "parent", "damping"],
+            _ => &[],
+        };
+        let unread: Vec<&str> = e
+            .as_object()
+            .into_iter()
+            .flat_map(|o| o.keys())
+            .map(String::as_str)
+            .filter(|key| !["name", "type"].contains(key) && !known.contains(key))
+            .collect();
+        if known.is_empty() {
+            let what = format!("{place}: elements of type `{kind}` are not known; it was left out");
+            self.out.report.push(what);
+        } else if !unread.is_empty() {
+            self.out.report.push(format!("{place}: {} not read", unread.join(", ")));
         }
-        assert!(gudgeon_torsion::tree::Tree::new(&i.line).is_ok());
     }
 
-    #[test]
-    fn refuses_what_is_not_tors() {
-        let message = |t: &str| parse(t).err().unwrap_or_default();
-        assert!(message("{").contains("JSON"));
-        assert!(message("{}").contains("components"));
-        assert!(message(r#"{"components": [], "structure": [["a", "b"]]}"#).contains("structure.0"));
-        let circle = r#"{"components": [{"name": "a", "elements": [{"name": "d", "type": "Disk", "inertia": 1}]},
-            {"name": "b", "elements": [{"name": "d", "type": "Disk", "inertia": 1}]},
-            {"name": "s", "elements": [{"name": "d", "type": "Disk", "inertia": 1}]}],
-            "structure": [["s.d", "a.d"], ["a.d", "b.d"], ["b.d", "a.d"]]}"#;
-        assert!(message(circle).contains("circles"));
-        let bad = r#"{"components": [{"name": "a", "elements": [{"name": "d", "type": "Disk", "inertia": "x"}]}], "structure": []}"#;
-        assert!(message(bad).contains("a.d: `inertia`"));
+    /// A disk on the node before it; the node.
+    fn disk(&mut self, e: &Value, node: Option<usize>, place: &str) -> Result<usize, String> {
+        let n = match node {
+            Some(n) => n,
+            None => self.new_node(place.to_owned(), 1.0),
+        };
+        let inertia = Self::number(e, "inertia", place)?;
+        let damping = Self::optional(e, "damping", 0.0, place)?;
+        if inertia < 0.0 {
+            return Err(format!("{place}: an inertia of {inertia} cannot be"));
+        }
+        let target = &mut self.out.line.nodes[n];
+        // The end of a shaft is called after what sits on it.
+        if target.name.ends_with(" end") || target.name.ends_with(" begin") {
+            place.clone_into(&mut target.name);
+        }
+        target.inertia += inertia;
+        target.damping += damping;
+        Ok(n)
+    }
+
+    /// A shaft from the node before it; the node at its end.
+    fn shaft(&mut self, e: &Value, kind: &str, node: Option<usize>, place: &str) -> Result<usize, String> {
+        let ratio = node.map_or(1.0, |n| self.out.line.nodes[n].ratio);
+        let a = match node {
+            Some(n) => n,
+            None => self.new_node(format!("{place} begin"), ratio),
+        };
+        let b = self.new_node(format!("{place} end"), ratio);
+        let (k, c, stress) = if kind == "ShaftDiscrete" {
+            let c = Self::optional(e, "damping", 0.0, place)?;
+            (Self::number(e, "stiffness", place)?, c, None)
+        } else {
+            self.continuous_shaft(e, [a, b], place)?
+        };
+        let error = |e| format!("{place}: {e}");
+        let stiffness: TorsionalStiffness<NonNegative> = Quantity::new(k).map_err(error)?;
+        let damping: TorsionalDamping<NonNegative> = Quantity::new(c).map_err(error)?;
+        let law = Linear { stiffness, damping, loss_factor: gudgeon_core::quantity::quantity(0.0) };
+        self.link(place.to_owned(), [a, b], &law, stress)?;
+        Ok(b)
+    }
+
+    /// Stiffness, damping and stress by torque of a cylinder, whose inertia goes to its ends.
+    fn continuous_shaft(
+        &mut self,
+        e: &Value,
+        ends: [usize; 2],
+        place: &str,
+    ) -> Result<(f64, f64, Option<f64>), String> {
+        // Lengths are in millimetres there.
+        let mm = |key: &str| Self::number(e, key, place).map(|v| v * 1e-3);
+        let piece =
+            Piece { length: mm("length")?, diameter: mm("outerDiameter")?, bore: mm("innerDiameter")? };
+        if !(piece.length > 0.0 && piece.diameter > piece.bore && piece.bore >= 0.0) {
+            return Err(format!("{place}: length and diameters do not make a shaft"));
+        }
+        let half = 0.5 * piece.inertia(Self::optional(e, "density", 8000.0, place)?);
+        for end in ends {
+            self.out.line.nodes[end].inertia += half;
+        }
+        self.out.report.push(format!(
+            "{place}: half of the shaft's inertia stands at each end; openTorsion spreads it over a linear element"
+        ));
+        let k = stiffness(&[piece], Self::optional(e, "shearModulus", 80e9, place)?);
+        Ok((k, Self::optional(e, "damping", 0.0, place)?, Some(piece.stress(1.0))))
+    }
+
+    /// A gear on the node before it, or in mesh with its parent; the node.
+    fn gear(
+        &mut self,
+        e: &Value,
+        component: &str,
+        node: Option<usize>,
+        place: &str,
+    ) -> Result<usize, String> {
+        let size = Self::number(e, if e.get("teeth").is_some() { "teeth" } else { "diameter" }, place)?;
+        if size <= 0.0 {
+            return Err(format!("{place}: a gear of size {size} cannot be"));
+        }
+        let parent = e.get("parent").and_then(Value::as_str).and_then(|p| {
+            let full = format!("{component}.{p}");
+            self.gears.iter().find(|g| g.0 == full).map(|g| (g.1, g.2))
+        });
+        let n = match (parent, node) {
+            (Some((mate, mate_size)), _) => {
+                let r = -self.out.line.nodes[mate].ratio * mate_size / size;
+                let n = self.new_node(place.to_owned(), r);
+                self.link(format!("{place} mesh"), [mate, n], &Off {}, None)?;
+                n
+            }
+            (None, Some(n)) => n,
+            (None, None) => self.new_node(place.to_owned(), 1.0),
+        };
+        if e.get("parent").is_some() && parent.is_none() {
+            self.out
+                .report
+                .push(format!("{place}: its parent gear does not come before it and was not meshed"));
+        }
+        let inertia = Self::number(e, "inertia", place)?;
+        self.out.line.nodes[n].inertia += inertia.max(0.0);
+        self.gears.push((place.to_owned(), n, size));
+        Ok(n)
     }
 }

@@ -85,7 +85,7 @@ pub enum Quantity {
     /// Heat of a link.
     Heat,
     /// Coefficient of speed fluctuation of an inertia.
-    Irregularity,
+    SpeedFluctuation,
 }
 
 /// A limit on forced vibration.
@@ -109,7 +109,7 @@ impl Forced {
             Quantity::Peak => "peak torque in",
             Quantity::Stress => "stress in",
             Quantity::Heat => "heat of",
-            Quantity::Irregularity => "speed irregularity of",
+            Quantity::SpeedFluctuation => "speed irregularity of",
         };
         format!("{what} {}", self.subject)
     }
@@ -121,14 +121,14 @@ impl Forced {
             Quantity::Torque | Quantity::Peak => format!("{value:.4e} N m of {limit:.4e} N m"),
             Quantity::Stress => format!("{:.4} MPa of {:.4} MPa", value / 1e6, limit / 1e6),
             Quantity::Heat => format!("{value:.4e} W of {limit:.4e} W"),
-            Quantity::Irregularity => format!("{value:.6} of {limit:.6}"),
+            Quantity::SpeedFluctuation => format!("{value:.6} of {limit:.6}"),
         }
     }
 
     /// Place of the subject in a line, and what makes the quantity of the torque there; none where the line of a load step lacks it.
     fn place(&self, a: &Assembled) -> Option<(usize, f64)> {
         match self.quantity {
-            Quantity::Irregularity => {
+            Quantity::SpeedFluctuation => {
                 a.line.nodes.iter().position(|n| n.name == self.subject).map(|i| (i, 1.0))
             }
             _ => {
@@ -145,13 +145,13 @@ impl Forced {
             Quantity::Torque | Quantity::Stress => p.links[at].amplitude,
             Quantity::Peak => p.links[at].peak,
             Quantity::Heat => p.links[at].heat,
-            Quantity::Irregularity => p.irregularity.get(at).copied().unwrap_or(0.0),
+            Quantity::SpeedFluctuation => p.speed_fluctuation.get(at).copied().unwrap_or(0.0),
         }
     }
 
     /// Order of the largest torque there; none for what is no torque.
     fn order(&self, at: usize, p: &Point) -> Option<f64> {
-        (self.quantity != Quantity::Irregularity).then(|| p.links[at].order)
+        (self.quantity != Quantity::SpeedFluctuation).then(|| p.links[at].order)
     }
 }
 
@@ -181,7 +181,7 @@ pub fn forced(case: &ShaftLineCase, a: &Assembled) -> Vec<Forced> {
         add(Quantity::Heat, &l.shaft, l.power.si(), &l.source);
     }
     for l in &limits.irregularity {
-        add(Quantity::Irregularity, &l.inertia, l.coefficient.si(), &l.source);
+        add(Quantity::SpeedFluctuation, &l.inertia, l.coefficient.si(), &l.source);
     }
     all
 }

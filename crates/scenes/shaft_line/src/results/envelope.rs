@@ -4,7 +4,8 @@ use gudgeon_core::result::{Note, Series};
 
 use super::periodic::LINEAR;
 use super::verdict::numbered;
-use super::{MOST, Results, column};
+use super::{MAX_DRAWN, Results, column};
+use crate::assemble::Assembled;
 use crate::verdict::{Forced, Operating, Quantity, Step};
 use crate::{rpm, told};
 
@@ -67,7 +68,7 @@ impl Results<'_> {
         for (k, s) in steps.iter_mut().enumerate() {
             for w in s.speeds.clone() {
                 let Some(p) = s.machine.at(w) else { continue };
-                let fluctuation = p.irregularity.iter().copied().fold(0.0, f64::max);
+                let fluctuation = p.speed_fluctuation.iter().copied().fold(0.0, f64::max);
                 for (worst, value) in worst.iter_mut().zip([p.twist, fluctuation]) {
                     if value > worst.0 {
                         *worst = (value, w, k);
@@ -94,7 +95,7 @@ impl Results<'_> {
         }
     }
 
-    /// Table `envelope`, the envelope of all shafts, and the curves of the one that uses its limit most.
+    /// Table `envelope`, the envelope of all shafts, and the curves of the one that uses its limit by the maximum.
     fn curves(
         &mut self,
         steps: &mut [Step<'_, '_>],
@@ -104,99 +105,135 @@ impl Results<'_> {
         tops: &[(usize, Top)],
     ) {
         let Some(a) = steps.first().map(|s| s.machine.a) else { return };
-        // The grid, and the places of the peaks.
-        let mut speeds = range.grid(diagram);
-        speeds.extend(tops.iter().map(|t| t.1.speed).filter(|w| *w > range.from && *w < range.to));
-        speeds.sort_unstable_by(f64::total_cmp);
-        speeds.dedup();
-        speeds.retain(|w| steps.iter_mut().all(|s| s.machine.at(*w).is_some()));
+        let speeds = drawn_speeds(steps, range, diagram, tops);
         let axis = column("speed", "rpm", speeds.iter().map(|w| rpm(*w)).collect());
         let mut table = Series { axis, columns: Vec::new() };
-        let stressed = a.stress.iter().any(Option::is_some);
-        let (unit, what) = if stressed { ("MPa", "stress") } else { ("N m", "torque") };
+        let shown = Shown::new(a, names.len() > 1);
         let mut all = Vec::new();
-        let mut most: Option<(f64, usize)> = None;
+        let mut critical: Option<(f64, usize)> = None;
         for (l, top) in tops {
-            let link = &a.line.links[*l];
-            let factor = if stressed { a.stress[*l].map(|s| s / 1e6) } else { Some(1.0) };
-            let Some(factor) = factor else { continue };
-            let mut envelope = vec![0.0_f64; speeds.len()];
-            for (k, s) in steps.iter_mut().enumerate() {
-                let Some(at) = s.machine.a.line.links.iter().position(|x| x.name == link.name) else {
-                    continue;
-                };
-                let row: Vec<f64> = speeds
-                    .iter()
-                    .map(|w| s.machine.at(*w).map_or(0.0, |p| factor * p.links[at].amplitude))
-                    .collect();
-                envelope.iter_mut().zip(&row).for_each(|(e, r)| *e = e.max(*r));
-                if names.len() > 1 {
-                    table.columns.push(column(
-                        format!("shaft{}.step{}.{what}_amplitude", l + 1, k + 1),
-                        unit,
-                        row,
-                    ));
-                }
+            let Some(factor) = shown.factor(a, *l) else { continue };
+            let name = &a.line.links[*l].name;
+            let envelope = shown.add(steps, &speeds, (*l, factor), &mut table);
+            if all.len() < MAX_DRAWN {
+                all.push((name.clone(), envelope));
             }
-            let name = format!("shaft{}.{what}_amplitude", l + 1);
-            table.columns.push(column(name.clone(), unit, envelope));
-            if all.len() < MOST {
-                all.push((link.name.clone(), name));
-            }
-            let limit = limit_of(limits, &link.name, stressed);
+            let limit = limit_of(limits, name, shown.stressed);
             let used = limit.map_or(0.0, |limit| factor * top.amplitude / limit);
-            if most.is_none_or(|m| used > m.0) {
-                most = Some((used, *l));
+            if critical.is_none_or(|m| used > m.0) {
+                critical = Some((used, *l));
             }
         }
-        let Some((_, l)) = most else { return };
-        let name = a.line.links[l].name.clone();
-        let limit = limit_of(limits, &name, stressed);
+        let Some((_, l)) = critical else { return };
+        let limit = limit_of(limits, &a.line.links[l].name, shown.stressed);
         if let Some(limit) = limit {
-            table.columns.push(column(
-                format!("shaft{}.{what}_limit", l + 1),
-                unit,
-                vec![limit; speeds.len()],
-            ));
+            table.columns.push(column(shown.limit_column(l), shown.unit, vec![limit; speeds.len()]));
         }
-        let limit_line =
-            || limit.map(|_| (format!("limit of {name}"), format!("shaft{}.{what}_limit", l + 1)));
+        let limited = limit.is_some();
+        self.draw_envelope(&table, (&shown, names), (a, l, limited), all);
+        self.out.tables.insert("envelope".into(), table);
+    }
+
+    /// Figures of the envelope, and of the load steps of one shaft, behind the bars of the verdict.
+    fn draw_envelope(
+        &mut self,
+        table: &Series,
+        (shown, names): (&Shown, &[String]),
+        (a, l, limited): (&Assembled, usize, bool),
+        mut all: Vec<(String, String)>,
+    ) {
+        let (name, what) = (&a.line.links[l].name, shown.what);
+        let limit_line = limited.then(|| (format!("limit of {name}"), shown.limit_column(l)));
         let before = self.out.figures.len();
-        let mut lines = all;
-        lines.extend(limit_line());
-        let title = if stressed { "Envelope of stress" } else { "Envelope of torque" };
-        self.lines(
-            title,
-            &format!(
-                "largest amplitude (half of peak to peak) of all load steps over the operating range: {}",
-                numbered(names)
-            ),
-            "envelope",
-            "speed",
-            lines,
-            false,
+        all.extend(limit_line.clone());
+        let title = if shown.stressed { "Envelope of stress" } else { "Envelope of torque" };
+        let hint = format!(
+            "largest amplitude (half of peak to peak) of all load steps over the operating range: {}",
+            numbered(names)
         );
+        self.lines(title, &hint, "envelope", "speed", all, false);
         if names.len() > 1 {
-            let step = |k: usize| format!("shaft{}.step{}.{what}_amplitude", l + 1, k + 1);
             let mut lines: Vec<(String, String)> =
-                names.iter().enumerate().map(|(k, n)| (n.clone(), step(k))).collect();
+                names.iter().enumerate().map(|(k, n)| (n.clone(), shown.step_column(l, k))).collect();
             lines.retain(|(_, column)| table.get(column).is_some());
-            lines.extend(limit_line());
-            self.lines(
-                &format!("Load steps: {what} in {name}"),
-                "amplitude (half of peak to peak) over the operating range, in the shaft that uses its limit most",
-                "envelope",
-                "speed",
-                lines,
-                false,
-            );
+            lines.extend(limit_line);
+            let title = format!("Load steps: {what} in {name}");
+            let hint = "amplitude (half of peak to peak) over the operating range, in the shaft that uses its limit most";
+            self.lines(&title, hint, "envelope", "speed", lines, false);
         }
-        // Behind the verdict's bars.
         let own = self.out.figures.split_off(before);
         let bars =
             self.out.figures.iter().take_while(|f| f.title == "Verdict" || f.title == "Load steps").count();
         self.out.figures.splice(bars..bars, own);
-        self.out.tables.insert("envelope".into(), table);
+    }
+}
+
+/// The grid, and the places of the peaks, where every load step has an answer.
+fn drawn_speeds(
+    steps: &mut [Step<'_, '_>],
+    range: &Operating,
+    diagram: &[f64],
+    tops: &[(usize, Top)],
+) -> Vec<f64> {
+    let mut speeds = range.grid(diagram);
+    speeds.extend(tops.iter().map(|t| t.1.speed).filter(|w| *w > range.from && *w < range.to));
+    speeds.sort_unstable_by(f64::total_cmp);
+    speeds.dedup();
+    speeds.retain(|w| steps.iter_mut().all(|s| s.machine.at(*w).is_some()));
+    speeds
+}
+
+/// What the envelope shows: stress where any shaft has one, torque otherwise.
+struct Shown {
+    stressed: bool,
+    /// Whether there are several load steps.
+    several: bool,
+    unit: &'static str,
+    what: &'static str,
+}
+
+impl Shown {
+    fn new(a: &Assembled, several: bool) -> Self {
+        let stressed = a.stress.iter().any(Option::is_some);
+        let (unit, what) = if stressed { ("MPa", "stress") } else { ("N m", "torque") };
+        Self { stressed, several, unit, what }
+    }
+
+    /// What is shown of a link by its torque; none where it is not shown.
+    fn factor(&self, a: &Assembled, l: usize) -> Option<f64> {
+        if self.stressed { a.stress[l].map(|s| s / 1e6) } else { Some(1.0) }
+    }
+
+    fn step_column(&self, l: usize, step: usize) -> String {
+        format!("shaft{}.step{}.{}_amplitude", l + 1, step + 1, self.what)
+    }
+
+    fn limit_column(&self, l: usize) -> String {
+        format!("shaft{}.{}_limit", l + 1, self.what)
+    }
+
+    /// Adds the amplitudes of a link of the first load step in each step, and their envelope; the name of its column.
+    fn add(
+        &self,
+        steps: &mut [Step<'_, '_>],
+        speeds: &[f64],
+        (l, factor): (usize, f64),
+        table: &mut Series,
+    ) -> String {
+        let name = steps[0].machine.a.line.links[l].name.clone();
+        let mut envelope = vec![0.0_f64; speeds.len()];
+        for (k, s) in steps.iter_mut().enumerate() {
+            let Some(at) = s.machine.a.line.links.iter().position(|x| x.name == name) else { continue };
+            let amplitude = |w: &f64| s.machine.at(*w).map_or(0.0, |p| factor * p.links[at].amplitude);
+            let row: Vec<f64> = speeds.iter().map(amplitude).collect();
+            envelope.iter_mut().zip(&row).for_each(|(e, r)| *e = e.max(*r));
+            if self.several {
+                table.columns.push(column(self.step_column(l, k), self.unit, row));
+            }
+        }
+        let own = format!("shaft{}.{}_amplitude", l + 1, self.what);
+        table.columns.push(column(own.clone(), self.unit, envelope));
+        own
     }
 }
 

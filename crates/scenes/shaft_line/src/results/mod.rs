@@ -17,8 +17,8 @@ use super::case::ShaftLineCase;
 const TURN: usize = 1440;
 /// Every how many of these points stands in the tables.
 const DRAWN: usize = 4;
-/// Modes, shafts and throws drawn at most.
-const MOST: usize = 12;
+/// Maximum number of modes, shafts and throws that are drawn.
+const MAX_DRAWN: usize = 12;
 
 /// Writer of results.
 pub struct Results<'a> {
@@ -30,7 +30,7 @@ fn column(name: impl Into<String>, unit: &str, values: Vec<f64>) -> Column {
     Column { name: name.into(), unit: unit.into(), values }
 }
 
-/// Largest and smallest of some values.
+/// Maximum and minimum of some values.
 fn extremes(values: impl Iterator<Item = f64>) -> [f64; 2] {
     values.fold([f64::NEG_INFINITY, f64::INFINITY], |[a, b], v| [a.max(v), b.min(v)])
 }

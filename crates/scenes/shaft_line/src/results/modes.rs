@@ -5,9 +5,10 @@ use std::f64::consts::PI;
 use gudgeon_core::EvalError;
 use gudgeon_core::kinds::{Line, Mode};
 use gudgeon_core::result::{Note, Series};
+use gudgeon_torsion::critical::CriticalSpeed;
 use gudgeon_torsion::steady::Steady;
 
-use super::{MOST, Results, column};
+use super::{MAX_DRAWN, Results, column};
 use crate::assemble::Assembled;
 use crate::verdict::{MODES, separation};
 use crate::{draw, rpm};
@@ -90,7 +91,7 @@ impl Results<'_> {
         );
         self.out.tables.insert("modes".into(), table);
         if !elastic.is_empty() {
-            self.out.figures.push(draw::modes(line, &elastic[..elastic.len().min(MOST)]));
+            self.out.figures.push(draw::modes(line, &elastic[..elastic.len().min(MAX_DRAWN)]));
         }
     }
 
@@ -112,27 +113,35 @@ impl Results<'_> {
         let from = r.from.map_or(0.0, |v| v.si());
         let elastic = modes.iter().filter(|m| m.omega > 0.0).count();
         let step = 2.0 * PI / a.period;
-        let most = (r.interference_orders.si() / step + 1e-9).floor() as usize;
-        let orders: Vec<f64> = (1..=most).map(|k| k as f64 * step).collect();
+        let count = (r.interference_orders.si() / step + 1e-9).floor() as usize;
+        let orders: Vec<f64> = (1..=count).map(|k| k as f64 * step).collect();
         let mut found = steady.critical_speeds(&orders, from.max(1e-6 * to), to, GRID);
         found.retain(|c| c.mode <= elastic);
+        self.critical_speed_results(&found);
+        let here: Vec<f64> = steady.frequencies(MODES)?;
+        self.nearest_critical_speed(&here, &orders, speed);
+        self.out.tables.insert("critical_speeds".into(), critical_speed_table(&found));
+        self.interference(steady, [from, to], (&here, &orders), &found)
+    }
+
+    fn critical_speed_results(&mut self, found: &[CriticalSpeed]) {
         self.result(
             "critical_speeds",
             found.len() as f64,
             "",
             "number of critical speeds within the range, table `critical_speeds`",
         );
-        for c in &found {
+        for c in found {
             let name = format!("critical_speed.mode{}.order{}", c.mode, c.order);
-            self.result(
-                name,
-                rpm(c.speed),
-                "rpm",
-                format!("speed at which order {} excites mode {}", c.order, c.mode),
-            );
+            let what = format!("speed at which order {} excites mode {}", c.order, c.mode);
+            self.result(name, rpm(c.speed), "rpm", what);
         }
-        let here: Vec<f64> = steady.frequencies(MODES)?;
-        let all = here.iter().enumerate().flat_map(|(m, w)| orders.iter().map(move |o| (m + 1, *o, *w)));
+    }
+
+    /// The critical speed next to the mean speed; `frequencies` are those at the mean speed.
+    fn nearest_critical_speed(&mut self, frequencies: &[f64], orders: &[f64], speed: f64) {
+        let all =
+            frequencies.iter().enumerate().flat_map(|(m, w)| orders.iter().map(move |o| (m + 1, *o, *w)));
         let nearest = all.map(|(m, o, w)| (separation(w, o * speed), m, o, w)).fold(
             None,
             |best: Option<(f64, usize, f64, f64)>, c| match best {
@@ -140,64 +149,46 @@ impl Results<'_> {
                 _ => Some(c),
             },
         );
-        if let Some((distance, mode, order, omega)) = nearest {
-            self.result(
-                "nearest_critical_speed",
-                rpm(omega / order),
-                "rpm",
-                format!("critical speed next to the mean speed: order {order} and mode {mode}"),
-            );
-            self.result(
-                "distance_to_critical",
-                100.0 * distance,
-                "%",
-                "of that critical speed from the mean speed, by the mean speed: what `limits.separation` goes by",
-            );
-        }
-        let of = |f: &dyn Fn(usize) -> f64| (0..found.len()).map(f).collect::<Vec<f64>>();
-        let table = Series {
-            axis: column("speed", "rpm", of(&|k| rpm(found[k].speed))),
-            columns: vec![
-                column("mode", "", of(&|k| found[k].mode as f64)),
-                column("order", "", of(&|k| found[k].order)),
-                column("frequency", "Hz", of(&|k| found[k].omega / (2.0 * PI))),
-                column("damping_ratio", "", of(&|k| found[k].damping_ratio)),
-            ],
-        };
-        self.out.tables.insert("critical_speeds".into(), table);
-        // The diagram: orders as rays, modes as levels.
+        let Some((distance, mode, order, omega)) = nearest else { return };
+        self.result(
+            "nearest_critical_speed",
+            rpm(omega / order),
+            "rpm",
+            format!("critical speed next to the mean speed: order {order} and mode {mode}"),
+        );
+        self.result(
+            "distance_to_critical",
+            100.0 * distance,
+            "%",
+            "of that critical speed from the mean speed, by the mean speed: what `limits.separation` goes by",
+        );
+    }
+
+    /// The diagram and its table: orders as rays, modes as levels. `frequencies` are those at the mean speed.
+    fn interference(
+        &mut self,
+        steady: &mut Steady,
+        [from, to]: [f64; 2],
+        (frequencies, orders): (&[f64], &[f64]),
+        found: &[CriticalSpeed],
+    ) -> Result<(), EvalError> {
+        let speed = self.case.speed.si();
         let at: Vec<f64> = (0..=GRID).map(|i| from + (to - from) * i as f64 / GRID as f64).collect();
-        let mut levels: Vec<Vec<f64>> = vec![Vec::with_capacity(at.len()); here.len()];
-        for w in &at {
-            let omega = if steady.depends_on_speed() {
-                steady.set_speed(*w);
-                steady.frequencies(MODES)?
-            } else {
-                here.clone()
-            };
-            for (level, w) in levels.iter_mut().zip(omega) {
-                level.push(w / (2.0 * PI));
-            }
-        }
+        let levels = levels(steady, &at, frequencies)?;
         steady.set_speed(speed);
-        // Modes that are there at every speed.
-        levels.retain(|l| l.len() == at.len());
         if levels.is_empty() {
             return Ok(());
         }
         let rows: Vec<f64> = at.iter().map(|w| rpm(*w)).collect();
         let marks: Vec<[f64; 2]> = found.iter().map(|c| [rpm(c.speed), c.omega / (2.0 * PI)]).collect();
-        self.out.figures.push(draw::interference(&rows, &levels, &orders, &marks, rpm(speed)));
+        self.out.figures.push(draw::interference(&rows, &levels, orders, &marks, rpm(speed)));
         let mut table = Series { axis: column("speed", "rpm", rows.clone()), columns: Vec::new() };
         for (k, level) in levels.into_iter().enumerate() {
             table.columns.push(column(format!("mode{}", k + 1), "Hz", level));
         }
-        for o in &orders {
-            table.columns.push(column(
-                format!("order{o}"),
-                "Hz",
-                rows.iter().map(|s| o * s / 60.0).collect(),
-            ));
+        for o in orders {
+            let ray = rows.iter().map(|s| o * s / 60.0).collect();
+            table.columns.push(column(format!("order{o}"), "Hz", ray));
         }
         self.out.tables.insert("interference".into(), table);
         Ok(())
@@ -244,4 +235,36 @@ impl Results<'_> {
             );
         }
     }
+}
+
+/// Table of critical speeds.
+fn critical_speed_table(found: &[CriticalSpeed]) -> Series {
+    let of = |f: &dyn Fn(&CriticalSpeed) -> f64| found.iter().map(f).collect::<Vec<f64>>();
+    Series {
+        axis: column("speed", "rpm", of(&|c| rpm(c.speed))),
+        columns: vec![
+            column("mode", "", of(&|c| c.mode as f64)),
+            column("order", "", of(&|c| c.order)),
+            column("frequency", "Hz", of(&|c| c.omega / (2.0 * PI))),
+            column("damping_ratio", "", of(&|c| c.damping_ratio)),
+        ],
+    }
+}
+
+/// Natural frequencies \[Hz\] over speeds, of the modes that are there at every one.
+fn levels(steady: &mut Steady, speeds: &[f64], at_mean_speed: &[f64]) -> Result<Vec<Vec<f64>>, EvalError> {
+    let mut levels: Vec<Vec<f64>> = vec![Vec::with_capacity(speeds.len()); at_mean_speed.len()];
+    for w in speeds {
+        let omega = if steady.depends_on_speed() {
+            steady.set_speed(*w);
+            steady.frequencies(MODES)?
+        } else {
+            at_mean_speed.to_vec()
+        };
+        for (level, w) in levels.iter_mut().zip(omega) {
+            level.push(w / (2.0 * PI));
+        }
+    }
+    levels.retain(|l| l.len() == speeds.len());
+    Ok(levels)
 }

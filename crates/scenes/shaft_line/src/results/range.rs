@@ -4,7 +4,7 @@ use gudgeon_core::EvalError;
 use gudgeon_core::file::Files;
 use gudgeon_core::result::{Note, Series};
 
-use super::{MOST, Results, column};
+use super::{MAX_DRAWN, Results, column};
 use crate::assemble::{Assembled, throws_alone};
 use crate::machine::{Machine, Point};
 use crate::verdict::Operating;
@@ -70,7 +70,7 @@ impl Results<'_> {
                 "N m",
                 rows.iter().map(|p| p.links[l].amplitude).collect(),
             ));
-            if l < MOST {
+            if l < MAX_DRAWN {
                 curves.push((a.line.links[l].name.clone(), name));
             }
         }

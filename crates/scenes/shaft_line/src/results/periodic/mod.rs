@@ -1,0 +1,67 @@
+//! Vibration at constant mean speed.
+
+mod cycle;
+mod inertias;
+mod links;
+mod spectra;
+
+use std::f64::consts::PI;
+
+use gudgeon_core::kinds::TorsionOut;
+use gudgeon_core::result::Series;
+
+use super::{Results, column};
+use crate::machine::Machine;
+use cycle::Cycle;
+
+/// Vibratory twist \[rad\] and speed fluctuation beyond which small vibration about a uniform rotation is no longer what is computed.
+pub const LINEAR: f64 = 1.0;
+
+/// Labels and columns of a figure.
+type Curves = Vec<(String, String)>;
+
+impl Results<'_> {
+    /// Vibration at constant mean speed.
+    pub fn periodic(&mut self, out: &TorsionOut, machine: &mut Machine<'_>) {
+        let a = machine.a;
+        for (name, n) in &out.counters {
+            self.count(name, *n);
+        }
+        self.note(&out.notes);
+        let cycle = Cycle::new(out, a);
+        self.result(
+            "balance_torque",
+            out.balance_torque,
+            "N m",
+            "mean torque that holds the mean speed, at the reference shaft",
+        );
+        let mut series = Series { axis: column("angle", "deg", cycle.angles()), columns: Vec::new() };
+        let (mut torques, mut stresses, mut speeds) = (Vec::new(), Vec::new(), Vec::new());
+        let mut vibratory = Vec::new();
+        for l in 0..a.line.links.len() {
+            vibratory.push(self.periodic_link(out, machine, l));
+            cycle.draw_link(a, l, &mut series.columns, [&mut torques, &mut stresses]);
+        }
+        for i in 0..a.line.nodes.len() {
+            self.periodic_inertia(out, machine, i);
+            cycle.draw_inertia(a, i, &mut series.columns, &mut speeds);
+        }
+        self.out.series = series;
+        let over = if a.period / (2.0 * PI) > 1.5 { "over two turns" } else { "over a turn" };
+        self.draw_cycle(over, torques, stresses, speeds);
+        self.order_results(out, a);
+        self.order_table(out, a);
+        self.order_bars(out, a, &vibratory);
+        self.torque_bars(a, &vibratory);
+    }
+
+    fn draw_cycle(&mut self, over: &str, torques: Curves, stresses: Curves, speeds: Curves) {
+        self.lines("Torque in the shafts", over, "series", "angle", torques, false);
+        if !stresses.is_empty() {
+            let hint = format!("{over}, concentration factors included");
+            self.lines("Shear stress", &hint, "series", "angle", stresses, false);
+        }
+        let hint = format!("{over}, against the mean speed");
+        self.lines("Speed fluctuation", &hint, "series", "angle", speeds, false);
+    }
+}

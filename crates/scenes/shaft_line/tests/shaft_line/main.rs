@@ -1,0 +1,3 @@
+//! Tests of the scene `shaft_line`.
+
+mod tors;
