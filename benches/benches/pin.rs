@@ -12,7 +12,7 @@ use criterion::Criterion;
 use gudgeon_core::kinds::{BossBore, PIN_QUANTITIES, PinForces, PinSize, PinStrengthCtx, PinStrengthSpec};
 use gudgeon_pin::ThinRing;
 use gudgeon_pin::design::{Design, Range, Relief};
-use gudgeon_pin::optimum::{NoOptimum, Optimum, PROOF, lightest};
+use gudgeon_pin::optimum::{NoOptimum, Optimum, KKT_TOLERANCE, lightest};
 
 /// Optimisations of one round.
 const ENGINES: usize = 10_000;
@@ -82,7 +82,7 @@ fn solve(e: &Engine) -> Result<Optimum, NoOptimum> {
             length: Range { low: 1.001 * e.ctx.boss_gap, high: 0.999 * e.bore },
             outer: Range { low: 0.2 * e.bore, high: e.outer },
             inner: Range { low: 0.0, high: e.bore },
-            least_wall: 0.0,
+            min_wall: 0.0,
             tolerance: PinSize::default(),
         },
         None,
@@ -96,9 +96,9 @@ fn round(all: &[Engine]) -> (f64, usize, usize, u32, [f64; 3]) {
     for e in all {
         match black_box(solve(black_box(e))) {
             Ok(o) => {
-                proved += usize::from(o.proof.holds(PROOF));
+                proved += usize::from(o.kkt.hold(KKT_TOLERANCE));
                 iterations += o.iterations;
-                let p = o.proof;
+                let p = o.kkt;
                 for (w, v) in worst.iter_mut().zip([p.stationarity, p.infeasibility, p.complementarity]) {
                     *w = w.max(v);
                 }

@@ -1,8 +1,8 @@
 //! Proof that no lighter pin exists anywhere in the ranges, by branch and bound.
 //!
 //! Every limit is monotone in every dimension ([`PinStrength`](gudgeon_core::kinds::PinStrength)), or, as the resultant, put together from
-//! parts that are. Over a box of lengths and outer diameters the greatest bore of all its pins is therefore bounded from two of its corners,
-//! and with the smallest length and diameter it bounds their mass from below. A box that this bound keeps above the best pin is
+//! parts that are. Over a box of lengths and outer diameters the maximum bore of all its pins is therefore bounded from two of its corners,
+//! and with the minimum length and diameter it bounds their mass from below. A box that this bound keeps above the best pin is
 //! done; the others are halved (`matthiesen2020`).
 
 use std::cmp::Ordering;
@@ -56,14 +56,14 @@ impl Ord for Part {
 
 /// Lower bound of the mass in a box; `None` when no pin of it keeps the limits.
 fn bound(d: &Design<'_>, length: (f64, f64), outer: (f64, f64), rounding: f64) -> Option<f64> {
-    let inner = d.bore_within(length.0, length.1, outer.1, rounding)?;
+    let inner = d.max_feasible_inner_over(length.0, length.1, outer.1, rounding)?;
     let inner = inner.min(outer.0);
     Some(d.masses(&PinSize { length: length.0, outer: outer.0, inner }).differential())
 }
 
-/// Proves that no pin of the design is lighter than `best` by more than `gap` of the pin's mass, with at most `most` boxes.
+/// Proves that no pin of the design is lighter than `best` by more than `gap` of the pin's mass, with at most `max_boxes` boxes.
 #[must_use]
-pub fn certify(d: &Design<'_>, best: &PinSize, gap: f64, most: u32) -> Certificate {
+pub fn certify(d: &Design<'_>, best: &PinSize, gap: f64, max_boxes: u32) -> Certificate {
     let masses = d.masses(best);
     let target = masses.differential() - gap * masses.pin;
     let mut out = Certificate {
@@ -91,7 +91,7 @@ pub fn certify(d: &Design<'_>, best: &PinSize, gap: f64, most: u32) -> Certifica
     let (length, outer) = ((d.length.low, d.length.high), (d.outer.low, d.outer.high.max(d.outer.low)));
     examine(length, outer, &mut heap, &mut out);
     while let Some(part) = heap.pop() {
-        if out.boxes >= most {
+        if out.boxes >= max_boxes {
             out.closed = false;
             out.bound = out.bound.min(part.bound);
             break;
@@ -100,7 +100,7 @@ pub fn certify(d: &Design<'_>, best: &PinSize, gap: f64, most: u32) -> Certifica
         let middle = (0.5 * (l.0 + l.1), 0.5 * (o.0 + o.1));
         // A pin in the middle that beats the given one shows that it was no optimum.
         if out.lighter.is_none()
-            && let Some(inner) = d.bore_within(middle.0, middle.0, middle.1, 1e-13)
+            && let Some(inner) = d.max_feasible_inner_over(middle.0, middle.0, middle.1, 1e-13)
         {
             let size = PinSize { length: middle.0, outer: middle.1, inner };
             if d.masses(&size).differential() < target {

@@ -67,8 +67,8 @@ impl Search {
     }
 }
 
-/// Most passes: a step of a nanometre over a pin ends the search, not the patience.
-const MOST_PASSES: u32 = 2_000_000;
+/// Maximum number of passes: bounds a search whose steps are a nanometre.
+const MAX_PASSES: u32 = 2_000_000;
 
 /// Nearest number with a mantissa of 32 bits.
 #[must_use]
@@ -104,7 +104,7 @@ pub fn search(d: &Design<'_>, start: PinSize, steps: &Steps) -> Result<Search, E
     let mut reduced = false;
     loop {
         out.passes += 1;
-        if out.passes > MOST_PASSES {
+        if out.passes > MAX_PASSES {
             return Err(EvalError::fatal("as_published", "the steps are too small: the search does not end"));
         }
         out.size = PinSize { length: 1e-3 * length, outer: start.outer, inner: 1e-3 * inner };

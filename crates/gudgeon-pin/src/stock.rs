@@ -28,7 +28,7 @@ pub struct Choice {
 }
 
 /// Combinations beyond which a search is refused by its caller: [`Sizes::combinations`].
-pub const MOST_COMBINATIONS: f64 = 200_000.0;
+pub const MAX_COMBINATIONS: f64 = 200_000.0;
 
 impl Sizes {
     /// How many combinations a search of the design looks at.
@@ -80,12 +80,12 @@ impl Sizes {
             if outer.is_fixed() && !lengths.is_empty() {
                 for &length in &lengths {
                     tried += 1;
-                    let Some(bore) = d.greatest_bore(length, outer.low) else { continue };
+                    let Some(bore) = d.max_feasible_inner(length, outer.low) else { continue };
                     // The largest bore of the list that is not above.
                     let bore = if self.inner.is_empty() {
                         Some(bore)
                     } else {
-                        inner.iter().rev().copied().find(|v| *v <= bore && *v >= d.least_inner(outer.low))
+                        inner.iter().rev().copied().find(|v| *v <= bore && *v >= d.min_inner(outer.low))
                     };
                     if let Some(inner) = bore {
                         consider(PinSize { length, outer: outer.low, inner });

@@ -175,7 +175,7 @@ pub trait PinStrengthSpec: Debug + DynClone + Send + Sync {
 
 /// A running model of pin strength.
 ///
-/// What a solver may rely on, for an inner diameter from `least_bore_ratio` times the outer one upwards: boss pressure, ovalisation,
+/// What a solver may rely on, for an inner diameter from `min_bore_ratio` times the outer one upwards: boss pressure, ovalisation,
 /// ovalisation stress and shear stress do not rise with the length, deflection and bending stress do not fall with it; no quantity
 /// rises with the outer diameter or falls with the inner one; the rod pressure depends on the outer diameter alone, the boss pressure
 /// not on the inner one; the resultant is [`resultant_stress`] of the two bending stresses.
@@ -183,7 +183,7 @@ pub trait PinStrength: Debug + Send + Sync {
     /// The eight quantities, in the order of [`PinQuantity::ALL`], SI.
     ///
     /// # Errors
-    /// Dimensions outside `boss_gap < length`, `least_bore_ratio·outer <= inner < outer` (Recoverable).
+    /// Dimensions outside `boss_gap < length`, `min_bore_ratio·outer <= inner < outer` (Recoverable).
     fn quantities(&self, size: &PinSize, load: &PinForces) -> Result<[f64; PIN_QUANTITIES], EvalError>;
 
     /// The same with derivatives.
@@ -192,8 +192,8 @@ pub trait PinStrength: Debug + Send + Sync {
     /// As [`PinStrength::quantities`].
     fn expansion(&self, size: &PinSize, load: &PinForces) -> Result<PinExpansion, EvalError>;
 
-    /// Smallest ratio of inner to outer diameter that the theory holds for.
-    fn least_bore_ratio(&self) -> f64 {
+    /// Minimum ratio of the inner to the outer diameter that the theory holds for.
+    fn min_bore_ratio(&self) -> f64 {
         0.0
     }
 }

@@ -39,7 +39,7 @@ struct CurvedBar(Surroundings);
 impl Formula for CurvedBar {
     const NAME: &'static str = "curved_ring";
     /// Below, the neutral axis runs to the bore and its stress falls with a growing bore.
-    const LEAST_BORE_RATIO: f64 = 0.25;
+    const MIN_BORE_RATIO: f64 = 0.25;
     fn surroundings(&self) -> &Surroundings {
         &self.0
     }

@@ -146,8 +146,8 @@ impl<'a, T: Real> Loaded<'a, T> {
 /// A model as formulas over numbers with or without derivatives.
 pub trait Formula: Debug + Send + Sync {
     const NAME: &'static str;
-    /// Smallest ratio of the diameters.
-    const LEAST_BORE_RATIO: f64 = 0.0;
+    /// Minimum ratio of the inner to the outer diameter.
+    const MIN_BORE_RATIO: f64 = 0.0;
     fn surroundings(&self) -> &Surroundings;
     fn quantities<T: Real>(&self, pin: &Loaded<'_, T>, gas: f64) -> [T; PIN_QUANTITIES];
 }
@@ -160,7 +160,7 @@ impl<F: Formula> Evaluated<F> {
     fn check(&self, s: &PinSize, load: &PinForces) -> Result<(), EvalError> {
         let gap = self.0.surroundings().boss_gap;
         let inside = s.length > gap
-            && s.inner >= F::LEAST_BORE_RATIO * s.outer * (1.0 - 1e-12)
+            && s.inner >= F::MIN_BORE_RATIO * s.outer * (1.0 - 1e-12)
             && s.inner < s.outer
             && [s.length, s.outer, load.gas, load.inertia].iter().all(|v| v.is_finite());
         if inside {
@@ -205,7 +205,7 @@ impl<F: Formula> PinStrength for Evaluated<F> {
         Ok(out)
     }
 
-    fn least_bore_ratio(&self) -> f64 {
-        F::LEAST_BORE_RATIO
+    fn min_bore_ratio(&self) -> f64 {
+        F::MIN_BORE_RATIO
     }
 }

@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 pub struct Lagrange {}
 
-/// Points beyond which a polynomial through given ordinates means nothing.
-const MOST: usize = 12;
+/// Maximum number of points: through more, a polynomial swings between them.
+const MAX_POINTS: usize = 12;
 
 #[register_model(
     name = "lagrange",
@@ -23,11 +23,10 @@ const MOST: usize = 12;
 impl ProfileCurveSpec for Lagrange {
     fn build(&self, x: &[f64], y: &[f64]) -> Result<Box<dyn ProfileCurve>, BuildError> {
         super::check(x, y)?;
-        if x.len() > MOST {
+        if x.len() > MAX_POINTS {
             let what = format!("a polynomial through {} points swings between them", x.len());
-            return Err(
-                BuildError::new(what).help(format!("at most {MOST} points, or the model `monotone_cubic`"))
-            );
+            return Err(BuildError::new(what)
+                .help(format!("at most {MAX_POINTS} points, or the model `monotone_cubic`")));
         }
         Ok(Box::new(Polynomial { x: x.to_vec(), y: y.to_vec() }))
     }

@@ -3,14 +3,15 @@
 pub mod case;
 mod draw;
 mod names;
+mod output;
 mod setup;
 mod size;
 mod skirt;
 
 use std::time::Instant;
 
-use gudgeon_core::result::{Column, Figure, FigureKind, ModelUse, RunResult, Series, Skipped, Value};
-use gudgeon_core::{BuildError, EvalError, Registry};
+use gudgeon_core::result::{Column, ModelUse, RunResult, Series, Skipped};
+use gudgeon_core::{BuildError, Registry};
 
 use case::{Method, PinCase};
 use gudgeon_case::Loaded;
@@ -96,15 +97,6 @@ impl SceneCase for PinCase {
     }
 }
 
-/// What is wrong, in one line.
-fn refused(errors: Vec<BuildError>) -> RunError {
-    RunError::Refused(errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))
-}
-
-fn model(source: EvalError) -> RunError {
-    RunError::Model { source }
-}
-
 fn models(case: &PinCase) -> Vec<ModelUse> {
     let registry = Registry::collect();
     let mut all = Vec::new();
@@ -141,32 +133,6 @@ fn skipped(case: &PinCase) -> Vec<Skipped> {
         say("skirt", "no table `skirt`");
     }
     out
-}
-
-/// Adds a result.
-fn result(out: &mut RunResult, name: impl Into<String>, value: f64, unit: &str, what: impl Into<String>) {
-    out.results.insert(name.into(), Value { value, unit: unit.into(), what: what.into() });
-}
-
-/// A column: name, SI unit, values.
-fn column(name: &str, unit: &str, values: Vec<f64>) -> Column {
-    Column { name: name.into(), unit: unit.into(), values }
-}
-
-/// Draws `(label, column)` of a table over its axis.
-fn lines(out: &mut RunResult, table: &str, title: &str, hint: &str, lines: &[(&str, &str)]) {
-    let Some(t) = out.tables.get(table) else { return };
-    out.figures.push(Figure {
-        title: title.into(),
-        hint: hint.into(),
-        table: table.into(),
-        kind: FigureKind::Lines {
-            x: t.axis.name.clone(),
-            lines: lines.iter().map(|(l, c)| ((*l).into(), (*c).into())).collect(),
-            log_x: false,
-            log_y: false,
-        },
-    });
 }
 
 gudgeon_scene::register_scene! {

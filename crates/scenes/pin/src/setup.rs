@@ -7,7 +7,7 @@ use gudgeon_core::kinds::{
 };
 use gudgeon_pin::design::{Design, Range, Relief};
 use gudgeon_pin::piston::{ALLOYS, Alloy, find_alloy};
-use gudgeon_pin::stock::{MOST_COMBINATIONS, Sizes};
+use gudgeon_pin::stock::{MAX_COMBINATIONS, Sizes};
 
 use super::case::{Method, Optimise, Pin, PinCase, RangeCase};
 use gudgeon_case::{advice, read_beside, scene_of};
@@ -28,7 +28,7 @@ pub struct Setup {
     pub length: Range,
     pub outer: Range,
     pub inner: Range,
-    pub least_wall: f64,
+    pub min_wall: f64,
     pub tolerance: PinSize,
 }
 
@@ -46,7 +46,7 @@ impl Setup {
             length: self.length,
             outer: self.outer,
             inner: self.inner,
-            least_wall: self.least_wall,
+            min_wall: self.min_wall,
             tolerance: self.tolerance,
         }
     }
@@ -56,8 +56,11 @@ impl Setup {
 const CLEAR: f64 = 1e-6;
 /// Default outer diameters over that of the piston.
 const OUTER: (f64, f64) = (0.15, 0.5);
-/// Most points of a sweep.
-const MOST_POINTS: u32 = 5000;
+/// Maximum number of points of a sweep.
+const MAX_POINTS: u32 = 5000;
+
+/// Minimum step of the published search \[m\].
+const MIN_STEP: f64 = 1e-10;
 
 /// The alloy of the piston, when one is named.
 pub fn alloy(case: &PinCase) -> Result<Option<&'static Alloy>, BuildError> {
@@ -100,38 +103,7 @@ pub fn setup(case: &PinCase, files: &Files) -> Result<Option<Setup>, Vec<BuildEr
     let given = given(case, pin, bore, strength.as_deref(), &mut errors);
     let default = Optimise::default();
     let o = case.optimise.as_ref().unwrap_or(&default);
-    let t = &o.tolerance;
-    let tolerance = PinSize { length: t.length.si(), outer: t.outer.si(), inner: t.inner.si() };
-    let clear = gap + tolerance.length;
-    let widest = bore - tolerance.length;
-    let mut ranged = |range: Option<RangeCase>, name: &str, otherwise: (f64, f64), from: f64, to: f64| {
-        let r = range.map_or(Range { low: otherwise.0, high: otherwise.1 }, |r| Range {
-            low: r.from.si(),
-            high: r.to.si(),
-        });
-        if r.low > r.high {
-            errors.push(BuildError::at(format!("optimise.{name}"), "`from` lies above `to`"));
-        } else if r.high <= from || r.low >= to {
-            let what = format!(
-                "no {name} between {:.4} and {:.4} mm is possible here: it lies between {:.4} and {:.4} mm",
-                1e3 * r.low,
-                1e3 * r.high,
-                1e3 * from,
-                1e3 * to
-            );
-            errors.push(BuildError::at(format!("optimise.{name}"), what));
-        }
-        Range { low: r.low.max(from), high: r.high.min(to) }
-    };
-    let length = ranged(o.length, "length", (0.0, bore), clear * (1.0 + CLEAR), widest * (1.0 - CLEAR));
-    let outer = ranged(
-        o.outer,
-        "outer",
-        (OUTER.0 * bore, OUTER.1 * bore),
-        2.0 * tolerance.outer + 1e-3 * bore,
-        2.0 * bore,
-    );
-    let inner = ranged(o.inner, "inner", (0.0, 2.0 * bore), 0.0, 2.0 * bore);
+    let ranges = ranges(o, bore, gap, &mut errors);
     let limits = case.limits.values();
     optimisable(case, o, &limits, &mut errors);
     let (Some(strength), Some(fatigue), Some(load), true) = (strength, fatigue, load, errors.is_empty())
@@ -149,21 +121,69 @@ pub fn setup(case: &PinCase, files: &Files) -> Result<Option<Setup>, Vec<BuildEr
         boss_gap: gap,
         limits,
         given,
-        length,
-        outer,
-        inner,
-        least_wall: o.least_wall.si(),
-        tolerance,
+        length: ranges.length,
+        outer: ranges.outer,
+        inner: ranges.inner,
+        min_wall: o.least_wall.si(),
+        tolerance: ranges.tolerance,
     };
-    if let Some(s) = &o.stock
-        && sizes(s).combinations(&out.design()) > MOST_COMBINATIONS
-    {
-        let what = format!("more than {MOST_COMBINATIONS} combinations of sizes");
-        return Err(vec![
-            BuildError::at("optimise.stock", what).help("a coarser `length_step`, shorter lists"),
-        ]);
-    }
+    few_enough(o, &out)?;
     Ok(Some(out))
+}
+
+/// Refuses a stock with more combinations than a search looks at.
+fn few_enough(o: &Optimise, setup: &Setup) -> Result<(), Vec<BuildError>> {
+    match &o.stock {
+        Some(s) if sizes(s).combinations(&setup.design()) > MAX_COMBINATIONS => {
+            let what = format!("more than {MAX_COMBINATIONS} combinations of sizes");
+            let help = "a coarser `length_step`, shorter lists";
+            Err(vec![BuildError::at("optimise.stock", what).help(help)])
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Admitted dimensions and their tolerances, SI.
+struct Ranges {
+    length: Range,
+    outer: Range,
+    inner: Range,
+    tolerance: PinSize,
+}
+
+/// The ranges of a case, cut to what is possible; complains where nothing is left.
+fn ranges(o: &Optimise, bore: f64, gap: f64, errors: &mut Vec<BuildError>) -> Ranges {
+    let t = &o.tolerance;
+    let tolerance = PinSize { length: t.length.si(), outer: t.outer.si(), inner: t.inner.si() };
+    let given = |range: Option<RangeCase>, otherwise: (f64, f64)| {
+        let otherwise = Range { low: otherwise.0, high: otherwise.1 };
+        range.map_or(otherwise, |r| Range { low: r.from.si(), high: r.to.si() })
+    };
+    let (clear, widest) = (gap + tolerance.length, bore - tolerance.length);
+    let possible = Range { low: clear * (1.0 + CLEAR), high: widest * (1.0 - CLEAR) };
+    let length = cut(given(o.length, (0.0, bore)), "length", possible, errors);
+    let possible = Range { low: 2.0 * tolerance.outer + 1e-3 * bore, high: 2.0 * bore };
+    let outer = cut(given(o.outer, (OUTER.0 * bore, OUTER.1 * bore)), "outer", possible, errors);
+    let possible = Range { low: 0.0, high: 2.0 * bore };
+    let inner = cut(given(o.inner, (0.0, 2.0 * bore)), "inner", possible, errors);
+    Ranges { length, outer, inner, tolerance }
+}
+
+/// The part of a range that is possible; complains when there is none.
+fn cut(r: Range, name: &str, possible: Range, errors: &mut Vec<BuildError>) -> Range {
+    if r.low > r.high {
+        errors.push(BuildError::at(format!("optimise.{name}"), "`from` lies above `to`"));
+    } else if r.high <= possible.low || r.low >= possible.high {
+        let what = format!(
+            "no {name} between {:.4} and {:.4} mm is possible here: it lies between {:.4} and {:.4} mm",
+            1e3 * r.low,
+            1e3 * r.high,
+            1e3 * possible.low,
+            1e3 * possible.high
+        );
+        errors.push(BuildError::at(format!("optimise.{name}"), what));
+    }
+    Range { low: r.low.max(possible.low), high: r.high.min(possible.high) }
 }
 
 /// Sizes of the stock in SI.
@@ -272,12 +292,12 @@ fn given(
             format!("a bore of {} mm leaves no wall in a pin of {} mm", mm(size.inner), mm(size.outer));
         errors.push(BuildError::at("pin.inner", what));
     } else if let Some(m) = strength
-        && size.inner < m.least_bore_ratio() * size.outer
+        && size.inner < m.min_bore_ratio() * size.outer
     {
         let what = format!(
             "the model `{}` holds for bores of {} of the outer diameter or more",
             case.models.pin_strength.typetag_name(),
-            m.least_bore_ratio()
+            m.min_bore_ratio()
         );
         errors.push(BuildError::at("pin.inner", what).help("`elastic_ring` holds for solid pins too"));
     }
@@ -305,13 +325,12 @@ fn optimisable(case: &PinCase, o: &Optimise, limits: &[f64; 8], errors: &mut Vec
             errors.push(BuildError::at(format!("optimise.pareto.{k}"), what));
         }
     }
-    if o.sweep_points > MOST_POINTS || o.sweep_points == 1 {
-        errors.push(BuildError::at("optimise.sweep_points", format!("0, or 2 to {MOST_POINTS} points")));
+    if o.sweep_points > MAX_POINTS || o.sweep_points == 1 {
+        errors.push(BuildError::at("optimise.sweep_points", format!("0, or 2 to {MAX_POINTS} points")));
     }
-    let least = 1e-10;
     let s = &o.steps;
     for (name, v) in [("length", s.length.si()), ("coarse", s.coarse.si()), ("fine", s.fine.si())] {
-        if v < least {
+        if v < MIN_STEP {
             errors.push(BuildError::at(
                 format!("optimise.steps.{name}"),
                 "steps of less than 0.1 nm never end",

@@ -8,11 +8,12 @@ use gudgeon_pin::piston::{
 };
 
 use super::case::{Crown, PinCase, Skirt};
-use super::{column, draw, lines, refused, result, setup};
+use super::output::{column, lines, refused, result};
+use super::{draw, setup};
 use gudgeon_scene::RunError;
 
-/// Most rows of a profile.
-const MOST_ROWS: f64 = 20_000.0;
+/// Maximum number of rows of a profile.
+const MAX_ROWS: f64 = 20_000.0;
 
 /// What is wrong with the tables of the piston.
 pub fn legal(case: &PinCase) -> Vec<BuildError> {
@@ -29,7 +30,7 @@ pub fn legal(case: &PinCase) -> Vec<BuildError> {
                 errors.push(e.within("models.profile_curve"));
             }
         }
-        if s.height.si() / s.step.si() > MOST_ROWS {
+        if s.height.si() / s.step.si() > MAX_ROWS {
             errors.push(BuildError::at("skirt.step", "so small a step makes too many rows"));
         }
         if s.height.si() < s.step.si() {
@@ -213,10 +214,10 @@ fn profile(
     // Material cannot be added: what stands proud is cut at the nominal diameter.
     let used: Vec<f64> = values.iter().map(|v| v.min(0.0)).collect();
     if values.iter().any(|v| *v > 1e-9) {
-        let most = values.iter().copied().fold(0.0, f64::max);
+        let max = values.iter().copied().fold(0.0, f64::max);
         out.solver.notes.push(Note::caution("profile_cut", format!(
             "The curve stands proud of the nominal diameter by up to {:.2} um; the finished profile is cut there.",
-            1e6 * most
+            1e6 * max
         )));
     }
     let mut columns = vec![column("ordinate", "m", values), column("finished", "m", used)];
@@ -270,8 +271,8 @@ fn shape(
     let below: Vec<f64> = rows().map(|(x, _)| height - x).collect();
     let cold: Vec<f64> = rows().map(|(_, y)| -0.5 * y).collect();
     let gap: Vec<f64> = rows().map(|(x, y)| 0.5 * (barrel.assembly_clearance - growth(*x) - y)).collect();
-    let least = |v: &[f64]| v.iter().copied().fold(f64::INFINITY, f64::min);
-    let (proud, tightest) = (least(&cold), least(&gap));
+    let min = |v: &[f64]| v.iter().copied().fold(f64::INFINITY, f64::min);
+    let (proud, tightest) = (min(&cold), min(&gap));
     let columns = vec![
         column("cold_drop", "m", cold.iter().map(|v| v - proud).collect()),
         column("warm_drop", "m", gap.iter().map(|v| v - tightest).collect()),

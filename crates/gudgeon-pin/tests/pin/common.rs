@@ -1,5 +1,4 @@
 //! The published engine (Reimer 1984) and random ones.
-#![allow(dead_code, reason = "every test uses a part")]
 
 use std::sync::LazyLock;
 
@@ -78,7 +77,7 @@ pub fn published_design(strength: &dyn PinStrength, pi: f64) -> Design<'_> {
         length: Range { low: GAP * 1.001, high: BORE * (1.0 - 1e-6) },
         outer: Range { low: 19.55e-3, high: 23.8e-3 },
         inner: Range { low: 0.0, high: 1.0 },
-        least_wall: 0.0,
+        min_wall: 0.0,
         tolerance: PinSize::default(),
     }
 }
@@ -150,7 +149,7 @@ impl Engine {
             length: Range { low: 1.001 * self.ctx.boss_gap, high: 0.999 * self.bore },
             outer: Range { low: 0.2 * self.bore, high: self.outer },
             inner: Range { low: 0.0, high: self.bore },
-            least_wall: 0.0,
+            min_wall: 0.0,
             tolerance: PinSize::default(),
         }
     }

@@ -2,13 +2,11 @@
 
 #![allow(clippy::excessive_precision, reason = "reference values stand as they were computed")]
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use gudgeon_core::kinds::{BossBore, PinForces, PinQuantity, PinSize, PinStrengthCtx, PinStrengthSpec};
 use gudgeon_pin::certificate::certify;
 use gudgeon_pin::design::{Design, Range};
-use gudgeon_pin::optimum::{Bound, NoOptimum, PROOF, is_sharp, lightest};
+use gudgeon_pin::optimum::{Bound, KKT_TOLERANCE, NoOptimum, lightest};
 
 #[test]
 fn the_published_engine_has_a_pin_0_69_g_lighter() {
@@ -23,7 +21,7 @@ fn the_published_engine_has_a_pin_0_69_g_lighter() {
     let mut active = o.active();
     active.sort();
     assert_eq!(active, [PinQuantity::BossPressure, PinQuantity::Ovalisation, PinQuantity::BendingStress]);
-    assert!(is_sharp(&o) && o.proof.curvature.is_none(), "{:?}", o.proof);
+    assert!(o.kkt.hold_to_rounding() && o.kkt.curvature.is_none(), "{:?}", o.kkt);
     let published = d.masses(&mm(61.9, 21.85, 13.94));
     assert!((1e3 * (published.differential() - o.masses.differential()) - 0.69).abs() < 5e-3);
 }
@@ -46,7 +44,7 @@ fn brute_force_finds_nothing_lighter() {
         while outer <= d.outer.high {
             let mut length = 55e-3;
             while length < 75e-3 {
-                if let Some(inner) = d.greatest_bore(length, outer) {
+                if let Some(inner) = d.max_feasible_inner(length, outer) {
                     best = best.min(d.masses(&PinSize { length, outer, inner }).differential());
                 }
                 length += step_l;
@@ -93,7 +91,7 @@ fn the_closed_form_problem_to_1e_12() {
         length: Range::at(60e-3),
         outer: Range { low: 10e-3, high: 40e-3 },
         inner: Range { low: 0.0, high: 40e-3 },
-        least_wall: 0.0,
+        min_wall: 0.0,
         tolerance: PinSize::default(),
     };
     let o = lightest(&d, None).expect("solved");
@@ -108,11 +106,11 @@ fn the_closed_form_problem_to_1e_12() {
     ] {
         assert!((got / exact - 1.0).abs() < 1e-12, "{name}: {got} {exact}");
     }
-    assert!(is_sharp(&o), "{:?}", o.proof);
+    assert!(o.kkt.hold_to_rounding(), "{:?}", o.kkt);
     // A third variable: a free length is held by nothing but its range, and shorter is lighter until ovalisation holds.
     d.length = Range { low: 50e-3, high: 60e-3 };
     let free = lightest(&d, None).expect("solved");
-    assert!(free.masses.pin <= o.masses.pin && free.proof.holds(PROOF));
+    assert!(free.masses.pin <= o.masses.pin && free.kkt.hold(KKT_TOLERANCE));
 }
 
 #[test]
@@ -132,8 +130,8 @@ fn random_engines_satisfy_the_conditions_and_hold_no_lighter_pin() {
         match lightest(&d, None) {
             Ok(o) => {
                 solved += 1;
-                assert!(o.proof.holds(PROOF), "{k}: {:?}", o.proof);
-                corners += usize::from(o.proof.curvature.is_none());
+                assert!(o.kkt.hold(KKT_TOLERANCE), "{k}: {:?}", o.kkt);
+                corners += usize::from(o.kkt.curvature.is_none());
                 if k % 6 < 4 {
                     let c = certify(&d, &o.size, 1e-3, 50_000);
                     if !c.closed || c.lighter.is_some() {
@@ -185,7 +183,7 @@ fn tolerances_are_kept_in_every_corner() {
     d.tolerance = mm(0.2, 0.005, 0.1);
     let o = lightest(&d, None).expect("solved");
     assert!(o.masses.differential() > nominal.masses.differential());
-    assert!(o.proof.holds(PROOF));
+    assert!(o.kkt.hold(KKT_TOLERANCE));
     let mut worst: f64 = 0.0;
     for c in 0..8 {
         let side = |bit: i32, t: f64| if c & bit == 0 { t } else { -t };
@@ -209,17 +207,17 @@ fn tolerances_are_kept_in_every_corner() {
 fn bounds_hold_and_are_named() {
     let strength = model("thin_ring", PUBLISHED_PI);
     let mut d = published_design(&*strength, PUBLISHED_PI);
-    d.least_wall = 4.5e-3;
+    d.min_wall = 4.5e-3;
     let o = lightest(&d, None).expect("solved");
-    assert!(o.bounds[Bound::LeastWall as usize] > 0.0);
+    assert!(o.bounds[Bound::MinWall as usize] > 0.0);
     assert!((o.size.outer - o.size.inner - 9e-3).abs() < 1e-15);
-    d.least_wall = 0.0;
+    d.min_wall = 0.0;
     d.outer = Range { low: 22e-3, high: 23e-3 };
     let o = lightest(&d, None).expect("solved");
-    assert!((o.size.outer - 22e-3).abs() < 1e-17 && o.bounds[Bound::LeastOuter as usize] > 0.0);
+    assert!((o.size.outer - 22e-3).abs() < 1e-17 && o.bounds[Bound::MinOuter as usize] > 0.0);
     d.inner = Range { low: 0.0, high: 10e-3 };
     let o = lightest(&d, None).expect("solved");
-    assert!(o.bounds[Bound::GreatestInner as usize] > 0.0 && (o.size.inner - 10e-3).abs() < 1e-17);
+    assert!(o.bounds[Bound::MaxInner as usize] > 0.0 && (o.size.inner - 10e-3).abs() < 1e-17);
     // Every wrong range ends in words, not in a loop.
     d.outer = Range { low: 18e-3, high: 19.5e-3 };
     let Err(NoOptimum::Infeasible(f)) = lightest(&d, None) else { panic!("there is no such pin") };

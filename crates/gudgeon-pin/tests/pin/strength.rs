@@ -1,10 +1,8 @@
 //! The strength models against numerical solutions, limits of their theory, and what solvers rely on.
 
-mod common;
-
 use std::f64::consts::PI;
 
-use common::*;
+use crate::common::*;
 use gudgeon_core::kinds::{
     BossBore, PIN_QUANTITIES, PinForces, PinQuantity, PinSize, PinStrength, PinStrengthCtx, PinStrengthSpec,
 };
@@ -289,7 +287,7 @@ fn what_solvers_rely_on_holds_everywhere() {
             let m2 = s.build(&PinStrengthCtx { boss_bore: bore, ..strength_ctx(PI) }).expect("builds");
             for _ in 0..4000 {
                 let outer = r.between(8e-3, 60e-3);
-                let inner = outer * r.between(m.least_bore_ratio().max(1e-3), 0.97);
+                let inner = outer * r.between(m.min_bore_ratio().max(1e-3), 0.97);
                 let size = PinSize { length: r.between(27.5e-3, 120e-3), outer, inner };
                 let load = PinForces { gas: 5e4, inertia: -1e3 };
                 let e = m2.expansion(&size, &load).expect("inside");
@@ -401,4 +399,67 @@ fn nonsense_is_refused() {
     ] {
         assert_eq!(s.build(&ctx).expect_err("refused").field, field);
     }
+}
+
+/// The pressure centres of profiled bores lie in the middle of their bosses, of cylindrical ones a quarter of their length from the gap:
+/// bending and deflection follow from the beam on these supports.
+#[test]
+fn the_form_of_the_boss_bore_moves_the_supports() {
+    let (size, f) = (mm(61.9, 21.85, 13.94), 5e4);
+    let s: Box<dyn PinStrengthSpec> = spec(serde_json::json!({ "model": "thin_ring" }));
+    let j = PI * (size.outer.powi(4) - size.inner.powi(4)) / 64.0;
+    let c = strength_ctx(PI);
+    for (boss_bore, part) in [(BossBore::Profiled, 0.5), (BossBore::Cylindrical, 0.25)] {
+        let m = s.build(&PinStrengthCtx { boss_bore, ..c }).expect("builds");
+        let q = at(&*m, size, f);
+        let a = c.boss_gap + 2.0 * part * 0.5 * (size.length - c.boss_gap);
+        let gamma = 1.0 - c.rod_width / (2.0 * a);
+        let bending = gamma * f * a / 4.0 / (2.0 * j / size.outer);
+        let deflection = gamma * a.powi(3) * f / (48.0 * c.modulus * j);
+        // Rounding of a few operations.
+        assert!((q[BENDING] / bending - 1.0).abs() < 1e-13, "{boss_bore:?}");
+        assert!((q[DEFLECTION] / deflection - 1.0).abs() < 1e-13, "{boss_bore:?}");
+    }
+}
+
+/// The published ovalisation takes the gas force alone, everything else the sum; a force that pulls loads as one that pushes.
+#[test]
+fn forces_count_by_their_amount() {
+    let size = mm(61.9, 21.85, 13.94);
+    for name in MODELS {
+        let m = model(name, PI);
+        let of = |gas: f64, inertia: f64| m.quantities(&size, &PinForces { gas, inertia }).expect("inside");
+        let (push, pull) = (of(5e4, -1e4), of(-5e4, 1e4));
+        assert_eq!(push, pull);
+        let (alone, sum) = (of(5e4, 0.0), of(4e4, 0.0));
+        let gas_alone = name == "thin_ring" || name == "shear_beam";
+        assert_eq!(push[OVAL], if gas_alone { alone[OVAL] } else { sum[OVAL] }, "{name}");
+        assert_eq!((push[BENDING], push[HOOP], push[0]), (sum[BENDING], sum[HOOP], sum[0]));
+        let e = m.expansion(&size, &PinForces { gas: -5e4, inertia: 1e4 }).expect("inside");
+        assert_eq!(e.value, push);
+    }
+}
+
+#[test]
+fn surroundings_at_the_edge_of_what_can_be() {
+    let s: Box<dyn PinStrengthSpec> = spec(serde_json::json!({ "model": "thin_ring" }));
+    let c = strength_ctx(PI);
+    for ctx in [
+        PinStrengthCtx { rod_width: c.boss_gap, ..c },
+        PinStrengthCtx { poisson: 0.5, ..c },
+        PinStrengthCtx { poisson: -0.9, ..c },
+    ] {
+        assert!(s.build(&ctx).is_ok(), "{ctx:?}");
+    }
+    for (field, ctx) in [
+        ("poisson", PinStrengthCtx { poisson: -1.0, ..c }),
+        ("rod_width", PinStrengthCtx { rod_width: 0.0, ..c }),
+        ("pi", PinStrengthCtx { pi: f64::INFINITY, ..c }),
+    ] {
+        assert_eq!(s.build(&ctx).expect_err("refused").field, field);
+    }
+    // The curved bar holds from a quarter of the outer diameter on, that ratio included.
+    let m = model("curved_ring", PI);
+    assert!(m.quantities(&mm(61.9, 22.0, 5.5), &force(5e4)).is_ok());
+    assert!(m.quantities(&mm(61.9, 22.0, 5.499), &force(5e4)).is_err());
 }

@@ -1,10 +1,8 @@
 //! The two programs of Reimer (1984) with their printed runs, garbled digits of the reproduction repaired.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use gudgeon_core::kinds::{PIN_QUANTITIES, PinQuantity, PinSize};
-use gudgeon_pin::design::Design;
+use gudgeon_pin::design::{Design, LengthBound};
 use gudgeon_pin::optimum::lightest;
 use gudgeon_pin::stepper::{End, Phase, Search, Steps, search, with_mantissa_32};
 
@@ -185,17 +183,21 @@ fn the_published_search_fails_where_no_pin_is() {
     assert_eq!(found(&d, 20.6426).end, End::RodPressure);
     assert_eq!(found(&d, 20.6428).end, End::Found);
     // The diameter of the rod pressure: F/(B p).
-    let least = d.least_outer().expect("there are pins");
+    let least = d.min_feasible_outer().expect("there are pins");
     assert!((least - d.load.total() / (24e-3 * 10.0 * KGF)).abs() < 1e-12, "{least}");
-    let forbids = d.forbids(20e-3);
-    assert_eq!(forbids.iter().map(|f| f.limit).collect::<Vec<_>>(), [PinQuantity::RodPressure]);
+    let blocking = d.blocking_limits(20e-3);
+    assert_eq!(blocking.iter().map(|f| f.limit).collect::<Vec<_>>(), [PinQuantity::RodPressure]);
     let mut rod_free = published_design(&*strength, PUBLISHED_PI);
     rod_free.limits[PinQuantity::RodPressure as usize] = f64::INFINITY;
-    let why = rod_free.forbids(19.55e-3);
+    let why = rod_free.blocking_limits(19.55e-3);
     // The boss pressure wants a pin longer than bending allows of a solid one. (The search stops at the deflection, which it tests first.)
     assert_eq!(why.len(), 2, "{why:?}");
     assert_eq!((why[0].limit, why[1].limit), (PinQuantity::BossPressure, PinQuantity::BendingStress));
-    assert!(why[0].needs.expect("a length").1 > why[1].needs.expect("a length").1);
+    let (Some(LengthBound::AtLeast(min)), Some(LengthBound::AtMost(max))) = (why[0].length, why[1].length)
+    else {
+        panic!("{why:?}")
+    };
+    assert!(min > max, "{min} {max}");
 }
 
 #[test]
