@@ -84,11 +84,11 @@ pub(crate) fn finite(out: &RigOut, model: &'static str) -> Result<(), EvalError>
 
 /// Refuses a cavitation pressure above that of every edge: nothing but a cavity would be left where the film begins.
 pub(crate) fn cavitation_below(p_cav: f64, edges: &[f64]) -> Option<BuildError> {
-    let most = edges.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    (p_cav > most).then(|| {
+    let max = edges.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    (p_cav > max).then(|| {
         let what = format!(
             "must not be above the pressures at all edges, of which {} bar is the highest",
-            1e-5 * most
+            1e-5 * max
         );
         BuildError::at("p_cav", what)
     })

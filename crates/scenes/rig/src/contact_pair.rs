@@ -88,28 +88,19 @@ const MODEL: &str = "contact_pair";
 /// Separations of the series, and speeds of the friction table.
 const POINTS: usize = 201;
 
-impl Rig for Bench {
-    fn results(&self) -> Vec<String> {
-        let mut names = named(&["pressure", "real_area", "friction_coefficient", "shear", "range"]);
-        names.extend(self.contact.floor().map(|_| "floor".into()));
-        names
+impl Bench {
+    fn coefficient(&self, speed: f64) -> Result<f64, EvalError> {
+        let Some(f) = &self.friction else { return Ok(self.contact.friction_coefficient()) };
+        let (mut c, mut s) = ([0.0], [0.0]);
+        f.coefficient(&[speed], &mut c, &mut s)?;
+        Ok(c[0])
     }
 
-    fn run(&mut self, out: &mut RigOut) -> Result<(), EvalError> {
-        let coefficient = |speed: f64| -> Result<f64, EvalError> {
-            let Some(f) = &self.friction else { return Ok(self.contact.friction_coefficient()) };
-            let (mut c, mut s) = ([0.0], [0.0]);
-            f.coefficient(&[speed], &mut c, &mut s)?;
-            Ok(c[0])
-        };
-        let h = draw::linear(self.ends.0, self.ends.1, POINTS);
-        let (mut p, mut area) = (vec![0.0; POINTS], vec![0.0; POINTS]);
-        self.contact.pressure(&h, &mut p);
-        let known = self.contact.real_area(&h, &mut area);
+    /// Results at the separation of the case.
+    fn here(&self, mu: f64, out: &mut RigOut) {
         let (mut here, mut area_here) = ([0.0], [0.0]);
         self.contact.pressure(&[self.at], &mut here);
-        self.contact.real_area(&[self.at], &mut area_here);
-        let mu = coefficient(self.speed)?;
+        let known = self.contact.real_area(&[self.at], &mut area_here);
 
         out.result("pressure", here[0] / 1e6, "MPa", "nominal contact pressure at `separation`");
         if known {
@@ -126,6 +117,14 @@ impl Rig for Bench {
         if let Some(floor) = self.contact.floor() {
             out.result("floor", 1e6 * floor, "um", "film thickness at which the surfaces carry what is left");
         }
+    }
+
+    /// Pressure, shear stress and real area over the separation.
+    fn over_separation(&self, mu: f64, out: &mut RigOut) {
+        let h = draw::linear(self.ends.0, self.ends.1, POINTS);
+        let (mut p, mut area) = (vec![0.0; POINTS], vec![0.0; POINTS]);
+        self.contact.pressure(&h, &mut p);
+        let known = self.contact.real_area(&h, &mut area);
         out.axis("separation", "m", h);
         out.column("p", "Pa", p.clone());
         let tau: Vec<f64> = p.iter().map(|p| mu * p).collect();
@@ -161,20 +160,40 @@ impl Rig for Bench {
                 &[line("real area", "real_area")],
             );
         }
+    }
+
+    /// Coefficient of friction over the sliding speed.
+    fn over_speed(&self, out: &mut RigOut) -> Result<(), EvalError> {
+        let max = if self.speed == 0.0 { 1.0 } else { 2.0 * self.speed.abs() };
+        let speeds = draw::linear(-max, max, POINTS);
+        let mu = speeds.iter().map(|v| self.coefficient(*v)).collect::<Result<Vec<_>, _>>()?;
+        let axis = draw::column("speed", "m/s", speeds);
+        draw::table(out, "friction", axis, vec![draw::column("friction_coefficient", "1", mu)]);
+        draw::curves(
+            out,
+            "friction",
+            "Coefficient of friction",
+            "over the sliding speed",
+            Scales::default(),
+            &[line("friction coefficient", "friction_coefficient")],
+        );
+        Ok(())
+    }
+}
+
+impl Rig for Bench {
+    fn results(&self) -> Vec<String> {
+        let mut names = named(&["pressure", "real_area", "friction_coefficient", "shear", "range"]);
+        names.extend(self.contact.floor().map(|_| "floor".into()));
+        names
+    }
+
+    fn run(&mut self, out: &mut RigOut) -> Result<(), EvalError> {
+        let mu = self.coefficient(self.speed)?;
+        self.here(mu, out);
+        self.over_separation(mu, out);
         if self.friction.is_some() {
-            let most = if self.speed == 0.0 { 1.0 } else { 2.0 * self.speed.abs() };
-            let speeds = draw::linear(-most, most, POINTS);
-            let mu = speeds.iter().map(|v| coefficient(*v)).collect::<Result<Vec<_>, _>>()?;
-            let axis = draw::column("speed", "m/s", speeds);
-            draw::table(out, "friction", axis, vec![draw::column("friction_coefficient", "1", mu)]);
-            draw::curves(
-                out,
-                "friction",
-                "Coefficient of friction",
-                "over the sliding speed",
-                Scales::default(),
-                &[line("friction coefficient", "friction_coefficient")],
-            );
+            self.over_speed(out)?;
         }
         draw::finite(MODEL, out)
     }

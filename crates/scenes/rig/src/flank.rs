@@ -210,7 +210,7 @@ struct Bench {
 /// Rows of the series, heights of the table.
 const POINTS: usize = 401;
 /// Most steps of the integration.
-const MOST_STEPS: u64 = 100_000;
+const MAX_STEPS: u64 = 100_000;
 
 impl Bench {
     /// Rows of time and state, of which the last is where the ring lands or the time ends.
@@ -223,7 +223,7 @@ impl Bench {
         let fall = (2.0 * self.ring.load.abs() * s / self.ring.mass.max(f64::MIN_POSITIVE)).sqrt();
         let scale = [1e-3 * s, (1e-3 * (v.abs() + fall.min(1e3))).max(1e-9)];
         let mut options = Options::new(self.tolerance, &scale[..n]);
-        options.max_steps = MOST_STEPS;
+        options.max_steps = MAX_STEPS;
         let mut times = vec![0.0];
         times.extend(draw::logarithmic(1e-4 * self.duration, self.duration, POINTS - 1));
         let (mut rows, mut last) = (Vec::new(), (0.0, y.clone()));

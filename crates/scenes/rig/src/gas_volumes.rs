@@ -147,12 +147,12 @@ fn nothing() -> Angle {
     quantity(0.0)
 }
 
-/// Most volumes: the Jacobian is dense.
-const MOST: usize = 200;
-/// Loosest and tightest tolerance of the integration.
+/// Maximum number of volumes: the Jacobian is dense.
+const MAX_NODES: usize = 200;
+/// Minimum and maximum tolerance of the integration.
 const TOLERANCES: (f64, f64) = (1e-12, 1e-1);
-/// Longest cycle: rows of the series are a degree apart.
-const LONGEST: f64 = 100.0 * TAU;
+/// Maximum period: rows of the series are a degree apart.
+const MAX_PERIOD: f64 = 100.0 * TAU;
 
 impl GasVolumesRig {
     /// Everything that is wrong but for the law, and the ends of the openings as numbers of nodes.
@@ -164,18 +164,9 @@ impl GasVolumesRig {
             .map(|v| v.name.as_str())
             .chain(self.boundaries.iter().map(|b| b.name.as_str()))
             .collect();
-        for (i, name) in names.iter().enumerate() {
-            let n = self.volumes.len();
-            let field =
-                if i < n { format!("volumes.{i}.name") } else { format!("boundaries.{}.name", i - n) };
-            if name.is_empty() || !name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') {
-                errors.push(BuildError::at(field, "a name has letters, digits and `_`"));
-            } else if names[..i].contains(name) {
-                errors.push(BuildError::at(field, format!("there are two with the name `{name}`")));
-            }
-        }
-        if self.volumes.is_empty() || self.volumes.len() > MOST {
-            errors.push(BuildError::at("volumes", format!("there must be 1 to {MOST} volumes")));
+        self.check_names(&names, &mut errors);
+        if self.volumes.is_empty() || self.volumes.len() > MAX_NODES {
+            errors.push(BuildError::at("volumes", format!("there must be 1 to {MAX_NODES} volumes")));
         }
         let mut ends = Vec::new();
         for (k, o) in self.openings.iter().enumerate() {
@@ -198,9 +189,32 @@ impl GasVolumesRig {
                 ends.push((a, b));
             }
         }
-        if self.openings.len() > MOST {
-            errors.push(BuildError::at("openings", format!("there can be {MOST} openings")));
+        if self.openings.len() > MAX_NODES {
+            errors.push(BuildError::at("openings", format!("there can be {MAX_NODES} openings")));
         }
+        self.check_run(&mut errors);
+        let (tightest, loosest) = TOLERANCES;
+        if !(tightest..=loosest).contains(&self.tolerance.si()) {
+            let what = format!("the tolerance must lie between {tightest:e} and {loosest}");
+            errors.push(BuildError::at("tolerance", what));
+        }
+        (errors, ends)
+    }
+
+    fn check_names(&self, names: &[&str], errors: &mut Vec<BuildError>) {
+        for (i, name) in names.iter().enumerate() {
+            let n = self.volumes.len();
+            let field =
+                if i < n { format!("volumes.{i}.name") } else { format!("boundaries.{}.name", i - n) };
+            if name.is_empty() || !name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') {
+                errors.push(BuildError::at(field, "a name has letters, digits and `_`"));
+            } else if names[..i].contains(name) {
+                errors.push(BuildError::at(field, format!("there are two with the name `{name}`")));
+            }
+        }
+    }
+
+    fn check_run(&self, errors: &mut Vec<BuildError>) {
         let (run, periodic) = (&self.run, self.run.until == Until::Periodic);
         if (run.until == Until::Time) != run.duration.is_some() {
             errors
@@ -209,7 +223,7 @@ impl GasVolumesRig {
         if periodic != run.speed.is_some() {
             errors.push(BuildError::at("run.speed", "a `periodic` run, and no other, needs `speed`"));
         }
-        if run.period.si() > LONGEST {
+        if run.period.si() > MAX_PERIOD {
             errors.push(BuildError::at("run.period", "a cycle has at most a hundred turns"));
         }
         if periodic && !(0.0..=run.period.si() * (1.0 + 1e-12)).contains(&run.angle.si()) {
@@ -221,12 +235,6 @@ impl GasVolumesRig {
                 errors.push(BuildError::at(field, "pulses belong to a `periodic` run"));
             }
         }
-        let (tightest, loosest) = TOLERANCES;
-        if !(tightest..=loosest).contains(&self.tolerance.si()) {
-            let what = format!("the tolerance must lie between {tightest:e} and {loosest}");
-            errors.push(BuildError::at("tolerance", what));
-        }
-        (errors, ends)
     }
 
     fn lay_out(&self) -> Result<Bench, Vec<BuildError>> {
@@ -429,12 +437,36 @@ struct Bench {
 
 /// Rows of the series over time.
 const ROWS: usize = 401;
-/// Most steps of an integration: about a second.
-const MOST_STEPS: u64 = 100_000;
-/// Longest step \[deg\]: no pulse is stepped over.
-const LONGEST_STEP: f64 = 20.0;
+/// Maximum number of steps of an integration: about a second.
+const MAX_STEPS: u64 = 100_000;
+/// Maximum step \[deg\].
+const MAX_STEP: f64 = 20.0;
 /// Cycles until a periodic state must be found.
 const CYCLES: usize = 60;
+
+/// Where rows of a run are wanted.
+struct Plan {
+    /// Rows of the series.
+    axis: Vec<f64>,
+    /// These, and the place of the results where it is none of them.
+    at: Vec<f64>,
+    /// The row of the results in `at`.
+    result_row: usize,
+    /// Whether it is no row of the series.
+    extra: bool,
+}
+
+/// A run over the extent.
+struct Run {
+    /// States at the rows of the series.
+    rows: Vec<Vec<f64>>,
+    /// State at the place of the results.
+    here: Vec<f64>,
+    begin: Vec<f64>,
+    end: Vec<f64>,
+    /// Gas through every opening \[mg\].
+    q: Vec<f64>,
+}
 
 /// One integration over the extent, with rows on the way.
 struct March<'a> {
@@ -442,7 +474,7 @@ struct March<'a> {
     rodas: Rodas,
     extent: f64,
     tolerance: f64,
-    longest: f64,
+    max_step: f64,
     /// Where rows are wanted, ascending.
     at: Vec<f64>,
     rows: Vec<Vec<f64>>,
@@ -454,7 +486,7 @@ struct March<'a> {
 impl March<'_> {
     fn integrate(&mut self, y: &mut [f64], rtol: f64) -> Result<(), EvalError> {
         let mut options = Options::new(rtol, &vec![1.0; y.len()]);
-        (options.h_max, options.max_steps) = (self.longest, MOST_STEPS);
+        (options.h_max, options.max_steps) = (self.max_step, MAX_STEPS);
         self.q.fill(0.0);
         self.rows.clear();
         self.cycles += 1;
@@ -479,6 +511,26 @@ impl March<'_> {
             )
             .map(|_| ())
             .map_err(|e| EvalError::fatal(MODEL, e.to_string()))
+    }
+
+    /// Finds the cycle that repeats itself; a note where there is none.
+    fn close(&mut self, y: &mut [f64], out: &mut RigOut) -> Result<(), EvalError> {
+        let options = OrbitOptions {
+            tolerance: self.tolerance,
+            accuracy: self.tolerance,
+            max_cycles: CYCLES,
+            finer: 0,
+            accelerate: true,
+        };
+        let report = periodic_orbit(self, y, &options)?;
+        if !report.converged {
+            let text = format!(
+                "the cycle does not repeat itself after {CYCLES} cycles: it changes by {:.1e} bar",
+                report.residual
+            );
+            out.notes.push(Note::failure("not_periodic", text).amount("change", report.residual, "bar"));
+        }
+        Ok(())
     }
 }
 
@@ -645,7 +697,23 @@ impl Bench {
     }
 
     fn history(&mut self, out: &mut RigOut) -> Result<(), EvalError> {
-        let (n, periodic) = (self.start.len(), self.until == Until::Periodic);
+        let plan = self.plan();
+        let run = self.march(&plan, out)?;
+        self.results_of(&run, out);
+        let pressures = self.draw_pressures(&plan.axis, &run.rows, out);
+        let flows = self.draw_flows(&plan.axis, &run.rows, out)?;
+        draw::curves(out, "series", "Pressures", "absolute", Scales::default(), &pressures);
+        draw::curves(out, "series", "Flow through the openings", "", Scales::default(), &flows);
+        Ok(())
+    }
+
+    fn periodic(&self) -> bool {
+        self.until == Until::Periodic
+    }
+
+    /// Where rows are wanted.
+    fn plan(&self) -> Plan {
+        let periodic = self.periodic();
         let count = if periodic { self.extent.round().max(1.0) as usize + 1 } else { ROWS };
         let axis = draw::linear(0.0, self.extent, count);
         // The row of the results stands among the others.
@@ -655,74 +723,74 @@ impl Bench {
         if extra {
             at.insert(result_row, self.angle.min(self.extent));
         }
-        let narrowest = self
-            .gas
-            .boundaries
-            .iter()
-            .flat_map(|b| &b.1)
-            .map(|p| p.width.si().to_degrees())
-            .fold(LONGEST_STEP, f64::min);
-        let longest = if periodic { narrowest } else { f64::INFINITY };
+        Plan { axis, at, result_row, extra }
+    }
+
+    /// Maximum step: no pulse is stepped over.
+    fn max_step(&self) -> f64 {
+        if !self.periodic() {
+            return f64::INFINITY;
+        }
+        let pulses = self.gas.boundaries.iter().flat_map(|b| &b.1);
+        pulses.map(|p| p.width.si().to_degrees()).fold(MAX_STEP, f64::min)
+    }
+
+    /// Integrates from the start, or over the cycle that repeats itself.
+    fn march(&mut self, plan: &Plan, out: &mut RigOut) -> Result<Run, EvalError> {
+        let (periodic, max_step) = (self.periodic(), self.max_step());
         let mut march = March {
-            rodas: Rodas::new(n, self.gas.openings, None),
+            rodas: Rodas::new(self.start.len(), self.gas.openings, None),
             q: vec![0.0; self.gas.openings],
             gas: &mut self.gas,
             extent: self.extent,
             tolerance: self.tolerance,
-            longest,
-            at,
+            max_step,
+            at: plan.at.clone(),
             rows: Vec::new(),
             stats: Stats::default(),
             cycles: 0,
         };
         let mut y = self.start.clone();
         if periodic {
-            let options = OrbitOptions {
-                tolerance: self.tolerance,
-                accuracy: self.tolerance,
-                max_cycles: CYCLES,
-                finer: 0,
-                accelerate: true,
-            };
-            let report = periodic_orbit(&mut march, &mut y, &options)?;
-            if !report.converged {
-                let text = format!(
-                    "the cycle does not repeat itself after {CYCLES} cycles: it changes by {:.1e} bar",
-                    report.residual
-                );
-                out.notes.push(Note::failure("not_periodic", text).amount("change", report.residual, "bar"));
-            }
+            march.close(&mut y, out)?;
         }
         let begin = y.clone();
         march.stats = Stats::default();
         march.integrate(&mut y, self.tolerance)?;
         let (mut rows, q, stats, cycles) = (march.rows, march.q, march.stats, march.cycles);
         // A step may end a rounding before the extent.
-        while rows.len() < count + usize::from(extra) {
+        while rows.len() < plan.at.len() {
             rows.push(y.clone());
         }
-        let here = if extra { rows.remove(result_row) } else { rows[result_row.min(count - 1)].clone() };
+        let last = plan.axis.len() - 1;
+        let here =
+            if plan.extra { rows.remove(plan.result_row) } else { rows[plan.result_row.min(last)].clone() };
         for (key, v) in [("steps", stats.steps), ("rejected", stats.rejected), ("rhs", stats.rhs)] {
             out.counters.insert(key.into(), v);
         }
         if periodic {
             out.counters.insert("cycles".into(), cycles);
         }
+        Ok(Run { rows, here, begin, end: y, q })
+    }
 
+    /// Pressures, gas taken in, and the balance of mass.
+    fn results_of(&self, run: &Run, out: &mut RigOut) {
+        let (n, periodic) = (self.start.len(), self.periodic());
         let when = if periodic { "pressure at the angle" } else { "pressure at the end" };
         for (i, name) in self.names.0.iter().enumerate() {
-            out.result(format!("{name}.p"), here[i], "bar", format!("{when}, in {}", spoken(name)));
-            let most = rows.iter().map(|r| r[i]).fold(0.0, f64::max);
+            out.result(format!("{name}.p"), run.here[i], "bar", format!("{when}, in {}", spoken(name)));
+            let max = run.rows.iter().map(|r| r[i]).fold(0.0, f64::max);
             out.result(
                 format!("{name}.p_max"),
-                most,
+                max,
                 "bar",
                 format!("highest pressure, of the rows of the series, in {}", spoken(name)),
             );
         }
         let mut balance = 0.0;
         for (i, name) in self.names.1.iter().enumerate() {
-            let received = self.sum_into(n + i, |k| q[k]);
+            let received = self.sum_into(n + i, |k| run.q[k]);
             balance += received;
             let whole = if periodic { "a cycle" } else { "the run" };
             out.result(
@@ -732,16 +800,20 @@ impl Bench {
                 format!("gas taken in over {whole} by {}", spoken(name)),
             );
         }
-        let stored: f64 = (0..n).map(|i| (y[i] - begin[i]) * self.gas.mass_of_bar[i] / MILLIGRAM).sum();
-        let throughput: f64 = q.iter().map(|q| q.abs()).sum();
+        let stored: f64 =
+            (0..n).map(|i| (run.end[i] - run.begin[i]) * self.gas.mass_of_bar[i] / MILLIGRAM).sum();
+        let throughput: f64 = run.q.iter().map(|q| q.abs()).sum();
         if throughput > 0.0 {
             out.balance.gas_mass = Some((balance + stored) / throughput);
         }
+    }
 
-        if periodic {
-            out.axis(gudgeon_core::result::CRANK_ANGLE, "deg", axis.clone());
+    /// Columns of the pressures; returns their curves.
+    fn draw_pressures(&self, axis: &[f64], rows: &[Vec<f64>], out: &mut RigOut) -> Vec<(String, String)> {
+        if self.periodic() {
+            out.axis(gudgeon_core::result::CRANK_ANGLE, "deg", axis.to_vec());
         } else {
-            out.axis("time", "s", axis.clone());
+            out.axis("time", "s", axis.to_vec());
         }
         let mut pressures = Vec::new();
         for (i, name) in self.names.1.iter().enumerate() {
@@ -753,8 +825,18 @@ impl Bench {
             out.column(format!("{name}.p"), "Pa", rows.iter().map(|r| r[i] * BAR).collect());
             pressures.push(line(name, &format!("{name}.p")));
         }
-        let mut flows: Vec<Vec<f64>> = vec![Vec::with_capacity(count); self.ends.len()];
-        for (t, row) in axis.iter().zip(&rows) {
+        pressures
+    }
+
+    /// Columns of the flows; returns their curves.
+    fn draw_flows(
+        &mut self,
+        axis: &[f64],
+        rows: &[Vec<f64>],
+        out: &mut RigOut,
+    ) -> Result<Vec<(String, String)>, EvalError> {
+        let mut flows: Vec<Vec<f64>> = vec![Vec::with_capacity(axis.len()); self.ends.len()];
+        for (t, row) in axis.iter().zip(rows) {
             self.gas.set(*t, row)?;
             self.gas.net.update_flows();
             for (k, flow) in flows.iter_mut().enumerate() {
@@ -770,9 +852,7 @@ impl Bench {
             out.column(column.clone(), "kg/s", flow);
             lines.push(line(&name, &column));
         }
-        draw::curves(out, "series", "Pressures", "absolute", Scales::default(), &pressures);
-        draw::curves(out, "series", "Flow through the openings", "", Scales::default(), &lines);
-        Ok(())
+        Ok(lines)
     }
 }
 

@@ -1,5 +1,6 @@
 use gudgeon_core::kinds::{
-    Film1d, Film1dCtx, Film1dIn, Film1dSpec, FilmEnd, FilmTime, Rig, RigCtx, RigOut, RigSpec, named,
+    Film1d, Film1dCtx, Film1dIn, Film1dOut, Film1dSpec, FilmEnd, FilmFront, FilmTime, Rig, RigCtx, RigOut,
+    RigSpec, named,
 };
 use gudgeon_core::quantity::{
     Angle, AngularSpeed, Fraction, PosLength, PosViscosity, Pressure, Ratio, quantity,
@@ -118,7 +119,7 @@ impl Bench {
     /// Components of `∫ (p - p_0) R e(φ) dφ` along the widest gap and a quarter turn on. Between two rows of full film the pressure
     /// is the cubic with their pressures and the gradients that the flux leaves there.
     fn load(&self, rows: &[along::Row], flux: &[f64]) -> (f64, f64) {
-        let u = self.omega * self.radius;
+        let u = self.speed();
         let (mut a, mut b) = (0.0, 0.0);
         for w in rows.windows(2) {
             let (from, to) = (w[0], w[1]);
@@ -146,6 +147,113 @@ impl Bench {
         }
         (a, b)
     }
+
+    /// Velocity of the surface of the shaft \[m/s\].
+    fn speed(&self) -> f64 {
+        self.omega * self.radius
+    }
+
+    /// Angle from the widest gap \[deg\] of a place on the line.
+    fn degrees(&self, x: f64) -> f64 {
+        (x / self.radius).to_degrees()
+    }
+
+    fn solve(&mut self) -> Result<Film1dOut, EvalError> {
+        let mu = vec![self.mu; self.line.panels()];
+        let u = self.speed();
+        self.film.solve(&Film1dIn {
+            h_a: &self.line.h_a,
+            h_b: &self.line.h_b,
+            mu: &mu,
+            factors: None,
+            u,
+            ends: [FilmEnd::Flooded { p: self.p }; 2],
+            p_cav: self.p_cav,
+            time: FilmTime::Steady,
+        })
+    }
+
+    fn load_and_friction(&self, o: &Film1dOut, rows: &[along::Row], flux: &[f64], out: &mut RigOut) {
+        let u = self.speed();
+        let (along_gap, across) = self.load(rows, flux);
+        let load = along_gap.hypot(across);
+        let unit = self.mu * self.omega.abs() * (self.radius / self.clearance).powi(2) * self.radius;
+        out.result("load", load, "N/m", "load per metre of width");
+        if unit > 0.0 {
+            out.result("load_number", load / unit, "", "load over mu omega R^3/c^2");
+        }
+        if load > 0.0 {
+            // The shaft moves towards the narrowest gap; the load points where the film presses.
+            out.result(
+                "attitude",
+                (across * u.signum()).atan2(-along_gap).to_degrees(),
+                "deg",
+                "angle from the line of centres back to the load, against the rotation",
+            );
+        }
+        out.result("p_max", o.p_max / 1e5, "bar", "highest pressure");
+        out.result("phi_p_max", self.degrees(o.x_p_max), "deg", "its angle from the widest gap");
+        out.result(
+            "torque",
+            o.moving_shear * self.radius,
+            "N",
+            "friction torque on the shaft, per metre of width",
+        );
+        if unit > 0.0 {
+            let full = self.mu * u * self.radius * self.radius / self.clearance;
+            out.result(
+                "torque_number",
+                o.moving_shear * self.radius / full,
+                "",
+                "torque over mu omega R^3/c",
+            );
+        }
+        if load > 0.0 {
+            out.result("friction_coefficient", o.moving_shear / load, "", "friction of the shaft over load");
+        }
+    }
+
+    /// Oil that passes, places where the film ends and begins.
+    fn flows(&self, o: &Film1dOut, fronts: &[FilmFront], out: &mut RigOut) {
+        out.result("flux", o.flux_in, "m2/s", "flux of oil into the film behind the groove");
+        let forwards = self.speed() >= 0.0;
+        let front = |film_before: bool| fronts.iter().find(|f| f.film_before == film_before);
+        if let Some(f) = front(forwards) {
+            out.result(
+                "phi_rupture",
+                self.degrees(f.x),
+                "deg",
+                "angle from the widest gap where the film ruptures",
+            );
+        }
+        if let Some(f) = front(!forwards) {
+            out.result(
+                "phi_reform",
+                self.degrees(f.x),
+                "deg",
+                "angle from the widest gap where the film forms again",
+            );
+        }
+        out.result(
+            "flux_error",
+            o.flux_error,
+            "",
+            "largest imbalance of oil at a node over the flux there: zero when mass is conserved",
+        );
+    }
+
+    fn series(&self, rows: &[along::Row], out: &mut RigOut) {
+        out.axis("phi", "deg", rows.iter().map(|r| self.degrees(r.x)).collect());
+        out.column("p", "Pa", rows.iter().map(|r| r.p).collect());
+        out.column("h", "m", rows.iter().map(|r| r.h).collect());
+        out.column("oil", "m", rows.iter().map(|r| r.fill * r.h).collect());
+        out.column("fill", "", rows.iter().map(|r| r.fill).collect());
+        out.curves("Pressure around the shaft", "absolute; angle from the widest gap", &[("pressure", "p")]);
+        out.curves("Gap and oil in it", "", &[("gap", "h"), ("oil", "oil")]);
+        if rows.iter().any(|r| r.fill < 1.0) {
+            out.curves("Filled fraction of the gap", "", &[("fill", "fill")]);
+        }
+    }
 }
 
 impl Rig for Bench {
@@ -167,97 +275,16 @@ impl Rig for Bench {
     }
 
     fn run(&mut self, out: &mut RigOut) -> Result<(), EvalError> {
-        let n = self.line.panels();
-        let u = self.omega * self.radius;
-        let mu = vec![self.mu; n];
-        let o = self.film.solve(&Film1dIn {
-            h_a: &self.line.h_a,
-            h_b: &self.line.h_b,
-            mu: &mu,
-            factors: None,
-            u,
-            ends: [FilmEnd::Flooded { p: self.p }; 2],
-            p_cav: self.p_cav,
-            time: FilmTime::Steady,
-        })?;
+        let o = self.solve()?;
         let field = self.film.field();
-        let rows = along::rows(&self.line, &field, u, self.p_cav, false, |_| 1.0);
-        let (along_gap, across) = self.load(&rows, field.flux);
-        let load = along_gap.hypot(across);
-        let unit = self.mu * self.omega.abs() * (self.radius / self.clearance).powi(2) * self.radius;
-        let degrees = |x: f64| (x / self.radius).to_degrees();
-        out.result("load", load, "N/m", "load per metre of width");
-        if unit > 0.0 {
-            out.result("load_number", load / unit, "", "load over mu omega R^3/c^2");
-        }
-        if load > 0.0 {
-            // The shaft moves towards the narrowest gap; the load points where the film presses.
-            out.result(
-                "attitude",
-                (across * u.signum()).atan2(-along_gap).to_degrees(),
-                "deg",
-                "angle from the line of centres back to the load, against the rotation",
-            );
-        }
-        out.result("p_max", o.p_max / 1e5, "bar", "highest pressure");
-        out.result("phi_p_max", degrees(o.x_p_max), "deg", "its angle from the widest gap");
-        out.result(
-            "torque",
-            o.moving_shear * self.radius,
-            "N",
-            "friction torque on the shaft, per metre of width",
-        );
-        if unit > 0.0 {
-            let full = self.mu * u * self.radius * self.radius / self.clearance;
-            out.result(
-                "torque_number",
-                o.moving_shear * self.radius / full,
-                "",
-                "torque over mu omega R^3/c",
-            );
-        }
-        if load > 0.0 {
-            out.result("friction_coefficient", o.moving_shear / load, "", "friction of the shaft over load");
-        }
-        out.result("flux", o.flux_in, "m2/s", "flux of oil into the film behind the groove");
-        let forwards = u >= 0.0;
-        let front = |film_before: bool| field.fronts.iter().find(|f| f.film_before == film_before);
-        if let Some(f) = front(forwards) {
-            out.result(
-                "phi_rupture",
-                degrees(f.x),
-                "deg",
-                "angle from the widest gap where the film ruptures",
-            );
-        }
-        if let Some(f) = front(!forwards) {
-            out.result(
-                "phi_reform",
-                degrees(f.x),
-                "deg",
-                "angle from the widest gap where the film forms again",
-            );
-        }
-        out.result(
-            "flux_error",
-            o.flux_error,
-            "",
-            "largest imbalance of oil at a node over the flux there: zero when mass is conserved",
-        );
-        out.counters.insert("panels".into(), n as u64);
+        let rows = along::rows(&self.line, &field, self.speed(), self.p_cav, false, |_| 1.0);
+        self.load_and_friction(&o, &rows, field.flux, out);
+        self.flows(&o, field.fronts, out);
+        out.counters.insert("panels".into(), self.line.panels() as u64);
         out.counters.insert("iterations".into(), o.iterations as u64);
         out.balance.oil_mass = along::oil_balance(&o);
-        out.axis("phi", "deg", rows.iter().map(|r| degrees(r.x)).collect());
-        out.column("p", "Pa", rows.iter().map(|r| r.p).collect());
-        out.column("h", "m", rows.iter().map(|r| r.h).collect());
-        out.column("oil", "m", rows.iter().map(|r| r.fill * r.h).collect());
-        out.column("fill", "", rows.iter().map(|r| r.fill).collect());
-        out.curves("Pressure around the shaft", "absolute; angle from the widest gap", &[("pressure", "p")]);
-        out.curves("Gap and oil in it", "", &[("gap", "h"), ("oil", "oil")]);
-        if rows.iter().any(|r| r.fill < 1.0) {
-            out.curves("Filled fraction of the gap", "", &[("fill", "fill")]);
-        }
-        validity::tell(out);
+        self.series(&rows, out);
+        validity::note_limits(out);
         along::finite(out, "journal_1d")
     }
 }

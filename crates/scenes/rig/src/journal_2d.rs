@@ -7,7 +7,7 @@ use gudgeon_film::SmoothSurfaces;
 use serde::{Deserialize, Serialize};
 
 use crate::along;
-use crate::sheet::{self, Conditions, Sheet};
+use crate::sheet::{self, Conditions, Sheet, SheetFilm};
 use crate::slider_2d::Sides;
 use crate::validity;
 
@@ -142,32 +142,13 @@ struct Bench {
     spec: Journal2dRig,
 }
 
-impl Rig for Bench {
-    fn results(&self) -> Vec<String> {
-        named(&[
-            "load",
-            "sommerfeld",
-            "attitude",
-            "p_max",
-            "p_ratio",
-            "film_min",
-            "friction",
-            "friction_number",
-            "side_flow",
-            "side_flow_number",
-            "inflow_number",
-            "cavity",
-            "residual",
-        ])
-    }
-
-    fn run(&mut self, out: &mut RigOut) -> Result<(), EvalError> {
+impl Bench {
+    fn solve(&mut self) -> Result<SheetFilm, EvalError> {
         let s = &self.spec;
-        let (radius, width, clearance) = (s.radius.si(), s.width.si(), s.clearance.si());
-        let eps = s.eccentricity.si();
+        let (radius, clearance, eps) = (s.radius.si(), s.clearance.si(), s.eccentricity.si());
         let (side, supply, p_cav) = (s.p_side.si(), s.p_supply.si(), s.p_cav.si());
         let gap = |x: f64, _: f64| clearance * (1.0 + eps * (x / radius).cos());
-        let found = self.sheet.solve(
+        self.sheet.solve(
             &Conditions {
                 u: s.speed.si() * radius,
                 mu: s.viscosity.si(),
@@ -178,8 +159,17 @@ impl Rig for Bench {
             },
             &gap,
             None,
-        )?;
-        let o = found.out;
+        )
+    }
+
+    /// Load with its attitude, and friction.
+    ///
+    /// # Errors
+    /// A bearing that carries nothing (Fatal).
+    fn load_and_friction(&self, found: &SheetFilm, out: &mut RigOut) -> Result<(), EvalError> {
+        let (s, o) = (&self.spec, &found.out);
+        let (radius, width, clearance) = (s.radius.si(), s.width.si(), s.clearance.si());
+        let eps = s.eccentricity.si();
         let along = self.sheet.sum(|k, x, _| found.p[k] * (x / radius).cos());
         let across = self.sheet.sum(|k, x, _| found.p[k] * (x / radius).sin());
         let load = along.hypot(across);
@@ -214,6 +204,14 @@ impl Rig for Bench {
             "",
             "coefficient of friction times R/c",
         );
+        Ok(())
+    }
+
+    /// Oil that passes, area that is not filled.
+    fn flows(&self, found: &SheetFilm, out: &mut RigOut) {
+        let (s, o) = (&self.spec, &found.out);
+        let (radius, width, clearance) = (s.radius.si(), s.width.si(), s.clearance.si());
+        let per_second = s.speed.si() / (2.0 * PI);
         let leak = o.outflow[2] + o.outflow[3];
         let unit = radius * clearance * per_second * width;
         out.result("side_flow", 6e4 * leak, "l/min", "oil that leaves at both sides");
@@ -222,8 +220,10 @@ impl Rig for Bench {
         out.result("inflow_number", inflow / unit, "", "flow past the widest gap over R c N L");
         let area = 2.0 * PI * radius * width;
         out.result("cavity", 100.0 * o.cavity / area, "%", "share of the area that is not filled");
-        let grid = &self.sheet.whole;
-        sheet::account(&o, self.sheet.nodes(), out);
+    }
+
+    fn draw(&self, found: &SheetFilm, out: &mut RigOut) {
+        let (radius, grid) = (self.spec.radius.si(), &self.sheet.whole);
         let degrees = |x: f64| (x / radius).to_degrees();
         out.axis("angle", "deg", grid.x.iter().map(|x| degrees(*x)).collect());
         out.column("p", "Pa", self.sheet.middle(&found.p));
@@ -245,7 +245,35 @@ impl Rig for Bench {
             ("y", "m", ys.iter().map(|j| grid.y[*j]).collect()),
             maps,
         );
-        validity::tell(out);
+    }
+}
+
+impl Rig for Bench {
+    fn results(&self) -> Vec<String> {
+        named(&[
+            "load",
+            "sommerfeld",
+            "attitude",
+            "p_max",
+            "p_ratio",
+            "film_min",
+            "friction",
+            "friction_number",
+            "side_flow",
+            "side_flow_number",
+            "inflow_number",
+            "cavity",
+            "residual",
+        ])
+    }
+
+    fn run(&mut self, out: &mut RigOut) -> Result<(), EvalError> {
+        let found = self.solve()?;
+        self.load_and_friction(&found, out)?;
+        self.flows(&found, out);
+        sheet::account(&found.out, self.sheet.nodes(), out);
+        self.draw(&found, out);
+        validity::note_limits(out);
         sheet::finite("journal_2d", out)
     }
 }

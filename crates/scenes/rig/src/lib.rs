@@ -17,12 +17,12 @@ mod ring_face;
 mod rough_surface;
 mod scene;
 mod shaft_line;
-mod sheet;
+pub mod sheet;
 mod skirt;
 mod slider;
 mod slider_2d;
 mod squeeze_film;
-mod validity;
+pub mod validity;
 
 pub use contact_pair::ContactPairRig;
 pub use cylinder_pressure::CylinderPressureRig;

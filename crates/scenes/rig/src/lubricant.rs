@@ -5,6 +5,7 @@ use gudgeon_core::kinds::{
 use gudgeon_core::quantity::{
     NonNegative, PosPressure, PosShearRate, PosTemperature, Pressure, ShearRate, quantity,
 };
+use gudgeon_core::result::Column;
 use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
@@ -99,7 +100,7 @@ impl RigSpec for LubricantRig {
                 density,
                 at: (self.temperature.si(), self.pressure.si(), self.shear_rate.si()),
                 temperatures: (self.coldest.si(), self.hottest.si()),
-                most: (self.highest_pressure.si(), self.highest_shear_rate.si()),
+                max: (self.highest_pressure.si(), self.highest_shear_rate.si()),
             })),
             _ => Err(errors),
         }
@@ -119,7 +120,8 @@ struct Bench {
     /// Temperature, pressure, shear rate.
     at: (f64, f64, f64),
     temperatures: (f64, f64),
-    most: (f64, f64),
+    /// Maximum pressure and shear rate that are drawn.
+    max: (f64, f64),
 }
 
 const MODEL: &str = "lubricant";
@@ -165,21 +167,13 @@ impl Bench {
             density: f[0],
         })
     }
-}
 
-impl Rig for Bench {
-    fn results(&self) -> Vec<String> {
-        named(&[
-            "viscosity",
-            "base_viscosity",
-            "pressure_factor",
-            "shear_factor",
-            "pressure_viscosity",
-            "density_ratio",
-        ])
+    fn states(&self, at: impl Iterator<Item = (f64, f64, f64)>) -> Result<Vec<State>, EvalError> {
+        at.map(|(t, p, rate)| self.state(t, p, rate)).collect()
     }
 
-    fn run(&mut self, out: &mut RigOut) -> Result<(), EvalError> {
+    /// Results at the state of the case.
+    fn here(&self, out: &mut RigOut) -> Result<(), EvalError> {
         let (t, p, rate) = self.at;
         let here = self.state(t, p, rate)?;
         out.result("viscosity", 1e3 * here.mu, "mPa s", "viscosity at temperature, pressure and shear rate");
@@ -193,16 +187,13 @@ impl Rig for Bench {
             "relative change of viscosity with pressure",
         );
         out.result("density_ratio", here.density, "1", "density over that at ambient pressure");
+        Ok(())
+    }
 
-        let over = |states: &[(f64, f64, f64)]| {
-            states.iter().map(|s| self.state(s.0, s.1, s.2)).collect::<Result<Vec<_>, _>>()
-        };
-        let column = |name: &str, states: &[State], f: fn(&State) -> f64| {
-            let unit = if name.ends_with("ratio") { "1" } else { "Pa s" };
-            draw::column(name, unit, states.iter().map(f).collect())
-        };
+    fn over_temperature(&self, out: &mut RigOut) -> Result<(), EvalError> {
+        let (_, p, rate) = self.at;
         let temperatures = draw::linear(self.temperatures.0, self.temperatures.1, POINTS);
-        let warm = over(&temperatures.iter().map(|t| (*t, p, rate)).collect::<Vec<_>>())?;
+        let warm = self.states(temperatures.iter().map(|t| (*t, p, rate)))?;
         out.axis("temperature", "K", temperatures);
         out.series.columns.push(column("viscosity", &warm, |s| s.mu));
         out.series.columns.push(column("base_viscosity", &warm, |s| s.mu_0));
@@ -214,9 +205,13 @@ impl Rig for Bench {
             Scales { log_x: false, log_y: true },
             &[line("viscosity", "viscosity"), line("ambient, at rest", "base_viscosity")],
         );
+        Ok(())
+    }
 
-        let pressures = draw::linear(0.0, self.most.0, POINTS);
-        let pressed = over(&pressures.iter().map(|p| (t, *p, rate)).collect::<Vec<_>>())?;
+    fn over_pressure(&self, out: &mut RigOut) -> Result<(), EvalError> {
+        let (t, _, rate) = self.at;
+        let pressures = draw::linear(0.0, self.max.0, POINTS);
+        let pressed = self.states(pressures.iter().map(|p| (t, *p, rate)))?;
         draw::table(
             out,
             "pressure",
@@ -243,9 +238,13 @@ impl Rig for Bench {
                 &[line("density ratio", "density_ratio")],
             );
         }
+        Ok(())
+    }
 
-        let rates = draw::logarithmic(DECADES * self.most.1, self.most.1, POINTS);
-        let sheared = over(&rates.iter().map(|r| (t, p, *r)).collect::<Vec<_>>())?;
+    fn over_shear_rate(&self, out: &mut RigOut) -> Result<(), EvalError> {
+        let (t, p, _) = self.at;
+        let rates = draw::logarithmic(DECADES * self.max.1, self.max.1, POINTS);
+        let sheared = self.states(rates.iter().map(|r| (t, p, *r)))?;
         draw::table(
             out,
             "shear",
@@ -262,6 +261,33 @@ impl Rig for Bench {
                 &[line("viscosity", "viscosity")],
             );
         }
+        Ok(())
+    }
+}
+
+/// A column over states.
+fn column(name: &str, states: &[State], f: fn(&State) -> f64) -> Column {
+    let unit = if name.ends_with("ratio") { "1" } else { "Pa s" };
+    draw::column(name, unit, states.iter().map(f).collect())
+}
+
+impl Rig for Bench {
+    fn results(&self) -> Vec<String> {
+        named(&[
+            "viscosity",
+            "base_viscosity",
+            "pressure_factor",
+            "shear_factor",
+            "pressure_viscosity",
+            "density_ratio",
+        ])
+    }
+
+    fn run(&mut self, out: &mut RigOut) -> Result<(), EvalError> {
+        self.here(out)?;
+        self.over_temperature(out)?;
+        self.over_pressure(out)?;
+        self.over_shear_rate(out)?;
         draw::finite(MODEL, out)
     }
 }

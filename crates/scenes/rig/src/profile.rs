@@ -102,15 +102,15 @@ fn nothing() -> Length {
     quantity(0.0)
 }
 
-/// Most panels that a case may ask for.
-pub(crate) const MOST: u32 = 100_000;
+/// Maximum number of panels.
+pub(crate) const MAX_PANELS: u32 = 100_000;
 
 /// Whether the number of panels makes sense.
 pub(crate) fn panels(n: u32) -> Result<usize, BuildError> {
-    if (1..=MOST).contains(&n) {
+    if (1..=MAX_PANELS).contains(&n) {
         Ok(n as usize)
     } else {
-        Err(BuildError::at("panels", format!("must be between 1 and {MOST}, not {n}")))
+        Err(BuildError::at("panels", format!("must be between 1 and {MAX_PANELS}, not {n}")))
     }
 }
 
@@ -185,18 +185,5 @@ impl Profile {
             "gap" | "breaks" => BuildError { field: String::new(), ..e },
             _ => e,
         })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn rayleighs_optimum() {
-        let k = 1.0 + 3.0_f64.sqrt() / 2.0;
-        let n = k.powf(1.5) / (1.0 + k.powf(1.5));
-        // Two roundings.
-        assert!((rayleigh().si() - n).abs() < 1e-15, "{n}");
     }
 }

@@ -150,7 +150,7 @@ impl Rig for Bench {
             &[("pressure", "p")],
         );
         out.curves("Film thickness", "", &[("film", "h")]);
-        validity::tell(out);
+        validity::note_limits(out);
         Ok(())
     }
 }

@@ -1,7 +1,7 @@
 use std::f64::consts::PI;
 
 use gudgeon_core::kinds::{
-    CouplingSpec, Line, LineLink, LineNode, NaturalFrequenciesSpec, Rig, RigCtx, RigOut, RigSpec, named,
+    CouplingSpec, Line, LineLink, LineNode, Mode, NaturalFrequenciesSpec, Rig, RigCtx, RigOut, RigSpec, named,
 };
 use gudgeon_core::quantity::{
     Inertia, NonNegative, PosFrequency, Torque, TorsionalDamping, TorsionalStiffness, quantity,
@@ -42,13 +42,13 @@ pub struct ShaftLineRig {
 }
 
 /// As many modes as the longest chain has inertias.
-const MOST: usize = 2000;
+const MAX_INERTIAS: usize = 2000;
 
 fn free() -> [TorsionalStiffness<NonNegative>; 2] {
     [quantity(0.0), quantity(0.0)]
 }
 fn eigenvalues() -> Box<dyn NaturalFrequenciesSpec> {
-    Box::new(Eigenvalues { max_modes: MOST })
+    Box::new(Eigenvalues { max_modes: MAX_INERTIAS })
 }
 
 #[register_model(
@@ -135,75 +135,10 @@ struct Bench {
     tree: Tree,
 }
 
-impl Rig for Bench {
-    fn results(&self) -> Vec<String> {
-        let n = self.tree.len();
-        let mode = |k: usize| {
-            ["omega", "frequency", "decay", "damped_omega", "damping_ratio"]
-                .map(|what| format!("mode.{k}.{what}"))
-        };
-        let mut names = named(&["rigid_modes"]);
-        names.extend((1..=n).flat_map(mode));
-        if self.spec.frequency.is_some() {
-            names.extend(
-                (1..=n).flat_map(|i| ["amplitude", "phase"].map(|what| format!("inertia{i}.{what}"))),
-            );
-            names.extend((1..=self.line.links.len()).map(|i| format!("shaft{i}.torque")));
-        }
-        names
-    }
-
-    fn run(&mut self, out: &mut RigOut) -> Result<(), EvalError> {
-        let n = self.tree.len();
-        let refused = |e: BuildError| EvalError::fatal("shaft_line", e.to_string());
-        let modes = self.spec.natural_frequencies.build(&self.line).map_err(refused)?.modes()?;
-        let rigid = modes.iter().filter(|m| m.omega == 0.0).count();
-        out.result("rigid_modes", rigid as f64, "", "number of modes at frequency zero");
-        for (k, m) in modes.iter().skip(rigid).enumerate() {
-            let k = k + 1;
-            out.result(format!("mode.{k}.omega"), m.omega, "rad/s", format!("angular frequency of mode {k}"));
-            out.result(
-                format!("mode.{k}.frequency"),
-                m.omega / (2.0 * PI),
-                "Hz",
-                format!("frequency of mode {k}"),
-            );
-            if let Some((decay, omega)) = m.damped {
-                out.result(format!("mode.{k}.decay"), decay, "1/s", format!("decay rate of mode {k}"));
-                out.result(
-                    format!("mode.{k}.damped_omega"),
-                    omega,
-                    "rad/s",
-                    format!("angular frequency of mode {k} with damping"),
-                );
-                out.result(
-                    format!("mode.{k}.damping_ratio"),
-                    decay / decay.hypot(omega),
-                    "",
-                    format!("damping ratio of mode {k}"),
-                );
-            }
-        }
-        out.axis("inertia", "", (1..=n).map(|i| i as f64).collect());
-        for (k, m) in modes.iter().skip(rigid).enumerate().filter(|(_, m)| m.shape.len() == n) {
-            out.column(format!("mode{}", k + 1), "", m.shape.clone());
-        }
-        let lines: Vec<(String, String)> = out
-            .series
-            .columns
-            .iter()
-            .take(6)
-            .enumerate()
-            .map(|(k, c)| (format!("mode {}", k + 1), c.name.clone()))
-            .collect();
-        let lines: Vec<(&str, &str)> = lines.iter().map(|(a, b)| (a.as_str(), b.as_str())).collect();
-        if !lines.is_empty() {
-            out.curves("Mode shapes", "angle of each inertia, the largest 1", &lines);
-        }
-        let Some(frequency) = self.spec.frequency else { return Ok(()) };
-        let omega = 2.0 * PI * frequency.si();
-        self.tree.linearise(&self.line, omega, &[]);
-        let torque: Vec<Complex> = (0..n)
+impl Bench {
+    /// Amplitudes of the torque on the inertias, in the order of the tree.
+    fn torque(&self) -> Vec<Complex> {
+        (0..self.tree.len())
             .map(|p| {
                 let i = self.tree.node[p];
                 let size =
@@ -211,7 +146,14 @@ impl Rig for Bench {
                 let lag = self.spec.lag_deg.get(i).copied().unwrap_or(0.0).to_radians();
                 Complex::new(size * lag.cos(), -size * lag.sin())
             })
-            .collect();
+            .collect()
+    }
+
+    /// Vibration under the torques at one angular frequency \[rad/s\].
+    fn forced(&mut self, omega: f64, out: &mut RigOut) -> Result<(), EvalError> {
+        let n = self.tree.len();
+        self.tree.linearise(&self.line, omega, &[]);
+        let torque = self.torque();
         let (mut x, mut t) = (vec![Complex::default(); n], vec![Complex::default(); n]);
         let mut work = Work::new(n);
         self.tree
@@ -247,5 +189,86 @@ impl Rig for Bench {
             );
         }
         Ok(())
+    }
+}
+
+impl Rig for Bench {
+    fn results(&self) -> Vec<String> {
+        let n = self.tree.len();
+        let mode = |k: usize| {
+            ["omega", "frequency", "decay", "damped_omega", "damping_ratio"]
+                .map(|what| format!("mode.{k}.{what}"))
+        };
+        let mut names = named(&["rigid_modes"]);
+        names.extend((1..=n).flat_map(mode));
+        if self.spec.frequency.is_some() {
+            names.extend(
+                (1..=n).flat_map(|i| ["amplitude", "phase"].map(|what| format!("inertia{i}.{what}"))),
+            );
+            names.extend((1..=self.line.links.len()).map(|i| format!("shaft{i}.torque")));
+        }
+        names
+    }
+
+    fn run(&mut self, out: &mut RigOut) -> Result<(), EvalError> {
+        let refused = |e: BuildError| EvalError::fatal("shaft_line", e.to_string());
+        let modes = self.spec.natural_frequencies.build(&self.line).map_err(refused)?.modes()?;
+        let rigid = modes.iter().filter(|m| m.omega == 0.0).count();
+        out.result("rigid_modes", rigid as f64, "", "number of modes at frequency zero");
+        frequencies(&modes[rigid..], out);
+        shapes(&modes[rigid..], self.tree.len(), out);
+        match self.spec.frequency {
+            Some(frequency) => self.forced(2.0 * PI * frequency.si(), out),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Frequencies and damping of the elastic modes.
+fn frequencies(modes: &[Mode], out: &mut RigOut) {
+    for (k, m) in modes.iter().enumerate() {
+        let k = k + 1;
+        out.result(format!("mode.{k}.omega"), m.omega, "rad/s", format!("angular frequency of mode {k}"));
+        out.result(
+            format!("mode.{k}.frequency"),
+            m.omega / (2.0 * PI),
+            "Hz",
+            format!("frequency of mode {k}"),
+        );
+        if let Some((decay, omega)) = m.damped {
+            out.result(format!("mode.{k}.decay"), decay, "1/s", format!("decay rate of mode {k}"));
+            out.result(
+                format!("mode.{k}.damped_omega"),
+                omega,
+                "rad/s",
+                format!("angular frequency of mode {k} with damping"),
+            );
+            out.result(
+                format!("mode.{k}.damping_ratio"),
+                decay / decay.hypot(omega),
+                "",
+                format!("damping ratio of mode {k}"),
+            );
+        }
+    }
+}
+
+/// Shapes of the elastic modes over the inertias.
+fn shapes(modes: &[Mode], n: usize, out: &mut RigOut) {
+    out.axis("inertia", "", (1..=n).map(|i| i as f64).collect());
+    for (k, m) in modes.iter().enumerate().filter(|(_, m)| m.shape.len() == n) {
+        out.column(format!("mode{}", k + 1), "", m.shape.clone());
+    }
+    let lines: Vec<(String, String)> = out
+        .series
+        .columns
+        .iter()
+        .take(6)
+        .enumerate()
+        .map(|(k, c)| (format!("mode {}", k + 1), c.name.clone()))
+        .collect();
+    let lines: Vec<(&str, &str)> = lines.iter().map(|(a, b)| (a.as_str(), b.as_str())).collect();
+    if !lines.is_empty() {
+        out.curves("Mode shapes", "angle of each inertia, the largest 1", &lines);
     }
 }

@@ -6,23 +6,26 @@ use gudgeon_core::kinds::{
 };
 use gudgeon_core::{BuildError, EvalError};
 
-/// Most intervals along a side of the grid.
-pub(crate) const MOST: u32 = 2000;
+/// Maximum number of intervals along a side of the grid.
+pub const MAX_INTERVALS: u32 = 2000;
 
-/// Most intervals of a map along a side: what a screen shows.
-const MAPPED: usize = 128;
+/// Maximum number of intervals of a map along a side: what a screen shows.
+pub const MAPPED: usize = 128;
 
-/// The number of intervals along a side.
-pub(crate) fn intervals(field: &str, n: u32) -> Result<usize, BuildError> {
-    if (2..=MOST).contains(&n) {
+/// The number of intervals along a side, between 2 and [`MAX_INTERVALS`].
+///
+/// # Errors
+/// A number outside that range, at `field`.
+pub fn intervals(field: &str, n: u32) -> Result<usize, BuildError> {
+    if (2..=MAX_INTERVALS).contains(&n) {
         Ok(n as usize)
     } else {
-        Err(BuildError::at(field, format!("must be between 2 and {MOST}, not {n}")))
+        Err(BuildError::at(field, format!("must be between 2 and {MAX_INTERVALS}, not {n}")))
     }
 }
 
 /// A solver on its grid and the rough surfaces.
-pub(crate) struct Sheet {
+pub struct Sheet {
     film: Box<dyn Film2d>,
     rough: Box<dyn Roughness>,
     /// Nodes of the whole film; those of the solver may be its lower half.
@@ -30,22 +33,29 @@ pub(crate) struct Sheet {
     half: bool,
 }
 
-/// What a film is put under.
-pub(crate) struct Conditions {
-    /// Velocity of the lower surface along `x`.
+/// Conditions of a film: motion, oil, pressures at its edges.
+pub struct Conditions {
+    /// Velocity of the lower surface along `x` \[m/s\].
     pub u: f64,
+    /// Viscosity \[Pa s\].
     pub mu: f64,
+    /// Cavitation pressure \[Pa\].
     pub p_cav: f64,
+    /// Pressures at the edges \[Pa\]: lower and upper end of `x`, of `y`.
     pub edge_pressure: [f64; 4],
+    /// Filled fractions at the edges, in the same order.
     pub edge_fill: [f64; 4],
     /// Whether the gap between the nodes is given too.
     pub between: bool,
 }
 
 /// A film, and its fields over the nodes of the whole grid.
-pub(crate) struct SheetFilm {
+pub struct SheetFilm {
+    /// Absolute pressure \[Pa\].
     pub p: Vec<f64>,
+    /// Filled fraction of the gap.
     pub fill: Vec<f64>,
+    /// Gap \[m\].
     pub h: Vec<f64>,
     /// Integrals and flows of the whole film; shear stresses with the factors of the rough surfaces.
     pub out: Film2dOut,
@@ -222,7 +232,7 @@ impl Sheet {
         Ok(SheetFilm { p, fill, h, out })
     }
 
-    /// Sum over all nodes of a field times the areas of their control volumes.
+    /// Sum over all nodes of a field `f(node, x, y)` times the areas of their control volumes.
     pub fn sum(&self, f: impl Fn(usize, f64, f64) -> f64) -> f64 {
         let g = &self.whole;
         let area = |line: &[f64], period: Option<f64>| -> Vec<f64> {
@@ -282,7 +292,7 @@ impl Sheet {
 }
 
 /// Some of `n` nodes, the first and the last among them, for a map.
-pub(crate) fn drawn(n: usize) -> Vec<usize> {
+pub fn drawn(n: usize) -> Vec<usize> {
     let mut nodes: Vec<usize> = (0..n).step_by((n - 1).div_ceil(MAPPED).max(1)).collect();
     if nodes.last() != Some(&(n - 1)) {
         nodes.push(n - 1);
@@ -291,7 +301,7 @@ pub(crate) fn drawn(n: usize) -> Vec<usize> {
 }
 
 /// Work and quality of a solution.
-pub(crate) fn account(o: &Film2dOut, nodes: usize, out: &mut RigOut) {
+pub fn account(o: &Film2dOut, nodes: usize, out: &mut RigOut) {
     out.result("residual", o.residual, "", "largest imbalance of a control volume over the largest flow");
     out.counters.insert("iterations".into(), o.iterations as u64);
     out.counters.insert("cycles".into(), o.cycles as u64);
@@ -302,79 +312,12 @@ pub(crate) fn account(o: &Film2dOut, nodes: usize, out: &mut RigOut) {
 ///
 /// # Errors
 /// A result or a column that is not finite (Fatal).
-pub(crate) fn finite(model: &'static str, out: &RigOut) -> Result<(), EvalError> {
+pub fn finite(model: &'static str, out: &RigOut) -> Result<(), EvalError> {
     let columns = out.tables.values().chain([&out.series]).flat_map(|t| t.columns.iter().chain([&t.axis]));
     let bad = columns.filter(|c| c.values.iter().any(|v| !v.is_finite())).map(|c| &c.name);
     let results = out.results.iter().filter(|(_, v)| !v.value.is_finite()).map(|(n, _)| n);
     match results.chain(bad).next() {
         Some(name) => Err(EvalError::fatal(model, format!("{name} is too large or too small to compute"))),
         None => Ok(()),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use gudgeon_film::film_2d::Multigrid;
-    use gudgeon_film::{SawtoothWaviness, SmoothSurfaces, WavinessTransport};
-
-    use super::*;
-
-    #[test]
-    fn half_a_film_is_the_whole() {
-        let waves = SawtoothWaviness {
-            amplitude: gudgeon_core::quantity::quantity(4e-7),
-            transport: WavinessTransport::Homogenised,
-            closest: gudgeon_core::quantity::quantity(1.02),
-        };
-        let spec = Multigrid { tolerance: 1e-12, ..Multigrid::default() };
-        let gap = |x: f64, y: f64| 1e-6 * (1.5 + 0.5 * (600.0 * x).cos() + 1e4 * (y - 0.004).powi(2));
-        let rate = |x: f64, _: f64| 1e-3 * (300.0 * x).sin();
-        let side = 2e5;
-        let c = Conditions {
-            u: 2.0,
-            mu: 0.01,
-            p_cav: 3e4,
-            edge_pressure: [1e5, 1.5e5, side, side],
-            edge_fill: [1.0; 4],
-            between: true,
-        };
-        let period = 4.0 * std::f64::consts::PI / 600.0;
-        for grid in [Film2dGrid::uniform(20, 13, 0.01, 0.008), Film2dGrid::journal(20, 13, period, 0.008)] {
-            for rough in [&SmoothSurfaces {} as &dyn RoughnessSpec, &waves] {
-                let [whole, half] = [false, true].map(|symmetric| {
-                    let mut sheet = Sheet::new(grid.clone(), symmetric, &spec, rough).expect("builds");
-                    let film = sheet.solve(&c, &gap, Some(&rate)).expect("solves");
-                    (sheet.nodes(), film)
-                });
-                assert_eq!((whole.0, half.0), (20 * 13, 20 * 7));
-                let (a, b) = (&whole.1, &half.1);
-                // Residuals of 1e-12 and condition numbers of up to a hundred.
-                let top = a.out.p_max;
-                assert!(a.p.iter().zip(&b.p).all(|(a, b)| (a - b).abs() < 1e-9 * top));
-                assert!(a.fill.iter().zip(&b.fill).all(|(a, b)| (a - b).abs() < 1e-9));
-                assert!(a.h.iter().zip(&b.h).all(|(a, b)| (a - b).abs() < 1e-9 * a));
-                let flows = (0..4).map(|e| (a.out.outflow[e], b.out.outflow[e]));
-                let pairs = [
-                    (a.out.load, b.out.load),
-                    (a.out.moment_x, b.out.moment_x),
-                    (a.out.shear_lower, b.out.shear_lower),
-                    (a.out.shear_upper, b.out.shear_upper),
-                    (a.out.cavity, b.out.cavity),
-                    (a.out.storage, b.out.storage),
-                ];
-                for (a, b) in pairs.into_iter().chain(flows) {
-                    assert!((a - b).abs() <= 1e-8 * a.abs(), "{a} {b}");
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn maps_have_both_ends() {
-        for n in [2, 3, 128, 129, 130, 500, 2001] {
-            let nodes = drawn(n);
-            assert!(nodes.len() <= MAPPED + 2 && nodes[0] == 0 && nodes[nodes.len() - 1] == n - 1, "{n}");
-            assert!(nodes.windows(2).all(|w| w[0] < w[1]), "{n}");
-        }
     }
 }

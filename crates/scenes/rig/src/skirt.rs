@@ -230,7 +230,7 @@ impl Rig for Bench {
             ("height", "m", xs.iter().map(|i| length - grid.x[*i]).collect()),
             maps,
         );
-        validity::tell(out);
+        validity::note_limits(out);
         sheet::finite("skirt", out)
     }
 }

@@ -1,7 +1,7 @@
 use gudgeon_core::kinds::{
-    Film1d, Film1dCtx, Film1dIn, Film1dOut, Film1dSpec, FilmEnd, FilmTime, PanelFactors, Piezoviscosity,
-    PiezoviscositySpec, Rig, RigCtx, RigOut, RigSpec, RoughFlow, RoughShear, Roughness, RoughnessSpec,
-    ShearThinning, ShearThinningSpec, named,
+    Film1d, Film1dCtx, Film1dIn, Film1dOut, Film1dSpec, FilmEnd, FilmFront, FilmTime, PanelFactors,
+    Piezoviscosity, PiezoviscositySpec, Rig, RigCtx, RigOut, RigSpec, RoughFlow, RoughShear, Roughness,
+    RoughnessSpec, ShearThinning, ShearThinningSpec, named,
 };
 use gudgeon_core::quantity::{Length, NonNegative, PosViscosity, Pressure, Velocity, quantity};
 use gudgeon_core::result::{Column, Note, Series};
@@ -235,37 +235,10 @@ impl Bench {
         };
         Ok((out, rounds, Some(around.viscosity().to_vec())))
     }
-}
 
-impl Rig for Bench {
-    fn results(&self) -> Vec<String> {
-        named(&[
-            "load",
-            "load_absolute",
-            "load_gauge",
-            "p_max",
-            "x_p_max",
-            "moving_shear",
-            "fixed_shear",
-            "slope_force",
-            "centre",
-            "friction_coefficient",
-            "flux_in",
-            "flux_out",
-            "ruptures",
-            "x_rupture",
-            "x_reform",
-            "starved",
-            "flux_error",
-            "iterations",
-        ])
-    }
-
-    fn run(&mut self, out: &mut RigOut) -> Result<(), EvalError> {
-        let factors = if self.rough.is_smooth() { None } else { Some(factors(&*self.rough, &self.line)?) };
-        let (o, rounds, mu) = self.solve(factors.as_deref())?;
+    /// Loads, shear forces, centre of pressure.
+    fn forces(&self, o: &Film1dOut, out: &mut RigOut) {
         let (first, last) = (self.line.x[0], self.line.x[self.line.panels()]);
-        let field = self.film.field();
         out.result("load", o.load, "N/m", "load above the cavitation pressure, per metre of width");
         let above = |p: f64| o.load + (self.p_cav - p) * (last - first);
         out.result("load_absolute", above(0.0), "N/m", "integral of the absolute pressure");
@@ -300,39 +273,39 @@ impl Rig for Bench {
                 "friction of the moving surface over load",
             );
         }
-        out.result(
+    }
+}
+
+impl Rig for Bench {
+    fn results(&self) -> Vec<String> {
+        named(&[
+            "load",
+            "load_absolute",
+            "load_gauge",
+            "p_max",
+            "x_p_max",
+            "moving_shear",
+            "fixed_shear",
+            "slope_force",
+            "centre",
+            "friction_coefficient",
             "flux_in",
-            o.flux_in,
-            "m2/s",
-            "flux of oil at the beginning of the line, along x positive",
-        );
-        out.result("flux_out", o.flux_out, "m2/s", "flux of oil at the end of the line, along x positive");
-        let forwards = self.u >= 0.0;
-        let of = |film_before: bool| field.fronts.iter().filter(move |f| f.film_before == film_before);
-        let first = |film_before: bool| {
-            let mut all = of(film_before);
-            if forwards { all.next() } else { all.next_back() }
-        };
-        out.result(
+            "flux_out",
             "ruptures",
-            of(forwards).count() as f64,
-            "",
-            "number of places where a film ends along the sliding",
-        );
-        if let Some(f) = first(forwards) {
-            out.result("x_rupture", 1e3 * f.x, "mm", "place where the film ruptures first along the sliding");
-        }
-        if let Some(f) = first(!forwards) {
-            out.result("x_reform", 1e3 * f.x, "mm", "place where the film forms first along the sliding");
-        }
-        out.result("starved", f64::from(u8::from(o.starved)), "", "1 when the inlet is not filled");
-        out.result(
+            "x_rupture",
+            "x_reform",
+            "starved",
             "flux_error",
-            o.flux_error,
-            "",
-            "largest imbalance of oil at a node over the flux there: zero when mass is conserved",
-        );
-        out.result("iterations", o.iterations as f64, "", "passes over the line that the solution took");
+            "iterations",
+        ])
+    }
+
+    fn run(&mut self, out: &mut RigOut) -> Result<(), EvalError> {
+        let factors = if self.rough.is_smooth() { None } else { Some(factors(&*self.rough, &self.line)?) };
+        let (o, rounds, mu) = self.solve(factors.as_deref())?;
+        let field = self.film.field();
+        self.forces(&o, out);
+        flows(&o, field.fronts, self.u >= 0.0, out);
         out.counters.insert("panels".into(), self.line.panels() as u64);
         out.counters.insert("iterations".into(), o.iterations as u64);
         out.counters.insert("film_evaluations".into(), rounds as u64);
@@ -347,51 +320,92 @@ impl Rig for Bench {
         let rows = along::rows(&self.line, &field, self.u, self.p_cav, o.starved, |i| {
             factors.as_ref().map_or(1.0, |f| f[i].sliding_flow)
         });
-        out.axis("x", "m", rows.iter().map(|r| r.x).collect());
-        out.column("p", "Pa", rows.iter().map(|r| r.p).collect());
-        out.column("h", "m", rows.iter().map(|r| r.h).collect());
-        out.column("oil", "m", rows.iter().map(|r| r.fill * r.h).collect());
-        out.column("fill", "", rows.iter().map(|r| r.fill).collect());
-        out.column("flux", "m2/s", rows.iter().map(|r| field.flux[r.panel]).collect());
-        out.curves("Pressure along the line", "absolute", &[("pressure", "p")]);
-        out.curves("Gap and oil in it", "", &[("gap", "h"), ("oil", "oil")]);
-        if rows.iter().any(|r| r.fill < 1.0) {
-            out.curves("Filled fraction of the gap", "", &[("fill", "fill")]);
-        }
+        series(&rows, field.flux, out);
         if let Some(mu) = mu {
             out.column("mu", "Pa s", rows.iter().map(|r| mu[r.panel]).collect());
             out.curves("Viscosity", "constant in each panel", &[("viscosity", "mu")]);
         }
-        if let Some(f) = factors {
-            out.column("phi_p", "", rows.iter().map(|r| f[r.panel].pressure_flow).collect());
-            out.column("phi_u", "", rows.iter().map(|r| f[r.panel].sliding_flow).collect());
-            out.column("phi_f", "", rows.iter().map(|r| f[r.panel].sliding_shear).collect());
-            out.curves(
-                "Factors of the rough surfaces",
-                "on the flow that pressure drives, on the flow that sliding drives, on the shear of sliding",
-                &[("pressure flow", "phi_p"), ("sliding flow", "phi_u"), ("sliding shear", "phi_f")],
-            );
+        if let Some(f) = &factors {
+            draw_factors(&rows, f, out);
         }
-        let fronts = field.fronts;
-        if !fronts.is_empty() {
-            let column = |name: &str, unit: &str, values: Vec<f64>| Column {
-                name: name.into(),
-                unit: unit.into(),
-                values,
-            };
-            out.tables.insert(
-                "fronts".into(),
-                Series {
-                    axis: column("x", "m", fronts.iter().map(|f| f.x).collect()),
-                    columns: vec![column(
-                        "film_before",
-                        "",
-                        fronts.iter().map(|f| f64::from(u8::from(f.film_before))).collect(),
-                    )],
-                },
-            );
+        if !field.fronts.is_empty() {
+            front_table(field.fronts, out);
         }
-        validity::tell(out);
+        validity::note_limits(out);
         along::finite(out, "slider")
     }
+}
+
+/// Flow of oil, places where films end and begin; `forwards` along `x`.
+fn flows(o: &Film1dOut, fronts: &[FilmFront], forwards: bool, out: &mut RigOut) {
+    out.result("flux_in", o.flux_in, "m2/s", "flux of oil at the beginning of the line, along x positive");
+    out.result("flux_out", o.flux_out, "m2/s", "flux of oil at the end of the line, along x positive");
+    let of = |film_before: bool| fronts.iter().filter(move |f| f.film_before == film_before);
+    let first = |film_before: bool| {
+        let mut all = of(film_before);
+        if forwards { all.next() } else { all.next_back() }
+    };
+    out.result(
+        "ruptures",
+        of(forwards).count() as f64,
+        "",
+        "number of places where a film ends along the sliding",
+    );
+    if let Some(f) = first(forwards) {
+        out.result("x_rupture", 1e3 * f.x, "mm", "place where the film ruptures first along the sliding");
+    }
+    if let Some(f) = first(!forwards) {
+        out.result("x_reform", 1e3 * f.x, "mm", "place where the film forms first along the sliding");
+    }
+    out.result("starved", f64::from(u8::from(o.starved)), "", "1 when the inlet is not filled");
+    out.result(
+        "flux_error",
+        o.flux_error,
+        "",
+        "largest imbalance of oil at a node over the flux there: zero when mass is conserved",
+    );
+    out.result("iterations", o.iterations as f64, "", "passes over the line that the solution took");
+}
+
+/// The film as rows of the series.
+fn series(rows: &[along::Row], flux: &[f64], out: &mut RigOut) {
+    out.axis("x", "m", rows.iter().map(|r| r.x).collect());
+    out.column("p", "Pa", rows.iter().map(|r| r.p).collect());
+    out.column("h", "m", rows.iter().map(|r| r.h).collect());
+    out.column("oil", "m", rows.iter().map(|r| r.fill * r.h).collect());
+    out.column("fill", "", rows.iter().map(|r| r.fill).collect());
+    out.column("flux", "m2/s", rows.iter().map(|r| flux[r.panel]).collect());
+    out.curves("Pressure along the line", "absolute", &[("pressure", "p")]);
+    out.curves("Gap and oil in it", "", &[("gap", "h"), ("oil", "oil")]);
+    if rows.iter().any(|r| r.fill < 1.0) {
+        out.curves("Filled fraction of the gap", "", &[("fill", "fill")]);
+    }
+}
+
+fn draw_factors(rows: &[along::Row], f: &[PanelFactors], out: &mut RigOut) {
+    out.column("phi_p", "", rows.iter().map(|r| f[r.panel].pressure_flow).collect());
+    out.column("phi_u", "", rows.iter().map(|r| f[r.panel].sliding_flow).collect());
+    out.column("phi_f", "", rows.iter().map(|r| f[r.panel].sliding_shear).collect());
+    out.curves(
+        "Factors of the rough surfaces",
+        "on the flow that pressure drives, on the flow that sliding drives, on the shear of sliding",
+        &[("pressure flow", "phi_p"), ("sliding flow", "phi_u"), ("sliding shear", "phi_f")],
+    );
+}
+
+/// Places of the fronts as a table.
+fn front_table(fronts: &[FilmFront], out: &mut RigOut) {
+    let column =
+        |name: &str, unit: &str, values: Vec<f64>| Column { name: name.into(), unit: unit.into(), values };
+    out.tables.insert(
+        "fronts".into(),
+        Series {
+            axis: column("x", "m", fronts.iter().map(|f| f.x).collect()),
+            columns: vec![column(
+                "film_before",
+                "",
+                fronts.iter().map(|f| f64::from(u8::from(f.film_before))).collect(),
+            )],
+        },
+    );
 }

@@ -7,7 +7,7 @@ use gudgeon_film::SmoothSurfaces;
 use serde::{Deserialize, Serialize};
 
 use crate::along;
-use crate::sheet::{self, Conditions, Sheet};
+use crate::sheet::{self, Conditions, Sheet, SheetFilm};
 use crate::validity;
 
 /// A rectangular pad above a plane that slides along its length: any profile, with or without dimples, smooth or rough, squeezed or not.
@@ -270,26 +270,8 @@ struct Bench {
     spec: Slider2dRig,
 }
 
-impl Rig for Bench {
-    fn results(&self) -> Vec<String> {
-        named(&[
-            "load",
-            "load_gauge",
-            "load_nodes",
-            "centre",
-            "p_max",
-            "film_min",
-            "plane_shear",
-            "pad_shear",
-            "cavity",
-            "fill_min",
-            "inflow",
-            "side_flow",
-            "residual",
-        ])
-    }
-
-    fn run(&mut self, out: &mut RigOut) -> Result<(), EvalError> {
+impl Bench {
+    fn solve(&mut self) -> Result<SheetFilm, EvalError> {
         let spec = &self.spec;
         let (length, width) = (spec.length.si(), spec.width.si());
         let gap = |x: f64, y: f64| {
@@ -299,7 +281,7 @@ impl Rig for Bench {
         let squeeze = spec.squeeze.si();
         let rate = |_: f64, _: f64| squeeze;
         let side = spec.p_side.si();
-        let found = self.sheet.solve(
+        self.sheet.solve(
             &Conditions {
                 u: spec.speed.si(),
                 mu: spec.viscosity.si(),
@@ -310,12 +292,17 @@ impl Rig for Bench {
             },
             &gap,
             if squeeze == 0.0 { None } else { Some(&rate) },
-        )?;
-        let (o, area) = (found.out, length * width);
+        )
+    }
+
+    /// Load, forces and flows.
+    fn integrals(&self, found: &SheetFilm, out: &mut RigOut) {
+        let (spec, o) = (&self.spec, &found.out);
+        let (length, area) = (spec.length.si(), spec.length.si() * spec.width.si());
         out.result("load", o.load, "N", "load above the cavitation pressure");
         let around = match spec.sides {
             Sides::Closed => 0.5 * (spec.p_inlet.si() + spec.p_outlet.si()),
-            _ => side,
+            _ => spec.p_side.si(),
         };
         let gauge = o.load + (spec.p_cav.si() - around) * area;
         let what = "load above the pressure at the sides; where they are closed, above the mean of both ends";
@@ -340,8 +327,7 @@ impl Rig for Bench {
         );
         out.result("pad_shear", o.shear_upper, "N", "viscous force on the pad, along x positive");
         out.result("cavity", 100.0 * o.cavity / area, "%", "share of the area that is not filled");
-        let emptiest = found.fill.iter().fold(1.0_f64, |a, &b| a.min(b));
-        out.result("fill_min", emptiest, "", "lowest filling");
+        out.result("fill_min", lowest_fill(found), "", "lowest filling");
         out.result("inflow", -6e4 * o.outflow[0], "l/min", "oil that enters at the inlet");
         out.result(
             "side_flow",
@@ -349,8 +335,11 @@ impl Rig for Bench {
             "l/min",
             "oil that leaves at both sides",
         );
-        let grid = &self.sheet.whole;
-        sheet::account(&o, self.sheet.nodes(), out);
+    }
+
+    /// The film along one line: the middle, or where the pressure is highest between rows of dimples.
+    fn line(&self, found: &SheetFilm, out: &mut RigOut) {
+        let (spec, grid) = (&self.spec, &self.sheet.whole);
         out.axis("x", "m", grid.x.clone());
         // Between rows of dimples the middle shows little.
         let top = self.sheet.through_top(&found.p);
@@ -370,15 +359,20 @@ impl Rig for Bench {
         };
         out.curves("Pressure along the motion", &hint, &[("pressure", "p")]);
         out.curves("Gap along the motion", "on the same line", &[("gap", "h")]);
+    }
+
+    /// Maps of the whole film.
+    fn maps(&self, found: &SheetFilm, out: &mut RigOut) {
+        let grid = &self.sheet.whole;
         let (xs, ys) = (sheet::drawn(grid.x.len()), sheet::drawn(grid.y.len()));
         let pick = |f: &[f64]| -> Vec<f64> {
             ys.iter().flat_map(|j| xs.iter().map(move |i| f[j * grid.x.len() + i])).collect()
         };
         let mut maps = vec![("p", "Pa", "Pressure", pick(&found.p))];
-        if spec.dimples.is_some() {
+        if self.spec.dimples.is_some() {
             maps.push(("h", "m", "Gap", pick(&found.h)));
         }
-        if emptiest < 1.0 {
+        if lowest_fill(found) < 1.0 {
             maps.push(("fill", "", "Filling", pick(&found.fill)));
         }
         out.maps(
@@ -387,7 +381,39 @@ impl Rig for Bench {
             ("y", "m", ys.iter().map(|j| grid.y[*j]).collect()),
             maps,
         );
-        validity::tell(out);
+    }
+}
+
+fn lowest_fill(found: &SheetFilm) -> f64 {
+    found.fill.iter().fold(1.0_f64, |a, &b| a.min(b))
+}
+
+impl Rig for Bench {
+    fn results(&self) -> Vec<String> {
+        named(&[
+            "load",
+            "load_gauge",
+            "load_nodes",
+            "centre",
+            "p_max",
+            "film_min",
+            "plane_shear",
+            "pad_shear",
+            "cavity",
+            "fill_min",
+            "inflow",
+            "side_flow",
+            "residual",
+        ])
+    }
+
+    fn run(&mut self, out: &mut RigOut) -> Result<(), EvalError> {
+        let found = self.solve()?;
+        self.integrals(&found, out);
+        sheet::account(&found.out, self.sheet.nodes(), out);
+        self.line(&found, out);
+        self.maps(&found, out);
+        validity::note_limits(out);
         sheet::finite("slider_2d", out)
     }
 }

@@ -1,8 +1,8 @@
 use gudgeon_core::face::Face;
 use gudgeon_core::geometry::FaceProfile;
 use gudgeon_core::kinds::{
-    Film1d, Film1dCtx, Film1dIn, Film1dOut, Film1dSpec, FilmEnd, FilmTime, Rig, RigCtx, RigOut, RigSpec,
-    named,
+    Film1d, Film1dCtx, Film1dIn, Film1dOut, Film1dSpec, FilmEnd, FilmField, FilmFront, FilmTime, Rig, RigCtx,
+    RigOut, RigSpec, named,
 };
 use gudgeon_core::quantity::{
     Force, PosLength, PosTime, PosViscosity, Positive, Pressure, Time, Velocity, quantity,
@@ -79,6 +79,53 @@ pub enum Motion {
     },
 }
 
+impl Motion {
+    /// The gap at which the line is laid out \[m\]; complains of what contradicts itself.
+    fn check(&self, errors: &mut Vec<BuildError>) -> f64 {
+        match self {
+            Self::Velocity { gap, .. } => gap.si(),
+            Self::Fall { gap, gap_end, .. } => {
+                if gap_end.si() >= gap.si() {
+                    errors.push(BuildError::at(
+                        "motion.gap_end",
+                        format!("the strip falls: {} um must be less than `gap`", 1e6 * gap_end.si()),
+                    ));
+                }
+                gap.si()
+            }
+            Self::Oscillation { mean, amplitude, period, duration, at, steps } => {
+                if amplitude.si() >= mean.si() {
+                    errors.push(BuildError::at(
+                        "motion.amplitude",
+                        "must be smaller than `mean`: no gap is left",
+                    ));
+                }
+                if !(4..=100_000).contains(steps) {
+                    errors.push(BuildError::at(
+                        "motion.steps",
+                        format!("must be between 4 and 100000, not {steps}"),
+                    ));
+                }
+                if duration.si() / period.si() * f64::from(*steps) > MAX_STEPS {
+                    errors.push(BuildError::at(
+                        "motion.duration",
+                        format!("{MAX_STEPS} steps in all are the most"),
+                    ));
+                }
+                for (k, t) in at.iter().enumerate() {
+                    if !(0.0..=duration.si()).contains(&t.si()) {
+                        errors.push(BuildError::at(
+                            format!("motion.at.{k}"),
+                            "must lie between zero and `duration`",
+                        ));
+                    }
+                }
+                mean.si() + amplitude.si()
+            }
+        }
+    }
+}
+
 fn panels() -> u32 {
     200
 }
@@ -110,57 +157,8 @@ impl RigSpec for SqueezeFilmRig {
             None => Ok(FaceProfile::Table { length, drops: vec![0.0; 2] }),
             Some(f) => f.profile(length).map_err(|e| e.within("face")),
         };
-        let gap = match &self.motion {
-            Motion::Velocity { gap, .. } => gap.si(),
-            Motion::Fall { gap, gap_end, .. } => {
-                if gap_end.si() >= gap.si() {
-                    errors.push(BuildError::at(
-                        "motion.gap_end",
-                        format!("the strip falls: {} um must be less than `gap`", 1e6 * gap_end.si()),
-                    ));
-                }
-                gap.si()
-            }
-            Motion::Oscillation { mean, amplitude, period, duration, at, steps } => {
-                if amplitude.si() >= mean.si() {
-                    errors.push(BuildError::at(
-                        "motion.amplitude",
-                        "must be smaller than `mean`: no gap is left",
-                    ));
-                }
-                if !(4..=100_000).contains(steps) {
-                    errors.push(BuildError::at(
-                        "motion.steps",
-                        format!("must be between 4 and 100000, not {steps}"),
-                    ));
-                }
-                if duration.si() / period.si() * f64::from(*steps) > MOST_STEPS {
-                    errors.push(BuildError::at(
-                        "motion.duration",
-                        format!("{MOST_STEPS} steps in all are the most"),
-                    ));
-                }
-                for (k, t) in at.iter().enumerate() {
-                    if !(0.0..=duration.si()).contains(&t.si()) {
-                        errors.push(BuildError::at(
-                            format!("motion.at.{k}"),
-                            "must lie between zero and `duration`",
-                        ));
-                    }
-                }
-                mean.si() + amplitude.si()
-            }
-        };
-        let scope = self.film_1d.scope();
-        let answers = match &self.motion {
-            Motion::Velocity { .. } | Motion::Fall { .. } => scope.squeeze,
-            Motion::Oscillation { .. } => scope.steps,
-        };
-        if !answers {
-            let what = format!("`{}` knows no gap that changes in this way", self.film_1d.typetag_name());
-            let help = "`complementarity` knows all of them";
-            errors.push(BuildError::at("film_1d.model", what).help(help));
-        }
+        let gap = self.motion.check(&mut errors);
+        errors.extend(self.unanswered());
         errors.extend(along::cavitation_below(self.p_cav.si(), &[self.p_ends.si()]));
         let mut keep = |e: BuildError| errors.push(e);
         let line = match (profile::panels(self.panels), face) {
@@ -201,8 +199,24 @@ impl RigSpec for SqueezeFilmRig {
     }
 }
 
-/// Most steps of time.
-const MOST_STEPS: f64 = 1e6;
+impl SqueezeFilmRig {
+    /// The refusal of a film model that knows no gap that changes like this one.
+    fn unanswered(&self) -> Option<BuildError> {
+        let scope = self.film_1d.scope();
+        let answers = match &self.motion {
+            Motion::Velocity { .. } | Motion::Fall { .. } => scope.squeeze,
+            Motion::Oscillation { .. } => scope.steps,
+        };
+        (!answers).then(|| {
+            let what = format!("`{}` knows no gap that changes in this way", self.film_1d.typetag_name());
+            let help = "`complementarity` knows all of them";
+            BuildError::at("film_1d.model", what).help(help)
+        })
+    }
+}
+
+/// Maximum number of steps.
+const MAX_STEPS: f64 = 1e6;
 
 /// The line below a face at the given gap.
 fn line(face: &FaceProfile, gap: f64, panels: usize) -> Result<LineProfile, BuildError> {
@@ -353,23 +367,14 @@ impl Bench {
 
     fn oscillation(&mut self, out: &mut RigOut, o: &Oscillation) -> Result<(), EvalError> {
         let n = self.line.panels();
-        let (length, x0) = (self.length(), self.line.x[0]);
         let omega = 2.0 * std::f64::consts::PI / o.period;
         // The duration is a whole number of steps.
         let steps = (o.duration / o.period * f64::from(o.steps) - 1e-6).ceil().max(1.0) as usize;
         let dt = o.duration / steps as f64;
         let mut content = vec![0.0; n + 1];
         self.film.full_content(&self.line.h_a, &self.line.h_b, &mut content);
-        let stored = |c: &[f64]| c.iter().sum::<f64>();
-        let start = stored(&content);
-        let (mut entered, mut through, mut passes) = (0.0, 0.0, 0);
-        let mut h = Vec::with_capacity(steps + 1);
-        let rest = (self.p - self.p_cav).max(0.0);
-        let (mut t, mut load, mut part) = (h.clone(), h.clone(), h.clone());
-        let (mut oil, mut p_max, mut dh) = (h.clone(), h.clone(), h.clone());
-        let columns: Vec<usize> = (0..MAP.0.min(n + 1)).map(|k| k * n / (MAP.0.min(n + 1) - 1)).collect();
-        let every = steps.div_ceil(MAP.1 - 1);
-        let (mut map_t, mut map_p, mut map_fill) = (Vec::new(), Vec::new(), Vec::new());
+        let mut history = History::new(stored(&content), steps);
+        let mut map = HistoryMap::new(n, steps);
         for k in 1..=steps {
             let now = k as f64 * dt;
             let gap = o.mean + o.amplitude * (omega * now).cos();
@@ -377,101 +382,182 @@ impl Bench {
             let f = self.solve(FilmTime::Step { dt, content: &content })?;
             let field = self.film.field();
             content.copy_from_slice(field.content);
-            entered += dt * (f.flux_in - f.flux_out);
-            through += dt * (f.flux_in.abs() + f.flux_out.abs());
-            passes += f.iterations;
-            let first = field.fronts.first();
-            let mut film = first.is_none_or(|f| f.film_before);
-            let (mut from, mut covered) = (x0, 0.0);
-            for front in field.fronts {
-                covered += if front.film_before { front.x - from } else { 0.0 };
-                film = !front.film_before;
-                from = front.x;
-            }
-            covered += if film { x0 + length - from } else { 0.0 };
-            t.push(now);
-            h.push(gap);
-            dh.push(-o.amplitude * omega * (omega * now).sin());
-            load.push(f.load - rest * length);
-            part.push(covered / length);
-            oil.push(stored(&content));
-            p_max.push(f.p_max);
-            if k % every == 0 || k == steps {
-                map_t.push(now);
-                map_p.extend(columns.iter().map(|i| field.p[*i]));
-                map_fill.extend(columns.iter().map(|i| field.fill[*i]));
+            history.entered += dt * (f.flux_in - f.flux_out);
+            history.through += dt * (f.flux_in.abs() + f.flux_out.abs());
+            history.passes += f.iterations;
+            history.rows.push(Instant {
+                t: now,
+                h: gap,
+                dh: -o.amplitude * omega * (omega * now).sin(),
+                load: self.above(&f),
+                full: self.covered(field.fronts) / self.length(),
+                oil: stored(&content),
+                p_max: f.p_max,
+            });
+            if k % map.every == 0 || k == steps {
+                map.add(now, &field);
             }
         }
-        let extreme = |v: &[f64], sign: f64| {
-            let k = (0..v.len()).fold(0, |m, k| if sign * v[k] > sign * v[m] { k } else { m });
-            (v[k], t[k])
-        };
-        out.result(
-            "load_max",
-            extreme(&load, 1.0).0,
-            "N/m",
-            "highest load above that of the pressure at the ends",
-        );
-        out.result(
-            "load_min",
-            extreme(&load, -1.0).0,
-            "N/m",
-            "lowest load above that of the pressure at the ends",
-        );
-        out.result("p_max", extreme(&p_max, 1.0).0 / 1e5, "bar", "highest pressure");
-        let (least, least_at) = extreme(&part, -1.0);
-        out.result("film_part_min", least, "", "smallest part of the strip under full film");
-        if let Some(torn) = part.iter().position(|c| *c < 1.0) {
-            out.result("t_cavity", 1e3 * t[torn], "ms", "first step with a cavity");
-            out.result("t_film_part_min", 1e3 * least_at, "ms", "time of the smallest full film");
-            if let Some(healed) = part[torn..].iter().position(|c| *c >= 1.0) {
-                out.result(
-                    "t_closed",
-                    1e3 * t[torn + healed],
-                    "ms",
-                    "first step without a cavity after one with it",
-                );
-            }
+        let rest = (self.p - self.p_cav).max(0.0) * self.length();
+        history.extremes(out);
+        history.moments(&o.at, dt, rest, out);
+        history.account(out);
+        history.series(out);
+        map.draw(&self.line.x, out);
+        Ok(())
+    }
+
+    /// Length of the line under full film \[m\].
+    fn covered(&self, fronts: &[FilmFront]) -> f64 {
+        let mut film = fronts.first().is_none_or(|f| f.film_before);
+        let (mut from, mut covered) = (self.line.x[0], 0.0);
+        for front in fronts {
+            covered += if front.film_before { front.x - from } else { 0.0 };
+            film = !front.film_before;
+            from = front.x;
         }
-        for (k, moment) in o.at.iter().enumerate() {
+        covered + if film { self.line.x[0] + self.length() - from } else { 0.0 }
+    }
+}
+
+/// Oil that is stored \[m²\].
+fn stored(content: &[f64]) -> f64 {
+    content.iter().sum()
+}
+
+/// An oscillating film at the end of a step.
+#[derive(Debug, Clone, Copy)]
+struct Instant {
+    t: f64,
+    h: f64,
+    dh: f64,
+    /// Load above that of the pressure at the ends.
+    load: f64,
+    /// Part of the strip under full film.
+    full: f64,
+    oil: f64,
+    p_max: f64,
+}
+
+/// An oscillation, step by step.
+struct History {
+    rows: Vec<Instant>,
+    /// Oil at the start.
+    start: f64,
+    entered: f64,
+    /// Oil that passed the ends, in and out.
+    through: f64,
+    passes: usize,
+}
+
+impl History {
+    fn new(start: f64, steps: usize) -> Self {
+        Self { rows: Vec::with_capacity(steps), start, entered: 0.0, through: 0.0, passes: 0 }
+    }
+
+    /// The first row at which a value, times `sign`, is largest.
+    fn extreme(&self, of: fn(&Instant) -> f64, sign: f64) -> &Instant {
+        self.rows.iter().fold(&self.rows[0], |m, r| if sign * of(r) > sign * of(m) { r } else { m })
+    }
+
+    /// Extremes, and times of the cavity.
+    fn extremes(&self, out: &mut RigOut) {
+        let load = |sign: f64| self.extreme(|r| r.load, sign).load;
+        out.result("load_max", load(1.0), "N/m", "highest load above that of the pressure at the ends");
+        out.result("load_min", load(-1.0), "N/m", "lowest load above that of the pressure at the ends");
+        out.result("p_max", self.extreme(|r| r.p_max, 1.0).p_max / 1e5, "bar", "highest pressure");
+        let min = self.extreme(|r| r.full, -1.0);
+        out.result("film_part_min", min.full, "", "smallest part of the strip under full film");
+        let Some(torn) = self.rows.iter().position(|r| r.full < 1.0) else { return };
+        out.result("t_cavity", 1e3 * self.rows[torn].t, "ms", "first step with a cavity");
+        out.result("t_film_part_min", 1e3 * min.t, "ms", "time of the smallest full film");
+        if let Some(healed) = self.rows[torn..].iter().find(|r| r.full >= 1.0) {
+            let what = "first step without a cavity after one with it";
+            out.result("t_closed", 1e3 * healed.t, "ms", what);
+        }
+    }
+
+    /// Load and film at given times; `rest` is the load of the pressure at the ends above the cavitation pressure.
+    fn moments(&self, at: &[f64], dt: f64, rest: f64, out: &mut RigOut) {
+        let steps = self.rows.len();
+        for (k, moment) in at.iter().enumerate() {
             // Between the steps; the first step stands for what is before it.
             let place = (moment / dt - 1.0).clamp(0.0, (steps - 1) as f64);
             let i = (place as usize).min(steps.saturating_sub(2));
             let next = (i + 1).min(steps - 1);
-            let at = |v: &[f64]| v[i] + (place - i as f64) * (v[next] - v[i]);
+            let at = |of: fn(&Instant) -> f64| {
+                of(&self.rows[i]) + (place - i as f64) * (of(&self.rows[next]) - of(&self.rows[i]))
+            };
             let when = format!("at {} ms", (1e9 * moment).round() / 1e6);
             let mut add = |name: &str, value: f64, unit: &str, what: &str| {
                 out.result(format!("{name}_{}", k + 1), value, unit, format!("{what} {when}"));
             };
-            add("load_cav", at(&load) + rest * length, "N/m", "load above the cavitation pressure");
-            add("film_part", at(&part), "", "part of the strip under full film");
+            add("load_cav", at(|r| r.load) + rest, "N/m", "load above the cavitation pressure");
+            add("film_part", at(|r| r.full), "", "part of the strip under full film");
         }
-        let size = through.max(start);
-        out.balance.oil_mass = (size > 0.0).then(|| (entered - (stored(&content) - start)) / size);
-        out.counters.insert("steps".into(), steps as u64);
-        out.counters.insert("iterations".into(), passes as u64);
-        out.axis("t", "s", t);
-        out.column("h", "m", h);
-        out.column("dh", "m/s", dh);
-        out.column("load", "N/m", load);
-        out.column("film_part", "", part);
-        out.column("oil", "m2", oil);
-        out.column("p_max", "Pa", p_max);
+    }
+
+    /// Balance of oil, work.
+    fn account(&self, out: &mut RigOut) {
+        let size = self.through.max(self.start);
+        let stored = self.rows[self.rows.len() - 1].oil - self.start;
+        out.balance.oil_mass = (size > 0.0).then(|| (self.entered - stored) / size);
+        out.counters.insert("steps".into(), self.rows.len() as u64);
+        out.counters.insert("iterations".into(), self.passes as u64);
+    }
+
+    fn series(&self, out: &mut RigOut) {
+        let of = |f: fn(&Instant) -> f64| self.rows.iter().map(f).collect::<Vec<f64>>();
+        out.axis("t", "s", of(|r| r.t));
+        out.column("h", "m", of(|r| r.h));
+        out.column("dh", "m/s", of(|r| r.dh));
+        out.column("load", "N/m", of(|r| r.load));
+        out.column("film_part", "", of(|r| r.full));
+        out.column("oil", "m2", of(|r| r.oil));
+        out.column("p_max", "Pa", of(|r| r.p_max));
         out.curves("Gap", "", &[("gap", "h")]);
         out.curves("Load", "above that of the pressure at the ends, per metre of width", &[("load", "load")]);
         out.curves("Part of the strip under full film", "", &[("part", "film_part")]);
         out.curves("Oil in the gap", "per metre of width", &[("oil", "oil")]);
-        let x = columns.iter().map(|i| self.line.x[*i]).collect();
+    }
+}
+
+/// Pressure and filling along the strip and over time.
+struct HistoryMap {
+    /// Nodes that are drawn.
+    nodes: Vec<usize>,
+    /// Steps between two rows.
+    every: usize,
+    t: Vec<f64>,
+    p: Vec<f64>,
+    fill: Vec<f64>,
+}
+
+impl HistoryMap {
+    fn new(panels: usize, steps: usize) -> Self {
+        let columns = MAP.0.min(panels + 1);
+        let nodes = (0..columns).map(|k| k * panels / (columns - 1)).collect();
+        let every = steps.div_ceil(MAP.1 - 1);
+        Self { nodes, every, t: Vec::new(), p: Vec::new(), fill: Vec::new() }
+    }
+
+    fn add(&mut self, t: f64, field: &FilmField<'_>) {
+        self.t.push(t);
+        self.p.extend(self.nodes.iter().map(|i| field.p[*i]));
+        self.fill.extend(self.nodes.iter().map(|i| field.fill[*i]));
+    }
+
+    fn draw(self, x: &[f64], out: &mut RigOut) {
+        let x = self.nodes.iter().map(|i| x[*i]).collect();
         out.maps(
             "history",
             ("x", "m", x),
-            ("t", "s", map_t),
+            ("t", "s", self.t),
             vec![
-                ("fill", "", "Filled fraction of the gap along the strip and over time", map_fill),
-                ("p", "Pa", "Pressure along the strip and over time", map_p),
+                ("fill", "", "Filled fraction of the gap along the strip and over time", self.fill),
+                ("p", "Pa", "Pressure along the strip and over time", self.p),
             ],
         );
-        Ok(())
     }
 }
 
@@ -516,7 +602,7 @@ impl Rig for Bench {
                 },
             ),
         }?;
-        validity::tell(out);
+        validity::note_limits(out);
         along::finite(out, "squeeze_film")
     }
 }

@@ -1,5 +1,4 @@
 //! Benches of films along and across the motion: any text gives an error or numbers, and what is symmetric is solved once.
-#![allow(missing_docs)]
 
 use gudgeon_core::file::Files;
 use gudgeon_core::kinds::{RigCtx, RigOut, RigSpec};
