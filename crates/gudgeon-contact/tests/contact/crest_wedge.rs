@@ -83,3 +83,20 @@ fn skirt_touching_at_its_lower_end() {
     assert!((force - 230.65).abs() < 0.005 && (friction - 34.763).abs() < 0.0005, "{force} {friction}");
     assert_eq!(crests, 5);
 }
+
+/// A stiffness, or a pressure at full approach, that no normal number holds is refused.
+#[test]
+fn crests_without_a_pressure_are_refused() {
+    let of = |amplitude: f64, modulus: f64| {
+        let spec = CrestWedge {
+            amplitude: quantity(amplitude),
+            pitch: quantity(0.25e-3),
+            composite_modulus: quantity(modulus),
+            deflection: quantity(PUBLISHED),
+            friction_coefficient: quantity(0.15),
+        };
+        spec.build().is_ok()
+    };
+    assert!(of(4e-6, 44.52e9) && of(4e-6, 1e-280));
+    assert!(!of(4e-6, 1e308) && !of(4e-6, 1e-320) && !of(1e-323, 44.52e9) && !of(4e-300, 1e-20));
+}

@@ -195,6 +195,15 @@ fn refuses_half_a_description() {
     let e = |s: GreenwoodTripp| s.build().err().map(|e| (e.field, e.message));
     let only = GreenwoodTripp { sigma_over_beta: None, ..base.clone() };
     assert_eq!(e(only).map(|e| e.0), Some("sigma_over_beta".into()));
+    let nothing = GreenwoodTripp { eta_beta_sigma: None, sigma_over_beta: None, ..base.clone() };
+    // What is missing is named, of either pair.
+    for (half, field) in [
+        (GreenwoodTripp { sigma_over_beta: Some(quantity(1e-3)), ..nothing.clone() }, "eta_beta_sigma"),
+        (GreenwoodTripp { asperity_radius: Some(quantity(1e-3)), ..nothing.clone() }, "asperity_density"),
+        (GreenwoodTripp { asperity_density: Some(quantity(1e9)), ..nothing }, "asperity_radius"),
+    ] {
+        assert_eq!(e(half).map(|e| e.0), Some(field.into()));
+    }
     let twice = GreenwoodTripp { asperity_radius: Some(quantity(1e-3)), ..base.clone() };
     assert!(e(twice).is_some_and(|e| e.1.contains("twice")));
     let none = GreenwoodTripp { sigma_over_beta: None, eta_beta_sigma: None, ..base.clone() };

@@ -161,6 +161,12 @@ fn valves_that_act_at_angles() {
         };
         assert!((p.pressure(t) / expected - 1.0).abs() < 1e-12, "{i}");
     }
+    let kinks: Vec<f64> = p.kinks().iter().map(|k| k.to_degrees()).collect();
+    assert_eq!(kinks.len(), 4);
+    for (k, want) in kinks.iter().zip([0.0, 40.0, 180.0, 300.0]) {
+        // Dead centres are found to 1e-8 of a turn at worst, for there positions are flat.
+        assert!((k - want).abs() < 1e-5, "{kinks:?}");
+    }
     let refused = |windows: &str| {
         try_build(&*k, &case("angle_windows", &format!("{CLEARANCE}\n{windows}"))).err().map(|e| e.field)
     };

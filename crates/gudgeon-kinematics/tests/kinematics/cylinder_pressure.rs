@@ -745,3 +745,59 @@ fn integrators_stop_at_narrow_pulses_only() {
     assert_eq!(p.kinks(), [203.4_f64.to_radians()]);
     assert_eq!(p.highest(), (203.4_f64.to_radians(), 100.0 * 1e5));
 }
+
+/// A tip on a broad top is a pulse of its own: its height is what the trace falls within ten degrees, not what it falls in all.
+#[test]
+fn a_narrow_pulse_on_a_broad_top_stops_integrators() {
+    let with_tip = |tip: f64| {
+        let p: Vec<f64> = (0..720)
+            .map(|k| {
+                let x = (f64::from(k) - 360.0) / 120.0;
+                1.0 + 100.0 * (-x * x).exp() + if k == 360 { tip } else { 0.0 }
+            })
+            .collect();
+        table(&format!("pressure = {p:?}\nunit = \"bar\"")).expect("builds").kinks().to_vec()
+    };
+    assert_eq!(with_tip(3.0), [360_f64.to_radians()]);
+    // Below a hundredth of the range a pulse moves no integrator.
+    assert!(with_tip(0.3).is_empty());
+    // A dent as deep is one too.
+    assert_eq!(with_tip(-3.0).len(), 3, "the dent and both of its shoulders");
+}
+
+/// Before the compression: the decay from the exhaust pressure in closed form, its straight last degree, and the corners of the cycle.
+#[test]
+fn single_zone_wiebe_takes_in_along_a_decay_and_breaks_where_it_says() {
+    let p = Engine::otto().build(
+        "model = \"single_zone_wiebe\"\ncompression_ratio = 12\nheat = \"1 kJ\"\nburn_start = \"340 deg\"\n\
+         intake_pressure = \"0.9 bar\"\nexhaust_pressure = \"1.5 bar\"\nintake_decay = \"10 deg\"\nintake_reached = \"25 deg\"\n\
+         intake_close = \"210 deg\"\nexhaust_open = \"490 deg\"",
+    );
+    for deg in [0.0, 5.0, 23.0, 24.0, 24.25, 24.75] {
+        let f64_deg: f64 = deg;
+        let expected = 0.9 + 0.6 * (-f64_deg.min(24.0) / 10.0).exp() * (25.0 - f64_deg).min(1.0);
+        // Rounding of the angle over a degree.
+        assert!((bar(&*p, deg) - expected).abs() < 1e-12, "{deg}: {} {expected}", bar(&*p, deg));
+    }
+    for deg in [25.0, 100.0, 209.9] {
+        assert!((bar(&*p, deg) - 0.9).abs() < 1e-15);
+    }
+    let kinks: Vec<f64> = p.kinks().iter().map(|k| k.to_degrees()).collect();
+    assert_eq!(kinks.len(), 7, "{kinks:?}");
+    for (k, want) in kinks.iter().zip([0.0, 24.0, 25.0, 210.0, 340.0, 360.0, 490.0]) {
+        // Rounding of the way from degrees to radians and back.
+        assert!((k - want).abs() < 1e-12, "{kinks:?}");
+    }
+}
+
+/// The intake decay has a last degree; a whole number of steps is not rounded up to one more.
+#[test]
+fn single_zone_wiebe_at_the_edges_of_its_settings() {
+    let engine = Engine::otto();
+    let refused = |more: &str| engine.try_build_in(&case(0, more), Path::new(".")).err();
+    assert!(refused("intake_reached = \"1 deg\"").is_none());
+    assert_eq!(refused("intake_reached = \"0.5 deg\"").expect("refused").field, "intake_reached");
+    // From 220 to 360 deg in steps of 1e-5 deg.
+    let message = refused("step = \"1e-5 deg\"").expect("refused").message;
+    assert!(message.contains("makes 14000000 steps"), "{message}");
+}

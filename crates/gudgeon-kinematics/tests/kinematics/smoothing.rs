@@ -72,3 +72,13 @@ fn no_phase_is_shifted_and_the_cut_off_is_halved() {
         }
     }
 }
+
+/// A wave that the rows resolve has large fourth differences and yet is no noise: its second differences grow with their width, by
+/// `4 cos²(π h/n)`. The level of the trace changes nothing.
+#[test]
+fn a_wave_that_the_rows_resolve_is_no_noise() {
+    for level in [0.0, 1.0, 100.0] {
+        let rows: Vec<f64> = (0..64).map(|k| level + (TAU * 6.0 * f64::from(k) / 64.0).cos()).collect();
+        assert_eq!(noise(&rows), None, "{level}");
+    }
+}
