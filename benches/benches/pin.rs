@@ -12,7 +12,7 @@ use criterion::Criterion;
 use gudgeon_core::kinds::{BossBore, PIN_QUANTITIES, PinForces, PinSize, PinStrengthCtx, PinStrengthSpec};
 use gudgeon_pin::ThinRing;
 use gudgeon_pin::design::{Design, Range, Relief};
-use gudgeon_pin::optimum::{NoOptimum, Optimum, KKT_TOLERANCE, lightest};
+use gudgeon_pin::optimum::{KKT_TOLERANCE, NoOptimum, Optimum, lightest};
 
 /// Optimisations of one round.
 const ENGINES: usize = 10_000;

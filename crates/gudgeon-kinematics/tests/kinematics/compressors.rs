@@ -109,6 +109,8 @@ fn valves_with_losses() {
     let p = try_build(&*k, &case("valve_losses", &format!("{CLEARANCE}\n{areas}"))).expect("builds");
     let open = try_build(&*k, &case("valve_losses", &format!("{CLEARANCE}\n{areas}\nheld_open = true")))
         .expect("builds");
+    // A cylinder of a compressor repeats itself every turn.
+    assert_eq!((p.period(), open.period()), (std::f64::consts::TAU, std::f64::consts::TAU));
     let rho = SUCTION / (287.0 * 300.0);
     let rho_d = rho * (DISCHARGE / SUCTION).powf(1.0 / N);
     let (v_c, v_max) = (0.1 * AREA * STROKE, 1.1 * AREA * STROKE);
