@@ -85,7 +85,7 @@
 //!     fn scale(&self, _y: &[f64], s: &mut [f64]) { s.fill(10.0) }
 //! }
 //!
-//! let options = OrbitOptions { tolerance: 1e-6, accuracy: 1e-12, max_cycles: 50, finer: 0, accelerate: true };
+//! let options = OrbitOptions { tolerance: 1e-6, accuracy: 1e-12, max_cycles: 50, refinements: 0, accelerate: true };
 //! let mut y = [0.0, 0.0];
 //! let report = periodic_orbit(&mut Doses, &mut y, &options)?;
 //! assert!(report.converged && report.period == 1 && report.cycles < 10);

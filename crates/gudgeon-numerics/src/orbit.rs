@@ -34,7 +34,7 @@ pub struct OrbitOptions {
     pub max_cycles: usize,
     /// How many times the map may be asked for a tenth of its error where its noise is all that keeps the search from its end. 0 for maps
     /// that have one accuracy.
-    pub finer: usize,
+    pub refinements: usize,
     /// Whether to accelerate. Maps with discrete decisions are not smooth and are repeated plainly.
     pub accelerate: bool,
 }
@@ -111,7 +111,7 @@ pub fn periodic_orbit(
     }
     let mut options = *options;
     search.accelerated(map, y, &options, 1)?;
-    for _ in 0..options.finer {
+    for _ in 0..options.refinements {
         if search.report.converged || !search.noisy {
             break;
         }

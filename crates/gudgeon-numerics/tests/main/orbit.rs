@@ -72,7 +72,7 @@ fn options(tolerance: f64, accelerate: bool) -> OrbitOptions {
     OrbitOptions {
         tolerance,
         accuracy: tolerance / 30.0,
-        finer: 0,
+        refinements: 0,
         max_cycles: if accelerate { 60 } else { 300 },
         accelerate,
     }
@@ -301,8 +301,13 @@ fn a_map_noisier_than_it_says_is_known_by_its_band() {
     for seed in 1..=20 {
         let mut map = Linear::new(0.5, 8.0, seed);
         let mut y = map.start.clone();
-        let wanted =
-            OrbitOptions { tolerance: 1e-5, accuracy: 1e-5, max_cycles: 120, finer: 0, accelerate: true };
+        let wanted = OrbitOptions {
+            tolerance: 1e-5,
+            accuracy: 1e-5,
+            max_cycles: 120,
+            refinements: 0,
+            accelerate: true,
+        };
         let r = periodic_orbit(&mut map, &mut y, &wanted).unwrap();
         let error = map.error(&y);
         assert!(!r.converged && r.period == 1 && r.cycles == 120, "{seed}: {r:?}");
@@ -316,11 +321,16 @@ fn a_map_noisier_than_it_says_is_known_by_its_band() {
 #[test]
 fn noise_that_keeps_a_search_from_its_end_is_lessened() {
     for seed in 1..=20 {
-        let ends = |finer: usize| {
+        let ends = |refinements: usize| {
             let mut map = Linear::new(0.9, 1.0, seed);
             let mut y = map.start.clone();
-            let wanted =
-                OrbitOptions { tolerance: 1e-4, accuracy: 1e-4, max_cycles: 120, finer, accelerate: true };
+            let wanted = OrbitOptions {
+                tolerance: 1e-4,
+                accuracy: 1e-4,
+                max_cycles: 120,
+                refinements,
+                accelerate: true,
+            };
             let r = periodic_orbit(&mut map, &mut y, &wanted).unwrap();
             (map.error(&y), r)
         };
@@ -352,8 +362,13 @@ fn periods_and_multipliers_of_the_logistic_map() {
     // acceleration looks for cycles of one and two.
     for (a, period) in [(2.5, 1), (3.2, 2), (3.5, 4), (3.83, 3)] {
         for accelerate in [false, true].into_iter().filter(|accelerate| period <= 2 || !accelerate) {
-            let options =
-                OrbitOptions { tolerance: 1e-8, accuracy: 1e-12, max_cycles: 300, finer: 0, accelerate };
+            let options = OrbitOptions {
+                tolerance: 1e-8,
+                accuracy: 1e-12,
+                max_cycles: 300,
+                refinements: 0,
+                accelerate,
+            };
             let mut y = [0.3];
             let report = periodic_orbit(&mut Costly(a), &mut y, &options).unwrap();
             assert!(report.converged && report.period == period, "{a} {accelerate} {report:?}");
@@ -380,7 +395,7 @@ fn periods_and_multipliers_of_the_logistic_map() {
 #[test]
 fn costs_are_counted_in_last_cycles() {
     let mut options =
-        OrbitOptions { tolerance: 1e-8, accuracy: 1e-12, max_cycles: 300, finer: 0, accelerate: true };
+        OrbitOptions { tolerance: 1e-8, accuracy: 1e-12, max_cycles: 300, refinements: 0, accelerate: true };
     let report = periodic_orbit(&mut Costly(2.5), &mut [0.3], &options).unwrap();
     // The first cycle is rough and costs half of the others.
     assert_eq!(report.cycle_equivalents, report.cycles as f64 - 0.5);

@@ -159,7 +159,7 @@ impl CycleMap for Map {
 fn orbits_do_not_depend_on_units() {
     for accelerate in [true, false] {
         let options =
-            OrbitOptions { tolerance: 1e-8, accuracy: 1e-11, max_cycles: 400, finer: 0, accelerate };
+            OrbitOptions { tolerance: 1e-8, accuracy: 1e-11, max_cycles: 400, refinements: 0, accelerate };
         let run = |unit: f64| {
             let mut y = [0.0; 2];
             let report = periodic_orbit(&mut Map { unit }, &mut y, &options).unwrap();

@@ -209,7 +209,7 @@ impl<'a> Cycle<'a> {
             tolerance: wanted,
             accuracy: self.repeatable_to.min(0.3 * wanted),
             max_cycles: self.max_cycles,
-            finer: 0,
+            refinements: 0,
             accelerate: true,
         };
         let mut z = self.periodic(y);

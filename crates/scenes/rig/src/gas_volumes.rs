@@ -519,7 +519,7 @@ impl March<'_> {
             tolerance: self.tolerance,
             accuracy: self.tolerance,
             max_cycles: CYCLES,
-            finer: 0,
+            refinements: 0,
             accelerate: true,
         };
         let report = periodic_orbit(self, y, &options)?;

@@ -343,7 +343,7 @@ impl Cycle<'_> {
 }
 
 /// How many times the search of a periodic state may tighten the tolerance tenfold: rings that float amplify the error of a cycle.
-const FINER: usize = 2;
+const REFINEMENTS: usize = 2;
 /// Tightest tolerance of a cycle: a hundred times the rounding of its states.
 const FINEST: f64 = 1e-13;
 /// How much less repeatable than its integration a cycle with oil on the liner is.
@@ -672,7 +672,7 @@ fn run(
         tolerance: s.periodicity.si().max(repeatable),
         accuracy: tolerance,
         max_cycles: s.max_cycles as usize,
-        finer: FINER,
+        refinements: REFINEMENTS,
         accelerate: !discrete && pack.oil_pack.is_none(),
     };
     let mut cycle = Cycle::new(s, pack, wanted, progress);
