@@ -69,7 +69,7 @@ pub fn assemble(
         p_crankcase: case.gas.crankcase_pressure.si(),
         clearance,
         period,
-        most_films: case.solver.max_film_evaluations,
+        max_films: case.solver.max_film_evaluations,
     })
 }
 

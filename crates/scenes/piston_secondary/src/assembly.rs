@@ -37,7 +37,7 @@ pub struct Assembly {
     /// Whether the skirt yields.
     pub elastic: bool,
     /// Film evaluations after which a search is given up.
-    pub most_films: u64,
+    pub max_films: u64,
 }
 
 impl Assembly {
@@ -54,12 +54,12 @@ impl Assembly {
     /// # Errors
     /// They were asked too often.
     pub fn go_on(&self) -> Result<(), EvalError> {
-        if self.piston.film_evaluations() <= self.most_films {
+        if self.piston.film_evaluations() <= self.max_films {
             return Ok(());
         }
         let what = format!(
             "given up after {} film evaluations: raise `solver.max_film_evaluations` to go on",
-            self.most_films
+            self.max_films
         );
         Err(EvalError::fatal("piston_secondary", what))
     }

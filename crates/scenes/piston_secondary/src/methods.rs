@@ -1,13 +1,13 @@
-//! The race of a case: every registered solver at its settings, against a solution far finer than all of them.
+//! Run time against error: every registered solver at its settings, beside a solution far finer than all of them.
 
 use gudgeon_scene::{MethodSetting, WorkPrecision, default_solvers};
 
 use super::case::{PistonSecondaryCase, PistonSolverSpec};
 use super::solver::mesh;
 
-/// The race of a case.
+/// Methods, settings and reference for diagrams of run time against error.
 #[must_use]
-pub fn race(case: &PistonSecondaryCase) -> WorkPrecision {
+pub fn work_precision(case: &PistonSecondaryCase) -> WorkPrecision {
     let settings = settings(case);
     let mut methods: Vec<&'static str> = settings.iter().map(|s| s.method).collect();
     methods.dedup();

@@ -1,4 +1,4 @@
-//! The piston in its bore as a scene: what it refuses, explains, runs and races.
+//! The piston in its bore as a scene: what it refuses, explains, runs and how its solvers compare.
 
 use gudgeon_case::Loaded;
 use gudgeon_core::BuildError;
@@ -78,7 +78,7 @@ impl SceneCase for PistonSecondaryCase {
     }
 
     fn work_precision(loaded: &Loaded<Self>, _: &mut Assembly) -> Option<WorkPrecision> {
-        Some(methods::race(&loaded.value))
+        Some(methods::work_precision(&loaded.value))
     }
 }
 

@@ -1,4 +1,4 @@
-//! The ring pack as a scene: what it refuses, explains, runs and races.
+//! The ring pack as a scene: what it refuses, explains, runs and how its solvers compare.
 
 use gudgeon_core::BuildError;
 use gudgeon_core::kinds::EngineCycle;
