@@ -7,6 +7,7 @@
 //! 4. Deserialisation decides. What it refuses after a clean walk is reported at the path where it stopped.
 //! 5. A [`BuildError`] that a later stage raises finds its place through [`Loaded::locate`].
 
+mod deserialise;
 mod near;
 mod overrides;
 mod plain;
@@ -26,7 +27,6 @@ use gudgeon_core::file::{Files, MOST_OF_A_CASE, MOST_OF_A_TABLE, ReadError, read
 use gudgeon_core::quantity::with_decimal_point;
 use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
-use serde_path_to_error::Segment;
 use toml::de::DeTable;
 
 pub use near::{advice, list, nearest};
@@ -126,13 +126,11 @@ fn load_tree<T: DeserializeOwned + JsonSchema + 'static>(
         return Err(refuse(found));
     }
     notes.extend(schema.improbable(&tree));
-    match serde_path_to_error::deserialize(tree.to_json()) {
+    match deserialise::value(&tree) {
         Ok(value) => Ok(Loaded { value, source, overrides, notes, tree: Arc::new(tree), base }),
-        Err(e) => {
-            let path: Vec<String> = e.path().iter().filter_map(segment).collect();
-            let text = e.inner().to_string();
+        Err((path, text)) => {
             let message = plain(&shorten(text.lines().next().unwrap_or_default()));
-            Err(refuse(vec![place(&tree, &source, path.join("."), message, None)]))
+            Err(refuse(vec![place(&tree, &source, path, message, None)]))
         }
     }
 }
@@ -347,14 +345,6 @@ fn neighbour(path: &Path, folder: &Path) -> Option<String> {
     names.sort_unstable();
     let near = nearest(wanted, names.iter().map(String::as_str))?;
     Some(path.with_file_name(near).display().to_string())
-}
-
-fn segment(s: &Segment) -> Option<String> {
-    match s {
-        Segment::Seq { index } => Some(index.to_string()),
-        Segment::Map { key } => Some(key.clone()),
-        Segment::Enum { .. } | Segment::Unknown => None,
-    }
 }
 
 fn place(tree: &Node, source: &Source, path: String, message: String, help: Option<String>) -> Diagnostic {

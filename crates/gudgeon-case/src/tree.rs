@@ -131,25 +131,6 @@ impl Node {
         Some(Self { data, place: Place { origin: Origin::Default, span: None } })
     }
 
-    /// For the deserialiser: `model` first in every table, because a tag that comes later makes it lose the path of an
-    /// error. A number that JSON cannot hold becomes null.
-    pub fn to_json(&self) -> Value {
-        match &self.data {
-            Data::Text(s) => Value::String(s.clone()),
-            Data::Integer(i) => (*i).into(),
-            Data::Float(f) => (*f).into(),
-            Data::Bool(b) => Value::Bool(*b),
-            Data::Date => Value::Null,
-            Data::Array(a) => Value::Array(a.iter().map(Self::to_json).collect()),
-            Data::Table(t) => {
-                let (tag, rest): (Vec<_>, Vec<_>) = t.iter().partition(|e| e.key == "model");
-                Value::Object(
-                    tag.into_iter().chain(rest).map(|e| (e.key.clone(), e.node.to_json())).collect(),
-                )
-            }
-        }
-    }
-
     pub fn child(&self, step: &str) -> Option<&Self> {
         match &self.data {
             Data::Table(t) => t.iter().find(|e| e.key == step).map(|e| &e.node),

@@ -22,9 +22,7 @@ pub use explanation::{ExplainedModel, Explanation, model_use};
 pub use heading::{Headed, Heading};
 pub use integrator::IntegratorName;
 pub use run::{Checked, check, check_case, check_source, explain, run, run_verified};
-pub use scene::{
-    Scene, SceneCase, SceneInfo, SceneName, case_of, changed, load, read_case, scenes, verify_scenes,
-};
+pub use scene::{Scene, SceneCase, SceneInfo, SceneName, changed, load, read_case, scenes, verify_scenes};
 pub use solver_table::{SolverCommon, SolverTable, default_solvers};
 pub use sweep_input::{Spacing, Sweep};
 pub use work_precision::{MethodSetting, WorkPrecision};

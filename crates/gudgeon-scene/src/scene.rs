@@ -114,6 +114,8 @@ pub trait Scene: Send + Sync {
     fn work_precision(&self) -> Option<WorkPrecision>;
     /// The typed case, for callers that know the scene.
     fn value(&self) -> &dyn Any;
+    /// The typed case, to be changed: how a scene hands values to its parts. Sub-models that were built are built anew.
+    fn value_mut(&mut self) -> &mut dyn Any;
 }
 
 /// A case that was read, and its sub-models once they were built.
@@ -218,6 +220,11 @@ impl<C: SceneCase> Scene for Read<C> {
     fn value(&self) -> &dyn Any {
         &self.loaded.value
     }
+
+    fn value_mut(&mut self) -> &mut dyn Any {
+        *self.built.get_mut().unwrap_or_else(PoisonError::into_inner) = None;
+        &mut self.loaded.value
+    }
 }
 
 /// Reads a case from a text and `--set` arguments.
@@ -262,13 +269,7 @@ impl SceneInfo {
 /// Reads a case of the scene `C`: what [`register_scene!`](crate::register_scene) hands over.
 #[doc(hidden)]
 pub fn read_case<C: SceneCase>(source: Source, overrides: &[String]) -> Result<Box<dyn Scene>, Report> {
-    Ok(case_of(load_source::<C>(source, overrides)?))
-}
-
-/// A case from what was read of it, its values changed or not: how a scene makes cases of its parts.
-#[must_use]
-pub fn case_of<C: SceneCase>(loaded: Loaded<C>) -> Box<dyn Scene> {
-    Box::new(Read::new(loaded))
+    Ok(Box::new(Read::new(load_source::<C>(source, overrides)?)))
 }
 
 /// Registers a scene, beside the implementation of [`SceneCase`].

@@ -11,9 +11,9 @@ use gudgeon_core::quantity::quantity;
 use gudgeon_core::result::{ModelUse, RunResult, Value};
 
 use case::{Part, PowerCylinderCase};
-use gudgeon_case::{Loaded, Refinement, Report, load_source, read_beside, scene_of};
+use gudgeon_case::{Loaded, Refinement, Report, read_beside, scene_of};
 use gudgeon_machine::Engine;
-use gudgeon_scene::{Checked, Explanation, Progress, RunError, SceneCase, case_of, check_case, explain};
+use gudgeon_scene::{Checked, Explanation, Progress, RunError, Scene, SceneCase, check_case, explain, load};
 use gudgeon_scene_piston_secondary::case::PistonSecondaryCase;
 use gudgeon_scene_ring_pack::case::RingPackCase;
 
@@ -44,9 +44,8 @@ impl SceneCase for PowerCylinderCase {
 
     /// That of the rings.
     fn cycle(loaded: &Loaded<Self>) -> Option<Result<EngineCycle, BuildError>> {
-        let field = "ring_pack";
-        match read_part::<RingPackCase>(&loaded.source.files, &loaded.value.ring_pack, field) {
-            Ok(rings) => RingPackCase::cycle(&rings),
+        match read_part(&loaded.source.files, &loaded.value.ring_pack, "ring_pack") {
+            Ok(rings) => rings.cycle(),
             Err(wrong) => wrong.into_iter().next().map(Err),
         }
     }
@@ -173,27 +172,31 @@ fn add_models(to: &mut Vec<ModelUse>, more: impl IntoIterator<Item = ModelUse>) 
 /// Both cases, the skirt's with the crank drive and the gas of the rings'.
 fn parts(loaded: &Loaded<PowerCylinderCase>) -> Result<(Checked, Checked), Vec<BuildError>> {
     let (own, files) = (&loaded.value, &loaded.source.files);
-    let rings: Loaded<RingPackCase> = read_part(files, &own.ring_pack, "ring_pack")?;
-    let pack = rings.value.clone();
-    let rings = checked(rings, &own.ring_pack, "ring_pack")?;
-    let mut skirt: Loaded<PistonSecondaryCase> = read_part(files, &own.piston_secondary, "piston_secondary")?;
-    share(&pack, &mut skirt.value);
-    Ok((rings, checked(skirt, &own.piston_secondary, "piston_secondary")?))
+    let rings = checked(read_part(files, &own.ring_pack, "ring_pack")?, &own.ring_pack, "ring_pack")?;
+    let pack = rings.of::<RingPackCase>().ok_or_else(|| other_scene("ring_pack"))?;
+    let mut skirt = read_part(files, &own.piston_secondary, "piston_secondary")?;
+    let to = skirt.value_mut().downcast_mut::<PistonSecondaryCase>();
+    share(pack, to.ok_or_else(|| other_scene("piston_secondary"))?);
+    let skirt = checked(skirt, &own.piston_secondary, "piston_secondary")?;
+    Ok((rings, skirt))
+}
+
+fn other_scene(field: &str) -> Vec<BuildError> {
+    vec![BuildError::at(format!("{field}.case"), format!("must be a case of the scene `{field}`"))]
 }
 
 /// A part as its file and its changes give it; the part at `field` is of the scene of that name.
-fn read_part<C: SceneCase>(files: &Files, part: &Part, field: &str) -> Result<Loaded<C>, Vec<BuildError>> {
+fn read_part(files: &Files, part: &Part, field: &str) -> Result<Box<dyn Scene>, Vec<BuildError>> {
     // Before the rest of it: a part that is a whole cylinder could be this case itself.
     let source = read_beside(files, &part.case).map_err(|r| refused(&r, part, field))?;
     if scene_of(&source, &part.set).as_deref() != Some(field) {
-        let what = format!("must be a case of the scene `{field}`");
-        return Err(vec![BuildError::at(format!("{field}.case"), what)]);
+        return Err(other_scene(field));
     }
-    load_source(source, &part.set).map_err(|r| refused(&r, part, field))
+    load(source, &part.set).map_err(|r| refused(&r, part, field))
 }
 
-fn checked<C: SceneCase>(case: Loaded<C>, part: &Part, field: &str) -> Result<Checked, Vec<BuildError>> {
-    check_case(part.case.clone(), case_of(case)).map_err(|r| refused(&r, part, field))
+fn checked(case: Box<dyn Scene>, part: &Part, field: &str) -> Result<Checked, Vec<BuildError>> {
+    check_case(part.case.clone(), case).map_err(|r| refused(&r, part, field))
 }
 
 /// What is wrong with a part, told of the key that names it.
