@@ -42,7 +42,7 @@ pub mod for_tests {
 }
 
 use plain::plain;
-use schema::{Schema, shorten};
+use schema::{RENAMED, Schema, shorten};
 use tree::{Data, Node, Place, steps};
 
 /// A value read from a file, with what is needed to point back at the file.
@@ -326,7 +326,9 @@ fn suggest_path(d: Diagnostic, schema: &Schema, overrides: &[String]) -> Diagnos
     }
     let path = overrides.get(i).and_then(|o| o.split_once('=')).map_or("", |(p, _)| p.trim());
     match schema.nearest_path(path) {
-        Some(near) if d.help.as_ref().is_none_or(|h| !h.starts_with("did you mean")) => {
+        Some(near)
+            if !d.help.as_ref().is_some_and(|h| h.starts_with("did you mean") || h.starts_with(RENAMED)) =>
+        {
             let rest = d.help.clone().map_or_else(String::new, |h| format!(" {h}"));
             d.help(format!("did you mean `{near}`?{rest}"))
         }

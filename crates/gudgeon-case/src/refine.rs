@@ -1,9 +1,8 @@
 //! The numerical settings of a case that refine its results: tolerances, grids, orders.
 //!
 //! A field says so itself, in its schema: `x-refine` holds the name of what is refined (`tolerance`, `film grid`; settings of one name are
-//! refined together), the `factor` of one level, possibly `levels`, how many of them are worth their time (a plane grid has four times the
-//! nodes a level), and possibly `when`, the value that another key of the same table must have. So a model that is registered elsewhere is
-//! verified like a built-in one.
+//! refined together), the `factor` of one level, and possibly `levels`, how many of them are worth their time (a plane grid has four times the
+//! nodes a level). So a model that is registered elsewhere is verified like a built-in one.
 
 use indexmap::IndexMap;
 use serde_json::Value;
@@ -76,6 +75,7 @@ fn settings(schema: &Schema, resolved: &Value) -> Vec<Setting> {
 
 fn walk(schemas: &Schema, schema: &Value, value: &Value, path: &str, out: &mut Vec<Setting>) {
     let schema = schemas.resolve(schema);
+    let schema = schemas.model_of_word(schema).map_or(schema, |models| schemas.resolve(models));
     match value {
         Value::Array(items) => {
             let Some(inner) = schema.get("items") else { return };
@@ -98,7 +98,7 @@ fn walk(schemas: &Schema, schema: &Value, value: &Value, path: &str, out: &mut V
             for (key, v) in table {
                 let Some(field) = properties.get(key) else { continue };
                 let path = join(path, key);
-                match field.get("x-refine").and_then(|how| setting(how, table, v, &path)) {
+                match field.get("x-refine").and_then(|how| setting(how, v, &path)) {
                     Some(s) => out.push(s),
                     None => walk(schemas, field, v, &path, out),
                 }
@@ -108,19 +108,10 @@ fn walk(schemas: &Schema, schema: &Value, value: &Value, path: &str, out: &mut V
     }
 }
 
-fn setting(
-    how: &Value,
-    table: &serde_json::Map<String, Value>,
-    value: &Value,
-    path: &str,
-) -> Option<Setting> {
-    let applies = how
-        .get("when")
-        .and_then(Value::as_object)
-        .is_none_or(|when| when.iter().all(|(key, wanted)| table.get(key) == Some(wanted)));
+fn setting(how: &Value, value: &Value, path: &str) -> Option<Setting> {
     let text = value.as_str().unwrap_or_default();
     let (number, unit) = text.split_once(' ').unwrap_or((text, ""));
-    let number = value.as_f64().or_else(|| number.parse().ok()).filter(|v| *v != 0.0 && applies)?;
+    let number = value.as_f64().or_else(|| number.parse().ok()).filter(|v| *v != 0.0)?;
     Some(Setting {
         path: path.to_owned(),
         group: how.get("group")?.as_str()?.to_owned(),

@@ -252,7 +252,7 @@ impl Schema {
                     .at(e.key_place.origin, e.key_place.span.clone());
                 if let Some(now) = renamed(schema, &e.key) {
                     missing.retain(|m| *m != now);
-                    out.push(d.help(format!("it is called `{now}` now")));
+                    out.push(d.help(format!("{RENAMED} `{now}` now")));
                     continue;
                 }
                 let elsewhere = if near.is_some() { Vec::new() } else { self.homes_of(&e.key, path) };
@@ -435,10 +435,13 @@ impl Schema {
         let last = asked.last()?;
         let index = asked.iter().find(|s| s.parse::<usize>().is_ok());
         let same_leaf = paths.iter().filter(|p| p.rsplit('.').next() == Some(last));
-        let found = same_leaf
-            .min_by_key(|p| strsim::damerau_levenshtein(wanted, p))
-            .cloned()
-            .or_else(|| nearest(&asked.join("."), paths.iter().map(String::as_str)).map(str::to_owned))?;
+        let found =
+            same_leaf.min_by_key(|p| strsim::damerau_levenshtein(wanted, p)).cloned().or_else(|| {
+                // The table that a key is looked for in is no advice on the key.
+                let above = |p: &str| wanted.strip_prefix(p).is_some_and(|rest| rest.starts_with('.'));
+                let others = paths.iter().map(String::as_str).filter(|p| !above(p));
+                nearest(&asked.join("."), others).map(str::to_owned)
+            })?;
         Some(match index {
             Some(i) => found.replace(".0.", &format!(".{i}.")),
             None => found,
@@ -492,6 +495,9 @@ impl<'a> Tagged<'a> {
         self.variants.iter().find(|(n, _)| *n == name).map(|(_, s)| *s)
     }
 }
+
+/// How the advice on a key with an old name begins.
+pub(super) const RENAMED: &str = "it is called";
 
 /// What a key is called today that had another name once (`x-renamed`).
 fn renamed<'a>(schema: &'a Value, key: &str) -> Option<&'a str> {

@@ -403,6 +403,14 @@ fn a_key_that_had_another_name_is_told_the_new_one() {
     let told = offset("pin_shift = \"1 mm\"").expect_err("an old name").to_string();
     assert!(told.contains("unknown key `pin_shift`") && told.contains("it is called `offset` now"), "{told}");
     assert!(!told.contains("missing"), "{told}");
+    let all = mistakes(GOOD, &["machine.pin_shift=1 mm"]);
+    assert!(all.len() == 1 && all[0].ends_with("| it is called `offset` now"), "{all:?}");
+}
+
+#[test]
+fn the_table_of_a_wrong_key_is_no_advice() {
+    let all = mistakes(GOOD, &["solver.xy=1"]);
+    assert!(all.len() == 1 && !all[0].contains("did you mean `solver`"), "{all:?}");
 }
 
 #[test]

@@ -11,8 +11,7 @@ fn loaded<T: DeserializeOwned + Serialize + JsonSchema + 'static>(text: &str) ->
 
 #[derive(Serialize, Deserialize, JsonSchema)]
 struct Inner {
-    method: String,
-    #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1, "when": { "method": "implicit" } }))]
+    #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1 }))]
     tolerance: f64,
     #[schemars(extend("x-refine" = { "group": "grid", "factor": 2 }))]
     cells: u32,
@@ -41,15 +40,13 @@ fn a_group_has_as_many_levels_as_its_dearest_setting() {
 }
 
 #[test]
-fn settings_are_found_where_they_apply() {
-    let part = |method: &str| {
-        format!("[[parts]]\nmethod = \"{method}\"\ntolerance = 1e-4\ncells = 20\nautomatic = 0\n")
-    };
-    let text = format!("name = \"x\"\n{}{}", part("implicit"), part("march"));
+fn settings_of_one_name_are_refined_together() {
+    let part = "[[parts]]\ntolerance = 1e-4\ncells = 20\nautomatic = 0\n";
+    let text = format!("name = \"x\"\n{part}{part}");
     let found = loaded::<Outer>(&text).refinements();
     let what: Vec<&str> = found.iter().map(|r| r.what.as_str()).collect();
     assert_eq!(what, ["tolerance", "grid"]);
-    assert_eq!(found[0].levels[0], ["parts.0.tolerance=1e-5"]);
+    assert_eq!(found[0].levels[0], ["parts.0.tolerance=1e-5", "parts.1.tolerance=1e-5"]);
     assert_eq!(found[1].levels[0], ["parts.0.cells=40", "parts.1.cells=40"]);
     assert_eq!(found[1].levels[1], ["parts.0.cells=80", "parts.1.cells=80"]);
 }
