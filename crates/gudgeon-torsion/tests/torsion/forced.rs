@@ -186,6 +186,36 @@ fn an_absorber_at_its_own_frequency_holds_its_place() {
     assert!(solve(&twin, 40.0, &torque).is_err());
 }
 
+/// Two absorbers on one inertia, the second nearly as well tuned: only in resonance together they have no answer.
+#[test]
+fn an_absorber_close_to_another_ones_frequency_moves_by_itself() {
+    for off in [1e-9, -3e-8, 2e-7] {
+        // 20 rad/s: the first absorber's squares and products are without rounding.
+        let second = 100.0 * (1.0 + off);
+        let mut line = chain(&[3.0, 2.0, 0.5, 0.25, 1.0], &[], &[], &[2.0, 0.5, 0.0, 0.0, 0.1]);
+        line.links = vec![
+            link(2, 1, 200.0, 0.0, 0.0),
+            link(3, 1, second, 0.0, 0.0),
+            link(0, 1, 900.0, 3.0, 0.0),
+            link(1, 4, 700.0, 1.0, 0.1),
+        ];
+        let torque = [c(1.0, 2.0), c(-3.0, 1.0), c(0.5, 0.0), c(2.0, -1.0), c(0.0, 1.0)];
+        let a = solve(&line, 20.0, &torque).expect("regular");
+        // Balanced to rounding of the largest torque.
+        assert!(residual(&line, 20.0, &torque, &a) < 1e-14);
+        // The first one holds its place, whatever the second does: 0.5 N m from its spring. The second follows the place by its own spring;
+        // angles of it, of the order 1/off, leave rounding of their size.
+        let place = c(-0.5 / 200.0, 0.0);
+        let exact = (c(2.0, -1.0) + c(second, 0.0) * place) / c(second - 100.0, 0.0);
+        assert!((a.angle[1] - place).abs() < 1e-15 * exact.abs(), "{off}: {:?}", a.angle[1]);
+        assert!(
+            (a.angle[3] - exact).abs() < 1e-14 / off.abs() * exact.abs(),
+            "{off}: {:?} {exact:?}",
+            a.angle[3]
+        );
+    }
+}
+
 #[test]
 fn rigid_links_and_inertias_of_zero_leave_no_trace() {
     let stiff = chain(&[1.0, 0.5, 0.0, 2.0], &[1e4, f64::INFINITY, 3e4], &[5.0, 0.0, 7.0], &[]);

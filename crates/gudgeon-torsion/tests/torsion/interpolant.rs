@@ -29,3 +29,17 @@ fn a_function_with_a_corner_is_evaluated_there_and_a_polynomial_elsewhere() {
             + 0.25_f64.sin() * 0.5_f64.sin() / (1.2 + 0.5_f64.cos()).powi(2));
     assert!((p.derivative(0.5, f) / exact - 1.0).abs() < 1e-9);
 }
+
+/// The derivative may be asked for first: the segment is built then.
+#[test]
+fn the_derivative_of_a_smooth_function_needs_no_value_before() {
+    let f = |a: f64| 3.0 * (2.0 * a).sin() + (5.0 * a).cos();
+    let mut p = Interpolant::new(1, f);
+    for k in -30..30 {
+        let at = 0.37 * f64::from(k);
+        let exact = 6.0 * (2.0 * at).cos() - 5.0 * (5.0 * at).sin();
+        // Seven terms over 1/512 turn: (5 · 6e-3)⁶/2⁶/6! of the slope, and rounding over the segment.
+        assert!((p.derivative(at, f) - exact).abs() < 1e-10, "{at}");
+    }
+    assert_eq!(p.direct_segments(), 0);
+}

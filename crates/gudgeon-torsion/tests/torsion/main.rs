@@ -1,5 +1,6 @@
 //! Tests of shaft lines against exact solutions, conservation laws and independent methods.
 
+mod balance;
 mod common;
 mod compressor;
 mod couplings;

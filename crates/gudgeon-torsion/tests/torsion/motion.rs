@@ -208,3 +208,85 @@ fn rigid_links_carry_what_moves_the_parts_behind_them() {
     assert!((found[0] - shaft).abs() < 1e-9 * shaft.abs(), "{} {shaft}", found[0]);
     assert!((w[2] / w[1] - 1.5).abs() < 1e-13 && (a[3] / a[1] - 1.5).abs() < 1e-13);
 }
+
+/// The same line with its inertias in the opposite order: the torque of a rigid link is then found from the parts on its other side.
+#[test]
+fn the_order_of_the_inertias_changes_no_torque() {
+    use crate::common::Gas;
+    use crate::common::compressor::{THROW, end};
+    let line = |turned: bool| {
+        let n = 5;
+        let at = |i: usize| if turned { n - 1 - i } else { i };
+        let mut line = Line { nodes: vec![node(0.0, 0.0); n], ..Line::default() };
+        for (i, (inertia, damping, ratio)) in
+            [(3.0, 0.3, 2.0), (0.5, 0.2, 2.0), (0.2, 0.1, -1.5), (0.4, 0.6, -1.5), (0.3, 0.4, 1.0)]
+                .into_iter()
+                .enumerate()
+        {
+            line.nodes[at(i)] = LineNode { ratio, ..node(inertia, damping) };
+        }
+        let rigid = f64::INFINITY;
+        for (a, b, k, c) in [(0, 1, 4e3, 8.0), (1, 2, rigid, 0.0), (3, 2, rigid, 0.0), (4, 3, 2e3, 3.0)] {
+            line.links.push(link(at(a), at(b), k, c, 0.0));
+        }
+        for (i, phase) in [(3, 0.4), (2, 1.1)] {
+            let inertia = gudgeon_torsion::throw_inertia::Exact {}.build(&THROW).expect("builds");
+            line.throws.push(LineThrow { node: at(i), phase, inertia, ends: end(Gas::M3) });
+        }
+        let fan = PowerLaw { torque: quantity(70.0), speed: quantity(100.0), exponent: quantity(2.0) };
+        line.drives.push(drive(at(2), -1.0, 0.0, &fan));
+        line
+    };
+    let speeds = [40.0, 40.0, -30.0, -30.0, 20.0];
+    let turned: Vec<f64> = speeds.iter().rev().copied().collect();
+    let times: Vec<f64> = (1..20).map(|i| 0.002 * f64::from(i)).collect();
+    let (first, second) = (line(false), line(true));
+    // Fixed steps are the same but for rounding; controlled ones judge an error by the speed of the first inertia of rigidly joined ones.
+    for (spec, tolerance) in [
+        (&RungeKutta { step: quantity(1e-4), look_ahead: false } as &dyn TorsionSpec, 1e-10),
+        (&Implicit { tolerance: quantity(1e-9) }, 1e-6),
+    ] {
+        let a = run(spec, &context(&first, [&[0.0; 5], &speeds], &times));
+        let b = run(spec, &context(&second, [&[0.0; 5], &turned], &times));
+        for (x, y) in a.torque.iter().zip(&b.torque) {
+            let top = x.iter().map(|t| t.abs()).fold(0.0, f64::max);
+            for (p, q) in x.iter().zip(y) {
+                assert!((p - q).abs() < tolerance * top, "{p} {q}");
+            }
+        }
+    }
+}
+
+/// A crank of no inertia of its own stands still with its piston at the dead centres, whatever it is geared to.
+#[test]
+fn a_crank_without_inertia_is_refused_also_behind_a_gear() {
+    use crate::common::compressor::THROW;
+    let bare = ThrowCtx { crank_inertia: 0.0, rod_mass: 0.0, ..THROW };
+    let with = |crank: ThrowCtx, wheel: f64| {
+        let mut line = chain(&[1.0, wheel, 0.0], &[1e4, f64::INFINITY], &[], &[]);
+        line.nodes[2].ratio = 1.5;
+        let inertia = gudgeon_torsion::throw_inertia::Exact {}.build(&crank).expect("builds");
+        line.throws.push(LineThrow { node: 2, phase: 0.3, inertia, ends: Vec::new() });
+        Implicit::default().build(&context(&line, [&[0.0; 3], &[50.0, 50.0, 75.0]], &[1.0])).err()
+    };
+    let refused = with(bare, 0.0).expect("vanishes");
+    assert!(refused.field == "inertias.1" && refused.to_string().contains("vanishes"), "{refused}");
+    // The crank's own inertia or that of the wheel is enough.
+    assert!(with(ThrowCtx { crank_inertia: 0.1, ..bare }, 0.0).is_none());
+    assert!(with(bare, 0.1).is_none());
+}
+
+/// Fixed steps: a row stands at the end of the step nearest to the time that was asked for.
+#[test]
+fn rows_of_fixed_steps_stand_at_the_nearest_step() {
+    let line = geared();
+    let times = [0.0, 1.4e-3, 2.6e-3, 5e-3];
+    let spec = RungeKutta { step: quantity(1e-3), look_ahead: false };
+    let out = run(&spec, &context(&line, [&ANGLES, &SPEEDS], &times));
+    for (t, exact) in out.times.iter().zip([0.0, 1e-3, 3e-3, 5e-3]) {
+        // Rounding of a product.
+        assert!((t - exact).abs() < 1e-17, "{t} {exact}");
+    }
+    assert_eq!((out.counters["time_steps"], out.counters["right_hand_sides"]), (5, 20));
+    assert_eq!(out.angles[0], ANGLES);
+}

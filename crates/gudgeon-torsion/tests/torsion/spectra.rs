@@ -131,3 +131,30 @@ fn a_line_with_drag_slows_down_at_its_own_rate() {
     }
     assert!(all.pairs[0][1].im == 0.0 && all.pairs[0][1].re < 0.0);
 }
+
+/// Inertias on springs and dampers of their own, joined by nothing: every mode has the two roots of its own square, overdamped or not.
+#[test]
+fn pairs_stay_with_their_modes_when_some_no_longer_oscillate() {
+    let (j, k, c) = ([2.0, 0.5, 1.0, 0.25], [200.0, 5e3, 4e4, 1e5], [2e3, 3.0, 900.0, 2.0]);
+    let mut line = chain(&j, &[0.0; 3], &[], &c);
+    line.nodes.iter_mut().zip(k).for_each(|(n, k)| n.ground = k);
+    let t = Tree::new(&line).expect("builds");
+    let omega = natural_frequencies(&t, usize::MAX).expect("found");
+    let all = roots(&t, &omega, &shapes(&t, &omega)).expect("found");
+    for i in 0..4 {
+        let (w, decay) = ((k[i] / j[i]).sqrt(), 0.5 * c[i] / j[i]);
+        // Bisection ends at the last digits.
+        assert!((omega[i] / w - 1.0).abs() < 1e-14, "{omega:?}");
+        let [a, b] = all.pairs[i];
+        let square = w * w - decay * decay;
+        // Roots of the order of the largest eigenvalue, a thousand, to 1e-10 of it.
+        if square > 0.0 {
+            assert!((a.re + decay).abs() < 1e-7 && (a.im - square.sqrt()).abs() < 1e-7, "{i}: {a:?}");
+            assert!(b.re == a.re && b.im == -a.im, "{i}: {a:?} {b:?}");
+        } else {
+            let slow = -decay + (-square).sqrt();
+            assert!(a.im == 0.0 && (a.re - slow).abs() < 1e-7, "{i}: {a:?} {slow}");
+            assert!(b.im == 0.0 && (b.re + 2.0 * decay + slow).abs() < 1e-7, "{i}: {b:?} {slow}");
+        }
+    }
+}
