@@ -116,7 +116,7 @@ fn the_closed_form_problem_to_1e_12() {
 #[test]
 fn random_engines_satisfy_the_conditions_and_hold_no_lighter_pin() {
     let mut r = Random(11);
-    let (mut solved, mut infeasible, mut corners) = (0, 0, 0);
+    let (mut solved, mut infeasible, mut corners, mut by_rounding) = (0, 0, 0, 0);
     let mut wrong = Vec::new();
     for k in 0..600 {
         let e = Engine::new(&mut r);
@@ -131,6 +131,10 @@ fn random_engines_satisfy_the_conditions_and_hold_no_lighter_pin() {
             Ok(o) => {
                 solved += 1;
                 assert!(o.kkt.hold(KKT_TOLERANCE), "{k}: {:?}", o.kkt);
+                // What exceeds a limit, if only by rounding, is not passed over.
+                let excess = o.utilisation.iter().fold(f64::NEG_INFINITY, |a: f64, u| a.max(u - 1.0));
+                assert!(o.kkt.infeasibility >= excess, "{k}: {excess:e} {:?}", o.kkt);
+                by_rounding += usize::from(excess > 0.0);
                 corners += usize::from(o.kkt.curvature.is_none());
                 if k % 6 < 4 {
                     let c = certify(&d, &o.size, 1e-3, 50_000);
@@ -148,6 +152,7 @@ fn random_engines_satisfy_the_conditions_and_hold_no_lighter_pin() {
     }
     assert!(wrong.is_empty(), "{} of {solved}\n{}", wrong.len(), wrong.join("\n"));
     assert!(solved > 400 && corners > 100 && infeasible > 0, "{solved} {corners} {infeasible}");
+    assert!(by_rounding > 50, "{by_rounding}");
 }
 
 #[test]
@@ -222,4 +227,51 @@ fn bounds_hold_and_are_named() {
     d.outer = Range { low: 18e-3, high: 19.5e-3 };
     let Err(NoOptimum::Infeasible(f)) = lightest(&d, None) else { panic!("there is no such pin") };
     assert_eq!(f[0].limit, PinQuantity::RodPressure);
+}
+
+/// A bound that gives way by a length changes the mass by its multiplier times that length; so do two bounds that hold together.
+#[test]
+fn multipliers_of_bounds_are_the_change_of_the_mass() {
+    let strength = model("thin_ring", PUBLISHED_PI);
+    let base = published_design(&*strength, PUBLISHED_PI);
+    let moved = |bound: Bound, by: f64| {
+        let mut d = base;
+        match bound {
+            Bound::MinWall => d.min_wall = 4.5e-3 - 0.5 * by,
+            Bound::MinOuter => d.outer = Range { low: 22e-3 - by, high: 23e-3 },
+            Bound::MaxInner => d.inner = Range { low: 0.0, high: 10e-3 + by },
+            Bound::MinLength => d.length = Range { low: 68e-3 - by, high: 80e-3 },
+            _ => d.outer = Range { low: 19.55e-3, high: 21e-3 + by },
+        }
+        lightest(&d, None).expect("solved")
+    };
+    for bound in [Bound::MinWall, Bound::MinOuter, Bound::MaxInner, Bound::MinLength, Bound::MaxOuter] {
+        let h = 1e-7;
+        let slope =
+            (moved(bound, h).masses.differential() - moved(bound, -h).masses.differential()) / (2.0 * h);
+        let multiplier = moved(bound, 0.0).bounds[bound as usize];
+        // Truncation (h/diameter)², rounding 1e-17 kg over h; a wall counts on both sides.
+        assert!(
+            multiplier > 0.0 && (slope / multiplier + 1.0).abs() < 1e-7,
+            "{bound:?}: {slope} {multiplier}"
+        );
+    }
+}
+
+/// Newton's method squares the error, so few steps are needed: from any start about ten, two of them at rounding.
+#[test]
+fn a_few_quadratic_programs_are_enough() {
+    for name in MODELS {
+        let strength = model(name, PUBLISHED_PI);
+        let mut d = published_design(&*strength, PUBLISHED_PI);
+        if name != "thin_ring" {
+            d.limits[PinQuantity::Deflection as usize] = 0.1e-3;
+            d.limits[PinQuantity::OvalisationStress as usize] = 55.0 * KGF;
+        }
+        for from in [None, Some(mm(54.0, 21.85, 17.0)), Some(mm(65.0, 23.0, 13.0)), Some(mm(80.0, 20.7, 6.0))]
+        {
+            let o = lightest(&d, from).expect("solved");
+            assert!(o.iterations <= 20, "{name} {from:?}: {}", o.iterations);
+        }
+    }
 }
