@@ -290,3 +290,39 @@ fn rows_of_fixed_steps_stand_at_the_nearest_step() {
     assert_eq!((out.counters["time_steps"], out.counters["right_hand_sides"]), (5, 20));
     assert_eq!(out.angles[0], ANGLES);
 }
+
+/// Two geared inertias on springs and a damper against the ground, rigidly joined: one damped oscillator, whose motion is known.
+#[test]
+fn a_held_line_swings_out_on_its_springs() {
+    let mut line = chain(&[2.0, 0.5], &[f64::INFINITY], &[], &[0.0, 3.0]);
+    line.nodes[1].ratio = -2.0;
+    line.nodes[0].ground = 2e3;
+    line.nodes[1].ground = 1.5e3;
+    // Counted at the first inertia everything of the second counts four times.
+    let (j, c, k): (f64, f64, f64) = (2.0 + 4.0 * 0.5, 4.0 * 3.0, 2e3 + 4.0 * 1.5e3);
+    let (delta, square) = (0.5 * c / j, k / j);
+    let w = (square - delta * delta).sqrt();
+    let times: Vec<f64> = (0..40).map(|i| 0.01 * f64::from(i)).collect();
+    let ctx = context(&line, [&[0.1, -0.2], &[0.0, 0.0]], &times);
+    for (spec, tolerance) in [
+        // (ω h)⁴/120 of a radian each radian, 20 of them.
+        (&RungeKutta { step: quantity(1e-4), look_ahead: false } as &dyn TorsionSpec, 1e-9),
+        // The tolerance, step by step, some hundred of them.
+        (&Implicit { tolerance: quantity(1e-9) }, 1e-6),
+    ] {
+        let out = run(spec, &ctx);
+        for (r, t) in times.iter().enumerate() {
+            let (sin, cos) = (w * t).sin_cos();
+            let decay = (-delta * t).exp();
+            let angle = 0.1 * decay * (cos + delta / w * sin);
+            let speed = -0.1 * decay * square / w * sin;
+            let acceleration = -square * angle - 2.0 * delta * speed;
+            let (x, v) = (&out.angles[r], &out.speeds[r]);
+            assert!((x[0] - angle).abs() < tolerance && (x[1] + 2.0 * angle).abs() < 2.0 * tolerance, "{t}");
+            assert!((v[0] - speed).abs() < w * tolerance && (v[1] + 2.0 * speed).abs() < 2.0 * w * tolerance);
+            // The mesh carries what moves the first inertia against its spring: 2 ω² + 2e3 N m, less than k, by radian of error.
+            let mesh = -(2.0 * acceleration + 2e3 * angle);
+            assert!((out.torque[r][0] - mesh).abs() < k * tolerance, "{t}: {} {mesh}", out.torque[r][0]);
+        }
+    }
+}
