@@ -163,3 +163,30 @@ fn the_minimum_outer_diameter_parts_the_range() {
     d.min_wall = 7e-3;
     assert!((d.min_feasible_outer().expect("wide ones") - 24e-3).abs() < 1e-16);
 }
+
+/// The hoop stress falls with the length, the bending stress rises: their resultant has a minimum between the ends of the range, which alone
+/// decides whether its limit blocks a diameter.
+#[test]
+fn the_resultant_blocks_a_diameter_below_its_minimum_over_the_length() {
+    let m = model("thin_ring", PI);
+    let mut d = published_design(&*m, PI);
+    let (outer, resultant) = (22e-3, PinQuantity::ResultantStress);
+    d.inner = Range { low: 15e-3, high: 22e-3 };
+    d.limits = [f64::INFINITY; 8];
+    d.limits[resultant as usize] = 1.0;
+    let n = 4000;
+    let stress: Vec<f64> = (0..=n)
+        .map(|k| d.length.low + (d.length.high - d.length.low) * f64::from(k) / f64::from(n))
+        .map(|length| {
+            let size = PinSize { length, outer, inner: d.min_inner(outer) };
+            d.utilisation(&size).expect("inside")[resultant as usize]
+        })
+        .collect();
+    let min = stress.iter().copied().fold(f64::INFINITY, f64::min);
+    assert!(stress[0] > 1.1 * min && stress[n as usize] > 1.1 * min);
+    // The square of half a step over the length, below 1e-6, is what the grid may miss.
+    d.limits[resultant as usize] = min * (1.0 + 1e-9);
+    assert!(d.blocking_limits(outer).is_empty());
+    d.limits[resultant as usize] = min * (1.0 - 1e-6);
+    assert_eq!(d.blocking_limits(outer), [BlockingLimit { limit: resultant, length: None }]);
+}
