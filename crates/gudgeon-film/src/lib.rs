@@ -119,6 +119,7 @@ gudgeon_core::link!(
 pub mod parts {
     pub use crate::film_1d::line::Line;
     pub use crate::film_1d::rows::{Node, Rows};
+    pub use crate::hydrodynamics::closed_form_face::crown::{Asked, Crown, Crowned};
     pub use crate::hydrodynamics::closed_form_face::moments::{Moments, SERIES, angle, core};
     pub use crate::hydrodynamics::closed_form_face::parabola::Parabola;
     pub use crate::hydrodynamics::closed_form_face::shape::Shape;

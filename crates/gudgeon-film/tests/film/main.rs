@@ -3,6 +3,7 @@
 mod central_differences;
 mod closed_form_face;
 mod compressibility;
+mod crown;
 mod film_1d;
 mod film_2d;
 mod film_temperature;

@@ -7,7 +7,11 @@
 
 mod cavity_shear;
 mod clip;
-mod crown;
+#[allow(
+    missing_docs,
+    reason = "public for the tests of this crate alone, which call its searches one by one"
+)]
+pub mod crown;
 mod errors;
 mod film;
 mod flow;
