@@ -180,3 +180,78 @@ fn volumes_of_the_last_instant_are_remembered() {
     assert_eq!(p.restore(&saved), want.len());
     assert_eq!(p.faces.iter().flat_map(|f| f.volume).collect::<Vec<_>>(), want);
 }
+
+/// A ring that goes down and back up by uneven steps, whose face loses a little in each.
+fn strokes(p: &mut Carried, y: &mut [f64]) {
+    let mut pin = 0.1;
+    for k in 0..120 {
+        let next = if k < 60 { pin - 0.9e-3 } else { pin + 0.7e-3 };
+        let y0 = y.to_vec();
+        y[0] -= 0.01;
+        y[3] -= 0.02;
+        book(p, &y0, y, next);
+        pin = next;
+    }
+    p.place(y, pin);
+}
+
+/// At the end of a cycle what was taken up goes into the states and the film into the field: the same oil, held otherwise.
+#[test]
+fn the_next_cycle_begins_with_the_oil_of_the_last() {
+    let mut p = pack();
+    let mut y = vec![5.0; p.states().len()];
+    begin(&mut p);
+    strokes(&mut p, &mut y);
+    let (volumes, total): (Vec<f64>, f64) = (p.faces.iter().flat_map(|f| f.volume).collect(), p.total(&y));
+    let film = p.liner.film.clone();
+    let owed: Vec<f64> = p.faces.iter().map(|f| f.owed).collect();
+    assert!(p.faces.iter().any(|f| f.taken.iter().any(|t| *t > 0.0)), "nothing was taken up");
+    let mut field = vec![0.0; p.carried()];
+    p.end_cycle(&mut y, &mut field);
+    assert!(p.faces.iter().all(|f| f.taken == [0.0; SIDES] && f.owed == 0.0));
+    // The field is in its unit, a micrometre.
+    assert!(field.iter().zip(&film).all(|(y, h)| (y * 1e-6 - h).abs() <= 4.0 * f64::EPSILON * h));
+    // Some ten additions of volumes of this size.
+    assert!((p.total(&y) - total).abs() <= 1e-14 * total, "{:e} {total:e}", p.total(&y));
+    p.place(&y, p.faces[0].edge[0] - p.faces[0].offset);
+    for (k, (now, before)) in p.faces.iter().flat_map(|f| f.volume).zip(volumes).enumerate() {
+        // What a face owes is booked below it.
+        let want = before + if k % SIDES == 0 { owed[k / SIDES] } else { 0.0 };
+        assert!((now - want).abs() <= 1e-14 * total, "{k}: {now:e} {want:e}");
+    }
+}
+
+/// The volume under a face is the integral of film and drop, also where the narrowest place is an edge and no apex.
+#[test]
+fn a_volume_is_the_integral_of_the_gap() {
+    let length = 1.2e-3;
+    let faces = [
+        FaceProfile::Parabola { length, curvature: 15.0, apex: 0.3e-3 },
+        FaceProfile::Parabola { length, curvature: 15.0, apex: -0.4e-3 },
+        FaceProfile::Parabola { length, curvature: 15.0, apex: 1.5e-3 },
+        FaceProfile::Taper { length, land: 0.3e-3, drop: 5e-6 },
+        FaceProfile::Table { length, drops: vec![4e-6, 1e-6, 0.0, 2e-6, 9e-6] },
+    ];
+    let h = 1.5e-6;
+    for profile in &faces {
+        let mut p = pack();
+        p.faces[0].profile = profile.clone();
+        (p.faces[0].length, p.faces[0].narrowest) = (length, profile.narrowest());
+        for side in 0..SIDES {
+            let span = p.faces[0].span(side);
+            for part in [0.25, 0.5, 1.0] {
+                let t = part * span;
+                // Simpson's rule, exact for parabolas, over intervals of which the kinks of these faces are ends.
+                let n = 84;
+                let gap = |k: f64| h + p.faces[0].drop_at(t * k / f64::from(n), side);
+                let panel =
+                    |k: i32| gap(f64::from(k)) + 4.0 * gap(f64::from(k) + 0.5) + gap(f64::from(k + 1));
+                let want = t / f64::from(6 * n) * (0..n).map(panel).sum::<f64>();
+                let held = p.faces[0].held(h, t, side);
+                // Rounding of the sum of 84 panels.
+                assert!((held - want).abs() <= 1e-14 * want, "{profile:?} {side} {part}: {held:e} {want:e}");
+            }
+            assert_eq!(p.faces[0].capacity(h, side), p.faces[0].held(h, span, side));
+        }
+    }
+}
