@@ -34,3 +34,16 @@ fn refuses_tension_and_nonsense() {
     let soft = DowsonHigginson { a: quantity(2e-9), b: quantity(1e-9) };
     assert_eq!(soft.build().err().map(|e| e.field), Some("a".into()));
 }
+
+#[test]
+fn density_may_double_and_no_more() {
+    // a = b: (1 + 2 b p)/(1 + b p), which tends to 2.
+    let twice =
+        DowsonHigginson { a: quantity(1e-9), b: quantity(1e-9) }.build().expect("the limit is allowed");
+    let (mut f, mut s) = ([0.0; 3], [0.0; 3]);
+    twice.factor(&[0.0, 1e9, 1e300], &mut f, &mut s).expect("in range");
+    // Rounding of three operations.
+    assert!(f.iter().zip([1.0, 1.5, 2.0]).all(|(f, want)| (f - want).abs() < 1e-15), "{f:?}");
+    let more = DowsonHigginson { a: quantity(1e-9 * (1.0 + 1e-12)), b: quantity(1e-9) };
+    assert!(more.build().is_err());
+}
