@@ -570,7 +570,14 @@ fn a_film_answers_to_its_squeeze_velocity() {
 
 #[test]
 fn the_film_beside_is_one_newton_step_away() {
-    let grid = skirt(32, 24);
+    // Few nodes, which are eliminated, and more than a thousand, which take cycles.
+    for (nx, ny) in [(32, 24), (48, 32)] {
+        the_film_beside(nx, ny);
+    }
+}
+
+fn the_film_beside(nx: usize, ny: usize) {
+    let grid = skirt(nx, ny);
     let n = grid.len();
     let squeeze = skirt_squeeze(&grid, [0.02, -0.01]);
     let mode = FilmMode { u: -6.0, dhdt: &squeeze, edge_pressure: [2e4, 0.0, 0.0, 0.0] };
@@ -594,7 +601,7 @@ fn the_film_beside_is_one_newton_step_away() {
             assert!(*error < 0.1 * apart(&p, &exact), "{spec:?}: {error} of {}", apart(&p, &exact));
             // A solution leaves nothing over but what crosses the edges.
             film.imbalance(&Film2dIn::new(&there, 0.0, 0.01), &mode, &exact, &mut r).unwrap();
-            let inner = |k: usize| (1..32).contains(&(k % 33)) && (1..24).contains(&(k / 33));
+            let inner = |k: usize| (1..nx).contains(&(k % (nx + 1))) && (1..ny).contains(&(k / (nx + 1)));
             let left = (0..n).filter(|k| inner(*k)).map(|k| r[k].abs()).fold(0.0, f64::max);
             let most = (0..n).map(|k| r[k].abs()).fold(0.0, f64::max);
             // Residuals of 1e-12, against flows over edges.
@@ -605,7 +612,7 @@ fn the_film_beside_is_one_newton_step_away() {
                 ..Film2dIn::new(&there, -6.0, 0.01)
             };
             let out = film.solve(&inp).unwrap();
-            let before_x: f64 = (0..n).step_by(33).map(|k| r[k]).sum();
+            let before_x: f64 = (0..n).step_by(nx + 1).map(|k| r[k]).sum();
             assert!((before_x / out.outflow[0] - 1.0).abs() < 1e-8, "{spec:?}: {before_x} {:?}", out.outflow);
             // That film is another one now.
             assert!(film.respond(&mut r).is_err());
@@ -773,6 +780,14 @@ fn bad_inputs_are_errors() {
         ] {
             assert!(!film.solve(&bad).unwrap_err().is_recoverable(), "{bad:?}");
         }
+        let mut negative = vec![1.0; h.len()];
+        negative[20] = -1e-3;
+        for which in 0..4 {
+            let mut bad = good;
+            let f = &mut bad.factors;
+            *[&mut f.pressure_x, &mut f.pressure_y, &mut f.transport, &mut f.content][which] = &negative;
+            assert!(!film.solve(&bad).unwrap_err().is_recoverable(), "factor {which}");
+        }
         // It still works afterwards.
         assert!(film.solve(&good).unwrap().load > 0.0);
     }
@@ -789,6 +804,34 @@ fn bad_inputs_are_errors() {
     assert!(Sor { relaxation: Some(2.0), ..Sor::default() }.build(&ctx).is_err());
     let large = Film2dGrid::uniform(2000, 2000, 1.0, 1.0);
     assert!(Direct::default().build(&Film2dCtx { grid: &large }).is_err());
+}
+
+#[test]
+fn a_gap_that_opens_is_filled_in_inverse_proportion_also_at_its_sides() {
+    // Without pressure anywhere the flux u θ h/2 is the same everywhere: θ = h(0)/h. A face between two nodes has the mean of their gaps and the
+    // filling of the one upstream.
+    let grid = Film2dGrid::uniform(33, 9, 1.0, 0.5);
+    let (nx, n) = (33, 33 * 9);
+    for back in [false, true] {
+        let h = field(&grid, |x, _| if back { 3.0 - 2.0 * x } else { 1.0 + 2.0 * x });
+        let inp = Film2dIn::new(&h, if back { -1.0 } else { 1.0 }, 1.0);
+        let specs: [&dyn Film2dSpec; 2] = [&multigrid(Cavitation::MassConserving), &Direct::default()];
+        for spec in specs {
+            let (out, p, fill) = solved(spec, &grid, &inp);
+            assert!(p.iter().all(|p| *p == 0.0) && out.load == 0.0, "{spec:?}: {out:?}");
+            for k in 0..n {
+                let i = if back { nx - 1 - k % nx } else { k % nx };
+                // The last column is filled by its own bath.
+                if i + 1 == nx {
+                    continue;
+                }
+                let gap = |i: usize| 1.0 + 2.0 * i as f64 / 32.0;
+                let want = (gap(0) + gap(1)) / (gap(i) + gap(i + 1));
+                // Residuals of 1e-12 of the flux, summed over 32 columns.
+                assert!((fill[k] - want).abs() < 1e-10, "{spec:?} {k}: {} {want}", fill[k]);
+            }
+        }
+    }
 }
 
 #[test]
