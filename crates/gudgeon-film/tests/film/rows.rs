@@ -92,3 +92,35 @@ fn newton_and_node_by_node_find_the_same_film_in_any_line() {
     }
     assert!(films > 1000 && voids > 1000 && dry > 300, "{films} films, {voids} voids, {dry} dry");
 }
+
+/// The smooth functions of Fischer and Burmeister find a film in the number of steps that Newton's method needs to go from 1 to 1e-11, however many cavities there
+/// are and however many panels their ends have to go; the choice of states moves an end by a panel or two in a pass, and may take a pass for each.
+#[test]
+fn smooth_functions_need_few_steps_where_the_choice_of_states_needs_many() {
+    let mut most_of_choice = 0;
+    for n in [50, 200, 800] {
+        for waves in [1.0, 5.0, 25.0] {
+            let x: Vec<f64> = (0..=n).map(|i| f64::from(i) / f64::from(n)).collect();
+            let gap: Vec<f64> =
+                x.iter().map(|x| 1.5 + (2.0 * std::f64::consts::PI * waves * x).cos()).collect();
+            let (h_a, h_b) = (&gap[..gap.len() - 1], &gap[1..]);
+            let mu = vec![1.0; h_a.len()];
+            for p in [0.0, 0.1] {
+                let ends = [FilmEnd::Flooded { p }; 2];
+                let (factors, time) = (None, FilmTime::Steady);
+                let inp = Film1dIn { h_a, h_b, mu: &mu, factors, u: 1.0, ends, p_cav: 0.0, time };
+                let passes = |solver| {
+                    let mut line = Line::new("test", &Film1dCtx { x: &x });
+                    line.enter(&inp, true).expect("a line");
+                    Rows::new(x.len()).solve(&mut line, solver).expect("a film")
+                };
+                most_of_choice = most_of_choice.max(passes(LineSolver::Direct));
+                // Quadratic convergence, 0.5 to 1e-11, takes six steps; a few more bring the states near, and one pass confirms them.
+                let smooth = passes(LineSolver::FischerBurmeister);
+                assert!(smooth <= 12, "{smooth} passes with {n} panels, {waves} waves, {p}");
+            }
+        }
+    }
+    // There are films among these that tell the two apart.
+    assert!(most_of_choice > 24, "{most_of_choice}");
+}
