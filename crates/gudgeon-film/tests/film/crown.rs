@@ -24,7 +24,7 @@ fn integral(from: f64, to: f64, f: impl Fn(f64) -> f64) -> f64 {
     half * (0..n).map(panel).sum::<f64>()
 }
 
-/// A film that ruptures at `xr` and reforms at `xf` while its face approaches the liner at `-v`. Pressures over `12 μ`.
+/// A film that ruptures at `xr` and reforms at `xf` while its thickness changes at the rate `v`. Pressures over `12 μ`.
 #[derive(Debug, Clone, Copy)]
 struct Known {
     length: f64,
