@@ -50,7 +50,7 @@ pub struct Asked {
     pub trailing: bool,
 }
 
-/// A ruptured film, as [`super::quick`] wants it: `s` counts from the apex, the flux constant is `q - ḣ s + U h`.
+/// A ruptured film, as the quick searches want it: `s` counts from the apex, the flux constant is `q - ḣ s + U h`.
 #[derive(Debug, Clone, Copy)]
 pub struct Crowned {
     pub v: f64,
