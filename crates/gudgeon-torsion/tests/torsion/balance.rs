@@ -133,7 +133,13 @@ fn a_geared_coupling_is_its_reduced_line() {
         plain.drives.push(drive(2, 1.0, &reduced));
         let spec = HarmonicBalance { tolerance: quantity(1e-12), rounds: 60 };
         let [a, b] = [&geared, &plain].map(|line| run(&spec, &context(line, 55.0)));
-        assert_eq!(a.counters["rounds"], b.counters["rounds"]);
+        // The end at 1e-12 is close enough to rounding for it to decide the last round.
+        assert!(
+            a.counters["rounds"].abs_diff(b.counters["rounds"]) <= 1,
+            "{:?} {:?}",
+            a.counters,
+            b.counters
+        );
         let top = b.orders.iter().map(|o| o.torque[0][0].hypot(o.torque[0][1])).fold(0.0, f64::max);
         // A motion that stays in the linear part would be no test.
         assert!(top > 100.0, "{top}");
