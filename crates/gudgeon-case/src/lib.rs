@@ -7,10 +7,8 @@
 //! 4. Deserialisation decides. What it refuses after a clean walk is reported at the path where it stopped.
 //! 5. A [`BuildError`] that a later stage raises finds its place through [`Loaded::locate`].
 
-mod deserialise;
 mod near;
 mod overrides;
-mod plain;
 mod published;
 mod refine;
 mod render;
@@ -22,9 +20,9 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use gudgeon_core::BuildError;
 use gudgeon_core::file::{Files, MOST_OF_A_CASE, MOST_OF_A_TABLE, ReadError, read_text};
 use gudgeon_core::quantity::with_decimal_point;
+use gudgeon_core::{BuildError, content};
 use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
 use toml::de::DeTable;
@@ -37,11 +35,10 @@ pub use report::{Diagnostic, MOST_MISTAKES, Origin, Report, Source, WIDTH, line_
 /// What the tests of this crate look at and nobody else needs.
 #[doc(hidden)]
 pub mod for_tests {
-    pub use crate::plain::plain;
+    pub use crate::reason;
     pub use crate::tree::{Step, steps};
 }
 
-use plain::plain;
 use schema::{RENAMED, Schema, shorten};
 use tree::{Data, Node, Place, steps};
 
@@ -126,12 +123,20 @@ fn load_tree<T: DeserializeOwned + JsonSchema + 'static>(
         return Err(refuse(found));
     }
     notes.extend(schema.improbable(&tree));
-    match deserialise::value(&tree) {
+    match content::read(&tree.content()) {
         Ok(value) => Ok(Loaded { value, source, overrides, notes, tree: Arc::new(tree), base }),
-        Err((path, text)) => {
-            let message = plain(&shorten(text.lines().next().unwrap_or_default()));
-            Err(refuse(vec![place(&tree, &source, path, message, None)]))
+        Err(e) => Err(refuse(vec![place(&tree, &source, e.path().to_owned(), reason(&e), None)])),
+    }
+}
+
+/// What is wrong with a value, and the nearest right name.
+#[must_use]
+pub fn reason(e: &content::Error) -> String {
+    match e.unknown() {
+        Some((what, name, valid)) if !valid.is_empty() => {
+            format!("unknown {what} `{name}`; {}", advice(name, valid))
         }
+        _ => shorten(e.to_string().lines().next().unwrap_or_default()),
     }
 }
 

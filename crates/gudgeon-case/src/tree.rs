@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use gudgeon_core::content::Content;
 use serde_json::Value;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -89,6 +90,20 @@ pub(super) fn join(path: &str, key: impl std::fmt::Display) -> String {
 impl Node {
     pub fn from_table(t: &Spanned<DeTable<'_>>, origin: Origin, base: usize) -> Self {
         Self { data: table(t.get_ref(), origin, base), place: Place { origin, span: None } }
+    }
+
+    /// The value without its places.
+    pub fn content(&self) -> Content {
+        match &self.data {
+            Data::Text(s) => Content::Text(s.clone()),
+            Data::Integer(i) => Content::Integer(*i),
+            Data::Float(f) if f.is_finite() => Content::Number(*f),
+            // The check of the schema has refused them where a number is wanted.
+            Data::Float(_) | Data::Date => Content::Nothing,
+            Data::Bool(b) => Content::Bool(*b),
+            Data::Array(a) => Content::List(a.iter().map(Self::content).collect()),
+            Data::Table(t) => Content::Table(t.iter().map(|e| (e.key.clone(), e.node.content())).collect()),
+        }
     }
 
     pub fn from_value(v: &Spanned<DeValue<'_>>, origin: Origin, base: usize) -> Self {

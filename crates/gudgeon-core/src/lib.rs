@@ -16,10 +16,11 @@
 //!
 //! `gudgeon-film`, `-gas` or `-torsion` alone are 48 packages with all they depend on (`cargo tree -p gudgeon-film -e normal`): 20 are
 //! `gudgeon-numerics` and its linear algebra, most of the others serde and schemars, because a specification can be read, written and described
-//! wherever it is used, and models that hold others (`Box<dyn …Spec>`) are read through typetag. There is no feature to leave that out: it would
+//! wherever it is used, and so are models that hold others (`Box<dyn …Spec>`, see [`content`]). There is no feature to leave that out: it would
 //! stand on every specification and save 6 packages. Reading case files (TOML, places, diagnostics) is `gudgeon-case`, which no physics crate
 //! depends on; the program as a whole is 104 packages.
 
+pub mod content;
 pub mod error;
 pub mod face;
 pub mod file;
@@ -35,7 +36,7 @@ extern crate self as gudgeon_core;
 /// What the registering attributes and macros name.
 #[doc(hidden)]
 pub mod __private {
-    pub use {dyn_clone, inventory, schemars, serde_json, typetag};
+    pub use {dyn_clone, inventory, schemars, serde, serde_json, typetag};
 }
 #[doc(hidden)]
 pub use {inventory, schemars, serde_json};

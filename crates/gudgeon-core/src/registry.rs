@@ -46,8 +46,11 @@
 //! [`register_model`](crate::register_model) makes the model readable from a case file and describes it: the commands `models`, `describe`
 //! and `schema`, the contract tests and the documentation read nothing else.
 
+use std::any::Any;
 use std::collections::BTreeMap;
 use std::fmt;
+
+use crate::content::{self, Content};
 
 /// One registered model.
 #[derive(Debug)]
@@ -66,6 +69,8 @@ pub struct ModelInfo {
     pub references: &'static [&'static str],
     /// A complete, runnable specification in TOML, without the table header.
     pub example: &'static str,
+    /// Reads the specification, without its `model` key, as a `Box<dyn …Spec>` of its kind.
+    pub read: fn(&Content) -> Result<Box<dyn Any>, content::Error>,
     /// JSON schema of the specification without its `model` key.
     pub schema: fn(&mut schemars::SchemaGenerator) -> schemars::Schema,
     /// Module that registers it, `gudgeon_gas::orifice_network`; its first word is the crate.
@@ -214,7 +219,7 @@ macro_rules! default_model {
             }
         }
         fn $f() -> Box<$t> {
-            match $crate::serde_json::from_value($crate::serde_json::json!({ "model": $name })) {
+            match $crate::content::plain_model($name) {
                 Ok(m) => m,
                 Err(e) => panic!("the default `{}`: {e}", $name),
             }

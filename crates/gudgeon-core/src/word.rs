@@ -2,14 +2,12 @@
 
 use std::borrow::Cow;
 use std::fmt;
-use std::marker::PhantomData;
 use std::ops::Deref;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::de::value::{MapAccessDeserializer, MapDeserializer};
-use serde::de::{Error, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use crate::content::{self, Content, Error};
 use crate::registry::{Kind, Registry};
 
 /// A model of the kind `S` that a case chooses by its name alone, `hoop = "as_printed"`; the table of any other model,
@@ -50,33 +48,13 @@ where
     }
 }
 
-impl<'de, S: ?Sized> Deserialize<'de> for Word<S>
-where
-    Box<S>: Deserialize<'de>,
-{
+impl<'de, S: ?Sized + Kind + 'static> Deserialize<'de> for Word<S> {
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        from.deserialize_any(WordOrTable(PhantomData))
-    }
-}
-
-struct WordOrTable<S: ?Sized>(PhantomData<Box<S>>);
-
-impl<'de, S: ?Sized> Visitor<'de> for WordOrTable<S>
-where
-    Box<S>: Deserialize<'de>,
-{
-    type Value = Word<S>;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("the name of a model, or a table with the key `model`")
-    }
-
-    fn visit_str<E: Error>(self, word: &str) -> Result<Word<S>, E> {
-        Box::deserialize(MapDeserializer::new(std::iter::once(("model", word)))).map(Word)
-    }
-
-    fn visit_map<A: MapAccess<'de>>(self, table: A) -> Result<Word<S>, A::Error> {
-        Box::deserialize(MapAccessDeserializer::new(table)).map(Word)
+        let table = match Content::deserialize(from)? {
+            Content::Text(word) => Content::named(&word),
+            other => other,
+        };
+        content::model(table).map(Word).map_err(Error::hand_on)
     }
 }
 

@@ -11,16 +11,21 @@ pub fn expand(fields: Fields, item: TokenStream) -> syn::Result<TokenStream> {
     let item: ItemTrait = syn::parse2(item)?;
     let spec = &item.ident;
     Ok(quote! {
-        #[::gudgeon_core::__private::typetag::serde(tag = "model")]
+        #[::gudgeon_core::__private::typetag::serialize(tag = "model")]
         #item
 
         const _: () = {
-            use ::gudgeon_core::__private::{dyn_clone, inventory, schemars, serde_json};
+            use ::gudgeon_core::__private::{dyn_clone, inventory, schemars, serde, serde_json};
             use ::gudgeon_core::registry::{Kind, KindInfo, kind_schema};
 
             dyn_clone::clone_trait_object!(#spec);
             impl Kind for dyn #spec {
                 const NAME: &'static str = #name;
+            }
+            impl<'de> serde::Deserialize<'de> for ::std::boxed::Box<dyn #spec> {
+                fn deserialize<D: serde::Deserializer<'de>>(from: D) -> ::std::result::Result<Self, D::Error> {
+                    ::gudgeon_core::content::model_from(from)
+                }
             }
             impl schemars::JsonSchema for dyn #spec {
                 fn inline_schema() -> bool {
@@ -38,7 +43,8 @@ pub fn expand(fields: Fields, item: TokenStream) -> syn::Result<TokenStream> {
                     kind: #name,
                     summary: #summary,
                     resolve: |v| {
-                        let spec: ::std::boxed::Box<dyn #spec> = serde_json::from_value(v)?;
+                        let spec = ::gudgeon_core::content::model::<dyn #spec>((&v).into());
+                        let spec = spec.map_err(::gudgeon_core::content::Error::hand_on::<serde_json::Error>)?;
                         serde_json::to_value(&spec)
                     },
                     module: module_path!(),

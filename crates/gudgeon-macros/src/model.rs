@@ -21,7 +21,7 @@ pub fn expand(fields: Fields, item: TokenStream) -> syn::Result<TokenStream> {
         const _: () = {
             use ::gudgeon_core::__private::{inventory, schemars, typetag};
 
-            #[typetag::serde(name = #name)]
+            #[typetag::serialize(name = #name)]
             #item
 
             inventory::submit! {
@@ -33,6 +33,11 @@ pub fn expand(fields: Fields, item: TokenStream) -> syn::Result<TokenStream> {
                     validity: #validity,
                     references: &#references,
                     example: #example,
+                    read: |content| {
+                        let spec: #own = ::gudgeon_core::content::read(content)?;
+                        let spec: ::std::boxed::Box<dyn #spec> = ::std::boxed::Box::new(spec);
+                        Ok(::std::boxed::Box::new(spec))
+                    },
                     schema: |g| <#own as schemars::JsonSchema>::json_schema(g),
                     module: module_path!(),
                     file: file!(),

@@ -6,6 +6,7 @@ use std::collections::HashMap;
 use std::ops::Deref;
 use std::sync::{Mutex, PoisonError};
 
+use gudgeon_core::content::{self, Content, Error};
 use gudgeon_core::registry::{Kind, kind_schema};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::de::{DeserializeOwned, Error as _};
@@ -53,11 +54,10 @@ impl<C, S: ?Sized> Deref for SolverTable<C, S> {
 impl<C, S> Default for SolverTable<C, S>
 where
     C: SolverCommon,
-    S: ?Sized,
-    Box<S>: DeserializeOwned,
+    S: ?Sized + Kind + 'static,
 {
     fn default() -> Self {
-        match Self::from_map(Map::new()) {
+        match Self::from_content(Content::Table(Vec::new())) {
             Ok(table) => table,
             // A registered default is checked when the program starts.
             Err(e) => panic!("the default solver `{}`: {e}", C::DEFAULT),
@@ -68,19 +68,18 @@ where
 impl<C, S> SolverTable<C, S>
 where
     C: SolverCommon,
-    S: ?Sized,
-    Box<S>: DeserializeOwned,
+    S: ?Sized + Kind + 'static,
 {
-    fn from_map(mut all: Map<String, Value>) -> Result<Self, serde_json::Error> {
-        let name = all.remove(TAG).unwrap_or_else(|| C::DEFAULT.into());
+    fn from_content(all: Content) -> Result<Self, Error> {
+        let Content::Table(mut all) = all else { return Err(Error::custom("a solver is a table")) };
+        let named = all.iter().position(|(key, _)| key == TAG).map(|at| all.remove(at).1);
+        let name = named.unwrap_or_else(|| Content::Text(C::DEFAULT.into()));
         let shared = common_keys::<C>();
-        let (common, mut own): (Map<_, _>, Map<_, _>) =
+        let (common, mut own): (Vec<_>, Vec<_>) =
             all.into_iter().partition(|(key, _)| shared.iter().any(|k| k == key));
-        own.insert(MODEL.into(), name);
-        Ok(Self {
-            common: serde_json::from_value(Value::Object(common))?,
-            method: serde_json::from_value(Value::Object(own))?,
-        })
+        own.insert(0, (MODEL.into(), name));
+        let (common, own) = (Content::Table(common), Content::Table(own));
+        Ok(Self { common: content::read(&common)?, method: content::model(own)? })
     }
 }
 
@@ -98,11 +97,10 @@ fn common_keys<C: SolverCommon>() -> &'static [String] {
 impl<'de, C, S> Deserialize<'de> for SolverTable<C, S>
 where
     C: SolverCommon,
-    S: ?Sized,
-    Box<S>: DeserializeOwned,
+    S: ?Sized + Kind + 'static,
 {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        Self::from_map(Map::deserialize(deserializer)?).map_err(D::Error::custom)
+        Self::from_content(Content::deserialize(deserializer)?).map_err(Error::hand_on)
     }
 }
 
@@ -164,10 +162,9 @@ where
 /// All registered solvers of a kind with their default settings; those that have none are left out.
 pub fn default_solvers<S>() -> Vec<(&'static str, Box<S>)>
 where
-    S: ?Sized + Kind,
-    Box<S>: DeserializeOwned,
+    S: ?Sized + Kind + 'static,
 {
     let registry = gudgeon_core::Registry::collect();
-    let spec = |name: &'static str| serde_json::from_value(json!({ MODEL: name })).ok().map(|s| (name, s));
+    let spec = |name: &'static str| content::plain_model(name).ok().map(|spec| (name, spec));
     registry.models(S::NAME).iter().filter_map(|m| spec(m.name)).collect()
 }

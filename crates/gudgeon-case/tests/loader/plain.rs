@@ -1,10 +1,11 @@
-//! Messages of serde in plain words.
+//! What is wrong with a value, in plain words.
 
-use gudgeon_case::for_tests::plain;
+use gudgeon_case::for_tests::reason;
+use gudgeon_core::content::{Content, read};
 
 fn said<T: serde::de::DeserializeOwned + std::fmt::Debug>(json: &str) -> String {
-    let value: serde_json::Value = serde_json::from_str(json).expect("JSON");
-    plain(&serde_json::from_value::<T>(value).expect_err("must be refused").to_string())
+    let value: Content = serde_json::from_str(json).expect("JSON");
+    reason(&read::<T>(&value).expect_err("must be refused"))
 }
 
 #[derive(Debug, serde::Deserialize)]

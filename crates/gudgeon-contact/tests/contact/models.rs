@@ -79,8 +79,8 @@ fn switches() {
 #[test]
 fn refusals_name_the_fault() {
     let e = |t: &str| read(t).err().map(|e| e.to_string()).unwrap_or_default();
-    assert!(e("model = \"off\"\nroughness = 1").contains("unknown field `roughness`"));
-    assert!(e("model = \"roughness_threshold\"").contains("missing field `roughness`"));
+    assert!(e("model = \"off\"\nroughness = 1").contains("unknown key `roughness`"));
+    assert!(e("model = \"roughness_threshold\"").contains("missing key `roughness`"));
     assert!(e("model = \"roughness_threshold\"\nroughness = \"0 um\"").contains("greater than zero"));
     assert!(e("model = \"film_floor\"\nfriction_coefficient = -0.1").contains("zero or greater"));
     assert!(e("model = \"greenwood_tripp\"\nroughness = \"1 um\"\ncomposite_modulus = \"1 GPa\"\nintegral = \"hu\"").contains("hu1994"));

@@ -1,4 +1,5 @@
-//! Files and grids.
+//! Values of files, files and grids.
 
+mod content;
 mod file;
 mod film_2d;

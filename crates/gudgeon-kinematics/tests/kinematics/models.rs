@@ -64,7 +64,7 @@ fn a_resolved_specification_reads_back_to_the_same_bits() {
 #[test]
 fn unknown_keys_are_refused() {
     let e = toml::from_str::<Box<dyn KinematicsSpec>>("model = \"exact_slider_crank\"\nrod = 1").err();
-    assert!(e.is_some_and(|e| e.to_string().contains("unknown field `rod`")));
+    assert!(e.is_some_and(|e| e.to_string().contains("unknown key `rod`")));
     let e =
         toml::from_str::<Box<dyn CylinderPressureSpec>>("model = \"constant\"\npressure = \"0 bar\"").err();
     assert!(e.is_some_and(|e| e.to_string().contains("greater than zero")));

@@ -232,8 +232,7 @@ fn profile(
             continue;
         }
         let spec: Box<dyn gudgeon_core::kinds::ProfileCurveSpec> =
-            serde_json::from_value(serde_json::json!({ "model": name }))
-                .map_err(|e| BuildError::new(e.to_string()))?;
+            gudgeon_core::content::plain_model(name).map_err(|e| BuildError::new(e.to_string()))?;
         let other = spec.build(&x, y)?;
         columns.push(column(name, "m", at.iter().map(|x| other.value(*x)).collect()));
         drawn.push((name.replace('_', " "), name.to_owned()));
