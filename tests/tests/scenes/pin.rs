@@ -131,7 +131,7 @@ fn a_search_without_a_pin_names_the_limit() {
     // Such pins exist, only not of this length, which the published search never reduces.
     let said = fails(PUBLISHED, &["pin.length=80 mm"]);
     assert!(said.contains("the bore vanished while deflection") && said.contains("shorter"), "{said}");
-    let said = fails(EXACT, &["optimise.least_wall=10 mm", "optimise.inner={from=\"5 mm\", to=\"9 mm\"}"]);
+    let said = fails(EXACT, &["optimise.min_wall=10 mm", "optimise.inner={from=\"5 mm\", to=\"9 mm\"}"]);
     assert!(said.contains("wall of 10 mm"), "{said}");
 }
 
@@ -284,7 +284,7 @@ fn extremes_end_in_words_or_in_numbers() {
         "limits.deflection",
         "limits.shear_stress",
         "limits.resultant_stress",
-        "optimise.least_wall",
+        "optimise.min_wall",
         "optimise.tolerance.length",
         "optimise.tolerance.inner",
         "optimise.steps.coarse",

@@ -12,9 +12,10 @@ use crate::tree::Tree;
 /// does not depend on the ratio of stiffnesses. Holzer's residual of every mode is its check.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("x-renamed" = { "most": "max_modes" }))]
 pub struct Eigenvalues {
     /// Maximum number of modes, the lowest first; rigid ones count.
-    #[serde(default = "max_modes", rename = "most")]
+    #[serde(default = "max_modes")]
     #[schemars(range(min = 1, max = 2000))]
     pub max_modes: usize,
 }
@@ -40,7 +41,7 @@ impl Default for Eigenvalues {
 impl NaturalFrequenciesSpec for Eigenvalues {
     fn build(&self, line: &Line) -> Result<Box<dyn NaturalFrequencies>, BuildError> {
         if self.max_modes == 0 {
-            return Err(BuildError::at("most", "at least one mode must be wanted"));
+            return Err(BuildError::at("max_modes", "at least one mode must be wanted"));
         }
         Ok(Box::new(Solver { tree: Tree::new(line)?, max_modes: self.max_modes }))
     }

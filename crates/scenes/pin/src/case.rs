@@ -158,6 +158,7 @@ impl Limits {
 /// Search for the lightest pin.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
+#[schemars(extend("x-renamed" = { "least_wall": "min_wall" }))]
 pub struct Optimise {
     /// How it is searched.
     pub method: Method,
@@ -171,7 +172,7 @@ pub struct Optimise {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub inner: Option<RangeCase>,
     /// Thinnest wall.
-    pub least_wall: Length<NonNegative>,
+    pub min_wall: Length<NonNegative>,
     /// Half widths of the tolerances: limits are kept in every corner.
     pub tolerance: Tolerance,
     /// Sizes that can be had; the lightest pin of these is searched too.
@@ -196,7 +197,7 @@ impl Default for Optimise {
             length: None,
             outer: None,
             inner: None,
-            least_wall: quantity(0.0),
+            min_wall: quantity(0.0),
             tolerance: Tolerance::default(),
             stock: None,
             pareto: Vec::new(),

@@ -82,7 +82,7 @@ fn of_search(all: &mut Vec<String>, o: &Optimise, limited: &[&str]) {
             add(all, &["start_bore_admitted", "start_length_admitted", "excess_here", "excess"]);
         }
     }
-    add(all, &["least_outer"]);
+    add(all, &["min_outer"]);
     if o.stock.is_some() {
         add(all, &["stock_length", "stock_outer", "stock_inner", "stock_mass_differential", "stock_excess"]);
     }

@@ -124,7 +124,7 @@ pub fn setup(case: &PinCase, files: &Files) -> Result<Option<Setup>, Vec<BuildEr
         length: ranges.length,
         outer: ranges.outer,
         inner: ranges.inner,
-        min_wall: o.least_wall.si(),
+        min_wall: o.min_wall.si(),
         tolerance: ranges.tolerance,
     };
     few_enough(o, &out)?;
@@ -313,10 +313,10 @@ fn optimisable(case: &PinCase, o: &Optimise, limits: &[f64; 8], errors: &mut Vec
         return;
     }
     // Without one of these the wall may vanish, and the lightest pin with it.
-    if ![1, 2, 4, 5, 6, 7].iter().any(|k| limits[*k].is_finite()) && o.least_wall.si() == 0.0 {
+    if ![1, 2, 4, 5, 6, 7].iter().any(|k| limits[*k].is_finite()) && o.min_wall.si() == 0.0 {
         errors.push(
             BuildError::at("limits", "nothing keeps the pin's wall from vanishing")
-                .help("limit a stress, the ovalisation or the deflection, or give `optimise.least_wall`"),
+                .help("limit a stress, the ovalisation or the deflection, or give `optimise.min_wall`"),
         );
     }
     for (k, q) in o.pareto.iter().enumerate() {

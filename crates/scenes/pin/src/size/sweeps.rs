@@ -36,7 +36,7 @@ pub fn sweep(d: &Design<'_>, s: &Setup, o: &Optimise, out: &mut RunResult) {
 fn min_outer(d: &Design<'_>, out: &mut RunResult) {
     let Some(min) = d.min_feasible_outer() else { return };
     let what = "smallest outer diameter with a pin that keeps the limits";
-    result(out, "least_outer", 1e3 * min, "mm", what);
+    result(out, "min_outer", 1e3 * min, "mm", what);
     if min <= d.outer.low * (1.0 + 1e-9) {
         return;
     }
