@@ -3,6 +3,7 @@
 use gudgeon_core::EvalError;
 use gudgeon_core::geometry::BackVolume;
 use gudgeon_core::kinds::{GasFlow, GasIn, GasOut, GasPartials};
+use gudgeon_core::states::{StateInfo, Stateful};
 
 use crate::pack_network::{PackNetwork, RingLinks};
 use crate::passage_law::PassageLaw;
@@ -45,6 +46,12 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> PackNetwork<M, L> {
     }
 }
 
+impl<L: PassageLaw, M: PassageModel<L::Passage>> Stateful for PackNetwork<M, L> {
+    fn states(&self) -> &[StateInfo] {
+        &self.states
+    }
+}
+
 impl<L: PassageLaw, M: PassageModel<L::Passage>> GasFlow for PackNetwork<M, L> {
     /// Spaces of capacity `C_k` tied to a land of capacity `C_0`, each by `C_k/τ`, come together at `1/τ` and `(1 + Σ C_k/C_0)/τ`; the quickest
     /// has the rings above and below a land both seated against it.
@@ -61,23 +68,6 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> GasFlow for PackNetwork<M, L> {
         self.spaces.bounded = !M::SIGNED;
     }
 
-    fn n_states(&self) -> usize {
-        self.net.volumes()
-    }
-
-    fn state_names(&self) -> Vec<String> {
-        let mut names = vec![String::new(); self.net.volumes()];
-        for i in 0..self.links.len() {
-            if i > 0 {
-                names[self.lands[i]] = format!("land{}", i + 1);
-            }
-            if let Some(node) = self.links[i].back {
-                names[node] = format!("ring{}.back", i + 1);
-            }
-        }
-        names
-    }
-
     fn uses_film_height(&self) -> bool {
         self.spaces.nominal_film.is_none()
             && self.spaces.pack.rings.iter().any(|r| {
@@ -88,7 +78,7 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> GasFlow for PackNetwork<M, L> {
             })
     }
 
-    fn initial(&self, inp: &GasIn<'_>, p_land: &[f64], state: &mut [f64]) {
+    fn at_pressures(&self, inp: &GasIn<'_>, p_land: &[f64], state: &mut [f64]) {
         for i in 0..self.links.len() {
             if i > 0 {
                 let node = self.lands[i];

@@ -1,7 +1,8 @@
 //! The network of lands and spaces behind rings: any law of a passage and any passages around the rings as one gas-flow model.
 
 use gudgeon_core::geometry::{BackVolume, PackGeometry, RingGeometry, RingPlace};
-use gudgeon_core::kinds::GasIn;
+use gudgeon_core::kinds::{GasIn, gas_mass};
+use gudgeon_core::states::StateInfo;
 use gudgeon_core::{BuildError, EvalError};
 
 use crate::network::Network;
@@ -76,9 +77,9 @@ pub(crate) struct RingLinks {
 /// let (pack, places) = plain_pack(2);
 /// let mut gas = PackNetwork::new("darcy", OrificeAreas::default(), Darcy { k: 1e-4 }, &pack, PackOptions::default())?;
 /// let inputs = GasIn { p_cylinder: 20e5, p_crankcase: 1e5, rings: &places };
-/// let (mut masses, mut rates) = (vec![0.0; gas.n_states()], vec![0.0; gas.n_states()]);
+/// let (mut masses, mut rates) = (vec![0.0; gas.n_masses()], vec![0.0; gas.n_masses()]);
 /// let mut out = GasOut::new(2);
-/// gas.initial(&inputs, &[20e5, 5e5, 1e5], &mut masses);
+/// gas.at_pressures(&inputs, &[20e5, 5e5, 1e5], &mut masses);
 /// gas.rates(&inputs, &masses, &mut rates, &mut out)?;
 /// // What flows in and not out is stored.
 /// let stored: f64 = rates.iter().sum();
@@ -101,10 +102,14 @@ pub struct PackNetwork<M, L: PassageLaw = OrificeLaw> {
     pub(crate) lands: Vec<usize>,
     /// Of all nodes \[K\].
     temperatures: Vec<f64>,
+    /// Of all volumes.
+    pub(crate) states: Vec<StateInfo>,
 }
 
 /// Nodes and links of a pack.
 struct Layout {
+    /// Names of the volumes.
+    names: Vec<String>,
     temperatures: Vec<f64>,
     volumes: usize,
     lands: Vec<usize>,
@@ -120,14 +125,17 @@ impl Layout {
         let mut temperatures = Vec::with_capacity(2 * n + 1);
         let mut backs = vec![None; n];
         let mut lands = vec![0; n + 1];
+        let mut names = Vec::with_capacity(2 * n);
         for (i, ring) in pack.rings.iter().enumerate() {
             if i > 0 {
                 lands[i] = temperatures.len();
                 temperatures.push(pack.lands[i].temperature);
+                names.push(format!("land{}", i + 1));
             }
             if has_room(ring) && !fast[i] {
                 backs[i] = Some(temperatures.len());
                 temperatures.push(ring.back_temperature);
+                names.push(format!("ring{}.back", i + 1));
             }
         }
         let volumes = temperatures.len();
@@ -161,7 +169,7 @@ impl Layout {
                 }
             })
             .collect();
-        Self { temperatures, volumes, lands, ends, links }
+        Self { names, temperatures, volumes, lands, ends, links }
     }
 }
 
@@ -209,14 +217,16 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> PackNetwork<M, L> {
                 && eliminate_below.is_some_and(|limit| filling_time(&model, &law, &spaces, i) < limit)
         };
         let fast: Vec<bool> = (0..pack.rings.len()).map(is_fast).collect();
-        let Layout { temperatures, volumes, lands, ends, links } = Layout::new(pack, &fast, M::HAS_FACE);
+        let Layout { names, temperatures, volumes, lands, ends, links } =
+            Layout::new(pack, &fast, M::HAS_FACE);
         let mut net = Network::new(law, pack.gas_constant, &temperatures, volumes, &ends)?;
         for (i, link) in links.iter().enumerate() {
             if let RingLinks { through: true, upper: Some(upper), .. } = link {
                 net.split_link(*upper, pack.gas_constant * pack.rings[i].back_temperature);
             }
         }
-        Ok(Self { name, model, spaces, net, links, lands, temperatures })
+        let states = names.iter().map(|name| gas_mass(name)).collect();
+        Ok(Self { name, model, spaces, net, links, lands, temperatures, states })
     }
 
     /// Gives every gas space the law that `law_at` has for gas of its temperature \[K\], for what flows out of it.

@@ -2,6 +2,7 @@
 
 use gudgeon_core::kinds::{GasFlow, GasFlowCtx, GasFlowSpec, GasIn, GasOut};
 use gudgeon_core::quantity::PosPressure;
+use gudgeon_core::states::Stateful;
 use gudgeon_core::{BuildError, EvalError, register_model};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -47,20 +48,16 @@ struct Runtime {
     lands: Vec<f64>,
 }
 
+impl Stateful for Runtime {}
+
 impl GasFlow for Runtime {
     fn uses_end_gaps(&self) -> bool {
         false
     }
-    fn n_states(&self) -> usize {
-        0
-    }
-    fn state_names(&self) -> Vec<String> {
-        Vec::new()
-    }
     fn uses_film_height(&self) -> bool {
         false
     }
-    fn initial(&self, _: &GasIn<'_>, _: &[f64], _: &mut [f64]) {}
+    fn at_pressures(&self, _: &GasIn<'_>, _: &[f64], _: &mut [f64]) {}
 
     fn pressures(&mut self, inp: &GasIn<'_>, _: &[f64], out: &mut GasOut) -> Result<(), EvalError> {
         for (name, p) in [("cylinder", inp.p_cylinder), ("crankcase", inp.p_crankcase)] {

@@ -102,7 +102,7 @@ impl EulerMarch {
         for cycle in 1..=self.cycles {
             let last = cycle == self.cycles;
             step.sums.fill(0.0);
-            let before: f64 = y.iter().zip(&pack.mass_scale).map(|(y, m)| y * m).sum();
+            let before: f64 = mass(pack, &y);
             for k in 0..per_cycle {
                 let theta = h * f64::from(k);
                 step.take(pack, theta, h, &mut y)?;
@@ -115,7 +115,7 @@ impl EulerMarch {
                 }
                 ended.steps += 1;
             }
-            let after: f64 = y.iter().zip(&pack.mass_scale).map(|(y, m)| y * m).sum();
+            let after: f64 = mass(pack, &y);
             ended.totals = step.totals(rings, after - before);
             progress(f64::from(cycle) / f64::from(self.cycles));
         }
@@ -191,4 +191,10 @@ impl Step {
         t.periodicity_error = (stored / through).abs();
         t
     }
+}
+
+/// Gas in all volumes for the states `y` \[kg\].
+fn mass(pack: &Pack, y: &[f64]) -> f64 {
+    let masses = y.iter().zip(&pack.gas_scale).take(pack.gas.n_masses());
+    masses.map(|(y, scale)| y * scale).sum()
 }

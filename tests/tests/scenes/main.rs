@@ -6,6 +6,7 @@ mod common;
 mod cases;
 mod compare;
 mod extremes;
+mod gas_states;
 mod implicit;
 mod lazy;
 mod limits;

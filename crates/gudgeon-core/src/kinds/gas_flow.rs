@@ -3,6 +3,7 @@ use std::fmt::Debug;
 use dyn_clone::DynClone;
 
 use crate::geometry::{PackGeometry, RingPlace};
+use crate::states::{Signals, StateInfo, Stateful};
 use crate::{BuildError, EvalError, register_kind};
 
 /// What a [`GasFlowSpec`] is built for.
@@ -75,11 +76,11 @@ impl GasOut {
     }
 }
 
-/// Partial derivatives of pressures and flows by the gas masses, the places of the rings and the boundary pressures kept: one row per
-/// quantity, row-major, one column per mass.
+/// Partial derivatives of pressures and flows by the states of the gas, the places of the rings and the boundary pressures kept: one row per
+/// quantity, row-major, one column per state. The units are those of states that are masses.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct GasPartials {
-    /// Of the rates of the masses \[1/s\].
+    /// Of the rates of the states \[1/s\].
     pub d_state: Vec<f64>,
     /// Of the `n + 1` land pressures \[Pa/kg\].
     pub p_land: Vec<f64>,
@@ -92,7 +93,7 @@ pub struct GasPartials {
 }
 
 impl GasPartials {
-    /// Zeros for `rings` rings and `states` masses.
+    /// Zeros for `rings` rings and `states` states.
     #[must_use]
     pub fn new(rings: usize, states: usize) -> Self {
         Self {
@@ -105,29 +106,45 @@ impl GasPartials {
     }
 }
 
-/// A running gas-flow model. Its states are the gas masses \[kg\] of its volumes, so that any linear-invariant-preserving
-/// integrator closes the mass balance to round-off: `Σ d_state = flow_in[0] - flow_out[n-1]` holds for every call.
-pub trait GasFlow: Send {
+/// Description of the gas mass of a volume as a state, for [`Stateful::states`](crate::states::Stateful::states) of a gas-flow model: `land2`,
+/// `ring1.back`. In the state vector it stands over its value at 1 bar; a tenth of that counts as one in the error of a step, and a cycle starts with
+/// a hundredth at least: an extrapolated state may have lost its gas.
+#[must_use]
+pub fn gas_mass(volume: &str) -> StateInfo {
+    StateInfo::new(format!("mass of {volume}"))
+        .relative(0.1)
+        .over_cycle(1.0, true)
+        .at_least(0.01)
+        .changes(Signals::PRESSURE)
+}
+
+/// A running gas-flow model. Its first [`n_masses`](Self::n_masses) states are the gas masses \[kg\] of its volumes ([`gas_mass`]), so that any
+/// linear-invariant-preserving integrator closes the mass balance to round-off: the sum of their rates is `flow_in[0] - flow_out[n-1]` in every
+/// call. More states may follow, such as temperatures.
+///
+/// The functions of this trait take states and rates in SI units and by time. In the state vector of a scene, of which
+/// [`Stateful`](crate::states::Stateful) sees its part, each stands over its value at 1 bar, which must be positive.
+pub trait GasFlow: Stateful + Send {
     /// Whether gas passes through the end gaps of the rings, so that a gap that closes leaves no model.
     fn uses_end_gaps(&self) -> bool {
         true
     }
 
-    /// Number of volumes with a mass of their own.
-    fn n_states(&self) -> usize;
-    /// Name of each state's volume: `land2`, `ring1.back`.
-    fn state_names(&self) -> Vec<String>;
+    /// Number of volumes with a mass of their own: as many of the states, from the first.
+    fn n_masses(&self) -> usize {
+        self.states().len()
+    }
     /// Whether flows or volumes depend on the film thickness of the rings (`RingPlace::h`).
     fn uses_film_height(&self) -> bool;
-    /// Masses \[kg\] for the given pressures \[Pa\] of all volumes: `p_land[i]` for lands, for the space behind ring i the
+    /// States at the given pressures \[Pa\] of all volumes: `p_land[i]` for lands, for the space behind ring i the
     /// mean of `p_land[i]` and `p_land[i+1]`, as start of a run.
-    fn initial(&self, inp: &GasIn<'_>, p_land: &[f64], state: &mut [f64]);
+    fn at_pressures(&self, inp: &GasIn<'_>, p_land: &[f64], state: &mut [f64]);
     /// Pressures only: `out.p_land`, `out.p_back`.
     ///
     /// # Errors
     /// A mass that is not positive.
     fn pressures(&mut self, inp: &GasIn<'_>, state: &[f64], out: &mut GasOut) -> Result<(), EvalError>;
-    /// Pressures, flows and rates of change of the masses \[kg/s\].
+    /// Pressures, flows and rates of change of the states, masses in kg/s.
     ///
     /// # Errors
     /// A mass that is not positive.
@@ -150,7 +167,7 @@ pub trait GasFlow: Send {
     /// for which that means nothing.
     fn unbound(&mut self) {}
 
-    /// Partial derivatives of all that [`rates`](Self::rates) gives by the masses, all of `out` written. One-sided where the flow has a
+    /// Partial derivatives of all that [`rates`](Self::rates) gives by the states, all of `out` written. One-sided where the flow has a
     /// kink; always finite. `Ok(false)`, the default: they are not known, and `out` is as it was.
     ///
     /// # Errors

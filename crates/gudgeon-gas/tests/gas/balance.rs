@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use gudgeon_core::geometry::BackVolume;
 use gudgeon_core::kinds::{GasIn, GasOut, GasPartials};
 
-use crate::packs::{BACKS, build, eliminated, pack, place, specs};
+use crate::packs::{BACKS, build, eliminated, names, pack, place, specs};
 use crate::support::Lcg;
 
 #[test]
@@ -17,9 +17,8 @@ fn mass_balance_holds_for_every_call() {
             let n = backs.len();
             let mut gas = build(spec.as_ref(), &pack);
             let mut out = GasOut::new(n);
-            let mut state = vec![0.0; gas.n_states()];
-            let mut d = vec![0.0; gas.n_states()];
-            assert_eq!(gas.state_names().len(), gas.n_states());
+            let mut state = vec![0.0; gas.n_masses()];
+            let mut d = vec![0.0; gas.n_masses()];
             for _ in 0..200 {
                 let rings: Vec<_> = (0..n)
                     .map(|i| {
@@ -29,7 +28,7 @@ fn mass_balance_holds_for_every_call() {
                     .collect();
                 let inp = GasIn { p_cylinder: rng.between(0.5e5, 150e5), p_crankcase: 1e5, rings: &rings };
                 let lands: Vec<_> = (0..=n).map(|_| rng.between(0.5e5, 30e5)).collect();
-                gas.initial(&inp, &lands, &mut state);
+                gas.at_pressures(&inp, &lands, &mut state);
                 gas.rates(&inp, &state, &mut d, &mut out).expect("rates");
                 let sum: f64 = d.iter().sum();
                 let scale: f64 = out.flow_in.iter().chain(&out.flow_out).map(|f| f.abs()).sum();
@@ -62,9 +61,12 @@ fn each_volume_balances_its_own_flows() {
     let inp = GasIn { p_cylinder: 60e5, p_crankcase: 1e5, rings: &rings };
     for spec in specs() {
         let mut gas = build(spec.as_ref(), &pack);
-        assert_eq!(gas.state_names(), ["ring1.back", "land2", "ring2.back", "land3"]);
+        assert_eq!(
+            names(&*gas),
+            ["mass of ring1.back", "mass of land2", "mass of ring2.back", "mass of land3"]
+        );
         let (mut state, mut d, mut out) = ([0.0; 4], [0.0; 4], GasOut::new(3));
-        gas.initial(&inp, &[60e5, 12e5, 3e5, 1e5], &mut state);
+        gas.at_pressures(&inp, &[60e5, 12e5, 3e5, 1e5], &mut state);
         gas.rates(&inp, &state, &mut d, &mut out).expect("rates");
         let expected = [
             out.flow_in[0] - out.flow_out[0],
@@ -89,7 +91,7 @@ fn mass_is_conserved_over_an_explicit_cycle() {
     for spec in specs() {
         let stiff = format!("{spec:?}").contains("Merged");
         let mut gas = build(spec.as_ref(), &pack);
-        let n = gas.n_states();
+        let n = gas.n_masses();
         let (mut state, mut d, mut out) = (vec![0.0; n], vec![0.0; n], GasOut::new(3));
         let (steps, dt) = if stiff { (200_000, 1e-8) } else { (20_000, 1e-7) };
         let (mut entered, mut throughput) = (0.0, 0.0);
@@ -104,7 +106,7 @@ fn mass_is_conserved_over_an_explicit_cycle() {
                 .collect();
             let inp = GasIn { p_cylinder: 30e5 - 28e5 * x.cos(), p_crankcase: 1e5, rings: &rings };
             if k == 0 {
-                gas.initial(&inp, &[2e5, 1.5e5, 1.2e5, 1e5], &mut state);
+                gas.at_pressures(&inp, &[2e5, 1.5e5, 1.2e5, 1e5], &mut state);
                 start = state.iter().sum();
             }
             gas.rates(&inp, &state, &mut d, &mut out).expect("rates");
@@ -132,7 +134,7 @@ fn flows_are_continuous_in_position_and_film() {
             let rings = [place(&pack, 0, h, e, 0.0)];
             let inp = GasIn { p_cylinder: 30e5, p_crankcase: 1e5, rings: &rings };
             let (mut state, mut d, mut out) = ([0.0], [0.0], GasOut::new(1));
-            gas.initial(&inp, &[30e5, 1e5], &mut state);
+            gas.at_pressures(&inp, &[30e5, 1e5], &mut state);
             gas.rates(&inp, &state, &mut d, &mut out).expect("rates");
             (out.flow_in[0], out.flow_out[0])
         };
@@ -164,7 +166,7 @@ fn what_does_not_use_the_film_does_not_depend_on_it() {
     for spec in specs() {
         for pack in [&with_film, &plain] {
             let mut gas = build(spec.as_ref(), pack);
-            let n = gas.n_states();
+            let n = gas.n_masses();
             let mut at = |h: f64| {
                 // The same position in the groove, another film.
                 let rings: Vec<_> = (0..3).map(|i| place(pack, i, h, 0.4, 3e-5)).collect();
@@ -196,7 +198,7 @@ fn one_moved_ring_gives_the_rates_of_all() {
             let n = backs.len();
             let mut gas = build(spec.as_ref(), &pack);
             let mut fresh = build(spec.as_ref(), &pack);
-            let m = gas.n_states();
+            let m = gas.n_masses();
             let (mut state, mut partials) = (vec![0.0; m], GasPartials::new(n, m));
             let (mut a, mut b) = ((vec![0.0; m], GasOut::new(n)), (vec![0.0; m], GasOut::new(n)));
             for round in 0..40 {
@@ -209,7 +211,7 @@ fn one_moved_ring_gives_the_rates_of_all() {
                 let p_cylinder = rng.between(0.5e5, 150e5);
                 let lands: Vec<_> = (0..=n).map(|_| rng.between(0.5e5, 30e5)).collect();
                 let inp = GasIn { p_cylinder, p_crankcase: 1e5, rings: &rings };
-                gas.initial(&inp, &lands, &mut state);
+                gas.at_pressures(&inp, &lands, &mut state);
                 if round % 2 == 0 {
                     gas.rates(&inp, &state, &mut a.0, &mut a.1).expect("rates");
                 } else {

@@ -8,7 +8,7 @@ use gudgeon_gas::{Elimination, NarrowChannel, OrificeNetwork};
 use gudgeon_numerics::ode::{Flow, Integrator, OdeSystem, Options, Stats};
 use gudgeon_numerics::radau::Radau5;
 
-use crate::packs::{build, eliminated, pack, place};
+use crate::packs::{build, eliminated, names, pack, place};
 use crate::support::Lcg;
 
 #[test]
@@ -20,17 +20,20 @@ fn eliminated_spaces_are_the_limit_of_small_ones() {
         [Box::new(OrificeNetwork::default()), Box::new(NarrowChannel::default())];
     for (full, eliminated) in full.iter().zip(eliminated()) {
         let (mut full, mut less) = (build(full.as_ref(), &p), build(eliminated.as_ref(), &p));
-        assert_eq!(less.state_names(), ["land2", "land3"]);
-        assert_eq!(full.state_names(), ["ring1.back", "land2", "ring2.back", "land3"]);
+        assert_eq!(names(&*less), ["mass of land2", "mass of land3"]);
+        assert_eq!(
+            names(&*full),
+            ["mass of ring1.back", "mass of land2", "mass of ring2.back", "mass of land3"]
+        );
         for _ in 0..100 {
             let rings: Vec<_> =
                 (0..3).map(|i| place(&p, i, rng.between(0.0, 1e-5), rng.between(0.0, 1.0), 0.0)).collect();
             let inp = GasIn { p_cylinder: rng.between(0.5e5, 150e5), p_crankcase: 1e5, rings: &rings };
             let lands = [inp.p_cylinder, rng.between(0.5e5, 30e5), rng.between(0.5e5, 30e5), 1e5];
             let (mut y, mut d, mut out) = ([0.0; 4], [0.0; 4], GasOut::new(3));
-            full.initial(&inp, &lands, &mut y);
+            full.at_pressures(&inp, &lands, &mut y);
             let (mut z, mut e, mut got) = ([0.0; 2], [0.0; 2], GasOut::new(3));
-            less.initial(&inp, &lands, &mut z);
+            less.at_pressures(&inp, &lands, &mut z);
             assert_eq!(z, [y[1], y[3]]);
             less.rates(&inp, &z, &mut e, &mut got).expect("rates");
             // The full network comes to rest behind each ring where its mass no longer changes, found by halving.
@@ -83,7 +86,7 @@ impl Cycle {
 
 impl OdeSystem for Cycle {
     fn dim(&self) -> usize {
-        self.gas.n_states()
+        self.gas.n_masses()
     }
     /// In at the top, out at the bottom \[kg\].
     fn quad_dim(&self) -> usize {
@@ -105,9 +108,9 @@ fn blow_by(spec: &OrificeNetwork, back: f64) -> (f64, f64) {
     // The upper rings between the flanks: a few square centimetres into spaces of less than a cubic millimetre.
     let rings: Vec<_> = (0..3).map(|i| place(&p, i, 3e-6, 0.4, 0.0)).collect();
     let gas = build(spec, &p);
-    let n = gas.n_states();
+    let n = gas.n_masses();
     let (mut start, mut totals, mut stats) = (vec![0.0; n], [0.0; 2], Stats::default());
-    gas.initial(&Cycle::inputs(&rings, 0.0), &[1e5; 4], &mut start);
+    gas.at_pressures(&Cycle::inputs(&rings, 0.0), &[1e5; 4], &mut start);
     let mut y = start.clone();
     let mut cycle = Cycle { gas, rings, out: GasOut::new(3) };
     let mut options = Options::new(1e-8, &start);
@@ -157,12 +160,13 @@ fn only_spaces_that_fill_fast_are_eliminated() {
         if let Some(limit) = limit {
             spec.eliminate_below = quantity(limit);
         }
-        build(&spec, &pack(&[BackVolume::Fixed(volume), BackVolume::Fixed(2.9e-7)])).state_names()
+        names(&*build(&spec, &pack(&[BackVolume::Fixed(volume), BackVolume::Fixed(2.9e-7)])))
     };
-    assert_eq!(names(2.9e-7, None), ["ring1.back", "land2", "ring2.back"]);
-    assert_eq!(names(2.9e-12, None), ["land2", "ring2.back"]);
-    assert_eq!(names(2.9e-12, Some(1e-12)), ["ring1.back", "land2", "ring2.back"]);
+    let all = ["mass of ring1.back", "mass of land2", "mass of ring2.back"];
+    assert_eq!(names(2.9e-7, None), all);
+    assert_eq!(names(2.9e-12, None), all[1..]);
+    assert_eq!(names(2.9e-12, Some(1e-12)), all);
     // By default nothing is.
     let never = build(&OrificeNetwork::default(), &pack(&[BackVolume::Fixed(2.9e-12)]));
-    assert_eq!(never.n_states(), 1);
+    assert_eq!(never.n_masses(), 1);
 }

@@ -33,8 +33,8 @@ fn orifice_network_areas() {
             let inp = GasIn { p_cylinder: 20e5, p_crankcase: 1e5, rings: &[at] };
             let mut gas = build(&OrificeNetwork::default(), &pack);
             let (mut state, mut d, mut out) =
-                (vec![0.0; gas.n_states()], vec![0.0; gas.n_states()], GasOut::new(1));
-            gas.initial(&inp, &[20e5, 1e5], &mut state);
+                (vec![0.0; gas.n_masses()], vec![0.0; gas.n_masses()], GasOut::new(1));
+            gas.at_pressures(&inp, &[20e5, 1e5], &mut state);
             gas.rates(&inp, &state, &mut d, &mut out).expect("rates");
             // The published areas, with a chamfer that fades over 1 % of the clearance.
             let chamfer = match e {
@@ -115,7 +115,7 @@ fn gap_orifice_has_the_three_published_positions() {
         let at = place(&pack, 0, 2e-6, e, 0.0);
         let inp = GasIn { p_cylinder: p0, p_crankcase: p1, rings: &[at] };
         let (mut state, mut d, mut out) = ([0.0], [0.0], GasOut::new(1));
-        gas.initial(&inp, &[p0, p1], &mut state);
+        gas.at_pressures(&inp, &[p0, p1], &mut state);
         gas.rates(&inp, &state, &mut d, &mut out).expect("rates");
         let gap = orifice(9.1e-8, (p0, p1), (t0, t1));
         let flow_in = gap + orifice(above, (p0, pb), (t0, tb));
@@ -134,9 +134,9 @@ fn merged_volumes_follow_the_land_they_face() {
         let rings: Vec<_> = (0..3).map(|i| place(&pack, i, 0.0, *e.get(i).unwrap_or(&0.0), 0.0)).collect();
         let inp = GasIn { p_cylinder: 30e5, p_crankcase: 1e5, rings: &rings };
         let mut gas = build(&merged, &pack);
-        let n = gas.n_states();
+        let n = gas.n_masses();
         let (mut state, mut d, mut out) = (vec![0.0; n], vec![0.0; n], GasOut::new(3));
-        gas.initial(&inp, &[30e5, 6e5, 2e5, 1e5], &mut state);
+        gas.at_pressures(&inp, &[30e5, 6e5, 2e5, 1e5], &mut state);
         // 20 µs in steps of a tenth of the merge time, explicitly.
         for _ in 0..2000 {
             gas.rates(&inp, &state, &mut d, &mut out).expect("rates");
@@ -159,9 +159,9 @@ fn merged_volumes_follow_the_land_they_face() {
     let inp = GasIn { p_cylinder: 30e5, p_crankcase: 1e5, rings: &rings };
     let [a, b] = [merged, GapOrifice::default()].map(|spec| {
         let mut gas = build(&spec, &pack);
-        let n = gas.n_states();
+        let n = gas.n_masses();
         let (mut state, mut d, mut out) = (vec![0.0; n], vec![0.0; n], GasOut::new(3));
-        gas.initial(&inp, &[30e5, 6e5, 2e5, 1e5], &mut state);
+        gas.at_pressures(&inp, &[30e5, 6e5, 2e5, 1e5], &mut state);
         gas.rates(&inp, &state, &mut d, &mut out).expect("rates");
         out
     });
@@ -187,7 +187,7 @@ fn narrow_channels_are_channels() {
     let (p0, p1) = (1.2e5, 1e5);
     let inp = GasIn { p_cylinder: p0, p_crankcase: p1, rings: &[at] };
     let (mut state, mut d, mut out) = ([0.0], [0.0], GasOut::new(1));
-    gas.initial(&inp, &[p0, p1], &mut state);
+    gas.at_pressures(&inp, &[p0, p1], &mut state);
     gas.rates(&inp, &state, &mut d, &mut out).expect("rates");
     let pb: f64 = 1.1e5;
     let channel = |radius: f64, height: f64, length: f64, t: f64, a: f64, b: f64| {
@@ -205,7 +205,7 @@ fn narrow_channels_are_channels() {
     let mut gas = build(&spec, &pack);
     let rings = [place(&pack, 0, 0.0, 0.0, 0.0)];
     let inp = GasIn { p_cylinder: 5e5, p_crankcase: p1, rings: &rings };
-    gas.initial(&inp, &[5e5, p1], &mut state);
+    gas.at_pressures(&inp, &[5e5, p1], &mut state);
     gas.rates(&inp, &state, &mut d, &mut out).expect("rates");
     let law = Orifice { laminar: quantity(0.0), ..Orifice::default() }.build(1.4, 287.0).expect("builds");
     let side = |p: f64, t: f64| GasState::new(p, R * t);
@@ -228,7 +228,7 @@ fn real_gas_of_the_upstream_side() {
     let run = |gamma| {
         let mut gas = build(&spec(gamma), &p);
         let (mut y, mut d, mut out) = ([0.0], [0.0], GasOut::new(2));
-        gas.initial(&inp, &lands, &mut y);
+        gas.at_pressures(&inp, &lands, &mut y);
         gas.rates(&inp, &y, &mut d, &mut out).expect("rates");
         out.flow_in
     };
@@ -251,7 +251,7 @@ fn prescribed_pressures() {
     let pack = pack(&[BackVolume::Geometric, BackVolume::Drained]);
     let spec = Prescribed { lands: vec![quantity(4e5)] };
     let mut gas = build(&spec, &pack);
-    assert_eq!(gas.n_states(), 0);
+    assert_eq!(gas.n_masses(), 0);
     let rings = [place(&pack, 0, 0.0, 0.25, 0.0), place(&pack, 1, 0.0, 1.0, 0.0)];
     let inp = GasIn { p_cylinder: 8e5, p_crankcase: 1e5, rings: &rings };
     let mut out = GasOut { flow_in: vec![1.0; 2], flow_out: vec![1.0; 2], ..GasOut::new(2) };
@@ -320,7 +320,7 @@ fn sealed_rings_leak_at_gap_and_face() {
     ];
     for (spec, flow) in specs {
         let mut gas = build(spec.as_ref(), &pack);
-        assert_eq!(gas.n_states(), 0);
+        assert_eq!(gas.n_masses(), 0);
         let mut out = GasOut::new(1);
         let inp = GasIn { p_cylinder: p.0, p_crankcase: p.1, rings: &[place(&pack, 0, 0.0, 0.0, 0.0)] };
         gas.rates(&inp, &[], &mut [], &mut out).expect("rates");
@@ -368,7 +368,7 @@ fn blended_friction_of_a_face() {
 fn prescribed_pressures_of_impossible_boundaries() {
     let pack = pack(&[BackVolume::Geometric]);
     let mut gas = build(&Prescribed::default(), &pack);
-    assert!(!gas.uses_end_gaps() && !gas.uses_film_height() && gas.state_names().is_empty());
+    assert!(!gas.uses_end_gaps() && !gas.uses_film_height() && gas.states().is_empty());
     let mut at = |p_cylinder: f64, p_crankcase: f64, e: f64| {
         let rings = [RingPlace { lift_fraction: e, ..place(&pack, 0, 0.0, 0.5, 0.0) }];
         let mut out = GasOut::new(1);

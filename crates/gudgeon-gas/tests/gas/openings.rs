@@ -27,9 +27,9 @@ fn run(
         gas.unbound();
     }
     let inp = GasIn { p_cylinder: 20e5, p_crankcase: 1e5, rings };
-    let n = gas.n_states();
+    let n = gas.n_masses();
     let (mut y, mut d, mut out) = (vec![0.0; n], vec![0.0; n], GasOut::new(rings.len()));
-    gas.initial(&inp, &[20e5, 8e5, 3e5, 1e5][..=rings.len()], &mut y);
+    gas.at_pressures(&inp, &[20e5, 8e5, 3e5, 1e5][..=rings.len()], &mut y);
     gas.rates(&inp, &y, &mut d, &mut out).expect("rates");
     y.extend(d);
     (y, out)
@@ -170,7 +170,7 @@ fn spaces_are_eliminated_below_their_filling_time() {
                     nominal_film: quantity(film),
                     ..OrificeNetwork::default()
                 };
-                build(&spec, &p).n_states()
+                build(&spec, &p).n_masses()
             };
             // The fast flow function is right within 2e-9.
             assert_eq!((states(longest * (1.0 - 1e-8)), states(longest * (1.0 + 1e-8))), (1, 0), "{back:?}");

@@ -126,3 +126,8 @@ pub const BACKS: &[&[BackVolume]] = &[
         BackVolume::Drained,
     ],
 ];
+
+/// Names of the states.
+pub fn names(gas: &dyn GasFlow) -> Vec<String> {
+    gas.states().iter().map(|s| s.name.clone()).collect()
+}

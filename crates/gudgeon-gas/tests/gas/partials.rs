@@ -28,7 +28,7 @@ fn partials_agree_with_differences() {
             let pack = pack(backs);
             let n = backs.len();
             let mut gas = build(spec.as_ref(), &pack);
-            let m = gas.n_states();
+            let m = gas.n_masses();
             let (mut state, mut out) = (vec![0.0; m], GasOut::new(n));
             let (mut low, mut high) = ((vec![0.0; m], GasOut::new(n)), (vec![0.0; m], GasOut::new(n)));
             let (mut d, mut partials) = (vec![0.0; m], GasPartials::new(n, m));
@@ -41,7 +41,7 @@ fn partials_agree_with_differences() {
                     .collect();
                 let inp = GasIn { p_cylinder: rng.between(0.5e5, 150e5), p_crankcase: 1e5, rings: &rings };
                 let lands: Vec<_> = (0..=n).map(|_| rng.between(0.5e5, 30e5)).collect();
-                gas.initial(&inp, &lands, &mut state);
+                gas.at_pressures(&inp, &lands, &mut state);
                 for m in &mut state {
                     *m *= rng.between(0.7, 1.4);
                 }
@@ -112,9 +112,9 @@ fn partials_are_finite_at_equal_pressures() {
         let rings: Vec<_> = (0..3).map(|i| place(&pack, i, 3e-6, 0.5, 5e-5)).collect();
         let inp = GasIn { p_cylinder: 1e5, p_crankcase: 1e5, rings: &rings };
         let mut gas = build(spec.as_ref(), &pack);
-        let n = gas.n_states();
+        let n = gas.n_masses();
         let (mut state, mut partials) = (vec![0.0; n], GasPartials::new(3, n));
-        gas.initial(&inp, &[1e5; 4], &mut state);
+        gas.at_pressures(&inp, &[1e5; 4], &mut state);
         assert!(gas.partials(&inp, &state, &mut partials).expect("partials"));
         assert!(
             partials.d_state.iter().chain(&partials.flow_in).chain(&partials.flow_out).all(|x| x.is_finite())

@@ -182,9 +182,9 @@ fn darcy(options: PackOptions, backs: BackVolume, k_of: Option<&dyn Fn(f64) -> f
         gas = gas.with_source_laws(|t| Ok(Darcy { k: k_of(t) })).expect("builds");
     }
     let inputs = GasIn { p_cylinder: 9e5, p_crankcase: 1e5, rings: &places };
-    let n = gas.n_states();
+    let n = gas.n_masses();
     let (mut y, mut d, mut out) = (vec![0.0; n], vec![0.0; n], GasOut::new(2));
-    gas.initial(&inputs, &[9e5, 4e5, 1e5], &mut y);
+    gas.at_pressures(&inputs, &[9e5, 4e5, 1e5], &mut y);
     gas.rates(&inputs, &y, &mut d, &mut out).expect("rates");
     let mut partials = GasPartials::new(2, n);
     assert!(gas.partials(&inputs, &y, &mut partials).expect("partials"));

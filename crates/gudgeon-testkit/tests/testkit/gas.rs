@@ -2,15 +2,16 @@
 
 use gudgeon_core::EvalError;
 use gudgeon_core::geometry::RingPlace;
-use gudgeon_core::kinds::{GasFlow, GasIn, GasOut, GasPartials};
+use gudgeon_core::kinds::{GasFlow, GasIn, GasOut, GasPartials, gas_mass};
+use gudgeon_core::states::{StateInfo, Stateful};
 use gudgeon_testkit::{Tolerance, assert_none, gas_flow};
 
 /// Pressure over mass \[Pa/kg\] and flow over pressure difference \[kg/(s Pa)\].
 const STIFFNESS: f64 = 2e11;
 const LEAK: f64 = 1e-9;
 
-#[derive(Default)]
 struct OneVolume {
+    states: [StateInfo; 1],
     /// Gas that vanishes \[kg/s\].
     lost: f64,
     /// Factor of the partial derivatives, less one.
@@ -22,17 +23,24 @@ struct OneVolume {
     moved: f64,
 }
 
+impl Default for OneVolume {
+    fn default() -> Self {
+        let states = [gas_mass("ring1.back")];
+        Self { states, lost: 0.0, off: 0.0, remembers: 0.0, last: 0.0, moved: 0.0 }
+    }
+}
+
+impl Stateful for OneVolume {
+    fn states(&self) -> &[StateInfo] {
+        &self.states
+    }
+}
+
 impl GasFlow for OneVolume {
-    fn n_states(&self) -> usize {
-        1
-    }
-    fn state_names(&self) -> Vec<String> {
-        vec!["ring1.back".into()]
-    }
     fn uses_film_height(&self) -> bool {
         false
     }
-    fn initial(&self, _: &GasIn<'_>, p_land: &[f64], state: &mut [f64]) {
+    fn at_pressures(&self, _: &GasIn<'_>, p_land: &[f64], state: &mut [f64]) {
         state[0] = 0.5 * (p_land[0] + p_land[1]) / STIFFNESS;
     }
     fn pressures(&mut self, inp: &GasIn<'_>, state: &[f64], out: &mut GasOut) -> Result<(), EvalError> {

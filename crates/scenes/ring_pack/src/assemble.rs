@@ -280,6 +280,7 @@ fn ring(
         radial: radial(case, drive, i, &contact)?,
         films,
         contact,
+        counts: (motion.uses_film_force(), motion.uses_gravity()),
         motion,
         motion_name: case.rings[i]
             .models
@@ -287,7 +288,8 @@ fn ring(
             .as_ref()
             .unwrap_or(&case.models.ring_motion)
             .typetag_name(),
-        friction,
+        friction: (!friction.is_off()).then_some(friction),
+        pull: 0.0,
         spacing,
         mu: fixed.then(|| oils.oil.viscosity(oils.temperature.temperature(i, 0.0, &[]))),
         nominal_film: case.solver.limits.nominal_film.si(),
@@ -396,22 +398,27 @@ fn oil_pack(
     }
 }
 
-/// Everything together, with the masses of the gas volumes at 1 bar.
+/// Everything together, with the states of the gas at 1 bar.
 fn pack(
     case: &RingPackCase,
     drive: Drive,
     oils: Oils,
     plan: Plan,
-    rings: Vec<Ring>,
+    mut rings: Vec<Ring>,
     (liner, pin_to_ring1): (LinerShape, f64),
     oil_pack: Option<Box<dyn OilTransport>>,
 ) -> Result<Pack, Vec<BuildError>> {
     let Drive { geo, omega, kinematics, cylinder, gas, .. } = drive;
     let Oils { oil, temperature } = oils;
     let layout = Layout::new(&*gas, &rings, plan.film, oil_pack.as_deref(), &*temperature);
-    let (n, states, masses) = (rings.len(), layout.n, layout.gas.len());
+    let (n, states, gas_states) = (rings.len(), layout.n, layout.gas.len());
+    let laws = case.conventions.build()?;
+    for (ring, g) in rings.iter_mut().zip(&geo.rings) {
+        ring.pull = laws.hoop.radial_force(g.tangential_force / g.rails as f64);
+    }
     let mut pack = Pack {
-        laws: case.conventions.build()?,
+        laws,
+        y_tdc: kinematics.y_tdc(),
         limits: (&case.solver.limits).into(),
         omega,
         kinematics,
@@ -426,19 +433,19 @@ fn pack(
         oil_pack,
         plan,
         layout,
-        mass_scale: vec![1.0; masses],
+        gas_scale: vec![1.0; gas_states],
         seat_log: vec![SeatLog::default(); n],
         at: Instant {
             theta: 0.0,
             piston: Default::default(),
             gas: GasOut::new(n),
-            dm: vec![0.0; masses],
+            dm: vec![0.0; gas_states],
             places: vec![Default::default(); n],
             rings: vec![RingInstant::default(); n],
         },
         dy: vec![0.0; states],
         counters: Counters::default(),
-        masses: vec![0.0; masses],
+        gas_state: vec![0.0; gas_states],
         hard_floor: false,
         state: vec![f64::NAN; states],
         films: vec![0.0; n],
@@ -449,18 +456,18 @@ fn pack(
     Ok(pack)
 }
 
-/// Masses at 1 bar, the scale of the gas states; also the first evaluation of every geometry-dependent number.
+/// States of the gas at 1 bar, their scale; also the first evaluation of every geometry-dependent number.
 fn weigh(pack: &mut Pack) -> Result<(), Vec<BuildError>> {
     let mut y = vec![0.0; pack.layout.n];
     pack.initial(1e5, &mut y);
     let reference = vec![1e5; pack.n_rings() + 1];
     let inp = GasIn { p_cylinder: 1e5, p_crankcase: 1e5, rings: &pack.at.places };
-    pack.gas.initial(&inp, &reference, &mut pack.masses);
-    pack.mass_scale.copy_from_slice(&pack.masses);
-    let Some(k) = pack.mass_scale.iter().position(|m| !(m.is_finite() && *m > 0.0)) else { return Ok(()) };
-    let name = pack.gas.state_names().get(k).cloned().unwrap_or_default();
+    pack.gas.at_pressures(&inp, &reference, &mut pack.gas_state);
+    pack.gas_scale.copy_from_slice(&pack.gas_state);
+    let Some(k) = pack.gas_scale.iter().position(|m| !(m.is_finite() && *m > 0.0)) else { return Ok(()) };
+    let name = &pack.layout.states[pack.layout.gas.start + k].name;
     Err(vec![
-        BuildError::new(format!("the gas volume `{name}` is not positive"))
+        BuildError::new(format!("the {name} at 1 bar is not positive"))
             .help("check land heights and diameters, groove depth and ring thickness"),
     ])
 }

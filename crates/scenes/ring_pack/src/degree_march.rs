@@ -125,96 +125,23 @@ fn run(
     books: &mut Books,
     progress: &mut dyn FnMut(f64),
 ) -> Result<Ended, EvalError> {
-    let n = pack.n_rings();
-    let mut y = vec![0.0; pack.layout.n];
-    pack.initial(start, &mut y);
-    let mut h: Vec<f64> = (0..n).map(|i| pack.at.places[i].h).collect();
-    let per_cycle = (pack.period().to_degrees().round() as u32) * set.steps;
-    let step = pack.period() / f64::from(per_cycle);
-    let dt = step / pack.omega;
-    let dt_gas = dt / f64::from(set.gas_steps);
+    let mut march = March::new(pack, set, start, books);
     let limit = if set.cycles > 0 { set.cycles } else { set.max_cycles };
     let mut out = Ended { totals: Totals::default(), steps: 0, cycles: 0, period: 0 };
     // States at the starts of the last cycles, to see when one comes back.
     let mut history: Vec<Vec<f64>> = Vec::new();
     let mut recording = set.cycles == 1;
     for cycle in 1..=limit {
-        let mut totals = Totals { flow_in: vec![0.0; n], friction_work: vec![0.0; n], ..Totals::default() };
-        let before: f64 = pack.masses.iter().sum();
-        if recording {
-            books.watch = Watch::new(pack);
-        }
-        for k in 0..per_cycle {
-            let theta = f64::from(k) * step;
-            instant(pack, theta, &h);
-            pack.gas_pressures(pack.cylinder.pressure(theta))?;
-            pack.decide_seats();
-            instant(pack, theta, &h);
-            if recording {
-                pack.gas(None)?;
-                books.record.push(theta, pack, &totals.flow_in, totals.blow_by);
-                books.measures.march(theta, pack, totals.flow_in[0]);
-            }
-            for g in 0..set.gas_steps {
-                let p =
-                    pack.cylinder.pressure(theta + step * (f64::from(g) + 0.5) / f64::from(set.gas_steps));
-                pack.gas_step(p)?;
-                for (m, dm) in pack.masses.iter_mut().zip(&pack.at.dm) {
-                    *m += dm * dt_gas;
-                }
-                for (sum, w) in totals.flow_in.iter_mut().zip(&pack.at.gas.flow_in) {
-                    *sum += w * dt_gas;
-                }
-                totals.blow_by += pack.at.gas.flow_out[n - 1] * dt_gas;
-            }
-            let end = theta + step;
-            instant(pack, end, &h);
-            pack.gas_pressures(pack.cylinder.pressure(end))?;
-            if pack.plan.film {
-                for (i, h) in h.iter_mut().enumerate() {
-                    let old = *h;
-                    *h = bisect(pack, i, old, dt)?;
-                    pack.set_place(i, *h, None);
-                    pack.friction_at(i, (*h - old) / dt)?;
-                    totals.friction_work[i] += pack.at.rings[i].power * dt;
-                    // Held at the end of the interval against what presses it further off.
-                    if *h >= pack.limits.thickest_film - 2.0 * RESOLUTION {
-                        let r = &mut pack.at.rings[i];
-                        r.limited.thickest = (r.film.load + r.contact - r.load).max(0.0);
-                    }
-                }
-            }
-            if recording {
-                books.watch.look(pack, step);
-            }
-            out.steps += 1;
-        }
-        if recording {
-            pack.gas(None)?;
-            books.record.push(pack.period(), pack, &totals.flow_in, totals.blow_by);
-            books.measures.march(pack.period(), pack, totals.flow_in[0]);
-        }
-        let after: f64 = pack.masses.iter().sum();
-        let through = totals.flow_in[0].abs().max(totals.blow_by.abs()).max(f64::MIN_POSITIVE);
-        totals.balance.gas_mass =
-            Some(((totals.flow_in[0] - totals.blow_by) - (after - before)).abs() / through);
-        let state: Vec<f64> = pack
-            .masses
-            .iter()
-            .zip(&pack.mass_scale)
-            .map(|(m, s)| m / s)
-            .chain(h.iter().map(|h| h / 1e-6))
-            .chain(pack.rings.iter().flat_map(|r| r.motion.decided().iter().copied()))
-            .collect();
+        let mut totals = march.cycle(recording)?;
+        let state = march.state();
         let change = |a: &[f64]| {
             a.iter().zip(&state).map(|(a, b)| (a - b).abs() / b.abs().max(0.1)).fold(0.0, f64::max)
         };
         totals.periodicity_error = history.last().map_or(1.0, |h| change(h));
         let back = history.iter().rev().position(|h| change(h) <= set.tolerance).map(|p| p as u32 + 1);
         history.push(state);
-        out.totals = totals;
-        out.cycles = cycle;
-        out.period = back.unwrap_or(0);
+        let steps = out.steps + u64::from(march.per_cycle);
+        out = Ended { totals, steps, cycles: cycle, period: back.unwrap_or(0) };
         progress(f64::from(cycle) / f64::from(limit));
         if recording {
             break;
@@ -227,6 +154,124 @@ fn run(
         };
     }
     Ok(out)
+}
+
+/// A march under way.
+struct March<'a> {
+    pack: &'a mut Pack,
+    books: &'a mut Books,
+    gas_steps: u32,
+    /// Film thicknesses \[m\].
+    h: Vec<f64>,
+    /// Intervals of a cycle, and their length \[rad\].
+    per_cycle: u32,
+    step: f64,
+}
+
+impl<'a> March<'a> {
+    fn new(pack: &'a mut Pack, set: Settings, start: f64, books: &'a mut Books) -> Self {
+        let mut y = vec![0.0; pack.layout.n];
+        pack.initial(start, &mut y);
+        let h = pack.at.places.iter().map(|p| p.h).collect();
+        let per_cycle = (pack.period().to_degrees().round() as u32) * set.steps;
+        let step = pack.period() / f64::from(per_cycle);
+        Self { pack, books, gas_steps: set.gas_steps, h, per_cycle, step }
+    }
+
+    /// One cycle.
+    fn cycle(&mut self, recording: bool) -> Result<Totals, EvalError> {
+        let n = self.pack.n_rings();
+        let mut totals = Totals { flow_in: vec![0.0; n], friction_work: vec![0.0; n], ..Totals::default() };
+        let before = self.pack.gas_mass();
+        if recording {
+            self.books.watch = Watch::new(self.pack);
+        }
+        for k in 0..self.per_cycle {
+            let theta = f64::from(k) * self.step;
+            self.seats(theta)?;
+            if recording {
+                self.record(theta, &totals)?;
+            }
+            self.gas(theta, &mut totals)?;
+            self.films(theta + self.step, &mut totals)?;
+            if recording {
+                self.books.watch.look(self.pack, self.step);
+            }
+        }
+        if recording {
+            self.record(self.pack.period(), &totals)?;
+        }
+        let stored = self.pack.gas_mass() - before;
+        let through = totals.flow_in[0].abs().max(totals.blow_by.abs()).max(f64::MIN_POSITIVE);
+        totals.balance.gas_mass = Some(((totals.flow_in[0] - totals.blow_by) - stored).abs() / through);
+        Ok(totals)
+    }
+
+    /// Decides the seats of an interval at its start.
+    fn seats(&mut self, theta: f64) -> Result<(), EvalError> {
+        instant(self.pack, theta, &self.h);
+        self.pack.gas_pressures(self.pack.cylinder.pressure(theta))?;
+        self.pack.decide_seats();
+        instant(self.pack, theta, &self.h);
+        Ok(())
+    }
+
+    fn record(&mut self, theta: f64, totals: &Totals) -> Result<(), EvalError> {
+        self.pack.gas(None)?;
+        self.books.record.push(theta, self.pack, &totals.flow_in, totals.blow_by);
+        self.books.measures.march(theta, self.pack, totals.flow_in[0]);
+        Ok(())
+    }
+
+    /// Steps of the gas over an interval, rings and films at rest.
+    fn gas(&mut self, theta: f64, totals: &mut Totals) -> Result<(), EvalError> {
+        let pack = &mut *self.pack;
+        let last = pack.n_rings() - 1;
+        let dt = self.step / pack.omega / f64::from(self.gas_steps);
+        for g in 0..self.gas_steps {
+            let middle = self.step * (f64::from(g) + 0.5) / f64::from(self.gas_steps);
+            pack.gas_step(pack.cylinder.pressure(theta + middle))?;
+            for (m, dm) in pack.gas_state.iter_mut().zip(&pack.at.dm) {
+                *m += dm * dt;
+            }
+            for (sum, w) in totals.flow_in.iter_mut().zip(&pack.at.gas.flow_in) {
+                *sum += w * dt;
+            }
+            totals.blow_by += pack.at.gas.flow_out[last] * dt;
+        }
+        Ok(())
+    }
+
+    /// Films at the end of an interval, each from the balance of its ring.
+    fn films(&mut self, end: f64, totals: &mut Totals) -> Result<(), EvalError> {
+        let pack = &mut *self.pack;
+        instant(pack, end, &self.h);
+        pack.gas_pressures(pack.cylinder.pressure(end))?;
+        if !pack.plan.film {
+            return Ok(());
+        }
+        let dt = self.step / pack.omega;
+        for (i, h) in self.h.iter_mut().enumerate() {
+            let old = *h;
+            *h = bisect(pack, i, old, dt)?;
+            pack.set_place(i, *h, None);
+            pack.friction_at(i, (*h - old) / dt)?;
+            totals.friction_work[i] += pack.at.rings[i].power * dt;
+            // Held at the end of the interval against what presses it further off.
+            if *h >= pack.limits.thickest_film - 2.0 * RESOLUTION {
+                let r = &mut pack.at.rings[i];
+                r.limited.thickest = (r.film.load + r.contact - r.load).max(0.0);
+            }
+        }
+        Ok(())
+    }
+
+    /// What comes back when the march is periodic: gas over that at 1 bar, films in micrometres, seats.
+    fn state(&self) -> Vec<f64> {
+        let gas = self.pack.gas_state.iter().zip(&self.pack.gas_scale).map(|(m, s)| m / s);
+        let seats = self.pack.rings.iter().flat_map(|r| r.motion.decided().iter().copied());
+        gas.chain(self.h.iter().map(|h| h / 1e-6)).chain(seats).collect()
+    }
 }
 
 fn instant(pack: &mut Pack, theta: f64, h: &[f64]) {

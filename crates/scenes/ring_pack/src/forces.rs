@@ -27,8 +27,7 @@ impl Pack {
 
     /// Load of tension alone, per circumference \[N/m\] of one rail.
     pub fn tension(&self, i: usize) -> f64 {
-        let g = &self.geo.rings[i];
-        self.laws.hoop.radial_force(g.tangential_force / g.rails as f64) / self.perimeter(i)
+        self.rings[i].pull / self.perimeter(i)
     }
 
     /// Radial load that the face must carry above `p_cav`, per circumference \[N/m\] of one rail, without flank friction.
@@ -43,9 +42,11 @@ impl Pack {
 
     /// What presses ring `i` against the liner and what carries it, and its radial motion, which asks for that.
     pub(super) fn loads(&mut self, i: usize) -> (Loads<'_>, &mut dyn RadialMotion) {
-        let tension = self.tension(i);
-        let load = tension + self.gas_load(i);
-        let perimeter = self.perimeter(i) * self.geo.rings[i].rails as f64;
+        let section = self.section(i);
+        let (around, rails) = (self.laws.radial_gas.circumference(&section), section.geometry.rails as f64);
+        let tension = self.rings[i].pull / around;
+        let load = tension + self.laws.radial_gas.load(&section);
+        let perimeter = around * rails;
         let place = &self.at.places[i];
         let ring = &mut self.rings[i];
         let loads = Loads {
@@ -62,7 +63,7 @@ impl Pack {
             perimeter,
             shares: if ring.films.len() == 2 { self.laws.twin_land_friction.shares() } else { [1.0; 2] },
             films: &mut ring.films,
-            friction: &*ring.friction,
+            friction: ring.friction.as_deref(),
             flux: self.at.rings[i].flux,
             count: &mut self.counters.film,
         };
@@ -75,8 +76,9 @@ impl Pack {
     /// What the film refuses.
     pub fn film(&mut self, i: usize, hdot: f64) -> Result<FaceForces, EvalError> {
         let (mut loads, _) = self.loads(i);
-        let (film, flux) = (loads.film(hdot), loads.flux);
-        self.at.rings[i].flux = flux;
+        let (film, flux, perimeter) = (loads.film(hdot), loads.flux, loads.perimeter);
+        let r = &mut self.at.rings[i];
+        (r.flux, r.perimeter) = (flux, perimeter);
         film
     }
 
@@ -145,15 +147,17 @@ impl Pack {
         let own = self.layout.radial[i].clone();
         let mut dy = std::mem::take(&mut self.dy);
         let (mut loads, radial) = self.loads(i);
-        let outcome = radial.rates(&y[own.clone()], &mut loads, &mut dy[own]);
-        let (load, contact, flux) = (loads.load, loads.contact, loads.flux);
+        let outcome = radial.rates(&y[own.clone()], &mut loads, &mut dy[own]).and_then(|found| {
+            let film = found.film.map_or_else(|| loads.film(found.hdot), Ok)?;
+            Ok((found, film))
+        });
+        let (load, contact, flux, perimeter) = (loads.load, loads.contact, loads.flux, loads.perimeter);
         self.dy = dy;
         let r = &mut self.at.rings[i];
-        r.flux = flux;
-        let found = outcome?;
+        (r.flux, r.perimeter) = (flux, perimeter);
+        let (found, film) = outcome?;
         (r.load, r.contact, r.limited) = (load, contact, found.limited);
-        (r.hdot, r.film_known) = (found.hdot, found.film.is_some());
-        r.film = found.film.unwrap_or(r.film);
+        (r.hdot, r.film, r.film_known) = (found.hdot, film, true);
         Ok(())
     }
 
@@ -165,7 +169,6 @@ impl Pack {
             self.film(i, self.at.rings[i].hdot)?
         };
         let u = -self.at.piston.v;
-        let perimeter = self.perimeter(i) * self.geo.rings[i].rails as f64;
         let lowest = self.lowest(i);
         let line = &self.rings[i].contact;
         let r = &mut self.at.rings[i];
@@ -191,10 +194,10 @@ impl Pack {
             }
         }
         let rubbing = line.friction * r.contact * (u / self.limits.friction_speed).tanh();
-        r.friction = perimeter * (viscous * self.laws.drag.shear(&o) + rubbing);
+        r.friction = r.perimeter * (viscous * self.laws.drag.shear(&o) + rubbing);
         r.power = self.laws.drag.power(r.friction, u);
         let force = self.laws.film_force.per_length(&o, r.dry.1);
-        r.axial.film = perimeter * (viscous * force + rubbing);
+        r.axial.film = r.perimeter * (viscous * force + rubbing);
         Ok(())
     }
 
@@ -256,8 +259,8 @@ impl Pack {
         let r = &mut self.at.rings[i];
         r.axial.gas = gas;
         r.axial.inertia = -g.mass * self.at.piston.a;
-        r.axial.gravity = if ring.motion.uses_gravity() { -GRAVITY * g.mass } else { 0.0 };
-        if !ring.motion.uses_film_force() {
+        r.axial.gravity = if ring.counts.1 { -GRAVITY * g.mass } else { 0.0 };
+        if !ring.counts.0 {
             r.axial.film = 0.0;
         }
     }

@@ -4,6 +4,7 @@
 use std::f64::consts::PI;
 use std::time::Instant;
 
+use gudgeon_core::content::{self, Content};
 use gudgeon_core::kinds::OilLedger;
 use gudgeon_core::quantity::{PosRatio, quantity};
 use gudgeon_core::result::{Balance, Column, Note, Series};
@@ -95,7 +96,7 @@ impl RingPackSolverSpec for Implicit {
 
     /// Both orders at the tolerances that they are made for.
     fn settings(&self, _: &Pack, own: Option<&Value>) -> Vec<MethodSetting> {
-        let given = own.and_then(|v| serde_json::from_value::<Self>(v.clone()).ok());
+        let given = own.and_then(|v| content::read::<Self>(&Content::from(v)).ok());
         let default = given.as_ref().unwrap_or(self);
         let tolerance = default.tolerance.si();
         let orders: [(&str, &str, IntegratorName, &[f64]); 2] = [
@@ -510,7 +511,7 @@ impl Sampler {
 /// The film on the liner at the dead centres over the height above the lowest place of the pin.
 fn liner_table(pack: &Pack, films: Vec<(u32, Vec<f64>)>) -> Option<Series> {
     let oil = pack.oil_pack.as_ref()?;
-    let lowest = pack.kinematics.y_tdc() - pack.kinematics.stroke();
+    let lowest = pack.y_tdc - pack.kinematics.stroke();
     let z = oil.liner().0.into_iter().map(|z| z - lowest).collect();
     let column = |name: String, unit: &str, values| Column { name, unit: unit.into(), values };
     Some(Series {
@@ -558,12 +559,13 @@ fn breakpoints(pack: &Pack) -> Vec<f64> {
 
 /// Gas in, less gas out, is gas stored.
 fn gas_balance(pack: &Pack) -> Vec<LinearInvariant> {
-    if pack.layout.gas.is_empty() {
+    let masses = pack.gas.n_masses();
+    if masses == 0 {
         return Vec::new();
     }
     let (first, last) = (pack.layout.n, pack.layout.n + pack.n_rings());
     let mut terms = vec![(first, -1.0), (last, 1.0)];
-    terms.extend(pack.mass_scale.iter().copied().enumerate());
+    terms.extend(pack.gas_scale[..masses].iter().copied().enumerate());
     vec![LinearInvariant { pivot: last, terms }]
 }
 
@@ -613,7 +615,7 @@ impl<'a> Cycle<'a> {
         sampler: &mut Sampler,
     ) -> Result<(f64, Option<f64>), RunError> {
         let dim = self.pack.layout.n;
-        let gas: Vec<f64> = y[self.pack.layout.gas.clone()].to_vec();
+        let gas: Vec<f64> = y[..self.pack.gas.n_masses()].to_vec();
         self.begin(y);
         let oil_before = self.pack.oil_total(y);
         if let Some(o) = &mut self.pack.oil_pack {
@@ -630,7 +632,7 @@ impl<'a> Cycle<'a> {
             return Err(RunError::Eval { theta_deg: self.pack.at.theta.to_degrees(), source });
         }
         let (q, n) = (&self.q, self.pack.n_rings());
-        let stored: f64 = gas.iter().zip(&*y).zip(&self.pack.mass_scale).map(|((a, b), m)| (b - a) * m).sum();
+        let stored: f64 = gas.iter().zip(&*y).zip(&self.pack.gas_scale).map(|((a, b), m)| (b - a) * m).sum();
         let through = q[0].abs().max(q[n].abs()).max(f64::MIN_POSITIVE);
         Ok(((q[0] - q[n] - stored).abs() / through, oil_mass))
     }

@@ -33,6 +33,8 @@ pub struct RingInstant {
     pub load: f64,
     /// Part of it that solid contact carries \[N/m\].
     pub contact: f64,
+    /// Circumference of all rails, which turns forces per length into forces \[m\], as of the last load.
+    pub perimeter: f64,
     /// Part of the load \[N/m\] that gas on the dry parts of the face carries, and their force along the liner, from the bottom
     /// edge to the top edge positive.
     pub dry: (f64, f64),
@@ -65,7 +67,7 @@ pub struct Instant {
     pub piston: PistonMotion,
     /// Pressures and flows.
     pub gas: GasOut,
-    /// Rates of the gas masses \[kg/s\].
+    /// Rates of the states of the gas by time, masses in kg/s.
     pub dm: Vec<f64>,
     /// Places of the rings.
     pub places: Vec<RingPlace>,

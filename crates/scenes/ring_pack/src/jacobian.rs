@@ -112,22 +112,25 @@ impl Pack {
         }
         let known = self.gas_partials(p_cylinder, &mut base.gas_partials)?;
         for k in 0..gas {
+            if !self.gas.is_integrated(k) {
+                continue;
+            }
             let d = increment(k);
             let outcome = if known {
                 self.gas_column(k, base, jac);
-                self.shift_pressures(k, d * self.mass_scale[k], base);
+                self.shift_pressures(k, d * self.gas_scale[k], base);
                 self.followers(y, (k, d), None, base, jac)
             } else {
-                let keep = self.masses[k];
-                self.masses[k] = (y[k] + d) * self.mass_scale[k];
+                let keep = self.gas_state[k];
+                self.gas_state[k] = (y[k] + d) * self.gas_scale[k];
                 let outcome = self.gas(Some(p_cylinder)).and_then(|()| {
                     self.gas_rows(k, d, base, jac);
                     self.followers(y, (k, d), None, base, jac)
                 });
-                self.masses[k] = keep;
+                self.gas_state[k] = keep;
                 outcome
             };
-            self.restore(base);
+            self.restore_gas(base);
             outcome?;
         }
         if !known {
@@ -175,9 +178,10 @@ impl Pack {
         y[k] = keep + d;
         self.at.places[ring] = self.place(ring, base.places[ring].liner_radius, y);
         let changes = self.layout.states[k].changes;
-        let outcome = self.ring_moved(y, Moved { column: k, d, ring, changes }, base, jac);
+        let moved = Moved { column: k, d, ring, changes };
+        let outcome = self.ring_moved(y, moved, base, jac);
         y[k] = keep;
-        self.restore(base);
+        self.restore_ring(moved, base);
         outcome
     }
 
@@ -211,7 +215,7 @@ impl Pack {
             if let Some(oil) = &mut self.oil_pack {
                 oil.place(&y[own.clone()], self.at.piston.y);
             }
-            self.restore(base);
+            self.restore_ring(moved, base);
             outcome?;
         }
         Ok(())
@@ -231,9 +235,10 @@ impl Pack {
             y[k] = keep + d;
             self.at.rings[ring].mu = self.viscosity(ring, self.at.piston.y, y);
             let changes = self.layout.states[k].changes;
-            let outcome = self.followers(y, (k, d), Some(Moved { column: k, d, ring, changes }), base, jac);
+            let moved = Moved { column: k, d, ring, changes };
+            let outcome = self.followers(y, (k, d), Some(moved), base, jac);
             y[k] = keep;
-            self.restore(base);
+            self.restore_ring(moved, base);
             outcome?;
         }
         Ok(())
@@ -285,20 +290,30 @@ impl Pack {
         }
     }
 
-    fn restore(&mut self, base: &Base) {
+    /// Takes back a perturbation of the gas.
+    fn restore_gas(&mut self, base: &Base) {
         self.at.rings.clone_from(&base.rings);
-        self.at.places.clone_from(&base.places);
         self.at.dm.clone_from(&base.dm);
         self.at.gas.clone_from(&base.gas);
+        self.dy.clone_from(&base.dy);
+    }
+
+    /// Takes back a perturbation of a ring, whose own states or those of its oil or film have moved.
+    fn restore_ring(&mut self, moved: Moved, base: &Base) {
+        self.at.places[moved.ring] = base.places[moved.ring];
+        if moved.changes.meets(GAS_READS) {
+            return self.restore_gas(base);
+        }
+        self.at.rings[moved.ring] = base.rings[moved.ring];
         self.dy.clone_from(&base.dy);
     }
 
     /// Rows of the gas in the column of mass `k`, from the derivatives in `base`.
     fn gas_column(&self, k: usize, base: &Base, jac: &mut [f64]) {
         let (n, rings, m, s) = (self.layout.n, self.n_rings(), self.layout.gas.len(), &base.gas_partials);
-        let per = self.mass_scale[k] / self.omega;
+        let per = self.gas_scale[k] / self.omega;
         for r in 0..m {
-            jac[r * n + k] = s.d_state[r * m + k] / self.mass_scale[r] * per;
+            jac[r * n + k] = s.d_state[r * m + k] / self.gas_scale[r] * per;
         }
         for r in 0..rings {
             jac[(n + r) * n + k] = s.flow_in[r * m + k] * per;
@@ -310,7 +325,7 @@ impl Pack {
         let (n, rings) = (self.layout.n, self.n_rings());
         let per = 1.0 / (self.omega * d);
         for r in self.layout.gas.clone() {
-            jac[r * n + column] = (self.at.dm[r] - base.dm[r]) / self.mass_scale[r] * per;
+            jac[r * n + column] = (self.at.dm[r] - base.dm[r]) / self.gas_scale[r] * per;
         }
         for r in 0..rings {
             jac[(n + r) * n + column] = (self.at.gas.flow_in[r] - base.gas.flow_in[r]) * per;

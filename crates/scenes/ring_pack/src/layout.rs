@@ -7,11 +7,11 @@ use gudgeon_core::states::{Signals, StateInfo};
 
 use super::ring::Ring;
 
-/// Where things are in the state vector: gas masses, each over its mass at 1 bar; the radial motion of every ring; the motion of every ring in its
+/// Where things are in the state vector: the gas, each state over its value at 1 bar; the radial motion of every ring; the motion of every ring in its
 /// groove; the oil; the film temperatures.
 #[derive(Debug, Clone, Default)]
 pub struct Layout {
-    /// Gas masses.
+    /// Gas.
     pub gas: Range<usize>,
     /// Radial motion per ring.
     pub radial: Vec<Range<usize>>,
@@ -35,11 +35,6 @@ pub struct Layout {
     pub motion_reads: Vec<Signals>,
 }
 
-/// Part of its mass at 1 bar that counts as one in the error of a gas volume.
-const GAS_SCALE: f64 = 0.1;
-/// Least mass with which a cycle starts, over that at 1 bar: an extrapolated state may have lost its gas.
-const LEAST_GAS: f64 = 0.01;
-
 impl Layout {
     /// Lays out the states of all models; radial motion and oil only where films are solved.
     #[must_use]
@@ -51,13 +46,7 @@ impl Layout {
         temperature: &dyn FilmTemperature,
     ) -> Self {
         let mut layout = Self { carried: oil.map_or(0, OilTransport::carried), ..Self::default() };
-        let mass = |name: String| {
-            StateInfo::new(format!("mass of {name}"))
-                .relative(GAS_SCALE)
-                .over_cycle(1.0, true)
-                .at_least(LEAST_GAS)
-        };
-        layout.gas = layout.add(gas.state_names().into_iter().map(mass));
+        layout.gas = layout.add(gas.states().iter().cloned());
         for r in rings {
             let own = if films && !r.films.is_empty() { r.radial.states() } else { &[] };
             let range = layout.add(own.iter().cloned());

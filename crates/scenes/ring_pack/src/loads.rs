@@ -36,7 +36,7 @@ pub struct Loads<'a> {
     /// Films of the lands.
     pub films: &'a mut [Box<dyn Hydrodynamics>],
     /// Friction on the flanks.
-    pub friction: &'a dyn FlankFriction,
+    pub friction: Option<&'a dyn FlankFriction>,
     /// Flux at the lower end of each film \[m²/s\].
     pub flux: [f64; 2],
     /// Counter of film evaluations.
@@ -94,14 +94,11 @@ impl RadialLoads for Loads<'_> {
         self.resists || self.line.carries()
     }
     fn has_friction(&self) -> bool {
-        !self.friction.is_off()
+        self.friction.is_some()
     }
     fn friction(&self, hdot: f64) -> (f64, f64) {
-        if self.friction.is_off() {
-            return (0.0, 0.0);
-        }
+        let Some(f) = self.friction else { return (0.0, 0.0) };
         let axial = flank_load(self.place, self.at);
-        let f = self.friction;
         (f.force(hdot, axial) / self.perimeter, f.slope(hdot, axial) / self.perimeter)
     }
     fn faces(&self) -> usize {

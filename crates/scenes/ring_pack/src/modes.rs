@@ -10,6 +10,8 @@ use super::pack::Pack;
 /// A model with states of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Block {
+    /// Gas.
+    Gas,
     /// Radial motion of a ring.
     Radial(usize),
     /// Motion of a ring in its groove.
@@ -30,17 +32,24 @@ pub struct EventOf {
 }
 
 impl Pack {
+    /// The models that all rings share, each with what the names of its columns begin with.
+    pub(super) fn shared_blocks(&self) -> impl Iterator<Item = (Block, &'static str)> + use<> {
+        let oil = self.oil_pack.is_some().then_some((Block::Oil, "oil"));
+        [(Block::Gas, "gas")].into_iter().chain(oil).chain([(Block::Temperature, "film_temperature")])
+    }
+
     /// Every model that may have states.
     fn blocks(&self) -> impl Iterator<Item = Block> + use<> {
         let (n, oil) = (self.n_rings(), self.oil_pack.is_some());
         let rings = (0..n).map(Block::Radial).chain((0..n).map(Block::Motion));
-        rings.chain(oil.then_some(Block::Oil)).chain([Block::Temperature])
+        std::iter::once(Block::Gas).chain(rings).chain(oil.then_some(Block::Oil)).chain([Block::Temperature])
     }
 
     /// Its part of the state vector.
     #[must_use]
     pub fn range(&self, b: Block) -> Range<usize> {
         match b {
+            Block::Gas => self.layout.gas.clone(),
             Block::Radial(i) => self.layout.radial[i].clone(),
             Block::Motion(i) => self.layout.motion[i].clone(),
             Block::Oil => self.layout.oil.clone(),
@@ -52,6 +61,7 @@ impl Pack {
     #[must_use]
     pub fn block(&self, b: Block) -> &dyn Stateful {
         match (b, &self.oil_pack) {
+            (Block::Gas, _) => &*self.gas,
             (Block::Radial(i), _) => &*self.rings[i].radial,
             (Block::Motion(i), _) => &*self.rings[i].motion,
             (Block::Oil, Some(oil)) => &**oil,
@@ -62,6 +72,7 @@ impl Pack {
     /// As [`Pack::block`].
     pub fn block_mut(&mut self, b: Block) -> &mut dyn Stateful {
         match (b, &mut self.oil_pack) {
+            (Block::Gas, _) => &mut *self.gas,
             (Block::Radial(i), _) => &mut *self.rings[i].radial,
             (Block::Motion(i), _) => &mut *self.rings[i].motion,
             (Block::Oil, Some(oil)) => &mut **oil,

@@ -77,6 +77,8 @@ pub struct Pack {
     pub rings: Vec<Ring>,
     /// Liner distortion.
     pub liner: LinerShape,
+    /// Height of the pin at top dead centre \[m\].
+    pub y_tdc: f64,
     /// Height of ring 1 above the pin \[m\].
     pub pin_to_ring1: f64,
     /// Crankcase pressure \[Pa\].
@@ -87,18 +89,18 @@ pub struct Pack {
     pub plan: Plan,
     /// State layout.
     pub layout: Layout,
-    /// Masses of the gas volumes at 1 bar \[kg\], the scale of the gas states.
-    pub mass_scale: Vec<f64>,
+    /// States of the gas at 1 bar, their scale in the state vector.
+    pub gas_scale: Vec<f64>,
     /// What became of the decisions on seats, per ring.
     pub seat_log: Vec<SeatLog>,
     /// The last instant evaluated.
     pub at: Instant,
-    /// Rates of the states of the models at that instant \[1/rad\], gas masses apart.
+    /// Rates of the states of the models at that instant \[1/rad\], those of the gas apart.
     pub dy: Vec<f64>,
     /// Work counters.
     pub counters: Counters,
-    /// Masses, unscaled, scratch.
-    pub masses: Vec<f64>,
+    /// States of the gas in SI units.
+    pub gas_state: Vec<f64>,
     /// Whether friction changes over at a film floor at once, as in the published schemes, and not over a narrow band.
     pub hard_floor: bool,
     /// State of the last complete evaluation.
@@ -130,6 +132,7 @@ impl Pack {
 
     /// Calls `f` with every model that may have states, and its part of the state vector.
     pub fn each_block(&mut self, mut f: impl FnMut(&mut dyn Stateful, std::ops::Range<usize>)) {
+        f(&mut *self.gas, self.layout.gas.clone());
         for (r, range) in self.rings.iter_mut().zip(&self.layout.radial) {
             f(&mut *r.radial, range.clone());
         }
@@ -156,9 +159,15 @@ impl Pack {
         });
     }
 
+    /// Gas in all volumes \[kg\].
+    #[must_use]
+    pub fn gas_mass(&self) -> f64 {
+        self.gas_state[..self.gas.n_masses()].iter().sum()
+    }
+
     /// Liner radius at ring `i` for a pin height \[m\].
     pub(super) fn liner_radius(&self, i: usize, y: f64) -> f64 {
-        let x = y - self.kinematics.y_tdc() + self.pin_to_ring1 - self.rings[i].spacing;
+        let x = y - self.y_tdc + self.pin_to_ring1 - self.rings[i].spacing;
         self.geo.bore_radius + self.liner.at(x)
     }
 
@@ -213,7 +222,7 @@ impl Pack {
 
     /// Way of the face of ring `i` below the place of ring 1 at top dead centre \[m\], for a pin height \[m\].
     fn travel(&self, i: usize, pin: f64) -> f64 {
-        self.kinematics.y_tdc() - pin + self.rings[i].spacing
+        self.y_tdc - pin + self.rings[i].spacing
     }
 
     /// Viscosity under ring `i` for a pin height \[m\].
@@ -238,7 +247,7 @@ impl Pack {
         }
     }
 
-    /// Runs the gas model on `self.masses` and copies the pressures to the rings. `p_cylinder` overrides the model.
+    /// Runs the gas model on `self.gas_state` and copies the pressures to the rings. `p_cylinder` overrides the model.
     pub fn gas(&mut self, p_cylinder: Option<f64>) -> Result<(), EvalError> {
         let inp = GasIn {
             p_cylinder: p_cylinder.unwrap_or_else(|| self.cylinder.pressure(self.at.theta)),
@@ -246,7 +255,7 @@ impl Pack {
             rings: &self.at.places,
         };
         self.counters.gas += 1;
-        self.gas.rates(&inp, &self.masses, &mut self.at.dm, &mut self.at.gas)?;
+        self.gas.rates(&inp, &self.gas_state, &mut self.at.dm, &mut self.at.gas)?;
         self.share_pressures();
         Ok(())
     }
@@ -255,16 +264,16 @@ impl Pack {
     pub(super) fn gas_moved(&mut self, i: usize, p_cylinder: f64) -> Result<(), EvalError> {
         let inp = GasIn { p_cylinder, p_crankcase: self.p_crankcase, rings: &self.at.places };
         self.counters.gas += 1;
-        self.gas.rates_moved(i, &inp, &self.masses, &mut self.at.dm, &mut self.at.gas)?;
+        self.gas.rates_moved(i, &inp, &self.gas_state, &mut self.at.dm, &mut self.at.gas)?;
         self.share_pressures();
         Ok(())
     }
 
-    /// Derivatives of the gas model by the masses at the state of `self.at`, into `out`; `false` when it has none.
+    /// Derivatives of the gas model by its states at the state of `self.at`, into `out`; `false` when it has none.
     pub(super) fn gas_partials(&mut self, p_cylinder: f64, out: &mut GasPartials) -> Result<bool, EvalError> {
         let inp = GasIn { p_cylinder, p_crankcase: self.p_crankcase, rings: &self.at.places };
         self.counters.gas += 1;
-        self.gas.partials(&inp, &self.masses, out)
+        self.gas.partials(&inp, &self.gas_state, out)
     }
 
     pub(super) fn share_pressures(&mut self) {
@@ -300,8 +309,8 @@ impl Pack {
         if let (Some(oil), None) = (&mut self.oil_pack, memory) {
             oil.place(&y[self.layout.oil.clone()], self.at.piston.y);
         }
-        for (k, m) in self.masses.iter_mut().enumerate() {
-            *m = y[k] * self.mass_scale[k];
+        for (k, m) in self.gas_state.iter_mut().enumerate() {
+            *m = y[k] * self.gas_scale[k];
         }
         self.gas(None)?;
         for i in 0..self.n_rings() {
@@ -346,8 +355,8 @@ impl Pack {
         // What `self.at` holds is no longer an evaluation of any state.
         self.state.fill(f64::NAN);
         self.set_places(theta, y);
-        for (k, m) in self.masses.iter_mut().enumerate() {
-            *m = y[k] * self.mass_scale[k];
+        for (k, m) in self.gas_state.iter_mut().enumerate() {
+            *m = y[k] * self.gas_scale[k];
         }
         self.gas_pressures(self.cylinder.pressure(theta))?;
         if let Some(oil) = &mut self.oil_pack {
@@ -366,7 +375,7 @@ impl Pack {
         let (per, dim) = (1.0 / self.omega, self.layout.n);
         f[..dim].copy_from_slice(&self.dy);
         for k in self.layout.gas.clone() {
-            f[k] = self.at.dm[k] / self.mass_scale[k] * per;
+            f[k] = self.at.dm[k] / self.gas_scale[k] * per;
         }
         let q = &mut f[dim..];
         if !q.is_empty() {
@@ -429,9 +438,9 @@ impl Pack {
             oil.first(&films, &mut y[self.layout.oil.clone()]);
         }
         self.set_places(0.0, y);
-        self.fill_masses(pressure, self.cylinder.pressure(0.0));
+        self.fill_gas(pressure, self.cylinder.pressure(0.0));
         for k in self.layout.gas.clone() {
-            y[k] = self.masses[k] / self.mass_scale[k];
+            y[k] = self.gas_state[k] / self.gas_scale[k];
         }
         for r in &mut self.at.rings {
             r.hdot = 0.0;

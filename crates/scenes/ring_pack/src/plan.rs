@@ -30,120 +30,118 @@ pub struct ResultInfo {
 /// Every result of a pack of `rings` rings; `oil`: whether oil is followed on the liner.
 #[must_use]
 pub fn catalogue(rings: usize, oil: bool) -> Vec<ResultInfo> {
-    let mut all = Vec::new();
-    let mut add = |name: String, unit, needs, what: String| all.push(ResultInfo { name, unit, what, needs });
-    add(
-        "blow_by".into(),
-        "l/min",
-        Needs::Gas,
-        "gas to the crankcase, whole engine, at meter conditions".into(),
-    );
-    add(
-        "blow_by_per_cylinder".into(),
-        "l/min",
-        Needs::Gas,
-        "gas to the crankcase, one cylinder, at meter conditions".into(),
-    );
-    add("blow_by_mass_per_cycle".into(), "kg", Needs::Gas, "gas to the crankcase, one cylinder".into());
-    add(
-        "blow_back_mass_per_cycle".into(),
-        "kg",
-        Needs::Gas,
-        "gas returning past ring 1 to the cylinder, one cylinder".into(),
-    );
-    add("cylinder.p_max".into(), "bar", Needs::Gas, "highest cylinder pressure".into());
-    for k in 2..=rings {
-        add(format!("land{k}.p_max"), "bar", Needs::Gas, format!("highest pressure of land {k}"));
-        add(
-            format!("land{k}.p_max_angle"),
-            "deg",
-            Needs::Gas,
-            format!("crank angle of the highest pressure of land {k}"),
-        );
-    }
+    let mut all = gas_results();
+    all.extend((2..=rings).flat_map(land_results));
     for i in 1..=rings {
-        add(
-            format!("ring{i}.seat_changes"),
-            "1",
-            Needs::Axial,
-            format!(
-                "arrivals of ring {i} on a groove flank (within `outputs.seat` of its clearance) per cycle"
-            ),
-        );
-        add(
-            format!("ring{i}.lifted_share"),
-            "1",
-            Needs::Axial,
-            format!(
-                "share of the cycle that ring {i} is off its lower flank, farther than `outputs.seat` of its clearance"
-            ),
-        );
-        add(format!("ring{i}.h_min"), "um", Needs::Film, format!("thinnest film under ring {i}"));
-        add(format!("ring{i}.h_max"), "um", Needs::Film, format!("thickest film under ring {i}"));
-        add(format!("ring{i}.h_mean"), "um", Needs::Film, format!("mean film under ring {i}"));
-        add(
-            format!("ring{i}.friction_power"),
-            "W",
-            Needs::Film,
-            format!("mean friction power of ring {i}, one cylinder"),
-        );
-        add(
-            format!("ring{i}.oil_face_combustion"),
-            "mm3",
-            Needs::Film,
-            format!("film on the expansion stroke less that on the compression stroke, ring {i}, per cycle"),
-        );
-        add(
-            format!("ring{i}.oil_face_gas_exchange"),
-            "mm3",
-            Needs::Film,
-            format!("film on the intake stroke less that on the exhaust stroke, ring {i}, per cycle"),
-        );
-        add(
-            format!("ring{i}.oil_gap"),
-            "mm3",
-            Needs::Film,
-            format!("oil that a gap full of oil would let up past ring {i}, per cycle"),
-        );
-        add(
-            format!("ring{i}.oil_groove"),
-            "mm3",
-            Needs::Axial,
-            format!("oil pumped up past the flanks of ring {i} in an oil-filled groove, per cycle"),
-        );
+        all.extend(seat_results(i));
+        all.extend(film_results(i));
+        all.extend(oil_face_results(i));
         if oil {
-            add(
-                format!("ring{i}.wetted_share"),
-                "1",
-                Needs::Film,
-                format!("mean share of the face under full film, ring {i}"),
-            );
+            let what = format!("mean share of the face under full film, ring {i}");
+            all.push(info(format!("ring{i}.wetted_share"), "1", Needs::Film, what));
         }
     }
     if oil {
-        add(
-            "oil_taken".into(),
-            "mm3",
-            Needs::Film,
-            "oil taken up from the liner by all faces, per cycle".into(),
-        );
-        add("oil_drained".into(), "mm3", Needs::Film, "oil scraped into the crankcase, per cycle".into());
-        add(
-            "oil_thrown".into(),
-            "mm3",
-            Needs::Film,
-            "oil thrown off above ring 1 into the combustion chamber, per cycle".into(),
-        );
+        all.extend(oil_results());
     }
-    add("friction_power".into(), "W", Needs::Film, "mean friction power of the pack, one cylinder".into());
-    add("fmep".into(), "bar", Needs::Film, "friction mean effective pressure of the pack".into());
-    add(
-        "periodicity_error".into(),
-        "1",
-        Needs::Gas,
-        "estimated true relative error of the periodic state".into(),
-    );
+    let power = "mean friction power of the pack, one cylinder";
+    all.push(info("friction_power", "W", Needs::Film, power));
+    all.push(info("fmep", "bar", Needs::Film, "friction mean effective pressure of the pack"));
+    let error = "estimated true relative error of the periodic state";
+    all.push(info("periodicity_error", "1", Needs::Gas, error));
     all
+}
+
+fn info(name: impl Into<String>, unit: &'static str, needs: Needs, what: impl Into<String>) -> ResultInfo {
+    ResultInfo { name: name.into(), unit, what: what.into(), needs }
+}
+
+fn gas_results() -> Vec<ResultInfo> {
+    let add = |name, unit, what| info(name, unit, Needs::Gas, what);
+    vec![
+        add("blow_by", "l/min", "gas to the crankcase, whole engine, at meter conditions"),
+        add("blow_by_per_cylinder", "l/min", "gas to the crankcase, one cylinder, at meter conditions"),
+        add("blow_by_mass_per_cycle", "kg", "gas to the crankcase, one cylinder"),
+        add("blow_back_mass_per_cycle", "kg", "gas returning past ring 1 to the cylinder, one cylinder"),
+        add("cylinder.p_max", "bar", "highest cylinder pressure"),
+    ]
+}
+
+/// Of land `k`.
+fn land_results(k: usize) -> Vec<ResultInfo> {
+    let add =
+        |name, unit, what| info(format!("land{k}.{name}"), unit, Needs::Gas, format!("{what} of land {k}"));
+    vec![
+        add("p_max", "bar", "highest pressure"),
+        add("p_max_angle", "deg", "crank angle of the highest pressure"),
+    ]
+}
+
+/// Of ring `i` between the flanks.
+fn seat_results(i: usize) -> Vec<ResultInfo> {
+    let add = |name, what| info(format!("ring{i}.{name}"), "1", Needs::Axial, what);
+    vec![
+        add(
+            "seat_changes",
+            format!(
+                "arrivals of ring {i} on a groove flank (within `outputs.seat` of its clearance) per cycle"
+            ),
+        ),
+        add(
+            "lifted_share",
+            format!(
+                "share of the cycle that ring {i} is off its lower flank, farther than `outputs.seat` of its clearance"
+            ),
+        ),
+    ]
+}
+
+/// Of the film of ring `i`.
+fn film_results(i: usize) -> Vec<ResultInfo> {
+    let add = |name, unit, what| info(format!("ring{i}.{name}"), unit, Needs::Film, what);
+    vec![
+        add("h_min", "um", format!("thinnest film under ring {i}")),
+        add("h_max", "um", format!("thickest film under ring {i}")),
+        add("h_mean", "um", format!("mean film under ring {i}")),
+        add("friction_power", "W", format!("mean friction power of ring {i}, one cylinder")),
+    ]
+}
+
+/// Oil past ring `i` when all its ways are full of oil.
+fn oil_face_results(i: usize) -> Vec<ResultInfo> {
+    let add = |name, needs, what| info(format!("ring{i}.{name}"), "mm3", needs, what);
+    vec![
+        add(
+            "oil_face_combustion",
+            Needs::Film,
+            format!("film on the expansion stroke less that on the compression stroke, ring {i}, per cycle"),
+        ),
+        add(
+            "oil_face_gas_exchange",
+            Needs::Film,
+            format!("film on the intake stroke less that on the exhaust stroke, ring {i}, per cycle"),
+        ),
+        add(
+            "oil_gap",
+            Needs::Film,
+            format!("oil that a gap full of oil would let up past ring {i}, per cycle"),
+        ),
+        add(
+            "oil_groove",
+            Needs::Axial,
+            format!("oil pumped up past the flanks of ring {i} in an oil-filled groove, per cycle"),
+        ),
+    ]
+}
+
+/// Of the oil on the liner.
+fn oil_results() -> Vec<ResultInfo> {
+    let add = |name, what| info(name, "mm3", Needs::Film, what);
+    vec![
+        add("oil_taken", "oil taken up from the liner by all faces, per cycle"),
+        add("oil_drained", "oil scraped into the crankcase, per cycle"),
+        add("oil_thrown", "oil thrown off above ring 1 into the combustion chamber, per cycle"),
+    ]
 }
 
 /// What runs and what does not.

@@ -78,6 +78,9 @@ impl Record {
             for c in ring.motion.columns() {
                 add(format!("ring{i}.{}", c.name), c.unit);
             }
+            for c in ring.radial.columns() {
+                add(format!("ring{i}.{}", c.name), c.unit);
+            }
             if pack.plan.film {
                 for (name, unit) in [
                     ("h_min", "m"),
@@ -96,6 +99,11 @@ impl Record {
                         add(format!("ring{i}.{name}"), unit);
                     }
                 }
+            }
+        }
+        for (block, prefix) in pack.shared_blocks() {
+            for c in pack.block(block).columns() {
+                add(format!("{prefix}.{}", c.name), c.unit);
             }
         }
         Self { theta: Vec::new(), columns }
@@ -150,6 +158,7 @@ impl Record {
             }
             own.clear();
             ring.motion.record(&pack.state[pack.layout.motion[i].clone()], &mut own);
+            ring.radial.record(&pack.state[pack.layout.radial[i].clone()], &mut own);
             own.iter().for_each(|v| put(*v));
             if pack.plan.film {
                 let circumference = 2.0 * PI * place.r_outer * pack.geo.rings[i].rails as f64;
@@ -169,6 +178,11 @@ impl Record {
                 }
             }
         }
+        own.clear();
+        for (block, _) in pack.shared_blocks() {
+            pack.block(block).record(&pack.state[pack.range(block)], &mut own);
+        }
+        own.iter().for_each(|v| put(*v));
     }
 
     /// The series.

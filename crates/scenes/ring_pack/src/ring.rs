@@ -14,12 +14,16 @@ pub struct Ring {
     pub contact: ContactLine,
     /// Motion in the groove, the oil in the groove included.
     pub motion: Box<dyn RingMotion>,
+    /// Whether the balance of that motion counts the force of the film, and the weight.
+    pub counts: (bool, bool),
     /// The name of that model, for messages.
     pub motion_name: &'static str,
     /// Motion towards the liner; asked only while films are solved.
     pub radial: Box<dyn RadialMotion>,
-    /// Radial friction.
-    pub friction: Box<dyn FlankFriction>,
+    /// Radial friction, unless it is off.
+    pub friction: Option<Box<dyn FlankFriction>>,
+    /// Radial force of the tension of one rail \[N\].
+    pub pull: f64,
     /// Distance below ring 1 \[m\].
     pub spacing: f64,
     /// Viscosity when it does not change over the cycle \[Pa s\].

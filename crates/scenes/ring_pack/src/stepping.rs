@@ -37,10 +37,10 @@ impl Pack {
     }
 
     /// Fills the gas volumes for lands at `pressure` \[Pa\] with the places of `self.at`.
-    pub fn fill_masses(&mut self, pressure: f64, p_cylinder: f64) {
+    pub fn fill_gas(&mut self, pressure: f64, p_cylinder: f64) {
         let p = vec![pressure; self.n_rings() + 1];
         let inp = GasIn { p_cylinder, p_crankcase: self.p_crankcase, rings: &self.at.places };
-        self.gas.initial(&inp, &p, &mut self.masses);
+        self.gas.at_pressures(&inp, &p, &mut self.gas_state);
     }
 
     /// Friction of ring `i`, found at `hdot` by a solver of its own.
@@ -57,10 +57,10 @@ impl Pack {
         self.film_peak(i)
     }
 
-    /// Pressures for the masses as they are, shared with the rings.
+    /// Pressures for the state of the gas as it is, shared with the rings.
     pub fn gas_pressures(&mut self, p_cylinder: f64) -> Result<(), EvalError> {
         let inp = GasIn { p_cylinder, p_crankcase: self.p_crankcase, rings: &self.at.places };
-        self.gas.pressures(&inp, &self.masses, &mut self.at.gas)?;
+        self.gas.pressures(&inp, &self.gas_state, &mut self.at.gas)?;
         self.share_pressures();
         Ok(())
     }
@@ -68,10 +68,7 @@ impl Pack {
     /// Radial force of the flank friction per circumference \[N/m\] of one rail.
     #[must_use]
     pub fn radial_friction(&self, i: usize, hdot: f64) -> f64 {
-        let f = &self.rings[i].friction;
-        if f.is_off() {
-            return 0.0;
-        }
+        let Some(f) = &self.rings[i].friction else { return 0.0 };
         f.force(hdot, flank_load(&self.at.places[i], &self.at.rings[i]))
             / (self.perimeter(i) * self.geo.rings[i].rails as f64)
     }

@@ -214,13 +214,13 @@ impl<'a> March<'a> {
 
     /// Fills all volumes to `start` \[Pa\].
     fn fill(&mut self, start: f64, p_cyl: f64) {
-        self.pack.fill_masses(start, p_cyl);
+        self.pack.fill_gas(start, p_cyl);
         self.volumes.clear();
         self.volumes.extend(self.pack.at.places.iter().map(|p| p.back_volume));
     }
 
     fn stored(&self) -> f64 {
-        self.pack.masses.iter().sum()
+        self.pack.gas_mass()
     }
 
     /// The explicit steps of the gas in a sub-step.
@@ -236,7 +236,7 @@ impl<'a> March<'a> {
             if g == 0 {
                 swap_volumes(pack, &mut self.volumes);
             }
-            for (m, dm) in pack.masses.iter_mut().zip(&pack.at.dm) {
+            for (m, dm) in pack.gas_state.iter_mut().zip(&pack.at.dm) {
                 *m += dm * dt;
             }
             for (sum, w) in totals.flow_in.iter_mut().zip(&pack.at.gas.flow_in) {
