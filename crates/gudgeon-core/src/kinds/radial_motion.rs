@@ -68,35 +68,42 @@ pub trait RadialMotionSpec: Debug + DynClone + Send + Sync {
     fn build(&self, ctx: &RadialMotionCtx) -> Result<Box<dyn RadialMotion>, BuildError>;
 }
 
-/// What presses a ring against the liner and what carries it, at an instant and at its film thickness. Loads and forces are per circumference of
-/// one rail; loads count above the pressure at which the film cavitates.
-pub trait RadialLoads {
+/// What presses a ring against the liner at an instant, and what is known of what carries it. Loads are per circumference of one rail and count
+/// above the pressure at which the film cavitates.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct RadialState {
     /// Film thickness \[m\].
-    fn thickness(&self) -> f64;
+    pub thickness: f64,
     /// Load of tension and gas \[N/m\].
-    fn load(&self) -> f64;
+    pub load: f64,
     /// Load of tension alone \[N/m\].
-    fn tension(&self) -> f64;
+    pub tension: f64,
     /// Load of the solid contact \[N/m\].
-    fn contact(&self) -> f64;
+    pub contact: f64,
     /// Film thickness above which there is no contact \[m\].
-    fn contact_range(&self) -> f64;
+    pub contact_range: f64,
     /// Part of the load that gas on dry parts of the face carries \[N/m\].
-    fn dry(&self) -> f64;
+    pub dry: f64,
     /// Film thickness that the ring does not go below \[m\], and the part of it over which the approach to it fades out.
-    fn lowest(&self) -> (f64, f64);
+    pub lowest: (f64, f64),
     /// Film thickness at which the ring is flush with its land or touches the groove root \[m\].
-    fn furthest(&self) -> f64;
+    pub furthest: f64,
     /// Whether a film resists being squeezed.
-    fn resists(&self) -> bool;
+    pub resists: bool,
     /// Whether anything could carry the ring: a film or contact.
-    fn carries(&self) -> bool;
+    pub carries: bool,
     /// Whether friction on the flanks resists radial motion.
-    fn has_friction(&self) -> bool;
+    pub has_friction: bool,
+    /// Number of running faces.
+    pub faces: usize,
+}
+
+/// The films and flanks of a ring at an instant, for as long as its radial motion asks. Forces are per circumference of one rail.
+pub trait RadialLoads {
+    /// The instant.
+    fn state(&self) -> &RadialState;
     /// Friction on the flanks at `hdot` \[m/s\], towards the liner \[N/m\], and its derivative \[N s/m²\].
     fn friction(&self, hdot: f64) -> (f64, f64);
-    /// Number of running faces.
-    fn faces(&self) -> usize;
     /// Forces of the films at `hdot` \[m/s\], summed over the faces.
     ///
     /// # Errors

@@ -100,7 +100,7 @@ impl RadialMotion for Runtime {
         loads: &mut dyn RadialLoads,
         dy: &mut [f64],
     ) -> Result<RadialResponse, EvalError> {
-        let h = loads.thickness();
+        let h = loads.state().thickness;
         let mut search = Search { limits: &self.limits, ring: self.ring, hdot: self.hdot, balanced: false };
         let found = match &self.tangent {
             Some(tangent) if self.differences => tangent.follow(&search, loads, self.hdot)?,
@@ -113,7 +113,7 @@ impl RadialMotion for Runtime {
             }
         };
         if !self.differences {
-            self.load = loads.load();
+            self.load = loads.state().load;
             (self.hdot, self.balanced) = (found.hdot, search.balanced);
             (self.film_known, self.dragged) = (found.film.is_some(), found.limited.drag > 0.0);
         }
@@ -134,8 +134,8 @@ impl RadialMotion for Runtime {
         let search = Search { limits: &self.limits, ring: self.ring, hdot: self.hdot, balanced: true };
         if searched
             && !on_floor
-            && loads.thickness() > loads.lowest().0
-            && search.drag(loads, self.hdot, self.load.abs().max(film.load.abs())) <= 0.0
+            && loads.state().thickness > loads.state().lowest.0
+            && search.drag(loads.state(), self.hdot, self.load.abs().max(film.load.abs())) <= 0.0
         {
             self.tangent = Tangent::new(&search, loads, self.hdot, film)?;
         }

@@ -1,7 +1,7 @@
 //! The search of the squeeze velocity at which a ring is in balance.
 
 use gudgeon_core::EvalError;
-use gudgeon_core::kinds::{FaceForces, Limited, RadialLimits, RadialLoads, RadialResponse};
+use gudgeon_core::kinds::{FaceForces, Limited, RadialLimits, RadialLoads, RadialResponse, RadialState};
 
 /// Part of the velocity of surfaces that part within which one step of Newton ends at the root.
 const PARTING: f64 = 1e-5;
@@ -39,28 +39,28 @@ pub struct Search<'a> {
 impl Search<'_> {
     /// Squeeze velocity from the radial balance.
     pub fn rate(&mut self, loads: &mut dyn RadialLoads) -> Result<RadialResponse, EvalError> {
-        let floor = self.limits.min_load * loads.tension();
-        let needed = Needed { load: loads.load() - loads.contact() - loads.dry(), floor };
-        if !loads.resists() {
-            return Ok(self.without_film(loads, needed.load));
+        let at = *loads.state();
+        let floor = self.limits.min_load * at.tension;
+        let needed = Needed { load: at.load - at.contact - at.dry, floor };
+        if !at.resists {
+            return Ok(self.without_film(&at, needed.load));
         }
-        let (lowest, _) = loads.lowest();
-        if loads.thickness() <= lowest
+        if at.thickness <= at.lowest.0
             && let Some(film) = on_floor(loads, needed)?
         {
             self.hdot = 0.0;
             return Ok(RadialResponse::new(0.0, Some(film), Limited::default()));
         }
         let mut limited = Limited::default();
-        let (found, film) = self.balance(loads, needed)?;
-        let parts = loads.contact() > 0.0 && found > 0.0;
+        let (found, film) = self.balance(loads, &at, needed)?;
+        let parts = at.contact > 0.0 && found > 0.0;
         let dragged = if parts { found } else { self.dragged(loads, found, needed, &mut limited)? };
-        let hdot = self.bounded(loads, dragged, &mut limited);
+        let hdot = self.bounded(&at, dragged, &mut limited);
         // Off its limits a ring moves as its film allows, and the film found with the velocity is the film of the instant.
         self.balanced = (hdot - found).abs() <= 1e-6 * found.abs();
         limited.lifted = needed.soft() - needed.load;
         if parts {
-            limited.contact_drag = self.contact_drag(loads) * found;
+            limited.contact_drag = self.contact_drag(&at) * found;
         }
         self.hdot = hdot;
         Ok(RadialResponse::new(hdot, film.filter(|_| self.balanced), limited))
@@ -71,10 +71,11 @@ impl Search<'_> {
     fn balance(
         &mut self,
         loads: &mut dyn RadialLoads,
+        at: &RadialState,
         needed: Needed,
     ) -> Result<(f64, Option<FaceForces>), EvalError> {
-        let drag = self.contact_drag(loads);
-        if loads.faces() > 1 || loads.has_friction() {
+        let drag = self.contact_drag(at);
+        if at.faces > 1 || at.has_friction {
             return Ok((self.root(loads, needed, drag)?, None));
         }
         // A ring that parted from the liner an instant ago still does, most often.
@@ -112,23 +113,21 @@ impl Search<'_> {
     }
 
     /// A ring without a film: its contact carries it, and the drag in place of its inertia brings it there.
-    fn without_film(&mut self, loads: &dyn RadialLoads, needed: f64) -> RadialResponse {
+    fn without_film(&mut self, at: &RadialState, needed: f64) -> RadialResponse {
         let mut limited = Limited::default();
-        let free = if loads.carries() { -needed / self.limits.radial_drag } else { 0.0 };
-        let hdot = self.bounded(loads, free, &mut limited);
+        let free = if at.carries { -needed / self.limits.radial_drag } else { 0.0 };
+        let hdot = self.bounded(at, free, &mut limited);
         limited.drag = self.limits.radial_drag * hdot.abs();
         self.hdot = hdot;
         RadialResponse::new(hdot, Some(FaceForces::default()), limited)
     }
 
     /// A radial velocity within its cap and within the ends of the way.
-    fn bounded(&self, loads: &dyn RadialLoads, free: f64, limited: &mut Limited) -> f64 {
-        let h = loads.thickness();
-        let (lowest, band) = loads.lowest();
+    fn bounded(&self, at: &RadialState, free: f64, limited: &mut Limited) -> f64 {
+        let (h, (lowest, band), furthest) = (at.thickness, at.lowest, at.furthest);
         let part = 1.0 / (1.0 + (free / self.limits.radial_speed).powi(2)).sqrt();
         limited.slowed = 1.0 - part;
         if free > 0.0 {
-            let furthest = loads.furthest();
             free * part * ((furthest - h) / (self.limits.retreat_band * furthest)).clamp(0.0, 1.0)
         } else if lowest > 0.0 {
             free * part * ((h - lowest) / (band * lowest)).clamp(0.0, 1.0)
@@ -145,7 +144,7 @@ impl Search<'_> {
         needed: Needed,
         limited: &mut Limited,
     ) -> Result<f64, EvalError> {
-        let drag = self.drag(loads, free, needed.soft().max(needed.load.abs()));
+        let drag = self.drag(loads.state(), free, needed.soft().max(needed.load.abs()));
         if drag <= 0.0 {
             return Ok(free);
         }
@@ -174,11 +173,11 @@ impl Search<'_> {
     }
 
     /// Drag per circumference \[N s/m²\] at the velocity `free` that the film alone allows; `load` is the size of what it carries.
-    pub fn drag(&self, loads: &dyn RadialLoads, free: f64, load: f64) -> f64 {
+    pub fn drag(&self, at: &RadialState, free: f64, load: f64) -> f64 {
         let limits = self.limits;
         let share = limits.radial_drag * free.abs() / load;
         let ((begins, full), (near, far)) = (limits.drag_counts, limits.drag_gap);
-        let off = ((loads.thickness() / loads.contact_range() - near) / (far - near)).min(1.0);
+        let off = ((at.thickness / at.contact_range - near) / (far - near)).min(1.0);
         if share <= begins || off <= 0.0 {
             return 0.0;
         }
@@ -188,8 +187,8 @@ impl Search<'_> {
     }
 
     /// Drag per circumference \[N s/m²\] of surfaces in contact, while they part.
-    pub fn contact_drag(&self, loads: &dyn RadialLoads) -> f64 {
-        let (contact, load) = (loads.contact(), loads.load());
+    pub fn contact_drag(&self, at: &RadialState) -> f64 {
+        let (contact, load) = (at.contact, at.load);
         if contact > 0.0 { self.limits.contact_drag * contact / (contact + load.abs()) } else { 0.0 }
     }
 

@@ -75,10 +75,11 @@ impl Tangent {
 
 /// Balance of film, contact, friction and the drag of surfaces that part at `hdot`, and its derivative but for that of the film.
 fn left_over(search: &Search<'_>, loads: &dyn RadialLoads, hdot: f64, film: f64) -> (f64, f64) {
-    let drag = if hdot > 0.0 { search.contact_drag(loads) } else { 0.0 };
+    let at = loads.state();
+    let drag = if hdot > 0.0 { search.contact_drag(at) } else { 0.0 };
     let (fa, dfa) = loads.friction(hdot);
-    let w = loads.load() - loads.contact() - loads.dry() + fa + drag * hdot;
-    let floor = search.limits.min_load * loads.tension();
+    let w = at.load - at.contact - at.dry + fa + drag * hdot;
+    let floor = search.limits.min_load * at.tension;
     let root = (w * w + 4.0 * floor * floor).sqrt();
     (film - 0.5 * (w + root), -(dfa + drag) * 0.5 * (1.0 + w / root))
 }

@@ -1,8 +1,11 @@
 //! The radial motion without inertia on films whose balance has a closed form.
 
+use std::cell::OnceCell;
+
 use gudgeon_core::EvalError;
 use gudgeon_core::kinds::{
     FaceForces, RadialLimits, RadialLoads, RadialMotion, RadialMotionCtx, RadialMotionSpec, RadialResponse,
+    RadialState,
 };
 use gudgeon_core::states::Signals;
 use gudgeon_ring::FilmBalance;
@@ -29,6 +32,17 @@ struct Ring {
     flux: [f64; 2],
     fails_to_carry: bool,
     evaluations: usize,
+    seen: Seen,
+}
+
+/// What the motion sees of a ring, made once it is asked for; a copy of the ring makes its own.
+#[derive(Debug, Default)]
+struct Seen(OnceCell<RadialState>);
+
+impl Clone for Seen {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
 }
 
 impl Ring {
@@ -49,6 +63,7 @@ impl Ring {
             flux: [0.0; 2],
             fails_to_carry: false,
             evaluations: 0,
+            seen: Seen::default(),
         }
     }
 
@@ -65,44 +80,24 @@ impl Ring {
 }
 
 impl RadialLoads for Ring {
-    fn thickness(&self) -> f64 {
-        self.h
-    }
-    fn load(&self) -> f64 {
-        self.load
-    }
-    fn tension(&self) -> f64 {
-        100.0
-    }
-    fn contact(&self) -> f64 {
-        self.contact
-    }
-    fn contact_range(&self) -> f64 {
-        1e-6
-    }
-    fn dry(&self) -> f64 {
-        self.dry
-    }
-    fn lowest(&self) -> (f64, f64) {
-        self.lowest
-    }
-    fn furthest(&self) -> f64 {
-        1e-3
-    }
-    fn resists(&self) -> bool {
-        self.resists
-    }
-    fn carries(&self) -> bool {
-        self.carries
-    }
-    fn has_friction(&self) -> bool {
-        self.friction.is_some()
+    fn state(&self) -> &RadialState {
+        self.seen.0.get_or_init(|| RadialState {
+            thickness: self.h,
+            load: self.load,
+            tension: 100.0,
+            contact: self.contact,
+            contact_range: 1e-6,
+            dry: self.dry,
+            lowest: self.lowest,
+            furthest: 1e-3,
+            resists: self.resists,
+            carries: self.carries,
+            has_friction: self.friction.is_some(),
+            faces: self.faces,
+        })
     }
     fn friction(&self, v: f64) -> (f64, f64) {
         self.friction.map_or((0.0, 0.0), |(f, d)| (f + d * v, d))
-    }
-    fn faces(&self) -> usize {
-        self.faces
     }
     fn film(&mut self, v: f64) -> Result<FaceForces, EvalError> {
         self.evaluations += 1;

@@ -4,7 +4,9 @@ use std::f64::consts::PI;
 
 use gudgeon_core::EvalError;
 use gudgeon_core::geometry::RingSection;
-use gudgeon_core::kinds::{FaceForces, OilFaceIn, RadialLoads, RadialMotion, RingForces, TwistMoments};
+use gudgeon_core::kinds::{
+    FaceForces, OilFaceIn, RadialLoads, RadialMotion, RadialState, RingForces, TwistMoments,
+};
 
 use super::loads::{Loads, face_in, furthest};
 use super::pack::Pack;
@@ -47,19 +49,29 @@ impl Pack {
         let tension = self.rings[i].pull / around;
         let load = tension + self.laws.radial_gas.load(&section);
         let perimeter = around * rails;
-        let place = &self.at.places[i];
+        let (geo, place, at) = (&self.geo.rings[i], &self.at.places[i], &self.at.rings[i]);
         let ring = &mut self.rings[i];
-        let loads = Loads {
-            geo: &self.geo.rings[i],
-            place,
-            at: &self.at.rings[i],
-            u: -self.at.piston.v,
+        let line = &ring.contact;
+        let state = RadialState {
+            thickness: place.h,
             load,
             tension,
-            contact: ring.contact.load(place.h),
-            line: &ring.contact,
-            min_film: self.limits.min_film,
+            contact: line.load(place.h),
+            contact_range: line.range,
+            dry: at.dry.0,
+            lowest: (line.lowest(self.limits.min_film), line.band()),
+            furthest: furthest(geo, place),
             resists: ring.resists,
+            carries: ring.resists || line.carries(),
+            has_friction: ring.friction.is_some(),
+            faces: ring.films.len(),
+        };
+        let loads = Loads {
+            geo,
+            place,
+            at,
+            state,
+            u: -self.at.piston.v,
             perimeter,
             shares: if ring.films.len() == 2 { self.laws.twin_land_friction.shares() } else { [1.0; 2] },
             films: &mut ring.films,
@@ -151,7 +163,8 @@ impl Pack {
             let film = found.film.map_or_else(|| loads.film(found.hdot), Ok)?;
             Ok((found, film))
         });
-        let (load, contact, flux, perimeter) = (loads.load, loads.contact, loads.flux, loads.perimeter);
+        let (load, contact, flux, perimeter) =
+            (loads.state.load, loads.state.contact, loads.flux, loads.perimeter);
         self.dy = dy;
         let r = &mut self.at.rings[i];
         (r.flux, r.perimeter) = (flux, perimeter);

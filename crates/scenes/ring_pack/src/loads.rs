@@ -2,9 +2,8 @@
 
 use gudgeon_core::EvalError;
 use gudgeon_core::geometry::{RingGeometry, RingPlace};
-use gudgeon_core::kinds::{FaceForces, FaceIn, FlankFriction, Hydrodynamics, RadialLoads};
+use gudgeon_core::kinds::{FaceForces, FaceIn, FlankFriction, Hydrodynamics, RadialLoads, RadialState};
 
-use super::contact_line::ContactLine;
 use super::instant::RingInstant;
 
 /// One ring at an instant, with the models that answer for it.
@@ -17,18 +16,8 @@ pub struct Loads<'a> {
     pub at: &'a RingInstant,
     /// Velocity of the liner seen from the ring, towards the top edge positive \[m/s\].
     pub u: f64,
-    /// Load of tension and gas \[N/m\].
-    pub load: f64,
-    /// Load of tension alone \[N/m\].
-    pub tension: f64,
-    /// Load of the solid contact \[N/m\].
-    pub contact: f64,
-    /// Solid contact of the whole face.
-    pub line: &'a ContactLine,
-    /// Film thickness that surfaces which take no load do not go below \[m\].
-    pub min_film: f64,
-    /// Whether the films resist being squeezed.
-    pub resists: bool,
+    /// What its radial motion sees.
+    pub state: RadialState,
     /// Circumference of all rails, which turns forces per length into forces \[m\].
     pub perimeter: f64,
     /// Parts of the friction of each land that are counted.
@@ -63,48 +52,14 @@ impl Loads<'_> {
 }
 
 impl RadialLoads for Loads<'_> {
-    fn thickness(&self) -> f64 {
-        self.place.h
-    }
-    fn load(&self) -> f64 {
-        self.load
-    }
-    fn tension(&self) -> f64 {
-        self.tension
-    }
-    fn contact(&self) -> f64 {
-        self.contact
-    }
-    fn contact_range(&self) -> f64 {
-        self.line.range
-    }
-    fn dry(&self) -> f64 {
-        self.at.dry.0
-    }
-    fn lowest(&self) -> (f64, f64) {
-        (self.line.lowest(self.min_film), self.line.band())
-    }
-    fn furthest(&self) -> f64 {
-        furthest(self.geo, self.place)
-    }
-    fn resists(&self) -> bool {
-        self.resists
-    }
-    fn carries(&self) -> bool {
-        self.resists || self.line.carries()
-    }
-    fn has_friction(&self) -> bool {
-        self.friction.is_some()
+    fn state(&self) -> &RadialState {
+        &self.state
     }
     fn friction(&self, hdot: f64) -> (f64, f64) {
         let Some(f) = self.friction else { return (0.0, 0.0) };
         let axial = flank_load(self.place, self.at);
         (f.force(hdot, axial) / self.perimeter, f.slope(hdot, axial) / self.perimeter)
     }
-    fn faces(&self) -> usize {
-        self.films.len()
-    }
-
     fn film(&mut self, hdot: f64) -> Result<FaceForces, EvalError> {
         let mut sum = FaceForces::default();
         for land in 0..self.films.len() {
