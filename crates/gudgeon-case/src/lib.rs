@@ -20,7 +20,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use gudgeon_core::file::{Files, MOST_OF_A_CASE, MOST_OF_A_TABLE, ReadError, read_text};
+use gudgeon_core::file::{Files, MAX_CASE_BYTES, MAX_TABLE_BYTES, ReadError, read_text};
 use gudgeon_core::quantity::with_decimal_point;
 use gudgeon_core::{BuildError, content};
 use schemars::JsonSchema;
@@ -30,7 +30,7 @@ use toml::de::DeTable;
 pub use near::{advice, list, nearest};
 pub use published::{one_scene_of, published};
 pub use refine::Refinement;
-pub use report::{Diagnostic, MOST_MISTAKES, Origin, Report, Source, WIDTH, line_column};
+pub use report::{Diagnostic, MAX_MISTAKES, Origin, Report, Source, WIDTH, line_column};
 
 /// What the tests of this crate look at and nobody else needs.
 #[doc(hidden)]
@@ -140,8 +140,8 @@ pub fn reason(e: &content::Error) -> String {
     }
 }
 
-/// The text of a case file, or of the summary that records one: a regular file of at most [`MOST_OF_A_CASE`] bytes, a summary of
-/// [`MOST_OF_A_TABLE`].
+/// The text of a case file, or of the summary that records one: a regular file of at most [`MAX_CASE_BYTES`] bytes, a summary of
+/// [`MAX_TABLE_BYTES`].
 ///
 /// # Errors
 /// A file that does not exist, cannot be read, is too large or is not UTF-8 text.
@@ -151,7 +151,7 @@ pub fn read(path: &Path) -> Result<Source, Report> {
         Some(p) if !p.as_os_str().is_empty() => p.to_owned(),
         _ => PathBuf::from("."),
     };
-    let most = if path.extension().is_some_and(|e| e == "json") { MOST_OF_A_TABLE } else { MOST_OF_A_CASE };
+    let most = if path.extension().is_some_and(|e| e == "json") { MAX_TABLE_BYTES } else { MAX_CASE_BYTES };
     let said = match read_text(path, most) {
         Ok(text) => return Ok(Source { name, text, files: Files::of(&folder) }),
         Err(e) => e,
@@ -242,12 +242,12 @@ fn within(text: &str, span: Option<Range<usize>>) -> Range<usize> {
     span.map_or(0..0, |s| s.start.min(text.len())..s.end.min(text.len()))
 }
 
-/// The first [`MOST_MISTAKES`] keys and tables that stand for the second time.
+/// The first [`MAX_MISTAKES`] keys and tables that stand for the second time.
 fn duplicates(text: &str, errors: &[toml::de::Error]) -> Vec<Diagnostic> {
     let mut out = Vec::new();
     let mut second_table = None;
     for e in errors {
-        if out.len() >= MOST_MISTAKES {
+        if out.len() >= MAX_MISTAKES {
             break;
         }
         let span = within(text, e.span());

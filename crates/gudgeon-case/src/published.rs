@@ -6,7 +6,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::schema::MOST_ITEMS;
+use super::schema::MAX_ITEMS;
 
 /// Rewrites a schema, definitions included, for validators.
 #[must_use]
@@ -44,7 +44,7 @@ fn table(o: &Map<String, Value>) -> Value {
     drop_null(&mut out);
     out.remove("x-renamed");
     if out.get("type").and_then(Value::as_str) == Some("array") {
-        out.entry("maxItems").or_insert_with(|| MOST_ITEMS.into());
+        out.entry("maxItems").or_insert_with(|| MAX_ITEMS.into());
     }
     Value::Object(out)
 }

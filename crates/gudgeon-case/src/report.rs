@@ -80,12 +80,12 @@ impl Diagnostic {
 }
 
 /// Most mistakes that one report tells: a file with more of them is another file.
-pub const MOST_MISTAKES: usize = 50;
+pub const MAX_MISTAKES: usize = 50;
 
 /// Columns that a report takes where nobody says how wide the terminal is.
 pub const WIDTH: usize = 110;
 
-/// What is wrong with one case, at most [`MOST_MISTAKES`], in the order of the file, then of the `--set` arguments.
+/// What is wrong with one case, at most [`MAX_MISTAKES`], in the order of the file, then of the `--set` arguments.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Report {
     /// The mistakes; never empty in a report that is returned as an error.
@@ -102,7 +102,7 @@ impl Report {
     pub fn new(mut diagnostics: Vec<Diagnostic>, source: Arc<Source>, overrides: Arc<[String]>) -> Self {
         diagnostics.sort_by_key(|d| (d.origin, d.span.as_ref().map_or(usize::MAX, |s| s.start)));
         diagnostics.dedup();
-        diagnostics.truncate(MOST_MISTAKES);
+        diagnostics.truncate(MAX_MISTAKES);
         Self { diagnostics, source, overrides }
     }
 
@@ -127,7 +127,7 @@ impl Report {
     pub fn count(&self) -> String {
         match self.diagnostics.len() {
             1 => "1 mistake".to_owned(),
-            n if n < MOST_MISTAKES => format!("{n} mistakes"),
+            n if n < MAX_MISTAKES => format!("{n} mistakes"),
             n => format!("{n} mistakes or more"),
         }
     }

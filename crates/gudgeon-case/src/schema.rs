@@ -11,7 +11,7 @@ use gudgeon_core::quantity::{self, ALL_DIMENSIONS, QuantityError};
 use serde_json::{Map, Value};
 
 use super::near::{advice, list, nearest};
-use super::report::{Diagnostic, MOST_MISTAKES, Origin};
+use super::report::{Diagnostic, MAX_MISTAKES, Origin};
 use super::tree::{Data, Entry, Node, Place, join, steps};
 
 /// A root schema with its definitions.
@@ -21,7 +21,7 @@ pub(super) struct Schema {
 }
 
 /// Most values of an array that does not say its own maximum.
-pub(super) const MOST_ITEMS: usize = 100_000;
+pub(super) const MAX_ITEMS: usize = 100_000;
 
 /// Nesting of schemas without a value in between (references, options); only a schema that refers to itself has more.
 const MAX_REFERENCES: usize = 32;
@@ -110,7 +110,7 @@ impl Schema {
         (words_of(word).is_some() && Tagged::of(self, table).is_some()).then_some(table)
     }
 
-    /// The first [`MOST_MISTAKES`] mistakes of the document; what the whole file lacks is told at its end.
+    /// The first [`MAX_MISTAKES`] mistakes of the document; what the whole file lacks is told at its end.
     pub fn check(&self, document: &Node, end_of_file: usize) -> Vec<Diagnostic> {
         let mut out = Vec::new();
         self.value(document, &self.root, "", &mut out);
@@ -180,7 +180,7 @@ impl Schema {
     }
 
     fn value(&self, node: &Node, schema: &Value, path: &str, out: &mut Vec<Diagnostic>) {
-        if out.len() >= MOST_MISTAKES {
+        if out.len() >= MAX_MISTAKES {
             return;
         }
         let demanding = self.requiring(schema);
@@ -234,7 +234,7 @@ impl Schema {
             strings(schema.get("required")).into_iter().filter(|k| absent(k) && !skip.contains(k)).collect();
 
         for e in entries {
-            if out.len() >= MOST_MISTAKES {
+            if out.len() >= MAX_MISTAKES {
                 return;
             }
             if let Some(s) = properties.get(&e.key) {
@@ -294,7 +294,7 @@ impl Schema {
     fn array(&self, node: &Node, items: &[Node], schema: &Value, path: &str, out: &mut Vec<Diagnostic>) {
         let limit = |key: &str| schema.get(key).and_then(Value::as_u64);
         let n = items.len() as u64;
-        let most = limit("maxItems").unwrap_or(MOST_ITEMS as u64);
+        let most = limit("maxItems").unwrap_or(MAX_ITEMS as u64);
         let wanted = match limit("minItems") {
             Some(a) if a == most && n != a => format!("exactly {a}"),
             Some(a) if n < a => format!("at least {a}"),

@@ -9,10 +9,10 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Most bytes of a case file: 4 MiB.
-pub const MOST_OF_A_CASE: u64 = 4 << 20;
+pub const MAX_CASE_BYTES: u64 = 4 << 20;
 
 /// Most bytes of any other file that a case names (tables, traces, profiles, shaft lines): 64 MiB.
-pub const MOST_OF_A_TABLE: u64 = 64 << 20;
+pub const MAX_TABLE_BYTES: u64 = 64 << 20;
 
 /// Why a file was not read.
 #[derive(Debug, thiserror::Error)]
@@ -121,7 +121,7 @@ impl Files {
         self.store.folder.join(format!("{}{name}", self.below))
     }
 
-    /// The text of a file of at most [`MOST_OF_A_TABLE`] bytes. Bytes that are not UTF-8, as in comments of old programs, are replaced.
+    /// The text of a file of at most [`MAX_TABLE_BYTES`] bytes. Bytes that are not UTF-8, as in comments of old programs, are replaced.
     ///
     /// # Errors
     /// A file that is no regular one, too large, or that the operating system or the record does not have.
@@ -136,7 +136,7 @@ impl Files {
             let what = format!("the record of the run does not hold `{key}`");
             return Err(ReadError::Io(std::io::Error::new(std::io::ErrorKind::NotFound, what)));
         }
-        let bytes = read_bytes(&self.path(name), MOST_OF_A_TABLE)?;
+        let bytes = read_bytes(&self.path(name), MAX_TABLE_BYTES)?;
         let text: Arc<str> = String::from_utf8_lossy(&bytes).into();
         known.insert(key, Arc::clone(&text));
         Ok(text)

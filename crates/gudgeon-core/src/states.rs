@@ -89,8 +89,8 @@ pub struct StateInfo {
     pub cycle_scale: f64,
     /// Whether that distance is judged relative to values above `cycle_scale`.
     pub cycle_relative: bool,
-    /// Least value with which a cycle may start.
-    pub least: f64,
+    /// Minimum value with which a cycle may start.
+    pub cycle_min: f64,
     /// What a change of the state changes at once.
     pub changes: Signals,
 }
@@ -106,7 +106,7 @@ impl StateInfo {
             relative: true,
             cycle_scale: 1.0,
             cycle_relative: false,
-            least: f64::NEG_INFINITY,
+            cycle_min: f64::NEG_INFINITY,
             changes: Signals::NONE,
         }
     }
@@ -141,8 +141,8 @@ impl StateInfo {
 
     /// A cycle starts with at least this value.
     #[must_use]
-    pub const fn at_least(mut self, least: f64) -> Self {
-        self.least = least;
+    pub const fn at_least(mut self, min: f64) -> Self {
+        self.cycle_min = min;
         self
     }
 

@@ -11,7 +11,7 @@ use gudgeon_case::advice;
 
 /// Most cases of the sweeps that are read and built before a run. Beyond it, every listed value still stands in one of them, with a value of
 /// the other sweep in turn, and of a range of numbers this many, both ends among them.
-const MOST_TRIED: usize = 1000;
+const MAX_TRIED: usize = 1000;
 
 /// What is wrong with the values of sweeps.
 pub(crate) fn sweeps(scene: &dyn Scene, sweeps: &[Sweep]) -> Vec<BuildError> {
@@ -68,7 +68,7 @@ fn impossible(scene: &dyn Scene, set: &[String]) -> Option<String> {
 
 /// Places in lists of these lengths that are tried: all combinations when they are few.
 fn combinations(lengths: &[usize]) -> Vec<Vec<usize>> {
-    let all = lengths.iter().try_fold(1usize, |n, l| n.checked_mul(*l)).filter(|n| *n <= MOST_TRIED);
+    let all = lengths.iter().try_fold(1usize, |n, l| n.checked_mul(*l)).filter(|n| *n <= MAX_TRIED);
     if let Some(all) = all.filter(|_| !lengths.is_empty()) {
         let place = |mut k: usize| {
             let mut digit = |l: &usize| {
@@ -81,9 +81,9 @@ fn combinations(lengths: &[usize]) -> Vec<Vec<usize>> {
         return (0..all).map(place).collect();
     }
     let most = lengths.iter().copied().max().unwrap_or(0);
-    let tried = most.min(MOST_TRIED);
+    let tried = most.min(MAX_TRIED);
     let spread = |k: usize, l: usize| {
-        if l > MOST_TRIED { (k * (l - 1)).div_ceil(tried.max(2) - 1).min(l - 1) } else { k % l }
+        if l > MAX_TRIED { (k * (l - 1)).div_ceil(tried.max(2) - 1).min(l - 1) } else { k % l }
     };
     (0..tried).map(|k| lengths.iter().map(|l| spread(k, *l)).collect()).collect()
 }
@@ -135,7 +135,7 @@ mod tests {
         assert!((0..700).all(|k| many.iter().any(|p| p[0] == k)));
         assert!((0..3).all(|k| many.iter().any(|p| p[1] == k)));
         let range = combinations(&[100_000]);
-        assert_eq!((range.len(), range[0][0], range[MOST_TRIED - 1][0]), (MOST_TRIED, 0, 99_999));
+        assert_eq!((range.len(), range[0][0], range[MAX_TRIED - 1][0]), (MAX_TRIED, 0, 99_999));
         assert!(range.windows(2).all(|w| w[0] < w[1]));
     }
 }

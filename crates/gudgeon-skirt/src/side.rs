@@ -306,7 +306,7 @@ impl Side {
         let n = self.nodes();
         for (m, rates) in self.modes_of_rates.chunks_exact_mut(n).enumerate() {
             let shape = &self.shapes[m * n..(m + 1) * n];
-            for ((r, s), slope) in rates.iter_mut().zip(shape).zip(&self.now.flow.content_slope) {
+            for ((r, s), slope) in rates.iter_mut().zip(shape).zip(&self.now.flow.content_derivative) {
                 *r = s * slope;
             }
         }
@@ -374,7 +374,7 @@ impl Side {
             let shape = &self.shapes[(2 + m) * n..(3 + m) * n];
             self.rates.iter_mut().zip(shape).for_each(|(r, s)| *r += rate * s);
         }
-        self.rates.iter_mut().zip(&gap.flow.content_slope).for_each(|(r, s)| *r *= s);
+        self.rates.iter_mut().zip(&gap.flow.content_derivative).for_each(|(r, s)| *r *= s);
     }
 
     /// The film with its cavitation, by the solver alone.

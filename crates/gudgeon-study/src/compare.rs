@@ -22,7 +22,7 @@ fn swap_path(path: &str) -> String {
 }
 
 /// Most combinations of one comparison: each is a run, and all their results are kept.
-const MOST_COMBINATIONS: usize = 1000;
+const MAX_COMBINATIONS: usize = 1000;
 
 /// Runs every combination of `swaps`, `(path, values)`.
 ///
@@ -64,8 +64,8 @@ fn compare_by(
 ) -> Result<Comparison, Report> {
     let base = check(path, overrides)?;
     let count = swaps.iter().fold(1usize, |n, (_, v)| n.saturating_mul(v.len()));
-    if count > MOST_COMBINATIONS {
-        let what = format!("the swaps make {count} combinations, at most {MOST_COMBINATIONS} are compared");
+    if count > MAX_COMBINATIONS {
+        let what = format!("the swaps make {count} combinations, at most {MAX_COMBINATIONS} are compared");
         return Err(base
             .case
             .refuse(&[BuildError::new(what).help("fewer values, or one `--swap` after the other")]));

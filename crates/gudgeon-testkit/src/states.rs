@@ -19,8 +19,8 @@ pub fn stateful(model: &mut dyn Stateful) -> Vec<String> {
                 wrong.push(format!("the {what} of `{}` is {scale}", s.name));
             }
         }
-        if !y.is_finite() || *y < s.least {
-            wrong.push(format!("`{}` begins at {y}, the least value is {}", s.name, s.least));
+        if !y.is_finite() || *y < s.cycle_min {
+            wrong.push(format!("`{}` begins at {y}, the minimum is {}", s.name, s.cycle_min));
         }
     }
     wrong.extend(memory(model));

@@ -6,7 +6,7 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use gudgeon_case::{MOST_MISTAKES, Source};
+use gudgeon_case::{MAX_MISTAKES, Source};
 use gudgeon_core::file::Files;
 
 /// A small generator (xorshift) of its own: a mutation must be the same on every machine.
@@ -135,7 +135,7 @@ fn read(name: &str, text: String, overrides: &[String], slowest: &mut (Duration,
     let outcome =
         gudgeon_scene::load(Source { name: name.to_owned(), text, files: Files::of(&folder) }, overrides);
     if let Err(report) = &outcome {
-        assert!(!report.diagnostics.is_empty() && report.diagnostics.len() <= MOST_MISTAKES, "{name}");
+        assert!(!report.diagnostics.is_empty() && report.diagnostics.len() <= MAX_MISTAKES, "{name}");
         let told = report.render(false);
         assert!(!told.is_empty() && report.diagnostics.iter().all(|d| !d.message.is_empty()), "{name}");
         for word in ["u32", "f64", "usize", "invalid type", "untagged", "struct "] {

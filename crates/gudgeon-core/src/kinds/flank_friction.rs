@@ -23,7 +23,7 @@ pub trait FlankFriction: Send {
     /// pushed towards it), for the axial load \[N\] that presses the flanks together.
     fn force(&self, hdot: f64, axial_load: f64) -> f64;
     /// Derivative of the force by `hdot` \[N s/m\].
-    fn slope(&self, hdot: f64, axial_load: f64) -> f64;
+    fn derivative(&self, hdot: f64, axial_load: f64) -> f64;
     /// Whether the force is zero for all inputs.
     fn is_off(&self) -> bool;
 }

@@ -28,7 +28,7 @@ pub struct RoughFlow {
     /// Film content `h_T` \[m\]: oil between the surfaces per area, the average gap. Zero or greater.
     pub content: Vec<f64>,
     /// `∂h_T/∂h`, from 0 to 1.
-    pub content_slope: Vec<f64>,
+    pub content_derivative: Vec<f64>,
 }
 
 impl RoughFlow {
@@ -36,7 +36,7 @@ impl RoughFlow {
     #[must_use]
     pub fn new(points: usize) -> Self {
         let v = || vec![0.0; points];
-        Self { film: v(), phi_x: v(), phi_y: v(), transport: v(), content: v(), content_slope: v() }
+        Self { film: v(), phi_x: v(), phi_y: v(), transport: v(), content: v(), content_derivative: v() }
     }
 
     /// Number of points.

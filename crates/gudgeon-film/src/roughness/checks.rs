@@ -6,8 +6,13 @@ use gudgeon_core::kinds::{RoughFlow, RoughShear};
 use crate::slices::check;
 
 pub(super) fn check_flow(model: &'static str, h: &[f64], out: &RoughFlow) -> Result<(), EvalError> {
-    let RoughFlow { film, phi_x, phi_y, transport, content, content_slope } = out;
-    check(model, "separation [m]", h, &[film, phi_x, phi_y, transport, content, content_slope].map(Vec::len))
+    let RoughFlow { film, phi_x, phi_y, transport, content, content_derivative } = out;
+    check(
+        model,
+        "separation [m]",
+        h,
+        &[film, phi_x, phi_y, transport, content, content_derivative].map(Vec::len),
+    )
 }
 
 pub(super) fn check_shear(model: &'static str, h: &[f64], out: &RoughShear) -> Result<(), EvalError> {

@@ -35,7 +35,7 @@ impl Roughness for Smooth {
         out.transport.copy_from_slice(h);
         for (i, &h) in h.iter().enumerate() {
             out.content[i] = h.max(0.0);
-            out.content_slope[i] = if h > 0.0 { 1.0 } else { 0.0 };
+            out.content_derivative[i] = if h > 0.0 { 1.0 } else { 0.0 };
         }
         out.phi_x.fill(1.0);
         out.phi_y.fill(1.0);

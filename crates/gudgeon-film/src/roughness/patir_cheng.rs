@@ -334,7 +334,7 @@ impl Roughness for AverageFlow {
             };
             out.transport[i] = sigma * carried;
             out.content[i] = sigma * content;
-            out.content_slope[i] = slope;
+            out.content_derivative[i] = slope;
         }
         Ok(())
     }

@@ -134,7 +134,7 @@ impl Roughness for Waves {
             out.phi_x[i] = (1.0 - rr) * (1.0 - rr);
             out.phi_y[i] = 1.0 + rr;
             out.transport[i] = film - self.shear * omega * r;
-            (out.content[i], out.content_slope[i]) = if h >= omega {
+            (out.content[i], out.content_derivative[i]) = if h >= omega {
                 (h, 1.0)
             } else if h > -omega {
                 let up = h + omega;

@@ -30,7 +30,7 @@ impl FlankFriction for Runtime {
     fn force(&self, _: f64, _: f64) -> f64 {
         0.0
     }
-    fn slope(&self, _: f64, _: f64) -> f64 {
+    fn derivative(&self, _: f64, _: f64) -> f64 {
         0.0
     }
     fn is_off(&self) -> bool {

@@ -63,7 +63,7 @@ impl FlankFriction for Runtime {
     fn force(&self, hdot: f64, axial_load: f64) -> f64 {
         self.coefficient * axial_load.abs() * hdot / (hdot.abs() + self.half)
     }
-    fn slope(&self, hdot: f64, axial_load: f64) -> f64 {
+    fn derivative(&self, hdot: f64, axial_load: f64) -> f64 {
         let d = hdot.abs() + self.half;
         self.coefficient * axial_load.abs() * self.half / (d * d)
     }

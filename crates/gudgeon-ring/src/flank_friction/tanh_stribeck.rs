@@ -87,7 +87,7 @@ impl FlankFriction for Runtime {
         self.coefficient * axial_load.abs() * y.tanh() * stribeck(y.abs()).0
     }
 
-    fn slope(&self, hdot: f64, axial_load: f64) -> f64 {
+    fn derivative(&self, hdot: f64, axial_load: f64) -> f64 {
         let y = (hdot / self.velocity).abs();
         let (g, dg) = stribeck(y);
         let t = y.tanh();

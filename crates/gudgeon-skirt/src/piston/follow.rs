@@ -12,7 +12,7 @@ use crate::body::Instant;
 use crate::side::Slopes;
 
 /// Steps of that motion before the balance is given up.
-const MOST_STEPS: usize = 400;
+const MAX_STEPS: usize = 400;
 /// Part of the forces that is left of a balance which cavities let come slowly.
 const SLOW: f64 = 1e-6;
 /// The same where cavities are found by iteration: of balances that no shorter step improved, nine in ten stood below 2e-5.
@@ -71,7 +71,7 @@ impl Piston {
         let FollowWork { full, lu, piv, error, solved } = work;
         let mut motion = |r: &[f64]| FollowWork::motion(&lu[..m * m], &piv[..m], &mut solved[..m], r);
         let (mut pace, mut here) = (FIRST_PACE, motion(&self.r[first..]));
-        for _ in 0..MOST_STEPS {
+        for _ in 0..MAX_STEPS {
             if self.size(first) <= self.admitted(now, part)? {
                 return Ok(());
             }

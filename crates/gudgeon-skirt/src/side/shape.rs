@@ -88,7 +88,7 @@ impl Side {
             let film = held(gap.h[k]);
             gap.flow.film[k] = film;
             gap.flow.transport[k] = film;
-            gap.flow.content_slope[k] = 1.0;
+            gap.flow.content_derivative[k] = 1.0;
             gap.drag[k] = 1.0 / film;
             lever[k] = film;
         }

@@ -56,7 +56,7 @@ fn what_a_model_declares_is_checked() {
         ("a state has no name", |m| m.states[1].name = " ".into()),
         ("the scale of `b` is 0", |m| m.states[1].scale = 0.0),
         ("the cycle_scale of `a` is NaN", |m| m.states[0].cycle_scale = f64::NAN),
-        ("`a` begins at 0.25, the least value is 0.5", |m| m.start = 0.25),
+        ("`a` begins at 0.25, the minimum is 0.5", |m| m.start = 0.25),
         ("2 values of memory are saved and 1 are taken back", |m| m.saved = 1),
         ("comes back as [4.0", |m| m.keeps = false),
         ("1 values are recorded in 0 columns", |m| m.columns = 0),

@@ -10,7 +10,7 @@ use super::solver::check_tolerance;
 /// Smallest and largest admitted intervals of a grid.
 const INTERVALS: std::ops::RangeInclusive<u32> = 2..=1000;
 /// Most maps of a cycle: each is as large as the grid of a side, and a page holds them all.
-const MOST_MAPS: f64 = 20_000.0;
+const MAX_MAPS: f64 = 20_000.0;
 
 /// Radius of the skirt \[m\].
 #[must_use]
@@ -93,7 +93,7 @@ fn of_outputs(case: &PistonSecondaryCase, errors: &mut Vec<BuildError>) {
         say("outputs.series_step", format!("a series of {rows:.0} rows a cycle is none"));
     }
     let maps = case.outputs.map_step.map_or(0.0, |m| 4.0 * PI / m.si());
-    if maps > MOST_MAPS {
-        say("outputs.map_step", format!("{maps:.0} maps a cycle are more than {MOST_MAPS:.0}"));
+    if maps > MAX_MAPS {
+        say("outputs.map_step", format!("{maps:.0} maps a cycle are more than {MAX_MAPS:.0}"));
     }
 }

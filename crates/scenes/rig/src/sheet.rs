@@ -170,7 +170,7 @@ impl Sheet {
         let gaps = self.gaps(&h, c.between, gap)?;
         let mut dhdt = rate.map_or_else(Vec::new, |rate| field(&grid.x, &grid.y, rate));
         if !gaps.flow.is_empty() {
-            dhdt.iter_mut().zip(&gaps.flow.content_slope).for_each(|(v, slope)| *v *= slope);
+            dhdt.iter_mut().zip(&gaps.flow.content_derivative).for_each(|(v, slope)| *v *= slope);
         }
         let flow = &gaps.flow;
         let mut out = self.film.solve(&Film2dIn {

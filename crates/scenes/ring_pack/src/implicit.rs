@@ -357,7 +357,7 @@ impl CycleMap for Cycle<'_> {
     fn map(&mut self, y0: &[f64], y1: &mut [f64], accuracy: f64) -> Result<f64, EvalError> {
         y1.copy_from_slice(y0);
         for (y, s) in y1.iter_mut().zip(&self.pack.layout.states) {
-            *y = y.max(s.least);
+            *y = y.max(s.cycle_min);
         }
         let rtol = accuracy.max(FINEST);
         let n = self.pack.layout.n;

@@ -58,7 +58,7 @@ impl RadialLoads for Loads<'_> {
     fn friction(&self, hdot: f64) -> (f64, f64) {
         let Some(f) = self.friction else { return (0.0, 0.0) };
         let axial = flank_load(self.place, self.at);
-        (f.force(hdot, axial) / self.perimeter, f.slope(hdot, axial) / self.perimeter)
+        (f.force(hdot, axial) / self.perimeter, f.derivative(hdot, axial) / self.perimeter)
     }
     fn film(&mut self, hdot: f64) -> Result<FaceForces, EvalError> {
         let mut sum = FaceForces::default();

@@ -276,11 +276,11 @@ impl RingMeasure {
     /// Follows the seat through a step in which the ring is at `e`.
     fn seats(&mut self, rule: Rule, e: &[f64], share: f64, (t0, t1): (f64, f64), omega: f64) {
         // Where the ring comes to a flank's film or leaves it, in order.
-        let mut cuts = [1.0; MOST_CUTS];
+        let mut cuts = [1.0; MAX_CUTS];
         let mut count = 0;
         for level in [share, 1.0 - share] {
             rule.crossings(e, level, |x, _| {
-                if count + 1 < MOST_CUTS {
+                if count + 1 < MAX_CUTS {
                     cuts[count] = x;
                     count += 1;
                 }
@@ -318,4 +318,4 @@ impl RingMeasure {
 }
 
 /// Crossings of two levels by a polynomial of degree 4, and the end of the step.
-const MOST_CUTS: usize = 9;
+const MAX_CUTS: usize = 9;

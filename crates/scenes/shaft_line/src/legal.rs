@@ -6,9 +6,9 @@ use gudgeon_core::kinds::Line;
 use super::case::ShaftLineCase;
 
 /// Most torque amplitudes kept for the diagrams over the speed: 160 MB.
-const MOST_KEPT: f64 = 2e7;
+const MAX_KEPT: f64 = 2e7;
 /// Most load steps: each is a machine of its own.
-const MOST_STEPS: usize = 200;
+const MAX_STEPS: usize = 200;
 
 /// Speed ratios of an inertia, and of one that carries throws: the gas torques of a throw that turns slowly are as many orders of the reference.
 const RATIOS: [(f64, f64); 2] = [(1e-3, 1e3), (0.1, 10.0)];
@@ -64,9 +64,9 @@ pub fn legal_values(case: &ShaftLineCase) -> Vec<BuildError> {
     let links = (case.shafts.len() + case.dampers.len()).max(1);
     // Half orders occur.
     let kept = 2.0 * r.orders.si() * r.points as f64 * links as f64;
-    if kept > MOST_KEPT && r.from.is_some() {
+    if kept > MAX_KEPT && r.from.is_some() {
         let what = format!(
-            "{} speeds of {} orders in {links} shafts are {kept:.1e} values, at most {MOST_KEPT:.0e}",
+            "{} speeds of {} orders in {links} shafts are {kept:.1e} values, at most {MAX_KEPT:.0e}",
             r.points,
             r.orders.si()
         );
@@ -76,8 +76,8 @@ pub fn legal_values(case: &ShaftLineCase) -> Vec<BuildError> {
         let what = format!("{:.6} rpm is below `from`", super::rpm(o.to.si()));
         errors.push(BuildError::at("operating.to", what));
     }
-    if case.load_steps.len() > MOST_STEPS {
-        errors.push(BuildError::at("load_steps", format!("at most {MOST_STEPS} load steps")));
+    if case.load_steps.len() > MAX_STEPS {
+        errors.push(BuildError::at("load_steps", format!("at most {MAX_STEPS} load steps")));
     }
     for (k, l) in case.limits.separation.iter().enumerate() {
         if l.orders.is_empty() && l.frequencies.is_empty() {

@@ -24,7 +24,7 @@ pub fn slopes_are_continuous(m: &dyn Roughness, sigma: f64, joints: &[f64]) {
         let mut values = [0.0; 8];
         values[..3].copy_from_slice(&lengths);
         values[3..].copy_from_slice(&factors);
-        (values, f.content_slope[0])
+        (values, f.content_derivative[0])
     };
     for &joint in joints {
         // A jump of the slope stays when the step shrinks, curvature goes with it: the jump over 1e-5 may be a tenth of that

@@ -11,7 +11,10 @@ fn the_film_is_what_it_was() {
     model.flow(&h, &mut flow).expect("finite");
     model.shear(&h, &mut shear).expect("finite");
     assert_eq!((&flow.film[..], &flow.transport[..]), (&h[..], &h[..]));
-    assert_eq!((&flow.content[..], &flow.content_slope[..]), (&[2e-6, 0.0, 0.0][..], &[1.0, 0.0, 0.0][..]));
+    assert_eq!(
+        (&flow.content[..], &flow.content_derivative[..]),
+        (&[2e-6, 0.0, 0.0][..], &[1.0, 0.0, 0.0][..])
+    );
     assert_eq!((flow.phi_x, flow.phi_y), (vec![1.0; 3], vec![1.0; 3]));
     assert_eq!((shear.phi_f, shear.phi_fs, shear.phi_fp), (vec![1.0; 3], vec![0.0; 3], vec![1.0; 3]));
 }

@@ -213,12 +213,12 @@ fn never_negative_never_infinite() {
                 let positive = [flow.film[0], flow.phi_x[0], flow.phi_y[0], shear.film[0], shear.phi_f[0]];
                 assert!(positive.iter().all(|v| *v > 0.0 && v.is_finite()), "{p:?} {gap}: {positive:?}");
                 let not_negative =
-                    [flow.transport[0], flow.content[0], flow.content_slope[0], shear.phi_fp[0]];
+                    [flow.transport[0], flow.content[0], flow.content_derivative[0], shear.phi_fp[0]];
                 assert!(
                     not_negative.iter().all(|v| *v >= 0.0 && v.is_finite()),
                     "{p:?} {gap}: {not_negative:?}"
                 );
-                assert!(shear.phi_fs[0].is_finite() && flow.content_slope[0] <= 1.0 + 1e-15);
+                assert!(shear.phi_fs[0].is_finite() && flow.content_derivative[0] <= 1.0 + 1e-15);
             }
         }
     }

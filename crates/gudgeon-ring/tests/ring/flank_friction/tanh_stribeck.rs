@@ -25,7 +25,7 @@ fn tabulated_values() {
 fn slope_is_the_derivative() {
     let m = TanhStribeck::default().build().expect("builds");
     check_derivative(m.as_ref(), 0.01);
-    assert!(m.slope(0.05, 1.0) < 0.0, "the falling branch");
+    assert!(m.derivative(0.05, 1.0) < 0.0, "the falling branch");
 }
 
 #[test]
