@@ -10,7 +10,7 @@ use gudgeon_fuzz::class::{Class, classify};
 use gudgeon_fuzz::corpus::{Corpus, shipped};
 use gudgeon_fuzz::draw::Draw;
 use gudgeon_fuzz::execute::Job;
-use gudgeon_fuzz::regression::read;
+use gudgeon_fuzz::regression::{Regression, read};
 use gudgeon_fuzz::tell;
 
 /// Seed and share of wild cases of the short campaign.
@@ -48,14 +48,27 @@ fn a_short_campaign_ends_without_a_forbidden_class() {
 }
 
 #[test]
-#[expect(clippy::print_stderr, reason = "what is known and still open is told, and no failure")]
 fn regressions_come_out_as_they_should() {
     let all =
         read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("regressions")).unwrap_or_else(|e| panic!("{e}"));
     assert!(!all.is_empty());
+    // Every other one to each of two programs.
+    let wrong: Vec<String> = std::thread::scope(|s| {
+        let halves = [0, 1].map(|k| {
+            let half: Vec<_> = all.iter().skip(k).step_by(2).collect();
+            s.spawn(move || failures(&half))
+        });
+        halves.into_iter().flat_map(|h| h.join().expect("a half of the cases")).collect()
+    });
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Those of `cases` that do not come out as they should.
+#[expect(clippy::print_stderr, reason = "what is known and still open is told, and no failure")]
+fn failures(cases: &[&Regression]) -> Vec<String> {
     let mut executor = Executor::new(program(), shipped());
     let mut wrong = Vec::new();
-    for r in all {
+    for r in cases {
         let job = Job {
             base: r.case.clone(),
             set: r.set.clone(),
@@ -79,5 +92,5 @@ fn regressions_come_out_as_they_should() {
             }
         }
     }
-    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    wrong
 }

@@ -82,7 +82,7 @@ const FACTORS: [(&str, &str); 8] = [
     ("phi_fs", "shear-stress factor of the sliding speed, liner against body"),
     ("phi_fp", "shear-stress factor of the pressure gradient"),
     ("content", "film content, the average gap, over `height`"),
-    ("content_derivative", "change of the film content with the separation"),
+    ("content_slope", "change of the film content with the separation"),
 ];
 
 impl Bench {
@@ -147,7 +147,7 @@ impl Rig for Bench {
             "Film content",
             "average gap in heights, and its slope",
             plain,
-            &[line("content", "content"), line("slope", "content_derivative")],
+            &[line("content", "content"), line("slope", "content_slope")],
         );
         draw::finite(MODEL, out)
     }
