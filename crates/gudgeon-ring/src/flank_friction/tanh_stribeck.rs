@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 /// 1.00 beyond `20 V_0`. The source adds the two terms instead of multiplying them, which gives a jump of ±1.5 at rest although the
 /// text asks for a continuous passage through zero; the product is continuous and has the same two ends.
 ///
-/// Between the peak and `20 V_0` the friction decreases with velocity: [`slope`](FlankFriction::slope) is negative there.
+/// Between the peak and `20 V_0` the friction decreases with velocity: the [`derivative`](FlankFriction::derivative) is negative there.
 ///
 /// Source: tomanik1993, eq. 17, corrected.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
