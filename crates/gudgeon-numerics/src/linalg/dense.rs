@@ -8,8 +8,7 @@
 
 use super::Singular;
 
-/// LU factorisation with partial pivoting of the `n` × `n` row-major matrix `a`, in place; `piv` (length `n`) records the row swaps.
-/// The factors, unit lower and upper triangle, come out by columns, as [`lu_solve`] runs through them.
+/// LU factorisation with partial pivoting of the `n` × `n` matrix `a`, in place; `piv` (length `n`) records the row swaps.
 ///
 /// # Errors
 /// [`Singular`] when a column has no finite non-zero pivot.
@@ -69,16 +68,7 @@ pub fn lu_factor_weighted(
             }
         }
     }
-    transpose(a, n);
     Ok(())
-}
-
-fn transpose(a: &mut [f64], n: usize) {
-    for i in 1..n {
-        for j in 0..i {
-            a.swap(i * n + j, j * n + i);
-        }
-    }
 }
 
 /// Solves `A x = b` in place with the factors of [`lu_factor`].
@@ -87,22 +77,20 @@ pub fn lu_solve(a: &[f64], n: usize, piv: &[usize], b: &mut [f64]) {
         b.swap(k, p);
     }
     // By columns: every step adds to all that are left, and waits for one only.
-    let b = &mut b[..n];
-    for (k, column) in a[..n * n].chunks_exact(n).enumerate() {
+    let (a, b) = (&a[..n * n], &mut b[..n]);
+    for k in 0..n {
         let (done, rest) = b.split_at_mut(k + 1);
-        subtract(rest, &column[k + 1..], done[k]);
+        let x = done[k];
+        for (row, b) in a[(k + 1) * n..].chunks_exact(n).zip(rest) {
+            *b -= row[k] * x;
+        }
     }
-    for (k, column) in a[..n * n].chunks_exact(n).enumerate().rev() {
+    for k in (0..n).rev() {
         let (rest, done) = b.split_at_mut(k);
-        done[0] /= column[k];
-        subtract(rest, &column[..k], done[0]);
-    }
-}
-
-/// `b -= x a`.
-#[inline]
-fn subtract(b: &mut [f64], a: &[f64], x: f64) {
-    for (b, a) in b.iter_mut().zip(a) {
-        *b -= a * x;
+        done[0] /= a[k * n + k];
+        let x = done[0];
+        for (row, b) in a.chunks_exact(n).zip(rest) {
+            *b -= row[k] * x;
+        }
     }
 }
