@@ -35,7 +35,6 @@ pub use report::{Diagnostic, MAX_MISTAKES, Origin, Report, Source, WIDTH, line_c
 /// What the tests of this crate look at and nobody else needs.
 #[doc(hidden)]
 pub mod for_tests {
-    pub use crate::reason;
     pub use crate::tree::{Step, steps};
 }
 

@@ -1,7 +1,7 @@
 //! Values as a file holds them, and how types of Rust are read from them.
 //!
 //! A case file, a JSON document and an override all become a [`Content`]; [`read`] turns that into a type that implements
-//! [`Deserialize`], and an [`Error`] says where it stopped. Specifications of models ([`model`]) are read through the same reader, one concrete
+//! [`Deserialize`], and an [`Error`] says where it stopped. Specifications of models ([`crate::spec`]) are read through the same reader, one concrete
 //! type: every type is compiled once for it, whatever it is read from, and no error passes through a text on its way out.
 //!
 //! ```
@@ -22,19 +22,16 @@
 mod error;
 mod reader;
 
-use std::any::Any;
 use std::fmt;
 
-use serde::de::{DeserializeOwned, Error as _, MapAccess, SeqAccess, Visitor};
+use serde::de::{DeserializeOwned, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
-
-use crate::registry::{Kind, ModelInfo};
 
 pub use error::Error;
 use reader::Reader;
 
 /// Key of a table that names the model.
-const MODEL: &str = "model";
+pub(crate) const MODEL: &str = "model";
 
 /// A value of a file. The keys of a table keep their order.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,56 +58,6 @@ pub enum Content {
 /// What is wrong with the content, with the path to it.
 pub fn read<T: DeserializeOwned>(content: &Content) -> Result<T, Error> {
     T::deserialize(Reader(content))
-}
-
-/// The specification of a model of the kind `S`: a table whose key `model` names it.
-///
-/// # Errors
-/// No such model, or settings that are not its own.
-pub fn model<S: ?Sized + Kind + 'static>(content: Content) -> Result<Box<S>, Error> {
-    match registered(S::NAME, content)?.downcast::<Box<S>>() {
-        Ok(spec) => Ok(*spec),
-        Err(_) => Err(Error::custom(format!("two kinds have the name `{}`", S::NAME))),
-    }
-}
-
-/// The specification of a model of the kind `S` with its default settings.
-///
-/// # Errors
-/// No such model, or one that has settings without a default.
-pub fn plain_model<S: ?Sized + Kind + 'static>(name: &str) -> Result<Box<S>, Error> {
-    model(Content::named(name))
-}
-
-/// What [`crate::register_kind`] writes for `Box<dyn …Spec>`: [`model`] from any source.
-#[doc(hidden)]
-pub fn model_from<'de, S: ?Sized + Kind + 'static, D: Deserializer<'de>>(
-    from: D,
-) -> Result<Box<S>, D::Error> {
-    model(Content::deserialize(from)?).map_err(Error::hand_on)
-}
-
-/// The specification of the model that the table names, as the `Box<dyn …Spec>` that its registration makes.
-fn registered(kind: &'static str, content: Content) -> Result<Box<dyn Any>, Error> {
-    let Content::Table(mut entries) = content else {
-        return Err(Error::invalid_type(content.unexpected(), &"a table with the key `model`"));
-    };
-    let Some(at) = entries.iter().position(|(key, _)| key == MODEL) else {
-        return Err(Error::missing_field(MODEL));
-    };
-    let name = match entries.remove(at) {
-        (_, Content::Text(name)) => name,
-        (_, other) => return Err(Error::invalid_type(other.unexpected(), &"a string").under(MODEL)),
-    };
-    let of_kind = || inventory::iter::<ModelInfo>().filter(|m| m.kind == kind);
-    match of_kind().find(|m| m.name == name) {
-        Some(found) => (found.read)(&Content::Table(entries)),
-        None => {
-            let mut names: Vec<_> = of_kind().map(|m| m.name).collect();
-            names.sort_unstable();
-            Err(Error::unknown_word(name, names).under(MODEL))
-        }
-    }
 }
 
 impl Content {

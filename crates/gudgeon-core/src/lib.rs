@@ -16,7 +16,7 @@
 //!
 //! `gudgeon-film`, `-gas` or `-torsion` alone are 48 packages with all they depend on (`cargo tree -p gudgeon-film -e normal`): 20 are
 //! `gudgeon-numerics` and its linear algebra, most of the others serde and schemars, because a specification can be read, written and described
-//! wherever it is used, and so are models that hold others (`Box<dyn …Spec>`, see [`content`]). There is no feature to leave that out: it would
+//! wherever it is used, and so are models that hold others (`Box<dyn …Spec>`, see [`spec`]). There is no feature to leave that out: it would
 //! stand on every specification and save 6 packages. Reading case files (TOML, places, diagnostics) is `gudgeon-case`, which no physics crate
 //! depends on; the program as a whole is 104 packages.
 
@@ -27,6 +27,7 @@ pub mod file;
 pub mod geometry;
 pub mod kinds;
 pub mod registry;
+pub mod spec;
 pub mod states;
 mod word;
 

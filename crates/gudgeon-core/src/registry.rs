@@ -200,33 +200,6 @@ pub struct DefaultModel {
 }
 inventory::collect!(DefaultModel);
 
-/// Functions that give default models by name, read the way a case file would; [`Registry::verify`] finds a default that does not exist.
-///
-/// ```ignore
-/// default_model! {
-///     default_kinematics: dyn KinematicsSpec = "exact_slider_crank";
-/// }
-/// ```
-#[macro_export]
-macro_rules! default_model {
-    ($($f:ident: $t:ty = $name:literal;)*) => {$(
-        $crate::inventory::submit! {
-            $crate::registry::DefaultModel {
-                kind: <$t as $crate::registry::Kind>::NAME,
-                name: $name,
-                file: file!(),
-                line: line!(),
-            }
-        }
-        fn $f() -> Box<$t> {
-            match $crate::content::plain_model($name) {
-                Ok(m) => m,
-                Err(e) => panic!("the default `{}`: {e}", $name),
-            }
-        }
-    )*};
-}
-
 /// Everything registered in this program, sorted by kind and name.
 #[derive(Debug)]
 pub struct Registry {

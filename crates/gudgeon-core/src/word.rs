@@ -7,8 +7,9 @@ use std::ops::Deref;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::content::{self, Content, Error};
+use crate::content::{Content, Error};
 use crate::registry::{Kind, Registry};
+use crate::spec;
 
 /// A model of the kind `S` that a case chooses by its name alone, `hoop = "as_printed"`; the table of any other model,
 /// `hoop = { model = "as_printed" }`, is read too, and is what is written.
@@ -54,7 +55,7 @@ impl<'de, S: ?Sized + Kind + 'static> Deserialize<'de> for Word<S> {
             Content::Text(word) => Content::named(&word),
             other => other,
         };
-        content::model(table).map(Word).map_err(Error::hand_on)
+        spec::model(table).map(Word).map_err(Error::hand_on)
     }
 }
 

@@ -24,7 +24,7 @@ pub fn expand(fields: Fields, item: TokenStream) -> syn::Result<TokenStream> {
             }
             impl<'de> serde::Deserialize<'de> for ::std::boxed::Box<dyn #spec> {
                 fn deserialize<D: serde::Deserializer<'de>>(from: D) -> ::std::result::Result<Self, D::Error> {
-                    ::gudgeon_core::content::model_from(from)
+                    ::gudgeon_core::spec::model_from(from)
                 }
             }
             impl schemars::JsonSchema for dyn #spec {
@@ -43,7 +43,7 @@ pub fn expand(fields: Fields, item: TokenStream) -> syn::Result<TokenStream> {
                     kind: #name,
                     summary: #summary,
                     resolve: |v| {
-                        let spec = ::gudgeon_core::content::model::<dyn #spec>((&v).into());
+                        let spec = ::gudgeon_core::spec::model::<dyn #spec>((&v).into());
                         let spec = spec.map_err(::gudgeon_core::content::Error::hand_on::<serde_json::Error>)?;
                         serde_json::to_value(&spec)
                     },

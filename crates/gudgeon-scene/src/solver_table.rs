@@ -8,6 +8,7 @@ use std::sync::{Mutex, PoisonError};
 
 use gudgeon_core::content::{self, Content, Error};
 use gudgeon_core::registry::{Kind, kind_schema};
+use gudgeon_core::spec;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::de::{DeserializeOwned, Error as _};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -79,7 +80,7 @@ where
             all.into_iter().partition(|(key, _)| shared.iter().any(|k| k == key));
         own.insert(0, (MODEL.into(), name));
         let (common, own) = (Content::Table(common), Content::Table(own));
-        Ok(Self { common: content::read(&common)?, method: content::model(own)? })
+        Ok(Self { common: content::read(&common)?, method: spec::model(own)? })
     }
 }
 
@@ -165,6 +166,6 @@ where
     S: ?Sized + Kind + 'static,
 {
     let registry = gudgeon_core::Registry::collect();
-    let spec = |name: &'static str| content::plain_model(name).ok().map(|spec| (name, spec));
+    let spec = |name: &'static str| spec::plain_model(name).ok().map(|spec| (name, spec));
     registry.models(S::NAME).iter().filter_map(|m| spec(m.name)).collect()
 }

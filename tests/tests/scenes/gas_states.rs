@@ -2,7 +2,7 @@
 
 use gudgeon_core::kinds::{GasFlow, GasFlowCtx, GasFlowSpec, GasIn, GasOut};
 use gudgeon_core::states::{ColumnInfo, Signals, StateInfo, Stateful};
-use gudgeon_core::{BuildError, EvalError, content, register_model};
+use gudgeon_core::{BuildError, EvalError, register_model, spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -23,7 +23,7 @@ struct Gauged {}
 )]
 impl GasFlowSpec for Gauged {
     fn build(&self, ctx: &GasFlowCtx<'_>) -> Result<Box<dyn GasFlow>, BuildError> {
-        let spec = content::plain_model::<dyn GasFlowSpec>("orifice_network")
+        let spec = spec::plain_model::<dyn GasFlowSpec>("orifice_network")
             .map_err(|e| BuildError::new(e.to_string()))?;
         let gas = spec.build(ctx)?;
         let mut states = gas.states().to_vec();

@@ -1,6 +1,6 @@
 //! What is wrong with a value, in plain words.
 
-use gudgeon_case::for_tests::reason;
+use gudgeon_case::reason;
 use gudgeon_core::content::{Content, read};
 
 fn said<T: serde::de::DeserializeOwned + std::fmt::Debug>(json: &str) -> String {

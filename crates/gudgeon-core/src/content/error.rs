@@ -31,7 +31,7 @@ impl Error {
     }
 
     /// A word that is none of the valid ones.
-    pub(super) fn unknown_word(name: String, valid: Vec<&'static str>) -> Self {
+    pub(crate) fn unknown_word(name: String, valid: Vec<&'static str>) -> Self {
         Self { path: String::new(), what: What::Unknown { what: "word", name, valid } }
     }
 
@@ -53,7 +53,7 @@ impl Error {
     /// The same error, seen from the table or list in which the value stands at `step`.
     #[cold]
     #[must_use]
-    pub(super) fn under(mut self, step: &str) -> Self {
+    pub(crate) fn under(mut self, step: &str) -> Self {
         self.path = if self.path.is_empty() { step.to_owned() } else { format!("{step}.{}", self.path) };
         self
     }

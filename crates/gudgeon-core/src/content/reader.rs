@@ -11,7 +11,7 @@ use super::{Content, Error};
 
 impl Content {
     /// What it is, for a message.
-    pub(super) fn unexpected(&self) -> Unexpected<'_> {
+    pub(crate) fn unexpected(&self) -> Unexpected<'_> {
         match self {
             Self::Nothing => Unexpected::Unit,
             Self::Bool(b) => Unexpected::Bool(*b),

@@ -1,8 +1,8 @@
 //! Values of files: what is read, where reading stops, and why.
 
-use gudgeon_core::content::{self, Content, Error, read};
+use gudgeon_core::content::{Content, Error, read};
 use gudgeon_core::kinds::{Oil, OilSpec};
-use gudgeon_core::{BuildError, Word, register_model};
+use gudgeon_core::{BuildError, Word, register_model, spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -145,5 +145,5 @@ fn numbers_keep_their_kind_and_limits() {
         serde_json::from_str::<Content>("18446744073709551615").ok(),
         Some(Content::Number(u64::MAX as f64))
     );
-    assert!(content::plain_model::<dyn OilSpec>("water").is_ok());
+    assert!(spec::plain_model::<dyn OilSpec>("water").is_ok());
 }

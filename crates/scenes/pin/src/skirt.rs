@@ -232,7 +232,7 @@ fn profile(
             continue;
         }
         let spec: Box<dyn gudgeon_core::kinds::ProfileCurveSpec> =
-            gudgeon_core::content::plain_model(name).map_err(|e| BuildError::new(e.to_string()))?;
+            gudgeon_core::spec::plain_model(name).map_err(|e| BuildError::new(e.to_string()))?;
         let other = spec.build(&x, y)?;
         columns.push(column(name, "m", at.iter().map(|x| other.value(*x)).collect()));
         drawn.push((name.replace('_', " "), name.to_owned()));

@@ -288,7 +288,7 @@ gudgeon_core::default_model! {
 
 fn default_film_2d() -> Box<dyn Film2dSpec> {
     let spec = serde_json::json!({ "model": "direct", "cavitation": "half_sommerfeld" });
-    match gudgeon_core::content::model((&spec).into()) {
+    match gudgeon_core::spec::model((&spec).into()) {
         Ok(m) => m,
         Err(e) => panic!("built-in default `direct`: {e}"),
     }
