@@ -57,7 +57,7 @@ fn registered(kind: &'static str, content: Content) -> Result<Box<dyn Any>, Erro
     }
 }
 
-/// Functions that give default models by name, read the way a case file would; [`Registry::verify`] finds a default that does not exist.
+/// Functions that give default models by name, read the way a case file would; [`Registry::verify`](crate::Registry::verify) finds a default that does not exist.
 ///
 /// ```ignore
 /// default_model! {
