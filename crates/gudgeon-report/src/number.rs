@@ -1,4 +1,6 @@
-//! Numbers for people.
+//! Numbers for people, and for programs.
+
+use std::fmt::Write as _;
 
 /// `value` with `digits` significant digits; powers of ten outside 10⁻³ … 10⁶. An absent or non-finite value is a dash.
 pub(crate) fn significant(value: Option<f64>, digits: usize) -> String {
@@ -116,13 +118,34 @@ fn superscript(n: i32) -> String {
         .collect()
 }
 
-/// Shortest decimal text that reads back as the same number; empty for one that is not finite.
-pub(crate) fn round_trip(value: f64) -> String {
-    if !value.is_finite() {
-        return String::new();
+/// Room for the text of one number after the other.
+#[derive(Default)]
+pub(crate) struct RoundTrip {
+    fast: zmij::Buffer,
+    other: String,
+}
+
+impl RoundTrip {
+    /// Shortest decimal text that reads back as the same number, in powers of ten outside 10⁻⁴ … 10¹⁵; empty for one that is not finite.
+    pub(crate) fn text(&mut self, value: f64) -> &str {
+        let size = value.abs();
+        if size < 1e-5 || (1e-4..1e15).contains(&size) {
+            let text = self.fast.format_finite(value);
+            return text.strip_suffix(".0").unwrap_or(text);
+        }
+        // Where that library puts the point or the exponent elsewhere.
+        self.other.clear();
+        if value.is_finite() {
+            // Writing to a string does not fail.
+            let _ = write!(self.other, "{value:e}");
+        }
+        &self.other
     }
-    let size = value.abs();
-    if size == 0.0 || (1e-4..1e15).contains(&size) { format!("{value}") } else { format!("{value:e}") }
+}
+
+/// The text of one number: [`RoundTrip::text`].
+pub(crate) fn round_trip(value: f64) -> String {
+    RoundTrip::default().text(value).to_owned()
 }
 
 #[cfg(test)]
@@ -169,10 +192,21 @@ mod tests {
 
     #[test]
     fn round_trip_is_exact_at_every_size() {
-        for v in [0.1, 1.0 / 3.0, 1e-7, 5e-324, 1.797e308, -2.5e-10, 101_325.0, 720.0] {
-            assert_eq!(round_trip(v).parse::<f64>().unwrap().to_bits(), v.to_bits());
+        let mut writer = RoundTrip::default();
+        let mut sizes: Vec<f64> = (-330..=308).map(|e| format!("1.2345e{e}").parse().unwrap()).collect();
+        sizes.extend((-330..=308).map(|e| format!("1e{e}").parse::<f64>().unwrap()));
+        sizes.extend([0.1, 1.0 / 3.0, 1.0 / 3e5, 5e-324, f64::MAX, 101_325.0, 720.0, 0.3 - 0.1]);
+        for size in sizes {
+            let near = [size, size.next_up(), size.next_down()].into_iter().filter(|v| v.is_finite());
+            for v in near.flat_map(|v| [v, -v]) {
+                let plain = v == 0.0 || (1e-4..1e15).contains(&v.abs());
+                let expected = if plain { format!("{v}") } else { format!("{v:e}") };
+                assert_eq!(writer.text(v), expected);
+                assert_eq!(expected.parse::<f64>().unwrap().to_bits(), v.to_bits());
+            }
         }
         assert_eq!(round_trip(f64::NAN), "");
+        assert_eq!(round_trip(f64::NEG_INFINITY), "");
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::path::Path;
 use gudgeon_core::result::{Column, Series};
 
 use crate::ReportError;
-use crate::number::round_trip;
+use crate::number::RoundTrip;
 
 /// `name[unit]`.
 fn header(name: &str, unit: &str) -> String {
@@ -27,36 +27,61 @@ pub(crate) fn check(series: &Series) -> Result<(), ReportError> {
     }
 }
 
+fn failed(e: impl std::fmt::Display) -> ReportError {
+    ReportError::Io { what: "write", path: "CSV".into(), source: std::io::Error::other(e.to_string()) }
+}
+
+/// A CSV file in memory, field by field.
+struct Csv {
+    writer: csv::Writer<Vec<u8>>,
+    number: RoundTrip,
+}
+
+impl Csv {
+    fn new() -> Self {
+        let writer = csv::WriterBuilder::new().flexible(false).from_writer(Vec::new());
+        Self { writer, number: RoundTrip::default() }
+    }
+
+    fn text(&mut self, field: impl AsRef<[u8]>) -> Result<(), ReportError> {
+        self.writer.write_field(field).map_err(failed)
+    }
+
+    fn number(&mut self, value: f64) -> Result<(), ReportError> {
+        self.writer.write_field(self.number.text(value)).map_err(failed)
+    }
+
+    fn end_row(&mut self) -> Result<(), ReportError> {
+        self.writer.write_record(None::<&[u8]>).map_err(failed)
+    }
+
+    fn finish(self) -> Result<Vec<u8>, ReportError> {
+        self.writer.into_inner().map_err(failed)
+    }
+}
+
 /// A CSV file from rows of text.
 pub(crate) fn csv(rows: impl IntoIterator<Item = Vec<String>>) -> Result<Vec<u8>, ReportError> {
-    let mut writer = csv::WriterBuilder::new().flexible(false).from_writer(Vec::new());
-    let io = |e: csv::Error| ReportError::Io {
-        what: "write",
-        path: "CSV".into(),
-        source: std::io::Error::other(e.to_string()),
-    };
+    let mut out = Csv::new();
     for row in rows {
-        writer.write_record(&row).map_err(io)?;
+        row.iter().try_for_each(|field| out.text(field))?;
+        out.end_row()?;
     }
-    writer.into_inner().map_err(|e| ReportError::Io {
-        what: "write",
-        path: "CSV".into(),
-        source: std::io::Error::other(e.to_string()),
-    })
+    out.finish()
 }
 
 /// The axis (`theta[deg]`), then the columns.
 pub(crate) fn series_csv(series: &Series) -> Result<Vec<u8>, ReportError> {
     check(series)?;
-    let names = std::iter::once(&series.axis)
-        .chain(&series.columns)
-        .map(|c| header(&c.name, &c.unit))
-        .collect::<Vec<_>>();
-    csv(std::iter::once(names).chain(series.axis.values.iter().enumerate().map(|(i, at)| {
-        std::iter::once(round_trip(*at))
-            .chain(series.columns.iter().map(|c| round_trip(c.values[i])))
-            .collect()
-    })))
+    let columns = || std::iter::once(&series.axis).chain(&series.columns);
+    let mut out = Csv::new();
+    columns().try_for_each(|c| out.text(header(&c.name, &c.unit)))?;
+    out.end_row()?;
+    for i in 0..series.axis.values.len() {
+        columns().try_for_each(|c| out.number(c.values[i]))?;
+        out.end_row()?;
+    }
+    out.finish()
 }
 
 /// One series per variant in long form: `variant`, the axis, then every column that any variant has. Variants whose axis is not
@@ -76,23 +101,26 @@ pub(crate) fn long_csv(variants: &[(usize, &Series)]) -> Result<Vec<u8>, ReportE
             }
         }
     }
-    let names = ["variant".to_owned(), header(&axis.name, &axis.unit)]
-        .into_iter()
-        .chain(columns.iter().map(|(n, u)| header(n, u)))
-        .collect::<Vec<_>>();
-    let mut rows = vec![names];
+    let mut out = Csv::new();
+    out.text("variant")?;
+    out.text(header(&axis.name, &axis.unit))?;
+    columns.iter().try_for_each(|(n, u)| out.text(header(n, u)))?;
+    out.end_row()?;
     for (number, series) in variants {
+        let number = number.to_string();
         let found: Vec<Option<&Column>> = columns
             .iter()
             .map(|(n, u)| series.columns.iter().find(|c| c.name == *n && c.unit == *u))
             .collect();
         for (i, at) in series.axis.values.iter().enumerate() {
-            let mut row = vec![number.to_string(), round_trip(*at)];
-            row.extend(found.iter().map(|c| c.map_or_else(String::new, |c| round_trip(c.values[i]))));
-            rows.push(row);
+            out.text(&number)?;
+            out.number(*at)?;
+            // No text for a column that this variant does not have.
+            found.iter().try_for_each(|c| out.number(c.map_or(f64::NAN, |c| c.values[i])))?;
+            out.end_row()?;
         }
     }
-    csv(rows)
+    out.finish()
 }
 
 /// Reads what [`series_csv`] wrote.
