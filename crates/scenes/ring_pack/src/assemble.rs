@@ -1,6 +1,7 @@
 //! From a case to an assembled [`Pack`]: every sub-model built, every contradiction reported.
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 use gudgeon_core::file::Files;
 use gudgeon_core::geometry::{PackGeometry, RingGeometry};
@@ -13,7 +14,7 @@ use gudgeon_core::states::{Signals, Stateful};
 use gudgeon_core::{BuildError, EvalError};
 
 use super::case::RingPackCase;
-use super::contact_line::ContactLine;
+use super::contact_line::{ContactLine, MeanPlanes};
 use super::distortion::liner_shape;
 use super::instant::{Counters, Instant, RingInstant, SeatLog};
 use super::layout::Layout;
@@ -246,8 +247,10 @@ fn rings(
     let mut errors = Vec::new();
     let mut rings = Vec::with_capacity(motions.len());
     let spacings = spacings(case, drive);
+    let mut planes = None;
     for (i, motion) in motions.into_iter().enumerate() {
-        let films = if plan.film { films(case, drive, i) } else { Ok((Vec::new(), ContactLine::default())) };
+        let none = || Ok((Vec::new(), ContactLine::default()));
+        let films = if plan.film { films(case, drive, i, &mut planes) } else { none() };
         let films = kept(&mut errors, films);
         let friction = case.models.flank_friction.build();
         let friction = kept(&mut errors, friction.map_err(|e| vec![e.within("models.flank_friction")]));
@@ -313,7 +316,13 @@ fn radial(
     case.models.radial_motion.build(&ctx).map_err(|e| e.within("models.radial_motion"))
 }
 
-fn films(case: &RingPackCase, drive: &Drive, i: usize) -> Result<FaceModels, Vec<BuildError>> {
+/// `planes` is that of the contact model of all rings without one of their own, once made.
+fn films(
+    case: &RingPackCase,
+    drive: &Drive,
+    i: usize,
+    planes: &mut Option<Arc<MeanPlanes>>,
+) -> Result<FaceModels, Vec<BuildError>> {
     let (g, own, m) = (&drive.geo.rings[i], &case.rings[i].models, &case.models);
     let mut errors = Vec::new();
     let mut films = Vec::new();
@@ -332,7 +341,11 @@ fn films(case: &RingPackCase, drive: &Drive, i: usize) -> Result<FaceModels, Vec
         None => (&m.contact, "models.contact".to_owned()),
     };
     match spec.build() {
-        Ok(c) if errors.is_empty() => Ok((films, ContactLine::new(c.as_ref(), &g.face, g.lands))),
+        Ok(c) if errors.is_empty() => {
+            let new = || Arc::new(MeanPlanes::new(&*c));
+            let planes = if own.contact.is_some() { &new() } else { planes.get_or_insert_with(new) };
+            Ok((films, ContactLine::new(&*c, planes, &g.face, g.lands)))
+        }
         Ok(_) => Err(errors),
         Err(e) => {
             errors.push(e.within(&place));

@@ -11,6 +11,8 @@
 //! in which both are smooth on either side of zero separation. The face never changes during a run, so the integral costs a few
 //! nanoseconds afterwards.
 
+use std::sync::Arc;
+
 use gudgeon_core::geometry::FaceProfile;
 use gudgeon_core::kinds::Contact;
 use gudgeon_numerics::quadrature::GaussLegendre;
@@ -20,10 +22,8 @@ use gudgeon_numerics::quadrature::GaussLegendre;
 pub struct ContactLine {
     /// `load^(1/4)`: the root keeps the table smooth where the load fades out.
     root: Spline,
-    /// Separation of the mean planes \[m\].
-    separation: Spline,
-    /// The length `S` \[m\].
-    unit: f64,
+    /// Separation of the mean planes.
+    planes: Arc<MeanPlanes>,
     /// Film thickness above which there is no contact \[m\].
     pub range: f64,
     /// Whether the contact takes any load before the film is gone: its mean planes may overlap.
@@ -49,41 +49,63 @@ pub const SCALE: f64 = 0.1;
 /// Panels of Gauss's rule on each straight or curved piece of a face.
 const PANELS: usize = 24;
 
+/// Separation of the mean planes against film thickness: of the rough surfaces alone, and so the same for all faces.
+#[derive(Debug, Default)]
+pub struct MeanPlanes {
+    /// Film thickness above which there is no contact \[m\].
+    range: f64,
+    /// The length `S` \[m\].
+    unit: f64,
+    /// Interval of the table.
+    step: f64,
+    /// Separation at the points of the table \[m\].
+    points: Vec<f64>,
+    separation: Spline,
+}
+
+impl MeanPlanes {
+    /// Tabulates the separation; nothing for surfaces that do not touch.
+    #[must_use]
+    pub fn new(contact: &dyn Contact) -> Self {
+        let range = contact.range();
+        if range <= 0.0 {
+            return Self::default();
+        }
+        let unit = UNIT * range;
+        let top = (range / unit).exp_m1().ln();
+        let step = (top - DEEPEST) / POINTS as f64;
+        let film = |k: usize| unit * (DEEPEST + step * k as f64).exp().ln_1p();
+        let points: Vec<f64> = (0..=POINTS).map(|k| separation(contact, film(k))).collect();
+        let separation = Spline::new(DEEPEST, step, &points);
+        Self { range, unit, step, points, separation }
+    }
+
+    fn place(&self, h: f64) -> f64 {
+        (h / self.unit).exp_m1().ln()
+    }
+}
+
 impl ContactLine {
     /// Tabulates the contact of `lands` equal faces.
     #[must_use]
-    pub fn new(contact: &dyn Contact, face: &FaceProfile, lands: usize) -> Self {
-        let range = contact.range();
+    pub fn new(contact: &dyn Contact, planes: &Arc<MeanPlanes>, face: &FaceProfile, lands: usize) -> Self {
+        let touch = planes.range > 0.0;
         let mut line = Self {
+            planes: planes.clone(),
+            range: planes.range,
+            open: touch && contact.mean_gap(0.0) > 0.0,
             floor: contact.floor(),
             floor_replaces_film: contact.floor_replaces_film(),
             friction: contact.friction_coefficient(),
             ..Self::default()
         };
-        if range <= 0.0 {
-            return line;
+        if touch {
+            let mut whole = WholeFace::new(contact, face);
+            let root = |s: &f64| (lands as f64 * whole.load(*s)).max(0.0).sqrt().sqrt();
+            let roots: Vec<f64> = planes.points.iter().map(root).collect();
+            line.root = Spline::new(DEEPEST, planes.step, &roots);
         }
-        line.range = range;
-        line.unit = UNIT * range;
-        line.open = contact.mean_gap(0.0) > 0.0;
-        let top = (range / line.unit).exp_m1().ln();
-        let step = (top - DEEPEST) / POINTS as f64;
-        let rule = GaussLegendre::new(6);
-        let (mut roots, mut separations) = (Vec::with_capacity(POINTS + 1), Vec::with_capacity(POINTS + 1));
-        for k in 0..=POINTS {
-            let film = line.unit * (DEEPEST + step * k as f64).exp().ln_1p();
-            let s = separation(contact, film);
-            let load = lands as f64 * face_load(contact, face, s, &rule);
-            roots.push(load.max(0.0).sqrt().sqrt());
-            separations.push(s);
-        }
-        line.root = Spline::new(DEEPEST, step, &roots);
-        line.separation = Spline::new(DEEPEST, step, &separations);
         line
-    }
-
-    fn place(&self, h: f64) -> f64 {
-        (h / self.unit).exp_m1().ln()
     }
 
     /// Load per circumference \[N/m\] at film thickness `h` \[m\].
@@ -92,14 +114,14 @@ impl ContactLine {
         if h >= self.range {
             return 0.0;
         }
-        let r = self.root.at(self.place(h)).0.max(0.0);
+        let r = self.root.at(self.planes.place(h)).0.max(0.0);
         (r * r) * (r * r)
     }
 
     /// Separation of the mean planes at the nearest point \[m\].
     #[must_use]
     pub fn separation(&self, h: f64) -> f64 {
-        if h >= self.range { h } else { self.separation.at(self.place(h)).0 }
+        if h >= self.range { h } else { self.planes.separation.at(self.planes.place(h)).0 }
     }
 
     /// Film thickness that a ring does not go below \[m\], where surfaces that do not take any load stop at `least`: the floor that the contact
@@ -128,9 +150,9 @@ impl ContactLine {
         if h >= self.range {
             return 1.0;
         }
-        let x = h / self.unit;
+        let x = h / self.planes.unit;
         // ds/d ln h = ds/dw dw/d ln h, dw/d ln h = x exp(x)/(exp(x) - 1).
-        let rate = self.separation.at(self.place(h)).1 * x / -(-x).exp_m1();
+        let rate = self.planes.separation.at(self.planes.place(h)).1 * x / -(-x).exp_m1();
         (SCALE * self.range / rate).max(1.0)
     }
 }
@@ -154,44 +176,70 @@ fn separation(contact: &dyn Contact, film: f64) -> f64 {
     0.5 * (lo + hi)
 }
 
-/// `∫ p_c(s + drop(x)) dx` over a face, piece by piece where it is within reach of the liner \[N/m\].
-fn face_load(contact: &dyn Contact, face: &FaceProfile, s: f64, rule: &GaussLegendre) -> f64 {
-    let reach = contact.range() - s;
-    let pressure = |a: f64, b: f64, panels: usize| {
-        let width = (b - a) / panels as f64;
-        let mut sum = 0.0;
-        for k in 0..panels {
-            let mid = a + (k as f64 + 0.5) * width;
-            for (x, w) in rule.nodes().iter().zip(rule.weights()) {
-                let mut p = [0.0];
-                contact.pressure(&[s + face.drop_at(mid + 0.5 * width * x)], &mut p);
-                sum += 0.5 * width * w * p[0];
-            }
+/// `∫ p_c(s + drop(x)) dx` over a face \[N/m\], piece by piece where it is within reach of the liner.
+struct WholeFace<'a> {
+    contact: &'a dyn Contact,
+    face: &'a FaceProfile,
+    nodes: Option<Vec<(f64, f64)>>,
+    rule: GaussLegendre,
+    /// Separations of one piece, and the pressures there.
+    separations: Vec<f64>,
+    pressures: Vec<f64>,
+}
+
+impl<'a> WholeFace<'a> {
+    fn new(contact: &'a dyn Contact, face: &'a FaceProfile) -> Self {
+        let (separations, pressures) = (Vec::new(), Vec::new());
+        Self { contact, face, nodes: face.nodes(), rule: GaussLegendre::new(6), separations, pressures }
+    }
+
+    fn load(&mut self, s: f64) -> f64 {
+        let (face, reach) = (self.face, self.contact.range() - s);
+        if let Some(nodes) = self.nodes.take() {
+            let load = nodes.windows(2).map(|n| self.straight(s, reach, n[0], n[1])).sum();
+            self.nodes = Some(nodes);
+            return load;
         }
-        sum
-    };
-    let length = face.length();
-    match (face, face.nodes()) {
-        (_, Some(nodes)) => nodes
-            .windows(2)
-            .map(|n| {
-                let ((x0, d0), (x1, d1)) = (n[0], n[1]);
-                if d0 == d1 {
-                    return if d0 < reach { pressure(x0, x1, 1) } else { 0.0 };
+        match face {
+            FaceProfile::Parabola { curvature, apex, length } if *curvature > 0.0 => {
+                let half = (reach.max(0.0) / curvature).sqrt();
+                let (a, b) = ((apex - half).max(0.0), (apex + half).min(*length));
+                // The apex is a place like any other; a piece on either side of it.
+                let mid = apex.clamp(a.min(b), b.max(a));
+                if b > a {
+                    self.piece(s, a, mid, PANELS / 2) + self.piece(s, mid, b, PANELS / 2)
+                } else {
+                    0.0
                 }
-                let end = x0 + (reach - d0) / (d1 - d0) * (x1 - x0);
-                let (a, b) = if d1 > d0 { (x0, x1.min(end)) } else { (x0.max(end), x1) };
-                if b > a { pressure(a, b, PANELS) } else { 0.0 }
-            })
-            .sum(),
-        (FaceProfile::Parabola { curvature, apex, .. }, None) if *curvature > 0.0 => {
-            let half = (reach.max(0.0) / curvature).sqrt();
-            let (a, b) = ((apex - half).max(0.0), (apex + half).min(length));
-            // The apex is a place like any other; a piece on either side of it.
-            let mid = apex.clamp(a.min(b), b.max(a));
-            if b > a { pressure(a, mid, PANELS / 2) + pressure(mid, b, PANELS / 2) } else { 0.0 }
+            }
+            _ => self.piece(s, 0.0, face.length(), PANELS),
         }
-        _ => pressure(0.0, length, PANELS),
+    }
+
+    /// A straight piece between two nodes (`x`, drop).
+    fn straight(&mut self, s: f64, reach: f64, (x0, d0): (f64, f64), (x1, d1): (f64, f64)) -> f64 {
+        if d0 == d1 {
+            return if d0 < reach { self.piece(s, x0, x1, 1) } else { 0.0 };
+        }
+        let end = x0 + (reach - d0) / (d1 - d0) * (x1 - x0);
+        let (a, b) = if d1 > d0 { (x0, x1.min(end)) } else { (x0.max(end), x1) };
+        if b > a { self.piece(s, a, b, PANELS) } else { 0.0 }
+    }
+
+    /// The piece from `a` to `b` by Gauss's rule on `panels` panels.
+    fn piece(&mut self, s: f64, a: f64, b: f64, panels: usize) -> f64 {
+        let width = (b - a) / panels as f64;
+        let middle = |k: usize| a + (k as f64 + 0.5) * width;
+        let (face, nodes) = (self.face, self.rule.nodes());
+        self.separations.clear();
+        for k in 0..panels {
+            let mid = middle(k);
+            self.separations.extend(nodes.iter().map(|x| s + face.drop_at(mid + 0.5 * width * x)));
+        }
+        self.pressures.resize(self.separations.len(), 0.0);
+        self.contact.pressure(&self.separations, &mut self.pressures);
+        let weights = self.rule.weights().iter().cycle();
+        self.pressures.iter().zip(weights).fold(0.0, |sum, (p, w)| sum + 0.5 * width * w * p)
     }
 }
 

@@ -1,9 +1,11 @@
 //! The table of the contact of a whole face against closed forms.
 
+use std::sync::Arc;
+
 use gudgeon_contact::{GreenwoodTripp, asperity_integral};
 use gudgeon_core::geometry::FaceProfile;
 use gudgeon_core::kinds::{Contact, ContactSpec};
-use gudgeon_scene_ring_pack::contact_line::{ContactLine, SCALE};
+use gudgeon_scene_ring_pack::contact_line::{ContactLine, MeanPlanes, SCALE};
 
 const SIGMA: f64 = 0.3e-6;
 
@@ -13,6 +15,10 @@ fn rough(more: &str) -> Box<dyn Contact> {
     );
     let spec: GreenwoodTripp = toml::from_str(&text).expect("a model");
     spec.build().expect("builds")
+}
+
+fn line(contact: &dyn Contact, face: &FaceProfile, lands: usize) -> ContactLine {
+    ContactLine::new(contact, &Arc::new(MeanPlanes::new(contact)), face, lands)
 }
 
 /// `p/F_(5/2)` \[Pa\].
@@ -26,7 +32,7 @@ fn sharp_taper_carries_on_through_zero_separation() {
     let (length, drop) = (2.6e-3, 35e-6);
     let slope = drop / length;
     let face = FaceProfile::Table { length, drops: vec![0.0, drop] };
-    let line = ContactLine::new(&*rough(""), &face, 1);
+    let line = line(&*rough(""), &face, 1);
     assert!(line.open && line.floor.is_none());
     for k in -60..=40 {
         let l = f64::from(k) / 10.0;
@@ -41,7 +47,7 @@ fn sharp_taper_carries_on_through_zero_separation() {
 #[test]
 fn land_carries_its_width_and_the_flank_behind_it() {
     let (length, land, drop) = (2.6e-3, 0.2e-3, 35e-6);
-    let line = ContactLine::new(&*rough(""), &FaceProfile::Taper { length, land, drop }, 1);
+    let line = line(&*rough(""), &FaceProfile::Taper { length, land, drop }, 1);
     for l in [-3.0, -1.0, 0.0, 0.7, 2.0, 3.5] {
         let flank = SIGMA * (length - land) / drop * asperity_integral(3.5, l) / 3.5;
         let exact = scale() * (land * asperity_integral(2.5, l) + flank);
@@ -57,7 +63,7 @@ fn load_rises_without_end_as_the_film_thins() {
     let edge = FaceProfile::Table { length: 2.6e-3, drops: vec![0.0, 35e-6] };
     for face in [barrel, edge] {
         for fit in ["", "integral = \"polynomial\"", "integral = \"hu1994\"", "integral = \"quintic\""] {
-            let line = ContactLine::new(&*rough(fit), &face, 2);
+            let line = line(&*rough(fit), &face, 2);
             let mut last = (0.0, line.separation(line.range));
             // From beyond the range down to e^-45 of a metre, below the table.
             for k in 0..3000 {
@@ -75,7 +81,7 @@ fn load_rises_without_end_as_the_film_thins() {
 #[test]
 fn tolerance_of_a_film_follows_its_separation() {
     let face = FaceProfile::Table { length: 2.6e-3, drops: vec![0.0, 35e-6] };
-    let line = ContactLine::new(&*rough(""), &face, 1);
+    let line = line(&*rough(""), &face, 1);
     assert_eq!(line.ease(2.0 * line.range), 1.0);
     for l in [-4.0, -2.0, 0.0, 0.3] {
         // ds/d ln h = h/Φ(l): by the closed forms of the mean gap and its slope, interpolation as above.
