@@ -70,6 +70,62 @@ impl Largest {
     }
 }
 
+/// Sides between `count` nodes from `from` on and as many from `to` on.
+#[derive(Clone, Copy)]
+struct Sides {
+    from: usize,
+    to: usize,
+    count: usize,
+}
+
+impl Sides {
+    /// The values at either end.
+    fn of<'a>(&self, x: &'a [f64]) -> impl Iterator<Item = (&'a f64, &'a f64)> {
+        x[self.from..self.from + self.count].iter().zip(&x[self.to..self.to + self.count])
+    }
+}
+
+/// Mean of the conductivities `φ h³/(12 μ)` of the nodes on either side.
+fn mean_of_nodes(inp: &Film2dIn<'_>, sides: Sides, phi: &[f64], out: &mut [f64]) {
+    let mu = |k: usize| match inp.mu {
+        Viscosity::Uniform(mu) => mu,
+        Viscosity::Nodes(m) => m[k],
+    };
+    let factor = |k: usize| if phi.is_empty() { 1.0 } else { phi[k] };
+    let one = |k: usize| factor(k) * inp.h[k].powi(3) / mu(k);
+    for (i, g) in out.iter_mut().enumerate() {
+        *g = (one(sides.from + i) + one(sides.to + i)) / 24.0;
+    }
+}
+
+/// `φ h³/(12 μ)` of the means of either side, or of the film thickness that is `given` there.
+fn of_faces(inp: &Film2dIn<'_>, sides: Sides, phi: &[f64], given: &[f64], out: &mut [f64]) {
+    if given.is_empty() {
+        out.iter_mut().zip(sides.of(inp.h)).for_each(|(g, (a, b))| *g = 0.5 * (a + b));
+    } else {
+        out.copy_from_slice(&given[sides.from..sides.from + sides.count]);
+    }
+    if phi.is_empty() {
+        out.iter_mut().for_each(|g| *g = *g * *g * *g);
+    } else {
+        out.iter_mut().zip(sides.of(phi)).for_each(|(g, (a, b))| *g = 0.5 * (a + b) * *g * *g * *g);
+    }
+    match inp.mu {
+        Viscosity::Uniform(mu) => out.iter_mut().for_each(|g| *g /= 6.0 * (mu + mu)),
+        Viscosity::Nodes(m) => out.iter_mut().zip(sides.of(m)).for_each(|(g, (a, b))| *g /= 6.0 * (a + b)),
+    }
+}
+
+/// `f(i, i + 1)` for every place of a line, which closes to a ring: where it does not, the last means nothing.
+#[inline]
+fn around(line: &mut [f64], f: impl Fn(usize, usize) -> f64) {
+    let last = line.len() - 1;
+    for i in 0..last {
+        line[i] = f(i, i + 1);
+    }
+    line[last] = f(last, 0);
+}
+
 impl Problem {
     pub fn new(grid: &Film2dGrid, flux: Flux) -> Result<Self, BuildError> {
         let (nx, ny) = (grid.x.len(), grid.y.len());
@@ -246,76 +302,103 @@ impl Problem {
 
     fn conductances<const NODE: bool>(&mut self, inp: &Film2dIn<'_>) {
         let (nx, ny) = (self.nx, self.ny);
-        let mu = |k: usize| match inp.mu {
-            Viscosity::Uniform(mu) => mu,
-            Viscosity::Nodes(m) => m[k],
-        };
-        let factor = |f: &[f64], a: usize, b: usize| if f.is_empty() { 1.0 } else { 0.5 * (f[a] + f[b]) };
-        let own = |f: &[f64], a: usize| if f.is_empty() { 1.0 } else { f[a] };
-        let conductivity = |given: &[f64], phi: &[f64], a: usize, b: usize| {
-            if NODE && given.is_empty() {
-                let one = |k: usize| own(phi, k) * inp.h[k].powi(3) / mu(k);
-                (one(a) + one(b)) / 24.0
-            } else {
-                let h = if given.is_empty() { 0.5 * (inp.h[a] + inp.h[b]) } else { given[a] };
-                factor(phi, a, b) * h * h * h / (6.0 * (mu(a) + mu(b)))
-            }
-        };
         let phi = &inp.factors;
-        for j in 0..ny {
-            for i in 0..nx {
-                let k = j * nx + i;
-                let next = self.after(i, k);
-                self.m.gx[k] = if next == k {
-                    0.0
-                } else {
-                    conductivity(inp.h_face_x, phi.pressure_x, k, next) * self.wy[j] / self.dx[i]
-                };
-                self.m.gy[k] = if j + 1 == ny {
-                    0.0
-                } else {
-                    conductivity(inp.h_face_y, phi.pressure_y, k, k + nx) * self.wx[i] / self.dy[j]
-                };
+        let conductivity = |side: Sides, phi: &[f64], given: &[f64], out: &mut [f64]| {
+            if NODE && given.is_empty() {
+                mean_of_nodes(inp, side, phi, out);
+            } else {
+                of_faces(inp, side, phi, given, out);
             }
+        };
+        for j in 0..ny {
+            let first = j * nx;
+            let (gx, wy) = (&mut self.m.gx[first..first + nx], self.wy[j]);
+            let along = Sides { from: first, to: first + 1, count: nx - 1 };
+            conductivity(along, phi.pressure_x, inp.h_face_x, &mut gx[..nx - 1]);
+            gx[nx - 1] = 0.0;
+            if self.periodic {
+                let closing = Sides { from: first + nx - 1, to: first, count: 1 };
+                conductivity(closing, phi.pressure_x, inp.h_face_x, &mut gx[nx - 1..]);
+            }
+            let lengths = &self.dx[..if self.periodic { nx } else { nx - 1 }];
+            gx.iter_mut().zip(lengths).for_each(|(g, dx)| *g = *g * wy / dx);
+
+            let gy = &mut self.m.gy[first..first + nx];
+            if j + 1 == ny {
+                gy.fill(0.0);
+                continue;
+            }
+            conductivity(Sides { from: first, to: first + nx, count: nx }, phi.pressure_y, inp.h_face_y, gy);
+            let dy = self.dy[j];
+            gy.iter_mut().zip(&self.wx).for_each(|(g, wx)| *g = *g * wx / dy);
         }
     }
 
     /// What sliding and squeezing do, for a film of the given condition: where `filling` counts, an opening gap takes up oil in proportion to
     /// its filling (which stays as it is), a closing one gives all of it away (its void stays as it is).
     pub fn drive(&mut self, inp: &Film2dIn<'_>, u: f64, dhdt: &[f64], filling: bool) {
-        let (nx, ny) = (self.nx, self.ny);
+        self.slide(inp, u);
+        self.squeeze(inp, dhdt, filling);
+        let m = &self.m;
+        let largest = |scale: f64, x: f64| if x > scale { x } else { scale };
+        let by_sliding = m.qx.iter().map(|q| q.abs()).fold(0.0, largest);
+        self.scale = m.hold.iter().zip(&self.fixed).map(|(h, f)| (h + f).abs()).fold(by_sliding, largest);
+    }
+
+    /// Flow that the sliding surface carries from each node to the next.
+    fn slide(&mut self, inp: &Film2dIn<'_>, u: f64) {
+        let nx = self.nx;
         let film = if inp.factors.transport.is_empty() { inp.h } else { inp.factors.transport };
-        let given = inp.h_face_x;
-        let mut scale = 0.0_f64;
-        for j in 0..ny {
-            for i in 0..nx {
-                let k = j * nx + i;
-                let next = self.after(i, k);
-                self.m.qx[k] = if next == k {
-                    0.0
-                } else {
-                    let h = match self.flux {
-                        Flux::Face if given.is_empty() => 0.5 * (film[k] + film[next]),
-                        // What rough surfaces add varies little: its mean, on top of the film between the nodes.
-                        Flux::Face => given[k] + 0.5 * ((film[k] - inp.h[k]) + (film[next] - inp.h[next])),
-                        Flux::Node => film[if u >= 0.0 { k } else { next }],
-                    };
-                    0.5 * u * h * self.wy[j]
-                };
-                let area = self.wx[i] * self.wy[j];
-                (self.m.hold[k], self.fixed[k]) = match inp.history {
-                    Some(old) => {
-                        let full = if inp.factors.content.is_empty() { inp.h } else { inp.factors.content };
-                        (full[k] * area / old.dt, -old.content[k] * area / old.dt)
-                    }
-                    None if dhdt.is_empty() => (0.0, 0.0),
-                    None if filling && dhdt[k] > 0.0 => (dhdt[k] * area, 0.0),
-                    None => (0.0, dhdt[k] * area),
-                };
-                scale = scale.max(self.m.qx[k].abs()).max((self.m.hold[k] + self.fixed[k]).abs());
+        for (j, qx) in self.m.qx.chunks_exact_mut(nx).enumerate() {
+            let row = j * nx..(j + 1) * nx;
+            let (h, film, wy) = (&inp.h[row.clone()], &film[row.clone()], self.wy[j]);
+            match self.flux {
+                Flux::Face if inp.h_face_x.is_empty() => {
+                    around(qx, |i, next| 0.5 * u * (0.5 * (film[i] + film[next])) * wy);
+                }
+                Flux::Face => {
+                    let given = &inp.h_face_x[row];
+                    // What rough surfaces add varies little: its mean, on top of the film between the nodes.
+                    let more = |i: usize, next: usize| 0.5 * ((film[i] - h[i]) + (film[next] - h[next]));
+                    around(qx, |i, next| 0.5 * u * (given[i] + more(i, next)) * wy);
+                }
+                Flux::Node if u >= 0.0 => around(qx, |i, _| 0.5 * u * film[i] * wy),
+                Flux::Node => around(qx, |_, next| 0.5 * u * film[next] * wy),
+            }
+            if !self.periodic {
+                qx[nx - 1] = 0.0;
             }
         }
-        self.scale = scale;
+    }
+
+    /// What the volume of each node takes up.
+    fn squeeze(&mut self, inp: &Film2dIn<'_>, dhdt: &[f64], filling: bool) {
+        let nx = self.nx;
+        if inp.history.is_none() && dhdt.is_empty() {
+            self.m.hold.fill(0.0);
+            self.fixed.fill(0.0);
+            return;
+        }
+        let full = if inp.factors.content.is_empty() { inp.h } else { inp.factors.content };
+        let rows = self.m.hold.chunks_exact_mut(nx).zip(self.fixed.chunks_exact_mut(nx));
+        for (j, (hold, fixed)) in rows.enumerate() {
+            let row = j * nx..(j + 1) * nx;
+            let wy = self.wy[j];
+            let areas = self.wx.iter().map(|wx| wx * wy);
+            let places = hold.iter_mut().zip(fixed).zip(areas);
+            if let Some(old) = inp.history {
+                for (((hold, fixed), area), (full, held)) in
+                    places.zip(full[row.clone()].iter().zip(&old.content[row]))
+                {
+                    (*hold, *fixed) = (full * area / old.dt, -held * area / old.dt);
+                }
+            } else {
+                for (((hold, fixed), area), rate) in places.zip(&dhdt[row]) {
+                    let taken = rate * area;
+                    (*hold, *fixed) = if filling && *rate > 0.0 { (taken, 0.0) } else { (0.0, taken) };
+                }
+            }
+        }
     }
 
     /// Pressures of the edges, and the void of what arrives there, into the nodes that have them.
@@ -385,25 +468,41 @@ impl Problem {
 
     /// Volume that leaves each node less what it takes up from: the sum of the flows out of it and of its storage, which is zero for a solution.
     pub fn balance(&self, p: &[f64], void: &[f64], out: &mut [f64]) {
-        let (nx, ny) = (self.nx, self.ny);
+        let nx = self.nx;
         for k in 0..out.len() {
             out[k] = self.m.hold[k] * (1.0 - void[k]) + self.fixed[k];
         }
-        for j in 0..ny {
-            for i in 0..nx {
-                let k = j * nx + i;
-                let next = self.after(i, k);
-                if next != k {
-                    let upstream = if self.m.qx[k] >= 0.0 { k } else { next };
-                    let flow = self.m.gx[k] * (p[k] - p[next]) + self.m.qx[k] * (1.0 - void[upstream]);
-                    out[k] += flow;
-                    out[next] -= flow;
+        for j in 0..self.ny {
+            let row = j * nx..(j + 1) * nx;
+            let (gx, qx) = (&self.m.gx[row.clone()], &self.m.qx[row.clone()]);
+            let (own, void) = (&p[row.clone()], &void[row.clone()]);
+            let flow = |i: usize, next: usize| {
+                let upstream = if qx[i] >= 0.0 { void[i] } else { void[next] };
+                gx[i] * (own[i] - own[next]) + qx[i] * (1.0 - upstream)
+            };
+            let (lines, below) = out.split_at_mut((j + 1) * nx);
+            let line = &mut lines[j * nx..];
+            // Into a node first, out of it afterwards, and across the line last: one order of rounding, whichever the grid.
+            for i in 1..nx {
+                line[i] -= flow(i - 1, i);
+            }
+            for i in 0..nx - 1 {
+                line[i] += flow(i, i + 1);
+            }
+            let closing = if self.periodic { flow(nx - 1, 0) } else { 0.0 };
+            if self.periodic {
+                line[nx - 1] += closing;
+            }
+            if j + 1 < self.ny {
+                let (gy, beyond) = (&self.m.gy[row], &p[(j + 1) * nx..(j + 2) * nx]);
+                for (i, (out, into)) in line.iter_mut().zip(below).enumerate() {
+                    let flow = gy[i] * (own[i] - beyond[i]);
+                    *out += flow;
+                    *into -= flow;
                 }
-                if j + 1 < ny {
-                    let flow = self.m.gy[k] * (p[k] - p[k + nx]);
-                    out[k] += flow;
-                    out[k + nx] -= flow;
-                }
+            }
+            if self.periodic {
+                line[0] -= closing;
             }
         }
     }
