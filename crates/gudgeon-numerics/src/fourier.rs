@@ -13,10 +13,10 @@ pub struct Fourier {
 }
 
 impl Fourier {
-    /// For at least `points` points: the next power of two.
+    /// For at least `points` points: the next power of two, from 8 on.
     #[must_use]
     pub fn new(points: usize) -> Self {
-        let points = points.max(4).next_power_of_two();
+        let points = points.max(4 * LANES).next_power_of_two();
         let angle = |t: usize| 2.0 * std::f64::consts::PI * t as f64 / points as f64;
         let zero = || vec![0.0; points];
         Self {
@@ -99,58 +99,72 @@ impl Fourier {
     }
 }
 
+/// Sequences that are transformed side by side.
+const LANES: usize = 2;
+type Lanes = [f64; LANES];
+/// A complex number of each of them.
+type Pair = [Lanes; 2];
+
 /// One step: `n` points are left of each of `s` sequences.
 fn step_by_four(from: &[Vec<f64>; 2], to: &mut [Vec<f64>; 2], turn: &[Vec<f64>; 2], n: usize, s: usize) {
-    let quarter = n / 4;
-    let stride = turn[0].len() / n;
-    let [re, im] = from;
-    let [to_re, to_im] = to;
-    let blocks = to_re.chunks_exact_mut(4 * s).zip(to_im.chunks_exact_mut(4 * s));
-    for (p, (to_re, to_im)) in blocks.enumerate() {
-        let w = |j: usize| [turn[0][j * p * stride], turn[1][j * p * stride]];
-        let w = [w(1), w(2), w(3)];
-        if s == 1 {
-            let at = |x: &[f64], j: usize| x[j * quarter + p];
-            let input = [0, 1, 2, 3].map(|j| [at(re, j), at(im, j)]);
-            let output = butterfly(input, w);
-            for j in 0..4 {
-                (to_re[j], to_im[j]) = (output[j][0], output[j][1]);
+    let [re, im] = to;
+    if s == 1 {
+        first_step(from, re, im, turn);
+        return;
+    }
+    let (quarter, stride) = (n / 4, turn[0].len() / n);
+    for (p, (re, im)) in re.chunks_exact_mut(4 * s).zip(im.chunks_exact_mut(4 * s)).enumerate() {
+        let w = [1, 2, 3].map(|j| turn.each_ref().map(|t| [t[j * p * stride]; LANES]));
+        let part = |x: usize, j: usize| &from[x][(j * quarter + p) * s..][..s];
+        let input = [0, 1, 2, 3].map(|j| [part(0, j), part(1, j)]);
+        for q in (0..s).step_by(LANES) {
+            let output = butterfly(input.map(|z| z.map(|x| lanes(x, q))), w);
+            for (j, z) in output.into_iter().enumerate() {
+                re[j * s + q..][..LANES].copy_from_slice(&z[0]);
+                im[j * s + q..][..LANES].copy_from_slice(&z[1]);
             }
-            continue;
         }
-        let part = |j: usize| (j * quarter + p) * s..(j * quarter + p + 1) * s;
-        let [ar, br, cr, dr] = [0, 1, 2, 3].map(|j| &re[part(j)][..s]);
-        let [ai, bi, ci, di] = [0, 1, 2, 3].map(|j| &im[part(j)][..s]);
-        let ([r0, r1, r2, r3], [i0, i1, i2, i3]) = (quarters(to_re, s), quarters(to_im, s));
-        for q in 0..s {
-            let input = [[ar[q], ai[q]], [br[q], bi[q]], [cr[q], ci[q]], [dr[q], di[q]]];
-            let output = butterfly(input, w);
-            (r0[q], i0[q]) = (output[0][0], output[0][1]);
-            (r1[q], i1[q]) = (output[1][0], output[1][1]);
-            (r2[q], i2[q]) = (output[2][0], output[2][1]);
-            (r3[q], i3[q]) = (output[3][0], output[3][1]);
+    }
+}
+
+/// The step of one sequence of all points: what stands side by side are its points.
+fn first_step(from: &[Vec<f64>; 2], re: &mut [f64], im: &mut [f64], turn: &[Vec<f64>; 2]) {
+    let quarter = re.len() / 4;
+    let input = [0, 1, 2, 3].map(|j| from.each_ref().map(|x| &x[j * quarter..][..quarter]));
+    for p in (0..quarter).step_by(LANES) {
+        let w = [1, 2, 3].map(|j| turn.each_ref().map(|t| std::array::from_fn(|l| t[j * (p + l)])));
+        let output = butterfly(input.map(|z| z.map(|x| lanes(x, p))), w);
+        for (j, z) in output.into_iter().enumerate() {
+            for l in 0..LANES {
+                re[4 * (p + l) + j] = z[0][l];
+                im[4 * (p + l) + j] = z[1][l];
+            }
         }
     }
 }
 
 #[inline(always)]
-fn quarters(x: &mut [f64], s: usize) -> [&mut [f64]; 4] {
-    let (a, x) = x.split_at_mut(s);
-    let (b, x) = x.split_at_mut(s);
-    let (c, d) = x.split_at_mut(s);
-    [a, b, c, &mut d[..s]]
+fn lanes(x: &[f64], at: usize) -> Lanes {
+    let mut out = [0.0; LANES];
+    out.copy_from_slice(&x[at..at + LANES]);
+    out
 }
 
 /// Transform of four numbers, and the turn of three of them.
 #[inline(always)]
-fn butterfly([a, b, c, d]: [[f64; 2]; 4], [w1, w2, w3]: [[f64; 2]; 3]) -> [[f64; 2]; 4] {
-    let (x, y) = ([a[0] + c[0], a[1] + c[1]], [a[0] - c[0], a[1] - c[1]]);
-    let (u, v) = ([b[0] + d[0], b[1] + d[1]], [b[0] - d[0], b[1] - d[1]]);
-    let turned = |w: [f64; 2], z: [f64; 2]| [w[0] * z[0] - w[1] * z[1], w[0] * z[1] + w[1] * z[0]];
+fn butterfly([a, b, c, d]: [Pair; 4], [w1, w2, w3]: [Pair; 3]) -> [Pair; 4] {
+    let add = |a: Lanes, b: Lanes| -> Lanes { std::array::from_fn(|l| a[l] + b[l]) };
+    let less = |a: Lanes, b: Lanes| -> Lanes { std::array::from_fn(|l| a[l] - b[l]) };
+    let times = |a: Lanes, b: Lanes| -> Lanes { std::array::from_fn(|l| a[l] * b[l]) };
+    let (x, y) = ([add(a[0], c[0]), add(a[1], c[1])], [less(a[0], c[0]), less(a[1], c[1])]);
+    let (u, v) = ([add(b[0], d[0]), add(b[1], d[1])], [less(b[0], d[0]), less(b[1], d[1])]);
+    let turned = |w: Pair, z: Pair| -> Pair {
+        [less(times(w[0], z[0]), times(w[1], z[1])), add(times(w[0], z[1]), times(w[1], z[0]))]
+    };
     [
-        [x[0] + u[0], x[1] + u[1]],
-        turned(w1, [y[0] + v[1], y[1] - v[0]]),
-        turned(w2, [x[0] - u[0], x[1] - u[1]]),
-        turned(w3, [y[0] - v[1], y[1] + v[0]]),
+        [add(x[0], u[0]), add(x[1], u[1])],
+        turned(w1, [add(y[0], v[1]), less(y[1], v[0])]),
+        turned(w2, [less(x[0], u[0]), less(x[1], u[1])]),
+        turned(w3, [less(y[0], v[1]), add(y[1], v[0])]),
     ]
 }
