@@ -2,7 +2,7 @@
 
 use gudgeon_core::kinds::{PinQuantity, PinSize};
 
-use super::{Design, grows_with_length};
+use super::{Design, GROWING_WITH_LENGTH};
 
 /// What a limit asks of the length of a pin \[m\].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,7 +74,7 @@ impl Excess<'_, '_> {
         let (low, high) = (self.design.length.low, self.design.length.high);
         let mut out = Lengths::default();
         for limit in PinQuantity::ALL.into_iter().filter(|q| by_length(*q)) {
-            let grows = grows_with_length(limit);
+            let grows = GROWING_WITH_LENGTH.contains(&limit);
             let (worst, best) = if grows { (high, low) } else { (low, high) };
             if self.breaks(limit, best) {
                 out.never.push(BlockingLimit { limit, length: None });

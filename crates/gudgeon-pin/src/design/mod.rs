@@ -107,10 +107,9 @@ pub(crate) fn corners(size: &PinSize, tol: &PinSize) -> (PinSize, PinSize) {
     )
 }
 
-/// Whether the maximum of a quantity is that of the longest pin; of the others it is that of the shortest, the resultant follows its parts.
-pub(crate) const fn grows_with_length(q: PinQuantity) -> bool {
-    matches!(q, PinQuantity::Deflection | PinQuantity::BendingStress)
-}
+/// The quantities whose maximum is that of the longest pin; of the others it is that of the shortest, the resultant follows its parts.
+pub(crate) const GROWING_WITH_LENGTH: [PinQuantity; 2] =
+    [PinQuantity::Deflection, PinQuantity::BendingStress];
 
 impl Design<'_> {
     /// Quantities over their limits, each in the worst corner of the tolerances, in the order of [`PinQuantity::ALL`].
@@ -132,7 +131,7 @@ impl Design<'_> {
         let mut v = self.strength.quantities(short, &self.load)?;
         if short != long {
             let w = self.strength.quantities(long, &self.load)?;
-            for q in PinQuantity::ALL.into_iter().filter(|q| grows_with_length(*q)) {
+            for q in GROWING_WITH_LENGTH {
                 v[q as usize] = w[q as usize];
             }
             v[PinQuantity::ResultantStress as usize] = resultant_stress(

@@ -6,7 +6,7 @@ use gudgeon_numerics::jet::{Jet, Real};
 use gudgeon_numerics::qp::{HalfSpace, MAX_CONSTRAINTS, Minimum};
 
 use super::result::{BOUNDS, Bound};
-use crate::design::{Design, Range, corners, grows_with_length};
+use crate::design::{Design, GROWING_WITH_LENGTH, Range, corners};
 
 /// Limits, then bounds.
 pub const CONSTRAINTS: usize = PIN_QUANTITIES + BOUNDS;
@@ -94,7 +94,7 @@ impl<'a, 'b> Program<'a, 'b> {
         let mut q: [Jet; PIN_QUANTITIES] = std::array::from_fn(|k| jet(&e, k));
         if short != long {
             let w = d.strength.expansion(&long, &d.load)?;
-            for k in PinQuantity::ALL.into_iter().filter(|q| grows_with_length(*q)).map(|q| q as usize) {
+            for k in GROWING_WITH_LENGTH.map(|q| q as usize) {
                 q[k] = jet(&w, k);
             }
             let b = q[PinQuantity::BendingStress as usize];
