@@ -57,6 +57,9 @@ use crate::content::{self, Content};
 pub struct ModelInfo {
     /// The kind it implements, `gas_flow`.
     pub kind: &'static str,
+    /// Makes whoever keeps this keep the registration of the kind.
+    #[doc(hidden)]
+    pub keeps_kind: fn(),
     /// Its name in a case file, `orifice_network`. Equals the file name of its source.
     pub name: &'static str,
     /// One line.
@@ -120,6 +123,9 @@ fn crate_of(module: &'static str) -> &'static str {
 pub trait Kind {
     /// Name in a case file, `gas_flow`.
     const NAME: &'static str;
+    /// As [`Linked::ANCHOR`], of the kind itself.
+    #[doc(hidden)]
+    const ANCHOR: fn();
 }
 
 /// A type whose registration the linker can be made to keep; `R` is what it is registered as. The registering attributes and macros

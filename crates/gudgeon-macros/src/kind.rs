@@ -21,7 +21,11 @@ pub fn expand(fields: Fields, item: TokenStream) -> syn::Result<TokenStream> {
             dyn_clone::clone_trait_object!(#spec);
             impl Kind for dyn #spec {
                 const NAME: &'static str = #name;
+                const ANCHOR: fn() = anchor;
             }
+            // Stands in the same object file as the registration.
+            #[inline(never)]
+            fn anchor() {}
             impl<'de> serde::Deserialize<'de> for ::std::boxed::Box<dyn #spec> {
                 fn deserialize<D: serde::Deserializer<'de>>(from: D) -> ::std::result::Result<Self, D::Error> {
                     ::gudgeon_core::spec::model_from(from)

@@ -27,6 +27,7 @@ pub fn expand(fields: Fields, item: TokenStream) -> syn::Result<TokenStream> {
             inventory::submit! {
                 ::gudgeon_core::registry::ModelInfo {
                     kind: <dyn #spec as ::gudgeon_core::registry::Kind>::NAME,
+                    keeps_kind: <dyn #spec as ::gudgeon_core::registry::Kind>::ANCHOR,
                     name: #name,
                     summary: #summary,
                     equations: #equations,
