@@ -190,7 +190,13 @@ fn finish(c: &Checked, begin: Instant, mut result: RunResult) -> Result<RunResul
 /// # Errors
 /// What stopped it.
 fn once(scene: &dyn Scene, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
-    Ok(headed(scene, scene.once(progress)?))
+    let foreseen = cfg!(debug_assertions).then(|| scene.result_names()).flatten();
+    let result = scene.once(progress)?;
+    if let Some(names) = foreseen {
+        let told = result.results.keys().find(|told| !names.contains(told));
+        debug_assert_eq!(told, None, "a result that `SceneCase::result_names` of the scene does not name");
+    }
+    Ok(headed(scene, result))
 }
 
 /// A result with what its case says of itself.

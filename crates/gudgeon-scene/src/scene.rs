@@ -44,7 +44,8 @@ pub trait SceneCase:
         told: &mut Explanation,
     ) -> Result<Vec<ModelUse>, RunError>;
 
-    /// Names of all results that a run may tell, known before it.
+    /// Names of all results that a run may tell, each once, known before it: a sweep or a comparison that asks for another one is refused. A
+    /// run that tells one more panics where debug assertions are on.
     fn result_names(loaded: &Loaded<Self>, built: &mut Self::Built) -> Option<Vec<String>>;
 
     /// Runs the case once, sweeps apart. Title, source and scene are filled in by the caller.

@@ -46,7 +46,8 @@ fn published_scheme_tends_to_the_implicit_solution() {
     let steps = [4, 8, 16, 32, 64];
     let mut asked = vec![set(PUBLISHED, &implicit("1e-5"))];
     asked.extend(steps.iter().map(|s| set(PUBLISHED, &march("inward", *s))));
-    asked.extend([4, 16, 64].iter().map(|s| set(PUBLISHED, &march("stop", *s))));
+    let coarser = [8, 32];
+    asked.extend(coarser.iter().map(|s| set(PUBLISHED, &march("stop", *s))));
     let r = runs(&asked);
     let (exact, inward, stop) = (&r[0], &r[1..6], &r[6..]);
     let q = |r: &RunResult| value(r, "blow_by_per_cylinder");
@@ -64,7 +65,7 @@ fn published_scheme_tends_to_the_implicit_solution() {
         );
     }
     for (k, r) in stop.iter().enumerate() {
-        println!("clamp stop, {:2} steps per degree: {:.5} l/min, {:.5} bar", [4, 16, 64][k], q(r), p(r));
+        println!("clamp stop, {:2} steps per degree: {:.5} l/min, {:.5} bar", coarser[k], q(r), p(r));
     }
     // What was asked of the limit: 0.2 % in both results, at 16 and at 64 steps.
     for r in [&inward[2], &inward[4]] {
@@ -75,9 +76,9 @@ fn published_scheme_tends_to_the_implicit_solution() {
     // of either sign). The implicit solution is good to 1e-5, which does not show against 2e-5 at 64 steps in a factor of 1.6.
     assert!(error.windows(2).all(|w| w[0] / w[1] > 1.6), "{error:?}");
     // A ring whose velocity is set to zero at a flank sticks to a flank that moves away, the longer the smaller the steps are:
-    // with that clamp there is no limit.
+    // with that clamp there is no limit. Towards one, a quarter of the step would quarter the error; here it rises.
     let error: Vec<f64> = stop.iter().map(|r| (q(r) / q(exact) - 1.0).abs()).collect();
-    assert!(error[2] > 2.0 * error[1], "{error:?}");
+    assert!(error[1] > error[0], "{error:?}");
 }
 
 /// Error against the other integrator falls with the tolerance.
