@@ -417,6 +417,20 @@ impl<T: serde::Serialize> Loaded<T> {
     }
 }
 
+impl<T: JsonSchema + 'static> Loaded<T> {
+    /// Paths of the values that the case gives and its type does not use. A table that several types share holds more than each of them needs;
+    /// the field names what it uses in its schema:
+    ///
+    /// ```ignore
+    /// #[schemars(extend("x-used" = ["lands", "pin_to_ring1"]))]
+    /// pub piston: Piston,
+    /// ```
+    #[must_use]
+    pub fn unused(&self) -> Vec<String> {
+        Schema::of::<T>().unused(&self.tree)
+    }
+}
+
 impl<T: serde::Serialize + JsonSchema + 'static> Loaded<T> {
     /// How the numerical settings of this case are refined.
     #[must_use]

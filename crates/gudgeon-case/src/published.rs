@@ -43,6 +43,7 @@ fn table(o: &Map<String, Value>) -> Value {
     let mut out: Map<String, Value> = o.iter().map(|(k, v)| (k.clone(), inside(k, v))).collect();
     drop_null(&mut out);
     out.remove("x-renamed");
+    out.remove("x-used");
     if out.get("type").and_then(Value::as_str) == Some("array") {
         out.entry("maxItems").or_insert_with(|| MAX_ITEMS.into());
     }

@@ -85,6 +85,20 @@ impl Schema {
         strings(self.root.get("required"))
     }
 
+    /// Keys of a document that nothing reads: those of an outer table that are not among what its field says is used (`x-used`).
+    pub fn unused(&self, document: &Node) -> Vec<String> {
+        let tables = self.root.get("properties").and_then(Value::as_object).into_iter().flatten();
+        let mut out = Vec::new();
+        for (name, field) in tables.filter(|(_, field)| field.get("x-used").is_some()) {
+            let used = strings(field.get("x-used"));
+            if let Some(Node { data: Data::Table(entries), .. }) = document.child(name) {
+                let idle = entries.iter().map(|e| e.key.as_str()).filter(|k| !used.contains(k));
+                out.extend(idle.map(|key| join(name, key)));
+            }
+        }
+        out
+    }
+
     /// The schema of one field or element, before references are followed (its `default` stands there).
     pub fn field<'a>(&'a self, schema: &'a Value, node: Option<&Node>, step: &str) -> Option<&'a Value> {
         let schema = self.resolve(schema);

@@ -7,7 +7,13 @@
 //! /// Engine.
 //! #[schemars(extend("required" = ["speed", "rod_length"]))]
 //! pub engine: Engine,
+//! /// Piston.
+//! #[schemars(extend("x-used" = ["lands", "pin_to_ring1"]))]
+//! pub piston: Piston,
 //! ```
+//!
+//! Where it reads only some keys of a table it names them there too (`x-used`): `gudgeon explain` lists the others that a case gives, and a sweep of
+//! one is refused.
 //!
 //! so that a case without it is refused with its line; the accessors here ([`Engine::crank`], [`Piston::body`]) refuse it too, for cases that no
 //! file was read for.

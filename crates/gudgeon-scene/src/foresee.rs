@@ -48,6 +48,20 @@ pub(crate) fn sweeps(scene: &dyn Scene, sweeps: &[Sweep]) -> Vec<BuildError> {
     vec![BuildError::at(place, what)]
 }
 
+/// Sweeps of a value that the scene does not use: all their points would be one.
+pub(crate) fn idle(scene: &dyn Scene, sweeps: &[Sweep]) -> Vec<BuildError> {
+    let is_idle = |s: &Sweep| {
+        let first = sweep_input::values(s).ok()?.into_iter().next()?;
+        let changed = scene.changed(&[format!("{}={first}", s.path)]).ok()?;
+        changed.unused().contains(&s.path).then_some(())
+    };
+    let refused = |(k, s): (usize, &Sweep)| {
+        let what = format!("this scene does not use `{}`: a sweep of it changes nothing", s.path);
+        is_idle(s).map(|()| BuildError::at(format!("sweeps.{k}.path"), what))
+    };
+    sweeps.iter().enumerate().filter_map(refused).collect()
+}
+
 /// Why the case cannot be run with some values changed.
 fn impossible(scene: &dyn Scene, set: &[String]) -> Option<String> {
     match scene.changed(set) {

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use gudgeon_case::{Report, Source, read, scene_of};
-use gudgeon_core::result::{Note, RunResult};
+use gudgeon_core::result::{Note, RunResult, Skipped};
 use gudgeon_core::{BuildError, Registry};
 
 use crate::error::{Progress, RunError};
@@ -61,6 +61,7 @@ pub fn check_case(file: String, case: Box<dyn Scene>) -> Result<Checked, Report>
     if errors.is_empty() {
         let sweeps = case.heading().sweeps;
         errors.extend(foresee::sweeps(case.as_ref(), sweeps));
+        errors.extend(foresee::idle(case.as_ref(), sweeps));
         errors.extend(foresee::drawn(case.as_ref(), sweeps));
     }
     legal(file, case, &errors)
@@ -72,7 +73,12 @@ fn legal(file: String, case: Box<dyn Scene>, errors: &[BuildError]) -> Result<Ch
     }
     let name =
         Path::new(&file).file_stem().map_or_else(|| file.clone(), |s| s.to_string_lossy().into_owned());
-    Ok(Checked { name, file, notes: case.notes().to_vec(), case })
+    let mut notes = case.notes().to_vec();
+    let unused = case.unused();
+    let paths = case.overrides().iter().filter_map(|o| o.split_once('=')).map(|(path, _)| path.trim());
+    let idle = paths.filter(|path| unused.iter().any(|u| u == path));
+    notes.extend(idle.map(|path| format!("`--set {path}=…` changes nothing: this scene does not use it")));
+    Ok(Checked { name, file, notes, case })
 }
 
 impl Checked {
@@ -112,6 +118,8 @@ pub fn explain(c: &Checked) -> Result<Explanation, RunError> {
         ..Explanation::default()
     };
     let used = c.case.explain(&mut told)?;
+    let idle = |path: String| Skipped { what: path, why: "this scene does not use it".into() };
+    told.skipped.extend(c.case.unused().into_iter().map(idle));
     told.models = used
         .into_iter()
         .map(|used| {

@@ -84,6 +84,8 @@ pub trait Scene: Send + Sync {
     fn overrides(&self) -> &[String];
     /// What a person should know although nothing is wrong.
     fn notes(&self) -> &[String];
+    /// Paths of the values that the case gives and its scene does not use.
+    fn unused(&self) -> Vec<String>;
     /// Every value in SI units, changes and defaults filled in.
     fn resolved(&self) -> serde_json::Value;
     /// As [`SceneCase::cycle`].
@@ -160,6 +162,10 @@ impl<C: SceneCase> Scene for Read<C> {
 
     fn notes(&self) -> &[String] {
         &self.loaded.notes
+    }
+
+    fn unused(&self) -> Vec<String> {
+        self.loaded.unused()
     }
 
     fn resolved(&self) -> serde_json::Value {

@@ -19,5 +19,6 @@ mod rigs;
 mod sampling;
 mod shaft_line;
 mod tomanik;
+mod unused;
 mod validation;
 mod zottin;

@@ -17,9 +17,11 @@ case_file! {
     /// Design of a gudgeon pin and of the piston around it. Give any of `pin`, `skirt`, `crown` and `dimensions`.
     pub struct PinCase {
         /// Engine, whose bore is the nominal diameter of the piston.
+        #[schemars(extend("x-used" = ["bore"]))]
         pub engine: Engine,
         /// Piston.
         #[serde(default)]
+        #[schemars(extend("x-used" = ["alloy", "apparent_density"]))]
         pub piston: Piston,
         /// Gudgeon pin: evaluated as it stands, or the start of `optimise`.
         #[serde(default, skip_serializing_if = "Option::is_none")]

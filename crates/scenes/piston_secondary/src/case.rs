@@ -23,7 +23,10 @@ case_file! {
         #[schemars(extend("required" = ["speed", "bore", "rod_length"]))]
         pub engine: Engine,
         /// Piston and pin.
-        #[schemars(extend("required" = ["mass", "inertia", "pin_mass", "pin_depth", "gravity_depth"]))]
+        #[schemars(extend(
+            "required" = ["mass", "inertia", "pin_mass", "pin_depth", "gravity_depth"],
+            "x-used" = ["mass", "inertia", "pin_mass", "pin_depth", "gravity_depth", "gravity_offset", "gravity_side"],
+        ))]
         pub piston: Piston,
         /// Connecting rod; without mass when absent.
         #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -25,7 +25,7 @@ case_file! {
         #[schemars(extend("required" = ["speed", "bore", "rod_length"]))]
         pub engine: Engine,
         /// Piston, from the crown down.
-        #[schemars(extend("required" = ["lands"]))]
+        #[schemars(extend("required" = ["lands"], "x-used" = ["lands", "pin_to_ring1"]))]
         pub piston: Piston,
         /// Cylinder liner.
         #[serde(default)]
