@@ -243,6 +243,35 @@ impl Cycle<'_> {
         rtol: f64,
         mut sampler: Option<&mut Sampler>,
     ) -> Result<(), IntegrateError> {
+        let mut options = self.options(rtol);
+        // The reference integrates every ring with its inertia.
+        let accuracy = if matches!(self.method, Method::Rodas(_)) { rtol } else { 0.0 };
+        self.pack.each_block(|b, _| b.set_accuracy(accuracy));
+        self.pack.events(&mut self.events);
+        // Every cycle starts with the same step: the map must depend on nothing but the state.
+        self.h = FIRST_STEP;
+        self.q.fill(0.0);
+        let period = self.pack.period();
+        let interval = self.pack.decision_interval();
+        let pieces = interval.map_or(1, |i| (period / i).round().max(1.0) as usize);
+        let mut outcome = Ok(());
+        for piece in 0..pieces {
+            let span = (period * piece as f64 / pieces as f64, period * (piece + 1) as f64 / pieces as f64);
+            let first = if piece == 0 { sampler.as_deref_mut() } else { None };
+            let begun = self.begin_piece(span.0, y, interval.is_some(), first);
+            outcome = begun.map_err(|source| IntegrateError::Eval { t: span.0, source });
+            options.h_init = self.h;
+            outcome = outcome.and_then(|()| self.piece(span, y, &options, sampler.as_deref_mut()));
+            if outcome.is_err() {
+                break;
+            }
+        }
+        self.done += 1.0;
+        (self.progress)(1.0 - 0.8f64.powf(self.done));
+        outcome
+    }
+
+    fn options(&self, rtol: f64) -> Options {
         let mut options = Options::new(rtol, &self.scale);
         options.absolute.clone_from(&self.absolute);
         options.h_max = self.longest_step;
@@ -254,73 +283,57 @@ impl Cycle<'_> {
         }
         // Rings turn slowly beside the steps that their motion allows.
         options.event_samples = 0;
-        // The reference integrates every ring with its inertia.
-        let accuracy = if matches!(self.method, Method::Rodas(_)) { rtol } else { 0.0 };
-        self.pack.each_block(|b, _| b.set_accuracy(accuracy));
-        self.pack.events(&mut self.events);
-        // Every cycle starts with the same step: the map must depend on nothing but the state.
-        self.h = FIRST_STEP;
-        self.q.fill(0.0);
-        let period = self.pack.period();
-        let interval = self.pack.decision_interval();
-        let pieces = interval.map_or(1, |i| (period / i).round().max(1.0) as usize);
-        let mut q = std::mem::take(&mut self.q);
-        let mut outcome = Ok(0.0);
-        for piece in 0..pieces {
-            let span = (period * piece as f64 / pieces as f64, period * (piece + 1) as f64 / pieces as f64);
-            if interval.is_some()
-                && let Err(source) = self.pack.evaluate(span.0, y)
-            {
-                outcome = Err(IntegrateError::Eval { t: span.0, source });
-                break;
-            }
-            if interval.is_some() {
-                self.pack.decide_seats();
-            }
-            if let Err(source) = self.pack.start_modes(span.0, y) {
-                outcome = Err(IntegrateError::Eval { t: span.0, source });
-                break;
-            }
-            if piece == 0
-                && let Some(s) = sampler.as_deref_mut()
-                && let Err(source) = s.begin(self.pack, span.0, y)
-            {
-                outcome = Err(IntegrateError::Eval { t: span.0, source });
-                break;
-            }
-            options.h_init = self.h;
-            let mut problem = Problem {
-                pack: self.pack,
-                base: &mut self.base,
-                scale: &self.scale,
-                balance: &self.balance,
-                events: &self.events,
-            };
-            let mut observe = |p: &mut Problem<'_>, v: &dyn StepView| {
-                let flow = match sampler.as_deref_mut() {
-                    Some(s) => s.step(p.pack, v),
-                    None => Flow::Continue,
-                };
-                p.pack.book_oil(v);
-                if let Some(s) = sampler.as_deref_mut() {
-                    s.look_at_liner(p.pack, v.t1());
-                }
-                flow
-            };
-            let (b, st) = (&self.breakpoints, &mut self.stats);
-            outcome = match &mut self.method {
-                Method::Rodas(m) => m.integrate(&mut problem, span, b, y, &mut q, &options, st, &mut observe),
-                Method::Radau(m) => m.integrate(&mut problem, span, b, y, &mut q, &options, st, &mut observe),
-            };
-            match &outcome {
-                Ok(h) => self.h = *h,
-                Err(_) => break,
-            }
+        options
+    }
+
+    /// Prepares the pack for the piece of the cycle from `theta` on; `first` is the sampler of the first piece.
+    fn begin_piece(
+        &mut self,
+        theta: f64,
+        y: &mut [f64],
+        decides: bool,
+        first: Option<&mut Sampler>,
+    ) -> Result<(), EvalError> {
+        if decides {
+            self.pack.evaluate(theta, y)?;
+            self.pack.decide_seats();
         }
-        self.q = q;
-        self.done += 1.0;
-        (self.progress)(1.0 - 0.8f64.powf(self.done));
-        outcome.map(|_| ())
+        self.pack.start_modes(theta, y)?;
+        first.map_or(Ok(()), |s| s.begin(self.pack, theta, y))
+    }
+
+    /// Integrates a piece of the cycle.
+    fn piece(
+        &mut self,
+        span: (f64, f64),
+        y: &mut [f64],
+        options: &Options,
+        mut sampler: Option<&mut Sampler>,
+    ) -> Result<(), IntegrateError> {
+        let mut problem = Problem {
+            pack: self.pack,
+            base: &mut self.base,
+            scale: &self.scale,
+            balance: &self.balance,
+            events: &self.events,
+        };
+        let mut observe = |p: &mut Problem<'_>, v: &dyn StepView| {
+            let flow = match sampler.as_deref_mut() {
+                Some(s) => s.step(p.pack, v),
+                None => Flow::Continue,
+            };
+            p.pack.book_oil(v);
+            if let Some(s) = sampler.as_deref_mut() {
+                s.look_at_liner(p.pack, v.t1());
+            }
+            flow
+        };
+        let (b, q, st) = (&self.breakpoints, &mut self.q, &mut self.stats);
+        self.h = match &mut self.method {
+            Method::Rodas(m) => m.integrate(&mut problem, span, b, y, q, options, st, &mut observe),
+            Method::Radau(m) => m.integrate(&mut problem, span, b, y, q, options, st, &mut observe),
+        }?;
+        Ok(())
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use gudgeon_core::kinds::{Line, Mode};
+use gudgeon_core::kinds::{Line, LineLink, Mode};
 use gudgeon_core::result::{Anchor, Figure, FigureKind, Frame, Shape, Style};
 use gudgeon_torsion::tree::Tree;
 
@@ -87,74 +87,10 @@ pub fn nodes(line: &Line, shape: &[f64]) -> Vec<(usize, f64)> {
 /// Mode shapes drawn on the line, one frame each.
 pub fn modes(line: &Line, modes: &[&Mode]) -> Figure {
     let at = layout(line);
-    let n = line.nodes.len();
-    // Discs as tall as the cube root of their inertia, at least visible.
-    let inertia: Vec<f64> = (0..n).map(|i| line.mean_inertia(i) * line.nodes[i].ratio.powi(2)).collect();
-    let heaviest = inertia.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-    let mut fixed = Vec::new();
-    for l in &line.links {
-        let [a, b] = l.nodes.map(|i| at[i]);
-        let points = if a[1] == b[1] { vec![a, b] } else { vec![a, [a[0], b[1]], b] };
-        fixed.push(Shape::Path { points, closed: false, style: Style::Axis });
-    }
-    let few = n <= 16;
-    let (left, right) =
-        at.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), p| (a.min(p[0]), b.max(p[0])));
-    for i in 0..n {
-        let h = (0.12 + 0.45 * (inertia[i] / heaviest).cbrt()).min(0.6);
-        let w = 0.10;
-        let [x, y] = at[i];
-        let points = vec![[x - w, y - h], [x + w, y - h], [x + w, y + h], [x - w, y + h]];
-        fixed.push(Shape::Path { points, closed: true, style: Style::Metal });
-        if few {
-            let text = line.nodes[i].name.clone();
-            // Every other name a little lower, long ones at the ends lower still, so that they do not meet.
-            let end = x <= left || x >= right;
-            let drop = match x.round() as i64 % 2 {
-                _ if end && text.len() > 9 => 1.89,
-                0 => 1.35,
-                _ => 1.62,
-            };
-            // Names at the ends stay within the drawing.
-            let (shift, anchor) = if x <= left {
-                (-0.4, Anchor::Start)
-            } else if x >= right {
-                (0.4, Anchor::End)
-            } else {
-                (0.0, Anchor::Middle)
-            };
-            fixed.push(Shape::Text { at: [x + shift, y - drop], text, anchor });
-        }
-    }
-    let tree = Tree::new(line).ok();
-    let frames = modes
-        .iter()
-        .enumerate()
-        .map(|(k, m)| {
-            let scaled: Vec<f64> = (0..n).map(|i| m.shape[i] / line.nodes[i].ratio).collect();
-            let top = scaled.iter().map(|s| s.abs()).fold(f64::MIN_POSITIVE, f64::max);
-            let y = |i: usize| at[i][1] + 1.1 * scaled[i] / top;
-            let mut shapes = Vec::new();
-            for l in &line.links {
-                let [a, b] = l.nodes;
-                let points = vec![[at[a][0], y(a)], [at[b][0], y(b)]];
-                shapes.push(Shape::Path { points, closed: false, style: Style::Accent });
-            }
-            for i in 0..n {
-                shapes.push(Shape::Circle { centre: [at[i][0], y(i)], radius: 0.05, style: Style::Accent });
-            }
-            for (l, f) in nodes(line, &m.shape) {
-                let [a, b] = line.links[l].nodes;
-                let centre = [at[a][0] + f * (at[b][0] - at[a][0]), at[a][1] + f * (at[b][1] - at[a][1])];
-                shapes.push(Shape::Circle { centre, radius: 0.09, style: Style::Second });
-            }
-            let damping = m
-                .damped
-                .map_or_else(String::new, |(d, w)| format!(", damping {:.2} %", 100.0 * d / d.hypot(w)));
-            Frame { label: format!("mode {}: {:.2} Hz{damping}", k + 1, m.omega / (2.0 * PI)), shapes }
-        })
-        .collect();
-    let branched = tree.is_some_and(|t| !t.chain);
+    let mut fixed = shafts(line, &at);
+    discs(line, &at, &mut fixed);
+    let frames = modes.iter().enumerate().map(|(k, m)| frame(line, &at, k, m)).collect();
+    let branched = Tree::new(line).is_ok_and(|t| !t.chain);
     Figure {
         title: "Mode shapes".into(),
         hint: if branched {
@@ -165,6 +101,78 @@ pub fn modes(line: &Line, modes: &[&Mode]) -> Figure {
         table: String::new(),
         kind: FigureKind::Drawing { fixed, frames },
     }
+}
+
+fn shafts(line: &Line, at: &[[f64; 2]]) -> Vec<Shape> {
+    let shaft = |l: &LineLink| {
+        let [a, b] = l.nodes.map(|i| at[i]);
+        let points = if a[1] == b[1] { vec![a, b] } else { vec![a, [a[0], b[1]], b] };
+        Shape::Path { points, closed: false, style: Style::Axis }
+    };
+    line.links.iter().map(shaft).collect()
+}
+
+/// Discs as tall as the cube root of their inertia, at least visible, with their names where these have room.
+fn discs(line: &Line, at: &[[f64; 2]], fixed: &mut Vec<Shape>) {
+    let n = line.nodes.len();
+    let inertia: Vec<f64> = (0..n).map(|i| line.mean_inertia(i) * line.nodes[i].ratio.powi(2)).collect();
+    let heaviest = inertia.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+    let ends = at.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), p| (a.min(p[0]), b.max(p[0])));
+    for i in 0..n {
+        let h = (0.12 + 0.45 * (inertia[i] / heaviest).cbrt()).min(0.6);
+        let w = 0.10;
+        let [x, y] = at[i];
+        let points = vec![[x - w, y - h], [x + w, y - h], [x + w, y + h], [x - w, y + h]];
+        fixed.push(Shape::Path { points, closed: true, style: Style::Metal });
+        if n <= 16 {
+            fixed.push(name(line.nodes[i].name.clone(), [x, y], ends));
+        }
+    }
+}
+
+/// The name of a disc of a line between two ends.
+fn name(text: String, [x, y]: [f64; 2], (left, right): (f64, f64)) -> Shape {
+    // Every other name a little lower, long ones at the ends lower still, so that they do not meet.
+    let end = x <= left || x >= right;
+    let drop = match x.round() as i64 % 2 {
+        _ if end && text.len() > 9 => 1.89,
+        0 => 1.35,
+        _ => 1.62,
+    };
+    // Names at the ends stay within the drawing.
+    let (shift, anchor) = if x <= left {
+        (-0.4, Anchor::Start)
+    } else if x >= right {
+        (0.4, Anchor::End)
+    } else {
+        (0.0, Anchor::Middle)
+    };
+    Shape::Text { at: [x + shift, y - drop], text, anchor }
+}
+
+/// Mode `k` on the line.
+fn frame(line: &Line, at: &[[f64; 2]], k: usize, m: &Mode) -> Frame {
+    let n = line.nodes.len();
+    let scaled: Vec<f64> = (0..n).map(|i| m.shape[i] / line.nodes[i].ratio).collect();
+    let top = scaled.iter().map(|s| s.abs()).fold(f64::MIN_POSITIVE, f64::max);
+    let y = |i: usize| at[i][1] + 1.1 * scaled[i] / top;
+    let mut shapes = Vec::new();
+    for l in &line.links {
+        let [a, b] = l.nodes;
+        let points = vec![[at[a][0], y(a)], [at[b][0], y(b)]];
+        shapes.push(Shape::Path { points, closed: false, style: Style::Accent });
+    }
+    for i in 0..n {
+        shapes.push(Shape::Circle { centre: [at[i][0], y(i)], radius: 0.05, style: Style::Accent });
+    }
+    for (l, f) in nodes(line, &m.shape) {
+        let [a, b] = line.links[l].nodes;
+        let centre = [at[a][0] + f * (at[b][0] - at[a][0]), at[a][1] + f * (at[b][1] - at[a][1])];
+        shapes.push(Shape::Circle { centre, radius: 0.09, style: Style::Second });
+    }
+    let damping =
+        m.damped.map_or_else(String::new, |(d, w)| format!(", damping {:.2} %", 100.0 * d / d.hypot(w)));
+    Frame { label: format!("mode {}: {:.2} Hz{damping}", k + 1, m.omega / (2.0 * PI)), shapes }
 }
 
 /// Interference diagram over speeds \[rpm\]: natural frequencies \[Hz\] as levels, orders as rays, marks where they meet.

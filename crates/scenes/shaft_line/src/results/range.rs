@@ -15,6 +15,21 @@ const ORDERS: usize = 6;
 /// Part of the largest gas torque by which it may change over the speed without a word.
 const SAME_GAS: f64 = 1e-6;
 
+/// The answers at all speeds, with their orders.
+fn points(machine: &mut Machine<'_>, speeds: &[f64]) -> Result<Vec<Point>, EvalError> {
+    machine.by_order = true;
+    machine.prepare(speeds);
+    let mut rows = Vec::with_capacity(speeds.len());
+    for w in speeds {
+        match machine.at(*w) {
+            Some(p) => rows.push(p.clone()),
+            None => return Err(machine.why(*w)),
+        }
+    }
+    machine.by_order = false;
+    Ok(rows)
+}
+
 impl Results<'_> {
     /// Vibratory torque over the speed.
     ///
@@ -23,16 +38,7 @@ impl Results<'_> {
     pub fn range(&mut self, machine: &mut Machine<'_>, speeds: &[f64]) -> Result<(), EvalError> {
         let a = machine.a;
         let links = a.line.links.len();
-        machine.by_order = true;
-        machine.prepare(speeds);
-        let mut rows: Vec<Point> = Vec::with_capacity(speeds.len());
-        for w in speeds {
-            match machine.at(*w) {
-                Some(p) => rows.push(p.clone()),
-                None => return Err(machine.why(*w)),
-            }
-        }
-        machine.by_order = false;
+        let rows = points(machine, speeds)?;
         // Peaks between the points count where the limits do; a wider diagram shows what it draws.
         let (from, to) = (speeds[0], speeds[speeds.len() - 1]);
         let judged = Operating::new(self.case);
