@@ -3,6 +3,7 @@
 use std::ffi::OsStr;
 use std::path::Path;
 
+use gudgeon_core::registry::Kind;
 use gudgeon_core::{ModelInfo, Registry};
 use serde_json::{Map, Value};
 
@@ -114,6 +115,15 @@ fn example(m: &ModelInfo) -> Result<Map<String, Value>, String> {
         return Err("the example must not contain the key `model`".into());
     }
     Ok(table)
+}
+
+/// The specification that the example of a model gives.
+///
+/// # Errors
+/// An example that cannot be read, a model of another kind.
+pub fn example_of<S: ?Sized + Kind + 'static>(m: &ModelInfo) -> Result<Box<S>, String> {
+    let spec = Value::Object(example(m)?);
+    gudgeon_core::spec::model((&spec).into()).map_err(|e| e.to_string())
 }
 
 fn resolve(

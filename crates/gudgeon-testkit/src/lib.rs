@@ -3,13 +3,14 @@
 //! | to check | use |
 //! |---|---|
 //! | all that is registered: names, texts, examples, keys, schema | [`check_crate`] for the models of one crate, [`check_all`] for all, [`contract`] for one model |
+//! | a model built from its own example | [`example_of`] |
 //! | references against a BibTeX file | [`Bibliography`] |
 //! | partial derivatives against difference quotients | [`partials`] |
 //! | that the same question gives the same bytes, also after another | [`same_answer`] |
 //! | that no input gives a NaN | [`all_finite`] |
 //! | states, memory and columns of a running model | [`stateful`] |
 //! | that a model reads no more than it declares | [`reads`] |
-//! | a running model of a kind | [`oil`], [`gas_flow`] |
+//! | a running model of a kind | [`contact`], [`cylinder_pressure`], [`gas_flow`], [`hydrodynamics`], [`kinematics`], [`oil`], [`pin_strength`] |
 //!
 //! A check gives its complaints as a list, empty when all is well; [`assert_none`] ends a test with all of them together. What a check cannot
 //! know (a closed form, a limit, an observed order of convergence) the tests of the model show.
@@ -62,9 +63,9 @@ mod schema;
 mod states;
 
 pub use bibliography::Bibliography;
-pub use contract::{check_all, check_crate, contract, for_every_model};
+pub use contract::{check_all, check_crate, contract, example_of, for_every_model};
 pub use differences::{Tolerance, partials};
-pub use kinds::{gas_flow, oil};
+pub use kinds::{contact, cylinder_pressure, gas_flow, hydrodynamics, kinematics, oil, pin_strength};
 pub use repeat::{all_finite, same_answer};
 pub use schema::undescribed;
 pub use states::{reads, stateful};

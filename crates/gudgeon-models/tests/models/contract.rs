@@ -61,7 +61,7 @@ const SWITCHED_OFF: &[(&str, Option<&str>)] = &[
 #[test]
 fn what_is_registered_is_the_list_of_registered_txt() {
     let found = gudgeon_models::registered();
-    if found != include_str!("registered.txt") {
+    if found != include_str!("../registered.txt") {
         let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("registered.txt");
         std::fs::write(&file, &found).expect("the folder for files of tests can be written");
         panic!(

@@ -3,4 +3,5 @@
 mod contract;
 mod gas;
 mod numbers;
+mod running;
 mod states;

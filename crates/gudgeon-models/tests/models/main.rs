@@ -1,0 +1,6 @@
+//! All built-in models.
+
+use gudgeon_models as _;
+
+mod contract;
+mod running;
