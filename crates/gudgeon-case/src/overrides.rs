@@ -5,7 +5,7 @@ use toml::de::DeValue;
 
 use super::near::list;
 use super::report::{Diagnostic, Origin};
-use super::schema::{Schema, Tagged, shorten};
+use super::schema::{Part, Schema, shorten};
 use super::tree::{Data, Entry, Node, Place, Step, join, steps};
 
 /// Applies the overrides in order. What cannot be applied is returned; `notes` tells what a changed model lost.
@@ -97,7 +97,7 @@ fn set(
         node = descend(node, field, step, &path, origin)?;
         path = join(&path, &step.text);
         let model = field.and_then(|f| schemas.model_of_word(f));
-        if let Some(tagged) = model.and_then(|m| Tagged::of(schemas, schemas.resolve(m))) {
+        if let Some(tagged) = model.and_then(|m| schemas.tagged(schemas.resolve(m))) {
             word_to_table(node, tagged.tag);
         }
         schema = model.or(field);
@@ -197,14 +197,14 @@ fn not_a_table(node: &Node, step: &Step, path: &str, origin: Origin) -> Diagnost
 fn change_variant(
     node: &mut Node,
     schemas: &Schema,
-    schema: &Value,
+    schema: Part,
     last: &Step,
     value: &Node,
     path: &str,
     notes: &mut Vec<String>,
 ) {
     let resolved = schemas.resolve(schema);
-    let Some(tagged) = Tagged::of(schemas, resolved).filter(|t| t.tag == last.text) else { return };
+    let Some(tagged) = schemas.tagged(resolved).filter(|t| t.tag == last.text) else { return };
     let (Data::Text(new), Data::Table(entries)) = (&value.data, &mut node.data) else { return };
     let Some((_, variant)) = tagged.variants.iter().find(|(n, _)| n == new) else { return };
     let old = entries.iter().find(|e| e.key == tagged.tag).and_then(|e| match &e.node.data {

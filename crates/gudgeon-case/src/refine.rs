@@ -7,7 +7,7 @@
 use indexmap::IndexMap;
 use serde_json::Value;
 
-use super::schema::{Schema, Tagged};
+use super::schema::{Part, Schema};
 use super::tree::join;
 
 /// Most levels of a group.
@@ -73,7 +73,7 @@ fn settings(schema: &Schema, resolved: &Value) -> Vec<Setting> {
     out
 }
 
-fn walk(schemas: &Schema, schema: &Value, value: &Value, path: &str, out: &mut Vec<Setting>) {
+fn walk(schemas: &Schema, schema: Part, value: &Value, path: &str, out: &mut Vec<Setting>) {
     let schema = schemas.resolve(schema);
     let schema = schemas.model_of_word(schema).map_or(schema, |models| schemas.resolve(models));
     match value {
@@ -84,7 +84,7 @@ fn walk(schemas: &Schema, schema: &Value, value: &Value, path: &str, out: &mut V
             }
         }
         Value::Object(table) => {
-            let own = match Tagged::of(schemas, schema) {
+            let own = match schemas.tagged(schema) {
                 Some(t) => table
                     .get(t.tag)
                     .and_then(Value::as_str)

@@ -4,8 +4,8 @@
 //! deserialisation still has the last word.
 
 use std::any::TypeId;
-use std::collections::{HashMap, HashSet};
-use std::sync::{Mutex, PoisonError};
+use std::collections::{BTreeMap, HashMap, HashSet};
+use std::sync::{Mutex, PoisonError, RwLock};
 
 use gudgeon_core::quantity::{self, ALL_DIMENSIONS, QuantityError};
 use serde_json::{Map, Value};
@@ -14,10 +14,15 @@ use super::near::{advice, list, nearest};
 use super::report::{Diagnostic, MAX_MISTAKES, Origin};
 use super::tree::{Data, Entry, Node, Place, join, steps};
 
+/// A part of a schema. Schemas live as long as the program.
+pub(super) type Part = &'static Value;
+
 /// A root schema with its definitions.
 #[derive(Debug)]
 pub(super) struct Schema {
-    root: Value,
+    root: Part,
+    /// The choices that were looked at, by the address of the part: what they are told apart by is found once.
+    choices: RwLock<HashMap<usize, Option<&'static Tagged>>>,
 }
 
 /// Most values of an array that does not say its own maximum.
@@ -42,17 +47,30 @@ impl Schema {
         // What a panicking thread left is whole: entries are only ever added.
         let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
         known.get_or_insert_default().entry(TypeId::of::<T>()).or_insert_with(|| {
+            let mut root = schemars::schema_for!(T).to_value();
+            write_out_demands(&mut root);
             // One a type and program, for the whole life of it.
-            Box::leak(Box::new(Self { root: schemars::schema_for!(T).to_value() }))
+            Box::leak(Box::new(Self { root: Box::leak(Box::new(root)), choices: RwLock::default() }))
         })
     }
 
-    pub const fn root(&self) -> &Value {
-        &self.root
+    pub const fn root(&self) -> Part {
+        self.root
+    }
+
+    /// The tables that a schema has to choose from by the value of one key.
+    pub fn tagged(&self, schema: Part) -> Option<&'static Tagged> {
+        let place = std::ptr::from_ref(schema).addr();
+        if let Some(known) = self.choices.read().unwrap_or_else(PoisonError::into_inner).get(&place) {
+            return *known;
+        }
+        let found = Tagged::of(self, schema).map(|t| &*Box::leak(Box::new(t)));
+        // The first to come stays: no more of them are kept than the schema has choices, but for threads that come together.
+        *self.choices.write().unwrap_or_else(PoisonError::into_inner).entry(place).or_insert(found)
     }
 
     /// Follows references and drops the `null` alternative of an optional value.
-    pub fn resolve<'a>(&'a self, mut schema: &'a Value) -> &'a Value {
+    pub fn resolve(&self, mut schema: Part) -> Part {
         for _ in 0..MAX_REFERENCES {
             if let Some(target) = schema.get("$ref").and_then(Value::as_str) {
                 match target.strip_prefix('#').and_then(|p| self.root.pointer(p)) {
@@ -75,13 +93,13 @@ impl Schema {
     }
 
     /// Whether a text, or one of some words, is what a value must be.
-    pub fn wants_text(&self, schema: &Value) -> bool {
+    pub fn wants_text(&self, schema: Part) -> bool {
         let schema = self.resolve(schema);
         types_of(schema) == ["string"] || words_of(schema).is_some_and(|w| !w.is_empty())
     }
 
     /// Keys that the outermost table must have.
-    pub fn required(&self) -> Vec<&str> {
+    pub fn required(&self) -> Vec<&'static str> {
         strings(self.root.get("required"))
     }
 
@@ -100,34 +118,32 @@ impl Schema {
     }
 
     /// The schema of one field or element, before references are followed (its `default` stands there).
-    pub fn field<'a>(&'a self, schema: &'a Value, node: Option<&Node>, step: &str) -> Option<&'a Value> {
+    pub fn field(&self, schema: Part, node: Option<&Node>, step: &str) -> Option<Part> {
         let schema = self.resolve(schema);
         let schema = self.model_of_word(schema).unwrap_or(schema);
         if step.parse::<usize>().is_ok() && schema.get("items").is_some() {
             return schema.get("items");
         }
-        let table = match Tagged::of(self, schema) {
-            Some(tagged) => tagged.chosen(node?)?,
-            None => schema,
-        };
-        let properties = table.get("properties").and_then(Value::as_object);
-        properties
-            .and_then(|p| p.get(step))
-            .or_else(|| table.get("additionalProperties").filter(|a| a.is_object()))
+        property(self.chosen(schema, node)?, step)
+    }
+
+    /// The table that a document asks for, where a schema has several to choose from; else the schema itself.
+    fn chosen(&self, schema: Part, node: Option<&Node>) -> Option<Part> {
+        self.tagged(schema).map_or(Some(schema), |tagged| tagged.chosen(node?))
     }
 
     /// The models that a word of this schema names: what `hoop = "as_printed"` says as the table `hoop = { model = "as_printed" }`.
-    pub fn model_of_word<'a>(&'a self, schema: &'a Value) -> Option<&'a Value> {
-        let all: Vec<&Value> =
-            alternatives(self.resolve(schema))?.into_iter().map(|s| self.resolve(s)).collect();
-        let [word, table] = all[..] else { return None };
-        (words_of(word).is_some() && Tagged::of(self, table).is_some()).then_some(table)
+    pub fn model_of_word(&self, schema: Part) -> Option<Part> {
+        let alternatives = alternatives(self.resolve(schema))?;
+        let [word, table] = alternatives[..] else { return None };
+        let (word, table) = (self.resolve(word), self.resolve(table));
+        (words_of(word).is_some() && self.tagged(table).is_some()).then_some(table)
     }
 
     /// The first [`MAX_MISTAKES`] mistakes of the document; what the whole file lacks is told at its end.
     pub fn check(&self, document: &Node, end_of_file: usize) -> Vec<Diagnostic> {
         let mut out = Vec::new();
-        self.value(document, &self.root, "", &mut out);
+        self.value(document, self.root, "", &mut out);
         for d in out.iter_mut().filter(|d| d.span.is_none() && d.origin == Origin::File) {
             d.span = Some(end_of_file..end_of_file);
         }
@@ -138,18 +154,20 @@ impl Schema {
     /// document without mistakes.
     pub fn improbable(&self, document: &Node) -> Vec<String> {
         let mut out = Vec::new();
-        self.look_for_improbable(document, &self.root, "", &mut out);
+        self.look_for_improbable(document, self.root, "", &mut out);
         out
     }
 
-    fn look_for_improbable(&self, node: &Node, schema: &Value, path: &str, out: &mut Vec<String>) {
+    fn look_for_improbable(&self, node: &Node, schema: Part, path: &str, out: &mut Vec<String>) {
         let schema = self.resolve(schema);
         let number = match &node.data {
             Data::Integer(i) => *i as f64,
             Data::Float(f) => *f,
             Data::Table(entries) => {
+                let schema = self.model_of_word(schema).unwrap_or(schema);
+                let Some(table) = self.chosen(schema, Some(node)) else { return };
                 for e in entries {
-                    if let Some(s) = self.field(schema, Some(node), &e.key) {
+                    if let Some(s) = property(table, &e.key) {
                         self.look_for_improbable(&e.node, s, &join(path, &e.key), out);
                     }
                 }
@@ -178,27 +196,11 @@ impl Schema {
         }
     }
 
-    /// The schema of a table that stands in several places, with the keys that this one requires (`required` beside `$ref`).
-    fn requiring(&self, schema: &Value) -> Option<Value> {
-        schema.get("$ref")?;
-        let here = schema.get("required")?.as_array()?;
-        let mut table = self.resolve(schema).clone();
-        let keys = table.as_object_mut()?.entry("required").or_insert_with(|| Value::Array(Vec::new()));
-        let keys = keys.as_array_mut()?;
-        for key in here {
-            if !keys.contains(key) {
-                keys.push(key.clone());
-            }
-        }
-        Some(table)
-    }
-
-    fn value(&self, node: &Node, schema: &Value, path: &str, out: &mut Vec<Diagnostic>) {
+    fn value(&self, node: &Node, schema: Part, path: &str, out: &mut Vec<Diagnostic>) {
         if out.len() >= MAX_MISTAKES {
             return;
         }
-        let demanding = self.requiring(schema);
-        let schema = demanding.as_ref().unwrap_or_else(|| self.resolve(schema));
+        let schema = self.resolve(schema);
         if let Some(dimension) = schema.get("x-dimension").and_then(Value::as_str) {
             let bound = schema.get("x-bound").and_then(Value::as_str).unwrap_or_default();
             return check_quantity(node, dimension, bound, path, out);
@@ -206,8 +208,8 @@ impl Schema {
         if let Some(words) = words_of(schema) {
             return check_word(node, &words, path, out);
         }
-        if let Some(tagged) = Tagged::of(self, schema) {
-            return self.tagged(node, &tagged, path, out);
+        if let Some(tagged) = self.tagged(schema) {
+            return self.choice(node, tagged, path, out);
         }
         if let Some(variants) = alternatives(schema) {
             return self.any_of(node, &variants, path, out);
@@ -233,15 +235,15 @@ impl Schema {
         &self,
         node: &Node,
         entries: &[Entry],
-        schema: &Value,
+        schema: Part,
         skip: &[&str],
         path: &str,
         out: &mut Vec<Diagnostic>,
     ) {
-        let empty = Map::new();
-        let properties = schema.get("properties").and_then(Value::as_object).unwrap_or(&empty);
+        let properties = schema.get("properties").and_then(Value::as_object);
+        let own = |key: &str| properties.and_then(|p| p.get(key));
         let other = schema.get("additionalProperties");
-        let known: Vec<&str> = properties.keys().map(String::as_str).collect();
+        let known: Vec<&str> = properties.into_iter().flatten().map(|(key, _)| key.as_str()).collect();
         let present: HashSet<&str> = entries.iter().map(|e| e.key.as_str()).collect();
         let absent = |key: &&str| !present.contains(*key);
         let mut missing: Vec<&str> =
@@ -251,7 +253,7 @@ impl Schema {
             if out.len() >= MAX_MISTAKES {
                 return;
             }
-            if let Some(s) = properties.get(&e.key) {
+            if let Some(s) = own(&e.key) {
                 if !skip.contains(&e.key.as_str()) {
                     self.value(&e.node, s, &join(path, &e.key), out);
                 }
@@ -286,8 +288,7 @@ impl Schema {
             let what = if missing.len() == 1 { "missing key" } else { "missing keys" };
             let mut d = Diagnostic::new(format!("{what} {}", list(missing.iter().copied()))).path(path);
             d = d.at(node.place.origin, node.place.span.clone());
-            let texts: Vec<String> =
-                missing.iter().filter_map(|k| self.meaning(k, properties.get(*k)?)).collect();
+            let texts: Vec<String> = missing.iter().filter_map(|k| self.meaning(k, own(k)?)).collect();
             if !texts.is_empty() {
                 d = d.help(texts.join("\n"));
             }
@@ -296,16 +297,16 @@ impl Schema {
     }
 
     /// What a missing key is for, and which models could stand there.
-    fn meaning(&self, key: &str, schema: &Value) -> Option<String> {
+    fn meaning(&self, key: &str, schema: Part) -> Option<String> {
         let inner = self.resolve(schema);
         let text = schema.get("description").or_else(|| inner.get("description")).and_then(Value::as_str);
-        let models = Tagged::of(self, inner).map(|t| format!("one of the models {}", list(t.names())));
+        let models = self.tagged(inner).map(|t| format!("one of the models {}", list(t.names())));
         let words = words_of(inner).map(|w| format!("one of {}", list(w)));
         let parts: Vec<String> = text.map(first_sentence).into_iter().chain(models).chain(words).collect();
         (!parts.is_empty()).then(|| format!("`{key}`: {}", parts.join("; ")))
     }
 
-    fn array(&self, node: &Node, items: &[Node], schema: &Value, path: &str, out: &mut Vec<Diagnostic>) {
+    fn array(&self, node: &Node, items: &[Node], schema: Part, path: &str, out: &mut Vec<Diagnostic>) {
         let limit = |key: &str| schema.get(key).and_then(Value::as_u64);
         let n = items.len() as u64;
         let most = limit("maxItems").unwrap_or(MAX_ITEMS as u64);
@@ -329,7 +330,7 @@ impl Schema {
         out.push(Diagnostic::new(message).path(path).at(node.place.origin, node.place.span.clone()));
     }
 
-    fn tagged(&self, node: &Node, tagged: &Tagged<'_>, path: &str, out: &mut Vec<Diagnostic>) {
+    fn choice(&self, node: &Node, tagged: &Tagged, path: &str, out: &mut Vec<Diagnostic>) {
         let here = |d: Diagnostic, p: &Place| d.path(path).at(p.origin, p.span.clone());
         let (tag, names) = (tagged.tag, tagged.names());
         let Data::Table(entries) = &node.data else {
@@ -378,7 +379,7 @@ impl Schema {
     }
 
     /// Alternatives that no tag tells apart: right when one fits, else the complaint of the one that fits best.
-    fn any_of(&self, node: &Node, variants: &[&Value], path: &str, out: &mut Vec<Diagnostic>) {
+    fn any_of(&self, node: &Node, variants: &[Part], path: &str, out: &mut Vec<Diagnostic>) {
         let mut best: Option<Vec<Diagnostic>> = None;
         for v in variants.iter().filter(|v| !is_null(v)) {
             let v = self.resolve(v);
@@ -405,7 +406,7 @@ impl Schema {
     /// Where else a key is valid: `[engine]`, `[[rings]]`, `the top of the file`.
     fn homes_of(&self, key: &str, except: &str) -> Vec<String> {
         let mut homes = Vec::new();
-        self.search(&self.root, "", false, 0, &mut |path, in_array, properties| {
+        self.search(self.root, "", false, 0, &mut |path, in_array, properties| {
             if path != except && properties.contains_key(key) {
                 homes.push(match (path, in_array) {
                     ("", _) => "the top of the file, before the first table".to_owned(),
@@ -422,7 +423,7 @@ impl Schema {
 
     /// Visits every plain table that the schema has: its path without indices, whether it is an element of an array, its
     /// properties. Models are left out.
-    fn search(&self, schema: &Value, path: &str, in_array: bool, depth: usize, visit: &mut Visit<'_>) {
+    fn search(&self, schema: Part, path: &str, in_array: bool, depth: usize, visit: &mut Visit<'_>) {
         const DEPTH: usize = 4;
         let schema = self.resolve(schema);
         if let Some(items) = schema.get("items") {
@@ -440,7 +441,7 @@ impl Schema {
     /// The existing dotted path nearest to one that does not exist. Array indices of `wanted` are taken over.
     pub fn nearest_path(&self, wanted: &str) -> Option<String> {
         let mut paths = Vec::new();
-        self.search(&self.root, "", false, 0, &mut |path, in_array, properties| {
+        self.search(self.root, "", false, 0, &mut |path, in_array, properties| {
             for key in properties.keys() {
                 paths.push(if in_array { format!("{path}.0.{key}") } else { join(path, key) });
             }
@@ -465,29 +466,73 @@ impl Schema {
 
 type Visit<'a> = dyn FnMut(&str, bool, &Map<String, Value>) + 'a;
 
-/// Tables told apart by the constant value of one key.
-pub(super) struct Tagged<'a> {
-    pub tag: &'a str,
-    /// The one that is meant where the key is missing (`x-default`).
-    pub default: Option<&'a str>,
-    /// What became of names that were valid once (`x-renamed`).
-    renamed: Option<&'a Map<String, Value>>,
-    /// Name and schema of each.
-    pub variants: Vec<(&'a str, &'a Value)>,
+/// The schema of a key of a table.
+fn property(table: Part, key: &str) -> Option<Part> {
+    let own = table.get("properties").and_then(|p| p.get(key));
+    own.or_else(|| table.get("additionalProperties").filter(|a| a.is_object()))
 }
 
-impl<'a> Tagged<'a> {
-    pub fn of(schemas: &'a Schema, schema: &'a Value) -> Option<Self> {
-        let all: Vec<&Value> = alternatives(schema)?.into_iter().map(|s| schemas.resolve(s)).collect();
-        let properties = |s: &'a Value| s.get("properties").and_then(Value::as_object);
-        let constant = |s: &'a Value, key: &str| properties(s)?.get(key)?.get("const")?.as_str();
+/// Writes out every table that stands in several places and must have more keys in this one (`required` beside `$ref`).
+fn write_out_demands(root: &mut Value) {
+    let mut tables = BTreeMap::new();
+    each_table(root, &mut |field| {
+        if let (Some(target), Some(_)) = (field.get("$ref").and_then(Value::as_str), field.get("required")) {
+            tables.insert(target.to_owned(), None);
+        }
+    });
+    for (target, table) in &mut tables {
+        *table = target.strip_prefix('#').and_then(|p| root.pointer(p)).and_then(Value::as_object).cloned();
+    }
+    each_table(root, &mut |field| {
+        let known = field.get("$ref").and_then(Value::as_str).and_then(|target| tables.get(target));
+        if let (Some(Some(table)), Some(Value::Array(here))) = (known, field.get("required")) {
+            let mut required = table.get("required").and_then(Value::as_array).cloned().unwrap_or_default();
+            required.extend(here.iter().filter(|key| !required.contains(key)).cloned().collect::<Vec<_>>());
+            field.insert("required".into(), Value::Array(required));
+            field.remove("$ref");
+            for (key, value) in table {
+                field.entry(key.clone()).or_insert_with(|| value.clone());
+            }
+        }
+    });
+}
+
+/// Calls `f` for every table of a value, the outer ones first.
+fn each_table(part: &mut Value, f: &mut dyn FnMut(&mut Map<String, Value>)) {
+    match part {
+        Value::Object(o) => {
+            f(o);
+            o.values_mut().for_each(|v| each_table(v, f));
+        }
+        Value::Array(a) => a.iter_mut().for_each(|v| each_table(v, f)),
+        _ => {}
+    }
+}
+
+/// Tables told apart by the constant value of one key.
+#[derive(Debug)]
+pub(super) struct Tagged {
+    pub tag: &'static str,
+    /// The one that is meant where the key is missing (`x-default`).
+    pub default: Option<&'static str>,
+    /// What became of names that were valid once (`x-renamed`).
+    renamed: Option<&'static Map<String, Value>>,
+    /// Name and schema of each.
+    pub variants: Vec<(&'static str, Part)>,
+}
+
+impl Tagged {
+    fn of(schemas: &Schema, schema: Part) -> Option<Self> {
+        let all: Vec<Part> = alternatives(schema)?.into_iter().map(|s| schemas.resolve(s)).collect();
+        let properties = |s: Part| s.get("properties").and_then(Value::as_object);
+        let constant = |s: Part, key: &str| properties(s)?.get(key)?.get("const")?.as_str();
         let tag = properties(all.first()?)?.keys().find(|k| all.iter().all(|s| constant(s, k).is_some()))?;
         let variants = all.iter().filter_map(|s| Some((constant(s, tag)?, *s))).collect();
         let default = schema.get("x-default").and_then(Value::as_str);
         Some(Self { tag, default, renamed: schema.get("x-renamed").and_then(Value::as_object), variants })
     }
 
-    pub fn names(&self) -> Vec<&'a str> {
+    pub fn names(&self) -> Vec<&'static str> {
         self.variants.iter().map(|(n, _)| *n).collect()
     }
 
@@ -496,7 +541,7 @@ impl<'a> Tagged<'a> {
     }
 
     /// The alternative that a table asks for.
-    pub fn chosen(&self, node: &Node) -> Option<&'a Value> {
+    pub fn chosen(&self, node: &Node) -> Option<Part> {
         match node.child(self.tag).map(|n| &n.data) {
             Some(Data::Text(name)) => self.variant(name),
             Some(_) => None,
@@ -505,7 +550,7 @@ impl<'a> Tagged<'a> {
     }
 
     /// The alternative of a name.
-    pub fn variant(&self, name: &str) -> Option<&'a Value> {
+    pub fn variant(&self, name: &str) -> Option<Part> {
         self.variants.iter().find(|(n, _)| *n == name).map(|(_, s)| *s)
     }
 }
