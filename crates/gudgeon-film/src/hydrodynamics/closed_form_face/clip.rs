@@ -52,7 +52,7 @@ impl<S: Shape> Full<'_, S> {
         } else if x <= 0.0 {
             (f.pa, 0.0)
         } else if x <= self.face.x_ref() {
-            let t = S::three(&self.face.head(i, x));
+            let t = self.face.front(i, x);
             (f.pa + t.rise(f.u, f.v, self.q), t.x3 - self.w * t.i3)
         } else {
             let t = self.face.tail(i, x);

@@ -50,7 +50,7 @@ impl<S: Shape> Side<S> {
         } else if x <= l.xa {
             l.pa
         } else if l.upwards {
-            l.pa + S::three(&self.face.head(i, x)).rise(f.u, f.v, l.q)
+            l.pa + self.face.front(i, x).rise(f.u, f.v, l.q)
         } else {
             let end = if l.xb >= self.face.length() {
                 PressureMoments::default()

@@ -125,6 +125,27 @@ impl Parabola {
         }
     }
 
+    /// The part of [`Self::moments`] that the pressure needs.
+    fn pressure_moments(&self, xa: f64, xb: f64) -> PressureMoments {
+        let (k, h) = (self.curvature, self.h);
+        let (a, b) = (xa - self.apex, xb - self.apex);
+        let l = xb - xa;
+        let (ha, hb) = (h + k * a * a, h + k * b * b);
+        let (p, m, kll) = (ha * hb, h + k * a * b, k * l * l);
+        if !self.about_apex || k < 0.0 && -h * kll > SERIES * m * m {
+            return self.moments(xa, xb).pressure();
+        }
+        let (_, b1, b2, ip) = core(m, p, h * kll, self.root * l);
+        let ip2 = ip * ip;
+        let hs = 0.5 * (ha + hb);
+        let c = 0.5 * (a + b);
+        PressureMoments {
+            i3: l * ((hs + 0.5 * kll) * ip2 + 0.25 * kll * kll * b2),
+            x3: l * c * hs * ip2,
+            d2: k * (l * (m * c * c * ip2 + 0.125 * l * l * b1)),
+        }
+    }
+
     /// [`Self::moments`] of a long stretch of a hollow face. When the film nearly vanishes at its ends, `β1` and `β2` are large
     /// differences; the textbook primitives are sums of like signs there.
     #[cold]
@@ -270,6 +291,10 @@ impl Shape for Parabola {
         self.moments(0.0, x)
     }
     #[inline]
+    fn front(&self, _: usize, x: f64) -> PressureMoments {
+        self.pressure_moments(0.0, x)
+    }
+    #[inline]
     fn three(head: &Moments) -> PressureMoments {
         head.pressure()
     }
@@ -279,7 +304,7 @@ impl Shape for Parabola {
     }
     #[inline]
     fn tail(&self, _: usize, x: f64) -> PressureMoments {
-        self.moments(x, self.len).pressure()
+        self.pressure_moments(x, self.len)
     }
     #[inline]
     fn pressure_minimum(&self, _: usize, u: f64, v: f64, q: f64) -> Option<f64> {

@@ -44,6 +44,10 @@ pub trait Shape: Send {
     fn span(&self, ia: usize, xa: f64, ib: usize, xb: f64) -> Moments;
     /// Integrals from 0 to `x` in piece `i`.
     fn head(&self, i: usize, x: f64) -> Self::Head;
+    /// Pressure integrals from 0 to `x` in piece `i`.
+    fn front(&self, i: usize, x: f64) -> PressureMoments {
+        Self::three(&self.head(i, x))
+    }
     /// The part of a head that the pressure needs.
     fn three(head: &Self::Head) -> PressureMoments;
     /// All integrals from 0 to `x` in piece `i`, of which the head is known.
