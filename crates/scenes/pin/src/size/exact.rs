@@ -110,5 +110,6 @@ fn multipliers(d: &Design<'_>, best: &Optimum, out: &mut RunResult) {
     let soft: f64 =
         PinQuantity::ALL.iter().filter(|q| q.is_length()).map(|q| best.multipliers[*q as usize]).sum();
     result(out, "sensitivity_force", 10.0 * all, "g/%", "mass added by one per cent more force");
-    result(out, "sensitivity_modulus", -10.0 * soft, "g/%", "mass added by one per cent more modulus");
+    // Zero, not minus zero, where no deformation binds.
+    result(out, "sensitivity_modulus", 0.0 - 10.0 * soft, "g/%", "mass added by one per cent more modulus");
 }
