@@ -438,8 +438,8 @@ fn a_mirrored_film_has_mirrored_pressures() {
             |i: usize, j: usize| f[(if y { ny - 1 - j } else { j }) * nx + if x { nx - 1 - i } else { i }];
         (0..nx * ny).map(|k| at(k % nx, k / nx)).collect()
     };
-    for cavitation in CONDITIONS {
-        let spec = multigrid(cavitation);
+    for (cavitation, flux) in CONDITIONS.into_iter().flat_map(|c| [(c, Flux::Face), (c, Flux::Node)]) {
+        let spec = Multigrid { flux, ..multigrid(cavitation) };
         let inp =
             Film2dIn { edge_pressure: [0.1, 0.2, 0.3, 0.4], p_cav: 0.05, ..Film2dIn::new(&h, 1.0, 1.0) };
         let (_, p, f) = solved(&spec, &grid, &inp);
@@ -450,8 +450,31 @@ fn a_mirrored_film_has_mirrored_pressures() {
             let inp = Film2dIn { h: &mirrored, u, edge_pressure: edges, ..inp };
             let (_, q, g) = solved(&spec, &grid, &inp);
             // The order of elimination is another; residuals are 1e-12.
-            assert!(apart(&p, &flip(&q, x, y)) < 1e-10, "{cavitation:?} {x} {y}");
-            assert!(apart(&f, &flip(&g, x, y)) < 1e-10, "{cavitation:?} {x} {y}");
+            assert!(apart(&p, &flip(&q, x, y)) < 1e-10, "{cavitation:?} {flux:?} {x} {y}");
+            assert!(apart(&f, &flip(&g, x, y)) < 1e-10, "{cavitation:?} {flux:?} {x} {y}");
+        }
+    }
+}
+
+/// Plates that slide: `τ = μ u/h` everywhere, on either surface, whatever the pressure does along them: `∓ h/2 Δp` beside it.
+#[test]
+fn parallel_plates_rub_as_couette_flow_does() {
+    let (length, width, h, u) = (0.03, 0.02, 4e-6, 7.0);
+    let grid = Film2dGrid {
+        edges: [Edge::Pressure, Edge::Pressure, Edge::Wall, Edge::Wall],
+        ..Film2dGrid::uniform(13, 9, length, width)
+    };
+    let film = field(&grid, |_, _| h);
+    // Linear in x: its mean is that of the middle, and trapezoids are exact.
+    let mu = field(&grid, |x, _| 0.01 + 0.4 * x);
+    for (mu, mean) in [(Viscosity::Uniform(0.01), 0.01), (Viscosity::Nodes(&mu), 0.016)] {
+        for spec in [&Multigrid::default() as &dyn Film2dSpec, &Direct::default(), &Sor::default()] {
+            let inp = Film2dIn { mu, edge_pressure: [3e5, 1e5, 0.0, 0.0], ..Film2dIn::new(&film, u, 1.0) };
+            let out = solved(spec, &grid, &inp).0;
+            let (drag, half) = (mean * u / h * length * width, 0.5 * h * (1e5 - 3e5) * width);
+            // Pressures are good to the tolerance of 1e-9 or better; a force of this size is a sum of a hundred products.
+            assert!((out.shear_upper - (drag - half)).abs() < 1e-9 * drag, "{out:?}");
+            assert!((out.shear_lower - (drag + half)).abs() < 1e-9 * drag, "{out:?}");
         }
     }
 }
@@ -796,7 +819,10 @@ fn bad_inputs_are_errors() {
         assert!(film.solve(&Film2dIn { h: &touching, ..good }).unwrap_err().is_recoverable());
         touching[10] = f64::NAN;
         let history = Some(History { dt: 0.0, content: &h });
+        let of = |content| Film2dIn { history: Some(History { dt: 1.0, content }), ..good };
         for bad in [
+            of(&h[1..]),
+            of(&touching),
             Film2dIn { h: &touching, ..good },
             Film2dIn { h: &h[1..], ..good },
             Film2dIn { dhdt: &h[1..], ..good },

@@ -132,7 +132,7 @@ impl Parabola {
         let l = xb - xa;
         let (ha, hb) = (h + k * a * a, h + k * b * b);
         let (p, m, kll) = (ha * hb, h + k * a * b, k * l * l);
-        if !self.about_apex || k < 0.0 && -h * kll > SERIES * m * m {
+        if !self.about_apex || k < 0.0 {
             return self.moments(xa, xb).pressure();
         }
         let (_, b1, b2, ip) = core(m, p, h * kll, self.root * l);
