@@ -22,7 +22,7 @@ const RUNS: usize = 3;
 fn run(overrides: &[&str]) -> Result<RunResult, String> {
     let overrides: Vec<String> = overrides.iter().map(|s| (*s).to_owned()).collect();
     let checked = gudgeon_scene::check(Path::new(CASE), &overrides).map_err(|e| e.to_string())?;
-    gudgeon_scene::run(&checked, &mut |_| {}).map_err(|e| e.to_string())
+    gudgeon_scene::run(&checked, &mut gudgeon_scene::unwatched).map_err(|e| e.to_string())
 }
 
 fn value(r: &RunResult, name: &str) -> f64 {
@@ -148,7 +148,9 @@ fn main() {
         .configure_from_args();
     let mut group = criterion.benchmark_group("ring_pack");
     if let Ok(checked) = gudgeon_scene::check(Path::new(CASE), &[]) {
-        group.bench_function("turbo-diesel-120", |b| b.iter(|| gudgeon_scene::run(&checked, &mut |_| {})));
+        group.bench_function("turbo-diesel-120", |b| {
+            b.iter(|| gudgeon_scene::run(&checked, &mut gudgeon_scene::unwatched))
+        });
     }
     group.finish();
     if let Err(e) = faces(&mut criterion) {

@@ -5,7 +5,8 @@ use std::process::ExitCode;
 use gudgeon_case::{Diagnostic, Report};
 use gudgeon_core::registry::RegistryError;
 use gudgeon_report::ReportError;
-use gudgeon_scene::RunError;
+use gudgeon_scene::{RunError, Stopped};
+use gudgeon_study::StudyError;
 
 #[derive(Debug)]
 pub enum Failure {
@@ -42,6 +43,19 @@ impl From<RunError> for Failure {
     fn from(e: RunError) -> Self {
         match e {
             RunError::Refused(what) => Self::Argument(Diagnostic::new(what)),
+            e => Self::Run(e.to_string()),
+        }
+    }
+}
+impl From<Stopped> for Failure {
+    fn from(_: Stopped) -> Self {
+        Self::Run(Stopped.to_string())
+    }
+}
+impl From<StudyError> for Failure {
+    fn from(e: StudyError) -> Self {
+        match e {
+            StudyError::Input(report) => Self::Input(report),
             e => Self::Run(e.to_string()),
         }
     }

@@ -6,6 +6,7 @@
 mod args;
 mod cmd;
 mod failure;
+mod interrupt;
 mod ui;
 
 use std::process::ExitCode;
@@ -20,6 +21,7 @@ use ui::Ui;
 /// Reads the command line of this process, does what it says, and tells how it went.
 pub fn main() -> ExitCode {
     gudgeon_models::link();
+    interrupt::listen();
     let args = Args::parse();
     let ui = Ui::new(args.quiet());
     match dispatch(&args.command, &ui).and_then(|()| ui.end()) {

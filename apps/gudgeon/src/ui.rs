@@ -10,10 +10,11 @@ use std::time::Duration;
 
 use console::Term;
 use gudgeon_case::Report;
-use gudgeon_scene::Progress;
+use gudgeon_scene::{Progress, Stopped};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::failure::Failure;
+use crate::interrupt;
 
 pub struct Ui {
     quiet: bool,
@@ -135,9 +136,14 @@ pub struct Bar {
 }
 
 impl Bar {
-    pub fn show(&self, p: Progress) {
+    /// Shows how far a computation is, and says whether it may go on.
+    ///
+    /// # Errors
+    /// The user has pressed Ctrl-C.
+    pub fn show(&self, p: Progress) -> Result<(), Stopped> {
         self.bar.set_position((p.fraction.clamp(0.0, 1.0) * self.scale) as u64);
         self.bar.set_message(p.phase);
+        interrupt::check()
     }
 }
 

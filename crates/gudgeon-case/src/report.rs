@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use gudgeon_core::file::Files;
+use gudgeon_core::result::{Failure, REFUSED};
 
 use crate::render::{Drawing, Excerpt};
 
@@ -97,6 +98,14 @@ pub struct Report {
 }
 
 impl Report {
+    /// The same in one line, with the place of the first mistake.
+    #[must_use]
+    pub fn failure(&self) -> Failure {
+        let told: Vec<String> = self.diagnostics.iter().map(Diagnostic::headline).collect();
+        let path = self.diagnostics.first().map_or_else(String::new, |d| d.path.clone());
+        Failure { code: REFUSED.into(), message: told.join("; "), path }
+    }
+
     /// Puts the mistakes in order.
     #[must_use]
     pub fn new(mut diagnostics: Vec<Diagnostic>, source: Arc<Source>, overrides: Arc<[String]>) -> Self {

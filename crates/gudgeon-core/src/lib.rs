@@ -45,6 +45,7 @@ pub use {inventory, schemars, serde_json};
 pub use gudgeon_macros::{register_kind, register_model};
 
 pub use error::{BuildError, EvalError};
+pub use gudgeon_numerics::{Stopped, unwatched};
 pub use registry::{KindInfo, ModelInfo, Registry};
 pub use word::Word;
 pub use {gudgeon_result as result, gudgeon_units as quantity};

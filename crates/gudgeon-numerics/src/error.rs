@@ -27,6 +27,28 @@ pub enum EvalError {
         /// What went wrong, with the offending values.
         what: Cow<'static, str>,
     },
+    /// Nobody waits for the answer any more.
+    #[error("{Stopped}")]
+    Stopped,
+}
+
+/// The caller wants a computation to end: what a progress callback returns.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("stopped")]
+pub struct Stopped;
+
+impl From<Stopped> for EvalError {
+    fn from(_: Stopped) -> Self {
+        Self::Stopped
+    }
+}
+
+/// A progress callback that never stops anything.
+///
+/// # Errors
+/// None.
+pub fn unwatched<T>(_: T) -> Result<(), Stopped> {
+    Ok(())
 }
 
 impl EvalError {

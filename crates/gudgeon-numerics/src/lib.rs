@@ -150,4 +150,4 @@ pub mod rodas;
 pub mod roots;
 pub mod table;
 
-pub use error::EvalError;
+pub use error::{EvalError, Stopped, unwatched};

@@ -75,6 +75,21 @@ impl Note {
     }
 }
 
+/// [`Failure::code`] of an input that is wrong.
+pub const REFUSED: &str = "refused";
+
+/// Why a case has no result.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, thiserror::Error)]
+#[error("{message}")]
+pub struct Failure {
+    /// A word to tell failures apart by: [`REFUSED`] (the input is wrong), `model`, `integration`, `not_a_number`, `scene`, `stopped`.
+    pub code: String,
+    /// What is wrong, in one line.
+    pub message: String,
+    /// Path of the input that is wrong, `rings.0.cold_gap`; empty where none is to blame.
+    pub path: String,
+}
+
 /// A model that ran.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ModelUse {

@@ -1,6 +1,8 @@
 //! Why a run gives no result, and how far it is.
 
+use gudgeon_core::result::{Failure, REFUSED};
 use gudgeon_core::{BuildError, EvalError};
+use gudgeon_numerics::Stopped;
 use gudgeon_numerics::ode::IntegrateError;
 
 /// How far a run is.
@@ -39,12 +41,46 @@ pub enum RunError {
     /// The sub-models could not be built a second time.
     #[error("{0}")]
     Refused(String),
+    /// The caller wanted it to end.
+    #[error("stopped before its end")]
+    Stopped,
     /// What only the scene knows.
     #[error("{0}")]
     Scene(Box<dyn std::error::Error + Send + Sync>),
 }
 
+impl From<Stopped> for RunError {
+    fn from(_: Stopped) -> Self {
+        Self::Stopped
+    }
+}
+
 impl RunError {
+    /// The same, with a stop that came through a method told as what it is.
+    #[must_use]
+    pub(crate) fn plain(self) -> Self {
+        match self {
+            Self::Eval { source: EvalError::Stopped, .. }
+            | Self::Model { source: EvalError::Stopped }
+            | Self::Integrate(IntegrateError::Eval { source: EvalError::Stopped, .. }) => Self::Stopped,
+            e => e,
+        }
+    }
+
+    /// The same as a row of a study tells it.
+    #[must_use]
+    pub fn failure(&self) -> Failure {
+        let code = match self {
+            Self::Eval { .. } | Self::Model { .. } => "model",
+            Self::Integrate(_) => "integration",
+            Self::NotANumber(_) => "not_a_number",
+            Self::Refused(_) => REFUSED,
+            Self::Stopped => "stopped",
+            Self::Scene(_) => "scene",
+        };
+        Failure { code: code.into(), message: self.to_string(), path: String::new() }
+    }
+
     /// An error of a scene's own.
     pub fn scene(e: impl std::error::Error + Send + Sync + 'static) -> Self {
         Self::Scene(Box::new(e))

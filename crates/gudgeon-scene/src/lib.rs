@@ -5,6 +5,7 @@ mod explanation;
 pub mod foresee;
 mod heading;
 mod integrator;
+pub mod many;
 mod provenance;
 pub mod run;
 mod scene;
@@ -14,6 +15,7 @@ mod sweep_input;
 mod verify;
 mod work_precision;
 
+pub use gudgeon_core::{Stopped, unwatched};
 #[doc(hidden)]
 pub use gudgeon_core::{inventory, registry::Linked};
 

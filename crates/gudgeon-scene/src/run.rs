@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use gudgeon_case::{Report, Source, read, scene_of};
 use gudgeon_core::result::{Note, RunResult, Skipped};
-use gudgeon_core::{BuildError, Registry};
+use gudgeon_core::{BuildError, Registry, Stopped};
 
 use crate::error::{Progress, RunError};
 use crate::explanation::{ExplainedModel, Explanation};
@@ -140,23 +140,41 @@ pub fn explain(c: &Checked) -> Result<Explanation, RunError> {
 ///
 /// # Errors
 /// What stopped it; nothing has been written.
-pub fn run(c: &Checked, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
+pub fn run(
+    c: &Checked,
+    progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
+) -> Result<RunResult, RunError> {
+    run_on(c, 0, progress)
+}
+
+/// As [`run`], with the points of the sweeps on `threads` threads (0: one a core). Results are the same for any number.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_on(
+    c: &Checked,
+    threads: usize,
+    progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
+) -> Result<RunResult, RunError> {
     let begin = Instant::now();
-    finish(c, begin, with_sweeps(c.case.as_ref(), progress)?)
+    finish(c, begin, with_sweeps(c.case.as_ref(), threads, progress)?)
 }
 
 /// As [`run`], then refines every numerical setting until the uncertainty of each result is known.
 ///
 /// # Errors
 /// As [`run`]; a refinement that cannot be run.
-pub fn run_verified(c: &Checked, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
+pub fn run_verified(
+    c: &Checked,
+    progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
+) -> Result<RunResult, RunError> {
     verified(c, run(c, progress)?, progress)
 }
 
 fn verified(
     c: &Checked,
     mut result: RunResult,
-    progress: &mut dyn FnMut(Progress),
+    progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
 ) -> Result<RunResult, RunError> {
     let begin = Instant::now();
     verify(c.case.as_ref(), &mut result, progress)?;
@@ -168,7 +186,10 @@ fn verified(
 ///
 /// # Errors
 /// As [`run`].
-pub fn run_alone(c: &Checked, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
+pub fn run_alone(
+    c: &Checked,
+    progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
+) -> Result<RunResult, RunError> {
     let begin = Instant::now();
     finish(c, begin, once(c.case.as_ref(), progress)?)
 }
@@ -177,7 +198,10 @@ pub fn run_alone(c: &Checked, progress: &mut dyn FnMut(Progress)) -> Result<RunR
 ///
 /// # Errors
 /// As [`run_verified`].
-pub fn run_alone_verified(c: &Checked, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
+pub fn run_alone_verified(
+    c: &Checked,
+    progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
+) -> Result<RunResult, RunError> {
     verified(c, run_alone(c, progress)?, progress)
 }
 
@@ -197,7 +221,10 @@ fn finish(c: &Checked, begin: Instant, mut result: RunResult) -> Result<RunResul
 ///
 /// # Errors
 /// What stopped it.
-fn once(scene: &dyn Scene, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
+pub(crate) fn once(
+    scene: &dyn Scene,
+    progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
+) -> Result<RunResult, RunError> {
     let foreseen = cfg!(debug_assertions).then(|| scene.result_names()).flatten();
     let result = scene.once(progress)?;
     if let Some(names) = foreseen {
@@ -221,10 +248,14 @@ fn headed(scene: &dyn Scene, mut result: RunResult) -> RunResult {
 ///
 /// # Errors
 /// What stopped it.
-fn with_sweeps(scene: &dyn Scene, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
+fn with_sweeps(
+    scene: &dyn Scene,
+    threads: usize,
+    progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
+) -> Result<RunResult, RunError> {
     let sweeps = scene.heading().sweeps;
     let mut result = match once(scene, progress) {
-        Err(e) if !sweeps.is_empty() => {
+        Err(e) if !sweeps.is_empty() && !matches!(e, RunError::Stopped) => {
             let mut result = RunResult::default();
             result
                 .solver
@@ -234,7 +265,7 @@ fn with_sweeps(scene: &dyn Scene, progress: &mut dyn FnMut(Progress)) -> Result<
         }
         outcome => outcome?,
     };
-    let points = sweep::run(scene, sweeps, &mut result, progress)?;
+    let points = sweep::run(scene, sweeps, &mut result, threads, progress)?;
     result.solver.counters.insert("runs".into(), 1 + points as u64);
     Ok(result)
 }

@@ -9,9 +9,9 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 use std::time::Instant;
 
 use gudgeon_case::{Loaded, Refinement, Report, Source, load_source, nearest, scene_of, top_level_keys};
-use gudgeon_core::BuildError;
 use gudgeon_core::kinds::EngineCycle;
 use gudgeon_core::result::{ModelUse, RunResult, Value};
+use gudgeon_core::{BuildError, Stopped};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -55,7 +55,7 @@ pub trait SceneCase:
     fn run(
         loaded: &Loaded<Self>,
         built: Self::Built,
-        progress: &mut dyn FnMut(Progress),
+        progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
     ) -> Result<RunResult, RunError>;
 
     /// The cycle of one cylinder, for cases of other scenes that take it from here; none when the scene describes no cylinder.
@@ -112,7 +112,7 @@ pub trait Scene: Send + Sync {
     ///
     /// # Errors
     /// As [`SceneCase::run`]; a result that is not a number.
-    fn once(&self, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError>;
+    fn once(&self, progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>) -> Result<RunResult, RunError>;
     /// As [`SceneCase::work_precision`].
     fn work_precision(&self) -> Option<WorkPrecision>;
     /// The typed case, for callers that know the scene.
@@ -207,11 +207,11 @@ impl<C: SceneCase> Scene for Read<C> {
         self.look(|built| C::explain(&self.loaded, built, told)).map_err(|e| RunError::refused(&e))?
     }
 
-    fn once(&self, progress: &mut dyn FnMut(Progress)) -> Result<RunResult, RunError> {
+    fn once(&self, progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>) -> Result<RunResult, RunError> {
         let begin = Instant::now();
         let built = self.take().map_err(|e| RunError::refused(&e))?;
         let seconds = begin.elapsed().as_secs_f64();
-        let mut result = C::run(&self.loaded, built, progress)?;
+        let mut result = C::run(&self.loaded, built, progress).map_err(RunError::plain)?;
         result.seconds.insert("build".into(), seconds);
         let not_finite = |(_, v): &(&String, &Value)| !v.value.is_finite();
         match result.results.iter().find(not_finite) {

@@ -1,11 +1,14 @@
 //! Sweeps: every combination of one or two varied inputs, each read and built as a case of its own.
 
-use gudgeon_core::BuildError;
-use gudgeon_core::result::{Column, Figure, FigureKind, Note, NoteLevel, RunResult, Series, Value};
+use gudgeon_core::result::{
+    Column, Failure, Figure, FigureKind, Note, NoteLevel, REFUSED, RunResult, Series, Value,
+};
+use gudgeon_core::{BuildError, Stopped};
 use indexmap::IndexMap;
 
 use crate::error::{Progress, RunError};
-use crate::scene::{Scene, changed};
+use crate::many::run_points;
+use crate::scene::Scene;
 use crate::sweep_input::{Spacing, Sweep, number, values};
 
 /// Results drawn when none are named.
@@ -59,15 +62,10 @@ fn labels(values: &[String]) -> Vec<String> {
 /// One point of a sweep.
 struct Point {
     set: Vec<String>,
-    outcome: Result<(IndexMap<String, Value>, Vec<Note>), RunError>,
+    outcome: Result<(IndexMap<String, Value>, Vec<Note>), Failure>,
 }
 
 impl Point {
-    fn run(scene: &dyn Scene, set: Vec<String>) -> Self {
-        let outcome = changed(scene, &set).and_then(|s| s.once(&mut |_| {}));
-        Self { set, outcome: outcome.map(|r| (r.results, r.solver.notes)) }
-    }
-
     fn value(&self, name: &str) -> f64 {
         self.outcome.as_ref().ok().and_then(|(r, _)| r.get(name)).map_or(f64::NAN, |v| v.value)
     }
@@ -77,7 +75,7 @@ impl Point {
         match &self.outcome {
             Ok((_, notes)) if notes.iter().any(|n| n.level == NoteLevel::Failure) => 1.0,
             Ok(_) => 0.0,
-            Err(RunError::Refused(_)) => 2.0,
+            Err(e) if e.code == REFUSED => 2.0,
             Err(_) => 1.0,
         }
     }
@@ -96,7 +94,8 @@ pub fn run(
     scene: &dyn Scene,
     sweeps: &[Sweep],
     result: &mut RunResult,
-    progress: &mut dyn FnMut(Progress),
+    threads: usize,
+    progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
 ) -> Result<usize, RunError> {
     let Some(first) = sweeps.first() else { return Ok(0) };
     let refused = |e: BuildError| RunError::Refused(e.to_string());
@@ -105,7 +104,11 @@ pub fn run(
         Some(s) => Some((s, values(s).map_err(refused)?)),
         None => None,
     };
-    let points = run_points(scene, (first, &inner), outer.as_ref().map(|(s, v)| (*s, &v[..])), progress);
+    let sets = combinations((first, &inner), outer.as_ref().map(|(s, v)| (*s, &v[..])));
+    let keep = |_, outcome: Result<RunResult, Failure>| outcome.map(|r| (r.results, r.solver.notes));
+    let outcomes = run_points(scene, &sets, threads, keep, progress).all()?;
+    let points: Vec<Point> =
+        sets.into_iter().zip(outcomes).map(|(set, outcome)| Point { set, outcome }).collect();
     if let Some(Err(e)) = points.iter().all(|p| p.outcome.is_err()).then(|| &points[0].outcome) {
         return Err(RunError::Refused(format!("no point of the sweep could be run; the first: {e}")));
     }
@@ -133,28 +136,16 @@ pub fn run(
 /// Values of a second input up to which there is a curve for each.
 const FEW: usize = 8;
 
-/// Every combination, the first input running fastest.
-fn run_points(
-    scene: &dyn Scene,
-    (first, inner): (&Sweep, &[String]),
-    outer: Option<(&Sweep, &[String])>,
-    progress: &mut dyn FnMut(Progress),
-) -> Vec<Point> {
+/// The changes of every combination, the first input running fastest.
+fn combinations((first, inner): (&Sweep, &[String]), outer: Option<(&Sweep, &[String])>) -> Vec<Vec<String>> {
     let rows: Vec<Option<String>> = match outer {
         None => vec![None],
         Some((s, v)) => v.iter().map(|v| Some(format!("{}={v}", s.path))).collect(),
     };
-    let total = rows.len() * inner.len();
-    let mut points = Vec::with_capacity(total);
-    for row in rows {
-        for v in inner {
-            let fraction = points.len() as f64 / total as f64;
-            progress(Progress { phase: "sweeping".into(), fraction });
-            let set = std::iter::once(format!("{}={v}", first.path)).chain(row.clone()).collect();
-            points.push(Point::run(scene, set));
-        }
-    }
-    points
+    let with = |row: &Option<String>, v: &String| {
+        std::iter::once(format!("{}={v}", first.path)).chain(row.clone()).collect()
+    };
+    rows.iter().flat_map(|row| inner.iter().map(move |v| with(row, v))).collect()
 }
 
 /// Unit and meaning of every result that any point has.

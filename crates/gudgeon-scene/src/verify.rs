@@ -11,6 +11,7 @@
 //! 1/2 with one level, and as at most 9/10: a series that does not shrink is named). Periodic angles are compared around the cycle.
 
 use gudgeon_core::result::{Note, Refined, RunResult, Value, Verification};
+use gudgeon_core::{Stopped, unwatched};
 use indexmap::IndexMap;
 
 use crate::error::{Progress, RunError};
@@ -38,14 +39,14 @@ type Results = IndexMap<String, Value>;
 pub(crate) fn verify(
     scene: &dyn Scene,
     result: &mut RunResult,
-    progress: &mut dyn FnMut(Progress),
+    progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
 ) -> Result<(), RunError> {
     let groups = scene.refinements();
     let mut found = Verification::default();
     let total = groups.len().max(1) as f64;
     let floors = floors(&result.results);
     for (k, Refinement { what, levels }) in groups.into_iter().enumerate() {
-        progress(Progress { phase: format!("refining the {what}"), fraction: k as f64 / total });
+        progress(Progress { phase: format!("refining the {what}"), fraction: k as f64 / total })?;
         let levels = refine(scene, levels, &result.results, &floors)?;
         let mut unsettled = Vec::new();
         for (name, v) in &result.results {
@@ -79,9 +80,9 @@ fn refine(
     let mut out: Vec<(Vec<String>, Results)> = Vec::new();
     for set in levels {
         // A level beyond what the settings admit ends the refinement; that the first one fails is worth knowing.
-        match changed(scene, &set).and_then(|s| s.once(&mut |_| {})) {
+        match changed(scene, &set).and_then(|s| s.once(&mut unwatched)) {
             Ok(r) => out.push((set, r.results)),
-            Err(e) if out.is_empty() => return Err(e),
+            Err(e) if out.is_empty() || matches!(e, RunError::Stopped) => return Err(e),
             Err(_) => break,
         }
         let known = base.iter().all(|(name, v)| {

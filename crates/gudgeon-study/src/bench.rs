@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use gudgeon_core::result::{BenchPoint, BenchTable, RunResult};
 use gudgeon_scene::run::run_alone;
-use gudgeon_scene::{Checked, MethodSetting, Progress, RunError, WorkPrecision, foresee};
+use gudgeon_scene::{Checked, MethodSetting, Progress, RunError, Stopped, WorkPrecision, foresee, unwatched};
 use indexmap::IndexMap;
 
 /// Runs per point, three for slow ones; the median counts.
@@ -22,7 +22,7 @@ const SLOW: f64 = 1.0;
 pub fn bench(
     base: &Checked,
     results: &[String],
-    progress: &mut dyn FnMut(Progress),
+    progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
 ) -> Result<BenchTable, RunError> {
     let Some(methods) = base.case.work_precision() else {
         return Err(RunError::Refused(
@@ -34,9 +34,9 @@ pub fn bench(
     if let Some(known) = base.case.result_names() {
         foresee::all_known(results, &known).map_err(RunError::Refused)?;
     }
-    progress(Progress { phase: "reference".into(), fraction: 0.0 });
+    progress(Progress { phase: "reference".into(), fraction: 0.0 })?;
     let tight = once(base, &methods.reference).map_err(RunError::Refused)?;
-    progress(Progress { phase: "reference check".into(), fraction: 0.1 });
+    progress(Progress { phase: "reference check".into(), fraction: 0.1 })?;
     let loose = once(base, &methods.reference_check).map_err(RunError::Refused)?;
     let chosen = chosen(&methods, results, &tight)?;
     let trust = chosen.iter().map(|n| error(&loose, &tight, n)).fold(0.0, f64::max);
@@ -46,7 +46,7 @@ pub fn bench(
         title: base.title().to_owned(),
         reference: format!("{} by at most {trust:.1e} (relative)", methods.reference_is),
         reference_values: chosen.iter().filter_map(value).collect(),
-        points: measure(base, &methods.settings, &tight, &chosen, progress),
+        points: measure(base, &methods.settings, &tight, &chosen, progress)?,
         ..BenchTable::default()
     };
     table.findings = findings(&table, &methods.methods, &chosen);
@@ -56,7 +56,7 @@ pub fn bench(
 /// One run with some settings changed.
 fn once(base: &Checked, set: &[String]) -> Result<RunResult, String> {
     let c = base.with(set).map_err(|r| r.to_string())?;
-    run_alone(&c, &mut |_| {}).map_err(|e| e.to_string())
+    run_alone(&c, &mut unwatched).map_err(|e| e.to_string())
 }
 
 /// The results that errors are told of: those asked for, or those of the scene that this case has.
@@ -88,15 +88,15 @@ fn measure(
     settings: &[MethodSetting],
     reference: &RunResult,
     chosen: &[String],
-    progress: &mut dyn FnMut(Progress),
-) -> Vec<BenchPoint> {
+    progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
+) -> Result<Vec<BenchPoint>, Stopped> {
     let total = (settings.len() * REPEATS) as f64;
     let mut points: Vec<BenchPoint> = Vec::with_capacity(settings.len());
     let mut seconds: Vec<Vec<f64>> = vec![Vec::new(); settings.len()];
     for repeat in 0..REPEATS {
         for (k, s) in settings.iter().enumerate() {
             let fraction = 0.2 + 0.8 * (repeat * settings.len() + k) as f64 / total;
-            progress(Progress { phase: format!("{}, {}", s.method, s.setting), fraction });
+            progress(Progress { phase: format!("{}, {}", s.method, s.setting), fraction })?;
             let slow = seconds[k].first().is_some_and(|t| *t > SLOW);
             if repeat > 0 && (slow && repeat > 2 || points[k].failure.is_some()) {
                 continue;
@@ -118,7 +118,7 @@ fn measure(
             (p.seconds_total, p.seconds_per_cycle) = (*median, median / p.cycles.max(1.0));
         }
     }
-    points
+    Ok(points)
 }
 
 /// What the first run of a setting tells, times apart.

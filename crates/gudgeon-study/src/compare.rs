@@ -5,8 +5,11 @@ use std::path::Path;
 use gudgeon_case::Report;
 use gudgeon_core::result::{Comparison, RunResult, Variant};
 use gudgeon_core::{BuildError, Registry};
+use gudgeon_scene::many::run_many;
 use gudgeon_scene::run::{run_alone, run_alone_verified};
-use gudgeon_scene::{Checked, Progress, RunError, check};
+use gudgeon_scene::{Checked, Progress, RunError, Stopped, check};
+
+use crate::error::StudyError;
 
 /// `gas_flow`, `models.gas_flow` and `models.gas_flow.model` all mean the model's name; anything else is taken as written.
 fn swap_path(path: &str) -> String {
@@ -34,8 +37,8 @@ pub fn compare(
     path: &Path,
     overrides: &[String],
     swaps: &[(String, Vec<String>)],
-    progress: &mut dyn FnMut(Progress),
-) -> Result<Comparison, Report> {
+    progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
+) -> Result<Comparison, StudyError> {
     compare_by(run_alone, path, overrides, swaps, progress)
 }
 
@@ -47,35 +50,42 @@ pub fn compare_verified(
     path: &Path,
     overrides: &[String],
     swaps: &[(String, Vec<String>)],
-    progress: &mut dyn FnMut(Progress),
-) -> Result<Comparison, Report> {
+    progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
+) -> Result<Comparison, StudyError> {
     compare_by(run_alone_verified, path, overrides, swaps, progress)
 }
 
+/// What a combination is called.
+fn label(swaps: &[(String, String)]) -> String {
+    let short = |(p, v): &(String, String)| {
+        format!("{}={v}", p.trim_start_matches("models.").trim_end_matches(".model"))
+    };
+    swaps.iter().map(short).collect::<Vec<_>>().join(", ")
+}
+
 /// How one combination is run.
-type Run = fn(&Checked, &mut dyn FnMut(Progress)) -> Result<RunResult, RunError>;
+type Run = fn(&Checked, &mut dyn FnMut(Progress) -> Result<(), Stopped>) -> Result<RunResult, RunError>;
 
 fn compare_by(
     run: Run,
     path: &Path,
     overrides: &[String],
     swaps: &[(String, Vec<String>)],
-    progress: &mut dyn FnMut(Progress),
-) -> Result<Comparison, Report> {
+    progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
+) -> Result<Comparison, StudyError> {
     let base = check(path, overrides)?;
     let count = swaps.iter().fold(1usize, |n, (_, v)| n.saturating_mul(v.len()));
     if count > MAX_COMBINATIONS {
         let what = format!("the swaps make {count} combinations, at most {MAX_COMBINATIONS} are compared");
-        return Err(base
-            .case
-            .refuse(&[BuildError::new(what).help("fewer values, or one `--swap` after the other")]));
+        let e = BuildError::new(what).help("fewer values, or one `--swap` after the other");
+        return Err(base.case.refuse(&[e]).into());
     }
     let mut combinations: Vec<Vec<(String, String)>> = vec![Vec::new()];
     for (p, values) in swaps {
         if values.is_empty() || values.iter().any(String::is_empty) {
             let e = BuildError::new(format!("the swap `{p}` has an empty value"))
                 .help("write `--swap PATH=A,B,C`");
-            return Err(base.case.refuse(&[e]));
+            return Err(base.case.refuse(&[e]).into());
         }
         let p = swap_path(p);
         combinations = combinations
@@ -95,36 +105,19 @@ fn compare_by(
     if checked.iter().all(Result::is_err) {
         // Nothing is possible: the first refusal says why, with places.
         if let Some(Err(report)) = checked.into_iter().next() {
-            return Err(report);
+            return Err(report.into());
         }
-        return Err(base.case.refuse(&[BuildError::new("no combination to run")]));
+        return Err(base.case.refuse(&[BuildError::new("no combination to run")]).into());
     }
-    let total = combinations.len() as f64;
+    let outcome = |k: usize, tell: &mut dyn FnMut(Progress) -> Result<(), Stopped>| match &checked[k] {
+        Err(report) => Err(format!("refused: {}", report.failure())),
+        Ok(c) => run(c, tell).map_err(|e| format!("failed: {e}")),
+    };
+    let outcomes = run_many(combinations.len(), 0, outcome, progress).all()?;
     let variants = combinations
         .into_iter()
-        .zip(checked)
-        .enumerate()
-        .map(|(k, (swaps, checked))| {
-            let label = swaps
-                .iter()
-                .map(|(p, v)| format!("{}={v}", p.trim_start_matches("models.").trim_end_matches(".model")))
-                .collect::<Vec<_>>()
-                .join(", ");
-            let outcome = match checked {
-                Err(report) => Err(format!(
-                    "refused: {}",
-                    report.diagnostics.iter().map(|d| d.headline()).collect::<Vec<_>>().join("; ")
-                )),
-                Ok(c) => run(&c, &mut |p| {
-                    progress(Progress {
-                        phase: format!("{label}: {}", p.phase),
-                        fraction: (k as f64 + p.fraction) / total,
-                    });
-                })
-                .map_err(|e| format!("failed: {e}")),
-            };
-            Variant { label, swaps, outcome }
-        })
+        .zip(outcomes)
+        .map(|(swaps, outcome)| Variant { label: label(&swaps), swaps, outcome })
         .collect();
     Ok(Comparison {
         case: base.name.clone(),

@@ -2,7 +2,9 @@
 
 mod bench;
 mod compare;
+mod error;
 pub mod validate;
 
 pub use bench::bench;
 pub use compare::{compare, compare_verified};
+pub use error::StudyError;

@@ -3,13 +3,12 @@
 
 use std::collections::HashMap;
 use std::path::{Component, Path, PathBuf};
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use gudgeon_case::{Loaded, Report, advice, load};
 use gudgeon_core::BuildError;
 use gudgeon_core::result::{Check, Validated, Value, Verdict};
-use gudgeon_scene::{Checked, Progress, RunError, Scene, changed, check, foresee};
+use gudgeon_scene::many::run_many;
+use gudgeon_scene::{Checked, Progress, RunError, Scene, Stopped, changed, check, foresee};
 use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -179,7 +178,10 @@ impl Comparisons {
     ///
     /// # Errors
     /// What stopped a run, or a comparison of a result that the case does not have.
-    pub fn run(&self, progress: &mut dyn FnMut(Progress)) -> Result<Validated, RunError> {
+    pub fn run(
+        &self,
+        progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
+    ) -> Result<Validated, RunError> {
         let scene = self.case.case.as_ref();
         let checks = &self.file.value.checks;
         let unknown = compared(scene, checks);
@@ -194,11 +196,13 @@ impl Comparisons {
                     progress(Progress {
                         phase: format!("{}: {}", self.case.name, set.join(", ")),
                         fraction: k as f64 / checks.len() as f64,
-                    });
+                    })?;
+                    // Files are run side by side: a stop ends each of them.
+                    let mut heeded = |p| progress(p);
                     let out = if set.is_empty() {
-                        scene.once(&mut |_| {})?
+                        scene.once(&mut heeded)?
                     } else {
-                        changed(scene, set)?.once(&mut |_| {})?
+                        changed(scene, set)?.once(&mut heeded)?
                     };
                     known.insert(set, out.results);
                 }
@@ -291,36 +295,19 @@ pub enum ValidateError {
     Run(PathBuf, RunError),
 }
 
-/// Runs files of comparisons side by side on `threads` threads. Answers stand in the order of the files, whatever ended first.
+/// Runs files of comparisons side by side on `threads` threads (0: one a core). Answers stand in the order of the files, whatever ended first.
+///
+/// # Errors
+/// The caller stopped it.
 pub fn validate(
     files: &[PathBuf],
     threads: usize,
-    progress: &(dyn Fn(Progress) + Sync),
-) -> Vec<Result<Validated, ValidateError>> {
-    let next = AtomicUsize::new(0);
-    let done = AtomicUsize::new(0);
-    let answers: Vec<Mutex<Option<Result<Validated, ValidateError>>>> =
-        files.iter().map(|_| Mutex::new(None)).collect();
-    let work = || {
-        while let Some(k) = Some(next.fetch_add(1, Ordering::Relaxed)).filter(|k| *k < files.len()) {
-            let mut show = |p: Progress| {
-                let fraction = (done.load(Ordering::Relaxed) as f64 + p.fraction) / files.len() as f64;
-                progress(Progress { fraction, ..p });
-            };
-            let answer = read(&files[k])
-                .map_err(ValidateError::Input)
-                .and_then(|c| c.run(&mut show).map_err(|e| ValidateError::Run(files[k].clone(), e)));
-            done.fetch_add(1, Ordering::Relaxed);
-            if let Ok(mut place) = answers[k].lock() {
-                *place = Some(answer);
-            }
-        }
+    progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
+) -> Result<Vec<Result<Validated, ValidateError>>, Stopped> {
+    let work = |k: usize, tell: &mut dyn FnMut(Progress) -> Result<(), Stopped>| {
+        read(&files[k])
+            .map_err(ValidateError::Input)
+            .and_then(|c| c.run(tell).map_err(|e| ValidateError::Run(files[k].clone(), e)))
     };
-    std::thread::scope(|s| {
-        for _ in 1..threads.clamp(1, files.len().max(1)) {
-            s.spawn(work);
-        }
-        work();
-    });
-    answers.into_iter().filter_map(|a| a.into_inner().unwrap_or_else(|e| e.into_inner())).collect()
+    run_many(files.len(), threads, work, progress).all()
 }

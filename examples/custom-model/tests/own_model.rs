@@ -105,7 +105,7 @@ fn mistakes_are_found_at_their_place() {
 #[test]
 fn it_runs_and_is_compared() {
     let swaps = [("models.oil.nu_hot".to_owned(), vec!["10.7".to_owned(), "14.5".to_owned()])];
-    let c = gudgeon_study::compare(&case_file(), &[], &swaps, &mut |_| {})
+    let c = gudgeon_study::compare(&case_file(), &[], &swaps, &mut gudgeon_scene::unwatched)
         .map_err(|r| r.to_string())
         .expect("both oils are possible");
     let film = |k: usize| {
@@ -121,7 +121,7 @@ fn it_runs_and_is_compared() {
 fn it_is_swapped_for_a_built_in_model_and_back() {
     // A model whose required keys the case does not have is a variant with a reason, not a failure of the comparison.
     let swaps = [("oil".to_owned(), vec!["walther".to_owned(), "constant".to_owned()])];
-    let c = gudgeon_study::compare(&case_file(), &[], &swaps, &mut |_| {})
+    let c = gudgeon_study::compare(&case_file(), &[], &swaps, &mut gudgeon_scene::unwatched)
         .map_err(|r| r.to_string())
         .expect("one oil is possible");
     assert!(c.variants[0].outcome.is_ok());

@@ -3,7 +3,7 @@
 use gudgeon_core::quantity::{PosRatio, quantity};
 use gudgeon_core::{BuildError, EvalError, register_model};
 use gudgeon_numerics::linalg::{lu_factor, lu_solve};
-use gudgeon_scene::{MethodSetting, RunError};
+use gudgeon_scene::{MethodSetting, RunError, Stopped};
 use gudgeon_scene_ring_pack::jacobian::Base;
 use gudgeon_scene_ring_pack::marching::{Books, Ended, unsettled};
 use gudgeon_scene_ring_pack::pack::Pack;
@@ -59,7 +59,7 @@ impl RingPackSolverSpec for EulerMarch {
         pack: &mut Pack,
         start: f64,
         wanted: &Wanted<'_>,
-        progress: &mut dyn FnMut(f64),
+        progress: &mut dyn FnMut(f64) -> Result<(), Stopped>,
     ) -> Result<Solution, RunError> {
         let mut books = Books::open(pack, wanted);
         let ended = self.march(pack, start, &mut books, progress);
@@ -89,7 +89,7 @@ impl EulerMarch {
         pack: &mut Pack,
         start: f64,
         books: &mut Books,
-        progress: &mut dyn FnMut(f64),
+        progress: &mut dyn FnMut(f64) -> Result<(), Stopped>,
     ) -> Result<Ended, EvalError> {
         let (n, rings) = (pack.layout.n, pack.n_rings());
         let per_cycle = pack.period().to_degrees().round() as u32 * self.steps_per_degree;
@@ -117,7 +117,7 @@ impl EulerMarch {
             }
             let after: f64 = mass(pack, &y);
             ended.totals = step.totals(rings, after - before);
-            progress(f64::from(cycle) / f64::from(self.cycles));
+            progress(f64::from(cycle) / f64::from(self.cycles))?;
         }
         pack.evaluate(pack.period(), &y)?;
         books.measures.march(pack.period(), pack, step.sums[0]);

@@ -7,7 +7,9 @@ use gudgeon_core::kinds::{Kinematics, KinematicsCtx, KinematicsSpec};
 use gudgeon_core::quantity::{Length, PosAngularSpeed, PosLength, PosMass, quantity};
 use gudgeon_core::result::{Column, Figure, FigureKind, ModelUse, RunResult, Series, Skipped, Value};
 use gudgeon_core::{BuildError, Registry};
-use gudgeon_scene::{Explanation, Progress, RunError, SceneCase, case_file, model_use, register_scene};
+use gudgeon_scene::{
+    Explanation, Progress, RunError, SceneCase, Stopped, case_file, model_use, register_scene,
+};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -104,7 +106,7 @@ impl SceneCase for InertiaForceCase {
     fn run(
         loaded: &Loaded<Self>,
         drive: Self::Built,
-        _: &mut dyn FnMut(Progress),
+        _: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
     ) -> Result<RunResult, RunError> {
         let begin = Instant::now();
         let mass = loaded.value.mass.si();

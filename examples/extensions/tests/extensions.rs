@@ -44,7 +44,7 @@ fn scene() -> PathBuf {
 fn run_with(case: &Path, set: &[&str]) -> RunResult {
     let set: Vec<String> = set.iter().map(|s| (*s).to_owned()).collect();
     let c = check(case, &set).unwrap_or_else(|r| panic!("{set:?}: {r}"));
-    run(&c, &mut |_| {}).unwrap_or_else(|e| panic!("{set:?}: {e}"))
+    run(&c, &mut gudgeon_scene::unwatched).unwrap_or_else(|e| panic!("{set:?}: {e}"))
 }
 
 fn refused(case: &Path, set: &str) -> String {
@@ -113,7 +113,8 @@ fn they_are_compared_with_built_in_ones() {
         ("solver.method", ["implicit", "euler_march"]),
     ] {
         let swaps = [(path.to_owned(), values.map(str::to_owned).into())];
-        let c = gudgeon_study::compare(&diesel(), &[], &swaps, &mut |_| {}).unwrap_or_else(|r| panic!("{r}"));
+        let c = gudgeon_study::compare(&diesel(), &[], &swaps, &mut gudgeon_scene::unwatched)
+            .unwrap_or_else(|r| panic!("{r}"));
         for v in &c.variants {
             assert!(v.outcome.is_ok(), "{}: {:?}", v.label, v.outcome.as_ref().err());
         }
@@ -221,6 +222,7 @@ fn the_scene_gives_its_closed_form() {
     assert!((r.results["force_max"].value / exact - 1.0).abs() < 1e-12);
     assert_eq!(r.models[0].model, "exact_slider_crank");
     let swaps = [("kinematics".to_owned(), vec!["exact_slider_crank".into(), "two_harmonic_series".into()])];
-    let c = gudgeon_study::compare(&scene(), &[], &swaps, &mut |_| {}).unwrap_or_else(|r| panic!("{r}"));
+    let c = gudgeon_study::compare(&scene(), &[], &swaps, &mut gudgeon_scene::unwatched)
+        .unwrap_or_else(|r| panic!("{r}"));
     assert!(c.variants.iter().all(|v| v.outcome.is_ok()));
 }

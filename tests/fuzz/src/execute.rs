@@ -150,7 +150,7 @@ fn attempt(folder: &Path, job: &Job) -> Outcome {
 }
 
 fn run(c: &Checked) -> Result<RunResult, RunError> {
-    gudgeon_scene::run(c, &mut |_| {})
+    gudgeon_scene::run(c, &mut gudgeon_scene::unwatched)
 }
 
 fn refused(report: &Report) -> End {

@@ -28,7 +28,7 @@ pub fn checked(name: &str, overrides: &[&str]) -> Checked {
 
 /// Runs a case.
 pub fn try_run(name: &str, overrides: &[&str]) -> Result<RunResult, RunError> {
-    run(&checked(name, overrides), &mut |_| {})
+    run(&checked(name, overrides), &mut gudgeon_scene::unwatched)
 }
 
 /// Runs a case that must succeed.
@@ -233,7 +233,7 @@ pub fn run_all(variants: &[(&str, Vec<String>)]) -> Vec<Result<RunResult, String
                     let Some((name, overrides)) = variants.get(k) else { break };
                     let outcome = check(&case_file(name), overrides)
                         .map_err(|r| r.to_string())
-                        .and_then(|c| run(&c, &mut |_| {}).map_err(|e| e.to_string()));
+                        .and_then(|c| run(&c, &mut gudgeon_scene::unwatched).map_err(|e| e.to_string()));
                     done.lock().expect("no worker panics")[k] = Some(outcome);
                 }
             });

@@ -18,7 +18,8 @@ fn three_gas_flow_models() {
     let names = ["gap_orifice", "orifice_network", "narrow_channel"];
     let mut told = 0.0;
     let c = compare(&case_file("alcohol-1600-3000"), &overrides, &[swap("gas_flow", &names)], &mut |p| {
-        told = p.fraction
+        told = p.fraction;
+        Ok(())
     })
     .unwrap_or_else(|r| panic!("{r}"));
     assert_eq!(c.variants.len(), 3);
@@ -52,7 +53,7 @@ fn refused_combinations_keep_their_reason() {
     let quick: Vec<String> =
         ["solver.cycles=2", "solver.gas_steps=10", "solver.starts=[\"1 bar\"]"].map(str::to_owned).to_vec();
     let swaps = [swap("ring_motion", &["three_seat", "newton_groove", "seated"])];
-    let c = compare(&case_file("alcohol-1600-3000"), &quick, &swaps, &mut |_| {})
+    let c = compare(&case_file("alcohol-1600-3000"), &quick, &swaps, &mut gudgeon_scene::unwatched)
         .unwrap_or_else(|r| panic!("{r}"));
     assert!(c.variants[0].outcome.is_ok() && c.variants[2].outcome.is_ok());
     let why = c.variants[1].outcome.as_ref().expect_err("newton_groove cannot be marched by the degree");
@@ -66,14 +67,23 @@ fn refused_combinations_keep_their_reason() {
         &case_file("alcohol-1600-3000"),
         &quick,
         &[swap("ring_motion", &["newton_groove"])],
-        &mut |_| {},
+        &mut gudgeon_scene::unwatched,
     );
     assert!(none.expect_err("nothing to run").to_string().contains("degree_march"));
     // A swap without values, and a path that does not exist.
-    let empty = compare(&case_file("alcohol-1600-3000"), &quick, &[swap("gas_flow", &[])], &mut |_| {});
+    let empty = compare(
+        &case_file("alcohol-1600-3000"),
+        &quick,
+        &[swap("gas_flow", &[])],
+        &mut gudgeon_scene::unwatched,
+    );
     assert!(empty.expect_err("empty").to_string().contains("gas_flow"));
-    let unknown =
-        compare(&case_file("alcohol-1600-3000"), &quick, &[swap("gas_flow", &["gap_orfice"])], &mut |_| {});
+    let unknown = compare(
+        &case_file("alcohol-1600-3000"),
+        &quick,
+        &[swap("gas_flow", &["gap_orfice"])],
+        &mut gudgeon_scene::unwatched,
+    );
     assert!(unknown.expect_err("unknown").to_string().contains("gap_orifice"), "no suggestion");
 }
 
@@ -85,7 +95,7 @@ fn two_swaps_make_every_combination() {
         swap("models.gas_flow.model", &["gap_orifice", "orifice_network"]),
         swap("conventions.hoop", &["as_printed", "correct"]),
     ];
-    let c = compare(&case_file("alcohol-1600-3000"), &quick, &swaps, &mut |_| {})
+    let c = compare(&case_file("alcohol-1600-3000"), &quick, &swaps, &mut gudgeon_scene::unwatched)
         .unwrap_or_else(|r| panic!("{r}"));
     assert_eq!(c.variants.len(), 4);
     let friction = |k: usize| match &c.variants[k].outcome {

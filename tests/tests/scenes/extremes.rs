@@ -26,7 +26,7 @@ fn outcome(path: &Path, overrides: &[String]) -> Result<String, String> {
                     r.diagnostics.iter().map(|d| d.headline()).collect::<Vec<_>>().join("; ")
                 )
             })?;
-            run(&c, &mut |_| {}).map_err(|e| format!("failed: {e}"))
+            run(&c, &mut gudgeon_scene::unwatched).map_err(|e| format!("failed: {e}"))
         });
         // Nobody listens any more when the time was up.
         let _ = tell.send(result);

@@ -11,6 +11,7 @@ mod implicit;
 mod lazy;
 mod limits;
 mod loader_fuzz;
+mod many;
 mod oil;
 mod pin;
 mod piston_secondary;

@@ -107,7 +107,7 @@ fn a_search_without_a_pin_names_the_limit() {
                     |d: &Diagnostic| format!("{}; {}", d.headline(), d.help.clone().unwrap_or_default());
                 report.diagnostics.iter().map(told).collect()
             }
-            Ok(c) => match gudgeon_scene::run(&c, &mut |_| {}) {
+            Ok(c) => match gudgeon_scene::run(&c, &mut gudgeon_scene::unwatched) {
                 Ok(_) => panic!("{case} {set:?} ran"),
                 Err(e) => e.to_string(),
             },
@@ -240,7 +240,7 @@ fn strength_models_stand_beside_each_other() {
         "models.pin_strength.model".to_owned(),
         names.iter().map(|n| (*n).to_owned()).collect::<Vec<_>>(),
     )];
-    let c = compare(&case_file(GIVEN), &[], &swaps, &mut |_| {}).expect("legal");
+    let c = compare(&case_file(GIVEN), &[], &swaps, &mut gudgeon_scene::unwatched).expect("legal");
     let of = |k: usize, n: &str| match &c.variants[k].outcome {
         Ok(r) => value(r, n),
         Err(e) => panic!("{}: {e}", c.variants[k].label),
@@ -306,7 +306,7 @@ fn extremes_end_in_words_or_in_numbers() {
                 ];
                 match check(&case_file(case), &set) {
                     Err(_) => refused += 1,
-                    Ok(c) => match gudgeon_scene::run(&c, &mut |_| {}) {
+                    Ok(c) => match gudgeon_scene::run(&c, &mut gudgeon_scene::unwatched) {
                         Err(e) => failed.push((case, path, v, e.to_string())),
                         Ok(r) => {
                             ran += 1;

@@ -12,7 +12,7 @@ const COARSE: [&str; 3] =
 
 /// Runs the case once, without what it compares itself with.
 fn run_once(set: &[&str]) -> RunResult {
-    match checked(CASE, set).case.once(&mut |_| {}) {
+    match checked(CASE, set).case.once(&mut gudgeon_scene::unwatched) {
         Ok(r) => r,
         Err(e) => panic!("{set:?}: {e}"),
     }
@@ -137,7 +137,7 @@ fn inertia_that_is_left_out_is_told() {
             "solver.cycles=2".to_owned(),
         ];
         let set: Vec<&str> = set.iter().map(String::as_str).collect();
-        match checked("turbo-diesel-120-skirt", &set).case.once(&mut |_| {}) {
+        match checked("turbo-diesel-120-skirt", &set).case.once(&mut gudgeon_scene::unwatched) {
             Ok(r) => r,
             Err(e) => panic!("{motion}: {e}"),
         }
@@ -170,7 +170,7 @@ fn a_peak_narrower_than_the_grid_is_told() {
             "solver.cycles=2".to_owned(),
         ];
         let set: Vec<&str> = set.iter().map(String::as_str).collect();
-        let r = match checked("turbo-diesel-120-skirt", &set).case.once(&mut |_| {}) {
+        let r = match checked("turbo-diesel-120-skirt", &set).case.once(&mut gudgeon_scene::unwatched) {
             Ok(r) => r,
             Err(e) => panic!("{along} {across}: {e}"),
         };
@@ -293,7 +293,7 @@ fn a_motored_piston_hardly_tilts() {
     // Velocities of both edges of the motored piston are practically equal in the source, figs. 95 to 97: on the scale of the fired engine, 1.6 mm/s,
     // they are here too. On their own scale they are not: either is as large as their difference.
     let case = checked("zhu-motored-1000", &["solver.cycles=2", "outputs.results=[\"e_top_max\"]"]);
-    let r = case.case.once(&mut |_| {}).unwrap_or_else(|e| panic!("{e}"));
+    let r = case.case.once(&mut gudgeon_scene::unwatched).unwrap_or_else(|e| panic!("{e}"));
     let (top, bottom) = (column(&r, "skirt.e_top_rate"), column(&r, "skirt.e_bottom_rate"));
     let most = |v: &mut dyn Iterator<Item = f64>| v.fold(0.0_f64, |a, v| a.max(v.abs()));
     let apart = most(&mut top.iter().zip(bottom).map(|(a, b)| a - b));
@@ -468,7 +468,7 @@ fn published_scheme_is_refused_with_the_reason() {
 fn attempt(set: &[&str]) -> Result<RunResult, String> {
     let set: Vec<String> = set.iter().map(|s| (*s).to_owned()).collect();
     let c = gudgeon_scene::check(&case_file(CASE), &set).map_err(|r| format!("refused: {r}"))?;
-    c.case.once(&mut |_| {}).map_err(|e| format!("failed: {e}"))
+    c.case.once(&mut gudgeon_scene::unwatched).map_err(|e| format!("failed: {e}"))
 }
 
 fn try_check(case: &str, set: &str) -> String {

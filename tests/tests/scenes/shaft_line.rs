@@ -12,7 +12,7 @@ fn case(name: &str) -> PathBuf {
 fn once(name: &str, set: &[&str]) -> RunResult {
     let set: Vec<String> = set.iter().map(|s| (*s).to_owned()).collect();
     let c = check(&case(name), &set).unwrap_or_else(|r| panic!("{r}"));
-    run(&c, &mut |_| {}).unwrap_or_else(|e| panic!("{e}"))
+    run(&c, &mut gudgeon_scene::unwatched).unwrap_or_else(|e| panic!("{e}"))
 }
 
 fn refused(set: &[&str]) -> String {
@@ -178,11 +178,11 @@ fn tors_files_are_imported_with_a_report() {
     let file = folder.join("case.toml");
     std::fs::write(&file, text).expect("written");
     let c = check(&file, &[]).unwrap_or_else(|r| panic!("{r}"));
-    let r = run(&c, &mut |_| {}).expect("runs");
+    let r = run(&c, &mut gudgeon_scene::unwatched).expect("runs");
     assert!(r.solver.notes.iter().any(|n| n.text.contains("e.s: colour not read")), "{:?}", r.solver.notes);
     assert!(r.results.contains_key("mode.2.frequency") && !r.results.contains_key("mode.3.frequency"));
     let c = check(&file, &["shafts=[]".into(), "inertias=[]".into()]).unwrap_or_else(|r| panic!("{r}"));
-    let r = run(&c, &mut |_| {}).expect("runs");
+    let r = run(&c, &mut gudgeon_scene::unwatched).expect("runs");
     // Two discs: ω = √(k (1/J₁ + 1/J₂)).
     assert!((r.results["mode.1.omega"].value / 2_061.552_812_808_830_3 - 1.0).abs() < 1e-14);
     let lost = check(&file, &["tors=\"none.json\"".into()]);
@@ -245,12 +245,12 @@ fn an_undamped_resonance_that_is_hit_is_refused() {
         let set: Vec<String> =
             set[..6].iter().cloned().chain(["outputs.groups=[\"natural_frequencies\"]".into()]).collect();
         let c = check(&case("compressor-4-throw.toml"), &set).unwrap_or_else(|r| panic!("{r}"));
-        run(&c, &mut |_| {}).expect("runs").results["mode.1.omega"].value
+        run(&c, &mut gudgeon_scene::unwatched).expect("runs").results["mode.1.omega"].value
     };
     let mut exact = set.clone();
     exact[7] = format!("speed={omega:?}");
     let c = check(&case("compressor-4-throw.toml"), &exact).unwrap_or_else(|r| panic!("{r}"));
-    let e = run(&c, &mut |_| {}).expect_err("a resonance").to_string();
+    let e = run(&c, &mut gudgeon_scene::unwatched).expect_err("a resonance").to_string();
     assert!(e.contains("undamped natural frequency") && e.contains("order 1"), "{e}");
 }
 
@@ -362,7 +362,7 @@ fn the_order_of_listing_changes_nothing() {
     let file = folder.join("backwards.toml");
     std::fs::write(&file, back).expect("written");
     let c = check(&file, &[]).unwrap_or_else(|r| panic!("{r}"));
-    let there = run(&c, &mut |_| {}).expect("runs");
+    let there = run(&c, &mut gudgeon_scene::unwatched).expect("runs");
     let here = once("geared-train.toml", &[]);
     // Numbers of names turn round: 12 shafts and 13 inertias, the damper stays the last of both.
     let renamed = |name: &str| -> String {
@@ -430,7 +430,7 @@ source = "a test"
     let file = folder.join("narrow.toml");
     std::fs::write(&file, text).expect("written");
     let c = check(&file, &[]).unwrap_or_else(|r| panic!("{r}"));
-    let r = run(&c, &mut |_| {}).expect("runs");
+    let r = run(&c, &mut gudgeon_scene::unwatched).expect("runs");
     let found = r.results["envelope.shaft1.torque_amplitude"].value;
     // Spring and damper carry √(1 + (2 ζ r)²) of the spring alone: 5e-9 at the peak.
     let exact = j1 / (j1 + j2) * torque * 0.5 / (zeta * (1.0 - zeta * zeta).sqrt());
@@ -439,7 +439,7 @@ source = "a test"
     assert!(note(&r, "verdict.torque_in_ab").contains("order 3"));
     // Without any damping it has no bound, which is said and stops nothing.
     let c = check(&file, &["shafts.0.damping=0".into()]).unwrap_or_else(|r| panic!("{r}"));
-    let r = run(&c, &mut |_| {}).expect("runs");
+    let r = run(&c, &mut gudgeon_scene::unwatched).expect("runs");
     assert!(note(&r, "verdict.torque_in_ab").contains("without bound"), "{:?}", r.solver.notes);
     assert_eq!(r.results["limits_broken"].value, 1.0);
 }

@@ -52,7 +52,7 @@ fn sets(values: &[(&str, &str)]) -> Vec<String> {
 
 fn ran(case: &str, set: &[String]) -> RunResult {
     let checked = check(&case_file(case), set).unwrap_or_else(|r| panic!("{case}: {r}"));
-    run(&checked, &mut |_| {}).unwrap_or_else(|e| panic!("{case}: {e}"))
+    run(&checked, &mut gudgeon_scene::unwatched).unwrap_or_else(|e| panic!("{case}: {e}"))
 }
 
 #[test]

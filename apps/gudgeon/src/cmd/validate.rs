@@ -18,10 +18,9 @@ const PAGES: &str = "docs/validation";
 
 pub fn validate(a: &ValidateArgs, ui: &Ui) -> Result<(), Failure> {
     let files = files(&a.files)?;
-    let threads = std::thread::available_parallelism().map_or(1, Into::into);
     let answers = {
         let bar = ui.bar();
-        validate::validate(&files, threads, &|p| bar.show(p))
+        validate::validate(&files, 0, &mut |p| bar.show(p))?
     };
     let mut all = Vec::new();
     let mut failed = Vec::new();

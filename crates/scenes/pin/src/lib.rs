@@ -15,7 +15,7 @@ use gudgeon_core::{BuildError, Registry};
 
 use case::{Method, PinCase};
 use gudgeon_case::Loaded;
-use gudgeon_scene::{Explanation, Progress, RunError, SceneCase, model_use};
+use gudgeon_scene::{Explanation, Progress, RunError, SceneCase, Stopped, model_use};
 use setup::Setup;
 
 impl SceneCase for PinCase {
@@ -74,7 +74,7 @@ impl SceneCase for PinCase {
     fn run(
         loaded: &Loaded<Self>,
         setup: Option<Setup>,
-        progress: &mut dyn FnMut(Progress),
+        progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
     ) -> Result<RunResult, RunError> {
         let case = &loaded.value;
         let begin = Instant::now();

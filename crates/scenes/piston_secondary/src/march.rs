@@ -12,7 +12,7 @@ use super::case::PistonSecondaryCase;
 use super::equations::Work;
 use super::solver::{Cycled, PistonSolver};
 use super::trajectory::Trajectory;
-use gudgeon_scene::RunError;
+use gudgeon_scene::{RunError, Stopped};
 
 /// A motion over one cycle.
 pub struct Found {
@@ -41,7 +41,7 @@ struct Cycle<'a> {
     stats: Stats,
     y: Vec<f64>,
     failure: Option<RunError>,
-    progress: &'a mut dyn FnMut(f64),
+    progress: &'a mut dyn FnMut(f64) -> Result<(), Stopped>,
     done: f64,
 }
 
@@ -57,8 +57,7 @@ impl Cycle<'_> {
         let mut of = Cycled { a: self.a, work: &mut self.work, stats: &mut self.stats };
         let outcome = self.solver.cycle(&mut of, y, accuracy, trajectory);
         self.done += 1.0;
-        (self.progress)(1.0 - 0.75f64.powf(self.done));
-        outcome
+        outcome.and_then(|()| Ok((self.progress)(1.0 - 0.75f64.powf(self.done))?))
     }
 
     /// The states that make up the periodic motion.
@@ -127,7 +126,7 @@ pub fn run(
     a: &mut Assembly,
     start: Option<&[f64]>,
     purpose: Purpose,
-    progress: &mut dyn FnMut(f64),
+    progress: &mut dyn FnMut(f64) -> Result<(), Stopped>,
 ) -> Result<Found, RunError> {
     let begin = Clock::now();
     if a.layout.n == 0 {
@@ -173,7 +172,11 @@ pub fn run(
 }
 
 impl<'a> Cycle<'a> {
-    fn new(case: &PistonSecondaryCase, a: &'a mut Assembly, progress: &'a mut dyn FnMut(f64)) -> Self {
+    fn new(
+        case: &PistonSecondaryCase,
+        a: &'a mut Assembly,
+        progress: &'a mut dyn FnMut(f64) -> Result<(), Stopped>,
+    ) -> Self {
         let s = &case.solver;
         let states = a.layout.n;
         let solver = s.method.build(a);

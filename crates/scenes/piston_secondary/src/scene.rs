@@ -5,7 +5,7 @@ use gudgeon_core::BuildError;
 use gudgeon_core::kinds::EngineCycle;
 use gudgeon_core::result::{ModelUse, Note, RunResult, Skipped, SolverReport};
 use gudgeon_machine::GravitySide;
-use gudgeon_scene::{Explanation, Progress, RunError, SceneCase, WorkPrecision};
+use gudgeon_scene::{Explanation, Progress, RunError, SceneCase, Stopped, WorkPrecision};
 
 use super::assemble::assemble;
 use super::assembly::Assembly;
@@ -61,7 +61,7 @@ impl SceneCase for PistonSecondaryCase {
     fn run(
         loaded: &Loaded<Self>,
         checked: Assembly,
-        progress: &mut dyn FnMut(Progress),
+        progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
     ) -> Result<RunResult, RunError> {
         let case = &loaded.value;
         let wanted = wanted(case, &checked)?;

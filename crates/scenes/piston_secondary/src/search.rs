@@ -2,7 +2,7 @@
 
 use gudgeon_core::BuildError;
 use gudgeon_core::result::Skipped;
-use gudgeon_scene::{Progress, RunError};
+use gudgeon_scene::{Progress, RunError, Stopped};
 
 use gudgeon_case::Loaded;
 
@@ -40,7 +40,7 @@ pub fn refused(e: Vec<BuildError>) -> RunError {
 /// All motions of a run, and what they took together.
 pub struct Search<'a> {
     loaded: &'a Loaded<PistonSecondaryCase>,
-    progress: &'a mut dyn FnMut(Progress),
+    progress: &'a mut dyn FnMut(Progress) -> Result<(), Stopped>,
     /// Work of all motions.
     pub counters: indexmap::IndexMap<String, u64>,
     /// Wall time of the searches \[s\].
@@ -60,7 +60,10 @@ pub struct Start {
 
 impl<'a> Search<'a> {
     /// Nothing searched yet.
-    pub fn new(loaded: &'a Loaded<PistonSecondaryCase>, progress: &'a mut dyn FnMut(Progress)) -> Self {
+    pub fn new(
+        loaded: &'a Loaded<PistonSecondaryCase>,
+        progress: &'a mut dyn FnMut(Progress) -> Result<(), Stopped>,
+    ) -> Self {
         Self { loaded, progress, counters: indexmap::IndexMap::new(), seconds: 0.0 }
     }
 
@@ -92,6 +95,7 @@ impl<'a> Search<'a> {
             let from = start.states.take();
             start.states = match self.run("coarse film", &mut a, from.as_deref(), Purpose::Start, true) {
                 Ok(found) => Some(found.start),
+                Err(RunError::Stopped) => return Err(RunError::Stopped),
                 Err(_) => from,
             };
         }

@@ -13,7 +13,9 @@ use gudgeon_core::result::{ModelUse, RunResult, Value};
 use case::{Part, PowerCylinderCase};
 use gudgeon_case::{Loaded, Refinement, Report, read_beside, scene_of};
 use gudgeon_machine::Engine;
-use gudgeon_scene::{Checked, Explanation, Progress, RunError, Scene, SceneCase, check_case, explain, load};
+use gudgeon_scene::{
+    Checked, Explanation, Progress, RunError, Scene, SceneCase, Stopped, check_case, explain, load,
+};
 use gudgeon_scene_piston_secondary::case::PistonSecondaryCase;
 use gudgeon_scene_ring_pack::case::RingPackCase;
 
@@ -84,7 +86,7 @@ impl SceneCase for PowerCylinderCase {
     fn run(
         _: &Loaded<Self>,
         (rings, skirt): (Checked, Checked),
-        progress: &mut dyn FnMut(Progress),
+        progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
     ) -> Result<RunResult, RunError> {
         let begin = Instant::now();
         let mut half = |name: &'static str, from: f64| {
@@ -92,7 +94,7 @@ impl SceneCase for PowerCylinderCase {
                 progress(Progress {
                     phase: format!("{name}: {}", p.phase),
                     fraction: from + 0.5 * p.fraction,
-                });
+                })
             };
             let part = if from == 0.0 { &rings } else { &skirt };
             part.case.once(&mut tell)

@@ -8,7 +8,7 @@ use gudgeon_core::{BuildError, EvalError, Registry};
 
 use crate::case::RigCase;
 use gudgeon_case::Loaded;
-use gudgeon_scene::{Explanation, Progress, RunError, SceneCase, model_use};
+use gudgeon_scene::{Explanation, Progress, RunError, SceneCase, Stopped, model_use};
 
 impl SceneCase for RigCase {
     type Built = Box<dyn Rig>;
@@ -38,7 +38,7 @@ impl SceneCase for RigCase {
     fn run(
         loaded: &Loaded<Self>,
         mut rig: Box<dyn Rig>,
-        _: &mut dyn FnMut(Progress),
+        _: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
     ) -> Result<RunResult, RunError> {
         let case = &loaded.value;
         let begin = Instant::now();

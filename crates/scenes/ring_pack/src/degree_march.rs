@@ -7,7 +7,7 @@
 
 use gudgeon_core::quantity::{PosRatio, quantity};
 use gudgeon_core::{BuildError, EvalError, register_model};
-use gudgeon_scene::{MethodSetting, RunError};
+use gudgeon_scene::{MethodSetting, RunError, Stopped};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -78,7 +78,7 @@ impl RingPackSolverSpec for DegreeMarch {
         pack: &mut Pack,
         start: f64,
         wanted: &Wanted<'_>,
-        progress: &mut dyn FnMut(f64),
+        progress: &mut dyn FnMut(f64) -> Result<(), Stopped>,
     ) -> Result<Solution, RunError> {
         let (steps, gas_steps) = steps((self.steps_per_degree, self.gas_steps), OWN);
         let tolerance = self.periodicity.si();
@@ -123,7 +123,7 @@ fn run(
     set: Settings,
     start: f64,
     books: &mut Books,
-    progress: &mut dyn FnMut(f64),
+    progress: &mut dyn FnMut(f64) -> Result<(), Stopped>,
 ) -> Result<Ended, EvalError> {
     let mut march = March::new(pack, set, start, books);
     let limit = if set.cycles > 0 { set.cycles } else { set.max_cycles };
@@ -142,7 +142,7 @@ fn run(
         history.push(state);
         let steps = out.steps + u64::from(march.per_cycle);
         out = Ended { totals, steps, cycles: cycle, period: back.unwrap_or(0) };
-        progress(f64::from(cycle) / f64::from(limit));
+        progress(f64::from(cycle) / f64::from(limit))?;
         if recording {
             break;
         }

@@ -29,7 +29,7 @@ use super::results;
 use super::rows::Rows;
 use super::solver::{NOT_PERIODIC, Recorded, RingPackSolverSpec, Solution, Wanted};
 use super::watch::Watch;
-use gudgeon_scene::{IntegratorName, MethodSetting, RunError};
+use gudgeon_scene::{IntegratorName, MethodSetting, RunError, Stopped};
 use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -89,7 +89,7 @@ impl RingPackSolverSpec for Implicit {
         pack: &mut Pack,
         start: f64,
         wanted: &Wanted<'_>,
-        progress: &mut dyn FnMut(f64),
+        progress: &mut dyn FnMut(f64) -> Result<(), Stopped>,
     ) -> Result<Solution, RunError> {
         run(self, pack, start, wanted, progress)
     }
@@ -231,7 +231,7 @@ struct Cycle<'a> {
     max_steps: u64,
     failure: Option<IntegrateError>,
     /// Steps of a cycle at full accuracy, when known: the unit of cost.
-    progress: &'a mut dyn FnMut(f64),
+    progress: &'a mut dyn FnMut(f64) -> Result<(), Stopped>,
     done: f64,
 }
 
@@ -267,8 +267,10 @@ impl Cycle<'_> {
             }
         }
         self.done += 1.0;
-        (self.progress)(1.0 - 0.8f64.powf(self.done));
-        outcome
+        outcome.and_then(|()| {
+            (self.progress)(1.0 - 0.8f64.powf(self.done))
+                .map_err(|e| IntegrateError::Eval { t: period, source: e.into() })
+        })
     }
 
     fn options(&self, rtol: f64) -> Options {
@@ -583,7 +585,12 @@ fn gas_balance(pack: &Pack) -> Vec<LinearInvariant> {
 }
 
 impl<'a> Cycle<'a> {
-    fn new(s: &Implicit, pack: &'a mut Pack, wanted: &Wanted<'_>, progress: &'a mut dyn FnMut(f64)) -> Self {
+    fn new(
+        s: &Implicit,
+        pack: &'a mut Pack,
+        wanted: &Wanted<'_>,
+        progress: &'a mut dyn FnMut(f64) -> Result<(), Stopped>,
+    ) -> Self {
         let dim = pack.layout.n;
         let quads = 2 * pack.n_rings() + 1;
         let rosenbrock = |formula| Method::Rodas(Box::new(Rodas::with(formula, dim, quads, None)));
@@ -670,7 +677,7 @@ fn run(
     pack: &mut Pack,
     start: f64,
     wanted: &Wanted<'_>,
-    progress: &mut dyn FnMut(f64),
+    progress: &mut dyn FnMut(f64) -> Result<(), Stopped>,
 ) -> Result<Solution, RunError> {
     let begin = Instant::now();
     let dim = pack.layout.n;

@@ -12,7 +12,7 @@ use super::{assemble, geometry, legal, meter, state_names};
 use crate::case::RingPackCase;
 use gudgeon_case::{Loaded, Refinement};
 use gudgeon_scene::{
-    Explanation, MethodSetting, Progress, RunError, SceneCase, WorkPrecision, default_solvers,
+    Explanation, MethodSetting, Progress, RunError, SceneCase, Stopped, WorkPrecision, default_solvers,
 };
 
 impl SceneCase for RingPackCase {
@@ -48,7 +48,7 @@ impl SceneCase for RingPackCase {
     fn run(
         loaded: &Loaded<Self>,
         mut pack: Pack,
-        progress: &mut dyn FnMut(Progress),
+        progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
     ) -> Result<RunResult, RunError> {
         let case = &loaded.value;
         let solved = solve(case, &mut pack, progress)?;

@@ -1,7 +1,7 @@
 //! Every start of a case brought to its periodic state; the distinct ones told apart.
 
 use gudgeon_core::result::{Branch, Event, Note, Series, SolverReport};
-use gudgeon_scene::{Progress, RunError};
+use gudgeon_scene::{Progress, RunError, Stopped};
 
 use super::case::RingPackCase;
 use super::meter;
@@ -50,7 +50,7 @@ const SAME: f64 = 5e-3;
 pub fn solve(
     case: &RingPackCase,
     pack: &mut Pack,
-    progress: &mut dyn FnMut(Progress),
+    progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
 ) -> Result<Solved, RunError> {
     let starts = starts(case, pack);
     let total = starts.len() as f64;

@@ -5,7 +5,7 @@ use std::fmt::Debug;
 use dyn_clone::DynClone;
 use gudgeon_core::result::{Event, Note, Series};
 use gudgeon_core::{BuildError, register_kind};
-use gudgeon_scene::{MethodSetting, RunError};
+use gudgeon_scene::{MethodSetting, RunError, Stopped};
 use indexmap::IndexMap;
 use serde_json::Value;
 
@@ -33,7 +33,7 @@ pub trait RingPackSolverSpec: Debug + DynClone + Send + Sync {
         pack: &mut Pack,
         start: f64,
         wanted: &Wanted<'_>,
-        progress: &mut dyn FnMut(f64),
+        progress: &mut dyn FnMut(f64) -> Result<(), Stopped>,
     ) -> Result<Solution, RunError>;
 
     /// Fills in the numbers of the resolved table `solver` that the case leaves to the solver, for a pack of `rings` rings.

@@ -13,7 +13,7 @@ use std::f64::consts::PI;
 
 use gudgeon_core::quantity::{PosRatio, quantity};
 use gudgeon_core::{BuildError, EvalError, register_model};
-use gudgeon_scene::{MethodSetting, RunError};
+use gudgeon_scene::{MethodSetting, RunError, Stopped};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -113,7 +113,7 @@ impl RingPackSolverSpec for SubstepMarch {
         pack: &mut Pack,
         start: f64,
         wanted: &Wanted<'_>,
-        progress: &mut dyn FnMut(f64),
+        progress: &mut dyn FnMut(f64) -> Result<(), Stopped>,
     ) -> Result<Solution, RunError> {
         let (steps, gas_steps) = steps((self.steps_per_degree, self.gas_steps), Self::own(pack.n_rings()));
         let cycles = if self.cycles == 0 { CYCLES } else { self.cycles };
@@ -314,7 +314,7 @@ fn run(
     set: Settings,
     start: f64,
     books: &mut Books,
-    progress: &mut dyn FnMut(f64),
+    progress: &mut dyn FnMut(f64) -> Result<(), Stopped>,
 ) -> Result<(Totals, u64), EvalError> {
     let mut march = March::new(pack, set, start);
     let n = march.rings.len();
@@ -342,7 +342,7 @@ fn run(
                 march.row(books, pass);
             }
             let done = f64::from(cycle - 1) + f64::from(pass) / f64::from(set.passes);
-            progress(done / f64::from(set.cycles));
+            progress(done / f64::from(set.cycles))?;
         }
         march.balance(before, cycle > 1);
     }

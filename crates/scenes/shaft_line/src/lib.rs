@@ -29,7 +29,7 @@ use gudgeon_torsion::torsion::Orders;
 use assemble::{Assembled, assemble, renamed};
 use case::ShaftLineCase;
 use gudgeon_case::Loaded;
-use gudgeon_scene::{Explanation, Progress, RunError, SceneCase, model_use};
+use gudgeon_scene::{Explanation, Progress, RunError, SceneCase, Stopped, model_use};
 use machine::{Machine, Point};
 use plan::Plan;
 use results::Results;
@@ -90,7 +90,7 @@ impl SceneCase for ShaftLineCase {
     fn run(
         loaded: &Loaded<Self>,
         a: Assembled,
-        progress: &mut dyn FnMut(Progress),
+        progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
     ) -> Result<RunResult, RunError> {
         let begin = Instant::now();
         let case = &loaded.value;
@@ -126,11 +126,11 @@ impl SceneCase for ShaftLineCase {
         }
         let start = Start::new(case, a.line.nodes.len());
         let mut run = Run { loaded, plan: &plan, a: &a, start, results };
-        progress(Progress { phase: "natural frequencies".into(), fraction: 0.0 });
+        progress(Progress { phase: "natural frequencies".into(), fraction: 0.0 })?;
         if plan.frequencies {
             run.frequencies()?;
         }
-        progress(Progress { phase: "response".into(), fraction: 0.1 });
+        progress(Progress { phase: "response".into(), fraction: 0.1 })?;
         run.response_and_verdict(progress)?;
         result.seconds.insert("solve".into(), begin.elapsed().as_secs_f64());
         Ok(result)
@@ -193,7 +193,10 @@ impl Run<'_> {
     }
 
     /// What the torsion model answers, for the case and its load steps.
-    fn response_and_verdict(&mut self, progress: &mut dyn FnMut(Progress)) -> Result<(), RunError> {
+    fn response_and_verdict(
+        &mut self,
+        progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
+    ) -> Result<(), RunError> {
         let case = &self.loaded.value;
         match case.models.torsion.answers() {
             TorsionAnswer::Time => self.over_time(progress),
@@ -203,7 +206,10 @@ impl Run<'_> {
     }
 
     /// Vibration at the mean speed, over the diagram's speeds, and the verdict over the operating range.
-    fn periodic(&mut self, progress: &mut dyn FnMut(Progress)) -> Result<(), RunError> {
+    fn periodic(
+        &mut self,
+        progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
+    ) -> Result<(), RunError> {
         let (case, a, plan) = (&self.loaded.value, self.a, self.plan);
         let start = self.start.clone();
         let mut machine = machine_of(&start, case, a)?;
@@ -215,7 +221,7 @@ impl Run<'_> {
         }
         let speeds = if plan.range { speeds(case) } else { Vec::new() };
         if plan.range {
-            progress(Progress { phase: "vibration over the speed".into(), fraction: 0.3 });
+            progress(Progress { phase: "vibration over the speed".into(), fraction: 0.3 })?;
             self.results.gas_over_speed(a, &self.loaded.source.files, &speeds);
             self.results.range(&mut machine, &speeds).map_err(failed)?;
         }
@@ -223,7 +229,7 @@ impl Run<'_> {
             self.results.count("linear_solutions", machine.solutions);
             return Ok(());
         }
-        progress(Progress { phase: "verdict".into(), fraction: 0.6 });
+        progress(Progress { phase: "verdict".into(), fraction: 0.6 })?;
         let steps = self.load_steps()?;
         let starts: Vec<Start> =
             steps.iter().map(|(c, a)| Start::new(&c.value, a.line.nodes.len())).collect();
@@ -304,7 +310,10 @@ impl Run<'_> {
     }
 
     /// Motion over time, of the case and of its load steps where limits need them.
-    fn over_time(&mut self, progress: &mut dyn FnMut(Progress)) -> Result<(), RunError> {
+    fn over_time(
+        &mut self,
+        progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
+    ) -> Result<(), RunError> {
         let (case, a, plan) = (&self.loaded.value, self.a, self.plan);
         let mut judged = Vec::new();
         if plan.response {
@@ -317,7 +326,7 @@ impl Run<'_> {
         let steps = self.load_steps()?;
         for (k, (changed, a)) in steps.iter().enumerate().filter(|_| plan.response) {
             let fraction = (k + 1) as f64 / (steps.len() + 1) as f64;
-            progress(Progress { phase: "load steps".into(), fraction });
+            progress(Progress { phase: "load steps".into(), fraction })?;
             let mut start = Start::new(&changed.value, a.line.nodes.len());
             let out = motion(&changed.value, a, &mut start)?;
             let mut aside = RunResult::default();

@@ -15,14 +15,14 @@ use crate::case::{Method, PinCase};
 use crate::draw;
 use crate::output::model;
 use crate::setup::{Setup, sizes};
-use gudgeon_scene::{Progress, RunError};
+use gudgeon_scene::{Progress, RunError, Stopped};
 
 /// Runs what the case asks of its pin.
 pub fn run(
     case: &PinCase,
     s: &Setup,
     out: &mut RunResult,
-    progress: &mut dyn FnMut(Progress),
+    progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
 ) -> Result<(), RunError> {
     let d = s.design();
     let size = match &case.optimise {
@@ -41,9 +41,9 @@ pub fn run(
     draw::section(case, s, &size, out);
     draw::utilisation(&d, &size, out).map_err(model)?;
     if let Some(o) = &case.optimise {
-        progress(Progress { phase: "sweeping the outer diameter".into(), fraction: 0.5 });
+        progress(Progress { phase: "sweeping the outer diameter".into(), fraction: 0.5 })?;
         sweeps::sweep(&d, s, o, out);
-        progress(Progress { phase: "drawing the design map".into(), fraction: 0.8 });
+        progress(Progress { phase: "drawing the design map".into(), fraction: 0.8 })?;
         draw::map(&d, &size, out);
         for q in &o.pareto {
             sweeps::front(&d, *q, out);

@@ -153,7 +153,7 @@ fn motion(model: &str, more: &[&str]) -> RunResult {
     set.push(format!("models.secondary_motion={model}"));
     set.extend(more.iter().map(|s| (*s).to_owned()));
     let checked = check(&case, &set).unwrap_or_else(|e| panic!("{model}: {e}"));
-    run(&checked, &mut |_| {}).unwrap_or_else(|e| panic!("{model}: {e}"))
+    run(&checked, &mut gudgeon_scene::unwatched).unwrap_or_else(|e| panic!("{model}: {e}"))
 }
 
 fn value(r: &RunResult, name: &str) -> f64 {
