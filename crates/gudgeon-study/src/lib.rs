@@ -1,8 +1,15 @@
-//! Many runs: comparisons of models and settings, run time against error of solvers, validation against sources.
+//! Many runs: comparisons of models and settings, run time against error of solvers, validation against sources; where to run and what the
+//! results depend on.
 
+pub mod anova;
 mod bench;
 mod compare;
+pub mod distribution;
 mod error;
+mod normal;
+mod random;
+pub mod sampling;
+pub mod sensitivity;
 pub mod validate;
 
 pub use bench::bench;

@@ -1,0 +1,6 @@
+//! Statistics of studies against closed forms.
+
+mod anova;
+mod distribution;
+mod sampling;
+mod sensitivity;
