@@ -22,6 +22,8 @@ impl Args {
             Command::Compare(a) => a.quiet,
             Command::Bench(a) => a.quiet,
             Command::Validate(a) => a.quiet,
+            Command::Study(StudyCommand::Run(a)) => a.quiet,
+            Command::Study(StudyCommand::Collect(a)) => a.quiet,
             _ => false,
         }
     }
@@ -47,6 +49,9 @@ pub enum Command {
     Bench(BenchArgs),
     /// Compare cases with the values of their sources
     Validate(ValidateArgs),
+    /// Make, run and collect a study of many runs in a folder
+    #[command(subcommand)]
+    Study(StudyCommand),
     /// Write report.html of a result folder again
     Report(ReportArgs),
 }
@@ -152,6 +157,71 @@ pub struct ValidateArgs {
     #[arg(long)]
     pub json: bool,
     /// No progress, only what does not hold
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+/// What to do with the folder of a study.
+#[derive(Debug, Subcommand)]
+pub enum StudyCommand {
+    /// Make the folder of a study from a study file; nothing is run
+    New(StudyNewArgs),
+    /// Run what is missing; broken off, the same command goes on
+    Run(StudyRunArgs),
+    /// Tell how far a study is
+    Status(StudyStatusArgs),
+    /// Put all rows into one table, and tell what the results depend on
+    Collect(StudyCollectArgs),
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct StudyNewArgs {
+    /// Folder of the study
+    #[arg(value_name = "DIR")]
+    pub dir: PathBuf,
+    /// Study file: cases, inputs, design
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct StudyRunArgs {
+    /// Folder of the study
+    #[arg(value_name = "DIR")]
+    pub dir: PathBuf,
+    /// Only the k-th of N jobs: for arrays of jobs
+    #[arg(long, value_name = "K/N")]
+    pub part: Option<String>,
+    /// Threads; 0: one a core
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub threads: usize,
+    /// No progress, no summary
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct StudyStatusArgs {
+    /// Folder of the study
+    #[arg(value_name = "DIR")]
+    pub dir: PathBuf,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct StudyCollectArgs {
+    /// Folder of the study
+    #[arg(value_name = "DIR")]
+    pub dir: PathBuf,
+    /// Write table.csv beside table.parquet
+    #[arg(long)]
+    pub csv: bool,
+    /// Collect although points are missing
+    #[arg(long)]
+    pub partial: bool,
+    /// No table on the terminal
     #[arg(long, short)]
     pub quiet: bool,
 }

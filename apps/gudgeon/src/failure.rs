@@ -7,6 +7,7 @@ use gudgeon_core::registry::RegistryError;
 use gudgeon_report::ReportError;
 use gudgeon_scene::{RunError, Stopped};
 use gudgeon_study::StudyError;
+use gudgeon_study::study::FolderError;
 
 #[derive(Debug)]
 pub enum Failure {
@@ -56,6 +57,15 @@ impl From<StudyError> for Failure {
     fn from(e: StudyError) -> Self {
         match e {
             StudyError::Input(report) => Self::Input(report),
+            e => Self::Run(e.to_string()),
+        }
+    }
+}
+impl From<FolderError> for Failure {
+    fn from(e: FolderError) -> Self {
+        match e {
+            FolderError::Input(report) => Self::Input(report),
+            FolderError::Folder(what) => Self::Argument(Diagnostic::new(what)),
             e => Self::Run(e.to_string()),
         }
     }

@@ -11,7 +11,8 @@ use crate::scene::Scene;
 use gudgeon_case::{Diagnostic, Report, Source};
 
 /// SHA-256 of some bytes in hexadecimal digits.
-fn sha256(bytes: &[u8]) -> String {
+#[must_use]
+pub fn sha256(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().fold(String::new(), |mut s, b| {
         // Writing to a String cannot fail.
         let _ = write!(s, "{b:02x}");

@@ -45,8 +45,10 @@ pub enum Spacing {
 
 /// Most runs of one sweep: at a millisecond each, a minute and a half.
 const MOST: usize = 100_000;
+
 /// `"1.5 um"` as 1.5 and `um`; `"3"` as 3 and nothing.
-pub(crate) fn number(text: &str) -> Option<(f64, &str)> {
+#[must_use]
+pub fn number(text: &str) -> Option<(f64, &str)> {
     let text = text.trim();
     let (value, unit) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
     value.parse::<f64>().ok().filter(|v| v.is_finite()).map(|v| (v, unit.trim()))
@@ -56,7 +58,7 @@ pub(crate) fn number(text: &str) -> Option<(f64, &str)> {
 ///
 /// # Errors
 /// Values that are given twice or not at all, ends that are no numbers of one unit.
-pub(crate) fn values(s: &Sweep) -> Result<Vec<String>, BuildError> {
+pub fn values(s: &Sweep) -> Result<Vec<String>, BuildError> {
     let ends = !s.from.is_empty() || !s.to.is_empty() || s.points != 0;
     if !s.values.is_empty() {
         return if ends {

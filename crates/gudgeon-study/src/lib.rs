@@ -10,6 +10,7 @@ mod normal;
 mod random;
 pub mod sampling;
 pub mod sensitivity;
+pub mod study;
 pub mod validate;
 
 pub use bench::bench;

@@ -9,6 +9,7 @@ pub mod models;
 pub mod report;
 pub mod run;
 pub mod schema;
+pub mod study;
 pub mod tables;
 pub mod validate;
 

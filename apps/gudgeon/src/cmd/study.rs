@@ -1,0 +1,185 @@
+//! `gudgeon study new|run|status|collect DIR`
+
+use std::fmt::Write as _;
+
+use gudgeon_study::study::{Analysis, Dependence, Finding, Group, Job, Status, Study};
+
+use crate::args::{StudyCollectArgs, StudyCommand, StudyNewArgs, StudyRunArgs, StudyStatusArgs};
+use crate::failure::Failure;
+use crate::ui::{Ui, number, table};
+
+pub fn study(a: &StudyCommand, ui: &Ui) -> Result<(), Failure> {
+    match a {
+        StudyCommand::New(a) => new(a, ui),
+        StudyCommand::Run(a) => run(a, ui),
+        StudyCommand::Status(a) => status(a, ui),
+        StudyCommand::Collect(a) => collect(a, ui),
+    }
+}
+
+fn new(a: &StudyNewArgs, ui: &Ui) -> Result<(), Failure> {
+    let study = Study::create(&a.dir, &a.file)?;
+    ui.out(&format!("{}: {} points in {} parts", a.dir.display(), study.record.points, study.parts()));
+    Ok(())
+}
+
+fn run(a: &StudyRunArgs, ui: &Ui) -> Result<(), Failure> {
+    let job = a.part.as_deref().map_or(Ok(Job::ALL), job)?;
+    let study = Study::open(&a.dir)?;
+    let status = {
+        let bar = ui.bar();
+        study.run(job, a.threads, &mut |p| bar.show(p))?
+    };
+    if !ui.quiet() {
+        ui.out(&text(&status));
+    }
+    failures(&status)
+}
+
+fn status(a: &StudyStatusArgs, ui: &Ui) -> Result<(), Failure> {
+    let status = Study::open(&a.dir)?.status();
+    if a.json {
+        // Numbers alone: JSON refuses none of them.
+        ui.json(&serde_json::to_value(&status).unwrap_or_default());
+    } else {
+        ui.out(&text(&status));
+    }
+    Ok(())
+}
+
+/// `3/8`.
+fn job(text: &str) -> Result<Job, Failure> {
+    let parsed =
+        text.split_once('/').and_then(|(k, n)| Some((k.trim().parse().ok()?, n.trim().parse().ok()?)));
+    match parsed {
+        Some((number, of)) if (1..=of).contains(&number) => Ok(Job { number, of }),
+        _ => Err(Failure::argument(
+            format!("`--part {text}` is not one of some parts"),
+            "write `--part K/N` with K from 1 to N, for example `--part 3/8`",
+        )),
+    }
+}
+
+fn text(s: &Status) -> String {
+    let mut out =
+        format!("{} of {} points done, {} of {} parts", s.done, s.points, s.parts - s.missing.len(), s.parts);
+    if s.failed > 0 {
+        let _ = write!(out, "; {} points failed: their rows carry `code` and `message`", s.failed);
+    }
+    out
+}
+
+fn failures(s: &Status) -> Result<(), Failure> {
+    match s.failed {
+        0 => Ok(()),
+        n => {
+            Err(Failure::Run(format!("{n} of {} points failed (their rows are written and marked)", s.done)))
+        }
+    }
+}
+
+fn collect(a: &StudyCollectArgs, ui: &Ui) -> Result<(), Failure> {
+    let study = Study::open(&a.dir)?;
+    let missing = study.status().missing.len();
+    if missing > 0 && !a.partial {
+        return Err(Failure::argument(
+            format!("{missing} of {} parts are missing", study.parts()),
+            format!("`gudgeon study run {}` runs them; `--partial` collects what is there", a.dir.display()),
+        ));
+    }
+    let collected = study.write_table(a.csv)?;
+    let mut told = format!("{} rows in {}", collected.rows, collected.path.display());
+    if let Some(analysis) = &collected.analysis {
+        told = format!("{}\n{told}", dependences(analysis));
+    }
+    if !ui.quiet() {
+        ui.out(&told);
+    }
+    Ok(())
+}
+
+/// Results of which the terminal tells; the rest stands in the file.
+const SHOWN: usize = 6;
+
+fn dependences(a: &Analysis) -> String {
+    let mut out = String::new();
+    for group in &a.groups {
+        if !group.name.is_empty() {
+            let _ = writeln!(out, "{}\n", group.name);
+        }
+        out.push_str(&of_group(a, group));
+        if group.results.len() > SHOWN {
+            let _ = writeln!(out, "  {} more results in analysis.json\n", group.results.len() - SHOWN);
+        }
+    }
+    out
+}
+
+fn of_group(a: &Analysis, group: &Group) -> String {
+    let mut out = String::new();
+    for f in group.results.iter().take(SHOWN) {
+        let unit = if f.unit.is_empty() || f.unit == "1" { String::new() } else { format!(" [{}]", f.unit) };
+        let _ = writeln!(out, "  {}{unit}", f.result);
+        match rows(a, f) {
+            Ok(rows) => {
+                let columns: Vec<usize> = (1..rows.first().map_or(1, Vec::len)).collect();
+                for line in table(&rows, &columns).lines() {
+                    let _ = writeln!(out, "  {line}");
+                }
+            }
+            Err(why) => {
+                let _ = writeln!(out, "    {why}");
+            }
+        }
+        out.push('\n');
+    }
+    out
+}
+
+fn cells<const N: usize>(name: &str, values: [f64; N]) -> Vec<String> {
+    std::iter::once(name.to_owned()).chain(values.map(number)).collect()
+}
+
+fn heads<const N: usize>(words: [&str; N]) -> Vec<String> {
+    words.map(str::to_owned).to_vec()
+}
+
+/// A table of what a result depends on.
+fn rows(a: &Analysis, f: &Finding) -> Result<Vec<Vec<String>>, String> {
+    let input = |k: usize| a.inputs[k].as_str();
+    let mut out = Vec::new();
+    match &f.dependence {
+        Dependence::Unknown(why) => return Err(why.clone()),
+        Dependence::Tornado(t) => {
+            out.push(heads(["input", "low", "high", "range"]));
+            let at = |v: Option<f64>| v.unwrap_or(f64::NAN);
+            out.extend(t.swings.iter().map(|s| cells(input(s.input), [at(s.low), at(s.high), s.range])));
+        }
+        Dependence::Morris(effects) => {
+            out.push(heads(["input", "mu", "mu*", "sigma"]));
+            out.extend(effects.iter().enumerate().map(|(k, e)| cells(input(k), [e.mu, e.mu_star, e.sigma])));
+        }
+        Dependence::Sobol(s) => {
+            out.push(heads(["input", "first", "from", "to", "total", "from", "to"]));
+            out.extend(s.inputs.iter().enumerate().map(|(k, i)| {
+                let (f, t) = (i.first, i.total);
+                cells(input(k), [f.value, f.low, f.high, t.value, t.low, t.high])
+            }));
+        }
+        Dependence::Sample { band: b, effects } => {
+            out.push(heads(["", "mean", "deviation", "5 %", "median", "95 %"]));
+            let [low, middle, high] = b.quantiles;
+            out.push(cells("all", [b.mean, b.deviation, low, middle, high]));
+            out.push(heads(["input", "range of mean", "share"]));
+            out.extend(effects.iter().enumerate().map(|(k, e)| cells(input(k), [e.range, e.share])));
+        }
+        Dependence::Shares(anova) => {
+            out.push(heads(["input", "share of the variance", "largest effect"]));
+            out.extend(anova.effects.iter().map(|e| {
+                let name = e.factors.iter().map(|k| input(*k)).collect::<Vec<_>>().join(" × ");
+                cells(&name, [e.share, e.largest])
+            }));
+        }
+    }
+    Ok(out)
+}

@@ -1,0 +1,167 @@
+//! What a study says: how results depend on its inputs, by what its design was made for.
+
+use serde::Serialize;
+
+use super::folder::Study;
+use super::table::{Table, Values};
+use crate::anova::{Anova, anova};
+use crate::sampling::{Design, Morris, OneAtATime, Saltelli};
+use crate::sensitivity::{
+    Band, Bootstrap, ElementaryEffects, MainEffect, SobolIndices, Tornado, band, elementary_effects,
+    main_effects, sobol_indices, tornado,
+};
+
+/// What a study says of its results.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Analysis {
+    /// What is varied, in the order in which effects number it.
+    pub inputs: Vec<String>,
+    /// What the results of each group of points say. A design is repeated for every case and every row of a list: each is a group of its own. A
+    /// grid is one group, in which cases and rows are factors.
+    pub groups: Vec<Group>,
+}
+
+/// The points of one case and one row of the list, or of a whole grid.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Group {
+    /// The case, and the row of the list where there is one; empty for a grid.
+    pub name: String,
+    /// By result.
+    pub results: Vec<Finding>,
+}
+
+/// What is known of one result.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Finding {
+    /// Its name.
+    pub result: String,
+    /// Its unit.
+    pub unit: String,
+    /// What it depends on.
+    pub dependence: Dependence,
+}
+
+/// On what a result depends.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Dependence {
+    /// How far each input alone moves it.
+    Tornado(Tornado),
+    /// Elementary effects of each input, over its whole range.
+    Morris(Vec<ElementaryEffects>),
+    /// First-order and total Sobol indices.
+    Sobol(SobolIndices),
+    /// How the result spreads, and how its mean follows each input.
+    Sample {
+        /// Its spread.
+        band: Band,
+        /// By input.
+        effects: Vec<MainEffect>,
+    },
+    /// Shares of the variance over a grid.
+    Shares(Anova),
+    /// Why it is not known.
+    Unknown(String),
+}
+
+/// Resamples of the bootstrap of Sobol indices.
+const RESAMPLES: usize = 1000;
+
+impl Study {
+    /// What the rows of this study say. All rows must be there.
+    #[must_use]
+    pub fn analyse(&self, table: &Table) -> Analysis {
+        let own = self.record.study.inputs.len();
+        let rows = self.record.list.as_ref().map_or(1, |l| l.rows.len());
+        let inputs: Vec<String> = self.plan.varied.iter().map(|v| v.path.clone()).collect();
+        let names = result_columns(table);
+        let Some(design) = &self.record.study.design else {
+            let (levels, inputs) = self.factors(inputs);
+            let results = names
+                .iter()
+                .map(|n| {
+                    finding(table, n, 0..table.rows(), |y| {
+                        anova(&levels, y, &vec![0.0; y.len()])
+                            .map(Dependence::Shares)
+                            .map_err(|e| e.to_string())
+                    })
+                })
+                .collect();
+            return Analysis { inputs, groups: vec![Group { name: String::new(), results }] };
+        };
+        let inner = table.rows() / (rows * self.record.cases.len()).max(1);
+        let groups = (0..rows * self.record.cases.len())
+            .map(|g| {
+                let case = &self.record.cases[g / rows].name;
+                let name = if rows > 1 { format!("{case}, row {}", g % rows + 1) } else { case.clone() };
+                let of =
+                    |n: &String| finding(table, n, g * inner..(g + 1) * inner, |y| depends(design, own, y));
+                Group { name, results: names.iter().map(of).collect() }
+            })
+            .collect();
+        Analysis { inputs: inputs[inputs.len() - own..].to_vec(), groups }
+    }
+
+    /// The factors of a grid with their numbers of levels: cases, rows of the list, inputs.
+    fn factors(&self, inputs: Vec<String>) -> (Vec<usize>, Vec<String>) {
+        let own = &self.record.study.inputs;
+        let rows = self.record.list.as_ref().map(|l| l.rows.len());
+        let mut levels = vec![self.record.cases.len()];
+        let mut names = vec!["case".to_owned()];
+        if let Some(rows) = rows {
+            levels.push(rows);
+            names.push("list".to_owned());
+        }
+        // They were legal when the study was made.
+        levels.extend(own.iter().map(|i| i.grid().map_or(1, |v| v.len())));
+        names.extend(inputs[inputs.len() - own.len()..].iter().cloned());
+        (levels, names)
+    }
+}
+
+/// Columns of results: the numbers behind the notes.
+fn result_columns(table: &Table) -> Vec<String> {
+    let after = table.columns.get_index_of("notes").map_or(0, |k| k + 1);
+    let numbers = table.columns.iter().skip(after).filter(|(_, c)| matches!(c.values, Values::Numbers(_)));
+    numbers.map(|(name, _)| name.clone()).collect()
+}
+
+fn finding(
+    table: &Table,
+    name: &str,
+    rows: std::ops::Range<usize>,
+    f: impl FnOnce(&[f64]) -> Result<Dependence, String>,
+) -> Finding {
+    let all = table.numbers(name).unwrap_or_default();
+    let dependence = f(&all[rows]).unwrap_or_else(Dependence::Unknown);
+    let unit = table.columns.get(name).map_or_else(String::new, |c| c.unit.clone());
+    Finding { result: name.to_owned(), unit, dependence }
+}
+
+/// What the results of the points of a design of `d` inputs say.
+fn depends(design: &Design, d: usize, y: &[f64]) -> Result<Dependence, String> {
+    let told = |e: crate::sensitivity::NoFigure| e.to_string();
+    let illegal = |e: gudgeon_core::BuildError| e.message;
+    match *design {
+        Design::OneAtATime { low, high } => {
+            let design = OneAtATime::new(d, low, high).map_err(illegal)?;
+            tornado(&design, y).map(Dependence::Tornado).map_err(told)
+        }
+        Design::Morris { trajectories, levels, seed } => {
+            let design = Morris::new(trajectories, d, levels, seed).map_err(illegal)?;
+            elementary_effects(&design, y).map(Dependence::Morris).map_err(told)
+        }
+        Design::Saltelli { base, seed } => {
+            let design = Saltelli::new(base, d, seed).map_err(illegal)?;
+            sobol_indices(&design, y, Bootstrap { resamples: RESAMPLES, seed })
+                .map(Dependence::Sobol)
+                .map_err(told)
+        }
+        Design::LatinHypercube { .. } | Design::Sobol { .. } => {
+            let points = design.points(d).map_err(illegal)?;
+            let all: Vec<Vec<f64>> = (0..points.len()).map(|k| points.point(k)).collect();
+            let effects = main_effects(&all, y).map_err(told)?;
+            Ok(Dependence::Sample { band: band(y).map_err(told)?, effects })
+        }
+    }
+}
