@@ -20,6 +20,7 @@ mod folder;
 mod number;
 mod page;
 mod run;
+mod study;
 mod summary;
 mod table;
 mod validation;
@@ -29,6 +30,7 @@ pub use comparison::{ComparisonFiles, write_comparison, write_comparison_in};
 pub use error::ReportError;
 pub use folder::Folder;
 pub use run::{RunFiles, summary_json, write_run, write_run_in};
+pub use study::{StudyPage, study_page};
 pub use validation::{page_name, validation_index, validation_page};
 
 use std::path::{Path, PathBuf};

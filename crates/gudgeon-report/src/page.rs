@@ -25,6 +25,7 @@ pub(crate) enum Kind {
     Run,
     Comparison,
     Bench,
+    Study,
 }
 
 /// Text made safe for HTML content and quoted attributes.
@@ -71,6 +72,7 @@ pub(crate) fn document(kind: Kind, title: &str, body: &str, data: &Value) -> Str
         Kind::Run => &[CORE, PLOT, SECTION, RUN, DRAWING, FIGURE],
         Kind::Comparison => &[CORE, PLOT, COMPARE, DRAWING, FIGURE],
         Kind::Bench => &[CORE, BENCH],
+        Kind::Study => &[CORE, PLOT, DRAWING, FIGURE],
     };
     let mut out = String::new();
     out.push_str("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");

@@ -297,6 +297,28 @@ pub enum FigureKind {
         /// The bars, from above.
         bars: Vec<Bar>,
     },
+    /// Labelled ranges: the swings of a tornado plot around a middle, or values with their intervals. Reads no table.
+    Ranges {
+        /// Unit of the values, empty for a ratio.
+        unit: String,
+        /// The value that swings go out from; none where every range has a value of its own.
+        middle: Option<f64>,
+        /// The ranges, from above.
+        ranges: Vec<Range>,
+    },
+}
+
+/// One range of a figure.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Range {
+    /// What it is.
+    pub label: String,
+    /// Where it begins: of a swing, the value at the low end of the input.
+    pub low: Option<f64>,
+    /// Where it ends: of a swing, the value at the high end of the input.
+    pub high: Option<f64>,
+    /// The value that the range surrounds.
+    pub value: Option<f64>,
 }
 
 /// One of the pictures of a moving drawing.

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use gudgeon_report::{StudyPage, study_page};
 use gudgeon_study::study::{Analysis, Dependence, Finding, Group, Job, Status, Study};
 
 use crate::args::{StudyCollectArgs, StudyCommand, StudyNewArgs, StudyRunArgs, StudyStatusArgs};
@@ -88,14 +89,42 @@ fn collect(a: &StudyCollectArgs, ui: &Ui) -> Result<(), Failure> {
         ));
     }
     let collected = study.write_table(a.csv)?;
-    let mut told = format!("{} rows in {}", collected.rows, collected.path.display());
+    let mut told = format!("{} rows in {}", collected.table.rows(), collected.path.display());
     if let Some(analysis) = &collected.analysis {
-        told = format!("{}\n{told}", dependences(analysis));
+        let (figures, tables) = study.figures(&collected.table, analysis);
+        let page = study_page(&StudyPage { title: title(&study), facts: facts(&study), figures, tables });
+        let path = study.write_page(&page)?;
+        told = format!("{}\n{told}\n{}", dependences(analysis), path.display());
     }
     if !ui.quiet() {
         ui.out(&told);
     }
     Ok(())
+}
+
+fn title(study: &Study) -> String {
+    match study.record.study.title.trim() {
+        "" => study.dir().file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned()),
+        title => title.to_owned(),
+    }
+}
+
+/// What was run.
+fn facts(study: &Study) -> Vec<(String, String)> {
+    let record = &study.record;
+    let cases = record.cases.iter().map(|c| c.name.as_str()).collect::<Vec<_>>().join(", ");
+    let inputs = study.plan.varied.iter().map(|v| v.path.as_str()).collect::<Vec<_>>().join(", ");
+    let status = study.status();
+    [
+        ("cases", cases),
+        ("inputs", inputs),
+        ("points", record.points.to_string()),
+        ("failed points", status.failed.to_string()),
+        ("Gudgeon", record.gudgeon.clone()),
+        ("SHA-256 of the study", record.sha256.clone()),
+    ]
+    .map(|(name, text)| (name.to_owned(), text))
+    .to_vec()
 }
 
 /// Results of which the terminal tells; the rest stands in the file.

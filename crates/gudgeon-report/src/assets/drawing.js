@@ -82,3 +82,35 @@ function bars(host, spec) {
   });
   host.append(h("div", { class: "chart" }, h("h3", {}, spec.title), h("p", { class: "hint" }, spec.hint || ""), svg));
 }
+// Ranges: the swings of a tornado plot around a middle, or values with their intervals.
+function ranges(host, spec) {
+  const W = 620, L = 210, R = 70, row = 24, H = row * spec.ranges.length + 34, centred = isNumber(spec.middle);
+  const values = spec.ranges.flatMap((r) => [r.low, r.high, r.value]).concat([spec.middle]).filter(isNumber);
+  if (!values.length) return;
+  let lo = Math.min(...values), hi = Math.max(...values);
+  if (!centred) { lo = Math.min(0, lo); hi = Math.max(0, hi); }
+  if (!(hi > lo)) { lo -= Math.abs(lo) || 1; hi += Math.abs(hi) || 1; }
+  const u = display(spec.unit, Math.max(Math.abs(lo), Math.abs(hi))), X = (v) => L + ((v - lo) / (hi - lo)) * (W - L - R);
+  const svg = s("svg", { viewBox: `0 0 ${W} ${H}`, role: "img", "aria-label": spec.title, class: "bars" });
+  for (const t of linearTicks(lo * u.f, hi * u.f, 6)) {
+    s("line", { x1: X(t / u.f), x2: X(t / u.f), y1: 4, y2: H - 26, class: "gridline" }, svg);
+    s("text", { x: X(t / u.f), y: H - 12, "text-anchor": "middle", class: "dim" }, svg, tickText(t));
+  }
+  if (u.label) s("text", { x: W - 4, y: H - 12, "text-anchor": "end", class: "dim" }, svg, u.label);
+  const bar = (a, b, y, style) => s("rect", { x: Math.min(X(a), X(b)), y, width: Math.max(1, Math.abs(X(b) - X(a))), height: row - 8, class: style }, svg);
+  spec.ranges.forEach((r, i) => {
+    const y = 4 + row * i, from = centred ? spec.middle : r.value;
+    s("text", { x: L - 8, y: y + 15, "text-anchor": "end" }, svg, r.label);
+    const tip = [["low", r.low], ["value", r.value], ["high", r.high]].filter(([, v]) => isNumber(v)).map(([n, v]) => `${n} ${sig(v * u.f, 5)}`).join(", ");
+    if (centred) {
+      if (isNumber(r.low)) bar(from, r.low, y + 4, "second");
+      if (isNumber(r.high)) bar(from, r.high, y + 4, "within");
+    } else {
+      if (isNumber(r.value)) bar(0, r.value, y + 4, "within");
+      if (isNumber(r.low) && isNumber(r.high)) s("line", { x1: X(r.low), x2: X(r.high), y1: y + row / 2, y2: y + row / 2, class: "limit" }, svg);
+    }
+    s("title", {}, svg.lastChild, `${r.label}: ${tip} ${u.label}`);
+  });
+  if (centred) s("line", { x1: X(spec.middle), x2: X(spec.middle), y1: 2, y2: H - 28, class: "limit" }, svg);
+  host.append(h("div", { class: "chart" }, h("h3", {}, spec.title), h("p", { class: "hint" }, spec.hint || ""), svg));
+}

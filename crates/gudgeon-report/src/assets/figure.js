@@ -178,10 +178,10 @@
   if (host && DATA.figures) {
     const maps = h("div", { class: "charts" });
     for (const f of DATA.figures) {
-      const still = f.kind.drawing || f.kind.bars;
+      const still = f.kind.drawing || f.kind.bars || f.kind.ranges;
       if (still) {
         if (!maps.isConnected) host.append(maps);
-        (f.kind.drawing ? drawing : bars)(maps, { title: capital(f.title), hint: f.hint, ...still });
+        (f.kind.drawing ? drawing : f.kind.bars ? bars : ranges)(maps, { title: capital(f.title), hint: f.hint, ...still });
         continue;
       }
       const table = DATA.tables[f.table];

@@ -37,9 +37,9 @@ impl Study {
 /// What a collection wrote.
 #[derive(Debug, Clone)]
 pub struct Collected {
-    /// Rows of the table.
-    pub rows: usize,
-    /// The table.
+    /// All rows.
+    pub table: Table,
+    /// The file that holds them.
     pub path: PathBuf,
     /// What the results depend on, when all rows are there.
     pub analysis: Option<Analysis>,
@@ -51,6 +51,8 @@ const TABLE: &str = "table.parquet";
 const CSV: &str = "table.csv";
 /// What the results depend on.
 const ANALYSIS: &str = "analysis.json";
+/// The same drawn.
+const PAGE: &str = "report.html";
 
 impl Study {
     /// Writes `table.parquet` (and `table.csv`), and `analysis.json` when all rows are there.
@@ -70,7 +72,17 @@ impl Study {
             let text = serde_json::to_string_pretty(a).unwrap_or_default() + "\n";
             put(&self.dir().join(ANALYSIS), text.as_bytes())?;
         }
-        Ok(Collected { rows: table.rows(), path, analysis })
+        Ok(Collected { path, analysis, table })
+    }
+
+    /// Puts a page about the study into its folder, as `report.html`.
+    ///
+    /// # Errors
+    /// A file system that refuses.
+    pub fn write_page(&self, page: &str) -> Result<PathBuf, FolderError> {
+        let path = self.dir().join(PAGE);
+        put(&path, page.as_bytes())?;
+        Ok(path)
     }
 }
 

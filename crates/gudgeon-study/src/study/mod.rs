@@ -13,6 +13,7 @@
 mod analysis;
 mod collect;
 mod columnar;
+mod figures;
 mod file;
 mod folder;
 mod input;
