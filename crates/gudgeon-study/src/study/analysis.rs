@@ -24,7 +24,7 @@ pub struct Analysis {
 /// The points of one case and one row of the list, or of a whole grid.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Group {
-    /// The case, and the row of the list where there is one; empty for a grid.
+    /// The case, and the row of the list where there is one; empty where there is one group alone.
     pub name: String,
     /// By result.
     pub results: Vec<Finding>,
@@ -93,7 +93,11 @@ impl Study {
         let groups = (0..rows * self.record.cases.len())
             .map(|g| {
                 let case = &self.record.cases[g / rows].name;
-                let name = if rows > 1 { format!("{case}, row {}", g % rows + 1) } else { case.clone() };
+                let name = match (self.record.cases.len(), rows) {
+                    (1, 1) => String::new(),
+                    (_, 1) => case.clone(),
+                    _ => format!("{case}, row {}", g % rows + 1),
+                };
                 let of =
                     |n: &String| finding(table, n, g * inner..(g + 1) * inner, |y| depends(design, own, y));
                 Group { name, results: names.iter().map(of).collect() }

@@ -55,8 +55,9 @@ impl Study {
             kind,
         };
         if others <= FEW {
-            let labels: Vec<String> =
-                (0..others).map(|k| label(table, inputs.len(), k * n, &x.path)).collect();
+            let labels: Vec<String> = (0..others)
+                .map(|k| label(table, self.record.cases.len(), inputs.len(), k * n, &x.path))
+                .collect();
             let columns =
                 labels.iter().enumerate().map(|(k, l)| column(l.clone(), y[k * n..(k + 1) * n].to_vec()));
             let series = Series { axis: axis(&x.path, xs[..n].to_vec()), columns: columns.collect() };
@@ -72,9 +73,10 @@ impl Study {
     }
 }
 
-/// What tells the points of a curve from those of others: case and inputs but the one along it.
-fn label(table: &Table, inputs: usize, row: usize, along: &str) -> String {
-    let outer = table.columns.iter().skip(1).take(inputs + 1).filter(|(name, _)| *name != along);
+/// What tells the points of a curve from those of others: the case where there are several, and inputs but the one along it.
+fn label(table: &Table, cases: usize, inputs: usize, row: usize, along: &str) -> String {
+    let first = if cases > 1 { 1 } else { 2 };
+    let outer = table.columns.iter().take(inputs + 2).skip(first).filter(|(name, _)| *name != along);
     let text = |(name, c): (&String, &super::table::Column)| match &c.values {
         Values::Texts(_) => c.values.text(row),
         _ => format!("{} {} {}", name.rsplit('.').next().unwrap_or(name), c.values.text(row), c.unit),
