@@ -70,6 +70,7 @@ impl Steady {
     /// Number of natural frequencies below `omega` with the stiffness that links have there.
     fn count_at(&mut self, omega: f64) -> usize {
         self.at_frequency(omega);
+        self.pivot_counts += 1;
         let mut work = vec![0.0; self.tree.len()];
         self.tree.count_below(omega * omega, &mut work)
     }

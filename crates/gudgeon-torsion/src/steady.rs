@@ -26,6 +26,8 @@ pub struct Steady {
     pub mean_angle: Vec<f64>,
     /// Mean torque \[N m\] that holds the speed, at the reference shaft.
     pub balance_torque: f64,
+    /// How often the negative pivots of the line were counted: passes through its tree that look for natural frequencies.
+    pub pivot_counts: u64,
     /// Shares of the nodes in that torque, by node.
     balance: Vec<f64>,
     /// What excites it at any speed: see [`Excitation::parts`].
@@ -95,6 +97,7 @@ impl Steady {
             mean_torque: Vec::new(),
             mean_angle: Vec::new(),
             balance_torque: 0.0,
+            pivot_counts: 0,
             balance,
             parts: Excitation::parts(&line, ctx.orders),
             drag: tree.damping.clone(),

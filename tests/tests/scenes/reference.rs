@@ -38,7 +38,7 @@ const BLOW_BY: f64 = 6.2493570768654555e-6;
 /// Names of the volumes in the case.
 const VOLUMES: [&str; 5] = ["behind1", "land2", "behind2", "land3", "behind3"];
 
-/// The rig of the case `gas-five-volumes` at a tolerance: steps, error of the blow-by, largest error in the table, imbalance of the
+/// The rig of the case `gas-five-volumes` at a tolerance: steps of all its cycles, error of the blow-by, largest error in the table, imbalance of the
 /// cycle (relative).
 fn gas(rtol: f64) -> (u64, f64, f64, f64) {
     let mut case: toml::Table =

@@ -285,8 +285,15 @@ impl Rig for Bench {
             "m/s",
             "velocity then, upwards positive",
         );
-        out.counters.insert("steps".into(), stats.steps);
-        out.counters.insert("rejected".into(), stats.rejected);
+        let counted = [
+            ("steps", stats.steps),
+            ("rejected", stats.rejected),
+            ("rhs", stats.rhs),
+            ("jacobians", stats.jacobians),
+        ];
+        for (key, n) in counted {
+            out.counters.insert(key.into(), n);
+        }
         out.axis("time", "s", rows.iter().map(|r| r.0).collect());
         out.column("height", "m", rows.iter().map(|r| r.1[0]).collect());
         out.column("velocity", "m/s", speeds.clone());

@@ -479,6 +479,7 @@ struct March<'a> {
     at: Vec<f64>,
     rows: Vec<Vec<f64>>,
     q: Vec<f64>,
+    /// Work of all cycles.
     stats: Stats,
     cycles: u64,
 }
@@ -755,7 +756,6 @@ impl Bench {
             march.close(&mut y, out)?;
         }
         let begin = y.clone();
-        march.stats = Stats::default();
         march.integrate(&mut y, self.tolerance)?;
         let (mut rows, q, stats, cycles) = (march.rows, march.q, march.stats, march.cycles);
         // A step may end a rounding before the extent.
@@ -765,8 +765,14 @@ impl Bench {
         let last = plan.axis.len() - 1;
         let here =
             if plan.extra { rows.remove(plan.result_row) } else { rows[plan.result_row.min(last)].clone() };
-        for (key, v) in [("steps", stats.steps), ("rejected", stats.rejected), ("rhs", stats.rhs)] {
-            out.counters.insert(key.into(), v);
+        let counted = [
+            ("steps", stats.steps),
+            ("rejected", stats.rejected),
+            ("rhs", stats.rhs),
+            ("jacobians", stats.jacobians),
+        ];
+        for (key, n) in counted {
+            out.counters.insert(key.into(), n);
         }
         if periodic {
             out.counters.insert("cycles".into(), cycles);

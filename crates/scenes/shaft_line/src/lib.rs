@@ -99,7 +99,7 @@ impl SceneCase for ShaftLineCase {
         let mut result =
             RunResult { models: models(case, &plan), skipped: plan.skipped.clone(), ..RunResult::default() };
         result.solver.method = case.models.torsion.typetag_name().into();
-        for counter in ["lines_built", "time_steps", "linear_solutions"] {
+        for counter in ["lines_built", "time_steps", "linear_solutions", "pivot_counts"] {
             result.solver.counters.insert(counter.into(), 0);
         }
         let mut results = Results::new(case, &mut result);
@@ -226,7 +226,7 @@ impl Run<'_> {
             self.results.range(&mut machine, &speeds).map_err(failed)?;
         }
         if !plan.verdict {
-            self.results.count("linear_solutions", machine.solutions);
+            self.results.work(&machine);
             return Ok(());
         }
         progress(Progress { phase: "verdict".into(), fraction: 0.6 })?;
@@ -248,7 +248,7 @@ impl Run<'_> {
         }
         self.results.verdict(&mut all, &speeds, plan.forced).map_err(failed)?;
         for (_, m) in &all {
-            self.results.count("linear_solutions", m.solutions);
+            self.results.work(m);
         }
         Ok(())
     }

@@ -12,6 +12,7 @@ use gudgeon_core::result::{Column, Figure, FigureKind, Note, RunResult, Value};
 
 use super::assemble::Assembled;
 use super::case::ShaftLineCase;
+use super::machine::Machine;
 
 /// Points over a turn of which curves are drawn.
 const TURN: usize = 1440;
@@ -46,6 +47,12 @@ impl<'a> Results<'a> {
 
     pub fn count(&mut self, name: &str, n: u64) {
         *self.out.solver.counters.entry(name.into()).or_insert(0) += n;
+    }
+
+    /// Adds what a machine took over the speed.
+    pub fn work(&mut self, machine: &Machine<'_>) {
+        self.count("linear_solutions", machine.solutions);
+        self.count("pivot_counts", machine.steady.pivot_counts);
     }
 
     pub fn note(&mut self, notes: &[Note]) {
