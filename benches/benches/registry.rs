@@ -12,7 +12,6 @@ use criterion::Criterion;
 use gudgeon_benches::alone::{KINDS, Reach, models, reach};
 use gudgeon_core::ModelInfo;
 use gudgeon_core::content::Content;
-use gudgeon_models as _;
 
 /// The example of a model as its reader takes it.
 fn example(m: &ModelInfo) -> Result<Content, String> {

@@ -1,5 +1,5 @@
-//! Time of one run of every scene, from a case that was read to its results, without sweeps and files; of each solver of a ring pack and of a piston; and of
-//! ring packs with the models that run within a scene alone.
+//! Time of one run of every scene, from a case that was read to its results, without sweeps and files; and of runs with every model of the kinds
+//! that ask other parts of a scene, on its registered example: solvers, motions.
 #![allow(clippy::print_stdout, missing_docs)]
 
 use std::time::Duration;
@@ -8,9 +8,15 @@ use criterion::Criterion;
 use gudgeon_benches::cases::{Case, one_a_scene, run_alone};
 use gudgeon_core::Registry;
 
-/// Case and kind of the solvers that are tried on it.
-const SOLVERS: [(&str, &str); 2] =
-    [("turbo-diesel-120-as-published", "ring_pack_solver"), ("turbo-diesel-120-skirt", "piston_solver")];
+/// Kinds whose models run within a scene alone: the case they are put into, where, and by which key they are named there.
+const WITHIN: [(&str, &str, &str, &str); 4] = [
+    ("ring_pack_solver", "turbo-diesel-120-as-published", "solver", "method"),
+    ("radial_motion", "turbo-diesel-120", "models.radial_motion", "model"),
+    ("piston_solver", "turbo-diesel-120-skirt", "solver", "method"),
+    ("secondary_motion", "turbo-diesel-120-skirt", "models.secondary_motion", "model"),
+];
+/// A motion that every solver of a ring pack takes.
+const MOTION: &str = "models.ring_motion={ model = \"seated\" }";
 
 fn time(criterion: &mut Criterion, case: &Case) -> Result<(), String> {
     let checked = case.check()?;
@@ -22,16 +28,23 @@ fn time(criterion: &mut Criterion, case: &Case) -> Result<(), String> {
     Ok(())
 }
 
-/// Every registered solver at its defaults.
-fn solvers() -> Vec<Case> {
+/// Every model of those kinds, from its example.
+fn within() -> Vec<Case> {
     let registry = Registry::collect();
-    let of = |(file, kind)| {
-        registry.models(kind).iter().map(move |m| {
-            let name = format!("{file}, {}", m.name);
-            Case::shipped(file).changed(&name, &[&format!("solver={{ method = \"{}\" }}", m.name)])
-        })
-    };
-    SOLVERS.into_iter().flat_map(of).collect()
+    let mut all = Vec::new();
+    for (kind, file, path, key) in WITHIN {
+        for m in registry.models(kind) {
+            let example: toml::Table = toml::from_str(m.example).unwrap_or_default();
+            let named = [(key.to_owned(), m.name.into())];
+            let entries =
+                named.into_iter().chain(example).map(|(k, v): (_, toml::Value)| format!("{k} = {v}"));
+            let table = format!("{path}={{ {} }}", entries.collect::<Vec<_>>().join(", "));
+            let mut set = vec![table.as_str()];
+            set.extend((kind == "ring_pack_solver").then_some(MOTION));
+            all.push(Case::shipped(file).changed(&format!("{kind}/{}", m.name), &set));
+        }
+    }
+    all
 }
 
 fn main() {
@@ -40,7 +53,7 @@ fn main() {
         .warm_up_time(Duration::from_millis(500))
         .measurement_time(Duration::from_secs(3))
         .configure_from_args();
-    for case in one_a_scene().iter().chain(&solvers()) {
+    for case in one_a_scene().iter().chain(&within()) {
         if let Err(e) = time(&mut criterion, case) {
             println!("not timed: {e}");
         }

@@ -120,9 +120,18 @@ pub fn film_temperature(m: &ModelInfo) -> Result<Alone, String> {
     )
 }
 
-/// The load of a barrel face of 3 mm at mid-stroke and the squeeze velocity at which it is carried.
+/// Films of a barrel face about mid-stroke, a step of a few per cent apart as those of an integrator.
+fn films() -> [FaceIn; 16] {
+    std::array::from_fn(|k| {
+        let (sin, cos) = (std::f64::consts::TAU * k as f64 / 16.0).sin_cos();
+        let (h, u) = (3e-6 * (1.0 + 0.1 * sin), -10.0 - 2.0 * cos);
+        FaceIn { h, u, p_bottom: 2e5, p_top: 1e6, p_cav: 1e5, mu: VISCOSITY }
+    })
+}
+
+/// The forces of sixteen films at a squeeze velocity, and the squeeze velocity at which each load is carried.
 pub fn hydrodynamics(m: &ModelInfo) -> Result<Alone, String> {
-    let inp = FaceIn { h: 3e-6, u: -10.0, p_bottom: 2e5, p_top: 1e6, p_cav: 1e5, mu: VISCOSITY };
+    let films = films();
     alone::<dyn HydrodynamicsSpec, _, _>(
         m,
         |s| {
@@ -130,16 +139,18 @@ pub fn hydrodynamics(m: &ModelInfo) -> Result<Alone, String> {
             s.build(&FaceCtx { face: &face })
         },
         move |film| {
-            let out = film.evaluate(black_box(&inp), -1e-4)?;
-            if film.resists() {
-                black_box(film.carry(black_box(&inp), out.load)?);
+            for inp in &films {
+                let load = film.evaluate(black_box(inp), -1e-4)?.load;
+                if film.resists() {
+                    black_box(film.carry(black_box(inp), load)?);
+                }
             }
-            seen(out)
+            Ok(())
         },
     )
 }
 
-/// The same barrel on 64 panels, from a film that was found before.
+/// A barrel face of 1.2 mm on 64 panels, from a film that was found before.
 pub fn film_1d(m: &ModelInfo) -> Result<Alone, String> {
     let line = LineProfile::parabola(1.2e-3, 17.0, 0.6e-3, 2e-6, POINTS, false).map_err(|e| e.to_string())?;
     let x = line.x.clone();

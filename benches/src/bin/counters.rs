@@ -18,7 +18,7 @@ use gudgeon_benches::{history, stress};
 #[command(name = "counters")]
 struct Args {
     /// Measure the spans anew and write them, for this reason, which `benches/counters-history.md` keeps with all that changed.
-    #[arg(long, value_name = "REASON")]
+    #[arg(long, value_name = "REASON", value_parser = clap::builder::NonEmptyStringValueParser::new())]
     accept: Option<String>,
     /// Count instructions by valgrind instead. They are compared where the compiler is that of the baseline.
     #[arg(long)]
@@ -72,7 +72,11 @@ fn run(a: &Args) -> Result<(), String> {
         was.retain(|case, _| is.contains_key(case));
     }
     let changed = changes(was, &is);
-    let Some(reason) = &a.accept else { return judge(&is, &changed, share) };
+    let Some(reason) = &a.accept else { return judge(a, &is, &changed, share) };
+    if changed.is_empty() {
+        println!("every count is within its span: there is nothing to accept");
+        return Ok(());
+    }
     *was = is;
     if a.instructions {
         baseline.compiler = COMPILER.into();
@@ -108,7 +112,7 @@ fn measured(a: &Args, baseline: &Baseline) -> Result<Option<Work>, String> {
 ///
 /// # Errors
 /// What changed by more than `share`.
-fn judge(is: &Work, changed: &[Change], share: f64) -> Result<(), String> {
+fn judge(a: &Args, is: &Work, changed: &[Change], share: f64) -> Result<(), String> {
     let (beyond, within): (Vec<&Change>, Vec<&Change>) =
         changed.iter().partition(|c| c.share().abs() > share);
     for c in within {
@@ -121,11 +125,13 @@ fn judge(is: &Work, changed: &[Change], share: f64) -> Result<(), String> {
         return Ok(());
     }
     let lines: Vec<String> = beyond.iter().map(ToString::to_string).collect();
+    let instructions = if a.instructions { " --instructions" } else { "" };
     Err(format!(
         "{}\n\n\
-         These counts are not within {percent} % of what was accepted (benches/counters.toml). Work that grew is mended or explained, and work that \
-         fell is kept:\n\n    {} --accept \"REASON\"\n\nwrites the counts anew and the reason into benches/counters-history.md.",
+         These counts are not within {percent} % of what was accepted (benches/counters.toml). Work that grew is mended or explained, and work \
+         that fell is kept:\n\n\
+         \x20   cargo run -p gudgeon-benches --profile test --bin counters --{instructions} --accept \"REASON\"\n\n\
+         writes the counts anew and the reason into benches/counters-history.md.",
         lines.join("\n"),
-        std::env::args().collect::<Vec<_>>().join(" ")
     ))
 }
