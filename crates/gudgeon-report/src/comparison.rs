@@ -299,7 +299,7 @@ fn page(file: &File, series: &[(usize, &Series)]) -> String {
             json!({ "number": n, "label": label, "series": columns })
         })
         .collect();
-    let data = json!({ "variants": variants, "arrays": arrays.into_json() });
+    let data = json!({ "cases": file.cases.len(), "variants": variants, "arrays": arrays.into_json() });
     page::document(Kind::Comparison, heading, &body, &data)
 }
 

@@ -72,7 +72,8 @@ fn explanation(t: &ShareTable) -> String {
         "Spread is the standard deviation of a result over all combinations, of its mean."
     } else {
         "Each result is taken relative to its case: its mean there is taken off, and what is left divided by the mean magnitude there, so that \
-         a large engine counts as much as a small one; angles are shifts. Spread is the standard deviation over the combinations of a case."
+         a large engine counts as much as a small one; angles are shifts. Spread is the standard deviation over the combinations of a case. \
+         The last column tells how much of the variance of the values themselves lies between the cases."
     };
     let numerics = if t.verified {
         "found by refinement"
@@ -107,7 +108,7 @@ fn table(out: &mut String, t: &ShareTable) {
     for (levels, results) in left_out(t) {
         let _ = write!(
             out,
-            "<p class=\"hint\">Without {} in {}: combinations with it have no result.</p>",
+            "<p class=\"hint\">Without {} in {}: not all combinations with it have a result to use.</p>",
             esc(&levels),
             esc(&results)
         );

@@ -23,7 +23,11 @@ pub fn compare(a: &CompareArgs, ui: &Ui) -> Result<(), Failure> {
         }
     }
     let plan = Plan { cases, swaps, verify: a.verify, headlines: a.results.clone() };
-    let folder = open_out(a.out.as_deref(), &plan.cases[0].path, &names.join("+"), "-compare")?;
+    let name = match names.as_slice() {
+        [first, _, _, _, ..] => format!("{first}+{}", names.len() - 1),
+        few => few.join("+"),
+    };
+    let folder = open_out(a.out.as_deref(), &plan.cases[0].path, &name, "-compare")?;
     let comparison = {
         let bar = ui.bar();
         gudgeon_study::compare_cases(&plan, &mut |p| bar.show(p))?

@@ -31,7 +31,7 @@ pub fn text(t: &ShareTable) -> String {
             let alike: Vec<&str> =
                 shown.iter().filter(|o| o.left_out == r.left_out).map(|o| o.result.as_str()).collect();
             let text = format!(
-                "without {} in {}: combinations with it have no result",
+                "without {} in {}: not all combinations with it have a result to use",
                 r.left_out.join(", "),
                 alike.join(", ")
             );
@@ -61,24 +61,21 @@ const fn explanation(t: &ShareTable) -> &'static str {
 fn head(t: &ShareTable, single: &[usize]) -> Vec<String> {
     let mut head = vec![String::new(), "spread".into()];
     head.extend(single.iter().map(|e| t.effect(*e)));
-    head.push("interactions".into());
-    if t.case.is_none() {
-        head.push(format!("with {CASE}"));
-    }
+    let further = [("interactions".to_owned(), false), (format!("with {CASE}"), true)];
+    head.extend(further.into_iter().filter(|(_, with)| !several(t, *with).is_empty()).map(|(name, _)| name));
     head
+}
+
+/// Interactions with the case, or those without.
+fn several(t: &ShareTable, with_case: bool) -> Vec<usize> {
+    (0..t.effects.len()).filter(|e| t.effects[*e].len() > 1 && t.with_case(*e) == with_case).collect()
 }
 
 fn line(t: &ShareTable, r: &ShareRow, single: &[usize]) -> Vec<String> {
     let mut line = vec![r.result.clone(), spread(r)];
     line.extend(single.iter().map(|e| part(r.shares[*e].as_slice())));
-    let several = |with_case: bool| {
-        let own = (0..t.effects.len()).filter(|e| t.effects[*e].len() > 1 && t.with_case(*e) == with_case);
-        let all: Vec<Share> = own.filter_map(|e| r.shares[e]).collect();
-        part(&all)
-    };
-    line.push(several(false));
-    if t.case.is_none() {
-        line.push(several(true));
+    for effects in [false, true].map(|with| several(t, with)).iter().filter(|e| !e.is_empty()) {
+        line.push(part(&effects.iter().filter_map(|e| r.shares[*e]).collect::<Vec<_>>()));
     }
     line
 }

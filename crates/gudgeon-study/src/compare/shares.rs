@@ -61,7 +61,7 @@ fn good(v: &Variant) -> Option<&RunResult> {
 
 impl Scope<'_> {
     /// Names of the factors and of their levels.
-    fn factors(&self) -> IndexMap<String, Vec<String>> {
+    fn factors(&self) -> Vec<Factor> {
         let cases = || self.comparison.cases.iter().map(|c| c.name.clone()).collect();
         let swaps = self.comparison.swaps.iter().map(|(p, v)| {
             let values = v.iter().map(|v| short_value(v)).collect();
@@ -71,18 +71,17 @@ impl Scope<'_> {
     }
 
     fn table(&self, headlines: &[String]) -> ShareTable {
-        let factors = self.factors();
-        let levels: Vec<usize> = factors.values().map(Vec::len).collect();
+        let mut grid = Grid::new(self.factors());
+        // Each value is taken relative to its case: alone it explains nothing.
+        grid.effects.retain(|e| self.case.is_some() || *e != [0]);
         let mut names: IndexMap<&str, (&str, &str)> = IndexMap::new();
         for (name, v) in self.variants.iter().filter_map(|v| good(v)).flat_map(|r| &r.results) {
             names.entry(name).or_insert((&v.unit, &v.what));
         }
-        let mut effects: Vec<Vec<usize>> = effects(&levels);
-        effects.retain(|e| self.case.is_some() || *e != [0]);
         let no_headlines = !names.keys().any(|n| is_headline(n));
         let mut rows: Vec<ShareRow> = Vec::new();
         for (name, (unit, what)) in names {
-            let Some(mut row) = self.row(name, unit, &factors, &levels, &effects) else { continue };
+            let Some(mut row) = self.row(name, unit, &mut grid) else { continue };
             what.clone_into(&mut row.what);
             row.headline = match headlines {
                 [] => no_headlines || is_headline(name),
@@ -94,8 +93,8 @@ impl Scope<'_> {
         }
         let mut table = ShareTable {
             case: self.case.map(|k| self.comparison.cases[k].name.clone()),
-            factors: factors.into_keys().collect(),
-            effects,
+            factors: grid.factors.into_iter().map(|(name, _)| name).collect(),
+            effects: grid.effects,
             verified: self.variants.iter().filter_map(|v| good(v)).all(|r| r.verification.is_some()),
             rows,
             findings: Vec::new(),
@@ -104,14 +103,7 @@ impl Scope<'_> {
         table
     }
 
-    fn row(
-        &self,
-        name: &str,
-        unit: &str,
-        factors: &IndexMap<String, Vec<String>>,
-        levels: &[usize],
-        effects: &[Vec<usize>],
-    ) -> Option<ShareRow> {
+    fn row(&self, name: &str, unit: &str, grid: &mut Grid) -> Option<ShareRow> {
         let of = |v: &&Variant| {
             let run = good(v)?;
             let value = run.results.get(name).filter(|r| r.unit == unit && r.value.is_finite())?.value;
@@ -120,7 +112,7 @@ impl Scope<'_> {
         };
         let numbers: Vec<Option<Number>> = self.variants.iter().map(of).collect();
         let there: Vec<bool> = numbers.iter().map(Option::is_some).collect();
-        let kept = largest_full_block(levels, &there);
+        let kept = grid.block(there);
         let numbers: Vec<Number> = kept.combinations.iter().filter_map(|k| numbers[*k]).collect();
         if numbers.is_empty() {
             return None;
@@ -135,7 +127,7 @@ impl Scope<'_> {
             mean: self.case.is_some().then(|| mean(&sample.values)),
             spread: relative.variance.sqrt(),
             spread_unit: if unit == "deg" { "deg" } else { "%" }.to_owned(),
-            shares: effects.iter().map(|e| share(&relative, e)).collect(),
+            shares: grid.effects.iter().map(|e| share(&relative, e)).collect(),
             between_cases: self
                 .case
                 .is_none()
@@ -143,9 +135,40 @@ impl Scope<'_> {
                 .flatten()
                 .and_then(|a| Some(share(&a, &[0])?.share)),
             combinations: kept.combinations.len(),
-            left_out: left_out(&kept, factors),
+            left_out: left_out(&kept, &grid.factors),
             ..ShareRow::default()
         })
+    }
+}
+
+/// A choice and the names of its levels.
+type Factor = (String, Vec<String>);
+
+/// The choices, and what has been found out about them.
+struct Grid {
+    factors: Vec<Factor>,
+    levels: Vec<usize>,
+    effects: Vec<Vec<usize>>,
+    /// Which combinations are there, and what is kept of them: most results share it.
+    blocks: Vec<(Vec<bool>, Kept)>,
+}
+
+impl Grid {
+    fn new(factors: Vec<Factor>) -> Self {
+        let levels: Vec<usize> = factors.iter().map(|(_, levels)| levels.len()).collect();
+        let flat = vec![0.0; levels.iter().product()];
+        let all = anova(&levels, &flat, &flat).map(|a| a.effects).unwrap_or_default();
+        let effects = all.into_iter().map(|e| e.factors).collect();
+        Self { factors, levels, effects, blocks: Vec::new() }
+    }
+
+    fn block(&mut self, there: Vec<bool>) -> Kept {
+        if let Some((_, kept)) = self.blocks.iter().find(|(known, _)| *known == there) {
+            return kept.clone();
+        }
+        let kept = largest_full_block(&self.levels, &there);
+        self.blocks.push((there, kept.clone()));
+        kept
     }
 }
 
@@ -206,21 +229,14 @@ fn mean(y: &[f64]) -> f64 {
     y.iter().sum::<f64>() / y.len().max(1) as f64
 }
 
-/// All effects of factors with more than one level.
-fn effects(levels: &[usize]) -> Vec<Vec<usize>> {
-    let flat = vec![0.0; levels.iter().product()];
-    let all = anova(levels, &flat, &flat).map(|a| a.effects).unwrap_or_default();
-    all.into_iter().map(|e| e.factors).collect()
-}
-
 fn share(a: &Anova, effect: &[usize]) -> Option<Share> {
     let e = a.effects.iter().find(|e| e.factors == effect)?;
     Some(Share { share: e.share, largest: e.largest, within_numerics: e.within_numerics })
 }
 
 /// Levels that are not kept.
-fn left_out(kept: &Kept, factors: &IndexMap<String, Vec<String>>) -> Vec<String> {
-    let of = |((name, levels), kept): ((&String, &Vec<String>), &Vec<usize>)| {
+fn left_out(kept: &Kept, factors: &[Factor]) -> Vec<String> {
+    let of = |((name, levels), kept): (&Factor, &Vec<usize>)| {
         let gone = (0..levels.len()).filter(|l| !kept.contains(l));
         gone.map(|l| format!("{name}={}", levels[l])).collect::<Vec<_>>()
     };
