@@ -43,7 +43,7 @@ pub enum Command {
     Describe(DescribeArgs),
     /// Print the JSON schema of a case file, for editors
     Schema,
-    /// Run a case with every combination of some values and compare the results
+    /// Run cases with every combination of some values, compare the results, and tell which choice matters
     Compare(CompareArgs),
     /// Measure run time against error of the solvers on a case
     Bench(BenchArgs),
@@ -114,15 +114,22 @@ pub struct DescribeArgs {
 
 #[derive(Debug, ClapArgs)]
 pub struct CompareArgs {
-    #[command(flatten)]
-    pub case: CaseArgs,
+    /// Case files, each with changes of its own where it has any: cases/turbo-diesel-120.toml,engine.speed="1500 rpm"
+    #[arg(value_name = "CASE[,PATH=VALUE]", required = true)]
+    pub cases: Vec<String>,
+    /// Change a value of all cases: solver.method=implicit
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    pub set: Vec<String>,
     /// Values to try, the first one being the base: gas_flow=orifice_network,narrow_channel
     #[arg(long, value_name = "PATH=A,B,C", required = true)]
     pub swap: Vec<String>,
+    /// Results that the table of shares shows [default: those of the whole scene, blow_by but not ring1.h_min]
+    #[arg(long, value_name = "A,B", value_delimiter = ',')]
+    pub results: Vec<String>,
     /// Refine every combination until the uncertainty of its results is known, and mark differences that are within it
     #[arg(long)]
     pub verify: bool,
-    /// Folder for the results [default: out/<case>-compare]
+    /// Folder for the results [default: out/<case>-compare, of several cases out/<case>+<case>-compare]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// No progress, no table

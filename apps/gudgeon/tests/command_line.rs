@@ -380,6 +380,36 @@ fn a_folder_belongs_to_one_case_and_holds_one_kind_of_results() {
 }
 
 #[test]
+fn several_cases_tell_which_choice_matters() {
+    let folder = scratch("shares");
+    fs::copy(base(), folder.join("x.toml")).expect("copied");
+    let args = [
+        "compare",
+        "x.toml",
+        "x.toml,engine.speed=1900 rpm",
+        "--swap",
+        "gas_flow=orifice_network,{ model = \"narrow_channel\" },prescribed",
+        "--results",
+        "blow_by",
+    ];
+    let o = command(&args).current_dir(&folder).output().expect("the program starts");
+    // `prescribed` computes no flow: without its pressures it is refused, told, and left out.
+    assert_eq!(o.status.code(), Some(1), "{}", stderr(&o));
+    let text = stdout(&o);
+    for part in
+        ["Which choice matters", "gas_flow", "with case", "without gas_flow=prescribed in blow_by", "refused"]
+    {
+        assert!(text.contains(part), "no `{part}` in:\n{text}");
+    }
+    let file = fs::read(folder.join("out/x-compare/comparison.json")).expect("written");
+    let v: Value = serde_json::from_slice(&file).expect("JSON");
+    assert_eq!(v["cases"][1]["name"], "x, engine.speed=1900 rpm");
+    assert_eq!(v["variants"][1]["label"], "x: gas_flow=narrow_channel");
+    assert_eq!(v["shares"][0]["rows"][0]["combinations"], 4);
+    let _ = fs::remove_dir_all(&folder);
+}
+
+#[test]
 fn a_case_finds_its_comparisons_and_a_broken_one_fails() {
     let folder = scratch("validate");
     let run = |args: &[&str]| command(args).current_dir(&folder).output().expect("the program starts");

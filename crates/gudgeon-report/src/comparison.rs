@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use gudgeon_core::result::{Column, Comparison, Series, Variant};
+use gudgeon_core::result::{Column, ComparedCase, Comparison, Series, ShareTable, Variant, short_value};
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -12,7 +12,7 @@ use crate::folder::Folder;
 use crate::number::{capital, certain, count, percent, round_trip, significant, unit};
 use crate::page::{self, Arrays, Kind, esc};
 use crate::summary::{ModelEntry, Summary};
-use crate::{REPORT, ReportError, table};
+use crate::{REPORT, ReportError, shares, table};
 
 pub(crate) const COMPARISON: &str = "comparison.json";
 const TABLE: &str = "comparison.csv";
@@ -43,6 +43,9 @@ struct VariantEntry {
     /// 1 for the base.
     number: usize,
     label: String,
+    /// Number of its case, from 0.
+    #[serde(default)]
+    case: usize,
     swaps: IndexMap<String, String>,
     /// Why there is no run: the combination was refused, or it failed.
     error: Option<String>,
@@ -55,7 +58,7 @@ struct VariantEntry {
 struct Row {
     unit: String,
     values: Vec<Option<f64>>,
-    /// To the first variant.
+    /// To the first variant of the same case.
     difference_percent: Vec<Option<f64>>,
 }
 
@@ -63,7 +66,11 @@ struct Row {
 struct File {
     case: String,
     title: String,
+    #[serde(default)]
+    cases: Vec<ComparedCase>,
     swaps: Vec<Swap>,
+    #[serde(default)]
+    shares: Vec<ShareTable>,
     variants: Vec<VariantEntry>,
     results: IndexMap<String, Row>,
 }
@@ -77,6 +84,7 @@ impl File {
             .map(|(i, v)| VariantEntry {
                 number: i + 1,
                 label: v.label.clone(),
+                case: v.case,
                 swaps: v.swaps.iter().cloned().collect(),
                 error: v.outcome.as_ref().err().cloned(),
                 run: v.outcome.as_ref().ok().map(Summary::new),
@@ -85,6 +93,8 @@ impl File {
         Self {
             case: c.case.clone(),
             title: c.title.clone(),
+            cases: c.cases.clone(),
+            shares: c.shares.clone(),
             swaps: c
                 .swaps
                 .iter()
@@ -94,6 +104,11 @@ impl File {
             variants,
         }
     }
+}
+
+/// The variant that another is compared with: the first one of its case.
+fn base_of<'a>(variants: &'a [VariantEntry], v: &'a VariantEntry) -> &'a VariantEntry {
+    variants.iter().find(|b| b.case == v.case).unwrap_or(v)
 }
 
 fn rows(variants: &[VariantEntry]) -> IndexMap<String, Row> {
@@ -111,11 +126,11 @@ fn rows(variants: &[VariantEntry]) -> IndexMap<String, Row> {
         .iter()
         .map(|(name, u)| {
             let values: Vec<Option<f64>> = variants.iter().map(|v| value(v, name, u)).collect();
-            let base = values.first().copied().flatten().filter(|b| *b != 0.0);
-            let difference_percent = values
-                .iter()
-                .map(|v| Some((((*v)? - base?) / base?.abs()) * 100.0).filter(|d| d.is_finite()))
-                .collect();
+            let difference = |(k, v): (usize, &Option<f64>)| {
+                let base = values[base_of(variants, &variants[k]).number - 1].filter(|b| *b != 0.0)?;
+                Some(((*v)? - base) / base.abs() * 100.0).filter(|d| d.is_finite())
+            };
+            let difference_percent = values.iter().enumerate().map(difference).collect();
             ((*name).to_owned(), Row { unit: (*u).to_owned(), values, difference_percent })
         })
         .collect()
@@ -165,12 +180,12 @@ fn timing(c: &Comparison) -> String {
 }
 
 /// Whether a difference is smaller than the numerical uncertainties of both values.
-fn within_numerics(base: Option<&VariantEntry>, v: &VariantEntry, name: &str) -> bool {
+fn within_numerics(base: &VariantEntry, v: &VariantEntry, name: &str) -> bool {
     let of = |v: &VariantEntry| {
         let r = v.run.as_ref()?.results.get(name)?;
         Some((r.value?, r.uncertainty?))
     };
-    base.and_then(of).zip(of(v)).is_some_and(|((a, ua), (b, ub))| (a - b).abs() < ua + ub)
+    of(base).zip(of(v)).is_some_and(|((a, ua), (b, ub))| (a - b).abs() < ua + ub)
 }
 
 /// Rebuilds the page of a comparison.
@@ -190,14 +205,14 @@ pub(crate) fn rewrite(dir: &Path) -> Result<PathBuf, ReportError> {
 
 /// Names of the counters or phases that any variant has.
 fn union<'a, V>(
-    variants: &'a [VariantEntry],
+    variants: impl Iterator<Item = &'a VariantEntry>,
     of: impl Fn(&'a Summary) -> &'a IndexMap<String, V>,
 ) -> Vec<&'a str>
 where
     V: 'a,
 {
     let mut names: Vec<&str> = Vec::new();
-    for run in variants.iter().filter_map(|v| v.run.as_ref()) {
+    for run in variants.filter_map(|v| v.run.as_ref()) {
         for name in of(run).keys() {
             if !names.contains(&name.as_str()) {
                 names.push(name);
@@ -219,7 +234,7 @@ fn csv_table(file: &File) -> Result<Vec<u8>, ReportError> {
         line.extend(row.values.iter().map(|v| v.map_or_else(String::new, round_trip)));
         out.push(line);
     }
-    for name in union(&file.variants, |r| &r.solver.counters) {
+    for name in union(file.variants.iter(), |r| &r.solver.counters) {
         let mut line = vec![format!("solver.{name}"), "-".to_owned()];
         line.extend(file.variants.iter().map(|v| {
             let n = v.run.as_ref().and_then(|r| r.solver.counters.get(name));
@@ -264,17 +279,19 @@ fn page(file: &File, series: &[(usize, &Series)]) -> String {
     if ran.is_empty() {
         body.push_str("<section><h2>Results</h2><p class=\"hint\">No variant ran.</p></section>\n");
     } else {
-        comparison_table(&mut body, file, &ran);
+        shares::section(&mut body, &file.shares);
+        comparison_tables(&mut body, file, &ran);
     }
     notes_of_runs(&mut body, &ran);
-    curves(&mut body, series);
+    let drawn = drawn(file, series);
+    curves(&mut body, &drawn, series.len());
     models_of_runs(&mut body, &ran);
     body.push_str("</main>\n");
     let version = ran.first().and_then(|v| v.run.as_ref()).map_or("", |r| r.gudgeon.as_str());
     body.push_str(&page::footer(version));
 
     let mut arrays = Arrays::default();
-    let variants: Vec<serde_json::Value> = series
+    let variants: Vec<serde_json::Value> = drawn
         .iter()
         .map(|(n, s)| {
             let label = file.variants.iter().find(|v| v.number == *n).map_or("", |v| v.label.as_str());
@@ -282,7 +299,7 @@ fn page(file: &File, series: &[(usize, &Series)]) -> String {
             json!({ "number": n, "label": label, "series": columns })
         })
         .collect();
-    let data = json!({ "variants": variants, "arrays": arrays.into_json() });
+    let data = json!({ "cases": file.cases.len(), "variants": variants, "arrays": arrays.into_json() });
     page::document(Kind::Comparison, heading, &body, &data)
 }
 
@@ -295,7 +312,8 @@ fn page_header(out: &mut String, file: &File, heading: &str) {
         file.variants.len()
     );
     for s in &file.swaps {
-        let values: Vec<String> = s.values.iter().map(|v| format!("<code>{}</code>", esc(v))).collect();
+        let values: Vec<String> =
+            s.values.iter().map(|v| format!("<code>{}</code>", esc(&short_value(v)))).collect();
         let _ = write!(out, "<p class=\"source\"><b>{}</b> {}</p>", esc(&s.path), values.join(" "));
     }
     out.push_str("</header>\n<main>\n");
@@ -345,16 +363,52 @@ fn notes_of_runs(out: &mut String, ran: &[&VariantEntry]) {
     }
 }
 
+/// Most variants whose curves can be told apart.
+const MAX_DRAWN: usize = 12;
+
+/// The variants whose curves are drawn: all, or of many those that differ from the base of their case in at most one choice, or those of the
+/// first case alone.
+fn drawn<'a>(file: &File, series: &[(usize, &'a Series)]) -> Vec<(usize, &'a Series)> {
+    let variant = |n: usize| file.variants.iter().find(|v| v.number == n);
+    let keep = |test: &dyn Fn(&VariantEntry) -> bool| -> Vec<(usize, &'a Series)> {
+        series.iter().copied().filter(|(n, _)| variant(*n).is_none_or(test)).collect()
+    };
+    let near = |v: &VariantEntry| {
+        let base = base_of(&file.variants, v);
+        v.swaps.iter().filter(|(path, value)| base.swaps.get(*path) != Some(value)).count() <= 1
+    };
+    let mut drawn = series.to_vec();
+    if drawn.len() > MAX_DRAWN {
+        drawn = keep(&near);
+    }
+    if drawn.len() > MAX_DRAWN {
+        drawn = keep(&|v| v.case == 0 && near(v));
+    }
+    drawn.truncate(MAX_DRAWN);
+    drawn
+}
+
 /// Places for the curves, which the script draws.
-fn curves(out: &mut String, series: &[(usize, &Series)]) {
+fn curves(out: &mut String, series: &[(usize, &Series)], all: usize) {
+    let fewer = match all - series.len() {
+        0 => String::new(),
+        _ => format!(
+            "<p class=\"hint\">Drawn are {} variants, which differ from the base in one choice; series.csv holds all {all}.</p>",
+            series.len()
+        ),
+    };
     let drawn: Vec<_> =
         series.iter().filter(|(_, s)| !s.axis.values.is_empty() && !s.columns.is_empty()).collect();
     if drawn.iter().any(|(_, s)| s.is_over_cycle()) {
-        out.push_str(
-            "<section id=\"cycle\"><h2>Over the cycle</h2><div id=\"bar\"></div><div id=\"plots\"></div></section>\n",
+        let _ = writeln!(
+            out,
+            "<section id=\"cycle\"><h2>Over the cycle</h2>{fewer}<div id=\"bar\"></div><div id=\"plots\"></div></section>"
         );
     } else if !drawn.is_empty() {
-        out.push_str("<section id=\"curves\"><h2>Curves</h2><div id=\"overlay\"></div></section>\n");
+        let _ = writeln!(
+            out,
+            "<section id=\"curves\"><h2>Curves</h2>{fewer}<div id=\"overlay\"></div></section>"
+        );
     }
 }
 
@@ -372,9 +426,35 @@ fn models_of_runs(out: &mut String, ran: &[&VariantEntry]) {
     }
 }
 
-fn comparison_table(out: &mut String, file: &File, ran: &[&VariantEntry]) {
-    let base = file.variants.first().filter(|v| v.run.is_some());
+/// Results of all variants, a table for each case.
+fn comparison_tables(out: &mut String, file: &File, ran: &[&VariantEntry]) {
     out.push_str("<section id=\"results\"><h2>Results</h2>");
+    if file.cases.len() < 2 {
+        comparison_table(out, file, ran);
+    } else {
+        for (k, case) in file.cases.iter().enumerate() {
+            let own: Vec<&VariantEntry> = ran.iter().copied().filter(|v| v.case == k).collect();
+            let open = if k == 0 { " open" } else { "" };
+            let _ = write!(
+                out,
+                "<details class=\"more\"{open}><summary>{}</summary><p class=\"meta\">{}</p>",
+                esc(&case.name),
+                esc(&case.title)
+            );
+            if own.is_empty() {
+                out.push_str("<p class=\"hint\">No variant of this case ran.</p>");
+            } else {
+                comparison_table(out, file, &own);
+            }
+            out.push_str("</details>");
+        }
+    }
+    out.push_str("</section>\n");
+}
+
+/// Results of the variants of one case.
+fn comparison_table(out: &mut String, file: &File, ran: &[&VariantEntry]) {
+    let base = ran.first().map(|v| base_of(&file.variants, v)).filter(|v| v.run.is_some());
     match base {
         Some(v) => {
             let _ = write!(
@@ -390,9 +470,9 @@ fn comparison_table(out: &mut String, file: &File, ran: &[&VariantEntry]) {
     }
     comparison_heads(out, ran);
     comparison_rows(out, file, ran);
-    comparison_work(out, file, ran);
+    comparison_work(out, ran, base);
     comparison_balances(out, ran);
-    out.push_str("</tbody></table></div></section>\n");
+    out.push_str("</tbody></table></div>");
 }
 
 /// The head of the table: a column for every variant that ran, with what it swaps.
@@ -404,7 +484,12 @@ fn comparison_heads(out: &mut String, ran: &[&VariantEntry]) {
             .iter()
             .map(|(path, value)| {
                 let short = path.trim_end_matches(".model").rsplit('.').next().unwrap_or(path);
-                format!("<span title=\"{}\">{} <b>{}</b></span>", esc(path), esc(short), esc(value))
+                format!(
+                    "<span title=\"{}\">{} <b>{}</b></span>",
+                    esc(path),
+                    esc(short),
+                    esc(&short_value(value))
+                )
             })
             .collect();
         let label = if parts.is_empty() { esc(&v.label) } else { parts.join("<br>") };
@@ -424,16 +509,19 @@ fn comparison_rows(out: &mut String, file: &File, ran: &[&VariantEntry]) {
         let value = |k: usize| row.values.get(k).copied().flatten();
         for v in ran {
             let k = v.number - 1;
+            let base = base_of(&file.variants, v);
+            let is_other = v.number != base.number;
             let own = v.run.as_ref().and_then(|r| r.results.get(name));
             let text = certain(value(k), own.and_then(|r| r.uncertainty), 4);
-            if k > 0 && within_numerics(file.variants.first(), v, name) {
+            if is_other && within_numerics(base, v, name) {
                 let _ = write!(out, "<td class=\"num\">{text} <span class=\"diff\">numerics</span></td>");
             } else if row.unit == "deg" {
                 // A percentage of an angle says nothing: it would depend on where zero is.
-                let shift = value(0).zip(value(k)).filter(|_| k > 0).map(|(a, b)| b - a);
+                let pair = value(base.number - 1).zip(value(k)).filter(|_| is_other);
+                let shift = pair.map(|(a, b)| b - a);
                 shift_cell(out, &text, shift);
             } else {
-                cell(out, &text, row.difference_percent.get(k).copied().flatten().filter(|_| k > 0));
+                cell(out, &text, row.difference_percent.get(k).copied().flatten().filter(|_| is_other));
             }
         }
         let _ = write!(out, "<td class=\"unit\">{}</td></tr>", esc(&unit(&row.unit)));
@@ -441,8 +529,7 @@ fn comparison_rows(out: &mut String, file: &File, ran: &[&VariantEntry]) {
 }
 
 /// What the solvers did.
-fn comparison_work(out: &mut String, file: &File, ran: &[&VariantEntry]) {
-    let base = file.variants.first().filter(|v| v.run.is_some());
+fn comparison_work(out: &mut String, ran: &[&VariantEntry], base: Option<&VariantEntry>) {
     out.push_str("</tbody><tbody class=\"work\">");
     out.push_str("<tr><th scope=\"row\">solver</th>");
     for v in ran {
@@ -453,7 +540,7 @@ fn comparison_work(out: &mut String, file: &File, ran: &[&VariantEntry]) {
         );
     }
     out.push_str("<td></td></tr>");
-    for name in union(&file.variants, |r| &r.solver.counters) {
+    for name in union(ran.iter().copied(), |r| &r.solver.counters) {
         let value = |v: &VariantEntry| v.run.as_ref().and_then(|r| r.solver.counters.get(name)).copied();
         let first = base.and_then(value);
         let _ = write!(out, "<tr><th scope=\"row\">{}</th>", esc(&name.replace('_', " ")));
@@ -461,7 +548,7 @@ fn comparison_work(out: &mut String, file: &File, ran: &[&VariantEntry]) {
             let n = value(v);
             let ratio = first
                 .zip(n)
-                .filter(|(f, _)| *f > 0 && v.number > 1)
+                .filter(|(f, _)| *f > 0 && base.is_some_and(|b| b.number != v.number))
                 .map(|(f, n)| (n as f64 / f as f64 - 1.0) * 100.0);
             cell(out, &n.map_or_else(|| "–".into(), count), ratio);
         }

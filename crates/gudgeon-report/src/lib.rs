@@ -20,6 +20,7 @@ mod folder;
 mod number;
 mod page;
 mod run;
+mod shares;
 mod study;
 mod summary;
 mod table;

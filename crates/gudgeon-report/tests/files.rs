@@ -334,6 +334,57 @@ fn a_comparison_states_differences_and_refusals() {
 }
 
 #[test]
+fn several_cases_have_their_own_bases_and_a_table_of_shares() {
+    let dir = scratch("cases");
+    let files = write_comparison(&common::cases(), &dir).unwrap();
+    let json: Value = serde_json::from_str(&read(&files.comparison)).unwrap();
+    assert_eq!(json["cases"][1]["name"], "diesel_120, engine.speed=1500 rpm");
+    let difference = &json["results"]["blow_by"]["difference_percent"];
+    // The second case is twice the first; its differences are to its own base, within rounding of the quotient.
+    assert_eq!(difference[4], 0.0);
+    assert!((difference[6].as_f64().unwrap() + 18.0).abs() < 1e-12);
+    assert_eq!(
+        json["shares"][0]["effects"],
+        serde_json::json!([[1], [2], [0, 1], [0, 2], [1, 2], [0, 1, 2]])
+    );
+    let page = read(&files.report);
+    for part in [
+        "Which choice matters",
+        "<code>gas_flow</code> explains 92 %",
+        "with the case",
+        "and fmep",
+        "Without contact=off in blow_by",
+        "<summary>diesel_120, engine.speed=1500 rpm</summary>",
+    ] {
+        assert!(page.contains(part), "{part}");
+    }
+    // What was read back makes the same page.
+    fs::remove_file(&files.report).unwrap();
+    rewrite(&dir).unwrap();
+    assert_eq!(read(&files.report), page);
+    fs::remove_dir_all(dir).unwrap();
+}
+
+#[test]
+fn of_many_variants_those_near_the_base_are_drawn() {
+    let dir = scratch("many");
+    let mut c = common::comparison();
+    let base = c.variants[0].clone();
+    c.variants = (0..20)
+        .map(|k| {
+            let mut v = base.clone();
+            v.swaps = vec![("a".into(), (k / 5).to_string()), ("b".into(), (k % 5).to_string())];
+            v
+        })
+        .collect();
+    let page = read(write_comparison(&c, &dir).unwrap().report);
+    // The base, three of the first choice, four of the second.
+    assert_eq!(data(&page)["variants"].as_array().unwrap().len(), 8);
+    assert!(page.contains("series.csv holds all 20"));
+    fs::remove_dir_all(dir).unwrap();
+}
+
+#[test]
 fn a_benchmark_keeps_its_failures_apart() {
     let dir = scratch("bench");
     let files = write_bench(&common::bench(), &dir).unwrap();

@@ -1,8 +1,14 @@
 //! What a run produces, independent of how it is written: the interface between the simulation and the report.
 
+mod shares;
+mod swap;
+
 use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+
+pub use shares::{CASE, Share, ShareRow, ShareTable};
+pub use swap::short_value;
 
 /// A result value.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -647,25 +653,40 @@ pub struct RunResult {
 /// One combination of a [`Comparison`].
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Variant {
-    /// `gas_flow=narrow_channel, contact=off`.
+    /// `gas_flow=narrow_channel, contact=off`; after the name of its case where there are several.
     pub label: String,
+    /// Number of its case in [`Comparison::cases`].
+    pub case: usize,
     /// `(path, value)` of every swap, in the order given.
     pub swaps: Vec<(String, String)>,
     /// The run, or why there is none (refused combination, failed run).
     pub outcome: Result<RunResult, String>,
 }
 
-/// One case run with every combination of some swaps.
+/// A case of a [`Comparison`].
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ComparedCase {
+    /// Its name, with the changes of its own where it has any: `turbo-diesel-120, engine.speed=1500 rpm`.
+    pub name: String,
+    /// Its title.
+    pub title: String,
+}
+
+/// One case, or several, run with every combination of some swaps.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Comparison {
-    /// Name of the case.
+    /// Name of the case; of several, all their names.
     pub case: String,
-    /// Title of the case.
+    /// Title of the case; of several, how many they are.
     pub title: String,
+    /// The cases.
+    pub cases: Vec<ComparedCase>,
     /// `(path, values)` of every swap.
     pub swaps: Vec<(String, Vec<String>)>,
-    /// The combinations, the first one being the base that others are compared with.
+    /// The combinations, case by case and the last swap the fastest; the first one of a case is the base that its others are compared with.
     pub variants: Vec<Variant>,
+    /// Which choice matters, where there are at least two: all cases together first, then each alone.
+    pub shares: Vec<ShareTable>,
 }
 
 /// One point of a work-precision sweep.

@@ -14,5 +14,5 @@ pub mod study;
 pub mod validate;
 
 pub use bench::bench;
-pub use compare::{compare, compare_verified};
+pub use compare::{Plan, Subject, compare, compare_cases, shares};
 pub use error::StudyError;

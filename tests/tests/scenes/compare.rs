@@ -1,7 +1,7 @@
 //! One case with several models side by side.
 
 use crate::common::*;
-use gudgeon_study::compare;
+use gudgeon_study::{Plan, Subject, compare, compare_cases};
 
 fn swap(path: &str, values: &[&str]) -> (String, Vec<String>) {
     (path.to_owned(), values.iter().map(|v| (*v).to_owned()).collect())
@@ -104,4 +104,47 @@ fn two_swaps_make_every_combination() {
     };
     // The hoop relation as printed has the tension too small by π.
     assert!(friction(1) > friction(0) && friction(3) > friction(2));
+}
+
+#[test]
+fn several_cases_are_one_more_choice() {
+    let case = |name: &str, own: &[&str]| {
+        let own: Vec<String> = own.iter().map(|o| (*o).to_owned()).collect();
+        Subject { path: case_file(name), overrides: own.clone(), own }
+    };
+    let plan = Plan {
+        cases: vec![case("pin-85-alcohol", &[]), case("pin-85-alcohol", &["pin.inner=12 mm"])],
+        swaps: vec![
+            swap("pin_strength", &["thin_ring", "{ model = \"curved_ring\" }"]),
+            swap("pin.modulus", &["200 GPa", "210 GPa"]),
+        ],
+        ..Plan::default()
+    };
+    let c = compare_cases(&plan, &mut gudgeon_scene::unwatched).unwrap_or_else(|r| panic!("{r}"));
+    assert_eq!(c.variants.len(), 8);
+    let names: Vec<&str> = c.cases.iter().map(|k| k.name.as_str()).collect();
+    assert_eq!(names, ["pin-85-alcohol", "pin-85-alcohol, pin.inner=12 mm"]);
+    assert!(
+        c.variants[2].label.ends_with("pin_strength=curved_ring, pin.modulus=200 GPa"),
+        "{}",
+        c.variants[2].label
+    );
+    assert!(c.variants.iter().all(|v| v.outcome.is_ok()));
+    let [all, own @ ..] = c.shares.as_slice() else { panic!("no shares") };
+    assert_eq!((all.case.as_deref(), own.len()), (None, 2));
+    assert_eq!(all.factors, ["case", "pin_strength", "pin.modulus"]);
+    for row in all.rows.iter().filter(|r| r.spread > 0.0) {
+        let sum: f64 = row.shares.iter().flatten().map(|s| s.share).sum();
+        // Sums of a few tens of numbers.
+        assert!((sum - 1.0).abs() < 1e-12, "{}: {sum}", row.result);
+    }
+    // The stresses of a pin do not know its modulus, its ovalisation goes with its inverse.
+    let modulus = |name: &str| {
+        own[0].rows.iter().find(|r| r.result == name).and_then(|r| r.shares[1]).expect(name).share
+    };
+    assert!(modulus("ovalisation") > 0.0, "{}", modulus("ovalisation"));
+    assert_eq!(modulus("bending_stress"), 0.0);
+    assert!(!all.findings.is_empty());
+    // No case at all.
+    assert!(compare_cases(&Plan::default(), &mut gudgeon_scene::unwatched).is_err());
 }

@@ -10,7 +10,7 @@ use crate::failure::Failure;
 use crate::ui::{Ui, number, table};
 
 pub fn bench(a: &BenchArgs, ui: &Ui) -> Result<(), Failure> {
-    let c = checked(&a.case, ui)?;
+    let c = checked(&a.case.case, &a.case.set, ui)?;
     let folder = open_out(a.out.as_deref(), &a.case.case, &c.name, "-bench")?;
     let measured = {
         let bar = ui.bar();

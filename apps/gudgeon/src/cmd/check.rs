@@ -20,7 +20,7 @@ pub fn check(a: &CheckArgs, ui: &Ui) -> Result<(), Failure> {
             }
         };
     }
-    let c = checked(&a.case, ui)?;
+    let c = checked(&a.case.case, &a.case.set, ui)?;
     ui.out(&format!("{}: ok", a.case.case.display()));
     drop(c);
     Ok(())

@@ -1,22 +1,36 @@
-//! `gudgeon compare CASE --swap PATH=A,B,C`
+//! `gudgeon compare CASE… --swap PATH=A,B,C`
 
 use std::fmt::Write as _;
+use std::path::Path;
 
-use gudgeon_core::result::{Comparison, RunResult};
+use gudgeon_core::result::{Comparison, NoteLevel, RunResult};
+use gudgeon_study::{Plan, Subject};
+use indexmap::IndexMap;
 
 use crate::args::CompareArgs;
-use crate::cmd::{checked, open_out};
+use crate::cmd::{checked, open_out, shares};
 use crate::failure::Failure;
-use crate::ui::{Ui, number, table, unit};
+use crate::ui::{Ui, number, table, unit, wrapped};
 
 pub fn compare(a: &CompareArgs, ui: &Ui) -> Result<(), Failure> {
     let swaps = a.swap.iter().map(|s| swap(s)).collect::<Result<Vec<_>, _>>()?;
-    let name = checked(&a.case, ui)?.name;
-    let folder = open_out(a.out.as_deref(), &a.case.case, &name, "-compare")?;
+    let cases: Vec<Subject> = a.cases.iter().map(|c| subject(c, &a.set)).collect();
+    let mut names: Vec<String> = Vec::new();
+    for c in &cases {
+        let name = checked(&c.path, &c.overrides, ui)?.name;
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    let plan = Plan { cases, swaps, verify: a.verify, headlines: a.results.clone() };
+    let name = match names.as_slice() {
+        [first, _, _, _, ..] => format!("{first}+{}", names.len() - 1),
+        few => few.join("+"),
+    };
+    let folder = open_out(a.out.as_deref(), &plan.cases[0].path, &name, "-compare")?;
     let comparison = {
         let bar = ui.bar();
-        let compare = if a.verify { gudgeon_study::compare_verified } else { gudgeon_study::compare };
-        compare(&a.case.case, &a.case.set, &swaps, &mut |p| bar.show(p))?
+        gudgeon_study::compare_cases(&plan, &mut |p| bar.show(p))?
     };
     let files = gudgeon_report::write_comparison_in(&comparison, folder)?;
     if !ui.quiet() {
@@ -35,15 +49,38 @@ pub fn compare(a: &CompareArgs, ui: &Ui) -> Result<(), Failure> {
     }
 }
 
+/// `CASE[,PATH=VALUE]…`, with the changes that all cases have.
+fn subject(text: &str, set: &[String]) -> Subject {
+    let alone = Subject { path: text.into(), overrides: set.to_vec(), own: Vec::new() };
+    let parts = split(text);
+    match parts.as_slice() {
+        // A file may have a comma in its name.
+        [path, own @ ..] if !Path::new(text).exists() && own.iter().all(|o| o.contains('=')) => {
+            let overrides = set.iter().chain(own).cloned().collect();
+            Subject { path: path.into(), overrides, own: own.to_vec() }
+        }
+        _ => alone,
+    }
+}
+
 /// `PATH=A,B,C`. A comma inside brackets or quotes belongs to its value.
 fn swap(text: &str) -> Result<(String, Vec<String>), Failure> {
     let form = "write `--swap PATH=A,B,C`, for example `--swap gas_flow=orifice_network,narrow_channel`";
     let Some((path, values)) = text.split_once('=').filter(|(p, _)| !p.trim().is_empty()) else {
         return Err(Failure::argument(format!("`--swap {text}` is not a path with values"), form));
     };
+    let all = split(values);
+    if all.iter().any(String::is_empty) {
+        return Err(Failure::argument(format!("`--swap {text}` has an empty value"), form));
+    }
+    Ok((path.trim().to_owned(), all))
+}
+
+/// Parts between commas, those inside brackets or quotes apart.
+fn split(text: &str) -> Vec<String> {
     let mut all = vec![String::new()];
     let (mut depth, mut quote) = (0_i32, None);
-    for c in values.chars() {
+    for c in text.chars() {
         match (quote, c) {
             (Some(q), c) if c == q => quote = None,
             (None, '"' | '\'') => quote = Some(c),
@@ -56,11 +93,7 @@ fn swap(text: &str) -> Result<(String, Vec<String>), Failure> {
             _ => all.push(String::new()),
         }
     }
-    let all: Vec<String> = all.into_iter().map(|v| v.trim().to_owned()).collect();
-    if all.iter().any(String::is_empty) {
-        return Err(Failure::argument(format!("`--swap {text}` has an empty value"), form));
-    }
-    Ok((path.trim().to_owned(), all))
+    all.into_iter().map(|v| v.trim().to_owned()).collect()
 }
 
 /// Numerical uncertainty of a result; 0 where nobody asked for it.
@@ -71,10 +104,29 @@ fn uncertainty(r: &RunResult, name: &str) -> f64 {
 /// Combinations that fit a terminal side by side.
 const COLUMNS: usize = 4;
 
+/// Combinations that are listed one by one; of more, what they say is gathered.
+const LISTED: usize = 12;
+
 fn text(c: &Comparison) -> String {
     let mut s = format!("{}: {}\n\n", c.case, c.title);
-    let letter = |i: usize| format!("({})", i + 1);
-    // Writing to a String cannot fail.
+    if c.variants.len() > LISTED {
+        gathered(&mut s, c);
+    } else {
+        listed(&mut s, c);
+    }
+    if c.cases.len() == 1 {
+        side_by_side(&mut s, c);
+    }
+    s.push_str(&c.shares.first().map_or_else(String::new, shares::text));
+    s
+}
+
+fn letter(i: usize) -> String {
+    format!("({})", i + 1)
+}
+
+/// Every combination with what its run says. Writing to a String cannot fail.
+fn listed(s: &mut String, c: &Comparison) {
     for (i, v) in c.variants.iter().enumerate() {
         let why = v.outcome.as_ref().err().map_or_else(String::new, |e| format!("  {e}"));
         let _ = writeln!(s, "  {} {}{why}", letter(i), v.label);
@@ -82,9 +134,43 @@ fn text(c: &Comparison) -> String {
             let _ = writeln!(s, "      note: {}", n.text);
         }
     }
+}
+
+/// How many combinations have a result, why others have none, and how often the runs say what. Writing to a String cannot fail.
+fn gathered(s: &mut String, c: &Comparison) {
+    let good = c.variants.iter().filter(|v| v.outcome.is_ok()).count();
+    let _ = writeln!(s, "  {} combinations, {good} with a result", c.variants.len());
+    let (mut missing, mut failed): (IndexMap<&str, Vec<&str>>, _) = (IndexMap::new(), Vec::new());
+    let mut topics: IndexMap<&str, usize> = IndexMap::new();
+    for v in &c.variants {
+        match &v.outcome {
+            Err(why) => missing.entry(why).or_default().push(&v.label),
+            Ok(r) => {
+                failed.extend(r.solver.notes.iter().find(|n| n.level == NoteLevel::Failure).map(|n| (v, n)));
+                for n in &r.solver.notes {
+                    *topics.entry(&n.topic).or_default() += 1;
+                }
+            }
+        }
+    }
+    for (why, labels) in missing {
+        s.push_str(&wrapped(&format!("no result: {}: {why}", labels.join("; ")), 2));
+    }
+    if let Some((v, n)) = failed.first() {
+        let text = format!("{} not what was asked for, the first {}: {}", failed.len(), v.label, n.text);
+        s.push_str(&wrapped(&text, 2));
+    }
+    let told: Vec<String> = topics.iter().map(|(topic, n)| format!("{topic} {n}")).collect();
+    if !told.is_empty() {
+        s.push_str(&wrapped(&format!("notes, told in the report: {}", told.join(", ")), 2));
+    }
+}
+
+/// Results of the first combinations.
+fn side_by_side(s: &mut String, c: &Comparison) {
     let shown: Vec<_> =
         c.variants.iter().enumerate().filter_map(|(i, v)| Some((i, v.outcome.as_ref().ok()?))).collect();
-    let Some((first, base)) = shown.first() else { return s };
+    let Some((first, base)) = shown.first() else { return };
     let shown = &shown[..shown.len().min(COLUMNS)];
     let mut rows = vec![vec![String::new(), String::new(), letter(*first)]];
     for (i, _) in &shown[1..] {
@@ -118,9 +204,13 @@ fn text(c: &Comparison) -> String {
     s.push_str(&table(&rows, &right));
     let hidden = c.variants.iter().filter(|v| v.outcome.is_ok()).count() - shown.len();
     if hidden > 0 {
+        let of: Vec<String> =
+            shown.iter().map(|(i, _)| format!("{} {}", letter(*i), c.variants[*i].label)).collect();
+        if c.variants.len() > LISTED {
+            let _ = writeln!(s, "\n  {}", of.join("\n  "));
+        }
         let _ = writeln!(s, "\n  {hidden} more in the report");
     }
-    s
 }
 
 #[cfg(test)]
@@ -138,5 +228,15 @@ mod tests {
         for wrong in ["a", "=x", "a=", "a=x,,y", "a=x,"] {
             assert!(values(wrong).is_none(), "{wrong}");
         }
+    }
+
+    #[test]
+    fn a_case_may_carry_changes() {
+        let set = ["solver.method=implicit".to_owned()];
+        let s = subject("no such case.toml, engine.speed=1500 rpm,a=[1,2]", &set);
+        assert_eq!((s.path.to_str(), s.own.len()), (Some("no such case.toml"), 2));
+        assert_eq!(s.overrides, ["solver.method=implicit", "engine.speed=1500 rpm", "a=[1,2]"]);
+        // Not a change: the name of a file.
+        assert_eq!(subject("a,b.toml", &set).path, Path::new("a,b.toml"));
     }
 }

@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::ui::Ui;
 
 pub fn explain(a: &CheckArgs, ui: &Ui) -> Result<(), Failure> {
-    let c = checked(&a.case, ui)?;
+    let c = checked(&a.case.case, &a.case.set, ui)?;
     let explanation = gudgeon_scene::explain(&c)?;
     if a.json {
         let value = serde_json::to_value(&explanation).map_err(|e| Failure::Run(e.to_string()))?;

@@ -9,6 +9,7 @@ pub mod models;
 pub mod report;
 pub mod run;
 pub mod schema;
+mod shares;
 pub mod study;
 pub mod tables;
 pub mod validate;
@@ -18,13 +19,13 @@ use std::path::Path;
 use gudgeon_report::Folder;
 use gudgeon_scene::Checked;
 
-use crate::args::{CaseArgs, out_dir};
+use crate::args::out_dir;
 use crate::failure::Failure;
 use crate::ui::Ui;
 
 /// Reads and validates the case; its notes are told at once.
-fn checked(a: &CaseArgs, ui: &Ui) -> Result<Checked, Failure> {
-    let checked = gudgeon_scene::check(&a.case, &a.set)?;
+fn checked(case: &Path, set: &[String], ui: &Ui) -> Result<Checked, Failure> {
+    let checked = gudgeon_scene::check(case, set)?;
     for note in &checked.notes {
         ui.note(note);
     }

@@ -10,7 +10,7 @@ use crate::failure::Failure;
 use crate::ui::{Ui, certain, number, table, unit};
 
 pub fn run(a: &RunArgs, ui: &Ui) -> Result<(), Failure> {
-    let c = checked(&a.case, ui)?;
+    let c = checked(&a.case.case, &a.case.set, ui)?;
     let folder = open_out(a.out.as_deref(), &a.case.case, &c.name, "")?;
     let mut result = {
         let bar = ui.bar();

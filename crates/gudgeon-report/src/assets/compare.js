@@ -63,7 +63,8 @@
     if (q.rank >= 9 && q.rank < 20) later.push(spec); else plot(host, cycle, spec);
   }
   function values(label) {
-    return label.split(",").map((p) => p.split("=").at(-1).trim()).join(", ");
+    const cut = DATA.cases > 1 ? label.indexOf(": ") + 2 : 0;
+    return label.slice(0, cut) + label.slice(cut).split(",").map((p) => p.split("=").at(-1).trim()).join(", ");
   }
   if (later.length) {
     let drawn = false;

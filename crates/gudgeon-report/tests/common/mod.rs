@@ -5,8 +5,9 @@
 use std::f64::consts::PI;
 
 use gudgeon_core::result::{
-    Balance, BenchPoint, BenchTable, Branch, Column, Comparison, Event, ModelUse, Note, PackSection,
-    RunResult, SectionRing, Series, Skipped, SolverReport, Value, Variant,
+    Balance, BenchPoint, BenchTable, Branch, Column, ComparedCase, Comparison, Event, ModelUse, Note,
+    PackSection, RunResult, SectionRing, Series, Share, ShareRow, ShareTable, Skipped, SolverReport, Value,
+    Variant,
 };
 use indexmap::IndexMap;
 
@@ -347,6 +348,7 @@ pub fn comparison() -> Comparison {
         }
         Variant {
             label: format!("gas_flow={gas}, contact={contact}"),
+            case: 0,
             swaps: vec![
                 ("models.gas_flow.model".into(), gas.into()),
                 ("models.contact.model".into(), contact.into()),
@@ -365,12 +367,52 @@ pub fn comparison() -> Comparison {
     Comparison {
         case: "diesel_120".into(),
         title: "Heavy diesel, 120 mm bore".into(),
+        cases: vec![ComparedCase { name: "diesel_120".into(), title: "Heavy diesel, 120 mm bore".into() }],
         swaps: vec![
             ("models.gas_flow.model".into(), vec!["orifice_network".into(), "narrow_channel".into()]),
             ("models.contact.model".into(), vec!["off".into(), "greenwood_tripp".into()]),
         ],
         variants,
+        shares: Vec::new(),
     }
+}
+
+/// The same at two speeds, with a table of shares.
+pub fn cases() -> Comparison {
+    let mut c = comparison();
+    c.cases.push(ComparedCase { name: "diesel_120, engine.speed=1500 rpm".into(), ..c.cases[0].clone() });
+    let mut other = c.variants.clone();
+    for v in &mut other {
+        v.case = 1;
+        for value in v.outcome.iter_mut().flat_map(|r| r.results.values_mut()) {
+            value.value *= 2.0;
+        }
+    }
+    c.variants.extend(other);
+    let share = |share: f64| Some(Share { share, largest: 30.0 * share, within_numerics: share < 0.01 });
+    let row = |result: &str, same_as: Option<&str>| ShareRow {
+        result: result.into(),
+        what: "what it is".into(),
+        unit: "l/min".into(),
+        headline: true,
+        same_as: same_as.map(str::to_owned),
+        spread: 12.3,
+        spread_unit: "%".into(),
+        shares: [0.92, 0.03, 0.02, 0.02, 0.0095, 0.0005].map(share).to_vec(),
+        between_cases: Some(0.8),
+        combinations: 4,
+        left_out: vec!["contact=off".into()],
+        ..ShareRow::default()
+    };
+    c.shares = vec![ShareTable {
+        case: None,
+        factors: ["case", "gas_flow", "contact"].map(str::to_owned).to_vec(),
+        effects: vec![vec![1], vec![2], vec![0, 1], vec![0, 2], vec![1, 2], vec![0, 1, 2]],
+        verified: false,
+        rows: vec![row("blow_by", None), row("fmep", Some("blow_by"))],
+        findings: vec!["`gas_flow` explains 92 % of the variance of `blow_by` (spread 12 %).".into()],
+    }];
+    c
 }
 
 /// Two methods over a range of settings; one point fails.

@@ -4,3 +4,4 @@ mod anova;
 mod distribution;
 mod sampling;
 mod sensitivity;
+mod shares;

@@ -1,0 +1,209 @@
+//! Every combination of some models or settings of one case, or of several, side by side; and which of these choices matters.
+
+mod findings;
+mod shares;
+
+use std::path::{Path, PathBuf};
+
+use gudgeon_case::{Diagnostic, Report};
+use gudgeon_core::result::{ComparedCase, Comparison, RunResult, Variant, short_value};
+use gudgeon_core::{BuildError, Registry};
+use gudgeon_scene::many::run_many;
+use gudgeon_scene::run::{run_alone, run_alone_verified};
+use gudgeon_scene::{Checked, Progress, RunError, Stopped, check};
+
+use crate::error::StudyError;
+
+pub use shares::shares;
+
+/// A callback that hears how far the comparison is, and says whether it may go on.
+type Tell<'a> = &'a mut dyn FnMut(Progress) -> Result<(), Stopped>;
+
+/// A case of a comparison.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Subject {
+    /// The case file.
+    pub path: PathBuf,
+    /// Changes to every combination of it, as `--set` takes them.
+    pub overrides: Vec<String>,
+    /// Those of the changes that tell it from other cases made of the same file: they become part of its name.
+    pub own: Vec<String>,
+}
+
+/// What is compared.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Plan {
+    /// The cases.
+    pub cases: Vec<Subject>,
+    /// `(path, values)`: every combination is run. A value may be a table, `{ model = "closed_form_face", cavitation = "half_sommerfeld" }`.
+    pub swaps: Vec<(String, Vec<String>)>,
+    /// Whether the numerical uncertainty of every result is found.
+    pub verify: bool,
+    /// Results that a reader looks at first; empty: those of the whole scene, whose names have no point.
+    pub headlines: Vec<String>,
+}
+
+/// `gas_flow`, `models.gas_flow` and `models.gas_flow.model` all mean the model's name; anything else is taken as written.
+fn swap_path(path: &str) -> String {
+    let registry = Registry::collect();
+    let bare = path.strip_prefix("models.").unwrap_or(path);
+    if registry.kind(bare).is_some() {
+        return format!("models.{bare}.model");
+    }
+    match path.rsplit_once('.') {
+        Some((_, last)) if registry.kind(last).is_some() => format!("{path}.model"),
+        _ => path.to_owned(),
+    }
+}
+
+/// The path that a value of a swap is set at: a table with the settings of a model stands for the model itself, a word for its name.
+fn place<'a>(path: &'a str, value: &str) -> &'a str {
+    if value.starts_with('{') { path.strip_suffix(".model").unwrap_or(path) } else { path }
+}
+
+/// What a swap is called: `gas_flow` for `models.gas_flow.model`.
+fn short(path: &str) -> &str {
+    path.trim_start_matches("models.").trim_end_matches(".model")
+}
+
+/// Most combinations of one comparison: each is a run, and all their results are kept.
+const MAX_COMBINATIONS: usize = 1000;
+
+/// Runs every combination of `swaps`, `(path, values)`.
+///
+/// Every combination is checked before any is run; those that cannot be are kept with the reason.
+///
+/// # Errors
+/// The case itself is wrong, a swap has no values, or no combination is possible.
+pub fn compare(
+    path: &Path,
+    overrides: &[String],
+    swaps: &[(String, Vec<String>)],
+    progress: Tell<'_>,
+) -> Result<Comparison, StudyError> {
+    let subject = Subject { path: path.to_owned(), overrides: overrides.to_vec(), own: Vec::new() };
+    let plan = Plan { cases: vec![subject], swaps: swaps.to_vec(), ..Plan::default() };
+    compare_cases(&plan, progress)
+}
+
+/// Runs every combination of the swaps on every case, and takes the variance of the results apart.
+///
+/// Every combination is checked before any is run; those that cannot be are kept with the reason.
+///
+/// # Errors
+/// A case itself is wrong, a swap has no values, or no combination is possible for any case; there is no case.
+pub fn compare_cases(plan: &Plan, progress: Tell<'_>) -> Result<Comparison, StudyError> {
+    let bases: Vec<Checked> =
+        plan.cases.iter().map(|s| check(&s.path, &s.overrides)).collect::<Result<_, _>>()?;
+    let Some(first) = bases.first() else {
+        return Err(Report::unreadable("", Diagnostic::new("a comparison needs a case")).into());
+    };
+    let combinations = combinations(first, plan)?;
+    let jobs: Vec<Job> = bases
+        .iter()
+        .enumerate()
+        .flat_map(|(case, base)| combinations.iter().map(move |c| Job::new(case, base, c)))
+        .collect();
+    if jobs.iter().all(|j| j.checked.is_err()) {
+        // Nothing is possible: the first refusal says why, with places.
+        let report = jobs.into_iter().find_map(|j| j.checked.err());
+        let none = || first.case.refuse(&[BuildError::new("no combination to run")]);
+        return Err(report.unwrap_or_else(none).into());
+    }
+    let run: Run = if plan.verify { run_alone_verified } else { run_alone };
+    let outcome = |k: usize, tell: Tell<'_>| match &jobs[k].checked {
+        Err(report) => Err(format!("refused: {}", report.failure())),
+        Ok(c) => run(c, tell).map_err(|e| format!("failed: {e}")),
+    };
+    let outcomes = run_many(jobs.len(), 0, outcome, progress).all()?;
+    let cases = named(&bases, &plan.cases);
+    let variants =
+        jobs.into_iter().zip(outcomes).map(|(job, outcome)| job.variant(&cases, outcome)).collect();
+    let mut comparison = Comparison {
+        case: cases.iter().map(|c| c.name.as_str()).collect::<Vec<_>>().join(" · "),
+        title: match cases.as_slice() {
+            [one] => one.title.clone(),
+            several => format!("{} cases", several.len()),
+        },
+        cases,
+        swaps: plan.swaps.iter().map(|(p, v)| (swap_path(p), v.clone())).collect(),
+        variants,
+        shares: Vec::new(),
+    };
+    comparison.shares = shares::shares(&comparison, &plan.headlines);
+    Ok(comparison)
+}
+
+/// Values of all swaps.
+type Combination = Vec<(String, String)>;
+
+/// How one combination is run.
+type Run = fn(&Checked, Tell<'_>) -> Result<RunResult, RunError>;
+
+/// One combination of one case.
+struct Job {
+    case: usize,
+    swaps: Combination,
+    checked: Result<Checked, Report>,
+}
+
+impl Job {
+    fn new(case: usize, base: &Checked, swaps: &Combination) -> Self {
+        let set: Vec<String> = swaps.iter().map(|(p, v)| format!("{p}={v}")).collect();
+        Self { case, swaps: swaps.clone(), checked: base.with(&set) }
+    }
+
+    fn variant(self, cases: &[ComparedCase], outcome: Result<RunResult, String>) -> Variant {
+        let swaps: Vec<String> =
+            self.swaps.iter().map(|(p, v)| format!("{}={}", short(p), short_value(v))).collect();
+        let label = match cases {
+            [_] => swaps.join(", "),
+            several => format!("{}: {}", several[self.case].name, swaps.join(", ")),
+        };
+        Variant { label, case: self.case, swaps: self.swaps, outcome }
+    }
+}
+
+/// Names of the cases, with the changes of their own where two share one.
+fn named(bases: &[Checked], subjects: &[Subject]) -> Vec<ComparedCase> {
+    let alone = |base: &Checked| bases.iter().filter(|b| b.name == base.name).count() == 1;
+    let name = |base: &Checked, own: &[String]| {
+        let own = own.iter().filter(|_| !alone(base)).map(String::as_str);
+        std::iter::once(base.name.as_str()).chain(own).collect::<Vec<_>>().join(", ")
+    };
+    let case = |(base, s): (&Checked, &Subject)| ComparedCase {
+        name: name(base, &s.own),
+        title: base.title().to_owned(),
+    };
+    bases.iter().zip(subjects).map(case).collect()
+}
+
+/// Every combination of the swaps, the last swap the fastest.
+fn combinations(base: &Checked, plan: &Plan) -> Result<Vec<Combination>, Report> {
+    let swaps = &plan.swaps;
+    let count = swaps.iter().fold(plan.cases.len(), |n, (_, v)| n.saturating_mul(v.len()));
+    if count > MAX_COMBINATIONS {
+        let what = match plan.cases.len() {
+            1 => format!("the swaps make {count} combinations, at most {MAX_COMBINATIONS} are compared"),
+            n => format!(
+                "{n} cases and the swaps make {count} combinations, at most {MAX_COMBINATIONS} are compared"
+            ),
+        };
+        let e = BuildError::new(what).help("fewer values, or one `--swap` after the other");
+        return Err(base.case.refuse(&[e]));
+    }
+    let mut all: Vec<Combination> = vec![Vec::new()];
+    for (p, values) in swaps {
+        if values.is_empty() || values.iter().any(String::is_empty) {
+            let e = BuildError::new(format!("the swap `{p}` has an empty value"))
+                .help("write `--swap PATH=A,B,C`");
+            return Err(base.case.refuse(&[e]));
+        }
+        let p = swap_path(p);
+        let with = |c: &Combination, v: &String| {
+            c.iter().cloned().chain([(place(&p, v).to_owned(), v.clone())]).collect()
+        };
+        all = all.iter().flat_map(|c| values.iter().map(|v| with(c, v)).collect::<Vec<_>>()).collect();
+    }
+    Ok(all)
+}
