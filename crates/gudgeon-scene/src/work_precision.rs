@@ -64,6 +64,8 @@ pub struct WorkPrecision {
     pub others: Vec<OtherMethod>,
     /// Changes that all runs share: what no method needs for the results is left out.
     pub all: Vec<String>,
+    /// Names of groups of declared numerical settings that change nothing here, and are no sweep.
+    pub idle: Vec<&'static str>,
     /// Results that are looked at unless told otherwise; those that the case has.
     pub results: Vec<String>,
 }

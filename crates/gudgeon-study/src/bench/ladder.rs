@@ -7,9 +7,9 @@ use gudgeon_scene::{Asked, Checked, MethodSetting};
 const AS_IT_STANDS: &str = "as it stands";
 
 /// Settings of a case along what it declares, each as the changes of the case; one setting where it declares nothing.
-pub fn ladder(case: &Checked, label: &str) -> Vec<MethodSetting> {
-    let (tolerances, grids): (Vec<_>, Vec<_>) =
-        case.case.refinements().into_iter().partition(|g| g.own.asked.is_some());
+pub fn ladder(case: &Checked, label: &str, idle: &[&str]) -> Vec<MethodSetting> {
+    let all = case.case.refinements().into_iter().filter(|g| !idle.contains(&g.what.as_str()));
+    let (tolerances, grids): (Vec<_>, Vec<_>) = all.partition(|g| g.own.asked.is_some());
     let mut groups: Vec<Vec<Refinement>> = tolerances.into_iter().map(|t| vec![t]).collect();
     if !grids.is_empty() {
         groups.insert(0, grids);
@@ -38,7 +38,7 @@ fn rungs(case: &Checked, groups: &[Refinement], label: &str, several: bool) -> V
     };
     let coarsest = groups.iter().map(|g| g.coarser.len()).max().unwrap_or(0) as i32;
     // The finest level is that of references.
-    let finest = groups.iter().map(|g| g.levels.len()).max().unwrap_or(0) as i32 - 1;
+    let finest = (finest_level(case, groups) - 1).max(0);
     let tight = if several { finer(case, groups).0 } else { Vec::new() };
     (-coarsest..=finest)
         .map(|k| {
@@ -52,7 +52,7 @@ fn rungs(case: &Checked, groups: &[Refinement], label: &str, several: bool) -> V
                 asked: asked.map(|tolerance| Asked { tolerance, against: tight.clone(), told_by: None }),
             }
         })
-        // A case may refuse what is too coarse or too fine for it.
+        // A case may refuse what is too coarse for it.
         .filter(|s| s.is_default || case.with(&s.set).is_ok())
         .collect()
 }
@@ -74,17 +74,16 @@ fn at(groups: &[Refinement], k: i32) -> (Vec<String>, String) {
 
 /// The finest settings that a case admits, with their words.
 pub fn finer(case: &Checked, groups: &[Refinement]) -> (Vec<String>, String) {
-    admitted(case, groups, groups.iter().map(|g| g.levels.len()).max().unwrap_or(0) as i32)
+    at(groups, finest_level(case, groups))
 }
 
 /// The settings one level below the finest.
 pub fn less_fine(case: &Checked, groups: &[Refinement]) -> (Vec<String>, String) {
-    let top = groups.iter().map(|g| g.levels.len()).max().unwrap_or(0) as i32;
-    let finest = (0..=top).rev().find(|k| case.with(&at(groups, *k).0).is_ok()).unwrap_or(0);
-    at(groups, (finest - 1).max(0))
+    at(groups, (finest_level(case, groups) - 1).max(0))
 }
 
-fn admitted(case: &Checked, groups: &[Refinement], most: i32) -> (Vec<String>, String) {
-    let finest = (0..=most).rev().map(|k| at(groups, k)).find(|(set, _)| case.with(set).is_ok());
-    finest.unwrap_or_else(|| at(groups, 0))
+/// The finest level that a case admits.
+fn finest_level(case: &Checked, groups: &[Refinement]) -> i32 {
+    let most = groups.iter().map(|g| g.levels.len()).max().unwrap_or(0) as i32;
+    (0..=most).rev().find(|k| case.with(&at(groups, *k).0).is_ok()).unwrap_or(0)
 }

@@ -105,7 +105,7 @@ fn of_scene(own: &WorkPrecision) -> Vec<OtherMethod> {
 fn settings(case: &Checked, label: &str) -> Result<Vec<MethodSetting>, StudyError> {
     let own = case.case.work_precision().map_err(RunError::Refused)?;
     if own.settings.is_empty() {
-        return Ok(ladder(case, label));
+        return Ok(ladder(case, label, &own.idle));
     }
     let named = |s: MethodSetting| {
         let method = if label.is_empty() { s.method.clone() } else { format!("{label}; {}", s.method) };
@@ -131,30 +131,38 @@ fn reference(base: &Checked, own: &WorkPrecision) -> Result<Reference, StudyErro
         return Ok(Reference { set: behind(&named.set), check: behind(&named.check), ..named.clone() });
     }
     let admitted = |o: &&OtherMethod| base.with(&[&own.all[..], &o.set].concat()).is_ok();
-    match own.others.iter().find(admitted) {
-        Some(other) => refined(base, &[&own.all[..], &other.set].concat(), Some(&other.label)),
-        None => refined(base, &own.all, None),
-    }
-}
-
-/// A method at the finest settings that it declares.
-fn refined(base: &Checked, set: &[String], second: Option<&str>) -> Result<Reference, StudyError> {
-    let case = base.with(set).map_err(StudyError::Input)?;
-    let groups = case.case.refinements();
-    let (finest, words) = finer(&case, &groups);
-    let (before, coarser) = less_fine(&case, &groups);
-    let is = match second {
-        Some(model) => format!("`{model}`, {words}; differs from {coarser}"),
-        None => format!(
-            "by the same method, refined, for no second one is known: {words}; differs from {coarser}"
-        ),
+    let (set, words, coarser) = finest(base, &own.all)?;
+    let Some(other) = own.others.iter().find(admitted) else {
+        return Ok(Reference {
+            set,
+            check: coarser.0,
+            is: format!(
+                "by the same method, refined, for no second one is known: {words}; differs from {}",
+                coarser.1
+            ),
+            ..Reference::default()
+        });
     };
-    let behind = |own: &[String]| [set, own].concat();
+    // Two methods that come together say more than one that settles: grids that hold the nodes of each other share errors.
+    let (second, second_words, _) = finest(base, &[&own.all[..], &other.set].concat())?;
     Ok(Reference {
-        set: behind(&finest),
-        check: behind(&before),
-        is,
-        independent: second.is_some(),
+        set: second,
+        check: set,
+        is: format!("`{}`, {second_words}; differs from `{}`, {words}", other.label, own.own),
+        independent: true,
         told_as: Vec::new(),
     })
+}
+
+/// Settings with their words.
+type Words = (Vec<String>, String);
+
+/// A case with some changes at the finest settings that it declares: all changes, the settings in words, and those one level coarser.
+fn finest(base: &Checked, set: &[String]) -> Result<(Vec<String>, String, Words), StudyError> {
+    let case = base.with(set).map_err(StudyError::Input)?;
+    let groups = case.case.refinements();
+    let behind = |own: &[String]| [set, own].concat();
+    let (fine, words) = finer(&case, &groups);
+    let (before, coarser) = less_fine(&case, &groups);
+    Ok((behind(&fine), words, (behind(&before), coarser)))
 }

@@ -33,6 +33,8 @@ pub fn work_precision(case: &ShaftLineCase, a: &Assembled) -> WorkPrecision {
         own: torsion.typetag_name().into(),
         others: methods.into_iter().map(|(_, m)| m).collect(),
         all: response_alone(case),
+        // A motion over time knows no orders.
+        idle: if torsion.answers() == TorsionAnswer::Time { vec!["orders"] } else { Vec::new() },
         results: results(a),
         ..WorkPrecision::default()
     }
