@@ -215,11 +215,7 @@ fn page(file: &File) -> String {
     }
     body.push_str("<section id=\"reference\"><h2>Reference</h2>");
     if !file.reference.is_empty() {
-        let how = if file.independent {
-            "By another method than those that are raced"
-        } else {
-            "By the method itself"
-        };
+        let how = if file.independent { "By a second method" } else { "By the method itself" };
         let _ = write!(body, "<p>{how}: {}</p>", page::prose(&file.reference));
     }
     if !file.reference_values.is_empty() {
@@ -265,11 +261,14 @@ fn page(file: &File) -> String {
 
 fn points_table(out: &mut String, file: &File, errors: &[&str]) {
     let work = file.names(|p| &p.work);
+    let cyclic = file.points.iter().any(|p| p.cycles.is_some_and(|c| c > 1.0));
     out.push_str(
         "<section id=\"points\"><h2>All points</h2><div class=\"scroll\"><table class=\"plain compare\"><thead><tr>\
-         <th>Method</th><th>Setting</th><th class=\"num\">s per cycle</th><th class=\"num\">s in all</th>\
-         <th class=\"num\">cycles</th>",
+         <th>Method</th><th>Setting</th><th class=\"num\">s in all</th>",
     );
+    if cyclic {
+        out.push_str("<th class=\"num\">s per cycle</th><th class=\"num\">cycles</th>");
+    }
     for n in errors {
         let _ = write!(out, "<th class=\"num\">error of<br><code>{}</code></th>", esc(n));
     }
@@ -287,14 +286,14 @@ fn points_table(out: &mut String, file: &File, errors: &[&str]) {
         let mark = if p.is_default { " <span class=\"tag\">default</span>" } else { "" };
         let _ = write!(
             out,
-            "<tr{class}><th scope=\"row\">{}</th><td>{}{mark}</td><td class=\"num\">{}</td><td class=\"num\">{}</td><td \
-             class=\"num\">{}</td>",
+            "<tr{class}><th scope=\"row\">{}</th><td>{}{mark}</td><td class=\"num\">{}</td>",
             esc(&p.method),
             esc(&p.setting),
-            significant(p.seconds_per_cycle, 3),
-            significant(p.seconds_total, 3),
-            significant(p.cycles, 3)
+            significant(p.seconds_total, 3)
         );
+        for v in [p.seconds_per_cycle, p.cycles].into_iter().filter(|_| cyclic) {
+            let _ = write!(out, "<td class=\"num\">{}</td>", significant(v, 3));
+        }
         for n in errors {
             let _ =
                 write!(out, "<td class=\"num\">{}</td>", significant(p.errors.get(*n).copied().flatten(), 2));

@@ -1,7 +1,10 @@
 //! Run time and work against error.
 
 use crate::common::*;
+use gudgeon_core::Registry;
+use gudgeon_core::kinds::{Film1dSpec, TorsionSpec};
 use gudgeon_core::result::{BenchPoint, BenchTable};
+use gudgeon_scene::default_solvers;
 use gudgeon_study::{StudyError, bench};
 
 fn contender(path: &str, values: &[&str]) -> (String, Vec<String>) {
@@ -119,6 +122,22 @@ fn a_shaft_line_is_followed_over_time() {
     assert!(b.trusted_to < 1e-5, "{}", b.reference);
     // What is stepped in time is no sum of orders.
     assert!(curve(&b, "implicit").iter().all(|p| p.setting.starts_with("tolerance")));
+}
+
+#[test]
+fn methods_that_models_name_exist() {
+    let registry = Registry::collect();
+    let films =
+        default_solvers::<dyn Film1dSpec>().into_iter().map(|(n, m)| ("film_1d", n, m.same_equations()));
+    let torsion =
+        default_solvers::<dyn TorsionSpec>().into_iter().map(|(n, m)| ("torsion", n, m.same_equations()));
+    let named: Vec<_> = films.chain(torsion).filter(|(.., others)| !others.is_empty()).collect();
+    assert!(named.len() >= 3, "{named:?}");
+    for (kind, name, others) in named {
+        for other in others {
+            assert!(registry.model(kind, other).is_some() && *other != name, "{kind}/{name} names `{other}`");
+        }
+    }
 }
 
 #[test]

@@ -128,7 +128,7 @@ fn summary(all: &[BenchTable]) -> String {
             if b.default_is_enough() { "reached" } else { "missed" }.into(),
             over_asked(b.default_over_asked()),
             ms.unwrap_or_else(|| "-".into()),
-            if b.independent { "another method" } else { "the same, refined" }.into(),
+            if b.independent { "a second method" } else { "the same, refined" }.into(),
         ]);
     }
     table(&rows, &[2, 5, 6])

@@ -44,7 +44,7 @@
     }));
   }
 
-  // Logarithmic on both axes. Values of zero along the abscissa stand at the left edge.
+  // Logarithmic on both axes. Along the abscissa zero, and what is far below what the reference knows, stands at the left edge.
   function chart({ title, points, x, y, across, up, tick, text, trusted, band }) {
     const tip = h("div", { class: "tip" });
     const W = 580, H = 380, L = 66, R = 14, T = 22, B = 44;
@@ -52,7 +52,7 @@
     const box = h("div", { class: "chart" }, title, svg, tip);
     if (!points.length) { tip.textContent = "No method gave this."; return box; }
     const positive = points.map(x).filter((e) => e > 0);
-    const floor = positive.length ? Math.min(...positive) / 2 : 1e-16;
+    const floor = Math.max(positive.length ? Math.min(...positive) / 2 : 1e-16, (trusted || 0) / 10);
     const at = (p) => Math.max(x(p), floor);
     const span = (v) => { let lo = Math.min(...v), hi = Math.max(...v); const f = Math.max(1.25, (hi / lo) ** 0.07); return [lo / f, hi * f]; };
     const [x0, x1] = span(points.map(at)), [y0, y1] = span(points.map(y));
