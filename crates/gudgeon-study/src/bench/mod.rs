@@ -94,7 +94,11 @@ const UNNAMED: usize = 4;
 
 /// Values of a reference, by the names that the methods give them.
 fn values(plan: &Plan, reference: &RunResult, chosen: &[String]) -> IndexMap<String, Value> {
-    let value = |n: &String| reference.results.get(plan.told_as(n)).map(|v| (n.clone(), v.clone()));
+    let value = |n: &String| {
+        let told = reference.results.get(plan.told_as(n))?;
+        let what = reference.results.get(n).map_or("", |own| &own.what);
+        Some((n.clone(), Value { what: what.to_owned(), ..told.clone() }))
+    };
     chosen.iter().filter_map(value).collect()
 }
 
