@@ -45,7 +45,7 @@ pub enum Command {
     Schema,
     /// Run cases with every combination of some values, compare the results, and tell which choice matters
     Compare(CompareArgs),
-    /// Measure run time against error of the solvers on a case
+    /// Measure run time and work against error: solvers, models of the same equations, numerical settings
     Bench(BenchArgs),
     /// Compare cases with the values of their sources
     Validate(ValidateArgs),
@@ -139,12 +139,20 @@ pub struct CompareArgs {
 
 #[derive(Debug, ClapArgs)]
 pub struct BenchArgs {
-    #[command(flatten)]
-    pub case: CaseArgs,
+    /// Case files
+    #[arg(value_name = "CASE", required = true)]
+    pub cases: Vec<PathBuf>,
+    /// Change a value of every case
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    pub set: Vec<String>,
+    /// Models or values to race instead of the methods that the scene knows, each along its own numerical settings:
+    /// rig.film_1d.model=front_tracking,complementarity
+    #[arg(long, value_name = "PATH=A,B,C")]
+    pub contender: Vec<String>,
     /// Results whose error is measured
     #[arg(long, value_name = "A,B", value_delimiter = ',')]
     pub results: Vec<String>,
-    /// Folder for the results [default: out/<case>-bench]
+    /// Folder for the results; of several cases, one folder each in it [default: out/<case>-bench]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// No progress, no table

@@ -57,6 +57,7 @@ impl From<StudyError> for Failure {
     fn from(e: StudyError) -> Self {
         match e {
             StudyError::Input(report) => Self::Input(report),
+            StudyError::Run(e) => e.into(),
             e => Self::Run(e.to_string()),
         }
     }

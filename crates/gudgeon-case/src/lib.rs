@@ -29,7 +29,7 @@ use toml::de::DeTable;
 
 pub use near::{advice, list, nearest};
 pub use published::{one_scene_of, published};
-pub use refine::Refinement;
+pub use refine::{Level, Refinement};
 pub use report::{Diagnostic, MAX_MISTAKES, Origin, Report, Source, WIDTH, line_column};
 
 /// What the tests of this crate look at and nobody else needs.

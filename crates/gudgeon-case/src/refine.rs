@@ -2,7 +2,8 @@
 //!
 //! A field says so itself, in its schema: `x-refine` holds the name of what is refined (`tolerance`, `film grid`; settings of one name are
 //! refined together), the `factor` of one level, and possibly `levels`, how many of them are worth their time (a plane grid has four times the
-//! nodes a level). So a model that is registered elsewhere is verified like a built-in one.
+//! nodes a level). A name that ends in `tolerance` says that the value is a relative error that is asked for. So a model that is registered
+//! elsewhere is verified, and raced by `bench`, like a built-in one.
 
 use indexmap::IndexMap;
 use serde_json::Value;
@@ -18,8 +19,24 @@ const LEVELS: i32 = 3;
 pub struct Refinement {
     /// What is refined.
     pub what: String,
-    /// The changes of each level, as `--set` takes them, the mildest first.
-    pub levels: Vec<Vec<String>>,
+    /// The settings as they stand.
+    pub own: Level,
+    /// Finer settings, the mildest first: as many as are worth their time.
+    pub levels: Vec<Level>,
+    /// Coarser settings, the mildest first. A case may refuse some of them.
+    pub coarser: Vec<Level>,
+}
+
+/// A group of settings at one level of refinement.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Level {
+    /// The settings as `--set` takes them.
+    pub set: Vec<String>,
+    /// The settings in words: `panels 200`.
+    pub words: String,
+    /// The relative error that they ask for, the largest of the group. Only what is named a tolerance asks for an error; a grid or a step does
+    /// not know its own.
+    pub asked: Option<f64>,
 }
 
 /// The settings of a resolved case that refine its results, by what they refine.
@@ -28,9 +45,31 @@ pub(super) fn refinements(schema: &Schema, resolved: &Value) -> Vec<Refinement> 
     for s in settings(schema, resolved) {
         groups.entry(s.group.clone()).or_default().push(s);
     }
-    let most = |s: &[Setting]| s.iter().map(|s| s.levels).min().unwrap_or(LEVELS);
-    let levels = |s: &[Setting]| (1..=most(s)).map(|k| s.iter().map(|s| s.at(k)).collect()).collect();
-    groups.into_iter().map(|(what, s)| Refinement { what, levels: levels(&s) }).collect()
+    let group = |(what, s): (String, Vec<Setting>)| {
+        let most = s.iter().map(|s| s.levels).min().unwrap_or(LEVELS);
+        let coarsest = (1..=LEVELS).take_while(|k| s.iter().all(|s| s.exists_at(-k))).last().unwrap_or(0);
+        Refinement {
+            own: level(&what, &s, 0),
+            levels: (1..=most).map(|k| level(&what, &s, k)).collect(),
+            coarser: (1..=coarsest).map(|k| level(&what, &s, -k)).collect(),
+            what,
+        }
+    };
+    groups.into_iter().map(group).collect()
+}
+
+/// What the name of a group ends in whose settings are relative errors that are asked for.
+const TOLERANCE: &str = "tolerance";
+
+fn level(what: &str, settings: &[Setting], k: i32) -> Level {
+    let mut words: Vec<String> = settings.iter().map(|s| s.words(k)).collect();
+    words.dedup();
+    let largest = settings.iter().map(|s| s.value_at(k)).reduce(f64::max);
+    Level {
+        set: settings.iter().map(|s| s.at(k)).collect(),
+        words: words.join(", "),
+        asked: largest.filter(|_| what.ends_with(TOLERANCE)),
+    }
 }
 
 /// One setting.
@@ -53,16 +92,41 @@ struct Setting {
 }
 
 impl Setting {
-    /// The change of a level; level 0 is the case as it stands.
-    fn at(&self, level: i32) -> String {
+    /// The value at a level; level 0 is the case as it stands, negative levels are coarser.
+    fn value_at(&self, level: i32) -> f64 {
         let value = self.value * self.factor.powi(level);
         // Without the rounding of the product: nobody writes a tolerance of 1.0000000000000001e-5.
-        let value = format!("{value:.9e}").parse().unwrap_or(value);
+        let value: f64 = format!("{value:.9e}").parse().unwrap_or(value);
+        if self.whole { value.round() } else { value }
+    }
+
+    /// Whether a count is still one at a level, and another than at the level before.
+    fn exists_at(&self, level: i32) -> bool {
+        !self.whole || self.value_at(level) >= 1.0 && self.value_at(level) < self.value_at(level + 1)
+    }
+
+    /// The value with its unit.
+    fn text_at(&self, level: i32) -> String {
+        let value = self.value_at(level);
         if self.whole {
-            return format!("{}={:.0}", self.path, value);
+            return format!("{value:.0}");
         }
         let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
-        format!("{}={value:e}{unit}", self.path)
+        format!("{value:e}{unit}")
+    }
+
+    /// The change of a level.
+    fn at(&self, level: i32) -> String {
+        format!("{}={}", self.path, self.text_at(level))
+    }
+
+    /// The setting in words.
+    fn words(&self, level: i32) -> String {
+        let name = self.path.rsplit('.').next().unwrap_or_default().replace('_', " ");
+        let value = self.value_at(level);
+        let plain = !self.whole && (1e-2..1e4).contains(&value.abs());
+        let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
+        if plain { format!("{name} {value}{unit}") } else { format!("{name} {}", self.text_at(level)) }
     }
 }
 

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use gudgeon_core::result::{BenchPoint, BenchTable};
+use gudgeon_core::result::{BenchPoint, BenchTable, OVER_ASKED};
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -39,7 +39,18 @@ struct Point {
     cycles: Option<f64>,
     work: IndexMap<String, u64>,
     errors: IndexMap<String, Option<f64>>,
+    #[serde(default)]
+    asked: Option<f64>,
+    #[serde(default)]
+    achieved: Option<f64>,
     failure: Option<String>,
+}
+
+impl Point {
+    /// Achieved error over the one that was asked for.
+    fn over_asked(&self) -> Option<f64> {
+        self.achieved.zip(self.asked).map(|(got, asked)| got / asked)
+    }
 }
 
 impl From<&BenchPoint> for Point {
@@ -55,6 +66,8 @@ impl From<&BenchPoint> for Point {
             cycles: finite(p.cycles).filter(|_| p.failure.is_none()),
             work: p.work.clone(),
             errors: p.errors.iter().map(|(k, v)| (k.clone(), finite(*v))).collect(),
+            asked: p.asked,
+            achieved: p.achieved.and_then(finite),
             failure: p.failure.clone(),
         }
     }
@@ -65,6 +78,10 @@ struct File {
     case: String,
     title: String,
     reference: String,
+    #[serde(default)]
+    independent: bool,
+    #[serde(default)]
+    trusted_to: Option<f64>,
     reference_values: IndexMap<String, ResultValue>,
     #[serde(default)]
     descriptions: IndexMap<String, String>,
@@ -78,6 +95,8 @@ impl File {
             case: b.case.clone(),
             title: b.title.clone(),
             reference: b.reference.clone(),
+            independent: b.independent,
+            trusted_to: Some(b.trusted_to).filter(|v| v.is_finite()),
             reference_values: b.reference_values.iter().map(|(k, v)| (k.clone(), v.into())).collect(),
             descriptions: b
                 .reference_values
@@ -146,7 +165,7 @@ fn csv_table(file: &File) -> Result<Vec<u8>, ReportError> {
             .to_vec();
     head.extend(errors.iter().map(|n| format!("error.{n}[-]")));
     head.extend(work.iter().map(|n| format!("work.{n}[-]")));
-    head.push("failure".into());
+    head.extend(["asked[-]", "achieved[-]", "failure"].map(str::to_owned));
     let number = |v: Option<f64>| v.map_or_else(String::new, round_trip);
     let mut out = vec![head];
     for p in &file.points {
@@ -160,6 +179,7 @@ fn csv_table(file: &File) -> Result<Vec<u8>, ReportError> {
         ];
         row.extend(errors.iter().map(|n| number(p.errors.get(*n).copied().flatten())));
         row.extend(work.iter().map(|n| p.work.get(*n).map_or_else(String::new, u64::to_string)));
+        row.extend([number(p.asked), number(p.achieved)]);
         row.push(p.failure.clone().unwrap_or_default());
         out.push(row);
     }
@@ -171,7 +191,7 @@ fn page(file: &File) -> String {
     let mut body = String::new();
     let _ = write!(
         body,
-        "<header><h1>{}</h1><p class=\"meta\"><code>{}</code> · run time against error</p></header>\n<main>\n",
+        "<header><h1>{}</h1><p class=\"meta\"><code>{}</code> · run time and work against error</p></header>\n<main>\n",
         esc(heading),
         esc(&file.case)
     );
@@ -185,14 +205,18 @@ fn page(file: &File) -> String {
     let errors = file.names(|p| &p.errors);
     if !errors.is_empty() {
         body.push_str(
-            "<section id=\"charts\"><h2>Run time against error</h2><p class=\"hint\">Lower left is better. The large \
-             ring marks the default setting of a method. Point at a mark to read its setting.</p><div \
-             id=\"bench-bar\"></div><div id=\"charts-grid\"></div></section>\n",
+            "<section id=\"charts\"><h2>Run time and work against error</h2><p class=\"hint\">Lower left is better. The large \
+             ring marks the case as it stands. Point at a mark to read its setting. Times are those of one machine; counts are \
+             the same everywhere.</p><div id=\"bench-bar\"></div><div id=\"charts-grid\"></div></section>\n",
         );
+    }
+    if file.points.iter().any(|p| p.over_asked().is_some()) {
+        body.push_str("<section id=\"asked\"><h2>Achieved and asked errors</h2><div id=\"asked-grid\"></div></section>\n");
     }
     body.push_str("<section id=\"reference\"><h2>Reference</h2>");
     if !file.reference.is_empty() {
-        let _ = write!(body, "<p>{}</p>", page::prose(&file.reference));
+        let how = if file.independent { "By a second method" } else { "By the method itself" };
+        let _ = write!(body, "<p>{how}: {}</p>", page::prose(&file.reference));
     }
     if !file.reference_values.is_empty() {
         body.push_str("<table class=\"plain key\"><tbody>");
@@ -229,20 +253,26 @@ fn page(file: &File) -> String {
     points_table(&mut body, file, &errors);
     body.push_str("</main>\n");
     body.push_str(&page::footer(""));
-    let data = json!({ "points": file.points, "errors": errors, "descriptions": file.descriptions });
+    let data = json!({
+        "points": file.points, "errors": errors, "descriptions": file.descriptions, "trusted_to": file.trusted_to
+    });
     page::document(Kind::Bench, heading, &body, &data)
 }
 
 fn points_table(out: &mut String, file: &File, errors: &[&str]) {
     let work = file.names(|p| &p.work);
+    let cyclic = file.points.iter().any(|p| p.cycles.is_some_and(|c| c > 1.0));
     out.push_str(
         "<section id=\"points\"><h2>All points</h2><div class=\"scroll\"><table class=\"plain compare\"><thead><tr>\
-         <th>Method</th><th>Setting</th><th class=\"num\">s per cycle</th><th class=\"num\">s in all</th>\
-         <th class=\"num\">cycles</th>",
+         <th>Method</th><th>Setting</th><th class=\"num\">s in all</th>",
     );
+    if cyclic {
+        out.push_str("<th class=\"num\">s per cycle</th><th class=\"num\">cycles</th>");
+    }
     for n in errors {
         let _ = write!(out, "<th class=\"num\">error of<br><code>{}</code></th>", esc(n));
     }
+    out.push_str("<th class=\"num\">achieved<br>over asked</th>");
     for n in &work {
         let _ = write!(out, "<th class=\"num\">{}</th>", esc(&n.replace('_', " ")));
     }
@@ -256,18 +286,20 @@ fn points_table(out: &mut String, file: &File, errors: &[&str]) {
         let mark = if p.is_default { " <span class=\"tag\">default</span>" } else { "" };
         let _ = write!(
             out,
-            "<tr{class}><th scope=\"row\">{}</th><td>{}{mark}</td><td class=\"num\">{}</td><td class=\"num\">{}</td><td \
-             class=\"num\">{}</td>",
+            "<tr{class}><th scope=\"row\">{}</th><td>{}{mark}</td><td class=\"num\">{}</td>",
             esc(&p.method),
             esc(&p.setting),
-            significant(p.seconds_per_cycle, 3),
-            significant(p.seconds_total, 3),
-            significant(p.cycles, 3)
+            significant(p.seconds_total, 3)
         );
+        for v in [p.seconds_per_cycle, p.cycles].into_iter().filter(|_| cyclic) {
+            let _ = write!(out, "<td class=\"num\">{}</td>", significant(v, 3));
+        }
         for n in errors {
             let _ =
                 write!(out, "<td class=\"num\">{}</td>", significant(p.errors.get(*n).copied().flatten(), 2));
         }
+        let over = if p.over_asked().is_some_and(|r| r > OVER_ASKED) { " warn" } else { "" };
+        let _ = write!(out, "<td class=\"num{over}\">{}</td>", significant(p.over_asked(), 2));
         for n in &work {
             let text = p.work.get(*n).map_or_else(|| "–".into(), |n| count(*n));
             let _ = write!(out, "<td class=\"num\">{text}</td>");

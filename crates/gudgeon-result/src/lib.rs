@@ -689,27 +689,51 @@ pub struct Comparison {
     pub shares: Vec<ShareTable>,
 }
 
+/// Error that a default setting should not exceed.
+pub const DEFAULT_ERROR: f64 = 1e-3;
+/// By how much an achieved error may exceed the one that was asked for.
+pub const OVER_ASKED: f64 = 10.0;
+
 /// One point of a work-precision sweep.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct BenchPoint {
-    /// Solver: points of one method form one curve.
+    /// Method: points of one method form one curve.
     pub method: String,
     /// The setting that was swept: `tolerance 1e-4`, `16 sub-steps`.
     pub setting: String,
-    /// Whether this is the default setting of the method.
+    /// Whether the case as it stands has this setting.
     pub is_default: bool,
-    /// Median wall time of one cycle \[s\].
+    /// Median wall time of one cycle \[s\]; of the whole where nothing is cyclic.
     pub seconds_per_cycle: f64,
-    /// Wall time to the periodic state \[s\].
+    /// Wall time of the whole \[s\].
     pub seconds_total: f64,
-    /// Cycle-equivalents to the periodic state.
+    /// Cycle-equivalents to the periodic state; 1 where nothing is cyclic.
     pub cycles: f64,
     /// Work counters.
     pub work: IndexMap<String, u64>,
     /// Relative error of each chosen result against the reference.
     pub errors: IndexMap<String, f64>,
+    /// Relative error that the setting asks for, where it is a tolerance.
+    pub asked: Option<f64>,
+    /// The largest relative error of the chosen results that the tolerance leaves, all else equal.
+    pub achieved: Option<f64>,
     /// Why the point is missing, when it is.
     pub failure: Option<String>,
+}
+
+impl BenchPoint {
+    /// The result with the largest error.
+    #[must_use]
+    pub fn worst(&self) -> Option<(&str, f64)> {
+        let all = self.errors.iter().map(|(name, e)| (name.as_str(), *e));
+        all.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|_| self.failure.is_none())
+    }
+
+    /// Achieved error over the one that was asked for.
+    #[must_use]
+    pub fn over_asked(&self) -> Option<f64> {
+        self.achieved.zip(self.asked).map(|(got, asked)| got / asked)
+    }
 }
 
 /// Run time against error of one case.
@@ -721,10 +745,35 @@ pub struct BenchTable {
     pub title: String,
     /// How the reference was made and how far it is trusted.
     pub reference: String,
+    /// Whether the reference comes from another method than those that are raced.
+    pub independent: bool,
+    /// Relative error to which the reference is trusted: smaller ones of a point say no more.
+    pub trusted_to: f64,
     /// Reference values by result name.
     pub reference_values: IndexMap<String, Value>,
     /// The sweep.
     pub points: Vec<BenchPoint>,
     /// Statements drawn from the points: `implicit is 12 times faster than as_published at an error of 1e-3`.
     pub findings: Vec<String>,
+}
+
+impl BenchTable {
+    /// The case as it stands.
+    #[must_use]
+    pub fn default_point(&self) -> Option<&BenchPoint> {
+        self.points.iter().find(|p| p.is_default)
+    }
+
+    /// Achieved error of the case as it stands over the one it asks for.
+    #[must_use]
+    pub fn default_over_asked(&self) -> Option<f64> {
+        self.points.iter().filter(|p| p.is_default).find_map(BenchPoint::over_asked)
+    }
+
+    /// Whether the case as it stands has errors of at most [`DEFAULT_ERROR`].
+    #[must_use]
+    pub fn default_is_enough(&self) -> bool {
+        let worst = self.default_point().and_then(BenchPoint::worst);
+        worst.is_some_and(|(_, e)| e <= DEFAULT_ERROR)
+    }
 }

@@ -28,4 +28,4 @@ pub use run::{Checked, check, check_case, check_source, explain, run, run_verifi
 pub use scene::{Scene, SceneCase, SceneInfo, SceneName, changed, load, read_case, scenes, verify_scenes};
 pub use solver_table::{SolverCommon, SolverTable, default_solvers};
 pub use sweep_input::{Spacing, Sweep, number, values};
-pub use work_precision::{MethodSetting, WorkPrecision};
+pub use work_precision::{Asked, MethodSetting, OtherMethod, Reference, WorkPrecision};

@@ -68,9 +68,12 @@ pub trait SceneCase:
         loaded.refinements()
     }
 
-    /// Its solvers at their settings, for `bench`; none when the scene has no solvers to choose from.
-    fn work_precision(_loaded: &Loaded<Self>, _built: &mut Self::Built) -> Option<WorkPrecision> {
-        None
+    /// Its solvers at their settings, other methods for its equations, and what errors are counted from, for `bench`.
+    ///
+    /// # Errors
+    /// Why there is nothing to race, and what to race instead.
+    fn work_precision(_loaded: &Loaded<Self>, _built: &mut Self::Built) -> Result<WorkPrecision, String> {
+        Ok(WorkPrecision::default())
     }
 }
 
@@ -114,7 +117,10 @@ pub trait Scene: Send + Sync {
     /// As [`SceneCase::run`]; a result that is not a number.
     fn once(&self, progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>) -> Result<RunResult, RunError>;
     /// As [`SceneCase::work_precision`].
-    fn work_precision(&self) -> Option<WorkPrecision>;
+    ///
+    /// # Errors
+    /// As [`SceneCase::work_precision`].
+    fn work_precision(&self) -> Result<WorkPrecision, String>;
     /// The typed case, for callers that know the scene.
     fn value(&self) -> &dyn Any;
     /// The typed case, to be changed: how a scene hands values to its parts. Sub-models that were built are built anew.
@@ -220,8 +226,9 @@ impl<C: SceneCase> Scene for Read<C> {
         }
     }
 
-    fn work_precision(&self) -> Option<WorkPrecision> {
-        self.look(|built| C::work_precision(&self.loaded, built)).ok().flatten()
+    fn work_precision(&self) -> Result<WorkPrecision, String> {
+        let refused = |e: Vec<BuildError>| RunError::refused(&e).to_string();
+        self.look(|built| C::work_precision(&self.loaded, built)).map_err(refused)?
     }
 
     fn value(&self) -> &dyn Any {

@@ -45,8 +45,9 @@ pub(crate) fn verify(
     let mut found = Verification::default();
     let total = groups.len().max(1) as f64;
     let floors = floors(&result.results);
-    for (k, Refinement { what, levels }) in groups.into_iter().enumerate() {
+    for (k, Refinement { what, levels, .. }) in groups.into_iter().enumerate() {
         progress(Progress { phase: format!("refining the {what}"), fraction: k as f64 / total })?;
+        let levels = levels.into_iter().map(|l| l.set).collect();
         let levels = refine(scene, levels, &result.results, &floors)?;
         let mut unsettled = Vec::new();
         for (name, v) in &result.results {

@@ -13,7 +13,7 @@ use crate::failure::Failure;
 use crate::ui::{Ui, number, table, unit, wrapped};
 
 pub fn compare(a: &CompareArgs, ui: &Ui) -> Result<(), Failure> {
-    let swaps = a.swap.iter().map(|s| swap(s)).collect::<Result<Vec<_>, _>>()?;
+    let swaps = a.swap.iter().map(|s| values("--swap", s)).collect::<Result<Vec<_>, _>>()?;
     let cases: Vec<Subject> = a.cases.iter().map(|c| subject(c, &a.set)).collect();
     let mut names: Vec<String> = Vec::new();
     for c in &cases {
@@ -64,14 +64,15 @@ fn subject(text: &str, set: &[String]) -> Subject {
 }
 
 /// `PATH=A,B,C`. A comma inside brackets or quotes belongs to its value.
-fn swap(text: &str) -> Result<(String, Vec<String>), Failure> {
-    let form = "write `--swap PATH=A,B,C`, for example `--swap gas_flow=orifice_network,narrow_channel`";
+pub fn values(flag: &str, text: &str) -> Result<(String, Vec<String>), Failure> {
+    let form =
+        format!("write `{flag} PATH=A,B,C`, for example `{flag} gas_flow=orifice_network,narrow_channel`");
     let Some((path, values)) = text.split_once('=').filter(|(p, _)| !p.trim().is_empty()) else {
-        return Err(Failure::argument(format!("`--swap {text}` is not a path with values"), form));
+        return Err(Failure::argument(format!("`{flag} {text}` is not a path with values"), form));
     };
     let all = split(values);
     if all.iter().any(String::is_empty) {
-        return Err(Failure::argument(format!("`--swap {text}` has an empty value"), form));
+        return Err(Failure::argument(format!("`{flag} {text}` has an empty value"), form));
     }
     Ok((path.trim().to_owned(), all))
 }
@@ -219,7 +220,7 @@ mod tests {
 
     #[test]
     fn swaps_split_at_outer_commas() {
-        let values = |t: &str| swap(t).ok().map(|(_, v)| v);
+        let values = |t: &str| values("--swap", t).ok().map(|(_, v)| v);
         assert_eq!(values("a.b=x, y"), Some(vec!["x".into(), "y".into()]));
         assert_eq!(
             values("a=[1,2],\"p,q\",{ m = 1, n = 2 }"),

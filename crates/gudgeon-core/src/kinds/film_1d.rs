@@ -63,6 +63,12 @@ pub trait Film1dSpec: Debug + DynClone + Send + Sync {
     fn scope(&self) -> Film1dScope {
         Film1dScope { starved: true, squeeze: true, steps: true }
     }
+
+    /// Models of this kind that solve, where they have the settings of this one, the same equations by another method: the first one gives
+    /// `bench` its reference.
+    fn same_equations(&self) -> &'static [&'static str] {
+        &[]
+    }
 }
 
 /// What there is at one end of a line.

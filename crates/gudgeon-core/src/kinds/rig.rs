@@ -19,6 +19,15 @@ pub struct RigCtx<'a> {
 pub trait RigSpec: Debug + DynClone + Send + Sync {
     /// Kind and name of the models on the bench.
     fn models(&self) -> Vec<(&'static str, &'static str)>;
+    /// Where a sub-model stands that others could replace because they solve the same equations, below `rig`, and the names of those: what
+    /// `bench` races, and takes its reference from.
+    fn same_equations(&self) -> Option<(&'static str, &'static [&'static str])> {
+        None
+    }
+    /// Results that `bench` looks at unless told otherwise, the first few where none are named: none that count or that follow from others.
+    fn headline(&self) -> &'static [&'static str] {
+        &[]
+    }
     /// Checks the numbers and builds the bench.
     ///
     /// # Errors

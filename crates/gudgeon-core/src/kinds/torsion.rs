@@ -175,6 +175,10 @@ pub trait TorsionSpec: Debug + DynClone + Send + Sync {
     fn fuller(&self, _: &Line) -> Option<Box<dyn TorsionSpec>> {
         None
     }
+    /// Models of this kind that solve the same equations by another method: the first one gives `bench` its reference.
+    fn same_equations(&self) -> &'static [&'static str] {
+        &[]
+    }
     /// Whether steps of fixed length `h` make a motion `e^{zt}` grow that the line damps; `zh` is given by its real and imaginary
     /// part. `None` for models without fixed steps.
     fn grows(&self, _: [f64; 2]) -> Option<bool> {

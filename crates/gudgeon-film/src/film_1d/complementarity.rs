@@ -63,6 +63,10 @@ impl Film1dSpec for Complementarity {
         let starved = self.cavitation == Cavitation::MassConserving;
         Film1dScope { starved, squeeze: true, steps: true }
     }
+    /// `front_tracking` knows no other condition, and steady films alone.
+    fn same_equations(&self) -> &'static [&'static str] {
+        if self.cavitation == Cavitation::MassConserving { &["front_tracking"] } else { &[] }
+    }
     fn build(&self, ctx: &Film1dCtx<'_>) -> Result<Box<dyn Film1d>, BuildError> {
         ctx.check()?;
         Ok(Box::new(Film {

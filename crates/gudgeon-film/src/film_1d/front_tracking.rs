@@ -49,6 +49,9 @@ impl Film1dSpec for FrontTracking {
     fn scope(&self) -> Film1dScope {
         Film1dScope { starved: true, squeeze: false, steps: false }
     }
+    fn same_equations(&self) -> &'static [&'static str] {
+        &["complementarity"]
+    }
     fn build(&self, ctx: &Film1dCtx<'_>) -> Result<Box<dyn Film1d>, BuildError> {
         ctx.check()?;
         Ok(Box::new(Film {

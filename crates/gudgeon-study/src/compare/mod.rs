@@ -44,7 +44,7 @@ pub struct Plan {
 }
 
 /// `gas_flow`, `models.gas_flow` and `models.gas_flow.model` all mean the model's name; anything else is taken as written.
-fn swap_path(path: &str) -> String {
+pub(crate) fn swap_path(path: &str) -> String {
     let registry = Registry::collect();
     let bare = path.strip_prefix("models.").unwrap_or(path);
     if registry.kind(bare).is_some() {

@@ -73,7 +73,7 @@ fn of_search(all: &mut Vec<String>, o: &Optimise, limited: &[&str]) {
         Method::Exact => {
             all.extend(limited.iter().map(|q| format!("multiplier_{q}")));
             add(all, &["sensitivity_force", "sensitivity_modulus", "stationarity", "infeasibility"]);
-            add(all, &["complementarity", "curvature", "certificate_gap"]);
+            add(all, &["complementarity", "curvature", "certificate_gap", "mass_bound"]);
         }
         Method::AsPublished => {
             for phase in ["coarse", "fine"] {

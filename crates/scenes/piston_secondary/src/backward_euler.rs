@@ -93,10 +93,11 @@ impl PistonSolverSpec for BackwardEuler {
                 ];
                 set.extend(mesh(along, across));
                 all.push(MethodSetting {
-                    method,
+                    method: method.into(),
                     setting: format!("steps of {step} deg, {along} x {across}"),
                     is_default: false,
                     set,
+                    asked: None,
                 });
             }
         }

@@ -5,7 +5,7 @@ use gudgeon_core::{BuildError, register_model};
 use gudgeon_numerics::ode::{Flow, IntegrateError, Integrator, Options, StepView};
 use gudgeon_numerics::radau::Radau5;
 use gudgeon_numerics::rodas::{Formula, Rodas};
-use gudgeon_scene::{IntegratorName, MethodSetting, RunError};
+use gudgeon_scene::{Asked, IntegratorName, MethodSetting, RunError};
 use serde::{Deserialize, Serialize};
 
 use super::assembly::Assembly;
@@ -21,6 +21,8 @@ const LARGEST_STEP: f64 = 0.2;
 const MAX_STEPS: u64 = 200_000;
 /// Tolerance at which the method of order five needs no more films than that of order three.
 const ORDER_FIVE: f64 = 2e-4;
+/// Tolerance of the motion by which those at other tolerances are judged.
+const TIGHT: f64 = 1e-6;
 /// How repeatable a cycle is, in tolerances.
 const ACCURACY: f64 = 0.1;
 
@@ -94,17 +96,23 @@ impl PistonSolverSpec for Implicit {
             for &(t, along, across) in points {
                 let same_film = own == Some([along, across]);
                 let same_error = (t / self.tolerance.si() - 1.0).abs() < 1e-9;
-                let mut set = vec![
-                    "solver.method=implicit".into(),
-                    format!("solver.integrator={}", word(name)),
-                    format!("solver.tolerance={t:e}"),
-                ];
-                set.extend(mesh(along, across));
+                let set = |integrator: IntegratorName, tolerance: f64| {
+                    let mut set = vec![
+                        "solver.method=implicit".into(),
+                        format!("solver.integrator={}", word(integrator)),
+                        format!("solver.tolerance={tolerance:e}"),
+                    ];
+                    set.extend(mesh(along, across));
+                    set
+                };
+                // The film has an error of its own: what the tolerance asks for is judged on the same film.
+                let against = set(IntegratorName::Radau5, (1e-2 * t).min(TIGHT));
                 all.push(MethodSetting {
-                    method,
+                    method: method.into(),
                     setting: format!("tolerance {t:.0e}, {along} x {across}"),
                     is_default: same_film && same_error && self.integrator() == name,
-                    set,
+                    set: set(name, t),
+                    asked: Some(Asked { tolerance: t, against, told_by: None }),
                 });
             }
         }

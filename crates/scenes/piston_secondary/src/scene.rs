@@ -77,8 +77,8 @@ impl SceneCase for PistonSecondaryCase {
         Ok(result)
     }
 
-    fn work_precision(loaded: &Loaded<Self>, _: &mut Assembly) -> Option<WorkPrecision> {
-        Some(methods::work_precision(&loaded.value))
+    fn work_precision(loaded: &Loaded<Self>, _: &mut Assembly) -> Result<WorkPrecision, String> {
+        Ok(methods::work_precision(&loaded.value))
     }
 }
 

@@ -11,10 +11,11 @@ use gudgeon_core::quantity::quantity;
 use gudgeon_core::result::{ModelUse, RunResult, Value};
 
 use case::{Part, PowerCylinderCase};
-use gudgeon_case::{Loaded, Refinement, Report, read_beside, scene_of};
+use gudgeon_case::{Level, Loaded, Refinement, Report, read_beside, scene_of};
 use gudgeon_machine::Engine;
 use gudgeon_scene::{
-    Checked, Explanation, Progress, RunError, Scene, SceneCase, Stopped, check_case, explain, load,
+    Checked, Explanation, Progress, RunError, Scene, SceneCase, Stopped, WorkPrecision, check_case, explain,
+    load,
 };
 use gudgeon_scene_piston_secondary::case::PistonSecondaryCase;
 use gudgeon_scene_ring_pack::case::RingPackCase;
@@ -57,22 +58,32 @@ impl SceneCase for PowerCylinderCase {
         let Ok((rings, skirt)) = parts(loaded) else { return Vec::new() };
         let own = &loaded.value;
         let of = |case: &Checked, part: &Part, field: &str, name: &str| -> Vec<Refinement> {
-            let level = |set: Vec<String>| {
-                let all: Vec<String> = part.set.iter().chain(&set).map(|s| format!("{s:?}")).collect();
-                vec![format!("{field}.set=[{}]", all.join(", "))]
+            let level = |l: Level| {
+                let all: Vec<String> = part.set.iter().chain(&l.set).map(|s| format!("{s:?}")).collect();
+                Level { set: vec![format!("{field}.set=[{}]", all.join(", "))], ..l }
             };
+            let levels = |all: Vec<Level>| -> Vec<Level> { all.into_iter().map(level).collect() };
             case.case
                 .refinements()
                 .into_iter()
                 .map(|r| Refinement {
                     what: format!("{} of the {name}", r.what),
-                    levels: r.levels.into_iter().map(level).collect(),
+                    own: level(r.own),
+                    levels: levels(r.levels),
+                    coarser: levels(r.coarser),
                 })
                 .collect()
         };
         let mut all = of(&rings, &own.ring_pack, "ring_pack", "rings");
         all.extend(of(&skirt, &own.piston_secondary, "piston_secondary", "skirt"));
         all
+    }
+
+    fn work_precision(loaded: &Loaded<Self>, _: &mut (Checked, Checked)) -> Result<WorkPrecision, String> {
+        let (rings, skirt) = (&loaded.value.ring_pack.case, &loaded.value.piston_secondary.case);
+        Err(format!(
+            "the two parts of a power cylinder do not feel each other and are raced alone: `gudgeon bench {rings} {skirt}`"
+        ))
     }
 
     fn result_names(_: &Loaded<Self>, (rings, skirt): &mut (Checked, Checked)) -> Option<Vec<String>> {

@@ -65,6 +65,12 @@ impl RigSpec for Journal1dRig {
     fn models(&self) -> Vec<(&'static str, &'static str)> {
         vec![("film_1d", self.film_1d.typetag_name())]
     }
+    fn same_equations(&self) -> Option<(&'static str, &'static [&'static str])> {
+        Some(("film_1d", self.film_1d.same_equations()))
+    }
+    fn headline(&self) -> &'static [&'static str] {
+        &["load", "attitude", "torque", "p_max"]
+    }
     fn build(&self, _: &RigCtx<'_>) -> Result<Box<dyn Rig>, Vec<BuildError>> {
         let mut errors = Vec::new();
         let n = profile::panels(self.panels).map_err(|e| errors.push(e)).ok();

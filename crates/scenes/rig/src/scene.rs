@@ -8,7 +8,9 @@ use gudgeon_core::{BuildError, EvalError, Registry};
 
 use crate::case::RigCase;
 use gudgeon_case::Loaded;
-use gudgeon_scene::{Explanation, Progress, RunError, SceneCase, Stopped, model_use};
+use gudgeon_scene::{
+    Explanation, OtherMethod, Progress, RunError, SceneCase, Stopped, WorkPrecision, model_use,
+};
 
 impl SceneCase for RigCase {
     type Built = Box<dyn Rig>;
@@ -33,6 +35,25 @@ impl SceneCase for RigCase {
 
     fn result_names(_: &Loaded<Self>, rig: &mut Box<dyn Rig>) -> Option<Vec<String>> {
         Some(rig.results())
+    }
+
+    fn work_precision(loaded: &Loaded<Self>, bench: &mut Box<dyn Rig>) -> Result<WorkPrecision, String> {
+        let rig = &loaded.value.rig;
+        let mut told = WorkPrecision::default();
+        told.results = match rig.headline() {
+            [] => bench.results().into_iter().take(UNNAMED).collect(),
+            named => named.iter().map(|n| (*n).to_owned()).collect(),
+        };
+        if let Some((place, others)) = rig.same_equations() {
+            let own = rig.models().into_iter().find(|(kind, _)| *kind == place);
+            told.own = own.map_or_else(String::new, |(_, model)| model.to_owned());
+            let other = |model: &&str| OtherMethod {
+                label: (*model).to_owned(),
+                set: vec![format!("rig.{place}.model={model}")],
+            };
+            told.others = others.iter().map(other).collect();
+        }
+        Ok(told)
     }
 
     fn run(
@@ -61,6 +82,9 @@ impl SceneCase for RigCase {
         Ok(result)
     }
 }
+
+/// Results that a race looks at where the bench names none.
+const UNNAMED: usize = 4;
 
 /// The models on the bench, in the order the rig names them, the rig itself first.
 fn models(case: &RigCase) -> Vec<(&'static str, &'static str)> {

@@ -111,6 +111,12 @@ impl RigSpec for SliderRig {
             ("shear_thinning", self.shear_thinning.typetag_name()),
         ]
     }
+    fn same_equations(&self) -> Option<(&'static str, &'static [&'static str])> {
+        Some(("film_1d", self.film_1d.same_equations()))
+    }
+    fn headline(&self) -> &'static [&'static str] {
+        &["load", "moving_shear", "flux_in", "p_max"]
+    }
     fn build(&self, _: &RigCtx<'_>) -> Result<Box<dyn Rig>, Vec<BuildError>> {
         let mut errors = Vec::new();
         errors.extend(along::cavitation_below(self.p_cav.si(), &[self.left.p.si(), self.right.p.si()]));

@@ -230,6 +230,9 @@ impl RigSpec for Slider2dRig {
     fn models(&self) -> Vec<(&'static str, &'static str)> {
         vec![("film_2d", self.film_2d.typetag_name()), ("roughness", self.roughness.typetag_name())]
     }
+    fn headline(&self) -> &'static [&'static str] {
+        &["load_gauge", "p_max", "plane_shear", "inflow"]
+    }
     fn build(&self, _: &RigCtx<'_>) -> Result<Box<dyn Rig>, Vec<BuildError>> {
         let mut errors = Vec::new();
         let (length, width) = (self.length.si(), self.width.si());

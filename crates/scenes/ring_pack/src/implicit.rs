@@ -29,7 +29,7 @@ use super::results;
 use super::rows::Rows;
 use super::solver::{NOT_PERIODIC, Recorded, RingPackSolverSpec, Solution, Wanted};
 use super::watch::Watch;
-use gudgeon_scene::{IntegratorName, MethodSetting, RunError, Stopped};
+use gudgeon_scene::{Asked, IntegratorName, MethodSetting, RunError, Stopped};
 use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -103,19 +103,20 @@ impl RingPackSolverSpec for Implicit {
             ("implicit, order 3", "rodas3", IntegratorName::Rodas3, &[1e-2, 3e-3, 1e-3, 3e-4, 1e-4]),
             ("implicit, order 5", "rodas5p", IntegratorName::Rodas5p, &[1e-2, 1e-3, 1e-4, 1e-5, 1e-6]),
         ];
-        let setting =
-            |(method, name, integrator, t): (&'static str, &str, IntegratorName, f64)| MethodSetting {
-                method,
-                setting: format!("tolerance {t:.0e}"),
-                is_default: (t / tolerance - 1.0).abs() < 1e-9
-                    && default.integrator.at(tolerance) == integrator,
-                set: vec![
-                    "solver.method=implicit".into(),
-                    format!("solver.integrator={name}"),
-                    format!("solver.tolerance={t:e}"),
-                    format!("solver.periodicity={t:e}"),
-                ],
-            };
+        let setting = |(method, name, integrator, t): (&str, &str, IntegratorName, f64)| MethodSetting {
+            method: method.into(),
+            setting: format!("tolerance {t:.0e}"),
+            is_default: given.is_some()
+                && (t / tolerance - 1.0).abs() < 1e-9
+                && default.integrator.at(tolerance) == integrator,
+            set: vec![
+                "solver.method=implicit".into(),
+                format!("solver.integrator={name}"),
+                format!("solver.tolerance={t:e}"),
+                format!("solver.periodicity={t:e}"),
+            ],
+            asked: Some(Asked { tolerance: t, ..Asked::default() }),
+        };
         let all = orders.into_iter().flat_map(|(m, n, i, all)| all.iter().map(move |t| (m, n, i, *t)));
         all.map(setting).collect()
     }

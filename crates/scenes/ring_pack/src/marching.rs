@@ -152,7 +152,7 @@ pub fn unsettled(change: f64, tolerance: f64, cycles: u32, start: f64, advice: &
 }
 
 /// A method whose steps per degree are refined: one, two, four and eight times those of the source. A case that has it keeps its gas steps.
-pub fn refined(method: &'static str, own: u32, case: Option<&Value>, more: &[&str]) -> Vec<MethodSetting> {
+pub fn refined(method: &str, own: u32, case: Option<&Value>, more: &[&str]) -> Vec<MethodSetting> {
     let gas = case.and_then(|c| c["gas_steps"].as_u64()).unwrap_or(0);
     let setting = |factor: u32| {
         let steps = own * factor;
@@ -162,7 +162,13 @@ pub fn refined(method: &'static str, own: u32, case: Option<&Value>, more: &[&st
             format!("solver.gas_steps={gas}"),
         ];
         set.extend(more.iter().map(|s| (*s).to_owned()));
-        MethodSetting { method, setting: format!("{steps} steps per degree"), is_default: factor == 1, set }
+        MethodSetting {
+            method: method.into(),
+            setting: format!("{steps} steps per degree"),
+            is_default: factor == 1 && case.is_some(),
+            set,
+            asked: None,
+        }
     };
     [1, 2, 4, 8].map(setting).into()
 }

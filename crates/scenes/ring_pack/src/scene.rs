@@ -12,7 +12,8 @@ use super::{assemble, geometry, legal, meter, state_names};
 use crate::case::RingPackCase;
 use gudgeon_case::{Loaded, Refinement};
 use gudgeon_scene::{
-    Explanation, MethodSetting, Progress, RunError, SceneCase, Stopped, WorkPrecision, default_solvers,
+    Explanation, MethodSetting, Progress, Reference, RunError, SceneCase, Stopped, WorkPrecision,
+    default_solvers,
 };
 
 impl SceneCase for RingPackCase {
@@ -100,7 +101,7 @@ impl SceneCase for RingPackCase {
         Some(pack.plan.wanted.clone())
     }
 
-    fn work_precision(loaded: &Loaded<Self>, pack: &mut Pack) -> Option<WorkPrecision> {
+    fn work_precision(loaded: &Loaded<Self>, pack: &mut Pack) -> Result<WorkPrecision, String> {
         let radau = |tolerance: f64| {
             vec![
                 "solver.method=implicit".into(),
@@ -109,16 +110,18 @@ impl SceneCase for RingPackCase {
                 format!("solver.periodicity={tolerance:e}"),
             ]
         };
-        let settings = settings(&loaded.value, pack);
-        let mut methods: Vec<&'static str> = settings.iter().map(|s| s.method).collect();
-        methods.dedup();
-        Some(WorkPrecision {
-            methods,
-            settings,
-            reference: radau(1e-8),
-            reference_check: radau(1e-7),
-            reference_is: "implicit system, Radau IIA order 5, tolerance 1e-8; differs from the same at 1e-7",
-            results: vec!["blow_by", "friction_power", "land2.p_max"],
+        Ok(WorkPrecision {
+            settings: settings(&loaded.value, pack),
+            reference: Some(Reference {
+                set: radau(1e-8),
+                check: radau(1e-7),
+                is: "implicit system, Radau IIA order 5, tolerance 1e-8; differs from the same at 1e-7"
+                    .into(),
+                independent: true,
+                told_as: Vec::new(),
+            }),
+            results: ["blow_by", "friction_power", "land2.p_max"].map(str::to_owned).to_vec(),
+            ..WorkPrecision::default()
         })
     }
 }

@@ -371,6 +371,10 @@ pub struct TimeCase {
     /// Whether to start in the periodic motion of the mean speed (of the model `orders`) instead.
     #[serde(default)]
     pub start_steady: bool,
+    /// Whether a constant torque beside the drives holds the mean speed of the case, as in a periodic motion: that of `harmonic_balance`, where it
+    /// acts there. Otherwise the line runs at the speed at which its drives and loads balance.
+    #[serde(default)]
+    pub hold_speed: bool,
 }
 
 /// Limits, each with its source. A result beyond a limit is said in the verdict; the run goes on.

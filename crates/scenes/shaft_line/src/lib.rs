@@ -8,8 +8,10 @@ pub mod assemble;
 mod balance;
 pub mod case;
 mod draw;
+mod hold;
 mod legal;
 mod machine;
+mod methods;
 mod names;
 pub mod plan;
 mod results;
@@ -21,7 +23,7 @@ mod verdict;
 use std::f64::consts::PI;
 use std::time::Instant;
 
-use gudgeon_core::kinds::{NaturalFrequenciesSpec, TorsionAnswer, TorsionOut, TorsionSpec};
+use gudgeon_core::kinds::{NaturalFrequenciesSpec, TorsionAnswer, TorsionCtx, TorsionOut, TorsionSpec};
 use gudgeon_core::result::{ModelUse, Note, RunResult};
 use gudgeon_core::{BuildError, EvalError, Registry};
 use gudgeon_torsion::torsion::Orders;
@@ -29,7 +31,7 @@ use gudgeon_torsion::torsion::Orders;
 use assemble::{Assembled, assemble, renamed};
 use case::ShaftLineCase;
 use gudgeon_case::Loaded;
-use gudgeon_scene::{Explanation, Progress, RunError, SceneCase, Stopped, model_use};
+use gudgeon_scene::{Explanation, Progress, RunError, SceneCase, Stopped, WorkPrecision, model_use};
 use machine::{Machine, Point};
 use plan::Plan;
 use results::Results;
@@ -85,6 +87,10 @@ impl SceneCase for ShaftLineCase {
         let excited = gudgeon_torsion::steady::Steady::new(&start.context(case, a)).ok()?.excitation;
         let orders: Vec<f64> = excited.orders.iter().map(|o| o.order).collect();
         Some(names::names(case, &plan, a, &orders))
+    }
+
+    fn work_precision(loaded: &Loaded<Self>, a: &mut Assembled) -> Result<WorkPrecision, String> {
+        Ok(methods::work_precision(&loaded.value, a))
     }
 
     fn run(
@@ -381,9 +387,16 @@ fn motion(case: &ShaftLineCase, a: &Assembled, start: &mut Start) -> Result<Tors
         Orders {}.build(&start.context(case, a)).map_err(one)?.run(&mut steady).map_err(failed)?;
         start.take_steady(&steady);
     }
-    let mut torsion = case.models.torsion.build(&start.context(case, a)).map_err(one)?;
+    let held = match case.time.as_ref().is_some_and(|t| t.hold_speed) {
+        true => Some(hold::held(&start.context(case, a))?),
+        false => None,
+    };
+    let ctx = TorsionCtx { line: held.as_ref().unwrap_or(&a.line), ..start.context(case, a) };
+    let mut torsion = case.models.torsion.build(&ctx).map_err(one)?;
     let mut out = TorsionOut::default();
     torsion.run(&mut out).map_err(failed)?;
+    // The torque that holds the speed is no drive of the case.
+    out.drive.iter_mut().for_each(|d| d.truncate(a.line.drives.len()));
     Ok(out)
 }
 

@@ -93,6 +93,9 @@ impl TorsionSpec for HarmonicBalance {
     fn answers(&self) -> TorsionAnswer {
         TorsionAnswer::Periodic
     }
+    fn same_equations(&self) -> &'static [&'static str] {
+        &["implicit"]
+    }
 }
 
 /// Refuses orders and throws that do not repeat with the cycle, whose first order is `base`.

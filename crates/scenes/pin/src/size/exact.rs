@@ -57,6 +57,8 @@ fn conditions(best: &Optimum, certificate: &Certificate, out: &mut RunResult) {
     let gap = (certificate.best - certificate.bound).max(0.0) / best.masses.pin;
     let what = "no pin of the ranges is lighter by more than this part of the pin";
     result(out, "certificate_gap", gap, "", what);
+    let what = "no pin of the ranges weighs less, less relief: proved by branch and bound";
+    result(out, "mass_bound", 1e3 * certificate.bound, "g", what);
 }
 
 /// What holds the optimum, and what was proved of it, in two sentences.

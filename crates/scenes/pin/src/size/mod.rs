@@ -6,6 +6,8 @@ mod published;
 mod refusals;
 mod sweeps;
 
+use std::time::Instant;
+
 use gudgeon_core::kinds::PinSize;
 use gudgeon_core::result::RunResult;
 
@@ -24,12 +26,14 @@ pub fn run(
     out: &mut RunResult,
     progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
 ) -> Result<(), RunError> {
+    let begin = Instant::now();
     let d = s.design();
     let size = match &case.optimise {
         None => given(s)?,
         Some(o) if o.method == Method::AsPublished => published::published(&d, s, given(s)?, o, out)?,
         Some(o) => exact::exact(&d, s, o, out)?,
     };
+    out.seconds.insert("solve".into(), begin.elapsed().as_secs_f64());
     if case.optimise.is_none() {
         out.solver.method = "evaluation".into();
     }
