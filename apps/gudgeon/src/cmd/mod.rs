@@ -10,7 +10,6 @@ pub mod report;
 pub mod run;
 pub mod schema;
 pub mod study;
-pub mod tables;
 pub mod validate;
 
 use std::path::Path;
