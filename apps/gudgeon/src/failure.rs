@@ -40,6 +40,11 @@ impl From<Report> for Failure {
         Self::Input(r)
     }
 }
+impl From<Diagnostic> for Failure {
+    fn from(d: Diagnostic) -> Self {
+        Self::Argument(d)
+    }
+}
 impl From<RunError> for Failure {
     fn from(e: RunError) -> Self {
         match e {

@@ -7,6 +7,7 @@
 //! 4. Deserialisation decides. What it refuses after a clean walk is reported at the path where it stopped.
 //! 5. A [`BuildError`] that a later stage raises finds its place through [`Loaded::locate`].
 
+pub mod catalogue;
 mod near;
 mod overrides;
 mod published;

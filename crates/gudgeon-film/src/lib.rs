@@ -69,7 +69,7 @@ pub use compressibility::dowson_higginson::DowsonHigginson;
 pub use compressibility::off::Off as Incompressible;
 pub use film_temperature::{Given, LandWallMean, LinerLinear};
 pub use hydrodynamics::{CavityShear, ClosedFormFace, GriddedFace, Off};
-pub use oil::{Constant, Grade, Vogel, VogelGrade, VogelTable};
+pub use oil::{Constant, Grade, Table, Vogel, VogelGrade, VogelTable};
 pub use piezoviscosity::barus::Barus;
 pub use piezoviscosity::off::Off as Isoviscous;
 pub use piezoviscosity::roelands::Roelands;
@@ -99,6 +99,7 @@ gudgeon_core::link!(
     Roelands,
     SawtoothWaviness,
     SmoothSurfaces,
+    Table,
     Vogel,
     VogelGrade,
     film_1d::Complementarity,

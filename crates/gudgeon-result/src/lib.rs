@@ -18,7 +18,7 @@ pub struct Value {
     /// The unit, as a person writes it.
     pub unit: String,
     /// One line saying what it is.
-    #[serde(skip)]
+    #[serde(default, skip_serializing_if = "String::is_empty")]
     pub what: String,
 }
 
@@ -97,7 +97,7 @@ pub struct Failure {
 }
 
 /// A model that ran.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ModelUse {
     /// Its kind.
     pub kind: String,
@@ -108,7 +108,7 @@ pub struct ModelUse {
 }
 
 /// Something that was not built or not evaluated, and why.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Skipped {
     /// What.
     pub what: String,
@@ -117,7 +117,7 @@ pub struct Skipped {
 }
 
 /// Relative closure per cycle; absent where the scene has no such balance.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Balance {
     /// Gas mass: (in - out - stored) / throughput.
     pub gas_mass: Option<f64>,
@@ -130,7 +130,7 @@ pub struct Balance {
 }
 
 /// Work done by the solver.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct SolverReport {
     /// Solver name.
     pub method: String,
@@ -144,7 +144,7 @@ pub struct SolverReport {
 pub const CRANK_ANGLE: &str = "theta";
 
 /// One column of a series.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Column {
     /// `ring1.h_min`, `land2.p`.
     pub name: String,
@@ -155,7 +155,7 @@ pub struct Column {
 }
 
 /// Columns over a common axis.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Series {
     /// What the rows are at: `theta` \[deg\] over a cycle, `x` \[m\] along a film, `t` \[s\].
     pub axis: Column,
@@ -191,7 +191,7 @@ impl Series {
 }
 
 /// Something that happened at a crank angle.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Event {
     /// Crank angle \[deg\].
     pub theta_deg: f64,
@@ -202,7 +202,7 @@ pub struct Event {
 }
 
 /// One periodic solution among several.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Branch {
     /// How it was reached: `all lands at 1 bar`.
     pub start: String,
@@ -213,7 +213,7 @@ pub struct Branch {
 }
 
 /// One ring of a [`PackSection`], all lengths in metres.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SectionRing {
     /// Axial thickness.
     pub height: f64,
@@ -236,7 +236,7 @@ pub struct SectionRing {
 }
 
 /// Geometry of a ring pack for drawing its section.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct PackSection {
     /// Bore radius.
     pub bore_radius: f64,
@@ -603,7 +603,7 @@ pub struct Verification {
 }
 
 /// Everything a run of one case produced.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct RunResult {
     /// Name of the case: the file name without its extension.
     pub case: String,
@@ -634,10 +634,8 @@ pub struct RunResult {
     /// Wall-clock seconds by phase: `build`, `solve`, `total`.
     pub seconds: IndexMap<String, f64>,
     /// Curves over the cycle, or over what the scene runs along.
-    #[serde(skip)]
     pub series: Series,
     /// Further tables, each a file of its own, by file name without `.csv`.
-    #[serde(skip)]
     pub tables: IndexMap<String, Series>,
     /// Drawings of the series and the tables, besides those of curves over the cycle.
     pub figures: Vec<Figure>,
@@ -646,7 +644,6 @@ pub struct RunResult {
     /// Other periodic solutions.
     pub branches: Vec<Branch>,
     /// Section to draw, when the scene has one.
-    #[serde(skip)]
     pub section: Option<PackSection>,
 }
 

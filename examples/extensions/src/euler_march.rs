@@ -70,9 +70,10 @@ impl RingPackSolverSpec for EulerMarch {
 
     fn settings(&self, _: &Pack, _: Option<&Value>) -> Vec<MethodSetting> {
         let setting = |steps: u32| MethodSetting {
-            method: "euler_march",
+            method: "euler_march".into(),
             setting: format!("{steps} steps per degree"),
             is_default: false,
+            asked: None,
             set: vec![
                 "solver.method=euler_march".into(),
                 format!("solver.steps_per_degree={steps}"),

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-use gudgeon_case::Report;
+use gudgeon_case::{Level, Report};
 use gudgeon_core::result::{NoteLevel, RunResult, Series, Value};
 use gudgeon_scene::{Checked, RunError};
 use serde::{Deserialize, Serialize};
@@ -193,10 +193,11 @@ fn judge(checked: &Checked, r: &RunResult, o: &mut Outcome) {
 
 /// Results that move when a group of numerical settings is refined by one level. A level that cannot be run says nothing here.
 fn unsettled(c: &Checked, r: &RunResult, coarse: &[String]) -> Vec<String> {
-    let fine = |set: &&Vec<String>| !set.iter().any(|s| coarse.iter().any(|path| s.contains(path.as_str())));
+    let fine =
+        |level: &&Level| !level.set.iter().any(|s| coarse.iter().any(|path| s.contains(path.as_str())));
     let refinements = c.case.refinements();
     let first = refinements.iter().filter_map(|group| group.levels.first()).filter(fine);
-    first.filter_map(|set| run(&c.with(set).ok()?).ok()).flat_map(|finer| moved(r, &finer)).collect()
+    first.filter_map(|level| run(&c.with(&level.set).ok()?).ok()).flat_map(|finer| moved(r, &finer)).collect()
 }
 
 /// What two runs of one case do not share, wall times apart.

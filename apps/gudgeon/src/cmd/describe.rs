@@ -2,13 +2,12 @@
 
 use std::fmt::Write as _;
 
-use gudgeon_case::{advice, list};
+use gudgeon_case::catalogue::{self, DEPTH, choice, equations, example, resolve, schema};
 use gudgeon_core::{ModelInfo, Registry};
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Value};
 
 use crate::args::{DescribeArgs, ModelsArgs};
 use crate::cmd::models;
-use crate::cmd::tables::{DEPTH, choice, resolve, schema};
 use crate::failure::Failure;
 use crate::ui::{Ui, wrapped};
 
@@ -18,65 +17,13 @@ pub fn describe(a: &DescribeArgs, registry: &Registry, ui: &Ui) -> Result<(), Fa
         let a = ModelsArgs { kind: Some(what.to_owned()), json: a.json };
         return models::models(&a, registry, ui);
     }
-    let m = find(registry, what)?;
+    let m = catalogue::model(registry, what)?;
     if a.json {
-        let (schema, definitions) = schema(m);
-        ui.json(&json!({
-            "kind": m.kind,
-            "model": m.name,
-            "summary": m.summary,
-            "equations": equations(m).collect::<Vec<_>>(),
-            "validity": m.validity,
-            "references": m.references,
-            "example": example(m),
-            "source": format!("{}:{}", m.file, m.line),
-            "schema": schema,
-            "definitions": definitions,
-        }));
+        ui.json(&catalogue::of_model(m));
     } else {
         ui.out(&page(registry, m));
     }
     Ok(())
-}
-
-/// `kind/model`, `kind.model`, or a model name that only one kind has.
-fn find(registry: &Registry, what: &str) -> Result<&'static ModelInfo, Failure> {
-    if let Some((k, name)) = what.split_once(['/', '.']) {
-        let k = models::kind(registry, k)?;
-        return registry.model(k.kind, name).ok_or_else(|| {
-            let names: Vec<&str> = registry.models(k.kind).iter().map(|m| m.name).collect();
-            Failure::argument(format!("there is no {} model `{name}`", k.kind), advice(name, &names))
-        });
-    }
-    let all: Vec<&ModelInfo> = registry.kinds().flat_map(|k| registry.models(k.kind)).copied().collect();
-    let named: Vec<&&ModelInfo> = all.iter().filter(|m| m.name == what).collect();
-    match named[..] {
-        [only] => registry
-            .model(only.kind, only.name)
-            .ok_or_else(|| Failure::Run(format!("the model `{what}` is not registered"))),
-        [] => {
-            let mut names: Vec<&str> = all.iter().map(|m| m.name).collect();
-            names.extend(registry.kinds().map(|k| k.kind));
-            names.sort_unstable();
-            names.dedup();
-            Err(Failure::argument(format!("there is no kind and no model `{what}`"), advice(what, &names)))
-        }
-        ref many => {
-            let full: Vec<String> = many.iter().map(|m| format!("{}/{}", m.kind, m.name)).collect();
-            Err(Failure::argument(
-                format!("several kinds have a model `{what}`"),
-                format!("name one of {}", list(full.iter().map(String::as_str))),
-            ))
-        }
-    }
-}
-
-fn equations(m: &ModelInfo) -> impl Iterator<Item = &'static str> {
-    m.equations.split(";  ").map(str::trim).filter(|e| !e.is_empty())
-}
-
-fn example(m: &ModelInfo) -> String {
-    format!("[models.{}]\nmodel = \"{}\"\n{}", m.kind, m.name, m.example.trim_start())
 }
 
 fn page(registry: &Registry, m: &ModelInfo) -> String {

@@ -11,7 +11,6 @@ pub mod run;
 pub mod schema;
 mod shares;
 pub mod study;
-pub mod tables;
 pub mod validate;
 
 use std::path::Path;

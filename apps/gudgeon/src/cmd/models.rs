@@ -2,38 +2,20 @@
 
 use std::fmt::Write as _;
 
-use gudgeon_case::advice;
-use gudgeon_core::{KindInfo, Registry};
-use serde_json::json;
+use gudgeon_case::catalogue;
+use gudgeon_core::Registry;
 
 use crate::args::ModelsArgs;
-use crate::cmd::tables::choices;
 use crate::failure::Failure;
 use crate::ui::{Ui, table, wrapped};
 
 pub fn models(a: &ModelsArgs, registry: &Registry, ui: &Ui) -> Result<(), Failure> {
     let kinds = match &a.kind {
-        Some(k) => vec![kind(registry, k)?],
+        Some(k) => vec![catalogue::kind(registry, k)?],
         None => registry.kinds().collect(),
     };
     if a.json {
-        let list: Vec<_> = kinds
-            .iter()
-            .map(|k| {
-                let models: Vec<_> = registry
-                    .models(k.kind)
-                    .iter()
-                    .map(|m| {
-                        let tables: Vec<_> = choices(m)
-                            .into_iter()
-                            .map(|(path, key, words)| json!({ "path": path, "key": key, "words": words }))
-                            .collect();
-                        json!({ "model": m.name, "summary": m.summary, "references": m.references, "tables": tables })
-                    })
-                    .collect();
-                json!({ "kind": k.kind, "summary": k.summary, "models": models })
-            })
-            .collect();
+        let list: Vec<_> = kinds.iter().map(|k| catalogue::of_kind(registry, k)).collect();
         ui.json(&list.into());
         return Ok(());
     }
@@ -48,19 +30,11 @@ pub fn models(a: &ModelsArgs, registry: &Registry, ui: &Ui) -> Result<(), Failur
             registry.models(k.kind).iter().map(|m| vec![m.name.to_owned(), m.summary.to_owned()]).collect();
         text.push_str(&table(&rows, &[]));
         for m in registry.models(k.kind) {
-            for (path, key, words) in choices(m) {
+            for (path, key, words) in catalogue::choices(m) {
                 text.push_str(&wrapped(&format!("{}: {path}.{key} is {}", m.name, words.join(", ")), 4));
             }
         }
     }
     ui.out(&text);
     Ok(())
-}
-
-/// The kind of that name; otherwise the names that would do.
-pub fn kind(registry: &Registry, name: &str) -> Result<&'static KindInfo, Failure> {
-    registry.kind(name).ok_or_else(|| {
-        let names: Vec<&str> = registry.kinds().map(|k| k.kind).collect();
-        Failure::argument(format!("there is no kind `{name}`"), advice(name, &names))
-    })
 }

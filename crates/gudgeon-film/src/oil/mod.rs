@@ -1,9 +1,11 @@
 //! Viscosity of the oil over its temperature.
 
 mod constant;
+mod table;
 mod vogel;
 mod vogel_grade;
 
 pub use constant::Constant;
+pub use table::Table;
 pub use vogel::Vogel;
 pub use vogel_grade::{Grade, VogelGrade, VogelTable};

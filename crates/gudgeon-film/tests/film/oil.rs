@@ -2,7 +2,7 @@
 
 use gudgeon_core::kinds::{Oil, OilSpec};
 use gudgeon_core::quantity::quantity;
-use gudgeon_film::{Constant, Grade, Vogel, VogelGrade, VogelTable};
+use gudgeon_film::{Constant, Grade, Table, Vogel, VogelGrade, VogelTable};
 
 const CELSIUS: f64 = 273.15;
 
@@ -131,4 +131,67 @@ fn vogel_is_finite_and_falls_with_temperature() {
 fn constant_is_constant() {
     let oil = Constant { viscosity: quantity(5e-3) }.build().expect("an oil");
     assert_eq!((oil.viscosity(300.0), oil.viscosity(500.0)), (5e-3, 5e-3));
+}
+
+/// Rows of a Vogel oil at the given temperatures \[°C\].
+fn tabulated(exact: &dyn Oil, celsius: &[f64]) -> Box<dyn Oil> {
+    let temperature = celsius.iter().map(|t| quantity(t + CELSIUS)).collect();
+    let viscosity = celsius.iter().map(|t| quantity(exact.viscosity(t + CELSIUS))).collect();
+    Table { temperature, viscosity }.build().expect("a falling viscosity")
+}
+
+#[test]
+fn a_table_meets_its_rows_and_converges() {
+    let exact = oil(VogelTable::Zottin1992, Grade::Sae30);
+    // Largest relative error from 40 to 150 °C with rows every `step` kelvin.
+    let error = |step: f64| {
+        let rows: Vec<f64> = (0..=(110.0 / step) as usize).map(|k| 40.0 + step * k as f64).collect();
+        let table = tabulated(exact.as_ref(), &rows);
+        for t in &rows {
+            // Rounding of an exponential of a logarithm.
+            let (a, b) = (table.viscosity(t + CELSIUS), exact.viscosity(t + CELSIUS));
+            assert!((a / b - 1.0).abs() < 1e-14, "{t}: {a} {b}");
+        }
+        let between = (0..=1100).map(|k| 40.0 + 0.1 * f64::from(k) + CELSIUS);
+        between.map(|t| (table.viscosity(t) / exact.viscosity(t) - 1.0).abs()).fold(0.0, f64::max)
+    };
+    let (coarse, fine) = (error(10.0), error(5.0));
+    // What the documentation promises; the order of a monotone cubic at its ends is two at least.
+    assert!(coarse < 2e-4, "{coarse}");
+    assert!(fine < coarse / 3.9, "{coarse} {fine}");
+    let three = tabulated(exact.as_ref(), &[40.0, 100.0, 150.0]);
+    let apart = (400..1500).map(|t| 0.1 * f64::from(t) + CELSIUS);
+    let worst = apart.map(|t| (three.viscosity(t) / exact.viscosity(t) - 1.0).abs()).fold(0.0, f64::max);
+    assert!(worst < 0.03, "{worst}");
+}
+
+#[test]
+fn beyond_its_rows_a_table_is_an_andrade_oil() {
+    // ln mu = ln 1e-6 + 3000/T is straight over 1/T: two rows give it everywhere.
+    let andrade = |t: f64| 1e-6 * (3000.0 / t).exp();
+    let table = Table {
+        temperature: vec![quantity(313.15), quantity(373.15)],
+        viscosity: vec![quantity(andrade(313.15)), quantity(andrade(373.15))],
+    };
+    let table = table.build().expect("two rows");
+    for t in [250.0, 313.15, 340.0, 373.15, 500.0] {
+        // Rounding of the slope, times the distance from the rows in logarithms (2.4 at most).
+        assert!((table.viscosity(t) / andrade(t) - 1.0).abs() < 1e-12, "{t}");
+    }
+    // No temperature makes it overflow or vanish.
+    for t in [1e-3, 1e9] {
+        assert!(table.viscosity(t).is_finite() && table.viscosity(t) > 0.0, "{t}");
+    }
+}
+
+#[test]
+fn tables_that_are_none_are_refused() {
+    let build = |t: &[f64], mu: &[f64]| {
+        let temperature = t.iter().map(|v| quantity(*v)).collect();
+        let viscosity = mu.iter().map(|v| quantity(*v)).collect();
+        Table { temperature, viscosity }.build().expect_err("no table").to_string()
+    };
+    assert!(build(&[300.0], &[0.1]).contains("at least 2"));
+    assert!(build(&[300.0, 350.0], &[0.1]).contains("1 values beside 2"));
+    assert!(build(&[350.0, 300.0], &[0.1, 0.2]).contains("temperature.1"));
 }

@@ -1,0 +1,174 @@
+//! What a case may say: kinds and models found by name, and what is known of them, for a program to read.
+
+use gudgeon_core::schemars::SchemaGenerator;
+use gudgeon_core::{KindInfo, ModelInfo, Registry};
+use serde_json::{Map, Value, json};
+
+use crate::near::{advice, list};
+use crate::report::Diagnostic;
+
+/// The kind of that name.
+///
+/// # Errors
+/// There is none; the advice names those that would do.
+pub fn kind(registry: &Registry, name: &str) -> Result<&'static KindInfo, Diagnostic> {
+    registry.kind(name).ok_or_else(|| {
+        let names: Vec<&str> = registry.kinds().map(|k| k.kind).collect();
+        Diagnostic::new(format!("there is no kind `{name}`")).help(advice(name, &names))
+    })
+}
+
+/// The model that `what` names: `kind/model`, `kind.model`, or a model name that only one kind has.
+///
+/// # Errors
+/// There is none, or several; the advice names those that would do.
+pub fn model(registry: &Registry, what: &str) -> Result<&'static ModelInfo, Diagnostic> {
+    if let Some((k, name)) = what.split_once(['/', '.']) {
+        let k = kind(registry, k)?;
+        return registry.model(k.kind, name).ok_or_else(|| {
+            let names: Vec<&str> = registry.models(k.kind).iter().map(|m| m.name).collect();
+            Diagnostic::new(format!("there is no {} model `{name}`", k.kind)).help(advice(name, &names))
+        });
+    }
+    let all: Vec<&'static ModelInfo> =
+        registry.kinds().flat_map(|k| registry.models(k.kind)).copied().collect();
+    let named: Vec<&'static ModelInfo> = all.iter().filter(|m| m.name == what).copied().collect();
+    match named[..] {
+        [only] => Ok(only),
+        [] => {
+            let mut names: Vec<&str> = all.iter().map(|m| m.name).collect();
+            names.extend(registry.kinds().map(|k| k.kind));
+            names.sort_unstable();
+            names.dedup();
+            Err(Diagnostic::new(format!("there is no kind and no model `{what}`")).help(advice(what, &names)))
+        }
+        ref many => {
+            let full: Vec<String> = many.iter().map(|m| format!("{}/{}", m.kind, m.name)).collect();
+            Err(Diagnostic::new(format!("several kinds have a model `{what}`"))
+                .help(format!("name one of {}", list(full.iter().map(String::as_str)))))
+        }
+    }
+}
+
+/// A kind with its models: `kind`, `summary`, `models`, each with `model`, `summary`, `references`, `tables`.
+#[must_use]
+pub fn of_kind(registry: &Registry, k: &KindInfo) -> Value {
+    let of_model = |m: &&ModelInfo| {
+        let words = |(path, key, words)| json!({ "path": path, "key": key, "words": words });
+        let tables: Vec<_> = choices(m).into_iter().map(words).collect();
+        json!({ "model": m.name, "summary": m.summary, "references": m.references, "tables": tables })
+    };
+    let models: Vec<_> = registry.models(k.kind).iter().map(of_model).collect();
+    json!({ "kind": k.kind, "summary": k.summary, "models": models })
+}
+
+/// Everything that is known of a model: `kind`, `model`, `summary`, `equations`, `validity`, `references`, `example`, `source`, `schema`,
+/// `definitions`.
+#[must_use]
+pub fn of_model(m: &ModelInfo) -> Value {
+    let (schema, definitions) = schema(m);
+    json!({
+        "kind": m.kind,
+        "model": m.name,
+        "summary": m.summary,
+        "equations": equations(m).collect::<Vec<_>>(),
+        "validity": m.validity,
+        "references": m.references,
+        "example": example(m),
+        "source": format!("{}:{}", m.file, m.line),
+        "schema": schema,
+        "definitions": definitions,
+    })
+}
+
+/// The equations of a model, one by one.
+pub fn equations(m: &ModelInfo) -> impl Iterator<Item = &'static str> {
+    m.equations.split(";  ").map(str::trim).filter(|e| !e.is_empty())
+}
+
+/// The example of a model as a table of a case file.
+#[must_use]
+pub fn example(m: &ModelInfo) -> String {
+    format!("[models.{}]\nmodel = \"{}\"\n{}", m.kind, m.name, m.example.trim_start())
+}
+
+/// The schema of a model and what it refers to.
+#[must_use]
+pub fn schema(m: &ModelInfo) -> (Value, Map<String, Value>) {
+    let mut g = SchemaGenerator::default();
+    let schema = (m.schema)(&mut g).to_value();
+    (schema, g.take_definitions(true))
+}
+
+/// Tables inside tables that are shown; a model inside a model names its kind instead.
+pub const DEPTH: usize = 4;
+
+/// Follows references and the non-null alternative of an optional value; with the name of the last reference.
+#[must_use]
+pub fn resolve<'a>(
+    mut schema: &'a Value,
+    definitions: &'a Map<String, Value>,
+) -> (&'a Value, Option<&'a str>) {
+    let mut name = None;
+    for _ in 0..DEPTH {
+        if let Some(r) = schema.get("$ref").and_then(Value::as_str) {
+            name = r.rsplit('/').next();
+            match name.and_then(|n| definitions.get(n)) {
+                Some(s) => schema = s,
+                None => break,
+            }
+        } else if let Some(any) = schema.get("anyOf").and_then(Value::as_array) {
+            let is_null = |s: &&Value| s.get("type").and_then(Value::as_str) == Some("null");
+            match any.iter().find(|s| !is_null(s)) {
+                Some(s) if any.len() == 2 => schema = s,
+                _ => break,
+            }
+        } else {
+            break;
+        }
+    }
+    (schema, name)
+}
+
+/// The only word that a key of a table may have.
+fn constant<'a>(table: &'a Value, key: &str) -> Option<&'a str> {
+    table.get("properties")?.get(key)?.get("const")?.as_str()
+}
+
+/// The key whose word tells tables apart, with the words and their tables.
+#[must_use]
+pub fn choice(schema: &Value) -> Option<(&str, Vec<(&str, &Value)>)> {
+    let all = schema.get("oneOf").and_then(Value::as_array)?;
+    let first = all.first()?.get("properties")?.as_object()?;
+    let tag = first.keys().find(|k| all.iter().all(|s| constant(s, k).is_some()))?;
+    Some((tag, all.iter().filter_map(|s| Some((constant(s, tag)?, s))).collect()))
+}
+
+/// Tables of a model that a word other than `model` tells apart: path, key, words.
+#[must_use]
+pub fn choices(m: &ModelInfo) -> Vec<(String, String, Vec<String>)> {
+    fn look(
+        schema: &Value,
+        definitions: &Map<String, Value>,
+        path: &str,
+        depth: usize,
+        out: &mut Vec<(String, String, Vec<String>)>,
+    ) {
+        for (key, p) in schema.get("properties").and_then(Value::as_object).into_iter().flatten() {
+            let inner = resolve(p, definitions).0;
+            let element = inner.get("items").map_or(inner, |i| resolve(i, definitions).0);
+            let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
+            match choice(element) {
+                Some((tag, tables)) if tag != "model" => {
+                    out.push((path, tag.to_owned(), tables.iter().map(|(w, _)| (*w).to_owned()).collect()));
+                }
+                None if depth < DEPTH => look(element, definitions, &path, depth + 1, out),
+                _ => {}
+            }
+        }
+    }
+    let (schema, definitions) = schema(m);
+    let mut out = Vec::new();
+    look(&schema, &definitions, "", 0, &mut out);
+    out
+}
