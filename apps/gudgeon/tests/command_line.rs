@@ -406,6 +406,10 @@ fn several_cases_tell_which_choice_matters() {
     assert_eq!(v["cases"][1]["name"], "x, engine.speed=1900 rpm");
     assert_eq!(v["variants"][1]["label"], "x: gas_flow=narrow_channel");
     assert_eq!(v["shares"][0]["rows"][0]["combinations"], 4);
+    let wrong = ["compare", "x.toml", "--swap", "engine.cylinders=2", "--results", "blow_bye"];
+    let o = command(&wrong).current_dir(&folder).output().expect("the program starts");
+    assert_eq!(o.status.code(), Some(2));
+    assert!(stderr(&o).contains("there is no result `blow_bye`"), "{}", stderr(&o));
     let _ = fs::remove_dir_all(&folder);
 }
 

@@ -5,12 +5,13 @@ mod shares;
 
 use std::path::{Path, PathBuf};
 
-use gudgeon_case::{Diagnostic, Report};
+use gudgeon_case::{Diagnostic, Report, advice};
 use gudgeon_core::result::{ComparedCase, Comparison, RunResult, Variant, short_value};
 use gudgeon_core::{BuildError, Registry};
 use gudgeon_scene::many::run_many;
 use gudgeon_scene::run::{run_alone, run_alone_verified};
 use gudgeon_scene::{Checked, Progress, RunError, Stopped, check};
+use indexmap::IndexSet;
 
 use crate::error::StudyError;
 
@@ -98,18 +99,7 @@ pub fn compare_cases(plan: &Plan, progress: Tell<'_>) -> Result<Comparison, Stud
     let Some(first) = bases.first() else {
         return Err(Report::unreadable("", Diagnostic::new("a comparison needs a case")).into());
     };
-    let combinations = combinations(first, plan)?;
-    let jobs: Vec<Job> = bases
-        .iter()
-        .enumerate()
-        .flat_map(|(case, base)| combinations.iter().map(move |c| Job::new(case, base, c)))
-        .collect();
-    if jobs.iter().all(|j| j.checked.is_err()) {
-        // Nothing is possible: the first refusal says why, with places.
-        let report = jobs.into_iter().find_map(|j| j.checked.err());
-        let none = || first.case.refuse(&[BuildError::new("no combination to run")]);
-        return Err(report.unwrap_or_else(none).into());
-    }
+    let jobs = jobs(first, &bases, plan)?;
     let run: Run = if plan.verify { run_alone_verified } else { run_alone };
     let outcome = |k: usize, tell: Tell<'_>| match &jobs[k].checked {
         Err(report) => Err(format!("refused: {}", report.failure())),
@@ -132,6 +122,31 @@ pub fn compare_cases(plan: &Plan, progress: Tell<'_>) -> Result<Comparison, Stud
     };
     comparison.shares = shares::shares(&comparison, &plan.headlines);
     Ok(comparison)
+}
+
+/// Every combination of every case, checked.
+fn jobs(first: &Checked, bases: &[Checked], plan: &Plan) -> Result<Vec<Job>, Report> {
+    let combinations = combinations(first, plan)?;
+    let with = |(case, base)| combinations.iter().map(move |c| Job::new(case, base, c)).collect::<Vec<_>>();
+    let jobs: Vec<Job> = bases.iter().enumerate().flat_map(with).collect();
+    if jobs.iter().all(|j| j.checked.is_err()) {
+        // Nothing is possible: the first refusal says why, with places.
+        let report = jobs.into_iter().find_map(|j| j.checked.err());
+        return Err(report.unwrap_or_else(|| first.case.refuse(&[BuildError::new("no combination to run")])));
+    }
+    if !plan.headlines.is_empty() {
+        let names = jobs.iter().flat_map(|j| &j.checked).filter_map(|c| c.case.result_names());
+        let known: IndexSet<String> = names.flatten().collect();
+        let unknown: Vec<&String> =
+            plan.headlines.iter().filter(|n| !known.is_empty() && !known.contains(*n)).collect();
+        let known: Vec<&str> = known.iter().map(String::as_str).collect();
+        let error = |n: &String| BuildError::new(format!("there is no result `{n}`")).help(advice(n, &known));
+        let errors: Vec<BuildError> = unknown.into_iter().map(error).collect();
+        if !errors.is_empty() {
+            return Err(first.case.refuse(&errors));
+        }
+    }
+    Ok(jobs)
 }
 
 /// Values of all swaps.
