@@ -39,11 +39,11 @@ impl SceneCase for RigCase {
 
     fn work_precision(loaded: &Loaded<Self>, bench: &mut Box<dyn Rig>) -> Result<WorkPrecision, String> {
         let rig = &loaded.value.rig;
-        let mut told = WorkPrecision::default();
-        told.results = match rig.headline() {
+        let results = match rig.headline() {
             [] => bench.results().into_iter().take(UNNAMED).collect(),
             named => named.iter().map(|n| (*n).to_owned()).collect(),
         };
+        let mut told = WorkPrecision { results, ..WorkPrecision::default() };
         if let Some((place, others)) = rig.same_equations() {
             let own = rig.models().into_iter().find(|(kind, _)| *kind == place);
             told.own = own.map_or_else(String::new, |(_, model)| model.to_owned());
