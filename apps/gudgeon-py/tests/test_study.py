@@ -2,6 +2,7 @@
 
 import os
 import signal
+import socket
 import subprocess
 import sys
 from pathlib import Path
@@ -126,19 +127,63 @@ def test_a_process_that_is_killed(undisturbed, tmp_path):
     assert parts(study) == parts(undisturbed)
 
 
-def test_a_restart_of_the_scheduler(undisturbed, tmp_path):
+def test_a_reset_of_the_scheduler(undisturbed, cluster, tmp_path):
+    _, client = cluster
+    study = gudgeon.Study.new(tmp_path / "s", SPEC)
+    reset = []
+
+    def restart(phase, fraction):
+        if not reset:
+            reset.append(True)
+            # Restarts all workers and has the scheduler forget all tasks.
+            client.restart()
+
+    study.run(client, progress=restart)
+    assert reset and parts(study) == parts(undisturbed)
+
+
+def start(*arguments: str) -> subprocess.Popen:
+    return subprocess.Popen([sys.executable, "-m", "distributed.cli." + arguments[0], *arguments[1:]], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
+def test_a_scheduler_that_is_killed(undisturbed, tmp_path):
     distributed = pytest.importorskip("distributed")
     study = gudgeon.Study.new(tmp_path / "s", SPEC)
-    with distributed.LocalCluster(n_workers=1, threads_per_worker=1, processes=True, dashboard_address=None) as cluster, distributed.Client(cluster) as client:
-        restarted = []
+    with socket.socket() as s:
+        s.bind(("127.0.0.1", 0))
+        port = s.getsockname()[1]
+    address = f"tcp://127.0.0.1:{port}"
 
-        def restart(phase, fraction):
-            if not restarted:
-                restarted.append(True)
-                client.restart()
+    def cluster() -> list[subprocess.Popen]:
+        scheduler = start("dask_scheduler", "--host", "127.0.0.1", "--port", str(port), "--no-dashboard")
+        return [scheduler, start("dask_worker", address, "--nworkers", "1", "--nthreads", "1", "--no-nanny", "--no-dashboard", "--death-timeout", "60")]
 
-        study.run(client, progress=restart)
-    assert restarted and parts(study) == parts(undisturbed)
+    processes = cluster()
+    killed = []
+
+    def kill(phase, fraction):
+        if not killed:
+            killed.append(True)
+            # A worker ends with its scheduler; whoever runs the cluster starts both again.
+            for process in processes:
+                process.kill()
+                process.wait()
+            processes[:] = cluster()
+
+    try:
+        with distributed.Client(address, timeout=30) as client:
+            try:
+                study.run(client, progress=kill)
+            except gudgeon.RunError as e:
+                # Where the client gives up before the scheduler is there again: what is done is kept, and the same call goes on.
+                assert e.code == "dask"
+    finally:
+        for process in processes:
+            process.kill()
+            process.wait()
+    assert killed and study.status["done"] > 0
+    study.run()
+    assert parts(study) == parts(undisturbed)
 
 
 def test_a_study_file(tmp_path):

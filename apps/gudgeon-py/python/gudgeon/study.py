@@ -6,6 +6,7 @@ import json
 import tempfile
 from collections.abc import Iterable, Mapping
 from functools import lru_cache
+from itertools import count
 from os import PathLike
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Any
@@ -85,34 +86,35 @@ class Study:
         if client is None:
             self._native.run(threads, progress)
             return
-        record = self._native.record()
-        parts = self.status["parts"]
-        while missing := self.status["missing"]:
-            if not self._fill(client, record, missing, parts, retries, progress):
-                raise RunError(f"Dask finished none of the {len(missing)} missing parts", "dask")
+        for attempt in count():
+            missing = self.status["missing"]
+            if missing and not self._fill(client, missing, attempt, retries, progress):
+                raise RunError(f"Dask finished none of the {len(missing)} missing parts; what is done is kept", "dask")
+            if not missing:
+                return
 
-    def _fill(self, client: Client, record: str, missing: list[int], parts: int, retries: int, progress: Progress | None) -> bool:
+    def _fill(self, client: Client, missing: list[int], attempt: int, retries: int, progress: Progress | None) -> bool:
         """Hands in the missing parts and puts those that come back into the folder; whether any did."""
         from distributed import as_completed
 
-        study = json.loads(record)["sha256"]
-        futures: dict[Future, int] = {
-            client.submit(_part, record, k, key=f"gudgeon-{study[:16]}-{k}", retries=retries, pure=False): k for k in missing
-        }
+        record, parts = self._native.record(), self.status["parts"]
+        # What was lost with a scheduler goes by another name when it is handed in again: news of the old ones may still be under way.
+        name = f"gudgeon-{json.loads(record)['sha256'][:16]}-{attempt}"
+        futures: dict[Future, int] = {client.submit(_part, record, k, key=f"{name}-{k}", retries=retries, pure=False): k for k in missing}
         done = 0
         try:
             for future in as_completed(futures):
                 # Lost with its scheduler.
-                if future.status != "finished" and future.status != "error":
+                if future.status not in ("finished", "error"):
                     continue
                 self._native.put(futures[future], *future.result())
-                future.release()
                 done += 1
                 ready = parts - len(missing) + done
                 if progress is not None and progress(f"{ready} of {parts} parts", ready / parts) is False:
                     raise RunError("stopped; what is done is kept", "stopped")
-        finally:
+        except BaseException:
             client.cancel(list(futures))
+            raise
         return done > 0
 
     def collect(self) -> pyarrow.Table:
