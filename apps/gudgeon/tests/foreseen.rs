@@ -145,6 +145,40 @@ fn results_that_the_case_does_not_have() {
 }
 
 #[test]
+fn contenders_that_are_none() {
+    let folder = Folder::new("contenders");
+    folder.write("case.toml", &base());
+    for (contender, said) in [
+        ("gas_flow=narow_channel", "did you mean `narrow_channel`?"),
+        ("models.gas_flov=narrow_channel", "did you mean `gas_flow`?"),
+        ("gas_flow", "is not a path with values"),
+        ("gas_flow=a,,b", "has an empty value"),
+    ] {
+        let o = folder.run(&["bench", "case.toml", "--contender", contender]);
+        assert_eq!(o.status.code(), Some(2), "{contender}");
+        holds(&flat(&stderr(&o)), &[said]);
+    }
+    assert!(!folder.0.join("out").exists(), "nothing is written");
+}
+
+#[test]
+fn several_cases_have_a_folder_each_and_a_summary() {
+    let folder = Folder::new("several");
+    let cases = [case("rigs/slider-straight.toml"), case("rigs/flank-landing.toml")];
+    let o = folder.run(&["bench", &cases[0], &cases[1], "--out", "raced"]);
+    assert_eq!(o.status.code(), Some(0), "{}", stderr(&o));
+    for name in ["slider-straight", "flank-landing"] {
+        for file in ["bench.json", "bench.csv", "report.html"] {
+            assert!(folder.0.join("raced").join(name).join(file).is_file(), "{name}/{file}");
+        }
+    }
+    let told = String::from_utf8_lossy(&o.stdout).into_owned();
+    let summary: Vec<&str> = told.lines().rev().take(3).collect();
+    assert!(summary[2].contains("achieved/asked") && summary[2].contains("worst error"), "{told}");
+    assert!(summary.iter().take(2).all(|line| line.contains("reached")), "{told}");
+}
+
+#[test]
 fn benches_that_ask_a_film_for_what_it_does_not_know() {
     let folder = Folder::new("films");
     let starved = case("rigs/slider-starved.toml");

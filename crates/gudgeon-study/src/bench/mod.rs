@@ -51,7 +51,6 @@ pub fn bench(
         points: measure::measure(base, &plan.points, &judge, progress)?,
         reference_values: judge.values,
         findings: plan.notes,
-        ..BenchTable::default()
     };
     let found = findings::findings(&table);
     table.findings.extend(found);
