@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// Measured or computed viscosities over the temperature.
 ///
 /// `ln μ` is interpolated over `1/T` by a monotone cubic, so the viscosity falls between rows in which it falls, and stays positive. Both curves are nearly
-/// straight for oils: three rows of a Vogel oil at 40, 100 and 150 °C are met within 3 %, rows every 10 K within 2e-4. Beyond the first and the last row the
+/// straight for oils: a Vogel oil is met within 3.5 % by three rows at 40, 100 and 150 °C, within 5e-4 by rows every 10 K. Beyond the first and the last row the
 /// curve goes on straight (Andrade's equation), which is an extrapolation.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -156,13 +156,14 @@ fn a_table_meets_its_rows_and_converges() {
         between.map(|t| (table.viscosity(t) / exact.viscosity(t) - 1.0).abs()).fold(0.0, f64::max)
     };
     let (coarse, fine) = (error(10.0), error(5.0));
-    // What the documentation promises; the order of a monotone cubic at its ends is two at least.
-    assert!(coarse < 2e-4, "{coarse}");
-    assert!(fine < coarse / 3.9, "{coarse} {fine}");
+    // What the documentation promises. The error is that of the end slope, of third order: eight times smaller in the limit, less
+    // the next term of the series.
+    assert!(coarse < 5e-4, "{coarse}");
+    assert!(fine < coarse / 6.0, "{coarse} {fine}");
     let three = tabulated(exact.as_ref(), &[40.0, 100.0, 150.0]);
     let apart = (400..1500).map(|t| 0.1 * f64::from(t) + CELSIUS);
     let worst = apart.map(|t| (three.viscosity(t) / exact.viscosity(t) - 1.0).abs()).fold(0.0, f64::max);
-    assert!(worst < 0.03, "{worst}");
+    assert!(worst < 0.035, "{worst}");
 }
 
 #[test]
@@ -189,9 +190,9 @@ fn tables_that_are_none_are_refused() {
     let build = |t: &[f64], mu: &[f64]| {
         let temperature = t.iter().map(|v| quantity(*v)).collect();
         let viscosity = mu.iter().map(|v| quantity(*v)).collect();
-        Table { temperature, viscosity }.build().expect_err("no table").to_string()
+        Table { temperature, viscosity }.build().expect_err("no table")
     };
-    assert!(build(&[300.0], &[0.1]).contains("at least 2"));
-    assert!(build(&[300.0, 350.0], &[0.1]).contains("1 values beside 2"));
-    assert!(build(&[350.0, 300.0], &[0.1, 0.2]).contains("temperature.1"));
+    assert!(build(&[300.0], &[0.1]).message.contains("at least 2"));
+    assert!(build(&[300.0, 350.0], &[0.1]).message.contains("1 values beside 2"));
+    assert_eq!(build(&[350.0, 300.0], &[0.1, 0.2]).field, "temperature.1");
 }
