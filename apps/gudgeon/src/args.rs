@@ -21,6 +21,7 @@ impl Args {
             Command::Run(a) => a.quiet,
             Command::Compare(a) => a.quiet,
             Command::Bench(a) => a.quiet,
+            Command::Gradient(a) => a.quiet,
             Command::Validate(a) => a.quiet,
             Command::Study(StudyCommand::Run(a)) => a.quiet,
             Command::Study(StudyCommand::Collect(a)) => a.quiet,
@@ -47,6 +48,8 @@ pub enum Command {
     Compare(CompareArgs),
     /// Measure run time and work against error: solvers, models of the same equations, numerical settings
     Bench(BenchArgs),
+    /// Tell how results of a case change with its inputs: derivatives
+    Gradient(GradientArgs),
     /// Compare cases with the values of their sources
     Validate(ValidateArgs),
     /// Make, run and collect a study of many runs in a folder
@@ -155,6 +158,30 @@ pub struct BenchArgs {
     /// Folder for the results; of several cases, one folder each in it [default: out/<case>-bench]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// No progress, no table
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct GradientArgs {
+    #[command(flatten)]
+    pub case: CaseArgs,
+    /// Inputs: rings.0.cold_gap,engine.speed
+    #[arg(long, value_name = "PATH,PATH", value_delimiter = ',', required = true)]
+    pub by: Vec<String>,
+    /// Results to be told, each with its derivatives [default: a table of all]
+    #[arg(long, value_name = "A,B", value_delimiter = ',')]
+    pub results: Vec<String>,
+    /// By differences of runs, although the scene has a method of its own
+    #[arg(long)]
+    pub by_runs: bool,
+    /// Folder for gradients.json and gradients.csv [default: out/<case>-gradient]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Print JSON and nothing else; no files
+    #[arg(long)]
+    pub json: bool,
     /// No progress, no table
     #[arg(long, short)]
     pub quiet: bool,

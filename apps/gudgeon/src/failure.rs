@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use gudgeon_case::{Diagnostic, Report};
 use gudgeon_core::registry::RegistryError;
 use gudgeon_report::ReportError;
-use gudgeon_scene::{RunError, Stopped};
+use gudgeon_scene::{GradientError, RunError, Stopped};
 use gudgeon_study::StudyError;
 use gudgeon_study::study::FolderError;
 
@@ -50,6 +50,14 @@ impl From<RunError> for Failure {
         match e {
             RunError::Refused(what) => Self::Argument(Diagnostic::new(what)),
             e => Self::Run(e.to_string()),
+        }
+    }
+}
+impl From<GradientError> for Failure {
+    fn from(e: GradientError) -> Self {
+        match e {
+            GradientError::Run(e) => e.into(),
+            e => Self::Argument(Diagnostic::new(e.to_string())),
         }
     }
 }

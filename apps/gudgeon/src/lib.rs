@@ -47,6 +47,7 @@ fn dispatch(command: &Command, ui: &Ui) -> Result<(), Failure> {
         Command::Schema => cmd::schema::schema(ui),
         Command::Compare(a) => cmd::compare::compare(a, ui),
         Command::Bench(a) => cmd::bench::bench(a, ui),
+        Command::Gradient(a) => cmd::gradient::gradient(a, ui),
         Command::Validate(a) => cmd::validate::validate(a, ui),
         Command::Study(a) => cmd::study::study(a, ui),
         Command::Report(a) => cmd::report::report(a, ui),

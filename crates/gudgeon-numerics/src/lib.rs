@@ -12,6 +12,7 @@
 //! | stiff `y' = f(t, y)`, relative tolerance 1e-2 to 1e-7, events, balances that must close | [`rodas::Rodas`] | one LU factorisation a step, no Newton iteration; order 5 or 3 |
 //! | the same at 1e-7 and tighter, or as an independent reference | [`radau::Radau5`] | fully implicit, fewer right-hand sides at tight tolerances; locates no events |
 //! | what both share: the system, options, statistics, dense output | [`ode`] | |
+//! | derivatives of a solution by its initial state and by parameters | [`tangent::Tangent`] | variational equations on the steps of the solution; events are jumps |
 //! | state that repeats after a cycle | [`orbit::periodic_orbit`] | Anderson acceleration, error estimate, stability check |
 //! | dense, banded or tridiagonal systems | [`linalg`] | in place, no allocation, singular matrices are errors |
 //! | `A x = b` where only the product `A x` is known | [`gmres::Gmres`] | minimal residuals over a Krylov space |
@@ -149,5 +150,6 @@ pub mod radau;
 pub mod rodas;
 pub mod roots;
 pub mod table;
+pub mod tangent;
 
 pub use error::{EvalError, Stopped, unwatched};

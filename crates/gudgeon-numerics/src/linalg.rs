@@ -12,7 +12,7 @@ mod tridiagonal;
 pub use banded::Banded;
 pub use complex::Complex;
 pub use complex_lu::ComplexLu;
-pub use dense::{lu_factor, lu_factor_weighted, lu_solve};
+pub use dense::{lu_factor, lu_factor_weighted, lu_solve, lu_solve_rows};
 pub use symmetric_banded::SymmetricBanded;
 pub use tridiagonal::solve_tridiagonal;
 

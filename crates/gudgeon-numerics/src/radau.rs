@@ -29,6 +29,7 @@ mod tolerance;
 use crate::ode::{
     ColumnGroups, Flow, IntegrateError, Integrator, OdeSystem, Options, Shape, Stats, StepView, check,
 };
+pub(crate) use coefficients::{C, SQRT_6};
 use method::Method;
 use run::Run;
 

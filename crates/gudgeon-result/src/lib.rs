@@ -1,5 +1,6 @@
 //! What a run produces, independent of how it is written: the interface between the simulation and the report.
 
+mod gradients;
 mod shares;
 mod swap;
 
@@ -7,11 +8,12 @@ use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+pub use gradients::{Gradient, GradientInput, Gradients};
 pub use shares::{CASE, Share, ShareRow, ShareTable};
 pub use swap::short_value;
 
 /// A result value.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Value {
     /// The number, in `unit`.
     pub value: f64,

@@ -3,6 +3,7 @@
 mod error;
 mod explanation;
 pub mod foresee;
+pub mod gradients;
 mod heading;
 mod integrator;
 pub mod many;
@@ -21,6 +22,7 @@ pub use gudgeon_core::{inventory, registry::Linked};
 
 pub use error::{Progress, RunError};
 pub use explanation::{ExplainedModel, Explanation, model_use};
+pub use gradients::{GradientError, Varied};
 pub use heading::{Headed, Heading};
 pub use integrator::IntegratorName;
 pub use provenance::sha256;

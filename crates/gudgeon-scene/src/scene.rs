@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use gudgeon_case::{Loaded, Refinement, Report, Source, load_source, nearest, scene_of, top_level_keys};
 use gudgeon_core::kinds::EngineCycle;
-use gudgeon_core::result::{ModelUse, RunResult, Value};
+use gudgeon_core::result::{GradientInput, Gradients, ModelUse, RunResult, Value};
 use gudgeon_core::{BuildError, Stopped};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::de::DeserializeOwned;
@@ -18,6 +18,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Progress, RunError};
 use crate::explanation::Explanation;
+use crate::gradients::{self, GradientError, Varied};
 use crate::heading::{Headed, Heading};
 use crate::work_precision::WorkPrecision;
 
@@ -68,6 +69,19 @@ pub trait SceneCase:
         loaded.refinements()
     }
 
+    /// Derivatives of the results by inputs, at a fraction of the cost of runs with other inputs: from the case as it stands, and for each input the case
+    /// with a slightly higher value, which `varied` builds. The inputs of the answer are filled in by the caller.
+    ///
+    /// # Errors
+    /// The scene has none of its own for this case ([`GradientError::NoMethod`], the default), or what stopped it.
+    fn gradients(
+        _loaded: &Loaded<Self>,
+        _built: Self::Built,
+        _varied: &dyn Fn() -> Result<Vec<Varied<Self>>, GradientError>,
+    ) -> Result<Gradients, GradientError> {
+        Err(GradientError::NoMethod("this scene has no derivatives of its own".into()))
+    }
+
     /// Its solvers at their settings, other methods for its equations, and what errors are counted from, for `bench`.
     ///
     /// # Errors
@@ -116,6 +130,11 @@ pub trait Scene: Send + Sync {
     /// # Errors
     /// As [`SceneCase::run`]; a result that is not a number.
     fn once(&self, progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>) -> Result<RunResult, RunError>;
+    /// Derivatives of the results by the inputs at these paths, by the scene's own method ([`SceneCase::gradients`]).
+    ///
+    /// # Errors
+    /// [`GradientError`]: no method, an input that is no continuous quantity, or a run that failed.
+    fn gradients(&self, inputs: &[String]) -> Result<Gradients, GradientError>;
     /// As [`SceneCase::work_precision`].
     ///
     /// # Errors
@@ -150,6 +169,25 @@ impl<C: SceneCase> Read<C> {
         let out = f(&mut built);
         *self.built.lock().unwrap_or_else(PoisonError::into_inner) = Some(built);
         Ok(out)
+    }
+}
+
+impl<C: SceneCase> Read<C> {
+    /// The case with a higher value of an input, or a lower one where that is at the end of what is legal.
+    fn beside(&self, input: &GradientInput) -> Result<Varied<C>, GradientError> {
+        self.varied(input, input.step).or_else(|e| self.varied(input, -input.step).map_err(|_| e))
+    }
+
+    fn varied(&self, input: &GradientInput, step: f64) -> Result<Varied<C>, GradientError> {
+        let refuse = |why: String| GradientError::Input { path: input.path.clone(), why };
+        let set = [gradients::assignment(input, input.value + step)];
+        let loaded = self.loaded.reload::<C>(&set).map_err(|report| {
+            let first = report.diagnostics.first().map_or_else(String::new, |d| d.headline().to_string());
+            refuse(format!("cannot be varied: {first}"))
+        })?;
+        let built =
+            C::build(&loaded).map_err(|e| refuse(format!("cannot be varied: {}", RunError::refused(&e))))?;
+        Ok(Varied { step, loaded, built })
     }
 }
 
@@ -224,6 +262,16 @@ impl<C: SceneCase> Scene for Read<C> {
             Some((name, _)) => Err(RunError::NotANumber(name.clone())),
             None => Ok(result),
         }
+    }
+
+    fn gradients(&self, inputs: &[String]) -> Result<Gradients, GradientError> {
+        let resolved = self.resolved();
+        let inputs =
+            inputs.iter().map(|p| gradients::followed(&resolved, p)).collect::<Result<Vec<_>, _>>()?;
+        let built = self.take().map_err(|e| RunError::refused(&e))?;
+        let varied = || inputs.iter().map(|i| self.beside(i)).collect();
+        let found = C::gradients(&self.loaded, built, &varied)?;
+        Ok(Gradients { inputs, ..found })
     }
 
     fn work_precision(&self) -> Result<WorkPrecision, String> {

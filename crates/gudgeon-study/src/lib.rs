@@ -6,6 +6,7 @@ mod bench;
 mod compare;
 pub mod distribution;
 mod error;
+pub mod gradients;
 mod normal;
 mod random;
 pub mod sampling;

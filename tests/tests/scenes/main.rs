@@ -8,6 +8,7 @@ mod cases;
 mod compare;
 mod extremes;
 mod gas_states;
+mod gradients;
 mod implicit;
 mod lazy;
 mod limits;

@@ -5,6 +5,7 @@ pub mod check;
 pub mod compare;
 pub mod describe;
 pub mod explain;
+pub mod gradient;
 pub mod models;
 pub mod report;
 pub mod run;

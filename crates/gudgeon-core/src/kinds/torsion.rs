@@ -179,6 +179,10 @@ pub trait TorsionSpec: Debug + DynClone + Send + Sync {
     fn same_equations(&self) -> &'static [&'static str] {
         &[]
     }
+    /// Whether its answers are solutions of linear equations, good to rounding: differences of them are then derivatives.
+    fn is_linear(&self) -> bool {
+        false
+    }
     /// Whether steps of fixed length `h` make a motion `e^{zt}` grow that the line damps; `zh` is given by its real and imaginary
     /// part. `None` for models without fixed steps.
     fn grows(&self, _: [f64; 2]) -> Option<bool> {

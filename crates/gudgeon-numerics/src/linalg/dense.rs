@@ -94,3 +94,37 @@ pub fn lu_solve(a: &[f64], n: usize, piv: &[usize], b: &mut [f64]) {
         }
     }
 }
+
+/// [`lu_solve`] for `columns` right-hand sides at once, which stand side by side: `b` is row-major, `n` × `columns`.
+pub fn lu_solve_rows(a: &[f64], n: usize, piv: &[usize], b: &mut [f64], columns: usize) {
+    if columns == 0 {
+        return;
+    }
+    let b = &mut b[..n * columns];
+    for (k, &p) in piv[..n].iter().enumerate() {
+        if p != k {
+            let (top, bottom) = b.split_at_mut(p * columns);
+            top[k * columns..(k + 1) * columns].swap_with_slice(&mut bottom[..columns]);
+        }
+    }
+    let subtract = |row: &mut [f64], factor: f64, x: &[f64]| {
+        if factor != 0.0 {
+            row.iter_mut().zip(x).for_each(|(b, x)| *b -= factor * x);
+        }
+    };
+    for k in 0..n {
+        let (done, rest) = b.split_at_mut((k + 1) * columns);
+        let x = &done[k * columns..];
+        for (i, row) in rest.chunks_exact_mut(columns).enumerate() {
+            subtract(row, a[(k + 1 + i) * n + k], x);
+        }
+    }
+    for k in (0..n).rev() {
+        let (rest, done) = b.split_at_mut(k * columns);
+        let x = &mut done[..columns];
+        x.iter_mut().for_each(|x| *x /= a[k * n + k]);
+        for (i, row) in rest.chunks_exact_mut(columns).enumerate() {
+            subtract(row, a[i * n + k], x);
+        }
+    }
+}

@@ -2,7 +2,7 @@
 
 #![allow(clippy::excessive_precision, reason = "coefficients as published")]
 
-const SQRT_6: f64 = 2.449_489_742_783_178;
+pub const SQRT_6: f64 = 2.449_489_742_783_178;
 pub const C: [f64; 3] = [(4.0 - SQRT_6) / 10.0, (4.0 + SQRT_6) / 10.0, 1.0];
 /// Real eigenvalue of `A⁻¹`, `30/(6 + 81^(1/3) - 9^(1/3))`.
 pub const REAL: f64 = 3.637_834_252_744_496;

@@ -19,3 +19,4 @@ mod rodas;
 mod roots;
 mod scaling;
 mod table;
+mod tangent;

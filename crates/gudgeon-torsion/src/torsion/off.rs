@@ -19,6 +19,9 @@ impl TorsionSpec for Off {
     fn build(&self, _: &TorsionCtx<'_>) -> Result<Box<dyn Torsion>, BuildError> {
         Ok(Box::new(Nothing))
     }
+    fn is_linear(&self) -> bool {
+        true
+    }
     fn answers(&self) -> TorsionAnswer {
         TorsionAnswer::Nothing
     }

@@ -30,6 +30,9 @@ impl TorsionSpec for Orders {
     fn build(&self, ctx: &TorsionCtx<'_>) -> Result<Box<dyn Torsion>, BuildError> {
         Ok(Box::new(IndependentOrders::new(ctx)?))
     }
+    fn is_linear(&self) -> bool {
+        true
+    }
     fn answers(&self) -> TorsionAnswer {
         TorsionAnswer::Periodic
     }

@@ -19,6 +19,7 @@ use gudgeon_numerics::panel::LOBATTO;
 use gudgeon_numerics::radau::Radau5;
 use gudgeon_numerics::rodas::{Formula, Rodas};
 
+use super::around::Around;
 use super::error::RingPackError;
 use super::jacobian::Base;
 use super::measure::{Measures, Peak};
@@ -29,11 +30,14 @@ use super::results;
 use super::rows::Rows;
 use super::solver::{NOT_PERIODIC, Recorded, RingPackSolverSpec, Solution, Wanted};
 use super::watch::Watch;
-use gudgeon_scene::{Asked, IntegratorName, MethodSetting, RunError, Stopped};
+use gudgeon_core::result::Gradients;
+use gudgeon_scene::{Asked, GradientError, IntegratorName, MethodSetting, RunError, Stopped};
 use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
+
+mod gradients;
 
 /// The whole scene at once, adaptive and error-controlled; the cycle closed by a periodic-orbit solver.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
@@ -94,6 +98,16 @@ impl RingPackSolverSpec for Implicit {
         run(self, pack, start, wanted, progress)
     }
 
+    fn gradients(
+        &self,
+        pack: &mut Pack,
+        start: f64,
+        wanted: &Wanted<'_>,
+        around: Around<'_>,
+    ) -> Result<Gradients, GradientError> {
+        gradients::gradients(self, pack, start, wanted, around)
+    }
+
     /// Both orders at the tolerances that they are made for.
     fn settings(&self, _: &Pack, own: Option<&Value>) -> Vec<MethodSetting> {
         let given = own.and_then(|v| content::read::<Self>(&Content::from(v)).ok());
@@ -151,12 +165,7 @@ impl OdeSystem for Problem<'_> {
     fn jacobian(&mut self, t: f64, y: &[f64], _: &[f64], jac: &mut [f64]) -> Result<bool, EvalError> {
         self.look_at(t, y)?;
         let scale = self.scale;
-        // Square root of the rounding error times the magnitude of the state.
-        let increment = |k: usize| {
-            let y = y[k];
-            (y + 1.5e-8 * y.abs().max(1e-3 * scale[k])) - y
-        };
-        self.pack.jacobian(y, increment, jac, self.base)?;
+        self.pack.jacobian(y, |k| increment(y[k], scale[k]), jac, self.base)?;
         Ok(true)
     }
     fn invariants(&self) -> &[LinearInvariant] {
@@ -205,6 +214,29 @@ impl OdeSystem for Problem<'_> {
     }
 }
 
+/// Increment of a difference in the state `y`: the square root of the rounding error times its magnitude.
+fn increment(y: f64, scale: f64) -> f64 {
+    (y + 1.5e-8 * y.abs().max(1e-3 * scale)) - y
+}
+
+/// What follows a cycle step by step while it is integrated.
+trait Follower {
+    /// The cycle begins at `theta` with the states `y`.
+    fn begin(&mut self, pack: &mut Pack, theta: f64, y: &[f64]) -> Result<(), EvalError>;
+    /// A step, or a piece of one between two events.
+    fn step(&mut self, pack: &mut Pack, v: &dyn StepView) -> Flow;
+    /// The oil of the step that ends at `theta` is booked.
+    fn booked(&mut self, _pack: &Pack, _theta: f64) {}
+}
+
+/// The follower for one call.
+fn lend<'f>(follower: &'f mut Option<&mut dyn Follower>) -> Option<&'f mut dyn Follower> {
+    match follower {
+        Some(f) => Some(&mut **f),
+        None => None,
+    }
+}
+
 /// First step of a cycle \[rad\].
 const FIRST_STEP: f64 = 1e-3;
 
@@ -237,12 +269,12 @@ struct Cycle<'a> {
 }
 
 impl Cycle<'_> {
-    /// Integrates one cycle from `y`; a sampler follows it.
+    /// Integrates one cycle from `y`.
     fn integrate(
         &mut self,
         y: &mut [f64],
         rtol: f64,
-        mut sampler: Option<&mut Sampler>,
+        mut follower: Option<&mut dyn Follower>,
     ) -> Result<(), IntegrateError> {
         let mut options = self.options(rtol);
         // The reference integrates every ring with its inertia.
@@ -258,11 +290,11 @@ impl Cycle<'_> {
         let mut outcome = Ok(());
         for piece in 0..pieces {
             let span = (period * piece as f64 / pieces as f64, period * (piece + 1) as f64 / pieces as f64);
-            let first = if piece == 0 { sampler.as_deref_mut() } else { None };
+            let first = if piece == 0 { lend(&mut follower) } else { None };
             let begun = self.begin_piece(span.0, y, interval.is_some(), first);
             outcome = begun.map_err(|source| IntegrateError::Eval { t: span.0, source });
             options.h_init = self.h;
-            outcome = outcome.and_then(|()| self.piece(span, y, &options, sampler.as_deref_mut()));
+            outcome = outcome.and_then(|()| self.piece(span, y, &options, lend(&mut follower)));
             if outcome.is_err() {
                 break;
             }
@@ -289,20 +321,20 @@ impl Cycle<'_> {
         options
     }
 
-    /// Prepares the pack for the piece of the cycle from `theta` on; `first` is the sampler of the first piece.
+    /// Prepares the pack for the piece of the cycle from `theta` on; `first` follows the first piece.
     fn begin_piece(
         &mut self,
         theta: f64,
         y: &mut [f64],
         decides: bool,
-        first: Option<&mut Sampler>,
+        first: Option<&mut dyn Follower>,
     ) -> Result<(), EvalError> {
         if decides {
             self.pack.evaluate(theta, y)?;
             self.pack.decide_seats();
         }
         self.pack.start_modes(theta, y)?;
-        first.map_or(Ok(()), |s| s.begin(self.pack, theta, y))
+        first.map_or(Ok(()), |f| f.begin(self.pack, theta, y))
     }
 
     /// Integrates a piece of the cycle.
@@ -311,7 +343,7 @@ impl Cycle<'_> {
         span: (f64, f64),
         y: &mut [f64],
         options: &Options,
-        mut sampler: Option<&mut Sampler>,
+        mut follower: Option<&mut dyn Follower>,
     ) -> Result<(), IntegrateError> {
         let mut problem = Problem {
             pack: self.pack,
@@ -321,13 +353,10 @@ impl Cycle<'_> {
             events: &self.events,
         };
         let mut observe = |p: &mut Problem<'_>, v: &dyn StepView| {
-            let flow = match sampler.as_deref_mut() {
-                Some(s) => s.step(p.pack, v),
-                None => Flow::Continue,
-            };
+            let flow = lend(&mut follower).map_or(Flow::Continue, |f| f.step(p.pack, v));
             p.pack.book_oil(v);
-            if let Some(s) = sampler.as_deref_mut() {
-                s.look_at_liner(p.pack, v.t1());
+            if let Some(f) = lend(&mut follower) {
+                f.booked(p.pack, v.t1());
             }
             flow
         };
@@ -434,36 +463,6 @@ impl Sampler {
         }
     }
 
-    /// Keeps the film on the liner at every dead centre.
-    fn look_at_liner(&mut self, pack: &Pack, theta: f64) {
-        let turns = theta / PI;
-        if let Some(oil) = &pack.oil_pack
-            && (turns - turns.round()).abs() < 1e-9
-        {
-            self.liner.push((turns.round() as u32 * 180, oil.liner().1));
-        }
-    }
-
-    fn begin(&mut self, pack: &mut Pack, theta: f64, y: &[f64]) -> Result<(), EvalError> {
-        pack.evaluate(theta, y)?;
-        self.rows.start(pack, y);
-        for (i, s) in self.start.iter_mut().enumerate() {
-            *s = momentum(pack, i);
-        }
-        Ok(())
-    }
-
-    fn step(&mut self, pack: &mut Pack, v: &dyn StepView) -> Flow {
-        self.rows.step(pack, v);
-        match self.measure(pack, v) {
-            Ok(()) => Flow::Continue,
-            Err(e) => {
-                self.failure = Some(e);
-                Flow::Stop
-            }
-        }
-    }
-
     /// Samples the dense output of a step; at its ends and in its middle all forces, for Simpson's rule on impulse and work and on what limits did.
     fn measure(&mut self, pack: &mut Pack, v: &dyn StepView) -> Result<(), EvalError> {
         let (t0, t1) = (v.t0(), v.t1());
@@ -521,6 +520,38 @@ impl Sampler {
         let momentum = worst(&self.impulse, &|i| self.end[i].0 - self.start[i].0);
         let energy = worst(&self.work, &|i| self.end[i].1 - self.start[i].1);
         (Some(energy), Some(momentum))
+    }
+}
+
+impl Follower for Sampler {
+    fn begin(&mut self, pack: &mut Pack, theta: f64, y: &[f64]) -> Result<(), EvalError> {
+        pack.evaluate(theta, y)?;
+        self.rows.start(pack, y);
+        for (i, s) in self.start.iter_mut().enumerate() {
+            *s = momentum(pack, i);
+        }
+        Ok(())
+    }
+
+    fn step(&mut self, pack: &mut Pack, v: &dyn StepView) -> Flow {
+        self.rows.step(pack, v);
+        match self.measure(pack, v) {
+            Ok(()) => Flow::Continue,
+            Err(e) => {
+                self.failure = Some(e);
+                Flow::Stop
+            }
+        }
+    }
+
+    /// Keeps the film on the liner at every dead centre.
+    fn booked(&mut self, pack: &Pack, theta: f64) {
+        let turns = theta / PI;
+        if let Some(oil) = &pack.oil_pack
+            && (turns - turns.round()).abs() < 1e-9
+        {
+            self.liner.push((turns.round() as u32 * 180, oil.liner().1));
+        }
     }
 }
 
@@ -672,6 +703,31 @@ fn counters(work: &Stats) -> IndexMap<String, u64> {
     all.into_iter().map(|(k, v)| (k.to_owned(), v)).collect()
 }
 
+/// States with which the first cycle starts, all lands at `start` \[Pa\].
+fn first_states(pack: &mut Pack, start: f64) -> Vec<f64> {
+    let dim = pack.layout.n;
+    let mut y = vec![0.0; dim + pack.layout.carried];
+    pack.initial(start, &mut y[..dim]);
+    if let Some(oil) = &pack.oil_pack {
+        oil.field(&mut y[dim..]);
+    }
+    y
+}
+
+/// How the periodic state is searched.
+fn orbit_options(s: &Implicit, pack: &Pack) -> OrbitOptions {
+    // A map is only as repeatable as its integration is accurate, and where a film ends on the liner depends on where steps end.
+    let tolerance = s.tolerance.si();
+    let repeatable = if pack.oil_pack.is_some() { OIL_NOISE } else { 1.0 } * tolerance;
+    OrbitOptions {
+        tolerance: s.periodicity.si().max(repeatable),
+        accuracy: tolerance,
+        max_cycles: s.max_cycles as usize,
+        refinements: REFINEMENTS,
+        accelerate: pack.decision_interval().is_none() && pack.oil_pack.is_none(),
+    }
+}
+
 /// Solves one start.
 fn run(
     s: &Implicit,
@@ -681,23 +737,10 @@ fn run(
     progress: &mut dyn FnMut(f64) -> Result<(), Stopped>,
 ) -> Result<Solution, RunError> {
     let begin = Instant::now();
-    let dim = pack.layout.n;
     let discrete = pack.decision_interval().is_some();
-    let mut y = vec![0.0; dim + pack.layout.carried];
-    pack.initial(start, &mut y[..dim]);
-    if let Some(oil) = &pack.oil_pack {
-        oil.field(&mut y[dim..]);
-    }
-    // A map is only as repeatable as its integration is accurate, and where a film ends on the liner depends on where steps end.
+    let mut y = first_states(pack, start);
     let tolerance = s.tolerance.si();
-    let repeatable = if pack.oil_pack.is_some() { OIL_NOISE } else { 1.0 } * tolerance;
-    let options = OrbitOptions {
-        tolerance: s.periodicity.si().max(repeatable),
-        accuracy: tolerance,
-        max_cycles: s.max_cycles as usize,
-        refinements: REFINEMENTS,
-        accelerate: !discrete && pack.oil_pack.is_none(),
-    };
+    let options = orbit_options(s, pack);
     let mut cycle = Cycle::new(s, pack, wanted, progress);
     let report = cycle.close(&mut y, &options)?;
     let seconds = begin.elapsed().as_secs_f64();

@@ -5,6 +5,7 @@
 //! `results` says it, `record` holds the series.
 
 pub mod acted;
+pub mod around;
 pub mod assemble;
 pub mod case;
 pub mod contact_line;

@@ -151,7 +151,7 @@ impl Pack {
     }
 
     /// Takes it back.
-    fn restore_memory(&mut self, saved: &[f64]) {
+    pub fn restore_memory(&mut self, saved: &[f64]) {
         let mut rest = saved;
         self.each_block(|b, _| {
             let taken = b.restore(rest);

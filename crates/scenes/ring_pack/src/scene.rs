@@ -2,18 +2,19 @@
 
 use gudgeon_core::BuildError;
 use gudgeon_core::kinds::EngineCycle;
-use gudgeon_core::result::{Figure, FigureKind, ModelUse, RunResult};
+use gudgeon_core::result::{Figure, FigureKind, Gradients, ModelUse, RunResult};
 
+use super::around::{Around, Varied};
 use super::pack::Pack;
-use super::solve::solve;
+use super::solve::{solve, starts, wanted};
 use super::solver::RingPackSolverSpec;
 use super::used::models_in_use;
 use super::{assemble, geometry, legal, meter, state_names};
 use crate::case::RingPackCase;
 use gudgeon_case::{Loaded, Refinement};
 use gudgeon_scene::{
-    Explanation, MethodSetting, Progress, Reference, RunError, SceneCase, Stopped, WorkPrecision,
-    default_solvers,
+    Explanation, GradientError, MethodSetting, Progress, Reference, RunError, SceneCase, Stopped,
+    WorkPrecision, default_solvers,
 };
 
 impl SceneCase for RingPackCase {
@@ -99,6 +100,22 @@ impl SceneCase for RingPackCase {
 
     fn result_names(_: &Loaded<Self>, pack: &mut Pack) -> Option<Vec<String>> {
         Some(pack.plan.wanted.clone())
+    }
+
+    fn gradients(
+        loaded: &Loaded<Self>,
+        mut pack: Pack,
+        varied: &dyn Fn() -> Result<Vec<gudgeon_scene::Varied<Self>>, GradientError>,
+    ) -> Result<Gradients, GradientError> {
+        let case = &loaded.value;
+        let mut varied: Vec<_> = varied()?
+            .into_iter()
+            .map(|v| Varied { step: v.step, pack: v.built, meter: meter(&v.loaded.value) })
+            .collect();
+        let wanted = wanted(case);
+        let around = Around { meter: meter(case), varied: &mut varied };
+        let start = starts(case, &pack)[0];
+        case.solver.method.gradients(&mut pack, start, &wanted, around)
     }
 
     fn work_precision(loaded: &Loaded<Self>, pack: &mut Pack) -> Result<WorkPrecision, String> {

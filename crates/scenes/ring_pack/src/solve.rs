@@ -29,7 +29,7 @@ pub struct Solved {
 }
 
 /// Starts when the case names none.
-fn starts(case: &RingPackCase, pack: &Pack) -> Vec<f64> {
+pub(super) fn starts(case: &RingPackCase, pack: &Pack) -> Vec<f64> {
     if !case.solver.starts.is_empty() {
         return case.solver.starts.iter().map(|p| p.si()).collect();
     }
@@ -38,6 +38,15 @@ fn starts(case: &RingPackCase, pack: &Pack) -> Vec<f64> {
         s.push(6e5);
     }
     s
+}
+
+/// What the solver of a case has to gather.
+pub(super) fn wanted(case: &RingPackCase) -> Wanted<'_> {
+    Wanted {
+        seat: case.outputs.seat.si(),
+        series_step: case.outputs.series_step.si(),
+        limits: &case.solver.limits,
+    }
 }
 
 /// Two periodic solutions count as one when their results agree within this relative difference.
@@ -54,11 +63,7 @@ pub fn solve(
 ) -> Result<Solved, RunError> {
     let starts = starts(case, pack);
     let total = starts.len() as f64;
-    let wanted = Wanted {
-        seat: case.outputs.seat.si(),
-        series_step: case.outputs.series_step.si(),
-        limits: &case.solver.limits,
-    };
+    let wanted = wanted(case);
     let mut found: Vec<(f64, Solution)> = Vec::new();
     for (k, start) in starts.iter().enumerate() {
         let phase =

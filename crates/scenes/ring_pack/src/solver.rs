@@ -3,12 +3,13 @@
 use std::fmt::Debug;
 
 use dyn_clone::DynClone;
-use gudgeon_core::result::{Event, Note, Series};
+use gudgeon_core::result::{Event, Gradients, Note, Series};
 use gudgeon_core::{BuildError, register_kind};
-use gudgeon_scene::{MethodSetting, RunError, Stopped};
+use gudgeon_scene::{GradientError, MethodSetting, RunError, Stopped};
 use indexmap::IndexMap;
 use serde_json::Value;
 
+use super::around::Around;
 use super::limits::Limits;
 use super::pack::Pack;
 use super::record::Record;
@@ -35,6 +36,21 @@ pub trait RingPackSolverSpec: Debug + DynClone + Send + Sync {
         wanted: &Wanted<'_>,
         progress: &mut dyn FnMut(f64) -> Result<(), Stopped>,
     ) -> Result<Solution, RunError>;
+
+    /// Derivatives of the results by inputs through the periodic state that is reached from all lands at `start` \[Pa\]; the packs of `around` are
+    /// the same with one input a little lower and a little higher.
+    ///
+    /// # Errors
+    /// The solver or the pack has no such derivatives ([`GradientError::NoMethod`]), or what stopped it.
+    fn gradients(
+        &self,
+        _pack: &mut Pack,
+        _start: f64,
+        _wanted: &Wanted<'_>,
+        _around: Around<'_>,
+    ) -> Result<Gradients, GradientError> {
+        Err(GradientError::NoMethod("this solver follows no derivatives along a cycle".into()))
+    }
 
     /// Fills in the numbers of the resolved table `solver` that the case leaves to the solver, for a pack of `rings` rings.
     fn resolve(&self, _rings: usize, _table: &mut Value) {}

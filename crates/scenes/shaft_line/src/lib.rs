@@ -8,6 +8,7 @@ pub mod assemble;
 mod balance;
 pub mod case;
 mod draw;
+mod gradients;
 mod hold;
 mod legal;
 mod machine;
@@ -24,14 +25,16 @@ use std::f64::consts::PI;
 use std::time::Instant;
 
 use gudgeon_core::kinds::{NaturalFrequenciesSpec, TorsionAnswer, TorsionCtx, TorsionOut, TorsionSpec};
-use gudgeon_core::result::{ModelUse, Note, RunResult};
+use gudgeon_core::result::{Gradients, ModelUse, Note, RunResult};
 use gudgeon_core::{BuildError, EvalError, Registry};
 use gudgeon_torsion::torsion::Orders;
 
 use assemble::{Assembled, assemble, renamed};
 use case::ShaftLineCase;
 use gudgeon_case::Loaded;
-use gudgeon_scene::{Explanation, Progress, RunError, SceneCase, Stopped, WorkPrecision, model_use};
+use gudgeon_scene::{
+    Explanation, GradientError, Progress, RunError, SceneCase, Stopped, Varied, WorkPrecision, model_use,
+};
 use machine::{Machine, Point};
 use plan::Plan;
 use results::Results;
@@ -98,49 +101,67 @@ impl SceneCase for ShaftLineCase {
         a: Assembled,
         progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
     ) -> Result<RunResult, RunError> {
-        let begin = Instant::now();
-        let case = &loaded.value;
-        let files = &loaded.source.files;
-        let plan = Plan::new(case);
-        let mut result =
-            RunResult { models: models(case, &plan), skipped: plan.skipped.clone(), ..RunResult::default() };
-        result.solver.method = case.models.torsion.typetag_name().into();
-        for counter in ["lines_built", "time_steps", "linear_solutions", "pivot_counts"] {
-            result.solver.counters.insert(counter.into(), 0);
-        }
-        let mut results = Results::new(case, &mut result);
-        if !plan.line() {
-            if plan.throws {
-                let throws = assemble::throws_alone(case, files, case.speed.si()).map_err(refused)?;
-                results.throws(&throws);
-            }
-            result.seconds.insert("solve".into(), begin.elapsed().as_secs_f64());
-            return Ok(result);
-        }
-        results.count("lines_built", 1);
-        results.note(&a.notes);
-        // Once for all throws that share a pressure.
-        let mut told = Vec::new();
-        for note in a.line.throws.iter().flat_map(|t| &t.ends).flat_map(|e| e.pressure.notes()) {
-            if !told.contains(&note) {
-                told.push(note);
-            }
-        }
-        results.note(&told);
-        if plan.throws {
-            results.throws(&a.line.throws);
-        }
-        let start = Start::new(case, a.line.nodes.len());
-        let mut run = Run { loaded, plan: &plan, a: &a, start, results };
-        progress(Progress { phase: "natural frequencies".into(), fraction: 0.0 })?;
-        if plan.frequencies {
-            run.frequencies()?;
-        }
-        progress(Progress { phase: "response".into(), fraction: 0.1 })?;
-        run.response_and_verdict(progress)?;
-        result.seconds.insert("solve".into(), begin.elapsed().as_secs_f64());
-        Ok(result)
+        run(loaded, &a, &Plan::new(&loaded.value), progress)
     }
+
+    /// Those at the mean speed.
+    fn gradients(
+        loaded: &Loaded<Self>,
+        a: Assembled,
+        varied: &dyn Fn() -> Result<Vec<Varied<Self>>, GradientError>,
+    ) -> Result<Gradients, GradientError> {
+        gradients::gradients(loaded, &a, varied)
+    }
+}
+
+/// Runs what is planned.
+fn run(
+    loaded: &Loaded<ShaftLineCase>,
+    a: &Assembled,
+    plan: &Plan,
+    progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
+) -> Result<RunResult, RunError> {
+    let begin = Instant::now();
+    let case = &loaded.value;
+    let files = &loaded.source.files;
+    let mut result =
+        RunResult { models: models(case, plan), skipped: plan.skipped.clone(), ..RunResult::default() };
+    result.solver.method = case.models.torsion.typetag_name().into();
+    for counter in ["lines_built", "time_steps", "linear_solutions", "pivot_counts"] {
+        result.solver.counters.insert(counter.into(), 0);
+    }
+    let mut results = Results::new(case, &mut result);
+    if !plan.line() {
+        if plan.throws {
+            let throws = assemble::throws_alone(case, files, case.speed.si()).map_err(refused)?;
+            results.throws(&throws);
+        }
+        result.seconds.insert("solve".into(), begin.elapsed().as_secs_f64());
+        return Ok(result);
+    }
+    results.count("lines_built", 1);
+    results.note(&a.notes);
+    // Once for all throws that share a pressure.
+    let mut told = Vec::new();
+    for note in a.line.throws.iter().flat_map(|t| &t.ends).flat_map(|e| e.pressure.notes()) {
+        if !told.contains(&note) {
+            told.push(note);
+        }
+    }
+    results.note(&told);
+    if plan.throws {
+        results.throws(&a.line.throws);
+    }
+    let start = Start::new(case, a.line.nodes.len());
+    let mut run = Run { loaded, plan, a, start, results };
+    progress(Progress { phase: "natural frequencies".into(), fraction: 0.0 })?;
+    if plan.frequencies {
+        run.frequencies()?;
+    }
+    progress(Progress { phase: "response".into(), fraction: 0.1 })?;
+    run.response_and_verdict(progress)?;
+    result.seconds.insert("solve".into(), begin.elapsed().as_secs_f64());
+    Ok(result)
 }
 
 fn refused(errors: Vec<BuildError>) -> RunError {
@@ -223,7 +244,9 @@ impl Run<'_> {
         if plan.response {
             let out = machine.motion(case.speed.si()).map_err(failed)?;
             self.results.periodic(&out, &mut machine);
-            self.left_out(&out, &mut machine);
+            if plan.fuller {
+                self.left_out(&out, &mut machine);
+            }
         }
         let speeds = if plan.range { speeds(case) } else { Vec::new() };
         if plan.range {

@@ -21,6 +21,8 @@ pub struct Plan {
     pub verdict: bool,
     /// Whether that needs vibration.
     pub forced: bool,
+    /// Whether a fuller model tells what the torsion model leaves out.
+    pub fuller: bool,
     /// What runs and why.
     pub runs: Vec<Skipped>,
     /// What does not and why.
@@ -31,7 +33,7 @@ impl Plan {
     /// Closure of the wanted groups.
     #[must_use]
     pub fn new(case: &ShaftLineCase) -> Self {
-        let mut plan = Self::default();
+        let mut plan = Self { fuller: true, ..Self::default() };
         let torsion = &case.models.torsion;
         let (answers, name) = (torsion.answers(), torsion.typetag_name());
         plan.throws = plan.decide("throws at constant speed", throws(case));
@@ -50,6 +52,12 @@ impl Plan {
             plan.decide("shaft line", (false, "nothing that is wanted needs it".into()));
         }
         plan
+    }
+
+    /// What follows from the line at its mean speed alone, without a search over speeds or load steps.
+    #[must_use]
+    pub fn at_mean_speed(case: &ShaftLineCase) -> Self {
+        Self { range: false, verdict: false, forced: false, fuller: false, ..Self::new(case) }
     }
 
     /// Notes what runs or not, and why.

@@ -1,0 +1,137 @@
+//! Derivatives of results by inputs: followed through the periodic orbit, against differences of runs.
+
+use crate::common::*;
+use gudgeon_core::result::Gradients;
+use gudgeon_scene::gradients::{assignment, input};
+use gudgeon_scene::{GradientError, unwatched};
+use gudgeon_study::gradients::{differences, gradients};
+
+const CASE: &str = "turbo-diesel-120";
+
+fn by(inputs: &[&str]) -> Vec<String> {
+    inputs.iter().map(|s| (*s).to_owned()).collect()
+}
+
+fn refused(inputs: &[&str], set: &[&str]) -> String {
+    match gradients(&checked(CASE, set), &by(inputs), &[], &mut unwatched) {
+        Err(e) => e.to_string(),
+        Ok(_) => panic!("{inputs:?} has derivatives"),
+    }
+}
+
+/// Derivatives followed at the case's own tolerance beside central differences of runs at a tight one.
+fn both(inputs: &[&str]) -> (Gradients, Gradients) {
+    let inputs = by(inputs);
+    let followed = gradients(&checked(CASE, &[]), &inputs, &[], &mut unwatched).unwrap();
+    let tight = checked(CASE, &["solver.tolerance=1e-8", "solver.periodicity=1e-8"]);
+    (followed, differences(&tight, &inputs, &mut unwatched).unwrap())
+}
+
+/// Inputs of the gas, of the film temperature and of the cylinder pressure, whose kinks move with the last. Elasticities are good to about 5e-4 at the
+/// tolerance of the followed cycle: rings that float amplify what an integration leaves, and where steps begin and end is chance. Differences with steps of
+/// a thousandth are good to 3e-4 here (halving the steps).
+#[test]
+fn blow_by_and_friction_by_inputs_are_those_of_differences() {
+    let inputs = [
+        "rings.0.cold_gap",
+        "rings.1.cold_gap",
+        "models.film_temperature.tdc",
+        "models.cylinder_pressure.burn_start",
+    ];
+    let (followed, differences) = both(&inputs);
+    assert!(followed.method.contains("variational"), "{}", followed.method);
+    // The orbit of the run is near enough for one followed cycle.
+    assert_eq!(followed.counters["cycles_followed"], 1);
+    let mut compared = 0;
+    for result in ["blow_by", "fmep", "ring1.friction_power", "land2.p_max", "ring1.h_mean"] {
+        for (k, input) in inputs.iter().enumerate() {
+            let a = followed.elasticity(result, k).unwrap();
+            let Some(b) = differences.elasticity(result, k) else { continue };
+            // Beside the largest elasticities, which are of the order of one.
+            assert!((a - b).abs() <= 1e-3 * b.abs().max(1.0), "{result} by {input}: {a} {b}");
+            compared += 1;
+        }
+    }
+    assert!(compared >= 15, "{compared}");
+}
+
+/// The same bytes from the same case.
+#[test]
+fn derivatives_are_the_same_every_time() {
+    let one =
+        || gradients(&checked(CASE, &[]), &by(&["engine.speed"]), &by(&["fmep"]), &mut unwatched).unwrap();
+    let (a, b) = (one(), one());
+    assert_eq!(a, b);
+    assert_eq!(a.results.len(), 1);
+    assert_eq!(a.results["fmep"].by[0].unwrap().to_bits(), b.results["fmep"].by[0].unwrap().to_bits());
+}
+
+#[test]
+fn what_is_no_continuous_quantity_is_refused_with_the_reason() {
+    for (path, why) in [
+        ("engine.cylinders", "count"),
+        ("models.gas_flow.model", "word"),
+        ("rings.0.cold_gab", "cold_gap"),
+        ("rings.7.cold_gap", "3 elements"),
+        ("rings.1.face.offset", "zero"),
+        ("rings", "list"),
+        ("rings.0.groove", "table"),
+        ("models.ring_motion.gravity", "switch"),
+    ] {
+        let said = refused(&[path], &[]);
+        assert!(said.contains(path) && said.contains(why), "{path}: {said}");
+    }
+    let unknown = gradients(&checked(CASE, &[]), &by(&["engine.speed"]), &by(&["blowby"]), &mut unwatched);
+    assert!(unknown.is_err_and(|e| e.to_string().contains("blow_by")));
+}
+
+/// Where nothing is followed along a cycle, differences of runs answer and say so.
+#[test]
+fn a_case_without_derivatives_of_its_own_is_differenced() {
+    let pin = checked("pin-85-alcohol", &[]);
+    assert!(matches!(pin.case.gradients(&by(&["limits.boss_pressure"])), Err(GradientError::NoMethod(_))));
+    let oil = checked(CASE, &["models.oil_transport.model=liner_film"]);
+    assert!(matches!(oil.case.gradients(&by(&["engine.speed"])), Err(GradientError::NoMethod(_))));
+    let decided = checked(CASE, &["models.ring_motion.model=three_seat"]);
+    let found =
+        gradients(&decided, &by(&["gas.meter_temperature"]), &by(&["blow_by"]), &mut unwatched).unwrap();
+    assert!(found.method.contains("differences") && found.notes[0].text.contains("decided in steps"));
+    // The volume of the gas at the meter is proportional to its temperature; nothing else depends on it.
+    assert!((found.elasticity("blow_by", 0).unwrap() - 1.0).abs() < 1e-9);
+}
+
+/// Natural frequencies and vibration of a shaft line at its mean speed, by a stiffness, an inertia and the speed. Differences with steps of 1e-5 are good to
+/// 1e-4 beside a resonance of a thousandth of the speed in width; those of single solutions to rounding over 1e-7.
+#[test]
+fn a_shaft_line_at_its_mean_speed_is_differentiated() {
+    let inputs = by(&["shafts.0.stiffness", "inertias.2.inertia", "speed"]);
+    let c = checked("compressor-4-throw", &["models.torsion.model=orders"]);
+    let followed = gradients(&c, &inputs, &[], &mut unwatched).unwrap();
+    assert!(followed.method.contains("direct solutions"), "{}", followed.method);
+    assert_eq!(followed.counters["lines_beside"], 3);
+    let mut compared = 0;
+    for (k, path) in inputs.iter().enumerate() {
+        let i = input(&c.case.resolved(), path, 1e-5).unwrap();
+        let [low, high] = [-i.step, i.step].map(|d| {
+            let set = ["models.torsion.model=orders".to_owned(), assignment(&i, i.value + d)];
+            run_case("compressor-4-throw", &[&set[0], &set[1]])
+        });
+        for (name, g) in &followed.results {
+            let (Some(a), Some(l), Some(h)) = (g.by[k], low.results.get(name), high.results.get(name)) else {
+                continue;
+            };
+            let (value, b) = (g.value.value, (h.value - l.value) / (2.0 * i.step));
+            let [a, b] = [a, b].map(|d| d * i.value);
+            // Beside a thousandth of the result by all of the input lies rounding over the step.
+            assert!(
+                (a - b).abs() <= 1e-3 * b.abs().max(1e-3 * value.abs()),
+                "{name} by {path}: {a} {b} of {value}"
+            );
+            compared += 1;
+        }
+    }
+    assert!(compared > 30, "{compared}");
+    // A model that iterates is good to its tolerance only.
+    let iterated = checked("compressor-4-throw", &[]);
+    assert!(matches!(iterated.case.gradients(&inputs), Err(GradientError::NoMethod(_))));
+}
