@@ -250,6 +250,32 @@ fn a_wrong_study_is_refused_with_its_place_and_nothing_is_made() {
 }
 
 #[test]
+fn a_linear_study_tells_spread_and_shares() {
+    // The load of a slider goes with speed and viscosity alike (cavitation apart): equal relative deviations have equal parts of the variance.
+    let more = "results = [\"load\"]\n[design]\nmethod = \"linear\"\n\
+                [[inputs]]\npath = \"rig.speed\"\ndistribution = { shape = \"normal\", mean = \"10 m/s\", deviation = \"0.1 m/s\" }\n\
+                [[inputs]]\npath = \"rig.viscosity\"\ndistribution = { shape = \"normal\", mean = \"10 mPa s\", deviation = \"0.1 mPa s\" }\n";
+    let (_, study) = made("linear", more);
+    done(&["study", "run", &study]);
+    done(&["study", "collect", &study, "--quiet"]);
+    let text = fs::read_to_string(Path::new(&study).join("analysis.json")).expect("an analysis");
+    let all: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let linear = &all["groups"][0]["results"][0]["dependence"]["linear"];
+    for k in 0..2 {
+        let share = linear["inputs"][k]["share"].as_f64().expect("a share");
+        // Both enter as their product; the differences of runs behind the derivatives have errors of 1e-6.
+        assert!((share - 0.5).abs() < 1e-4, "{linear}");
+    }
+    let (value, deviation) =
+        (linear["value"].as_f64().expect("load"), linear["deviation"].as_f64().expect("deviation"));
+    assert!(deviation > 0.005 * value && deviation < 0.03 * value, "{linear}");
+    let words = "[design]\nmethod = \"linear\"\n[[inputs]]\npath = \"rig.film_1d.model\"\nvalues = [\"front_tracking\"]\n";
+    let dir = folder("linear-words");
+    let out = gudgeon(&["study", "new", &dir.join("out").display().to_string(), &study_file(&dir, words)]);
+    assert!(String::from_utf8_lossy(&out.stderr).contains("nothing is differentiated by a choice"));
+}
+
+#[test]
 fn a_folder_keeps_its_study() {
     let (dir, study) = made("kept", GRID);
     // The same once more is no mistake; another one is.

@@ -202,6 +202,11 @@ fn rows(a: &Analysis, f: &Finding) -> Result<Vec<Vec<String>>, String> {
             out.push(heads(["input", "range of mean", "share"]));
             out.extend(effects.iter().enumerate().map(|(k, e)| cells(input(k), [e.range, e.share])));
         }
+        Dependence::Linear(l) => {
+            out.push(heads(["input", "effect of one deviation", "share"]));
+            out.extend(l.inputs.iter().enumerate().map(|(k, p)| cells(input(k), [p.effect, p.share])));
+            out.push(cells("value, deviation", [l.value, l.deviation]));
+        }
         Dependence::Shares(anova) => {
             out.push(heads(["input", "share of the variance", "largest effect"]));
             out.extend(anova.effects.iter().map(|e| {

@@ -5,6 +5,7 @@
 //! 0 and below 1, so that no unbounded distribution is asked for its ends.
 
 mod latin_hypercube;
+mod medians;
 mod morris;
 mod one_at_a_time;
 mod saltelli;
@@ -15,6 +16,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use latin_hypercube::LatinHypercube;
+pub use medians::Medians;
 pub use morris::Morris;
 pub use one_at_a_time::OneAtATime;
 pub use saltelli::Saltelli;
@@ -93,6 +95,9 @@ pub enum Design {
         #[serde(default)]
         seed: u64,
     },
+    /// One point with all inputs at their medians, and the derivatives there: bands and shares to first order, for the cost of a few runs where
+    /// the scene has derivatives of its own.
+    Linear {},
 }
 
 const fn low() -> f64 {
@@ -120,6 +125,7 @@ impl Design {
             Self::Morris { trajectories, levels, seed } => {
                 Box::new(Morris::new(trajectories, dimensions, levels, seed)?)
             }
+            Self::Linear {} => Box::new(Medians::new(dimensions)?),
             Self::Saltelli { base, seed } => Box::new(Saltelli::new(base, dimensions, seed)?),
         })
     }

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::folder::Study;
+use super::linear::{Linear, is_auxiliary, of_row};
 use super::table::{Table, Values};
 use crate::anova::{Anova, anova};
 use crate::sampling::{Design, Morris, OneAtATime, Saltelli};
@@ -58,6 +59,8 @@ pub enum Dependence {
         /// By input.
         effects: Vec<MainEffect>,
     },
+    /// Spread and shares to first order.
+    Linear(Linear),
     /// Shares of the variance over a grid.
     Shares(Anova),
     /// Why it is not known.
@@ -98,8 +101,13 @@ impl Study {
                     (_, 1) => case.clone(),
                     _ => format!("{case}, row {}", g % rows + 1),
                 };
-                let of =
-                    |n: &String| finding(table, n, g * inner..(g + 1) * inner, |y| depends(design, own, y));
+                let paths = &inputs[inputs.len() - own..];
+                let of = |n: &String| {
+                    finding(table, n, g * inner..(g + 1) * inner, |y| match design {
+                        Design::Linear {} => of_row(table, g, n, paths).map(Dependence::Linear),
+                        _ => depends(design, own, y),
+                    })
+                };
                 Group { name, results: names.iter().map(of).collect() }
             })
             .collect();
@@ -127,6 +135,7 @@ impl Study {
 fn result_columns(table: &Table) -> Vec<String> {
     let after = table.columns.get_index_of("notes").map_or(0, |k| k + 1);
     let numbers = table.columns.iter().skip(after).filter(|(_, c)| matches!(c.values, Values::Numbers(_)));
+    let numbers = numbers.filter(|(name, _)| !is_auxiliary(name));
     numbers.map(|(name, _)| name.clone()).collect()
 }
 
@@ -161,6 +170,7 @@ fn depends(design: &Design, d: usize, y: &[f64]) -> Result<Dependence, String> {
                 .map(Dependence::Sobol)
                 .map_err(told)
         }
+        Design::Linear {} => Err("derivatives stand in the row of a point".into()),
         Design::LatinHypercube { .. } | Design::Sobol { .. } => {
             let points = design.points(d).map_err(illegal)?;
             let all: Vec<Vec<f64>> = (0..points.len()).map(|k| points.point(k)).collect();

@@ -136,6 +136,17 @@ fn of_finding(inputs: &[String], title: &str, f: &Finding) -> Option<Figure> {
             let all = effects.iter().enumerate().map(|(k, e)| (name(k), e.share)).collect();
             figure("share of the variance that the mean over each input explains", bars(all))
         }
+        Dependence::Linear(l) => {
+            let range = |(k, p): (usize, &super::linear::Part)| {
+                let end = |sign: f64| Some(l.value + sign * p.effect).filter(|v| v.is_finite());
+                Range { label: name(k), low: end(-1.0), high: end(1.0), value: None }
+            };
+            let ranges = l.inputs.iter().enumerate().map(range).collect();
+            figure(
+                "to first order: each input a standard deviation lower (green) and higher (blue)",
+                FigureKind::Ranges { unit: f.unit.clone(), middle: Some(l.value), ranges },
+            )
+        }
         Dependence::Shares(a) => {
             let factors =
                 |e: &crate::anova::Effect| e.factors.iter().map(|k| name(*k)).collect::<Vec<_>>().join(" × ");

@@ -5,9 +5,11 @@ use gudgeon_scene::many::run_point;
 use gudgeon_scene::{Checked, Progress, Stopped};
 use indexmap::{IndexMap, IndexSet};
 
+use super::linear;
 use super::points::Plan;
 use super::record::Record;
 use super::table::{Column, Table, Values};
+use crate::sampling::Design;
 
 /// What is kept of the run of a point.
 #[derive(Debug, Clone, Default)]
@@ -41,7 +43,16 @@ pub fn run_row(
     let (_, set) = plan.changes(k);
     let mut row = Row { point: k, case: record.cases[case].name.clone(), values, ..Row::default() };
     match run_point(cases[case].case.as_ref(), &set, tell) {
-        Ok(result) => row.keep(record, result),
+        Ok(result) => {
+            row.keep(record, result);
+            if matches!(record.study.design, Some(Design::Linear {})) {
+                match linear::columns(plan, &cases[case], &set, &record.study.results, tell) {
+                    Ok(columns) => row.results.extend(columns),
+                    Err(failure) if failure.code == "stopped" => return Err(Stopped),
+                    Err(failure) => row.failure = failure,
+                }
+            }
+        }
         Err(failure) if failure.code == "stopped" => return Err(Stopped),
         Err(failure) => row.failure = failure,
     }

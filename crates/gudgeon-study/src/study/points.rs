@@ -4,8 +4,9 @@ use gudgeon_core::BuildError;
 
 use super::file::StudyFile;
 use super::input::Quantiles;
+use super::linear::ONE_DEVIATION;
 use super::list::PointList;
-use crate::sampling::{MAX_POINTS, Points};
+use crate::sampling::{Design, MAX_POINTS, Points};
 
 /// An input that a study varies, with the unit that all its values share.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -39,6 +40,11 @@ impl Inputs {
             Some(design) => {
                 let quantiles = each(file, super::input::Input::quantiles)?;
                 let points = design.points(quantiles.len()).map_err(|e| vec![e.within("design")])?;
+                let word = quantiles.iter().position(|q| matches!(q, Quantiles::Choice(_)));
+                if let (Design::Linear {}, Some(k)) = (design, word) {
+                    let what = "a linear study needs numbers: nothing is differentiated by a choice";
+                    return Err(vec![BuildError::at(format!("inputs.{k}"), what)]);
+                }
                 Ok(Self::Design { paths, quantiles, points })
             }
         }
@@ -120,6 +126,18 @@ impl Plan {
 
     fn rows(&self) -> usize {
         self.list.rows.len().max(1)
+    }
+
+    /// The texts of every input of a design one deviation below and above its middle.
+    #[must_use]
+    pub fn spread(&self) -> Vec<(String, [String; 2])> {
+        match &self.inputs {
+            Inputs::Grid { .. } => Vec::new(),
+            Inputs::Design { paths, quantiles, .. } => {
+                let ends = |q: &Quantiles| ONE_DEVIATION.map(|u| q.text(u));
+                paths.iter().cloned().zip(quantiles.iter().map(ends)).collect()
+            }
+        }
     }
 
     /// How many points there are.
