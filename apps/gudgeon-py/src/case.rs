@@ -6,7 +6,9 @@ use std::sync::Arc;
 use gudgeon_case::{Report, Source};
 use gudgeon_core::file::Files;
 use gudgeon_scene::run::{run_alone, run_alone_verified, run_on, run_verified};
-use gudgeon_scene::{Checked, check, check_source, explain};
+use gudgeon_scene::{Checked, GradientError, check, check_source, explain};
+use gudgeon_study::gradients::gradients;
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::errors::{failed, refused};
@@ -123,6 +125,24 @@ impl Case {
         });
         watch.end()?;
         Ok(Outcome::new(outcome.map_err(|e| failed(e.failure()))?))
+    }
+
+    /// Derivatives of results by inputs; of all results where none is named.
+    fn gradients(
+        &self,
+        py: Python<'_>,
+        inputs: Vec<String>,
+        results: Vec<String>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Py<PyAny>> {
+        let mut watch = Watch::new(progress);
+        let found = py.detach(|| gradients(&self.checked, &inputs, &results, &mut |p| watch.tell(p)));
+        watch.end()?;
+        let found = found.map_err(|e| match e {
+            GradientError::Run(e) => failed(e.failure()),
+            e => PyValueError::new_err(e.to_string()),
+        })?;
+        to_python(py, &serde_json::to_value(&found).unwrap_or_default())
     }
 
     /// Runs the case once for each of `points`, lists of `--set` arguments, sweeps apart.

@@ -276,6 +276,21 @@ fn a_linear_study_tells_spread_and_shares() {
 }
 
 #[test]
+fn every_shipped_study_can_be_made() {
+    let dir = folder("shipped");
+    let mut seen = 0;
+    for entry in fs::read_dir(root().join("cases/studies")).expect("the folder").filter_map(Result::ok) {
+        let path = entry.path();
+        if path.extension().is_some_and(|e| e == "toml") {
+            let study = dir.join(path.file_stem().expect("a name")).display().to_string();
+            done(&["study", "new", &study, &path.display().to_string()]);
+            seen += 1;
+        }
+    }
+    assert!(seen >= 4, "{seen} studies");
+}
+
+#[test]
 fn a_folder_keeps_its_study() {
     let (dir, study) = made("kept", GRID);
     // The same once more is no mistake; another one is.

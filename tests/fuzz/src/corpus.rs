@@ -26,6 +26,9 @@ const SHORTER: &[(&str, &[&str])] = &[
     ("compressor-", &["range.points=31"]),
 ];
 
+/// The folder of study files, which name cases and are none.
+const STUDIES: &str = "studies";
+
 /// A shipped case.
 #[derive(Debug, Clone)]
 pub struct Base {
@@ -96,7 +99,9 @@ fn collect(folder: &Path, below: &str, out: &mut Vec<String>) -> Result<(), Stri
         let Some(name) = path.file_name().and_then(|n| n.to_str()) else { continue };
         let name = if below.is_empty() { name.to_owned() } else { format!("{below}/{name}") };
         if path.is_dir() {
-            collect(&path, &name, out)?;
+            if name != STUDIES {
+                collect(&path, &name, out)?;
+            }
         } else if name.ends_with(".toml") {
             out.push(name);
         }

@@ -12,6 +12,7 @@ from .case import Case, Explanation, example, load, loads
 from .compare import compare
 from .errors import CaseError, Mistake, RunError
 from .function import Function
+from .gradients import Gradients
 from .models import describe, models, scenes
 from .result import Note, Result
 from .rows import Failure, Rows
@@ -25,6 +26,7 @@ __all__ = [
     "Explanation",
     "Failure",
     "Function",
+    "Gradients",
     "Mistake",
     "Note",
     "Result",

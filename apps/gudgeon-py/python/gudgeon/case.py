@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Union
 
 from . import _native
 from .function import Function
+from .gradients import Gradients
 from .result import Result
 from .rows import Rows
 from .values import Changes, Value, assignments, toml
@@ -173,6 +174,15 @@ class Case:
         array([127.2, 117.7])
         """
         return Function(self, inputs, outputs, failed, threads)
+
+    def gradients(self, inputs: Sequence[str], results: Sequence[str] = (), *, progress: Progress | None = None) -> Gradients:
+        """Derivatives of results by the inputs at some paths; of all results where none is named. See :class:`gudgeon.Gradients`.
+
+        A scene that can follows them through its solution, at the cost of a few runs; others are run with each input a little lower and higher.
+
+        Raises ``ValueError`` for an input that is no continuous quantity.
+        """
+        return Gradients(self._native.gradients(list(inputs), list(results), progress))
 
     def __repr__(self) -> str:
         changed = f", {len(self.overrides)} changes" if self.overrides else ""
