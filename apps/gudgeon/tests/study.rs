@@ -207,6 +207,9 @@ fn lists_cases_failures_and_curves() {
     );
     assert!(rows[4].starts_with("3,fine,1,10 mPa s,"), "{}", rows[4]);
     assert!(parts(&study).contains_key("curves-000000.parquet"));
+    // Two of six combinations have no result: no share is told, and the reason is.
+    let told = done(&["study", "collect", &study]);
+    assert!(told.contains("2 of 6 points failed") && told.contains("has no result"), "{told}");
 }
 
 #[test]

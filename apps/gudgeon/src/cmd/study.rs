@@ -94,12 +94,20 @@ fn collect(a: &StudyCollectArgs, ui: &Ui) -> Result<(), Failure> {
         let (figures, tables) = study.figures(&collected.table, analysis);
         let page = study_page(&StudyPage { title: title(&study), facts: facts(&study), figures, tables });
         let path = study.write_page(&page)?;
-        told = format!("{}\n{told}\n{}", dependences(analysis), path.display());
+        told = format!("{}{}\n{told}\n{}", dependences(analysis), left_out(&study.status()), path.display());
     }
     if !ui.quiet() {
         ui.out(&told);
     }
     Ok(())
+}
+
+/// What the figures above do not rest on.
+fn left_out(s: &Status) -> String {
+    match s.failed {
+        0 => String::new(),
+        n => format!("{n} of {} points failed or are marked, and take no part in this\n", s.done),
+    }
 }
 
 fn title(study: &Study) -> String {
@@ -206,6 +214,9 @@ fn rows(a: &Analysis, f: &Finding) -> Result<Vec<Vec<String>>, String> {
             out.push(heads(["input", "effect of one deviation", "share"]));
             out.extend(l.inputs.iter().enumerate().map(|(k, p)| cells(input(k), [p.effect, p.share])));
             out.push(cells("value, deviation", [l.value, l.deviation]));
+            if l.undefined > 0 {
+                out.push(vec![format!("without {} inputs by which it has no derivative", l.undefined)]);
+            }
         }
         Dependence::Shares(anova) => {
             out.push(heads(["input", "share of the variance", "largest effect"]));

@@ -12,7 +12,7 @@ use crate::sensitivity::{
     main_effects, sobol_indices, tornado,
 };
 
-/// What a study says of its results.
+/// What a study says of its results. Points that failed or are marked take no part.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Analysis {
     /// What is varied, in the order in which effects number it.
@@ -139,13 +139,24 @@ fn result_columns(table: &Table) -> Vec<String> {
     numbers.map(|(name, _)| name.clone()).collect()
 }
 
+/// Results of the points that went well: one that is marked, because its cycle is not periodic for example, is no result to draw conclusions from.
+fn sound(table: &Table, mut results: Vec<f64>) -> Vec<f64> {
+    if let Some(Values::Texts(codes)) = table.columns.get("code").map(|c| &c.values) {
+        let marked = codes.iter().map(|c| c.as_deref().is_some_and(|c| !c.is_empty()));
+        for (value, _) in results.iter_mut().zip(marked).filter(|(_, marked)| *marked) {
+            *value = f64::NAN;
+        }
+    }
+    results
+}
+
 fn finding(
     table: &Table,
     name: &str,
     rows: std::ops::Range<usize>,
     f: impl FnOnce(&[f64]) -> Result<Dependence, String>,
 ) -> Finding {
-    let all = table.numbers(name).unwrap_or_default();
+    let all = sound(table, table.numbers(name).unwrap_or_default());
     let dependence = f(&all[rows]).unwrap_or_else(Dependence::Unknown);
     let unit = table.columns.get(name).map_or_else(String::new, |c| c.unit.clone());
     Finding { result: name.to_owned(), unit, dependence }
