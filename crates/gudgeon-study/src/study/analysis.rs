@@ -104,6 +104,9 @@ impl Study {
                 let paths = &inputs[inputs.len() - own..];
                 let of = |n: &String| {
                     finding(table, n, g * inner..(g + 1) * inner, |y| match design {
+                        Design::Linear {} if y.iter().any(|v| !v.is_finite()) => {
+                            Err("the point failed or is marked".into())
+                        }
                         Design::Linear {} => of_row(table, g, n, paths).map(Dependence::Linear),
                         _ => depends(design, own, y),
                     })
