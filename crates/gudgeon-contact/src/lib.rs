@@ -4,7 +4,7 @@
 //! |---|---|
 //! | compute a contact pressure, or its range | a specification below, [`build`](gudgeon_core::kinds::ContactSpec::build), then [`Contact`](gudgeon_core::kinds::Contact) |
 //! | prepare material and roughness constants | [`composite_modulus`], [`composite_roughness`] |
-//! | evaluate the integrals behind asperity models | [`f_5_2`], [`f_2`], [`f_1`], [`asperity_integral()`], [`real_area_ratio`] |
+//! | evaluate the integrals behind asperity models | [`f_5_2`], [`f_2`], [`f_3_2`], [`f_1`], [`asperity_integral()`], [`real_area_ratio`] |
 //! | see what a published fit of `F_(5/2)` does | [`AsperityIntegralFormula`] |
 //! | compute friction against sliding speed | [`Coulomb`], [`Stribeck`], then [`BoundaryFriction`](gudgeon_core::kinds::BoundaryFriction) |
 //!
@@ -13,6 +13,9 @@
 //! | model | load carried by solids | friction |
 //! |---|---|---|
 //! | [`GreenwoodTripp`] | a pressure that grows smoothly as the surfaces approach | a coefficient times that pressure |
+//! | [`GreenwoodWilliamson`] | the same for one rough surface on a plane | the same |
+//! | [`KogutEtsion`] | the same, with summits that yield | the same |
+//! | [`AbbottFirestone`] | the hardness times the share of a measured surface that would stand through the other | the same |
 //! | [`CrestWedge`] | a pressure proportional to the overlap of wave crests | the same |
 //! | [`LinearPenalty`] | a pressure proportional to the approach | the same |
 //! | [`RoughnessThreshold`] | none until the film is as thin as the roughness, then whatever is left | the whole load rubs |
@@ -51,6 +54,7 @@
 //!
 //! Units are SI; separations are those of the mean planes, loads are nominal pressures.
 
+mod abbott_firestone;
 mod asperity_formula;
 pub mod asperity_integral;
 mod boundary_friction {
@@ -64,28 +68,39 @@ mod boundary_friction {
 mod crest_wedge;
 mod film_floor;
 mod greenwood_tripp;
+mod greenwood_williamson;
+mod kogut_etsion;
 mod linear_penalty;
+mod log_table;
 mod off;
 mod roughness_threshold;
+mod summits;
 
+pub use abbott_firestone::AbbottFirestone;
 pub use asperity_formula::AsperityIntegralFormula;
-pub use asperity_integral::{asperity_integral, f_1, f_2, f_5_2};
+pub use asperity_integral::{asperity_integral, f_1, f_2, f_3_2, f_5_2};
 pub use boundary_friction::coulomb::Coulomb;
 pub use boundary_friction::off::Off as Frictionless;
 pub use boundary_friction::stribeck::Stribeck;
 pub use crest_wedge::CrestWedge;
 pub use film_floor::FilmFloor;
 pub use greenwood_tripp::{GreenwoodTripp, composite_modulus, composite_roughness, real_area_ratio};
+pub use greenwood_williamson::GreenwoodWilliamson;
+pub use kogut_etsion::KogutEtsion;
 pub use linear_penalty::LinearPenalty;
 pub use off::Off;
 pub use roughness_threshold::RoughnessThreshold;
+pub use summits::SummitHeights;
 
 gudgeon_core::link!(
+    AbbottFirestone,
     Coulomb,
     CrestWedge,
     FilmFloor,
     Frictionless,
     GreenwoodTripp,
+    GreenwoodWilliamson,
+    KogutEtsion,
     LinearPenalty,
     Off,
     RoughnessThreshold,

@@ -1,6 +1,6 @@
 //! The integrals of a Gaussian height distribution, against values with many digits and their identities.
 
-use gudgeon_contact::{asperity_integral, f_1, f_2, f_5_2};
+use gudgeon_contact::{asperity_integral, f_1, f_2, f_3_2, f_5_2};
 
 /// Where the asymptotic series for deep overlap begins.
 const DEEP: f64 = -8.0;
@@ -67,6 +67,7 @@ fn tables_meet_the_parabolic_cylinder_values() {
     for row in EXACT {
         // The documented bound of the Taylor pieces; λ = 10 lies outside, the last piece ends there.
         if row[0] < FAR {
+            assert!((f_3_2(row[0]) / row[4] - 1.0).abs() < 1e-10, "F_3/2({})", row[0]);
             assert!((f_2(row[0]) / row[5] - 1.0).abs() < 1e-10, "F_2({})", row[0]);
             assert!((f_5_2(row[0]) / row[6] - 1.0).abs() < 1e-10, "F_5/2({})", row[0]);
         }
@@ -97,7 +98,7 @@ fn tables_meet_the_quadrature_everywhere() {
     // An irrational-looking step visits every part of every piece, ends included.
     let mut l = -12.0;
     while l < FAR {
-        for (n, f) in [(2.0, f_2(l)), (2.5, f_5_2(l))] {
+        for (n, f) in [(1.5, f_3_2(l)), (2.0, f_2(l)), (2.5, f_5_2(l))] {
             let e = (f / asperity_integral(n, l) - 1.0).abs();
             worst = worst.max(e);
             if l < 6.7 {

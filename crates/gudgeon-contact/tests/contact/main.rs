@@ -2,9 +2,11 @@
 
 use gudgeon_contact as _;
 
+mod abbott_firestone;
 mod asperity_integral;
 mod boundary_friction;
 mod crest_wedge;
 mod greenwood_tripp;
 mod linear_penalty;
 mod models;
+mod summits;

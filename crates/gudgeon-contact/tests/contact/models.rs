@@ -17,7 +17,17 @@ fn every_model_is_described_and_its_example_runs() {
     let mine: Vec<_> = registry.models("contact").iter().map(|m| m.name).collect();
     assert_eq!(
         mine,
-        ["crest_wedge", "film_floor", "greenwood_tripp", "linear_penalty", "off", "roughness_threshold"]
+        [
+            "abbott_firestone",
+            "crest_wedge",
+            "film_floor",
+            "greenwood_tripp",
+            "greenwood_williamson",
+            "kogut_etsion",
+            "linear_penalty",
+            "off",
+            "roughness_threshold"
+        ]
     );
     if let Err(e) = registry.verify() {
         // This crate links no other kind's models, so only complaints about contact count.
