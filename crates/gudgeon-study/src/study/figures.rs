@@ -147,12 +147,13 @@ fn of_finding(inputs: &[String], title: &str, f: &Finding) -> Option<Figure> {
                 FigureKind::Ranges { unit: f.unit.clone(), middle: Some(l.value), ranges },
             )
         }
-        Dependence::Shares(a) => {
+        Dependence::Shares(s) => {
             let factors =
                 |e: &crate::anova::Effect| e.factors.iter().map(|k| name(*k)).collect::<Vec<_>>().join(" × ");
+            let without = s.without().map_or_else(String::new, |w| format!("; {w}"));
             figure(
-                "share of the variance over the grid",
-                bars(a.effects.iter().map(|e| (factors(e), e.share)).collect()),
+                &format!("share of the variance over the grid{without}"),
+                bars(s.anova.effects.iter().map(|e| (factors(e), e.share)).collect()),
             )
         }
         Dependence::Unknown(_) => None,
