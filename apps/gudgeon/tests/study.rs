@@ -238,7 +238,7 @@ fn a_wrong_study_is_refused_with_its_place_and_nothing_is_made() {
     let dir = folder("wrong");
     let study = dir.join("out").display().to_string();
     let design = "[design]\nmethod = \"sobol\"\npoints = 8\n[[inputs]]\npath = \"rig.speed\"\n";
-    let wrong: [(&str, &str); 8] = [
+    let wrong: [(&str, &str); 12] = [
         (
             "results = [\"lod\"]\n[[inputs]]\npath = \"rig.speed\"\nvalues = [\"1 m/s\"]\n",
             "did you mean `load`",
@@ -263,6 +263,20 @@ fn a_wrong_study_is_refused_with_its_place_and_nothing_is_made() {
         ),
         (&format!("{design}from = \"1 m/s\"\n"), "to"),
         ("list = \"nothing.csv\"\n", "nothing.csv"),
+        // Keys that an input shares with a sweep.
+        (
+            "[[inputs]]\npath = \"rig.speed\"\nvalue = [\"1 m/s\"]\n",
+            "did you mean `values`? valid: `path`, `values`, `from`, `to`, `points`, `spacing`, `distribution`",
+        ),
+        (
+            "[[inputs]]\npath = \"rig.speed\"\nfrom = \"1 m/s\"\nto = \"2 m/s\"\npoints = \"many\"\n",
+            "inputs.0.points",
+        ),
+        ("[[inputs]]\nvalues = [\"1 m/s\"]\n", "inputs.0: missing key `path`"),
+        (
+            "[[inputs]]\npath = \"rig.speed\"\nvalues = [\"1 m/s\"]\nresults = [\"load\"]\n",
+            "inputs.0: unknown key `results`",
+        ),
     ];
     for (more, told) in wrong {
         let out = gudgeon(&["study", "new", &study, &study_file(&dir, more)]);
