@@ -165,7 +165,9 @@ struct Job {
 impl Job {
     fn new(case: usize, base: &Checked, swaps: &Combination) -> Self {
         let set: Vec<String> = swaps.iter().map(|(p, v)| format!("{p}={v}")).collect();
-        Self { case, swaps: swaps.clone(), checked: base.with(&set) }
+        let first = base.case.overrides().len();
+        let checked = base.with(&set).map_err(|report| report.written_as(first, "--swap"));
+        Self { case, swaps: swaps.clone(), checked }
     }
 
     fn variant(self, cases: &[ComparedCase], outcome: Result<RunResult, String>) -> Variant {
