@@ -142,7 +142,7 @@ impl Case {
             GradientError::Run(e) => failed(e.failure()),
             e => PyValueError::new_err(e.to_string()),
         })?;
-        to_python(py, &serde_json::to_value(&found).unwrap_or_default())
+        to_python(py, &gudgeon_report::gradients_value(&found))
     }
 
     /// Runs the case once for each of `points`, lists of `--set` arguments, sweeps apart.

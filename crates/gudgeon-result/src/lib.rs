@@ -8,7 +8,7 @@ use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-pub use gradients::{Gradient, GradientInput, Gradients};
+pub use gradients::{Gradient, GradientInput, Gradients, derivative_unit};
 pub use shares::{CASE, Share, ShareRow, ShareTable};
 pub use swap::short_value;
 
