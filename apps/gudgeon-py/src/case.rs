@@ -30,6 +30,11 @@ impl Case {
     fn new(py: Python<'_>, checked: Result<Checked, Report>) -> PyResult<Self> {
         Ok(Self { checked: Arc::new(checked.map_err(|report| refused(py, &report))?) })
     }
+
+    /// What was read.
+    pub const fn checked(&self) -> &Arc<Checked> {
+        &self.checked
+    }
 }
 
 #[pymethods]

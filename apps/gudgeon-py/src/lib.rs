@@ -2,6 +2,7 @@
 //! `python/gudgeon` beside this folder; what crosses the border are plain values, lists of `--set` arguments, and numbers as bytes.
 
 mod case;
+mod compare;
 mod errors;
 mod interrupt;
 mod many;
@@ -27,6 +28,8 @@ mod native {
 
     #[pymodule_export]
     use crate::case::Case;
+    #[pymodule_export]
+    use crate::compare::compare;
     #[pymodule_export]
     use crate::result::Outcome;
     #[pymodule_export]

@@ -5,7 +5,7 @@ mod common;
 use std::fs;
 use std::path::PathBuf;
 
-use gudgeon_core::result::{Note, RunResult, Series};
+use gudgeon_core::result::{Failure, Note, RunResult, Series};
 use gudgeon_report::{ReportError, rewrite, summary_json, write_bench, write_comparison, write_run};
 use serde_json::Value;
 
@@ -182,7 +182,7 @@ fn text_of_a_case_cannot_become_markup_or_script() {
     let mut c = common::comparison();
     c.title = nasty.into();
     c.variants[1].label = nasty.into();
-    c.variants[3].outcome = Err(nasty.into());
+    c.variants[3].outcome = Err(Failure { message: nasty.into(), ..Failure::default() });
     let page = read(write_comparison(&c, &dir).unwrap().report);
     assert!(!page.contains("<script>alert") && page.matches("</script>").count() == 2);
     let mut b = common::bench();
