@@ -52,6 +52,12 @@ mod native {
         ("turbo-diesel-120", include_str!("../../../cases/turbo-diesel-120.toml")),
     ];
 
+    /// Which columns form a figure over the cycle, as JSON.
+    #[pyfunction]
+    const fn over_cycle() -> &'static str {
+        gudgeon_report::OVER_CYCLE
+    }
+
     /// The text of a case that comes with the package.
     #[pyfunction]
     fn example(name: &str) -> PyResult<&'static str> {
