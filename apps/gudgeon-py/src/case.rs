@@ -30,6 +30,11 @@ impl Case {
     fn new(py: Python<'_>, checked: Result<Checked, Report>) -> PyResult<Self> {
         Ok(Self { checked: Arc::new(checked.map_err(|report| refused(py, &report))?) })
     }
+
+    /// What was read.
+    pub const fn checked(&self) -> &Arc<Checked> {
+        &self.checked
+    }
 }
 
 #[pymethods]
@@ -142,7 +147,7 @@ impl Case {
             GradientError::Run(e) => failed(e.failure()),
             e => PyValueError::new_err(e.to_string()),
         })?;
-        to_python(py, &serde_json::to_value(&found).unwrap_or_default())
+        to_python(py, &gudgeon_report::gradients_value(&found))
     }
 
     /// Runs the case once for each of `points`, lists of `--set` arguments, sweeps apart.

@@ -3,6 +3,7 @@
 use gudgeon_case::{Diagnostic, Report};
 use gudgeon_core::result::Failure;
 use gudgeon_report::ReportError;
+use gudgeon_scene::Stopped;
 use gudgeon_study::study::FolderError;
 use pyo3::exceptions::{PyKeyError, PyOSError, PyValueError};
 use pyo3::prelude::*;
@@ -23,6 +24,11 @@ pub fn refused(py: Python<'_>, report: &Report) -> PyErr {
 /// A run that has no result.
 pub fn failed(failure: Failure) -> PyErr {
     RunError::new_err((failure.message, failure.code, failure.path))
+}
+
+/// The caller wanted it to end.
+pub fn stopped() -> PyErr {
+    RunError::new_err((Stopped.to_string(), "stopped", ""))
 }
 
 /// A name that does not exist.

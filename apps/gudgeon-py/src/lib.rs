@@ -2,6 +2,7 @@
 //! `python/gudgeon` beside this folder; what crosses the border are plain values, lists of `--set` arguments, and numbers as bytes.
 
 mod case;
+mod compare;
 mod errors;
 mod interrupt;
 mod many;
@@ -28,6 +29,8 @@ mod native {
     #[pymodule_export]
     use crate::case::Case;
     #[pymodule_export]
+    use crate::compare::compare;
+    #[pymodule_export]
     use crate::result::Outcome;
     #[pymodule_export]
     use crate::study::Study;
@@ -48,6 +51,12 @@ mod native {
         ("slider-straight", include_str!("../../../cases/rigs/slider-straight.toml")),
         ("turbo-diesel-120", include_str!("../../../cases/turbo-diesel-120.toml")),
     ];
+
+    /// Which columns form a figure over the cycle, as JSON.
+    #[pyfunction]
+    const fn over_cycle() -> &'static str {
+        gudgeon_report::OVER_CYCLE
+    }
 
     /// The text of a case that comes with the package.
     #[pyfunction]

@@ -1,6 +1,6 @@
 //! Rows of many runs, column by column.
 
-use gudgeon_core::result::{Failure, Note, NoteLevel, RunResult, Value};
+use gudgeon_core::result::{Failure, Note, NoteLevel, RunResult, Value, Variant};
 use gudgeon_scene::many::run_points;
 use gudgeon_scene::{Progress, Scene, Stopped};
 use pyo3::prelude::*;
@@ -55,20 +55,29 @@ pub fn rows(
     progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
 ) -> Rows {
     let all = run_points(scene, points, threads, |_, outcome| Row::new(outcome), progress);
-    let mut told = Rows { columns: Vec::new(), failures: Vec::new() };
-    for (k, row) in all.rows.into_iter().enumerate() {
-        let stopped =
-            || Failure { code: "stopped".into(), message: Stopped.to_string(), path: String::new() };
-        let row = row.unwrap_or_else(|| Row { results: Vec::new(), failure: Some(stopped()) });
-        told.failures.extend(row.failure.map(|f| (k, f)));
-        for (place, (name, v)) in row.results.into_iter().enumerate() {
-            told.put(points.len(), k, place, name, v);
-        }
-    }
-    told
+    let stopped = || Failure { code: "stopped".into(), message: Stopped.to_string(), path: String::new() };
+    let missing = || Row { results: Vec::new(), failure: Some(stopped()) };
+    Rows::of(all.rows.into_iter().map(|row| row.unwrap_or_else(missing)))
+}
+
+/// What was kept of the combinations of a comparison.
+pub fn of_variants(variants: Vec<Variant>) -> Rows {
+    Rows::of(variants.into_iter().map(|v| Row::new(v.outcome)))
 }
 
 impl Rows {
+    fn of(rows: impl ExactSizeIterator<Item = Row>) -> Self {
+        let mut told = Self { columns: Vec::new(), failures: Vec::new() };
+        let count = rows.len();
+        for (k, row) in rows.enumerate() {
+            told.failures.extend(row.failure.map(|f| (k, f)));
+            for (place, (name, v)) in row.results.into_iter().enumerate() {
+                told.put(count, k, place, name, v);
+            }
+        }
+        told
+    }
+
     /// Runs of one case mostly tell the same results in the same order: `place` is looked at first.
     fn put(&mut self, count: usize, row: usize, place: usize, name: String, v: Value) {
         let there = match self.columns.get(place) {

@@ -14,7 +14,15 @@ def test_derivatives_of_a_pin(pin):
     np.testing.assert_allclose(told["pin_mass"], [factor * 21.85e-3, -factor * 13.94e-3], rtol=1e-9)
     assert told.at["pin.outer"] == pytest.approx(21.85e-3) and told.inputs["pin.outer"] == "m" and told.units["pin_mass"] == "g"
     assert told.to_dataframe().loc["pin_mass", "pin.inner"] == told["pin_mass"][1]
+    assert told.units_by["pin_mass"] == {"pin.outer": "g/m", "pin.inner": "g/m"} == told.to_dataframe().attrs["units"]["pin_mass"]
     assert set(pin.gradients(["pin.inner"])) == set(pin.run())
+
+
+def test_derivatives_can_be_ended(diesel):
+    # Followed along a cycle, which takes longer than the 50 ms after which Python is asked.
+    with pytest.raises(gudgeon.RunError) as e:
+        diesel.gradients(["rings.0.cold_gap"], progress=lambda phase, fraction: False)
+    assert e.value.code == "stopped"
 
 
 def test_inputs_that_are_no_quantities(pin):

@@ -1,5 +1,8 @@
 """Figures: that they show what the result says. How they look was looked at."""
 
+import json
+import re
+
 import matplotlib
 
 matplotlib.use("Agg")
@@ -9,6 +12,7 @@ import numpy as np
 import pytest
 
 import gudgeon
+from gudgeon import figures
 
 
 @pytest.fixture(scope="module")
@@ -70,3 +74,17 @@ def test_plotly(ran, line, pin):
     for r in (ran, line, pin.run(), gudgeon.example("slider-straight").run()):
         for name in r.figures:
             assert r.plot(name, backend="plotly").to_dict()["layout"]["title"]["text"]
+
+
+def test_curves_are_those_of_the_page(ran, tmp_path):
+    ran.write(tmp_path)
+    page = (tmp_path / "report.html").read_text()
+    groups = json.loads(re.search(r"const OVER_CYCLE = (\[.*?\n\]);", page, re.S)[1])
+    named = {g["name"]: g for g in groups if "#" not in g["name"]}
+    drawn = {name: f for name, f in figures.of(ran).items() if name in named}
+    assert {"pressures", "film", "gas_mass", "friction_power"} <= set(drawn)
+    assert all(f.title == named[name]["title"] for name, f in drawn.items())
+    # Gas at the cylinder has no colour of a ring, the land below a ring and the space behind it that of the ring.
+    colours = {c.label: (c.color, c.dash) for c in drawn["pressures"].curves}
+    assert colours["cylinder"] == (None, False) and colours["land 2"] == (0, False) and colours["behind ring 1"] == (0, True)
+    assert figures.of(ran)["ring2_forces"].title == "Axial forces on ring 2"

@@ -44,6 +44,16 @@ def test_a_study_is_its_folder(undisturbed):
     assert undisturbed.analysis() is not None
 
 
+def test_the_table_opens_elsewhere(undisturbed):
+    polars, duckdb = pytest.importorskip("polars"), pytest.importorskip("duckdb")
+    frame, path = undisturbed.to_dataframe(), undisturbed.folder / "table.parquet"
+    told = polars.read_parquet(path)
+    assert told.columns == list(frame) and told["load"].to_list() == frame["load"].tolist()
+    # The query of docs/studies.md.
+    rows = duckdb.sql(f"""select "rig.speed", load from '{path}' where code = ''""").fetchall()
+    assert rows == list(zip(frame["rig.speed"].tolist(), frame["load"].tolist()))
+
+
 def test_threads_give_equal_bytes(undisturbed, tmp_path):
     study = gudgeon.Study.new(tmp_path / "s", SPEC)
     study.run(threads=2)

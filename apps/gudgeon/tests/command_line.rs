@@ -470,3 +470,24 @@ fn a_point_that_fails_is_a_row_of_its_sweep() {
     assert_eq!(ends, [("1", "1"), ("40", "0")]);
     let _ = fs::remove_dir_all(&folder);
 }
+
+#[test]
+fn derivatives_have_the_same_units_everywhere() {
+    let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/rigs/slider-barrel.toml");
+    let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("gradient-units");
+    let (case, folder) = (case.to_str().expect("text"), out.to_str().expect("text"));
+    let args = ["gradient", case, "--set", "rig.panels=25", "--by", "rig.speed", "--results", "load"];
+    let o = gudgeon(&[&args[..], &["--out", folder]].concat());
+    assert_eq!(o.status.code(), Some(0), "{}", stderr(&o));
+    // A load per width by a speed.
+    let wanted = "(N/m)/(m/s)";
+    assert!(stdout(&o).contains(wanted), "{}", stdout(&o));
+    let table = fs::read_to_string(out.join("gradients.csv")).expect("a table");
+    let rows: Vec<Vec<&str>> = table.lines().map(|l| l.split(',').collect()).collect();
+    let column = rows[0].iter().position(|name| *name == "derivative_unit").expect("a column");
+    assert_eq!(rows[1][column], wanted);
+    assert_eq!(
+        json(&[&args[..], &["--json"]].concat())["results"]["load"]["by_unit"],
+        serde_json::json!([wanted])
+    );
+}

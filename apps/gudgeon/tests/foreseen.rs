@@ -151,13 +151,36 @@ fn contenders_that_are_none() {
     for (contender, said) in [
         ("gas_flow=narow_channel", "did you mean `narrow_channel`?"),
         ("models.gas_flov=narrow_channel", "did you mean `gas_flow`?"),
+        // In the option that was written, not in `--set`.
+        ("gas_flow=narow_channel", "--contender:1:23"),
         ("gas_flow", "is not a path with values"),
         ("gas_flow=a,,b", "has an empty value"),
     ] {
         let o = folder.run(&["bench", "case.toml", "--contender", contender]);
         assert_eq!(o.status.code(), Some(2), "{contender}");
         holds(&flat(&stderr(&o)), &[said]);
+        assert!(!stderr(&o).contains("--set"), "{}", stderr(&o));
     }
+    // A change of the case itself is one of `--set` all the same, and a value of `compare` one of `--swap`.
+    let o = folder.run(&[
+        "bench",
+        "case.toml",
+        "--set",
+        "engine.speed=1 bar",
+        "--contender",
+        "gas_flow=narow_channel",
+    ]);
+    holds(&stderr(&o), &["--set:1:"]);
+    let o = folder.run(&[
+        "compare",
+        "case.toml",
+        "--set",
+        "engine.speed=1500 rpm",
+        "--swap",
+        "gas_flow=narow_channel",
+    ]);
+    assert_eq!(o.status.code(), Some(2));
+    holds(&stderr(&o), &["--swap:1:23"]);
     assert!(!folder.0.join("out").exists(), "nothing is written");
 }
 

@@ -207,9 +207,30 @@ fn lists_cases_failures_and_curves() {
     );
     assert!(rows[4].starts_with("3,fine,1,10 mPa s,"), "{}", rows[4]);
     assert!(parts(&study).contains_key("curves-000000.parquet"));
-    // Two of six combinations have no result: no share is told, and the reason is.
+    // Two of six combinations have no result: the shares are those of the four others, in text, JSON and page.
     let told = done(&["study", "collect", &study]);
-    assert!(told.contains("2 of 6 points failed") && told.contains("has no result"), "{told}");
+    let without = "without list=row 3: not all points with it have a result to use";
+    assert!(told.contains("2 of 6 points failed") && told.contains(without), "{told}");
+    assert!(told.contains("case × list"), "{told}");
+    let read = |name: &str| fs::read_to_string(Path::new(&study).join(name)).expect("written");
+    let all: serde_json::Value = serde_json::from_str(&read("analysis.json")).expect("JSON");
+    let shares = &all["groups"][0]["results"][0]["dependence"]["shares"];
+    assert_eq!(shares["points"], 4);
+    assert_eq!(shares["left_out"], serde_json::json!(["list=row 3"]));
+    let sum: f64 =
+        shares["effects"].as_array().expect("effects").iter().filter_map(|e| e["share"].as_f64()).sum();
+    // Sums of four numbers.
+    assert!((sum - 1.0).abs() < 1e-14, "{shares}");
+    assert!(read("report.html").contains(without));
+}
+
+#[test]
+fn a_grid_of_one_good_point_has_no_shares() {
+    let more = "results = [\"load\"]\n[[inputs]]\npath = \"rig.speed\"\nvalues = [\"1 m/s\", \"fast\", \"faster\"]\n";
+    let (_, study) = made("one-good", more);
+    assert_eq!(gudgeon(&["study", "run", &study]).status.code(), Some(1), "two points failed");
+    let told = done(&["study", "collect", &study]);
+    assert!(told.contains("too few points have this result to tell any input apart"), "{told}");
 }
 
 #[test]
@@ -217,7 +238,7 @@ fn a_wrong_study_is_refused_with_its_place_and_nothing_is_made() {
     let dir = folder("wrong");
     let study = dir.join("out").display().to_string();
     let design = "[design]\nmethod = \"sobol\"\npoints = 8\n[[inputs]]\npath = \"rig.speed\"\n";
-    let wrong: [(&str, &str); 8] = [
+    let wrong: [(&str, &str); 12] = [
         (
             "results = [\"lod\"]\n[[inputs]]\npath = \"rig.speed\"\nvalues = [\"1 m/s\"]\n",
             "did you mean `load`",
@@ -242,6 +263,20 @@ fn a_wrong_study_is_refused_with_its_place_and_nothing_is_made() {
         ),
         (&format!("{design}from = \"1 m/s\"\n"), "to"),
         ("list = \"nothing.csv\"\n", "nothing.csv"),
+        // Keys that an input shares with a sweep.
+        (
+            "[[inputs]]\npath = \"rig.speed\"\nvalue = [\"1 m/s\"]\n",
+            "did you mean `values`? valid: `path`, `values`, `from`, `to`, `points`, `spacing`, `distribution`",
+        ),
+        (
+            "[[inputs]]\npath = \"rig.speed\"\nfrom = \"1 m/s\"\nto = \"2 m/s\"\npoints = \"many\"\n",
+            "inputs.0.points",
+        ),
+        ("[[inputs]]\nvalues = [\"1 m/s\"]\n", "inputs.0: missing key `path`"),
+        (
+            "[[inputs]]\npath = \"rig.speed\"\nvalues = [\"1 m/s\"]\nresults = [\"load\"]\n",
+            "inputs.0: unknown key `results`",
+        ),
     ];
     for (more, told) in wrong {
         let out = gudgeon(&["study", "new", &study, &study_file(&dir, more)]);

@@ -95,6 +95,8 @@ pub struct Report {
     pub source: Arc<Source>,
     /// The `--set` arguments.
     pub overrides: Arc<[String]>,
+    /// The option that the arguments from an index on were written as, where that is not `--set`.
+    written_as: Option<(usize, &'static str)>,
 }
 
 impl Report {
@@ -112,14 +114,21 @@ impl Report {
         diagnostics.sort_by_key(|d| (d.origin, d.span.as_ref().map_or(usize::MAX, |s| s.start)));
         diagnostics.dedup();
         diagnostics.truncate(MAX_MISTAKES);
-        Self { diagnostics, source, overrides }
+        Self { diagnostics, source, overrides, written_as: None }
     }
 
     /// A report that has nothing but a message: a file that cannot be read.
     #[must_use]
     pub fn unreadable(name: &str, diagnostic: Diagnostic) -> Self {
         let source = Source { name: name.to_owned(), text: String::new(), files: Files::default() };
-        Self { diagnostics: vec![diagnostic], source: Arc::new(source), overrides: Arc::new([]) }
+        Self::new(vec![diagnostic], Arc::new(source), Arc::new([]))
+    }
+
+    /// The same when the arguments from number `first` on were written as another option, `--swap` or `--contender`.
+    #[must_use]
+    pub fn written_as(mut self, first: usize, option: &'static str) -> Self {
+        self.written_as = Some((first, option));
+        self
     }
 
     /// `(name, line, column)` of a mistake, both from 1, columns in characters.
@@ -144,7 +153,11 @@ impl Report {
     fn text_of(&self, origin: Origin) -> Option<(String, &str)> {
         match origin {
             Origin::File => Some((self.source.name.clone(), &self.source.text)),
-            Origin::Override(i) => self.overrides.get(i).map(|t| ("--set".to_owned(), t.as_str())),
+            Origin::Override(i) => {
+                let other = self.written_as.filter(|(first, _)| i >= *first);
+                let option = other.map_or("--set", |(_, option)| option);
+                self.overrides.get(i).map(|t| (option.to_owned(), t.as_str()))
+            }
             Origin::Default => None,
         }
     }
@@ -165,7 +178,7 @@ impl Report {
         drawing.finish()
     }
 
-    /// The mistakes for a program to read: `message`, `help`, `path`, `in` (file name or `--set`), `line`, `column`.
+    /// The mistakes for a program to read: `message`, `help`, `path`, `in` (file name or option), `line`, `column`.
     #[must_use]
     pub fn to_json(&self) -> serde_json::Value {
         self.diagnostics

@@ -86,7 +86,7 @@ impl File {
                 label: v.label.clone(),
                 case: v.case,
                 swaps: v.swaps.iter().cloned().collect(),
-                error: v.outcome.as_ref().err().cloned(),
+                error: v.why(),
                 run: v.outcome.as_ref().ok().map(Summary::new),
             })
             .collect();

@@ -16,6 +16,9 @@ const DRAWING: &str = include_str!("assets/drawing.js");
 const FIGURE: &str = include_str!("assets/figure.js");
 const SECTION: &str = include_str!("assets/section.js");
 const RUN: &str = include_str!("assets/run.js");
+/// Which columns of a series form a figure over the cycle, as JSON: a list of figures with `name`, `title`, `hint` and `columns` (name, label, colour, dash).
+/// `#` in a name is any number; a negative colour counts from it; `text` is the colour of text.
+pub const OVER_CYCLE: &str = include_str!("assets/over_cycle.json");
 const COMPARE: &str = include_str!("assets/compare.js");
 const BENCH: &str = include_str!("assets/bench.js");
 
@@ -91,6 +94,9 @@ pub(crate) fn document(kind: Kind, title: &str, body: &str, data: &Value) -> Str
         "<script type=\"application/json\" id=\"data\">{}</script>\n<script>\n",
         json_for_script(data)
     );
+    if matches!(kind, Kind::Run) {
+        let _ = writeln!(out, "const OVER_CYCLE = {};", OVER_CYCLE.trim_end());
+    }
     for script in scripts {
         out.push_str(script);
     }

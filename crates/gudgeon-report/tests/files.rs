@@ -5,8 +5,10 @@ mod common;
 use std::fs;
 use std::path::PathBuf;
 
-use gudgeon_core::result::{Note, RunResult, Series};
-use gudgeon_report::{ReportError, rewrite, summary_json, write_bench, write_comparison, write_run};
+use gudgeon_core::result::{Failure, Note, RunResult, Series};
+use gudgeon_report::{
+    OVER_CYCLE, ReportError, rewrite, summary_json, write_bench, write_comparison, write_run,
+};
 use serde_json::Value;
 
 /// A fresh directory of this test's own.
@@ -182,7 +184,7 @@ fn text_of_a_case_cannot_become_markup_or_script() {
     let mut c = common::comparison();
     c.title = nasty.into();
     c.variants[1].label = nasty.into();
-    c.variants[3].outcome = Err(nasty.into());
+    c.variants[3].outcome = Err(Failure { message: nasty.into(), ..Failure::default() });
     let page = read(write_comparison(&c, &dir).unwrap().report);
     assert!(!page.contains("<script>alert") && page.matches("</script>").count() == 2);
     let mut b = common::bench();
@@ -400,4 +402,31 @@ fn a_benchmark_keeps_its_failures_apart() {
     assert_eq!(table.lines().count(), 1 + points.len());
     assert!(read(&files.report).contains("became negative"));
     fs::remove_dir_all(dir).unwrap();
+}
+
+/// The page of a run and Python draw from the same list; one that is no JSON would leave both without curves.
+#[test]
+fn curves_over_the_cycle_are_listed_once() {
+    let list: Vec<Value> = serde_json::from_str(OVER_CYCLE).unwrap();
+    let mut names: Vec<&str> = list.iter().map(|g| g["name"].as_str().unwrap()).collect();
+    for g in &list {
+        assert!(g["title"].is_string() && g["hint"].is_string(), "{g}");
+        for column in g["columns"].as_array().unwrap() {
+            assert!(column[0].is_string() && column[1].is_string(), "{g}");
+            let colour = &column[2];
+            // Where a colour counts from the number, there must be one.
+            let counts = colour.as_i64().is_some_and(|c| c < 0);
+            assert!(colour == "text" || colour.is_i64(), "{g}");
+            assert!(!counts || column[0].as_str().unwrap().contains('#'), "{g}");
+            assert!(column.get(3).is_none_or(|d| d == "dashed" || d == "dotted"), "{g}");
+        }
+    }
+    let count = names.len();
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), count);
+    let dir = scratch("curves");
+    let page = read(write_run(&common::run(3), &dir).unwrap().report);
+    assert!(page.contains(OVER_CYCLE.trim_end()));
+    fs::remove_dir_all(&dir).unwrap();
 }

@@ -67,7 +67,28 @@ impl Gradient {
     }
 }
 
+/// Unit of the derivative of a result by an input, from theirs. Quotients, and an input with several units, stand in brackets: `(l/min)/m`, `g/(N/m)`.
+#[must_use]
+pub fn derivative_unit(result: &str, input: &str) -> String {
+    let within = |unit: &str, marks: &[char]| match unit {
+        "" => "1".to_owned(),
+        u if u.contains(marks) => format!("({u})"),
+        u => u.to_owned(),
+    };
+    match input {
+        "" | "1" if result.is_empty() => "1".to_owned(),
+        "" | "1" => result.to_owned(),
+        _ => format!("{}/{}", within(result, &['/']), within(input, &['/', ' '])),
+    }
+}
+
 impl Gradients {
+    /// Unit of the derivative of a result by input `k`.
+    #[must_use]
+    pub fn unit(&self, result: &str, k: usize) -> Option<String> {
+        Some(derivative_unit(&self.results.get(result)?.value.unit, &self.inputs.get(k)?.unit))
+    }
+
     /// By how much of itself a result changes when input `k` changes by a part of itself, `p/R dR/dp`.
     #[must_use]
     pub fn elasticity(&self, result: &str, k: usize) -> Option<f64> {
@@ -85,6 +106,28 @@ impl Gradients {
             gradient.by.resize(before, None);
             gradient.by.extend(more);
             gradient.by.resize(self.inputs.len(), None);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_of_derivatives_have_one_reading() {
+        for (result, input, wanted) in [
+            ("l/min", "m", "(l/min)/m"),
+            ("g", "m", "g/m"),
+            ("g", "N/m", "g/(N/m)"),
+            ("l/min", "Pa s", "(l/min)/(Pa s)"),
+            ("N m", "K", "N m/K"),
+            ("kW", "1", "kW"),
+            ("1", "m", "1/m"),
+            ("", "m", "1/m"),
+            ("", "", "1"),
+        ] {
+            assert_eq!(derivative_unit(result, input), wanted);
         }
     }
 }

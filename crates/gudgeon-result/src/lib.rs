@@ -8,7 +8,7 @@ use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-pub use gradients::{Gradient, GradientInput, Gradients};
+pub use gradients::{Gradient, GradientInput, Gradients, derivative_unit};
 pub use shares::{CASE, Share, ShareRow, ShareTable};
 pub use swap::short_value;
 
@@ -659,7 +659,17 @@ pub struct Variant {
     /// `(path, value)` of every swap, in the order given.
     pub swaps: Vec<(String, String)>,
     /// The run, or why there is none (refused combination, failed run).
-    pub outcome: Result<RunResult, String>,
+    pub outcome: Result<RunResult, Failure>,
+}
+
+impl Variant {
+    /// Why there is no run, in words: `refused: …` or `failed: …`.
+    #[must_use]
+    pub fn why(&self) -> Option<String> {
+        let failure = self.outcome.as_ref().err()?;
+        let what = if failure.code == REFUSED { "refused" } else { "failed" };
+        Some(format!("{what}: {failure}"))
+    }
 }
 
 /// A case of a [`Comparison`].

@@ -6,7 +6,7 @@ use std::collections::HashSet;
 use gudgeon_core::BuildError;
 
 use crate::scene::Scene;
-use crate::sweep_input::{self, Sweep};
+use crate::sweep_input::{self, Axis, Sweep};
 use gudgeon_case::advice;
 
 /// Most cases of the sweeps that are read and built before a run. Beyond it, every listed value still stands in one of them, with a value of
@@ -15,7 +15,7 @@ const MAX_TRIED: usize = 1000;
 
 /// What is wrong with the values of sweeps.
 pub(crate) fn sweeps(scene: &dyn Scene, sweeps: &[Sweep]) -> Vec<BuildError> {
-    let lists: Option<Vec<Vec<String>>> = sweeps.iter().map(|s| sweep_input::values(s).ok()).collect();
+    let lists: Option<Vec<Vec<String>>> = sweeps.iter().map(|s| sweep_input::values(&s.axis).ok()).collect();
     let Some(lists) = lists.filter(|l| l.iter().all(|v| !v.is_empty())) else { return Vec::new() };
     let tried = combinations(&lists.iter().map(Vec::len).collect::<Vec<_>>());
     let mut failed = Vec::new();
@@ -24,7 +24,7 @@ pub(crate) fn sweeps(scene: &dyn Scene, sweeps: &[Sweep]) -> Vec<BuildError> {
             .iter()
             .zip(&lists)
             .zip(places)
-            .map(|((s, l), i)| format!("{}={}", s.path, l[*i]))
+            .map(|((s, l), i)| format!("{}={}", s.axis.path, l[*i]))
             .collect();
         if let Some(why) = impossible(scene, &set) {
             failed.push((places.clone(), set.join(", "), why));
@@ -39,7 +39,7 @@ pub(crate) fn sweeps(scene: &dyn Scene, sweeps: &[Sweep]) -> Vec<BuildError> {
             sweeps.len() == 1 || with(&bad) == with(&tried)
         })
         .unwrap_or(0);
-    let listed = !sweeps[blamed].values.is_empty();
+    let listed = !sweeps[blamed].axis.values.is_empty();
     let place = match listed {
         true => format!("sweeps.{blamed}.values.{}", places[blamed]),
         false => format!("sweeps.{blamed}"),
@@ -50,14 +50,14 @@ pub(crate) fn sweeps(scene: &dyn Scene, sweeps: &[Sweep]) -> Vec<BuildError> {
 
 /// Sweeps of a value that the scene does not use: all their points would be one.
 pub(crate) fn idle(scene: &dyn Scene, sweeps: &[Sweep]) -> Vec<BuildError> {
-    let is_idle = |s: &Sweep| {
+    let is_idle = |s: &Axis| {
         let first = sweep_input::values(s).ok()?.into_iter().next()?;
         let changed = scene.changed(&[format!("{}={first}", s.path)]).ok()?;
         changed.unused().contains(&s.path).then_some(())
     };
     let refused = |(k, s): (usize, &Sweep)| {
-        let what = format!("this scene does not use `{}`: a sweep of it changes nothing", s.path);
-        is_idle(s).map(|()| BuildError::at(format!("sweeps.{k}.path"), what))
+        let what = format!("this scene does not use `{}`: a sweep of it changes nothing", s.axis.path);
+        is_idle(&s.axis).map(|()| BuildError::at(format!("sweeps.{k}.path"), what))
     };
     sweeps.iter().enumerate().filter_map(refused).collect()
 }

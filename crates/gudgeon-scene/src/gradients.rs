@@ -31,6 +31,16 @@ pub enum GradientError {
     Run(#[from] RunError),
 }
 
+impl GradientError {
+    /// As [`RunError::plain`].
+    pub(crate) fn plain(self) -> Self {
+        match self {
+            Self::Run(e) => Self::Run(e.plain()),
+            e => e,
+        }
+    }
+}
+
 /// A case with a higher value of one input, built.
 pub struct Varied<C: SceneCase> {
     /// By how much the value is higher, in the SI unit of the input; negative where only a lower one is legal.

@@ -29,5 +29,5 @@ pub use provenance::sha256;
 pub use run::{Checked, check, check_case, check_source, explain, run, run_verified};
 pub use scene::{Scene, SceneCase, SceneInfo, SceneName, changed, load, read_case, scenes, verify_scenes};
 pub use solver_table::{SolverCommon, SolverTable, default_solvers};
-pub use sweep_input::{Spacing, Sweep, number, values};
+pub use sweep_input::{Axis, Spacing, Sweep, number, values};
 pub use work_precision::{Asked, MethodSetting, OtherMethod, Reference, WorkPrecision};

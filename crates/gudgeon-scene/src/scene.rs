@@ -70,7 +70,7 @@ pub trait SceneCase:
     }
 
     /// Derivatives of the results by inputs, at a fraction of the cost of runs with other inputs: from the case as it stands, and for each input the case
-    /// with a slightly higher value, which `varied` builds. The inputs of the answer are filled in by the caller.
+    /// with a slightly higher value, which `varied` builds. The inputs of the answer are filled in by the caller. `progress` is told as in [`SceneCase::run`].
     ///
     /// # Errors
     /// The scene has none of its own for this case ([`GradientError::NoMethod`], the default), or what stopped it.
@@ -78,6 +78,7 @@ pub trait SceneCase:
         _loaded: &Loaded<Self>,
         _built: Self::Built,
         _varied: &dyn Fn() -> Result<Vec<Varied<Self>>, GradientError>,
+        _progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
     ) -> Result<Gradients, GradientError> {
         Err(GradientError::NoMethod("this scene has no derivatives of its own".into()))
     }
@@ -133,8 +134,12 @@ pub trait Scene: Send + Sync {
     /// Derivatives of the results by the inputs at these paths, by the scene's own method ([`SceneCase::gradients`]).
     ///
     /// # Errors
-    /// [`GradientError`]: no method, an input that is no continuous quantity, or a run that failed.
-    fn gradients(&self, inputs: &[String]) -> Result<Gradients, GradientError>;
+    /// [`GradientError`]: no method, an input that is no continuous quantity, a run that failed, or a caller that wants it to end.
+    fn gradients(
+        &self,
+        inputs: &[String],
+        progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
+    ) -> Result<Gradients, GradientError>;
     /// As [`SceneCase::work_precision`].
     ///
     /// # Errors
@@ -264,13 +269,17 @@ impl<C: SceneCase> Scene for Read<C> {
         }
     }
 
-    fn gradients(&self, inputs: &[String]) -> Result<Gradients, GradientError> {
+    fn gradients(
+        &self,
+        inputs: &[String],
+        progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
+    ) -> Result<Gradients, GradientError> {
         let resolved = self.resolved();
         let inputs =
             inputs.iter().map(|p| gradients::followed(&resolved, p)).collect::<Result<Vec<_>, _>>()?;
         let built = self.take().map_err(|e| RunError::refused(&e))?;
         let varied = || inputs.iter().map(|i| self.beside(i)).collect();
-        let found = C::gradients(&self.loaded, built, &varied)?;
+        let found = C::gradients(&self.loaded, built, &varied, progress).map_err(GradientError::plain)?;
         Ok(Gradients { inputs, ..found })
     }
 

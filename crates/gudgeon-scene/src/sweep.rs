@@ -9,7 +9,7 @@ use indexmap::IndexMap;
 use crate::error::{Progress, RunError};
 use crate::many::run_points;
 use crate::scene::Scene;
-use crate::sweep_input::{Spacing, Sweep, number, values};
+use crate::sweep_input::{Axis, Spacing, Sweep, number, values};
 
 /// Results drawn when none are named.
 const DRAWN: usize = 6;
@@ -25,7 +25,7 @@ fn short(path: &str) -> String {
 }
 
 /// The varied input as numbers with a unit, or its place in the list when it is not a number.
-fn abscissa(s: &Sweep, values: &[String]) -> (Column, bool) {
+fn abscissa(s: &Axis, values: &[String]) -> (Column, bool) {
     let numbers: Option<Vec<(f64, &str)>> = values.iter().map(|v| number(v)).collect();
     let name = short(&s.path);
     match numbers {
@@ -97,10 +97,10 @@ pub fn run(
     threads: usize,
     progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
 ) -> Result<usize, RunError> {
-    let Some(first) = sweeps.first() else { return Ok(0) };
+    let Some(first) = sweeps.first().map(|s| &s.axis) else { return Ok(0) };
     let refused = |e: BuildError| RunError::Refused(e.to_string());
     let inner = values(first).map_err(refused)?;
-    let outer = match sweeps.get(1) {
+    let outer = match sweeps.get(1).map(|s| &s.axis) {
         Some(s) => Some((s, values(s).map_err(refused)?)),
         None => None,
     };
@@ -137,7 +137,7 @@ pub fn run(
 const FEW: usize = 8;
 
 /// The changes of every combination, the first input running fastest.
-fn combinations((first, inner): (&Sweep, &[String]), outer: Option<(&Sweep, &[String])>) -> Vec<Vec<String>> {
+fn combinations((first, inner): (&Axis, &[String]), outer: Option<(&Axis, &[String])>) -> Vec<Vec<String>> {
     let rows: Vec<Option<String>> = match outer {
         None => vec![None],
         Some((s, v)) => v.iter().map(|v| Some(format!("{}={v}", s.path))).collect(),
@@ -213,7 +213,7 @@ struct Sheet<'a> {
     points: &'a [Point],
     told: &'a IndexMap<String, Value>,
     wanted: &'a [String],
-    first: &'a Sweep,
+    first: &'a Axis,
     inner: &'a [String],
 }
 
@@ -245,7 +245,7 @@ impl Sheet<'_> {
     }
 
     /// Two inputs that are numbers.
-    fn map(&self, second: &Sweep, outer: &[String]) -> (Series, Vec<Figure>) {
+    fn map(&self, second: &Axis, outer: &[String]) -> (Series, Vec<Figure>) {
         let (x, y) = (abscissa(self.first, self.inner).0, abscissa(second, outer).0);
         let along = outer.iter().flat_map(|_| x.values.clone()).collect();
         let across = y.values.iter().flat_map(|v| std::iter::repeat_n(*v, self.inner.len())).collect();
@@ -285,7 +285,7 @@ impl Sheet<'_> {
 /// Values over a sweep by equal ratios that span more than this factor are drawn by equal ratios too.
 const WIDE: f64 = 100.0;
 
-fn lines(title: String, s: &Sweep, table: &Series, lines: Vec<(String, String)>) -> Figure {
+fn lines(title: String, s: &Axis, table: &Series, lines: Vec<(String, String)>) -> Figure {
     let log_x = s.spacing == Spacing::Log;
     let (lo, hi) = lines
         .iter()
@@ -326,18 +326,10 @@ mod tests {
     #[test]
     fn wide_results_of_a_sweep_by_ratios_are_drawn_by_ratios() {
         let drawn = |spacing, values: Vec<f64>| {
-            let sweep = Sweep {
-                path: "rig.x".into(),
-                values: Vec::new(),
-                from: String::new(),
-                to: String::new(),
-                points: 0,
-                spacing,
-                results: Vec::new(),
-            };
+            let axis = Axis { path: "rig.x".into(), spacing, ..Axis::default() };
             let column = |name: &str, values| Column { name: name.into(), unit: String::new(), values };
             let table = Series { axis: column("x", vec![1.0; 3]), columns: vec![column("y", values)] };
-            match lines(String::new(), &sweep, &table, vec![("y".into(), "y".into())]).kind {
+            match lines(String::new(), &axis, &table, vec![("y".into(), "y".into())]).kind {
                 FigureKind::Lines { log_x, log_y, .. } => (log_x, log_y),
                 _ => (false, false),
             }

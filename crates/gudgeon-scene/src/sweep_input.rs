@@ -5,10 +5,9 @@ use gudgeon_core::quantity::with_decimal_point;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// One varied input. Give `values`, or `from`, `to` and `points`.
-#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Sweep {
+/// A varied input and the values it takes: `values`, or `points` values between `from` and `to`.
+#[derive(Debug, Clone, Default, Serialize, Deserialize, JsonSchema)]
+pub struct Axis {
     /// Path of the input, `rig.speed` or `models.oil.model`.
     pub path: String,
     /// The values as a case would write them: `["1 um", "2 um"]`, `["complementarity", "elrod_adams"]`.
@@ -27,6 +26,15 @@ pub struct Sweep {
     /// How they are spaced.
     #[serde(default)]
     pub spacing: Spacing,
+}
+
+/// One varied input. Give `values`, or `from`, `to` and `points`.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Sweep {
+    /// The input and its values.
+    #[serde(flatten)]
+    pub axis: Axis,
     /// Results that the report draws over the sweep; empty: the first six.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub results: Vec<String>,
@@ -54,11 +62,11 @@ pub fn number(text: &str) -> Option<(f64, &str)> {
     value.parse::<f64>().ok().filter(|v| v.is_finite()).map(|v| (v, unit.trim()))
 }
 
-/// The values of a sweep as a case would write them.
+/// The values of an input as a case would write them.
 ///
 /// # Errors
 /// Values that are given twice or not at all, ends that are no numbers of one unit.
-pub fn values(s: &Sweep) -> Result<Vec<String>, BuildError> {
+pub fn values(s: &Axis) -> Result<Vec<String>, BuildError> {
     let ends = !s.from.is_empty() || !s.to.is_empty() || s.points != 0;
     if !s.values.is_empty() {
         return if ends {
@@ -114,7 +122,7 @@ pub fn legal(sweeps: &[Sweep]) -> Vec<BuildError> {
     }
     let mut runs = 1usize;
     for (k, s) in sweeps.iter().enumerate() {
-        match values(s) {
+        match values(&s.axis) {
             Ok(v) => runs = runs.saturating_mul(v.len()),
             Err(e) => errors.push(e.within(&format!("sweeps.{k}"))),
         }

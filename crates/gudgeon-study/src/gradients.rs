@@ -3,7 +3,7 @@
 use gudgeon_core::result::{Gradient, GradientInput, Gradients, Note};
 use gudgeon_scene::gradients::{assignment, input};
 use gudgeon_scene::run::run_alone;
-use gudgeon_scene::{Checked, GradientError, Progress, RunError, Stopped, foresee, unwatched};
+use gudgeon_scene::{Checked, GradientError, Progress, RunError, Stopped, foresee};
 
 /// Part of itself by which an input is made smaller and larger in runs. The error of a derivative is that of the runs over this, and goes with its
 /// square.
@@ -26,7 +26,7 @@ pub fn gradients(
         foresee::all_known(results, &known).map_err(RunError::Refused)?;
     }
     progress(Progress { phase: "derivatives".into(), fraction: 0.0 }).map_err(RunError::from)?;
-    let mut found = match base.case.gradients(inputs) {
+    let mut found = match base.case.gradients(inputs, progress) {
         Err(GradientError::NoMethod(why)) => {
             let mut found = differences(base, inputs, progress)?;
             found.notes.push(Note::info("gradients_by_runs", format!("differences of runs: {why}")));
@@ -51,16 +51,26 @@ pub fn differences(
 ) -> Result<Gradients, GradientError> {
     let resolved = base.case.resolved();
     let inputs = inputs.iter().map(|p| input(&resolved, p, SHARE)).collect::<Result<Vec<_>, _>>()?;
-    let own = run_alone(base, &mut unwatched)?;
+    let runs = 1 + 2 * inputs.len();
+    let mut done = 0;
+    let mut run = |case: &Checked, phase: &str| -> Result<Results, GradientError> {
+        let mut tell = |part: f64| {
+            progress(Progress { phase: phase.to_owned(), fraction: (f64::from(done) + part) / runs as f64 })
+        };
+        tell(0.0).map_err(RunError::from)?;
+        let found = run_alone(case, &mut |p| tell(p.fraction))?;
+        done += 1;
+        Ok(found.results)
+    };
+    let own = run(base, "the case as it stands")?;
     let mut found = Gradients {
         method: format!("central differences of runs with each input {SHARE} of itself lower and higher"),
-        results: own.results.into_iter().map(|(name, v)| (name, Gradient::new(v))).collect(),
+        results: own.into_iter().map(|(name, v)| (name, Gradient::new(v))).collect(),
         ..Gradients::default()
     };
-    for (k, i) in inputs.iter().enumerate() {
-        let fraction = (1 + 2 * k) as f64 / (1 + 2 * inputs.len()) as f64;
-        progress(Progress { phase: i.path.clone(), fraction }).map_err(RunError::from)?;
-        let [low, high] = [at(base, i, -i.step)?, at(base, i, i.step)?];
+    for i in &inputs {
+        let low = run(&changed(base, i, -i.step)?, &i.path)?;
+        let high = run(&changed(base, i, i.step)?, &i.path)?;
         for (name, g) in &mut found.results {
             match (low.get(name), high.get(name)) {
                 (Some(a), Some(b)) => g.difference(a.value, b.value, i.step),
@@ -68,7 +78,6 @@ pub fn differences(
             }
         }
     }
-    let runs = 1 + 2 * inputs.len();
     found.counters.insert("runs".into(), runs as u64);
     found.inputs = inputs;
     Ok(found)
@@ -76,13 +85,10 @@ pub fn differences(
 
 type Results = indexmap::IndexMap<String, gudgeon_core::result::Value>;
 
-/// Results with an input changed by `d`.
-fn at(base: &Checked, i: &GradientInput, d: f64) -> Result<Results, GradientError> {
-    let set = [assignment(i, i.value + d)];
+/// The case with an input changed by `d`.
+fn changed(base: &Checked, i: &GradientInput, d: f64) -> Result<Checked, GradientError> {
     let refuse =
         |why: String| GradientError::Input { path: i.path.clone(), why: format!("cannot be varied: {why}") };
-    let changed = base
-        .with(&set)
-        .map_err(|r| refuse(r.diagnostics.first().map_or_else(String::new, |d| d.headline())))?;
-    Ok(run_alone(&changed, &mut unwatched)?.results)
+    base.with(&[assignment(i, i.value + d)])
+        .map_err(|r| refuse(r.diagnostics.first().map_or_else(String::new, |d| d.headline())))
 }

@@ -125,7 +125,7 @@ fn it_is_swapped_for_a_built_in_model_and_back() {
         .map_err(|r| r.to_string())
         .expect("one oil is possible");
     assert!(c.variants[0].outcome.is_ok());
-    let why = c.variants[1].outcome.as_ref().expect_err("`constant` needs a viscosity");
+    let why = c.variants[1].why().expect("`constant` needs a viscosity");
     assert!(why.contains("viscosity"), "{why}");
     // With its key it is a case like any other.
     let set = [r#"models.oil={ model = "constant", viscosity = "5 mPa s" }"#.to_owned()];

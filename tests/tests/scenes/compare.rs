@@ -1,5 +1,7 @@
 //! One case with several models side by side.
 
+use std::sync::Arc;
+
 use crate::common::*;
 use gudgeon_study::{Plan, Subject, compare, compare_cases};
 
@@ -56,7 +58,7 @@ fn refused_combinations_keep_their_reason() {
     let c = compare(&case_file("alcohol-1600-3000"), &quick, &swaps, &mut gudgeon_scene::unwatched)
         .unwrap_or_else(|r| panic!("{r}"));
     assert!(c.variants[0].outcome.is_ok() && c.variants[2].outcome.is_ok());
-    let why = c.variants[1].outcome.as_ref().expect_err("newton_groove cannot be marched by the degree");
+    let why = c.variants[1].why().expect("newton_groove cannot be marched by the degree");
     assert!(
         why.starts_with("refused") && why.contains("degree_march") && why.contains("newton_groove"),
         "{why}"
@@ -109,8 +111,8 @@ fn two_swaps_make_every_combination() {
 #[test]
 fn several_cases_are_one_more_choice() {
     let case = |name: &str, own: &[&str]| {
-        let own: Vec<String> = own.iter().map(|o| (*o).to_owned()).collect();
-        Subject { path: case_file(name), overrides: own.clone(), own }
+        let case = Arc::new(checked(name, own));
+        Subject { case, own: own.iter().map(|o| (*o).to_owned()).collect() }
     };
     let plan = Plan {
         cases: vec![case("pin-85-alcohol", &[]), case("pin-85-alcohol", &["pin.inner=12 mm"])],

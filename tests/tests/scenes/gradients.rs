@@ -3,7 +3,7 @@
 use crate::common::*;
 use gudgeon_core::result::Gradients;
 use gudgeon_scene::gradients::{assignment, input};
-use gudgeon_scene::{GradientError, unwatched};
+use gudgeon_scene::{GradientError, RunError, Stopped, unwatched};
 use gudgeon_study::gradients::{differences, gradients};
 
 const CASE: &str = "turbo-diesel-120";
@@ -89,9 +89,15 @@ fn what_is_no_continuous_quantity_is_refused_with_the_reason() {
 #[test]
 fn a_case_without_derivatives_of_its_own_is_differenced() {
     let pin = checked("pin-85-alcohol", &[]);
-    assert!(matches!(pin.case.gradients(&by(&["limits.boss_pressure"])), Err(GradientError::NoMethod(_))));
+    assert!(matches!(
+        pin.case.gradients(&by(&["limits.boss_pressure"]), &mut unwatched),
+        Err(GradientError::NoMethod(_))
+    ));
     let oil = checked(CASE, &["models.oil_transport.model=liner_film"]);
-    assert!(matches!(oil.case.gradients(&by(&["engine.speed"])), Err(GradientError::NoMethod(_))));
+    assert!(matches!(
+        oil.case.gradients(&by(&["engine.speed"]), &mut unwatched),
+        Err(GradientError::NoMethod(_))
+    ));
     let decided = checked(CASE, &["models.ring_motion.model=three_seat"]);
     let found =
         gradients(&decided, &by(&["gas.meter_temperature"]), &by(&["blow_by"]), &mut unwatched).unwrap();
@@ -133,5 +139,31 @@ fn a_shaft_line_at_its_mean_speed_is_differentiated() {
     assert!(compared > 30, "{compared}");
     // A model that iterates is good to its tolerance only.
     let iterated = checked("compressor-4-throw", &[]);
-    assert!(matches!(iterated.case.gradients(&inputs), Err(GradientError::NoMethod(_))));
+    assert!(matches!(iterated.case.gradients(&inputs, &mut unwatched), Err(GradientError::NoMethod(_))));
+}
+
+/// Whoever asks for derivatives hears how far they are, and can end them at whatever is told: followed along a cycle, at the mean speed of a line, by runs.
+#[test]
+fn derivatives_are_told_of_and_can_be_ended() {
+    for (case, set, input) in [
+        (CASE, &[][..], "rings.0.cold_gap"),
+        ("compressor-4-throw", &["models.torsion.model=orders"][..], "speed"),
+        ("pin-85-alcohol", &[][..], "pin.inner"),
+    ] {
+        let c = checked(case, set);
+        let mut told = Vec::new();
+        let mut hear = |p: gudgeon_scene::Progress| {
+            told.push(p.fraction);
+            Ok(())
+        };
+        gradients(&c, &by(&[input]), &[], &mut hear).unwrap();
+        assert!(told.iter().filter(|f| **f > 0.0 && **f <= 1.0).count() >= 1, "{case}: {told:?}");
+        assert!(told.is_sorted(), "{case}: {told:?}");
+        let mut left = told.len();
+        let ended = gradients(&c, &by(&[input]), &[], &mut |_| {
+            left -= 1;
+            if left > 0 { Ok(()) } else { Err(Stopped) }
+        });
+        assert!(matches!(ended, Err(GradientError::Run(RunError::Stopped))), "{case}: {ended:?}");
+    }
 }

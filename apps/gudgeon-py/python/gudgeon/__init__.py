@@ -9,7 +9,7 @@
 
 from ._native import __version__
 from .case import Case, Explanation, example, load, loads
-from .compare import compare
+from .compare import Comparison, Shares, compare
 from .errors import CaseError, Mistake, RunError
 from .function import Function
 from .gradients import Gradients
@@ -23,6 +23,7 @@ from .tabulated import tabulated_cylinder_pressure, tabulated_drive, tabulated_o
 __all__ = [
     "Case",
     "CaseError",
+    "Comparison",
     "Explanation",
     "Failure",
     "Function",
@@ -32,6 +33,7 @@ __all__ = [
     "Result",
     "Rows",
     "RunError",
+    "Shares",
     "Study",
     "Table",
     "__version__",

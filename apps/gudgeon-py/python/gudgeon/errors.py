@@ -19,7 +19,7 @@ class Mistake:
     path: str
     """Path of the value, ``rings.0.cold_gap``; empty for the whole file."""
     file: str
-    """The file, or ``--set`` for a change."""
+    """The file; ``--set`` for a change, ``--swap`` for a value that is compared."""
     line: int | None
     """Line from 1; none where no place in the text is to blame."""
     column: int | None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -9,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from . import _native
 from .table import Table
 
 if TYPE_CHECKING:
@@ -145,58 +147,27 @@ def _carried(result: Result, figure: dict[str, Any]) -> Figure | None:
     return _curves(table, title, hint, said["x"], lines, log_x=said["log_x"], log_y=said["log_y"])
 
 
-@dataclass
-class _Group:
-    """Curves over the cycle that belong together: patterns of columns with their labels."""
-
-    title: str
-    hint: str
-    columns: list[tuple[str, str, bool]]
-    """Pattern of names whose ``#`` is a number, label, dashed."""
-    log_y: bool = False
+_OVER_CYCLE: list[dict[str, Any]] = json.loads(_native.over_cycle())
+"""Columns over the cycle that form a figure: the same list that the page of a run is drawn from."""
 
 
-_OVER_CYCLE: dict[str, _Group] = {
-    "pressures": _Group("Gas pressures", "absolute; behind the rings dashed", [("cylinder.p", "cylinder", False), ("land#.p", "land #", False), ("ring#.back.p", "behind ring #", True)], True),
-    "skirt": _Group("Skirt across the bore", "its edges, towards the anti-thrust side positive", [("skirt.e_top", "upper", False), ("skirt.e_bottom", "lower", False)]),
-    "side_forces": _Group("Forces across the bore", "towards the anti-thrust side positive", [("skirt.side_force", "film and contact", False), ("rod.side_force", "rod", True)]),
-    "skirt_gap": _Group("Smallest gap", "of both sides of the skirt", [("thrust.h_min", "thrust", False), ("anti_thrust.h_min", "anti-thrust", False)]),
-    "skirt_pressure": _Group("Highest film pressure", "of both sides of the skirt", [("thrust.p_max", "thrust", False), ("anti_thrust.p_max", "anti-thrust", False)]),
-    "skirt_friction": _Group("Friction force of the skirt", "on the piston, away from the head positive", [("skirt.friction_force", "skirt", False)]),
-    "position": _Group("Rings in their grooves", "0 on the lower flank, 1 on the upper", [("ring#.position", "ring #", False)]),
-    "lift": _Group("Ring lift", "height above the lower flank", [("ring#.lift", "ring #", False)]),
-    "film": _Group("Film thickness", "smallest over the running face", [("ring#.h_min", "ring #", False)]),
-    "gas_flow": _Group("Gas past the rings", "towards the crankcase positive", [("ring#.flow", "ring #", False), ("blow_by.rate", "blow-by", True)]),
-    "friction_force": _Group("Friction force", "on the rings, towards the head positive", [("ring#.friction_force", "ring #", False)]),
-    "friction_power": _Group("Friction power", "of the rings", [("ring#.friction_power", "ring #", False)]),
-}
-
-
-def _over_cycle(table: Table, group: _Group) -> Curves | None:
+def _over_cycle(table: Table, group: dict[str, Any], only: int | None = None) -> Curves | None:
     lines: list[tuple[str, str, bool, int | None]] = []
-    for pattern, label, dash in group.columns:
-        matcher = re.compile(re.escape(pattern).replace(r"\#", r"(\d+)"))
+    for pattern, label, color, *dash in group["columns"]:
+        matcher = re.compile(re.escape(pattern).replace(r"\#", rf"({only or r'[0-9]+'})"))
         for name in table:
             found = matcher.fullmatch(name)
             if found:
-                # What is below a ring has the colour of the ring.
                 number = int(found[1]) if found.groups() else 0
-                color = number - 1 - pattern.startswith("land") if found.groups() else None if pattern != "skirt.e_bottom" else 1
-                lines.append((label.replace("#", str(number)), name, dash, color))
+                # A negative colour counts from the number: what is below a ring has its colour.
+                own = None if color == "text" else color if color >= 0 else number + color
+                lines.append((label.replace("#", str(number)), name, bool(dash), own))
     # The space above ring 1 is the cylinder.
     if any(c == "cylinder.p" for _, c, _, _ in lines):
         lines = [line for line in lines if line[1] != "land1.p"]
-    if not lines:
+    if not lines or group.get("unless_zero") and not any(table[c].any() for _, c, _, _ in lines):
         return None
-    if all(color is None for *_, color in lines):
-        lines = [(label, c, dash, k) for k, (label, c, dash, _) in enumerate(lines)]
-    return _curves(table, group.title, group.hint, table.axis, lines, log_y=group.log_y)
-
-
-def _axial_forces(table: Table, ring: int) -> Curves | None:
-    names = [("gas", 0, False), ("inertia", 1, False), ("film", 2, False), ("damping", 3, False), ("flank", 7, True)]
-    lines = [("flank reaction" if n == "flank" else n, f"ring{ring}.force_{n}", dash, color) for n, color, dash in names if f"ring{ring}.force_{n}" in table]
-    return _curves(table, f"Axial forces on ring {ring}", "towards the head positive", table.axis, lines) if lines else None
+    return _curves(table, group["title"].replace("#", str(only)), group["hint"], table.axis, lines, log_y=group.get("log", False))
 
 
 def campbell(result: Result) -> Curves | None:
@@ -237,9 +208,12 @@ def of(result: Result) -> dict[str, Figure]:
         made = {"campbell": diagram, **made}
     if result.series.axis == "theta":
         rings = sorted({int(m[1]) for c in result.series if (m := re.match(r"ring(\d+)\.", c))})
-        groups = {name: _over_cycle(result.series, g) for name, g in _OVER_CYCLE.items()}
-        groups |= {f"ring{k}_forces": _axial_forces(result.series, k) for k in rings}
-        made |= {name: g for name, g in groups.items() if g is not None}
+        for group in _OVER_CYCLE:
+            # A figure for every ring, or one of all.
+            for k in rings if "#" in group["name"] else [None]:
+                drawn = _over_cycle(result.series, group, k)
+                if drawn is not None:
+                    made[group["name"].replace("#", str(k))] = drawn
     return made
 
 

@@ -67,14 +67,6 @@ class Rows(Mapping[str, np.ndarray]):
                 column[f.row] = getattr(f, word)
             self._columns[word] = column
 
-    def renamed(self, names: Mapping[str, str]) -> Rows:
-        """The same rows with other names for some columns."""
-        own = Rows.__new__(Rows)
-        own.__dict__.update(self.__dict__)
-        own.inputs = [names.get(name, name) for name in self.inputs]
-        own._columns = {names.get(name, name): column for name, column in self._columns.items()}
-        return own
-
     @property
     def ok(self) -> np.ndarray:
         """Which rows hold results that are what was asked for."""

@@ -1,7 +1,8 @@
 //! `gudgeon compare CASE… --swap PATH=A,B,C`
 
 use std::fmt::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use gudgeon_core::result::{Comparison, NoteLevel, RunResult};
 use gudgeon_study::{Plan, Subject};
@@ -14,20 +15,23 @@ use crate::ui::{Ui, number, table, unit, wrapped};
 
 pub fn compare(a: &CompareArgs, ui: &Ui) -> Result<(), Failure> {
     let swaps = a.swap.iter().map(|s| values("--swap", s)).collect::<Result<Vec<_>, _>>()?;
-    let cases: Vec<Subject> = a.cases.iter().map(|c| subject(c, &a.set)).collect();
+    let mut cases: Vec<Subject> = Vec::new();
     let mut names: Vec<String> = Vec::new();
-    for c in &cases {
-        let name = checked(&c.path, &c.overrides, ui)?.name;
-        if !names.contains(&name) {
-            names.push(name);
+    for text in &a.cases {
+        let given = given(text);
+        let set: Vec<String> = a.set.iter().chain(&given.own).cloned().collect();
+        let case = checked(&given.path, &set, ui)?;
+        if !names.contains(&case.name) {
+            names.push(case.name.clone());
         }
+        cases.push(Subject { case: Arc::new(case), own: given.own });
     }
-    let plan = Plan { cases, swaps, verify: a.verify, headlines: a.results.clone() };
+    let plan = Plan { cases, swaps, verify: a.verify, headlines: a.results.clone(), ..Plan::default() };
     let name = match names.as_slice() {
         [first, _, _, _, ..] => format!("{first}+{}", names.len() - 1),
         few => few.join("+"),
     };
-    let folder = open_out(a.out.as_deref(), &plan.cases[0].path, &name, "-compare")?;
+    let folder = open_out(a.out.as_deref(), &given(&a.cases[0]).path, &name, "-compare")?;
     let comparison = {
         let bar = ui.bar();
         gudgeon_study::compare_cases(&plan, &mut |p| bar.show(p))?
@@ -49,17 +53,21 @@ pub fn compare(a: &CompareArgs, ui: &Ui) -> Result<(), Failure> {
     }
 }
 
-/// `CASE[,PATH=VALUE]…`, with the changes that all cases have.
-fn subject(text: &str, set: &[String]) -> Subject {
-    let alone = Subject { path: text.into(), overrides: set.to_vec(), own: Vec::new() };
+/// A case file, and the changes behind its name.
+struct Given {
+    path: PathBuf,
+    own: Vec<String>,
+}
+
+/// `CASE[,PATH=VALUE]…`
+fn given(text: &str) -> Given {
     let parts = split(text);
     match parts.as_slice() {
         // A file may have a comma in its name.
         [path, own @ ..] if !Path::new(text).exists() && own.iter().all(|o| o.contains('=')) => {
-            let overrides = set.iter().chain(own).cloned().collect();
-            Subject { path: path.into(), overrides, own: own.to_vec() }
+            Given { path: path.into(), own: own.to_vec() }
         }
-        _ => alone,
+        _ => Given { path: text.into(), own: Vec::new() },
     }
 }
 
@@ -129,7 +137,7 @@ fn letter(i: usize) -> String {
 /// Every combination with what its run says. Writing to a String cannot fail.
 fn listed(s: &mut String, c: &Comparison) {
     for (i, v) in c.variants.iter().enumerate() {
-        let why = v.outcome.as_ref().err().map_or_else(String::new, |e| format!("  {e}"));
+        let why = v.why().map_or_else(String::new, |why| format!("  {why}"));
         let _ = writeln!(s, "  {} {}{why}", letter(i), v.label);
         for n in v.outcome.iter().flat_map(|r| &r.solver.notes) {
             let _ = writeln!(s, "      note: {}", n.text);
@@ -141,11 +149,11 @@ fn listed(s: &mut String, c: &Comparison) {
 fn gathered(s: &mut String, c: &Comparison) {
     let good = c.variants.iter().filter(|v| v.outcome.is_ok()).count();
     let _ = writeln!(s, "  {} combinations, {good} with a result", c.variants.len());
-    let (mut missing, mut failed): (IndexMap<&str, Vec<&str>>, _) = (IndexMap::new(), Vec::new());
+    let (mut missing, mut failed): (IndexMap<String, Vec<&str>>, _) = (IndexMap::new(), Vec::new());
     let mut topics: IndexMap<&str, usize> = IndexMap::new();
     for v in &c.variants {
         match &v.outcome {
-            Err(why) => missing.entry(why).or_default().push(&v.label),
+            Err(_) => missing.entry(v.why().unwrap_or_default()).or_default().push(&v.label),
             Ok(r) => {
                 failed.extend(r.solver.notes.iter().find(|n| n.level == NoteLevel::Failure).map(|n| (v, n)));
                 for n in &r.solver.notes {
@@ -233,11 +241,10 @@ mod tests {
 
     #[test]
     fn a_case_may_carry_changes() {
-        let set = ["solver.method=implicit".to_owned()];
-        let s = subject("no such case.toml, engine.speed=1500 rpm,a=[1,2]", &set);
-        assert_eq!((s.path.to_str(), s.own.len()), (Some("no such case.toml"), 2));
-        assert_eq!(s.overrides, ["solver.method=implicit", "engine.speed=1500 rpm", "a=[1,2]"]);
+        let g = given("no such case.toml, engine.speed=1500 rpm,a=[1,2]");
+        assert_eq!(g.path, Path::new("no such case.toml"));
+        assert_eq!(g.own, ["engine.speed=1500 rpm", "a=[1,2]"]);
         // Not a change: the name of a file.
-        assert_eq!(subject("a,b.toml", &set).path, Path::new("a,b.toml"));
+        assert_eq!(given("a,b.toml").path, Path::new("a,b.toml"));
     }
 }

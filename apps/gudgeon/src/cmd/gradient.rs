@@ -59,7 +59,7 @@ fn listed(g: &Gradients) -> String {
         for k in order(g, name) {
             let i = &g.inputs[k];
             let (derivative, units) = match result.by.get(k).copied().flatten() {
-                Some(d) => (number(d), per(&result.value.unit, &i.unit)),
+                Some(d) => (number(d), unit(&g.unit(name, k).unwrap_or_default())),
                 None => ("none here".into(), String::new()),
             };
             let elasticity = g.elasticity(name, k).map_or("-".into(), |e| format!("{e:+.4}"));
@@ -68,15 +68,6 @@ fn listed(g: &Gradients) -> String {
         let _ = writeln!(out, "{}", table(&rows, &[1, 3, 4]));
     }
     out
-}
-
-/// Unit of a derivative.
-fn per(result: &str, input: &str) -> String {
-    match (result, input) {
-        (r, "1") => unit(r),
-        (r, i) if i.contains([' ', '/']) => format!("{r}/({i})"),
-        (r, i) => format!("{r}/{i}"),
-    }
 }
 
 /// All results: by which part of itself each changes with a part of the inputs. Inputs and results that matter most come first.

@@ -7,7 +7,7 @@ use gudgeon_study::study::{Analysis, Dependence, Finding, Group, Job, Status, St
 
 use crate::args::{StudyCollectArgs, StudyCommand, StudyNewArgs, StudyRunArgs, StudyStatusArgs};
 use crate::failure::Failure;
-use crate::ui::{Ui, number, table};
+use crate::ui::{Ui, number, table, wrapped};
 
 pub fn study(a: &StudyCommand, ui: &Ui) -> Result<(), Failure> {
     match a {
@@ -163,6 +163,9 @@ fn of_group(a: &Analysis, group: &Group) -> String {
                 for line in table(&rows, &columns).lines() {
                     let _ = writeln!(out, "  {line}");
                 }
+                if let Dependence::Shares(s) = &f.dependence {
+                    out.push_str(&wrapped(&s.without().unwrap_or_default(), 4));
+                }
             }
             Err(why) => {
                 let _ = writeln!(out, "    {why}");
@@ -218,9 +221,9 @@ fn rows(a: &Analysis, f: &Finding) -> Result<Vec<Vec<String>>, String> {
                 out.push(vec![format!("without {} inputs by which it has no derivative", l.undefined)]);
             }
         }
-        Dependence::Shares(anova) => {
+        Dependence::Shares(s) => {
             out.push(heads(["input", "share of the variance", "largest effect"]));
-            out.extend(anova.effects.iter().map(|e| {
+            out.extend(s.anova.effects.iter().map(|e| {
                 let name = e.factors.iter().map(|k| input(*k)).collect::<Vec<_>>().join(" × ");
                 cells(&name, [e.share, e.largest])
             }));

@@ -46,53 +46,55 @@
     return [{ label, x: theta, y, unit: lines[0].unit, color: "var(--fg)", dash: "2 3", thin: true }];
   };
 
-  // Pressures: what is below a ring has the ring's colour, what is behind it the same colour dashed.
-  const p = [...take("cylinder.p", "cylinder", { color: "var(--fg)" })];
-  if (p.length) used.add("land1.p"); else p.push(...take("land1.p", "land 1", { color: "var(--fg)" }));
-  for (let k = 2; k <= lands; k++) {
-    const crankcase = k === n + 1;
-    p.push(...take(`land${k}.p`, crankcase ? "crankcase" : `land ${k}`, { color: crankcase ? "var(--muted)" : color(k - 2) }));
-  }
-  for (let i = 1; i <= n; i++) p.push(...take(`ring${i}.back.p`, "behind ring " + i, { color: color(i - 1), dash: "5 4" }));
-  add(p, { title: "Gas pressures", hint: n > 1 ? "absolute; land 2 is below ring 1; behind the rings dashed" : n ? "absolute; behind the ring dashed" : "absolute", modes: ["log", "linear"], height: 320, events: events(/^(land|cylinder)/) });
-
-  // The piston across its bore.
+  // Which columns form a figure stands in over_cycle.json, for this page and for Python; here is how they look on it.
   const sides = events(/^(thrust side|anti-thrust side|piston)$/);
-  const edges = (key, title, hint) => add([...take("skirt.e_top" + key, "upper", { color: color(0) }), ...take("skirt.e_bottom" + key, "lower", { color: color(1) })], { title, hint, events: sides });
-  edges("", "Skirt across the bore", "its upper and lower edge, towards the anti-thrust side positive");
-  edges("_rate", "Velocity across the bore", "of its upper and lower edge, towards the anti-thrust side positive");
-  const both = (key, title, hint, spec) => {
-    const lines = [...take("thrust." + key, "thrust", { color: color(0) }), ...take("anti_thrust." + key, "anti-thrust", { color: color(1) })];
-    // Surfaces that never touch need no picture of it.
-    if (lines.some((l) => l.y.some((v) => v !== 0))) add(lines, Object.assign({ title, hint }, spec));
+  const logarithm = { modes: ["linear", "log"] };
+  const looks = {
+    pressures: { modes: ["log", "linear"], height: 320, events: events(/^(land|cylinder)/) },
+    skirt: { events: sides }, skirt_velocity: { events: sides }, side_forces: { events: sides },
+    skirt_gap: logarithm, skirt_pressure: logarithm, film: { modes: ["linear", "log"], height: 250 },
+    position: { lanes: true, events: events(/^ring/) }, lift: { events: events(/^ring/) },
   };
-  add([...take("skirt.side_force", "film and contact", { color: color(0) }), ...take("rod.side_force", "rod", { color: color(1), dash: "5 4" })], { title: "Forces across the bore", hint: "towards the anti-thrust side positive", events: sides });
-  both("h_min", "Smallest gap", "of the thrust and the anti-thrust side", { modes: ["linear", "log"] });
-  both("p_max", "Highest film pressure", "of the thrust and the anti-thrust side, above that of the crankcase", { modes: ["linear", "log"] });
-  both("contact_force", "Force of solid contact", "of the thrust and the anti-thrust side, across the bore");
-  add(take("skirt.friction_force", "skirt", { color: color(0) }), { title: "Friction force of the skirt", hint: "on the piston, away from the head positive" });
-  add(take("skirt.friction_power", "skirt", { color: color(0) }), { title: "Friction power of the skirt" });
-
-  const position = perRing("position");
-  add(position.map((l) => Object.assign(l, { short: l.label.replace("ring ", "R") })), { title: "Rings in their grooves", hint: "0 on the lower flank, 1 on the upper", lanes: true, events: events(/^ring/) });
-  if (!position.length) add(perRing("lift"), { title: "Ring lift", hint: "height above the lower flank", events: events(/^ring/) });
-  else for (let i = 1; i <= n; i++) if (!columns.has(`ring${i}.position`)) add(take(`ring${i}.lift`, "ring " + i, { color: color(i - 1) }), { title: `Lift of ring ${i}` });
-
-  add(perRing("h_min"), { title: "Film thickness", hint: "smallest over the running face", modes: ["linear", "log"], height: 250 });
-
-  const flow = perRing("flow"), rate = columns.has("blow_by.rate") ? take("blow_by.rate", "blow-by", { color: "var(--fg)", dash: "2 3" }) : [];
-  add([...flow, ...rate], { title: "Gas past the rings", hint: "instantaneous, towards the crankcase positive" });
-  add([...perRing("cumulative_mass"), ...take("blow_by.cumulative", "blow-by", { color: "var(--fg)", dash: "2 3" })], { title: "Gas past the rings, cumulative", hint: "a falling curve is blow-back" });
-
-  const friction = perRing("friction_force");
-  add([...friction, ...sum(friction, "all rings")], { title: "Friction force", hint: "on the rings, towards the head positive" });
-  const power = perRing("friction_power");
-  add([...power, ...sum(power, "all rings")], { title: "Friction power" });
-
-  const forces = [["gas", 0, ""], ["inertia", 1, ""], ["film", 2, ""], ["damping", 3, ""], ["flank", 7, "5 4"]];
-  for (let i = 1; i <= n; i++) {
-    const lines = forces.flatMap(([key, c, dash]) => take(`ring${i}.force_${key}`, key === "flank" ? "flank reaction" : key, { color: color(c), dash }));
-    add(lines, { title: `Axial forces on ring ${i}`, hint: "towards the head positive", modes: ["±log", "linear"], height: 240, events: events(new RegExp(`^ring${i}$`)) });
+  const dashes = { dashed: "5 4", dotted: "2 3" };
+  // A negative colour counts from the number in the name: what is below a ring has its colour.
+  const curves = (g, only) => g.columns.flatMap(([name, label, c, dash]) => {
+    const own = (k) => take(name.replace("#", k), label.replace("#", k), { color: c === "text" ? "var(--fg)" : color(c < 0 ? k + c : c), dash: dashes[dash] });
+    if (!name.includes("#")) return own(0);
+    const last = name.startsWith("land") ? lands : n, out = [];
+    for (let k = only || 1; k <= (only || last); k++) out.push(...own(k));
+    return out;
+  });
+  const titled = (g, k) => ({ title: g.title.replace("#", k), hint: g.hint });
+  // What needs more than its columns.
+  const special = {
+    // The space above ring 1 is the cylinder, the one below the last ring the crankcase.
+    pressures: (g) => {
+      const p = curves(g).filter((l) => l.title !== "land1.p" || !columns.has("cylinder.p"));
+      for (const l of p) {
+        if (l.title === `land${n + 1}.p` && n) Object.assign(l, { label: "crankcase", color: "var(--muted)" });
+        if (l.title === "land1.p") l.color = "var(--fg)";
+      }
+      add(p, Object.assign(titled(g), { hint: n ? g.hint : "absolute" }, looks.pressures));
+    },
+    position: (g) => add(curves(g).map((l) => Object.assign(l, { short: l.label.replace("ring ", "R") })), Object.assign(titled(g), looks.position)),
+    // Where rings have a position, only those without one.
+    lift: (g) => {
+      const placed = (k) => columns.has(`ring${k}.position`);
+      const rings = Array.from({ length: n }, (_, i) => i + 1);
+      if (!rings.some(placed)) return add(curves(g), Object.assign(titled(g), looks.lift));
+      for (const k of rings) if (!placed(k)) add(curves(g, k), { title: `Lift of ring ${k}` });
+    },
+    friction_force: (g) => { const l = curves(g); add([...l, ...sum(l, "all rings")], titled(g)); },
+    friction_power: (g) => { const l = curves(g); add([...l, ...sum(l, "all rings")], titled(g)); },
+    "ring#_forces": (g) => {
+      for (let k = 1; k <= n; k++) add(curves(g, k), Object.assign(titled(g, k), { modes: ["±log", "linear"], height: 240, events: events(new RegExp(`^ring${k}$`)) }));
+    },
+  };
+  for (const g of OVER_CYCLE) {
+    if (special[g.name]) { special[g.name](g); continue; }
+    const lines = curves(g);
+    // Surfaces that never touch need no picture of it.
+    if (!g.unless_zero || lines.some((l) => l.y.some((v) => v !== 0))) add(lines, Object.assign(titled(g), looks[g.name]));
   }
 
   // The rest, drawn when it is opened.
@@ -110,8 +112,9 @@
   const others = leftovers(rest).map((g) => [g.columns.map((c, i) => ({ label: c.name, title: c.name, x: c.x, y: c.y, unit: c.unit, color: color(i) })), {
     title: g.columns.length === 1 ? g.columns[0].name : "Others in " + (display(g.unit, g.max).label || "no unit"), modes: ["linear", "±log"] }]);
   // A scene without rings has its own curves first, and nothing to put them away behind.
-  if (n || p.length) later.push(...others); else later.unshift(...others);
-  if (!n && !p.length) for (const [lines, spec] of later) add(lines, spec);
+  const pressures = columns.has("cylinder.p") || lands;
+  if (n || pressures) later.push(...others); else later.unshift(...others);
+  if (!n && !pressures) for (const [lines, spec] of later) add(lines, spec);
   else if (later.length) {
     let drawn = false;
     more.addEventListener("toggle", () => {

@@ -5,9 +5,9 @@
 use std::f64::consts::PI;
 
 use gudgeon_core::result::{
-    Balance, BenchPoint, BenchTable, Branch, Column, ComparedCase, Comparison, Event, ModelUse, Note,
-    PackSection, RunResult, SectionRing, Series, Share, ShareRow, ShareTable, Skipped, SolverReport, Value,
-    Variant,
+    Balance, BenchPoint, BenchTable, Branch, Column, ComparedCase, Comparison, Event, Failure, ModelUse,
+    Note, PackSection, REFUSED, RunResult, SectionRing, Series, Share, ShareRow, ShareTable, Skipped,
+    SolverReport, Value, Variant,
 };
 use indexmap::IndexMap;
 
@@ -362,8 +362,8 @@ pub fn comparison() -> Comparison {
         variant("narrow_channel", "off", 0.82),
         variant("narrow_channel", "greenwood_tripp", 0.7),
     ];
-    variants[3].outcome =
-        Err("refused: `narrow_channel` needs `models.gas_flow.channel_length`, which has no default".into());
+    let message = "`narrow_channel` needs `models.gas_flow.channel_length`, which has no default".to_owned();
+    variants[3].outcome = Err(Failure { code: REFUSED.into(), message, path: String::new() });
     Comparison {
         case: "diesel_120".into(),
         title: "Heavy diesel, 120 mm bore".into(),

@@ -13,6 +13,43 @@ pub struct Kept {
     pub left_out: usize,
 }
 
+impl Kept {
+    /// Levels that are not kept, `factor=level`. `factors` are the names of the factors, each with those of its levels.
+    #[must_use]
+    pub fn levels_left_out(&self, factors: &[(String, Vec<String>)]) -> Vec<String> {
+        let of = |((name, levels), kept): (&(String, Vec<String>), &Vec<usize>)| {
+            let gone = (0..levels.len()).filter(|l| !kept.contains(l));
+            gone.map(|l| format!("{name}={}", levels[l])).collect::<Vec<_>>()
+        };
+        factors.iter().zip(&self.levels).flat_map(of).collect()
+    }
+}
+
+/// Largest full blocks of one table, for many results: most of them miss the same combinations.
+#[derive(Debug, Clone)]
+pub struct Blocks {
+    levels: Vec<usize>,
+    known: Vec<(Vec<bool>, Kept)>,
+}
+
+impl Blocks {
+    /// A table of factors with these numbers of levels.
+    #[must_use]
+    pub const fn new(levels: Vec<usize>) -> Self {
+        Self { levels, known: Vec::new() }
+    }
+
+    /// As [`largest_full_block`].
+    pub fn largest(&mut self, there: Vec<bool>) -> Kept {
+        if let Some((_, kept)) = self.known.iter().find(|(known, _)| *known == there) {
+            return kept.clone();
+        }
+        let kept = largest_full_block(&self.levels, &there);
+        self.known.push((there, kept.clone()));
+        kept
+    }
+}
+
 /// Most choices of levels that are tried; beyond, levels are dropped one after the other.
 const MAX_TRIED: usize = 100_000;
 
@@ -82,24 +119,26 @@ fn best_choice(levels: &[usize], there: &[bool]) -> Vec<Vec<usize>> {
 
 /// Drops the level that misses the largest part of its combinations until none is missing.
 fn dropped(levels: &[usize], there: &[bool], mut kept: Vec<Vec<usize>>) -> Vec<Vec<usize>> {
-    loop {
-        let all = combinations(levels, &kept);
-        let missing: Vec<usize> = all.iter().copied().filter(|c| !there[*c]).collect();
-        if missing.is_empty() {
-            return kept;
-        }
-        let mut worst = (0.0, 0, 0);
+    let mut missing: Vec<usize> = (0..there.len()).filter(|c| !there[*c]).collect();
+    while !missing.is_empty() {
+        let size: usize = kept.iter().map(Vec::len).product();
+        // Part that is missing, factor, place of the level, stride of the factor.
+        let mut worst = (0.0, 0, 0, 1);
         let mut stride = levels.iter().product::<usize>();
         for (f, n) in levels.iter().enumerate() {
             stride /= n;
+            let mut of_level = vec![0_usize; *n];
+            missing.iter().for_each(|c| of_level[c / stride % n] += 1);
             for (place, level) in kept[f].iter().enumerate().filter(|_| kept[f].len() > 1) {
-                let own = missing.iter().filter(|c| *c / stride % n == *level).count();
-                let part = own as f64 / (all.len() / kept[f].len()) as f64;
+                let part = of_level[*level] as f64 / (size / kept[f].len()) as f64;
                 if part >= worst.0 {
-                    worst = (part, f, place);
+                    worst = (part, f, place, stride);
                 }
             }
         }
-        kept[worst.1].remove(worst.2);
+        let (_, f, place, stride) = worst;
+        let gone = kept[f].remove(place);
+        missing.retain(|c| c / stride % levels[f] != gone);
     }
+    kept
 }

@@ -14,7 +14,7 @@ mod block;
 
 use serde::Serialize;
 
-pub use block::{Kept, largest_full_block};
+pub use block::{Blocks, Kept, largest_full_block};
 
 /// What one factor, or several together, explain.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -36,7 +36,10 @@ impl Plan {
                     points.extend(settings(&c, &method.label)?.into_iter().map(|s| after(&set, s)));
                     admitted.push((method, c));
                 }
-                Err(report) if asked => return Err(StudyError::Input(report)),
+                Err(report) if asked => {
+                    let first = base.case.overrides().len() + own.all.len();
+                    return Err(StudyError::Input(report.written_as(first, "--contender")));
+                }
                 Err(report) => {
                     let why = report.diagnostics.iter().map(|d| d.headline()).collect::<Vec<_>>().join("; ");
                     notes.push(format!(

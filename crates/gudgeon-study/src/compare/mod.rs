@@ -3,10 +3,11 @@
 mod findings;
 mod shares;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
+use std::sync::Arc;
 
 use gudgeon_case::{Diagnostic, Report, advice};
-use gudgeon_core::result::{ComparedCase, Comparison, RunResult, Variant, short_value};
+use gudgeon_core::result::{ComparedCase, Comparison, Failure, RunResult, Variant, short_value};
 use gudgeon_core::{BuildError, Registry};
 use gudgeon_scene::many::run_many;
 use gudgeon_scene::run::{run_alone, run_alone_verified};
@@ -21,18 +22,16 @@ pub use shares::shares;
 type Tell<'a> = &'a mut dyn FnMut(Progress) -> Result<(), Stopped>;
 
 /// A case of a comparison.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Clone)]
 pub struct Subject {
-    /// The case file.
-    pub path: PathBuf,
-    /// Changes to every combination of it, as `--set` takes them.
-    pub overrides: Vec<String>,
-    /// Those of the changes that tell it from other cases made of the same file: they become part of its name.
+    /// The case.
+    pub case: Arc<Checked>,
+    /// Those of its changes that tell it from other cases made of the same file: they become part of its name.
     pub own: Vec<String>,
 }
 
 /// What is compared.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Clone, Default)]
 pub struct Plan {
     /// The cases.
     pub cases: Vec<Subject>,
@@ -42,6 +41,10 @@ pub struct Plan {
     pub verify: bool,
     /// Results that a reader looks at first; empty: those of the whole scene, whose names have no point.
     pub headlines: Vec<String>,
+    /// Whether series, tables and figures of the runs are dropped: results, notes and uncertainties are enough for the shares.
+    pub results_only: bool,
+    /// Threads that the combinations are run on; 0: one a core.
+    pub threads: usize,
 }
 
 /// `gas_flow`, `models.gas_flow` and `models.gas_flow.model` all mean the model's name; anything else is taken as written.
@@ -82,7 +85,7 @@ pub fn compare(
     swaps: &[(String, Vec<String>)],
     progress: Tell<'_>,
 ) -> Result<Comparison, StudyError> {
-    let subject = Subject { path: path.to_owned(), overrides: overrides.to_vec(), own: Vec::new() };
+    let subject = Subject { case: Arc::new(check(path, overrides)?), own: Vec::new() };
     let plan = Plan { cases: vec![subject], swaps: swaps.to_vec(), ..Plan::default() };
     compare_cases(&plan, progress)
 }
@@ -92,21 +95,19 @@ pub fn compare(
 /// Every combination is checked before any is run; those that cannot be are kept with the reason.
 ///
 /// # Errors
-/// A case itself is wrong, a swap has no values, or no combination is possible for any case; there is no case.
+/// A swap has no values, or no combination is possible for any case; there is no case.
 pub fn compare_cases(plan: &Plan, progress: Tell<'_>) -> Result<Comparison, StudyError> {
-    let bases: Vec<Checked> =
-        plan.cases.iter().map(|s| check(&s.path, &s.overrides)).collect::<Result<_, _>>()?;
-    let Some(first) = bases.first() else {
+    let Some(first) = plan.cases.first() else {
         return Err(Report::unreadable("", Diagnostic::new("a comparison needs a case")).into());
     };
-    let jobs = jobs(first, &bases, plan)?;
+    let jobs = jobs(&first.case, plan)?;
     let run: Run = if plan.verify { run_alone_verified } else { run_alone };
     let outcome = |k: usize, tell: Tell<'_>| match &jobs[k].checked {
-        Err(report) => Err(format!("refused: {}", report.failure())),
-        Ok(c) => run(c, tell).map_err(|e| format!("failed: {e}")),
+        Err(report) => Err(report.failure()),
+        Ok(c) => run(c, tell).map(|r| kept(plan, r)).map_err(|e| e.failure()),
     };
-    let outcomes = run_many(jobs.len(), 0, outcome, progress).all()?;
-    let cases = named(&bases, &plan.cases);
+    let outcomes = run_many(jobs.len(), plan.threads, outcome, progress).all()?;
+    let cases = named(&plan.cases);
     let variants =
         jobs.into_iter().zip(outcomes).map(|(job, outcome)| job.variant(&cases, outcome)).collect();
     let mut comparison = Comparison {
@@ -124,11 +125,26 @@ pub fn compare_cases(plan: &Plan, progress: Tell<'_>) -> Result<Comparison, Stud
     Ok(comparison)
 }
 
+/// What stays of a run.
+fn kept(plan: &Plan, run: RunResult) -> RunResult {
+    if !plan.results_only {
+        return run;
+    }
+    RunResult {
+        results: run.results,
+        solver: run.solver,
+        verification: run.verification,
+        ..RunResult::default()
+    }
+}
+
 /// Every combination of every case, checked.
-fn jobs(first: &Checked, bases: &[Checked], plan: &Plan) -> Result<Vec<Job>, Report> {
+fn jobs(first: &Checked, plan: &Plan) -> Result<Vec<Job>, Report> {
     let combinations = combinations(first, plan)?;
-    let with = |(case, base)| combinations.iter().map(move |c| Job::new(case, base, c)).collect::<Vec<_>>();
-    let jobs: Vec<Job> = bases.iter().enumerate().flat_map(with).collect();
+    let with = |(case, s): (usize, &Subject)| {
+        combinations.iter().map(|c| Job::new(case, &s.case, c)).collect::<Vec<_>>()
+    };
+    let jobs: Vec<Job> = plan.cases.iter().enumerate().flat_map(with).collect();
     if jobs.iter().all(|j| j.checked.is_err()) {
         // Nothing is possible: the first refusal says why, with places.
         let report = jobs.into_iter().find_map(|j| j.checked.err());
@@ -165,10 +181,12 @@ struct Job {
 impl Job {
     fn new(case: usize, base: &Checked, swaps: &Combination) -> Self {
         let set: Vec<String> = swaps.iter().map(|(p, v)| format!("{p}={v}")).collect();
-        Self { case, swaps: swaps.clone(), checked: base.with(&set) }
+        let first = base.case.overrides().len();
+        let checked = base.with(&set).map_err(|report| report.written_as(first, "--swap"));
+        Self { case, swaps: swaps.clone(), checked }
     }
 
-    fn variant(self, cases: &[ComparedCase], outcome: Result<RunResult, String>) -> Variant {
+    fn variant(self, cases: &[ComparedCase], outcome: Result<RunResult, Failure>) -> Variant {
         let swaps: Vec<String> =
             self.swaps.iter().map(|(p, v)| format!("{}={}", short(p), short_value(v))).collect();
         let label = match cases {
@@ -180,17 +198,14 @@ impl Job {
 }
 
 /// Names of the cases, with the changes of their own where two share one.
-fn named(bases: &[Checked], subjects: &[Subject]) -> Vec<ComparedCase> {
-    let alone = |base: &Checked| bases.iter().filter(|b| b.name == base.name).count() == 1;
+fn named(subjects: &[Subject]) -> Vec<ComparedCase> {
+    let alone = |base: &Checked| subjects.iter().filter(|s| s.case.name == base.name).count() == 1;
     let name = |base: &Checked, own: &[String]| {
         let own = own.iter().filter(|_| !alone(base)).map(String::as_str);
         std::iter::once(base.name.as_str()).chain(own).collect::<Vec<_>>().join(", ")
     };
-    let case = |(base, s): (&Checked, &Subject)| ComparedCase {
-        name: name(base, &s.own),
-        title: base.title().to_owned(),
-    };
-    bases.iter().zip(subjects).map(case).collect()
+    let case = |s: &Subject| ComparedCase { name: name(&s.case, &s.own), title: s.case.title().to_owned() };
+    subjects.iter().map(case).collect()
 }
 
 /// Every combination of the swaps, the last swap the fastest.

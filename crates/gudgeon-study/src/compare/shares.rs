@@ -11,7 +11,7 @@ use gudgeon_core::result::{
 use indexmap::IndexMap;
 
 use super::{findings, short};
-use crate::anova::{Anova, Kept, anova, largest_full_block};
+use crate::anova::{Anova, Blocks, anova};
 
 /// Numerical uncertainty that is assumed where nobody asked for it, as a part of the mean magnitude: what the default settings of the shipped
 /// cases keep (`gudgeon bench`).
@@ -112,7 +112,7 @@ impl Scope<'_> {
         };
         let numbers: Vec<Option<Number>> = self.variants.iter().map(of).collect();
         let there: Vec<bool> = numbers.iter().map(Option::is_some).collect();
-        let kept = grid.block(there);
+        let kept = grid.blocks.largest(there);
         let numbers: Vec<Number> = kept.combinations.iter().filter_map(|k| numbers[*k]).collect();
         if numbers.is_empty() {
             return None;
@@ -135,7 +135,7 @@ impl Scope<'_> {
                 .flatten()
                 .and_then(|a| Some(share(&a, &[0])?.share)),
             combinations: kept.combinations.len(),
-            left_out: left_out(&kept, &grid.factors),
+            left_out: kept.levels_left_out(&grid.factors),
             ..ShareRow::default()
         })
     }
@@ -147,10 +147,8 @@ type Factor = (String, Vec<String>);
 /// The choices, and what has been found out about them.
 struct Grid {
     factors: Vec<Factor>,
-    levels: Vec<usize>,
     effects: Vec<Vec<usize>>,
-    /// Which combinations are there, and what is kept of them: most results share it.
-    blocks: Vec<(Vec<bool>, Kept)>,
+    blocks: Blocks,
 }
 
 impl Grid {
@@ -159,16 +157,7 @@ impl Grid {
         let flat = vec![0.0; levels.iter().product()];
         let all = anova(&levels, &flat, &flat).map(|a| a.effects).unwrap_or_default();
         let effects = all.into_iter().map(|e| e.factors).collect();
-        Self { factors, levels, effects, blocks: Vec::new() }
-    }
-
-    fn block(&mut self, there: Vec<bool>) -> Kept {
-        if let Some((_, kept)) = self.blocks.iter().find(|(known, _)| *known == there) {
-            return kept.clone();
-        }
-        let kept = largest_full_block(&self.levels, &there);
-        self.blocks.push((there, kept.clone()));
-        kept
+        Self { factors, effects, blocks: Blocks::new(levels) }
     }
 }
 
@@ -232,15 +221,6 @@ fn mean(y: &[f64]) -> f64 {
 fn share(a: &Anova, effect: &[usize]) -> Option<Share> {
     let e = a.effects.iter().find(|e| e.factors == effect)?;
     Some(Share { share: e.share, largest: e.largest, within_numerics: e.within_numerics })
-}
-
-/// Levels that are not kept.
-fn left_out(kept: &Kept, factors: &[Factor]) -> Vec<String> {
-    let of = |((name, levels), kept): (&Factor, &Vec<usize>)| {
-        let gone = (0..levels.len()).filter(|l| !kept.contains(l));
-        gone.map(|l| format!("{name}={}", levels[l])).collect::<Vec<_>>()
-    };
-    factors.iter().zip(&kept.levels).flat_map(of).collect()
 }
 
 /// Whether two results are one up to a factor.

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::folder::Study;
 use super::linear::{Linear, is_auxiliary, of_row};
 use super::table::{Table, Values};
-use crate::anova::{Anova, anova};
+use crate::anova::{Anova, Blocks, anova};
 use crate::sampling::{Design, Morris, OneAtATime, Saltelli};
 use crate::sensitivity::{
     Band, Bootstrap, ElementaryEffects, MainEffect, SobolIndices, Tornado, band, elementary_effects,
@@ -62,9 +62,30 @@ pub enum Dependence {
     /// Spread and shares to first order.
     Linear(Linear),
     /// Shares of the variance over a grid.
-    Shares(Anova),
+    Shares(GridShares),
     /// Why it is not known.
     Unknown(String),
+}
+
+/// Shares of the variance over a grid, or over the largest full grid among the points that have the result.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct GridShares {
+    /// The shares.
+    #[serde(flatten)]
+    pub anova: Anova,
+    /// Points that they are calculated from.
+    pub points: usize,
+    /// Levels that are left out, `engine.speed=2800 rpm`, because not all points with them have the result.
+    pub left_out: Vec<String>,
+}
+
+impl GridShares {
+    /// What they do not rest on, in words; nothing where every point has the result.
+    #[must_use]
+    pub fn without(&self) -> Option<String> {
+        let levels = self.left_out.join(", ");
+        (!levels.is_empty()).then(|| format!("without {levels}: not all points with it have a result to use"))
+    }
 }
 
 /// Resamples of the bootstrap of Sobol indices.
@@ -79,17 +100,11 @@ impl Study {
         let inputs: Vec<String> = self.plan.varied.iter().map(|v| v.path.clone()).collect();
         let names = result_columns(table);
         let Some(design) = &self.record.study.design else {
-            let (levels, inputs) = self.factors(inputs);
-            let results = names
-                .iter()
-                .map(|n| {
-                    finding(table, n, 0..table.rows(), |y| {
-                        anova(&levels, y, &vec![0.0; y.len()])
-                            .map(Dependence::Shares)
-                            .map_err(|e| e.to_string())
-                    })
-                })
-                .collect();
+            let factors = self.factors(&inputs);
+            let mut blocks = Blocks::new(factors.iter().map(|(_, levels)| levels.len()).collect());
+            let of = |n: &String| finding(table, n, 0..table.rows(), |y| over_grid(&factors, &mut blocks, y));
+            let results = names.iter().map(of).collect();
+            let inputs = factors.into_iter().map(|(name, _)| name).collect();
             return Analysis { inputs, groups: vec![Group { name: String::new(), results }] };
         };
         let inner = table.rows() / (rows * self.record.cases.len()).max(1);
@@ -117,21 +132,38 @@ impl Study {
         Analysis { inputs: inputs[inputs.len() - own..].to_vec(), groups }
     }
 
-    /// The factors of a grid with their numbers of levels: cases, rows of the list, inputs.
-    fn factors(&self, inputs: Vec<String>) -> (Vec<usize>, Vec<String>) {
+    /// The factors of a grid with the names of their levels: cases, rows of the list, inputs.
+    fn factors(&self, inputs: &[String]) -> Vec<Factor> {
         let own = &self.record.study.inputs;
-        let rows = self.record.list.as_ref().map(|l| l.rows.len());
-        let mut levels = vec![self.record.cases.len()];
-        let mut names = vec!["case".to_owned()];
-        if let Some(rows) = rows {
-            levels.push(rows);
-            names.push("list".to_owned());
-        }
+        let cases = self.record.cases.iter().map(|c| c.name.clone()).collect();
+        let rows =
+            self.record.list.as_ref().map(|l| (1..=l.rows.len()).map(|k| format!("row {k}")).collect());
+        let mut factors = vec![("case".to_owned(), cases)];
+        factors.extend(rows.map(|rows| ("list".to_owned(), rows)));
         // They were legal when the study was made.
-        levels.extend(own.iter().map(|i| i.grid().map_or(1, |v| v.len())));
-        names.extend(inputs[inputs.len() - own.len()..].iter().cloned());
-        (levels, names)
+        let levels = own.iter().map(|i| i.grid().unwrap_or_default());
+        factors.extend(inputs[inputs.len() - own.len()..].iter().cloned().zip(levels));
+        factors
     }
+}
+
+/// A factor of a grid and the names of its levels.
+type Factor = (String, Vec<String>);
+
+/// The shares of a result over a grid; where points have no result, over the largest full grid among the others.
+fn over_grid(factors: &[Factor], blocks: &mut Blocks, y: &[f64]) -> Result<Dependence, String> {
+    let kept = blocks.largest(y.iter().map(|v| v.is_finite()).collect());
+    let own: Vec<f64> = kept.combinations.iter().map(|k| y[*k]).collect();
+    if own.is_empty() {
+        return Err("no point has this result".into());
+    }
+    if own.len() == 1 && y.len() > 1 {
+        return Err("too few points have this result to tell any input apart".into());
+    }
+    let levels: Vec<usize> = kept.levels.iter().map(Vec::len).collect();
+    let anova = anova(&levels, &own, &vec![0.0; own.len()]).map_err(|e| e.to_string())?;
+    let left_out = kept.levels_left_out(factors);
+    Ok(Dependence::Shares(GridShares { anova, points: own.len(), left_out }))
 }
 
 /// Columns of results: the numbers behind the notes.

@@ -36,9 +36,9 @@ impl Study {
     /// A result over the inputs of a grid: curves over the one that runs fastest, or a map over two.
     fn over_the_grid(&self, table: &Table, f: &Finding) -> Option<(Figure, Series)> {
         let inputs = &self.record.study.inputs;
-        let x = inputs.last().filter(|_| self.record.study.design.is_none())?;
-        let n = x.grid().ok()?.len();
-        let (xs, y) = (table.numbers(&x.path)?, table.numbers(&f.result)?);
+        let last = inputs.last().filter(|_| self.record.study.design.is_none())?;
+        let (n, x) = (last.grid().ok()?.len(), &last.axis.path);
+        let (xs, y) = (table.numbers(x)?, table.numbers(&f.result)?);
         let others = y.len() / n;
         if n < 2 {
             return None;
@@ -50,26 +50,26 @@ impl Study {
         let column = |name: String, values: Vec<f64>| Column { name, unit: f.unit.clone(), values };
         let figure = |kind| Figure {
             title: f.result.clone(),
-            hint: format!("over {}", x.path),
+            hint: format!("over {x}"),
             table: format!("grid of {}", f.result),
             kind,
         };
         if others <= FEW {
-            let labels: Vec<String> = (0..others)
-                .map(|k| label(table, self.record.cases.len(), inputs.len(), k * n, &x.path))
-                .collect();
+            let labels: Vec<String> =
+                (0..others).map(|k| label(table, self.record.cases.len(), inputs.len(), k * n, x)).collect();
             let columns =
                 labels.iter().enumerate().map(|(k, l)| column(l.clone(), y[k * n..(k + 1) * n].to_vec()));
-            let series = Series { axis: axis(&x.path, xs[..n].to_vec()), columns: columns.collect() };
+            let series = Series { axis: axis(x, xs[..n].to_vec()), columns: columns.collect() };
             let lines = labels.iter().map(|l| (l.clone(), l.clone())).collect();
-            let kind = FigureKind::Lines { x: x.path.clone(), lines, log_x: false, log_y: false };
+            let kind = FigureKind::Lines { x: x.clone(), lines, log_x: false, log_y: false };
             return Some((figure(kind), series));
         }
         let [second, _] = &inputs[..] else { return None };
-        let ys = table.numbers(&second.path).filter(|_| others == second.grid().map_or(0, |v| v.len()))?;
-        let columns = vec![axis(&second.path, ys), column(f.result.clone(), y)];
-        let kind = FigureKind::Map { x: x.path.clone(), y: second.path.clone(), value: f.result.clone() };
-        Some((figure(kind), Series { axis: axis(&x.path, xs), columns }))
+        let ys =
+            table.numbers(&second.axis.path).filter(|_| others == second.grid().map_or(0, |v| v.len()))?;
+        let columns = vec![axis(&second.axis.path, ys), column(f.result.clone(), y)];
+        let kind = FigureKind::Map { x: x.clone(), y: second.axis.path.clone(), value: f.result.clone() };
+        Some((figure(kind), Series { axis: axis(x, xs), columns }))
     }
 }
 
@@ -147,12 +147,13 @@ fn of_finding(inputs: &[String], title: &str, f: &Finding) -> Option<Figure> {
                 FigureKind::Ranges { unit: f.unit.clone(), middle: Some(l.value), ranges },
             )
         }
-        Dependence::Shares(a) => {
+        Dependence::Shares(s) => {
             let factors =
                 |e: &crate::anova::Effect| e.factors.iter().map(|k| name(*k)).collect::<Vec<_>>().join(" × ");
+            let without = s.without().map_or_else(String::new, |w| format!("; {w}"));
             figure(
-                "share of the variance over the grid",
-                bars(a.effects.iter().map(|e| (factors(e), e.share)).collect()),
+                &format!("share of the variance over the grid{without}"),
+                bars(s.anova.effects.iter().map(|e| (factors(e), e.share)).collect()),
             )
         }
         Dependence::Unknown(_) => None,

@@ -1,7 +1,7 @@
 //! An input that a study varies.
 
 use gudgeon_core::BuildError;
-use gudgeon_scene::{Spacing, Sweep};
+use gudgeon_scene::{Axis, Spacing};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -11,24 +11,9 @@ use crate::distribution::Distribution;
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Input {
-    /// Path of the input, `engine.speed` or `models.oil.model`.
-    pub path: String,
-    /// The values as a case would write them: `["0.3 mm", "0.5 mm"]`, `["orifice_network", "narrow_channel"]`.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub values: Vec<String>,
-    /// First value, with its unit; in a design the lower end of what is equally likely.
-    #[serde(default, skip_serializing_if = "String::is_empty")]
-    pub from: String,
-    /// Last value, in the same unit.
-    #[serde(default, skip_serializing_if = "String::is_empty")]
-    pub to: String,
-    /// On a grid: number of values between `from` and `to`, both included.
-    #[serde(default)]
-    #[schemars(range(max = 100_000))]
-    pub points: u32,
-    /// How they are spaced.
-    #[serde(default)]
-    pub spacing: Spacing,
+    /// The input, and its values on a grid; in a design `values` are equally likely, or everything between `from` and `to` is.
+    #[serde(flatten)]
+    pub axis: Axis,
     /// In a design: how the input is distributed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub distribution: Option<Distribution<String>>,
@@ -74,16 +59,7 @@ impl Input {
             let e = BuildError::at("distribution", "a grid has `values`, or `from`, `to` and `points`");
             return Err(e.help("say in a table `design` where a distribution is taken: `method = \"latin_hypercube\"`, `points = 100`"));
         }
-        let sweep = Sweep {
-            path: self.path.clone(),
-            values: self.values.clone(),
-            from: self.from.clone(),
-            to: self.to.clone(),
-            points: self.points,
-            spacing: self.spacing,
-            results: Vec::new(),
-        };
-        gudgeon_scene::values(&sweep)
+        gudgeon_scene::values(&self.axis)
     }
 
     /// What a design takes its quantiles from.
@@ -91,16 +67,16 @@ impl Input {
     /// # Errors
     /// Nothing or two things said; numbers that make no distribution, at their keys.
     pub fn quantiles(&self) -> Result<Quantiles, BuildError> {
-        let ends = !self.from.is_empty() || !self.to.is_empty();
-        match (&self.distribution, self.values.is_empty(), ends) {
+        let Axis { values, from, to, spacing, .. } = &self.axis;
+        let ends = !from.is_empty() || !to.is_empty();
+        match (&self.distribution, values.is_empty(), ends) {
             (Some(d), true, false) => of_texts(d).map_err(|e| e.within("distribution")),
-            (None, false, false) => Ok(Quantiles::Choice(Distribution::Discrete {
-                values: self.values.clone(),
-                weights: Vec::new(),
-            })),
+            (None, false, false) => {
+                Ok(Quantiles::Choice(Distribution::Discrete { values: values.clone(), weights: Vec::new() }))
+            }
             (None, true, true) => {
-                let (from, to) = (self.from.clone(), self.to.clone());
-                of_texts(&match self.spacing {
+                let (from, to) = (from.clone(), to.clone());
+                of_texts(&match spacing {
                     Spacing::Linear => Distribution::Uniform { from, to },
                     Spacing::Log => Distribution::LogUniform { from, to },
                 })

@@ -9,7 +9,7 @@
 //! which holds as far as the results are linear over the spread of the inputs. `σ_p` is half the distance of the quantiles 15.9 % and 84.1 %, which is the
 //! deviation of a normal distribution.
 
-use gudgeon_core::result::Failure;
+use gudgeon_core::result::{Failure, derivative_unit};
 use gudgeon_scene::gradients::input;
 use gudgeon_scene::{Checked, GradientError, Progress, Stopped};
 use serde::Serialize;
@@ -82,7 +82,7 @@ pub fn columns(
         for (k, by) in g.by.iter().enumerate() {
             if let Some(d) = by {
                 let i = &found.inputs[k];
-                out.push((derivative(name, &i.path), *d, format!("{}/({})", g.value.unit, i.unit)));
+                out.push((derivative(name, &i.path), *d, derivative_unit(&g.value.unit, &i.unit)));
             }
         }
     }

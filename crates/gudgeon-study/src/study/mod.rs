@@ -25,7 +25,7 @@ mod prepare;
 mod record;
 mod table;
 
-pub use analysis::{Analysis, Dependence, Finding, Group};
+pub use analysis::{Analysis, Dependence, Finding, GridShares, Group};
 pub use collect::Collected;
 pub use columnar::{from_parquet, to_parquet};
 pub use file::{Case, Changed, StudyFile};

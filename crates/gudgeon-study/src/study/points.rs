@@ -34,7 +34,7 @@ enum Inputs {
 
 impl Inputs {
     fn new(file: &StudyFile) -> Result<Self, Vec<BuildError>> {
-        let paths = file.inputs.iter().map(|i| i.path.clone()).collect();
+        let paths = file.inputs.iter().map(|i| i.axis.path.clone()).collect();
         match &file.design {
             None => Ok(Self::Grid { paths, values: each(file, super::input::Input::grid)? }),
             Some(design) => {

@@ -1,4 +1,4 @@
-use gudgeon_study::anova::{Anova, NoAnova, anova, largest_full_block};
+use gudgeon_study::anova::{Anova, Blocks, NoAnova, anova, largest_full_block};
 
 /// Results of a function of the levels, in the order of the combinations.
 fn table(levels: &[usize], f: impl Fn(&[usize]) -> f64) -> Vec<f64> {
@@ -130,4 +130,20 @@ fn large_tables_drop_levels_one_by_one() {
     assert_eq!(kept.levels[1], [0, 1, 2, 4]);
     assert_eq!((kept.levels[0].len(), kept.combinations.len()), (19, 76));
     assert!(kept.combinations.iter().all(|c| there[*c]));
+}
+
+#[test]
+fn what_a_block_leaves_out_is_named() {
+    let mut blocks = Blocks::new(vec![2, 3]);
+    let factors = [
+        ("model".to_owned(), vec!["a".to_owned(), "b".to_owned()]),
+        ("speed".to_owned(), ["1", "2", "3"].map(str::to_owned).to_vec()),
+    ];
+    let there = vec![true, true, false, true, true, true];
+    let kept = blocks.largest(there.clone());
+    assert_eq!(kept, largest_full_block(&[2, 3], &there));
+    assert_eq!(kept.levels_left_out(&factors), ["speed=3"]);
+    // Asked once more, and about another result.
+    assert_eq!(blocks.largest(there), kept);
+    assert!(blocks.largest(vec![true; 6]).levels_left_out(&factors).is_empty());
 }

@@ -1,5 +1,5 @@
 use gudgeon_core::result::{
-    ComparedCase, Comparison, Note, RunResult, ShareRow, ShareTable, Value, Variant, Verification,
+    ComparedCase, Comparison, Failure, Note, RunResult, ShareRow, ShareTable, Value, Variant, Verification,
 };
 use gudgeon_study::shares;
 
@@ -87,7 +87,7 @@ fn levels_that_a_case_forbids_are_left_out_and_named() {
     let mut c = comparison(2, |_, i, j| vec![("fmep", 1.0 + i as f64 + 0.1 * j as f64, "bar")]);
     // The second case has no `r`, and one of its other runs is not periodic.
     for v in c.variants.iter_mut().filter(|v| v.case == 1 && v.swaps[1].1 == "r") {
-        v.outcome = Err("refused".into());
+        v.outcome = Err(Failure::default());
     }
     let tables = shares(&c, &[]);
     assert_eq!(

@@ -104,8 +104,9 @@ impl RingPackSolverSpec for Implicit {
         start: f64,
         wanted: &Wanted<'_>,
         around: Around<'_>,
+        progress: &mut dyn FnMut(f64) -> Result<(), Stopped>,
     ) -> Result<Gradients, GradientError> {
-        gradients::gradients(self, pack, start, wanted, around)
+        gradients::gradients(self, pack, start, wanted, around, progress)
     }
 
     /// Both orders at the tolerances that they are made for.

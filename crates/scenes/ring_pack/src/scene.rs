@@ -106,6 +106,7 @@ impl SceneCase for RingPackCase {
         loaded: &Loaded<Self>,
         mut pack: Pack,
         varied: &dyn Fn() -> Result<Vec<gudgeon_scene::Varied<Self>>, GradientError>,
+        progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
     ) -> Result<Gradients, GradientError> {
         let case = &loaded.value;
         let mut varied: Vec<_> = varied()?
@@ -115,7 +116,8 @@ impl SceneCase for RingPackCase {
         let wanted = wanted(case);
         let around = Around { meter: meter(case), varied: &mut varied };
         let start = starts(case, &pack)[0];
-        case.solver.method.gradients(&mut pack, start, &wanted, around)
+        let mut tell = |fraction| progress(Progress { phase: "derivatives".into(), fraction });
+        case.solver.method.gradients(&mut pack, start, &wanted, around, &mut tell)
     }
 
     fn work_precision(loaded: &Loaded<Self>, pack: &mut Pack) -> Result<WorkPrecision, String> {

@@ -48,6 +48,7 @@ pub trait RingPackSolverSpec: Debug + DynClone + Send + Sync {
         _start: f64,
         _wanted: &Wanted<'_>,
         _around: Around<'_>,
+        _progress: &mut dyn FnMut(f64) -> Result<(), Stopped>,
     ) -> Result<Gradients, GradientError> {
         Err(GradientError::NoMethod("this solver follows no derivatives along a cycle".into()))
     }

@@ -6,7 +6,7 @@
 
 use gudgeon_case::Loaded;
 use gudgeon_core::result::{Gradient, Gradients, Note, RunResult};
-use gudgeon_scene::{GradientError, RunError, Varied, unwatched};
+use gudgeon_scene::{GradientError, Progress, RunError, Stopped, Varied, unwatched};
 
 use super::assemble::Assembled;
 use super::case::ShaftLineCase;
@@ -19,6 +19,7 @@ pub fn gradients(
     loaded: &Loaded<ShaftLineCase>,
     a: &Assembled,
     varied: &dyn Fn() -> Result<Vec<Varied<ShaftLineCase>>, GradientError>,
+    progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
 ) -> Result<Gradients, GradientError> {
     let case = &loaded.value;
     if !case.models.torsion.is_linear() {
@@ -36,7 +37,10 @@ pub fn gradients(
             .collect(),
         ..Gradients::default()
     };
-    for v in varied()? {
+    let varied = varied()?;
+    for (k, v) in varied.iter().enumerate() {
+        let fraction = (k + 1) as f64 / (varied.len() + 1) as f64;
+        progress(Progress { phase: "derivatives".into(), fraction }).map_err(RunError::from)?;
         let there = answer(&v.loaded, &v.built)?.results;
         for (name, g) in &mut found.results {
             g.by.push(there.get(name).map(|r| (r.value - g.value.value) / v.step));

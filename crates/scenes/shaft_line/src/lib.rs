@@ -109,8 +109,9 @@ impl SceneCase for ShaftLineCase {
         loaded: &Loaded<Self>,
         a: Assembled,
         varied: &dyn Fn() -> Result<Vec<Varied<Self>>, GradientError>,
+        progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
     ) -> Result<Gradients, GradientError> {
-        gradients::gradients(loaded, &a, varied)
+        gradients::gradients(loaded, &a, varied, progress)
     }
 }
 

@@ -16,8 +16,8 @@ mod variation;
 
 use gudgeon_core::quantity::quantity;
 use gudgeon_core::result::{Gradients, Note};
-use gudgeon_numerics::EvalError;
 use gudgeon_numerics::linalg::{lu_factor, lu_solve_rows};
+use gudgeon_numerics::{EvalError, Stopped};
 use gudgeon_scene::{GradientError, IntegratorName, RunError};
 use indexmap::IndexMap;
 
@@ -40,12 +40,13 @@ pub(super) fn gradients(
     start: f64,
     wanted: &Wanted<'_>,
     around: Around<'_>,
+    progress: &mut dyn FnMut(f64) -> Result<(), Stopped>,
 ) -> Result<Gradients, GradientError> {
     fits(pack, around.varied)?;
     let mut y = first_states(pack, start);
     let options = orbit_options(s, pack);
-    let mut untold = |_: f64| Ok(());
-    let mut search = Cycle::new(s, pack, wanted, &mut untold);
+    let mut searching = |done: f64| progress(0.5 * done);
+    let mut search = Cycle::new(s, pack, wanted, &mut searching);
     let report = search.close(&mut y, &options)?;
     if report.period != 1 {
         let what = format!("the cycle repeats only every {} cycles", report.period);
@@ -59,8 +60,9 @@ pub(super) fn gradients(
     if !report.converged {
         notes.push(not_periodic(report.error_estimate, options.tolerance, report.cycles));
     }
+    let mut following = |done: f64| progress(0.5 + 0.5 * done);
     for k in 1.. {
-        let mut cycle = Cycle::new(&tight, pack, wanted, &mut untold);
+        let mut cycle = Cycle::new(&tight, pack, wanted, &mut following);
         let mut followed = Variation::new(&cycle, around.varied, tolerance);
         let end = cycle.follow(&y, tolerance, &mut followed)?;
         let orbit = Orbit::of(&y, &end, &followed).map_err(|source| RunError::Model { source })?;
