@@ -120,6 +120,12 @@ impl Tangent {
         &mut self.equations[i]
     }
 
+    /// The linearised equations at the nodes.
+    #[must_use]
+    pub fn nodes(&self) -> &[Linearised; NODES.len()] {
+        &self.equations
+    }
+
     /// Prepares a step of length `h`, whose Jacobians stand in [`Tangent::node`].
     ///
     /// # Errors
@@ -216,16 +222,30 @@ impl Tangent {
         &self.knots[k]
     }
 
-    /// Sets the forcing of quantity `c` at node `i` from the rates `f` there and `f_moved` at a distance `d` along it:
-    /// `(f_moved - f)/d - f_y S*`, where `f_moved` belongs to the state `y + d S*`, and to the parameter `p + d` where `c` is one. `S*` is column `c`
-    /// of `expected`.
-    pub fn directional(&mut self, i: usize, c: usize, f: &[f64], f_moved: &[f64], d: f64, expected: &[f64]) {
+    /// The products `f_y S*` at node `i` with the columns of `s` from `first` on, into `out`: a row for each state and each quadrature, a column for each
+    /// quantity.
+    pub fn along(&self, i: usize, first: usize, s: &[f64], out: &mut [f64]) {
         let (n, m) = (self.n, self.columns);
-        let e = &mut self.equations[i];
-        for r in 0..self.rows {
-            let row = &e.jacobian[r * n..(r + 1) * n];
-            let told: f64 = row.iter().enumerate().map(|(k, j)| j * expected[k * m + c]).sum();
-            e.forcing[r * m + c] = (f_moved[r] - f[r]) / d - told;
+        for (row, out) in self.equations[i].jacobian.chunks_exact(n).zip(out.chunks_exact_mut(m)) {
+            let out = &mut out[first..];
+            out.fill(0.0);
+            for (j, s) in row.iter().zip(s.chunks_exact(m)) {
+                for (o, s) in out.iter_mut().zip(&s[first..]) {
+                    *o += j * s;
+                }
+            }
+        }
+    }
+
+    /// Sets the forcing of quantity `c` at node `i` from the rates `f` there and `f_moved` at a distance `d` along it:
+    /// `(f_moved - f)/d - f_y S*`, where `f_moved` belongs to the state `y + d S*`, and to the parameter `p + d` where `c` is one. `f_y S*` stands in
+    /// column `c` of `told` ([`Tangent::along`]).
+    pub fn directional(&mut self, i: usize, c: usize, f: &[f64], f_moved: &[f64], d: f64, told: &[f64]) {
+        let m = self.columns;
+        let forcing = self.equations[i].forcing.iter_mut().skip(c).step_by(m);
+        let told = told.iter().skip(c).step_by(m);
+        for ((out, told), (f, moved)) in forcing.zip(told).zip(f.iter().zip(f_moved)) {
+            *out = (moved - f) / d - told;
         }
     }
 
@@ -239,11 +259,11 @@ impl Tangent {
                 }
             }
         }
-        out.fill(0.0);
-        for (w, knot) in weights.iter().zip(&self.knots) {
-            for (o, s) in out.iter_mut().zip(knot) {
-                *o += w * s;
-            }
+        let [w0, w1, w2, w3] = weights;
+        let [k0, k1, k2, k3] = &self.knots;
+        let knots = k0.iter().zip(k1).zip(k2.iter().zip(k3));
+        for (o, ((s0, s1), (s2, s3))) in out.iter_mut().zip(knots) {
+            *o = w0 * s0 + w1 * s1 + w2 * s2 + w3 * s3;
         }
     }
 

@@ -1,10 +1,9 @@
 //! Derivatives of results by inputs: followed through the periodic orbit, against differences of runs.
 
 use crate::common::*;
-use gudgeon_core::result::Gradients;
 use gudgeon_scene::gradients::{assignment, input};
 use gudgeon_scene::{GradientError, RunError, Stopped, unwatched};
-use gudgeon_study::gradients::{differences, gradients};
+use gudgeon_study::gradients::gradients;
 
 const CASE: &str = "turbo-diesel-120";
 
@@ -19,17 +18,34 @@ fn refused(inputs: &[&str], set: &[&str]) -> String {
     }
 }
 
-/// Derivatives followed at the case's own tolerance beside central differences of runs at a tight one.
-fn both(inputs: &[&str]) -> (Gradients, Gradients) {
-    let inputs = by(inputs);
-    let followed = gradients(&checked(CASE, &[]), &inputs, &[], &mut unwatched).unwrap();
-    let tight = checked(CASE, &["solver.tolerance=1e-8", "solver.periodicity=1e-8"]);
-    (followed, differences(&tight, &inputs, &mut unwatched).unwrap())
+/// Elasticities of `result` by central differences of runs at a tight tolerance, extrapolated from two steps; a row for each input.
+fn differenced(inputs: &[&str], results: &[&str]) -> Vec<Vec<f64>> {
+    let tight = ["solver.tolerance=1e-8", "solver.periodicity=1e-8"];
+    let resolved = checked(CASE, &tight).case.resolved();
+    let at = |set: &str| run_case(CASE, &[tight[0], tight[1], set]);
+    let by_step = |path: &str, share: f64| -> Vec<f64> {
+        let i = input(&resolved, path, share).unwrap();
+        let [low, high] = [-i.step, i.step].map(|d| at(&assignment(&i, i.value + d)));
+        let by = |name: &&str| {
+            let (l, h) = (value(&low, name), value(&high, name));
+            (h - l) / (h + l) / share
+        };
+        results.iter().map(by).collect()
+    };
+    // The error of a central difference goes with the square of its step.
+    let one = |path: &&str| -> Vec<f64> {
+        let (coarse, fine) = (by_step(path, 2.0 * SHARE), by_step(path, SHARE));
+        fine.iter().zip(&coarse).map(|(f, c)| f + (f - c) / 3.0).collect()
+    };
+    inputs.iter().map(one).collect()
 }
 
-/// Inputs of the gas, of the film temperature and of the cylinder pressure, whose kinks move with the last. Elasticities are good to about 5e-4 at the
-/// tolerance of the followed cycle: rings that float amplify what an integration leaves, and where steps begin and end is chance. Differences with steps of
-/// a thousandth are good to 3e-4 here (halving the steps).
+/// Part of an input by which runs differ from the case. It alone leaves 6e-4 of a derivative to the curvature, and half of it as much to the error of the runs.
+const SHARE: f64 = 5e-4;
+
+/// Inputs of the gas, of the film temperature and of the cylinder pressure, whose kinks move with the last. The differences are good to
+/// 2e-4 of themselves (halving the steps); what is followed scatters by up to 2e-3 of an elasticity of a tenth with choices that are equal in right (how a
+/// step is halved, when Newton's method ends), and is within 4e-4 with those that are made.
 #[test]
 fn blow_by_and_friction_by_inputs_are_those_of_differences() {
     let inputs = [
@@ -38,21 +54,46 @@ fn blow_by_and_friction_by_inputs_are_those_of_differences() {
         "models.film_temperature.tdc",
         "models.cylinder_pressure.burn_start",
     ];
-    let (followed, differences) = both(&inputs);
+    let results = ["blow_by", "fmep", "ring1.friction_power", "land2.p_max", "ring1.h_mean"];
+    let followed = gradients(&checked(CASE, &[]), &by(&inputs), &[], &mut unwatched).unwrap();
     assert!(followed.method.contains("variational"), "{}", followed.method);
     // The orbit of the run is near enough for one followed cycle.
     assert_eq!(followed.counters["cycles_followed"], 1);
-    let mut compared = 0;
-    for result in ["blow_by", "fmep", "ring1.friction_power", "land2.p_max", "ring1.h_mean"] {
-        for (k, input) in inputs.iter().enumerate() {
+    for (k, by) in differenced(&inputs, &results).iter().enumerate() {
+        for (result, b) in results.iter().zip(by) {
             let a = followed.elasticity(result, k).unwrap();
-            let Some(b) = differences.elasticity(result, k) else { continue };
-            // Beside the largest elasticities, which are of the order of one.
-            assert!((a - b).abs() <= 1e-3 * b.abs().max(1.0), "{result} by {input}: {a} {b}");
-            compared += 1;
+            // Results of a single ring or land beside the largest elasticities, which are of the order of one: they depend on the place of one corner.
+            let floor = if ["blow_by", "fmep"].contains(result) { 0.1 } else { 1.0 };
+            assert!((a - b).abs() <= 1e-3 * b.abs().max(floor), "{result} by {}: {a} {b}", inputs[k]);
         }
     }
-    assert!(compared >= 15, "{compared}");
+}
+
+/// Derivatives followed at the tolerance of the case, in steps of which many have a corner of the rates in them, are those of a cycle that is followed in twice as
+/// many steps, to a thousandth; elasticities below a hundredth to a thousandth of that. At tolerances from 2e-7 to 5e-7 the largest deviation was between 3e-4 and 5e-4, at 6e-7
+/// 1.5e-3. The tight ones were compared with differences of runs at 1e-9.
+#[test]
+fn derivatives_depend_little_on_the_tolerance() {
+    let inputs = by(&[
+        "engine.speed",
+        "rings.0.cold_gap",
+        "rings.1.cold_gap",
+        "rings.0.tangential_force",
+        "rings.2.tangential_force",
+        "rings.0.face.drop",
+        "models.contact.roughness",
+        "rings.0.groove.leak_lower",
+        "models.film_temperature.tdc",
+        "gas.crankcase_pressure",
+    ]);
+    let followed = |set: &[&str]| gradients(&checked(CASE, set), &inputs, &[], &mut unwatched).unwrap();
+    let (own, tight) = (followed(&[]), followed(&["solver.tolerance=3e-8", "solver.periodicity=3e-8"]));
+    for result in ["blow_by", "fmep"] {
+        for (k, input) in inputs.iter().enumerate() {
+            let [a, b] = [&own, &tight].map(|g| g.elasticity(result, k).unwrap());
+            assert!((a - b).abs() <= 1e-3 * b.abs().max(1e-2), "{result} by {input}: {a} {b}");
+        }
+    }
 }
 
 /// The same bytes from the same case.

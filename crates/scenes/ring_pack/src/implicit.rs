@@ -166,7 +166,7 @@ impl OdeSystem for Problem<'_> {
     fn jacobian(&mut self, t: f64, y: &[f64], _: &[f64], jac: &mut [f64]) -> Result<bool, EvalError> {
         self.look_at(t, y)?;
         let scale = self.scale;
-        self.pack.jacobian(y, |k| increment(y[k], scale[k]), jac, self.base)?;
+        self.pack.jacobian(y, |k| increment(ROUNDING, y[k], scale[k]), jac, self.base)?;
         Ok(true)
     }
     fn invariants(&self) -> &[LinearInvariant] {
@@ -215,9 +215,12 @@ impl OdeSystem for Problem<'_> {
     }
 }
 
-/// Increment of a difference in the state `y`: the square root of the rounding error times its magnitude.
-fn increment(y: f64, scale: f64) -> f64 {
-    (y + 1.5e-8 * y.abs().max(1e-3 * scale)) - y
+/// Square root of the rounding error.
+const ROUNDING: f64 = 1.5e-8;
+
+/// Increment of a difference in the state `y`: a part of its magnitude.
+fn increment(part: f64, y: f64, scale: f64) -> f64 {
+    (y + part * y.abs().max(1e-3 * scale)) - y
 }
 
 /// What follows a cycle step by step while it is integrated.

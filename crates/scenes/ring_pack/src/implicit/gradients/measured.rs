@@ -2,6 +2,7 @@
 
 use gudgeon_core::EvalError;
 use gudgeon_core::result::{Gradient, Value};
+use gudgeon_numerics::linalg::dot;
 use gudgeon_numerics::panel::LOBATTO;
 use gudgeon_scene::RunError;
 use indexmap::IndexMap;
@@ -53,17 +54,14 @@ struct Shift<'a> {
 }
 
 impl Shift<'_> {
-    /// What is added to the start of the followed cycle, and to the input.
+    /// What is added to the start of the followed cycle.
     fn weights(&self) -> Vec<f64> {
-        let (n, columns) = (self.trail.n, self.trail.columns);
-        let m = columns - n;
-        let mut weights = vec![0.0; columns];
-        weights[..n].copy_from_slice(&self.orbit.away);
+        let m = self.trail.columns - self.trail.n;
+        let mut weights = self.orbit.away.clone();
         if let Some((k, step)) = self.input {
-            for (r, w) in weights[..n].iter_mut().enumerate() {
+            for (r, w) in weights.iter_mut().enumerate() {
                 *w += step * self.orbit.slopes[r * m + k];
             }
-            weights[n + k] = step;
         }
         weights
     }
@@ -77,18 +75,23 @@ impl Shift<'_> {
     ) -> Result<IndexMap<String, Value>, RunError> {
         let trail = self.trail;
         let (nodes, weights) = (LOBATTO.nodes.len(), self.weights());
+        let (column, step) = self.input.map_or((0, 0.0), |(k, step)| (trail.n + k, step));
         let mut measures = Measures::new(pack, LOBATTO, wanted.seat);
         let (theta, value) = pack.cylinder.highest();
         measures.cylinder = Peak { theta, value };
-        let mut x = vec![0.0; trail.rows];
+        let shift = |x: &mut [f64], state: &[f64], slopes: &[f64]| {
+            for ((x, s), row) in x.iter_mut().zip(state).zip(slopes.chunks_exact(trail.columns)) {
+                *x = s + dot(&row[..trail.n], &weights) + step * row[column];
+            }
+        };
+        // The states and the quadrature that is looked at on the way; of the others only the end counts.
+        let mut x = vec![0.0; trail.n + 1];
         let states = trail.states.chunks_exact(trail.rows);
         let mut points = states.zip(trail.slopes.chunks_exact(trail.rows * trail.columns));
         for (t0, t1) in &trail.steps {
             for (k, node) in LOBATTO.nodes.iter().enumerate() {
                 let Some((state, slopes)) = points.next() else { break };
-                for ((x, s), row) in x.iter_mut().zip(state).zip(slopes.chunks_exact(trail.columns)) {
-                    *x = s + gudgeon_numerics::linalg::dot(row, &weights);
-                }
+                shift(&mut x, state, slopes);
                 let theta = if k + 1 == nodes { *t1 } else { t0 + node * (t1 - t0) };
                 let (y, q) = x.split_at(trail.n);
                 let at = |source: EvalError| RunError::Eval { theta_deg: theta.to_degrees(), source };
@@ -97,7 +100,10 @@ impl Shift<'_> {
             }
             measures.step(pack, *t0, *t1);
         }
-        let (q, rings) = (&x[trail.n..], pack.n_rings());
+        let (last, rings) = (trail.states.len().saturating_sub(trail.rows), pack.n_rings());
+        let mut end = vec![0.0; trail.rows];
+        shift(&mut end, &trail.states[last..], &trail.slopes[last * trail.columns..]);
+        let q = &end[trail.n..];
         let totals = Totals {
             flow_in: q[..rings].to_vec(),
             blow_by: q[rings],

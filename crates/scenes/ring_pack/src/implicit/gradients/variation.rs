@@ -9,10 +9,18 @@
 //! ```
 //!
 //! in the direction `S*` in which the derivatives are expected to lie, which are those of the steps before, extrapolated: `f_y` then counts only for what
-//! they miss. A step in which `f_y` changes much is taken twice, with what the first time found in the place of `S*`, for all columns. States inside a step,
-//! which its dense output tells less accurately than its ends, take one step of Newton's method towards the collocation equations first.
+//! they miss. States inside a step, which its dense output tells less accurately than its ends, take one step of Newton's method towards the collocation
+//! equations first.
+//!
+//! # Corners
+//! The integrator of the states steps over a corner of the rates (a ring that comes off a flank, a film that begins to be drawn apart, a flow that turns) where
+//! the states feel it less than the tolerance. Derivatives feel it at once. A step in which an entry of `f_y` changes by a part of itself that counts over the
+//! step is therefore halved until it does not, or until the piece with the corner is too short to matter. The states are solved anew in these pieces, the
+//! collocation equations by Newton's method to the end: what the dense output says may lie on the other side of the corner, where `f_y` is another. The pieces
+//! with the corner are taken twice, with what the first time found in the place of `S*`, for all columns.
 
 use gudgeon_core::EvalError;
+use gudgeon_numerics::linalg::dot;
 use gudgeon_numerics::ode::{Flow, StepView};
 use gudgeon_numerics::panel::LOBATTO;
 use gudgeon_numerics::tangent::{Jump, NODES, Tangent};
@@ -23,8 +31,19 @@ use crate::modes::EventOf;
 
 /// Change of a scaled state by which differences in a direction are taken.
 const EPSILON: f64 = 1e-7;
-/// Part of the largest entry of the Jacobian by which it may change within a step that is taken once.
-const BENT: f64 = 0.5;
+/// Part of a state by which differences tell the Jacobian. A ring that stands on a flank has sunk into it by some 1e-8 of its height, and a difference
+/// across the place where it comes off tells neither side.
+const INCREMENT: f64 = 1e-9;
+/// Part of an entry of the Jacobian by which it may change between the nodes of a step that is not halved, and the change over the step, in the scales of the
+/// states, from which on it counts.
+const BENT: (f64, f64) = (0.2, 3e-3);
+/// Most times a step is halved. A corner in the smallest piece is misjudged by less than that piece.
+const HALVINGS: u32 = 6;
+/// Most steps of Newton's method for the states at the nodes of a piece, and the change that ends them, in the scales of the states.
+const ITERATIONS: (usize, f64) = (5, 1e-12);
+/// Part of its change by which a step of Newton's method may miss the rates, and the change from which on that is told from rounding: more, and there was a
+/// corner on the way.
+const MISLED: (f64, f64) = (0.1, 1e-11);
 /// Longest step, over the one before, into which derivatives are extrapolated.
 const REACH: f64 = 2.0;
 /// What a state inside a step may miss, in its scale, for a step of Newton's method to bring it nearer.
@@ -43,11 +62,18 @@ pub struct Work {
     pub jacobians: u64,
     /// Instants of the packs beside it.
     pub beside: u64,
-    /// Steps that were taken twice.
-    pub bent: u64,
 }
 
-/// Where a piece of a step ended.
+/// What the states at the nodes of a piece met.
+#[derive(Clone, Copy)]
+struct Met {
+    /// Whether the Jacobians there differ.
+    bent: bool,
+    /// Whether a corner lay between them and where they were sought.
+    passed: bool,
+}
+
+/// Where a step, or a part of one between two events, ended.
 struct Last {
     theta: f64,
     y: Vec<f64>,
@@ -72,6 +98,10 @@ pub struct Variation<'a> {
     beside: Vec<f64>,
     missing: Vec<f64>,
     expected: Vec<f64>,
+    /// Products of the Jacobian with `expected`.
+    told: Vec<f64>,
+    /// The state at which the next piece begins.
+    start: Vec<f64>,
     memory: Vec<f64>,
     last: Option<Last>,
     /// Length of the last step, where its derivatives lead on behind it.
@@ -131,6 +161,8 @@ impl<'a> Variation<'a> {
             beside: values(rows),
             missing: values(NODES.len() * n),
             expected: values(rows * columns),
+            told: values(rows * columns),
+            start: values(n),
             memory: Vec::new(),
             last: None,
             reach: None,
@@ -167,22 +199,73 @@ impl<'a> Variation<'a> {
         self.memory.clear();
         pack.save(&mut self.memory);
         self.enter(pack, v)?;
-        self.over(pack, v)?;
+        self.start.copy_from_slice(v.y0());
+        self.over(pack, v, (v.t0(), v.t1()), HALVINGS)?;
         self.last = Some(Last { theta: v.t1(), y: v.y1().to_vec(), memory: self.memory.clone() });
         Ok(())
     }
 
-    /// Takes the derivatives over the step `v`.
-    fn over(&mut self, pack: &mut Pack, v: &dyn StepView) -> Result<(), EvalError> {
-        let (t0, t1) = (v.t0(), v.t1());
+    /// Takes the derivatives over the piece of the step `v` from `t0` to `t1`, in halves where there is a corner in it.
+    fn over(
+        &mut self,
+        pack: &mut Pack,
+        v: &dyn StepView,
+        (t0, t1): (f64, f64),
+        halvings: u32,
+    ) -> Result<(), EvalError> {
         let h = t1 - t0;
         let times = NODES.map(|x| t0 + x * h).map(|t| t.min(self.clear_of(t1, h)));
-        let reach = self.reach.replace(h).filter(|before| h <= REACH * before);
-        for (i, t) in times.iter().enumerate() {
-            self.linearise(pack, v, (i, *t))?;
+        for (y, t) in self.y.iter_mut().zip(&times) {
+            v.interpolate(*t, y);
         }
-        self.tangent.prepare(h).map_err(|e| EvalError::fatal("gradients", e.to_string()))?;
-        self.correct(pack, v, h, &times)?;
+        let met = self.settle(pack, h, &times, halvings)?;
+        if met.bent && halvings > 0 {
+            let middle = 0.5 * (t0 + t1);
+            self.over(pack, v, (t0, middle), halvings - 1)?;
+            return self.over(pack, v, (middle, t1), halvings - 1);
+        }
+        self.take(pack, h, &times, met)?;
+        self.start.copy_from_slice(&self.y[NODES.len() - 1]);
+        self.keep(v, (t0, t1));
+        Ok(())
+    }
+
+    /// Brings the states at the nodes to the solution, one step of Newton's method nearer where the rates are smooth, to the end where they are not, and
+    /// linearises the equations there.
+    fn settle(
+        &mut self,
+        pack: &mut Pack,
+        h: f64,
+        times: &[f64; NODES.len()],
+        halvings: u32,
+    ) -> Result<Met, EvalError> {
+        let mut met = Met { bent: false, passed: false };
+        for k in 1..=ITERATIONS.0 {
+            for (i, t) in times.iter().enumerate() {
+                self.linearise(pack, (i, *t))?;
+            }
+            met.bent = self.is_bent(h);
+            self.tangent.prepare(h).map_err(|e| EvalError::fatal("gradients", e.to_string()))?;
+            let Some((change, misled)) = self.correct(pack, h, times)? else { break };
+            met.passed |= misled > MISLED.0 * change && change > MISLED.1;
+            let smooth = halvings == HALVINGS && !met.passed && !met.bent;
+            let halved = met.bent && halvings > 0 && k > 1;
+            if smooth || halved || change < ITERATIONS.1 {
+                break;
+            }
+        }
+        Ok(met)
+    }
+
+    /// One step of length `h` with the equations that were linearised, twice where there is a corner.
+    fn take(
+        &mut self,
+        pack: &mut Pack,
+        h: f64,
+        times: &[f64; NODES.len()],
+        met: Met,
+    ) -> Result<(), EvalError> {
+        let reach = self.reach.take().filter(|before| h <= REACH * before);
         for (i, t) in times.iter().enumerate() {
             match reach {
                 Some(before) => self.tangent.interpolate(1.0 + NODES[i] * h / before, &mut self.expected),
@@ -191,16 +274,17 @@ impl<'a> Variation<'a> {
             self.forcing(i, *t)?;
         }
         self.tangent.step(h);
-        if self.is_bent() {
-            self.again(pack, h, &times)?;
+        if met.bent || met.passed {
+            // Behind a corner nothing leads on.
+            self.again(pack, h, times)
+        } else {
+            self.reach = Some(h);
+            Ok(())
         }
-        self.keep(v);
-        Ok(())
     }
 
     /// The step once more, in the directions that it found.
     fn again(&mut self, pack: &mut Pack, h: f64, times: &[f64; NODES.len()]) -> Result<(), EvalError> {
-        self.work.bent += 1;
         self.tangent.undo();
         for (i, t) in times.iter().enumerate() {
             self.expected.copy_from_slice(self.tangent.knot(i + 1));
@@ -208,45 +292,51 @@ impl<'a> Variation<'a> {
             self.directions(pack, i, *t)?;
         }
         self.tangent.step(h);
+        // Elsewhere the products with the Jacobian are all that states at the start need.
+        for i in 0..NODES.len() {
+            self.tangent.node(i).forcing.fill(0.0);
+        }
         Ok(())
     }
 
-    /// Brings the states at the nodes nearer to the solution, where they are known to be near it.
+    /// One step of Newton's method for the states at the nodes: by how much it changed them, and by how much it missed the rates that it expected, over the
+    /// length `h`; both in the scales of the states. Nothing where they are not known to be near the solution.
     fn correct(
         &mut self,
         pack: &mut Pack,
-        v: &dyn StepView,
         h: f64,
         times: &[f64; NODES.len()],
-    ) -> Result<(), EvalError> {
+    ) -> Result<Option<(f64, f64)>, EvalError> {
         let n = self.n;
-        self.tangent.missing(h, v.y0(), &self.y, &self.f, &mut self.missing);
+        self.tangent.missing(h, &self.start, &self.y, &self.f, &mut self.missing);
         let parts = self.missing.iter().enumerate().map(|(k, d)| (d / self.scale[k % n]).abs());
-        let size = parts.fold(0.0, f64::max);
-        if size > MISSED || !self.missing.iter().all(|d| d.is_finite()) {
-            return Ok(());
+        let change = parts.fold(0.0, f64::max);
+        if change > MISSED || !self.missing.iter().all(|d| d.is_finite()) {
+            return Ok(None);
         }
+        let mut misled = 0.0_f64;
         for (i, t) in times.iter().enumerate() {
-            self.y[i].iter_mut().zip(&self.missing[i * n..]).for_each(|(y, d)| *y += d);
+            let d = &self.missing[i * n..(i + 1) * n];
+            self.y[i].iter_mut().zip(d).for_each(|(y, d)| *y += d);
+            let rows = self.tangent.nodes()[i].jacobian.chunks_exact(n);
+            for ((told, row), f) in self.told.iter_mut().zip(rows).zip(&self.f[i]) {
+                *told = f + dot(row, d);
+            }
             pack.rates(*t, &self.y[i], &mut self.f[i])?;
             self.work.instants += 1;
+            for ((f, told), scale) in self.f[i].iter().zip(&self.told).zip(&self.scale) {
+                misled = misled.max((h * (f - told) / scale).abs());
+            }
         }
-        Ok(())
+        Ok(Some((change, misled)))
     }
 
     /// The linearised equations at node `i`, at the angle `t`, without the part of the inputs.
-    fn linearise(
-        &mut self,
-        pack: &mut Pack,
-        v: &dyn StepView,
-        (i, t): (usize, f64),
-    ) -> Result<(), EvalError> {
-        v.interpolate(t, &mut self.y[i]);
+    fn linearise(&mut self, pack: &mut Pack, (i, t): (usize, f64)) -> Result<(), EvalError> {
         pack.rates(t, &self.y[i], &mut self.f[i])?;
         let (y, scale) = (&self.y[i], &self.scale);
         let node = self.tangent.node(i);
-        node.forcing.fill(0.0);
-        pack.jacobian(y, |k| increment(y[k], scale[k]), &mut node.jacobian, &mut self.base)?;
+        pack.jacobian(y, |k| increment(INCREMENT, y[k], scale[k]), &mut node.jacobian, &mut self.base)?;
         self.work.instants += 1;
         self.work.jacobians += 1;
         Ok(())
@@ -277,6 +367,7 @@ impl<'a> Variation<'a> {
     /// The part of the right-hand side at node `i` that comes from the inputs.
     fn forcing(&mut self, i: usize, theta: f64) -> Result<(), EvalError> {
         let (n, columns) = (self.n, self.columns);
+        self.tangent.along(i, n, &self.expected, &mut self.told);
         for (k, v) in self.varied.iter_mut().enumerate() {
             let c = n + k;
             for (r, moved) in self.moved.iter_mut().enumerate() {
@@ -285,7 +376,7 @@ impl<'a> Variation<'a> {
             v.pack.restore_memory(&self.memory);
             v.pack.rates(theta, &self.moved, &mut self.beside)?;
             self.work.beside += 1;
-            self.tangent.directional(i, c, &self.f[i], &self.beside, v.step, &self.expected);
+            self.tangent.directional(i, c, &self.f[i], &self.beside, v.step, &self.told);
         }
         Ok(())
     }
@@ -293,6 +384,7 @@ impl<'a> Variation<'a> {
     /// The same for the states at the start: differences in their directions in the place of products with the Jacobian.
     fn directions(&mut self, pack: &mut Pack, i: usize, theta: f64) -> Result<(), EvalError> {
         let columns = self.columns;
+        self.tangent.along(i, 0, &self.expected, &mut self.told);
         for c in 0..self.n {
             let size = (0..self.n)
                 .map(|r| (self.expected[r * columns + c] / self.scale[r]).abs())
@@ -306,24 +398,20 @@ impl<'a> Variation<'a> {
             }
             pack.rates(theta, &self.moved, &mut self.beside)?;
             self.work.instants += 1;
-            self.tangent.directional(i, c, &self.f[i], &self.beside, d, &self.expected);
+            self.tangent.directional(i, c, &self.f[i], &self.beside, d, &self.told);
         }
         Ok(())
     }
 
-    /// Whether the Jacobian changes much within the step.
-    fn is_bent(&mut self) -> bool {
-        let n = self.n;
-        let (mut largest, mut change) = (0.0_f64, 0.0_f64);
-        for r in 0..n {
-            for k in 0..n {
-                let per = self.scale[k] / self.scale[r];
-                let [a, b, c] = [0, 1, 2].map(|i| self.tangent.node(i).jacobian[r * n + k] * per);
-                largest = largest.max(a.abs()).max(b.abs()).max(c.abs());
-                change = change.max((a - b).abs()).max((b - c).abs());
-            }
-        }
-        change > BENT * largest
+    /// Whether an entry of the Jacobian changes much, and by what counts, between the nodes of a step of length `h`.
+    fn is_bent(&self, h: f64) -> bool {
+        let (n, scale) = (self.n, &self.scale);
+        (0..n * n).any(|e| {
+            let [a, b, c] = self.tangent.nodes().each_ref().map(|node| node.jacobian[e]);
+            let change = (a - b).abs().max((b - c).abs());
+            let largest = a.abs().max(b.abs()).max(c.abs());
+            change > BENT.0 * largest && h * change * scale[e % n] > BENT.1 * scale[e / n]
+        })
     }
 
     /// Across an event between the piece that ended as `last` and the state `y`.
@@ -402,9 +490,8 @@ impl<'a> Variation<'a> {
         Ok(())
     }
 
-    /// Keeps the step for the results.
-    fn keep(&mut self, v: &dyn StepView) {
-        let (t0, t1) = (v.t0(), v.t1());
+    /// Keeps the piece of the step `v` from `t0` to `t1` for the results.
+    fn keep(&mut self, v: &dyn StepView, (t0, t1): (f64, f64)) {
         let size = self.rows * self.columns;
         for (k, x) in LOBATTO.nodes.iter().enumerate() {
             let t = if k + 1 == LOBATTO.nodes.len() { t1 } else { t0 + x * (t1 - t0) };
