@@ -58,7 +58,7 @@ fn boundary() -> Ratio<NonNegative> {
     name = "kogut_etsion",
     summary = "elastic-plastic spherical summits of a rough surface on a plane",
     equations = "p = (2/3) pi K H (eta beta sigma) (omega_c/sigma) int_0^inf g(t sigma_s/omega_c) phi(d+t) dt;  omega_c = (pi K H/(2 E'))^2 beta;  K = 0.454 + 0.41 nu;  g(x) = x^1.5 | 1.03 x^1.425 | 1.40 x^1.263 | 3 x/K for x up to 1 | 6 | 110 | beyond",
-    validity = "Isotropic Gaussian roughness, summits that do not touch each other: real area below a tenth; first loading, no hardening. Where each range ends the fits of the source jump, by 8 % where all flows.",
+    validity = "Isotropic Gaussian roughness, summits that do not touch each other: real area below a tenth; first loading, no hardening. Where each range ends the fits of the source jump, most where all flows: by about a tenth.",
     references = ["kogut2002", "kogut2003", "mccool1986"],
     example = "roughness = \"0.4 um\"\ncomposite_modulus = \"115 GPa\"\nhardness = \"2 GPa\"\neta_beta_sigma = 0.05\nsigma_over_beta = 1e-3\n",
 )]
