@@ -51,7 +51,7 @@ pub const KINDS: &[(&str, Reach)] = &[
     ("film_2d", Reach::Alone(film::film_2d)),
     ("film_force", Reach::Alone(ring::film_force)),
     ("film_temperature", Reach::Alone(film::film_temperature)),
-    ("flank_damping", Reach::Alone(ring::flank_damping)),
+    ("flank", Reach::Alone(ring::flank)),
     ("flank_friction", Reach::Alone(ring::flank_friction)),
     ("gas_flow", Reach::Alone(gas::gas_flow)),
     ("groove_friction", Reach::Alone(skirt::groove_friction)),

@@ -5,8 +5,8 @@ use std::hint::black_box;
 use gudgeon_core::ModelInfo;
 use gudgeon_core::geometry::{PackGeometry, RingPlace, RingSection};
 use gudgeon_core::kinds::{
-    AxialForces, AxialGasSpec, CavitationDatumSpec, DragSpec, FaceForces, FilmForceSpec, FlankDampingCtx,
-    FlankDampingSpec, FlankFrictionSpec, HoopSpec, RadialGasSpec, RingForces, RingMotionCtx, RingMotionSpec,
+    AxialForces, AxialGasSpec, CavitationDatumSpec, DragSpec, FaceForces, FilmForceSpec, FlankCtx,
+    FlankFrictionSpec, FlankSpec, HoopSpec, RadialGasSpec, RingForces, RingMotionCtx, RingMotionSpec,
     TwinLandFrictionSpec,
 };
 
@@ -79,15 +79,21 @@ pub fn twin_land_friction(m: &ModelInfo) -> Result<Alone, String> {
 }
 
 /// A top ring whose flanks are half wetted by an oil of 10 mPa s.
-fn damping(ring: usize) -> FlankDampingCtx {
-    FlankDampingCtx { ring, rings: 3, oil_fill: 0.5, width: 4e-3, mu: 0.01 }
+fn damping(ring: usize) -> FlankCtx {
+    FlankCtx::new(ring, 3, 0.5, 4e-3, 0.01).at_speed(209.4)
 }
 
-pub fn flank_damping(m: &ModelInfo) -> Result<Alone, String> {
-    alone::<dyn FlankDampingSpec, _, _>(
+pub fn flank(m: &ModelInfo) -> Result<Alone, String> {
+    alone::<dyn FlankSpec, _, _>(
         m,
         |s| s.build(&damping(0)),
-        |oil| seen(oil.force(black_box(0.2 * CLEARANCE), -0.05, CLEARANCE, 1e-3)),
+        |film| {
+            let place = RingPlace { s: 0.2 * CLEARANCE, clearance: CLEARANCE, ..RingPlace::default() };
+            let mut y = vec![0.0; film.states().len()];
+            film.initial(&mut y);
+            let oil = film.oil(black_box(&y), &place);
+            seen(film.law().force(&oil, place.s, -0.05, CLEARANCE, 1e-3))
+        },
     )
 }
 
@@ -101,12 +107,12 @@ pub fn flank_friction(m: &ModelInfo) -> Result<Alone, String> {
 
 /// Pose and rates of a ring that has left the lower flank of its groove.
 pub fn ring_motion(m: &ModelInfo) -> Result<Alone, String> {
-    let oil = part::<dyn FlankDampingSpec>("squeeze_film")?;
+    let oil = part::<dyn FlankSpec>("squeeze_film")?;
     let pack = gudgeon_gas::plain_pack(1);
     alone::<dyn RingMotionSpec, _, _>(
         m,
         move |s| {
-            let ctx = RingMotionCtx::new(0, 0.02, CLEARANCE, 209.4, oil.build(&damping(0))?);
+            let ctx = RingMotionCtx::new(0, 0.02, CLEARANCE, 209.4, oil.build(&damping(0))?.law());
             s.build(ctx.section(2e-3, 4e-3, 0.05, 1.2e-3))
         },
         move |motion| {

@@ -222,6 +222,24 @@ pub struct RingPlace {
     pub r_outer: f64,
     /// Volume behind the ring \[m³\].
     pub back_volume: f64,
+    /// Oil on the flanks.
+    pub flank: FlankOil,
+}
+
+/// Where oil stands between a ring and the flanks of its groove: on the lower flank, on the upper flank.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FlankOil {
+    /// Radial width of the strip of oil that bridges each gap \[m\].
+    pub wetted: [f64; 2],
+    /// Share of each gap that is open to gas, 0 to 1.
+    pub open: [f64; 2],
+}
+
+impl Default for FlankOil {
+    /// No oil that closes a gap.
+    fn default() -> Self {
+        Self { wetted: [0.0; 2], open: [1.0; 2] }
+    }
 }
 
 impl RingPlace {

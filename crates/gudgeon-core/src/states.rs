@@ -41,6 +41,8 @@ impl Signals {
     pub const FILM_FORCE: Self = Self(128);
     /// Velocity of the film thickness, where it is a state.
     pub const RADIAL_VELOCITY: Self = Self(256);
+    /// Oil on the flanks.
+    pub const FLANK_OIL: Self = Self(512);
 
     /// Whether both have something in common.
     #[inline]

@@ -232,10 +232,7 @@ impl PassageModel<Passage> for Channels {
         let (upper, lower) = if ring.back == BackVolume::Sealed {
             (Passage::Closed, Passage::Closed)
         } else {
-            (
-                channel(k.upper, o.upper.laminar() + ring.leak_upper),
-                channel(k.lower, o.lower.laminar() + ring.leak_lower),
-            )
+            (channel(k.upper, o.upper.laminar() + o.leak[1]), channel(k.lower, o.lower.laminar() + o.leak[0]))
         };
         RingPassages {
             upper,

@@ -152,10 +152,10 @@ impl<P: From<Area> + Default> PassageModel<P> for OrificeAreas {
         let through_groove = self.gap_split * o.gap;
         RingPassages {
             upper: orifice(
-                TAU * ring.piston_radius_above * (o.upper.narrowest() + ring.leak_upper) + through_groove,
+                TAU * ring.piston_radius_above * (o.upper.narrowest() + o.leak[1]) + through_groove,
             ),
             lower: orifice(
-                TAU * ring.piston_radius_below * (o.lower.narrowest() + ring.leak_lower) + through_groove,
+                TAU * ring.piston_radius_below * (o.lower.narrowest() + o.leak[0]) + through_groove,
             ),
             gap: orifice(face + (o.gap - through_groove)),
             face: P::default(),

@@ -27,6 +27,12 @@ impl FlankGap {
         Self { inner: (mean - rise).max(0.0), outer: (mean + rise).max(0.0) }
     }
 
+    /// The part `share` of the gap.
+    #[must_use]
+    pub fn times(&self, share: f64) -> Self {
+        Self { inner: self.inner * share, outer: self.outer * share }
+    }
+
     /// Smallest height \[m\]: what an orifice sees.
     #[must_use]
     pub fn narrowest(&self) -> f64 {
@@ -53,10 +59,12 @@ pub struct Openings {
     pub h: f64,
     /// Liner radius \[m\], distortion included.
     pub liner_radius: f64,
-    /// Distance from the lower groove flank, not negative unless the pack is unbound.
+    /// Distance from the lower groove flank, not negative unless the pack is unbound; where oil closes a part of a gap, what is open of it.
     pub lower: FlankGap,
     /// Distance from the upper groove flank, likewise.
     pub upper: FlankGap,
+    /// Leak heights of the seated lower and upper flank \[m\].
+    pub leak: [f64; 2],
     /// Position in the groove, 0 lower flank, 1 upper flank.
     pub lift_fraction: f64,
     /// End-gap area \[m²\], with the chamfer.

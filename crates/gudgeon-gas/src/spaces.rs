@@ -61,6 +61,7 @@ impl Spaces {
             liner_radius: pack.bore_radius,
             lower: FlankGap::parallel(e * clearance),
             upper: FlankGap::parallel((1.0 - e) * clearance),
+            leak: [ring.leak_lower, ring.leak_upper],
             lift_fraction: e,
             gap: ring.gap_area.unwrap_or(ring.gap * radial),
             back_volume: self.nominal_volume(i),
@@ -99,11 +100,13 @@ impl Spaces {
         };
         // A ring whose outer edge rises opens the lower gap outwards and closes the upper one.
         let rise = 0.5 * place.twist * (place.r_outer - place.r_inner);
+        let open = place.flank.open;
         Ok(Openings {
             h,
             liner_radius: place.liner_radius,
-            lower: FlankGap::wedge(lower, rise),
-            upper: FlankGap::wedge(upper, -rise),
+            lower: FlankGap::wedge(lower, rise).times(open[0]),
+            upper: FlankGap::wedge(upper, -rise).times(open[1]),
+            leak: [ring.leak_lower * open[0], ring.leak_upper * open[1]],
             lift_fraction: e,
             gap: area + chamfer,
             back_volume: self.volume_behind(i, place),

@@ -193,6 +193,7 @@ pub(crate) fn balance_section(balance: &BalanceSheet) -> String {
     let rows = [
         ("Gas mass", "(in − out − stored) / throughput", balance.gas_mass),
         ("Oil mass", "(in − out − stored) / throughput", balance.oil_mass),
+        ("Oil on ring flanks", "(in − out − stored) / throughput", balance.flank_oil),
         (
             "Energy",
             "work of all forces on the rings less the change of their kinetic energy, by the sum of magnitudes",

@@ -38,6 +38,8 @@ pub(crate) struct SkippedEntry {
 pub(crate) struct BalanceSheet {
     pub gas_mass: Option<f64>,
     pub oil_mass: Option<f64>,
+    #[serde(default)]
+    pub flank_oil: Option<f64>,
     pub energy: Option<f64>,
     pub momentum: Option<f64>,
 }
@@ -154,6 +156,7 @@ impl Summary {
             balance: BalanceSheet {
                 gas_mass: finite(run.balance.gas_mass),
                 oil_mass: finite(run.balance.oil_mass),
+                flank_oil: finite(run.balance.flank_oil),
                 energy: finite(run.balance.energy),
                 momentum: finite(run.balance.momentum),
             },

@@ -46,7 +46,7 @@ fn summary_has_the_promised_shape() {
     assert_eq!(summary["skipped"][0]["what"], "asperity contact");
     assert!(summary["skipped"][0]["why"].is_string());
     let balance: Vec<&String> = summary["balance"].as_object().unwrap().keys().collect();
-    assert_eq!(balance, ["gas_mass", "oil_mass", "energy", "momentum"]);
+    assert_eq!(balance, ["gas_mass", "oil_mass", "flank_oil", "energy", "momentum"]);
     assert!(summary["balance"]["oil_mass"].is_null());
     assert_eq!(summary["solver"]["counters"]["steps"], 5210);
     assert!(!keys.contains(&"seconds"), "wall times would make two equal runs differ");

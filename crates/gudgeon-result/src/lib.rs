@@ -123,8 +123,11 @@ pub struct Skipped {
 pub struct Balance {
     /// Gas mass: (in - out - stored) / throughput.
     pub gas_mass: Option<f64>,
-    /// Oil mass.
+    /// Oil mass of films.
     pub oil_mass: Option<f64>,
+    /// Oil on ring flanks: (in - out - stored) / throughput.
+    #[serde(default)]
+    pub flank_oil: Option<f64>,
     /// Work of all forces on the rings less the change of their kinetic energy, by the sum of the magnitudes.
     pub energy: Option<f64>,
     /// Impulse of all forces on the rings less the change of their momentum, by the sum of the magnitudes.

@@ -7,7 +7,7 @@
 //! | kind | question | models |
 //! |---|---|---|
 //! | [`ring_motion`](gudgeon_core::kinds::RingMotionSpec) | where is the ring between its flanks? | [`NewtonGroove`] (mass between stiff flanks), [`ThreeSeat`] (sits where the forces point), [`Seated`] (stays) |
-//! | [`flank_damping`](gudgeon_core::kinds::FlankDampingSpec) | how does the oil in the groove resist axial motion? | [`SqueezeFilm`], [`TangentRadians`], [`TangentDegrees`], [`DampingOff`] |
+//! | [`flank`](gudgeon_core::kinds::FlankSpec) | what does the oil between ring and flanks do to ring and gas? | [`WettedStrip`], [`SqueezeFilm`], [`TangentRadians`], [`TangentDegrees`], [`Dry`] |
 //! | [`flank_friction`](gudgeon_core::kinds::FlankFrictionSpec) | how does a flank resist radial motion? | [`TanhStribeck`], [`RationalSaturation`], [`FrictionOff`] |
 //! | [`radial_motion`](gudgeon_core::kinds::RadialMotionSpec) | how fast does the film thickness change? | [`FilmBalance`] |
 //! | [`hoop`], [`radial_gas`], [`axial_gas`], [`cavitation_datum`], [`film_force`], [`drag`], [`twin_land_friction`] | which surfaces and which forces count? | the laws in which published programs differ, a module each |
@@ -22,15 +22,16 @@
 //! width `w` out with the force `μ A w² f³ v/(h + σ)³`, with the roughness distance `σ` of the flanks.
 //!
 //! ```
-//! use gudgeon_core::kinds::{FlankDampingCtx, FlankDampingSpec};
+//! use gudgeon_core::geometry::FlankOil;
+//! use gudgeon_core::kinds::{FlankCtx, FlankSpec};
 //! use gudgeon_core::quantity::quantity;
 //! use gudgeon_ring::SqueezeFilm;
 //!
 //! let spec = SqueezeFilm { roughness: quantity(0.4e-6), separation: quantity(0.0), ..SqueezeFilm::default() };
-//! let oil = spec.build(&FlankDampingCtx { ring: 0, rings: 3, oil_fill: 0.6, width: 5e-3, mu: 0.01 })?;
+//! let oil = spec.build(&FlankCtx::new(0, 3, 0.6, 5e-3, 0.01))?.law();
 //! let (s, v, clearance, area) = (2e-5_f64, -1e-3, 1e-4, 1.8e-3);
 //! let exact = 0.01 * area * 5e-3_f64.powi(2) * 0.6_f64.powi(3) * 1e-3 / (s + 0.4e-6).powi(3);
-//! assert!((oil.force(s, v, clearance, area) / exact - 1.0).abs() < 1e-14);
+//! assert!((oil.force(&FlankOil::default(), s, v, clearance, area) / exact - 1.0).abs() < 1e-14);
 //! # Ok::<(), gudgeon_core::BuildError>(())
 //! ```
 //!
@@ -40,7 +41,7 @@ pub mod axial_gas;
 pub mod cavitation_datum;
 pub mod drag;
 pub mod film_force;
-mod flank_damping;
+mod flank;
 mod flank_friction;
 pub mod hoop;
 pub mod radial_gas;
@@ -48,10 +49,11 @@ mod radial_motion;
 mod ring_motion;
 pub mod twin_land_friction;
 
-pub use flank_damping::off::Off as DampingOff;
-pub use flank_damping::squeeze_film::SqueezeFilm;
-pub use flank_damping::tangent_degrees::TangentDegrees;
-pub use flank_damping::tangent_radians::TangentRadians;
+pub use flank::dry::Dry;
+pub use flank::squeeze_film::SqueezeFilm;
+pub use flank::tangent_degrees::TangentDegrees;
+pub use flank::tangent_radians::TangentRadians;
+pub use flank::wetted_strip::WettedStrip;
 pub use flank_friction::off::Off as FrictionOff;
 pub use flank_friction::rational_saturation::RationalSaturation;
 pub use flank_friction::tanh_stribeck::TanhStribeck;
@@ -70,7 +72,7 @@ pub mod parts {
 }
 
 gudgeon_core::link!(
-    DampingOff,
+    Dry,
     FilmBalance,
     FrictionOff,
     NewtonGroove,

@@ -1,7 +1,7 @@
 //! A ring motion with four states: the ring lifts and its section twists.
 
 use gudgeon_core::kinds::{
-    FlankDamping, RingForces, RingMotion, RingMotionCtx, RingMotionSpec, RingPose, RingResponse,
+    FlankLaw, RingForces, RingMotion, RingMotionCtx, RingMotionSpec, RingPose, RingResponse,
 };
 use gudgeon_core::quantity::{Angle, PosPressure, PosStiffness, quantity};
 use gudgeon_core::states::{ColumnInfo, Signals, StateInfo, Stateful};
@@ -96,7 +96,7 @@ struct Section {
     width: f64,
     clearance: f64,
     omega: f64,
-    damping: Box<dyn FlankDamping>,
+    damping: Box<dyn FlankLaw>,
     response: RingResponse,
 }
 
@@ -135,7 +135,8 @@ impl RingMotion for Section {
         for side in [-1.0, 1.0] {
             // Oil at the middle of each half, flanks at its edge.
             let (r, edge) = (side * 0.25 * self.width, side * 0.5 * self.width);
-            let f = self.damping.force(p.s + r * p.twist, p.v + r * p.twist_rate, p.clearance, half);
+            let f =
+                self.damping.force(&p.flank, p.s + r * p.twist, p.v + r * p.twist_rate, p.clearance, half);
             let n = self.push(p.s + edge * p.twist, p.v + edge * p.twist_rate, p.clearance);
             (oil, reaction, moment) = (oil + f, reaction + n, moment + r * f + edge * n);
         }

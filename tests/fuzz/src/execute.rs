@@ -174,8 +174,13 @@ fn judge(checked: &Checked, r: &RunResult, o: &mut Outcome) {
     let acted = |n: &&gudgeon_core::result::Note| n.level > NoteLevel::Info && n.topic != OF_THE_INPUT;
     o.notes = r.solver.notes.iter().filter(acted).map(|n| n.topic.clone()).collect();
     let b = &r.balance;
-    let all =
-        [("gas mass", b.gas_mass), ("oil mass", b.oil_mass), ("energy", b.energy), ("momentum", b.momentum)];
+    let all = [
+        ("gas mass", b.gas_mass),
+        ("oil mass", b.oil_mass),
+        ("flank oil", b.flank_oil),
+        ("energy", b.energy),
+        ("momentum", b.momentum),
+    ];
     o.balance = all.into_iter().filter_map(|(name, v)| Some((name.to_owned(), v?))).collect();
     let finite =
         |s: &Series| s.columns.iter().chain([&s.axis]).all(|c| c.values.iter().all(|v| v.is_finite()));

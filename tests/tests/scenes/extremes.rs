@@ -248,7 +248,7 @@ fn rings() {
             "oil at 500 degC",
             &["models.film_temperature.tdc=500 degC", "models.film_temperature.bdc=500 degC"],
         ),
-        set("no groove oil", &["models.flank_damping.model=off"]),
+        set("no groove oil", &["models.flank.model=dry"]),
     ]);
 }
 

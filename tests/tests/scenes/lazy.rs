@@ -74,7 +74,7 @@ fn seated_rings_have_no_states() {
     // Two lands and two spaces behind rings; the oil ring's groove drains.
     assert_eq!(r.solver.counters["states"], 4);
     assert_eq!(r.solver.counters["film_evaluations"], 0);
-    for what in ["ring_motion", "flank_damping", "hydrodynamics"] {
+    for what in ["ring_motion", "flank", "hydrodynamics"] {
         assert!(r.skipped.iter().any(|s| s.what.contains(what)), "{what}");
     }
     assert_eq!(r.balance.energy, None);

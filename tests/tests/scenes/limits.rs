@@ -129,7 +129,7 @@ fn undamped_rings_on_a_followed_film_stay_numbers() {
     let r = run_case(
         CASE,
         &[
-            "models.flank_damping={model=\"off\"}",
+            "models.flank={model=\"dry\"}",
             "models.gas_flow={model=\"narrow_channel\"}",
             "models.oil_transport={model=\"liner_film\"}",
             "solver.max_cycles=4",

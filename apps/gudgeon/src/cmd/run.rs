@@ -58,11 +58,15 @@ fn text(r: &RunResult) -> String {
     // Writing to a String cannot fail.
     let _ = writeln!(s);
     let b = &r.balance;
+    let all = [
+        ("gas mass", b.gas_mass),
+        ("oil mass", b.oil_mass),
+        ("flank oil", b.flank_oil),
+        ("energy", b.energy),
+        ("momentum", b.momentum),
+    ];
     let balance: Vec<String> =
-        [("gas mass", b.gas_mass), ("oil mass", b.oil_mass), ("energy", b.energy), ("momentum", b.momentum)]
-            .iter()
-            .filter_map(|(name, v)| v.map(|v| format!("{name} {v:.1e}")))
-            .collect();
+        all.iter().filter_map(|(name, v)| v.map(|v| format!("{name} {v:.1e}"))).collect();
     if !balance.is_empty() {
         let _ = writeln!(s, "  closure per cycle: {}", balance.join(", "));
     }

@@ -2,8 +2,8 @@ use std::fmt::Debug;
 
 use dyn_clone::DynClone;
 
-use super::FlankDamping;
-use crate::geometry::RingPlace;
+use super::FlankLaw;
+use crate::geometry::{FlankOil, RingPlace};
 use crate::states::Stateful;
 use crate::{BuildError, EvalError, register_kind};
 
@@ -27,13 +27,13 @@ pub struct RingMotionCtx {
     /// Crank speed \[rad/s\].
     pub omega: f64,
     /// Oil between the ring and the flanks of its groove.
-    pub damping: Box<dyn FlankDamping>,
+    pub damping: Box<dyn FlankLaw>,
 }
 
 impl RingMotionCtx {
     /// A ring of a mass \[kg\] with a nominal clearance \[m\], at a crank speed \[rad/s\]; sections and areas are zero until they are set.
     #[must_use]
-    pub fn new(ring: usize, mass: f64, clearance: f64, omega: f64, damping: Box<dyn FlankDamping>) -> Self {
+    pub fn new(ring: usize, mass: f64, clearance: f64, omega: f64, damping: Box<dyn FlankLaw>) -> Self {
         Self { mass, clearance, flank_area: 0.0, height: 0.0, width: 0.0, radius: 0.0, ring, omega, damping }
     }
 
@@ -232,6 +232,6 @@ pub trait RingMotion: Stateful + Send {
 
 /// A ring as a mass between rigid flanks.
 pub trait SecondOrder {
-    /// Force of the oil in the groove \[N\] at height `s` \[m\] and velocity `v` \[m/s\], for a clearance \[m\] and an area of the flanks \[m²\].
-    fn damping(&self, s: f64, v: f64, clearance: f64, area: f64) -> f64;
+    /// Force of the oil in the groove \[N\], which stands as `oil` says, at height `s` \[m\] and velocity `v` \[m/s\], for a clearance \[m\] and an area of the flanks \[m²\].
+    fn damping(&self, oil: &FlankOil, s: f64, v: f64, clearance: f64, area: f64) -> f64;
 }

@@ -25,7 +25,7 @@ const SWITCHED_OFF: &[(&str, Option<&str>)] = &[
     ("film_2d", Some("off")),
     ("film_force", None),
     ("film_temperature", Some("given")),
-    ("flank_damping", Some("off")),
+    ("flank", Some("dry")),
     ("flank_friction", Some("off")),
     ("gas_flow", Some("prescribed")),
     ("groove_friction", Some("off")),

@@ -269,6 +269,7 @@ pub fn run(n: usize) -> RunResult {
         balance: Balance {
             gas_mass: Some(2.3e-9),
             oil_mass: None,
+            flank_oil: None,
             energy: Some(-4.1e-7),
             momentum: Some(1.2e-8),
         },

@@ -9,11 +9,11 @@
 //! ```
 //!
 //! which falls with `v` and has one root. It is let go where the balance asks for a speed away from the flank beyond the release
-//! speed, and held again when its velocity has come as close to that of the balance as the tolerance asks. Both limits are
-//! proportional to the tolerance: the tighter it is, the more of the motion is integrated with its inertia.
+//! speed, and held again when its velocity has come so close to that of the balance that the way which is left is within the tolerance. Both
+//! limits are proportional to the tolerance: the tighter it is, the more of the motion is integrated with its inertia.
 
-use gudgeon_core::geometry::RingPlace;
-use gudgeon_core::kinds::FlankDamping;
+use gudgeon_core::geometry::{FlankOil, RingPlace};
+use gudgeon_core::kinds::FlankLaw;
 use gudgeon_numerics::roots;
 
 use super::groove_flank::GrooveFlank;
@@ -84,12 +84,14 @@ pub struct Balance<'a> {
     pub external: f64,
     /// Height \[m\].
     pub s: f64,
+    /// Where the oil stands.
+    pub oil: FlankOil,
     /// Clearance \[m\].
     pub clearance: f64,
     /// Area of a flank \[m²\].
     pub area: f64,
-    /// Oil in the groove.
-    pub damping: &'a dyn FlankDamping,
+    /// Force of the oil in the groove.
+    pub damping: &'a dyn FlankLaw,
     /// The flanks.
     pub flank: &'a GrooveFlank,
     /// Velocity towards a flank that nothing shields \[m/s\].
@@ -102,7 +104,7 @@ impl Balance<'_> {
         let v = self.away * w;
         self.away
             * (self.external
-                + self.damping.force(self.s, v, self.clearance, self.area)
+                + self.damping.force(&self.oil, self.s, v, self.clearance, self.area)
                 + self.flank.reaction(self.s, v, self.clearance))
     }
 
@@ -217,7 +219,8 @@ impl Holding {
         let balanced = b.velocity(release);
         // A ring just let go is not held again at once; one that was held when the last cycle ended still is.
         let kept = 1.0 - if starts { 1.0 } else { 2.0 } * balanced / release;
-        let settled = 1.0 - (w - balanced).abs() / (self.tolerance * self.unit_speed);
+        // What is left of the way to the balance, `Δw/rate`, is to be as short as the accuracy of a height.
+        let settled = 1.0 - (w - balanced).abs() / (self.tolerance * self.unit_speed * (rate / MIN_RATE));
         stiff.min(kept).min(if starts { 1.0 } else { settled }).max(-1.0)
     }
 

@@ -1,7 +1,8 @@
 //! The ring as a mass that moves between the groove flanks.
 
+use gudgeon_core::geometry::FlankOil;
 use gudgeon_core::kinds::{
-    FlankDamping, RingForces, RingMotion, RingMotionCtx, RingMotionSpec, RingPose, RingResponse, SecondOrder,
+    FlankLaw, RingForces, RingMotion, RingMotionCtx, RingMotionSpec, RingPose, RingResponse, SecondOrder,
 };
 use gudgeon_core::quantity::{PosStiffness, PosVelocity, quantity};
 use gudgeon_core::states::{Signals, StateInfo, Stateful};
@@ -136,7 +137,7 @@ struct Runtime {
     flank: GrooveFlank,
     gravity: bool,
     film_force: bool,
-    damping: Box<dyn FlankDamping>,
+    damping: Box<dyn FlankLaw>,
     mass: f64,
     clearance: f64,
     omega: f64,
@@ -154,6 +155,7 @@ impl Runtime {
             away: hold.away(),
             external: a.gas + a.inertia + a.gravity + a.film,
             s: place.s,
+            oil: place.flank,
             clearance: place.clearance,
             area: place.flank_area(),
             damping: &*self.damping,
@@ -188,7 +190,7 @@ impl RingMotion for Runtime {
             Hold::Free => place.v,
             _ => self.holding.velocity(&self.balance(forces, hold), self.v),
         };
-        let damping = self.damping.force(place.s, v, place.clearance, place.flank_area());
+        let damping = self.damping.force(&place.flank, place.s, v, place.clearance, place.flank_area());
         let reaction = self.flank.reaction(place.s, v, place.clearance);
         let (c0, omega) = (self.clearance, self.omega);
         if hold == Hold::Free {
@@ -227,8 +229,8 @@ impl RingMotion for Runtime {
 }
 
 impl SecondOrder for Runtime {
-    fn damping(&self, s: f64, v: f64, clearance: f64, area: f64) -> f64 {
-        self.damping.force(s, v, clearance, area)
+    fn damping(&self, oil: &FlankOil, s: f64, v: f64, clearance: f64, area: f64) -> f64 {
+        self.damping.force(oil, s, v, clearance, area)
     }
 }
 
@@ -238,7 +240,11 @@ impl Stateful for Runtime {
     }
 
     fn reads(&self) -> Signals {
-        let own = Signals::LIFT | Signals::AXIAL_VELOCITY | Signals::FILM_THICKNESS | Signals::PRESSURE;
+        let own = Signals::LIFT
+            | Signals::AXIAL_VELOCITY
+            | Signals::FILM_THICKNESS
+            | Signals::PRESSURE
+            | Signals::FLANK_OIL;
         if self.film_force { own | Signals::FILM_FORCE } else { own }
     }
 

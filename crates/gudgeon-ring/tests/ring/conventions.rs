@@ -53,6 +53,7 @@ fn place() -> RingPlace {
         r_inner: BORE_RADIUS - 5e-3,
         r_outer: BORE_RADIUS,
         back_volume: 1e-6,
+        ..RingPlace::default()
     }
 }
 

@@ -3,7 +3,7 @@
 use gudgeon_ring as _; // links the models, which are asked for by name
 
 mod conventions;
-mod flank_damping;
+mod flank;
 mod flank_friction;
 mod radial_motion;
 mod registered;

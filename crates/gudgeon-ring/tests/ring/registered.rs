@@ -5,7 +5,7 @@ fn registered() {
     let registry = gudgeon_core::Registry::collect();
     for (kind, names) in [
         ("ring_motion", &["newton_groove", "seated", "three_seat"][..]),
-        ("flank_damping", &["off", "squeeze_film", "tangent_degrees", "tangent_radians"]),
+        ("flank", &["dry", "squeeze_film", "tangent_degrees", "tangent_radians", "wetted_strip"]),
         ("flank_friction", &["off", "rational_saturation", "tanh_stribeck"]),
     ] {
         let found: Vec<_> = registry.models(kind).iter().map(|m| m.name).collect();

@@ -1,6 +1,5 @@
-use gudgeon_core::kinds::{
-    FlankDamping, FlankDampingCtx, FlankDampingSpec, Rig, RigCtx, RigOut, RigSpec, named,
-};
+use gudgeon_core::geometry::RingPlace;
+use gudgeon_core::kinds::{Flank, FlankCtx, FlankLaw, FlankSpec, Rig, RigCtx, RigOut, RigSpec, named};
 use gudgeon_core::quantity::{
     Force, Fraction, Mass, NonNegative, PosArea, PosLength, PosRatio, PosTime, PosVelocity, PosViscosity,
     Ratio, Velocity, quantity,
@@ -48,7 +47,7 @@ pub struct FlankRig {
     #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1 }))]
     pub tolerance: PosRatio,
     /// The model.
-    pub flank_damping: Box<dyn FlankDampingSpec>,
+    pub flank: Box<dyn FlankSpec>,
 }
 
 fn full() -> Ratio<Fraction> {
@@ -77,11 +76,11 @@ const TOLERANCES: (f64, f64) = (1e-12, 1e-1);
     validity = "A ring that stays parallel to the flanks; flanks are rigid, and the run ends when it lands.",
     references = [],
     example = "clearance = \"0.1 mm\"\narea = \"1000 mm2\"\nwidth = \"3 mm\"\nviscosity = \"10 mPa s\"\nmass = \"12 g\"\nload = \"60 N\"\n\
-              height = \"30 um\"\nduration = \"20 ms\"\nflank_damping = { model = \"squeeze_film\" }\n",
+              height = \"30 um\"\nduration = \"20 ms\"\nflank = { model = \"squeeze_film\" }\n",
 )]
 impl RigSpec for FlankRig {
     fn models(&self) -> Vec<(&'static str, &'static str)> {
-        vec![("flank_damping", self.flank_damping.typetag_name())]
+        vec![("flank", self.flank.typetag_name())]
     }
     fn build(&self, _: &RigCtx<'_>) -> Result<Box<dyn Rig>, Vec<BuildError>> {
         let mut errors = Vec::new();
@@ -97,16 +96,11 @@ impl RigSpec for FlankRig {
             let what = format!("the tolerance must lie between {tightest:e} and {loosest}");
             errors.push(BuildError::at("tolerance", what));
         }
-        let ctx = FlankDampingCtx {
-            ring: 0,
-            rings: 2,
-            oil_fill: self.oil_fill.si(),
-            width: self.width.si(),
-            mu: self.viscosity.si(),
-        };
-        match self.flank_damping.build(&ctx) {
+        let ctx = FlankCtx::new(0, 2, self.oil_fill.si(), self.width.si(), self.viscosity.si());
+        match self.flank.build(&ctx) {
             Ok(oil) if errors.is_empty() => Ok(Box::new(Bench {
                 ring: Ring {
+                    law: oil.law(),
                     oil,
                     clearance: self.clearance.si(),
                     area: self.area.si(),
@@ -120,7 +114,7 @@ impl RigSpec for FlankRig {
             })),
             Ok(_) => Err(errors),
             Err(e) => {
-                errors.push(e.within("flank_damping"));
+                errors.push(e.within("flank"));
                 Err(errors)
             }
         }
@@ -130,7 +124,9 @@ impl RigSpec for FlankRig {
 const MODEL: &str = "flank";
 
 struct Ring {
-    oil: Box<dyn FlankDamping>,
+    /// Oil on the flanks, of which nothing is lost.
+    oil: Box<dyn Flank>,
+    law: Box<dyn FlankLaw>,
     clearance: f64,
     area: f64,
     /// Zero: without inertia.
@@ -140,7 +136,8 @@ struct Ring {
 
 impl Ring {
     fn force(&self, s: f64, v: f64) -> f64 {
-        self.oil.force(s, v, self.clearance, self.area)
+        let place = RingPlace { s, v, clearance: self.clearance, ..RingPlace::default() };
+        self.law.force(&self.oil.oil(&[], &place), s, v, self.clearance, self.area)
     }
 
     /// Velocity at which the oil carries the load.

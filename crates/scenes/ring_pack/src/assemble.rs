@@ -4,11 +4,11 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use gudgeon_core::file::Files;
-use gudgeon_core::geometry::{PackGeometry, RingGeometry};
+use gudgeon_core::geometry::{FlankOil, PackGeometry, RingGeometry};
 use gudgeon_core::kinds::{
-    CylinderPressure, FaceCtx, FilmTemperature, FilmTemperatureCtx, FlankDampingCtx, FlankFriction, GasFlow,
-    GasFlowCtx, GasIn, GasOut, Hydrodynamics, Kinematics, Oil, OilTransport, OilTransportCtx, RadialMotion,
-    RadialMotionCtx, RingForces, RingMotion, RingMotionCtx, RingPose, RingResponse,
+    CylinderPressure, FaceCtx, FilmTemperature, FilmTemperatureCtx, Flank, FlankCtx, FlankFriction, FlankLaw,
+    GasFlow, GasFlowCtx, GasIn, GasOut, Hydrodynamics, Kinematics, Oil, OilTransport, OilTransportCtx,
+    RadialMotion, RadialMotionCtx, RingForces, RingMotion, RingMotionCtx, RingPose, RingResponse,
 };
 use gudgeon_core::states::{Signals, Stateful};
 use gudgeon_core::{BuildError, EvalError};
@@ -20,12 +20,24 @@ use super::instant::{Counters, Instant, RingInstant, SeatLog};
 use super::layout::Layout;
 use super::liner::LinerShape;
 use super::pack::Pack;
-use super::plan::{Facts, Plan, plan, wanted};
+use super::plan::{Facts, Followed, Plan, plan, wanted};
 use super::ring::Ring;
 use super::{end_gap, geometry, oil_faces};
 
-/// A ring without axial clearance.
+/// A ring without axial clearance, and without oil that could move on its flanks.
 struct Clamped;
+
+impl Flank for Clamped {
+    fn law(&self) -> Box<dyn FlankLaw> {
+        Box::new(Self)
+    }
+}
+
+impl FlankLaw for Clamped {
+    fn force(&self, _: &FlankOil, _: f64, _: f64, _: f64, _: f64) -> f64 {
+        0.0
+    }
+}
 
 impl Stateful for Clamped {}
 
@@ -54,7 +66,8 @@ impl RingMotion for Clamped {
 pub fn assemble(case: &RingPackCase, files: &Files) -> Result<Pack, Vec<BuildError>> {
     let drive = Drive::new(case, files)?;
     let oils = Oils::new(case, &drive)?;
-    let motions = motions(case, &drive, &*oils.oil)?;
+    let flanks = flanks(case, &drive, &*oils.oil)?;
+    let motions = motions(case, &drive, &flanks)?;
     let m = &case.models;
     let moving = motions.iter().filter(|m| m.moves());
     let facts = Facts {
@@ -62,9 +75,10 @@ pub fn assemble(case: &RingPackCase, files: &Files) -> Result<Pack, Vec<BuildErr
         motion: (m.ring_motion.typetag_name(), moving.clone().any(|m| m.uses_film_force())),
         moving: moving.count(),
         dynamic: motions.iter().filter(|m| m.uses_damping()).count(),
+        wet: flanks.iter().filter(|f| !f.states().is_empty()).count(),
     };
     let plan = plan(&drive.wanted, facts);
-    let mut rings = rings(case, &drive, &oils, &plan, motions)?;
+    let mut rings = rings(case, &drive, &oils, &plan, motions, flanks)?;
     if let Some(e) = rings.iter_mut().enumerate().find_map(|(i, r)| untiltable(i, r)) {
         return Err(vec![e]);
     }
@@ -99,8 +113,9 @@ struct Drive {
 impl Drive {
     fn new(case: &RingPackCase, files: &Files) -> Result<Self, Vec<BuildError>> {
         let mut errors = Vec::new();
-        let follows_oil = case.models.oil_transport.follows_oil();
-        let wanted = kept(&mut errors, wanted(&case.outputs.results, case.rings.len(), follows_oil));
+        let m = &case.models;
+        let oil = Followed { liner: m.oil_transport.follows_oil(), flanks: m.flank.follows_oil() };
+        let wanted = kept(&mut errors, wanted(&case.outputs.results, case.rings.len(), oil));
         let geo = kept(&mut errors, geometry::resolve(case));
         let motion = case.engine.motion(&*case.models.kinematics);
         let kinematics = kept(&mut errors, motion.map_err(|e| vec![e]));
@@ -108,7 +123,6 @@ impl Drive {
             return Err(errors);
         };
         errors.extend(improper(case));
-        let m = &case.models;
         let cylinder = case.engine.gas(&*m.cylinder_pressure, &*kinematics, files).map_err(|e| vec![e]);
         let gas = m.gas_flow.build(&GasFlowCtx { pack: &geo }).map_err(|e| vec![e.within("models.gas_flow")]);
         let (cylinder, gas) = (kept(&mut errors, cylinder), kept(&mut errors, gas));
@@ -180,38 +194,46 @@ impl Oils {
     }
 }
 
+/// All of them, or every error.
+fn all<T>(made: impl Iterator<Item = Result<T, BuildError>>) -> Result<Vec<T>, Vec<BuildError>> {
+    let (mut all, mut errors) = (Vec::new(), Vec::new());
+    for one in made {
+        match one {
+            Ok(one) => all.push(one),
+            Err(e) => errors.push(e),
+        }
+    }
+    if errors.is_empty() { Ok(all) } else { Err(errors) }
+}
+
+/// The oil on the flanks of every ring.
+fn flanks(case: &RingPackCase, drive: &Drive, oil: &dyn Oil) -> Result<Vec<Box<dyn Flank>>, Vec<BuildError>> {
+    let n = case.rings.len();
+    all((0..n).map(|i| {
+        let g = &drive.geo.rings[i];
+        let ctx = FlankCtx::new(i, n, g.oil_fill, g.width, oil.viscosity(g.back_temperature));
+        let flank = case.models.flank.build(&ctx.at_speed(drive.omega));
+        let flank = flank.map_err(|e| e.within("models.flank"))?;
+        Ok(if g.has_clearance { flank } else { Box::new(Clamped) as Box<dyn Flank> })
+    }))
+}
+
 /// The motion of every ring in its groove.
 fn motions(
     case: &RingPackCase,
     drive: &Drive,
-    oil: &dyn Oil,
+    flanks: &[Box<dyn Flank>],
 ) -> Result<Vec<Box<dyn RingMotion>>, Vec<BuildError>> {
-    let mut errors = Vec::new();
-    let mut motions = Vec::with_capacity(case.rings.len());
-    for i in 0..case.rings.len() {
-        match motion(case, drive, oil, i) {
-            Ok(m) => motions.push(m),
-            Err(e) => errors.push(e),
-        }
-    }
-    if errors.is_empty() { Ok(motions) } else { Err(errors) }
+    all(flanks.iter().enumerate().map(|(i, flank)| motion(case, drive, flank.law(), i)))
 }
 
 fn motion(
     case: &RingPackCase,
     drive: &Drive,
-    oil: &dyn Oil,
+    damping: Box<dyn FlankLaw>,
     i: usize,
 ) -> Result<Box<dyn RingMotion>, BuildError> {
     let (ring, g, m) = (&case.rings[i], &drive.geo.rings[i], &case.models);
-    let ctx = FlankDampingCtx {
-        ring: i,
-        rings: case.rings.len(),
-        oil_fill: g.oil_fill,
-        width: g.width,
-        mu: oil.viscosity(g.back_temperature),
-    };
-    let damping = m.flank_damping.build(&ctx).map_err(|e| e.within("models.flank_damping"))?;
     if !g.has_clearance {
         return match ring.models.ring_motion {
             None => Ok(Box::new(Clamped)),
@@ -243,19 +265,20 @@ fn rings(
     oils: &Oils,
     plan: &Plan,
     motions: Vec<Box<dyn RingMotion>>,
+    flanks: Vec<Box<dyn Flank>>,
 ) -> Result<Vec<Ring>, Vec<BuildError>> {
     let mut errors = Vec::new();
     let mut rings = Vec::with_capacity(motions.len());
     let spacings = spacings(case, drive);
     let mut planes = None;
-    for (i, motion) in motions.into_iter().enumerate() {
+    for (i, (motion, flank)) in motions.into_iter().zip(flanks).enumerate() {
         let none = || Ok((Vec::new(), ContactLine::default()));
         let films = if plan.film { films(case, drive, i, &mut planes) } else { none() };
         let films = kept(&mut errors, films);
         let friction = case.models.flank_friction.build();
         let friction = kept(&mut errors, friction.map_err(|e| vec![e.within("models.flank_friction")]));
         if let (Some((films, contact)), Some(friction)) = (films, friction) {
-            match ring(case, drive, oils, i, (films, contact, friction, motion), spacings[i]) {
+            match ring(case, drive, oils, i, (films, contact, friction, motion, flank), spacings[i]) {
                 Ok(r) => rings.push(r),
                 Err(e) => errors.push(e),
             }
@@ -267,14 +290,15 @@ fn rings(
 /// Films of the lands and the contact of the whole face.
 type FaceModels = (Vec<Box<dyn Hydrodynamics>>, ContactLine);
 /// All models of a ring but that of its radial motion.
-type RingParts = (Vec<Box<dyn Hydrodynamics>>, ContactLine, Box<dyn FlankFriction>, Box<dyn RingMotion>);
+type RingParts =
+    (Vec<Box<dyn Hydrodynamics>>, ContactLine, Box<dyn FlankFriction>, Box<dyn RingMotion>, Box<dyn Flank>);
 
 fn ring(
     case: &RingPackCase,
     drive: &Drive,
     oils: &Oils,
     i: usize,
-    (films, contact, friction, motion): RingParts,
+    (films, contact, friction, motion, flank): RingParts,
     spacing: f64,
 ) -> Result<Ring, BuildError> {
     let fixed = oils.temperature.is_constant();
@@ -285,6 +309,7 @@ fn ring(
         contact,
         counts: (motion.uses_film_force(), motion.uses_gravity()),
         motion,
+        flank,
         motion_name: case.rings[i]
             .models
             .ring_motion

@@ -2,7 +2,7 @@
 
 use gudgeon_core::face::Face;
 use gudgeon_core::kinds::{
-    ContactSpec, CylinderPressureSpec, FilmTemperatureSpec, FlankDampingSpec, FlankFrictionSpec, GasFlowSpec,
+    ContactSpec, CylinderPressureSpec, FilmTemperatureSpec, FlankFrictionSpec, FlankSpec, GasFlowSpec,
     HydrodynamicsSpec, KinematicsSpec, OilSpec, OilTransportSpec, RadialMotionSpec, RingMotionSpec,
 };
 use gudgeon_core::quantity::{
@@ -243,8 +243,8 @@ pub struct Models {
     #[serde(default = "default_radial_motion")]
     pub radial_motion: Box<dyn RadialMotionSpec>,
     /// Oil between ring and groove flanks.
-    #[serde(default = "default_flank_damping")]
-    pub flank_damping: Box<dyn FlankDampingSpec>,
+    #[serde(default = "default_flank")]
+    pub flank: Box<dyn FlankSpec>,
     /// Friction of the groove flanks against radial motion.
     #[serde(default = "default_flank_friction")]
     pub flank_friction: Box<dyn FlankFrictionSpec>,
@@ -325,7 +325,7 @@ gudgeon_core::default_model! {
     default_gas_flow: dyn GasFlowSpec = "orifice_network";
     default_ring_motion: dyn RingMotionSpec = "newton_groove";
     default_radial_motion: dyn RadialMotionSpec = "film_balance";
-    default_flank_damping: dyn FlankDampingSpec = "squeeze_film";
+    default_flank: dyn FlankSpec = "squeeze_film";
     default_flank_friction: dyn FlankFrictionSpec = "off";
     default_oil_transport: dyn OilTransportSpec = "off";
     default_hydrodynamics: dyn HydrodynamicsSpec = "closed_form_face";

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use gudgeon_core::EvalError;
 use gudgeon_core::geometry::RingSection;
 use gudgeon_core::kinds::{
-    FaceForces, OilFaceIn, RadialLoads, RadialMotion, RadialState, RingForces, TwistMoments,
+    FaceForces, FlankIn, OilFaceIn, RadialLoads, RadialMotion, RadialState, RingForces, TwistMoments,
 };
 
 use super::loads::{Loads, face_in, furthest};
@@ -225,6 +225,21 @@ impl Pack {
                 oil.rates(k, &OilFaceIn { h, hdot: r.hdot, u, flux: r.flux[land] }, dy);
             }
         }
+    }
+
+    /// What happens to ring `i` in its groove: its motion, and the oil on the flanks.
+    pub(super) fn in_groove(&mut self, i: usize, y: &[f64]) -> Result<(), EvalError> {
+        if self.plan.axial {
+            self.axial_forces(i, y)?;
+        }
+        let own = self.layout.flank[i].clone();
+        if own.is_empty() {
+            return Ok(());
+        }
+        let r = &self.at.rings[i];
+        let at = FlankIn::new(self.at.places[i], r.p_above, r.p_back, r.p_below);
+        self.at.rings[i].flank = self.rings[i].flank.rates(&y[own.clone()], &at, &mut self.dy[own])?;
+        Ok(())
     }
 
     /// Axial forces on ring `i`, film excepted, and what its motion adds to them; the rates of its states.

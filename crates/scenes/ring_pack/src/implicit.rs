@@ -5,7 +5,6 @@ use std::f64::consts::PI;
 use std::time::Instant;
 
 use gudgeon_core::content::{self, Content};
-use gudgeon_core::kinds::OilLedger;
 use gudgeon_core::quantity::{PosRatio, quantity};
 use gudgeon_core::result::{Balance, Column, Note, Series};
 use gudgeon_core::states::Signals;
@@ -158,7 +157,7 @@ impl OdeSystem for Problem<'_> {
         self.pack.layout.n
     }
     fn quad_dim(&self) -> usize {
-        2 * self.pack.n_rings() + 1
+        self.pack.layout.quads()
     }
     fn rhs(&mut self, t: f64, y: &[f64], f: &mut [f64]) -> Result<(), EvalError> {
         self.pack.rates(t, y, f)
@@ -456,7 +455,7 @@ impl Sampler {
             rows: Rows::new(pack, wanted.series_step),
             measures,
             y: vec![0.0; pack.layout.n],
-            q: vec![0.0; 2 * n + 1],
+            q: vec![0.0; pack.layout.quads()],
             failure: None,
             impulse: vec![[0.0; 2]; n],
             work: vec![[0.0; 2]; n],
@@ -608,16 +607,32 @@ fn breakpoints(pack: &Pack) -> Vec<f64> {
     all
 }
 
-/// Gas in, less gas out, is gas stored.
-fn gas_balance(pack: &Pack) -> Vec<LinearInvariant> {
+/// What comes in, less what goes out, is stored: of the gas, and of the oil on the flanks of each ring.
+fn balances(pack: &Pack) -> Vec<LinearInvariant> {
     let masses = pack.gas.n_masses();
-    if masses == 0 {
-        return Vec::new();
+    let mut all = Vec::new();
+    if masses > 0 {
+        let (first, last) = (pack.layout.n, pack.layout.n + pack.n_rings());
+        let mut terms = vec![(first, -1.0), (last, 1.0)];
+        terms.extend(pack.gas_scale[..masses].iter().copied().enumerate());
+        all.push(LinearInvariant { pivot: last, terms });
     }
-    let (first, last) = (pack.layout.n, pack.layout.n + pack.n_rings());
-    let mut terms = vec![(first, -1.0), (last, 1.0)];
-    terms.extend(pack.gas_scale[..masses].iter().copied().enumerate());
-    vec![LinearInvariant { pivot: last, terms }]
+    all.extend((0..pack.n_rings()).filter_map(|i| flank_balance(pack, i)));
+    all
+}
+
+/// That of the oil on the flanks of ring `i`, where it is followed.
+fn flank_balance(pack: &Pack, i: usize) -> Option<LinearInvariant> {
+    let own = pack.layout.flank[i].clone();
+    let fed = pack.layout.n + pack.layout.flank_quad(i).filter(|_| !own.is_empty())?;
+    let mut terms = vec![(fed, -1.0), (fed + 1, 1.0)];
+    for k in own.clone() {
+        // The volume is linear in the states.
+        let mut unit = vec![0.0; own.len()];
+        unit[k - own.start] = 1.0;
+        terms.push((k, pack.rings[i].flank.volume(&unit)));
+    }
+    Some(LinearInvariant { pivot: fed, terms })
 }
 
 impl<'a> Cycle<'a> {
@@ -628,7 +643,7 @@ impl<'a> Cycle<'a> {
         progress: &'a mut dyn FnMut(f64) -> Result<(), Stopped>,
     ) -> Self {
         let dim = pack.layout.n;
-        let quads = 2 * pack.n_rings() + 1;
+        let quads = pack.layout.quads();
         let rosenbrock = |formula| Method::Rodas(Box::new(Rodas::with(formula, dim, quads, None)));
         let method = match s.integrator.at(s.tolerance.si()) {
             IntegratorName::Rodas3 => rosenbrock(Formula::Rodas3),
@@ -640,7 +655,7 @@ impl<'a> Cycle<'a> {
             breakpoints: breakpoints(pack),
             scale: pack.layout.states.iter().map(|s| s.scale).collect(),
             absolute: pack.layout.states.iter().map(|s| !s.relative).collect(),
-            balance: gas_balance(pack),
+            balance: balances(pack),
             events: Vec::new(),
             base: Base::default(),
             h: FIRST_STEP,
@@ -663,17 +678,13 @@ impl<'a> Cycle<'a> {
         })
     }
 
-    /// The cycle from `y` once more, at full accuracy, into `sampler`; the error of its mass balances of gas and of oil.
-    fn record(
-        &mut self,
-        y: &mut [f64],
-        tolerance: f64,
-        sampler: &mut Sampler,
-    ) -> Result<(f64, Option<f64>), RunError> {
+    /// The cycle from `y` once more, at full accuracy, into `sampler`; the error of its mass balances.
+    fn record(&mut self, y: &mut [f64], tolerance: f64, sampler: &mut Sampler) -> Result<Balance, RunError> {
         let dim = self.pack.layout.n;
         let gas: Vec<f64> = y[..self.pack.gas.n_masses()].to_vec();
         self.begin(y);
         let oil_before = self.pack.oil_total(y);
+        let flank_before = self.pack.flank_oil(y);
         if let Some(o) = &mut self.pack.oil_pack {
             // What the crankcase put on the liner before the first step was counted with the rest.
             o.clear_ledger();
@@ -690,7 +701,13 @@ impl<'a> Cycle<'a> {
         let (q, n) = (&self.q, self.pack.n_rings());
         let stored: f64 = gas.iter().zip(&*y).zip(&self.pack.gas_scale).map(|((a, b), m)| (b - a) * m).sum();
         let through = q[0].abs().max(q[n].abs()).max(f64::MIN_POSITIVE);
-        Ok(((q[0] - q[n] - stored).abs() / through, oil_mass))
+        let gas_mass = (q[0] - q[n] - stored).abs() / through;
+        let flank_stored = self.pack.flank_oil(y) - flank_before;
+        let flank_oil = self.pack.layout.flank_quad(0).map(|first| {
+            let sum = |k: usize| q[first + k..].iter().step_by(2).sum::<f64>();
+            (sum(0) - sum(1) - flank_stored).abs() / sum(0).max(f64::MIN_POSITIVE)
+        });
+        Ok(Balance { gas_mass: Some(gas_mass), oil_mass, flank_oil, ..Balance::default() })
     }
 }
 
@@ -750,17 +767,13 @@ fn run(
     let seconds = begin.elapsed().as_secs_f64();
     let counters = counters(&cycle.stats);
     let mut sampler = Sampler::new(cycle.pack, wanted);
-    let (gas_mass, oil_mass) = cycle.record(&mut y, tolerance, &mut sampler)?;
+    let balance = cycle.record(&mut y, tolerance, &mut sampler)?;
     let q = cycle.q;
-    let n = pack.n_rings();
     let (energy, momentum) = sampler.balance(pack);
     let totals = Totals {
-        flow_in: q[..n].to_vec(),
-        blow_by: q[n],
-        friction_work: q[n + 1..].to_vec(),
-        balance: Balance { gas_mass: Some(gas_mass), oil_mass, energy, momentum },
+        balance: Balance { energy, momentum, ..balance },
         periodicity_error: report.error_estimate,
-        oil: pack.oil_pack.as_ref().map_or_else(OilLedger::default, |o| o.ledger()),
+        ..Totals::of_cycle(pack, &q)
     };
     sampler.watch.carried(pack)?;
     let mut notes = sampler.watch.notes(pack);

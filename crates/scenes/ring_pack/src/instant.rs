@@ -1,7 +1,7 @@
 //! What is known of an instant, and of the work it took.
 
 use gudgeon_core::geometry::RingPlace;
-use gudgeon_core::kinds::{AxialForces, FaceForces, GasOut, Limited, PistonMotion};
+use gudgeon_core::kinds::{AxialForces, FaceForces, FlankFlow, GasOut, Limited, PistonMotion};
 
 /// Work counters.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -54,6 +54,8 @@ pub struct RingInstant {
     pub axial: AxialForces,
     /// Reaction of the flanks \[N\].
     pub reaction: f64,
+    /// Flows of oil to the flanks and from them, per circumference \[m²/s\].
+    pub flank: FlankFlow,
     /// What limits did.
     pub limited: Limited,
 }

@@ -13,7 +13,8 @@ use super::instant::RingInstant;
 use super::pack::Pack;
 
 /// What the gas depends on of a ring, beside the pressures.
-const GAS_READS: Signals = Signals::LIFT.with(Signals::TWIST).with(Signals::FILM_THICKNESS);
+const GAS_READS: Signals =
+    Signals::LIFT.with(Signals::TWIST).with(Signals::FILM_THICKNESS).with(Signals::FLANK_OIL);
 /// What friction and the forces of a film change.
 const OF_FILM: Signals = Signals::FILM_FORCE;
 
@@ -161,6 +162,9 @@ impl Pack {
                     self.ring_column(y, k, i, increment(k), base, jac)?;
                 }
             }
+            for k in self.layout.flank[i].clone() {
+                self.ring_column(y, k, i, increment(k), base, jac)?;
+            }
         }
         Ok(())
     }
@@ -266,9 +270,9 @@ impl Pack {
                 self.film_rows(i, column, d, base, jac);
                 reach |= OF_FILM;
             }
-            if self.plan.axial && reach.meets(self.layout.motion_reads[i]) {
-                self.axial_forces(i, y)?;
-                self.block_rows(self.layout.motion[i].clone(), column, d, base, jac);
+            if reach.meets(self.layout.motion_reads[i]) {
+                self.in_groove(i, y)?;
+                self.groove_rows(i, column, d, base, jac);
             }
         }
         Ok(())
@@ -281,6 +285,17 @@ impl Pack {
             (self.at.rings[i].power - base.rings[i].power) / (self.omega * d);
         self.block_rows(self.layout.oil.clone(), column, d, base, jac);
         self.block_rows(self.layout.temperature.clone(), column, d, base, jac);
+    }
+
+    fn groove_rows(&self, i: usize, column: usize, d: f64, base: &Base, jac: &mut [f64]) {
+        self.block_rows(self.layout.motion[i].clone(), column, d, base, jac);
+        self.block_rows(self.layout.flank[i].clone(), column, d, base, jac);
+        if let Some(k) = self.layout.flank_quad(i) {
+            let (n, now, then) = (self.layout.n, self.at.rings[i].flank, base.rings[i].flank);
+            let per = 1.0 / (self.omega * d);
+            jac[(n + k) * n + column] = (now.fed - then.fed) * per;
+            jac[(n + k + 1) * n + column] = (now.lost - then.lost) * per;
+        }
     }
 
     /// Rows of the states of a model.

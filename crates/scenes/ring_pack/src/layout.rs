@@ -8,7 +8,7 @@ use gudgeon_core::states::{Signals, StateInfo};
 use super::ring::Ring;
 
 /// Where things are in the state vector: the gas, each state over its value at 1 bar; the radial motion of every ring; the motion of every ring in its
-/// groove; the oil; the film temperatures.
+/// groove; the oil on its flanks; the oil on the liner; the film temperatures.
 #[derive(Debug, Clone, Default)]
 pub struct Layout {
     /// Gas.
@@ -17,6 +17,8 @@ pub struct Layout {
     pub radial: Vec<Range<usize>>,
     /// Motion in the groove per ring.
     pub motion: Vec<Range<usize>>,
+    /// Oil on the flanks per ring.
+    pub flank: Vec<Range<usize>>,
     /// Oil.
     pub oil: Range<usize>,
     /// Film temperatures.
@@ -29,9 +31,11 @@ pub struct Layout {
     pub states: Vec<StateInfo>,
     /// What the film of each ring depends on, and what moves with it: radial motion, oil, temperature.
     pub film_reads: Vec<Signals>,
+    /// Whether the oil on any flank is followed.
+    wet_flanks: bool,
     /// Whether each ring twists.
     pub twists: Vec<bool>,
-    /// What the motion of each ring in its groove depends on.
+    /// What the motion of each ring in its groove and the oil there depend on.
     pub motion_reads: Vec<Signals>,
 }
 
@@ -56,6 +60,10 @@ impl Layout {
             let range = layout.add(r.motion.states().iter().cloned());
             layout.motion.push(range);
         }
+        for r in rings {
+            let range = layout.add(r.flank.states().iter().cloned());
+            layout.flank.push(range);
+        }
         layout.oil = layout.add(oil.into_iter().flat_map(|o| o.states().iter().cloned()));
         let own = if films { temperature.states() } else { &[] };
         layout.temperature = layout.add(own.iter().cloned());
@@ -67,8 +75,24 @@ impl Layout {
         layout.twists = rings.iter().map(twists).collect();
         let of_twist = |r: &Ring| if twists(r) { Signals::TWIST } else { Signals::NONE };
         layout.film_reads = rings.iter().map(|r| r.radial.reads() | also | of_twist(r)).collect();
-        layout.motion_reads = rings.iter().map(|r| r.motion.reads()).collect();
+        let of_flank = |r: &Ring| if r.flank.states().is_empty() { Signals::NONE } else { r.flank.reads() };
+        layout.motion_reads = rings.iter().map(|r| r.motion.reads() | of_flank(r)).collect();
+        layout.wet_flanks = layout.flank.iter().any(|own| !own.is_empty());
         layout
+    }
+
+    /// Number of quadratures: flow into each ring, flow out of the last, friction work of each ring, and where oil on flanks is followed what each
+    /// ring gained and lost of it.
+    #[must_use]
+    pub fn quads(&self) -> usize {
+        let n = self.flank.len();
+        2 * n + 1 + if self.wet_flanks { 2 * n } else { 0 }
+    }
+
+    /// The quadrature of the oil that came to the flanks of ring `i`; that of what left them is the next. None where it is not followed.
+    #[must_use]
+    pub fn flank_quad(&self, i: usize) -> Option<usize> {
+        self.wet_flanks.then_some(2 * self.flank.len() + 1 + 2 * i)
     }
 
     fn add(&mut self, states: impl Iterator<Item = StateInfo>) -> Range<usize> {

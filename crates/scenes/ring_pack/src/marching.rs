@@ -36,6 +36,14 @@ pub fn refuses(pack: &Pack, given: Steps, own: Steps) -> Vec<BuildError> {
             .help("use `solver.method = \"implicit\"`, or `oil_transport = { model = \"off\" }`"),
         );
     }
+    if let Some(state) = pack.layout.flank.iter().find(|own| !own.is_empty()) {
+        let name = &pack.layout.states[state.start].name;
+        let what = format!("the published schemes do not integrate the {name}");
+        errors.push(
+            BuildError::at("models.flank", what)
+                .help("use `solver.method = \"implicit\"`, or a `flank` without volume, as `squeeze_film`"),
+        );
+    }
     if !pack.layout.temperature.is_empty() {
         let what = "the published schemes integrate no film temperature";
         errors

@@ -16,6 +16,8 @@ pub enum Block {
     Radial(usize),
     /// Motion of a ring in its groove.
     Motion(usize),
+    /// Oil on the flanks of a ring.
+    Flank(usize),
     /// Oil.
     Oil,
     /// Film temperatures.
@@ -41,7 +43,8 @@ impl Pack {
     /// Every model that may have states.
     fn blocks(&self) -> impl Iterator<Item = Block> + use<> {
         let (n, oil) = (self.n_rings(), self.oil_pack.is_some());
-        let rings = (0..n).map(Block::Radial).chain((0..n).map(Block::Motion));
+        let rings =
+            (0..n).map(Block::Radial).chain((0..n).map(Block::Motion)).chain((0..n).map(Block::Flank));
         std::iter::once(Block::Gas).chain(rings).chain(oil.then_some(Block::Oil)).chain([Block::Temperature])
     }
 
@@ -52,6 +55,7 @@ impl Pack {
             Block::Gas => self.layout.gas.clone(),
             Block::Radial(i) => self.layout.radial[i].clone(),
             Block::Motion(i) => self.layout.motion[i].clone(),
+            Block::Flank(i) => self.layout.flank[i].clone(),
             Block::Oil => self.layout.oil.clone(),
             Block::Temperature => self.layout.temperature.clone(),
         }
@@ -64,6 +68,7 @@ impl Pack {
             (Block::Gas, _) => &*self.gas,
             (Block::Radial(i), _) => &*self.rings[i].radial,
             (Block::Motion(i), _) => &*self.rings[i].motion,
+            (Block::Flank(i), _) => &*self.rings[i].flank,
             (Block::Oil, Some(oil)) => &**oil,
             _ => &*self.film_temperature,
         }
@@ -75,6 +80,7 @@ impl Pack {
             (Block::Gas, _) => &mut *self.gas,
             (Block::Radial(i), _) => &mut *self.rings[i].radial,
             (Block::Motion(i), _) => &mut *self.rings[i].motion,
+            (Block::Flank(i), _) => &mut *self.rings[i].flank,
             (Block::Oil, Some(oil)) => &mut **oil,
             _ => &mut *self.film_temperature,
         }

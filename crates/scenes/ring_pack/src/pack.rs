@@ -6,7 +6,7 @@
 use std::f64::consts::PI;
 
 use gudgeon_core::EvalError;
-use gudgeon_core::geometry::{BackVolume, PackGeometry, RingPlace};
+use gudgeon_core::geometry::{BackVolume, FlankOil, PackGeometry, RingPlace};
 use gudgeon_core::kinds::{
     AxialForces, CylinderPressure, FilmHeat, FilmTemperature, GasFlow, GasIn, GasPartials, Kinematics, Oil,
     OilStep, OilTransport, RingPose,
@@ -139,6 +139,9 @@ impl Pack {
         for (r, range) in self.rings.iter_mut().zip(&self.layout.motion) {
             f(&mut *r.motion, range.clone());
         }
+        for (r, range) in self.rings.iter_mut().zip(&self.layout.flank) {
+            f(&mut *r.flank, range.clone());
+        }
         if let Some(oil) = &mut self.oil_pack {
             f(&mut **oil, self.layout.oil.clone());
         }
@@ -208,6 +211,7 @@ impl Pack {
             r_inner,
             r_outer,
             back_volume,
+            flank: FlankOil::default(),
         }
     }
 
@@ -217,7 +221,9 @@ impl Pack {
         let own = self.layout.radial[i].clone();
         let h = if own.is_empty() { ring.nominal_film } else { ring.radial.thickness(&y[own]) };
         let own = &y[self.layout.motion[i].clone()];
-        self.place_at(i, liner_radius, h, |clearance| ring.motion.pose(own, clearance))
+        let mut place = self.place_at(i, liner_radius, h, |clearance| ring.motion.pose(own, clearance));
+        place.flank = ring.flank.oil(&y[self.layout.flank[i].clone()], &place);
+        place
     }
 
     /// Way of the face of ring `i` below the place of ring 1 at top dead centre \[m\], for a pin height \[m\].
@@ -317,9 +323,7 @@ impl Pack {
             if self.plan.film {
                 self.film_of_ring(i, y)?;
             }
-            if self.plan.axial {
-                self.axial_forces(i, y)?;
-            }
+            self.in_groove(i, y)?;
         }
         self.state.copy_from_slice(y);
         Ok(())
@@ -368,8 +372,7 @@ impl Pack {
         Ok(())
     }
 
-    /// Rates of the state by crank angle, and of the quadratures (flow into each ring, flow out of the last, friction work
-    /// of each ring) when `f` is longer than the state.
+    /// Rates of the state by crank angle, and of the quadratures ([`Layout::quads`]) when `f` is longer than the state.
     pub fn rates(&mut self, theta: f64, y: &[f64], f: &mut [f64]) -> Result<(), EvalError> {
         self.evaluate(theta, y)?;
         let (per, dim) = (1.0 / self.omega, self.layout.n);
@@ -383,6 +386,10 @@ impl Pack {
             for i in 0..n {
                 q[i] = self.at.gas.flow_in[i] * per;
                 q[n + 1 + i] = self.at.rings[i].power * per;
+                if let Some(k) = self.layout.flank_quad(i) {
+                    let oil = self.at.rings[i].flank;
+                    (q[k], q[k + 1]) = (oil.fed * per, oil.lost * per);
+                }
             }
             q[n] = self.at.gas.flow_out[n - 1] * per;
         }
@@ -393,6 +400,12 @@ impl Pack {
     #[must_use]
     pub fn oil_total(&self, y: &[f64]) -> f64 {
         self.oil_pack.as_ref().map_or(0.0, |o| o.total(&y[self.layout.oil.clone()]))
+    }
+
+    /// Oil on the flanks of all rings per circumference \[m²\] for the states `y`.
+    #[must_use]
+    pub fn flank_oil(&self, y: &[f64]) -> f64 {
+        self.rings.iter().zip(&self.layout.flank).map(|(r, own)| r.flank.volume(&y[own.clone()])).sum()
     }
 
     /// Books the oil of an accepted step.

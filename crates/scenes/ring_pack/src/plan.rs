@@ -27,21 +27,33 @@ pub struct ResultInfo {
     pub needs: Needs,
 }
 
-/// Every result of a pack of `rings` rings; `oil`: whether oil is followed on the liner.
+/// Where oil is followed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Followed {
+    /// On the liner and under the faces.
+    pub liner: bool,
+    /// On the flanks of the grooves.
+    pub flanks: bool,
+}
+
+/// Every result of a pack of `rings` rings with the oil that is followed.
 #[must_use]
-pub fn catalogue(rings: usize, oil: bool) -> Vec<ResultInfo> {
+pub fn catalogue(rings: usize, oil: Followed) -> Vec<ResultInfo> {
     let mut all = gas_results();
     all.extend((2..=rings).flat_map(land_results));
     for i in 1..=rings {
         all.extend(seat_results(i));
         all.extend(film_results(i));
         all.extend(oil_face_results(i));
-        if oil {
+        if oil.flanks {
+            all.extend(flank_results(i));
+        }
+        if oil.liner {
             let what = format!("mean share of the face under full film, ring {i}");
             all.push(info(format!("ring{i}.wetted_share"), "1", Needs::Film, what));
         }
     }
-    if oil {
+    if oil.liner {
         all.extend(oil_results());
     }
     let power = "mean friction power of the pack, one cylinder";
@@ -134,6 +146,13 @@ fn oil_face_results(i: usize) -> Vec<ResultInfo> {
     ]
 }
 
+/// Of the oil on the flanks of ring `i`.
+fn flank_results(i: usize) -> Vec<ResultInfo> {
+    let what =
+        format!("oil that gas blows off the flanks of ring {i} and that groove and lands replace, per cycle");
+    vec![info(format!("ring{i}.flank_oil_lost"), "mm3", Needs::Gas, what)]
+}
+
 /// Of the oil on the liner.
 fn oil_results() -> Vec<ResultInfo> {
     let add = |name, what| info(name, "mm3", Needs::Film, what);
@@ -172,13 +191,15 @@ pub struct Facts<'a> {
     pub moving: usize,
     /// Rings with position and velocity as states.
     pub dynamic: usize,
+    /// Rings with a volume of oil on their flanks.
+    pub wet: usize,
 }
 
 /// The names that `outputs.results` asks for.
 ///
 /// # Errors
 /// A name that is not in the catalogue.
-pub fn wanted(asked: &[String], rings: usize, oil: bool) -> Result<Vec<ResultInfo>, Vec<BuildError>> {
+pub fn wanted(asked: &[String], rings: usize, oil: Followed) -> Result<Vec<ResultInfo>, Vec<BuildError>> {
     let all = catalogue(rings, oil);
     let mut errors = Vec::new();
     for (k, name) in asked.iter().enumerate() {
@@ -249,9 +270,11 @@ pub fn plan(wanted: &[ResultInfo], facts: Facts<'_>) -> Plan {
         skip(&mut p, "ring_motion", "no ring moves in its groove: no axial states, no axial forces".into());
     }
     if facts.dynamic > 0 {
-        runs(&mut p, "flank_damping", format!("{} ring(s) move freely", facts.dynamic));
+        runs(&mut p, "flank", format!("{} ring(s) move freely", facts.dynamic));
+    } else if facts.wet > 0 {
+        runs(&mut p, "flank", format!("oil closes the gaps at the flanks of {} ring(s) to gas", facts.wet));
     } else {
-        skip(&mut p, "flank_damping", "no ring moves freely in its groove".into());
+        skip(&mut p, "flank", "no ring moves freely in its groove".into());
     }
     p
 }

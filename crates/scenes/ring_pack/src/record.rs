@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use gudgeon_core::geometry::BackVolume;
-use gudgeon_core::kinds::OilLedger;
+use gudgeon_core::kinds::{FlankFlow, OilLedger};
 use gudgeon_core::result::{Balance, Column, Series};
 
 use super::pack::Pack;
@@ -23,6 +23,25 @@ pub struct Totals {
     pub periodicity_error: f64,
     /// Oil that came and went, per circumference \[m²\].
     pub oil: OilLedger,
+    /// Oil that came to the flanks of each ring and left them, per circumference \[m²\]; empty where it is not followed.
+    pub flank: Vec<FlankFlow>,
+}
+
+impl Totals {
+    /// The totals that a solver has as the quadratures `q` of a cycle, in the order of the layout of `pack`.
+    #[must_use]
+    pub fn of_cycle(pack: &Pack, q: &[f64]) -> Self {
+        let n = pack.n_rings();
+        let flank = |i| pack.layout.flank_quad(i).map(|k| FlankFlow { fed: q[k], lost: q[k + 1] });
+        Self {
+            flow_in: q[..n].to_vec(),
+            blow_by: q[n],
+            friction_work: q[n + 1..2 * n + 1].to_vec(),
+            oil: pack.oil_pack.as_ref().map_or_else(OilLedger::default, |o| o.ledger()),
+            flank: (0..n).filter_map(flank).collect(),
+            ..Self::default()
+        }
+    }
 }
 
 /// A recorded cycle.

@@ -7,7 +7,7 @@ use indexmap::IndexMap;
 
 use super::measure::{Measures, Peak, RingMeasure, Seat};
 use super::pack::Pack;
-use super::plan::catalogue;
+use super::plan::{Followed, catalogue};
 use super::record::{Totals, round_deg};
 
 /// How a blow-by mass becomes litres per minute.
@@ -35,7 +35,7 @@ impl Cycle {
     /// Every wanted result.
     #[must_use]
     pub fn results(&self, pack: &Pack, meter: Meter) -> IndexMap<String, Value> {
-        catalogue(pack.n_rings(), pack.oil_pack.is_some())
+        catalogue(pack.n_rings(), Followed { liner: true, flanks: true })
             .into_iter()
             .filter(|r| pack.plan.wanted.contains(&r.name))
             .map(|r| {
@@ -98,6 +98,7 @@ impl Cycle {
             "oil_face_gas_exchange" => strokes[0] - strokes[3],
             "oil_gap" => gap_oil(pack, i, m),
             "oil_groove" => groove_oil(pack, i, m),
+            "flank_oil_lost" => flank_oil(pack, i, self.totals.flank.get(i).map_or(0.0, |f| f.lost)),
             "wetted_share" => m.wetted / span,
             "seat_changes" => f64::from(m.arrivals),
             "lifted_share" => m.lifted / span,
@@ -154,6 +155,11 @@ fn gap_oil(pack: &Pack, i: usize, m: &RingMeasure) -> f64 {
     let g = &pack.geo.rings[i];
     let area = g.gap_area.unwrap_or(g.gap * (pack.geo.bore_radius - g.piston_radius_below).max(0.0));
     area * area * m.gap_drive / (8.0 * PI * g.height) * 1e9
+}
+
+/// A volume on the flanks of ring `i` from that per circumference \[m²\], in mm³.
+fn flank_oil(pack: &Pack, i: usize, per_circumference: f64) -> f64 {
+    2.0 * PI * (pack.geo.bore_radius - 0.5 * pack.geo.rings[i].width) * per_circumference * 1e9
 }
 
 /// Oil \[mm³\] that ring `i` moves up past its flanks in a groove full of oil:

@@ -1,6 +1,6 @@
 //! One ring with its models.
 
-use gudgeon_core::kinds::{FlankFriction, Hydrodynamics, RadialMotion, RingMotion};
+use gudgeon_core::kinds::{Flank, FlankFriction, Hydrodynamics, RadialMotion, RingMotion};
 
 use super::contact_line::ContactLine;
 
@@ -12,7 +12,9 @@ pub struct Ring {
     pub resists: bool,
     /// Solid contact of the whole face as a function of film thickness.
     pub contact: ContactLine,
-    /// Motion in the groove, the oil in the groove included.
+    /// Oil on the flanks of the groove.
+    pub flank: Box<dyn Flank>,
+    /// Motion in the groove, under the force of that oil.
     pub motion: Box<dyn RingMotion>,
     /// Whether the balance of that motion counts the force of the film, and the weight.
     pub counts: (bool, bool),

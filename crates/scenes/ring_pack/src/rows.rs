@@ -30,7 +30,7 @@ impl Rows {
     pub fn new(pack: &mut Pack, step: f64) -> Self {
         let period = pack.period();
         let rows = (period / step).round().max(1.0) as usize;
-        let (n, count) = (pack.n_rings(), rows + 1);
+        let (quads, count) = (pack.layout.quads(), rows + 1);
         let mut memory = Vec::new();
         pack.save(&mut memory);
         let kept = memory.len();
@@ -40,7 +40,7 @@ impl Rows {
             grid: (0..=rows).map(|k| period * k as f64 / rows as f64).collect(),
             theta: Vec::with_capacity(count),
             y: Vec::with_capacity(count * pack.layout.n),
-            q: Vec::with_capacity(count * (2 * n + 1)),
+            q: Vec::with_capacity(count * quads),
             memory,
         }
     }
@@ -70,7 +70,7 @@ impl Rows {
         self.theta.push(self.grid[self.theta.len()]);
         let (y, q) = (self.y.len(), self.q.len());
         self.y.resize(y + pack.layout.n, 0.0);
-        self.q.resize(q + 2 * pack.n_rings() + 1, 0.0);
+        self.q.resize(q + pack.layout.quads(), 0.0);
         states(&mut self.y[y..]);
         passed(&mut self.q[q..]);
         if let Some(oil) = &mut pack.oil_pack {
@@ -85,13 +85,13 @@ impl Rows {
     /// What a sub-model refuses.
     pub fn record(&self, pack: &mut Pack) -> Result<Record, EvalError> {
         let mut record = Record::new(pack);
-        let (n, dim) = (pack.n_rings(), pack.layout.n);
+        let (n, dim, quads) = (pack.n_rings(), pack.layout.n, pack.layout.quads());
         let kept = self.memory.len() / self.theta.len().max(1);
         for (k, &theta) in self.theta.iter().enumerate() {
             let memory = &self.memory[k * kept..][..kept];
             pack.evaluate_again(theta, &self.y[k * dim..][..dim], Some(memory))?;
             (0..n).try_for_each(|i| pack.film_peak(i))?;
-            let q = &self.q[k * (2 * n + 1)..][..2 * n + 1];
+            let q = &self.q[k * quads..][..quads];
             record.push(theta, pack, &q[..n], q[n]);
         }
         Ok(record)

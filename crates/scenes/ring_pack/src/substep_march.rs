@@ -392,12 +392,12 @@ fn axial(pack: &mut Pack, i: usize, r: &mut RingState, dt: f64, clamp: Clamp) {
     let place = pack.at.places[i];
     let (v0, s0, area, c) = (r.v, r.s, place.flank_area(), place.clearance);
     let mut f = pack.at.rings[i].axial;
-    f.damping = law.damping(place.s, place.v, c, area);
+    f.damping = law.damping(&place.flank, place.s, place.v, c, area);
     let rest = f.sum() - f.damping;
     let trial = |a: f64| (s0 + v0 * dt + 0.5 * a * dt * dt, v0 + a * dt);
     let residual = |a: f64| {
         let (s, v) = trial(a);
-        mass * a - rest - law.damping(s.clamp(0.0, c), v, c, area)
+        mass * a - rest - law.damping(&place.flank, s.clamp(0.0, c), v, c, area)
     };
     // Damping opposes the motion, so the root lies between free flight and standing still.
     let (mut lo, mut hi) = (rest / mass, -v0 / dt);
@@ -433,7 +433,7 @@ fn axial(pack: &mut Pack, i: usize, r: &mut RingState, dt: f64, clamp: Clamp) {
     } else {
         (s, v)
     };
-    let damping = law.damping(r.s, r.v, c, area);
+    let damping = law.damping(&place.flank, r.s, r.v, c, area);
     pack.set_place(i, r.h, Some((r.s, r.v)));
     let ring = &mut pack.at.rings[i];
     ring.axial.damping = damping;

@@ -35,8 +35,8 @@ pub fn models_in_use(case: &RingPackCase, plan: &Plan) -> (Vec<ModelUse>, Vec<Sk
             m.ring_motion.typetag_name(),
             own(|r| r.ring_motion.as_ref().map(|s| s.typetag_name())),
         );
-        if !plan.skipped.iter().any(|s| s.what == "flank_damping") {
-            pack_and_own("flank_damping", m.flank_damping.typetag_name(), Vec::new());
+        if !plan.skipped.iter().any(|s| s.what == "flank") {
+            pack_and_own("flank", m.flank.typetag_name(), Vec::new());
         }
         for (kind, name) in case.conventions.axial() {
             pack_and_own(kind, name, Vec::new());

@@ -1,16 +1,17 @@
 //! Rings that the oil on a flank holds.
 
-use gudgeon_core::kinds::FlankDamping;
-use gudgeon_core::kinds::{FlankDampingCtx, FlankDampingSpec};
+use gudgeon_core::geometry::FlankOil;
+use gudgeon_core::kinds::FlankLaw;
+use gudgeon_core::kinds::{FlankCtx, FlankSpec};
 use gudgeon_ring::parts::{Balance, GrooveFlank as Flank};
-use gudgeon_ring::{DampingOff, SqueezeFilm};
+use gudgeon_ring::{Dry, SqueezeFilm};
 
 const C: f64 = 1e-4;
 const A: f64 = 1.8e-3;
 
-fn models() -> (Box<dyn FlankDamping>, Flank) {
-    let ctx = FlankDampingCtx { ring: 0, rings: 1, oil_fill: 0.6, width: 5e-3, mu: 0.01 };
-    let damping = SqueezeFilm::default().build(&ctx).expect("builds");
+fn models() -> (Box<dyn FlankLaw>, Flank) {
+    let ctx = FlankCtx::new(0, 1, 0.6, 5e-3, 0.01);
+    let damping = SqueezeFilm::default().build(&ctx).expect("builds").law();
     (damping, Flank { stiffness: 1e10, per_rebound: 100.0 })
 }
 
@@ -25,6 +26,7 @@ fn velocity_balances_the_forces_on_both_flanks() {
                 away,
                 external: away * load,
                 s,
+                oil: FlankOil::default(),
                 clearance: C,
                 area: A,
                 damping: &*damping,
@@ -58,6 +60,7 @@ fn beyond_the_release_speed_the_velocity_goes_on_along_the_tangent() {
             away: 1.0,
             external: load,
             s: 0.0,
+            oil: FlankOil::default(),
             clearance: C,
             area: A,
             damping: &*damping,
@@ -84,14 +87,13 @@ fn beyond_the_release_speed_the_velocity_goes_on_along_the_tangent() {
 #[test]
 fn a_ring_that_nothing_resists_falls_at_a_finite_speed() {
     let (_, flank) = models();
-    let none: Box<dyn FlankDamping> = DampingOff {}
-        .build(&FlankDampingCtx { ring: 0, rings: 1, oil_fill: 0.6, width: 5e-3, mu: 0.01 })
-        .expect("builds");
+    let none: Box<dyn FlankLaw> = Dry {}.build(&FlankCtx::new(0, 1, 0.6, 5e-3, 0.01)).expect("builds").law();
     for (away, s) in [(1.0, 1e-9), (1.0, 0.0), (-1.0, C - 1e-9)] {
         let b = Balance {
             away,
             external: -away * 300.0,
             s,
+            oil: FlankOil::default(),
             clearance: C,
             area: A,
             damping: &*none,

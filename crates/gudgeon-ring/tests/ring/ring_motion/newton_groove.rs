@@ -1,6 +1,6 @@
 //! The ring as a mass between the flanks.
 
-use gudgeon_core::kinds::{FlankDampingCtx, FlankDampingSpec};
+use gudgeon_core::kinds::{FlankCtx, FlankSpec};
 use gudgeon_core::kinds::{RingMotionCtx, RingMotionSpec};
 use gudgeon_core::quantity::quantity;
 use gudgeon_ring::parts::GrooveFlank as Flank;
@@ -96,8 +96,8 @@ fn rebound_follows_the_closed_form_and_loses_energy() {
 #[test]
 fn refuses_what_cannot_move() {
     for (mass, clearance) in [(MASS, 0.0), (0.0, CLEARANCE), (f64::NAN, CLEARANCE)] {
-        let oil = FlankDampingCtx { ring: 0, rings: 1, oil_fill: 0.6, width: 5e-3, mu: 0.01 };
-        let damping = SqueezeFilm::default().build(&oil).expect("builds");
+        let oil = FlankCtx::new(0, 1, 0.6, 5e-3, 0.01);
+        let damping = SqueezeFilm::default().build(&oil).expect("builds").law();
         let ctx = RingMotionCtx::new(0, mass, clearance, 200.0, damping);
         assert!(NewtonGroove::default().build(ctx).is_err());
     }

@@ -1,13 +1,13 @@
 //! A ring with three seats.
 
 use gudgeon_core::kinds::{AxialForces, RingMotion, RingMotionCtx, RingMotionSpec};
-use gudgeon_core::kinds::{FlankDampingCtx, FlankDampingSpec};
+use gudgeon_core::kinds::{FlankCtx, FlankSpec};
 use gudgeon_core::states::Signals;
-use gudgeon_ring::{DampingOff, ThreeSeat};
+use gudgeon_ring::{Dry, ThreeSeat};
 
 fn built(spec: &ThreeSeat) -> Box<dyn RingMotion> {
-    let oil = FlankDampingCtx { ring: 0, rings: 1, oil_fill: 0.6, width: 5e-3, mu: 0.01 };
-    let damping = DampingOff {}.build(&oil).expect("builds");
+    let oil = FlankCtx::new(0, 1, 0.6, 5e-3, 0.01);
+    let damping = Dry {}.build(&oil).expect("builds").law();
     spec.build(RingMotionCtx::new(0, 7e-3, 3e-5, 200.0, damping)).expect("builds")
 }
 

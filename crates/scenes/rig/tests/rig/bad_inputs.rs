@@ -97,7 +97,7 @@ velocity = "-0.1 m/s"
 duration = "20 ms"
 speed = "10 mm/s"
 tolerance = 1e-6
-flank_damping = { model = "squeeze_film", roughness = "0.4 um", separation = 0.1, tension = "1 bar" }"#,
+flank = { model = "squeeze_film", roughness = "0.4 um", separation = 0.1, tension = "1 bar" }"#,
     r#"model = "flank"
 clearance = "100 um"
 area = "1000 mm2"
@@ -107,7 +107,7 @@ load = "60 N"
 height = "30 um"
 duration = "20 ms"
 tolerance = 1e-6
-flank_damping = { model = "tangent_degrees" }"#,
+flank = { model = "tangent_degrees" }"#,
 ];
 
 /// What replaces a value.
@@ -311,7 +311,7 @@ fn refusals_name_the_place() {
     assert_eq!(
         fields(
             "model = \"flank\"\nclearance = \"0.1 mm\"\narea = \"1 mm2\"\nwidth = \"3 mm\"\nviscosity = \"1 mPa s\"\n\
-             load = \"60 N\"\nheight = \"1 mm\"\nvelocity = \"1 m/s\"\nduration = \"1 s\"\ntolerance = 1.0\nflank_damping = { model = \"off\" }"
+             load = \"60 N\"\nheight = \"1 mm\"\nvelocity = \"1 m/s\"\nduration = \"1 s\"\ntolerance = 1.0\nflank = { model = \"dry\" }"
         ),
         ["height", "velocity", "tolerance"]
     );

@@ -100,16 +100,11 @@ impl Shift<'_> {
             }
             measures.step(pack, *t0, *t1);
         }
-        let (last, rings) = (trail.states.len().saturating_sub(trail.rows), pack.n_rings());
+        let last = trail.states.len().saturating_sub(trail.rows);
         let mut end = vec![0.0; trail.rows];
         shift(&mut end, &trail.states[last..], &trail.slopes[last * trail.columns..]);
         let q = &end[trail.n..];
-        let totals = Totals {
-            flow_in: q[..rings].to_vec(),
-            blow_by: q[rings],
-            friction_work: q[rings + 1..].to_vec(),
-            ..Totals::default()
-        };
+        let totals = Totals::of_cycle(pack, q);
         Ok(results::Cycle { totals, measures }.results(pack, meter))
     }
 }

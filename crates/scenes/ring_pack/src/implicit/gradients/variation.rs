@@ -130,7 +130,7 @@ pub struct Trail {
 impl<'a> Variation<'a> {
     pub fn new(cycle: &Cycle<'_>, varied: &'a mut [Varied], tolerance: f64) -> Self {
         let pack = &cycle.pack;
-        let (n, rows) = (pack.layout.n, pack.layout.n + 2 * pack.n_rings() + 1);
+        let (n, rows) = (pack.layout.n, pack.layout.n + pack.layout.quads());
         let columns = n + varied.len();
         for v in varied.iter_mut() {
             v.pack.each_block(|b, _| b.set_accuracy(tolerance));

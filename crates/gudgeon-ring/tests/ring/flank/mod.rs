@@ -3,3 +3,4 @@
 mod squeeze_film;
 mod tangent_degrees;
 mod tangent_radians;
+mod wetted_strip;

@@ -1,15 +1,16 @@
 //! The tangent law with degrees.
 
-use gudgeon_core::kinds::{FlankDampingCtx, FlankDampingSpec};
+use gudgeon_core::geometry::FlankOil;
+use gudgeon_core::kinds::{FlankCtx, FlankSpec};
 use gudgeon_ring::TangentDegrees;
 
-fn ctx(ring: usize, oil_fill: f64) -> FlankDampingCtx {
-    FlankDampingCtx { ring, rings: 3, oil_fill, width: 5e-3, mu: 0.01 }
+fn ctx(ring: usize, oil_fill: f64) -> FlankCtx {
+    FlankCtx::new(ring, 3, oil_fill, 5e-3, 0.01)
 }
 
 fn d(oil_fill: f64, e: f64) -> f64 {
-    let m = TangentDegrees::default().build(&ctx(0, oil_fill)).expect("builds");
-    -m.force(e * 1e-4, 1.0, 1e-4, 1.0) / 1e7
+    let m = TangentDegrees::default().build(&ctx(0, oil_fill)).expect("builds").law();
+    -m.force(&FlankOil::default(), e * 1e-4, 1.0, 1e-4, 1.0) / 1e7
 }
 
 #[test]
@@ -39,9 +40,12 @@ fn symmetric_and_limited() {
     assert_eq!(d(0.6, -0.49), d(0.6, 0.0));
     assert_eq!(d(0.6, 7.0), d(0.6, 1.0));
     assert_eq!(d(1.0, 0.5), 1.0);
-    let m = TangentDegrees::default().build(&ctx(2, 0.9)).expect("builds");
-    assert!((m.force(0.0, 1.0, 1e-4, 1.0) + 2e7 * 1.015994).abs() < 2e7 * 5.1e-7, "last ring");
-    assert!(m.force(0.0, 1.0, 0.0, 1.0).is_finite(), "no clearance");
+    let m = TangentDegrees::default().build(&ctx(2, 0.9)).expect("builds").law();
+    assert!(
+        (m.force(&FlankOil::default(), 0.0, 1.0, 1e-4, 1.0) + 2e7 * 1.015994).abs() < 2e7 * 5.1e-7,
+        "last ring"
+    );
+    assert!(m.force(&FlankOil::default(), 0.0, 1.0, 0.0, 1.0).is_finite(), "no clearance");
 }
 
 #[test]
@@ -71,9 +75,9 @@ fn mean_over_the_groove() {
 ///
 /// Integrated by the trapezoidal rule with Newton's method in `v`, time steps refined from the start where the acceleration is large.
 fn traverse(ring: usize, fill: f64, force: f64, steps_per_estimate: f64) -> f64 {
-    let m = TangentDegrees::default().build(&ctx(ring, fill)).expect("builds");
+    let m = TangentDegrees::default().build(&ctx(ring, fill)).expect("builds").law();
     let (mass, area, c) = (0.043, 1.8e-3, 1e-4);
-    let a = |s: f64, v: f64| (force + m.force(s, v, c, area)) / mass;
+    let a = |s: f64, v: f64| (force + m.force(&FlankOil::default(), s, v, c, area)) / mass;
     // Overdamped estimate of the time.
     let (mean, coefficient) = if fill == 0.6 { (0.159986, 1e7) } else { (0.446938, 2e7) };
     let estimate = area * coefficient * c / force * mean;

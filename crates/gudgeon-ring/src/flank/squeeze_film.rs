@@ -1,7 +1,9 @@
 //! Squeeze films between ring and groove flanks.
 
-use gudgeon_core::kinds::{FlankDamping, FlankDampingCtx, FlankDampingSpec};
+use gudgeon_core::geometry::FlankOil;
+use gudgeon_core::kinds::{Flank, FlankCtx, FlankLaw, FlankSpec};
 use gudgeon_core::quantity::{Fraction, PosLength, PosPressure, Ratio, quantity};
+use gudgeon_core::states::Stateful;
 use gudgeon_core::{BuildError, register_model};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -42,13 +44,13 @@ pub struct SqueezeFilm {
     pub tension: PosPressure,
 }
 
-fn default_roughness() -> PosLength {
+pub(super) fn default_roughness() -> PosLength {
     quantity(0.4e-6)
 }
-fn default_separation() -> Ratio<Fraction> {
+pub(super) fn default_separation() -> Ratio<Fraction> {
     quantity(0.1)
 }
-fn default_tension() -> PosPressure {
+pub(super) fn default_tension() -> PosPressure {
     quantity(1e5)
 }
 
@@ -60,16 +62,17 @@ impl Default for SqueezeFilm {
 
 #[register_model(
     name = "squeeze_film",
-    summary = "physical: oil squeezed out between ring and both groove flanks, with cavitation when drawn apart",
+    summary = "oil squeezed out between ring and both groove flanks, with cavitation when drawn apart; gas passes as if it were not there",
     equations = "approach: F = mu A w^2 f^3 v / (h + sigma)^3;  separation: X/(1 + X/(p_t f A)), X = chi mu A w^2 f^3 v / (h + sigma)^3;  \
                 h = s and c - s",
-    validity = "Parallel flanks, the same oil-filled strip on both at all times, thin compared with its width; no oil transport, no twist. \
+    validity = "Parallel flanks, the same oil-filled strip on both at all times, thin compared with its width; no oil transport, no twist. Thicker oil holds a ring \
+               off its seat and does not close the gap there: blow-by rises with viscosity; `wetted_strip` has one oil for both. \
                Sensitive to the oil fill (cube) and, for seated rings, to the roughness distance (inverse cube).",
     references = ["reynolds1886", "cameron1966"],
     example = "roughness = \"0.4 um\"\nseparation = 0.1\n",
 )]
-impl FlankDampingSpec for SqueezeFilm {
-    fn build(&self, ctx: &FlankDampingCtx) -> Result<Box<dyn FlankDamping>, BuildError> {
+impl FlankSpec for SqueezeFilm {
+    fn build(&self, ctx: &FlankCtx) -> Result<Box<dyn Flank>, BuildError> {
         check_fill(ctx)?;
         check_oil(ctx)?;
         let wetted = ctx.oil_fill * ctx.width;
@@ -83,6 +86,7 @@ impl FlankDampingSpec for SqueezeFilm {
     }
 }
 
+#[derive(Clone, Copy)]
 struct Runtime {
     /// Damping per area times height cubed \[Pa s m²\].
     strip: f64,
@@ -97,17 +101,30 @@ impl Runtime {
     fn pressure(&self, h: f64, rate: f64) -> f64 {
         let gap = h.max(0.0) + self.roughness;
         let linear = self.strip * rate / (gap * gap * gap);
-        if linear >= 0.0 || self.tension <= 0.0 {
-            linear
-        } else {
-            let x = self.separation * linear;
-            x / (1.0 - x / self.tension)
-        }
+        resistance(linear, self.separation, self.tension)
     }
 }
 
-impl FlankDamping for Runtime {
-    fn force(&self, s: f64, v: f64, clearance: f64, area: f64) -> f64 {
+/// What a film of the resistance `linear` really bears, with the fraction of it that stays liquid when it is drawn apart (`linear` negative) and the
+/// greatest tension it then has.
+pub(super) fn resistance(linear: f64, separation: f64, tension: f64) -> f64 {
+    if linear >= 0.0 || tension <= 0.0 {
+        return linear;
+    }
+    let x = separation * linear;
+    x / (1.0 - x / tension)
+}
+
+impl Stateful for Runtime {}
+
+impl Flank for Runtime {
+    fn law(&self) -> Box<dyn FlankLaw> {
+        Box::new(*self)
+    }
+}
+
+impl FlankLaw for Runtime {
+    fn force(&self, _: &FlankOil, s: f64, v: f64, clearance: f64, area: f64) -> f64 {
         area * (self.pressure(s, -v) - self.pressure(clearance - s, v))
     }
 }

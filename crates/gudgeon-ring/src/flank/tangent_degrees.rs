@@ -1,7 +1,9 @@
 //! Empirical damping with the tangent of an angle in degrees.
 
-use gudgeon_core::kinds::{FlankDamping, FlankDampingCtx, FlankDampingSpec};
+use gudgeon_core::geometry::FlankOil;
+use gudgeon_core::kinds::{Flank, FlankCtx, FlankLaw, FlankSpec};
 use gudgeon_core::quantity::{PosAreaDamping, quantity};
+use gudgeon_core::states::Stateful;
 use gudgeon_core::{BuildError, register_model};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -52,8 +54,8 @@ impl Default for TangentDegrees {
     references = ["zottin1992"],
     example = "coefficient = \"1e7 N s/m3\"\ncoefficient_last = \"2e7 N s/m3\"\n",
 )]
-impl FlankDampingSpec for TangentDegrees {
-    fn build(&self, ctx: &FlankDampingCtx) -> Result<Box<dyn FlankDamping>, BuildError> {
+impl FlankSpec for TangentDegrees {
+    fn build(&self, ctx: &FlankCtx) -> Result<Box<dyn Flank>, BuildError> {
         check_fill(ctx)?;
         let last = ctx.ring + 1 == ctx.rings;
         Ok(Box::new(Runtime {
@@ -63,6 +65,7 @@ impl FlankDampingSpec for TangentDegrees {
     }
 }
 
+#[derive(Clone, Copy)]
 struct Runtime {
     coefficient: f64,
     exponent: f64,
@@ -74,8 +77,16 @@ fn shape(e: f64, exponent: f64) -> f64 {
     ((100.0 * e - 50.0) / 1.1).to_radians().tan().abs().powf(exponent)
 }
 
-impl FlankDamping for Runtime {
-    fn force(&self, s: f64, v: f64, clearance: f64, area: f64) -> f64 {
+impl Stateful for Runtime {}
+
+impl Flank for Runtime {
+    fn law(&self) -> Box<dyn FlankLaw> {
+        Box::new(*self)
+    }
+}
+
+impl FlankLaw for Runtime {
+    fn force(&self, _: &FlankOil, s: f64, v: f64, clearance: f64, area: f64) -> f64 {
         let e = if clearance > 0.0 { (s / clearance).clamp(0.0, 1.0) } else { 0.0 };
         -area * v * self.coefficient * shape(e, self.exponent)
     }

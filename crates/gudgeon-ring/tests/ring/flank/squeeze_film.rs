@@ -1,18 +1,19 @@
 //! Squeeze films on the flanks.
 
-use gudgeon_core::kinds::{FlankDamping, FlankDampingCtx, FlankDampingSpec};
+use gudgeon_core::geometry::FlankOil;
+use gudgeon_core::kinds::{FlankCtx, FlankLaw, FlankSpec};
 use gudgeon_core::quantity::quantity;
 use gudgeon_ring::SqueezeFilm;
 
 const C: f64 = 1e-4;
 const A: f64 = 1.8e-3;
 
-fn ctx() -> FlankDampingCtx {
-    FlankDampingCtx { ring: 0, rings: 3, oil_fill: 0.6, width: 5e-3, mu: 0.01 }
+fn ctx() -> FlankCtx {
+    FlankCtx::new(0, 3, 0.6, 5e-3, 0.01)
 }
 
-fn built(spec: &SqueezeFilm) -> Box<dyn FlankDamping> {
-    spec.build(&ctx()).expect("builds")
+fn built(spec: &SqueezeFilm) -> Box<dyn FlankLaw> {
+    spec.build(&ctx()).expect("builds").law()
 }
 
 #[test]
@@ -21,14 +22,14 @@ fn mirrored_passive_and_continuous() {
     for k in -2..=52 {
         let s = C * k as f64 / 50.0;
         for v in [1e-9, 1e-6, 1e-3, 1.0] {
-            let up = m.force(s, v, C, A);
-            let down = m.force(s, -v, C, A);
+            let up = m.force(&FlankOil::default(), s, v, C, A);
+            let down = m.force(&FlankOil::default(), s, -v, C, A);
             assert!(up < 0.0 && down > 0.0, "opposes the motion");
-            let mirrored = -m.force(C - s, -v, C, A);
+            let mirrored = -m.force(&FlankOil::default(), C - s, -v, C, A);
             // C - s is off by 1e-20 m, against the smallest gap of 0.4 µm, cubed.
             assert!((up - mirrored).abs() <= 1e-12 * up.abs(), "{up} {mirrored}");
         }
-        assert_eq!(m.force(s, 0.0, C, A), 0.0);
+        assert_eq!(m.force(&FlankOil::default(), s, 0.0, C, A), 0.0);
     }
 }
 
@@ -37,13 +38,13 @@ fn tension_is_limited_approach_is_not() {
     let m = built(&SqueezeFilm::default());
     // Drawn off the lower flank: 1 bar on the wetted 60 % of 18 cm² is 108 N, and the upper film 0.1 mm away adds
     // μ A w² f³ v/c³ = 9.7e-11/1e-12·v, at 1e-3 m/s 0.1 N.
-    let pull = -m.force(0.0, 1e-3, C, A);
+    let pull = -m.force(&FlankOil::default(), 0.0, 1e-3, C, A);
     assert!(pull > 107.0 && pull < 108.2, "{pull}");
-    assert!(m.force(0.0, -1e-3, C, A) > 1e4);
+    assert!(m.force(&FlankOil::default(), 0.0, -1e-3, C, A) > 1e4);
     // Without separation the film above the ring is the only resistance.
     let free = built(&SqueezeFilm { separation: quantity(0.0), ..SqueezeFilm::default() });
     let expected = 0.01 * A * 25e-6 * 0.216 * 1e-3 / (C + 0.4e-6).powi(3);
-    assert!((-free.force(0.0, 1e-3, C, A) / expected - 1.0).abs() < 1e-12);
+    assert!((-free.force(&FlankOil::default(), 0.0, 1e-3, C, A) / expected - 1.0).abs() < 1e-12);
 }
 
 #[test]
@@ -62,7 +63,7 @@ fn massless_fall_follows_the_closed_form() {
     let step = (b - a) / n as f64;
     let f = |x: f64| {
         let h = x.exp();
-        h * m.force(h - sigma, -1.0, C, A) / load
+        h * m.force(&FlankOil::default(), h - sigma, -1.0, C, A) / load
     };
     let t: f64 = (0..=n)
         .map(|i| {

@@ -1,10 +1,10 @@
 //! What the models check of the groove.
 
 use gudgeon_core::BuildError;
-use gudgeon_core::kinds::FlankDampingCtx;
+use gudgeon_core::kinds::FlankCtx;
 
 /// The oil-filled fraction is one.
-pub(super) fn check_fill(ctx: &FlankDampingCtx) -> Result<(), BuildError> {
+pub(super) fn check_fill(ctx: &FlankCtx) -> Result<(), BuildError> {
     if (0.0..=1.0).contains(&ctx.oil_fill) {
         Ok(())
     } else {
@@ -18,7 +18,7 @@ pub(super) fn check_fill(ctx: &FlankDampingCtx) -> Result<(), BuildError> {
 }
 
 /// Width and viscosity are positive.
-pub(super) fn check_oil(ctx: &FlankDampingCtx) -> Result<(), BuildError> {
+pub(super) fn check_oil(ctx: &FlankCtx) -> Result<(), BuildError> {
     for (value, what, unit) in
         [(ctx.width, "the radial width of the flank", "m"), (ctx.mu, "the oil viscosity", "Pa s")]
     {

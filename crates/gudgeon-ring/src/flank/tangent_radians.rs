@@ -1,7 +1,9 @@
 //! Empirical damping with the tangent of an angle in radians and the oil's viscosity.
 
-use gudgeon_core::kinds::{FlankDamping, FlankDampingCtx, FlankDampingSpec};
+use gudgeon_core::geometry::FlankOil;
+use gudgeon_core::kinds::{Flank, FlankCtx, FlankLaw, FlankSpec};
 use gudgeon_core::quantity::{PosRatio, quantity};
+use gudgeon_core::states::Stateful;
 use gudgeon_core::{BuildError, register_model};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -44,8 +46,8 @@ impl Default for TangentRadians {
     references = ["kornprobst1989", "tomanik1993"],
     example = "adhesion = 1e6\n",
 )]
-impl FlankDampingSpec for TangentRadians {
-    fn build(&self, ctx: &FlankDampingCtx) -> Result<Box<dyn FlankDamping>, BuildError> {
+impl FlankSpec for TangentRadians {
+    fn build(&self, ctx: &FlankCtx) -> Result<Box<dyn Flank>, BuildError> {
         check_fill(ctx)?;
         check_oil(ctx)?;
         Ok(Box::new(Runtime {
@@ -55,13 +57,22 @@ impl FlankDampingSpec for TangentRadians {
     }
 }
 
+#[derive(Clone, Copy)]
 struct Runtime {
     per_area: f64,
     exponent: f64,
 }
 
-impl FlankDamping for Runtime {
-    fn force(&self, s: f64, v: f64, clearance: f64, area: f64) -> f64 {
+impl Stateful for Runtime {}
+
+impl Flank for Runtime {
+    fn law(&self) -> Box<dyn FlankLaw> {
+        Box::new(*self)
+    }
+}
+
+impl FlankLaw for Runtime {
+    fn force(&self, _: &FlankOil, s: f64, v: f64, clearance: f64, area: f64) -> f64 {
         let e = if clearance > 0.0 { (s / clearance).clamp(0.0, 1.0) } else { 0.0 };
         -area * v * self.per_area * (2.0 * e - 1.0).abs().tan().powf(self.exponent)
     }

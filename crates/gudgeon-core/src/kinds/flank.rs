@@ -1,0 +1,120 @@
+use std::fmt::Debug;
+
+use dyn_clone::DynClone;
+
+use crate::geometry::{FlankOil, RingPlace};
+use crate::states::Stateful;
+use crate::{BuildError, EvalError, register_kind};
+
+/// Configuration of a model of the oil between a ring and the flanks of its groove.
+#[register_kind(
+    name = "flank",
+    summary = "oil between a ring and its groove flanks: the force it gives and the gap it leaves the gas"
+)]
+pub trait FlankSpec: Debug + DynClone + Send + Sync {
+    /// Builds the running model of one ring.
+    ///
+    /// # Errors
+    /// Constants outside their range.
+    fn build(&self, ctx: &FlankCtx) -> Result<Box<dyn Flank>, BuildError>;
+
+    /// Whether the running model follows the volume of its oil.
+    fn follows_oil(&self) -> bool {
+        false
+    }
+}
+
+/// What a [`FlankSpec`] is built for.
+#[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
+pub struct FlankCtx {
+    /// Zero-based number of the ring.
+    pub ring: usize,
+    /// Number of rings.
+    pub rings: usize,
+    /// Oil-filled fraction of the groove flanks, 0 to 1.
+    pub oil_fill: f64,
+    /// Radial width of the flank contact \[m\].
+    pub width: f64,
+    /// Viscosity of the oil in the groove \[Pa s\], at the temperature behind the ring.
+    pub mu: f64,
+    /// Crank speed \[rad/s\]; zero where there is no crank.
+    pub omega: f64,
+}
+
+impl FlankCtx {
+    /// Ring `ring` of `rings`, its oil-filled fraction, the radial width of its flanks \[m\] and the viscosity of the oil there \[Pa s\].
+    #[must_use]
+    pub const fn new(ring: usize, rings: usize, oil_fill: f64, width: f64, mu: f64) -> Self {
+        Self { ring, rings, oil_fill, width, mu, omega: 0.0 }
+    }
+
+    /// Sets the crank speed \[rad/s\].
+    #[must_use]
+    pub const fn at_speed(mut self, omega: f64) -> Self {
+        self.omega = omega;
+        self
+    }
+}
+
+/// What acts on the oil of the flanks at an instant.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+pub struct FlankIn {
+    /// Where the ring is, with its velocity.
+    pub place: RingPlace,
+    /// Absolute pressures above, behind and below the ring \[Pa\].
+    pub pressure: [f64; 3],
+}
+
+impl FlankIn {
+    /// A ring at a place between the pressures above, behind and below it \[Pa\].
+    #[must_use]
+    pub const fn new(place: RingPlace, above: f64, behind: f64, below: f64) -> Self {
+        Self { place, pressure: [above, behind, below] }
+    }
+}
+
+/// Oil that came to the flanks of a ring and left them, per circumference: volumes \[m²\], or flows \[m²/s\].
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct FlankFlow {
+    /// From groove, lands and wet walls onto the flanks.
+    pub fed: f64,
+    /// Blown out by gas, or given back to groove and lands.
+    pub lost: f64,
+}
+
+/// A running model of the oil on the flanks of one ring.
+///
+/// A model with a finite volume of oil has it as states and says in [`Flank::oil`] how much of each gap the oil bridges: the ring feels that as a
+/// force ([`FlankLaw`]), the gas as an opening that is closed. A model without states says nothing of the gas, which then passes a dry gap.
+/// Rates are by crank angle \[1/rad\].
+pub trait Flank: Stateful + Send {
+    /// The force of the oil, for the motion of the ring.
+    fn law(&self) -> Box<dyn FlankLaw>;
+
+    /// Where the oil stands for the states `y` and a ring at `place`.
+    fn oil(&self, _y: &[f64], _place: &RingPlace) -> FlankOil {
+        FlankOil::default()
+    }
+
+    /// Rates `dy` of the states `y`, and the flows of oil per circumference \[m²/s\].
+    ///
+    /// # Errors
+    /// States for which the model has no answer.
+    fn rates(&mut self, _y: &[f64], _at: &FlankIn, _dy: &mut [f64]) -> Result<FlankFlow, EvalError> {
+        Ok(FlankFlow::default())
+    }
+
+    /// Oil on both flanks per circumference \[m²\].
+    fn volume(&self, _y: &[f64]) -> f64 {
+        0.0
+    }
+}
+
+/// The force of the oil on the flanks of one ring.
+pub trait FlankLaw: Send {
+    /// Force on the ring \[N\], towards the head positive, opposing `v`. `oil` where it stands, `s` height above the lower flank \[m\], `clearance`
+    /// \[m\], `area` flank annulus \[m²\].
+    fn force(&self, oil: &FlankOil, s: f64, v: f64, clearance: f64, area: f64) -> f64;
+}
