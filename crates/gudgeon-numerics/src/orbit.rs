@@ -75,6 +75,9 @@ const PROBE: usize = 8;
 const NUDGE: f64 = 0.03;
 /// Cycles in the noise of the map after which nothing more is expected of another.
 const IDLE: usize = 5;
+/// Turns of a residual that is not halved any more, after which one below this many times the accuracy is taken for noise of the map too: steps that fall
+/// differently can make it noisier than it was asked to be.
+const STALL: (usize, f64) = (12, 30.0);
 /// Cycles that acceleration has before plain repetition may take its place.
 const PATIENCE: usize = 60;
 /// Cycles over which plain repetition shows that it has come to rest in a band, and the width of a band over the noise of the map below which it is one.
@@ -111,10 +114,8 @@ pub fn periodic_orbit(
     }
     let mut options = *options;
     search.accelerated(map, y, &options, 1)?;
-    for _ in 0..options.refinements {
-        if search.report.converged || !search.noisy {
-            break;
-        }
+    while options.refinements > 0 && !search.report.converged && search.noisy {
+        options.refinements -= 1;
         options.accuracy *= 0.1;
         search.accelerated(map, y, &options, 1)?;
     }
@@ -255,7 +256,7 @@ impl Search {
                 self.report.converged = true;
                 break;
             }
-            if state.idle > IDLE {
+            if state.idle > IDLE || state.stalled > STALL.0 && options.refinements > 0 {
                 // Too near the edge of stability for the noise of the map.
                 self.noisy = true;
                 self.gain = self.gain.max(state.slowest);
@@ -437,6 +438,8 @@ struct Anderson {
     trusted: usize,
     /// Cycles since the residual came down to the noise of the map and stays there.
     idle: usize,
+    /// Cycles since the residual was last halved that turned its direction, while it is within [`STALL`].
+    stalled: usize,
     /// Start and residual of the cycle before, and what its secants left over of the latter.
     previous: Option<[DVector<f64>; 3]>,
     /// Smallest residual.
@@ -456,6 +459,7 @@ impl Anderson {
             secants: Vec::new(),
             trusted: 0,
             idle: 0,
+            stalled: 0,
             previous: None,
             best: f64::INFINITY,
             passed: 0.0,
@@ -492,6 +496,10 @@ impl Anderson {
         }
         let falls = residual > 3.0 * options.accuracy || residual < 0.5 * self.best;
         self.idle = if falls { 0 } else { self.idle + 1 };
+        let (near, halved) = (residual <= STALL.1 * options.accuracy, residual < 0.5 * self.best);
+        // A slow mode goes on the way it went; noise does not.
+        let turns = self.previous.as_ref().is_some_and(|[_, b, _]| r.dot(b) < 0.5 * r.norm() * b.norm());
+        self.stalled = if halved { 0 } else { self.stalled + usize::from(near && turns) };
         self.best = self.best.min(residual);
         let Some([at_before, r_before, rest]) = &self.previous else { return 0.0 };
         let secant = Secant { dy: at - at_before, dr: r - r_before, noise };
