@@ -20,7 +20,7 @@ use super::instant::{Counters, Instant, RingInstant, SeatLog};
 use super::layout::Layout;
 use super::liner::LinerShape;
 use super::pack::Pack;
-use super::plan::{Facts, Followed, Plan, plan, wanted};
+use super::plan::{Facts, Plan, Told, plan, wanted};
 use super::ring::Ring;
 use super::{end_gap, geometry, oil_faces};
 
@@ -114,8 +114,12 @@ impl Drive {
     fn new(case: &RingPackCase, files: &Files) -> Result<Self, Vec<BuildError>> {
         let mut errors = Vec::new();
         let m = &case.models;
-        let oil = Followed { liner: m.oil_transport.follows_oil(), flanks: m.flank.follows_oil() };
-        let wanted = kept(&mut errors, wanted(&case.outputs.results, case.rings.len(), oil));
+        let told = Told {
+            liner: m.oil_transport.follows_oil(),
+            flanks: m.flank.follows_oil(),
+            formulas: case.outputs.oil_formulas,
+        };
+        let wanted = kept(&mut errors, wanted(&case.outputs.results, case.rings.len(), told));
         let geo = kept(&mut errors, geometry::resolve(case));
         let motion = case.engine.motion(&*case.models.kinematics);
         let kinematics = kept(&mut errors, motion.map_err(|e| vec![e]));

@@ -295,6 +295,9 @@ pub struct Outputs {
     pub results: Vec<String>,
     /// Crank angle between rows of the series. No result depends on it.
     pub series_step: PosAngle,
+    /// Whether to tell the oil that passes each ring by the formulas of tomanik1993, for passages that are full of oil: upper limits, of use beside
+    /// the source alone.
+    pub oil_formulas: bool,
     /// A ring counts as on a groove flank while its distance from it is at most this share of its axial clearance, in results and
     /// events. Oil lets a ring come down ever more slowly, the gap going with the time to the power -1/2, so that it never touches; at a
     /// tenth of the clearance, the default, it rests on its film of oil. At most 0.5.
@@ -303,7 +306,12 @@ pub struct Outputs {
 
 impl Default for Outputs {
     fn default() -> Self {
-        Self { results: vec!["all".into()], series_step: quantity(1f64.to_radians()), seat: quantity(0.1) }
+        Self {
+            results: vec!["all".into()],
+            series_step: quantity(1f64.to_radians()),
+            oil_formulas: false,
+            seat: quantity(0.1),
+        }
     }
 }
 
@@ -322,10 +330,10 @@ fn cast_iron_expansion() -> PosExpansion {
 
 gudgeon_core::default_model! {
     default_kinematics: dyn KinematicsSpec = "exact_slider_crank";
-    default_gas_flow: dyn GasFlowSpec = "orifice_network";
+    default_gas_flow: dyn GasFlowSpec = "narrow_channel";
     default_ring_motion: dyn RingMotionSpec = "newton_groove";
     default_radial_motion: dyn RadialMotionSpec = "film_balance";
-    default_flank: dyn FlankSpec = "squeeze_film";
+    default_flank: dyn FlankSpec = "wetted_strip";
     default_flank_friction: dyn FlankFrictionSpec = "off";
     default_oil_transport: dyn OilTransportSpec = "off";
     default_hydrodynamics: dyn HydrodynamicsSpec = "closed_form_face";

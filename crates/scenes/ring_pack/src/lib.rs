@@ -14,6 +14,7 @@ pub mod degree_march;
 pub mod distortion;
 mod end_gap;
 mod error;
+mod film_strokes;
 mod forces;
 pub mod geometry;
 pub mod implicit;
@@ -86,6 +87,7 @@ pub fn meter(case: &RingPackCase) -> Meter {
     Meter {
         density: g.meter_pressure.si() / (g.gas_constant.si() * g.meter_temperature.si()),
         cylinders: f64::from(case.engine.cylinders),
+        pressure: g.meter_pressure.si(),
     }
 }
 

@@ -13,6 +13,7 @@ use std::f64::consts::PI;
 
 use gudgeon_numerics::panel::{MAX_NODES, Rule, TRAPEZIUM};
 
+use super::film_strokes::StrokeFilm;
 use super::pack::Pack;
 
 /// The highest value of something and the crank angle \[rad\] it comes at.
@@ -64,6 +65,10 @@ pub struct RingMeasure {
     pub film: f64,
     /// `∫ h |v| dt` \[m²\] over each stroke, intake first.
     pub strokes: [f64; 4],
+    /// The film over each stroke, intake first.
+    pub by_stroke: [StrokeFilm; 4],
+    /// Highest ratio of the pressure of the land below to that above.
+    pub reverse: f64,
     /// `∫ Δp/μ dt`, the pressure below less that above over the viscosity of the film.
     pub gap_drive: f64,
     /// `∫ Δp H³ dt` \[Pa m³ s\], `H` the distance from the nearer flank.
@@ -100,6 +105,7 @@ struct Samples {
     nearest: Column,
     difference: Column,
     mu: Column,
+    ratio: Column,
     wetted: Column,
 }
 
@@ -135,6 +141,8 @@ impl Measures {
             ln_h: (f64::INFINITY, f64::NEG_INFINITY),
             film: 0.0,
             strokes: [0.0; 4],
+            by_stroke: Default::default(),
+            reverse: 0.0,
             gap_drive: 0.0,
             groove_drive: 0.0,
             nearest: (0.0, 0.0),
@@ -191,6 +199,7 @@ impl Measures {
             s.nearest[k] = lift.min(place.clearance - lift);
             s.difference[k] = at.p_below - at.p_above;
             s.mu[k] = at.mu;
+            s.ratio[k] = at.p_below / at.p_above;
             s.wetted[k] = pack.oil_pack.as_ref().map_or(0.0, |o| o.ring(i, pack.at.piston.v).wetted);
         }
     }
@@ -207,6 +216,7 @@ impl Measures {
         let stroke = (0.5 * (t0 + t1) / PI).floor() as usize % 4;
         for (i, ring) in self.rings.iter_mut().enumerate() {
             ring.integrate(rule, &self.speed, stroke, dt);
+            ring.by_stroke[stroke].step(rule, &ring.samples.ln_h[..n], (t0, t1));
             if pack.geo.rings[i].has_clearance {
                 let mut e = ring.samples.e;
                 if pack.rings[i].is_decided() {
@@ -237,7 +247,15 @@ impl Measures {
         self.pressures.iter_mut().for_each(pass);
         for r in &mut self.rings {
             let s = &mut r.samples;
-            for c in [&mut s.ln_h, &mut s.e, &mut s.nearest, &mut s.difference, &mut s.mu, &mut s.wetted] {
+            for c in [
+                &mut s.ln_h,
+                &mut s.e,
+                &mut s.nearest,
+                &mut s.difference,
+                &mut s.mu,
+                &mut s.ratio,
+                &mut s.wetted,
+            ] {
                 pass(c);
             }
         }
@@ -262,6 +280,9 @@ impl RingMeasure {
         let over = |f: &dyn Fn(usize) -> f64| -> f64 {
             rule.weights.iter().enumerate().map(|(k, w)| w * f(k)).sum::<f64>() * dt
         };
+        if let Some((_, high)) = rule.maximum(&s.ratio[..n], self.reverse) {
+            self.reverse = high;
+        }
         self.film += over(&|k| s.ln_h[k].exp());
         self.strokes[stroke] += over(&|k| s.ln_h[k].exp() * speed[k].abs());
         self.gap_drive += over(&|k| if s.mu[k] > 0.0 { s.difference[k] / s.mu[k] } else { 0.0 });

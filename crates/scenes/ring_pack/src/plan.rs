@@ -27,33 +27,42 @@ pub struct ResultInfo {
     pub needs: Needs,
 }
 
-/// Where oil is followed.
+/// What is told beside what every pack has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Followed {
-    /// On the liner and under the faces.
+pub struct Told {
+    /// Oil that is followed on the liner and under the faces.
     pub liner: bool,
-    /// On the flanks of the grooves.
+    /// Oil that is followed on the flanks of the grooves.
     pub flanks: bool,
+    /// Oil by the formulas of published decks.
+    pub formulas: bool,
 }
 
-/// Every result of a pack of `rings` rings with the oil that is followed.
+impl Told {
+    /// Everything.
+    pub const ALL: Self = Self { liner: true, flanks: true, formulas: true };
+}
+
+/// Every result of a pack of `rings` rings.
 #[must_use]
-pub fn catalogue(rings: usize, oil: Followed) -> Vec<ResultInfo> {
+pub fn catalogue(rings: usize, told: Told) -> Vec<ResultInfo> {
     let mut all = gas_results();
     all.extend((2..=rings).flat_map(land_results));
     for i in 1..=rings {
         all.extend(seat_results(i));
         all.extend(film_results(i));
-        all.extend(oil_face_results(i));
-        if oil.flanks {
+        if told.formulas {
+            all.extend(oil_face_results(i));
+        }
+        if told.flanks {
             all.extend(flank_results(i));
         }
-        if oil.liner {
+        if told.liner {
             let what = format!("mean share of the face under full film, ring {i}");
             all.push(info(format!("ring{i}.wetted_share"), "1", Needs::Film, what));
         }
     }
-    if oil.liner {
+    if told.liner {
         all.extend(oil_results());
     }
     let power = "mean friction power of the pack, one cylinder";
@@ -73,6 +82,11 @@ fn gas_results() -> Vec<ResultInfo> {
     vec![
         add("blow_by", "l/min", "gas to the crankcase, whole engine, at meter conditions"),
         add("blow_by_per_cylinder", "l/min", "gas to the crankcase, one cylinder, at meter conditions"),
+        add(
+            "blow_by_share",
+            "1",
+            "gas to the crankcase over what the swept volume holds at the lower dead centre, at cylinder pressure and meter temperature",
+        ),
         add("blow_by_mass_per_cycle", "kg", "gas to the crankcase, one cylinder"),
         add("blow_back_mass_per_cycle", "kg", "gas returning past ring 1 to the cylinder, one cylinder"),
         add("cylinder.p_max", "bar", "highest cylinder pressure"),
@@ -105,6 +119,12 @@ fn seat_results(i: usize) -> Vec<ResultInfo> {
                 "share of the cycle that ring {i} is off its lower flank, farther than `outputs.seat` of its clearance"
             ),
         ),
+        add(
+            "reverse_pressure_ratio",
+            format!(
+                "highest ratio of the pressure below ring {i} to that above: beyond 1 gas lifts a ring off its lower flank"
+            ),
+        ),
     ]
 }
 
@@ -116,6 +136,7 @@ fn film_results(i: usize) -> Vec<ResultInfo> {
         add("h_max", "um", format!("thickest film under ring {i}")),
         add("h_mean", "um", format!("mean film under ring {i}")),
         add("friction_power", "W", format!("mean friction power of ring {i}, one cylinder")),
+        add("fmep", "bar", format!("friction mean effective pressure of ring {i}")),
     ]
 }
 
@@ -199,8 +220,8 @@ pub struct Facts<'a> {
 ///
 /// # Errors
 /// A name that is not in the catalogue.
-pub fn wanted(asked: &[String], rings: usize, oil: Followed) -> Result<Vec<ResultInfo>, Vec<BuildError>> {
-    let all = catalogue(rings, oil);
+pub fn wanted(asked: &[String], rings: usize, told: Told) -> Result<Vec<ResultInfo>, Vec<BuildError>> {
+    let all = catalogue(rings, told);
     let mut errors = Vec::new();
     for (k, name) in asked.iter().enumerate() {
         if name != "all" && !all.iter().any(|r| &r.name == name) {

@@ -7,7 +7,7 @@ use indexmap::IndexMap;
 
 use super::measure::{Measures, Peak, RingMeasure, Seat};
 use super::pack::Pack;
-use super::plan::{Followed, catalogue};
+use super::plan::{Told, catalogue};
 use super::record::{Totals, round_deg};
 
 /// How a blow-by mass becomes litres per minute.
@@ -17,6 +17,8 @@ pub struct Meter {
     pub density: f64,
     /// Cylinders of the engine.
     pub cylinders: f64,
+    /// Pressure at the meter \[Pa\].
+    pub pressure: f64,
 }
 
 /// A cycle that was solved.
@@ -35,7 +37,7 @@ impl Cycle {
     /// Every wanted result.
     #[must_use]
     pub fn results(&self, pack: &Pack, meter: Meter) -> IndexMap<String, Value> {
-        catalogue(pack.n_rings(), Followed { liner: true, flanks: true })
+        catalogue(pack.n_rings(), Told::ALL)
             .into_iter()
             .filter(|r| pack.plan.wanted.contains(&r.name))
             .map(|r| {
@@ -69,6 +71,11 @@ impl Cycle {
         match name {
             "blow_by" => litres_per_minute * meter.cylinders,
             "blow_by_per_cylinder" => litres_per_minute,
+            "blow_by_share" => {
+                // The swept volume at the end of the first stroke, at the temperature of the meter.
+                let charge = meter.density * pack.cylinder.pressure(PI) / meter.pressure * swept;
+                t.blow_by / charge
+            }
             "blow_by_mass_per_cycle" => t.blow_by,
             "blow_back_mass_per_cycle" => m.blow_back,
             "cylinder.p_max" => m.cylinder.value / 1e5,
@@ -94,6 +101,11 @@ impl Cycle {
             "friction_power" => {
                 self.totals.friction_work.get(i).copied().unwrap_or(0.0) / Self::duration(pack)
             }
+            "fmep" => {
+                let swept = PI * pack.geo.bore_radius.powi(2) * pack.kinematics.stroke();
+                self.totals.friction_work.get(i).copied().unwrap_or(0.0) / swept / 1e5
+            }
+            "reverse_pressure_ratio" => m.reverse,
             "oil_face_combustion" => strokes[2] - strokes[1],
             "oil_face_gas_exchange" => strokes[0] - strokes[3],
             "oil_gap" => gap_oil(pack, i, m),

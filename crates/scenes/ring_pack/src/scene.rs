@@ -9,7 +9,7 @@ use super::pack::Pack;
 use super::solve::{solve, starts, wanted};
 use super::solver::RingPackSolverSpec;
 use super::used::models_in_use;
-use super::{assemble, geometry, legal, meter, state_names};
+use super::{assemble, film_strokes, geometry, legal, meter, state_names};
 use crate::case::RingPackCase;
 use gudgeon_case::{Loaded, Refinement};
 use gudgeon_scene::{
@@ -64,6 +64,10 @@ impl SceneCase for RingPackCase {
         result.branches = solved.branches;
         result.solver = solved.report;
         result.series = solved.record.series();
+        if pack.plan.film {
+            let films = film_strokes::table(&solved.cycle.measures, pack.period());
+            result.tables.insert("films".into(), films);
+        }
         if let Some(liner) = solved.liner {
             let lines =
                 liner.columns.iter().map(|c| (c.name.replace("film_at_", "") + " deg", c.name.clone()));
