@@ -206,6 +206,17 @@ pub struct History<'a> {
     pub content: &'a [f64],
 }
 
+/// How far the nodes of a film are filled at an instant, as a film with a history knows. Those that are not stand at `p_cav`, and what the surface carries from
+/// them to the next node counts by their filling.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Unfilled<'a> {
+    /// How much of a full film's pressure a node takes: 1 where it is full, 0 where it stands at `p_cav`. Between, with `s`, it loses `(1/s - 1) G p` of a
+    /// pressure `p`, `G` being the sum of its conductances.
+    pub engaged: &'a [f64],
+    /// Filling of the nodes, 0 to 1.
+    pub fill: &'a [f64],
+}
+
 /// A film at an instant. The upper surface stands still in `x`, the lower one slides along `+x` with `u`.
 ///
 /// `∂x(φx h³/(12 μ) ∂x p) + ∂y(φy h³/(12 μ) ∂y p) = ∂x(u h θ/2) + ∂t(h θ)`, with `θ` the filling: 1 where `p > p_cav`.
@@ -236,6 +247,12 @@ pub struct Film2dIn<'a> {
     pub factors: FlowFactors<'a>,
     /// The film before this step, for a transient mass-conserving film; none: `∂t(h θ)` follows from `dhdt`.
     pub history: Option<History<'a>>,
+    /// Film \[m\] that lies on the sliding surface where it comes in over the lowest and over the highest `x`, for a step of a film with a history whose edges
+    /// stand at `p_cav` ([`Film2d::keeps_fill`]). The nodes on those edges then hold what reaches them, and what they have no room for leaves. None: the fillings
+    /// of the edges are given.
+    pub arriving: Option<[f64; 2]>,
+    /// Nodes that are not filled, for [`Film2d::solve_many`] and [`Film2d::imbalance`] of a model that says [`Film2d::keeps_fill`]; none: all are.
+    pub unfilled: Option<Unfilled<'a>>,
 }
 
 impl<'a> Film2dIn<'a> {
@@ -254,6 +271,8 @@ impl<'a> Film2dIn<'a> {
             edge_fill: [1.0; 4],
             factors: FlowFactors { pressure_x: &[], pressure_y: &[], transport: &[], content: &[] },
             history: None,
+            arriving: None,
+            unfilled: None,
         }
     }
 }
@@ -377,6 +396,12 @@ pub trait Film2d: Send {
     /// Fields of the wrong length (Fatal), no solution (Recoverable).
     fn answer(&mut self, _p: &mut [f64], _fill: &mut [f64]) -> Result<bool, EvalError> {
         Ok(false)
+    }
+
+    /// Whether the film can keep its filling from step to step: it takes steps with a [`History`] and with what arrives ([`Film2dIn::arriving`]), and tells its
+    /// pressures while some nodes are not filled ([`Film2dIn::unfilled`]).
+    fn keeps_fill(&self) -> bool {
+        false
     }
 
     /// Whether the film is the sum of what [`Film2d::solve_many`] finds.

@@ -7,7 +7,7 @@ use gudgeon_numerics::multigrid::FivePoint;
 
 use super::cavitation::Cavitation;
 use super::checks::check_modes;
-use super::problem::{Problem, cause_of};
+use super::problem::{Problem, cause_of, void_of};
 
 /// Solves linear systems with a [`FivePoint`] matrix.
 pub(super) trait Linear: Send {
@@ -15,6 +15,10 @@ pub(super) trait Linear: Send {
     fn factor(&mut self, m: &FivePoint, symmetric: bool) -> Result<(), Singular>;
     /// Improves `z` until no residual is larger than `target` where that is possible. Returns the work done and the largest residual.
     fn solve(&mut self, m: &FivePoint, b: &[f64], z: &mut [f64], target: f64) -> (usize, f64);
+    /// Whether what diffused unknowns lose on the spot counts.
+    fn takes_leaks(&self) -> bool {
+        false
+    }
     /// Solves for several right-hand sides at once, in place, to rounding. Whether this is how the solver works.
     fn solve_block(&mut self, _m: &FivePoint, _b: &mut [f64]) -> bool {
         false
@@ -276,6 +280,7 @@ impl<L: Linear> Solver<L> {
         if !conserves {
             self.void.fill(0.0);
         }
+        self.problem.fill_inlet(inp, &mut self.void);
         let (iterations, cycles) = match self.cavitation {
             Cavitation::MassConserving => self.mass_conserving()?,
             Cavitation::SwiftStieber => self.swift_stieber()?,
@@ -287,6 +292,7 @@ impl<L: Linear> Solver<L> {
         }
         if conserves {
             self.problem.fill_sides(inp, &self.z, &mut self.void);
+            self.problem.fill_outlet(inp, &self.z, &mut self.void);
         }
         for k in 0..n {
             let p = self.z[k];
@@ -346,7 +352,10 @@ impl<L: Linear> Film2d for Solver<L> {
         check_modes(self.model, n, modes, p.len())?;
         (self.warm, self.set_up) = (false, false);
         self.problem.assemble(self.model, inp)?;
-        self.cavitated.fill(false);
+        match inp.unfilled {
+            Some(u) => self.cavitated.iter_mut().zip(u.engaged).for_each(|(torn, s)| *torn = *s <= 0.0),
+            None => self.cavitated.fill(false),
+        }
         self.problem.choose(&self.cavitated, false);
         self.linear.factor(&self.problem.m, true).map_err(|s| self.singular(s))?;
         self.set_up = true;
@@ -386,7 +395,7 @@ impl<L: Linear> Film2d for Solver<L> {
         let beside = self.beside.get_or_insert_with(|| self.problem.clone());
         beside.assemble(self.model, inp)?;
         beside.drive(&cause_of(inp, mode), mode.u, mode.dhdt, false);
-        self.void.fill(0.0);
+        void_of(inp, &mut self.void);
         beside.balance(p, &self.void, r);
         r.iter_mut().for_each(|b| *b = -*b);
         self.warm = false;
@@ -454,6 +463,10 @@ impl<L: Linear> Film2d for Solver<L> {
             }
         }
         Ok(true)
+    }
+
+    fn keeps_fill(&self) -> bool {
+        self.cavitation == Cavitation::MassConserving && self.linear.takes_leaks()
     }
 
     fn superposition(&self) -> Superposition {

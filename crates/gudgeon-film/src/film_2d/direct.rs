@@ -108,6 +108,10 @@ impl Elimination {
 }
 
 impl Linear for Elimination {
+    fn takes_leaks(&self) -> bool {
+        true
+    }
+
     fn factor(&mut self, m: &FivePoint, symmetric: bool) -> Result<(), Singular> {
         let (nx, ny) = (m.nx, m.ny);
         self.is_symmetric = symmetric;

@@ -1,5 +1,6 @@
 //! Films resolved along and across the motion.
 
+mod arrival;
 mod cavitation;
 mod central_differences;
 mod checks;

@@ -279,15 +279,7 @@ impl Problem {
         if factors.chain(inp.factors.transport).any(|&f| f < 0.0) {
             return Err(EvalError::fatal(model, "a flow factor is negative"));
         }
-        if let Some(old) = inp.history {
-            if old.content.len() != n || !old.content.iter().sum::<f64>().is_finite() {
-                return Err(EvalError::fatal(model, "the history does not hold one finite content per node"));
-            }
-            if !(old.dt > 0.0 && old.dt.is_finite()) {
-                return Err(EvalError::fatal(model, format!("the time step is {} s", old.dt)));
-            }
-        }
-        Ok(())
+        self.check_filling(model, inp)
     }
 
     /// Everything but the causes of pressure.
@@ -297,6 +289,7 @@ impl Problem {
             Flux::Face => self.conductances::<false>(inp),
             Flux::Node => self.conductances::<true>(inp),
         }
+        self.engage(inp);
         Ok(())
     }
 
@@ -417,6 +410,11 @@ impl Problem {
         self.wx[k % self.nx] * self.wy[k / self.nx]
     }
 
+    /// Width of the control volume of node `k` \[m\].
+    pub fn width(&self, k: usize) -> f64 {
+        self.wy[k / self.nx]
+    }
+
     /// The node beside an edge node, towards the middle of the film; the node itself elsewhere.
     fn inner(&self, k: usize) -> usize {
         let mut k = k;
@@ -470,7 +468,7 @@ impl Problem {
     pub fn balance(&self, p: &[f64], void: &[f64], out: &mut [f64]) {
         let nx = self.nx;
         for k in 0..out.len() {
-            out[k] = self.m.hold[k] * (1.0 - void[k]) + self.fixed[k];
+            out[k] = self.m.hold[k] * (1.0 - void[k]) + self.fixed[k] + self.m.leak[k] * p[k];
         }
         for j in 0..self.ny {
             let row = j * nx..(j + 1) * nx;
@@ -557,7 +555,7 @@ impl Problem {
         self.drive(&plain, mode.u, mode.dhdt, false);
         p.fill(0.0);
         self.set_edges(&plain, false, p, void);
-        void.fill(0.0);
+        void_of(inp, void);
     }
 
     /// Forces, flows and balances of a film. `balance` is overwritten.
@@ -624,6 +622,14 @@ impl Problem {
         let (largest_flow, _) = self.largest_flow(p, void);
         out.residual = if largest_flow > 0.0 { worst / largest_flow } else { worst };
         out
+    }
+}
+
+/// Void of a film whose pressures are told by causes: nodes are full but where the history says otherwise.
+pub(super) fn void_of(inp: &Film2dIn<'_>, void: &mut [f64]) {
+    match inp.unfilled {
+        Some(unfilled) => void.iter_mut().zip(unfilled.fill).for_each(|(void, fill)| *void = 1.0 - fill),
+        None => void.fill(0.0),
     }
 }
 

@@ -8,6 +8,7 @@ mod film_1d;
 mod film_2d;
 mod film_temperature;
 mod gridded_face;
+mod kept_film;
 mod moments;
 mod oil;
 mod oil_transport;

@@ -36,6 +36,8 @@ pub struct FivePoint {
     pub qx: Vec<f64>,
     /// What a carried unknown loses on the spot.
     pub hold: Vec<f64>,
+    /// What a diffused unknown loses on the spot; counted by [`FivePoint::row`] and [`FivePoint::residual`], not by the multigrid.
+    pub leak: Vec<f64>,
 }
 
 /// A row of a [`FivePoint`]: the diagonal, and minus the entries of the node before, after, below and above.
@@ -58,7 +60,17 @@ impl FivePoint {
     #[must_use]
     pub fn new(nx: usize, ny: usize, periodic: bool) -> Self {
         let v = || vec![0.0; nx * ny];
-        Self { nx, ny, periodic, role: vec![Role::Diffused; nx * ny], gx: v(), gy: v(), qx: v(), hold: v() }
+        Self {
+            nx,
+            ny,
+            periodic,
+            role: vec![Role::Diffused; nx * ny],
+            gx: v(),
+            gy: v(),
+            qx: v(),
+            hold: v(),
+            leak: v(),
+        }
     }
 
     /// The row of node `(i, j)`, whatever its own role.
@@ -73,7 +85,11 @@ impl FivePoint {
         let gs = if j > 0 { self.gy[k - self.nx] } else { 0.0 };
         let gn = if j + 1 < self.ny { self.gy[k] } else { 0.0 };
         Row {
-            c: if carried(k) { -(qe.max(0.0) - qw.min(0.0) + self.hold[k]) } else { gw + ge + gs + gn },
+            c: if carried(k) {
+                -(qe.max(0.0) - qw.min(0.0) + self.hold[k])
+            } else {
+                gw + ge + gs + gn + self.leak[k]
+            },
             w: if has_west && carried(west) { -qw.max(0.0) } else { gw },
             e: if has_east && carried(east) { qe.min(0.0) } else { ge },
             s: if j > 0 && carried(k - self.nx) { 0.0 } else { gs },
