@@ -9,4 +9,5 @@ mod motions;
 mod piston;
 mod profiles;
 mod published_points;
+mod rigid_limit;
 mod sides;
