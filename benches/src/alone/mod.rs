@@ -84,6 +84,7 @@ pub const KINDS: &[(&str, Reach)] = &[
     ),
     ("shear_thinning", Reach::Alone(film::shear_thinning)),
     ("skirt_compliance", Reach::Alone(skirt::skirt_compliance)),
+    ("skirt_oil", Reach::Alone(skirt::skirt_oil)),
     ("skirt_profile", Reach::Alone(skirt::skirt_profile)),
     ("throw_inertia", Reach::Alone(shaft::throw_inertia)),
     ("torsion", Reach::Alone(shaft::torsion)),

@@ -7,7 +7,7 @@ use gudgeon_core::ModelInfo;
 use gudgeon_core::file::Files;
 use gudgeon_core::kinds::{
     GrooveFrictionCtx, GrooveFrictionSpec, PinFrictionSpec, ProfileCurveSpec, SkirtComplianceCtx,
-    SkirtComplianceSpec, SkirtProfileCtx, SkirtProfileSpec,
+    SkirtComplianceSpec, SkirtOilSpec, SkirtProfileCtx, SkirtProfileSpec,
 };
 use gudgeon_skirt::Panel;
 
@@ -74,6 +74,15 @@ pub fn skirt_compliance(m: &ModelInfo) -> Result<Alone, String> {
             let shapes = skirt.shapes().len() / nodes;
             seen((0..shapes).map(|k| skirt.resistance(k, black_box(1e-6), 0.0)).sum::<f64>())
         },
+    )
+}
+
+/// What arrives at the edges of a skirt that keeps its oil; one that keeps none is asked for nothing.
+pub fn skirt_oil(m: &ModelInfo) -> Result<Alone, String> {
+    alone::<dyn SkirtOilSpec, _, _>(
+        m,
+        |s| s.build(),
+        |supply| seen(supply.as_ref().map_or(0.0, |s| s.arriving(black_box(1.0))[0] + s.room_above())),
     )
 }
 

@@ -16,7 +16,7 @@
 //! # Models
 //!
 //! Lateral motions ([`FullInertia`], [`QuasiStatic`], [`Held`]) and compliances ([`Rigid`], [`Modal`], [`InfluenceMatrix`]) own their states;
-//! shapes ([`Cylindrical`], [`Barrel`], [`Table`]) and frictions ([`PinCoulomb`], [`GrooveCoulomb`]) have none. Each is registered and is read from a
+//! shapes ([`Cylindrical`], [`Barrel`], [`Table`]), frictions ([`PinCoulomb`], [`GrooveCoulomb`]) and the supply of oil ([`FillHistory`]) have none. Each is registered and is read from a
 //! case file by its name. Films, rough surfaces and contact come from other crates, by the traits of `gudgeon_core`.
 //!
 //! # Example
@@ -53,6 +53,7 @@ mod piston;
 mod secondary_motion;
 mod side;
 mod skirt_compliance;
+mod skirt_oil;
 mod skirt_profile;
 
 pub use body::{Body, Crank, Instant, Rod};
@@ -61,13 +62,15 @@ pub use groove_friction::{Coulomb as GrooveCoulomb, Off as NoGrooveFriction};
 pub use pin_friction::{Coulomb as PinCoulomb, Off as NoPinFriction};
 pub use piston::{Asked, Momentum, Partials, Piston, Summary};
 pub use secondary_motion::{FullInertia, Held, QuasiStatic};
-pub use side::{ContactGrid, Side, SideLoads, SideSetup, Slopes};
+pub use side::{ContactGrid, Filling, OilMoved, OilWay, Side, SideLoads, SideSetup, Slopes};
 pub use skirt_compliance::{InfluenceMatrix, Modal, QuasiStaticShapes, Rigid, Shape};
+pub use skirt_oil::{FillHistory, Off as NoSkirtOil};
 pub use skirt_profile::{Barrel, Cylindrical, Table};
 
 gudgeon_core::link!(
     Barrel,
     Cylindrical,
+    FillHistory,
     FullInertia,
     GrooveCoulomb,
     Held,
@@ -75,6 +78,7 @@ gudgeon_core::link!(
     Modal,
     NoGrooveFriction,
     NoPinFriction,
+    NoSkirtOil,
     PinCoulomb,
     QuasiStatic,
     Rigid,

@@ -9,6 +9,7 @@ mod forces;
 mod lateral;
 mod linear;
 mod newton;
+mod oil;
 mod summary;
 mod tangent;
 

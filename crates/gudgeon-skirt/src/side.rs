@@ -2,13 +2,14 @@
 
 use gudgeon_core::kinds::{
     ContactSpec, Film2d, Film2dCtx, Film2dGrid, Film2dIn, Film2dOut, Film2dSpec, FilmMode, RoughShear,
-    Roughness, RoughnessSpec, ShearThinning, SkirtCompliance, SkirtProfile, Superposition, Viscosity,
+    Roughness, RoughnessSpec, ShearThinning, SkirtCompliance, SkirtProfile, Superposition,
 };
 use gudgeon_core::{BuildError, EvalError};
 
 mod beside;
 mod contact;
 mod gap;
+mod kept;
 mod loads;
 mod nodes;
 mod outflow;
@@ -16,10 +17,12 @@ mod shape;
 mod slopes;
 
 pub use contact::ContactGrid;
+pub use kept::{Filling, OilMoved, OilWay};
 pub use loads::{SideLoads, Slopes};
 
 use contact::ContactRows;
 use gap::{Gap, film_input};
+use kept::Kept;
 use nodes::Nodes;
 
 use crate::geometry::Panel;
@@ -108,6 +111,8 @@ pub struct Side {
     open: Vec<f64>,
     fill: Vec<f64>,
     contact_now: [f64; 4],
+    /// Oil that is kept, when it is.
+    kept: Option<Kept>,
     /// Film evaluations so far: linear systems set up.
     pub evaluations: u64,
 }
@@ -187,6 +192,7 @@ impl Side {
             open: vec![0.0; n],
             fill: vec![1.0; n],
             contact_now: [0.0; 4],
+            kept: None,
             evaluations: 0,
             whole,
         })
@@ -303,6 +309,9 @@ impl Side {
         self.sense = sense;
         self.shape_gap(false, e, q, speed)?;
         self.contact_now = self.contact_loads(e, q);
+        if self.kept.is_some() {
+            self.fill.copy_from_slice(&self.now.fill);
+        }
         let n = self.nodes();
         for (m, rates) in self.modes_of_rates.chunks_exact_mut(n).enumerate() {
             let shape = &self.shapes[m * n..(m + 1) * n];
@@ -389,15 +398,9 @@ impl Side {
         let n = self.nodes();
         let gap = if trial { &self.trial } else { &self.now };
         let [scaled, _, _] = &mut self.work;
-        let viscosity = if gap.thinning.is_empty() {
-            Viscosity::Uniform(mu)
-        } else {
-            scaled.iter_mut().zip(&gap.thinning).for_each(|(s, t)| *s = mu * t);
-            Viscosity::Nodes(scaled)
-        };
         let found = self.film.solve(&Film2dIn {
             u: -speed,
-            mu: viscosity,
+            mu: gap.viscosity(mu, scaled),
             dhdt: &self.rates,
             p_cav: self.p_cav,
             edge_pressure: [0.0; 4],

@@ -21,6 +21,7 @@ mod reference;
 mod rigs;
 mod sampling;
 mod shaft_line;
+mod skirt_oil;
 mod tomanik;
 mod unused;
 mod validation;

@@ -50,6 +50,7 @@ const SWITCHED_OFF: &[(&str, Option<&str>)] = &[
     ("secondary_motion", Some("held")),
     ("shear_thinning", Some("off")),
     ("skirt_compliance", Some("rigid")),
+    ("skirt_oil", Some("off")),
     ("skirt_profile", Some("cylindrical")),
     ("throw_inertia", Some("off")),
     ("torsion", Some("off")),

@@ -3,7 +3,7 @@
 use gudgeon_core::EvalError;
 use gudgeon_numerics::linalg::{lu_factor, lu_solve};
 
-use super::MODEL;
+use super::newton::no_resistance;
 
 /// Answer of rates and forces to a change of the forces: rates from coordinate `first` on are such that their forces stay in balance.
 #[derive(Default)]
@@ -47,8 +47,7 @@ impl Linear {
                 self.lu[i * m + j] = self.slope[(first + i) * n + first + j];
             }
         }
-        lu_factor(&mut self.lu[..m * m], m, &mut self.piv[..m])
-            .map_err(|_| EvalError::recoverable(MODEL, "nothing resists the motion of the piston"))
+        lu_factor(&mut self.lu[..m * m], m, &mut self.piv[..m]).map_err(|_| no_resistance())
     }
 
     /// Takes the derivatives with respect to rate `column` as the change of the forces.

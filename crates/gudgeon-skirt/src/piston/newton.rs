@@ -16,7 +16,8 @@ pub(super) const EULER_CLOSED: f64 = 1e-8;
 const CLOSED_CAVITIES: f64 = 1e-7;
 
 pub(super) fn no_resistance() -> EvalError {
-    EvalError::recoverable(MODEL, "nothing resists the motion of the piston")
+    let what = "nothing resists the motion of the piston, as in a gap that is not full: `full_inertia` is the motion that needs nothing that does";
+    EvalError::recoverable(MODEL, what)
 }
 
 impl Piston {

@@ -1,6 +1,6 @@
 //! A gap and the film in it.
 
-use gudgeon_core::kinds::{Film2dIn, FlowFactors, RoughFlow, Viscosity};
+use gudgeon_core::kinds::{Film2dIn, FlowFactors, RoughFlow, Unfilled, Viscosity};
 
 /// A film and what it depends on besides the rates.
 #[derive(Default)]
@@ -17,6 +17,9 @@ pub(super) struct Gap {
     pub(super) thinning: Vec<f64>,
     pub(super) smallest: f64,
     pub(super) is_rough: bool,
+    /// Filling of the nodes, and how much of a full film's pressure they take; empty when no oil is kept.
+    pub(super) fill: Vec<f64>,
+    pub(super) engaged: Vec<f64>,
 }
 
 impl Gap {
@@ -32,7 +35,18 @@ impl Gap {
             thinning: Vec::new(),
             smallest: f64::INFINITY,
             is_rough,
+            fill: Vec::new(),
+            engaged: Vec::new(),
         }
+    }
+
+    /// Viscosity of the film when that of slow shear is `mu`; `work` takes that of the nodes, when it varies.
+    pub(super) fn viscosity<'a>(&self, mu: f64, work: &'a mut [f64]) -> Viscosity<'a> {
+        if self.thinning.is_empty() {
+            return Viscosity::Uniform(mu);
+        }
+        work.iter_mut().zip(&self.thinning).for_each(|(w, t)| *w = mu * t);
+        Viscosity::Nodes(work)
     }
 }
 
@@ -47,7 +61,7 @@ pub(super) fn held_above(h: f64, floor: f64) -> f64 {
     }
 }
 
-/// A film of unit viscosity without causes.
+/// A film of unit viscosity without causes, filled as the oil that is kept says.
 pub(super) fn film_input<'a>(gap: &'a Gap, n: usize) -> Film2dIn<'a> {
     let flow = &gap.flow;
     let factor = |f: &'a [f64]| if gap.is_rough { f } else { &[] };
@@ -62,6 +76,7 @@ pub(super) fn film_input<'a>(gap: &'a Gap, n: usize) -> Film2dIn<'a> {
             transport: factor(&flow.transport),
             content: &[],
         },
+        unfilled: (gap.fill.len() == n).then(|| Unfilled { engaged: &gap.engaged, fill: &gap.fill }),
         ..Film2dIn::new(&flow.film, 0.0, 1.0)
     }
 }

@@ -3,6 +3,7 @@
 use gudgeon_core::EvalError;
 
 use super::gap::{Gap, held_above};
+use super::kept::room_of;
 use super::{MODEL, Side};
 use crate::geometry::between;
 
@@ -40,6 +41,12 @@ impl Side {
             self.smooth_film(gap)
         } else {
             self.rough_film(gap)?
+        }
+        if let Some(kept) = &self.kept {
+            let n = gap.h.len();
+            gap.fill.resize(n, 1.0);
+            gap.engaged.resize(n, 1.0);
+            kept.fill(room_of(&gap.flow, gap.is_rough), &mut gap.fill, &mut gap.engaged);
         }
         self.axial_levers(gap);
         self.thin(gap, speed)

@@ -5,6 +5,7 @@ mod common;
 mod compliance;
 mod friction;
 mod geometry;
+mod kept_oil;
 mod motions;
 mod piston;
 mod profiles;

@@ -6,7 +6,7 @@ use gudgeon_core::BuildError;
 use gudgeon_core::file::Files;
 use gudgeon_core::kinds::{
     CylinderPressure, GrooveFriction, GrooveFrictionCtx, Kinematics, Oil, PinFriction, SecondaryMotion,
-    SecondaryMotionCtx, ShearThinning, SkirtComplianceCtx, SkirtComplianceSpec, SkirtProfile,
+    SecondaryMotionCtx, ShearThinning, SkirtComplianceCtx, SkirtComplianceSpec, SkirtOil, SkirtProfile,
     SkirtProfileCtx,
 };
 use gudgeon_skirt::{Body, ContactGrid, Crank, Panel, Piston, Rigid, Rod, Side, SideSetup};
@@ -15,6 +15,7 @@ use super::assembly::Assembly;
 use super::case::PistonSecondaryCase;
 use super::layout::Layout;
 use super::legal::{legal, radius, running_clearance};
+use super::oil::OilKept;
 
 /// Sides of the skirt, for people.
 const SIDES: [&str; 2] = ["thrust side", "anti-thrust side"];
@@ -54,10 +55,17 @@ pub fn assemble(
         return Err(errors);
     }
     let period = parts.cylinder.period();
+    let layout = Layout::new(&*parts.motion, &sides, parts.skirt_oil.is_some());
+    let elastic = sides.iter().any(|s| s.elastic() > 0);
+    let mut piston = Piston::new(sides, body, crank, parts.pin, parts.groove);
+    if parts.skirt_oil.is_some() {
+        piston.keep_oil().map_err(|e| vec![e])?;
+    }
     Ok(Assembly {
-        layout: Layout::new(&*parts.motion, &sides),
-        elastic: sides.iter().any(|s| s.elastic() > 0),
-        piston: Piston::new(sides, body, crank, parts.pin, parts.groove),
+        layout,
+        elastic,
+        piston,
+        oil: parts.skirt_oil.map(|model| OilKept::new(model, period)),
         breakpoints: breakpoints(&*parts.kinematics, &*parts.cylinder),
         kinematics: parts.kinematics,
         profile: parts.profile,
@@ -113,6 +121,7 @@ struct Parts {
     motion: Result<Box<dyn SecondaryMotion>, BuildError>,
     pin: Result<Box<dyn PinFriction>, BuildError>,
     groove: Result<Box<dyn GrooveFriction>, BuildError>,
+    skirt_oil: Result<Option<Box<dyn SkirtOil>>, BuildError>,
 }
 
 /// The same, all of them built.
@@ -124,6 +133,7 @@ struct Checked {
     motion: Box<dyn SecondaryMotion>,
     pin: Box<dyn PinFriction>,
     groove: Box<dyn GrooveFriction>,
+    skirt_oil: Option<Box<dyn SkirtOil>>,
 }
 
 impl Parts {
@@ -144,6 +154,7 @@ impl Parts {
             motion: m.secondary_motion.build(&motion).map_err(|e| e.within("models.secondary_motion")),
             pin: m.pin_friction.build().map_err(|e| e.within("models.pin_friction")),
             groove: m.groove_friction.build(&groove).map_err(|e| e.within("models.groove_friction")),
+            skirt_oil: m.skirt_oil.build().map_err(|e| e.within("models.skirt_oil")),
         }
     }
 
@@ -158,6 +169,7 @@ impl Parts {
         let motion = keep(self.motion, errors);
         let pin = keep(self.pin, errors);
         let groove = keep(self.groove, errors);
+        let skirt_oil = keep(self.skirt_oil, errors);
         let profile = keep(self.profile, errors);
         keep(self.thinning, errors)?;
         Some(Checked {
@@ -168,6 +180,7 @@ impl Parts {
             motion: motion?,
             pin: pin?,
             groove: groove?,
+            skirt_oil: skirt_oil?,
         })
     }
 }

@@ -5,6 +5,7 @@ use gudgeon_core::kinds::{CylinderPressure, Kinematics, SecondaryMotion, SkirtPr
 use gudgeon_skirt::{Instant, Piston};
 
 use super::layout::Layout;
+use super::oil::OilKept;
 
 /// The piston with what drives it.
 pub struct Assembly {
@@ -36,6 +37,8 @@ pub struct Assembly {
     pub breakpoints: Vec<f64>,
     /// Whether the skirt yields.
     pub elastic: bool,
+    /// Oil that the skirt keeps, when it keeps any.
+    pub oil: Option<OilKept>,
     /// Film evaluations after which a search is given up.
     pub max_films: u64,
 }

@@ -59,7 +59,12 @@ impl PistonSolverSpec for BackwardEuler {
 
     fn refuses(&self, a: &Assembly) -> Option<BuildError> {
         let possible = a.layout.n == 0 || a.motion.edge_law().is_some();
-        (!possible).then(|| BuildError::at("solver.method", NO_LAW).help("use `implicit`"))
+        if !possible {
+            return Some(BuildError::at("solver.method", NO_LAW).help("use `implicit`"));
+        }
+        let (steps, oil) = (self.steps(a), a.oil_steps());
+        let what = "the oil of the skirt is moved at ends of steps: its step must be a whole number of these";
+        (!steps.is_multiple_of(oil)).then(|| BuildError::at("solver.step", what))
     }
 
     fn repeatable_to(&self) -> f64 {
@@ -67,7 +72,7 @@ impl PistonSolverSpec for BackwardEuler {
     }
 
     fn build(&self, a: &Assembly) -> Box<dyn PistonSolver> {
-        Box::new(EqualSteps { steps: (a.period / self.step.si()).round().max(1.0) as usize })
+        Box::new(EqualSteps { steps: self.steps(a) })
     }
 
     fn settings(&self, _: Option<[u32; 2]>) -> Vec<MethodSetting> {
@@ -102,6 +107,13 @@ impl PistonSolverSpec for BackwardEuler {
             }
         }
         all
+    }
+}
+
+impl BackwardEuler {
+    /// Steps of a cycle.
+    fn steps(&self, a: &Assembly) -> usize {
+        (a.period / self.step.si()).round().max(1.0) as usize
     }
 }
 
@@ -178,12 +190,19 @@ impl<'a> Euler<'a> {
             self.first_rates()?;
             t.start(0.0, &self.shown());
         }
-        let period = self.a.period;
+        let (period, oil) = (self.a.period, self.a.oil_steps());
+        self.a.begin_oil(y, &self.work.w).map_err(stopped(0.0))?;
         for k in 0..steps {
             let (t, end) = (period * k as f64 / steps as f64, period * (k + 1) as f64 / steps as f64);
             self.step(t, end)?;
             if let Some(t) = trajectory.as_deref_mut() {
                 t.end(end, &self.shown());
+            }
+            let moved = (k + 1) * oil;
+            if moved.is_multiple_of(steps) {
+                self.states(y);
+                let Work { x, w, .. } = &mut *self.work;
+                self.a.move_oil(moved / steps - 1, y, w, x).map_err(stopped(end))?;
             }
         }
         self.states(y);

@@ -3,7 +3,7 @@
 use gudgeon_core::kinds::{
     ContactSpec, CylinderPressureSpec, Film2dSpec, GrooveFrictionSpec, KinematicsSpec, OilSpec,
     PinFrictionSpec, RoughnessSpec, SecondaryMotionSpec, ShearThinningSpec, SkirtComplianceSpec,
-    SkirtProfileSpec,
+    SkirtOilSpec, SkirtProfileSpec,
 };
 use gudgeon_core::quantity::{
     Angle, Length, NonNegative, PosAngle, PosExpansion, PosInertia, PosLength, PosMass, PosPressure,
@@ -148,6 +148,9 @@ pub struct Models {
     /// How the skirt yields.
     #[serde(default = "default_skirt_compliance")]
     pub skirt_compliance: Box<dyn SkirtComplianceSpec>,
+    /// Where the oil of the skirt comes from, and whether its films keep it. Films that keep it need a `film_2d` with `mass_conserving` cavitation.
+    #[serde(default = "default_skirt_oil")]
+    pub skirt_oil: Box<dyn SkirtOilSpec>,
     /// Friction of the gudgeon pin.
     #[serde(default = "default_pin_friction")]
     pub pin_friction: Box<dyn PinFrictionSpec>,
@@ -283,6 +286,7 @@ gudgeon_core::default_model! {
     default_roughness: dyn RoughnessSpec = "off";
     default_skirt_profile: dyn SkirtProfileSpec = "cylindrical";
     default_skirt_compliance: dyn SkirtComplianceSpec = "rigid";
+    default_skirt_oil: dyn SkirtOilSpec = "off";
     default_pin_friction: dyn PinFrictionSpec = "off";
     default_groove_friction: dyn GrooveFrictionSpec = "off";
     default_shear_thinning: dyn ShearThinningSpec = "off";

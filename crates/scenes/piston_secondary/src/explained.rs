@@ -38,6 +38,14 @@ impl Explained {
             "inertia of the rod",
             if rod { "it presses the pin aside" } else { "the rod has no mass" },
         );
+        let why = "it says which part of the films carries";
+        all.model(
+            m.skirt_oil.keeps_oil(),
+            "oil kept in the films",
+            why,
+            "the model",
+            m.skirt_oil.typetag_name(),
+        );
         let flow = wanted.iter().any(|r| r.flow);
         all.say(
             flow,
@@ -88,6 +96,7 @@ pub fn models(case: &PistonSecondaryCase) -> Vec<ModelUse> {
         ("contact", m.contact.typetag_name()),
         ("skirt_profile", m.skirt_profile.typetag_name()),
         ("skirt_compliance", m.skirt_compliance.typetag_name()),
+        ("skirt_oil", m.skirt_oil.typetag_name()),
         ("pin_friction", m.pin_friction.typetag_name()),
         ("groove_friction", m.groove_friction.typetag_name()),
         ("oil", m.oil.typetag_name()),

@@ -153,12 +153,37 @@ impl PistonSolver for Adaptive {
         options.absolute = layout.states.iter().map(|s| !s.relative).collect();
         (options.h_init, options.h_max, options.max_steps) = (FIRST_STEP, LARGEST_STEP, MAX_STEPS);
         options.event_samples = 0;
-        let span = (0.0, of.a.period);
-        let breakpoints = std::mem::take(&mut of.a.breakpoints);
-        let mut problem = Equations { a: of.a, work: of.work };
         if let Some(t) = trajectory.as_deref_mut() {
             t.start(0.0, y);
         }
+        let at = |t: f64| move |source| RunError::Eval { theta_deg: t.to_degrees(), source };
+        of.a.begin_oil(y, &of.work.w).map_err(at(0.0))?;
+        for k in 0..of.a.oil_steps() {
+            let span = (of.a.oil_angle(k), of.a.oil_angle(k + 1));
+            options.h_init = self.stretch(of, span, y, &options, trajectory.as_deref_mut())?;
+            let Work { x, w, .. } = &mut *of.work;
+            of.a.move_oil(k, y, w, x).map_err(at(span.1))?;
+        }
+        Ok(())
+    }
+
+    fn trajectory(&self, a: &Assembly, _: &Work) -> Trajectory {
+        Trajectory::new(a.layout.n, Between::Dense)
+    }
+}
+
+impl Adaptive {
+    /// Integrates over `span` \[rad\], in which the same nodes of the films are filled. Returns a good step for what follows.
+    fn stretch(
+        &mut self,
+        of: &mut Cycled<'_>,
+        span: (f64, f64),
+        y: &mut [f64],
+        options: &Options,
+        mut trajectory: Option<&mut Trajectory>,
+    ) -> Result<f64, RunError> {
+        let breakpoints = std::mem::take(&mut of.a.breakpoints);
+        let mut problem = Equations { a: of.a, work: of.work };
         let mut observe = |_: &mut Equations<'_>, view: &dyn StepView| {
             if let Some(t) = trajectory.as_deref_mut() {
                 t.step(view);
@@ -167,20 +192,16 @@ impl PistonSolver for Adaptive {
         };
         let outcome = match &mut self.method {
             Method::Rodas(m) => {
-                m.integrate(&mut problem, span, &breakpoints, y, &mut [], &options, of.stats, &mut observe)
+                m.integrate(&mut problem, span, &breakpoints, y, &mut [], options, of.stats, &mut observe)
             }
             Method::Radau(m) => {
-                m.integrate(&mut problem, span, &breakpoints, y, &mut [], &options, of.stats, &mut observe)
+                m.integrate(&mut problem, span, &breakpoints, y, &mut [], options, of.stats, &mut observe)
             }
         };
         of.a.breakpoints = breakpoints;
-        outcome.map(|_| ()).map_err(|e| match e {
+        outcome.map_err(|e| match e {
             IntegrateError::Eval { t, source } => RunError::Eval { theta_deg: t.to_degrees(), source },
             other => RunError::Integrate(other),
         })
-    }
-
-    fn trajectory(&self, a: &Assembly, _: &Work) -> Trajectory {
-        Trajectory::new(a.layout.n, Between::Dense)
     }
 }

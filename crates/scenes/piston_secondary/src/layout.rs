@@ -22,14 +22,16 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// Lays out the states of the lateral motion and of both sides.
+    /// Lays out the states of the lateral motion and of both sides; `all`: none follows from the others at the start of a cycle, as where films that are not full
+    /// hold nothing.
     #[must_use]
-    pub fn new(motion: &dyn SecondaryMotion, sides: &[Side; 2]) -> Self {
+    pub fn new(motion: &dyn SecondaryMotion, sides: &[Side; 2], all: bool) -> Self {
         let mut states = motion.states().to_vec();
         let own = states.len();
         states.extend(sides.iter().flat_map(|s| s.compliance.states().iter().cloned()));
         let n = states.len();
-        let periodic = (0..motion.n_periodic().min(own)).chain(own..n).collect();
+        let first = if all { own } else { motion.n_periodic().min(own) };
+        let periodic = (0..first).chain(own..n).collect();
         Self { motion: 0..own, shapes: own..n, n, states, periodic }
     }
 

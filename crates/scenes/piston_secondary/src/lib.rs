@@ -17,6 +17,7 @@ mod legal;
 pub mod march;
 mod methods;
 mod notes;
+pub mod oil;
 pub mod peak_width;
 pub mod places;
 pub mod plan;

@@ -51,24 +51,38 @@ impl Cycle<'_> {
         &mut self,
         y: &mut [f64],
         accuracy: f64,
-        trajectory: Option<&mut Trajectory>,
+        mut trajectory: Option<&mut Trajectory>,
     ) -> Result<(), RunError> {
         self.work.w.fill(0.0);
+        if let Some(oil) = &mut self.a.oil {
+            oil.recording = trajectory.is_some();
+        }
         let mut of = Cycled { a: self.a, work: &mut self.work, stats: &mut self.stats };
-        let outcome = self.solver.cycle(&mut of, y, accuracy, trajectory);
+        let outcome = self.solver.cycle(&mut of, y, accuracy, trajectory.as_deref_mut());
+        if let Some(t) = trajectory {
+            t.oil = self.a.take_oil_cycle();
+        }
         self.done += 1.0;
         outcome.and_then(|()| Ok((self.progress)(1.0 - 0.75f64.powf(self.done))?))
     }
 
-    /// The states that make up the periodic motion.
-    fn periodic(&self, y: &[f64]) -> Vec<f64> {
-        self.a.layout.periodic.iter().map(|k| y[*k]).collect()
+    /// The states that make up the periodic motion, and where the oil is that the skirt keeps.
+    fn periodic(&self, y: &[f64], z: &mut [f64]) {
+        let layout = &self.a.layout;
+        let (states, oil) = z.split_at_mut(layout.periodic.len());
+        states.iter_mut().zip(&layout.periodic).for_each(|(z, k)| *z = y[*k]);
+        self.a.oil_state(oil);
     }
 
-    /// Begins a cycle with the periodic states `z`: the motion completes them.
+    /// Begins a cycle with the periodic states `z`: the motion completes them. Where films keep their oil, all states are among them.
     fn begin(&mut self, z: &[f64]) {
-        for (k, z) in self.a.layout.periodic.iter().zip(z) {
+        let (states, oil) = z.split_at(self.a.layout.periodic.len());
+        for (k, z) in self.a.layout.periodic.iter().zip(states) {
             self.y[*k] = *z;
+        }
+        self.a.set_oil_state(oil);
+        if self.a.oil.is_some() {
+            return;
         }
         let Work { x, w, .. } = &mut self.work;
         self.a.coordinates(&self.y, x);
@@ -82,16 +96,14 @@ impl Cycle<'_> {
 
 impl CycleMap for Cycle<'_> {
     fn dim(&self) -> usize {
-        self.a.layout.periodic.len()
+        self.a.layout.periodic.len() + self.a.oil_values()
     }
     fn map(&mut self, y0: &[f64], y1: &mut [f64], accuracy: f64) -> Result<f64, EvalError> {
         let before = self.a.piston.film_evaluations();
         self.begin(y0);
         let mut y = std::mem::take(&mut self.y);
         let outcome = self.integrate(&mut y, accuracy, None);
-        for (y1, k) in y1.iter_mut().zip(&self.a.layout.periodic) {
-            *y1 = y[*k];
-        }
+        self.periodic(&y, y1);
         self.y = y;
         if let Err(e) = outcome {
             self.failure = Some(e);
@@ -102,9 +114,22 @@ impl CycleMap for Cycle<'_> {
     fn scale(&self, _: &[f64], s: &mut [f64]) {
         for (s, k) in s.iter_mut().zip(&self.a.layout.periodic) {
             *s = self.a.layout.states[*k].cycle_scale;
+            // What follows at once from the others where films carry is looked at less closely.
+            *s *= if *k >= self.a.motion.n_periodic() && self.a.layout.motion.contains(k) {
+                FOLLOWING
+            } else {
+                1.0
+            };
         }
+        s[self.a.layout.periodic.len()..].fill(NODE_SCALE);
     }
 }
+
+/// Film of one node that counts as one, in its unit: which nodes a step fills differs from cycle to cycle, and forces come from many of them.
+const NODE_SCALE: f64 = 1000.0;
+
+/// Scale of the states of the lateral motion that follow from its other ones where the films carry, in their own.
+const FOLLOWING: f64 = 100.0;
 
 /// What a motion is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -130,11 +155,11 @@ pub fn run(
 ) -> Result<Found, RunError> {
     let begin = Clock::now();
     if a.layout.n == 0 {
-        return Ok(still(a, begin));
+        return still(case, a, begin);
     }
     let s = &case.solver;
     let mut cycle = Cycle::new(case, a, progress);
-    let mut y = cycle.first(start);
+    let mut y = cycle.first(start)?;
     let mut notes = Vec::new();
     let (cycles, error);
     if s.cycles > 0 {
@@ -196,14 +221,21 @@ impl<'a> Cycle<'a> {
     }
 
     /// States of the first cycle: those given, or those with which the models begin.
-    fn first(&mut self, start: Option<&[f64]>) -> Vec<f64> {
-        if let Some(start) = start {
-            return start.to_vec();
-        }
+    fn first(&mut self, start: Option<&[f64]>) -> Result<Vec<f64>, RunError> {
         let mut y = vec![0.0; self.a.layout.n];
-        self.a.initial(&mut y);
-        self.begin(&self.periodic(&y));
-        self.y.clone()
+        match start {
+            Some(start) => y.copy_from_slice(start),
+            None => self.a.initial(&mut y),
+        }
+        let stopped = |source| RunError::Eval { theta_deg: 0.0, source };
+        self.a.first_oil(&y, &mut self.work.x).map_err(stopped)?;
+        if start.is_none() {
+            let mut z = vec![0.0; self.dim()];
+            self.periodic(&y, &mut z);
+            self.begin(&z);
+            y.copy_from_slice(&self.y);
+        }
+        Ok(y)
     }
 
     /// Searches the periodic motion from `y`, until a cycle ends within `wanted` clearances of where it began.
@@ -215,7 +247,8 @@ impl<'a> Cycle<'a> {
             refinements: 0,
             accelerate: true,
         };
-        let mut z = self.periodic(y);
+        let mut z = vec![0.0; self.dim()];
+        self.periodic(y, &mut z);
         let report = match periodic_orbit(self, &mut z, &options) {
             Ok(r) => r,
             Err(source) => {
@@ -272,11 +305,11 @@ const START: f64 = 1e-3;
 /// Way between two looks at a skirt that stands still \[rad\].
 const STILL: f64 = 0.05;
 
-/// A piston without states: it stands still.
-fn still(a: &Assembly, begin: Clock) -> Found {
+/// A piston without states: it stands still, and its oil alone moves.
+fn still(case: &PistonSecondaryCase, a: &mut Assembly, begin: Clock) -> Result<Found, RunError> {
     let mut ends = vec![0.0];
     let mut from = 0.0;
-    for &to in a.breakpoints.iter().chain([&a.period]) {
+    for &to in &a.bends() {
         let parts = ((to - from) / STILL).ceil().max(1.0) as usize;
         ends.extend(
             (1..=parts).map(|k| if k == parts { to } else { from + (to - from) * k as f64 / parts as f64 }),
@@ -284,13 +317,50 @@ fn still(a: &Assembly, begin: Clock) -> Found {
         from = to;
     }
     ends.dedup_by(|b, a| *b - *a < 1e-9);
-    Found {
-        trajectory: Trajectory::still(ends, &[]),
+    let mut trajectory = Trajectory::still(ends, &[]);
+    let (cycles, notes) = still_oil(case, a, &mut trajectory)?;
+    Ok(Found {
+        trajectory,
         start: Vec::new(),
-        cycles: 1.0,
+        cycles: f64::from(cycles),
         periodicity_error: 0.0,
-        notes: Vec::new(),
+        notes,
         stats: Stats::default(),
         seconds: begin.elapsed().as_secs_f64(),
-    }
+    })
+}
+
+/// Moves the oil of a piston that stands still until a cycle ends as it began. Returns the cycles it took.
+fn still_oil(
+    case: &PistonSecondaryCase,
+    a: &mut Assembly,
+    trajectory: &mut Trajectory,
+) -> Result<(u32, Vec<Note>), RunError> {
+    let (s, n) = (&case.solver, a.piston.coordinates());
+    let Some(oil) = &mut a.oil else { return Ok((1, Vec::new())) };
+    oil.recording = true;
+    let (mut x, w) = (vec![0.0; n], vec![0.0; n]);
+    let stopped = |t: f64| move |source| RunError::Eval { theta_deg: t.to_degrees(), source };
+    a.first_oil(&[], &mut x).map_err(stopped(0.0))?;
+    let (given, wanted) = (s.cycles > 0, s.periodicity.si());
+    let most = if given { s.cycles } else { s.max_cycles };
+    let mut before = vec![0.0; a.oil_values()];
+    let mut after = before.clone();
+    let mut cycles = 0;
+    let change = loop {
+        cycles += 1;
+        a.oil_state(&mut before);
+        a.begin_oil(&[], &w).map_err(stopped(0.0))?;
+        for k in 0..a.oil_steps() {
+            a.move_oil(k, &[], &w, &mut x).map_err(stopped(a.oil_angle(k + 1)))?;
+        }
+        a.oil_state(&mut after);
+        let change = before.iter().zip(&after).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs())) / NODE_SCALE;
+        if cycles >= most || (change <= wanted && !given) {
+            break change;
+        }
+    };
+    trajectory.oil = a.take_oil_cycle();
+    let late = (change > wanted && !given).then(|| not_periodic(cycles as usize, change, wanted));
+    Ok((cycles, late.into_iter().collect()))
 }

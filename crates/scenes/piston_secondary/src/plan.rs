@@ -45,6 +45,19 @@ pub const EXTREMES: [(&str, &str, &str, f64, &str); 6] = [
     ),
 ];
 
+/// Results of a skirt that keeps its oil: name, unit, what.
+pub const OIL_KEPT: [(&str, &str, &str); 9] = [
+    ("oil_in_up", "mm3", "oil that enters over the upper edges in a cycle"),
+    ("oil_in_down", "mm3", "oil that enters over the lower edges in a cycle"),
+    ("oil_out_up", "mm3", "oil that leaves over the upper edges in a cycle"),
+    ("oil_out_down", "mm3", "oil that leaves over the lower edges in a cycle"),
+    ("oil_out_aside", "mm3", "oil that leaves over the flanks in a cycle"),
+    ("oil_held", "mm3", "mean oil in the gaps of both sides"),
+    ("oil_filled", "1", "mean part of the gaps that is filled"),
+    ("oil_change", "mm3", "oil that the gaps hold more at the end of the cycle than at its start"),
+    ("oil_ledger", "1", "oil_made over all that enters and was there"),
+];
+
 /// Every result of a case whose cycle has `period_deg` degrees; `inertial`: with inertia across the bore.
 #[must_use]
 pub fn catalogue(case: &PistonSecondaryCase, period_deg: f64, inertial: bool) -> Vec<ResultInfo> {
@@ -100,6 +113,13 @@ pub fn catalogue(case: &PistonSecondaryCase, period_deg: f64, inertial: bool) ->
         ("oil_aside", "oil that leaves the skirt over its flanks in a cycle, less what enters"),
     ] {
         add(name, "mm3", true, what);
+    }
+    let made = "oil that the films make of nothing in a cycle: what leaves less what enters, and what they then hold more";
+    add("oil_made", "mm3", true, made);
+    if case.models.skirt_oil.keeps_oil() {
+        for (name, unit, what) in OIL_KEPT {
+            add(name, unit, true, what);
+        }
     }
     for angle in &case.outputs.at {
         let deg = angle.si().to_degrees();

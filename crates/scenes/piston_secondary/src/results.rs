@@ -5,6 +5,7 @@ use gudgeon_core::result::{Event, Value};
 use indexmap::IndexMap;
 
 use super::case::PistonSecondaryCase;
+use super::oil::{OilCycle, OilStep};
 use super::plan::{AT, EXTREMES, ResultInfo, tidy};
 use super::row::{INERTIA, Look, OIL, Row, index};
 use super::survey::{Survey, Which};
@@ -166,14 +167,42 @@ impl Teller<'_, '_, '_> {
         let [rub, other] = SIDES.map(|(side, _)| index(&format!("{side}.rubbing_force")));
         let speed = index("piston.v");
         let contact = survey.integral(|r| -(r[rub] + r[other]) * r[speed]);
-        let oil = OIL.map(|k| survey.integral(|r| r[k])).collect::<Vec<_>>();
+        // What is booked needs no integral.
+        let kept = self.look.trajectory.oil.as_ref();
+        let booked = |k: usize| kept.map(|o| o.ledger.left[k] - o.ledger.entered[k]);
+        let oil: Vec<f64> =
+            OIL.enumerate().map(|(k, c)| booked(k).unwrap_or_else(|| survey.integral(|r| r[c]))).collect();
         self.put("friction_work", work);
         self.put("friction_power", mean);
         self.put("fmep", 1e-5 * work / swept);
         self.put("engine_friction_power", mean * f64::from(case.engine.cylinders));
         self.put("contact_work", contact);
+        let made = oil.iter().sum::<f64>();
         for (name, q) in ["oil_up", "oil_down", "oil_aside"].into_iter().zip(oil) {
             self.put(name, 1e9 * q);
+        }
+        self.put("oil_made", 1e9 * kept.map_or(made, |o| o.ledger.made()));
+        if let Some(oil) = kept {
+            self.oil(oil);
+        }
+    }
+
+    /// The ledger of the oil that the films keep.
+    fn oil(&mut self, oil: &OilCycle) {
+        let ledger = &oil.ledger;
+        let mean = |of: fn(&OilStep) -> f64| oil.steps.iter().map(of).sum::<f64>() / oil.steps.len() as f64;
+        for (name, value) in [
+            ("oil_in_up", 1e9 * ledger.entered[0]),
+            ("oil_in_down", 1e9 * ledger.entered[1]),
+            ("oil_out_up", 1e9 * ledger.left[0]),
+            ("oil_out_down", 1e9 * ledger.left[1]),
+            ("oil_out_aside", 1e9 * ledger.left[2]),
+            ("oil_held", 1e9 * mean(|s| s.held)),
+            ("oil_filled", mean(|s| s.filled)),
+            ("oil_change", 1e9 * (ledger.held[1] - ledger.held[0])),
+            ("oil_ledger", ledger.error()),
+        ] {
+            self.put(name, value);
         }
     }
 

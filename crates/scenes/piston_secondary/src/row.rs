@@ -60,6 +60,10 @@ pub fn index(name: &str) -> usize {
 
 /// Distance from a crank angle at which one of its sides is looked at \[rad\]: where the gas or the sense of motion jumps.
 const ASIDE: f64 = 1e-9;
+/// Part of a velocity, and of a clearance per radian, by which that of a balance may differ from that of the states.
+const NEAR: f64 = 0.1;
+/// Crank angle within which a step of the oil has begun \[rad\]: what rounding leaves of the ends of steps.
+const SAME: f64 = 1e-11;
 
 /// A cycle and the piston that made it, looked at.
 pub struct Look<'a> {
@@ -73,6 +77,8 @@ pub struct Look<'a> {
     w: Vec<f64>,
     /// Crank angle looked at last \[rad\].
     theta: f64,
+    /// Step of the oil looked at last, when the skirt keeps any.
+    oil_step: Option<usize>,
 }
 
 impl<'a> Look<'a> {
@@ -81,7 +87,7 @@ impl<'a> Look<'a> {
     pub fn new(a: &'a mut Assembly, trajectory: &'a Trajectory, flows: bool) -> Self {
         let n = a.piston.coordinates();
         let y = vec![0.0; a.layout.n];
-        Self { a, trajectory, flows, y, x: vec![0.0; n], w: vec![0.0; n], theta: 0.0 }
+        Self { a, trajectory, flows, y, x: vec![0.0; n], w: vec![0.0; n], theta: 0.0, oil_step: None }
     }
 
     /// What stopped a look.
@@ -133,6 +139,26 @@ impl<'a> Look<'a> {
         self.a.piston.contact_gaps(&self.x)
     }
 
+    /// Fills the films as they were at `t`.
+    fn fill_as(&mut self, t: f64) {
+        let Some(oil) = self.trajectory.oil.as_ref().filter(|o| !o.steps.is_empty()) else { return };
+        let part = (t + SAME) / self.a.period * oil.steps.len() as f64;
+        let k = (part.max(0.0) as usize).min(oil.steps.len() - 1);
+        if self.oil_step != Some(k) {
+            self.a.piston.set_filling(&oil.steps[k].filling);
+            self.oil_step = Some(k);
+        }
+    }
+
+    /// Flow of the oil over upper edges, lower edges and flanks at the instant looked at last \[m³/s\].
+    fn oil_flow(&mut self, now: &gudgeon_skirt::Instant) -> Result<[f64; 3], EvalError> {
+        match (self.trajectory.oil.as_ref(), self.oil_step) {
+            _ if !self.flows => Ok([0.0; 3]),
+            (Some(oil), Some(k)) => Ok(oil.steps[k].flow),
+            _ => self.a.piston.oil_flow(now, &self.w),
+        }
+    }
+
     /// Sets the piston in motion as at `t`, just before it (`side` below 0), there, or just after it.
     ///
     /// # Errors
@@ -140,6 +166,7 @@ impl<'a> Look<'a> {
     fn move_as(&mut self, t: f64, side: f64) -> Result<gudgeon_skirt::Instant, EvalError> {
         self.go(t);
         let now = self.a.instant(t + side * ASIDE);
+        self.fill_as(t + side * ASIDE);
         let (n, speed) = (self.a.layout.n, self.a.clearance * self.a.omega());
         let (motion, piston) = (&mut self.a.motion, &mut self.a.piston);
         let own = &self.y[self.a.layout.motion.clone()];
@@ -155,6 +182,12 @@ impl<'a> Look<'a> {
         let mut asked = piston.ask(&now, &self.x, &mut self.w);
         let v = motion.velocities(own, &|k| self.trajectory.slope(t, k), &mut asked)?;
         asked.end(v)?;
+        // Films that are not full hold little: a balance far from the velocity that the states give is none of theirs.
+        let far = |a: f64, b: f64| (a - b).abs() > NEAR * (speed + b.abs());
+        let given = motion.pose(own).v.filter(|_| self.oil_step.is_some());
+        if let Some(given) = given.filter(|g| far(v[0], g[0]) || far(v[1], g[1])) {
+            piston.ask(&now, &self.x, &mut self.w).end(given)?;
+        }
         Ok(now)
     }
 
@@ -177,11 +210,8 @@ impl<'a> Look<'a> {
         let s = self.a.piston.summary(&now, x, w)?;
         let friction = s.friction();
         let moment: f64 = s.film_moment.iter().chain(&s.contact_moment).sum();
-        let mut oil = [0.0; 3];
-        if self.flows {
-            let own = self.a.piston.oil_flow(&now, w)?;
-            oil.iter_mut().zip(own).for_each(|(o, f)| *o += f);
-        }
+        let oil = self.oil_flow(&now)?;
+        let (x, w) = (&self.x, &self.w);
         let yields = x[2..].iter().fold(0.0_f64, |y, q| y.max(q.abs()));
         let mut row = [
             now.speed,

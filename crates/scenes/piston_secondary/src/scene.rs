@@ -96,7 +96,7 @@ fn look_at(
     result: &mut RunResult,
 ) -> Result<(), RunError> {
     let flows = wanted.iter().any(|r| r.flow);
-    let bends = a.breakpoints.clone();
+    let bends = a.bends();
     let mut look = Look::new(a, &found.trajectory, flows);
     let before = work(&look.a.piston);
     // Results come first: no row that is shown can change them.

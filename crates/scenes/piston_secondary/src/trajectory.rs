@@ -3,6 +3,8 @@
 
 use gudgeon_numerics::ode::StepView;
 
+use super::oil::OilCycle;
+
 /// Nodes of a step, its ends among them. The dense output of every method used is a polynomial of degree four at most, which five nodes hold
 /// exactly.
 const NODES: usize = 5;
@@ -21,6 +23,8 @@ pub enum Between {
 /// A cycle of coordinates, then of velocities where they are states or where the method found them.
 #[derive(Debug, Clone)]
 pub struct Trajectory {
+    /// Oil of the skirt over it, when it keeps any.
+    pub oil: Option<OilCycle>,
     /// What stands between the ends of steps.
     pub between: Between,
     states: usize,
@@ -33,7 +37,7 @@ impl Trajectory {
     /// An empty cycle of that many states.
     #[must_use]
     pub fn new(states: usize, between: Between) -> Self {
-        Self { between, states, ends: Vec::new(), values: Vec::new() }
+        Self { oil: None, between, states, ends: Vec::new(), values: Vec::new() }
     }
 
     /// Starts at `t` \[rad\] from `y`.
@@ -70,7 +74,7 @@ impl Trajectory {
     #[must_use]
     pub fn still(ends: Vec<f64>, y: &[f64]) -> Self {
         let count = 1 + ends.len().saturating_sub(1) * (NODES - 1);
-        Self { between: Between::Dense, states: y.len(), ends, values: y.repeat(count) }
+        Self { oil: None, between: Between::Dense, states: y.len(), ends, values: y.repeat(count) }
     }
 
     /// Ends of all steps \[rad\], the start of the first one among them.

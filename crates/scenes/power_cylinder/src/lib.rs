@@ -8,7 +8,7 @@ use gudgeon_core::BuildError;
 use gudgeon_core::file::Files;
 use gudgeon_core::kinds::EngineCycle;
 use gudgeon_core::quantity::quantity;
-use gudgeon_core::result::{ModelUse, RunResult, Value};
+use gudgeon_core::result::{ModelUse, Note, RunResult, Value};
 
 use case::{Part, PowerCylinderCase};
 use gudgeon_case::{Level, Loaded, Refinement, Report, read_beside, scene_of};
@@ -95,23 +95,24 @@ impl SceneCase for PowerCylinderCase {
     }
 
     fn run(
-        _: &Loaded<Self>,
+        loaded: &Loaded<Self>,
         (rings, skirt): (Checked, Checked),
         progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
     ) -> Result<RunResult, RunError> {
         let begin = Instant::now();
-        let mut half = |name: &'static str, from: f64| {
+        let mut half = |part: &Checked, name: &'static str, from: f64| {
             let mut tell = |p: Progress| {
                 progress(Progress {
                     phase: format!("{name}: {}", p.phase),
                     fraction: from + 0.5 * p.fraction,
                 })
             };
-            let part = if from == 0.0 { &rings } else { &skirt };
             part.case.once(&mut tell)
         };
-        let mut result = half("rings", 0.0)?;
-        let other = half("skirt", 0.5)?;
+        let mut result = half(&rings, "rings", 0.0)?;
+        let (skirt, fed) = fed_by_rings(loaded, &result, skirt).map_err(|e| RunError::refused(&e))?;
+        let other = half(&skirt, "skirt", 0.5)?;
+        result.solver.notes.extend(fed);
         let power = |r: &RunResult| r.results.get("friction_power").map(|v| v.value);
         let total = power(&result).zip(power(&other));
         let fmep = |r: &RunResult| r.results.get("fmep").map(|v| v.value);
@@ -170,6 +171,39 @@ impl SceneCase for PowerCylinderCase {
     }
 }
 
+/// The skirt with the film that the rings leave to it, where it asks for one and they tell it, and what a person should know of that.
+fn fed_by_rings(
+    loaded: &Loaded<PowerCylinderCase>,
+    rings: &RunResult,
+    skirt: Checked,
+) -> Result<(Checked, Option<Note>), Vec<BuildError>> {
+    let Some(film) = left_above(rings) else { return Ok((skirt, None)) };
+    let asks = |case: &PistonSecondaryCase| case.models.skirt_oil.clone().take_from_rings(film);
+    if !skirt.of::<PistonSecondaryCase>().is_some_and(asks) {
+        return Ok((skirt, None));
+    }
+    let text = format!(
+        "The rings leave {:.3} um of oil on the liner above the skirt on the way up, which it meets",
+        1e6 * film
+    );
+    let note = Note::info("film_from_rings", text).amount("film", 1e6 * film, "um");
+    let (_, skirt) = parts_with(loaded, Some(film))?;
+    Ok((skirt, Some(note)))
+}
+
+/// Mean film \[m\] over the way up that the lowest ring leaves on the liner; none where the rings do not follow their oil.
+fn left_above(rings: &RunResult) -> Option<f64> {
+    let columns = &rings.series.columns;
+    let left = columns.iter().rfind(|c| c.name.starts_with("ring") && c.name.ends_with(".oil_left"))?;
+    let speed = columns.iter().find(|c| c.name == "piston.v")?;
+    let (mut oil, mut way) = (0.0, 0.0);
+    for (v, film) in speed.values.iter().zip(&left.values).filter(|(v, _)| **v > 0.0) {
+        oil += v * film;
+        way += v;
+    }
+    (way > 0.0).then(|| oil / way)
+}
+
 fn named(part: &str, name: &str) -> String {
     format!("{part}.{name}")
 }
@@ -184,12 +218,24 @@ fn add_models(to: &mut Vec<ModelUse>, more: impl IntoIterator<Item = ModelUse>) 
 
 /// Both cases, the skirt's with the crank drive and the gas of the rings'.
 fn parts(loaded: &Loaded<PowerCylinderCase>) -> Result<(Checked, Checked), Vec<BuildError>> {
+    parts_with(loaded, None)
+}
+
+/// The same, the skirt's also with the film \[m\] that the rings leave to it.
+fn parts_with(
+    loaded: &Loaded<PowerCylinderCase>,
+    film: Option<f64>,
+) -> Result<(Checked, Checked), Vec<BuildError>> {
     let (own, files) = (&loaded.value, &loaded.source.files);
     let rings = checked(read_part(files, &own.ring_pack, "ring_pack")?, &own.ring_pack, "ring_pack")?;
     let pack = rings.of::<RingPackCase>().ok_or_else(|| other_scene("ring_pack"))?;
     let mut skirt = read_part(files, &own.piston_secondary, "piston_secondary")?;
     let to = skirt.value_mut().downcast_mut::<PistonSecondaryCase>();
-    share(pack, to.ok_or_else(|| other_scene("piston_secondary"))?);
+    let to = to.ok_or_else(|| other_scene("piston_secondary"))?;
+    share(pack, to);
+    if let Some(film) = film {
+        to.models.skirt_oil.take_from_rings(film);
+    }
     let skirt = checked(skirt, &own.piston_secondary, "piston_secondary")?;
     Ok((rings, skirt))
 }
@@ -235,7 +281,7 @@ gudgeon_scene::register_scene! {
     name: "power_cylinder",
     summary: "rings and skirt of one cylinder",
     equations: "those of ring_pack and piston_secondary with one crank drive and one cylinder pressure",
-    validity: "Rings and skirt do not act on each other but through the drive and the gas that they share.",
+    validity: "Rings and skirt do not act on each other but through the drive and the gas that they share, and the oil that the rings leave to the skirt.",
     references: [],
 }
 
