@@ -20,7 +20,7 @@ fn a_right_hand_side_allocates_nothing() {
         let n = pack.layout.n;
         let mut y = vec![0.0; n];
         pack.initial(2e5, &mut y);
-        let mut f = vec![0.0; n + 2 * pack.n_rings() + 1];
+        let mut f = vec![0.0; n + pack.layout.quads()];
         let mut jac = vec![0.0; f.len() * n];
         let mut base = Base::default();
         let mut answered = 0;

@@ -179,7 +179,7 @@ fn declared_dependencies_are_complete() {
     let case = c.of::<RingPackCase>().expect("a ring pack");
     let mut pack = assemble(case, &c.case.source().files).expect("valid");
     let n = pack.layout.n;
-    let quads = 2 * pack.n_rings() + 1;
+    let quads = pack.layout.quads();
     let mut y = vec![0.0; n];
     pack.initial(3e5, &mut y);
     let theta = 6.9;
