@@ -18,7 +18,7 @@
 //!
 //! | property | models |
 //! |---|---|
-//! | viscosity over temperature | [`Constant`], [`Vogel`], [`VogelGrade`] |
+//! | viscosity over temperature | [`Constant`], [`Vogel`], [`VogelGrade`], [`Walther`] |
 //! | viscosity under pressure | [`Barus`], [`Roelands`], [`Isoviscous`] |
 //! | viscosity under shear | [`Cross`], [`Carreau`], [`Newtonian`] |
 //! | density under pressure | [`DowsonHigginson`], [`Incompressible`] |
@@ -69,7 +69,7 @@ pub use compressibility::dowson_higginson::DowsonHigginson;
 pub use compressibility::off::Off as Incompressible;
 pub use film_temperature::{Given, LandWallMean, LinerLinear};
 pub use hydrodynamics::{CavityShear, ClosedFormFace, GriddedFace, Off};
-pub use oil::{Constant, Grade, Table, Vogel, VogelGrade, VogelTable};
+pub use oil::{Constant, Grade, Table, Vogel, VogelGrade, VogelTable, Walther};
 pub use piezoviscosity::barus::Barus;
 pub use piezoviscosity::off::Off as Isoviscous;
 pub use piezoviscosity::roelands::Roelands;
@@ -102,6 +102,7 @@ gudgeon_core::link!(
     Table,
     Vogel,
     VogelGrade,
+    Walther,
     film_1d::Complementarity,
     film_1d::ElrodAdams,
     film_1d::FrontTracking,

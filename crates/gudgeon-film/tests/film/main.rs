@@ -15,3 +15,4 @@ mod piezoviscosity;
 mod roughness;
 mod rows;
 mod shear_thinning;
+mod walther;
