@@ -2,8 +2,9 @@
 
 use gudgeon_core::face::Face;
 use gudgeon_core::kinds::{
-    ContactSpec, CylinderPressureSpec, FilmTemperatureSpec, FlankFrictionSpec, FlankSpec, GasFlowSpec,
-    HydrodynamicsSpec, KinematicsSpec, OilSpec, OilTransportSpec, RadialMotionSpec, RingMotionSpec,
+    BoundaryFrictionSpec, ContactSpec, CylinderPressureSpec, FilmTemperatureSpec, FlankFrictionSpec,
+    FlankSpec, GasFlowSpec, HydrodynamicsSpec, KinematicsSpec, OilSpec, OilTransportSpec, RadialMotionSpec,
+    RingMotionSpec,
 };
 use gudgeon_core::quantity::{
     Angle, Fraction, Length, NonNegative, PosAngle, PosArea, PosExpansion, PosForce, PosGasConstant,
@@ -222,6 +223,9 @@ pub struct RingModels {
     /// Solid contact of this ring.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contact: Option<Box<dyn ContactSpec>>,
+    /// Friction of the solid contact of this ring.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub boundary_friction: Option<Box<dyn BoundaryFrictionSpec>>,
 }
 
 /// Models of the pack.
@@ -256,6 +260,10 @@ pub struct Models {
     pub oil_transport: Box<dyn OilTransportSpec>,
     /// Solid contact of ring faces and liner. No default: it needs the roughness of the surfaces.
     pub contact: Box<dyn ContactSpec>,
+    /// How the friction of solid contact depends on sliding speed, load and real area; absent: the coefficient of the contact model at every speed,
+    /// its sign rounded over `solver.limits.friction_speed`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub boundary_friction: Option<Box<dyn BoundaryFrictionSpec>>,
     /// Lubricant.
     pub oil: Box<dyn OilSpec>,
     /// Temperature of the films.

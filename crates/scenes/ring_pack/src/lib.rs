@@ -34,6 +34,7 @@ pub mod record;
 pub mod results;
 pub mod ring;
 pub mod rows;
+pub mod rubbing;
 mod scene;
 pub mod solve;
 pub mod solver;

@@ -3,6 +3,7 @@
 use gudgeon_core::kinds::{Flank, FlankFriction, Hydrodynamics, RadialMotion, RingMotion};
 
 use super::contact_line::ContactLine;
+use super::rubbing::FaceFriction;
 
 /// One ring with its models.
 pub struct Ring {
@@ -12,6 +13,8 @@ pub struct Ring {
     pub resists: bool,
     /// Solid contact of the whole face as a function of film thickness.
     pub contact: ContactLine,
+    /// Friction of that contact, where the case has a model for it; the coefficient of the contact model otherwise.
+    pub rubbing: Option<FaceFriction>,
     /// Oil on the flanks of the groove.
     pub flank: Box<dyn Flank>,
     /// Motion in the groove, under the force of that oil.
