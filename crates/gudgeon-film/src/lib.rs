@@ -129,6 +129,7 @@ pub mod parts {
     pub use crate::oil_transport::carried::Carried;
     pub use crate::oil_transport::face::{MIN_REACH, SIDES, WAVE_SLOPE};
     pub use crate::oil_transport::law::Law;
+    pub use crate::piezoviscosity::reduced_pressure::ReducedPressure;
     pub use crate::piezoviscosity::tame_exp;
     pub use crate::roughness::{GaussianGap, patir_cheng, sawtooth_waviness};
 }

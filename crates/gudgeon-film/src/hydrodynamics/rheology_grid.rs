@@ -1,0 +1,379 @@
+//! The film on nodes with flow factors, viscosities and densities of every node.
+
+use std::sync::Arc;
+
+use gudgeon_core::EvalError;
+use gudgeon_core::kinds::{Compressibility, FaceIn, FaceOut, Hydrodynamics, Rheology, ShearThinning};
+
+use super::rough_nodes::RoughNodes;
+use crate::piezoviscosity::reduced_pressure::ReducedPressure;
+
+const MODEL: &str = "gridded_face";
+/// Ambient pressure \[Pa\].
+const AMBIENT: f64 = 101_325.0;
+/// Rounds in which pressures and densities are brought together, and the relative change of a density in the last one.
+const ROUNDS: (usize, f64) = (50, 1e-13);
+/// Steps of the search for a squeeze velocity.
+const STEPS: usize = 200;
+/// Part of a load to which it is found: rounding of the sums.
+const FOUND: f64 = 1e-13;
+
+/// The nodes of one face, with work space. See [`GriddedFace`](super::GriddedFace) for the equations.
+pub(super) struct RheologyGrid {
+    length: f64,
+    dx: f64,
+    drops: Vec<f64>,
+    min_drop: f64,
+    rough: bool,
+    thinning: Option<Arc<dyn ShearThinning>>,
+    density: Option<Arc<dyn Compressibility>>,
+    reduced: Option<ReducedPressure>,
+    gap: RoughNodes,
+    /// For what `gap`, `resist` and `thin` stand.
+    placed: Option<FaceIn>,
+    /// Shear rate and factor of shear thinning.
+    rate: Vec<f64>,
+    thin: Vec<f64>,
+    /// Slopes of laws, which nothing asks for.
+    slope: Vec<f64>,
+    /// `12 μ(γ̇)/(φ_x h_p³)`.
+    resist: Vec<f64>,
+    /// Density over that at ambient pressure.
+    rho: Vec<f64>,
+    /// Pressure above ambient, and the density there.
+    above: Vec<f64>,
+    denser: Vec<f64>,
+    /// `Y`.
+    way: Vec<f64>,
+    /// Reduced pressure before the clip and its derivative with respect to the squeeze velocity.
+    pi: Vec<f64>,
+    pi_rate: Vec<f64>,
+    /// Pressure above `p_cav`, clipped, and `f` there.
+    p: Vec<f64>,
+    thick: Vec<f64>,
+    /// Reduced cavitation pressure.
+    floor: f64,
+}
+
+impl RheologyGrid {
+    /// `drops` at equally spaced nodes, two or more.
+    pub(super) fn new(length: f64, drops: Vec<f64>, rheology: &Rheology) -> Self {
+        let n = drops.len();
+        let v = |x: f64| vec![x; n];
+        Self {
+            length,
+            dx: length / (n - 1) as f64,
+            min_drop: drops.iter().copied().fold(f64::INFINITY, f64::min),
+            rough: rheology.roughness.is_some(),
+            thinning: rheology.shear_thinning.clone(),
+            density: rheology.compressibility.clone(),
+            reduced: rheology.piezoviscosity.clone().map(ReducedPressure::new),
+            gap: RoughNodes::new(rheology.roughness.clone(), n),
+            placed: None,
+            rate: v(0.0),
+            thin: v(1.0),
+            slope: v(0.0),
+            resist: v(0.0),
+            rho: v(1.0),
+            above: v(0.0),
+            denser: v(1.0),
+            way: v(0.0),
+            pi: v(0.0),
+            pi_rate: v(0.0),
+            p: v(0.0),
+            thick: v(1.0),
+            floor: 0.0,
+            drops,
+        }
+    }
+
+    fn n(&self) -> usize {
+        self.drops.len()
+    }
+
+    /// Trapezoid weight of node `j` in panels.
+    fn weight(&self, j: usize) -> f64 {
+        if j == 0 || j + 1 == self.n() { 0.5 } else { 1.0 }
+    }
+
+    fn check(&self, inp: &FaceIn) -> Result<(), EvalError> {
+        // One test for all: a sum with a term that is not finite is not finite.
+        if !(inp.h + inp.u + inp.p_bottom + inp.p_top + inp.p_cav + inp.mu).is_finite() {
+            return Err(EvalError::fatal(MODEL, format!("not a number among {inp:?}")));
+        }
+        if inp.mu <= 0.0 {
+            return Err(EvalError::fatal(MODEL, format!("the viscosity is {} Pa s", inp.mu)));
+        }
+        let least = if self.rough { inp.h } else { inp.h + self.min_drop };
+        if least <= 0.0 {
+            return Err(EvalError::recoverable(
+                MODEL,
+                format!("the thinnest film is {least:e} m: the surfaces touch"),
+            ));
+        }
+        Ok(())
+    }
+
+    /// Gap, shear thinning and resistance for `inp`.
+    fn place(&mut self, inp: &FaceIn) -> Result<(), EvalError> {
+        if self.placed.as_ref() == Some(inp) {
+            return Ok(());
+        }
+        self.check(inp)?;
+        self.placed = None;
+        self.gap.place(inp.h, &self.drops)?;
+        if let Some(law) = &self.thinning {
+            for (rate, film) in self.rate.iter_mut().zip(&self.gap.flow.film) {
+                *rate = inp.u / film;
+            }
+            law.factor(&self.rate, &mut self.thin, &mut self.slope)?;
+        }
+        for (j, resist) in self.resist.iter_mut().enumerate() {
+            let film = self.gap.flow.film[j];
+            *resist = 12.0 * inp.mu * self.thin[j] / (self.gap.flow.phi_x[j] * film * film * film);
+        }
+        if let Some(reduced) = &mut self.reduced {
+            reduced.set(inp.mu);
+        }
+        self.placed = Some(*inp);
+        Ok(())
+    }
+
+    /// Reduced pressure \[Pa\] of an absolute one.
+    fn reduce(&mut self, pressure: f64) -> Result<f64, EvalError> {
+        let above = pressure - AMBIENT;
+        self.reduced.as_mut().map_or(Ok(above), |r| r.of(above))
+    }
+
+    /// Pressures, densities and derivatives for a squeeze velocity.
+    fn solve(&mut self, inp: &FaceIn, hdot: f64) -> Result<(), EvalError> {
+        if !hdot.is_finite() {
+            return Err(EvalError::fatal(MODEL, format!("the squeeze velocity is {hdot} m/s")));
+        }
+        self.place(inp)?;
+        self.floor = self.reduce(inp.p_cav)?;
+        let ends = [self.reduce(inp.p_bottom)?, self.reduce(inp.p_top)?];
+        self.rho.fill(1.0);
+        for _ in 0..ROUNDS.0 {
+            self.integrate(inp, hdot, ends);
+            self.restore(inp)?;
+            if self.compress(inp)? <= ROUNDS.1 {
+                return Ok(());
+            }
+        }
+        Err(EvalError::recoverable(MODEL, "pressure and density do not come together"))
+    }
+
+    /// Reduced pressures before the clip, from the densities of now.
+    fn integrate(&mut self, inp: &FaceIn, hdot: f64, ends: [f64; 2]) {
+        let n = self.n();
+        self.way[0] = 0.0;
+        for j in 1..n {
+            let ahead = self.rho[j - 1] * self.gap.change[j - 1] + self.rho[j] * self.gap.change[j];
+            self.way[j] = self.way[j - 1] + 0.5 * self.dx * ahead;
+        }
+        let (mut carried, mut squeezed, mut resist) = (0.0, 0.0, 0.0);
+        for j in 0..n {
+            let own = self.weight(j) * self.resist[j];
+            carried += own * 0.5 * inp.u * self.gap.flow.transport[j];
+            squeezed += own * self.way[j] / self.rho[j];
+            resist += own / self.rho[j];
+        }
+        // Flux at the bottom edge, and its derivative.
+        let middle = squeezed / resist;
+        let flux = (carried - (ends[1] - ends[0]) / self.dx) / resist + hdot * middle;
+        let gradient = |j: usize| {
+            let own = 0.5 * self.dx * self.resist[j];
+            let rate = own * (self.way[j] - middle) / self.rho[j];
+            let sliding = 0.5 * inp.u * self.gap.flow.transport[j];
+            (own * (sliding + (hdot * self.way[j] - flux) / self.rho[j]), rate)
+        };
+        (self.pi[0], self.pi_rate[0]) = (ends[0], 0.0);
+        let mut last = gradient(0);
+        for j in 1..n {
+            let next = gradient(j);
+            self.pi[j] = self.pi[j - 1] + (last.0 + next.0);
+            self.pi_rate[j] = self.pi_rate[j - 1] + (last.1 + next.1);
+            last = next;
+        }
+        (self.pi[n - 1], self.pi_rate[n - 1]) = (ends[1], 0.0);
+    }
+
+    /// Pressures above `p_cav` from reduced ones.
+    fn restore(&mut self, inp: &FaceIn) -> Result<(), EvalError> {
+        for j in 0..self.pi.len() {
+            let pi = self.pi[j].max(self.floor);
+            if !pi.is_finite() {
+                return Err(EvalError::recoverable(
+                    MODEL,
+                    format!("the film pressure overflows for {inp:?}"),
+                ));
+            }
+            let (above, thick) = self.reduced.as_mut().map_or(Ok((pi, 1.0)), |r| r.back(pi))?;
+            // What the clip raised is at the cavitation pressure exactly.
+            let p = if self.pi[j] > self.floor { above - (inp.p_cav - AMBIENT) } else { 0.0 };
+            (self.p[j], self.thick[j]) = (p.max(0.0), thick);
+        }
+        Ok(())
+    }
+
+    /// Densities at these pressures; the greatest change of one.
+    fn compress(&mut self, inp: &FaceIn) -> Result<f64, EvalError> {
+        let Some(law) = &self.density else { return Ok(0.0) };
+        for (above, p) in self.above.iter_mut().zip(&self.p) {
+            *above = p + (inp.p_cav - AMBIENT);
+        }
+        law.factor(&self.above, &mut self.denser, &mut self.slope)?;
+        let mut change: f64 = 0.0;
+        for (rho, new) in self.rho.iter_mut().zip(&self.denser) {
+            change = change.max((new / *rho - 1.0).abs());
+            *rho = *new;
+        }
+        Ok(change)
+    }
+
+    /// Load \[N/m\] and its derivative with respect to the squeeze velocity for the film of now.
+    fn load_of(&self) -> (f64, f64) {
+        let (mut load, mut rate) = (0.0, 0.0);
+        for j in 0..self.n() {
+            load += self.weight(j) * self.p[j];
+            if self.pi[j] > self.floor {
+                rate += self.weight(j) * self.thick[j] * self.pi_rate[j];
+            }
+        }
+        (self.dx * load, self.dx * rate)
+    }
+
+    /// Outermost places where the pressure before the clip passes through `p_cav`; an empty film lies at 0.
+    fn full_film(&self) -> (f64, f64) {
+        let last = self.n() - 1;
+        let over = |j: usize| self.pi[j] - self.floor;
+        let Some(low) = (0..=last).find(|&j| over(j) > 0.0) else { return (0.0, 0.0) };
+        let high = (low..=last).rev().find(|&j| over(j) > 0.0).unwrap_or(low);
+        let from =
+            if low == 0 { 0.0 } else { (low as f64 - over(low) / (over(low) - over(low - 1))) * self.dx };
+        let to = if high == last {
+            self.length
+        } else {
+            (high as f64 + over(high) / (over(high) - over(high + 1))) * self.dx
+        };
+        (from, to)
+    }
+
+    /// Load and friction of the film of now.
+    fn result(&self, inp: &FaceIn) -> FaceOut {
+        let (load, rate) = self.load_of();
+        let (mut mean, mut apart, mut slope_force, mut half_drag) = (0.0, 0.0, 0.0, 0.0);
+        let shear = &self.gap.shear;
+        let lever = |j: usize| shear.phi_fp[j] * shear.film[j];
+        for j in 0..self.n() {
+            let sliding =
+                self.weight(j) * inp.mu * self.thin[j] * self.thick[j] * inp.u / shear.film[j] * self.dx;
+            mean += sliding * shear.phi_f[j];
+            apart += sliding * shear.phi_fs[j];
+            if j > 0 {
+                slope_force -= 0.5 * (self.p[j - 1] + self.p[j]) * (self.drops[j] - self.drops[j - 1]);
+                half_drag += 0.25 * (lever(j - 1) + lever(j)) * (self.p[j] - self.p[j - 1]);
+            }
+        }
+        FaceOut {
+            load,
+            // Rounding must not turn a film that cannot yield into one that pushes.
+            squeeze_damping: -rate.min(0.0),
+            ring_shear: mean - apart - half_drag,
+            liner_shear: mean + apart + half_drag,
+            slope_force,
+            // A clipped film has no flux of its own.
+            flux: 0.0,
+            p_max: inp.p_cav + self.p.iter().copied().fold(0.0, f64::max),
+            full_film: self.full_film(),
+        }
+    }
+
+    /// The squeeze velocity of a film that is nowhere clipped and whose oil does not thicken: the load there is `load` at least.
+    fn below(&mut self, inp: &FaceIn, load: f64) -> Result<(f64, f64), EvalError> {
+        self.place(inp)?;
+        self.floor = self.reduce(inp.p_cav)?;
+        let ends = [self.reduce(inp.p_bottom)?, self.reduce(inp.p_top)?];
+        self.rho.fill(1.0);
+        self.integrate(inp, 0.0, ends);
+        let (mut sum, mut rate) = (0.0, 0.0);
+        for j in 0..self.n() {
+            sum += self.weight(j) * (self.pi[j] - self.floor);
+            rate += self.weight(j) * self.pi_rate[j];
+        }
+        let step = load.abs().max(self.dx * sum.abs()) / -(self.dx * rate);
+        Ok(((load / self.dx - sum) / rate, step))
+    }
+}
+
+impl Hydrodynamics for RheologyGrid {
+    fn evaluate(&mut self, inp: &FaceIn, hdot: f64) -> Result<FaceOut, EvalError> {
+        self.solve(inp, hdot)?;
+        let o = self.result(inp);
+        let all = o.load + o.squeeze_damping + o.ring_shear + o.liner_shear + o.slope_force;
+        if all.is_finite() {
+            Ok(o)
+        } else {
+            Err(EvalError::recoverable(MODEL, format!("the film overflows for {inp:?}, hdot = {hdot:e}")))
+        }
+    }
+
+    /// Newton's method on a convex, falling function, between the nearest velocities at which the load was found to be greater and less. Where the oil would
+    /// thicken without bound the load is greater than any.
+    fn squeeze_rate(&mut self, inp: &FaceIn, load: f64) -> Result<f64, EvalError> {
+        if !load.is_finite() {
+            return Err(EvalError::fatal(MODEL, format!("the load is {load} N/m")));
+        }
+        let (mut hdot, mut step) = self.below(inp, load)?;
+        let (mut greater, mut less) = (f64::NEG_INFINITY, f64::INFINITY);
+        for _ in 0..STEPS {
+            let found = match self.solve(inp, hdot) {
+                Ok(()) => Some(self.load_of()),
+                Err(e) if e.is_recoverable() && self.reduced.is_some() => None,
+                Err(e) => return Err(e),
+            };
+            let excess = found.map_or(f64::INFINITY, |(l, _)| l - load);
+            if excess.abs() <= FOUND * (load.abs() + found.map_or(0.0, |(l, _)| l.abs())) {
+                return Ok(hdot);
+            }
+            if excess > 0.0 {
+                greater = hdot
+            } else {
+                less = hdot
+            }
+            let newton = found.filter(|(_, d)| *d < 0.0).map(|(_, d)| hdot - excess / d);
+            let next = match newton {
+                Some(x) if x > greater && x < less => x,
+                _ if greater.is_finite() && less.is_finite() => 0.5 * (greater + less),
+                None if excess.is_finite() => break,
+                _ => {
+                    step *= 2.0;
+                    hdot + if excess > 0.0 { step } else { -step }
+                }
+            };
+            if next == hdot || (less - greater).abs() <= f64::EPSILON * hdot.abs() {
+                return Ok(hdot);
+            }
+            hdot = next;
+        }
+        Err(EvalError::recoverable(
+            MODEL,
+            format!("no squeeze velocity gives the load {load:e} N/m of a film of {:e} m", inp.h),
+        ))
+    }
+
+    fn profile(&mut self, inp: &FaceIn, hdot: f64, out: &mut [(f64, f64, f64)]) -> Result<(), EvalError> {
+        self.solve(inp, hdot)?;
+        let panels = self.n() - 1;
+        let parts = out.len().saturating_sub(1).max(1) as f64;
+        for (i, o) in out.iter_mut().enumerate() {
+            let part = i as f64 / parts;
+            let k = ((part * panels as f64) as usize).min(panels - 1);
+            let f = part * panels as f64 - k as f64;
+            let at = |v: &[f64]| (1.0 - f) * v[k] + f * v[k + 1];
+            *o = (part * self.length, inp.h + at(&self.drops), inp.p_cav + at(&self.p));
+        }
+        Ok(())
+    }
+}
