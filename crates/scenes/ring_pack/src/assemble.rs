@@ -22,6 +22,7 @@ use super::layout::Layout;
 use super::liner::LinerShape;
 use super::pack::Pack;
 use super::plan::{Facts, Plan, Told, plan, wanted};
+use super::rheology::{factors_end, rheology};
 use super::ring::Ring;
 use super::rubbing::FaceFriction;
 use super::{end_gap, geometry, oil_faces};
@@ -278,7 +279,7 @@ fn rings(
     let spacings = spacings(case, drive);
     let mut planes = None;
     for (i, (motion, flank)) in motions.into_iter().zip(flanks).enumerate() {
-        let none = || Ok((Vec::new(), ContactLine::default(), None));
+        let none = || Ok(FaceModels::default());
         let films = if plan.film { films(case, drive, i, &mut planes) } else { none() };
         let films = kept(&mut errors, films);
         let friction = case.models.flank_friction.build();
@@ -293,8 +294,18 @@ fn rings(
     if errors.is_empty() { Ok(rings) } else { Err(errors) }
 }
 
-/// Films of the lands, the contact of the whole face and its friction.
-type FaceModels = (Vec<Box<dyn Hydrodynamics>>, ContactLine, Option<FaceFriction>);
+/// What is between a face and the liner.
+#[derive(Default)]
+struct FaceModels {
+    /// Films of the lands.
+    films: Vec<Box<dyn Hydrodynamics>>,
+    /// Film thickness below which their flow factors are held \[m\].
+    factors_end: Option<f64>,
+    /// Contact of the whole face.
+    contact: ContactLine,
+    /// Its friction.
+    rubbing: Option<FaceFriction>,
+}
 /// All models of a ring but that of its radial motion.
 type RingParts = (FaceModels, Box<dyn FlankFriction>, Box<dyn RingMotion>, Box<dyn Flank>);
 
@@ -303,16 +314,18 @@ fn ring(
     drive: &Drive,
     oils: &Oils,
     i: usize,
-    ((films, contact, rubbing), friction, motion, flank): RingParts,
+    (face, friction, motion, flank): RingParts,
     spacing: f64,
 ) -> Result<Ring, BuildError> {
     let fixed = oils.temperature.is_constant();
+    let FaceModels { films, factors_end, contact, rubbing } = face;
     Ok(Ring {
         resists: films.iter().any(|f| f.resists()),
         radial: radial(case, drive, i, &contact)?,
         films,
         contact,
         rubbing,
+        factors_end,
         counts: (motion.uses_film_force(), motion.uses_gravity()),
         motion,
         flank,
@@ -361,15 +374,18 @@ fn films(
         Some(s) => (s, format!("rings.{i}.models.hydrodynamics")),
         None => (&m.hydrodynamics, "models.hydrodynamics".to_owned()),
     };
+    let rheology = rheology(case, i, &**spec).map_err(|e| vec![e])?;
     for _ in 0..g.lands {
-        match spec.build(&FaceCtx { face: &g.face }) {
+        match spec.build_with(&FaceCtx { face: &g.face }, &rheology) {
             Ok(f) => films.push(f),
             Err(e) => errors.push(e.within(&place)),
         }
     }
     let contact = contact(case, drive, i, planes).map_err(|e| errors.push(e));
     match contact {
-        Ok((contact, rubbing)) if errors.is_empty() => Ok((films, contact, rubbing)),
+        Ok((contact, rubbing)) if errors.is_empty() => {
+            Ok(FaceModels { films, factors_end: factors_end(&rheology), contact, rubbing })
+        }
         _ => Err(errors),
     }
 }

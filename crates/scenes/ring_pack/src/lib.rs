@@ -32,6 +32,7 @@ pub mod pack;
 pub mod plan;
 pub mod record;
 pub mod results;
+mod rheology;
 pub mod ring;
 pub mod rows;
 pub mod rubbing;

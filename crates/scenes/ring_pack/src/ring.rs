@@ -9,6 +9,8 @@ use super::rubbing::FaceFriction;
 pub struct Ring {
     /// One film per running land, upper land first. Empty when no film is needed.
     pub films: Vec<Box<dyn Hydrodynamics>>,
+    /// Film thickness below which their flow factors are held at those of a thicker film \[m\].
+    pub factors_end: Option<f64>,
     /// Whether the films resist being squeezed; without them the ring rides on its contact alone.
     pub resists: bool,
     /// Solid contact of the whole face as a function of film thickness.

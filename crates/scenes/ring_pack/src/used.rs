@@ -4,6 +4,7 @@ use gudgeon_core::result::{ModelUse, Skipped};
 
 use super::case::{RingDesign, RingModels, RingPackCase};
 use super::plan::Plan;
+use super::rheology;
 
 /// The models that run and the parts that do not, for `explain` and the results.
 #[must_use]
@@ -86,7 +87,8 @@ pub fn models_in_use(case: &RingPackCase, plan: &Plan) -> (Vec<ModelUse>, Vec<Sk
 fn where_given(case: &RingPackCase) -> Vec<(&'static str, &'static str)> {
     let m = &case.models;
     let mut given = Vec::new();
-    for r in &case.rings {
+    for (i, r) in case.rings.iter().enumerate() {
+        given.extend(rheology::given(case, i).into_iter().flatten());
         let friction = r.models.boundary_friction.as_ref().or(m.boundary_friction.as_ref());
         given.extend(friction.map(|f| ("boundary_friction", f.typetag_name())));
     }
