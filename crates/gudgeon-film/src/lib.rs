@@ -23,7 +23,7 @@
 //! | viscosity under shear | [`Cross`], [`Carreau`], [`Newtonian`] |
 //! | density under pressure | [`DowsonHigginson`], [`Incompressible`] |
 //! | flow between rough surfaces | [`PatirCheng`], [`SawtoothWaviness`], [`SmoothSurfaces`] |
-//! | temperature of the film under each ring | [`Given`], [`LinerLinear`], [`LandWallMean`] |
+//! | temperature of the film under each ring | [`Given`], [`LinerLinear`], [`LandWallMean`], [`EnergyBalance`] |
 //! | oil that rings leave on the liner | module [`oil_transport`] |
 //!
 //! A viscosity that depends on pressure or shear goes around a film along a line by [`film_1d::ViscosityLoop`].
@@ -67,7 +67,7 @@ mod slices;
 pub use cavitation::Cavitation;
 pub use compressibility::dowson_higginson::DowsonHigginson;
 pub use compressibility::off::Off as Incompressible;
-pub use film_temperature::{Given, LandWallMean, LinerLinear};
+pub use film_temperature::{EnergyBalance, Given, LandWallMean, LinerLinear};
 pub use hydrodynamics::{CavityShear, ClosedFormFace, GriddedFace, Off};
 pub use oil::{Constant, Grade, Table, Vogel, VogelGrade, VogelTable, Walther};
 pub use piezoviscosity::barus::Barus;
@@ -87,6 +87,7 @@ gudgeon_core::link!(
     Constant,
     Cross,
     DowsonHigginson,
+    EnergyBalance,
     Given,
     GriddedFace,
     Incompressible,
