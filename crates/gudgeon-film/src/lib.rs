@@ -22,7 +22,7 @@
 //! | viscosity under pressure | [`Barus`], [`Roelands`], [`Isoviscous`] |
 //! | viscosity under shear | [`Cross`], [`Carreau`], [`Newtonian`] |
 //! | density under pressure | [`DowsonHigginson`], [`Incompressible`] |
-//! | flow between rough surfaces | [`PatirCheng`], [`SawtoothWaviness`], [`SmoothSurfaces`] |
+//! | flow between rough surfaces | [`PatirCheng`], [`Tripp`], [`SawtoothWaviness`], [`SmoothSurfaces`] |
 //! | temperature of the film under each ring | [`Given`], [`LinerLinear`], [`LandWallMean`], [`EnergyBalance`] |
 //! | oil that rings leave on the liner | module [`oil_transport`] |
 //!
@@ -76,6 +76,7 @@ pub use piezoviscosity::roelands::Roelands;
 pub use roughness::off::Off as SmoothSurfaces;
 pub use roughness::patir_cheng::{PatirCheng, Pattern};
 pub use roughness::sawtooth_waviness::{SawtoothWaviness, WavinessTransport};
+pub use roughness::tripp::Tripp;
 pub use shear_thinning::carreau::Carreau;
 pub use shear_thinning::cross::Cross;
 pub use shear_thinning::off::Off as Newtonian;
@@ -101,6 +102,7 @@ gudgeon_core::link!(
     SawtoothWaviness,
     SmoothSurfaces,
     Table,
+    Tripp,
     Vogel,
     VogelGrade,
     Walther,

@@ -38,7 +38,7 @@ pub(super) struct RheologyGrid {
     slope: Vec<f64>,
     /// `12 μ(γ̇)/(φ_x h_p³)`.
     resist: Vec<f64>,
-    /// Density over that at ambient pressure.
+    /// Density over that at ambient pressure, of the last film: with these the next one begins.
     rho: Vec<f64>,
     /// Pressure above ambient, and the density there.
     above: Vec<f64>,
@@ -153,7 +153,6 @@ impl RheologyGrid {
         self.place(inp)?;
         self.floor = self.reduce(inp.p_cav)?;
         let ends = [self.reduce(inp.p_bottom)?, self.reduce(inp.p_top)?];
-        self.rho.fill(1.0);
         for _ in 0..ROUNDS.0 {
             self.integrate(inp, hdot, ends);
             self.restore(inp)?;
@@ -161,6 +160,7 @@ impl RheologyGrid {
                 return Ok(());
             }
         }
+        self.rho.fill(1.0);
         Err(EvalError::recoverable(MODEL, "pressure and density do not come together"))
     }
 
@@ -291,19 +291,17 @@ impl RheologyGrid {
     }
 
     /// The squeeze velocity of a film that is nowhere clipped and whose oil does not thicken: the load there is `load` at least.
-    fn below(&mut self, inp: &FaceIn, load: f64) -> Result<(f64, f64), EvalError> {
+    fn below(&mut self, inp: &FaceIn, load: f64) -> Result<f64, EvalError> {
         self.place(inp)?;
         self.floor = self.reduce(inp.p_cav)?;
         let ends = [self.reduce(inp.p_bottom)?, self.reduce(inp.p_top)?];
-        self.rho.fill(1.0);
         self.integrate(inp, 0.0, ends);
         let (mut sum, mut rate) = (0.0, 0.0);
         for j in 0..self.n() {
             sum += self.weight(j) * (self.pi[j] - self.floor);
             rate += self.weight(j) * self.pi_rate[j];
         }
-        let step = load.abs().max(self.dx * sum.abs()) / -(self.dx * rate);
-        Ok(((load / self.dx - sum) / rate, step))
+        Ok((load / self.dx - sum) / rate)
     }
 }
 
@@ -319,38 +317,32 @@ impl Hydrodynamics for RheologyGrid {
         }
     }
 
-    /// Newton's method on a convex, falling function, between the nearest velocities at which the load was found to be greater and less. Where the oil would
-    /// thicken without bound the load is greater than any.
+    /// Newton's method on a convex, falling function, between the nearest velocities at which the load was found to be greater and less.
     fn squeeze_rate(&mut self, inp: &FaceIn, load: f64) -> Result<f64, EvalError> {
         if !load.is_finite() {
             return Err(EvalError::fatal(MODEL, format!("the load is {load} N/m")));
         }
-        let (mut hdot, mut step) = self.below(inp, load)?;
+        let mut hdot = self.below(inp, load)?;
         let (mut greater, mut less) = (f64::NEG_INFINITY, f64::INFINITY);
         for _ in 0..STEPS {
-            let found = match self.solve(inp, hdot) {
-                Ok(()) => Some(self.load_of()),
-                Err(e) if e.is_recoverable() && self.reduced.is_some() => None,
-                Err(e) => return Err(e),
-            };
-            let excess = found.map_or(f64::INFINITY, |(l, _)| l - load);
-            if excess.abs() <= FOUND * (load.abs() + found.map_or(0.0, |(l, _)| l.abs())) {
+            self.solve(inp, hdot)?;
+            let (found, slope) = self.load_of();
+            let excess = found - load;
+            if excess.abs() <= FOUND * (load.abs() + found.abs()) {
                 return Ok(hdot);
             }
             if excess > 0.0 {
-                greater = hdot
+                greater = hdot;
             } else {
-                less = hdot
+                less = hdot;
             }
-            let newton = found.filter(|(_, d)| *d < 0.0).map(|(_, d)| hdot - excess / d);
-            let next = match newton {
-                Some(x) if x > greater && x < less => x,
-                _ if greater.is_finite() && less.is_finite() => 0.5 * (greater + less),
-                None if excess.is_finite() => break,
-                _ => {
-                    step *= 2.0;
-                    hdot + if excess > 0.0 { step } else { -step }
-                }
+            let newton = hdot - excess / slope;
+            let next = if slope < 0.0 && newton > greater && newton < less {
+                newton
+            } else if greater.is_finite() && less.is_finite() {
+                0.5 * (greater + less)
+            } else {
+                break;
             };
             if next == hdot || (less - greater).abs() <= f64::EPSILON * hdot.abs() {
                 return Ok(hdot);

@@ -24,7 +24,8 @@ pub struct ReducedPressure {
 const LADDER: (f64, f64, usize) = (1e6, 1.03, 160);
 /// Steps that are added at a time.
 const CHUNK: usize = 20;
-const MODEL: &str = "reduced pressure";
+/// Logarithm of the thickening at which the ladder ends.
+const THICKEST: f64 = 6.907_755_278_982_137;
 
 impl ReducedPressure {
     /// Of a law.
@@ -48,16 +49,21 @@ impl ReducedPressure {
         let (first, growth, steps) = LADDER;
         let from = self.pressure.len();
         let to = (from + CHUNK).min(steps + 1);
-        if from == to {
+        if from == to || self.log[from - 1] >= THICKEST {
             return Ok(false);
         }
-        let rung = |k: usize| first * (growth.powi(k as i32) - 1.0) / (growth - 1.0);
-        let new: Vec<f64> = (from..to).map(rung).collect();
+        let mut new = [0.0; CHUNK];
+        for (p, k) in new.iter_mut().zip(from..to) {
+            *p = first * (growth.powi(k as i32) - 1.0) / (growth - 1.0);
+        }
         let (mut factor, mut slope) = ([1.0; CHUNK], [0.0; CHUNK]);
-        let n = new.len();
-        self.law.factor(self.mu0, &new, &mut factor[..n], &mut slope[..n])?;
-        for (p, f) in new.into_iter().zip(factor) {
+        let n = to - from;
+        self.law.factor(self.mu0, &new[..n], &mut factor[..n], &mut slope[..n])?;
+        for (&p, f) in new[..n].iter().zip(factor) {
             let k = self.pressure.len() - 1;
+            if self.log[k] >= THICKEST {
+                break;
+            }
             let (step, log) = (p - self.pressure[k], f.ln());
             let reduced = self.reduced[k] + step * (-self.log[k]).exp() * mean_decay(log - self.log[k]);
             self.pressure.push(p);
@@ -67,17 +73,24 @@ impl ReducedPressure {
         Ok(true)
     }
 
+    /// The last rung: pressure, reduced pressure and thickening, with which it goes on.
+    fn top(&self) -> (f64, f64, f64) {
+        let k = self.pressure.len() - 1;
+        (self.pressure[k], self.reduced[k], self.log[k].exp())
+    }
+
     /// `Π` \[Pa\] of a pressure above ambient \[Pa\].
     ///
     /// # Errors
-    /// What the law refuses, and pressures beyond the ladder.
+    /// What the law refuses.
     pub fn of(&mut self, pressure: f64) -> Result<f64, EvalError> {
         if pressure <= 0.0 {
             return Ok(pressure);
         }
-        while self.pressure[self.pressure.len() - 1] < pressure {
+        while self.top().0 < pressure {
             if !self.extend()? {
-                return Err(EvalError::recoverable(MODEL, format!("{pressure:e} Pa is no film pressure")));
+                let (p, reduced, f) = self.top();
+                return Ok(reduced + (pressure - p) / f);
             }
         }
         let k = self.pressure.partition_point(|p| *p < pressure) - 1;
@@ -89,17 +102,15 @@ impl ReducedPressure {
     /// Pressure above ambient \[Pa\] and `f` there, for a reduced pressure \[Pa\].
     ///
     /// # Errors
-    /// What the law refuses; a reduced pressure that no pressure has, because the oil thickens without bound.
+    /// What the law refuses.
     pub fn back(&mut self, reduced: f64) -> Result<(f64, f64), EvalError> {
         if reduced <= 0.0 {
             return Ok((reduced, 1.0));
         }
-        while self.reduced[self.reduced.len() - 1] < reduced {
+        while self.top().1 < reduced {
             if !self.extend()? {
-                let what = format!(
-                    "the oil thickens so much that no pressure has the reduced one of {reduced:e} Pa"
-                );
-                return Err(EvalError::recoverable(MODEL, what));
+                let (p, last, f) = self.top();
+                return Ok((p + f * (reduced - last), f));
             }
         }
         let k = self.reduced.partition_point(|r| *r < reduced) - 1;

@@ -193,9 +193,9 @@ fn barus_is_the_closed_form_at_every_node() {
         assert!((b.2 - AMBIENT - exact).abs() < 1e-6 * exact.max(1e3), "{}: {} {exact}", a.0, b.2 - AMBIENT);
     }
     assert!(rose > 1.02, "the oil hardly thickens: {rose}");
-    // Pressed together faster, it has no pressure any more; the squeeze velocity of any load is still found.
-    assert!(thick.evaluate(&inp, -1.0).is_err_and(|e| e.is_recoverable()));
-    for load in [1e3, 1e4, 3e4] {
+    // Pressed together faster it would have no pressure any more, did the thickening not end; the squeeze velocity of any load is found.
+    assert!(thick.evaluate(&inp, -1.0).is_ok_and(|o| o.load.is_finite() && o.load > 1e9));
+    for load in [1e3, 1e4, 3e4, 1e7] {
         let hdot = thick.squeeze_rate(&inp, load).expect("a velocity");
         let o = thick.evaluate(&inp, hdot).expect("a film");
         assert!((o.load / load - 1.0).abs() < 1e-9, "{} for {load}", o.load);
