@@ -78,7 +78,12 @@ fn without_direction_near_patir_and_cheng() {
         let ((f, s), (g, t)) = (both(&*tripp, gap * 0.5e-6), both(&*fit, gap * 0.5e-6));
         assert!((f.phi_x[0] / g.phi_x[0] - 1.0).abs() < 0.06, "{gap}: {} {}", f.phi_x[0], g.phi_x[0]);
         // The next order of the drag, 3/H^4.
-        assert!((s.phi_f[0] / t.phi_f[0] - 1.0).abs() < 4.5 / gap.powi(4), "{gap}: {} {}", s.phi_f[0], t.phi_f[0]);
+        assert!(
+            (s.phi_f[0] / t.phi_f[0] - 1.0).abs() < 4.5 / gap.powi(4),
+            "{gap}: {} {}",
+            s.phi_f[0],
+            t.phi_f[0]
+        );
         assert_eq!(f.content, g.content);
     }
 }
