@@ -507,8 +507,8 @@ impl Side {
         self.rows.range() > 0.0
     }
 
-    /// Friction of solid contact on the skirt for what [`SideLoads::contact`] says, while it moves away from the head at `speed` \[m/s\]: axial force away from the
-    /// head \[N\], and that force times `R cos φ` \[N m\].
+    /// Friction of solid contact on the skirt for what [`SideLoads::contact`] says, while it moves away from the head at `speed` \[m/s\]: axial force away
+    /// from the head \[N\], and that force times `R cos φ` \[N m\].
     #[must_use]
     pub fn rubbing(&self, speed: f64, contact: &[f64; 6]) -> [f64; 2] {
         self.rows.rubbing(speed, contact)

@@ -13,8 +13,8 @@ use super::rounded_sign::rounded_sign;
 /// ```
 ///
 /// `p` is the nominal contact pressure and `A_c/A` the real over the nominal area of contact, both of the contact model, which has to know its real area
-/// (`greenwood_tripp`, `greenwood_williamson`, `kogut_etsion`, `abbott_firestone`). `p/(A_c/A)` is the mean pressure on the summits: 0.1 to 1 GPa for metals, so
-/// that τ_0 of some megapascals adds some hundredths to the coefficient α at most. τ_0 = 0 leaves the model `coulomb` with the coefficient α.
+/// (`greenwood_tripp`, `greenwood_williamson`, `kogut_etsion`, `abbott_firestone`). `p/(A_c/A)` is the mean pressure on the summits: 0.1 to 1 GPa for
+/// metals, so that τ_0 of some megapascals adds some hundredths to the coefficient α at most. τ_0 = 0 leaves the model `coulomb` with the coefficient α.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ShearStrength {

@@ -4,15 +4,16 @@ use gudgeon_core::states::{Signals, StateInfo, Stateful};
 use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
-/// The mean temperature of each film from its heat: friction heats it, ring and liner cool or heat it, and oil of the liner's temperature comes in as it slides.
+/// The mean temperature of each film from its heat: friction heats it, ring and liner cool or heat it, and oil of the liner's temperature comes in as it
+/// slides.
 ///
 /// ```text
 /// ρ c h dT/dt = P/A + 6 k/h (T_ring - T) + 6 k/h (T_liner - T) + ρ c |u| h/(2 L) (T_liner - T)        A = π D L
 /// ```
 ///
 /// `h` is the film thickness at the narrowest place, `P` the friction power of the ring, `L` the length of its faces, `T_liner` linear along the stroke as in
-/// `liner_linear`. `6 k/h` is what a wall takes from a film of parabolic temperature profile, whose heat is set free evenly across it. Without sliding the film rests at
-/// `(T_ring + T_liner)/2 + P h/(12 k A)`; it gets there within `ρ c h²/(12 k)`, microseconds. A film thinner than 10 nm counts as 10 nm.
+/// `liner_linear`. `6 k/h` is what a wall takes from a film of parabolic temperature profile, whose heat is set free evenly across it. Without sliding the
+/// film rests at `(T_ring + T_liner)/2 + P h/(12 k A)`; it gets there within `ρ c h²/(12 k)`, microseconds. A film thinner than 10 nm counts as 10 nm.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct EnergyBalance {

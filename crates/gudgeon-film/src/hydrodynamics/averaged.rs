@@ -14,9 +14,9 @@ use super::rough_nodes::RoughNodes;
 /// μ_p = ∫ μ(u/h_p) h²/(φ_x h_p³) dx / ∫ dx/h        μ_s = ∫ μ(u/h_p) φ_f/h_p dx / ∫ dx/h        f_d = ∫ φ_fp h_p/h³ dx / ∫ dx/h²
 /// ```
 ///
-/// `μ_p` is the mean by which the film resists a flow that pressure drives, `μ_s` the mean by which sliding drags, `f_d` that of the drag of the pressure gradient.
-/// Exact where factors do not change along the face; the weight of `μ_p` is the one of 1/h, 1/h² and 1/h³ with which loads came closest to those of `gridded_face`. The
-/// flow that rough surfaces carry unequally (`φ_s`, `φ_fs`) and the change of the film content with the separation are left out.
+/// `μ_p` is the mean by which the film resists a flow that pressure drives, `μ_s` the mean by which sliding drags, `f_d` that of the drag of the pressure
+/// gradient. Exact where factors do not change along the face; the weight of `μ_p` is the one of 1/h, 1/h² and 1/h³ with which loads came closest to those
+/// of `gridded_face`. The flow that rough surfaces carry unequally (`φ_s`, `φ_fs`) and the change of the film content with the separation are left out.
 pub(super) struct Averaged {
     film: Box<dyn Hydrodynamics>,
     thinning: Option<Arc<dyn ShearThinning>>,

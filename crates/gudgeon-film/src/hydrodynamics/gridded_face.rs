@@ -35,8 +35,9 @@ use super::rheology_grid::RheologyGrid;
 /// ```
 ///
 /// with `f = μ(p)/μ(0)`, the flux `m` that the edge pressures leave, and the change `c` of the film content with the separation of the mean planes. The film
-/// thickness of the ring is the mean gap at the narrowest place; separations follow from it by the content of the roughness model. The density changes the flux,
-/// its change with time is left out, and densities follow the pressures of the film twice, from those of ambient pressure on. Pressures of `piezoviscosity` and `compressibility` count from 1 atm.
+/// thickness of the ring is the mean gap at the narrowest place; separations follow from it by the content of the roughness model. The density changes the
+/// flux, its change with time is left out, and densities follow the pressures of the film twice, from those of ambient pressure on. Pressures of
+/// `piezoviscosity` and `compressibility` count from 1 atm.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GriddedFace {

@@ -11,8 +11,8 @@ use crate::piezoviscosity::reduced_pressure::ReducedPressure;
 const MODEL: &str = "gridded_face";
 /// Ambient pressure \[Pa\].
 const AMBIENT: f64 = 101_325.0;
-/// How often densities follow the pressures of the film that was found with the densities before, those of ambient pressure first. Each time the error falls by about the
-/// relative rise of the density: two leave some 1e-6 of a load at 20 MPa.
+/// How often densities follow the pressures of the film that was found with the densities before, those of ambient pressure first. Each time the error
+/// falls by about the relative rise of the density: two leave some 1e-6 of a load at 20 MPa.
 const ROUNDS: usize = 2;
 /// Steps of the search for a squeeze velocity.
 const STEPS: usize = 200;
@@ -28,6 +28,8 @@ pub(super) struct RheologyGrid {
     rough: bool,
     thinning: Option<Arc<dyn ShearThinning>>,
     density: Option<Arc<dyn Compressibility>>,
+    /// How often densities follow the pressures.
+    rounds: usize,
     reduced: Option<ReducedPressure>,
     gap: RoughNodes,
     /// For what `gap`, `resist` and `thin` stand.
@@ -68,6 +70,7 @@ impl RheologyGrid {
             min_drop: drops.iter().copied().fold(f64::INFINITY, f64::min),
             rough: rheology.roughness.is_some(),
             thinning: rheology.shear_thinning.clone(),
+            rounds: if rheology.compressibility.is_some() { ROUNDS } else { 0 },
             density: rheology.compressibility.clone(),
             reduced: rheology.piezoviscosity.clone().map(ReducedPressure::new),
             gap: RoughNodes::new(rheology.roughness.clone(), n),
@@ -148,8 +151,8 @@ impl RheologyGrid {
         self.reduced.as_mut().map_or(Ok(above), |r| r.of(above))
     }
 
-    /// Pressures, densities and derivatives for a squeeze velocity.
-    fn solve(&mut self, inp: &FaceIn, hdot: f64) -> Result<(), EvalError> {
+    /// Pressures, densities and derivatives for a squeeze velocity; densities follow the pressures `rounds` times.
+    fn solve(&mut self, inp: &FaceIn, hdot: f64, rounds: usize) -> Result<(), EvalError> {
         if !hdot.is_finite() {
             return Err(EvalError::fatal(MODEL, format!("the squeeze velocity is {hdot} m/s")));
         }
@@ -160,7 +163,7 @@ impl RheologyGrid {
         self.rho_rate.fill(0.0);
         self.integrate(inp, hdot, ends);
         self.restore(inp)?;
-        for _ in 0..if self.density.is_some() { ROUNDS } else { 0 } {
+        for _ in 0..rounds {
             self.compress(inp)?;
             self.integrate(inp, hdot, ends);
             self.restore(inp)?;
@@ -302,44 +305,12 @@ impl RheologyGrid {
         }
     }
 
-    /// The squeeze velocity of a film that is nowhere clipped and whose oil does not thicken: the load there is `load` at least.
-    fn below(&mut self, inp: &FaceIn, load: f64) -> Result<f64, EvalError> {
-        self.place(inp)?;
-        self.floor = self.reduce(inp.p_cav)?;
-        let ends = [self.reduce(inp.p_bottom)?, self.reduce(inp.p_top)?];
-        self.rho.fill(1.0);
-        self.rho_rate.fill(0.0);
-        self.integrate(inp, 0.0, ends);
-        let (mut sum, mut rate) = (0.0, 0.0);
-        for j in 0..self.n() {
-            sum += self.weight(j) * (self.pi[j] - self.floor);
-            rate += self.weight(j) * self.pi_rate[j];
-        }
-        Ok((load / self.dx - sum) / rate)
-    }
-}
-
-impl Hydrodynamics for RheologyGrid {
-    fn evaluate(&mut self, inp: &FaceIn, hdot: f64) -> Result<FaceOut, EvalError> {
-        self.solve(inp, hdot)?;
-        let o = self.result(inp);
-        let all = o.load + o.squeeze_damping + o.ring_shear + o.liner_shear + o.slope_force;
-        if all.is_finite() {
-            Ok(o)
-        } else {
-            Err(EvalError::recoverable(MODEL, format!("the film overflows for {inp:?}, hdot = {hdot:e}")))
-        }
-    }
-
-    /// Newton's method on a convex, falling function, between the nearest velocities at which the load was found to be greater and less.
-    fn squeeze_rate(&mut self, inp: &FaceIn, load: f64) -> Result<f64, EvalError> {
-        if !load.is_finite() {
-            return Err(EvalError::fatal(MODEL, format!("the load is {load} N/m")));
-        }
-        let mut hdot = self.below(inp, load)?;
-        let (mut greater, mut less) = (f64::NEG_INFINITY, f64::INFINITY);
+    /// Newton's method from `hdot` on a falling function, convex without densities, between the nearest velocities at which the load was found to be greater
+    /// and less.
+    fn search(&mut self, inp: &FaceIn, load: f64, start: f64, rounds: usize) -> Result<f64, EvalError> {
+        let (mut hdot, mut greater, mut less) = (start, f64::NEG_INFINITY, f64::INFINITY);
         for _ in 0..STEPS {
-            self.solve(inp, hdot)?;
+            self.solve(inp, hdot, rounds)?;
             let (found, slope) = self.load_of();
             let excess = found - load;
             if excess.abs() <= FOUND * (load.abs() + found.abs()) {
@@ -363,14 +334,51 @@ impl Hydrodynamics for RheologyGrid {
             }
             hdot = next;
         }
-        Err(EvalError::recoverable(
-            MODEL,
-            format!("no squeeze velocity gives the load {load:e} N/m of a film of {:e} m", inp.h),
-        ))
+        let what = format!("no squeeze velocity gives the load {load:e} N/m of a film of {:e} m", inp.h);
+        Err(EvalError::recoverable(MODEL, what))
+    }
+
+    /// The squeeze velocity of a film that is nowhere clipped and whose oil does not thicken: the load there is `load` at least.
+    fn below(&mut self, inp: &FaceIn, load: f64) -> Result<f64, EvalError> {
+        self.place(inp)?;
+        self.floor = self.reduce(inp.p_cav)?;
+        let ends = [self.reduce(inp.p_bottom)?, self.reduce(inp.p_top)?];
+        self.rho.fill(1.0);
+        self.rho_rate.fill(0.0);
+        self.integrate(inp, 0.0, ends);
+        let (mut sum, mut rate) = (0.0, 0.0);
+        for j in 0..self.n() {
+            sum += self.weight(j) * (self.pi[j] - self.floor);
+            rate += self.weight(j) * self.pi_rate[j];
+        }
+        Ok((load / self.dx - sum) / rate)
+    }
+}
+
+impl Hydrodynamics for RheologyGrid {
+    fn evaluate(&mut self, inp: &FaceIn, hdot: f64) -> Result<FaceOut, EvalError> {
+        self.solve(inp, hdot, self.rounds)?;
+        let o = self.result(inp);
+        let all = o.load + o.squeeze_damping + o.ring_shear + o.liner_shear + o.slope_force;
+        if all.is_finite() {
+            Ok(o)
+        } else {
+            Err(EvalError::recoverable(MODEL, format!("the film overflows for {inp:?}, hdot = {hdot:e}")))
+        }
+    }
+
+    fn squeeze_rate(&mut self, inp: &FaceIn, load: f64) -> Result<f64, EvalError> {
+        if !load.is_finite() {
+            return Err(EvalError::fatal(MODEL, format!("the load is {load} N/m")));
+        }
+        let start = self.below(inp, load)?;
+        let plain = self.search(inp, load, start, 0)?;
+        // What the density changes is little near the answer, and anything far from it.
+        if self.rounds > 0 { self.search(inp, load, plain, self.rounds) } else { Ok(plain) }
     }
 
     fn profile(&mut self, inp: &FaceIn, hdot: f64, out: &mut [(f64, f64, f64)]) -> Result<(), EvalError> {
-        self.solve(inp, hdot)?;
+        self.solve(inp, hdot, self.rounds)?;
         let panels = self.n() - 1;
         let parts = out.len().saturating_sub(1).max(1) as f64;
         for (i, o) in out.iter_mut().enumerate() {

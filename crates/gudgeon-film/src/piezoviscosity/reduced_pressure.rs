@@ -7,8 +7,8 @@ use gudgeon_core::kinds::Piezoviscosity;
 
 /// `Π(p) = ∫_0^p dp/f(p)`, `f = μ(p)/μ(0)`: with it Reynolds' equation of an oil that thickens with pressure is that of a constant viscosity.
 ///
-/// Between the points of a ladder of pressures `ln f` is taken as straight, which is exact for Barus' law. The first steps have 1 MPa, each further one 3 % more, so
-/// that `f` of Roelands' law is met within 5e-5 up to 100 MPa. Below ambient pressure `f = 1`.
+/// Between the points of a ladder of pressures `ln f` is taken as straight, which is exact for Barus' law. The first steps have 1 MPa, each further one 3 %
+/// more, so that `f` of Roelands' law is met within 5e-5 up to 100 MPa. Below ambient pressure `f = 1`.
 #[derive(Debug)]
 pub struct ReducedPressure {
     law: Arc<dyn Piezoviscosity>,

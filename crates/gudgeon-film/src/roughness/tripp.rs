@@ -11,8 +11,8 @@ use super::held_above::held_above;
 
 /// Average flow between Gaussian rough surfaces of any pattern, by the expansion of Tripp with the contact factor of Wu and Zheng.
 ///
-/// With the composite roughness `σ = √(σ_liner² + σ_body²)`, `H = h/σ`, the pattern `γ` (ratio of the correlation lengths along and across the sliding direction) and
-/// `D = 1/(1 + γ)`:
+/// With the composite roughness `σ = √(σ_liner² + σ_body²)`, `H = h/σ`, the pattern `γ` (ratio of the correlation lengths along and across the sliding
+/// direction) and `D = 1/(1 + γ)`:
 ///
 /// ```text
 /// φ_x  = 1 + a/H²  (a > 0)   1/(1 - a/H²)  (a < 0)       a = 3 (1 - 3 D);   φ_y: D = γ/(1 + γ)
@@ -20,9 +20,9 @@ use super::held_above::held_above;
 /// φ_f  = 1 + 1/H²      φ_fs = 3 D (σ_body² - σ_liner²)/h_p²      φ_fp = 1/(1 + 3 D/H²)
 /// ```
 ///
-/// Exact to the order `1/H²`: ridges across (`γ → 0`) have the mean of `h^-3` and ridges along (`γ → ∞`) that of `h³`. Tripp's `1 + a/H²` becomes negative where the
-/// film is thin; `1/(1 - a/H²)`, equal to that order, does not. `φ_c` is the contact factor, the share of the surfaces that the film
-/// keeps apart; its integral `h_T` is the film content. Below `H = 1` the factors stay at those of 0.9.
+/// Exact to the order `1/H²`: ridges across (`γ → 0`) have the mean of `h^-3` and ridges along (`γ → ∞`) that of `h³`. Tripp's `1 + a/H²` becomes negative
+/// where the film is thin; `1/(1 - a/H²)`, equal to that order, does not. `φ_c` is the contact factor, the share of the surfaces that the film keeps apart;
+/// its integral `h_T` is the film content. Below `H = 1` the factors stay at those of 0.9.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Tripp {

@@ -217,8 +217,8 @@ fn what_it_cannot_do_is_told() {
     assert!(model.squeeze_rate(&inp, 1e-3).is_err_and(|e| e.is_recoverable()));
 }
 
-/// The closed form with averages of flow factors and shear thinning against the grid with the values of every node, both clipped at the cavitation pressure: what each
-/// makes of the load and the drag of the plain film, on faces that carry.
+/// The closed form with averages of flow factors and shear thinning against the grid with the values of every node, both clipped at the cavitation
+/// pressure: what each makes of the load and the drag of the plain film, on faces that carry.
 #[test]
 fn averages_of_the_closed_form() {
     let faces = [barrel(3e-3, 6e-6), FaceProfile::Taper { length: 2.6e-3, land: 0.2e-3, drop: 35e-6 }];

@@ -67,9 +67,9 @@ fn no_temperature_gives_nonsense() {
 #[test]
 fn what_is_no_oil_is_refused_at_its_place() {
     for (cold, hot, place) in [(10.0, 20.0, "nu_hot"), (0.2, 0.1, "nu_cold"), (50.0, 0.25, "nu_hot")] {
-        let e = spec(cold, hot).build().err().expect("no oil");
+        let e = spec(cold, hot).build().expect_err("no oil");
         assert_eq!(e.field, place, "{cold} and {hot} mm2/s");
     }
-    let e = Walther { hot: quantity(313.15), ..spec(95.0, 10.7) }.build().err().expect("one temperature");
+    let e = Walther { hot: quantity(313.15), ..spec(95.0, 10.7) }.build().expect_err("one temperature");
     assert_eq!(e.field, "hot");
 }

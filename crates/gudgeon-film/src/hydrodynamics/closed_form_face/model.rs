@@ -28,8 +28,8 @@ use crate::hydrodynamics::check_face::check_face;
 /// as `p_cav`, except with `full_sommerfeld`. What happens where oil would have to pull is the choice of `cavitation`.
 ///
 /// With `roughness` or `shear_thinning` the pressures have one viscosity and the shear another, averages over the wetted part of the face:
-/// `μ_p = ∫ μ(γ̇) h²/(φ_x h_p³) dx / ∫ dx/h`, `μ_s = ∫ μ(γ̇) φ_f/h_p dx / ∫ dx/h`, `γ̇ = u/h_p`. What rough surfaces carry unequally (`φ_s`, `φ_fs`) is left out.
-/// `gridded_face` has the values of every place; from three roughness heights on, loads are within 6 % of those with them and drags within 5 %.
+/// `μ_p = ∫ μ(γ̇) h²/(φ_x h_p³) dx / ∫ dx/h`, `μ_s = ∫ μ(γ̇) φ_f/h_p dx / ∫ dx/h`, `γ̇ = u/h_p`. What rough surfaces carry unequally (`φ_s`, `φ_fs`) is
+/// left out. `gridded_face` has the values of every place; from three roughness heights on, loads are within 6 % of those with them and drags within 5 %.
 ///
 /// Good to 12 digits for a film that covers a fair part of the face; the load of a sliver at an edge to 12 digits of the
 /// edge pressure times the face length.

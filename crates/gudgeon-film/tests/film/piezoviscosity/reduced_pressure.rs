@@ -24,7 +24,8 @@ fn of_barus_is_the_closed_form() {
         assert!((back / p - 1.0).abs() < lost, "{p}: {back}");
         assert!(p < 0.0 || (f / (alpha * p).exp() - 1.0).abs() < lost * alpha * p + 1e-12, "{p}: {f}");
     }
-    // Beyond a thickening of 1000, at 345 MPa, the oil keeps its viscosity to within a step of the ladder, 11 MPa there or a factor 1.25; the way there and back stays one.
+    // Beyond a thickening of 1000, at 345 MPa, the oil keeps its viscosity to within a step of the ladder, 11 MPa there or a factor 1.25; the way there and
+    // back stays one.
     let (far, f) = r.back(1.2 / alpha).expect("a pressure");
     assert!((1000.0..1250.0).contains(&f) && far > 1e9, "{f} {far}");
     assert!((r.of(far).expect("a pressure") * alpha / 1.2 - 1.0).abs() < 1e-12);

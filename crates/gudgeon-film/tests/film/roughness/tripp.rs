@@ -12,7 +12,8 @@ fn model(liner: f64, body: f64, gamma: f64) -> Box<dyn Roughness> {
         .expect("builds")
 }
 
-/// Ridges across the sliding direction on the body have, to the order of `(σ/h)²`, the factors of triangular waves of that roughness, `σ = Ω/√3`, whose average is exact.
+/// Ridges across the sliding direction on the body have, to the order of `(σ/h)²`, the factors of triangular waves of that roughness, `σ = Ω/√3`, whose
+/// average is exact.
 #[test]
 fn ridges_across_are_waves() {
     let omega = 3e-6;
