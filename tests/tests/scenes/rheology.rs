@@ -6,7 +6,8 @@ use gudgeon_core::result::RunResult;
 const CASE: &str = "turbo-diesel-120";
 /// Seated rings: what films and friction do is not mixed with what they do to the motion in the groove, which has more than one periodic state.
 const SEATED: &str = "models.ring_motion={model=\"seated\"}";
-const GRID: &str = "models.hydrodynamics={model=\"gridded_face\"}";
+/// So many nodes that a ring which gas lifts off finds a velocity: the panels at the edges carry their pressure however fast it goes.
+const GRID: &str = "models.hydrodynamics={model=\"gridded_face\",points=41}";
 const THIN: &str = "models.shear_thinning={model=\"carreau\",critical_shear_rate=\"1e6 1/s\",exponent=0.7,high_shear_ratio=0.5}";
 const ROUGH: &str =
     "models.roughness={model=\"patir_cheng\",liner_roughness=\"0.2 um\",body_roughness=\"0.2 um\"}";
@@ -76,9 +77,12 @@ fn rough_films_say_where_their_factors_end() {
 
 #[test]
 fn what_does_not_fit_is_refused_at_its_place() {
-    let refused = |set: &[&str]| match try_run(CASE, set) {
-        Ok(_) => panic!("{set:?} runs"),
-        Err(e) => e.to_string(),
+    let refused = |set: &[&str]| {
+        let set: Vec<String> = set.iter().map(|s| (*s).to_owned()).collect();
+        match gudgeon_scene::check(&case_file(CASE), &set) {
+            Ok(_) => panic!("{set:?} is accepted"),
+            Err(e) => e.to_string(),
+        }
     };
     let e = refused(&[PIEZO]);
     assert!(

@@ -52,7 +52,7 @@ pub struct ClosedFormFace {
                 same flux at reformation;  swift_stieber: p = p_cav from the rupture to the trailing edge;  \
                 half_sommerfeld: max(p, p_cav);  load = int (p - p_cav) dx;  shear = int (mu u/h -+ h p'/2) dx, \
                 in the cavity weighted with the filled fraction",
-    validity = "Smooth surfaces, fully flooded, narrow face (no flow along the circumference), constant viscosity. \
+    validity = "Fully flooded, narrow face (no flow along the circumference), one viscosity: flow factors and shear thinning as averages. \
                A face that waves up and down has one film under swift_stieber, the one at the leading edge. \
                The cavity has no history: transients shorter than the passage over the face are not resolved.",
     references = ["reynolds1886", "jakobsson1957", "cameron1966", "dowson1979"],
