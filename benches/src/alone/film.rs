@@ -7,7 +7,7 @@ use gudgeon_core::kinds::{
     BoundaryFrictionSpec, CompressibilitySpec, ContactSpec, FaceCtx, FaceIn, Film1dCtx, Film1dIn, Film1dSpec,
     Film2dCtx, Film2dGrid, Film2dIn, Film2dSpec, FilmEnd, FilmHeat, FilmTemperatureCtx, FilmTemperatureSpec,
     FilmTime, HydrodynamicsSpec, OilFaceIn, OilFacePlace, OilSpec, OilTransportCtx, OilTransportSpec,
-    PiezoviscositySpec, RoughFlow, RoughShear, RoughnessSpec, ShearThinningSpec,
+    PiezoviscositySpec, RoughFlow, RoughShear, RoughnessSpec, Rubbing, ShearThinningSpec,
 };
 use gudgeon_core::{EvalError, ModelInfo};
 use gudgeon_film::film_1d::LineProfile;
@@ -89,13 +89,16 @@ pub fn contact(m: &ModelInfo) -> Result<Alone, String> {
     )
 }
 
-/// From -20 to 20 m/s.
+/// From -20 to 20 m/s, a hundredth of the area touching under 2 MPa.
 pub fn boundary_friction(m: &ModelInfo) -> Result<Alone, String> {
     let (speed, mut coefficient, mut slope) = (points(-20.0, 20.0), [0.0; POINTS], [0.0; POINTS]);
     alone::<dyn BoundaryFrictionSpec, _, _>(
         m,
         |s| s.build(),
-        move |law| seen(law.coefficient(black_box(&speed), &mut coefficient, &mut slope)?),
+        move |law| {
+            let at = Rubbing { speed: &speed, pressure: &[2e6; POINTS], real_area: &[0.01; POINTS] };
+            seen(law.coefficient(black_box(&at), &mut coefficient, &mut slope)?)
+        },
     )
 }
 

@@ -6,7 +6,7 @@
 //! | prepare material and roughness constants | [`composite_modulus`], [`composite_roughness`] |
 //! | evaluate the integrals behind asperity models | [`f_5_2`], [`f_2`], [`f_3_2`], [`f_1`], [`asperity_integral()`], [`real_area_ratio`] |
 //! | see what a published fit of `F_(5/2)` does | [`AsperityIntegralFormula`] |
-//! | compute friction against sliding speed | [`Coulomb`], [`Stribeck`], then [`BoundaryFriction`](gudgeon_core::kinds::BoundaryFriction) |
+//! | compute friction against sliding speed | [`Coulomb`], [`Stribeck`], [`ShearStrength`], then [`BoundaryFriction`](gudgeon_core::kinds::BoundaryFriction) |
 //!
 //! The models of the kind `contact`:
 //!
@@ -23,7 +23,7 @@
 //! | [`Off`] | none | none |
 //!
 //! The coefficient of friction of these models does not depend on the sliding speed; a model of the kind `boundary_friction`
-//! ([`Coulomb`], [`Stribeck`], [`Frictionless`]) gives one that does.
+//! ([`Coulomb`], [`Stribeck`], [`Frictionless`]) gives one that does, or one that follows from the real area ([`ShearStrength`]).
 //!
 //! A contact alone:
 //!
@@ -58,11 +58,12 @@ mod abbott_firestone;
 mod asperity_formula;
 pub mod asperity_integral;
 mod boundary_friction {
-    //! Friction of solid contact against sliding speed.
+    //! Friction of solid contact against sliding speed, load and real area.
     mod check;
     pub mod coulomb;
     pub mod off;
     mod rounded_sign;
+    pub mod shear_strength;
     pub mod stribeck;
 }
 mod crest_wedge;
@@ -81,6 +82,7 @@ pub use asperity_formula::AsperityIntegralFormula;
 pub use asperity_integral::{asperity_integral, f_1, f_2, f_3_2, f_5_2};
 pub use boundary_friction::coulomb::Coulomb;
 pub use boundary_friction::off::Off as Frictionless;
+pub use boundary_friction::shear_strength::ShearStrength;
 pub use boundary_friction::stribeck::Stribeck;
 pub use crest_wedge::CrestWedge;
 pub use film_floor::FilmFloor;
@@ -104,5 +106,6 @@ gudgeon_core::link!(
     LinearPenalty,
     Off,
     RoughnessThreshold,
+    ShearStrength,
     Stribeck,
 );

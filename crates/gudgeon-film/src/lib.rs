@@ -18,12 +18,12 @@
 //!
 //! | property | models |
 //! |---|---|
-//! | viscosity over temperature | [`Constant`], [`Vogel`], [`VogelGrade`] |
+//! | viscosity over temperature | [`Constant`], [`Vogel`], [`VogelGrade`], [`Walther`] |
 //! | viscosity under pressure | [`Barus`], [`Roelands`], [`Isoviscous`] |
 //! | viscosity under shear | [`Cross`], [`Carreau`], [`Newtonian`] |
 //! | density under pressure | [`DowsonHigginson`], [`Incompressible`] |
-//! | flow between rough surfaces | [`PatirCheng`], [`SawtoothWaviness`], [`SmoothSurfaces`] |
-//! | temperature of the film under each ring | [`Given`], [`LinerLinear`], [`LandWallMean`] |
+//! | flow between rough surfaces | [`PatirCheng`], [`Tripp`], [`SawtoothWaviness`], [`SmoothSurfaces`] |
+//! | temperature of the film under each ring | [`Given`], [`LinerLinear`], [`LandWallMean`], [`EnergyBalance`] |
 //! | oil that rings leave on the liner | module [`oil_transport`] |
 //!
 //! A viscosity that depends on pressure or shear goes around a film along a line by [`film_1d::ViscosityLoop`].
@@ -67,15 +67,16 @@ mod slices;
 pub use cavitation::Cavitation;
 pub use compressibility::dowson_higginson::DowsonHigginson;
 pub use compressibility::off::Off as Incompressible;
-pub use film_temperature::{Given, LandWallMean, LinerLinear};
+pub use film_temperature::{EnergyBalance, Given, LandWallMean, LinerLinear};
 pub use hydrodynamics::{CavityShear, ClosedFormFace, GriddedFace, Off};
-pub use oil::{Constant, Grade, Table, Vogel, VogelGrade, VogelTable};
+pub use oil::{Constant, Grade, Table, Vogel, VogelGrade, VogelTable, Walther};
 pub use piezoviscosity::barus::Barus;
 pub use piezoviscosity::off::Off as Isoviscous;
 pub use piezoviscosity::roelands::Roelands;
 pub use roughness::off::Off as SmoothSurfaces;
 pub use roughness::patir_cheng::{PatirCheng, Pattern};
 pub use roughness::sawtooth_waviness::{SawtoothWaviness, WavinessTransport};
+pub use roughness::tripp::Tripp;
 pub use shear_thinning::carreau::Carreau;
 pub use shear_thinning::cross::Cross;
 pub use shear_thinning::off::Off as Newtonian;
@@ -87,6 +88,7 @@ gudgeon_core::link!(
     Constant,
     Cross,
     DowsonHigginson,
+    EnergyBalance,
     Given,
     GriddedFace,
     Incompressible,
@@ -100,8 +102,10 @@ gudgeon_core::link!(
     SawtoothWaviness,
     SmoothSurfaces,
     Table,
+    Tripp,
     Vogel,
     VogelGrade,
+    Walther,
     film_1d::Complementarity,
     film_1d::ElrodAdams,
     film_1d::FrontTracking,
@@ -128,6 +132,7 @@ pub mod parts {
     pub use crate::oil_transport::carried::Carried;
     pub use crate::oil_transport::face::{MIN_REACH, SIDES, WAVE_SLOPE};
     pub use crate::oil_transport::law::Law;
+    pub use crate::piezoviscosity::reduced_pressure::ReducedPressure;
     pub use crate::piezoviscosity::tame_exp;
     pub use crate::roughness::{GaussianGap, patir_cheng, sawtooth_waviness};
 }

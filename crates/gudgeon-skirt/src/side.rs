@@ -1,8 +1,9 @@
 //! One side of the skirt: gap, film, contact, and the forces that belong to the motions of the gap.
 
 use gudgeon_core::kinds::{
-    ContactSpec, Film2d, Film2dCtx, Film2dGrid, Film2dIn, Film2dOut, Film2dSpec, FilmMode, RoughShear,
-    Roughness, RoughnessSpec, ShearThinning, SkirtCompliance, SkirtProfile, Superposition,
+    BoundaryFrictionSpec, ContactSpec, Film2d, Film2dCtx, Film2dGrid, Film2dIn, Film2dOut, Film2dSpec,
+    FilmMode, RoughShear, Roughness, RoughnessSpec, ShearThinning, SkirtCompliance, SkirtProfile,
+    Superposition,
 };
 use gudgeon_core::{BuildError, EvalError};
 
@@ -20,7 +21,7 @@ pub use contact::ContactGrid;
 pub use kept::{Filling, OilMoved, OilWay};
 pub use loads::{SideLoads, Slopes};
 
-use contact::ContactRows;
+use contact::{ContactRows, Touch};
 use gap::{Gap, film_input};
 use kept::Kept;
 use nodes::Nodes;
@@ -45,6 +46,8 @@ pub struct SideSetup<'a> {
     pub roughness: &'a dyn RoughnessSpec,
     /// Contact.
     pub contact: &'a dyn ContactSpec,
+    /// Friction of that contact; none: the coefficient of the contact model at every speed.
+    pub boundary_friction: Option<&'a dyn BoundaryFrictionSpec>,
     /// Where contact is summed.
     pub contact_grid: ContactGrid,
     /// Shape.
@@ -110,7 +113,7 @@ pub struct Side {
     p: Vec<f64>,
     open: Vec<f64>,
     fill: Vec<f64>,
-    contact_now: [f64; 4],
+    contact_now: [f64; 6],
     /// Oil that is kept, when it is.
     kept: Option<Kept>,
     /// Film evaluations so far: linear systems set up.
@@ -121,7 +124,7 @@ impl Side {
     /// Builds the side.
     ///
     /// # Errors
-    /// What film, roughness and contact refuse, at `film_2d`, `roughness` and `contact`.
+    /// What film, roughness, contact and its friction refuse, at `film_2d`, `roughness`, `contact` and `boundary_friction`.
     pub fn new(setup: SideSetup<'_>) -> Result<Self, Vec<BuildError>> {
         let SideSetup { panel, sign, clearance, .. } = setup;
         let whole = setup.grid.clone();
@@ -132,11 +135,11 @@ impl Side {
         let grid = half.unwrap_or_else(|| whole.clone());
         let film = setup.film.build(&Film2dCtx { grid: &grid }).map_err(|e| e.within("film_2d"));
         let rough = setup.roughness.build().map_err(|e| e.within("roughness"));
-        let contact = setup.contact.build().map_err(|e| e.within("contact"));
-        let (film, rough, contact) = match (film, rough, contact) {
-            (Ok(film), Ok(rough), Ok(contact)) => (film, rough, contact),
-            (film, rough, contact) => {
-                return Err(film.err().into_iter().chain(rough.err()).chain(contact.err()).collect());
+        let touch = Touch::new(setup.contact, setup.boundary_friction);
+        let (film, rough, touch) = match (film, rough, touch) {
+            (Ok(film), Ok(rough), Ok(touch)) => (film, rough, touch),
+            (film, rough, touch) => {
+                return Err(film.err().into_iter().chain(rough.err()).chain(touch.err()).collect());
             }
         };
         let nodes = Nodes::new(&grid, &panel, is_half);
@@ -151,7 +154,7 @@ impl Side {
         }
         let profile = (!is_cylinder).then_some(setup.profile);
         let (cg, own) = (setup.contact_grid, &shapes[2 * n..]);
-        let rows = ContactRows::new(panel, sign, clearance, cg, contact, symmetric, profile, &nodes, own);
+        let rows = ContactRows::new(panel, sign, clearance, cg, touch, symmetric, profile, &nodes, own);
         let is_rough = !rough.is_smooth();
         let over = Over { tests, arm: nodes.cos.iter().map(|c| panel.radius * c).collect(), nx: nodes.nx };
         Ok(Self {
@@ -191,7 +194,7 @@ impl Side {
             p: vec![0.0; n],
             open: vec![0.0; n],
             fill: vec![1.0; n],
-            contact_now: [0.0; 4],
+            contact_now: [0.0; 6],
             kept: None,
             evaluations: 0,
             whole,
@@ -487,10 +490,10 @@ impl Side {
     }
 
     /// Solid contact: forces on both edges, normal force, and its moment arm.
-    fn contact_loads(&mut self, e: [f64; 2], q: &[f64]) -> [f64; 4] {
+    fn contact_loads(&mut self, e: [f64; 2], q: &[f64]) -> [f64; 6] {
         let range = self.rows.range();
         if range <= 0.0 || self.least_contact_gap(e, q) >= range {
-            return [0.0; 4];
+            return [0.0; 6];
         }
         self.rows.loads(e, q)
     }
@@ -507,10 +510,11 @@ impl Side {
         self.rows.range() > 0.0
     }
 
-    /// Coefficient of friction of solid contact.
+    /// Friction of solid contact on the skirt for what [`SideLoads::contact`] says, while it moves away from the head at `speed` \[m/s\]: axial force away
+    /// from the head \[N\], and that force times `R cos φ` \[N m\].
     #[must_use]
-    pub fn friction_coefficient(&self) -> f64 {
-        self.rows.friction_coefficient()
+    pub fn rubbing(&self, speed: f64, contact: &[f64; 6]) -> [f64; 2] {
+        self.rows.rubbing(speed, contact)
     }
 }
 

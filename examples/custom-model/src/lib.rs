@@ -1,10 +1,10 @@
 //! A sub-model outside the physics crates of Gudgeon.
 //!
-//! `walther.rs` is all there is to it: a specification with its documentation, one `#[register_model]`, the running model.
+//! `reynolds_exponential.rs` is all there is to it: a specification with its documentation, one `#[register_model]`, the running model.
 //! Case files, `models`, `describe`, `schema`, validation with places, `compare` and `bench` follow from that.
 
-mod walther;
+mod reynolds_exponential;
 
-pub use walther::Walther;
+pub use reynolds_exponential::ReynoldsExponential;
 
-gudgeon_core::link!(Walther,);
+gudgeon_core::link!(ReynoldsExponential,);

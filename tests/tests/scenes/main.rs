@@ -18,6 +18,7 @@ mod oil;
 mod pin;
 mod piston_secondary;
 mod reference;
+mod rheology;
 mod rigs;
 mod sampling;
 mod shaft_line;

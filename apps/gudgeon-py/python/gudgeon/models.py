@@ -14,7 +14,7 @@ def models(kind: str | None = None) -> dict[str, Any]:
 
     >>> import gudgeon
     >>> sorted(gudgeon.models("oil"))
-    ['constant', 'table', 'vogel', 'vogel_grade']
+    ['constant', 'table', 'vogel', 'vogel_grade', 'walther']
     """
     told = {k["kind"]: {m["model"]: m["summary"] for m in k["models"]} for k in _native.kinds(kind)}
     return told if kind is None else next(iter(told.values()))

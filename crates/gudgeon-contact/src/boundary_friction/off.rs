@@ -1,4 +1,4 @@
-use gudgeon_core::kinds::{BoundaryFriction, BoundaryFrictionSpec};
+use gudgeon_core::kinds::{BoundaryFriction, BoundaryFrictionSpec, Rubbing};
 use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
@@ -32,11 +32,11 @@ impl BoundaryFriction for Frictionless {
     }
     fn coefficient(
         &self,
-        speed: &[f64],
+        at: &Rubbing<'_>,
         coefficient: &mut [f64],
         slope: &mut [f64],
     ) -> Result<(), EvalError> {
-        check("boundary_friction off", speed, &[coefficient.len(), slope.len()])?;
+        check("boundary_friction off", at, [coefficient.len(), slope.len()])?;
         coefficient.fill(0.0);
         slope.fill(0.0);
         Ok(())

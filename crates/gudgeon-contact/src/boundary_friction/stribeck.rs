@@ -1,4 +1,4 @@
-use gudgeon_core::kinds::{BoundaryFriction, BoundaryFrictionSpec};
+use gudgeon_core::kinds::{BoundaryFriction, BoundaryFrictionSpec, Rubbing};
 use gudgeon_core::quantity::{NonNegative, PosRatio, PosVelocity, Ratio, Velocity, quantity};
 use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
@@ -86,12 +86,12 @@ impl BoundaryFriction for Falling {
     }
     fn coefficient(
         &self,
-        speed: &[f64],
+        at: &Rubbing<'_>,
         coefficient: &mut [f64],
         slope: &mut [f64],
     ) -> Result<(), EvalError> {
-        check("stribeck", speed, &[coefficient.len(), slope.len()])?;
-        for (i, &v) in speed.iter().enumerate() {
+        check("stribeck", at, [coefficient.len(), slope.len()])?;
+        for (i, &v) in at.speed.iter().enumerate() {
             let (sign, rise) = rounded_sign(v, self.rounding);
             let x = v.abs() * self.inverse;
             let power = x.powf(self.exponent);

@@ -2,6 +2,7 @@ use std::fmt::Debug;
 
 use dyn_clone::DynClone;
 
+use super::{Rheology, RheologyScope};
 use crate::geometry::FaceProfile;
 use crate::{BuildError, EvalError, register_kind};
 
@@ -20,12 +21,32 @@ pub trait HydrodynamicsSpec: Debug + DynClone + Send + Sync {
     /// # Errors
     /// A face shape that the model cannot represent.
     fn build(&self, ctx: &FaceCtx<'_>) -> Result<Box<dyn Hydrodynamics>, BuildError>;
+
+    /// What the film can have besides a constant viscosity between smooth walls.
+    fn scope(&self) -> RheologyScope {
+        RheologyScope::default()
+    }
+
+    /// Builds the running model of one face with oil and surfaces that are more than that.
+    ///
+    /// # Errors
+    /// As [`HydrodynamicsSpec::build`]; anything that is not in its [`HydrodynamicsSpec::scope`].
+    fn build_with(
+        &self,
+        ctx: &FaceCtx<'_>,
+        rheology: &Rheology,
+    ) -> Result<Box<dyn Hydrodynamics>, BuildError> {
+        match rheology.beyond(self.scope()) {
+            None => self.build(ctx),
+            Some(kind) => Err(BuildError::new(format!("this film has no `{kind}`"))),
+        }
+    }
 }
 
 /// One film at an instant, in the frame of the ring, `x` from the bottom edge to the top edge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FaceIn {
-    /// Film thickness at zero drop \[m\]: `h(x) = h + drop(x)`.
+    /// Film thickness at zero drop \[m\]: `h(x) = h + drop(x)`. Between rough surfaces the mean gap there.
     pub h: f64,
     /// Velocity of the liner along `+x` seen from the ring \[m/s\]: minus the piston velocity.
     pub u: f64,

@@ -2,5 +2,6 @@
 
 pub mod barus;
 pub mod off;
+pub mod reduced_pressure;
 pub mod roelands;
 pub mod tame_exp;

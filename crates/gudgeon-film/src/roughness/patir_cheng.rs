@@ -24,6 +24,8 @@ use super::held_above::held_above;
 /// φ_f  = z ∫ 35/32 (1 - t²)³/(z + t) dt over z + t > 1/300,  z = H/3;  for z < 1 to 0.2 %, as published
 /// ```
 ///
+/// `∂h_T/∂h = ½ [1 + erf(H/√2)]` is the contact factor of Wu and Zheng (wu1989).
+///
 /// The constants are tabulated for seven patterns and not interpolated. What the published pieces leave open is closed so that
 /// everything has a continuous slope:
 ///
@@ -105,7 +107,7 @@ impl Pattern {
     summary = "flow and shear factors of Gaussian rough surfaces by Patir and Cheng",
     equations = "H = h/sigma;  phi_x = 1 - C exp(-r H) (gamma <= 1), 1 + C H^-r (gamma > 1);  phi_y(gamma) = phi_x(1/gamma);  h_T = h/2 [1 + erf(H/sqrt 2)] + sigma exp(-H^2/2)/sqrt(2 pi);  h_c = h_T + sigma phi_s;  Phi_s = A1 H^a1 exp(-a2 H + a3 H^2), A2 exp(-H/4) for H > 5;  Phi_fs = A3 H^a4 exp(-a5 H + a6 H^2);  phi_fp = 1 - D exp(-s H);  phi_f = mean of h/h_local",
     validity = "Gaussian heights, gamma 1/9, 1/6, 1/3, 1, 3, 6 or 9, full films; H above 1 (gamma or 1/gamma of 6 and 9), 0.75 (3) or 0.5 (1). Below, the factors stay at those of 0.05 less than that limit.",
-    references = ["patir1978", "patir1979"],
+    references = ["patir1978", "patir1979", "wu1989"],
     example = "liner_roughness = \"0.3 um\"\nbody_roughness = \"0.2 um\"\npattern = \"1/3\"\n",
 )]
 impl RoughnessSpec for PatirCheng {

@@ -13,6 +13,8 @@ mod moments;
 mod oil;
 mod oil_transport;
 mod piezoviscosity;
+mod rheology_grid;
 mod roughness;
 mod rows;
 mod shear_thinning;
+mod walther;

@@ -6,8 +6,9 @@ use std::path::Path;
 use gudgeon_core::file::Files;
 use gudgeon_core::geometry::FaceProfile;
 use gudgeon_core::kinds::{
-    BossBore, ContactSpec, CylinderPressureCtx, CylinderPressureSpec, FaceCtx, FaceIn, HydrodynamicsSpec,
-    Kinematics, KinematicsCtx, KinematicsSpec, OilSpec, PinForces, PinSize, PinStrengthCtx, PinStrengthSpec,
+    BossBore, CompressibilitySpec, ContactSpec, CylinderPressureCtx, CylinderPressureSpec, FaceCtx, FaceIn,
+    HydrodynamicsSpec, Kinematics, KinematicsCtx, KinematicsSpec, OilSpec, PiezoviscositySpec, PinForces,
+    PinSize, PinStrengthCtx, PinStrengthSpec, Rheology, RheologySpecs, RoughnessSpec, ShearThinningSpec,
 };
 use gudgeon_core::registry::Kind;
 use gudgeon_core::{Registry, spec};
@@ -100,6 +101,62 @@ fn ring_films() {
             assert!(models >= 3);
         }
     }
+}
+
+/// Every film with every oil and surface that it can have.
+#[test]
+fn ring_films_of_real_oil_between_rough_surfaces() {
+    let (length, drop) = (2.5e-3, 8e-6);
+    let face =
+        FaceProfile::Parabola { length, curvature: 4.0 * drop / (length * length), apex: 0.5 * length };
+    // Squeezed so slowly that no oil would need more pressure than it can have.
+    let instants = [
+        (FaceIn { h: 2e-6, u: 8.0, p_bottom: 1.2e5, p_top: 4e5, p_cav: 1e5, mu: 0.008 }, 1e-3),
+        (FaceIn { h: 0.7e-6, u: -3.0, p_bottom: 2e5, p_top: 60e5, p_cav: 1e5, mu: 0.02 }, 1e-5),
+        (FaceIn { h: 4e-6, u: 0.0, p_bottom: 1e5, p_top: 1e5, p_cav: 1e5, mu: 0.01 }, 1e-3),
+    ];
+    let (mut wrong, mut films) = (Vec::new(), 0);
+    for rheology in rheologies() {
+        for m in Registry::collect().models("hydrodynamics") {
+            let spec = example_of::<dyn HydrodynamicsSpec>(m).unwrap_or_else(|e| panic!("{}: {e}", m.name));
+            let mut film = match spec.build_with(&FaceCtx { face: &face }, &rheology) {
+                Ok(film) if rheology.beyond(spec.scope()).is_none() => film,
+                Err(_) if rheology.beyond(spec.scope()).is_some() => continue,
+                other => panic!("{}: {rheology:?}: {:?}", m.name, other.err()),
+            };
+            films += 1;
+            for (inp, hdot) in &instants {
+                let found = gudgeon_testkit::hydrodynamics(&mut *film, inp, *hdot);
+                wrong.extend(found.into_iter().map(|w| format!("{}, {rheology:?}, {inp:?}: {w}", m.name)));
+            }
+        }
+    }
+    assert_none(wrong);
+    assert!(films >= 8, "{films}");
+}
+
+/// Every model of the four kinds alone, as its example says.
+fn rheologies() -> Vec<Rheology> {
+    let registry = Registry::collect();
+    let mut all = Vec::new();
+    let none = RheologySpecs::default;
+    for m in registry.models("roughness") {
+        let s = example_of::<dyn RoughnessSpec>(m).unwrap_or_else(|e| panic!("{}: {e}", m.name));
+        all.push(RheologySpecs { roughness: Some(&*s), ..none() }.build());
+    }
+    for m in registry.models("shear_thinning") {
+        let s = example_of::<dyn ShearThinningSpec>(m).unwrap_or_else(|e| panic!("{}: {e}", m.name));
+        all.push(RheologySpecs { shear_thinning: Some(&*s), ..none() }.build());
+    }
+    for m in registry.models("piezoviscosity") {
+        let s = example_of::<dyn PiezoviscositySpec>(m).unwrap_or_else(|e| panic!("{}: {e}", m.name));
+        all.push(RheologySpecs { piezoviscosity: Some(&*s), ..none() }.build());
+    }
+    for m in registry.models("compressibility") {
+        let s = example_of::<dyn CompressibilitySpec>(m).unwrap_or_else(|e| panic!("{}: {e}", m.name));
+        all.push(RheologySpecs { compressibility: Some(&*s), ..none() }.build());
+    }
+    all.into_iter().map(|r| r.expect("examples build")).collect()
 }
 
 #[test]

@@ -211,23 +211,16 @@ impl Piston {
         summary: Option<&mut Summary>,
     ) -> (f64, f64) {
         let (mut friction, mut moment) = (0.0, 0.0);
-        let direction = if now.speed > 0.0 {
-            1.0
-        } else if now.speed < 0.0 {
-            -1.0
-        } else {
-            0.0
-        };
         let mut told = Summary::default();
         for (i, (side, l)) in self.sides.iter().zip(loads).enumerate() {
-            let rub = -direction * side.friction_coefficient();
+            let rubbing = side.rubbing(now.speed, &l.contact);
             let moment_of = |force: f64, arm: f64| -side.sign * arm + self.crank.pin_offset * force;
             let own = moment_of(l.film[2], l.film[3]);
-            friction += l.film[2] + rub * l.contact[2];
-            moment += own + moment_of(rub * l.contact[2], rub * l.contact[3]);
+            friction += l.film[2] + rubbing[0];
+            moment += own + moment_of(rubbing[0], rubbing[1]);
             told.film_friction[i] = l.film[2];
             told.film_friction_moment[i] = own;
-            told.contact_friction[i] = rub * l.contact[2];
+            told.contact_friction[i] = rubbing[0];
         }
         let rod = self.body.rod_lateral(now, friction);
         let mut force = rod;

@@ -1,6 +1,9 @@
 //! Solid contact of one side, summed along rows.
 
-use gudgeon_core::kinds::{Contact, SkirtProfile};
+use gudgeon_core::BuildError;
+use gudgeon_core::kinds::{
+    BoundaryFriction, BoundaryFrictionSpec, Contact, ContactSpec, SkirtProfile, real_area_is_known,
+};
 
 use super::nodes::Nodes;
 use crate::geometry::{Panel, between};
@@ -15,13 +18,38 @@ pub struct ContactGrid {
     pub intervals: usize,
 }
 
+/// Solid contact, and its friction where there is a model for it.
+pub(super) struct Touch {
+    contact: Box<dyn Contact>,
+    friction: Option<Box<dyn BoundaryFriction>>,
+}
+
+impl Touch {
+    /// Builds both.
+    pub(super) fn new(
+        contact: &dyn ContactSpec,
+        friction: Option<&dyn BoundaryFrictionSpec>,
+    ) -> Result<Self, BuildError> {
+        let built = contact.build().map_err(|e| e.within("contact"))?;
+        let Some(friction) = friction else { return Ok(Self { contact: built, friction: None }) };
+        let model = friction.build().map_err(|e| e.within("boundary_friction"))?;
+        real_area_is_known(&*model, &*built, contact.typetag_name())
+            .map_err(|e| e.within("boundary_friction"))?;
+        Ok(Self { contact: built, friction: Some(model) })
+    }
+
+    fn uses_real_area(&self) -> bool {
+        self.friction.as_ref().is_some_and(|f| f.uses_real_area())
+    }
+}
+
 /// Rows along which solid contact is summed.
 pub(super) struct ContactRows {
     panel: Panel,
     sign: f64,
     clearance: f64,
     grid: ContactGrid,
-    contact: Box<dyn Contact>,
+    touch: Touch,
     /// Part of the height at every row.
     rows: Vec<f64>,
     cos: Vec<f64>,
@@ -29,7 +57,8 @@ pub(super) struct ContactRows {
     drop: Vec<f64>,
     /// Elastic shapes, row after row, shape after shape.
     shapes: Vec<f64>,
-    work: [Vec<f64>; 2],
+    /// Gaps, pressures and real areas along a row.
+    work: [Vec<f64>; 3],
     /// Sums so far.
     pub(super) sums: u64,
 }
@@ -43,7 +72,7 @@ impl ContactRows {
         sign: f64,
         clearance: f64,
         grid: ContactGrid,
-        contact: Box<dyn Contact>,
+        touch: Touch,
         symmetric: bool,
         profile: Option<&dyn SkirtProfile>,
         nodes: &Nodes,
@@ -68,18 +97,36 @@ impl ContactRows {
             }
         }
         let cos: Vec<f64> = angle.iter().map(|a| a.cos()).collect();
-        let work = [vec![0.0; cos.len()], vec![0.0; cos.len()]];
-        Self { panel, sign, clearance, grid, contact, rows, cos, drop, shapes, work, sums: 0 }
+        let work = [vec![0.0; cos.len()], vec![0.0; cos.len()], vec![0.0; cos.len()]];
+        Self { panel, sign, clearance, grid, touch, rows, cos, drop, shapes, work, sums: 0 }
     }
 
     /// Distance of the mean planes up to which there is contact \[m\].
     pub(super) fn range(&self) -> f64 {
-        self.contact.range()
+        self.touch.contact.range()
     }
 
-    /// Coefficient of friction.
-    pub(super) fn friction_coefficient(&self) -> f64 {
-        self.contact.friction_coefficient()
+    /// Axial force \[N\] of the friction of solid contact, away from the head, and the force times `R cos φ` \[N m\], for what
+    /// [`ContactRows::loads`] found, while the skirt moves away from the head at `speed` \[m/s\].
+    pub(super) fn rubbing(&self, speed: f64, loads: &[f64; 6]) -> [f64; 2] {
+        let Some(friction) = &self.touch.friction else {
+            let direction = if speed > 0.0 {
+                1.0
+            } else if speed < 0.0 {
+                -1.0
+            } else {
+                0.0
+            };
+            let rub = -direction * self.touch.contact.friction_coefficient();
+            return [rub * loads[2], rub * loads[3]];
+        };
+        let whole = self.panel.width() * self.panel.length;
+        let force = |load: f64, area: f64, lever: f64| {
+            let nominal = whole * lever;
+            // What is refused is no number already.
+            -load * friction.of_body(speed, load / nominal, area / nominal).unwrap_or(f64::NAN)
+        };
+        [force(loads[2], loads[4], 1.0), force(loads[3], loads[5], self.panel.radius)]
     }
 
     /// Smallest gap along all rows \[m\].
@@ -107,10 +154,12 @@ impl ContactRows {
         }
     }
 
-    /// Forces on both edges \[N\], normal force \[N\] and `∫ p R cos φ dA` \[N m\].
-    pub(super) fn loads(&mut self, e: [f64; 2], q: &[f64]) -> [f64; 4] {
-        let range = self.contact.range();
-        let mut sum = [0.0; 4];
+    /// Forces on both edges \[N\], normal force \[N\] and `∫ p R cos φ dA` \[N m\]; the real area `∫ A_c/A dA` \[m²\] and `∫ A_c/A R cos φ dA` \[m³\] where
+    /// friction asks for them.
+    pub(super) fn loads(&mut self, e: [f64; 2], q: &[f64]) -> [f64; 6] {
+        let range = self.touch.contact.range();
+        let mut sum = [0.0; 6];
+        let wants_area = self.touch.uses_real_area();
         self.sums += 1;
         let points = self.cos.len();
         let n = self.grid.intervals;
@@ -119,11 +168,14 @@ impl ContactRows {
         for k in 0..self.rows.len() {
             self.row(k, e, q);
             let s = self.rows[k];
-            let [h, p] = &mut self.work;
+            let [h, p, area] = &mut self.work;
             if h.iter().all(|h| *h >= range) {
                 continue;
             }
-            self.contact.pressure(h, p);
+            self.touch.contact.pressure(h, p);
+            if wants_area {
+                self.touch.contact.real_area(h, area);
+            }
             for (i, p) in p.iter().enumerate() {
                 let end = i == 0 || (!doubled && i + 1 == points);
                 let middle = doubled && i + 1 == points;
@@ -138,6 +190,11 @@ impl ContactRows {
                 sum[1] += side * s;
                 sum[2] += load;
                 sum[3] += load * self.panel.radius * self.cos[i];
+                if wants_area {
+                    let touching = step * w * area[i];
+                    sum[4] += touching;
+                    sum[5] += touching * self.panel.radius * self.cos[i];
+                }
             }
         }
         sum

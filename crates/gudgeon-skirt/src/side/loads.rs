@@ -9,8 +9,9 @@ pub struct SideLoads {
     pub film: [f64; 4],
     /// Forces on the elastic shapes \[N\].
     pub elastic: Vec<f64>,
-    /// Solid contact: forces on both edges \[N\], normal force `∫ p dA` \[N\], `∫ p R cos φ dA` \[N m\].
-    pub contact: [f64; 4],
+    /// Solid contact: forces on both edges \[N\], normal force `∫ p dA` \[N\], `∫ p R cos φ dA` \[N m\]; where friction asks for the real area of contact, that
+    /// area `∫ A_c/A dA` \[m²\] and `∫ A_c/A R cos φ dA` \[m³\].
+    pub contact: [f64; 6],
     /// Derivative of `film`, then of `elastic`, with respect to the rates, rate after rate.
     pub slope: Vec<f64>,
 }

@@ -247,6 +247,7 @@ fn flat_plates_and_concentric_drag() {
             film: &CentralDifferences::default(),
             roughness: &SmoothSurfaces {},
             contact: &gudgeon_contact::Off {},
+            boundary_friction: None,
             contact_grid: ContactGrid { pitch: 1e-3, intervals: 4 },
             profile: &*profile,
             compliance: rigid(&grid),

@@ -46,6 +46,7 @@ fn built(panel: Panel, barrel: bool, shape: Shape, contact: ContactGrid, floor: 
         film: &Direct { cavitation: Cavitation::HalfSommerfeld, ..Direct::default() },
         roughness: &SmoothSurfaces {},
         contact: &crests,
+        boundary_friction: None,
         contact_grid: contact,
         profile: &*profile(barrel),
         compliance: modal.build(&ctx).expect("a shape"),
@@ -140,6 +141,7 @@ fn bare(
         film: &Direct { cavitation: Cavitation::FullSommerfeld, ..Direct::default() },
         roughness: &SmoothSurfaces {},
         contact: &gudgeon_contact::Off {},
+        boundary_friction: None,
         contact_grid: ContactGrid { pitch: 1e-3, intervals: 4 },
         profile,
         compliance: rigid(&grid),
@@ -201,5 +203,68 @@ fn thinner_oil_carries_and_drags_less_in_the_same_measure() {
             (ratio / factor - 1.0).abs() < 1e-5 && newtonian.film[k].abs() > 1.0,
             "{k}: {ratio} {factor}"
         );
+    }
+}
+
+/// A rough side without oil resistance of interest, whose contact rubs by a model of its own.
+fn rubbing_side(friction: Option<&gudgeon_contact::ShearStrength>) -> Side {
+    let panel = Panel { radius: RADIUS, length: LENGTH, half_angle: 0.6 };
+    let grid = panel.grid(12, 12, 0.0);
+    let flat = profile(false);
+    let contact = gudgeon_contact::GreenwoodTripp {
+        roughness: quantity(2e-6),
+        composite_modulus: quantity(45e9),
+        eta_beta_sigma: Some(quantity(0.05)),
+        sigma_over_beta: Some(quantity(1e-3)),
+        asperity_density: None,
+        asperity_radius: None,
+        integral: gudgeon_contact::AsperityIntegralFormula::Exact,
+        friction_coefficient: quantity(0.1),
+    };
+    Side::new(SideSetup {
+        panel,
+        sign: 1.0,
+        clearance: 1e-5,
+        grid: &grid,
+        film: &Direct { cavitation: Cavitation::FullSommerfeld, ..Direct::default() },
+        roughness: &SmoothSurfaces {},
+        contact: &contact,
+        boundary_friction: friction.map(|f| f as &dyn gudgeon_core::kinds::BoundaryFrictionSpec),
+        contact_grid: ContactGrid { pitch: 1e-3, intervals: 20 },
+        profile: &*flat,
+        compliance: rigid(&grid),
+        shear_thinning: None,
+        p_cav: 0.0,
+        floor: 1e-7,
+    })
+    .expect("builds")
+}
+
+#[test]
+fn contact_rubs_over_its_real_area_and_by_its_load() {
+    let of = |strength: f64| gudgeon_contact::ShearStrength {
+        strength: quantity(strength),
+        pressure_coefficient: quantity(0.1),
+        rounding_speed: quantity(0.0),
+    };
+    let contact = |side: &mut Side| forces(side, [-7e-6, -6e-6], 6.0, [0.0; 2]).contact;
+    let (mut plain, mut dry) = (rubbing_side(None), rubbing_side(Some(&of(0.0))));
+    let (a, b) = (contact(&mut plain), contact(&mut dry));
+    assert!(a == b && a[2] > 0.0 && a[4] == 0.0, "nobody asks for the area: {a:?}");
+    // The same product, in another order of its factors, and against the motion.
+    for (x, y) in plain.rubbing(6.0, &a).iter().zip(dry.rubbing(6.0, &b)) {
+        assert!((y / x - 1.0).abs() < 1e-14 && *x < 0.0, "{x} {y}");
+    }
+    assert_eq!(plain.rubbing(0.0, &a).map(f64::abs), dry.rubbing(0.0, &b).map(f64::abs));
+    let mut layer = rubbing_side(Some(&of(5e6)));
+    let c = contact(&mut layer);
+    assert!(c[..4] == a[..4] && c[4] > 0.0);
+    // Summits of Greenwood and Tripp's surfaces are pressed together with some hundred megapascals: the area is the load over that.
+    let summits = c[2] / c[4];
+    assert!((1e8..2e9).contains(&summits), "{summits} Pa");
+    for (k, force) in layer.rubbing(-6.0, &c).into_iter().enumerate() {
+        let exact = 0.1 * c[2 + k] + 5e6 * c[4 + k];
+        // Rounding of a sum of two products.
+        assert!((force / exact - 1.0).abs() < 1e-13, "{k}: {force} {exact}");
     }
 }

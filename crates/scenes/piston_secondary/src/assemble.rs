@@ -215,6 +215,7 @@ fn both_sides(
             film: &*m.film_2d,
             roughness: &*m.roughness,
             contact: &*m.contact,
+            boundary_friction: m.boundary_friction.as_deref(),
             contact_grid: ContactGrid {
                 pitch: solver.contact_pitch.si(),
                 intervals: solver.contact_intervals as usize,

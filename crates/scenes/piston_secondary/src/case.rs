@@ -1,8 +1,8 @@
 //! What a case of the scene `piston_secondary` may say.
 
 use gudgeon_core::kinds::{
-    ContactSpec, CylinderPressureSpec, Film2dSpec, GrooveFrictionSpec, KinematicsSpec, OilSpec,
-    PinFrictionSpec, RoughnessSpec, SecondaryMotionSpec, ShearThinningSpec, SkirtComplianceSpec,
+    BoundaryFrictionSpec, ContactSpec, CylinderPressureSpec, Film2dSpec, GrooveFrictionSpec, KinematicsSpec,
+    OilSpec, PinFrictionSpec, RoughnessSpec, SecondaryMotionSpec, ShearThinningSpec, SkirtComplianceSpec,
     SkirtOilSpec, SkirtProfileSpec,
 };
 use gudgeon_core::quantity::{
@@ -142,6 +142,9 @@ pub struct Models {
     pub roughness: Box<dyn RoughnessSpec>,
     /// Solid contact of skirt and liner. No default: it needs the roughness of the surfaces.
     pub contact: Box<dyn ContactSpec>,
+    /// How its friction depends on sliding speed, load and real area; absent: the coefficient of the contact model at every speed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub boundary_friction: Option<Box<dyn BoundaryFrictionSpec>>,
     /// Shape of the skirt.
     #[serde(default = "default_skirt_profile")]
     pub skirt_profile: Box<dyn SkirtProfileSpec>,

@@ -103,6 +103,7 @@ pub fn models(case: &PistonSecondaryCase) -> Vec<ModelUse> {
         ("shear_thinning", m.shear_thinning.typetag_name()),
     ]
     .into_iter()
+    .chain(m.boundary_friction.as_ref().map(|f| ("boundary_friction", f.typetag_name())))
     .map(|(kind, model)| model_use(&registry, kind, model))
     .collect()
 }

@@ -1,5 +1,6 @@
 use gudgeon_core::kinds::{
-    BoundaryFriction, BoundaryFrictionSpec, Contact, ContactSpec, Rig, RigCtx, RigOut, RigSpec, named,
+    BoundaryFriction, BoundaryFrictionSpec, Contact, ContactSpec, Rig, RigCtx, RigOut, RigSpec, Rubbing,
+    named, real_area_is_known,
 };
 use gudgeon_core::quantity::{Length, Velocity, quantity};
 use gudgeon_core::{BuildError, EvalError, register_model};
@@ -23,7 +24,7 @@ pub struct ContactPairRig {
     pub speed: Velocity,
     /// The model of the load that the surfaces carry.
     pub contact: Box<dyn ContactSpec>,
-    /// How friction depends on the sliding speed; absent: the coefficient of the contact model at every speed.
+    /// How friction depends on sliding speed, load and real area; absent: the coefficient of the contact model at every speed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub boundary_friction: Option<Box<dyn BoundaryFrictionSpec>>,
 }
@@ -63,6 +64,10 @@ impl RigSpec for ContactPairRig {
             Some(f) => f.build().map(Some).map_err(|e| errors.push(e.within("boundary_friction"))),
             None => Ok(None),
         };
+        if let (Ok(contact), Ok(Some(friction))) = (&contact, &friction) {
+            let known = real_area_is_known(&**friction, &**contact, self.contact.typetag_name());
+            errors.extend(known.err().map(|e| e.within("boundary_friction")));
+        }
         match (contact, friction) {
             (Ok(contact), Ok(friction)) if errors.is_empty() => Ok(Box::new(Bench {
                 contact,
@@ -89,11 +94,21 @@ const MODEL: &str = "contact_pair";
 const POINTS: usize = 201;
 
 impl Bench {
+    /// Coefficient of friction at the separation of the case.
     fn coefficient(&self, speed: f64) -> Result<f64, EvalError> {
-        let Some(f) = &self.friction else { return Ok(self.contact.friction_coefficient()) };
-        let (mut c, mut s) = ([0.0], [0.0]);
-        f.coefficient(&[speed], &mut c, &mut s)?;
-        Ok(c[0])
+        let (mut p, mut area) = ([0.0], [0.0]);
+        self.contact.pressure(&[self.at], &mut p);
+        self.contact.real_area(&[self.at], &mut area);
+        Ok(self.coefficients(speed, &p, &area)?[0])
+    }
+
+    /// Coefficients of friction at pressures \[Pa\] and real over nominal areas, all at one speed.
+    fn coefficients(&self, speed: f64, p: &[f64], area: &[f64]) -> Result<Vec<f64>, EvalError> {
+        let Some(f) = &self.friction else { return Ok(vec![self.contact.friction_coefficient(); p.len()]) };
+        let (mut c, mut s) = (vec![0.0; p.len()], vec![0.0; p.len()]);
+        let speed = vec![speed; p.len()];
+        f.coefficient(&Rubbing { speed: &speed, pressure: p, real_area: area }, &mut c, &mut s)?;
+        Ok(c)
     }
 
     /// Results at the separation of the case.
@@ -120,14 +135,15 @@ impl Bench {
     }
 
     /// Pressure, shear stress and real area over the separation.
-    fn over_separation(&self, mu: f64, out: &mut RigOut) {
+    fn over_separation(&self, out: &mut RigOut) -> Result<(), EvalError> {
         let h = draw::linear(self.ends.0, self.ends.1, POINTS);
         let (mut p, mut area) = (vec![0.0; POINTS], vec![0.0; POINTS]);
         self.contact.pressure(&h, &mut p);
         let known = self.contact.real_area(&h, &mut area);
         out.axis("separation", "m", h);
         out.column("p", "Pa", p.clone());
-        let tau: Vec<f64> = p.iter().map(|p| mu * p).collect();
+        let mu = self.coefficients(self.speed, &p, &area)?;
+        let tau: Vec<f64> = p.iter().zip(mu).map(|(p, mu)| mu * p).collect();
         out.column("shear", "Pa", tau);
         draw::curves(
             out,
@@ -160,6 +176,7 @@ impl Bench {
                 &[line("real area", "real_area")],
             );
         }
+        Ok(())
     }
 
     /// Coefficient of friction over the sliding speed.
@@ -191,7 +208,7 @@ impl Rig for Bench {
     fn run(&mut self, out: &mut RigOut) -> Result<(), EvalError> {
         let mu = self.coefficient(self.speed)?;
         self.here(mu, out);
-        self.over_separation(mu, out);
+        self.over_separation(out)?;
         if self.friction.is_some() {
             self.over_speed(out)?;
         }

@@ -1,6 +1,8 @@
 use gudgeon_core::face::Face;
+use gudgeon_core::geometry::FaceProfile;
 use gudgeon_core::kinds::{
-    FaceCtx, FaceIn, Hydrodynamics, HydrodynamicsSpec, Rig, RigCtx, RigOut, RigSpec, named,
+    CompressibilitySpec, FaceCtx, FaceIn, Hydrodynamics, HydrodynamicsSpec, PiezoviscositySpec,
+    RheologySpecs, Rig, RigCtx, RigOut, RigSpec, RoughnessSpec, ShearThinningSpec, named,
 };
 use gudgeon_core::quantity::{Force, PosLength, PosViscosity, Pressure, Velocity, quantity};
 use gudgeon_core::{BuildError, EvalError, register_model};
@@ -16,7 +18,7 @@ pub struct RingFaceRig {
     pub length: PosLength,
     /// Shape of the face.
     pub face: Face,
-    /// Film thickness at the point nearest to the liner.
+    /// Film thickness at the point nearest to the liner; between rough surfaces the mean gap.
     pub film: PosLength,
     /// Velocity of the liner seen from the ring, from the bottom edge to the top edge positive.
     pub speed: Velocity,
@@ -37,6 +39,37 @@ pub struct RingFaceRig {
     pub viscosity: PosViscosity,
     /// The model.
     pub hydrodynamics: Box<dyn HydrodynamicsSpec>,
+    /// Flow and shear factors of rough surfaces, the ring being the body; absent: smooth.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub roughness: Option<Box<dyn RoughnessSpec>>,
+    /// Fall of the viscosity with the shear rate; absent: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shear_thinning: Option<Box<dyn ShearThinningSpec>>,
+    /// Rise of the viscosity with pressure; absent: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub piezoviscosity: Option<Box<dyn PiezoviscositySpec>>,
+    /// Rise of the density with pressure; absent: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub compressibility: Option<Box<dyn CompressibilitySpec>>,
+}
+
+impl RingFaceRig {
+    /// The film of a face, with the oil and the surfaces of the case.
+    fn film(&self, face: &FaceProfile) -> Result<Box<dyn Hydrodynamics>, BuildError> {
+        let specs = RheologySpecs {
+            roughness: self.roughness.as_deref(),
+            shear_thinning: self.shear_thinning.as_deref(),
+            piezoviscosity: self.piezoviscosity.as_deref(),
+            compressibility: self.compressibility.as_deref(),
+        };
+        let rheology = specs.build()?;
+        if let Some(kind) = rheology.beyond(self.hydrodynamics.scope()) {
+            let what = format!("the film `{}` has no `{kind}`", self.hydrodynamics.typetag_name());
+            return Err(BuildError::at(kind, what)
+                .help("use `hydrodynamics = { model = \"gridded_face\" }`, or leave it out"));
+        }
+        self.hydrodynamics.build_with(&FaceCtx { face }, &rheology).map_err(|e| e.within("hydrodynamics"))
+    }
 }
 
 fn still() -> Velocity {
@@ -57,7 +90,12 @@ fn vacuum() -> Pressure {
 )]
 impl RigSpec for RingFaceRig {
     fn models(&self) -> Vec<(&'static str, &'static str)> {
-        vec![("hydrodynamics", self.hydrodynamics.typetag_name())]
+        let mut all = vec![("hydrodynamics", self.hydrodynamics.typetag_name())];
+        all.extend(self.roughness.as_ref().map(|m| ("roughness", m.typetag_name())));
+        all.extend(self.shear_thinning.as_ref().map(|m| ("shear_thinning", m.typetag_name())));
+        all.extend(self.piezoviscosity.as_ref().map(|m| ("piezoviscosity", m.typetag_name())));
+        all.extend(self.compressibility.as_ref().map(|m| ("compressibility", m.typetag_name())));
+        all
     }
     fn build(&self, _: &RigCtx<'_>) -> Result<Box<dyn Rig>, Vec<BuildError>> {
         let mut errors = Vec::new();
@@ -69,9 +107,7 @@ impl RigSpec for RingFaceRig {
         }
         errors.extend(along::cavitation_below(self.p_cav.si(), &[self.p_bottom.si(), self.p_top.si()]));
         let shape = self.face.profile(self.length.si()).map_err(|e| e.within("face"));
-        let film = shape.and_then(|f| {
-            self.hydrodynamics.build(&FaceCtx { face: &f }).map_err(|e| e.within("hydrodynamics"))
-        });
+        let film = shape.and_then(|f| self.film(&f));
         match film {
             Ok(film) if errors.is_empty() => Ok(Box::new(Bench {
                 film,

@@ -9,6 +9,7 @@ use gudgeon_core::kinds::{
     CylinderPressure, FaceCtx, FilmTemperature, FilmTemperatureCtx, Flank, FlankCtx, FlankFriction, FlankLaw,
     GasFlow, GasFlowCtx, GasIn, GasOut, Hydrodynamics, Kinematics, Oil, OilTransport, OilTransportCtx,
     RadialMotion, RadialMotionCtx, RingForces, RingMotion, RingMotionCtx, RingPose, RingResponse,
+    real_area_is_known,
 };
 use gudgeon_core::states::{Signals, Stateful};
 use gudgeon_core::{BuildError, EvalError};
@@ -21,7 +22,9 @@ use super::layout::Layout;
 use super::liner::LinerShape;
 use super::pack::Pack;
 use super::plan::{Facts, Plan, Told, plan, wanted};
+use super::rheology::{factors_end, rheology};
 use super::ring::Ring;
+use super::rubbing::FaceFriction;
 use super::{end_gap, geometry, oil_faces};
 
 /// A ring without axial clearance, and without oil that could move on its flanks.
@@ -276,13 +279,13 @@ fn rings(
     let spacings = spacings(case, drive);
     let mut planes = None;
     for (i, (motion, flank)) in motions.into_iter().zip(flanks).enumerate() {
-        let none = || Ok((Vec::new(), ContactLine::default()));
+        let none = || Ok(FaceModels::default());
         let films = if plan.film { films(case, drive, i, &mut planes) } else { none() };
         let films = kept(&mut errors, films);
         let friction = case.models.flank_friction.build();
         let friction = kept(&mut errors, friction.map_err(|e| vec![e.within("models.flank_friction")]));
-        if let (Some((films, contact)), Some(friction)) = (films, friction) {
-            match ring(case, drive, oils, i, (films, contact, friction, motion, flank), spacings[i]) {
+        if let (Some(films), Some(friction)) = (films, friction) {
+            match ring(case, drive, oils, i, (films, friction, motion, flank), spacings[i]) {
                 Ok(r) => rings.push(r),
                 Err(e) => errors.push(e),
             }
@@ -291,26 +294,38 @@ fn rings(
     if errors.is_empty() { Ok(rings) } else { Err(errors) }
 }
 
-/// Films of the lands and the contact of the whole face.
-type FaceModels = (Vec<Box<dyn Hydrodynamics>>, ContactLine);
+/// What is between a face and the liner.
+#[derive(Default)]
+struct FaceModels {
+    /// Films of the lands.
+    films: Vec<Box<dyn Hydrodynamics>>,
+    /// Film thickness below which their flow factors are held \[m\].
+    factors_end: Option<f64>,
+    /// Contact of the whole face.
+    contact: ContactLine,
+    /// Its friction.
+    rubbing: Option<FaceFriction>,
+}
 /// All models of a ring but that of its radial motion.
-type RingParts =
-    (Vec<Box<dyn Hydrodynamics>>, ContactLine, Box<dyn FlankFriction>, Box<dyn RingMotion>, Box<dyn Flank>);
+type RingParts = (FaceModels, Box<dyn FlankFriction>, Box<dyn RingMotion>, Box<dyn Flank>);
 
 fn ring(
     case: &RingPackCase,
     drive: &Drive,
     oils: &Oils,
     i: usize,
-    (films, contact, friction, motion, flank): RingParts,
+    (face, friction, motion, flank): RingParts,
     spacing: f64,
 ) -> Result<Ring, BuildError> {
     let fixed = oils.temperature.is_constant();
+    let FaceModels { films, factors_end, contact, rubbing } = face;
     Ok(Ring {
         resists: films.iter().any(|f| f.resists()),
         radial: radial(case, drive, i, &contact)?,
         films,
         contact,
+        rubbing,
+        factors_end,
         counts: (motion.uses_film_force(), motion.uses_gravity()),
         motion,
         flank,
@@ -359,28 +374,47 @@ fn films(
         Some(s) => (s, format!("rings.{i}.models.hydrodynamics")),
         None => (&m.hydrodynamics, "models.hydrodynamics".to_owned()),
     };
+    let rheology = rheology(case, i, &**spec).map_err(|e| vec![e])?;
     for _ in 0..g.lands {
-        match spec.build(&FaceCtx { face: &g.face }) {
+        match spec.build_with(&FaceCtx { face: &g.face }, &rheology) {
             Ok(f) => films.push(f),
             Err(e) => errors.push(e.within(&place)),
         }
     }
+    let contact = contact(case, drive, i, planes).map_err(|e| errors.push(e));
+    match contact {
+        Ok((contact, rubbing)) if errors.is_empty() => {
+            Ok(FaceModels { films, factors_end: factors_end(&rheology), contact, rubbing })
+        }
+        _ => Err(errors),
+    }
+}
+
+/// Solid contact of the face of a ring, and its friction where the case has a model for it.
+fn contact(
+    case: &RingPackCase,
+    drive: &Drive,
+    i: usize,
+    planes: &mut Option<Arc<MeanPlanes>>,
+) -> Result<(ContactLine, Option<FaceFriction>), BuildError> {
+    let (g, own, m) = (&drive.geo.rings[i], &case.rings[i].models, &case.models);
     let (spec, place) = match &own.contact {
         Some(s) => (s, format!("rings.{i}.models.contact")),
         None => (&m.contact, "models.contact".to_owned()),
     };
-    match spec.build() {
-        Ok(c) if errors.is_empty() => {
-            let new = || Arc::new(MeanPlanes::new(&*c));
-            let planes = if own.contact.is_some() { &new() } else { planes.get_or_insert_with(new) };
-            Ok((films, ContactLine::new(&*c, planes, &g.face, g.lands)))
-        }
-        Ok(_) => Err(errors),
-        Err(e) => {
-            errors.push(e.within(&place));
-            Err(errors)
-        }
-    }
+    let contact = spec.build().map_err(|e| e.within(&place))?;
+    let new = || Arc::new(MeanPlanes::new(&*contact));
+    let planes = if own.contact.is_some() { &new() } else { planes.get_or_insert_with(new) };
+    let line = ContactLine::new(&*contact, planes, &g.face, g.lands);
+    let (friction, place) = match (&own.boundary_friction, &m.boundary_friction) {
+        (Some(f), _) => (f, format!("rings.{i}.models.boundary_friction")),
+        (None, Some(f)) => (f, "models.boundary_friction".to_owned()),
+        (None, None) => return Ok((line, None)),
+    };
+    let model = friction.build().map_err(|e| e.within(&place))?;
+    real_area_is_known(&*model, &*contact, spec.typetag_name()).map_err(|e| e.within(&place))?;
+    let line = if model.uses_real_area() { line.with_area(&*contact, &g.face, g.lands) } else { line };
+    Ok((line, Some(FaceFriction { model, length: g.lands as f64 * g.face.length() })))
 }
 
 /// Height of a land that the case does not say \[m\], and grooves of a three-piece ring over the thickness of a rail.

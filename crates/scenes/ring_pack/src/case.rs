@@ -2,8 +2,9 @@
 
 use gudgeon_core::face::Face;
 use gudgeon_core::kinds::{
-    ContactSpec, CylinderPressureSpec, FilmTemperatureSpec, FlankFrictionSpec, FlankSpec, GasFlowSpec,
-    HydrodynamicsSpec, KinematicsSpec, OilSpec, OilTransportSpec, RadialMotionSpec, RingMotionSpec,
+    BoundaryFrictionSpec, CompressibilitySpec, ContactSpec, CylinderPressureSpec, FilmTemperatureSpec,
+    FlankFrictionSpec, FlankSpec, GasFlowSpec, HydrodynamicsSpec, KinematicsSpec, OilSpec, OilTransportSpec,
+    PiezoviscositySpec, RadialMotionSpec, RingMotionSpec, RoughnessSpec, ShearThinningSpec,
 };
 use gudgeon_core::quantity::{
     Angle, Fraction, Length, NonNegative, PosAngle, PosArea, PosExpansion, PosForce, PosGasConstant,
@@ -222,6 +223,12 @@ pub struct RingModels {
     /// Solid contact of this ring.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contact: Option<Box<dyn ContactSpec>>,
+    /// Friction of the solid contact of this ring.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub boundary_friction: Option<Box<dyn BoundaryFrictionSpec>>,
+    /// Roughness of this ring and the liner in the film.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub roughness: Option<Box<dyn RoughnessSpec>>,
 }
 
 /// Models of the pack.
@@ -251,13 +258,29 @@ pub struct Models {
     /// Film under the ring faces.
     #[serde(default = "default_hydrodynamics")]
     pub hydrodynamics: Box<dyn HydrodynamicsSpec>,
+    /// Flow and shear factors of rough surfaces in these films, the ring being the body; absent: smooth. The film thickness is the mean gap.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub roughness: Option<Box<dyn RoughnessSpec>>,
     /// Oil on the liner and under the faces.
     #[serde(default = "default_oil_transport")]
     pub oil_transport: Box<dyn OilTransportSpec>,
     /// Solid contact of ring faces and liner. No default: it needs the roughness of the surfaces.
     pub contact: Box<dyn ContactSpec>,
+    /// How the friction of solid contact depends on sliding speed, load and real area; absent: the coefficient of the contact model at every speed,
+    /// its sign rounded over `solver.limits.friction_speed`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub boundary_friction: Option<Box<dyn BoundaryFrictionSpec>>,
     /// Lubricant.
     pub oil: Box<dyn OilSpec>,
+    /// Fall of its viscosity with the shear rate; absent: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shear_thinning: Option<Box<dyn ShearThinningSpec>>,
+    /// Rise of its viscosity with pressure; absent: none. The film model has to know it, as `gridded_face` does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub piezoviscosity: Option<Box<dyn PiezoviscositySpec>>,
+    /// Rise of its density with pressure; absent: none. The film model has to know it, as `gridded_face` does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub compressibility: Option<Box<dyn CompressibilitySpec>>,
     /// Temperature of the films.
     pub film_temperature: Box<dyn FilmTemperatureSpec>,
 }

@@ -22,6 +22,8 @@ use gudgeon_numerics::quadrature::GaussLegendre;
 pub struct ContactLine {
     /// `load^(1/4)`: the root keeps the table smooth where the load fades out.
     root: Spline,
+    /// `area^(1/4)`, where friction asks for it.
+    area: Spline,
     /// Separation of the mean planes.
     planes: Arc<MeanPlanes>,
     /// Film thickness above which there is no contact \[m\].
@@ -100,12 +102,28 @@ impl ContactLine {
             ..Self::default()
         };
         if touch {
-            let mut whole = WholeFace::new(contact, face);
-            let root = |s: &f64| (lands as f64 * whole.load(*s)).max(0.0).sqrt().sqrt();
-            let roots: Vec<f64> = planes.points.iter().map(root).collect();
-            line.root = Spline::new(DEEPEST, planes.step, &roots);
+            line.root = line.roots(contact, face, lands, |c, s, pressure| c.pressure(s, pressure));
         }
         line
+    }
+
+    /// The same with the real area of contact, which the model has to know.
+    #[must_use]
+    pub fn with_area(mut self, contact: &dyn Contact, face: &FaceProfile, lands: usize) -> Self {
+        if self.planes.range > 0.0 {
+            self.area = self.roots(contact, face, lands, |c, s, area| {
+                c.real_area(s, area);
+            });
+        }
+        self
+    }
+
+    /// Table of the fourth roots of `∫ what dx` over all lands.
+    fn roots(&self, contact: &dyn Contact, face: &FaceProfile, lands: usize, what: Field) -> Spline {
+        let mut whole = WholeFace::new(contact, face, what);
+        let root = |s: &f64| (lands as f64 * whole.sum(*s)).max(0.0).sqrt().sqrt();
+        let roots: Vec<f64> = self.planes.points.iter().map(root).collect();
+        Spline::new(DEEPEST, self.planes.step, &roots)
     }
 
     /// Load per circumference \[N/m\] at film thickness `h` \[m\].
@@ -114,8 +132,13 @@ impl ContactLine {
         if h >= self.range {
             return 0.0;
         }
-        let r = self.root.at(self.planes.place(h)).0.max(0.0);
-        (r * r) * (r * r)
+        fourth(self.root.at(self.planes.place(h)).0)
+    }
+
+    /// Real area of contact per circumference \[m\] at film thickness `h` \[m\]; zero where no friction asks for it.
+    #[must_use]
+    pub fn area(&self, h: f64) -> f64 {
+        if h >= self.range { 0.0 } else { fourth(self.area.at(self.planes.place(h)).0) }
     }
 
     /// Separation of the mean planes at the nearest point \[m\].
@@ -157,6 +180,12 @@ impl ContactLine {
     }
 }
 
+/// Fourth power of what is not negative.
+fn fourth(root: f64) -> f64 {
+    let r = root.max(0.0);
+    (r * r) * (r * r)
+}
+
 /// Separation \[m\] at which the mean gap is `film` \[m\], by bisection on a function that rises.
 fn separation(contact: &dyn Contact, film: f64) -> f64 {
     let (mut lo, mut hi) = (-film.max(contact.range()), film);
@@ -176,29 +205,33 @@ fn separation(contact: &dyn Contact, film: f64) -> f64 {
     0.5 * (lo + hi)
 }
 
-/// `∫ p_c(s + drop(x)) dx` over a face \[N/m\], piece by piece where it is within reach of the liner.
+/// What a contact model says for separations.
+type Field = fn(&dyn Contact, &[f64], &mut [f64]);
+
+/// `∫ p_c(s + drop(x)) dx` over a face \[N/m\], or that of the real area \[m\], piece by piece where it is within reach of the liner.
 struct WholeFace<'a> {
+    what: Field,
     contact: &'a dyn Contact,
     face: &'a FaceProfile,
     nodes: Option<Vec<(f64, f64)>>,
     rule: GaussLegendre,
-    /// Separations of one piece, and the pressures there.
+    /// Separations of one piece, and the values there.
     separations: Vec<f64>,
-    pressures: Vec<f64>,
+    values: Vec<f64>,
 }
 
 impl<'a> WholeFace<'a> {
-    fn new(contact: &'a dyn Contact, face: &'a FaceProfile) -> Self {
-        let (separations, pressures) = (Vec::new(), Vec::new());
-        Self { contact, face, nodes: face.nodes(), rule: GaussLegendre::new(6), separations, pressures }
+    fn new(contact: &'a dyn Contact, face: &'a FaceProfile, what: Field) -> Self {
+        let (separations, values) = (Vec::new(), Vec::new());
+        Self { what, contact, face, nodes: face.nodes(), rule: GaussLegendre::new(6), separations, values }
     }
 
-    fn load(&mut self, s: f64) -> f64 {
+    fn sum(&mut self, s: f64) -> f64 {
         let (face, reach) = (self.face, self.contact.range() - s);
         if let Some(nodes) = self.nodes.take() {
-            let load = nodes.windows(2).map(|n| self.straight(s, reach, n[0], n[1])).sum();
+            let sum = nodes.windows(2).map(|n| self.straight(s, reach, n[0], n[1])).sum();
             self.nodes = Some(nodes);
-            return load;
+            return sum;
         }
         match face {
             FaceProfile::Parabola { curvature, apex, length } if *curvature > 0.0 => {
@@ -236,10 +269,10 @@ impl<'a> WholeFace<'a> {
             let mid = middle(k);
             self.separations.extend(nodes.iter().map(|x| s + face.drop_at(mid + 0.5 * width * x)));
         }
-        self.pressures.resize(self.separations.len(), 0.0);
-        self.contact.pressure(&self.separations, &mut self.pressures);
+        self.values.resize(self.separations.len(), 0.0);
+        (self.what)(self.contact, &self.separations, &mut self.values);
         let weights = self.rule.weights().iter().cycle();
-        self.pressures.iter().zip(weights).fold(0.0, |sum, (p, w)| sum + 0.5 * width * w * p)
+        self.values.iter().zip(weights).fold(0.0, |sum, (p, w)| sum + 0.5 * width * w * p)
     }
 }
 

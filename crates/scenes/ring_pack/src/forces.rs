@@ -206,7 +206,10 @@ impl Pack {
                 }
             }
         }
-        let rubbing = line.friction * r.contact * (u / self.limits.friction_speed).tanh();
+        let rubbing = match &self.rings[i].rubbing {
+            None => line.friction * r.contact * (u / self.limits.friction_speed).tanh(),
+            Some(friction) => friction.force(line, self.at.places[i].h, r.contact, u)?,
+        };
         r.friction = r.perimeter * (viscous * self.laws.drag.shear(&o) + rubbing);
         r.power = self.laws.drag.power(r.friction, u);
         let force = self.laws.film_force.per_length(&o, r.dry.1);

@@ -43,7 +43,7 @@ pub struct Limits {
     pub min_room: PosLength,
     /// Film thickness beyond which a ring has left the liner: flooded films of rings stay below 40 um. Only events and notes know it.
     pub off_the_liner: PosLength,
-    /// Sliding speed over which boundary friction changes its sign: a thousandth of a usual piston speed.
+    /// Sliding speed over which boundary friction changes its sign, where no model of `boundary_friction` does that: a thousandth of a usual piston speed.
     pub friction_speed: PosVelocity,
     /// Film thickness that gas flows see under a ring whose film is not solved: a usual mean.
     pub nominal_film: PosLength,

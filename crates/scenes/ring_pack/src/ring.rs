@@ -3,15 +3,20 @@
 use gudgeon_core::kinds::{Flank, FlankFriction, Hydrodynamics, RadialMotion, RingMotion};
 
 use super::contact_line::ContactLine;
+use super::rubbing::FaceFriction;
 
 /// One ring with its models.
 pub struct Ring {
     /// One film per running land, upper land first. Empty when no film is needed.
     pub films: Vec<Box<dyn Hydrodynamics>>,
+    /// Film thickness below which their flow factors are held at those of a thicker film \[m\].
+    pub factors_end: Option<f64>,
     /// Whether the films resist being squeezed; without them the ring rides on its contact alone.
     pub resists: bool,
     /// Solid contact of the whole face as a function of film thickness.
     pub contact: ContactLine,
+    /// Friction of that contact, where the case has a model for it; the coefficient of the contact model otherwise.
+    pub rubbing: Option<FaceFriction>,
     /// Oil on the flanks of the groove.
     pub flank: Box<dyn Flank>,
     /// Motion in the groove, under the force of that oil.

@@ -4,6 +4,7 @@ use gudgeon_core::result::{ModelUse, Skipped};
 
 use super::case::{RingDesign, RingModels, RingPackCase};
 use super::plan::Plan;
+use super::rheology;
 
 /// The models that run and the parts that do not, for `explain` and the results.
 #[must_use]
@@ -53,6 +54,9 @@ pub fn models_in_use(case: &RingPackCase, plan: &Plan) -> (Vec<ModelUse>, Vec<Sk
             m.contact.typetag_name(),
             own(|r| r.contact.as_ref().map(|s| s.typetag_name())),
         );
+        for (kind, name) in where_given(case) {
+            pack_and_own(kind, name, Vec::new());
+        }
         pack_and_own("oil", m.oil.typetag_name(), Vec::new());
         pack_and_own("oil_transport", m.oil_transport.typetag_name(), Vec::new());
         pack_and_own("film_temperature", m.film_temperature.typetag_name(), Vec::new());
@@ -77,4 +81,22 @@ pub fn models_in_use(case: &RingPackCase, plan: &Plan) -> (Vec<ModelUse>, Vec<Sk
     let models =
         used.into_iter().map(|(kind, model)| gudgeon_scene::model_use(&registry, kind, model)).collect();
     (models, skipped)
+}
+
+/// Kind and name of the models that run where the case gives them, each once.
+fn where_given(case: &RingPackCase) -> Vec<(&'static str, &'static str)> {
+    let m = &case.models;
+    let mut given = Vec::new();
+    for (i, r) in case.rings.iter().enumerate() {
+        given.extend(rheology::given(case, i).into_iter().flatten());
+        let friction = r.models.boundary_friction.as_ref().or(m.boundary_friction.as_ref());
+        given.extend(friction.map(|f| ("boundary_friction", f.typetag_name())));
+    }
+    let mut once = Vec::new();
+    for g in given {
+        if !once.contains(&g) {
+            once.push(g);
+        }
+    }
+    once
 }

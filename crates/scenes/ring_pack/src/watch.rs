@@ -19,6 +19,8 @@ struct RingWatch {
     floor_film: f64,
     /// Overlap of the mean planes \[m\].
     overlap: Acted,
+    /// How much thinner than flow factors go the film is \[m\].
+    factors: Acted,
     /// Load that the drag took \[N\].
     drag: Acted,
     /// Load that the drag of surfaces in contact took \[N\].
@@ -70,6 +72,9 @@ impl Watch {
             let line = &pack.rings[i].contact;
             if line.open {
                 w.overlap.see(-line.separation(place.h), theta, weight);
+            }
+            if let Some(end) = pack.rings[i].factors_end {
+                w.factors.see(end - place.h, theta, weight);
             }
             w.drag.see(tells(drag, r.load), theta, weight);
             w.contact_drag.see(tells(contact_drag, r.load), theta, weight);
@@ -130,6 +135,12 @@ impl Watch {
                     "the floor of the contact model at {:.3} um carries up to {:.4} N of ring {ring} {when}",
                     w.floor_film * 1e6,
                     w.floor.most
+                )
+            });
+            tell("flow_factors", &w.factors, "below_their_end", "um", 1e6, &|when| {
+                format!(
+                    "the film of ring {ring} is up to {:.3} um thinner than the flow factors of its roughness go {when}: they are held at those of the thinnest film",
+                    w.factors.most * 1e6
                 )
             });
             tell("overlap", &w.overlap, "overlap", "um", 1e6, &|when| {

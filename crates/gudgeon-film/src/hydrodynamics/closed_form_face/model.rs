@@ -1,5 +1,5 @@
 use gudgeon_core::geometry::FaceProfile;
-use gudgeon_core::kinds::{FaceCtx, Hydrodynamics, HydrodynamicsSpec};
+use gudgeon_core::kinds::{FaceCtx, Hydrodynamics, HydrodynamicsSpec, Rheology, RheologyScope};
 use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
@@ -8,6 +8,7 @@ use super::film::Film;
 use super::parabola::Parabola;
 use super::table::Table;
 use crate::cavitation::Cavitation;
+use crate::hydrodynamics::averaged::Averaged;
 use crate::hydrodynamics::check_face::check_face;
 
 /// Exact film under a ring face: Reynolds' equation integrated in closed form, without a grid.
@@ -25,6 +26,10 @@ use crate::hydrodynamics::check_face::check_face;
 ///
 /// Fully flooded: both edges are covered with oil at the gas pressure next to them. An edge pressure below `p_cav` counts
 /// as `p_cav`, except with `full_sommerfeld`. What happens where oil would have to pull is the choice of `cavitation`.
+///
+/// With `roughness` or `shear_thinning` the pressures have one viscosity and the shear another, averages over the wetted part of the face:
+/// `μ_p = ∫ μ(γ̇) h²/(φ_x h_p³) dx / ∫ dx/h`, `μ_s = ∫ μ(γ̇) φ_f/h_p dx / ∫ dx/h`, `γ̇ = u/h_p`. What rough surfaces carry unequally (`φ_s`, `φ_fs`) is
+/// left out. `gridded_face` has the values of every place; from three roughness heights on, loads are within 6 % of those with them and drags within 5 %.
 ///
 /// Good to 12 digits for a film that covers a fair part of the face; the load of a sliver at an edge to 12 digits of the
 /// edge pressure times the face length.
@@ -47,7 +52,7 @@ pub struct ClosedFormFace {
                 same flux at reformation;  swift_stieber: p = p_cav from the rupture to the trailing edge;  \
                 half_sommerfeld: max(p, p_cav);  load = int (p - p_cav) dx;  shear = int (mu u/h -+ h p'/2) dx, \
                 in the cavity weighted with the filled fraction",
-    validity = "Smooth surfaces, fully flooded, narrow face (no flow along the circumference), constant viscosity. \
+    validity = "Fully flooded, narrow face (no flow along the circumference), one viscosity: flow factors and shear thinning as averages. \
                A face that waves up and down has one film under swift_stieber, the one at the leading edge. \
                The cavity has no history: transients shorter than the passage over the face are not resolved.",
     references = ["reynolds1886", "jakobsson1957", "cameron1966", "dowson1979"],
@@ -69,5 +74,21 @@ impl HydrodynamicsSpec for ClosedFormFace {
         let up = Table::new(&ctx.face.nodes().unwrap_or_default());
         let down = up.mirrored();
         Ok(Box::new(Film::new(up, down, self.cavitation, shear)))
+    }
+    fn scope(&self) -> RheologyScope {
+        RheologyScope { roughness: true, shear_thinning: true, ..RheologyScope::default() }
+    }
+
+    fn build_with(
+        &self,
+        ctx: &FaceCtx<'_>,
+        rheology: &Rheology,
+    ) -> Result<Box<dyn Hydrodynamics>, BuildError> {
+        let film = self.build(ctx)?;
+        match rheology.beyond(self.scope()) {
+            Some(kind) => Err(BuildError::new(format!("this film has no `{kind}`"))),
+            None if rheology.is_plain() => Ok(film),
+            None => Ok(Box::new(Averaged::new(film, ctx.face, rheology))),
+        }
     }
 }

@@ -2,5 +2,6 @@
 
 mod barus;
 mod off;
+mod reduced_pressure;
 mod roelands;
 mod tame_exp;

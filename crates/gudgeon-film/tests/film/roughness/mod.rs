@@ -4,6 +4,7 @@ mod gaussian_gap;
 mod off;
 mod patir_cheng;
 mod sawtooth_waviness;
+mod tripp;
 
 use gudgeon_core::kinds::{RoughFlow, RoughShear, Roughness};
 

@@ -45,6 +45,26 @@ fn sharp_taper_carries_on_through_zero_separation() {
 }
 
 #[test]
+fn real_area_of_a_sharp_taper() {
+    // ∫ F_2(λ + t) dt from 0 = F_3(λ)/3, on A_c/A = π² (η β σ)² F_2; two lands touch on twice as much.
+    let (length, drop) = (2.6e-3, 35e-6);
+    let face = FaceProfile::Table { length, drops: vec![0.0, drop] };
+    let contact = rough("");
+    let line = line(&*contact, &face, 2);
+    assert_eq!(line.area(0.5 * SIGMA), 0.0, "nobody asked for it");
+    let line = line.with_area(&*contact, &face, 2);
+    for k in -40..=40 {
+        let l = f64::from(k) / 10.0;
+        let film = SIGMA * asperity_integral(1.0, -l);
+        let part = std::f64::consts::PI.powi(2) * 0.05 * 0.05;
+        let exact = 2.0 * part * SIGMA * length / drop * asperity_integral(3.0, l) / 3.0;
+        // As for the load.
+        assert!((line.area(film) / exact - 1.0).abs() < 3e-6, "{l}: {} {exact}", line.area(film));
+    }
+    assert_eq!(line.area(line.range), 0.0);
+}
+
+#[test]
 fn land_carries_its_width_and_the_flank_behind_it() {
     let (length, land, drop) = (2.6e-3, 0.2e-3, 35e-6);
     let line = line(&*rough(""), &FaceProfile::Taper { length, land, drop }, 1);
