@@ -1,6 +1,7 @@
 //! Gas flow between, behind and past piston rings.
 //!
-//! Gas spaces hold gas at the temperature of their walls, so the mass of each is its only state; passages between them let gas
+//! Gas spaces hold gas at the temperature of their walls, so the mass of each is its only state (with a balance of energy,
+//! [`GasTemperature`], its energy is another); passages between them let gas
 //! through by a law of pressures. The crate has one interface for each half of that, and everything built in is an instance of it.
 //!
 //! | to do | use |
@@ -31,6 +32,7 @@ mod channel;
 mod directed;
 mod flow_function;
 mod gap_orifice;
+mod gas_temperature;
 mod gas_viscosity;
 mod heat_capacity;
 mod labyrinth;
@@ -59,6 +61,7 @@ pub use channel::{
 };
 pub use flow_function::{FlowFunction, MIN_DROP, critical_ratio};
 pub use gap_orifice::{BackVolumes, GapOrifice};
+pub use gas_temperature::GasTemperature;
 pub use gas_viscosity::GasViscosity;
 pub use heat_capacity::Gamma;
 pub use labyrinth::Labyrinth;

@@ -2,11 +2,12 @@
 
 use gudgeon_core::geometry::RingGeometry;
 use gudgeon_core::kinds::{GasFlow, GasFlowCtx, GasFlowSpec};
-use gudgeon_core::quantity::{Length, NonNegative, PosLength, PosViscosity, quantity};
+use gudgeon_core::quantity::{Length, NonNegative, PosLength, PosViscosity, Ratio, quantity};
 use gudgeon_core::{BuildError, register_model};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::gas_temperature::GasTemperature;
 use crate::gas_viscosity::GasViscosity;
 use crate::options::FilmHeight;
 use crate::orifice::Orifice;
@@ -50,6 +51,15 @@ pub struct NamazianHeywood {
     /// Film thickness for `film_height = "nominal"`.
     #[serde(default = "default_film")]
     pub nominal_film: Length<NonNegative>,
+    /// Temperature of the gas on the lands and behind the rings: that of the walls (`walls`), or from a balance of energy (`energy_balance`), whose
+    /// states stand beside the masses. Gas comes from the cylinder with the temperature of the top land in both; narrow channels have that of
+    /// their walls.
+    #[serde(default)]
+    pub gas_temperature: GasTemperature,
+    /// Nusselt number of the heat between gas and walls with `gas_temperature = "energy_balance"`, formed with twice the distance of the walls. 7.54
+    /// is that of developed laminar flow between parallel walls; 0: no heat.
+    #[serde(default = "crate::gas_temperature::parallel_walls")]
+    pub nusselt: Ratio<NonNegative>,
     /// Film thickness up to which oil fills the gap between face and liner. Gas passes the face of a ring that is further away.
     #[serde(default = "crate::options::fifty_micrometres")]
     pub face_oil: PosLength,
@@ -73,6 +83,8 @@ impl Default for NamazianHeywood {
             viscosity: default_viscosity(),
             film_height: FilmHeight::default(),
             nominal_film: default_film(),
+            gas_temperature: GasTemperature::default(),
+            nusselt: crate::gas_temperature::parallel_walls(),
             face_oil: crate::options::fifty_micrometres(),
         }
     }
@@ -81,7 +93,8 @@ impl Default for NamazianHeywood {
 #[register_model(
     name = "namazian_heywood",
     summary = "flanks as laminar channels without entrance loss, end gaps as orifices",
-    equations = "dm_i/dt = sum of flows;  p_i = m_i R T_i / V_i;  flank: m' = W h^3 (p_u^2 - p_d^2) / (24 mu L R_g T);  \
+    equations = "dm_i/dt = sum of flows;  p_i = m_i R T_i / V_i, T_i of the walls or from  \
+                dU_i/dt = sum m' c_p T - Nu lambda V/s^2 (T_i - T_w) - p_i dV_i/dt;  flank: m' = W h^3 (p_u^2 - p_d^2) / (24 mu L R_g T);  \
                 gap: m' = C_d A p_u / sqrt(R T_u) psi(p_d/p_u)",
     validity = "Isothermal, inertia-free laminar flow in the flanks, up to heights of about 10 to 20 um; wider ones pass more than any gas can (see \
                narrow_channel, which adds the loss at the mouth). Flanks parallel, dry.",
@@ -96,6 +109,7 @@ impl GasFlowSpec for NamazianHeywood {
         };
         let options = PackOptions {
             nominal_film: self.film_height.nominal(self.nominal_film),
+            nusselt: self.gas_temperature.nusselt(self.nusselt),
             ..PackOptions::default()
         };
         Ok(Box::new(with_orifice_law("namazian_heywood", channels, &self.orifice, ctx.pack, options)?))

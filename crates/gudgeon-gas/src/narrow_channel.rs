@@ -2,11 +2,14 @@
 
 use gudgeon_core::geometry::RingGeometry;
 use gudgeon_core::kinds::{GasFlow, GasFlowCtx, GasFlowSpec};
-use gudgeon_core::quantity::{Length, NonNegative, PosLength, PosRatio, PosTime, PosViscosity, quantity};
+use gudgeon_core::quantity::{
+    Length, NonNegative, PosLength, PosRatio, PosTime, PosViscosity, Ratio, quantity,
+};
 use gudgeon_core::{BuildError, register_model};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::gas_temperature::GasTemperature;
 use crate::gas_viscosity::GasViscosity;
 use crate::options::{Elimination, FilmHeight};
 use crate::orifice::Orifice;
@@ -86,6 +89,15 @@ pub struct NarrowChannel {
     /// passage lets through `2^(-1/n)` of it (16 % less for 4), and where one gives half as much as the other, `2^-n/n` less than that (1.5 %).
     #[serde(default = "default_sharpness")]
     pub mouth_sharpness: PosRatio,
+    /// Temperature of the gas on the lands and behind the rings: that of the walls (`walls`), or from a balance of energy (`energy_balance`), whose
+    /// states stand beside the masses. Gas comes from the cylinder with the temperature of the top land in both; narrow channels have that of
+    /// their walls.
+    #[serde(default)]
+    pub gas_temperature: GasTemperature,
+    /// Nusselt number of the heat between gas and walls with `gas_temperature = "energy_balance"`, formed with twice the distance of the walls. 7.54
+    /// is that of developed laminar flow between parallel walls; 0: no heat.
+    #[serde(default = "crate::gas_temperature::parallel_walls")]
+    pub nusselt: Ratio<NonNegative>,
     /// Film thickness up to which oil fills the gap between face and liner. Gas passes the face of a ring that is further away: without that a
     /// ring that gas lifts off the liner closes its own end gap and locks in the gas that lifts it.
     #[serde(default = "crate::options::fifty_micrometres")]
@@ -121,6 +133,8 @@ impl Default for NarrowChannel {
             friction: ChannelFriction::default(),
             mouth: Mouth::default(),
             mouth_sharpness: default_sharpness(),
+            gas_temperature: GasTemperature::default(),
+            nusselt: crate::gas_temperature::parallel_walls(),
             face_oil: crate::options::fifty_micrometres(),
             eliminate: Elimination::default(),
             eliminate_below: crate::options::ten_nanoseconds(),
@@ -131,7 +145,8 @@ impl Default for NarrowChannel {
 #[register_model(
     name = "narrow_channel",
     summary = "flanks and face as compressible laminar channels, end gaps as orifices",
-    equations = "dm_i/dt = sum of flows;  p_i = m_i R T_i / V_i;  gap: m' = C_d A p_u / sqrt(R T_u) psi(p_d/p_u);  \
+    equations = "dm_i/dt = sum of flows;  p_i = m_i R T_i / V_i, T_i of the walls or from  \
+                dU_i/dt = sum m' c_p T - Nu lambda V/s^2 (T_i - T_w) - p_i dV_i/dt;  gap: m' = C_d A p_u / sqrt(R T_u) psi(p_d/p_u);  \
                 channel: m' = 2 pi R H^3 (p_a^2 - p_b^2) / (24 mu R_g T w), limited by the orifice of area 2 pi R H;  \
                 mouth = automatic: m' = (c^-n + o^-n)^(-1/n) of channel c and orifice o;  \
                 blended friction: times [1 + (Re/2039)^3]^(-1/7), Re = m'/(pi R mu)",
@@ -158,6 +173,7 @@ impl GasFlowSpec for NarrowChannel {
         };
         let options = PackOptions {
             nominal_film: self.film_height.nominal(self.nominal_film),
+            nusselt: self.gas_temperature.nusselt(self.nusselt),
             eliminate_below: self.eliminate.below(self.eliminate_below),
             ..PackOptions::default()
         };

@@ -4,6 +4,7 @@
 mod balance;
 mod discharge;
 mod elimination;
+mod energy;
 mod heat_capacity;
 mod labyrinth;
 mod models;

@@ -8,8 +8,8 @@ use gudgeon_core::geometry::{
 use gudgeon_core::kinds::{GasFlow, GasFlowCtx, GasFlowSpec};
 use gudgeon_core::quantity::quantity;
 use gudgeon_gas::{
-    BackVolumes, ChannelFriction, Elimination, FilmHeight, Gamma, GapOrifice, Labyrinth, Mouth,
-    NamazianHeywood, NarrowChannel, Orifice, OrificeFormula, OrificeNetwork,
+    BackVolumes, ChannelFriction, Elimination, FilmHeight, Gamma, GapOrifice, GasTemperature, Labyrinth,
+    Mouth, NamazianHeywood, NarrowChannel, Orifice, OrificeFormula, OrificeNetwork,
 };
 
 /// A ring of a 120 mm truck engine.
@@ -108,6 +108,20 @@ pub fn specs() -> Vec<Box<dyn GasFlowSpec>> {
         Box::new(OrificeNetwork { orifice: sharp_edged, ..OrificeNetwork::default() }),
         Box::new(NamazianHeywood::default()),
         Box::new(Labyrinth::default()),
+    ]
+}
+
+/// Models with a balance of energy.
+pub fn with_energy() -> Vec<Box<dyn GasFlowSpec>> {
+    let gas_temperature = GasTemperature::EnergyBalance;
+    vec![
+        Box::new(OrificeNetwork { gas_temperature, ..OrificeNetwork::default() }),
+        Box::new(NarrowChannel { gas_temperature, ..NarrowChannel::default() }),
+        Box::new(NamazianHeywood {
+            gas_temperature,
+            film_height: FilmHeight::Nominal,
+            ..NamazianHeywood::default()
+        }),
     ]
 }
 
