@@ -13,14 +13,16 @@ use gudgeon_scene_ring_pack::jacobian::Base;
 
 #[test]
 fn a_right_hand_side_allocates_nothing() {
-    for gas in ["orifice_network", "gap_orifice", "narrow_channel"] {
-        let case = checked("turbo-diesel-120", &[&format!("models.gas_flow.model={gas}")]);
+    let models = ["orifice_network", "gap_orifice", "narrow_channel", "namazian_heywood", "labyrinth"];
+    let warm = "{ model = \"narrow_channel\", mouth = \"automatic\", gas_temperature = \"energy_balance\" }";
+    for gas in models.map(|name| format!("{{ model = \"{name}\" }}")).into_iter().chain([warm.to_owned()]) {
+        let case = checked("turbo-diesel-120", &[&format!("models.gas_flow={gas}")]);
         let mut pack =
             assemble(case.of::<RingPackCase>().expect("a ring pack"), &Files::default()).expect("assembles");
         let n = pack.layout.n;
         let mut y = vec![0.0; n];
         pack.initial(2e5, &mut y);
-        let mut f = vec![0.0; n + 2 * pack.n_rings() + 1];
+        let mut f = vec![0.0; n + pack.layout.quads()];
         let mut jac = vec![0.0; f.len() * n];
         let mut base = Base::default();
         let mut answered = 0;

@@ -71,7 +71,7 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> Stateful for PackNetwork<M, L> 
     fn columns(&self) -> Vec<ColumnInfo> {
         let energies = self.states.iter().skip(self.net.volumes());
         energies
-            .map(|s| ColumnInfo::new(s.name.replace("energy of", "temperature of").replace(' ', "_"), "K"))
+            .map(|s| ColumnInfo::new(format!("{}.temperature", s.name.trim_start_matches("energy of ")), "K"))
             .collect()
     }
 

@@ -150,7 +150,7 @@ fn the_same_flows_at_the_temperature_of_the_walls() {
         ["ring1.back", "land2", "ring2.back", "land3"].map(|n| format!("energy of {n}"))
     );
     let columns: Vec<_> = gas.columns().into_iter().map(|c| c.name).collect();
-    assert_eq!(columns[..2], ["temperature_of_ring1.back", "temperature_of_land2"]);
+    assert_eq!(columns[..2], ["ring1.back.temperature", "land2.temperature"]);
 }
 
 /// Energy held, with the volumes and pressures of all spaces.
