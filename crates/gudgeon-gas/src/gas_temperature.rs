@@ -1,7 +1,7 @@
 //! Temperature of the gas on the lands and behind the rings: that of the walls, or from a balance of energy.
 
 use gudgeon_core::BuildError;
-use gudgeon_core::geometry::{PackGeometry, RingGeometry};
+use gudgeon_core::geometry::PackGeometry;
 use gudgeon_core::quantity::{NonNegative, Ratio, quantity};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -76,11 +76,10 @@ impl LandEnergy {
 
     /// Adds a space whose walls have a temperature \[K\], of the size \[m³\] `nominal`.
     pub fn add(&mut self, pack: &PackGeometry, nusselt: f64, temperature: f64, nominal: f64) {
-        let cp_over_r = pack.gamma / self.excess;
         self.spaces.push(EnergyOfSpace {
             wall_rt: pack.gas_constant * temperature,
             nominal,
-            conduction: nusselt * sutherland_viscosity(temperature) * cp_over_r / PRANDTL,
+            conduction: nusselt * sutherland_viscosity(temperature) * self.cp_over_r() / PRANDTL,
             stretch: 1.0,
             conductance: 0.0,
         });
@@ -135,21 +134,13 @@ impl LandEnergy {
     }
 }
 
-/// Distance of the walls of land `i` \[m\], between the piston and the nominal liner.
-pub(crate) fn land_width(pack: &PackGeometry, i: usize) -> Result<f64, BuildError> {
-    let s = pack.bore_radius - pack.rings[i].piston_radius_above;
-    wide_enough(s, || format!("land {}", i + 1))
-}
-
-/// Distance of the walls behind ring `i` \[m\] in the nominal liner.
-pub(crate) fn back_width(pack: &PackGeometry, i: usize, film: f64) -> Result<f64, BuildError> {
-    let ring: &RingGeometry = &pack.rings[i];
-    wide_enough(ring.h_max(pack.bore_radius) - film, || format!("the space behind ring {}", i + 1))
-}
-
-fn wide_enough(s: f64, what: impl Fn() -> String) -> Result<f64, BuildError> {
+/// Whether the walls of a space are a distance `s` \[m\] apart.
+///
+/// # Errors
+/// They are not.
+pub(crate) fn wide_enough(s: f64, what: impl Fn() -> String) -> Result<(), BuildError> {
     if s > 0.0 && s.is_finite() {
-        return Ok(s);
+        return Ok(());
     }
     let text = format!("{} is {s:e} m wide, which leaves nothing for the heat to its walls", what());
     Err(BuildError::at("gas_temperature", text)

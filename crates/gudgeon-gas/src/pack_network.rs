@@ -5,7 +5,7 @@ use gudgeon_core::kinds::{GasIn, gas_energy, gas_mass};
 use gudgeon_core::states::StateInfo;
 use gudgeon_core::{BuildError, EvalError};
 
-use crate::gas_temperature::{LandEnergy, back_width, land_width};
+use crate::gas_temperature::{LandEnergy, wide_enough};
 use crate::network::Network;
 use crate::orifice::Orifice;
 use crate::orifice_law::OrificeLaw;
@@ -189,11 +189,11 @@ fn land_energy(spaces: &Spaces, links: &[RingLinks], nusselt: f64) -> Result<Lan
     let mut energy = LandEnergy::new(pack);
     for (i, link) in links.iter().enumerate() {
         if i > 0 {
-            land_width(pack, i)?;
+            wide_enough(spaces.land_width(i), || format!("land {}", i + 1))?;
             energy.add(pack, nusselt, pack.lands[i].temperature, pack.lands[i].volume);
         }
         if link.back.is_some() {
-            back_width(pack, i, spaces.film())?;
+            wide_enough(spaces.nominal_width_behind(i), || format!("the space behind ring {}", i + 1))?;
             energy.add(pack, nusselt, pack.rings[i].back_temperature, spaces.nominal_volume(i));
         }
     }
