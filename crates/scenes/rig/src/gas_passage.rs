@@ -174,9 +174,10 @@ impl GasPassageRig {
     name = "gas_passage",
     summary = "gas flow through one opening or narrow channel over the pressure ratio",
     equations = "orifice: m' = C_d A p_u/sqrt(R T) psi(p_d/p_u);  channel: m' = w H^3 (p_a^2 - p_b^2)/(24 mu R T L);  \
+                automatic: m' = (c^-n + o^-n)^(-1/n) of channel c and opening o;  \
                 effective = m' sqrt(R T)/(A p_u psi_exact)",
     validity = "Perfect gas at one temperature; isothermal in channels.",
-    references = ["tian1996", "blasius1913", "sutherland1893"],
+    references = ["tian1996", "blasius1913", "sutherland1893", "jobson1955"],
     example = "pressure = \"50 bar\"\nratio = 0.5\ntemperature = \"400 K\"\npassage = { law = \"orifice\", area = \"0.3 mm2\" }\n",
 )]
 impl RigSpec for GasPassageRig {
