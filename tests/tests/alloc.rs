@@ -13,8 +13,10 @@ use gudgeon_scene_ring_pack::jacobian::Base;
 
 #[test]
 fn a_right_hand_side_allocates_nothing() {
-    for gas in ["orifice_network", "gap_orifice", "narrow_channel"] {
-        let case = checked("turbo-diesel-120", &[&format!("models.gas_flow.model={gas}")]);
+    let models = ["orifice_network", "gap_orifice", "narrow_channel", "namazian_heywood", "labyrinth"];
+    let warm = "{ model = \"narrow_channel\", mouth = \"automatic\", gas_temperature = \"energy_balance\" }";
+    for gas in models.map(|name| format!("{{ model = \"{name}\" }}")).into_iter().chain([warm.to_owned()]) {
+        let case = checked("turbo-diesel-120", &[&format!("models.gas_flow={gas}")]);
         let mut pack =
             assemble(case.of::<RingPackCase>().expect("a ring pack"), &Files::default()).expect("assembles");
         let n = pack.layout.n;

@@ -37,3 +37,12 @@ pub fn sutherland_viscosity(temperature: f64) -> f64 {
     let t = temperature / T_0;
     MU_0 * t * t.sqrt() * (T_0 + S) / (temperature + S)
 }
+
+/// Dynamic viscosity \[Pa s\] of the products of stoichiometric combustion at the temperature \[K\]: `3.3e-7 T^0.7 / 1.027`.
+///
+/// Heywood's fits of computed viscosities, `μ_air = 3.3e-7 T^0.7` and `μ_products = μ_air/(1 + 0.027 φ)` with the equivalence ratio `φ` = 1, made
+/// for 500 K to 4000 K and pressures from 1 to 100 bar.
+#[must_use]
+pub fn burnt_gas_viscosity(temperature: f64) -> f64 {
+    3.3e-7 * temperature.powf(0.7) / 1.027
+}

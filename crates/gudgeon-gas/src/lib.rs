@@ -1,6 +1,7 @@
 //! Gas flow between, behind and past piston rings.
 //!
-//! Gas spaces hold gas at the temperature of their walls, so the mass of each is its only state; passages between them let gas
+//! Gas spaces hold gas at the temperature of their walls, so the mass of each is its only state (with a balance of energy,
+//! [`GasTemperature`], its energy is another); passages between them let gas
 //! through by a law of pressures. The crate has one interface for each half of that, and everything built in is an instance of it.
 //!
 //! | to do | use |
@@ -11,24 +12,31 @@
 //! | write a new law of flow | implement [`PassageLaw`]: flow and partial derivatives of one passage |
 //! | put it on a ring pack | [`PackNetwork`] with [`OrificeAreas`]; the example there is a whole model |
 //! | choose other passages around a ring | implement [`PassageModel`] |
-//! | run a built-in model | [`OrificeNetwork`], [`NarrowChannel`], [`GapOrifice`], [`Prescribed`] |
+//! | run a built-in model | [`OrificeNetwork`], [`NarrowChannel`], [`NamazianHeywood`], [`GapOrifice`], [`Labyrinth`], [`Prescribed`] |
 //!
-//! The built-in models of the kind [`gas_flow`](gudgeon_core::kinds::GasFlowSpec) share the [`OrificeLaw`] with its [`Passage`]s and
-//! differ in their passages around a ring:
+//! The built-in models of the kind [`gas_flow`](gudgeon_core::kinds::GasFlowSpec) share the [`OrificeLaw`] with its [`Passage`]s, but
+//! for [`Labyrinth`] with its [`ThrottlingLaw`], and differ in their passages around a ring:
 //!
 //! | model | end gap | past the flanks | past the face |
 //! |---|---|---|---|
 //! | [`OrificeNetwork`] | orifice, from the geometry of the instant | orifice | orifice |
 //! | [`GapOrifice`] | orifice, always open | orifice, closed when seated | closed |
-//! | [`NarrowChannel`] | orifice | laminar channel | laminar channel |
+//! | [`NarrowChannel`] | orifice | laminar channel behind its mouth | the same |
+//! | [`NamazianHeywood`] | orifice | laminar channel | closed; laminar channel behind its mouth when lifted |
+//! | [`Labyrinth`] | throttling | throttling | throttling |
 //! | [`Prescribed`] | closed: land pressures are given | | |
 //!
 //! Units are SI, pressures are absolute, flows are positive towards the crankcase.
 
 mod channel;
+mod directed;
 mod flow_function;
 mod gap_orifice;
+mod gas_temperature;
+mod gas_viscosity;
 mod heat_capacity;
+mod labyrinth;
+mod namazian_heywood;
 mod narrow_channel;
 mod network;
 mod options;
@@ -41,16 +49,24 @@ mod passage;
 mod passage_law;
 mod plain_pack;
 mod prescribed;
+mod ring_channels;
 mod ring_passages;
 mod series;
 mod spaces;
+mod throttling_law;
 mod validate;
 
-pub use channel::{TRANSITION, channel_conductance, sutherland_viscosity, turbulent_share};
+pub use channel::{
+    TRANSITION, burnt_gas_viscosity, channel_conductance, sutherland_viscosity, turbulent_share,
+};
 pub use flow_function::{FlowFunction, MIN_DROP, critical_ratio};
 pub use gap_orifice::{BackVolumes, GapOrifice};
+pub use gas_temperature::GasTemperature;
+pub use gas_viscosity::GasViscosity;
 pub use heat_capacity::Gamma;
-pub use narrow_channel::{ChannelFriction, GasViscosity, NarrowChannel};
+pub use labyrinth::Labyrinth;
+pub use namazian_heywood::NamazianHeywood;
+pub use narrow_channel::{ChannelFriction, Mouth, NarrowChannel};
 pub use network::Network;
 pub use options::{Elimination, FilmHeight};
 pub use orifice::{Orifice, OrificeFormula};
@@ -62,5 +78,6 @@ pub use passage_law::{Area, FlowPartials, GasState, LANES, LaneWork, Link, Node,
 pub use plain_pack::plain_pack;
 pub use prescribed::Prescribed;
 pub use ring_passages::{FlankGap, Openings, PassageModel, RingPassages};
+pub use throttling_law::{THROTTLING_RATIO, ThrottlingLaw};
 
-gudgeon_core::link!(GapOrifice, NarrowChannel, OrificeNetwork, Prescribed,);
+gudgeon_core::link!(GapOrifice, Labyrinth, NamazianHeywood, NarrowChannel, OrificeNetwork, Prescribed,);

@@ -1,32 +1,22 @@
 //! Flanks and face as laminar channels, end gaps as orifices.
 
-use std::f64::consts::{PI, TAU};
-
-use gudgeon_core::geometry::{BackVolume, PackGeometry, RingGeometry};
+use gudgeon_core::geometry::RingGeometry;
 use gudgeon_core::kinds::{GasFlow, GasFlowCtx, GasFlowSpec};
-use gudgeon_core::quantity::{Length, NonNegative, PosLength, PosTime, PosViscosity, quantity};
+use gudgeon_core::quantity::{
+    Length, NonNegative, PosLength, PosRatio, PosTime, PosViscosity, Ratio, quantity,
+};
 use gudgeon_core::{BuildError, register_model};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::channel::{channel_conductance, sutherland_viscosity};
+use crate::gas_temperature::GasTemperature;
+use crate::gas_viscosity::GasViscosity;
 use crate::options::{Elimination, FilmHeight};
 use crate::orifice::Orifice;
 use crate::pack_network::{PackOptions, with_orifice_law};
 use crate::passage::Passage;
+use crate::ring_channels::{Channel, RingChannels, ring_channels};
 use crate::ring_passages::{Openings, PassageModel, RingPassages};
-use crate::spaces::lifted;
-
-/// How viscous the gas is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum GasViscosity {
-    /// That of air at the temperature of the channel, by Sutherland's law.
-    #[default]
-    Sutherland,
-    /// The constant `viscosity`.
-    Constant,
-}
 
 /// Friction in a narrow channel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
@@ -38,6 +28,17 @@ pub enum ChannelFriction {
     /// Laminar below a Reynolds number of about 2000 (of twice the height), with Blasius' turbulent friction factor above, and a
     /// smooth passage between.
     Blended,
+}
+
+/// How friction in a channel and the loss at its mouth are joined.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Mouth {
+    /// Both losses are added.
+    #[default]
+    Added,
+    /// The law that lets less through governs, channel or orifice, with a smooth change between them.
+    Automatic,
 }
 
 /// Flank clearances and face leak as compressible laminar channels, end gaps as orifices.
@@ -53,7 +54,8 @@ pub enum ChannelFriction {
 ///
 /// with the mean temperature of the spaces at both ends. The end gap leads directly from land to land, as an orifice of the whole
 /// gap area. No channel passes more than an orifice of its own cross section: losses by friction and at the mouth are added, see
-/// [`Passage::LimitedChannel`]. The radial thickness is taken as the length of the flank passage; the part of it that stands out
+/// [`Passage::LimitedChannel`]. With `mouth = "automatic"` each passage is an orifice or a channel instead, whichever lets less through, see
+/// [`Passage::AutomaticChannel`]: a channel where `Re < 48 C_d² w/H`, an orifice above, the Reynolds number formed with `2 H`. The radial thickness is taken as the length of the flank passage; the part of it that stands out
 /// over the land, a few per cent, is not taken off.
 ///
 /// A drained groove lets the upper-flank flow straight to the land below. A sealed ring has gap and face only.
@@ -65,7 +67,7 @@ pub struct NarrowChannel {
     /// Orifice law of the end gaps and of the mouths of the channels.
     #[serde(default)]
     pub orifice: Orifice,
-    /// Viscosity of the gas: that of air at the temperature of the channel (`sutherland`) or `constant`.
+    /// Viscosity of the gas: that of air (`sutherland`) or of combustion products (`burnt_gas`) at the temperature of the channel, or `constant`.
     #[serde(default)]
     pub gas_viscosity: GasViscosity,
     /// Viscosity for `gas_viscosity = "constant"`.
@@ -80,6 +82,22 @@ pub struct NarrowChannel {
     /// Friction in the channels: laminar whatever the Reynolds number, or turbulent above the transition.
     #[serde(default)]
     pub friction: ChannelFriction,
+    /// How friction in a channel and the loss at its mouth are joined: `added`, or `automatic`, an orifice or a channel, whichever lets less through.
+    #[serde(default)]
+    pub mouth: Mouth,
+    /// Sharpness `n` of the change between orifice and channel with `mouth = "automatic"`, at least 1: where both laws give the same flow, the
+    /// passage lets through `2^(-1/n)` of it (16 % less for 4), and where one gives half as much as the other, `2^-n/n` less than that (1.5 %).
+    #[serde(default = "default_sharpness")]
+    pub mouth_sharpness: PosRatio,
+    /// Temperature of the gas on the lands and behind the rings: that of the walls (`walls`), or from a balance of energy (`energy_balance`), whose
+    /// states stand beside the masses. Gas comes from the cylinder with the temperature of the top land in both; narrow channels have that of
+    /// their walls.
+    #[serde(default)]
+    pub gas_temperature: GasTemperature,
+    /// Nusselt number of the heat between gas and walls with `gas_temperature = "energy_balance"`, formed with twice the distance of the walls. 7.54
+    /// is that of developed laminar flow between parallel walls; 0: no heat.
+    #[serde(default = "crate::gas_temperature::parallel_walls")]
+    pub nusselt: Ratio<NonNegative>,
     /// Film thickness up to which oil fills the gap between face and liner. Gas passes the face of a ring that is further away: without that a
     /// ring that gas lifts off the liner closes its own end gap and locks in the gas that lifts it.
     #[serde(default = "crate::options::fifty_micrometres")]
@@ -97,6 +115,9 @@ pub struct NarrowChannel {
 fn default_viscosity() -> PosViscosity {
     quantity(2.5e-5)
 }
+fn default_sharpness() -> PosRatio {
+    quantity(4.0)
+}
 fn default_film() -> Length<NonNegative> {
     quantity(0.0)
 }
@@ -110,6 +131,10 @@ impl Default for NarrowChannel {
             film_height: FilmHeight::default(),
             nominal_film: default_film(),
             friction: ChannelFriction::default(),
+            mouth: Mouth::default(),
+            mouth_sharpness: default_sharpness(),
+            gas_temperature: GasTemperature::default(),
+            nusselt: crate::gas_temperature::parallel_walls(),
             face_oil: crate::options::fifty_micrometres(),
             eliminate: Elimination::default(),
             eliminate_below: crate::options::ten_nanoseconds(),
@@ -117,72 +142,38 @@ impl Default for NarrowChannel {
     }
 }
 
-impl NarrowChannel {
-    /// The channels of a pack, but for their heights.
-    fn channels(&self, pack: &PackGeometry) -> Result<Channels, BuildError> {
-        let channel = |perimeter: f64, length: f64, t_a: f64, t_b: f64| {
-            let t = 0.5 * (t_a + t_b);
-            let mu = match self.gas_viscosity {
-                GasViscosity::Sutherland => sutherland_viscosity(t),
-                GasViscosity::Constant => self.viscosity.si(),
-            };
-            Channel {
-                perimeter,
-                conductance: channel_conductance(perimeter, 1.0, length, mu, pack.gas_constant * t),
-                unit_flow: 0.5 * perimeter * mu,
-            }
-        };
-        let mut per_ring = Vec::with_capacity(pack.rings.len());
-        for (i, ring) in pack.rings.iter().enumerate() {
-            for (length, what) in [(ring.width, "radial thickness"), (ring.face.length(), "face length")] {
-                if !(length > 0.0 && length.is_finite()) {
-                    return Err(BuildError::new(format!("ring {} has the {what} {length:e} m", i + 1)));
-                }
-            }
-            let Some([above, below]) = pack.lands.get(i..i + 2).and_then(|s| <&[_; 2]>::try_from(s).ok())
-            else {
-                break; // The network reports the missing land.
-            };
-            let behind = match ring.back {
-                BackVolume::Geometric | BackVolume::Fixed(_) => ring.back_temperature,
-                BackVolume::Drained | BackVolume::Sealed => below.temperature,
-            };
-            let (upper, lower) = (TAU * ring.piston_radius_above, TAU * ring.piston_radius_below);
-            per_ring.push(RingChannels {
-                upper: channel(upper, ring.width, above.temperature, behind),
-                lower: channel(lower, ring.width, behind, below.temperature),
-                face: channel(
-                    2.0 * PI * pack.bore_radius,
-                    ring.face.length(),
-                    above.temperature,
-                    below.temperature,
-                ),
-            });
-        }
-        Ok(Channels {
-            per_ring,
-            blended: self.friction == ChannelFriction::Blended,
-            face_oil: self.face_oil.si(),
-        })
-    }
-}
-
 #[register_model(
     name = "narrow_channel",
     summary = "flanks and face as compressible laminar channels, end gaps as orifices",
-    equations = "dm_i/dt = sum of flows;  p_i = m_i R T_i / V_i;  gap: m' = C_d A p_u / sqrt(R T_u) psi(p_d/p_u);  \
+    equations = "dm_i/dt = sum of flows;  p_i = m_i R T_i / V_i, T_i of the walls or from  \
+                dU_i/dt = sum m' c_p T - Nu lambda V/s^2 (T_i - T_w) - p_i dV_i/dt;  gap: m' = C_d A p_u / sqrt(R T_u) psi(p_d/p_u);  \
                 channel: m' = 2 pi R H^3 (p_a^2 - p_b^2) / (24 mu R_g T w), limited by the orifice of area 2 pi R H;  \
+                mouth = automatic: m' = (c^-n + o^-n)^(-1/n) of channel c and orifice o;  \
                 blended friction: times [1 + (Re/2039)^3]^(-1/7), Re = m'/(pi R mu)",
     validity = "Isothermal, inertia-free flow in the channels, laminar unless `friction` says otherwise, which holds up to heights of about 10 to \
                20 um; wider passages pass over to the orifice law. Flanks parallel, dry.",
-    references = ["tian1996", "kuo1989", "sutherland1893", "furuhama1961", "blasius1913", "smith1999"],
+    references = ["tian1996", "kuo1989", "sutherland1893", "heywood1988", "furuhama1961", "blasius1913", "smith1999", "jobson1955"],
     example = "gas_viscosity = \"sutherland\"\n",
 )]
 impl GasFlowSpec for NarrowChannel {
     fn build(&self, ctx: &GasFlowCtx<'_>) -> Result<Box<dyn GasFlow>, BuildError> {
-        let channels = self.channels(ctx.pack)?;
+        if self.mouth_sharpness.si() < 1.0 {
+            return Err(BuildError::at(
+                "mouth_sharpness",
+                format!("{} is below 1, where channel and mouth together let through less than with their losses added", self.mouth_sharpness.si()),
+            )
+            .help("4 changes from one law to the other within a factor of 2 of their flows"));
+        }
+        let channels = Channels {
+            per_ring: ring_channels(ctx.pack, |t| self.gas_viscosity.at(t, self.viscosity.si()))?,
+            friction: self.friction,
+            mouth: self.mouth,
+            sharpness: self.mouth_sharpness.si(),
+            face_oil: self.face_oil.si(),
+        };
         let options = PackOptions {
             nominal_film: self.film_height.nominal(self.nominal_film),
+            nusselt: self.gas_temperature.nusselt(self.nusselt),
             eliminate_below: self.eliminate.below(self.eliminate_below),
             ..PackOptions::default()
         };
@@ -190,56 +181,40 @@ impl GasFlowSpec for NarrowChannel {
     }
 }
 
-/// One passage but for its height.
-#[derive(Debug, Clone, Copy)]
-struct Channel {
-    perimeter: f64,
-    /// Conductance for a height of 1 m.
-    conductance: f64,
-    /// Flow at a Reynolds number of one.
-    unit_flow: f64,
-}
-
-/// The channels of one ring.
-#[derive(Debug, Clone, Copy)]
-struct RingChannels {
-    upper: Channel,
-    lower: Channel,
-    face: Channel,
-}
-
+/// The channels of a pack and how they are closed.
 struct Channels {
     per_ring: Vec<RingChannels>,
-    blended: bool,
+    friction: ChannelFriction,
+    mouth: Mouth,
+    sharpness: f64,
     face_oil: f64,
+}
+
+impl Channels {
+    fn passage(&self, channel: &Channel, height: f64) -> Passage {
+        let (conductance, area) = (channel.conductance(height), channel.area(height));
+        let turbulent = self.friction == ChannelFriction::Blended;
+        match self.mouth {
+            Mouth::Automatic => Passage::AutomaticChannel {
+                conductance,
+                area,
+                unit_flow: if turbulent { channel.unit_flow() } else { f64::INFINITY },
+                sharpness: self.sharpness,
+            },
+            Mouth::Added if turbulent => {
+                Passage::BlendedChannel { conductance, area, unit_flow: channel.unit_flow() }
+            }
+            Mouth::Added => channel.limited(height),
+        }
+    }
 }
 
 impl PassageModel<Passage> for Channels {
     const HAS_FACE: bool = true;
 
     fn ring_passages(&self, i: usize, ring: &RingGeometry, o: &Openings) -> RingPassages<Passage> {
-        let k = self.per_ring[i];
-        let channel = |Channel { perimeter, conductance, unit_flow }: Channel, height: f64| {
-            let (conductance, area) = (conductance * height * height * height, perimeter * height);
-            if height <= 0.0 {
-                Passage::Closed
-            } else if self.blended {
-                Passage::BlendedChannel { conductance, area, unit_flow }
-            } else {
-                Passage::LimitedChannel { conductance, area }
-            }
-        };
-        let (upper, lower) = if ring.back == BackVolume::Sealed {
-            (Passage::Closed, Passage::Closed)
-        } else {
-            (channel(k.upper, o.upper.laminar() + o.leak[1]), channel(k.lower, o.lower.laminar() + o.leak[0]))
-        };
-        RingPassages {
-            upper,
-            lower,
-            gap: Passage::Orifice { area: o.gap },
-            face: channel(k.face, ring.leak_face + lifted(o.h, self.face_oil)),
-        }
+        let passage = |channel: &Channel, height: f64| self.passage(channel, height);
+        self.per_ring[i].passages(ring, o, self.face_oil, passage, passage)
     }
 
     fn uses_film_height(&self, _: &RingGeometry) -> bool {

@@ -16,7 +16,8 @@ use crate::series::in_series;
 /// dm_i/dt = Σ flows into i - Σ flows out of i
 /// ```
 ///
-/// Volumes may change with time: the mass is the state, hence no term with `dV/dt`.
+/// Volumes may change with time: the mass is the state, hence no term with `dV/dt`. [`set_mass_at`](Self::set_mass_at) takes gas of any temperature,
+/// for balances of energy, to which [`enthalpy`](Self::enthalpy) belongs.
 ///
 /// An instant is evaluated in three steps: set the pressures ([`set_mass`](Self::set_mass), [`set_pressure`](Self::set_pressure))
 /// and the passages ([`set_passage`](Self::set_passage)), then [`update_flows`](Self::update_flows) or
@@ -161,6 +162,26 @@ impl<L: PassageLaw> Network<L> {
             }
         }
         Err(refused_volume(model, mass, volume))
+    }
+
+    /// The same for gas at another temperature than that given to [`new`](Self::new): `rt` = `R T` \[J/kg\].
+    ///
+    /// # Errors
+    /// Recoverable, when mass, `rt` or size is not positive.
+    pub fn set_mass_at(
+        &mut self,
+        model: &'static str,
+        node: usize,
+        mass: f64,
+        rt: f64,
+        volume: f64,
+    ) -> Result<(), EvalError> {
+        if rt > 0.0 && rt.is_finite() {
+            let now = &mut self.nodes[node].gas;
+            *now = GasState::new(now.pressure(), rt);
+            return self.set_mass(model, node, mass, volume);
+        }
+        Err(refused_energy(model, mass, rt))
     }
 
     /// Sets the pressure of a boundary \[Pa\]. `model` is named in the error.
@@ -348,6 +369,27 @@ impl<L: PassageLaw> Network<L> {
         }
     }
 
+    /// Enthalpy \[W\] that gas brings into every volume, less what it takes, from the last update: `ṁ c_p T` with the temperature of the node
+    /// where it comes from and `cp_over_r` = `c_p/R`; and what all volumes together get from the boundaries.
+    pub fn enthalpy(&self, cp_over_r: f64, power: &mut [f64]) -> f64 {
+        power.fill(0.0);
+        let power = &mut power[..self.volumes];
+        let mut through = 0.0;
+        for (link, &flow) in self.links.iter().zip(&self.flow) {
+            let up = if flow >= 0.0 { link.from } else { link.to };
+            let h = flow * (cp_over_r * self.nodes[up].gas.rt());
+            match power.get_mut(link.from) {
+                Some(p) => *p -= h,
+                None => through += h,
+            }
+            match power.get_mut(link.to) {
+                Some(p) => *p += h,
+                None => through -= h,
+            }
+        }
+        through
+    }
+
     /// Jacobian of the [`rates`](Self::rates): their derivatives \[1/s\] by the masses, row-major, one row per volume, from the last
     /// [`update_partials`](Self::update_partials). The columns of a closed network add up to zero within rounding.
     pub fn jacobian(&self, jac: &mut [f64]) {
@@ -372,6 +414,11 @@ impl<L: PassageLaw> Network<L> {
 #[cold]
 fn refused_volume(model: &'static str, mass: f64, volume: f64) -> EvalError {
     EvalError::recoverable(model, format!("a gas volume of {volume:e} m3 holds a mass of {mass:e} kg"))
+}
+
+#[cold]
+fn refused_energy(model: &'static str, mass: f64, rt: f64) -> EvalError {
+    EvalError::recoverable(model, format!("a gas volume with a mass of {mass:e} kg has R T = {rt:e} J/kg"))
 }
 
 #[cold]

@@ -1,5 +1,6 @@
 //! The orifice law made ready for a gas: flow through a sharp opening.
 
+use crate::directed::{directed, directed_partials};
 use crate::flow_function::{FlowFunction, MIN_DROP};
 use crate::passage_law::{FlowPartials, GasState};
 
@@ -11,7 +12,7 @@ const TRUNCATED_FACTOR: f64 = 0.259;
 /// An orifice law made ready for a gas, see [`Orifice::build`](crate::Orifice::build).
 ///
 /// ```text
-/// ṁ = C_d A p_u / sqrt(R T_u) ψ_ε(p_d / p_u)
+/// ṁ = C_d A p_u / sqrt(R T_u) ψ_ε(p_d / p_u)        C_d = C_d(0) (1 - κ (p_d/p_u)²)
 /// ```
 ///
 /// `u` is the side of the higher pressure, `d` the other one. The flow from `a` to `b` is positive for `p_a > p_b`, changes its
@@ -41,7 +42,10 @@ const TRUNCATED_FACTOR: f64 = 0.259;
 #[derive(Debug, Clone, PartialEq)]
 pub struct OrificeLaw {
     flow_function: FlowFunction,
+    /// `C_d` into a vacuum.
     discharge: f64,
+    /// `κ`: the share of it that is lost at equal pressures.
+    fall: f64,
     /// `ε` of the laminar branch, above zero.
     laminar: f64,
     /// Whether the truncated form stands in for the isentropic one.
@@ -49,15 +53,17 @@ pub struct OrificeLaw {
 }
 
 impl OrificeLaw {
-    /// `laminar` is `ε`; values below the smallest number stand for zero.
+    /// The discharge coefficient at the pressure ratio `r` is `discharge (1 - fall r²)`; `laminar` is `ε`, values below the smallest number stand for
+    /// zero.
     pub(crate) const fn new(
         flow_function: FlowFunction,
         discharge: f64,
+        fall: f64,
         laminar: f64,
         truncated: bool,
     ) -> Self {
         // Zero over zero must not arise where the pressures are equal; beside any other pressure difference this vanishes.
-        Self { flow_function, discharge, laminar: laminar.max(f64::MIN_POSITIVE), truncated }
+        Self { flow_function, discharge, fall, laminar: laminar.max(f64::MIN_POSITIVE), truncated }
     }
 
     /// Flow \[kg/s\] from `a` to `b` through the geometric area \[m²\]. Pressures must not be negative.
@@ -81,11 +87,7 @@ impl OrificeLaw {
     }
 
     /// [`flow`](Self::flow) with its partial derivatives by both pressures, one-sided where the law has a kink (at equal pressures
-    /// between sides of different temperature). With `C = C_d A / sqrt(R T_u)`:
-    ///
-    /// ```text
-    /// ∂ṁ/∂p_u = C [ ψ + (1 - u) dψ/du ]        ∂ṁ/∂p_d = -C dψ/du
-    /// ```
+    /// between sides of different temperature).
     ///
     /// Where the derivative of the law is infinite, at equal pressures without a laminar branch, that at `u` = [`MIN_DROP`] stands
     /// for it.
@@ -102,23 +104,24 @@ impl OrificeLaw {
         self.directed_partials(area, a, b, FlowFunction::psi_derivative)
     }
 
-    /// `C_d p / sqrt(R T)`: what stands before `ψ`, per area, for gas of this state upstream \[kg/(s m²)\].
+    /// `C_d(0) p / sqrt(R T)`: what stands before `ψ`, per area, for gas of this state upstream \[kg/(s m²)\].
     #[inline]
     pub(crate) fn strength(&self, up: &GasState) -> f64 {
         self.discharge * up.pressure() * up.inv_sqrt_rt()
     }
 
-    /// `ψ_ε` of the isentropic form at relative pressure drops of either sign, for several openings at once.
+    /// `ψ_ε C_d/C_d(0)` of the isentropic form at relative pressure drops of either sign, for several openings at once.
     #[inline]
     pub(crate) fn psi_lanes<const N: usize>(&self, u: [f64; N]) -> [f64; N] {
-        std::array::from_fn(|i| self.flow_function.psi_laminar(u[i].abs(), self.laminar))
+        u.map(|u| self.flow_function.psi_laminar(u.abs(), self.laminar) * self.share(u.abs()))
     }
 
-    /// `ψ_ε` of the isentropic form at the relative pressure drop `u`, and the derivatives of `p_u ψ_ε` by the pressures upstream
+    /// `ψ_ε C_d/C_d(0)` of the isentropic form at the relative pressure drop `u`, and the derivatives of `p_u` times that by the pressures upstream
     /// and downstream.
     #[inline]
     pub(crate) fn psi_partials(&self, u: f64) -> (f64, f64, f64) {
-        let (psi, derivative) = self.flow_function.psi_laminar_derivative(u, self.laminar);
+        let (psi, derivative) =
+            self.with_share(u, self.flow_function.psi_laminar_derivative(u, self.laminar));
         (psi, psi + (1.0 - u) * derivative, -derivative)
     }
 
@@ -135,16 +138,10 @@ impl OrificeLaw {
         b: &GasState,
         psi: impl Fn(&FlowFunction, f64) -> f64,
     ) -> f64 {
-        let forward = a.pressure() >= b.pressure();
-        let (up, down) = if forward { (a, b) } else { (b, a) };
-        let (p, back) = (up.pressure(), down.pressure());
-        if p <= 0.0 {
-            return 0.0;
-        }
-        let psi =
-            if self.truncated { self.truncated(back / p) } else { psi(&self.flow_function, (p - back) / p) };
-        let magnitude = self.discharge * area * p * up.inv_sqrt_rt() * psi;
-        if forward { magnitude } else { -magnitude }
+        directed(self.discharge * area, a, b, |u, r| {
+            let psi = if self.truncated { self.truncated(r) } else { psi(&self.flow_function, u) };
+            psi * self.share(u)
+        })
     }
 
     #[inline]
@@ -155,23 +152,24 @@ impl OrificeLaw {
         b: &GasState,
         psi: impl Fn(&FlowFunction, f64) -> (f64, f64),
     ) -> FlowPartials {
-        let forward = a.pressure() >= b.pressure();
-        let (up, down) = if forward { (a, b) } else { (b, a) };
-        let (p, back) = (up.pressure(), down.pressure());
-        if p <= 0.0 {
-            return FlowPartials::default();
-        }
-        let u = (p - back) / p;
-        let (psi, derivative) =
-            if self.truncated { self.truncated_derivative(back / p) } else { psi(&self.flow_function, u) };
-        let flow = self.discharge * area * p * up.inv_sqrt_rt() * psi;
-        let front = self.discharge * area * up.inv_sqrt_rt();
-        let (by_up, by_down) = (front * (psi + (1.0 - u) * derivative), -front * derivative);
-        if forward {
-            FlowPartials { flow, by_a: by_up, by_b: by_down }
-        } else {
-            FlowPartials { flow: -flow, by_a: -by_down, by_b: -by_up }
-        }
+        directed_partials(self.discharge * area, a, b, |u, r| {
+            let psi = if self.truncated { self.truncated_derivative(r) } else { psi(&self.flow_function, u) };
+            self.with_share(u, psi)
+        })
+    }
+
+    /// What is left of the discharge coefficient into a vacuum: `C_d(r)/C_d(0) = 1 - κ r²`, `r = 1 - u`.
+    #[inline]
+    fn share(&self, u: f64) -> f64 {
+        let r = 1.0 - u;
+        1.0 - self.fall * r * r
+    }
+
+    /// The flow function with that share, and its derivative by `u`.
+    #[inline]
+    fn with_share(&self, u: f64, (psi, derivative): (f64, f64)) -> (f64, f64) {
+        let share = self.share(u);
+        (psi * share, derivative * share + psi * (2.0 * self.fall * (1.0 - u)))
     }
 
     /// `ψ` of the printed form, `sqrt(2) sqrt(γ/(γ-1) [r^(2/γ) - r^((γ+1)/γ)])`, choked `0.259` in place of the root of the bracket.

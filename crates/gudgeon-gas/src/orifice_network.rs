@@ -9,6 +9,7 @@ use gudgeon_core::{BuildError, register_model};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::gas_temperature::GasTemperature;
 use crate::options::{Elimination, FilmHeight};
 use crate::orifice::Orifice;
 use crate::pack_network::{PackOptions, with_orifice_law};
@@ -59,6 +60,15 @@ pub struct OrificeNetwork {
     /// the moment of lift-off, as published, which makes the flow discontinuous there.
     #[serde(default = "default_fade")]
     pub chamfer_fade: Ratio<Fraction>,
+    /// Temperature of the gas on the lands and behind the rings: that of the walls (`walls`), or from a balance of energy (`energy_balance`), whose
+    /// states stand beside the masses. Gas comes from the cylinder with the temperature of the top land in both; narrow channels have that of
+    /// their walls.
+    #[serde(default)]
+    pub gas_temperature: GasTemperature,
+    /// Nusselt number of the heat between gas and walls with `gas_temperature = "energy_balance"`, formed with twice the distance of the walls. 7.54
+    /// is that of developed laminar flow between parallel walls; 0: no heat.
+    #[serde(default = "crate::gas_temperature::parallel_walls")]
+    pub nusselt: Ratio<NonNegative>,
     /// Film thickness up to which oil fills the gap between face and liner. Gas passes the face of a ring that is further away: without that a
     /// ring that gas lifts off the liner closes its own end gap and locks in the gas that lifts it.
     #[serde(default = "crate::options::fifty_micrometres")]
@@ -91,6 +101,8 @@ impl Default for OrificeNetwork {
             film_height: FilmHeight::default(),
             nominal_film: default_film(),
             chamfer_fade: default_fade(),
+            gas_temperature: GasTemperature::default(),
+            nusselt: crate::gas_temperature::parallel_walls(),
             face_oil: crate::options::fifty_micrometres(),
             eliminate: Elimination::default(),
             eliminate_below: crate::options::ten_nanoseconds(),
@@ -101,10 +113,11 @@ impl Default for OrificeNetwork {
 #[register_model(
     name = "orifice_network",
     summary = "orifices at gap, flanks and face, their areas from the ring positions of the instant",
-    equations = "dm_i/dt = sum of flows;  p_i = m_i R T_i / V_i;  m' = C_d A p_u / sqrt(R T_u) psi(p_d/p_u);  \
+    equations = "dm_i/dt = sum of flows;  p_i = m_i R T_i / V_i, T_i of the walls or from  \
+                dU_i/dt = sum m' c_p T - Nu lambda V/s^2 (T_i - T_w) - p_i dV_i/dt;  m' = C_d A p_u / sqrt(R T_u) psi(p_d/p_u);  \
                 A_gap = (g + 2 pi delta)(R_c + delta - R_p - h) + A_ch;  A_upper = 2 pi R_p (c - s + leak) + A_gap/2;  \
                 A_lower = 2 pi R_p (s + leak) + A_gap/2;  A_direct = 2 pi (R_c + delta - h) (leak_face + what h exceeds face_oil by) + A_gap/2",
-    validity = "Gas at wall temperature; one-dimensional adiabatic flow through each opening. The narrow flank passages are longer than they \
+    validity = "Gas at wall temperature unless `gas_temperature` says otherwise; one-dimensional adiabatic flow through each opening. The narrow flank passages are longer than they \
                are high: as orifices they pass more than as laminar channels (see narrow_channel). Leak heights of seated flanks and face \
                are the least known inputs; 0.4 um instead of 0.02 um doubles the blow-by of a truck engine.",
     references = ["zottin1992", "furuhama1961", "smith1999"],
@@ -115,6 +128,7 @@ impl GasFlowSpec for OrificeNetwork {
         let areas = OrificeAreas { gap_split: self.gap_split.si(), face_oil: self.face_oil.si() };
         let options = PackOptions {
             nominal_film: self.film_height.nominal(self.nominal_film),
+            nusselt: self.gas_temperature.nusselt(self.nusselt),
             chamfer_fade: self.chamfer_fade.si(),
             eliminate_below: self.eliminate.below(self.eliminate_below),
         };

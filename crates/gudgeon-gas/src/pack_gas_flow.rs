@@ -3,8 +3,9 @@
 use gudgeon_core::EvalError;
 use gudgeon_core::geometry::BackVolume;
 use gudgeon_core::kinds::{GasFlow, GasIn, GasOut, GasPartials};
-use gudgeon_core::states::{StateInfo, Stateful};
+use gudgeon_core::states::{ColumnInfo, StateInfo, Stateful};
 
+use crate::gas_temperature::LandEnergy;
 use crate::pack_network::{PackNetwork, RingLinks};
 use crate::passage_law::PassageLaw;
 use crate::ring_passages::PassageModel;
@@ -35,7 +36,9 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> PackNetwork<M, L> {
     }
 
     fn write_flows(&self, d_state: &mut [f64], out: &mut GasOut) {
-        self.net.rates(d_state);
+        let (masses, energies) = d_state.split_at_mut(self.net.volumes());
+        self.net.rates(masses);
+        out.power = self.energy.as_ref().map_or(0.0, |energy| self.write_energies(energy, energies));
         for (i, links) in self.links.iter().enumerate() {
             let flow = |link: Option<usize>| link.map_or(0.0, |l| self.net.flow(l));
             let direct = self.net.flow(links.gap) + flow(links.face);
@@ -46,9 +49,36 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> PackNetwork<M, L> {
     }
 }
 
+impl<L: PassageLaw, M: PassageModel<L::Passage>> PackNetwork<M, L> {
+    /// Rates of the energies; what gas brings over the boundaries, less the heat to the walls \[W\].
+    fn write_energies(&self, energy: &LandEnergy, rates: &mut [f64]) -> f64 {
+        let mut power = self.net.enthalpy(energy.cp_over_r(), rates);
+        for (k, rate) in rates.iter_mut().enumerate() {
+            let heat = energy.heat(k, self.net.rt(k));
+            power -= heat;
+            *rate = energy.rate(k, *rate - heat);
+        }
+        power
+    }
+}
+
 impl<L: PassageLaw, M: PassageModel<L::Passage>> Stateful for PackNetwork<M, L> {
     fn states(&self) -> &[StateInfo] {
         &self.states
+    }
+
+    /// Temperature of every space with a balance of energy.
+    fn columns(&self) -> Vec<ColumnInfo> {
+        let energies = self.states.iter().skip(self.net.volumes());
+        energies
+            .map(|s| ColumnInfo::new(format!("{}.temperature", s.name.trim_start_matches("energy of ")), "K"))
+            .collect()
+    }
+
+    fn record(&self, _: &[f64], row: &mut Vec<f64>) {
+        if self.energy.is_some() {
+            row.extend((0..self.net.volumes()).map(|k| self.net.rt(k) / self.spaces.pack.gas_constant));
+        }
     }
 }
 
@@ -62,6 +92,23 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> GasFlow for PackNetwork<M, L> {
             max.max(1.0 + around / self.land_capacity(i))
         });
         Some(tau / max)
+    }
+
+    fn n_masses(&self) -> usize {
+        self.net.volumes()
+    }
+
+    fn has_energy(&self) -> bool {
+        self.energy.is_some()
+    }
+
+    fn each_space(&self, visit: &mut dyn FnMut(f64, f64, f64)) {
+        let Some(energy) = &self.energy else { return };
+        for k in 0..self.net.volumes() {
+            let p = self.net.pressure(k);
+            let volume = self.net.rt(k) / self.net.pressure_per_mass(k);
+            visit(p, volume, energy.content(p, volume));
+        }
     }
 
     fn unbound(&mut self) {
@@ -79,14 +126,19 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> GasFlow for PackNetwork<M, L> {
     }
 
     fn at_pressures(&self, inp: &GasIn<'_>, p_land: &[f64], state: &mut [f64]) {
+        let mut fill = |node: usize, p: f64, volume: f64| {
+            state[node] = p * volume / self.wall_rt(node);
+            if let Some(energy) = &self.energy {
+                state[self.net.volumes() + node] = energy.state(node, p, volume);
+            }
+        };
         for i in 0..self.links.len() {
             if i > 0 {
-                let node = self.lands[i];
-                state[node] = p_land[i] * self.spaces.pack.lands[i].volume / self.net.rt(node);
+                fill(self.lands[i], p_land[i], self.spaces.pack.lands[i].volume);
             }
             if let Some(node) = self.links[i].back {
                 let p = 0.5 * (p_land[i] + p_land[i + 1]);
-                state[node] = p * self.spaces.volume_behind(i, &inp.rings[i]) / self.net.rt(node);
+                fill(node, p, self.spaces.volume_behind(i, &inp.rings[i]));
             }
         }
     }
@@ -118,6 +170,10 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> GasFlow for PackNetwork<M, L> {
     }
 
     fn partials(&mut self, inp: &GasIn<'_>, state: &[f64], out: &mut GasPartials) -> Result<bool, EvalError> {
+        if self.energy.is_some() {
+            // A law of passages has no derivatives by temperatures.
+            return Ok(false);
+        }
         self.set(inp, state)?;
         self.net.update_partials();
         self.net.jacobian(&mut out.d_state);
@@ -168,10 +224,8 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> GasFlow for PackNetwork<M, L> {
         let RingLinks { upper, lower, gap, face, back, .. } = self.links[ring];
         let place = &inp.rings[ring];
         let before = back.map(|node| (node, self.net.node_memo(node)));
-        if let Some(node) = back {
-            self.net.set_mass(self.name, node, state[node], self.spaces.volume_behind(ring, place))?;
-        }
-        let outcome = self.set_passages(ring, place);
+        let space = back.and_then(|node| Some((node, self.energy.as_ref()?.memo(node))));
+        let outcome = self.set_back(ring, place, state).and_then(|()| self.set_passages(ring, place));
         if outcome.is_ok() {
             let links = [Some(gap), face, upper, lower];
             let flows = links.map(|l| l.map(|l| (l, self.net.update_flow(l))));
@@ -183,6 +237,9 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> GasFlow for PackNetwork<M, L> {
         }
         if let Some((node, before)) = before {
             self.net.restore_node(node, before);
+        }
+        if let (Some(energy), Some((node, before))) = (&mut self.energy, space) {
+            energy.restore(node, before);
         }
         outcome
     }

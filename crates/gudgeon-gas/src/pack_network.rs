@@ -1,10 +1,11 @@
 //! The network of lands and spaces behind rings: any law of a passage and any passages around the rings as one gas-flow model.
 
 use gudgeon_core::geometry::{BackVolume, PackGeometry, RingGeometry, RingPlace};
-use gudgeon_core::kinds::{GasIn, gas_mass};
+use gudgeon_core::kinds::{GasIn, gas_energy, gas_mass};
 use gudgeon_core::states::StateInfo;
 use gudgeon_core::{BuildError, EvalError};
 
+use crate::gas_temperature::{LandEnergy, wide_enough};
 use crate::network::Network;
 use crate::orifice::Orifice;
 use crate::orifice_law::OrificeLaw;
@@ -23,11 +24,14 @@ pub struct PackOptions {
     pub chamfer_fade: f64,
     /// Filling time \[s\] below which a space behind a ring stores nothing; `None`: all of them do.
     pub eliminate_below: Option<f64>,
+    /// Nusselt number of the heat between gas and walls where the temperature of the gas follows from a balance of energy; `None`: it is that of
+    /// the walls.
+    pub nusselt: Option<f64>,
 }
 
 impl Default for PackOptions {
     fn default() -> Self {
-        Self { nominal_film: None, chamfer_fade: 0.01, eliminate_below: None }
+        Self { nominal_film: None, chamfer_fade: 0.01, eliminate_below: None, nusselt: None }
     }
 }
 
@@ -102,8 +106,9 @@ pub struct PackNetwork<M, L: PassageLaw = OrificeLaw> {
     pub(crate) lands: Vec<usize>,
     /// Of all nodes \[K\].
     temperatures: Vec<f64>,
-    /// Of all volumes.
+    /// Of all volumes: masses, then energies where there is a balance of them.
     pub(crate) states: Vec<StateInfo>,
+    pub(crate) energy: Option<LandEnergy>,
 }
 
 /// Nodes and links of a pack.
@@ -178,6 +183,23 @@ fn has_room(ring: &RingGeometry) -> bool {
     matches!(ring.back, BackVolume::Geometric | BackVolume::Fixed(_))
 }
 
+/// The balances of energy of all volumes, in the order of their nodes.
+fn land_energy(spaces: &Spaces, links: &[RingLinks], nusselt: f64) -> Result<LandEnergy, BuildError> {
+    let pack = &spaces.pack;
+    let mut energy = LandEnergy::new(pack);
+    for (i, link) in links.iter().enumerate() {
+        if i > 0 {
+            wide_enough(spaces.land_width(i), || format!("land {}", i + 1))?;
+            energy.add(pack, nusselt, pack.lands[i].temperature, pack.lands[i].volume);
+        }
+        if link.back.is_some() {
+            wide_enough(spaces.nominal_width_behind(i), || format!("the space behind ring {}", i + 1))?;
+            energy.add(pack, nusselt, pack.rings[i].back_temperature, spaces.nominal_volume(i));
+        }
+    }
+    Ok(energy)
+}
+
 /// Time \[s\] in which the space behind ring `i` fills when the pressures around differ by a tenth at 1 bar, at its longest over the
 /// positions of the ring: `V/(R T Σ ṁ/Δp)`.
 fn filling_time<L: PassageLaw>(
@@ -209,7 +231,7 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> PackNetwork<M, L> {
         pack: &PackGeometry,
         options: PackOptions,
     ) -> Result<Self, BuildError> {
-        let PackOptions { nominal_film, chamfer_fade, eliminate_below } = options;
+        let PackOptions { nominal_film, chamfer_fade, eliminate_below, nusselt } = options;
         let spaces = Spaces { pack: pack.clone(), nominal_film, chamfer_fade, bounded: true };
         validate(pack, spaces.film())?;
         let is_fast = |i: usize| {
@@ -225,8 +247,12 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> PackNetwork<M, L> {
                 net.split_link(*upper, pack.gas_constant * pack.rings[i].back_temperature);
             }
         }
-        let states = names.iter().map(|name| gas_mass(name)).collect();
-        Ok(Self { name, model, spaces, net, links, lands, temperatures, states })
+        let mut states: Vec<StateInfo> = names.iter().map(|name| gas_mass(name)).collect();
+        let energy = nusselt.map(|number| land_energy(&spaces, &links, number)).transpose()?;
+        if energy.is_some() {
+            states.extend(names.iter().map(|name| gas_energy(name)));
+        }
+        Ok(Self { name, model, spaces, net, links, lands, temperatures, states, energy })
     }
 
     /// Gives every gas space the law that `law_at` has for gas of its temperature \[K\], for what flows out of it.
@@ -242,14 +268,19 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> PackNetwork<M, L> {
         Ok(self)
     }
 
+    /// `R T` \[J/kg\] of a node with the temperature of its walls.
+    pub(crate) fn wall_rt(&self, node: usize) -> f64 {
+        self.spaces.pack.gas_constant * self.temperatures[node]
+    }
+
     /// Capacity `V/(R T)` of the space behind ring `i` in the nominal liner \[kg/Pa\]; 0 where it has no room.
     pub(crate) fn back_capacity(&self, i: usize) -> f64 {
-        self.links[i].back.map_or(0.0, |node| self.spaces.nominal_volume(i) / self.net.rt(node))
+        self.links[i].back.map_or(0.0, |node| self.spaces.nominal_volume(i) / self.wall_rt(node))
     }
 
     /// Capacity `V/(R T)` of a land between rings \[kg/Pa\].
     pub(crate) fn land_capacity(&self, land: usize) -> f64 {
-        self.spaces.pack.lands[land].volume / self.net.rt(self.lands[land])
+        self.spaces.pack.lands[land].volume / self.wall_rt(self.lands[land])
     }
 
     /// Pressures of all nodes.
@@ -260,14 +291,30 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> PackNetwork<M, L> {
         for i in 0..n {
             if i > 0 {
                 let node = self.lands[i];
-                self.net.set_mass(self.name, node, state[node], self.spaces.pack.lands[i].volume)?;
+                let width = self.spaces.land_width(i);
+                self.set_space(node, state, self.spaces.pack.lands[i].volume, width)?;
             }
-            if let Some(node) = self.links[i].back {
-                let volume = self.spaces.volume_behind(i, &inp.rings[i]);
-                self.net.set_mass(self.name, node, state[node], volume)?;
-            }
+            self.set_back(i, &inp.rings[i], state)?;
         }
         Ok(())
+    }
+
+    /// Pressure of the space behind ring `i`, if it has one.
+    pub(crate) fn set_back(&mut self, i: usize, place: &RingPlace, state: &[f64]) -> Result<(), EvalError> {
+        let Some(node) = self.links[i].back else { return Ok(()) };
+        self.set_space(node, state, self.spaces.volume_behind(i, place), self.spaces.width_behind(i, place))
+    }
+
+    /// Pressure of a space of a size \[m³\] and the distance `width` \[m\] of its walls.
+    fn set_space(&mut self, node: usize, state: &[f64], volume: f64, width: f64) -> Result<(), EvalError> {
+        let mass = state[node];
+        match &mut self.energy {
+            None => self.net.set_mass(self.name, node, mass, volume),
+            Some(energy) => {
+                let rt = energy.set(node, mass, state[self.net.volumes() + node], volume, width);
+                self.net.set_mass_at(self.name, node, mass, rt, volume)
+            }
+        }
     }
 
     /// The passages of ring `i` as they are now.

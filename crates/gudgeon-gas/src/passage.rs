@@ -49,6 +49,26 @@ pub enum Passage {
         /// `perimeter μ/2` \[kg/s\]: the flow whose Reynolds number is one.
         unit_flow: f64,
     },
+    /// An orifice or a channel, whichever lets less through, with a smooth change between the two: with the flows `c` of the channel alone and `o`
+    /// of the orifice alone (without its laminar branch),
+    ///
+    /// ```text
+    /// ṁ = [ |c|^-n + |o|^-n ]^(-1/n)        ∂ṁ/∂c = (ṁ/c)^(n+1)        ∂ṁ/∂o = (ṁ/o)^(n+1)
+    /// ```
+    ///
+    /// Both laws give the same at small pressure differences where the loss by friction, `96/Re L/(2H)` times the dynamic pressure, is that of
+    /// the mouth, `1/C_d²` times: `Re = 48 C_d² L/H`, formed with twice the height `H` of a channel of the length `L`. Below that the channel
+    /// governs, above it the orifice. Friction turns turbulent as in [`BlendedChannel`](Self::BlendedChannel).
+    AutomaticChannel {
+        /// Conductance \[kg/(s Pa²)\] of the laminar flow.
+        conductance: f64,
+        /// Cross section \[m²\].
+        area: f64,
+        /// `perimeter μ/2` \[kg/s\]: the flow whose Reynolds number is one; infinite: friction is laminar whatever the flow.
+        unit_flow: f64,
+        /// `n`, at least 1.
+        sharpness: f64,
+    },
     /// An opening and, beside it, a linear leak `ṁ = leak (p_a - p_b)` that makes the pressures of two volumes equal.
     Tied {
         /// Geometric area \[m²\].
@@ -77,8 +97,11 @@ impl PassageLaw for OrificeLaw {
                 limited(self, channel(conductance, a, b), area, a, b)
             }
             Passage::BlendedChannel { conductance, area, unit_flow } => {
-                let c = channel(conductance, a, b);
-                limited(self, c * turbulent_share(c.abs() / unit_flow).0, area, a, b)
+                limited(self, turbulent(channel(conductance, a, b), unit_flow), area, a, b)
+            }
+            Passage::AutomaticChannel { conductance, area, unit_flow, sharpness } => {
+                let c = turbulent(channel(conductance, a, b), unit_flow);
+                lesser(c, self.flow_bare(area, a, b), sharpness)
             }
             Passage::Tied { area, leak } => opening(self, area, a, b) + leak * (a.pressure() - b.pressure()),
         }
@@ -93,10 +116,12 @@ impl PassageLaw for OrificeLaw {
                 limited_partials(self, channel_partials(conductance, a, b), area, a, b)
             }
             Passage::BlendedChannel { conductance, area, unit_flow } => {
-                let c = channel_partials(conductance, a, b);
-                let (share, slope) = turbulent_share(c.flow.abs() / unit_flow);
-                let c = FlowPartials { flow: share * c.flow, by_a: slope * c.by_a, by_b: slope * c.by_b };
+                let c = turbulent_partials(channel_partials(conductance, a, b), unit_flow);
                 limited_partials(self, c, area, a, b)
+            }
+            Passage::AutomaticChannel { conductance, area, unit_flow, sharpness } => {
+                let c = turbulent_partials(channel_partials(conductance, a, b), unit_flow);
+                lesser_partials(c, self.flow_bare_partials(area, a, b), sharpness)
             }
             Passage::Tied { area, leak } => {
                 let o = opening_partials(self, area, a, b);
@@ -194,6 +219,36 @@ fn channel(conductance: f64, a: &GasState, b: &GasState) -> f64 {
 /// The same with its partial derivatives.
 fn channel_partials(k: f64, a: &GasState, b: &GasState) -> FlowPartials {
     FlowPartials { flow: channel(k, a, b), by_a: 2.0 * k * a.pressure(), by_b: -2.0 * k * b.pressure() }
+}
+
+/// What turbulence leaves of the laminar flow `c` \[kg/s\] of a channel.
+#[inline]
+fn turbulent(c: f64, unit_flow: f64) -> f64 {
+    c * turbulent_share(c.abs() / unit_flow).0
+}
+
+/// The same with its partial derivatives.
+fn turbulent_partials(c: FlowPartials, unit_flow: f64) -> FlowPartials {
+    let (share, slope) = turbulent_share(c.flow.abs() / unit_flow);
+    FlowPartials { flow: share * c.flow, by_a: slope * c.by_a, by_b: slope * c.by_b }
+}
+
+/// `[ |c|^-n + |o|^-n ]^(-1/n)` with the sign of both: the lesser of the two, rounded where they are near each other.
+#[inline]
+fn lesser(c: f64, o: f64, n: f64) -> f64 {
+    let (low, high) = if c.abs() <= o.abs() { (c, o) } else { (o, c) };
+    if low == 0.0 { 0.0 } else { low * (1.0 + (low / high).powf(n)).powf(-1.0 / n) }
+}
+
+/// The same with its partial derivatives.
+fn lesser_partials(c: FlowPartials, o: FlowPartials, n: f64) -> FlowPartials {
+    let flow = lesser(c.flow, o.flow, n);
+    if flow == 0.0 {
+        // Near equal pressures the channel is the narrow part.
+        return c;
+    }
+    let (by_c, by_o) = ((flow / c.flow).powf(n + 1.0), (flow / o.flow).powf(n + 1.0));
+    FlowPartials { flow, by_a: by_c * c.by_a + by_o * o.by_a, by_b: by_c * c.by_b + by_o * o.by_b }
 }
 
 /// Flow \[kg/s\] through a channel that alone would pass `c`, behind a mouth: loss by friction, in proportion to the flow, and at the

@@ -79,6 +79,26 @@ impl Spaces {
         }
     }
 
+    /// Distance of the walls of land `i` \[m\].
+    pub fn land_width(&self, i: usize) -> f64 {
+        self.pack.bore_radius - self.pack.rings[i].piston_radius_above
+    }
+
+    /// Distance of the walls behind ring `i` in the nominal liner \[m\].
+    pub fn nominal_width_behind(&self, i: usize) -> f64 {
+        self.pack.rings[i].h_max(self.pack.bore_radius) - self.film()
+    }
+
+    /// Distance of the walls behind ring `i` at its place \[m\]: that of the nominal liner where the volume is given.
+    pub fn width_behind(&self, i: usize, place: &RingPlace) -> f64 {
+        let ring = &self.pack.rings[i];
+        match (ring.back, self.nominal_film) {
+            (BackVolume::Geometric, None) => place.r_inner - ring.root_radius,
+            (BackVolume::Geometric, Some(h)) => ring.h_max(place.liner_radius) - h,
+            _ => self.nominal_width_behind(i),
+        }
+    }
+
     /// Openings of ring `i` at its place.
     ///
     /// # Errors

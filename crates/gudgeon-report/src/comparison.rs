@@ -559,12 +559,13 @@ fn comparison_work(out: &mut String, ran: &[&VariantEntry], base: Option<&Varian
 /// How well the balances close, where one is known.
 fn comparison_balances(out: &mut String, ran: &[&VariantEntry]) {
     type Closure = (&'static str, fn(&Summary) -> Option<f64>);
-    let balances: [Closure; 5] = [
+    let balances: [Closure; 6] = [
         ("gas mass closure", |r| r.balance.gas_mass),
         ("oil mass closure", |r| r.balance.oil_mass),
         ("flank oil closure", |r| r.balance.flank_oil),
         ("energy closure", |r| r.balance.energy),
         ("momentum closure", |r| r.balance.momentum),
+        ("gas energy closure", |r| r.balance.gas_energy),
     ];
     for (name, of) in balances {
         if ran.iter().all(|v| v.run.as_ref().and_then(of).is_none()) {

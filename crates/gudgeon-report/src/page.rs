@@ -204,6 +204,7 @@ pub(crate) fn balance_section(balance: &BalanceSheet) -> String {
             "impulse of all forces on the rings less the change of their momentum, by the sum of magnitudes",
             balance.momentum,
         ),
+        ("Gas energy", "(brought − heat − work − stored) / most that was held", balance.gas_energy),
     ];
     if rows.iter().all(|(_, _, v)| v.is_none()) {
         return String::new();

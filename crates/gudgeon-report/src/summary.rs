@@ -42,6 +42,8 @@ pub(crate) struct BalanceSheet {
     pub flank_oil: Option<f64>,
     pub energy: Option<f64>,
     pub momentum: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gas_energy: Option<f64>,
 }
 
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
@@ -159,6 +161,7 @@ impl Summary {
                 flank_oil: finite(run.balance.flank_oil),
                 energy: finite(run.balance.energy),
                 momentum: finite(run.balance.momentum),
+                gas_energy: finite(run.balance.gas_energy),
             },
             solver: SolverEntry { method: run.solver.method.clone(), counters: run.solver.counters.clone() },
             notes: run.solver.notes.clone(),

@@ -132,6 +132,9 @@ pub struct Balance {
     pub energy: Option<f64>,
     /// Impulse of all forces on the rings less the change of their momentum, by the sum of the magnitudes.
     pub momentum: Option<f64>,
+    /// Energy of the gas: (brought - heat - work - stored) / most that was held.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gas_energy: Option<f64>,
 }
 
 /// Work done by the solver.

@@ -7,6 +7,7 @@ mod bench;
 mod cases;
 mod compare;
 mod extremes;
+mod gas_energy;
 mod gas_states;
 mod gradients;
 mod implicit;

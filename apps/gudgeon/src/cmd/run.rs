@@ -60,6 +60,7 @@ fn text(r: &RunResult) -> String {
     let b = &r.balance;
     let all = [
         ("gas mass", b.gas_mass),
+        ("gas energy", b.gas_energy),
         ("oil mass", b.oil_mass),
         ("flank oil", b.flank_oil),
         ("energy", b.energy),

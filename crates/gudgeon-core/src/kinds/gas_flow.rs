@@ -46,6 +46,8 @@ pub struct GasOut {
     /// Flow \[kg/s\] arriving in the land below each ring from the ring, downwards positive. Differs from `flow_in` by what
     /// the space behind the ring stores. The last one is the blow-by.
     pub flow_out: Vec<f64>,
+    /// Energy \[W\] that gas brings to all volumes over the boundaries, less the heat to their walls; 0 in a model without a balance of energy.
+    pub power: f64,
 }
 
 impl Clone for GasOut {
@@ -60,6 +62,7 @@ impl Clone for GasOut {
         self.p_back.clone_from(&other.p_back);
         self.flow_in.clone_from(&other.flow_in);
         self.flow_out.clone_from(&other.flow_out);
+        self.power = other.power;
     }
 }
 
@@ -72,6 +75,7 @@ impl GasOut {
             p_back: vec![0.0; rings],
             flow_in: vec![0.0; rings],
             flow_out: vec![0.0; rings],
+            power: 0.0,
         }
     }
 }
@@ -118,6 +122,12 @@ pub fn gas_mass(volume: &str) -> StateInfo {
         .changes(Signals::PRESSURE)
 }
 
+/// Description of the energy of the gas in a volume as a state, judged like its mass ([`gas_mass`]).
+#[must_use]
+pub fn gas_energy(volume: &str) -> StateInfo {
+    StateInfo { name: format!("energy of {volume}"), ..gas_mass(volume) }
+}
+
 /// A running gas-flow model. Its first [`n_masses`](Self::n_masses) states are the gas masses \[kg\] of its volumes ([`gas_mass`]), so that any
 /// linear-invariant-preserving integrator closes the mass balance to round-off: the sum of their rates is `flow_in[0] - flow_out[n-1]` in every
 /// call. More states may follow, such as temperatures.
@@ -129,6 +139,15 @@ pub trait GasFlow: Stateful + Send {
     fn uses_end_gaps(&self) -> bool {
         true
     }
+
+    /// Whether the temperature of its gas follows from a balance of energy, whose ledger [`GasOut::power`] and [`each_space`](Self::each_space) are.
+    fn has_energy(&self) -> bool {
+        false
+    }
+
+    /// Calls `visit` with pressure \[Pa\], size \[m³\] and energy \[J\] of the gas of every volume at the last instant: none in a model without a
+    /// balance of energy.
+    fn each_space(&self, _visit: &mut dyn FnMut(f64, f64, f64)) {}
 
     /// Number of volumes with a mass of their own: as many of the states, from the first.
     fn n_masses(&self) -> usize {

@@ -2,9 +2,14 @@
 #![allow(clippy::excessive_precision, reason = "reference values stand as they were computed")]
 
 mod balance;
+mod discharge;
 mod elimination;
+mod energy;
 mod heat_capacity;
+mod labyrinth;
 mod models;
+mod mouths;
+mod namazian_heywood;
 mod network;
 mod network_cycle;
 mod openings;

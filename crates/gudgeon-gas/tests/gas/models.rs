@@ -266,7 +266,9 @@ fn prescribed_pressures() {
 #[test]
 fn registered_and_readable() {
     let registry = gudgeon_core::Registry::collect();
-    for name in ["orifice_network", "gap_orifice", "narrow_channel", "prescribed"] {
+    for name in
+        ["orifice_network", "gap_orifice", "labyrinth", "namazian_heywood", "narrow_channel", "prescribed"]
+    {
         assert!(registry.model("gas_flow", name).is_some(), "{name}");
     }
 }

@@ -8,8 +8,8 @@ use gudgeon_core::geometry::{
 use gudgeon_core::kinds::{GasFlow, GasFlowCtx, GasFlowSpec};
 use gudgeon_core::quantity::quantity;
 use gudgeon_gas::{
-    BackVolumes, ChannelFriction, Elimination, FilmHeight, Gamma, GapOrifice, NarrowChannel, Orifice,
-    OrificeFormula, OrificeNetwork,
+    BackVolumes, ChannelFriction, Elimination, FilmHeight, Gamma, GapOrifice, GasTemperature, Labyrinth,
+    Mouth, NamazianHeywood, NarrowChannel, Orifice, OrificeFormula, OrificeNetwork,
 };
 
 /// A ring of a 120 mm truck engine.
@@ -84,6 +84,7 @@ pub fn build(spec: &dyn GasFlowSpec, pack: &PackGeometry) -> Box<dyn GasFlow> {
 
 pub fn specs() -> Vec<Box<dyn GasFlowSpec>> {
     let truncated = Orifice { law: OrificeFormula::IsentropicTruncated, ..Orifice::default() };
+    let sharp_edged = Orifice { discharge_fall: quantity(0.25), ..Orifice::default() };
     let of_burnt_gas = Orifice { gamma: Gamma::BurntGas, ..Orifice::default() };
     vec![
         Box::new(OrificeNetwork::default()),
@@ -99,6 +100,28 @@ pub fn specs() -> Vec<Box<dyn GasFlowSpec>> {
         Box::new(OrificeNetwork { orifice: of_burnt_gas, ..OrificeNetwork::default() }),
         Box::new(NarrowChannel::default()),
         Box::new(NarrowChannel { film_height: FilmHeight::Nominal, ..NarrowChannel::default() }),
+        Box::new(NarrowChannel {
+            mouth: Mouth::Automatic,
+            friction: ChannelFriction::Blended,
+            ..NarrowChannel::default()
+        }),
+        Box::new(OrificeNetwork { orifice: sharp_edged, ..OrificeNetwork::default() }),
+        Box::new(NamazianHeywood::default()),
+        Box::new(Labyrinth::default()),
+    ]
+}
+
+/// Models with a balance of energy.
+pub fn with_energy() -> Vec<Box<dyn GasFlowSpec>> {
+    let gas_temperature = GasTemperature::EnergyBalance;
+    vec![
+        Box::new(OrificeNetwork { gas_temperature, ..OrificeNetwork::default() }),
+        Box::new(NarrowChannel { gas_temperature, ..NarrowChannel::default() }),
+        Box::new(NamazianHeywood {
+            gas_temperature,
+            film_height: FilmHeight::Nominal,
+            ..NamazianHeywood::default()
+        }),
     ]
 }
 

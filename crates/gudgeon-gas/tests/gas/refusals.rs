@@ -12,6 +12,8 @@ fn impossible_packs_are_refused_with_the_numbers() {
         change(&mut p);
         specs()
             .iter()
+            // An isothermal law: the ratio of specific heats does not count.
+            .filter(|s| p.gamma > 1.0 || !format!("{s:?}").starts_with("Labyrinth"))
             .map(|s| s.build(&GasFlowCtx { pack: &p }).err().expect("refused").message)
             .collect::<Vec<_>>()
     };

@@ -272,6 +272,7 @@ pub fn run(n: usize) -> RunResult {
             flank_oil: None,
             energy: Some(-4.1e-7),
             momentum: Some(1.2e-8),
+            gas_energy: None,
         },
         solver: SolverReport {
             method: "implicit".into(),

@@ -53,6 +53,33 @@ pub struct PassageShape {
     /// Channels: viscosity of the gas; absent: that of air at the temperature.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub viscosity: Option<PosViscosity>,
+    /// `automatic_channel`: sharpness of the change between opening and channel, at least 1; absent: 4.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sharpness: Option<PosRatio>,
+}
+
+impl PassageShape {
+    /// Cross section, passage and, of a channel, the flow whose Reynolds number is one, for gas of the temperature `t` and the gas constant `r`;
+    /// `None` when a size is missing.
+    fn passage(&self, sharpness: f64, t: f64, r: f64) -> Option<(f64, Passage, Option<f64>)> {
+        if self.law == PassageLaw::Orifice {
+            let area = self.area?.si();
+            return Some((area, Passage::Orifice { area }, None));
+        }
+        let (w, h, l) = (self.width?.si(), self.height?.si(), self.length?.si());
+        let mu = self.viscosity.map_or_else(|| sutherland_viscosity(t), |v| v.si());
+        let (area, unit_flow) = (w * h, 0.5 * w * mu);
+        let conductance = channel_conductance(w, h, l, mu, r * t);
+        let passage = match self.law {
+            PassageLaw::Channel => Passage::Channel { conductance },
+            PassageLaw::BlendedChannel => Passage::BlendedChannel { conductance, area, unit_flow },
+            PassageLaw::AutomaticChannel => {
+                Passage::AutomaticChannel { conductance, area, unit_flow, sharpness }
+            }
+            PassageLaw::Orifice | PassageLaw::LimitedChannel => Passage::LimitedChannel { conductance, area },
+        };
+        Some((area, passage, Some(unit_flow)))
+    }
 }
 
 /// Laws of passages.
@@ -67,6 +94,8 @@ pub enum PassageLaw {
     LimitedChannel,
     /// The same, with friction that turns turbulent.
     BlendedChannel,
+    /// An opening or a channel, turbulent where it must be, whichever lets less through, with a smooth change between them.
+    AutomaticChannel,
 }
 
 fn diatomic() -> PosRatio {
@@ -94,6 +123,7 @@ impl GasPassageRig {
             }
         };
         let sizes = [shape.width, shape.height, shape.length];
+        foreign(shape.sharpness.is_some() && shape.law != PassageLaw::AutomaticChannel, "sharpness");
         if shape.law == PassageLaw::Orifice {
             for (key, v) in CHANNEL.iter().zip(sizes) {
                 foreign(v.is_some(), key);
@@ -111,23 +141,12 @@ impl GasPassageRig {
                 }
             }
         }
+        let sharpness = shape.sharpness.map_or(4.0, |n| n.si());
+        if sharpness < 1.0 {
+            errors.push(BuildError::at("passage.sharpness", format!("the sharpness {sharpness} is below 1")));
+        }
         let Ok(law) = law else { return Err(errors) };
-        let mu = shape.viscosity.map_or_else(|| sutherland_viscosity(t), |v| v.si());
-        let (area, passage, unit_flow) = match (shape.law, shape.area, sizes) {
-            (PassageLaw::Orifice, Some(a), _) => (a.si(), Passage::Orifice { area: a.si() }, None),
-            (kind, _, [Some(w), Some(h), Some(l)]) => {
-                let (w, h) = (w.si(), h.si());
-                let (area, unit_flow) = (w * h, 0.5 * w * mu);
-                let conductance = channel_conductance(w, h, l.si(), mu, r * t);
-                let passage = match kind {
-                    PassageLaw::Channel => Passage::Channel { conductance },
-                    PassageLaw::BlendedChannel => Passage::BlendedChannel { conductance, area, unit_flow },
-                    _ => Passage::LimitedChannel { conductance, area },
-                };
-                (area, passage, Some(unit_flow))
-            }
-            _ => return Err(errors),
-        };
+        let Some((area, passage, unit_flow)) = shape.passage(sharpness, t, r) else { return Err(errors) };
         let ideal = law.flow_function().clone();
         match Network::new(law, r, &[t, t], 0, &[(0, 1)]) {
             Ok(mut net) if errors.is_empty() => {
@@ -155,9 +174,10 @@ impl GasPassageRig {
     name = "gas_passage",
     summary = "gas flow through one opening or narrow channel over the pressure ratio",
     equations = "orifice: m' = C_d A p_u/sqrt(R T) psi(p_d/p_u);  channel: m' = w H^3 (p_a^2 - p_b^2)/(24 mu R T L);  \
+                automatic: m' = (c^-n + o^-n)^(-1/n) of channel c and opening o;  \
                 effective = m' sqrt(R T)/(A p_u psi_exact)",
     validity = "Perfect gas at one temperature; isothermal in channels.",
-    references = ["tian1996", "blasius1913", "sutherland1893"],
+    references = ["tian1996", "blasius1913", "sutherland1893", "jobson1955"],
     example = "pressure = \"50 bar\"\nratio = 0.5\ntemperature = \"400 K\"\npassage = { law = \"orifice\", area = \"0.3 mm2\" }\n",
 )]
 impl RigSpec for GasPassageRig {

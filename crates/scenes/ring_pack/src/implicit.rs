@@ -20,6 +20,7 @@ use gudgeon_numerics::rodas::{Formula, Rodas};
 
 use super::around::Around;
 use super::error::RingPackError;
+use super::gas_ledger::GasLedger;
 use super::jacobian::Base;
 use super::measure::{Measures, Peak};
 use super::modes::EventOf;
@@ -443,6 +444,7 @@ struct Sampler {
     /// Crank angles \[deg\] and the film on the liner there.
     liner: Vec<(u32, Vec<f64>)>,
     watch: Watch,
+    gas_ledger: GasLedger,
 }
 
 impl Sampler {
@@ -463,6 +465,7 @@ impl Sampler {
             end: vec![(0.0, 0.0); n],
             liner: Vec::new(),
             watch: Watch::new(pack),
+            gas_ledger: GasLedger::default(),
         }
     }
 
@@ -483,6 +486,7 @@ impl Sampler {
                 pack.look(t, &self.y)?;
             }
             self.measures.sample(k, pack, self.q[0]);
+            self.gas_ledger.sample(&*pack.gas);
         }
         self.measures.step(pack, t0, t1);
         for (i, e) in self.end.iter_mut().enumerate() {
@@ -530,6 +534,7 @@ impl Follower for Sampler {
     fn begin(&mut self, pack: &mut Pack, theta: f64, y: &[f64]) -> Result<(), EvalError> {
         pack.evaluate(theta, y)?;
         self.rows.start(pack, y);
+        self.gas_ledger.sample(&*pack.gas);
         for (i, s) in self.start.iter_mut().enumerate() {
             *s = momentum(pack, i);
         }
@@ -704,7 +709,7 @@ impl<'a> Cycle<'a> {
         let gas_mass = (q[0] - q[n] - stored).abs() / through;
         let flank_stored = self.pack.flank_oil(y) - flank_before;
         let flank_oil = self.pack.layout.flank_quad(0).map(|first| {
-            let sum = |k: usize| q[first + k..].iter().step_by(2).sum::<f64>();
+            let sum = |k: usize| q[first + k..first + 2 * n].iter().step_by(2).sum::<f64>();
             (sum(0) - sum(1) - flank_stored).abs() / sum(0).max(f64::MIN_POSITIVE)
         });
         Ok(Balance { gas_mass: Some(gas_mass), oil_mass, flank_oil, ..Balance::default() })
@@ -770,8 +775,9 @@ fn run(
     let balance = cycle.record(&mut y, tolerance, &mut sampler)?;
     let q = cycle.q;
     let (energy, momentum) = sampler.balance(pack);
+    let gas_energy = pack.layout.gas_quad().and_then(|k| sampler.gas_ledger.closure(q[k]));
     let totals = Totals {
-        balance: Balance { energy, momentum, ..balance },
+        balance: Balance { energy, momentum, gas_energy, ..balance },
         periodicity_error: report.error_estimate,
         ..Totals::of_cycle(pack, &q)
     };

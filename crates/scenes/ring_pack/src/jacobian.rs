@@ -347,6 +347,9 @@ impl Pack {
         }
         jac[(n + rings) * n + column] =
             (self.at.gas.flow_out[rings - 1] - base.gas.flow_out[rings - 1]) * per;
+        if let Some(k) = self.layout.gas_quad() {
+            jac[(n + k) * n + column] = (self.at.gas.power - base.gas.power) * per;
+        }
     }
 
     /// Pressures after a small change of mass `k` \[kg\] from `base`.

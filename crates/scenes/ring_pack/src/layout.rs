@@ -37,6 +37,8 @@ pub struct Layout {
     pub twists: Vec<bool>,
     /// What the motion of each ring in its groove and the oil there depend on.
     pub motion_reads: Vec<Signals>,
+    /// Whether the gas has a balance of energy.
+    gas_has_energy: bool,
 }
 
 impl Layout {
@@ -51,6 +53,7 @@ impl Layout {
     ) -> Self {
         let mut layout = Self { carried: oil.map_or(0, OilTransport::carried), ..Self::default() };
         layout.gas = layout.add(gas.states().iter().cloned());
+        layout.gas_has_energy = gas.has_energy();
         for r in rings {
             let own = if films && !r.films.is_empty() { r.radial.states() } else { &[] };
             let range = layout.add(own.iter().cloned());
@@ -81,18 +84,24 @@ impl Layout {
         layout
     }
 
-    /// Number of quadratures: flow into each ring, flow out of the last, friction work of each ring, and where oil on flanks is followed what each
-    /// ring gained and lost of it.
+    /// Number of quadratures: flow into each ring, flow out of the last, friction work of each ring, where oil on flanks is followed what each ring
+    /// gained and lost of it, and, last, what is brought to gas with a balance of energy.
     #[must_use]
     pub fn quads(&self) -> usize {
         let n = self.flank.len();
-        2 * n + 1 + if self.wet_flanks { 2 * n } else { 0 }
+        2 * n + 1 + if self.wet_flanks { 2 * n } else { 0 } + usize::from(self.gas_has_energy)
     }
 
     /// The quadrature of the oil that came to the flanks of ring `i`; that of what left them is the next. None where it is not followed.
     #[must_use]
     pub fn flank_quad(&self, i: usize) -> Option<usize> {
         self.wet_flanks.then_some(2 * self.flank.len() + 1 + 2 * i)
+    }
+
+    /// The quadrature of the energy that is brought to the gas; none without a balance of it.
+    #[must_use]
+    pub fn gas_quad(&self) -> Option<usize> {
+        self.gas_has_energy.then(|| self.quads() - 1)
     }
 
     fn add(&mut self, states: impl Iterator<Item = StateInfo>) -> Range<usize> {

@@ -16,6 +16,7 @@ mod end_gap;
 mod error;
 mod film_strokes;
 mod forces;
+mod gas_ledger;
 pub mod geometry;
 pub mod implicit;
 pub mod instant;

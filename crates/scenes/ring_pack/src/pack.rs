@@ -392,6 +392,9 @@ impl Pack {
                 }
             }
             q[n] = self.at.gas.flow_out[n - 1] * per;
+            if let Some(k) = self.layout.gas_quad() {
+                q[k] = self.at.gas.power * per;
+            }
         }
         Ok(())
     }
