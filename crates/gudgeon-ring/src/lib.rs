@@ -83,6 +83,7 @@ gudgeon_core::link!(
     TangentRadians,
     TanhStribeck,
     ThreeSeat,
+    WettedStrip,
     axial_gas::FullPerimeter,
     axial_gas::LaminarProfile,
     axial_gas::LinearProfile,

@@ -62,7 +62,7 @@ impl Default for SqueezeFilm {
 
 #[register_model(
     name = "squeeze_film",
-    summary = "oil squeezed out between ring and both groove flanks, with cavitation when drawn apart; gas passes as if it were not there",
+    summary = "oil squeezed out between ring and both groove flanks, with cavitation when drawn apart; gas passes beside it",
     equations = "approach: F = mu A w^2 f^3 v / (h + sigma)^3;  separation: X/(1 + X/(p_t f A)), X = chi mu A w^2 f^3 v / (h + sigma)^3;  \
                 h = s and c - s",
     validity = "Parallel flanks, the same oil-filled strip on both at all times, thin compared with its width; no oil transport, no twist. Thicker oil holds a ring \

@@ -73,7 +73,7 @@ impl Default for WettedStrip {
 
 #[register_model(
     name = "wetted_strip",
-    summary = "physical: a strip of oil of finite volume on each flank, which resists, ruptures, and keeps gas out while it bridges the gap",
+    summary = "physical: oil of finite volume on each flank that resists, ruptures, and keeps gas out while it bridges the gap",
     equations = "b = a/H up to w;  approach: f = mu b^3 v/H^3;  open share of the gap 1/(1 + (b/H)^2);  \
                 da/dt = (f_o w sigma - a)(1/tau + 4 sigma^2 v/H^3) - |dp| H^3 b/(12 mu (b + H)^2);  H = h + sigma",
     validity = "Parallel flanks, oil at the temperature of the groove, the same around the ring; groove and lands have oil to replace what is lost. \
@@ -129,13 +129,12 @@ impl Strip {
         h.max(0.0) + self.roughness
     }
 
-    /// Width of the strip of `oil` \[m²\] in a gap \[m\].
+    /// Width of the strip of `oil` \[m²\] in a gap \[m\], odd in the oil: a dry flank is no corner.
     fn wetted(&self, oil: f64, gap: f64) -> f64 {
-        let x = (oil / (self.width * gap)).max(0.0);
+        let x = oil / (self.width * gap);
         if x > 1.0 {
             // The same without the power of a large number.
-            let y = x.recip();
-            self.width / (1.0 + y.powi(4)).sqrt().sqrt()
+            self.width / (1.0 + x.recip().powi(4)).sqrt().sqrt()
         } else {
             self.width * x / (1.0 + x.powi(4)).sqrt().sqrt()
         }
@@ -153,10 +152,9 @@ impl Strip {
         let gap = self.gap(h);
         let gathered = 4.0 * self.roughness * self.roughness * rate.max(0.0) / (gap * gap * gap);
         let missing = self.supply - oil;
-        let reach = wetted + gap;
+        let reach = wetted.abs() + gap;
         let blown = dp.abs() * gap * gap * gap * wetted / (12.0 * self.mu * reach * reach);
-        let fed = missing.max(0.0) * (self.per_renewal + gathered);
-        FlankFlow { fed, lost: blown + (-missing).max(0.0) * self.per_renewal }
+        FlankFlow { fed: missing * (self.per_renewal + gathered), lost: blown }
     }
 }
 
