@@ -96,7 +96,7 @@ impl EulerMarch {
         let per_cycle = pack.period().to_degrees().round() as u32 * self.steps_per_degree;
         let h = pack.period() / f64::from(per_cycle);
         let mut y = vec![0.0; n];
-        let mut step = Step::new(n, rings);
+        let mut step = Step::new(n, pack.layout.quads());
         pack.each_block(|b, _| b.set_accuracy(0.0));
         pack.initial(start, &mut y);
         let mut ended = Ended { totals: Totals::default(), steps: 0, cycles: self.cycles, period: 1 };
@@ -117,7 +117,7 @@ impl EulerMarch {
                 ended.steps += 1;
             }
             let after: f64 = mass(pack, &y);
-            ended.totals = step.totals(rings, after - before);
+            ended.totals = step.totals(pack, after - before);
             progress(f64::from(cycle) / f64::from(self.cycles))?;
         }
         pack.evaluate(pack.period(), &y)?;
@@ -135,13 +135,12 @@ struct Step {
     matrix: Vec<f64>,
     pivots: Vec<usize>,
     base: Base,
-    /// Quadratures of the cycle: flow into each ring, flow out of the last, friction work of each.
+    /// Quadratures of the cycle, in the order of the layout.
     sums: Vec<f64>,
 }
 
 impl Step {
-    fn new(n: usize, rings: usize) -> Self {
-        let quads = 2 * rings + 1;
+    fn new(n: usize, quads: usize) -> Self {
         Self {
             f: vec![0.0; n + quads],
             jac: vec![0.0; (n + quads) * n],
@@ -180,13 +179,8 @@ impl Step {
     }
 
     /// Totals of a cycle over which the stored gas changed by `stored` \[kg\].
-    fn totals(&self, rings: usize, stored: f64) -> Totals {
-        let mut t = Totals {
-            flow_in: self.sums[..rings].to_vec(),
-            blow_by: self.sums[rings],
-            friction_work: self.sums[rings + 1..].to_vec(),
-            ..Totals::default()
-        };
+    fn totals(&self, pack: &Pack, stored: f64) -> Totals {
+        let mut t = Totals::of_cycle(pack, &self.sums);
         let through = t.flow_in[0].abs().max(t.blow_by.abs()).max(f64::MIN_POSITIVE);
         t.balance.gas_mass = Some(((t.flow_in[0] - t.blow_by) - stored).abs() / through);
         t.periodicity_error = (stored / through).abs();

@@ -25,6 +25,7 @@ mod sampling;
 mod shaft_line;
 mod skirt_oil;
 mod tomanik;
+mod trends;
 mod unused;
 mod validation;
 mod zottin;

@@ -26,6 +26,7 @@ fn barrelled(film: &dyn Film2dSpec, across: usize, rough: bool, p_cav: f64) -> S
     let grid = PANEL.grid(10, across, 0.0);
     let waves = waves(WavinessTransport::Homogenised);
     Side::new(SideSetup {
+        boundary_friction: None,
         panel: PANEL,
         sign: 1.0,
         clearance: 2e-5,

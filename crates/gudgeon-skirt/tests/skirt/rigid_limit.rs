@@ -49,6 +49,7 @@ fn side_with(which: usize, compliance: &dyn SkirtComplianceSpec, files: &Files) 
     let grid = panel.grid(8, 8, 0.0);
     let ctx = SkirtComplianceCtx::new(&grid, LENGTH, RADIUS, HALF[which], files).relaxing(RELAXATION);
     Side::new(SideSetup {
+        boundary_friction: None,
         panel,
         sign: [1.0, -1.0][which],
         clearance: 1e-5,
