@@ -181,18 +181,14 @@ fn a_free_ring_is_held_when_it_moves_as_the_forces_balance() {
     let (_, balanced) = rates(&mut *m, &f);
     m.free();
     assert!(m.is_integrated(1));
-    // As fast as the balance has it, but for a way of a hundredth of the tolerance in clearances that the film leaves of the difference.
-    let film = |v: f64| {
-        oil(&SqueezeFilm::default()).force(&FlankOil::default(), f.place.s, v, C, f.place.flank_area())
-    };
-    let stiffness = (film(2.0 * balanced.v) - film(balanced.v)) / -balanced.v;
-    let admitted = TOLERANCE * C / 100.0 * stiffness / MASS;
-    for (off, ready) in [(0.0, true), (0.5, true), (1.5, false)] {
-        rates(&mut *m, &forces(f.place.s, balanced.v - off * admitted, -300.0));
+    // As fast as the balance has it; the tolerance is that of the velocity, in clearances per radian.
+    let unit = C * OMEGA;
+    for (off, ready) in [(0.0, true), (0.5, true), (-0.5, true), (1.5, false), (-1.5, false)] {
+        rates(&mut *m, &forces(f.place.s, balanced.v + off * TOLERANCE * unit, -300.0));
         assert_eq!(m.event(0) > 0.0, ready, "{off}: {}", m.event(0));
     }
-    rates(&mut *m, &forces(f.place.s, balanced.v - 0.25 * admitted, -300.0));
-    // Settled to a quarter of what is admitted; nothing else is nearer. The stiffness is a difference over the approach, in which the film is linear.
+    rates(&mut *m, &forces(f.place.s, balanced.v + 0.25 * TOLERANCE * unit, -300.0));
+    // Settled to a quarter of what is admitted; nothing else is nearer.
     near(m.event(0), 0.75, 1e-6);
     let mut y = [1e-3, 0.4];
     m.switch(0, &mut y);
@@ -201,6 +197,28 @@ fn a_free_ring_is_held_when_it_moves_as_the_forces_balance() {
     m.free();
     rates(&mut *m, &forces(0.5 * C, 0.0, -300.0));
     assert!(m.event(0) < 0.0);
+}
+
+#[test]
+fn on_oil_that_is_followed_the_way_that_is_left_decides() {
+    let (mut m, f) = held(false, 300.0);
+    let (_, balanced) = rates(&mut *m, &f);
+    m.free();
+    let film = |v: f64| {
+        oil(&SqueezeFilm::default()).force(&FlankOil::default(), f.place.s, v, C, f.place.flank_area())
+    };
+    let stiffness = (film(2.0 * balanced.v) - film(balanced.v)) / -balanced.v;
+    // A hundredth of the tolerance in clearances, times the rate at which the film takes the difference away.
+    let admitted = TOLERANCE * C / 100.0 * stiffness / MASS;
+    assert!(admitted > 10.0 * TOLERANCE * C * OMEGA, "a stiff film");
+    for (off, ready) in [(0.5, true), (1.5, false)] {
+        let mut at = forces(f.place.s, balanced.v - off * admitted, -300.0);
+        rates(&mut *m, &at);
+        assert!(m.event(0) < 0.0, "oil without a volume: the velocity");
+        at.place.flank.wetted = [1e-3, 0.0];
+        rates(&mut *m, &at);
+        assert_eq!(m.event(0) > 0.0, ready, "{off}: {}", m.event(0));
+    }
 }
 
 #[test]
