@@ -77,7 +77,8 @@ impl Default for WettedStrip {
     equations = "b = a/H up to w;  approach: f = mu b^3 v/H^3;  open share of the gap 1/(1 + (b/H)^2);  \
                 da/dt = (f_o w sigma - a)(1/tau + 4 sigma^2 v/H^3) - |dp| H^3 b/(12 mu (b + H)^2);  H = h + sigma",
     validity = "Parallel flanks, oil at the temperature of the groove, the same around the ring; groove and lands have oil to replace what is lost. \
-               The supply and the time of renewal are inputs that are seldom measured.",
+               The supply and the time of renewal are inputs that are seldom measured. Nothing resists a ring away from the flanks: it flutters more, \
+               and takes more steps, than with `squeeze_film`.",
     references = ["reynolds1886", "cameron1966"],
     example = "roughness = \"0.4 um\"\nrenewal = \"50 ms\"\n",
 )]
