@@ -209,7 +209,7 @@ impl Assembly {
         if self.oil.is_some() { self.piston.contents() + 2 } else { 0 }
     }
 
-    /// What they are: films at all nodes and waiting oil over its arc, in units of [`OIL_FILM`] and [`OIL_WAITING`].
+    /// What they are: films at all nodes and waiting oil over its arc, in units of `OIL_FILM` and `OIL_WAITING`.
     pub fn oil_state(&self, out: &mut [f64]) {
         let Some(oil) = &self.oil else { return };
         let (films, waiting) = out.split_at_mut(self.piston.contents());
