@@ -46,7 +46,7 @@ fn thicker_oil_does_not_raise_blow_by() {
         let at = |mu: f64| vec![viscosity(mu), format!("models.gas_flow.model={gas}")];
         let blow_by = diesel(&[1.5, 5.0, 15.0, 50.0].map(at), "blow_by");
         // The issue is the sign: the oil that holds a ring off its flank keeps the gas out there too. A hundredth or two is what the moments
-        // of landing leave; without the second half of that the same oils gave a factor of five.
+        // of landing leave; `squeeze_film`, which does not keep it out, gives factors of 1.2 with channels and 3.4 with orifices.
         assert!(largest_rise(&blow_by) < 1.02, "{gas}: {blow_by:?}");
     }
 }
@@ -55,7 +55,8 @@ fn thicker_oil_does_not_raise_blow_by() {
 fn more_oil_on_the_flanks_does_not_raise_blow_by() {
     let at = |fill: f64| (0..3).map(|i| format!("rings.{i}.groove.oil_fill={fill}")).collect::<Vec<_>>();
     let blow_by = diesel(&[0.1, 0.3, 1.0].map(at), "blow_by");
-    assert!(largest_rise(&blow_by) < 1.02, "{blow_by:?}");
+    // It falls by two in a hundred from the first to the last; half of that is the room for a rise.
+    assert!(largest_rise(&blow_by) < 1.01, "{blow_by:?}");
 }
 
 #[test]
