@@ -120,7 +120,14 @@ pub fn ring_motion(m: &ModelInfo) -> Result<Alone, String> {
             motion.initial(&mut y);
             let pose = motion.pose(black_box(&y), CLEARANCE);
             let place = RingPlace { s: pose.s, v: pose.v, lift_fraction: pose.lift_fraction, ..pack.1[0] };
-            let axial = AxialForces { gas: 50.0, inertia: -20.0, gravity: -0.2, film: 3.0, damping: 0.0 };
+            let axial = AxialForces {
+                gas: 50.0,
+                inertia: -20.0,
+                gravity: -0.2,
+                film: 3.0,
+                expander: 0.0,
+                damping: 0.0,
+            };
             let mut rates = vec![0.0; y.len()];
             seen(motion.rates(&y, &RingForces::new(place, axial), &mut rates)?)
         },

@@ -95,10 +95,33 @@ pub enum BackVolume {
     Geometric,
     /// A given constant volume \[m³\].
     Fixed(f64),
-    /// Groove drained to the space below the ring: no volume of its own, `p_back` is the pressure below.
-    Drained,
-    /// A ring with no axial clearance (three-piece oil ring): no volume, `p_back` is the mean of above and below.
+    /// Open to the space below the ring: no volume of its own, `p_back` is the pressure below.
+    OpenBelow,
+    /// Open to the space above the ring: no volume of its own, `p_back` is the pressure above.
+    OpenAbove,
+    /// A ring with no axial clearance (one rail that stands for two): no volume, `p_back` is the mean of above and below.
     Sealed,
+}
+
+/// Way of the gas in a groove or between two rings to the crankcase, beside those past the rings.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Vent {
+    /// None.
+    #[default]
+    Closed,
+    /// Through openings.
+    Drain(Drain),
+    /// So wide that the gas has the pressure of the crankcase: no volume of its own.
+    Open,
+}
+
+/// Holes or slots that lead to the crankcase.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Drain {
+    /// Area of all of them \[m²\].
+    pub area: f64,
+    /// Effective over geometric area.
+    pub discharge: f64,
 }
 
 /// A chamfer at an edge of a groove: opens an extra leak path at the end gap when the ring is seated on that side.
@@ -149,22 +172,38 @@ pub struct RingGeometry {
     pub chamfer: Chamfer,
     /// Where the gas behind the ring is.
     pub back: BackVolume,
+    /// Way of that gas to the crankcase, of [`BackVolume::Geometric`] and [`BackVolume::Fixed`].
+    pub vent: Vent,
     /// Gas temperature behind the ring \[K\].
     pub back_temperature: f64,
     /// Oil-filled fraction of the groove flanks, 0 to 1.
     pub oil_fill: f64,
     /// Running face of one land.
     pub face: FaceProfile,
-    /// Lands of the running face: 1, or 2 for a twin-land oil ring; the space between lands is drained to below the ring.
+    /// Lands of the running face: 1, or 2 for a twin-land oil ring, whose slots join the space between its lands with that behind it.
     pub lands: usize,
     /// Rails that this entry stands for: 1, or 2 for a three-piece oil ring whose rails are modelled by one that carries
     /// half the tangential force.
     pub rails: usize,
     /// Whether the ring can move in its groove at all.
     pub has_clearance: bool,
+    /// Axial force of an expander on a rail, towards the head positive, over the radial force of the tension of that rail; 0 without one.
+    pub expander_slope: f64,
 }
 
 impl RingGeometry {
+    /// Whether there is gas behind the ring that has a pressure of its own.
+    #[must_use]
+    pub fn has_room(&self) -> bool {
+        matches!(self.back, BackVolume::Geometric | BackVolume::Fixed(_)) && self.vent != Vent::Open
+    }
+
+    /// Whether the upper flank is the one that it seals: that of an upper rail.
+    #[must_use]
+    pub fn seals_above(&self) -> bool {
+        self.back == BackVolume::OpenBelow
+    }
+
     /// Film thickness at which the ring touches the groove root \[m\], for a local liner radius.
     #[inline]
     #[must_use]
@@ -180,6 +219,8 @@ pub struct LandGeometry {
     pub volume: f64,
     /// Gas temperature \[K\].
     pub temperature: f64,
+    /// Way of its gas to the crankcase; not used for the first and the last.
+    pub vent: Vent,
 }
 
 /// A ring pack.
@@ -303,7 +344,7 @@ impl<'a> RingSection<'a> {
         let g = self.geometry;
         let rest = g.height - g.lands as f64 * g.face.length();
         if g.lands == 2 {
-            rest * (self.p_below - self.p_cav)
+            rest * (self.p_back - self.p_cav)
         } else {
             0.5 * rest * (self.p_above + self.p_below - 2.0 * self.p_cav)
         }

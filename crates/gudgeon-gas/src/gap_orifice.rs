@@ -39,7 +39,7 @@ pub enum BackVolumes {
 /// Face and seated flanks leak nothing, so the film thickness has no influence: gap area, clearance and geometric volumes are taken
 /// without a film.
 ///
-/// A drained groove lets `A_upper` flow straight to the land below. A sealed ring has its gap only.
+/// A groove that is vented lets `A_upper` flow straight to the crankcase. A sealed ring has its gap only.
 ///
 /// With `back_volumes = "merged"` the space behind a seated ring and the land it faces are one volume: a linear leak of conductance
 /// `V/(R T τ)` beside the open flank makes their pressures equal within the time `merge_time` `τ`. The leak goes with `1 - 2e`
@@ -110,6 +110,10 @@ struct Areas {
 }
 
 impl PassageModel<Passage> for Areas {
+    fn drain(&self, area: f64) -> Option<Passage> {
+        Some(Passage::Orifice { area })
+    }
+
     fn merge_time(&self) -> Option<f64> {
         self.merge_time
     }

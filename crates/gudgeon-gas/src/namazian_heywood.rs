@@ -124,6 +124,10 @@ struct Channels {
 impl PassageModel<Passage> for Channels {
     const HAS_FACE: bool = true;
 
+    fn drain(&self, area: f64) -> Option<Passage> {
+        Some(Passage::Orifice { area })
+    }
+
     fn ring_passages(&self, i: usize, ring: &RingGeometry, o: &Openings) -> RingPassages<Passage> {
         let flank =
             |channel: &Channel, height: f64| Passage::Channel { conductance: channel.conductance(height) };

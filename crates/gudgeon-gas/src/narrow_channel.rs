@@ -58,7 +58,7 @@ pub enum Mouth {
 /// [`Passage::AutomaticChannel`]: a channel where `Re < 48 C_d² w/H`, an orifice above, the Reynolds number formed with `2 H`. The radial thickness is taken as the length of the flank passage; the part of it that stands out
 /// over the land, a few per cent, is not taken off.
 ///
-/// A drained groove lets the upper-flank flow straight to the land below. A sealed ring has gap and face only.
+/// A groove that is vented lets the upper-flank flow straight to the crankcase. A sealed ring has gap and face only.
 ///
 /// Source: tian1996 and kuo1989 describe this class of models; sutherland1893 for the viscosity; furuhama1961 for the gaps.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
@@ -211,6 +211,10 @@ impl Channels {
 
 impl PassageModel<Passage> for Channels {
     const HAS_FACE: bool = true;
+
+    fn drain(&self, area: f64) -> Option<Passage> {
+        Some(Passage::Orifice { area })
+    }
 
     fn ring_passages(&self, i: usize, ring: &RingGeometry, o: &Openings) -> RingPassages<Passage> {
         let passage = |channel: &Channel, height: f64| self.passage(channel, height);

@@ -129,6 +129,11 @@ impl<L: PassageLaw> Network<L> {
         self.set_split_passages(link, L::Passage::default(), L::Passage::default());
     }
 
+    /// The law of its passages.
+    pub(crate) const fn law(&self) -> &L {
+        &self.law
+    }
+
     /// Number of nodes that are volumes.
     #[must_use]
     pub const fn volumes(&self) -> usize {

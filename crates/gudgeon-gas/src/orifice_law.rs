@@ -197,6 +197,11 @@ impl OrificeLaw {
         (psi, 0.5 * rise / psi.max((k * (b - a) * MIN_DROP).sqrt()))
     }
 
+    /// `C_d` into a vacuum.
+    pub(crate) const fn discharge_coefficient(&self) -> f64 {
+        self.discharge
+    }
+
     /// Ratio of specific heats.
     #[must_use]
     pub const fn gamma(&self) -> f64 {

@@ -31,7 +31,8 @@ use crate::spaces::lifted;
 /// ```
 ///
 /// With the published split of ½ a ring that seals at its flanks still leaks through one whole gap: half of it through the groove,
-/// half directly. A drained groove has no volume of its own: its upper-flank path ends in the land below and there is no lower one.
+/// half directly. A groove that is vented, or open to the land below (above) it, has no volume of its own: its paths end in the crankcase, or its upper
+/// (lower) one in that land.
 /// A sealed ring has no flank paths, and its whole gap is direct.
 ///
 /// `s` is kept within 0 and `c`, and `A_gap` above zero, but for the scheme `substep_march`, which takes them as they come, as published.
@@ -174,6 +175,10 @@ impl<P: From<Area> + Default> PassageModel<P> for OrificeAreas {
             gap: orifice(face + (o.gap - through_groove)),
             face: P::default(),
         }
+    }
+
+    fn drain(&self, area: f64) -> Option<P> {
+        Some(P::from(Area(area)))
     }
 
     fn uses_film_height(&self, ring: &RingGeometry) -> bool {

@@ -42,9 +42,14 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> PackNetwork<M, L> {
         for (i, links) in self.links.iter().enumerate() {
             let flow = |link: Option<usize>| link.map_or(0.0, |l| self.net.flow(l));
             let direct = self.net.flow(links.gap) + flow(links.face);
-            let upper = flow(links.upper);
-            out.flow_in[i] = direct + upper;
-            out.flow_out[i] = direct + if links.back.is_some() { flow(links.lower) } else { upper };
+            let [first, last] = links.flanks();
+            out.flow_in[i] = direct + flow(first);
+            out.flow_out[i] = direct + flow(last);
+        }
+        if let Some(blow_by) = out.flow_out.last_mut() {
+            for (link, sign) in &self.drained {
+                *blow_by += sign * self.net.flow(*link);
+            }
         }
     }
 }
@@ -119,7 +124,7 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> GasFlow for PackNetwork<M, L> {
         self.spaces.nominal_film.is_none()
             && self.spaces.pack.rings.iter().any(|r| {
                 r.gap_area.is_none()
-                    || r.back == BackVolume::Geometric
+                    || (r.back == BackVolume::Geometric && r.has_room())
                     || (r.has_clearance && r.slope_upper + r.slope_lower != 0.0)
                     || self.model.uses_film_height(r)
             })
@@ -133,7 +138,7 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> GasFlow for PackNetwork<M, L> {
             }
         };
         for i in 0..self.links.len() {
-            if i > 0 {
+            if !self.is_boundary(i) {
                 fill(self.lands[i], p_land[i], self.spaces.pack.lands[i].volume);
             }
             if let Some(node) = self.links[i].back {
@@ -202,12 +207,15 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> GasFlow for PackNetwork<M, L> {
             for (node, weight) in behind {
                 add(&mut out.p_back[columns.clone()], node, weight);
             }
-            let arriving = if links.back.is_some() { links.lower } else { links.upper };
-            for (last, rows) in [(links.upper, &mut out.flow_in), (arriving, &mut out.flow_out)] {
-                for link in [Some(links.gap), links.face, last].into_iter().flatten() {
+            for (flank, rows) in links.flanks().into_iter().zip([&mut out.flow_in, &mut out.flow_out]) {
+                for link in [Some(links.gap), links.face, flank].into_iter().flatten() {
                     self.net.add_flow_gradient(link, 1.0, &mut rows[columns.clone()]);
                 }
             }
+        }
+        let blow_by = (self.links.len() - 1) * m..self.links.len() * m;
+        for (link, sign) in &self.drained {
+            self.net.add_flow_gradient(*link, *sign, &mut out.flow_out[blow_by.clone()]);
         }
         Ok(true)
     }
@@ -221,13 +229,13 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> GasFlow for PackNetwork<M, L> {
         out: &mut GasOut,
     ) -> Result<(), EvalError> {
         // A ring touches its own passages and the space behind it, which no other ring's passage reaches.
-        let RingLinks { upper, lower, gap, face, back, .. } = self.links[ring];
+        let RingLinks { upper, lower, gap, face, back, drain, .. } = self.links[ring];
         let place = &inp.rings[ring];
         let before = back.map(|node| (node, self.net.node_memo(node)));
         let space = back.and_then(|node| Some((node, self.energy.as_ref()?.memo(node))));
         let outcome = self.set_back(ring, place, state).and_then(|()| self.set_passages(ring, place));
         if outcome.is_ok() {
-            let links = [Some(gap), face, upper, lower];
+            let links = [Some(gap), face, upper, lower, drain];
             let flows = links.map(|l| l.map(|l| (l, self.net.update_flow(l))));
             self.write_pressures(out);
             self.write_flows(d_state, out);

@@ -1,6 +1,6 @@
 //! The network of lands and spaces behind rings: any law of a passage and any passages around the rings as one gas-flow model.
 
-use gudgeon_core::geometry::{BackVolume, PackGeometry, RingGeometry, RingPlace};
+use gudgeon_core::geometry::{BackVolume, Drain, PackGeometry, RingPlace, Vent};
 use gudgeon_core::kinds::{GasIn, gas_energy, gas_mass};
 use gudgeon_core::states::StateInfo;
 use gudgeon_core::{BuildError, EvalError};
@@ -44,11 +44,19 @@ pub(crate) struct RingLinks {
     pub face: Option<usize>,
     /// Whether the upper link goes on past the lower flank, through a space behind the ring that stores nothing.
     pub through: bool,
-    /// Node of the space behind the ring.
+    /// Node of the space behind the ring, where that has a state.
     pub back: Option<usize>,
-    /// The pressure behind the ring is the mean of these two nodes': its own volume twice, the land below twice when it is drained
-    /// into that, both lands when it has no room.
+    /// From there to the crankcase.
+    pub drain: Option<usize>,
+    /// The pressure behind the ring is the mean of these two nodes': that of the space behind it twice, or both lands when it has no room.
     pub behind: [usize; 2],
+}
+
+impl RingLinks {
+    /// Past the first flank that the gas comes to on its way down, and past the last.
+    pub fn flanks(&self) -> [Option<usize>; 2] {
+        [self.upper.or(self.lower), self.lower.or(self.upper)]
+    }
 }
 
 /// A gas-flow model of a ring pack from two halves: the [law](PassageLaw) of a passage, and the [passages](PassageModel) around a ring.
@@ -102,8 +110,10 @@ pub struct PackNetwork<M, L: PassageLaw = OrificeLaw> {
     pub(crate) spaces: Spaces,
     pub(crate) net: Network<L>,
     pub(crate) links: Vec<RingLinks>,
-    /// Nodes of the lands.
+    /// Nodes of the lands: those that are open to the crankcase have its node.
     pub(crate) lands: Vec<usize>,
+    /// Links to the crankcase (1) and from it (-1) beside those of the last ring.
+    pub(crate) drained: Vec<(usize, f64)>,
     /// Of all nodes \[K\].
     temperatures: Vec<f64>,
     /// Of all volumes: masses, then energies where there is a balance of them.
@@ -120,6 +130,8 @@ struct Layout {
     lands: Vec<usize>,
     ends: Vec<(usize, usize)>,
     links: Vec<RingLinks>,
+    /// Links from spaces to the crankcase.
+    drains: Vec<(usize, Drain)>,
 }
 
 impl Layout {
@@ -132,12 +144,12 @@ impl Layout {
         let mut lands = vec![0; n + 1];
         let mut names = Vec::with_capacity(2 * n);
         for (i, ring) in pack.rings.iter().enumerate() {
-            if i > 0 {
+            if i > 0 && pack.lands[i].vent != Vent::Open {
                 lands[i] = temperatures.len();
                 temperatures.push(pack.lands[i].temperature);
                 names.push(format!("land{}", i + 1));
             }
-            if has_room(ring) && !fast[i] {
+            if ring.has_room() && !fast[i] {
                 backs[i] = Some(temperatures.len());
                 temperatures.push(ring.back_temperature);
                 names.push(format!("ring{}.back", i + 1));
@@ -148,39 +160,93 @@ impl Layout {
             lands[i] = temperatures.len();
             temperatures.push(pack.lands[i].temperature);
         }
-        let mut ends = Vec::with_capacity(4 * n);
-        let mut link = |a: usize, b: usize| {
-            ends.push((a, b));
-            ends.len() - 1
+        for (land, node) in pack.lands.iter().zip(&mut lands).take(n).skip(1) {
+            if land.vent == Vent::Open {
+                *node = volumes + 1;
+            }
+        }
+        let mut all = Self {
+            names,
+            temperatures,
+            volumes,
+            lands,
+            ends: Vec::new(),
+            links: Vec::new(),
+            drains: Vec::new(),
         };
-        let links = (0..n)
-            .map(|i| {
-                let (above, below) = (lands[i], lands[i + 1]);
-                RingLinks {
-                    upper: match pack.rings[i].back {
-                        BackVolume::Sealed => None,
-                        _ => Some(link(above, backs[i].unwrap_or(below))),
-                    },
-                    lower: backs[i].map(|b| link(b, below)),
-                    through: fast[i],
-                    gap: link(above, below),
-                    face: has_face.then(|| link(above, below)),
-                    back: backs[i],
-                    behind: match (backs[i], pack.rings[i].back) {
-                        (Some(node), _) => [node; 2],
-                        (None, BackVolume::Drained) => [below; 2],
-                        (None, _) => [above, below],
-                    },
-                }
-            })
-            .collect();
-        Self { names, temperatures, volumes, lands, ends, links }
+        for i in 0..n {
+            all.add_ring(pack, i, backs[i], fast[i], has_face);
+        }
+        all.add_drains(pack);
+        all
     }
-}
 
-/// Whether there is a volume behind a ring.
-fn has_room(ring: &RingGeometry) -> bool {
-    matches!(ring.back, BackVolume::Geometric | BackVolume::Fixed(_))
+    fn link(&mut self, a: usize, b: usize) -> usize {
+        self.ends.push((a, b));
+        self.ends.len() - 1
+    }
+
+    /// Node of the crankcase.
+    const fn crankcase(&self) -> usize {
+        self.volumes + 1
+    }
+
+    /// The links of ring `i`, whose space behind has the node `back` if it has a state.
+    fn add_ring(
+        &mut self,
+        pack: &PackGeometry,
+        i: usize,
+        back: Option<usize>,
+        through: bool,
+        has_face: bool,
+    ) {
+        let ring = &pack.rings[i];
+        let (above, below) = (self.lands[i], self.lands[i + 1]);
+        let space = match ring.back {
+            BackVolume::Sealed => None,
+            BackVolume::OpenBelow => Some(below),
+            BackVolume::OpenAbove => Some(above),
+            _ if through => None,
+            _ => Some(back.unwrap_or(self.crankcase())),
+        };
+        let upper = match (space, ring.back) {
+            (Some(space), b) => (b != BackVolume::OpenAbove).then(|| self.link(above, space)),
+            (None, _) => through.then(|| self.link(above, below)),
+        };
+        let lower = space.filter(|s| *s != below).map(|space| self.link(space, below));
+        let gap = self.link(above, below);
+        let face = has_face.then(|| self.link(above, below));
+        let behind = space.map_or([above, below], |node| [node; 2]);
+        self.links.push(RingLinks { upper, lower, gap, face, through, back, drain: None, behind });
+    }
+
+    /// Drains of the spaces between and behind the rings.
+    fn add_drains(&mut self, pack: &PackGeometry) {
+        let crankcase = self.crankcase();
+        for (i, ring) in pack.rings.iter().enumerate() {
+            if let (true, Vent::Drain(drain)) = (i > 0, pack.lands[i].vent) {
+                let link = self.link(self.lands[i], crankcase);
+                self.drains.push((link, drain));
+            }
+            if let (Some(back), Vent::Drain(drain)) = (self.links[i].back, ring.vent) {
+                let link = self.link(back, crankcase);
+                self.drains.push((link, drain));
+                self.links[i].drain = Some(link);
+            }
+        }
+    }
+
+    /// Links to the crankcase and from it beside those of the last ring.
+    fn drained(&self) -> Vec<(usize, f64)> {
+        let Some(last) = self.links.last() else { return Vec::new() };
+        let counted = [Some(last.gap), last.face, last.flanks()[1]];
+        let crankcase = self.crankcase();
+        let sign = |(from, to): (usize, usize)| {
+            f64::from(u8::from(to == crankcase)) - f64::from(u8::from(from == crankcase))
+        };
+        let ends = self.ends.iter().enumerate();
+        ends.map(|(k, e)| (k, sign(*e))).filter(|(k, s)| *s != 0.0 && !counted.contains(&Some(*k))).collect()
+    }
 }
 
 /// The balances of energy of all volumes, in the order of their nodes.
@@ -188,7 +254,7 @@ fn land_energy(spaces: &Spaces, links: &[RingLinks], nusselt: f64) -> Result<Lan
     let pack = &spaces.pack;
     let mut energy = LandEnergy::new(pack);
     for (i, link) in links.iter().enumerate() {
-        if i > 0 {
+        if i > 0 && pack.lands[i].vent != Vent::Open {
             wide_enough(spaces.land_width(i), || format!("land {}", i + 1))?;
             energy.add(pack, nusselt, pack.lands[i].temperature, pack.lands[i].volume);
         }
@@ -235,24 +301,33 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> PackNetwork<M, L> {
         let spaces = Spaces { pack: pack.clone(), nominal_film, chamfer_fade, bounded: true };
         validate(pack, spaces.film())?;
         let is_fast = |i: usize| {
-            has_room(&pack.rings[i])
+            pack.rings[i].has_room()
+                && pack.rings[i].vent == Vent::Closed
                 && eliminate_below.is_some_and(|limit| filling_time(&model, &law, &spaces, i) < limit)
         };
         let fast: Vec<bool> = (0..pack.rings.len()).map(is_fast).collect();
-        let Layout { names, temperatures, volumes, lands, ends, links } =
-            Layout::new(pack, &fast, M::HAS_FACE);
+        let layout = Layout::new(pack, &fast, M::HAS_FACE);
+        let drained = layout.drained();
+        let Layout { names, temperatures, volumes, lands, ends, links, drains } = layout;
         let mut net = Network::new(law, pack.gas_constant, &temperatures, volumes, &ends)?;
         for (i, link) in links.iter().enumerate() {
             if let RingLinks { through: true, upper: Some(upper), .. } = link {
                 net.split_link(*upper, pack.gas_constant * pack.rings[i].back_temperature);
             }
         }
+        for (link, Drain { area, discharge }) in drains {
+            let passage = model.drain(area * (discharge / net.law().discharge())).ok_or_else(|| {
+                BuildError::new(format!("`{name}` has no passage for the drain of a groove"))
+                    .help("leave the groove vented or closed, or take another `gas_flow`")
+            })?;
+            net.set_passage(link, passage);
+        }
         let mut states: Vec<StateInfo> = names.iter().map(|name| gas_mass(name)).collect();
         let energy = nusselt.map(|number| land_energy(&spaces, &links, number)).transpose()?;
         if energy.is_some() {
             states.extend(names.iter().map(|name| gas_energy(name)));
         }
-        Ok(Self { name, model, spaces, net, links, lands, temperatures, states, energy })
+        Ok(Self { name, model, spaces, net, links, lands, drained, temperatures, states, energy })
     }
 
     /// Gives every gas space the law that `law_at` has for gas of its temperature \[K\], for what flows out of it.
@@ -278,9 +353,17 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> PackNetwork<M, L> {
         self.links[i].back.map_or(0.0, |node| self.spaces.nominal_volume(i) / self.wall_rt(node))
     }
 
-    /// Capacity `V/(R T)` of a land between rings \[kg/Pa\].
+    /// Capacity `V/(R T)` of a land between rings \[kg/Pa\]; infinite where it is open to the crankcase.
     pub(crate) fn land_capacity(&self, land: usize) -> f64 {
+        if self.is_boundary(land) {
+            return f64::INFINITY;
+        }
         self.spaces.pack.lands[land].volume / self.wall_rt(self.lands[land])
+    }
+
+    /// Whether a land has no state: cylinder, crankcase, and what is open to that.
+    pub(crate) fn is_boundary(&self, land: usize) -> bool {
+        self.lands[land] >= self.net.volumes()
     }
 
     /// Pressures of all nodes.
@@ -289,7 +372,7 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> PackNetwork<M, L> {
         self.net.set_pressure(self.name, self.lands[0], inp.p_cylinder)?;
         self.net.set_pressure(self.name, self.lands[n], inp.p_crankcase)?;
         for i in 0..n {
-            if i > 0 {
+            if !self.is_boundary(i) {
                 let node = self.lands[i];
                 let width = self.spaces.land_width(i);
                 self.set_space(node, state, self.spaces.pack.lands[i].volume, width)?;

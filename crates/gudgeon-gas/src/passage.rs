@@ -87,6 +87,10 @@ impl From<Area> for Passage {
 impl PassageLaw for OrificeLaw {
     type Passage = Passage;
 
+    fn discharge(&self) -> f64 {
+        self.discharge_coefficient()
+    }
+
     #[inline]
     fn mass_flow(&self, passage: Passage, a: &GasState, b: &GasState) -> f64 {
         match passage {

@@ -183,6 +183,12 @@ pub trait PassageLaw: Send {
         self.mass_flow_partials(passage, a, b).flow
     }
 
+    /// Discharge coefficient that its flows through an opening have into a vacuum; a drain with a coefficient of its own is an opening of another
+    /// size.
+    fn discharge(&self) -> f64 {
+        1.0
+    }
+
     /// A number that [`mass_flows`](Self::mass_flows) wants of a node whatever the passage: [`Node::factor`].
     #[inline]
     fn node_factor(&self, _gas: &GasState) -> f64 {

@@ -1,7 +1,7 @@
 //! A ring pack to try a gas law on.
 
 use gudgeon_core::geometry::{
-    BackVolume, Chamfer, FaceProfile, LandGeometry, PackGeometry, RingGeometry, RingPlace,
+    BackVolume, Chamfer, FaceProfile, LandGeometry, PackGeometry, RingGeometry, RingPlace, Vent,
 };
 
 /// Radius of the liner \[m\].
@@ -18,7 +18,7 @@ const BACK_VOLUME: f64 = 3e-7;
 /// on each land at 450 K; air.
 #[must_use]
 pub fn plain_pack(rings: usize) -> (PackGeometry, Vec<RingPlace>) {
-    let land = LandGeometry { volume: 5e-7, temperature: 450.0 };
+    let land = LandGeometry { volume: 5e-7, temperature: 450.0, vent: Vent::Closed };
     let pack = PackGeometry {
         bore_radius: BORE_RADIUS,
         rings: vec![plain_ring(); rings],
@@ -58,11 +58,13 @@ fn plain_ring() -> RingGeometry {
         leak_face: 0.0,
         chamfer: Chamfer::default(),
         back: BackVolume::Fixed(BACK_VOLUME),
+        vent: Vent::Closed,
         back_temperature: 450.0,
         oil_fill: 0.0,
         face: FaceProfile::Parabola { length: 2e-3, curvature: 10.0, apex: 1e-3 },
         lands: 1,
         rails: 1,
         has_clearance: true,
+        expander_slope: 0.0,
     }
 }

@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use gudgeon_core::BuildError;
-use gudgeon_core::geometry::{BackVolume, PackGeometry, RingGeometry};
+use gudgeon_core::geometry::{BackVolume, PackGeometry, RingGeometry, Vent};
 
 use crate::channel::channel_conductance;
 use crate::passage::Passage;
@@ -107,9 +107,11 @@ pub(crate) fn ring_channels(
         let Some([above, below]) = pack.lands.get(i..i + 2).and_then(|s| <&[_; 2]>::try_from(s).ok()) else {
             break; // The network reports the missing land.
         };
-        let behind = match ring.back {
-            BackVolume::Geometric | BackVolume::Fixed(_) => ring.back_temperature,
-            BackVolume::Drained | BackVolume::Sealed => below.temperature,
+        let behind = match (ring.back, ring.vent) {
+            (BackVolume::OpenAbove, _) => above.temperature,
+            (BackVolume::OpenBelow | BackVolume::Sealed, _) => below.temperature,
+            (_, Vent::Open) => pack.lands.last().unwrap_or(below).temperature,
+            _ => ring.back_temperature,
         };
         let (upper, lower) = (TAU * ring.piston_radius_above, TAU * ring.piston_radius_below);
         per_ring.push(RingChannels {

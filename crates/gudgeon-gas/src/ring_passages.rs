@@ -82,9 +82,11 @@ pub struct Openings {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RingPassages<P> {
-    /// Past the upper flank: land above to the space behind (drained groove: to the land below). Not used for a sealed ring.
+    /// Past the upper flank: land above to the space behind (a groove that is open to the land below: to that). Not used for a sealed ring or a
+    /// groove that is open to the land above.
     pub upper: P,
-    /// Past the lower flank: space behind to land below. Not used for a sealed ring or a drained groove.
+    /// Past the lower flank: space behind to land below (a groove that is open to the land above: from that). Not used for a sealed ring or a
+    /// groove that is open to the land below.
     pub lower: P,
     /// Directly from land to land through the end gap.
     pub gap: P,
@@ -104,6 +106,12 @@ pub trait PassageModel<P>: Send {
 
     /// The passages of ring `ring`, counted from 0 at the crown.
     fn ring_passages(&self, ring: usize, geometry: &RingGeometry, openings: &Openings) -> RingPassages<P>;
+
+    /// The passage of a drain of an area \[m²\], by the discharge coefficient of the law; `None`, the default, where the model has no such passage:
+    /// packs with a drain are refused.
+    fn drain(&self, _area: f64) -> Option<P> {
+        None
+    }
 
     /// Time \[s\] within which the space behind a seated ring takes on the pressure of the land it faces, when the model couples
     /// the two by a linear leak; `None` when it does not.

@@ -43,9 +43,9 @@ impl Spaces {
     pub fn nominal_volume(&self, i: usize) -> f64 {
         let ring = &self.pack.rings[i];
         match ring.back {
-            BackVolume::Fixed(v) => v,
-            BackVolume::Geometric => back_volume(ring, self.pack.bore_radius, self.film()),
-            BackVolume::Drained | BackVolume::Sealed => 0.0,
+            BackVolume::Fixed(v) if ring.has_room() => v,
+            BackVolume::Geometric if ring.has_room() => back_volume(ring, self.pack.bore_radius, self.film()),
+            _ => 0.0,
         }
     }
 
@@ -72,6 +72,7 @@ impl Spaces {
     pub fn volume_behind(&self, i: usize, place: &RingPlace) -> f64 {
         let ring = &self.pack.rings[i];
         match (ring.back, self.nominal_film) {
+            _ if !ring.has_room() => 0.0,
             (BackVolume::Fixed(v), _) => v,
             (BackVolume::Geometric, None) => place.back_volume,
             (BackVolume::Geometric, Some(h)) => back_volume(ring, place.liner_radius, h),

@@ -69,6 +69,10 @@ impl ThrottlingLaw {
 impl PassageLaw for ThrottlingLaw {
     type Passage = Area;
 
+    fn discharge(&self) -> f64 {
+        self.discharge
+    }
+
     #[inline]
     fn mass_flow(&self, Area(area): Area, a: &GasState, b: &GasState) -> f64 {
         directed(self.discharge * area, a, b, |u, _| self.phi(u))

@@ -1,7 +1,7 @@
 //! Whether a ring pack makes sense for a gas-flow model.
 
 use gudgeon_core::BuildError;
-use gudgeon_core::geometry::{BackVolume, PackGeometry, RingGeometry};
+use gudgeon_core::geometry::{BackVolume, Drain, PackGeometry, RingGeometry, Vent};
 
 use crate::spaces::back_volume;
 
@@ -19,7 +19,8 @@ pub(crate) fn validate(pack: &PackGeometry, film: f64) -> Result<(), BuildError>
         )));
     }
     for (i, land) in pack.lands.iter().enumerate().take(n).skip(1) {
-        if !(land.volume > 0.0 && land.volume.is_finite()) {
+        validate_drain(land.vent, || format!("land {}", i + 1))?;
+        if land.vent != Vent::Open && !(land.volume > 0.0 && land.volume.is_finite()) {
             return Err(BuildError::new(format!(
                 "land {} has the gas volume {:e} m3, which must be greater than zero",
                 i + 1,
@@ -31,6 +32,7 @@ pub(crate) fn validate(pack: &PackGeometry, film: f64) -> Result<(), BuildError>
     for (i, ring) in pack.rings.iter().enumerate() {
         validate_gap(i + 1, ring, pack.bore_radius, film)?;
         validate_back_volume(i + 1, ring, pack.bore_radius, film)?;
+        validate_drain(ring.vent, || format!("the groove of ring {}", i + 1))?;
     }
     Ok(())
 }
@@ -50,6 +52,17 @@ fn validate_gap(number: usize, ring: &RingGeometry, bore_radius: f64, film: f64)
     }
 }
 
+fn validate_drain(vent: Vent, what: impl Fn() -> String) -> Result<(), BuildError> {
+    let Vent::Drain(Drain { area, discharge }) = vent else { return Ok(()) };
+    if area > 0.0 && area.is_finite() && discharge > 0.0 && discharge <= 1.0 {
+        return Ok(());
+    }
+    Err(BuildError::new(format!(
+        "{} has a drain of {area:e} m2 with the discharge coefficient {discharge}",
+        what()
+    )))
+}
+
 fn validate_back_volume(
     number: usize,
     ring: &RingGeometry,
@@ -59,6 +72,7 @@ fn validate_back_volume(
     let refused =
         |v: f64, why: String| BuildError::new(format!("the volume behind ring {number} is {v:e} m3: {why}"));
     match ring.back {
+        _ if !ring.has_room() => Ok(()),
         BackVolume::Fixed(v) if !(v > 0.0 && v.is_finite()) => {
             Err(refused(v, "it must be greater than zero".to_owned()))
         }

@@ -44,7 +44,7 @@ pub struct GasOut {
     /// Flow \[kg/s\] leaving the land above each ring towards the ring (gap, face and upper flank), downwards positive.
     pub flow_in: Vec<f64>,
     /// Flow \[kg/s\] arriving in the land below each ring from the ring, downwards positive. Differs from `flow_in` by what
-    /// the space behind the ring stores. The last one is the blow-by.
+    /// the space behind the ring stores and drains. The last one is the blow-by: with it goes all that drains lead to the crankcase.
     pub flow_out: Vec<f64>,
     /// Energy \[W\] that gas brings to all volumes over the boundaries, less the heat to their walls; 0 in a model without a balance of energy.
     pub power: f64,

@@ -28,13 +28,33 @@ pub struct RingMotionCtx {
     pub omega: f64,
     /// Oil between the ring and the flanks of its groove.
     pub damping: Box<dyn FlankLaw>,
+    /// The flank that an expander presses the ring onto, as a fraction of the clearance: 0 the lower, 1 the upper one.
+    pub pressed_onto: Option<f64>,
 }
 
 impl RingMotionCtx {
     /// A ring of a mass \[kg\] with a nominal clearance \[m\], at a crank speed \[rad/s\]; sections and areas are zero until they are set.
     #[must_use]
     pub fn new(ring: usize, mass: f64, clearance: f64, omega: f64, damping: Box<dyn FlankLaw>) -> Self {
-        Self { mass, clearance, flank_area: 0.0, height: 0.0, width: 0.0, radius: 0.0, ring, omega, damping }
+        Self {
+            mass,
+            clearance,
+            flank_area: 0.0,
+            height: 0.0,
+            width: 0.0,
+            radius: 0.0,
+            ring,
+            omega,
+            damping,
+            pressed_onto: None,
+        }
+    }
+
+    /// A rail that an expander presses onto the lower (0) or the upper (1) flank.
+    #[must_use]
+    pub const fn pressed_onto(mut self, fraction: f64) -> Self {
+        self.pressed_onto = Some(fraction);
+        self
     }
 
     /// Sets axial and radial thickness, the radius of the middle of the section \[m\] and the area of a flank \[m²\].
@@ -106,6 +126,8 @@ pub struct AxialForces {
     pub gravity: f64,
     /// Film and rubbing on the running face.
     pub film: f64,
+    /// Expander of a three-piece oil ring on a rail.
+    pub expander: f64,
     /// Oil in the groove.
     pub damping: f64,
 }
@@ -115,7 +137,7 @@ impl AxialForces {
     #[inline]
     #[must_use]
     pub fn sum(&self) -> f64 {
-        self.gas + self.inertia + self.gravity + self.film + self.damping
+        self.gas + self.inertia + self.gravity + self.film + self.expander + self.damping
     }
 }
 

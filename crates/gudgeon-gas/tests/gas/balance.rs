@@ -56,7 +56,7 @@ fn mass_balance_holds_for_every_call() {
 
 #[test]
 fn each_volume_balances_its_own_flows() {
-    let pack = pack(&[BackVolume::Geometric, BackVolume::Geometric, BackVolume::Drained]);
+    let pack = pack(&[BackVolume::Geometric, BackVolume::Geometric, BackVolume::OpenBelow]);
     let rings: Vec<_> = (0..3).map(|i| place(&pack, i, 3e-6, 0.3, 5e-5)).collect();
     let inp = GasIn { p_cylinder: 60e5, p_crankcase: 1e5, rings: &rings };
     for spec in specs() {
@@ -87,7 +87,7 @@ fn each_volume_balances_its_own_flows() {
 #[test]
 fn mass_is_conserved_over_an_explicit_cycle() {
     // Explicit steps conserve exactly what enters and leaves: Δ(Σ m) = Σ (in - out) Δt, with rings and films moving.
-    let pack = pack(&[BackVolume::Geometric, BackVolume::Geometric, BackVolume::Drained]);
+    let pack = pack(&[BackVolume::Geometric, BackVolume::Geometric, BackVolume::OpenBelow]);
     for spec in specs() {
         let stiff = format!("{spec:?}").contains("Merged");
         let mut gas = build(spec.as_ref(), &pack);
@@ -152,7 +152,7 @@ fn flows_are_continuous_in_position_and_film() {
 
 #[test]
 fn what_does_not_use_the_film_does_not_depend_on_it() {
-    let with_film = pack(&[BackVolume::Geometric, BackVolume::Fixed(1e-7), BackVolume::Drained]);
+    let with_film = pack(&[BackVolume::Geometric, BackVolume::Fixed(1e-7), BackVolume::OpenBelow]);
     let mut plain = with_film.clone();
     for r in &mut plain.rings {
         r.gap_area = Some(1e-7);

@@ -13,7 +13,7 @@ use crate::support::Lcg;
 
 #[test]
 fn eliminated_spaces_are_the_limit_of_small_ones() {
-    let backs = [BackVolume::Fixed(1e-13), BackVolume::Fixed(1e-13), BackVolume::Drained];
+    let backs = [BackVolume::Fixed(1e-13), BackVolume::Fixed(1e-13), BackVolume::OpenBelow];
     let p = pack(&backs);
     let mut rng = Lcg(5);
     let full: [Box<dyn GasFlowSpec>; 2] =
@@ -104,7 +104,7 @@ impl OdeSystem for Cycle {
 
 /// Blow-by of one cycle from rest \[kg\], and what the balance of mass lacks of it.
 fn blow_by(spec: &OrificeNetwork, back: f64) -> (f64, f64) {
-    let p = pack(&[BackVolume::Fixed(back), BackVolume::Fixed(back), BackVolume::Drained]);
+    let p = pack(&[BackVolume::Fixed(back), BackVolume::Fixed(back), BackVolume::OpenBelow]);
     // The upper rings between the flanks: a few square centimetres into spaces of less than a cubic millimetre.
     let rings: Vec<_> = (0..3).map(|i| place(&p, i, 3e-6, 0.4, 0.0)).collect();
     let gas = build(spec, &p);

@@ -124,7 +124,7 @@ fn compression_without_heat() {
 /// With the temperature of the walls in all spaces, flows are those of the model without a balance of energy.
 #[test]
 fn the_same_flows_at_the_temperature_of_the_walls() {
-    let pack = pack(&[BackVolume::Geometric, BackVolume::Geometric, BackVolume::Drained]);
+    let pack = pack(&[BackVolume::Geometric, BackVolume::Geometric, BackVolume::OpenBelow]);
     let rings: Vec<_> = (0..3).map(|i| place(&pack, i, 3e-6, 0.3, 5e-5)).collect();
     let inp = GasIn { p_cylinder: 60e5, p_crankcase: 1e5, rings: &rings };
     let run = |spec: &dyn GasFlowSpec| {
@@ -171,7 +171,7 @@ fn moving(x: f64, rings: &[RingPlace]) -> GasIn<'_> {
 /// What gas brings, less heat and work on the walls, is stored: over a cycle in which the rings move up and down and in and out.
 #[test]
 fn energy_is_conserved_over_a_cycle() {
-    let pack = pack(&[BackVolume::Geometric, BackVolume::Geometric, BackVolume::Drained]);
+    let pack = pack(&[BackVolume::Geometric, BackVolume::Geometric, BackVolume::OpenBelow]);
     for spec in with_energy() {
         let mut gas = build(spec.as_ref(), &pack);
         let n = gas.states().len();

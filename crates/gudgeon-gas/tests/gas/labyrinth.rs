@@ -1,6 +1,6 @@
 //! Martin's labyrinth: one throttling, many in series.
 
-use gudgeon_core::geometry::{BackVolume, Chamfer, LandGeometry};
+use gudgeon_core::geometry::{BackVolume, Chamfer, LandGeometry, Vent};
 use gudgeon_core::kinds::{GasFlowCtx, GasFlowSpec, GasIn, GasOut, GasPartials};
 use gudgeon_core::quantity::quantity;
 use gudgeon_gas::{Area, GasState, Labyrinth, PassageLaw, THROTTLING_RATIO, ThrottlingLaw};
@@ -67,7 +67,7 @@ fn rings_in_series_are_martins_labyrinth() {
         for ring in &mut pack.rings {
             (ring.gap_area, ring.leak_face, ring.chamfer) = (Some(1e-7), 0.0, Chamfer::default());
         }
-        pack.lands = vec![LandGeometry { volume: 5e-7, temperature: 450.0 }; n + 1];
+        pack.lands = vec![LandGeometry { volume: 5e-7, temperature: 450.0, vent: Vent::Closed }; n + 1];
         let spec = Labyrinth { discharge: quantity(1.0), laminar: quantity(0.0), ..Labyrinth::default() };
         let mut gas = build(&spec, &pack);
         let rings: Vec<_> = (0..n).map(|i| place(&pack, i, 0.0, 0.5, 0.0)).collect();

@@ -21,3 +21,4 @@ mod refusals;
 mod series;
 mod skeleton;
 mod support;
+mod vents;

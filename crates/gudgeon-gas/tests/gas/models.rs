@@ -25,7 +25,7 @@ fn orifice_network_areas() {
     let (h, delta) = (4e-6, 8e-5);
     for e in [0.0, 0.004, 0.37, 1.0] {
         for (back, last) in
-            [(BackVolume::Geometric, false), (BackVolume::Drained, true), (BackVolume::Sealed, true)]
+            [(BackVolume::Geometric, false), (BackVolume::OpenBelow, true), (BackVolume::Sealed, true)]
         {
             let pack = pack(&[back]);
             let r = &pack.rings[0];
@@ -53,7 +53,7 @@ fn orifice_network_areas() {
                     let f = orifice(face + gap, (p0, p1), (t0, t1));
                     (f, f)
                 }
-                (BackVolume::Drained, _) => {
+                (BackVolume::OpenBelow, _) => {
                     let f = orifice(face + 0.5 * gap + upper, (p0, p1), (t0, t1));
                     (f, f)
                 }
@@ -66,7 +66,7 @@ fn orifice_network_areas() {
             assert!((out.flow_in[0] / flow_in - 1.0).abs() < 3e-9, "{back:?} {e}");
             assert!((out.flow_out[0] / flow_out - 1.0).abs() < 3e-9, "{back:?} {e}");
             match back {
-                BackVolume::Drained => assert_eq!(out.p_back[0], p1),
+                BackVolume::OpenBelow => assert_eq!(out.p_back[0], p1),
                 BackVolume::Sealed => assert_eq!(out.p_back[0], 0.5 * (p0 + p1)),
                 _ => {}
             }
@@ -248,7 +248,7 @@ fn real_gas_of_the_upstream_side() {
 
 #[test]
 fn prescribed_pressures() {
-    let pack = pack(&[BackVolume::Geometric, BackVolume::Drained]);
+    let pack = pack(&[BackVolume::Geometric, BackVolume::OpenBelow]);
     let spec = Prescribed { lands: vec![quantity(4e5)] };
     let mut gas = build(&spec, &pack);
     assert_eq!(gas.n_masses(), 0);

@@ -13,7 +13,7 @@ use gudgeon_gas::{
 use crate::packs::{build, pack, place};
 use crate::support::R;
 
-const BACKS: [BackVolume; 3] = [BackVolume::Geometric, BackVolume::Fixed(2e-7), BackVolume::Drained];
+const BACKS: [BackVolume; 3] = [BackVolume::Geometric, BackVolume::Fixed(2e-7), BackVolume::OpenBelow];
 
 /// Rates and outputs of a model with the masses of 20, 8, 3 and 1 bar at the given places.
 fn run(
@@ -75,7 +75,7 @@ fn per_area(from: (f64, f64)) -> f64 {
 
 #[test]
 fn unbound_lifts_are_taken_as_they_come() {
-    let mut pack = pack(&[BackVolume::Drained]);
+    let mut pack = pack(&[BackVolume::OpenBelow]);
     {
         let r = &mut pack.rings[0];
         (r.gap_area, r.chamfer, r.leak_face) = (Some(1e-7), Chamfer::default(), 0.0);
@@ -136,7 +136,7 @@ fn merged_volumes_limit_explicit_steps() {
     // A few roundings.
     assert!((is / expected - 1.0).abs() < 1e-14, "{is:e} {expected:e}");
     // Drained grooves store nothing, those of the geometry what is behind the ring without a film.
-    let mut p = pack(&[BackVolume::Geometric, BackVolume::Drained]);
+    let mut p = pack(&[BackVolume::Geometric, BackVolume::OpenBelow]);
     p.lands[1].temperature = 503.15;
     let behind = place(&p, 0, 0.0, 0.0, 0.0).back_volume;
     let is = step(&merged, &p).expect("tied");

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use gudgeon_core::geometry::{
-    BackVolume, Chamfer, FaceProfile, LandGeometry, PackGeometry, RingGeometry, RingPlace,
+    BackVolume, Chamfer, FaceProfile, LandGeometry, PackGeometry, RingGeometry, RingPlace, Vent,
 };
 use gudgeon_core::kinds::{GasFlow, GasFlowCtx, GasFlowSpec};
 use gudgeon_core::quantity::quantity;
@@ -33,12 +33,14 @@ pub fn ring(back: BackVolume) -> RingGeometry {
         leak_face: 1e-7,
         chamfer: Chamfer { area_lower: 3e-8, area_upper: 5e-8 },
         back,
+        vent: Vent::Closed,
         back_temperature: 503.15,
         oil_fill: 0.6,
         face: FaceProfile::Table { length: 3e-3, drops: vec![0.0, 1e-6] },
         lands: 1,
         rails: 1,
         has_clearance: back != BackVolume::Sealed,
+        expander_slope: 0.0,
     }
 }
 
@@ -47,7 +49,11 @@ pub fn pack(backs: &[BackVolume]) -> PackGeometry {
         bore_radius: 0.06,
         rings: backs.iter().map(|&b| ring(b)).collect(),
         lands: (0..=backs.len())
-            .map(|i| LandGeometry { volume: 9e-7 / (1.0 + i as f64), temperature: 523.15 - 20.0 * i as f64 })
+            .map(|i| LandGeometry {
+                volume: 9e-7 / (1.0 + i as f64),
+                temperature: 523.15 - 20.0 * i as f64,
+                vent: Vent::Closed,
+            })
             .collect(),
         gamma: 1.4,
         gas_constant: 287.0,
@@ -137,16 +143,16 @@ pub fn eliminated() -> Vec<Box<dyn GasFlowSpec>> {
 
 pub const BACKS: &[&[BackVolume]] = &[
     &[BackVolume::Geometric],
-    &[BackVolume::Drained],
+    &[BackVolume::OpenBelow],
     &[BackVolume::Sealed],
-    &[BackVolume::Geometric, BackVolume::Geometric, BackVolume::Drained],
+    &[BackVolume::Geometric, BackVolume::Geometric, BackVolume::OpenBelow],
     &[BackVolume::Fixed(2.9e-7), BackVolume::Fixed(2.9e-7), BackVolume::Sealed],
     &[
-        BackVolume::Drained,
+        BackVolume::OpenBelow,
         BackVolume::Sealed,
         BackVolume::Fixed(1e-7),
         BackVolume::Geometric,
-        BackVolume::Drained,
+        BackVolume::OpenBelow,
     ],
 ];
 

@@ -236,7 +236,7 @@ fn a_pack_of_any_law_without_room_behind_its_rings() {
     let (out, d) = darcy(options, BackVolume::Fixed(3e-7), None);
     assert_eq!(d.len(), 1);
     assert_eq!(out.flow_in, out.flow_out);
-    let (drained, _) = darcy(PackOptions::default(), BackVolume::Drained, None);
+    let (drained, _) = darcy(PackOptions::default(), BackVolume::OpenBelow, None);
     let (sealed, _) = darcy(PackOptions::default(), BackVolume::Sealed, None);
     // A flank in the way of the gas, none, and no way past the flanks.
     assert!(drained.flow_in[0] > out.flow_in[0] && out.flow_in[0] > sealed.flow_in[0]);

@@ -153,7 +153,7 @@ impl Runtime {
         let (place, a) = (&forces.place, &forces.axial);
         Balance {
             away: hold.away(),
-            external: a.gas + a.inertia + a.gravity + a.film,
+            external: a.gas + a.inertia + a.gravity + a.film + a.expander,
             s: place.s,
             oil: place.flank,
             clearance: place.clearance,

@@ -17,7 +17,7 @@ pub enum Flank {
     Upper,
 }
 
-/// The ring rests on one flank for the whole cycle: axial motion switched off.
+/// The ring rests on one flank for the whole cycle: axial motion switched off. A rail rests on the flank that its expander presses it onto.
 #[derive(Debug, Clone, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Seated {
@@ -35,13 +35,12 @@ pub struct Seated {
     example = "flank = \"lower\"\n",
 )]
 impl RingMotionSpec for Seated {
-    fn build(&self, _: RingMotionCtx) -> Result<Box<dyn RingMotion>, BuildError> {
-        Ok(Box::new(Runtime {
-            e: match self.flank {
-                Flank::Lower => 0.0,
-                Flank::Upper => 1.0,
-            },
-        }))
+    fn build(&self, ctx: RingMotionCtx) -> Result<Box<dyn RingMotion>, BuildError> {
+        let given = match self.flank {
+            Flank::Lower => 0.0,
+            Flank::Upper => 1.0,
+        };
+        Ok(Box::new(Runtime { e: ctx.pressed_onto.unwrap_or(given) }))
     }
 }
 

@@ -97,6 +97,7 @@ impl Runtime {
     fn seat(&self, f: &AxialForces) -> f64 {
         let resultant = f.gas
             + f.inertia
+            + f.expander
             + if self.gravity { f.gravity } else { 0.0 }
             + if self.film_force { f.film } else { 0.0 };
         if resultant.abs() <= self.band * f.gas.abs() {

@@ -14,18 +14,19 @@ use gudgeon_core::kinds::{
 use gudgeon_core::states::{Signals, Stateful};
 use gudgeon_core::{BuildError, EvalError};
 
-use super::case::RingPackCase;
+use super::case::{RingDesign, RingPackCase};
 use super::contact_line::{ContactLine, MeanPlanes};
 use super::distortion::liner_shape;
 use super::instant::{Counters, Instant, RingInstant, SeatLog};
 use super::layout::Layout;
 use super::liner::LinerShape;
 use super::pack::Pack;
-use super::plan::{Facts, Plan, Told, plan, wanted};
+use super::plan::{Facts, Names, Plan, Told, plan, wanted};
+use super::rails::TakenApart;
 use super::rheology::{factors_end, rheology};
 use super::ring::Ring;
 use super::rubbing::FaceFriction;
-use super::{end_gap, geometry, oil_faces};
+use super::{end_gap, geometry, oil_faces, rails};
 
 /// A ring without axial clearance, and without oil that could move on its flanks.
 struct Clamped;
@@ -67,6 +68,12 @@ impl RingMotion for Clamped {
 /// # Errors
 /// Everything about the case that cannot be, with the place in the case.
 pub fn assemble(case: &RingPackCase, files: &Files) -> Result<Pack, Vec<BuildError>> {
+    let apart = TakenApart::new(case)?;
+    assemble_bodies(&apart.case, files).map_err(|e| apart.located(e))
+}
+
+/// The same for a case whose rings are single bodies.
+fn assemble_bodies(case: &RingPackCase, files: &Files) -> Result<Pack, Vec<BuildError>> {
     let drive = Drive::new(case, files)?;
     let oils = Oils::new(case, &drive)?;
     let flanks = flanks(case, &drive, &*oils.oil)?;
@@ -80,7 +87,8 @@ pub fn assemble(case: &RingPackCase, files: &Files) -> Result<Pack, Vec<BuildErr
         dynamic: motions.iter().filter(|m| m.uses_damping()).count(),
         wet: flanks.iter().filter(|f| !f.states().is_empty()).count(),
     };
-    let plan = plan(&drive.wanted, facts);
+    let mut plan = plan(&drive.wanted, facts);
+    plan.runs.extend(rails::told(case));
     let mut rings = rings(case, &drive, &oils, &plan, motions, flanks)?;
     if let Some(e) = rings.iter_mut().enumerate().find_map(|(i, r)| untiltable(i, r)) {
         return Err(vec![e]);
@@ -122,7 +130,7 @@ impl Drive {
             flanks: m.flank.follows_oil(),
             formulas: case.outputs.oil_formulas,
         };
-        let wanted = kept(&mut errors, wanted(&case.outputs.results, case.rings.len(), told));
+        let wanted = kept(&mut errors, wanted(&case.outputs.results, &Names::of(case), told));
         let geo = kept(&mut errors, geometry::resolve(case));
         let motion = case.engine.motion(&*case.models.kinematics);
         let kinematics = kept(&mut errors, motion.map_err(|e| vec![e]));
@@ -262,6 +270,11 @@ fn motion(
         0.5 * (r_in + r_out),
         PI * (r_out * r_out - r_in * r_in),
     );
+    let ctx = match ring.design {
+        RingDesign::UpperRail => ctx.pressed_onto(1.0),
+        RingDesign::LowerRail => ctx.pressed_onto(0.0),
+        _ => ctx,
+    };
     spec.build(ctx).map_err(|e| e.within(&place))
 }
 
@@ -337,6 +350,7 @@ fn ring(
             .typetag_name(),
         friction: (!friction.is_off()).then_some(friction),
         pull: 0.0,
+        expander: 0.0,
         spacing,
         mu: fixed.then(|| oils.oil.viscosity(oils.temperature.temperature(i, 0.0, &[]))),
         nominal_film: case.solver.limits.nominal_film.si(),
@@ -491,6 +505,7 @@ fn pack(
     let laws = case.conventions.build()?;
     for (ring, g) in rings.iter_mut().zip(&geo.rings) {
         ring.pull = laws.hoop.radial_force(g.tangential_force / g.rails as f64);
+        ring.expander = g.expander_slope * ring.pull;
     }
     let mut pack = Pack {
         laws,
@@ -509,6 +524,7 @@ fn pack(
         oil_pack,
         plan,
         layout,
+        names: Names::of(case),
         gas_scale: vec![1.0; gas_states],
         seat_log: vec![SeatLog::default(); n],
         at: Instant {

@@ -117,7 +117,7 @@ pub struct Ring {
     pub height: PosLength,
     /// Radial thickness.
     pub width: PosLength,
-    /// Tangential (closing) force of the whole ring.
+    /// Tangential (closing) force of the whole ring, its spring or expander included.
     pub tangential_force: PosForce,
     /// End gap in the running engine at the undistorted bore. Give this, or `cold_gap` with temperature and expansion.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -136,6 +136,9 @@ pub struct Ring {
     pub gap_area: Option<PosArea>,
     /// Running face.
     pub face: Face,
+    /// Expander of a `three_piece` ring, whose rails then move each on its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub expander: Option<Expander>,
     /// Groove.
     pub groove: Groove,
     /// Equivalent leak height between running face and liner.
@@ -153,10 +156,31 @@ pub enum RingDesign {
     /// One running face, gas behind the ring.
     #[default]
     Compression,
-    /// Oil ring with two lands; the space between them and the groove drain to below the ring.
+    /// Oil ring with two lands; slots join the space between them with that behind the ring.
     TwinLand,
-    /// Two rails on an expander: one rail is modelled with half the force and counted twice; no axial clearance.
+    /// Two rails on an expander. With `expander` each rail is a ring of its own: the upper one seals against the upper flank of the groove, the lower one
+    /// against the lower flank, and the space between them is that of the groove; results count them as two rings. Without it one rail is modelled with
+    /// half the force and counted twice, without axial clearance.
     ThreePiece,
+    /// The upper rail of a ring with `expander`, as the scene takes it apart.
+    #[serde(skip)]
+    UpperRail,
+    /// The lower rail.
+    #[serde(skip)]
+    LowerRail,
+}
+
+/// Expander of a three-piece oil ring: the spring and spacer between its two rails.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Expander {
+    /// Mass; the rest of the mass of the ring is that of both rails.
+    pub mass: PosMass,
+    /// Axial height of the spacer between the rails: what rails and spacer leave of the groove is their axial clearance.
+    pub height: PosLength,
+    /// Angle of the ears that push the rails outwards: they press each rail onto its flank with `tan(angle)` times the radial force on it. 0: no
+    /// side sealing but by gas and oil.
+    pub ear_angle: Angle,
 }
 
 /// A ring groove, running dimensions.
@@ -183,6 +207,13 @@ pub struct Groove {
     pub lower_angle: Angle,
     /// Gas temperature behind the ring.
     pub temperature: PosTemperature,
+    /// Whether holes or slots that need no number open the groove to the crankcase: it then has its pressure, at every speed and load. Left out, that
+    /// of an oil ring is vented and that of a compression ring closed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub vented: Option<bool>,
+    /// Holes or slots of a given size from the groove to the crankcase, instead of `vented`: gas that they pass is blow-by.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drain: Option<DrainHoles>,
     /// Equivalent leak height of the ring seated on the upper flank.
     #[serde(default = "zero_nn")]
     pub leak_upper: Length<NonNegative>,
@@ -198,6 +229,26 @@ pub struct Groove {
     /// Chamfer of the lower groove edge.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub chamfer_lower: Option<ChamferShape>,
+}
+
+/// Holes or slots that lead to the crankcase: `holes` of a `diameter`, or an `area`.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DrainHoles {
+    /// Number of holes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1, max = 1000))]
+    pub holes: Option<u32>,
+    /// Their diameter.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub diameter: Option<PosLength>,
+    /// Area of all holes and slots together.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub area: Option<PosArea>,
+    /// Effective over geometric area, in place of the discharge coefficient that `gas_flow` has for the gaps of rings. 0.8: a hole drilled a few
+    /// diameters deep, which loses half of a dynamic pressure at its mouth and one behind it.
+    #[serde(default = "drilled")]
+    pub discharge: Ratio<Fraction>,
 }
 
 /// A chamfer of a groove edge; opens an area `length² tan(angle) / 2` at the end gap of a ring seated on that side.
@@ -343,6 +394,9 @@ fn zero_nn() -> Length<NonNegative> {
 }
 fn zero_angle() -> Angle {
     quantity(0.0)
+}
+fn drilled() -> Ratio<Fraction> {
+    quantity(0.8)
 }
 fn half() -> Ratio<Fraction> {
     quantity(0.5)

@@ -8,7 +8,7 @@ use gudgeon_core::kinds::{
     FaceForces, FlankIn, OilFaceIn, RadialLoads, RadialMotion, RadialState, RingForces, TwistMoments,
 };
 
-use super::loads::{Loads, face_in, furthest};
+use super::loads::{Loads, around_land, face_in, furthest};
 use super::pack::Pack;
 
 /// Standard acceleration used by both sources \[m/s²\].
@@ -132,8 +132,7 @@ impl Pack {
                 let what = "this film cannot be confined to a part of its face";
                 return Err(EvalError::fatal("ring_pack", what));
             }
-            let lower = self.geo.rings[i].lands == 2 && land == 1;
-            let (bottom, top) = (r.p_below - r.p_cav, if lower { r.p_below } else { r.p_above } - r.p_cav);
+            let [bottom, top] = around_land(&self.geo.rings[i], r, land).map(|p| p - r.p_cav);
             let (d, length) = (e.drops, self.geo.rings[i].face.length());
             r.dry.0 += bottom * e.from + top * (length - e.to);
             r.dry.1 -= bottom * (d[1] - d[0]) + top * (d[3] - d[2]);
@@ -290,6 +289,7 @@ impl Pack {
         let r = &mut self.at.rings[i];
         r.axial.gas = gas;
         r.axial.inertia = -g.mass * self.at.piston.a;
+        r.axial.expander = ring.expander;
         r.axial.gravity = if ring.counts.1 { -GRAVITY * g.mass } else { 0.0 };
         if !ring.counts.0 {
             r.axial.film = 0.0;

@@ -3,9 +3,10 @@
 use std::f64::consts::PI;
 
 use gudgeon_core::BuildError;
-use gudgeon_core::geometry::{BackVolume, Chamfer, LandGeometry, PackGeometry, RingGeometry};
+use gudgeon_core::geometry::{BackVolume, Chamfer, LandGeometry, PackGeometry, RingGeometry, Vent};
 use gudgeon_core::result::{PackSection, SectionRing};
 
+use super::vent::vent;
 use crate::case::{ChamferShape, Ring, RingDesign, RingPackCase};
 use gudgeon_machine::Land;
 
@@ -67,9 +68,13 @@ pub fn resolve(case: &RingPackCase) -> Result<PackGeometry, Vec<BuildError>> {
                 continue;
             }
         };
-        lands.push(LandGeometry { volume, temperature: l.temperature.si() });
+        // The space between rails is that of their groove.
+        let rail = case.rings[i].design == RingDesign::LowerRail;
+        let vent = if rail { vent(&case.rings[i]).unwrap_or_default() } else { Vent::Closed };
+        lands.push(LandGeometry { volume, temperature: l.temperature.si(), vent });
     }
-    lands.push(LandGeometry { volume: 0.0, temperature: case.gas.crankcase_temperature.si() });
+    let temperature = case.gas.crankcase_temperature.si();
+    lands.push(LandGeometry { volume: 0.0, temperature, vent: Vent::Closed });
     if case.gas.gamma.si() <= 1.0 {
         errors
             .push(BuildError::at("gas.gamma", format!("`{}` must be greater than one", case.gas.gamma.si())));
@@ -167,8 +172,17 @@ fn ring(
             return None;
         }
     };
+    let vent = vent(r).unwrap_or_else(|e| {
+        check(Err(e.within("groove")));
+        Vent::Closed
+    });
     let lands = if r.design == RingDesign::TwinLand { 2 } else { 1 };
     check(faces_fit(lands, face.length(), height));
+    let (vent, expander_slope) = match r.design {
+        RingDesign::UpperRail => (Vent::Closed, ear_slope(r)),
+        RingDesign::LowerRail => (Vent::Closed, -ear_slope(r)),
+        _ => (vent, 0.0),
+    };
     ok.then(|| RingGeometry {
         height,
         width,
@@ -188,13 +202,20 @@ fn ring(
         leak_face: r.face_leak.si(),
         chamfer: Chamfer { area_lower: chamfer(g.chamfer_lower), area_upper: chamfer(g.chamfer_upper) },
         back: back(r),
+        vent,
         back_temperature: g.temperature.si(),
         oil_fill: g.oil_fill.si(),
         face,
         lands,
         rails: if sealed { 2 } else { 1 },
         has_clearance: !sealed,
+        expander_slope,
     })
+}
+
+/// Axial over radial force of the ears of an expander on a rail.
+fn ear_slope(r: &Ring) -> f64 {
+    r.expander.map_or(0.0, |e| e.ear_angle.si().tan())
 }
 
 /// End gap in the running engine \[m\]: given, or the cold gap less the growth of the ring's circumference.
@@ -322,9 +343,10 @@ fn chamfer(c: Option<ChamferShape>) -> f64 {
 fn back(r: &Ring) -> BackVolume {
     match (r.design, r.groove.back_volume) {
         (RingDesign::ThreePiece, _) => BackVolume::Sealed,
-        (RingDesign::TwinLand, _) => BackVolume::Drained,
-        (RingDesign::Compression, Some(v)) => BackVolume::Fixed(v.si()),
-        (RingDesign::Compression, None) => BackVolume::Geometric,
+        (RingDesign::UpperRail, _) => BackVolume::OpenBelow,
+        (RingDesign::LowerRail, _) => BackVolume::OpenAbove,
+        (_, Some(v)) => BackVolume::Fixed(v.si()),
+        (_, None) => BackVolume::Geometric,
     }
 }
 

@@ -503,7 +503,7 @@ impl Sampler {
             }
             let (r, velocity) = (&pack.at.rings[i], pack.at.places[i].v);
             let a = &r.axial;
-            let parts = [a.gas, a.inertia, a.gravity, a.film, a.damping, r.reaction];
+            let parts = [a.gas, a.inertia, a.gravity, a.film, a.damping, r.reaction, a.expander];
             let sum: f64 = parts.iter().sum();
             let magnitude: f64 = parts.iter().map(|p| p.abs()).sum();
             self.impulse[i][0] += dt * sum;

@@ -31,6 +31,7 @@ pub mod modes;
 mod oil_faces;
 pub mod pack;
 pub mod plan;
+pub mod rails;
 pub mod record;
 pub mod results;
 mod rheology;
@@ -43,6 +44,7 @@ pub mod solver;
 mod stepping;
 pub mod substep_march;
 mod used;
+mod vent;
 pub mod watch;
 
 use gudgeon_core::BuildError;

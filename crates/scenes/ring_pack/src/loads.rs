@@ -35,9 +35,19 @@ pub struct Loads<'a> {
 /// Conditions of a running face: `lands` of a ring at a place between pressures.
 #[inline]
 pub fn face_in(geo: &RingGeometry, place: &RingPlace, r: &RingInstant, u: f64, land: usize) -> FaceIn {
-    // The space between the lands of a twin-land ring is drained to below the ring.
-    let p_top = if geo.lands == 2 && land == 1 { r.p_below } else { r.p_above };
-    FaceIn { h: place.h, u, p_bottom: r.p_below, p_top, p_cav: r.p_cav, mu: r.mu }
+    let [p_bottom, p_top] = around_land(geo, r, land);
+    FaceIn { h: place.h, u, p_bottom, p_top, p_cav: r.p_cav, mu: r.mu }
+}
+
+/// Pressures \[Pa\] below and above land `land` of the running face, the upper one being 0: slots join the space between two lands with that behind
+/// the ring.
+#[inline]
+pub fn around_land(geo: &RingGeometry, r: &RingInstant, land: usize) -> [f64; 2] {
+    match (geo.lands, land) {
+        (2, 0) => [r.p_back, r.p_above],
+        (2, _) => [r.p_below, r.p_back],
+        _ => [r.p_below, r.p_above],
+    }
 }
 
 /// Axial load that presses the flanks together, as the radial friction laws take it \[N\].

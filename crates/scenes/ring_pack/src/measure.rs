@@ -77,13 +77,15 @@ pub struct RingMeasure {
     pub nearest: (f64, f64),
     /// `∫ wetted share dt` \[s\].
     pub wetted: f64,
-    /// Time \[s\] off the lower flank.
+    /// Time \[s\] off the flank that it seals.
     pub lifted: f64,
     /// Arrivals on a flank.
     pub arrivals: u32,
     /// Its first changes.
     pub changes: Vec<Change>,
     seat: Option<Seat>,
+    /// The flank that it seals.
+    home: Seat,
     samples: Samples,
 }
 
@@ -151,11 +153,15 @@ impl Measures {
             arrivals: 0,
             changes: Vec::new(),
             seat: None,
+            home: Seat::Lower,
             samples: Samples::default(),
         };
         let mut rings = vec![ring; n];
-        for r in &mut rings {
+        for (r, g) in rings.iter_mut().zip(&pack.geo.rings) {
             r.changes.reserve(KEPT);
+            if g.seals_above() {
+                r.home = Seat::Upper;
+            }
         }
         Self {
             rule,
@@ -319,7 +325,7 @@ impl RingMeasure {
                 Seat::Between
             };
             self.settle(seat, t0 + from * (t1 - t0));
-            if seat != Seat::Lower {
+            if seat != self.home {
                 self.lifted += (to - from) * (t1 - t0) / omega;
             }
             from = to;

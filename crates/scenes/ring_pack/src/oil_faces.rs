@@ -1,7 +1,7 @@
 //! The running faces as the oil on the liner meets them.
 
 use gudgeon_core::BuildError;
-use gudgeon_core::geometry::PackGeometry;
+use gudgeon_core::geometry::{BackVolume, PackGeometry};
 use gudgeon_core::kinds::OilFacePlace;
 
 use super::ring::Ring;
@@ -24,9 +24,10 @@ pub fn faces(geo: &PackGeometry, rings: &[Ring], pin_to_ring1: f64) -> Vec<OilFa
                 (_, 0) => middle + 0.5 * g.height - length,
                 _ => middle - 0.5 * g.height,
             };
-            // Oil between the lands of an oil ring, and below the lowest ring, drains at once.
-            let drained_below = lowest && land + 1 == g.lands || g.lands == 2 && land == 0;
-            let drained_above = g.lands == 2 && land == 1;
+            // Oil between the lands or rails of an oil ring, and below the lowest ring, drains at once.
+            let drained_below =
+                lowest && land + 1 == g.lands || g.lands == 2 && land == 0 || g.back == BackVolume::OpenBelow;
+            let drained_above = g.lands == 2 && land == 1 || g.back == BackVolume::OpenAbove;
             all.push(OilFacePlace {
                 ring: i,
                 land,

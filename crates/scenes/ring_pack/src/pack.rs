@@ -18,7 +18,7 @@ use super::instant::{Counters, Instant, SeatLog};
 use super::layout::Layout;
 use super::limits::Limits;
 use super::liner::LinerShape;
-use super::plan::Plan;
+use super::plan::{Names, Plan};
 use super::ring::Ring;
 
 /// Film thickness beyond which a trial state of an integrator is refused, which then takes a smaller step \[m\]: no groove is that deep.
@@ -87,6 +87,8 @@ pub struct Pack {
     pub oil_pack: Option<Box<dyn OilTransport>>,
     /// What runs.
     pub plan: Plan,
+    /// What rings and lands are called in words.
+    pub names: Names,
     /// State layout.
     pub layout: Layout,
     /// States of the gas at 1 bar, their scale in the state vector.
@@ -190,13 +192,14 @@ impl Pack {
         let r_inner = g.root_radius + behind;
         let r_outer = r_inner + g.width;
         let back_volume = match g.back {
+            _ if !g.has_room() => 0.0,
             BackVolume::Geometric => {
                 0.5 * (2.0 * g.groove_height_inner + slope * behind)
                     * PI
                     * (r_inner * r_inner - g.root_radius * g.root_radius)
             }
             BackVolume::Fixed(v) => v,
-            BackVolume::Drained | BackVolume::Sealed => 0.0,
+            _ => 0.0,
         };
         let p = pose(clearance);
         RingPlace {

@@ -3,6 +3,9 @@
 use gudgeon_core::BuildError;
 use gudgeon_core::result::Skipped;
 
+use super::rails;
+use crate::case::RingPackCase;
+
 /// What a result needs beyond the gas network, which every result needs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Needs {
@@ -43,22 +46,43 @@ impl Told {
     pub const ALL: Self = Self { liner: true, flanks: true, formulas: true };
 }
 
-/// Every result of a pack of `rings` rings.
+/// What rings and the lands above them are called in words.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Names {
+    /// The rings, and the flank that each seals.
+    pub rings: Vec<(String, &'static str)>,
+    /// The land above each.
+    pub lands: Vec<String>,
+}
+
+impl Names {
+    /// Of a case whose rings are single bodies.
+    #[must_use]
+    pub fn of(case: &RingPackCase) -> Self {
+        let all = 0..case.rings.len();
+        let lands = all.clone().map(|i| rails::land_name(case, i)).collect();
+        Self { rings: all.map(|i| (rails::name(case, i), rails::flank(case, i))).collect(), lands }
+    }
+}
+
+/// Every result of a pack.
 #[must_use]
-pub fn catalogue(rings: usize, told: Told) -> Vec<ResultInfo> {
+pub fn catalogue(names: &Names, told: Told) -> Vec<ResultInfo> {
     let mut all = gas_results();
-    all.extend((2..=rings).flat_map(land_results));
-    for i in 1..=rings {
-        all.extend(seat_results(i));
-        all.extend(film_results(i));
+    for (k, land) in names.lands.iter().enumerate().skip(1) {
+        all.extend(land_results(k + 1, land));
+    }
+    for (i, (ring, flank)) in names.rings.iter().enumerate().map(|(i, ring)| (i + 1, ring)) {
+        all.extend(seat_results(i, ring, flank));
+        all.extend(film_results(i, ring));
         if told.formulas {
-            all.extend(oil_face_results(i));
+            all.extend(oil_face_results(i, ring));
         }
         if told.flanks {
-            all.extend(flank_results(i));
+            all.extend(flank_results(i, ring));
         }
         if told.liner {
-            let what = format!("mean share of the face under full film, ring {i}");
+            let what = format!("mean share of the face under full film, {ring}");
             all.push(info(format!("ring{i}.wetted_share"), "1", Needs::Film, what));
         }
     }
@@ -94,9 +118,9 @@ fn gas_results() -> Vec<ResultInfo> {
 }
 
 /// Of land `k`.
-fn land_results(k: usize) -> Vec<ResultInfo> {
+fn land_results(k: usize, land: &str) -> Vec<ResultInfo> {
     let add =
-        |name, unit, what| info(format!("land{k}.{name}"), unit, Needs::Gas, format!("{what} of land {k}"));
+        |name, unit, what| info(format!("land{k}.{name}"), unit, Needs::Gas, format!("{what} of {land}"));
     vec![
         add("p_max", "bar", "highest pressure"),
         add("p_max_angle", "deg", "crank angle of the highest pressure"),
@@ -104,73 +128,73 @@ fn land_results(k: usize) -> Vec<ResultInfo> {
 }
 
 /// Of ring `i` between the flanks.
-fn seat_results(i: usize) -> Vec<ResultInfo> {
+fn seat_results(i: usize, ring: &str, flank: &str) -> Vec<ResultInfo> {
     let add = |name, what| info(format!("ring{i}.{name}"), "1", Needs::Axial, what);
     vec![
         add(
             "seat_changes",
             format!(
-                "arrivals of ring {i} on a groove flank (within `outputs.seat` of its clearance) per cycle"
+                "arrivals of {ring} on a groove flank (within `outputs.seat` of its clearance) per cycle"
             ),
         ),
         add(
             "lifted_share",
             format!(
-                "share of the cycle that ring {i} is off its lower flank, farther than `outputs.seat` of its clearance"
+                "share of the cycle that {ring} is off its {flank} flank, farther than `outputs.seat` of its clearance"
             ),
         ),
         add(
             "reverse_pressure_ratio",
             format!(
-                "highest ratio of the pressure below ring {i} to that above: beyond 1 gas lifts a ring off its lower flank"
+                "highest ratio of the pressure below {ring} to that above: beyond 1 gas lifts a ring off its lower flank"
             ),
         ),
     ]
 }
 
 /// Of the film of ring `i`.
-fn film_results(i: usize) -> Vec<ResultInfo> {
+fn film_results(i: usize, ring: &str) -> Vec<ResultInfo> {
     let add = |name, unit, what| info(format!("ring{i}.{name}"), unit, Needs::Film, what);
     vec![
-        add("h_min", "um", format!("thinnest film under ring {i}")),
-        add("h_max", "um", format!("thickest film under ring {i}")),
-        add("h_mean", "um", format!("mean film under ring {i}")),
-        add("friction_power", "W", format!("mean friction power of ring {i}, one cylinder")),
-        add("fmep", "bar", format!("friction mean effective pressure of ring {i}")),
+        add("h_min", "um", format!("thinnest film under {ring}")),
+        add("h_max", "um", format!("thickest film under {ring}")),
+        add("h_mean", "um", format!("mean film under {ring}")),
+        add("friction_power", "W", format!("mean friction power of {ring}, one cylinder")),
+        add("fmep", "bar", format!("friction mean effective pressure of {ring}")),
     ]
 }
 
 /// Oil past ring `i` when all its ways are full of oil.
-fn oil_face_results(i: usize) -> Vec<ResultInfo> {
+fn oil_face_results(i: usize, ring: &str) -> Vec<ResultInfo> {
     let add = |name, needs, what| info(format!("ring{i}.{name}"), "mm3", needs, what);
     vec![
         add(
             "oil_face_combustion",
             Needs::Film,
-            format!("film on the expansion stroke less that on the compression stroke, ring {i}, per cycle"),
+            format!("film on the expansion stroke less that on the compression stroke, {ring}, per cycle"),
         ),
         add(
             "oil_face_gas_exchange",
             Needs::Film,
-            format!("film on the intake stroke less that on the exhaust stroke, ring {i}, per cycle"),
+            format!("film on the intake stroke less that on the exhaust stroke, {ring}, per cycle"),
         ),
         add(
             "oil_gap",
             Needs::Film,
-            format!("oil that a gap full of oil would let up past ring {i}, per cycle"),
+            format!("oil that a gap full of oil would let up past {ring}, per cycle"),
         ),
         add(
             "oil_groove",
             Needs::Axial,
-            format!("oil pumped up past the flanks of ring {i} in an oil-filled groove, per cycle"),
+            format!("oil pumped up past the flanks of {ring} in an oil-filled groove, per cycle"),
         ),
     ]
 }
 
 /// Of the oil on the flanks of ring `i`.
-fn flank_results(i: usize) -> Vec<ResultInfo> {
+fn flank_results(i: usize, ring: &str) -> Vec<ResultInfo> {
     let what =
-        format!("oil that gas blows off the flanks of ring {i} and that groove and lands replace, per cycle");
+        format!("oil that gas blows off the flanks of {ring} and that groove and lands replace, per cycle");
     vec![info(format!("ring{i}.flank_oil_lost"), "mm3", Needs::Gas, what)]
 }
 
@@ -220,8 +244,8 @@ pub struct Facts<'a> {
 ///
 /// # Errors
 /// A name that is not in the catalogue.
-pub fn wanted(asked: &[String], rings: usize, told: Told) -> Result<Vec<ResultInfo>, Vec<BuildError>> {
-    let all = catalogue(rings, told);
+pub fn wanted(asked: &[String], names: &Names, told: Told) -> Result<Vec<ResultInfo>, Vec<BuildError>> {
+    let all = catalogue(names, told);
     let mut errors = Vec::new();
     for (k, name) in asked.iter().enumerate() {
         if name != "all" && !all.iter().any(|r| &r.name == name) {

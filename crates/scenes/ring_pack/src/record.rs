@@ -2,7 +2,6 @@
 
 use std::f64::consts::PI;
 
-use gudgeon_core::geometry::BackVolume;
 use gudgeon_core::kinds::{FlankFlow, OilLedger};
 use gudgeon_core::result::{Balance, Column, Series};
 
@@ -65,7 +64,7 @@ impl Record {
             add(name.into(), unit);
         }
         for i in 1..=n {
-            if has_back_volume(pack.geo.rings[i - 1].back) {
+            if pack.geo.rings[i - 1].has_room() {
                 add(format!("ring{i}.back.p"), "Pa");
             }
             add(format!("land{}.p", i + 1), "Pa");
@@ -88,6 +87,9 @@ impl Record {
             if pack.plan.axial && ring.motion.moves() {
                 for f in ["gas", "inertia", "film"] {
                     add(format!("ring{i}.force_{f}"), "N");
+                }
+                if ring.expander != 0.0 {
+                    add(format!("ring{i}.force_expander"), "N");
                 }
                 if ring.is_integrated() {
                     add(format!("ring{i}.force_damping"), "N");
@@ -146,7 +148,7 @@ impl Record {
         put(at.piston.a);
         put(at.gas.p_land[0]);
         for i in 0..n {
-            if has_back_volume(pack.geo.rings[i].back) {
+            if pack.geo.rings[i].has_room() {
                 put(at.gas.p_back[i]);
             }
             put(at.gas.p_land[i + 1]);
@@ -170,6 +172,9 @@ impl Record {
                 put(r.axial.gas);
                 put(r.axial.inertia);
                 put(r.axial.film);
+                if ring.expander != 0.0 {
+                    put(r.axial.expander);
+                }
                 if ring.is_integrated() {
                     put(r.axial.damping);
                     put(r.reaction);
@@ -216,9 +221,4 @@ impl Record {
 pub(super) fn round_deg(deg: f64) -> f64 {
     let r = (deg * 1e3).round() / 1e3;
     if (r - deg).abs() < 1e-9 { r } else { deg }
-}
-
-/// Whether a ring keeps gas behind it.
-fn has_back_volume(back: BackVolume) -> bool {
-    matches!(back, BackVolume::Geometric | BackVolume::Fixed(_))
 }

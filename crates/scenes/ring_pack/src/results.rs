@@ -37,7 +37,7 @@ impl Cycle {
     /// Every wanted result.
     #[must_use]
     pub fn results(&self, pack: &Pack, meter: Meter) -> IndexMap<String, Value> {
-        catalogue(pack.n_rings(), Told::ALL)
+        catalogue(&pack.names, Told::ALL)
             .into_iter()
             .filter(|r| pack.plan.wanted.contains(&r.name))
             .map(|r| {

@@ -31,6 +31,8 @@ pub struct Ring {
     pub friction: Option<Box<dyn FlankFriction>>,
     /// Radial force of the tension of one rail \[N\].
     pub pull: f64,
+    /// Axial force of an expander on a rail \[N\], towards the head positive.
+    pub expander: f64,
     /// Distance below ring 1 \[m\].
     pub spacing: f64,
     /// Viscosity when it does not change over the cycle \[Pa s\].

@@ -1,11 +1,14 @@
 //! The ring pack as a scene: what it refuses, explains, runs and how its solvers compare.
 
+use std::borrow::Cow;
+
 use gudgeon_core::BuildError;
 use gudgeon_core::kinds::EngineCycle;
 use gudgeon_core::result::{Figure, FigureKind, Gradients, ModelUse, RunResult};
 
 use super::around::{Around, Varied};
 use super::pack::Pack;
+use super::rails::TakenApart;
 use super::solve::{solve, starts, wanted};
 use super::solver::RingPackSolverSpec;
 use super::used::models_in_use;
@@ -38,7 +41,7 @@ impl SceneCase for RingPackCase {
         pack: &mut Pack,
         told: &mut Explanation,
     ) -> Result<Vec<ModelUse>, RunError> {
-        let (used, skipped) = models_in_use(&loaded.value, &pack.plan);
+        let (used, skipped) = models_in_use(&*bodies(&loaded.value)?, &pack.plan);
         told.runs.clone_from(&pack.plan.runs);
         told.skipped = skipped;
         told.results.clone_from(&pack.plan.wanted);
@@ -53,9 +56,10 @@ impl SceneCase for RingPackCase {
         progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
     ) -> Result<RunResult, RunError> {
         let case = &loaded.value;
+        let bodies = bodies(case)?;
         let solved = solve(case, &mut pack, progress)?;
         let mut result = RunResult::default();
-        (result.models, result.skipped) = models_in_use(case, &pack.plan);
+        (result.models, result.skipped) = models_in_use(&bodies, &pack.plan);
         result.results = solved.cycle.results(&pack, meter(case));
         result.balance = solved.cycle.totals.balance.clone();
         result.events = solved.cycle.events();
@@ -85,7 +89,7 @@ impl SceneCase for RingPackCase {
             result.tables.insert("liner".into(), liner);
         }
         let stroke = case.engine.crank().map_err(|e| RunError::refused(&[e]))?.radius * 2.0;
-        result.section = Some(geometry::section(case, &pack.geo, stroke));
+        result.section = Some(geometry::section(&bodies, &pack.geo, stroke));
         result.seconds.insert("solve".into(), solved.seconds);
         Ok(result)
     }
@@ -93,7 +97,8 @@ impl SceneCase for RingPackCase {
     /// Numbers that the case leaves to its solver are filled in.
     fn refinements(loaded: &Loaded<Self>) -> Vec<Refinement> {
         let case = &loaded.value;
-        loaded.refinements_with(|all| case.solver.method.resolve(case.rings.len(), &mut all["solver"]))
+        let bodies = TakenApart::new(case).map_or(case.rings.len(), |apart| apart.case.rings.len());
+        loaded.refinements_with(|all| case.solver.method.resolve(bodies, &mut all["solver"]))
     }
 
     fn cycle(loaded: &Loaded<Self>) -> Option<Result<EngineCycle, BuildError>> {
@@ -147,6 +152,11 @@ impl SceneCase for RingPackCase {
             ..WorkPrecision::default()
         })
     }
+}
+
+/// The case with three-piece rings taken apart.
+fn bodies(case: &RingPackCase) -> Result<Cow<'_, RingPackCase>, RunError> {
+    TakenApart::new(case).map(|apart| apart.case).map_err(|e| RunError::refused(&e))
 }
 
 /// Every registered solver that can solve the pack, at every accuracy.

@@ -1,10 +1,12 @@
 //! The models in use and what is left out, for `explain` and the results.
 
+use gudgeon_core::geometry::Vent;
 use gudgeon_core::result::{ModelUse, Skipped};
 
 use super::case::{RingDesign, RingModels, RingPackCase};
 use super::plan::Plan;
 use super::rheology;
+use super::vent::vent;
 
 /// The models that run and the parts that do not, for `explain` and the results.
 #[must_use]
@@ -69,13 +71,17 @@ pub fn models_in_use(case: &RingPackCase, plan: &Plan) -> (Vec<ModelUse>, Vec<Sk
         match r.design {
             RingDesign::ThreePiece => skipped.push(Skipped {
                 what: format!("axial motion of ring {}", i + 1),
-                why: "a three-piece oil ring has no axial clearance: its groove is treated as sealed, gas passes its gaps alone, and blow-by is less than past a ring that leaks at its flanks".into(),
+                why: "a three-piece oil ring without `expander` has no axial clearance: its groove is treated as sealed, gas passes its gaps alone, and blow-by is less than past a ring that leaks at its flanks".into(),
             }),
-            RingDesign::TwinLand => skipped.push(Skipped {
-                what: format!("gas volume behind ring {}", i + 1),
-                why: "the groove of an oil ring drains to below the ring".into(),
+            RingDesign::UpperRail => {}
+            design if vent(r) == Ok(Vent::Open) => skipped.push(Skipped {
+                what: match design {
+                    RingDesign::LowerRail => format!("gas volume between the rails, ring {i} and ring {}", i + 1),
+                    _ => format!("gas volume behind ring {}", i + 1),
+                },
+                why: "its groove is vented: its gas has the pressure of the crankcase".into(),
             }),
-            RingDesign::Compression => {}
+            _ => {}
         }
     }
     let models =

@@ -52,7 +52,7 @@ fn near(got: f64, want: f64, tolerance: f64) {
 fn a_free_ring_is_a_mass() {
     let mut m = built(&NewtonGroove::default(), oil(&Dry {}));
     let mut f = forces(0.5 * C, 3e-3, 10.0);
-    f.axial = AxialForces { gas: 10.0, inertia: -3.0, gravity: 0.4, film: 1.0, damping: 0.0 };
+    f.axial = AxialForces { gas: 10.0, inertia: -3.0, gravity: 0.4, film: 1.0, expander: 0.0, damping: 0.0 };
     let (dy, r) = rates(&mut *m, &f);
     // s/c0 and its derivative by crank angle: m c0 ω² y'' = ΣF. A few roundings.
     near(dy[0], 3e-3 / (C * OMEGA), 1e-15);
