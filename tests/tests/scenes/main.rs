@@ -16,6 +16,7 @@ mod limits;
 mod loader_fuzz;
 mod many;
 mod oil;
+mod oil_ring;
 mod pin;
 mod piston_secondary;
 mod reference;
