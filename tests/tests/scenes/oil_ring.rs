@@ -251,7 +251,22 @@ fn what_cannot_be_an_oil_ring_is_refused_at_its_place() {
         let text = rails(change);
         assert!(text.contains(words), "{change}: {text}");
     }
-    // Rings behind the rails keep their numbers in the case: a mistake of a fourth land stands at that land.
-    let text = refusal(&[&THREE_PIECE, &["piston.lands.2.diameter=121 mm"]]);
-    assert!(text.contains("piston.lands.2.diameter"), "{text}");
+    // Rings and lands behind rails keep their numbers in the case.
+    let second = [
+        "rings.1.design=three_piece",
+        "rings.1.height=0.6 mm",
+        "rings.1.face={shape=\"parabola\", length=\"0.4 mm\", drop=\"2 um\"}",
+        "rings.1.expander={mass=\"14 g\", height=\"1.8 mm\", ear_angle=\"15 deg\"}",
+    ];
+    assert_eq!(refusal(&[&second]), "");
+    for (change, place) in [
+        ("rings.2.groove.root_diameter=119 mm", "rings.2.groove.root_diameter: a ring"),
+        ("piston.lands.2.diameter=121 mm", "piston.lands.2.diameter: a land of"),
+        ("rings.1.groove.drain={holes=3}", "rings.1.groove.drain: the drain has no size"),
+    ] {
+        let text = refusal(&[&second, &[change]]);
+        assert!(text.contains(place), "{change}: {text}");
+        // Once, and not for each rail.
+        assert_eq!(text.matches(place).count(), 1, "{text}");
+    }
 }

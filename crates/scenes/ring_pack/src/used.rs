@@ -79,7 +79,7 @@ pub fn models_in_use(case: &RingPackCase, plan: &Plan) -> (Vec<ModelUse>, Vec<Sk
                     RingDesign::LowerRail => format!("gas volume between the rails, ring {i} and ring {}", i + 1),
                     _ => format!("gas volume behind ring {}", i + 1),
                 },
-                why: "its groove is vented: its gas has the pressure of the crankcase".into(),
+                why: "the groove is vented: its gas has the pressure of the crankcase".into(),
             }),
             _ => {}
         }
