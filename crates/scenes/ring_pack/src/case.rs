@@ -179,7 +179,7 @@ pub struct Expander {
     /// Axial height of the spacer between the rails: what rails and spacer leave of the groove is their axial clearance.
     pub height: PosLength,
     /// Angle of the ears that push the rails outwards: they press each rail onto its flank with `tan(angle)` times the radial force on it. 0: no
-    /// side sealing but by gas and oil.
+    /// side sealing but by gas and oil. Friction between ears and rail is left out.
     pub ear_angle: Angle,
 }
 

@@ -2,7 +2,8 @@
 //!
 //! Each rail becomes a ring with motion, film and oil of its own. Between them stands a land: the space of the groove, in which the expander is. The
 //! upper rail is open to it below, the lower one above, so gas passes the flank that a rail seals, and its end gap. The way of a rail in the groove is all
-//! the axial clearance that rails and expander leave, the other rail being at rest on its own flank.
+//! the axial clearance that rails and expander leave, the other rail being at rest on its own flank. The expander stands for the other flank, with oil as on a
+//! flank, and its force is constant: it has no stiffness along the groove and no friction against the rails.
 
 use std::borrow::Cow;
 use std::f64::consts::PI;
