@@ -19,15 +19,21 @@ pub(super) fn check_fill(ctx: &FlankCtx) -> Result<(), BuildError> {
 
 /// Width and viscosity are positive.
 pub(super) fn check_oil(ctx: &FlankCtx) -> Result<(), BuildError> {
-    for (value, what, unit) in
-        [(ctx.width, "the radial width of the flank", "m"), (ctx.mu, "the oil viscosity", "Pa s")]
-    {
-        if !(value > 0.0 && value.is_finite()) {
-            return Err(BuildError::new(format!(
-                "{what} of ring {} is {value:e} {unit}, which must be greater than zero",
-                ctx.ring + 1
-            )));
-        }
+    check_width(ctx)?;
+    positive(ctx, ctx.mu, "the oil viscosity", "Pa s")
+}
+
+/// The width is positive.
+pub(super) fn check_width(ctx: &FlankCtx) -> Result<(), BuildError> {
+    positive(ctx, ctx.width, "the radial width of the flank", "m")
+}
+
+fn positive(ctx: &FlankCtx, value: f64, what: &str, unit: &str) -> Result<(), BuildError> {
+    if value > 0.0 && value.is_finite() {
+        return Ok(());
     }
-    Ok(())
+    Err(BuildError::new(format!(
+        "{what} of ring {} is {value:e} {unit}, which must be greater than zero",
+        ctx.ring + 1
+    )))
 }

@@ -2,6 +2,7 @@
 
 mod checks;
 pub mod dry;
+mod gas_gap;
 pub mod squeeze_film;
 pub mod tangent_degrees;
 pub mod tangent_radians;

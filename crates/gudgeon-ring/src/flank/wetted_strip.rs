@@ -1,14 +1,17 @@
-//! A strip of oil of finite volume between the ring and each groove flank.
+//! A strip of oil of finite volume between the ring and each groove flank, and the gas beside it.
 
 use gudgeon_core::geometry::{FlankOil, RingPlace};
 use gudgeon_core::kinds::{Flank, FlankCtx, FlankFlow, FlankIn, FlankLaw, FlankSpec};
-use gudgeon_core::quantity::{Fraction, PosLength, PosPressure, PosTime, Ratio, quantity};
+use gudgeon_core::quantity::{
+    Fraction, NonNegative, PosLength, PosPressure, PosTime, Ratio, Viscosity, quantity,
+};
 use gudgeon_core::states::{Signals, StateInfo, Stateful};
 use gudgeon_core::{BuildError, EvalError, register_model};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::checks::{check_fill, check_oil};
+use super::gas_gap::{GasGap, default_gas_viscosity};
 use super::squeeze_film::{default_roughness, default_separation, default_tension, resistance};
 
 /// A strip of oil of finite volume between the ring and each of the two groove flanks: it resists the motion of the ring and keeps gas out.
@@ -26,16 +29,25 @@ use super::squeeze_film::{default_roughness, default_separation, default_tension
 /// ψ = 1/(1 + (b/H)²)
 /// ```
 ///
+/// The gas beside the strip, `w - b` wide, is squeezed out too. With the strip in the middle of the flank it resists by
+///
+/// ```text
+/// approach with v:  f_g = μ_g (w - b)³ v/H³         separation:  f_g = X/(1 + X/(p_t (w - b))),  X = μ_g (w - b)³ v/H³
+/// ```
+///
+/// which is what damps a ring between its flanks: a gap of gas is a hundred times wider than a strip that is drawn out.
+///
 /// A strip is closed while it is much wider than it is high. Drawn out, it becomes narrow (`b = a/H`), gives way (`f ~ H⁻⁶`) and opens. Gas of the
 /// pressure difference `Δp` drives it out, and groove and lands replace what is missing within the time `τ`; a ring that comes down gathers the oil
 /// that was left on the walls:
 ///
 /// ```text
-/// da/dt = (a_s - a) (1/τ + 4 σ² v/H³) - |Δp| H³ b/(12 μ (b + H)²)        v: approach, 0 when it separates
+/// da/dt = (a_s - a) (1/τ + 4 σ² v/H³) - (1 - ψ) |Δp| H³ b/(12 μ (b + H + ℓ)²)     v: approach, 0 when it separates
 /// ```
 ///
 /// The supply `a_s = f_o w σ` is the oil that wets the fraction `f_o` (`oil_fill`) of the width under a seated ring. The last term is the flow of a
-/// strip `b` wide between parallel walls, `|Δp| H³/(12 μ b)`, while it bridges the gap. An approach from far away to `H` leaves the share
+/// strip `b` wide between parallel walls, `|Δp| H³/(12 μ b)`, for the share that bridges the gap: what hangs on the walls beside open gas stays. A strip narrower than the raggedness `ℓ` of its edges is broken
+/// through here and there, and what is left of it leaves the slower. An approach from far away to `H` leaves the share
 /// `exp(-2 (σ/H)²)` of the missing oil behind.
 ///
 /// Source: reynolds1886 (squeeze film, flow between parallel walls), cameron1966; the balance of the strip is this program's own.
@@ -48,16 +60,27 @@ pub struct WettedStrip {
     /// Fraction `χ` of the strip that stays liquid while the flanks are drawn apart. 0: a separating flank does not resist.
     #[serde(default = "default_separation")]
     pub separation: Ratio<Fraction>,
-    /// Greatest mean tension `p_t` of a strip that is drawn apart: the pressure around it less the cavitation pressure.
+    /// Greatest mean tension `p_t` of a strip that is drawn apart: the pressure around it less the cavitation pressure. Gas that cannot follow a
+    /// separating ring has no more either.
     #[serde(default = "default_tension")]
     pub tension: PosPressure,
     /// Time `τ` in which groove and lands replace what a strip has lost.
     #[serde(default = "default_renewal")]
     pub renewal: PosTime,
+    /// Raggedness `ℓ` of the edges of a strip. The narrower it lets a strip become, the stiffer the balance of its oil: below 10 µm runs may stall.
+    #[serde(default = "default_edge")]
+    pub edge: PosLength,
+    /// Dynamic viscosity `μ_g` of the gas beside the strip; 0: the gas does not resist.
+    #[serde(default = "default_gas_viscosity")]
+    pub gas_viscosity: Viscosity<NonNegative>,
 }
 
 fn default_renewal() -> PosTime {
     quantity(0.05)
+}
+
+fn default_edge() -> PosLength {
+    quantity(1e-4)
 }
 
 impl Default for WettedStrip {
@@ -67,6 +90,8 @@ impl Default for WettedStrip {
             separation: default_separation(),
             tension: default_tension(),
             renewal: default_renewal(),
+            edge: default_edge(),
+            gas_viscosity: default_gas_viscosity(),
         }
     }
 }
@@ -75,10 +100,9 @@ impl Default for WettedStrip {
     name = "wetted_strip",
     summary = "physical: oil of finite volume on each flank that resists, ruptures, and keeps gas out while it bridges the gap",
     equations = "b = a/H up to w;  approach: f = mu b^3 v/H^3;  open share of the gap 1/(1 + (b/H)^2);  \
-                da/dt = (f_o w sigma - a)(1/tau + 4 sigma^2 v/H^3) - |dp| H^3 b/(12 mu (b + H)^2);  H = h + sigma",
+                gas: f = mu_g (w - b)^3 v/H^3;  da/dt = (f_o w sigma - a)(1/tau + 4 sigma^2 v/H^3) - (1 - psi) |dp| H^3 b/(12 mu (b + H + l)^2), psi the open share;  H = h + sigma",
     validity = "Parallel flanks, oil at the temperature of the groove, the same around the ring; groove and lands have oil to replace what is lost. \
-               The supply and the time of renewal are inputs that are seldom measured. Nothing resists a ring away from the flanks: it flutters more, \
-               and takes more steps, than with `squeeze_film`.",
+               The supply and the time of renewal are inputs that are seldom measured. The gas is not compressed as it is squeezed out.",
     references = ["reynolds1886", "cameron1966"],
     example = "roughness = \"0.4 um\"\nrenewal = \"50 ms\"\n",
 )]
@@ -94,6 +118,8 @@ impl FlankSpec for WettedStrip {
             tension: self.tension.si(),
             supply: ctx.oil_fill * ctx.width * self.roughness.si(),
             per_renewal: self.renewal.si().recip(),
+            edge: self.edge.si(),
+            gas: GasGap { viscosity: self.gas_viscosity.si(), tension: self.tension.si() },
         };
         let state = |flank: &str| {
             StateInfo::new(format!("oil on the {flank} flank of ring{}", ctx.ring + 1))
@@ -122,6 +148,8 @@ struct Strip {
     /// Volume per circumference \[m²\] that groove and lands supply.
     supply: f64,
     per_renewal: f64,
+    edge: f64,
+    gas: GasGap,
 }
 
 impl Strip {
@@ -141,11 +169,13 @@ impl Strip {
         }
     }
 
-    /// Force per circumference against a flank that approaches with `rate` (negative: separates).
+    /// Force per circumference of oil and gas against a flank that approaches with `rate` (negative: separates).
     fn force(&self, wetted: f64, h: f64, rate: f64) -> f64 {
-        let slenderness = wetted / self.gap(h);
+        let gap = self.gap(h);
+        let slenderness = wetted / gap;
         let linear = self.mu * slenderness * slenderness * slenderness * rate;
         resistance(linear, self.separation, self.tension * wetted)
+            + self.gas.force(self.width - wetted, gap, rate)
     }
 
     /// What comes to a strip of `oil` \[m²\] and leaves it, while the flank approaches with `rate` under a pressure difference.
@@ -153,10 +183,17 @@ impl Strip {
         let gap = self.gap(h);
         let gathered = 4.0 * self.roughness * self.roughness * rate.max(0.0) / (gap * gap * gap);
         let missing = self.supply - oil;
-        let reach = wetted.abs() + gap;
-        let blown = dp.abs() * gap * gap * gap * wetted / (12.0 * self.mu * reach * reach);
+        let reach = wetted.abs() + gap + self.edge;
+        let closed = 1.0 - open_share(wetted, gap);
+        let blown = closed * dp.abs() * gap * gap * gap * wetted / (12.0 * self.mu * reach * reach);
         FlankFlow { fed: missing * (self.per_renewal + gathered), lost: blown }
     }
+}
+
+/// Share of a gap that a strip leaves open.
+fn open_share(wetted: f64, gap: f64) -> f64 {
+    let slenderness = wetted / gap;
+    1.0 / (1.0 + slenderness * slenderness)
 }
 
 struct Runtime {
@@ -206,10 +243,7 @@ impl Flank for Runtime {
     fn oil(&self, y: &[f64], place: &RingPlace) -> FlankOil {
         let (oil, h) = (self.volumes(y), distances(place));
         let wetted = [0, 1].map(|k| self.strip.wetted(oil[k], self.strip.gap(h[k])));
-        let open = [0, 1].map(|k| {
-            let slenderness = wetted[k] / self.strip.gap(h[k]);
-            1.0 / (1.0 + slenderness * slenderness)
-        });
+        let open = [0, 1].map(|k| open_share(wetted[k], self.strip.gap(h[k])));
         FlankOil { wetted, open }
     }
 

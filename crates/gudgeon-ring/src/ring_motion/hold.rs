@@ -219,15 +219,8 @@ impl Holding {
         let balanced = b.velocity(release);
         // A ring just let go is not held again at once; one that was held when the last cycle ended still is.
         let kept = 1.0 - if starts { 1.0 } else { 2.0 } * balanced / release;
-        let settled =
-            1.0 - (w - balanced).abs() / (self.tolerance * self.unit_speed * self.patience(b, rate));
+        let settled = 1.0 - (w - balanced).abs() / (self.tolerance * self.unit_speed);
         stiff.min(kept).min(if starts { 1.0 } else { settled }).max(-1.0)
-    }
-
-    /// How much farther from the balance than the tolerance the velocity may be. On a film whose oil gathers while the ring lands, and which stiffens at once, a
-    /// velocity turns around each step for as long as it is asked to settle: there the way that is left, `Δw/rate`, is to be as short as the accuracy of a height.
-    fn patience(&self, b: &Balance<'_>, rate: f64) -> f64 {
-        if b.oil == FlankOil::default() { 1.0 } else { rate / MIN_RATE }
     }
 
     /// Lets the ring go, or has it held by the flank `nearest`; its velocity then \[clearances per radian\].

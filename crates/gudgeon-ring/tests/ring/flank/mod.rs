@@ -1,5 +1,6 @@
 //! Oil in the groove.
 
+mod dry;
 mod squeeze_film;
 mod tangent_degrees;
 mod tangent_radians;

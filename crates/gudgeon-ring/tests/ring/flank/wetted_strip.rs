@@ -3,7 +3,7 @@
 use gudgeon_core::geometry::RingPlace;
 use gudgeon_core::kinds::{Flank, FlankCtx, FlankIn, FlankSpec};
 use gudgeon_core::quantity::quantity;
-use gudgeon_ring::WettedStrip;
+use gudgeon_ring::{Dry, WettedStrip};
 
 const C: f64 = 7e-5;
 const A: f64 = 1.8e-3;
@@ -29,7 +29,7 @@ fn at(film: &dyn Flank, y: &[f64], s: f64, v: f64) -> RingPlace {
 
 #[test]
 fn a_drawn_out_strip_keeps_its_volume_and_its_force_falls_with_the_sixth_power() {
-    let film = built(&WettedStrip::default(), 0.3);
+    let film = built(&WettedStrip { gas_viscosity: quantity(0.0), ..WettedStrip::default() }, 0.3);
     let law = film.law();
     let y = [1.0, 0.0];
     for h in [4e-6, 8e-6, 1.6e-5] {
@@ -69,7 +69,8 @@ fn a_seated_strip_is_closed_and_one_that_is_drawn_out_opens() {
 
 #[test]
 fn gas_drives_a_seated_strip_out_as_between_parallel_walls() {
-    let mut film = built(&forgotten(), 0.3);
+    // Straight edges.
+    let mut film = built(&WettedStrip { edge: quantity(1e-9), ..forgotten() }, 0.3);
     let (dp, mut y, steps) = (50e5, [1.0, 1.0], 4000);
     let supply = 0.3 * WIDTH * SIGMA;
     // a da/dt = -H⁴ Δp/(12 μ): dry after a_s² 6 μ/(H⁴ Δp).
@@ -131,10 +132,51 @@ fn rates_are_what_comes_less_what_goes() {
 #[test]
 fn no_oil_is_a_dry_groove() {
     let film = built(&WettedStrip::default(), 0.0);
+    let dry = Dry::default().build(&FlankCtx::new(0, 3, 0.0, WIDTH, MU)).expect("builds").law();
     assert!(film.states().is_empty());
     for s in [0.0, 1e-6, C] {
         let place = at(&*film, &[], s, -0.1);
         assert_eq!(place.flank.open, [1.0; 2]);
-        assert_eq!(film.law().force(&place.flank, s, -0.1, C, A), 0.0);
+        for v in [-0.1, 0.1] {
+            let force = film.law().force(&place.flank, s, v, C, A);
+            assert_eq!(force, dry.force(&place.flank, s, v, C, A));
+        }
     }
+}
+
+#[test]
+fn gas_beside_a_drawn_out_strip_damps_a_ring_between_its_flanks() {
+    let film = built(&WettedStrip::default(), 0.3);
+    let (s, v) = (0.5 * C, -0.01);
+    let place = at(&*film, &[1.0, 1.0], s, v);
+    let gap = s + SIGMA;
+    // Approach below and separation above: the strip is 17 µm wide there, 0.35 % of the width.
+    let b = 0.3 * WIDTH * SIGMA / gap;
+    let linear = 27e-6 * (A / WIDTH) * ((WIDTH - b) / gap).powi(3) * 0.01;
+    let tension = 1e5 * A * (1.0 - b / WIDTH);
+    let exact = linear + linear / (1.0 + linear / tension);
+    let force = film.law().force(&place.flank, s, v, C, A);
+    // The strip itself adds μ (b/H)³ to μ_g ((w - b)/H)³: 1.4e-5 of it.
+    assert!((force / exact - 1.0).abs() < 2e-5, "{force:e} {exact:e}");
+}
+
+#[test]
+fn gas_does_not_drive_out_what_hangs_on_the_walls_beside_it() {
+    let mut film = built(&forgotten(), 0.3);
+    let (s, dp, edge) = (0.5 * C, 1e5, 1e-4);
+    let mut lost = |y: f64| {
+        let place = at(&*film, &[y, 0.0], s, 0.0);
+        let at = FlankIn::new(place, 1e5, 1e5 + dp, 1e5);
+        film.rates(&[y, 0.0], &at, &mut [0.0; 2]).expect("rates").lost
+    };
+    let gap = s + SIGMA;
+    for y in [0.01, 0.1, 1.0] {
+        // Far from as wide as the flank: x⁴/4 < 1e-10.
+        let b = y * 0.3 * WIDTH * SIGMA / gap;
+        let closed = b * b / (b * b + gap * gap);
+        let exact = closed * dp * gap.powi(3) * b / (12.0 * MU * (b + gap + edge).powi(2));
+        assert!((lost(y) / exact - 1.0).abs() < 1e-9, "{y}");
+    }
+    // The third power of a thin strip: it is not driven to nothing in no time.
+    assert!((lost(0.02) / lost(0.01) / 8.0 - 1.0).abs() < 0.01);
 }

@@ -7,7 +7,7 @@ use gudgeon_ring::{Dry, ThreeSeat};
 
 fn built(spec: &ThreeSeat) -> Box<dyn RingMotion> {
     let oil = FlankCtx::new(0, 1, 0.6, 5e-3, 0.01);
-    let damping = Dry {}.build(&oil).expect("builds").law();
+    let damping = Dry::default().build(&oil).expect("builds").law();
     spec.build(RingMotionCtx::new(0, 7e-3, 3e-5, 200.0, damping)).expect("builds")
 }
 

@@ -78,7 +78,7 @@ fn ring(rest: &str) -> RigOut {
 
 #[test]
 fn a_ring_lands_on_either_flank() {
-    let dry = "mass = \"12 g\"\nduration = \"10 ms\"\nflank = { model = \"dry\" }\n";
+    let dry = "mass = \"12 g\"\nduration = \"10 ms\"\nflank = { model = \"dry\", gas_viscosity = 0.0 }\n";
     for (load, way) in [(60.0, 30e-6), (-60.0, 70e-6)] {
         let out = ring(&format!("{dry}load = \"{load} N\""));
         let t = 1e3 * (2.0 * 0.012 * way / 60.0f64).sqrt();
@@ -103,7 +103,7 @@ fn a_light_ring_falls_like_one_without_mass() {
     // A groove that resists nowhere holds no ring without mass.
     let spec: Box<dyn RigSpec> = toml::from_str(
         "model = \"flank\"\nclearance = \"100 um\"\narea = \"1000 mm2\"\nwidth = \"3 mm\"\nviscosity = \"10 mPa s\"\n\
-         height = \"30 um\"\nload = \"60 N\"\nduration = \"1 ms\"\nflank = { model = \"dry\" }",
+         height = \"30 um\"\nload = \"60 N\"\nduration = \"1 ms\"\nflank = { model = \"dry\", gas_viscosity = 0.0 }",
     )
     .expect("reads");
     let mut rig = spec.build(&RigCtx { files: &Files::default() }).unwrap_or_else(|e| panic!("{e:?}"));
