@@ -23,10 +23,10 @@ use crate::ring_passages::{Openings, PassageModel, RingPassages};
 #[serde(rename_all = "snake_case")]
 pub enum ChannelFriction {
     /// Laminar, whatever the Reynolds number.
-    #[default]
     Laminar,
     /// Laminar below a Reynolds number of about 2000 (of twice the height), with Blasius' turbulent friction factor above, and a
     /// smooth passage between.
+    #[default]
     Blended,
 }
 
@@ -149,8 +149,8 @@ impl Default for NarrowChannel {
                 dU_i/dt = sum m' c_p T - Nu lambda V/s^2 (T_i - T_w) - p_i dV_i/dt;  gap: m' = C_d A p_u / sqrt(R T_u) psi(p_d/p_u);  \
                 channel: m' = 2 pi R H^3 (p_a^2 - p_b^2) / (24 mu R_g T w), limited by the orifice of area 2 pi R H;  \
                 mouth = automatic: m' = (c^-n + o^-n)^(-1/n) of channel c and orifice o;  \
-                blended friction: times [1 + (Re/2039)^3]^(-1/7), Re = m'/(pi R mu)",
-    validity = "Isothermal, inertia-free flow in the channels, laminar unless `friction` says otherwise, which holds up to heights of about 10 to \
+                friction = blended: times [1 + (Re/2039)^3]^(-1/7), Re = m'/(pi R mu)",
+    validity = "Isothermal, inertia-free flow in the channels, which holds up to heights of about 10 to \
                20 um; wider passages pass over to the orifice law. Flanks parallel, dry.",
     references = ["tian1996", "kuo1989", "sutherland1893", "heywood1988", "furuhama1961", "blasius1913", "smith1999", "jobson1955"],
     example = "gas_viscosity = \"sutherland\"\n",

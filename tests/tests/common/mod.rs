@@ -9,6 +9,20 @@ use gudgeon_core::result::RunResult;
 use gudgeon_models as _;
 use gudgeon_scene::{Checked, RunError, check, run};
 
+/// The pack of the diesel before its flanks had oil of finite volume: some limits were measured on it, entry by entry.
+pub const ORIFICES: [&str; 10] = [
+    "models.gas_flow.model=orifice_network",
+    "models.flank.model=squeeze_film",
+    "rings.0.cold_gap=0.55 mm",
+    "rings.1.cold_gap=0.55 mm",
+    "rings.0.groove.leak_upper=0.02 um",
+    "rings.0.groove.leak_lower=0.02 um",
+    "rings.1.groove.leak_upper=0.02 um",
+    "rings.1.groove.leak_lower=0.02 um",
+    "rings.2.groove.leak_upper=0.02 um",
+    "rings.2.groove.leak_lower=0.02 um",
+];
+
 /// The file of a case that ships with Gudgeon.
 pub fn case_file(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases").join(format!("{name}.toml"))

@@ -186,8 +186,9 @@ fn low_speeds_are_solved_with_the_rings_on_the_liner() {
     for (r, v) in run_all(&asked).into_iter().zip(speeds) {
         let r = r.unwrap_or_else(|e| panic!("{v}: {e}"));
         let steps = r.solver.counters["steps"] / r.solver.counters["cycles"];
-        // 800 to 1300 when this was written.
-        assert!(steps < 2500, "{v}: {steps} steps a cycle");
+        // 2400 to 5300 when this was written, two thirds of them where the oil ring opens and shuts like a relief valve; 10 000 with a top ring off the
+        // liner, and the limit of 286 000 with a gap between flanks in which nothing resists.
+        assert!(steps < 7500, "{v}: {steps} steps a cycle");
         assert!(
             note(&r, "not_periodic").is_none() && note(&r, "off_the_liner.ring1").is_none(),
             "{v}: {:?}",

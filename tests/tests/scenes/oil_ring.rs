@@ -80,9 +80,9 @@ fn holes_lead_from_a_closed_groove_to_a_vented_one() {
         [holes(1, "0.01 mm"), holes(1, "0.5 mm"), holes(4, "1 mm"), holes(12, "3 mm"), holes(12, "10 mm")];
     let peaks: Vec<f64> = runs.iter().map(|r| groove_peak(r) / CRANKCASE - 1.0).collect();
     assert!(peaks.windows(2).all(|w| w[1] < w[0]), "{peaks:?}");
-    // The pressure drop of the drain: 12 holes of 3 mm pass what the gap and the opened flank bring at less than a hundredth of a bar, of 10 mm at next
-    // to nothing.
-    assert!(peaks[0] > 0.2 && peaks[3] < 0.01 && peaks[4] < 1e-3, "{peaks:?}");
+    // The pressure drop of the drain where the ring opens to a land at 4 bar: choked, 19 mm² of flank bring what 12 holes of 3 mm, 85 mm², pass at less
+    // than (0.58 · 4 · 19/(0.86 · 85))²/2 = 0.18 bar; 12 holes of 10 mm at a hundredth of that.
+    assert!(peaks[0] > 0.2 && peaks[3] < 0.18 && peaks[4] < 2e-3, "{peaks:?}");
     let same = |a: &RunResult, b: &RunResult| (value(a, "blow_by") / value(b, "blow_by") - 1.0).abs();
     // The limits: 8e-11 m² beside 1e-7 m² of the gap, 1e-3 of its flow; 9e-4 m², where the groove has crankcase pressure to 1e-3.
     assert!(same(&runs[0], &closed) < 2e-3, "{} {}", value(&runs[0], "blow_by"), value(&closed, "blow_by"));
@@ -169,8 +169,8 @@ fn without_gas_two_rails_are_one_rail_counted_twice() {
 #[test]
 fn rails_lift_and_seal_each_on_its_own() {
     let r = diesel(&[&THREE_PIECE]);
-    // Pressed outwards, both are on their flanks most of the time; the upper one opens under the pressure of the third land.
-    assert!(value(&r, "ring3.lifted_share") < 0.1 && value(&r, "ring4.lifted_share") < 0.01);
+    // Pressed outwards, both are on their flanks most of the time; the upper one opens again and again under the pressure of the third land.
+    assert!(value(&r, "ring3.lifted_share") < 0.35 && value(&r, "ring4.lifted_share") < 0.01);
     assert!(r.results["ring3.lifted_share"].what.contains("ring 3 (upper rail) is off its upper flank"));
     assert!(r.results["ring4.h_min"].what.contains("ring 4 (lower rail)"));
     assert!((value(&r, "land4.p_max") * 1e5 / CRANKCASE - 1.0).abs() < 1e-12, "open to the crankcase");

@@ -46,6 +46,14 @@ fn mean(r: &RunResult, f: impl Fn(usize) -> f64) -> f64 {
     (1..t.len()).map(|k| 0.5 * (f(k) + f(k - 1)) * (t[k] - t[k - 1])).sum::<f64>() / 720.0
 }
 
+/// Top of the parabola through the highest row and its neighbours.
+fn vertex(rows: &[f64]) -> f64 {
+    let inner = 1..rows.len() - 1;
+    let k = inner.max_by(|&a, &b| rows[a].total_cmp(&rows[b])).expect("rows");
+    let (slope, bend) = (0.5 * (rows[k + 1] - rows[k - 1]), 2.0 * rows[k] - rows[k + 1] - rows[k - 1]);
+    rows[k] + 0.5 * slope * slope / bend
+}
+
 /// What is measured on steps is what dense rows show.
 #[test]
 fn measures_agree_with_dense_rows() {
@@ -54,24 +62,28 @@ fn measures_agree_with_dense_rows() {
         let v = column(&r, name);
         v.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(*v), b.max(*v)))
     };
-    // Between rows 0.05 deg apart an extreme of curvature 1/(0.3 rad)² rises by (0.0009/0.6)²/2 = 1e-6 of it; films near a
-    // reversal are sharper.
+    // Between rows 0.05 deg apart an extreme of curvature 1/(0.3 rad)² rises by (0.0009/0.6)²/2 = 1e-6 of it; thinnest films near a reversal are
+    // sharper. Where gas lets go of a ring its film and the pressure of a land turn within half a degree: there the top is that of the parabola
+    // through three rows, 2e-5 above the highest.
     let near =
         |a: f64, b: f64, within: f64, what: &str| assert!((a / b - 1.0).abs() < within, "{what}: {a} {b}");
     near(value(&r, "cylinder.p_max"), span("cylinder.p").1 / 1e5, 1e-5, "cylinder");
     for k in 2..=3 {
-        near(value(&r, &format!("land{k}.p_max")), span(&format!("land{k}.p")).1 / 1e5, 1e-5, "land");
+        let p = column(&r, &format!("land{k}.p"));
+        near(value(&r, &format!("land{k}.p_max")), vertex(p) / 1e5, 1e-5, "land");
     }
     for i in 1..=3 {
-        let (low, high) = span(&format!("ring{i}.h_min"));
+        let (low, _) = span(&format!("ring{i}.h_min"));
         near(value(&r, &format!("ring{i}.h_min")), low * 1e6, 1e-4, "thinnest");
-        near(value(&r, &format!("ring{i}.h_max")), high * 1e6, 1e-5, "thickest");
         let h = column(&r, &format!("ring{i}.h_min"));
+        near(value(&r, &format!("ring{i}.h_max")), vertex(h) * 1e6, 1e-5, "thickest");
         near(value(&r, &format!("ring{i}.h_mean")), mean(&r, |k| h[k]) * 1e6, 1e-5, "mean");
         let e = column(&r, &format!("ring{i}.position"));
         let off = mean(&r, |k| f64::from(u8::from(e[k] > 0.1)));
-        // Each of up to six crossings is a row wide at most: 0.05 of 720 deg.
-        near(value(&r, &format!("ring{i}.lifted_share")), off, 6.0 * 0.05 / 720.0 / off, "lifted");
+        // Each crossing, a row wide at most, is 0.05 of 720 deg. A ring leaves its lower flank at most once for each arrival on one.
+        let crossings = 2.0 * value(&r, &format!("ring{i}.seat_changes"));
+        let told = value(&r, &format!("ring{i}.lifted_share"));
+        assert!((told - off).abs() <= crossings * 0.05 / 720.0, "ring {i} lifted: {told} {off}");
     }
     let entered = column(&r, "ring1.cumulative_mass");
     let back: f64 = entered.windows(2).map(|w| (w[0] - w[1]).max(0.0)).sum();
@@ -110,8 +122,8 @@ fn a_narrow_pulse_is_found() {
     assert_eq!(value(&r, "cylinder.p_max"), 100.0);
     let fine = run_case(CASE, &[&trace, "solver.tolerance=1e-6", "solver.periodicity=1e-6"]);
     let (a, b) = (value(&r, "land2.p_max"), value(&fine, "land2.p_max"));
-    // What the pulse leaves on the land below, at the default tolerance of 1e-4.
-    assert!((a / b - 1.0).abs() < 1e-3 && b > 1.03, "{a} {b}");
+    // What the pulse leaves on the land below, at the default tolerance of 1e-4; 0.016 bar above the crankcase.
+    assert!((a / b - 1.0).abs() < 1e-3 && b > 1.025, "{a} {b}");
 }
 
 /// Adds noise with a standard deviation of 0.03 bar: sums of four uniform numbers.
@@ -153,7 +165,8 @@ fn noise_on_the_trace_of_a_pin_is_told() {
 
 #[test]
 fn noise_on_a_trace_is_taken_off_and_told() {
-    let own = run_case(CASE, &["outputs.series_step=0.5 deg"]);
+    let run = |set: &[&str]| run_case(CASE, &[&ORIFICES[..], set].concat());
+    let own = run(&["outputs.series_step=0.5 deg"]);
     let clean: Vec<(f64, f64)> = own
         .series
         .axis
@@ -170,12 +183,12 @@ fn noise_on_a_trace_is_taken_off_and_told() {
     // with `s` filtered as the trace is 6.5e-4 and 3.8e-4. Eight seeds each had 5.7e-4 and 4.0e-4.
     for (speed, scatter) in [("2000 rpm", 6.5e-4), ("4000 rpm", 3.8e-4), ("4001 rpm", 3.8e-4)] {
         let speed = format!("engine.speed={speed}");
-        let smooth = run_case(CASE, &[&table(&clean, ""), &speed]);
+        let smooth = run(&[&table(&clean, ""), &speed]);
         let of_the_trace = |r: &RunResult| -> Vec<Note> {
             r.solver.notes.iter().filter(|n| n.topic.starts_with("cylinder_pressure")).cloned().collect()
         };
         assert!(of_the_trace(&smooth).is_empty(), "{:?}", smooth.solver.notes);
-        let r = run_case(CASE, &[&table(&noisy, ""), &speed]);
+        let r = run(&[&table(&noisy, ""), &speed]);
         let told = of_the_trace(&r);
         let [note] = &told[..] else { panic!("{:?}", r.solver.notes) };
         assert_eq!((note.topic.as_str(), note.level), ("cylinder_pressure.smoothed", NoteLevel::Caution));
@@ -183,7 +196,7 @@ fn noise_on_a_trace_is_taken_off_and_told() {
         // The same filter on the trace without noise: what it bends is no noise.
         let cutoff = note.amounts["cutoff"].value;
         let more = format!(", smoothing = \"on\", cutoff = \"{cutoff} deg\"");
-        let bent = run_case(CASE, &[&table(&clean, &more), &speed]);
+        let bent = run(&[&table(&clean, &more), &speed]);
         let [a, b, c] = [&r, &bent, &smooth].map(|r| value(r, "blow_by"));
         assert!((a / b - 1.0).abs() < 3.0 * scatter, "{speed}: {a} {b}");
         // It rounds the corner where the exhaust opens, 485 deg, by 0.16 bar over 2.5 deg; four degrees before ring 1 leaves its flank

@@ -1,5 +1,5 @@
-//! The signs that a ring pack of an engine must have, on the diesel with oil of a finite volume on its flanks, channels, no tuned leak and a wide
-//! second gap: what each input does to blow-by and friction. The table with numbers and sources is docs/trends.md.
+//! The signs that a ring pack of an engine must have, on the diesel as it ships: what each input does to blow-by and friction. The table with numbers
+//! and sources is docs/trends.md.
 
 use crate::common::*;
 
@@ -7,28 +7,13 @@ fn viscosity(mpas: f64) -> String {
     format!("models.oil={{model=\"constant\",viscosity=\"{mpas} mPa s\"}}")
 }
 
-/// The diesel of the table.
-const DECK: [&str; 12] = [
-    "models.flank.model=wetted_strip",
-    "models.gas_flow.model=narrow_channel",
-    "rings.0.cold_gap=0.45 mm",
-    "rings.1.cold_gap=1.0 mm",
-    "rings.2.groove.oil_fill=0.9",
-    "rings.0.groove.leak_upper=0 um",
-    "rings.0.groove.leak_lower=0 um",
-    "rings.1.groove.leak_upper=0 um",
-    "rings.1.groove.leak_lower=0 um",
-    "rings.2.groove.leak_upper=0 um",
-    "rings.2.groove.leak_lower=0 um",
-    "outputs.series_step=5 deg",
-];
-
-/// The result `name` of that diesel for each of the settings.
+/// The result `name` of the diesel for each of the settings.
 fn diesel(settings: &[Vec<String>], name: &str) -> Vec<f64> {
     settings
         .iter()
         .map(|set| {
-            let set: Vec<&str> = DECK.into_iter().chain(set.iter().map(String::as_str)).collect();
+            let set: Vec<&str> =
+                ["outputs.series_step=5 deg"].into_iter().chain(set.iter().map(String::as_str)).collect();
             value(&run_case("turbo-diesel-120", &set), name)
         })
         .collect()
@@ -42,21 +27,26 @@ fn largest_rise(values: &[f64]) -> f64 {
 
 #[test]
 fn thicker_oil_does_not_raise_blow_by() {
-    for gas in ["narrow_channel", "orifice_network"] {
+    for (gas, room) in
+        [("narrow_channel", 1.01), ("namazian_heywood", 1.02), ("labyrinth", 1.03), ("gap_orifice", 1.03)]
+    {
         let at = |mu: f64| vec![viscosity(mu), format!("models.gas_flow.model={gas}")];
-        let blow_by = diesel(&[1.5, 5.0, 15.0, 50.0].map(at), "blow_by");
-        // The issue is the sign: the oil that holds a ring off its flank keeps the gas out there too. A hundredth or two is what the moments
-        // of landing leave; `squeeze_film`, which does not keep it out, gives factors of 1.2 with channels and 3.4 with orifices.
-        assert!(largest_rise(&blow_by) < 1.02, "{gas}: {blow_by:?}");
+        let blow_by = diesel(&[1.5, 5.0, 15.0].map(at), "blow_by");
+        // The issue is the sign: the oil that holds a ring off its flank keeps the gas out there too. What is left is when rings land: 0.4 % with
+        // channels, 3 % with orifices; `squeeze_film`, which does not keep gas out, gives factors of 1.1 with channels and 2.6 with orifices.
+        assert!(largest_rise(&blow_by) < room, "{gas}: {blow_by:?}");
     }
+    // At 50 mPa s the friction of its flooded face lifts the second ring: a tenth more gets past.
+    let thick = diesel(&[vec![viscosity(15.0)], vec![viscosity(50.0)]], "blow_by");
+    assert!(thick[1] / thick[0] < 1.12, "{thick:?}");
 }
 
 #[test]
 fn more_oil_on_the_flanks_does_not_raise_blow_by() {
     let at = |fill: f64| (0..3).map(|i| format!("rings.{i}.groove.oil_fill={fill}")).collect::<Vec<_>>();
-    let blow_by = diesel(&[0.1, 0.3, 1.0].map(at), "blow_by");
-    // It falls by two in a hundred from the first to the last; half of that is the room for a rise.
-    assert!(largest_rise(&blow_by) < 1.01, "{blow_by:?}");
+    let blow_by = diesel(&[0.0, 0.1, 0.3, 1.0].map(at), "blow_by");
+    // It hardly moves: 1e-3 is what two runs to a tolerance of 1e-4 may differ by where rings land.
+    assert!(largest_rise(&blow_by) < 1.002, "{blow_by:?}");
 }
 
 #[test]
@@ -77,6 +67,9 @@ fn each_input_moves_what_it_should() {
     };
     let rises = |v: &[f64]| v.windows(2).all(|w| w[1] > w[0]);
     let falls = |v: &[f64]| v.windows(2).all(|w| w[1] < w[0]);
+    let speed = one("engine.speed", &["1000 rpm", "1400 rpm", "2000 rpm", "2600 rpm"], "fmep");
+    // Less than in proportion (SAE 790855): 1.3 for 2.6.
+    assert!(rises(&speed) && speed[3] / speed[0] < 2.0, "speed: {speed:?}");
     let tension = one("rings.2.tangential_force", &["30 N", "90 N"], "ring3.friction_power");
     assert!(rises(&tension), "oil-ring tension: {tension:?}");
     let gap = one("rings.0.cold_gap", &["0.35 mm", "0.55 mm"], "blow_by");

@@ -178,6 +178,7 @@ fn narrow_channels_are_channels() {
         (r.slope_upper, r.slope_lower, r.clearance_inner) = (0.0, 0.0, 4e-6);
     }
     let spec = NarrowChannel {
+        friction: ChannelFriction::Laminar,
         gas_viscosity: GasViscosity::Constant,
         viscosity: quantity(2.4e-5),
         ..NarrowChannel::default()
@@ -307,10 +308,11 @@ fn sealed_rings_leak_at_gap_and_face() {
         (r.gap_area, r.chamfer, r.leak_face) = (Some(2e-7), Chamfer::default(), 3e-6);
     }
     let (p, t) = ((20e5, 1e5), (523.15, 503.15));
+    let laminar = NarrowChannel { friction: ChannelFriction::Laminar, ..NarrowChannel::default() };
     let specs: [(Box<dyn GasFlowSpec>, f64); 3] = [
         (Box::new(GapOrifice::default()), orifice(2e-7, p, t)),
         (Box::new(OrificeNetwork::default()), orifice(2e-7 + TAU * 0.06 * 3e-6, p, t)),
-        (Box::new(NarrowChannel::default()), {
+        (Box::new(laminar), {
             // The channel along the face of 3 mm, at the mean temperature, limited by its mouth: losses add as c and o².
             let mean = 513.15;
             let mu = sutherland_viscosity(mean);

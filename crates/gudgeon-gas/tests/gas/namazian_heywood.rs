@@ -5,7 +5,9 @@ use std::f64::consts::TAU;
 use gudgeon_core::geometry::{BackVolume, Chamfer};
 use gudgeon_core::kinds::{GasFlowSpec, GasIn, GasOut};
 use gudgeon_core::quantity::quantity;
-use gudgeon_gas::{GasState, GasViscosity, NamazianHeywood, NarrowChannel, Orifice, burnt_gas_viscosity};
+use gudgeon_gas::{
+    ChannelFriction, GasState, GasViscosity, NamazianHeywood, NarrowChannel, Orifice, burnt_gas_viscosity,
+};
 
 use crate::packs::{build, pack, place};
 use crate::support::R;
@@ -63,8 +65,12 @@ fn narrow_channel_departs_with_the_height() {
     let viscosity = quantity(2.4e-5);
     let classical =
         NamazianHeywood { gas_viscosity: GasViscosity::Constant, viscosity, ..NamazianHeywood::default() };
-    let limited =
-        NarrowChannel { gas_viscosity: GasViscosity::Constant, viscosity, ..NarrowChannel::default() };
+    let limited = NarrowChannel {
+        friction: ChannelFriction::Laminar,
+        gas_viscosity: GasViscosity::Constant,
+        viscosity,
+        ..NarrowChannel::default()
+    };
     let mut last = 1.0;
     for clearance in [1e-7, 1e-6, 1e-5, 1e-4, 1e-3] {
         let share = flows(&limited, clearance, 0.5, 0.0).1 / flows(&classical, clearance, 0.5, 0.0).1;

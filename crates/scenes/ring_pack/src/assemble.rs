@@ -28,7 +28,7 @@ use super::ring::Ring;
 use super::rubbing::FaceFriction;
 use super::{end_gap, geometry, oil_faces, rails};
 
-/// A ring without axial clearance, and without oil that could move on its flanks.
+/// A ring without axial clearance, and the flanks of a ring that no oil there moves.
 struct Clamped;
 
 impl Flank for Clamped {
@@ -76,8 +76,13 @@ pub fn assemble(case: &RingPackCase, files: &Files) -> Result<Pack, Vec<BuildErr
 fn assemble_bodies(case: &RingPackCase, files: &Files) -> Result<Pack, Vec<BuildError>> {
     let drive = Drive::new(case, files)?;
     let oils = Oils::new(case, &drive)?;
-    let flanks = flanks(case, &drive, &*oils.oil)?;
+    let mut flanks = flanks(case, &drive, &*oils.oil)?;
     let motions = motions(case, &drive, &flanks)?;
+    for (flank, motion) in flanks.iter_mut().zip(&motions) {
+        if !motion.uses_damping() {
+            *flank = Box::new(Clamped);
+        }
+    }
     let m = &case.models;
     let moving = motions.iter().filter(|m| m.moves());
     let facts = Facts {

@@ -407,10 +407,10 @@ fn cast_iron_expansion() -> PosExpansion {
 
 gudgeon_core::default_model! {
     default_kinematics: dyn KinematicsSpec = "exact_slider_crank";
-    default_gas_flow: dyn GasFlowSpec = "orifice_network";
+    default_gas_flow: dyn GasFlowSpec = "narrow_channel";
     default_ring_motion: dyn RingMotionSpec = "newton_groove";
     default_radial_motion: dyn RadialMotionSpec = "film_balance";
-    default_flank: dyn FlankSpec = "squeeze_film";
+    default_flank: dyn FlankSpec = "wetted_strip";
     default_flank_friction: dyn FlankFrictionSpec = "off";
     default_oil_transport: dyn OilTransportSpec = "off";
     default_hydrodynamics: dyn HydrodynamicsSpec = "closed_form_face";
