@@ -701,6 +701,9 @@ impl<'a> Cycle<'a> {
             o.clear_ledger();
         }
         self.integrate(&mut y[..dim], tolerance, Some(sampler)).map_err(stopped)?;
+        if let Some(o) = &mut self.pack.oil_pack {
+            o.settle();
+        }
         let oil_mass = self.pack.oil_pack.as_ref().map(|o| {
             let l = o.ledger();
             let stored = self.pack.oil_total(y) - oil_before;
