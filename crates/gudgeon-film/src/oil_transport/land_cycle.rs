@@ -57,7 +57,7 @@ impl LandCycle {
         self.log.clear();
         self.came.fill(0.0);
         self.gained = 0.0;
-        self.lands.count_from(&vec![OilPassed::default(); self.lands.len()]);
+        self.lands.count_from(&vec![OilPassed::default(); self.lands.count()]);
     }
 
     /// Brings a volume to land `k`; below the lowest ring it is in the crankcase.
@@ -90,7 +90,7 @@ impl LandCycle {
 
     /// The cycle that was noted from the volumes `start`; what went is added to `ledger`.
     fn run(&mut self, start: &[f64], ledger: &mut OilLedger) {
-        let n = self.lands.len();
+        let n = self.lands.count();
         self.lands.set_volumes(start);
         for step in self.log.chunks_exact(3 * (n + 1)) {
             let (came, drives) = step[2..].split_at(n);
@@ -110,7 +110,7 @@ impl LandCycle {
 
     /// Finds the volumes that repeat, and adds what goes in their cycle to `ledger`.
     pub fn settle(&mut self, ledger: &mut OilLedger) {
-        let n = self.lands.len();
+        let n = self.lands.count();
         let counted: Vec<OilPassed> = self.lands.passed().collect();
         let came: f64 = self.log.chunks_exact(3 * (n + 1)).flat_map(|step| &step[2..2 + n]).sum();
         self.lands.cover(FIRST_FILM);

@@ -133,7 +133,7 @@ impl Lands {
     }
 
     /// Number of lands.
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.lands.len()
     }
 
