@@ -6,8 +6,8 @@ use gudgeon_core::geometry::FaceProfile;
 use gudgeon_core::kinds::{
     BoundaryFrictionSpec, CompressibilitySpec, ContactSpec, FaceCtx, FaceIn, Film1dCtx, Film1dIn, Film1dSpec,
     Film2dCtx, Film2dGrid, Film2dIn, Film2dSpec, FilmEnd, FilmHeat, FilmTemperatureCtx, FilmTemperatureSpec,
-    FilmTime, HydrodynamicsSpec, OilFaceIn, OilFacePlace, OilSpec, OilTransportCtx, OilTransportSpec,
-    PiezoviscositySpec, RoughFlow, RoughShear, RoughnessSpec, Rubbing, ShearThinningSpec,
+    FilmTime, HydrodynamicsSpec, OilFaceIn, OilFacePlace, OilLand, OilSpec, OilTransportCtx,
+    OilTransportSpec, PiezoviscositySpec, RoughFlow, RoughShear, RoughnessSpec, Rubbing, ShearThinningSpec,
 };
 use gudgeon_core::{EvalError, ModelInfo};
 use gudgeon_film::film_1d::LineProfile;
@@ -199,7 +199,8 @@ pub fn oil_transport(m: &ModelInfo) -> Result<Alone, String> {
             let profile = FaceProfile::Parabola { length: 1.2e-3, curvature: 15.0, apex: 0.5e-3 };
             let place =
                 OilFacePlace { ring: 0, land: 0, profile, offset: 8e-3, clearance: [Some(0.2e-3); 2] };
-            s.build(&OilTransportCtx { faces: &[place], pin: (0.0, 0.1), omega: 209.4 })
+            let land = OilLand { height: 8e-3, gap: 1e-3, drained: false };
+            s.build(&OilTransportCtx { faces: &[place], lands: &[land], pin: (0.0, 0.1), omega: 209.4 })
         },
         |built| {
             let Some(oil) = built else { return Ok::<(), EvalError>(()) };

@@ -131,6 +131,8 @@ pub mod parts {
     pub use crate::hydrodynamics::closed_form_face::table::Table;
     pub use crate::oil_transport::carried::Carried;
     pub use crate::oil_transport::face::{MIN_REACH, SIDES, WAVE_SLOPE};
+    pub use crate::oil_transport::land_cycle::LandCycle;
+    pub use crate::oil_transport::lands::Lands;
     pub use crate::oil_transport::law::Law;
     pub use crate::piezoviscosity::reduced_pressure::ReducedPressure;
     pub use crate::piezoviscosity::tame_exp;

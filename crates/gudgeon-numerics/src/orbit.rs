@@ -21,7 +21,31 @@ pub trait CycleMap {
     fn map(&mut self, y0: &[f64], y1: &mut [f64], accuracy: f64) -> Result<f64, EvalError>;
     /// Magnitudes that make the states comparable.
     fn scale(&self, y: &[f64], s: &mut [f64]);
+    /// How strongly bent the map is.
+    fn bend(&self) -> Bend {
+        Bend::SMOOTH
+    }
 }
+
+/// What the acceleration takes from a map that is strongly bent: secants of far iterates, less what newer ones explain of them, say more of its curvature
+/// than of its slopes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bend {
+    /// Least part of a secant that is new beside the newer ones; one with less is left out.
+    pub fresh: f64,
+    /// Longest step over the residual.
+    pub stride: f64,
+    /// Accuracy of a cycle over the residual of the one before: far from the orbit cheaper cycles do.
+    pub rough: f64,
+}
+
+impl Bend {
+    /// A map that is nearly linear between the iterates.
+    pub const SMOOTH: Self = Self { fresh: 1e-9, stride: f64::INFINITY, rough: 0.0 };
+}
+
+/// The roughest cycle.
+const ROUGHEST: f64 = 1e-2;
 
 /// What is wanted of an orbit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -230,29 +254,34 @@ impl Search {
         times: usize,
     ) -> Result<(), EvalError> {
         let mut g = vec![0.0; y.len()];
-        let mut state = Anderson::new(y.len());
+        let bend = map.bend();
+        let mut state = Anderson::new(y.len(), bend);
         self.report.converged = false;
         self.noisy = false;
         // Far from the orbit a rough map does: the first cycle only has to leave the arbitrary start.
         let rough = if self.report.cycles == 0 { options.accuracy.max(1e-3) } else { options.accuracy };
         let limit = if times == 1 { options.max_cycles.min(patience(options)) } else { options.max_cycles };
+        let mut accuracy = if times == 1 { rough } else { options.accuracy };
+        let mut before = accuracy;
         for k in 0.. {
             if self.report.cycles + times > limit {
                 break;
             }
-            let accuracy = |cycle: usize| if cycle == 0 && times == 1 { rough } else { options.accuracy };
-            self.apply(map, y, &mut g, accuracy(k), times)?;
+            self.apply(map, y, &mut g, accuracy, times)?;
             let (at, r) = state.scaled(map, y, &g);
             let residual = r.amax();
             self.report.residual = residual;
             self.report.history.push(residual);
-            let ratio = state.learn(&at, &r, accuracy(k.saturating_sub(1)), options);
-            let (correction, rest) = explain(&state.secants[state.trusted..], &r);
+            let ratio = state.learn(&at, &r, before.max(accuracy), options);
+            let (correction, rest) = explain(&state.secants[state.trusted..], &r, bend.fresh);
             let estimate = self.judge(&mut state, residual, correction.amax(), rest.amax(), ratio, options);
             // A slow mode can hide behind faster ones for a cycle: what passes must pass twice, and go on falling as if it would
             // end below the tolerance, unless nothing but the noise of the map is left, which a further cycle would not lessen.
+            let accurate = k == 0 || accuracy <= options.accuracy;
             let settled = k > 0 && residual <= 3.0 * options.accuracy;
-            if settled && estimate <= options.tolerance || sinks(estimate, state.passed, options) {
+            if accurate
+                && (settled && estimate <= options.tolerance || sinks(estimate, state.passed, options))
+            {
                 self.report.converged = true;
                 break;
             }
@@ -263,8 +292,11 @@ impl Search {
                 break;
             }
             state.passed = if k > 0 && estimate <= options.tolerance { estimate } else { 0.0 };
-            // Not further than the states are large.
-            let damping = (1.0 / correction.amax().max(1e-300)).min(1.0);
+            before = accuracy;
+            accuracy = (bend.rough * residual).min(ROUGHEST).max(options.accuracy);
+            // Not further than the states are large, nor than the map can have understated.
+            let longest = (bend.stride * residual).min(1.0);
+            let damping = (longest / correction.amax().max(1e-300)).min(1.0);
             let next = &at + &r - correction * damping;
             for ((y, n), s) in y.iter_mut().zip(next.iter()).zip(&state.s) {
                 *y = n * s;
@@ -285,7 +317,7 @@ impl Search {
         ratio: f64,
         options: &OrbitOptions,
     ) -> f64 {
-        let (largest, gain, suspect) = spectrum(&state.secants);
+        let (largest, gain, suspect) = spectrum(&state.secants, state.bend.fresh);
         self.report.multiplier = largest;
         self.suspect = suspect;
         // What was seen of slow modes before the map became more accurate still holds near the orbit.
@@ -433,6 +465,7 @@ struct Secant {
 struct Anderson {
     /// Scales of the states in the last cycle.
     s: Vec<f64>,
+    bend: Bend,
     secants: Vec<Secant>,
     /// The first secant that is stepped with.
     trusted: usize,
@@ -453,9 +486,10 @@ struct Anderson {
 }
 
 impl Anderson {
-    fn new(n: usize) -> Self {
+    fn new(n: usize, bend: Bend) -> Self {
         Self {
             s: vec![1.0; n],
+            bend,
             secants: Vec::new(),
             trusted: 0,
             idle: 0,
@@ -506,6 +540,9 @@ impl Anderson {
         // In the noise the older ones know more.
         if self.idle == 0 && secant.dy.amax() > 10.0 * noise {
             self.secants.push(secant);
+        } else if self.idle == 0 && self.bend.stride.is_finite() {
+            // Bent ones that know of nowhere to go are wrong while there is a residual.
+            self.trusted = self.secants.len();
         }
         if self.secants.len() > DEPTH {
             self.secants.remove(0);
@@ -532,7 +569,7 @@ fn decay(changes: &[f64], noise: f64) -> (f64, f64) {
 
 /// The part of `r` that the secants explain, as the change of the end state it stands for, and the rest. Newer secants come first;
 /// one that says nothing new beyond its noise is left out.
-fn explain(secants: &[Secant], r: &DVector<f64>) -> (DVector<f64>, DVector<f64>) {
+fn explain(secants: &[Secant], r: &DVector<f64>, fresh: f64) -> (DVector<f64>, DVector<f64>) {
     let mut rest = r.clone();
     let mut correction = DVector::zeros(r.len());
     // Orthonormal directions of residuals, with the end states they belong to.
@@ -548,7 +585,7 @@ fn explain(secants: &[Secant], r: &DVector<f64>) -> (DVector<f64>, DVector<f64>)
             }
         }
         let size = q.norm();
-        if size.is_finite() && size > secant.noise.max(1e-9 * secant.dr.norm()) {
+        if size.is_finite() && size > secant.noise.max(fresh * secant.dr.norm()) {
             (q, g) = (q / size, g / size);
             let c = q.dot(&rest);
             rest -= &q * c;
@@ -561,7 +598,7 @@ fn explain(secants: &[Secant], r: &DVector<f64>) -> (DVector<f64>, DVector<f64>)
 
 /// Largest multiplier (its magnitude) of the map on the span of the iterates' differences, and the largest factor `1/|1 - λ|` by
 /// which a residual there understates an error; and whether an unstable fixed point must be thought possible. Differences that are not well apart, or near the noise, are left out.
-fn spectrum(secants: &[Secant]) -> (f64, f64, bool) {
+fn spectrum(secants: &[Secant], fresh: f64) -> (f64, f64, bool) {
     let mut basis: Vec<(DVector<f64>, DVector<f64>)> = Vec::new();
     for secant in secants.iter().rev() {
         let (mut q, mut g) = (secant.dy.clone(), &secant.dy + &secant.dr);
@@ -573,7 +610,7 @@ fn spectrum(secants: &[Secant]) -> (f64, f64, bool) {
             }
         }
         let size = q.norm();
-        if size.is_finite() && size > (30.0 * secant.noise).max(0.01 * secant.dy.norm()) {
+        if size.is_finite() && size > (30.0 * secant.noise).max(fresh.max(0.01) * secant.dy.norm()) {
             basis.push((q / size, g / size));
         }
     }

@@ -21,11 +21,24 @@ pub struct OilFacePlace {
     pub clearance: [Option<f64>; 2],
 }
 
+/// The land above a ring, and the ways past that ring.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OilLand {
+    /// Axial height \[m\].
+    pub height: f64,
+    /// Share of the circumference that the end gap of the ring leaves open.
+    pub gap: f64,
+    /// Whether oil that comes down the land drains through the groove of the ring.
+    pub drained: bool,
+}
+
 /// What an [`OilTransportSpec`] is built for.
 #[derive(Debug, Clone, Copy)]
 pub struct OilTransportCtx<'a> {
     /// The faces, from the top down.
     pub faces: &'a [OilFacePlace],
+    /// The lands, from the crown down, one a ring.
+    pub lands: &'a [OilLand],
     /// Lowest and highest place of the pin \[m\].
     pub pin: (f64, f64),
     /// Crank speed \[rad/s\].
@@ -85,6 +98,21 @@ pub struct OilStep<'a> {
     pub pin: f64,
     /// Film thicknesses of the rings at its end \[m\].
     pub films: &'a [f64],
+    /// What moves the oil on the lands, as of its end.
+    pub drive: OilDrive<'a>,
+}
+
+/// What moves the oil on the lands.
+#[derive(Debug, Clone, Copy)]
+pub struct OilDrive<'a> {
+    /// Length of the step \[s\].
+    pub dt: f64,
+    /// Acceleration of the piston, towards the head positive \[m/s²\].
+    pub acceleration: f64,
+    /// Viscosity at each ring \[Pa s\].
+    pub viscosity: &'a [f64],
+    /// Pressures of the lands and of the crankcase \[Pa\].
+    pub pressures: &'a [f64],
 }
 
 /// What left and what came, per circumference \[m²\].
@@ -98,6 +126,17 @@ pub struct OilLedger {
     pub thrown: f64,
     /// Taken up by all faces.
     pub taken: f64,
+}
+
+/// What a ring scraped and what passed its end gap, per circumference \[m²\].
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct OilPassed {
+    /// Upwards through the end gap.
+    pub up: f64,
+    /// Downwards through the end gap.
+    pub down: f64,
+    /// Scraped off the liner for want of room before the faces.
+    pub scraped: f64,
 }
 
 /// A ring's oil at an instant.
@@ -161,6 +200,18 @@ pub trait OilTransport: Stateful + Debug + Send {
 
     /// What came and went since the cycle began, or since the ledger was cleared.
     fn ledger(&self) -> OilLedger;
+
+    /// Brings to its periodic state what acts on nothing else, after a cycle that repeats; the ledger and the total are then those of that cycle.
+    fn settle(&mut self);
+
+    /// What ring `i` scraped and let pass since then.
+    fn passed(&self, i: usize) -> OilPassed;
+
+    /// Oil on the land above ring `i`, per circumference \[m²\].
+    fn on_land(&self, i: usize) -> f64;
+
+    /// Density of the oil \[kg/m³\].
+    fn density(&self) -> f64;
 
     /// Begins the ledger anew.
     fn clear_ledger(&mut self);

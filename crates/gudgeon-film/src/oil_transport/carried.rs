@@ -7,10 +7,14 @@
 //! is what the states of its face lost over a step, laid down over the way the edge went. Nothing is therefore ever gained or
 //! lost, whatever the tolerance.
 
-use gudgeon_core::kinds::{OilExtent, OilFaceIn, OilLedger, OilStep, OilTransport, OilTransportCtx, RingOil};
+use gudgeon_core::kinds::{
+    OilExtent, OilFaceIn, OilFacePlace, OilLand, OilLedger, OilPassed, OilStep, OilTransport,
+    OilTransportCtx, RingOil,
+};
 use gudgeon_core::states::{Signals, StateInfo, Stateful};
 
-use super::face::{Exit, MIN_REACH, OilFace, SIDES};
+use super::face::{MIN_REACH, OilFace, SIDES};
+use super::land_cycle::LandCycle;
 use super::law::Law;
 use super::liner::Liner;
 
@@ -37,6 +41,8 @@ pub struct Carried {
     states: Vec<StateInfo>,
     /// Film on the liner.
     pub liner: Liner,
+    /// Oil on the lands of the piston.
+    pub lands: LandCycle,
     ledger: OilLedger,
     /// Smallest distance between two faces \[m\].
     min_gap: f64,
@@ -58,8 +64,13 @@ impl Carried {
         }
         // A cell holds the edge of one face at most.
         let least = least.min(0.5 * min_gap.max(1e-6));
-        let faces: Vec<OilFace> =
-            ctx.faces.iter().enumerate().map(|(k, p)| OilFace::new(p, k == 0, law.wave)).collect();
+        let lands = LandCycle::new(ctx.lands, law.density);
+        let faces: Vec<OilFace> = (0..ctx.faces.len())
+            .map(|k| {
+                let (exit, gap) = ways(ctx.faces, k, ctx.lands);
+                OilFace::new(&ctx.faces[k], exit, gap, law.wave)
+            })
+            .collect();
         let (lowest, highest) = ctx.pin;
         let top = faces.first().map_or(0.0, |f| f.offset + f.length) + highest;
         let low = faces.last().map_or(0.0, |f| f.offset) + lowest;
@@ -68,6 +79,7 @@ impl Carried {
             places: faces.iter().map(|f| (f.ring, f.land)).collect(),
             states: states(&faces),
             faces,
+            lands,
             law,
             ledger: OilLedger::default(),
             min_gap,
@@ -104,13 +116,20 @@ impl Carried {
         let (unit, swept, from) = (self.unit(k), self.swept(k, pin), self.faces[k].edge);
         let f = &mut self.faces[k];
         let to = f.edges(pin);
+        // What lies before the end gap passes it. The next ring, whose gap stands elsewhere, scrapes it off; above ring 1 it stays on the liner.
+        let mut stays = 0.0;
         for side in 0..SIDES {
-            f.taken[side] += swept[side];
-            self.ledger.taken += swept[side];
+            let passes = f.gap[side] * swept[side];
+            f.taken[side] += swept[side] - passes;
+            self.ledger.taken += swept[side] - passes;
+            self.lands.pass(f.ring, side == 0, passes, &mut self.ledger);
+            if (f.ring, side) == (0, 0) {
+                stays = passes;
+            }
         }
         // What the face lost stays behind its trailing edge. Integration errors may make it less than nothing: that is owed,
         // for the volumes must not jump, which would spoil the time derivatives of the next step.
-        let lost = f.owed - ((y1[0] - y0[0]) + (y1[1] - y0[1])) * unit;
+        let lost = f.owed + stays - ((y1[0] - y0[0]) + (y1[1] - y0[1])) * unit;
         let trailing = usize::from(to[1] < from[1]);
         let way = (to[trailing] - from[trailing]).abs();
         // The wave before the leading edge, beyond what there is room for, goes; nothing else depends on it.
@@ -120,15 +139,25 @@ impl Carried {
         f.taken[leading] -= left;
         let laid = if way > 0.0 { lost.max(0.0) } else { 0.0 };
         f.owed = lost - laid;
-        match f.exit[leading] {
-            Exit::Crankcase => self.ledger.drained += left,
-            Exit::Chamber => self.ledger.thrown += left,
-        }
+        self.lands.scrape(f.ring, f.exit[leading], left, &mut self.ledger);
         f.edge = to;
         if way > 0.0 {
             self.liner.lay(from[trailing], to[trailing], laid / way, trailing);
         }
     }
+}
+
+/// Where oil goes that has no room before the edges of face `k`, and the share of the circumference that is open there. What a land of a twin-land ring
+/// has before its edge towards the other drains, and the end gap lets pass what no land of the ring has passed.
+fn ways(faces: &[OilFacePlace], k: usize, lands: &[OilLand]) -> ([usize; SIDES], [f64; SIDES]) {
+    let ring = faces[k].ring;
+    let inside = |other: Option<&OilFacePlace>| other.is_some_and(|f| f.ring == ring);
+    let (below, above) = (inside(faces.get(k + 1)), inside(k.checked_sub(1).map(|k| &faces[k])));
+    let (crankcase, gap) = (lands.len(), lands[ring].gap);
+    (
+        [if below { crankcase } else { ring + 1 }, if above { crankcase } else { ring }],
+        [if below { 0.0 } else { gap }, if above { 0.0 } else { gap }],
+    )
 }
 
 /// Two volumes a face.
@@ -184,7 +213,8 @@ impl OilTransport for Carried {
             let swept = self.swept(k, pin);
             let f = &mut self.faces[k];
             for side in 0..SIDES {
-                f.volume[side] = y[SIDES * k + side] * unit + f.taken[side] + swept[side];
+                let taken = f.taken[side] + (1.0 - f.gap[side]) * swept[side];
+                f.volume[side] = y[SIDES * k + side] * unit + taken;
             }
         }
     }
@@ -245,7 +275,7 @@ impl OilTransport for Carried {
         for (film, y) in self.liner.film.iter_mut().zip(field) {
             *film = (y * LINER_UNIT).max(0.0);
         }
-        self.ledger = OilLedger::default();
+        self.clear_ledger();
         for f in &mut self.faces {
             (f.taken, f.owed) = ([0.0; SIDES], 0.0);
             f.edge = f.edges(pin);
@@ -273,6 +303,7 @@ impl OilTransport for Carried {
             let h = step.films[self.faces[k].ring];
             self.book_face(k, &step.y0[own.clone()], &step.y1[own], step.pin, h);
         }
+        self.lands.step(&step.drive);
         self.supply();
     }
 
@@ -311,15 +342,32 @@ impl OilTransport for Carried {
             }
             sum += f.owed;
         }
-        sum
+        sum + self.lands.gained()
     }
 
     fn ledger(&self) -> OilLedger {
         self.ledger
     }
 
+    fn settle(&mut self) {
+        self.lands.settle(&mut self.ledger);
+    }
+
+    fn passed(&self, i: usize) -> OilPassed {
+        self.lands.lands().passed().nth(i).unwrap_or_default()
+    }
+
+    fn on_land(&self, i: usize) -> f64 {
+        self.lands.lands().volumes().nth(i).unwrap_or(0.0)
+    }
+
+    fn density(&self) -> f64 {
+        self.lands.lands().density
+    }
+
     fn clear_ledger(&mut self) {
         self.ledger = OilLedger::default();
+        self.lands.clear();
     }
 
     fn liner(&self) -> (Vec<f64>, Vec<f64>) {

@@ -38,8 +38,10 @@ pub struct OilFace {
     pub offset: f64,
     /// Volume for which there is room before each edge \[m²\].
     pub room: [f64; SIDES],
-    /// Where oil goes that has no room.
-    pub exit: [Exit; SIDES],
+    /// Where oil goes that has no room: the land, from the crown down; the crankcase comes after the lowest.
+    pub exit: [usize; SIDES],
+    /// Share of the circumference that the end gap of the ring leaves open before each edge: where no other land of the ring has passed.
+    pub gap: [f64; SIDES],
     /// Taken up since the states were last told \[m²\].
     pub taken: [f64; SIDES],
     /// Lost and not laid down yet \[m²\]: negative where the face has more than it took up.
@@ -52,18 +54,10 @@ pub struct OilFace {
     pub reach: [Reach; SIDES],
 }
 
-/// Where oil goes that has no room before an edge.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Exit {
-    /// Into the crankcase.
-    Crankcase,
-    /// Into the combustion chamber.
-    Chamber,
-}
-
 impl OilFace {
-    /// A face without oil; `top`: whether it is the highest one, and `wave` the highest wave \[m\] that stands before an edge.
-    pub fn new(p: &OilFacePlace, top: bool, wave: f64) -> Self {
+    /// A face without oil; `exit`: where oil goes that has no room before each edge, `gap` the share of the circumference that is open there, and `wave` the
+    /// highest wave \[m\] that stands before an edge.
+    pub fn new(p: &OilFacePlace, exit: [usize; SIDES], gap: [f64; SIDES], wave: f64) -> Self {
         Self {
             ring: p.ring,
             land: p.land,
@@ -72,7 +66,8 @@ impl OilFace {
             profile: p.profile.clone(),
             offset: p.offset,
             room: p.clearance.map(|c| c.map_or(0.0, |c| 0.5 * c.min(wave).powi(2) / WAVE_SLOPE)),
-            exit: [Exit::Crankcase, if top { Exit::Chamber } else { Exit::Crankcase }],
+            exit,
+            gap,
             taken: [0.0; SIDES],
             owed: 0.0,
             edge: [0.0; SIDES],

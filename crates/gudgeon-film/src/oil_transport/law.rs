@@ -19,6 +19,8 @@ pub struct Law {
     pub spacing: f64,
     /// Film of the first cycle \[m\].
     pub initial: f64,
+    /// Density of the oil \[kg/m³\].
+    pub density: f64,
 }
 
 impl Law {

@@ -1,5 +1,5 @@
 use gudgeon_core::kinds::{OilTransport, OilTransportCtx, OilTransportSpec};
-use gudgeon_core::quantity::{Fraction, Length, NonNegative, PosLength, Ratio, quantity};
+use gudgeon_core::quantity::{Fraction, Length, NonNegative, PosDensity, PosLength, Ratio, quantity};
 use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
@@ -23,8 +23,15 @@ use crate::roughness::GaussianGap;
 /// ring takes to pass over its own face. Near dead centre, where nothing is taken up, the oil held carries the ring by its
 /// squeeze: the film keeps its history.
 ///
-/// Oil under the faces that rises beyond the room before an edge leaves the pack: below the lowest ring and between the lands of
-/// an oil ring into the crankcase, above ring 1 into the combustion chamber, before any other edge through the gaps.
+/// A ring scrapes off what rises beyond the room before an edge: below the lowest ring and between the lands of an oil ring into the crankcase, elsewhere onto
+/// the land there. What lies before the end gap of a ring, the share `φ` of its circumference, passes it and is scraped onto the land behind by the next ring, whose gap
+/// stands elsewhere; above ring 1 it stays on the liner. From the lands, whose oil is a film `δ`
+/// on the piston, inertia and gas move it on, with the density `ρ`, the viscosity `μ` at the ring and the acceleration `a` of the piston:
+///
+/// `q = ρ |a| δ³/(3 μ)`,  `q = τ δ²/(2 μ)`,  `τ = 0.008 min(Δp, 0.47 p)`
+///
+/// per open circumference: `φ` at an end gap, all of it at the crown, where it goes into the combustion chamber, and at the groove of an oil ring that drains. The shear
+/// stress `τ` is that of turbulent gas in a smooth gap. Oil on the lands does not come back to the liner.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct LinerFilm {
@@ -41,6 +48,8 @@ pub struct LinerFilm {
     pub spacing: PosLength,
     /// Film on the liner at the start of the first cycle.
     pub initial: Length<NonNegative>,
+    /// Density of the oil, which inertia acts on and which turns volumes into masses.
+    pub density: PosDensity,
 }
 
 impl Default for LinerFilm {
@@ -52,6 +61,7 @@ impl Default for LinerFilm {
             wave: quantity(50e-6),
             spacing: quantity(0.25e-3),
             initial: quantity(0.1e-6),
+            density: quantity(850.0),
         }
     }
 }
@@ -61,11 +71,13 @@ impl Default for LinerFilm {
     summary = "starved faces fed by the film that earlier rings and strokes left on the liner; oil mass is conserved",
     equations = "V_b = int_a^x0 h dx, V_a = int_x0^b h dx;  dV_b/dt = in_b - out_b - q(x0);  dV_a/dt = in_a - out_a + q(x0);  \
                 in = |u| h_liner at the leading side, out = |u| split h(meniscus) at the trailing side;  \
-                Reynolds equation between the menisci, at their ends the gas pressures",
-    validity = "Axisymmetric films. Oil moves with the liner, the faces and their waves only: no flow along the gaps or in the \
-               grooves, no evaporation, no mist. All the oil that passes a meniscus stays on the liner.",
-    references = ["reynolds1886", "tomanik1993"],
-    example = "supply = \"10 um\"\nsplit = 0.5\nroughness = \"0.4 um\"\nwave = \"50 um\"\nspacing = \"0.25 mm\"\ninitial = \"0.1 um\"\n",
+                Reynolds equation between the menisci, at their ends the gas pressures;  \
+                on the lands, of height H: H d(delta)/dt = scraped + passed - rho |a| delta^3/(3 mu) - tau delta^2/(2 mu), per open circumference",
+    validity = "Axisymmetric films. Oil moves with the liner, the faces and their waves, along the lands and through the end gaps: none in the \
+               grooves and past the flanks, none from a land back to the liner, no evaporation, no mist. What leaves upwards is therefore a lower limit \
+               of the oil that an engine consumes. All the oil that passes a meniscus stays on the liner.",
+    references = ["reynolds1886", "tomanik1993", "przesmitzki2005", "wang2012"],
+    example = "supply = \"10 um\"\nsplit = 0.5\nroughness = \"0.4 um\"\nwave = \"50 um\"\nspacing = \"0.25 mm\"\ninitial = \"0.1 um\"\ndensity = \"850 kg/m3\"\n",
 )]
 impl OilTransportSpec for LinerFilm {
     fn build(&self, ctx: &OilTransportCtx<'_>) -> Result<Option<Box<dyn OilTransport>>, BuildError> {
@@ -86,6 +98,7 @@ impl OilTransportSpec for LinerFilm {
             wave: self.wave.si(),
             spacing: self.spacing.si(),
             initial: self.initial.si(),
+            density: self.density.si(),
         };
         Ok(Some(Box::new(Carried::new(law, ctx))))
     }

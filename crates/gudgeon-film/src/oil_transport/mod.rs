@@ -2,6 +2,8 @@
 
 pub(crate) mod carried;
 pub(crate) mod face;
+pub(crate) mod land_cycle;
+pub(crate) mod lands;
 pub(crate) mod law;
 mod liner;
 mod liner_film;

@@ -99,7 +99,7 @@ fn assemble_bodies(case: &RingPackCase, files: &Files) -> Result<Pack, Vec<Build
         return Err(vec![e]);
     }
     let (liner, pin_to_ring1) = liner(case, &drive, &rings)?;
-    let oil_pack = oil_pack(case, &drive, &plan, &mut rings, pin_to_ring1)?;
+    let oil_pack = oil_pack(case, &drive, &plan, &mut rings, (&liner, pin_to_ring1))?;
     pack(case, drive, oils, plan, rings, (liner, pin_to_ring1), oil_pack)
 }
 
@@ -479,11 +479,13 @@ fn oil_pack(
     drive: &Drive,
     plan: &Plan,
     rings: &mut [Ring],
-    pin_to_ring1: f64,
+    (shape, pin_to_ring1): (&LinerShape, f64),
 ) -> Result<Option<Box<dyn OilTransport>>, Vec<BuildError>> {
     let faces = oil_faces::faces(&drive.geo, rings, pin_to_ring1);
     let (top, stroke) = (drive.kinematics.y_tdc(), drive.kinematics.stroke());
-    let ctx = OilTransportCtx { faces: &faces, pin: (top - stroke, top), omega: drive.omega };
+    let crown = geometry::crown_height(case);
+    let lands = oil_faces::lands(&drive.geo, rings, crown, shape, (pin_to_ring1, stroke));
+    let ctx = OilTransportCtx { faces: &faces, lands: &lands, pin: (top - stroke, top), omega: drive.omega };
     let spec = &case.models.oil_transport;
     let model = spec.build(&ctx).map_err(|e| vec![e.within("models.oil_transport")])?;
     let Some(model) = model.filter(|_| plan.film) else { return Ok(None) };
@@ -546,6 +548,7 @@ fn pack(
         hard_floor: false,
         state: vec![f64::NAN; states],
         films: vec![0.0; n],
+        viscosities: vec![0.0; n],
         trial: Vec::with_capacity(states),
         geo,
     };

@@ -354,9 +354,14 @@ fn ok_number(v: f64) -> bool {
     v.is_finite() && v > 0.0
 }
 
+/// Height of the land above ring 1 \[m\], 6 mm where the case says none.
+pub fn crown_height(case: &RingPackCase) -> f64 {
+    case.piston.lands[0].height.map_or(6e-3, |h| h.si())
+}
+
 /// The section that reports draw.
 pub fn section(case: &RingPackCase, pack: &PackGeometry, stroke: f64) -> PackSection {
-    let top_land = case.piston.lands[0].height.map_or(6e-3, |h| h.si());
+    let top_land = crown_height(case);
     let mut y = top_land;
     let mut rings = Vec::with_capacity(pack.rings.len());
     for (i, (r, g)) in case.rings.iter().zip(&pack.rings).enumerate() {

@@ -1,9 +1,12 @@
-//! The running faces as the oil on the liner meets them.
+//! The running faces and the lands as the oil on the liner meets them.
+
+use std::f64::consts::PI;
 
 use gudgeon_core::BuildError;
 use gudgeon_core::geometry::{BackVolume, PackGeometry};
-use gudgeon_core::kinds::OilFacePlace;
+use gudgeon_core::kinds::{OilFacePlace, OilLand};
 
+use super::liner::LinerShape;
 use super::ring::Ring;
 
 /// Radial clearance of a land to the liner \[m\].
@@ -41,6 +44,47 @@ pub fn faces(geo: &PackGeometry, rings: &[Ring], pin_to_ring1: f64) -> Vec<OilFa
         }
     }
     all
+}
+
+/// Minimum height of a land \[m\], where grooves as high as their rings leave none.
+const MIN_LAND: f64 = 0.1e-3;
+
+/// Places of a stroke at which the growth of the liner is averaged.
+const PLACES: usize = 64;
+
+/// The lands from the crown down, that of height `crown` \[m\] first, and what is open past the ring below each: the end gap in the mean over a stroke of
+/// `stroke` \[m\] down from `pin_to_ring1`.
+pub fn lands(
+    geo: &PackGeometry,
+    rings: &[Ring],
+    crown: f64,
+    liner: &LinerShape,
+    (pin_to_ring1, stroke): (f64, f64),
+) -> Vec<OilLand> {
+    let around = 2.0 * PI * geo.bore_radius;
+    let growth = |i: usize| {
+        let at =
+            |k: usize| liner.at(pin_to_ring1 - rings[i].spacing - stroke * (k as f64 + 0.5) / PLACES as f64);
+        2.0 * PI * (0..PLACES).map(at).sum::<f64>() / PLACES as f64
+    };
+    let height = |i: usize| match i {
+        0 => crown,
+        _ => {
+            let apart = rings[i].spacing - rings[i - 1].spacing;
+            (apart - 0.5 * (geo.rings[i - 1].height + geo.rings[i].height)).max(MIN_LAND)
+        }
+    };
+    let land = |i: usize| {
+        let g = &geo.rings[i];
+        let rail = matches!(g.back, BackVolume::OpenBelow | BackVolume::OpenAbove);
+        let lowest = i + 1 == rings.len() || g.back == BackVolume::OpenBelow;
+        OilLand {
+            height: height(i),
+            gap: ((g.gap + growth(i)) / around).clamp(0.0, 1.0),
+            drained: lowest && (g.lands == 2 || rail),
+        }
+    };
+    (0..rings.len()).map(land).collect()
 }
 
 /// What keeps the oil from being followed: films that cannot be confined to a part of their face, faces that overlap.

@@ -9,7 +9,7 @@ use gudgeon_core::EvalError;
 use gudgeon_core::geometry::{BackVolume, FlankOil, PackGeometry, RingPlace};
 use gudgeon_core::kinds::{
     AxialForces, CylinderPressure, FilmHeat, FilmTemperature, GasFlow, GasIn, GasPartials, Kinematics, Oil,
-    OilStep, OilTransport, RingPose,
+    OilDrive, OilStep, OilTransport, RingPose,
 };
 use gudgeon_core::states::Stateful;
 
@@ -109,6 +109,8 @@ pub struct Pack {
     pub state: Vec<f64>,
     /// Film thicknesses of the rings, scratch.
     pub films: Vec<f64>,
+    /// Viscosities at the rings, scratch.
+    pub viscosities: Vec<f64>,
     /// States that differ in one, scratch of [`Pack::jacobian`].
     pub(super) trial: Vec<f64>,
 }
@@ -417,12 +419,20 @@ impl Pack {
     /// Books the oil of an accepted step.
     pub fn book_oil(&mut self, v: &dyn gudgeon_numerics::ode::StepView) {
         let Some(oil) = &mut self.oil_pack else { return };
-        let pin = self.kinematics.motion(v.t1()).y;
+        let piston = self.kinematics.motion(v.t1());
         for ((h, ring), own) in self.films.iter_mut().zip(&self.rings).zip(&self.layout.radial) {
             *h = if own.is_empty() { 0.0 } else { ring.radial.thickness(&v.y1()[own.clone()]) };
         }
+        self.viscosities.iter_mut().zip(&self.at.rings).for_each(|(mu, r)| *mu = r.mu);
+        let drive = OilDrive {
+            dt: (v.t1() - v.t0()) / self.omega,
+            acceleration: piston.a,
+            viscosity: &self.viscosities,
+            pressures: &self.at.gas.p_land,
+        };
         let own = self.layout.oil.clone();
-        oil.book(&OilStep { y0: &v.y0()[own.clone()], y1: &v.y1()[own], pin, films: &self.films });
+        let (y0, y1) = (&v.y0()[own.clone()], &v.y1()[own]);
+        oil.book(&OilStep { y0, y1, pin: piston.y, films: &self.films, drive });
     }
 
     /// Has the models decide what they decide in steps, from the forces of the last instant. Returns whether anything changed.

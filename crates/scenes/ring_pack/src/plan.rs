@@ -82,8 +82,7 @@ pub fn catalogue(names: &Names, told: Told) -> Vec<ResultInfo> {
             all.extend(flank_results(i, ring));
         }
         if told.liner {
-            let what = format!("mean share of the face under full film, {ring}");
-            all.push(info(format!("ring{i}.wetted_share"), "1", Needs::Film, what));
+            all.extend(liner_results(i, ring));
         }
     }
     if told.liner {
@@ -198,13 +197,37 @@ fn flank_results(i: usize, ring: &str) -> Vec<ResultInfo> {
     vec![info(format!("ring{i}.flank_oil_lost"), "mm3", Needs::Gas, what)]
 }
 
+/// Of the oil on the liner at ring `i` and on the land above it.
+fn liner_results(i: usize, ring: &str) -> Vec<ResultInfo> {
+    let add = |name, unit, what| info(format!("ring{i}.{name}"), unit, Needs::Film, what);
+    let ways = "with the liner, by inertia and with gas, per cycle";
+    vec![
+        add("wetted_share", "1", format!("mean share of the face under full film, {ring}")),
+        add("gap_oil_up", "mm3", format!("oil that passes the end gap of {ring} upwards: {ways}")),
+        add("gap_oil_down", "mm3", format!("oil that passes the end gap of {ring} downwards: {ways}")),
+        add(
+            "oil_scraped",
+            "mm3",
+            format!("oil that {ring} scrapes off the liner for want of room, per cycle"),
+        ),
+        info(format!("land{i}.oil"), "mm3", Needs::Film, format!("oil on land {i} at the end of the cycle")),
+    ]
+}
+
 /// Of the oil on the liner.
 fn oil_results() -> Vec<ResultInfo> {
-    let add = |name, what| info(name, "mm3", Needs::Film, what);
+    let add = |name, unit, what| info(name, unit, Needs::Film, what);
+    let up = "oil that leaves the pack upwards, whole engine: a lower limit of consumption, without evaporation, mist and what passes the flanks";
     vec![
-        add("oil_taken", "oil taken up from the liner by all faces, per cycle"),
-        add("oil_drained", "oil scraped into the crankcase, per cycle"),
-        add("oil_thrown", "oil thrown off above ring 1 into the combustion chamber, per cycle"),
+        add("oil_taken", "mm3", "oil taken up from the liner by all faces, per cycle"),
+        add("oil_drained", "mm3", "oil scraped into the crankcase, per cycle"),
+        add(
+            "oil_thrown",
+            "mm3",
+            "oil thrown off the land above ring 1 into the combustion chamber, per cycle",
+        ),
+        add("oil_up", "g/h", up),
+        add("oil_up_specific", "g/kWh", "`oil_up` over the indicated power; 0 where the gas does no work"),
     ]
 }
 

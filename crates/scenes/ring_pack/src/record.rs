@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use gudgeon_core::kinds::{FlankFlow, OilLedger};
+use gudgeon_core::kinds::{FlankFlow, OilLedger, OilPassed};
 use gudgeon_core::result::{Balance, Column, Series};
 
 use super::pack::Pack;
@@ -22,6 +22,10 @@ pub struct Totals {
     pub periodicity_error: f64,
     /// Oil that came and went, per circumference \[m²\].
     pub oil: OilLedger,
+    /// What each ring scraped and let pass, per circumference \[m²\]; empty where oil on the liner is not followed.
+    pub passed: Vec<OilPassed>,
+    /// Oil on the land above each ring at the end of the cycle, per circumference \[m²\].
+    pub on_land: Vec<f64>,
     /// Oil that came to the flanks of each ring and left them, per circumference \[m²\]; empty where it is not followed.
     pub flank: Vec<FlankFlow>,
 }
@@ -31,12 +35,17 @@ impl Totals {
     #[must_use]
     pub fn of_cycle(pack: &Pack, q: &[f64]) -> Self {
         let n = pack.n_rings();
+        let followed =
+            pack.oil_pack.iter().flat_map(|oil| (0..n).map(move |i| (oil.passed(i), oil.on_land(i))));
+        let (passed, on_land) = followed.unzip();
         let flank = |i| pack.layout.flank_quad(i).map(|k| FlankFlow { fed: q[k], lost: q[k + 1] });
         Self {
             flow_in: q[..n].to_vec(),
             blow_by: q[n],
             friction_work: q[n + 1..2 * n + 1].to_vec(),
             oil: pack.oil_pack.as_ref().map_or_else(OilLedger::default, |o| o.ledger()),
+            passed,
+            on_land,
             flank: (0..n).filter_map(flank).collect(),
             ..Self::default()
         }

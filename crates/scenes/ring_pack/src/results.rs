@@ -47,6 +47,9 @@ impl Cycle {
                 };
                 let v = match (number("ring"), number("land")) {
                     (Some((i, what)), _) => self.of_ring(pack, i - 1, what),
+                    (_, Some((k, "oil"))) => {
+                        self.totals.on_land.get(k - 1).copied().unwrap_or(0.0) * around(pack)
+                    }
                     (_, Some((k, what))) => of_land(self.measures.lands[k - 2], what),
                     _ => self.of_pack(pack, &r.name, meter),
                 };
@@ -66,8 +69,7 @@ impl Cycle {
         let litres_per_minute = t.blow_by / Self::duration(pack) / meter.density * 6e4;
         let swept = PI * pack.geo.bore_radius.powi(2) * pack.kinematics.stroke();
         let work: f64 = t.friction_work.iter().sum();
-        // Per circumference [m²] to mm³.
-        let around = 2.0 * PI * pack.geo.bore_radius * 1e9;
+        let around = around(pack);
         match name {
             "blow_by" => litres_per_minute * meter.cylinders,
             "blow_by_per_cylinder" => litres_per_minute,
@@ -85,12 +87,24 @@ impl Cycle {
             "oil_taken" => t.oil.taken * around,
             "oil_drained" => t.oil.drained * around,
             "oil_thrown" => t.oil.thrown * around,
+            "oil_up" => self.grams_up(pack) * meter.cylinders * 3600.0 / Self::duration(pack),
+            "oil_up_specific" => match indicated_work(pack) {
+                work if work > 0.0 => self.grams_up(pack) / (work / 3.6e6),
+                _ => 0.0,
+            },
             _ => 0.0,
         }
     }
 
+    /// Oil that leaves one cylinder upwards in a cycle \[g\].
+    fn grams_up(&self, pack: &Pack) -> f64 {
+        let density = pack.oil_pack.as_ref().map_or(0.0, |o| o.density());
+        self.totals.oil.thrown * around(pack) * 1e-9 * density * 1e3
+    }
+
     fn of_ring(&self, pack: &Pack, i: usize, what: &str) -> f64 {
         let (m, span) = (&self.measures.rings[i], self.measures.span);
+        let passed = self.totals.passed.get(i).copied().unwrap_or_default();
         // Volumes [mm³] that the film would hold over each stroke: `π D ∫ h |v| dt` (tomanik1993, after Yoshida). The film that a ring
         // leaves is about half of its thickness; the source takes the thickness itself.
         let strokes = m.strokes.map(|s| s * 2.0 * PI * pack.geo.bore_radius * 1e9);
@@ -112,6 +126,9 @@ impl Cycle {
             "oil_groove" => groove_oil(pack, i, m),
             "flank_oil_lost" => flank_oil(pack, i, self.totals.flank.get(i).map_or(0.0, |f| f.lost)),
             "wetted_share" => m.wetted / span,
+            "gap_oil_up" => passed.up * around(pack),
+            "gap_oil_down" => passed.down * around(pack),
+            "oil_scraped" => passed.scraped * around(pack),
             "seat_changes" => f64::from(m.arrivals),
             "lifted_share" => m.lifted / span,
             _ => 0.0,
@@ -151,6 +168,27 @@ impl Cycle {
         events.sort_by(|a, b| a.theta_deg.total_cmp(&b.theta_deg).then_with(|| a.subject.cmp(&b.subject)));
         events
     }
+}
+
+/// What turns volumes per circumference \[m²\] into mm³.
+fn around(pack: &Pack) -> f64 {
+    2.0 * PI * pack.geo.bore_radius * 1e9
+}
+
+/// Intervals of the work of the gas in a cycle: a tenth of a degree.
+const WORK_INTERVALS: u32 = 7200;
+
+/// Work of the gas on the piston in a cycle \[J\], `∮ p dV` by trapezoids.
+fn indicated_work(pack: &Pack) -> f64 {
+    let at = |k: u32| {
+        let theta = pack.period() * f64::from(k) / f64::from(WORK_INTERVALS);
+        (pack.cylinder.pressure(theta), pack.kinematics.motion(theta).y)
+    };
+    let falls = |k: u32| {
+        let ((p0, y0), (p1, y1)) = (at(k), at(k + 1));
+        0.5 * (p0 + p1) * (y0 - y1)
+    };
+    PI * pack.geo.bore_radius.powi(2) * (0..WORK_INTERVALS).map(falls).sum::<f64>()
 }
 
 fn of_land(peak: Peak, what: &str) -> f64 {

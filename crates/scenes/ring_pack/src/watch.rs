@@ -169,7 +169,7 @@ impl Watch {
             });
             tell("min_load", &w.lifted, "load", "N", 1.0, &|when| {
                 format!(
-                    "`solver.limits.min_load` adds up to {:.3e} N to the load of the film of ring {ring} {when}: gas presses the ring off",
+                    "`solver.limits.min_load` adds up to {:.3e} N to the load of the film of ring {ring} {when}: gas or contact presses the ring off",
                     w.lifted.most
                 )
             });

@@ -1,3 +1,4 @@
 //! Oil on the liner.
 
 mod carried;
+mod lands;
