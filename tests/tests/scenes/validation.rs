@@ -73,5 +73,5 @@ fn a_case_finds_its_comparisons() {
     };
     assert_eq!(found("ea111-1400"), Some("ea111-1400.toml".into()));
     assert_eq!(found("rigs/kinematics"), Some("rigs/kinematics.toml".into()));
-    assert_eq!(found("turbo-diesel-120"), None);
+    assert_eq!(found("turbo-diesel-120-power-cylinder"), None);
 }
