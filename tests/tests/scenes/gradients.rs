@@ -18,11 +18,16 @@ fn refused(inputs: &[&str], set: &[&str]) -> String {
     }
 }
 
+/// Changes to the case on which the limits here were measured.
+fn on_the_deck<'a>(more: &[&'a str]) -> Vec<&'a str> {
+    [&ORIFICES[..], more].concat()
+}
+
 /// Elasticities of `result` by central differences of runs at a tight tolerance, extrapolated from two steps; a row for each input.
 fn differenced(inputs: &[&str], results: &[&str]) -> Vec<Vec<f64>> {
     let tight = ["solver.tolerance=1e-8", "solver.periodicity=1e-8"];
-    let resolved = checked(CASE, &tight).case.resolved();
-    let at = |set: &str| run_case(CASE, &[tight[0], tight[1], set]);
+    let resolved = checked(CASE, &on_the_deck(&tight)).case.resolved();
+    let at = |set: &str| run_case(CASE, &on_the_deck(&[tight[0], tight[1], set]));
     let by_step = |path: &str, share: f64| -> Vec<f64> {
         let i = input(&resolved, path, share).unwrap();
         let [low, high] = [-i.step, i.step].map(|d| at(&assignment(&i, i.value + d)));
@@ -55,7 +60,7 @@ fn blow_by_and_friction_by_inputs_are_those_of_differences() {
         "models.cylinder_pressure.burn_start",
     ];
     let results = ["blow_by", "fmep", "ring1.friction_power", "land2.p_max", "ring1.h_mean"];
-    let followed = gradients(&checked(CASE, &[]), &by(&inputs), &[], &mut unwatched).unwrap();
+    let followed = gradients(&checked(CASE, &on_the_deck(&[])), &by(&inputs), &[], &mut unwatched).unwrap();
     assert!(followed.method.contains("variational"), "{}", followed.method);
     // The orbit of the run is near enough for one followed cycle.
     assert_eq!(followed.counters["cycles_followed"], 1);
@@ -86,10 +91,8 @@ fn derivatives_depend_little_on_the_tolerance() {
         "models.film_temperature.tdc",
         "gas.crankcase_pressure",
     ]);
-    let followed = |set: &[&str]| {
-        let set = [&ORIFICES[..], set].concat();
-        gradients(&checked(CASE, &set), &inputs, &[], &mut unwatched).unwrap()
-    };
+    let followed =
+        |set: &[&str]| gradients(&checked(CASE, &on_the_deck(set)), &inputs, &[], &mut unwatched).unwrap();
     let (own, tight) = (followed(&[]), followed(&["solver.tolerance=3e-8", "solver.periodicity=3e-8"]));
     for result in ["blow_by", "fmep"] {
         for (k, input) in inputs.iter().enumerate() {

@@ -8,12 +8,13 @@ use crate::common::*;
 const DIESEL: &str = "turbo-diesel-120";
 const CRANKCASE: f64 = 101_325.0;
 
-/// The oil ring of the diesel as one of two rails of 0.6 mm on an expander.
+/// The oil ring of the diesel as one of two rails of 0.6 mm on an expander. With ears of 15 degrees the upper rail flutters, and some runs do not
+/// become periodic.
 const THREE_PIECE: [&str; 4] = [
     "rings.2.design=three_piece",
     "rings.2.height=0.6 mm",
     "rings.2.width=3.0 mm",
-    "rings.2.expander={mass=\"14 g\", height=\"2.75 mm\", ear_angle=\"15 deg\"}",
+    "rings.2.expander={mass=\"14 g\", height=\"2.75 mm\", ear_angle=\"30 deg\"}",
 ];
 
 /// Rings that rest, gaps of given areas that lead from land to land, no leak and no influence of films: lands behind two orifices, or three.
@@ -169,13 +170,13 @@ fn without_gas_two_rails_are_one_rail_counted_twice() {
 #[test]
 fn rails_lift_and_seal_each_on_its_own() {
     let r = diesel(&[&THREE_PIECE]);
-    // Pressed outwards, both are on their flanks most of the time; the upper one opens again and again under the pressure of the third land.
-    assert!(value(&r, "ring3.lifted_share") < 0.35 && value(&r, "ring4.lifted_share") < 0.01);
+    // Pressed outwards, both are on their flanks most of the time; the upper one opens under the pressure of the third land.
+    assert!(value(&r, "ring3.lifted_share") < 0.1 && value(&r, "ring4.lifted_share") < 0.01);
     assert!(r.results["ring3.lifted_share"].what.contains("ring 3 (upper rail) is off its upper flank"));
     assert!(r.results["ring4.h_min"].what.contains("ring 4 (lower rail)"));
     assert!((value(&r, "land4.p_max") * 1e5 / CRANKCASE - 1.0).abs() < 1e-12, "open to the crankcase");
-    // 2π 30 N of tension on each rail, at 15 degrees.
-    let axial = 2.0 * std::f64::consts::PI * 30.0 * 15f64.to_radians().tan();
+    // 2π 30 N of tension on each rail, at 30 degrees.
+    let axial = 2.0 * std::f64::consts::PI * 30.0 * 30f64.to_radians().tan();
     for (name, force) in [("ring3.force_expander", axial), ("ring4.force_expander", -axial)] {
         assert!(column(&r, name).iter().all(|f| (f / force - 1.0).abs() < 1e-12), "{name}");
     }
