@@ -91,10 +91,10 @@ def test_cases_pickle_with_the_files_they_name():
 
 def test_explanation(diesel):
     told = diesel.explain()
-    assert "orifice_network" in str(told)
-    assert any(m["model"]["model"] == "orifice_network" for m in told["models"])
+    assert "narrow_channel" in str(told)
+    assert any(m["model"]["model"] == "narrow_channel" for m in told["models"])
     assert told["resolved"] == diesel.resolved
-    assert "orifice_network" in diesel._repr_html_()
+    assert "narrow_channel" in diesel._repr_html_()
 
 
 def test_models_are_told():

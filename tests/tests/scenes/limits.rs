@@ -61,6 +61,8 @@ fn a_documented_floor_says_what_it_carries() {
 fn dry_rings_ride_on_their_contact() {
     let r = periodic(&["models.hydrodynamics={model=\"off\"}"]);
     let column = |name: &str| &r.series.columns.iter().find(|c| c.name == name).expect(name).values;
+    // No film: all friction is that of solid contact. Sums of the same numbers.
+    assert!((value(&r, "fmep_boundary") / value(&r, "fmep") - 1.0).abs() < 1e-12);
     for ring in 1..=3 {
         let (load, contact) =
             (column(&format!("ring{ring}.radial_load")), column(&format!("ring{ring}.contact_load")));

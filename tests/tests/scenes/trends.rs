@@ -1,6 +1,8 @@
 //! The signs that a ring pack of an engine must have, on the diesel as it ships: what each input does to blow-by and friction. The table with numbers
 //! and sources is docs/trends.md.
 
+use gudgeon_core::result::RunResult;
+
 use crate::common::*;
 
 fn viscosity(mpas: f64) -> String {
@@ -57,6 +59,26 @@ fn friction_over_viscosity_is_a_stribeck_curve() {
     // not wholly hydrodynamic, nor are the films of the second ring flooded in an engine as they are here.
     let exponent = (fmep[3] / fmep[2]).ln() / (50.0_f64 / 15.0).ln();
     assert!((0.4..0.7).contains(&exponent), "{exponent}");
+}
+
+#[test]
+fn thicker_oil_moves_friction_from_contact_to_the_films() {
+    let runs =
+        [1.5, 15.0].map(|mu| run_case("turbo-diesel-120", &[&viscosity(mu), "outputs.series_step=5 deg"]));
+    let film =
+        |r: &RunResult, who: &str| value(r, &format!("{who}fmep")) - value(r, &format!("{who}fmep_boundary"));
+    for who in ["", "ring1.", "ring2.", "ring3."] {
+        let films = runs.each_ref().map(|r| film(r, who));
+        assert!(films[1] > films[0] && films[0] > 0.0, "{who} {films:?}");
+    }
+    // The taper of the second ring carries little on the way down, whatever the oil: its edge rubs.
+    for who in ["ring1.", "ring3."] {
+        let solid = runs.each_ref().map(|r| value(r, &format!("{who}fmep_boundary")));
+        assert!(solid[0] > solid[1] && solid[1] > 0.0, "{who} {solid:?}");
+    }
+    let rings: f64 = (1..=3).map(|i| value(&runs[0], &format!("ring{i}.fmep_boundary"))).sum();
+    // Rounding of a sum.
+    assert!((rings / value(&runs[0], "fmep_boundary") - 1.0).abs() < 1e-12);
 }
 
 #[test]

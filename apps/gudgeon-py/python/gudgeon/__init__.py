@@ -4,7 +4,7 @@
 >>> case = gudgeon.example("turbo-diesel-120")
 >>> r = case.set({"engine.speed": (2000, "rpm")}).run()
 >>> print(f"{r['blow_by']:.0f} {r.units['blow_by']}")
-71 l/min
+66 l/min
 """
 
 from ._native import __version__

@@ -172,9 +172,11 @@ impl Strip {
     /// Force per circumference of oil and gas against a flank that approaches with `rate` (negative: separates).
     fn force(&self, wetted: f64, h: f64, rate: f64) -> f64 {
         let gap = self.gap(h);
-        let slenderness = wetted / gap;
+        // A state that is extrapolated may hold less than nothing, which resists nothing.
+        let bridged = wetted.max(0.0);
+        let slenderness = bridged / gap;
         let linear = self.mu * slenderness * slenderness * slenderness * rate;
-        resistance(linear, self.separation, self.tension * wetted)
+        resistance(linear, self.separation, self.tension * bridged)
             + self.gas.force(self.width - wetted, gap, rate)
     }
 

@@ -181,7 +181,12 @@ impl<'a> March<'a> {
     /// One cycle.
     fn cycle(&mut self, recording: bool) -> Result<Totals, EvalError> {
         let n = self.pack.n_rings();
-        let mut totals = Totals { flow_in: vec![0.0; n], friction_work: vec![0.0; n], ..Totals::default() };
+        let mut totals = Totals {
+            flow_in: vec![0.0; n],
+            friction_work: vec![0.0; n],
+            boundary_work: vec![0.0; n],
+            ..Totals::default()
+        };
         let before = self.pack.gas_mass();
         if recording {
             self.books.watch = Watch::new(self.pack);
@@ -257,6 +262,7 @@ impl<'a> March<'a> {
             pack.set_place(i, *h, None);
             pack.friction_at(i, (*h - old) / dt)?;
             totals.friction_work[i] += pack.at.rings[i].power * dt;
+            totals.boundary_work[i] += pack.at.rings[i].boundary_power * dt;
             // Held at the end of the interval against what presses it further off.
             if *h >= pack.limits.thickest_film - 2.0 * RESOLUTION {
                 let r = &mut pack.at.rings[i];

@@ -211,6 +211,7 @@ impl Pack {
         };
         r.friction = r.perimeter * (viscous * self.laws.drag.shear(&o) + rubbing);
         r.power = self.laws.drag.power(r.friction, u);
+        r.boundary_power = self.laws.drag.power(r.perimeter * rubbing, u);
         let force = self.laws.film_force.per_length(&o, r.dry.1);
         r.axial.film = r.perimeter * (viscous * force + rubbing);
         Ok(())

@@ -50,6 +50,8 @@ pub struct RingInstant {
     pub friction: f64,
     /// Friction power \[W\].
     pub power: f64,
+    /// The part of it that solid contact takes.
+    pub boundary_power: f64,
     /// Axial forces on the whole ring \[N\].
     pub axial: AxialForces,
     /// Reaction of the flanks \[N\].

@@ -281,8 +281,9 @@ impl Pack {
     fn film_rows(&self, i: usize, column: usize, d: f64, base: &Base, jac: &mut [f64]) {
         let (n, rings) = (self.layout.n, self.n_rings());
         self.block_rows(self.layout.radial[i].clone(), column, d, base, jac);
-        jac[(n + rings + 1 + i) * n + column] =
-            (self.at.rings[i].power - base.rings[i].power) / (self.omega * d);
+        let (per, now, then) = (1.0 / (self.omega * d), &self.at.rings[i], &base.rings[i]);
+        jac[(n + rings + 1 + i) * n + column] = (now.power - then.power) * per;
+        jac[(n + 2 * rings + 1 + i) * n + column] = (now.boundary_power - then.boundary_power) * per;
         self.block_rows(self.layout.oil.clone(), column, d, base, jac);
         self.block_rows(self.layout.temperature.clone(), column, d, base, jac);
     }

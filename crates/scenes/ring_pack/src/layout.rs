@@ -84,18 +84,18 @@ impl Layout {
         layout
     }
 
-    /// Number of quadratures: flow into each ring, flow out of the last, friction work of each ring, where oil on flanks is followed what each ring
+    /// Number of quadratures: flow into each ring, flow out of the last, friction work of each ring and its part of solid contact, where oil on flanks is followed what each ring
     /// gained and lost of it, and, last, what is brought to gas with a balance of energy.
     #[must_use]
     pub fn quads(&self) -> usize {
         let n = self.flank.len();
-        2 * n + 1 + if self.wet_flanks { 2 * n } else { 0 } + usize::from(self.gas_has_energy)
+        3 * n + 1 + if self.wet_flanks { 2 * n } else { 0 } + usize::from(self.gas_has_energy)
     }
 
     /// The quadrature of the oil that came to the flanks of ring `i`; that of what left them is the next. None where it is not followed.
     #[must_use]
     pub fn flank_quad(&self, i: usize) -> Option<usize> {
-        self.wet_flanks.then_some(2 * self.flank.len() + 1 + 2 * i)
+        self.wet_flanks.then_some(3 * self.flank.len() + 1 + 2 * i)
     }
 
     /// The quadrature of the energy that is brought to the gas; none without a balance of it.

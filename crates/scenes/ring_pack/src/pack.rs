@@ -391,6 +391,7 @@ impl Pack {
             for i in 0..n {
                 q[i] = self.at.gas.flow_in[i] * per;
                 q[n + 1 + i] = self.at.rings[i].power * per;
+                q[2 * n + 1 + i] = self.at.rings[i].boundary_power * per;
                 if let Some(k) = self.layout.flank_quad(i) {
                     let oil = self.at.rings[i].flank;
                     (q[k], q[k + 1]) = (oil.fed * per, oil.lost * per);

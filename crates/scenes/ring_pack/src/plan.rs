@@ -91,6 +91,8 @@ pub fn catalogue(names: &Names, told: Told) -> Vec<ResultInfo> {
     let power = "mean friction power of the pack, one cylinder";
     all.push(info("friction_power", "W", Needs::Film, power));
     all.push(info("fmep", "bar", Needs::Film, "friction mean effective pressure of the pack"));
+    let solid = "the part of fmep that solid contact takes; films take the rest";
+    all.push(info("fmep_boundary", "bar", Needs::Film, solid));
     let error = "estimated true relative error of the periodic state";
     all.push(info("periodicity_error", "1", Needs::Gas, error));
     all
@@ -160,6 +162,11 @@ fn film_results(i: usize, ring: &str) -> Vec<ResultInfo> {
         add("h_mean", "um", format!("mean film under {ring}")),
         add("friction_power", "W", format!("mean friction power of {ring}, one cylinder")),
         add("fmep", "bar", format!("friction mean effective pressure of {ring}")),
+        add(
+            "fmep_boundary",
+            "bar",
+            format!("the part of that which solid contact takes, {ring}; the film takes the rest"),
+        ),
     ]
 }
 

@@ -16,6 +16,8 @@ pub struct Totals {
     pub blow_by: f64,
     /// Friction work of each ring \[J\].
     pub friction_work: Vec<f64>,
+    /// The part of it that solid contact takes \[J\].
+    pub boundary_work: Vec<f64>,
     /// Closures.
     pub balance: Balance,
     /// True error estimate of the periodic state.
@@ -43,6 +45,7 @@ impl Totals {
             flow_in: q[..n].to_vec(),
             blow_by: q[n],
             friction_work: q[n + 1..2 * n + 1].to_vec(),
+            boundary_work: q[2 * n + 1..3 * n + 1].to_vec(),
             oil: pack.oil_pack.as_ref().map_or_else(OilLedger::default, |o| o.ledger()),
             passed,
             on_land,

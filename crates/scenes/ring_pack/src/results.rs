@@ -83,6 +83,7 @@ impl Cycle {
             "cylinder.p_max" => m.cylinder.value / 1e5,
             "friction_power" => work / Self::duration(pack),
             "fmep" => work / swept / 1e5,
+            "fmep_boundary" => t.boundary_work.iter().sum::<f64>() / swept / 1e5,
             "periodicity_error" => t.periodicity_error,
             "oil_taken" => t.oil.taken * around,
             "oil_drained" => t.oil.drained * around,
@@ -115,10 +116,8 @@ impl Cycle {
             "friction_power" => {
                 self.totals.friction_work.get(i).copied().unwrap_or(0.0) / Self::duration(pack)
             }
-            "fmep" => {
-                let swept = PI * pack.geo.bore_radius.powi(2) * pack.kinematics.stroke();
-                self.totals.friction_work.get(i).copied().unwrap_or(0.0) / swept / 1e5
-            }
+            "fmep" => mean_pressure(pack, &self.totals.friction_work, i),
+            "fmep_boundary" => mean_pressure(pack, &self.totals.boundary_work, i),
             "reverse_pressure_ratio" => m.reverse,
             "oil_face_combustion" => strokes[2] - strokes[1],
             "oil_face_gas_exchange" => strokes[0] - strokes[3],
@@ -224,4 +223,10 @@ fn groove_oil(pack: &Pack, i: usize, m: &RingMeasure) -> f64 {
     let flow = m.groove_drive / (12.0 * mu * g.width);
     let squeeze = 0.5 * g.width * (m.nearest.0 - m.nearest.1);
     (flow + squeeze) * 2.0 * PI * g.piston_radius_below * 1e9
+}
+
+/// Work \[J\] of ring `i` in a cycle over the swept volume \[bar\].
+fn mean_pressure(pack: &Pack, work: &[f64], i: usize) -> f64 {
+    let swept = PI * pack.geo.bore_radius.powi(2) * pack.kinematics.stroke();
+    work.get(i).copied().unwrap_or(0.0) / swept / 1e5
 }

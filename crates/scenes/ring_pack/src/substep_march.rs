@@ -262,6 +262,7 @@ impl<'a> March<'a> {
             pack.set_place(i, r.h, moving(pack, i).then_some((r.s, r.v)));
             pack.friction_at(i, (r.h - old) / dt)?;
             self.totals.friction_work[i] += pack.at.rings[i].power * dt;
+            self.totals.boundary_work[i] += pack.at.rings[i].boundary_power * dt;
         }
         Ok(())
     }
@@ -320,7 +321,12 @@ fn run(
     let n = march.rings.len();
     let mut steps = 0;
     for cycle in 1..=set.cycles {
-        march.totals = Totals { flow_in: vec![0.0; n], friction_work: vec![0.0; n], ..Totals::default() };
+        march.totals = Totals {
+            flow_in: vec![0.0; n],
+            friction_work: vec![0.0; n],
+            boundary_work: vec![0.0; n],
+            ..Totals::default()
+        };
         let mut before = march.stored();
         for pass in 0..set.passes {
             let shown = cycle == set.cycles && pass < WHOLE;

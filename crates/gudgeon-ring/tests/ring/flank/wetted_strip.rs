@@ -180,3 +180,17 @@ fn gas_does_not_drive_out_what_hangs_on_the_walls_beside_it() {
     // The third power of a thin strip: it is not driven to nothing in no time.
     assert!((lost(0.02) / lost(0.01) / 8.0 - 1.0).abs() < 0.01);
 }
+
+#[test]
+fn less_than_no_oil_does_not_push() {
+    let film = built(&WettedStrip { gas_viscosity: quantity(0.0), ..WettedStrip::default() }, 0.3);
+    for (s, v) in [(0.0, -0.1), (1e-6, 0.1), (C, 0.1)] {
+        let place = at(&*film, &[-0.3, -0.3], s, v);
+        assert_eq!(film.law().force(&place.flank, s, v, C, A), 0.0);
+    }
+    // And fills again.
+    let (mut film, mut dy) = (built(&forgotten(), 0.3), [0.0; 2]);
+    let place = at(&*film, &[-0.3, 1.0], 0.0, 0.0);
+    film.rates(&[-0.3, 1.0], &FlankIn::new(place, 1e5, 20e5, 1e5), &mut dy).expect("rates");
+    assert!(dy[0] > 0.0, "{dy:?}");
+}
