@@ -356,7 +356,16 @@ impl Cycle<'_> {
             balance: &self.balance,
             events: &self.events,
         };
+        let (progress, done) = (&mut self.progress, 1.0 - 0.8f64.powf(self.done));
+        let (mut steps, mut stopped) = (0_u32, None);
         let mut observe = |p: &mut Problem<'_>, v: &dyn StepView| {
+            steps += 1;
+            if steps.is_multiple_of(ASKED_EVERY)
+                && let Err(e) = progress(done)
+            {
+                stopped = Some((v.t1(), e));
+                return Flow::Stop;
+            }
             let flow = lend(&mut follower).map_or(Flow::Continue, |f| f.step(p.pack, v));
             p.pack.book_oil(v);
             if let Some(f) = lend(&mut follower) {
@@ -369,7 +378,7 @@ impl Cycle<'_> {
             Method::Rodas(m) => m.integrate(&mut problem, span, b, y, q, options, st, &mut observe),
             Method::Radau(m) => m.integrate(&mut problem, span, b, y, q, options, st, &mut observe),
         }?;
-        Ok(())
+        stopped.map_or(Ok(()), |(t, e)| Err(IntegrateError::Eval { t, source: e.into() }))
     }
 }
 
@@ -391,6 +400,9 @@ impl Cycle<'_> {
         }
     }
 }
+
+/// Steps after which a long cycle asks whether to go on: some tenths of a second.
+const ASKED_EVERY: u32 = 1000;
 
 /// How many times the search of a periodic state may tighten the tolerance tenfold: rings that float amplify the error of a cycle.
 const REFINEMENTS: usize = 2;
