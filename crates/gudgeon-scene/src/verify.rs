@@ -10,8 +10,8 @@
 //! the difference between the case as it stands and its finest level, and the rest of a geometric series behind that one (q is taken as
 //! 1/2 with one level, and as at most 9/10: a series that does not shrink is named). Periodic angles are compared around the cycle.
 
+use gudgeon_core::Stopped;
 use gudgeon_core::result::{Note, Refined, RunResult, Value, Verification};
-use gudgeon_core::{Stopped, unwatched};
 use indexmap::IndexMap;
 
 use crate::error::{Progress, RunError};
@@ -46,9 +46,11 @@ pub(crate) fn verify(
     let total = groups.len().max(1) as f64;
     let floors = floors(&result.results);
     for (k, Refinement { what, levels, .. }) in groups.into_iter().enumerate() {
-        progress(Progress { phase: format!("refining the {what}"), fraction: k as f64 / total })?;
+        let mut going_on =
+            || progress(Progress { phase: format!("refining the {what}"), fraction: k as f64 / total });
+        going_on()?;
         let levels = levels.into_iter().map(|l| l.set).collect();
-        let levels = refine(scene, levels, &result.results, &floors)?;
+        let levels = refine(scene, levels, (&result.results, &floors), &mut going_on)?;
         let mut unsettled = Vec::new();
         for (name, v) in &result.results {
             let series: Vec<f64> = std::iter::once(v.value)
@@ -71,17 +73,17 @@ pub(crate) fn verify(
     Ok(())
 }
 
-/// Results at each level, until the rest is small for all of them.
+/// Results at each level, until the rest is small for all of them; each run asks whether to be `going_on`.
 fn refine(
     scene: &dyn Scene,
     levels: Vec<Vec<String>>,
-    base: &Results,
-    floors: &IndexMap<String, f64>,
+    (base, floors): (&Results, &IndexMap<String, f64>),
+    going_on: &mut dyn FnMut() -> Result<(), Stopped>,
 ) -> Result<Vec<(Vec<String>, Results)>, RunError> {
     let mut out: Vec<(Vec<String>, Results)> = Vec::new();
     for set in levels {
         // A level beyond what the settings admit ends the refinement; that the first one fails is worth knowing.
-        match changed(scene, &set).and_then(|s| s.once(&mut unwatched)) {
+        match changed(scene, &set).and_then(|s| s.once(&mut |_| going_on())) {
             Ok(r) => out.push((set, r.results)),
             Err(e) if out.is_empty() || matches!(e, RunError::Stopped) => return Err(e),
             Err(_) => break,
