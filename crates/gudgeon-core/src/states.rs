@@ -93,6 +93,9 @@ pub struct StateInfo {
     pub cycle_relative: bool,
     /// Minimum value with which a cycle may start.
     pub cycle_min: f64,
+    /// Range in which a cycle starts that was not reached by one before: the search of the periodic state extrapolates no further, unless the state itself
+    /// was beyond.
+    pub cycle_range: (f64, f64),
     /// What a change of the state changes at once.
     pub changes: Signals,
 }
@@ -109,6 +112,7 @@ impl StateInfo {
             cycle_scale: 1.0,
             cycle_relative: false,
             cycle_min: f64::NEG_INFINITY,
+            cycle_range: (f64::NEG_INFINITY, f64::INFINITY),
             changes: Signals::NONE,
         }
     }
@@ -145,6 +149,13 @@ impl StateInfo {
     #[must_use]
     pub const fn at_least(mut self, min: f64) -> Self {
         self.cycle_min = min;
+        self
+    }
+
+    /// The search of the periodic state extrapolates to no value outside.
+    #[must_use]
+    pub const fn within(mut self, least: f64, largest: f64) -> Self {
+        self.cycle_range = (least, largest);
         self
     }
 

@@ -21,6 +21,8 @@ pub trait CycleMap {
     fn map(&mut self, y0: &[f64], y1: &mut [f64], accuracy: f64) -> Result<f64, EvalError>;
     /// Magnitudes that make the states comparable.
     fn scale(&self, y: &[f64], s: &mut [f64]);
+    /// Keeps an extrapolated start within what the machine admits; `reached` is the end of the cycle before, which it does.
+    fn admit(&self, _reached: &[f64], _y: &mut [f64]) {}
     /// How strongly bent the map is.
     fn bend(&self) -> Bend {
         Bend::SMOOTH
@@ -33,7 +35,7 @@ pub trait CycleMap {
 pub struct Bend {
     /// Least part of a secant that is new beside the newer ones; one with less is left out.
     pub fresh: f64,
-    /// Longest step over the residual.
+    /// Longest step over the residual, to begin with.
     pub stride: f64,
     /// Accuracy of a cycle over the residual of the one before: far from the orbit cheaper cycles do.
     pub rough: f64,
@@ -108,6 +110,11 @@ const PATIENCE: usize = 60;
 const BAND: (usize, f64) = (24, 30.0);
 /// States that move along or come nearer lie at least twice as far apart as the narrower half of them; noise, hardly farther.
 const APART: f64 = 1.9;
+/// Miss of a foretold residual, as a part of the one before, below which longer steps are tried; and how much longer, or shorter where it is above 1.
+const FORETOLD: f64 = 0.25;
+const LENGTHEN: f64 = 2.0;
+/// Shortest limit of a step over the residual: two residuals are what a multiplier of a half asks for.
+const SHORTEST_STRIDE: f64 = 2.0;
 /// Largest factor by which a residual is taken to understate an error.
 const MAX_GAIN: f64 = 3000.0;
 
@@ -253,7 +260,9 @@ impl Search {
         options: &OrbitOptions,
         times: usize,
     ) -> Result<(), EvalError> {
+        // The end of the last cycle that could be computed.
         let mut g = vec![0.0; y.len()];
+        let (mut end, mut extrapolated) = (g.clone(), false);
         let bend = map.bend();
         let mut state = Anderson::new(y.len(), bend);
         self.report.converged = false;
@@ -267,7 +276,18 @@ impl Search {
             if self.report.cycles + times > limit {
                 break;
             }
-            self.apply(map, y, &mut g, accuracy, times)?;
+            if let Err(e) = self.apply(map, y, &mut end, accuracy, times) {
+                if !std::mem::take(&mut extrapolated) || !e.is_recoverable() {
+                    return Err(e);
+                }
+                // Nowhere the machine could be: on from where it was.
+                self.report.cycles += 1;
+                y.copy_from_slice(&g);
+                state.trusted = state.secants.len();
+                state.previous = None;
+                continue;
+            }
+            g.copy_from_slice(&end);
             let (at, r) = state.scaled(map, y, &g);
             let residual = r.amax();
             self.report.residual = residual;
@@ -295,13 +315,15 @@ impl Search {
             before = accuracy;
             accuracy = (bend.rough * residual).min(ROUGHEST).max(options.accuracy);
             // Not further than the states are large, nor than the map can have understated.
-            let longest = (bend.stride * residual).min(1.0);
+            let longest = (state.stride * residual).min(1.0);
             let damping = (longest / correction.amax().max(1e-300)).min(1.0);
             let next = &at + &r - correction * damping;
             for ((y, n), s) in y.iter_mut().zip(next.iter()).zip(&state.s) {
                 *y = n * s;
             }
-            state.previous = Some([at, r, rest]);
+            map.admit(&g, y);
+            extrapolated = true;
+            state.previous = Some(Tried { at, r, rest, damping });
         }
         y.copy_from_slice(&g);
         Ok(())
@@ -461,6 +483,29 @@ struct Secant {
     noise: f64,
 }
 
+/// A cycle, and the step from it.
+struct Tried {
+    at: DVector<f64>,
+    r: DVector<f64>,
+    /// What the secants left over of the residual.
+    rest: DVector<f64>,
+    /// Part of the correction that was stepped.
+    damping: f64,
+}
+
+impl Tried {
+    /// What is left of the unexplained part, for the residual `r` that followed: a linear map answers a step of a part `d` of the correction by
+    /// `(1 - d) r0 + d M rest`.
+    fn left(&self, r: &DVector<f64>) -> DVector<f64> {
+        (r - &self.r * (1.0 - self.damping)) / self.damping.max(1e-3)
+    }
+
+    /// How far the residual `r` is from what the secants foretold, over the residual before.
+    fn miss(&self, r: &DVector<f64>) -> f64 {
+        (r - &self.r * (1.0 - self.damping) - &self.rest * self.damping).norm() / self.r.norm()
+    }
+}
+
 /// What the acceleration keeps from cycle to cycle, in scaled states.
 struct Anderson {
     /// Scales of the states in the last cycle.
@@ -473,8 +518,10 @@ struct Anderson {
     idle: usize,
     /// Cycles since the residual was last halved that turned its direction, while it is within [`STALL`].
     stalled: usize,
-    /// Start and residual of the cycle before, and what its secants left over of the latter.
-    previous: Option<[DVector<f64>; 3]>,
+    /// The cycle before.
+    previous: Option<Tried>,
+    /// Longest step over the residual: longer where the secants foretell residuals, shorter where they do not.
+    stride: f64,
     /// Smallest residual.
     best: f64,
     /// The estimate of the last cycle if it was good enough, else 0.
@@ -495,6 +542,7 @@ impl Anderson {
             idle: 0,
             stalled: 0,
             previous: None,
+            stride: bend.stride,
             best: f64::INFINITY,
             passed: 0.0,
             last: 0.0,
@@ -512,8 +560,10 @@ impl Anderson {
             secant.dy.component_mul_assign(&rescale);
             secant.dr.component_mul_assign(&rescale);
         }
-        for v in self.previous.iter_mut().flatten() {
-            v.component_mul_assign(&rescale);
+        if let Some(tried) = &mut self.previous {
+            for v in [&mut tried.at, &mut tried.r, &mut tried.rest] {
+                v.component_mul_assign(&rescale);
+            }
         }
         let at = DVector::from_iterator(n, y.iter().zip(&self.s).map(|(y, s)| y / s));
         let r = DVector::from_iterator(n, g.iter().zip(y).zip(&self.s).map(|((g, y), s)| (g - y) / s));
@@ -532,11 +582,22 @@ impl Anderson {
         self.idle = if falls { 0 } else { self.idle + 1 };
         let (near, halved) = (residual <= STALL.1 * options.accuracy, residual < 0.5 * self.best);
         // A slow mode goes on the way it went; noise does not.
-        let turns = self.previous.as_ref().is_some_and(|[_, b, _]| r.dot(b) < 0.5 * r.norm() * b.norm());
+        let turns = self.previous.as_ref().is_some_and(|b| r.dot(&b.r) < 0.5 * r.norm() * b.r.norm());
         self.stalled = if halved { 0 } else { self.stalled + usize::from(near && turns) };
         self.best = self.best.min(residual);
-        let Some([at_before, r_before, rest]) = &self.previous else { return 0.0 };
-        let secant = Secant { dy: at - at_before, dr: r - r_before, noise };
+        let Some(before) = &self.previous else { return 0.0 };
+        if self.bend.stride.is_finite() {
+            let miss = before.miss(r);
+            let change = if miss < FORETOLD {
+                LENGTHEN
+            } else if miss > 1.0 {
+                LENGTHEN.recip()
+            } else {
+                1.0
+            };
+            self.stride = (self.stride * change).clamp(SHORTEST_STRIDE, MAX_GAIN);
+        }
+        let secant = Secant { dy: at - &before.at, dr: r - &before.r, noise };
         // In the noise the older ones know more.
         if self.idle == 0 && secant.dy.amax() > 10.0 * noise {
             self.secants.push(secant);
@@ -549,8 +610,9 @@ impl Anderson {
             self.trusted = self.trusted.saturating_sub(1);
         }
         // For a linear map r = M rest. Modes that change their sign do not let a residual understate an error.
-        let floor = (0.1 * r_before.norm()).max(options.accuracy);
-        if r.dot(rest) > 0.0 { r.norm() / rest.norm().max(floor) } else { 0.0 }
+        let floor = (0.1 * before.r.norm()).max(options.accuracy);
+        let left = before.left(r);
+        if left.dot(&before.rest) > 0.0 { left.norm() / before.rest.norm().max(floor) } else { 0.0 }
     }
 }
 

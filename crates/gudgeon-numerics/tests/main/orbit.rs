@@ -294,6 +294,49 @@ fn failures_are_reported() {
     }
 }
 
+/// Approaches ln 20 the slower the farther above it, and has no meaning below 1: secants from above overshoot far.
+struct Bounded {
+    admits: bool,
+    refused: usize,
+}
+impl CycleMap for Bounded {
+    fn dim(&self) -> usize {
+        1
+    }
+    fn map(&mut self, y0: &[f64], y1: &mut [f64], _: f64) -> Result<f64, EvalError> {
+        if y0[0] < 1.0 {
+            self.refused += 1;
+            return Err(EvalError::recoverable("test", "below 1"));
+        }
+        y1[0] = y0[0] + 0.3 * ((-y0[0]).exp() - 0.05);
+        Ok(1.0)
+    }
+    fn admit(&self, reached: &[f64], y: &mut [f64]) {
+        if self.admits {
+            y[0] = y[0].max(reached[0].min(1.0));
+        }
+    }
+    fn scale(&self, y: &[f64], s: &mut [f64]) {
+        s[0] = y[0].abs().max(1.0);
+    }
+}
+
+/// A start that the machine does not admit is not tried where the map says so, and taken back where it does not know.
+#[test]
+fn extrapolation_beyond_the_machine_is_taken_back() {
+    for admits in [true, false] {
+        let mut map = Bounded { admits, refused: 0 };
+        let mut y = [10.0];
+        let report = periodic_orbit(&mut map, &mut y, &options(1e-8, true)).unwrap();
+        assert_eq!(map.refused > 0, !admits, "{report:?}");
+        // The tolerance times the scale, which is 3.
+        assert!(report.converged && (y[0] - 20f64.ln()).abs() < 3e-8, "{y:?} {report:?}");
+        assert!(report.cycles >= report.history.len() + map.refused, "{report:?}");
+        // A start of the caller's own that is refused remains an error.
+        assert!(periodic_orbit(&mut map, &mut [0.5], &options(1e-8, true)).is_err());
+    }
+}
+
 /// A map whose noise is eight times what its accuracy says: plain repetition takes over when acceleration has had its cycles, and tells the band in which
 /// the states stay, which is not the tolerance and holds the orbit.
 #[test]

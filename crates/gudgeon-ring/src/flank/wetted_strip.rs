@@ -124,6 +124,7 @@ impl FlankSpec for WettedStrip {
         let state = |flank: &str| {
             StateInfo::new(format!("oil on the {flank} flank of ring{}", ctx.ring + 1))
                 .absolute(1.0)
+                .within(0.0, f64::INFINITY)
                 .changes(Signals::FLANK_OIL)
         };
         // Without crank there is nothing to integrate by.

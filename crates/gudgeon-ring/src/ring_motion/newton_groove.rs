@@ -102,7 +102,10 @@ impl RingMotionSpec for NewtonGroove {
         let unit_speed = ctx.clearance * ctx.omega;
         Ok(Box::new(Runtime {
             states: [
-                StateInfo::new(format!("lift of ring{ring}")).absolute(HEIGHT_SCALE).changes(Signals::LIFT),
+                StateInfo::new(format!("lift of ring{ring}"))
+                    .absolute(HEIGHT_SCALE)
+                    .within(0.0, 1.0)
+                    .changes(Signals::LIFT),
                 StateInfo::new(format!("axial velocity of ring{ring}"))
                     .relative(VELOCITY_SCALE)
                     .over_cycle(VELOCITY_SCALE, false)

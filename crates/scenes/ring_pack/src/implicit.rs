@@ -425,10 +425,17 @@ impl CycleMap for Cycle<'_> {
         }
         let rtol = accuracy.max(FINEST);
         let n = self.pack.layout.n;
+        self.failure = None;
         self.begin(y1);
         if let Err(e) = self.integrate(&mut y1[..n], rtol, None) {
+            let given_up = matches!(&e, IntegrateError::Eval { source, .. } if !source.is_recoverable());
             self.failure = Some(e);
-            return Err(EvalError::fatal("ring_pack", "the cycle could not be integrated"));
+            let what = "the cycle could not be integrated";
+            return Err(if given_up {
+                EvalError::fatal("ring_pack", what)
+            } else {
+                EvalError::recoverable("ring_pack", what)
+            });
         }
         // The velocity of a ring that could be held says nothing.
         self.pack.start_modes(self.pack.period(), &mut y1[..n])?;
@@ -441,6 +448,12 @@ impl CycleMap for Cycle<'_> {
         }
         if let Some(oil) = &self.pack.oil_pack {
             s[self.pack.layout.n..].fill(oil.carried_scale());
+        }
+    }
+    fn admit(&self, reached: &[f64], y: &mut [f64]) {
+        for ((y, r), info) in y.iter_mut().zip(reached).zip(&self.pack.layout.states) {
+            let (least, largest) = info.cycle_range;
+            *y = y.clamp(least.min(*r), largest.max(*r));
         }
     }
     fn bend(&self) -> Bend {
