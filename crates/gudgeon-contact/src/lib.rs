@@ -15,6 +15,7 @@
 //! | [`GreenwoodTripp`] | a pressure that grows smoothly as the surfaces approach | a coefficient times that pressure |
 //! | [`GreenwoodWilliamson`] | the same for one rough surface on a plane | the same |
 //! | [`KogutEtsion`] | the same, with summits that yield | the same |
+//! | [`LoadSharing`] | that of summits on a plane, where the film thickness is the mean gap | the same |
 //! | [`AbbottFirestone`] | the hardness times the share of a measured surface that would stand through the other | the same |
 //! | [`CrestWedge`] | a pressure proportional to the overlap of wave crests | the same |
 //! | [`LinearPenalty`] | a pressure proportional to the approach | the same |
@@ -72,6 +73,7 @@ mod greenwood_tripp;
 mod greenwood_williamson;
 mod kogut_etsion;
 mod linear_penalty;
+mod load_sharing;
 mod log_table;
 mod off;
 mod roughness_threshold;
@@ -90,6 +92,7 @@ pub use greenwood_tripp::{GreenwoodTripp, composite_modulus, composite_roughness
 pub use greenwood_williamson::GreenwoodWilliamson;
 pub use kogut_etsion::KogutEtsion;
 pub use linear_penalty::LinearPenalty;
+pub use load_sharing::LoadSharing;
 pub use off::Off;
 pub use roughness_threshold::RoughnessThreshold;
 pub use summits::SummitHeights;
@@ -104,6 +107,7 @@ gudgeon_core::link!(
     GreenwoodWilliamson,
     KogutEtsion,
     LinearPenalty,
+    LoadSharing,
     Off,
     RoughnessThreshold,
     ShearStrength,

@@ -8,5 +8,6 @@ mod boundary_friction;
 mod crest_wedge;
 mod greenwood_tripp;
 mod linear_penalty;
+mod load_sharing;
 mod models;
 mod summits;

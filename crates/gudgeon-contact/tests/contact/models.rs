@@ -25,6 +25,7 @@ fn every_model_is_described_and_its_example_runs() {
             "greenwood_williamson",
             "kogut_etsion",
             "linear_penalty",
+            "load_sharing",
             "off",
             "roughness_threshold"
         ]

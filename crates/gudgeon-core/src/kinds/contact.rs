@@ -16,7 +16,9 @@ pub trait ContactSpec: Debug + DynClone + Send + Sync {
 
 /// A running contact model.
 pub trait Contact: Debug + Send + Sync {
-    /// Nominal contact pressure \[Pa\] for each separation \[m\] of the mean planes. Never negative, falls with separation.
+    /// Nominal contact pressure \[Pa\] for each separation \[m\] of the mean planes. Never negative, falls with separation. What is called separation
+    /// here and below is how far apart the nominal shapes of the surfaces are; a model may take that for their mean gap, and says so by
+    /// [`Contact::mean_planes`].
     fn pressure(&self, separation: &[f64], pressure: &mut [f64]);
     /// Separation \[m\] above which the pressure is zero or below 1e-12 of its value at zero separation. Zero when the model
     /// carries no load.
@@ -25,6 +27,10 @@ pub trait Contact: Debug + Send + Sync {
     /// Never negative, rises with the separation and is equal to it from [`Contact::range`] on. Where it is above zero at zero
     /// separation the surfaces may approach further, and the pressure goes on. The separation itself for smooth surfaces.
     fn mean_gap(&self, separation: f64) -> f64 {
+        separation
+    }
+    /// Distance \[m\] of the mean planes at a separation, negative where they overlap. Rises with the separation.
+    fn mean_planes(&self, separation: f64) -> f64 {
         separation
     }
     /// Film thickness \[m\] that a film cannot go below, when this model is a switch and not a pressure: the surfaces then

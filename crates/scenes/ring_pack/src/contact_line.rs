@@ -60,8 +60,9 @@ pub struct MeanPlanes {
     unit: f64,
     /// Interval of the table.
     step: f64,
-    /// Separation at the points of the table \[m\].
+    /// Separation at the points of the table \[m\], as the contact model is asked.
     points: Vec<f64>,
+    /// Distance of the mean planes there \[m\].
     separation: Spline,
 }
 
@@ -78,7 +79,8 @@ impl MeanPlanes {
         let step = (top - DEEPEST) / POINTS as f64;
         let film = |k: usize| unit * (DEEPEST + step * k as f64).exp().ln_1p();
         let points: Vec<f64> = (0..=POINTS).map(|k| separation(contact, film(k))).collect();
-        let separation = Spline::new(DEEPEST, step, &points);
+        let planes: Vec<f64> = points.iter().map(|s| contact.mean_planes(*s)).collect();
+        let separation = Spline::new(DEEPEST, step, &planes);
         Self { range, unit, step, points, separation }
     }
 
