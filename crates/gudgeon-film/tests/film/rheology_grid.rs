@@ -247,11 +247,61 @@ fn averages_of_the_closed_form() {
                     };
                     let (a, b) = (change(&mut averaged), change(&mut every));
                     let apart = (a.0 / b.0 - 1.0, a.1 / b.1 - 1.0);
-                    // An average is no solution: what the documentation of the model says.
-                    assert!(apart.0.abs() < 0.06 && apart.1.abs() < 0.05, "{face:?}, {inp:?}: {a:?} {b:?}");
+                    // Squeeze and sliding are clipped together, and each alone is matched: what the documentation of the model says.
+                    assert!(apart.0.abs() < 0.03 && apart.1.abs() < 0.01, "{face:?}, {inp:?}: {a:?} {b:?}");
                 }
             }
         }
+    }
+}
+
+/// In mixed lubrication, where the face drives the flow by what the surfaces leave of its rise, and where they carry it unequally: load and drags of a face
+/// that slides against a rough liner, over those of the plain film, are those of the grid.
+#[test]
+fn averages_of_the_closed_form_near_contact() {
+    let edge = FaceProfile::Table { length: 2.6e-3, drops: vec![0.0, 35e-6] };
+    let closed = ClosedFormFace { cavitation: Cavitation::HalfSommerfeld, cavity_shear: CavityShear::Full };
+    let fine = GriddedFace { refine: 2, points: 200 };
+    for (liner, body) in [(0.2e-6, 0.2e-6), (0.3e-6, 0.1e-6), (0.1e-6, 0.3e-6)] {
+        let surfaces = rough(liner, body);
+        let specs = RheologySpecs { roughness: Some(&surfaces), ..RheologySpecs::default() };
+        let rheology = specs.build().expect("models");
+        // A third, two thirds, 1.3, 2.3 roughness heights; the first with the part that its 16 places a side miss of a film as long as two of them.
+        for (h, part) in [(1e-7, 0.12), (2e-7, 0.02), (4e-7, 0.01), (6.6e-7, 0.01)] {
+            for face in [&barrel(3e-3, 6e-6), &edge] {
+                let ctx = FaceCtx { face };
+                let inp = FaceIn { h, u: -3.0, p_bottom: 2e5, p_top: 3e5, p_cav: AMBIENT, mu: 0.008 };
+                let [averaged, every] = [&closed as &dyn HydrodynamicsSpec, &fine].map(|s| {
+                    let with = s.build_with(&ctx, &rheology).expect("a film").evaluate(&inp, 0.0);
+                    let without = s.build(&ctx).expect("a film").evaluate(&inp, 0.0);
+                    let (with, without) = (with.expect("a film"), without.expect("a film"));
+                    [with.load / without.load, with.liner_shear / without.liner_shear]
+                });
+                for (a, b) in averaged.into_iter().zip(every) {
+                    assert!((a / b - 1.0).abs() < part, "{face:?}, {liner}, {h}: {averaged:?} {every:?}");
+                }
+            }
+        }
+    }
+}
+
+/// What a face lets through is the flow of the grid's equation: between flat surfaces `u h_c/2`.
+#[test]
+fn averages_let_through_what_the_liner_carries() {
+    let face = FaceProfile::Table { length: 1e-3, drops: vec![0.0; 11] };
+    let surfaces = rough(0.3e-6, 0.1e-6);
+    let specs = RheologySpecs { roughness: Some(&surfaces), ..RheologySpecs::default() };
+    let rheology = specs.build().expect("models");
+    let mut film = ClosedFormFace::default().build_with(&FaceCtx { face: &face }, &rheology).expect("a film");
+    let mut flow = RoughFlow::new(1);
+    for separation in [-1e-7, 3e-7, 2e-6] {
+        surfaces.build().expect("builds").flow(&[separation], &mut flow).expect("a film");
+        let p = AMBIENT + 1e5;
+        let inp = FaceIn { h: flow.content[0], u: -4.0, p_bottom: p, p_top: p, p_cav: AMBIENT, mu: 0.01 };
+        let flux = film.evaluate(&inp, 0.0).expect("a film").flux;
+        // The separation is found to 1e-14 of the content, a fifth of the roughness deep in the overlap.
+        assert!((flux / (0.5 * inp.u * flow.transport[0]) - 1.0).abs() < 1e-11, "{separation}: {flux}");
+        assert_eq!(film.forces(&inp, 0.0).expect("a film").flux, flux);
     }
 }
 

@@ -27,9 +27,12 @@ use crate::hydrodynamics::check_face::check_face;
 /// Fully flooded: both edges are covered with oil at the gas pressure next to them. An edge pressure below `p_cav` counts
 /// as `p_cav`, except with `full_sommerfeld`. What happens where oil would have to pull is the choice of `cavitation`.
 ///
-/// With `roughness` or `shear_thinning` the pressures have one viscosity and the shear another, averages over the wetted part of the face:
-/// `μ_p = ∫ μ(γ̇) h²/(φ_x h_p³) dx / ∫ dx/h`, `μ_s = ∫ μ(γ̇) φ_f/h_p dx / ∫ dx/h`, `γ̇ = u/h_p`. What rough surfaces carry unequally (`φ_s`, `φ_fs`) is
-/// left out. `gridded_face` has the values of every place; from three roughness heights on, loads are within 6 % of those with them and drags within 5 %.
+/// With `roughness` or `shear_thinning` the pressures have one viscosity `μ_p` and one sliding speed `t u`, the drags factors of their own, such that a film
+/// that is squeezed and one that slides press and drag as with the values of every place: `μ_p = S/S_0`, `t = W/(μ_p W_0)`, with
+/// `S = ∫ r x (Y - Ȳ) dx`, `W = ∫ max(0, ±∫ r (h_c - h̄_c) dx') dx`, `r = μ(γ̇)/(φ_x h_p³)`, `γ̇ = u/h_p`, over those of the smooth film; `φ_s` is in `h_c`, `φ_fs`
+/// in the drags. `gridded_face` has the values of every place. Beside it loads and drags of sliding barrels and tapers are within 1 % from 1.3 roughness heights
+/// on, within 2 % at two thirds of one and within 12 % at a third; a taper behind a land is within 3, 15 and 30 %. Where squeeze and a face that draws the film
+/// apart act together so near to contact, the little load that is left is not known.
 ///
 /// Good to 12 digits for a film that covers a fair part of the face; the load of a sliver at an edge to 12 digits of the
 /// edge pressure times the face length.
@@ -52,7 +55,7 @@ pub struct ClosedFormFace {
                 same flux at reformation;  swift_stieber: p = p_cav from the rupture to the trailing edge;  \
                 half_sommerfeld: max(p, p_cav);  load = int (p - p_cav) dx;  shear = int (mu u/h -+ h p'/2) dx, \
                 in the cavity weighted with the filled fraction",
-    validity = "Fully flooded, narrow face (no flow along the circumference), one viscosity: flow factors and shear thinning as averages. \
+    validity = "Fully flooded, narrow face (no flow along the circumference), one viscosity: flow factors and shear thinning as averages over the face. \
                A face that waves up and down has one film under swift_stieber, the one at the leading edge. \
                The cavity has no history: transients shorter than the passage over the face are not resolved.",
     references = ["reynolds1886", "jakobsson1957", "cameron1966", "dowson1979"],
