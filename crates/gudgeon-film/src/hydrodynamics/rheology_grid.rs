@@ -313,7 +313,8 @@ impl RheologyGrid {
             self.solve(inp, hdot, rounds)?;
             let (found, slope) = self.load_of();
             let excess = found - load;
-            if excess.abs() <= FOUND * (load.abs() + found.abs()) {
+            // A small load is the difference of what sliding and squeeze do, and no better known than those.
+            if excess.abs() <= FOUND * (load.abs() + found.abs() + (hdot * slope).abs()) {
                 return Ok(hdot);
             }
             if excess > 0.0 {
@@ -322,6 +323,9 @@ impl RheologyGrid {
                 less = hdot;
             }
             let newton = hdot - excess / slope;
+            if newton == hdot {
+                return Ok(hdot);
+            }
             let next = if slope < 0.0 && newton > greater && newton < less {
                 newton
             } else if greater.is_finite() && less.is_finite() {
