@@ -205,3 +205,63 @@ fn noise_on_a_trace_is_taken_off_and_told() {
         assert!(r.solver.counters["steps"] < 2 * smooth.solver.counters["steps"], "{:?}", r.solver.counters);
     }
 }
+
+/// Films and friction by stroke, and the first lift after firing, are what dense rows show.
+#[test]
+fn strokes_and_lifts_agree_with_dense_rows() {
+    let r = run_case(CASE, &["outputs.series_step=0.05 deg"]);
+    let films = &r.tables["films"];
+    let told = |name: &str| films.columns.iter().find(|c| c.name == name).expect("a column").values.clone();
+    let (theta, per_stroke) = (&r.series.axis.values, 3600);
+    for i in 1..=3 {
+        let [h, load, friction] =
+            ["h_min", "radial_load", "friction_force"].map(|name| column(&r, &format!("ring{i}.{name}")));
+        let of_ring = |name: &str| told(&format!("ring{i}.{name}"));
+        for stroke in 0..4 {
+            let rows = stroke * per_stroke..=(stroke + 1) * per_stroke;
+            let thinnest = rows.clone().min_by(|&a, &b| h[a].total_cmp(&h[b])).expect("rows");
+            // As for the thinnest film of the cycle; the angle to the rows about it.
+            assert!((of_ring("h_min")[stroke] / h[thinnest] - 1.0).abs() < 1e-4, "ring {i}, stroke {stroke}");
+            assert!(
+                (of_ring("h_min_angle")[stroke] - theta[thinnest]).abs() < 0.1,
+                "ring {i}, stroke {stroke}"
+            );
+            let most = rows.map(|k| friction[k].abs()).fold(0.0, f64::max);
+            // Beside a reversal friction rises from nothing within a tenth of a degree, two rows: a twentieth of it from the last row to the highest.
+            assert!((of_ring("friction_max")[stroke] / most - 1.0).abs() < 0.05, "ring {i}, stroke {stroke}");
+            // The middle is a row; both are read from the dense output of the same step.
+            let middle = stroke * per_stroke + per_stroke / 2;
+            assert!((of_ring("h_mid")[stroke] / h[middle] - 1.0).abs() < 1e-5, "ring {i}, stroke {stroke}");
+            let coefficient = friction[middle].abs() / load[middle];
+            let got = of_ring("friction_coefficient_mid")[stroke];
+            // A force of the instant against the polynomial through five samples of a step that is up to ten degrees long.
+            assert!((got / coefficient - 1.0).abs() < 1e-2, "ring {i}, stroke {stroke}: {got} {coefficient}");
+        }
+        let mean = |name: &str| of_ring(name).iter().sum::<f64>() / 4.0;
+        let result = |name: &str| value(&r, &format!("ring{i}.{name}"));
+        // Sums of four numbers.
+        assert!((result("h_mid") / (1e6 * mean("h_mid")) - 1.0).abs() < 1e-14);
+        assert!((result("friction_coefficient_mid") / mean("friction_coefficient_mid") - 1.0).abs() < 1e-14);
+        assert_eq!(result("friction_max"), of_ring("friction_max").into_iter().fold(0.0, f64::max));
+        assert!(of_ring("friction_max_angle").contains(&result("friction_max_angle")));
+        assert!(of_ring("h_min_angle").contains(&result("h_min_angle")));
+    }
+    let lifts = (1..=3).filter(|i| lift_is_in_the_rows(&r, *i)).count();
+    assert!(lifts > 0, "no ring lifts after firing");
+}
+
+/// Whether ring `i` leaves its lower flank after the firing dead centre; the rows show when, and with which pressures.
+fn lift_is_in_the_rows(r: &RunResult, i: usize) -> bool {
+    let e = column(r, &format!("ring{i}.position"));
+    let above = if i == 1 { "cylinder.p".to_owned() } else { format!("land{i}.p") };
+    let (above, below) = (column(r, &above), column(r, &format!("land{}.p", i + 1)));
+    let leaves = |k: &usize| e[*k] <= 0.1 && e[*k + 1] > 0.1;
+    let Some(k) = (7200..e.len() - 1).find(leaves) else { return false };
+    let angle = value(r, &format!("ring{i}.lift_angle"));
+    assert!((angle - 0.05 * k as f64 - 0.025).abs() <= 0.025 + 1e-9, "ring {i} at {angle}");
+    // Pressures change by up to 10 % a degree.
+    let ratio = value(r, &format!("ring{i}.lift_pressure_ratio"));
+    assert!((ratio / (below[k] / above[k]) - 1.0).abs() < 5e-3, "ring {i}: {ratio}");
+    let event = format!("leaves the lower flank, pressure below {ratio:.3} of that above");
+    r.events.iter().any(|e| e.subject == format!("ring{i}") && e.what == event)
+}

@@ -13,7 +13,7 @@ use std::f64::consts::PI;
 
 use gudgeon_numerics::panel::{MAX_NODES, Rule, TRAPEZIUM};
 
-use super::film_strokes::StrokeFilm;
+use super::film_strokes::{StepFilm, StrokeFilm};
 use super::pack::Pack;
 
 /// The highest value of something and the crank angle \[rad\] it comes at.
@@ -51,6 +51,8 @@ pub struct Change {
     pub from: Seat,
     /// To where.
     pub to: Seat,
+    /// Pressure of the land below over that above, then.
+    pub ratio: f64,
 }
 
 /// Changes kept of each ring; those of a ring that flutters are counted.
@@ -83,6 +85,8 @@ pub struct RingMeasure {
     pub arrivals: u32,
     /// Its first changes.
     pub changes: Vec<Change>,
+    /// When it first left the flank that it seals after the firing dead centre, or else in the cycle.
+    pub lift: Option<Change>,
     seat: Option<Seat>,
     /// The flank that it seals.
     home: Seat,
@@ -109,6 +113,8 @@ struct Samples {
     mu: Column,
     ratio: Column,
     wetted: Column,
+    friction: Column,
+    load: Column,
 }
 
 /// Everything measured over a cycle.
@@ -116,6 +122,8 @@ struct Samples {
 pub struct Measures {
     rule: Rule,
     seat: f64,
+    /// Crank angle of the firing dead centre \[rad\].
+    firing: f64,
     omega: f64,
     /// The rings.
     pub rings: Vec<RingMeasure>,
@@ -152,6 +160,7 @@ impl Measures {
             lifted: 0.0,
             arrivals: 0,
             changes: Vec::new(),
+            lift: None,
             seat: None,
             home: Seat::Lower,
             samples: Samples::default(),
@@ -166,6 +175,7 @@ impl Measures {
         Self {
             rule,
             seat,
+            firing: pack.period() - 2.0 * PI,
             omega: pack.omega,
             rings,
             lands: vec![Peak::default(); n.saturating_sub(1)],
@@ -206,6 +216,8 @@ impl Measures {
             s.difference[k] = at.p_below - at.p_above;
             s.mu[k] = at.mu;
             s.ratio[k] = at.p_below / at.p_above;
+            s.friction[k] = at.friction.abs();
+            s.load[k] = at.load * 2.0 * PI * place.r_outer * pack.geo.rings[i].rails as f64;
             s.wetted[k] = pack.oil_pack.as_ref().map_or(0.0, |o| o.ring(i, pack.at.piston.v).wetted);
         }
     }
@@ -222,13 +234,15 @@ impl Measures {
         let stroke = (0.5 * (t0 + t1) / PI).floor() as usize % 4;
         for (i, ring) in self.rings.iter_mut().enumerate() {
             ring.integrate(rule, &self.speed, stroke, dt);
-            ring.by_stroke[stroke].step(rule, &ring.samples.ln_h[..n], (t0, t1));
+            let s = &ring.samples;
+            let film = StepFilm { ln_h: &s.ln_h[..n], friction: &s.friction[..n], load: &s.load[..n] };
+            ring.by_stroke[stroke].step(rule, film, (t0, t1));
             if pack.geo.rings[i].has_clearance {
                 let mut e = ring.samples.e;
                 if pack.rings[i].is_decided() {
                     e.fill(ring.samples.e[0]);
                 }
-                ring.seats(rule, &e[..rule.nodes.len()], self.seat, (t0, t1), self.omega);
+                ring.seats(rule, &e[..n], self.seat, (t0, t1), (self.omega, self.firing));
             }
         }
     }
@@ -261,6 +275,8 @@ impl Measures {
                 &mut s.mu,
                 &mut s.ratio,
                 &mut s.wetted,
+                &mut s.friction,
+                &mut s.load,
             ] {
                 pass(c);
             }
@@ -268,7 +284,8 @@ impl Measures {
     }
 }
 
-fn raise(peak: &mut Peak, rule: Rule, values: &[f64], t0: f64, t1: f64) {
+/// Raises `peak` to what the polynomial through `values` reaches in the step from `t0` to `t1` \[rad\].
+pub fn raise(peak: &mut Peak, rule: Rule, values: &[f64], t0: f64, t1: f64) {
     if let Some((x, value)) = rule.maximum(values, peak.value) {
         *peak = Peak { theta: t0 + x * (t1 - t0), value };
     }
@@ -301,7 +318,14 @@ impl RingMeasure {
     }
 
     /// Follows the seat through a step in which the ring is at `e`.
-    fn seats(&mut self, rule: Rule, e: &[f64], share: f64, (t0, t1): (f64, f64), omega: f64) {
+    fn seats(
+        &mut self,
+        rule: Rule,
+        e: &[f64],
+        share: f64,
+        (t0, t1): (f64, f64),
+        (omega, firing): (f64, f64),
+    ) {
         // Where the ring comes to a flank's film or leaves it, in order.
         let mut cuts = [1.0; MAX_CUTS];
         let mut count = 0;
@@ -324,7 +348,8 @@ impl RingMeasure {
             } else {
                 Seat::Between
             };
-            self.settle(seat, t0 + from * (t1 - t0));
+            let ratio = rule.value(&self.samples.ratio[..rule.nodes.len()], from);
+            self.settle(seat, t0 + from * (t1 - t0), ratio, firing);
             if seat != self.home {
                 self.lifted += (to - from) * (t1 - t0) / omega;
             }
@@ -332,14 +357,19 @@ impl RingMeasure {
         }
     }
 
-    fn settle(&mut self, seat: Seat, theta: f64) {
+    fn settle(&mut self, seat: Seat, theta: f64, ratio: f64, firing: f64) {
         let from = self.seat.replace(seat).unwrap_or(seat);
         if from == seat {
             return;
         }
         self.arrivals += u32::from(seat != Seat::Between);
+        let change = Change { theta, from, to: seat, ratio };
+        let waits = self.lift.is_none_or(|first| first.theta < firing && theta >= firing);
+        if from == self.home && waits {
+            self.lift = Some(change);
+        }
         if self.changes.len() < KEPT {
-            self.changes.push(Change { theta, from, to: seat });
+            self.changes.push(change);
         }
     }
 }

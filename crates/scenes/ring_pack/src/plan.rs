@@ -130,8 +130,14 @@ fn land_results(k: usize, land: &str) -> Vec<ResultInfo> {
 
 /// Of ring `i` between the flanks.
 fn seat_results(i: usize, ring: &str, flank: &str) -> Vec<ResultInfo> {
-    let add = |name, what| info(format!("ring{i}.{name}"), "1", Needs::Axial, what);
+    let told = |name, unit, what| info(format!("ring{i}.{name}"), unit, Needs::Axial, what);
+    let add = |name, what| told(name, "1", what);
+    let lift = format!(
+        "{ring} comes off its {flank} flank, by `outputs.seat` of its clearance, first after the firing dead centre"
+    );
     vec![
+        add("lift_pressure_ratio", format!("pressure below over that above when {lift}; 0: never")),
+        told("lift_angle", "deg", format!("crank angle at which {lift}; 0: never")),
         add(
             "seat_changes",
             format!(
@@ -160,6 +166,17 @@ fn film_results(i: usize, ring: &str) -> Vec<ResultInfo> {
         add("h_min", "um", format!("thinnest film under {ring}")),
         add("h_max", "um", format!("thickest film under {ring}")),
         add("h_mean", "um", format!("mean film under {ring}")),
+        add("h_min_angle", "deg", format!("crank angle of the thinnest film under {ring}")),
+        add("h_mid", "um", format!("film under {ring} in the middle of a stroke, mean of the strokes")),
+        add(
+            "friction_coefficient_mid",
+            "1",
+            format!(
+                "friction force over radial load of {ring} in the middle of a stroke, mean of the strokes"
+            ),
+        ),
+        add("friction_max", "N", format!("largest friction force of {ring}, whole circumference")),
+        add("friction_max_angle", "deg", format!("crank angle of the largest friction force of {ring}")),
         add("friction_power", "W", format!("mean friction power of {ring}, one cylinder")),
         add("fmep", "bar", format!("friction mean effective pressure of {ring}")),
         add(

@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use gudgeon_core::result::{Event, Value};
 use indexmap::IndexMap;
 
+use super::film_strokes;
 use super::measure::{Measures, Peak, RingMeasure, Seat};
 use super::pack::Pack;
 use super::plan::{Told, catalogue};
@@ -119,6 +120,11 @@ impl Cycle {
             "fmep" => mean_pressure(pack, &self.totals.friction_work, i),
             "fmep_boundary" => mean_pressure(pack, &self.totals.boundary_work, i),
             "reverse_pressure_ratio" => m.reverse,
+            "lift_pressure_ratio" => m.lift.map_or(0.0, |c| c.ratio),
+            "lift_angle" => m.lift.map_or(0.0, |c| c.theta.to_degrees()),
+            "h_min_angle" | "h_mid" | "friction_coefficient_mid" | "friction_max" | "friction_max_angle" => {
+                film_strokes::result(m, pack.period(), what)
+            }
             "oil_face_combustion" => strokes[2] - strokes[1],
             "oil_face_gas_exchange" => strokes[0] - strokes[3],
             "oil_gap" => gap_oil(pack, i, m),
@@ -151,7 +157,8 @@ impl Cycle {
             }
             for c in &m.changes {
                 if c.from != Seat::Between {
-                    add(c.theta, subject.clone(), format!("leaves the {} flank", flank(c.from)));
+                    let ratio = format!("pressure below {:.3} of that above", c.ratio);
+                    add(c.theta, subject.clone(), format!("leaves the {} flank, {ratio}", flank(c.from)));
                 }
                 if c.to != Seat::Between {
                     add(c.theta, subject.clone(), format!("seats on the {} flank", flank(c.to)));

@@ -71,6 +71,8 @@ impl SceneCase for RingPackCase {
         if pack.plan.film {
             let films = film_strokes::table(&solved.cycle.measures, pack.period());
             result.tables.insert("films".into(), films);
+            let names: Vec<String> = pack.names.rings.iter().map(|(name, _)| name.clone()).collect();
+            result.figures.push(film_strokes::figure(&solved.cycle.measures, pack.period(), &names));
         }
         if let Some(liner) = solved.liner {
             let lines =
