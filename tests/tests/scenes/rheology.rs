@@ -6,7 +6,7 @@ use gudgeon_core::result::RunResult;
 const CASE: &str = "turbo-diesel-120";
 /// Seated rings: what films and friction do is not mixed with what they do to the motion in the groove, which has more than one periodic state.
 const SEATED: &str = "models.ring_motion={model=\"seated\"}";
-/// So many nodes that a ring which gas lifts off finds a velocity: the panels at the edges carry their pressure however fast it goes.
+/// So many nodes that the panels at the edges, which carry their pressure however fast a ring is lifted off, are a small part of the face.
 const GRID: &str = "models.hydrodynamics={model=\"gridded_face\",points=41}";
 const THIN: &str = "models.shear_thinning={model=\"carreau\",critical_shear_rate=\"1e6 1/s\",exponent=0.7,high_shear_ratio=0.5}";
 const ROUGH: &str =
