@@ -559,10 +559,11 @@ fn comparison_work(out: &mut String, ran: &[&VariantEntry], base: Option<&Varian
 /// How well the balances close, where one is known.
 fn comparison_balances(out: &mut String, ran: &[&VariantEntry]) {
     type Closure = (&'static str, fn(&Summary) -> Option<f64>);
-    let balances: [Closure; 6] = [
+    let balances: [Closure; 7] = [
         ("gas mass closure", |r| r.balance.gas_mass),
         ("oil mass closure", |r| r.balance.oil_mass),
         ("flank oil closure", |r| r.balance.flank_oil),
+        ("skirt oil closure", |r| r.balance.skirt_oil),
         ("energy closure", |r| r.balance.energy),
         ("momentum closure", |r| r.balance.momentum),
         ("gas energy closure", |r| r.balance.gas_energy),

@@ -194,6 +194,7 @@ pub(crate) fn balance_section(balance: &BalanceSheet) -> String {
         ("Gas mass", "(in − out − stored) / throughput", balance.gas_mass),
         ("Oil mass", "(in − out − stored) / throughput", balance.oil_mass),
         ("Oil on ring flanks", "(in − out − stored) / throughput", balance.flank_oil),
+        ("Oil in the gaps of the skirt", "(in − out − stored) / (in + stored before)", balance.skirt_oil),
         (
             "Energy",
             "work of all forces on the rings less the change of their kinetic energy, by the sum of magnitudes",

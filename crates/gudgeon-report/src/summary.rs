@@ -40,6 +40,8 @@ pub(crate) struct BalanceSheet {
     pub oil_mass: Option<f64>,
     #[serde(default)]
     pub flank_oil: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub skirt_oil: Option<f64>,
     pub energy: Option<f64>,
     pub momentum: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -159,6 +161,7 @@ impl Summary {
                 gas_mass: finite(run.balance.gas_mass),
                 oil_mass: finite(run.balance.oil_mass),
                 flank_oil: finite(run.balance.flank_oil),
+                skirt_oil: finite(run.balance.skirt_oil),
                 energy: finite(run.balance.energy),
                 momentum: finite(run.balance.momentum),
                 gas_energy: finite(run.balance.gas_energy),

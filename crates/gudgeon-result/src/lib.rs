@@ -128,6 +128,9 @@ pub struct Balance {
     /// Oil on ring flanks: (in - out - stored) / throughput.
     #[serde(default)]
     pub flank_oil: Option<f64>,
+    /// Oil in the gaps of the skirt: (in - out - stored) / (in + stored before).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub skirt_oil: Option<f64>,
     /// Work of all forces on the rings less the change of their kinetic energy, by the sum of the magnitudes.
     pub energy: Option<f64>,
     /// Impulse of all forces on the rings less the change of their momentum, by the sum of the magnitudes.

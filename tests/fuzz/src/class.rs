@@ -34,7 +34,7 @@ pub enum Class {
     Right,
 }
 
-/// Most that a mass balance is open.
+/// Most that a balance of mass or of oil is open.
 const MASS: f64 = 1e-6;
 /// Most that a balance of energy or momentum is open: it goes with the tolerance, not with rounding.
 const MOTION: f64 = 1e-2;
@@ -126,7 +126,8 @@ pub fn classify(o: &Outcome) -> (Class, String) {
     if !o.notes.is_empty() {
         return (Class::Flagged, all(&o.notes));
     }
-    let limit = |name: &str| if name.ends_with("mass") { MASS } else { MOTION };
+    let of_mass = |name: &str| ["mass", "oil"].iter().any(|end| name.ends_with(end));
+    let limit = |name: &str| if of_mass(name) { MASS } else { MOTION };
     let open = |(name, v): &&(String, f64)| v.abs() > limit(name);
     if let Some((name, v)) = o.balance.iter().find(open) {
         return (Class::Unbalanced, format!("balance of {name}: {v:.1e}"));
@@ -180,6 +181,7 @@ mod tests {
             (Class::NotANumber, end(End::NotANumber(text()))),
             (Class::NotANumber, Outcome { not_finite: one(), ..o() }),
             (Class::Unbalanced, balance("gas mass", 2e-6)),
+            (Class::Unbalanced, balance("skirt oil", 2e-6)),
             (Class::Unbalanced, balance("energy", -2e-2)),
             (Class::Right, balance("energy", 2e-3)),
             (Class::ChangedByTolerance, Outcome { moved: one(), ..o() }),

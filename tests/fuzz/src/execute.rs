@@ -178,6 +178,7 @@ fn judge(checked: &Checked, r: &RunResult, o: &mut Outcome) {
         ("gas mass", b.gas_mass),
         ("oil mass", b.oil_mass),
         ("flank oil", b.flank_oil),
+        ("skirt oil", b.skirt_oil),
         ("energy", b.energy),
         ("momentum", b.momentum),
     ];

@@ -63,6 +63,7 @@ fn text(r: &RunResult) -> String {
         ("gas energy", b.gas_energy),
         ("oil mass", b.oil_mass),
         ("flank oil", b.flank_oil),
+        ("skirt oil", b.skirt_oil),
         ("energy", b.energy),
         ("momentum", b.momentum),
     ];

@@ -270,6 +270,7 @@ pub fn run(n: usize) -> RunResult {
             gas_mass: Some(2.3e-9),
             oil_mass: None,
             flank_oil: None,
+            skirt_oil: None,
             energy: Some(-4.1e-7),
             momentum: Some(1.2e-8),
             gas_energy: None,

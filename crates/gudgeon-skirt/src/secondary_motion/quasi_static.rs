@@ -21,7 +21,7 @@ pub struct QuasiStatic {}
     name = "quasi_static",
     summary = "films, contact and rod in balance at every instant; the inertia across the bore is left out",
     equations = "0 = film + contact + rod + gas and inertia about the pin + friction, solved for (de_t/dt, de_b/dt)",
-    validity = "A film on both sides; the forces of lateral inertia (m e/dt^2) small against the side force.",
+    validity = "Full films on both sides, so none that keep their oil; the forces of lateral inertia (m e/dt^2) small against the side force.",
     references = ["loureiro2009"],
     example = "",
 )]

@@ -25,7 +25,8 @@ pub struct FillHistory {
     pub room_above: Area<NonNegative>,
     /// Film in the gap at the start of the first cycle, where there is room for it.
     pub initial: Length<NonNegative>,
-    /// Crank angle over which oil is moved and booked at once, 0.05 to 10 degrees; a whole number of them fits into the cycle.
+    /// Crank angle over which oil is moved and booked at once, 0.05 to 10 degrees; a whole number of them fits into the cycle. A skirt that runs short of oil crosses its
+    /// clearance in flight, and the film that it meets fills within one step: its pressure needs steps in which an edge moves by less than a third of the clearance.
     #[schemars(extend("x-refine" = { "group": "oil step", "factor": 0.5 }))]
     pub step: PosAngle,
 }
@@ -52,7 +53,7 @@ impl Default for FillHistory {
     summary = "films keep their oil from instant to instant, fed by splash and by the oil ring",
     equations = "d(theta h)/dt + div(u h theta/2 - h^3/(12 mu) grad p) = 0;  p >= 0, theta <= 1, p (1 - theta) = 0;  \
                 at an edge that meets a film delta on the liner: theta = min(1, 2 delta/h);  flanks: p = 0, nothing comes in",
-    validity = "Oil moves with the liner and in the gap only: no mist, no oil through holes of the skirt, no film kept on the skirt itself. \
+    validity = "Motions with inertia, or none: a gap that is not full resists nothing. Oil moves with the liner and in the gap only: no mist, no oil through holes of the skirt, no film kept on the skirt itself. \
                All oil in a gap that is not full moves at half the speed of the liner, so a stroke of two lengths of the skirt \
                 empties a skirt that meets none on the way up. First order in the step and in the spacing of the film grid. Cavities at the pressure of the crankcase.",
     references = ["jakobsson1957", "elrod1981"],

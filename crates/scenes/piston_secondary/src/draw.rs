@@ -37,7 +37,7 @@ pub fn figures(a: &Assembly, record: &Record, result: &mut RunResult) {
         let table = format!("{}_pressure", names[k]);
         result.tables.insert(table.clone(), over_side(side, peak));
         result.figures.push(Figure {
-            title: format!("Pressure on the {} at {}°", words[k], peak.theta_deg),
+            title: format!("Pressure on the {} at {:.1}°", words[k], peak.theta_deg),
             hint: "when it is highest; angle from the middle of the side, height above the lower edge".into(),
             table,
             kind: FigureKind::Map { x: "angle".into(), y: "height".into(), value: "p".into() },

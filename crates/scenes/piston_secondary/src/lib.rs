@@ -10,6 +10,7 @@ pub mod case;
 mod draw;
 pub mod equations;
 mod explained;
+mod film_strokes;
 pub mod implicit;
 mod impossible;
 pub mod layout;

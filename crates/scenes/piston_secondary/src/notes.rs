@@ -15,6 +15,10 @@ const INERTIA_TOLD: f64 = 0.02;
 /// 40, 64) and grows with it (620, 990, 1260 bar).
 const RESOLVED: f64 = 2.0;
 
+/// Part of the clearance that an edge may cross in a step of the oil. Films that it meets there are full all at once, and their pressure goes with the step: of a skirt
+/// that crosses a quarter, the highest pressure changes by 0.1 % on an eighth of the step; of one that crosses 0.44, it falls by a quarter.
+const CROSSED: f64 = 0.3;
+
 const SIDES: [(&str, &str); 2] = [("thrust", "thrust side"), ("anti_thrust", "anti-thrust side")];
 
 /// Notes of a cycle; `peaks` are the crank angles \[rad\] of the highest film pressure of each side.
@@ -26,6 +30,7 @@ pub fn notes(survey: &Survey, look: &mut Look<'_>, peaks: [Option<f64>; 2]) -> R
     if look.a.motion.moves() && !look.a.motion.has_inertia() {
         all.extend(inertia(survey, look)?);
     }
+    all.extend(long_steps(survey, look));
     for (side, peak) in peaks.into_iter().enumerate() {
         all.extend(overlap(survey, look, side)?);
         all.extend(held_open(survey, look, side)?);
@@ -60,6 +65,22 @@ fn inertia(survey: &Survey, look: &mut Look<'_>) -> Result<Option<Note>, EvalErr
             .amount("inertia_force", most, "N")
             .amount("inertia_share", part, "1")
     }))
+}
+
+/// Steps of the oil in which the piston crosses much of its clearance.
+fn long_steps(survey: &Survey, look: &Look<'_>) -> Option<Note> {
+    let oil = look.trajectory.oil.as_ref().filter(|o| look.a.motion.moves() && !o.steps.is_empty())?;
+    let step = look.a.period / oil.steps.len() as f64;
+    let [top, bottom] = [index("skirt.e_top_rate"), index("skirt.e_bottom_rate")];
+    let fastest = survey.values(|r| r[top].abs().max(r[bottom].abs())).into_iter().fold(0.0, f64::max);
+    let crossed = fastest * step / look.a.omega() / look.a.clearance;
+    (crossed > CROSSED).then(|| {
+        let text = format!(
+            "An edge of the skirt crosses up to {crossed:.2} of the clearance in a step of its oil ({:.3} deg): the films that it meets fill all at once, and the highest pressure there goes with the step. Make `models.skirt_oil.step` smaller.",
+            step.to_degrees()
+        );
+        Note::caution("oil_step_too_long", text).amount("part_of_clearance", crossed, "1")
+    })
 }
 
 /// Mean planes inside one another.

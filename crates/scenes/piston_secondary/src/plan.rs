@@ -87,6 +87,7 @@ pub fn catalogue(case: &PistonSecondaryCase, period_deg: f64, inertial: bool) ->
         ("friction_work", "J", "friction work of a cycle, one cylinder"),
         ("friction_power", "W", "friction power, one cylinder"),
         ("fmep", "bar", "friction work over swept volume"),
+        ("fmep_boundary", "bar", "the part of fmep that solid contact takes; films take the rest"),
         ("engine_friction_power", "W", "friction power of all cylinders"),
         ("contact_work", "J", "part of the friction work that rubbing does"),
         ("contact_force_max", "N", "largest force of solid contact on a side"),

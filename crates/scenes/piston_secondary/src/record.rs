@@ -8,7 +8,7 @@ use super::assembly::Assembly;
 use super::case::PistonSecondaryCase;
 use super::places::{angles, places};
 use super::plan::tidy;
-use super::row::{COLUMNS, INERTIA, Look, OIL, YIELD, index};
+use super::row::{COLUMNS, FILLED, INERTIA, Look, OIL, YIELD, index};
 use super::trajectory::Trajectory;
 use gudgeon_scene::RunError;
 
@@ -79,6 +79,7 @@ impl Record {
                 (flows || !OIL.contains(&k))
                     && (look.a.elastic || k != YIELD)
                     && (look.a.motion.has_inertia() || k != INERTIA)
+                    && (look.trajectory.oil.is_some() || k != FILLED)
             })
             .collect();
         Ok(Self { grid, columns, shown, maps, peak })

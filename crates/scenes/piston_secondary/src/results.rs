@@ -175,6 +175,7 @@ impl Teller<'_, '_, '_> {
         self.put("friction_work", work);
         self.put("friction_power", mean);
         self.put("fmep", 1e-5 * work / swept);
+        self.put("fmep_boundary", 1e-5 * contact / swept);
         self.put("engine_friction_power", mean * f64::from(case.engine.cylinders));
         self.put("contact_work", contact);
         let made = oil.iter().sum::<f64>();

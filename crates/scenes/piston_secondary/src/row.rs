@@ -7,7 +7,7 @@ use super::trajectory::{Between, Trajectory};
 use gudgeon_scene::RunError;
 
 /// Columns of the series: name and unit.
-pub const COLUMNS: [(&str, &str); 33] = [
+pub const COLUMNS: [(&str, &str); 34] = [
     ("piston.v", "m/s"),
     ("piston.a", "m/s2"),
     ("cylinder.p", "Pa"),
@@ -41,13 +41,16 @@ pub const COLUMNS: [(&str, &str); 33] = [
     ("skirt.oil_down", "m3/s"),
     ("skirt.oil_aside", "m3/s"),
     ("skirt.yield", "m"),
+    ("skirt.oil_filled", "1"),
 ];
-/// Of these, the ones of inertia across the bore, of oil flow and of yielding, which are not always there.
+/// Of these, the ones of inertia across the bore, of oil flow, of yielding and of the oil that is kept, which are not always there.
 pub const INERTIA: usize = 16;
 /// Flow of oil over the edges.
 pub const OIL: std::ops::Range<usize> = 29..32;
 /// Yielding of the skirt.
 pub const YIELD: usize = 32;
+/// Part of the gaps that is filled.
+pub const FILLED: usize = 33;
 
 /// Values of all columns at an instant.
 pub type Row = [f64; COLUMNS.len()];
@@ -62,7 +65,7 @@ pub fn index(name: &str) -> usize {
 const ASIDE: f64 = 1e-9;
 /// Part of a velocity, and of a clearance per radian, by which that of a balance may differ from that of the states.
 const NEAR: f64 = 0.1;
-/// Crank angle within which a step of the oil has begun \[rad\]: what rounding leaves of the ends of steps.
+/// Crank angle within which a step of the oil has not begun \[rad\]: what rounding leaves of the ends of steps.
 const SAME: f64 = 1e-11;
 
 /// A cycle and the piston that made it, looked at.
@@ -139,10 +142,11 @@ impl<'a> Look<'a> {
         self.a.piston.contact_gaps(&self.x)
     }
 
-    /// Fills the films as they were at `t`.
+    /// Fills the films as they were at `t`; where two steps of the oil meet, as at the end of the first one. What the second one fills stops the piston within
+    /// microseconds, by pressures that go with the step.
     fn fill_as(&mut self, t: f64) {
         let Some(oil) = self.trajectory.oil.as_ref().filter(|o| !o.steps.is_empty()) else { return };
-        let part = (t + SAME) / self.a.period * oil.steps.len() as f64;
+        let part = (t - SAME) / self.a.period * oil.steps.len() as f64;
         let k = (part.max(0.0) as usize).min(oil.steps.len() - 1);
         if self.oil_step != Some(k) {
             self.a.piston.set_filling(&oil.steps[k].filling);
@@ -157,6 +161,11 @@ impl<'a> Look<'a> {
             (Some(oil), Some(k)) => Ok(oil.steps[k].flow),
             _ => self.a.piston.oil_flow(now, &self.w),
         }
+    }
+
+    /// Part of the gaps that was filled at the end of the step of the oil looked at last; all of them where no oil is kept.
+    fn filled(&self) -> f64 {
+        self.trajectory.oil.as_ref().zip(self.oil_step).map_or(1.0, |(oil, k)| oil.steps[k].filled)
     }
 
     /// Sets the piston in motion as at `t`, just before it (`side` below 0), there, or just after it.
@@ -211,6 +220,8 @@ impl<'a> Look<'a> {
         let friction = s.friction();
         let moment: f64 = s.film_moment.iter().chain(&s.contact_moment).sum();
         let oil = self.oil_flow(&now)?;
+        // Where velocities are states they are smooth, and those of a balance are not quite.
+        let v = self.a.motion.pose(&self.y[self.a.layout.motion.clone()]).v;
         let (x, w) = (&self.x, &self.w);
         let yields = x[2..].iter().fold(0.0_f64, |y, q| y.max(q.abs()));
         let mut row = [
@@ -226,7 +237,7 @@ impl<'a> Look<'a> {
             moment,
             friction,
             -friction * now.speed,
-            self.a.piston.lateral_energy([w[0], w[1]]),
+            self.a.piston.lateral_energy(v.unwrap_or([w[0], w[1]])),
             s.rod,
             s.pin_moment,
             s.groove,
@@ -247,6 +258,7 @@ impl<'a> Look<'a> {
             oil[1],
             oil[2],
             yields,
+            self.filled(),
         ];
         // Adding zero turns -0 into 0.
         row.iter_mut().for_each(|v| *v += 0.0);

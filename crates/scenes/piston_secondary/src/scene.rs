@@ -18,7 +18,7 @@ use super::record::Record;
 use super::row::Look;
 use super::search::{Search, refused, work};
 use super::survey::Survey;
-use super::{draw, methods, notes, results};
+use super::{draw, film_strokes, methods, notes, results};
 
 impl SceneCase for PistonSecondaryCase {
     /// The piston as its models have it. A run builds others beside it: with films that nobody has asked yet, coarser ones, or a rigid skirt.
@@ -96,15 +96,16 @@ fn look_at(
     result: &mut RunResult,
 ) -> Result<(), RunError> {
     let flows = wanted.iter().any(|r| r.flow);
-    let bends = a.bends();
+    let bends = a.breakpoints.clone();
     let mut look = Look::new(a, &found.trajectory, flows);
     let before = work(&look.a.piston);
     // Results come first: no row that is shown can change them.
-    let (told, notes) = Survey::new(&mut look, &bends)
+    let (told, films, notes) = Survey::new(&mut look, &bends)
         .and_then(|s| {
             let told = results::tell(&s, &mut look, case, wanted, found.periodicity_error)?;
+            let films = film_strokes::table(&s, &mut look)?;
             let notes = notes::notes(&s, &mut look, told.peaks)?;
-            Ok((told, notes))
+            Ok((told, films, notes))
         })
         .map_err(|e| look.stopped(e))?;
     let record = Record::new(&mut look, case, told.peaks, flows).map_err(|e| look.stopped(e))?;
@@ -112,6 +113,7 @@ fn look_at(
         search.count(name, now - before.1);
     }
     (result.results, result.events) = (told.results, told.events);
+    result.tables.insert("skirt_films".into(), films);
     result.solver = SolverReport {
         method: case.solver.method.typetag_name().into(),
         counters: std::mem::take(&mut search.counters),
@@ -119,6 +121,7 @@ fn look_at(
     };
     result.solver.notes.extend(notes);
     result.solver.notes.push(centre_of_gravity(case));
+    result.balance.skirt_oil = found.trajectory.oil.as_ref().map(|oil| oil.ledger.error());
     draw::figures(a, &record, result);
     result.series = record.series();
     result.seconds.insert("solve".into(), search.seconds);

@@ -138,6 +138,7 @@ impl SceneCase for PowerCylinderCase {
         results.extend(result.results.into_iter().map(|(k, v)| (named("rings", &k), v)));
         results.extend(other.results.into_iter().map(|(k, v)| (named("skirt", &k), v)));
         result.results = results;
+        result.balance.skirt_oil = other.balance.skirt_oil;
         add_models(&mut result.models, other.models);
         result.skipped.extend(other.skipped);
         result.figures.extend(other.figures);
