@@ -13,7 +13,7 @@ const WITHIN: [(&str, &str, &str, &str); 4] = [
     ("ring_pack_solver", "turbo-diesel-120-as-published", "solver", "method"),
     ("radial_motion", "turbo-diesel-120", "models.radial_motion", "model"),
     ("piston_solver", "turbo-diesel-120-skirt", "solver", "method"),
-    ("secondary_motion", "turbo-diesel-120-skirt", "models.secondary_motion", "model"),
+    ("secondary_motion", "ea111-1400", "models.secondary_motion", "model"),
 ];
 /// A motion that every solver of a ring pack takes.
 const MOTION: &str = "models.ring_motion={ model = \"seated\" }";

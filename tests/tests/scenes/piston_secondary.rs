@@ -132,6 +132,9 @@ fn inertia_that_is_left_out_is_told() {
         let set = [
             "engine.speed=5500 rpm".to_owned(),
             format!("models.secondary_motion.model={motion}"),
+            // Films that keep their oil need inertia.
+            "models.skirt_oil.model=off".to_owned(),
+            "models.film_2d.cavitation=half_sommerfeld".to_owned(),
             "outputs.map_step=90 deg".to_owned(),
             "outputs.results=[\"p_max\"]".to_owned(),
             "solver.cycles=2".to_owned(),
