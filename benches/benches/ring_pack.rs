@@ -1,17 +1,18 @@
 //! Cost and error of a whole ring pack: a table.
 //!
-//! It runs `cases/turbo-diesel-120.toml` at several tolerances and with the published scheme at small steps, and compares blow-by and friction
+//! It runs `cases/turbo-diesel-120.toml` with flooded faces at several tolerances and with the published scheme at small steps, and compares blow-by and friction
 //! power with a tight run.
 #![allow(clippy::print_stdout, missing_docs)]
 
-use gudgeon_benches::cases::Case;
+use gudgeon_benches::cases::{Case, FLOODED};
 use gudgeon_core::result::RunResult;
 
 /// Runs of each setting; the fastest solve counts.
 const RUNS: usize = 3;
 
 fn run(overrides: &[&str]) -> Result<RunResult, String> {
-    Case::shipped("turbo-diesel-120").changed("turbo-diesel-120", overrides).run()
+    let set = [&[FLOODED], overrides].concat();
+    Case::shipped("turbo-diesel-120").changed("turbo-diesel-120, flooded", &set).run()
 }
 
 fn value(r: &RunResult, name: &str) -> f64 {

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use crate::cases::{Case, given};
+use crate::cases::{Case, FLOODED, given};
 use crate::measure::{Counts, each};
 
 /// The case whose values are changed.
@@ -34,7 +34,7 @@ fn case(p: &Point, resolved: &serde_json::Value) -> Result<Case, String> {
             given(resolved, path).ok_or_else(|| format!("{CASE} gives no number at {path}"))?;
         Ok::<_, String>(format!("{path}={} {unit}", factor * value))
     };
-    let mut set = vec![format!("engine.speed={} rpm", p.speed)];
+    let mut set = vec![FLOODED.to_owned(), format!("engine.speed={} rpm", p.speed)];
     set.push(times("models.contact.composite_modulus", p.modulus)?);
     let rings = resolved["rings"].as_array().map_or(0, Vec::len);
     for i in 0..rings {

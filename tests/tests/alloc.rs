@@ -16,7 +16,7 @@ fn a_right_hand_side_allocates_nothing() {
     let models = ["orifice_network", "gap_orifice", "narrow_channel", "namazian_heywood", "labyrinth"];
     let warm = "{ model = \"narrow_channel\", mouth = \"automatic\", gas_temperature = \"energy_balance\" }";
     for gas in models.map(|name| format!("{{ model = \"{name}\" }}")).into_iter().chain([warm.to_owned()]) {
-        let case = checked("turbo-diesel-120", &[&format!("models.gas_flow={gas}")]);
+        let case = checked("turbo-diesel-120/flooded", &[&format!("models.gas_flow={gas}")]);
         let mut pack =
             assemble(case.of::<RingPackCase>().expect("a ring pack"), &Files::default()).expect("assembles");
         let n = pack.layout.n;

@@ -113,6 +113,8 @@ const APART: f64 = 1.9;
 /// Miss of a foretold residual, as a part of the one before, below which longer steps are tried; and how much longer, or shorter where it is above 1.
 const FORETOLD: f64 = 0.25;
 const LENGTHEN: f64 = 2.0;
+/// Part of the longest step that is left when one was taken back.
+const NEARER: f64 = 0.25;
 /// Shortest limit of a step over the residual: two residuals are what a multiplier of a half asks for.
 const SHORTEST_STRIDE: f64 = 2.0;
 /// Largest factor by which a residual is taken to understate an error.
@@ -284,6 +286,7 @@ impl Search {
                 self.report.cycles += 1;
                 y.copy_from_slice(&g);
                 state.trusted = state.secants.len();
+                state.reach *= NEARER;
                 state.previous = None;
                 continue;
             }
@@ -315,7 +318,7 @@ impl Search {
             before = accuracy;
             accuracy = (bend.rough * residual).min(ROUGHEST).max(options.accuracy);
             // Not further than the states are large, nor than the map can have understated.
-            let longest = (state.stride * residual).min(1.0);
+            let longest = (state.stride * residual).min(state.reach);
             let damping = (longest / correction.amax().max(1e-300)).min(1.0);
             let next = &at + &r - correction * damping;
             for ((y, n), s) in y.iter_mut().zip(next.iter()).zip(&state.s) {
@@ -522,6 +525,8 @@ struct Anderson {
     previous: Option<Tried>,
     /// Longest step over the residual: longer where the secants foretell residuals, shorter where they do not.
     stride: f64,
+    /// Longest step: the states are no larger, and less where the machine could not follow.
+    reach: f64,
     /// Smallest residual.
     best: f64,
     /// The estimate of the last cycle if it was good enough, else 0.
@@ -543,6 +548,7 @@ impl Anderson {
             stalled: 0,
             previous: None,
             stride: bend.stride,
+            reach: 1.0,
             best: f64::INFINITY,
             passed: 0.0,
             last: 0.0,

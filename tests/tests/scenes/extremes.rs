@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use crate::common::*;
 use gudgeon_scene::{check, run};
 
-const CASE: &str = "turbo-diesel-120";
+const CASE: &str = "turbo-diesel-120/flooded";
 const LIMIT: Duration = Duration::from_secs(60);
 
 /// Runs one case and says what became of it; `Err` when that is not allowed.
@@ -97,7 +97,7 @@ fn all(cases: Vec<(String, PathBuf, Vec<String>)>) {
 }
 
 fn set(name: &str, overrides: &[&str]) -> (String, PathBuf, Vec<String>) {
-    let mut o = vec!["solver.max_cycles=10".to_owned()];
+    let mut o = overrides_of(CASE, &["solver.max_cycles=10"]);
     o.extend(overrides.iter().map(|s| (*s).to_owned()));
     (name.to_owned(), case_file(CASE), o)
 }
@@ -296,7 +296,7 @@ fn numbers_of_rings() {
     };
     all([1, 2, 4, 5, 8]
         .iter()
-        .map(|n| (format!("{n} rings"), with(*n), vec!["solver.max_cycles=10".to_owned()]))
+        .map(|n| (format!("{n} rings"), with(*n), overrides_of(CASE, &["solver.max_cycles=10"])))
         .collect());
 }
 

@@ -7,7 +7,7 @@ const BALANCE: &str = "models.gas_flow.gas_temperature=energy_balance";
 #[test]
 fn the_energy_of_the_gas_is_accounted_for() {
     for model in ["orifice_network", "narrow_channel", "namazian_heywood"] {
-        let r = run_case("turbo-diesel-120", &[&format!("models.gas_flow.model={model}"), BALANCE]);
+        let r = run_case("turbo-diesel-120/flooded", &[&format!("models.gas_flow.model={model}"), BALANCE]);
         // What the integration loses, at its tolerance of 1e-4; the greatest, 5e-5, is that of channels without a mouth.
         let open = r.balance.gas_energy.expect("a balance");
         assert!(open < 1e-4, "{model}: {open:e}");
@@ -27,9 +27,9 @@ fn the_energy_of_the_gas_is_accounted_for() {
 /// Walls that take heat a thousand times as fast hold the gas at their temperature.
 #[test]
 fn much_heat_to_the_walls_is_the_model_without_a_balance() {
-    let walls = run_case("turbo-diesel-120", &[]);
+    let walls = run_case("turbo-diesel-120/flooded", &[]);
     assert!(walls.balance.gas_energy.is_none());
-    let r = run_case("turbo-diesel-120", &[BALANCE, "models.gas_flow.nusselt=1e4"]);
+    let r = run_case("turbo-diesel-120/flooded", &[BALANCE, "models.gas_flow.nusselt=1e4"]);
     // The temperature follows within the time that compression takes divided by 1e3; 3e-4 was seen, and each run is good to its tolerance of 1e-4.
     for name in ["blow_by", "land2.p_max", "fmep"] {
         assert!((value(&r, name) / value(&walls, name) - 1.0).abs() < 1e-3, "{name}");

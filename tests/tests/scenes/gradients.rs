@@ -5,7 +5,7 @@ use gudgeon_scene::gradients::{assignment, input};
 use gudgeon_scene::{GradientError, RunError, Stopped, unwatched};
 use gudgeon_study::gradients::gradients;
 
-const CASE: &str = "turbo-diesel-120";
+const CASE: &str = "turbo-diesel-120/flooded";
 
 fn by(inputs: &[&str]) -> Vec<String> {
     inputs.iter().map(|s| (*s).to_owned()).collect()

@@ -6,7 +6,7 @@ use crate::common::*;
 use gudgeon_core::result::RunResult;
 
 const PUBLISHED: &str = "turbo-diesel-120-as-published";
-const CASE: &str = "turbo-diesel-120";
+const CASE: &str = "turbo-diesel-120/flooded";
 
 fn runs(asked: &[(&str, Vec<String>)]) -> Vec<RunResult> {
     run_all(asked)

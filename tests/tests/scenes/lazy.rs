@@ -70,7 +70,7 @@ fn seated_rings_have_no_states() {
         "models.gas_flow.film_height=nominal",
         "solver.method=implicit",
     ];
-    let r = run_case("turbo-diesel-120", &set);
+    let r = run_case("turbo-diesel-120/flooded", &set);
     // Two lands and two spaces behind rings; the oil ring's groove drains.
     assert_eq!(r.solver.counters["states"], 4);
     assert_eq!(r.solver.counters["film_evaluations"], 0);
@@ -81,9 +81,9 @@ fn seated_rings_have_no_states() {
     assert!(r.series.get("ring1.force_gas").is_none() && r.series.get("ring1.axial_velocity").is_none());
 
     // Two more states per ring that moves and two for the oil on its flanks, one per ring with a film.
-    let e = explain(&checked("turbo-diesel-120", &[])).expect("explains");
+    let e = explain(&checked("turbo-diesel-120/flooded", &[])).expect("explains");
     assert_eq!(e.states.len(), 4 + 3 + 6 + 6);
-    let e = explain(&checked("turbo-diesel-120", &["rings.0.models.ring_motion.model=seated"]))
+    let e = explain(&checked("turbo-diesel-120/flooded", &["rings.0.models.ring_motion.model=seated"]))
         .expect("explains");
     assert_eq!(e.states.len(), 4 + 3 + 4 + 4);
 }
@@ -97,10 +97,10 @@ fn prescribed_parts_of_a_three_piece_ring() {
 
 #[test]
 fn spaces_that_store_nothing_are_not_integrated() {
-    let full = run_case("turbo-diesel-120", &[]);
+    let full = run_case("turbo-diesel-120/flooded", &[]);
     // A limit that no space exceeds: nothing behind any ring is integrated.
     let set = ["models.gas_flow.eliminate=auto", "models.gas_flow.eliminate_below=1 s"];
-    let less = run_case("turbo-diesel-120", &set);
+    let less = run_case("turbo-diesel-120/flooded", &set);
     let states = |r: &gudgeon_core::result::RunResult| r.solver.counters["states"];
     assert!(states(&less) < states(&full), "{} {}", states(&less), states(&full));
     // Behind the top ring the pressure follows the land above it, with a state of its own or without: 4e-6 at the peak, where the
@@ -113,6 +113,6 @@ fn spaces_that_store_nothing_are_not_integrated() {
     // Gas in less gas out less gas stored is rounding, as with all spaces.
     assert!(less.balance.gas_mass.is_some_and(|b| b.abs() < 1e-10), "{:?}", less.balance);
     // By default none of them is fast enough, and it is the same run to the last bit.
-    let auto = run_case("turbo-diesel-120", &["models.gas_flow.eliminate=auto"]);
+    let auto = run_case("turbo-diesel-120/flooded", &["models.gas_flow.eliminate=auto"]);
     assert_eq!(value(&auto, "blow_by").to_bits(), value(&full, "blow_by").to_bits());
 }

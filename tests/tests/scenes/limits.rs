@@ -3,7 +3,7 @@
 use crate::common::*;
 use gudgeon_core::result::{Note, NoteLevel, RunResult};
 
-const CASE: &str = "turbo-diesel-120";
+const CASE: &str = "turbo-diesel-120/flooded";
 
 fn note<'a>(r: &'a RunResult, topic: &str) -> Option<&'a Note> {
     r.solver.notes.iter().find(|n| n.topic == topic)

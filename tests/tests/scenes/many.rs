@@ -75,7 +75,7 @@ fn a_stop_keeps_what_is_done() {
 
 #[test]
 fn a_run_that_is_stopped_says_so() {
-    let c = checked("turbo-diesel-120", &[]);
+    let c = checked("turbo-diesel-120/flooded", &[]);
     let mut looks = 0;
     let mut after_three = |_| {
         looks += 1;

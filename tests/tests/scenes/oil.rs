@@ -9,7 +9,7 @@ const FILM: &str = "models.oil_transport.model=liner_film";
 fn diesel(more: &[&str]) -> gudgeon_core::result::RunResult {
     let mut set = vec![FILM, "solver.tolerance=3e-3", "solver.periodicity=3e-2"];
     set.extend(more);
-    run_case("turbo-diesel-120", &set)
+    run_case("turbo-diesel-120/flooded", &set)
 }
 
 #[test]
@@ -66,7 +66,7 @@ fn what_passes_the_gap_of_the_oil_ring_is_the_supply_before_it() {
 #[test]
 fn a_starved_ring_rides_lower_than_a_flooded_one() {
     let starved = diesel(&[]);
-    let flooded = run_case("turbo-diesel-120", &[]);
+    let flooded = run_case("turbo-diesel-120/flooded", &[]);
     for i in 1..=3 {
         let (s, f) =
             (value(&starved, &format!("ring{i}.h_mean")), value(&flooded, &format!("ring{i}.h_mean")));
@@ -120,7 +120,7 @@ fn a_film_that_cannot_be_confined_is_refused_with_its_place() {
 
 #[test]
 fn without_oil_transport_there_are_no_volumes() {
-    let states = |set: &[&str]| run_case("turbo-diesel-120", set).solver.counters["states"];
+    let states = |set: &[&str]| run_case("turbo-diesel-120/flooded", set).solver.counters["states"];
     // Two volumes for each of four faces.
     assert_eq!(states(&[FILM, "solver.tolerance=3e-3", "solver.periodicity=3e-2"]), states(&[]) + 8);
 }

@@ -5,7 +5,7 @@ use gudgeon_scene::check;
 
 use crate::common::*;
 
-const DIESEL: &str = "turbo-diesel-120";
+const DIESEL: &str = "turbo-diesel-120/flooded";
 const CRANKCASE: f64 = 101_325.0;
 
 /// The oil ring of the diesel as one of two rails of 0.6 mm on an expander. With ears of 15 degrees the upper rail flutters, and some runs do not
@@ -44,8 +44,10 @@ fn groove_peak(r: &RunResult) -> f64 {
 
 /// Why a changed diesel is refused, in one line.
 fn refusal(sets: &[&[&str]]) -> String {
-    let sets: Vec<String> = sets.concat().iter().map(|s| (*s).to_owned()).collect();
-    let told = check(&case_file(DIESEL), &sets).err().map(|e| e.to_string()).unwrap_or_default();
+    let told = check(&case_file(DIESEL), &overrides_of(DIESEL, &sets.concat()))
+        .err()
+        .map(|e| e.to_string())
+        .unwrap_or_default();
     told.split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ")
 }
 

@@ -3,7 +3,7 @@
 use crate::common::*;
 use gudgeon_core::result::RunResult;
 
-const CASE: &str = "turbo-diesel-120";
+const CASE: &str = "turbo-diesel-120/flooded";
 /// Seated rings: what films and friction do is not mixed with what they do to the motion in the groove, which has more than one periodic state.
 const SEATED: &str = "models.ring_motion={model=\"seated\"}";
 /// So many nodes that the panels at the edges, which carry their pressure however fast a ring is lifted off, are a small part of the face.
@@ -87,12 +87,9 @@ fn rough_films_say_where_their_factors_end() {
 
 #[test]
 fn what_does_not_fit_is_refused_at_its_place() {
-    let refused = |set: &[&str]| {
-        let set: Vec<String> = set.iter().map(|s| (*s).to_owned()).collect();
-        match gudgeon_scene::check(&case_file(CASE), &set) {
-            Ok(_) => panic!("{set:?} is accepted"),
-            Err(e) => e.to_string(),
-        }
+    let refused = |set: &[&str]| match gudgeon_scene::check(&case_file(CASE), &overrides_of(CASE, set)) {
+        Ok(_) => panic!("{set:?} is accepted"),
+        Err(e) => e.to_string(),
     };
     let e = refused(&[PIEZO]);
     assert!(

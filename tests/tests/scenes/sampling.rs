@@ -4,7 +4,7 @@ use gudgeon_core::result::{Note, NoteLevel, RunResult};
 
 use crate::common::*;
 
-const CASE: &str = "turbo-diesel-120";
+const CASE: &str = "turbo-diesel-120/flooded";
 
 /// Values and events, to the bit: rows are evaluated when everything else is done.
 fn same(a: &RunResult, b: &RunResult, what: &str) {
@@ -227,8 +227,10 @@ fn strokes_and_lifts_agree_with_dense_rows() {
                 "ring {i}, stroke {stroke}"
             );
             let most = rows.map(|k| friction[k].abs()).fold(0.0, f64::max);
-            // Beside a reversal friction rises from nothing within a tenth of a degree, two rows: a twentieth of it from the last row to the highest.
-            assert!((of_ring("friction_max")[stroke] / most - 1.0).abs() < 0.05, "ring {i}, stroke {stroke}");
+            // Below the rows by no more than the polynomial between the samples of a step that is up to ten degrees long. Beside a reversal friction rises from nothing within a tenth of a degree,
+            // two rows: a twentieth of it from the last row to the highest.
+            let over = of_ring("friction_max")[stroke] / most - 1.0;
+            assert!((-1e-2..0.05).contains(&over), "ring {i}, stroke {stroke}: {over}");
             // The middle is a row; both are read from the dense output of the same step.
             let middle = stroke * per_stroke + per_stroke / 2;
             assert!((of_ring("h_mid")[stroke] / h[middle] - 1.0).abs() < 1e-5, "ring {i}, stroke {stroke}");

@@ -428,7 +428,7 @@ impl CycleMap for Cycle<'_> {
         self.failure = None;
         self.begin(y1);
         if let Err(e) = self.integrate(&mut y1[..n], rtol, None) {
-            let given_up = matches!(&e, IntegrateError::Eval { source, .. } if !source.is_recoverable());
+            let given_up = matches!(&e, IntegrateError::Eval { source: EvalError::Stopped, .. });
             self.failure = Some(e);
             let what = "the cycle could not be integrated";
             return Err(if given_up {
