@@ -46,6 +46,7 @@ pub const KINDS: &[(&str, Reach)] = &[
     ("cylinder_pressure", Reach::Alone(engine::cylinder_pressure)),
     ("drag", Reach::Alone(ring::drag)),
     ("drive", Reach::Alone(shaft::drive)),
+    ("evaporation", Reach::Alone(film::evaporation)),
     ("fatigue", Reach::Alone(pin::fatigue)),
     ("film_1d", Reach::Alone(film::film_1d)),
     ("film_2d", Reach::Alone(film::film_2d)),

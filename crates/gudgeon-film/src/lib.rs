@@ -25,6 +25,7 @@
 //! | flow between rough surfaces | [`PatirCheng`], [`Tripp`], [`SawtoothWaviness`], [`SmoothSurfaces`] |
 //! | temperature of the film under each ring | [`Given`], [`LinerLinear`], [`LandWallMean`], [`EnergyBalance`] |
 //! | oil that rings leave on the liner | module [`oil_transport`] |
+//! | oil that evaporates from there | module [`evaporation`] |
 //!
 //! A viscosity that depends on pressure or shear goes around a film along a line by [`film_1d::ViscosityLoop`].
 //!
@@ -53,6 +54,7 @@
 
 mod cavitation;
 mod compressibility;
+pub mod evaporation;
 pub mod film_1d;
 pub mod film_2d;
 mod film_temperature;
@@ -106,6 +108,8 @@ gudgeon_core::link!(
     Vogel,
     VogelGrade,
     Walther,
+    evaporation::HeatMassAnalogy,
+    evaporation::Off,
     film_1d::Complementarity,
     film_1d::ElrodAdams,
     film_1d::FrontTracking,
@@ -122,6 +126,7 @@ gudgeon_core::link!(
 /// Parts that the tests of this crate look at. No interface: they change without notice.
 #[doc(hidden)]
 pub mod parts {
+    pub use crate::evaporation::petroleum::{diffusivity, lewis_number, molar_mass, vapour_pressure};
     pub use crate::film_1d::line::Line;
     pub use crate::film_1d::rows::{Node, Rows};
     pub use crate::hydrodynamics::closed_form_face::crown::{Asked, Crown, Crowned};

@@ -49,6 +49,63 @@ fn oil_that_leaves_upwards_is_told_in_the_units_of_the_trade() {
     assert!((specific - want).abs() <= 3e-4 * want, "{specific:e} {want:e}");
 }
 
+const VAPOUR: &str = "models.evaporation.model=heat_mass_analogy";
+
+/// With a liner of one temperature.
+fn drying(temperature: &str) -> gudgeon_core::result::RunResult {
+    let liner = ["tdc", "bdc"].map(|end| format!("models.film_temperature.{end}={temperature}"));
+    diesel(&[VAPOUR, &liner[0], &liner[1]])
+}
+
+#[test]
+fn vapour_leaves_upwards_within_the_ledger() {
+    let r = diesel(&[VAPOUR]);
+    let closure = r.balance.oil_mass.expect("an oil balance");
+    // As without evaporation: sums of terms that are exact to rounding.
+    assert!(closure <= 1e-11, "{closure:e}");
+    let [up, thrown, vapour] = ["oil_up", "oil_up_thrown", "oil_up_evaporated"].map(|name| value(&r, name));
+    assert!(thrown > 0.0 && vapour > thrown, "{thrown} and {vapour} g/h");
+    assert!((up - thrown - vapour).abs() <= 1e-14 * up, "a sum of two");
+    // Grams an hour of six cylinders, 1000 cycles a minute each, from mm3 a cycle of oil of 850 kg/m3.
+    let want = value(&r, "oil_evaporated") * 0.85e-3 * 6.0 * 60_000.0;
+    assert!((vapour - want).abs() <= 1e-12 * want, "{vapour} {want}");
+    assert!(r.models.iter().any(|m| m.kind == "evaporation"));
+    // The hot end of the liner, where oil comes in with ring 1 alone, dries.
+    let dried = value(&r, "liner_dried");
+    assert!(0.0 < dried && dried < 30.0, "{dried} mm");
+    assert!(r.solver.notes.iter().any(|n| n.topic == "liner_dries"));
+}
+
+/// Cold liners keep their oil, hot ones lose it ever faster: the vapour pressure of the fractions of an engine oil grows tenfold over 40 to 50 K.
+#[test]
+fn what_evaporates_rises_steeply_with_the_temperature_of_the_liner() {
+    let vapour =
+        ["20 degC", "100 degC", "140 degC", "180 degC"].map(|t| value(&drying(t), "oil_up_evaporated"));
+    assert!(vapour[0] < 1e-4 * vapour[1], "{vapour:?}");
+    for pair in vapour[1..].windows(2) {
+        let factor = pair[1] / pair[0];
+        // Less than the vapour pressure, where light fractions and films run out.
+        assert!((4.0..14.0).contains(&factor), "{vapour:?}");
+    }
+}
+
+/// Faces that always find oil have no film on the liner to evaporate; that is told and no error.
+#[test]
+fn without_oil_on_the_liner_nothing_evaporates() {
+    let set = [VAPOUR, "models.oil_transport.model=off"].map(str::to_owned);
+    let flooded = check(&case_file("turbo-diesel-120"), &set).expect("valid");
+    let told = gudgeon_scene::explain(&flooded).expect("explained");
+    assert!(told.skipped.iter().any(|s| s.what == "evaporation" && s.why.contains("oil_transport")));
+    assert!(!told.results.iter().any(|r| r == "oil_evaporated"));
+    let refused = |set: &str| match check(&case_file("turbo-diesel-120"), &[set.to_owned()]) {
+        Ok(_) => panic!("{set} was accepted"),
+        Err(report) => report.to_string(),
+    };
+    let half = "models.evaporation={ model = \"heat_mass_analogy\", fractions = [{ share = 0.5, boiling = \"400 degC\" }] }";
+    let text = refused(half);
+    assert!(text.contains("models.evaporation.fractions") && text.contains("0.5"), "{text}");
+}
+
 /// What passes the end gap of the oil ring is the film before it times the gap: half of the strokes go down, with the supply before the ring but for what a stroke up left
 /// within the ring itself.
 #[test]

@@ -75,6 +75,12 @@ pub trait FilmTemperature: Stateful + Debug + Send + Sync {
     /// dead centre (0 for ring 1 at top dead centre, `stroke` at bottom dead centre, more for lower rings), for the states `y` of the model.
     fn temperature(&self, ring: usize, travel: f64, y: &[f64]) -> f64;
 
+    /// Temperature \[K\] of the bare liner at a place `travel` \[m\] below that of ring 1 at top dead centre, which the film there has; `None`
+    /// where the model does not know it.
+    fn liner(&self, _travel: f64) -> Option<f64> {
+        None
+    }
+
     /// Whether the temperature depends neither on `travel` nor on states: viscosities are then evaluated once.
     fn is_constant(&self) -> bool;
 

@@ -2,6 +2,7 @@ use std::fmt::Debug;
 
 use dyn_clone::DynClone;
 
+use super::{Evaporation, FilmTemperature};
 use crate::geometry::FaceProfile;
 use crate::states::Stateful;
 use crate::{BuildError, register_kind};
@@ -32,6 +33,17 @@ pub struct OilLand {
     pub drained: bool,
 }
 
+/// Oil that evaporates from the liner above ring 1.
+#[derive(Debug, Clone, Copy)]
+pub struct Volatile<'a> {
+    /// How.
+    pub model: &'a (dyn Evaporation + 'static),
+    /// What tells the temperature of the liner.
+    pub temperature: &'a dyn FilmTemperature,
+    /// Height of ring 1 at top dead centre over the crank axis \[m\], from which that counts its way down.
+    pub top: f64,
+}
+
 /// What an [`OilTransportSpec`] is built for.
 #[derive(Debug, Clone, Copy)]
 pub struct OilTransportCtx<'a> {
@@ -43,6 +55,8 @@ pub struct OilTransportCtx<'a> {
     pub pin: (f64, f64),
     /// Crank speed \[rad/s\].
     pub omega: f64,
+    /// Oil that evaporates, if any does.
+    pub volatile: Option<Volatile<'a>>,
 }
 
 /// Configuration of a model of the oil on the liner and under the rings.
@@ -122,10 +136,20 @@ pub struct OilLedger {
     pub supplied: f64,
     /// Into the crankcase.
     pub drained: f64,
-    /// Into the combustion chamber.
+    /// As a liquid into the combustion chamber.
     pub thrown: f64,
+    /// As vapour into the combustion chamber.
+    pub evaporated: f64,
     /// Taken up by all faces.
     pub taken: f64,
+}
+
+impl OilLedger {
+    /// What came less what went: what is stored more than before.
+    #[must_use]
+    pub fn gained(&self) -> f64 {
+        self.supplied - self.drained - self.thrown - self.evaporated
+    }
 }
 
 /// What a ring scraped and what passed its end gap, per circumference \[m²\].
@@ -209,6 +233,9 @@ pub trait OilTransport: Stateful + Debug + Send {
 
     /// Oil on the land above ring `i`, per circumference \[m²\].
     fn on_land(&self, i: usize) -> f64;
+
+    /// Height \[m\] of the liner that lost more than half of its film as vapour since the cycle began, between two passes of ring 1.
+    fn dried(&self) -> f64;
 
     /// Density of the oil \[kg/m³\].
     fn density(&self) -> f64;

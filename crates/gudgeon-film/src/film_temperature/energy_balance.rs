@@ -101,7 +101,7 @@ struct Films {
 }
 
 impl Films {
-    fn liner(&self, travel: f64) -> f64 {
+    fn wall(&self, travel: f64) -> f64 {
         self.tdc + self.slope * travel
     }
 }
@@ -124,16 +124,19 @@ impl FilmTemperature for Films {
     fn temperature(&self, ring: usize, travel: f64, y: &[f64]) -> f64 {
         // Schemes without states have the mean of both walls.
         y.get(ring).map_or_else(
-            || 0.5 * (self.rings[ring.min(self.rings.len() - 1)] + self.liner(travel)),
+            || 0.5 * (self.rings[ring.min(self.rings.len() - 1)] + self.wall(travel)),
             |y| UNIT * y,
         )
+    }
+    fn liner(&self, travel: f64) -> Option<f64> {
+        Some(self.wall(travel))
     }
     fn is_constant(&self) -> bool {
         false
     }
     fn rates(&mut self, ring: usize, y: &[f64], heat: &FilmHeat, dy: &mut [f64]) -> Result<(), EvalError> {
         let (h, t) = (heat.h.max(THINNEST), UNIT * y[ring]);
-        let (liner, length) = (self.liner(heat.travel), self.lengths[ring]);
+        let (liner, length) = (self.wall(heat.travel), self.lengths[ring]);
         let wall = 6.0 * self.conductivity / h;
         let carried = 0.5 * self.heat_capacity * heat.speed * h / length;
         let flux = heat.power / (self.circumference * length)

@@ -22,8 +22,10 @@ pub struct Given {
 )]
 impl FilmTemperatureSpec for Given {
     fn build(&self, ctx: &FilmTemperatureCtx<'_>) -> Result<Box<dyn FilmTemperature>, BuildError> {
-        let of_ring = self.temperatures.iter().map(|t| t.si()).collect();
-        Ok(Box::new(PerRing::new(of_ring, ctx, "temperatures")?))
+        let of_ring: Vec<f64> = self.temperatures.iter().map(|t| t.si()).collect();
+        // The film of ring 1 on a liner that nothing else is known of.
+        let liner = of_ring.first().copied();
+        Ok(Box::new(PerRing::new(of_ring, liner, ctx, "temperatures")?))
     }
 }
 
@@ -31,12 +33,15 @@ impl FilmTemperatureSpec for Given {
 #[derive(Debug)]
 pub(crate) struct PerRing {
     of_ring: Vec<f64>,
+    /// Of the bare liner.
+    liner: Option<f64>,
 }
 
 impl PerRing {
     /// `field` is the key of the list, for the message about its length.
     pub(crate) fn new(
         of_ring: Vec<f64>,
+        liner: Option<f64>,
         ctx: &FilmTemperatureCtx<'_>,
         field: &str,
     ) -> Result<Self, BuildError> {
@@ -46,7 +51,7 @@ impl PerRing {
             return Err(BuildError::at(field, format!("{n} temperatures for {rings} rings"))
                 .help("give one temperature for each ring, ring 1 first"));
         }
-        Ok(Self { of_ring })
+        Ok(Self { of_ring, liner })
     }
 }
 
@@ -56,6 +61,9 @@ impl FilmTemperature for PerRing {
     fn temperature(&self, ring: usize, _: f64, _: &[f64]) -> f64 {
         // `new` leaves no empty list; a ring below the last has no film of its own and takes the nearest.
         self.of_ring[ring.min(self.of_ring.len() - 1)]
+    }
+    fn liner(&self, _: f64) -> Option<f64> {
+        self.liner
     }
     fn is_constant(&self) -> bool {
         true

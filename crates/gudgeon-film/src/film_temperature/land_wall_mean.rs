@@ -37,6 +37,6 @@ impl FilmTemperatureSpec for LandWallMean {
         };
         let wall = self.wall.si();
         let of_ring = lands.iter().map(|t| 0.5 * (t + wall)).collect();
-        Ok(Box::new(PerRing::new(of_ring, ctx, "lands")?))
+        Ok(Box::new(PerRing::new(of_ring, Some(wall), ctx, "lands")?))
     }
 }

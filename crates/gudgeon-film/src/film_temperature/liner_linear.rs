@@ -48,6 +48,9 @@ impl FilmTemperature for Line {
     fn temperature(&self, _: usize, travel: f64, _: &[f64]) -> f64 {
         self.tdc + self.slope * travel
     }
+    fn liner(&self, travel: f64) -> Option<f64> {
+        Some(self.tdc + self.slope * travel)
+    }
     fn is_constant(&self) -> bool {
         self.slope == 0.0
     }

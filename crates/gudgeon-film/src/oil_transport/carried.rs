@@ -8,7 +8,7 @@
 //! lost, whatever the tolerance.
 
 use gudgeon_core::kinds::{
-    OilExtent, OilFaceIn, OilFacePlace, OilLand, OilLedger, OilPassed, OilStep, OilTransport,
+    OilDrive, OilExtent, OilFaceIn, OilFacePlace, OilLand, OilLedger, OilPassed, OilStep, OilTransport,
     OilTransportCtx, RingOil,
 };
 use gudgeon_core::states::{Signals, StateInfo, Stateful};
@@ -74,8 +74,10 @@ impl Carried {
         let (lowest, highest) = ctx.pin;
         let top = faces.first().map_or(0.0, |f| f.offset + f.length) + highest;
         let low = faces.last().map_or(0.0, |f| f.offset) + lowest;
+        let mut liner = Liner::new(low, top, least, ctx.volatile);
+        liner.start(law.initial);
         Self {
-            liner: Liner::new(low, top, least, law.initial),
+            liner,
             places: faces.iter().map(|f| (f.ring, f.land)).collect(),
             states: states(&faces),
             faces,
@@ -109,6 +111,14 @@ impl Carried {
             self.ledger.supplied += self.liner.cover(self.liner.bottom, z, self.law.supply);
         }
         self.liner.add_up();
+    }
+
+    /// The gas of the chamber dries what ring 1 has bared.
+    fn evaporate(&mut self, drive: &OilDrive<'_>) {
+        let density = self.law.density;
+        if let (Some(face), Some(pressure)) = (self.faces.first(), drive.pressures.first()) {
+            self.ledger.evaporated += self.liner.evaporate(face.edge[1], drive.dt, *pressure, density);
+        }
     }
 
     /// Books face `k` over a step: `y0`, `y1` its two states, `h` its film at the end.
@@ -253,7 +263,7 @@ impl OilTransport for Carried {
                 y[SIDES * k + side] = f.held(h, FIRST_REACH * f.span(side), side) / unit;
             }
         }
-        self.liner.film.fill(self.law.initial);
+        self.liner.start(self.law.initial);
     }
 
     fn carried(&self) -> usize {
@@ -276,6 +286,7 @@ impl OilTransport for Carried {
             *film = (y * LINER_UNIT).max(0.0);
         }
         self.clear_ledger();
+        self.liner.refresh();
         for f in &mut self.faces {
             (f.taken, f.owed) = ([0.0; SIDES], 0.0);
             f.edge = f.edges(pin);
@@ -304,6 +315,7 @@ impl OilTransport for Carried {
             self.book_face(k, &step.y0[own.clone()], &step.y1[own], step.pin, h);
         }
         self.lands.step(&step.drive);
+        self.evaporate(&step.drive);
         self.supply();
     }
 
@@ -359,6 +371,10 @@ impl OilTransport for Carried {
 
     fn on_land(&self, i: usize) -> f64 {
         self.lands.lands().volumes().nth(i).unwrap_or(0.0)
+    }
+
+    fn dried(&self) -> f64 {
+        self.liner.dried()
     }
 
     fn density(&self) -> f64 {

@@ -2,6 +2,10 @@
 //!
 //! In a cell that an edge of a face stands in, the thickness is that of the part outside the face.
 
+use gudgeon_core::kinds::Volatile;
+
+use super::vapour::Vapour;
+
 /// Film by height.
 #[derive(Debug, Clone)]
 pub struct Liner {
@@ -13,17 +17,58 @@ pub struct Liner {
     pub cell: f64,
     /// Volume of the film below each cell.
     sum: Vec<f64>,
+    /// Height up to which rings reach \[m\].
+    top: f64,
+    /// What evaporates, if anything does.
+    vapour: Option<Vapour>,
 }
 
 /// Way beyond the outermost edges that the grid covers \[m\].
 const MARGIN: f64 = 2e-3;
 
 impl Liner {
-    /// A liner between two heights \[m\] with cells of at most `spacing`, under a film of `initial` \[m\].
-    pub fn new(low: f64, top: f64, spacing: f64, initial: f64) -> Self {
+    /// A liner between two heights \[m\] with cells of at most `spacing`, without oil.
+    pub fn new(low: f64, top: f64, spacing: f64, volatile: Option<Volatile<'_>>) -> Self {
         let cells = (((top - low + 2.0 * MARGIN) / spacing).ceil() as usize).max(8);
         let cell = (top - low + 2.0 * MARGIN) / cells as f64;
-        Self { film: vec![initial; cells], bottom: low - MARGIN, cell, sum: vec![0.0; cells + 1] }
+        let bottom = low - MARGIN;
+        let vapour = volatile.map(|v| Vapour::new(&v, (0..cells).map(|k| bottom + (k as f64 + 0.5) * cell)));
+        Self { film: vec![0.0; cells], bottom, cell, sum: vec![0.0; cells + 1], top, vapour }
+    }
+
+    /// A film of `initial` \[m\], also above the rings unless it would only dry up there.
+    pub fn start(&mut self, initial: f64) {
+        let dry = self.vapour.is_some();
+        for k in 0..self.film.len() {
+            self.film[k] = if dry && self.ends(k).0 >= self.top { 0.0 } else { initial };
+        }
+    }
+
+    /// Begins a cycle: all oil is fresh.
+    pub fn refresh(&mut self) {
+        if let Some(vapour) = &mut self.vapour {
+            vapour.refresh(&self.film);
+        }
+    }
+
+    /// Height \[m\] that lost more than half of its film as vapour since the cycle began.
+    pub fn dried(&self) -> f64 {
+        self.vapour.as_ref().map_or(0.0, |v| v.dried() as f64 * self.cell)
+    }
+
+    /// Evaporates the film above height `from` \[m\] for `dt` \[s\] under gas of `pressure` \[Pa\]; the volume of oil, of `density` \[kg/m³\], that goes.
+    pub fn evaporate(&mut self, from: f64, dt: f64, pressure: f64, density: f64) -> f64 {
+        let Some(vapour) = &mut self.vapour else { return 0.0 };
+        let exposure = vapour.transfer(pressure) * dt;
+        let first = (((from - self.bottom) / self.cell).max(0.0) as usize).min(self.film.len());
+        let mut gone = 0.0;
+        for (k, film) in self.film.iter_mut().enumerate().skip(first).filter(|(_, film)| **film > 0.0) {
+            let high = self.bottom + (k + 1) as f64 * self.cell;
+            let left = vapour.thin(k, *film, density, exposure);
+            gone += (*film - left) * (high - from).clamp(0.0, self.cell);
+            *film = left;
+        }
+        gone
     }
 
     /// Adds the volumes up again, after the film has changed.
@@ -61,7 +106,11 @@ impl Liner {
             // The part that was outside before.
             let old =
                 if side == 1 { (high - a).clamp(0.0, self.cell) } else { (a - low).clamp(0.0, self.cell) };
-            self.film[k] = (self.film[k] * old + thickness * new) / (old + new);
+            let (before, added) = (self.film[k] * old, thickness * new);
+            self.film[k] = (before + added) / (old + new);
+            if let Some(vapour) = &mut self.vapour {
+                vapour.mix(k, before, added, self.film[k]);
+            }
         }
     }
 

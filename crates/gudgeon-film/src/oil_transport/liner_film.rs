@@ -32,6 +32,9 @@ use crate::roughness::GaussianGap;
 ///
 /// per open circumference: `φ` at an end gap, all of it at the crown, where it goes into the combustion chamber, and at the groove of an oil ring that drains. The shear
 /// stress `τ` is that of turbulent gas in a smooth gap. Oil on the lands does not come back to the liner.
+///
+/// The film above ring 1 lies bare under the gas of the cylinder. Where the case has a model of `evaporation`, it thins there, place by place, until ring 1 is back; below
+/// ring 1 nothing evaporates. Above the place of ring 1 at top dead centre the liner is then dry from the start.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct LinerFilm {
@@ -74,8 +77,8 @@ impl Default for LinerFilm {
                 Reynolds equation between the menisci, at their ends the gas pressures;  \
                 on the lands, of height H: H d(delta)/dt = scraped + passed - rho |a| delta^3/(3 mu) - tau delta^2/(2 mu), per open circumference",
     validity = "Axisymmetric films. Oil moves with the liner, the faces and their waves, along the lands and through the end gaps: none in the \
-               grooves and past the flanks, none from a land back to the liner, no evaporation, no mist. What leaves upwards is therefore a lower limit \
-               of the oil that an engine consumes. All the oil that passes a meniscus stays on the liner.",
+               grooves and past the flanks, none from a land back to the liner, no mist; what evaporates from the liner is told by a model of the kind `evaporation`. What leaves \
+               upwards is therefore a lower limit of the oil that an engine consumes. All the oil that passes a meniscus stays on the liner.",
     references = ["reynolds1886", "tomanik1993", "przesmitzki2005", "wang2012"],
     example = "supply = \"10 um\"\nsplit = 0.5\nroughness = \"0.4 um\"\nwave = \"50 um\"\nspacing = \"0.25 mm\"\ninitial = \"0.1 um\"\ndensity = \"850 kg/m3\"\n",
 )]

@@ -4,6 +4,7 @@ mod central_differences;
 mod closed_form_face;
 mod compressibility;
 mod crown;
+mod evaporation;
 mod film_1d;
 mod film_2d;
 mod film_temperature;

@@ -20,6 +20,7 @@ const SWITCHED_OFF: &[(&str, Option<&str>)] = &[
     ("cylinder_pressure", Some("constant")),
     ("drag", None),
     ("drive", Some("off")),
+    ("evaporation", Some("off")),
     ("fatigue", Some("off")),
     ("film_1d", Some("off")),
     ("film_2d", Some("off")),

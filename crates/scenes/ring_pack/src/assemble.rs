@@ -26,7 +26,7 @@ use super::rails::TakenApart;
 use super::rheology::{factors_end, rheology};
 use super::ring::Ring;
 use super::rubbing::FaceFriction;
-use super::{end_gap, geometry, oil_faces, rails};
+use super::{end_gap, evaporation, geometry, oil_faces, rails};
 
 /// A ring without axial clearance, and the flanks of a ring that no oil there moves.
 struct Clamped;
@@ -99,7 +99,7 @@ fn assemble_bodies(case: &RingPackCase, files: &Files) -> Result<Pack, Vec<Build
         return Err(vec![e]);
     }
     let (liner, pin_to_ring1) = liner(case, &drive, &rings)?;
-    let oil_pack = oil_pack(case, &drive, &plan, &mut rings, (&liner, pin_to_ring1))?;
+    let oil_pack = oil_pack(case, (&drive, &*oils.temperature), &plan, &mut rings, (&liner, pin_to_ring1))?;
     pack(case, drive, oils, plan, rings, (liner, pin_to_ring1), oil_pack)
 }
 
@@ -132,6 +132,7 @@ impl Drive {
         let m = &case.models;
         let told = Told {
             liner: m.oil_transport.follows_oil(),
+            vapour: evaporation::acts(m),
             flanks: m.flank.follows_oil(),
             formulas: case.outputs.oil_formulas,
         };
@@ -476,7 +477,7 @@ fn liner(case: &RingPackCase, drive: &Drive, rings: &[Ring]) -> Result<(LinerSha
 /// The oil on the liner, where films are solved and it is followed.
 fn oil_pack(
     case: &RingPackCase,
-    drive: &Drive,
+    (drive, temperature): (&Drive, &dyn FilmTemperature),
     plan: &Plan,
     rings: &mut [Ring],
     (shape, pin_to_ring1): (&LinerShape, f64),
@@ -485,7 +486,11 @@ fn oil_pack(
     let (top, stroke) = (drive.kinematics.y_tdc(), drive.kinematics.stroke());
     let crown = geometry::crown_height(case);
     let lands = oil_faces::lands(&drive.geo, rings, crown, shape, (pin_to_ring1, stroke));
-    let ctx = OilTransportCtx { faces: &faces, lands: &lands, pin: (top - stroke, top), omega: drive.omega };
+    let vapour = evaporation::model(case, &*drive.kinematics).map_err(|e| vec![e])?;
+    let volatile =
+        evaporation::volatile(vapour.as_deref(), temperature, top + pin_to_ring1).map_err(|e| vec![e])?;
+    let pin = (top - stroke, top);
+    let ctx = OilTransportCtx { faces: &faces, lands: &lands, pin, omega: drive.omega, volatile };
     let spec = &case.models.oil_transport;
     let model = spec.build(&ctx).map_err(|e| vec![e.within("models.oil_transport")])?;
     let Some(model) = model.filter(|_| plan.film) else { return Ok(None) };

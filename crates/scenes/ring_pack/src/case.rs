@@ -2,9 +2,10 @@
 
 use gudgeon_core::face::Face;
 use gudgeon_core::kinds::{
-    BoundaryFrictionSpec, CompressibilitySpec, ContactSpec, CylinderPressureSpec, FilmTemperatureSpec,
-    FlankFrictionSpec, FlankSpec, GasFlowSpec, HydrodynamicsSpec, KinematicsSpec, OilSpec, OilTransportSpec,
-    PiezoviscositySpec, RadialMotionSpec, RingMotionSpec, RoughnessSpec, ShearThinningSpec,
+    BoundaryFrictionSpec, CompressibilitySpec, ContactSpec, CylinderPressureSpec, EvaporationSpec,
+    FilmTemperatureSpec, FlankFrictionSpec, FlankSpec, GasFlowSpec, HydrodynamicsSpec, KinematicsSpec,
+    OilSpec, OilTransportSpec, PiezoviscositySpec, RadialMotionSpec, RingMotionSpec, RoughnessSpec,
+    ShearThinningSpec,
 };
 use gudgeon_core::quantity::{
     Angle, Fraction, Length, NonNegative, PosAngle, PosArea, PosExpansion, PosForce, PosGasConstant,
@@ -315,6 +316,9 @@ pub struct Models {
     /// Oil on the liner and under the faces.
     #[serde(default = "default_oil_transport")]
     pub oil_transport: Box<dyn OilTransportSpec>,
+    /// Oil that evaporates from the liner above ring 1, where `oil_transport` follows it.
+    #[serde(default = "default_evaporation")]
+    pub evaporation: Box<dyn EvaporationSpec>,
     /// Solid contact of ring faces and liner. No default: it needs the roughness of the surfaces.
     pub contact: Box<dyn ContactSpec>,
     /// How the friction of solid contact depends on sliding speed, load and real area; absent: the coefficient of the contact model at every speed,
@@ -413,6 +417,7 @@ gudgeon_core::default_model! {
     default_flank: dyn FlankSpec = "wetted_strip";
     default_flank_friction: dyn FlankFrictionSpec = "off";
     default_oil_transport: dyn OilTransportSpec = "off";
+    default_evaporation: dyn EvaporationSpec = "off";
     default_hydrodynamics: dyn HydrodynamicsSpec = "closed_form_face";
     default_solver: dyn RingPackSolverSpec = "implicit";
 }

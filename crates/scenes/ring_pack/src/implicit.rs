@@ -732,7 +732,7 @@ impl<'a> Cycle<'a> {
         let oil_mass = self.pack.oil_pack.as_ref().map(|o| {
             let l = o.ledger();
             let stored = self.pack.oil_total(y) - oil_before;
-            (l.supplied - l.drained - l.thrown - stored).abs() / l.taken.max(f64::MIN_POSITIVE)
+            (l.gained() - stored).abs() / l.taken.max(f64::MIN_POSITIVE)
         });
         if let Some(source) = sampler.failure.take() {
             return Err(RunError::Eval { theta_deg: self.pack.at.theta.to_degrees(), source });

@@ -14,6 +14,7 @@ pub mod degree_march;
 pub mod distortion;
 mod end_gap;
 mod error;
+mod evaporation;
 mod film_strokes;
 mod forces;
 mod gas_ledger;

@@ -28,6 +28,8 @@ pub struct Totals {
     pub passed: Vec<OilPassed>,
     /// Oil on the land above each ring at the end of the cycle, per circumference \[m²\].
     pub on_land: Vec<f64>,
+    /// Height \[m\] of the liner that lost more than half of its film as vapour.
+    pub dried: f64,
     /// Oil that came to the flanks of each ring and left them, per circumference \[m²\]; empty where it is not followed.
     pub flank: Vec<FlankFlow>,
 }
@@ -47,6 +49,7 @@ impl Totals {
             friction_work: q[n + 1..2 * n + 1].to_vec(),
             boundary_work: q[2 * n + 1..3 * n + 1].to_vec(),
             oil: pack.oil_pack.as_ref().map_or_else(OilLedger::default, |o| o.ledger()),
+            dried: pack.oil_pack.as_ref().map_or(0.0, |o| o.dried()),
             passed,
             on_land,
             flank: (0..n).filter_map(flank).collect(),

@@ -71,6 +71,7 @@ impl Cycle {
         let swept = PI * pack.geo.bore_radius.powi(2) * pack.kinematics.stroke();
         let work: f64 = t.friction_work.iter().sum();
         let around = around(pack);
+        let up = t.oil.thrown + t.oil.evaporated;
         match name {
             "blow_by" => litres_per_minute * meter.cylinders,
             "blow_by_per_cylinder" => litres_per_minute,
@@ -89,19 +90,22 @@ impl Cycle {
             "oil_taken" => t.oil.taken * around,
             "oil_drained" => t.oil.drained * around,
             "oil_thrown" => t.oil.thrown * around,
-            "oil_up" => self.grams_up(pack) * meter.cylinders * 3600.0 / Self::duration(pack),
+            "oil_evaporated" => t.oil.evaporated * around,
+            "liner_dried" => t.dried * 1e3,
+            "oil_up" => Self::grams_per_hour(pack, up, meter),
+            "oil_up_thrown" => Self::grams_per_hour(pack, t.oil.thrown, meter),
+            "oil_up_evaporated" => Self::grams_per_hour(pack, t.oil.evaporated, meter),
             "oil_up_specific" => match indicated_work(pack) {
-                work if work > 0.0 => self.grams_up(pack) / (work / 3.6e6),
+                work if work > 0.0 => grams(pack, up) / (work / 3.6e6),
                 _ => 0.0,
             },
             _ => 0.0,
         }
     }
 
-    /// Oil that leaves one cylinder upwards in a cycle \[g\].
-    fn grams_up(&self, pack: &Pack) -> f64 {
-        let density = pack.oil_pack.as_ref().map_or(0.0, |o| o.density());
-        self.totals.oil.thrown * around(pack) * 1e-9 * density * 1e3
+    /// Grams an hour of the engine from a volume of oil per circumference \[m²\] in a cycle of one cylinder.
+    fn grams_per_hour(pack: &Pack, volume: f64, meter: Meter) -> f64 {
+        grams(pack, volume) * meter.cylinders * 3600.0 / Self::duration(pack)
     }
 
     fn of_ring(&self, pack: &Pack, i: usize, what: &str) -> f64 {
@@ -179,6 +183,12 @@ impl Cycle {
 /// What turns volumes per circumference \[m²\] into mm³.
 fn around(pack: &Pack) -> f64 {
     2.0 * PI * pack.geo.bore_radius * 1e9
+}
+
+/// Mass \[g\] of a volume of oil per circumference \[m²\].
+fn grams(pack: &Pack, volume: f64) -> f64 {
+    let density = pack.oil_pack.as_ref().map_or(0.0, |o| o.density());
+    volume * around(pack) * 1e-9 * density * 1e3
 }
 
 /// Intervals of the work of the gas in a cycle: a tenth of a degree.

@@ -4,6 +4,7 @@ use gudgeon_core::result::{Branch, Event, Note, Series, SolverReport};
 use gudgeon_scene::{Progress, RunError, Stopped};
 
 use super::case::RingPackCase;
+use super::evaporation;
 use super::meter;
 use super::pack::Pack;
 use super::record::Record;
@@ -169,6 +170,7 @@ fn report(case: &RingPackCase, pack: &Pack, found: &[(f64, Solution)], branches:
             }
         }
     }
+    report.notes.extend(found.first().and_then(|(_, f)| evaporation::note(&f.cycle.totals)));
     report.counters.insert("cycles".into(), found.iter().map(|(_, f)| f.cycles).sum::<f64>().ceil() as u64);
     report.counters.insert("states".into(), pack.layout.n as u64);
     report.counters.insert("film_evaluations".into(), pack.counters.film);

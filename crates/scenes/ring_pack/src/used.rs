@@ -5,8 +5,8 @@ use gudgeon_core::result::{ModelUse, Skipped};
 
 use super::case::{RingDesign, RingModels, RingPackCase};
 use super::plan::Plan;
-use super::rheology;
 use super::vent::vent;
+use super::{evaporation, rheology};
 
 /// The models that run and the parts that do not, for `explain` and the results.
 #[must_use]
@@ -61,12 +61,16 @@ pub fn models_in_use(case: &RingPackCase, plan: &Plan) -> (Vec<ModelUse>, Vec<Sk
         }
         pack_and_own("oil", m.oil.typetag_name(), Vec::new());
         pack_and_own("oil_transport", m.oil_transport.typetag_name(), Vec::new());
+        if evaporation::acts(m) {
+            pack_and_own("evaporation", m.evaporation.typetag_name(), Vec::new());
+        }
         pack_and_own("film_temperature", m.film_temperature.typetag_name(), Vec::new());
         pack_and_own("flank_friction", m.flank_friction.typetag_name(), Vec::new());
         for (kind, name) in case.conventions.film() {
             pack_and_own(kind, name, Vec::new());
         }
     }
+    skipped.extend(evaporation::skipped(m, plan));
     for (i, r) in case.rings.iter().enumerate() {
         match r.design {
             RingDesign::ThreePiece => skipped.push(Skipped {
