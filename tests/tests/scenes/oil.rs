@@ -70,23 +70,28 @@ fn vapour_leaves_upwards_within_the_ledger() {
     let want = value(&r, "oil_evaporated") * 0.85e-3 * 6.0 * 60_000.0;
     assert!((vapour - want).abs() <= 1e-12 * want, "{vapour} {want}");
     assert!(r.models.iter().any(|m| m.kind == "evaporation"));
-    // The hot end of the liner, where oil comes in with ring 1 alone, dries.
+    // The hot end of the liner, above the reach of the oil ring (21 mm), where oil comes in with ring 1 alone, dries when it is hot enough.
+    let r = diesel(&[VAPOUR, "models.film_temperature.tdc=250 degC"]);
     let dried = value(&r, "liner_dried");
-    assert!(0.0 < dried && dried < 30.0, "{dried} mm");
+    assert!((5.0..21.0).contains(&dried), "{dried} mm");
     assert!(r.solver.notes.iter().any(|n| n.topic == "liner_dries"));
 }
 
-/// Cold liners keep their oil, hot ones lose it ever faster: the vapour pressure of the fractions of an engine oil grows tenfold over 40 to 50 K.
+/// On a liner of one temperature the same oil lies bare under the same gas: what evaporates goes with the volatility of fresh oil, while little of it goes. On a hotter one light
+/// fractions and films run out.
 #[test]
 fn what_evaporates_rises_steeply_with_the_temperature_of_the_liner() {
     let vapour =
         ["20 degC", "100 degC", "140 degC", "180 degC"].map(|t| value(&drying(t), "oil_up_evaporated"));
-    assert!(vapour[0] < 1e-4 * vapour[1], "{vapour:?}");
-    for pair in vapour[1..].windows(2) {
+    // Sums over the fractions of `M x p(T) Le^(-2/3)` at 20 and 100 degC, 100 and 140 degC, computed apart from this program. Steps and films differ in the viscosity alone, which
+    // moves the heights that lie bare by nothing; at 140 degC 0.6 % less goes because light fractions are used up.
+    for (pair, want, room) in [(&vapour[..2], 2388.02, 2e-3), (&vapour[1..3], 13.930, 1e-2)] {
         let factor = pair[1] / pair[0];
-        // Less than the vapour pressure, where light fractions and films run out.
-        assert!((4.0..14.0).contains(&factor), "{vapour:?}");
+        assert!((factor / want - 1.0).abs() < room, "{factor} instead of {want}: {vapour:?}");
     }
+    // 8.57 for fresh oil.
+    let last = vapour[3] / vapour[2];
+    assert!((6.0..8.57).contains(&last), "{vapour:?}");
 }
 
 /// Faces that always find oil have no film on the liner to evaporate; that is told and no error.
@@ -118,6 +123,17 @@ fn what_passes_the_gap_of_the_oil_ring_is_the_supply_before_it() {
     let ratio = value(&twice, "ring3.gap_oil_up") / up;
     // What the gas carries up through it is not in proportion, and little.
     assert!((ratio - 2.0).abs() < 0.02, "{ratio}");
+}
+
+#[test]
+fn a_run_tells_how_to_see_what_the_supply_does() {
+    let r = diesel(&["models.oil_transport.supply=4 um"]);
+    let note = r.solver.notes.iter().find(|n| n.topic == "oil_supply").expect("a note");
+    let set = note.text.split('\'').nth(1).expect("a setting");
+    assert!(set.contains("from=\"2 um\",to=\"8 um\""), "{set}");
+    // The setting is one that the case takes as it stands.
+    let swept = check(&case_file("turbo-diesel-120"), &[set.to_owned()]).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(swept.case.resolved()["sweeps"][0]["points"], 5);
 }
 
 #[test]

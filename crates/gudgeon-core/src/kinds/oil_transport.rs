@@ -4,6 +4,7 @@ use dyn_clone::DynClone;
 
 use super::{Evaporation, FilmTemperature};
 use crate::geometry::FaceProfile;
+use crate::result::Note;
 use crate::states::Stateful;
 use crate::{BuildError, register_kind};
 
@@ -234,11 +235,14 @@ pub trait OilTransport: Stateful + Debug + Send {
     /// Oil on the land above ring `i`, per circumference \[m²\].
     fn on_land(&self, i: usize) -> f64;
 
-    /// Height \[m\] of the liner that lost more than half of its film as vapour since the cycle began, between two passes of ring 1.
+    /// Height \[m\] of the liner within reach of ring 1 that evaporation has left without oil at some time since the cycle began.
     fn dried(&self) -> f64;
 
     /// Density of the oil \[kg/m³\].
     fn density(&self) -> f64;
+
+    /// What a person should know about how this came about.
+    fn notes(&self) -> Vec<Note>;
 
     /// Begins the ledger anew.
     fn clear_ledger(&mut self);

@@ -11,6 +11,7 @@ use gudgeon_core::kinds::{
     OilDrive, OilExtent, OilFaceIn, OilFacePlace, OilLand, OilLedger, OilPassed, OilStep, OilTransport,
     OilTransportCtx, RingOil,
 };
+use gudgeon_core::result::Note;
 use gudgeon_core::states::{Signals, StateInfo, Stateful};
 
 use super::face::{MIN_REACH, OilFace, SIDES};
@@ -379,6 +380,10 @@ impl OilTransport for Carried {
 
     fn density(&self) -> f64 {
         self.lands.lands().density
+    }
+
+    fn notes(&self) -> Vec<Note> {
+        vec![self.law.supply_note()]
     }
 
     fn clear_ledger(&mut self) {

@@ -1,5 +1,7 @@
 //! What a meniscus leaves on the liner, and what rough surfaces carry in their valleys.
 
+use gudgeon_core::result::Note;
+
 use crate::roughness::GaussianGap;
 
 /// The constants of a model of the oil on the liner, and what follows from them.
@@ -38,6 +40,19 @@ impl Law {
     /// Thickness \[m\] of the film that the meniscus at a trailing edge leaves on the liner, for the gap \[m\] at the meniscus.
     pub fn deposited(&self, gap: f64) -> f64 {
         self.split * (gap + self.valleys(gap))
+    }
+
+    /// How to see what the supply does to the results: from half of it to twice as much, or about 5 µm where there is none.
+    pub fn supply_note(&self) -> Note {
+        let um = 1e6 * self.supply;
+        let about = if um > 0.0 { um } else { 5.0 };
+        let (from, to) = (0.5 * about, 2.0 * about);
+        let text = format!(
+            "the film of {um} um that the crankcase leaves below the rings is an input (`models.oil_transport.supply`). What blow-by, friction, films and oil upwards owe to it the \
+             report draws with `--set 'sweeps=[{{path=\"models.oil_transport.supply\",from=\"{from} um\",to=\"{to} um\",points=5,spacing=\"log\",\
+             results=[\"blow_by\",\"fmep\",\"ring1.h_min\",\"oil_up\"]}}]'`"
+        );
+        Note::info("oil_supply", text).amount("supply", um, "um")
     }
 
     /// Flux \[m²/s\] that the valleys carry through a gap \[m\] beside what the smooth film does, at the sliding speed \[m/s\].

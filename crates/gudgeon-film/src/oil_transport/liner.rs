@@ -47,11 +47,11 @@ impl Liner {
     /// Begins a cycle: all oil is fresh.
     pub fn refresh(&mut self) {
         if let Some(vapour) = &mut self.vapour {
-            vapour.refresh(&self.film);
+            vapour.refresh();
         }
     }
 
-    /// Height \[m\] that lost more than half of its film as vapour since the cycle began.
+    /// Height \[m\] within reach of ring 1 that lay bare without oil since the cycle began; none where nothing evaporates.
     pub fn dried(&self) -> f64 {
         self.vapour.as_ref().map_or(0.0, |v| v.dried() as f64 * self.cell)
     }
@@ -62,11 +62,16 @@ impl Liner {
         let exposure = vapour.transfer(pressure) * dt;
         let first = (((from - self.bottom) / self.cell).max(0.0) as usize).min(self.film.len());
         let mut gone = 0.0;
-        for (k, film) in self.film.iter_mut().enumerate().skip(first).filter(|(_, film)| **film > 0.0) {
-            let high = self.bottom + (k + 1) as f64 * self.cell;
-            let left = vapour.thin(k, *film, density, exposure);
-            gone += (*film - left) * (high - from).clamp(0.0, self.cell);
-            *film = left;
+        for (k, film) in self.film.iter_mut().enumerate().skip(first) {
+            let (low, high) = (self.bottom + k as f64 * self.cell, self.bottom + (k + 1) as f64 * self.cell);
+            if *film > 0.0 {
+                let left = vapour.thin(k, *film, density, exposure);
+                gone += (*film - left) * (high - from).clamp(0.0, self.cell);
+                *film = left;
+            }
+            if low >= from && high <= self.top {
+                vapour.see(k, *film);
+            }
         }
         gone
     }
@@ -109,7 +114,7 @@ impl Liner {
             let (before, added) = (self.film[k] * old, thickness * new);
             self.film[k] = (before + added) / (old + new);
             if let Some(vapour) = &mut self.vapour {
-                vapour.mix(k, before, added, self.film[k]);
+                vapour.mix(k, before, added);
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use gudgeon_core::kinds::{Evaporation, Volatile};
 
-/// Film \[m\] below which there is none to dry: a molecule.
+/// Film \[m\] below which there is none: a molecule.
 const MOLECULE: f64 = 1e-9;
 
 /// The composition of the film, cell by cell.
@@ -15,9 +15,7 @@ pub struct Vapour {
     shares: Vec<f64>,
     /// Volatilities of the fractions at every cell.
     volatility: Vec<f64>,
-    /// Film \[m\] of every cell when oil was laid there last.
-    laid: Vec<f64>,
-    /// Cells that have lost more than half of that since the cycle began.
+    /// Cells that have been dry since the cycle began.
     dried: Vec<bool>,
     /// Masses of one cell, scratch.
     masses: Vec<f64>,
@@ -38,7 +36,6 @@ impl Vapour {
         Self {
             model: dyn_clone::clone_box(volatile.model),
             shares: fresh.repeat(cells),
-            laid: vec![0.0; cells],
             dried: vec![false; cells],
             masses: vec![0.0; n],
             fresh,
@@ -46,18 +43,16 @@ impl Vapour {
         }
     }
 
-    /// Makes all oil fresh, of `film` \[m\].
-    pub fn refresh(&mut self, film: &[f64]) {
-        self.laid.copy_from_slice(film);
+    /// Makes all oil fresh, and no cell dry yet.
+    pub fn refresh(&mut self) {
         self.dried.fill(false);
         for cell in self.shares.chunks_exact_mut(self.fresh.len()) {
             cell.copy_from_slice(&self.fresh);
         }
     }
 
-    /// Adds a volume of fresh oil to the volume `before` of cell `k`, which then has a film of `film` \[m\].
-    pub fn mix(&mut self, k: usize, before: f64, added: f64, film: f64) {
-        self.laid[k] = film;
+    /// Adds a volume of fresh oil to the volume `before` of cell `k`.
+    pub fn mix(&mut self, k: usize, before: f64, added: f64) {
         let n = self.fresh.len();
         let part = if before > 0.0 { before / (before + added) } else { 0.0 };
         for (share, fresh) in self.shares[n * k..n * (k + 1)].iter_mut().zip(&self.fresh) {
@@ -70,7 +65,12 @@ impl Vapour {
         self.model.transfer(pressure)
     }
 
-    /// Number of cells that have lost more than half of their film.
+    /// Notes that cell `k` lies bare under a `film` \[m\].
+    pub fn see(&mut self, k: usize, film: f64) {
+        self.dried[k] |= film < MOLECULE;
+    }
+
+    /// Number of cells that have been dry.
     pub fn dried(&self) -> usize {
         self.dried.iter().filter(|d| **d).count()
     }
@@ -89,8 +89,6 @@ impl Vapour {
                 *share = m / left;
             }
         }
-        let left = (left / density).min(film);
-        self.dried[k] |= self.laid[k] > MOLECULE && left < 0.5 * self.laid[k];
-        left
+        (left / density).min(film)
     }
 }

@@ -62,8 +62,7 @@ pub fn note(totals: &Totals) -> Option<Note> {
     let mm = 1e3 * totals.dried;
     (mm > 0.0).then(|| {
         let text = format!(
-            "over {mm:.1} mm of the liner more than half of the film that ring 1 leaves evaporates before it is back: there the oil that comes decides what evaporates, and no \
-             longer its vapour pressure"
+            "over {mm:.1} mm of its way ring 1 leaves a dry liner above it: there the oil that comes decides what evaporates, and no longer its vapour pressure"
         );
         Note::info("liner_dries", text).amount("height", mm, "mm")
     })

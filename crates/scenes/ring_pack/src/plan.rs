@@ -274,7 +274,7 @@ fn vapour_results() -> Vec<ResultInfo> {
         add(
             "liner_dried",
             "mm",
-            "height of the liner that loses more than half of its film as vapour between two passes of ring 1",
+            "height of the way of ring 1 that evaporation leaves without oil at some time of the cycle",
         ),
         add("oil_up_thrown", "g/h", "the part of `oil_up` that inertia throws off the land above ring 1"),
         add("oil_up_evaporated", "g/h", "the part of `oil_up` that evaporates from the liner"),

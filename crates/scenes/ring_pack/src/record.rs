@@ -28,7 +28,7 @@ pub struct Totals {
     pub passed: Vec<OilPassed>,
     /// Oil on the land above each ring at the end of the cycle, per circumference \[m²\].
     pub on_land: Vec<f64>,
-    /// Height \[m\] of the liner that lost more than half of its film as vapour.
+    /// Height \[m\] of the way of ring 1 that evaporation left without oil.
     pub dried: f64,
     /// Oil that came to the flanks of each ring and left them, per circumference \[m²\]; empty where it is not followed.
     pub flank: Vec<FlankFlow>,

@@ -132,6 +132,7 @@ fn report(case: &RingPackCase, pack: &Pack, found: &[(f64, Solution)], branches:
         notes: pack.cylinder.notes(),
         ..SolverReport::default()
     };
+    report.notes.extend(pack.oil_pack.iter().flat_map(|oil| oil.notes()));
     if branches.len() > 1 {
         report.notes.push(Note::caution(
             "several_solutions",

@@ -175,9 +175,9 @@ fn vapour_is_accounted_for() {
     assert!(0.0 < little && little < 0.1 * much && much < most, "{little:e} {much:e} {most:e}");
     // When the first step takes all of it, a hotter liner takes no more, but for what ring 1 has just laid in the cell of its edge.
     assert!((all / most - 1.0).abs() < 0.02, "{most:e} {all:e}");
-    assert_eq!(dry_none, 0.0);
-    // All of the way of ring 1, 100 mm, and what lies above it.
-    assert!(dry_some <= dry_all && (0.099..0.104).contains(&dry_all), "{dry_some} {dry_all} m");
+    // At 400 K where the faces of this test left nothing, at 900 K all of the way of ring 1, 100 mm, but for cells cut by its ends.
+    assert!(dry_none < 0.5 * dry_some && dry_some <= dry_all, "{dry_none} {dry_some} {dry_all} m");
+    assert!((0.099..=0.1001).contains(&dry_all), "{dry_all} m");
 }
 
 /// What no ring reaches is dry from the start where it would only dry up, which takes many cycles.
