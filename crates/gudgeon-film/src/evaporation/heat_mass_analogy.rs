@@ -18,7 +18,9 @@ use super::petroleum::{AIR, BOILING, lewis_number, molar_mass, vapour_pressure};
 ///
 /// The film that ring 1 leaves is fresh oil of the given fractions; while it lies bare, what is light goes first. That holds where the oil ring passes,
 /// below which the crankcase renews the film in every stroke. Above the reach of the oil ring oil stays for some cycles and its light fractions deplete: the
-/// model overstates what evaporates there, and one fraction in place of several overstates it everywhere.
+/// model overstates what evaporates there. One fraction in place of several never runs out of what is light.
+///
+/// There a cycle takes nanometres of a film of tenths of a micrometre, so that the periodic state takes 20 to 80 cycles to find where it takes 20 without evaporation.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct HeatMassAnalogy {
