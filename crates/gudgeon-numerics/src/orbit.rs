@@ -368,20 +368,43 @@ impl Search {
         let mut s = vec![1.0; y.len()];
         let mut g = vec![0.0; y.len()];
         map.scale(y, &mut s);
-        for (i, (y, s)) in y.iter_mut().zip(&s).enumerate() {
-            *y += s * NUDGE * if i.is_multiple_of(2) { 1.0 } else { -0.7 };
-        }
-        let mut halfway = 0.0;
-        for k in 0..PROBE {
-            self.apply(map, y, &mut g, options.accuracy, 1)?;
+        let nudge = self.nudged(map, &fixed, &s, &mut g, options)?;
+        let mut halfway = norm(&g, &fixed, &s);
+        for k in 1..PROBE {
             y.copy_from_slice(&g);
+            self.apply(map, y, &mut g, options.accuracy, 1)?;
             if 2 * k < PROBE {
-                halfway = norm(y, &fixed, &s);
+                halfway = norm(&g, &fixed, &s);
             }
         }
+        y.copy_from_slice(&g);
         // The first half lets decaying modes go; what then still grows is unstable. A state that went far has not come back,
         // though chance may bring it nearer.
-        Ok(halfway > 5.0 * NUDGE || norm(y, &fixed, &s) > 1.02 * halfway.max(options.tolerance))
+        Ok(halfway > 5.0 * nudge || norm(y, &fixed, &s) > 1.02 * halfway.max(options.tolerance))
+    }
+
+    /// The end `g` of the cycle from a start a little beside `fixed`, and how far beside it: nearer where the machine could not start from there.
+    fn nudged(
+        &mut self,
+        map: &mut dyn CycleMap,
+        fixed: &[f64],
+        s: &[f64],
+        g: &mut [f64],
+        options: &OrbitOptions,
+    ) -> Result<f64, EvalError> {
+        let mut nudge = NUDGE;
+        loop {
+            let beside = |(i, (y, s)): (usize, (&f64, &f64))| {
+                y + s * nudge * if i.is_multiple_of(2) { 1.0 } else { -0.7 }
+            };
+            let mut y: Vec<f64> = fixed.iter().zip(s).enumerate().map(beside).collect();
+            map.admit(fixed, &mut y);
+            match self.apply(map, &y, g, options.accuracy, 1) {
+                Err(e) if e.is_recoverable() && nudge * NEARER > options.tolerance => nudge *= NEARER,
+                outcome => return outcome.map(|()| nudge),
+            }
+            self.report.cycles += 1;
+        }
     }
 
     fn plain(
