@@ -9,6 +9,8 @@
 use crate::EvalError;
 use nalgebra::{DMatrix, DVector, Schur};
 
+mod stretches;
+
 /// The map of a cycle.
 pub trait CycleMap {
     /// Number of states.
@@ -23,27 +25,25 @@ pub trait CycleMap {
     fn scale(&self, y: &[f64], s: &mut [f64]);
     /// Keeps an extrapolated start within what the machine admits; `reached` is the end of the cycle before, which it does.
     fn admit(&self, _reached: &[f64], _y: &mut [f64]) {}
-    /// How strongly bent the map is.
-    fn bend(&self) -> Bend {
-        Bend::SMOOTH
+    /// How the map is searched if it is strongly bent; `None` for one that is nearly linear between the iterates.
+    fn bend(&self) -> Option<Bend> {
+        None
     }
 }
 
-/// What the acceleration takes from a map that is strongly bent: secants of far iterates, less what newer ones explain of them, say more of its curvature
-/// than of its slopes.
+/// How a map is searched that is strongly bent, or has corners: secants of far iterates say more of its curvature than of its slopes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bend {
     /// Least part of a secant that is new beside the newer ones; one with less is left out.
     pub fresh: f64,
-    /// Longest step over the residual, to begin with.
+    /// Longest step over the residual.
     pub stride: f64,
+    /// Longest step in scaled units.
+    pub reach: f64,
     /// Accuracy of a cycle over the residual of the one before: far from the orbit cheaper cycles do.
     pub rough: f64,
-}
-
-impl Bend {
-    /// A map that is nearly linear between the iterates.
-    pub const SMOOTH: Self = Self { fresh: 1e-9, stride: f64::INFINITY, rough: 0.0 };
+    /// Part of its accuracy by which a cycle differs from cycle to cycle.
+    pub noise: f64,
 }
 
 /// The roughest cycle.
@@ -86,6 +86,8 @@ pub struct OrbitReport {
     pub history: Vec<f64>,
 }
 
+/// Least part of a secant that is new beside the newer ones; one with less is left out.
+const FRESH: f64 = 1e-9;
 /// Differences of earlier iterates that the acceleration keeps.
 const DEPTH: usize = 8;
 /// Longest repetition that is looked for.
@@ -110,13 +112,8 @@ const PATIENCE: usize = 60;
 const BAND: (usize, f64) = (24, 30.0);
 /// States that move along or come nearer lie at least twice as far apart as the narrower half of them; noise, hardly farther.
 const APART: f64 = 1.9;
-/// Miss of a foretold residual, as a part of the one before, below which longer steps are tried; and how much longer, or shorter where it is above 1.
-const FORETOLD: f64 = 0.25;
-const LENGTHEN: f64 = 2.0;
 /// Part of the longest step that is left when one was taken back.
 const NEARER: f64 = 0.25;
-/// Shortest limit of a step over the residual: two residuals are what a multiplier of a half asks for.
-const SHORTEST_STRIDE: f64 = 2.0;
 /// Largest factor by which a residual is taken to understate an error.
 const MAX_GAIN: f64 = 3000.0;
 
@@ -146,11 +143,11 @@ pub fn periodic_orbit(
         return Ok(search.finish());
     }
     let mut options = *options;
-    search.accelerated(map, y, &options, 1)?;
+    search.extrapolated(map, y, &options, 1)?;
     while options.refinements > 0 && !search.report.converged && search.noisy {
         options.refinements -= 1;
         options.accuracy *= 0.1;
-        search.accelerated(map, y, &options, 1)?;
+        search.extrapolated(map, y, &options, 1)?;
     }
     let options = &options;
     if !search.report.converged && search.report.cycles >= patience(options) {
@@ -169,7 +166,7 @@ pub fn periodic_orbit(
     let mut s = vec![1.0; y.len()];
     let mut g = other.clone();
     let mut twice = other.clone();
-    search.accelerated(map, &mut twice, options, 2)?;
+    search.extrapolated(map, &mut twice, options, 2)?;
     if search.report.converged && !search.suspect {
         search.apply(map, &twice, &mut g, options.accuracy, 1)?;
         map.scale(&g, &mut s);
@@ -255,23 +252,36 @@ impl Search {
     }
 
     /// Search of an orbit that repeats after `times` cycles.
-    fn accelerated(
+    fn extrapolated(
         &mut self,
         map: &mut dyn CycleMap,
         y: &mut [f64],
         options: &OrbitOptions,
         times: usize,
     ) -> Result<(), EvalError> {
+        let limit = if times == 1 { options.max_cycles.min(patience(options)) } else { options.max_cycles };
+        match map.bend() {
+            Some(bend) => self.in_stretches(map, y, options, (times, limit), bend),
+            None => self.accelerated(map, y, options, (times, limit)),
+        }
+    }
+
+    /// The same by Anderson's acceleration, a step after every cycle.
+    fn accelerated(
+        &mut self,
+        map: &mut dyn CycleMap,
+        y: &mut [f64],
+        options: &OrbitOptions,
+        (times, limit): (usize, usize),
+    ) -> Result<(), EvalError> {
         // The end of the last cycle that could be computed.
         let mut g = vec![0.0; y.len()];
         let (mut end, mut extrapolated) = (g.clone(), false);
-        let bend = map.bend();
-        let mut state = Anderson::new(y.len(), bend);
+        let mut state = Anderson::new(y.len());
         self.report.converged = false;
         self.noisy = false;
         // Far from the orbit a rough map does: the first cycle only has to leave the arbitrary start.
         let rough = if self.report.cycles == 0 { options.accuracy.max(1e-3) } else { options.accuracy };
-        let limit = if times == 1 { options.max_cycles.min(patience(options)) } else { options.max_cycles };
         let mut accuracy = if times == 1 { rough } else { options.accuracy };
         let mut before = accuracy;
         for k in 0.. {
@@ -296,7 +306,7 @@ impl Search {
             self.report.residual = residual;
             self.report.history.push(residual);
             let ratio = state.learn(&at, &r, before.max(accuracy), options);
-            let (correction, rest) = explain(&state.secants[state.trusted..], &r, bend.fresh);
+            let (correction, rest) = explain(&state.secants[state.trusted..], &r, FRESH);
             let estimate = self.judge(&mut state, residual, correction.amax(), rest.amax(), ratio, options);
             // A slow mode can hide behind faster ones for a cycle: what passes must pass twice, and go on falling as if it would
             // end below the tolerance, unless nothing but the noise of the map is left, which a further cycle would not lessen.
@@ -316,10 +326,9 @@ impl Search {
             }
             state.passed = if k > 0 && estimate <= options.tolerance { estimate } else { 0.0 };
             before = accuracy;
-            accuracy = (bend.rough * residual).min(ROUGHEST).max(options.accuracy);
-            // Not further than the states are large, nor than the map can have understated.
-            let longest = (state.stride * residual).min(state.reach);
-            let damping = (longest / correction.amax().max(1e-300)).min(1.0);
+            accuracy = options.accuracy;
+            // Not further than the states are large.
+            let damping = (state.reach / correction.amax().max(1e-300)).min(1.0);
             let next = &at + &r - correction * damping;
             for ((y, n), s) in y.iter_mut().zip(next.iter()).zip(&state.s) {
                 *y = n * s;
@@ -342,7 +351,7 @@ impl Search {
         ratio: f64,
         options: &OrbitOptions,
     ) -> f64 {
-        let (largest, gain, suspect) = spectrum(&state.secants, state.bend.fresh);
+        let (largest, gain, suspect) = spectrum(&state.secants, FRESH);
         self.report.multiplier = largest;
         self.suspect = suspect;
         // What was seen of slow modes before the map became more accurate still holds near the orbit.
@@ -525,18 +534,12 @@ impl Tried {
     fn left(&self, r: &DVector<f64>) -> DVector<f64> {
         (r - &self.r * (1.0 - self.damping)) / self.damping.max(1e-3)
     }
-
-    /// How far the residual `r` is from what the secants foretold, over the residual before.
-    fn miss(&self, r: &DVector<f64>) -> f64 {
-        (r - &self.r * (1.0 - self.damping) - &self.rest * self.damping).norm() / self.r.norm()
-    }
 }
 
 /// What the acceleration keeps from cycle to cycle, in scaled states.
 struct Anderson {
     /// Scales of the states in the last cycle.
     s: Vec<f64>,
-    bend: Bend,
     secants: Vec<Secant>,
     /// The first secant that is stepped with.
     trusted: usize,
@@ -546,8 +549,6 @@ struct Anderson {
     stalled: usize,
     /// The cycle before.
     previous: Option<Tried>,
-    /// Longest step over the residual: longer where the secants foretell residuals, shorter where they do not.
-    stride: f64,
     /// Longest step: the states are no larger, and less where the machine could not follow.
     reach: f64,
     /// Smallest residual.
@@ -561,16 +562,14 @@ struct Anderson {
 }
 
 impl Anderson {
-    fn new(n: usize, bend: Bend) -> Self {
+    fn new(n: usize) -> Self {
         Self {
             s: vec![1.0; n],
-            bend,
             secants: Vec::new(),
             trusted: 0,
             idle: 0,
             stalled: 0,
             previous: None,
-            stride: bend.stride,
             reach: 1.0,
             best: f64::INFINITY,
             passed: 0.0,
@@ -615,24 +614,10 @@ impl Anderson {
         self.stalled = if halved { 0 } else { self.stalled + usize::from(near && turns) };
         self.best = self.best.min(residual);
         let Some(before) = &self.previous else { return 0.0 };
-        if self.bend.stride.is_finite() {
-            let miss = before.miss(r);
-            let change = if miss < FORETOLD {
-                LENGTHEN
-            } else if miss > 1.0 {
-                LENGTHEN.recip()
-            } else {
-                1.0
-            };
-            self.stride = (self.stride * change).clamp(SHORTEST_STRIDE, MAX_GAIN);
-        }
         let secant = Secant { dy: at - &before.at, dr: r - &before.r, noise };
         // In the noise the older ones know more.
         if self.idle == 0 && secant.dy.amax() > 10.0 * noise {
             self.secants.push(secant);
-        } else if self.idle == 0 && self.bend.stride.is_finite() {
-            // Bent ones that know of nowhere to go are wrong while there is a residual.
-            self.trusted = self.secants.len();
         }
         if self.secants.len() > DEPTH {
             self.secants.remove(0);

@@ -463,13 +463,13 @@ fn costs_are_counted_in_last_cycles() {
 struct Tanks {
     a: f64,
     b: Vec<f64>,
-    bend: Bend,
+    bend: Option<Bend>,
     noise: u64,
     cheap: usize,
 }
 
 impl Tanks {
-    fn new(b: &[f64], seed: u64, bend: Bend) -> Self {
+    fn new(b: &[f64], seed: u64, bend: Option<Bend>) -> Self {
         Self { a: 1.0, b: b.to_vec(), bend, noise: seed, cheap: 0 }
     }
 
@@ -510,14 +510,14 @@ impl CycleMap for Tanks {
     fn scale(&self, _: &[f64], s: &mut [f64]) {
         s.fill(1.0);
     }
-    fn bend(&self) -> Bend {
+    fn bend(&self) -> Option<Bend> {
         self.bend
     }
 }
 
 #[test]
 fn a_bent_map_is_followed_by_fresh_secants_and_cheap_cycles() {
-    let bent = Bend { fresh: 0.2, stride: 10.0, rough: 0.03 };
+    let bent = Some(Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, noise: 0.3 });
     // Multipliers of 0.9, 0.8, 0.6 and 0.28.
     let b = [0.45, 0.63, 0.9, 1.2];
     let (mut all, mut plain) = (0, 0);
@@ -535,6 +535,66 @@ fn a_bent_map_is_followed_by_fresh_secants_and_cheap_cycles() {
             plain += 1;
         }
     }
-    // Four tanks want four secants, and the far ones mislead: 15 to 25 cycles, where repetition takes 80.
-    assert!(3 * all < plain, "{} cycles, {} by repetition", all / 20, plain / 20);
+    // Four cycles for a step: 27 cycles, where repetition takes 73. Estimates, not the errors, take the last five.
+    assert!(5 * all < 2 * plain, "{} cycles, {} by repetition", all / 20, plain / 20);
+}
+
+/// Stores that hardly see each other and fill one after the other: each takes a fixed part of what comes and passes on the rest, until it is full; what a
+/// full one does not take fills the next. The last leaks.
+struct Stores {
+    room: Vec<f64>,
+    leak: f64,
+}
+
+impl Stores {
+    const INFLOW: f64 = 0.5;
+
+    fn end(&self, y0: &[f64], y1: &mut [f64]) {
+        let mut flow = Self::INFLOW;
+        let last = self.room.len() - 1;
+        for (i, room) in self.room.iter().enumerate() {
+            let lost = if i == last { self.leak * y0[i] } else { 0.0 };
+            let taken = (0.8 * flow).min((room - y0[i]).max(0.0));
+            y1[i] = y0[i] + taken - lost;
+            flow -= taken;
+        }
+    }
+}
+
+impl CycleMap for Stores {
+    fn dim(&self) -> usize {
+        self.room.len()
+    }
+    fn map(&mut self, y0: &[f64], y1: &mut [f64], _: f64) -> Result<f64, EvalError> {
+        self.end(y0, y1);
+        Ok(1.0)
+    }
+    fn scale(&self, y: &[f64], s: &mut [f64]) {
+        for (s, y) in s.iter_mut().zip(y) {
+            *s = y.abs().max(1.0);
+        }
+    }
+    fn admit(&self, _: &[f64], y: &mut [f64]) {
+        for (y, room) in y.iter_mut().zip(&self.room) {
+            *y = y.clamp(0.0, *room);
+        }
+    }
+    fn bend(&self) -> Option<Bend> {
+        Some(Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, noise: 0.1 })
+    }
+}
+
+#[test]
+fn stores_that_fill_one_after_the_other_are_filled_in_few_cycles() {
+    let mut map = Stores { room: vec![100.0, 30.0, 1e9], leak: 0.02 };
+    let mut y = vec![0.1; 3];
+    let options =
+        OrbitOptions { tolerance: 1e-3, accuracy: 1e-4, max_cycles: 200, refinements: 0, accelerate: true };
+    let r = periodic_orbit(&mut map, &mut y, &options).unwrap();
+    // Both are full, and of what comes the last takes four fifths.
+    let exact = [100.0, 30.0, 0.8 * Stores::INFLOW / 0.02];
+    let error = exact.iter().zip(&y).map(|(e, y)| (e - y).abs() / e).fold(0.0, f64::max);
+    assert!(r.converged && error <= 3.0 * r.error_estimate, "{error:e} {r:?}");
+    // By repetition the first alone takes 250 cycles to fill.
+    assert!(r.cycles <= 60, "{r:?}");
 }
