@@ -5,6 +5,8 @@
 //! cycle, `r = Φ(y) - y`, underestimates the distance to the orbit by 1/(1 - λ); what is reported is that distance, with λ
 //! taken from the differences of the iterates. A fixed point with |λ| > 1 is not what the machine does: when the multiplier
 //! comes near, plain repetition decides, and a cycle that repeats only every second or third time is reported as such.
+//!
+//! A map that is strongly bent, or has corners, is searched in stretches of plain cycles instead (`stretches`).
 
 use crate::EvalError;
 use nalgebra::{DMatrix, DVector, Schur};

@@ -20,7 +20,7 @@ use super::petroleum::{AIR, BOILING, lewis_number, molar_mass, vapour_pressure};
 /// below which the crankcase renews the film in every stroke. Above the reach of the oil ring oil stays for some cycles and its light fractions deplete: the
 /// model overstates what evaporates there. One fraction in place of several never runs out of what is light.
 ///
-/// There a cycle takes nanometres of a film of tenths of a micrometre, so that the periodic state takes 20 to 80 cycles to find where it takes 20 without evaporation.
+/// There a cycle takes nanometres of a film of tenths of a micrometre, which is slow to settle: 14 to 33 cycles on a diesel between 380 and 470 K or 1000 and 2600 rpm, 18 to 25 without evaporation.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct HeatMassAnalogy {

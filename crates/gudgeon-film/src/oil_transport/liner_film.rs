@@ -49,8 +49,7 @@ pub struct LinerFilm {
     /// Axial spacing of the film on the liner, at most; half the shortest face or gap between faces if that is less.
     #[schemars(extend("x-refine" = { "group": "liner grid", "factor": 0.5 }))]
     pub spacing: PosLength,
-    /// Film on the liner at the start of the first cycle. No result depends on it, but the number of cycles until they repeat does: where oil evaporates, 0.5 um is a better
-    /// start than the default.
+    /// Film on the liner at the start of the first cycle. No result depends on it, but the number of cycles until they repeat does.
     pub initial: Length<NonNegative>,
     /// Density of the oil, which inertia acts on and which turns volumes into masses.
     pub density: PosDensity,

@@ -598,3 +598,41 @@ fn stores_that_fill_one_after_the_other_are_filled_in_few_cycles() {
     // By repetition the first alone takes 250 cycles to fill.
     assert!(r.cycles <= 60, "{r:?}");
 }
+
+/// A slow mode, near enough to one that the machine itself is asked whether it stays; `refused` counts the starts farther than `room` from the fixed point
+/// that could not be integrated.
+struct Narrow {
+    room: f64,
+    refused: usize,
+}
+
+impl CycleMap for Narrow {
+    fn dim(&self) -> usize {
+        1
+    }
+    fn map(&mut self, y0: &[f64], y1: &mut [f64], _: f64) -> Result<f64, EvalError> {
+        if (y0[0] - 1.0).abs() > self.room {
+            self.refused += 1;
+            return Err(EvalError::recoverable("narrow", "too far"));
+        }
+        y1[0] = 1.0 + 0.98 * (y0[0] - 1.0);
+        Ok(1.0)
+    }
+    fn scale(&self, _: &[f64], s: &mut [f64]) {
+        s.fill(1.0);
+    }
+}
+
+#[test]
+fn a_probe_of_stability_starts_nearer_where_it_must() {
+    // The probe starts 0.03 away, then a quarter of that.
+    for (room, refused) in [(0.04, 0), (0.01, 1)] {
+        let mut map = Narrow { room, refused: 0 };
+        let mut y = [1.0 + 0.9 * room];
+        let r = periodic_orbit(&mut map, &mut y, &options(1e-5, true)).unwrap();
+        assert!(r.converged && (y[0] - 1.0).abs() <= 3.0 * r.error_estimate, "{room}: {y:?} {r:?}");
+        assert_eq!(map.refused, refused, "{room}: {r:?}");
+        // The search takes a few cycles, the probe eight.
+        assert!(r.cycles >= 8, "{room}: {r:?}");
+    }
+}
