@@ -261,10 +261,14 @@ impl Search {
         options: &OrbitOptions,
         times: usize,
     ) -> Result<(), EvalError> {
-        let limit = if times == 1 { options.max_cycles.min(patience(options)) } else { options.max_cycles };
         match map.bend() {
-            Some(bend) => self.in_stretches(map, y, options, (times, limit), bend),
-            None => self.accelerated(map, y, options, (times, limit)),
+            // Stretches are plain cycles for the most part, and need no others after them.
+            Some(bend) => self.in_stretches(map, y, options, (times, options.max_cycles), bend),
+            None => {
+                let limit =
+                    if times == 1 { options.max_cycles.min(patience(options)) } else { options.max_cycles };
+                self.accelerated(map, y, options, (times, limit))
+            }
         }
     }
 
@@ -380,7 +384,9 @@ impl Search {
         let mut g = vec![0.0; y.len()];
         map.scale(y, &mut s);
         let nudge = self.nudged(map, &fixed, &s, &mut g, options)?;
-        let mut halfway = norm(&g, &fixed, &s);
+        // A cycle can gather what lies beside the fixed point in many states in one of them, which says nothing of what the next will do.
+        let reached = norm(&g, &fixed, &s);
+        let mut halfway = reached;
         for k in 1..PROBE {
             y.copy_from_slice(&g);
             self.apply(map, y, &mut g, options.accuracy, 1)?;
@@ -391,7 +397,7 @@ impl Search {
         y.copy_from_slice(&g);
         // The first half lets decaying modes go; what then still grows is unstable. A state that went far has not come back,
         // though chance may bring it nearer.
-        Ok(halfway > 5.0 * nudge || norm(y, &fixed, &s) > 1.02 * halfway.max(options.tolerance))
+        Ok(halfway > 5.0 * nudge.max(reached) || norm(y, &fixed, &s) > 1.02 * halfway.max(options.tolerance))
     }
 
     /// The end `g` of the cycle from a start a little beside `fixed`, and how far beside it: nearer where the machine could not start from there.

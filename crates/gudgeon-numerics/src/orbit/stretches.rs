@@ -98,13 +98,30 @@ impl Stretch {
         self.secants.len() >= GATHERED
     }
 
-    /// Decay of the residual over the last cycle of the stretch; modes that turn do not let a residual understate an error.
+    /// Decay of the residual a cycle, over the last four of the stretch where there are as many: two alone show the noise of the map. Modes that turn do not let
+    /// a residual understate an error.
     fn ratio(&self, accuracy: f64) -> f64 {
-        let [.., before, r] = &self.residuals[..] else { return 0.0 };
-        if r.dot(before) > 0.0 { r.norm() / before.norm().max(accuracy) } else { 0.0 }
+        let (before, now, cycles) = match &self.residuals[..] {
+            [.., a, b, c, d] => (a + b, c + d, 2.0),
+            [.., a, b] => (a.clone(), b.clone(), 1.0),
+            _ => return 0.0,
+        };
+        if now.dot(&before) > 0.0 {
+            (now.norm() / before.norm().max(accuracy)).powf(1.0 / cycles)
+        } else {
+            0.0
+        }
     }
 
-    /// The step from the end of the last cycle: what the secants explain, and what single states go on by.
+    /// Whether a state moved to the same side in the last four cycles.
+    fn drifts(&self, i: usize) -> bool {
+        let n = self.residuals.len();
+        let last = |k: usize| self.residuals[n - 1 - k][i];
+        n >= 4 && (1..4).all(|k| last(k) * last(0) > 0.0)
+    }
+
+    /// The step from the end of the last cycle: what the secants explain, and what single states go on by. No state is sent back that only went forth: where it
+    /// drifts at a constant rate the secants know nothing but noise of it.
     fn step(&self) -> DVector<f64> {
         let [.., r0, r1, r] = &self.residuals[..] else { return DVector::zeros(self.s.len()) };
         let (correction, rest) = explain(&self.secants, r, self.bend.fresh);
@@ -112,6 +129,9 @@ impl Stretch {
         let longest = (self.bend.stride * residual).min(self.reach);
         let mut step = -&correction * (longest / correction.amax().max(f64::MIN_POSITIVE)).min(1.0);
         for i in 0..step.len() {
+            if step[i] * r[i] < 0.0 && self.drifts(i) {
+                step[i] = 0.0;
+            }
             let left = rest[i].abs() >= (LARGE * residual).max(LEFT * r[i].abs());
             if let Some(further) = left.then(|| further([r0[i], r1[i], r[i]])).flatten() {
                 step[i] = further.clamp(-self.reach, self.reach);
