@@ -123,13 +123,13 @@ def over_measured(result, measured):
 def motored():
     torque = {1000: 2.1, 2000: 3.2, 3000: 2.9, 4000: 2.3, 5000: 2.4, 5600: 3.7}
     measured = [t * n * math.pi / 30 / 4 for n, t in torque.items()]
-    kinds = {"contact": (contacts("0.3 um", "1e-3"), []), "hydrodynamics": (FILMS, []), "ring_motion": (MOTIONS, []), "flank": (FLANKS, []), "gas_flow": (GAS, []), "oil_transport": (OIL, [])}
+    kinds = {"contact": (contacts("0.3 um", "1e-3"), []), "hydrodynamics": (FILMS, FLOODED), "ring_motion": (MOTIONS, []), "flank": (FLANKS, []), "gas_flow": (GAS, []), "oil_transport": (OIL, [])}
     points = [changed("motored-rings-1600", f"engine.speed={n} rpm") for n in torque]
     return Set(points, kinds, ["power over measured, 1000 / 2000 / 3000 / 4000 / 5000 / 5600 rpm", "mean", "rms distance from 1"], over_measured("friction_power", measured))
 
 
 def engines():
-    points = [changed("turbo-diesel-140"), changed("alcohol-2000-5600", "models.oil_transport.model=off")]
+    points = [changed("turbo-diesel-140"), changed("alcohol-2000-5600")]
     kinds = {"gas_flow": (GAS, []), "ring_motion": (MOTIONS, []), "flank": (FLANKS, []), "contact": (contacts("0.3 um", "1e-3"), []), "hydrodynamics": (FILMS, FLOODED)}
     return Set(points, kinds, ["blow-by over measured, diesel / alcohol engine", "mean", "rms distance from 1"], over_measured("blow_by", [87.2, 20.0]))
 
@@ -217,7 +217,7 @@ def narrow_pack():
         mean = percent(sum(known) / len(known)) if known else "-"
         return [" / ".join(percent(x) for x in less), mean]
 
-    kinds = {"contact": (contacts("0.3 um", "1e-3"), FLOODED), "hydrodynamics": (FILMS, FLOODED), "ring_motion": (MOTIONS, FLOODED), "flank": (FLANKS, FLOODED), "gas_flow": (GAS, FLOODED)}
+    kinds = {"contact": (contacts("0.3 um", "1e-3"), []), "hydrodynamics": (FILMS, FLOODED), "ring_motion": (MOTIONS, []), "flank": (FLANKS, []), "gas_flow": (GAS, [])}
     return Set(points, kinds, ["fmep, narrow over usual, five points", "mean (measured: -28 %)"], tell)
 
 
