@@ -72,8 +72,10 @@ def test_what_is_done_is_kept_when_it_is_stopped(diesel):
     assert np.isfinite(rows["blow_by"][done]).all() and np.isnan(rows["blow_by"][~done]).all()
 
 
+# A process that a shell started in the background ignores Ctrl-C, and so do its children until they say otherwise.
 LOOP = """
-import gudgeon, numpy as np
+import gudgeon, signal, numpy as np
+signal.signal(signal.SIGINT, signal.default_int_handler)
 case = gudgeon.example("turbo-diesel-120")
 points = [{"engine.speed": (float(n), "rpm")} for n in np.linspace(1200, 2000, 2000)]
 print("begun", flush=True)
