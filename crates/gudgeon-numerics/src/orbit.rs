@@ -152,34 +152,25 @@ pub fn periodic_orbit(
         search.extrapolated(map, y, &options, 1)?;
     }
     let options = &options;
-    if !search.report.converged && search.report.cycles >= patience(options) {
+    if !search.doubled
+        && !search.report.converged
+        && (search.stuck || search.report.cycles >= patience(options))
+    {
         // Extrapolation has had its time: what the secants of a strongly bent map say can lead astray for ever.
         search.plain(map, y, options)?;
         return Ok(search.finish());
     }
-    if !search.suspect || !search.report.converged {
-        return Ok(search.finish());
-    }
-    // Near or beyond the edge of stability: what does the machine itself do?
     let mut other = y.to_vec();
-    if !search.leaves(map, &mut other, options)? {
-        return Ok(search.finish());
-    }
-    let mut s = vec![1.0; y.len()];
-    let mut g = other.clone();
-    let mut twice = other.clone();
-    search.extrapolated(map, &mut twice, options, 2)?;
-    if search.report.converged && !search.suspect {
-        search.apply(map, &twice, &mut g, options.accuracy, 1)?;
-        map.scale(&g, &mut s);
-        if norm(&g, &twice, &s) > 10.0 * options.tolerance {
-            search.report.period = 2;
-            y.copy_from_slice(&twice);
+    if !search.doubled {
+        if !search.suspect || !search.report.converged {
+            return Ok(search.finish());
+        }
+        // Near or beyond the edge of stability: what does the machine itself do?
+        if !search.leaves(map, &mut other, options)? {
             return Ok(search.finish());
         }
     }
-    search.plain(map, &mut other, options)?;
-    y.copy_from_slice(&other);
+    search.beyond(map, y, other, options)?;
     Ok(search.finish())
 }
 
@@ -196,6 +187,10 @@ struct Search {
     suspect: bool,
     /// Whether the last phase ended in the noise of the map.
     noisy: bool,
+    /// Whether it ended where the machine goes to and fro between two states.
+    doubled: bool,
+    /// Whether it ended where plain cycles come no nearer.
+    stuck: bool,
     /// Largest factor by which a residual was seen to understate an error in a phase that ended in noise.
     gain: f64,
 }
@@ -217,6 +212,8 @@ impl Search {
             last_cost: 1.0,
             suspect: false,
             noisy: false,
+            doubled: false,
+            stuck: false,
             gain: 1.0,
         }
     }
@@ -422,6 +419,32 @@ impl Search {
             }
             self.report.cycles += 1;
         }
+    }
+
+    /// Search where no cycle repeats the one before it: of an orbit of two cycles, then by plain repetition from `other`.
+    fn beyond(
+        &mut self,
+        map: &mut dyn CycleMap,
+        y: &mut [f64],
+        mut other: Vec<f64>,
+        options: &OrbitOptions,
+    ) -> Result<(), EvalError> {
+        let mut s = vec![1.0; y.len()];
+        let mut g = other.clone();
+        let mut twice = other.clone();
+        self.extrapolated(map, &mut twice, options, 2)?;
+        if self.report.converged && !self.suspect {
+            self.apply(map, &twice, &mut g, options.accuracy, 1)?;
+            map.scale(&g, &mut s);
+            if norm(&g, &twice, &s) > 10.0 * options.tolerance {
+                self.report.period = 2;
+                y.copy_from_slice(&twice);
+                return Ok(());
+            }
+        }
+        self.plain(map, &mut other, options)?;
+        y.copy_from_slice(&other);
+        Ok(())
     }
 
     fn plain(

@@ -3,10 +3,15 @@
 //!
 //! Slow modes of a map with stores that hardly see each other (oil before the edges of rings) are single states. A secant in the noise does not show them,
 //! but three residuals of the state that fall by the same factor do (Aitken's process, state by state).
+//!
+//! Where no secant leads to the orbit, cycles are repeated plainly to the end. Only stores that creep are still sent on: to where the secant over their last
+//! step says that their rate ends.
 
 use nalgebra::DVector;
 
-use super::{Bend, CycleMap, NEARER, OrbitOptions, ROUGHEST, Search, Secant, explain, sinks, spectrum};
+use super::{
+    Bend, CycleMap, DEPTH, NEARER, OrbitOptions, ROUGHEST, Search, Secant, explain, sinks, spectrum,
+};
 use crate::EvalError;
 
 /// Cycles that are not looked at: at the start, and after a step, which stirs up fast modes.
@@ -20,8 +25,23 @@ const LEFT: f64 = 0.3;
 /// Multipliers between which it is; and how much they may differ from one cycle to the next, over the distance to one (0.1 at least).
 const MULTIPLIERS: (f64, f64) = (0.5, 0.98);
 const STEADY: f64 = 0.3;
+/// Factor within which the last three residuals of a state lie that drifts at a rate blurred by noise.
+const BLURRED: f64 = 2.0;
+/// How much farther a secant over the last step may lead it than its residuals say: their noise hides multipliers beyond the largest.
+const FARTHER: f64 = 10.0;
 /// Cycles at the noise of the map after which nothing more is expected: those of three stretches.
 const IDLE: usize = 3 * (SKIPPED + GATHERED);
+/// Cosine between residuals of a machine that goes to and fro, the part of a residual that two such cycles leave, its least size over the accuracy, and the
+/// cycles in a row that must be so: secants bring a mode with a negative multiplier to rest in a stretch, unless the period has doubled.
+const TURNING: f64 = -0.9;
+const KEPT: f64 = 0.9;
+const SEEN: f64 = 30.0;
+const DOUBLED: usize = 8;
+/// Part of all cycles after which secants are not trusted any more (corners can make each of them wrong), and least number of them.
+const TRUSTED: usize = 3;
+const TRIED: usize = 40;
+/// Plain cycles after which it shows that they come no nearer.
+const STUCK: usize = 20;
 
 /// What is known since the last step.
 struct Stretch {
@@ -43,6 +63,14 @@ struct Stretch {
     best: f64,
     /// Cycles since the residual came down to the noise of the map and stays there.
     idle: usize,
+    /// Cycles in a row that went to and fro.
+    turned: usize,
+    /// Whether secants are stepped with no more.
+    plain: bool,
+    /// Where the states were that went on by themselves.
+    drifts: Vec<Option<Drift>>,
+    /// How far states have to go that drift.
+    ahead: f64,
 }
 
 impl Stretch {
@@ -58,6 +86,10 @@ impl Stretch {
             reach: bend.reach,
             best: f64::INFINITY,
             idle: 0,
+            turned: 0,
+            plain: false,
+            drifts: vec![None; n],
+            ahead: 0.0,
         }
     }
 
@@ -89,13 +121,39 @@ impl Stretch {
         } else if let (Some(from), Some(last)) = (&self.at, self.residuals.last()) {
             let noise = self.bend.noise * accuracy;
             self.secants.push(Secant { dy: &at - from, dr: &r - last, noise });
+            if self.secants.len() > DEPTH {
+                self.secants.remove(0);
+            }
         }
         self.at = Some(at);
         self.residuals.push(r);
     }
 
     fn ready(&self) -> bool {
-        self.secants.len() >= GATHERED
+        self.secants.len() >= if self.plain { 2 * GATHERED } else { GATHERED }
+    }
+
+    /// Whether plain cycles come no nearer, although none drifts.
+    fn stuck(&self, accuracy: f64) -> bool {
+        let Some(k) = self.residuals.len().checked_sub(STUCK) else { return false };
+        let last = &self.residuals[self.residuals.len() - 1];
+        last.norm() > 0.5 * self.residuals[k].norm() && last.amax() > SEEN * accuracy
+    }
+
+    /// Whether the last three residuals go to and fro and do not decay, as about an orbit of two cycles.
+    fn turns(&self, accuracy: f64) -> bool {
+        let [.., a, b, c] = &self.residuals[..] else { return false };
+        let opposite = |a: &DVector<f64>, b: &DVector<f64>| a.dot(b) < TURNING * a.norm() * b.norm();
+        opposite(a, b) && opposite(b, c) && c.norm() > KEPT * a.norm() && c.amax() > SEEN * accuracy
+    }
+
+    /// Whether it did so for long enough; asked after every cycle.
+    fn goes_to_and_fro(&mut self, accuracy: f64) -> bool {
+        if self.ready() {
+            let cycles = if self.plain { 1 } else { SKIPPED + GATHERED };
+            self.turned = if self.turns(accuracy) { self.turned + cycles } else { 0 };
+        }
+        self.turned >= DOUBLED
     }
 
     /// Decay of the residual a cycle, over the last four of the stretch where there are as many: two alone show the noise of the map. Modes that turn do not let
@@ -113,43 +171,81 @@ impl Stretch {
         }
     }
 
-    /// Whether a state moved to the same side in the last four cycles.
-    fn drifts(&self, i: usize) -> bool {
-        let n = self.residuals.len();
-        let last = |k: usize| self.residuals[n - 1 - k][i];
-        n >= 4 && (1..4).all(|k| last(k) * last(0) > 0.0)
+    /// Looks, after as many cycles, how far the states have to go that drift faster than a cycle is accurate.
+    fn look_ahead(&mut self, accuracy: f64) {
+        let ([.., r0, r1, r2, r], true) = (&self.residuals[..], self.plain) else { return };
+        let drifting = (0..r.len()).filter(|&i| r[i].abs() > accuracy && drifts(&self.residuals, i));
+        let to_go = drifting.filter_map(|i| further([r0[i], r1[i], r2[i], r[i]], true));
+        self.ahead = to_go.fold(0.0, |far, d| far.max(d.abs()));
     }
 
     /// The step from the end of the last cycle: what the secants explain, and what single states go on by. No state is sent back that only went forth: where it
     /// drifts at a constant rate the secants know nothing but noise of it.
-    fn step(&self) -> DVector<f64> {
-        let [.., r0, r1, r] = &self.residuals[..] else { return DVector::zeros(self.s.len()) };
-        let (correction, rest) = explain(&self.secants, r, self.bend.fresh);
+    fn step(&mut self) -> DVector<f64> {
+        let ([.., r0, r1, r2, r], Some(at)) = (&self.residuals[..], &self.at) else {
+            return DVector::zeros(self.s.len());
+        };
+        let trusted = if self.plain { &[] } else { &self.secants[..] };
+        let (correction, rest) = explain(trusted, r, self.bend.fresh);
         let residual = r.amax();
         let longest = (self.bend.stride * residual).min(self.reach);
         let mut step = -&correction * (longest / correction.amax().max(f64::MIN_POSITIVE)).min(1.0);
         for i in 0..step.len() {
-            if step[i] * r[i] < 0.0 && self.drifts(i) {
+            let drifts = drifts(&self.residuals, i);
+            let mut left = rest[i];
+            if step[i] * r[i] < 0.0 && drifts {
                 step[i] = 0.0;
+                left = r[i];
             }
-            let left = rest[i].abs() >= (LARGE * residual).max(LEFT * r[i].abs());
-            if let Some(further) = left.then(|| further([r0[i], r1[i], r[i]])).flatten() {
-                step[i] = further.clamp(-self.reach, self.reach);
+            let goes_on = (drifts || !self.plain) && left.abs() >= (LARGE * residual).max(LEFT * r[i].abs());
+            if let Some(further) = goes_on.then(|| further([r0[i], r1[i], r2[i], r[i]], drifts)).flatten() {
+                let here = Drift { y: at[i] * self.s[i], rate: r[i] * self.s[i] };
+                let known = self.drifts[i].replace(here).and_then(|before| here.root(before));
+                let root = known
+                    .filter(|_| self.plain)
+                    .map_or(0.0, |d| (d / self.s[i]).abs().min(FARTHER * further.abs()));
+                step[i] = further.signum() * root.max(further.abs()).min(self.reach);
             }
         }
         step
     }
 }
 
-/// How far a state goes on whose residuals fall by the same factor.
-fn further(r: [f64; 3]) -> Option<f64> {
-    if r[0] * r[1] <= 0.0 || r[1] * r[2] <= 0.0 {
+/// Whether a state moved to the same side in the last four cycles.
+fn drifts(residuals: &[DVector<f64>], i: usize) -> bool {
+    let n = residuals.len();
+    let last = |k: usize| residuals[n - 1 - k][i];
+    n >= 4 && (1..4).all(|k| last(k) * last(0) > 0.0)
+}
+
+/// Where a state that goes on by itself was, and its change in a cycle, unscaled.
+#[derive(Clone, Copy)]
+struct Drift {
+    y: f64,
+    rate: f64,
+}
+
+impl Drift {
+    /// How far it is to where the rate ends, on the secant from `before`: on past a step in the same direction, at a smaller rate.
+    fn root(self, before: Drift) -> Option<f64> {
+        let (moved, slower) = (self.y - before.y, before.rate - self.rate);
+        let on = moved * self.rate > 0.0 && slower * self.rate > 0.0 && before.rate * self.rate > 0.0;
+        on.then(|| self.rate * moved / slower)
+    }
+}
+
+/// How far a state goes on whose last residuals fall by the same factor, or that drifts at a rate of which noise leaves no more to be said than its mean decay.
+fn further([r0, r1, r2, r]: [f64; 4], drifts: bool) -> Option<f64> {
+    if r1 * r2 <= 0.0 || r2 * r <= 0.0 {
         return None;
     }
-    let (before, now) = (r[1] / r[0], r[2] / r[1]);
+    let (before, now) = (r2 / r1, r / r2);
     let steady = (before - now).abs() <= STEADY * (1.0 - now.min(1.0)).max(0.1);
-    let multiplier = now.min(MULTIPLIERS.1);
-    (steady && now >= MULTIPLIERS.0).then(|| r[2] * multiplier / (1.0 - multiplier))
+    let (all, least) = (before.max(now).max(before * now), before.min(now).min(before * now));
+    let blurred = drifts && all <= BLURRED && least >= 1.0 / BLURRED;
+    let multiplier = if steady { now } else { ((r2 + r) / (r0 + r1)).sqrt() };
+    let goes_on = multiplier.min(MULTIPLIERS.1);
+    ((steady || blurred) && multiplier >= MULTIPLIERS.0).then(|| r * goes_on / (1.0 - goes_on))
 }
 
 impl Search {
@@ -163,6 +259,10 @@ impl Search {
         bend: Bend,
     ) -> Result<(), EvalError> {
         let mut state = Stretch::new(y.len(), bend);
+        if self.noisy {
+            // What noise said of slow modes is forgotten, but a stretch must show that there are none.
+            state.held = super::MAX_GAIN;
+        }
         let (mut g, mut end) = (y.to_vec(), y.to_vec());
         let (mut stepped, mut passed, mut last) = (false, 0.0, 0.0);
         let mut accuracy =
@@ -194,14 +294,23 @@ impl Search {
             }
             if state.idle > IDLE {
                 self.noisy = true;
-                self.gain = self.gain.max(state.held);
                 break;
             }
             passed = if estimate <= options.tolerance { estimate } else { 0.0 };
-            accuracy = (bend.rough * residual).min(ROUGHEST).max(options.accuracy);
             y.copy_from_slice(&g);
+            state.plain = self.report.cycles >= (options.max_cycles / TRUSTED).max(TRIED);
+            let rough = if state.plain { 0.0 } else { bend.rough * residual };
+            accuracy = rough.min(ROUGHEST).max(options.accuracy);
+            self.stuck = state.plain && state.stuck(options.accuracy);
+            self.doubled = times == 1 && state.goes_to_and_fro(options.accuracy);
+            if self.stuck || self.doubled {
+                break;
+            }
             if state.ready() {
                 let step = state.step();
+                if state.plain && step.amax() == 0.0 {
+                    continue;
+                }
                 for ((y, d), s) in y.iter_mut().zip(step.iter()).zip(&state.s) {
                     *y += d * s;
                 }
@@ -216,6 +325,7 @@ impl Search {
 
     /// The estimated error after a cycle of a stretch.
     fn judge_stretch(&mut self, state: &mut Stretch, options: &OrbitOptions, last: f64) -> f64 {
+        state.look_ahead(options.accuracy);
         let Some(r) = state.residuals.last() else { return f64::INFINITY };
         let residual = r.amax();
         self.report.residual = residual;
@@ -228,15 +338,15 @@ impl Search {
         let gain = seen.max(state.held);
         if state.ready() {
             state.held = seen;
-            self.suspect = suspect;
+            self.suspect = suspect && !state.plain;
             self.report.multiplier = largest.max(ratio.min(1.0));
         }
         let falls = residual > 3.0 * options.accuracy || residual < 0.5 * state.best;
         state.idle = if falls { 0 } else { state.idle + 1 };
         state.best = state.best.min(residual);
-        let gain = gain.max(self.gain);
         let noise = residual.max(last).min(options.accuracy);
-        let estimate = (explained.amax() + rest.amax() * gain).max(residual).max(noise * gain);
+        let estimate =
+            (explained.amax() + rest.amax() * gain).max(residual).max(noise * gain).max(state.ahead);
         self.report.error_estimate = estimate;
         estimate
     }

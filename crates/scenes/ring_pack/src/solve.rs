@@ -155,7 +155,10 @@ fn report(case: &RingPackCase, pack: &Pack, found: &[(f64, Solution)], branches:
             )),
             p => report.notes.push(Note::caution(
                 "subharmonic",
-                format!("started with {}, the cycle repeats only every {p} cycles", b.start),
+                format!(
+                    "started with {}, the cycle repeats only every {p} cycles; the results are those of one of them",
+                    b.start
+                ),
             )),
         }
     }
