@@ -191,9 +191,13 @@ pub(crate) fn value_cells(v: Option<&ResultValue>) -> String {
 /// The balance sheet.
 pub(crate) fn balance_section(balance: &BalanceSheet) -> String {
     let rows = [
-        ("Gas mass", "(in − out − stored) / throughput", balance.gas_mass),
+        ("Gas mass", "(in − out − stored) / (throughput or content, whichever is more)", balance.gas_mass),
         ("Oil mass", "(in − out − stored) / throughput", balance.oil_mass),
-        ("Oil on ring flanks", "(in − out − stored) / throughput", balance.flank_oil),
+        (
+            "Oil on ring flanks",
+            "(in − out − stored) / (throughput or content, whichever is more)",
+            balance.flank_oil,
+        ),
         ("Oil in the gaps of the skirt", "(in − out − stored) / (in + stored before)", balance.skirt_oil),
         (
             "Energy",

@@ -121,11 +121,11 @@ pub struct Skipped {
 /// Relative closure per cycle; absent where the scene has no such balance.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Balance {
-    /// Gas mass: (in - out - stored) / throughput.
+    /// Gas mass: (in - out - stored) / throughput, or what the lands hold where that is more.
     pub gas_mass: Option<f64>,
     /// Oil mass of films.
     pub oil_mass: Option<f64>,
-    /// Oil on ring flanks: (in - out - stored) / throughput.
+    /// Oil on ring flanks: (in - out - stored) / what is fed, or what they hold where that is more.
     #[serde(default)]
     pub flank_oil: Option<f64>,
     /// Oil in the gaps of the skirt: (in - out - stored) / (in + stored before).

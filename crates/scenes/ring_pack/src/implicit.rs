@@ -739,12 +739,14 @@ impl<'a> Cycle<'a> {
         }
         let (q, n) = (&self.q, self.pack.n_rings());
         let stored: f64 = gas.iter().zip(&*y).zip(&self.pack.gas_scale).map(|((a, b), m)| (b - a) * m).sum();
-        let through = q[0].abs().max(q[n].abs()).max(f64::MIN_POSITIVE);
+        // Packs without a pressure to drive them pass next to nothing: there what they hold is the measure.
+        let held: f64 = y.iter().zip(&self.pack.gas_scale).take(gas.len()).map(|(m, scale)| m * scale).sum();
+        let through = q[0].abs().max(q[n].abs()).max(held).max(f64::MIN_POSITIVE);
         let gas_mass = (q[0] - q[n] - stored).abs() / through;
         let flank_stored = self.pack.flank_oil(y) - flank_before;
         let flank_oil = self.pack.layout.flank_quad(0).map(|first| {
             let sum = |k: usize| q[first + k..first + 2 * n].iter().step_by(2).sum::<f64>();
-            (sum(0) - sum(1) - flank_stored).abs() / sum(0).max(f64::MIN_POSITIVE)
+            (sum(0) - sum(1) - flank_stored).abs() / sum(0).max(flank_before).max(f64::MIN_POSITIVE)
         });
         Ok(Balance { gas_mass: Some(gas_mass), oil_mass, flank_oil, ..Balance::default() })
     }
