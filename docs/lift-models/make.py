@@ -2,7 +2,7 @@
 
     python3 docs/lift-models/make.py [--binary PATH] [--out DIR]
 
-runs the case some sixty times (a quarter of an hour on one core; runs whose folder is complete are not repeated), prints the tables, and writes the figures beside this file.
+runs the case 87 times (ten minutes on one core; runs whose folder is complete are not repeated), prints the tables, and writes the figures beside this file.
 Needs Python 3.9 or newer and, without `--binary`, cargo.
 """
 
