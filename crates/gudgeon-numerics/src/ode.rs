@@ -38,6 +38,7 @@ mod system;
 
 pub(crate) use check::{Shape, check};
 pub(crate) use core::Core;
+pub(crate) use dense::Interpolant;
 pub(crate) use difference::difference;
 pub(crate) use driver::{Scheme, Trial, drive};
 pub use integrator::{Flow, Integrator, StepView};

@@ -9,8 +9,8 @@ use crate::EvalError;
 
 use crate::linalg::{dot, lu_factor_weighted, lu_solve};
 use crate::ode::{
-    ColumnGroups, Core, Flow, IntegrateError, Integrator, OdeSystem, Options, Scheme, Stats, StepView, Trial,
-    drive,
+    ColumnGroups, Core, Flow, IntegrateError, Integrator, Interpolant, OdeSystem, Options, Scheme, Stats,
+    StepView, Trial, drive,
 };
 
 mod tableau;
@@ -55,8 +55,9 @@ pub struct Rodas {
     g: Vec<f64>,
     /// Rates at one stage.
     f: Vec<f64>,
-    /// A weighted sum of the stages.
+    /// A weighted sum of the stages, and quadratures.
     w: Vec<f64>,
+    q: Vec<f64>,
     weight: Vec<f64>,
 }
 
@@ -102,6 +103,7 @@ impl Rodas {
             g: vec![0.0; stages * quad_dim],
             f: vec![0.0; dim + quad_dim],
             w: vec![0.0; dim],
+            q: vec![0.0; quad_dim],
             weight: vec![1.0; dim],
         }
     }
@@ -143,9 +145,7 @@ impl Rodas {
             let y = &mut self.core.y_tmp[..n];
             if i < tableau.chained {
                 y.copy_from_slice(&self.core.x0[..n]);
-                for (j, &a) in tableau.a[i].iter().enumerate() {
-                    add(y, a, &done[j * n..j * n + n]);
-                }
+                add_all(y, 1.0, tableau.a[i], done);
             } else {
                 // The point of the stage before, plus that stage.
                 for (y, u) in y.iter_mut().zip(&done[(i - 1) * n..i * n]) {
@@ -157,13 +157,10 @@ impl Rodas {
             ui.copy_from_slice(&self.f[..n]);
             self.g[i * nq..i * nq + nq].copy_from_slice(&self.f[n..]);
         }
-        let inv_h = 1.0 / h;
-        for (j, &c) in tableau.c[i].iter().enumerate() {
-            add(ui, c * inv_h, &done[j * n..j * n + n]);
-        }
+        add_all(ui, 1.0 / h, tableau.c[i], done);
         let d = tableau.d[i] * h;
         if d != 0.0 {
-            add(ui, d, &self.core.dfdt[..n]);
+            ui.iter_mut().zip(&self.core.dfdt).for_each(|(u, f)| *u += d * f);
         }
         if self.core.structured {
             sys.solve(ui);
@@ -187,40 +184,48 @@ impl Rodas {
             error = larger(error, self.u[last + i] / self.core.scale(opts, i));
         }
         if nq > 0 {
-            self.combine(tableau.weights);
-            for r in 0..nq {
-                self.core.x1[n + r] = self.core.x0[n + r] + self.quadrature(r, tableau.weights, h);
+            let (mut w, mut q) = (std::mem::take(&mut self.w), std::mem::take(&mut self.q));
+            self.quadratures(tableau.weights, h, &mut w, &mut q);
+            for (r, q) in q.iter().enumerate() {
+                self.core.x1[n + r] = self.core.x0[n + r] + q;
             }
             if !opts.atol_quad.is_empty() {
-                self.combine(tableau.weights_error);
-                for r in 0..nq {
-                    let e = self.quadrature(r, tableau.weights_error, h);
+                self.quadratures(tableau.weights_error, h, &mut w, &mut q);
+                for (r, e) in q.iter().enumerate() {
                     error = larger(error, e / self.core.scale(opts, n + r));
                 }
             }
+            (self.w, self.q) = (w, q);
         }
         error
     }
 
-    /// Adds `h Σ_i b_i (g_i + J_q u_i + h d_i ∂g/∂t)` for quadrature `r` and weights `b` of the stage rates; `w` holds `Σ_i b_i u_i`.
-    fn quadrature(&self, r: usize, b: &[f64], h: f64) -> f64 {
-        let (n, nq) = (self.core.n, self.core.m - self.core.n);
-        let mut s = 0.0;
-        let mut time = 0.0;
-        for (i, (b, d)) in b.iter().zip(self.tableau.d).enumerate() {
-            s += b * self.g[i * nq + r];
-            time += b * d;
+    /// `h Σ_i b_i (g_i + J_q u_i + h d_i ∂g/∂t)` of all quadratures for weights `b` of the stage rates; `w` is scratch for `Σ_i b_i u_i`.
+    fn quadratures(&self, b: &[f64], h: f64, w: &mut [f64], out: &mut [f64]) {
+        let (n, tableau) = (self.core.n, self.tableau);
+        w.fill(0.0);
+        add_all(w, 1.0, b, &self.u);
+        out.fill(0.0);
+        add_all(out, 1.0, b, &self.g);
+        let time = h * dot(b, tableau.d);
+        let rows = self.core.jac[n * n..].chunks_exact(n.max(1)).zip(&self.core.dfdt[n..]);
+        for (q, (row, by_time)) in out.iter_mut().zip(rows) {
+            *q = h * (*q + dot(row, w) + time * by_time);
         }
-        let row = (n + r) * n;
-        h * (s + dot(&self.core.jac[row..row + n], &self.w) + h * time * self.core.dfdt[n + r])
     }
+}
 
-    /// `w = Σ_i b_i u_i`.
-    fn combine(&mut self, b: &[f64]) {
-        let n = self.core.n;
-        self.w.fill(0.0);
-        for (i, &b) in b.iter().enumerate() {
-            add(&mut self.w, b, &self.u[i * n..i * n + n]);
+impl Interpolant for Rodas {
+    fn coefficients(&self, h: f64, c: &mut [Vec<f64>; 3]) {
+        let (n, tableau) = (self.core.n, self.tableau);
+        for (p, c) in c.iter_mut().enumerate() {
+            c.resize(self.core.m, 0.0);
+            let (states, quads) = c.split_at_mut(n);
+            if !quads.is_empty() {
+                self.quadratures(tableau.weights_dense[p], h, states, quads);
+            }
+            states.fill(0.0);
+            add_all(states, 1.0, tableau.dense[p], &self.u);
         }
     }
 }
@@ -234,6 +239,10 @@ impl Scheme for Rodas {
 
     fn core(&mut self) -> &mut Core {
         &mut self.core
+    }
+
+    fn tried(&self) -> &Core {
+        &self.core
     }
 
     fn restart(&mut self) {
@@ -263,33 +272,32 @@ impl Scheme for Rodas {
         }
         Ok(Trial::Done { error: self.finish(h, opts) })
     }
+}
 
-    fn dense(&mut self, h: f64) {
-        let (n, nq) = (self.core.n, self.core.m - self.core.n);
-        let tableau = self.tableau;
-        for p in 0..3 {
-            let mut out = std::mem::take(&mut self.core.cont[p]);
-            out[..n].fill(0.0);
-            for (i, &w) in tableau.dense[p].iter().enumerate() {
-                add(&mut out[..n], w, &self.u[i * n..i * n + n]);
-            }
-            if nq > 0 {
-                self.combine(tableau.weights_dense[p]);
-                for r in 0..nq {
-                    out[n + r] = self.quadrature(r, tableau.weights_dense[p], h);
-                }
-            }
-            self.core.cont[p] = out;
+/// `x += factor Σ_j a_j u_j`, of vectors `u_j` that stand one after the other: four at a time, since `x` is short and each turn of a loop over it
+/// costs as much as a product.
+fn add_all(x: &mut [f64], factor: f64, a: &[f64], u: &[f64]) {
+    let n = x.len();
+    if n == 0 {
+        return;
+    }
+    let (fours, rest) = a.as_chunks::<4>();
+    let (of_fours, of_rest) = u.split_at(4 * fours.len() * n);
+    for (a, u) in fours.iter().zip(of_fours.chunks_exact(4 * n)) {
+        let [a0, a1, a2, a3] = a.map(|a| factor * a);
+        let ((u0, u1), (u2, u3)) = (halves(&u[..2 * n]), halves(&u[2 * n..]));
+        for ((((x, u0), u1), u2), u3) in x.iter_mut().zip(u0).zip(u1).zip(u2).zip(u3) {
+            *x += (a0 * u0 + a1 * u1) + (a2 * u2 + a3 * u3);
         }
+    }
+    for (a, u) in rest.iter().zip(of_rest.chunks_exact(n)) {
+        let a = factor * a;
+        x.iter_mut().zip(u).for_each(|(x, u)| *x += a * u);
     }
 }
 
-/// `x += a u`.
-#[inline]
-fn add(x: &mut [f64], a: f64, u: &[f64]) {
-    for (x, u) in x.iter_mut().zip(u) {
-        *x += a * u;
-    }
+fn halves(u: &[f64]) -> (&[f64], &[f64]) {
+    u.split_at(u.len() / 2)
 }
 
 /// The larger of `a` and `|b|`; a NaN wins.

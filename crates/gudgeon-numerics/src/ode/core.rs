@@ -24,8 +24,6 @@ pub(crate) struct Core {
     pub dfdt: Vec<f64>,
     /// Whether `jac` and `dfdt` belong to `x0`.
     pub jac_current: bool,
-    /// Coefficients of the dense output.
-    pub cont: [Vec<f64>; 3],
     pub y_tmp: Vec<f64>,
     pub f_tmp: Vec<f64>,
     pub groups: Option<ColumnGroups>,
@@ -54,7 +52,6 @@ impl Core {
             structured,
             dfdt: v(),
             jac_current: false,
-            cont: [v(), v(), v()],
             y_tmp: v(),
             f_tmp: v(),
             groups,

@@ -1,6 +1,35 @@
-//! Dense output of a step of the methods that share the step loop.
+//! Dense output of a step of the methods that share the step loop, made when somebody looks inside the step.
+
+use std::cell::{Cell, Ref, RefCell};
 
 use super::integrator::StepView;
+
+/// What knows the coefficients of the dense output of the step that it tried last.
+pub(crate) trait Interpolant {
+    /// The coefficients `c0`, `c1`, `c2` of [`Dense`] for a step of size `h`, states first, then quadratures.
+    fn coefficients(&self, h: f64, c: &mut [Vec<f64>; 3]);
+}
+
+/// Coefficients of one step, once they have been asked for.
+#[derive(Default)]
+pub(super) struct Coefficients {
+    known: Cell<bool>,
+    c: RefCell<[Vec<f64>; 3]>,
+}
+
+impl Coefficients {
+    /// Another step follows.
+    pub fn forget(&self) {
+        self.known.set(false);
+    }
+
+    fn of(&self, source: &dyn Interpolant, h: f64) -> Ref<'_, [Vec<f64>; 3]> {
+        if !self.known.replace(true) {
+            source.coefficients(h, &mut self.c.borrow_mut());
+        }
+        self.c.borrow()
+    }
+}
 
 /// `x(θ) = (1-θ) x0 + θ (x1 + (1-θ)(c0 + θ (c1 + θ c2)))`, states first, then quadratures.
 #[derive(Clone, Copy)]
@@ -9,7 +38,8 @@ pub(super) struct Dense<'a> {
     pub h: f64,
     pub x0: &'a [f64],
     pub x1: &'a [f64],
-    pub c: [&'a [f64]; 3],
+    pub coefficients: &'a Coefficients,
+    pub source: &'a dyn Interpolant,
 }
 
 impl Dense<'_> {
@@ -20,7 +50,8 @@ impl Dense<'_> {
         let k = out.len();
         let r = from..from + k;
         let (x0, x1) = (&self.x0[r.clone()], &self.x1[r.clone()]);
-        let (c0, c1, c2) = (&self.c[0][r.clone()], &self.c[1][r.clone()], &self.c[2][r]);
+        let c = self.coefficients.of(self.source, self.h);
+        let (c0, c1, c2) = (&c[0][r.clone()], &c[1][r.clone()], &c[2][r]);
         for i in 0..k {
             // Written around x0 so that a constant stays that constant.
             out[i] = x0[i] + th * ((x1[i] - x0[i]) + om * (c0[i] + th * (c1[i] + th * c2[i])));

@@ -4,8 +4,8 @@ use crate::EvalError;
 
 use super::check::{Shape, check};
 use super::core::{Core, is_non_finite, non_finite};
-use super::dense::Dense;
-use super::events::{ScanEnd, Step};
+use super::dense::{Coefficients, Dense, Interpolant};
+use super::events::{Events, ScanEnd, Step};
 use super::first_step::first_step;
 use super::integrator::{Flow, StepView};
 use super::options::{IntegrateError, Options, Stats};
@@ -27,12 +27,14 @@ pub(crate) enum Trial {
 }
 
 /// A one-step method.
-pub(crate) trait Scheme {
+pub(crate) trait Scheme: Interpolant {
     /// Largest growth of the step.
     const GROWTH: f64;
     /// 1 / (order of the error estimate + 1).
     fn exponent(&self) -> f64;
     fn core(&mut self) -> &mut Core;
+    /// The same, to look at.
+    fn tried(&self) -> &Core;
     /// Forget everything about the past: the state or the equations have changed.
     fn restart(&mut self);
     /// From `x0` at `t` to `x1` at `t + h`.
@@ -44,8 +46,6 @@ pub(crate) trait Scheme {
         opts: &Options,
         stats: &mut Stats,
     ) -> Result<Trial, EvalError>;
-    /// Fill `cont` for the step just accepted.
-    fn dense(&mut self, h: f64);
 }
 
 /// Integrates with `method`; arguments and result as in [`super::Integrator::integrate`].
@@ -67,10 +67,14 @@ pub(crate) fn drive<M: Scheme, S: OdeSystem + ?Sized>(
     check(&shape, sys, interval, breakpoints, y, q, opts)?;
     c.x0[..n].copy_from_slice(y);
     c.x0[n..].copy_from_slice(q);
-    c.events.resize(sys.n_events());
+    let mut events = std::mem::take(&mut c.events);
+    events.resize(sys.n_events());
     method.restart();
-    let result = Run::new(method, sys, interval, breakpoints, opts, stats).finish(observer);
+    let mut run = Run::new(method, sys, interval, breakpoints, opts, stats, events);
+    let result = run.finish(observer);
+    let events = run.events;
     let c = method.core();
+    c.events = events;
     y.copy_from_slice(&c.x0[..n]);
     q.copy_from_slice(&c.x0[n..]);
     result
@@ -108,6 +112,8 @@ struct Run<'a, M, S: ?Sized> {
     rejected: Option<(f64, f64)>,
     /// The last refusal of the right-hand side since the last accepted step.
     cause: Option<EvalError>,
+    events: Events,
+    coefficients: Coefficients,
 }
 
 /// Where the current segment ends.
@@ -133,6 +139,7 @@ impl<'a, M: Scheme, S: OdeSystem + ?Sized> Run<'a, M, S> {
         breakpoints: &'a [f64],
         opts: &'a Options,
         stats: &'a mut Stats,
+        events: Events,
     ) -> Self {
         let mut next_bp = breakpoints.partition_point(|&b| b <= t0 && !near(b, t0));
         let mut seg_start_is_bp = false;
@@ -159,11 +166,13 @@ impl<'a, M: Scheme, S: OdeSystem + ?Sized> Run<'a, M, S> {
             rejected_before: false,
             rejected: None,
             cause: None,
+            events,
+            coefficients: Coefficients::default(),
         }
     }
 
     fn finish(
-        mut self,
+        &mut self,
         observer: &mut dyn FnMut(&mut S, &dyn StepView) -> Flow,
     ) -> Result<f64, IntegrateError> {
         while self.t < self.end {
@@ -231,7 +240,7 @@ impl<'a, M: Scheme, S: OdeSystem + ?Sized> Run<'a, M, S> {
             self.f0_known = true;
         }
         if !self.events_known {
-            c.events.start(self.sys, t, &c.x0[..n]).map_err(|source| IntegrateError::Eval { t, source })?;
+            self.events.start(self.sys, t, &c.x0[..n]).map_err(|source| IntegrateError::Eval { t, source })?;
             self.events_known = true;
         }
         Ok(())
@@ -337,14 +346,16 @@ impl<'a, M: Scheme, S: OdeSystem + ?Sized> Run<'a, M, S> {
         let power = error.max(1e-10).powf(self.method.exponent());
         let factor = (SAFETY / power).clamp(0.2, if self.rejected_before { 1.0 } else { M::GROWTH });
         self.rejected_before = false;
-        self.method.dense(step.h);
         self.h = if step.cut { self.h.max(factor * step.h) } else { factor * step.h };
 
-        let c = self.method.core();
-        let dense =
-            Dense { t: self.t, h: step.h, x0: &c.x0, x1: &c.x1, c: [&c.cont[0], &c.cont[1], &c.cont[2]] };
+        self.coefficients.forget();
+        let (source, c): (&dyn Interpolant, _) = (&*self.method, self.method.tried());
+        let (coefficients, x0, x1) = (&self.coefficients, &c.x0, &c.x1);
+        let dense = Dense { t: self.t, h: step.h, x0, x1, coefficients, source };
         let scanned = Step { n: c.n, dense, t_new: step.t_new };
-        match c.events.scan(&scanned, self.sys, self.opts, observer, self.stats)? {
+        let end = self.events.scan(&scanned, self.sys, self.opts, observer, self.stats)?;
+        let c = self.method.core();
+        match end {
             ScanEnd::Through => {
                 std::mem::swap(&mut c.x0, &mut c.x1);
                 std::mem::swap(&mut c.f0, &mut c.f1);
@@ -356,15 +367,15 @@ impl<'a, M: Scheme, S: OdeSystem + ?Sized> Run<'a, M, S> {
                 return Ok(Flow::Stop);
             }
             ScanEnd::Stopped => {
-                c.x0.copy_from_slice(c.events.state());
+                c.x0.copy_from_slice(self.events.state());
                 return Ok(Flow::Stop);
             }
             ScanEnd::Chatter { t, event } => {
-                c.x0.copy_from_slice(c.events.state());
+                c.x0.copy_from_slice(self.events.state());
                 return Err(IntegrateError::Chatter { t, event });
             }
             ScanEnd::Restart { t } => {
-                c.x0.copy_from_slice(c.events.state());
+                c.x0.copy_from_slice(self.events.state());
                 self.restart(t);
             }
         }

@@ -15,7 +15,7 @@ use super::system::{Direction, EventAction, OdeSystem};
 use crate::roots;
 
 /// What is known of the event functions, and work arrays.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Events {
     /// Values at the last sample, at a trial point.
     g: Vec<f64>,
