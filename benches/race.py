@@ -15,9 +15,10 @@ Rules
   `error_model="numpy"`; Gudgeon's is its library's `Network`, errors checked.
 - One accuracy measure: the relative error of the blow-by after the cycle against a value on which three codes at relative tolerances of 1e-11 and
   1e-12 agree within 1e-10.
-- The same tolerances: relative `rtol`, absolute `rtol` times the start mass for the volumes. Gudgeon integrates the blow-by as a quadrature outside
-  the error control; the others carry it as a sixth state with an absolute tolerance of `rtol` times 1e-6 kg. Gudgeon
-  also integrates the outflow of the chamber, to check its mass balance. Every code chooses its first step; no code is told of the largest step.
+- The same tolerances: relative `rtol`, absolute `rtol` times the start mass for the volumes. Gudgeon's one-step methods integrate the blow-by as a
+  quadrature outside the error control; its BDF has it within, and the others carry it as a sixth state, with an absolute tolerance of `rtol` times
+  1e-6 kg. Gudgeon also integrates the outflow of the chamber, to check its mass balance. Every code chooses its first step; no code is told of the
+  largest step.
 - Jacobians: Gudgeon differences in groups of columns that share no row. Codes marked `J` have the exact Jacobian, compiled too; the
   others difference.
 - `compiled` codes call the compiled functions without Python in between: CVODE through its C interface. The others call back

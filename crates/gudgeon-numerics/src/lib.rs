@@ -11,7 +11,8 @@
 //! |---|---|---|
 //! | stiff `y' = f(t, y)`, relative tolerance 1e-2 to 1e-7, events, balances that must close | [`rodas::Rodas`] | one LU factorisation a step, no Newton iteration; order 5 or 3 |
 //! | the same at 1e-7 and tighter, or as an independent reference | [`radau::Radau5`] | fully implicit, fewer right-hand sides at tight tolerances; locates no events |
-//! | what both share: the system, options, statistics, dense output | [`ode`] | |
+//! | the same, smooth over many steps, with dear right-hand sides or Jacobians | [`bdf::Bdf`] | one or two right-hand sides a step, and a Jacobian in ten steps; slow after events and breakpoints |
+//! | what all share: the system, options, statistics, dense output | [`ode`] | |
 //! | derivatives of a solution by its initial state and by parameters | [`tangent::Tangent`] | variational equations on the steps of the solution; events are jumps |
 //! | state that repeats after a cycle | [`orbit::periodic_orbit`] | Anderson acceleration, error estimate, stability check |
 //! | dense, banded or tridiagonal systems | [`linalg`] | in place, no allocation, singular matrices are errors |
@@ -134,6 +135,7 @@
 //! # Ok::<(), RootError>(())
 //! ```
 
+pub mod bdf;
 mod error;
 pub mod fourier;
 pub mod gmres;

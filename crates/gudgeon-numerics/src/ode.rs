@@ -34,6 +34,8 @@ mod first_step;
 mod integrator;
 mod options;
 mod samples;
+mod step_matrix;
+mod sums;
 mod system;
 
 pub(crate) use check::{Shape, check};
@@ -43,4 +45,6 @@ pub(crate) use difference::difference;
 pub(crate) use driver::{Scheme, Trial, drive};
 pub use integrator::{Flow, Integrator, StepView};
 pub use options::{IntegrateError, Options, Stats};
+pub(crate) use step_matrix::StepMatrix;
+pub(crate) use sums::{add_all, larger};
 pub use system::{ColumnGroups, Direction, EventAction, LinearInvariant, OdeSystem};

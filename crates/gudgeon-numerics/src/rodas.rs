@@ -7,10 +7,10 @@
 
 use crate::EvalError;
 
-use crate::linalg::{dot, lu_factor_weighted, lu_solve};
+use crate::linalg::dot;
 use crate::ode::{
     ColumnGroups, Core, Flow, IntegrateError, Integrator, Interpolant, OdeSystem, Options, Scheme, Stats,
-    StepView, Trial, drive,
+    StepMatrix, StepView, Trial, add_all, drive, larger,
 };
 
 mod tableau;
@@ -47,8 +47,7 @@ pub enum Formula {
 pub struct Rodas {
     tableau: &'static Tableau,
     core: Core,
-    lu: Vec<f64>,
-    piv: Vec<usize>,
+    matrix: StepMatrix,
     /// Stages of the states, one after the other.
     u: Vec<f64>,
     /// Rates of the quadratures at the stages, one stage after the other.
@@ -58,7 +57,6 @@ pub struct Rodas {
     /// A weighted sum of the stages, and quadratures.
     w: Vec<f64>,
     q: Vec<f64>,
-    weight: Vec<f64>,
 }
 
 impl Rodas {
@@ -97,31 +95,13 @@ impl Rodas {
         Self {
             tableau,
             core: Core::new(dim, quad_dim, groups, structured),
-            lu: vec![0.0; if structured { 0 } else { dim * dim }],
-            piv: vec![0; dim],
+            matrix: StepMatrix::new(if structured { 0 } else { dim }),
             u: vec![0.0; stages * dim],
             g: vec![0.0; stages * quad_dim],
             f: vec![0.0; dim + quad_dim],
             w: vec![0.0; dim],
             q: vec![0.0; quad_dim],
-            weight: vec![1.0; dim],
         }
-    }
-
-    /// Factors `diagonal I - J`; false when it is singular.
-    fn factor<S: OdeSystem + ?Sized>(&mut self, sys: &mut S, diagonal: f64) -> bool {
-        if self.core.structured {
-            return sys.factor(diagonal);
-        }
-        let n = self.core.n;
-        for (w, j) in self.lu.iter_mut().zip(&self.core.jac) {
-            *w = -j;
-        }
-        for i in 0..n {
-            self.lu[i * n + i] += diagonal;
-        }
-        self.weight.copy_from_slice(&self.core.weight);
-        lu_factor_weighted(&mut self.lu, n, &mut self.piv, Some(&mut self.weight)).is_ok()
     }
 
     /// Stage `i` of a step of size `h` from `t`; its point is left in `y_tmp`.
@@ -162,11 +142,7 @@ impl Rodas {
         if d != 0.0 {
             ui.iter_mut().zip(&self.core.dfdt).for_each(|(u, f)| *u += d * f);
         }
-        if self.core.structured {
-            sys.solve(ui);
-        } else {
-            lu_solve(&self.lu, n, &self.piv, ui);
-        }
+        self.matrix.solve(&self.core, sys, ui);
         Ok(())
     }
 
@@ -232,6 +208,8 @@ impl Interpolant for Rodas {
 
 impl Scheme for Rodas {
     const GROWTH: f64 = 6.0;
+    const RATES: bool = true;
+    const JUDGES_QUADRATURES: bool = false;
 
     fn exponent(&self) -> f64 {
         self.tableau.exponent
@@ -245,8 +223,9 @@ impl Scheme for Rodas {
         &self.core
     }
 
-    fn restart(&mut self) {
+    fn restart(&mut self) -> f64 {
         self.core.jac_current = false;
+        1.0
     }
 
     fn attempt<S: OdeSystem + ?Sized>(
@@ -263,7 +242,7 @@ impl Scheme for Rodas {
             self.core.jac_current = true;
         }
         stats.lu += 1;
-        if !self.factor(sys, 1.0 / (h * self.tableau.gamma)) {
+        if !self.matrix.factor(&self.core, sys, 1.0 / (h * self.tableau.gamma)) {
             return Ok(Trial::Retry(0.5));
         }
         for i in 0..self.tableau.alpha.len() {
@@ -272,38 +251,6 @@ impl Scheme for Rodas {
         }
         Ok(Trial::Done { error: self.finish(h, opts) })
     }
-}
-
-/// `x += factor Σ_j a_j u_j`, of vectors `u_j` that stand one after the other: four at a time, since `x` is short and each turn of a loop over it
-/// costs as much as a product.
-fn add_all(x: &mut [f64], factor: f64, a: &[f64], u: &[f64]) {
-    let n = x.len();
-    if n == 0 {
-        return;
-    }
-    let (fours, rest) = a.as_chunks::<4>();
-    let (of_fours, of_rest) = u.split_at(4 * fours.len() * n);
-    for (a, u) in fours.iter().zip(of_fours.chunks_exact(4 * n)) {
-        let [a0, a1, a2, a3] = a.map(|a| factor * a);
-        let ((u0, u1), (u2, u3)) = (halves(&u[..2 * n]), halves(&u[2 * n..]));
-        for ((((x, u0), u1), u2), u3) in x.iter_mut().zip(u0).zip(u1).zip(u2).zip(u3) {
-            *x += (a0 * u0 + a1 * u1) + (a2 * u2 + a3 * u3);
-        }
-    }
-    for (a, u) in rest.iter().zip(of_rest.chunks_exact(n)) {
-        let a = factor * a;
-        x.iter_mut().zip(u).for_each(|(x, u)| *x += a * u);
-    }
-}
-
-fn halves(u: &[f64]) -> (&[f64], &[f64]) {
-    u.split_at(u.len() / 2)
-}
-
-/// The larger of `a` and `|b|`; a NaN wins.
-fn larger(a: f64, b: f64) -> f64 {
-    let b = b.abs();
-    if b > a || b.is_nan() { b } else { a }
 }
 
 impl<S: OdeSystem + ?Sized> Integrator<S> for Rodas {

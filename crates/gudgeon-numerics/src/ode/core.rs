@@ -81,7 +81,7 @@ impl Core {
     }
 
     /// Absolute errors for the step from `x0`.
-    pub(super) fn set_tolerances<S: OdeSystem + ?Sized>(&mut self, sys: &mut S, t: f64, opts: &Options) {
+    pub(crate) fn set_tolerances<S: OdeSystem + ?Sized>(&mut self, sys: &mut S, t: f64, opts: &Options) {
         self.atol.copy_from_slice(&opts.atol);
         sys.tolerances(t, &self.x0[..self.n], &mut self.atol);
     }
@@ -94,7 +94,7 @@ impl Core {
         }
     }
 
-    /// Fills `jac` and `dfdt` at `(t, x0)`, with `f0` already there. `h` is the coming step.
+    /// Fills `jac` and `dfdt` at `(t, x0)`, with `f0` already there, and sets tolerances. `h` is the coming step.
     pub(crate) fn linearise<S: OdeSystem + ?Sized>(
         &mut self,
         sys: &mut S,
@@ -105,14 +105,25 @@ impl Core {
     ) -> Result<(), EvalError> {
         let te = self.clamp_time(t);
         self.set_tolerances(sys, te, opts);
+        self.linearise_states(sys, te, opts, stats)?;
+        self.time_derivative(sys, (t, te), h, stats)
+    }
+
+    /// `jac` alone, at `(te, x0)`.
+    pub(crate) fn linearise_states<S: OdeSystem + ?Sized>(
+        &mut self,
+        sys: &mut S,
+        te: f64,
+        opts: &Options,
+        stats: &mut Stats,
+    ) -> Result<(), EvalError> {
         stats.jacobians += 1;
         self.jac.fill(0.0);
         if self.structured {
-            sys.linearise(te, &self.x0[..self.n], &self.f0)?;
+            sys.linearise(te, &self.x0[..self.n], &self.f0)
         } else {
-            self.jacobian(sys, te, opts, stats)?;
+            self.jacobian(sys, te, opts, stats)
         }
-        self.time_derivative(sys, (t, te), h, stats)
     }
 
     /// `jac` at `(te, x0)`, by the system or by differences.

@@ -30,13 +30,25 @@ pub(crate) enum Trial {
 pub(crate) trait Scheme: Interpolant {
     /// Largest growth of the step.
     const GROWTH: f64;
+    /// Whether a step begins with the rates at its start.
+    const RATES: bool;
+    /// Whether quadratures must take part in the error control.
+    const JUDGES_QUADRATURES: bool;
     /// 1 / (order of the error estimate + 1).
     fn exponent(&self) -> f64;
     fn core(&mut self) -> &mut Core;
     /// The same, to look at.
     fn tried(&self) -> &Core;
-    /// Forget everything about the past: the state or the equations have changed.
-    fn restart(&mut self);
+    /// Forget everything about the past: the state or the equations have changed. The part of the step that is left.
+    fn restart(&mut self) -> f64;
+    /// Takes the step just tried, of size `h`, whose error was within the tolerance. The factor on it that gives the next.
+    fn accept(&mut self, _h: f64, error: f64) -> f64 {
+        SAFETY / error.max(1e-10).powf(self.exponent())
+    }
+    /// Gives up the step just tried, whose error was above the tolerance. The factor on it, where the method knows better than its order.
+    fn reject(&mut self) -> Option<f64> {
+        None
+    }
     /// From `x0` at `t` to `x1` at `t + h`.
     fn attempt<S: OdeSystem + ?Sized>(
         &mut self,
@@ -65,6 +77,11 @@ pub(crate) fn drive<M: Scheme, S: OdeSystem + ?Sized>(
     let n = c.n;
     let shape = Shape { n, quad: c.m - n, groups: c.groups.as_ref() };
     check(&shape, sys, interval, breakpoints, y, q, opts)?;
+    if M::JUDGES_QUADRATURES && c.m > n && opts.atol_quad.is_empty() {
+        return Err(IntegrateError::Input {
+            what: "this method needs the accuracy of its quadratures, `atol_quad`",
+        });
+    }
     c.x0[..n].copy_from_slice(y);
     c.x0[n..].copy_from_slice(q);
     let mut events = std::mem::take(&mut c.events);
@@ -220,7 +237,7 @@ impl<'a, M: Scheme, S: OdeSystem + ?Sized> Run<'a, M, S> {
             self.next_bp += 1;
         }
         self.f0_known = false;
-        self.method.restart();
+        self.h *= self.method.restart();
     }
 
     /// Rates and event functions at the start of the step, where the step before does not tell them.
@@ -240,7 +257,9 @@ impl<'a, M: Scheme, S: OdeSystem + ?Sized> Run<'a, M, S> {
             self.f0_known = true;
         }
         if !self.events_known {
-            self.events.start(self.sys, t, &c.x0[..n]).map_err(|source| IntegrateError::Eval { t, source })?;
+            self.events
+                .start(self.sys, t, &c.x0[..n])
+                .map_err(|source| IntegrateError::Eval { t, source })?;
             self.events_known = true;
         }
         Ok(())
@@ -294,6 +313,9 @@ impl<'a, M: Scheme, S: OdeSystem + ?Sized> Run<'a, M, S> {
     /// Evaluates the rates at the new state; false when it was refused and the step rejected.
     fn evaluate_end(&mut self, step: &Proposal) -> Result<bool, IntegrateError> {
         self.rejected = None;
+        if !M::RATES {
+            return Ok(true);
+        }
         let c = self.method.core();
         let (n, te) = (c.n, c.clamp_time(step.t_new));
         if let Err(e) = Core::checked_rhs(self.sys, te, &c.x1[..n], &mut c.f1, self.stats) {
@@ -323,6 +345,9 @@ impl<'a, M: Scheme, S: OdeSystem + ?Sized> Run<'a, M, S> {
     fn reject_for_error(&mut self, h: f64, error: f64) {
         // Across a kink the error falls slower than the order of the method says: from the second rejection on, the
         // order seen since the last one.
+        if let Some(factor) = self.method.reject() {
+            return self.reject(h, factor);
+        }
         let seen = self.rejected.map_or(f64::INFINITY, |(h0, e0)| (e0 / error).ln() / (h0 / h).ln());
         let shrink = if seen.is_nan() {
             0.1
@@ -343,8 +368,8 @@ impl<'a, M: Scheme, S: OdeSystem + ?Sized> Run<'a, M, S> {
     ) -> Result<Flow, IntegrateError> {
         self.stats.steps += 1;
         self.cause = None;
-        let power = error.max(1e-10).powf(self.method.exponent());
-        let factor = (SAFETY / power).clamp(0.2, if self.rejected_before { 1.0 } else { M::GROWTH });
+        let most = if self.rejected_before { 1.0 } else { M::GROWTH };
+        let factor = self.method.accept(step.h, error).clamp(0.2, most);
         self.rejected_before = false;
         self.h = if step.cut { self.h.max(factor * step.h) } else { factor * step.h };
 
@@ -389,6 +414,6 @@ impl<'a, M: Scheme, S: OdeSystem + ?Sized> Run<'a, M, S> {
         self.since = t;
         self.t = t;
         self.f0_known = false;
-        self.method.restart();
+        self.h *= self.method.restart();
     }
 }

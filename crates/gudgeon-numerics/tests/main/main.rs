@@ -1,5 +1,6 @@
 //! Tests of the numerical methods, one module a topic. Allocations are counted in a program of their own.
 
+mod bdf;
 mod complex;
 mod fourier;
 mod gmres;
