@@ -6,7 +6,7 @@ use gudgeon_core::result::{Note, Series};
 
 use super::{MAX_DRAWN, Results, column};
 use crate::assemble::{Assembled, throws_alone};
-use crate::machine::{Machine, Point};
+use crate::machine::{Machine, Point, Sought};
 use crate::verdict::Operating;
 use crate::{rpm, told};
 
@@ -59,7 +59,7 @@ impl Results<'_> {
             let (speed, most) = if telling.is_empty() {
                 drawn.fold((from, 0.0), |best, at| if at.1 > best.1 { at } else { best })
             } else {
-                machine.largest(&telling, &|p| p.links[l].amplitude)
+                machine.largest(&telling, &Sought::Link(l, &|p| p.amplitude))
             };
             if most > top.0 {
                 top = (most, l, speed);
