@@ -33,11 +33,15 @@ const RESERVE: u32 = 4;
 /// Ratio of a gap that was proved and one that was not below which nothing between them is tried.
 const NEAR: f64 = 1.05;
 
+/// Part of the gap that is proved, so that what is told of it keeps within it to rounding.
+const WITHIN: f64 = 0.999;
+
 /// Proves that no pin of the design is lighter than `best` by more than `gap` of the pin's mass, with at most `max_boxes` boxes.
 ///
 /// Where that takes too many boxes, or is not true, the bound is that of the smallest wider gap that was proved.
 #[must_use]
 pub fn certify(d: &Design<'_>, best: &PinSize, gap: f64, max_boxes: u32) -> Certificate {
+    let gap = WITHIN * gap;
     let masses = d.masses(best);
     let mut attempt = Attempt { design: d, best, masses, boxes: 0 };
     let first = attempt.at(gap, max_boxes - max_boxes / RESERVE);
