@@ -141,10 +141,11 @@ impl Results<'_> {
             let Ok(throws) = throws_alone(self.case, files, *w) else { continue };
             for (mean, here) in a.line.throws.iter().zip(&throws) {
                 let at = |k: i32| f64::from(k).to_radians() - mean.phase;
-                let largest = (0..720).map(|k| mean.gas_torque(at(k), at(k)).abs()).fold(0.0, f64::max);
-                let change = (0..720)
-                    .map(|k| (here.gas_torque(at(k), at(k)) - mean.gas_torque(at(k), at(k))).abs())
-                    .fold(0.0, f64::max);
+                let (largest, change) = (0..720).fold((0.0, 0.0), |(largest, change): (f64, f64), k| {
+                    let torque = mean.gas_torque(at(k), at(k));
+                    let other = here.gas_torque(at(k), at(k));
+                    (largest.max(torque.abs()), change.max((other - torque).abs()))
+                });
                 if change > worst.0 * largest {
                     worst = (change / largest, *w);
                 }
