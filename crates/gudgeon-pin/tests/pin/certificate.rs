@@ -152,3 +152,20 @@ fn the_proof_asks_nothing_of_a_limit_but_that_it_is_monotone() {
     let c = certify(&d, &size, 2e-2, 200_000);
     assert!(c.closed && c.lighter.is_none() && c.bound <= mass, "{c:?}");
 }
+
+/// Where the bore is given, lengths and outer diameters alone are held against the limits.
+#[test]
+fn a_given_bore_is_no_room_without_pins() {
+    for name in ["thin_ring", "curved_ring"] {
+        let m = model(name, PUBLISHED_PI);
+        let mut d = published_design(&*m, PUBLISHED_PI);
+        d.limits[PinQuantity::Deflection as usize] = 0.1e-3;
+        d.inner = Range::at(12e-3);
+        let o = lightest(&d, None).unwrap_or_else(|e| panic!("{name}: {e:?}"));
+        let c = certify(&d, &o.size, 1e-4, 200_000);
+        assert!(c.closed && c.lighter.is_none() && c.boxes > 1, "{name}: {c:?}");
+        // A longer pin is no optimum.
+        let c = certify(&d, &PinSize { length: 1.05 * o.size.length, ..o.size }, 1e-4, 200_000);
+        assert!(!c.closed && c.lighter.is_some() && c.bound <= o.masses.differential(), "{name}: {c:?}");
+    }
+}
