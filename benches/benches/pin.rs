@@ -1,4 +1,5 @@
-//! The lightest pins of 10 000 random engines: time, and how well the conditions of each optimum hold.
+//! The lightest pins of 10 000 random engines: time, how well the conditions of each optimum hold, and what it takes to prove that no other pin
+//! is lighter.
 //!
 //! `--table` prints the table alone, `--json N` the first N engines with their optima and the time of one (for `race_pin.py`); everything else
 //! goes to criterion.
@@ -9,8 +10,11 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use criterion::Criterion;
-use gudgeon_core::kinds::{BossBore, PIN_QUANTITIES, PinForces, PinSize, PinStrengthCtx, PinStrengthSpec};
+use gudgeon_core::kinds::{
+    BossBore, PIN_QUANTITIES, PinForces, PinSize, PinStrength, PinStrengthCtx, PinStrengthSpec,
+};
 use gudgeon_pin::ThinRing;
+use gudgeon_pin::certificate::certify;
 use gudgeon_pin::design::{Design, Range, Relief};
 use gudgeon_pin::optimum::{KKT_TOLERANCE, NoOptimum, Optimum, lightest};
 
@@ -68,25 +72,37 @@ fn engines(n: usize) -> Vec<Engine> {
         .collect()
 }
 
+fn strength(e: &Engine) -> Box<dyn PinStrength> {
+    ThinRing {}.build(&e.ctx).expect("the model builds")
+}
+
+fn design<'a>(e: &Engine, strength: &'a dyn PinStrength) -> Design<'a> {
+    Design {
+        strength,
+        load: PinForces { gas: e.gas, inertia: e.inertia },
+        limits: e.limits,
+        density: 7850.0,
+        pi: PI,
+        relief: Some(Relief { bore: e.bore, height: e.relief, density: 2690.0 }),
+        boss_gap: e.ctx.boss_gap,
+        length: Range { low: 1.001 * e.ctx.boss_gap, high: 0.999 * e.bore },
+        outer: Range { low: 0.2 * e.bore, high: e.outer },
+        inner: Range { low: 0.0, high: e.bore },
+        min_wall: 0.0,
+        tolerance: PinSize::default(),
+    }
+}
+
 fn solve(e: &Engine) -> Result<Optimum, NoOptimum> {
-    let strength = ThinRing {}.build(&e.ctx).expect("the model builds");
-    lightest(
-        &Design {
-            strength: &*strength,
-            load: PinForces { gas: e.gas, inertia: e.inertia },
-            limits: e.limits,
-            density: 7850.0,
-            pi: PI,
-            relief: Some(Relief { bore: e.bore, height: e.relief, density: 2690.0 }),
-            boss_gap: e.ctx.boss_gap,
-            length: Range { low: 1.001 * e.ctx.boss_gap, high: 0.999 * e.bore },
-            outer: Range { low: 0.2 * e.bore, high: e.outer },
-            inner: Range { low: 0.0, high: e.bore },
-            min_wall: 0.0,
-            tolerance: PinSize::default(),
-        },
-        None,
-    )
+    lightest(&design(e, &*strength(e)), None)
+}
+
+/// Boxes that prove the optimum of an engine to a gap; none where it has no pin, or the gap stays open.
+fn prove(e: &Engine, gap: f64) -> Option<u32> {
+    let strength = strength(e);
+    let d = design(e, &*strength);
+    let c = certify(&d, &lightest(&d, None).ok()?.size, gap, 200_000);
+    c.closed.then_some(c.boxes)
 }
 
 /// Seconds of one round, optima that are proved, engines without a pin, iterations, worst stationarity, infeasibility, complementarity.
@@ -126,6 +142,23 @@ fn table() {
     );
 }
 
+/// Time and boxes of optimum and certificate together, over gaps.
+fn certificates() {
+    for (gap, engines) in [(1e-2, engines(ENGINES)), (1e-3, engines(ENGINES)), (1e-6, engines(ENGINES / 10))]
+    {
+        let begin = Instant::now();
+        let boxes: Vec<u32> = engines.iter().filter_map(|e| prove(black_box(e), gap)).collect();
+        let seconds = begin.elapsed().as_secs_f64();
+        let (n, all): (usize, u64) = (boxes.len(), boxes.iter().map(|b| u64::from(*b)).sum());
+        println!(
+            "gap {gap:.0e}: {n} of {} proved, {:.1} us each with the optimum, {:.1} boxes",
+            engines.len(),
+            1e6 * seconds / engines.len() as f64,
+            all as f64 / n as f64
+        );
+    }
+}
+
 fn json(n: usize) {
     let all = engines(n);
     // Warm, then the median of a few rounds over the same engines.
@@ -153,6 +186,7 @@ fn main() {
         return;
     }
     table();
+    certificates();
     if arguments.iter().any(|a| a == "--table") {
         return;
     }
@@ -163,6 +197,13 @@ fn main() {
         b.iter(|| {
             k = (k + 1) % all.len();
             solve(&all[k])
+        });
+    });
+    c.bench_function("lightest pin and its certificate, gap 1e-3", |b| {
+        let mut k = 0;
+        b.iter(|| {
+            k = (k + 1) % all.len();
+            prove(&all[k], 1e-3)
         });
     });
     c.final_summary();

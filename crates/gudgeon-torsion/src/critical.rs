@@ -2,6 +2,7 @@
 
 use gudgeon_core::EvalError;
 
+use crate::bracket::{Bracket, Look};
 use crate::eigen::{modal_damping, natural_frequencies, rigid_modes, shapes};
 use crate::steady::Steady;
 
@@ -20,8 +21,6 @@ pub struct CriticalSpeed {
     pub damping_ratio: f64,
 }
 
-/// Halvings of an interval that place a frequency to rounding.
-const BISECTIONS: usize = 60;
 /// Doublings of a guess until it lies above the frequency.
 const DOUBLINGS: usize = 40;
 
@@ -49,58 +48,58 @@ impl Steady {
         let guesses: Vec<f64> = elastic.copied().collect();
         let mut found = Vec::with_capacity(guesses.len());
         for (k, guess) in guesses.into_iter().enumerate() {
-            let below = |s: &mut Self, w: f64| s.count_at(w) <= rigid + k;
-            let (mut low, mut high) = (0.0, guess);
+            let (mut low, mut high) = (self.look_at(0.0), self.look_at(guess));
             // Stiffer with the frequency, mostly: look further up.
             for _ in 0..DOUBLINGS {
-                if !below(self, high) {
+                if high.count > rigid + k {
                     break;
                 }
-                (low, high) = (high, 2.0 * high);
+                (low, high) = (high, self.look_at(2.0 * high.at));
             }
-            for _ in 0..BISECTIONS {
-                let middle = 0.5 * (low + high);
-                if below(self, middle) { low = middle } else { high = middle }
+            let mut bracket = Bracket::new(low, high);
+            while !bracket.is_closed() {
+                let look = self.look_at(bracket.trial());
+                bracket = bracket.with(usize::from(look.count > rigid + k), look);
             }
-            found.push(high);
+            found.push(bracket.ends[1].at);
         }
         Ok(found)
     }
 
-    /// Number of natural frequencies below `omega` with the stiffness that links have there.
-    fn count_at(&mut self, omega: f64) -> usize {
+    /// Natural frequencies below `omega` with the stiffness that links have there.
+    fn look_at(&mut self, omega: f64) -> Look {
         self.at_frequency(omega);
         self.pivot_counts += 1;
-        let mut work = vec![0.0; self.tree.len()];
-        self.tree.count_below(omega * omega, &mut work)
+        let (count, pivot) = self.tree.count_and_pivot(omega * omega, &mut self.pivots);
+        Look { at: omega, count, pivot }
     }
 
     /// All speeds from `from` to `to` \[rad/s\] at which one of `orders` meets a natural frequency; ascending. `grid` is the number of
     /// intervals at whose ends the stiffness of a line that depends on the speed is evaluated.
     ///
-    /// Counts of negative pivots at both ends of an interval give the number of natural frequencies that the order passes in it; bisection
-    /// places them to rounding. An order that passes a frequency forth and back within one interval is not seen.
+    /// Counts of negative pivots at both ends of an interval give the number of natural frequencies that the order passes in it; the pivot of
+    /// the root says where about, and further counts place them to rounding. An order that passes a frequency forth and back within one interval is not seen.
     pub fn critical_speeds(&mut self, orders: &[f64], from: f64, to: f64, grid: usize) -> Vec<CriticalSpeed> {
         let speed = self.speed;
         let steps = if self.depends_on_speed() { grid.max(2) } else { 1 };
         let mut found = Vec::new();
         for &order in orders {
             let at = |i: usize| from + (to - from) * i as f64 / steps as f64;
-            let mut open: Vec<[(f64, usize); 2]> = Vec::new();
-            let mut last = (at(0), self.count_by_order(order, at(0)));
+            let mut open = Vec::new();
+            let mut last = self.look_by_order(order, at(0));
             for i in 1..=steps {
-                let next = (at(i), self.count_by_order(order, at(i)));
-                open.push([last, next]);
+                let next = self.look_by_order(order, at(i));
+                open.push(Bracket::new(last, next));
                 last = next;
             }
-            self.bisect(order, open, &mut found);
+            self.narrow(order, open, &mut found);
         }
         found.sort_unstable_by(|a, b| {
             a.speed.total_cmp(&b.speed).then(a.order.total_cmp(&b.order)).then(a.mode.cmp(&b.mode))
         });
         for c in &mut found {
             if self.depends_on_speed() {
-                self.set_speed(c.speed);
+                self.stand_at(c.speed);
             }
             self.at_frequency(c.omega);
             let shape = shapes(&self.tree, &[c.omega]);
@@ -110,36 +109,35 @@ impl Steady {
         found
     }
 
-    /// Number of natural frequencies below the frequency of an order at a speed, with the stiffness that holds there.
-    fn count_by_order(&mut self, order: f64, speed: f64) -> usize {
+    /// Natural frequencies below the frequency of an order at a speed, with the stiffness that holds there.
+    fn look_by_order(&mut self, order: f64, speed: f64) -> Look {
         if self.depends_on_speed() {
-            self.set_speed(speed);
+            self.stand_at(speed);
         }
-        self.count_at(order * speed)
+        Look { at: speed, ..self.look_at(order * speed) }
     }
 
-    /// Halves intervals, each given by speeds and counts at its ends, down to the speeds at which the count changes.
-    fn bisect(&mut self, order: f64, mut open: Vec<[(f64, usize); 2]>, found: &mut Vec<CriticalSpeed>) {
+    /// Narrows intervals down to the speeds at which the count changes.
+    fn narrow(&mut self, order: f64, mut open: Vec<Bracket>, found: &mut Vec<CriticalSpeed>) {
         let rigid = rigid_modes(&self.tree);
-        while let Some([a, b]) = open.pop() {
-            if a.1 == b.1 {
+        while let Some(bracket) = open.pop() {
+            let [a, b] = bracket.ends;
+            if a.count == b.count {
                 continue;
             }
-            let middle = 0.5 * (a.0 + b.0);
-            if middle <= a.0 || middle >= b.0 || b.0 - a.0 <= 4.0 * f64::EPSILON * b.0 {
-                let (low, high) = (a.1.min(b.1).max(rigid), a.1.max(b.1));
+            if bracket.is_closed() {
+                let (low, high) = (a.count.min(b.count).max(rigid), a.count.max(b.count));
                 found.extend((low..high).map(|k| CriticalSpeed {
-                    speed: b.0,
+                    speed: b.at,
                     order,
                     mode: k + 1 - rigid,
-                    omega: order * b.0,
+                    omega: order * b.at,
                     damping_ratio: 0.0,
                 }));
                 continue;
             }
-            let m = (middle, self.count_by_order(order, middle));
-            open.push([a, m]);
-            open.push([m, b]);
+            let look = self.look_by_order(order, bracket.trial());
+            open.extend([1, 0].map(|end| bracket.with(end, look)));
         }
     }
 }

@@ -135,12 +135,16 @@ impl Excitation {
         }
     }
 
-    /// The sum of [`Excitation::parts`] at `speed` \[rad/s\], the means of drag and drives included.
-    pub(crate) fn of_parts(&mut self, parts: &[Self; 2], line: &Line, speed: f64) {
+    /// The means of [`Excitation::parts`] at `speed` \[rad/s\], those of drag and drives included.
+    pub(crate) fn mean_of_parts(&mut self, parts: &[Self; 2], line: &Line, speed: f64) {
+        self.mean.clone_from(&parts[0].mean);
+        self.at_speed(line, speed);
+    }
+
+    /// The orders of the sum of [`Excitation::parts`] at `speed` \[rad/s\].
+    pub(crate) fn orders_of_parts(&mut self, parts: &[Self; 2], line: &Line, speed: f64) {
         let square = Complex::new(speed * speed, 0.0);
         let [fixed, masses] = parts;
-        self.mean.clone_from(&fixed.mean);
-        self.at_speed(line, speed);
         self.orders.clone_from(&fixed.orders);
         for o in &masses.orders {
             let at = self.orders.partition_point(|p| p.order < o.order - SAME);

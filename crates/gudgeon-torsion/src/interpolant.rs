@@ -9,6 +9,8 @@ use gudgeon_numerics::linalg::{lu_factor, lu_solve};
 
 /// Segments per turn: the functions of a crank vary over a tenth of a turn at the fastest.
 const PER_TURN: usize = 512;
+/// Segments per radian, of every interpolant.
+const PER_RADIAN: f64 = PER_TURN as f64 / (2.0 * PI);
 /// Coefficients of a segment.
 const TERMS: usize = 7;
 /// Points besides the nodes at which a polynomial must agree with its function, over the segment from -1 to 1.
@@ -20,7 +22,6 @@ const TOLERANCE: f64 = 1e-13;
 /// `f` itself is evaluated.
 #[derive(Debug, Clone)]
 pub struct Interpolant {
-    per_radian: f64,
     scale: f64,
     segments: Vec<Segment>,
     coefficients: Vec<[f64; TERMS]>,
@@ -32,6 +33,26 @@ enum Segment {
     Polynomial,
     /// The function is not smooth enough here: it is evaluated itself.
     Direct,
+}
+
+/// Where an angle lies among the segments, which are the same of all interpolants but for their number.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Place {
+    /// Segments from angle zero on.
+    segment: i64,
+    /// Coordinate in the segment, from -1 to 1.
+    inside: f64,
+}
+
+impl Place {
+    /// Of an angle \[rad\].
+    #[inline]
+    pub fn of(angle: f64) -> Self {
+        let u = angle * PER_RADIAN;
+        // The floor, which is no machine instruction everywhere.
+        let segment = u as i64 - i64::from(u < 0.0);
+        Self { segment, inside: 2.0 * (u - segment as f64) - 1.0 }
+    }
 }
 
 /// Node `i` of a segment: Chebyshev-Lobatto points, ends included.
@@ -46,7 +67,6 @@ impl Interpolant {
         let period = 2.0 * PI * turns.next_power_of_two() as f64;
         let sampled = (0..64).map(|i| f(period * (f64::from(i) + 0.37) / 64.0).abs());
         Self {
-            per_radian: count as f64 / period,
             scale: sampled.fold(0.0, f64::max),
             segments: vec![Segment::NotBuilt; count],
             coefficients: vec![[0.0; TERMS]; count],
@@ -65,19 +85,17 @@ impl Interpolant {
         self.segments.iter().filter(|s| **s == Segment::Direct).count()
     }
 
-    /// Segment of an angle and the coordinate in it, from -1 to 1.
-    fn locate(&self, angle: f64) -> (usize, f64) {
-        let u = angle * self.per_radian;
-        // The floor, which is no machine instruction everywhere.
-        let i = u as i64 - i64::from(u < 0.0);
-        ((i & (self.segments.len() as i64 - 1)) as usize, 2.0 * (u - i as f64) - 1.0)
-    }
-
     /// Value at an angle \[rad\]; `f` is the function that the interpolant was made for.
     pub fn value(&mut self, angle: f64, f: impl Fn(f64) -> f64) -> f64 {
-        let (i, t) = self.locate(angle);
+        self.value_at(Place::of(angle), angle, f)
+    }
+
+    /// The same at an angle whose place is known.
+    #[inline]
+    pub(crate) fn value_at(&mut self, place: Place, angle: f64, f: impl Fn(f64) -> f64) -> f64 {
+        let i = self.segment(place);
         match self.segments[i] {
-            Segment::Polynomial => value(&self.coefficients[i], t),
+            Segment::Polynomial => value(&self.coefficients[i], place.inside),
             Segment::Direct => f(angle),
             Segment::NotBuilt => {
                 self.build(i, &f);
@@ -88,15 +106,27 @@ impl Interpolant {
 
     /// Derivative with respect to the angle \[rad\]; where the function is not smooth, that of the polynomial through it at the nodes.
     pub fn derivative(&mut self, angle: f64, f: impl Fn(f64) -> f64) -> f64 {
-        let (i, t) = self.locate(angle);
+        self.derivative_at(Place::of(angle), f)
+    }
+
+    /// The same at a place.
+    #[inline]
+    pub(crate) fn derivative_at(&mut self, place: Place, f: impl Fn(f64) -> f64) -> f64 {
+        let i = self.segment(place);
         if self.segments[i] == Segment::NotBuilt {
             self.build(i, &f);
         }
-        2.0 * self.per_radian * derivative(&self.coefficients[i], t)
+        2.0 * PER_RADIAN * derivative(&self.coefficients[i], place.inside)
+    }
+
+    /// Segment of a place: their number is a power of two.
+    #[inline]
+    fn segment(&self, place: Place) -> usize {
+        (place.segment & (self.segments.len() as i64 - 1)) as usize
     }
 
     fn build(&mut self, i: usize, f: &impl Fn(f64) -> f64) {
-        let angle = |t: f64| (i as f64 + 0.5 * (t + 1.0)) / self.per_radian;
+        let angle = |t: f64| (i as f64 + 0.5 * (t + 1.0)) / PER_RADIAN;
         let mut matrix = [0.0; TERMS * TERMS];
         let mut terms = [0.0; TERMS];
         for r in 0..TERMS {

@@ -39,6 +39,7 @@
 //!
 //! Everything rests on one data structure, the line as a tree in the order of its elimination: see [`tree`].
 
+mod bracket;
 mod chain;
 pub mod coupling;
 mod crank_end;

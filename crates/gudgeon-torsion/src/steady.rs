@@ -35,6 +35,8 @@ pub struct Steady {
     /// Damping against the ground without that of the drives, by position.
     drag: Vec<f64>,
     varying: bool,
+    /// Room for the pivots of a count.
+    pub(crate) pivots: Vec<f64>,
     work: Work,
     scratch: [Vec<Complex>; 3],
 }
@@ -101,6 +103,7 @@ impl Steady {
             balance,
             parts: Excitation::parts(&line, ctx.orders),
             drag: tree.damping.clone(),
+            pivots: vec![0.0; n],
             work: Work::new(n),
             scratch: [z.clone(), z.clone(), z],
             tree,
@@ -112,8 +115,14 @@ impl Steady {
 
     /// Goes to another mean speed \[rad/s\].
     pub fn set_speed(&mut self, speed: f64) {
+        self.excitation.orders_of_parts(&self.parts, &self.line, speed);
+        self.stand_at(speed);
+    }
+
+    /// Takes the mean state and the tree of another mean speed \[rad/s\], but not its excitation: what natural frequencies depend on.
+    pub(crate) fn stand_at(&mut self, speed: f64) {
         self.speed = speed;
-        self.excitation.of_parts(&self.parts, &self.line, speed);
+        self.excitation.mean_of_parts(&self.parts, &self.line, speed);
         self.linearise();
     }
 
@@ -199,9 +208,9 @@ impl Steady {
                 let s = if t.forward[p] { 1.0 } else { -1.0 } / t.link_ratio[p];
                 r.torque[l] = [q[p].re * s, q[p].im * s];
                 let kappa = Complex::new(t.k[p], t.k[p] * t.eta[p] + omega * t.c[p]);
-                if t.k[p].is_finite() && kappa.norm1() > 0.0 {
-                    let size = q[p].abs() / kappa.abs();
-                    r.heat[l] = 0.5 * omega * kappa.im * size * size;
+                if t.k[p].is_finite() && kappa.im != 0.0 {
+                    let twist = q[p] / kappa;
+                    r.heat[l] = 0.5 * omega * kappa.im * (twist.re * twist.re + twist.im * twist.im);
                 }
             }
         }

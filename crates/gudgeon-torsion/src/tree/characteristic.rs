@@ -9,16 +9,23 @@ impl Tree {
     /// Number of undamped eigenvalues ω² below `lambda` \[1/s²\].
     #[must_use]
     pub fn count_below(&self, lambda: f64, s: &mut [f64]) -> usize {
+        self.count_and_pivot(lambda, s).0
+    }
+
+    /// The same with the pivot of the root, which passes zero, falling with `lambda`, at every eigenvalue that moves the root.
+    #[must_use]
+    pub fn count_and_pivot(&self, lambda: f64, s: &mut [f64]) -> (usize, f64) {
         for ((s, j), g) in s.iter_mut().zip(&self.inertia).zip(&self.ground) {
             *s = g - lambda * j;
         }
         let n = self.len();
-        let mut count = 0;
+        let (mut count, mut last) = (0, 0.0);
         for i in 0..n {
             let (k, own) = (self.k[i], s[i]);
             let p = self.parent[i];
             if p == NONE {
                 count += usize::from(own < 0.0);
+                last = own;
             } else if k == f64::INFINITY {
                 s[p] += own;
             } else {
@@ -30,7 +37,7 @@ impl Tree {
                 s[p] += if series.is_finite() { series } else { -f64::MAX.sqrt() };
             }
         }
-        count
+        (count, last)
     }
 
     /// Derivative of the logarithm of the determinant of `g + z c + z² J + …` at `z`: zero or not finite on a zero of the

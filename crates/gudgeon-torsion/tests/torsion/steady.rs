@@ -2,6 +2,7 @@
 
 use crate::common::compressor::run;
 use crate::common::{chain, link, node};
+use crate::elimination::{Numbers, random_line};
 use gudgeon_core::kinds::*;
 use gudgeon_core::quantity::quantity;
 use gudgeon_torsion::coupling::FrequencyDependent;
@@ -275,6 +276,36 @@ fn critical_speeds_have_the_damping_of_their_mode() {
     motor.drives.push(drive(1, 3.0, &law));
     let s = Steady::new(&context(&motor, 70.0, &[1.0])).expect("builds");
     assert!((s.tree.damping[s.tree.position[1]] - 3.0 * 0.5 * 4.0).abs() < 1e-15);
+}
+
+/// The pivot of the root says where to count next; what is found are the natural frequencies of plain bisection, by the order, for a fraction of
+/// its counts.
+#[test]
+fn critical_speeds_of_random_trees_are_their_natural_frequencies() {
+    let mut r = Numbers(20_261_125);
+    let (mut counts, mut places) = (0, 0);
+    for n in 2..40 {
+        let line = random_line(n, &mut r);
+        let balance: Vec<f64> = (0..n).map(|i| f64::from(u8::from(i == 0))).collect();
+        let mut steady = Steady::new(&context(&line, 70.0, &balance)).expect("builds");
+        let mut exact: Vec<f64> = Vec::new();
+        for order in [1.0, 3.5] {
+            exact.extend(steady.frequencies(n).expect("found").iter().map(|w| w / order));
+        }
+        exact.sort_unstable_by(f64::total_cmp);
+        let (from, to) = (0.5 * exact[0], 2.0 * exact[exact.len() - 1]);
+        let before = steady.pivot_counts;
+        let found = steady.critical_speeds(&[1.0, 3.5], from, to, 10);
+        counts += steady.pivot_counts - before;
+        places += found.len();
+        assert_eq!(found.len(), exact.len(), "{n}");
+        for (c, w) in found.iter().zip(&exact) {
+            // Both ends of an interval are a few digits of rounding apart.
+            assert!((c.speed / w - 1.0).abs() < 4e-15, "{n}: {c:?} {w}");
+        }
+    }
+    // Bisection takes 52 for every place, and some that part them.
+    assert!(counts < 26 * places as u64, "{counts} counts for {places}");
 }
 
 #[test]

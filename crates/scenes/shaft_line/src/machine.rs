@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use gudgeon_core::kinds::{Torsion, TorsionCtx, TorsionOut, TorsionSpec};
+use gudgeon_core::kinds::{OrderResponse, Torsion, TorsionCtx, TorsionOut, TorsionSpec};
 use gudgeon_core::{BuildError, EvalError};
 use gudgeon_numerics::maximum::maximise;
 use gudgeon_torsion::critical::CriticalSpeed;
@@ -14,7 +14,7 @@ use super::assemble::Assembled;
 
 /// Damping ratio below which a resonance counts as undamped: its peak would be a million times the static answer.
 const UNDAMPED: f64 = 1e-6;
-/// Sum of the amplitudes of all orders above which the exact swing of speeds \[1\] and twists \[rad\] is looked at.
+/// Bound of the sum of the amplitudes of all orders, at most √2 times it, above which the exact swing of speeds \[1\] and twists \[rad\] is looked at.
 const LARGE: f64 = 0.5;
 
 /// Vibration in a link at one speed.
@@ -66,7 +66,19 @@ pub struct Machine<'a> {
     torsion: Box<dyn Torsion>,
     spare: Option<Box<dyn Torsion>>,
     cycle: Option<Cycle>,
+    /// Critical speeds of the range that was asked for last.
+    critical: Option<([f64; 2], Vec<CriticalSpeed>)>,
     points: BTreeMap<u64, Point>,
+    /// At speeds where peaks of one link alone were looked for, by speed and link.
+    of_one_link: BTreeMap<(u64, usize), LinkPoint>,
+}
+
+/// A quantity whose largest value is looked for.
+pub enum Sought<'q> {
+    /// Of the vibration in a link.
+    Link(usize, &'q dyn Fn(&LinkPoint) -> f64),
+    /// Of the whole line.
+    Line(&'q dyn Fn(&Point) -> f64),
 }
 
 impl<'a> Machine<'a> {
@@ -88,7 +100,9 @@ impl<'a> Machine<'a> {
             ctx,
             spare: None,
             cycle: None,
+            critical: None,
             points: BTreeMap::new(),
+            of_one_link: BTreeMap::new(),
         })
     }
 
@@ -113,28 +127,51 @@ impl<'a> Machine<'a> {
     pub fn at(&mut self, speed: f64) -> Option<&Point> {
         // Bits of positive numbers ascend with them.
         let key = speed.to_bits();
-        if self.failed.iter().any(|f| f.0 == speed) {
-            return None;
-        }
         if !self.points.contains_key(&key) {
-            let out = match self.motion(speed) {
-                Ok(out) => out,
-                Err(e) => match self.spare_motion(speed) {
-                    Some(out) => {
-                        self.spared.push(speed);
-                        out
-                    }
-                    None => {
-                        self.failed.push((speed, e.to_string()));
-                        return None;
-                    }
-                },
-            };
-            self.solutions += out.counters.get("linear_solutions").copied().unwrap_or(0);
+            let out = self.answer(speed)?;
             let point = self.point(&out);
             self.points.insert(key, point);
         }
         self.points.get(&key)
+    }
+
+    /// Vibration in one link at a speed \[rad/s\], without looking at the others.
+    fn link_at(&mut self, speed: f64, link: usize) -> Option<LinkPoint> {
+        let key = speed.to_bits();
+        if let Some(p) = self.points.get(&key) {
+            return Some(p.links[link]);
+        }
+        if let Some(p) = self.of_one_link.get(&(key, link)) {
+            return Some(*p);
+        }
+        let out = self.answer(speed)?;
+        let point = link_point(self.extremes(&out), &out, link);
+        self.of_one_link.insert((key, link), point);
+        Some(point)
+    }
+
+    /// The answer of the model at a speed \[rad/s\], or of `orders` where it has none; nothing where both fail, which is kept in mind.
+    fn answer(&mut self, speed: f64) -> Option<TorsionOut> {
+        if self.failed.iter().any(|f| f.0 == speed) {
+            return None;
+        }
+        let out = match self.motion(speed) {
+            Ok(out) => out,
+            Err(e) => match self.spare_motion(speed) {
+                Some(out) => {
+                    if !self.spared.contains(&speed) {
+                        self.spared.push(speed);
+                    }
+                    out
+                }
+                None => {
+                    self.failed.push((speed, e.to_string()));
+                    return None;
+                }
+            },
+        };
+        self.solutions += out.counters.get("linear_solutions").copied().unwrap_or(0);
+        Some(out)
     }
 
     /// Vibration at ascending speeds, every second one after those beside it: a model that iterates starts from what is known on both
@@ -184,34 +221,23 @@ impl<'a> Machine<'a> {
         let (links, nodes) = (self.a.line.links.len(), self.a.line.nodes.len());
         let (fluctuation, by_order, a) = (self.speed_fluctuation, self.by_order, self.a);
         let cycle = self.extremes(out);
-        let mut p = Point::default();
-        for l in 0..links {
-            let size = |k: usize| square(out.orders[k].torque[l]);
-            let [top, bottom] = cycle.extremes(out.mean_torque[l], |k| out.orders[k].torque[l]);
-            let strongest = (0..out.orders.len()).max_by(|x, y| size(*x).total_cmp(&size(*y)));
-            p.links.push(LinkPoint {
-                amplitude: 0.5 * (top - bottom),
-                peak: top.abs().max(bottom.abs()),
-                heat: out.orders.iter().map(|o| o.heat[l]).sum(),
-                order: strongest.map_or(0.0, |k| out.orders[k].order),
-            });
-        }
+        let mut p =
+            Point { links: (0..links).map(|l| link_point(cycle, out, l)).collect(), ..Point::default() };
         if by_order {
-            p.orders = out.orders.iter().flat_map(|o| o.torque.iter().map(|t| t[0].hypot(t[1]))).collect();
+            p.orders = out.orders.iter().flat_map(|o| o.torque.iter().map(|t| modulus(*t))).collect();
         }
         // Relative speed of an inertia at the reference shaft: order times angle.
         let ratio = |i: usize| a.line.nodes[i].ratio;
-        let bound = |i: usize| {
-            out.orders.iter().map(|o| o.order * square(o.angle[i]).sqrt()).sum::<f64>() / ratio(i).abs()
-        };
+        let bound =
+            |i: usize| out.orders.iter().map(|o| o.order * norm1(o.angle[i])).sum::<f64>() / ratio(i).abs();
         if fluctuation || (0..nodes).any(|i| bound(i) > LARGE) {
             p.speed_fluctuation =
                 (0..nodes).map(|i| speed_fluctuation(cycle, out, i) / ratio(i).abs()).collect();
         }
         for l in 0..links {
-            let twist = |k: usize| twist_of(a, out, l, k);
-            if (0..out.orders.len()).map(|k| square(twist(k)).sqrt()).sum::<f64>() > LARGE {
-                let [top, bottom] = cycle.extremes(0.0, twist);
+            let twist = twist_of(a, l);
+            if out.orders.iter().map(|o| norm1(twist(o))).sum::<f64>() > LARGE {
+                let [top, bottom] = cycle.extremes(0.0, |k| twist(&out.orders[k]));
                 p.twist = p.twist.max(0.5 * (top - bottom));
             }
         }
@@ -220,10 +246,17 @@ impl<'a> Machine<'a> {
 
     /// Critical speeds from `from` to `to` of all orders that something excites.
     pub fn critical_speeds(&mut self, from: f64, to: f64) -> Vec<CriticalSpeed> {
+        if let Some((range, known)) = &self.critical
+            && *range == [from, to]
+        {
+            return known.clone();
+        }
         let excited =
             self.steady.excitation.orders.iter().filter(|o| o.torque.iter().any(|t| t.norm1() != 0.0));
         let orders: Vec<f64> = excited.map(|o| o.order).collect();
-        self.steady.critical_speeds(&orders, from, to, 64)
+        let found = self.steady.critical_speeds(&orders, from, to, 64);
+        self.critical = Some(([from, to], found.clone()));
+        found
     }
 
     /// Speeds at which peaks over the speed show: a grid, the critical speeds, and places half and two widths of the resonance beside
@@ -257,10 +290,18 @@ impl<'a> Machine<'a> {
     }
 
     /// Speed and value of the largest of some quantity over ascending speeds that show its peaks.
-    pub fn largest(&mut self, speeds: &[f64], quantity: &dyn Fn(&Point) -> f64) -> (f64, f64) {
+    pub fn largest(&mut self, speeds: &[f64], sought: &Sought<'_>) -> (f64, f64) {
+        let of_point = |p: &Point| match sought {
+            Sought::Link(l, quantity) => quantity(&p.links[*l]),
+            Sought::Line(quantity) => quantity(p),
+        };
         let samples: Vec<(f64, f64)> =
-            speeds.iter().filter_map(|w| self.at(*w).map(|p| (*w, quantity(p)))).collect();
-        maximise(&samples, |w| self.at(w).map_or(f64::NEG_INFINITY, quantity))
+            speeds.iter().filter_map(|w| self.at(*w).map(|p| (*w, of_point(p)))).collect();
+        let mut of_speed = |w| match sought {
+            Sought::Link(l, quantity) => self.link_at(w, *l).map(|p| quantity(&p)),
+            Sought::Line(quantity) => self.at(w).map(quantity),
+        };
+        maximise(&samples, |w| of_speed(w).unwrap_or(f64::NEG_INFINITY))
     }
 }
 
@@ -278,6 +319,33 @@ fn square([re, im]: [f64; 2]) -> f64 {
     re * re + im * im
 }
 
+/// At least the modulus, and at most √2 times it.
+fn norm1([re, im]: [f64; 2]) -> f64 {
+    re.abs() + im.abs()
+}
+
+fn modulus(z: [f64; 2]) -> f64 {
+    let square = square(z);
+    // Numbers whose squares are none take longer.
+    if square.is_normal() { square.sqrt() } else { z[0].hypot(z[1]) }
+}
+
+fn link_point(cycle: &mut Cycle, out: &TorsionOut, link: usize) -> LinkPoint {
+    let [top, bottom] = cycle.extremes(out.mean_torque[link], |k| out.orders[k].torque[link]);
+    LinkPoint {
+        amplitude: 0.5 * (top - bottom),
+        peak: top.abs().max(bottom.abs()),
+        heat: out.orders.iter().map(|o| o.heat[link]).sum(),
+        order: strongest_order(out, link),
+    }
+}
+
+/// The order of the largest torque in a link, the last of several; zero without any.
+fn strongest_order(out: &TorsionOut, link: usize) -> f64 {
+    let sizes = out.orders.iter().map(|o| (square(o.torque[link]), o.order));
+    sizes.fold((0.0, 0.0), |best: (f64, f64), own| if own.0 >= best.0 { own } else { best }).1
+}
+
 /// Peak to peak speed of an inertia by the mean speed of the reference shaft.
 pub fn speed_fluctuation(cycle: &mut Cycle, out: &TorsionOut, node: usize) -> f64 {
     let speed = |k: usize| {
@@ -288,16 +356,16 @@ pub fn speed_fluctuation(cycle: &mut Cycle, out: &TorsionOut, node: usize) -> f6
     top - bottom
 }
 
-/// Twist of a link in one order.
-fn twist_of(a: &Assembled, out: &TorsionOut, link: usize, k: usize) -> [f64; 2] {
+/// Twist of a link in an order.
+fn twist_of(a: &Assembled, link: usize) -> impl Fn(&OrderResponse) -> [f64; 2] {
     let [x, y] = a.line.links[link].nodes;
     let gear = a.line.nodes[x].ratio / a.line.nodes[y].ratio;
-    let angle = &out.orders[k].angle;
-    [angle[x][0] - gear * angle[y][0], angle[x][1] - gear * angle[y][1]]
+    move |o| [o.angle[x][0] - gear * o.angle[y][0], o.angle[x][1] - gear * o.angle[y][1]]
 }
 
 /// Largest vibratory twist (half of peak to peak) of a link.
 pub fn twist_amplitude(cycle: &mut Cycle, a: &Assembled, out: &TorsionOut, link: usize) -> f64 {
-    let [top, bottom] = cycle.extremes(0.0, |k| twist_of(a, out, link, k));
+    let twist = twist_of(a, link);
+    let [top, bottom] = cycle.extremes(0.0, |k| twist(&out.orders[k]));
     0.5 * (top - bottom)
 }

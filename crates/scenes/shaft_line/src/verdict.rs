@@ -5,7 +5,7 @@ use gudgeon_torsion::critical::CriticalSpeed;
 
 use super::assemble::Assembled;
 use super::case::ShaftLineCase;
-use super::machine::{Machine, Point};
+use super::machine::{LinkPoint, Machine, Point, Sought};
 use super::told;
 
 /// Share of a limit that stands for vibration without bound.
@@ -142,10 +142,18 @@ impl Forced {
     /// The quantity at a point; of a stress the torque, whose tops are known from elsewhere.
     fn value(&self, at: usize, p: &Point) -> f64 {
         match self.quantity {
-            Quantity::Torque | Quantity::Stress => p.links[at].amplitude,
-            Quantity::Peak => p.links[at].peak,
-            Quantity::Heat => p.links[at].heat,
             Quantity::SpeedFluctuation => p.speed_fluctuation.get(at).copied().unwrap_or(0.0),
+            _ => self.of_link(&p.links[at]),
+        }
+    }
+
+    /// The quantity in its link; zero of what is of an inertia.
+    fn of_link(&self, p: &LinkPoint) -> f64 {
+        match self.quantity {
+            Quantity::Torque | Quantity::Stress => p.amplitude,
+            Quantity::Peak => p.peak,
+            Quantity::Heat => p.heat,
+            Quantity::SpeedFluctuation => 0.0,
         }
     }
 
@@ -268,7 +276,12 @@ impl<'m, 'a> Step<'m, 'a> {
     /// The limit at its worst over some speeds.
     fn worst_over(&mut self, limit: &Forced, speeds: &[f64]) -> Option<(f64, f64)> {
         let (at, factor) = limit.place(self.machine.a)?;
-        let (speed, value) = self.machine.largest(speeds, &|p| limit.value(at, p));
+        let (speed, value) = match limit.quantity {
+            Quantity::SpeedFluctuation => {
+                self.machine.largest(speeds, &Sought::Line(&|p| limit.value(at, p)))
+            }
+            _ => self.machine.largest(speeds, &Sought::Link(at, &|p| limit.of_link(p))),
+        };
         value.is_finite().then_some((speed, factor * value))
     }
 

@@ -8,7 +8,7 @@ use gudgeon_numerics::linalg::Complex;
 
 use super::spectrum::{spectra, waves};
 use crate::forcing::gas_period;
-use crate::interpolant::Interpolant;
+use crate::interpolant::{Interpolant, Place};
 use crate::steady::Steady;
 
 /// Points over the cycle by harmonics: products of three are still resolved.
@@ -185,13 +185,13 @@ impl NonlinearTorques {
             let here = t.row * m;
             for s in 0..m {
                 let at = uniform_angle(line, t.throw, self.cycle, s, m) + x[here + s];
-                let mut f = 0.0;
+                let (mut f, place) = (0.0, Place::of(at));
                 if let Some(p) = &mut t.gas {
-                    f += p.value(at, |a| gas_torque(line, t.throw, a)) - t.gas_uniform[s];
+                    f += p.value_at(place, at, |a| gas_torque(line, t.throw, a)) - t.gas_uniform[s];
                 }
                 if let Some([inertia, derivative]) = &mut t.inertia {
-                    let j = inertia.value(at, |a| throw.inertia.inertia(a).0);
-                    let dj = derivative.value(at, |a| throw.inertia.inertia(a).1);
+                    let j = inertia.value_at(place, at, |a| throw.inertia.inertia(a).0);
+                    let dj = derivative.value_at(place, at, |a| throw.inertia.inertia(a).1);
                     let w = speed + v[here + s];
                     f -= (j - throw.inertia.mean()) * a[here + s] + 0.5 * dj * w * w;
                 }

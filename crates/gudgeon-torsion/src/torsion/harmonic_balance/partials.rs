@@ -5,6 +5,7 @@ use gudgeon_numerics::linalg::Complex;
 
 use super::nonlinear::{COARSER, NonlinearTorques, gas_torque, uniform_angle};
 use super::spectrum::{spectra, waves};
+use crate::interpolant::Place;
 use crate::steady::Steady;
 
 impl NonlinearTorques {
@@ -27,13 +28,14 @@ impl NonlinearTorques {
             for s in 0..few {
                 let (i, o) = (t.row * m + COARSER * s, t.row * few + s);
                 let at = uniform_angle(line, t.throw, self.cycle, s, few) + x[i];
+                let place = Place::of(at);
                 if let Some(p) = &mut t.gas {
-                    by_angle[o] += p.derivative(at, |a| gas_torque(line, t.throw, a));
+                    by_angle[o] += p.derivative_at(place, |a| gas_torque(line, t.throw, a));
                 }
                 if let Some([inertia, derivative]) = &mut t.inertia {
-                    let j = inertia.value(at, |a| throw.inertia.inertia(a).0);
-                    let dj = derivative.value(at, |a| throw.inertia.inertia(a).1);
-                    let ddj = derivative.derivative(at, |a| throw.inertia.inertia(a).1);
+                    let j = inertia.value_at(place, at, |a| throw.inertia.inertia(a).0);
+                    let dj = derivative.value_at(place, at, |a| throw.inertia.inertia(a).1);
+                    let ddj = derivative.derivative_at(place, |a| throw.inertia.inertia(a).1);
                     let w = speed + v[i];
                     by_angle[o] -= dj * a[i] + 0.5 * ddj * w * w;
                     by_speed[o] -= dj * w;

@@ -6,6 +6,7 @@ use super::periodic::LINEAR;
 use super::verdict::numbered;
 use super::{MAX_DRAWN, Results, column};
 use crate::assemble::Assembled;
+use crate::machine::Sought;
 use crate::verdict::{Forced, Operating, Quantity, Step};
 use crate::{rpm, told};
 
@@ -243,7 +244,7 @@ fn top_of(steps: &mut [Step<'_, '_>], name: &str) -> Option<Top> {
     for (k, s) in steps.iter_mut().enumerate() {
         let Some(l) = s.machine.a.line.links.iter().position(|x| x.name == name) else { continue };
         let speeds = s.speeds.clone();
-        let (speed, amplitude) = s.machine.largest(&speeds, &|p| p.links[l].amplitude);
+        let (speed, amplitude) = s.machine.largest(&speeds, &Sought::Link(l, &|p| p.amplitude));
         if amplitude.is_finite() && best.as_ref().is_none_or(|b| amplitude > b.amplitude) {
             let order = s.machine.at(speed).map_or(0.0, |p| p.links[l].order);
             best = Some(Top { amplitude, speed, step: k, order });

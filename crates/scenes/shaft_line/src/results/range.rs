@@ -6,7 +6,7 @@ use gudgeon_core::result::{Note, Series};
 
 use super::{MAX_DRAWN, Results, column};
 use crate::assemble::{Assembled, throws_alone};
-use crate::machine::{Machine, Point};
+use crate::machine::{Machine, Point, Sought};
 use crate::verdict::Operating;
 use crate::{rpm, told};
 
@@ -59,7 +59,7 @@ impl Results<'_> {
             let (speed, most) = if telling.is_empty() {
                 drawn.fold((from, 0.0), |best, at| if at.1 > best.1 { at } else { best })
             } else {
-                machine.largest(&telling, &|p| p.links[l].amplitude)
+                machine.largest(&telling, &Sought::Link(l, &|p| p.amplitude))
             };
             if most > top.0 {
                 top = (most, l, speed);
@@ -141,10 +141,11 @@ impl Results<'_> {
             let Ok(throws) = throws_alone(self.case, files, *w) else { continue };
             for (mean, here) in a.line.throws.iter().zip(&throws) {
                 let at = |k: i32| f64::from(k).to_radians() - mean.phase;
-                let largest = (0..720).map(|k| mean.gas_torque(at(k), at(k)).abs()).fold(0.0, f64::max);
-                let change = (0..720)
-                    .map(|k| (here.gas_torque(at(k), at(k)) - mean.gas_torque(at(k), at(k))).abs())
-                    .fold(0.0, f64::max);
+                let (largest, change) = (0..720).fold((0.0, 0.0), |(largest, change): (f64, f64), k| {
+                    let torque = mean.gas_torque(at(k), at(k));
+                    let other = here.gas_torque(at(k), at(k));
+                    (largest.max(torque.abs()), change.max((other - torque).abs()))
+                });
                 if change > worst.0 * largest {
                     worst = (change / largest, *w);
                 }
