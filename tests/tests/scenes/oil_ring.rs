@@ -8,8 +8,8 @@ use crate::common::*;
 const DIESEL: &str = "turbo-diesel-120/flooded";
 const CRANKCASE: f64 = 101_325.0;
 
-/// The oil ring of the diesel as one of two rails of 0.6 mm on an expander. With ears of 15 degrees the upper rail flutters, and some runs do not
-/// become periodic.
+/// The oil ring of the diesel as one of two rails of 0.6 mm on an expander. With ears of 15 degrees the upper rail flutters, and a run in thin oil does
+/// not become periodic.
 const THREE_PIECE: [&str; 4] = [
     "rings.2.design=three_piece",
     "rings.2.height=0.6 mm",

@@ -34,8 +34,8 @@ fn thicker_oil_does_not_raise_blow_by() {
     {
         let at = |mu: f64| vec![viscosity(mu), format!("models.gas_flow.model={gas}")];
         let blow_by = diesel(&[1.5, 5.0, 15.0].map(at), "blow_by");
-        // The issue is the sign: the oil that holds a ring off its flank keeps the gas out there too. What is left is when rings land: 0.4 % with
-        // channels, 3 % with orifices; `squeeze_film`, which does not keep gas out, gives factors of 1.1 with channels and 2.6 with orifices.
+        // The issue is the sign: the oil that holds a ring off its flank keeps the gas out there too. What is left is thin oil that gas blows out of the
+        // gaps while the top ring crosses its groove at blow-down (docs/trends.md): 0.4 % with channels, 3 % with orifices; `squeeze_film`, which does not keep gas out, gives factors of 1.1 with channels and 2.6 with orifices.
         assert!(largest_rise(&blow_by) < room, "{gas}: {blow_by:?}");
     }
     // At 50 mPa s the friction of its flooded face lifts the second ring: a tenth more gets past.
@@ -107,7 +107,7 @@ fn starved_faces_have_the_signs_of_an_engine() {
     let runs = [1.5, 15.0, 50.0].map(|mu| at(&viscosity(mu)));
     let all = |name: &str| runs.each_ref().map(|r| value(r, name));
     let (blow_by, fmep) = (all("blow_by"), all("fmep"));
-    // Over a factor of 33 in viscosity it rises by 1.2 %, by when rings land.
+    // Over a factor of 33 in viscosity it rises by 1.2 %: gas blows thin oil out of the gaps of a ring that crosses its groove.
     assert!(largest_rise(&blow_by) < 1.02, "{blow_by:?}");
     let exponent = (fmep[2] / fmep[1]).ln() / (50.0_f64 / 15.0).ln();
     // Above 0.4 to 0.6 of flooded faces (McGeehan, SAE 780673): thick oil leaves thick films, in which the rings shear more of it.
