@@ -139,6 +139,7 @@ pub mod parts {
     pub use crate::oil_transport::land_cycle::LandCycle;
     pub use crate::oil_transport::lands::Lands;
     pub use crate::oil_transport::law::Law;
+    pub use crate::oil_transport::side::Side;
     pub use crate::piezoviscosity::reduced_pressure::ReducedPressure;
     pub use crate::piezoviscosity::tame_exp;
     pub use crate::roughness::{GaussianGap, patir_cheng, sawtooth_waviness};

@@ -1,7 +1,8 @@
 //! The oil under one running face: two volumes, how far they reach, what has no room.
 
-use gudgeon_core::geometry::FaceProfile;
 use gudgeon_core::kinds::{OilExtent, OilFacePlace};
+
+use super::side::Side;
 
 /// Least reach of a film to either side of the narrowest place, as a part of the face: a face without oil still has a film to
 /// evaluate, which carries next to nothing.
@@ -17,6 +18,8 @@ pub const SIDES: usize = 2;
 pub struct Reach {
     /// Distance of the meniscus from the narrowest place, not beyond the edge \[m\].
     pub length: f64,
+    /// Drop of the face there \[m\].
+    pub drop: f64,
     /// Gap at the meniscus \[m\]; before the edge it opens slowly as it gets longer.
     pub gap: f64,
 }
@@ -32,8 +35,8 @@ pub struct OilFace {
     pub length: f64,
     /// Narrowest place above the bottom edge \[m\].
     pub narrowest: f64,
-    /// Shape.
-    pub profile: FaceProfile,
+    /// What is below and what is above the narrowest place.
+    sides: [Side; SIDES],
     /// Bottom edge above the pin \[m\].
     pub offset: f64,
     /// Volume for which there is room before each edge \[m²\].
@@ -63,7 +66,7 @@ impl OilFace {
             land: p.land,
             length: p.profile.length(),
             narrowest: p.profile.narrowest(),
-            profile: p.profile.clone(),
+            sides: [Side::new(&p.profile, 0), Side::new(&p.profile, 1)],
             offset: p.offset,
             room: p.clearance.map(|c| c.map_or(0.0, |c| 0.5 * c.min(wave).powi(2) / WAVE_SLOPE)),
             exit,
@@ -83,112 +86,49 @@ impl OilFace {
 
     /// Distance from the narrowest place to an edge \[m\].
     pub fn span(&self, side: usize) -> f64 {
-        if side == 0 { self.narrowest } else { self.length - self.narrowest }
+        self.sides[side].span
     }
 
     /// Drop at distance `t` \[m\] from the narrowest place.
     pub fn drop_at(&self, t: f64, side: usize) -> f64 {
-        let x = if side == 0 { self.narrowest - t } else { self.narrowest + t };
-        self.profile.drop_at(x)
+        self.sides[side].drop_at(t)
     }
 
     /// Volume \[m²\] between the narrowest place and distance `t` from it under a film of `h` \[m\].
     pub fn held(&self, h: f64, t: f64, side: usize) -> f64 {
-        match &self.profile {
-            FaceProfile::Parabola { curvature, apex, .. } => {
-                let e = (self.narrowest - apex) * if side == 0 { -1.0 } else { 1.0 };
-                h * t + curvature * t * (e * e + t * (e + t / 3.0))
-            }
-            FaceProfile::Taper { length, land, drop } => {
-                // Only above its narrowest place, the middle of the land, does the face fall.
-                let over = (self.narrowest + t - land).max(0.0) * if side == 0 { 0.0 } else { 1.0 };
-                h * t + 0.5 * over * over * drop / (length - land)
-            }
-            FaceProfile::Table { length, drops } => {
-                let n = drops.len() - 1;
-                let step = length / n as f64;
-                let (a, b) = if side == 0 {
-                    (self.narrowest - t, self.narrowest)
-                } else {
-                    (self.narrowest, self.narrowest + t)
-                };
-                let mut sum = h * t;
-                for k in 0..n {
-                    let (lo, hi) = ((k as f64 * step).max(a), ((k + 1) as f64 * step).min(b));
-                    if hi > lo {
-                        sum += 0.5 * (hi - lo) * (self.profile.drop_at(lo) + self.profile.drop_at(hi));
-                    }
-                }
-                sum
-            }
-        }
+        self.sides[side].held(h, t)
     }
 
     /// Volume up to the edge \[m²\].
     pub fn capacity(&self, h: f64, side: usize) -> f64 {
-        self.held(h, self.span(side), side)
+        self.sides[side].capacity(h)
     }
 
     /// Where the oil of a side ends under a film of `h` \[m\].
     pub fn reach_of(&self, h: f64, side: usize) -> Reach {
-        let (volume, span) = (self.volume[side], self.span(side));
-        let full = self.capacity(h, side);
+        let (volume, side) = (self.volume[side], &self.sides[side]);
+        let full = side.capacity(h);
         if volume >= full {
-            let edge = h + self.drop_at(span, side);
-            return Reach { length: span, gap: (edge * edge + 2.0 * WAVE_SLOPE * (volume - full)).sqrt() };
+            let (length, drop) = (side.span, side.edge_drop);
+            let edge = h + drop;
+            return Reach { length, drop, gap: (edge * edge + 2.0 * WAVE_SLOPE * (volume - full)).sqrt() };
         }
-        let least = (MIN_REACH * self.length).min(span);
+        let t = if volume > 0.0 { side.distance(h, volume) } else { 0.0 };
         // What there is reaches so far, and never less than the least: joined without a corner.
-        let joined = |t: f64| {
-            let length = (t * t + least * least).sqrt().min(span);
-            Reach { length, gap: h + self.drop_at(length, side) }
-        };
-        if volume <= 0.0 {
-            return joined(0.0);
-        }
-        // The volume grows faster than h t, and under a parabola faster than its cube: Newton's method comes from the right, inside a
-        // bracket.
-        let (mut lo, mut hi) = (0.0, (volume / h).min(span));
-        if let FaceProfile::Parabola { curvature, .. } = &self.profile
-            && *curvature > 0.0
-        {
-            hi = hi.min((3.0 * volume / curvature).cbrt());
-        }
-        let mut t = hi;
-        for _ in 0..60 {
-            let f = self.held(h, t, side) - volume;
-            if f > 0.0 {
-                hi = t;
-            } else {
-                lo = t;
-            }
-            let step = f / (h + self.drop_at(t, side));
-            if step.abs() <= 4.0 * f64::EPSILON * t {
-                break;
-            }
-            let next = t - step;
-            t = if next > lo && next < hi { next } else { 0.5 * (lo + hi) };
-        }
-        joined(t)
+        let least = (MIN_REACH * self.length).min(side.span);
+        let length = (t * t + least * least).sqrt().min(side.span);
+        let drop = side.drop_at(length);
+        Reach { length, drop, gap: h + drop }
     }
 
     /// Sets the extent of the film for a film thickness \[m\] and gives it in coordinates of the face.
     pub fn set_reach(&mut self, h: f64) -> OilExtent {
-        for side in 0..SIDES {
-            self.reach[side] = self.reach_of(h, side);
+        self.reach = [self.reach_of(h, 0), self.reach_of(h, 1)];
+        let [below, above] = self.reach;
+        OilExtent {
+            from: (self.narrowest - below.length).max(0.0),
+            to: (self.narrowest + above.length).min(self.length),
+            drops: [self.sides[0].edge_drop, below.drop, above.drop, self.sides[1].edge_drop],
         }
-        let from = (self.narrowest - self.reach[0].length).max(0.0);
-        let to = (self.narrowest + self.reach[1].length).min(self.length);
-        OilExtent { from, to, drops: self.drops() }
-    }
-
-    /// Drops at the ends of the face and of the film: bottom edge, lower meniscus, upper meniscus, top edge \[m\].
-    fn drops(&self) -> [f64; 4] {
-        [
-            self.drop_at(self.span(0), 0),
-            self.drop_at(self.reach[0].length, 0),
-            self.drop_at(self.reach[1].length, 1),
-            self.drop_at(self.span(1), 1),
-        ]
     }
 }

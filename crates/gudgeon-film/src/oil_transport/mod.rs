@@ -8,6 +8,7 @@ pub(crate) mod law;
 mod liner;
 mod liner_film;
 mod off;
+pub(crate) mod side;
 mod vapour;
 
 pub use liner_film::LinerFilm;

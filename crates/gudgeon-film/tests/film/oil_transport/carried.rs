@@ -296,38 +296,3 @@ fn the_next_cycle_begins_with_the_oil_of_the_last() {
         assert!((now - want).abs() <= 1e-14 * total, "{k}: {now:e} {want:e}");
     }
 }
-
-/// The volume under a face is the integral of film and drop, also where the narrowest place is an edge and no apex.
-#[test]
-fn a_volume_is_the_integral_of_the_gap() {
-    let length = 1.2e-3;
-    let faces = [
-        FaceProfile::Parabola { length, curvature: 15.0, apex: 0.3e-3 },
-        FaceProfile::Parabola { length, curvature: 15.0, apex: -0.4e-3 },
-        FaceProfile::Parabola { length, curvature: 15.0, apex: 1.5e-3 },
-        FaceProfile::Taper { length, land: 0.3e-3, drop: 5e-6 },
-        FaceProfile::Table { length, drops: vec![4e-6, 1e-6, 0.0, 2e-6, 9e-6] },
-    ];
-    let h = 1.5e-6;
-    for profile in &faces {
-        let mut p = pack();
-        p.faces[0].profile = profile.clone();
-        (p.faces[0].length, p.faces[0].narrowest) = (length, profile.narrowest());
-        for side in 0..SIDES {
-            let span = p.faces[0].span(side);
-            for part in [0.25, 0.5, 1.0] {
-                let t = part * span;
-                // Simpson's rule, exact for parabolas, over intervals of which the kinks of these faces are ends.
-                let n = 84;
-                let gap = |k: f64| h + p.faces[0].drop_at(t * k / f64::from(n), side);
-                let panel =
-                    |k: i32| gap(f64::from(k)) + 4.0 * gap(f64::from(k) + 0.5) + gap(f64::from(k + 1));
-                let want = t / f64::from(6 * n) * (0..n).map(panel).sum::<f64>();
-                let held = p.faces[0].held(h, t, side);
-                // Rounding of the sum of 84 panels.
-                assert!((held - want).abs() <= 1e-14 * want, "{profile:?} {side} {part}: {held:e} {want:e}");
-            }
-            assert_eq!(p.faces[0].capacity(h, side), p.faces[0].held(h, span, side));
-        }
-    }
-}
