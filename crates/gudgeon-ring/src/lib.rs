@@ -68,7 +68,7 @@ pub mod parts {
     pub use crate::flank_friction::tanh_stribeck;
     pub use crate::radial_motion::search::soft;
     pub use crate::ring_motion::groove_flank::GrooveFlank;
-    pub use crate::ring_motion::hold::{Balance, Hold, Holding};
+    pub use crate::ring_motion::hold::{Balance, Groove, Hold, Holding};
 }
 
 gudgeon_core::link!(

@@ -117,4 +117,108 @@ pub trait FlankLaw: Send {
     /// Force on the ring \[N\], towards the head positive, opposing `v`. `oil` where it stands, `s` height above the lower flank \[m\], `clearance`
     /// \[m\], `area` flank annulus \[m²\].
     fn force(&self, oil: &FlankOil, s: f64, v: f64, clearance: f64, area: f64) -> f64;
+
+    /// The same for all velocities at a place, by coefficients: for those who look for a velocity. `None`: only [`FlankLaw::force`] knows.
+    fn resistance(&self, _oil: &FlankOil, _s: f64, _clearance: f64, _area: f64) -> Option<FlankResistance> {
+        None
+    }
+}
+
+/// Films on one flank that [`FlankResistance`] tells apart: of oil, and of the gas beside it.
+pub const FLANK_FILMS: usize = 2;
+
+/// A film between ring and flank at a given distance.
+///
+/// It resists an approach with the velocity `v` by `a v`, and a separation by `X/(1 + X/t)`, `X = d v`. A tension `t` of zero or less, or without
+/// end, is no limit: where it is zero or less the film resists a separation as it does an approach.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct FlankFilm {
+    /// Damping `a` of an approach \[N s/m\].
+    pub approach: f64,
+    /// Damping `d` of a slow separation \[N s/m\].
+    pub apart: f64,
+    /// Greatest force `t` that the film bears while it is drawn apart \[N\].
+    pub tension: f64,
+}
+
+/// What resists the motion of a ring in its groove, at a place and for all velocities.
+///
+/// The films on the flank that the ring goes to and on the one it leaves both resist:
+///
+/// `F(v) = -sgn(v) [b |v| + Σ d_i |v|/(1 + d_i |v|/t_i)]`
+///
+/// with a sum `b` and terms of its own for each direction. In each, `|F|` grows with the speed and bends down, for coefficients that are not negative.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct FlankResistance {
+    down: Way,
+    up: Way,
+}
+
+impl FlankResistance {
+    /// Of the films on the lower and on the upper flank.
+    #[must_use]
+    #[inline]
+    pub fn new(lower: [FlankFilm; FLANK_FILMS], upper: [FlankFilm; FLANK_FILMS]) -> Self {
+        Self { down: Way::new(lower, upper), up: Way::new(upper, lower) }
+    }
+
+    /// One that is proportional to the velocity, with a damping \[N s/m\].
+    #[must_use]
+    pub fn linear(damping: f64) -> Self {
+        let way = Way { linear: damping, ..Way::default() };
+        Self { down: way, up: way }
+    }
+
+    /// Force on the ring \[N\] at a velocity \[m/s\], towards the head positive.
+    #[must_use]
+    #[inline]
+    pub fn force(&self, v: f64) -> f64 {
+        -self.at(v)[0].copysign(v)
+    }
+
+    /// Resistance at a velocity \[m/s\]: the force against it \[N\], and the first \[N s/m\] and second \[N s²/m²\] derivative of that by the speed `|v|`. The
+    /// sign of a zero tells the direction.
+    #[must_use]
+    #[inline]
+    pub fn at(&self, v: f64) -> [f64; 3] {
+        if v.is_sign_negative() { self.down.at(-v) } else { self.up.at(v) }
+    }
+}
+
+/// Resistance in one direction.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct Way {
+    linear: f64,
+    /// Dampings and greatest forces of the films that are drawn apart.
+    drawn: [(f64, f64); FLANK_FILMS],
+}
+
+impl Way {
+    #[inline]
+    fn new(ahead: [FlankFilm; FLANK_FILMS], behind: [FlankFilm; FLANK_FILMS]) -> Self {
+        let mut way = Self { linear: ahead[0].approach + ahead[1].approach, ..Self::default() };
+        for (drawn, film) in way.drawn.iter_mut().zip(behind) {
+            if film.tension > 0.0 && film.tension.is_finite() {
+                *drawn = (film.apart, film.tension);
+            } else {
+                way.linear += if film.tension > 0.0 { film.apart } else { film.approach };
+            }
+        }
+        way
+    }
+
+    #[inline]
+    fn at(&self, speed: f64) -> [f64; 3] {
+        let [mut force, mut slope, mut bend] = [self.linear * speed, self.linear, 0.0];
+        for (damping, tension) in self.drawn {
+            if damping > 0.0 {
+                let per = 1.0 / (tension + damping * speed);
+                let slack = tension * per;
+                force += damping * speed * slack;
+                slope += damping * slack * slack;
+                bend -= 2.0 * damping * damping * per * slack * slack;
+            }
+        }
+        [force, slope, bend]
+    }
 }

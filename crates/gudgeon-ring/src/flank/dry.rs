@@ -1,7 +1,7 @@
 //! No oil in the groove.
 
 use gudgeon_core::geometry::FlankOil;
-use gudgeon_core::kinds::{Flank, FlankCtx, FlankLaw, FlankSpec};
+use gudgeon_core::kinds::{Flank, FlankCtx, FlankFilm, FlankLaw, FlankResistance, FlankSpec};
 use gudgeon_core::quantity::{NonNegative, PosLength, PosPressure, Viscosity};
 use gudgeon_core::states::Stateful;
 use gudgeon_core::{BuildError, register_model};
@@ -82,9 +82,22 @@ impl Flank for Runtime {
     }
 }
 
+impl Runtime {
+    fn resist(&self, s: f64, clearance: f64, area: f64) -> FlankResistance {
+        let circumference = area / self.width;
+        let [lower, upper] = [s, clearance - s].map(|h| {
+            [self.gas.film(self.width, h.max(0.0) + self.roughness, circumference), FlankFilm::default()]
+        });
+        FlankResistance::new(lower, upper)
+    }
+}
+
 impl FlankLaw for Runtime {
     fn force(&self, _: &FlankOil, s: f64, v: f64, clearance: f64, area: f64) -> f64 {
-        let one = |h: f64, rate: f64| self.gas.force(self.width, h.max(0.0) + self.roughness, rate);
-        area / self.width * (one(s, -v) - one(clearance - s, v))
+        self.resist(s, clearance, area).force(v)
+    }
+
+    fn resistance(&self, _: &FlankOil, s: f64, clearance: f64, area: f64) -> Option<FlankResistance> {
+        Some(self.resist(s, clearance, area))
     }
 }

@@ -1,8 +1,7 @@
 //! Gas that a moving ring squeezes out of a flank gap.
 
+use gudgeon_core::kinds::FlankFilm;
 use gudgeon_core::quantity::{NonNegative, Viscosity, quantity};
-
-use super::squeeze_film::resistance;
 
 /// Viscosity of air at 500 K by Sutherland's law.
 pub(super) fn default_gas_viscosity() -> Viscosity<NonNegative> {
@@ -19,10 +18,10 @@ pub(super) struct GasGap {
 }
 
 impl GasGap {
-    /// Force per circumference \[N/m\] of gas `width` wide between walls at the distance `gap` that approach with `rate` (negative: separate).
-    pub fn force(&self, width: f64, gap: f64, rate: f64) -> f64 {
+    /// The film of gas `width` wide in a gap \[m\], over a `circumference` \[m\].
+    pub fn film(&self, width: f64, gap: f64, circumference: f64) -> FlankFilm {
         let slenderness = width / gap;
-        let linear = self.viscosity * slenderness * slenderness * slenderness * rate;
-        resistance(linear, 1.0, self.tension * width)
+        let damping = circumference * self.viscosity * slenderness * slenderness * slenderness;
+        FlankFilm { approach: damping, apart: damping, tension: circumference * self.tension * width }
     }
 }

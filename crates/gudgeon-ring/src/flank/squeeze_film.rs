@@ -1,7 +1,7 @@
 //! Squeeze films between ring and groove flanks.
 
 use gudgeon_core::geometry::FlankOil;
-use gudgeon_core::kinds::{Flank, FlankCtx, FlankLaw, FlankSpec};
+use gudgeon_core::kinds::{Flank, FlankCtx, FlankFilm, FlankLaw, FlankResistance, FlankSpec};
 use gudgeon_core::quantity::{Fraction, PosLength, PosPressure, Ratio, quantity};
 use gudgeon_core::states::Stateful;
 use gudgeon_core::{BuildError, register_model};
@@ -97,22 +97,17 @@ struct Runtime {
 }
 
 impl Runtime {
-    /// Force per area against the motion of a flank that approaches with `rate` (negative: separates).
-    fn pressure(&self, h: f64, rate: f64) -> f64 {
+    /// The film on a flank of the annulus `area` \[m²\] at the distance `h` \[m\].
+    fn film(&self, h: f64, area: f64) -> FlankFilm {
         let gap = h.max(0.0) + self.roughness;
-        let linear = self.strip * rate / (gap * gap * gap);
-        resistance(linear, self.separation, self.tension)
+        let approach = area * self.strip / (gap * gap * gap);
+        FlankFilm { approach, apart: self.separation * approach, tension: area * self.tension }
     }
-}
 
-/// What a film of the resistance `linear` really bears, with the fraction of it that stays liquid when it is drawn apart (`linear` negative) and the
-/// greatest tension it then has.
-pub(super) fn resistance(linear: f64, separation: f64, tension: f64) -> f64 {
-    if linear >= 0.0 || tension <= 0.0 {
-        return linear;
+    fn resist(&self, s: f64, clearance: f64, area: f64) -> FlankResistance {
+        let [lower, upper] = [s, clearance - s].map(|h| [self.film(h, area), FlankFilm::default()]);
+        FlankResistance::new(lower, upper)
     }
-    let x = separation * linear;
-    x / (1.0 - x / tension)
 }
 
 impl Stateful for Runtime {}
@@ -125,6 +120,10 @@ impl Flank for Runtime {
 
 impl FlankLaw for Runtime {
     fn force(&self, _: &FlankOil, s: f64, v: f64, clearance: f64, area: f64) -> f64 {
-        area * (self.pressure(s, -v) - self.pressure(clearance - s, v))
+        self.resist(s, clearance, area).force(v)
+    }
+
+    fn resistance(&self, _: &FlankOil, s: f64, clearance: f64, area: f64) -> Option<FlankResistance> {
+        Some(self.resist(s, clearance, area))
     }
 }

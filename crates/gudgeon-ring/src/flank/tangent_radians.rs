@@ -1,7 +1,7 @@
 //! Empirical damping with the tangent of an angle in radians and the oil's viscosity.
 
 use gudgeon_core::geometry::FlankOil;
-use gudgeon_core::kinds::{Flank, FlankCtx, FlankLaw, FlankSpec};
+use gudgeon_core::kinds::{Flank, FlankCtx, FlankLaw, FlankResistance, FlankSpec};
 use gudgeon_core::quantity::{PosRatio, quantity};
 use gudgeon_core::states::Stateful;
 use gudgeon_core::{BuildError, register_model};
@@ -71,9 +71,20 @@ impl Flank for Runtime {
     }
 }
 
+impl Runtime {
+    /// Damping \[N s/m\] at a height over the lower flank \[m\].
+    fn damping(&self, s: f64, clearance: f64, area: f64) -> f64 {
+        let e = if clearance > 0.0 { (s / clearance).clamp(0.0, 1.0) } else { 0.0 };
+        area * self.per_area * (2.0 * e - 1.0).abs().tan().powf(self.exponent)
+    }
+}
+
 impl FlankLaw for Runtime {
     fn force(&self, _: &FlankOil, s: f64, v: f64, clearance: f64, area: f64) -> f64 {
-        let e = if clearance > 0.0 { (s / clearance).clamp(0.0, 1.0) } else { 0.0 };
-        -area * v * self.per_area * (2.0 * e - 1.0).abs().tan().powf(self.exponent)
+        -v * self.damping(s, clearance, area)
+    }
+
+    fn resistance(&self, _: &FlankOil, s: f64, clearance: f64, area: f64) -> Option<FlankResistance> {
+        Some(FlankResistance::linear(self.damping(s, clearance, area)))
     }
 }

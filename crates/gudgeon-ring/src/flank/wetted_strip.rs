@@ -1,7 +1,9 @@
 //! A strip of oil of finite volume between the ring and each groove flank, and the gas beside it.
 
 use gudgeon_core::geometry::{FlankOil, RingPlace};
-use gudgeon_core::kinds::{Flank, FlankCtx, FlankFlow, FlankIn, FlankLaw, FlankSpec};
+use gudgeon_core::kinds::{
+    FLANK_FILMS, Flank, FlankCtx, FlankFilm, FlankFlow, FlankIn, FlankLaw, FlankResistance, FlankSpec,
+};
 use gudgeon_core::quantity::{
     Fraction, NonNegative, PosLength, PosPressure, PosTime, Ratio, Viscosity, quantity,
 };
@@ -12,7 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use super::checks::{check_fill, check_oil};
 use super::gas_gap::{GasGap, default_gas_viscosity};
-use super::squeeze_film::{default_roughness, default_separation, default_tension, resistance};
+use super::squeeze_film::{default_roughness, default_separation, default_tension};
 
 /// A strip of oil of finite volume between the ring and each of the two groove flanks: it resists the motion of the ring and keeps gas out.
 ///
@@ -161,42 +163,56 @@ impl Strip {
 
     /// Width of the strip of `oil` \[m²\] in a gap \[m\], odd in the oil: a dry flank is no corner.
     fn wetted(&self, oil: f64, gap: f64) -> f64 {
-        let x = oil / (self.width * gap);
-        if x > 1.0 {
-            // The same without the power of a large number.
-            self.width / (1.0 + x.recip().powi(4)).sqrt().sqrt()
-        } else {
-            self.width * x / (1.0 + x.powi(4)).sqrt().sqrt()
-        }
+        // Of volumes, not of their ratio, no power overflows.
+        let room = self.width * gap;
+        let (square, whole) = (oil * oil, room * room);
+        let wide = self.width * oil / (square * square + whole * whole).sqrt().sqrt();
+        // What fills the gap may round up.
+        if wide > self.width { self.width } else { wide }
     }
 
-    /// Force per circumference of oil and gas against a flank that approaches with `rate` (negative: separates).
-    fn force(&self, wetted: f64, h: f64, rate: f64) -> f64 {
+    /// Oil and gas between a flank and a ring `h` \[m\] above it, over a `circumference` \[m\].
+    fn films(&self, wetted: f64, h: f64, circumference: f64) -> [FlankFilm; FLANK_FILMS] {
         let gap = self.gap(h);
         // A state that is extrapolated may hold less than nothing, which resists nothing.
         let bridged = wetted.max(0.0);
         let slenderness = bridged / gap;
-        let linear = self.mu * slenderness * slenderness * slenderness * rate;
-        resistance(linear, self.separation, self.tension * bridged)
-            + self.gas.force(self.width - wetted, gap, rate)
+        let approach = circumference * self.mu * slenderness * slenderness * slenderness;
+        let tension = circumference * self.tension * bridged;
+        [
+            FlankFilm { approach, apart: self.separation * approach, tension },
+            self.gas.film(self.width - wetted, gap, circumference),
+        ]
+    }
+
+    fn resist(&self, oil: &FlankOil, s: f64, clearance: f64, area: f64) -> FlankResistance {
+        let circumference = area / self.width;
+        let [lower, upper] = oil.wetted;
+        FlankResistance::new(
+            self.films(lower, s, circumference),
+            self.films(upper, clearance - s, circumference),
+        )
     }
 
     /// What comes to a strip of `oil` \[m²\] and leaves it, while the flank approaches with `rate` under a pressure difference.
     fn flow(&self, oil: f64, wetted: f64, h: f64, rate: f64, dp: f64) -> FlankFlow {
         let gap = self.gap(h);
-        let gathered = 4.0 * self.roughness * self.roughness * rate.max(0.0) / (gap * gap * gap);
+        let cube = gap * gap * gap;
+        let gathered = 4.0 * self.roughness * self.roughness * rate.max(0.0) / cube;
         let missing = self.supply - oil;
         let reach = wetted.abs() + gap + self.edge;
-        let closed = 1.0 - open_share(wetted, gap);
-        let blown = closed * dp.abs() * gap * gap * gap * wetted / (12.0 * self.mu * reach * reach);
+        // The share that is closed is b²/(b² + H²).
+        let bridge = wetted * wetted;
+        let blown =
+            bridge * wetted * cube * dp.abs() / (12.0 * self.mu * (bridge + gap * gap) * reach * reach);
         FlankFlow { fed: missing * (self.per_renewal + gathered), lost: blown }
     }
 }
 
 /// Share of a gap that a strip leaves open.
 fn open_share(wetted: f64, gap: f64) -> f64 {
-    let slenderness = wetted / gap;
-    1.0 / (1.0 + slenderness * slenderness)
+    let square = gap * gap;
+    square / (square + wetted * wetted)
 }
 
 struct Runtime {
@@ -245,8 +261,9 @@ impl Flank for Runtime {
 
     fn oil(&self, y: &[f64], place: &RingPlace) -> FlankOil {
         let (oil, h) = (self.volumes(y), distances(place));
-        let wetted = [0, 1].map(|k| self.strip.wetted(oil[k], self.strip.gap(h[k])));
-        let open = [0, 1].map(|k| open_share(wetted[k], self.strip.gap(h[k])));
+        let gap = h.map(|h| self.strip.gap(h));
+        let wetted = [0, 1].map(|k| self.strip.wetted(oil[k], gap[k]));
+        let open = [0, 1].map(|k| open_share(wetted[k], gap[k]));
         FlankOil { wetted, open }
     }
 
@@ -271,8 +288,10 @@ impl Flank for Runtime {
 
 impl FlankLaw for Strip {
     fn force(&self, oil: &FlankOil, s: f64, v: f64, clearance: f64, area: f64) -> f64 {
-        let circumference = area / self.width;
-        let [lower, upper] = oil.wetted;
-        circumference * (self.force(lower, s, -v) - self.force(upper, clearance - s, v))
+        self.resist(oil, s, clearance, area).force(v)
+    }
+
+    fn resistance(&self, oil: &FlankOil, s: f64, clearance: f64, area: f64) -> Option<FlankResistance> {
+        Some(self.resist(oil, s, clearance, area))
     }
 }

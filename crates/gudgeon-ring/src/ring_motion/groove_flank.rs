@@ -17,4 +17,12 @@ impl GrooveFlank {
         };
         push(-s, -v) - push(s - clearance, v)
     }
+
+    /// How fast the reaction falls with the velocity \[N s/m\].
+    pub fn damping(&self, s: f64, v: f64, clearance: f64) -> f64 {
+        let one = |depth: f64, rate: f64| {
+            if 1.0 + self.per_rebound * rate > 0.0 { depth.max(0.0) } else { 0.0 }
+        };
+        self.stiffness * self.per_rebound * (one(-s, -v) + one(s - clearance, v))
+    }
 }

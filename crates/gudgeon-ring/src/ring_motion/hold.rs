@@ -12,9 +12,8 @@
 //! speed, and held again when its velocity has come as close to that of the balance as the tolerance asks. Both limits are
 //! proportional to the tolerance: the tighter it is, the more of the motion is integrated with its inertia.
 
-use gudgeon_core::geometry::{FlankOil, RingPlace};
-use gudgeon_core::kinds::FlankLaw;
-use gudgeon_numerics::roots;
+use gudgeon_core::geometry::RingPlace;
+use gudgeon_core::kinds::{FlankLaw, FlankResistance};
 
 use super::groove_flank::GrooveFlank;
 
@@ -68,28 +67,19 @@ const RELEASE: f64 = 10.0;
 /// Smallest rate \[1/rad\] at which the velocity of a ring must tend to that of the balance for the ring to be held: a time constant of
 /// half a degree.
 const MIN_RATE: f64 = 100.0;
-/// The derivative of the balance is taken over this part of the velocity, or the smallest change \[m/s\].
+/// The derivative of a balance of which only the force is known is taken over this part of the velocity, or the smallest change \[m/s\].
 const DIFFERENCE: (f64, f64) = (1e-6, 1e-11);
 
 /// Accuracy of the velocity of a balance: a difference Jacobian sees changes of 1e-8 of it.
 const RESOLUTION: f64 = 1e-13;
-/// Rounding of a derivative, generously: how far the root of a linear law may lie beyond the first guess.
-const START: f64 = 1e-3;
+/// Last step of Halley's method: it leaves at most a quarter of the cube of its relative size, less than a rounding.
+const SETTLED: f64 = 1e-5;
+/// Steps of a search: three as a rule; a law that nothing is known of may take one for every digit of a bisection.
+const MAX_STEPS: usize = 200;
 
-/// Axial balance of one ring against the velocity away from a flank.
-pub struct Balance<'a> {
-    /// Direction away from the flank.
-    pub away: f64,
-    /// Gas, inertia, weight and film \[N\].
-    pub external: f64,
-    /// Height \[m\].
-    pub s: f64,
-    /// Where the oil stands.
-    pub oil: FlankOil,
-    /// Clearance \[m\].
-    pub clearance: f64,
-    /// Area of a flank \[m²\].
-    pub area: f64,
+/// What resists a ring in its groove.
+#[derive(Clone, Copy)]
+pub struct Groove<'a> {
     /// Force of the oil in the groove.
     pub damping: &'a dyn FlankLaw,
     /// The flanks.
@@ -98,20 +88,68 @@ pub struct Balance<'a> {
     pub fall: f64,
 }
 
-impl Balance<'_> {
+/// Axial balance of one ring against the velocity away from a flank.
+pub struct Balance<'a> {
+    /// Direction away from the flank.
+    away: f64,
+    /// Gas, inertia, weight and film \[N\].
+    external: f64,
+    place: &'a RingPlace,
+    groove: Groove<'a>,
+    /// The films on the flanks, where their law tells them.
+    films: Option<FlankResistance>,
+}
+
+impl<'a> Balance<'a> {
+    /// The balance away from a flank in the direction `away` (1 or -1), under an external force \[N\] towards the head, of a ring at a place.
+    pub fn new(away: f64, external: f64, place: &'a RingPlace, groove: Groove<'a>) -> Self {
+        let films = groove.damping.resistance(&place.flank, place.s, place.clearance, place.flank_area());
+        Self { away, external, place, groove, films }
+    }
+
+    /// Force of the oil \[N\] towards the head at velocity `v` \[m/s\] towards it.
+    pub fn damping(&self, v: f64) -> f64 {
+        let p = self.place;
+        match &self.films {
+            Some(films) => films.force(v),
+            None => self.groove.damping.force(&p.flank, p.s, v, p.clearance, p.flank_area()),
+        }
+    }
+
+    /// Force of the flanks \[N\] towards the head.
+    pub fn reaction(&self, v: f64) -> f64 {
+        self.groove.flank.reaction(self.place.s, v, self.place.clearance)
+    }
+
     /// Force away from the flank \[N\] at velocity `w` \[m/s\] away from it.
     pub fn force(&self, w: f64) -> f64 {
         let v = self.away * w;
-        self.away
-            * (self.external
-                + self.damping.force(&self.oil, self.s, v, self.clearance, self.area)
-                + self.flank.reaction(self.s, v, self.clearance))
+        self.away * (self.external + self.damping(v) + self.reaction(v))
     }
 
-    /// How fast the force falls with the velocity \[N s/m\] at `w`, on the side away from zero; `f` is the force there.
-    pub fn stiffness(&self, w: f64, f: f64) -> f64 {
-        let d = (DIFFERENCE.0 * w.abs()).max(DIFFERENCE.1).copysign(w);
-        (f - self.force(w + d)) / d
+    /// How fast the force falls with the velocity \[N s/m\] at `w`, on the side away from zero.
+    pub fn stiffness(&self, w: f64) -> f64 {
+        -self.surplus(1.0_f64.copysign(w), w.abs())[1]
+    }
+
+    /// How fast the reaction of the flanks falls with the velocity \[N s/m\] at `w`.
+    fn wall(&self, w: f64) -> f64 {
+        self.groove.flank.damping(self.place.s, self.away * w, self.place.clearance)
+    }
+
+    /// Force \[N\] that drives on at the speed `u` \[m/s\] away from the flank (`side` 1) or towards it (-1), with its first two derivatives by the speed; the second
+    /// is left out where only forces are known.
+    fn surplus(&self, side: f64, u: f64) -> [f64; 3] {
+        let w = side * u;
+        let Some(films) = &self.films else {
+            let d = (DIFFERENCE.0 * u).max(DIFFERENCE.1);
+            let f = self.force(w);
+            return [side * f, side * (self.force(side * (u + d)) - f) / d, 0.0];
+        };
+        let v = self.away * w;
+        let [resistance, slope, bend] = films.at(v);
+        let drive = side * self.away * (self.external + self.reaction(v));
+        [drive - resistance, -(slope + self.wall(w)), -bend]
     }
 
     /// The velocity away from the flank that balances the forces; beyond `release` along the tangent there, so that a step
@@ -121,44 +159,59 @@ impl Balance<'_> {
         if still == 0.0 {
             return 0.0;
         }
-        let (mut lo, mut hi, start);
         if still > 0.0 {
-            let over = self.force(release);
+            let [over, slope, _] = self.surplus(1.0, release);
             if over >= 0.0 {
-                let k = self.stiffness(release, over);
-                return if k > 0.0 { release + over / k } else { release };
+                return if slope < 0.0 { release - over / slope } else { release };
             }
-            (lo, hi) = (0.0, release);
-            start = still / self.stiffness(0.0, still);
-        } else {
-            // Squeeze films are linear in the approach: the first guess is the root, but for the rounding of its derivative, and the
-            // chord to it leads there.
-            let guess = still / self.stiffness(-0.0, still);
-            if !(guess < 0.0 && guess.is_finite()) {
-                // Nothing between ring and flank resists: it falls onto the flank, in next to no time.
-                return -self.fall;
-            }
-            let f = self.force(guess);
-            start = guess * still / (still - f);
-            if f.abs() <= START * still.abs() && self.force(start).abs() <= RESOLUTION * still.abs() {
-                return start;
-            }
-            (lo, hi) = (guess, 0.0);
-            for _ in 0..200 {
-                if !(lo.is_finite() && self.force(lo) < 0.0) {
-                    break;
-                }
-                hi = lo;
-                lo *= if hi == guess { 1.0 + START } else { 4.0 };
-            }
+            return self.speed(1.0, release).unwrap_or(release);
         }
-        let tolerance = RESOLUTION * lo.abs().max(hi);
-        let residual = |w: f64| {
-            let f = self.force(w);
-            Ok::<_, ()>((f, -self.stiffness(w, f)))
-        };
-        roots::newton_bracketed(residual, lo, hi, start, tolerance).map_or(start, |r| r.x)
+        // Where nothing between ring and flank resists, it falls onto the flank, in next to no time.
+        self.speed(-1.0, f64::INFINITY).map_or(-self.groove.fall, |u| -u)
     }
+
+    /// The speed below `hi` at which nothing drives on any more, where a ring at rest is driven.
+    ///
+    /// The surplus `f(u)` falls and bends up: the films ahead are linear, those that are drawn apart saturate, and a wall that is left lets go at a hinge. Newton's
+    /// method would come from `u = 0` without ever going too far. Halley's is exact for one saturating film alone. With the derivatives `f_n`, what its step `e` leaves is,
+    /// for any of them, `e³ [(f_2/2f_1)² - f_3/6f_1]`: the bracket is minus the variance of `1/(u + t_i/d_i)` over the films with their shares in `f_1` as weights, at
+    /// most `1/(4 u²)`. Between hinges a step of [`SETTLED`] is therefore the last.
+    fn speed(&self, side: f64, mut hi: f64) -> Option<f64> {
+        let (mut lo, mut u, mut before) = (0.0, 0.0, f64::INFINITY);
+        for _ in 0..MAX_STEPS {
+            let [f, slope, bend] = self.surplus(side, u);
+            if f > 0.0 {
+                lo = u;
+            } else {
+                hi = u;
+            }
+            let next = u - 2.0 * f * slope / (2.0 * slope * slope - f * bend);
+            let step = (next - u).abs();
+            let last = step <= SETTLED * next && self.is_smooth(side * u, side * next);
+            if last || step <= RESOLUTION * next {
+                return Some(next);
+            }
+            // Across a hinge a step may lead to and fro.
+            let closes = f.abs() <= 0.5 * before;
+            before = f.abs();
+            let candidates = if closes { [next, u - f / slope] } else { [f64::NAN; 2] };
+            let Some(next) = within(lo, hi, candidates) else { break };
+            u = next;
+        }
+        hi.is_finite().then_some(u)
+    }
+
+    /// Whether all derivatives are known and none jumps between two velocities.
+    fn is_smooth(&self, w: f64, other: f64) -> bool {
+        self.films.is_some() && self.wall(w) == self.wall(other)
+    }
+}
+
+/// The first of the candidates that lies between `lo` and `hi`; else their middle, or far beyond `lo` if there is no end. Nowhere, if nothing is between.
+fn within(lo: f64, hi: f64, candidates: [f64; 2]) -> Option<f64> {
+    let other = if hi.is_finite() { 0.5 * (lo + hi) } else { 4.0 * lo };
+    let [first, second] = candidates;
+    [first, second, other].into_iter().find(|u| *u > lo && *u < hi)
 }
 
 /// What holds a ring, and the limits of holding it.
@@ -210,7 +263,7 @@ impl Holding {
             return -1.0;
         }
         let w = b.away * v;
-        let rate = b.stiffness(w, b.force(w)) / (self.mass * self.omega);
+        let rate = b.stiffness(w) / (self.mass * self.omega);
         let stiff = rate / MIN_RATE - 1.0;
         if stiff.is_nan() || stiff <= 0.0 {
             return -1.0;

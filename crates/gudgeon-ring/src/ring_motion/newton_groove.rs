@@ -11,7 +11,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::groove_flank::GrooveFlank;
-use super::hold::{Balance, Hold, Holding};
+use super::hold::{Balance, Groove, Hold, Holding};
 
 /// Newton's law for the ring in its groove, `m dv/dt = ΣF`, with stiff flanks.
 ///
@@ -152,19 +152,11 @@ struct Runtime {
 }
 
 impl Runtime {
-    fn balance(&self, forces: &RingForces, hold: Hold) -> Balance<'_> {
-        let (place, a) = (&forces.place, &forces.axial);
-        Balance {
-            away: hold.away(),
-            external: a.gas + a.inertia + a.gravity + a.film + a.expander,
-            s: place.s,
-            oil: place.flank,
-            clearance: place.clearance,
-            area: place.flank_area(),
-            damping: &*self.damping,
-            flank: &self.flank,
-            fall: self.holding.unit_speed,
-        }
+    fn balance<'a>(&'a self, forces: &'a RingForces, hold: Hold) -> Balance<'a> {
+        let a = &forces.axial;
+        let external = a.gas + a.inertia + a.gravity + a.film + a.expander;
+        let groove = Groove { damping: &*self.damping, flank: &self.flank, fall: self.holding.unit_speed };
+        Balance::new(hold.away(), external, &forces.place, groove)
     }
 }
 
@@ -187,14 +179,16 @@ impl RingMotion for Runtime {
     }
 
     fn rates(&mut self, y: &[f64], forces: &RingForces, dy: &mut [f64]) -> Result<RingResponse, EvalError> {
-        let place = &forces.place;
         let hold = self.holding.hold;
-        let v = match hold {
-            Hold::Free => place.v,
-            _ => self.holding.velocity(&self.balance(forces, hold), self.v),
+        let (v, damping, reaction) = if hold == Hold::Free {
+            let p = &forces.place;
+            let damping = self.damping.force(&p.flank, p.s, p.v, p.clearance, p.flank_area());
+            (p.v, damping, self.flank.reaction(p.s, p.v, p.clearance))
+        } else {
+            let balance = self.balance(forces, hold);
+            let v = self.holding.velocity(&balance, self.v);
+            (v, balance.damping(v), balance.reaction(v))
         };
-        let damping = self.damping.force(&place.flank, place.s, v, place.clearance, place.flank_area());
-        let reaction = self.flank.reaction(place.s, v, place.clearance);
         let (c0, omega) = (self.clearance, self.omega);
         if hold == Hold::Free {
             let mut axial = forces.axial;
@@ -213,11 +207,7 @@ impl RingMotion for Runtime {
         let hold = self.holding.hold;
         let stiffness = match hold {
             Hold::Free => 0.0,
-            _ => {
-                let b = self.balance(&self.forces, hold);
-                let w = b.away * self.v;
-                b.stiffness(w, b.force(w))
-            }
+            _ => self.balance(&self.forces, hold).stiffness(hold.away() * self.v),
         };
         (self.holding.differences, self.holding.tangent) = (true, stiffness);
     }

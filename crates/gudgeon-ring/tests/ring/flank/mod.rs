@@ -1,6 +1,7 @@
 //! Oil in the groove.
 
 mod dry;
+mod resistance;
 mod squeeze_film;
 mod tangent_degrees;
 mod tangent_radians;
