@@ -129,8 +129,8 @@ pub const FLANK_FILMS: usize = 2;
 
 /// A film between ring and flank at a given distance.
 ///
-/// It resists an approach with the velocity `v` by `a v`, and a separation by `X/(1 + X/t)`, `X = d v`. A tension `t` of zero or less, or without
-/// end, is no limit: where it is zero or less the film resists a separation as it does an approach.
+/// It resists an approach with the velocity `v` by `a v`, and a separation by `X/(1 + X/t)`, `X = d v`. An infinite tension `t` is no limit; where it
+/// is zero or less the film resists a separation as it does an approach.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct FlankFilm {
     /// Damping `a` of an approach \[N s/m\].
@@ -141,39 +141,54 @@ pub struct FlankFilm {
     pub tension: f64,
 }
 
-/// What resists the motion of a ring in its groove, at a place and for all velocities.
+impl FlankFilm {
+    /// Resistance to a separation with a speed \[m/s\], and its first two derivatives by that.
+    #[inline]
+    fn drawn(&self, speed: f64) -> [f64; 3] {
+        if self.tension <= 0.0 {
+            return [self.approach * speed, self.approach, 0.0];
+        }
+        if self.tension == f64::INFINITY {
+            return [self.apart * speed, self.apart, 0.0];
+        }
+        let per = 1.0 / (self.tension + self.apart * speed);
+        let slack = self.tension * per;
+        let slope = self.apart * slack * slack;
+        [self.apart * speed * slack, slope, -2.0 * slope * self.apart * per]
+    }
+}
+
+/// What resists the motion of a ring in its groove, at a place and for all velocities: the films on the lower and on the upper flank.
 ///
-/// The films on the flank that the ring goes to and on the one it leaves both resist:
+/// Those on the flank that the ring goes to are squeezed, those on the one it leaves are drawn apart:
 ///
-/// `F(v) = -sgn(v) [b |v| + Σ d_i |v|/(1 + d_i |v|/t_i)]`
+/// `F(v) = -sgn(v) [Σ a_i |v| + Σ d_i |v|/(1 + d_i |v|/t_i)]`
 ///
-/// with a sum `b` and terms of its own for each direction. In each, `|F|` grows with the speed and bends down, for coefficients that are not negative.
+/// In each direction `|F|` grows with the speed and bends down, for coefficients that are not negative.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct FlankResistance {
-    down: Way,
-    up: Way,
+    /// Films on the lower flank.
+    pub lower: [FlankFilm; FLANK_FILMS],
+    /// Films on the upper flank.
+    pub upper: [FlankFilm; FLANK_FILMS],
 }
 
 impl FlankResistance {
-    /// Of the films on the lower and on the upper flank.
-    #[must_use]
-    #[inline]
-    pub fn new(lower: [FlankFilm; FLANK_FILMS], upper: [FlankFilm; FLANK_FILMS]) -> Self {
-        Self { down: Way::new(lower, upper), up: Way::new(upper, lower) }
-    }
-
     /// One that is proportional to the velocity, with a damping \[N s/m\].
     #[must_use]
     pub fn linear(damping: f64) -> Self {
-        let way = Way { linear: damping, ..Way::default() };
-        Self { down: way, up: way }
+        // All of it by the film that is squeezed.
+        let film = FlankFilm { approach: damping, apart: 0.0, tension: f64::INFINITY };
+        let films = [film, FlankFilm::default()];
+        Self { lower: films, upper: films }
     }
 
     /// Force on the ring \[N\] at a velocity \[m/s\], towards the head positive.
     #[must_use]
     #[inline]
     pub fn force(&self, v: f64) -> f64 {
-        -self.at(v)[0].copysign(v)
+        let resistance = self.at(v)[0];
+        if v.is_sign_negative() { resistance } else { -resistance }
     }
 
     /// Resistance at a velocity \[m/s\]: the force against it \[N\], and the first \[N s/m\] and second \[N s²/m²\] derivative of that by the speed `|v|`. The
@@ -181,44 +196,11 @@ impl FlankResistance {
     #[must_use]
     #[inline]
     pub fn at(&self, v: f64) -> [f64; 3] {
-        if v.is_sign_negative() { self.down.at(-v) } else { self.up.at(v) }
-    }
-}
-
-/// Resistance in one direction.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-struct Way {
-    linear: f64,
-    /// Dampings and greatest forces of the films that are drawn apart.
-    drawn: [(f64, f64); FLANK_FILMS],
-}
-
-impl Way {
-    #[inline]
-    fn new(ahead: [FlankFilm; FLANK_FILMS], behind: [FlankFilm; FLANK_FILMS]) -> Self {
-        let mut way = Self { linear: ahead[0].approach + ahead[1].approach, ..Self::default() };
-        for (drawn, film) in way.drawn.iter_mut().zip(behind) {
-            if film.tension > 0.0 && film.tension.is_finite() {
-                *drawn = (film.apart, film.tension);
-            } else {
-                way.linear += if film.tension > 0.0 { film.apart } else { film.approach };
-            }
-        }
-        way
-    }
-
-    #[inline]
-    fn at(&self, speed: f64) -> [f64; 3] {
-        let [mut force, mut slope, mut bend] = [self.linear * speed, self.linear, 0.0];
-        for (damping, tension) in self.drawn {
-            if damping > 0.0 {
-                let per = 1.0 / (tension + damping * speed);
-                let slack = tension * per;
-                force += damping * speed * slack;
-                slope += damping * slack * slack;
-                bend -= 2.0 * damping * damping * per * slack * slack;
-            }
-        }
-        [force, slope, bend]
+        let speed = v.abs();
+        let (ahead, behind) =
+            if v.is_sign_negative() { (&self.lower, &self.upper) } else { (&self.upper, &self.lower) };
+        let linear = ahead[0].approach + ahead[1].approach;
+        let [a, b] = [behind[0].drawn(speed), behind[1].drawn(speed)];
+        [linear * speed + a[0] + b[0], linear + a[1] + b[1], a[2] + b[2]]
     }
 }

@@ -75,9 +75,9 @@ impl Carried {
         let (lowest, highest) = ctx.pin;
         let top = faces.first().map_or(0.0, |f| f.offset + f.length) + highest;
         let low = faces.last().map_or(0.0, |f| f.offset) + lowest;
-        let mut liner = Liner::new(low, top, least, ctx.volatile);
+        let mut liner = Liner::new(low, top, least, law.supply, ctx.volatile);
         liner.start(law.initial);
-        Self {
+        let mut new = Self {
             liner,
             places: faces.iter().map(|f| (f.ring, f.land)).collect(),
             states: states(&faces),
@@ -87,7 +87,9 @@ impl Carried {
             ledger: OilLedger::default(),
             min_gap,
             per: 1.0 / ctx.omega,
-        }
+        };
+        new.mark();
+        new
     }
 
     /// Volume of one unit of the states of face `k` \[m²\].
@@ -101,17 +103,25 @@ impl Carried {
         let (f, liner) = (&self.faces[k], &self.liner);
         let e = f.edges(pin);
         [
-            if e[0] < f.edge[0] { liner.below(f.edge[0]) - liner.below(e[0]) } else { 0.0 },
-            if e[1] > f.edge[1] { liner.below(e[1]) - liner.below(f.edge[1]) } else { 0.0 },
+            if e[0] < f.edge[0] { f.below[0] - liner.below(e[0]) } else { 0.0 },
+            if e[1] > f.edge[1] { liner.below(e[1]) - f.below[1] } else { 0.0 },
         ]
     }
 
-    /// The crankcase wets what the lowest ring uncovers.
+    /// The crankcase wets what the lowest ring uncovers, and the faces begin a step on the liner as it then is.
     fn supply(&mut self) {
         if let Some(z) = self.faces.last().map(|f| f.edge[0]) {
-            self.ledger.supplied += self.liner.cover(self.liner.bottom, z, self.law.supply);
+            self.ledger.supplied += self.liner.wet(z);
         }
         self.liner.add_up();
+        self.mark();
+    }
+
+    /// Notes what lies below the edges of the faces.
+    fn mark(&mut self) {
+        for f in &mut self.faces {
+            f.below = f.edge.map(|z| self.liner.below(z));
+        }
     }
 
     /// The gas of the chamber dries what ring 1 has bared.
@@ -235,14 +245,14 @@ impl OilTransport for Carried {
     }
 
     fn rates(&mut self, k: usize, face: &OilFaceIn, dy: &mut [f64]) {
-        let unit = self.unit(k);
+        let per_unit = self.per / self.unit(k);
         let f = &self.faces[k];
         let OilFaceIn { h, hdot, u, flux } = *face;
-        let least = h * MIN_REACH * f.length;
+        let per_least = 1.0 / (h * MIN_REACH * f.length);
         // A side that has no oil gives none; one that errors have made owe some takes it back in the same time. With a corner at zero,
         // near which a nearly dry side rests, every other step would be wrong.
         let has = |side: usize| {
-            let x = (f.volume[side] / least).clamp(-1.0, 1.0);
+            let x = (f.volume[side] * per_least).clamp(-1.0, 1.0);
             x * (2.0 - x.abs())
         };
         let through = flux - hdot * f.reach[0].length + self.law.through_valleys(h, u.abs()).copysign(u);
@@ -251,7 +261,7 @@ impl OilTransport for Carried {
         let trailing = usize::from(u > 0.0);
         rate[trailing] -= u.abs() * self.law.deposited(f.reach[trailing].gap) * has(trailing);
         for side in 0..SIDES {
-            dy[SIDES * k + side] = rate[side] / unit * self.per;
+            dy[SIDES * k + side] = rate[side] * per_unit;
         }
     }
 
@@ -265,6 +275,7 @@ impl OilTransport for Carried {
             }
         }
         self.liner.start(self.law.initial);
+        self.mark();
     }
 
     fn carried(&self) -> usize {

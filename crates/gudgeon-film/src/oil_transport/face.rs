@@ -51,6 +51,8 @@ pub struct OilFace {
     pub owed: f64,
     /// Edges at the start of the step \[m\].
     pub edge: [f64; SIDES],
+    /// Film on the liner below those edges then \[m²\].
+    pub below: [f64; SIDES],
     /// Volumes now \[m²\].
     pub volume: [f64; SIDES],
     /// Extent of the film now, and the menisci.
@@ -74,6 +76,7 @@ impl OilFace {
             taken: [0.0; SIDES],
             owed: 0.0,
             edge: [0.0; SIDES],
+            below: [0.0; SIDES],
             volume: [0.0; SIDES],
             reach: [Reach::default(); SIDES],
         }

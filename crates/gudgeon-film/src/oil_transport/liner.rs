@@ -15,8 +15,16 @@ pub struct Liner {
     pub bottom: f64,
     /// Height of a cell \[m\].
     pub cell: f64,
+    /// One over that.
+    per_cell: f64,
     /// Volume of the film below each cell.
     sum: Vec<f64>,
+    /// Lowest cell whose film has changed since these were added up.
+    changed: usize,
+    /// Film that the crankcase leaves \[m\].
+    supply: f64,
+    /// Number of cells, from the bottom up, that hold just that.
+    supplied: usize,
     /// Height up to which rings reach \[m\].
     top: f64,
     /// What evaporates, if anything does.
@@ -27,28 +35,52 @@ pub struct Liner {
 const MARGIN: f64 = 2e-3;
 
 impl Liner {
-    /// A liner between two heights \[m\] with cells of at most `spacing`, without oil.
-    pub fn new(low: f64, top: f64, spacing: f64, volatile: Option<Volatile<'_>>) -> Self {
+    /// A liner between two heights \[m\] with cells of at most `spacing`, without oil, on which the crankcase leaves a film of `supply` \[m\].
+    pub fn new(low: f64, top: f64, spacing: f64, supply: f64, volatile: Option<Volatile<'_>>) -> Self {
         let cells = (((top - low + 2.0 * MARGIN) / spacing).ceil() as usize).max(8);
         let cell = (top - low + 2.0 * MARGIN) / cells as f64;
         let bottom = low - MARGIN;
         let vapour = volatile.map(|v| Vapour::new(&v, (0..cells).map(|k| bottom + (k as f64 + 0.5) * cell)));
-        Self { film: vec![0.0; cells], bottom, cell, sum: vec![0.0; cells + 1], top, vapour }
+        Self {
+            film: vec![0.0; cells],
+            bottom,
+            cell,
+            per_cell: 1.0 / cell,
+            sum: vec![0.0; cells + 1],
+            changed: 0,
+            supply,
+            supplied: 0,
+            top,
+            vapour,
+        }
     }
 
     /// A film of `initial` \[m\], also above the rings unless it would only dry up there.
     pub fn start(&mut self, initial: f64) {
         let dry = self.vapour.is_some();
+        self.touch(0);
         for k in 0..self.film.len() {
             self.film[k] = if dry && self.ends(k).0 >= self.top { 0.0 } else { initial };
         }
     }
 
-    /// Begins a cycle: all oil is fresh.
+    /// Begins a cycle with a film that may be another: all oil is fresh.
     pub fn refresh(&mut self) {
+        self.touch(0);
         if let Some(vapour) = &mut self.vapour {
             vapour.refresh();
         }
+    }
+
+    /// Cell at a height \[m\], or the nearest.
+    fn cell_at(&self, z: f64) -> usize {
+        (((z - self.bottom) * self.per_cell).max(0.0) as usize).min(self.film.len() - 1)
+    }
+
+    /// Notes that the film may change from a cell upwards.
+    fn touch(&mut self, from: usize) {
+        self.changed = self.changed.min(from);
+        self.supplied = self.supplied.min(from);
     }
 
     /// Height \[m\] within reach of ring 1 that lay bare without oil since the cycle began; none where nothing evaporates.
@@ -60,7 +92,9 @@ impl Liner {
     pub fn evaporate(&mut self, from: f64, dt: f64, pressure: f64, density: f64) -> f64 {
         let Some(vapour) = &mut self.vapour else { return 0.0 };
         let exposure = vapour.transfer(pressure) * dt;
-        let first = (((from - self.bottom) / self.cell).max(0.0) as usize).min(self.film.len());
+        let first = (((from - self.bottom) * self.per_cell).max(0.0) as usize).min(self.film.len());
+        self.changed = self.changed.min(first);
+        self.supplied = self.supplied.min(first);
         let mut gone = 0.0;
         for (k, film) in self.film.iter_mut().enumerate().skip(first) {
             let (low, high) = (self.bottom + k as f64 * self.cell, self.bottom + (k + 1) as f64 * self.cell);
@@ -78,19 +112,17 @@ impl Liner {
 
     /// Adds the volumes up again, after the film has changed.
     pub fn add_up(&mut self) {
-        let mut sum = 0.0;
-        for (s, h) in self.sum.iter_mut().zip(&self.film) {
-            *s = sum;
+        let mut sum = self.sum[self.changed];
+        for (s, h) in self.sum[self.changed + 1..].iter_mut().zip(&self.film[self.changed..]) {
             sum += h * self.cell;
+            *s = sum;
         }
-        if let Some(last) = self.sum.last_mut() {
-            *last = sum;
-        }
+        self.changed = self.film.len();
     }
 
     /// Volume of the film on the liner below height `z`.
     pub fn below(&self, z: f64) -> f64 {
-        let x = ((z - self.bottom) / self.cell).clamp(0.0, self.film.len() as f64);
+        let x = ((z - self.bottom) * self.per_cell).clamp(0.0, self.film.len() as f64);
         let k = (x as usize).min(self.film.len() - 1);
         self.sum[k] + (x - k as f64) * self.cell * self.film[k]
     }
@@ -99,9 +131,8 @@ impl Liner {
     /// bottom edge.
     pub fn lay(&mut self, a: f64, b: f64, thickness: f64, side: usize) {
         let (lo, hi) = (a.min(b), a.max(b));
-        let n = self.film.len();
-        let first = (((lo - self.bottom) / self.cell).max(0.0) as usize).min(n - 1);
-        let last = (((hi - self.bottom) / self.cell).max(0.0) as usize).min(n - 1);
+        let (first, last) = (self.cell_at(lo), self.cell_at(hi));
+        self.touch(first);
         for k in first..=last {
             let (low, high) = (self.bottom + k as f64 * self.cell, self.bottom + (k + 1) as f64 * self.cell);
             let new = hi.min(high) - lo.max(low);
@@ -119,18 +150,18 @@ impl Liner {
         }
     }
 
-    /// Sets the film between `lo` and `hi` to `film` \[m\]; what that adds \[m²\].
-    pub fn cover(&mut self, lo: f64, hi: f64, film: f64) -> f64 {
+    /// The crankcase wets the liner up to the height `to` \[m\]; what that adds \[m²\].
+    pub fn wet(&mut self, to: f64) -> f64 {
         let mut added = 0.0;
-        let n = self.film.len();
-        let last = (((hi - self.bottom) / self.cell).max(0.0) as usize).min(n - 1);
-        let first = (((lo - self.bottom) / self.cell).max(0.0) as usize).min(n - 1);
+        let (first, last) = (self.supplied, self.cell_at(to));
         for k in first..=last {
             let low = self.bottom + k as f64 * self.cell;
-            let outside = (hi - low).clamp(0.0, self.cell);
-            added += (film - self.film[k]) * outside;
-            self.film[k] = film;
+            let outside = (to - low).clamp(0.0, self.cell);
+            added += (self.supply - self.film[k]) * outside;
+            self.film[k] = self.supply;
         }
+        self.changed = self.changed.min(first);
+        self.supplied = first.max(last + 1);
         added
     }
 

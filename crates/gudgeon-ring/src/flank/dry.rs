@@ -88,7 +88,7 @@ impl Runtime {
         let [lower, upper] = [s, clearance - s].map(|h| {
             [self.gas.film(self.width, h.max(0.0) + self.roughness, circumference), FlankFilm::default()]
         });
-        FlankResistance::new(lower, upper)
+        FlankResistance { lower, upper }
     }
 }
 

@@ -106,7 +106,7 @@ impl Runtime {
 
     fn resist(&self, s: f64, clearance: f64, area: f64) -> FlankResistance {
         let [lower, upper] = [s, clearance - s].map(|h| [self.film(h, area), FlankFilm::default()]);
-        FlankResistance::new(lower, upper)
+        FlankResistance { lower, upper }
     }
 }
 

@@ -188,10 +188,10 @@ impl Strip {
     fn resist(&self, oil: &FlankOil, s: f64, clearance: f64, area: f64) -> FlankResistance {
         let circumference = area / self.width;
         let [lower, upper] = oil.wetted;
-        FlankResistance::new(
-            self.films(lower, s, circumference),
-            self.films(upper, clearance - s, circumference),
-        )
+        FlankResistance {
+            lower: self.films(lower, s, circumference),
+            upper: self.films(upper, clearance - s, circumference),
+        }
     }
 
     /// What comes to a strip of `oil` \[m²\] and leaves it, while the flank approaches with `rate` under a pressure difference.

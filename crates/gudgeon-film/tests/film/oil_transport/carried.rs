@@ -195,6 +195,31 @@ fn above_the_rings_a_liner_that_dries_is_dry() {
     assert!(films(pack()).0 > 0.0);
 }
 
+/// What is added up from the lowest cell that changed is the sum over all, and the crankcase wets every cell below the pack.
+#[test]
+fn the_liner_below_a_height_holds_the_sum_of_its_cells() {
+    for mut p in [pack(), drying(400.0)] {
+        let mut y = vec![5.0; p.states().len()];
+        begin(&mut p);
+        for _ in 0..3 {
+            strokes(&mut p, &mut y);
+            let mut sum = 0.0;
+            let lowest = p.faces[1].edge[0];
+            for k in 0..p.liner.film.len() {
+                let (low, high) = p.liner.ends(k);
+                let middle = sum + 0.5 * p.liner.cell * p.liner.film[k];
+                let got = p.liner.below(0.5 * (low + high));
+                // The place of the middle of a cell is rounded in a liner of a few hundred.
+                assert!((got - middle).abs() <= 1e-12 * middle, "{k}: {got:e} {middle:e}");
+                sum += p.liner.cell * p.liner.film[k];
+                assert!(low > lowest || p.liner.film[k] == 5e-6, "{k}");
+            }
+            let edges = p.faces[0].edge.map(|z| p.liner.below(z));
+            assert_eq!(p.faces[0].below, edges);
+        }
+    }
+}
+
 /// A film that an edge lays down in several steps is what another takes up in others.
 #[test]
 fn what_is_laid_down_is_taken_up() {
