@@ -3,7 +3,7 @@
 //! Every limit is monotone in every dimension ([`PinStrength`](gudgeon_core::kinds::PinStrength)), or, as the resultant, put together from
 //! parts that are. Masses are monotone too, so pins lighter than a mass `m` have bores above the one that gives `m` to the shortest and
 //! thinnest pin of a box of lengths and outer diameters. Where a limit is exceeded by that bore in the best corner of the box, no
-//! pin of the box is lighter than `m`: one look at a box decides. Boxes are as long as that admits, and as wide ([`cover`];
+//! pin of the box is lighter than `m`: one look at a box decides. Boxes are as long as that admits, and as wide (`cover.rs`;
 //! branch and bound in the manner of `matthiesen2020`).
 
 mod cover;
