@@ -11,7 +11,7 @@ pub(crate) struct Look {
     pub pivot: f64,
 }
 
-/// Trials of three of which one halves the interval, whatever the pivots say.
+/// Trials of which the last halves the interval, whatever the pivots say.
 const TRIALS: u32 = 5;
 
 /// An interval in which the count changes.
@@ -36,7 +36,7 @@ impl Bracket {
     }
 
     /// Where to look next: where a straight line between the pivots passes zero, if one natural frequency lies between the ends and
-    /// the signs say that the root moves with it; every third time, and else, in the middle.
+    /// the signs say that the root moves with it; every fifth time, and else, in the middle.
     ///
     /// The counts decide what becomes of the interval, so a pole of the pivot costs a trial and no more.
     pub fn trial(&self) -> f64 {

@@ -1,5 +1,5 @@
 //! The signs that a ring pack of an engine must have, on the diesel: what each input does to blow-by and friction. The table with numbers and sources is
-//! docs/trends.md. As it ships its faces find what oil the liner holds; most signs are tested with flooded faces, whose runs take a quarter of the time.
+//! docs/trends.md. As it ships its faces find what oil the liner holds; most signs are tested with flooded faces, whose runs take a sixth of the time.
 
 use gudgeon_core::result::RunResult;
 
