@@ -16,6 +16,8 @@
 
 use std::ops::{BitOr, BitOrAssign};
 
+pub use gudgeon_numerics::ode::Stage;
+
 /// Quantities that couple the models of a ring at an instant: a set of them says what a state changes and what a model reads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Signals(u16);

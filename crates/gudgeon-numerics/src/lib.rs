@@ -151,6 +151,8 @@ pub mod quadrature;
 pub mod radau;
 pub mod rodas;
 pub mod roots;
+pub mod sdirk;
+pub mod stages;
 pub mod table;
 pub mod tangent;
 

@@ -39,7 +39,7 @@ mod sums;
 mod system;
 
 pub(crate) use check::{Shape, check};
-pub(crate) use core::Core;
+pub(crate) use core::{Core, non_finite};
 pub(crate) use dense::Interpolant;
 pub(crate) use difference::difference;
 pub(crate) use driver::{Scheme, Trial, drive};
@@ -47,4 +47,4 @@ pub use integrator::{Flow, Integrator, StepView};
 pub use options::{IntegrateError, Options, Stats};
 pub(crate) use step_matrix::StepMatrix;
 pub(crate) use sums::{add_all, larger};
-pub use system::{ColumnGroups, Direction, EventAction, LinearInvariant, OdeSystem};
+pub use system::{ColumnGroups, Direction, EventAction, LinearInvariant, OdeSystem, Stage};

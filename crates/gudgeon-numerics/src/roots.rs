@@ -197,3 +197,135 @@ pub fn newton_bracketed<E>(
         }
     }
 }
+
+/// What [`first_root`] knows of its function before it begins, and what it is asked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Known {
+    /// Where the search begins if a local one fails: the root that is found then is the first one from here on.
+    pub from: f64,
+    /// Where the root is expected.
+    pub guess: f64,
+    /// Derivative expected there; zero or less: unknown.
+    pub slope: f64,
+    /// Longest step.
+    pub reach: f64,
+    /// Error admitted.
+    pub tol: f64,
+}
+
+/// A root at which the function was evaluated last, and its derivative there by differences.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Found {
+    /// The root, within the error admitted.
+    pub x: f64,
+    /// The derivative.
+    pub slope: f64,
+}
+
+/// Steps of the secant method before a search begins anew with a bracket.
+const SECANTS: usize = 6;
+/// Part of the error admitted within which a step by a derivative from before ends at the root.
+const STALE: f64 = 0.1;
+/// Steps of the walk to a bracket, and within it.
+const WALK: usize = 200;
+
+/// A root of a function that rises through it, by secants from a guess; the first one beyond [`Known::from`] where they fail.
+///
+/// Made for functions that are solved again and again with little changed: two to three evaluations as a rule. The function is evaluated at the answer
+/// last, so that what it leaves behind belongs to the answer.
+///
+/// # Errors
+/// [`RootError::NoConvergence`]; the function's own errors come back as [`RootError::Function`].
+pub fn first_root<E>(mut f: impl FnMut(f64) -> Result<f64, E>, known: Known) -> Result<Found, RootError<E>> {
+    let mut eval = |x: f64| f(x).map_err(RootError::Function);
+    if let Some(found) = secants(&mut eval, known)? {
+        return Ok(found);
+    }
+    let (lo, hi) = walk(&mut eval, known)?;
+    between(&mut eval, lo, hi, known.tol)
+}
+
+/// The root by secants from the guess, if they settle.
+fn secants<E>(
+    eval: &mut impl FnMut(f64) -> Result<f64, RootError<E>>,
+    known: Known,
+) -> Result<Option<Found>, RootError<E>> {
+    if known.slope <= 0.0 {
+        return Ok(None);
+    }
+    let (mut x, mut slope) = (known.guess, known.slope);
+    let mut fx = eval(x)?;
+    for k in 0..SECANTS {
+        let step = -fx / slope;
+        if step.abs() <= if k == 0 { STALE * known.tol } else { known.tol } {
+            return Ok(Some(Found { x, slope }));
+        }
+        if step.is_nan() || step.abs() > known.reach {
+            return Ok(None);
+        }
+        let next = x + step;
+        let fnext = eval(next)?;
+        let seen = (fnext - fx) / (next - x);
+        (x, fx) = (next, fnext);
+        if seen.is_nan() || seen <= 0.0 {
+            return Ok(None);
+        }
+        slope = seen;
+    }
+    Ok(None)
+}
+
+/// Two points beside each other, from `known.from` on in the direction in which the function asks to go, between which it changes its sign.
+fn walk<E>(
+    eval: &mut impl FnMut(f64) -> Result<f64, RootError<E>>,
+    known: Known,
+) -> Result<([f64; 2], [f64; 2]), RootError<E>> {
+    let mut last = [known.from, eval(known.from)?];
+    if last[1] == 0.0 {
+        return Ok((last, last));
+    }
+    let away = -last[1].signum();
+    let mut stride = if known.slope > 0.0 { (last[1] / known.slope).abs() } else { last[1].abs() };
+    for _ in 0..WALK {
+        let step = stride.clamp(known.tol, known.reach);
+        let x = last[0] + away * step;
+        let next = [x, eval(x)?];
+        if next[1] * last[1] <= 0.0 {
+            return Ok((last, next));
+        }
+        let slope = (next[1] - last[1]) / (next[0] - last[0]);
+        let newton = if slope > 0.0 { 1.1 * (next[1] / slope).abs() } else { f64::INFINITY };
+        (stride, last) = (newton.min(4.0 * step), next);
+    }
+    Err(RootError::NoConvergence { iterations: WALK as u32, lo: known.from, hi: last[0] })
+}
+
+/// The root between two points of different sign: false position with halved weights (Illinois), every fourth step a bisection.
+fn between<E>(
+    eval: &mut impl FnMut(f64) -> Result<f64, RootError<E>>,
+    mut a: [f64; 2],
+    mut b: [f64; 2],
+    tol: f64,
+) -> Result<Found, RootError<E>> {
+    let slope = |a: [f64; 2], b: [f64; 2]| ((b[1] - a[1]) / (b[0] - a[0])).max(0.0);
+    if b[1] == 0.0 {
+        return Ok(Found { x: b[0], slope: slope(a, b) });
+    }
+    for k in 1..=WALK {
+        let (was, span) = (b, b[0] - a[0]);
+        let secant = a[0] - a[1] * span / (b[1] - a[1]);
+        let x = if k.is_multiple_of(4) { a[0] + 0.5 * span } else { secant };
+        let next = [x, eval(x)?];
+        let steep = slope(was, next);
+        if next[1] * b[1] < 0.0 {
+            a = b;
+        } else {
+            a[1] *= 0.5;
+        }
+        b = next;
+        if b[1] == 0.0 || (b[0] - a[0]).abs() <= tol {
+            return Ok(Found { x, slope: steep });
+        }
+    }
+    Err(RootError::NoConvergence { iterations: WALK as u32, lo: a[0], hi: b[0] })
+}

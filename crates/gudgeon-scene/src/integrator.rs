@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum IntegratorName {
-    /// `rodas3` down to a tolerance of 5e-5, `rodas5p` below (default).
+    /// `rodas3` at loose tolerances, `rodas5p` at tight ones (default).
     #[default]
     Rodas,
     /// Rosenbrock method of order 3, of few stages: the cheapest for errors of 1e-3 to 1e-5.
@@ -16,19 +16,4 @@ pub enum IntegratorName {
     Rodas5p,
     /// Radau IIA of order 5, for references at tight tolerances.
     Radau5,
-}
-
-/// Tolerance below which the integrator of order 5 needs less work than that of order 3.
-const ORDER_FIVE: f64 = 5e-5;
-
-impl IntegratorName {
-    /// The integrator that runs at a tolerance: never [`IntegratorName::Rodas`].
-    #[must_use]
-    pub fn at(self, tolerance: f64) -> Self {
-        match self {
-            Self::Rodas if tolerance >= ORDER_FIVE => Self::Rodas3,
-            Self::Rodas => Self::Rodas5p,
-            other => other,
-        }
-    }
 }

@@ -107,6 +107,55 @@ fn error_follows_the_tolerance() {
     assert!(errors[1] < 1e-3 && errors[2] < 1e-4, "{errors:?}");
 }
 
+/// Stages that the pack solves itself: as near to the reference as their tolerance says, in fewer steps than the Rosenbrock method of the same error.
+#[test]
+fn stages_that_the_pack_solves_lead_to_the_same_cycle() {
+    let with = |name: &str, tolerance: &str| {
+        [implicit(tolerance), vec![format!("solver.integrator={name}")]].concat()
+    };
+    let asked = [
+        set(CASE, &implicit("1e-6")),
+        set(CASE, &with("rodas3", "3e-3")),
+        set(CASE, &with("sdirk2", "1e-2")),
+        set(CASE, &with("sdirk2", "1e-3")),
+        set("turbo-diesel-120", &with("rodas3", "1e-3")),
+        set("turbo-diesel-120", &with("sdirk2", "1e-3")),
+    ];
+    let r = runs(&asked);
+    let error = |a: &RunResult, b: &RunResult| {
+        let names = ["blow_by_per_cylinder", "land2.p_max", "friction_power"];
+        names.map(|n| (value(a, n) / value(b, n) - 1.0).abs()).into_iter().fold(0.0, f64::max)
+    };
+    let steps = |r: &RunResult| r.solver.counters["steps"] as f64 / r.solver.counters["cycles"] as f64;
+    for (a, r) in asked.iter().zip(&r) {
+        println!("{} {:?}: {:.0} steps a cycle, {:?}", a.0, a.1, steps(r), r.balance);
+    }
+    let errors = [error(&r[1], &r[0]), error(&r[2], &r[0]), error(&r[3], &r[0])];
+    println!("errors: {errors:?}");
+    // What the tolerances of both methods ask for.
+    assert!(errors[1] < 1e-2 && errors[2] < 1e-3, "{errors:?}");
+    assert!(errors[1] < errors[0] && steps(&r[2]) < 0.7 * steps(&r[1]), "{errors:?}");
+    // With oil on the liner the search of the periodic state ends at ten times the tolerance.
+    assert!(error(&r[5], &r[4]) < 1e-2);
+    for r in [&r[2], &r[3], &r[5]] {
+        // Flows and states have the weights of one method: rounding of some thousand steps.
+        assert!(r.balance.gas_mass.expect("there is gas") <= 1e-10);
+        assert!(r.balance.flank_oil.expect("there is oil on flanks") <= 1e-10);
+        // Forces at the ends and in the middle of steps, by Simpson's rule, at a tolerance of 1e-2.
+        assert!(r.balance.momentum.expect("rings move") <= 1e-2);
+    }
+}
+
+#[test]
+fn a_pack_that_cannot_solve_stages_is_told_so() {
+    let set = ["solver.integrator=sdirk2", "models.ring_motion.model=three_seat"];
+    let report = gudgeon_scene::check(&case_file(CASE), &overrides_of(CASE, &set));
+    let Err(report) = report else { panic!("three_seat has no stages") };
+    let found = &report.diagnostics[0];
+    let wanted = "`three_seat`, the motion of ring 1, does not solve stages of implicit steps";
+    assert_eq!((found.message.as_str(), found.path.as_str()), (wanted, "solver.integrator"));
+}
+
 #[test]
 fn closures() {
     let asked = [

@@ -3,7 +3,7 @@ use std::fmt::Debug;
 use dyn_clone::DynClone;
 
 use super::FaceForces;
-use crate::states::Stateful;
+use crate::states::{Stage, Stateful};
 use crate::{BuildError, EvalError, register_kind};
 
 /// What a [`RadialMotionSpec`] is built for: one ring whose film is solved.
@@ -123,6 +123,15 @@ pub trait RadialLoads {
     fn flux(&mut self) -> &mut [f64; 2];
 }
 
+/// The same for a ring whose film may be tried at other thicknesses, all else as it is.
+pub trait RadialTrials: RadialLoads {
+    /// Sets the film thickness \[m\], and the loads of contact and gas that go with it.
+    ///
+    /// # Errors
+    /// What the film refuses.
+    fn set_thickness(&mut self, h: f64) -> Result<(), EvalError>;
+}
+
 /// What limits did to a ring at an instant.
 #[derive(Debug, Clone, Copy, Default)]
 #[non_exhaustive]
@@ -177,6 +186,24 @@ pub trait RadialMotion: Stateful + Send {
         loads: &mut dyn RadialLoads,
         dy: &mut [f64],
     ) -> Result<RadialResponse, EvalError>;
+
+    /// Whether [`RadialMotion::stage`] finds the states of the model.
+    fn solves_stages(&self) -> bool {
+        false
+    }
+
+    /// Solves a stage of an implicit step for the states `y`, which come as a guess. The motion at the answer, with its film; `loads` is left there.
+    ///
+    /// # Errors
+    /// No states at which the stage closes; a model that does not solve stages.
+    fn stage(
+        &mut self,
+        _stage: &Stage<'_>,
+        _y: &mut [f64],
+        _loads: &mut dyn RadialTrials,
+    ) -> Result<(RadialResponse, FaceForces), EvalError> {
+        Err(EvalError::fatal("radial_motion", "the model does not solve stages of implicit steps"))
+    }
 
     /// Until [`RadialMotion::end_differences`], rates are asked for states and loads that differ by little from the last instant, whose loads and
     /// film are given and where `on_floor` says whether a floor carried anything: what is searched for may be found by one step of Newton's

@@ -4,7 +4,7 @@ use dyn_clone::DynClone;
 
 use super::FlankLaw;
 use crate::geometry::{FlankOil, RingPlace};
-use crate::states::Stateful;
+use crate::states::{Stage, Stateful};
 use crate::{BuildError, EvalError, register_kind};
 
 /// What a [`RingMotionSpec`] is built for.
@@ -244,6 +244,29 @@ pub trait RingMotion: Stateful + Send {
 
     /// Ends what [`RingMotion::begin_differences`] began.
     fn end_differences(&mut self) {}
+
+    /// Whether [`RingMotion::stage`] finds the states of the model.
+    fn solves_stages(&self) -> bool {
+        self.states().is_empty()
+    }
+
+    /// Solves a stage of an implicit step for the states `y`, which come as a guess, under `forces` that stay as they are; `place` tells where the ring is in
+    /// a pose. The forces of the groove at the answer.
+    ///
+    /// # Errors
+    /// No states at which the stage closes; a model with states that does not solve stages.
+    fn stage(
+        &mut self,
+        _stage: &Stage<'_>,
+        y: &mut [f64],
+        forces: &RingForces,
+        _place: &mut dyn FnMut(RingPose) -> RingPlace,
+    ) -> Result<RingResponse, EvalError> {
+        if !y.is_empty() {
+            return Err(EvalError::fatal("ring_motion", "the model does not solve stages of implicit steps"));
+        }
+        self.rates(y, forces, &mut [])
+    }
 
     /// The same law as one of second order in the height, `m s'' = F + F_damping(s, v)` between rigid flanks, for schemes that step it
     /// themselves; `None` for a model that is anything else.

@@ -196,7 +196,7 @@ impl Core {
 /// What marks a non-finite rate among the recoverable failures.
 const NON_FINITE: &str = "the right-hand side is not finite";
 
-pub(super) fn non_finite() -> EvalError {
+pub(crate) fn non_finite() -> EvalError {
     EvalError::recoverable("integrator", NON_FINITE)
 }
 

@@ -69,6 +69,8 @@ pub struct Stats {
     pub lu: u64,
     /// Triangular solves.
     pub solves: u64,
+    /// Stages that the system solved itself.
+    pub stages: u64,
     /// Events that happened.
     pub events: u64,
 }
@@ -82,6 +84,7 @@ impl Stats {
         self.jacobians += o.jacobians;
         self.lu += o.lu;
         self.solves += o.solves;
+        self.stages += o.stages;
         self.events += o.events;
     }
 }

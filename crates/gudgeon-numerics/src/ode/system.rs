@@ -71,6 +71,17 @@ pub enum EventAction {
     Stop,
 }
 
+/// A stage of an implicit step.
+#[derive(Debug, Clone, Copy)]
+pub struct Stage<'a> {
+    /// What the step has made of the states before this stage.
+    pub base: &'a [f64],
+    /// Step times the coefficient of the stage.
+    pub step: f64,
+    /// Error admitted in each state.
+    pub accuracy: &'a [f64],
+}
+
 /// An initial-value problem `y' = f(t, y)` with quadratures `q' = g(t, y)` that feed nothing back.
 pub trait OdeSystem {
     /// Number of states.
@@ -114,6 +125,22 @@ pub trait OdeSystem {
 
     /// Solves `(d I - J) x = b` in place, with `d` and `J` of the last [`OdeSystem::factor`].
     fn solve(&mut self, _b: &mut [f64]) {}
+
+    /// Solves a stage of an implicit step, `y = base + step · f(t, y)`, for systems that know how: `y` comes as a guess, `accuracy` is the error admitted in each
+    /// state. Leaves the rates of the quadratures at the answer in `g`. Asked by [`crate::sdirk::Sdirk`], which calls [`OdeSystem::tolerances`]
+    /// right after the last stage of a step that it takes.
+    ///
+    /// # Errors
+    /// As [`OdeSystem::rhs`].
+    fn stage(
+        &mut self,
+        _t: f64,
+        _stage: &Stage<'_>,
+        _y: &mut [f64],
+        _g: &mut [f64],
+    ) -> Result<(), EvalError> {
+        Err(EvalError::fatal("integrator", "the system does not solve stages of implicit steps"))
+    }
 
     /// `∂f/∂t` at fixed state. `Ok(false)`: the integrator differences `rhs` (one call per step).
     ///

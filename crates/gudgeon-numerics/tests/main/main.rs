@@ -19,5 +19,6 @@ mod refusals;
 mod rodas;
 mod roots;
 mod scaling;
+mod sdirk;
 mod table;
 mod tangent;

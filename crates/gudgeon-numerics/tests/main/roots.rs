@@ -1,6 +1,6 @@
 //! Roots: accuracy, evaluations, refusals.
 
-use gudgeon_numerics::roots::{RootError, itp, newton_bracketed};
+use gudgeon_numerics::roots::{Known, RootError, first_root, itp, newton_bracketed};
 use std::convert::Infallible;
 
 fn ok(f: impl Fn(f64) -> f64) -> impl Fn(f64) -> Result<f64, Infallible> {
@@ -51,4 +51,31 @@ fn newton_is_fast_from_a_good_start_and_safe_from_a_bad_one() {
     assert!(r.unwrap().x.abs() < 1e-12);
     let none = newton_bracketed(|x| Ok::<_, Infallible>((x * x + 1.0, 2.0 * x)), -1.0, 2.0, 0.5, 1e-12);
     assert!(matches!(none, Err(RootError::NoBracket { .. })), "{none:?}");
+}
+
+#[test]
+fn the_first_root_is_found_whatever_the_guess() {
+    // Rises through 1, falls through 2, rises through 3.
+    let f = |x: f64| (x - 1.0) * (x - 2.0) * (x - 3.0);
+    let known = Known { from: 0.0, guess: 0.0, slope: 0.0, reach: 0.3, tol: 1e-10 };
+    for (from, root) in [(0.0, 1.0), (1.9, 1.0), (2.1, 3.0), (5.0, 3.0)] {
+        let found = first_root(ok(f), Known { from, guess: 17.0, ..known }).unwrap();
+        // The last step of the search is below the tolerance.
+        assert!((found.x - root).abs() < 1e-9, "{from}: {found:?}");
+    }
+    // A guess with a slope leads to the root beside it, in few evaluations, the last of them at the answer.
+    let (mut evaluations, mut last) = (0, f64::NAN);
+    let counted = |x: f64| {
+        (evaluations, last) = (evaluations + 1, x);
+        Ok::<_, Infallible>(f(x))
+    };
+    let found = first_root(counted, Known { guess: 3.01, slope: 2.0, ..known }).unwrap();
+    assert!((found.x - 3.0).abs() < 1e-9 && found.x == last && evaluations <= 5, "{found:?} {evaluations}");
+    // A corner, a step and a function without a root.
+    let corner = first_root(ok(|x: f64| if x < 1.0 { x - 1.0 } else { 1e9 * (x - 1.0) }), known).unwrap();
+    assert!((corner.x - 1.0).abs() < 1e-9, "{corner:?}");
+    let step = first_root(ok(|x: f64| if x < 1.0 { -1.0 } else { 1.0 }), known).unwrap();
+    assert!((step.x - 1.0).abs() < 1e-9, "{step:?}");
+    assert!(matches!(first_root(ok(|_| -1.0), known), Err(RootError::NoConvergence { .. })));
+    assert!(matches!(first_root(|_| Err::<f64, _>("no"), known), Err(RootError::Function("no"))));
 }

@@ -2,13 +2,15 @@
 
 use gudgeon_core::kinds::{
     FaceForces, RadialLimits, RadialLoads, RadialMotion, RadialMotionCtx, RadialMotionSpec, RadialResponse,
+    RadialTrials,
 };
-use gudgeon_core::states::{Signals, StateInfo, Stateful};
+use gudgeon_core::states::{Signals, Stage, StateInfo, Stateful};
 use gudgeon_core::{BuildError, EvalError, register_model};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::search::Search;
+use super::staged::Staged;
 use super::tangent::Tangent;
 
 /// The film thickness follows from the radial balance of forces, the inertia of the ring left out:
@@ -51,6 +53,7 @@ impl RadialMotionSpec for FilmBalance {
             dragged: false,
             differences: false,
             tangent: None,
+            slope: 0.0,
         }))
     }
 }
@@ -72,6 +75,8 @@ struct Runtime {
     dragged: bool,
     differences: bool,
     tangent: Option<Tangent>,
+    /// Derivative of the balance of the last stage.
+    slope: f64,
 }
 
 impl Stateful for Runtime {
@@ -119,6 +124,23 @@ impl RadialMotion for Runtime {
         }
         dy[0] = found.hdot / h * self.per;
         Ok(found)
+    }
+
+    fn solves_stages(&self) -> bool {
+        true
+    }
+
+    fn stage(
+        &mut self,
+        stage: &Stage<'_>,
+        y: &mut [f64],
+        loads: &mut dyn RadialTrials,
+    ) -> Result<(RadialResponse, FaceForces), EvalError> {
+        let search = Search { limits: &self.limits, ring: self.ring, hdot: self.hdot, balanced: false };
+        let mut staged = Staged { search, per: self.per, slope: self.slope };
+        let answer = staged.solve(stage, &mut y[0], loads)?;
+        (self.slope, self.hdot) = (answer.slope, answer.response.hdot);
+        Ok((answer.response, answer.film))
     }
 
     /// The tangent is worth its film where a velocity was searched for; one that came with its film by a search is as cheap as one evaluation.

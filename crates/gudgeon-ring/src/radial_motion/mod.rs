@@ -2,4 +2,5 @@
 
 pub mod film_balance;
 pub mod search;
+mod staged;
 mod tangent;

@@ -123,7 +123,7 @@ impl Search<'_> {
     }
 
     /// A radial velocity within its cap and within the ends of the way.
-    fn bounded(&self, at: &RadialState, free: f64, limited: &mut Limited) -> f64 {
+    pub fn bounded(&self, at: &RadialState, free: f64, limited: &mut Limited) -> f64 {
         let (h, (lowest, band), furthest) = (at.thickness, at.lowest, at.furthest);
         let part = 1.0 / (1.0 + (free / self.limits.radial_speed).powi(2)).sqrt();
         limited.slowed = 1.0 - part;

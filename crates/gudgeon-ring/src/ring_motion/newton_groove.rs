@@ -1,12 +1,13 @@
 //! The ring as a mass that moves between the groove flanks.
 
-use gudgeon_core::geometry::FlankOil;
+use gudgeon_core::geometry::{FlankOil, RingPlace};
 use gudgeon_core::kinds::{
     FlankLaw, RingForces, RingMotion, RingMotionCtx, RingMotionSpec, RingPose, RingResponse, SecondOrder,
 };
 use gudgeon_core::quantity::{PosStiffness, PosVelocity, quantity};
-use gudgeon_core::states::{Signals, StateInfo, Stateful};
+use gudgeon_core::states::{Signals, Stage, StateInfo, Stateful};
 use gudgeon_core::{BuildError, EvalError, register_model};
+use gudgeon_numerics::roots::{Known, RootError, first_root};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -124,6 +125,7 @@ impl RingMotionSpec for NewtonGroove {
             holding: Holding::new(ctx.mass, unit_speed, ctx.omega),
             forces: RingForces::default(),
             v: 0.0,
+            slope: 0.0,
         }))
     }
 }
@@ -133,6 +135,9 @@ const VELOCITY_SCALE: f64 = 100.0;
 /// Height that counts as one in the error norm, in clearances: the films on the flanks are a hundredth of a clearance thick, and
 /// their force goes with the cube.
 const HEIGHT_SCALE: f64 = 0.01;
+
+/// Longest way of a trial of a stage, in clearances.
+const FARTHEST: f64 = 0.02;
 
 /// States: height over the nominal clearance, and its derivative by crank angle.
 struct Runtime {
@@ -149,6 +154,8 @@ struct Runtime {
     forces: RingForces,
     /// Velocity \[m/s\] of the last instant.
     v: f64,
+    /// Derivative of the balance of the last stage by the velocity state.
+    slope: f64,
 }
 
 impl Runtime {
@@ -201,6 +208,45 @@ impl RingMotion for Runtime {
             (self.forces, self.v) = (*forces, v);
         }
         Ok(RingResponse::new(v, damping, reaction))
+    }
+
+    fn solves_stages(&self) -> bool {
+        true
+    }
+
+    /// `y_0 = base_0 + step y_1` turns both equations into one, `y_1 = base_1 + step ΣF(y_0, y_1)/(m c ω²)`. Where several velocities close it (a film that gives
+    /// way within the step) the one that the ring meets first on its way from rest counts.
+    fn stage(
+        &mut self,
+        stage: &Stage<'_>,
+        y: &mut [f64],
+        forces: &RingForces,
+        place: &mut dyn FnMut(RingPose) -> RingPlace,
+    ) -> Result<RingResponse, EvalError> {
+        let (c0, omega, a) = (self.clearance, self.omega, &forces.axial);
+        let external = a.gas + a.inertia + a.gravity + a.film + a.expander;
+        let per = stage.step / (self.mass * c0 * omega * omega);
+        let mut response = RingResponse::default();
+        let mut last = forces.place;
+        let balance = |u: f64| -> Result<f64, EvalError> {
+            let height = stage.base[0] + stage.step * u;
+            last = place(RingPose::at_height(height * c0, u * c0 * omega, forces.place.clearance));
+            let p = &last;
+            let damping = self.damping.force(&p.flank, p.s, p.v, p.clearance, p.flank_area());
+            response = RingResponse::new(p.v, damping, self.flank.reaction(p.s, p.v, p.clearance));
+            Ok(u - stage.base[1] - per * (external + damping + response.reaction))
+        };
+        let tol = stage.accuracy[0] / stage.step;
+        let known = Known { from: 0.0, guess: y[1], slope: self.slope, reach: FARTHEST / stage.step, tol };
+        let found = first_root(balance, known).map_err(|e| match e {
+            RootError::Function(e) => e,
+            e => EvalError::recoverable("ring_motion", e.to_string()),
+        })?;
+        (y[0], y[1]) = (stage.base[0] + stage.step * found.x, found.x);
+        (self.slope, self.v) = (found.slope, response.v);
+        self.forces = *forces;
+        self.forces.place = last;
+        Ok(response)
     }
 
     fn begin_differences(&mut self) {

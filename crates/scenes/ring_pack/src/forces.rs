@@ -8,7 +8,7 @@ use gudgeon_core::kinds::{
     FaceForces, FlankIn, OilFaceIn, RadialLoads, RadialMotion, RadialState, RingForces, TwistMoments,
 };
 
-use super::loads::{Loads, around_land, face_in, furthest};
+use super::loads::{Loads, face_in, furthest, wet_faces};
 use super::pack::Pack;
 
 /// Standard acceleration used by both sources \[m/s²\].
@@ -50,7 +50,7 @@ impl Pack {
         let load = tension + self.laws.radial_gas.load(&section);
         let perimeter = around * rails;
         let (geo, place, at) = (&self.geo.rings[i], &self.at.places[i], &self.at.rings[i]);
-        let ring = &mut self.rings[i];
+        let (ring, oil) = (&mut self.rings[i], self.oil_pack.as_deref_mut());
         let line = &ring.contact;
         let state = RadialState {
             thickness: place.h,
@@ -68,8 +68,12 @@ impl Pack {
         };
         let loads = Loads {
             geo,
-            place,
+            place: *place,
             at,
+            ring: i,
+            oil,
+            dry: at.dry,
+            contact: line,
             state,
             u: -self.at.piston.v,
             perimeter,
@@ -121,22 +125,7 @@ impl Pack {
         }
         let Some(oil) = &mut self.oil_pack else { return Ok(()) };
         let (r, h) = (&mut self.at.rings[i], self.at.places[i].h);
-        r.dry = (0.0, 0.0);
-        for k in 0..oil.faces().len() {
-            let (ring, land) = oil.faces()[k];
-            if ring != i {
-                continue;
-            }
-            let e = oil.extent(k, h);
-            if !self.rings[i].films[land].set_extent(e.from, e.to) {
-                let what = "this film cannot be confined to a part of its face";
-                return Err(EvalError::fatal("ring_pack", what));
-            }
-            let [bottom, top] = around_land(&self.geo.rings[i], r, land).map(|p| p - r.p_cav);
-            let (d, length) = (e.drops, self.geo.rings[i].face.length());
-            r.dry.0 += bottom * e.from + top * (length - e.to);
-            r.dry.1 -= bottom * (d[1] - d[0]) + top * (d[3] - d[2]);
-        }
+        r.dry = wet_faces(&mut **oil, i, h, (&self.geo.rings[i], r), &mut self.rings[i].films)?;
         Ok(())
     }
 
@@ -235,6 +224,11 @@ impl Pack {
         if self.plan.axial {
             self.axial_forces(i, y)?;
         }
+        self.flank_rates(i, y)
+    }
+
+    /// Rates of the oil on the flanks of ring `i`.
+    pub(super) fn flank_rates(&mut self, i: usize, y: &[f64]) -> Result<(), EvalError> {
         let own = self.layout.flank[i].clone();
         if own.is_empty() {
             return Ok(());

@@ -10,13 +10,14 @@ use gudgeon_core::result::{Balance, Column, Note, Series};
 use gudgeon_core::states::Signals;
 use gudgeon_core::{BuildError, EvalError, register_model};
 use gudgeon_numerics::ode::{
-    Direction, EventAction, Flow, IntegrateError, Integrator, LinearInvariant, OdeSystem, Options, Stats,
-    StepView,
+    Direction, EventAction, Flow, IntegrateError, Integrator, LinearInvariant, OdeSystem, Options, Stage,
+    Stats, StepView,
 };
 use gudgeon_numerics::orbit::{Bend, CycleMap, OrbitOptions, OrbitReport, periodic_orbit};
 use gudgeon_numerics::panel::LOBATTO;
 use gudgeon_numerics::radau::Radau5;
 use gudgeon_numerics::rodas::{Formula, Rodas};
+use gudgeon_numerics::sdirk::Sdirk;
 
 use super::around::Around;
 use super::error::RingPackError;
@@ -29,15 +30,19 @@ use super::record::Totals;
 use super::results;
 use super::rows::Rows;
 use super::solver::{NOT_PERIODIC, Recorded, RingPackSolverSpec, Solution, Wanted};
+use super::staged::Staging;
 use super::watch::Watch;
 use gudgeon_core::result::Gradients;
-use gudgeon_scene::{Asked, GradientError, IntegratorName, MethodSetting, RunError, Stopped};
+use gudgeon_scene::{Asked, GradientError, MethodSetting, RunError, Stopped};
 use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 mod gradients;
+mod integrator;
+
+pub use integrator::RingIntegrator;
 
 /// The whole scene at once, adaptive and error-controlled; the cycle closed by a periodic-orbit solver.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
@@ -47,7 +52,7 @@ pub struct Implicit {
     #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1 }))]
     pub tolerance: PosRatio,
     /// Time integrator.
-    pub integrator: IntegratorName,
+    pub integrator: RingIntegrator,
     /// True relative error of the periodic state; not below `tolerance`.
     #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1 }))]
     pub periodicity: PosRatio,
@@ -61,7 +66,7 @@ impl Default for Implicit {
     fn default() -> Self {
         Self {
             tolerance: quantity(1e-4),
-            integrator: IntegratorName::Rodas,
+            integrator: RingIntegrator::Rodas,
             periodicity: quantity(1e-4),
             max_cycles: 120,
         }
@@ -71,16 +76,21 @@ impl Default for Implicit {
 #[register_model(
     name = "implicit",
     summary = "the whole scene as one stiff system, adaptive, the cycle closed by a periodic-orbit solver",
-    equations = "dy/dtheta = f(theta, y) by Rosenbrock methods of order 3 or 5, or Radau IIA;  y(theta + cycle) = y(theta) by Anderson acceleration, with oil on the liner by vector extrapolation in cycles",
+    equations = "dy/dtheta = f(theta, y) by Rosenbrock methods of order 3 or 5, a singly diagonally implicit one of order 2, or Radau IIA;  y(theta + cycle) = y(theta) by Anderson acceleration, with oil on the liner by vector extrapolation in cycles",
     validity = "Every pack. Errors are controlled: results differ from those of the equations by about the tolerance.",
-    references = ["sandu1997", "steinebach2023", "hairer1996", "walker2011", "sidi2017"],
+    references = ["sandu1997", "steinebach2023", "hairer1996", "alexander1977", "walker2011", "sidi2017"],
     example = "tolerance = 1e-4\n",
 )]
 impl RingPackSolverSpec for Implicit {
-    fn refuses(&self, _: &Pack) -> Vec<BuildError> {
+    fn refuses(&self, pack: &Pack) -> Vec<BuildError> {
         let mut errors = Vec::new();
         if self.max_cycles == 0 {
             errors.push(BuildError::at("solver.max_cycles", "at least one cycle is needed"));
+        }
+        if self.integrator == RingIntegrator::Sdirk2 {
+            errors.extend(pack.refuses_stages().map(|what| {
+                BuildError::at("solver.integrator", what).help("use `rodas`, which every pack can")
+            }));
         }
         if self.tolerance.si() > 0.1 || self.tolerance.si() < 1e-12 {
             errors.push(BuildError::at("solver.tolerance", "the tolerance must be between 1e-12 and 0.1"));
@@ -110,15 +120,17 @@ impl RingPackSolverSpec for Implicit {
     }
 
     /// Both orders at the tolerances that they are made for.
-    fn settings(&self, _: &Pack, own: Option<&Value>) -> Vec<MethodSetting> {
+    fn settings(&self, pack: &Pack, own: Option<&Value>) -> Vec<MethodSetting> {
         let given = own.and_then(|v| content::read::<Self>(&Content::from(v)).ok());
         let default = given.as_ref().unwrap_or(self);
         let tolerance = default.tolerance.si();
-        let orders: [(&str, &str, IntegratorName, &[f64]); 2] = [
-            ("implicit, order 3", "rodas3", IntegratorName::Rodas3, &[1e-2, 3e-3, 1e-3, 3e-4, 1e-4]),
-            ("implicit, order 5", "rodas5p", IntegratorName::Rodas5p, &[1e-2, 1e-3, 1e-4, 1e-5, 1e-6]),
+        let orders: [(&str, &str, RingIntegrator, &[f64]); 3] = [
+            ("implicit, order 3", "rodas3", RingIntegrator::Rodas3, &[1e-2, 3e-3, 1e-3, 3e-4, 1e-4]),
+            ("implicit, order 5", "rodas5p", RingIntegrator::Rodas5p, &[1e-2, 1e-3, 1e-4, 1e-5, 1e-6]),
+            ("implicit, order 2", "sdirk2", RingIntegrator::Sdirk2, &[2e-2, 1e-2, 3e-3, 1e-3]),
         ];
-        let setting = |(method, name, integrator, t): (&str, &str, IntegratorName, f64)| MethodSetting {
+        let orders = orders.into_iter().filter(|o| o.2 != RingIntegrator::Sdirk2 || pack.solves_stages());
+        let setting = |(method, name, integrator, t): (&str, &str, RingIntegrator, f64)| MethodSetting {
             method: method.into(),
             setting: format!("tolerance {t:.0e}"),
             is_default: given.is_some()
@@ -132,7 +144,7 @@ impl RingPackSolverSpec for Implicit {
             ],
             asked: Some(Asked { tolerance: t, ..Asked::default() }),
         };
-        let all = orders.into_iter().flat_map(|(m, n, i, all)| all.iter().map(move |t| (m, n, i, *t)));
+        let all = orders.flat_map(|(m, n, i, all)| all.iter().map(move |t| (m, n, i, *t)));
         all.map(setting).collect()
     }
 }
@@ -141,6 +153,7 @@ impl RingPackSolverSpec for Implicit {
 struct Problem<'a> {
     pack: &'a mut Pack,
     base: &'a mut Base,
+    staging: &'a mut Staging,
     scale: &'a [f64],
     balance: &'a [LinearInvariant],
     events: &'a [EventOf],
@@ -168,6 +181,9 @@ impl OdeSystem for Problem<'_> {
         let scale = self.scale;
         self.pack.jacobian(y, |k| increment(ROUNDING, y[k], scale[k]), jac, self.base)?;
         Ok(true)
+    }
+    fn stage(&mut self, t: f64, stage: &Stage<'_>, y: &mut [f64], g: &mut [f64]) -> Result<(), EvalError> {
+        self.pack.stage(t, stage, y, g, self.staging)
     }
     fn invariants(&self) -> &[LinearInvariant] {
         self.balance
@@ -247,6 +263,7 @@ const FIRST_STEP: f64 = 1e-3;
 enum Method {
     Rodas(Box<Rodas>),
     Radau(Box<Radau5>),
+    Sdirk(Box<Sdirk>),
 }
 
 /// The map from the state at the start of a cycle to that at its end.
@@ -259,6 +276,7 @@ struct Cycle<'a> {
     balance: Vec<LinearInvariant>,
     events: Vec<EventOf>,
     base: Base,
+    staging: Staging,
     h: f64,
     stats: Stats,
     q: Vec<f64>,
@@ -287,6 +305,7 @@ impl Cycle<'_> {
         self.pack.events(&mut self.events);
         // Every cycle starts with the same step: the map must depend on nothing but the state.
         self.h = FIRST_STEP;
+        self.staging.restart();
         self.q.fill(0.0);
         let period = self.pack.period();
         let interval = self.pack.decision_interval();
@@ -352,6 +371,7 @@ impl Cycle<'_> {
         let mut problem = Problem {
             pack: self.pack,
             base: &mut self.base,
+            staging: &mut self.staging,
             scale: &self.scale,
             balance: &self.balance,
             events: &self.events,
@@ -377,6 +397,7 @@ impl Cycle<'_> {
         self.h = match &mut self.method {
             Method::Rodas(m) => m.integrate(&mut problem, span, b, y, q, options, st, &mut observe),
             Method::Radau(m) => m.integrate(&mut problem, span, b, y, q, options, st, &mut observe),
+            Method::Sdirk(m) => m.integrate(&mut problem, span, b, y, q, options, st, &mut observe),
         }?;
         stopped.map_or(Ok(()), |(t, e)| Err(IntegrateError::Eval { t, source: e.into() }))
     }
@@ -683,9 +704,10 @@ impl<'a> Cycle<'a> {
         let quads = pack.layout.quads();
         let rosenbrock = |formula| Method::Rodas(Box::new(Rodas::with(formula, dim, quads, None)));
         let method = match s.integrator.at(s.tolerance.si()) {
-            IntegratorName::Rodas3 => rosenbrock(Formula::Rodas3),
-            IntegratorName::Rodas | IntegratorName::Rodas5p => rosenbrock(Formula::Rodas5P),
-            IntegratorName::Radau5 => Method::Radau(Box::new(Radau5::new(dim, quads, None))),
+            RingIntegrator::Rodas3 => rosenbrock(Formula::Rodas3),
+            RingIntegrator::Rodas | RingIntegrator::Rodas5p => rosenbrock(Formula::Rodas5P),
+            RingIntegrator::Sdirk2 => Method::Sdirk(Box::new(Sdirk::new(dim, quads))),
+            RingIntegrator::Radau5 => Method::Radau(Box::new(Radau5::new(dim, quads, None))),
         };
         Cycle {
             method,
@@ -695,6 +717,7 @@ impl<'a> Cycle<'a> {
             balance: balances(pack),
             events: Vec::new(),
             base: Base::default(),
+            staging: Staging::new(pack),
             h: FIRST_STEP,
             stats: Stats::default(),
             q: vec![0.0; quads],
@@ -762,8 +785,11 @@ fn counters(work: &Stats) -> IndexMap<String, u64> {
         ("jacobians", work.jacobians),
         ("factorisations", work.lu),
         ("events", work.events),
+        ("stages", work.stages),
     ];
-    all.into_iter().map(|(k, v)| (k.to_owned(), v)).collect()
+    // Methods without stages of the scene's own do not speak of them.
+    let all = all.into_iter().filter(|(name, n)| *name != "stages" || *n > 0);
+    all.map(|(k, v)| (k.to_owned(), v)).collect()
 }
 
 /// States with which the first cycle starts, all lands at `start` \[Pa\].

@@ -42,6 +42,7 @@ pub mod rubbing;
 mod scene;
 pub mod solve;
 pub mod solver;
+pub mod staged;
 mod stepping;
 pub mod substep_march;
 mod used;

@@ -2,8 +2,11 @@
 
 use gudgeon_core::EvalError;
 use gudgeon_core::geometry::{RingGeometry, RingPlace};
-use gudgeon_core::kinds::{FaceForces, FaceIn, FlankFriction, Hydrodynamics, RadialLoads, RadialState};
+use gudgeon_core::kinds::{
+    FaceForces, FaceIn, FlankFriction, Hydrodynamics, OilTransport, RadialLoads, RadialState, RadialTrials,
+};
 
+use super::contact_line::ContactLine;
 use super::instant::RingInstant;
 
 /// One ring at an instant, with the models that answer for it.
@@ -11,11 +14,19 @@ pub struct Loads<'a> {
     /// Geometry.
     pub geo: &'a RingGeometry,
     /// Where it is.
-    pub place: &'a RingPlace,
+    pub place: RingPlace,
     /// Pressures and viscosity.
     pub at: &'a RingInstant,
     /// Velocity of the liner seen from the ring, towards the top edge positive \[m/s\].
     pub u: f64,
+    /// Zero-based number of the ring.
+    pub ring: usize,
+    /// Oil under the faces, where it is followed.
+    pub oil: Option<&'a mut (dyn OilTransport + 'static)>,
+    /// What gas on the dry parts of the faces carries per circumference \[N/m\], and its force along the liner.
+    pub dry: (f64, f64),
+    /// Solid contact.
+    pub contact: &'a ContactLine,
     /// What its radial motion sees.
     pub state: RadialState,
     /// Circumference of all rails, which turns forces per length into forces \[m\].
@@ -57,7 +68,7 @@ pub fn flank_load(place: &RingPlace, r: &RingInstant) -> f64 {
 
 impl Loads<'_> {
     fn face(&self, land: usize) -> FaceIn {
-        face_in(self.geo, self.place, self.at, self.u, land)
+        face_in(self.geo, &self.place, self.at, self.u, land)
     }
 }
 
@@ -67,7 +78,7 @@ impl RadialLoads for Loads<'_> {
     }
     fn friction(&self, hdot: f64) -> (f64, f64) {
         let Some(f) = self.friction else { return (0.0, 0.0) };
-        let axial = flank_load(self.place, self.at);
+        let axial = flank_load(&self.place, self.at);
         (f.force(hdot, axial) / self.perimeter, f.derivative(hdot, axial) / self.perimeter)
     }
     fn film(&mut self, hdot: f64) -> Result<FaceForces, EvalError> {
@@ -109,7 +120,46 @@ impl RadialLoads for Loads<'_> {
     }
 }
 
+impl RadialTrials for Loads<'_> {
+    fn set_thickness(&mut self, h: f64) -> Result<(), EvalError> {
+        self.place.h = h;
+        (self.state.thickness, self.state.contact) = (h, self.contact.load(h));
+        if let Some(oil) = self.oil.as_deref_mut() {
+            self.dry = wet_faces(oil, self.ring, h, (self.geo, self.at), self.films)?;
+            self.state.dry = self.dry.0;
+        }
+        Ok(())
+    }
+}
+
 /// Film thickness at which a ring is flush with its land or touches the groove root \[m\]: it cannot retreat further.
 pub fn furthest(geo: &RingGeometry, place: &RingPlace) -> f64 {
     geo.h_max(place.liner_radius).min(place.liner_radius - geo.piston_radius_above)
+}
+
+/// Lets the films of ring `i`, `h` \[m\] thick, reach as far as its oil does. What gas on the dry parts of the faces carries per circumference \[N/m\], and its force
+/// along the liner.
+pub fn wet_faces(
+    oil: &mut dyn OilTransport,
+    i: usize,
+    h: f64,
+    (geo, at): (&RingGeometry, &RingInstant),
+    films: &mut [Box<dyn Hydrodynamics>],
+) -> Result<(f64, f64), EvalError> {
+    let mut dry = (0.0, 0.0);
+    for k in 0..oil.faces().len() {
+        let (ring, land) = oil.faces()[k];
+        if ring != i {
+            continue;
+        }
+        let e = oil.extent(k, h);
+        if !films[land].set_extent(e.from, e.to) {
+            return Err(EvalError::fatal("ring_pack", "this film cannot be confined to a part of its face"));
+        }
+        let [bottom, top] = around_land(geo, at, land).map(|p| p - at.p_cav);
+        let (d, length) = (e.drops, geo.face.length());
+        dry.0 += bottom * e.from + top * (length - e.to);
+        dry.1 -= bottom * (d[1] - d[0]) + top * (d[3] - d[2]);
+    }
+    Ok(dry)
 }

@@ -385,24 +385,29 @@ impl Pack {
         for k in self.layout.gas.clone() {
             f[k] = self.at.dm[k] / self.gas_scale[k] * per;
         }
-        let q = &mut f[dim..];
-        if !q.is_empty() {
-            let n = self.rings.len();
-            for i in 0..n {
-                q[i] = self.at.gas.flow_in[i] * per;
-                q[n + 1 + i] = self.at.rings[i].power * per;
-                q[2 * n + 1 + i] = self.at.rings[i].boundary_power * per;
-                if let Some(k) = self.layout.flank_quad(i) {
-                    let oil = self.at.rings[i].flank;
-                    (q[k], q[k + 1]) = (oil.fed * per, oil.lost * per);
-                }
-            }
-            q[n] = self.at.gas.flow_out[n - 1] * per;
-            if let Some(k) = self.layout.gas_quad() {
-                q[k] = self.at.gas.power * per;
+        self.quadratures(&mut f[dim..]);
+        Ok(())
+    }
+
+    /// Rates of the quadratures by crank angle, in the order of [`Layout::quads`]; none into an empty `q`.
+    pub(super) fn quadratures(&self, q: &mut [f64]) {
+        if q.is_empty() {
+            return;
+        }
+        let (per, n) = (1.0 / self.omega, self.rings.len());
+        for i in 0..n {
+            q[i] = self.at.gas.flow_in[i] * per;
+            q[n + 1 + i] = self.at.rings[i].power * per;
+            q[2 * n + 1 + i] = self.at.rings[i].boundary_power * per;
+            if let Some(k) = self.layout.flank_quad(i) {
+                let oil = self.at.rings[i].flank;
+                (q[k], q[k + 1]) = (oil.fed * per, oil.lost * per);
             }
         }
-        Ok(())
+        q[n] = self.at.gas.flow_out[n - 1] * per;
+        if let Some(k) = self.layout.gas_quad() {
+            q[k] = self.at.gas.power * per;
+        }
     }
 
     /// All oil per circumference \[m²\] for the states `y`; none when it is not followed.

@@ -18,10 +18,12 @@ use gudgeon_core::quantity::quantity;
 use gudgeon_core::result::{Gradients, Note};
 use gudgeon_numerics::linalg::{lu_factor, lu_solve_rows};
 use gudgeon_numerics::{EvalError, Stopped};
-use gudgeon_scene::{GradientError, IntegratorName, RunError};
+use gudgeon_scene::{GradientError, RunError};
 use indexmap::IndexMap;
 
-use super::{Cycle, Implicit, Pack, Wanted, first_states, not_periodic, orbit_options, stopped};
+use super::{
+    Cycle, Implicit, Pack, RingIntegrator, Wanted, first_states, not_periodic, orbit_options, stopped,
+};
 use crate::around::{Around, Varied};
 use variation::Variation;
 
@@ -55,7 +57,7 @@ pub(super) fn gradients(
     let mut counters = super::counters(&search.stats);
     counters.insert("cycles".into(), report.cycles as u64);
     let tolerance = s.tolerance.si().min(TOLERANCE);
-    let tight = Implicit { tolerance: quantity(tolerance), integrator: IntegratorName::Rodas5p, ..s.clone() };
+    let tight = Implicit { tolerance: quantity(tolerance), integrator: RingIntegrator::Rodas5p, ..s.clone() };
     let mut notes = Vec::new();
     if !report.converged {
         notes.push(not_periodic(report.error_estimate, options.tolerance, report.cycles));

@@ -1,0 +1,273 @@
+//! Newton's method for small implicit stages, `x = b + s f(x)`, with a Jacobian that is kept from stage to stage.
+
+use crate::EvalError;
+use crate::linalg::dot;
+
+/// Most steps of a solution.
+const STEPS: usize = 25;
+/// A step that is not shorter than this part of the one before asks for a new Jacobian.
+const SLOW: f64 = 0.7;
+/// Increment of differences, relative.
+const INCREMENT: f64 = 1e-5;
+/// A shortened step, and the shortest.
+const SHORTER: f64 = 0.4;
+const SHORTEST: f64 = 1e-2;
+/// A step is taken if what remains is smaller than before by this part of it.
+const GAIN: f64 = 0.1;
+/// Part of a change of the residual that the matrix must keep in an update.
+const LEAST_TURN: f64 = 0.1;
+
+/// The residual of a stage, `x - b - s f(x)`, into the second slice.
+pub type Residual<'a> = dyn FnMut(&[f64], &mut [f64]) -> Result<(), EvalError> + 'a;
+
+/// Solves stages of one system by Newton's method with Broyden's updates.
+///
+/// The matrix `I - s F` is made from the Jacobian `F` of the rates, which outlives changes of the step `s`. It is taken by differences where none is known
+/// or where steps do not shrink, and updated from every step that is taken (broyden1965, in units of the accuracy). Steps that lead nowhere are
+/// shortened.
+#[derive(Debug, Clone, Default)]
+pub struct StageNewton {
+    /// Jacobian of the rates, row-major.
+    by: Vec<f64>,
+    /// Whether it is known, and whether it was taken at the present point.
+    known: bool,
+    fresh: bool,
+    pivots: Vec<usize>,
+    inverse: Vec<f64>,
+    /// Residual, that before it, Newton's step; residual of a trial, and the step that would follow it.
+    r: Vec<f64>,
+    last: Vec<f64>,
+    step: Vec<f64>,
+    moved: Vec<f64>,
+    next: Vec<f64>,
+    trial: Vec<f64>,
+    row: Vec<f64>,
+    way: Vec<f64>,
+}
+
+impl StageNewton {
+    /// Work arrays for `n` unknowns.
+    #[must_use]
+    pub fn new(n: usize) -> Self {
+        let v = || vec![0.0; n];
+        let m = || vec![0.0; n * n];
+        Self {
+            by: m(),
+            known: false,
+            fresh: false,
+            pivots: vec![0; n],
+            inverse: m(),
+            r: v(),
+            last: v(),
+            step: v(),
+            moved: v(),
+            next: v(),
+            trial: v(),
+            row: v(),
+            way: v(),
+        }
+    }
+
+    /// Forgets the Jacobian.
+    pub fn forget(&mut self) {
+        self.known = false;
+    }
+
+    /// Solves a stage of step `s` for `x`, which comes as a guess, until the next step would be smaller than `accuracy` in every unknown. The
+    /// residual is evaluated at the answer last.
+    ///
+    /// # Errors
+    /// Recoverable where no solution is found nearby; those of the residual at the guess.
+    pub fn solve(
+        &mut self,
+        x: &mut [f64],
+        s: f64,
+        accuracy: &[f64],
+        residual: &mut Residual<'_>,
+    ) -> Result<(), EvalError> {
+        residual(x, &mut self.r)?;
+        self.fresh = false;
+        if self.known {
+            self.invert(s)?;
+        }
+        self.last.fill(0.0);
+        let (mut before, mut part, mut taken) = (f64::INFINITY, 1.0, false);
+        for _ in 0..STEPS {
+            if !self.known {
+                self.differences(x, s, accuracy, residual)?;
+                self.invert(s)?;
+                taken = true;
+            }
+            times(&self.inverse, &self.r, &mut self.step);
+            let size = size(&self.step, accuracy);
+            if size <= 1.0 && !self.fresh && (taken || self.is_seen(accuracy)) {
+                return Ok(());
+            }
+            if before.is_finite() && (size > SLOW * before || size <= 1.0) && !self.fresh {
+                (self.known, before) = (false, f64::INFINITY);
+                continue;
+            }
+            before = size;
+            if self.take(x, size, &mut part, (s, accuracy), residual)? {
+                continue;
+            }
+            // The direction may be wrong, not its length.
+            (self.known, before) = (false, f64::INFINITY);
+        }
+        Err(EvalError::recoverable("stage", "Newton's method does not settle"))
+    }
+
+    /// Whether every residual is small, or was halved by the last step: a Jacobian of stiffer rates that are gone makes a step look small that is none.
+    fn is_seen(&self, accuracy: &[f64]) -> bool {
+        let mut all = self.r.iter().zip(&self.last).zip(accuracy);
+        all.all(|((r, last), a)| r.abs() <= a.max(0.5 * last.abs()))
+    }
+
+    /// Takes a step, or as much of it as leads anywhere; false where the Jacobian was an old one.
+    fn take(
+        &mut self,
+        x: &mut [f64],
+        size_now: f64,
+        part: &mut f64,
+        (s, accuracy): (f64, &[f64]),
+        residual: &mut Residual<'_>,
+    ) -> Result<bool, EvalError> {
+        loop {
+            for ((t, x), d) in self.trial.iter_mut().zip(&*x).zip(&self.step) {
+                *t = x - *part * d;
+            }
+            let better = match residual(&self.trial, &mut self.moved) {
+                Ok(()) => {
+                    times(&self.inverse, &self.moved, &mut self.next);
+                    size_now <= 1.0 || size(&self.next, accuracy) <= (1.0 - GAIN * *part) * size_now
+                }
+                Err(e) if e.is_recoverable() => false,
+                Err(e) => return Err(e),
+            };
+            if better {
+                self.update(*part, s, accuracy);
+                x.copy_from_slice(&self.trial);
+                self.last.copy_from_slice(&self.r);
+                std::mem::swap(&mut self.r, &mut self.moved);
+                *part = (2.0 * *part).min(1.0);
+                self.fresh = false;
+                return Ok(true);
+            }
+            if !self.fresh {
+                return Ok(false);
+            }
+            *part *= SHORTER;
+            if *part < SHORTEST {
+                return Err(EvalError::recoverable("stage", "there is no solution nearby"));
+            }
+        }
+    }
+
+    /// The Jacobian of the rates at `x`, by differences.
+    fn differences(
+        &mut self,
+        x: &[f64],
+        s: f64,
+        accuracy: &[f64],
+        residual: &mut Residual<'_>,
+    ) -> Result<(), EvalError> {
+        let n = x.len();
+        self.trial.copy_from_slice(x);
+        for column in 0..n {
+            let d = INCREMENT * x[column].abs() + accuracy[column];
+            self.trial[column] = x[column] + d;
+            residual(&self.trial, &mut self.moved)?;
+            self.trial[column] = x[column];
+            for row in 0..n {
+                let unit = f64::from(u8::from(row == column));
+                self.by[row * n + column] = (unit - (self.moved[row] - self.r[row]) / d) / s;
+            }
+        }
+        (self.known, self.fresh) = (true, true);
+        Ok(())
+    }
+
+    /// Inverts the matrix, by Gauss and Jordan's elimination in place.
+    fn invert(&mut self, s: f64) -> Result<(), EvalError> {
+        let n = self.r.len();
+        for (k, (m, by)) in self.inverse.iter_mut().zip(&self.by).enumerate() {
+            *m = f64::from(u8::from(k.is_multiple_of(n + 1))) - s * by;
+        }
+        if invert(&mut self.inverse, n, &mut self.pivots, &mut self.row) {
+            return Ok(());
+        }
+        self.known = false;
+        Err(EvalError::recoverable("stage", "the matrix of a stage is singular"))
+    }
+
+    /// Broyden's update of inverse and Jacobian after the part `part` of the step was taken, in units of the accuracy.
+    fn update(&mut self, part: f64, s: f64, accuracy: &[f64]) {
+        let n = self.r.len();
+        let way = &mut self.way;
+        way.iter_mut().zip(&self.step).zip(accuracy).for_each(|((w, d), a)| *w = -part * d / (a * a));
+        let all = -part * dot(&self.step, way);
+        let along = dot(way, &self.next) - dot(way, &self.step);
+        if !(all > 0.0 && all.is_finite() && along > LEAST_TURN * all) {
+            return;
+        }
+        self.row.fill(0.0);
+        for (way, inverse) in way.iter().zip(self.inverse.chunks_exact(n)) {
+            self.row.iter_mut().zip(inverse).for_each(|(r, h)| *r += way * h);
+        }
+        let (by, inverse) = (self.by.chunks_exact_mut(n), self.inverse.chunks_exact_mut(n));
+        for (k, (by, inverse)) in by.zip(inverse).enumerate() {
+            let surplus = (self.moved[k] - (1.0 - part) * self.r[k]) / (all * s);
+            by.iter_mut().zip(&*way).for_each(|(by, way)| *by -= surplus * way);
+            let short = ((1.0 - part) * self.step[k] - self.next[k]) / along;
+            inverse.iter_mut().zip(&self.row).for_each(|(h, r)| *h += short * r);
+        }
+    }
+}
+
+/// Inverts the matrix `a` of `n` rows in place; false where it is singular. `pivots` and `row` are scratch.
+fn invert(a: &mut [f64], n: usize, pivots: &mut [usize], row: &mut [f64]) -> bool {
+    for k in 0..n {
+        let p = (k..n).max_by(|&i, &j| a[i * n + k].abs().total_cmp(&a[j * n + k].abs())).unwrap_or(k);
+        pivots[k] = p;
+        if p != k {
+            let (top, bottom) = a.split_at_mut(p * n);
+            top[k * n..][..n].swap_with_slice(&mut bottom[..n]);
+        }
+        let per = 1.0 / a[k * n + k];
+        if !per.is_finite() {
+            return false;
+        }
+        a[k * n + k] = 1.0;
+        a[k * n..][..n].iter_mut().for_each(|x| *x *= per);
+        row.copy_from_slice(&a[k * n..][..n]);
+        for (i, other) in a.chunks_exact_mut(n).enumerate() {
+            let factor = other[k];
+            if i == k || factor == 0.0 {
+                continue;
+            }
+            other[k] = 0.0;
+            other.iter_mut().zip(&*row).for_each(|(x, r)| *x -= factor * r);
+        }
+    }
+    for k in (0..n).rev() {
+        if pivots[k] != k {
+            a.chunks_exact_mut(n).for_each(|row| row.swap(k, pivots[k]));
+        }
+    }
+    true
+}
+
+/// Largest component over its accuracy.
+fn size(step: &[f64], accuracy: &[f64]) -> f64 {
+    step.iter()
+        .zip(accuracy)
+        .map(|(d, a)| (d / a).abs())
+        .fold(0.0, |a, b| if b.is_nan() { b } else { a.max(b) })
+}
+
+/// `out = a x`, `a` square.
+fn times(a: &[f64], x: &[f64], out: &mut [f64]) {
+    for (out, row) in out.iter_mut().zip(a.chunks_exact(x.len().max(1))) {
+        *out = dot(row, x);
+    }
+}

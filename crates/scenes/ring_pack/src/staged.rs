@@ -1,0 +1,292 @@
+//! Stages of implicit steps, solved by the pack itself.
+//!
+//! ```text
+//! y = b + s f(θ, y)
+//! ```
+//!
+//! The motion of a ring, in its groove and towards the liner, is solved by its own model in one unknown: its laws have corners, and the force of a film
+//! goes with a power of its thickness. What is left is solved by Newton's method, rings following: gas and the oil on flanks of all rings
+//! together, the oil under the faces of a ring with its film. The Jacobians of that are kept from stage to stage. Films are solved before the gas and after
+//! it: what they do to gas and grooves is little, and is iterated on.
+
+use std::ops::Range;
+
+use gudgeon_core::EvalError;
+use gudgeon_core::geometry::RingPlace;
+use gudgeon_core::kinds::{RingForces, RingPose};
+use gudgeon_core::states::Stage;
+use gudgeon_numerics::stages::StageNewton;
+
+use super::pack::Pack;
+use super::ring::Ring;
+
+/// Unknowns that are solved together, and what is kept of them from stage to stage.
+#[derive(Debug, Clone, Default)]
+struct Together {
+    /// Their places in the state vector.
+    states: Vec<usize>,
+    newton: StageNewton,
+    x: Vec<f64>,
+    accuracy: Vec<f64>,
+}
+
+/// What [`Pack::stage`] works with.
+#[derive(Debug, Clone, Default)]
+pub struct Staging {
+    /// Gas, and oil on flanks.
+    gas: Together,
+    /// Oil under the faces of each ring.
+    oil: Vec<Together>,
+    /// Radii of the liner at the rings.
+    radii: Vec<f64>,
+}
+
+/// Most passes over films and gas.
+const PASSES: usize = 10;
+/// Accuracy of gas and oil over what is asked: what a stage lacks of them comes from nowhere.
+const TIGHT: f64 = 3e-3;
+
+/// Tells what unknowns lack in a stage: for the states, and the places of the unknowns in them, into a slice as long as there are unknowns.
+type Missing<'a> = dyn FnMut(&mut [f64], &[usize], &mut [f64]) -> Result<(), EvalError> + 'a;
+
+impl Together {
+    fn new(states: Vec<usize>) -> Self {
+        let n = states.len();
+        Self { states, newton: StageNewton::new(n), x: vec![0.0; n], accuracy: vec![0.0; n] }
+    }
+
+    /// Solves a stage for these unknowns.
+    fn solve(
+        &mut self,
+        stage: &Stage<'_>,
+        y: &mut [f64],
+        missing: &mut Missing<'_>,
+    ) -> Result<(), EvalError> {
+        let states = &self.states;
+        for ((x, a), &k) in self.x.iter_mut().zip(&mut self.accuracy).zip(states) {
+            (*x, *a) = (y[k], TIGHT * stage.accuracy[k]);
+        }
+        self.newton.solve(&mut self.x, stage.step, &self.accuracy, &mut |x, r| {
+            states.iter().zip(x).for_each(|(&k, x)| y[k] = *x);
+            missing(y, states, r)
+        })
+    }
+}
+
+impl Staging {
+    /// For a pack.
+    pub fn new(pack: &Pack) -> Self {
+        let layout = &pack.layout;
+        let gas = layout.gas.clone().chain(layout.flank.iter().cloned().flatten()).collect();
+        let under = |i: usize| {
+            let of = |k: &usize| pack.oil_pack.as_ref().is_some_and(|o| o.ring_of(k - layout.oil.start) == i);
+            Together::new(layout.oil.clone().filter(of).collect())
+        };
+        Self { gas: Together::new(gas), oil: (0..pack.n_rings()).map(under).collect(), ..Self::default() }
+    }
+
+    /// Forgets what is kept from stage to stage.
+    pub fn restart(&mut self) {
+        self.gas.newton.forget();
+        self.oil.iter_mut().for_each(|o| o.newton.forget());
+    }
+}
+
+impl Pack {
+    /// Whether the models can solve stages.
+    #[must_use]
+    pub fn solves_stages(&self) -> bool {
+        self.refuses_stages().is_none()
+    }
+
+    /// Why the pack cannot solve stages.
+    #[must_use]
+    pub fn refuses_stages(&self) -> Option<String> {
+        let own = |what: String| format!("{what} does not solve stages of implicit steps");
+        let in_groove = |r: &Ring| r.is_decided() || !r.motion.solves_stages();
+        if let Some(i) = self.rings.iter().position(in_groove) {
+            return Some(own(format!("`{}`, the motion of ring {},", self.rings[i].motion_name, i + 1)));
+        }
+        if self.plan.film && self.rings.iter().any(|r| !r.radial.solves_stages()) {
+            return Some(own("the radial motion of a ring".into()));
+        }
+        if self.layout.twists.iter().any(|t| *t) {
+            return Some(own("a ring that twists".into()));
+        }
+        (!self.layout.temperature.is_empty()).then(|| own("a film temperature that is integrated".into()))
+    }
+
+    /// Solves a stage; `self.at` is left at its answer, and `g` holds the rates of the quadratures.
+    ///
+    /// # Errors
+    /// What a sub-model refuses; no answer.
+    pub fn stage(
+        &mut self,
+        theta: f64,
+        stage: &Stage<'_>,
+        y: &mut [f64],
+        g: &mut [f64],
+        w: &mut Staging,
+    ) -> Result<(), EvalError> {
+        self.state.fill(f64::NAN);
+        self.set_places(theta, y);
+        let pin = self.at.piston.y;
+        w.radii.clear();
+        w.radii.extend((0..self.n_rings()).map(|i| self.liner_radius(i, pin)));
+        self.set_gas(y)?;
+        let p = self.cylinder.pressure(theta);
+        self.gas_pressures(p)?;
+        self.films_of_stage(stage, y, w)?;
+        for pass in 0.. {
+            let Staging { gas, radii, .. } = w;
+            gas.solve(stage, y, &mut |y, states, r| self.follow((stage, states), (p, radii), y, r))?;
+            if !self.plan.film || self.films_of_stage(stage, y, w)? <= 1.0 {
+                break;
+            }
+            if pass == PASSES {
+                return Err(EvalError::recoverable("ring_pack", "films and gas do not settle"));
+            }
+        }
+        self.quadratures(g);
+        self.state.copy_from_slice(y);
+        Ok(())
+    }
+
+    fn set_gas(&mut self, y: &[f64]) -> Result<(), EvalError> {
+        for (k, m) in self.gas_state.iter_mut().enumerate() {
+            *m = y[k] * self.gas_scale[k];
+        }
+        if self.gas_state.iter().all(|m| *m > 0.0) {
+            Ok(())
+        } else {
+            Err(EvalError::recoverable("ring_pack", "a space without gas"))
+        }
+    }
+
+    /// Films of all rings, with the oil under them; the largest change of a film over its accuracy.
+    fn films_of_stage(
+        &mut self,
+        stage: &Stage<'_>,
+        y: &mut [f64],
+        w: &mut Staging,
+    ) -> Result<f64, EvalError> {
+        let mut change = 0.0_f64;
+        if !self.plan.film {
+            return Ok(change);
+        }
+        for i in 0..self.n_rings() {
+            let film = self.layout.radial[i].start;
+            let before = y[film];
+            let oil = &mut w.oil[i];
+            if oil.states.is_empty() {
+                self.film_of_stage(i, stage, y)?;
+            } else {
+                oil.solve(stage, y, &mut |y, states, r| self.oil_under((i, states), stage, y, r))?;
+            }
+            change = change.max((y[film] - before).abs() / stage.accuracy[film]);
+            let v = self.at.places[i].v;
+            self.at.places[i] = self.place(i, w.radii[i], y);
+            self.at.places[i].v = v;
+            self.friction(i)?;
+        }
+        Ok(change)
+    }
+
+    /// What the oil under the faces of ring `i` lacks, its film following.
+    fn oil_under(
+        &mut self,
+        (i, states): (usize, &[usize]),
+        stage: &Stage<'_>,
+        y: &mut [f64],
+        r: &mut [f64],
+    ) -> Result<(), EvalError> {
+        if let Some(oil) = &mut self.oil_pack {
+            oil.place(&y[self.layout.oil.clone()], self.at.piston.y);
+        }
+        self.film_of_stage(i, stage, y)?;
+        self.at.places[i].h = self.rings[i].radial.thickness(&y[self.layout.radial[i].clone()]);
+        self.oil_rates(i);
+        for (r, &k) in r.iter_mut().zip(states) {
+            *r = y[k] - stage.base[k] - stage.step * self.dy[k];
+        }
+        Ok(())
+    }
+
+    fn film_of_stage(&mut self, i: usize, stage: &Stage<'_>, y: &mut [f64]) -> Result<(), EvalError> {
+        self.wet(i)?;
+        let own = self.layout.radial[i].clone();
+        let part = part(stage, own.clone());
+        let (mut loads, radial) = self.loads(i);
+        let outcome = radial.stage(&part, &mut y[own], &mut loads);
+        let (dry, flux, perimeter) = (loads.dry, loads.flux, loads.perimeter);
+        let (load, contact) = (loads.state.load, loads.state.contact);
+        let (found, film) = outcome?;
+        let r = &mut self.at.rings[i];
+        (r.dry, r.flux, r.perimeter) = (dry, flux, perimeter);
+        (r.load, r.contact, r.limited) = (load, contact, found.limited);
+        (r.hdot, r.film, r.film_known) = (found.hdot, film, true);
+        Ok(())
+    }
+
+    /// What gas and oil on flanks lack in their stage, the rings following them; `p` is the pressure in the cylinder.
+    fn follow(
+        &mut self,
+        (stage, states): (&Stage<'_>, &[usize]),
+        (p, radii): (f64, &[f64]),
+        y: &mut [f64],
+        r: &mut [f64],
+    ) -> Result<(), EvalError> {
+        self.set_gas(y)?;
+        self.gas_pressures(p)?;
+        for (i, radius) in radii.iter().enumerate() {
+            self.groove_of_stage(i, stage, y, *radius)?;
+        }
+        self.gas(Some(p))?;
+        for i in 0..self.n_rings() {
+            self.flank_rates(i, y)?;
+        }
+        let gas = self.layout.gas.len();
+        for (r, &k) in r.iter_mut().zip(states) {
+            let rate = if k < gas { self.at.dm[k] / (self.gas_scale[k] * self.omega) } else { self.dy[k] };
+            *r = y[k] - stage.base[k] - stage.step * rate;
+        }
+        Ok(())
+    }
+
+    /// The motion of ring `i` in its groove.
+    fn groove_of_stage(
+        &mut self,
+        i: usize,
+        stage: &Stage<'_>,
+        y: &mut [f64],
+        radius: f64,
+    ) -> Result<(), EvalError> {
+        let (own, oil) = (self.layout.motion[i].clone(), self.layout.flank[i].clone());
+        let mut at = self.place(i, radius, y);
+        self.at.places[i] = at;
+        if !self.plan.axial || own.is_empty() {
+            return Ok(());
+        }
+        self.external_forces(i);
+        let forces = RingForces::new(at, self.at.rings[i].axial);
+        let (before, after) = y.split_at_mut(own.end);
+        let ring = &mut self.rings[i];
+        let (flank, oil) = (&ring.flank, &after[oil.start - own.end..oil.end - own.end]);
+        let mut place = |pose: RingPose| -> RingPlace {
+            (at.s, at.v, at.lift_fraction) = (pose.s, pose.v, pose.lift_fraction);
+            at.flank = flank.oil(oil, &at);
+            at
+        };
+        let part = part(stage, own.clone());
+        let response = ring.motion.stage(&part, &mut before[own], &forces, &mut place)?;
+        self.at.places[i] = at;
+        let r = &mut self.at.rings[i];
+        (r.axial.damping, r.reaction) = (response.damping, response.reaction);
+        Ok(())
+    }
+}
+
+/// The part of a stage that belongs to a model.
+fn part<'a>(stage: &Stage<'a>, own: Range<usize>) -> Stage<'a> {
+    Stage { base: &stage.base[own.clone()], step: stage.step, accuracy: &stage.accuracy[own] }
+}
