@@ -57,14 +57,20 @@ impl Film2dSpec for Direct {
             let what = format!("{} x {} nodes are too many for banded elimination", problem.nx, problem.ny);
             return Err(BuildError::new(what).help("use the model `multigrid`"));
         }
-        let linear = Elimination::new(&problem.m, self.cavitation == Cavitation::MassConserving);
+        let linear = Elimination::of(&problem.m, self.cavitation == Cavitation::MassConserving, |k| {
+            problem.edge[k] == 4
+        });
         Ok(Box::new(Solver::new("direct", problem, linear, self.cavitation, self.tolerance)))
     }
 }
 
+/// Place of a node that is no unknown.
+const NONE: usize = usize::MAX;
+
 pub(super) struct Elimination {
-    /// Where each node stands among the unknowns.
+    /// Where each node stands among the unknowns; [`NONE`] for those whose value is always given.
     place: Vec<usize>,
+    unknowns: usize,
     symmetric: SymmetricBanded,
     general: Option<Banded>,
     is_symmetric: bool,
@@ -84,6 +90,11 @@ impl Elimination {
 
     /// Work space; `general` for matrices that are not symmetric.
     pub fn new(m: &FivePoint, general: bool) -> Self {
+        Self::of(m, general, |_| true)
+    }
+
+    /// The same where nodes that are not `solved` have the role [`Role::Fixed`] in every matrix: they take no part.
+    pub fn of(m: &FivePoint, general: bool, solved: impl Fn(usize) -> bool) -> Self {
         let (nx, ny, n) = (m.nx, m.ny, m.nx * m.ny);
         let column = |i: usize| {
             if !m.periodic {
@@ -95,14 +106,72 @@ impl Elimination {
             }
         };
         let by_line = !m.periodic && nx <= ny;
-        let half = Self::half(m);
+        let mut order: Vec<usize> = (0..n).filter(|k| solved(*k)).collect();
+        if !by_line {
+            order.sort_by_key(|k| column(k % nx) * ny + k / nx);
+        }
+        let mut place = vec![NONE; n];
+        order.iter().enumerate().for_each(|(row, k)| place[*k] = row);
+        let mut half = 1;
+        for &k in &order {
+            let above = if k + nx < n { k + nx } else { k };
+            for to in [m.after(k % nx, k), above].map(|k| place[k]).into_iter().filter(|p| *p != NONE) {
+                half = half.max(to.abs_diff(place[k]));
+            }
+        }
+        let unknowns = order.len();
         Self {
-            place: (0..n).map(|k| if by_line { k } else { column(k % nx) * ny + k / nx }).collect(),
-            symmetric: SymmetricBanded::new(n, half),
-            general: general.then(|| Banded::new(n, half, half)),
+            place,
+            unknowns,
+            symmetric: SymmetricBanded::new(unknowns, half),
+            general: general.then(|| Banded::new(unknowns, half, half)),
             is_symmetric: true,
-            work: vec![0.0; n],
-            block: vec![[0.0; 4]; n],
+            work: vec![0.0; unknowns],
+            block: vec![[0.0; 4]; unknowns],
+        }
+    }
+
+    /// Sets up a matrix of diffusion alone, side by side of its nodes.
+    fn assemble_symmetric(&mut self, m: &FivePoint) {
+        let (nx, place, a) = (m.nx, &self.place, &mut self.symmetric);
+        a.clear();
+        let free = |k: usize| m.role[k] != Role::Fixed;
+        for (k, &row) in place.iter().enumerate().filter(|(_, row)| **row != NONE) {
+            a.add(row, row, if free(k) { m.leak[k] } else { 1.0 });
+        }
+        let mut side = |k: usize, to: usize, g: f64| {
+            for k in [k, to].into_iter().filter(|k| free(*k)) {
+                a.add(place[k], place[k], g);
+            }
+            if free(k) && free(to) {
+                a.add(place[k].max(place[to]), place[k].min(place[to]), -g);
+            }
+        };
+        for j in 0..m.ny {
+            for i in 0..nx {
+                let k = j * nx + i;
+                let after = m.after(i, k);
+                if after != k {
+                    side(k, after, m.gx[k]);
+                }
+                if j + 1 < m.ny {
+                    side(k, k + nx, m.gy[k]);
+                }
+            }
+        }
+    }
+
+    /// Takes the unknowns of a field over all nodes into `work`; those that are fixed are zero.
+    fn gather(&mut self, m: &FivePoint, field: &[f64]) {
+        for (k, &row) in self.place.iter().enumerate().filter(|(_, row)| **row != NONE) {
+            self.work[row] = if m.role[k] == Role::Fixed { 0.0 } else { field[k] };
+        }
+    }
+
+    /// Gives unknowns to a field over all nodes; what is no unknown is zero.
+    fn spread(place: &[usize], unknowns: &[f64], field: &mut [f64]) {
+        for (z, &row) in field.iter_mut().zip(place) {
+            *z = if row == NONE { 0.0 } else { unknowns[row] };
         }
     }
 }
@@ -115,28 +184,28 @@ impl Linear for Elimination {
     fn factor(&mut self, m: &FivePoint, symmetric: bool) -> Result<(), Singular> {
         let (nx, ny) = (m.nx, m.ny);
         self.is_symmetric = symmetric;
-        self.symmetric.clear();
-        if let (false, Some(general)) = (symmetric, self.general.as_mut()) {
-            general.clear();
+        if symmetric || self.general.is_none() {
+            self.assemble_symmetric(m);
+            return self.symmetric.factor();
         }
+        let Some(general) = self.general.as_mut() else { return Ok(()) };
+        general.clear();
         for j in 0..ny {
             for i in 0..nx {
                 let k = j * nx + i;
                 let row = self.place[k];
-                let mut put = |column: usize, value: f64| match self.general.as_mut() {
-                    Some(general) if !symmetric => general.add(row, column, value),
-                    _ if column <= row => self.symmetric.add(row, column, value),
-                    _ => {}
-                };
+                if row == NONE {
+                    continue;
+                }
                 if m.role[k] == Role::Fixed {
-                    put(row, 1.0);
+                    general.add(row, row, 1.0);
                     continue;
                 }
                 let r = m.row(i, j);
-                put(row, r.c);
+                general.add(row, row, r.c);
                 let mut couple = |to: usize, value: f64| {
                     if to != k && m.role[to] != Role::Fixed && value != 0.0 {
-                        put(self.place[to], -value);
+                        general.add(row, self.place[to], -value);
                     }
                 };
                 couple(m.before(i, k), r.w);
@@ -149,39 +218,33 @@ impl Linear for Elimination {
                 }
             }
         }
-        match self.general.as_mut() {
-            Some(general) if !symmetric => general.factor(),
-            _ => self.symmetric.factor(),
-        }
+        general.factor()
     }
 
     fn solve(&mut self, m: &FivePoint, b: &[f64], z: &mut [f64], _: f64) -> (usize, f64) {
-        for (k, &row) in self.place.iter().enumerate() {
-            self.work[row] = if m.role[k] == Role::Fixed { 0.0 } else { b[k] };
-        }
+        self.gather(m, b);
         match self.general.as_ref() {
             Some(general) if !self.is_symmetric => general.solve(&mut self.work),
             _ => self.symmetric.solve(&mut self.work),
         }
-        for (z, &row) in z.iter_mut().zip(&self.place) {
-            *z = self.work[row];
-        }
+        Self::spread(&self.place, &self.work, z);
         (1, m.residual(b, z))
     }
     fn solve_block(&mut self, m: &FivePoint, b: &mut [f64]) -> bool {
         if !self.is_symmetric {
             return false;
         }
-        for column in b.chunks_exact_mut(self.place.len()) {
-            for (k, &row) in self.place.iter().enumerate() {
-                self.work[row] = if m.role[k] == Role::Fixed { 0.0 } else { column[k] };
-            }
-            column.copy_from_slice(&self.work);
+        let (nodes, unknowns) = (self.place.len(), self.unknowns);
+        let count = b.len() / nodes;
+        // The fields are taken together, and apart again from the last one on.
+        for c in 0..count {
+            self.gather(m, &b[c * nodes..(c + 1) * nodes]);
+            b[c * unknowns..(c + 1) * unknowns].copy_from_slice(&self.work);
         }
-        self.symmetric.solve_block(b, &mut self.block);
-        for column in b.chunks_exact_mut(self.place.len()) {
-            self.work.copy_from_slice(column);
-            column.iter_mut().zip(&self.place).for_each(|(z, &row)| *z = self.work[row]);
+        self.symmetric.solve_block(&mut b[..count * unknowns], &mut self.block);
+        for c in (0..count).rev() {
+            self.work.copy_from_slice(&b[c * unknowns..(c + 1) * unknowns]);
+            Self::spread(&self.place, &self.work, &mut b[c * nodes..(c + 1) * nodes]);
         }
         true
     }
