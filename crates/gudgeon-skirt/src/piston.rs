@@ -10,6 +10,7 @@ mod lateral;
 mod linear;
 mod newton;
 mod oil;
+mod stage;
 mod summary;
 mod tangent;
 

@@ -96,6 +96,8 @@ pub struct Side {
     trial: Gap,
     /// Where `now` is: displacements, elastic amplitudes, speed (when viscosity depends on it).
     placed: Vec<f64>,
+    /// Whether `raw` is that of the only rates that are asked for at the present place.
+    is_moving: bool,
     /// Whether the skirt moves away from the head (1) or towards it (-1).
     sense: f64,
     /// Pressure per viscosity and cause: sliding, then every rate.
@@ -181,6 +183,7 @@ impl Side {
             now: Gap::new(n, is_rough),
             trial: Gap::new(n, is_rough),
             placed: Vec::with_capacity(4 + elastic),
+            is_moving: false,
             sense: 1.0,
             fields: vec![0.0; (3 + elastic) * n],
             fills: Vec::new(),
@@ -308,8 +311,45 @@ impl Side {
         if same {
             return Ok(());
         }
+        self.go(e, q, speed)?;
+        if self.superposition != Superposition::None {
+            self.full_films()?;
+        }
+        self.placed.extend_from_slice(&[e[0], e[1], key, sense]);
+        self.placed.extend_from_slice(q);
+        Ok(())
+    }
+
+    /// The same for one set of rates alone, for which [`Side::loads`] is then asked at the same speed: of a film that is linear in them but for a cut, one
+    /// cause is solved in place of one for every rate. Slopes are told by the causes of the place before, [`Side::loads_beside`] is not.
+    ///
+    /// # Errors
+    /// As [`Side::place`].
+    pub fn place_moving(
+        &mut self,
+        e: [f64; 2],
+        q: &[f64],
+        speed: f64,
+        rates: &[f64],
+    ) -> Result<(), EvalError> {
+        if !self.is_superposed() {
+            return self.place(e, q, speed);
+        }
+        self.go(e, q, speed)?;
+        self.combine_rates(false, rates);
+        let inp = film_input(&self.now, self.nodes());
+        let mode = FilmMode { u: -speed, dhdt: &self.rates, edge_pressure: [0.0; 4] };
+        self.film.solve_many(&inp, &[mode], &mut self.raw)?;
+        self.evaluations += 1;
+        self.is_moving = true;
+        Ok(())
+    }
+
+    /// Goes to a place: its gap, its contact and what rates do there.
+    fn go(&mut self, e: [f64; 2], q: &[f64], speed: f64) -> Result<(), EvalError> {
         self.placed.clear();
-        self.sense = sense;
+        self.is_moving = false;
+        self.sense = if speed < 0.0 { -1.0 } else { 1.0 };
         self.shape_gap(false, e, q, speed)?;
         self.contact_now = self.contact_loads(e, q);
         if self.kept.is_some() {
@@ -322,11 +362,6 @@ impl Side {
                 *r = s * slope;
             }
         }
-        if self.superposition != Superposition::None {
-            self.full_films()?;
-        }
-        self.placed.extend_from_slice(&[e[0], e[1], key, sense]);
-        self.placed.extend_from_slice(q);
         Ok(())
     }
 
@@ -366,7 +401,9 @@ impl Side {
     ) -> Result<(), EvalError> {
         out.contact = self.contact_now;
         if self.is_superposed() {
-            self.superpose(speed, rates);
+            if !self.is_moving {
+                self.superpose(speed, rates);
+            }
             self.cut(mu);
         } else {
             self.solve_whole(false, speed, mu, rates)?;

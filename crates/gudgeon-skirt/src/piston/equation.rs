@@ -63,16 +63,11 @@ impl Piston {
         let Equation::Step { momentum, dt, x, .. } = equation else { return Ok(()) };
         let n = self.n;
         if slopes == Slopes::Film {
-            self.look_beside(now, x, w)?;
-            let mut work = std::mem::take(&mut self.work);
-            work.base.copy_from_slice(&self.r);
-            for column in 0..n {
-                self.change_beside(now, x, w, column, &work.base, &mut work.dr);
-                for k in 0..n {
-                    self.slope[k * n + column] += dt * work.dr[k];
-                }
-            }
-            self.work = work;
+            let mut by_place = std::mem::take(&mut self.lu);
+            let outcome = self.by_place(now, x, w, &mut by_place);
+            self.slope.iter_mut().zip(&by_place).for_each(|(s, p)| *s += *dt * p);
+            self.lu = by_place;
+            outcome?;
         }
         if let Some(Momentum { mass, .. }) = momentum {
             for (k, row) in mass.iter().enumerate() {
@@ -81,6 +76,26 @@ impl Piston {
                 }
             }
         }
+        Ok(())
+    }
+
+    /// Derivatives of the forces that were just found with respect to the coordinates, row after row, into `out`.
+    pub(super) fn by_place(
+        &mut self,
+        now: &Instant,
+        x: &[f64],
+        w: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), EvalError> {
+        let n = self.n;
+        self.look_beside(now, x, w)?;
+        let mut work = std::mem::take(&mut self.work);
+        work.base.copy_from_slice(&self.r);
+        for column in 0..n {
+            self.change_beside(now, x, w, column, &work.base, &mut work.dr);
+            work.dr.iter().enumerate().for_each(|(k, d)| out[k * n + column] = *d);
+        }
+        self.work = work;
         Ok(())
     }
 }

@@ -5,6 +5,7 @@ use gudgeon_core::kinds::{AddedForces, GrooveFriction, PinFriction};
 
 use super::follow_work::FollowWork;
 use super::linear::Linear;
+use super::stage::StageWork;
 use super::summary::Summary;
 use crate::body::{Body, Crank, Instant};
 use crate::side::{Side, SideLoads, Slopes};
@@ -37,6 +38,7 @@ pub struct Piston {
     pub(super) beside: [Vec<SideLoads>; 2],
     pub(super) work: Linear,
     pub(super) follow: FollowWork,
+    pub(super) stage: StageWork,
     /// Forces on both edges that the balance leaves for a given acceleration \[N\].
     pub(super) inertia: [f64; 2],
     /// Forces that the lateral motion adds, when it adds any.
@@ -81,6 +83,7 @@ impl Piston {
             beside,
             work: Linear::new(n),
             follow: FollowWork::new(n),
+            stage: StageWork::new(n),
             inertia: [0.0; 2],
             added: None,
             newton_steps: 0,
@@ -131,6 +134,21 @@ impl Piston {
         for side in 0..2 {
             let own = self.own(side);
             self.sides[side].place([x[0], x[1]], &x[own], now.speed)?;
+        }
+        Ok(())
+    }
+
+    /// The same for the rates `w` alone.
+    ///
+    /// # Errors
+    /// A film that cannot be solved there.
+    pub(super) fn place_moving(&mut self, now: &Instant, x: &[f64], w: &[f64]) -> Result<(), EvalError> {
+        for side in 0..2 {
+            let own = self.own(side);
+            let rates = &mut self.own_rates[side];
+            rates[..2].copy_from_slice(&w[..2]);
+            rates[2..].copy_from_slice(&w[own.clone()]);
+            self.sides[side].place_moving([x[0], x[1]], &x[own], now.speed, rates)?;
         }
         Ok(())
     }

@@ -184,4 +184,4 @@ impl OdeSystem for Equations<'_> {
 /// Time of a difference quotient \[rad\].
 const LATER: f64 = 1e-6;
 /// Gap, in clearances, below which tolerances shrink no further.
-const LEAST_GAP: f64 = 0.02;
+pub(super) const LEAST_GAP: f64 = 0.02;

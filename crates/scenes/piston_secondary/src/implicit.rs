@@ -5,20 +5,21 @@ use gudgeon_core::{BuildError, register_model};
 use gudgeon_numerics::ode::{Flow, IntegrateError, Integrator, Options, StepView};
 use gudgeon_numerics::radau::Radau5;
 use gudgeon_numerics::rodas::{Formula, Rodas};
-use gudgeon_scene::{Asked, IntegratorName, MethodSetting, RunError};
+use gudgeon_scene::{Asked, MethodSetting, RunError};
 use serde::{Deserialize, Serialize};
 
 use super::assembly::Assembly;
 use super::equations::{Equations, Work};
 use super::solver::{Cycled, PistonSolver, PistonSolverSpec, check_tolerance, mesh};
+use super::stages::Staged;
 use super::trajectory::{Between, Trajectory};
 
 /// First step of a cycle \[rad\].
-const FIRST_STEP: f64 = 1e-2;
+pub(super) const FIRST_STEP: f64 = 1e-2;
 /// Largest step \[rad\]: no pulse of the pressure is passed over.
-const LARGEST_STEP: f64 = 0.2;
+pub(super) const LARGEST_STEP: f64 = 0.2;
 /// Most steps of a cycle.
-const MAX_STEPS: u64 = 200_000;
+pub(super) const MAX_STEPS: u64 = 200_000;
 /// Tolerance at which the method of order five needs no more films than that of order three.
 const ORDER_FIVE: f64 = 2e-4;
 /// Tolerance of the motion by which those at other tolerances are judged.
@@ -31,7 +32,7 @@ const ACCURACY: f64 = 0.1;
 #[serde(deny_unknown_fields, default)]
 pub struct Implicit {
     /// Time integrator.
-    pub integrator: IntegratorName,
+    pub integrator: PistonIntegrator,
     /// Error per step, relative to the smallest gap.
     #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1 }))]
     pub tolerance: PosRatio,
@@ -39,17 +40,37 @@ pub struct Implicit {
 
 impl Default for Implicit {
     fn default() -> Self {
-        Self { integrator: IntegratorName::Rodas, tolerance: quantity(1e-3) }
+        Self { integrator: PistonIntegrator::Stages, tolerance: quantity(1e-3) }
     }
 }
 
+/// Time integrators of a piston in its bore.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum PistonIntegrator {
+    /// Of a skirt that yields, diagonally implicit stages of order 3 that find places and rates together (default). `rodas` for rigid skirts, for motions
+    /// with inertia, and where films keep their oil.
+    #[default]
+    Stages,
+    /// `rodas3` down to a tolerance of 2e-4, `rodas5p` below.
+    Rodas,
+    /// Rosenbrock method of order 3, of few stages.
+    Rodas3,
+    /// Rosenbrock method of order 5.
+    Rodas5p,
+    /// Radau IIA of order 5, for references at tight tolerances.
+    Radau5,
+}
+
 impl Implicit {
-    /// The integrator that `rodas` stands for at the tolerance. Order five pays where the films are smooth; the switch is where both need the
-    /// same films.
-    fn integrator(&self) -> IntegratorName {
+    /// The Rosenbrock or Radau method that `stages` and `rodas` stand for at the tolerance. Order five pays where the films are smooth; the switch is where both
+    /// need the same films.
+    fn integrator(&self) -> PistonIntegrator {
         match self.integrator {
-            IntegratorName::Rodas if self.tolerance.si() >= ORDER_FIVE => IntegratorName::Rodas3,
-            IntegratorName::Rodas => IntegratorName::Rodas5p,
+            PistonIntegrator::Stages | PistonIntegrator::Rodas if self.tolerance.si() >= ORDER_FIVE => {
+                PistonIntegrator::Rodas3
+            }
+            PistonIntegrator::Stages | PistonIntegrator::Rodas => PistonIntegrator::Rodas5p,
             other => other,
         }
     }
@@ -58,9 +79,9 @@ impl Implicit {
 #[register_model(
     name = "implicit",
     summary = "adaptive L-stable integration with error control",
-    equations = "y' = f(t, y) by Rodas3, Rodas5P or Radau IIA, the error of a step below the tolerance",
+    equations = "0 = r(t, y, y') by ESDIRK3(2), or y' = f(t, y) by Rodas3, Rodas5P or Radau IIA; the error of a step below the tolerance",
     validity = "Any lateral motion and any compliance.",
-    references = ["hairer1996"],
+    references = ["hairer1996", "kennedy2003"],
     example = "",
 )]
 impl PistonSolverSpec for Implicit {
@@ -73,12 +94,15 @@ impl PistonSolverSpec for Implicit {
     }
 
     fn build(&self, a: &Assembly) -> Box<dyn PistonSolver> {
+        if self.integrator == PistonIntegrator::Stages && Staged::suits(a) {
+            return Box::new(Staged::new(a, self.tolerance.si()));
+        }
         let states = a.layout.n;
         let rodas = |formula| Method::Rodas(Box::new(Rodas::with(formula, states, 0, None)));
         let method = match self.integrator() {
-            IntegratorName::Rodas5p | IntegratorName::Rodas => rodas(Formula::Rodas5P),
-            IntegratorName::Rodas3 => rodas(Formula::Rodas3),
-            IntegratorName::Radau5 => Method::Radau(Box::new(Radau5::new(states, 0, None))),
+            PistonIntegrator::Rodas3 => rodas(Formula::Rodas3),
+            PistonIntegrator::Radau5 => Method::Radau(Box::new(Radau5::new(states, 0, None))),
+            _ => rodas(Formula::Rodas5P),
         };
         Box::new(Adaptive { method, tolerance: self.tolerance.si() })
     }
@@ -88,15 +112,19 @@ impl PistonSolverSpec for Implicit {
         for (method, name, points) in [
             (
                 "implicit, order 3",
-                IntegratorName::Rodas3,
+                PistonIntegrator::Rodas3,
                 &[(1e-2, 12, 10), (3e-3, 16, 12), (1e-3, 20, 16), (3e-4, 32, 20)][..],
             ),
-            ("implicit, order 5", IntegratorName::Rodas5p, &[(1e-3, 20, 16), (1e-4, 32, 20), (1e-5, 48, 32)]),
+            (
+                "implicit, order 5",
+                PistonIntegrator::Rodas5p,
+                &[(1e-3, 20, 16), (1e-4, 32, 20), (1e-5, 48, 32)],
+            ),
         ] {
             for &(t, along, across) in points {
                 let same_film = own == Some([along, across]);
                 let same_error = (t / self.tolerance.si() - 1.0).abs() < 1e-9;
-                let set = |integrator: IntegratorName, tolerance: f64| {
+                let set = |integrator: PistonIntegrator, tolerance: f64| {
                     let mut set = vec![
                         "solver.method=implicit".into(),
                         format!("solver.integrator={}", word(integrator)),
@@ -106,7 +134,7 @@ impl PistonSolverSpec for Implicit {
                     set
                 };
                 // The film has an error of its own: what the tolerance asks for is judged on the same film.
-                let against = set(IntegratorName::Radau5, (1e-2 * t).min(TIGHT));
+                let against = set(PistonIntegrator::Radau5, (1e-2 * t).min(TIGHT));
                 all.push(MethodSetting {
                     method: method.into(),
                     setting: format!("tolerance {t:.0e}, {along} x {across}"),
@@ -120,12 +148,13 @@ impl PistonSolverSpec for Implicit {
     }
 }
 
-const fn word(name: IntegratorName) -> &'static str {
+const fn word(name: PistonIntegrator) -> &'static str {
     match name {
-        IntegratorName::Rodas => "rodas",
-        IntegratorName::Rodas3 => "rodas3",
-        IntegratorName::Rodas5p => "rodas5p",
-        IntegratorName::Radau5 => "radau5",
+        PistonIntegrator::Stages => "stages",
+        PistonIntegrator::Rodas => "rodas",
+        PistonIntegrator::Rodas3 => "rodas3",
+        PistonIntegrator::Rodas5p => "rodas5p",
+        PistonIntegrator::Radau5 => "radau5",
     }
 }
 

@@ -3,4 +3,5 @@
 mod own_motion;
 mod peak_width;
 mod places;
+mod stages;
 mod trajectory;
