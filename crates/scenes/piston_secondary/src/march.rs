@@ -43,6 +43,8 @@ struct Cycle<'a> {
     failure: Option<RunError>,
     progress: &'a mut dyn FnMut(f64) -> Result<(), Stopped>,
     done: f64,
+    /// The last cycle of the search, when it is as accurate as the one that is told and nothing more than states belongs to it.
+    last: Option<Trajectory>,
 }
 
 impl Cycle<'_> {
@@ -102,7 +104,10 @@ impl CycleMap for Cycle<'_> {
         let before = self.a.piston.film_evaluations();
         self.begin(y0);
         let mut y = std::mem::take(&mut self.y);
-        let outcome = self.integrate(&mut y, accuracy, None);
+        let keeps = accuracy <= self.repeatable_to && self.a.oil.is_none();
+        let mut last = keeps.then(|| self.solver.trajectory(self.a, &self.work));
+        let outcome = self.integrate(&mut y, accuracy, last.as_mut());
+        self.last = last;
         self.periodic(&y, y1);
         self.y = y;
         if let Err(e) = outcome {
@@ -161,7 +166,8 @@ pub fn run(
     let mut cycle = Cycle::new(case, a, progress);
     let mut y = cycle.first(start)?;
     let mut notes = Vec::new();
-    let (cycles, error);
+    let (cycles, mut error);
+    let mut last = None;
     if s.cycles > 0 {
         for _ in 1..s.cycles {
             cycle.integrate(&mut y, 0.0, None)?;
@@ -174,11 +180,16 @@ pub fn run(
         let report = cycle.close(&mut y, wanted)?;
         notes.extend(told(&report, wanted));
         (cycles, error) = (report.cycle_equivalents, Some(report.error_estimate));
+        last = cycle.reusable(&y, &report, wanted);
+        if last.is_some() && purpose != Purpose::Start {
+            error = Some(began_at(&report));
+        }
     }
     let searched = begin.elapsed().as_secs_f64();
     let start = y.clone();
-    let mut trajectory = cycle.solver.trajectory(cycle.a, &cycle.work);
-    if purpose != Purpose::Start {
+    let known = last.is_some();
+    let mut trajectory = last.unwrap_or_else(|| cycle.solver.trajectory(cycle.a, &cycle.work));
+    if purpose != Purpose::Start && !known {
         cycle.integrate(&mut y, 0.0, Some(&mut trajectory))?;
     }
     // Of a given number of cycles the last one is that of the record.
@@ -217,7 +228,16 @@ impl<'a> Cycle<'a> {
             failure: None,
             progress,
             done: 0.0,
+            last: None,
         }
+    }
+
+    /// The last cycle of a search that ended in `y`, when it began as near to the periodic motion as is wanted.
+    fn reusable(&mut self, y: &[f64], report: &OrbitReport, wanted: f64) -> Option<Trajectory> {
+        let last = self.last.take().filter(|t| !t.ends().is_empty())?;
+        let end = last.at_end(last.ends().len() - 1);
+        let ends_there = self.a.layout.periodic.iter().all(|k| end[*k] == y[*k]);
+        (ends_there && report.converged && report.period == 1 && began_at(report) <= wanted).then_some(last)
     }
 
     /// States of the first cycle: those given, or those with which the models begin.
@@ -259,6 +279,11 @@ impl<'a> Cycle<'a> {
         y.copy_from_slice(&self.y);
         Ok(report)
     }
+}
+
+/// Distance from the periodic motion at which the last cycle of a search began: that of its end, and the change over it.
+fn began_at(report: &OrbitReport) -> f64 {
+    report.error_estimate + report.residual
 }
 
 /// What the search of the periodic motion found, for a person.
