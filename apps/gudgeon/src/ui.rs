@@ -195,12 +195,18 @@ pub fn unit(unit: &str) -> String {
 
 /// Columns padded to their widest cell. `right` tells which ones are aligned to the right.
 pub fn table(rows: &[Vec<String>], right: &[usize]) -> String {
-    let width = |c: usize| rows.iter().filter_map(|r| r.get(c)).map(|s| s.chars().count()).max().unwrap_or(0);
+    let mut widths: Vec<usize> = Vec::new();
+    for row in rows {
+        widths.resize(widths.len().max(row.len()), 0);
+        for (width, cell) in widths.iter_mut().zip(row) {
+            *width = (*width).max(cell.chars().count());
+        }
+    }
     let mut out = String::new();
     for row in rows {
         let mut line = String::new();
         for (c, cell) in row.iter().enumerate() {
-            let pad = " ".repeat(width(c).saturating_sub(cell.chars().count()));
+            let pad = " ".repeat(widths[c] - cell.chars().count());
             line.push_str("  ");
             if right.contains(&c) {
                 line.push_str(&pad);
