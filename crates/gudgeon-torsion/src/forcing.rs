@@ -92,7 +92,7 @@ fn kinks(t: &LineThrow) -> Vec<f64> {
 #[must_use]
 pub fn gas_series(t: &LineThrow, max_harmonic: usize) -> Vec<Complex> {
     let torque = |a: f64| t.ends.iter().map(|e| e.torque(a, a)).sum();
-    series(torque, gas_period(t), &kinks(t), max_harmonic)
+    t.gas_harmonics(max_harmonic, || series(torque, gas_period(t), &kinks(t), max_harmonic))
 }
 
 /// Fourier coefficients of `-½ dI/dθ`, the torque of the moving masses at unit speed.
@@ -101,7 +101,7 @@ pub fn inertia_series(t: &LineThrow, max_harmonic: usize) -> Vec<Complex> {
     if t.inertia.is_constant() {
         return vec![Complex::default(); 1];
     }
-    series(|a| -0.5 * t.inertia.inertia(a).1, 2.0 * PI, &[], max_harmonic)
+    t.mass_harmonics(max_harmonic, || series(|a| -0.5 * t.inertia.inertia(a).1, 2.0 * PI, &[], max_harmonic))
 }
 
 /// Number of harmonics of a throw up to order `max_order` of the reference shaft.
@@ -144,18 +144,31 @@ impl Excitation {
     /// The orders of the sum of [`Excitation::parts`] at `speed` \[rad/s\].
     pub(crate) fn orders_of_parts(&mut self, parts: &[Self; 2], line: &Line, speed: f64) {
         let square = Complex::new(speed * speed, 0.0);
-        let [fixed, masses] = parts;
-        self.orders.clone_from(&fixed.orders);
-        for o in &masses.orders {
-            let at = self.orders.partition_point(|p| p.order < o.order - SAME);
-            if self.orders.get(at).is_none_or(|p| p.order > o.order + SAME) {
-                self.orders
-                    .insert(at, Order { order: o.order, torque: vec![Complex::default(); line.nodes.len()] });
+        let [mut fixed, mut masses] = parts.each_ref().map(|p| p.orders.iter().peekable());
+        let mut count = 0;
+        // Both ascend. Storage of before is used again: this runs at every speed.
+        loop {
+            let [a, b] = [fixed.peek(), masses.peek()].map(|o| o.map_or(f64::INFINITY, |o| o.order));
+            let (order, is_fixed) = if a <= b + SAME { (a, true) } else { (b, false) };
+            if order == f64::INFINITY {
+                break;
             }
-            for (t, m) in self.orders[at].torque.iter_mut().zip(&o.torque) {
-                *t = *t + *m * square;
+            if count == self.orders.len() {
+                self.orders.push(Order { order, torque: Vec::new() });
             }
+            let own = &mut self.orders[count];
+            own.order = order;
+            own.torque.clear();
+            if let Some(o) = fixed.next_if(|_| is_fixed) {
+                own.torque.extend_from_slice(&o.torque);
+            }
+            own.torque.resize(line.nodes.len(), Complex::default());
+            if let Some(o) = masses.next_if(|o| o.order <= order + SAME) {
+                own.torque.iter_mut().zip(&o.torque).for_each(|(t, m)| *t = *t + *m * square);
+            }
+            count += 1;
         }
+        self.orders.truncate(count);
     }
 
     /// The torques that do not depend on the speed, and those of the moving masses at unit speed: the torque at speed Ω is the first

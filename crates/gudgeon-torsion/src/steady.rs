@@ -169,6 +169,11 @@ impl Steady {
         }
     }
 
+    /// Whether the stiffness of a link depends on the frequency.
+    pub(crate) const fn depends_on_frequency(&self) -> bool {
+        self.varying
+    }
+
     /// Response to torques of one order (phasors by node).
     ///
     /// # Errors

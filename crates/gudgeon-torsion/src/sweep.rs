@@ -80,13 +80,28 @@ impl Sweep {
         omega: &Lane,
         torque: &[[f64; 2]],
     ) -> Result<(), (usize, Resonance)> {
-        if self.fast(tree, omega, torque) {
+        self.solve_lanes(tree, omega, |i, _| torque[i])
+    }
+
+    /// The same for torques by position and lane: other torques at every frequency.
+    ///
+    /// # Errors
+    /// As [`Sweep::solve`].
+    #[inline]
+    pub fn solve_lanes(
+        &mut self,
+        tree: &Tree,
+        omega: &Lane,
+        torque: impl Fn(usize, usize) -> [f64; 2],
+    ) -> Result<(), (usize, Resonance)> {
+        if self.fast(tree, omega, &torque) {
             return Ok(());
         }
         for l in 0..LANES {
             let c = &mut self.careful;
-            for (t, f) in c.torque.iter_mut().zip(torque) {
-                *t = Complex::new(f[0], f[1]);
+            for (i, t) in c.torque.iter_mut().enumerate() {
+                let [re, im] = torque(i, l);
+                *t = Complex::new(re, im);
             }
             let z = Complex::new(0.0, omega[l]);
             tree.solve(z, &c.torque, &mut c.angle, &mut c.transmitted, Singular::Refuse, &mut c.work)
@@ -102,7 +117,8 @@ impl Sweep {
     }
 
     /// Plain elimination; false when a pivot is small.
-    fn fast(&mut self, tree: &Tree, omega: &Lane, torque: &[[f64; 2]]) -> bool {
+    #[inline(always)]
+    fn fast(&mut self, tree: &Tree, omega: &Lane, torque: &impl Fn(usize, usize) -> [f64; 2]) -> bool {
         self.coefficients(tree, omega, torque);
         let mut margin = [f64::INFINITY; LANES];
         let brought = self.eliminate(tree, omega, &mut margin);
@@ -116,7 +132,7 @@ impl Sweep {
 
     /// Dynamic stiffness of every node by itself, and its torque.
     #[inline(always)]
-    fn coefficients(&mut self, tree: &Tree, omega: &Lane, torque: &[[f64; 2]]) {
+    fn coefficients(&mut self, tree: &Tree, omega: &Lane, torque: &impl Fn(usize, usize) -> [f64; 2]) {
         let n = tree.len();
         let (inertia, damping, ground) = (&tree.inertia[..n], &tree.damping[..n], &tree.ground[..n]);
         let (s, f) = (&mut self.s[..n], &mut self.f[..n]);
@@ -125,8 +141,7 @@ impl Sweep {
                 let w = omega[l];
                 s[i][0][l] = ground[i] - w * w * inertia[i];
                 s[i][1][l] = w * damping[i];
-                f[i][0][l] = torque[i][0];
-                f[i][1][l] = torque[i][1];
+                [f[i][0][l], f[i][1][l]] = torque(i, l);
             }
         }
     }

@@ -1,6 +1,8 @@
 use std::fmt::Debug;
+use std::sync::{Arc, OnceLock};
 
 use dyn_clone::DynClone;
+use gudgeon_numerics::linalg::Complex;
 use indexmap::IndexMap;
 
 use super::{Coupling, CylinderPressure, Drive, Kinematics, ThrowInertia};
@@ -83,7 +85,14 @@ impl GasEnd {
     }
 }
 
-/// A crank throw on an inertia.
+/// Harmonics of the torques of a throw, kept by their number.
+#[derive(Debug, Default)]
+struct Harmonics {
+    gas: OnceLock<Vec<Complex>>,
+    masses: OnceLock<Vec<Complex>>,
+}
+
+/// A crank throw on an inertia: as it is made, so it stays.
 #[derive(Debug, Clone)]
 pub struct LineThrow {
     /// The inertia it belongs to.
@@ -94,13 +103,54 @@ pub struct LineThrow {
     pub inertia: Box<dyn ThrowInertia>,
     /// Gas spaces.
     pub ends: Vec<GasEnd>,
+    /// Shared by throws that are alike.
+    harmonics: Arc<Harmonics>,
 }
 
 impl LineThrow {
+    /// A throw of its own.
+    #[must_use]
+    pub fn new(node: usize, phase: f64, inertia: Box<dyn ThrowInertia>, ends: Vec<GasEnd>) -> Self {
+        Self { node, phase, inertia, ends, harmonics: Arc::default() }
+    }
+
+    /// The same throw on another inertia, at another phase: what depends on neither is worked out once for both.
+    #[must_use]
+    pub fn alike(&self, node: usize, phase: f64) -> Self {
+        Self { node, phase, ..self.clone() }
+    }
+
+    /// Whether it differs from another in nothing but inertia and phase, as far as it is known.
+    #[must_use]
+    pub fn is_like(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.harmonics, &other.harmonics)
+    }
+
+    /// Mean and harmonics up to `count` of the gas torque over the angle of the throw, which `make` works out where they are not known.
+    #[must_use]
+    pub fn gas_harmonics(&self, count: usize, make: impl FnOnce() -> Vec<Complex>) -> Vec<Complex> {
+        kept(&self.harmonics.gas, count, make)
+    }
+
+    /// The same of the torque of the moving masses at unit speed.
+    #[must_use]
+    pub fn mass_harmonics(&self, count: usize, make: impl FnOnce() -> Vec<Complex>) -> Vec<Complex> {
+        kept(&self.harmonics.masses, count, make)
+    }
+
     /// Gas torque \[N m\] at angle `theta` of its inertia.
     #[must_use]
     pub fn gas_torque(&self, decided_at: f64, theta: f64) -> f64 {
         self.ends.iter().map(|e| e.torque(decided_at + self.phase, theta + self.phase)).sum()
+    }
+}
+
+/// What is kept, if it has as many harmonics, or else what is made; the first of these is kept.
+fn kept(known: &OnceLock<Vec<Complex>>, count: usize, make: impl FnOnce() -> Vec<Complex>) -> Vec<Complex> {
+    match known.get() {
+        Some(own) if own.len() == count + 1 => own.clone(),
+        Some(_) => make(),
+        None => known.get_or_init(make).clone(),
     }
 }
 

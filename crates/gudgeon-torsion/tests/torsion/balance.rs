@@ -31,7 +31,7 @@ fn rounds(line: &Line, speed: f64) -> u64 {
 }
 
 fn throw(node: usize, phase: f64, inertia: &dyn ThrowInertiaSpec, gas: Gas) -> LineThrow {
-    LineThrow { node, phase, inertia: inertia.build(&THROW).expect("builds"), ends: end(gas) }
+    LineThrow::new(node, phase, inertia.build(&THROW).expect("builds"), end(gas))
 }
 
 fn drive(node: usize, factor: f64, spec: &dyn DriveSpec) -> LineDrive {

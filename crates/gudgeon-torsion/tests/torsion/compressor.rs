@@ -489,7 +489,7 @@ fn a_free_throw_keeps_its_energy() {
         let inertia = model.build(&THROW).expect("builds");
         let l = Line {
             nodes: vec![crate::common::node(0.0, 0.0)],
-            throws: vec![LineThrow { node: 0, phase: 0.0, inertia: inertia.clone(), ends: Vec::new() }],
+            throws: vec![LineThrow::new(0, 0.0, inertia.clone(), Vec::new())],
             ..Line::default()
         };
         let times: Vec<f64> = (1..40).map(|i| 2e-3 * f64::from(i)).collect();
@@ -688,5 +688,47 @@ fn critical_speeds_are_natural_frequencies_by_orders() {
         assert_eq!(c.mode, mode);
         // Counts and QL iteration agree to rounding of the largest eigenvalue.
         assert!(close(c.speed, speed, 1e-12), "{} {speed}", c.speed);
+    }
+}
+
+#[test]
+fn throws_that_are_alike_excite_as_throws_of_their_own() {
+    let own = line(Gas::M3, &Exact {}, None, [0.0, 2.0, 1.0, 0.5]);
+    let mut shared = own.clone();
+    let first = own.throws[0].clone();
+    shared.throws = own.throws.iter().map(|t| first.alike(t.node, t.phase)).collect();
+    assert!(shared.throws.iter().all(|t| t.is_like(&first)) && !own.throws[1].is_like(&first));
+    // The same numbers, also of fewer orders than were asked for first.
+    for orders in [24.0, 7.0] {
+        let [a, b] = [&own, &shared].map(|l| gudgeon_torsion::forcing::Excitation::new(l, 100.0, orders));
+        assert_eq!(a, b);
+    }
+    // So is the motion with all that is not linear.
+    let [a, b] =
+        [&own, &shared].map(|l| run(&HarmonicBalance::default(), &context(l, 100.0, 12.0, &[], &[])));
+    assert_eq!(a.orders, b.orders);
+}
+
+#[test]
+fn orders_side_by_side_are_those_of_one_after_the_other() {
+    // Eleven orders: a full row of lanes and one with some left over.
+    let l = line(Gas::M3, &Exact {}, None, [0.0, 2.0, 1.0, 0.5]);
+    let ctx = context(&l, 100.0, 11.0, &[], &[]);
+    let found = run(&Orders {}, &ctx).orders;
+    let mut steady = gudgeon_torsion::steady::Steady::new(&ctx).expect("builds");
+    let orders = steady.excitation.orders.clone();
+    assert!(found.len() == orders.len() && orders.len() == 11);
+    for (f, o) in found.iter().zip(&orders) {
+        let exact = steady.respond(o).expect("no resonance");
+        assert!(f.order == exact.order && f.excitation == exact.excitation);
+        let largest = |of: &[[f64; 2]]| of.iter().map(|z| z[0].hypot(z[1])).fold(0.0, f64::max);
+        for (a, b) in [(&f.angle, &exact.angle), (&f.torque, &exact.torque)] {
+            let miss = a.iter().zip(b).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1])).fold(0.0, f64::max);
+            // Rounding, times the magnification of resonances nearby.
+            assert!(miss <= 1e-12 * largest(b), "order {}: {miss:e}", f.order);
+        }
+        for (a, b) in f.heat.iter().zip(&exact.heat) {
+            assert!(close(*a, *b, 1e-11), "heat of order {}: {a} {b}", f.order);
+        }
     }
 }

@@ -403,12 +403,7 @@ fn torques_of_a_line_are_those_of_its_parts_whichever_way_it_turns() {
     for ratio in [1.0, -1.0, 2.0, -0.5] {
         let mut line = chain(&[1.0, 0.0], &[1e5], &[], &[3.0, 2.0]);
         line.nodes[1].ratio = ratio;
-        line.throws.push(LineThrow {
-            node: 1,
-            phase: 0.8,
-            inertia: Exact {}.build(&THROW).expect("builds"),
-            ends: end(Gas::M3),
-        });
+        line.throws.push(LineThrow::new(1, 0.8, Exact {}.build(&THROW).expect("builds"), end(Gas::M3)));
         let order =
             Harmonic { order: 1.5, amplitude: quantity(9.0), phase: quantity(0.2), factor: quantity(1.0) };
         let drive = Harmonics { mean: quantity(20.0), orders: vec![order] }.build().expect("builds");
@@ -471,12 +466,8 @@ fn torques_of_a_line_are_those_of_its_parts_whichever_way_it_turns() {
         }
     }
     assert!(
-        (forcing::gas_period(&LineThrow {
-            node: 0,
-            phase: 0.0,
-            inertia: Mean {}.build(&THROW).expect("builds"),
-            ends: end(Gas::M3),
-        }) - 2.0 * PI)
+        (forcing::gas_period(&LineThrow::new(0, 0.0, Mean {}.build(&THROW).expect("builds"), end(Gas::M3)))
+            - 2.0 * PI)
             .abs()
             < 1e-15
     );

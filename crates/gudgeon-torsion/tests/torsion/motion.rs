@@ -181,7 +181,7 @@ fn rigid_links_carry_what_moves_the_parts_behind_them() {
     line.nodes[2].ratio = 1.5;
     line.nodes[3].ratio = 1.5;
     let inertia = gudgeon_torsion::throw_inertia::Exact {}.build(&THROW).expect("builds");
-    line.throws.push(LineThrow { node: 3, phase: 0.4, inertia, ends: end(Gas::M3) });
+    line.throws.push(LineThrow::new(3, 0.4, inertia, end(Gas::M3)));
     let fan = PowerLaw { torque: quantity(70.0), speed: quantity(100.0), exponent: quantity(2.0) };
     line.drives.push(drive(2, -1.0, 0.0, &fan));
     let (h, first) = (1e-5, 2000);
@@ -231,7 +231,7 @@ fn the_order_of_the_inertias_changes_no_torque() {
         }
         for (i, phase) in [(3, 0.4), (2, 1.1)] {
             let inertia = gudgeon_torsion::throw_inertia::Exact {}.build(&THROW).expect("builds");
-            line.throws.push(LineThrow { node: at(i), phase, inertia, ends: end(Gas::M3) });
+            line.throws.push(LineThrow::new(at(i), phase, inertia, end(Gas::M3)));
         }
         let fan = PowerLaw { torque: quantity(70.0), speed: quantity(100.0), exponent: quantity(2.0) };
         line.drives.push(drive(at(2), -1.0, 0.0, &fan));
@@ -266,7 +266,7 @@ fn a_crank_without_inertia_is_refused_also_behind_a_gear() {
         let mut line = chain(&[1.0, wheel, 0.0], &[1e4, f64::INFINITY], &[], &[]);
         line.nodes[2].ratio = 1.5;
         let inertia = gudgeon_torsion::throw_inertia::Exact {}.build(&crank).expect("builds");
-        line.throws.push(LineThrow { node: 2, phase: 0.3, inertia, ends: Vec::new() });
+        line.throws.push(LineThrow::new(2, 0.3, inertia, Vec::new()));
         Implicit::default().build(&context(&line, [&[0.0; 3], &[50.0, 50.0, 75.0]], &[1.0])).err()
     };
     let refused = with(bare, 0.0).expect("vanishes");

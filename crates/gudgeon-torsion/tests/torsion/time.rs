@@ -30,11 +30,13 @@ fn drive(node: usize, spec: &dyn DriveSpec) -> LineDrive {
 /// Motor, rigid flange of no inertia, shaft, pinion, rigid mesh with a wheel of speed -0.4, shaft, load with a throw; and the
 /// same with the rigid parts made one by hand.
 fn geared() -> (Line, Line) {
-    let throw = |node: usize| LineThrow {
-        node,
-        phase: 0.3,
-        inertia: gudgeon_torsion::throw_inertia::Exact {}.build(&THROW).expect("builds"),
-        ends: Vec::new(),
+    let throw = |node: usize| {
+        LineThrow::new(
+            node,
+            0.3,
+            gudgeon_torsion::throw_inertia::Exact {}.build(&THROW).expect("builds"),
+            Vec::new(),
+        )
     };
     let rigid = f64::INFINITY;
     let mut full = chain(

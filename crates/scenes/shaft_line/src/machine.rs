@@ -66,6 +66,8 @@ pub struct Machine<'a> {
     torsion: Box<dyn Torsion>,
     spare: Option<Box<dyn Torsion>>,
     cycle: Option<Cycle>,
+    /// An answer that nobody needs any more: the next one is written into its storage.
+    room: TorsionOut,
     /// Critical speeds of the range that was asked for last.
     critical: Option<([f64; 2], Vec<CriticalSpeed>)>,
     points: BTreeMap<u64, Point>,
@@ -100,6 +102,7 @@ impl<'a> Machine<'a> {
             ctx,
             spare: None,
             cycle: None,
+            room: TorsionOut::default(),
             critical: None,
             points: BTreeMap::new(),
             of_one_link: BTreeMap::new(),
@@ -116,7 +119,9 @@ impl<'a> Machine<'a> {
     /// # Errors
     /// As [`Torsion::run`].
     pub fn motion(&mut self, speed: f64) -> Result<TorsionOut, EvalError> {
-        let mut out = TorsionOut::default();
+        let mut out = std::mem::take(&mut self.room);
+        out.counters.clear();
+        out.notes.clear();
         self.torsion.set_speed(speed)?;
         self.torsion.run(&mut out)?;
         finite(&out)?;
@@ -130,6 +135,7 @@ impl<'a> Machine<'a> {
         if !self.points.contains_key(&key) {
             let out = self.answer(speed)?;
             let point = self.point(&out);
+            self.room = out;
             self.points.insert(key, point);
         }
         self.points.get(&key)
@@ -146,6 +152,7 @@ impl<'a> Machine<'a> {
         }
         let out = self.answer(speed)?;
         let point = link_point(self.extremes(&out), &out, link);
+        self.room = out;
         self.of_one_link.insert((key, link), point);
         Some(point)
     }

@@ -35,6 +35,7 @@ pub(super) struct NonlinearTorques {
     pub(super) coarse: Fourier,
     pub(super) cycle: f64,
     pub(super) throws: Vec<Throw>,
+    pub(super) curves: Vec<Curves>,
     pub(super) links: Vec<Link>,
     /// Deviation from the mean rotation, its first and second derivative in time.
     pub(super) motion: [Vec<f64>; 3],
@@ -50,40 +51,53 @@ pub(super) struct NonlinearTorques {
 
 #[derive(Debug)]
 pub(super) struct Throw {
-    /// Place among those of the line, and row.
+    /// Place among those of the line, row, and place of its curves.
     pub(super) throw: usize,
     pub(super) row: usize,
+    pub(super) curves: usize,
+    /// Gas torque of uniform rotation.
+    gas_uniform: Vec<f64>,
+}
+
+/// What throws that are alike have in common.
+#[derive(Debug)]
+pub(super) struct Curves {
     pub(super) gas: Option<Interpolant>,
     /// Inertia and its derivative by the angle.
     pub(super) inertia: Option<[Interpolant; 2]>,
-    /// Gas torque of uniform rotation.
-    pub(super) gas_uniform: Vec<f64>,
 }
 
-impl Throw {
-    /// Throw `k` of a line, with `m` points over the cycle.
-    fn new(line: &Line, k: usize, active: &[usize], cycle: f64, m: usize) -> Self {
+impl Curves {
+    /// Of throw `k` of a line.
+    fn new(line: &Line, k: usize) -> Self {
         let throw = &line.throws[k];
         let turns = (gas_period(throw) / (2.0 * PI)).round().max(1.0) as usize;
-        let torque = |a: f64| gas_torque(line, k, a);
         let inertia = |a: f64| throw.inertia.inertia(a);
-        let mut gas = (!throw.ends.is_empty()).then(|| Interpolant::new(turns, torque));
-        let mut gas_uniform = vec![0.0; m];
-        if let Some(gas) = &mut gas {
-            for (s, value) in gas_uniform.iter_mut().enumerate() {
-                *value = gas.value(uniform_angle(line, k, cycle, s, m), torque);
-            }
-        }
-        let varies = !throw.inertia.is_constant();
+        let two = || [Interpolant::new(1, |a| inertia(a).0), Interpolant::new(1, |a| inertia(a).1)];
         Self {
-            throw: k,
-            row: row(active, throw.node),
-            gas,
-            inertia: varies
-                .then(|| [Interpolant::new(1, |a| inertia(a).0), Interpolant::new(1, |a| inertia(a).1)]),
-            gas_uniform,
+            gas: (!throw.ends.is_empty()).then(|| Interpolant::new(turns, |a| gas_torque(line, k, a))),
+            inertia: (!throw.inertia.is_constant()).then(two),
         }
     }
+}
+
+/// The throws of a line, with `m` points over the cycle, and their curves.
+fn throws(line: &Line, active: &[usize], cycle: f64, m: usize) -> (Vec<Throw>, Vec<Curves>) {
+    let (mut throws, mut curves): (Vec<Throw>, Vec<Curves>) = (Vec::new(), Vec::new());
+    for (k, own) in line.throws.iter().enumerate() {
+        let like = throws.iter().find(|t| own.is_like(&line.throws[t.throw])).map(|t| t.curves);
+        let place = like.unwrap_or_else(|| {
+            curves.push(Curves::new(line, k));
+            curves.len() - 1
+        });
+        let gas_uniform = (0..m).map(|s| match &mut curves[place].gas {
+            Some(gas) => gas.value(uniform_angle(line, k, cycle, s, m), |a| gas_torque(line, k, a)),
+            None => 0.0,
+        });
+        let gas_uniform = gas_uniform.collect();
+        throws.push(Throw { throw: k, row: row(active, own.node), curves: place, gas_uniform });
+    }
+    (throws, curves)
 }
 
 /// A coupling that is not linear.
@@ -130,7 +144,7 @@ impl NonlinearTorques {
         let coarse = Fourier::new(m / COARSER);
         let few = coarse.points();
         let zero = |n: usize| vec![0.0; n * m];
-        let throws = (0..line.throws.len()).map(|k| Throw::new(line, k, &active, cycle, m)).collect();
+        let (throws, curves) = throws(line, &active, cycle, m);
         let links = (0..line.links.len())
             .filter(|l| !line.links[*l].coupling.is_linear())
             .map(|l| Link::new(line, l, &active, [m, few], harmonics))
@@ -141,6 +155,7 @@ impl NonlinearTorques {
             harmonics,
             cycle,
             throws,
+            curves,
             links,
             motion: [zero(n), zero(n), zero(n)],
             force: zero(n),
@@ -178,18 +193,18 @@ impl NonlinearTorques {
     fn of_throws(&mut self, steady: &Steady) {
         let m = self.fourier.points();
         let [x, v, a] = &self.motion;
-        for t in &mut self.throws {
-            let line = &steady.line;
+        for t in &self.throws {
+            let (line, curves) = (&steady.line, &mut self.curves[t.curves]);
             let throw = &line.throws[t.throw];
             let speed = steady.speed * line.nodes[throw.node].ratio;
             let here = t.row * m;
             for s in 0..m {
                 let at = uniform_angle(line, t.throw, self.cycle, s, m) + x[here + s];
                 let (mut f, place) = (0.0, Place::of(at));
-                if let Some(p) = &mut t.gas {
+                if let Some(p) = &mut curves.gas {
                     f += p.value_at(place, at, |a| gas_torque(line, t.throw, a)) - t.gas_uniform[s];
                 }
-                if let Some([inertia, derivative]) = &mut t.inertia {
+                if let Some([inertia, derivative]) = &mut curves.inertia {
                     let j = inertia.value_at(place, at, |a| throw.inertia.inertia(a).0);
                     let dj = derivative.value_at(place, at, |a| throw.inertia.inertia(a).1);
                     let w = speed + v[here + s];

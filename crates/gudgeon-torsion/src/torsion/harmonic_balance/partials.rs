@@ -22,17 +22,17 @@ impl NonlinearTorques {
         let line = &steady.line;
         let [x, v, a] = &self.motion;
         let [by_angle, by_speed, by_acceleration] = &mut self.partials;
-        for t in &mut self.throws {
-            let throw = &line.throws[t.throw];
+        for t in &self.throws {
+            let (throw, curves) = (&line.throws[t.throw], &mut self.curves[t.curves]);
             let speed = steady.speed * line.nodes[throw.node].ratio;
             for s in 0..few {
                 let (i, o) = (t.row * m + COARSER * s, t.row * few + s);
                 let at = uniform_angle(line, t.throw, self.cycle, s, few) + x[i];
                 let place = Place::of(at);
-                if let Some(p) = &mut t.gas {
+                if let Some(p) = &mut curves.gas {
                     by_angle[o] += p.derivative_at(place, |a| gas_torque(line, t.throw, a));
                 }
-                if let Some([inertia, derivative]) = &mut t.inertia {
+                if let Some([inertia, derivative]) = &mut curves.inertia {
                     let j = inertia.value_at(place, at, |a| throw.inertia.inertia(a).0);
                     let dj = derivative.value_at(place, at, |a| throw.inertia.inertia(a).1);
                     let ddj = derivative.derivative_at(place, |a| throw.inertia.inertia(a).1);

@@ -135,7 +135,7 @@ pub mod compressor {
         };
         for (k, phase) in phases.into_iter().enumerate() {
             let inertia = inertia.build(&THROW).expect("builds");
-            l.throws.push(LineThrow { node: 3 + k, phase, inertia, ends: end(gas) });
+            l.throws.push(LineThrow::new(3 + k, phase, inertia, end(gas)));
         }
         if let Some((c0, c1)) = motor {
             let drive = gudgeon_torsion::drive::Linear {

@@ -40,6 +40,7 @@ pub(super) fn throws(
                 continue;
             }
         };
+        let mut built: Option<(f64, LineThrow)> = None;
         for (i, name) in t.at.iter().enumerate() {
             let Some((node, ratio)) = find(name) else { continue };
             if ratio < 0.0 {
@@ -48,6 +49,13 @@ pub(super) fn throws(
                 errors.push(
                     e.help("vibration does not know the sign of a ratio: give that shaft a positive one"),
                 );
+                continue;
+            }
+            let phase = t.phases.get(i).map_or(0.0, |p| p.si());
+            if let Some((of, throw)) = &built
+                && *of == ratio.abs()
+            {
+                all.push(throw.alike(node, phase));
                 continue;
             }
             let kinematics = match kinematics(case, t, speed * ratio.abs()) {
@@ -59,8 +67,9 @@ pub(super) fn throws(
             };
             // One throw is enough to report an error of a gas space.
             let ends = ends(case, files, (t, &here), &|| kinematics.clone(), i == 0, errors);
-            let phase = t.phases.get(i).map_or(0.0, |p| p.si());
-            all.push(LineThrow { node, phase, inertia: inertia.clone(), ends });
+            let throw = LineThrow::new(node, phase, inertia.clone(), ends);
+            built = Some((ratio.abs(), throw.clone()));
+            all.push(throw);
         }
     }
     all

@@ -139,7 +139,10 @@ impl Results<'_> {
         let mut worst = (0.0, 0.0);
         for w in [speeds.first(), speeds.last()].into_iter().flatten() {
             let Ok(throws) = throws_alone(self.case, files, *w) else { continue };
-            for (mean, here) in a.line.throws.iter().zip(&throws) {
+            for (k, (mean, here)) in a.line.throws.iter().zip(&throws).enumerate() {
+                if k > 0 && mean.is_like(&a.line.throws[k - 1]) && here.is_like(&throws[k - 1]) {
+                    continue;
+                }
                 let at = |k: i32| f64::from(k).to_radians() - mean.phase;
                 let (largest, change) = (0..720).fold((0.0, 0.0), |(largest, change): (f64, f64), k| {
                     let torque = mean.gas_torque(at(k), at(k));

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use gudgeon_core::kinds::{GasEnd, LineThrow};
+use gudgeon_core::kinds::LineThrow;
 use gudgeon_core::result::Series;
 use gudgeon_torsion::forcing::{gas_period, gas_series};
 
@@ -11,19 +11,40 @@ use super::{DRAWN, MAX_DRAWN, Results, TURN, column, extremes};
 /// Angle to either side of a jump of the pressure at which it is evaluated.
 const BESIDE: f64 = 1e-9;
 
-/// Gas torque of a throw over its own angle.
+/// Gas torque of a throw over its own angle, and what follows from it: the same of all throws that are alike.
 struct Course {
     period: f64,
     points: usize,
     torque: Vec<f64>,
+    mean: f64,
+    /// Maximum and minimum of the torque, either side of the angles where the pressure jumps included.
+    torque_range: [f64; 2],
+    /// Maximum and minimum pressure where there is one gas space.
+    pressure_range: Option<[f64; 2]>,
 }
 
 impl Course {
     fn new(t: &LineThrow) -> Self {
         let period = gas_period(t);
         let points = (TURN as f64 * period / (2.0 * PI)) as usize;
-        let mut own = Self { period, points, torque: Vec::new() };
-        own.torque = own.angles().map(|x| t.gas_torque(x - t.phase, x - t.phase)).collect();
+        let torque = |x: f64| t.gas_torque(x - t.phase, x - t.phase);
+        let mut own = Self {
+            period,
+            points,
+            torque: Vec::new(),
+            mean: gas_series(t, 1)[0].re,
+            torque_range: [0.0; 2],
+            pressure_range: None,
+        };
+        own.torque = own.angles().map(torque).collect();
+        let kinks = t.ends.iter().flat_map(|e| e.pressure.kinks().iter().copied());
+        let sides = kinks.flat_map(|x| [x - BESIDE, x + BESIDE]).map(torque);
+        own.torque_range = extremes(own.torque.iter().copied().chain(sides));
+        if let [end] = &t.ends[..] {
+            let before_kinks = end.pressure.kinks().iter().map(|x| x - BESIDE);
+            let pressures = before_kinks.chain(own.angles()).map(|x| end.pressure.pressure(x));
+            own.pressure_range = Some(extremes(pressures));
+        }
         own
     }
 
@@ -41,6 +62,7 @@ impl Results<'_> {
     pub fn throws(&mut self, throws: &[LineThrow]) {
         let mut table = Series { axis: column("angle", "deg", Vec::new()), columns: Vec::new() };
         let mut curves = Vec::new();
+        let mut known: Option<(&LineThrow, Course)> = None;
         for (k, t) in throws.iter().enumerate() {
             let n = k + 1;
             self.result(
@@ -52,14 +74,18 @@ impl Results<'_> {
             if t.ends.is_empty() {
                 continue;
             }
-            let course = Course::new(t);
-            self.torque_of_throw(t, n, &course);
-            if let [end] = &t.ends[..] {
-                self.pressure_of_throw(end, n, &course);
+            let course = match known.take() {
+                Some((other, course)) if t.is_like(other) => course,
+                _ => Course::new(t),
+            };
+            self.torque_of_throw(n, &course);
+            if let Some(range) = course.pressure_range {
+                self.pressure_of_throw(n, range);
             }
             if k < MAX_DRAWN {
                 curves.push((format!("throw {n}"), add_columns(&mut table, t, n, &course)));
             }
+            known = Some((t, course));
         }
         if !curves.is_empty() {
             self.draw_throws(table, curves);
@@ -67,13 +93,8 @@ impl Results<'_> {
     }
 
     /// Gas torque, work and power of throw `n`.
-    fn torque_of_throw(&mut self, t: &LineThrow, n: usize, course: &Course) {
-        let mean = gas_series(t, 1)[0].re;
-        // Either side of the angles where the pressure jumps.
-        let kinks = t.ends.iter().flat_map(|e| e.pressure.kinks().iter().copied());
-        let sides =
-            kinks.flat_map(|x| [x - BESIDE, x + BESIDE]).map(|x| t.gas_torque(x - t.phase, x - t.phase));
-        let [top, bottom] = extremes(course.torque.iter().copied().chain(sides));
+    fn torque_of_throw(&mut self, n: usize, course: &Course) {
+        let (mean, [top, bottom]) = (course.mean, course.torque_range);
         let of = format!("throw {n}");
         self.result(
             format!("throw{n}.mean_torque"),
@@ -94,10 +115,7 @@ impl Results<'_> {
     }
 
     /// Maximum and minimum pressure of the one gas space of throw `n`.
-    fn pressure_of_throw(&mut self, end: &GasEnd, n: usize, course: &Course) {
-        let before_kinks = end.pressure.kinks().iter().map(|x| x - BESIDE);
-        let [highest, lowest] =
-            extremes(before_kinks.chain(course.angles()).map(|x| end.pressure.pressure(x)));
+    fn pressure_of_throw(&mut self, n: usize, [highest, lowest]: [f64; 2]) {
         let of = format!("throw {n}");
         self.result(
             format!("throw{n}.p_min"),
