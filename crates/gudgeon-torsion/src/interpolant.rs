@@ -5,8 +5,6 @@
 
 use std::f64::consts::PI;
 
-use gudgeon_numerics::linalg::{lu_factor, lu_solve};
-
 /// Segments per turn: the functions of a crank vary over a tenth of a turn at the fastest.
 const PER_TURN: usize = 512;
 /// Segments per radian, of every interpolant.
@@ -25,7 +23,11 @@ pub struct Interpolant {
     scale: f64,
     segments: Vec<Segment>,
     coefficients: Vec<[f64; TERMS]>,
+    fit: Fit,
 }
+
+/// Nodes of a segment, each with the coefficients of the polynomial that is one there and zero at the others.
+type Fit = [(f64, [f64; TERMS]); TERMS];
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Segment {
@@ -60,6 +62,22 @@ fn node(i: usize) -> f64 {
     -(PI * i as f64 / (TERMS - 1) as f64).cos()
 }
 
+/// Lagrange's polynomials, multiplied out factor by factor.
+fn fit() -> Fit {
+    std::array::from_fn(|i| {
+        let own = node(i);
+        let mut terms = [0.0; TERMS];
+        terms[0] = 1.0;
+        for other in (0..TERMS).filter(|j| *j != i).map(node) {
+            for k in (0..TERMS).rev() {
+                let below = if k > 0 { terms[k - 1] } else { 0.0 };
+                terms[k] = (below - other * terms[k]) / (own - other);
+            }
+        }
+        (own, terms)
+    })
+}
+
 impl Interpolant {
     /// Interpolant of `f` with a period of `turns` turns (rounded up to a power of two).
     pub fn new(turns: usize, f: impl Fn(f64) -> f64) -> Self {
@@ -70,6 +88,7 @@ impl Interpolant {
             scale: sampled.fold(0.0, f64::max),
             segments: vec![Segment::NotBuilt; count],
             coefficients: vec![[0.0; TERMS]; count],
+            fit: fit(),
         }
     }
 
@@ -127,22 +146,14 @@ impl Interpolant {
 
     fn build(&mut self, i: usize, f: &impl Fn(f64) -> f64) {
         let angle = |t: f64| (i as f64 + 0.5 * (t + 1.0)) / PER_RADIAN;
-        let mut matrix = [0.0; TERMS * TERMS];
         let mut terms = [0.0; TERMS];
-        for r in 0..TERMS {
-            terms[r] = f(angle(node(r)));
-            for c in 0..TERMS {
-                matrix[r * TERMS + c] = node(r).powi(c as i32);
-            }
-        }
-        let mut pivots = [0; TERMS];
-        let solved = lu_factor(&mut matrix, TERMS, &mut pivots).is_ok();
-        if solved {
-            lu_solve(&matrix, TERMS, &pivots, &mut terms);
+        for (at, by_term) in self.fit.iter() {
+            let own = f(angle(*at));
+            terms.iter_mut().zip(by_term).for_each(|(t, part)| *t += part * own);
         }
         self.coefficients[i] = terms;
         let agrees = CHECKED.iter().all(|t| (value(&terms, *t) - f(angle(*t))).abs() <= self.tolerance());
-        self.segments[i] = if solved && agrees { Segment::Polynomial } else { Segment::Direct };
+        self.segments[i] = if agrees { Segment::Polynomial } else { Segment::Direct };
     }
 }
 
