@@ -1,124 +1,256 @@
 //! Maximum and minimum over the cycle of a sum of orders.
 
+mod derivatives;
 mod waves;
 
 use std::f64::consts::PI;
 
+use derivatives::Derivatives;
 use waves::{Waves, multiples};
 
-/// Least number of points per wave of the highest order.
+/// Least number of points per wave of the highest order on the finest grid.
 const POINTS: usize = 8;
+/// Grids: each has half the points of the one before.
+const GRIDS: usize = 4;
+/// Least number of points of a grid.
+const FEWEST: usize = 16;
 /// Maximum over `[-1, 1]` of `|x (x² - 1)|/6`: what a parabola through three points misses of a third derivative of one.
 const PARABOLA: f64 = 0.064_150_029_909_958_42;
+/// What parabolas may miss on a grid that is coarser than the finest, by the root mean square of the sum: the most that they miss of any sum on
+/// the finest one.
+const MISSED: f64 = 0.02;
 
-/// Last step of Newton's method by the distance of the points: its cube, times that of the phase between two points, is lost in rounding.
-const LAST: f64 = 1e-5;
+/// What a second difference may miss of the second derivative between the neighbours of a point, by the fourth one.
+const CURVED: f64 = 1.0 / 12.0 + 1.0 / 8.0;
+
+/// Last step of Halley's method by the distance of the points: its fourth power, times that of the phase between two points, is lost in rounding.
+const LAST: f64 = 1e-4;
 
 /// Finds the extremes of `m + Σ Re(a_k e^{i n_k θ})` over a period of θ.
 #[derive(Debug, Clone)]
 pub struct Cycle {
-    /// Distance of the points \[rad\].
-    step: f64,
-    waves: Waves,
+    sum: Derivatives,
+    period: f64,
+    multiples: Vec<usize>,
+    /// Points of the finest grid.
+    points: usize,
+    /// From the finest on; made when they are first looked at.
+    grids: [Option<Waves>; GRIDS],
     /// The sum at the points, with the last one in front and the first one behind.
     wave: Vec<f64>,
-    /// Phase that the highest order turns from one point to the next \[rad\].
-    turn: f64,
+}
+
+/// How the sum at hand is looked at.
+#[derive(Debug, Clone, Copy)]
+struct Look {
+    /// Distance of the points \[rad\].
+    step: f64,
+    /// The most that a top can lie above the point next to it.
+    above: f64,
+    /// The most that it can lie above that of the parabola through three points.
+    missed: f64,
+    /// Second difference below which there is one top.
+    one_top: f64,
+}
+
+/// Sum of the squares of the amplitudes, and bounds of the second, third and fourth derivative.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sizes {
+    square: f64,
+    second: f64,
+    third: f64,
+    fourth: f64,
 }
 
 impl Cycle {
     /// For some orders, and the period after which their sum repeats \[rad\].
     #[must_use]
     pub fn new(orders: &[f64], period: f64) -> Self {
-        let highest = orders.iter().copied().fold(0.0, f64::max) * period / (2.0 * PI);
-        let points = (POINTS * highest.ceil() as usize).next_power_of_two().max(64);
+        let highest = highest(orders, period);
+        let multiples = multiples(orders, period);
         Self {
-            step: period / points as f64,
-            waves: Waves::new(orders, period, points, &multiples(orders, period)),
-            wave: vec![0.0; points + 2],
-            turn: 2.0 * PI * highest / points as f64,
+            sum: Derivatives::new(orders, period, &multiples),
+            period,
+            multiples,
+            points: (POINTS * highest.ceil() as usize).next_power_of_two().max(64),
+            grids: [const { None }; GRIDS],
+            wave: Vec::new(),
         }
     }
 
     /// The orders it was made for.
     #[must_use]
     pub fn orders(&self) -> &[f64] {
-        self.waves.orders()
+        self.sum.orders()
     }
 
     /// Maximum and minimum, for a mean and the phasors of the orders.
     pub fn extremes(&mut self, mean: f64, phasors: impl Fn(usize) -> [f64; 2]) -> [f64; 2] {
-        let n = self.wave.len() - 2;
-        self.waves.sum(&phasors, &mut self.wave[1..=n]);
-        (self.wave[0], self.wave[n + 1]) = (self.wave[n], self.wave[1]);
-        let (mut high, mut low) = (f64::NEG_INFINITY, f64::INFINITY);
-        for w in &self.wave {
-            high = if *w > high { *w } else { high };
-            low = if *w < low { *w } else { low };
+        self.sum.take(phasors);
+        let sizes = self.sizes();
+        let mut grid = self.grid(&sizes);
+        loop {
+            if let Some([top, bottom]) = self.on_grid(grid, &sizes) {
+                return [mean + top, mean + bottom];
+            }
+            grid -= 1;
         }
-        let half = 0.5 * (high - low);
-        if half <= 0.0 {
-            return [mean + high.max(0.0), mean + low.min(0.0)];
-        }
-        let top = self.maximum(high, half, 1.0, &phasors);
-        let bottom = -self.maximum(-low, half, -1.0, &phasors);
-        [mean + top, mean + bottom]
     }
 
-    /// Maximum of `sign` times the wave, whose highest point is `high` and whose points swing by `half` about their middle.
+    /// Maximum and minimum of the waves, looked for on a grid; none where it is too coarse, which the finest never is.
+    fn on_grid(&mut self, grid: usize, sizes: &Sizes) -> Option<[f64; 2]> {
+        self.sum_on(grid);
+        let (low, high) = range(&self.wave);
+        let half = 0.5 * (high - low);
+        if half <= 0.0 {
+            return Some([high.max(0.0), low.min(0.0)]);
+        }
+        let step = self.step(grid);
+        let [above, missed] = self.above(half, step, sizes);
+        let one_top = if grid == 0 { f64::INFINITY } else { -CURVED * sizes.fourth * step.powi(4) };
+        let look = Look { step, above, missed, one_top };
+        self.tops(high, low, &look)
+    }
+
+    /// Distance of the points of a grid.
+    fn step(&self, grid: usize) -> f64 {
+        self.period / (self.points >> grid) as f64
+    }
+
+    /// The size of the sum: each derivative is at most that of all waves at once.
+    fn sizes(&self) -> Sizes {
+        let mut sizes = Sizes::default();
+        for ([re, im], o) in self.sum.phasors().iter().zip(self.sum.orders()) {
+            let (square, o2) = (re * re + im * im, o * o);
+            let second = square.sqrt() * o2;
+            sizes.square += square;
+            sizes.second += second;
+            sizes.third += second * o;
+            sizes.fourth += second * o2;
+        }
+        sizes
+    }
+
+    /// The coarsest grid that is fine enough for most sums.
+    fn grid(&self, sizes: &Sizes) -> usize {
+        let admitted = MISSED * (0.5 * sizes.square).sqrt();
+        let fine = |g: usize| PARABOLA * self.step(g).powi(3) * sizes.third <= admitted;
+        (1..GRIDS).take_while(|g| self.points >> g >= FEWEST && fine(*g)).last().unwrap_or(0)
+    }
+
+    /// The sum at the points of a grid.
+    fn sum_on(&mut self, g: usize) {
+        let points = self.points >> g;
+        let (orders, multiples) = (self.sum.orders(), &self.multiples);
+        let waves = self.grids[g].get_or_insert_with(|| Waves::new(orders, self.period, points, multiples));
+        self.wave.resize(points + 2, 0.0);
+        waves.sum(self.sum.phasors(), &mut self.wave[1..=points]);
+        (self.wave[0], self.wave[points + 1]) = (self.wave[points], self.wave[1]);
+    }
+
+    /// How far a top can lie above a point at most half a step away, and above the parabola through the three points about it.
     ///
     /// A sum of waves up to order n that swings by A about some mean falls no faster from its top than `A cos n x` would (a lemma of M. Riesz),
     /// so a point at half a step from the top is no lower than `A (1 - cos)` below it, and A is at most the swing of the points over
     /// that cosine. Its third derivative is at most `n³ A` (Bernstein): no top is higher than that of the parabola through three points by
-    /// more than [`PARABOLA`] times that.
-    fn maximum(&self, high: f64, half: f64, sign: f64, phasors: &impl Fn(usize) -> [f64; 2]) -> f64 {
-        let cosine = (0.5 * self.turn).cos();
-        let swing = half / cosine;
-        let threshold = high - swing * (1.0 - cosine);
-        let missed = PARABOLA * self.turn.powi(3) * swing;
-        let mut best = high;
-        for (s, w) in self.wave.windows(3).enumerate() {
-            let here = sign * w[1];
-            if here < threshold {
-                continue;
-            }
-            let (before, after) = (sign * w[0], sign * w[2]);
-            if here >= before && here > after {
-                let curve = before - 2.0 * here + after;
-                let shift = if curve < 0.0 { 0.5 * (before - after) / curve } else { 0.0 };
-                if here - 0.25 * (before - after) * shift + missed > best {
-                    best = best.max(self.climb(s as f64 + shift, sign, phasors));
-                }
-            }
+    /// more than [`PARABOLA`] times that. Both derivatives are at most the sums of those of all waves as well, which is less where the
+    /// high orders are small.
+    fn above(&self, half: f64, step: f64, sizes: &Sizes) -> [f64; 2] {
+        let turn = highest(self.sum.orders(), self.period) * 2.0 * PI / self.period * step;
+        let own = [0.125 * sizes.second * step * step, PARABOLA * sizes.third * step.powi(3)];
+        let cosine = (0.5 * turn).cos();
+        if turn >= 0.5 * PI {
+            return own;
         }
-        best
+        let swing = half / cosine;
+        [own[0].min(swing * (1.0 - cosine)), own[1].min(PARABOLA * turn.powi(3) * swing)]
     }
 
-    /// The top near the point `s`, by Newton's method on the derivative, at most one point away. A last step, short as it is, adds half of it
-    /// times the slope: what is left goes with its cube.
-    fn climb(&self, s: f64, sign: f64, phasors: &impl Fn(usize) -> [f64; 2]) -> f64 {
-        let step = self.step;
+    /// Maximum and minimum of the wave, whose highest and lowest point are `high` and `low`; none where two tops may stand between
+    /// neighbours of a point.
+    fn tops(&self, high: f64, low: f64, look: &Look) -> Option<[f64; 2]> {
+        let n = self.wave.len() - 2;
+        let (top, bottom) = (high - look.above, low + look.above);
+        let (mut best, mut least) = (high, -low);
+        for s in 1..=n {
+            let here = self.wave[s];
+            if here >= top {
+                best = self.top(s, 1.0, best, look)?;
+            }
+            if here <= bottom {
+                least = self.top(s, -1.0, least, look)?;
+            }
+        }
+        Some([best, -least])
+    }
+
+    /// The larger of `best` and the top of `sign` times the wave about point `s`, where there is one.
+    fn top(&self, s: usize, sign: f64, best: f64, look: &Look) -> Option<f64> {
+        let [before, here, after] = [-1, 0, 1].map(|i| sign * self.wave[s.wrapping_add_signed(i)]);
+        if here < before || here <= after {
+            return Some(best);
+        }
+        let curve = before - 2.0 * here + after;
+        let shift = if curve < 0.0 { 0.5 * (before - after) / curve } else { 0.0 };
+        if here - 0.25 * (before - after) * shift + look.missed <= best {
+            return Some(best);
+        }
+        if self.curve(s, sign) > look.one_top {
+            return None;
+        }
+        Some(best.max(self.climb((s - 1) as f64 + shift, sign, look.step)))
+    }
+
+    /// The largest second difference at a point and its neighbours.
+    ///
+    /// The second derivative at these points differs from it by at most a twelfth of the fourth one, and between them from the straight line by at
+    /// most an eighth of it: [`CURVED`] is their sum.
+    fn curve(&self, s: usize, sign: f64) -> f64 {
+        let n = self.wave.len() - 2;
+        let at = |s: usize| sign * self.wave[1 + (s - 1) % n];
+        let curve = |s: usize| at(s - 1) - 2.0 * at(s) + at(s + 1);
+        // A period on, so that no index is below the first.
+        (s + n - 1..=s + n + 1).map(curve).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// The top near the point `s`, by Halley's method on the derivative, at most one point away. The last step is taken by the
+    /// derivatives that are known: what is left goes with its fourth power.
+    fn climb(&self, s: f64, sign: f64, step: f64) -> f64 {
         let mut at = s * step;
         let (from, to) = (at - step, at + step);
         let mut best = f64::NEG_INFINITY;
         for _ in 0..20 {
-            let (mut value, mut first, mut second) = (0.0, 0.0, 0.0);
-            self.waves.each_order(at, |k, o, sin, cos| {
-                let [re, im] = phasors(k);
-                let (x, y) = (re * cos - im * sin, re * sin + im * cos);
-                value += x;
-                first -= o * y;
-                second -= o * o * x;
-            });
-            let (value, first, second) = (sign * value, sign * first, sign * second);
+            let [value, first, second, third] = self.sum.at(at).map(|d| sign * d);
             best = best.max(value);
-            let newton = if second < 0.0 { -first / second } else { 0.25 * step * first.signum() };
-            let next = (at + newton).clamp(from, to);
-            if (next - at).abs() <= LAST * step {
-                return best.max(value + 0.5 * first * (next - at));
+            let halley = first * second / (0.5 * first * third - second * second);
+            let by = if second < 0.0 && halley.is_finite() { halley } else { 0.25 * step * first.signum() };
+            let next = (at + by).clamp(from, to);
+            let by = next - at;
+            if by.abs() <= LAST * step {
+                return best.max(value + by * (first + by * (second / 2.0 + by * third / 6.0)));
             }
             at = next;
         }
         best
     }
+}
+
+/// The highest order by that of the period.
+fn highest(orders: &[f64], period: f64) -> f64 {
+    orders.iter().copied().fold(0.0, f64::max) * period / (2.0 * PI)
+}
+
+/// Minimum and maximum of some numbers, four side by side.
+fn range(wave: &[f64]) -> (f64, f64) {
+    let (mut low, mut high) = ([f64::INFINITY; 4], [f64::NEG_INFINITY; 4]);
+    let mut take = |l: usize, w: f64| {
+        low[l] = if w < low[l] { w } else { low[l] };
+        high[l] = if w > high[l] { w } else { high[l] };
+    };
+    let whole = wave.chunks_exact(4);
+    whole.remainder().iter().for_each(|w| take(0, *w));
+    for w in whole {
+        (0..4).for_each(|l| take(l, w[l]));
+    }
+    (low.into_iter().fold(low[0], f64::min), high.into_iter().fold(high[0], f64::max))
 }

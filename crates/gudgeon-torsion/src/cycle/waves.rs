@@ -54,25 +54,23 @@ impl Waves {
     }
 
     /// `Σ Re(a_k e^{i n_k θ})` at the points.
-    pub fn sum(&mut self, phasors: impl Fn(usize) -> [f64; 2], wave: &mut [f64]) {
+    pub fn sum(&mut self, phasors: &[[f64; 2]], wave: &mut [f64]) {
         let mut sums = std::mem::take(&mut self.sums);
         sums.iter_mut().flatten().for_each(|s| s.fill(0.0));
-        for k in 0..self.orders.len() {
-            let a = phasors(k);
-            if a == [0.0; 2] {
-                continue;
+        for parity in 0..2 {
+            let own =
+                |k: &usize| self.multiples.get(*k).map_or(0, |m| m % 2) == parity && phasors[*k] != [0.0; 2];
+            let mut some = [0; TOGETHER];
+            let mut count = 0;
+            for k in (0..self.orders.len()).filter(own) {
+                some[count] = k;
+                count += 1;
+                if count == TOGETHER {
+                    self.add(&some, phasors, &mut sums[parity]);
+                    count = 0;
+                }
             }
-            let own;
-            let row = if let Some(row) = self.table.get(k) {
-                row
-            } else {
-                own = self.row(self.orders[k]);
-                &own
-            };
-            let of_parity = &mut sums[self.multiples.get(k).map_or(0, |m| m % 2)];
-            for ((sum, row), a) in of_parity.iter_mut().zip(row).zip(a) {
-                sum.iter_mut().zip(row).for_each(|(s, x)| *s += a * x);
-            }
+            some[..count].iter().for_each(|k| self.add(&[*k], phasors, &mut sums[parity]));
         }
         let [[cos_even, sin_even], [cos_odd, sin_odd]] = &sums;
         if self.multiples.is_empty() {
@@ -92,36 +90,33 @@ impl Waves {
         self.sums = sums;
     }
 
-    /// Every order with its sine and cosine at an angle. Multiples of one order are turned from one to the next.
-    #[inline]
-    pub fn each_order(&self, at: f64, mut f: impl FnMut(usize, f64, f64, f64)) {
-        let (sin, cos) = (2.0 * PI / self.period * at).sin_cos();
-        let (mut multiple, mut x, mut y) = (0, 1.0, 0.0);
-        for (k, o) in self.orders.iter().enumerate() {
-            match self.multiples.get(k) {
-                Some(m) if m - multiple < AFRESH && m / AFRESH == multiple / AFRESH => {
-                    for _ in multiple..*m {
-                        (x, y) = (x * cos - y * sin, x * sin + y * cos);
-                    }
-                    multiple = *m;
+    /// Adds what some orders are at the points: several at once, which loads and stores the sums once for all of them.
+    fn add<const N: usize>(&self, some: &[usize; N], phasors: &[[f64; 2]], sums: &mut Row) {
+        let own: Vec<Row>;
+        let rows: [&Row; N] = if self.table.is_empty() {
+            own = some.iter().map(|k| self.row(self.orders[*k])).collect();
+            std::array::from_fn(|j| &own[j])
+        } else {
+            some.map(|k| &self.table[k])
+        };
+        for (part, sum) in sums.iter_mut().enumerate() {
+            let a = some.map(|k| phasors[k][part]);
+            if let [one, two, three, four] = rows.map(|r| &r[part])[..] {
+                let rows = one.iter().zip(two).zip(three.iter().zip(four));
+                for (sum, ((x, y), (z, w))) in sum.iter_mut().zip(rows) {
+                    *sum += (a[0] * x + a[1] * y) + (a[2] * z + a[3] * w);
                 }
-                m => {
-                    (y, x) = (o * at).sin_cos();
-                    multiple = m.copied().unwrap_or(multiple);
+            } else {
+                for (row, a) in rows.into_iter().zip(a) {
+                    sum.iter_mut().zip(&row[part]).for_each(|(s, x)| *s += a * x);
                 }
             }
-            f(k, *o, y, x);
         }
-    }
-
-    /// The orders it was made for.
-    pub fn orders(&self) -> &[f64] {
-        &self.orders
     }
 }
 
-/// Multiple at which turning starts afresh, so that rounding does not add up.
-const AFRESH: usize = 32;
+/// Orders that are added at once.
+const TOGETHER: usize = 4;
 
 /// Orders as ascending multiples of that of the period; nothing where one is none.
 pub(super) fn multiples(orders: &[f64], period: f64) -> Vec<usize> {
