@@ -8,7 +8,7 @@ use gudgeon_core::result::Column;
 use crate::assemble::Assembled;
 use crate::results::{DRAWN, MAX_DRAWN, TURN, column};
 
-/// Torques of the links and speeds of the inertias against the mean at equally spaced angles of the reference shaft.
+/// Torques of the links and speeds of the inertias against the mean at the drawn angles of the reference shaft.
 pub(super) struct Cycle {
     turns: f64,
     points: usize,
@@ -17,27 +17,23 @@ pub(super) struct Cycle {
 }
 
 impl Cycle {
-    /// Sums the orders at every point.
+    /// Sums the orders at every drawn point.
     pub fn new(out: &TorsionOut, a: &Assembled) -> Self {
         let turns = a.period / (2.0 * PI);
         let points = (TURN as f64 * turns).round() as usize;
-        let mut torque = vec![vec![0.0; points + 1]; a.line.links.len()];
-        let mut speed = vec![vec![0.0; points + 1]; a.line.nodes.len()];
-        for i in 0..=points {
-            let at = a.period * i as f64 / points as f64;
-            for (l, t) in torque.iter_mut().enumerate() {
-                t[i] = out.mean_torque[l];
-            }
-            for o in &out.orders {
-                let (sin, cos) = (o.order * at).sin_cos();
-                for (t, p) in torque.iter_mut().zip(&o.torque) {
-                    t[i] += p[0] * cos - p[1] * sin;
-                }
-                let rate = o.order * out.speed;
-                for (w, p) in speed.iter_mut().zip(&o.angle) {
-                    w[i] -= rate * (p[0] * sin + p[1] * cos);
-                }
-            }
+        let drawn: Vec<f64> =
+            (0..=points).step_by(DRAWN).map(|i| a.period * i as f64 / points as f64).collect();
+        let mut torque = vec![vec![0.0; drawn.len()]; a.line.links.len()];
+        let mut speed = vec![vec![0.0; drawn.len()]; a.line.nodes.len()];
+        torque.iter_mut().zip(&out.mean_torque).for_each(|(t, mean)| t.fill(*mean));
+        for o in &out.orders {
+            let wave: Vec<(f64, f64)> = drawn.iter().map(|at| (o.order * at).sin_cos()).collect();
+            let add = |row: &mut [f64], [re, im]: [f64; 2]| {
+                row.iter_mut().zip(&wave).for_each(|(r, (sin, cos))| *r += re * cos - im * sin);
+            };
+            torque.iter_mut().zip(&o.torque).for_each(|(t, p)| add(t, *p));
+            let rate = o.order * out.speed;
+            speed.iter_mut().zip(&o.angle).for_each(|(w, p)| add(w, [-rate * p[1], rate * p[0]]));
         }
         Self { turns, points, torque, speed }
     }
@@ -60,7 +56,7 @@ impl Cycle {
             return;
         }
         let (name, n) = (&a.line.links[l].name, l + 1);
-        let rows = |f: f64| self.torque[l].iter().step_by(DRAWN).map(|t| t * f).collect::<Vec<f64>>();
+        let rows = |f: f64| self.torque[l].iter().map(|t| t * f).collect::<Vec<f64>>();
         columns.push(column(format!("shaft{n}.torque"), "N m", rows(1.0)));
         torques.push((name.clone(), format!("shaft{n}.torque")));
         if let Some(s) = a.stress[l] {
@@ -78,7 +74,7 @@ impl Cycle {
         speeds: &mut Vec<(String, String)>,
     ) {
         if i < MAX_DRAWN {
-            let rows = self.speed[i].iter().step_by(DRAWN).copied().collect();
+            let rows = self.speed[i].clone();
             let name = format!("inertia{}.speed", i + 1);
             columns.push(column(name.clone(), "rad/s", rows));
             speeds.push((a.line.nodes[i].name.clone(), name));
