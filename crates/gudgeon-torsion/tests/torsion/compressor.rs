@@ -703,10 +703,15 @@ fn throws_that_are_alike_excite_as_throws_of_their_own() {
         let [a, b] = [&own, &shared].map(|l| gudgeon_torsion::forcing::Excitation::new(l, 100.0, orders));
         assert_eq!(a, b);
     }
-    // So is the motion with all that is not linear.
-    let [a, b] =
-        [&own, &shared].map(|l| run(&HarmonicBalance::default(), &context(l, 100.0, 12.0, &[], &[])));
-    assert_eq!(a.orders, b.orders);
+    // So is the motion with all that is not linear, but for the interpolants that they share: these are right to 1e-13 of their maximum.
+    let [a, b] = [&own, &shared].map(|l| {
+        let out = run(&HarmonicBalance::default(), &context(l, 100.0, 12.0, &[], &[]));
+        out.orders.into_iter().flat_map(|o| o.torque).collect::<Vec<_>>()
+    });
+    let largest = a.iter().map(|z| z[0].hypot(z[1])).fold(0.0, f64::max);
+    let miss = a.iter().zip(&b).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1])).fold(0.0, f64::max);
+    // Of four throws, magnified by resonances nearby.
+    assert!(a.len() == b.len() && miss < 1e-11 * largest, "{miss:e} of {largest:e}");
 }
 
 #[test]
