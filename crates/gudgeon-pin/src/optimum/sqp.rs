@@ -17,9 +17,9 @@ pub fn local_optimum(d: &Design<'_>, from: PinSize) -> Result<Optimum, NoOptimum
     let mut x = p.point_within_ranges(&from);
     let mut at = p.expansion(&x).map_err(NoOptimum::Model)?;
     let mut mu = [0.0; CONSTRAINTS];
-    let (mut iterations, mut settled) = (0, 0);
-    // Two steps at rounding: the second one's multipliers belong to this very point.
-    while iterations < MAX_STEPS && settled < 2 {
+    let (mut iterations, mut settled) = (0, false);
+    // The last step is at rounding: its multipliers belong to this very point.
+    while iterations < MAX_STEPS && !settled {
         iterations += 1;
         let mut rows = Linearised::new(&p, &at, &x);
         let w = p.lagrangian_hessian(&at, &mu);
@@ -27,7 +27,7 @@ pub fn local_optimum(d: &Design<'_>, from: PinSize) -> Result<Optimum, NoOptimum
         mu = rows.multipliers(&step);
         let Some(next) = line_search(&p, &x, &step.x, &mu) else { break };
         (x, at) = next;
-        settled = if length(&step.x) < 1e-13 { settled + 1 } else { 0 };
+        settled = length(&step.x) < 1e-13;
     }
     judged(d, conditions(&p, &x, &at, &mu, iterations).map_err(NoOptimum::Model)?)
 }
