@@ -22,10 +22,14 @@ pub struct BlockingLimit {
     pub length: Option<LengthBound>,
 }
 
-/// Halves the interval between an argument that is kept and one that is not, `steps` times; returns both ends, the kept one first.
+/// Halves the interval between an argument that is kept and one that is not, `steps` times or until no number is between them; returns
+/// both ends, the kept one first.
 fn bisect(mut kept: f64, mut broken: f64, steps: u32, keeps: impl Fn(f64) -> bool) -> (f64, f64) {
     for _ in 0..steps {
         let middle = 0.5 * (kept + broken);
+        if middle == kept || middle == broken {
+            break;
+        }
         if keeps(middle) {
             kept = middle;
         } else {
@@ -97,7 +101,15 @@ impl Excess<'_, '_> {
         let (mut a, mut b) = (from, to);
         for _ in 0..100 {
             let (x, y) = (a + 0.382 * (b - a), a + 0.618 * (b - a));
-            if resultant(x) < resultant(y) {
+            // Nothing is left between them.
+            if x <= a || y >= b {
+                break;
+            }
+            let (at_x, at_y) = (resultant(x), resultant(y));
+            if at_x <= 0.0 || at_y <= 0.0 {
+                return false;
+            }
+            if at_x < at_y {
                 b = y;
             } else {
                 a = x;
