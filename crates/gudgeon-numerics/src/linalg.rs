@@ -12,6 +12,7 @@ mod tridiagonal;
 pub use banded::Banded;
 pub use complex::Complex;
 pub use complex_lu::ComplexLu;
+pub(crate) use dense::lu_solve_by_products;
 pub use dense::{lu_factor, lu_factor_weighted, lu_solve, lu_solve_rows};
 pub use symmetric_banded::SymmetricBanded;
 pub use tridiagonal::solve_tridiagonal;

@@ -25,6 +25,22 @@ pub fn lu_factor_weighted(
     a: &mut [f64],
     n: usize,
     piv: &mut [usize],
+    weights: Option<&mut [f64]>,
+) -> Result<(), Singular> {
+    match n {
+        4 => factor(a, 4, piv, weights),
+        5 => factor(a, 5, piv, weights),
+        6 => factor(a, 6, piv, weights),
+        _ => factor(a, n, piv, weights),
+    }
+}
+
+/// The factorisation. Where `n` is a constant, its loops over short rows are unrolled.
+#[inline(always)]
+fn factor(
+    a: &mut [f64],
+    n: usize,
+    piv: &mut [usize],
     mut weights: Option<&mut [f64]>,
 ) -> Result<(), Singular> {
     assert!(a.len() >= n * n && piv.len() >= n, "work arrays shorter than the matrix");
@@ -73,6 +89,27 @@ pub fn lu_factor_weighted(
 
 /// Solves `A x = b` in place with the factors of [`lu_factor`].
 pub fn lu_solve(a: &[f64], n: usize, piv: &[usize], b: &mut [f64]) {
+    substitute(a, n, piv, b, |k, x| x / a[k * n + k]);
+}
+
+/// [`lu_solve`] with one over every pivot given, for many solutions one after the other: each number waits for the one before, and for a division
+/// longer than for a product.
+pub(crate) fn lu_solve_by_products(a: &[f64], n: usize, piv: &[usize], inverse: &[f64], b: &mut [f64]) {
+    substitute(a, n, piv, b, |k, x| x * inverse[k]);
+}
+
+/// Both substitutions; `by_pivot` divides by pivot `k`.
+#[inline]
+fn substitute(a: &[f64], n: usize, piv: &[usize], b: &mut [f64], by_pivot: impl Fn(usize, f64) -> f64) {
+    match n {
+        4 => substitute_few::<4>(a, piv, b, by_pivot),
+        5 => substitute_few::<5>(a, piv, b, by_pivot),
+        6 => substitute_few::<6>(a, piv, b, by_pivot),
+        _ => substitute_any(a, n, piv, b, by_pivot),
+    }
+}
+
+fn substitute_any(a: &[f64], n: usize, piv: &[usize], b: &mut [f64], by_pivot: impl Fn(usize, f64) -> f64) {
     for (k, &p) in piv[..n].iter().enumerate() {
         b.swap(k, p);
     }
@@ -87,12 +124,41 @@ pub fn lu_solve(a: &[f64], n: usize, piv: &[usize], b: &mut [f64]) {
     }
     for k in (0..n).rev() {
         let (rest, done) = b.split_at_mut(k);
-        done[0] /= a[k * n + k];
-        let x = done[0];
+        let x = by_pivot(k, done[0]);
+        done[0] = x;
         for (row, b) in a.chunks_exact(n).zip(rest) {
             *b -= row[k] * x;
         }
     }
+}
+
+/// The same to the last bit for few unknowns, which stay in registers.
+#[inline]
+fn substitute_few<const N: usize>(
+    a: &[f64],
+    piv: &[usize],
+    b: &mut [f64],
+    by_pivot: impl Fn(usize, f64) -> f64,
+) {
+    let (rows, b) = (&a.as_chunks::<N>().0[..N], &mut b.as_chunks_mut::<N>().0[0]);
+    for (k, &p) in piv[..N].iter().enumerate() {
+        if p != k {
+            b.swap(k, p);
+        }
+    }
+    let mut x = *b;
+    for k in 0..N {
+        for i in k + 1..N {
+            x[i] -= rows[i][k] * x[k];
+        }
+    }
+    for k in (0..N).rev() {
+        x[k] = by_pivot(k, x[k]);
+        for i in 0..k {
+            x[i] -= rows[i][k] * x[k];
+        }
+    }
+    *b = x;
 }
 
 /// [`lu_solve`] for `columns` right-hand sides at once, which stand side by side: `b` is row-major, `n` × `columns`.

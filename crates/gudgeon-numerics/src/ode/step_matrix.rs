@@ -2,7 +2,7 @@
 
 use super::core::Core;
 use super::system::OdeSystem;
-use crate::linalg::{lu_factor_weighted, lu_solve};
+use crate::linalg::{lu_factor_weighted, lu_solve, lu_solve_by_products};
 
 /// Factors of `d I - J`; empty for systems that solve for themselves.
 #[derive(Debug, Clone)]
@@ -10,11 +10,18 @@ pub(crate) struct StepMatrix {
     lu: Vec<f64>,
     piv: Vec<usize>,
     weight: Vec<f64>,
+    /// One over every pivot; empty: solutions divide.
+    inverse: Vec<f64>,
 }
 
 impl StepMatrix {
     pub(crate) fn new(n: usize) -> Self {
-        Self { lu: vec![0.0; n * n], piv: vec![0; n], weight: vec![1.0; n] }
+        Self { lu: vec![0.0; n * n], piv: vec![0; n], weight: vec![1.0; n], inverse: Vec::new() }
+    }
+
+    /// One that solves by products with the inverses of its pivots.
+    pub(crate) fn by_products(n: usize) -> Self {
+        Self { inverse: vec![0.0; n], ..Self::new(n) }
     }
 
     /// Factors `diagonal I - J` with the Jacobian and the row weights of `core`; false when it is singular.
@@ -30,15 +37,20 @@ impl StepMatrix {
             self.lu[i * n + i] += diagonal;
         }
         self.weight.copy_from_slice(&core.weight);
-        lu_factor_weighted(&mut self.lu, n, &mut self.piv, Some(&mut self.weight)).is_ok()
+        let factored = lu_factor_weighted(&mut self.lu, n, &mut self.piv, Some(&mut self.weight)).is_ok();
+        let pivots = self.lu.iter().step_by(n + 1);
+        self.inverse.iter_mut().zip(pivots).for_each(|(inverse, pivot)| *inverse = pivot.recip());
+        factored
     }
 
     /// Solves `(diagonal I - J) x = b` in place.
     pub(crate) fn solve<S: OdeSystem + ?Sized>(&self, core: &Core, sys: &mut S, b: &mut [f64]) {
         if core.structured {
             sys.solve(b);
-        } else {
+        } else if self.inverse.is_empty() {
             lu_solve(&self.lu, core.n, &self.piv, b);
+        } else {
+            lu_solve_by_products(&self.lu, core.n, &self.piv, &self.inverse, b);
         }
     }
 }

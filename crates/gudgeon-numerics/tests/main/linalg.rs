@@ -251,3 +251,27 @@ fn changed_symmetric_matrices_must_be_factored_again() {
     a.clear();
     a.solve(&mut [1.0; 2]);
 }
+
+/// Few unknowns have loops of their own. With rows and columns of the unit matrix beside them there are too many for those, and the same
+/// products and sums stand in the same order.
+#[test]
+fn few_unknowns_have_the_bits_of_many() {
+    let number = |i: usize, j: usize| ((7 * i + 3 * j + 1) as f64).sin();
+    for n in 1..=8 {
+        let m = n + 8;
+        let few: Vec<f64> = (0..n * n).map(|k| number(k / n, k % n)).collect();
+        let unit = |i: usize, j: usize| if i == j { 1.0 } else { 0.0 };
+        let at = |i: usize, j: usize| if i < n && j < n { few[i * n + j] } else { unit(i, j) };
+        let mut many: Vec<f64> = (0..m * m).map(|k| at(k / m, k % m)).collect();
+        let (mut few, mut swaps, mut swaps_of_many) = (few.clone(), vec![0; n], vec![0; m]);
+        lu_factor(&mut few, n, &mut swaps).expect("regular");
+        lu_factor(&mut many, m, &mut swaps_of_many).expect("regular");
+        assert_eq!(swaps, swaps_of_many[..n]);
+        let mut x: Vec<f64> = (0..n).map(|i| number(i, 50)).collect();
+        let mut of_many = x.clone();
+        of_many.resize(m, 1.0);
+        lu_solve(&few, n, &swaps, &mut x);
+        lu_solve(&many, m, &swaps_of_many, &mut of_many);
+        assert!(x.iter().zip(&of_many).all(|(a, b)| a.to_bits() == b.to_bits()), "{n}: {x:?} {of_many:?}");
+    }
+}
