@@ -74,7 +74,7 @@ pub use orifice_law::{OrificeLaw, TRUNCATED_RATIO};
 pub use orifice_network::{OrificeAreas, OrificeNetwork};
 pub use pack_network::{PackNetwork, PackOptions};
 pub use passage::Passage;
-pub use passage_law::{Area, FlowPartials, GasState, LANES, LaneWork, Link, Node, PassageLaw};
+pub use passage_law::{Area, FlowPartials, GasState, Link, Node, PassageLaw};
 pub use plain_pack::plain_pack;
 pub use prescribed::Prescribed;
 pub use ring_passages::{FlankGap, Openings, PassageModel, RingPassages};

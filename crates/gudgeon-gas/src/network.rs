@@ -3,7 +3,7 @@
 use gudgeon_core::{BuildError, EvalError};
 
 use crate::orifice_law::OrificeLaw;
-use crate::passage_law::{GasState, LANES, LaneWork, Link, Node, PassageLaw};
+use crate::passage_law::{GasState, Link, Node, PassageLaw};
 use crate::series::in_series;
 
 /// Gas volumes, each at its own constant temperature, and boundaries at given pressures, joined by passages of one
@@ -50,9 +50,8 @@ pub struct Network<L: PassageLaw = OrificeLaw> {
     source_laws: Vec<L>,
     nodes: Vec<Node>,
     links: Vec<Link<L::Passage>>,
-    /// One per link, filled up with zeros to a multiple of [`LANES`].
+    /// One per link.
     flow: Vec<f64>,
-    work: LaneWork,
     /// Partial derivatives of the flows by the pressures of both ends.
     partials: Vec<[f64; 2]>,
     /// Spaces between the two passages of links that have two; as many as links, or none.
@@ -95,7 +94,6 @@ impl<L: PassageLaw> Network<L> {
             return Err(BuildError::new(format!("the gas network has only {count} nodes")));
         }
         let node = |t: &f64| Node { gas: GasState::new(0.0, gas_constant * t), factor: 0.0, per_mass: 0.0 };
-        let padded = links.len().next_multiple_of(LANES);
         let link =
             |&(from, to): &(usize, usize)| Link { from, to, passage: L::Passage::default(), second: None };
         Ok(Self {
@@ -103,8 +101,7 @@ impl<L: PassageLaw> Network<L> {
             source_laws: Vec::new(),
             nodes: temperatures.iter().map(node).collect(),
             links: links.iter().map(link).collect(),
-            flow: vec![0.0; padded],
-            work: [vec![0.0; padded], vec![0.0; padded]],
+            flow: vec![0.0; links.len()],
             partials: vec![[0.0; 2]; links.len()],
             middle: Vec::new(),
             middle_partials: Vec::new(),
@@ -240,7 +237,7 @@ impl<L: PassageLaw> Network<L> {
             }
             return;
         }
-        self.law.mass_flows(&self.links, &self.nodes, &mut self.work, &mut self.flow);
+        self.law.mass_flows(&self.links, &self.nodes, &mut self.flow);
         if !self.middle.is_empty() {
             for link in 0..self.links.len() {
                 if self.links[link].is_split() {

@@ -2,7 +2,7 @@
 
 use crate::channel::turbulent_share;
 use crate::orifice_law::OrificeLaw;
-use crate::passage_law::{Area, FlowPartials, GasState, LANES, LaneWork, Link, Node, PassageLaw};
+use crate::passage_law::{Area, FlowPartials, GasState, Link, Node, PassageLaw};
 
 /// What lets gas through between two nodes, for the orifice law: the [`PassageLaw`] of the built-in models.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -142,7 +142,7 @@ impl PassageLaw for OrificeLaw {
 
     /// Orifices first, several at once, as if all links were such; then what else there is.
     #[inline]
-    fn mass_flows(&self, links: &[Link<Passage>], nodes: &[Node], work: &mut LaneWork, flow: &mut [f64]) {
+    fn mass_flows(&self, links: &[Link<Passage>], nodes: &[Node], flow: &mut [f64]) {
         let single =
             |link: &Link<Passage>| self.mass_flow(link.passage, &nodes[link.from].gas, &nodes[link.to].gas);
         if self.is_truncated() {
@@ -153,20 +153,14 @@ impl PassageLaw for OrificeLaw {
             }
             return;
         }
-        let [fronts, drops] = work;
         let mut others = false;
-        for ((link, front), drop) in links.iter().zip(&mut *fronts).zip(&mut *drops) {
-            let area = if let Passage::Orifice { area } = link.passage { area } else { 0.0 };
-            others |= !matches!(link.passage, Passage::Orifice { .. } | Passage::Closed);
-            let (a, b) = (&nodes[link.from], &nodes[link.to]);
-            let difference = a.gas.pressure() - b.gas.pressure();
-            let up = if difference >= 0.0 { a } else { b };
-            (*front, *drop) = (area * up.factor, difference * up.gas.inv_pressure());
+        let (fours, rest) = links.as_chunks::<LANES>();
+        let (flows, of_rest) = flow.as_chunks_mut::<LANES>();
+        for (links, flow) in fours.iter().zip(flows) {
+            others |= self.openings(links, nodes, flow);
         }
-        let lanes = fronts.as_chunks::<LANES>().0.iter().zip(drops.as_chunks::<LANES>().0);
-        for (flow, (front, drop)) in flow.as_chunks_mut::<LANES>().0.iter_mut().zip(lanes) {
-            let psi = self.psi_lanes(*drop);
-            *flow = std::array::from_fn(|i| (front[i] * psi[i]).copysign(drop[i]));
+        for (link, flow) in rest.iter().zip(of_rest) {
+            others |= self.openings(std::array::from_ref(link), nodes, std::array::from_mut(flow));
         }
         if others {
             for (link, flow) in links.iter().zip(flow) {
@@ -175,6 +169,33 @@ impl PassageLaw for OrificeLaw {
                 }
             }
         }
+    }
+}
+
+/// Links whose flows are computed at once.
+const LANES: usize = 4;
+
+impl OrificeLaw {
+    /// Flows through links as if all were orifices or closed; whether others are among them.
+    #[inline]
+    fn openings<const N: usize>(
+        &self,
+        links: &[Link<Passage>; N],
+        nodes: &[Node],
+        flow: &mut [f64; N],
+    ) -> bool {
+        let (mut fronts, mut drops, mut others) = ([0.0; N], [0.0; N], false);
+        for ((link, front), drop) in links.iter().zip(&mut fronts).zip(&mut drops) {
+            let area = if let Passage::Orifice { area } = link.passage { area } else { 0.0 };
+            others |= !matches!(link.passage, Passage::Orifice { .. } | Passage::Closed);
+            let (a, b) = (&nodes[link.from], &nodes[link.to]);
+            let difference = a.gas.pressure() - b.gas.pressure();
+            let up = if difference >= 0.0 { a } else { b };
+            (*front, *drop) = (area * up.factor, difference * up.gas.inv_pressure());
+        }
+        let psi = self.psi_lanes(drops);
+        *flow = std::array::from_fn(|i| (fronts[i] * psi[i]).copysign(drops[i]));
+        others
     }
 }
 

@@ -149,13 +149,6 @@ impl Node {
     }
 }
 
-/// The arrays of [`PassageLaw::mass_flows`] are filled up with zeros to a multiple of this many links, so that a law can compute
-/// that many at once.
-pub const LANES: usize = 4;
-
-/// Work arrays for [`PassageLaw::mass_flows`], for free use: one number per link each, filled up to a multiple of [`LANES`].
-pub type LaneWork = [Vec<f64>; 2];
-
 /// Law of the mass flow through one passage.
 ///
 /// This is what a new gas law implements. A [`Network`](crate::Network) turns it into mass balances of any number of volumes, a
@@ -200,13 +193,7 @@ pub trait PassageLaw: Send {
     /// The provided method calls [`mass_flow`](Self::mass_flow) for each link. A law for which several links are cheaper together
     /// has its own; the results must be the same to the last bit.
     #[inline]
-    fn mass_flows(
-        &self,
-        links: &[Link<Self::Passage>],
-        nodes: &[Node],
-        _work: &mut LaneWork,
-        flow: &mut [f64],
-    ) {
+    fn mass_flows(&self, links: &[Link<Self::Passage>], nodes: &[Node], flow: &mut [f64]) {
         for (link, flow) in links.iter().zip(flow) {
             if !link.is_split() {
                 *flow = self.mass_flow(link.passage, &nodes[link.from].gas, &nodes[link.to].gas);
