@@ -4,12 +4,14 @@ use crate::EvalError;
 use crate::linalg::dot;
 use crate::ode::{
     ColumnGroups, Core, Flow, IntegrateError, Integrator, Interpolant, OdeSystem, Options, Scheme, Stats,
-    StepMatrix, StepView, Trial, drive, larger,
+    StepMatrix, StepView, Trial, drive,
 };
 
+mod blocks;
 mod history;
 mod newton;
 
+use blocks::{Block, WIDTH, add, norm, set, zeros};
 use history::{Formula, History, MAX_ORDER};
 use newton::Newton;
 
@@ -38,11 +40,14 @@ pub struct Bdf {
     /// The formula of the step just tried.
     formula: Formula,
     /// Point, rates and correction of the step just tried, states first, then quadratures.
-    rates: Vec<f64>,
-    correction: Vec<f64>,
-    f: Vec<f64>,
-    /// One over the error that is admitted in every component.
-    per_error: Vec<f64>,
+    x: Vec<Block>,
+    rates: Vec<Block>,
+    correction: Vec<Block>,
+    f: Vec<Block>,
+    /// Absolute and relative error that is admitted in every component, and one over their sum.
+    atol: Vec<Block>,
+    rtol: Vec<Block>,
+    per_error: Vec<Block>,
     /// Errors of the step just tried, as norms.
     errors: Errors,
 }
@@ -50,6 +55,8 @@ pub struct Bdf {
 /// Errors of a step at its order and the orders below, times a constant that depends on the order alone, and the order that is best among them.
 #[derive(Debug, Clone, Copy, Default)]
 struct Errors {
+    /// Norm of the correction.
+    size: f64,
     own: f64,
     below: f64,
     order: usize,
@@ -64,84 +71,114 @@ impl Bdf {
         let m = dim + quad_dim;
         Self {
             core: Core::new(dim, quad_dim, groups, false),
-            matrix: StepMatrix::new(dim),
+            matrix: StepMatrix::by_products(dim),
             history: History::new(m),
             newton: Newton::default(),
             formula: Formula::default(),
-            rates: vec![0.0; m],
-            correction: vec![0.0; m],
-            f: vec![0.0; m],
-            per_error: Vec::with_capacity(m),
+            x: zeros(m),
+            rates: zeros(m),
+            correction: zeros(m),
+            f: zeros(m),
+            atol: vec![[1.0; WIDTH]; m.div_ceil(WIDTH)],
+            rtol: zeros(m),
+            per_error: zeros(m),
             errors: Errors::default(),
         }
     }
 
-    /// Solves for the end of the step: `true` when Newton's method has converged, with `x1` and `correction`.
+    /// Sets the errors that are admitted from the start of the step on.
+    fn set_tolerances(&mut self, opts: &Options) {
+        set(&mut self.atol, &self.core.atol);
+        if self.history.is_new() {
+            let n = self.core.n;
+            self.atol.as_flattened_mut()[n..self.core.m].copy_from_slice(&opts.atol_quad);
+            let relative = self.rtol.as_flattened_mut()[..self.core.m].iter_mut().enumerate();
+            relative.for_each(|(i, r)| *r = opts.relative(i));
+        }
+    }
+
+    /// Solves for the end of the step: `true` when Newton's method has converged, with `x` and `correction`.
     fn correct<S: OdeSystem + ?Sized>(
         &mut self,
         sys: &mut S,
         t1: f64,
         h: f64,
-        opts: &Options,
         stats: &mut Stats,
     ) -> Result<bool, EvalError> {
         let lead = self.formula.lead / h;
-        self.history.predict(&self.formula, &mut self.core.x1, &mut self.rates);
-        self.set_norm(opts);
-        self.correction.fill(0.0);
+        self.history.predict(&self.formula, &mut self.x, &mut self.rates);
+        self.set_norm();
+        self.correction.fill([0.0; WIDTH]);
         self.newton.begin();
-        let (n, te) = (self.core.n, self.core.clamp_time(t1));
+        let (n, m, te) = (self.core.n, self.core.m, self.core.clamp_time(t1));
         loop {
-            Core::checked_rhs(sys, te, &self.core.x1[..n], &mut self.f, stats)?;
-            // The residual, and then the step from it.
-            for (f, rate) in self.f.iter_mut().zip(&self.rates) {
-                *f = rate - *f;
-            }
-            let (step, quads) = self.f.split_at_mut(n);
-            self.matrix.solve(&self.core, sys, step);
+            let f = &mut self.f.as_flattened_mut()[..m];
+            Core::checked_rhs(sys, te, &self.x.as_flattened()[..n], f, stats)?;
+            self.residual();
+            self.solve(sys, lead);
             stats.solves += 1;
-            for (q, row) in quads.iter_mut().zip(self.core.jac[n * n..].chunks_exact(n)) {
-                *q = (*q + dot(row, step)) / lead;
-            }
-            let change = self.norm(&self.f);
-            for (i, step) in self.f.iter().enumerate() {
-                self.core.x1[i] -= step;
-                self.correction[i] -= step;
-                self.rates[i] -= lead * step;
-            }
-            if let Some(converged) = self.newton.judge(change) {
+            self.step(lead);
+            if let Some(converged) = self.newton.judge(norm(&self.f, &self.per_error)) {
                 return Ok(converged);
             }
         }
     }
 
-    /// Sets what errors are divided by in this step, from its start and its predicted end.
-    fn set_norm(&mut self, opts: &Options) {
-        let Self { core, per_error, .. } = self;
-        per_error.clear();
-        per_error.extend((0..core.m).map(|i| core.scale(opts, i).recip()));
+    /// The residual of the equation from the rates in `f`.
+    fn residual(&mut self) {
+        for (f, rate) in self.f.iter_mut().zip(&self.rates) {
+            for i in 0..WIDTH {
+                f[i] = rate[i] - f[i];
+            }
+        }
     }
 
-    /// Largest component of `v` over the error that is admitted there.
-    fn norm(&self, v: &[f64]) -> f64 {
-        v.iter().zip(&self.per_error).fold(0.0, |norm, (v, per)| larger(norm, v * per))
+    /// The step from the residual, both in `f`.
+    fn solve<S: OdeSystem + ?Sized>(&mut self, sys: &mut S, lead: f64) {
+        let n = self.core.n;
+        let (step, quads) = self.f.as_flattened_mut()[..self.core.m].split_at_mut(n);
+        self.matrix.solve(&self.core, sys, step);
+        for (q, row) in quads.iter_mut().zip(self.core.jac[n * n..].chunks_exact(n)) {
+            *q = (*q + dot(row, step)) / lead;
+        }
+    }
+
+    /// Takes the step in `f`.
+    fn step(&mut self, lead: f64) {
+        for (i, step) in self.f.iter().enumerate() {
+            add(&mut self.x[i], -1.0, step);
+            add(&mut self.correction[i], -1.0, step);
+            add(&mut self.rates[i], -lead, step);
+        }
+    }
+
+    /// Sets what errors are divided by in this step, from its start and its predicted end.
+    fn set_norm(&mut self) {
+        let ends = self.history.start().zip(&self.x);
+        let admitted = self.atol.iter().zip(&self.rtol);
+        for ((per, (x0, x1)), (atol, rtol)) in self.per_error.iter_mut().zip(ends).zip(admitted) {
+            for i in 0..WIDTH {
+                let (a, b) = (x0[i].abs(), x1[i].abs());
+                per[i] = 1.0 / (atol[i] + rtol[i] * if a > b { a } else { b });
+            }
+        }
     }
 
     /// Errors at the order of the step and below, and which of these orders is best.
     fn judge(&mut self) {
         let k = self.formula.order;
         let sigma = &self.formula.sigma;
-        let size = self.norm(&self.correction);
+        let size = norm(&self.correction, &self.per_error);
         let own = sigma[k] * size;
-        let mut found = Errors { own, below: f64::INFINITY, order: k, estimate: own };
+        let mut found = Errors { size, own, below: f64::INFINITY, order: k, estimate: own };
         if k > 1 {
-            self.f.copy_from_slice(&self.correction);
+            self.f.iter_mut().zip(&self.correction).for_each(|(f, e)| *f = *e);
             self.history.add_difference(&self.formula, k, &mut self.f);
-            let below = sigma[k - 1] * self.norm(&self.f);
+            let below = sigma[k - 1] * norm(&self.f, &self.per_error);
             found.below = below;
             let lower = if k > 2 {
                 self.history.add_difference(&self.formula, k - 1, &mut self.f);
-                let two = sigma[k - 2] * self.norm(&self.f);
+                let two = sigma[k - 2] * norm(&self.f, &self.per_error);
                 terms(k - 1, below).max(terms(k - 2, two)) <= terms(k, own)
             } else {
                 terms(1, below) <= 0.5 * terms(2, own)
@@ -163,7 +200,7 @@ impl Bdf {
         {
             return same;
         }
-        let above = self.norm(&self.f) / (k + 2) as f64;
+        let above = norm(&self.f, &self.per_error) / (k + 2) as f64;
         let (own, raised) = (terms(k, errors.own), terms(k + 1, above));
         if k > 1 && terms(k - 1, errors.below) <= own.min(raised) {
             (k - 1, errors.below)
@@ -226,7 +263,7 @@ impl Scheme for Bdf {
         self.formula = self.history.formula(h);
         let te = self.core.clamp_time(t);
         self.core.set_tolerances(sys, te, opts);
-        self.core.x1.copy_from_slice(&self.core.x0);
+        self.set_tolerances(opts);
         loop {
             let fresh = self.newton.wants_jacobian();
             if fresh {
@@ -244,10 +281,11 @@ impl Scheme for Bdf {
                     return Ok(Trial::Retry(0.5));
                 }
             }
-            if self.correct(sys, t + h, h, opts, stats)? {
+            if self.correct(sys, t + h, h, stats)? {
+                let m = self.core.m;
+                self.core.x1.copy_from_slice(&self.x.as_flattened()[..m]);
                 self.judge();
-                let error = self.formula.error * self.norm(&self.correction);
-                return Ok(Trial::Done { error });
+                return Ok(Trial::Done { error: self.formula.error * self.errors.size });
             }
             if fresh {
                 return Ok(Trial::Retry(0.25));
@@ -259,11 +297,11 @@ impl Scheme for Bdf {
         self.newton.age();
         let k = self.formula.order;
         if self.history.is_starting() && self.errors.order == k && k < MAX_ORDER {
-            self.history.take(&self.formula, &self.correction, h, k + 1);
+            self.history.take(&self.formula, &self.x, &self.correction, h, k + 1);
             return DOUBLED;
         }
         let (order, estimate) = self.best();
-        self.history.take(&self.formula, &self.correction, h, order);
+        self.history.take(&self.formula, &self.x, &self.correction, h, order);
         // Steps of one size are worth more than the last percents of it.
         let admitted = BIAS * estimate + LEAST_ERROR;
         if admitted <= 1.0 && admitted * LEAST_GROWTH.powi(order as i32 + 1) > 1.0 {

@@ -1,6 +1,6 @@
 //! Past values of a solution as modified divided differences, and the formulas that follow from their spacing.
 
-use crate::ode::add_all;
+use super::blocks::{Block, WIDTH, add};
 
 /// Highest order.
 pub(super) const MAX_ORDER: usize = 5;
@@ -27,9 +27,8 @@ pub(super) struct Formula {
 /// The last values.
 #[derive(Debug, Clone)]
 pub(super) struct History {
-    /// Differences of orders 0 to `MAX_ORDER + 1`, one after the other, each as long as the state.
-    phi: Vec<f64>,
-    m: usize,
+    /// Differences of orders 0 to `MAX_ORDER + 1`, all of one block together.
+    phi: Vec<[Block; DIFFERENCES]>,
     /// Distances of the last points from the newest, cumulated.
     psi: [f64; DIFFERENCES],
     /// Order of the coming step; order and size of the last one.
@@ -46,8 +45,7 @@ pub(super) struct History {
 impl History {
     pub fn new(m: usize) -> Self {
         Self {
-            phi: vec![0.0; DIFFERENCES * m],
-            m,
+            phi: vec![[[0.0; WIDTH]; DIFFERENCES]; m.div_ceil(WIDTH)],
             psi: [0.0; DIFFERENCES],
             order: 1,
             last: 0,
@@ -73,20 +71,19 @@ impl History {
         self.starting
     }
 
-    fn difference(&self, j: usize) -> &[f64] {
-        &self.phi[j * self.m..(j + 1) * self.m]
-    }
-
-    fn difference_mut(&mut self, j: usize) -> &mut [f64] {
-        &mut self.phi[j * self.m..(j + 1) * self.m]
+    /// The state where a step begins.
+    pub fn start(&self) -> impl Iterator<Item = &Block> {
+        self.phi.iter().map(|d| &d[0])
     }
 
     /// Begins a step from `x`, at which the rates `f` are known where nothing else is.
     pub fn begin(&mut self, x: &[f64], f: &[f64], h: f64) {
-        self.difference_mut(0).copy_from_slice(x);
         if self.new {
             self.psi[0] = h;
-            self.difference_mut(1).iter_mut().zip(f).for_each(|(d, f)| *d = h * f);
+            for ((d, x), f) in self.phi.iter_mut().zip(x.chunks(WIDTH)).zip(f.chunks(WIDTH)) {
+                d[0][..x.len()].copy_from_slice(x);
+                d[1].iter_mut().zip(f).for_each(|(d, f)| *d = h * f);
+            }
         }
     }
 
@@ -102,7 +99,7 @@ impl History {
         let mut reach = h;
         for i in 1..=k {
             let before = std::mem::replace(&mut f.psi[i - 1], reach);
-            f.beta[i] = f.beta[i - 1] * reach / before;
+            f.beta[i] = f.beta[i - 1] * (reach / before);
             reach = before + h;
             alpha[i] = h / reach;
             f.sigma[i] = i as f64 * f.sigma[i - 1] * alpha[i];
@@ -116,46 +113,49 @@ impl History {
     }
 
     /// Value and rate that the past foretells for the end of the step.
-    pub fn predict(&self, f: &Formula, x: &mut [f64], rates: &mut [f64]) {
-        let count = f.order + 1;
-        let mut of_rates = f.gamma;
-        of_rates.iter_mut().zip(&f.beta).for_each(|(g, b)| *g *= b);
-        x.fill(0.0);
-        add_all(x, 1.0, &f.beta[..count], &self.phi);
-        rates.fill(0.0);
-        add_all(rates, 1.0, &of_rates[..count], &self.phi);
+    pub fn predict(&self, f: &Formula, x: &mut [Block], rates: &mut [Block]) {
+        let weights: [(f64, f64); MAX_ORDER + 1] =
+            std::array::from_fn(|j| (f.beta[j], f.gamma[j] * f.beta[j]));
+        for ((x, rate), d) in x.iter_mut().zip(rates).zip(&self.phi) {
+            // The polynomial begins with a constant.
+            let mut at = (d[0], [0.0; WIDTH]);
+            for (d, (b, g)) in d.iter().zip(&weights).take(f.order + 1).skip(1) {
+                add(&mut at.0, *b, d);
+                add(&mut at.1, *g, d);
+            }
+            (*x, *rate) = at;
+        }
     }
 
     /// Adds the difference of order `j`, as the step has it.
-    pub fn add_difference(&self, f: &Formula, j: usize, v: &mut [f64]) {
-        v.iter_mut().zip(self.difference(j)).for_each(|(v, d)| *v += f.beta[j] * d);
+    pub fn add_difference(&self, f: &Formula, j: usize, v: &mut [Block]) {
+        v.iter_mut().zip(&self.phi).for_each(|(v, d)| add(v, f.beta[j], &d[j]));
     }
 
     /// The difference of one order more than the step, where steps were steady enough to know it.
-    pub fn above(&self, f: &Formula, correction: &[f64], v: &mut [f64]) -> bool {
+    pub fn above(&self, f: &Formula, correction: &[Block], v: &mut [Block]) -> bool {
         let k = f.order;
         if k + 1 >= f.steady || k == self.last + 1 {
             return false;
         }
-        for ((v, e), d) in v.iter_mut().zip(correction).zip(self.difference(k + 1)) {
-            *v = e - d;
+        for ((v, e), d) in v.iter_mut().zip(correction).zip(&self.phi) {
+            *v = *e;
+            add(v, -1.0, &d[k + 1]);
         }
         true
     }
 
-    /// Takes the step with its correction; the next is of order `next`.
-    pub fn take(&mut self, f: &Formula, correction: &[f64], h: f64, next: usize) {
-        let (k, m) = (f.order, self.m);
-        for (j, beta) in f.beta.iter().enumerate().take(k + 1).skip(1) {
-            self.difference_mut(j).iter_mut().for_each(|d| *d *= beta);
-        }
-        if k < MAX_ORDER {
-            self.difference_mut(k + 1).copy_from_slice(correction);
-        }
-        self.difference_mut(k).iter_mut().zip(correction).for_each(|(d, e)| *d += e);
-        for j in (0..k).rev() {
-            let (low, high) = self.phi.split_at_mut((j + 1) * m);
-            low[j * m..].iter_mut().zip(&high[..m]).for_each(|(d, above)| *d += above);
+    /// Takes the step to `x` with its correction; the next is of order `next`.
+    pub fn take(&mut self, f: &Formula, x: &[Block], correction: &[Block], h: f64, next: usize) {
+        let k = f.order;
+        for ((d, x), e) in self.phi.iter_mut().zip(x).zip(correction) {
+            d[k + 1] = *e;
+            let mut above = *e;
+            for (d, beta) in d.iter_mut().zip(&f.beta).take(k + 1).skip(1).rev() {
+                add(&mut above, *beta, d);
+                *d = above;
+            }
+            d[0] = *x;
         }
         (self.psi, self.steady, self.last, self.size) = (f.psi, f.steady, k, h);
         self.starting &= next > k;
@@ -178,6 +178,10 @@ impl History {
             weights[j] = weights[j - 1] * (back + self.psi[j - 2]) / self.psi[j - 1];
         }
         x.fill(0.0);
-        add_all(x, 1.0, &weights[..=self.last], &self.phi);
+        for (x, d) in x.chunks_mut(WIDTH).zip(&self.phi) {
+            for (w, d) in weights[..=self.last].iter().zip(d) {
+                x.iter_mut().zip(d).for_each(|(x, d)| *x += w * d);
+            }
+        }
     }
 }
