@@ -53,6 +53,61 @@ fn stiff_kinetics_agree_with_an_independent_method_and_follow_the_tolerance() {
     }
 }
 
+/// Five of them side by side: more numbers than a block of the integrator's work arrays holds.
+struct FiveFold;
+impl OdeSystem for FiveFold {
+    fn dim(&self) -> usize {
+        15
+    }
+    fn quad_dim(&self) -> usize {
+        5
+    }
+    fn rhs(&mut self, t: f64, y: &[f64], f: &mut [f64]) -> Result<(), EvalError> {
+        for (i, y) in y.chunks_exact(3).enumerate() {
+            let mut one = [0.0; 4];
+            Kinetics.rhs(t, y, &mut one)?;
+            f[3 * i..3 * i + 3].copy_from_slice(&one[..3]);
+            f[15 + i] = one[3];
+        }
+        Ok(())
+    }
+    fn jacobian(&mut self, t: f64, y: &[f64], _: &[f64], jac: &mut [f64]) -> Result<bool, EvalError> {
+        jac.fill(0.0);
+        for (i, y) in y.chunks_exact(3).enumerate() {
+            let mut one = [0.0; 12];
+            Kinetics.jacobian(t, y, &[], &mut one)?;
+            for (k, row) in one.chunks_exact(3).enumerate() {
+                let to = if k < 3 { 3 * i + k } else { 15 + i };
+                jac[15 * to + 3 * i..15 * to + 3 * i + 3].copy_from_slice(row);
+            }
+        }
+        Ok(true)
+    }
+}
+
+#[test]
+fn systems_side_by_side_run_as_one_alone() {
+    let (alone, work) = kinetics(&mut Bdf::new(3, 1, None), 1e-6);
+    let scale = [1.0, 1e-4, 1.0].repeat(5);
+    let options = Options { atol_quad: vec![1e-6; 5], ..Options::new(1e-6, &scale) };
+    let (mut y, mut q, mut stats) = ([1.0, 0.0, 0.0].repeat(5), [0.0; 5], Stats::default());
+    let go = &mut |_: &mut FiveFold, _: &dyn StepView| Flow::Continue;
+    let outcome = Bdf::new(15, 5, None).integrate(
+        &mut FiveFold,
+        (0.0, 400.0),
+        &[],
+        &mut y,
+        &mut q,
+        &options,
+        &mut stats,
+        go,
+    );
+    assert!(outcome.is_ok(), "{outcome:?}");
+    // The norm is the largest component, and zeros beside a system change no sum: steps and results are those of one.
+    assert_eq!(stats, work);
+    assert!(y.chunks_exact(3).zip(q).all(|(y, q)| [y[0], y[1], y[2], q] == alone), "{y:?} {q:?} {alone:?}");
+}
+
 #[test]
 fn linear_invariants_hold_at_a_loose_tolerance() {
     let (found, _) = kinetics(&mut Bdf::new(3, 1, None), 1e-3);
