@@ -6,8 +6,8 @@ How to run (in a directory outside the source tree):
     venv/bin/pip install numpy scipy numba scikit-sundae
     venv/bin/python <source tree>/benches/race.py
 
-Needs cargo. A code whose package is missing is skipped with a message. Options: `--rounds N` (default 5), `--binary PATH` (a
-`gas_network` bench that is built already; otherwise `cargo bench --no-run` builds one).
+Needs cargo. A code whose package is missing is told to be. Options: `--rounds N` (default 5), `--binary PATH` (a `gas_network` bench that is built
+already; otherwise `cargo bench --no-run` builds one).
 
 Rules
 - One problem: the same nine links, volumes, temperatures, pressure pulse, start state and cycle, from the periodic start state. The
@@ -15,33 +15,33 @@ Rules
   `error_model="numpy"`; Gudgeon's is its library's `Network`, errors checked.
 - One accuracy measure: the relative error of the blow-by after the cycle against a value on which three codes at relative tolerances of 1e-11 and
   1e-12 agree within 1e-10.
-- The same tolerances: relative `rtol`, absolute `rtol` times the start mass for the volumes. Gudgeon's one-step methods integrate the blow-by as a
-  quadrature outside the error control; its BDF has it within, and the others carry it as a sixth state, with an absolute tolerance of `rtol` times
-  1e-6 kg. Gudgeon also integrates the outflow of the chamber, to check its mass balance. Every code chooses its first step; no code is told of the
-  largest step.
-- Jacobians: Gudgeon differences in groups of columns that share no row. Codes marked `J` have the exact Jacobian, compiled too; the
-  others difference.
+- Errors scatter: from one tolerance to the next, a tenth of a decade away, the error changes by factors of three, so the fastest run of few with an
+  error below a limit is a lucky one. Every code therefore runs at 81 tolerances from 1e-1 to 1e-9 (codes of SciPy that are written in Python at every
+  fifth), and the time for an error is that of a straight line through the logarithms of time and error of all runs whose error is within a factor of 16
+  of it. `safe` is stricter: the shortest time from which on no tolerance nearby (three on either side) leaves a larger error.
+- The same tolerances: relative `rtol`, absolute `rtol` times the start mass for the volumes. All have the blow-by within the error control, as a
+  quadrature or a sixth state with an absolute tolerance of `rtol` times 1e-6 kg; Gudgeon's Radau5 alone has it outside. Gudgeon also integrates the
+  outflow of the chamber, to check its mass balance. Every code chooses its first step; no code is told of the largest step.
+- Jacobians: Gudgeon has the partial derivatives of its network, codes marked `J` the same, compiled too; the others difference.
 - `compiled` codes call the compiled functions without Python in between: CVODE through its C interface. The others call back
   into Python for every evaluation, which is most of their time: they show what the package costs as it is usually used, not
   what the method costs.
 - Timing: setup of a solver counts where its interface offers no reset (all others than Gudgeon set up anew for every cycle; for CVODE through C the
-  memory is made once and reinitialised). One round runs every code at every tolerance once, so that all see the same load of the machine; Gudgeon's
-  figure of a round is the median of 50 cycles in a process of its own, CVODE's through C the median of 50, the others' the median of
-  3, or one cycle for BDF and Radau of SciPy, which are written in Python. The table gives the median over the rounds.
+  memory is made once and reinitialised). One round runs every code at every tolerance, so that all see the same load of the machine; a compiled code's
+  figure of a round is the median of 15 cycles, Gudgeon's in a process of its own, the others' is one cycle. What counts is the least figure of all rounds: other
+  programs on the machine only add to it.
 - Compilation and the first call of each function are outside the timing.
 """
 
-import argparse
 import ctypes
 import glob
-import json
 import math
 import os
-import platform
 import statistics
-import subprocess
 import sys
 import time
+
+import racing
 
 import numpy as np
 
@@ -53,7 +53,6 @@ try:
         return numba.njit(error_model="numpy")(f)
 except ImportError:
     numba = None
-    print("numba is missing: the right-hand side is plain Python, times of the other codes say little")
 
     def compiled(f):
         return f
@@ -64,17 +63,17 @@ try:
     from scipy.integrate import solve_ivp
 except ImportError:
     scipy = None
-    print("scipy is missing: LSODA, BDF and Radau are skipped")
 
 try:
     import sksundae
 except ImportError:
     sksundae = None
-    print("scikit-sundae is missing: CVODE is skipped")
 
 BLOW_BY = 6.2493570768654555e-6
-WANTED = [1e-3, 1e-4, 1e-5, 1e-6]
-TOLERANCES = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8]
+WANTED = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8]
+TOLERANCES = [10.0 ** (-1 - 0.1 * k) for k in range(81)]
+# Runs within this distance of an error, in powers of ten, say what it costs.
+NEAR = 1.2
 N = 5
 CH, CC = 5, 6
 FROM = np.array([CH, CH, 0, 1, 1, 2, 3, 3, 4])
@@ -363,38 +362,22 @@ def through_c():
     return make
 
 
-def gudgeon_binary(given):
-    if given:
-        return given
-    root = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-    out = subprocess.run(
-        ["cargo", "bench", "-q", "-p", "gudgeon-benches", "--bench", "gas_network", "--no-run",
-         "--message-format=json"],
-        cwd=root, stdout=subprocess.PIPE, check=True, text=True,
-    ).stdout  # fmt: skip
-    for line in out.splitlines():
-        message = json.loads(line)
-        if message.get("executable") and message.get("target", {}).get("name") == "gas_network":
-            return message["executable"]
-    raise RuntimeError("cargo built no bench `gas_network`")
-
-
 def codes():
-    """Name, cycles timed per round, maker."""
+    """Name, cycles timed per round, every how manieth tolerance, maker."""
+    if sksundae is not None and numba is not None:
+        try:
+            make = through_c()
+            yield "CVODE J, compiled", 15, 1, lambda rtol: make(rtol, True)
+            yield "CVODE, compiled", 15, 1, lambda rtol: make(rtol, False)
+        except OSError as e:
+            print(f"CVODE through C is skipped: {e}")
+    if sksundae is not None:
+        yield "scikit-sundae CVODE J", 1, 1, through_sksundae
     if scipy is not None:
         # The two written in Python take a fraction of a second each.
-        for method, repeat in (("LSODA", 3), ("BDF", 1), ("Radau", 1)):
-            yield f"SciPy {method}", repeat, through_scipy(method, False)
-            yield f"SciPy {method} J", repeat, through_scipy(method, True)
-    if sksundae is not None:
-        yield "scikit-sundae CVODE J", 3, through_sksundae
-        if numba is not None:
-            try:
-                make = through_c()
-                yield "CVODE, compiled", 50, lambda rtol: make(rtol, False)
-                yield "CVODE J, compiled", 50, lambda rtol: make(rtol, True)
-            except OSError as e:
-                print(f"CVODE through C is skipped: {e}")
+        for method, every in (("LSODA", 1), ("BDF", 5), ("Radau", 5)):
+            yield f"SciPy {method}", 1, every, through_scipy(method, False)
+            yield f"SciPy {method} J", 1, every, through_scipy(method, True)
 
 
 def check_jacobian():
@@ -412,68 +395,88 @@ def check_jacobian():
             raise AssertionError(f"the exact Jacobian is wrong in column {j}")
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--rounds", type=int, default=5)
-    parser.add_argument("--binary", help="a built gas_network bench")
-    args = parser.parse_args()
+def at_error(rows, wanted):
+    """Time of the line through the runs near an error; none where there are too few on one side."""
+    x = np.array([math.log10(max(error, 1e-16) / wanted) for error, _ in rows])
+    y = np.array([math.log(us) for _, us in rows])
+    near = np.abs(x) <= NEAR
+    if near.sum() < 4 or not (x[near].min() < 0 < x[near].max()):
+        return None
+    return math.exp(np.polyfit(x[near], y[near], 1)[1])
+
+
+def safely(rows, wanted):
+    """Shortest time of a tolerance around which none leaves a larger error."""
+    safe = [us for i, (_, us) in enumerate(rows) if max(e for e, _ in rows[max(0, i - 3) : i + 4]) <= wanted]
+    return min(safe, default=None)
+
+
+NAME = "Gas network of five volumes over a cycle"
+
+
+def prepare(binary):
     check_jacobian()
-    binary = gudgeon_binary(args.binary)
+    runners, result = [], {}
+    for name, repeat, every, make in codes():
+        for rtol in TOLERANCES[::every]:
+            once = make(rtol)
+            try:
+                result[name, rtol] = once()
+                runners.append((name, repeat, rtol, once))
+            except RuntimeError as e:
+                print(f"{name} at {rtol:.0e}: {e}")
+    return {"binary": binary or racing.build("gas_network"), "runners": runners, "result": result, "us": {}}
 
-    def gudgeon():
-        out = subprocess.run([binary, "--json"], stdout=subprocess.PIPE, check=True, text=True).stdout
-        return json.loads(out)
 
-    runners = [(name, repeat, rtol, make(rtol)) for name, repeat, make in codes() for rtol in TOLERANCES]
-    result, seconds = {}, {}
-    for name, _, rtol, once in list(runners):
-        try:
-            result[name, rtol] = once()
-        except RuntimeError as e:
-            print(f"{name} at {rtol:.0e}: {e}")
-    for _ in range(args.rounds):
-        for row in gudgeon():
-            key = row["code"], row["rtol"]
-            result[key] = row["blow_by"], row["steps"], row["rhs"]
-            seconds.setdefault(key, []).append(row["microseconds"])
-        for name, repeat, rtol, once in runners:
-            if (name, rtol) not in result:
-                continue
-            times = []
-            for _ in range(repeat):
-                begin = time.perf_counter()
-                once()
-                times.append((time.perf_counter() - begin) * 1e6)
-            seconds.setdefault((name, rtol), []).append(statistics.median(times))
-    versions = [f"Python {platform.python_version()}", f"numpy {np.__version__}"]
-    versions += [f"{m.__name__} {m.__version__}" for m in (scipy, numba, sksundae) if m is not None]
-    if sksundae is not None:
-        versions.append(f"SUNDIALS {sksundae.SUNDIALS_VERSION}")
-    versions.append(subprocess.run(["rustc", "--version"], stdout=subprocess.PIPE, text=True).stdout.strip())
-    print("; ".join(versions))
-    print(f"{args.rounds} rounds")
-    print(f"{'code':<24}{'rtol':>7}{'steps':>7}{'rhs':>7}{'blow-by error':>15}{'us, median':>12}{'us, least':>11}")
-    table = {}
-    for name, rtol in seconds:
-        blow_by, steps, rhs = result[name, rtol]
-        error, median = abs(blow_by / BLOW_BY - 1.0), statistics.median(seconds[name, rtol])
-        least = min(seconds[name, rtol])
-        table.setdefault(name, []).append((error, median, least))
-        print(f"{name:<24}{rtol:>7.0e}{steps:>7}{rhs:>7}{error:>15.2e}{median:>12.1f}{least:>11.1f}")
-    # The median is what the rules ask for; the least of all rounds is what a disturbed machine changes last.
-    for statistic, column in (("median", 1), ("least", 2)):
-        print(f"\nshortest time [us], {statistic} over the rounds, with a blow-by error of at most ...")
-        print(f"{'code':<24}" + "".join(f"{e:>12.0e}{'ratio':>8}" for e in WANTED))
-        base = {}
-        for name, rows in table.items():
-            line = f"{name:<24}"
-            for wanted in WANTED:
-                best = min((row[column] for row in rows if row[0] <= wanted), default=math.nan)
-                base.setdefault(wanted, best)
-                line += f"{best:>12.1f}{best / base[wanted]:>8.2f}"
-            print(line)
-    print(f"ratio: time over that of {next(iter(table))}")
+def play(state):
+    def keep(key, us):
+        state["us"][key] = min(us, state["us"].get(key, math.inf))
+
+    for row in racing.answer(state["binary"], "--json"):
+        state["result"][row["code"], row["rtol"]] = row["blow_by"], row["steps"], row["rhs"]
+        keep((row["code"], row["rtol"]), row["microseconds"])
+    for name, repeat, rtol, once in state["runners"]:
+        times = []
+        for _ in range(repeat):
+            begin = time.perf_counter()
+            once()
+            times.append((time.perf_counter() - begin) * 1e6)
+        keep((name, rtol), statistics.median(times))
+
+
+def report(state):
+    runs = {}
+    for (name, rtol), us in state["us"].items():
+        runs.setdefault(name, []).append((abs(state["result"][name, rtol][0] / BLOW_BY - 1.0), us))
+    line = {name: [at_error(rows, e) for e in WANTED] for name, rows in runs.items()}
+    safe = {name: [safely(rows, e) for e in WANTED] for name, rows in runs.items() if len(rows) == len(TOLERANCES)}
+
+    def lead(best):
+        """How many times as long the better CVODE takes as the best of Gudgeon."""
+        def least(own, k):
+            found = [v[k] for n, v in best.items() if n.startswith("Gudgeon" if own else "CVODE") and v[k]]
+            return min(found, default=None)
+
+        pairs = [(least(True, k), least(False, k)) for k in range(len(WANTED))]
+        return [f"{b / a:.2f}" if a and b else "–" for a, b in pairs]
+
+    head = ["us for an error of the blow-by of"] + [f"{e:.0e}" for e in WANTED]
+    show = lambda best: [[name] + [racing.figure(v) for v in row] for name, row in best.items()]
+    lead_row = lambda best: [["better compiled CVODE over the best of Gudgeon"] + lead(best)] if sksundae else []
+    some = [(n, r) for n in runs for r in (1e-3, 1e-5, 1e-7) if (n, r) in state["us"]]
+    counts = [[f"{n}, {r:.0e}", *state["result"][n, r][1:], f"{abs(state['result'][n, r][0] / BLOW_BY - 1):.1e}",
+               f"{state['us'][n, r]:.0f}"] for n, r in some]  # fmt: skip
+    used = racing.versions("numpy", "scipy", "numba", "scikit-sundae")
+    used += [f"SUNDIALS {sksundae.SUNDIALS_VERSION}"] if sksundae else []
+    return "\n\n".join([
+        "; ".join(used),
+        racing.table(head, show(line) + lead_row(line)),
+        "The same, safe from a larger error at tolerances nearby:",
+        racing.table(head, show(safe) + lead_row(safe)),
+        "Single runs:",
+        racing.table(["code and tolerance", "steps", "right-hand sides", "error", "us"], counts),
+    ])  # fmt: skip
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    racing.alone(sys.modules["__main__"], 5)

@@ -7,7 +7,7 @@ How to run (in a directory outside the source tree):
     venv/bin/python <source tree>/benches/race_film.py
 
 Needs cargo. Options: `--rounds N` (default 3), `--binary PATH` (a `film_2d` bench that is built already; otherwise
-`cargo bench --no-run` builds one), `--dimples K,K,...` (default 1,2,8,10).
+`cargo bench --no-run` builds one).
 
 Rules
 - One problem: the slider of Woloszynski et al. 2015 with K x K square dimples, 30 K + 2 nodes a side, the same control volumes.
@@ -20,13 +20,11 @@ Rules
   medians over the rounds.
 """
 
-import argparse
-import json
-import os
-import pathlib
 import statistics
-import subprocess
+import sys
 import time
+
+import racing
 
 import numpy as np
 import scipy.sparse as sp
@@ -114,41 +112,35 @@ def scipy_row(k, kind, ordering):
                 peak_error=(p.max() + P_CAV) / REFERENCE[k][1] - 1)
 
 
-def build():
-    root = pathlib.Path(__file__).resolve().parent.parent
-    command = ["cargo", "bench", "-p", "gudgeon-benches", "--bench", "film_2d", "--no-run", "--message-format=json"]
-    text = subprocess.run(command, cwd=root, check=True, stdout=subprocess.PIPE, text=True).stdout
-    found = [m["executable"] for m in map(json.loads, text.splitlines()) if m.get("executable")]
-    return found[-1]
+NAME = "Cavitating film of a textured slider"
+OWN = "Gudgeon, multigrid"
 
 
-def main():
-    options = argparse.ArgumentParser()
-    options.add_argument("--rounds", type=int, default=3)
-    options.add_argument("--binary")
-    options.add_argument("--dimples", default="1,2,8,10")
-    options = options.parse_args()
-    dimples = [int(k) for k in options.dimples.split(",")]
-    binary = options.binary or build()
-    os.environ.update(OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1")
-    rows = {}
-    for _ in range(options.rounds):
-        own = json.loads(subprocess.run([binary, "--json"], check=True, stdout=subprocess.PIPE, text=True).stdout)
-        for r in own:
-            if r["k"] in dimples:
-                rows.setdefault((r["k"], "gudgeon multigrid"), []).append(r)
-        for k in dimples:
-            for kind in ("min", "FBNS"):
-                for ordering in ("COLAMD", "MMD_AT_PLUS_A"):
-                    rows.setdefault((k, f"SuperLU {kind} {ordering}"), []).append(scipy_row(k, kind, ordering))
-    print(f"{'K':>3} {'code':<30} {'newton':>6} {'load error':>11} {'peak error':>11} {'ms':>9} {'ratio':>6}")
-    for (k, code), runs in sorted(rows.items()):
-        ms = statistics.median(r["milliseconds"] for r in runs)
-        own = statistics.median(r["milliseconds"] for r in rows[k, "gudgeon multigrid"])
-        r = runs[0]
-        print(f"{k:>3} {code:<30} {r['iterations']:>6} {abs(r['load_error']):>11.1e} {abs(r['peak_error']):>11.1e}"
-              f" {ms:>9.1f} {ms / own:>6.1f}")
+def prepare(binary):
+    return {"binary": binary or racing.build("film_2d"), "rows": {}}
+
+
+def play(state):
+    rows = state["rows"]
+    for r in racing.answer(state["binary"], "--json"):
+        rows.setdefault((r["k"], OWN), []).append(r)
+    for k in REFERENCE:
+        for kind in ("min", "FBNS"):
+            for ordering in ("COLAMD", "MMD_AT_PLUS_A"):
+                rows.setdefault((k, f"SuperLU, {kind}, {ordering}"), []).append(scipy_row(k, kind, ordering))
+
+
+def report(state):
+    rows = state["rows"]
+    middle = lambda runs: statistics.median(r["milliseconds"] for r in runs)
+    out = []
+    for (k, code), runs in sorted((key, runs) for key, runs in rows.items() if key[0] in REFERENCE):
+        r, ms = runs[0], middle(runs)
+        out.append((f"{30 * k + 2} nodes a side, {code}", r["iterations"], f"{abs(r['load_error']):.1e}",
+                    f"{abs(r['peak_error']):.1e}", f"{ms:.1f}", f"{ms / middle(rows[k, OWN]):.1f}"))
+    head = ("code", "Newton steps", "error of the load", "of the peak", "ms", "times Gudgeon's")
+    return "; ".join(racing.versions("numpy", "scipy")) + "\n\n" + racing.table(head, out)
 
 
 if __name__ == "__main__":
-    main()
+    racing.alone(sys.modules["__main__"], 3)

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Gudgeon's pin optimiser against SciPy and NLopt on the same random engines.
 
-    python benches/race_pin.py [--engines 200] [--rounds 5] [--binary PATH]
+    python benches/race_pin.py [--rounds 5] [--binary PATH]
 
-Needs Python with numpy, scipy and nlopt, and builds the bench `pin` with Cargo unless `--binary` names it. The table is printed.
+Needs Python with numpy and scipy, takes nlopt where it is installed, and builds the bench `pin` with Cargo unless `--binary` names it. The table is
+printed.
 
 What is compared, and what is not:
 
@@ -17,19 +18,20 @@ What is compared, and what is not:
 - A round solves all engines with every code once; times are medians over rounds. All run on one core.
 """
 
-import argparse
-import json
 import math
-import os
-import pathlib
 import statistics
-import subprocess
+import sys
 import time
 
-os.environ.update(OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1")
-import nlopt
+import racing
+
 import numpy as np
 from scipy.optimize import minimize
+
+try:
+    import nlopt
+except ImportError:
+    nlopt = None
 
 STEEL, ALLOY = 7850.0, 2690.0
 
@@ -127,58 +129,56 @@ def with_nlopt(algorithm):
     return solve
 
 
-CODES = {"SciPy SLSQP": scipy_slsqp, "NLopt SLSQP": with_nlopt(nlopt.LD_SLSQP), "NLopt MMA": with_nlopt(nlopt.LD_MMA)}
+CODES = {"SciPy SLSQP": scipy_slsqp}
+if nlopt is not None:
+    CODES |= {"NLopt SLSQP": with_nlopt(nlopt.LD_SLSQP), "NLopt MMA": with_nlopt(nlopt.LD_MMA)}
+NAME = "The lightest pin"
+ENGINES = 200
 
 
-def build():
-    root = pathlib.Path(__file__).resolve().parent.parent
-    command = ["cargo", "bench", "-p", "gudgeon-benches", "--bench", "pin", "--no-run", "--message-format=json"]
-    text = subprocess.run(command, cwd=root, check=True, stdout=subprocess.PIPE, text=True).stdout
-    return [m["executable"] for m in map(json.loads, text.splitlines()) if m.get("executable")][-1]
+def prepare(binary):
+    return {"binary": binary or racing.build("pin"), "times": {"Gudgeon": []}, "errors": {}, "counts": {}}
 
 
-def main():
-    options = argparse.ArgumentParser()
-    options.add_argument("--engines", type=int, default=200)
-    options.add_argument("--rounds", type=int, default=5)
-    options.add_argument("--binary")
-    options = options.parse_args()
-    binary = options.binary or build()
-    times, errors, counts = {"Gudgeon": []}, {}, {}
-    for _ in range(options.rounds):
-        own = json.loads(subprocess.run([binary, "--json", str(options.engines)], check=True, stdout=subprocess.PIPE, text=True).stdout)
-        times["Gudgeon"].append(own["seconds"])
-        engines = [e for e in own["engines"] if e["size"]]
-        for code, solve in CODES.items():
-            errors[code], counts[code] = [], []
-            spent = 0.0
-            for e in engines:
-                p = Problem(e)
-                # The functions of both programs agree: else the race means nothing.
-                here = p.mass(np.array(e["size"]) / e["bore"])[0] * p.unit()
-                assert abs(here - e["mass"]) < 1e-12 * (abs(e["mass"]) + p.unit() * 1e-3), (here, e["mass"])
-                assert p.limits(np.array(e["size"]) / e["bore"])[0].max() < 1e-11
-                p.count = 0
-                begin = time.perf_counter()
-                x = solve(p)
-                spent += time.perf_counter() - begin
-                counts[code].append(p.count)
-                # A point that breaks a limit is no pin: its excess counts as error too.
-                over = max(0.0, float(np.max(p.limits(x)[0]))) if np.all(np.isfinite(x)) else math.inf
-                m = p.mass(x)[0] * p.unit() if math.isfinite(over) else math.inf
-                pin = STEEL * math.pi / 4 * (e["size"][1] ** 2 - e["size"][2] ** 2) * e["size"][0]
-                errors[code].append(max((m - e["mass"]) / pin, over))
-            times.setdefault(code, []).append(spent / len(engines))
-    own = statistics.median(times["Gudgeon"])
-    print(f"{len(engines)} engines, medians of {options.rounds} rounds")
-    print(f"{'code':<14} {'us each':>9} {'ratio':>8} {'evaluations':>12} {'median error':>13} {'missed':>7}")
-    print(f"{'Gudgeon':<14} {1e6 * own:>9.1f} {1:>8.1f} {'':>12} {'proved':>13} {0:>7}")
+def solved(e, solve):
+    """Time, evaluations and error of one code on one engine."""
+    p = Problem(e)
+    # The functions of both programs agree: else the race means nothing.
+    here = p.mass(np.array(e["size"]) / e["bore"])[0] * p.unit()
+    assert abs(here - e["mass"]) < 1e-12 * (abs(e["mass"]) + p.unit() * 1e-3), (here, e["mass"])
+    assert p.limits(np.array(e["size"]) / e["bore"])[0].max() < 1e-11
+    p.count = 0
+    begin = time.perf_counter()
+    x = solve(p)
+    spent = time.perf_counter() - begin
+    count = p.count
+    # A point that breaks a limit is no pin: its excess counts as error too.
+    over = max(0.0, float(np.max(p.limits(x)[0]))) if np.all(np.isfinite(x)) else math.inf
+    m = p.mass(x)[0] * p.unit() if math.isfinite(over) else math.inf
+    pin = STEEL * math.pi / 4 * (e["size"][1] ** 2 - e["size"][2] ** 2) * e["size"][0]
+    return spent, count, max((m - e["mass"]) / pin, over)
+
+
+def play(state):
+    own = racing.answer(state["binary"], "--json", str(ENGINES))
+    state["times"]["Gudgeon"].append(own["seconds"])
+    engines = [e for e in own["engines"] if e["size"]]
+    for code, solve in CODES.items():
+        runs = [solved(e, solve) for e in engines]
+        state["times"].setdefault(code, []).append(statistics.mean(r[0] for r in runs))
+        state["counts"][code], state["errors"][code] = [r[1] for r in runs], [r[2] for r in runs]
+
+
+def report(state):
+    own = statistics.median(state["times"]["Gudgeon"])
+    rows = [("Gudgeon", "", "proved", 0, f"{1e6 * own:.1f}", 1)]
     for code in CODES:
-        t = statistics.median(times[code])
-        e = errors[code]
-        print(f"{code:<14} {1e6 * t:>9.1f} {t / own:>8.1f} {statistics.mean(counts[code]):>12.1f} {statistics.median(map(abs, e)):>13.1e}"
-              f" {sum(v > 1e-6 for v in e):>7}")
+        t, e = statistics.median(state["times"][code]), state["errors"][code]
+        rows.append((code, f"{statistics.mean(state['counts'][code]):.0f}", f"{statistics.median(map(abs, e)):.1e}",
+                     sum(v > 1e-6 for v in e), f"{1e6 * t:.0f}", f"{t / own:.0f}"))
+    head = ("code", "evaluations", "median error", f"missed of {ENGINES}", "us each", "times Gudgeon's")
+    return "; ".join(racing.versions("numpy", "scipy", "nlopt")) + "\n\n" + racing.table(head, rows)
 
 
 if __name__ == "__main__":
-    main()
+    racing.alone(sys.modules["__main__"], 5)

@@ -1,9 +1,9 @@
-"""openTorsion (from PyPI) beside Gudgeon in one run: an engine of nine inertias, its eigenvalues and its forced vibration at 401 speeds and 24 orders.
+"""openTorsion and ROSS beside Gudgeon in one run: an engine of nine inertias, its eigenvalues and its forced vibration at 401 speeds and 24 orders.
 
 How to run (in a directory outside the source tree):
 
     python3 -m venv venv
-    venv/bin/pip install numpy scipy opentorsion
+    venv/bin/pip install numpy scipy opentorsion ross-rotordynamics "plotly<6"
     venv/bin/python <source tree>/benches/race_torsion.py
 
 Needs cargo. Options: `--rounds N` (default 3), `--binary PATH` (a `torsion` bench that is built already; otherwise `cargo bench --no-run` builds
@@ -13,20 +13,27 @@ Rules
 - One problem: the inertias, stiffnesses and dampings of `benches/torsion.rs`, the same torques and speeds.
 - openTorsion's matrices and excitations are built outside its timing. Of its sweep only the calls of `ss_response` are timed, one per order with all
   speeds; Gudgeon's timing holds everything but the line itself. Python's own overhead is part of what a user of openTorsion waits for.
+- ROSS knows rotors that bend, stretch and turn: six freedoms a node, 54 in all. Its shafts here have the same stiffness in torsion and next to no mass, so
+  that its torsional frequencies are those of the engine. Its matrices are built outside the timing, and SciPy's symmetric solver finds their eigenvalues:
+  its own `run_modal` forms a state space of twice the size and sorts modes of all kinds, which would say little of torsion.
 - The error of each is against exact solutions with 25 digits (mpmath), as largest relative deviation of the elastic frequencies, and of the angle of
   order 3 and the shaft torque of order 6 at 2100 rpm.
 - A round runs each once (medians of many calls); the table holds medians over the rounds.
 """
 
-import argparse
-import json
-import pathlib
 import statistics
-import subprocess
+import sys
 import time
 
+import racing
+
 import numpy as np
-import opentorsion as ot
+import scipy.linalg as la
+
+try:
+    import opentorsion as ot
+except ImportError:
+    ot = None
 
 J = [0.120, 0.030, 0.055, 0.055, 0.055, 0.055, 0.055, 0.055, 1.60]
 K = [0.08e6, 0.90e6, 1.35e6, 1.35e6, 1.35e6, 1.35e6, 1.35e6, 1.80e6]
@@ -55,7 +62,7 @@ def torque(order, amplitude, speeds):
     return u
 
 
-def theirs():
+def with_opentorsion():
     shafts = [ot.Shaft(i, i + 1, None, None, k=k, c=c) for i, (k, c) in enumerate(zip(K, C))]
     disks = [ot.Disk(i, j, c=c) for i, (j, c) in enumerate(zip(J, C_ABS))]
     engine = ot.Assembly(shafts, disk_elements=disks)
@@ -76,44 +83,74 @@ def theirs():
     return out
 
 
-def build():
-    command = ["cargo", "bench", "-p", "gudgeon-benches", "--bench", "torsion", "--no-run", "--message-format=json"]
-    root = pathlib.Path(__file__).resolve().parent.parent
-    text = subprocess.run(command, cwd=root, check=True, capture_output=True, text=True).stdout
-    found = [json.loads(line) for line in text.splitlines() if line.startswith("{")]
-    return [m["executable"] for m in found if m.get("executable") and m["target"]["name"] == "torsion"][-1]
+def ross_matrices():
+    """Stiffness and mass of the engine as ROSS has them; none where it is missing or does not start."""
+    try:
+        import ross
+    except Exception:  # A wrong version of plotly ends its import with one of several errors.
+        return None
+    light = ross.Material(name="light", rho=1e-6, G_s=8e10, E=2e11)
+    diameter = lambda k: (32 * k * 0.1 / (np.pi * light.G_s)) ** 0.25
+    shafts = [ross.ShaftElement(L=0.1, idl=0.0, odl=diameter(k), material=light, n=i) for i, k in enumerate(K)]
+    disks = [ross.DiskElement(n=i, m=10.0, Id=0.5 * j, Ip=j) for i, j in enumerate(J)]
+    bearings = [ross.BearingElement(n=n, kxx=1e8, kyy=1e8, kzz=1e8, cxx=0, cyy=0) for n in (0, 8)]
+    rotor = ross.Rotor(shafts, disks, bearings)
+    return rotor.K(0), rotor.M(0)
 
 
-def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--rounds", type=int, default=3)
-    parser.add_argument("--binary")
-    args = parser.parse_args()
-    binary = args.binary or build()
-    pairs = []
-    for _ in range(args.rounds):
-        ours = json.loads(subprocess.run([binary, "--json"], check=True, capture_output=True, text=True).stdout)
-        pairs.append((ours, theirs()))
-    of = lambda f: statistics.median(f(o, t) for o, t in pairs)
-    print(f"{'':>34} {'Gudgeon':>12} {'openTorsion':>12} {'times':>7}   errors")
-    rows = [
-        ("eigenvalues", lambda o: o["eigenvalues"]["seconds"], "eigenvalues", "error", "eigenvalue_error"),
-        ("damped eigenvalues", lambda o: o["damped"]["seconds"] + o["eigenvalues_and_shapes"]["seconds"], "damped", None, None),
-        ("401 speeds x 24 orders", lambda o: o["sweep"]["seconds"], "sweep", "error", "sweep_error"),
-    ]
-    for name, ours, key, _, error in rows:
-        a, b = of(lambda o, t: ours(o)), of(lambda o, t: t[key])
-        ratio = of(lambda o, t: t[key] / ours(o))
-        group = {"eigenvalues": "eigenvalues", "sweep": "sweep"}.get(key)
-        errors = f"{pairs[0][0][group]['error']:.1e} and {pairs[0][1][error]:.1e}" if error else ""
-        print(f"{name:>34} {1e6 * a:>9.2f} us {1e6 * b:>9.1f} us {ratio:>7.0f}   {errors}")
-    print("\nFree vibration of the compressor to 0.1 s: closed form, and the published Runge-Kutta scheme in the same program")
-    closed = of(lambda o, t: o["closed_form"]["seconds"])
-    print(f"{'closed form':>34} {1e6 * closed:>9.1f} us   no error but rounding")
-    for k, row in enumerate(pairs[0][0]["runge_kutta"]):
-        seconds = of(lambda o, t: o["runge_kutta"][k]["seconds"])
-        print(f"{'Runge-Kutta, step %g s' % row['step']:>34} {1e6 * seconds:>9.1f} us   error {row['error']:.1e} rad/s, {seconds / closed:.0f} times the closed form")
+def with_ross(matrices):
+    frequencies = lambda: np.sqrt(np.abs(la.eigh(*matrices, eigvals_only=True)))
+    found = frequencies()
+    error = max(float(np.abs(found / w - 1).min()) for w in OMEGA)
+    return {"eigenvalues": median(5, 30, frequencies), "error": error}
+
+
+NAME = "Torsion of an engine of nine inertias"
+
+
+def prepare(binary):
+    return {"binary": binary or racing.build("torsion"), "ross": ross_matrices(), "rounds": []}
+
+
+def play(state):
+    own = racing.answer(state["binary"], "--json")
+    of_ot = with_opentorsion() if ot is not None else None
+    of_ross = with_ross(state["ross"]) if state["ross"] is not None else None
+    state["rounds"].append((own, of_ot, of_ross))
+
+
+def report(state):
+    rounds = state["rounds"]
+    of = lambda f: statistics.median(f(*r) for r in rounds)
+    (first, of_ot, of_ross), rows = rounds[0], []
+
+    def row(what, code, seconds, error, own):
+        rows.append((f"{what}: {code}", error, racing.figure(1e6 * of(seconds)), racing.figure(of(lambda *r: seconds(*r) / own(*r)))))
+
+    eigen = lambda o, t, r: o["eigenvalues"]["seconds"]
+    damped = lambda o, t, r: o["damped"]["seconds"] + o["eigenvalues_and_shapes"]["seconds"]
+    sweep = lambda o, t, r: o["sweep"]["seconds"]
+    closed = lambda o, t, r: o["closed_form"]["seconds"]
+    row("eigenvalues", "Gudgeon", eigen, f"{first['eigenvalues']['error']:.1e}", eigen)
+    if of_ot:
+        row("eigenvalues", "openTorsion", lambda o, t, r: t["eigenvalues"], f"{of_ot['eigenvalue_error']:.1e}", eigen)
+    if of_ross:
+        row("eigenvalues", "matrices of ROSS", lambda o, t, r: r["eigenvalues"], f"{of_ross['error']:.1e}", eigen)
+    row("damped eigenvalues", "Gudgeon", damped, "", damped)
+    if of_ot:
+        row("damped eigenvalues", "openTorsion", lambda o, t, r: t["damped"], "", damped)
+    row("401 speeds, 24 orders", "Gudgeon", sweep, f"{first['sweep']['error']:.1e}", sweep)
+    if of_ot:
+        row("401 speeds, 24 orders", "openTorsion", lambda o, t, r: t["sweep"], f"{of_ot['sweep_error']:.1e}", sweep)
+    row("free vibration of a compressor, 0.1 s", "closed form", closed, "rounding", closed)
+    for k, kutta in enumerate(first["runge_kutta"]):
+        row("free vibration", f"Runge-Kutta, step {kutta['step']:g} s", lambda o, t, r, k=k: o["runge_kutta"][k]["seconds"],
+            f"{kutta['error']:.1e} rad/s", closed)
+    missing = [name for name, there in (("opentorsion", ot), ("ross-rotordynamics", state["ross"])) if there is None]
+    notes = "".join(f"; {name} did not start" for name in missing)
+    table = racing.table(("code", "error", "us", "times Gudgeon's"), rows)
+    return "; ".join(racing.versions("numpy", "scipy", "opentorsion", "ross-rotordynamics", "plotly")) + notes + "\n\n" + table
 
 
 if __name__ == "__main__":
-    main()
+    racing.alone(sys.modules["__main__"], 3)

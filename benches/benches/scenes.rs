@@ -1,11 +1,11 @@
-//! Time of one run of every scene, from a case that was read to its results, without sweeps and files; and of runs with every model of the kinds
+//! Time of one run of every case whose work is counted, from a case that was read to its results, without sweeps and files; and of runs with every model of the kinds
 //! that ask other parts of a scene, on its registered example: solvers, motions.
 #![allow(clippy::print_stdout, missing_docs)]
 
 use std::time::Duration;
 
 use criterion::Criterion;
-use gudgeon_benches::cases::{Case, one_a_scene, run_alone};
+use gudgeon_benches::cases::{Case, counted, run_alone};
 use gudgeon_core::Registry;
 
 /// Kinds whose models run within a scene alone: the case they are put into, where, and by which key they are named there.
@@ -53,7 +53,7 @@ fn main() {
         .warm_up_time(Duration::from_millis(500))
         .measurement_time(Duration::from_secs(3))
         .configure_from_args();
-    for case in one_a_scene().iter().chain(&within()) {
+    for case in counted().iter().chain(&within()) {
         if let Err(e) = time(&mut criterion, case) {
             println!("not timed: {e}");
         }
