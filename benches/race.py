@@ -6,8 +6,8 @@ How to run (in a directory outside the source tree):
     venv/bin/pip install numpy scipy numba scikit-sundae
     venv/bin/python <source tree>/benches/race.py
 
-Needs cargo. A code whose package is missing is told to be. Options: `--rounds N` (default 5), `--binary PATH` (a `gas_network` bench that is built
-already; otherwise `cargo bench --no-run` builds one).
+Needs cargo, which also builds diffsol where it can be had. A code whose package is missing is told to be. Options: `--rounds N` (default 5),
+`--binary PATH` (a `gas_network` bench that is built already; otherwise `cargo bench --no-run` builds one).
 
 Rules
 - One problem: the same nine links, volumes, temperatures, pressure pulse, start state and cycle, from the periodic start state. The
@@ -23,7 +23,8 @@ Rules
   quadrature or a sixth state with an absolute tolerance of `rtol` times 1e-6 kg; Gudgeon's Radau5 alone has it outside. Gudgeon also integrates the
   outflow of the chamber, to check its mass balance. Every code chooses its first step; no code is told of the largest step.
 - Jacobians: Gudgeon has the partial derivatives of its network, codes marked `J` the same, compiled too; the others difference.
-- `compiled` codes call the compiled functions without Python in between: CVODE through its C interface. The others call back
+- `compiled` codes call the compiled functions without Python in between: CVODE through its C interface, diffsol from Rust (`benches/diffsol`, a package of its
+  own, because it brings sixty others) with Gudgeon's own rates and partial derivatives; its right-hand sides are counted as iterations. The others call back
   into Python for every evaluation, which is most of their time: they show what the package costs as it is usually used, not
   what the method costs.
 - Timing: setup of a solver counts where its interface offers no reset (all others than Gudgeon set up anew for every cycle; for CVODE through C the
@@ -425,14 +426,15 @@ def prepare(binary):
                 runners.append((name, repeat, rtol, once))
             except RuntimeError as e:
                 print(f"{name} at {rtol:.0e}: {e}")
-    return {"binary": binary or racing.build("gas_network"), "runners": runners, "result": result, "us": {}}
+    programs = [binary or racing.build("gas_network"), racing.build_apart("diffsol", "race-diffsol")]
+    return {"programs": programs, "runners": runners, "result": result, "us": {}}
 
 
 def play(state):
     def keep(key, us):
         state["us"][key] = min(us, state["us"].get(key, math.inf))
 
-    for row in racing.answer(state["binary"], "--json"):
+    for row in (row for program in filter(None, state["programs"]) for row in racing.answer(program, "--json")):
         state["result"][row["code"], row["rtol"]] = row["blow_by"], row["steps"], row["rhs"]
         keep((row["code"], row["rtol"]), row["microseconds"])
     for name, repeat, rtol, once in state["runners"]:
@@ -467,6 +469,7 @@ def report(state):
     counts = [[f"{n}, {r:.0e}", *state["result"][n, r][1:], f"{abs(state['result'][n, r][0] / BLOW_BY - 1):.1e}",
                f"{state['us'][n, r]:.0f}"] for n, r in some]  # fmt: skip
     used = racing.versions("numpy", "scipy", "numba", "scikit-sundae")
+    used.append("diffsol 0.18.0" if state["programs"][1] else "diffsol missing")
     used += [f"SUNDIALS {sksundae.SUNDIALS_VERSION}"] if sksundae else []
     return "\n\n".join([
         "; ".join(used),

@@ -31,6 +31,14 @@ def build(bench):
     return built(bench, "bench", "-q", "-p", "gudgeon-benches", "--bench", bench, "--no-run")
 
 
+def build_apart(folder, name):
+    """A program that is no part of the workspace, from a folder beside this file; none where its packages cannot be had."""
+    try:
+        return built(name, "build", "-q", "--release", "--manifest-path", f"benches/{folder}/Cargo.toml")
+    except subprocess.CalledProcessError:
+        return None
+
+
 def answer(*command):
     """What a program prints as JSON."""
     return json.loads(subprocess.run(command, stdout=subprocess.PIPE, check=True, text=True).stdout)

@@ -3,6 +3,7 @@
 //! The table that comes first holds error beside time: a speed means nothing without the accuracy it was reached at. `--table`
 //! prints the table alone, `--json` many more tolerances as one JSON array (for `race.py`); everything else goes to criterion.
 #![allow(clippy::print_stdout, missing_docs)]
+#![allow(clippy::excessive_precision, reason = "reference values stand as they were computed")]
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -16,8 +17,10 @@ use gudgeon_numerics::rodas::Rodas;
 #[path = "../problems/gas_network.rs"]
 mod problem;
 
-use problem::{BLOW_BY, CYCLE, GasNet, N, fan};
+use problem::{CYCLE, GasNet, N, fan};
 
+/// Blow-by of the cycle \[kg\]: implicit and explicit codes at relative tolerances of 1e-11 and 1e-12 agree on it within 2e-10.
+const BLOW_BY: f64 = 6.2493570768654555e-6;
 const TOLERANCES: [f64; 6] = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8];
 
 struct Outcome {

@@ -39,8 +39,6 @@ const CRANKCASE: f64 = 1e5;
 /// Crank speed \[deg/s\]: 3000 rpm.
 const OMEGA: f64 = 18_000.0;
 pub const CYCLE: f64 = 720.0 / OMEGA;
-/// Blow-by of the cycle \[kg\]: implicit and explicit codes at relative tolerances of 1e-11 and 1e-12 agree on it within 2e-10.
-pub const BLOW_BY: f64 = 6.2493570768654555e-6;
 pub struct GasNet {
     net: Network,
     /// Time of the last Jacobian and the rates by time that came with it.

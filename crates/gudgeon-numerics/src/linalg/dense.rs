@@ -4,7 +4,8 @@
 //! 1.5 at 30 and 40, 1.3 at 60, and 1.7 (n = 8) to 4.8 (n = 60) where the matrix is tridiagonal, because zero multipliers are skipped;
 //! solution 0.8 at n = 4, 1.2 at 6 to 12, 1.0 at 16, 0.9 at 20, 0.7 at 40, 0.6 at 60; one factorisation with eight solutions, a step of
 //! [`crate::rodas`], 0.9 at n = 4, 1.3 at 6 to 12, 1.2 at 16 and 20, 1.0 from 30 to 60. Residuals are the same to rounding. This one
-//! also works in place, without an allocation a step, and takes weights for the choice of pivots.
+//! also works in place, without an allocation a step, and takes weights for the choice of pivots. Since then systems of 4 to 6 have loops of their
+//! own, to the same bits: at n = 5 a factorisation takes 47 ns instead of 57, a solution 43 instead of 54.
 
 use super::Singular;
 
