@@ -71,7 +71,8 @@ def operating_points(command, common):
 
 def pack_of(rings):
     """The case with `rings` rings: the second one and the land below it repeated."""
-    text = CASE.read_text()
+    # The liner goes on below the last height that the case gives.
+    text = CASE.read_text().replace('position = "-130 mm"', 'position = "-230 mm"')
     lands = text.split("[[piston.lands]]")
     head, body = lands[0], lands[1:]
     last, after = body[-1].split("\n\n", 1)

@@ -14,6 +14,19 @@ use super::search::{Search, soft};
 /// Longest step of a trial in `ln h`.
 const REACH: f64 = 1.0;
 
+/// Film thicknesses \[m\] between which trials stay: no groove is deeper, and nothing is thinner.
+const THICKNESSES: std::ops::Range<f64> = 1e-26..0.1;
+
+/// The film thickness \[m\] of a trial.
+fn thickness(x: f64) -> Result<f64, EvalError> {
+    let h = x.exp();
+    if THICKNESSES.contains(&h) {
+        Ok(h)
+    } else {
+        Err(EvalError::recoverable("radial_motion", "a trial left the range of films"))
+    }
+}
+
 /// What a stage is solved with.
 pub struct Staged<'a> {
     pub search: Search<'a>,
@@ -43,7 +56,7 @@ impl Staged<'_> {
         }
         let found = self.limited(stage, *x, loads)?;
         *x = found.x;
-        loads.set_thickness(x.exp())?;
+        loads.set_thickness(thickness(*x)?)?;
         let response = self.search.rate(loads)?;
         let film = response.film.map_or_else(|| loads.film(response.hdot), Ok)?;
         Ok(Answer { response, film, slope: 0.0 })
@@ -64,7 +77,7 @@ impl Staged<'_> {
         let floor = self.search.limits.min_load * loads.state().tension;
         let (mut hdot, mut film, mut lifted, mut contact_drag) = (0.0, FaceForces::default(), 0.0, 0.0);
         let balance = |x: f64| -> Result<f64, EvalError> {
-            let h = x.exp();
+            let h = thickness(x)?;
             loads.set_thickness(h)?;
             hdot = h * (x - base) / per;
             // The velocity that the cap on it turns into this one.
@@ -115,7 +128,7 @@ impl Staged<'_> {
     ) -> Result<Found, EvalError> {
         let per = stage.step * self.per;
         let balance = |x: f64| -> Result<f64, EvalError> {
-            let h = x.exp();
+            let h = thickness(x)?;
             loads.set_thickness(h)?;
             Ok(x - stage.base[0] - per * self.search.rate(loads)?.hdot / h)
         };

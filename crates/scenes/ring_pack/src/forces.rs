@@ -68,7 +68,7 @@ impl Pack {
         };
         let loads = Loads {
             geo,
-            place: *place,
+            place,
             at,
             ring: i,
             oil,
@@ -106,7 +106,7 @@ impl Pack {
         let mut high = 0.0_f64;
         for land in 0..self.rings[i].films.len() {
             let inp =
-                face_in(&self.geo.rings[i], &self.at.places[i], &self.at.rings[i], -self.at.piston.v, land);
+                face_in(&self.geo.rings[i], self.at.places[i].h, &self.at.rings[i], -self.at.piston.v, land);
             self.counters.film += 1;
             high = high.max(self.rings[i].films[land].evaluate(&inp, self.at.rings[i].hdot)?.p_max);
         }

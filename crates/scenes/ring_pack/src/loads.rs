@@ -14,7 +14,7 @@ pub struct Loads<'a> {
     /// Geometry.
     pub geo: &'a RingGeometry,
     /// Where it is.
-    pub place: RingPlace,
+    pub place: &'a RingPlace,
     /// Pressures and viscosity.
     pub at: &'a RingInstant,
     /// Velocity of the liner seen from the ring, towards the top edge positive \[m/s\].
@@ -43,11 +43,11 @@ pub struct Loads<'a> {
     pub count: &'a mut u64,
 }
 
-/// Conditions of a running face: `lands` of a ring at a place between pressures.
+/// Conditions of land `land` of a running face whose film is `h` \[m\] thick, between pressures; `u` is the velocity of the liner \[m/s\].
 #[inline]
-pub fn face_in(geo: &RingGeometry, place: &RingPlace, r: &RingInstant, u: f64, land: usize) -> FaceIn {
+pub fn face_in(geo: &RingGeometry, h: f64, r: &RingInstant, u: f64, land: usize) -> FaceIn {
     let [p_bottom, p_top] = around_land(geo, r, land);
-    FaceIn { h: place.h, u, p_bottom, p_top, p_cav: r.p_cav, mu: r.mu }
+    FaceIn { h, u, p_bottom, p_top, p_cav: r.p_cav, mu: r.mu }
 }
 
 /// Pressures \[Pa\] below and above land `land` of the running face, the upper one being 0: slots join the space between two lands with that behind
@@ -68,7 +68,7 @@ pub fn flank_load(place: &RingPlace, r: &RingInstant) -> f64 {
 
 impl Loads<'_> {
     fn face(&self, land: usize) -> FaceIn {
-        face_in(self.geo, &self.place, self.at, self.u, land)
+        face_in(self.geo, self.state.thickness, self.at, self.u, land)
     }
 }
 
@@ -78,7 +78,7 @@ impl RadialLoads for Loads<'_> {
     }
     fn friction(&self, hdot: f64) -> (f64, f64) {
         let Some(f) = self.friction else { return (0.0, 0.0) };
-        let axial = flank_load(&self.place, self.at);
+        let axial = flank_load(self.place, self.at);
         (f.force(hdot, axial) / self.perimeter, f.derivative(hdot, axial) / self.perimeter)
     }
     fn film(&mut self, hdot: f64) -> Result<FaceForces, EvalError> {
@@ -122,7 +122,6 @@ impl RadialLoads for Loads<'_> {
 
 impl RadialTrials for Loads<'_> {
     fn set_thickness(&mut self, h: f64) -> Result<(), EvalError> {
-        self.place.h = h;
         (self.state.thickness, self.state.contact) = (h, self.contact.load(h));
         if let Some(oil) = self.oil.as_deref_mut() {
             self.dry = wet_faces(oil, self.ring, h, (self.geo, self.at), self.films)?;
