@@ -51,6 +51,10 @@ impl Staged<'_> {
         x: &mut f64,
         loads: &mut dyn RadialTrials,
     ) -> Result<Answer, EvalError> {
+        // What the stages before have sent below the floor stands on it.
+        let lowest = loads.state().lowest.0;
+        let base = if lowest > 0.0 { stage.base[0].max(lowest.ln()) } else { stage.base[0] };
+        let stage = &Stage { base: &[base], ..*stage };
         if let Some(answer) = self.free(stage, x, loads)? {
             return Ok(answer);
         }
