@@ -6,12 +6,15 @@ use gudgeon_core::Registry;
 use gudgeon_core::result::{Column, Note, NoteLevel, Provenance, Refined, Series};
 use serde_json::{Value, json};
 
-use crate::number::{certain, count, significant, unit};
-use crate::summary::{BalanceSheet, ModelEntry, ResultValue, SkippedEntry, SolverEntry};
+use crate::number::{capital, certain, count, significant, unit};
+use crate::summary::{BalanceSheet, ModelEntry, ResultValue, SkippedEntry, SolverEntry, Summary};
 
 const STYLE: &str = include_str!("assets/style.css");
 const CORE: &str = include_str!("assets/core.js");
-const PLOT: &str = include_str!("assets/plot.js");
+const AXIS: &str = include_str!("assets/axis.js");
+const CHART: &str = include_str!("assets/chart.js");
+const EXPORT: &str = include_str!("assets/export.js");
+const MAP: &str = include_str!("assets/map.js");
 const DRAWING: &str = include_str!("assets/drawing.js");
 const FIGURE: &str = include_str!("assets/figure.js");
 const SECTION: &str = include_str!("assets/section.js");
@@ -72,10 +75,10 @@ fn json_for_script(value: &Value) -> String {
 /// One whole page.
 pub(crate) fn document(kind: Kind, title: &str, body: &str, data: &Value) -> String {
     let scripts: &[&str] = match kind {
-        Kind::Run => &[CORE, PLOT, SECTION, RUN, DRAWING, FIGURE],
-        Kind::Comparison => &[CORE, PLOT, COMPARE, DRAWING, FIGURE],
+        Kind::Run => &[CORE, AXIS, EXPORT, CHART, SECTION, RUN, DRAWING, MAP, FIGURE],
+        Kind::Comparison => &[CORE, AXIS, EXPORT, CHART, COMPARE, DRAWING, MAP, FIGURE],
         Kind::Bench => &[CORE, BENCH],
-        Kind::Study => &[CORE, PLOT, DRAWING, FIGURE],
+        Kind::Study => &[CORE, AXIS, EXPORT, CHART, DRAWING, MAP, FIGURE],
     };
     let mut out = String::new();
     out.push_str("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
@@ -101,6 +104,22 @@ pub(crate) fn document(kind: Kind, title: &str, body: &str, data: &Value) -> Str
         out.push_str(script);
     }
     out.push_str("</script>\n</body>\n</html>\n");
+    out
+}
+
+/// What stands in the body of a page: a link past the contents, the contents of the sections that are there, the sections themselves and the
+/// last line.
+pub(crate) fn body(contents: &[(&str, &str)], main: &str, version: &str) -> String {
+    let mut out = String::from(
+        "<a class=\"skip\" href=\"#main\">Skip the contents</a>\n<nav class=\"contents\" aria-label=\"Contents\"><ul>",
+    );
+    for (id, name) in contents.iter().filter(|(id, _)| main.contains(&format!("<section id=\"{id}\""))) {
+        let _ = write!(out, "<li><a href=\"#{id}\">{name}</a></li>");
+    }
+    out.push_str("</ul></nav>\n<main id=\"main\">\n");
+    out.push_str(main);
+    out.push_str("</main>\n");
+    out.push_str(&footer(version));
     out
 }
 
@@ -189,7 +208,7 @@ pub(crate) fn value_cells(v: Option<&ResultValue>) -> String {
 }
 
 /// The balance sheet.
-pub(crate) fn balance_section(balance: &BalanceSheet) -> String {
+fn balance_table(balance: &BalanceSheet) -> String {
     let rows = [
         ("Gas mass", "(in − out − stored) / (throughput or content, whichever is more)", balance.gas_mass),
         ("Oil mass", "(in − out − stored) / throughput", balance.oil_mass),
@@ -215,7 +234,7 @@ pub(crate) fn balance_section(balance: &BalanceSheet) -> String {
         return String::new();
     }
     let mut out = String::from(
-        "<section id=\"balance\"><h2>Balance sheet</h2><p class=\"hint\">Relative closure over one cycle: what the \
+        "<div><h3>Balance sheet</h3><p class=\"hint\">Relative closure over one cycle: what the \
          numerics lose. It should be small beside the accuracy you need.</p><table class=\"plain\"><tbody>",
     );
     for (name, how, value) in rows {
@@ -228,15 +247,23 @@ pub(crate) fn balance_section(balance: &BalanceSheet) -> String {
             "<tr><th scope=\"row\">{name}</th><td class=\"num\">{text}</td><td class=\"what\">{how}</td></tr>"
         );
     }
-    out.push_str("</tbody></table></section>\n");
+    out.push_str("</tbody></table></div>\n");
     out
+}
+
+/// What the numerics did, folded: balances, work, refinement.
+pub(crate) fn numerics_section(balance: &BalanceSheet, solver: &SolverEntry, refined: &[Refined]) -> String {
+    let own = [balance_table(balance), solver_table(solver), refined_table(refined)].concat();
+    format!(
+        "<section id=\"numerics\"><details><summary><h2>Numerics</h2></summary><div class=\"pair\">\n{own}</div></details></section>\n"
+    )
 }
 
 /// Models with equations, validity and references, as this program knows them.
 pub(crate) fn models_section(models: &[ModelEntry]) -> String {
     let registry = Registry::collect();
     let mut out = String::from(
-        "<section id=\"models\"><h2>Models</h2><p class=\"hint\">What ran, with its equations. References are keys \
+        "<section id=\"models\"><details><summary><h2>Models</h2></summary><p class=\"hint\">What ran, with its equations. References are keys \
          of REFERENCES.bib.</p><div class=\"models\">",
     );
     for m in models {
@@ -262,7 +289,7 @@ pub(crate) fn models_section(models: &[ModelEntry]) -> String {
         }
         out.push_str("</article>");
     }
-    out.push_str("</div></section>\n");
+    out.push_str("</div></details></section>\n");
     out
 }
 
@@ -271,17 +298,19 @@ pub(crate) fn skipped_section(skipped: &[SkippedEntry]) -> String {
     if skipped.is_empty() {
         return String::new();
     }
-    let mut out = String::from("<section id=\"skipped\"><h2>Not computed</h2><table class=\"plain\"><tbody>");
+    let mut out = String::from(
+        "<section id=\"skipped\"><details><summary><h2>Not computed</h2></summary><table class=\"plain\"><tbody>",
+    );
     for s in skipped {
         let _ = write!(out, "<tr><th scope=\"row\">{}</th><td>{}</td></tr>", prose(&s.what), prose(&s.why));
     }
-    out.push_str("</tbody></table></section>\n");
+    out.push_str("</tbody></table></details></section>\n");
     out
 }
 
 /// Work of the solver.
-pub(crate) fn solver_section(solver: &SolverEntry) -> String {
-    let mut out = String::from("<section id=\"solver\"><h2>Solver</h2><table class=\"plain\"><tbody>");
+fn solver_table(solver: &SolverEntry) -> String {
+    let mut out = String::from("<div><h3>Solver</h3><table class=\"plain\"><tbody>");
     let _ =
         write!(out, "<tr><th scope=\"row\">method</th><td class=\"num\">{}</td></tr>", esc(&solver.method));
     for (name, n) in &solver.counters {
@@ -292,25 +321,39 @@ pub(crate) fn solver_section(solver: &SolverEntry) -> String {
             count(*n)
         );
     }
-    out.push_str("</tbody></table></section>\n");
+    out.push_str("</tbody></table></div>\n");
     out
 }
 
-/// Notes that a person should see before the numbers.
+/// All notes, the gravest first.
+pub(crate) fn notes_section(notes: &[Note]) -> String {
+    if notes.is_empty() {
+        return String::new();
+    }
+    format!("<section id=\"notes\"><h2>Notes</h2>{}</section>\n", self::notes(notes))
+}
+
+/// Notes by their level.
 pub(crate) fn notes(notes: &[Note]) -> String {
     let of = |level: NoteLevel, class: &str| {
-        let items: Vec<String> =
-            notes.iter().filter(|n| n.level == level).map(|n| format!("<p>{}</p>", prose(&n.text))).collect();
+        let items: Vec<String> = notes
+            .iter()
+            .filter(|n| n.level == level)
+            .map(|n| format!("<p>{}</p>", prose(&capital(&n.text))))
+            .collect();
         if items.is_empty() {
             return String::new();
         }
         format!("<div class=\"note {class}\" role=\"note\">{}</div>\n", items.concat())
     };
-    of(NoteLevel::Failure, "failure") + &of(NoteLevel::Caution, "caution") + &of(NoteLevel::Info, "info")
+    of(NoteLevel::Failure, "failure")
+        + &of(NoteLevel::Exceeded, "exceeded")
+        + &of(NoteLevel::Caution, "caution")
+        + &of(NoteLevel::Info, "info")
 }
 
 /// What was refined to know the uncertainties.
-pub(crate) fn refined_section(refined: &[Refined]) -> String {
+fn refined_table(refined: &[Refined]) -> String {
     if refined.is_empty() {
         return String::new();
     }
@@ -324,15 +367,37 @@ pub(crate) fn refined_section(refined: &[Refined]) -> String {
     };
     let rows: Vec<String> = refined.iter().map(row).collect();
     format!(
-        "<section id=\"refined\"><h2>Refined</h2><p class=\"hint\">The uncertainties beside the results are numerical: the sum, over \
+        "<div><h3>Refined</h3><p class=\"hint\">The uncertainties beside the results are numerical: the sum, over \
          these groups of settings, of the distance to the finest level and of what is left behind it. They say nothing of the \
-         models.</p><table class=\"plain\"><tbody>{}</tbody></table></section>\n",
+         models.</p><table class=\"plain\"><tbody>{}</tbody></table></div>\n",
         rows.concat()
     )
 }
 
-/// What the run was made of.
-pub(crate) fn provenance_section(version: &str, p: &Provenance) -> String {
+/// Where the case comes from, what it assumes, and what the run was made of.
+pub(crate) fn sources_section(s: &Summary) -> String {
+    let mut out = String::new();
+    if !s.source.is_empty() {
+        let _ = write!(out, "<p class=\"source\"><b>Source</b> {}</p>", prose(&s.source));
+    }
+    if !s.assumptions.is_empty() {
+        out.push_str("<h3>Assumed where the source is silent</h3><ul class=\"assumptions\">");
+        for a in &s.assumptions {
+            let _ = write!(out, "<li>{}</li>", prose(a));
+        }
+        out.push_str("</ul>");
+    }
+    out.push_str(&provenance_table(&s.gudgeon, &s.provenance));
+    if out.is_empty() {
+        return out;
+    }
+    format!(
+        "<section id=\"sources\"><details><summary><h2>Sources and assumptions</h2></summary>{out}</details></section>\n"
+    )
+}
+
+/// What repeats the run.
+fn provenance_table(version: &str, p: &Provenance) -> String {
     if p.file.is_empty() {
         return String::new();
     }
@@ -350,8 +415,8 @@ pub(crate) fn provenance_section(version: &str, p: &Provenance) -> String {
     let rows: Vec<String> =
         rows.iter().map(|(k, v)| format!("<tr><th scope=\"row\">{k}</th><td>{v}</td></tr>")).collect();
     format!(
-        "<section id=\"provenance\"><h2>Made of</h2><p class=\"hint\"><code>gudgeon run summary.json</code> repeats this run from \
-         the file beside this page. Hashes are SHA-256.</p><table class=\"plain\"><tbody>{}</tbody></table></section>\n",
+        "<h3>Made of</h3><p class=\"hint\"><code>gudgeon run summary.json</code> repeats this run from \
+         the file beside this page. Hashes are SHA-256.</p><table class=\"plain\"><tbody>{}</tbody></table>\n",
         rows.concat()
     )
 }
@@ -390,7 +455,7 @@ mod tests {
 
     #[test]
     fn nothing_in_the_scripts_closes_their_element() {
-        for script in [CORE, PLOT, DRAWING, FIGURE, SECTION, RUN, COMPARE, BENCH] {
+        for script in [CORE, AXIS, CHART, EXPORT, MAP, DRAWING, FIGURE, SECTION, RUN, COMPARE, BENCH] {
             assert!(!script.to_lowercase().contains("</script"));
             assert!(!script.contains("<!--"));
             // Text from a case must never be parsed as markup.

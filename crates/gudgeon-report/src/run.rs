@@ -1,6 +1,5 @@
 //! A run's files and its page.
 
-use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -9,10 +8,10 @@ use indexmap::IndexMap;
 use serde_json::json;
 
 use crate::folder::Folder;
-use crate::number::{capital, certain, percent, significant, unit};
+use crate::number::{percent, significant, unit};
 use crate::page::{self, Kind, esc};
-use crate::summary::{ResultValue, Summary};
-use crate::{REPORT, ReportError, table};
+use crate::summary::Summary;
+use crate::{REPORT, ReportError, overview, results, table};
 
 pub(crate) const SUMMARY: &str = "summary.json";
 pub(crate) const SERIES: &str = "series.csv";
@@ -100,47 +99,35 @@ fn file_of(table: &str) -> String {
     format!("{table}.csv")
 }
 
+/// Sections in their order, with their names in the contents at the side.
+const CONTENTS: [(&str, &str); 11] = [
+    ("overview", "Overview"),
+    ("cycle", "Over the cycle"),
+    ("curves", "Figures"),
+    ("notes", "Notes"),
+    ("events", "Events"),
+    ("branches", "Periodic solutions"),
+    ("results", "All results"),
+    ("numerics", "Numerics"),
+    ("skipped", "Not computed"),
+    ("models", "Models"),
+    ("sources", "Sources"),
+];
+
 fn page(s: &Summary, series: &Series, tables: &IndexMap<String, Series>) -> String {
-    let mut body = String::new();
-    header(&mut body, s);
-    body.push_str("<main>\n");
-    body.push_str(&page::notes(&s.notes));
-    results(&mut body, s);
-    if !s.figures.is_empty() {
-        body.push_str("<section id=\"curves\"><h2>Figures</h2><div id=\"figures\"></div></section>\n");
-    }
     let over_cycle = series.is_over_cycle() && !series.axis.values.is_empty() && !series.columns.is_empty();
-    if !over_cycle && s.figures.is_empty() {
-        body.push_str(
-            "<section id=\"curves\"><h2>Curves</h2><p class=\"hint\">This run has no curves.</p></section>\n",
-        );
-    } else if over_cycle {
-        body.push_str("<section id=\"cycle\"><h2>Over the cycle</h2><div id=\"bar\"></div><div id=\"pack\"></div><div id=\"plots\"></div></section>\n");
-    }
-    if !s.events.is_empty() {
-        body.push_str("<section id=\"events\"><h2>Events</h2><div id=\"event-list\"><ul>");
-        for e in &s.events {
-            let _ = write!(
-                body,
-                "<li><b>{}°</b> {}: {}</li>",
-                significant(Some(e.theta_deg), 4),
-                esc(&subject(&e.subject)),
-                esc(&e.what)
-            );
-        }
-        body.push_str("</ul></div></section>\n");
-    }
-    branches(&mut body, s);
-    body.push_str("<div class=\"pair\">\n");
-    body.push_str(&page::balance_section(&s.balance));
-    body.push_str(&page::solver_section(&s.solver));
-    body.push_str(&page::refined_section(&s.refined));
-    body.push_str("</div>\n");
-    body.push_str(&page::skipped_section(&s.skipped));
-    body.push_str(&page::models_section(&s.models));
-    body.push_str(&page::provenance_section(&s.gudgeon, &s.provenance));
-    body.push_str("</main>\n");
-    body.push_str(&page::footer(&s.gudgeon));
+    let mut main = String::new();
+    overview::section(&mut main, s, series);
+    curves(&mut main, s, over_cycle);
+    main.push_str(&page::notes_section(&s.notes));
+    events(&mut main, s);
+    branches(&mut main, s);
+    results::section(&mut main, s);
+    main.push_str(&page::numerics_section(&s.balance, &s.solver, &s.refined));
+    main.push_str(&page::skipped_section(&s.skipped));
+    main.push_str(&page::models_section(&s.models));
+    main.push_str(&page::sources_section(s));
+    let body = page::body(&CONTENTS, &main, &s.gudgeon);
     let mut arrays = page::Arrays::default();
     let used = |name: &str| s.figures.iter().any(|f| f.table == name);
     let columns = if over_cycle { arrays.series(&series.axis, series.columns.iter()) } else { json!(null) };
@@ -151,240 +138,48 @@ fn page(s: &Summary, series: &Series, tables: &IndexMap<String, Series>) -> Stri
     }
     let data = json!({
         "scene": s.scene, "section": s.section, "events": s.events, "series": columns, "tables": data_of,
-        "figures": s.figures, "arrays": arrays.into_json(),
+        "figures": s.figures, "lead": s.lead, "arrays": arrays.into_json(),
     });
     page::document(Kind::Run, s.heading(), &body, &data)
 }
 
-/// `ring1` as `ring 1`.
-fn subject(name: &str) -> String {
-    match member(name) {
-        Some((family, n)) => format!("{family} {n}"),
-        None => name.replace('_', " "),
-    }
-}
-
-/// `ring12` as `("ring", 12)`.
-fn member(name: &str) -> Option<(&str, u32)> {
-    let at = name.find(|c: char| c.is_ascii_digit())?;
-    let (family, number) = name.split_at(at);
-    if family.is_empty() { None } else { Some((family, number.parse().ok()?)) }
-}
-
-fn header(out: &mut String, s: &Summary) {
-    let _ =
-        write!(out, "<header><h1>{}</h1><p class=\"meta\"><code>{}</code>", esc(s.heading()), esc(&s.case));
-    if !s.scene.is_empty() {
-        let _ = write!(out, " · {}", esc(&s.scene.replace('_', " ")));
-    }
-    if !s.solver.method.is_empty() {
-        let _ = write!(out, " · solver {}", esc(&s.solver.method));
-    }
-    if !s.gudgeon.is_empty() {
-        let _ = write!(out, " · Gudgeon {}", esc(&s.gudgeon));
-    }
-    out.push_str("</p>");
-    if !s.provenance.overrides.is_empty() {
-        let set: Vec<String> =
-            s.provenance.overrides.iter().map(|o| format!("<code>{}</code>", esc(o))).collect();
-        let _ = write!(out, "<p class=\"changed\"><b>Changed</b> {}</p>", set.join(", "));
-    }
-    if !s.source.is_empty() {
-        let _ = write!(out, "<p class=\"source\"><b>Source</b> {}</p>", page::prose(&s.source));
-    }
-    if !s.assumptions.is_empty() {
-        let n = s.assumptions.len();
-        let plural = if n == 1 { "" } else { "s" };
-        let open = if n <= 4 { " open" } else { "" };
-        let _ = write!(
-            out,
-            "<details class=\"assumptions\"{open}><summary>{n} assumption{plural} where the source is silent</summary><ul>"
+/// Places of the curves and figures.
+fn curves(out: &mut String, s: &Summary, over_cycle: bool) {
+    if !over_cycle && s.figures.is_empty() {
+        out.push_str(
+            "<section id=\"curves\"><h2>Curves</h2><p class=\"hint\">This run has no curves.</p></section>\n",
         );
-        for a in &s.assumptions {
-            let _ = write!(out, "<li>{}</li>", page::prose(a));
-        }
-        out.push_str("</ul></details>");
     }
-    out.push_str("</header>\n");
-}
-
-/// Parts of a cylinder: what the names of their results begin with, and their titles.
-const PARTS: [(&str, &str); 2] = [("rings.", "Rings"), ("skirt.", "Skirt")];
-
-/// Results that make a list too long for one column.
-const LONG: usize = 12;
-
-/// Results of one family (`ring`, `land`): by what follows the dot, then by number.
-type Family<'a> = IndexMap<&'a str, BTreeMap<u32, (&'a str, &'a ResultValue)>>;
-
-fn results(out: &mut String, s: &Summary) {
-    out.push_str("<section id=\"results\"><h2>Results</h2>");
-    // A cylinder has the results of its parts behind those of the whole.
-    let part = |name: &str| PARTS.iter().find(|(p, _)| name.strip_prefix(p).is_some()).copied();
-    for (prefix, title) in std::iter::once(("", "")).chain(PARTS) {
-        let own: Vec<(&str, &str, &ResultValue)> = s
-            .results
-            .iter()
-            .filter(|(name, _)| part(name).map_or("", |(p, _)| p) == prefix)
-            .map(|(name, v)| (name.as_str(), &name[prefix.len()..], v))
-            .collect();
-        if own.is_empty() && !(prefix.is_empty() && s.results.is_empty()) {
-            continue;
-        }
-        if !title.is_empty() {
-            let _ = write!(out, "<h3>{title}</h3>");
-        }
-        part_results(out, s, &own);
+    if over_cycle {
+        out.push_str("<section id=\"cycle\"><h2>Over the cycle</h2><div id=\"plots\" class=\"figures\"></div></section>\n");
     }
-    out.push_str("</section>\n");
-}
-
-/// Results of one part: full name, name within the part, value.
-fn part_results(out: &mut String, s: &Summary, own: &[(&str, &str, &ResultValue)]) {
-    let mut plain: Vec<(&str, &ResultValue)> = Vec::new();
-    let mut families: IndexMap<&str, Family<'_>> = IndexMap::new();
-    let mut angles: IndexMap<&str, IndexMap<&str, (&str, &ResultValue)>> = IndexMap::new();
-    for &(name, short, v) in own {
-        if let Some((what, angle)) = short.split_once('@') {
-            angles.entry(angle).or_default().insert(what, (name, v));
-            continue;
-        }
-        match short.split_once('.').and_then(|(head, rest)| Some((member(head)?, rest))) {
-            Some(((family, n), rest)) => {
-                families.entry(family).or_default().entry(rest).or_default().insert(n, (name, v));
-            }
-            None => plain.push((name, v)),
-        }
-    }
-    out.push_str("<div class=\"results\">");
-    if own.is_empty() {
-        out.push_str("<p class=\"hint\">This run computed no results.</p>");
-    }
-    // A long list stands in two columns, when nothing else stands beside it.
-    let column =
-        if families.is_empty() && plain.len() > LONG { plain.len().div_ceil(2) } else { plain.len() };
-    plain_tables(out, s, &plain, column);
-    if !families.is_empty() {
-        out.push_str("<div class=\"families\">");
-    }
-    for (family, rows) in &families {
-        family_table(out, s, family, rows);
-    }
-    out.push_str(if families.is_empty() { "</div>" } else { "</div></div>" });
-    at_angles(out, s, &angles);
-}
-
-/// Results that stand alone, `column` to a table.
-fn plain_tables(out: &mut String, s: &Summary, plain: &[(&str, &ResultValue)], column: usize) {
-    for part in plain.chunks(column.max(1)) {
-        out.push_str("<table class=\"plain key\"><tbody>");
-        for (name, v) in part {
-            let what = s.descriptions.get(*name).map_or("", String::as_str);
-            let _ = write!(
-                out,
-                "<tr><th scope=\"row\">{}<code>{}</code></th>{}</tr>",
-                if what.is_empty() { String::new() } else { format!("{} ", page::prose(&capital(what))) },
-                esc(name),
-                page::value_cells(Some(v))
-            );
-        }
-        out.push_str("</tbody></table>");
+    if !s.figures.is_empty() {
+        out.push_str(
+            "<section id=\"curves\"><h2>Figures</h2><div id=\"figures\" class=\"figures\"></div></section>\n",
+        );
     }
 }
 
-/// Results that every member of a family has: a column a member.
-fn family_table(out: &mut String, s: &Summary, family: &str, rows: &Family<'_>) {
-    let mut numbers: Vec<u32> = rows.values().flat_map(|r| r.keys().copied()).collect();
-    numbers.sort_unstable();
-    numbers.dedup();
+/// What happened when, folded.
+fn events(out: &mut String, s: &Summary) {
+    if s.events.is_empty() {
+        return;
+    }
     let _ = write!(
         out,
-        "<div class=\"scroll\"><table class=\"plain\"><thead><tr><th>Per {}</th><th></th>",
-        esc(family)
+        "<section id=\"events\"><details><summary><h2>{} events</h2></summary><div id=\"event-list\"><ul>",
+        s.events.len()
     );
-    for n in &numbers {
-        let _ = write!(out, "<th class=\"num\">{} {n}</th>", esc(family));
-    }
-    out.push_str("</tr></thead><tbody>");
-    for (rest, row) in rows {
-        let first = row.values().next();
-        let told: Vec<String> = row
-            .iter()
-            .filter_map(|(n, (name, _))| Some(without_member(s.descriptions.get(*name)?, family, *n)))
-            .collect();
-        let what = shared(&told, family);
+    for e in &s.events {
         let _ = write!(
             out,
-            "<tr><th scope=\"row\">{}<code>{}</code></th>",
-            if what.is_empty() { String::new() } else { format!("{} ", esc(&capital(&what))) },
-            esc(rest)
-        );
-        // Before the numbers, where it stays in sight when there are many.
-        let u = first.map_or("", |(_, v)| v.unit.as_str());
-        let _ = write!(out, "<td class=\"unit\">{}</td>", esc(&unit(u)));
-        for n in &numbers {
-            let text = row.get(n).map_or_else(|| "–".into(), |(_, v)| certain(v.value, v.uncertainty, 4));
-            let _ = write!(out, "<td class=\"num\">{text}</td>");
-        }
-        out.push_str("</tr>");
-    }
-    out.push_str("</tbody></table></div>");
-}
-
-/// Results at crank angles: one row each.
-fn at_angles(out: &mut String, s: &Summary, angles: &IndexMap<&str, IndexMap<&str, (&str, &ResultValue)>>) {
-    let Some(first) = angles.values().next() else { return };
-    out.push_str("<div class=\"scroll\"><table class=\"plain angles\"><thead><tr><th class=\"num\">At crank angle</th>");
-    for (what, (name, v)) in first {
-        let title = s.descriptions.get(*name).map_or("", String::as_str);
-        let _ = write!(
-            out,
-            "<th class=\"num\" title=\"{}\"><code>{}</code> <span class=\"unit\">{}</span></th>",
-            esc(title),
-            esc(what),
-            esc(&unit(&v.unit))
+            "<li><b>{}°</b> {}: {}</li>",
+            significant(Some(e.theta_deg), 4),
+            esc(&results::subject(&e.subject)),
+            esc(&e.what)
         );
     }
-    out.push_str("</tr></thead><tbody>");
-    for (angle, row) in angles {
-        let _ = write!(out, "<tr><th class=\"num\" scope=\"row\">{}°</th>", esc(angle));
-        for what in first.keys() {
-            let text = row.get(what).map_or_else(|| "–".into(), |(_, v)| certain(v.value, v.uncertainty, 4));
-            let _ = write!(out, "<td class=\"num\">{text}</td>");
-        }
-        out.push_str("</tr>");
-    }
-    out.push_str("</tbody></table></div>");
-}
-
-/// One description for all members: what differs between theirs is the name of each.
-fn shared(told: &[String], family: &str) -> String {
-    let Some((first, rest)) = told.split_first() else { return String::new() };
-    let words: Vec<&str> = first.split(' ').collect();
-    let (mut lead, mut end) = (words.len(), words.len());
-    for other in rest {
-        let other: Vec<&str> = other.split(' ').collect();
-        lead = lead.min(words.iter().zip(&other).take_while(|(a, b)| a == b).count());
-        end = end.min(words.iter().rev().zip(other.iter().rev()).take_while(|(a, b)| a == b).count());
-    }
-    if lead == words.len() {
-        return first.clone();
-    }
-    let end = end.min(words.len() - lead);
-    let name = format!("the {family}");
-    let parts = [&words[..lead], &[name.as_str()], &words[words.len() - end..]];
-    parts.concat().join(" ")
-}
-
-/// A row of a table per ring must not speak of ring 1.
-fn without_member(text: &str, family: &str, n: u32) -> String {
-    let name = format!("{family} {n}");
-    for lead in [", in ", " of ", " on ", " at ", " in ", " past ", " behind ", ", "] {
-        if let Some(rest) = text.strip_suffix(&format!("{lead}{name}")) {
-            return rest.to_owned();
-        }
-    }
-    text.replace(&name, &format!("the {family}"))
+    out.push_str("</ul></div></details></section>\n");
 }
 
 fn branches(out: &mut String, s: &Summary) {
@@ -433,23 +228,4 @@ fn branches(out: &mut String, s: &Summary) {
         let _ = write!(out, "<td class=\"unit\">{}</td></tr>", esc(&unit(u)));
     }
     out.push_str("</tbody></table></div></section>\n");
-}
-
-#[cfg(test)]
-mod tests {
-    use super::shared;
-
-    #[test]
-    fn descriptions_of_members_are_shared() {
-        let told = |t: &[&str]| shared(&t.iter().map(|s| (*s).to_owned()).collect::<Vec<_>>(), "shaft");
-        assert_eq!(
-            told(&["mean torque of motor shaft", "mean torque of crank 1-2"]),
-            "mean torque of the shaft"
-        );
-        let at_rest = ["torque of order 2 in crank 1-2 at rest", "torque of order 2 in coupling at rest"];
-        assert_eq!(told(&at_rest), "torque of order 2 in the shaft at rest");
-        assert_eq!(told(&["mean torque", "mean torque"]), "mean torque");
-        assert_eq!(told(&["mean torque"]), "mean torque");
-        assert_eq!(told(&[]), "");
-    }
 }

@@ -1,6 +1,6 @@
 //! `summary.json` as a type of its own: it is read back to rebuild a page, and its shape is a promise to other programs.
 
-use gudgeon_core::result::{Figure, Note, Provenance, Refined, RunResult, Verification};
+use gudgeon_core::result::{Figure, Headline, Note, Provenance, Refined, RunResult, Verification};
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
@@ -114,6 +114,12 @@ pub(crate) struct Summary {
     pub tables: Vec<String>,
     #[serde(default)]
     pub figures: Vec<Figure>,
+    /// Results that lead, by name.
+    #[serde(default)]
+    pub headlines: Vec<Headline>,
+    /// Title of the figure that leads.
+    #[serde(default)]
+    pub lead: String,
     /// What the run was made of. Last, because it is long.
     #[serde(default)]
     pub provenance: Provenance,
@@ -202,6 +208,8 @@ impl Summary {
             section: run.section.as_ref().and_then(|s| serde_json::to_value(s).ok()),
             tables: run.tables.keys().cloned().collect(),
             figures: run.figures.clone(),
+            headlines: run.leading(),
+            lead: run.lead.clone(),
             provenance: run.provenance.clone(),
         }
     }

@@ -72,6 +72,7 @@ fn drawings_and_bars_travel_with_the_page() {
         ],
         frames: [25.0, 30.0, 35.0]
             .map(|x| Frame {
+                at: None,
                 label: format!("{x} mm"),
                 shapes: vec![
                     path(x, Style::Metal),

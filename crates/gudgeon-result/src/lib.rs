@@ -1,6 +1,7 @@
 //! What a run produces, independent of how it is written: the interface between the simulation and the report.
 
 mod gradients;
+mod overview;
 mod shares;
 mod swap;
 
@@ -9,6 +10,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use gradients::{Gradient, GradientInput, Gradients, derivative_unit};
+pub use overview::{Assessment, Grade, Headline, VERDICT};
 pub use shares::{CASE, Share, ShareRow, ShareTable};
 pub use swap::short_value;
 
@@ -33,6 +35,8 @@ pub enum NoteLevel {
     Info,
     /// A floor, a cap, a limit of validity or a fallback acted. The results are what was asked for, with that in mind.
     Caution,
+    /// A limit that the case declares is not kept: the results are what was asked for, and what they describe is not.
+    Exceeded,
     /// The results are not what was asked for (a cycle that is not periodic): they are written and marked, and the run fails.
     Failure,
 }
@@ -66,6 +70,12 @@ impl Note {
     #[must_use]
     pub fn caution(topic: impl Into<String>, text: impl Into<String>) -> Self {
         Self::new(NoteLevel::Caution, topic, text)
+    }
+
+    /// A limit of the case is not kept.
+    #[must_use]
+    pub fn exceeded(topic: impl Into<String>, text: impl Into<String>) -> Self {
+        Self::new(NoteLevel::Exceeded, topic, text)
     }
 
     /// The results are not what was asked for.
@@ -281,16 +291,7 @@ pub struct Figure {
 #[serde(rename_all = "snake_case")]
 pub enum FigureKind {
     /// Curves over one column.
-    Lines {
-        /// Column along the abscissa.
-        x: String,
-        /// Label and column of each curve. Curves share a unit.
-        lines: Vec<(String, String)>,
-        /// Logarithmic abscissa.
-        log_x: bool,
-        /// Logarithmic ordinate.
-        log_y: bool,
-    },
+    Lines(Lines),
     /// Colours over a rectangular grid, one row per point; rows of equal `y` follow each other.
     Map {
         /// Column along the abscissa.
@@ -325,6 +326,78 @@ pub enum FigureKind {
     },
 }
 
+/// Curves of columns over another one.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Lines {
+    /// Column along the abscissa.
+    pub x: String,
+    /// Label and column of each curve. Curves share a unit.
+    pub lines: Vec<(String, String)>,
+    /// Logarithmic abscissa.
+    pub log_x: bool,
+    /// Logarithmic ordinate.
+    pub log_y: bool,
+    /// What stands along the ordinate; empty where the labels of the curves say it.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub y_name: String,
+    /// Label and column of thin lines that carry their label at their end and stand in no legend: rays of orders.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub rays: Vec<(String, String)>,
+    /// Places and values that are marked.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub marks: Vec<Mark>,
+    /// Upper end of the ordinate; none: as far as the curves reach.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub top: Option<f64>,
+    /// Points that follow each other without being joined.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub scatter: bool,
+}
+
+/// Something that is marked in [`Lines`], in the SI units of its columns.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Mark {
+    /// A point, its area by `weight`, 0 to 1.
+    Point {
+        /// Its abscissa.
+        x: f64,
+        /// Its ordinate.
+        y: f64,
+        /// How much it matters.
+        weight: f64,
+        /// Whether it breaks a limit.
+        beyond: bool,
+        /// What it is.
+        label: String,
+    },
+    /// A range of the abscissa: where a machine runs, or a margin that must stay free.
+    Band {
+        /// Its lower end.
+        from: f64,
+        /// Its upper end.
+        to: f64,
+        /// Whether it should stay free.
+        kept_free: bool,
+        /// What it is.
+        label: String,
+    },
+    /// An upright line.
+    At {
+        /// Its abscissa.
+        x: f64,
+        /// What it is.
+        label: String,
+    },
+    /// A level that curves should stay below, or within on both sides of zero.
+    Limit {
+        /// Its ordinate.
+        y: f64,
+        /// What it is.
+        label: String,
+    },
+}
+
 /// One range of a figure.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Range {
@@ -343,6 +416,9 @@ pub struct Range {
 pub struct Frame {
     /// What tells it from the others: `372 deg`.
     pub label: String,
+    /// The crank angle \[deg\] that it shows, where it shows one: moving pictures of a page then show the same.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at: Option<f64>,
     /// What it shows.
     pub shapes: Vec<Shape>,
 }
@@ -650,6 +726,10 @@ pub struct RunResult {
     pub tables: IndexMap<String, Series>,
     /// Drawings of the series and the tables, besides those of curves over the cycle.
     pub figures: Vec<Figure>,
+    /// The results that lead, as the scene names them; those that a run does not have are left out ([`RunResult::leading`]).
+    pub headlines: Vec<Headline>,
+    /// Title of the figure that leads; empty: the section, or the first figure.
+    pub lead: String,
     /// What happened when.
     pub events: Vec<Event>,
     /// Other periodic solutions.

@@ -1,7 +1,7 @@
 //! Sweeps: every combination of one or two varied inputs, each read and built as a case of its own.
 
 use gudgeon_core::result::{
-    Column, Failure, Figure, FigureKind, Note, NoteLevel, REFUSED, RunResult, Series, Value,
+    Column, Failure, Figure, FigureKind, Lines, Note, NoteLevel, REFUSED, RunResult, Series, Value,
 };
 use gudgeon_core::{BuildError, Stopped};
 use indexmap::IndexMap;
@@ -297,12 +297,13 @@ fn lines(title: String, s: &Axis, table: &Series, lines: Vec<(String, String)>) 
         title,
         hint: format!("over {}", s.path),
         table: "sweep".into(),
-        kind: FigureKind::Lines {
+        kind: FigureKind::Lines(Lines {
             x: table.axis.name.clone(),
             lines,
             log_x,
             log_y: log_x && lo > 0.0 && hi > WIDE * lo,
-        },
+            ..Lines::default()
+        }),
     }
 }
 
@@ -330,7 +331,7 @@ mod tests {
             let column = |name: &str, values| Column { name: name.into(), unit: String::new(), values };
             let table = Series { axis: column("x", vec![1.0; 3]), columns: vec![column("y", values)] };
             match lines(String::new(), &axis, &table, vec![("y".into(), "y".into())]).kind {
-                FigureKind::Lines { log_x, log_y, .. } => (log_x, log_y),
+                FigureKind::Lines(l) => (l.log_x, l.log_y),
                 _ => (false, false),
             }
         };

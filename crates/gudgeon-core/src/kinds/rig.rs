@@ -4,7 +4,7 @@ use dyn_clone::DynClone;
 use indexmap::IndexMap;
 
 use crate::file::Files;
-use crate::result::{Balance, Column, Figure, FigureKind, Note, Series, Value};
+use crate::result::{Balance, Column, Figure, FigureKind, Lines, Note, Series, Value};
 use crate::{BuildError, EvalError, register_kind};
 
 /// What a [`RigSpec`] is built for.
@@ -95,12 +95,11 @@ impl RigOut {
             title: title.into(),
             hint: hint.into(),
             table: "series".into(),
-            kind: FigureKind::Lines {
+            kind: FigureKind::Lines(Lines {
                 x,
                 lines: lines.iter().map(|(l, c)| ((*l).into(), (*c).into())).collect(),
-                log_x: false,
-                log_y: false,
-            },
+                ..Lines::default()
+            }),
         });
     }
 

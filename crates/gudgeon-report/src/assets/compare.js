@@ -6,10 +6,10 @@
   if (!variants.length) return;
   const lo = Math.min(...variants.map((v) => arrays[v.series.axis.at][0]));
   const hi = Math.max(...variants.map((v) => arrays[v.series.axis.at].at(-1)));
-  const cycle = new Cycle(lo, hi > lo ? hi : lo + 1, 0.5);
+  const cycle = (CYCLE = new Cycle(lo, hi > lo ? hi : lo + 1, 0.5));
   cycleBar(bar, cycle);
   const host = document.getElementById("plots");
-  host.className = "wide";
+  host.className = "figures";
   const names = new Map();
   for (const v of variants) for (const c of v.series.columns) if (!names.has(c.name)) names.set(c.name, c.unit);
   if (names.has("cylinder.p")) names.delete("land1.p");
@@ -59,8 +59,8 @@
       l.title = l.numbers.map((k) => variants.find((v) => v.number === k).label).join("; ");
       if (l.numbers.length === 1) l.label += "  " + values(l.title);
     }
-    const spec = { title: q.title, unit: q.unit, lines, modes: lines.length > 1 ? [...(q.modes || ["linear"]), "difference"] : q.modes, height: q.rank < 2 ? 240 : 190 };
-    if (q.rank >= 9 && q.rank < 20) later.push(spec); else plot(host, cycle, spec);
+    const spec = { cycle, title: q.title, unit: q.unit, lines, modes: lines.length > 1 ? [...(q.modes || ["linear"]), "difference"] : q.modes };
+    if (q.rank >= 9 && q.rank < 20) later.push(spec); else new Chart(host, spec);
   }
   function values(label) {
     const cut = DATA.cases > 1 ? label.indexOf(": ") + 2 : 0;
@@ -68,8 +68,12 @@
   }
   if (later.length) {
     let drawn = false;
-    more.addEventListener("toggle", () => { if (more.open && !drawn) { drawn = true; for (const spec of later) plot(more, cycle, spec); } });
-    addEventListener("beforeprint", () => { more.open = true; });
-    host.append(more);
+    more.addEventListener("toggle", () => { if (!more.open || drawn) return;
+      drawn = true;
+      const inner = h("div", { class: "figures" });
+      more.append(inner);
+      for (const spec of later) new Chart(inner, spec);
+    });
+    host.after(more);
   }
 })();

@@ -140,10 +140,13 @@ function angleName(t, four) {
   return ["intake", "compression", "expansion", "exhaust"][Math.floor(m / 180) % 4] + ", " + where;
 }
 
+// The one of this page, where it has one.
+let CYCLE = null;
 // The crank angle all drawings share. `shown` follows the pointer while it is over a plot, else it is the pinned angle.
 class Cycle {
-  constructor(lo, hi, step) {
-    Object.assign(this, { lo, hi, step, pinned: lo, shown: lo, view: [lo, hi], playing: false, speed: 60 });
+  constructor(lo, hi, step, start) {
+    start = start === undefined ? lo : clamp(start, lo, hi);
+    Object.assign(this, { lo, hi, step, pinned: start, shown: start, view: [lo, hi], playing: false, speed: 60 });
     // A four-stroke cycle, unless the curves span no more than one turn.
     this.four = hi - lo > 540;
     this.listeners = [];

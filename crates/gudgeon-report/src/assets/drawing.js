@@ -14,7 +14,7 @@ function drawing(host, spec) {
   const M = 34, W = 620, k = Math.min((W - 2 * M) / (x1 - x0 || 1e-300), 420 / (y1 - y0 || 1e-300));
   const H = k * (y1 - y0) + 2 * M, left = (W - k * (x1 - x0)) / 2;
   const X = (x) => (left + k * (x - x0)).toFixed(2), Y = (y) => (H - M - k * (y - y0)).toFixed(2);
-  const svg = s("svg", { viewBox: `0 0 ${W} ${H.toFixed(0)}`, role: "img", "aria-label": spec.title, class: "drawing" });
+  const svg = s("svg", { viewBox: `0 0 ${W} ${H.toFixed(0)}`, role: "img", "aria-label": spec.title + (spec.hint ? ": " + spec.hint : ""), class: "drawing" });
   const id = "d" + Math.random().toString(36).slice(2), defs = s("defs", {}, svg);
   const hatch = s("pattern", { id: id + "h", width: 6, height: 6, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)" }, defs);
   s("rect", { width: 6, height: 6, style: "fill:var(--metal)" }, hatch);
@@ -44,28 +44,47 @@ function drawing(host, spec) {
     }
   }
   for (const o of fixed) put(o, svg);
-  const moving = s("g", {}, svg), box = h("div", { class: "chart" }, h("h3", {}, spec.title), h("p", { class: "hint" }, spec.hint || ""), svg);
+  const moving = s("g", {}, svg), box = frameOf(host, spec, svg);
   const show = (i) => { moving.replaceChildren(); for (const o of frames[i].shapes) put(o, moving); };
   if (frames.length) show(0);
-  if (frames.length > 1) {
+  // Pictures of a crank angle follow the one that all charts share.
+  if (frames.length > 1 && isNumber(frames[0].at) && CYCLE) {
+    const label = h("p", { class: "now" }), angles = frames.map((f) => f.at);
+    let shown = -1;
+    CYCLE.on((what) => {
+      if (!(what & 1)) return;
+      let i = 0;
+      for (let k = 1; k < angles.length; k++) if (Math.abs(angles[k] - CYCLE.shown) < Math.abs(angles[i] - CYCLE.shown)) i = k;
+      if (i !== shown) { show(i); label.textContent = frames[i].label; shown = i; }
+    });
+    box.append(label);
+  } else if (frames.length > 1) {
     const slider = h("input", { type: "range", min: 0, max: frames.length - 1, value: 0, "aria-label": spec.title }), label = h("span", { class: "now" }, frames[0].label);
     const go = (i) => { slider.value = i; label.textContent = frames[i].label; show(i); };
     let timer = null;
     const play = h("button", { type: "button", onclick: () => {
       if (timer) { clearInterval(timer); timer = null; } else timer = setInterval(() => go((+slider.value + 1) % frames.length), 60);
-      play.textContent = timer ? "stop" : "play";
-    } }, "play");
+      play.textContent = timer ? "Stop" : "Play";
+    } }, "Play");
     slider.addEventListener("input", () => go(+slider.value));
     box.append(h("div", { class: "frames" }, play, slider, label));
   } else if (frames.length && frames[0].label) box.append(h("p", { class: "hint" }, frames[0].label));
+}
+
+// A figure that holds all it shows: title, explanation, drawing.
+function frameOf(host, spec, svg) {
+  const head = h("div", { class: "head" }, h("h3", {}, spec.title), h("div", { class: "tools" }, saveMenu(svg, { title: spec.title })));
+  const box = h("figure", { class: "plot still" + (spec.wide ? " wide" : "") }, head, spec.hint ? h("p", { class: "hint" }, spec.hint) : null, svg);
   host.append(box);
+  return box;
 }
 
 function bars(host, spec) {
   const W = 620, L = 210, R = 70, row = 24, H = row * spec.bars.length + 34;
   const values = spec.bars.flatMap((b) => [b.value, b.limit]).filter(isNumber), lo = Math.min(0, ...values), hi = Math.max(0, ...values) || 1;
   const u = display(spec.unit, Math.max(Math.abs(lo), Math.abs(hi))), X = (v) => L + ((v - lo) / (hi - lo)) * (W - L - R);
-  const svg = s("svg", { viewBox: `0 0 ${W} ${H}`, role: "img", "aria-label": spec.title, class: "bars" });
+  const told = spec.bars.map((b) => `${b.label} ${sig(b.value * u.f, 3)} ${u.label}` + (isNumber(b.limit) ? `, limit ${sig(b.limit * u.f, 3)}` : "")).join("; ");
+  const svg = s("svg", { viewBox: `0 0 ${W} ${H}`, role: "img", "aria-label": spec.title + ": " + told, class: "bars" });
   for (const t of linearTicks(lo * u.f, hi * u.f, 6)) {
     s("line", { x1: X(t / u.f), x2: X(t / u.f), y1: 4, y2: H - 26, class: "gridline" }, svg);
     s("text", { x: X(t / u.f), y: H - 12, "text-anchor": "middle", class: "dim" }, svg, tickText(t));
@@ -80,7 +99,7 @@ function bars(host, spec) {
     if (isNumber(b.limit)) s("line", { x1: X(b.limit), x2: X(b.limit), y1: y, y2: y + row, class: "limit" }, svg);
     s("text", { x: Math.max(e, isNumber(b.limit) && b.limit - b.value < 0.2 * (hi - lo) ? X(b.limit) : e) + 6, y: y + 15, class: "strong" }, svg, sig(b.value * u.f, 4));
   });
-  host.append(h("div", { class: "chart" }, h("h3", {}, spec.title), h("p", { class: "hint" }, spec.hint || ""), svg));
+  frameOf(host, spec, svg);
 }
 // Ranges: the swings of a tornado plot around a middle, or values with their intervals.
 function ranges(host, spec) {
@@ -112,5 +131,5 @@ function ranges(host, spec) {
     s("title", {}, svg.lastChild, `${r.label}: ${tip} ${u.label}`);
   });
   if (centred) s("line", { x1: X(spec.middle), x2: X(spec.middle), y1: 2, y2: H - 28, class: "limit" }, svg);
-  host.append(h("div", { class: "chart" }, h("h3", {}, spec.title), h("p", { class: "hint" }, spec.hint || ""), svg));
+  frameOf(host, spec, svg);
 }

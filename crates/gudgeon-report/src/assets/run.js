@@ -2,6 +2,7 @@
 (function () {
   const bar = document.getElementById("bar");
   if (!bar) return;
+  if (!DATA.series) { bar.remove(); return; }
   const theta = arrays[DATA.series.axis.at];
   const columns = new Map(), order = [];
   for (const c of DATA.series.columns) {
@@ -10,11 +11,10 @@
     order.push(entry);
   }
   const lo = theta[0], hi = theta[theta.length - 1];
-  const cycle = new Cycle(lo, hi > lo ? hi : lo + 1, 0.5);
+  const cycle = (CYCLE = new Cycle(lo, hi > lo ? hi : lo + 1, 0.5, loudest(columns)));
   cycleBar(bar, cycle);
-  const packHost = document.getElementById("pack");
-  if (DATA.section && DATA.section.rings && DATA.section.rings.length) packSection(packHost, cycle, DATA.section, columns);
-  else packHost.remove();
+  const lead = document.getElementById("lead");
+  if (DATA.section && DATA.section.rings && DATA.section.rings.length) packSection(lead, cycle, DATA.section, columns);
 
   const host = document.getElementById("plots"), used = new Set();
   let n = 0;
@@ -38,7 +38,7 @@
   };
   const readable = (name) => name.replace(/_/g, " ").replace(/^([a-z]+)(\d+)$/, "$1 $2");
   const events = (test) => DATA.events.filter((e) => test.test(e.subject)).map((e) => ({ t: e.theta_deg, color: subjectColor(e.subject), text: readable(e.subject) + " " + e.what }));
-  const add = (lines, spec, where) => { if (lines.length) plot(where || host, cycle, Object.assign({ lines, unit: lines[0].unit }, spec)); };
+  const add = (lines, spec, where) => { if (lines.length) new Chart(where || host, Object.assign({ lines, unit: lines[0].unit, cycle }, spec)); };
   const sum = (lines, label) => {
     if (lines.length < 2) return [];
     const y = new Float32Array(lines[0].y.length);
@@ -50,9 +50,9 @@
   const sides = events(/^(thrust side|anti-thrust side|piston)$/);
   const logarithm = { modes: ["linear", "log"] };
   const looks = {
-    pressures: { modes: ["log", "linear"], height: 320, events: events(/^(land|cylinder)/) },
+    pressures: { modes: ["log", "linear"], events: events(/^(land|cylinder)/) },
     skirt: { events: sides }, skirt_velocity: { events: sides }, side_forces: { events: sides },
-    skirt_gap: logarithm, skirt_pressure: logarithm, film: { modes: ["linear", "log"], height: 250 },
+    skirt_gap: logarithm, skirt_pressure: logarithm, film: { modes: ["linear", "log"] },
     position: { lanes: true, events: events(/^ring/) }, lift: { events: events(/^ring/) },
   };
   const dashes = { dashed: "5 4", dotted: "2 3" };
@@ -87,7 +87,7 @@
     friction_force: (g) => { const l = curves(g); add([...l, ...sum(l, "all rings")], titled(g)); },
     friction_power: (g) => { const l = curves(g); add([...l, ...sum(l, "all rings")], titled(g)); },
     "ring#_forces": (g) => {
-      for (let k = 1; k <= n; k++) add(curves(g, k), Object.assign(titled(g, k), { modes: ["±log", "linear"], height: 240, events: events(new RegExp(`^ring${k}$`)) }));
+      for (let k = 1; k <= n; k++) add(curves(g, k), Object.assign(titled(g, k), { modes: ["±log", "linear"], events: events(new RegExp(`^ring${k}$`)) }));
     },
   };
   for (const g of OVER_CYCLE) {
@@ -120,13 +120,23 @@
     more.addEventListener("toggle", () => {
       if (!more.open || drawn) return;
       drawn = true;
-      for (const [lines, spec] of later) add(lines, spec, more);
+      const inner = h("div", { class: "figures" });
+      more.append(inner);
+      for (const [lines, spec] of later) add(lines, spec, inner);
     });
-    addEventListener("beforeprint", () => { more.open = true; });
-    host.append(more);
+    host.after(more);
     if (/[#&]more\b/.test(location.hash)) more.open = true;
   }
-  if (DATA.series.every > 1) host.append(h("p", { class: "hint" }, `Curves on this page show every ${DATA.series.every}th row of series.csv.`));
+  if (DATA.series.every > 1) host.before(h("p", { class: "hint" }, `Curves on this page show every ${DATA.series.every}th row of series.csv.`));
+
+  // The angle at which the page opens: the highest pressure between the rings, or in the cylinder.
+  function loudest(all) {
+    const c = all.get("land2.p") || all.get("cylinder.p");
+    if (!c) return undefined;
+    let best = 0;
+    for (let i = 1; i < c.y.length; i++) if (c.y[i] > c.y[best]) best = i;
+    return Math.round(c.x[best]);
+  }
 
   // Events become links to their angle.
   const list = document.getElementById("event-list");

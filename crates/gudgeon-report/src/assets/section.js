@@ -110,8 +110,9 @@ function packSection(host, cycle, geometry, columns) {
     "radial clearances at the lands and behind the rings are not to scale, and a face is cut off where it drops to the land. Orange: a ring on its flank, or rubbing on the liner. Arrows on the liner: gas past each ring." +
     (rings.some((r, i) => !columns.has("ring" + (i + 1) + ".position")) ? " Rings without a computed position are drawn on their lower flank." : ""));
   const side = h("div", { class: "side" });
-  host.className = "pack";
-  host.append(h("figure", {}, svg, caption), side);
+  const box = h("div", { class: "pack" });
+  host.append(box);
+  box.append(h("figure", {}, svg, caption), side);
   const crank = crankGlyph(cycle, geometry, columns);
   const table = nowTable(cycle, n, get, columns);
   const scale = known ? colourBar(cycle, { shade, level, pLo, pHi, n, landP, get, landName }) : null;

@@ -1,6 +1,6 @@
 //! Figures of a study: tornado plots, indices with their intervals, shares, curves and maps.
 
-use gudgeon_core::result::{Bar, Column, Figure, FigureKind, Range, Series};
+use gudgeon_core::result::{Bar, Column, Figure, FigureKind, Lines, Range, Series};
 use indexmap::IndexMap;
 
 use super::analysis::{Analysis, Dependence, Finding};
@@ -61,7 +61,7 @@ impl Study {
                 labels.iter().enumerate().map(|(k, l)| column(l.clone(), y[k * n..(k + 1) * n].to_vec()));
             let series = Series { axis: axis(x, xs[..n].to_vec()), columns: columns.collect() };
             let lines = labels.iter().map(|l| (l.clone(), l.clone())).collect();
-            let kind = FigureKind::Lines { x: x.clone(), lines, log_x: false, log_y: false };
+            let kind = FigureKind::Lines(Lines { x: x.clone(), lines, ..Lines::default() });
             return Some((figure(kind), series));
         }
         let [second, _] = &inputs[..] else { return None };

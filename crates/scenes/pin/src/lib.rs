@@ -2,6 +2,7 @@
 
 pub mod case;
 mod draw;
+mod headlines;
 mod methods;
 mod names;
 mod output;
@@ -94,6 +95,7 @@ impl SceneCase for PinCase {
             size::run(case, &s, &mut out, progress)?;
         }
         skirt::run(case, &mut out)?;
+        out.headlines = headlines::headlines();
         if out.solver.method.is_empty() {
             out.solver.method = "closed forms".into();
         }

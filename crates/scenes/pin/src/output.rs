@@ -1,6 +1,6 @@
 //! Results, columns and figures of a run.
 
-use gudgeon_core::result::{Column, Figure, FigureKind, RunResult, Value};
+use gudgeon_core::result::{Column, Figure, FigureKind, Lines, RunResult, Value};
 use gudgeon_core::{BuildError, EvalError};
 use gudgeon_scene::RunError;
 
@@ -31,11 +31,10 @@ pub fn lines(out: &mut RunResult, table: &str, title: &str, hint: &str, lines: &
         title: title.into(),
         hint: hint.into(),
         table: table.into(),
-        kind: FigureKind::Lines {
+        kind: FigureKind::Lines(Lines {
             x: t.axis.name.clone(),
             lines: lines.iter().map(|(l, c)| ((*l).into(), (*c).into())).collect(),
-            log_x: false,
-            log_y: false,
-        },
+            ..Lines::default()
+        }),
     });
 }

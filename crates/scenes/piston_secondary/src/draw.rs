@@ -7,6 +7,8 @@ use super::assembly::Assembly;
 use super::plan::tidy;
 use super::record::{Map, Record};
 
+/// Title of the picture that leads.
+pub const PISTON: &str = "The piston in its bore";
 /// Crank angle between the pictures of the piston \[deg\].
 const FRAME: f64 = 5.0;
 /// Part of the radius that the clearance takes up in the picture.
@@ -124,7 +126,7 @@ fn piston(a: &Assembly, record: &Record) -> Figure {
     let every = ((FRAME.to_radians() / (rows[1] - rows[0])).round() as usize).max(1);
     let frames = (0..rows.len()).step_by(every).map(|k| p.frame(k)).collect();
     Figure {
-        title: "The piston in its bore".into(),
+        title: PISTON.into(),
         hint: format!(
             "displacement, tilt, clearance and profile magnified {:.0} times; film pressure along the middle of both sides, {:.1} bar at most",
             p.magnified,
@@ -238,7 +240,7 @@ impl<'a> Picture<'a> {
             force[k].round() + 0.0
         );
         shapes.push(text([0.0, self.head + 0.55 * radius], told, Anchor::Middle));
-        Frame { label: format!("{deg}°"), shapes }
+        Frame { label: format!("{deg}°"), at: Some(deg), shapes }
     }
 
     /// Film pressure along the middle of both sides, standing on the liner.

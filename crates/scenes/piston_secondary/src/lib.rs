@@ -11,6 +11,7 @@ mod draw;
 pub mod equations;
 mod explained;
 mod film_strokes;
+mod headlines;
 pub mod implicit;
 mod impossible;
 pub mod layout;

@@ -18,7 +18,7 @@ use super::record::Record;
 use super::row::Look;
 use super::search::{Search, refused, work};
 use super::survey::Survey;
-use super::{draw, film_strokes, methods, notes, results};
+use super::{draw, film_strokes, headlines, methods, notes, results};
 
 impl SceneCase for PistonSecondaryCase {
     /// The piston as its models have it. A run builds others beside it: with films that nobody has asked yet, coarser ones, or a rigid skirt.
@@ -123,6 +123,8 @@ fn look_at(
     result.solver.notes.push(centre_of_gravity(case));
     result.balance.skirt_oil = found.trajectory.oil.as_ref().map(|oil| oil.ledger.error());
     draw::figures(a, &record, result);
+    result.headlines = headlines::headlines();
+    result.lead = draw::PISTON.into();
     result.series = record.series();
     result.seconds.insert("solve".into(), search.seconds);
     Ok(())

@@ -8,7 +8,7 @@ use gudgeon_core::BuildError;
 use gudgeon_core::file::Files;
 use gudgeon_core::kinds::EngineCycle;
 use gudgeon_core::quantity::quantity;
-use gudgeon_core::result::{ModelUse, Note, RunResult, Value};
+use gudgeon_core::result::{Headline, ModelUse, Note, RunResult, Value};
 
 use case::{Part, PowerCylinderCase};
 use gudgeon_case::{Level, Loaded, Refinement, Report, read_beside, scene_of};
@@ -19,6 +19,9 @@ use gudgeon_scene::{
 };
 use gudgeon_scene_piston_secondary::case::PistonSecondaryCase;
 use gudgeon_scene_ring_pack::case::RingPackCase;
+
+/// Headlines of each part that stand on the first page.
+const FROM_EACH: usize = 4;
 
 impl SceneCase for PowerCylinderCase {
     /// The rings and the skirt.
@@ -138,6 +141,7 @@ impl SceneCase for PowerCylinderCase {
         results.extend(result.results.into_iter().map(|(k, v)| (named("rings", &k), v)));
         results.extend(other.results.into_iter().map(|(k, v)| (named("skirt", &k), v)));
         result.results = results;
+        result.headlines = headlines(&result.headlines, other.headlines);
         result.balance.skirt_oil = other.balance.skirt_oil;
         add_models(&mut result.models, other.models);
         result.skipped.extend(other.skipped);
@@ -170,6 +174,19 @@ impl SceneCase for PowerCylinderCase {
         result.seconds.insert("solve".into(), begin.elapsed().as_secs_f64());
         Ok(result)
     }
+}
+
+/// Headlines of the whole, then the first of the rings and of the skirt.
+fn headlines(rings: &[Headline], skirt: Vec<Headline>) -> Vec<Headline> {
+    let part = |all: &[Headline], name: &str, title: &str| -> Vec<Headline> {
+        let own = all.iter().take(FROM_EACH).cloned().map(|h| h.within(name));
+        own.map(|h| Headline { title: format!("{title}: {}", h.title), ..h }).collect()
+    };
+    let whole = [
+        Headline::one("Friction power", "friction_power"),
+        Headline::one("Friction mean effective pressure", "fmep"),
+    ];
+    [&whole[..], &part(rings, "rings", "Rings"), &part(&skirt, "skirt", "Skirt")].concat()
 }
 
 /// The skirt with the film that the rings leave to it, where it asks for one and they tell it, and what a person should know of that.

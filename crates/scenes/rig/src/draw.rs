@@ -1,7 +1,7 @@
 //! What the benches share: rows, tables with curves, and the refusal of results that are no numbers.
 
 use gudgeon_core::kinds::RigOut;
-use gudgeon_core::result::{Column, Figure, FigureKind, Series};
+use gudgeon_core::result::{Column, Figure, FigureKind, Lines, Series};
 use gudgeon_core::{BuildError, EvalError};
 
 /// `n` values at equal distances, both ends included.
@@ -54,7 +54,13 @@ pub fn curves(
         title: title.into(),
         hint: hint.into(),
         table: table.into(),
-        kind: FigureKind::Lines { x, lines: lines.to_vec(), log_x: scales.log_x, log_y: scales.log_y },
+        kind: FigureKind::Lines(Lines {
+            x,
+            lines: lines.to_vec(),
+            log_x: scales.log_x,
+            log_y: scales.log_y,
+            ..Lines::default()
+        }),
     });
 }
 

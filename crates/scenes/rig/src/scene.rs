@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use gudgeon_core::kinds::{Rig, RigCtx, RigOut};
-use gudgeon_core::result::{ModelUse, RunResult, Skipped};
+use gudgeon_core::result::{Headline, ModelUse, RunResult, Skipped};
 use gudgeon_core::{BuildError, EvalError, Registry};
 
 use crate::case::RigCase;
@@ -75,6 +75,7 @@ impl SceneCase for RigCase {
             figures: out.figures,
             ..RunResult::default()
         };
+        result.headlines = headlines(case.rig.headline(), &result);
         result.solver.method = case.rig.typetag_name().into();
         result.solver.counters = out.counters;
         result.solver.notes = out.notes;
@@ -83,6 +84,16 @@ impl SceneCase for RigCase {
     }
 }
 
+/// What the bench names, and results beside it until the first page is full.
+fn headlines(named: &[&str], run: &RunResult) -> Vec<Headline> {
+    let others = run.results.keys().map(String::as_str).filter(|name| !named.contains(name));
+    let all = named.iter().copied().chain(others);
+    let told = all.filter_map(|name| Some((name, run.results.get(name)?))).take(SHOWN);
+    told.map(|(name, v)| Headline::one(&v.what, name)).collect()
+}
+
+/// Results on the first page.
+const SHOWN: usize = 8;
 /// Results that a race looks at where the bench names none.
 const UNNAMED: usize = 4;
 

@@ -19,6 +19,7 @@ mod film_strokes;
 mod forces;
 mod gas_ledger;
 pub mod geometry;
+mod headlines;
 pub mod implicit;
 pub mod instant;
 pub mod jacobian;

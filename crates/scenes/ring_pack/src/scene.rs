@@ -4,9 +4,10 @@ use std::borrow::Cow;
 
 use gudgeon_core::BuildError;
 use gudgeon_core::kinds::EngineCycle;
-use gudgeon_core::result::{Figure, FigureKind, Gradients, ModelUse, RunResult};
+use gudgeon_core::result::{Figure, FigureKind, Gradients, Lines, ModelUse, RunResult};
 
 use super::around::{Around, Varied};
+use super::headlines::headlines;
 use super::pack::Pack;
 use super::rails::TakenApart;
 use super::solve::{solve, starts, wanted};
@@ -68,6 +69,7 @@ impl SceneCase for RingPackCase {
         result.branches = solved.branches;
         result.solver = solved.report;
         result.series = solved.record.series();
+        result.headlines = headlines(&pack.names);
         if pack.plan.film {
             let films = film_strokes::table(&solved.cycle.measures, pack.period());
             result.tables.insert("films".into(), films);
@@ -81,12 +83,12 @@ impl SceneCase for RingPackCase {
                 title: "Oil on the liner".into(),
                 hint: "at the dead centres, over the height above the lowest place of the gudgeon pin".into(),
                 table: "liner".into(),
-                kind: FigureKind::Lines {
+                kind: FigureKind::Lines(Lines {
                     x: "height".into(),
                     lines: lines.collect(),
-                    log_x: false,
                     log_y: true,
-                },
+                    ..Lines::default()
+                }),
             });
             result.tables.insert("liner".into(), liner);
         }

@@ -1,10 +1,13 @@
-//! Drawings: mode shapes on the line, the interference diagram.
+//! Drawings: mode shapes on the line, the Campbell diagram.
 
 use std::f64::consts::PI;
 
 use gudgeon_core::kinds::{Line, LineLink, Mode};
-use gudgeon_core::result::{Anchor, Figure, FigureKind, Frame, Shape, Style};
+use gudgeon_core::result::{Anchor, Figure, FigureKind, Frame, Lines, Mark, Shape, Style};
+use gudgeon_torsion::critical::CriticalSpeed;
 use gudgeon_torsion::tree::Tree;
+
+use crate::rpm;
 
 /// Where each inertia is drawn: along the line, branches below each other.
 fn layout(line: &Line) -> Vec<[f64; 2]> {
@@ -172,75 +175,71 @@ fn frame(line: &Line, at: &[[f64; 2]], k: usize, m: &Mode) -> Frame {
     }
     let damping =
         m.damped.map_or_else(String::new, |(d, w)| format!(", damping {:.2} %", 100.0 * d / d.hypot(w)));
-    Frame { label: format!("mode {}: {:.2} Hz{damping}", k + 1, m.omega / (2.0 * PI)), shapes }
+    Frame { label: format!("mode {}: {:.2} Hz{damping}", k + 1, m.omega / (2.0 * PI)), at: None, shapes }
 }
 
-/// Interference diagram over speeds \[rpm\]: natural frequencies \[Hz\] as levels, orders as rays, marks where they meet.
-pub fn interference(
+/// Title of the diagram that leads.
+pub const CAMPBELL: &str = "Campbell diagram";
+
+/// What the diagram marks on its axis of speeds \[rpm\].
+pub struct Marked {
+    /// The mean speed.
+    pub running: f64,
+    /// The operating range.
+    pub operating: [f64; 2],
+    /// The largest separation that a limit asks for, as part of the speed; 0 where none does.
+    pub margin: f64,
+}
+
+/// Campbell diagram of table `interference`: natural frequencies \[Hz\] over speeds \[rpm\], orders as rays, critical speeds where they
+/// meet.
+pub fn campbell(
     speeds: &[f64],
     levels: &[Vec<f64>],
     orders: &[f64],
-    marks: &[[f64; 2]],
-    running: f64,
+    critical: &[CriticalSpeed],
+    marked: &Marked,
 ) -> Figure {
-    let (from, to) = (speeds[0], speeds[speeds.len() - 1]);
+    let to = speeds.iter().copied().fold(0.0, f64::max);
     // Modes that an order can reach, and one above.
     let reach = orders.last().copied().unwrap_or(1.0) * to / 60.0;
     let highest = |level: &Vec<f64>| level.iter().copied().fold(0.0, f64::max);
     let drawn = levels.iter().filter(|l| highest(l) <= reach).count().clamp(1, 12).min(levels.len());
     let top = 1.15 * highest(&levels[drawn - 1]);
-    // Drawn in a frame of 16 by 9.
-    let (width, height) = (16.0, 9.0);
-    let x = |rpm: f64| width * (rpm - from) / (to - from);
-    let y = |f: f64| height * f / top;
-    let mut s = Vec::new();
-    let path = |points: Vec<[f64; 2]>, style: Style| Shape::Path { points, closed: false, style };
-    s.push(Shape::Path {
-        points: vec![[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]],
-        closed: true,
-        style: Style::Thin,
-    });
-    for k in 0..=8 {
-        let at = from + (to - from) * f64::from(k) / 8.0;
-        s.push(path(vec![[x(at), 0.0], [x(at), 0.12]], Style::Thin));
-        s.push(Shape::Text { at: [x(at), -0.45], text: format!("{at:.0}"), anchor: Anchor::Middle });
+    let lines = (1..=drawn).map(|k| (format!("mode {k}"), format!("mode{k}"))).collect();
+    let rays = orders.iter().map(|o| (format!("{o}"), format!("order{o}"))).collect();
+    let [low, high] = marked.operating;
+    let mut marks = vec![Mark::At { x: marked.running, label: "mean speed".into() }];
+    if high > low {
+        marks.push(Mark::Band { from: low, to: high, kept_free: false, label: "operating range".into() });
     }
-    s.push(Shape::Text { at: [0.5 * width, -1.0], text: "speed, rpm".into(), anchor: Anchor::Middle });
-    for (k, level) in levels.iter().take(drawn).enumerate() {
-        let flat = level.iter().all(|f| *f == level[0]);
-        let kept: Vec<usize> = if flat { vec![0, level.len() - 1] } else { (0..level.len()).collect() };
-        s.push(path(kept.iter().map(|i| [x(speeds[*i]), y(level[*i])]).collect(), Style::Outline));
-        // Inside the frame, above its line.
-        let text = if flat {
-            format!("mode {}: {:.1} Hz", k + 1, level[0])
-        } else {
-            format!("mode {}: {:.1} to {:.1} Hz", k + 1, level[0], level[level.len() - 1])
-        };
-        s.push(Shape::Text { at: [0.15, y(level[0]) + 0.28], text, anchor: Anchor::Start });
+    if marked.margin > 0.0 {
+        let label = format!("with a margin of {:.0} %", 100.0 * marked.margin);
+        let (from, to) = (low * (1.0 - marked.margin), high * (1.0 + marked.margin));
+        marks.push(Mark::Band { from, to, kept_free: true, label });
     }
-    for o in orders {
-        let end = to.min(60.0 * top / o);
-        if end <= from {
-            continue;
+    marks.extend(critical.iter().filter(|c| c.omega / (2.0 * PI) <= top).map(|c| {
+        let x = rpm(c.speed);
+        Mark::Point {
+            x,
+            y: c.omega / (2.0 * PI),
+            weight: 0.0,
+            beyond: x >= low && x <= high,
+            label: format!("order {} excites mode {} at {x:.0} rpm", c.order, c.mode),
         }
-        s.push(path(vec![[x(from), y(o * from / 60.0)], [x(end), y(o * end / 60.0)]], Style::Dashed));
-        let (text, place, anchor) = if end < to {
-            (format!("{o}"), [x(end), height + 0.25], Anchor::Middle)
-        } else {
-            (format!("{o}"), [width + 0.15, y(o * end / 60.0)], Anchor::Start)
-        };
-        s.push(Shape::Text { at: place, text, anchor });
-    }
-    for [at, f] in marks.iter().filter(|m| m[1] <= top) {
-        s.push(Shape::Circle { centre: [x(*at), y(*f)], radius: 0.09, style: Style::Accent });
-    }
-    if running >= from && running <= to {
-        s.push(path(vec![[x(running), 0.0], [x(running), height]], Style::Second));
-    }
+    }));
     Figure {
-        title: "Interference diagram".into(),
-        hint: "natural frequencies over the speed, orders of the speed as rays (numbers at their ends), critical speeds where they meet; the upright line is the mean speed".into(),
-        table: String::new(),
-        kind: FigureKind::Drawing { fixed: s, frames: Vec::new() },
+        title: CAMPBELL.into(),
+        hint: "natural frequencies over the speed, orders as rays with their numbers; critical speeds where they meet, red within the operating range".into(),
+        table: "interference".into(),
+        kind: FigureKind::Lines(Lines {
+            x: "speed".into(),
+            lines,
+            rays,
+            marks,
+            y_name: "frequency".into(),
+            top: Some(top),
+            ..Lines::default()
+        }),
     }
 }

@@ -9,6 +9,7 @@ mod balance;
 pub mod case;
 mod draw;
 mod gradients;
+mod headlines;
 mod hold;
 mod legal;
 mod machine;
@@ -161,6 +162,8 @@ fn run(
     }
     progress(Progress { phase: "response".into(), fraction: 0.1 })?;
     run.response_and_verdict(progress)?;
+    result.headlines = headlines::headlines(&a.line, &result);
+    result.lead = draw::CAMPBELL.into();
     result.seconds.insert("solve".into(), begin.elapsed().as_secs_f64());
     Ok(result)
 }

@@ -140,7 +140,7 @@ impl<'a> Deformed<'a> {
             })
             .collect();
         let shapes = vec![path(bent, false, Style::Accent), path(ring, true, Style::Accent)];
-        Frame { label, shapes }
+        Frame { label, at: None, shapes }
     }
 
     /// The design load alone, or from it on once round the cycle.

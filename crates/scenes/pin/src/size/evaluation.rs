@@ -90,7 +90,7 @@ fn utilisations(d: &Design<'_>, u: &[f64; PIN_QUANTITIES], out: &mut RunResult) 
         .filter(|q| d.limits[*q as usize].is_finite() && u[*q as usize] > 1.0 + 1e-9)
         .map(PinQuantity::words)
         .collect();
-    out.solver.notes.push(Note::caution(
+    out.solver.notes.push(Note::exceeded(
         "pin_beyond_limits",
         format!(
             "The pin exceeds {}: {}; the most, {}, by {:.3} %.",

@@ -8,7 +8,7 @@ mod throws;
 mod transient;
 mod verdict;
 
-use gudgeon_core::result::{Column, Figure, FigureKind, Note, RunResult, Value};
+use gudgeon_core::result::{Column, Figure, FigureKind, Lines, Note, RunResult, Value};
 
 use super::assemble::Assembled;
 use super::case::ShaftLineCase;
@@ -72,7 +72,7 @@ impl<'a> Results<'a> {
             title: title.into(),
             hint: hint.into(),
             table: table.into(),
-            kind: FigureKind::Lines { x: x.into(), lines, log_x: false, log_y },
+            kind: FigureKind::Lines(Lines { x: x.into(), lines, log_y, ..Lines::default() }),
         });
     }
 

@@ -10,7 +10,7 @@ use gudgeon_torsion::steady::Steady;
 
 use super::{MAX_DRAWN, Results, column};
 use crate::assemble::Assembled;
-use crate::verdict::{MODES, separation};
+use crate::verdict::{MODES, Operating, separation};
 use crate::{draw, rpm};
 
 /// Intervals of the diagram, and of the search for critical speeds where they move with the speed.
@@ -180,8 +180,14 @@ impl Results<'_> {
             return Ok(());
         }
         let rows: Vec<f64> = at.iter().map(|w| rpm(*w)).collect();
-        let marks: Vec<[f64; 2]> = found.iter().map(|c| [rpm(c.speed), c.omega / (2.0 * PI)]).collect();
-        self.out.figures.push(draw::interference(&rows, &levels, orders, &marks, rpm(speed)));
+        let range = Operating::new(self.case);
+        let margins = self.case.limits.separation.iter().map(|l| l.margin.si());
+        let marked = draw::Marked {
+            running: rpm(speed),
+            operating: [rpm(range.from), rpm(range.to)],
+            margin: margins.fold(0.0, f64::max),
+        };
+        self.out.figures.push(draw::campbell(&rows, &levels, orders, found, &marked));
         let mut table = Series { axis: column("speed", "rpm", rows.clone()), columns: Vec::new() };
         for (k, level) in levels.into_iter().enumerate() {
             table.columns.push(column(format!("mode{}", k + 1), "Hz", level));

@@ -2,13 +2,13 @@
 
 use gudgeon_core::EvalError;
 use gudgeon_core::file::Files;
-use gudgeon_core::result::{Note, Series};
+use gudgeon_core::result::{FigureKind, Lines, Mark, Note, Series};
 
 use super::{MAX_DRAWN, Results, column};
 use crate::assemble::{Assembled, throws_alone};
 use crate::machine::{Machine, Point, Sought};
 use crate::verdict::Operating;
-use crate::{rpm, told};
+use crate::{draw, rpm, told};
 
 /// Orders drawn of the shaft that vibrates most.
 const ORDERS: usize = 6;
@@ -90,6 +90,7 @@ impl Results<'_> {
             curves,
             false,
         );
+        self.weigh_critical_speeds(&machine.orders, links, &rows, speeds);
         let curves = orders_of(top.1, &machine.orders, links, &rows, &mut table);
         if let Some(l) = a.line.links.get(top.1) {
             self.lines(
@@ -104,6 +105,38 @@ impl Results<'_> {
         self.out.tables.insert("speed_range".into(), table);
         self.answered(machine, "speed_range");
         Ok(())
+    }
+
+    /// Marks critical speeds in the Campbell diagram by the torque that their order makes there in any shaft, and says it in their labels.
+    fn weigh_critical_speeds(&mut self, orders: &[f64], links: usize, rows: &[Point], speeds: &[f64]) {
+        let Some(table) = self.out.tables.get("critical_speeds") else { return };
+        let Some(order) = table.get("order") else { return };
+        let response = |speed: f64, o: f64| {
+            let k = orders.iter().position(|other| (other - o).abs() < 1e-6)?;
+            let next = speeds.partition_point(|w| rpm(*w) < speed).min(speeds.len() - 1);
+            let near = next.saturating_sub(1)..=next;
+            let torque =
+                near.flat_map(|j| rows[j].orders.get(k * links..(k + 1) * links).into_iter().flatten());
+            Some(torque.copied().fold(0.0, f64::max))
+        };
+        let within = |speed: f64| speed >= rpm(speeds[0]) && speed <= rpm(speeds[speeds.len() - 1]);
+        let all: Vec<(f64, f64)> = table
+            .axis
+            .values
+            .iter()
+            .zip(&order.values)
+            .filter(|(speed, _)| within(**speed))
+            .filter_map(|(speed, o)| Some((*speed, response(*speed, *o)?)))
+            .collect();
+        let largest = all.iter().fold(0.0, |top, r| f64::max(top, r.1));
+        let marks = self.out.figures.iter_mut().find(|f| f.title == draw::CAMPBELL).map(|f| &mut f.kind);
+        let Some(FigureKind::Lines(Lines { marks, .. })) = marks else { return };
+        for m in marks {
+            let Mark::Point { x, weight, label, .. } = m else { continue };
+            let Some((_, torque)) = all.iter().find(|r| r.0 == *x) else { continue };
+            *weight = if largest > 0.0 { torque / largest } else { 0.0 };
+            label.push_str(&format!(", {torque:.0} N m in the shaft that feels it most"));
+        }
     }
 
     /// Says at how many speeds the model found no periodic motion.

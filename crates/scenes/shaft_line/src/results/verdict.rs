@@ -192,7 +192,7 @@ fn summary(rows: &[Row], range: &Operating, names: &[String]) -> Vec<Note> {
     let first = if broken.is_empty() {
         Note::info("verdict", format!("verdict: all {all} limits are kept {over}"))
     } else {
-        Note::caution("verdict", format!("verdict: {} of {all} limits are not kept {over}", broken.len()))
+        Note::exceeded("verdict", format!("verdict: {} of {all} limits are not kept {over}", broken.len()))
     };
     let each = broken.iter().filter_map(|r| {
         let (k, worst) = r.worst()?;
@@ -200,7 +200,7 @@ fn summary(rows: &[Row], range: &Operating, names: &[String]) -> Vec<Note> {
         let also = r.steps.iter().flatten().filter(|j| j.used > 1.0).count() - 1;
         let also = if also > 0 { format!(" and in {also} more") } else { String::new() };
         let text = format!("beyond the limit: {}: {}{step}{also} ({})", r.label, worst.text, r.source);
-        Some(Note::caution(format!("verdict.{}", slug(&r.label)), text).amount("used", worst.used, "1"))
+        Some(Note::exceeded(format!("verdict.{}", slug(&r.label)), text).amount("used", worst.used, "1"))
     });
     std::iter::once(first).chain(each).collect()
 }

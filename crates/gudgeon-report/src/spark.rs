@@ -1,0 +1,95 @@
+//! Small pictures beside headline results: curves without axes, drawn as the page is written, so that they print and need no script.
+
+use std::fmt::Write;
+
+use gudgeon_core::result::Column;
+
+use crate::number::{significant, unit};
+use crate::page::esc;
+
+/// Width and height in the units of its drawing.
+const SIZE: (f64, f64) = (200.0, 44.0);
+/// Stretches of the abscissa; each is drawn by its minimum and maximum, so that no peak is lost.
+const STRETCHES: usize = 100;
+
+/// Curves over one axis with a common ordinate, which holds zero unless all values are far from it; none where there is nothing to draw.
+pub(crate) fn spark(columns: &[&Column]) -> Option<String> {
+    let finite = || columns.iter().flat_map(|c| &c.values).copied().filter(|v| v.is_finite());
+    let (low, high) = finite().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
+    if low >= high {
+        return None;
+    }
+    let (low, high) = (low.min(0.0), high.max(0.0));
+    let (w, h) = SIZE;
+    let y = |v: f64| 2.0 + (h - 4.0) * (high - v) / (high - low);
+    let mut out = format!(
+        "<svg class=\"spark\" viewBox=\"0 0 {w} {h}\" preserveAspectRatio=\"none\" role=\"img\" aria-label=\"{}\">",
+        esc(&told(columns))
+    );
+    let _ = write!(out, "<line x1=\"0\" x2=\"{w}\" y1=\"{0:.1}\" y2=\"{0:.1}\" class=\"zero\"/>", y(0.0));
+    for (k, c) in columns.iter().enumerate() {
+        let points: Vec<String> =
+            sampled(&c.values).iter().map(|(at, v)| format!("{:.1},{:.1}", w * at, y(*v))).collect();
+        let _ = write!(out, "<polyline points=\"{}\" style=\"stroke:var(--c{})\"/>", points.join(" "), k % 8);
+    }
+    out.push_str("</svg>");
+    Some(out)
+}
+
+/// What the picture shows, for those who do not see it.
+fn told(columns: &[&Column]) -> String {
+    let one = |c: &&Column| {
+        let v = c.values.iter().copied().filter(|v| v.is_finite());
+        let (low, high) = v.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
+        format!(
+            "{} from {} to {} {}",
+            c.name,
+            significant(Some(low), 3),
+            significant(Some(high), 3),
+            unit(&c.unit)
+        )
+    };
+    columns.iter().map(one).collect::<Vec<_>>().join("; ")
+}
+
+/// Place, 0 to 1, and value of what is drawn of some rows: all of a few, minimum and maximum of each stretch of many.
+fn sampled(values: &[f64]) -> Vec<(f64, f64)> {
+    let last = values.len().saturating_sub(1).max(1) as f64;
+    let place = |i: usize| i as f64 / last;
+    let known = |(i, v): (usize, &f64)| v.is_finite().then_some((place(i), *v));
+    if values.len() <= 2 * STRETCHES {
+        return values.iter().enumerate().filter_map(known).collect();
+    }
+    let each = values.len().div_ceil(STRETCHES);
+    let mut out = Vec::with_capacity(2 * STRETCHES);
+    for (k, part) in values.chunks(each).enumerate() {
+        let own = || part.iter().enumerate().filter(|(_, v)| v.is_finite());
+        let low = own().min_by(|a, b| a.1.total_cmp(b.1));
+        let high = own().max_by(|a, b| a.1.total_cmp(b.1));
+        let (Some(low), Some(high)) = (low, high) else { continue };
+        let (first, second) = if low.0 <= high.0 { (low, high) } else { (high, low) };
+        out.push((place(k * each + first.0), *first.1));
+        if second.0 != first.0 {
+            out.push((place(k * each + second.0), *second.1));
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn peaks_survive_and_nothing_is_drawn_of_a_constant() {
+        let mut values: Vec<f64> = (0..1441).map(|i| f64::from(i) * 1e-3).collect();
+        values[777] = 50.0;
+        assert!(sampled(&values).iter().any(|p| p.1 == 50.0));
+        let column = |values| Column { name: "a".into(), unit: "N".into(), values };
+        assert!(spark(&[&column(vec![1.0; 9])]).is_none());
+        assert!(spark(&[&column(vec![f64::NAN; 9])]).is_none());
+        assert!(spark(&[]).is_none());
+        let drawn = spark(&[&column(values)]).unwrap();
+        assert!(drawn.contains("a from 0 to 50.0 N") && !drawn.contains("NaN"));
+    }
+}
