@@ -64,6 +64,7 @@ fn drawings_and_bars_travel_with_the_page() {
     let dimension =
         |from, to, offset: f64, text: &str| Shape::Dimension { from, to, offset, text: text.into() };
     let drawing = FigureKind::Drawing {
+        apart: false,
         fixed: vec![
             path(0.0, Style::Cut),
             dimension([0.0, 30.0], [20.0, 30.0], 8.0, "20 mm"),

@@ -303,6 +303,9 @@ pub enum FigureKind {
     },
     /// Something drawn to scale, still or moving. Reads no table.
     Drawing {
+        /// Whether all frames are seen at once, side by side.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        apart: bool,
         /// What all frames show.
         fixed: Vec<Shape>,
         /// What changes; several frames are shown one after the other.
@@ -314,6 +317,18 @@ pub enum FigureKind {
         unit: String,
         /// The bars, from above.
         bars: Vec<Bar>,
+    },
+    /// Numbers in rows and columns. Reads no table.
+    Table {
+        /// What stands above the labels of the rows.
+        rows_are: String,
+        /// Name and unit of each column.
+        columns: Vec<(String, String)>,
+        /// Label of each row and its numbers; none where there is nothing to tell.
+        rows: Vec<(String, Vec<Option<f64>>)>,
+        /// Numbers beyond it are marked.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        limit: Option<f64>,
     },
     /// Labelled ranges: the swings of a tornado plot around a middle, or values with their intervals. Reads no table.
     Ranges {
@@ -333,6 +348,9 @@ pub struct Lines {
     pub x: String,
     /// Label and column of each curve. Curves share a unit.
     pub lines: Vec<(String, String)>,
+    /// Column along the abscissa of each curve, where every curve has its own; `x` then names what they are.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub own_x: Vec<String>,
     /// Logarithmic abscissa.
     pub log_x: bool,
     /// Logarithmic ordinate.

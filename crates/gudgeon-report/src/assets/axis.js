@@ -41,7 +41,7 @@ function signedLogScale(lo, hi, a, b) {
 }
 
 // The ordinate of a chart for the values `e` in the mode "linear", "log", "±log" or "difference", between the pixels `bottom` and `top`.
-function ordinate(mode, e, { zero, top: end, bottom, top }) {
+function ordinate(mode, e, { zero, end, bottom, top }) {
   let { lo, hi } = e;
   if (end !== undefined) { hi = end; lo = Math.min(lo, 0); }
   if (mode === "log" && hi > 0) {

@@ -19,6 +19,8 @@ class Chart {
     this.logX = spec.logX;
     this.hidden = new Set();
     this.view = null;
+    // A closed curve has no one value at an abscissa.
+    this.readable = lines.every((l) => { for (let i = 1; i < l.x.length; i++) if (l.x[i] < l.x[i - 1]) return false; return true; });
     this.svg = s("svg", { role: "img", tabindex: "0", "aria-label": this.told() });
     const buttons = this.toggles();
     this.legend = h("div", { class: "legend" });
@@ -193,7 +195,7 @@ class Chart {
     const inside = (v) => v * f >= lo - 1e-9 * Math.abs(lo) && v * f <= hi + 1e-9 * Math.abs(hi);
     const limits = (spec.marks || []).filter((m) => m.limit).map((m) => [[m.limit.y], this.uy.f]);
     const e = extent([...this.visible().map((l) => [this.shown(l), this.uy.f, l.x]), ...limits], inside);
-    const y = (this.y = ordinate(this.mode, e, { zero: spec.zero === undefined && !spec.cycle ? "near" : spec.zero, top: spec.top === undefined ? undefined : spec.top * this.uy.f, bottom, top: T }));
+    const y = (this.y = ordinate(this.mode, e, { zero: spec.zero === undefined && !spec.cycle ? "near" : spec.zero, end: spec.top === undefined ? undefined : spec.top * this.uy.f, bottom, top: T }));
     // Zero is labelled first, then the largest: small ticks give way where there is no room.
     const taken = [];
     for (const t of [...y.ticks].sort((a, b) => (a === 0 ? -1 : b === 0 ? 1 : Math.abs(b) - Math.abs(a)))) {
@@ -263,7 +265,7 @@ class Chart {
   // Curves that lie on each other get marks of their own, at places of their own.
   tell(y) {
     const all = this.visible();
-    if (all.length < 2 || all.length > 8 || this.spec.scatter) return;
+    if (all.length < 2 || all.length > 8 || this.spec.scatter || !this.readable) return;
     const N = 60, at0 = all.map((l) => Array.from({ length: N }, (_, k) => {
       const px = this.L + ((k + 0.5) / N) * (this.W - this.L - this.R), v = this.x.back(px) / this.ux.f;
       if (v < l.x[0] || v > l.x[l.x.length - 1]) return NaN;
@@ -302,6 +304,7 @@ class Chart {
   read(t) {
     const { spec } = this, [lo, hi] = this.range(), seen = t * this.ux.f >= lo && t * this.ux.f <= hi, px = this.x.to(t * this.ux.f);
     set(this.cursor, seen ? { x1: px, x2: px, visibility: "visible" } : { visibility: "hidden" });
+    if (!this.readable) return;
     spec.lines.forEach((line, i) => {
       const v = at(line.x, this.shown(line), t) * this.uy.f, py = this.Y[i] ? this.Y[i](v) : NaN;
       const out = !spec.cycle && (t < line.x[0] || t > line.x[line.x.length - 1]);

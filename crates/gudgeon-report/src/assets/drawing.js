@@ -1,6 +1,7 @@
 // Figures that read no table: drawings to scale, still or moving, and bars.
 function drawing(host, spec) {
-  const { fixed, frames } = spec, all = [...fixed, ...frames.flatMap((f) => f.shapes)];
+  if (spec.apart) { apart(host, spec); return; }
+  const fixed = spec.all ? spec.fixed.filter((o) => !o.text) : spec.fixed, { frames } = spec, all = [...fixed, ...(spec.all || frames).flatMap((f) => f.shapes)];
   let x0 = Infinity, x1 = -Infinity, y0 = Infinity, y1 = -Infinity;
   const see = (x, y) => { x0 = Math.min(x0, x); x1 = Math.max(x1, x); y0 = Math.min(y0, y); y1 = Math.max(y1, y); };
   for (const o of all) {
@@ -11,7 +12,7 @@ function drawing(host, spec) {
   }
   if (!(x1 > x0) && !(y1 > y0)) return;
   // To scale: the same pixels a length in both directions, as wide as the page or as high as is pleasant.
-  const M = 34, W = 620, k = Math.min((W - 2 * M) / (x1 - x0 || 1e-300), 420 / (y1 - y0 || 1e-300));
+  const M = 34, W = 620, k = Math.min((W - 2 * M) / (x1 - x0 || 1e-300), (spec.all ? 260 : 420) / (y1 - y0 || 1e-300));
   const H = k * (y1 - y0) + 2 * M, left = (W - k * (x1 - x0)) / 2;
   const X = (x) => (left + k * (x - x0)).toFixed(2), Y = (y) => (H - M - k * (y - y0)).toFixed(2);
   const svg = s("svg", { viewBox: `0 0 ${W} ${H.toFixed(0)}`, role: "img", "aria-label": spec.title + (spec.hint ? ": " + spec.hint : ""), class: "drawing" });
@@ -69,6 +70,24 @@ function drawing(host, spec) {
     slider.addEventListener("input", () => go(+slider.value));
     box.append(h("div", { class: "frames" }, play, slider, label));
   } else if (frames.length && frames[0].label) box.append(h("p", { class: "hint" }, frames[0].label));
+}
+
+// All frames of a drawing at once, on one scale.
+function apart(host, spec) {
+  const box = h("div", { class: "apart" });
+  for (const f of spec.frames) drawing(box, { title: f.label, fixed: spec.fixed, frames: [{ shapes: f.shapes }], all: spec.frames });
+  host.append(h("figure", { class: "plot wide" }, h("div", { class: "head" }, h("h3", {}, spec.title)), spec.hint ? h("p", { class: "hint" }, spec.hint) : null, box));
+}
+
+// Numbers in rows and columns; those beyond the limit are marked.
+function table(host, spec) {
+  const unit = (name, u) => { const d = display(u, 0); return d.f === 1 ? d.label : u; };
+  const head = h("tr", {}, h("th", { scope: "col" }, spec.rows_are), ...spec.columns.map(([name, u]) => h("th", { scope: "col", class: "num" }, name, u ? h("span", { class: "unit" }, " " + unit(name, u)) : "")));
+  const cell = (v) => h("td", { class: "num" + (isNumber(spec.limit) && v > spec.limit * (1 + 1e-9) ? " beyond" : "") }, isNumber(v) ? (Number.isInteger(v) && Math.abs(v) < 1e6 ? String(v).replace("-", "−") : sig(v, 4)) : "–");
+  const rows = spec.rows.map(([label, values]) => h("tr", {}, h("th", { scope: "row" }, label), ...values.map(cell)));
+  const csv = () => saveFile(fileName(spec.title, "csv"), "text/csv", [[[spec.rows_are, ...spec.columns.map(([n, u]) => `${n}[${u}]`)], ...spec.rows.map(([l, v]) => [l, ...v.map((x) => (isNumber(x) ? x : ""))])].map((r) => r.map((c) => (/[",]/.test(c) ? `"${String(c).replace(/"/g, '""')}"` : c)).join(",")).join("\n") + "\n"]);
+  const top = h("div", { class: "head" }, h("h3", {}, spec.title), h("div", { class: "tools" }, h("button", { type: "button", onclick: csv }, "CSV")));
+  host.append(h("figure", { class: "plot numbers" + (spec.columns.length > 5 ? " wide" : "") }, top, spec.hint ? h("p", { class: "hint" }, spec.hint) : null, h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": spec.title }, h("table", { class: "plain" }, h("thead", {}, head), h("tbody", {}, ...rows)))));
 }
 
 // A figure that holds all it shows: title, explanation, drawing.

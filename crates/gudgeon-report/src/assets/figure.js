@@ -9,8 +9,8 @@
     const table = DATA.tables[f.table], x = table && column(table, k.x);
     if (!x) return;
     const pair = ([label, name], i) => {
-      const c = column(table, name);
-      return c && { label, title: name, x: arrays[x.at], y: arrays[c.at], unit: c.unit, color: color(i), dash: i > 7 ? "6 4" : "" };
+      const c = column(table, name), own = k.own_x && column(table, k.own_x[i]);
+      return c && { label, title: name, x: arrays[(own || x).at], y: arrays[c.at], unit: c.unit, color: color(i), dash: i > 7 ? "6 4" : "" };
     };
     const all = k.lines.map(pair).filter(Boolean);
     if (!all.length) return;
@@ -29,7 +29,7 @@
   }
   function draw(f, where, wide) {
     const [[kind, k]] = Object.entries(f.kind), spec = { title: capital(f.title), hint: f.hint, wide, ...k };
-    ({ lines: () => lines(f, k, where, wide), map: () => map2(f, k, where), drawing: () => drawing(where, spec), bars: () => bars(where, spec), ranges: () => ranges(where, spec) })[kind]();
+    ({ lines: () => lines(f, k, where, wide), map: () => map2(f, k, where), drawing: () => drawing(where, spec), bars: () => bars(where, spec), ranges: () => ranges(where, spec), table: () => table(where, spec) })[kind]();
   }
   // Figures that hold nothing to draw are left out before one is chosen to lead.
   const all = (DATA.figures || []).filter((f) => !(f.kind.lines || f.kind.map) || DATA.tables[f.table]);
@@ -60,7 +60,7 @@
   }
 
   // The contents at the side name the figures as well.
-  for (const f of document.querySelectorAll("main figure.plot h3, main .chart h3")) {
+  for (const f of document.querySelectorAll("main section > * > figure.plot > .head h3, main .chart h3")) {
     const section = f.closest("section"), link = section && document.querySelector(`nav.contents a[href="#${section.id}"]`);
     if (!link || section.id === "overview") continue;
     f.id = f.id || "f" + ++charts;

@@ -15,6 +15,8 @@ const FRAME: f64 = 5.0;
 const SHOWN: f64 = 0.35;
 /// Depths at which the outline of the skirt is drawn, less one.
 const OUTLINE: usize = 16;
+/// Half the width of the crown over the radius.
+const LAND: f64 = 0.97;
 /// Part of the radius that the highest pressure takes up beside the liner.
 const PRESSURE: f64 = 0.9;
 
@@ -112,9 +114,8 @@ struct Picture<'a> {
     /// Upper and lower end of the liner.
     head: f64,
     end: f64,
-    /// Height of the crown above the upper edge of the skirt, negative as a depth, and half its width.
+    /// Height of the crown above the upper edge of the skirt, negative as a depth.
     up: f64,
-    land: f64,
     /// Highest film pressure \[Pa\].
     highest: f64,
 }
@@ -128,12 +129,12 @@ fn piston(a: &Assembly, record: &Record) -> Figure {
     Figure {
         title: PISTON.into(),
         hint: format!(
-            "displacement, tilt, clearance and profile magnified {:.0} times; film pressure along the middle of both sides, {:.1} bar at most",
+            "piston to scale, its skirt, profile and clearance magnified {:.0} times; film pressure along the middle of both sides, {:.1} bar at most",
             p.magnified,
             1e-5 * p.highest
         ),
         table: String::new(),
-        kind: FigureKind::Drawing { fixed: p.fixed(), frames },
+        kind: FigureKind::Drawing { apart: false, fixed: p.fixed(), frames },
     }
 }
 
@@ -145,7 +146,7 @@ impl<'a> Picture<'a> {
         let wall = radius + SHOWN * radius;
         let (top, stroke) = (a.kinematics.y_tdc(), a.kinematics.stroke());
         let crown = body.pin.max(0.0) + 0.5 * radius;
-        let mut p = Self {
+        Self {
             a,
             record,
             radius,
@@ -155,15 +156,8 @@ impl<'a> Picture<'a> {
             head: top + crown + 0.1 * radius,
             end: top - stroke - (body.length - body.pin) - 0.1 * radius,
             up: body.pin - crown,
-            land: 0.0,
             highest: record.maps.iter().flatten().flat_map(|m| &m.p).fold(1.0_f64, |m, p| m.max(*p)),
-        };
-        // The crown is much farther from the liner than the skirt: as wide as leaves it free at this magnification.
-        let farthest = (0..record.rows().len())
-            .map(|k| p.moved(k, p.up).abs().max(p.moved(k, 0.0).abs()))
-            .fold(0.0, f64::max);
-        p.land = (wall - farthest - 0.05 * radius).clamp(0.4 * radius, 0.985 * radius);
-        p
+        }
     }
 
     /// Displacement at a depth below the upper edge of the skirt in row `k`, magnified.
@@ -175,9 +169,8 @@ impl<'a> Picture<'a> {
     /// The liner, the way of the crank pin, and what is written on them.
     fn fixed(&self) -> Vec<Shape> {
         let Self { radius, wall, thick, head, end, .. } = *self;
-        let crank = &self.a.piston.crank;
         let mut fixed =
-            vec![line(vec![[0.0, head + 0.2 * radius], [0.0, -1.2 * crank.radius]], false, Style::Axis)];
+            vec![line(vec![[0.0, head + 0.2 * radius], [0.0, end - 0.3 * radius]], false, Style::Axis)];
         for side in [-1.0, 1.0] {
             let x = side * wall;
             fixed.push(line(
@@ -188,7 +181,6 @@ impl<'a> Picture<'a> {
         }
         fixed.push(text([-wall - thick, head + 0.2 * radius], "thrust side".into(), Anchor::Middle));
         fixed.push(text([wall + thick, head + 0.2 * radius], "anti-thrust side".into(), Anchor::Middle));
-        fixed.push(Shape::Circle { centre: self.centre(), radius: crank.radius, style: Style::Thin });
         fixed.push(Shape::Dimension {
             from: [-wall, end],
             to: [-radius, end],
@@ -212,22 +204,26 @@ impl<'a> Picture<'a> {
         let theta = self.record.rows()[k];
         let y = self.a.kinematics.motion(theta).y;
         let height = |depth: f64| y + body.pin - depth;
+        // The body stands still and to scale: what moves is its skirt in the clearance, magnified.
+        let fixed = |across: f64, depth: f64| [across, height(depth)];
         let at = |across: f64, depth: f64| [across + self.moved(k, depth), height(depth)];
         let depth = |i: usize| body.length * i as f64 / OUTLINE as f64;
         // How far the skirt stands back.
         let relief = |depth: f64| self.magnified * self.a.profile.depth(depth, 0.0);
-        let (land, up) = (self.land, self.up);
-        let mut outline = vec![at(-land, 0.0), at(-land, up), at(land, up), at(land, 0.0)];
+        let (land, up) = (LAND * radius, self.up);
+        let mut outline = vec![fixed(-land, 0.0), fixed(-land, up), fixed(land, up), fixed(land, 0.0)];
         outline.extend((0..=OUTLINE).map(|i| at(radius - relief(depth(i)), depth(i))));
         outline.extend((0..=OUTLINE).rev().map(|i| at(relief(depth(i)) - radius, depth(i))));
         let mut shapes = vec![line(outline, true, Style::Metal)];
-        let pin = at(-crank.pin_offset, body.pin);
+        let pin = fixed(-crank.pin_offset, body.pin);
         let (sin, cos) = theta.sin_cos();
         let centre = self.centre();
         let crank_pin = [centre[0] + crank.radius * sin, crank.radius * cos];
-        shapes.push(line(vec![pin, crank_pin, centre], false, Style::Outline));
+        // The rod as far as the liner reaches.
+        let part = ((pin[1] - self.end) / (pin[1] - crank_pin[1])).min(1.0);
+        let cut = [pin[0] + part * (crank_pin[0] - pin[0]), pin[1] + part * (crank_pin[1] - pin[1])];
+        shapes.push(line(vec![pin, cut], false, Style::Outline));
         shapes.push(Shape::Circle { centre: pin, radius: 0.22 * radius, style: Style::Hollow });
-        shapes.push(Shape::Circle { centre: crank_pin, radius: 0.1 * radius, style: Style::Hollow });
         let deg = tidy(theta.to_degrees());
         self.pressures(deg, height, &mut shapes);
         let (et, eb) = (self.record.column("skirt.e_top"), self.record.column("skirt.e_bottom"));

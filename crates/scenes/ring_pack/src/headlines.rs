@@ -24,15 +24,18 @@ pub fn headlines(names: &Names) -> Vec<Headline> {
     let lands = names.lands.iter().enumerate().skip(1);
     let between = lands.map(|(i, name)| (name.clone(), format!("land{}.p_max", i + 1)));
     let pressures = (2..=n).map(|k| format!("land{k}.p")).collect();
+    let of = |label: &str, name: &str| (label.to_owned(), name.to_owned());
     vec![
         Headline::one("Blow-by", "blow_by").over(&["blow_by.rate"]),
-        Headline::one("Friction mean effective pressure", "fmep"),
+        Headline::each(
+            "Friction mean effective pressure",
+            [of("all", "fmep"), of("contact", "fmep_boundary")],
+        ),
+        Headline::one("Oil upwards, a lower limit of consumption", "oil_up"),
+        Headline::one("Highest cylinder pressure", "cylinder.p_max").over(&["cylinder.p"]),
         each("Friction power", "friction_power", "friction_power"),
         each("Thinnest film", "h_min", "h_min"),
         Headline { curves: pressures, ..Headline::each("Highest pressure between the rings", between) },
-        Headline::one("Oil upwards, a lower limit of consumption", "oil_up"),
         each("Part of the cycle off the lower flank", "lifted_share", "position"),
-        Headline::one("Friction from solid contact", "fmep_boundary"),
-        Headline::one("Highest cylinder pressure", "cylinder.p_max").over(&["cylinder.p"]),
     ]
 }

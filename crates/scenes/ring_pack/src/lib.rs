@@ -12,6 +12,7 @@ pub mod contact_line;
 pub mod conventions;
 pub mod degree_march;
 pub mod distortion;
+mod draw;
 mod end_gap;
 mod error;
 mod evaporation;

@@ -13,7 +13,7 @@ use super::rails::TakenApart;
 use super::solve::{solve, starts, wanted};
 use super::solver::RingPackSolverSpec;
 use super::used::models_in_use;
-use super::{assemble, film_strokes, geometry, legal, meter, state_names};
+use super::{assemble, draw, film_strokes, geometry, legal, meter, state_names};
 use crate::case::RingPackCase;
 use gudgeon_case::{Loaded, Refinement};
 use gudgeon_scene::{
@@ -73,8 +73,11 @@ impl SceneCase for RingPackCase {
         if pack.plan.film {
             let films = film_strokes::table(&solved.cycle.measures, pack.period());
             result.tables.insert("films".into(), films);
-            let names: Vec<String> = pack.names.rings.iter().map(|(name, _)| name.clone()).collect();
-            result.figures.push(film_strokes::figure(&solved.cycle.measures, pack.period(), &names));
+            result.figures.push(film_strokes::figure(
+                &solved.cycle.measures,
+                pack.period(),
+                &ring_names(&pack),
+            ));
         }
         if let Some(liner) = solved.liner {
             let lines =
@@ -93,7 +96,9 @@ impl SceneCase for RingPackCase {
             result.tables.insert("liner".into(), liner);
         }
         let stroke = case.engine.crank().map_err(|e| RunError::refused(&[e]))?.radius * 2.0;
-        result.section = Some(geometry::section(&bodies, &pack.geo, stroke));
+        let section = geometry::section(&bodies, &pack.geo, stroke);
+        draw::figures(&mut result, &ring_names(&pack), section.bore_radius);
+        result.section = Some(section);
         result.seconds.insert("solve".into(), solved.seconds);
         Ok(result)
     }
@@ -156,6 +161,11 @@ impl SceneCase for RingPackCase {
             ..WorkPrecision::default()
         })
     }
+}
+
+/// What the rings are called, crown first.
+fn ring_names(pack: &Pack) -> Vec<String> {
+    pack.names.rings.iter().map(|(name, _)| name.clone()).collect()
 }
 
 /// The case with three-piece rings taken apart.

@@ -96,13 +96,13 @@ pub fn modes(line: &Line, modes: &[&Mode]) -> Figure {
     let branched = Tree::new(line).is_ok_and(|t| !t.chain);
     Figure {
         title: "Mode shapes".into(),
-        hint: if branched {
-            "angle of each inertia as seen from the reference shaft, branches below the main line; circles on the shaft are places at rest".into()
-        } else {
-            "angle of each inertia; circles on the shaft are places at rest".into()
-        },
+        hint: format!(
+            "angle of each inertia{}, of {}; circles on the shaft are places at rest",
+            if branched { " as seen from the reference shaft, branches below the main line" } else { "" },
+            line.nodes.iter().map(|n| n.name.as_str()).collect::<Vec<_>>().join(", ")
+        ),
         table: String::new(),
-        kind: FigureKind::Drawing { fixed, frames },
+        kind: FigureKind::Drawing { apart: true, fixed, frames },
     }
 }
 

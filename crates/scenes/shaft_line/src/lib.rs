@@ -19,6 +19,7 @@ pub mod plan;
 mod results;
 mod start;
 mod steps;
+mod tables;
 pub mod tors;
 mod verdict;
 
@@ -162,6 +163,7 @@ fn run(
     }
     progress(Progress { phase: "response".into(), fraction: 0.1 })?;
     run.response_and_verdict(progress)?;
+    tables::figures(&a.line, &mut result);
     result.headlines = headlines::headlines(&a.line, &result);
     result.lead = draw::CAMPBELL.into();
     result.seconds.insert("solve".into(), begin.elapsed().as_secs_f64());
@@ -332,7 +334,7 @@ impl Run<'_> {
             return;
         };
         let text = format!(
-            "{what}: with it ({better}) the torque amplitude of {} at the mean speed is {:.4e} N m instead of {:.4e} N m, {name} has {:+.2} % there",
+            "{what}: with it ({better}) the torque amplitude of {} at the mean speed is {:.0} N m instead of {:.0} N m, {name} has {:+.2} % there",
             a.line.links[l].name,
             more[l],
             less[l],

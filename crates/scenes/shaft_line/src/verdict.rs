@@ -101,6 +101,16 @@ pub struct Forced {
     pub source: String,
 }
 
+/// Five digits without a power of ten, where that is readable.
+fn plain(value: f64) -> String {
+    let size = value.abs();
+    if size >= 1e7 || (size > 0.0 && size < 1e-3) {
+        return format!("{value:.4e}");
+    }
+    let decimals = if size > 0.0 { (4 - size.log10().floor() as i32).clamp(0, 6) as usize } else { 0 };
+    format!("{value:.decimals$}")
+}
+
 impl Forced {
     /// `stress in crank 4-5`.
     pub fn label(&self) -> String {
@@ -118,9 +128,9 @@ impl Forced {
     fn text(&self, value: f64) -> String {
         let limit = self.admitted;
         match self.quantity {
-            Quantity::Torque | Quantity::Peak => format!("{value:.4e} N m of {limit:.4e} N m"),
-            Quantity::Stress => format!("{:.4} MPa of {:.4} MPa", value / 1e6, limit / 1e6),
-            Quantity::Heat => format!("{value:.4e} W of {limit:.4e} W"),
+            Quantity::Torque | Quantity::Peak => format!("{} N m of {} N m", plain(value), plain(limit)),
+            Quantity::Stress => format!("{} MPa of {} MPa", plain(value / 1e6), plain(limit / 1e6)),
+            Quantity::Heat => format!("{} W of {} W", plain(value), plain(limit)),
             Quantity::SpeedFluctuation => format!("{value:.6} of {limit:.6}"),
         }
     }

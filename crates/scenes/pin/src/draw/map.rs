@@ -154,5 +154,5 @@ pub fn map(d: &Design<'_>, size: &PinSize, out: &mut RunResult) {
         "at an outer diameter of {:.3} mm: filled, what all limits leave; lines, the greatest bore that each admits; dashed, equal mass of the pin, less relief",
         1e3 * size.outer
     );
-    figure(out, "Design map", hint, FigureKind::Drawing { fixed, frames: Vec::new() });
+    figure(out, "Design map", hint, FigureKind::Drawing { apart: false, fixed, frames: Vec::new() });
 }

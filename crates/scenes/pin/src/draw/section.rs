@@ -199,5 +199,5 @@ pub fn section(case: &PinCase, s: &Setup, size: &PinSize, out: &mut RunResult) {
         1e3 * deformed.ovalisation,
         deformed.scale
     );
-    figure(out, "Pin, bosses and small end", hint, FigureKind::Drawing { fixed, frames });
+    figure(out, "Pin, bosses and small end", hint, FigureKind::Drawing { apart: false, fixed, frames });
 }

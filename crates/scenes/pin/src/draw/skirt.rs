@@ -39,7 +39,7 @@ pub fn skirt(bore: f64, height: f64, ovality: Option<f64>, out: &mut RunResult) 
         let scale = oval(bore, half, h, ov, &mut fixed);
         hint += &format!("; the ovality of {:.1} um enlarged {scale:.0} times", 1e6 * ov);
     }
-    figure(out, "Skirt", hint, FigureKind::Drawing { fixed, frames: Vec::new() });
+    figure(out, "Skirt", hint, FigureKind::Drawing { apart: false, fixed, frames: Vec::new() });
 }
 
 /// The oval beside the barrel; returns its scale.

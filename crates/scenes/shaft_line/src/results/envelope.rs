@@ -254,7 +254,7 @@ fn top_of(steps: &mut [Step<'_, '_>], name: &str) -> Option<Top> {
 }
 
 /// The limit on the amplitude in a shaft, as drawn.
-fn limit_of(limits: &[Forced], name: &str, stressed: bool) -> Option<f64> {
+pub(super) fn limit_of(limits: &[Forced], name: &str, stressed: bool) -> Option<f64> {
     let (quantity, factor) = if stressed { (Quantity::Stress, 1e-6) } else { (Quantity::Torque, 1.0) };
     let found =
         limits.iter().filter(|l| l.subject == name && l.quantity == quantity).map(|l| factor * l.admitted);

@@ -8,11 +8,13 @@ use gudgeon_core::result::{Note, Series};
 use gudgeon_torsion::critical::CriticalSpeed;
 use gudgeon_torsion::steady::Steady;
 
-use super::{MAX_DRAWN, Results, column};
+use super::{Results, column};
 use crate::assemble::Assembled;
 use crate::verdict::{MODES, Operating, separation};
 use crate::{draw, rpm};
 
+/// Maximum number of mode shapes that are drawn.
+const MAX_SHAPES: usize = 6;
 /// Intervals of the diagram, and of the search for critical speeds where they move with the speed.
 const GRID: usize = 60;
 
@@ -91,7 +93,7 @@ impl Results<'_> {
         );
         self.out.tables.insert("modes".into(), table);
         if !elastic.is_empty() {
-            self.out.figures.push(draw::modes(line, &elastic[..elastic.len().min(MAX_DRAWN)]));
+            self.out.figures.push(draw::modes(line, &elastic[..elastic.len().min(MAX_SHAPES)]));
         }
     }
 

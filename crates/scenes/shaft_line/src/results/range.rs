@@ -2,12 +2,13 @@
 
 use gudgeon_core::EvalError;
 use gudgeon_core::file::Files;
-use gudgeon_core::result::{FigureKind, Lines, Mark, Note, Series};
+use gudgeon_core::result::{Figure, FigureKind, Lines, Mark, Note, Series};
 
+use super::envelope::limit_of;
 use super::{MAX_DRAWN, Results, column};
 use crate::assemble::{Assembled, throws_alone};
 use crate::machine::{Machine, Point, Sought};
-use crate::verdict::Operating;
+use crate::verdict::{Operating, forced};
 use crate::{draw, rpm, told};
 
 /// Orders drawn of the shaft that vibrates most.
@@ -102,9 +103,45 @@ impl Results<'_> {
                 false,
             );
         }
+        self.shafts_over_speed(a, &rows, &mut table);
         self.out.tables.insert("speed_range".into(), table);
         self.answered(machine, "speed_range");
         Ok(())
+    }
+
+    /// Stress over the speed of each shaft that has one, torque of the others that have a limit, with limit and operating range.
+    fn shafts_over_speed(&mut self, a: &Assembled, rows: &[Point], table: &mut Series) {
+        let limits = forced(self.case, a);
+        let range = Operating::new(self.case);
+        for (l, link) in a.line.links.iter().enumerate().take(MAX_DRAWN) {
+            let stress = a.stress[l];
+            let limit = limit_of(&limits, &link.name, stress.is_some());
+            if stress.is_none() && limit.is_none() {
+                continue;
+            }
+            let (what, unit, factor) = match stress {
+                Some(s) => ("stress", "MPa", s / 1e6),
+                None => ("torque", "N m", 1.0),
+            };
+            let name = format!("shaft{}.{what}_amplitude", l + 1);
+            if table.get(&name).is_none() {
+                let values = rows.iter().map(|p| factor * p.links[l].amplitude).collect();
+                table.columns.push(column(name.clone(), unit, values));
+            }
+            let mut marks = vec![Mark::At { x: rpm(self.case.speed.si()), label: "mean speed".into() }];
+            if range.is_wide() {
+                let (from, to) = (rpm(range.from), rpm(range.to));
+                marks.push(Mark::Band { from, to, kept_free: false, label: "operating range".into() });
+            }
+            marks.extend(limit.map(|y| Mark::Limit { y, label: "limit".into() }));
+            let lines = vec![(format!("vibratory {what}"), name)];
+            self.out.figures.push(Figure {
+                title: format!("{} over the speed: {what}", link.name),
+                hint: "half of peak to peak".into(),
+                table: "speed_range".into(),
+                kind: FigureKind::Lines(Lines { x: "speed".into(), lines, marks, ..Lines::default() }),
+            });
+        }
     }
 
     /// Marks critical speeds in the Campbell diagram by the torque that their order makes there in any shaft, and says it in their labels.
@@ -120,20 +157,29 @@ impl Results<'_> {
             Some(torque.copied().fold(0.0, f64::max))
         };
         let within = |speed: f64| speed >= rpm(speeds[0]) && speed <= rpm(speeds[speeds.len() - 1]);
-        let all: Vec<(f64, f64)> = table
+        let order_at = order.values.clone();
+        let all: Vec<(f64, f64, f64)> = table
             .axis
             .values
             .iter()
             .zip(&order.values)
             .filter(|(speed, _)| within(**speed))
-            .filter_map(|(speed, o)| Some((*speed, response(*speed, *o)?)))
+            .filter_map(|(speed, o)| Some((*speed, response(*speed, *o)?, *o)))
             .collect();
         let largest = all.iter().fold(0.0, |top, r| f64::max(top, r.1));
+        if let Some(table) = self.out.tables.get_mut("critical_speeds") {
+            let torque = |speed: &f64, k: usize| {
+                let own = order_at.get(k).and_then(|o| all.iter().find(|r| r.0 == *speed && r.2 == *o));
+                own.map_or(0.0, |r| r.1)
+            };
+            let column_of = table.axis.values.iter().enumerate().map(|(k, speed)| torque(speed, k)).collect();
+            table.columns.push(column("torque_amplitude", "N m", column_of));
+        }
         let marks = self.out.figures.iter_mut().find(|f| f.title == draw::CAMPBELL).map(|f| &mut f.kind);
         let Some(FigureKind::Lines(Lines { marks, .. })) = marks else { return };
         for m in marks {
             let Mark::Point { x, weight, label, .. } = m else { continue };
-            let Some((_, torque)) = all.iter().find(|r| r.0 == *x) else { continue };
+            let Some((_, torque, _)) = all.iter().find(|r| r.0 == *x) else { continue };
             *weight = if largest > 0.0 { torque / largest } else { 0.0 };
             label.push_str(&format!(", {torque:.0} N m in the shaft that feels it most"));
         }
