@@ -191,17 +191,18 @@ fn page(file: &File) -> String {
     let mut body = String::new();
     let _ = write!(
         body,
-        "<header><h1>{}</h1><p class=\"meta\"><code>{}</code> · run time and work against error</p></header>\n<main>\n",
+        "<section id=\"overview\"><header><h1>{}</h1><p class=\"meta\"><code>{}</code> · run time and work against error</p></header>\n",
         esc(heading),
         esc(&file.case)
     );
     if !file.findings.is_empty() {
-        body.push_str("<section id=\"findings\"><h2>Findings</h2><ul class=\"findings\">");
+        body.push_str("<h2>Findings</h2><ul class=\"findings\">");
         for f in &file.findings {
             let _ = write!(body, "<li>{}</li>", page::prose(f));
         }
-        body.push_str("</ul></section>\n");
+        body.push_str("</ul>");
     }
+    body.push_str("</section>\n");
     let errors = file.names(|p| &p.errors);
     if !errors.is_empty() {
         body.push_str(
@@ -251,13 +252,22 @@ fn page(file: &File) -> String {
         body.push_str("</tbody></table></section>\n");
     }
     points_table(&mut body, file, &errors);
-    body.push_str("</main>\n");
-    body.push_str(&page::footer(""));
+    let body = page::body(&CONTENTS, &body, "");
     let data = json!({
         "points": file.points, "errors": errors, "descriptions": file.descriptions, "trusted_to": file.trusted_to
     });
     page::document(Kind::Bench, heading, &body, &data)
 }
+
+/// Sections in their order, with their names in the contents at the side.
+const CONTENTS: [(&str, &str); 6] = [
+    ("overview", "Findings"),
+    ("charts", "Run time and work against error"),
+    ("asked", "Achieved and asked errors"),
+    ("reference", "Reference"),
+    ("failures", "Failures"),
+    ("points", "All points"),
+];
 
 fn points_table(out: &mut String, file: &File, errors: &[&str]) {
     let work = file.names(|p| &p.work);

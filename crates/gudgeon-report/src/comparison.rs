@@ -3,16 +3,19 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use gudgeon_core::result::{Column, ComparedCase, Comparison, Series, ShareTable, Variant, short_value};
+use gudgeon_core::result::{
+    Assessment, Column, ComparedCase, Comparison, Figure, Grade, Series, ShareTable, Variant, short_value,
+};
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
 use crate::folder::Folder;
 use crate::number::{capital, certain, count, percent, round_trip, significant, unit};
+use crate::over_values::Point;
 use crate::page::{self, Arrays, Kind, esc};
-use crate::summary::{ModelEntry, Summary};
-use crate::{REPORT, ReportError, shares, table};
+use crate::summary::{ModelEntry, ResultValue, Summary};
+use crate::{REPORT, ReportError, over_values, overview, shares, table};
 
 pub(crate) const COMPARISON: &str = "comparison.json";
 const TABLE: &str = "comparison.csv";
@@ -273,24 +276,32 @@ fn badge(n: usize) -> String {
 fn page(file: &File, series: &[(usize, &Series)]) -> String {
     let heading = if file.title.trim().is_empty() { &file.case } else { &file.title };
     let ran: Vec<&VariantEntry> = file.variants.iter().filter(|v| v.run.is_some()).collect();
-    let mut body = String::new();
-    page_header(&mut body, file, heading);
-    refused_variants(&mut body, file);
-    if ran.is_empty() {
-        body.push_str("<section><h2>Results</h2><p class=\"hint\">No variant ran.</p></section>\n");
-    } else {
-        shares::section(&mut body, &file.shares);
-        comparison_tables(&mut body, file, &ran);
-    }
-    notes_of_runs(&mut body, &ran);
     let drawn = drawn(file, series);
-    curves(&mut body, &drawn, series.len());
-    models_of_runs(&mut body, &ran);
-    body.push_str("</main>\n");
+    let over_values = over_values(file, &ran);
+    let mut main = String::new();
+    overview(&mut main, file, heading, &ran);
+    if ran.is_empty() {
+        main.push_str(
+            "<section id=\"results\"><h2>Results</h2><p class=\"hint\">No variant ran.</p></section>\n",
+        );
+    } else {
+        shares::section(&mut main, &file.shares);
+        if !over_values.is_empty() {
+            main.push_str("<section id=\"values\"><h2>Over the values</h2><div id=\"figures\" class=\"figures\"></div></section>\n");
+        }
+        comparison_tables(&mut main, file, &ran);
+    }
+    curves(&mut main, &drawn, series.len());
+    refused_variants(&mut main, file);
+    notes_of_runs(&mut main, &ran);
+    models_of_runs(&mut main, &ran);
     let version = ran.first().and_then(|v| v.run.as_ref()).map_or("", |r| r.gudgeon.as_str());
-    body.push_str(&page::footer(version));
+    let body = page::body(&CONTENTS, &main, version);
 
     let mut arrays = Arrays::default();
+    let tables: serde_json::Map<String, serde_json::Value> =
+        over_values.iter().map(|(f, t)| (f.table.clone(), arrays.whole(t))).collect();
+    let figures: Vec<&Figure> = over_values.iter().map(|(f, _)| f).collect();
     let variants: Vec<serde_json::Value> = drawn
         .iter()
         .map(|(n, s)| {
@@ -299,8 +310,118 @@ fn page(file: &File, series: &[(usize, &Series)]) -> String {
             json!({ "number": n, "label": label, "series": columns })
         })
         .collect();
-    let data = json!({ "cases": file.cases.len(), "variants": variants, "arrays": arrays.into_json() });
+    let data = json!({ "cases": file.cases.len(), "variants": variants, "figures": figures, "tables": tables, "arrays": arrays.into_json() });
     page::document(Kind::Comparison, heading, &body, &data)
+}
+
+/// Sections in their order, with their names in the contents at the side.
+const CONTENTS: [(&str, &str); 9] = [
+    ("overview", "Overview"),
+    ("shares", "Which choice matters"),
+    ("values", "Over the values"),
+    ("results", "Results"),
+    ("cycle", "Over the cycle"),
+    ("curves", "Curves"),
+    ("refused", "Did not run"),
+    ("notes", "Notes"),
+    ("models", "Models"),
+];
+
+/// Headlines over the values of the swaps, of the first case.
+fn over_values(file: &File, ran: &[&VariantEntry]) -> Vec<(Figure, Series)> {
+    let Some(first) = ran.first().and_then(|v| v.run.as_ref()) else { return Vec::new() };
+    let swaps: Vec<(&str, &[String])> =
+        file.swaps.iter().map(|s| (s.path.as_str(), s.values.as_slice())).collect();
+    let own: Vec<&&VariantEntry> = ran.iter().filter(|v| v.case == 0).collect();
+    let results: Vec<_> = own
+        .iter()
+        .map(|v| {
+            move |name: &str| {
+                let r = v.run.as_ref()?.results.get(name)?;
+                Some((r.value?, r.unit.as_str()))
+            }
+        })
+        .collect();
+    let points: Vec<Point<'_>> = own
+        .iter()
+        .zip(&results)
+        .map(|(v, result)| Point {
+            choices: v.swaps.iter().map(|(p, x)| (p.as_str(), x.as_str())).collect(),
+            result,
+        })
+        .collect();
+    over_values::figures(&swaps, &first.headlines, &points)
+}
+
+/// Title, what was swapped, how the runs went, and the headlines of every variant.
+fn overview(out: &mut String, file: &File, heading: &str, ran: &[&VariantEntry]) {
+    out.push_str("<section id=\"overview\">\n");
+    page_header(out, file, heading);
+    let graded: Vec<(Grade, &VariantEntry)> =
+        ran.iter().filter_map(|v| Some((Assessment::of(&v.run.as_ref()?.notes).grade, *v))).collect();
+    let all = file.variants.len();
+    let missing = all - ran.len();
+    let count = |g: Grade| graded.iter().filter(|v| v.0 == g).count();
+    let grade = if missing > 0 { Grade::Red } else { graded.iter().map(|v| v.0).max().unwrap_or_default() };
+    let title = if missing > 0 {
+        format!("{} of {all} variants ran", ran.len())
+    } else {
+        format!("All {all} variants ran")
+    };
+    let mut reasons = Vec::new();
+    for (g, what) in [
+        (Grade::Red, "with a limit that is not kept, or not what was asked for"),
+        (Grade::Amber, "valid with reservations"),
+        (Grade::Green, "valid"),
+    ] {
+        if count(g) > 0 {
+            reasons.push(format!("{} {what}", count(g)));
+        }
+    }
+    overview::banner(out, grade, &title, &reasons);
+    headline_cards(out, file, ran);
+    out.push_str("</section>\n<div id=\"bar\"></div>\n");
+}
+
+/// Most variants in a card.
+const IN_CARD: usize = 8;
+
+/// A card for each headline of the first variant, a row a variant.
+fn headline_cards(out: &mut String, file: &File, ran: &[&VariantEntry]) {
+    let Some(first) = ran.first().and_then(|v| v.run.as_ref()) else { return };
+    out.push_str("<div class=\"cards broad\">\n");
+    for h in first.headlines.iter().take(overview::CARDS) {
+        let Some((label, name)) = h.results.first() else { continue };
+        let title = if label.is_empty() || h.results.len() == 1 {
+            h.title.clone()
+        } else {
+            format!("{}, {label}", h.title)
+        };
+        let rows: Vec<(String, usize, &ResultValue)> = ran
+            .iter()
+            .take(IN_CARD)
+            .filter_map(|v| Some((short_label(file, v), v.number - 1, v.run.as_ref()?.results.get(name)?)))
+            .collect();
+        let _ = write!(out, "<div class=\"card\"><h3>{}</h3>", page::prose(&capital(&title)));
+        overview::rows(out, &rows);
+        out.push_str("</div>\n");
+    }
+    out.push_str("</div>\n");
+    if ran.len() > IN_CARD {
+        let _ = write!(
+            out,
+            "<p class=\"hint\">The first {IN_CARD} of {} variants; the tables below have all.</p>",
+            ran.len()
+        );
+    }
+}
+
+/// The values of a variant without the paths, which stand above.
+fn short_label(file: &File, v: &VariantEntry) -> String {
+    let values: Vec<String> = v.swaps.values().map(|x| short_value(x)).collect();
+    let case = file.cases.get(v.case).filter(|_| file.cases.len() > 1).map(|c| c.name.clone());
+    let all: Vec<String> = case.into_iter().chain(values).collect();
+    if all.is_empty() { v.label.clone() } else { all.join(", ") }
 }
 
 fn page_header(out: &mut String, file: &File, heading: &str) {
@@ -316,7 +437,7 @@ fn page_header(out: &mut String, file: &File, heading: &str) {
             s.values.iter().map(|v| format!("<code>{}</code>", esc(&short_value(v)))).collect();
         let _ = write!(out, "<p class=\"source\"><b>{}</b> {}</p>", esc(&s.path), values.join(" "));
     }
-    out.push_str("</header>\n<main>\n");
+    out.push_str("</header>\n");
 }
 
 /// Variants that did not run, with the reasons.
@@ -402,12 +523,12 @@ fn curves(out: &mut String, series: &[(usize, &Series)], all: usize) {
     if drawn.iter().any(|(_, s)| s.is_over_cycle()) {
         let _ = writeln!(
             out,
-            "<section id=\"cycle\"><h2>Over the cycle</h2>{fewer}<div id=\"bar\"></div><div id=\"plots\"></div></section>"
+            "<section id=\"cycle\"><h2>Over the cycle</h2>{fewer}<div id=\"plots\" class=\"figures\"></div></section>"
         );
     } else if !drawn.is_empty() {
         let _ = writeln!(
             out,
-            "<section id=\"curves\"><h2>Curves</h2>{fewer}<div id=\"overlay\"></div></section>"
+            "<section id=\"curves\"><h2>Curves</h2>{fewer}<div id=\"overlay\" class=\"figures\"></div></section>"
         );
     }
 }

@@ -19,6 +19,7 @@ mod error;
 mod folder;
 mod gradients;
 mod number;
+mod over_values;
 mod overview;
 mod page;
 mod results;

@@ -12,7 +12,7 @@ use crate::summary::{ResultValue, Summary};
 /// Reasons of a verdict that stand on the first page; the others stand with the notes.
 const REASONS: usize = 4;
 /// Headlines on the first page.
-const CARDS: usize = 10;
+pub(crate) const CARDS: usize = 10;
 /// Significant digits of a headline.
 const DIGITS: usize = 3;
 
@@ -54,7 +54,12 @@ fn header(out: &mut String, s: &Summary) {
 /// The grade in words and colour, with what it rests on.
 fn verdict(out: &mut String, s: &Summary) {
     let a = Assessment::of(&s.notes);
-    let sign = match a.grade {
+    banner(out, a.grade, &a.title, &a.reasons);
+}
+
+/// A grade with its reasons, of which the first few stand here and all with the notes.
+pub(crate) fn banner(out: &mut String, grade: Grade, title: &str, reasons: &[String]) {
+    let sign = match grade {
         Grade::Green => "✓",
         Grade::Amber => "!",
         Grade::Red => "✕",
@@ -62,17 +67,17 @@ fn verdict(out: &mut String, s: &Summary) {
     let _ = write!(
         out,
         "<div class=\"verdict {}\" role=\"note\"><p><span class=\"sign\" aria-label=\"{}\">{sign}</span><b>{}</b></p>",
-        a.grade.name(),
-        a.grade.name(),
-        page::prose(&a.title)
+        grade.name(),
+        grade.name(),
+        page::prose(title)
     );
-    if !a.reasons.is_empty() {
+    if !reasons.is_empty() {
         out.push_str("<ul>");
-        for r in a.reasons.iter().take(REASONS) {
+        for r in reasons.iter().take(REASONS) {
             let _ = write!(out, "<li>{}</li>", page::prose(&capital(r)));
         }
-        if a.reasons.len() > REASONS {
-            let _ = write!(out, "<li><a href=\"#notes\">{} more</a></li>", a.reasons.len() - REASONS);
+        if reasons.len() > REASONS {
+            let _ = write!(out, "<li><a href=\"#notes\">{} more</a></li>", reasons.len() - REASONS);
         }
         out.push_str("</ul>");
     }
@@ -131,18 +136,24 @@ fn whole(value: Option<f64>) -> String {
     }
 }
 
-/// One row a member, with a bar where their values can be compared.
+/// One row a member, in the colours of the curves.
 fn members(out: &mut String, s: &Summary, h: &Headline) {
-    let rows: Vec<(&str, &ResultValue)> =
-        h.results.iter().filter_map(|(label, name)| Some((label.as_str(), s.results.get(name)?))).collect();
-    let top = rows.iter().filter_map(|(_, v)| v.value).fold(0.0, |m: f64, v| m.max(v.abs()));
-    let alike = rows.windows(2).all(|w| w[0].1.unit == w[1].1.unit);
+    let known =
+        |(k, (label, name)): (usize, &(String, String))| Some((label.clone(), k, s.results.get(name)?));
+    let all: Vec<(String, usize, &ResultValue)> = h.results.iter().enumerate().filter_map(known).collect();
+    rows(out, &all);
+}
+
+/// Rows of label, number of its colour and value, with bars where the values can be compared.
+pub(crate) fn rows(out: &mut String, rows: &[(String, usize, &ResultValue)]) {
+    let top = rows.iter().filter_map(|r| r.2.value).fold(0.0, |m: f64, v| m.max(v.abs()));
+    let alike = rows.windows(2).all(|w| w[0].2.unit == w[1].2.unit);
     out.push_str("<table class=\"members\"><tbody>");
-    for (k, (label, v)) in rows.iter().enumerate() {
+    for (label, k, v) in rows {
         let share = v.value.filter(|_| alike && top > 0.0).map_or(0.0, |v| 100.0 * v.abs() / top);
         let _ = write!(
             out,
-            "<tr><th scope=\"row\">{}</th><td><i style=\"width:{share:.1}%;background:var(--c{})\"></i></td><td class=\"num\">{}</td></tr>",
+            "<tr><th scope=\"row\" title=\"{0}\">{0}</th><td><i style=\"width:{share:.1}%;background:var(--c{1})\"></i></td><td class=\"num\">{2}</td></tr>",
             esc(label),
             k % 8,
             value(v)

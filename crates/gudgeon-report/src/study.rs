@@ -25,17 +25,20 @@ pub struct StudyPage {
 #[must_use]
 pub fn study_page(p: &StudyPage) -> String {
     let mut body = String::new();
-    let _ = write!(body, "<header><h1>{}</h1><p class=\"meta\">study</p></header>\n<main>\n", esc(&p.title));
-    body.push_str("<section id=\"what\"><h2>What was run</h2><table class=\"plain key\"><tbody>");
+    let _ = write!(
+        body,
+        "<section id=\"overview\"><header><h1>{}</h1><p class=\"meta\">study</p></header>\n",
+        esc(&p.title)
+    );
+    body.push_str("<h2>What was run</h2><table class=\"plain key\"><tbody>");
     for (name, text) in &p.facts {
         let _ = write!(body, "<tr><th scope=\"row\">{}</th><td>{}</td></tr>", esc(name), esc(text));
     }
     body.push_str("</tbody></table></section>\n");
     if !p.figures.is_empty() {
-        body.push_str("<section id=\"curves\"><h2>What the results depend on</h2><div id=\"figures\"></div></section>\n");
+        body.push_str("<section id=\"curves\"><h2>What the results depend on</h2><div id=\"figures\" class=\"figures\"></div></section>\n");
     }
-    body.push_str("</main>\n");
-    body.push_str(&page::footer(""));
+    let body = page::body(&[("overview", "Overview"), ("curves", "What the results depend on")], &body, "");
     let mut arrays = page::Arrays::default();
     let tables: serde_json::Map<String, serde_json::Value> =
         p.tables.iter().map(|(name, t)| (name.clone(), arrays.whole(t))).collect();

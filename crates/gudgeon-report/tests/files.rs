@@ -5,7 +5,7 @@ mod common;
 use std::fs;
 use std::path::PathBuf;
 
-use gudgeon_core::result::{Failure, Note, RunResult, Series};
+use gudgeon_core::result::{Failure, Headline, Note, RunResult, Series};
 use gudgeon_report::{
     OVER_CYCLE, ReportError, rewrite, summary_json, write_bench, write_comparison, write_run,
 };
@@ -113,6 +113,37 @@ fn drawings_and_bars_travel_with_the_page() {
 }
 
 #[test]
+fn a_page_leads_with_verdict_headlines_and_contents() {
+    let dir = scratch("leads");
+    let mut run = common::run(3);
+    run.solver.notes = vec![Note::caution("floor", "a floor acted"), Note::info("said", "said in passing")];
+    run.headlines = vec![
+        Headline::one("Blow-by", "blow_by").over(&["blow_by.rate", "no.such"]),
+        Headline::one("No such result", "nowhere"),
+    ];
+    let page = read(write_run(&run, &dir).unwrap().report);
+    let first = &page[page.find("<section id=\"overview\"").unwrap()..page.find("<div id=\"bar\"").unwrap()];
+    assert!(
+        first.contains("verdict amber")
+            && first.contains("Valid with 1 reservation")
+            && first.contains("A floor acted")
+    );
+    assert!(!first.contains("said in passing"), "what is good to know stands with the notes");
+    assert!(first.contains("<h3>Blow-by</h3>") && first.contains(">8.31 <span"));
+    assert!(!first.contains("No such result"));
+    assert!(first.find("<h1>").unwrap() < first.find("verdict").unwrap());
+    // The contents name the sections that are there and no other.
+    let nav = &page[page.find("<nav").unwrap()..page.find("</nav>").unwrap()];
+    for id in nav.split("href=\"#").skip(1).map(|l| &l[..l.find('"').unwrap()]) {
+        assert!(page.contains(&format!("<section id=\"{id}\"")), "{id}");
+    }
+    run.solver.notes = vec![Note::exceeded("verdict.x", "beyond the limit: x")];
+    let page = read(write_run(&run, &dir).unwrap().report);
+    assert!(page.contains("verdict red") && page.contains("A limit is not kept"));
+    fs::remove_dir_all(dir).unwrap();
+}
+
+#[test]
 fn no_number_in_json_is_other_than_finite() {
     let mut run = common::run(1);
     run.results.insert("lost".into(), common::value(f64::NAN, "N", ""));
@@ -207,9 +238,11 @@ fn a_page_loads_nothing() {
     ];
     for page in pages {
         assert!(page.contains("default-src 'none'"));
-        for outside in ["src=\"", "href=\"", "url(http", "@import", "https://"] {
+        for outside in ["src=\"", "url(http", "@import", "https://"] {
             assert!(!page.contains(outside), "{outside}");
         }
+        // Links lead to places of the page.
+        assert_eq!(page.matches("href=\"").count(), page.matches("href=\"#").count());
         // The name of the SVG language is the only address in a page, and it is never fetched.
         assert_eq!(page.matches("http://").count(), page.matches("http://www.w3.org/2000/svg").count());
     }
