@@ -273,7 +273,7 @@ fn points_table(out: &mut String, file: &File, errors: &[&str]) {
     let work = file.names(|p| &p.work);
     let cyclic = file.points.iter().any(|p| p.cycles.is_some_and(|c| c > 1.0));
     out.push_str(
-        "<section id=\"points\"><h2>All points</h2><div class=\"scroll\"><table class=\"plain compare\"><thead><tr>\
+        "<section id=\"points\"><h2>All points</h2><div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"table\"><table class=\"plain compare\"><thead><tr>\
          <th>Method</th><th>Setting</th><th class=\"num\">s in all</th>",
     );
     if cyclic {

@@ -289,11 +289,13 @@ fn page(file: &File, series: &[(usize, &Series)]) -> String {
         if !over_values.is_empty() {
             main.push_str("<section id=\"values\"><h2>Over the values</h2><div id=\"figures\" class=\"figures\"></div></section>\n");
         }
-        comparison_tables(&mut main, file, &ran);
     }
     curves(&mut main, &drawn, series.len());
     refused_variants(&mut main, file);
     notes_of_runs(&mut main, &ran);
+    if !ran.is_empty() {
+        comparison_tables(&mut main, file, &ran);
+    }
     models_of_runs(&mut main, &ran);
     let version = ran.first().and_then(|v| v.run.as_ref()).map_or("", |r| r.gudgeon.as_str());
     let body = page::body(&CONTENTS, &main, version);
@@ -319,11 +321,11 @@ const CONTENTS: [(&str, &str); 9] = [
     ("overview", "Overview"),
     ("shares", "Which choice matters"),
     ("values", "Over the values"),
-    ("results", "Results"),
     ("cycle", "Over the cycle"),
     ("curves", "Curves"),
     ("refused", "Did not run"),
     ("notes", "Notes"),
+    ("results", "All results"),
     ("models", "Models"),
 ];
 
@@ -389,7 +391,7 @@ const IN_CARD: usize = 8;
 /// A card for each headline of the first variant, a row a variant.
 fn headline_cards(out: &mut String, file: &File, ran: &[&VariantEntry]) {
     let Some(first) = ran.first().and_then(|v| v.run.as_ref()) else { return };
-    out.push_str("<div class=\"cards broad\">\n");
+    out.push_str("<h2 class=\"unseen\">Headline results</h2>\n<div class=\"cards broad\">\n");
     for h in first.headlines.iter().take(overview::CARDS) {
         let Some((label, name)) = h.results.first() else { continue };
         let title = if label.is_empty() || h.results.len() == 1 {
@@ -549,7 +551,7 @@ fn models_of_runs(out: &mut String, ran: &[&VariantEntry]) {
 
 /// Results of all variants, a table for each case.
 fn comparison_tables(out: &mut String, file: &File, ran: &[&VariantEntry]) {
-    out.push_str("<section id=\"results\"><h2>Results</h2>");
+    out.push_str("<section id=\"results\"><details><summary><h2>All results</h2></summary>");
     if file.cases.len() < 2 {
         comparison_table(out, file, ran);
     } else {
@@ -570,7 +572,7 @@ fn comparison_tables(out: &mut String, file: &File, ran: &[&VariantEntry]) {
             out.push_str("</details>");
         }
     }
-    out.push_str("</section>\n");
+    out.push_str("</details></section>\n");
 }
 
 /// Results of the variants of one case.
@@ -598,7 +600,7 @@ fn comparison_table(out: &mut String, file: &File, ran: &[&VariantEntry]) {
 
 /// The head of the table: a column for every variant that ran, with what it swaps.
 fn comparison_heads(out: &mut String, ran: &[&VariantEntry]) {
-    out.push_str("<div class=\"scroll\"><table class=\"plain compare\"><thead><tr><th>Result</th>");
+    out.push_str("<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"table\"><table class=\"plain compare\"><thead><tr><th>Result</th><td></td>");
     for v in ran {
         let parts: Vec<String> = v
             .swaps
@@ -616,7 +618,7 @@ fn comparison_heads(out: &mut String, ran: &[&VariantEntry]) {
         let label = if parts.is_empty() { esc(&v.label) } else { parts.join("<br>") };
         let _ = write!(out, "<th class=\"num variant\">{}<br>{label}</th>", badge(v.number));
     }
-    out.push_str("<th></th></tr></thead><tbody>");
+    out.push_str("</tr></thead><tbody>");
 }
 
 /// A row for every result.
@@ -626,7 +628,13 @@ fn comparison_rows(out: &mut String, file: &File, ran: &[&VariantEntry]) {
             .iter()
             .find_map(|v| v.run.as_ref().and_then(|r| r.descriptions.get(name)))
             .map_or("", String::as_str);
-        let _ = write!(out, "<tr><th scope=\"row\">{} <code>{}</code></th>", esc(&capital(what)), esc(name));
+        let _ = write!(
+            out,
+            "<tr><th scope=\"row\">{} <code>{}</code></th><td class=\"unit\">{}</td>",
+            page::prose(&capital(what)),
+            esc(name),
+            esc(&unit(&row.unit))
+        );
         let value = |k: usize| row.values.get(k).copied().flatten();
         for v in ran {
             let k = v.number - 1;
@@ -645,14 +653,14 @@ fn comparison_rows(out: &mut String, file: &File, ran: &[&VariantEntry]) {
                 cell(out, &text, row.difference_percent.get(k).copied().flatten().filter(|_| is_other));
             }
         }
-        let _ = write!(out, "<td class=\"unit\">{}</td></tr>", esc(&unit(&row.unit)));
+        out.push_str("</tr>");
     }
 }
 
 /// What the solvers did.
 fn comparison_work(out: &mut String, ran: &[&VariantEntry], base: Option<&VariantEntry>) {
     out.push_str("</tbody><tbody class=\"work\">");
-    out.push_str("<tr><th scope=\"row\">solver</th>");
+    out.push_str("<tr><th scope=\"row\">solver</th><td></td>");
     for v in ran {
         let _ = write!(
             out,
@@ -660,11 +668,11 @@ fn comparison_work(out: &mut String, ran: &[&VariantEntry], base: Option<&Varian
             esc(v.run.as_ref().map_or("", |r| r.solver.method.as_str()))
         );
     }
-    out.push_str("<td></td></tr>");
+    out.push_str("</tr>");
     for name in union(ran.iter().copied(), |r| &r.solver.counters) {
         let value = |v: &VariantEntry| v.run.as_ref().and_then(|r| r.solver.counters.get(name)).copied();
         let first = base.and_then(value);
-        let _ = write!(out, "<tr><th scope=\"row\">{}</th>", esc(&name.replace('_', " ")));
+        let _ = write!(out, "<tr><th scope=\"row\">{}</th><td></td>", esc(&name.replace('_', " ")));
         for v in ran {
             let n = value(v);
             let ratio = first
@@ -673,7 +681,7 @@ fn comparison_work(out: &mut String, ran: &[&VariantEntry], base: Option<&Varian
                 .map(|(f, n)| (n as f64 / f as f64 - 1.0) * 100.0);
             cell(out, &n.map_or_else(|| "–".into(), count), ratio);
         }
-        out.push_str("<td></td></tr>");
+        out.push_str("</tr>");
     }
 }
 
@@ -693,11 +701,11 @@ fn comparison_balances(out: &mut String, ran: &[&VariantEntry]) {
         if ran.iter().all(|v| v.run.as_ref().and_then(of).is_none()) {
             continue;
         }
-        let _ = write!(out, "<tr><th scope=\"row\">{name}</th>");
+        let _ = write!(out, "<tr><th scope=\"row\">{name}</th><td></td>");
         for v in ran {
             cell(out, &significant(v.run.as_ref().and_then(of), 2), None);
         }
-        out.push_str("<td></td></tr>");
+        out.push_str("</tr>");
     }
 }
 

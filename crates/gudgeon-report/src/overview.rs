@@ -89,7 +89,7 @@ fn cards(out: &mut String, s: &Summary, series: &Series) {
         out.push_str("<p class=\"hint\">This run computed no results.</p>\n");
         return;
     }
-    out.push_str("<div class=\"cards\">\n");
+    out.push_str("<h2 class=\"unseen\">Headline results</h2>\n<div class=\"cards\">\n");
     for h in s.headlines.iter().take(CARDS) {
         card(out, s, series, h);
     }

@@ -50,11 +50,33 @@ pub(crate) fn esc(text: &str) -> String {
     out
 }
 
-/// Prose made safe, with what stands between backticks set as code.
+/// Units in prose as they are typeset: `0.3 um` and `um` alone become `0.3 µm` and `µm`, `360 deg` becomes `360°`.
+fn typeset(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for (k, word) in text.split(' ').enumerate() {
+        let bare = word.trim_end_matches([',', '.', ';', ':', ')']);
+        let rest = &word[bare.len()..];
+        match bare {
+            "deg" if out.ends_with(|c: char| c.is_ascii_digit()) => {
+                let _ = write!(out, "°{rest}");
+            }
+            "um" => {
+                let _ = write!(out, " µm{rest}");
+            }
+            _ => {
+                let _ = write!(out, "{}{word}", if k > 0 { " " } else { "" });
+            }
+        }
+    }
+    out
+}
+
+/// Prose made safe, with what stands between backticks set as code and units typeset outside of it.
 pub(crate) fn prose(text: &str) -> String {
-    let parts: Vec<String> = text.split('`').map(esc).collect();
+    let coded = |(i, part): (usize, &str)| if i % 2 == 1 { esc(part) } else { esc(&typeset(part)) };
+    let parts: Vec<String> = text.split('`').enumerate().map(coded).collect();
     if parts.len().is_multiple_of(2) {
-        return esc(text);
+        return esc(&typeset(text));
     }
     let mut out = String::new();
     for (i, part) in parts.iter().enumerate() {
@@ -277,7 +299,7 @@ pub(crate) fn models_section(models: &[ModelEntry]) -> String {
         if let Some(info) = info {
             let _ = write!(out, "<p>{}</p>", prose(info.summary));
             if !info.equations.trim().is_empty() {
-                let _ = write!(out, "<pre>{}</pre>", esc(info.equations.trim()));
+                let _ = write!(out, "<pre tabindex=\"0\">{}</pre>", esc(info.equations.trim()));
             }
             if !info.validity.trim().is_empty() {
                 let _ = write!(out, "<p class=\"valid\"><b>Valid</b> {}</p>", prose(info.validity.trim()));
@@ -437,6 +459,15 @@ pub(crate) fn footer(version: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn units_are_typeset_outside_of_code() {
+        assert_eq!(
+            prose("a film of 0.3 um (most at 360 deg), `1 um`"),
+            "a film of 0.3 µm (most at 360°), <code>1 um</code>"
+        );
+        assert_eq!(prose("crank angle in deg"), "crank angle in deg");
+    }
 
     #[test]
     fn base64_matches_the_test_vectors_of_rfc_4648() {

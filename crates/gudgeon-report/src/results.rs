@@ -150,13 +150,13 @@ fn matrix_table(out: &mut String, s: &Summary, (rows, columns): (&str, &str), va
     let unit_of = values.values().next().map_or("", |(_, v)| v.unit.as_str());
     let _ = write!(
         out,
-        "<h4>{} <span class=\"unit\">{}</span></h4>",
+        "<h3>{} <span class=\"unit\">{}</span></h3>",
         esc(&capital(&shared(&told, rows))),
         esc(&unit(unit_of))
     );
     let across = in_order(values.keys().map(|k| k.1.clone()));
     for part in across.chunks(2 * BESIDE) {
-        out.push_str("<div class=\"scroll\"><table class=\"plain\"><thead><tr><th></th>");
+        out.push_str("<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"table\"><table class=\"plain\"><thead><tr><td></td>");
         for n in part {
             let _ = write!(out, "<th class=\"num\">{} {n}</th>", esc(columns));
         }
@@ -198,7 +198,7 @@ fn family_table(out: &mut String, s: &Summary, family: &str, rows: &Family<'_>) 
     for beside in numbers.chunks(BESIDE) {
         let _ = write!(
             out,
-            "<div class=\"scroll\"><table class=\"plain\"><thead><tr><th>Per {}</th><th></th>",
+            "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"table\"><table class=\"plain\"><thead><tr><th>Per {}</th><td></td>",
             esc(family)
         );
         for n in beside {
@@ -244,7 +244,7 @@ fn family_row(
 /// Results at crank angles: one row each.
 fn at_angles(out: &mut String, s: &Summary, angles: &IndexMap<&str, IndexMap<&str, (&str, &ResultValue)>>) {
     let Some(first) = angles.values().next() else { return };
-    out.push_str("<div class=\"scroll\"><table class=\"plain angles\"><thead><tr><th class=\"num\">At crank angle</th>");
+    out.push_str("<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"table\"><table class=\"plain angles\"><thead><tr><th class=\"num\">At crank angle</th>");
     for (what, (name, v)) in first {
         let title = s.descriptions.get(*name).map_or("", String::as_str);
         let _ = write!(

@@ -196,13 +196,13 @@ fn branches(out: &mut String, s: &Summary) {
     }
     out.push_str(
         "<section id=\"branches\"><h2>Periodic solutions</h2><p class=\"hint\">The same case settles into another cycle \
-         when it starts from another state. Differences are to the first column.</p><div class=\"scroll\"><table \
+         when it starts from another state. Differences are to the first column.</p><div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"table\"><table \
          class=\"plain\"><thead><tr><th>Start</th>",
     );
     for b in &s.branches {
         let _ = write!(out, "<th class=\"num\">{}</th>", esc(&b.start));
     }
-    out.push_str("<th></th></tr></thead><tbody><tr><th scope=\"row\">Period</th>");
+    out.push_str("<td></td></tr></thead><tbody><tr><th scope=\"row\">Period</th>");
     for b in &s.branches {
         let text = match b.period {
             0 => "did not settle".to_owned(),

@@ -93,7 +93,7 @@ fn table(out: &mut String, t: &ShareTable) {
     for p in &parts {
         let _ = write!(out, "<span><i class=\"block c{}\"></i>{}</span>", p.colour, esc(&p.name));
     }
-    out.push_str("</div><div class=\"scroll\"><table class=\"plain compare\"><thead><tr><th>Result</th><th class=\"num\">spread</th><th></th>");
+    out.push_str("</div><div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"table\"><table class=\"plain compare\"><thead><tr><th>Result</th><th class=\"num\">spread</th><td></td>");
     for p in &parts {
         let _ = write!(out, "<th class=\"num\">{}</th>", esc(&p.name));
     }
@@ -194,7 +194,7 @@ fn share_cell(out: &mut String, share: Option<Share>) {
 fn every_effect(out: &mut String, t: &ShareTable) {
     out.push_str(
         "<details class=\"more\"><summary>Every effect on every result</summary><p class=\"hint\">Share of the variance, and the largest \
-         effect in the unit of the spread.</p><div class=\"scroll\"><table class=\"plain compare\"><thead><tr><th>Result</th><th class=\"num\">spread</th>",
+         effect in the unit of the spread.</p><div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"table\"><table class=\"plain compare\"><thead><tr><th>Result</th><th class=\"num\">spread</th>",
     );
     for e in 0..t.effects.len() {
         let _ = write!(out, "<th class=\"num\">{}</th>", esc(&t.effect(e)).replace(" × ", " ×<br>"));

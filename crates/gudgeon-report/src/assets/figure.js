@@ -27,7 +27,10 @@
     const [x, y, z] = [k.x, k.y, k.value].map((name) => column(table, name));
     if (x && y && z) map(where, { title: capital(f.title), hint: f.hint, x: arrays[x.at], y: arrays[y.at], z: arrays[z.at], xName: words(x.name), yName: words(y.name), xUnit: x.unit, yUnit: y.unit, zUnit: z.unit });
   }
+  // Units in explanations as they are typeset.
+  const typeset = (t) => (t || "").replace(/ um\b/g, " µm").replace(/(\d) deg\b/g, "$1°");
   function draw(f, where, wide) {
+    f = { ...f, hint: typeset(f.hint) };
     const [[kind, k]] = Object.entries(f.kind), spec = { title: capital(f.title), hint: f.hint, wide, ...k };
     ({ lines: () => lines(f, k, where, wide), map: () => map2(f, k, where), drawing: () => drawing(where, spec), bars: () => bars(where, spec), ranges: () => ranges(where, spec), table: () => table(where, spec) })[kind]();
   }

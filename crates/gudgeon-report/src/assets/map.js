@@ -69,6 +69,7 @@ function map(host, spec) {
   s("image", { x: L, y: T, width: right - L, height: bottom - T, href: canvas.toDataURL(), preserveAspectRatio: "none" }, svg);
   const levels = linearTicks(lo * uz.f, (lo + range) * uz.f, 6).filter((t) => t > lo * uz.f && t < e.hi * uz.f);
   const place = (v, p) => { const i = Math.min(v.length - 2, Math.floor(p)); return v.length < 2 ? v[0] : v[i] + (p - i) * (v[i + 1] - v[i]); };
+  const placed = [];
   for (const t of levels) {
     const pieces = contour(z, nx, ny, t / uz.f).map(([a, b, c, d]) => [X(place(xs, a)), Y(place(ys, b)), X(place(xs, c)), Y(place(ys, d))]);
     if (!pieces.length) continue;
@@ -76,6 +77,8 @@ function map(host, spec) {
     // Its value stands where the line is nearest to the middle of the picture.
     const far = (p) => Math.hypot(p[0] - (L + right) / 2, p[1] - (T + bottom) / 2);
     const p = pieces.reduce((a, b) => (far(b) < far(a) ? b : a));
+    if (placed.some((q) => Math.abs(q[0] - p[0]) < 34 && Math.abs(q[1] - p[1]) < 14)) continue;
+    placed.push(p);
     s("text", { x: p[0], y: p[1] + 4, "text-anchor": "middle", class: "contourtext" }, svg, tickText(t));
   }
   const ticksOf = (a, b, f, room, unit) => {

@@ -145,7 +145,7 @@
     for (const e of DATA.events) {
       const go = () => { cycle.play(false); cycle.pin(e.theta_deg); bar.scrollIntoView({ block: "start" }); };
       ul.append(h("li", {}, h("button", { type: "button", title: "show this angle", onclick: go },
-        h("b", { style: "color:" + subjectColor(e.subject) }, e.theta_deg.toFixed(1) + "°"), " " + readable(e.subject) + " " + e.what)));
+        h("i", { style: "background:" + subjectColor(e.subject) }), h("b", {}, e.theta_deg.toFixed(1) + "°"), " " + readable(e.subject) + " " + e.what)));
     }
     list.replaceChildren(ul);
   }

@@ -182,7 +182,7 @@ function crankGlyph(cycle, geometry, columns) {
   if (!(stroke > 0)) return null;
   const r = stroke / 2, rod = y ? Math.max(...y.y) - r : 3.5 * r, px = 46 / r, W = 150, cx = W / 2;
   const cy = 20 + 30 + (r + rod) * px, H = cy + 46 + 8, bore = Math.min(52, Math.max(30, (geometry.bore_radius || r) * px));
-  const svg = s("svg", { viewBox: `0 0 ${W} ${H}`, style: `max-width:${W}px`, "aria-hidden": "true" });
+  const svg = s("svg", { viewBox: `0 0 ${W} ${H}`, style: `max-width:${W}px;max-height:320px`, "aria-hidden": "true" });
   for (const g of [-1, 1]) s("line", { x1: cx + g * (bore + 2), x2: cx + g * (bore + 2), y1: 10, y2: cy - 52, style: "stroke:var(--metal2);stroke-width:4" }, svg);
   s("line", { x1: cx - bore - 4, x2: cx + bore + 4, y1: 10, y2: 10, style: "stroke:var(--metal2);stroke-width:4" }, svg);
   s("circle", { cx, cy, r: 46, style: "fill:none;stroke:var(--line)" }, svg);
@@ -227,7 +227,7 @@ function nowTable(cycle, n, get, columns) {
     cells.push(() => { td.textContent = digits(get(name) * f); });
     body.append(h("tr", {}, h("th", { scope: "row" }, label), td, h("td", { class: "unit" }, unit)));
   }
-  const headRow = h("tr", {}, h("th", {}, "Now"), ...Array.from({ length: n }, (_, i) => h("th", { class: "num" }, "ring " + (i + 1))), h("th"));
+  const headRow = h("tr", {}, h("th", {}, "Now"), ...Array.from({ length: n }, (_, i) => h("th", { class: "num" }, "ring " + (i + 1))), h("td"));
   cycle.on((what) => { if (what & 1) for (const f of cells) f(); });
   return h("table", { class: "plain now-table" }, h("thead", {}, headRow), body);
 }

@@ -1,7 +1,7 @@
 //! A pin as it stands: dimensions, masses, quantities, loads, fatigue over the cycle.
 
 use gudgeon_core::kinds::{PIN_QUANTITIES, PinInstant, PinQuantity, PinSize};
-use gudgeon_core::result::{Note, RunResult, Series};
+use gudgeon_core::result::{Note, RunResult, Series, VERDICT};
 use gudgeon_pin::design::Design;
 use gudgeon_pin::piston::mass_estimate;
 
@@ -83,6 +83,10 @@ fn utilisations(d: &Design<'_>, u: &[f64; PIN_QUANTITIES], out: &mut RunResult) 
     let Some((v, k)) = max else { return };
     result(out, "utilisation", v, "", "greatest utilisation of a limit");
     if v <= 1.0 + 1e-9 {
+        let all = d.limits.iter().filter(|l| l.is_finite()).count();
+        let text =
+            format!("all {all} limits are kept: the pin uses {:.1} % of that on {}", 100.0 * v, k.words());
+        out.solver.notes.push(Note::info(VERDICT, text));
         return;
     }
     let over: Vec<&str> = PinQuantity::ALL
