@@ -121,12 +121,14 @@ def _curves(table: Table, title: str, hint: str, x: str, lines: Sequence[tuple[s
 
 
 def _carried(result: Result, figure: dict[str, Any]) -> Figure | None:
-    """A figure that the result carries; none where its table or columns are missing."""
+    """A figure that the result carries; none where its table or columns are missing, and of numbers in rows, which are no picture."""
     kind, said = next(iter(figure["kind"].items()))
     title: str = figure["title"][:1].upper() + figure["title"][1:]
     hint: str = figure["hint"]
     if kind == "bars":
         return Bars(title, hint, said["unit"], [(b["label"], b["value"], b["limit"]) for b in said["bars"]])
+    if kind == "table":
+        return None
     if kind == "drawing":
         # Of a moving drawing, the picture in the middle.
         frames = said["frames"]
@@ -144,7 +146,13 @@ def _carried(result: Result, figure: dict[str, Any]) -> Figure | None:
     lines = [(label, column, i > 7, i) for i, (label, column) in enumerate(said["lines"]) if column in table]
     if said["x"] not in table or not lines:
         return None
-    return _curves(table, title, hint, said["x"], lines, log_x=said["log_x"], log_y=said["log_y"])
+    made = _curves(table, title, hint, said["x"], lines, log_x=said["log_x"], log_y=said["log_y"])
+    # Points of single instants, each curve over an abscissa of its own.
+    for curve, x in zip(made.curves, said.get("own_x", [])):
+        curve.x = table[x]
+    if said.get("scatter"):
+        made.curves = [Curve(c.label, c.x[c.x > 0], c.y[c.x > 0], color=c.color, points=True, line=False) for c in made.curves]
+    return made
 
 
 _OVER_CYCLE: list[dict[str, Any]] = json.loads(_native.over_cycle())
@@ -205,6 +213,7 @@ def of(result: Result) -> dict[str, Figure]:
             made.setdefault(_slug(figure["title"]), drawn)
     diagram = campbell(result)
     if diagram is not None:
+        made.pop(_slug(diagram.title), None)
         made = {"campbell": diagram, **made}
     if result.series.axis == "theta":
         rings = sorted({int(m[1]) for c in result.series if (m := re.match(r"ring(\d+)\.", c))})

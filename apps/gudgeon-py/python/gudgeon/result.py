@@ -19,7 +19,7 @@ __all__ = ["Note", "Result"]
 
 
 class Note(dict[str, Any]):
-    """Something that a person who relies on a result must know: ``topic``, ``level`` (``info``, ``caution``, ``failure``), ``text``, ``amounts``."""
+    """Something that a person who relies on a result must know: ``topic``, ``level`` (``info``, ``caution``, ``exceeded``: a limit of the case is not kept, ``failure``), ``text``, ``amounts``."""
 
     def __str__(self) -> str:
         return str(self["text"])

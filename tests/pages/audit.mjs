@@ -1,0 +1,65 @@
+// Opens every page below a folder in headless Chromium, light and dark, with everything unfolded, and fails where
+// - axe-core finds something serious or critical,
+// - a script fails or something is requested from anywhere but the file itself,
+// - a page is wider than a screen of 360, 768, 1400 or 2560 px,
+// - the first page of a run, with the figure that leads, does not fit on a sheet of A4.
+//
+//     node audit.mjs FOLDER [CHROMIUM]
+import fs from "node:fs";
+import path from "node:path";
+import { createRequire } from "node:module";
+import { pathToFileURL } from "node:url";
+import { chromium } from "playwright-core";
+
+const [folder, executablePath = "/usr/bin/chromium"] = process.argv.slice(2);
+const axe = fs.readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+const WIDTHS = [360, 768, 1400, 2560];
+// A sheet of A4 at 96 px an inch, less the margins of 11 mm that the style sheet sets.
+const SHEET = { width: Math.floor(((210 - 22) / 25.4) * 96), height: Math.floor(((297 - 22) / 25.4) * 96) };
+
+const pages = fs.readdirSync(folder).map((n) => path.join(folder, n, "report.html")).filter((f) => fs.existsSync(f));
+if (!pages.length) throw new Error(`no pages below ${folder}`);
+const browser = await chromium.launch({ executablePath, args: ["--no-sandbox", "--disable-gpu", "--disable-background-networking", "--no-first-run"] });
+const wrong = [];
+
+async function look(file, colorScheme) {
+  const context = await browser.newContext({ viewport: { width: 1400, height: 1000 }, colorScheme, bypassCSP: true });
+  const page = await context.newPage();
+  const say = (what) => wrong.push(`${path.relative(folder, file)}, ${colorScheme}: ${what}`);
+  page.on("request", (r) => { if (!/^(file|data|blob):/.test(r.url())) say(`requests ${r.url()}`); });
+  page.on("pageerror", (e) => say(`script: ${e.message}`));
+  await page.goto(pathToFileURL(file).href);
+  if (colorScheme === "light") await paper(page, say);
+  await page.evaluate(() => { for (const d of document.querySelectorAll("details:not(.save)")) d.open = true; });
+  await page.waitForTimeout(100);
+  await page.evaluate(axe);
+  const found = await page.evaluate(() => window.axe.run());
+  for (const v of found.violations.filter((v) => ["serious", "critical"].includes(v.impact))) say(`${v.id}: ${v.nodes[0].html.slice(0, 160)}`);
+  for (const width of WIDTHS) {
+    await page.setViewportSize({ width, height: 900 });
+    await page.waitForTimeout(60);
+    const over = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+    if (over > 0) say(`${over} px wider than ${width}`);
+  }
+  await context.close();
+}
+
+// The overview and what leads, before the first break.
+async function paper(page, say) {
+  await page.setViewportSize({ width: SHEET.width, height: SHEET.height });
+  await page.emulateMedia({ media: "print" });
+  await page.waitForTimeout(60);
+  const end = await page.evaluate(() => {
+    const lead = document.getElementById("lead") || document.getElementById("overview");
+    return lead ? lead.getBoundingClientRect().bottom + scrollY : 0;
+  });
+  if (end > SHEET.height) say(`its first page takes ${((100 * end) / SHEET.height).toFixed(0)} % of a sheet`);
+  await page.emulateMedia({ media: "screen" });
+  await page.setViewportSize({ width: 1400, height: 1000 });
+}
+
+for (const file of pages) for (const scheme of ["light", "dark"]) await look(file, scheme);
+await browser.close();
+for (const w of wrong) console.error(w);
+console.log(`${pages.length - new Set(wrong.map((w) => w.split(",")[0])).size} passed, ${new Set(wrong.map((w) => w.split(",")[0])).size} failed`);
+process.exit(wrong.length ? 1 : 0);
