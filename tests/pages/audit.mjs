@@ -1,7 +1,7 @@
 // Opens every page below a folder in headless Chromium, light and dark, with everything unfolded, and fails where
 // - axe-core finds something serious or critical,
 // - a script fails or something is requested from anywhere but the file itself,
-// - a page is wider than a screen of 360, 768, 1400 or 2560 px,
+// - a page is wider than a screen of 360 to 2560 px,
 // - the first page of a run, with the figure that leads, does not fit on a sheet of A4.
 //
 //     node audit.mjs FOLDER [CHROMIUM]
@@ -13,7 +13,7 @@ import { chromium } from "playwright-core";
 
 const [folder, executablePath = "/usr/bin/chromium"] = process.argv.slice(2);
 const axe = fs.readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
-const WIDTHS = [360, 768, 1400, 2560];
+const WIDTHS = [360, 768, 1024, 1300, 1400, 2560];
 // A sheet of A4 at 96 px an inch, less the margins of 11 mm that the style sheet sets.
 const SHEET = { width: Math.floor(((210 - 22) / 25.4) * 96), height: Math.floor(((297 - 22) / 25.4) * 96) };
 

@@ -56,7 +56,15 @@ fn a_linear_steady_question_takes_no_time_step() {
     assert!(r.solver.counters["linear_solutions"] > 24, "orders and the speed range");
     assert!(r.results["limits_broken"].value >= 1.0 && r.solver.notes[0].topic == "verdict");
     assert!(r.tables.contains_key("critical_speeds") && r.tables.contains_key("orders"));
-    for title in ["Verdict", "Mode shapes", "Interference diagram", "Torque in the shafts", "Shear stress"] {
+    for title in [
+        "Verdict",
+        "Mode shapes",
+        "Campbell diagram",
+        "Modes",
+        "Critical speeds",
+        "Torque in the shafts",
+        "Shear stress",
+    ] {
         assert!(r.figures.iter().any(|f| f.title == title), "{title}");
     }
     // The free motion of a linear line in closed form neither.

@@ -5,6 +5,7 @@ use indexmap::IndexMap;
 
 use super::analysis::{Analysis, Dependence, Finding};
 use super::folder::Study;
+use super::input::Input;
 use super::table::{Table, Values};
 
 /// Most curves of one figure; with more combinations a grid of two inputs is a map.
@@ -18,12 +19,9 @@ impl Study {
         let mut tables = IndexMap::new();
         for group in &analysis.groups {
             for f in &group.results {
-                let title = if group.name.is_empty() {
-                    f.result.clone()
-                } else {
-                    format!("{}: {}", group.name, f.result)
-                };
-                if let Some((figure, series)) = self.over_the_grid(table, f) {
+                let words = in_words(&f.result);
+                let title = if group.name.is_empty() { words } else { format!("{}: {words}", group.name) };
+                for (figure, series) in self.over_the_grid(table, f) {
                     tables.insert(figure.table.clone(), series);
                     figures.push(figure);
                 }
@@ -33,44 +31,92 @@ impl Study {
         (figures, tables)
     }
 
-    /// A result over the inputs of a grid: curves over the one that runs fastest, or a map over two.
-    fn over_the_grid(&self, table: &Table, f: &Finding) -> Option<(Figure, Series)> {
-        let inputs = &self.record.study.inputs;
-        let last = inputs.last().filter(|_| self.record.study.design.is_none())?;
-        let (n, x) = (last.grid().ok()?.len(), &last.axis.path);
-        let (xs, y) = (table.numbers(x)?, table.numbers(&f.result)?);
-        let others = y.len() / n;
-        if n < 2 {
+    /// A result over the inputs of a grid: curves over the one that runs fastest where they are few, and a map where there are two inputs.
+    fn over_the_grid(&self, table: &Table, f: &Finding) -> Vec<(Figure, Series)> {
+        let Some(grid) = Grid::new(self, table, f) else { return Vec::new() };
+        grid.curves(table, self.record.cases.len()).into_iter().chain(grid.map(table)).collect()
+    }
+}
+
+/// A result on a full grid, the last input the fastest.
+struct Grid<'a> {
+    inputs: &'a [Input],
+    f: &'a Finding,
+    /// Values of the last input at all points.
+    x: Vec<f64>,
+    /// The result at all points.
+    y: Vec<f64>,
+    /// Values of the last input.
+    n: usize,
+}
+
+impl<'a> Grid<'a> {
+    fn new(study: &'a Study, table: &Table, f: &'a Finding) -> Option<Self> {
+        let inputs = &study.record.study.inputs;
+        let last = inputs.last().filter(|_| study.record.study.design.is_none())?;
+        let n = last.grid().ok().map(|v| v.len()).filter(|n| *n >= 2)?;
+        let (x, y) = (table.numbers(&last.axis.path)?, table.numbers(&f.result)?);
+        Some(Self { inputs, f, x, y, n })
+    }
+
+    fn path(&self) -> &str {
+        self.inputs.last().map_or("", |i| i.axis.path.as_str())
+    }
+
+    fn axis(table: &Table, name: &str, values: Vec<f64>) -> Column {
+        let unit = table.columns.get(name).map_or_else(String::new, |c| c.unit.clone());
+        Column { name: name.to_owned(), unit, values }
+    }
+
+    fn column(&self, name: String, values: Vec<f64>) -> Column {
+        Column { name, unit: self.f.unit.clone(), values }
+    }
+
+    fn figure(&self, what: &str, over: &str, kind: FigureKind) -> Figure {
+        Figure {
+            title: in_words(&self.f.result),
+            hint: format!("over {over}"),
+            table: format!("{what} of {}", self.f.result),
+            kind,
+        }
+    }
+
+    fn curves(&self, table: &Table, cases: usize) -> Option<(Figure, Series)> {
+        let (n, x) = (self.n, self.path());
+        let others = self.y.len() / n;
+        if others > FEW {
             return None;
         }
-        let axis = |name: &str, values: Vec<f64>| {
-            let unit = table.columns.get(name).map_or_else(String::new, |c| c.unit.clone());
-            Column { name: name.to_owned(), unit, values }
-        };
-        let column = |name: String, values: Vec<f64>| Column { name, unit: f.unit.clone(), values };
-        let figure = |kind| Figure {
-            title: f.result.clone(),
-            hint: format!("over {x}"),
-            table: format!("grid of {}", f.result),
-            kind,
-        };
-        if others <= FEW {
-            let labels: Vec<String> =
-                (0..others).map(|k| label(table, self.record.cases.len(), inputs.len(), k * n, x)).collect();
-            let columns =
-                labels.iter().enumerate().map(|(k, l)| column(l.clone(), y[k * n..(k + 1) * n].to_vec()));
-            let series = Series { axis: axis(x, xs[..n].to_vec()), columns: columns.collect() };
-            let lines = labels.iter().map(|l| (l.clone(), l.clone())).collect();
-            let kind = FigureKind::Lines(Lines { x: x.clone(), lines, ..Lines::default() });
-            return Some((figure(kind), series));
-        }
-        let [second, _] = &inputs[..] else { return None };
-        let ys =
-            table.numbers(&second.axis.path).filter(|_| others == second.grid().map_or(0, |v| v.len()))?;
-        let columns = vec![axis(&second.axis.path, ys), column(f.result.clone(), y)];
-        let kind = FigureKind::Map { x: x.clone(), y: second.axis.path.clone(), value: f.result.clone() };
-        Some((figure(kind), Series { axis: axis(x, xs), columns }))
+        let labels: Vec<String> =
+            (0..others).map(|k| label(table, cases, self.inputs.len(), k * n, x)).collect();
+        let columns = labels.iter().enumerate();
+        let columns =
+            columns.map(|(k, l)| self.column(l.clone(), self.y[k * n..(k + 1) * n].to_vec())).collect();
+        let series = Series { axis: Self::axis(table, x, self.x[..n].to_vec()), columns };
+        let lines = labels.iter().map(|l| (l.clone(), l.clone())).collect();
+        let kind = FigureKind::Lines(Lines { x: x.to_owned(), lines, ..Lines::default() });
+        Some((self.figure("grid", x, kind), series))
     }
+
+    fn map(&self, table: &Table) -> Option<(Figure, Series)> {
+        let [second, last] = self.inputs else { return None };
+        let other = &second.axis.path;
+        let count = second.grid().map_or(0, |v| v.len());
+        let ys = table.numbers(other).filter(|_| count >= 2 && self.y.len() == count * self.n)?;
+        let columns = vec![Self::axis(table, other, ys), self.column(self.f.result.clone(), self.y.clone())];
+        let kind =
+            FigureKind::Map { x: last.axis.path.clone(), y: other.clone(), value: self.f.result.clone() };
+        let over = format!("{} and {other}", last.axis.path);
+        Some((
+            self.figure("map", &over, kind),
+            Series { axis: Self::axis(table, &last.axis.path, self.x.clone()), columns },
+        ))
+    }
+}
+
+/// A name of a result for people: `land2.p_max` becomes `land2, p max`.
+fn in_words(name: &str) -> String {
+    name.replace('.', ", ").replace('_', " ")
 }
 
 /// What tells the points of a curve from those of others: the case where there are several, and inputs but the one along it.
