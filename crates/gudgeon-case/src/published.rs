@@ -2,7 +2,7 @@
 //!
 //! A validator that meets `oneOf` tries every alternative and tells what is wrong with each. Here every choice of tables is written as
 //! the words of its tag (`enum`) and one `if`/`then` for each word, so that only the table that is meant is ever looked at; a choice of
-//! words is one `enum`; and what may be absent is not a choice at all, because TOML has no null.
+//! words is one `enum`; a word that is short for a table is told from it by the type of the value; and what may be absent is not a choice at all, because TOML has no null.
 
 use serde_json::{Map, Value, json};
 
@@ -38,6 +38,11 @@ fn table(o: &Map<String, Value>) -> Value {
         }
         if tag_of(&some).is_some() {
             return choice(rest(), &some);
+        }
+        if let [word, table] = some[..]
+            && let Some(words) = words(&[word])
+        {
+            return word_or_table(rest(), &words, table);
         }
     }
     let mut out: Map<String, Value> = o.iter().map(|(k, v)| (k.clone(), inside(k, v))).collect();
@@ -107,6 +112,16 @@ fn one_word(mut out: Map<String, Value>, words: &[(&Value, Option<&str>)]) -> Va
         out.insert("markdownEnumDescriptions".into(), json!(about));
         out.insert("x-taplo".into(), json!({ "docs": { "enumValues": about } }));
     }
+    Value::Object(out)
+}
+
+/// A word, or the table that a word is short for: the type of the value decides which of the two is looked at.
+fn word_or_table(mut out: Map<String, Value>, words: &[(&Value, Option<&str>)], table: &Value) -> Value {
+    drop_null(&mut out);
+    out.insert("type".into(), json!(["string", "object"]));
+    out.insert("if".into(), json!({ "type": "string" }));
+    out.insert("then".into(), one_word(Map::new(), words));
+    out.insert("else".into(), published(table));
     Value::Object(out)
 }
 

@@ -155,7 +155,10 @@ fn type_text(schema: &Value, name: Option<&str>, definitions: &Map<String, Value
     }
     if let Some(items) = schema.get("items") {
         let (inner, name) = resolve(items, definitions);
-        return format!("array of {}", type_text(inner, name, definitions));
+        return match type_text(inner, name, definitions).as_str() {
+            "table" => "array of tables".into(),
+            one => format!("array of {one}"),
+        };
     }
     match schema.get("type") {
         Some(Value::Array(a)) => a
