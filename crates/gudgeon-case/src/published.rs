@@ -4,6 +4,7 @@
 //! the words of its tag (`enum`) and one `if`/`then` for each word, so that only the table that is meant is ever looked at; a choice of
 //! words is one `enum`; a word that is short for a table is told from it by the type of the value; and what may be absent is not a choice at all, because TOML has no null.
 
+use gudgeon_core::sets::{SET, X_SETS};
 use serde_json::{Map, Value, json};
 
 use super::schema::MAX_ITEMS;
@@ -49,10 +50,31 @@ fn table(o: &Map<String, Value>) -> Value {
     drop_null(&mut out);
     out.remove("x-renamed");
     out.remove("x-used");
+    // Beside a reference it is the table there that may have sets.
+    if out.remove(X_SETS).is_some() || out.contains_key("$ref") {
+        demand_without_set(&mut out);
+    }
     if out.get("type").and_then(Value::as_str) == Some("array") {
         out.entry("maxItems").or_insert_with(|| MAX_ITEMS.into());
     }
     Value::Object(out)
+}
+
+/// What a table must have it may have from a set, all but the key that says which table it is.
+fn demand_without_set(out: &mut Map<String, Value>) {
+    let Some(Value::Array(required)) = out.remove("required") else { return };
+    let is_tag = |key: &Value| {
+        let property = out.get("properties").zip(key.as_str()).and_then(|(p, key)| p.get(key));
+        property.is_some_and(|p| p.get("const").is_some())
+    };
+    let (tags, others): (Vec<Value>, Vec<Value>) = required.into_iter().partition(is_tag);
+    if !tags.is_empty() {
+        out.insert("required".into(), tags.into());
+    }
+    if !others.is_empty() {
+        out.insert("if".into(), json!({ "required": [SET] }));
+        out.insert("else".into(), json!({ "required": others }));
+    }
 }
 
 /// Values of a case are no schemas, whatever their keys are called; neither are the names of properties.

@@ -27,6 +27,7 @@ pub mod file;
 pub mod geometry;
 pub mod kinds;
 pub mod registry;
+pub mod sets;
 pub mod spec;
 pub mod states;
 mod word;
