@@ -3,13 +3,17 @@
 pub mod bench;
 pub mod check;
 pub mod compare;
+pub mod completions;
 pub mod describe;
 pub mod explain;
 pub mod gradient;
+pub mod man;
 pub mod models;
+pub mod new;
 pub mod report;
 pub mod run;
 pub mod schema;
+mod sets;
 mod shares;
 pub mod study;
 pub mod validate;
