@@ -32,11 +32,14 @@ fn templates() -> Vec<String> {
     v.as_array().expect("a list").iter().map(|t| t["template"].as_str().expect("a name").to_owned()).collect()
 }
 
+/// A result, the least and the greatest value that it may have.
+type Bound = (&'static str, f64, f64);
+
 /// Each template written, checked and run as it is; its results stand between bounds that any machine of its class keeps.
 #[test]
 fn every_template_runs_as_it_is_and_gives_believable_results() {
-    // Result, least and greatest value: wide, for they say that a template is no nonsense, not that it is one engine.
-    let bounds: &[(&str, &[(&str, f64, f64)])] = &[
+    // Wide, for they say that a template is no nonsense, not that it is one engine.
+    let bounds: &[(&str, &[Bound])] = &[
         // Blow-by of a sound engine is some thousandths of its charge; rings cost 0.05 to 0.4 bar; peak pressures of the class.
         (
             "petrol-engine",

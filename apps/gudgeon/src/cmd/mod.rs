@@ -15,7 +15,9 @@ pub mod run;
 pub mod schema;
 mod sets;
 mod shares;
+mod spark;
 pub mod study;
+mod trends;
 pub mod validate;
 
 use std::path::Path;
