@@ -3,12 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args as ClapArgs, Parser, Subcommand};
+use clap_complete::Shell;
+
+/// What the program is called.
+pub const NAME: &str = "gudgeon";
 
 /// Simulates the power cylinder of reciprocating machines: gas between the rings, films, contact, ring motion.
 ///
 /// A case is a TOML file that names its models. `gudgeon models` lists them, `gudgeon explain CASE` tells what a case does.
 #[derive(Debug, Parser)]
-#[command(version, max_term_width = 110, arg_required_else_help = true)]
+#[command(name = NAME, version, max_term_width = 110, arg_required_else_help = true)]
 pub struct Args {
     #[command(subcommand)]
     pub command: Command,
@@ -32,6 +36,8 @@ impl Args {
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    /// Write a case file to be filled in; without arguments, list the templates
+    New(NewArgs),
     /// Run a case; results go to `out/<case>/`
     Run(RunArgs),
     /// Read, resolve and validate a case without running it
@@ -57,6 +63,10 @@ pub enum Command {
     Study(StudyCommand),
     /// Write report.html of a result folder again
     Report(ReportArgs),
+    /// Print a script that completes commands and options in a shell
+    Completions(CompletionsArgs),
+    /// Print the manual page of the program, or write those of all commands
+    Man(ManArgs),
 }
 
 /// The case and its changes.
@@ -67,6 +77,17 @@ pub struct CaseArgs {
     /// Change a value of the case: rings.0.gap="0.5 mm", models.gas_flow.model=narrow_channel
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub set: Vec<String>,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct NewArgs {
+    /// Template [default: list them]
+    pub template: Option<String>,
+    /// File to be written; one that exists is left alone [default: TEMPLATE.toml]
+    pub file: Option<PathBuf>,
+    /// Print the templates as JSON
+    #[arg(long, conflicts_with = "template")]
+    pub json: bool,
 }
 
 #[derive(Debug, ClapArgs)]
@@ -98,8 +119,11 @@ pub struct CheckArgs {
 
 #[derive(Debug, ClapArgs)]
 pub struct ModelsArgs {
-    /// Only this kind
+    /// Only this kind; with `--sets` also a table of a case, such as `engine`
     pub kind: Option<String>,
+    /// List parameter sets instead: named groups of values, each with its source or marked as assumed
+    #[arg(long)]
+    pub sets: bool,
     /// Print JSON
     #[arg(long)]
     pub json: bool,
@@ -273,6 +297,19 @@ pub struct ReportArgs {
     /// Folder with the results of a run, a comparison or a benchmark
     #[arg(value_name = "DIR")]
     pub dir: PathBuf,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct CompletionsArgs {
+    /// Shell
+    pub shell: Shell,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct ManArgs {
+    /// Folder for a page of every command
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
 }
 
 /// The folder that results go to. A case whose file is called `...toml` must not get a folder beside `out`.

@@ -39,6 +39,7 @@ fn dispatch(command: &Command, ui: &Ui) -> Result<(), Failure> {
         return Err(Failure::Registry(all));
     }
     match command {
+        Command::New(a) => cmd::new::new(a, ui),
         Command::Run(a) => cmd::run::run(a, ui),
         Command::Check(a) => cmd::check::check(a, ui),
         Command::Explain(a) => cmd::explain::explain(a, ui),
@@ -51,5 +52,10 @@ fn dispatch(command: &Command, ui: &Ui) -> Result<(), Failure> {
         Command::Validate(a) => cmd::validate::validate(a, ui),
         Command::Study(a) => cmd::study::study(a, ui),
         Command::Report(a) => cmd::report::report(a, ui),
+        Command::Completions(a) => {
+            cmd::completions::completions(a.shell, ui);
+            Ok(())
+        }
+        Command::Man(a) => cmd::man::man(a, ui),
     }
 }

@@ -19,6 +19,8 @@ use crate::interrupt;
 pub struct Ui {
     quiet: bool,
     color: bool,
+    /// Whether standard output is a terminal that shows more than letters.
+    blocks: bool,
     /// Columns for mistakes.
     width: usize,
     /// Why standard output lacks something.
@@ -36,6 +38,7 @@ impl Ui {
         Self {
             quiet,
             color: wanted && io::stderr().is_terminal(),
+            blocks: wanted && io::stdout().is_terminal() && utf8(),
             width: width.min(gudgeon_case::WIDTH),
             lost: RefCell::new(None),
         }
@@ -44,6 +47,11 @@ impl Ui {
     /// Whether tables and progress are unwanted.
     pub const fn quiet(&self) -> bool {
         self.quiet
+    }
+
+    /// Whether block characters may be written to standard output. What a file or another program gets is plain text.
+    pub const fn blocks(&self) -> bool {
+        self.blocks
     }
 
     /// To standard output. What could not be written makes the program fail at its end, [`Ui::end`].
@@ -127,6 +135,13 @@ impl Ui {
         bar.enable_steady_tick(Duration::from_millis(200));
         Bar { bar, scale: SCALE as f64 }
     }
+}
+
+/// Whether the terminal reads UTF-8: everywhere on Windows, elsewhere as the locale says.
+fn utf8() -> bool {
+    let said =
+        ["LC_ALL", "LC_CTYPE", "LANG"].iter().find_map(|v| std::env::var(v).ok().filter(|v| !v.is_empty()));
+    cfg!(windows) || said.is_some_and(|v| v.to_ascii_lowercase().replace('-', "").contains("utf8"))
 }
 
 /// A running progress bar; it disappears when dropped.

@@ -1,6 +1,9 @@
 //! What a case may say: kinds and models found by name, and what is known of them, for a program to read.
 
+use std::collections::BTreeMap;
+
 use gudgeon_core::schemars::SchemaGenerator;
+use gudgeon_core::sets::{self, ParameterSets};
 use gudgeon_core::{KindInfo, ModelInfo, Registry};
 use serde_json::{Map, Value, json};
 
@@ -171,4 +174,49 @@ pub fn choices(m: &ModelInfo) -> Vec<(String, String, Vec<String>)> {
     let mut out = Vec::new();
     look(&schema, &definitions, "", 0, &mut out);
     out
+}
+
+/// A table that has parameter sets: its name as a case or a model is called, and the sets.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SetTable {
+    /// `oil/walther` of a model, `engine` of a table of a case.
+    pub of: String,
+    /// The sets by name.
+    pub sets: ParameterSets,
+}
+
+/// Every model and every table of these schemas of cases that has parameter sets: models first, by kind and name, then tables by name.
+#[must_use]
+pub fn set_tables(registry: &Registry, cases: &[Value]) -> Vec<SetTable> {
+    let models = registry.kinds().flat_map(|k| registry.models(k.kind));
+    let of_model =
+        |m: &&ModelInfo| SetTable { of: format!("{}/{}", m.kind, m.name), sets: sets::of(&schema(m).0) };
+    let mut all: Vec<SetTable> = models.map(of_model).filter(|t| !t.sets.is_empty()).collect();
+    let mut tables = BTreeMap::new();
+    for case in cases {
+        let definitions = case.get("$defs").and_then(Value::as_object).cloned().unwrap_or_default();
+        tables_with_sets(case, &definitions, 0, &mut tables);
+    }
+    all.extend(tables.into_iter().map(|(of, sets)| SetTable { of, sets }));
+    all
+}
+
+/// The tables with sets below a schema, by the keys that they stand at. Models are left out.
+fn tables_with_sets(
+    table: &Value,
+    definitions: &Map<String, Value>,
+    depth: usize,
+    out: &mut BTreeMap<String, ParameterSets>,
+) {
+    for (key, p) in table.get("properties").and_then(Value::as_object).into_iter().flatten() {
+        let inner = resolve(p, definitions).0;
+        let element = inner.get("items").map_or(inner, |i| resolve(i, definitions).0);
+        let sets = sets::of(element);
+        if !sets.is_empty() {
+            out.insert(key.clone(), sets);
+        }
+        if depth < DEPTH {
+            tables_with_sets(element, definitions, depth + 1, out);
+        }
+    }
 }

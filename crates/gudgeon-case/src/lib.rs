@@ -1,7 +1,7 @@
 //! Reads a case file: text, `--set` overrides, every mistake with its place, then the value.
 //!
 //! 1. The text becomes a tree whose keys and values remember their places. A file that is not TOML ends here.
-//! 2. Overrides change the tree.
+//! 2. Overrides change the tree, and parameter sets that tables name fill it in.
 //! 3. A walk along the JSON schema of the wanted type reports all unknown keys, missing keys, wrong types, units, ranges,
 //!    words and models at once.
 //! 4. Deserialisation decides. What it refuses after a clean walk is reported at the path where it stopped.
@@ -15,6 +15,7 @@ mod refine;
 mod render;
 mod report;
 mod schema;
+mod sets;
 mod tree;
 
 use std::ops::Range;
@@ -32,6 +33,7 @@ pub use near::{advice, list, nearest};
 pub use published::{one_scene_of, published};
 pub use refine::{Level, Refinement};
 pub use report::{Diagnostic, MAX_MISTAKES, Origin, Report, Source, WIDTH, line_column};
+pub use sets::UsedSet;
 
 /// What the tests of this crate look at and nobody else needs.
 #[doc(hidden)]
@@ -53,6 +55,8 @@ pub struct Loaded<T> {
     pub overrides: Arc<[String]>,
     /// What a person should be told: keys that a changed model made meaningless, numbers that probably lack their unit.
     pub notes: Vec<String>,
+    /// The parameter sets that it names, in the order of the file.
+    pub sets: Vec<UsedSet>,
     tree: Arc<Node>,
     /// The tree of the text alone, which studies change again and again.
     base: Arc<Node>,
@@ -117,6 +121,7 @@ fn load_tree<T: DeserializeOwned + JsonSchema + 'static>(
     let mut notes = Vec::new();
     let not_applied = overrides::apply(&mut tree, schema, &overrides, &mut notes);
     found.extend(not_applied);
+    let sets = sets::expand(&mut tree, schema);
     let wrong = schema.check(&tree, source.text.len());
     found.extend(wrong.into_iter().map(|d| suggest_path(d, schema, &overrides)));
     if !found.is_empty() {
@@ -124,7 +129,7 @@ fn load_tree<T: DeserializeOwned + JsonSchema + 'static>(
     }
     notes.extend(schema.improbable(&tree));
     match content::read(&tree.content()) {
-        Ok(value) => Ok(Loaded { value, source, overrides, notes, tree: Arc::new(tree), base }),
+        Ok(value) => Ok(Loaded { value, source, overrides, notes, sets, tree: Arc::new(tree), base }),
         Err(e) => Err(refuse(vec![place(&tree, &source, e.path().to_owned(), reason(&e), None)])),
     }
 }

@@ -2,8 +2,9 @@
 //!
 //! A validator that meets `oneOf` tries every alternative and tells what is wrong with each. Here every choice of tables is written as
 //! the words of its tag (`enum`) and one `if`/`then` for each word, so that only the table that is meant is ever looked at; a choice of
-//! words is one `enum`; and what may be absent is not a choice at all, because TOML has no null.
+//! words is one `enum`; a word that is short for a table is told from it by the type of the value; and what may be absent is not a choice at all, because TOML has no null.
 
+use gudgeon_core::sets::{SET, X_SETS};
 use serde_json::{Map, Value, json};
 
 use super::schema::MAX_ITEMS;
@@ -39,15 +40,41 @@ fn table(o: &Map<String, Value>) -> Value {
         if tag_of(&some).is_some() {
             return choice(rest(), &some);
         }
+        if let [word, table] = some[..]
+            && let Some(words) = words(&[word])
+        {
+            return word_or_table(rest(), &words, table);
+        }
     }
     let mut out: Map<String, Value> = o.iter().map(|(k, v)| (k.clone(), inside(k, v))).collect();
     drop_null(&mut out);
     out.remove("x-renamed");
     out.remove("x-used");
+    // Beside a reference it is the table there that may have sets.
+    if out.remove(X_SETS).is_some() || out.contains_key("$ref") {
+        demand_without_set(&mut out);
+    }
     if out.get("type").and_then(Value::as_str) == Some("array") {
         out.entry("maxItems").or_insert_with(|| MAX_ITEMS.into());
     }
     Value::Object(out)
+}
+
+/// What a table must have it may have from a set, all but the key that says which table it is.
+fn demand_without_set(out: &mut Map<String, Value>) {
+    let Some(Value::Array(required)) = out.remove("required") else { return };
+    let is_tag = |key: &Value| {
+        let property = out.get("properties").zip(key.as_str()).and_then(|(p, key)| p.get(key));
+        property.is_some_and(|p| p.get("const").is_some())
+    };
+    let (tags, others): (Vec<Value>, Vec<Value>) = required.into_iter().partition(is_tag);
+    if !tags.is_empty() {
+        out.insert("required".into(), tags.into());
+    }
+    if !others.is_empty() {
+        out.insert("if".into(), json!({ "required": [SET] }));
+        out.insert("else".into(), json!({ "required": others }));
+    }
 }
 
 /// Values of a case are no schemas, whatever their keys are called; neither are the names of properties.
@@ -107,6 +134,16 @@ fn one_word(mut out: Map<String, Value>, words: &[(&Value, Option<&str>)]) -> Va
         out.insert("markdownEnumDescriptions".into(), json!(about));
         out.insert("x-taplo".into(), json!({ "docs": { "enumValues": about } }));
     }
+    Value::Object(out)
+}
+
+/// A word, or the table that a word is short for: the type of the value decides which of the two is looked at.
+fn word_or_table(mut out: Map<String, Value>, words: &[(&Value, Option<&str>)], table: &Value) -> Value {
+    drop_null(&mut out);
+    out.insert("type".into(), json!(["string", "object"]));
+    out.insert("if".into(), json!({ "type": "string" }));
+    out.insert("then".into(), one_word(Map::new(), words));
+    out.insert("else".into(), published(table));
     Value::Object(out)
 }
 

@@ -8,6 +8,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::{Mutex, PoisonError, RwLock};
 
 use gudgeon_core::quantity::{self, ALL_DIMENSIONS, QuantityError};
+use gudgeon_core::sets::{SET, X_SETS};
 use serde_json::{Map, Value};
 
 use super::near::{advice, list, nearest};
@@ -132,6 +133,12 @@ impl Schema {
         self.tagged(schema).map_or(Some(schema), |tagged| tagged.chosen(node?))
     }
 
+    /// What a value is read by: the table that it asks for where there are several, references followed.
+    pub fn table_of(&self, schema: Part, node: &Node) -> Option<Part> {
+        let schema = self.resolve(schema);
+        self.chosen(self.model_of_word(schema).unwrap_or(schema), Some(node))
+    }
+
     /// The models that a word of this schema names: what `hoop = "as_printed"` says as the table `hoop = { model = "as_printed" }`.
     pub fn model_of_word(&self, schema: Part) -> Option<Part> {
         let alternatives = alternatives(self.resolve(schema))?;
@@ -164,8 +171,7 @@ impl Schema {
             Data::Integer(i) => *i as f64,
             Data::Float(f) => *f,
             Data::Table(entries) => {
-                let schema = self.model_of_word(schema).unwrap_or(schema);
-                let Some(table) = self.chosen(schema, Some(node)) else { return };
+                let Some(table) = self.table_of(schema, node) else { return };
                 for e in entries {
                     if let Some(s) = property(table, &e.key) {
                         self.look_for_improbable(&e.node, s, &join(path, &e.key), out);
@@ -249,11 +255,18 @@ impl Schema {
         let mut missing: Vec<&str> =
             strings(schema.get("required")).into_iter().filter(|k| absent(k) && !skip.contains(k)).collect();
 
+        let sets = schema.get(X_SETS).and_then(Value::as_object);
+        if sets.is_some() && present.contains(SET) {
+            // What it would give is not missing as well.
+            missing.clear();
+        }
         for e in entries {
             if out.len() >= MAX_MISTAKES {
                 return;
             }
-            if let Some(s) = own(&e.key) {
+            if let Some(sets) = sets.filter(|_| e.key == SET) {
+                out.push(no_such_set(&e.node, sets, &join(path, SET)));
+            } else if let Some(s) = own(&e.key) {
                 if !skip.contains(&e.key.as_str()) {
                     self.value(&e.node, s, &join(path, &e.key), out);
                 }
@@ -467,7 +480,7 @@ impl Schema {
 type Visit<'a> = dyn FnMut(&str, bool, &Map<String, Value>) + 'a;
 
 /// The schema of a key of a table.
-fn property(table: Part, key: &str) -> Option<Part> {
+pub(super) fn property(table: Part, key: &str) -> Option<Part> {
     let own = table.get("properties").and_then(|p| p.get(key));
     own.or_else(|| table.get("additionalProperties").filter(|a| a.is_object()))
 }
@@ -631,6 +644,16 @@ fn wrong_type(node: &Node, wanted: &str, path: &str) -> Diagnostic {
     Diagnostic::new(format!("{wanted} is wanted here, not {}", node.noun()))
         .path(path)
         .at(node.place.origin, node.place.span.clone())
+}
+
+/// What is wrong with the name of a parameter set: those that exist are no longer in the document.
+fn no_such_set(node: &Node, sets: &Map<String, Value>, path: &str) -> Diagnostic {
+    let names: Vec<&str> = sets.keys().map(String::as_str).collect();
+    let Data::Text(name) = &node.data else {
+        return wrong_type(node, "the name of a parameter set", path).help(advice("", &names));
+    };
+    let what = format!("there is no parameter set `{}`", shorten(name));
+    Diagnostic::new(what).path(path).at(node.place.origin, node.place.span.clone()).help(advice(name, &names))
 }
 
 fn check_range(node: &Node, v: f64, schema: &Value, path: &str, out: &mut Vec<Diagnostic>) {

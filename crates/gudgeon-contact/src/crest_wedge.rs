@@ -1,5 +1,6 @@
 use gudgeon_core::kinds::{Contact, ContactSpec};
 use gudgeon_core::quantity::{NonNegative, PosLength, PosPressure, PosRatio, Ratio, quantity};
+use gudgeon_core::sets::Sets;
 use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
@@ -21,6 +22,7 @@ use serde::{Deserialize, Serialize};
 /// Source: Loureiro 2009, after Johnson's wedge.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(transform = Sets(include_str!("crest_wedge.json")))]
 pub struct CrestWedge {
     /// Amplitude Ω of the waviness: half the distance from trough to crest.
     pub amplitude: PosLength,

@@ -2,6 +2,7 @@ use gudgeon_core::kinds::{Contact, ContactSpec};
 use gudgeon_core::quantity::{
     NonNegative, PosLength, PosPressure, PosRatio, PosSurfaceDensity, Ratio, quantity,
 };
+use gudgeon_core::sets::Sets;
 use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
@@ -34,6 +35,7 @@ use crate::asperity_integral::{f_1, f_2, f_5_2_field};
 /// pressed flat there, and the model says what a perfectly elastic surface would do.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(transform = Sets(include_str!("greenwood_tripp.json")))]
 pub struct GreenwoodTripp {
     /// Composite roughness σ of the two surfaces: `√(σ1² + σ2²)` of their rms roughness.
     pub roughness: PosLength,

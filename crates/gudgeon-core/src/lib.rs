@@ -18,7 +18,7 @@
 //! `gudgeon-numerics` and its linear algebra, most of the others serde and schemars, because a specification can be read, written and described
 //! wherever it is used, and so are models that hold others (`Box<dyn …Spec>`, see [`spec`]). There is no feature to leave that out: it would
 //! stand on every specification and save 6 packages. Reading case files (TOML, places, diagnostics) is `gudgeon-case`, which no physics crate
-//! depends on; the program as a whole is 104 packages.
+//! depends on; the program as a whole is 129 packages.
 
 pub mod content;
 pub mod error;
@@ -27,6 +27,7 @@ pub mod file;
 pub mod geometry;
 pub mod kinds;
 pub mod registry;
+pub mod sets;
 pub mod spec;
 pub mod states;
 mod word;

@@ -9,13 +9,14 @@ use gudgeon_core::kinds::{
     KinematicsSpec,
 };
 use gudgeon_core::quantity::{Length, PosAngularSpeed, PosLength, PosPressure, quantity};
+use gudgeon_core::sets::Sets;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Engine.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(extend("x-renamed" = { "offset": "crank_offset" }))]
+#[schemars(extend("x-renamed" = { "offset": "crank_offset" }), transform = Sets(include_str!("engine.json")))]
 pub struct Engine {
     /// Crankshaft speed.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -4,6 +4,7 @@ use gudgeon_core::BuildError;
 use gudgeon_core::quantity::{
     Length, NonNegative, PosDensity, PosInertia, PosLength, PosMass, PosTemperature, PosVolume,
 };
+use gudgeon_core::sets::Sets;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -12,6 +13,7 @@ use crate::engine::given;
 /// Piston, from the crown down.
 #[derive(Debug, Clone, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(transform = Sets(include_str!("piston.json")))]
 pub struct Piston {
     /// Lands above each ring, top land first: as many as there are rings.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]

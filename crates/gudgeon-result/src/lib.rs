@@ -685,8 +685,31 @@ pub struct Provenance {
     /// Further files that the case names, by their names in it.
     #[serde(default)]
     pub files: IndexMap<String, KeptFile>,
+    /// Parameter sets that the case names: what each gave, with its source.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sets: Vec<SetUse>,
     /// Every value of the case in SI units, changes and defaults filled in.
     pub resolved: serde_json::Value,
+}
+
+/// A parameter set that a table of a case took over.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct SetUse {
+    /// Path of the table, `models.oil`.
+    pub path: String,
+    /// Name of the set.
+    pub name: String,
+    /// The values that were taken, by key: the value as a case says it, and where it comes from.
+    pub values: IndexMap<String, SetValueUse>,
+}
+
+/// A value that a parameter set gave.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct SetValueUse {
+    /// As a case says it.
+    pub value: String,
+    /// Source, or why it is assumed.
+    pub origin: String,
 }
 
 /// One group of numerical settings that was refined.

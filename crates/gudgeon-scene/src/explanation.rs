@@ -1,5 +1,6 @@
 //! What a case would do: models, what runs and what is skipped, every value.
 
+use gudgeon_case::UsedSet;
 use gudgeon_core::Registry;
 use gudgeon_core::result::{ModelUse, Skipped};
 use serde::Serialize;
@@ -42,6 +43,9 @@ pub struct Explanation {
     pub resolved: serde_json::Value,
     /// Models that run.
     pub models: Vec<ExplainedModel>,
+    /// Parameter sets that the case names.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub sets: Vec<UsedSet>,
     /// What runs, and why.
     pub runs: Vec<Skipped>,
     /// What is left out, and why.
@@ -74,6 +78,18 @@ impl Explanation {
             }
             if !m.used.references.is_empty() {
                 let _ = writeln!(s, "  {:<18}   [{}]", "", m.used.references.join(", "));
+            }
+        }
+        if !self.sets.is_empty() {
+            let _ = writeln!(s, "\nParameter sets");
+        }
+        for set in &self.sets {
+            let _ = writeln!(s, "  {} = \"{}\": {}", set.path, set.name, set.about);
+            for (key, v) in &set.taken {
+                let _ = writeln!(s, "    {key} = {}  {}", v.text(), v.origin());
+            }
+            if !set.own.is_empty() {
+                let _ = writeln!(s, "    values of the case instead: {}", set.own.join(", "));
             }
         }
         let _ = writeln!(s, "\nRuns");

@@ -3,12 +3,13 @@
 use std::fmt::Write as _;
 
 use gudgeon_core::file::Files;
-use gudgeon_core::result::{KeptFile, Provenance};
+use gudgeon_core::result::{KeptFile, Provenance, SetUse, SetValueUse};
 use indexmap::IndexMap;
 use sha2::{Digest, Sha256};
 
 use crate::scene::Scene;
-use gudgeon_case::{Diagnostic, Report, Source};
+use gudgeon_case::{Diagnostic, Report, Source, UsedSet};
+use gudgeon_core::sets::SetValue;
 
 /// SHA-256 of some bytes in hexadecimal digits.
 #[must_use]
@@ -32,7 +33,17 @@ pub fn provenance(file: &str, case: &dyn Scene) -> Provenance {
         revision: String::new(),
         text: source.text.clone(),
         files: files(source),
+        sets: case.sets().iter().map(set_use).collect(),
         resolved,
+    }
+}
+
+fn set_use(set: &UsedSet) -> SetUse {
+    let value = |v: &SetValue| SetValueUse { value: v.text(), origin: v.origin() };
+    SetUse {
+        path: set.path.clone(),
+        name: set.name.clone(),
+        values: set.taken.iter().map(|(key, v)| (key.clone(), value(v))).collect(),
     }
 }
 

@@ -3,8 +3,8 @@
 use std::path::Path;
 use std::time::Instant;
 
-use gudgeon_case::{Report, Source, read, scene_of};
-use gudgeon_core::result::{Note, RunResult, Skipped};
+use gudgeon_case::{Report, Source, UsedSet, read, scene_of};
+use gudgeon_core::result::{ModelUse, Note, RunResult, Skipped};
 use gudgeon_core::{BuildError, Registry, Stopped};
 
 use crate::error::{Progress, RunError};
@@ -117,7 +117,9 @@ pub fn explain(c: &Checked) -> Result<Explanation, RunError> {
         notes: c.notes.clone(),
         ..Explanation::default()
     };
-    let used = c.case.explain(&mut told)?;
+    let mut used = c.case.explain(&mut told)?;
+    told.sets = c.case.sets();
+    cite_sets(&told.sets, &mut used);
     let idle = |path: String| Skipped { what: path, why: "this scene does not use it".into() };
     told.skipped.extend(c.case.unused().into_iter().map(idle));
     told.models = used
@@ -240,8 +242,23 @@ fn headed(scene: &dyn Scene, mut result: RunResult) -> RunResult {
     result.title = heading.title.into();
     result.source = heading.source.into();
     result.assumptions = heading.assumptions.to_vec();
+    let sets = scene.sets();
+    result.assumptions.extend(sets.iter().flat_map(UsedSet::assumptions));
+    cite_sets(&sets, &mut result.models);
     result.scene = scene_of(scene.source(), scene.overrides()).unwrap_or_default();
     result
+}
+
+/// Adds the sources of parameter sets to the models that took them.
+fn cite_sets(sets: &[UsedSet], models: &mut [ModelUse]) {
+    for set in sets {
+        let kind = set.path.rsplit('.').next().unwrap_or_default();
+        for m in models.iter_mut().filter(|m| m.kind == kind) {
+            let new: Vec<&str> =
+                set.references().into_iter().filter(|r| !m.references.iter().any(|k| k == r)).collect();
+            m.references.extend(new.into_iter().map(str::to_owned));
+        }
+    }
 }
 
 /// Runs the case and its sweeps. Where the case itself fails, its sweeps are still run.

@@ -8,7 +8,9 @@ use std::borrow::Cow;
 use std::sync::{Mutex, OnceLock, PoisonError};
 use std::time::Instant;
 
-use gudgeon_case::{Loaded, Refinement, Report, Source, load_source, nearest, scene_of, top_level_keys};
+use gudgeon_case::{
+    Loaded, Refinement, Report, Source, UsedSet, load_source, nearest, scene_of, top_level_keys,
+};
 use gudgeon_core::kinds::EngineCycle;
 use gudgeon_core::result::{GradientInput, Gradients, ModelUse, RunResult, Value};
 use gudgeon_core::{BuildError, Stopped};
@@ -64,6 +66,11 @@ pub trait SceneCase:
         None
     }
 
+    /// The parameter sets that it names, those of cases that it is made of included.
+    fn sets(loaded: &Loaded<Self>) -> Vec<UsedSet> {
+        loaded.sets.clone()
+    }
+
     /// How its numerical settings are refined: those that it and its models declare.
     fn refinements(loaded: &Loaded<Self>) -> Vec<Refinement> {
         loaded.refinements()
@@ -102,6 +109,8 @@ pub trait Scene: Send + Sync {
     fn overrides(&self) -> &[String];
     /// What a person should know although nothing is wrong.
     fn notes(&self) -> &[String];
+    /// As [`SceneCase::sets`].
+    fn sets(&self) -> Vec<UsedSet>;
     /// Paths of the values that the case gives and its scene does not use.
     fn unused(&self) -> Vec<String>;
     /// Every value in SI units, changes and defaults filled in.
@@ -211,6 +220,10 @@ impl<C: SceneCase> Scene for Read<C> {
 
     fn notes(&self) -> &[String] {
         &self.loaded.notes
+    }
+
+    fn sets(&self) -> Vec<UsedSet> {
+        C::sets(&self.loaded)
     }
 
     fn unused(&self) -> Vec<String> {

@@ -38,7 +38,7 @@ pub fn compare(a: &CompareArgs, ui: &Ui) -> Result<(), Failure> {
     };
     let files = gudgeon_report::write_comparison_in(&comparison, folder)?;
     if !ui.quiet() {
-        ui.out(&format!("{}\n{}", text(&comparison), files.report.display()));
+        ui.out(&format!("{}\n{}", text(&comparison, &a.results), files.report.display()));
     }
     let failed = comparison.variants.iter().filter(|v| v.outcome.is_err()).count();
     match failed {
@@ -110,21 +110,24 @@ fn uncertainty(r: &RunResult, name: &str) -> f64 {
     r.verification.as_ref().and_then(|v| v.uncertainty.get(name)).copied().unwrap_or(0.0)
 }
 
-/// Combinations that fit a terminal side by side.
+/// Combinations that stand side by side with all their results; of more, each gets a line with some.
 const COLUMNS: usize = 4;
 
-/// Combinations that are listed one by one; of more, what they say is gathered.
+/// Combinations whose notes are told one by one; of more, what they say is gathered.
 const LISTED: usize = 12;
 
-fn text(c: &Comparison) -> String {
+/// `wanted`: results that the user asked for.
+fn text(c: &Comparison, wanted: &[String]) -> String {
     let mut s = format!("{}: {}\n\n", c.case, c.title);
     if c.variants.len() > LISTED {
         gathered(&mut s, c);
     } else {
         listed(&mut s, c);
     }
-    if c.cases.len() == 1 {
+    if c.cases.len() == 1 && c.variants.len() <= COLUMNS {
         side_by_side(&mut s, c);
+    } else {
+        s.push_str(&one_below_the_other(c, wanted));
     }
     s.push_str(&c.shares.first().map_or_else(String::new, shares::text));
     s
@@ -175,30 +178,19 @@ fn gathered(s: &mut String, c: &Comparison) {
     }
 }
 
-/// Results of the first combinations.
+/// All results of few combinations.
 fn side_by_side(s: &mut String, c: &Comparison) {
     let shown: Vec<_> =
         c.variants.iter().enumerate().filter_map(|(i, v)| Some((i, v.outcome.as_ref().ok()?))).collect();
     let Some((first, base)) = shown.first() else { return };
-    let shown = &shown[..shown.len().min(COLUMNS)];
     let mut rows = vec![vec![String::new(), String::new(), letter(*first)]];
     for (i, _) in &shown[1..] {
         rows[0].extend([letter(*i), format!("to {}", letter(*first))]);
     }
-    for (name, v) in &base.results {
-        let mut row = vec![name.clone(), unit(&v.unit), number(v.value)];
+    for name in base.results.keys() {
+        let mut row = vec![name.clone(), unit(&base.results[name].unit), value(base, name)];
         for (_, r) in &shown[1..] {
-            let other = r.results.get(name);
-            row.push(other.map_or_else(|| "-".into(), |o| number(o.value)));
-            row.push(match other {
-                Some(o) if (o.value - v.value).abs() < uncertainty(base, name) + uncertainty(r, name) => {
-                    "numerics".into()
-                }
-                Some(o) if v.value != 0.0 && o.value != v.value => {
-                    format!("{:+.2} %", 100.0 * (o.value / v.value - 1.0))
-                }
-                _ => String::new(),
-            });
+            row.extend([value(r, name), change(base, r, name)]);
         }
         rows.push(row);
     }
@@ -211,14 +203,68 @@ fn side_by_side(s: &mut String, c: &Comparison) {
     s.push('\n');
     let right: Vec<usize> = (2..2 + 2 * shown.len()).collect();
     s.push_str(&table(&rows, &right));
-    let hidden = c.variants.iter().filter(|v| v.outcome.is_ok()).count() - shown.len();
-    if hidden > 0 {
-        let of: Vec<String> =
-            shown.iter().map(|(i, _)| format!("{} {}", letter(*i), c.variants[*i].label)).collect();
-        if c.variants.len() > LISTED {
-            let _ = writeln!(s, "\n  {}", of.join("\n  "));
+}
+
+/// Results that stand beside each other where combinations stand below each other and nobody asked for others.
+const RESULTS: usize = 4;
+
+/// Some results of every combination, one a line, each beside its change to the first combination of its case.
+fn one_below_the_other(c: &Comparison, wanted: &[String]) -> String {
+    let Some(any) = c.variants.iter().find_map(|v| v.outcome.as_ref().ok()) else { return String::new() };
+    let names = shown_results(any, wanted);
+    let mut head = vec![String::new()];
+    for name in &names {
+        let u = unit(&any.results[*name].unit);
+        head.extend([if u.is_empty() { (*name).to_owned() } else { format!("{name} [{u}]") }, String::new()]);
+    }
+    let mut rows = vec![head];
+    for (i, v) in c.variants.iter().enumerate() {
+        let base = c.variants.iter().find(|b| b.case == v.case).and_then(|b| b.outcome.as_ref().ok());
+        let mut row = vec![letter(i)];
+        for name in &names {
+            row.extend(match (&v.outcome, base) {
+                (Ok(r), Some(b)) => [value(r, name), change(b, r, name)],
+                (Ok(r), None) => [value(r, name), String::new()],
+                (Err(_), _) => ["-".into(), String::new()],
+            });
         }
-        let _ = writeln!(s, "\n  {hidden} more in the report");
+        row.push(v.label.clone());
+        rows.push(row);
+    }
+    let right: Vec<usize> = (1..=2 * names.len()).collect();
+    let more = any.results.len().saturating_sub(names.len());
+    let of = if more > 0 {
+        format!("  {more} more results in the report; `--results` names those to be shown here\n")
+    } else {
+        String::new()
+    };
+    format!("\n{}{of}", table(&rows, &right))
+}
+
+/// The results that were asked for, or the first of the whole scene, `blow_by` but not `ring1.h_min`.
+fn shown_results<'a>(r: &'a RunResult, wanted: &[String]) -> Vec<&'a str> {
+    let all = || r.results.keys().map(String::as_str);
+    let asked: Vec<&str> = all().filter(|n| wanted.iter().any(|w| w == n)).collect();
+    if !asked.is_empty() {
+        return asked;
+    }
+    let whole: Vec<&str> = all().filter(|n| !n.contains('.')).take(RESULTS).collect();
+    if whole.is_empty() { all().take(RESULTS).collect() } else { whole }
+}
+
+fn value(r: &RunResult, name: &str) -> String {
+    r.results.get(name).map_or_else(|| "-".into(), |v| number(v.value))
+}
+
+/// How a result differs from that of the base: in per cent, or not beyond what the numerics leave open.
+fn change(base: &RunResult, r: &RunResult, name: &str) -> String {
+    let (Some(b), Some(v)) = (base.results.get(name), r.results.get(name)) else { return String::new() };
+    if (v.value - b.value).abs() < uncertainty(base, name) + uncertainty(r, name) {
+        "numerics".into()
+    } else if b.value != 0.0 && v.value != b.value {
+        format!("{:+.2} %", 100.0 * (v.value / b.value - 1.0))
+    } else {
+        String::new()
     }
 }
 

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use gudgeon_case::catalogue::{self, DEPTH, choice, equations, example, resolve, schema};
-use gudgeon_core::{ModelInfo, Registry};
+use gudgeon_core::{ModelInfo, Registry, sets};
 use serde_json::{Map, Value};
 
 use crate::args::{DescribeArgs, ModelsArgs};
@@ -14,7 +14,7 @@ use crate::ui::{Ui, wrapped};
 pub fn describe(a: &DescribeArgs, registry: &Registry, ui: &Ui) -> Result<(), Failure> {
     let what = a.what.trim().trim_start_matches("models.");
     if registry.kind(what).is_some() {
-        let a = ModelsArgs { kind: Some(what.to_owned()), json: a.json };
+        let a = ModelsArgs { kind: Some(what.to_owned()), sets: false, json: a.json };
         return models::models(&a, registry, ui);
     }
     let m = catalogue::model(registry, what)?;
@@ -46,6 +46,11 @@ fn page(registry: &Registry, m: &ModelInfo) -> String {
     parameters(&schema, &definitions, 2, 0, &mut s);
     if s.len() == before {
         let _ = writeln!(s, "  none");
+    }
+    let sets = sets::of(&schema);
+    if !sets.is_empty() {
+        let _ = writeln!(s, "\nParameter sets");
+        s.push_str(&crate::cmd::sets::text(&sets, 2));
     }
     let _ = writeln!(s, "\nExample");
     for line in example(m).lines() {
@@ -155,7 +160,10 @@ fn type_text(schema: &Value, name: Option<&str>, definitions: &Map<String, Value
     }
     if let Some(items) = schema.get("items") {
         let (inner, name) = resolve(items, definitions);
-        return format!("array of {}", type_text(inner, name, definitions));
+        return match type_text(inner, name, definitions).as_str() {
+            "table" => "array of tables".into(),
+            one => format!("array of {one}"),
+        };
     }
     match schema.get("type") {
         Some(Value::Array(a)) => a

@@ -3,15 +3,21 @@
 pub mod bench;
 pub mod check;
 pub mod compare;
+pub mod completions;
 pub mod describe;
 pub mod explain;
 pub mod gradient;
+pub mod man;
 pub mod models;
+pub mod new;
 pub mod report;
 pub mod run;
 pub mod schema;
+mod sets;
 mod shares;
+mod spark;
 pub mod study;
+mod trends;
 pub mod validate;
 
 use std::path::Path;

@@ -6,10 +6,14 @@ use gudgeon_case::catalogue;
 use gudgeon_core::Registry;
 
 use crate::args::ModelsArgs;
+use crate::cmd::sets;
 use crate::failure::Failure;
 use crate::ui::{Ui, table, wrapped};
 
 pub fn models(a: &ModelsArgs, registry: &Registry, ui: &Ui) -> Result<(), Failure> {
+    if a.sets {
+        return sets::list(a.kind.as_deref(), a.json, registry, ui);
+    }
     let kinds = match &a.kind {
         Some(k) => vec![catalogue::kind(registry, k)?],
         None => registry.kinds().collect(),

@@ -3,9 +3,10 @@
 use std::fmt::Write as _;
 
 use gudgeon_core::result::{NoteLevel, RunResult};
+use gudgeon_scene::Checked;
 
 use crate::args::RunArgs;
-use crate::cmd::{checked, open_out};
+use crate::cmd::{checked, open_out, trends};
 use crate::failure::Failure;
 use crate::ui::{Ui, certain, number, table, unit};
 
@@ -20,12 +21,12 @@ pub fn run(a: &RunArgs, ui: &Ui) -> Result<(), Failure> {
     result.provenance.revision = env!("GUDGEON_REVISION").into();
     let files = gudgeon_report::write_run_in(&result, folder).inspect_err(|_| {
         // What was computed is not lost with the disk.
-        ui.out(&if a.json { gudgeon_report::summary_json(&result) } else { text(&result) });
+        ui.out(&if a.json { gudgeon_report::summary_json(&result) } else { told(&c, &result, ui) });
     })?;
     if a.json {
         ui.out(&gudgeon_report::summary_json(&result));
     } else if !ui.quiet() {
-        ui.out(&format!("{}\n{}", text(&result), files.report.display()));
+        ui.out(&format!("{}\n{}", told(&c, &result, ui), files.report.display()));
     } else {
         for n in result.solver.notes.iter().filter(|n| n.level > NoteLevel::Info) {
             ui.note(&n.text);
@@ -44,8 +45,14 @@ fn failure_of(r: &RunResult) -> Result<(), Failure> {
     Err(Failure::Run(format!("{} (the results are written and marked)", failed.join("; "))))
 }
 
-fn text(r: &RunResult) -> String {
-    let mut s = format!("{}: {}\n\n", r.case, r.title);
+/// Everything that the terminal shows of a run.
+fn told(c: &Checked, r: &RunResult, ui: &Ui) -> String {
+    let trends = trends::text(c.case.heading().sweeps, r, ui.blocks());
+    format!("{}: {}\n\n{}{trends}\n{}", r.case, r.title, results(r), work(r))
+}
+
+/// The results, one a line.
+fn results(r: &RunResult) -> String {
     let rows: Vec<_> = r
         .results
         .iter()
@@ -54,9 +61,12 @@ fn text(r: &RunResult) -> String {
             vec![name.clone(), certain(v.value, u), unit(&v.unit), v.what.clone()]
         })
         .collect();
-    s.push_str(&table(&rows, &[1]));
-    // Writing to a String cannot fail.
-    let _ = writeln!(s);
+    table(&rows, &[1])
+}
+
+/// What the run did: balances, work, what was left out, notes, assumptions.
+fn work(r: &RunResult) -> String {
+    let mut s = String::new();
     let b = &r.balance;
     let all = [
         ("gas mass", b.gas_mass),
@@ -70,6 +80,7 @@ fn text(r: &RunResult) -> String {
     let balance: Vec<String> =
         all.iter().filter_map(|(name, v)| v.map(|v| format!("{name} {v:.1e}"))).collect();
     if !balance.is_empty() {
+        // Writing to a String cannot fail.
         let _ = writeln!(s, "  closure per cycle: {}", balance.join(", "));
     }
     let work: Vec<String> =

@@ -1,5 +1,6 @@
 use gudgeon_core::kinds::{Oil, OilSpec};
 use gudgeon_core::quantity::{Expansion, NonNegative, PosRatio, PosTemperature, quantity};
+use gudgeon_core::sets::Sets;
 use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
@@ -17,6 +18,7 @@ use serde::{Deserialize, Serialize};
 /// Extrapolation stays finite: ν above 0.3 mm²/s however hot, `log10(ν + 0.7)` up to 12 however cold, the density not below a tenth of that at 15 °C.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(transform = Sets(include_str!("walther.json")))]
 pub struct Walther {
     /// Kinematic viscosity at the lower temperature, in mm²/s (a plain number).
     pub nu_cold: PosRatio,

@@ -1,5 +1,6 @@
 use gudgeon_core::kinds::{ShearThinning, ShearThinningSpec};
 use gudgeon_core::quantity::{Fraction, PosRatio, PosShearRate, Ratio, quantity};
+use gudgeon_core::sets::Sets;
 use gudgeon_core::{BuildError, EvalError, register_model};
 use serde::{Deserialize, Serialize};
 
@@ -10,6 +11,7 @@ use crate::slices::check;
 /// In ring-pack work it is written `μ = μ0 [1 + m (γ̇/γ̇_c)^k]/[1 + (γ̇/γ̇_c)^k]`, which is the same.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(transform = Sets(include_str!("cross.json")))]
 pub struct Cross {
     /// Shear rate γ̇_c half-way between the plateaus.
     pub critical_shear_rate: PosShearRate,

@@ -7,6 +7,7 @@ use gudgeon_core::quantity::{
     Fraction, Length, NonNegative, PosDensity, PosExpansion, PosLength, PosPressure, PosRatio,
     PosTemperature, PosVolume, Ratio, quantity,
 };
+use gudgeon_core::sets::Sets;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -53,6 +54,7 @@ case_file! {
 /// Gudgeon pin.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(transform = Sets(include_str!("pin.json")))]
 pub struct Pin {
     /// Length. Needed to evaluate a pin and to start the published search.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -11,7 +11,7 @@ use gudgeon_core::quantity::quantity;
 use gudgeon_core::result::{Headline, ModelUse, Note, RunResult, Value};
 
 use case::{Part, PowerCylinderCase};
-use gudgeon_case::{Level, Loaded, Refinement, Report, read_beside, scene_of};
+use gudgeon_case::{Level, Loaded, Refinement, Report, UsedSet, read_beside, scene_of};
 use gudgeon_machine::Engine;
 use gudgeon_scene::{
     Checked, Explanation, Progress, RunError, Scene, SceneCase, Stopped, WorkPrecision, check_case, explain,
@@ -54,6 +54,17 @@ impl SceneCase for PowerCylinderCase {
             Ok(rings) => rings.cycle(),
             Err(wrong) => wrong.into_iter().next().map(Err),
         }
+    }
+
+    /// Its own and those of both parts.
+    fn sets(loaded: &Loaded<Self>) -> Vec<UsedSet> {
+        let mut all = loaded.sets.clone();
+        let own = &loaded.value;
+        for (part, field) in [(&own.ring_pack, "ring_pack"), (&own.piston_secondary, "piston_secondary")] {
+            let sets = read_part(&loaded.source.files, part, field).map_or_else(|_| Vec::new(), |c| c.sets());
+            all.extend(sets.into_iter().map(|s| UsedSet { path: format!("{field}.{}", s.path), ..s }));
+        }
+        all
     }
 
     /// Those of both parts, as changes to the parts.

@@ -11,6 +11,7 @@ use gudgeon_core::quantity::{
     Angle, Fraction, Length, NonNegative, PosAngle, PosArea, PosExpansion, PosForce, PosGasConstant,
     PosLength, PosMass, PosPressure, PosRatio, PosTemperature, PosVolume, Ratio, quantity,
 };
+use gudgeon_core::sets::Sets;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -105,6 +106,7 @@ impl Default for Gas {
 /// A ring with its groove.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(transform = Sets(include_str!("ring.json")))]
 pub struct Ring {
     /// Name for reports.
     #[serde(default, skip_serializing_if = "String::is_empty")]

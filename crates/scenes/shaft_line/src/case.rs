@@ -9,6 +9,7 @@ use gudgeon_core::quantity::{
     PosLength, PosPressure, PosRatio, PosTime, PosTorque, Power, Ratio, TorsionalDamping, TorsionalStiffness,
     quantity,
 };
+use gudgeon_core::sets::Sets;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -171,6 +172,7 @@ pub struct DamperCase {
 /// Equal throws on one or several inertias.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(transform = Sets(include_str!("throw.json")))]
 pub struct ThrowCase {
     /// Names of the inertias.
     pub at: Vec<String>,
