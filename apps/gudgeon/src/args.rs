@@ -100,6 +100,9 @@ pub struct RunArgs {
     /// Refine every numerical setting until the uncertainty of each result is known (several runs)
     #[arg(long)]
     pub verify: bool,
+    /// Print all results, not only those that lead
+    #[arg(long)]
+    pub all: bool,
     /// Print the summary as JSON and nothing else
     #[arg(long)]
     pub json: bool,

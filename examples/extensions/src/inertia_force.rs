@@ -5,7 +5,7 @@ use std::time::Instant;
 use gudgeon_case::Loaded;
 use gudgeon_core::kinds::{Kinematics, KinematicsCtx, KinematicsSpec};
 use gudgeon_core::quantity::{Length, PosAngularSpeed, PosLength, PosMass, quantity};
-use gudgeon_core::result::{Column, Figure, FigureKind, ModelUse, RunResult, Series, Skipped, Value};
+use gudgeon_core::result::{Column, Figure, FigureKind, Lines, ModelUse, RunResult, Series, Skipped, Value};
 use gudgeon_core::{BuildError, Registry};
 use gudgeon_scene::{
     Explanation, Progress, RunError, SceneCase, Stopped, case_file, model_use, register_scene,
@@ -126,12 +126,12 @@ impl SceneCase for InertiaForceCase {
             title: "Inertia force".into(),
             hint: String::new(),
             table: "series".into(),
-            kind: FigureKind::Lines {
+            kind: FigureKind::Lines(Lines {
                 x: result.series.axis.name.clone(),
                 lines: vec![("force".into(), "force".into())],
-                log_x: false,
-                log_y: false,
-            },
+
+                ..Lines::default()
+            }),
         });
         result.solver.method = "closed form".into();
         result.seconds.insert("solve".into(), begin.elapsed().as_secs_f64());

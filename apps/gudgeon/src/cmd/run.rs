@@ -21,12 +21,12 @@ pub fn run(a: &RunArgs, ui: &Ui) -> Result<(), Failure> {
     result.provenance.revision = env!("GUDGEON_REVISION").into();
     let files = gudgeon_report::write_run_in(&result, folder).inspect_err(|_| {
         // What was computed is not lost with the disk.
-        ui.out(&if a.json { gudgeon_report::summary_json(&result) } else { told(&c, &result, ui) });
+        ui.out(&if a.json { gudgeon_report::summary_json(&result) } else { told(&c, &result, a.all, ui) });
     })?;
     if a.json {
         ui.out(&gudgeon_report::summary_json(&result));
     } else if !ui.quiet() {
-        ui.out(&format!("{}\n{}", told(&c, &result, ui), files.report.display()));
+        ui.out(&format!("{}\n{}", told(&c, &result, a.all, ui), files.report.display()));
     } else {
         for n in result.solver.notes.iter().filter(|n| n.level > NoteLevel::Info) {
             ui.note(&n.text);
@@ -46,22 +46,37 @@ fn failure_of(r: &RunResult) -> Result<(), Failure> {
 }
 
 /// Everything that the terminal shows of a run.
-fn told(c: &Checked, r: &RunResult, ui: &Ui) -> String {
+fn told(c: &Checked, r: &RunResult, all: bool, ui: &Ui) -> String {
     let trends = trends::text(c.case.heading().sweeps, r, ui.blocks());
-    format!("{}: {}\n\n{}{trends}\n{}", r.case, r.title, results(r), work(r))
+    let shown = if all { results(r, r.results.keys()) } else { headlines(r) };
+    let verdict = r.assessment();
+    format!(
+        "{}: {}\n  {}: {}\n\n{shown}{trends}\n{}",
+        r.case,
+        r.title,
+        verdict.grade.name(),
+        verdict.title,
+        work(r)
+    )
 }
 
-/// The results, one a line.
-fn results(r: &RunResult) -> String {
-    let rows: Vec<_> = r
-        .results
-        .iter()
-        .map(|(name, v)| {
-            let u = r.verification.as_ref().and_then(|w| w.uncertainty.get(name)).copied();
-            vec![name.clone(), certain(v.value, u), unit(&v.unit), v.what.clone()]
-        })
-        .collect();
-    table(&rows, &[1])
+/// The results that lead, and how the others are seen.
+fn headlines(r: &RunResult) -> String {
+    let leading = r.leading();
+    let names: Vec<&String> = leading.iter().flat_map(|h| h.results.iter().map(|(_, name)| name)).collect();
+    let more = r.results.len() - names.len();
+    let shown = results(r, names.into_iter());
+    if more == 0 { shown } else { format!("{shown}  and {more} more results: --all, summary.json\n") }
+}
+
+/// Some results, one a line.
+fn results<'a>(r: &RunResult, names: impl Iterator<Item = &'a String>) -> String {
+    let row = |name: &String| {
+        let v = r.results.get(name)?;
+        let u = r.verification.as_ref().and_then(|w| w.uncertainty.get(name)).copied();
+        Some(vec![name.clone(), certain(v.value, u), unit(&v.unit), v.what.clone()])
+    };
+    table(&names.filter_map(row).collect::<Vec<_>>(), &[1])
 }
 
 /// What the run did: balances, work, what was left out, notes, assumptions.

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use gudgeon_core::result::{Figure, FigureKind, RunResult, Series};
+use gudgeon_core::result::{Figure, FigureKind, Lines, RunResult, Series};
 use gudgeon_scene::Sweep;
 
 use super::spark::{change, chosen, course, line, range};
@@ -74,7 +74,7 @@ fn short(value: &str) -> String {
 fn rows_of<'a>(f: &'a Figure, sheet: &'a Series, inputs: &[Input]) -> Option<(&'a str, Vec<&'a [f64]>)> {
     let column = |name: &str| sheet.get(name).map(|c| c.values.as_slice());
     match &f.kind {
-        FigureKind::Lines { lines, .. } => {
+        FigureKind::Lines(Lines { lines, .. }) => {
             let first = lines.first()?.1.as_str();
             // A curve for each value of the second input is called by the result and that value.
             let name =
