@@ -46,7 +46,7 @@ pub enum Command {
     Explain(CheckArgs),
     /// List the models, of one kind or of all
     Models(ModelsArgs),
-    /// Tell everything about one model
+    /// Tell everything about one model, or the keys of a case
     Describe(DescribeArgs),
     /// Print the JSON schema of a case file, for editors
     Schema,
@@ -134,7 +134,7 @@ pub struct ModelsArgs {
 
 #[derive(Debug, ClapArgs)]
 pub struct DescribeArgs {
-    /// KIND/MODEL, or a kind or a model alone
+    /// KIND/MODEL, or a kind or a model alone; a scene or a table of its cases, ring_pack.rings
     #[arg(value_name = "KIND/MODEL")]
     pub what: String,
     /// Print JSON

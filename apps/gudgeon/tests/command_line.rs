@@ -60,7 +60,7 @@ fn every_kind_has_models_and_every_model_a_page() {
             "Example",
             "References",
             "Source",
-            &format!("model = \"{model}\""),
+            &format!(" = \"{model}\"\n"),
         ] {
             assert!(page.contains(part), "{kind}/{model}: no {part}");
         }
@@ -524,4 +524,44 @@ fn derivatives_have_the_same_units_everywhere() {
         json(&[&args[..], &["--json"]].concat())["results"]["load"]["by_unit"],
         serde_json::json!([wanted])
     );
+}
+
+#[test]
+fn scenes_and_their_tables_are_described() {
+    let scenes = ["ring_pack", "piston_secondary", "power_cylinder", "shaft_line", "pin"];
+    for scene in scenes {
+        let page = stdout(&gudgeon(&["describe", scene]));
+        for part in ["Equations", "Validity", "Keys", "title: text", "sweeps: array of tables"] {
+            assert!(page.contains(part), "{scene}: no {part} in {page}");
+        }
+    }
+    let page = stdout(&gudgeon(&["describe", "ring_pack.rings.face"]));
+    assert!(page.contains("shape: one word of") && page.contains("`taper`: "), "{page}");
+    // Indices of arrays may be there, as in messages.
+    assert_eq!(
+        stdout(&gudgeon(&["describe", "ring_pack.rings.0.face"])).lines().skip(1).collect::<Vec<_>>(),
+        page.lines().skip(1).collect::<Vec<_>>()
+    );
+    let v = json(&["describe", "shaft_line.throws", "--json"]);
+    assert_eq!(v["schema"]["properties"]["crank_radius"]["x-dimension"], "a length");
+    let o = gudgeon(&["describe", "ring_pack.ring"]);
+    assert!(o.status.code() == Some(2) && stderr(&o).contains("did you mean `rings`?"), "{}", stderr(&o));
+}
+
+/// The example of a model stands where a case has it: among the models, on a bench, in a table of its own, as a solver.
+#[test]
+fn examples_stand_where_a_case_has_them() {
+    for (model, place) in [
+        ("oil/walther", "  [models.oil]\n  model = \"walther\"\n"),
+        ("rig/slider", "  [rig]\n  model = \"slider\"\n"),
+        ("coupling/linear", "  [shafts.coupling]\n  model = \"linear\"\n"),
+        ("drive/constant", "  [drives.drive]\n  model = \"constant\"\n"),
+        ("hoop/correct", "  [conventions.hoop]\n  model = \"correct\"\n"),
+        ("film_1d/off", "  [rig.film_1d]\n  model = \"off\"\n"),
+        ("ring_pack_solver/implicit", "  [solver]\n  method = \"implicit\"\n"),
+        ("piston_solver/backward_euler", "  [solver]\n  method = \"backward_euler\"\n"),
+    ] {
+        let page = stdout(&gudgeon(&["describe", model]));
+        assert!(page.contains(place), "{place} missing in {page}");
+    }
 }

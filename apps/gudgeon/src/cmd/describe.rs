@@ -1,21 +1,25 @@
-//! `gudgeon describe KIND/MODEL`
+//! `gudgeon describe KIND/MODEL`, and of scenes and their tables
 
 use std::fmt::Write as _;
 
-use gudgeon_case::catalogue::{self, DEPTH, choice, equations, example, resolve, schema};
-use gudgeon_core::{ModelInfo, Registry, sets};
-use serde_json::{Map, Value};
-
 use crate::args::{DescribeArgs, ModelsArgs};
-use crate::cmd::models;
+use crate::cmd::keys::keys;
+use crate::cmd::{models, places, scenes};
 use crate::failure::Failure;
 use crate::ui::{Ui, wrapped};
+use gudgeon_case::catalogue::{self, equations, schema};
+use gudgeon_core::{ModelInfo, Registry, sets};
 
 pub fn describe(a: &DescribeArgs, registry: &Registry, ui: &Ui) -> Result<(), Failure> {
     let what = a.what.trim().trim_start_matches("models.");
     if registry.kind(what).is_some() {
         let a = ModelsArgs { kind: Some(what.to_owned()), sets: false, json: a.json };
         return models::models(&a, registry, ui);
+    }
+    // What is a kind as well (`rig`) is meant as one.
+    let kind = what.split(['.', '/']).next().and_then(|first| registry.kind(first));
+    if let Some((scene, table)) = scenes::named(what).filter(|_| kind.is_none()) {
+        return scenes::describe(scene, table, a.json, ui);
     }
     let m = catalogue::model(registry, what)?;
     if a.json {
@@ -43,7 +47,7 @@ fn page(registry: &Registry, m: &ModelInfo) -> String {
     let (schema, definitions) = schema(m);
     let _ = writeln!(s, "\nParameters");
     let before = s.len();
-    parameters(&schema, &definitions, 2, 0, &mut s);
+    keys(&schema, &definitions, 2, 0, &mut s);
     if s.len() == before {
         let _ = writeln!(s, "  none");
     }
@@ -53,7 +57,7 @@ fn page(registry: &Registry, m: &ModelInfo) -> String {
         s.push_str(&crate::cmd::sets::text(&sets, 2));
     }
     let _ = writeln!(s, "\nExample");
-    for line in example(m).lines() {
+    for line in places::example(registry, m).lines() {
         let _ = writeln!(s, "  {line}");
     }
     let _ = writeln!(
@@ -63,130 +67,4 @@ fn page(registry: &Registry, m: &ModelInfo) -> String {
     );
     let _ = writeln!(s, "\nSource\n  {}:{}", m.file, m.line);
     s
-}
-
-fn parameters(schema: &Value, definitions: &Map<String, Value>, indent: usize, depth: usize, s: &mut String) {
-    let Some(properties) = schema.get("properties").and_then(Value::as_object) else { return };
-    let required: Vec<&str> = schema
-        .get("required")
-        .and_then(Value::as_array)
-        .into_iter()
-        .flatten()
-        .filter_map(Value::as_str)
-        .collect();
-    for (key, p) in properties.iter().filter(|(_, p)| p.get("const").is_none()) {
-        let (inner, name) = resolve(p, definitions);
-        let default = match p.get("default") {
-            Some(Value::String(t)) => format!(", default {t}"),
-            Some(Value::Object(_)) => ", has defaults".to_owned(),
-            Some(Value::Null) => ", optional".to_owned(),
-            Some(v) => format!(", default {v}"),
-            None if required.contains(&key.as_str()) => ", required".to_owned(),
-            None => ", optional".to_owned(),
-        };
-        let _ = writeln!(s, "{:indent$}{key}: {}{default}", "", type_text(inner, name, definitions));
-        let text = p.get("description").or_else(|| inner.get("description")).and_then(Value::as_str);
-        if let Some(t) = text {
-            s.push_str(&wrapped(&plain(t), indent + 4));
-        }
-        for (word, what) in words(inner) {
-            let meaning = what.map_or_else(String::new, |w| format!(": {}", plain(w)));
-            s.push_str(&wrapped(&format!("`{word}`{meaning}"), indent + 6));
-        }
-        let element = inner.get("items").map_or(inner, |i| resolve(i, definitions).0);
-        if depth >= DEPTH {
-            continue;
-        }
-        match choice(element) {
-            // A model inside a model has a page of its own.
-            Some(("model", _)) => {}
-            Some((tag, tables)) => {
-                for (word, table) in tables {
-                    let what = table.get("description").and_then(Value::as_str).unwrap_or_default();
-                    s.push_str(&wrapped(&format!("{tag} = \"{word}\": {}", plain(what)), indent + 6));
-                    parameters(table, definitions, indent + 10, depth + 1, s);
-                }
-            }
-            None => parameters(element, definitions, indent + 4, depth + 1, s),
-        }
-    }
-}
-
-/// Rustdoc's escapes and line breaks are for another reader.
-fn plain(t: &str) -> String {
-    t.replace("\\[", "[").replace("\\]", "]").split_whitespace().collect::<Vec<_>>().join(" ")
-}
-
-/// The words of a choice, each with its meaning.
-fn words(schema: &Value) -> Vec<(&str, Option<&str>)> {
-    if let Some(all) = schema.get("enum").and_then(Value::as_array) {
-        return all.iter().filter_map(Value::as_str).map(|w| (w, None)).collect();
-    }
-    let Some(all) = schema.get("oneOf").and_then(Value::as_array) else { return Vec::new() };
-    let mut out = Vec::new();
-    for s in all {
-        match s.get("const").and_then(Value::as_str) {
-            Some(word) => out.push((word, s.get("description").and_then(Value::as_str))),
-            None => out.extend(words(s)),
-        }
-    }
-    out
-}
-
-fn type_text(schema: &Value, name: Option<&str>, definitions: &Map<String, Value>) -> String {
-    if let Some(dimension) = schema.get("x-dimension").and_then(Value::as_str) {
-        let units: Vec<&str> = schema
-            .get("x-units")
-            .and_then(Value::as_array)
-            .into_iter()
-            .flatten()
-            .filter_map(Value::as_str)
-            .collect();
-        let bound = match schema.get("x-bound").and_then(Value::as_str) {
-            None | Some("finite") => String::new(),
-            Some(b) => format!(", {b}"),
-        };
-        let units = if units.is_empty() { String::new() } else { format!(" [{}]", units.join(", ")) };
-        return format!("{dimension}{units}{bound}");
-    }
-    if !words(schema).is_empty() {
-        return "one word of".into();
-    }
-    if schema.get("oneOf").is_some() {
-        return match choice(schema) {
-            Some((tag, _)) if tag != "model" => format!("a table with the key `{tag}`, one of"),
-            _ => format!("a {} model, a table with the key `model`", name.unwrap_or("sub-")),
-        };
-    }
-    if let Some(items) = schema.get("items") {
-        let (inner, name) = resolve(items, definitions);
-        return match type_text(inner, name, definitions).as_str() {
-            "table" => "array of tables".into(),
-            one => format!("array of {one}"),
-        };
-    }
-    match schema.get("type") {
-        Some(Value::Array(a)) => a
-            .iter()
-            .filter_map(Value::as_str)
-            .filter(|t| *t != "null")
-            .map(|t| basic(t, schema))
-            .collect::<Vec<_>>()
-            .join(" or "),
-        Some(Value::String(t)) => basic(t, schema),
-        _ => "any value".into(),
-    }
-}
-
-fn basic(t: &str, schema: &Value) -> String {
-    let minimum = schema.get("minimum").and_then(Value::as_f64);
-    let suffix = minimum.map_or(String::new(), |m| format!(", at least {m}"));
-    match t {
-        "string" => "text".into(),
-        "number" => format!("number{suffix}"),
-        "integer" => format!("whole number{suffix}"),
-        "boolean" => "true or false".into(),
-        "object" => "table".into(),
-        other => other.into(),
-    }
 }

@@ -6,11 +6,11 @@ use gudgeon_case::Diagnostic;
 use gudgeon_case::advice;
 use gudgeon_case::catalogue::{SetTable, set_tables};
 use gudgeon_core::Registry;
-use gudgeon_core::schemars::SchemaGenerator;
 use gudgeon_core::sets::ParameterSets;
 use gudgeon_scene::scenes;
 use serde_json::{Value, json};
 
+use crate::cmd::scenes::schema;
 use crate::failure::Failure;
 use crate::ui::{Ui, wrapped};
 
@@ -61,14 +61,7 @@ fn none(name: &str, all: &[SetTable], registry: &Registry) -> Diagnostic {
 /// The schemas of the cases of all scenes, each with what it refers to.
 fn schemas() -> Vec<Value> {
     let one = |s: &&gudgeon_scene::SceneInfo| {
-        let mut generator = SchemaGenerator::default();
-        let root = (s.schema)(&mut generator).to_value();
-        let definitions = generator.take_definitions(true);
-        // A case is a definition of its own, or stands at the root.
-        let mut case = match root.get("$ref").and_then(Value::as_str).and_then(|r| r.rsplit('/').next()) {
-            Some(name) => definitions.get(name).cloned().unwrap_or_default(),
-            None => root,
-        };
+        let (mut case, definitions) = schema(s);
         case["$defs"] = definitions.into();
         case
     };
