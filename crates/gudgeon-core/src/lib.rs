@@ -29,6 +29,7 @@ pub mod kinds;
 pub mod registry;
 pub mod spec;
 pub mod states;
+mod stopwatch;
 mod word;
 
 // The attributes name this crate by its name, also inside it.
@@ -47,5 +48,6 @@ pub use gudgeon_macros::{register_kind, register_model};
 pub use error::{BuildError, EvalError};
 pub use gudgeon_numerics::{Stopped, unwatched};
 pub use registry::{KindInfo, ModelInfo, Registry};
+pub use stopwatch::Stopwatch;
 pub use word::Word;
 pub use {gudgeon_result as result, gudgeon_units as quantity};

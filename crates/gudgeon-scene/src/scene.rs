@@ -6,12 +6,11 @@
 use std::any::Any;
 use std::borrow::Cow;
 use std::sync::{Mutex, OnceLock, PoisonError};
-use std::time::Instant;
 
 use gudgeon_case::{Loaded, Refinement, Report, Source, load_source, nearest, scene_of, top_level_keys};
 use gudgeon_core::kinds::EngineCycle;
 use gudgeon_core::result::{GradientInput, Gradients, ModelUse, RunResult, Value};
-use gudgeon_core::{BuildError, Stopped};
+use gudgeon_core::{BuildError, Stopped, Stopwatch};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -257,9 +256,9 @@ impl<C: SceneCase> Scene for Read<C> {
     }
 
     fn once(&self, progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>) -> Result<RunResult, RunError> {
-        let begin = Instant::now();
+        let begin = Stopwatch::start();
         let built = self.take().map_err(|e| RunError::refused(&e))?;
-        let seconds = begin.elapsed().as_secs_f64();
+        let seconds = begin.seconds();
         let mut result = C::run(&self.loaded, built, progress).map_err(RunError::plain)?;
         result.seconds.insert("build".into(), seconds);
         let not_finite = |(_, v): &(&String, &Value)| !v.value.is_finite();
