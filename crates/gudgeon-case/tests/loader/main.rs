@@ -6,6 +6,7 @@ mod plain;
 mod published;
 mod refine;
 mod render;
+mod write;
 
 use std::path::Path;
 
