@@ -9,7 +9,8 @@ use serde_json::{Value, json};
 use crate::number::{certain, count, significant, unit};
 use crate::summary::{BalanceSheet, ModelEntry, ResultValue, SkippedEntry, SolverEntry};
 
-const STYLE: &str = include_str!("assets/style.css");
+/// The style sheet of every page.
+pub const STYLE: &str = include_str!("assets/style.css");
 const CORE: &str = include_str!("assets/core.js");
 const PLOT: &str = include_str!("assets/plot.js");
 const DRAWING: &str = include_str!("assets/drawing.js");
@@ -21,6 +22,10 @@ const RUN: &str = include_str!("assets/run.js");
 pub const OVER_CYCLE: &str = include_str!("assets/over_cycle.json");
 const COMPARE: &str = include_str!("assets/compare.js");
 const BENCH: &str = include_str!("assets/bench.js");
+
+/// The scripts of a run's page, in their order: together they read the element `data` and fill the elements `bar`, `pack`, `plots` and
+/// `figures`. They expect a constant `OVER_CYCLE` that holds [`OVER_CYCLE`].
+pub const RUN_SCRIPTS: &[&str] = &[CORE, PLOT, SECTION, RUN, DRAWING, FIGURE];
 
 /// Which script draws the page.
 #[derive(Debug, Clone, Copy)]
@@ -72,7 +77,7 @@ fn json_for_script(value: &Value) -> String {
 /// One whole page.
 pub(crate) fn document(kind: Kind, title: &str, body: &str, data: &Value) -> String {
     let scripts: &[&str] = match kind {
-        Kind::Run => &[CORE, PLOT, SECTION, RUN, DRAWING, FIGURE],
+        Kind::Run => RUN_SCRIPTS,
         Kind::Comparison => &[CORE, PLOT, COMPARE, DRAWING, FIGURE],
         Kind::Bench => &[CORE, BENCH],
         Kind::Study => &[CORE, PLOT, DRAWING, FIGURE],
