@@ -61,10 +61,16 @@ function plot(host, cycle, spec) {
       s("line", { x1: X(t), x2: X(t), y1: T, y2: bottom, class: "gridline" }, svg);
       s("text", { x: X(t), y: bottom + 15, "text-anchor": "middle", class: "dim" }, svg, tickText(t));
     }
-    for (const d of deadCentres(lo, hi, cycle.four)) {
+    // The firing dead centre is named first, then the others; a name gives way where there is no room.
+    const named = [], rank = (d) => ["firing TDC", "gas exchange TDC", "TDC", "BDC"].indexOf(d.name);
+    for (const d of deadCentres(lo, hi, cycle.four).sort((a, b) => rank(a) - rank(b))) {
       s("line", { x1: X(d.t), x2: X(d.t), y1: T, y2: bottom, class: d.name === "firing TDC" ? "firing" : "dead" }, svg);
-      const anchor = X(d.t) > W - 60 ? "end" : X(d.t) < L + 40 ? "start" : "middle";
-      s("text", { x: anchor === "end" ? W - 2 : anchor === "start" ? Math.max(2, X(d.t) - 12) : X(d.t), y: bottom + 29, "text-anchor": anchor, class: "dim" }, svg, d.name);
+      const anchor = X(d.t) > W - 60 ? "end" : X(d.t) < L + 40 ? "start" : "middle", width = 6.2 * d.name.length;
+      const x = anchor === "end" ? W - 2 : anchor === "start" ? Math.max(2, X(d.t) - 12) : X(d.t);
+      const left = anchor === "end" ? x - width : anchor === "start" ? x : x - width / 2;
+      if (named.some(([a, b]) => left < b + 4 && left + width > a - 4)) continue;
+      named.push([left, left + width]);
+      s("text", { x, y: bottom + 29, "text-anchor": anchor, class: "dim" }, svg, d.name);
     }
     if (spec.lanes) lanes(bottom); else axis(bottom);
     s("rect", { x: L, y: T, width: W - L - R, height: bottom - T, class: "frame" }, svg);

@@ -1,0 +1,168 @@
+//! What each scene shows first: which inputs have a slider, which results are headlines, and what makes a quick preview of a run.
+//!
+//! `#` stands for any number. A case of a scene that is not listed, or that has too little of what is, shows the numbers that its text gives and
+//! its first results.
+
+/// What a scene shows first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shown {
+    /// Name of the scene.
+    pub scene: &'static str,
+    /// Paths of inputs with a slider, the most telling first.
+    pub sliders: &'static [&'static str],
+    /// Names of results that are headlines.
+    pub headlines: &'static [&'static str],
+    /// Changes that make a run quicker: path and value. A number is only ever raised.
+    pub preview: &'static [(&'static str, &'static str)],
+}
+
+const RINGS: &[&str] = &[
+    "engine.speed",
+    "rings.0.cold_gap",
+    "rings.1.cold_gap",
+    "rings.#.tangential_force",
+    "models.oil_transport.supply",
+    "models.film_temperature.tdc",
+    "models.film_temperature.temperature",
+    "models.cylinder_pressure.burn_pressure",
+    "rings.0.face.drop",
+    "rings.1.face.drop",
+    "rings.0.groove.height",
+];
+
+/// Every scene that says it.
+pub const SHOWN: &[Shown] = &[
+    Shown {
+        scene: "ring_pack",
+        sliders: RINGS,
+        headlines: &[
+            "blow_by",
+            "friction_power",
+            "fmep",
+            "ring#.h_min",
+            "cylinder.p_max",
+            "land2.p_max",
+            "oil_up",
+            "friction_mean",
+        ],
+        preview: RING_PREVIEW,
+    },
+    Shown {
+        scene: "power_cylinder",
+        sliders: &[
+            "engine.speed",
+            "rings.0.cold_gap",
+            "rings.#.tangential_force",
+            "skirt.clearance",
+            "piston.pin_offset",
+            "engine.pin_offset",
+            "models.film_temperature.tdc",
+        ],
+        headlines: &[
+            "friction_power",
+            "fmep",
+            "rings.blow_by",
+            "rings.ring1.h_min",
+            "skirt.h_min",
+            "skirt.slap_energy",
+            "skirt.tilt_max",
+        ],
+        preview: RING_PREVIEW,
+    },
+    Shown {
+        scene: "piston_secondary",
+        sliders: &[
+            "engine.speed",
+            "engine.pin_offset",
+            "piston.pin_offset",
+            "skirt.clearance",
+            "skirt.diametral_clearance",
+            "piston.mass",
+            "models.oil.viscosity",
+            "oil_temperature",
+        ],
+        headlines: &[
+            "friction_power",
+            "fmep",
+            "h_min",
+            "slap_energy",
+            "tilt_max",
+            "side_force_max",
+            "contact_share",
+            "e_top_max",
+        ],
+        preview: &[],
+    },
+    Shown {
+        scene: "shaft_line",
+        sliders: &[
+            "speed",
+            "inertias.#.inertia",
+            "shafts.#.stiffness",
+            "shafts.#.diameter",
+            "throws.0.ends.0.discharge_pressure",
+        ],
+        headlines: &[
+            "worst_utilisation",
+            "limits_broken",
+            "distance_to_critical",
+            "nearest_critical_speed",
+            "mode.1.frequency",
+            "mode.2.frequency",
+            "shaft1.torque_amplitude",
+            "shaft1.stress_amplitude",
+        ],
+        preview: &[],
+    },
+    Shown {
+        scene: "pin",
+        sliders: &[
+            "engine.bore",
+            "pin.outer",
+            "pin.inner",
+            "pin.length",
+            "models.pin_load.compression_ratio",
+            "models.pin_load.speed",
+            "limits.bending_stress",
+            "limits.ovalisation",
+            "limits.boss_pressure",
+            "limits.deflection",
+        ],
+        headlines: &[
+            "pin_mass",
+            "outer",
+            "inner",
+            "length",
+            "utilisation",
+            "bending_stress",
+            "deflection",
+            "ovalisation",
+            "boss_pressure",
+        ],
+        preview: &[],
+    },
+    Shown {
+        scene: "rig",
+        sliders: &["rig.film", "rig.speed", "rig.viscosity", "rig.length"],
+        headlines: &["load", "p_max", "friction", "liner_shear", "flow"],
+        preview: &[],
+    },
+];
+
+/// Without oil that is carried along the liner, and with a tolerance that shows in the third digit.
+const RING_PREVIEW: &[(&str, &str)] = &[("models.oil_transport.model", "off"), ("solver.tolerance", "3e-3")];
+
+/// What a scene shows first.
+#[must_use]
+pub fn of(scene: &str) -> Option<&'static Shown> {
+    SHOWN.iter().find(|s| s.scene == scene)
+}
+
+/// Whether a name fits a pattern whose `#` stand for numbers.
+#[must_use]
+pub fn fits(pattern: &str, name: &str) -> bool {
+    let Some((before, rest)) = pattern.split_once('#') else { return pattern == name };
+    let Some(after) = name.strip_prefix(before) else { return false };
+    let behind = after.trim_start_matches(|c: char| c.is_ascii_digit());
+    behind.len() < after.len() && fits(rest, behind)
+}
