@@ -20,6 +20,7 @@ class App {
     this.log = [];
   }
   async start() {
+    await script((await this.quick.ask({ ask: "drawings" })).script);
     const c = await this.quick.ask({ ask: "catalogue" });
     this.catalogue = c;
     $("version").textContent = c.version + (c.revision ? " · " + c.revision : "");
@@ -50,7 +51,7 @@ class App {
   }
   // Forgets everything about the case before.
   async load(file) {
-    Object.assign(this, { file, begin: null, last: null, preview: null, factors: null, fullTime: 0, history: [], baseText: null });
+    Object.assign(this, { file, begin: null, last: null, preview: null, factors: null, fullTime: 0, history: [], log: [] });
     this.turn++;
     this.pending.clear();
     if (this.full.busy) this.full.stop();
@@ -64,7 +65,6 @@ class App {
     this.controls.settled = false;
     this.controls.layout = null;
     this.editor.set(answer.text, false);
-    this.baseText = answer.text;
     $("undo").disabled = true;
     await this.update(performance.now());
   }
@@ -139,7 +139,8 @@ class App {
     return { value: this.last?.results.find((o) => o.name === r.name)?.value ?? r.value, holds: false };
   }
   async exact(turn, begin) {
-    this.status("work", "running");
+    const early = $("status").classList.contains("preview") ? $("status-text").textContent.replace("follows", "is under way") : "running";
+    this.status("work", early);
     if (this.full.busy) this.full.stop();
     const run = await this.full.ask({ ask: "run", file: this.file, text: this.text });
     if (!run || turn !== this.turn) return;
@@ -203,6 +204,12 @@ class App {
     const files = await this.full.ask({ ask: "files" });
     if (files && files[file]) save(this.file.split("/").at(-1).replace(/\.toml$/, "") + "-" + file, files[file], type);
   }
+}
+
+// Runs a script that the module holds.
+function script(text) {
+  const src = URL.createObjectURL(new Blob([text], { type: "text/javascript" }));
+  return new Promise((take, fail) => document.head.append(element("script", { src, onload: () => { URL.revokeObjectURL(src); take(); }, onerror: fail })));
 }
 
 // Words between backticks are names.

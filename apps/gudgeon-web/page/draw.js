@@ -1,4 +1,4 @@
-// Draws a run with the scripts of its report, again and again: `reportScripts` (made of them when the page is built) takes what they think is the
+// Draws a run with the scripts of its report, again and again: `reportScripts`, which the module makes of them, takes what they think is the
 // document and the address, so that several drawings follow one another in one page.
 
 class Drawing {
@@ -20,25 +20,20 @@ class Drawing {
     this.host.append(body);
     body.classList.toggle("wide-open", this.wide);
     reportScripts(page, { hash: memory.hash }, listen, scope);
-    this.hide(body);
     if (old) old.body.remove();
     this.current = { ...scope, body };
     this.current.cycle = scope.cycle;
     this.recall(body, scope.cycle, memory);
     scrollTo({ top: y, behavior: "instant" });
-    return { hidden: hidden + (this.wide ? 0 : this.more), wide: this.wide };
-  }
-  // Curves beyond the first two stay folded: a hidden plot draws nothing, and costs nothing.
-  hide(body) {
-    const plots = [...body.querySelectorAll('[data-part="plots"] > *')];
-    const first = body.querySelector('[data-part="pack"]') ? 2 : 4;
-    this.more = 0;
-    plots.forEach((p, i) => { const off = !this.wide && i >= first; p.hidden = off; if (off) this.more++; });
+    // Curves beyond the first stay folded by the style sheet: what is not displayed draws nothing, and costs nothing.
+    const folded = [...body.querySelectorAll('[data-part="plots"] > *')].filter((p) => !p.clientHeight).length;
+    return { hidden: hidden + folded, wide: this.wide };
   }
   // What a person set on the drawing: angle, range, scales, hidden curves.
   remember() {
     const now = this.current;
-    if (!now) return { hash: "", pressed: new Map() };
+    // At first a few degrees behind the firing dead centre, where most is to be seen.
+    if (!now) return { hash: "#theta=372", pressed: new Map() };
     const pressed = new Map();
     for (const plot of now.body.querySelectorAll(".plot")) {
       pressed.set(title(plot), [...plot.querySelectorAll("button[aria-pressed]")].map((b) => [b.textContent.replace(/[-–−+.\d×⁰¹²³⁴⁵⁶⁷⁸⁹⁻ ].*$/, ""), b.getAttribute("aria-pressed")]));

@@ -57,13 +57,20 @@ class Editor {
     this.reveal(line);
     this.ask();
   }
+  // Only lines that look different are made anew: a slider changes one of hundreds.
   draw() {
-    const lines = this.area.value.split("\n"), wrong = new Map();
+    const wrong = new Map();
     for (const m of this.mistakes) if (m.line && !wrong.has(m.line)) wrong.set(m.line, m);
-    const numbers = element("div", {});
-    lines.forEach((_, i) => numbers.append(element("span", { class: wrong.has(i + 1) ? "wrong" : this.touched.has(i + 1) ? "touched" : null }, String(i + 1))));
-    this.gutter.replaceChildren(numbers);
-    this.paint.replaceChildren(...lines.map((line, i) => this.line(line, wrong.get(i + 1), this.touched.has(i + 1))));
+    if (!this.gutter.firstChild) this.gutter.append(element("div", {}));
+    const numbers = this.gutter.firstChild, looks = this.area.value.split("\n").map((text, i) => ({ text, wrong: wrong.get(i + 1), touched: this.touched.has(i + 1) }));
+    const same = (a, b) => a && a.text === b.text && a.wrong === b.wrong && a.touched === b.touched;
+    looks.forEach((now, i) => {
+      if (same(this.looks?.[i], now)) return;
+      const number = element("span", { class: now.wrong ? "wrong" : now.touched ? "touched" : null }, String(i + 1)), line = this.line(now.text, now.wrong, now.touched);
+      if (numbers.children[i]) { numbers.children[i].replaceWith(number); this.paint.children[i].replaceWith(line); } else { numbers.append(number); this.paint.append(line); }
+    });
+    while (numbers.children.length > looks.length) { numbers.lastChild.remove(); this.paint.lastChild.remove(); }
+    this.looks = looks;
     this.scroll();
   }
   line(text, wrong, touched) {

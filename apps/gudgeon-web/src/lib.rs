@@ -8,6 +8,7 @@
 mod abi;
 mod cases;
 mod controls;
+mod drawings;
 mod place;
 mod playground;
 mod request;

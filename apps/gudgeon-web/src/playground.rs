@@ -29,9 +29,11 @@ impl From<Report> for Failed {
 }
 
 /// Keeps what the next question may be about.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub struct Playground {
     last: Option<RunResult>,
+    /// The text that was checked last, by its file: what is opened is run next.
+    checked: Option<(String, Checked)>,
 }
 
 impl Playground {
@@ -59,8 +61,8 @@ impl Playground {
     }
 
     /// Sliders, choices and notes.
-    pub(crate) fn open(&self, file: &str, text: String) -> Result<Value, Failed> {
-        let c = checked(file, text, &[])?;
+    pub(crate) fn open(&mut self, file: &str, text: String) -> Result<Value, Failed> {
+        let c = self.checked(file, text)?;
         let heading = c.case.heading();
         let inputs = c.case.inputs();
         let scene = scene(&c);
@@ -68,6 +70,16 @@ impl Playground {
             "name": c.name, "title": heading.title, "scene": scene, "source": heading.source, "notes": c.notes,
             "sliders": sliders(&inputs, &c.case.resolved(), shown::of(&scene)), "choices": choices(&inputs),
         }))
+    }
+
+    /// The case of a text, which is checked unless it is the one that was checked last.
+    fn checked(&mut self, file: &str, text: String) -> Result<&Checked, Failed> {
+        let known = |(name, c): &(String, Checked)| name == file && c.case.source().text == text;
+        let case = match self.checked.take().filter(known) {
+            Some(case) => case,
+            None => (file.to_owned(), checked(file, text, &[])?),
+        };
+        Ok(&self.checked.insert(case).1)
     }
 
     /// The text with changes written into it. A model that needs keys gets them from its example.
@@ -97,17 +109,20 @@ impl Playground {
 
     /// Results and drawings.
     pub(crate) fn run(&mut self, file: &str, text: String, preview: bool) -> Result<Value, Failed> {
-        let mut c = checked(file, text, &[])?;
-        let set = if preview { preview_of(&c) } else { Vec::new() };
-        if preview {
-            if set.is_empty() {
-                return Err(Failed::Run("this case has no quicker settings".into()));
+        let c = self.checked(file, text)?;
+        let set = if preview { preview_of(c) } else { Vec::new() };
+        let quicker;
+        let c = match (preview, set.is_empty()) {
+            (true, true) => return Err(Failed::Run("this case has no quicker settings".into())),
+            (true, false) => {
+                quicker = c.with(&set)?;
+                &quicker
             }
-            c = c.with(&set)?;
-        }
-        let mut result = run(&c, &mut unwatched).map_err(|e| Failed::Run(e.to_string()))?;
+            _ => c,
+        };
+        let mut result = run(c, &mut unwatched).map_err(|e| Failed::Run(e.to_string()))?;
         result.provenance.revision = env!("GUDGEON_REVISION").into();
-        let told = told(&c, &result, &set);
+        let told = told(c, &result, &set);
         if !preview {
             self.last = Some(result);
         }

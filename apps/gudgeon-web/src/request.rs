@@ -4,6 +4,7 @@ use gudgeon_case::Report;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
+use crate::drawings::drawings;
 use crate::playground::{Failed, Playground};
 
 /// What the page asks.
@@ -12,6 +13,8 @@ use crate::playground::{Failed, Playground};
 pub enum Request {
     /// The cases, by scene.
     Catalogue,
+    /// The script that draws runs.
+    Drawings,
     /// The text of a case that comes with the page.
     Text {
         /// Its name.
@@ -70,6 +73,7 @@ pub fn answer(playground: &mut Playground, question: &str) -> String {
 fn reply(p: &mut Playground, request: Request) -> Result<Value, Failed> {
     match request {
         Request::Catalogue => Ok(p.catalogue()),
+        Request::Drawings => Ok(json!({ "script": drawings() })),
         Request::Text { file } => p.text(&file),
         Request::Open { file, text } => p.open(&file, text),
         Request::Change { file, text, set } => p.change(&file, text, &set),

@@ -9,8 +9,7 @@ use serde_json::{Value, json};
 use crate::number::{certain, count, significant, unit};
 use crate::summary::{BalanceSheet, ModelEntry, ResultValue, SkippedEntry, SolverEntry};
 
-/// The style sheet of every page.
-pub const STYLE: &str = include_str!("assets/style.css");
+const STYLE: &str = include_str!("assets/style.css");
 const CORE: &str = include_str!("assets/core.js");
 const PLOT: &str = include_str!("assets/plot.js");
 const DRAWING: &str = include_str!("assets/drawing.js");
