@@ -70,7 +70,7 @@ class Controls {
     back.addEventListener("click", () => { move(s.start); range.focus(); });
     const row = element("div", { class: "slider", title: s.about },
       element("label", { for: id }, s.label, s.of ? element("small", {}, s.of) : null), back,
-      element("span", { class: "value" }, number, element("span", { class: "unit" }, s.unit.replace("deg", "°").replace("°C", "°C"))), range);
+      element("span", { class: "value" }, number, element("span", { class: "unit" }, unitText(s.unit))), range);
     this.rows.set(s.path, { s, row, range, number, back });
     return row;
   }

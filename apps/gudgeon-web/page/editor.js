@@ -38,7 +38,7 @@ class Editor {
     this.mistakes = mistakes;
     const go = (m) => { if (m.line) { this.select(m.line, m.column || 1, m.length || 0); } };
     const one = (m) => element("button", { type: "button", class: "mistake", "data-line": m.line, onclick: () => go(m) },
-      element("b", {}, m.line ? `Line ${m.line}` : "The case"), " " + m.message, m.help ? element("span", { class: "advice" }, m.help) : null);
+      element("b", {}, m.line ? `Line ${m.line}` : "The case"), " ", ...prose(m.message), m.help ? element("span", { class: "advice" }, ...prose(m.help)) : null);
     this.list.replaceChildren(...(mistakes.length ? [element("h3", {}, mistakes.length === 1 ? "1 mistake" : mistakes.length + " mistakes"), ...mistakes.map(one)] : []));
     this.draw();
     if (mistakes.length && mistakes[0].line && document.activeElement !== this.area) this.reveal(mistakes[0].line);
@@ -104,11 +104,11 @@ class Editor {
     const rows = [];
     const row = (name, what) => { if (what) rows.push(element("dt", {}, name), element("dd", {}, what)); };
     row("wants", h.wants); row("units", h.units.join(", ")); row("default", h.default);
-    const words = h.words.map(([w, about]) => element("li", {}, element("button", { type: "button", onclick: () => this.put(w) }, w), about ? " " + about : ""));
+    const words = h.words.map(([w, about]) => element("li", {}, element("button", { type: "button", onclick: () => this.put(w) }, w), ...(about ? [" ", ...prose(about)] : [])));
     const missing = h.keys.filter((k) => !k.present && !k.table);
-    const keys = missing.map((k) => element("li", {}, element("button", { type: "button", class: k.required ? "required" : null, onclick: () => this.add(k.key) }, k.key), k.required ? element("b", {}, " needed. ") : " ", k.about));
+    const keys = missing.map((k) => element("li", {}, element("button", { type: "button", class: k.required ? "required" : null, onclick: () => this.add(k.key) }, k.key), k.required ? element("b", {}, " needed. ") : " ", ...prose(k.about)));
     this.about.replaceChildren(
-      element("h3", {}, element("code", {}, h.path || "the case")), element("p", {}, h.about || ""),
+      element("h3", {}, element("code", {}, h.path || "the case")), element("p", {}, ...prose(h.about || "")),
       ...(rows.length ? [element("dl", {}, ...rows)] : []),
       ...(words.length ? [element("h4", {}, "May be"), element("ul", { class: "words" }, ...words)] : []),
       ...(keys.length ? [element("details", { open: !words.length }, element("summary", {}, `${keys.length} more keys of this table`), element("ul", { class: "words" }, ...keys))] : []));

@@ -1,7 +1,7 @@
 // Headlines and the table of all results, each with its change against the start.
 
-const UNITS = { "m3": "m³", "mm3": "mm³", "mm2": "mm²", "mm4": "mm⁴", "m2": "m²", "m/s2": "m/s²", deg: "°", um: "µm", "um/s": "µm/s", "N m": "N·m", "kg m2": "kg·m²", degC: "°C" };
-const unitText = (u) => UNITS[u] || (u || "").replace(/^-$/, "");
+const UNITS = { "kg/m3": "kg/m³", "N/m2": "N/m²", "m3": "m³", "mm3": "mm³", "mm2": "mm²", "mm4": "mm⁴", "m2": "m²", "m/s2": "m/s²", deg: "°", um: "µm", "um/s": "µm/s", "N m": "N·m", "kg m2": "kg·m²", degC: "°C" };
+const unitText = (u) => UNITS[u] || (u || "").replace(/^[-1]$/, "");
 
 function number(x, n = 4) {
   if (!isFinite(x)) return "–";
@@ -19,6 +19,12 @@ function difference(value, start) {
   if (Math.abs(p) < 0.005) return { text: "", size: 0 };
   const t = Math.abs(p) >= 1000 ? "×" + number(value / start, 3) : (p > 0 ? "+" : "−") + number(Math.abs(p), Math.abs(p) < 10 ? 2 : 3) + " %";
   return { text: t, size: Math.sign(p) * Math.min(1, Math.abs(p) / 10) };
+}
+
+// What a result is, or its name where that would not fit a tile.
+function shortName(r) {
+  const text = r.what && r.what.length <= 40 ? r.what : r.name.replace(/[._]/g, " ").replace(/([a-z])(\d)/g, "$1 $2");
+  return text.charAt(0).toUpperCase() + text.slice(1);
 }
 
 class Results {
@@ -39,8 +45,8 @@ class Results {
   tile(r) {
     const { value, holds } = this.values.get(r.name), d = difference(value, this.start?.get(r.name));
     return element("div", { class: "tile" + (holds ? "" : " stale"), title: r.what, "data-result": r.name },
-      element("dt", {}, r.what ? r.what.charAt(0).toUpperCase() + r.what.slice(1) : r.name.replace(/_/g, " ")),
-      element("dd", {}, element("b", {}, number(value)), " ", element("span", { class: "unit" }, unitText(r.unit)),
+      element("dt", {}, shortName(r)),
+      element("dd", {}, element("b", { class: number(value).length > 7 ? "long" : null }, number(value)), " ", element("span", { class: "unit" }, unitText(r.unit)),
         element("span", { class: "change " + (d.size > 0 ? "up" : d.size < 0 ? "down" : "") }, d.text ? (d.size > 0 ? "▲ " : d.size < 0 ? "▼ " : "") + d.text : "")));
   }
   all() {

@@ -156,6 +156,8 @@ fn describe(schema: &Schema, field: Part, out: &mut Help) {
     out.default = match field.get("default") {
         None | Some(Value::Null) => String::new(),
         Some(Value::String(s)) => s.clone(),
+        // Of a model its name; its keys have defaults of their own.
+        Some(Value::Object(o)) => o.get("model").and_then(Value::as_str).unwrap_or_default().to_owned(),
         Some(v) => v.to_string(),
     };
     let table = schema.model_of_word(inner).map_or(inner, |m| schema.resolve(m));
