@@ -11,12 +11,15 @@ class App {
     this.quick = new Engine(module);
     this.full = new Engine(module);
     this.controls = new Controls($("sliders"), $("choices"), $("more"), (path, literal) => this.change(path, literal));
-    this.editor = new Editor($("editor"), (text) => this.typed(text), (text, offset) => this.quick.ask({ ask: "help", text, offset }));
+    this.editor = new Editor($("editor"), () => this.typed(), (text, offset) => this.quick.ask({ ask: "help", text, offset }));
     this.drawing = new Drawing($("drawing"));
     this.results = new Results($("tiles"), $("all-rows"), $("filter"), $("count"));
+    // Changes that are not yet written into the text.
     this.pending = new Map();
+    // Counts what was asked for: an answer to an older question is dropped.
     this.turn = 0;
     this.history = [];
+    // What was shown of this case so far and how long it took, for whoever measures.
     this.log = [];
   }
   async start() {
@@ -51,7 +54,7 @@ class App {
   }
   // Forgets everything about the case before.
   async load(file) {
-    Object.assign(this, { file, begin: null, last: null, preview: null, factors: null, fullTime: 0, history: [], log: [] });
+    Object.assign(this, { file, begin: null, last: null, factors: null, noPreview: false, fullTime: 0, history: [], log: [] });
     this.turn++;
     this.pending.clear();
     if (this.full.busy) this.full.stop();
@@ -68,7 +71,7 @@ class App {
     $("undo").disabled = true;
     await this.update(performance.now());
   }
-  typed(text) { this.push(); this.update(performance.now()); }
+  typed() { this.push(); this.update(performance.now()); }
   push() { if (this.history.at(-1) !== this.text) { this.history.push(this.text); this.history.splice(0, Math.max(0, this.history.length - 200)); } $("undo").disabled = !this.history.length; }
   undo() {
     const text = this.history.pop();
@@ -113,10 +116,10 @@ class App {
     $("title").textContent = opened.title || opened.name;
     $("source").textContent = opened.source || "";
     if (this.fullTime <= QUICK) return this.exact(turn, begin);
-    const early = await this.early(turn, begin);
-    if (turn !== this.turn) return;
     clearTimeout(this.rest);
     if (this.full.busy) this.full.stop();
+    const early = await this.early(turn, begin);
+    if (turn !== this.turn) return;
     this.rest = setTimeout(() => { if (turn === this.turn) this.exact(turn, early ? performance.now() : begin); }, this.pending.size ? 300 : 120);
   }
   // The preview of a slow case.
@@ -198,7 +201,6 @@ class App {
     $("time").title = `${number(run.ms, 3)} ms of it in the solver`;
     for (const id of ["save-report", "save-summary", "save-series"]) $(id).disabled = kind !== "full";
     this.log.push({ kind, file: this.file, shown, run: run.ms });
-    document.dispatchEvent(new CustomEvent("gudgeon:shown", { detail: kind }));
   }
   async keep(file, type) {
     const files = await this.full.ask({ ask: "files" });

@@ -89,8 +89,6 @@ class Controls {
       const changed = s.value !== s.start;
       row.classList.toggle("changed", changed);
       back.style.visibility = changed ? "visible" : "hidden";
-      const at = (v) => ((v - s.low) / (s.high - s.low || 1)) * 100;
-      range.style.setProperty("--start", at(s.start) + "%");
     }
     for (const c of this.last.choices) {
       const list = this.selects.get(c.path);

@@ -1,7 +1,7 @@
 // The text of the case with the numbers of its lines, its mistakes at their place, and what the schema knows about the line of the cursor.
 
 class Editor {
-  // `edited(text)` is told what a person types; `help(text, offset)` asks the module.
+  // `edited()` is called when a person typed; `help(text, offset)` asks the module.
   constructor(host, edited, help) {
     Object.assign(this, { edited, help, mistakes: [], touched: new Set() });
     this.gutter = element("div", { class: "gutter", "aria-hidden": "true" });
@@ -10,7 +10,7 @@ class Editor {
     this.list = element("div", { id: "mistakes", class: "mistakes", role: "status", "aria-live": "polite" });
     this.about = element("div", { class: "about", "aria-live": "polite" });
     host.append(element("div", { class: "sheet" }, this.gutter, element("div", { class: "text" }, this.paint, this.area)), element("aside", { class: "side-help", "aria-label": "help on the case" }, this.list, this.about));
-    this.area.addEventListener("input", () => { this.touched.clear(); this.draw(); clearTimeout(this.later); this.later = setTimeout(() => this.edited(this.area.value), 250); });
+    this.area.addEventListener("input", () => { this.touched.clear(); this.draw(); clearTimeout(this.later); this.later = setTimeout(() => this.edited(), 250); });
     this.area.addEventListener("scroll", () => this.scroll());
     for (const event of ["keyup", "click", "focus"]) this.area.addEventListener(event, () => this.ask());
   }

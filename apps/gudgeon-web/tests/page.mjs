@@ -105,7 +105,7 @@ await b.value(`(() => { const a = app.editor.area; a.value = a.value.replace('"n
 await b.until("document.querySelectorAll('.mistake').length === 1", "a mistake that is told");
 const line = await b.value("app.editor.text.split('\\n').findIndex((l) => l.includes('narow')) + 1");
 check(await b.value("document.querySelector('.gutter .wrong').textContent") === String(line), "the mistake is not marked at its line");
-check((await b.value("document.querySelector('.mistake').textContent")).includes("did you mean `narrow_channel`?"), "the mistake has no advice");
+check((await b.value("document.querySelector('.mistake').textContent")).includes("did you mean narrow_channel?"), "the mistake has no advice");
 await b.value(`document.getElementById("undo").click()`);
 await b.until("document.querySelectorAll('.mistake').length === 0", "the mistake to be gone");
 

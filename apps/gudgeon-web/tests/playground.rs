@@ -124,7 +124,7 @@ fn a_preview_says_its_settings_and_is_not_kept() {
     let mut p = Playground::default();
     let file = "turbo-diesel-120.toml";
     let told = ask(&mut p, &json!({ "ask": "run", "file": file, "text": text(file), "preview": true }));
-    assert_eq!(told["preview"], json!(["models.oil_transport.model=off", "solver.tolerance=3e-3"]));
+    assert_eq!(told["preview"], json!(["models.oil_transport.model=off", "solver.tolerance=1e-2"]));
     assert!(ask(&mut p, &json!({ "ask": "files" }))["failed"].is_string());
     // A pin has nothing to be quicker with.
     let pin = "pin-85-alcohol.toml";
