@@ -114,7 +114,7 @@ class App {
     this.controls.update(opened);
     this.controls.disable(false);
     $("title").textContent = opened.title || opened.name;
-    $("source").textContent = opened.source || "";
+    $("source").replaceChildren(...prose(opened.source || ""));
     if (this.fullTime <= QUICK) return this.exact(turn, begin);
     clearTimeout(this.rest);
     if (this.full.busy) this.full.stop();
@@ -179,7 +179,7 @@ class App {
     $("drawing").classList.remove("old");
     const { hidden, wide } = this.drawing.show(run.data);
     $("unfold").hidden = !hidden && !wide;
-    $("unfold").textContent = wide ? "Fewer drawings" : `${hidden} more drawings`;
+    $("unfold").textContent = wide ? "Fewer drawings" : hidden === 1 ? "One more drawing" : `${hidden} more drawings`;
     $("unfold").setAttribute("aria-expanded", String(wide));
   }
   notes(run) { this.note(run.notes); }

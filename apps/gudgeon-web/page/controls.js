@@ -44,6 +44,7 @@ class Controls {
     const opened = this.last, now = new Map(opened.sliders.map((s) => [s.path, s]));
     this.rows = new Map();
     this.sliders.replaceChildren(...this.shown.filter((p) => now.has(p)).map((p) => this.row(this.known.get(p))));
+    if (!opened.sliders.length) this.sliders.append(element("p", { class: "hint" }, "This case names other cases and has no numbers of its own: open those."));
     this.more.replaceChildren(element("option", { value: "" }, "Add a slider…"));
     const groups = new Map();
     for (const s of opened.sliders) {

@@ -65,7 +65,7 @@ impl Playground {
         let c = self.checked(file, text)?;
         let heading = c.case.heading();
         let inputs = c.case.inputs();
-        let scene = scene(&c);
+        let scene = scene(c);
         Ok(json!({
             "name": c.name, "title": heading.title, "scene": scene, "source": heading.source, "notes": c.notes,
             "sliders": sliders(&inputs, &c.case.resolved(), shown::of(&scene)), "choices": choices(&inputs),

@@ -23,7 +23,6 @@ const RINGS: &[&str] = &[
     "rings.#.tangential_force",
     "models.oil_transport.supply",
     "models.film_temperature.tdc",
-    "models.film_temperature.temperature",
     "models.cylinder_pressure.burn_pressure",
     "rings.0.face.drop",
     "rings.1.face.drop",
@@ -43,21 +42,13 @@ pub const SHOWN: &[Shown] = &[
             "cylinder.p_max",
             "land2.p_max",
             "oil_up",
-            "friction_mean",
         ],
         preview: RING_PREVIEW,
     },
     Shown {
         scene: "power_cylinder",
-        sliders: &[
-            "engine.speed",
-            "rings.0.cold_gap",
-            "rings.#.tangential_force",
-            "skirt.clearance",
-            "piston.pin_offset",
-            "engine.pin_offset",
-            "models.film_temperature.tdc",
-        ],
+        // Its cases name other cases and have no numbers of their own.
+        sliders: &[],
         headlines: &[
             "friction_power",
             "fmep",
@@ -67,19 +58,17 @@ pub const SHOWN: &[Shown] = &[
             "skirt.slap_energy",
             "skirt.tilt_max",
         ],
-        preview: RING_PREVIEW,
+        preview: &[],
     },
     Shown {
         scene: "piston_secondary",
         sliders: &[
             "engine.speed",
             "engine.pin_offset",
-            "piston.pin_offset",
             "skirt.clearance",
-            "skirt.diametral_clearance",
             "piston.mass",
             "models.oil.viscosity",
-            "oil_temperature",
+            "skirt.oil_temperature",
         ],
         headlines: &[
             "friction_power",
@@ -97,10 +86,10 @@ pub const SHOWN: &[Shown] = &[
         scene: "shaft_line",
         sliders: &[
             "speed",
+            "throws.0.ends.0.cylinder_pressure.discharge",
             "inertias.#.inertia",
             "shafts.#.stiffness",
             "shafts.#.diameter",
-            "throws.0.ends.0.discharge_pressure",
         ],
         headlines: &[
             "worst_utilisation",
