@@ -47,27 +47,29 @@ class App {
     this.fromAddress();
   }
   fromAddress() {
-    const wanted = new URLSearchParams(location.hash.slice(1)).get("case");
+    const query = new URLSearchParams(location.hash.slice(1)), wanted = query.get("case");
     const known = this.catalogue.cases.some((c) => c.file === wanted);
     const file = known ? wanted : this.file || "turbo-diesel-120.toml";
-    if (file !== this.file) this.load(file);
+    if (file !== this.file) this.load(file, query.getAll("set"));
   }
-  // Forgets everything about the case before.
-  async load(file) {
+  // Forgets everything about the case before. `set` are changes that come with the address.
+  async load(file, set = []) {
     Object.assign(this, { file, begin: null, last: null, factors: null, noPreview: false, fullTime: 0, history: [], log: [] });
     this.turn++;
     this.pending.clear();
     if (this.full.busy) this.full.stop();
     if (this.quick.busy) this.quick.stop();
     $("case").value = file;
-    history.replaceState(null, "", "#case=" + file);
+    history.replaceState(null, "", "#" + new URLSearchParams([["case", file], ...set.map((s) => ["set", s])]));
     this.status("work", "reading the case");
     const answer = await this.quick.ask({ ask: "text", file });
     if (!answer || this.file !== file) return;
     this.controls.reset();
     this.controls.settled = false;
     this.controls.layout = null;
-    this.editor.set(answer.text, false);
+    const changed = set.length ? await this.quick.ask({ ask: "change", file, text: answer.text, set }) : answer;
+    if (!changed || this.file !== file) return;
+    this.editor.set(changed.text ?? answer.text, false);
     $("undo").disabled = true;
     await this.update(performance.now());
   }
