@@ -30,7 +30,7 @@ async function look(file, colorScheme) {
   page.on("pageerror", (e) => say(`script: ${e.message}`));
   await page.goto(pathToFileURL(file).href);
   if (colorScheme === "light") await paper(page, say);
-  await page.evaluate(() => { for (const d of document.querySelectorAll("details:not(.save)")) d.open = true; });
+  await page.evaluate(() => { for (const d of document.querySelectorAll("details:not(.saving)")) d.open = true; });
   await page.waitForTimeout(100);
   await page.evaluate(axe);
   const found = await page.evaluate(() => window.axe.run());

@@ -8,12 +8,15 @@
 //! 5. A [`BuildError`] that a later stage raises finds its place through [`Loaded::locate`].
 
 pub mod catalogue;
+mod cursor;
+mod inputs;
 mod near;
 mod overrides;
 mod published;
 mod refine;
 mod render;
 mod report;
+mod rewrite;
 mod schema;
 mod sets;
 mod tree;
@@ -29,6 +32,8 @@ use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
 use toml::de::DeTable;
 
+pub use cursor::{Help, KeyHelp};
+pub use inputs::{ChoiceInput, Input, InputValue, NumberInput};
 pub use near::{advice, list, nearest};
 pub use published::{one_scene_of, published};
 pub use refine::{Level, Refinement};
@@ -437,7 +442,48 @@ impl<T: JsonSchema + 'static> Loaded<T> {
     }
 }
 
+/// What the schema of a case knows about the line of a text that a byte offset stands in. The text may be wrong elsewhere.
+#[must_use]
+pub fn help_at<T: JsonSchema + 'static>(text: &str, offset: usize) -> Help {
+    cursor::help(Schema::of::<T>(), text, offset)
+}
+
+impl<T: serde::Serialize + DeserializeOwned + JsonSchema + 'static> Loaded<T> {
+    /// The text of the file with further overrides written into it: what `--set` does, to be kept as a file. A change that makes the case
+    /// wrong is written all the same: its mistake then has a place in the text.
+    ///
+    /// # Errors
+    /// A change that is none of a case, or that the text cannot hold.
+    pub fn rewritten(&self, more: &[String]) -> Result<String, Report> {
+        let refuse = |found| Report::new(found, Arc::clone(&self.source), Arc::from(more));
+        let mut changed = Node::clone(&self.base);
+        let found = overrides::apply(&mut changed, Schema::of::<T>(), more, &mut Vec::new());
+        if !found.is_empty() {
+            return Err(refuse(found));
+        }
+        let text = rewrite::rewritten(&self.source.text, &self.base, &changed, more);
+        let source = Source { text: text.clone(), ..Source::clone(&self.source) };
+        let same = match (self.reload::<T>(more), load_source::<T>(source, &self.overrides)) {
+            (Ok(a), Ok(b)) => a.resolved().ok() == b.resolved().ok(),
+            (Err(_), Err(_)) => true,
+            _ => false,
+        };
+        if same {
+            return Ok(text);
+        }
+        let what = Diagnostic::new("this change cannot be written into the text of the case");
+        Err(refuse(vec![what.help("make it in the file itself")]))
+    }
+}
+
 impl<T: serde::Serialize + JsonSchema + 'static> Loaded<T> {
+    /// The inputs of this case: numbers, words and models, in the order of the resolved case.
+    #[must_use]
+    pub fn inputs(&self) -> Vec<Input> {
+        let Ok(resolved) = self.resolved() else { return Vec::new() };
+        inputs::inputs(Schema::of::<T>(), &resolved, &self.source.text, &self.tree)
+    }
+
     /// How the numerical settings of this case are refined.
     #[must_use]
     pub fn refinements(&self) -> Vec<Refinement> {

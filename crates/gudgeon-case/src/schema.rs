@@ -585,11 +585,11 @@ fn is_null(schema: &Value) -> bool {
     schema.get("type").and_then(Value::as_str) == Some("null")
 }
 
-fn strings(v: Option<&Value>) -> Vec<&str> {
+pub(super) fn strings(v: Option<&Value>) -> Vec<&str> {
     v.and_then(Value::as_array).map_or_else(Vec::new, |a| a.iter().filter_map(Value::as_str).collect())
 }
 
-fn types_of(schema: &Value) -> Vec<&str> {
+pub(super) fn types_of(schema: &Value) -> Vec<&str> {
     match schema.get("type") {
         Some(Value::String(t)) => vec![t],
         list => strings(list).into_iter().filter(|t| *t != "null").collect(),
@@ -597,7 +597,7 @@ fn types_of(schema: &Value) -> Vec<&str> {
 }
 
 /// The admitted words, when the schema is nothing but a choice of words.
-fn words_of(schema: &Value) -> Option<Vec<&str>> {
+pub(super) fn words_of(schema: &Value) -> Option<Vec<&str>> {
     if let Some(word) = schema.get("const").and_then(Value::as_str) {
         return Some(vec![word]);
     }
@@ -623,7 +623,7 @@ fn admits(kind: &str, data: &Data) -> bool {
     }
 }
 
-fn phrase(types: &[&str]) -> String {
+pub(super) fn phrase(types: &[&str]) -> String {
     let mut words: Vec<&str> = types
         .iter()
         .map(|t| match *t {
@@ -747,7 +747,7 @@ fn check_quantity(node: &Node, dimension: &str, bound: &str, path: &str, out: &m
     out.push(d);
 }
 
-fn units_of(dimension: &str) -> Vec<&'static str> {
+pub(super) fn units_of(dimension: &str) -> Vec<&'static str> {
     ALL_DIMENSIONS
         .iter()
         .find(|(n, ..)| *n == dimension)

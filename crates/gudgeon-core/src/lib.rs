@@ -30,6 +30,7 @@ pub mod registry;
 pub mod sets;
 pub mod spec;
 pub mod states;
+mod stopwatch;
 mod word;
 
 // The attributes name this crate by its name, also inside it.
@@ -48,5 +49,6 @@ pub use gudgeon_macros::{register_kind, register_model};
 pub use error::{BuildError, EvalError};
 pub use gudgeon_numerics::{Stopped, unwatched};
 pub use registry::{KindInfo, ModelInfo, Registry};
+pub use stopwatch::Stopwatch;
 pub use word::Word;
 pub use {gudgeon_result as result, gudgeon_units as quantity};

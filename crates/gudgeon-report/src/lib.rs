@@ -36,8 +36,8 @@ pub use comparison::{ComparisonFiles, write_comparison, write_comparison_in};
 pub use error::ReportError;
 pub use folder::Folder;
 pub use gradients::{gradients_json, gradients_value, write_gradients_in};
-pub use page::OVER_CYCLE;
-pub use run::{RunFiles, summary_json, write_run, write_run_in};
+pub use page::{OVER_CYCLE, RUN_SCRIPTS};
+pub use run::{RunFiles, run_data, run_files, summary_json, write_run, write_run_in};
 pub use study::{StudyPage, study_page};
 pub use validation::{page_name, validation_index, validation_page};
 

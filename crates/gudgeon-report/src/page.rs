@@ -25,6 +25,10 @@ pub const OVER_CYCLE: &str = include_str!("assets/over_cycle.json");
 const COMPARE: &str = include_str!("assets/compare.js");
 const BENCH: &str = include_str!("assets/bench.js");
 
+/// The scripts of a run's page, in their order: together they read the element `data` and fill the elements `bar`, `lead`, `plots` and
+/// `figures`. They expect a constant `OVER_CYCLE` that holds [`OVER_CYCLE`].
+pub const RUN_SCRIPTS: &[&str] = &[CORE, AXIS, EXPORT, CHART, SECTION, RUN, DRAWING, MAP, FIGURE];
+
 /// Which script draws the page.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Kind {
@@ -97,7 +101,7 @@ fn json_for_script(value: &Value) -> String {
 /// One whole page.
 pub(crate) fn document(kind: Kind, title: &str, body: &str, data: &Value) -> String {
     let scripts: &[&str] = match kind {
-        Kind::Run => &[CORE, AXIS, EXPORT, CHART, SECTION, RUN, DRAWING, MAP, FIGURE],
+        Kind::Run => RUN_SCRIPTS,
         Kind::Comparison => &[CORE, AXIS, EXPORT, CHART, COMPARE, DRAWING, MAP, FIGURE],
         Kind::Bench => &[CORE, BENCH],
         Kind::Study => &[CORE, AXIS, EXPORT, CHART, DRAWING, MAP, FIGURE],

@@ -43,17 +43,34 @@ pub fn write_run(run: &RunResult, dir: &Path) -> Result<RunFiles, ReportError> {
 /// # Errors
 /// As [`write_run`].
 pub fn write_run_in(run: &RunResult, mut folder: Folder) -> Result<RunFiles, ReportError> {
-    let summary = Summary::new(run);
     let dir = folder.path().to_owned();
-    folder.add(SERIES, &table::series_csv(&run.series)?)?;
-    for (name, t) in &run.tables {
-        folder.add(&file_of(name), &table::series_csv(t)?)?;
+    for (name, bytes) in run_files(run)? {
+        folder.add(&name, &bytes)?;
     }
-    folder.add(REPORT, page(&summary, &run.series, &run.tables).as_bytes())?;
-    folder.add(TIMING, timing(run).as_bytes())?;
-    folder.add(SUMMARY, text(&summary).as_bytes())?;
     folder.commit()?;
     Ok(RunFiles { summary: dir.join(SUMMARY), series: dir.join(SERIES), report: dir.join(REPORT) })
+}
+
+/// Names and contents of the files that [`write_run`] writes, for a program without a file system.
+///
+/// # Errors
+/// A column of another length than its axis.
+pub fn run_files(run: &RunResult) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
+    let summary = Summary::new(run);
+    let mut files = vec![(SERIES.to_owned(), table::series_csv(&run.series)?)];
+    for (name, t) in &run.tables {
+        files.push((file_of(name), table::series_csv(t)?));
+    }
+    files.push((REPORT.into(), page(&summary, &run.series, &run.tables).into_bytes()));
+    files.push((TIMING.into(), timing(run).into_bytes()));
+    files.push((SUMMARY.into(), text(&summary).into_bytes()));
+    Ok(files)
+}
+
+/// The data that the scripts of a run's page draw from, for a page that draws again while a person changes a case.
+#[must_use]
+pub fn run_data(run: &RunResult) -> serde_json::Value {
+    data(&Summary::new(run), &run.series, &run.tables)
 }
 
 /// Wall-clock seconds by phase.
@@ -115,7 +132,7 @@ const CONTENTS: [(&str, &str); 11] = [
 ];
 
 fn page(s: &Summary, series: &Series, tables: &IndexMap<String, Series>) -> String {
-    let over_cycle = series.is_over_cycle() && !series.axis.values.is_empty() && !series.columns.is_empty();
+    let over_cycle = has_cycle(series);
     let mut main = String::new();
     overview::section(&mut main, s, series);
     curves(&mut main, s, over_cycle);
@@ -128,19 +145,29 @@ fn page(s: &Summary, series: &Series, tables: &IndexMap<String, Series>) -> Stri
     main.push_str(&page::models_section(&s.models));
     main.push_str(&page::sources_section(s));
     let body = page::body(&CONTENTS, &main, &s.gudgeon);
+    page::document(Kind::Run, s.heading(), &body, &data(s, series, tables))
+}
+
+/// Whether there are curves over the crank angle.
+fn has_cycle(series: &Series) -> bool {
+    series.is_over_cycle() && !series.axis.values.is_empty() && !series.columns.is_empty()
+}
+
+/// What the scripts of the page draw.
+fn data(s: &Summary, series: &Series, tables: &IndexMap<String, Series>) -> serde_json::Value {
     let mut arrays = page::Arrays::default();
     let used = |name: &str| s.figures.iter().any(|f| f.table == name);
-    let columns = if over_cycle { arrays.series(&series.axis, series.columns.iter()) } else { json!(null) };
+    let columns =
+        if has_cycle(series) { arrays.series(&series.axis, series.columns.iter()) } else { json!(null) };
     let mut data_of: serde_json::Map<String, serde_json::Value> =
         tables.iter().filter(|(n, _)| used(n)).map(|(n, t)| (n.clone(), arrays.whole(t))).collect();
     if used("series") {
         data_of.insert("series".into(), arrays.whole(series));
     }
-    let data = json!({
+    json!({
         "scene": s.scene, "section": s.section, "events": s.events, "series": columns, "tables": data_of,
         "figures": s.figures, "lead": s.lead, "arrays": arrays.into_json(),
-    });
-    page::document(Kind::Run, s.heading(), &body, &data)
+    })
 }
 
 /// Places of the curves and figures.

@@ -15,6 +15,8 @@ mod sweep_input;
 mod verify;
 mod work_precision;
 
+#[doc(hidden)]
+pub use gudgeon_case::help_at;
 pub use gudgeon_core::{Stopped, unwatched};
 #[doc(hidden)]
 pub use gudgeon_core::{inventory, registry::Linked};
@@ -25,7 +27,9 @@ pub use gradients::{GradientError, Varied};
 pub use heading::{Headed, Heading};
 pub use provenance::sha256;
 pub use run::{Checked, check, check_case, check_source, explain, run, run_verified};
-pub use scene::{Scene, SceneCase, SceneInfo, SceneName, changed, load, read_case, scenes, verify_scenes};
+pub use scene::{
+    Scene, SceneCase, SceneInfo, SceneName, changed, help, load, read_case, scenes, verify_scenes,
+};
 pub use solver_table::{SolverCommon, SolverTable, default_solvers};
 pub use sweep_input::{Axis, Spacing, Sweep, number, values};
 pub use work_precision::{Asked, MethodSetting, OtherMethod, Reference, WorkPrecision};

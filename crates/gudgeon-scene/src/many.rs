@@ -7,8 +7,8 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
-use gudgeon_core::Stopped;
 use gudgeon_core::result::{Failure, RunResult};
+use gudgeon_core::{Stopped, Stopwatch};
 
 use crate::error::{Progress, RunError};
 use crate::run::once;
@@ -131,21 +131,22 @@ fn side_by_side<T: Send>(
 
 /// Tells how far many runs are.
 struct Clock {
-    begin: Instant,
+    begin: Stopwatch,
     count: usize,
 }
 
 impl Clock {
     fn new(count: usize) -> Self {
-        Self { begin: Instant::now(), count }
+        Self { begin: Stopwatch::start(), count }
     }
 
     /// `done` points and the share `under_way` of another.
     fn look(&self, done: usize, under_way: f64) -> Progress {
         let fraction = (done as f64 + under_way) / self.count.max(1) as f64;
         let mut phase = format!("{done} of {} runs", self.count);
-        if fraction > 0.0 {
-            let left = self.begin.elapsed().as_secs_f64() * (1.0 / fraction - 1.0);
+        let passed = self.begin.seconds();
+        if fraction > 0.0 && passed > 0.0 {
+            let left = passed * (1.0 / fraction - 1.0);
             phase.push_str(&format!(", {} left", in_words(left)));
         }
         Progress { phase, fraction }

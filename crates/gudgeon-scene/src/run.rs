@@ -1,11 +1,10 @@
 //! From a file to results: the functions behind `check`, `explain` and `run`.
 
 use std::path::Path;
-use std::time::Instant;
 
 use gudgeon_case::{Report, Source, UsedSet, read, scene_of};
 use gudgeon_core::result::{ModelUse, Note, RunResult, Skipped};
-use gudgeon_core::{BuildError, Registry, Stopped};
+use gudgeon_core::{BuildError, Registry, Stopped, Stopwatch};
 
 use crate::error::{Progress, RunError};
 use crate::explanation::{ExplainedModel, Explanation};
@@ -158,7 +157,7 @@ pub fn run_on(
     threads: usize,
     progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
 ) -> Result<RunResult, RunError> {
-    let begin = Instant::now();
+    let begin = Stopwatch::start();
     finish(c, begin, with_sweeps(c.case.as_ref(), threads, progress)?)
 }
 
@@ -178,9 +177,9 @@ fn verified(
     mut result: RunResult,
     progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
 ) -> Result<RunResult, RunError> {
-    let begin = Instant::now();
+    let begin = Stopwatch::start();
     verify(c.case.as_ref(), &mut result, progress)?;
-    result.seconds.insert("verify".into(), begin.elapsed().as_secs_f64());
+    result.seconds.insert("verify".into(), begin.seconds());
     Ok(result)
 }
 
@@ -192,7 +191,7 @@ pub fn run_alone(
     c: &Checked,
     progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
 ) -> Result<RunResult, RunError> {
-    let begin = Instant::now();
+    let begin = Stopwatch::start();
     finish(c, begin, once(c.case.as_ref(), progress)?)
 }
 
@@ -207,7 +206,7 @@ pub fn run_alone_verified(
     verified(c, run_alone(c, progress)?, progress)
 }
 
-fn finish(c: &Checked, begin: Instant, mut result: RunResult) -> Result<RunResult, RunError> {
+fn finish(c: &Checked, begin: Stopwatch, mut result: RunResult) -> Result<RunResult, RunError> {
     result.case.clone_from(&c.name);
     result.gudgeon = env!("CARGO_PKG_VERSION").into();
     result.provenance = provenance(&c.file, c.case.as_ref());
@@ -215,7 +214,7 @@ fn finish(c: &Checked, begin: Instant, mut result: RunResult) -> Result<RunResul
     if let Some(column) = result.series.columns.iter().find(|c| c.values.iter().any(|v| !v.is_finite())) {
         return Err(RunError::NotANumber(column.name.clone()));
     }
-    result.seconds.insert("total".into(), begin.elapsed().as_secs_f64());
+    result.seconds.insert("total".into(), begin.seconds());
     Ok(result)
 }
 

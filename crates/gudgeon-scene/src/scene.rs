@@ -6,14 +6,13 @@
 use std::any::Any;
 use std::borrow::Cow;
 use std::sync::{Mutex, OnceLock, PoisonError};
-use std::time::Instant;
 
 use gudgeon_case::{
-    Loaded, Refinement, Report, Source, UsedSet, load_source, nearest, scene_of, top_level_keys,
+    Help, Input, Loaded, Refinement, Report, Source, UsedSet, load_source, nearest, scene_of, top_level_keys,
 };
 use gudgeon_core::kinds::EngineCycle;
 use gudgeon_core::result::{GradientInput, Gradients, ModelUse, RunResult, Value};
-use gudgeon_core::{BuildError, Stopped};
+use gudgeon_core::{BuildError, Stopped, Stopwatch};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -119,6 +118,13 @@ pub trait Scene: Send + Sync {
     fn cycle(&self) -> Option<Result<EngineCycle, BuildError>>;
     /// As [`SceneCase::refinements`].
     fn refinements(&self) -> Vec<Refinement>;
+    /// Its numbers, words and models, for a program that offers them to a person.
+    fn inputs(&self) -> Vec<Input>;
+    /// The text it was read from with further changes written into it, but not checked.
+    ///
+    /// # Errors
+    /// A change that is none of a case, or that the text cannot hold.
+    fn rewritten(&self, set: &[String]) -> Result<String, Report>;
     /// Everything that is wrong, sweeps apart.
     fn legal(&self) -> Vec<BuildError>;
     /// As [`SceneCase::result_names`].
@@ -243,6 +249,14 @@ impl<C: SceneCase> Scene for Read<C> {
         C::refinements(&self.loaded)
     }
 
+    fn inputs(&self) -> Vec<Input> {
+        self.loaded.inputs()
+    }
+
+    fn rewritten(&self, set: &[String]) -> Result<String, Report> {
+        self.loaded.rewritten(set)
+    }
+
     fn legal(&self) -> Vec<BuildError> {
         self.look(|_| ()).err().unwrap_or_default()
     }
@@ -270,9 +284,9 @@ impl<C: SceneCase> Scene for Read<C> {
     }
 
     fn once(&self, progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>) -> Result<RunResult, RunError> {
-        let begin = Instant::now();
+        let begin = Stopwatch::start();
         let built = self.take().map_err(|e| RunError::refused(&e))?;
-        let seconds = begin.elapsed().as_secs_f64();
+        let seconds = begin.seconds();
         let mut result = C::run(&self.loaded, built, progress).map_err(RunError::plain)?;
         result.seconds.insert("build".into(), seconds);
         let not_finite = |(_, v): &(&String, &Value)| !v.value.is_finite();
@@ -339,6 +353,9 @@ pub struct SceneInfo {
     /// JSON schema of a case.
     #[doc(hidden)]
     pub schema: fn(&mut SchemaGenerator) -> Schema,
+    /// Help on a place of a text.
+    #[doc(hidden)]
+    pub help: fn(&str, usize) -> Help,
 }
 gudgeon_core::inventory::collect!(SceneInfo);
 
@@ -380,6 +397,7 @@ macro_rules! register_scene {
                 line: line!(),
                 read: $crate::read_case::<$case>,
                 schema: |g| g.subschema_for::<$case>(),
+                help: $crate::help_at::<$case>,
             }
         }
         const _: () = {
@@ -439,20 +457,30 @@ impl JsonSchema for SceneName {
 /// # Errors
 /// Every mistake of the text and of the overrides.
 pub fn load(source: Source, overrides: &[String]) -> Result<Box<dyn Scene>, Report> {
-    let name = scene_of(&source, overrides);
-    let all = scenes();
-    let named = |n: &str| all.iter().find(|s| s.name == n);
-    let entry = name
-        .as_deref()
-        .and_then(|n| named(n).or_else(|| named(nearest(n, all.iter().map(|s| s.name))?)))
-        .or_else(|| most_alike(&source, all));
-    match entry {
+    match scene_for(&source, overrides) {
         Some(s) => (s.read)(source, overrides),
         None => {
             let what = "no scene is linked into this program";
             Err(Report::unreadable(&source.name, gudgeon_case::Diagnostic::new(what)))
         }
     }
+}
+
+/// The scene that a case names, or the one that is most like it.
+fn scene_for(source: &Source, overrides: &[String]) -> Option<&'static SceneInfo> {
+    let name = scene_of(source, overrides);
+    let all = scenes();
+    let named = |n: &str| all.iter().find(|s| s.name == n);
+    name.as_deref()
+        .and_then(|n| named(n).or_else(|| named(nearest(n, all.iter().map(|s| s.name))?)))
+        .or_else(|| most_alike(source, all))
+        .copied()
+}
+
+/// What the schema of a case knows about the line of a text that a byte offset stands in: of the scene that the text names, or that is most like it.
+#[must_use]
+pub fn help(source: &Source, offset: usize) -> Help {
+    scene_for(source, &[]).map_or_else(Help::default, |s| (s.help)(&source.text, offset))
 }
 
 /// The scene that knows most of the tables of a text.

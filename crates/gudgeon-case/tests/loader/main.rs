@@ -7,6 +7,7 @@ mod published;
 mod refine;
 mod render;
 mod sets;
+mod write;
 
 use std::path::Path;
 

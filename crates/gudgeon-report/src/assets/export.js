@@ -67,6 +67,6 @@ function saveMenu(svg, spec) {
   const item = (name, go) => h("button", { type: "button", onclick: () => { menu.open = false; go(); } }, name);
   const all = [item("SVG", () => saveSvg(svg, spec)), item("PNG", () => savePng(svg, spec))];
   if (spec.lines) all.push(item("CSV", () => saveCsv(spec)));
-  const menu = h("details", { class: "save" }, h("summary", { "aria-label": "save " + spec.title }, "Save"), h("div", {}, ...all));
+  const menu = h("details", { class: "saving" }, h("summary", { "aria-label": "save " + spec.title }, "Save"), h("div", {}, ...all));
   return menu;
 }

@@ -40,7 +40,7 @@
   if (first) draw(first, lead, true);
   if (host) {
     for (const f of all) if (f !== first) draw(f, host);
-    if (!host.childElementCount) host.closest("section").remove();
+    if (!host.childElementCount) host.closest("section")?.remove();
   }
 
   // A comparison of runs that do not go over a cycle: one drawing per column, one curve per variant.

@@ -10,10 +10,8 @@ mod setup;
 mod size;
 mod skirt;
 
-use std::time::Instant;
-
 use gudgeon_core::result::{Column, ModelUse, RunResult, Series, Skipped};
-use gudgeon_core::{BuildError, Registry};
+use gudgeon_core::{BuildError, Registry, Stopwatch};
 
 use case::{Method, PinCase};
 use gudgeon_case::Loaded;
@@ -83,7 +81,7 @@ impl SceneCase for PinCase {
         progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
     ) -> Result<RunResult, RunError> {
         let case = &loaded.value;
-        let begin = Instant::now();
+        let begin = Stopwatch::start();
         let mut out = RunResult { models: models(case), skipped: skipped(case), ..RunResult::default() };
         // Nothing here runs over the crank angle unless the load does.
         out.series = Series {
@@ -100,7 +98,7 @@ impl SceneCase for PinCase {
             out.solver.method = "closed forms".into();
         }
         // Where a pin is searched, what is drawn of it is not part of the search.
-        out.seconds.entry("solve".into()).or_insert_with(|| begin.elapsed().as_secs_f64());
+        out.seconds.entry("solve".into()).or_insert_with(|| begin.seconds());
         Ok(out)
     }
 }

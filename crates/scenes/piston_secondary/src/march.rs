@@ -1,9 +1,7 @@
 //! From a start to the periodic motion: cycle after cycle until one ends as it began.
 
-use std::time::Instant as Clock;
-
-use gudgeon_core::EvalError;
 use gudgeon_core::result::Note;
+use gudgeon_core::{EvalError, Stopwatch};
 use gudgeon_numerics::ode::Stats;
 use gudgeon_numerics::orbit::{CycleMap, OrbitOptions, OrbitReport, periodic_orbit};
 
@@ -158,7 +156,7 @@ pub fn run(
     purpose: Purpose,
     progress: &mut dyn FnMut(f64) -> Result<(), Stopped>,
 ) -> Result<Found, RunError> {
-    let begin = Clock::now();
+    let begin = Stopwatch::start();
     if a.layout.n == 0 {
         return still(case, a, begin);
     }
@@ -185,7 +183,7 @@ pub fn run(
             error = Some(began_at(&report));
         }
     }
-    let searched = begin.elapsed().as_secs_f64();
+    let searched = begin.seconds();
     let start = y.clone();
     let known = last.is_some();
     let mut trajectory = last.unwrap_or_else(|| cycle.solver.trajectory(cycle.a, &cycle.work));
@@ -193,7 +191,7 @@ pub fn run(
         cycle.integrate(&mut y, 0.0, Some(&mut trajectory))?;
     }
     // Of a given number of cycles the last one is that of the record.
-    let seconds = if s.cycles > 0 { begin.elapsed().as_secs_f64() } else { searched };
+    let seconds = if s.cycles > 0 { begin.seconds() } else { searched };
     let periodic = cycle.a.layout.periodic.iter();
     let change = periodic.map(|&k| (start[k] - y[k]).abs()).fold(0.0, f64::max);
     Ok(Found {
@@ -331,7 +329,7 @@ const START: f64 = 1e-3;
 const STILL: f64 = 0.05;
 
 /// A piston without states: it stands still, and its oil alone moves.
-fn still(case: &PistonSecondaryCase, a: &mut Assembly, begin: Clock) -> Result<Found, RunError> {
+fn still(case: &PistonSecondaryCase, a: &mut Assembly, begin: Stopwatch) -> Result<Found, RunError> {
     let mut ends = vec![0.0];
     let mut from = 0.0;
     for &to in &a.bends() {
@@ -351,7 +349,7 @@ fn still(case: &PistonSecondaryCase, a: &mut Assembly, begin: Clock) -> Result<F
         periodicity_error: 0.0,
         notes,
         stats: Stats::default(),
-        seconds: begin.elapsed().as_secs_f64(),
+        seconds: begin.seconds(),
     })
 }
 

@@ -2,13 +2,11 @@
 
 pub mod case;
 
-use std::time::Instant;
-
-use gudgeon_core::BuildError;
 use gudgeon_core::file::Files;
 use gudgeon_core::kinds::EngineCycle;
 use gudgeon_core::quantity::quantity;
 use gudgeon_core::result::{Headline, ModelUse, Note, RunResult, Value};
+use gudgeon_core::{BuildError, Stopwatch};
 
 use case::{Part, PowerCylinderCase};
 use gudgeon_case::{Level, Loaded, Refinement, Report, UsedSet, read_beside, scene_of};
@@ -113,7 +111,7 @@ impl SceneCase for PowerCylinderCase {
         (rings, skirt): (Checked, Checked),
         progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
     ) -> Result<RunResult, RunError> {
-        let begin = Instant::now();
+        let begin = Stopwatch::start();
         let mut half = |part: &Checked, name: &'static str, from: f64| {
             let mut tell = |p: Progress| {
                 progress(Progress {
@@ -182,7 +180,7 @@ impl SceneCase for PowerCylinderCase {
         } else {
             result.tables.insert("skirt".into(), other.series);
         }
-        result.seconds.insert("solve".into(), begin.elapsed().as_secs_f64());
+        result.seconds.insert("solve".into(), begin.seconds());
         Ok(result)
     }
 }

@@ -1,10 +1,8 @@
 //! The scene `rig`: one sub-model on a test bench.
 
-use std::time::Instant;
-
 use gudgeon_core::kinds::{Rig, RigCtx, RigOut};
 use gudgeon_core::result::{Headline, ModelUse, RunResult, Skipped};
-use gudgeon_core::{BuildError, EvalError, Registry};
+use gudgeon_core::{BuildError, EvalError, Registry, Stopwatch};
 
 use crate::case::RigCase;
 use gudgeon_case::Loaded;
@@ -62,7 +60,7 @@ impl SceneCase for RigCase {
         _: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
     ) -> Result<RunResult, RunError> {
         let case = &loaded.value;
-        let begin = Instant::now();
+        let begin = Stopwatch::start();
         let mut out = RigOut::default();
         rig.run(&mut out).map_err(|source: EvalError| RunError::Model { source })?;
         let registry = Registry::collect();
@@ -79,7 +77,7 @@ impl SceneCase for RigCase {
         result.solver.method = case.rig.typetag_name().into();
         result.solver.counters = out.counters;
         result.solver.notes = out.notes;
-        result.seconds.insert("solve".into(), begin.elapsed().as_secs_f64());
+        result.seconds.insert("solve".into(), begin.seconds());
         Ok(result)
     }
 }

@@ -2,13 +2,12 @@
 //! periodic-orbit solver.
 
 use std::f64::consts::PI;
-use std::time::Instant;
 
 use gudgeon_core::content::{self, Content};
 use gudgeon_core::quantity::{PosRatio, quantity};
 use gudgeon_core::result::{Balance, Column, Note, Series};
 use gudgeon_core::states::Signals;
-use gudgeon_core::{BuildError, EvalError, register_model};
+use gudgeon_core::{BuildError, EvalError, Stopwatch, register_model};
 use gudgeon_numerics::ode::{
     Direction, EventAction, Flow, IntegrateError, Integrator, LinearInvariant, OdeSystem, Options, Stage,
     Stats, StepView,
@@ -825,14 +824,14 @@ fn run(
     wanted: &Wanted<'_>,
     progress: &mut dyn FnMut(f64) -> Result<(), Stopped>,
 ) -> Result<Solution, RunError> {
-    let begin = Instant::now();
+    let begin = Stopwatch::start();
     let discrete = pack.decision_interval().is_some();
     let mut y = first_states(pack, start);
     let tolerance = s.tolerance.si();
     let options = orbit_options(s, pack);
     let mut cycle = Cycle::new(s, pack, wanted, progress);
     let report = cycle.close(&mut y, &options)?;
-    let seconds = begin.elapsed().as_secs_f64();
+    let seconds = begin.seconds();
     let counters = counters(&cycle.stats);
     let mut sampler = Sampler::new(cycle.pack, wanted);
     let balance = cycle.record(&mut y, tolerance, &mut sampler)?;

@@ -1,9 +1,7 @@
 //! What the published marching schemes share: steps, what they cannot do, how their cycle is told.
 
-use std::time::Instant;
-
 use gudgeon_core::result::Note;
-use gudgeon_core::{BuildError, EvalError};
+use gudgeon_core::{BuildError, EvalError, Stopwatch};
 use gudgeon_numerics::panel::TRAPEZIUM;
 use gudgeon_scene::{MethodSetting, RunError};
 use serde_json::Value;
@@ -83,7 +81,7 @@ pub struct Books {
     pub measures: Measures,
     /// What limits did.
     pub watch: Watch,
-    begin: Instant,
+    begin: Stopwatch,
 }
 
 /// How a scheme ended.
@@ -106,7 +104,7 @@ impl Books {
             record: Record::new(pack),
             measures: Measures::new(pack, TRAPEZIUM, wanted.seat),
             watch: Watch::new(pack),
-            begin: Instant::now(),
+            begin: Stopwatch::start(),
         }
     }
 
@@ -134,7 +132,7 @@ impl Books {
             counters: [("steps".to_owned(), ended.steps)].into_iter().collect(),
             notes,
             retreats: self.watch.events(),
-            seconds: self.begin.elapsed().as_secs_f64(),
+            seconds: self.begin.seconds(),
         })
     }
 }

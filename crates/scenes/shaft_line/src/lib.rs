@@ -24,11 +24,10 @@ pub mod tors;
 mod verdict;
 
 use std::f64::consts::PI;
-use std::time::Instant;
 
 use gudgeon_core::kinds::{NaturalFrequenciesSpec, TorsionAnswer, TorsionCtx, TorsionOut, TorsionSpec};
 use gudgeon_core::result::{Gradients, ModelUse, Note, RunResult};
-use gudgeon_core::{BuildError, EvalError, Registry};
+use gudgeon_core::{BuildError, EvalError, Registry, Stopwatch};
 use gudgeon_torsion::torsion::Orders;
 
 use assemble::{Assembled, assemble, renamed};
@@ -124,7 +123,7 @@ fn run(
     plan: &Plan,
     progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
 ) -> Result<RunResult, RunError> {
-    let begin = Instant::now();
+    let begin = Stopwatch::start();
     let case = &loaded.value;
     let files = &loaded.source.files;
     let mut result =
@@ -139,7 +138,7 @@ fn run(
             let throws = assemble::throws_alone(case, files, case.speed.si()).map_err(refused)?;
             results.throws(&throws);
         }
-        result.seconds.insert("solve".into(), begin.elapsed().as_secs_f64());
+        result.seconds.insert("solve".into(), begin.seconds());
         return Ok(result);
     }
     results.count("lines_built", 1);
@@ -166,7 +165,7 @@ fn run(
     tables::figures(&a.line, &mut result);
     result.headlines = headlines::headlines(&a.line, &result);
     result.lead = draw::CAMPBELL.into();
-    result.seconds.insert("solve".into(), begin.elapsed().as_secs_f64());
+    result.seconds.insert("solve".into(), begin.seconds());
     Ok(result)
 }
 

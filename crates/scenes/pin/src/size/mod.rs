@@ -6,8 +6,7 @@ mod published;
 mod refusals;
 mod sweeps;
 
-use std::time::Instant;
-
+use gudgeon_core::Stopwatch;
 use gudgeon_core::kinds::PinSize;
 use gudgeon_core::result::RunResult;
 
@@ -26,14 +25,14 @@ pub fn run(
     out: &mut RunResult,
     progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
 ) -> Result<(), RunError> {
-    let begin = Instant::now();
+    let begin = Stopwatch::start();
     let d = s.design();
     let size = match &case.optimise {
         None => given(s)?,
         Some(o) if o.method == Method::AsPublished => published::published(&d, s, given(s)?, o, out)?,
         Some(o) => exact::exact(&d, s, o, out)?,
     };
-    out.seconds.insert("solve".into(), begin.elapsed().as_secs_f64());
+    out.seconds.insert("solve".into(), begin.seconds());
     if case.optimise.is_none() {
         out.solver.method = "evaluation".into();
     }

@@ -1,0 +1,241 @@
+//! The inputs of a case as a program may offer them to a person: numbers to move, words and models to choose from.
+//!
+//! Everything comes from the schema and the resolved case, so inputs of models and scenes that are registered elsewhere are among them.
+
+use gudgeon_core::quantity::{ALL_DIMENSIONS, Unit};
+use serde::Serialize;
+use serde_json::Value;
+
+use super::report::line_column;
+use super::schema::{Part, Schema, words_of};
+use super::tree::{Data, Node, join};
+
+/// An input of a case.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Input {
+    /// Dotted path, as `--set` takes it.
+    pub path: String,
+    /// What it is.
+    pub about: String,
+    /// Line of the file that gives it, from 1; none for a default.
+    pub line: Option<usize>,
+    /// Its value.
+    #[serde(flatten)]
+    pub value: InputValue,
+}
+
+/// The value of an input.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum InputValue {
+    /// A number, with or without a unit.
+    Number(NumberInput),
+    /// One of several words or models.
+    Choice(ChoiceInput),
+}
+
+/// A number, in the unit that the case writes, or in one that makes it easy to read.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct NumberInput {
+    /// The number.
+    pub value: f64,
+    /// Its unit; empty where it has none.
+    pub unit: String,
+    /// The dimension, `a length`; empty for a number without one.
+    pub dimension: String,
+    /// Whether it is a count.
+    pub whole: bool,
+    /// Least admitted value, in the unit.
+    pub least: Option<f64>,
+    /// Largest admitted value, in the unit.
+    pub most: Option<f64>,
+}
+
+/// A word or the name of a model.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ChoiceInput {
+    /// The word.
+    pub value: String,
+    /// The kind of the models; empty for other words.
+    pub kind: String,
+    /// What it may be, and what each means.
+    pub words: Vec<(String, String)>,
+}
+
+/// The inputs of a resolved case, in its order; `text` and `document` are what the case wrote.
+pub(super) fn inputs(schema: &Schema, resolved: &Value, text: &str, document: &Node) -> Vec<Input> {
+    let mut walk = Walk { schema, text, document, out: Vec::new() };
+    if let Some(root) = Node::from_json(resolved) {
+        walk.value(&root, schema.root(), schema.root(), "");
+    }
+    walk.out
+}
+
+struct Walk<'a> {
+    schema: &'a Schema,
+    text: &'a str,
+    document: &'a Node,
+    out: Vec<Input>,
+}
+
+impl Walk<'_> {
+    /// `field` is the schema before references are followed: what the value is for stands there.
+    fn value(&mut self, node: &Node, field: Part, schema: Part, path: &str) {
+        let kind = self.kind_of(schema);
+        let inner = self.schema.resolve(schema);
+        let models = self.schema.model_of_word(inner);
+        let kind = models.map_or(kind, |m| self.kind_of(m));
+        let inner = models.map_or(inner, |m| self.schema.resolve(m));
+        match &node.data {
+            Data::Table(entries) => {
+                let tagged = self.schema.tagged(inner);
+                let table = match tagged {
+                    Some(t) => t.chosen(node),
+                    None => Some(inner),
+                };
+                if let (Some(t), Some(Node { data: Data::Text(word), .. })) =
+                    (tagged, tagged.and_then(|t| node.child(t.tag)))
+                {
+                    let words = t.variants.iter().map(|(n, s)| ((*n).to_owned(), about(s, s))).collect();
+                    let value = ChoiceInput { value: word.clone(), kind: kind.into(), words };
+                    self.add(&join(path, t.tag), about(field, inner), InputValue::Choice(value));
+                }
+                let properties = table.and_then(|t| t.get("properties")).and_then(Value::as_object);
+                for e in entries {
+                    if let Some(s) = properties.and_then(|p| p.get(&e.key)) {
+                        self.value(&e.node, s, s, &join(path, &e.key));
+                    }
+                }
+            }
+            Data::Array(items) => {
+                for (k, item) in items.iter().enumerate() {
+                    if let Some(s) = inner.get("items") {
+                        self.value(item, s, s, &join(path, k));
+                    }
+                }
+            }
+            Data::Text(word) => match (inner.get("x-dimension"), words_of(inner)) {
+                (Some(_), _) => self.quantity(word, field, inner, path),
+                (None, Some(words)) if words.len() > 1 => {
+                    let words = words.into_iter().map(|w| (w.to_owned(), String::new())).collect();
+                    let value = ChoiceInput { value: word.clone(), kind: String::new(), words };
+                    self.add(path, about(field, inner), InputValue::Choice(value));
+                }
+                _ => {}
+            },
+            Data::Integer(_) | Data::Float(_) => self.number(node, field, inner, path),
+            Data::Bool(b) => {
+                let words = ["true", "false"].map(|w| (w.to_owned(), String::new())).to_vec();
+                let value = ChoiceInput { value: b.to_string(), kind: String::new(), words };
+                self.add(path, about(field, inner), InputValue::Choice(value));
+            }
+            Data::Date => {}
+        }
+    }
+
+    fn add(&mut self, path: &str, about: String, value: InputValue) {
+        let line = match self.document.deepest(path) {
+            (node, true) => node.place.span.as_ref().map(|s| line_column(self.text, s.start).0),
+            _ => None,
+        };
+        self.out.push(Input { path: path.to_owned(), about, line, value });
+    }
+
+    /// A number that the resolved case writes in SI.
+    fn quantity(&mut self, si: &str, field: Part, schema: Part, path: &str) {
+        let Some(si) = si.split(' ').next().and_then(|n| n.parse::<f64>().ok()) else { return };
+        let dimension = schema.get("x-dimension").and_then(Value::as_str).unwrap_or_default();
+        let units = ALL_DIMENSIONS.iter().find(|(n, ..)| *n == dimension).map_or(&[][..], |(_, u, _)| u);
+        let unit = self.written_unit(path, units).or_else(|| readable(si, units));
+        let of_unit = |si: f64| unit.map_or(si, |u| rounded((si - u.offset) / u.factor));
+        let (least, most) = match schema.get("x-bound").and_then(Value::as_str) {
+            Some("between 0 and 1") => (Some(0.0), Some(1.0)),
+            Some("greater than zero" | "zero or greater") => (Some(0.0), None),
+            _ => (None, None),
+        };
+        let number = NumberInput {
+            value: of_unit(si),
+            unit: unit.map_or_else(String::new, |u| u.name.to_owned()),
+            dimension: dimension.to_owned(),
+            whole: false,
+            least: least.map(of_unit),
+            most: most.map(of_unit),
+        };
+        self.add(path, about(field, schema), InputValue::Number(number));
+    }
+
+    /// The unit that the case itself writes; a bare number is SI.
+    fn written_unit(&self, path: &str, units: &'static [Unit]) -> Option<&'static Unit> {
+        match self.document.deepest(path) {
+            (Node { data: Data::Text(t), .. }, true) => {
+                let name = t.trim_start_matches(|c: char| c.is_ascii_digit() || "+-.eE ".contains(c)).trim();
+                units.iter().find(|u| u.is(name))
+            }
+            (Node { data: Data::Integer(_) | Data::Float(_), .. }, true) => units.first(),
+            _ => None,
+        }
+    }
+
+    fn number(&mut self, node: &Node, field: Part, schema: Part, path: &str) {
+        if schema.get("x-dimension").is_some() {
+            if let Data::Integer(_) | Data::Float(_) = node.data {
+                let text = match node.data {
+                    Data::Integer(i) => i.to_string(),
+                    Data::Float(f) => f.to_string(),
+                    _ => return,
+                };
+                self.quantity(&text, field, schema, path);
+            }
+            return;
+        }
+        let limit = |key: &str| schema.get(key).and_then(Value::as_f64);
+        let (value, whole) = match node.data {
+            Data::Integer(i) => (i as f64, schema.get("type").and_then(Value::as_str) == Some("integer")),
+            Data::Float(f) => (f, false),
+            _ => return,
+        };
+        let number = NumberInput {
+            value,
+            unit: String::new(),
+            dimension: String::new(),
+            whole,
+            least: limit("minimum").or_else(|| limit("exclusiveMinimum")),
+            most: limit("maximum").or_else(|| limit("exclusiveMaximum")),
+        };
+        self.add(path, about(field, schema), InputValue::Number(number));
+    }
+
+    /// The kind that a reference names: the definition of a kind's models has its name.
+    fn kind_of(&self, schema: Part) -> &'static str {
+        let reference = |s: Part| s.get("$ref").and_then(Value::as_str);
+        let optional = || {
+            let any = schema.get("anyOf").and_then(Value::as_array)?;
+            any.iter().find_map(reference)
+        };
+        let named = reference(schema).or_else(optional).and_then(|r| r.rsplit('/').next());
+        named.unwrap_or_default()
+    }
+}
+
+/// What a value is for: what its field says, or its type.
+fn about(field: Part, schema: Part) -> String {
+    let text = field.get("description").or_else(|| schema.get("description")).and_then(Value::as_str);
+    text.unwrap_or_default().split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// The unit in which a number has one to three digits before its point; temperatures are read in degrees Celsius, speeds of rotation in rpm.
+fn readable(si: f64, units: &'static [Unit]) -> Option<&'static Unit> {
+    let named = |name: &str| units.iter().find(|u| u.name == name);
+    if let Some(u) = named("degC").or_else(|| named("rpm")).or_else(|| named("deg")) {
+        return Some(u);
+    }
+    let written =
+        |u: &&Unit| (1.0..1000.0).contains(&(si.abs() / u.factor)) && u.name != "in" && u.name != "cm";
+    units.iter().find(written).or(units.first())
+}
+
+/// Without the rounding of the change of units: 120 mm and not 119.99999999999999.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.11e}").parse().unwrap_or(value)
+}
