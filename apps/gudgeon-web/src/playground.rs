@@ -164,8 +164,9 @@ fn preview_of(c: &Checked) -> Vec<String> {
 
 /// What the page shows of a run.
 fn told(c: &Checked, r: &RunResult, set: &[String]) -> Value {
+    // Of rings and shafts the first.
     let headlines: Vec<String> =
-        r.leading().into_iter().flat_map(|h| h.results.into_iter().map(|(_, name)| name)).collect();
+        r.leading().into_iter().filter_map(|h| Some(h.results.into_iter().next()?.1)).collect();
     let results: Vec<Value> = r
         .results
         .iter()
