@@ -170,7 +170,8 @@ fn has_cycle(series: &Series) -> bool {
 fn data(s: &Summary, series: &Series, tables: &IndexMap<String, Series>) -> serde_json::Value {
     let mut arrays = page::Arrays::default();
     let used = |name: &str| s.figures.iter().any(|f| f.table == name);
-    let columns = if has_cycle(series) { arrays.series(&series.axis, series.columns.iter()) } else { json!(null) };
+    let columns =
+        if has_cycle(series) { arrays.series(&series.axis, series.columns.iter()) } else { json!(null) };
     let mut data_of: serde_json::Map<String, serde_json::Value> =
         tables.iter().filter(|(n, _)| used(n)).map(|(n, t)| (n.clone(), arrays.whole(t))).collect();
     if used("series") {
