@@ -42,7 +42,7 @@ pub enum Request {
         file: String,
         /// Its text.
         text: String,
-        /// Whether the settings of [`crate::shown::preview`] are to make it faster.
+        /// Whether the settings of [`crate::shown::Shown::preview`] are to make it faster.
         #[serde(default)]
         preview: bool,
     },
