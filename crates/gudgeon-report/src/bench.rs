@@ -191,7 +191,7 @@ fn page(file: &File) -> String {
     let mut body = String::new();
     let _ = write!(
         body,
-        "<section id=\"overview\"><header><h1>{}</h1><p class=\"meta\"><code>{}</code> · run time and work against error</p></header>\n",
+        "<section id=\"overview\"><header><h1>{}</h1><p class=\"meta\"><code>{}</code> · run time and work against error</p></header>",
         esc(heading),
         esc(&file.case)
     );

@@ -27,7 +27,7 @@ pub fn study_page(p: &StudyPage) -> String {
     let mut body = String::new();
     let _ = write!(
         body,
-        "<section id=\"overview\"><header><h1>{}</h1><p class=\"meta\">study</p></header>\n",
+        "<section id=\"overview\"><header><h1>{}</h1><p class=\"meta\">study</p></header>",
         esc(&p.title)
     );
     body.push_str("<h2>What was run</h2><table class=\"plain key\"><tbody>");

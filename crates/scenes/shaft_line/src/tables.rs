@@ -25,6 +25,8 @@ fn insert(out: &mut RunResult, title: Option<&str>, figure: Option<Figure>) {
     out.figures.insert(place.map_or(out.figures.len(), |k| k + 1), figure);
 }
 
+/// Label and numbers of a row.
+type TableRow = (String, Vec<Option<f64>>);
 /// Name, unit and result behind a column of a table.
 type Told = (&'static str, &'static str, &'static str);
 
@@ -33,7 +35,7 @@ fn table(
     hint: &str,
     rows_are: &str,
     columns: Vec<(String, String)>,
-    rows: Vec<(String, Vec<Option<f64>>)>,
+    rows: Vec<TableRow>,
     limit: Option<f64>,
 ) -> Option<Figure> {
     (!rows.is_empty() && !columns.is_empty()).then(|| Figure {
@@ -50,14 +52,14 @@ fn of_results(
     columns: &[Told],
     labels: &[String],
     name: impl Fn(usize, &str) -> String,
-) -> (Vec<(String, String)>, Vec<(String, Vec<Option<f64>>)>) {
+) -> (Vec<(String, String)>, Vec<TableRow>) {
     let value = |k: usize, what: &str| out.results.get(&name(k + 1, what)).map(|v| v.value);
     let shown: Vec<&Told> =
         columns.iter().filter(|c| (0..labels.len()).any(|k| value(k, c.2).is_some())).collect();
     let head = shown.iter().map(|c| (c.0.to_owned(), c.1.to_owned())).collect();
     let rows =
         labels.iter().enumerate().map(|(k, l)| (l.clone(), shown.iter().map(|c| value(k, c.2)).collect()));
-    (head, rows.filter(|(_, v): &(String, Vec<Option<f64>>)| v.iter().any(Option::is_some)).collect())
+    (head, rows.filter(|(_, v): &TableRow| v.iter().any(Option::is_some)).collect())
 }
 
 fn modes(out: &RunResult) -> Option<Figure> {
