@@ -36,65 +36,51 @@ pub struct Frame {
     pub log: bool,
 }
 
+/// Ends of both axes.
+type Ends = [f64; 4];
+
 /// Curves over their axis.
 #[must_use]
 pub fn curves(all: &[Curve], frame: &Frame) -> String {
     let up = |v: f64| if frame.log { v.max(1e-300).log10() } else { v };
     let (x0, x1) = span(all.iter().flat_map(|c| c.x.iter().copied()));
     let (y0, y1) = span(all.iter().flat_map(|c| c.y.iter().map(|v| up(*v))));
-    let rows = all.len().div_ceil(3);
-    let mut s = head(HEIGHT + 18.0 * rows as f64);
-    for t in ticks(x0, x1) {
-        let x = place(t, x0, x1, LEFT, RIGHT);
-        let _ = write!(
-            s,
-            "<path class=\"g\" d=\"M{x:.1} {TOP}V{BOTTOM}\"/><text x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>\n",
-            BOTTOM + 16.0,
-            number(t)
-        );
-    }
-    for t in if frame.log { decades(y0, y1) } else { ticks(y0, y1) } {
-        let y = place(t, y0, y1, BOTTOM, TOP);
-        let text = number(if frame.log { 10f64.powf(t) } else { t });
-        let _ = write!(
-            s,
-            "<path class=\"g\" d=\"M{LEFT} {y:.1}H{RIGHT}\"/><text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{text}</text>\n",
-            LEFT - 6.0,
-            y + 4.0
-        );
-    }
-    let _ = write!(
-        s,
-        "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>\n",
-        0.5 * (LEFT + RIGHT),
-        BOTTOM + 34.0,
-        safe(&frame.x)
-    );
-    let _ = write!(
-        s,
-        "<text transform=\"translate(13 {:.1}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
-        0.5 * (TOP + BOTTOM),
-        safe(&frame.y)
-    );
+    let mut s = head(HEIGHT + 18.0 * all.len().div_ceil(3) as f64);
+    axes(&mut s, frame, [x0, x1, y0, y1]);
     for (n, c) in all.iter().enumerate() {
-        let style = style(n);
-        let points: Vec<(f64, f64)> =
-            c.x.iter()
-                .zip(&c.y)
-                .map(|(x, y)| (place(*x, x0, x1, LEFT, RIGHT), place(up(*y), y0, y1, BOTTOM, TOP)))
-                .collect();
-        let _ = write!(s, "<path {style} d=\"{}\"/>\n", path(&points));
-        let (column, row) = ((n % 3) as f64, (n / 3) as f64);
-        let (x, y) = (LEFT + 190.0 * column, HEIGHT + 10.0 + 18.0 * row);
-        let _ = write!(
-            s,
-            "<path {style} d=\"M{x:.0} {:.0}h24\"/><text x=\"{:.0}\" y=\"{y:.0}\">{}</text>\n",
-            y - 4.0,
-            x + 30.0,
-            safe(&c.label)
-        );
+        let at = |(x, y): (&f64, &f64)| (place(*x, x0, x1, LEFT, RIGHT), place(up(*y), y0, y1, BOTTOM, TOP));
+        let points: Vec<(f64, f64)> = c.x.iter().zip(&c.y).map(at).collect();
+        // Writing to a String cannot fail.
+        let _ = writeln!(s, "<path {} d=\"{}\"/>", style(n), path(&points));
+        legend(&mut s, n, &c.label);
     }
     s + "</svg>\n"
+}
+
+/// Lines of both axes with their numbers, and what they are.
+fn axes(s: &mut String, frame: &Frame, [x0, x1, y0, y1]: Ends) {
+    for t in ticks(x0, x1) {
+        let (x, y) = (place(t, x0, x1, LEFT, RIGHT), BOTTOM + 16.0);
+        let _ = write!(s, "<path class=\"g\" d=\"M{x:.1} {TOP}V{BOTTOM}\"/>");
+        let _ = writeln!(s, "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"middle\">{}</text>", number(t));
+    }
+    for t in if frame.log { decades(y0, y1) } else { ticks(y0, y1) } {
+        let (x, y) = (LEFT - 6.0, place(t, y0, y1, BOTTOM, TOP));
+        let text = number(if frame.log { 10f64.powf(t) } else { t });
+        let _ = write!(s, "<path class=\"g\" d=\"M{LEFT} {y:.1}H{RIGHT}\"/>");
+        let _ = writeln!(s, "<text x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"end\">{text}</text>", y + 4.0);
+    }
+    let (x, y) = (0.5 * (LEFT + RIGHT), BOTTOM + 34.0);
+    let _ = writeln!(s, "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"middle\">{}</text>", safe(&frame.x));
+    let place = format!("translate(13 {:.1}) rotate(-90)", 0.5 * (TOP + BOTTOM));
+    let _ = writeln!(s, "<text transform=\"{place}\" text-anchor=\"middle\">{}</text>", safe(&frame.y));
+}
+
+/// A line and its label, three in a row below the figure.
+fn legend(s: &mut String, n: usize, label: &str) {
+    let (x, y) = (LEFT + 190.0 * (n % 3) as f64, HEIGHT + 10.0 + 18.0 * (n / 3) as f64);
+    let _ = write!(s, "<path {} d=\"M{x:.0} {:.0}h24\"/>", style(n), y - 4.0);
+    let _ = writeln!(s, "<text x=\"{:.0}\" y=\"{y:.0}\">{}</text>", x + 30.0, safe(label));
 }
 
 /// Bars of one number each, the first of `y`.
@@ -120,11 +106,11 @@ pub fn bars(all: &[Curve], frame: &Frame) -> String {
             COLOURS[n % COLOURS.len()]
         );
         let _ =
-            write!(s, "<text x=\"{:.1}\" y=\"{:.0}\">{}</text>\n", a.max(b) + 6.0, y + 12.0, three(value(c)));
+            writeln!(s, "<text x=\"{:.1}\" y=\"{:.0}\">{}</text>", a.max(b) + 6.0, y + 12.0, three(value(c)));
     }
-    let _ = write!(
+    let _ = writeln!(
         s,
-        "<text x=\"{left}\" y=\"{:.0}\">{}</text>\n",
+        "<text x=\"{left}\" y=\"{:.0}\">{}</text>",
         30.0 + 24.0 * all.len() as f64,
         safe(&frame.y)
     );
