@@ -17,6 +17,7 @@ import gudgeon
 
 PACKAGE = Path(__file__).parents[1]
 NOTEBOOKS = sorted((PACKAGE.parents[1] / "docs" / "notebooks").glob("*.ipynb"))
+GUIDE = sorted((PACKAGE.parents[1] / "docs" / "guide" / "src").rglob("*.md"))
 OPTIONAL = {"gudgeon.draw_plotly"}
 """Modules that need what the tests may be without."""
 
@@ -44,6 +45,14 @@ def test_readme(tmp_path, monkeypatch):
         exec(block, names)  # noqa: S102
     assert (tmp_path / "blow-by.png").stat().st_size > 10_000
     assert (tmp_path / "out" / "report.html").is_file()
+
+
+@pytest.mark.parametrize("path", [p for p in GUIDE if "```python" in p.read_text()], ids=lambda p: p.stem)
+def test_guide(path, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    names: dict = {}
+    for block in re.findall(r"```python\n(.*?)```", path.read_text(), re.S):
+        exec(block, names)  # noqa: S102
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda p: p.stem)

@@ -9,6 +9,7 @@ mod failure;
 mod interrupt;
 mod ui;
 
+use std::ffi::OsString;
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -20,9 +21,14 @@ use ui::Ui;
 
 /// Reads the command line of this process, does what it says, and tells how it went.
 pub fn main() -> ExitCode {
+    main_with(std::env::args_os())
+}
+
+/// As [`main`], with the words of a command line, the name of the program first.
+pub fn main_with(words: impl IntoIterator<Item = OsString>) -> ExitCode {
     gudgeon_models::link();
     interrupt::listen();
-    let args = Args::parse();
+    let args = Args::parse_from(words);
     let ui = Ui::new(args.quiet());
     match dispatch(&args.command, &ui).and_then(|()| ui.end()) {
         Ok(()) => ExitCode::SUCCESS,
