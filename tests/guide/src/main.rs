@@ -71,7 +71,7 @@ fn checked() -> Outcome<String> {
 
 fn run(pages: &[&str]) -> Outcome<String> {
     let own = std::env::current_exe().map_err(|e| e.to_string())?;
-    let programs = Programs { extended: own.with_file_name("gudgeon-guide-extended"), gudgeon: own };
+    let programs = Programs { extended: own.with_file_name("examples/extended"), gudgeon: own };
     let pages: Vec<PathBuf> =
         if pages.is_empty() { commands::pages()? } else { pages.iter().map(|p| source().join(p)).collect() };
     let ran = commands::run(&pages, &programs, &std::env::temp_dir().join("gudgeon-guide"))?;

@@ -23,10 +23,9 @@ fn the_guide_is_as_it_should_be() {
 
 #[test]
 fn commands_print_what_the_guide_says() {
-    let programs = Programs {
-        gudgeon: env!("CARGO_BIN_EXE_gudgeon-guide").into(),
-        extended: env!("CARGO_BIN_EXE_gudgeon-guide-extended").into(),
-    };
+    let gudgeon = PathBuf::from(env!("CARGO_BIN_EXE_gudgeon-guide"));
+    // Examples are built with the tests, beside the program.
+    let programs = Programs { extended: gudgeon.with_file_name("examples/extended"), gudgeon };
     let ran = commands::run(&commands::pages().expect("pages"), &programs, &folder("guide-commands"));
     let ran = ran.expect("pages that can be run");
     assert!(ran.wrong.is_empty(), "\n{}", ran.wrong.join("\n\n"));
