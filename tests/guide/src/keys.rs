@@ -152,7 +152,12 @@ fn quantity(schema: &Value) -> Option<String> {
         .flatten()
         .filter_map(Value::as_str)
         .collect();
-    let units = if units.is_empty() { String::new() } else { format!(" in {}", units.join(", ")) };
+    let units = match &units[..] {
+        [] => String::new(),
+        // A number stands plainly or as a part of a hundred.
+        ["%"] => " or a text in %".into(),
+        units => format!(" in {}", units.join(", ")),
+    };
     let bound = match schema.get("x-bound").and_then(Value::as_str) {
         None | Some("finite") => String::new(),
         Some(b) => format!(", {b}"),
