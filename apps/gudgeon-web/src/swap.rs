@@ -2,7 +2,6 @@
 
 use gudgeon_case::catalogue;
 use gudgeon_core::Registry;
-use serde_json::Value;
 
 /// What else must be set for `PATH.model=NAME`: required keys that `present` does not know, with the values of the model's example.
 pub fn needed(set: &str, kind: &str, present: impl Fn(&str) -> bool) -> Vec<String> {
@@ -12,10 +11,7 @@ pub fn needed(set: &str, kind: &str, present: impl Fn(&str) -> bool) -> Vec<Stri
     let Some(model) = registry.model(kind, name.trim().trim_matches('"')) else { return Vec::new() };
     let Ok(example) = model.example.parse::<toml::Table>() else { return Vec::new() };
     let (schema, _) = catalogue::schema(model);
-    let required: Vec<&str> = schema
-        .get("required")
-        .and_then(Value::as_array)
-        .map_or_else(Vec::new, |all| all.iter().filter_map(Value::as_str).collect());
-    let missing = required.into_iter().filter(|key| *key != "model" && !present(&format!("{table}{key}")));
+    let required = catalogue::texts(&schema, "required").into_iter();
+    let missing = required.filter(|key| *key != "model" && !present(&format!("{table}{key}")));
     missing.filter_map(|key| Some(format!("{table}{key}={}", example.get(key)?))).collect()
 }

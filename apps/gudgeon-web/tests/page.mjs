@@ -123,7 +123,7 @@ const here = native(CASES[0]);
 await b.value(`document.getElementById("save-case").click()`);
 check(await saved("ring-face-barrel.toml") === readFileSync(join(cases, CASES[0]), "utf8"), "the saved case is another text");
 await b.value(`document.getElementById("save-report").click()`);
-const plain = (report) => report.replace(/<script type="application\/json" id="data">.*?<\/script>/s, "").replace(/<section id="provenance">.*?<\/section>/s, "");
+const plain = (report) => report.replace(/<script type="application\/json" id="data">.*?<\/script>/s, "").replace(/<section id="sources">.*?<\/section>/s, "");
 const report = await saved("ring-face-barrel-report.html");
 check(report.includes("<!DOCTYPE html>") && plain(report) === plain(here.report), "the saved report is another page");
 

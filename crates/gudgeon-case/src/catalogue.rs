@@ -147,6 +147,39 @@ pub fn choice(schema: &Value) -> Option<(&str, Vec<(&str, &Value)>)> {
     Some((tag, all.iter().filter_map(|s| Some((constant(s, tag)?, s))).collect()))
 }
 
+/// The words of a choice, each with its meaning where it has one.
+#[must_use]
+pub fn words(schema: &Value) -> Vec<(&str, Option<&str>)> {
+    if let Some(all) = schema.get("enum").and_then(Value::as_array) {
+        return all.iter().filter_map(Value::as_str).map(|w| (w, None)).collect();
+    }
+    let Some(all) = schema.get("oneOf").and_then(Value::as_array) else { return Vec::new() };
+    let mut out = Vec::new();
+    for s in all {
+        match s.get("const").and_then(Value::as_str) {
+            Some(word) => out.push((word, s.get("description").and_then(Value::as_str))),
+            None => out.extend(words(s)),
+        }
+    }
+    out
+}
+
+/// The texts of an array that a schema has under a key: `required`, `x-units`.
+#[must_use]
+pub fn texts<'a>(schema: &'a Value, key: &str) -> Vec<&'a str> {
+    let all = schema.get(key).and_then(Value::as_array);
+    all.into_iter().flatten().filter_map(Value::as_str).collect()
+}
+
+/// The bound of a quantity as the end of a sentence, `, greater than zero`; empty where it has none.
+#[must_use]
+pub fn bound(schema: &Value) -> String {
+    match schema.get("x-bound").and_then(Value::as_str) {
+        None | Some("finite") => String::new(),
+        Some(b) => format!(", {b}"),
+    }
+}
+
 /// Tables of a model that a word other than `model` tells apart: path, key, words.
 #[must_use]
 pub fn choices(m: &ModelInfo) -> Vec<(String, String, Vec<String>)> {

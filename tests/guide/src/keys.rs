@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use gudgeon_case::catalogue::{DEPTH, choice, resolve};
+use gudgeon_case::catalogue::{DEPTH, bound, choice, resolve, texts, words};
 use gudgeon_core::Registry;
 use serde_json::{Map, Value};
 
@@ -32,13 +32,7 @@ struct Writer<'a> {
 impl Writer<'_> {
     fn table(&self, schema: &Value, indent: usize, depth: usize, out: &mut String) {
         let Some(properties) = schema.get("properties").and_then(Value::as_object) else { return };
-        let required: Vec<&str> = schema
-            .get("required")
-            .and_then(Value::as_array)
-            .into_iter()
-            .flatten()
-            .filter_map(Value::as_str)
-            .collect();
+        let required = texts(schema, "required");
         for (key, p) in properties.iter().filter(|(_, p)| p.get("const").is_none()) {
             self.key(key, p, required.contains(&key.as_str()), (indent, depth), out);
         }
@@ -145,40 +139,13 @@ fn default(p: &Value, required: bool) -> String {
 
 fn quantity(schema: &Value) -> Option<String> {
     let dimension = schema.get("x-dimension").and_then(Value::as_str)?;
-    let units: Vec<&str> = schema
-        .get("x-units")
-        .and_then(Value::as_array)
-        .into_iter()
-        .flatten()
-        .filter_map(Value::as_str)
-        .collect();
-    let units = match &units[..] {
+    let units = match &texts(schema, "x-units")[..] {
         [] => String::new(),
         // A number stands plainly or as a part of a hundred.
         ["%"] => " or a text in %".into(),
         units => format!(" in {}", units.join(", ")),
     };
-    let bound = match schema.get("x-bound").and_then(Value::as_str) {
-        None | Some("finite") => String::new(),
-        Some(b) => format!(", {b}"),
-    };
-    Some(format!("{dimension}{units}{bound}"))
-}
-
-/// The words of a choice, each with its meaning.
-fn words(schema: &Value) -> Vec<(&str, Option<&str>)> {
-    if let Some(all) = schema.get("enum").and_then(Value::as_array) {
-        return all.iter().filter_map(Value::as_str).map(|w| (w, None)).collect();
-    }
-    let Some(all) = schema.get("oneOf").and_then(Value::as_array) else { return Vec::new() };
-    let mut out = Vec::new();
-    for s in all {
-        match s.get("const").and_then(Value::as_str) {
-            Some(word) => out.push((word, s.get("description").and_then(Value::as_str))),
-            None => out.extend(words(s)),
-        }
-    }
-    out
+    Some(format!("{dimension}{units}{}", bound(schema)))
 }
 
 fn basic(schema: &Value) -> String {

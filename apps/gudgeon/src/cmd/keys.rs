@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use gudgeon_case::catalogue::{DEPTH, choice, resolve};
+use gudgeon_case::catalogue::{DEPTH, bound, choice, resolve, texts, words};
 use serde_json::{Map, Value};
 
 use crate::ui::wrapped;
@@ -10,13 +10,7 @@ use crate::ui::wrapped;
 /// The keys of a table with their types, defaults and meanings, and those of the tables in it.
 pub fn keys(schema: &Value, definitions: &Map<String, Value>, indent: usize, depth: usize, s: &mut String) {
     let Some(properties) = schema.get("properties").and_then(Value::as_object) else { return };
-    let required: Vec<&str> = schema
-        .get("required")
-        .and_then(Value::as_array)
-        .into_iter()
-        .flatten()
-        .filter_map(Value::as_str)
-        .collect();
+    let required = texts(schema, "required");
     for (key, p) in properties.iter().filter(|(_, p)| p.get("const").is_none()) {
         let (inner, name) = resolve(p, definitions);
         let default = match p.get("default") {
@@ -60,37 +54,11 @@ fn plain(t: &str) -> String {
     t.replace("\\[", "[").replace("\\]", "]").split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// The words of a choice, each with its meaning.
-fn words(schema: &Value) -> Vec<(&str, Option<&str>)> {
-    if let Some(all) = schema.get("enum").and_then(Value::as_array) {
-        return all.iter().filter_map(Value::as_str).map(|w| (w, None)).collect();
-    }
-    let Some(all) = schema.get("oneOf").and_then(Value::as_array) else { return Vec::new() };
-    let mut out = Vec::new();
-    for s in all {
-        match s.get("const").and_then(Value::as_str) {
-            Some(word) => out.push((word, s.get("description").and_then(Value::as_str))),
-            None => out.extend(words(s)),
-        }
-    }
-    out
-}
-
 fn type_text(schema: &Value, name: Option<&str>, definitions: &Map<String, Value>) -> String {
     if let Some(dimension) = schema.get("x-dimension").and_then(Value::as_str) {
-        let units: Vec<&str> = schema
-            .get("x-units")
-            .and_then(Value::as_array)
-            .into_iter()
-            .flatten()
-            .filter_map(Value::as_str)
-            .collect();
-        let bound = match schema.get("x-bound").and_then(Value::as_str) {
-            None | Some("finite") => String::new(),
-            Some(b) => format!(", {b}"),
-        };
+        let units = texts(schema, "x-units");
         let units = if units.is_empty() { String::new() } else { format!(" [{}]", units.join(", ")) };
-        return format!("{dimension}{units}{bound}");
+        return format!("{dimension}{units}{}", bound(schema));
     }
     if !words(schema).is_empty() {
         return "one word of".into();
