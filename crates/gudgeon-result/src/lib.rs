@@ -348,7 +348,7 @@ pub struct Lines {
     pub x: String,
     /// Label and column of each curve. Curves share a unit.
     pub lines: Vec<(String, String)>,
-    /// Column along the abscissa of each curve, where every curve has its own; `x` then names what they are.
+    /// Column along the abscissa of each curve, where every curve has its own: `ring1.hersey_number`, whose last word says what it is; `x` is the first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub own_x: Vec<String>,
     /// Logarithmic abscissa.

@@ -16,7 +16,7 @@
     if (!all.length) return;
     const rays = (k.rays || []).map(pair).filter(Boolean);
     new Chart(where, {
-      title: capital(f.title), hint: f.hint, xName: words(x.name), xUnit: x.unit, lines: all, logX: k.log_x, pickX: !rays.length, wide,
+      title: capital(f.title), hint: f.hint, xName: words(k.own_x ? x.name.split(".").pop() : x.name), xUnit: x.unit, lines: all, logX: k.log_x, pickX: !rays.length, wide,
       modes: rays.length ? ["linear"] : k.log_y ? ["log", "linear"] : ["linear", "log"],
       rays: rays.length ? rays : undefined, marks: k.marks, top: k.top, yName: k.y_name, scatter: k.scatter,
     });

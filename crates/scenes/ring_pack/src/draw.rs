@@ -44,9 +44,8 @@ fn stribeck(out: &mut RunResult, rings: &[String], radius: f64, rows: &[usize]) 
     let Some(speed) = values(series, "piston.v") else { return };
     let theta = rows.iter().map(|i| series.axis.values[*i]).collect();
     let mut table = Series { axis: column("theta", "deg", theta), columns: Vec::new() };
-    let mut kind =
-        Lines { x: "Hersey number".into(), log_x: true, log_y: true, scatter: true, ..Lines::default() };
-    kind.y_name = "coefficient of friction".into();
+    let y_name = "coefficient of friction".into();
+    let mut kind = Lines { y_name, log_x: true, log_y: true, scatter: true, ..Lines::default() };
     for (k, name) in rings.iter().enumerate() {
         let of = |what: &str| values(series, &format!("ring{}.{what}", k + 1));
         let (Some(eta), Some(load), Some(force)) = (of("viscosity"), of("radial_load"), of("friction_force"))
@@ -58,7 +57,7 @@ fn stribeck(out: &mut RunResult, rings: &[String], radius: f64, rows: &[usize]) 
         let point = |i: &usize| (load[*i] > 0.0 && speed[*i] != 0.0 && force[*i] != 0.0).then_some(*i);
         let at =
             |f: &dyn Fn(usize) -> f64| rows.iter().map(|i| point(i).map_or(0.0, f)).collect::<Vec<f64>>();
-        let (x, y) = (format!("ring{}.hersey", k + 1), format!("ring{}.coefficient", k + 1));
+        let (x, y) = (format!("ring{}.hersey_number", k + 1), format!("ring{}.coefficient", k + 1));
         table.columns.push(column(x.clone(), "1", at(&|i| eta[i] * speed[i].abs() * around / load[i])));
         table.columns.push(column(y.clone(), "1", at(&|i| force[i].abs() / load[i])));
         kind.own_x.push(x);
@@ -93,7 +92,7 @@ fn p_v(out: &mut RunResult, radius: f64, rows: &[usize]) {
         },
     );
     out.figures.push(Figure {
-        title: "p-V diagram".into(),
+        title: "Indicator diagram (p-V)".into(),
         hint: "pressure in the cylinder over the volume displaced from the upper dead centre".into(),
         table: "p_v".into(),
         kind: FigureKind::Lines(Lines {
