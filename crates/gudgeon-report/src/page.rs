@@ -64,11 +64,9 @@ fn typeset(text: &str) -> String {
             "deg" if out.ends_with(|c: char| c.is_ascii_digit()) => {
                 let _ = write!(out, "°{rest}");
             }
-            "um" => {
-                let _ = write!(out, " µm{rest}");
-            }
             _ => {
-                let _ = write!(out, "{}{word}", if k > 0 { " " } else { "" });
+                let unit = if bare == "um" { "µm" } else { bare };
+                let _ = write!(out, "{}{unit}{rest}", if k > 0 { " " } else { "" });
             }
         }
     }
@@ -471,6 +469,7 @@ mod tests {
             "a film of 0.3 µm (most at 360°), <code>1 um</code>"
         );
         assert_eq!(prose("crank angle in deg"), "crank angle in deg");
+        assert_eq!(prose("um, not mm"), "µm, not mm");
     }
 
     #[test]

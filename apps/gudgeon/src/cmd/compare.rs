@@ -241,15 +241,16 @@ fn one_below_the_other(c: &Comparison, wanted: &[String]) -> String {
     format!("\n{}{of}", table(&rows, &right))
 }
 
-/// The results that were asked for, or the first of the whole scene, `blow_by` but not `ring1.h_min`.
+/// The results that were asked for, or those that lead: of rings and shafts the first.
 fn shown_results<'a>(r: &'a RunResult, wanted: &[String]) -> Vec<&'a str> {
     let all = || r.results.keys().map(String::as_str);
     let asked: Vec<&str> = all().filter(|n| wanted.iter().any(|w| w == n)).collect();
     if !asked.is_empty() {
         return asked;
     }
-    let whole: Vec<&str> = all().filter(|n| !n.contains('.')).take(RESULTS).collect();
-    if whole.is_empty() { all().take(RESULTS).collect() } else { whole }
+    let leading = r.leading();
+    let first = leading.iter().filter_map(|h| r.results.get_key_value(&h.results.first()?.1));
+    first.map(|(name, _)| name.as_str()).take(RESULTS).collect()
 }
 
 fn value(r: &RunResult, name: &str) -> String {

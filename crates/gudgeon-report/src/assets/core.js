@@ -66,6 +66,7 @@ function display(unit, max) {
     case "m/s2": return { f: 1, label: "m/s²" };
     case "kg/s": return pick([[1e-6, 1e9, "µg/s"], [2e-3, 1e6, "mg/s"], [2, 1e3, "g/s"], [Infinity, 1, "kg/s"]]);
     case "m3/s": return pick([[2e-6, 1e9, "mm³/s"], [2e-3, 1e6, "cm³/s"], [Infinity, 1, "m³/s"]]);
+    case "m3": return pick([[2e-6, 1e9, "mm³"], [2e-2, 1e6, "cm³"], [Infinity, 1, "m³"]]);
     case "kg": return pick([[1e-7, 1e9, "µg"], [1e-4, 1e6, "mg"], [1, 1e3, "g"], [Infinity, 1, "kg"]]);
     case "N": return pick([[5e4, 1, "N"], [Infinity, 1e-3, "kN"]]);
     case "N/m": return pick([[5e4, 1, "N/m"], [Infinity, 1e-3, "kN/m"]]);

@@ -4,6 +4,8 @@ use gudgeon_core::result::{Bar, Column, Figure, FigureKind, Lines, RunResult, Se
 
 /// Angles between the points of the Stribeck and the p-V diagram \[deg\].
 const STEP: f64 = 2.0;
+/// Part of the largest speed below which a piston is at rest: what is left of a dead centre is rounding.
+const REST: f64 = 1e-6;
 /// Part of the radial load that solid contact carries at most where a film is called full, and at least where it is called boundary.
 const REGIMES: [f64; 2] = [0.01, 0.5];
 
@@ -42,6 +44,7 @@ fn values<'a>(series: &'a Series, name: &str) -> Option<&'a [f64]> {
 fn stribeck(out: &mut RunResult, rings: &[String], radius: f64, rows: &[usize]) {
     let series = &out.series;
     let Some(speed) = values(series, "piston.v") else { return };
+    let fastest = speed.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
     let theta = rows.iter().map(|i| series.axis.values[*i]).collect();
     let mut table = Series { axis: column("theta", "deg", theta), columns: Vec::new() };
     let y_name = "coefficient of friction".into();
@@ -54,7 +57,8 @@ fn stribeck(out: &mut RunResult, rings: &[String], radius: f64, rows: &[usize]) 
         };
         let around = 2.0 * std::f64::consts::PI * radius;
         // Points at rest, and without a load, have no place in a logarithmic diagram.
-        let point = |i: &usize| (load[*i] > 0.0 && speed[*i] != 0.0 && force[*i] != 0.0).then_some(*i);
+        let moves = |i: usize| speed[i].abs() > REST * fastest;
+        let point = |i: &usize| (load[*i] > 0.0 && moves(*i) && force[*i] != 0.0).then_some(*i);
         let at =
             |f: &dyn Fn(usize) -> f64| rows.iter().map(|i| point(i).map_or(0.0, f)).collect::<Vec<f64>>();
         let (x, y) = (format!("ring{}.hersey_number", k + 1), format!("ring{}.coefficient", k + 1));
@@ -140,12 +144,15 @@ fn regimes(out: &RunResult, rings: &[String]) -> Option<Figure> {
             parts[k] += theta[i] - theta[i - 1];
         }
         let cycle: f64 = parts.iter().sum();
-        rows.push((name.clone(), parts.iter().map(|p| (cycle > 0.0).then(|| 100.0 * p / cycle)).collect()));
+        rows.push((
+            name.clone(),
+            parts.iter().map(|p| (cycle > 0.0).then(|| (100.0 * p / cycle).round())).collect(),
+        ));
     }
     let columns = ["full film", "mixed", "boundary"].map(|n| (n.to_owned(), "%".to_owned()));
     Some(Figure {
         title: "Regimes of lubrication".into(),
-        hint: "part of the cycle in which solid contact carries less than 1 %, up to half, and more than half of the radial load".into(),
+        hint: "part of the cycle in which solid contact carries less than 1 %, up to half, and more than half of the radial load; by the rows of series.csv, in whole per cent".into(),
         table: String::new(),
         kind: FigureKind::Table { rows_are: "ring".into(), columns: columns.to_vec(), rows, limit: None },
     })
@@ -161,7 +168,7 @@ fn oil(out: &RunResult, rings: &[String]) -> Option<Figure> {
         all.push(bar(format!("{name}, gap downwards"), of(&format!("ring{n}.gap_oil_down"))?));
         all.push(bar(format!("{name}, blown off its flanks"), of(&format!("ring{n}.flank_oil_lost"))?));
     }
-    all.push(bar("thrown into the combustion chamber".into(), of("oil_thrown")?));
+    all.push(bar("thrown into the chamber".into(), of("oil_thrown")?));
     bars(
         "Oil that passes the rings",
         "per cycle; what the faces take from the liner and scrape off stands with the results",

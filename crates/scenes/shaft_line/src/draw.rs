@@ -187,7 +187,7 @@ pub struct Marked {
     pub running: f64,
     /// The operating range.
     pub operating: [f64; 2],
-    /// The largest separation that a limit asks for, as part of the speed; 0 where none does.
+    /// The largest separation from an order that a limit asks for, as part of the speed; 0 where none does.
     pub margin: f64,
 }
 

@@ -97,12 +97,16 @@ fn critical_speeds(out: &RunResult) -> Option<Figure> {
         v.extend(torque.map(|t| Some(t[*k])));
         (format!("mode {}, order {}", mode[*k], order[*k]), v)
     };
+    let of_torque = torque.map_or(
+        "",
+        |_| "with the largest torque of that order in any shaft at the speeds of the diagram beside it",
+    );
     let hint = if told > CRITICAL {
         format!(
-            "{CRITICAL} of {told}, those with the largest torque in any shaft; table `critical_speeds` has all"
+            "{CRITICAL} of {told}, the strongest where that is known; table `critical_speeds` has all; {of_torque}"
         )
     } else {
-        "with the largest torque of that order in any shaft, where it was computed".to_owned()
+        of_torque.to_owned()
     };
     table("Critical speeds", &hint, "resonance", head, all.iter().map(row).collect(), None)
 }

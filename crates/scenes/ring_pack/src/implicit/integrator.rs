@@ -15,7 +15,7 @@ pub enum RingIntegrator {
     /// Rosenbrock method of order 5.
     Rodas5p,
     /// Singly diagonally implicit method of order 2 whose stages the pack solves itself, each ring by a bracket: half the steps at errors of 1e-3. For
-    /// packs whose models solve stages.
+    /// packs whose models solve stages. Not for rings that leave the liner: heavy ones at 5000 rpm come back too slowly, and blow-by is wrong at every tolerance.
     Sdirk2,
     /// Radau IIA of order 5, for references at tight tolerances.
     Radau5,

@@ -183,7 +183,9 @@ impl Results<'_> {
         }
         let rows: Vec<f64> = at.iter().map(|w| rpm(*w)).collect();
         let range = Operating::new(self.case);
-        let margins = self.case.limits.separation.iter().map(|l| l.margin.si());
+        // A distance from a fixed frequency is none of the speed.
+        let orders_kept = self.case.limits.separation.iter().filter(|l| !l.orders.is_empty());
+        let margins = orders_kept.map(|l| l.margin.si());
         let marked = draw::Marked {
             running: rpm(speed),
             operating: [rpm(range.from), rpm(range.to)],

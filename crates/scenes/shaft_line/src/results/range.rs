@@ -144,45 +144,32 @@ impl Results<'_> {
         }
     }
 
-    /// Marks critical speeds in the Campbell diagram by the torque that their order makes there in any shaft, and says it in their labels.
+    /// Adds to each critical speed the torque that its order makes in any shaft at the speeds of the diagram beside it, and marks it in the Campbell
+    /// diagram by that.
     fn weigh_critical_speeds(&mut self, orders: &[f64], links: usize, rows: &[Point], speeds: &[f64]) {
-        let Some(table) = self.out.tables.get("critical_speeds") else { return };
+        let Some(table) = self.out.tables.get_mut("critical_speeds") else { return };
         let Some(order) = table.get("order") else { return };
-        let response = |speed: f64, o: f64| {
-            let k = orders.iter().position(|other| (other - o).abs() < 1e-6)?;
-            let next = speeds.partition_point(|w| rpm(*w) < speed).min(speeds.len() - 1);
+        let torque = |(speed, o): (&f64, &f64)| {
+            // An order that nothing excites makes none.
+            let Some(k) = orders.iter().position(|other| (other - o).abs() < 1e-6) else { return 0.0 };
+            let next = speeds.partition_point(|w| rpm(*w) < *speed).min(speeds.len() - 1);
             let near = next.saturating_sub(1)..=next;
-            let torque =
-                near.flat_map(|j| rows[j].orders.get(k * links..(k + 1) * links).into_iter().flatten());
-            Some(torque.copied().fold(0.0, f64::max))
+            let own = near.flat_map(|j| rows[j].orders.get(k * links..(k + 1) * links).into_iter().flatten());
+            own.copied().fold(0.0, f64::max)
         };
-        let within = |speed: f64| speed >= rpm(speeds[0]) && speed <= rpm(speeds[speeds.len() - 1]);
-        let order_at = order.values.clone();
-        let all: Vec<(f64, f64, f64)> = table
-            .axis
-            .values
-            .iter()
-            .zip(&order.values)
-            .filter(|(speed, _)| within(**speed))
-            .filter_map(|(speed, o)| Some((*speed, response(*speed, *o)?, *o)))
-            .collect();
-        let largest = all.iter().fold(0.0, |top, r| f64::max(top, r.1));
-        if let Some(table) = self.out.tables.get_mut("critical_speeds") {
-            let torque = |speed: &f64, k: usize| {
-                let own = order_at.get(k).and_then(|o| all.iter().find(|r| r.0 == *speed && r.2 == *o));
-                own.map_or(0.0, |r| r.1)
-            };
-            let column_of = table.axis.values.iter().enumerate().map(|(k, speed)| torque(speed, k)).collect();
-            table.columns.push(column("torque_amplitude", "N m", column_of));
+        let torques: Vec<f64> = table.axis.values.iter().zip(&order.values).map(torque).collect();
+        let largest = torques.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+        let kinds = self.out.figures.iter_mut().filter(|f| f.title == draw::CAMPBELL).map(|f| &mut f.kind);
+        for kind in kinds {
+            let FigureKind::Lines(Lines { marks, .. }) = kind else { continue };
+            for m in marks {
+                let Mark::Point { x, weight, label, .. } = m else { continue };
+                let Some(k) = table.axis.values.iter().position(|speed| speed == x) else { continue };
+                *weight = torques[k] / largest;
+                label.push_str(&format!(", {:.0} N m in the shaft that feels it most", torques[k]));
+            }
         }
-        let marks = self.out.figures.iter_mut().find(|f| f.title == draw::CAMPBELL).map(|f| &mut f.kind);
-        let Some(FigureKind::Lines(Lines { marks, .. })) = marks else { return };
-        for m in marks {
-            let Mark::Point { x, weight, label, .. } = m else { continue };
-            let Some((_, torque, _)) = all.iter().find(|r| r.0 == *x) else { continue };
-            *weight = if largest > 0.0 { torque / largest } else { 0.0 };
-            label.push_str(&format!(", {torque:.0} N m in the shaft that feels it most"));
-        }
+        table.columns.push(column("torque_amplitude", "N m", torques));
     }
 
     /// Says at how many speeds the model found no periodic motion.
