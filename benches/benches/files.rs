@@ -1,4 +1,5 @@
 //! Time of what stands before and after a run: reading a case, changing it, refusing a broken one, writing its summary and its report.
+#![allow(clippy::disallowed_methods, reason = "what is expected need not be the same bits on every platform")]
 #![allow(clippy::print_stdout, missing_docs)]
 
 use std::hint::black_box;

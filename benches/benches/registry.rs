@@ -3,6 +3,7 @@
 //!
 //! A model of a kind that asks other parts of a scene is read alone; `--list` of criterion shows what is timed, and the kinds whose models run within a
 //! scene alone are told at the end. Error beside time is not what this file shows: `gudgeon bench` does, where there is a reference.
+#![allow(clippy::disallowed_methods, reason = "what is expected need not be the same bits on every platform")]
 #![allow(clippy::print_stdout, missing_docs)]
 
 use std::hint::black_box;

@@ -1,5 +1,6 @@
 //! Time of one run of every case whose work is counted, from a case that was read to its results, without sweeps and files; and of runs with every model of the kinds
 //! that ask other parts of a scene, on its registered example: solvers, motions.
+#![allow(clippy::disallowed_methods, reason = "what is expected need not be the same bits on every platform")]
 #![allow(clippy::print_stdout, missing_docs)]
 
 use std::time::Duration;

@@ -3,6 +3,7 @@
 //!
 //! The table that comes first holds the largest relative error beside nanoseconds per point, the median of rounds in which all
 //! functions take turns; `--table` prints it alone. Everything else goes to criterion.
+#![allow(clippy::disallowed_methods, reason = "what is expected need not be the same bits on every platform")]
 #![allow(clippy::print_stdout, missing_docs)]
 
 use std::hint::black_box;

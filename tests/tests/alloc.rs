@@ -1,5 +1,7 @@
 //! The right-hand side of a whole ring pack, its Jacobian and the stages of implicit steps allocate nothing.
 
+#![allow(clippy::disallowed_methods, reason = "what is expected need not be the same bits on every platform")]
+
 mod common;
 #[path = "common/counting.rs"]
 mod counting;

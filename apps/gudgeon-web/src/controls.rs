@@ -1,6 +1,7 @@
 //! Sliders and choices, made from the inputs of a case.
 
 use gudgeon_case::{Input, InputValue, NumberInput};
+use gudgeon_core::elementary;
 use serde::Serialize;
 use serde_json::Value;
 
@@ -159,7 +160,7 @@ fn range(n: &NumberInput) -> (f64, f64, f64) {
         _ => ((0.5 * v).min(1.5 * v), (0.5 * v).max(1.5 * v)),
     };
     let raw = (high - low) / 100.0;
-    let decade = 10f64.powf(raw.log10().floor());
+    let decade = elementary::powf(10f64, elementary::log10(raw).floor());
     let nice =
         [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * decade).find(|s| *s >= raw * 0.999).unwrap_or(decade);
     let step = if n.whole { nice.round().max(1.0) } else { nice };

@@ -10,6 +10,7 @@ use std::time::Duration;
 
 use console::Term;
 use gudgeon_case::Report;
+use gudgeon_core::elementary;
 use gudgeon_scene::{Progress, Stopped};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
@@ -179,7 +180,7 @@ pub fn number(v: f64) -> String {
     if !v.is_finite() {
         return v.to_string();
     }
-    let magnitude = v.abs().log10().floor() as i32;
+    let magnitude = elementary::log10(v.abs()).floor() as i32;
     if !(-4..7).contains(&magnitude) {
         return format!("{v:.*e}", DIGITS as usize - 1);
     }
@@ -190,8 +191,8 @@ pub fn number(v: f64) -> String {
 pub fn certain(v: f64, uncertainty: Option<f64>) -> String {
     let Some(u) = uncertainty.filter(|u| *u > 0.0 && u.is_finite()) else { return number(v) };
     // The place of the first digit of the uncertainty is the last one printed.
-    let place = u.log10().floor() as i32;
-    let size = v.abs().max(u).log10().floor() as i32;
+    let place = elementary::log10(u).floor() as i32;
+    let size = elementary::log10(v.abs().max(u)).floor() as i32;
     if size < -3 {
         let (scale, decimals) = (10f64.powi(size), (size - place).clamp(0, 9) as usize);
         return format!("({:.decimals$} ± {:.decimals$})e{size}", v / scale, u / scale);

@@ -1,5 +1,7 @@
 //! The commands as a person or a script meets them: what goes to which stream, exit codes, files.
 
+#![allow(clippy::disallowed_methods, reason = "what is expected need not be the same bits on every platform")]
+
 use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};

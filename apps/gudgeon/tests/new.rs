@@ -1,5 +1,7 @@
 //! Templates, completions and manual pages: what a person meets before the first case.
 
+#![allow(clippy::disallowed_methods, reason = "what is expected need not be the same bits on every platform")]
+
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,5 +1,7 @@
 //! Parameter sets at the command line: listed, named by a case, overridden, recorded; and what every set must keep.
 
+#![allow(clippy::disallowed_methods, reason = "what is expected need not be the same bits on every platform")]
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

@@ -1,5 +1,7 @@
 //! `gudgeon study`: folders that are filled by threads, by arrays of jobs, and after a kill, always with the same bytes.
 
+#![allow(clippy::disallowed_methods, reason = "what is expected need not be the same bits on every platform")]
+
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};

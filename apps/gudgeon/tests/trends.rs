@@ -1,5 +1,7 @@
 //! What the terminal tells of sweeps and comparisons: every variant, and how results go.
 
+#![allow(clippy::disallowed_methods, reason = "what is expected need not be the same bits on every platform")]
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

@@ -2,6 +2,7 @@
 
 use std::hint::black_box;
 
+use gudgeon_core::elementary;
 use gudgeon_core::geometry::FaceProfile;
 use gudgeon_core::kinds::{
     BoundaryFrictionSpec, CompressibilitySpec, ContactSpec, EvaporationCtx, EvaporationSpec, FaceCtx, FaceIn,
@@ -127,7 +128,7 @@ pub fn film_temperature(m: &ModelInfo) -> Result<Alone, String> {
 /// Films of a barrel face about mid-stroke, a step of a few per cent apart as those of an integrator.
 fn films() -> [FaceIn; 16] {
     std::array::from_fn(|k| {
-        let (sin, cos) = (std::f64::consts::TAU * k as f64 / 16.0).sin_cos();
+        let (sin, cos) = elementary::sin_cos(std::f64::consts::TAU * k as f64 / 16.0);
         let (h, u) = (3e-6 * (1.0 + 0.1 * sin), -10.0 - 2.0 * cos);
         FaceIn { h, u, p_bottom: 2e5, p_top: 1e6, p_cav: 1e5, mu: VISCOSITY }
     })

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::hint::black_box;
 
 use gudgeon_core::ModelInfo;
+use gudgeon_core::elementary;
 use gudgeon_core::file::Files;
 use gudgeon_core::kinds::{
     GrooveFrictionCtx, GrooveFrictionSpec, PinFrictionSpec, ProfileCurveSpec, SkirtComplianceCtx,
@@ -43,7 +44,7 @@ fn places() -> Vec<(f64, f64)> {
 
 /// Deflections \[m/N\] of a skirt that bends from its upper edge, as the file of an influence matrix.
 fn influence_matrix() -> String {
-    let shape = |p: &(f64, f64)| (p.0 / PANEL.length).powi(2) * (2.0 * p.1).cos();
+    let shape = |p: &(f64, f64)| (p.0 / PANEL.length).powi(2) * elementary::cos(2.0 * p.1);
     let all = places();
     let mut text = String::from("# height angle c\n");
     for (k, a) in all.iter().enumerate() {

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::asperity_integral::f_5_2;
+use gudgeon_numerics::elementary;
 
 /// Evaluation of `F_(5/2)`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
@@ -78,18 +79,18 @@ pub(crate) fn polynomial(lambda: f64) -> f64 {
     if lambda > POLYNOMIAL_TO {
         0.0
     } else if lambda >= POLYNOMIAL_FROM {
-        log_polynomial(lambda).exp()
+        elementary::exp(log_polynomial(lambda))
     } else {
         // d ln F/dλ at the joint x = -1: Σ k c_k (-1)^(k-1) / 4.
         let slope =
             POLYNOMIAL.iter().enumerate().skip(1).rev().fold(0.0, |s, (k, &c)| -s + k as f64 * c) * 0.25;
         let g = 1.0 + slope * (lambda - POLYNOMIAL_FROM) / 2.5;
-        log_polynomial(POLYNOMIAL_FROM).exp() * (g * g * g.sqrt())
+        elementary::exp(log_polynomial(POLYNOMIAL_FROM)) * (g * g * g.sqrt())
     }
 }
 
 pub(crate) fn hu1994(lambda: f64) -> f64 {
-    if lambda < HU_TO { 4.4068e-5 * (HU_TO - lambda).powf(6.804) } else { 0.0 }
+    if lambda < HU_TO { 4.4068e-5 * elementary::powf(HU_TO - lambda, 6.804) } else { 0.0 }
 }
 
 /// Falls monotonically wherever it is positive, below zero too.

@@ -11,6 +11,7 @@
 //! that contact models need at every point of every film at every step; they read piecewise Taylor polynomials, which
 //! need no exponential, no root and no logarithm.
 
+use gudgeon_numerics::elementary;
 use std::sync::LazyLock;
 
 /// Below this separation the asymptotic series of `F_n` for deep overlap is exact to rounding.
@@ -36,7 +37,9 @@ pub fn asperity_integral(n: f64, lambda: f64) -> f64 {
     if lambda < DEEP {
         return deep(n, lambda);
     }
-    nodes().map(|(t, w)| w * t.powf(n) * (-0.5 * (lambda + t) * (lambda + t)).exp()).sum()
+    nodes()
+        .map(|(t, w)| w * elementary::powf(t, n) * elementary::exp(-0.5 * (lambda + t) * (lambda + t)))
+        .sum()
 }
 
 /// Nodes `t` and weights of `(2π)^(-1/2) ∫_0^∞ … dt` for integrands that decay like `exp(-(λ+t)²/2)` with `λ >= DEEP`.
@@ -46,8 +49,8 @@ fn nodes() -> impl Iterator<Item = (f64, f64)> {
     let (h, from, to) = (1.0 / 16.0, -56, 52);
     (from..=to).map(move |j| {
         let x = h * f64::from(j);
-        let e = (-x).exp();
-        let t = (x - e).exp();
+        let e = elementary::exp(-x);
+        let t = elementary::exp(x - e);
         (t, h * t * (1.0 + e) / std::f64::consts::TAU.sqrt())
     })
 }
@@ -62,7 +65,7 @@ fn deep(n: f64, lambda: f64) -> f64 {
         term *= (n - k2) * (n - k2 - 1.0) / ((k2 + 2.0) * l * l);
         sum += term;
     }
-    sum * l.powf(n)
+    sum * elementary::powf(l, n)
 }
 
 /// Piecewise Taylor polynomials of one `F_n` over `[DEEP, FAR]`.
@@ -74,14 +77,16 @@ struct Pieces {
 
 impl Pieces {
     fn new(order: f64) -> Self {
-        let nodes: Vec<_> = nodes().map(|(t, w)| (t, w * t.powf(order), w * t.powf(order - 1.0))).collect();
+        let nodes: Vec<_> = nodes()
+            .map(|(t, w)| (t, w * elementary::powf(t, order), w * elementary::powf(t, order - 1.0)))
+            .collect();
         let count = ((FAR - DEEP) * PER_UNIT) as usize;
         let pieces = (0..count)
             .map(|i| {
                 let centre = DEEP + (i as f64 + 0.5) / PER_UNIT;
                 let (mut value, mut lower) = (0.0, 0.0);
                 for &(t, w, w_lower) in &nodes {
-                    let g = (-0.5 * (centre + t) * (centre + t)).exp();
+                    let g = elementary::exp(-0.5 * (centre + t) * (centre + t));
                     value += w * g;
                     lower += w_lower * g;
                 }

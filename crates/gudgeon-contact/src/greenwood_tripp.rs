@@ -4,6 +4,7 @@ use gudgeon_core::quantity::{
 };
 use gudgeon_core::sets::Sets;
 use gudgeon_core::{BuildError, register_model};
+use gudgeon_numerics::elementary;
 use serde::{Deserialize, Serialize};
 
 use crate::asperity_formula::{AsperityIntegralFormula, hu1994, polynomial, quintic};
@@ -74,7 +75,7 @@ pub fn composite_modulus(modulus: [f64; 2], poisson: [f64; 2]) -> f64 {
 /// Composite roughness `√(σ1² + σ2²)` of two rms roughness heights.
 #[must_use]
 pub fn composite_roughness(sigma: [f64; 2]) -> f64 {
-    sigma[0].hypot(sigma[1])
+    elementary::hypot(sigma[0], sigma[1])
 }
 
 /// Real over nominal area of contact, `π² (η β σ)² F_2(λ)` with `λ = h/σ`.

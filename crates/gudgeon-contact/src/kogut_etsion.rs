@@ -1,6 +1,7 @@
 use gudgeon_core::kinds::{Contact, ContactSpec};
 use gudgeon_core::quantity::{NonNegative, PosLength, PosPressure, PosRatio, Ratio, quantity};
 use gudgeon_core::{BuildError, register_model};
+use gudgeon_numerics::elementary;
 use serde::{Deserialize, Serialize};
 
 use crate::log_table::LogTable;
@@ -103,9 +104,9 @@ fn load(x: f64, factor: f64) -> f64 {
     if x <= elastic {
         x * x.sqrt()
     } else if x <= spreads {
-        1.03 * x.powf(1.425)
+        1.03 * elementary::powf(x, 1.425)
     } else if x <= flows {
-        1.40 * x.powf(1.263)
+        1.40 * elementary::powf(x, 1.263)
     } else {
         3.0 / factor * x
     }
@@ -117,9 +118,9 @@ fn contact_area(x: f64) -> f64 {
     if x <= elastic {
         x
     } else if x <= spreads {
-        0.93 * x.powf(1.136)
+        0.93 * elementary::powf(x, 1.136)
     } else if x <= flows {
-        0.94 * x.powf(1.146)
+        0.94 * elementary::powf(x, 1.146)
     } else {
         2.0 * x
     }

@@ -1,6 +1,7 @@
 use gudgeon_core::kinds::{Contact, ContactSpec};
 use gudgeon_core::quantity::{NonNegative, PosLength, PosPressure, PosRatio, Ratio, quantity};
 use gudgeon_core::{BuildError, register_model};
+use gudgeon_numerics::elementary;
 use serde::{Deserialize, Serialize};
 
 use crate::asperity_integral::{asperity_integral, f_1, f_2, f_3_2};
@@ -100,11 +101,11 @@ struct Planes {
 
 impl Planes {
     fn new() -> Self {
-        let from = f_1(-DEEPEST).ln();
-        let rows = ((APART.ln() - from) * PER_UNIT).ceil() as usize;
+        let from = elementary::ln(f_1(-DEEPEST));
+        let rows = ((elementary::ln(APART) - from) * PER_UNIT).ceil() as usize;
         let mut d = DEEPEST;
         let row = |k: usize| {
-            let gap = (from + k as f64 / PER_UNIT).exp();
+            let gap = elementary::exp(from + k as f64 / PER_UNIT);
             // ln F_1(-D) is concave in D: Newton's method from below comes in monotonically, quadratically in the end.
             for _ in 0..40 {
                 let next = improved(d, gap);
@@ -120,7 +121,7 @@ impl Planes {
 
     /// `D` at a gap not below that of [`DEEPEST`].
     fn distance(&self, gap: f64) -> f64 {
-        let x = (gap.ln() - self.from) * PER_UNIT;
+        let x = (elementary::ln(gap) - self.from) * PER_UNIT;
         let k = x.max(0.0) as usize;
         let Some(&[[y0, s0], [y1, s1]]) = self.rows.get(k..).and_then(<[_]>::first_chunk::<2>) else {
             return gap;
@@ -135,7 +136,7 @@ impl Planes {
 /// One step of Newton's method on `ln F_1(-D) = ln gap`.
 fn improved(d: f64, gap: f64) -> f64 {
     let value = f_1(-d);
-    d + (gap / value).ln() * value / share(d)
+    d + elementary::ln(gap / value) * value / share(d)
 }
 
 #[derive(Debug)]
@@ -170,7 +171,7 @@ impl Contact for Sharing {
     }
     /// The film thickness itself; where the pressure is continued, thinner and thinner and never nothing.
     fn mean_gap(&self, film: f64) -> f64 {
-        if film < self.joint { self.joint * (film / self.joint - 1.0).exp() } else { film }
+        if film < self.joint { self.joint * elementary::exp(film / self.joint - 1.0) } else { film }
     }
     fn mean_planes(&self, film: f64) -> f64 {
         self.summits.sigma * self.planes.distance(film.max(self.joint) / self.summits.sigma)

@@ -1,5 +1,6 @@
 //! A positive function that falls over many powers of ten, as a cubic of its logarithm.
 
+use gudgeon_numerics::elementary;
 use gudgeon_numerics::quadrature::GaussLegendre;
 
 use crate::summits::FADED;
@@ -33,11 +34,11 @@ impl LogTable {
             let (mut value, mut slope) = (0.0, 0.0);
             for (t, w) in &nodes {
                 let s = d + t;
-                let part = w * (-0.5 * s * s).exp();
+                let part = w * elementary::exp(-0.5 * s * s);
                 value += part;
                 slope -= s * part;
             }
-            [value.ln(), slope / (value * PER_UNIT)]
+            [elementary::ln(value), slope / (value * PER_UNIT)]
         };
         Self { rows: (0..ROWS).map(row).collect() }
     }
@@ -47,7 +48,7 @@ impl LogTable {
         let x = (d - FROM) * PER_UNIT;
         if x < 0.0 {
             let [y, slope] = self.rows[0];
-            return y.exp() * (1.0 + slope * x);
+            return elementary::exp(y) * (1.0 + slope * x);
         }
         let k = x as usize;
         let Some([[y0, s0], [y1, s1]]) =
@@ -57,7 +58,7 @@ impl LogTable {
         };
         let t = x - k as f64;
         let rise = y1 - y0;
-        (y0 + t * (s0 + t * (3.0 * rise - 2.0 * s0 - s1 + t * (s0 + s1 - 2.0 * rise)))).exp()
+        elementary::exp(y0 + t * (s0 + t * (3.0 * rise - 2.0 * s0 - s1 + t * (s0 + s1 - 2.0 * rise))))
     }
 }
 

@@ -47,7 +47,7 @@ pub use {inventory, schemars, serde_json};
 pub use gudgeon_macros::{register_kind, register_model};
 
 pub use error::{BuildError, EvalError};
-pub use gudgeon_numerics::{Stopped, unwatched};
+pub use gudgeon_numerics::{Stopped, elementary, unwatched};
 pub use registry::{KindInfo, ModelInfo, Registry};
 pub use stopwatch::Stopwatch;
 pub use word::Word;

@@ -1,5 +1,7 @@
 //! Friction in narrow channels: conductance, turbulence, viscosity of the gas.
 
+use gudgeon_core::elementary;
+
 /// Conductance \[kg/(s Pa²)\] of a channel between parallel walls: `perimeter height³ / (24 μ R T length)`, with the
 /// `perimeter` \[m\] across the flow, the distance `height` \[m\] of the walls and the `length` \[m\] along the flow.
 ///
@@ -21,7 +23,7 @@ pub fn turbulent_share(reynolds: f64) -> (f64, f64) {
     // The bound keeps the cube a number.
     let x = (reynolds / TRANSITION).min(1e100);
     let cube = x * x * x;
-    let share = (1.0 + cube).powf(-1.0 / 7.0);
+    let share = elementary::powf(1.0 + cube, -1.0 / 7.0);
     (share, share * (1.0 - 3.0 / 7.0 * cube / (1.0 + cube)))
 }
 
@@ -44,5 +46,5 @@ pub fn sutherland_viscosity(temperature: f64) -> f64 {
 /// for 500 K to 4000 K and pressures from 1 to 100 bar.
 #[must_use]
 pub fn burnt_gas_viscosity(temperature: f64) -> f64 {
-    3.3e-7 * temperature.powf(0.7) / 1.027
+    3.3e-7 * elementary::powf(temperature, 0.7) / 1.027
 }

@@ -1,6 +1,7 @@
 //! The flow function of the isentropic nozzle in a fast form.
 
 use gudgeon_core::BuildError;
+use gudgeon_core::elementary;
 
 /// Relative pressure drop below which the derivative of a square root is held at its value there, 1e4: the bare law has an infinite
 /// one at equal pressures, and a Jacobian must be finite.
@@ -43,8 +44,9 @@ impl FlowFunction {
             .help("1.4 for air, 1.25 to 1.35 for burnt gas"));
         }
         let u_crit = 1.0 - critical_ratio(gamma);
-        let nodes: [f64; COEFFICIENTS] =
-            std::array::from_fn(|j| (std::f64::consts::PI * (j as f64 + 0.5) / COEFFICIENTS as f64).cos());
+        let nodes: [f64; COEFFICIENTS] = std::array::from_fn(|j| {
+            elementary::cos(std::f64::consts::PI * (j as f64 + 0.5) / COEFFICIENTS as f64)
+        });
         let values = nodes.map(|x| {
             let u = 0.5 * u_crit * (x + 1.0);
             nozzle(gamma, u) / u.sqrt()
@@ -148,20 +150,20 @@ fn estrin(c: &[f64; COEFFICIENTS], x: f64) -> f64 {
 /// Critical pressure ratio `(2/(γ+1))^(γ/(γ-1))`.
 #[must_use]
 pub fn critical_ratio(gamma: f64) -> f64 {
-    (-gamma / (gamma - 1.0) * (0.5 * (gamma - 1.0)).ln_1p()).exp()
+    elementary::exp(-gamma / (gamma - 1.0) * elementary::ln_1p(0.5 * (gamma - 1.0)))
 }
 
 /// `ψ` of the subsonic branch at `r = 1 - u`, written so that nothing cancels for `u -> 0` or `γ -> 1`.
 fn nozzle(gamma: f64, u: f64) -> f64 {
-    let ln_r = (-u).ln_1p();
+    let ln_r = elementary::ln_1p(-u);
     let k = (gamma - 1.0) / gamma;
-    (2.0 / k * (2.0 / gamma * ln_r).exp() * -(k * ln_r).exp_m1()).sqrt()
+    (2.0 / k * elementary::exp(2.0 / gamma * ln_r) * -elementary::exp_m1(k * ln_r)).sqrt()
 }
 
 /// Power coefficients of the polynomial through `values` in the Chebyshev nodes of the first kind.
 fn chebyshev_to_powers(nodes: &[f64; COEFFICIENTS], values: &[f64; COEFFICIENTS]) -> [f64; COEFFICIENTS] {
     const N: usize = COEFFICIENTS;
-    let t = |k: usize, x: f64| (k as f64 * x.acos()).cos();
+    let t = |k: usize, x: f64| elementary::cos(k as f64 * elementary::acos(x));
     let mut powers = [0.0; N];
     // T_{k-1} and T_k in powers of x.
     let (mut previous, mut current) = ([0.0; N], [0.0; N]);

@@ -1,6 +1,7 @@
 //! Temperature of the gas on the lands and behind the rings: that of the walls, or from a balance of energy.
 
 use gudgeon_core::BuildError;
+use gudgeon_core::elementary;
 use gudgeon_core::geometry::PackGeometry;
 use gudgeon_core::quantity::{NonNegative, Ratio, quantity};
 use schemars::JsonSchema;
@@ -96,7 +97,7 @@ impl LandEnergy {
     }
 
     fn stretch_of(&self, k: usize, volume: f64) -> f64 {
-        (volume / self.spaces[k].nominal).powf(self.excess)
+        elementary::powf(volume / self.spaces[k].nominal, self.excess)
     }
 
     /// `R T` \[J/kg\] of the mass \[kg\] with the state \[J\] in a volume \[m³\] between walls of the distance `s` \[m\].

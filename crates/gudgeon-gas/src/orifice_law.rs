@@ -3,6 +3,7 @@
 use crate::directed::{directed, directed_partials};
 use crate::flow_function::{FlowFunction, MIN_DROP};
 use crate::passage_law::{FlowPartials, GasState};
+use gudgeon_core::elementary;
 
 /// Pressure ratio below which [`OrificeFormula::IsentropicTruncated`](crate::OrificeFormula::IsentropicTruncated) is choked, as printed.
 pub const TRUNCATED_RATIO: f64 = 0.53;
@@ -177,7 +178,7 @@ impl OrificeLaw {
         let g = self.gamma();
         let root = if r >= TRUNCATED_RATIO {
             // Rounding can make the bracket negative at r = 1.
-            (r.powf(2.0 / g) - r.powf((g + 1.0) / g)).max(0.0).sqrt()
+            (elementary::powf(r, 2.0 / g) - elementary::powf(r, (g + 1.0) / g)).max(0.0).sqrt()
         } else {
             TRUNCATED_FACTOR
         };
@@ -193,7 +194,7 @@ impl OrificeLaw {
         }
         // ψ² = k [r^a - r^b], and k (b - a) u near r = 1.
         let (a, b, k) = (2.0 / g, (g + 1.0) / g, 2.0 * g / (g - 1.0));
-        let rise = k * (b * r.powf(b - 1.0) - a * r.powf(a - 1.0));
+        let rise = k * (b * elementary::powf(r, b - 1.0) - a * elementary::powf(r, a - 1.0));
         (psi, 0.5 * rise / psi.max((k * (b - a) * MIN_DROP).sqrt()))
     }
 

@@ -3,6 +3,7 @@
 use crate::channel::turbulent_share;
 use crate::orifice_law::OrificeLaw;
 use crate::passage_law::{Area, FlowPartials, GasState, Link, Node, PassageLaw};
+use gudgeon_core::elementary;
 
 /// What lets gas through between two nodes, for the orifice law: the [`PassageLaw`] of the built-in models.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -262,7 +263,7 @@ fn turbulent_partials(c: FlowPartials, unit_flow: f64) -> FlowPartials {
 #[inline]
 fn lesser(c: f64, o: f64, n: f64) -> f64 {
     let (low, high) = if c.abs() <= o.abs() { (c, o) } else { (o, c) };
-    if low == 0.0 { 0.0 } else { low * (1.0 + (low / high).powf(n)).powf(-1.0 / n) }
+    if low == 0.0 { 0.0 } else { low * elementary::powf(1.0 + elementary::powf(low / high, n), -1.0 / n) }
 }
 
 /// The same with its partial derivatives.
@@ -272,7 +273,7 @@ fn lesser_partials(c: FlowPartials, o: FlowPartials, n: f64) -> FlowPartials {
         // Near equal pressures the channel is the narrow part.
         return c;
     }
-    let (by_c, by_o) = ((flow / c.flow).powf(n + 1.0), (flow / o.flow).powf(n + 1.0));
+    let (by_c, by_o) = (elementary::powf(flow / c.flow, n + 1.0), elementary::powf(flow / o.flow, n + 1.0));
     FlowPartials { flow, by_a: by_c * c.by_a + by_o * o.by_a, by_b: by_c * c.by_b + by_o * o.by_b }
 }
 

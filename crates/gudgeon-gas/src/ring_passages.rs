@@ -1,5 +1,6 @@
 //! The passages around a ring: what a gas-flow model of the ring pack says beside the law of a single passage.
 
+use gudgeon_core::elementary;
 use gudgeon_core::geometry::RingGeometry;
 
 /// Gap between a ring and a flank of its groove: a wedge where the ring is twisted.
@@ -47,7 +48,7 @@ impl FlankGap {
         if a == b {
             return a;
         }
-        if a <= 0.0 || b <= 0.0 { 0.0 } else { (2.0 * a * a * b * b / (a + b)).cbrt() }
+        if a <= 0.0 || b <= 0.0 { 0.0 } else { elementary::cbrt(2.0 * a * a * b * b / (a + b)) }
     }
 }
 

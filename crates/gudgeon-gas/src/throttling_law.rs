@@ -3,6 +3,7 @@
 use crate::directed::{directed, directed_partials};
 use crate::flow_function::MIN_DROP;
 use crate::passage_law::{Area, FlowPartials, GasState, PassageLaw};
+use gudgeon_core::elementary;
 
 /// Pressure ratio at which one throttling lets through most: the root of `1 - r² = 2 r² (1 - ln r)`.
 pub const THROTTLING_RATIO: f64 = 0.471_130_219_857_598_4;
@@ -40,7 +41,7 @@ impl ThrottlingLaw {
     /// `φ²/u` at the drop `u`, which is smooth through 0, and its derivative by `u`.
     #[inline]
     fn quotient(u: f64) -> (f64, f64) {
-        let root = 1.0 / (1.0 - (-u).ln_1p());
+        let root = 1.0 / (1.0 - elementary::ln_1p(-u));
         let q = (2.0 - u) * root;
         (q, -root - q * root / (1.0 - u))
     }

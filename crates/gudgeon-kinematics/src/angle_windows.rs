@@ -1,3 +1,4 @@
+use gudgeon_core::elementary;
 use gudgeon_core::kinds::{CylinderPressure, CylinderPressureCtx, CylinderPressureSpec};
 use gudgeon_core::quantity::{PosAngle, PosPressure, PosRatio, quantity};
 use gudgeon_core::{BuildError, register_model};
@@ -92,11 +93,11 @@ impl CylinderPressure for Windows {
     fn pressure_decided_at(&self, decided_at: f64, theta: f64) -> f64 {
         let at = self.space.since_top(decided_at);
         if at < self.a {
-            self.discharge * (self.space.v_min / self.space.volume(theta)).powf(self.n)
+            self.discharge * elementary::powf(self.space.v_min / self.space.volume(theta), self.n)
         } else if at < self.space.down {
             self.suction
         } else if at < self.b {
-            self.suction * (self.space.v_max / self.space.volume(theta)).powf(self.n)
+            self.suction * elementary::powf(self.space.v_max / self.space.volume(theta), self.n)
         } else {
             self.discharge
         }

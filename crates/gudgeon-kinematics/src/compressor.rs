@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use gudgeon_core::BuildError;
+use gudgeon_core::elementary;
 use gudgeon_core::kinds::{CylinderPressureCtx, Kinematics};
 use gudgeon_core::quantity::{PosLength, PosRatio, PosVolume};
 use serde::{Deserialize, Serialize};
@@ -169,7 +170,7 @@ pub(crate) fn check(suction: f64, discharge: f64, exponent: f64, space: &Space) 
             ),
         ));
     }
-    if !(suction * (space.v_max / space.v_min).powf(exponent)).is_finite() {
+    if !(suction * elementary::powf(space.v_max / space.v_min, exponent)).is_finite() {
         return Err(BuildError::at("exponent", "the exponent makes the pressure infinite"));
     }
     Ok(())

@@ -1,3 +1,4 @@
+use gudgeon_core::elementary;
 use gudgeon_core::kinds::{Kinematics, KinematicsCtx, KinematicsSpec, PistonMotion};
 use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
@@ -51,7 +52,7 @@ pub(crate) struct Exact {
 impl Kinematics for Exact {
     fn motion(&self, theta: f64) -> PistonMotion {
         let Self { r, l, e, omega, .. } = *self;
-        let (sin, cos) = theta.sin_cos();
+        let (sin, cos) = elementary::sin_cos(theta);
         let sin_phi = (r * sin - e) / l;
         let cos_phi = ((1.0 - sin_phi) * (1.0 + sin_phi)).sqrt();
         let tan_phi = sin_phi / cos_phi;
@@ -61,7 +62,7 @@ impl Kinematics for Exact {
             y: r * cos + l * cos_phi,
             v: -omega * r * (sin + cos * tan_phi),
             a: -omega * omega * (r * (cos - sin * tan_phi) + l * q * q / cos_phi),
-            rod_angle: sin_phi.asin(),
+            rod_angle: elementary::asin(sin_phi),
         }
     }
     fn y_tdc(&self) -> f64 {

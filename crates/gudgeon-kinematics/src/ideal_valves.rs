@@ -1,3 +1,4 @@
+use gudgeon_core::elementary;
 use gudgeon_core::kinds::{CylinderPressure, CylinderPressureCtx, CylinderPressureSpec};
 use gudgeon_core::quantity::{PosPressure, PosRatio, quantity};
 use gudgeon_core::{BuildError, register_model};
@@ -53,7 +54,7 @@ impl CylinderPressureSpec for IdealValves {
         let mut m =
             Ideal { space, suction, discharge, n, top: discharge, open: self.held_open, kinks: Vec::new() };
         // Never reached: what is at the dead centre expands again.
-        m.top = m.discharge.min(m.suction * (m.space.v_max / m.space.v_min).powf(n));
+        m.top = m.discharge.min(m.suction * elementary::powf(m.space.v_max / m.space.v_min, n));
         if !m.open {
             let (t, d) = (m.space.top, m.space.down);
             let suction_opens = m.space.crossing(t, t + d, |x| m.expansion(x) - m.suction);
@@ -80,10 +81,10 @@ struct Ideal {
 
 impl Ideal {
     fn expansion(&self, theta: f64) -> f64 {
-        self.top * (self.space.v_min / self.space.volume(theta)).powf(self.n)
+        self.top * elementary::powf(self.space.v_min / self.space.volume(theta), self.n)
     }
     fn compression(&self, theta: f64) -> f64 {
-        self.suction * (self.space.v_max / self.space.volume(theta)).powf(self.n)
+        self.suction * elementary::powf(self.space.v_max / self.space.volume(theta), self.n)
     }
 }
 

@@ -1,5 +1,6 @@
 use std::f64::consts::PI;
 
+use gudgeon_core::elementary;
 use gudgeon_core::kinds::{CylinderPressure, CylinderPressureCtx, CylinderPressureSpec};
 use gudgeon_core::quantity::{PosAngle, PosPressure, PosRatio, quantity};
 use gudgeon_core::{BuildError, register_model};
@@ -90,14 +91,15 @@ impl CylinderPressureSpec for Motored {
         let volume_at_close = chamber.volume(close);
         let n = self.polytropic_exponent.si();
         // The highest pressure, at the dead centre, must be a number.
-        if !(self.intake_pressure.si() * (volume_at_close / chamber.clearance).powf(n)).is_finite() {
+        if !(self.intake_pressure.si() * elementary::powf(volume_at_close / chamber.clearance, n)).is_finite()
+        {
             return Err(BuildError::at("polytropic_exponent", "the exponent makes the pressure infinite"));
         }
         Ok(Box::new(Smooth {
             volume_at_close,
             chamber,
             intake: self.intake_pressure.si(),
-            exhaust: (self.exhaust_pressure.si() / self.intake_pressure.si()).ln(),
+            exhaust: elementary::ln(self.exhaust_pressure.si() / self.intake_pressure.si()),
             n,
             close,
             open,
@@ -132,11 +134,11 @@ impl CylinderPressure for Smooth {
         } else if theta >= self.open + self.width {
             self.exhaust
         } else {
-            let rise = self.n * (self.volume_at_close / self.chamber.volume(theta)).ln();
+            let rise = self.n * elementary::ln(self.volume_at_close / self.chamber.volume(theta));
             let trapped = step((theta - self.close) / self.width) * rise;
             trapped + step((theta - self.open) / self.width) * (self.exhaust - trapped)
         };
-        self.intake * ln_ratio.exp()
+        self.intake * elementary::exp(ln_ratio)
     }
     fn kinks(&self) -> &[f64] {
         &[]

@@ -1,3 +1,4 @@
+use gudgeon_core::elementary;
 use gudgeon_core::kinds::{CylinderPressure, CylinderPressureCtx, CylinderPressureSpec};
 use gudgeon_core::quantity::{PosAngle, PosPressure, PosRatio, quantity};
 use gudgeon_core::{BuildError, register_model};
@@ -209,14 +210,17 @@ impl Burn {
         let s = &self.spec;
         let v = self.chamber.volume(theta);
         let compressed =
-            s.intake_pressure.si() * (self.volume_at_close / v).powf(s.compression_exponent.si());
+            s.intake_pressure.si() * elementary::powf(self.volume_at_close / v, s.compression_exponent.si());
         if theta <= self.start {
             return compressed;
         }
         let u = (theta - self.start) / s.burn_duration.si();
-        let burnt = -(-s.burn_completeness.si() * u.powf(s.burn_exponent.si())).exp_m1();
+        let burnt =
+            -elementary::exp_m1(-s.burn_completeness.si() * elementary::powf(u, s.burn_exponent.si()));
         compressed
-            + s.burn_pressure.si() * burnt * (self.chamber.clearance / v).powf(s.expansion_exponent.si())
+            + s.burn_pressure.si()
+                * burnt
+                * elementary::powf(self.chamber.clearance / v, s.expansion_exponent.si())
     }
 }
 
@@ -232,7 +236,8 @@ impl CylinderPressure for Burn {
             self.closed(theta)
         } else {
             exhaust
-                + (self.pressure_at_open - exhaust) * (-(theta - self.open) / self.spec.blow_down.si()).exp()
+                + (self.pressure_at_open - exhaust)
+                    * elementary::exp(-(theta - self.open) / self.spec.blow_down.si())
         }
     }
     fn kinks(&self) -> &[f64] {

@@ -1,5 +1,6 @@
 use std::f64::consts::PI;
 
+use gudgeon_core::elementary;
 use gudgeon_core::kinds::{CylinderPressure, CylinderPressureCtx, CylinderPressureSpec};
 use gudgeon_core::quantity::{Energy, NonNegative, PosAngle, PosPressure, PosRatio, quantity};
 use gudgeon_core::{BuildError, register_model};
@@ -190,8 +191,8 @@ impl SingleZoneWiebe {
             return (0.0, 0.0);
         }
         let (a, m, heat) = (self.wiebe_a.si(), self.wiebe_m.si(), self.heat.si());
-        let um = u.powf(m);
-        let left = (-a * um * u).exp();
+        let um = elementary::powf(u, m);
+        let left = elementary::exp(-a * um * u);
         (heat * (1.0 - left), heat * left * a * (m + 1.0) * um / self.burn_duration.si())
     }
 
@@ -222,7 +223,8 @@ impl SingleZoneWiebe {
             let (v, q, p, slope) = left;
             let theta = from + h * i as f64;
             let v_next = chamber.volume(theta);
-            let p_next = p * (v / v_next).powf(gamma) + (gamma - 1.0) * (self.heat(theta).0 - q) / v_next;
+            let p_next =
+                p * elementary::powf(v / v_next, gamma) + (gamma - 1.0) * (self.heat(theta).0 - q) / v_next;
             if !(p_next.is_finite() && p_next > 0.0) {
                 let what = format!("the pressure becomes {p_next} Pa at {:.3} deg", theta.to_degrees());
                 return Err(BuildError::new(what));
@@ -273,7 +275,7 @@ impl CylinderPressure for Cycle {
         if theta < self.reached {
             let straight = ((self.reached - theta) / STRAIGHT).min(1.0);
             let decay = theta.min(self.reached - STRAIGHT) / self.spec.intake_decay.si();
-            intake + (exhaust - intake) * (-decay).exp() * straight
+            intake + (exhaust - intake) * elementary::exp(-decay) * straight
         } else if theta < self.close {
             intake
         } else if theta < self.tdc {
@@ -282,7 +284,7 @@ impl CylinderPressure for Cycle {
             self.after.value(theta)
         } else {
             let decay = (theta - self.open) / self.spec.exhaust_decay.si();
-            exhaust + (self.after.last - exhaust) * (-decay).exp()
+            exhaust + (self.after.last - exhaust) * elementary::exp(-decay)
         }
     }
     fn kinks(&self) -> &[f64] {

@@ -11,6 +11,7 @@
 //! backwards: no shift of phase, periodic, the mean kept to rounding. White noise has the same power in all harmonics, which the highest tell; the
 //! cut-off `k_c` is the lowest at which the filter bends the trace itself by no more than half of the noise it leaves (root mean squares).
 
+use gudgeon_core::elementary;
 use std::f64::consts::TAU;
 
 /// Growth of the median second difference over twice the spacing, 4 for a smooth curve and 1 for white noise, below which rows are noisy.
@@ -100,7 +101,7 @@ impl Spectrum {
         let n = rows.len();
         let turn: Vec<[f64; 2]> = (0..n)
             .map(|j| {
-                let (sin, cos) = (TAU * j as f64 / n as f64).sin_cos();
+                let (sin, cos) = elementary::sin_cos(TAU * j as f64 / n as f64);
                 [cos, sin]
             })
             .collect();

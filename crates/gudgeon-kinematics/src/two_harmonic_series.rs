@@ -1,3 +1,4 @@
+use gudgeon_core::elementary;
 use gudgeon_core::kinds::{Kinematics, KinematicsCtx, KinematicsSpec, PistonMotion};
 use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
@@ -50,14 +51,14 @@ struct Series {
 impl Kinematics for Series {
     fn motion(&self, theta: f64) -> PistonMotion {
         let Self { r, l, lambda, omega } = *self;
-        let (sin, cos) = theta.sin_cos();
+        let (sin, cos) = elementary::sin_cos(theta);
         let cos2 = (cos - sin) * (cos + sin);
         PistonMotion {
             // cos 2θ - 1 = -2 sin²θ keeps y at the dead centres exact.
             y: l + r * (cos - 0.5 * lambda * sin * sin),
             v: -omega * r * sin * (1.0 + lambda * cos),
             a: -omega * omega * r * (cos + lambda * cos2),
-            rod_angle: (lambda * sin).asin(),
+            rod_angle: elementary::asin(lambda * sin),
         }
     }
     fn y_tdc(&self) -> f64 {

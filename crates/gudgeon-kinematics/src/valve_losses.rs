@@ -1,3 +1,4 @@
+use gudgeon_core::elementary;
 use gudgeon_core::kinds::{CylinderPressure, CylinderPressureCtx, CylinderPressureSpec};
 use gudgeon_core::quantity::{
     GasConstant, PosArea, PosPressure, PosRatio, PosTemperature, Positive, quantity,
@@ -76,9 +77,9 @@ impl CylinderPressureSpec for ValveLosses {
             n,
             drops: [
                 drop(density, self.suction_area.si()),
-                drop(density * (discharge / suction).powf(1.0 / n), self.discharge_area.si()),
+                drop(density * elementary::powf(discharge / suction, 1.0 / n), self.discharge_area.si()),
             ],
-            top: discharge.min(suction * (space.v_max / space.v_min).powf(n)),
+            top: discharge.min(suction * elementary::powf(space.v_max / space.v_min, n)),
             open: self.held_open,
             space,
             kinks: Vec::new(),
@@ -119,10 +120,10 @@ struct Throttled {
 
 impl Throttled {
     fn expansion(&self, theta: f64) -> f64 {
-        self.top * (self.space.v_min / self.space.volume(theta)).powf(self.n)
+        self.top * elementary::powf(self.space.v_min / self.space.volume(theta), self.n)
     }
     fn compression(&self, theta: f64) -> f64 {
-        self.suction * (self.space.v_max / self.space.volume(theta)).powf(self.n)
+        self.suction * elementary::powf(self.space.v_max / self.space.volume(theta), self.n)
     }
     fn intake(&self, theta: f64) -> f64 {
         self.suction - self.drops[0] * self.space.speed(theta).powi(2)

@@ -1,5 +1,7 @@
 //! The crank drive in its two spellings, what is missing, and where mistakes are told.
 
+#![allow(clippy::disallowed_methods, reason = "what is expected need not be the same bits on every platform")]
+
 use gudgeon_core::file::Files;
 use gudgeon_core::kinds::{CylinderPressureSpec, KinematicsSpec};
 use gudgeon_core::serde_json::{from_value, json};

@@ -1,6 +1,7 @@
 //! Backward differentiation formulas of orders 1 to 5, variable in step and order.
 
 use crate::EvalError;
+use crate::elementary;
 use crate::linalg::dot;
 use crate::ode::{
     ColumnGroups, Core, Flow, IntegrateError, Integrator, Interpolant, OdeSystem, Options, Scheme, Stats,
@@ -307,13 +308,14 @@ impl Scheme for Bdf {
         if admitted <= 1.0 && admitted * LEAST_GROWTH.powi(order as i32 + 1) > 1.0 {
             return 1.0;
         }
-        let factor = admitted.powf(-1.0 / (order + 1) as f64);
+        let factor = elementary::powf(admitted, -1.0 / (order + 1) as f64);
         if factor < 1.0 { factor.clamp(0.5, 0.9) } else { factor }
     }
 
     fn reject(&mut self) -> Option<f64> {
         let order = self.history.failed(self.errors.order);
-        let factor = 0.9 * (BIAS * self.errors.estimate + LEAST_ERROR).powf(-1.0 / (order + 1) as f64);
+        let factor =
+            0.9 * elementary::powf(BIAS * self.errors.estimate + LEAST_ERROR, -1.0 / (order + 1) as f64);
         Some(factor.clamp(0.25, 0.9))
     }
 }

@@ -1,5 +1,6 @@
 //! Sums of orders over a cycle and back: the fast Fourier transform of two real waves at once.
 
+use crate::elementary;
 use crate::linalg::Complex;
 
 /// Transforms between orders and `points` equidistant points of a cycle.
@@ -22,8 +23,8 @@ impl Fourier {
         Self {
             points,
             turn: [
-                (0..points).map(|t| angle(t).cos()).collect(),
-                (0..points).map(|t| -angle(t).sin()).collect(),
+                (0..points).map(|t| elementary::cos(angle(t))).collect(),
+                (0..points).map(|t| -elementary::sin(angle(t))).collect(),
             ],
             z: [zero(), zero()],
             other: [zero(), zero()],

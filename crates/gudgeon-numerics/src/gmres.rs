@@ -1,5 +1,7 @@
 //! Linear systems known by what they do to a vector: minimal residuals over a Krylov space.
 
+use crate::elementary;
+
 /// Work arrays of [`Gmres::solve`], kept between solutions.
 #[derive(Debug, Clone, Default)]
 pub struct Gmres {
@@ -83,7 +85,7 @@ impl Gmres {
             column[i] = c * p + s * q;
             column[i + 1] = c * q - s * p;
         }
-        let pivot = column[k].hypot(after);
+        let pivot = elementary::hypot(column[k], after);
         if pivot <= f64::EPSILON * before {
             // A takes this vector to nothing: the space ends before it.
             return Grown::Nothing;

@@ -136,6 +136,7 @@
 //! ```
 
 pub mod bdf;
+pub mod elementary;
 mod error;
 pub mod fourier;
 pub mod gmres;

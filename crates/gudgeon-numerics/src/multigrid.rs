@@ -5,6 +5,7 @@ mod five_point;
 mod krylov;
 mod level;
 
+use crate::elementary;
 use crate::linalg::Singular;
 pub use five_point::{FivePoint, Role, Row};
 use five_point::{larger, max_abs};
@@ -25,7 +26,7 @@ pub struct Cycles {
 impl Cycles {
     fn set_rate(&mut self, start: f64) {
         if self.cycles > 0 && start > 0.0 {
-            self.rate = (self.residual / start).powf(1.0 / self.cycles as f64);
+            self.rate = elementary::powf(self.residual / start, 1.0 / self.cycles as f64);
         }
     }
 }

@@ -9,6 +9,7 @@
 //! A map that is strongly bent, or has corners, is searched in stretches of plain cycles instead (`stretches`).
 
 use crate::EvalError;
+use crate::elementary;
 use nalgebra::{DMatrix, DVector, Schur};
 
 mod stretches;
@@ -668,7 +669,7 @@ fn decay(changes: &[f64], noise: f64) -> (f64, f64) {
     let Some((&last, earlier)) = changes.split_last() else { return (1.0, f64::INFINITY) };
     for (w, &c) in earlier.iter().rev().enumerate() {
         if c > last + 4.0 * noise || (noise == 0.0 && c > last) {
-            return (((last + noise) / (c - noise)).powf(1.0 / (w + 1) as f64).min(1.0), last);
+            return (elementary::powf((last + noise) / (c - noise), 1.0 / (w + 1) as f64).min(1.0), last);
         }
     }
     (1.0, last)

@@ -1,5 +1,7 @@
 //! Numerical integration: Gauss–Legendre rules, and an adaptive Gauss–Kronrod integrator for tests and construction.
 
+use crate::elementary;
+
 /// Gauss–Legendre rule of `n` nodes on `[-1, 1]`: exact for polynomials up to degree `2 n - 1`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GaussLegendre {
@@ -17,7 +19,7 @@ impl GaussLegendre {
         let mut nodes = vec![0.0; n];
         let mut weights = vec![2.0; n];
         for i in 0..n.div_ceil(2) {
-            let mut x = (std::f64::consts::PI * (i as f64 + 0.75) / (n as f64 + 0.5)).cos();
+            let mut x = elementary::cos(std::f64::consts::PI * (i as f64 + 0.75) / (n as f64 + 0.5));
             if 2 * i + 1 == n {
                 x = 0.0;
             }

@@ -1,5 +1,6 @@
 //! Roots of scalar functions: bracketed, safeguarded, with their iteration counts.
 
+use crate::elementary;
 use std::convert::Infallible;
 
 /// Why a root was not returned.
@@ -84,7 +85,7 @@ pub fn itp<E>(
     let (mut fa, mut fb) = (sign * fa0, sign * fb0);
     let mut evaluations = 2;
     let half_tol = (0.5 * tol).max(f64::EPSILON * a.abs().max(b.abs()) * 0.5).max(f64::MIN_POSITIVE);
-    let n_half = ((b - a) / (2.0 * half_tol)).log2().ceil().max(0.0);
+    let n_half = elementary::log2((b - a) / (2.0 * half_tol)).ceil().max(0.0);
     let n_max = n_half + 1.0;
     let kappa1 = 0.2 / (b - a);
     let mut j = 0;
@@ -94,7 +95,7 @@ pub fn itp<E>(
             return Err(RootError::NoConvergence { iterations: j, lo: a, hi: b });
         }
         let mid = 0.5 * (a + b);
-        let r = half_tol * (n_max - f64::from(j)).exp2() - 0.5 * (b - a);
+        let r = half_tol * elementary::exp2(n_max - f64::from(j)) - 0.5 * (b - a);
         let delta = kappa1 * (b - a) * (b - a);
         let x_f = (fb * a - fa * b) / (fb - fa);
         let s = if mid >= x_f { 1.0 } else { -1.0 };

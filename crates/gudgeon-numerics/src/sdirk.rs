@@ -5,6 +5,7 @@
 //! ```
 
 use crate::EvalError;
+use crate::elementary;
 use crate::ode::{
     Core, Flow, IntegrateError, Integrator, Interpolant, OdeSystem, Options, Scheme, Stage, Stats, StepView,
     Trial, drive, larger, non_finite,
@@ -191,7 +192,7 @@ impl Scheme for Sdirk {
 
     fn accept(&mut self, _h: f64, error: f64) -> f64 {
         self.judged = false;
-        SAFETY / error.max(1e-10).powf(self.exponent())
+        SAFETY / elementary::powf(error.max(1e-10), self.exponent())
     }
 
     fn attempt<S: OdeSystem + ?Sized>(

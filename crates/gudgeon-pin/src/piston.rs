@@ -81,7 +81,7 @@ pub fn ovality(bore: f64, surface_ratio: f64) -> f64 {
 /// Radius of the oval skirt \[m\] at an angle from the thrust direction: `D/2 - Ov/4 (1 - cos 2θ)`.
 #[must_use]
 pub fn oval_radius(bore: f64, ovality: f64, angle: f64) -> f64 {
-    0.5 * bore - 0.25 * ovality * (1.0 - (2.0 * angle).cos())
+    0.5 * bore - 0.25 * ovality * (1.0 - elementary::cos(2.0 * angle))
 }
 
 /// Volume of a spherical cap \[m³\], `π H² (3 R - H)/3`.
@@ -227,6 +227,7 @@ const fn alloy(
 }
 
 use Making::{Cast, Forged};
+use gudgeon_numerics::elementary;
 
 /// Piston alloys as tabulated in the source.
 pub const ALLOYS: [Alloy; 10] = [

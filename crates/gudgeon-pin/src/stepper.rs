@@ -2,6 +2,7 @@
 
 use gudgeon_core::EvalError;
 use gudgeon_core::kinds::{PinQuantity, PinSize};
+use gudgeon_numerics::elementary;
 
 use crate::design::Design;
 
@@ -76,7 +77,7 @@ pub fn with_mantissa_32(x: f64) -> f64 {
     if x == 0.0 || !x.is_finite() {
         return x;
     }
-    let exponent = x.abs().log2().floor() as i32 + 1;
+    let exponent = elementary::log2(x.abs()).floor() as i32 + 1;
     let unit = 2f64.powi(exponent - 32);
     if unit == 0.0 { x } else { (x / unit).round() * unit }
 }

@@ -1,5 +1,7 @@
 //! Writes one page of every sort from invented data: `cargo run -p gudgeon-report --example report_pages -- DIR`.
 
+#![allow(clippy::disallowed_methods, reason = "curves to look at")]
+
 #[path = "../tests/common/mod.rs"]
 mod common;
 

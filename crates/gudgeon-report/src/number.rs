@@ -1,5 +1,6 @@
 //! Numbers for people, and for programs.
 
+use gudgeon_core::elementary;
 use std::fmt::Write as _;
 
 /// `value` with `digits` significant digits; powers of ten outside 10⁻³ … 10⁶. An absent or non-finite value is a dash.
@@ -34,7 +35,7 @@ pub(crate) fn certain(value: Option<f64>, uncertainty: Option<f64>, digits: usiz
         };
     };
     // Twice the uncertainty fits into one unit of the last digit but one.
-    let held = if u > 0.0 { (v.abs() / u).log10().floor() as i32 + 1 } else { MOST };
+    let held = if u > 0.0 { elementary::log10(v.abs() / u).floor() as i32 + 1 } else { MOST };
     if v == 0.0 || held <= 0 {
         return format!(
             "{} ± {}",

@@ -2,6 +2,7 @@
 
 use gudgeon_core::BuildError;
 use gudgeon_core::quantity::with_decimal_point;
+use gudgeon_numerics::elementary;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -103,7 +104,7 @@ pub fn values(s: &Axis) -> Result<Vec<String>, BuildError> {
             _ if k == 0 => a,
             _ if k == n - 1 => b,
             Spacing::Linear => a + f * (b - a),
-            Spacing::Log => a * (b / a).powf(f),
+            Spacing::Log => a * elementary::powf(b / a, f),
         }
     };
     Ok((0..n)

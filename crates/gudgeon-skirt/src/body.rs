@@ -4,6 +4,7 @@
 //! push the upper edge towards the anti-thrust side: `M = z F_y - y F_z` with `(z, y)` from the pin.
 
 use gudgeon_core::kinds::PistonMotion;
+use gudgeon_numerics::elementary;
 
 /// Connecting rod.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -78,7 +79,7 @@ impl Crank {
     /// crankcase on the area `area` \[m²\].
     #[must_use]
     pub fn instant(&self, theta: f64, motion: &PistonMotion, pressure: f64, area: f64, mu: f64) -> Instant {
-        let (sin, cos) = theta.sin_cos();
+        let (sin, cos) = elementary::sin_cos(theta);
         let (r, l, w) = (self.radius, self.rod_length, self.omega);
         // From the pin to the crank pin, across and along.
         let across = self.pin_offset - self.crank_offset + r * sin;

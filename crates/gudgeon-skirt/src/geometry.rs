@@ -1,4 +1,5 @@
 use gudgeon_core::kinds::{Edge, Film2dGrid};
+use gudgeon_numerics::elementary;
 
 /// One side of a skirt: part of a cylinder.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,7 +60,7 @@ impl Panel {
     /// towards this side of the liner by `top` and `bottom`: `c - (top (1 - x/L) + bottom x/L) cos φ`.
     #[must_use]
     pub fn gap(&self, clearance: f64, top: f64, bottom: f64, x: f64, angle: f64) -> f64 {
-        clearance - between(top, bottom, x / self.length) * angle.cos()
+        clearance - between(top, bottom, x / self.length) * elementary::cos(angle)
     }
 }
 

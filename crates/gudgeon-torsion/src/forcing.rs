@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use gudgeon_core::kinds::{Line, LineThrow};
+use gudgeon_numerics::elementary;
 use gudgeon_numerics::linalg::Complex;
 use gudgeon_numerics::quadrature::GaussLegendre;
 
@@ -51,12 +52,12 @@ pub fn series(f: impl Fn(f64) -> f64, period: f64, kinks: &[f64], max_harmonic: 
             let v = f(at) * weight * 0.5 * (b - a) / period;
             c[0].re += v;
             // e^{-ikbα} by repeated turning, started afresh now and then so that rounding does not add up.
-            let (sin, cos) = (base * at).sin_cos();
+            let (sin, cos) = elementary::sin_cos(base * at);
             let turn = Complex::new(cos, -sin);
             let mut e = Complex::new(2.0 * v, 0.0);
             for (k, c) in c.iter_mut().enumerate().skip(1) {
                 if k % 32 == 0 {
-                    let (sin, cos) = (k as f64 * base * at).sin_cos();
+                    let (sin, cos) = elementary::sin_cos(k as f64 * base * at);
                     e = Complex::new(2.0 * v * cos, -2.0 * v * sin);
                 } else {
                     e = e * turn;
@@ -226,7 +227,7 @@ impl Excitation {
         if a == Complex::default() {
             return;
         }
-        let (sin, cos) = (order * phase).sin_cos();
+        let (sin, cos) = elementary::sin_cos(order * phase);
         let mut a = a * Complex::new(cos, sin);
         let ratio = line.nodes[node].ratio;
         if ratio < 0.0 {

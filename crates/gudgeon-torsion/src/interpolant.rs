@@ -3,6 +3,7 @@
 //! Harmonic balance evaluates gas torque and inertia of a throw at some hundred thousand angles. Over a segment of 1/512 turn such a function is
 //! a polynomial of degree 6 to rounding, which costs a few multiplications instead of a slider crank and an indicator diagram.
 
+use gudgeon_numerics::elementary;
 use std::f64::consts::PI;
 
 /// Segments per turn: the functions of a crank vary over a tenth of a turn at the fastest.
@@ -59,7 +60,7 @@ impl Place {
 
 /// Node `i` of a segment: Chebyshev-Lobatto points, ends included.
 fn node(i: usize) -> f64 {
-    -(PI * i as f64 / (TERMS - 1) as f64).cos()
+    -elementary::cos(PI * i as f64 / (TERMS - 1) as f64)
 }
 
 /// Lagrange's polynomials, multiplied out factor by factor.

@@ -1,5 +1,6 @@
 //! An oil by two measured viscosities. This file is the whole sub-model.
 
+use gudgeon_core::elementary;
 use gudgeon_core::kinds::{Oil, OilSpec};
 use gudgeon_core::quantity::{PosTemperature, PosViscosity, quantity};
 use gudgeon_core::{BuildError, register_model};
@@ -47,7 +48,7 @@ impl OilSpec for ReynoldsExponential {
                 format!("{t2} K is not above the lower temperature of {t1} K"),
             ));
         }
-        let ratio = (self.mu_hot.si() / self.mu_cold.si()).ln();
+        let ratio = elementary::ln(self.mu_hot.si() / self.mu_cold.si());
         if !(-LARGEST..0.0).contains(&ratio) {
             return Err(BuildError::at(
                 "mu_hot",
@@ -75,6 +76,6 @@ struct Exponential {
 impl Oil for Exponential {
     fn viscosity(&self, temperature: f64) -> f64 {
         let part = ((temperature - self.cold) / self.span).clamp(-FURTHEST, FURTHEST);
-        self.mu * (self.ratio * part).exp()
+        self.mu * elementary::exp(self.ratio * part)
     }
 }

@@ -1,6 +1,8 @@
 //! One file outside the physics crates is a full member of the program: listed, described, read from a case, validated
 //! with places, run and compared.
 
+#![allow(clippy::disallowed_methods, reason = "what is expected need not be the same bits on every platform")]
+
 use std::path::{Path, PathBuf};
 use std::process::Command;
 

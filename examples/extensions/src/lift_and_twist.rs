@@ -6,6 +6,7 @@ use gudgeon_core::kinds::{
 use gudgeon_core::quantity::{Angle, PosPressure, PosStiffness, quantity};
 use gudgeon_core::states::{ColumnInfo, Signals, StateInfo, Stateful};
 use gudgeon_core::{BuildError, EvalError, register_model};
+use gudgeon_numerics::elementary;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -69,7 +70,8 @@ impl RingMotionSpec for LiftAndTwist {
             ],
             mass: ctx.mass,
             inertia: ctx.mass * (b * b + w * w) / 12.0,
-            stiffness: std::f64::consts::TAU * self.modulus.si() * b.powi(3) * (r_o / r_i).ln() / 12.0,
+            stiffness: std::f64::consts::TAU * self.modulus.si() * b.powi(3) * elementary::ln(r_o / r_i)
+                / 12.0,
             rest: self.static_twist.si(),
             flank: 0.5 * self.flank_stiffness.si(),
             width: w,

@@ -1,6 +1,8 @@
 //! Every plug-in of this crate is a full member of the program: listed, described, read from a case, validated with places, run, compared and
 //! recorded.
 
+#![allow(clippy::disallowed_methods, reason = "what is expected need not be the same bits on every platform")]
+
 use std::path::{Path, PathBuf};
 
 use extensions::bernoulli_network::BernoulliNetwork;

@@ -5,6 +5,7 @@ use std::path::Path;
 use crate::markdown::{anchors, citations, links};
 use crate::reference::{Facts, Pages};
 use crate::{Outcome, benches, bib, files, read, relative, source, tidy};
+use gudgeon_core::elementary;
 
 /// Generated pages that are not what stands in the repository.
 ///
@@ -79,7 +80,7 @@ fn distance(p: (f64, f64), a: (f64, f64), b: (f64, f64)) -> f64 {
     let (dx, dy) = (b.0 - a.0, b.1 - a.1);
     let along = ((p.0 - a.0) * dx + (p.1 - a.1) * dy) / (dx * dx + dy * dy).max(1e-12);
     let t = along.clamp(0.0, 1.0);
-    (p.0 - a.0 - t * dx).hypot(p.1 - a.1 - t * dy)
+    elementary::hypot(p.0 - a.0 - t * dx, p.1 - a.1 - t * dy)
 }
 
 /// Links and citations of the guide that lead nowhere; pages that the table of contents does not name.

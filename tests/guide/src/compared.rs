@@ -5,6 +5,7 @@ use std::path::Path;
 
 use crate::reference::Pages;
 use crate::{Outcome, files, read, relative, root, source};
+use gudgeon_core::elementary;
 
 /// Marks where a list of comparisons begins, followed by the names of the pages in `docs/validation`.
 const BEGIN: &str = "<!-- compared:";
@@ -143,7 +144,7 @@ fn short(number: &str) -> Option<String> {
     if v != 0.0 && !(1e-3..1e6).contains(&v.abs()) {
         return Some(format!("{v:.3e}"));
     }
-    let digits = if v == 0.0 { 0.0 } else { (3.0 - v.abs().log10().floor()).clamp(0.0, 6.0) };
+    let digits = if v == 0.0 { 0.0 } else { (3.0 - elementary::log10(v.abs()).floor()).clamp(0.0, 6.0) };
     let text = format!("{v:.*}", digits as usize);
     let bare = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
     Some(bare.to_owned())
@@ -156,7 +157,7 @@ const BOTTOM: f64 = 210.0;
 
 /// Deviations and admitted ones over the number of the comparison.
 fn drawn(rows: &[Row]) -> String {
-    let up = |v: f64| BOTTOM - (v.clamp(1e-13, 10.0).log10() + 13.0) / 14.0 * (BOTTOM - TOP);
+    let up = |v: f64| BOTTOM - (elementary::log10(v.clamp(1e-13, 10.0)) + 13.0) / 14.0 * (BOTTOM - TOP);
     let step = (WIDTH - LEFT - 10.0) / rows.len() as f64;
     let mut s = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} 250\" width=\"{WIDTH}\" height=\"250\" font-family=\"sans-serif\" font-size=\"12\">\n\

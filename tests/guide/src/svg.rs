@@ -1,5 +1,6 @@
 //! Small figures: curves over an axis, or bars, as SVG that reads on light and dark pages.
 
+use gudgeon_core::elementary;
 use std::fmt::Write as _;
 
 /// A curve or a bar.
@@ -42,7 +43,7 @@ type Ends = [f64; 4];
 /// Curves over their axis.
 #[must_use]
 pub fn curves(all: &[Curve], frame: &Frame) -> String {
-    let up = |v: f64| if frame.log { v.max(1e-300).log10() } else { v };
+    let up = |v: f64| if frame.log { elementary::log10(v.max(1e-300)) } else { v };
     let (x0, x1) = span(all.iter().flat_map(|c| c.x.iter().copied()));
     let (y0, y1) = span(all.iter().flat_map(|c| c.y.iter().map(|v| up(*v))));
     let mut s = head(HEIGHT + 18.0 * all.len().div_ceil(3) as f64);
@@ -66,7 +67,7 @@ fn axes(s: &mut String, frame: &Frame, [x0, x1, y0, y1]: Ends) {
     }
     for t in if frame.log { decades(y0, y1) } else { ticks(y0, y1) } {
         let (x, y) = (LEFT - 6.0, place(t, y0, y1, BOTTOM, TOP));
-        let text = number(if frame.log { 10f64.powf(t) } else { t });
+        let text = number(if frame.log { elementary::powf(10f64, t) } else { t });
         let _ = write!(s, "<path class=\"g\" d=\"M{LEFT} {y:.1}H{RIGHT}\"/>");
         let _ = writeln!(s, "<text x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"end\">{text}</text>", y + 4.0);
     }
@@ -138,8 +139,9 @@ fn path(points: &[(f64, f64)]) -> String {
         let keep = match points.get(n + 1) {
             Some(next) if n > 0 => {
                 let (dx, dy) = (next.0 - last.0, next.1 - last.1);
-                let off = ((p.0 - last.0) * dy - (p.1 - last.1) * dx).abs() / dx.hypot(dy).max(1e-9);
-                off > 0.3 || (p.0 - last.0).hypot(p.1 - last.1) > 12.0
+                let off =
+                    ((p.0 - last.0) * dy - (p.1 - last.1) * dx).abs() / elementary::hypot(dx, dy).max(1e-9);
+                off > 0.3 || elementary::hypot(p.0 - last.0, p.1 - last.1) > 12.0
             }
             _ => true,
         };
@@ -164,7 +166,7 @@ fn span(values: impl Iterator<Item = f64>) -> (f64, f64) {
 /// Four to nine round numbers between two ends.
 fn ticks(a: f64, b: f64) -> Vec<f64> {
     let rough = (b - a) / 5.0;
-    let power = 10f64.powf(rough.log10().floor());
+    let power = elementary::powf(10f64, elementary::log10(rough).floor());
     let step = [1.0, 2.0, 5.0, 10.0].iter().map(|m| m * power).find(|s| *s >= rough).unwrap_or(rough);
     let first = (a / step).ceil() as i64;
     let last = (b / step).floor() as i64;
@@ -175,7 +177,7 @@ fn ticks(a: f64, b: f64) -> Vec<f64> {
 fn decades(a: f64, b: f64) -> Vec<f64> {
     let steps: &[f64] = if b - a > 3.0 { &[1.0] } else { &[1.0, 2.0, 5.0] };
     let (first, last) = (a.floor() as i32, b.ceil() as i32);
-    let all = (first..=last).flat_map(|d| steps.iter().map(move |s| f64::from(d) + s.log10()));
+    let all = (first..=last).flat_map(|d| steps.iter().map(move |s| f64::from(d) + elementary::log10(*s)));
     all.filter(|t| (a..=b).contains(t)).collect()
 }
 
@@ -194,7 +196,7 @@ fn three(v: f64) -> String {
     if v == 0.0 {
         return "0".into();
     }
-    let digits = (2.0 - v.abs().log10().floor()).clamp(0.0, 6.0) as usize;
+    let digits = (2.0 - elementary::log10(v.abs()).floor()).clamp(0.0, 6.0) as usize;
     if v.abs() >= 1e6 || v.abs() < 1e-3 { format!("{v:.2e}") } else { format!("{v:.digits$}") }
 }
 

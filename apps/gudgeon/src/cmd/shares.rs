@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use gudgeon_core::elementary;
 use gudgeon_core::result::{CASE, Share, ShareRow, ShareTable};
 
 use crate::ui::{table, wrapped};
@@ -82,7 +83,7 @@ fn line(t: &ShareTable, r: &ShareRow, single: &[usize]) -> Vec<String> {
 
 /// With two digits.
 fn spread(r: &ShareRow) -> String {
-    let place = if r.spread > 0.0 { r.spread.log10().floor() as i32 } else { 0 };
+    let place = if r.spread > 0.0 { elementary::log10(r.spread).floor() as i32 } else { 0 };
     let decimals = (1 - place).clamp(0, 9) as usize;
     format!("{:.decimals$} {}", r.spread, r.spread_unit)
 }

@@ -1,5 +1,7 @@
 //! The loader against a small schema of its own: two tables, an array of tables, words, and a kind of model.
 
+#![allow(clippy::disallowed_methods, reason = "what is expected need not be the same bits on every platform")]
+
 mod near;
 mod paths;
 mod plain;

@@ -1,6 +1,7 @@
 use gudgeon_core::kinds::{BoundaryFriction, BoundaryFrictionSpec, Rubbing};
 use gudgeon_core::quantity::{NonNegative, PosRatio, PosVelocity, Ratio, Velocity, quantity};
 use gudgeon_core::{BuildError, EvalError, register_model};
+use gudgeon_numerics::elementary;
 use serde::{Deserialize, Serialize};
 
 use super::check::check;
@@ -94,9 +95,9 @@ impl BoundaryFriction for Falling {
         for (i, &v) in at.speed.iter().enumerate() {
             let (sign, rise) = rounded_sign(v, self.rounding);
             let x = v.abs() * self.inverse;
-            let power = x.powf(self.exponent);
+            let power = elementary::powf(x, self.exponent);
             let (value, fall) = if power < GONE {
-                let e = self.surplus * (-power).exp();
+                let e = self.surplus * elementary::exp(-power);
                 let per_speed = if x > 0.0 {
                     power / x
                 } else if self.exponent == 1.0 {

@@ -2,6 +2,7 @@ use std::fmt::Debug;
 use std::sync::{Arc, OnceLock};
 
 use dyn_clone::DynClone;
+use gudgeon_numerics::elementary;
 use gudgeon_numerics::linalg::Complex;
 use indexmap::IndexMap;
 
@@ -78,7 +79,7 @@ impl GasEnd {
         if self.obliquity == Obliquity::Reversed {
             // The crank end sees the motion turned about, and its lever with it.
             let sign = if m.y < 0.0 { -1.0 } else { 1.0 };
-            way += sign * 2.0 * self.crank_radius * theta.cos() * m.rod_angle.tan();
+            way += sign * 2.0 * self.crank_radius * elementary::cos(theta) * elementary::tan(m.rod_angle);
         }
         let p = self.pressure.pressure_decided_at(decided_at, theta);
         -self.factor * way * (p - self.back_pressure) * self.area

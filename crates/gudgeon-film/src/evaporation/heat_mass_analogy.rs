@@ -1,6 +1,7 @@
 use gudgeon_core::kinds::{Evaporation, EvaporationCtx, EvaporationSpec};
 use gudgeon_core::quantity::{self, PosGasConstant, PosTemperature, Ratio, quantity};
 use gudgeon_core::{BuildError, register_model};
+use gudgeon_numerics::elementary;
 use serde::{Deserialize, Serialize};
 
 use super::petroleum::{AIR, BOILING, lewis_number, molar_mass, vapour_pressure};
@@ -88,8 +89,9 @@ impl EvaporationSpec for HeatMassAnalogy {
             }
         }
         let gas = self.gas_temperature.si();
-        let speed = (ctx.mean_speed + 1.4).powf(0.8);
-        let coefficient = 130.0 * (0.5 * ctx.swept).powf(-0.06) * gas.powf(-0.4) * speed;
+        let speed = elementary::powf(ctx.mean_speed + 1.4, 0.8);
+        let coefficient =
+            130.0 * elementary::powf(0.5 * ctx.swept, -0.06) * elementary::powf(gas, -0.4) * speed;
         let per_heat = coefficient / self.heat_capacity.si();
         if !(per_heat.is_finite() && per_heat > 0.0) {
             return Err(BuildError::at(
@@ -102,7 +104,10 @@ impl EvaporationSpec for HeatMassAnalogy {
         Ok(Some(Box::new(Vapours {
             shares: self.fractions.iter().map(|f| f.share.si() / sum).collect(),
             boiling: self.fractions.iter().map(|f| f.boiling.si()).collect(),
-            readiness: masses.iter().map(|m| lewis_number(*m).powf(-2.0 / 3.0) * m / AIR).collect(),
+            readiness: masses
+                .iter()
+                .map(|m| elementary::powf(lewis_number(*m), -2.0 / 3.0) * m / AIR)
+                .collect(),
             masses,
             per_heat,
         })))
@@ -138,7 +143,7 @@ impl Evaporation for Vapours {
     /// `h/(c_p p)` \[kg/(m² s Pa)\].
     fn transfer(&self, pressure: f64) -> f64 {
         let bar = 1e-5 * pressure;
-        self.per_heat * bar.powf(0.8) / pressure
+        self.per_heat * elementary::powf(bar, 0.8) / pressure
     }
 
     fn thin(&self, volatility: &[f64], exposure: f64, masses: &mut [f64]) {
@@ -147,7 +152,7 @@ impl Evaporation for Vapours {
             return;
         }
         for ((m, v), molar) in masses.iter_mut().zip(volatility).zip(&self.masses) {
-            *m *= (-v * exposure / (molar * moles)).exp();
+            *m *= elementary::exp(-v * exposure / (molar * moles));
         }
     }
 }

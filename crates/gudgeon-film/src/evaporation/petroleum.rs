@@ -1,5 +1,7 @@
 //! Hydrocarbons that are known by their boiling temperature.
 
+use gudgeon_numerics::elementary;
+
 /// Boiling temperatures at 1 atm \[K\] for which the correlations below are meant.
 pub const BOILING: (f64, f64) = (300.0, 1000.0);
 /// One millimetre of mercury \[Pa\].
@@ -28,13 +30,13 @@ pub fn vapour_pressure(boiling: f64, temperature: f64) -> f64 {
     } else {
         (2_770.085 * x - 6.412_631) / (36.0 * x - 0.989_679)
     };
-    MERCURY * 10_f64.powf(log)
+    MERCURY * elementary::powf(10_f64, log)
 }
 
 /// Molar mass \[kg/mol\] of the normal alkane that boils at `boiling` \[K\] under 1 atm, `T_b = 1070 - exp(6.98291 - 0.02013 M^(2/3))`, by Riazi and
 /// Al-Sahhaf.
 pub fn molar_mass(boiling: f64) -> f64 {
-    1e-3 * ((6.982_91 - (1070.0 - boiling).ln()) / 0.020_13).powf(1.5)
+    1e-3 * elementary::powf((6.982_91 - elementary::ln(1070.0 - boiling)) / 0.020_13, 1.5)
 }
 
 /// Molar mass of air \[kg/mol\].
@@ -44,8 +46,8 @@ pub const AIR: f64 = 0.02897;
 pub fn diffusivity(mass: f64) -> f64 {
     let carbons = (1e3 * mass - 2.016) / 14.027;
     let volume = 16.5 * carbons + 1.98 * (2.0 * carbons + 2.0);
-    let width = volume.cbrt() + 20.1_f64.cbrt();
-    1e-7 * 300_f64.powf(1.75) * (1e-3 / mass + 1e-3 / AIR).sqrt() / (width * width)
+    let width = elementary::cbrt(volume) + elementary::cbrt(20.1_f64);
+    1e-7 * elementary::powf(300_f64, 1.75) * (1e-3 / mass + 1e-3 / AIR).sqrt() / (width * width)
 }
 
 /// Lewis number, thermal diffusivity of air over [`diffusivity`]. Both grow with the 1.75th to 1.8th power of temperature and fall with pressure alike,

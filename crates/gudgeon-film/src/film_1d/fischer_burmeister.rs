@@ -4,6 +4,7 @@ use std::f64::consts::FRAC_1_SQRT_2;
 
 use super::line::Line;
 use super::rows::{Node, Rows, STEPS};
+use gudgeon_numerics::elementary;
 
 /// Residual of functions and rows, beside their terms, at which the iteration ends.
 const TOLERANCE: f64 = 1e-11;
@@ -64,7 +65,7 @@ impl Rows {
         let mut largest: f64 = 0.0;
         for i in self.first..n {
             let (y, r) = ((self.p[i] - self.floor[i]) / scale, self.r[i]);
-            let root = y.hypot(r);
+            let root = elementary::hypot(y, r);
             let (fy, fr) = if root > 0.0 {
                 (1.0 - y / root, 1.0 - r / root)
             } else {

@@ -11,6 +11,7 @@
 //! `A1 = (artanh t/t - 1)/t²` without cancellation.
 
 use gudgeon_core::kinds::PanelFactors;
+use gudgeon_numerics::elementary;
 
 use super::cavity_shear::Shear;
 
@@ -30,7 +31,7 @@ fn a1(z: f64) -> f64 {
         return sum;
     }
     let t = z.sqrt();
-    (t.atanh() / t - 1.0) / z
+    (elementary::atanh(t) / t - 1.0) / z
 }
 
 /// Integrals over a panel of full film, of what lies above the straight line between the pressures of its nodes.

@@ -1,6 +1,7 @@
 //! Profiles of lines, with nodes on their steps.
 
 use gudgeon_core::BuildError;
+use gudgeon_numerics::elementary;
 
 /// A gap along a line, linear in each panel.
 ///
@@ -96,7 +97,7 @@ impl LineProfile {
     /// # Errors
     /// As [`LineProfile::pieces`].
     pub fn exponential(length: f64, h_in: f64, h_out: f64, panels: usize) -> Result<Self, BuildError> {
-        Self::pieces(&[0.0, length], panels, |_, x| h_in * (h_out / h_in).powf(x / length))
+        Self::pieces(&[0.0, length], panels, |_, x| h_in * elementary::powf(h_out / h_in, x / length))
     }
 
     /// Barrel face, `h = h_0 + κ (x - apex)²` from `0` to `length`. `graded` puts the nodes closer together where the film is
@@ -116,10 +117,10 @@ impl LineProfile {
         let mut line = Self::pieces(&[0.0, length], panels, |_, x| h(x))?;
         let l = (h_0 / curvature).sqrt();
         if graded && l.is_finite() && l > 0.0 {
-            let (a, b) = ((-apex / l).asinh(), ((length - apex) / l).asinh());
+            let (a, b) = (elementary::asinh(-apex / l), elementary::asinh((length - apex) / l));
             let n = line.h_a.len();
             for i in 1..n {
-                line.x[i] = apex + l * (a + (b - a) * (i as f64 / n as f64)).sinh();
+                line.x[i] = apex + l * elementary::sinh(a + (b - a) * (i as f64 / n as f64));
             }
             line.h_a.clear();
             line.h_b.clear();
@@ -221,7 +222,7 @@ impl LineProfile {
     ) -> Result<Self, BuildError> {
         positive("radius", radius)?;
         Self::pieces(&[radius * phi.0, radius * phi.1], panels, |_, x| {
-            clearance * (1.0 + eccentricity * (x / radius).cos())
+            clearance * (1.0 + eccentricity * elementary::cos(x / radius))
         })
     }
 

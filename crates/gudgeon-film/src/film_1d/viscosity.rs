@@ -1,5 +1,6 @@
 use gudgeon_core::EvalError;
 use gudgeon_core::kinds::{Film1d, Film1dIn, Film1dOut};
+use gudgeon_numerics::elementary;
 
 /// Differences of earlier rounds that the acceleration uses.
 const DEPTH: usize = 6;
@@ -83,12 +84,12 @@ impl ViscosityLoop {
         }
         self.used = 0;
         for (y, mu) in self.y.iter_mut().zip(&self.mu) {
-            *y = mu.ln();
+            *y = elementary::ln(*mu);
         }
         let mut smallest = f64::INFINITY;
         for round in 1..=self.rounds {
             for (mu, y) in self.mu.iter_mut().zip(&self.y) {
-                *mu = y.exp();
+                *mu = elementary::exp(*y);
             }
             let out = film.solve(&Film1dIn { mu: &self.mu, ..*inp })?;
             let p = film.field().p;
@@ -99,7 +100,7 @@ impl ViscosityLoop {
                 for (at, weight) in GAUSS {
                     fluidity += weight / law(p[i] + at * (p[i + 1] - p[i]), rate);
                 }
-                let f = -fluidity.ln() - self.y[i];
+                let f = -elementary::ln(fluidity) - self.y[i];
                 if !f.is_finite() {
                     return Err(EvalError::recoverable(
                         MODEL,
@@ -185,5 +186,5 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 fn log_mean(a: f64, b: f64) -> f64 {
     let x = (b - a) / (b + a);
     // x/artanh x is 1 to the last digit.
-    if x.abs() < 1e-8 { 0.5 * (a + b) } else { 0.5 * (a + b) * (x / x.atanh()) }
+    if x.abs() < 1e-8 { 0.5 * (a + b) } else { 0.5 * (a + b) * (x / elementary::atanh(x)) }
 }

@@ -2,6 +2,7 @@ use gudgeon_core::kinds::{
     Edge, Film2d, Film2dCtx, Film2dGrid, Film2dIn, Film2dOut, Film2dSpec, FilmMode, Superposition, Viscosity,
 };
 use gudgeon_core::{BuildError, EvalError, register_model};
+use gudgeon_numerics::elementary;
 use gudgeon_numerics::linalg::Banded;
 use serde::{Deserialize, Serialize};
 
@@ -247,7 +248,7 @@ impl Differences {
         }
         let lines = |n: usize, edges: [Edge; 2]| {
             let given = edges.iter().filter(|e| **e == Edge::Pressure).count();
-            (std::f64::consts::PI * 0.5 * given as f64 / (n - 1) as f64).cos()
+            elementary::cos(std::f64::consts::PI * 0.5 * given as f64 / (n - 1) as f64)
         };
         let e = self.problem.grid.edges;
         let weight = |at: usize| self.coefficient.iter().map(|c| c[at] + c[at + 1]).sum::<f64>();

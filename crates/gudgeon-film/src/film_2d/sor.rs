@@ -2,6 +2,7 @@ use gudgeon_core::kinds::{
     Film2d, Film2dCtx, Film2dGrid, Film2dIn, Film2dOut, Film2dSpec, FilmMode, Superposition,
 };
 use gudgeon_core::{BuildError, EvalError, register_model};
+use gudgeon_numerics::elementary;
 use serde::{Deserialize, Serialize};
 
 use super::cavitation::Cavitation;
@@ -114,7 +115,7 @@ impl Relaxation {
         let cosine = |n: usize, edges: [gudgeon_core::kinds::Edge; 2]| {
             let given = edges.iter().filter(|e| **e == gudgeon_core::kinds::Edge::Pressure).count();
             // Half a wave between two given edges, a quarter from a given edge to a wall, none otherwise.
-            (std::f64::consts::PI * 0.5 * given as f64 / (n - 1) as f64).cos()
+            elementary::cos(std::f64::consts::PI * 0.5 * given as f64 / (n - 1) as f64)
         };
         let e = p.grid.edges;
         let rho = (gx * cosine(p.nx, [e[0], e[1]]) + gy * cosine(p.ny, [e[2], e[3]])) / (gx + gy);

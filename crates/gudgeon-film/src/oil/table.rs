@@ -1,6 +1,7 @@
 use gudgeon_core::kinds::{Oil, OilSpec};
 use gudgeon_core::quantity::{PosTemperature, PosViscosity};
 use gudgeon_core::{BuildError, register_model};
+use gudgeon_numerics::elementary;
 use gudgeon_numerics::table::Pchip;
 use serde::{Deserialize, Serialize};
 
@@ -43,7 +44,7 @@ impl OilSpec for Table {
         }
         // 1/T ascends from the last row to the first.
         let reciprocal: Vec<f64> = t.iter().rev().map(|t| 1.0 / t.si()).collect();
-        let logarithm: Vec<f64> = mu.iter().rev().map(|mu| mu.si().ln()).collect();
+        let logarithm: Vec<f64> = mu.iter().rev().map(|mu| elementary::ln(mu.si())).collect();
         let ends = (reciprocal[0], reciprocal[reciprocal.len() - 1]);
         let curve = Pchip::new(reciprocal, logarithm)
             .map_err(|e| BuildError::at("temperature", format!("the curve cannot be used: {e}")))?;
@@ -65,6 +66,6 @@ impl Oil for Curve {
         let x = 1.0 / temperature;
         let at = x.clamp(self.ends.0, self.ends.1);
         let (y, slope) = self.curve.eval(at);
-        (y + slope * (x - at)).clamp(-MAX_LOGARITHM, MAX_LOGARITHM).exp()
+        elementary::exp((y + slope * (x - at)).clamp(-MAX_LOGARITHM, MAX_LOGARITHM))
     }
 }

@@ -1,6 +1,7 @@
 use gudgeon_core::kinds::{Oil, OilSpec};
 use gudgeon_core::quantity::{PosRatio, PosViscosity};
 use gudgeon_core::{BuildError, register_model};
+use gudgeon_numerics::elementary;
 use serde::{Deserialize, Serialize};
 
 /// The Vogel equation with constants of one's own: `μ = a exp(b / (T - 273.15 K + c))`.
@@ -64,6 +65,6 @@ impl VogelOil {
 
 impl Oil for VogelOil {
     fn viscosity(&self, temperature: f64) -> f64 {
-        self.a * (self.b / (temperature + self.shift).max(self.floor)).exp()
+        self.a * elementary::exp(self.b / (temperature + self.shift).max(self.floor))
     }
 }

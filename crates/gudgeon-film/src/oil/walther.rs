@@ -2,6 +2,7 @@ use gudgeon_core::kinds::{Oil, OilSpec};
 use gudgeon_core::quantity::{Expansion, NonNegative, PosRatio, PosTemperature, quantity};
 use gudgeon_core::sets::Sets;
 use gudgeon_core::{BuildError, register_model};
+use gudgeon_numerics::elementary;
 use serde::{Deserialize, Serialize};
 
 /// An oil by its data sheet: the Walther equation, as ASTM D341 has it, between two kinematic viscosities.
@@ -68,7 +69,7 @@ impl OilSpec for Walther {
                 format!("{t2} K is not above the lower temperature of {t1} K"),
             ));
         }
-        let w = |nu: f64| (nu + SHIFT).log10().log10();
+        let w = |nu: f64| elementary::log10(elementary::log10(nu + SHIFT));
         let (w1, w2) = (w(self.nu_cold.si()), w(self.nu_hot.si()));
         // log10 log10 exists for nu + 0.7 > 1 only.
         for (field, nu, w) in [("nu_cold", self.nu_cold, w1), ("nu_hot", self.nu_hot, w2)] {
@@ -83,8 +84,8 @@ impl OilSpec for Walther {
         if w2 >= w1 {
             return Err(BuildError::at("nu_hot", "an oil is thinner at the higher temperature"));
         }
-        let b = (w1 - w2) / (t2.log10() - t1.log10());
-        let a = w1 + b * t1.log10();
+        let b = (w1 - w2) / (elementary::log10(t2) - elementary::log10(t1));
+        let a = w1 + b * elementary::log10(t1);
         Ok(Box::new(WaltherOil { a, b, density: self.density.si(), expansion: self.expansion.si() }))
     }
 }
@@ -110,9 +111,9 @@ struct WaltherOil {
 
 impl Oil for WaltherOil {
     fn viscosity(&self, temperature: f64) -> f64 {
-        let w = 10f64.powf(self.a - self.b * temperature.log10()).min(SOLID);
+        let w = elementary::powf(10f64, self.a - self.b * elementary::log10(temperature)).min(SOLID);
         // `w` is positive, so ν stays above 0.3 mm²/s however hot the oil is.
-        let nu = 10f64.powf(w) - SHIFT;
+        let nu = elementary::powf(10f64, w) - SHIFT;
         let density = self.density * (1.0 - self.expansion * (temperature - T_DENSITY)).max(LIGHTEST);
         nu * SQUARE_MM * density
     }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use gudgeon_core::EvalError;
 use gudgeon_core::kinds::Piezoviscosity;
+use gudgeon_numerics::elementary;
 
 /// `Π(p) = ∫_0^p dp/f(p)`, `f = μ(p)/μ(0)`: with it Reynolds' equation of an oil that thickens with pressure is that of a constant viscosity.
 ///
@@ -64,8 +65,9 @@ impl ReducedPressure {
             if self.log[k] >= THICKEST {
                 break;
             }
-            let (step, log) = (p - self.pressure[k], f.ln());
-            let reduced = self.reduced[k] + step * (-self.log[k]).exp() * mean_decay(log - self.log[k]);
+            let (step, log) = (p - self.pressure[k], elementary::ln(f));
+            let reduced =
+                self.reduced[k] + step * elementary::exp(-self.log[k]) * mean_decay(log - self.log[k]);
             self.pressure.push(p);
             self.log.push(log);
             self.reduced.push(reduced);
@@ -76,7 +78,7 @@ impl ReducedPressure {
     /// The last rung: pressure, reduced pressure and thickening, with which it goes on.
     fn top(&self) -> (f64, f64, f64) {
         let k = self.pressure.len() - 1;
-        (self.pressure[k], self.reduced[k], self.log[k].exp())
+        (self.pressure[k], self.reduced[k], elementary::exp(self.log[k]))
     }
 
     /// `Π` \[Pa\] of a pressure above ambient \[Pa\].
@@ -96,7 +98,7 @@ impl ReducedPressure {
         let k = self.pressure.partition_point(|p| *p < pressure) - 1;
         let (step, rise) = (self.pressure[k + 1] - self.pressure[k], self.log[k + 1] - self.log[k]);
         let along = pressure - self.pressure[k];
-        Ok(self.reduced[k] + along * (-self.log[k]).exp() * mean_decay(rise * along / step))
+        Ok(self.reduced[k] + along * elementary::exp(-self.log[k]) * mean_decay(rise * along / step))
     }
 
     /// Pressure above ambient \[Pa\] and `f` there, for a reduced pressure \[Pa\].
@@ -116,14 +118,15 @@ impl ReducedPressure {
         let k = self.reduced.partition_point(|r| *r < reduced) - 1;
         let (step, rise) = (self.pressure[k + 1] - self.pressure[k], self.log[k + 1] - self.log[k]);
         // (1 - exp(-b t))/b = y with b = rise/step: t = -ln(1 - b y)/b.
-        let y = (reduced - self.reduced[k]) * self.log[k].exp();
+        let y = (reduced - self.reduced[k]) * elementary::exp(self.log[k]);
         let b = rise / step;
-        let along = if (b * y).abs() < 1e-6 { y * (1.0 + 0.5 * b * y) } else { -(-b * y).ln_1p() / b };
-        Ok((self.pressure[k] + along, (self.log[k] + b * along).exp()))
+        let along =
+            if (b * y).abs() < 1e-6 { y * (1.0 + 0.5 * b * y) } else { -elementary::ln_1p(-b * y) / b };
+        Ok((self.pressure[k] + along, elementary::exp(self.log[k] + b * along)))
     }
 }
 
 /// `(1 - exp(-x))/x`.
 fn mean_decay(x: f64) -> f64 {
-    if x.abs() < 1e-5 { 1.0 - 0.5 * x } else { -(-x).exp_m1() / x }
+    if x.abs() < 1e-5 { 1.0 - 0.5 * x } else { -elementary::exp_m1(-x) / x }
 }

@@ -1,6 +1,7 @@
 use gudgeon_core::kinds::{Piezoviscosity, PiezoviscositySpec};
 use gudgeon_core::quantity::{PosPressureCoefficient, PosRatio};
 use gudgeon_core::{BuildError, EvalError, register_model};
+use gudgeon_numerics::elementary;
 use serde::{Deserialize, Serialize};
 
 use super::tame_exp::tame_exp;
@@ -77,7 +78,7 @@ impl Piezoviscosity for PowerOfPressure {
         slope: &mut [f64],
     ) -> Result<(), EvalError> {
         check(MODEL, "pressure [Pa]", pressure, &[factor.len(), slope.len()])?;
-        let height = mu0.ln() + POLE;
+        let height = elementary::ln(mu0) + POLE;
         // A hundredth: at the pole itself the exponent for a given α is infinite.
         if !(height > 0.01 && height.is_finite()) {
             return Err(EvalError::recoverable(
@@ -98,10 +99,10 @@ impl Piezoviscosity for PowerOfPressure {
                 ));
             }
             // (1 + x)^Z - 1 without cancelling, and no infinity times the tangent's slope.
-            let exponent = (z * x.ln_1p()).min(300.0);
-            let (f, s) = tame_exp(height * exponent.exp_m1());
+            let exponent = (z * elementary::ln_1p(x)).min(300.0);
+            let (f, s) = tame_exp(height * elementary::exp_m1(exponent));
             factor[i] = f;
-            slope[i] = s * height * z * exponent.exp() / (P_R * (1.0 + x));
+            slope[i] = s * height * z * elementary::exp(exponent) / (P_R * (1.0 + x));
         }
         Ok(())
     }

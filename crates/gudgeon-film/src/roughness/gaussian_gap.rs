@@ -8,6 +8,7 @@
 //! with the separation `H` of the mean planes in units of the composite roughness; where surfaces would overlap they touch, and the
 //! gap is zero. Read from piecewise Taylor polynomials, which need no exponential and no error function.
 
+use gudgeon_numerics::elementary;
 use std::sync::LazyLock;
 
 /// `G` is below 1e-16 of its value at zero separation under `-REACH`, and `H` itself to rounding above `REACH`.
@@ -25,7 +26,7 @@ static PIECES: LazyLock<Vec<[f64; TERMS]>> = LazyLock::new(|| {
 
 /// Coefficients about `c`.
 fn taylor(c: f64) -> [f64; TERMS] {
-    let density = (-0.5 * c * c).exp() / std::f64::consts::TAU.sqrt();
+    let density = elementary::exp(-0.5 * c * c) / std::f64::consts::TAU.sqrt();
     let (value, slope) = if c > -2.0 {
         // Φ = ½ + φ Σ c^(2k+1)/(2k+1)!!; terms of one sign, or small ones.
         let (mut term, mut sum) = (c, 0.0);

@@ -3,6 +3,7 @@
 use gudgeon_core::kinds::{RoughFlow, RoughShear, Roughness, RoughnessSpec};
 use gudgeon_core::quantity::{Length, NonNegative};
 use gudgeon_core::{BuildError, EvalError, register_model};
+use gudgeon_numerics::elementary;
 use serde::{Deserialize, Serialize};
 
 use super::checks::{check_flow, check_shear};
@@ -113,7 +114,7 @@ impl Pattern {
 impl RoughnessSpec for PatirCheng {
     fn build(&self) -> Result<Box<dyn Roughness>, BuildError> {
         let (liner, body) = (self.liner_roughness.si(), self.body_roughness.si());
-        let sigma = liner.hypot(body);
+        let sigma = elementary::hypot(liner, body);
         if sigma == 0.0 {
             return Err(BuildError::at("liner_roughness", "both surfaces are smooth")
                 .help("use the model `off` for smooth surfaces"));
@@ -188,7 +189,11 @@ impl Constants {
     /// `φ_x`.
     #[inline]
     pub fn pressure_flow(&self, gap: f64) -> f64 {
-        if self.transverse { 1.0 - self.c * (-self.r * gap).exp() } else { 1.0 + self.c / (gap * gap.sqrt()) }
+        if self.transverse {
+            1.0 - self.c * elementary::exp(-self.r * gap)
+        } else {
+            1.0 + self.c / (gap * gap.sqrt())
+        }
     }
 
     /// The piece of `Φ_s` for films up to `H` = 5.
@@ -196,13 +201,13 @@ impl Constants {
     pub fn shear_flow_near(&self, gap: f64) -> f64 {
         let [a1, e1, e2, e3, _] = self.flow;
         // One exponential for the power and the exponential.
-        a1 * (e1 * gap.ln() - gap * (e2 - e3 * gap)).exp()
+        a1 * elementary::exp(e1 * elementary::ln(gap) - gap * (e2 - e3 * gap))
     }
 
     /// The piece of `Φ_s` for films from `H` = 5 on.
     #[inline]
     pub fn shear_flow_far(&self, gap: f64) -> f64 {
-        self.flow[4] * (-0.25 * gap).exp()
+        self.flow[4] * elementary::exp(-0.25 * gap)
     }
 
     /// `Φ_s`.
@@ -224,7 +229,7 @@ impl Constants {
     #[inline]
     pub fn shear_stress(&self, gap: f64) -> f64 {
         let [a3, e4, e5, e6] = self.stress;
-        let formula = |gap: f64| a3 * (e4 * gap.ln() - gap * (e5 - e6 * gap)).exp();
+        let formula = |gap: f64| a3 * elementary::exp(e4 * elementary::ln(gap) - gap * (e5 - e6 * gap));
         let [from, to] = STRESS_ENDS;
         if gap <= from {
             formula(gap)
@@ -243,7 +248,7 @@ impl Constants {
     #[inline]
     pub fn gradient_stress(&self, gap: f64) -> f64 {
         let [d, s] = self.gradient;
-        held_above(1.0 - d * (-s * gap).exp(), 0.0, GRADIENT_BLEND)
+        held_above(1.0 - d * elementary::exp(-s * gap), 0.0, GRADIENT_BLEND)
     }
 }
 
@@ -271,10 +276,12 @@ pub fn sliding_stress(z: f64) -> f64 {
     }
     let cube = (1.0 - zz) * (1.0 - zz) * (1.0 - zz);
     if z > 1.0 {
-        35.0 / 32.0 * z * (cube * ((z + 1.0) / (z - 1.0)).ln() + z / 15.0 * (66.0 + zz * (30.0 * zz - 80.0)))
+        35.0 / 32.0
+            * z
+            * (cube * elementary::ln((z + 1.0) / (z - 1.0)) + z / 15.0 * (66.0 + zz * (30.0 * zz - 80.0)))
     } else {
         let rest = -55.0 + z * (132.0 + z * (345.0 + z * (-160.0 + z * (-405.0 + z * (60.0 + 147.0 * z)))));
-        35.0 / 32.0 * z * (cube * (300.0 * (z + 1.0)).ln() + rest / 60.0)
+        35.0 / 32.0 * z * (cube * elementary::ln(300.0 * (z + 1.0)) + rest / 60.0)
     }
 }
 

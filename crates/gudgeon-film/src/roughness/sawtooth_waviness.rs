@@ -3,6 +3,7 @@
 use gudgeon_core::kinds::{RoughFlow, RoughShear, Roughness, RoughnessSpec};
 use gudgeon_core::quantity::{PosLength, PosRatio};
 use gudgeon_core::{BuildError, EvalError, register_model};
+use gudgeon_numerics::elementary;
 use serde::{Deserialize, Serialize};
 
 use super::checks::{check_flow, check_shear};
@@ -114,7 +115,7 @@ pub fn excess(r: f64) -> f64 {
         let rr = r * r;
         rr * (0..11).rev().fold(0.0, |s, k| s * rr + 1.0 / f64::from(2 * k + 3))
     } else {
-        r.atanh() / r - 1.0
+        elementary::atanh(r) / r - 1.0
     }
 }
 

@@ -3,6 +3,7 @@
 use gudgeon_core::kinds::{RoughFlow, RoughShear, Roughness, RoughnessSpec};
 use gudgeon_core::quantity::{Length, NonNegative, PosRatio, quantity};
 use gudgeon_core::{BuildError, EvalError, register_model};
+use gudgeon_numerics::elementary;
 use serde::{Deserialize, Serialize};
 
 use super::checks::{check_flow, check_shear};
@@ -50,7 +51,7 @@ fn one() -> PosRatio {
 impl RoughnessSpec for Tripp {
     fn build(&self) -> Result<Box<dyn Roughness>, BuildError> {
         let (liner, body, gamma) = (self.liner_roughness.si(), self.body_roughness.si(), self.pattern.si());
-        let sigma = liner.hypot(body);
+        let sigma = elementary::hypot(liner, body);
         if sigma == 0.0 {
             return Err(BuildError::at("liner_roughness", "both surfaces are smooth")
                 .help("use the model `off` for smooth surfaces"));

@@ -1,6 +1,7 @@
 use gudgeon_core::kinds::{ShearThinning, ShearThinningSpec};
 use gudgeon_core::quantity::{Fraction, PosShearRate, Ratio, quantity};
 use gudgeon_core::{BuildError, EvalError, register_model};
+use gudgeon_numerics::elementary;
 use serde::{Deserialize, Serialize};
 
 use crate::slices::check;
@@ -58,8 +59,8 @@ impl ShearThinning for Plateaus {
         for (i, &rate) in shear_rate.iter().enumerate() {
             let x = (rate * self.inverse).clamp(-f64::MAX, f64::MAX);
             // √(1 + x²) without overflow, and its logarithmic derivative x/(1 + x²) as (x/root)/root.
-            let root = x.hypot(1.0).min(f64::MAX);
-            let thin = (1.0 - self.high) * root.powf(power);
+            let root = elementary::hypot(x, 1.0).min(f64::MAX);
+            let thin = (1.0 - self.high) * elementary::powf(root, power);
             factor[i] = self.high + thin;
             slope[i] = thin * power * (x / root) / root * self.inverse;
         }

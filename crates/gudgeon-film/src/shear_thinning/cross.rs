@@ -2,6 +2,7 @@ use gudgeon_core::kinds::{ShearThinning, ShearThinningSpec};
 use gudgeon_core::quantity::{Fraction, PosRatio, PosShearRate, Ratio, quantity};
 use gudgeon_core::sets::Sets;
 use gudgeon_core::{BuildError, EvalError, register_model};
+use gudgeon_numerics::elementary;
 use serde::{Deserialize, Serialize};
 
 use crate::slices::check;
@@ -69,13 +70,13 @@ impl ShearThinning for Passage {
         for (i, &rate) in shear_rate.iter().enumerate() {
             let x = (rate.abs() * self.inverse).min(f64::MAX);
             // Far up the sum would overflow; 1e300 keeps the inverse a number.
-            let power = x.powf(k).min(1e300);
+            let power = elementary::powf(x, k).min(1e300);
             let share = 1.0 / (1.0 + power);
             factor[i] = self.high + range * share;
             // d/dx 1/(1 + x^k) = -k x^k/(1 + x^k)² / x.
             let x = x.max(REST);
             let (power, share) = if x == REST {
-                let p = x.powf(k);
+                let p = elementary::powf(x, k);
                 (p, 1.0 / (1.0 + p))
             } else {
                 (power, share)

@@ -1,5 +1,7 @@
 //! When a simplified Newton method has converged, and when its Jacobian has served its time.
 
+use crate::elementary;
+
 /// Corrections a step at most.
 const ITERATIONS: u32 = 4;
 /// Part of the tolerance of a step that is left for its equation.
@@ -64,8 +66,11 @@ impl Newton {
             self.first = change;
         } else {
             let all = change / self.first;
-            let rate =
-                if self.iterations == 2 { all } else { all.powf(1.0 / f64::from(self.iterations - 1)) };
+            let rate = if self.iterations == 2 {
+                all
+            } else {
+                elementary::powf(all, 1.0 / f64::from(self.iterations - 1))
+            };
             if rate.is_nan() || rate > DIVERGES {
                 return self.failed();
             }

@@ -1,6 +1,7 @@
 //! The step loop shared by all one-step methods: step-size control, breakpoints, failed evaluations, events, observers.
 
 use crate::EvalError;
+use crate::elementary;
 
 use super::check::{Shape, check};
 use super::core::{Core, is_non_finite, non_finite};
@@ -43,7 +44,7 @@ pub(crate) trait Scheme: Interpolant {
     fn restart(&mut self) -> f64;
     /// Takes the step just tried, of size `h`, whose error was within the tolerance. The factor on it that gives the next.
     fn accept(&mut self, _h: f64, error: f64) -> f64 {
-        SAFETY / error.max(1e-10).powf(self.exponent())
+        SAFETY / elementary::powf(error.max(1e-10), self.exponent())
     }
     /// Gives up the step just tried, whose error was above the tolerance. The factor on it, where the method knows better than its order.
     fn reject(&mut self) -> Option<f64> {
@@ -348,11 +349,13 @@ impl<'a, M: Scheme, S: OdeSystem + ?Sized> Run<'a, M, S> {
         if let Some(factor) = self.method.reject() {
             return self.reject(h, factor);
         }
-        let seen = self.rejected.map_or(f64::INFINITY, |(h0, e0)| (e0 / error).ln() / (h0 / h).ln());
+        let seen = self
+            .rejected
+            .map_or(f64::INFINITY, |(h0, e0)| elementary::ln(e0 / error) / elementary::ln(h0 / h));
         let shrink = if seen.is_nan() {
             0.1
         } else {
-            SAFETY * error.powf(-1.0 / seen.clamp(MIN_ORDER, 1.0 / self.method.exponent()))
+            SAFETY * elementary::powf(error, -1.0 / seen.clamp(MIN_ORDER, 1.0 / self.method.exponent()))
         };
         self.reject(h, shrink.clamp(0.1, 0.9));
         self.rejected = Some((h, error));

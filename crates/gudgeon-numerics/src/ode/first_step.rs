@@ -3,6 +3,7 @@
 use super::core::Core;
 use super::options::{Options, Stats};
 use super::system::OdeSystem;
+use crate::elementary;
 
 /// A first step from the sizes of the solution and its first two derivatives (Hairer, Nørsett and Wanner 1993, section II.4), at most `span`.
 pub(super) fn first_step<S: OdeSystem + ?Sized>(
@@ -51,5 +52,5 @@ fn from_derivatives(d1: f64, d2: f64, h0: f64, span: f64) -> f64 {
     let a = if d1 > 0.0 { 0.01 / d1 } else { span };
     let b = if d2 > 0.0 { (0.01 / d2).sqrt() } else { span };
     // The methods here are of order 5: the higher derivatives are guessed from these two.
-    a.min(b).max(a.min(b).powf(0.4) * h0.powf(0.6).min(span))
+    a.min(b).max(elementary::powf(a.min(b), 0.4) * elementary::powf(h0, 0.6).min(span))
 }

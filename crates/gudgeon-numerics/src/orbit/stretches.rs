@@ -13,6 +13,7 @@ use super::{
     Bend, CycleMap, DEPTH, NEARER, OrbitOptions, ROUGHEST, Search, Secant, explain, sinks, spectrum,
 };
 use crate::EvalError;
+use crate::elementary;
 
 /// Cycles that are not looked at: at the start, and after a step, which stirs up fast modes.
 const FIRST: usize = 5;
@@ -165,7 +166,7 @@ impl Stretch {
             _ => return 0.0,
         };
         if now.dot(&before) > 0.0 {
-            (now.norm() / before.norm().max(accuracy)).powf(1.0 / cycles)
+            elementary::powf(now.norm() / before.norm().max(accuracy), 1.0 / cycles)
         } else {
             0.0
         }

@@ -4,6 +4,7 @@ use super::coefficients::E;
 use super::method::{Method, Span};
 use super::tolerance::{Tolerance, scaled_norm};
 use crate::EvalError;
+use crate::elementary;
 use crate::linalg::lu_solve;
 use crate::ode::{OdeSystem, Stats};
 
@@ -66,7 +67,8 @@ impl Increments {
                 // Error to be expected when the iterations run out, in units of what is allowed.
                 let expected = memory.contraction * size * memory.rate.powi(left) / kappa;
                 if expected >= 1.0 && memory.contraction * size > STALLED * kappa {
-                    let factor = 0.8 * expected.clamp(1e-4, 20.0).powf(-1.0 / (4.0 + f64::from(left)));
+                    let factor =
+                        0.8 * elementary::powf(expected.clamp(1e-4, 20.0), -1.0 / (4.0 + f64::from(left)));
                     return Verdict::Shrink(factor);
                 }
                 if expected >= 1.0 {
@@ -107,7 +109,7 @@ impl Method {
         for k in 0..self.n {
             self.scale[k] = tolerance.of(k, y[k].abs());
         }
-        memory.contraction = memory.contraction.max(f64::EPSILON).powf(0.8);
+        memory.contraction = elementary::powf(memory.contraction.max(f64::EPSILON), 0.8);
         memory.rate = KEEP_JACOBIAN;
         let mut increments = Increments::default();
         loop {

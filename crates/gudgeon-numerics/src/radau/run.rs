@@ -5,6 +5,7 @@ use super::method::{Method, Span};
 use super::newton::{Attempt, ITERATIONS, KEEP_JACOBIAN, Memory};
 use super::tolerance::Tolerance;
 use crate::EvalError;
+use crate::elementary;
 use crate::ode::{Flow, IntegrateError, OdeSystem, Options, Stats, StepView};
 
 /// Growth of the step below which the factors serve another step.
@@ -210,9 +211,9 @@ impl<'a, S: OdeSystem + ?Sized> Run<'a, S> {
 
     /// Factor on an accepted step of size `h`, and what is kept of it.
     fn growth(&mut self, h: f64, error: f64, iterations: usize) -> f64 {
-        let mut factor = safety(iterations) * error.powf(-0.25);
+        let mut factor = safety(iterations) * elementary::powf(error, -0.25);
         if let Some((h_old, e_old)) = self.previous {
-            factor = factor.min(0.9 * (h / h_old) * (e_old / (error * error)).powf(0.25));
+            factor = factor.min(0.9 * (h / h_old) * elementary::powf(e_old / (error * error), 0.25));
         }
         factor = factor.clamp(0.2, 8.0);
         if self.rejected_before {
@@ -234,7 +235,7 @@ impl<'a, S: OdeSystem + ?Sized> Run<'a, S> {
     fn shrink(&mut self, outcome: Result<Attempt, EvalError>) -> Result<f64, IntegrateError> {
         Ok(match outcome {
             Ok(Attempt::Solved { error, iterations }) if error.is_finite() => {
-                (safety(iterations) * error.powf(-0.25)).clamp(0.1, 0.9)
+                (safety(iterations) * elementary::powf(error, -0.25)).clamp(0.1, 0.9)
             }
             Ok(Attempt::Solved { .. }) => 0.25,
             // A Jacobian from elsewhere is the first suspect, the step the second.

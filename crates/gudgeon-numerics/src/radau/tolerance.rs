@@ -1,5 +1,6 @@
 //! The norm of the error: tolerances a step is controlled with.
 
+use crate::elementary;
 use crate::ode::Options;
 
 /// Error left by the iteration, in units of the tolerance asked for. It is not controlled by the error estimate, adds up over the
@@ -19,7 +20,7 @@ pub struct Tolerance<'a> {
 
 impl<'a> Tolerance<'a> {
     pub fn new(options: &'a Options) -> Self {
-        let relative = 0.1 * options.rtol.powf(2.0 / 3.0);
+        let relative = 0.1 * elementary::powf(options.rtol, 2.0 / 3.0);
         let ratio = if options.rtol > 0.0 { relative / options.rtol } else { 1.0 };
         // Not below what the rounding of the stages allows.
         let newton = (NEWTON / ratio).max(10.0 * f64::EPSILON / relative);

@@ -1,5 +1,7 @@
 //! Tests of the numerical methods, one module a topic. Allocations are counted in a program of their own.
 
+#![allow(clippy::disallowed_methods, reason = "what is expected need not be the same bits on every platform")]
+
 mod bdf;
 mod complex;
 mod fourier;

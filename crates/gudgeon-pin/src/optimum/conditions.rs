@@ -2,6 +2,7 @@
 
 use gudgeon_core::EvalError;
 use gudgeon_core::kinds::PIN_QUANTITIES;
+use gudgeon_numerics::elementary;
 
 use super::program::{Expansion, Multipliers, Program, slack};
 use super::result::{KktResiduals, Optimum};
@@ -127,8 +128,8 @@ fn min_eigenvalue(mut m: [[f64; 3]; 3], n: usize) -> Option<f64> {
                 if m[i][j] == 0.0 {
                     continue;
                 }
-                let t = 0.5 * (2.0 * m[i][j]).atan2(m[i][i] - m[j][j]);
-                let (s, c) = t.sin_cos();
+                let t = 0.5 * elementary::atan2(2.0 * m[i][j], m[i][i] - m[j][j]);
+                let (s, c) = elementary::sin_cos(t);
                 for k in 0..n {
                     let (a, b) = (m[i][k], m[j][k]);
                     (m[i][k], m[j][k]) = (c * a + s * b, c * b - s * a);

@@ -2,6 +2,7 @@
 
 use gudgeon_core::EvalError;
 use gudgeon_core::kinds::{PIN_QUANTITIES, PinExpansion, PinQuantity, PinSize};
+use gudgeon_numerics::elementary;
 use gudgeon_numerics::jet::{Jet, Real};
 use gudgeon_numerics::qp::{HalfSpace, MAX_CONSTRAINTS, Minimum};
 
@@ -120,7 +121,7 @@ impl<'a, 'b> Program<'a, 'b> {
     pub fn merit(&self, x: &[f64; 3], weight: f64) -> Option<f64> {
         let size = self.size(x);
         let u = self.design.utilisation(&size).ok()?;
-        let over: f64 = u.iter().map(|u| u.ln().max(0.0)).sum();
+        let over: f64 = u.iter().map(|&u| elementary::ln(u).max(0.0)).sum();
         let merit = self.design.masses(&size).differential() / self.mass + weight * over;
         merit.is_finite().then_some(merit)
     }

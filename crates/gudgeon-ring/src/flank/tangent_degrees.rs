@@ -5,6 +5,7 @@ use gudgeon_core::kinds::{Flank, FlankCtx, FlankLaw, FlankResistance, FlankSpec}
 use gudgeon_core::quantity::{PosAreaDamping, quantity};
 use gudgeon_core::states::Stateful;
 use gudgeon_core::{BuildError, register_model};
+use gudgeon_numerics::elementary;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -74,7 +75,7 @@ struct Runtime {
 /// `D(e)` with the exponent `10 |1 - f_o|`.
 fn shape(e: f64, exponent: f64) -> f64 {
     // 0^0 = 1: the limit of a full groove.
-    ((100.0 * e - 50.0) / 1.1).to_radians().tan().abs().powf(exponent)
+    elementary::powf(elementary::tan(((100.0 * e - 50.0) / 1.1).to_radians()).abs(), exponent)
 }
 
 impl Stateful for Runtime {}

@@ -5,6 +5,7 @@ use gudgeon_core::kinds::{Flank, FlankCtx, FlankLaw, FlankResistance, FlankSpec}
 use gudgeon_core::quantity::{PosRatio, quantity};
 use gudgeon_core::states::Stateful;
 use gudgeon_core::{BuildError, register_model};
+use gudgeon_numerics::elementary;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -75,7 +76,7 @@ impl Runtime {
     /// Damping \[N s/m\] at a height over the lower flank \[m\].
     fn damping(&self, s: f64, clearance: f64, area: f64) -> f64 {
         let e = if clearance > 0.0 { (s / clearance).clamp(0.0, 1.0) } else { 0.0 };
-        area * self.per_area * (2.0 * e - 1.0).abs().tan().powf(self.exponent)
+        area * self.per_area * elementary::powf(elementary::tan((2.0 * e - 1.0).abs()), self.exponent)
     }
 }
 

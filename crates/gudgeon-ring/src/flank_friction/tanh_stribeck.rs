@@ -3,6 +3,7 @@
 use gudgeon_core::kinds::{FlankFriction, FlankFrictionSpec};
 use gudgeon_core::quantity::{NonNegative, PosVelocity, Ratio, quantity};
 use gudgeon_core::{BuildError, register_model};
+use gudgeon_numerics::elementary;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -74,7 +75,7 @@ pub fn stribeck(y: f64) -> (f64, f64) {
         let z2 = z * z;
         (1.0 + z2 / 3.0 - z2 * z2 / 45.0, z * (2.0 / 3.0 - 4.0 / 45.0 * z2))
     } else {
-        let coth = z.tanh().recip();
+        let coth = elementary::tanh(z).recip();
         let csch2 = coth * coth - 1.0;
         (z * coth, coth - z * csch2)
     };
@@ -84,13 +85,13 @@ pub fn stribeck(y: f64) -> (f64, f64) {
 impl FlankFriction for Runtime {
     fn force(&self, hdot: f64, axial_load: f64) -> f64 {
         let y = hdot / self.velocity;
-        self.coefficient * axial_load.abs() * y.tanh() * stribeck(y.abs()).0
+        self.coefficient * axial_load.abs() * elementary::tanh(y) * stribeck(y.abs()).0
     }
 
     fn derivative(&self, hdot: f64, axial_load: f64) -> f64 {
         let y = (hdot / self.velocity).abs();
         let (g, dg) = stribeck(y);
-        let t = y.tanh();
+        let t = elementary::tanh(y);
         self.coefficient * axial_load.abs() / self.velocity * ((1.0 - t * t) * g + t * dg)
     }
 

@@ -6,6 +6,7 @@ use gudgeon_core::kinds::{
 };
 use gudgeon_core::states::{Signals, Stage, StateInfo, Stateful};
 use gudgeon_core::{BuildError, EvalError, register_model};
+use gudgeon_numerics::elementary;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -89,14 +90,14 @@ impl Stateful for Runtime {
     }
 
     fn initial(&mut self, y: &mut [f64]) {
-        y[0] = self.first.ln();
+        y[0] = elementary::ln(self.first);
         self.hdot = 0.0;
     }
 }
 
 impl RadialMotion for Runtime {
     fn thickness(&self, y: &[f64]) -> f64 {
-        y[0].exp()
+        elementary::exp(y[0])
     }
 
     fn rates(

@@ -2,6 +2,7 @@
 
 use gudgeon_core::EvalError;
 use gudgeon_core::kinds::{FaceForces, Limited, RadialLimits, RadialLoads, RadialResponse, RadialState};
+use gudgeon_numerics::elementary;
 
 /// Part of the velocity of surfaces that part within which one step of Newton ends at the root.
 const PARTING: f64 = 1e-5;
@@ -181,7 +182,7 @@ impl Search<'_> {
         if share <= begins || off <= 0.0 {
             return 0.0;
         }
-        let x = ((share / begins).ln() / (full / begins).ln()).min(1.0);
+        let x = (elementary::ln(share / begins) / elementary::ln(full / begins)).min(1.0);
         let ramp = |x: f64| x * x * (3.0 - 2.0 * x);
         limits.radial_drag * ramp(x) * ramp(off)
     }

@@ -7,6 +7,7 @@
 use gudgeon_core::EvalError;
 use gudgeon_core::kinds::{FaceForces, Limited, RadialResponse, RadialState, RadialTrials};
 use gudgeon_core::states::Stage;
+use gudgeon_numerics::elementary;
 use gudgeon_numerics::roots::{Found, Known, RootError, first_root};
 
 use super::search::{Search, soft};
@@ -19,7 +20,7 @@ const THICKNESSES: std::ops::Range<f64> = 1e-26..0.1;
 
 /// The film thickness \[m\] of a trial.
 fn thickness(x: f64) -> Result<f64, EvalError> {
-    let h = x.exp();
+    let h = elementary::exp(x);
     if THICKNESSES.contains(&h) {
         Ok(h)
     } else {
@@ -53,7 +54,7 @@ impl Staged<'_> {
     ) -> Result<Answer, EvalError> {
         // What the stages before have sent below the floor stands on it.
         let lowest = loads.state().lowest.0;
-        let base = if lowest > 0.0 { stage.base[0].max(lowest.ln()) } else { stage.base[0] };
+        let base = if lowest > 0.0 { stage.base[0].max(elementary::ln(lowest)) } else { stage.base[0] };
         let stage = &Stage { base: &[base], ..*stage };
         if let Some(answer) = self.free(stage, x, loads)? {
             return Ok(answer);

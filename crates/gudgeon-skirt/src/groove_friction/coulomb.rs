@@ -3,6 +3,7 @@ use std::f64::consts::PI;
 use gudgeon_core::kinds::{GrooveFriction, GrooveFrictionCtx, GrooveFrictionSpec};
 use gudgeon_core::quantity::{Length, NonNegative, PosForce, PosLength, PosVelocity, Ratio, quantity};
 use gudgeon_core::{BuildError, register_model};
+use gudgeon_numerics::elementary;
 use serde::{Deserialize, Serialize};
 
 /// Dry friction on the flank that the gas presses the top ring onto.
@@ -68,7 +69,7 @@ impl GrooveFriction for Dry {
     }
     fn force(&self, pressure: f64, v: f64) -> (f64, f64) {
         let most = self.coefficient * (self.area * pressure.abs() + self.preload);
-        let t = (v / self.reversal).tanh();
+        let t = elementary::tanh(v / self.reversal);
         (-most * t, -most * (1.0 - t * t) / self.reversal)
     }
 }

@@ -1,6 +1,7 @@
 use gudgeon_core::kinds::{PinFriction, PinFrictionSpec};
 use gudgeon_core::quantity::{NonNegative, PosLength, PosVelocity, Ratio, quantity};
 use gudgeon_core::{BuildError, register_model};
+use gudgeon_numerics::elementary;
 use serde::{Deserialize, Serialize};
 
 /// Dry friction of the pin: the rod drags the piston along as it turns.
@@ -50,6 +51,6 @@ impl PinFriction for Dry {
         self.lever == 0.0
     }
     fn moment(&self, load: f64, rotation: f64) -> f64 {
-        self.lever * load * (self.turn * rotation).tanh()
+        self.lever * load * elementary::tanh(self.turn * rotation)
     }
 }

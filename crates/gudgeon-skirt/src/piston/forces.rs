@@ -2,6 +2,7 @@
 
 use gudgeon_core::EvalError;
 use gudgeon_core::kinds::{AddedForces, GrooveFriction, PinFriction};
+use gudgeon_numerics::elementary;
 
 use super::follow_work::FollowWork;
 use super::linear::Linear;
@@ -245,7 +246,7 @@ impl Piston {
         moment += self.body.drive_moment(now, self.crank.pin_offset);
         told.rod = rod;
         if !self.pin.is_off() {
-            let load = self.body.rod_axial(now, friction).hypot(rod);
+            let load = elementary::hypot(self.body.rod_axial(now, friction), rod);
             told.pin_moment = self.pin.moment(load, now.rod_rotation);
             moment += told.pin_moment;
         }

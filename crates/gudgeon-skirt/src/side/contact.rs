@@ -4,6 +4,7 @@ use gudgeon_core::BuildError;
 use gudgeon_core::kinds::{
     BoundaryFriction, BoundaryFrictionSpec, Contact, ContactSpec, SkirtProfile, real_area_is_known,
 };
+use gudgeon_numerics::elementary;
 
 use super::nodes::Nodes;
 use crate::geometry::{Panel, between};
@@ -96,7 +97,7 @@ impl ContactRows {
                 shapes.extend(angle.iter().map(|&a| bilinear(shape, &nodes.s, &nodes.angle, row, a)));
             }
         }
-        let cos: Vec<f64> = angle.iter().map(|a| a.cos()).collect();
+        let cos: Vec<f64> = angle.iter().map(|&a| elementary::cos(a)).collect();
         let work = [vec![0.0; cos.len()], vec![0.0; cos.len()], vec![0.0; cos.len()]];
         Self { panel, sign, clearance, grid, touch, rows, cos, drop, shapes, work, sums: 0 }
     }

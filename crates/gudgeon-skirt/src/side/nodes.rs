@@ -1,6 +1,7 @@
 //! Nodes of one side, and what stands at them.
 
 use gudgeon_core::kinds::{Film2dGrid, SkirtProfile};
+use gudgeon_numerics::elementary;
 
 use crate::geometry::Panel;
 
@@ -34,8 +35,8 @@ impl Nodes {
             nx: s.len(),
             ny: angle.len(),
             s_face: halfway(&s),
-            cos: angle.iter().map(|a| a.cos()).collect(),
-            cos_face: angle_face.iter().map(|a| a.cos()).collect(),
+            cos: angle.iter().map(|&a| elementary::cos(a)).collect(),
+            cos_face: angle_face.iter().map(|&a| elementary::cos(a)).collect(),
             weight: line_weight.iter().flat_map(|l| wx.iter().map(move |w| w * l)).collect(),
             s,
             angle,

@@ -3,6 +3,7 @@ use std::f64::consts::FRAC_PI_2;
 use gudgeon_core::kinds::{SkirtCompliance, SkirtComplianceCtx, SkirtComplianceSpec};
 use gudgeon_core::quantity::PosStiffness;
 use gudgeon_core::{BuildError, register_model};
+use gudgeon_numerics::elementary;
 use serde::{Deserialize, Serialize};
 
 use super::QuasiStaticShapes;
@@ -66,7 +67,7 @@ impl SkirtComplianceSpec for Modal {
                 let (power, waves) = (f64::from(s.power), f64::from(s.waves));
                 add(&|x, a| {
                     let s = (x / ctx.length).clamp(0.0, 1.0);
-                    s.powf(power) * (waves * FRAC_PI_2 * a / ctx.half_angle).cos()
+                    elementary::powf(s, power) * elementary::cos(waves * FRAC_PI_2 * a / ctx.half_angle)
                 });
             }
             self.shapes.len()

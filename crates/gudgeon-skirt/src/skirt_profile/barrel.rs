@@ -1,6 +1,7 @@
 use gudgeon_core::kinds::{SkirtProfile, SkirtProfileCtx, SkirtProfileSpec};
 use gudgeon_core::quantity::{Fraction, Length, NonNegative, Ratio, quantity};
 use gudgeon_core::{BuildError, register_model};
+use gudgeon_numerics::elementary;
 use serde::{Deserialize, Serialize};
 
 /// Barrel of two parabolas, and oval.
@@ -60,7 +61,7 @@ impl SkirtProfile for Shape {
         } else {
             self.spec.bottom.si() * part(s - s0, 1.0 - s0)
         };
-        along + self.spec.ovality.si() * angle.sin().powi(2)
+        along + self.spec.ovality.si() * elementary::sin(angle).powi(2)
     }
     fn is_symmetric(&self) -> bool {
         true

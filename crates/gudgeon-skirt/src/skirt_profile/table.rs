@@ -2,6 +2,7 @@ use gudgeon_core::file::Files;
 use gudgeon_core::kinds::{SkirtProfile, SkirtProfileCtx, SkirtProfileSpec};
 use gudgeon_core::quantity::{Length, NonNegative, quantity};
 use gudgeon_core::{BuildError, register_model};
+use gudgeon_numerics::elementary;
 use gudgeon_numerics::table::Pchip;
 use serde::{Deserialize, Serialize};
 
@@ -114,7 +115,7 @@ struct Curve {
 
 impl SkirtProfile for Curve {
     fn depth(&self, x: f64, angle: f64) -> f64 {
-        self.curve.value(x.clamp(self.ends.0, self.ends.1)) + self.oval * angle.sin().powi(2)
+        self.curve.value(x.clamp(self.ends.0, self.ends.1)) + self.oval * elementary::sin(angle).powi(2)
     }
     fn is_symmetric(&self) -> bool {
         true
@@ -129,7 +130,7 @@ struct Map {
 
 impl SkirtProfile for Map {
     fn depth(&self, x: f64, angle: f64) -> f64 {
-        self.points.value(0, x, angle) + self.oval * angle.sin().powi(2)
+        self.points.value(0, x, angle) + self.oval * elementary::sin(angle).powi(2)
     }
     fn is_symmetric(&self) -> bool {
         self.points.is_symmetric(0)

@@ -1,6 +1,7 @@
 use gudgeon_core::kinds::{Coupling, CouplingSpec, CouplingTorque, LinearCoupling};
 use gudgeon_core::quantity::{NonNegative, Ratio, quantity};
 use gudgeon_core::{BuildError, register_model};
+use gudgeon_numerics::elementary;
 use serde::{Deserialize, Serialize};
 
 use super::{check_table, interpolate};
@@ -101,7 +102,7 @@ impl Coupling for Rubber {
             let (a, b) = (interpolate(&self.torque, &self.k, at), interpolate(&self.torque, &self.k, stop));
             let ratio = (b - a) / a;
             // ln(1 + r)/r near 1 for small r.
-            let mean = if ratio.abs() < 1e-8 { 1.0 - 0.5 * ratio } else { ratio.ln_1p() / ratio };
+            let mean = if ratio.abs() < 1e-8 { 1.0 - 0.5 * ratio } else { elementary::ln_1p(ratio) / ratio };
             x += (stop - at) / a * mean;
             at = stop;
         }

@@ -1,5 +1,6 @@
 //! A sum of orders and its derivatives at one angle.
 
+use gudgeon_numerics::elementary;
 use std::f64::consts::PI;
 
 /// Multiples of the order of the period side by side.
@@ -69,7 +70,7 @@ impl Derivatives {
     fn one_by_one(&self, angle: f64) -> [f64; 4] {
         let mut sums = [0.0; 4];
         for (o, [re, im]) in self.orders.iter().zip(&self.phasors) {
-            let (sin, cos) = (o * angle).sin_cos();
+            let (sin, cos) = elementary::sin_cos(o * angle);
             let own = wave([*re, *im, *o], cos, sin);
             sums.iter_mut().zip(own).for_each(|(s, w)| *s += w);
         }
@@ -77,7 +78,7 @@ impl Derivatives {
     }
 
     fn side_by_side(&self, angle: f64) -> [f64; 4] {
-        let (sin, cos) = (self.base * angle).sin_cos();
+        let (sin, cos) = elementary::sin_cos(self.base * angle);
         // Cosines and sines of the first multiples.
         let mut first = [[cos; LANES], [sin; LANES]];
         for l in 1..LANES {
@@ -88,7 +89,7 @@ impl Derivatives {
         let mut sums = [[0.0; LANES]; 4];
         for (b, block) in self.blocks.iter().enumerate() {
             if b > 0 && b % AFRESH == 0 {
-                let (sin, cos) = (self.base * (b * LANES) as f64 * angle).sin_cos();
+                let (sin, cos) = elementary::sin_cos(self.base * (b * LANES) as f64 * angle);
                 lanes = turned_together(&first, [cos, sin]);
             }
             block.add(&lanes, &mut sums);

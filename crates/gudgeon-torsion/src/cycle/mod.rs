@@ -6,6 +6,7 @@ mod waves;
 use std::f64::consts::PI;
 
 use derivatives::Derivatives;
+use gudgeon_numerics::elementary;
 use waves::{Waves, multiples};
 
 /// Least number of points per wave of the highest order on the finest grid.
@@ -158,7 +159,7 @@ impl Cycle {
     fn above(&self, half: f64, step: f64, sizes: &Sizes) -> [f64; 2] {
         let turn = highest(self.sum.orders(), self.period) * 2.0 * PI / self.period * step;
         let own = [0.125 * sizes.second * step * step, PARABOLA * sizes.third * step.powi(3)];
-        let cosine = (0.5 * turn).cos();
+        let cosine = elementary::cos(0.5 * turn);
         if turn >= 0.5 * PI {
             return own;
         }

@@ -1,5 +1,6 @@
 //! A sum of orders at equidistant points of its period.
 
+use gudgeon_numerics::elementary;
 use std::f64::consts::PI;
 
 /// Numbers of a table that are kept.
@@ -49,7 +50,7 @@ impl Waves {
 
     fn row(&self, order: f64) -> Row {
         let angle = |s: usize| order * self.period * s as f64 / self.points as f64;
-        let (sin, cos) = (0..self.looked()).map(|s| angle(s).sin_cos()).unzip();
+        let (sin, cos) = (0..self.looked()).map(|s| elementary::sin_cos(angle(s))).unzip();
         [cos, sin]
     }
 

@@ -1,6 +1,7 @@
 use gudgeon_core::kinds::{Drive, DriveSpec, DriveTorque, OrderTorque};
 use gudgeon_core::quantity::{Angle, Ratio, Torque, quantity};
 use gudgeon_core::{BuildError, register_model};
+use gudgeon_numerics::elementary;
 use serde::{Deserialize, Serialize};
 
 /// A torque given by its harmonics over the angle of its inertia: harmonic tables of engine makers, propeller blades, torque ripple.
@@ -61,7 +62,7 @@ impl DriveSpec for Harmonics {
                 return Err(BuildError::at(format!("orders.{i}.order"), what));
             }
             let a = h.amplitude.si() * h.factor.si();
-            let (sin, cos) = h.phase.si().sin_cos();
+            let (sin, cos) = elementary::sin_cos(h.phase.si());
             orders.push(OrderTorque { order: 0.5 * half, cosine: a * cos, sine: a * sin });
         }
         Ok(Box::new(Series { mean: self.mean.si(), orders }))
@@ -77,7 +78,7 @@ struct Series {
 impl Drive for Series {
     fn torque(&self, theta: f64, _: f64) -> DriveTorque {
         let term = |o: &OrderTorque| {
-            let (sin, cos) = (o.order * theta).sin_cos();
+            let (sin, cos) = elementary::sin_cos(o.order * theta);
             o.cosine * cos + o.sine * sin
         };
         DriveTorque { torque: self.mean + self.orders.iter().map(term).sum::<f64>(), slope: 0.0 }

@@ -1,6 +1,7 @@
 use gudgeon_core::kinds::{Drive, DriveSpec, DriveTorque};
 use gudgeon_core::quantity::{NonNegative, PosAngularSpeed, Ratio, Torque, quantity};
 use gudgeon_core::{BuildError, register_model};
+use gudgeon_numerics::elementary;
 use serde::{Deserialize, Serialize};
 
 /// A torque that goes with a power of the speed: fan and propeller (2), generator on a resistance (1), hoist (0).
@@ -57,7 +58,7 @@ struct Power {
 impl Drive for Power {
     fn torque(&self, _: f64, omega: f64) -> DriveTorque {
         let x = omega / self.speed;
-        let size = x.abs().powf(self.n);
+        let size = elementary::powf(x.abs(), self.n);
         // The slope of powers below one has no value at rest.
         let slope = if x == 0.0 { 0.0 } else { self.torque * self.n * size / omega.abs() };
         DriveTorque { torque: self.torque * size * if x < 0.0 { -1.0 } else { 1.0 }, slope }

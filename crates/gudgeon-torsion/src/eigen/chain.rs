@@ -1,6 +1,7 @@
 //! Natural frequencies of chains by the root-free QL method.
 
 use gudgeon_core::EvalError;
+use gudgeon_numerics::elementary;
 
 /// Iterations per eigenvalue; the method needs about two.
 const ITERATIONS: usize = 60;
@@ -54,7 +55,7 @@ fn block_end(a: &[f64], b: &[f64], l: usize) -> usize {
 fn sweep(a: &mut [f64], b: &mut [f64], l: usize, end: usize) {
     let g = b[l].sqrt();
     let x = (a[l + 1] - a[l]) / (2.0 * g);
-    let r = x.hypot(1.0);
+    let r = elementary::hypot(x, 1.0);
     let sigma = a[l] - g / (x + r.copysign(x));
     let (mut c, mut s) = (1.0, 0.0);
     let mut gamma = a[end] - sigma;

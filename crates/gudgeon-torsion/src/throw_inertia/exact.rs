@@ -1,5 +1,6 @@
 use gudgeon_core::kinds::{ThrowCtx, ThrowInertia, ThrowInertiaSpec};
 use gudgeon_core::{BuildError, register_model};
+use gudgeon_numerics::elementary;
 use serde::{Deserialize, Serialize};
 
 use super::Lumped;
@@ -44,7 +45,7 @@ struct Mechanism {
 impl Mechanism {
     fn at(&self, theta: f64) -> (f64, f64) {
         let Lumped { turning, oscillating, residual, r, l, e } = self.p;
-        let (sin, cos) = theta.sin_cos();
+        let (sin, cos) = elementary::sin_cos(theta);
         let sin_phi = (r * sin - e) / l;
         let cos_phi = ((1.0 - sin_phi) * (1.0 + sin_phi)).sqrt();
         let tan_phi = sin_phi / cos_phi;

@@ -1,5 +1,6 @@
 use gudgeon_core::kinds::{ThrowCtx, ThrowInertia, ThrowInertiaSpec};
 use gudgeon_core::{BuildError, register_model};
+use gudgeon_numerics::elementary;
 use serde::{Deserialize, Serialize};
 
 use super::Lumped;
@@ -36,7 +37,7 @@ struct Wave {
 
 impl ThrowInertia for Wave {
     fn inertia(&self, theta: f64) -> (f64, f64) {
-        let (sin, cos) = (2.0 * theta).sin_cos();
+        let (sin, cos) = elementary::sin_cos(2.0 * theta);
         (self.mean - self.swing * cos, 2.0 * self.swing * sin)
     }
     fn mean(&self) -> f64 {

@@ -1,6 +1,7 @@
 //! Pictures of the motion: the piston in its bore, and the pressures on both sides of its skirt.
 
 use gudgeon_core::result::{Anchor, Column, Figure, FigureKind, Frame, RunResult, Series, Shape, Style};
+use gudgeon_numerics::elementary;
 use gudgeon_skirt::Side;
 
 use super::assembly::Assembly;
@@ -216,7 +217,7 @@ impl<'a> Picture<'a> {
         outline.extend((0..=OUTLINE).rev().map(|i| at(relief(depth(i)) - radius, depth(i))));
         let mut shapes = vec![line(outline, true, Style::Metal)];
         let pin = fixed(-crank.pin_offset, body.pin);
-        let (sin, cos) = theta.sin_cos();
+        let (sin, cos) = elementary::sin_cos(theta);
         let centre = self.centre();
         let crank_pin = [centre[0] + crank.radius * sin, crank.radius * cos];
         // The rod as far as the liner reaches.

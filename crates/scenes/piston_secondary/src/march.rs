@@ -2,6 +2,7 @@
 
 use gudgeon_core::result::Note;
 use gudgeon_core::{EvalError, Stopwatch};
+use gudgeon_numerics::elementary;
 use gudgeon_numerics::ode::Stats;
 use gudgeon_numerics::orbit::{CycleMap, OrbitOptions, OrbitReport, periodic_orbit};
 
@@ -63,7 +64,7 @@ impl Cycle<'_> {
             t.oil = self.a.take_oil_cycle();
         }
         self.done += 1.0;
-        outcome.and_then(|()| Ok((self.progress)(1.0 - 0.75f64.powf(self.done))?))
+        outcome.and_then(|()| Ok((self.progress)(1.0 - elementary::powf(0.75f64, self.done))?))
     }
 
     /// The states that make up the periodic motion, and where the oil is that the skirt keeps.

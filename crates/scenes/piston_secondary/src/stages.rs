@@ -5,6 +5,7 @@ pub mod passed;
 
 use gudgeon_core::EvalError;
 use gudgeon_core::kinds::LateralLoads;
+use gudgeon_numerics::elementary;
 use gudgeon_numerics::ode::IntegrateError;
 use gudgeon_scene::RunError;
 
@@ -103,7 +104,7 @@ impl Staged {
             };
             // What is not a number counts as the largest error.
             let error = if error.is_nan() { f64::INFINITY } else { error };
-            let factor = (SAFETY * error.powf(-EXPONENT)).clamp(FACTORS[0], FACTORS[1]);
+            let factor = (SAFETY * elementary::powf(error, -EXPONENT)).clamp(FACTORS[0], FACTORS[1]);
             if error > 1.0 {
                 self.reject(of, t, factor.min(SAFETY) * h, None)?;
                 continue;

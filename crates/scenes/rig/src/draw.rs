@@ -3,6 +3,7 @@
 use gudgeon_core::kinds::RigOut;
 use gudgeon_core::result::{Column, Figure, FigureKind, Lines, Series};
 use gudgeon_core::{BuildError, EvalError};
+use gudgeon_numerics::elementary;
 
 /// `n` values at equal distances, both ends included.
 pub fn linear(from: f64, to: f64, n: usize) -> Vec<f64> {
@@ -11,13 +12,13 @@ pub fn linear(from: f64, to: f64, n: usize) -> Vec<f64> {
 
 /// `n` values at equal ratios, both ends, positive, included.
 pub fn logarithmic(from: f64, to: f64, n: usize) -> Vec<f64> {
-    linear(from.ln(), to.ln(), n)
+    linear(elementary::ln(from), elementary::ln(to), n)
         .iter()
         .enumerate()
         .map(|(i, l)| match i {
             0 => from,
             _ if i + 1 == n => to,
-            _ => l.exp(),
+            _ => elementary::exp(*l),
         })
         .collect()
 }

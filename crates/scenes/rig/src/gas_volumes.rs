@@ -8,6 +8,7 @@ use gudgeon_core::quantity::{
 use gudgeon_core::result::Note;
 use gudgeon_core::{BuildError, EvalError, register_model};
 use gudgeon_gas::{Network, Orifice, Passage};
+use gudgeon_numerics::elementary;
 use gudgeon_numerics::linalg::{lu_factor, lu_solve};
 use gudgeon_numerics::ode::{Flow, Integrator, OdeSystem, Options, Stats};
 use gudgeon_numerics::orbit::{CycleMap, OrbitOptions, periodic_orbit};
@@ -346,7 +347,7 @@ impl Gas {
         let theta = if self.degrees { at.to_radians() } else { 0.0 };
         let pulse = |p: &Pulse| {
             let x = (theta - p.at.si()) / p.width.si();
-            p.height.si() * (-x * x).exp()
+            p.height.si() * elementary::exp(-x * x)
         };
         base + pulses.iter().map(pulse).sum::<f64>()
     }

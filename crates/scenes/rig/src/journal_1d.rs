@@ -7,6 +7,7 @@ use gudgeon_core::quantity::{
 };
 use gudgeon_core::{BuildError, EvalError, register_model};
 use gudgeon_film::film_1d::LineProfile;
+use gudgeon_numerics::elementary;
 use serde::{Deserialize, Serialize};
 
 use crate::{along, profile, validity};
@@ -146,7 +147,7 @@ impl Bench {
             for (t, weight) in GAUSS {
                 let bend = t * (1.0 - t) * ((1.0 - t) * rise_a - t * rise_b);
                 let p = from.p + t * straight + bend - self.p;
-                let (sin, cos) = ((from.x + t * dx) / self.radius).sin_cos();
+                let (sin, cos) = elementary::sin_cos((from.x + t * dx) / self.radius);
                 a += weight * dx * p * cos;
                 b += weight * dx * p * sin;
             }
@@ -182,7 +183,7 @@ impl Bench {
     fn load_and_friction(&self, o: &Film1dOut, rows: &[along::Row], flux: &[f64], out: &mut RigOut) {
         let u = self.speed();
         let (along_gap, across) = self.load(rows, flux);
-        let load = along_gap.hypot(across);
+        let load = elementary::hypot(along_gap, across);
         let unit = self.mu * self.omega.abs() * (self.radius / self.clearance).powi(2) * self.radius;
         out.result("load", load, "N/m", "load per metre of width");
         if unit > 0.0 {
@@ -192,7 +193,7 @@ impl Bench {
             // The shaft moves towards the narrowest gap; the load points where the film presses.
             out.result(
                 "attitude",
-                (across * u.signum()).atan2(-along_gap).to_degrees(),
+                elementary::atan2(across * u.signum(), -along_gap).to_degrees(),
                 "deg",
                 "angle from the line of centres back to the load, against the rotation",
             );

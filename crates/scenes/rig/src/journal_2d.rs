@@ -4,6 +4,7 @@ use gudgeon_core::kinds::{Film2dGrid, Film2dSpec, Rig, RigCtx, RigOut, RigSpec, 
 use gudgeon_core::quantity::{PosAngularSpeed, PosLength, PosRatio, PosViscosity, Pressure, quantity};
 use gudgeon_core::{BuildError, EvalError, register_model};
 use gudgeon_film::SmoothSurfaces;
+use gudgeon_numerics::elementary;
 use serde::{Deserialize, Serialize};
 
 use crate::along;
@@ -147,7 +148,7 @@ impl Bench {
         let s = &self.spec;
         let (radius, clearance, eps) = (s.radius.si(), s.clearance.si(), s.eccentricity.si());
         let (side, supply, p_cav) = (s.p_side.si(), s.p_supply.si(), s.p_cav.si());
-        let gap = |x: f64, _: f64| clearance * (1.0 + eps * (x / radius).cos());
+        let gap = |x: f64, _: f64| clearance * (1.0 + eps * elementary::cos(x / radius));
         self.sheet.solve(
             &Conditions {
                 u: s.speed.si() * radius,
@@ -170,9 +171,9 @@ impl Bench {
         let (s, o) = (&self.spec, &found.out);
         let (radius, width, clearance) = (s.radius.si(), s.width.si(), s.clearance.si());
         let eps = s.eccentricity.si();
-        let along = self.sheet.sum(|k, x, _| found.p[k] * (x / radius).cos());
-        let across = self.sheet.sum(|k, x, _| found.p[k] * (x / radius).sin());
-        let load = along.hypot(across);
+        let along = self.sheet.sum(|k, x, _| found.p[k] * elementary::cos(x / radius));
+        let across = self.sheet.sum(|k, x, _| found.p[k] * elementary::sin(x / radius));
+        let load = elementary::hypot(along, across);
         let scale = s.viscosity.si() * s.speed.si() * width * radius.powi(3) / clearance.powi(2);
         if load < NOTHING * scale {
             return Err(EvalError::fatal(
@@ -189,7 +190,7 @@ impl Bench {
         out.result("sommerfeld", sommerfeld, "", "Sommerfeld number S = mu N L D/W (R/c)^2");
         out.result(
             "attitude",
-            across.atan2(-along).to_degrees(),
+            elementary::atan2(across, -along).to_degrees(),
             "deg",
             "attitude angle, from the load to the line of centres",
         );

@@ -7,6 +7,7 @@ use gudgeon_core::quantity::{
     Inertia, NonNegative, PosFrequency, Torque, TorsionalDamping, TorsionalStiffness, quantity,
 };
 use gudgeon_core::{BuildError, EvalError, register_model};
+use gudgeon_numerics::elementary;
 use gudgeon_numerics::linalg::Complex;
 use gudgeon_torsion::natural_frequencies::Eigenvalues;
 use gudgeon_torsion::tree::{Singular, Tree, Work};
@@ -144,7 +145,7 @@ impl Bench {
                 let size =
                     if self.spec.torque.is_empty() { f64::from(i == 0) } else { self.spec.torque[i].si() };
                 let lag = self.spec.lag_deg.get(i).copied().unwrap_or(0.0).to_radians();
-                Complex::new(size * lag.cos(), -size * lag.sin())
+                Complex::new(size * elementary::cos(lag), -size * elementary::sin(lag))
             })
             .collect()
     }
@@ -174,7 +175,7 @@ impl Bench {
             );
             out.result(
                 format!("inertia{i}.phase"),
-                x[p].im.atan2(x[p].re),
+                elementary::atan2(x[p].im, x[p].re),
                 "rad",
                 format!("phase of inertia {i}"),
             );
@@ -245,7 +246,7 @@ fn frequencies(modes: &[Mode], out: &mut RigOut) {
             );
             out.result(
                 format!("mode.{k}.damping_ratio"),
-                decay / decay.hypot(omega),
+                decay / elementary::hypot(decay, omega),
                 "",
                 format!("damping ratio of mode {k}"),
             );

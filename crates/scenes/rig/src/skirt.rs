@@ -4,6 +4,7 @@ use gudgeon_core::quantity::{
 };
 use gudgeon_core::{BuildError, EvalError, register_model};
 use gudgeon_film::SmoothSurfaces;
+use gudgeon_numerics::elementary;
 use gudgeon_skirt::Panel;
 use serde::{Deserialize, Serialize};
 
@@ -181,8 +182,9 @@ impl Rig for Bench {
         )?;
         let o = found.out;
         let pin = spec.pin.map_or(0.5 * length, |p| p.si());
-        let thrust = self.sheet.integral(|k, _, y| (found.p[k] - edge) * (y / radius).cos());
-        let moment = self.sheet.integral(|k, x, y| (found.p[k] - edge) * (pin - x) * (y / radius).cos());
+        let thrust = self.sheet.integral(|k, _, y| (found.p[k] - edge) * elementary::cos(y / radius));
+        let moment =
+            self.sheet.integral(|k, x, y| (found.p[k] - edge) * (pin - x) * elementary::cos(y / radius));
         out.result("thrust", thrust, "N", "force that presses the skirt away from this side of the liner");
         out.result("moment", moment, "N m", "moment about the pin, pushing the upper edge away positive");
         out.result("p_max", o.p_max / 1e5, "bar", "highest pressure");

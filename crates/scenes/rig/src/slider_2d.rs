@@ -4,6 +4,7 @@ use gudgeon_core::quantity::{
 };
 use gudgeon_core::{BuildError, EvalError, register_model};
 use gudgeon_film::SmoothSurfaces;
+use gudgeon_numerics::elementary;
 use serde::{Deserialize, Serialize};
 
 use crate::along;
@@ -168,7 +169,7 @@ impl PadProfile {
     fn gap(&self, s: f64) -> f64 {
         match self {
             Self::Linear { h_in, h_out } => h_in.si() + (h_out.si() - h_in.si()) * s,
-            Self::Exponential { h_in, h_out } => h_in.si() * (h_out.si() / h_in.si()).powf(s),
+            Self::Exponential { h_in, h_out } => h_in.si() * elementary::powf(h_out.si() / h_in.si(), s),
             Self::Step { h_in, h_out, step } => {
                 let behind = past(s - step.si());
                 h_in.si() + (h_out.si() - h_in.si()) * behind

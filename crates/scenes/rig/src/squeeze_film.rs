@@ -9,6 +9,7 @@ use gudgeon_core::quantity::{
 };
 use gudgeon_core::{BuildError, EvalError, register_model};
 use gudgeon_film::film_1d::LineProfile;
+use gudgeon_numerics::elementary;
 use serde::{Deserialize, Serialize};
 
 use crate::{along, profile, validity};
@@ -332,7 +333,7 @@ impl Bench {
         let at = |k: usize| match k {
             0 => first,
             _ if k == steps => gap_end,
-            _ => first * (gap_end / first).powf(k as f64 / steps as f64),
+            _ => first * elementary::powf(gap_end / first, k as f64 / steps as f64),
         };
         let (mut time, mut rows) = (0.0, Vec::with_capacity(steps + 1));
         for k in 0..=steps {
@@ -377,7 +378,7 @@ impl Bench {
         let mut map = HistoryMap::new(n, steps);
         for k in 1..=steps {
             let now = k as f64 * dt;
-            let gap = o.mean + o.amplitude * (omega * now).cos();
+            let gap = o.mean + o.amplitude * elementary::cos(omega * now);
             self.open(gap);
             let f = self.solve(FilmTime::Step { dt, content: &content })?;
             let field = self.film.field();
@@ -388,7 +389,7 @@ impl Bench {
             history.rows.push(Instant {
                 t: now,
                 h: gap,
-                dh: -o.amplitude * omega * (omega * now).sin(),
+                dh: -o.amplitude * omega * elementary::sin(omega * now),
                 load: self.above(&f),
                 full: self.covered(field.fronts) / self.length(),
                 oil: stored(&content),

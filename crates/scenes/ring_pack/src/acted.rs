@@ -1,6 +1,7 @@
 //! How long a limit acted and by how much, and the times that a ring was off the liner.
 
 use gudgeon_core::result::Note;
+use gudgeon_numerics::elementary;
 
 /// How long something acted, and how much at most.
 #[derive(Debug, Clone, Copy, Default)]
@@ -58,8 +59,10 @@ impl Retreats {
         self.last = Some((theta, h));
         // The logarithm of the film is nearly straight between two looks.
         let crossing = || {
-            let (a, b) = (thickness.ln(), h.ln());
-            before + if b == a { 0.0 } else { ((away.ln() - a) / (b - a)).clamp(0.0, 1.0) } * (theta - before)
+            let (a, b) = (elementary::ln(thickness), elementary::ln(h));
+            before
+                + if b == a { 0.0 } else { ((elementary::ln(away) - a) / (b - a)).clamp(0.0, 1.0) }
+                    * (theta - before)
         };
         match self.all.last_mut().filter(|r| r.to.is_none()) {
             Some(r) if h <= away => r.to = Some(crossing()),

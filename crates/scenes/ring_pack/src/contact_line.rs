@@ -15,6 +15,7 @@ use std::sync::Arc;
 
 use gudgeon_core::geometry::FaceProfile;
 use gudgeon_core::kinds::Contact;
+use gudgeon_numerics::elementary;
 use gudgeon_numerics::quadrature::GaussLegendre;
 
 /// Line load against film thickness.
@@ -75,9 +76,9 @@ impl MeanPlanes {
             return Self::default();
         }
         let unit = UNIT * range;
-        let top = (range / unit).exp_m1().ln();
+        let top = elementary::ln(elementary::exp_m1(range / unit));
         let step = (top - DEEPEST) / POINTS as f64;
-        let film = |k: usize| unit * (DEEPEST + step * k as f64).exp().ln_1p();
+        let film = |k: usize| unit * elementary::ln_1p(elementary::exp(DEEPEST + step * k as f64));
         let points: Vec<f64> = (0..=POINTS).map(|k| separation(contact, film(k))).collect();
         let planes: Vec<f64> = points.iter().map(|s| contact.mean_planes(*s)).collect();
         let separation = Spline::new(DEEPEST, step, &planes);
@@ -85,7 +86,7 @@ impl MeanPlanes {
     }
 
     fn place(&self, h: f64) -> f64 {
-        (h / self.unit).exp_m1().ln()
+        elementary::ln(elementary::exp_m1(h / self.unit))
     }
 }
 
@@ -177,7 +178,7 @@ impl ContactLine {
         }
         let x = h / self.planes.unit;
         // ds/d ln h = ds/dw dw/d ln h, dw/d ln h = x exp(x)/(exp(x) - 1).
-        let rate = self.planes.separation.at(self.planes.place(h)).1 * x / -(-x).exp_m1();
+        let rate = self.planes.separation.at(self.planes.place(h)).1 * x / -elementary::exp_m1(-x);
         (SCALE * self.range / rate).max(1.0)
     }
 }

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use gudgeon_core::result::{Bar, Column, Figure, FigureKind, Series};
+use gudgeon_numerics::elementary;
 use gudgeon_numerics::panel::Rule;
 
 use super::measure::{Measures, Peak, RingMeasure, raise};
@@ -62,11 +63,11 @@ impl StrokeFilm {
     }
 
     fn row(&self) -> [f64; 6] {
-        let (h, theta) = (self.ln_min.exp(), self.theta.to_degrees());
+        let (h, theta) = (elementary::exp(self.ln_min), self.theta.to_degrees());
         [
             h,
             theta,
-            self.ln_mid.exp(),
+            elementary::exp(self.ln_mid),
             self.coefficient_mid,
             self.friction.value,
             self.friction.theta.to_degrees(),
@@ -99,7 +100,7 @@ pub fn result(ring: &RingMeasure, period: f64, what: &str) -> f64 {
         "h_min_angle" => {
             strokes.iter().min_by(|a, b| a.ln_min.total_cmp(&b.ln_min)).map_or(0.0, |s| s.theta.to_degrees())
         }
-        "h_mid" => mean(&|s| s.ln_mid.exp()) * 1e6,
+        "h_mid" => mean(&|s| elementary::exp(s.ln_mid)) * 1e6,
         "friction_coefficient_mid" => mean(&|s| s.coefficient_mid),
         "friction_max" => largest.map_or(0.0, |p| p.value),
         "friction_max_angle" => largest.map_or(0.0, |p| p.theta.to_degrees()),
@@ -136,7 +137,7 @@ pub fn figure(measures: &Measures, period: f64, names: &[String]) -> Figure {
         let called = if strokes.len() == STROKES.0.len() { STROKES.0 } else { STROKES.1 };
         for (film, stroke) in strokes.iter().zip(called) {
             let label = format!("{name}, {stroke}");
-            bars.push(Bar { label, value: film.ln_min.exp(), ..Bar::default() });
+            bars.push(Bar { label, value: elementary::exp(film.ln_min), ..Bar::default() });
         }
     }
     Figure {

@@ -7,6 +7,7 @@ use gudgeon_core::geometry::RingSection;
 use gudgeon_core::kinds::{
     FaceForces, FlankIn, OilFaceIn, RadialLoads, RadialMotion, RadialState, RingForces, TwistMoments,
 };
+use gudgeon_numerics::elementary;
 
 use super::loads::{Loads, face_in, furthest, wet_faces};
 use super::pack::Pack;
@@ -195,7 +196,7 @@ impl Pack {
             }
         }
         let rubbing = match &self.rings[i].rubbing {
-            None => line.friction * r.contact * (u / self.limits.friction_speed).tanh(),
+            None => line.friction * r.contact * elementary::tanh(u / self.limits.friction_speed),
             Some(friction) => friction.force(line, self.at.places[i].h, r.contact, u)?,
         };
         r.friction = r.perimeter * (viscous * self.laws.drag.shear(&o) + rubbing);

@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use gudgeon_core::BuildError;
 use gudgeon_core::geometry::{BackVolume, Chamfer, LandGeometry, PackGeometry, RingGeometry, Vent};
 use gudgeon_core::result::{PackSection, SectionRing};
+use gudgeon_numerics::elementary;
 
 use super::vent::vent;
 use crate::case::{ChamferShape, Ring, RingDesign, RingPackCase};
@@ -146,7 +147,7 @@ fn ring(
     };
     let (width, height) = (r.width.si(), r.height.si());
     let g = &r.groove;
-    let slopes = (g.upper_angle.si().tan(), g.lower_angle.si().tan());
+    let slopes = (elementary::tan(g.upper_angle.si()), elementary::tan(g.lower_angle.si()));
     let sealed = r.design == RingDesign::ThreePiece;
     // A number that is not known is complained about once and stands as zero until the end.
     let gap = running_gap(r, bore_radius).unwrap_or_else(|e| {
@@ -215,7 +216,7 @@ fn ring(
 
 /// Axial over radial force of the ears of an expander on a rail.
 fn ear_slope(r: &Ring) -> f64 {
-    r.expander.map_or(0.0, |e| e.ear_angle.si().tan())
+    r.expander.map_or(0.0, |e| elementary::tan(e.ear_angle.si()))
 }
 
 /// End gap in the running engine \[m\]: given, or the cold gap less the growth of the ring's circumference.
@@ -337,7 +338,7 @@ fn faces_fit(lands: usize, length: f64, height: f64) -> Result<(), BuildError> {
 
 /// Area that a chamfer opens at the end gap \[m²\].
 fn chamfer(c: Option<ChamferShape>) -> f64 {
-    c.map_or(0.0, |c| 0.5 * c.length.si() * c.length.si() * c.angle.si().tan())
+    c.map_or(0.0, |c| 0.5 * c.length.si() * c.length.si() * elementary::tan(c.angle.si()))
 }
 
 fn back(r: &Ring) -> BackVolume {

@@ -8,6 +8,7 @@ use gudgeon_core::quantity::{PosRatio, quantity};
 use gudgeon_core::result::{Balance, Column, Note, Series};
 use gudgeon_core::states::Signals;
 use gudgeon_core::{BuildError, EvalError, Stopwatch, register_model};
+use gudgeon_numerics::elementary;
 use gudgeon_numerics::ode::{
     Direction, EventAction, Flow, IntegrateError, Integrator, LinearInvariant, OdeSystem, Options, Stage,
     Stats, StepView,
@@ -323,7 +324,7 @@ impl Cycle<'_> {
         }
         self.done += 1.0;
         outcome.and_then(|()| {
-            (self.progress)(1.0 - 0.8f64.powf(self.done))
+            (self.progress)(1.0 - elementary::powf(0.8f64, self.done))
                 .map_err(|e| IntegrateError::Eval { t: period, source: e.into() })
         })
     }
@@ -375,7 +376,7 @@ impl Cycle<'_> {
             balance: &self.balance,
             events: &self.events,
         };
-        let (progress, done) = (&mut self.progress, 1.0 - 0.8f64.powf(self.done));
+        let (progress, done) = (&mut self.progress, 1.0 - elementary::powf(0.8f64, self.done));
         let (mut steps, mut stopped) = (0_u32, None);
         let mut observe = |p: &mut Problem<'_>, v: &dyn StepView| {
             steps += 1;

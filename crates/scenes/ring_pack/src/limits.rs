@@ -2,6 +2,7 @@
 
 use gudgeon_core::kinds::RadialLimits;
 use gudgeon_core::quantity::{PosAngle, PosLength, PosRatio, PosVelocity, PosViscosity, quantity};
+use gudgeon_numerics::elementary;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -106,7 +107,7 @@ impl Limits {
             return self.max_steps;
         }
         let (most, usual, slow) = STEPS;
-        (most * (usual / tolerance).max(1.0).powf(0.25) * (slow / omega).max(1.0)) as u64
+        (most * elementary::powf((usual / tolerance).max(1.0), 0.25) * (slow / omega).max(1.0)) as u64
     }
 
     /// Every key with its value \[SI\] and its reason.

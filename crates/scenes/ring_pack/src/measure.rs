@@ -11,6 +11,7 @@
 
 use std::f64::consts::PI;
 
+use gudgeon_numerics::elementary;
 use gudgeon_numerics::panel::{MAX_NODES, Rule, TRAPEZIUM};
 
 use super::film_strokes::{StepFilm, StrokeFilm};
@@ -97,7 +98,7 @@ impl RingMeasure {
     /// Thinnest and thickest film \[m\].
     #[must_use]
     pub fn film_span(&self) -> (f64, f64) {
-        (self.ln_h.0.exp(), self.ln_h.1.exp())
+        (elementary::exp(self.ln_h.0), elementary::exp(self.ln_h.1))
     }
 }
 
@@ -204,7 +205,7 @@ impl Measures {
         }
         for (i, ring) in self.rings.iter_mut().enumerate() {
             let (place, at, s) = (&pack.at.places[i], &pack.at.rings[i], &mut ring.samples);
-            s.ln_h[k] = place.h.ln();
+            s.ln_h[k] = elementary::ln(place.h);
             // A ring that is integrated may stand a little beyond a flank.
             s.e[k] = if pack.rings[i].is_integrated() && place.clearance > 0.0 {
                 place.s / place.clearance
@@ -306,8 +307,8 @@ impl RingMeasure {
         if let Some((_, high)) = rule.maximum(&s.ratio[..n], self.reverse) {
             self.reverse = high;
         }
-        self.film += over(&|k| s.ln_h[k].exp());
-        self.strokes[stroke] += over(&|k| s.ln_h[k].exp() * speed[k].abs());
+        self.film += over(&|k| elementary::exp(s.ln_h[k]));
+        self.strokes[stroke] += over(&|k| elementary::exp(s.ln_h[k]) * speed[k].abs());
         self.gap_drive += over(&|k| if s.mu[k] > 0.0 { s.difference[k] / s.mu[k] } else { 0.0 });
         self.groove_drive += over(&|k| s.difference[k] * s.nearest[k].powi(3));
         self.wetted += over(&|k| s.wetted[k]);

@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use gudgeon_core::kinds::{Line, LineLink, Mode};
 use gudgeon_core::result::{Anchor, Figure, FigureKind, Frame, Lines, Mark, Shape, Style};
+use gudgeon_numerics::elementary;
 use gudgeon_torsion::critical::CriticalSpeed;
 use gudgeon_torsion::tree::Tree;
 
@@ -122,7 +123,7 @@ fn discs(line: &Line, at: &[[f64; 2]], fixed: &mut Vec<Shape>) {
     let heaviest = inertia.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
     let ends = at.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), p| (a.min(p[0]), b.max(p[0])));
     for i in 0..n {
-        let h = (0.12 + 0.45 * (inertia[i] / heaviest).cbrt()).min(0.6);
+        let h = (0.12 + 0.45 * elementary::cbrt(inertia[i] / heaviest)).min(0.6);
         let w = 0.10;
         let [x, y] = at[i];
         let points = vec![[x - w, y - h], [x + w, y - h], [x + w, y + h], [x - w, y + h]];
@@ -173,8 +174,9 @@ fn frame(line: &Line, at: &[[f64; 2]], k: usize, m: &Mode) -> Frame {
         let centre = [at[a][0] + f * (at[b][0] - at[a][0]), at[a][1] + f * (at[b][1] - at[a][1])];
         shapes.push(Shape::Circle { centre, radius: 0.09, style: Style::Second });
     }
-    let damping =
-        m.damped.map_or_else(String::new, |(d, w)| format!(", damping {:.2} %", 100.0 * d / d.hypot(w)));
+    let damping = m
+        .damped
+        .map_or_else(String::new, |(d, w)| format!(", damping {:.2} %", 100.0 * d / elementary::hypot(d, w)));
     Frame { label: format!("mode {}: {:.2} Hz{damping}", k + 1, m.omega / (2.0 * PI)), at: None, shapes }
 }
 

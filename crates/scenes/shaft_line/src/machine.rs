@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use gudgeon_core::kinds::{OrderResponse, Torsion, TorsionCtx, TorsionOut, TorsionSpec};
 use gudgeon_core::{BuildError, EvalError};
+use gudgeon_numerics::elementary;
 use gudgeon_numerics::maximum::maximise;
 use gudgeon_torsion::critical::CriticalSpeed;
 use gudgeon_torsion::cycle::Cycle;
@@ -334,7 +335,7 @@ fn norm1([re, im]: [f64; 2]) -> f64 {
 fn modulus(z: [f64; 2]) -> f64 {
     let square = square(z);
     // Numbers whose squares are none take longer.
-    if square.is_normal() { square.sqrt() } else { z[0].hypot(z[1]) }
+    if square.is_normal() { square.sqrt() } else { elementary::hypot(z[0], z[1]) }
 }
 
 fn link_point(cycle: &mut Cycle, out: &TorsionOut, link: usize) -> LinkPoint {

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use gudgeon_core::kinds::{NaturalFrequenciesSpec, TorsionAnswer, TorsionSpec};
+use gudgeon_numerics::elementary;
 use gudgeon_scene::{OtherMethod, Reference, WorkPrecision};
 use gudgeon_torsion::natural_frequencies::Eigenvalues;
 
@@ -105,7 +106,7 @@ fn motion(case: &ShaftLineCase, a: &Assembled) -> Option<Motion> {
     let modes = Eigenvalues::default().build(&a.line).ok()?.modes().ok()?;
     let slowest = modes.iter().filter_map(|m| m.damped).map(|(decay, _)| decay).reduce(f64::min)?;
     let period = a.period.max(TAU) / case.speed.si();
-    let periods = (-LEFT.ln() / (slowest * period)).ceil();
+    let periods = (-elementary::ln(LEFT) / (slowest * period)).ceil();
     (slowest > 0.0 && periods <= PERIODS).then_some(Motion { duration: periods * period, period })
 }
 

@@ -1,6 +1,7 @@
 //! Holds a line against its limits over its operating range, in all its load steps.
 
 use gudgeon_core::kinds::TorsionAnswer;
+use gudgeon_numerics::elementary;
 use gudgeon_torsion::critical::CriticalSpeed;
 
 use super::assemble::Assembled;
@@ -107,7 +108,8 @@ fn plain(value: f64) -> String {
     if size >= 1e7 || (size > 0.0 && size < 1e-3) {
         return format!("{value:.4e}");
     }
-    let decimals = if size > 0.0 { (4 - size.log10().floor() as i32).clamp(0, 6) as usize } else { 0 };
+    let decimals =
+        if size > 0.0 { (4 - elementary::log10(size).floor() as i32).clamp(0, 6) as usize } else { 0 };
     format!("{value:.decimals$}")
 }
 

@@ -6,6 +6,7 @@ use serde_json::Value;
 use super::{Draft, Draw, New, quantity};
 use crate::sites::{Site, What};
 use crate::text::rounded;
+use gudgeon_core::elementary;
 
 /// Plausible steps of a series, in degrees.
 const SERIES_STEPS: [f64; 7] = [0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0];
@@ -51,7 +52,7 @@ impl Draw<'_> {
             }
             What::Whole(v) if *v > 0 => {
                 // Counts are at most tripled: more is a question of patience.
-                let new = (*v as f64 * f64::powf(3.0, 2.0 * rng.f64() - 1.0)).round().max(1.0) as i64;
+                let new = (*v as f64 * elementary::powf(3.0, 2.0 * rng.f64() - 1.0)).round().max(1.0) as i64;
                 Some(New::of((if new == *v { v + 1 } else { new }).into()))
             }
             What::Switch(b) => Some(New::of((!b).into())),
@@ -107,7 +108,7 @@ impl Draw<'_> {
                     0 => rng.choice(ODD)?,
                     1 => -scale,
                     2 => 0.0,
-                    _ => rounded(scale * f64::powf(10.0, 12.0 * rng.f64() - 6.0)),
+                    _ => rounded(scale * elementary::powf(10.0, 12.0 * rng.f64() - 6.0)),
                 };
                 Some(New { value: Value::Null, ..quantity(new, unit) })
             }
@@ -147,7 +148,7 @@ fn scaled(rng: &mut Rng, value: f64, dimension: &str) -> f64 {
     let u = spread * (2.0 * rng.f64() - 1.0);
     match dimension {
         "a temperature" => value * (1.0 + WARMER * u),
-        _ => value * f64::exp(-u * LEAST.ln()),
+        _ => value * elementary::exp(-u * elementary::ln(LEAST)),
     }
 }
 

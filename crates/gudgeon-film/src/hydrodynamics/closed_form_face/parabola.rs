@@ -3,6 +3,7 @@
 use super::crown::Crown;
 use super::moments::{Moments, PressureMoments, SERIES, core};
 use super::shape::Shape;
+use gudgeon_numerics::elementary;
 
 /// One parabola, `d = κ (x - apex)²`.
 #[derive(Debug, Clone)]
@@ -157,7 +158,7 @@ impl Parabola {
         let (ha, hb) = (h + da, h + db);
         let (p, m) = (ha * hb, h + k * a * b);
         let q = (-h * k).sqrt();
-        let i1 = ((q * l + m) / p.sqrt()).ln() / q;
+        let i1 = elementary::ln((q * l + m) / p.sqrt()) / q;
         let i2 = 0.5 / h * (i1 + (b / hb - a / ha));
         let i3 = 0.25 / h * (3.0 * i2 + (b / (hb * hb) - a / (ha * ha)));
         let c = 0.5 * (a + b);

@@ -2,6 +2,7 @@
 
 use super::moments::{Moments, PressureMoments, SERIES, core};
 use super::shape::Shape;
+use gudgeon_numerics::elementary;
 
 /// One straight line: its ends, the drops there, and its slope.
 #[derive(Debug, Clone, Copy)]
@@ -160,7 +161,7 @@ impl Table {
             )
         } else {
             let per = 1.0 / sigma;
-            let tau = (hf * hf * ip).ln() * per;
+            let tau = elementary::ln(hf * hf * ip) * per;
             let a2 = l * l * per * (tau - hn * ip);
             (tau, a2, l * per * (a2 - hn * a3))
         };

@@ -1,6 +1,7 @@
 //! The decaying rest of a motion as a sum of damped modes.
 
 use gudgeon_core::EvalError;
+use gudgeon_numerics::elementary;
 use gudgeon_numerics::linalg::Complex;
 
 use crate::eigen;
@@ -109,8 +110,8 @@ impl FreeMotion {
         phi.fill(self.rigid[0] + self.rigid[1] * t);
         rate.fill(self.rigid[1]);
         for Term { z, amplitude, twice } in &self.terms {
-            let (sin, cos) = (z.im * t).sin_cos();
-            let size = (z.re * t).exp() * if *twice { 2.0 } else { 1.0 };
+            let (sin, cos) = elementary::sin_cos(z.im * t);
+            let size = elementary::exp(z.re * t) * if *twice { 2.0 } else { 1.0 };
             let e = Complex::new(size * cos, size * sin);
             let d = *z * e;
             for ((p, r), v) in phi.iter_mut().zip(rate.iter_mut()).zip(amplitude) {

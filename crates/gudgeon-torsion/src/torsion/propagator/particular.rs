@@ -3,6 +3,7 @@
 
 use gudgeon_core::EvalError;
 use gudgeon_core::kinds::OrderResponse;
+use gudgeon_numerics::elementary;
 
 use crate::steady::Steady;
 
@@ -59,7 +60,7 @@ impl Particular {
         }
         for o in &self.orders {
             let w = o.order * steady.speed;
-            let (sin, cos) = (w * time).sin_cos();
+            let (sin, cos) = elementary::sin_cos(w * time);
             for p in 0..t.len() {
                 let [re, im] = o.angle[t.node[p]];
                 phi[p] += (re * cos - im * sin) / t.ratio[p];

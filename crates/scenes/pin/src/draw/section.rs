@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use gudgeon_core::elementary;
 use gudgeon_core::kinds::{PinQuantity, PinSize};
 use gudgeon_core::result::{FigureKind, Frame, RunResult, Shape, Style};
 
@@ -134,9 +135,9 @@ impl<'a> Deformed<'a> {
             .map(|k| {
                 let t = PI * f64::from(k) / 60.0;
                 // Shorter across the force, as much longer beside it.
-                let r =
-                    0.5 * self.section.outer + 0.5 * self.scale * self.ovalisation * part * (2.0 * t).cos();
-                [self.section.across + r * t.cos(), r * t.sin()]
+                let r = 0.5 * self.section.outer
+                    + 0.5 * self.scale * self.ovalisation * part * elementary::cos(2.0 * t);
+                [self.section.across + r * elementary::cos(t), r * elementary::sin(t)]
             })
             .collect();
         let shapes = vec![path(bent, false, Style::Accent), path(ring, true, Style::Accent)];

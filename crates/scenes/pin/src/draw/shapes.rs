@@ -1,5 +1,6 @@
 //! Shapes, scales and axes that the drawings share.
 
+use gudgeon_core::elementary;
 use gudgeon_core::result::{Anchor, Figure, FigureKind, RunResult, Shape, Style};
 
 pub fn path(points: Vec<[f64; 2]>, closed: bool, style: Style) -> Shape {
@@ -28,14 +29,14 @@ pub fn figure(out: &mut RunResult, title: &str, hint: String, kind: FigureKind) 
 
 /// The largest scale of 1, 2 or 5 times a power of ten that is not above `wanted`.
 pub fn round_scale(wanted: f64) -> f64 {
-    let decade = 10f64.powf(wanted.log10().floor());
+    let decade = elementary::powf(10f64, elementary::log10(wanted).floor());
     decade * [1.0, 2.0, 5.0].into_iter().rev().find(|f| f * decade <= wanted).unwrap_or(1.0)
 }
 
 /// Round steps that divide `span` into about `n` parts.
 pub fn round_step(span: f64, n: f64) -> f64 {
     let raw = span / n;
-    let decade = 10f64.powf(raw.log10().floor());
+    let decade = elementary::powf(10f64, elementary::log10(raw).floor());
     decade * [1.0, 2.0, 5.0, 10.0].into_iter().find(|f| f * decade >= raw).unwrap_or(10.0)
 }
 

@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use gudgeon_core::elementary;
 use gudgeon_core::result::{Anchor, FigureKind, RunResult, Shape, Style};
 use gudgeon_pin::piston::oval_radius;
 
@@ -50,7 +51,7 @@ fn oval(bore: f64, half: f64, h: f64, ov: f64, fixed: &mut Vec<Shape>) -> f64 {
         .map(|k| {
             let a = PI * f64::from(k) / 90.0;
             let r = 1e3 * (0.5 * bore - scale * (0.5 * bore - oval_radius(bore, ov, a)));
-            [cx + r * a.cos(), cy + r * a.sin()]
+            [cx + r * elementary::cos(a), cy + r * elementary::sin(a)]
         })
         .collect();
     fixed.push(path(points, true, Style::Metal));

@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use gudgeon_core::EvalError;
 use gudgeon_core::kinds::{Line, Mode};
 use gudgeon_core::result::{Note, Series};
+use gudgeon_numerics::elementary;
 use gudgeon_torsion::critical::CriticalSpeed;
 use gudgeon_torsion::steady::Steady;
 
@@ -64,7 +65,7 @@ impl Results<'_> {
             if let Some((decay, omega)) = m.damped {
                 self.result(
                     format!("mode.{n}.damping_ratio"),
-                    decay / decay.hypot(omega),
+                    decay / elementary::hypot(decay, omega),
                     "",
                     format!("damping ratio of mode {n}"),
                 );
@@ -213,7 +214,7 @@ impl Results<'_> {
         }
         let limit = |m: &Mode| {
             let (decay, w) = m.damped.unwrap_or((0.0, m.omega));
-            let (mut low, mut high) = (0.0, 4.0 / decay.hypot(w));
+            let (mut low, mut high) = (0.0, 4.0 / elementary::hypot(decay, w));
             for k in 1..=400 {
                 let h = high * f64::from(k) / 400.0;
                 if grows(-decay * h, w * h) {

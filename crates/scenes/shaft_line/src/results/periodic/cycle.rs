@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use gudgeon_core::kinds::TorsionOut;
 use gudgeon_core::result::Column;
+use gudgeon_numerics::elementary;
 
 use crate::assemble::Assembled;
 use crate::results::{DRAWN, MAX_DRAWN, TURN, column};
@@ -27,7 +28,7 @@ impl Cycle {
         let mut speed = vec![vec![0.0; drawn.len()]; a.line.nodes.len()];
         torque.iter_mut().zip(&out.mean_torque).for_each(|(t, mean)| t.fill(*mean));
         for o in &out.orders {
-            let wave: Vec<(f64, f64)> = drawn.iter().map(|at| (o.order * at).sin_cos()).collect();
+            let wave: Vec<(f64, f64)> = drawn.iter().map(|at| elementary::sin_cos(o.order * at)).collect();
             let add = |row: &mut [f64], [re, im]: [f64; 2]| {
                 row.iter_mut().zip(&wave).for_each(|(r, (sin, cos))| *r += re * cos - im * sin);
             };

@@ -2,6 +2,7 @@
 
 use gudgeon_core::kinds::TorsionOut;
 use gudgeon_core::result::Note;
+use gudgeon_numerics::elementary;
 
 use super::LINEAR;
 use crate::machine::{Machine, speed_fluctuation};
@@ -33,7 +34,8 @@ impl Results<'_> {
             "",
             format!("coefficient of speed fluctuation of {name}: peak to peak speed by mean speed"),
         );
-        let amplitude = out.orders.iter().map(|o| o.angle[i][0].hypot(o.angle[i][1])).fold(0.0, f64::max);
+        let amplitude =
+            out.orders.iter().map(|o| elementary::hypot(o.angle[i][0], o.angle[i][1])).fold(0.0, f64::max);
         self.result(
             format!("inertia{n}.angle_amplitude"),
             amplitude.to_degrees(),

@@ -2,6 +2,7 @@
 
 use gudgeon_core::kinds::TorsionOut;
 use gudgeon_core::result::Note;
+use gudgeon_numerics::elementary;
 
 use super::LINEAR;
 use crate::assemble::Assembled;
@@ -60,7 +61,8 @@ impl Results<'_> {
 
     fn strongest_order(&mut self, out: &TorsionOut, a: &Assembled, l: usize) {
         let strongest = out.orders.iter().max_by(|x, y| {
-            x.torque[l][0].hypot(x.torque[l][1]).total_cmp(&y.torque[l][0].hypot(y.torque[l][1]))
+            elementary::hypot(x.torque[l][0], x.torque[l][1])
+                .total_cmp(&elementary::hypot(y.torque[l][0], y.torque[l][1]))
         });
         if let Some(o) = strongest {
             self.result(

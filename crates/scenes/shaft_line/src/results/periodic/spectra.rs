@@ -2,6 +2,7 @@
 
 use gudgeon_core::kinds::TorsionOut;
 use gudgeon_core::result::{Bar, Figure, FigureKind, Series};
+use gudgeon_numerics::elementary;
 
 use crate::assemble::Assembled;
 use crate::names::ORDERS;
@@ -12,7 +13,7 @@ const BARS: usize = 24;
 
 /// Amplitude of a phasor.
 fn size([re, im]: [f64; 2]) -> f64 {
-    re.hypot(im)
+    elementary::hypot(re, im)
 }
 
 impl Results<'_> {
