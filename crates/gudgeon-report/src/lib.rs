@@ -18,6 +18,7 @@ mod comparison;
 mod error;
 mod folder;
 mod gradients;
+mod inputs;
 mod number;
 mod over_values;
 mod overview;

@@ -11,7 +11,7 @@ use crate::folder::Folder;
 use crate::number::{percent, significant, unit};
 use crate::page::{self, Kind, esc};
 use crate::summary::Summary;
-use crate::{REPORT, ReportError, overview, results, table};
+use crate::{REPORT, ReportError, inputs, overview, results, table};
 
 pub(crate) const SUMMARY: &str = "summary.json";
 pub(crate) const SERIES: &str = "series.csv";
@@ -117,7 +117,7 @@ fn file_of(table: &str) -> String {
 }
 
 /// Sections in their order, with their names in the contents at the side.
-const CONTENTS: [(&str, &str); 11] = [
+const CONTENTS: [(&str, &str); 12] = [
     ("overview", "Overview"),
     ("cycle", "Over the cycle"),
     ("curves", "Figures"),
@@ -125,6 +125,7 @@ const CONTENTS: [(&str, &str); 11] = [
     ("events", "Events"),
     ("branches", "Periodic solutions"),
     ("results", "All results"),
+    ("inputs", "Inputs"),
     ("numerics", "Numerics"),
     ("skipped", "Not computed"),
     ("models", "Models"),
@@ -140,6 +141,7 @@ fn page(s: &Summary, series: &Series, tables: &IndexMap<String, Series>) -> Stri
     events(&mut main, s);
     branches(&mut main, s);
     results::section(&mut main, s);
+    inputs::section(&mut main, &s.provenance.inputs);
     main.push_str(&page::numerics_section(&s.balance, &s.solver, &s.refined));
     main.push_str(&page::skipped_section(&s.skipped));
     main.push_str(&page::models_section(&s.models));

@@ -688,8 +688,24 @@ pub struct Provenance {
     /// Parameter sets that the case names: what each gave, with its source.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sets: Vec<SetUse>,
+    /// Numbers, words and models of the case as a person reads them, in its order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub inputs: Vec<InputUse>,
     /// Every value of the case in SI units, changes and defaults filled in.
     pub resolved: serde_json::Value,
+}
+
+/// A value of a case, for the page of a run.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct InputUse {
+    /// Dotted path, as `--set` takes it.
+    pub path: String,
+    /// Number with its unit, word or name of a model.
+    pub value: String,
+    /// What it is: one sentence.
+    pub about: String,
+    /// Whether the case, a change or a parameter set gives it; otherwise it is a default.
+    pub given: bool,
 }
 
 /// A parameter set that a table of a case took over.

@@ -3,12 +3,12 @@
 use std::fmt::Write as _;
 
 use gudgeon_core::file::Files;
-use gudgeon_core::result::{KeptFile, Provenance, SetUse, SetValueUse};
+use gudgeon_core::result::{InputUse, KeptFile, Provenance, SetUse, SetValueUse};
 use indexmap::IndexMap;
 use sha2::{Digest, Sha256};
 
 use crate::scene::Scene;
-use gudgeon_case::{Diagnostic, Report, Source, UsedSet};
+use gudgeon_case::{Diagnostic, Input, InputValue, Report, Source, UsedSet};
 use gudgeon_core::sets::SetValue;
 
 /// SHA-256 of some bytes in hexadecimal digits.
@@ -34,8 +34,49 @@ pub fn provenance(file: &str, case: &dyn Scene) -> Provenance {
         text: source.text.clone(),
         files: files(source),
         sets: case.sets().iter().map(set_use).collect(),
+        inputs: inputs(case),
         resolved,
     }
+}
+
+/// The inputs as a page shows them. A change with `--set` has no line in the file, and neither have values of a parameter set: their paths say that they are given.
+fn inputs(case: &dyn Scene) -> Vec<InputUse> {
+    let changed: Vec<&str> =
+        case.overrides().iter().filter_map(|o| o.split('=').next()).map(str::trim).collect();
+    let sets: Vec<String> = case
+        .sets()
+        .iter()
+        .flat_map(|s| s.taken.iter().map(move |(key, _)| format!("{}.{key}", s.path)))
+        .collect();
+    let given = |i: &Input| {
+        i.line.is_some()
+            || sets.contains(&i.path)
+            || changed
+                .iter()
+                .any(|c| i.path.trim_start_matches("models.").starts_with(c.trim_start_matches("models.")))
+    };
+    let shown = |i: Input| InputUse {
+        given: given(&i),
+        value: text(&i.value),
+        about: sentence(&i.about).to_owned(),
+        path: i.path,
+    };
+    case.inputs().into_iter().map(shown).collect()
+}
+
+fn text(value: &InputValue) -> String {
+    match value {
+        InputValue::Number(n) if n.unit.is_empty() => n.value.to_string(),
+        InputValue::Number(n) => format!("{} {}", n.value, n.unit),
+        InputValue::Choice(c) => c.value.clone(),
+        _ => String::new(),
+    }
+}
+
+/// The first sentence of a text.
+fn sentence(text: &str) -> &str {
+    let end = text.find(". ").map_or(text.len(), |at| at + 1);
+    text[..end].trim_end_matches('.')
 }
 
 fn set_use(set: &UsedSet) -> SetUse {
