@@ -22,4 +22,4 @@ mod engine;
 mod piston;
 
 pub use engine::{Crank, Engine};
-pub use piston::{Body, GravitySide, Land, Piston};
+pub use piston::{Body, GravityFrom, GravitySide, Land, Piston};

@@ -37,12 +37,15 @@ pub struct Piston {
     /// Depth of the centre of gravity below the upper edge of the skirt.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gravity_depth: Option<Length>,
-    /// Distance of the centre of gravity from the pin across the bore; 0 when absent.
+    /// Distance of the centre of gravity of the piston across the bore, from what `gravity_from` says; 0 when absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gravity_offset: Option<Length<NonNegative>>,
-    /// On which side of the pin; `anti_thrust` when absent.
+    /// On which side of it; `anti_thrust` when absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gravity_side: Option<GravitySide>,
+    /// What `gravity_offset` is measured from; the `pin` when absent. A sweep of `engine.pin_offset` with `bore` moves the pin alone; with `pin` it moves the centre of gravity as well.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gravity_from: Option<GravityFrom>,
     /// Alloy, which gives density and thermal expansion where they are not given: `m124_cast`, `m124_forged`, `m138_cast`, …
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub alloy: Option<String>,
@@ -71,8 +74,19 @@ pub struct Land {
     pub temperature: PosTemperature,
 }
 
-/// Side of the pin on which the centre of gravity stands. Loureiro (2009) gives its distance alone, and none of the two sides meets all his
-/// figures.
+/// What the distance of the centre of gravity across the bore is measured from.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum GravityFrom {
+    /// From the axis of the pin, as Loureiro (2009) and Zhu (1992) give it.
+    #[default]
+    Pin,
+    /// From the axis of the bore, as a drawing of the piston gives it: the distance from the pin is this less the pin offset.
+    Bore,
+}
+
+/// The side on which the centre of gravity stands: a fact of the piston, to be read off its drawing. Most pistons are nearly symmetric, and their centre stands within some tenths of a millimetre of the axis of the bore.
+/// Loureiro (2009) gives the distance alone, and none of the two sides meets all his figures.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum GravitySide {
@@ -110,14 +124,18 @@ pub struct Body {
 const LIGHT: f64 = 550.0;
 
 impl Piston {
-    /// Masses and where they are.
+    /// Masses and where they are, with the pin `pin_offset` \[m\] from the axis of the bore, towards the thrust side positive.
     ///
     /// # Errors
     /// The key that is missing: `mass`, `inertia`, `pin_mass`, `pin_depth` or `gravity_depth`.
-    pub fn body(&self) -> Result<Body, BuildError> {
+    pub fn body(&self, pin_offset: f64) -> Result<Body, BuildError> {
         let side = match self.gravity_side() {
             GravitySide::Thrust => 1.0,
             GravitySide::AntiThrust => -1.0,
+        };
+        let from = match self.gravity_from.unwrap_or_default() {
+            GravityFrom::Pin => 0.0,
+            GravityFrom::Bore => -pin_offset,
         };
         Ok(Body {
             mass: given(self.mass, "piston", "mass")?.si(),
@@ -125,11 +143,11 @@ impl Piston {
             pin_mass: given(self.pin_mass, "piston", "pin_mass")?.si(),
             pin_depth: given(self.pin_depth, "piston", "pin_depth")?.si(),
             gravity_depth: given(self.gravity_depth, "piston", "gravity_depth")?.si(),
-            gravity_offset: side * self.gravity_offset.map_or(0.0, |d| d.si()),
+            gravity_offset: side * self.gravity_offset.map_or(0.0, |d| d.si()) + from,
         })
     }
 
-    /// The side of the pin on which the centre of gravity stands.
+    /// The side on which the centre of gravity stands.
     #[must_use]
     pub fn gravity_side(&self) -> GravitySide {
         self.gravity_side.unwrap_or_default()

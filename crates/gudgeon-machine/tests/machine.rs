@@ -5,7 +5,7 @@
 use gudgeon_core::file::Files;
 use gudgeon_core::kinds::{CylinderPressureSpec, KinematicsSpec};
 use gudgeon_core::serde_json::{from_value, json};
-use gudgeon_machine::{Engine, GravitySide, Piston};
+use gudgeon_machine::{Engine, GravityFrom, GravitySide, Piston};
 
 use gudgeon_kinematics as _;
 
@@ -47,7 +47,7 @@ fn what_is_missing_is_named() {
     e.speed = None;
     assert_eq!(e.crank().expect_err("no speed").message, "missing key `speed`");
     let p: Piston = from_value(json!({ "mass": 0.5 })).expect("a piston");
-    assert_eq!(p.body().expect_err("no inertia").message, "missing key `inertia`");
+    assert_eq!(p.body(0.0).expect_err("no inertia").message, "missing key `inertia`");
 }
 
 /// The pin's line of motion is `crank_offset - pin_offset` from the crank axis: moving both moves the cylinder alone.
@@ -91,8 +91,11 @@ fn the_centre_of_gravity_stands_on_the_anti_thrust_side_unless_told() {
     let masses = json!({ "mass": 0.5, "inertia": 1e-3, "pin_mass": 0.1, "pin_depth": 0.02, "gravity_depth": 0.01,
         "gravity_offset": 2e-3 });
     let mut p: Piston = from_value(masses).unwrap_or_else(|e| panic!("{e}"));
-    assert_eq!(p.body().expect("whole").gravity_offset, -2e-3);
+    assert_eq!(p.body(5e-4).expect("whole").gravity_offset, -2e-3);
     p.gravity_side = Some(GravitySide::Thrust);
-    assert_eq!(p.body().expect("whole").gravity_offset, 2e-3);
+    assert_eq!(p.body(5e-4).expect("whole").gravity_offset, 2e-3);
+    // From the axis of the bore: 0.5 mm less when the pin stands that far towards the thrust side.
+    p.gravity_from = Some(GravityFrom::Bore);
+    assert_eq!(p.body(5e-4).expect("whole").gravity_offset, 1.5e-3);
     assert_eq!(p.apparent_density(), 550.0);
 }

@@ -19,7 +19,7 @@ pub struct BernoulliNetwork {
 
 impl Default for BernoulliNetwork {
     fn default() -> Self {
-        Self { discharge: quantity(0.65), laminar: quantity(1e-3) }
+        Self { discharge: quantity(0.86), laminar: quantity(1e-3) }
     }
 }
 
@@ -29,7 +29,7 @@ impl Default for BernoulliNetwork {
     equations = "m' = C_d A sqrt(2 rho_u (p_u - p_d));  linear below the relative pressure difference `laminar`",
     validity = "Pressure differences small against the pressure. It does not choke: at the largest ones it lets twice as much through as a compressible orifice.",
     references = [],
-    example = "discharge = 0.65\nlaminar = 1e-3\n",
+    example = "discharge = 0.86\nlaminar = 1e-3\n",
 )]
 impl GasFlowSpec for BernoulliNetwork {
     fn build(&self, ctx: &GasFlowCtx<'_>) -> Result<Box<dyn GasFlow>, BuildError> {

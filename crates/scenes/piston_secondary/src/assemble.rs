@@ -98,7 +98,7 @@ fn crank(case: &PistonSecondaryCase) -> Result<Crank, BuildError> {
 }
 
 fn body(case: &PistonSecondaryCase) -> Result<Body, BuildError> {
-    let p = case.piston.body()?;
+    let p = case.piston.body(case.engine.crank()?.pin_offset)?;
     Ok(Body {
         piston_mass: p.mass,
         pin_mass: p.pin_mass,

@@ -25,7 +25,7 @@ case_file! {
         /// Piston and pin.
         #[schemars(extend(
             "required" = ["mass", "inertia", "pin_mass", "pin_depth", "gravity_depth"],
-            "x-used" = ["mass", "inertia", "pin_mass", "pin_depth", "gravity_depth", "gravity_offset", "gravity_side"],
+            "x-used" = ["mass", "inertia", "pin_mass", "pin_depth", "gravity_depth", "gravity_offset", "gravity_side", "gravity_from"],
         ))]
         pub piston: Piston,
         /// Connecting rod; without mass when absent.

@@ -4,7 +4,6 @@ use gudgeon_case::Loaded;
 use gudgeon_core::BuildError;
 use gudgeon_core::kinds::EngineCycle;
 use gudgeon_core::result::{ModelUse, Note, RunResult, Skipped, SolverReport};
-use gudgeon_machine::GravitySide;
 use gudgeon_scene::{Explanation, Progress, RunError, SceneCase, Stopped, WorkPrecision};
 
 use super::assemble::assemble;
@@ -131,13 +130,12 @@ fn look_at(
 }
 
 fn centre_of_gravity(case: &PistonSecondaryCase) -> Note {
-    let side = match case.piston.gravity_side() {
-        GravitySide::Thrust => "thrust",
-        GravitySide::AntiThrust => "anti-thrust",
-    };
-    let offset = 1e3 * case.piston.gravity_offset.map_or(0.0, |d| d.si());
+    // Of a case that ran, both are there.
+    let pin = case.engine.crank().map_or(0.0, |c| c.pin_offset);
+    let offset = 1e3 * case.piston.body(pin).map_or(0.0, |b| b.gravity_offset);
+    let side = if offset > 0.0 { "thrust" } else { "anti-thrust" };
     Note::info(
         "centre_of_gravity",
-        format!("Centre of gravity {offset:.3} mm from the pin on its {side} side"),
+        format!("Centre of gravity {:.3} mm from the pin on its {side} side", offset.abs()),
     )
 }
