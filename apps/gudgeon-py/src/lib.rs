@@ -18,7 +18,7 @@ mod native {
     use gudgeon_case::{Diagnostic, catalogue};
     use gudgeon_core::Registry;
     use gudgeon_numerics::table::Pchip;
-    use gudgeon_scene::scenes;
+    use gudgeon_scene::{case_schemas, scenes};
     use pyo3::exceptions::PyValueError;
     use pyo3::prelude::*;
     use pyo3::types::PyByteArray;
@@ -100,8 +100,9 @@ mod native {
     /// Everything known of one model.
     #[pyfunction]
     fn model(py: Python<'_>, what: &str) -> PyResult<Py<PyAny>> {
-        let m = catalogue::model(&Registry::collect(), what).map_err(unknown)?;
-        to_python(py, &catalogue::of_model(m))
+        let registry = Registry::collect();
+        let m = catalogue::model(&registry, what).map_err(unknown)?;
+        to_python(py, &catalogue::of_model(&registry, m, &case_schemas()))
     }
 
     /// Names and summaries of all scenes.

@@ -554,16 +554,20 @@ fn scenes_and_their_tables_are_described() {
 #[test]
 fn examples_stand_where_a_case_has_them() {
     for (model, place) in [
-        ("oil/walther", "  [models.oil]\n  model = \"walther\"\n"),
-        ("rig/slider", "  [rig]\n  model = \"slider\"\n"),
-        ("coupling/linear", "  [shafts.coupling]\n  model = \"linear\"\n"),
-        ("drive/constant", "  [drives.drive]\n  model = \"constant\"\n"),
-        ("hoop/correct", "  [conventions.hoop]\n  model = \"correct\"\n"),
-        ("film_1d/off", "  [rig.film_1d]\n  model = \"off\"\n"),
-        ("ring_pack_solver/implicit", "  [solver]\n  method = \"implicit\"\n"),
-        ("piston_solver/backward_euler", "  [solver]\n  method = \"backward_euler\"\n"),
+        ("oil/walther", "[models.oil]\nmodel = \"walther\"\n"),
+        ("rig/slider", "[rig]\nmodel = \"slider\"\n"),
+        ("coupling/linear", "[shafts.coupling]\nmodel = \"linear\"\n"),
+        ("drive/constant", "[drives.drive]\nmodel = \"constant\"\n"),
+        ("hoop/correct", "[conventions.hoop]\nmodel = \"correct\"\n"),
+        ("film_1d/off", "[rig.film_1d]\nmodel = \"off\"\n"),
+        ("ring_pack_solver/implicit", "[solver]\nmethod = \"implicit\"\n"),
+        ("piston_solver/backward_euler", "[solver]\nmethod = \"backward_euler\"\n"),
     ] {
+        let example = json(&["describe", model, "--json"])["example"].as_str().expect("text").to_owned();
+        assert!(example.starts_with(place), "{place} missing in {example}");
         let page = stdout(&gudgeon(&["describe", model]));
-        assert!(page.contains(place), "{place} missing in {page}");
+        for line in example.lines() {
+            assert!(page.contains(&format!("\n  {line}\n")), "{line} missing in {page}");
+        }
     }
 }

@@ -8,6 +8,7 @@ use gudgeon_core::{KindInfo, ModelInfo, Registry};
 use serde_json::{Map, Value, json};
 
 use crate::near::{advice, list};
+use crate::places::{self, Place};
 use crate::report::Diagnostic;
 
 /// The kind of that name.
@@ -66,9 +67,9 @@ pub fn of_kind(registry: &Registry, k: &KindInfo) -> Value {
 }
 
 /// Everything that is known of a model: `kind`, `model`, `summary`, `equations`, `validity`, `references`, `example`, `source`, `schema`,
-/// `definitions`.
+/// `definitions`. `cases` are the schemas of the cases it may stand in, each with its `$defs`.
 #[must_use]
-pub fn of_model(m: &ModelInfo) -> Value {
+pub fn of_model(registry: &Registry, m: &ModelInfo, cases: &[Value]) -> Value {
     let (schema, definitions) = schema(m);
     json!({
         "kind": m.kind,
@@ -77,7 +78,7 @@ pub fn of_model(m: &ModelInfo) -> Value {
         "equations": equations(m).collect::<Vec<_>>(),
         "validity": m.validity,
         "references": m.references,
-        "example": example(m),
+        "example": example(registry, m, cases),
         "source": format!("{}:{}", m.file, m.line),
         "schema": schema,
         "definitions": definitions,
@@ -89,10 +90,11 @@ pub fn equations(m: &ModelInfo) -> impl Iterator<Item = &'static str> {
     m.equations.split(";  ").map(str::trim).filter(|e| !e.is_empty())
 }
 
-/// The example of a model as a table of a case file.
+/// The example of a model as a table of a case, where the cases of these schemas have its kind.
 #[must_use]
-pub fn example(m: &ModelInfo) -> String {
-    format!("[models.{}]\nmodel = \"{}\"\n{}", m.kind, m.name, m.example.trim_start())
+pub fn example(registry: &Registry, m: &ModelInfo, cases: &[Value]) -> String {
+    let Place { path, key } = places::of(registry, m.kind, cases);
+    format!("[{path}]\n{key} = \"{}\"\n{}", m.name, m.example.trim_start())
 }
 
 /// The schema of a model and what it refers to.
@@ -101,6 +103,11 @@ pub fn schema(m: &ModelInfo) -> (Value, Map<String, Value>) {
     let mut g = SchemaGenerator::default();
     let schema = (m.schema)(&mut g).to_value();
     (schema, g.take_definitions(true))
+}
+
+/// What the schema of a case refers to.
+pub(crate) fn definitions(case: &Value) -> Map<String, Value> {
+    case.get("$defs").and_then(Value::as_object).cloned().unwrap_or_default()
 }
 
 /// Tables inside tables that are shown; a model inside a model names its kind instead.
@@ -227,8 +234,7 @@ pub fn set_tables(registry: &Registry, cases: &[Value]) -> Vec<SetTable> {
     let mut all: Vec<SetTable> = models.map(of_model).filter(|t| !t.sets.is_empty()).collect();
     let mut tables = BTreeMap::new();
     for case in cases {
-        let definitions = case.get("$defs").and_then(Value::as_object).cloned().unwrap_or_default();
-        tables_with_sets(case, &definitions, 0, &mut tables);
+        tables_with_sets(case, &definitions(case), 0, &mut tables);
     }
     all.extend(tables.into_iter().map(|(of, sets)| SetTable { of, sets }));
     all

@@ -12,6 +12,7 @@ mod cursor;
 mod inputs;
 mod near;
 mod overrides;
+mod places;
 mod published;
 mod refine;
 mod render;

@@ -28,7 +28,8 @@ pub use heading::{Headed, Heading};
 pub use provenance::sha256;
 pub use run::{Checked, check, check_case, check_source, explain, run, run_verified};
 pub use scene::{
-    Scene, SceneCase, SceneInfo, SceneName, changed, help, load, read_case, scenes, verify_scenes,
+    Scene, SceneCase, SceneInfo, SceneName, case_schemas, changed, help, load, read_case, scenes,
+    verify_scenes,
 };
 pub use solver_table::{SolverCommon, SolverTable, default_solvers};
 pub use sweep_input::{Axis, Spacing, Sweep, number, values};

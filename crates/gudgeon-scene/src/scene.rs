@@ -7,6 +7,7 @@ use std::any::Any;
 use std::borrow::Cow;
 use std::sync::{Mutex, OnceLock, PoisonError};
 
+use gudgeon_case::catalogue::resolve;
 use gudgeon_case::{
     Help, Input, Loaded, Refinement, Report, Source, UsedSet, load_source, nearest, scene_of, top_level_keys,
 };
@@ -16,6 +17,7 @@ use gudgeon_core::{BuildError, Stopped, Stopwatch};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use serde_json::Map;
 
 use crate::error::{Progress, RunError};
 use crate::explanation::Explanation;
@@ -365,6 +367,28 @@ impl SceneInfo {
     pub fn crate_name(&self) -> &'static str {
         self.module.split("::").next().unwrap_or(self.module)
     }
+
+    /// The JSON schema of a case and what it refers to.
+    #[must_use]
+    pub fn case_schema(&self) -> (serde_json::Value, Map<String, serde_json::Value>) {
+        let mut generator = SchemaGenerator::default();
+        let root = (self.schema)(&mut generator).to_value();
+        let definitions = generator.take_definitions(true);
+        // A case is a definition of its own, or stands at the root.
+        let case = resolve(&root, &definitions).0.clone();
+        (case, definitions)
+    }
+}
+
+/// The JSON schemas of the cases of all scenes, each with what it refers to under `$defs`.
+#[must_use]
+pub fn case_schemas() -> Vec<serde_json::Value> {
+    let one = |s: &&SceneInfo| {
+        let (mut case, definitions) = s.case_schema();
+        case["$defs"] = definitions.into();
+        case
+    };
+    scenes().iter().map(one).collect()
 }
 
 /// Reads a case of the scene `C`: what [`register_scene!`](crate::register_scene) hands over.

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use gudgeon_case::catalogue::{equations, example, schema};
 use gudgeon_core::{KindInfo, ModelInfo, Registry};
-use gudgeon_scene::{SceneInfo, scenes};
+use gudgeon_scene::{SceneInfo, case_schemas, scenes};
 use schemars::SchemaGenerator;
 use serde_json::{Map, Value};
 
@@ -27,6 +27,8 @@ const MARK: &str = "# Reference";
 #[derive(Debug)]
 pub struct Facts {
     registry: Registry,
+    /// Schemas of the cases of all scenes.
+    schemas: Vec<Value>,
     cases: Vec<Case>,
     benches: Vec<Bench>,
     works: BTreeMap<String, Entry>,
@@ -41,6 +43,7 @@ impl Facts {
         gudgeon_models::link();
         Ok(Self {
             registry: Registry::collect(),
+            schemas: case_schemas(),
             cases: cases::all()?,
             benches: benches::all()?,
             works: bib::entries()?,
@@ -230,7 +233,8 @@ impl Facts {
         section(&mut s, "Validity", &escaped(m.validity));
         let keys = list(&schema, &names, "../../kinds/");
         section(&mut s, "Keys", if keys.is_empty() { "None." } else { &keys });
-        section(&mut s, "Example", &format!("```toml\n{}\n```", example(m).trim_end()));
+        let example = example(&self.registry, m, &self.schemas);
+        section(&mut s, "Example", &format!("```toml\n{}\n```", example.trim_end()));
         section(&mut s, "References", &cited(m.references));
         let users = users(&self.cases);
         let used = users.get(format!("{}/{}", m.kind, m.name).as_str());

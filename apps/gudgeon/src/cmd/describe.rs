@@ -4,11 +4,12 @@ use std::fmt::Write as _;
 
 use crate::args::{DescribeArgs, ModelsArgs};
 use crate::cmd::keys::keys;
-use crate::cmd::{models, places, scenes};
+use crate::cmd::{models, scenes};
 use crate::failure::Failure;
 use crate::ui::{Ui, wrapped};
 use gudgeon_case::catalogue::{self, equations, schema};
 use gudgeon_core::{ModelInfo, Registry, sets};
+use gudgeon_scene::case_schemas;
 
 pub fn describe(a: &DescribeArgs, registry: &Registry, ui: &Ui) -> Result<(), Failure> {
     let what = a.what.trim().trim_start_matches("models.");
@@ -23,7 +24,7 @@ pub fn describe(a: &DescribeArgs, registry: &Registry, ui: &Ui) -> Result<(), Fa
     }
     let m = catalogue::model(registry, what)?;
     if a.json {
-        ui.json(&catalogue::of_model(m));
+        ui.json(&catalogue::of_model(registry, m, &case_schemas()));
     } else {
         ui.out(&page(registry, m));
     }
@@ -57,7 +58,7 @@ fn page(registry: &Registry, m: &ModelInfo) -> String {
         s.push_str(&crate::cmd::sets::text(&sets, 2));
     }
     let _ = writeln!(s, "\nExample");
-    for line in places::example(registry, m).lines() {
+    for line in catalogue::example(registry, m, &case_schemas()).lines() {
         let _ = writeln!(s, "  {line}");
     }
     let _ = writeln!(

@@ -11,7 +11,6 @@ mod keys;
 pub mod man;
 pub mod models;
 pub mod new;
-mod places;
 pub mod report;
 pub mod run;
 mod scenes;

@@ -4,7 +4,6 @@ use std::fmt::Write as _;
 
 use gudgeon_case::catalogue::resolve;
 use gudgeon_case::{Diagnostic, advice};
-use gudgeon_core::schemars::SchemaGenerator;
 use gudgeon_scene::SceneInfo;
 use serde_json::{Map, Value, json};
 
@@ -19,7 +18,7 @@ pub fn named(what: &str) -> Option<(&'static SceneInfo, &str)> {
 }
 
 pub fn describe(scene: &SceneInfo, path: &str, as_json: bool, ui: &Ui) -> Result<(), Failure> {
-    let (case, definitions) = schema(scene);
+    let (case, definitions) = scene.case_schema();
     let table = at(&case, &definitions, path, scene)?;
     if as_json {
         ui.json(&json!({ "scene": scene.name, "path": path, "summary": scene.summary, "equations": scene.equations,
@@ -43,16 +42,6 @@ pub fn describe(scene: &SceneInfo, path: &str, as_json: bool, ui: &Ui) -> Result
     keys(table, &definitions, 2, 0, &mut s);
     ui.out(&s);
     Ok(())
-}
-
-/// The schema of a case and what it refers to.
-pub fn schema(scene: &SceneInfo) -> (Value, Map<String, Value>) {
-    let mut generator = SchemaGenerator::default();
-    let root = (scene.schema)(&mut generator).to_value();
-    let definitions = generator.take_definitions(true);
-    // A case is a definition of its own, or stands at the root.
-    let case = resolve(&root, &definitions).0.clone();
-    (case, definitions)
 }
 
 /// The table at a path of a case; indices of arrays may be left out.

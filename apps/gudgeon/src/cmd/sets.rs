@@ -7,16 +7,15 @@ use gudgeon_case::advice;
 use gudgeon_case::catalogue::{SetTable, set_tables};
 use gudgeon_core::Registry;
 use gudgeon_core::sets::ParameterSets;
-use gudgeon_scene::scenes;
+use gudgeon_scene::case_schemas;
 use serde_json::{Value, json};
 
-use crate::cmd::scenes::schema;
 use crate::failure::Failure;
 use crate::ui::{Ui, wrapped};
 
 /// Lists the parameter sets of everything, or of a kind, a model or a table of a case.
 pub fn list(only: Option<&str>, as_json: bool, registry: &Registry, ui: &Ui) -> Result<(), Failure> {
-    let all = set_tables(registry, &schemas());
+    let all = set_tables(registry, &case_schemas());
     let shown: Vec<&SetTable> = all.iter().filter(|t| only.is_none_or(|o| is_of(t, o))).collect();
     if shown.is_empty() {
         return Err(none(only.unwrap_or_default(), &all, registry).into());
@@ -56,14 +55,4 @@ fn none(name: &str, all: &[SetTable], registry: &Registry) -> Diagnostic {
         || name.split_once('/').is_some_and(|(k, m)| registry.model(k, m).is_some());
     let what = if known { "has no parameter sets" } else { "is no kind, model or table with parameter sets" };
     Diagnostic::new(format!("`{name}` {what}")).help(advice(name, &names))
-}
-
-/// The schemas of the cases of all scenes, each with what it refers to.
-fn schemas() -> Vec<Value> {
-    let one = |s: &&gudgeon_scene::SceneInfo| {
-        let (mut case, definitions) = schema(s);
-        case["$defs"] = definitions.into();
-        case
-    };
-    scenes().iter().map(one).collect()
 }

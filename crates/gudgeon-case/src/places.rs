@@ -1,10 +1,9 @@
 //! Where a model of a kind stands in a case.
 
-use gudgeon_case::catalogue::{choice, resolve};
-use gudgeon_core::{ModelInfo, Registry};
+use gudgeon_core::Registry;
 use serde_json::{Map, Value};
 
-use crate::cmd::scenes::schema;
+use crate::catalogue::{choice, definitions, resolve};
 
 /// Tables inside tables that are looked into.
 const DEPTH: usize = 3;
@@ -18,22 +17,15 @@ pub struct Place {
     pub key: String,
 }
 
-/// The example of a model as a table of a case.
-pub fn example(registry: &Registry, m: &ModelInfo) -> String {
-    let Place { path, key } = of(registry, m.kind);
-    format!("[{path}]\n{key} = \"{}\"\n{}", m.name, m.example.trim_start())
-}
-
-/// Where a kind stands: among the models where any scene has it there, else at the first place of the first scene that asks for it, else
+/// Where a kind stands: among the models where any of these cases has it there, else at the first place of the first case that asks for it, else
 /// in the first model that does.
-fn of(registry: &Registry, kind: &str) -> Place {
+pub fn of(registry: &Registry, kind: &str, cases: &[Value]) -> Place {
     let names: Vec<&str> = registry.models(kind).iter().map(|m| m.name).collect();
     let usual = Place { path: format!("models.{kind}"), key: "model".into() };
     for in_models in [false, true] {
         let mut search = Search { kind, names: &names, in_models, found: Vec::new() };
-        for scene in gudgeon_scene::scenes() {
-            let (case, definitions) = schema(scene);
-            search.table(&case, &definitions, "", 0);
+        for case in cases {
+            search.table(case, &definitions(case), "", 0);
         }
         if search.found.contains(&usual) {
             return usual;
