@@ -1,5 +1,6 @@
 use gudgeon_core::kinds::{Contact, ContactSpec};
 use gudgeon_core::quantity::{Length, NonNegative, PosPressure, Ratio, quantity};
+use gudgeon_core::sets::Sets;
 use gudgeon_core::{BuildError, register_model};
 use gudgeon_numerics::quadrature::GaussLegendre;
 use gudgeon_numerics::table::Pchip;
@@ -15,6 +16,7 @@ use serde::{Deserialize, Serialize};
 /// The heights count from any datum, up from the body: the mean plane, from which the separation `h` counts, is found from the curve.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(transform = Sets(include_str!("abbott_firestone.json")))]
 pub struct AbbottFirestone {
     /// Heights, ascending.
     pub height: Vec<Length>,

@@ -36,11 +36,11 @@ use crate::asperity_integral::{f_1, f_2, f_5_2_field};
 /// pressed flat there, and the model says what a perfectly elastic surface would do.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(transform = Sets(include_str!("greenwood_tripp.json")))]
+#[schemars(transform = Sets(include_str!("surfaces.json")))]
 pub struct GreenwoodTripp {
     /// Composite roughness σ of the two surfaces: `√(σ1² + σ2²)` of their rms roughness.
     pub roughness: PosLength,
-    /// Composite modulus E' with `1/E' = Σ (1-ν²)/E`: about 115 GPa for steel on cast iron.
+    /// Composite modulus E' with `1/E' = Σ (1-ν²)/E`: about 75 GPa for steel on grey cast iron, 115 GPa for steel on steel.
     pub composite_modulus: PosPressure,
     /// Asperities per area η; with `asperity_radius`.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -1,5 +1,6 @@
 use gudgeon_core::kinds::{Contact, ContactSpec};
 use gudgeon_core::quantity::{NonNegative, PosLength, PosPressure, PosRatio, Ratio, quantity};
+use gudgeon_core::sets::Sets;
 use gudgeon_core::{BuildError, register_model};
 use serde::{Deserialize, Serialize};
 
@@ -20,10 +21,11 @@ use crate::summits::{SummitHeights, Summits};
 /// [`GreenwoodTripp`](crate::GreenwoodTripp), where summits also meet side by side. The film is as thick as the mean gap, `σ F_1(-h/σ)`.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(transform = Sets(include_str!("surfaces.json")))]
 pub struct GreenwoodWilliamson {
     /// Composite roughness σ of the two surfaces: `√(σ1² + σ2²)` of their rms roughness.
     pub roughness: PosLength,
-    /// Composite modulus E' with `1/E' = Σ (1-ν²)/E`: about 115 GPa for steel on cast iron.
+    /// Composite modulus E' with `1/E' = Σ (1-ν²)/E`: about 75 GPa for steel on grey cast iron, 115 GPa for steel on steel.
     pub composite_modulus: PosPressure,
     /// The product η β σ of the sum of both surfaces, usually 0.03 to 0.07.
     pub eta_beta_sigma: PosRatio,

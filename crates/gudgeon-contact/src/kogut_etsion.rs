@@ -1,5 +1,6 @@
 use gudgeon_core::kinds::{Contact, ContactSpec};
 use gudgeon_core::quantity::{NonNegative, PosLength, PosPressure, PosRatio, Ratio, quantity};
+use gudgeon_core::sets::Sets;
 use gudgeon_core::{BuildError, register_model};
 use gudgeon_numerics::elementary;
 use serde::{Deserialize, Serialize};
@@ -26,10 +27,11 @@ use crate::summits::{SummitHeights, Summits};
 /// mean gap of the undeformed heights.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(transform = Sets(include_str!("kogut_etsion.json")))]
 pub struct KogutEtsion {
     /// Composite roughness σ of the two surfaces: `√(σ1² + σ2²)` of their rms roughness.
     pub roughness: PosLength,
-    /// Composite modulus E' with `1/E' = Σ (1-ν²)/E`: about 115 GPa for steel on cast iron.
+    /// Composite modulus E' with `1/E' = Σ (1-ν²)/E`: about 75 GPa for steel on grey cast iron, 115 GPa for steel on steel.
     pub composite_modulus: PosPressure,
     /// Hardness H of the softer surface: about 2 GPa for grey cast iron.
     pub hardness: PosPressure,

@@ -1,5 +1,6 @@
 use gudgeon_core::kinds::{Contact, ContactSpec};
 use gudgeon_core::quantity::{NonNegative, PosLength, PosPressure, PosRatio, Ratio, quantity};
+use gudgeon_core::sets::Sets;
 use gudgeon_core::{BuildError, register_model};
 use gudgeon_numerics::elementary;
 use serde::{Deserialize, Serialize};
@@ -22,10 +23,11 @@ use crate::summits::{SummitHeights, Summits};
 /// the pressure goes on along its tangent, and the film thins out exponentially.
 #[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(transform = Sets(include_str!("surfaces.json")))]
 pub struct LoadSharing {
     /// Composite roughness σ of the two surfaces: `√(σ1² + σ2²)` of their rms roughness.
     pub roughness: PosLength,
-    /// Composite modulus E' with `1/E' = Σ (1-ν²)/E`: about 115 GPa for steel on cast iron.
+    /// Composite modulus E' with `1/E' = Σ (1-ν²)/E`: about 75 GPa for steel on grey cast iron, 115 GPa for steel on steel.
     pub composite_modulus: PosPressure,
     /// The product η β σ of the sum of both surfaces, usually 0.03 to 0.07.
     pub eta_beta_sigma: PosRatio,

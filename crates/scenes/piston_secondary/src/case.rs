@@ -9,6 +9,7 @@ use gudgeon_core::quantity::{
     Angle, Length, NonNegative, PosAngle, PosExpansion, PosInertia, PosLength, PosMass, PosPressure,
     PosRatio, PosTemperature, PosTime, Pressure, Ratio, quantity,
 };
+use gudgeon_core::sets::Sets;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -89,6 +90,7 @@ pub struct Skirt {
 /// Thermal growth of skirt and bore.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(transform = Sets(include_str!("thermal.json")))]
 pub struct Thermal {
     /// Temperature of the skirt.
     pub skirt: PosTemperature,
