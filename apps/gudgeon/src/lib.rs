@@ -2,6 +2,7 @@
 //! register them and call [`main`] (`examples/custom-model` does).
 //!
 //! Exit codes: 0 done, 1 the run failed, 2 the input is wrong.
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 
 mod args;
 mod cmd;

@@ -6,6 +6,7 @@
 //!    words and models at once.
 //! 4. Deserialisation decides. What it refuses after a clean walk is reported at the path where it stopped.
 //! 5. A [`BuildError`] that a later stage raises finds its place through [`Loaded::locate`].
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 
 pub mod catalogue;
 mod cursor;

@@ -54,6 +54,7 @@
 //! ```
 //!
 //! Units are SI; separations are those of the mean planes, loads are nominal pressures.
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 
 mod abbott_firestone;
 mod asperity_formula;

@@ -19,6 +19,7 @@
 //! wherever it is used, and so are models that hold others (`Box<dyn …Spec>`, see [`spec`]). There is no feature to leave that out: it would
 //! stand on every specification and save 6 packages. Reading case files (TOML, places, diagnostics) is `gudgeon-case`, which no physics crate
 //! depends on; the program as a whole is 129 packages.
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 
 pub mod content;
 pub mod error;

@@ -51,6 +51,7 @@
 //! ```
 //!
 //! Units are SI. Pressures are absolute, loads count from the cavitation pressure, and forces are per metre across the film.
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 
 mod cavitation;
 mod compressibility;

@@ -27,6 +27,7 @@
 //! | [`Prescribed`] | closed: land pressures are given | | |
 //!
 //! Units are SI, pressures are absolute, flows are positive towards the crankcase.
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 
 mod channel;
 mod directed;

@@ -17,6 +17,7 @@
 //!
 //! so that a case without it is refused with its line; the accessors here ([`Engine::crank`], [`Piston::body`]) refuse it too, for cases that no
 //! file was read for.
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 
 mod engine;
 mod piston;

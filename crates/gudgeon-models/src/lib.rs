@@ -2,8 +2,9 @@
 //!
 //! A crate that no code names is never given to the linker, and its models would be missing without a word. Programs,
 //! tests and benches call [`link`] or name this crate (`use gudgeon_models as _;`, enough but for WebAssembly), and this crate names the rest.
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 // Not for its unit tests, which see the dependencies of the integration tests too.
-#![cfg_attr(not(test), deny(unused_crate_dependencies))]
+#![cfg_attr(not(any(test, doctest)), deny(unused_crate_dependencies))]
 
 use std::fmt::Write;
 

@@ -134,6 +134,7 @@
 //! assert!(matches!(none, Err(RootError::NoBracket { f_lo: 2.0, f_hi: 2.0, .. })));
 //! # Ok::<(), RootError>(())
 //! ```
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 
 pub mod bdf;
 pub mod elementary;

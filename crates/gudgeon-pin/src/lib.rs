@@ -64,6 +64,7 @@
 //! | `pin_load` | [`PeakPressureRule`], [`Given`], [`Cycle`], [`OtherCase`] |
 //! | `fatigue` | [`Goodman`], [`Gerber`], [`Soderberg`], [`Off`] |
 //! | `profile_curve` | [`Lagrange`], [`MonotoneCubic`], [`Linear`] |
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 
 pub mod certificate;
 pub mod design;

@@ -12,6 +12,7 @@
 //! bytes; wall times stand in `timing.json`. A page is one file that loads nothing: its style, its
 //! script and its data are inside, and its content policy forbids the browser any request. A link may open it at a crank
 //! angle and a range: `report.html#theta=380&view=300,480`.
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 
 mod bench;
 mod comparison;

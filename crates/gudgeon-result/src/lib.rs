@@ -1,4 +1,5 @@
 //! What a run produces, independent of how it is written: the interface between the simulation and the report.
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 
 mod gradients;
 mod overview;

@@ -36,6 +36,7 @@
 //! ```
 //!
 //! Units are SI. Heights `s` are measured from the lower groove flank, velocities and forces are positive towards the head.
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 
 pub mod axial_gas;
 pub mod cavitation_datum;

@@ -1,4 +1,5 @@
 //! What a scene is, and what is the same for all scenes: reading and checking a case, explaining, running, sweeping and verifying it.
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 
 mod error;
 mod explanation;

@@ -44,6 +44,7 @@
 //! assert!((2e-6..1e-5).contains(&skirt.rest(0, -force)), "some micrometres");
 //! # Ok::<(), gudgeon_core::BuildError>(())
 //! ```
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 
 mod body;
 mod geometry;

@@ -1,5 +1,6 @@
 //! Many runs: comparisons of models and settings, run time against error of solvers, validation against sources; where to run and what the
 //! results depend on.
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 
 pub mod anova;
 mod bench;

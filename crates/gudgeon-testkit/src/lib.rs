@@ -53,6 +53,7 @@
 //! let spec: Box<dyn OilSpec> = serde_json::from_str(r#"{ "model": "syrup", "viscosity": "0.1 Pa s" }"#).unwrap();
 //! gudgeon_testkit::assert_none(gudgeon_testkit::oil(&*spec.build().unwrap()));
 //! ```
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 
 mod bibliography;
 mod contract;

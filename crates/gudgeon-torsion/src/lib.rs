@@ -38,6 +38,7 @@
 //! | `torsion` | [`torsion::Orders`], [`torsion::Modal`], [`torsion::HarmonicBalance`], [`torsion::Propagator`], [`torsion::RungeKutta`], [`torsion::Implicit`], [`torsion::Off`] |
 //!
 //! Everything rests on one data structure, the line as a tree in the order of its elimination: see [`tree`].
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 
 mod bracket;
 mod chain;

@@ -3,6 +3,7 @@
 //! Inside the program every value is an SI `f64`; a [`Quantity`] exists only where a file is read or echoed. Its two
 //! type parameters say which dimension it has and which values it admits, so that a wrong unit, a negative clearance
 //! or a NaN is refused while the file is being read, where the error can still point at the text.
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 
 mod spelling;
 

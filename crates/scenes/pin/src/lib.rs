@@ -1,4 +1,5 @@
 //! The scene `pin`: a gudgeon pin evaluated or sized, and the piston around it.
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 
 pub mod case;
 mod draw;

@@ -2,6 +2,7 @@
 //!
 //! `assemble` builds the sub-models into an `assembly`, `layout` places their states, `equations` gives the rates of all states, `implicit`, its `stages` and `backward_euler` integrate
 //! them, `march` finds the periodic motion and `search` the motions on the way to it, `row` and `survey` look at a cycle, `results`, `record` and `draw` turn it into results, rows and pictures.
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 
 pub mod assemble;
 pub mod assembly;

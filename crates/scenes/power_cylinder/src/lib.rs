@@ -1,4 +1,5 @@
 //! The scene `power_cylinder`: the rings and the skirt of one cylinder in one case. Kinematics and gas are those of the ring pack, given once.
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 
 pub mod case;
 

@@ -1,4 +1,5 @@
 //! The scene `rig` and its test benches: one file per rig. A rig takes one sub-model, prescribes what a scene would compute, and shows what comes out.
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 
 mod along;
 pub mod case;

@@ -3,6 +3,7 @@
 //! `geometry` resolves dimensions, `plan` decides what must run, `assemble` builds the sub-models into a `pack::Pack`,
 //! one of `implicit`, `substep_march` and `degree_march` solves it. `measure` gathers what the results need on the steps of the last cycle,
 //! `results` says it, `record` holds the series.
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 
 pub mod acted;
 pub mod around;

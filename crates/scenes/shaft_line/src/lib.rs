@@ -3,6 +3,7 @@
 //! A case is assembled once for each load step (`assemble`, `steps`) and each of these lines is asked for its vibration at one
 //! speed after the other (`machine`). The case as it stands gives the results at the mean speed and the diagrams (`results`); all
 //! of them give the verdict (`verdict`).
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 
 pub mod assemble;
 mod balance;
