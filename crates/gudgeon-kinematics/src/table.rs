@@ -270,7 +270,7 @@ impl Table {
         let (away, most) = (from(firing), if four { AWAY.0 } else { AWAY.1 });
         (away.abs() > most).then(|| {
             let hint = match from(firing + 2.0 * PI).abs() <= most {
-                true if four => "; a trace that counts from the firing dead centre wants `shift = \"360 deg\"`",
+                true if four => " A trace that counts from the firing dead centre wants `shift = \"360 deg\"`",
                 _ => "",
             };
             let text = format!(

@@ -187,7 +187,7 @@ fn of_ring(r: &Ring, i: usize, bore: f64) -> Vec<Look> {
                 four(7.5e6 * volume)
             ),
             ratio: density,
-            told: (700.0, 16e3),
+            told: (700.0, 20e3),
             most: 23e3,
             unit: "g",
         },

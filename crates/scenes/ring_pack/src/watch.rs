@@ -210,8 +210,9 @@ impl Watch {
     }
 }
 
-/// Topics of drags and floors that stand for no physics of the ring: what they take of a load that the film hardly has.
-const NUMERICAL: [&str; 4] = ["radial_drag", "contact_drag", "radial_speed", "min_load"];
+/// Topics of drags that stand for no physics of the ring: what they take of a load that the film hardly has. (`min_load` is none of them: gas presses the
+/// ring off.)
+const NUMERICAL: [&str; 3] = ["radial_drag", "contact_drag", "radial_speed"];
 
 /// Seats that are taken back as soon as they are taken.
 fn chatter(ring: usize, log: &SeatLog) -> Option<Note> {
