@@ -56,7 +56,9 @@ pub fn unusual(loaded: &Loaded<RingPackCase>) -> Vec<Note> {
         let text = format!("`{}`: {what}; {help}", l.path);
         Note::caution(format!("unusual.{}", l.path), text)
     };
-    let outside = |l: &Look| l.ratio < l.told.0 || l.ratio > l.told.1;
+    // A bare number that is improbable in SI is told already where it was read.
+    let said = |l: &Look| loaded.notes.iter().any(|n| n.starts_with(&format!("{} is ", l.path)));
+    let outside = |l: &Look| (l.ratio < l.told.0 || l.ratio > l.told.1) && !said(l);
     looks(&loaded.value).into_iter().filter(outside).map(told).collect()
 }
 
