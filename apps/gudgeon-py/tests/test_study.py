@@ -49,7 +49,7 @@ def test_the_table_opens_elsewhere(undisturbed):
     frame, path = undisturbed.to_dataframe(), undisturbed.folder / "table.parquet"
     told = polars.read_parquet(path)
     assert told.columns == list(frame) and told["load"].to_list() == frame["load"].tolist()
-    # The query of docs/studies.md.
+    # The query of docs/guide/src/studies.md.
     rows = duckdb.sql(f"""select "rig.speed", load from '{path}' where code = ''""").fetchall()
     assert rows == list(zip(frame["rig.speed"].tolist(), frame["load"].tolist()))
 

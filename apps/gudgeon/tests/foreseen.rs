@@ -101,15 +101,24 @@ fn every_value_of_a_sweep() {
     with(
         "[[sweeps]]\npath = \"rings.1.temperature\"\nvalues = [\n\"150 degC\",\n\"160 degC\",\n\"210 degC\",\n]\n",
     );
-    let said = folder.refused("case.toml", &[]);
+    // A gap that closes is no mistake of the file: its point is left out by the run, and told.
+    let o = folder.run(&["check", "case.toml"]);
+    assert!(o.status.success(), "{}", stderr(&o));
+    let o = folder.run(&["run", "case.toml", "--set", "models.oil_transport.model=off", "--out", "left-out"]);
+    assert!(o.status.success(), "{}", stderr(&o));
+    let told = String::from_utf8_lossy(&o.stdout);
     holds(
-        &said,
-        &["sweeps.0.values.2", "1 of 3 points cannot be run", "rings.1.cold_gap: the end gap of ring 2"],
+        &told,
+        &["1 of 3 points of the sweep", "left out, for it cannot be", "the end gap of ring 2 closes"],
     );
+    // Values that all make none are.
+    with("[[sweeps]]\npath = \"rings.1.temperature\"\nvalues = [\"200 degC\", \"210 degC\"]\n");
+    let said = folder.refused("case.toml", &[]);
+    holds(&said, &["sweeps.0", "2 of 2 points cannot be run", "rings.1.cold_gap: the end gap of ring 2"]);
     with("[[sweeps]]\npath = \"engine.bore\"\nvalues = [\"100 mm\", \"100 bar\"]\n");
     holds(&folder.refused("case.toml", &[]), &["sweeps.0.values.1", "`bar` is not a unit of a length"]);
-    with("[[sweeps]]\npath = \"rings.1.temperature\"\nfrom = \"100 degC\"\nto = \"300 degC\"\npoints = 9\n");
-    holds(&folder.refused("case.toml", &[]), &["sweeps.0:", "of 9 points cannot be run"]);
+    with("[[sweeps]]\npath = \"rings.1.temperature\"\nfrom = \"250 degC\"\nto = \"300 degC\"\npoints = 9\n");
+    holds(&folder.refused("case.toml", &[]), &["sweeps.0:", "9 of 9 points cannot be run"]);
     // Of two sweeps the one that is to blame.
     with(
         "[[sweeps]]\npath = \"engine.speed\"\nvalues = [\"1000 rpm\", \"2000 rpm\"]\n\
@@ -332,4 +341,42 @@ fn results_stay_inside_their_folder() {
     let o = folder.run(&["run", "...toml", "--set", "outputs.results=[\"blow_by\"]", "--quiet"]);
     assert!(o.status.success(), "{}", stderr(&o));
     assert!(folder.0.join("out/case/summary.json").is_file() && !folder.0.join("summary.json").exists());
+}
+
+#[test]
+fn values_that_no_ring_pack_has() {
+    let folder = Folder::new("plausible");
+    folder.write("case.toml", &base());
+    let impossible = [
+        ("rings.0.cold_gap=\"450 mm\"", "of the bore"),
+        ("rings.0.tangential_force=\"12000 N\"", "more than steel carries"),
+        ("rings.0.mass=\"9 kg\"", "osmium"),
+        ("rings.0.face.drop=\"9 mm\"", "of drop on a face"),
+        ("engine.bore=120", "did you mean `\"120 mm\"`?"),
+        ("rings.1.cold_gap=0.45", "did you mean `\"0.45 mm\"`?"),
+    ];
+    for (set, said) in impossible {
+        let told = folder.refused("case.toml", &[set]);
+        holds(&told, &[set.split('=').next().expect("a path"), said, "usual: "]);
+        assert!(
+            told.contains("1 mistake") || told.matches('×').count() == 1,
+            "no mistakes that follow from it: {told}"
+        );
+    }
+    let unusual = [
+        ("rings.0.cold_gap=\"9 mm\"", "`rings.0.cold_gap`: 9 mm of end gap"),
+        ("rings.0.tangential_force=\"900 N\"", "`rings.0.tangential_force`: 900 N press the ring"),
+        ("engine.speed=2000", "mean piston speed"),
+        ("gas.crankcase_pressure=\"0.02 bar\"", "`gas.crankcase_pressure`"),
+    ];
+    for (set, said) in unusual {
+        let o = folder.run(&["check", "case.toml", "--set", set]);
+        assert!(o.status.success() && flat(&stderr(&o)).contains(said), "{set}: {}", stderr(&o));
+    }
+    let o = folder.run(&["check", "case.toml"]);
+    assert!(
+        o.status.success() && o.stderr.is_empty(),
+        "nothing is odd about the case itself: {}",
+        stderr(&o)
+    );
 }

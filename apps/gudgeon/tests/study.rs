@@ -200,7 +200,10 @@ fn lists_cases_failures_and_curves() {
     done(&["study", "collect", &study, "--csv", "--quiet"]);
     let table = fs::read_to_string(Path::new(&study).join("table.csv")).expect("a table");
     let rows: Vec<&str> = table.lines().collect();
-    assert_eq!(rows[0], "point,case,rig.speed [m/s],rig.viscosity,code,message,wrong,notes,load [N/m]");
+    assert_eq!(
+        rows[0],
+        "point,case,rig.speed [m/s],rig.viscosity,code,message,wrong,notes,reservations,load [N/m]"
+    );
     assert!(rows[2].starts_with("1,coarse,2,20 mPa s,,,,,"), "{}", rows[2]);
     assert!(
         rows[3].starts_with("2,coarse,3,thin,refused,") && rows[3].contains("rig.viscosity"),

@@ -385,11 +385,21 @@ impl<T> Loaded<T> {
         place(&self.tree, &self.source, path, error.message.clone(), error.help.clone())
     }
 
+    /// The number at a dotted path where it stands without a unit, as it was written or nearly.
+    #[must_use]
+    pub fn bare_number(&self, path: &str) -> Option<String> {
+        match self.tree.deepest(path) {
+            (Node { data: Data::Integer(i), .. }, true) => Some(i.to_string()),
+            (Node { data: Data::Float(f), .. }, true) => Some(f.to_string()),
+            _ => None,
+        }
+    }
+
     /// A report on errors that a later stage found.
     #[must_use]
     pub fn refuse<'e>(&self, errors: impl IntoIterator<Item = &'e BuildError>) -> Report {
         let found = errors.into_iter().map(|e| self.locate(e)).collect();
-        Report::new(found, Arc::clone(&self.source), Arc::clone(&self.overrides))
+        Report::new(found, Arc::clone(&self.source), Arc::clone(&self.overrides)).of_impossible()
     }
 
     /// Who gave the value at a dotted path, and in which line of the file if it was the file.

@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use gudgeon_core::file::Files;
-use gudgeon_core::result::{Failure, REFUSED};
+use gudgeon_core::result::{Failure, IMPOSSIBLE, REFUSED};
 
 use crate::render::{Drawing, Excerpt};
 
@@ -97,6 +97,8 @@ pub struct Report {
     pub overrides: Arc<[String]>,
     /// The option that the arguments from an index on were written as, where that is not `--set`.
     written_as: Option<(usize, &'static str)>,
+    /// Whether everything could be read, and what it says cannot be.
+    impossible: bool,
 }
 
 impl Report {
@@ -105,7 +107,8 @@ impl Report {
     pub fn failure(&self) -> Failure {
         let told: Vec<String> = self.diagnostics.iter().map(Diagnostic::headline).collect();
         let path = self.diagnostics.first().map_or_else(String::new, |d| d.path.clone());
-        Failure { code: REFUSED.into(), message: told.join("; "), path }
+        let code = if self.impossible { IMPOSSIBLE } else { REFUSED };
+        Failure { code: code.into(), message: told.join("; "), path }
     }
 
     /// Puts the mistakes in order.
@@ -114,7 +117,13 @@ impl Report {
         diagnostics.sort_by_key(|d| (d.origin, d.span.as_ref().map_or(usize::MAX, |s| s.start)));
         diagnostics.dedup();
         diagnostics.truncate(MAX_MISTAKES);
-        Self { diagnostics, source, overrides, written_as: None }
+        Self { diagnostics, source, overrides, written_as: None, impossible: false }
+    }
+
+    /// The same of a case that could be read: there is no machine that is as it says.
+    #[must_use]
+    pub(crate) fn of_impossible(self) -> Self {
+        Self { impossible: true, ..self }
     }
 
     /// A report that has nothing but a message: a file that cannot be read.

@@ -155,7 +155,7 @@ impl CylinderPressureSpec for Table {
         };
         let mut rows = self.rows(ctx, period.to_degrees())?;
         rows.check(|p| p * factor * self.scale.si() + self.offset.si(), period.to_degrees())?;
-        let notes: Vec<Note> = self.smooth(&mut rows, period)?.into_iter().collect();
+        let smoothed = self.smooth(&mut rows, period)?;
         let angles: Vec<f64> = rows.theta_deg.iter().map(|t| t.to_radians() + self.shift.si()).collect();
         let linear = self.interpolation == Interpolation::Linear;
         let through = if linear { PeriodicCubic::straight } else { PeriodicCubic::new };
@@ -169,6 +169,7 @@ impl CylinderPressureSpec for Table {
         let top =
             (0..within.len()).max_by(|a, b| rows.pressure[*a].total_cmp(&rows.pressure[*b]).then(b.cmp(a)));
         let highest = top.map_or((0.0, 0.0), |k| (within[k], rows.pressure[k]));
+        let notes = smoothed.into_iter().chain(self.doubt(highest, period)).collect();
         Ok(Box::new(Trace { curve, period, kinks, highest, notes }))
     }
 }
@@ -243,6 +244,44 @@ impl Table {
             (Some(_), ..) => Err(BuildError::at("file", "the rows are given twice, in a file and inline")
                 .help("keep either `file` or `theta_deg` and `pressure`")),
         }
+    }
+}
+
+/// Highest pressure below which a cycle of four strokes is hardly one of an engine, fired or motored: a throttled one is compressed to some 6 bar \[Pa\].
+const LOW: f64 = 4e5;
+/// How far from the dead centre the highest pressure of a cycle of four strokes, and of two, stands at most \[rad\]: combustion at 60 deg behind it is over, and a
+/// compressor delivers from some 70 deg before it.
+const AWAY: (f64, f64) = (PI / 3.0, PI / 2.0);
+
+impl Table {
+    /// What is odd about a trace whose highest pressure \[Pa\] stands at this angle.
+    fn doubt(&self, (at, top): (f64, f64), period: f64) -> Option<Note> {
+        let four = period > 3.0 * PI;
+        let bar = top / 1e5;
+        if four && top < LOW {
+            let text = format!(
+                "the highest cylinder pressure is {bar:.4} bar, less than a motored engine has: are `unit`, here `{}`, and `scale` those of the trace?",
+                self.unit
+            );
+            return Some(Note::caution("cylinder_pressure.low", text).amount("p_max", top, "Pa"));
+        }
+        let firing = if four { 2.0 * PI } else { 0.0 };
+        let from = |dead: f64| (at - dead + 0.5 * period).rem_euclid(period) - 0.5 * period;
+        let (away, most) = (from(firing), if four { AWAY.0 } else { AWAY.1 });
+        (away.abs() > most).then(|| {
+            let hint = match from(firing + 2.0 * PI).abs() <= most {
+                true if four => " A trace that counts from the firing dead centre wants `shift = \"360 deg\"`",
+                _ => "",
+            };
+            let text = format!(
+                "the highest cylinder pressure, {bar:.1} bar, stands at {:.0} deg, far from the {} at {:.0} deg: is `shift`, here {:.0} deg, right?{hint}",
+                at.to_degrees(),
+                if four { "firing dead centre" } else { "upper dead centre" },
+                firing.to_degrees(),
+                self.shift.si().to_degrees()
+            );
+            Note::caution("cylinder_pressure.phase", text).amount("p_max_angle", at.to_degrees(), "deg")
+        })
     }
 }
 

@@ -63,7 +63,10 @@ impl Rows {
             let columns = format.map_or(count, |f| f.1);
             if count > 2 || count != columns {
                 let what = if count == columns { 2 } else { columns };
-                return Err(fault(number, format!("{count} columns where {what} are expected")));
+                let e = fault(number, format!("{count} columns where {what} are expected"));
+                return Err(
+                    e.help("keep the crank angle and the pressure of one cylinder, or pressures alone")
+                );
             }
             format = Some((separator, columns));
             rows.lines.push(number);
@@ -139,8 +142,9 @@ impl Rows {
             }
             let si = pascal(p);
             if !(si.is_finite() && si > 0.0) {
-                let what = format!("is {si} Pa absolute, it must be greater than zero");
-                return Err(self.fault(i, Column::Pressure, &what));
+                let what = format!("is {:.4} bar absolute, it must be greater than zero", si / 1e5);
+                let gauge = "a trace of gauge pressures needs the ambient pressure: `offset = \"1.013 bar\"`";
+                return Err(self.fault(i, Column::Pressure, &what).help(gauge));
             }
             if si > MAX_PRESSURE {
                 let what = format!("is {si:e} Pa absolute, more than the {MAX_PRESSURE:e} Pa of any machine");

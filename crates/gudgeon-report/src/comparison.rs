@@ -50,8 +50,11 @@ struct VariantEntry {
     #[serde(default)]
     case: usize,
     swaps: IndexMap<String, String>,
-    /// Why there is no run: the combination was refused, or it failed.
+    /// Why there is no run: the combination was left out, refused, or failed.
     error: Option<String>,
+    /// Whether there is no such machine.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    left_out: bool,
     /// The shape of `summary.json`.
     run: Option<Summary>,
 }
@@ -90,6 +93,7 @@ impl File {
                 case: v.case,
                 swaps: v.swaps.iter().cloned().collect(),
                 error: v.why(),
+                left_out: v.is_left_out(),
                 run: v.outcome.as_ref().ok().map(Summary::new),
             })
             .collect();
@@ -363,14 +367,34 @@ fn overview(out: &mut String, file: &File, heading: &str, ran: &[&VariantEntry])
         ran.iter().filter_map(|v| Some((Assessment::of(&v.run.as_ref()?.notes).grade, *v))).collect();
     let all = file.variants.len();
     let missing = all - ran.len();
+    let left_out: Vec<&VariantEntry> = file.variants.iter().filter(|v| v.left_out).collect();
     let count = |g: Grade| graded.iter().filter(|v| v.0 == g).count();
-    let grade = if missing > 0 { Grade::Red } else { graded.iter().map(|v| v.0).max().unwrap_or_default() };
-    let title = if missing > 0 {
-        format!("{} of {all} variants ran", ran.len())
-    } else {
-        format!("All {all} variants ran")
+    let own = graded.iter().map(|v| v.0).max().unwrap_or_default();
+    let grade = match missing {
+        0 => own,
+        n if n == left_out.len() => own.max(Grade::Amber),
+        _ => Grade::Red,
     };
-    let mut reasons = Vec::new();
+    let title = match (missing, left_out.len()) {
+        (0, _) => format!("All {all} variants ran"),
+        (n, 0) => format!("{} of {all} variants ran, {n} failed or were refused", ran.len()),
+        (n, out) if n == out => format!(
+            "{} of {all} variants ran; {out} cannot be and {} left out",
+            ran.len(),
+            if out == 1 { "is" } else { "are" }
+        ),
+        (n, out) => format!(
+            "{} of {all} variants ran, {} failed or were refused, {out} cannot be",
+            ran.len(),
+            n - out
+        ),
+    };
+    let mut reasons: Vec<String> = file
+        .variants
+        .iter()
+        .filter_map(|v| Some(format!("{}: {}", v.label, v.error.as_deref()?.trim())))
+        .take(TOLD_MISSING)
+        .collect();
     for (g, what) in [
         (Grade::Red, "with a limit that is not kept, or not what was asked for"),
         (Grade::Amber, "valid with reservations"),
@@ -385,15 +409,30 @@ fn overview(out: &mut String, file: &File, heading: &str, ran: &[&VariantEntry])
     out.push_str("</section>\n<div id=\"bar\"></div>\n");
 }
 
+/// Variants without a run whose reason stands on the first page.
+const TOLD_MISSING: usize = 2;
+
 /// Most variants in a card.
 const IN_CARD: usize = 8;
 
-/// A card for each headline of the first variant, a row a variant.
+/// How much a result differs between variants, over its largest magnitude.
+fn spread(ran: &[&VariantEntry], name: &str) -> f64 {
+    let values = ran.iter().filter_map(|v| v.run.as_ref()?.results.get(name)?.value);
+    let (lo, hi) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| (lo.min(v), hi.max(v)));
+    let top = lo.abs().max(hi.abs());
+    if top > 0.0 && top.is_finite() { (hi - lo) / top } else { 0.0 }
+}
+
+/// A card for each headline of the first variant, a row a variant: of several rings or shafts the one that differs most.
 fn headline_cards(out: &mut String, file: &File, ran: &[&VariantEntry]) {
     let Some(first) = ran.first().and_then(|v| v.run.as_ref()) else { return };
     out.push_str("<h2 class=\"unseen\">Headline results</h2>\n<div class=\"cards broad\">\n");
     for h in first.headlines.iter().take(overview::CARDS) {
-        let Some((label, name)) = h.results.first() else { continue };
+        let Some((label, name)) =
+            h.results.iter().rev().max_by(|a, b| spread(ran, &a.1).total_cmp(&spread(ran, &b.1)))
+        else {
+            continue;
+        };
         let title = if label.is_empty() || h.results.len() == 1 {
             h.title.clone()
         } else {

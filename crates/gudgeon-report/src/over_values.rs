@@ -133,7 +133,12 @@ fn map(x: &Axis<'_>, y: &Axis<'_>, h: &Headline, points: &[Point<'_>]) -> Option
         title,
         hint: format!("over {} and {}", x.0, y.0),
         table: format!("map of {name}"),
-        kind: FigureKind::Map { x: x.0.to_owned(), y: y.0.to_owned(), value: name.clone() },
+        kind: FigureKind::Map {
+            x: x.0.to_owned(),
+            y: y.0.to_owned(),
+            value: name.clone(),
+            marks: Vec::new(),
+        },
     };
     Some((
         figure,

@@ -51,6 +51,9 @@ pub struct Note {
     pub level: NoteLevel,
     /// One sentence with the figures.
     pub text: String,
+    /// Whether it is about numerics alone: a drag, a floor or a tolerance that stands for no physics. Such notes come behind the others.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub numerical: bool,
     /// The figures: share of the cycle, residual load.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub amounts: IndexMap<String, Value>,
@@ -58,7 +61,7 @@ pub struct Note {
 
 impl Note {
     fn new(level: NoteLevel, topic: impl Into<String>, text: impl Into<String>) -> Self {
-        Self { topic: topic.into(), level, text: text.into(), amounts: IndexMap::new() }
+        Self { topic: topic.into(), level, text: text.into(), ..Self::default() }
     }
 
     /// Good to know.
@@ -85,6 +88,13 @@ impl Note {
         Self::new(NoteLevel::Failure, topic, text)
     }
 
+    /// The same, about numerics alone.
+    #[must_use]
+    pub fn of_numerics(mut self) -> Self {
+        self.numerical = true;
+        self
+    }
+
     /// Adds a figure.
     #[must_use]
     pub fn amount(mut self, name: impl Into<String>, value: f64, unit: &str) -> Self {
@@ -96,12 +106,15 @@ impl Note {
 
 /// [`Failure::code`] of an input that is wrong.
 pub const REFUSED: &str = "refused";
+/// [`Failure::code`] of values that can be read, of a machine that cannot be: an end gap that closes. Where many values are run, such a point is left out
+/// and told with its reason; the others are what was asked for.
+pub const IMPOSSIBLE: &str = "impossible";
 
 /// Why a case has no result.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, thiserror::Error)]
 #[error("{message}")]
 pub struct Failure {
-    /// A word to tell failures apart by: [`REFUSED`] (the input is wrong), `model`, `integration`, `not_a_number`, `scene`, `stopped`.
+    /// A word to tell failures apart by: [`REFUSED`] (the input is wrong), [`IMPOSSIBLE`] (there is no such machine), `model`, `integration`, `not_a_number`, `scene`, `stopped`.
     pub code: String,
     /// What is wrong, in one line.
     pub message: String,
@@ -301,6 +314,9 @@ pub enum FigureKind {
         y: String,
         /// Column shown as colour.
         value: String,
+        /// Places that are marked: points with a reservation, points without a result.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        marks: Vec<Mark>,
     },
     /// Something drawn to scale, still or moving. Reads no table.
     Drawing {
@@ -810,12 +826,22 @@ pub struct Variant {
 }
 
 impl Variant {
-    /// Why there is no run, in words: `refused: …` or `failed: …`.
+    /// Why there is no run, in words: `left out: …`, `refused: …` or `failed: …`.
     #[must_use]
     pub fn why(&self) -> Option<String> {
         let failure = self.outcome.as_ref().err()?;
-        let what = if failure.code == REFUSED { "refused" } else { "failed" };
+        let what = match failure.code.as_str() {
+            IMPOSSIBLE => "left out",
+            REFUSED => "refused",
+            _ => "failed",
+        };
         Some(format!("{what}: {failure}"))
+    }
+
+    /// Whether there is no such machine.
+    #[must_use]
+    pub fn is_left_out(&self) -> bool {
+        self.outcome.as_ref().is_err_and(|f| f.code == IMPOSSIBLE)
     }
 }
 

@@ -90,7 +90,7 @@ pub struct Assessment {
     pub grade: Grade,
     /// It in one line.
     pub title: String,
-    /// What it rests on, the gravest first.
+    /// What it rests on, the gravest first; what is about numerics alone last.
     pub reasons: Vec<String>,
 }
 
@@ -100,11 +100,11 @@ impl Assessment {
     pub fn of(notes: &[Note]) -> Self {
         let of = |level| notes.iter().filter(move |n| n.level == level && n.topic != VERDICT);
         let limits = notes.iter().find(|n| n.topic == VERDICT).map(|n| capital(told(&n.text)));
-        let reasons: Vec<String> = [NoteLevel::Failure, NoteLevel::Exceeded, NoteLevel::Caution]
-            .into_iter()
-            .flat_map(of)
-            .map(|n| n.text.clone())
-            .collect();
+        let mut grave_first: Vec<&Note> =
+            [NoteLevel::Failure, NoteLevel::Exceeded, NoteLevel::Caution].into_iter().flat_map(of).collect();
+        grave_first.sort_by_key(|n| n.numerical);
+        let reasons: Vec<String> = grave_first.iter().map(|n| n.text.clone()).collect();
+        let numerical = grave_first.iter().filter(|n| n.numerical).count();
         let broken = notes.iter().filter(|n| n.level == NoteLevel::Exceeded).count();
         let grave = notes.iter().map(|n| n.level).max().unwrap_or_default();
         let (grade, title) = match grave {
@@ -118,7 +118,13 @@ impl Assessment {
                 let n = reasons.len();
                 let plural = if n == 1 { "" } else { "s" };
                 let kept = limits.map_or_else(|| "Valid".to_owned(), |l| format!("{l}. Valid"));
-                (Grade::Amber, format!("{kept} with {n} reservation{plural}"))
+                let of_them = match numerical {
+                    0 => String::new(),
+                    1 if n == 1 => ", of numerics".to_owned(),
+                    k if k == n => ", all of numerics".to_owned(),
+                    k => format!(", {k} of numerics"),
+                };
+                (Grade::Amber, format!("{kept} with {n} reservation{plural}{of_them}"))
             }
             NoteLevel::Info => {
                 let nothing = || "Valid: no floor, cap or limit of validity acted".to_owned();
@@ -187,6 +193,12 @@ mod tests {
         assert_eq!(
             (amber.grade, amber.title.as_str()),
             (Grade::Amber, "All 3 limits are kept. Valid with 1 reservation")
+        );
+        let drag = Note::caution("drag", "a drag acted").of_numerics();
+        let both = of(&[&drag, &floor]);
+        assert_eq!(
+            (both.title.as_str(), both.reasons[0].as_str()),
+            ("Valid with 2 reservations, 1 of numerics", "a floor acted")
         );
         let red = of(&[&floor, &said, &broken]);
         assert_eq!((red.grade, red.title.as_str()), (Grade::Red, "1 of 3 limits are not kept"));

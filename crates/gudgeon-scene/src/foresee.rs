@@ -13,12 +13,13 @@ use gudgeon_case::advice;
 /// the other sweep in turn, and of a range of numbers this many, both ends among them.
 const MAX_TRIED: usize = 1000;
 
-/// What is wrong with the values of sweeps.
+/// What is wrong with the values of sweeps. Values that can be read and make a machine that cannot be are no mistake unless all are: a run leaves
+/// their points out and tells why.
 pub(crate) fn sweeps(scene: &dyn Scene, sweeps: &[Sweep]) -> Vec<BuildError> {
     let lists: Option<Vec<Vec<String>>> = sweeps.iter().map(|s| sweep_input::values(&s.axis).ok()).collect();
     let Some(lists) = lists.filter(|l| l.iter().all(|v| !v.is_empty())) else { return Vec::new() };
     let tried = combinations(&lists.iter().map(Vec::len).collect::<Vec<_>>());
-    let mut failed = Vec::new();
+    let (mut failed, mut possible, mut unreadable) = (Vec::new(), false, false);
     for places in &tried {
         let set: Vec<String> = sweeps
             .iter()
@@ -26,9 +27,22 @@ pub(crate) fn sweeps(scene: &dyn Scene, sweeps: &[Sweep]) -> Vec<BuildError> {
             .zip(places)
             .map(|((s, l), i)| format!("{}={}", s.axis.path, l[*i]))
             .collect();
-        if let Some(why) = impossible(scene, &set) {
-            failed.push((places.clone(), set.join(", "), why));
+        match impossible(scene, &set) {
+            None => possible = true,
+            Some((why, read)) => {
+                // What cannot be read is the first to be told.
+                if !read && !unreadable {
+                    unreadable = true;
+                    failed.clear();
+                }
+                if read != unreadable {
+                    failed.push((places.clone(), set.join(", "), why));
+                }
+            }
         }
+    }
+    if possible && !unreadable {
+        return Vec::new();
     }
     let Some((places, set, why)) = failed.first() else { return Vec::new() };
     // One sweep alone is to blame when its value fails with every value of the other.
@@ -62,12 +76,12 @@ pub(crate) fn idle(scene: &dyn Scene, sweeps: &[Sweep]) -> Vec<BuildError> {
     sweeps.iter().enumerate().filter_map(refused).collect()
 }
 
-/// Why the case cannot be run with some values changed.
-fn impossible(scene: &dyn Scene, set: &[String]) -> Option<String> {
+/// Why the case cannot be run with some values changed, and whether these could be read.
+fn impossible(scene: &dyn Scene, set: &[String]) -> Option<(String, bool)> {
     match scene.changed(set) {
         Err(report) => {
             let told: Vec<String> = report.diagnostics.iter().map(|d| d.headline()).collect();
-            Some(told.join("; "))
+            Some((told.join("; "), false))
         }
         Ok(s) => {
             let errors = s.legal();
@@ -75,7 +89,7 @@ fn impossible(scene: &dyn Scene, set: &[String]) -> Option<String> {
                 .iter()
                 .map(|e| if e.field.is_empty() { e.message.clone() } else { format!("{}: {e}", e.field) })
                 .collect();
-            (!errors.is_empty()).then(|| told.join("; "))
+            (!errors.is_empty()).then(|| (told.join("; "), true))
         }
     }
 }

@@ -245,6 +245,7 @@ fn headed(scene: &dyn Scene, mut result: RunResult) -> RunResult {
     result.assumptions.extend(sets.iter().flat_map(UsedSet::assumptions));
     cite_sets(&sets, &mut result.models);
     result.scene = scene_of(scene.source(), scene.overrides()).unwrap_or_default();
+    result.solver.notes.sort_by_key(|n| n.numerical);
     result
 }
 

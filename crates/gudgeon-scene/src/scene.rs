@@ -12,7 +12,7 @@ use gudgeon_case::{
     Help, Input, Loaded, Refinement, Report, Source, UsedSet, load_source, nearest, scene_of, top_level_keys,
 };
 use gudgeon_core::kinds::EngineCycle;
-use gudgeon_core::result::{GradientInput, Gradients, ModelUse, RunResult, Value};
+use gudgeon_core::result::{GradientInput, Gradients, ModelUse, Note, RunResult, Value};
 use gudgeon_core::{BuildError, Stopped, Stopwatch};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::de::DeserializeOwned;
@@ -37,6 +37,12 @@ pub trait SceneCase:
     /// # Errors
     /// Everything that is wrong with a case that could be read, sweeps apart.
     fn build(loaded: &Loaded<Self>) -> Result<Self::Built, Vec<BuildError>>;
+
+    /// What a person should look at before a run, although the case is possible: values far from anything usual, a trace that was filtered. A run tells
+    /// the same among its notes.
+    fn doubts(_loaded: &Loaded<Self>, _built: &mut Self::Built) -> Vec<Note> {
+        Vec::new()
+    }
 
     /// The models in use; adds to `told` what runs, what is skipped and which results there are.
     ///
@@ -129,6 +135,8 @@ pub trait Scene: Send + Sync {
     fn rewritten(&self, set: &[String]) -> Result<String, Report>;
     /// Everything that is wrong, sweeps apart.
     fn legal(&self) -> Vec<BuildError>;
+    /// As [`SceneCase::doubts`].
+    fn doubts(&self) -> Vec<Note>;
     /// As [`SceneCase::result_names`].
     fn result_names(&self) -> Option<Vec<String>>;
     /// A report on errors found after the case was read.
@@ -261,6 +269,10 @@ impl<C: SceneCase> Scene for Read<C> {
 
     fn legal(&self) -> Vec<BuildError> {
         self.look(|_| ()).err().unwrap_or_default()
+    }
+
+    fn doubts(&self) -> Vec<Note> {
+        self.look(|built| C::doubts(&self.loaded, built)).unwrap_or_default()
     }
 
     fn result_names(&self) -> Option<Vec<String>> {

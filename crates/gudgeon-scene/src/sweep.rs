@@ -1,7 +1,8 @@
 //! Sweeps: every combination of one or two varied inputs, each read and built as a case of its own.
 
 use gudgeon_core::result::{
-    Column, Failure, Figure, FigureKind, Lines, Note, NoteLevel, REFUSED, RunResult, Series, Value,
+    Column, Failure, Figure, FigureKind, IMPOSSIBLE, Lines, Note, NoteLevel, REFUSED, RunResult, Series,
+    Value,
 };
 use gudgeon_core::{BuildError, Stopped};
 use indexmap::IndexMap;
@@ -75,7 +76,7 @@ impl Point {
         match &self.outcome {
             Ok((_, notes)) if notes.iter().any(|n| n.level == NoteLevel::Failure) => 1.0,
             Ok(_) => 0.0,
-            Err(e) if e.code == REFUSED => 2.0,
+            Err(e) if e.code == REFUSED || e.code == IMPOSSIBLE => 2.0,
             Err(_) => 1.0,
         }
     }
@@ -171,41 +172,46 @@ fn wanted(sweeps: &[Sweep], names: &[&str]) -> Result<Vec<String>, RunError> {
     }
 }
 
-/// What the points had to say, by topic: how many points, and the first of them in its words.
+/// What the points had to say, by topic: how many points, and the first of them in its words. What the case as it stands says too is added to its note.
 fn gather(points: &[Point], notes: &mut Vec<Note>) {
     let total = points.len();
-    let mut said: IndexMap<(&str, NoteLevel), (usize, String)> = IndexMap::new();
-    let mut say = |topic, level, p: &Point, text: &str| {
-        let of = said.entry((topic, level)).or_insert_with(|| (0, format!("{}: {text}", p.set.join(", "))));
-        of.0 += 1;
+    let mut said: IndexMap<(&str, NoteLevel), (usize, String, bool)> = IndexMap::new();
+    let mut say = |topic, level, p: &Point, text: &str, numerical| {
+        let first = || (0, format!("{}: {text}", p.set.join(", ")), numerical);
+        said.entry((topic, level)).or_insert_with(first).0 += 1;
     };
     for p in points {
         match &p.outcome {
-            Err(e) => say("failed", NoteLevel::Failure, p, &format!("no result: {e}")),
+            Err(e) if e.code == IMPOSSIBLE => {
+                say("left_out", NoteLevel::Caution, p, &format!("left out, for it cannot be: {e}"), false);
+            }
+            Err(e) => say("failed", NoteLevel::Failure, p, &format!("no result: {e}"), false),
             Ok((_, own)) => {
                 let mut seen: Vec<&str> = Vec::new();
                 for n in own.iter().filter(|n| n.level > NoteLevel::Info) {
                     if !seen.contains(&n.topic.as_str()) {
                         seen.push(&n.topic);
-                        say(&n.topic, n.level, p, &n.text);
+                        say(&n.topic, n.level, p, &n.text, n.numerical);
                     }
                 }
             }
         }
     }
-    notes.extend(said.into_iter().map(|((topic, level), (n, text))| {
-        Note {
-            topic: format!("sweep.{topic}"),
-            level,
-            text: format!("{n} of {total} points of the sweep, the first at {text}"),
-            amounts: [(
-                "points".to_owned(),
-                Value { value: n as f64, unit: "1".into(), what: String::new() },
-            )]
-            .into_iter()
-            .collect(),
+    for ((topic, level), (n, text, numerical)) in said {
+        if let Some(own) = notes.iter_mut().find(|own| own.topic == topic && own.level == level) {
+            own.text.push_str(&format!("; likewise at {n} of {total} points of the sweep"));
+            own.amounts.insert("points".into(), count(n));
+            continue;
         }
-    }));
+        let text = format!("{n} of {total} points of the sweep, the first at {text}");
+        let amounts = std::iter::once(("points".to_owned(), count(n))).collect();
+        notes.push(Note { topic: format!("sweep.{topic}"), level, text, numerical, amounts });
+    }
+    notes.sort_by_key(|n| n.numerical);
+}
+
+fn count(n: usize) -> Value {
+    Value { value: n as f64, unit: "1".into(), what: String::new() }
 }
 
 /// The points of a sweep as a table with its figures.
@@ -255,7 +261,12 @@ impl Sheet<'_> {
             title: self.title(n),
             hint: String::new(),
             table: "sweep".into(),
-            kind: FigureKind::Map { x: x.name.clone(), y: y.name.clone(), value: n.clone() },
+            kind: FigureKind::Map {
+                x: x.name.clone(),
+                y: y.name.clone(),
+                value: n.clone(),
+                marks: Vec::new(),
+            },
         };
         let figures = self.wanted.iter().map(figure).collect();
         (Series { axis: Column { values: along, ..x.clone() }, columns }, figures)

@@ -22,7 +22,7 @@ class Shares(Mapping[str, dict[str, float]]):
     """Which part of the variance of each result each choice explains: a mapping from results to ``{term: share}``.
 
     A term is a choice, ``gas_flow``, or an interaction, ``gas_flow × ring_motion``; ``case`` in it tells cases apart. The shares of a result make 1; one that too many
-    failed combinations leave open is not a number (NaN). ``docs/studies.md`` says what they mean.
+    failed combinations leave open is not a number (NaN). ``docs/guide/src/studies.md`` says what they mean.
     """
 
     def __init__(self, told: dict[str, Any]) -> None:

@@ -71,7 +71,7 @@ class Study:
 
     @property
     def status(self) -> dict[str, Any]:
-        """How far it is: ``points``, ``done``, ``failed`` (of these), ``parts``, ``missing`` (numbers of parts)."""
+        """How far it is: ``points``, ``done``, ``failed`` and ``left_out`` (of these), ``parts``, ``missing`` (numbers of parts)."""
         return self._native.status()
 
     def run(self, client: Client | None = None, *, threads: int = 0, retries: int = 3, progress: Progress | None = None) -> None:

@@ -11,7 +11,9 @@ pub fn check(a: &CheckArgs, ui: &Ui) -> Result<(), Failure> {
     if a.json {
         return match gudgeon_scene::check(&a.case.case, &a.case.set) {
             Ok(c) => {
-                ui.json(&json!({ "case": c.name, "ok": true, "notes": c.notes, "mistakes": [] }));
+                let notes: Vec<String> =
+                    c.notes.iter().cloned().chain(c.case.doubts().into_iter().map(|n| n.text)).collect();
+                ui.json(&json!({ "case": c.name, "ok": true, "notes": notes, "mistakes": [] }));
                 Ok(())
             }
             Err(report) => {
@@ -21,7 +23,9 @@ pub fn check(a: &CheckArgs, ui: &Ui) -> Result<(), Failure> {
         };
     }
     let c = checked(&a.case.case, &a.case.set, ui)?;
+    for doubt in c.case.doubts() {
+        ui.note(&doubt.text);
+    }
     ui.out(&format!("{}: ok", a.case.case.display()));
-    drop(c);
     Ok(())
 }

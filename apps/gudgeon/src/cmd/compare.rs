@@ -4,7 +4,8 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use gudgeon_core::result::{Comparison, NoteLevel, RunResult};
+use gudgeon_core::quantity::with_decimal_point;
+use gudgeon_core::result::{Comparison, Note, NoteLevel, RunResult};
 use gudgeon_study::{Plan, Subject};
 use indexmap::IndexMap;
 
@@ -40,10 +41,11 @@ pub fn compare(a: &CompareArgs, ui: &Ui) -> Result<(), Failure> {
     if !ui.quiet() {
         ui.out(&format!("{}\n{}", text(&comparison, &a.results), files.report.display()));
     }
-    let failed = comparison.variants.iter().filter(|v| v.outcome.is_err()).count();
+    // Machines that cannot be are left out; that is an answer and no failure.
+    let failed = comparison.variants.iter().filter(|v| v.outcome.is_err() && !v.is_left_out()).count();
     match failed {
         0 => Ok(()),
-        n if n == comparison.variants.len() => {
+        _ if comparison.variants.iter().all(|v| v.outcome.is_err()) => {
             Err(Failure::Run("none of the combinations has a result".into()))
         }
         n => Err(Failure::Run(format!(
@@ -82,7 +84,26 @@ pub fn values(flag: &str, text: &str) -> Result<(String, Vec<String>), Failure> 
     if all.iter().any(String::is_empty) {
         return Err(Failure::argument(format!("`{flag} {text}` has an empty value"), form));
     }
+    if let Some((comma, point)) = decimal_comma(&all).filter(|(comma, _)| values.contains(comma.as_str())) {
+        return Err(Failure::argument(
+            format!("`{comma}` are two values, `{}`", comma.replace(',', "` and `")),
+            format!("the decimal mark is a point: `{point}`; of two values each has its unit"),
+        ));
+    }
     Ok((path.trim().to_owned(), all))
+}
+
+/// A number with a decimal comma among parts that were taken apart at commas, `0,25 mm`, and what it would be with a point.
+fn decimal_comma(parts: &[String]) -> Option<(String, String)> {
+    let pair = |w: &[String]| {
+        let whole = w[0].trim_start_matches('-');
+        let digits = !whole.is_empty() && whole.chars().all(|c| c.is_ascii_digit());
+        let unit = w[1].starts_with(|c: char| c.is_ascii_digit()) && w[1].parse::<f64>().is_err();
+        let text = format!("{},{}", w[0], w[1]);
+        let point = with_decimal_point(&text).filter(|_| digits && unit)?;
+        Some((text, point))
+    };
+    parts.windows(2).find_map(pair)
 }
 
 /// Parts between commas, those inside brackets or quotes apart.
@@ -125,7 +146,7 @@ fn text(c: &Comparison, wanted: &[String]) -> String {
         listed(&mut s, c);
     }
     if c.cases.len() == 1 && c.variants.len() <= COLUMNS {
-        side_by_side(&mut s, c);
+        side_by_side(&mut s, c, wanted);
     } else {
         s.push_str(&one_below_the_other(c, wanted));
     }
@@ -137,14 +158,30 @@ fn letter(i: usize) -> String {
     format!("({})", i + 1)
 }
 
-/// Every combination with what its run says. Writing to a String cannot fail.
+/// Every combination, then what the runs say: what several say of the same subject once, in the words of the first. Writing to a String cannot fail.
 fn listed(s: &mut String, c: &Comparison) {
+    let ran = c.variants.iter().filter(|v| v.outcome.is_ok()).count();
+    let mut said: IndexMap<&str, (&Note, Vec<usize>)> = IndexMap::new();
     for (i, v) in c.variants.iter().enumerate() {
         let why = v.why().map_or_else(String::new, |why| format!("  {why}"));
         let _ = writeln!(s, "  {} {}{why}", letter(i), v.label);
         for n in v.outcome.iter().flat_map(|r| &r.solver.notes) {
-            let _ = writeln!(s, "      note: {}", n.text);
+            let of = &mut said.entry(&n.topic).or_insert_with(|| (n, Vec::new())).1;
+            if of.last() != Some(&i) {
+                of.push(i);
+            }
         }
+    }
+    let mut said: Vec<(&Note, Vec<usize>)> = said.into_values().collect();
+    said.sort_by_key(|(n, _)| n.numerical);
+    for (n, of) in said {
+        let letters: Vec<String> = of.iter().map(|i| letter(*i)).collect();
+        let who = match of.len() {
+            1 => letters[0].clone(),
+            k if k == ran => format!("all, here {}", letters[0]),
+            _ => format!("{}, here the first", letters.join(" ")),
+        };
+        let _ = writeln!(s, "  note of {who}: {}", n.text);
     }
 }
 
@@ -178,8 +215,8 @@ fn gathered(s: &mut String, c: &Comparison) {
     }
 }
 
-/// All results of few combinations.
-fn side_by_side(s: &mut String, c: &Comparison) {
+/// The results of few combinations: all of them, or those that were asked for.
+fn side_by_side(s: &mut String, c: &Comparison, wanted: &[String]) {
     let shown: Vec<_> =
         c.variants.iter().enumerate().filter_map(|(i, v)| Some((i, v.outcome.as_ref().ok()?))).collect();
     let Some((first, base)) = shown.first() else { return };
@@ -187,7 +224,7 @@ fn side_by_side(s: &mut String, c: &Comparison) {
     for (i, _) in &shown[1..] {
         rows[0].extend([letter(*i), format!("to {}", letter(*first))]);
     }
-    for name in base.results.keys() {
+    for name in base.results.keys().filter(|n| wanted.is_empty() || wanted.contains(n)) {
         let mut row = vec![name.clone(), unit(&base.results[name].unit), value(base, name)];
         for (_, r) in &shown[1..] {
             row.extend([value(r, name), change(base, r, name)]);
@@ -201,7 +238,13 @@ fn side_by_side(s: &mut String, c: &Comparison) {
     }
     rows.push(times);
     s.push('\n');
-    let right: Vec<usize> = (2..2 + 2 * shown.len()).collect();
+    // What a result is, behind it: one cylinder or the whole engine.
+    if !wanted.is_empty() {
+        for row in rows.iter_mut().skip(1) {
+            row.extend(base.results.get(&row[0]).map(|v| v.what.clone()));
+        }
+    }
+    let right: Vec<usize> = (2..1 + 2 * shown.len()).collect();
     s.push_str(&table(&rows, &right));
 }
 

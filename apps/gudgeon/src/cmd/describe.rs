@@ -8,8 +8,11 @@ use crate::cmd::{models, scenes};
 use crate::failure::Failure;
 use crate::ui::{Ui, wrapped};
 use gudgeon_case::catalogue::{self, equations, schema};
+use gudgeon_core::schemars::SchemaGenerator;
 use gudgeon_core::{ModelInfo, Registry, sets};
 use gudgeon_scene::case_schemas;
+use gudgeon_study::study::StudyFile;
+use serde_json::json;
 
 pub fn describe(a: &DescribeArgs, registry: &Registry, ui: &Ui) -> Result<(), Failure> {
     let what = a.what.trim().trim_start_matches("models.");
@@ -22,12 +25,41 @@ pub fn describe(a: &DescribeArgs, registry: &Registry, ui: &Ui) -> Result<(), Fa
     if let Some((scene, table)) = scenes::named(what).filter(|_| kind.is_none()) {
         return scenes::describe(scene, table, a.json, ui);
     }
+    if what == STUDY {
+        return study(a.json, ui);
+    }
     let m = catalogue::model(registry, what)?;
     if a.json {
         ui.json(&catalogue::of_model(registry, m, &case_schemas()));
     } else {
         ui.out(&page(registry, m));
     }
+    Ok(())
+}
+
+/// What a study file is called here.
+const STUDY: &str = "study";
+
+/// What a study file may say.
+fn study(as_json: bool, ui: &Ui) -> Result<(), Failure> {
+    let mut generator = SchemaGenerator::default();
+    let root = generator.subschema_for::<StudyFile>().to_value();
+    let definitions = generator.take_definitions(true);
+    let file = catalogue::resolve(&root, &definitions).0;
+    if as_json {
+        ui.json(&json!({ "study": file, "definitions": definitions }));
+        return Ok(());
+    }
+    let mut s = format!(
+        "study\n{}\nKeys\n",
+        wrapped(
+            "A study file: one or more cases at many points. `gudgeon new study` writes one with comments; `gudgeon study new DIR FILE` makes its folder, \
+             `study run DIR` fills it, `study collect DIR --csv` writes its table and its page.",
+            2
+        )
+    );
+    keys(file, &definitions, 2, 0, &mut s);
+    ui.out(&s);
     Ok(())
 }
 

@@ -48,6 +48,10 @@ fn order(g: &Gradients, result: &str) -> Vec<usize> {
     all
 }
 
+/// Why a result has no derivative by an input.
+const NONE_HERE: &str = "none here: the result has a corner or a jump here, or changes by less than what its solver leaves open; \
+    two values that lie farther apart tell more (`gudgeon compare --swap`)";
+
 /// Every result with its inputs, the one that it depends on most first.
 fn listed(g: &Gradients) -> String {
     let mut out = String::new();
@@ -66,6 +70,10 @@ fn listed(g: &Gradients) -> String {
             rows.push(vec![i.path.clone(), number(i.value), unit(&i.unit), elasticity, derivative, units]);
         }
         let _ = writeln!(out, "{}", table(&rows, &[1, 3, 4]));
+        if result.by.iter().any(Option::is_none) {
+            out.push_str(&wrapped(NONE_HERE, 2));
+            out.push('\n');
+        }
     }
     out
 }

@@ -25,6 +25,9 @@ const TEMPLATES: &[Template] = &[
     Template { name: "pin", text: include_str!("../../templates/pin.toml") },
 ];
 
+/// A study of a case.
+const STUDY: Template = Template { name: "study", text: include_str!("../../templates/study.toml") };
+
 impl Template {
     /// What it is, in one line.
     fn about(&self) -> &'static str {
@@ -37,8 +40,11 @@ pub fn new(a: &NewArgs, ui: &Ui) -> Result<(), Failure> {
         list(a.json, ui);
         return Ok(());
     };
+    if name == STUDY.name {
+        return study(a, ui);
+    }
     let Some(template) = TEMPLATES.iter().find(|t| t.name == name) else {
-        let names: Vec<&str> = TEMPLATES.iter().map(|t| t.name).collect();
+        let names: Vec<&str> = TEMPLATES.iter().chain([&STUDY]).map(|t| t.name).collect();
         let what = Diagnostic::new(format!("there is no template `{name}`"));
         return Err(what.help(advice(name, &names)).into());
     };
@@ -54,6 +60,21 @@ pub fn new(a: &NewArgs, ui: &Ui) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Writes a study of a case, `engine.toml` as long as nobody names another.
+fn study(a: &NewArgs, ui: &Ui) -> Result<(), Failure> {
+    let file = a.file.as_deref().unwrap_or(Path::new("study.toml"));
+    write(file, STUDY.text)?;
+    let stem = file.file_stem().map_or_else(|| "study".into(), |s| s.to_string_lossy());
+    let dir = format!("out/{stem}");
+    let file = file.display();
+    ui.out(&format!(
+        "{file}: {}\n\n  edit {file}, then\n    gudgeon study new {dir} {file}    is everything right with it? makes the folder\n    \
+         gudgeon study run {dir}            runs what is missing in it\n    gudgeon study collect {dir} --csv  table.csv, analysis.json and report.html",
+        STUDY.about(),
+    ));
+    Ok(())
+}
+
 fn list(as_json: bool, ui: &Ui) {
     if as_json {
         let all: Vec<_> = TEMPLATES
@@ -64,8 +85,9 @@ fn list(as_json: bool, ui: &Ui) {
     }
     let rows: Vec<_> = TEMPLATES.iter().map(|t| vec![t.name.to_owned(), t.about().to_owned()]).collect();
     ui.out(&format!(
-        "Cases to be filled in, with a comment on every line:\n\n{}\n`gudgeon new TEMPLATE [FILE]` writes one.",
-        table(&rows, &[])
+        "Cases to be filled in, with a comment on every line:\n\n{}\nA study runs a case at many points:\n\n{}\n`gudgeon new TEMPLATE [FILE]` writes one.",
+        table(&rows, &[]),
+        table(&[vec![STUDY.name.to_owned(), STUDY.about().to_owned()]], &[])
     ));
 }
 

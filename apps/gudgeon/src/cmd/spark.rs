@@ -11,6 +11,9 @@ const NOISE: f64 = 1e-3;
 /// Part of the largest magnitude below which a range is none.
 const CONSTANT: f64 = 1e-9;
 
+/// Part of the largest magnitude below which a range has no course worth a word: it is told as 0.0 %.
+const SLIGHT: f64 = 5e-4;
+
 /// Places of at most `most` of `n` values, evenly spaced, the first and the last among them.
 pub fn chosen(n: usize, most: usize) -> Vec<usize> {
     match (n, most) {
@@ -27,35 +30,41 @@ pub fn range(values: &[f64]) -> Option<(f64, f64)> {
     finite.fold(None, |r, v| Some(r.map_or((v, v), |(lo, hi): (f64, f64)| (lo.min(v), hi.max(v)))))
 }
 
-/// Blocks of eight heights between `lo` and `hi`, or, where a terminal cannot show them, digits from 0 to 9; `x` where there is no value.
-pub fn line(values: &[f64], (lo, hi): (f64, f64), blocks: bool) -> String {
+/// Blocks of eight heights between `lo` and `hi`; `x` where there is no value.
+pub fn line(values: &[f64], (lo, hi): (f64, f64)) -> String {
     const BLOCKS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
-    const DIGITS: [char; 10] = ['0', '1', '2', '3', '4', '5', '6', '7', '8', '9'];
-    let steps: &[char] = if blocks { &BLOCKS } else { &DIGITS };
-    let top = (steps.len() - 1) as f64;
+    let top = (BLOCKS.len() - 1) as f64;
     let one = |v: f64| {
         if !v.is_finite() {
             return 'x';
         }
         let part = if hi > lo { (0.5 * v - 0.5 * lo) / (0.5 * hi - 0.5 * lo) } else { 0.5 };
-        steps[(part.clamp(0.0, 1.0) * top).round() as usize]
+        BLOCKS[(part.clamp(0.0, 1.0) * top).round() as usize]
     };
     chosen(values.len(), MAX_LENGTH).into_iter().map(|k| one(values[k])).collect()
 }
 
 /// Whether a range is one of rounding.
-fn is_constant((lo, hi): (f64, f64)) -> bool {
-    // Halves first: the difference of two finite numbers may be none.
-    0.5 * hi - 0.5 * lo <= 0.5 * CONSTANT * lo.abs().max(hi.abs())
+fn is_constant(range: (f64, f64)) -> bool {
+    is_within(range, CONSTANT)
 }
 
-/// How a row goes: `rises`, `falls`, `constant`, `least at …`, `greatest at …`, `to and fro`. `at` names the places.
+/// Whether a range is less than a part of the largest magnitude.
+fn is_within((lo, hi): (f64, f64), part: f64) -> bool {
+    // Halves first: the difference of two finite numbers may be none.
+    0.5 * hi - 0.5 * lo <= 0.5 * part * lo.abs().max(hi.abs())
+}
+
+/// How a row goes: `rises`, `falls`, `constant`, `nearly constant`, `least at …`, `greatest at …`, `to and fro`. `at` names the places.
 pub fn course(values: &[f64], at: &[String]) -> String {
     let there: Vec<(usize, f64)> =
         values.iter().copied().enumerate().filter(|(_, v)| v.is_finite()).collect();
     let (Some((lo, hi)), true) = (range(values), there.len() > 1) else { return String::new() };
     if is_constant((lo, hi)) {
         return "constant".into();
+    }
+    if is_within((lo, hi), SLIGHT) {
+        return "nearly constant".into();
     }
     let noise = NOISE * (0.5 * hi - 0.5 * lo);
     let step = |w: &[(usize, f64)]| 0.5 * w[1].1 - 0.5 * w[0].1;
@@ -99,13 +108,12 @@ mod tests {
     const NO: f64 = f64::NAN;
 
     #[test]
-    fn lines_show_the_range_in_both_alphabets() {
-        assert_eq!(line(&[0.0, 1.0, NO, 0.5], (0.0, 1.0), true), "▁█x▅");
-        assert_eq!(line(&[0.0, 1.0, NO, 0.5], (0.0, 1.0), false), "09x5");
-        assert_eq!(line(&[2.0, 2.0], (2.0, 2.0), false), "55");
-        assert_eq!(line(&[f64::MIN, f64::MAX], (f64::MIN, f64::MAX), false), "09");
-        assert_eq!(line(&[1.0; 1000], (0.0, 1.0), false).chars().count(), MAX_LENGTH);
-        assert_eq!(line(&[], (0.0, 1.0), true), "");
+    fn lines_show_the_range() {
+        assert_eq!(line(&[0.0, 1.0, NO, 0.5], (0.0, 1.0)), "▁█x▅");
+        assert_eq!(line(&[2.0, 2.0], (2.0, 2.0)), "▅▅");
+        assert_eq!(line(&[f64::MIN, f64::MAX], (f64::MIN, f64::MAX)), "▁█");
+        assert_eq!(line(&[1.0; 1000], (0.0, 1.0)).chars().count(), MAX_LENGTH);
+        assert_eq!(line(&[], (0.0, 1.0)), "");
     }
 
     #[test]
@@ -131,6 +139,8 @@ mod tests {
         // Noise of a solver, a ten-thousandth of the range, is no turn; rounding is no change at all.
         assert_eq!(of(&[0.0, 1.0, 0.9999, 2.0]), "rises");
         assert_eq!(of(&[1.0, 1.0 + 1e-12, 1.0]), "constant");
+        // What is told as 0.0 % has no course.
+        assert_eq!(of(&[1.0, 1.0004, 1.0, 1.0003]), "nearly constant");
         assert_eq!(of(&[0.0, 0.0]), "constant");
         assert_eq!(of(&[NO, 1.0]), "");
     }

@@ -2,8 +2,9 @@
 
 use std::fmt::Write as _;
 
+use gudgeon_core::result::Grade;
 use gudgeon_report::{StudyPage, study_page};
-use gudgeon_study::study::{Analysis, Dependence, Finding, Group, Job, Status, Study};
+use gudgeon_study::study::{Analysis, Dependence, Finding, Group, Job, Said, Status, Study, Table};
 
 use crate::args::{StudyCollectArgs, StudyCommand, StudyNewArgs, StudyRunArgs, StudyStatusArgs};
 use crate::failure::Failure;
@@ -64,6 +65,13 @@ fn job(text: &str) -> Result<Job, Failure> {
 fn text(s: &Status) -> String {
     let mut out =
         format!("{} of {} points done, {} of {} parts", s.done, s.points, s.parts - s.missing.len(), s.parts);
+    if s.left_out > 0 {
+        let _ = write!(
+            out,
+            "; {} points cannot be and are left out: their rows carry the reason in `message`",
+            s.left_out
+        );
+    }
     if s.failed > 0 {
         let _ = write!(out, "; {} points failed: their rows carry `code` and `message`", s.failed);
     }
@@ -92,7 +100,17 @@ fn collect(a: &StudyCollectArgs, ui: &Ui) -> Result<(), Failure> {
     let mut told = format!("{} rows in {}", collected.table.rows(), collected.path.display());
     if let Some(analysis) = &collected.analysis {
         let (figures, tables) = study.figures(&collected.table, analysis);
-        let page = study_page(&StudyPage { title: title(&study), facts: facts(&study), figures, tables });
+        let said = collected.table.said();
+        let page = study_page(&StudyPage {
+            title: title(&study),
+            cases: headings(&study, |h| vec![h.title.to_owned()]),
+            verdict: verdict(&study.status(), &said),
+            said: said.iter().map(|s| in_words(&study, &collected.table, s)).collect(),
+            assumptions: headings(&study, |h| h.assumptions.to_vec()),
+            facts: facts(&study),
+            figures,
+            tables,
+        });
         let path = study.write_page(&page)?;
         told = format!("{}{}\n{told}\n{}", dependences(analysis), left_out(&study.status()), path.display());
     }
@@ -104,10 +122,67 @@ fn collect(a: &StudyCollectArgs, ui: &Ui) -> Result<(), Failure> {
 
 /// What the figures above do not rest on.
 fn left_out(s: &Status) -> String {
-    match s.failed {
-        0 => String::new(),
-        n => format!("{n} of {} points failed or are marked, and take no part in this\n", s.done),
+    let mut out = String::new();
+    if s.left_out > 0 {
+        let _ = writeln!(out, "{} of {} points cannot be and are left out", s.left_out, s.done);
     }
+    if s.failed > 0 {
+        let _ =
+            writeln!(out, "{} of {} points failed or are marked, and take no part in this", s.failed, s.done);
+    }
+    out
+}
+
+/// Whether the points can be relied on.
+fn verdict(s: &Status, said: &[Said]) -> (Grade, String) {
+    let ran = s.done - s.failed - s.left_out;
+    let reserved = said.iter().filter(|s| !s.is_missing()).count();
+    let mut title = format!("{ran} of {} points have a result", s.points);
+    if s.left_out > 0 {
+        let _ = write!(title, ", {} cannot be and are left out", s.left_out);
+    }
+    if s.failed > 0 {
+        let _ = write!(title, ", {} failed or are marked", s.failed);
+    }
+    let grade = match (s.failed, s.left_out + reserved) {
+        (0, 0) => Grade::Green,
+        (0, _) => Grade::Amber,
+        _ => Grade::Red,
+    };
+    (grade, title)
+}
+
+/// What some points say: how many they are, where the first is, and its words.
+fn in_words(study: &Study, table: &Table, said: &Said) -> String {
+    let row = said.rows.first().copied().unwrap_or_default();
+    let inputs = study.plan.varied.iter().filter_map(|v| Some((v, table.columns.get(&v.path)?)));
+    let at: Vec<String> = inputs
+        .map(|(v, c)| format!("`{}` {} {}", v.path, c.values.text(row), c.unit).trim_end().to_owned())
+        .collect();
+    let what = if said.is_missing() { "no result" } else { "reservation" };
+    format!(
+        "{what} at {} of {} points, the first at {}: {}",
+        said.rows.len(),
+        table.rows(),
+        at.join(", "),
+        said.text
+    )
+}
+
+/// What the cases say of themselves, each thing once.
+fn headings(study: &Study, of: impl Fn(gudgeon_scene::Heading<'_>) -> Vec<String>) -> Vec<String> {
+    let mut all: Vec<String> = Vec::new();
+    for case in study.record.checked().iter().flatten() {
+        all.extend(of(case.case.heading()));
+    }
+    let mut once = Vec::new();
+    all.retain(|line| {
+        !line.is_empty() && !once.contains(line) && {
+            once.push(line.clone());
+            true
+        }
+    });
+    all
 }
 
 fn title(study: &Study) -> String {
@@ -127,6 +202,7 @@ fn facts(study: &Study) -> Vec<(String, String)> {
         ("cases", cases),
         ("inputs", inputs),
         ("points", record.points.to_string()),
+        ("points that cannot be", status.left_out.to_string()),
         ("failed points", status.failed.to_string()),
         ("Gudgeon", record.gudgeon.clone()),
         ("SHA-256 of the study", record.sha256.clone()),

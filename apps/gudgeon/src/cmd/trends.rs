@@ -112,12 +112,12 @@ fn over_one(over: &Input, drawn: &[(&str, Vec<&[f64]>)], r: &RunResult, blocks: 
     for (name, values) in drawn.iter().filter_map(|(n, rows)| Some((n, *rows.first()?))) {
         let mut row = vec![(*name).to_owned(), unit(&unit_of(name, r))];
         row.extend(shown.iter().map(|k| cell(values, *k)));
-        row.push(range(values).map_or_else(String::new, |lo_hi| line(values, lo_hi, blocks)));
+        row.extend(blocks.then(|| range(values).map_or_else(String::new, |lo_hi| line(values, lo_hi))));
         row.push(course(values, &over.labels));
         row.push(change(values));
         rows.push(row);
     }
-    let right: Vec<usize> = (2..2 + shown.len()).chain([4 + shown.len()]).collect();
+    let right: Vec<usize> = (2..2 + shown.len()).chain([3 + usize::from(blocks) + shown.len()]).collect();
     let hidden = over.labels.len() - shown.len();
     let of =
         if hidden > 0 { format!(", {} of {} values", shown.len(), over.labels.len()) } else { String::new() };
@@ -136,12 +136,12 @@ fn grid(name: &str, rows: &[&[f64]], across: &Input, down: &Input, r: &RunResult
     for k in &lines {
         let mut row = vec![down.labels[*k].clone()];
         row.extend(columns.iter().map(|c| cell(rows[*k], *c)));
-        row.push(line(rows[*k], lo_hi, blocks));
+        row.extend(blocks.then(|| line(rows[*k], lo_hi)));
         row.push(course(rows[*k], &across.labels));
         row.push(change(rows[*k]));
         cells.push(row);
     }
-    let right: Vec<usize> = (1..1 + columns.len()).chain([3 + columns.len()]).collect();
+    let right: Vec<usize> = (1..1 + columns.len()).chain([2 + usize::from(blocks) + columns.len()]).collect();
     let mut s = format!(
         "\n  {} over {}\n",
         with_unit(name, &unit(&unit_of(name, r))),

@@ -122,7 +122,7 @@ impl RigOut {
                 title: title.into(),
                 hint: String::new(),
                 table: table.into(),
-                kind: FigureKind::Map { x: x.0.into(), y: y.0.into(), value: name.into() },
+                kind: FigureKind::Map { x: x.0.into(), y: y.0.into(), value: name.into(), marks: Vec::new() },
             });
         }
         self.tables.insert(table.into(), t);

@@ -801,3 +801,29 @@ fn single_zone_wiebe_at_the_edges_of_its_settings() {
     let message = refused("step = \"1e-5 deg\"").expect("refused").message;
     assert!(message.contains("makes 14000000 steps"), "{message}");
 }
+
+/// A trace with its peak at the gas exchange, and one in another unit, are told; traces of fired, motored and compressing machines are not.
+#[test]
+fn a_trace_in_the_wrong_place_or_unit_is_told() {
+    let rows = "model = \"table\"\ntheta_deg = [-360, -180, -60, 0, 10, 60, 180, 300]\n\
+                pressure = [1, 1, 4, 30, 60, 15, 3, 1.1]\n";
+    let said = |more: &str| -> Vec<String> {
+        let notes = Engine::otto().build(&format!("{rows}{more}")).notes();
+        notes.into_iter().map(|n| n.text).collect()
+    };
+    assert!(said("unit = \"bar\"\nshift = \"360 deg\"\n").is_empty());
+    assert!(said("unit = \"bar\"\nshift = \"360 deg\"\nscale = 0.3\n").is_empty(), "motored, 18 bar");
+    let without = said("unit = \"bar\"\n");
+    assert!(
+        without[0].contains("60.0 bar, stands at 10 deg") && without[0].contains("wants `shift"),
+        "{without:?}"
+    );
+    let half = said("unit = \"bar\"\nshift = \"180 deg\"\n");
+    assert!(half[0].contains("stands at 190 deg") && !half[0].contains("wants `shift"), "{half:?}");
+    let pascal = said("unit = \"Pa\"\nshift = \"360 deg\"\noffset = \"1.013 bar\"\n");
+    assert!(pascal[0].contains("are `unit`, here `Pa`"), "{pascal:?}");
+    // A compressor delivers before its dead centre at 0.
+    let compressor = "model = \"table\"\ncycle = \"360 deg\"\ntheta_deg = [0, 60, 120, 180, 240, 300, 330]\n\
+                      pressure = [8, 2, 1, 1, 2, 8.5, 8.2]\nunit = \"bar\"\n";
+    assert!(Engine::otto().build(compressor).notes().is_empty());
+}

@@ -25,7 +25,7 @@
     const table = DATA.tables[f.table];
     if (!table) return;
     const [x, y, z] = [k.x, k.y, k.value].map((name) => column(table, name));
-    if (x && y && z) map(where, { title: capital(f.title), hint: f.hint, x: arrays[x.at], y: arrays[y.at], z: arrays[z.at], xName: words(x.name), yName: words(y.name), xUnit: x.unit, yUnit: y.unit, zUnit: z.unit });
+    if (x && y && z) map(where, { title: capital(f.title), hint: f.hint, x: arrays[x.at], y: arrays[y.at], z: arrays[z.at], xName: words(x.name), yName: words(y.name), xUnit: x.unit, yUnit: y.unit, zUnit: z.unit, marks: k.marks });
   }
   // Units in explanations as they are typeset.
   const typeset = (t) => (t || "").replace(/ um\b/g, " µm").replace(/(\d) deg\b/g, "$1°");

@@ -1,6 +1,6 @@
 // A value over a rectangular grid: colours, contours with their values, the value under the pointer.
 //
-// spec: { title, hint, x, y, z, xName, yName, xUnit, yUnit, zUnit }, one entry a grid point, x fastest.
+// spec: { title, hint, x, y, z, xName, yName, xUnit, yUnit, zUnit, marks }, one entry a grid point, x fastest; marks are points of the grid with a label.
 
 // Dark to light, readable without colour vision: points of the map viridis (CC0).
 const VIRIDIS = [[68, 1, 84], [71, 44, 122], [59, 81, 139], [44, 113, 142], [33, 144, 141], [39, 173, 129], [92, 200, 99], [170, 220, 50], [253, 231, 37]];
@@ -29,6 +29,19 @@ function contour(z, nx, ny, level) {
   return out;
 }
 
+// A sign for each label of the marks: a cross where there is no result, an open sign for each reservation.
+const SIGNS = { cross: "M-4,-4L4,4M-4,4L4,-4", all: ["M-4,0a4,4 0 1,0 8,0a4,4 0 1,0 -8,0Z", "M-4,-4H4V4H-4Z", "M0,-5L5,4H-5Z", "M0,-5L5,0L0,5L-5,0Z"] };
+function signs(marks) {
+  const out = new Map();
+  for (const { point: p } of marks || []) {
+    if (!p) continue;
+    const open = [...out.values()].filter((l) => !l.beyond).length;
+    if (!out.has(p.label)) out.set(p.label, { beyond: p.beyond, d: p.beyond ? SIGNS.cross : SIGNS.all[open % SIGNS.all.length], points: [] });
+    out.get(p.label).points.push(p);
+  }
+  return out;
+}
+
 function map(host, spec) {
   const { x, y, z } = spec;
   let nx = 1;
@@ -42,7 +55,14 @@ function map(host, spec) {
   const svg = s("svg", { viewBox: `0 0 ${W} ${H}`, role: "img", "aria-label": told });
   const tip = h("div", { class: "tip" });
   const head = h("div", { class: "head" }, h("h3", {}, spec.title), h("div", { class: "tools" }, saveMenu(svg, { title: spec.title })));
-  host.append(h("figure", { class: "plot map" }, head, spec.hint ? h("p", { class: "hint" }, spec.hint) : null, svg, tip));
+  const marked = signs(spec.marks);
+  const legend = [...marked].map(([label, l]) => {
+    const sign = s("svg", { viewBox: "-7 -7 14 14", width: 14, height: 14, "aria-hidden": "true" });
+    s("path", { d: l.d, class: l.beyond ? "sign none" : "sign" }, sign);
+    return h("li", {}, sign, ` ${label} (${l.points.length})`);
+  });
+  if (marked.size && Array.from(z).some((v) => !isNumber(v))) legend.push(h("li", {}, "grey: beside a point without a result"));
+  host.append(h("figure", { class: "plot map" }, head, spec.hint ? h("p", { class: "hint" }, spec.hint) : null, svg, legend.length ? h("ul", { class: "signs" }, ...legend) : null, tip));
   const X = (v) => L + ((v - xs[0]) / (xs[nx - 1] - xs[0] || 1)) * (right - L), Y = (v) => bottom - ((v - ys[0]) / (ys[ny - 1] - ys[0] || 1)) * (bottom - T);
   const canvas = h("canvas", { width: right - L, height: bottom - T }), g = canvas.getContext("2d"), image = g.createImageData(right - L, bottom - T);
   // Each pixel from the four points round it; the grid may be graded.
@@ -80,6 +100,10 @@ function map(host, spec) {
     if (placed.some((q) => Math.abs(q[0] - p[0]) < 34 && Math.abs(q[1] - p[1]) < 14)) continue;
     placed.push(p);
     s("text", { x: p[0], y: p[1] + 4, "text-anchor": "middle", class: "contourtext" }, svg, tickText(t));
+  }
+  for (const [label, l] of marked) for (const p of l.points) {
+    const sign = s("path", { d: l.d, transform: `translate(${X(p.x).toFixed(1)},${Y(p.y).toFixed(1)})`, class: l.beyond ? "sign none" : "sign" }, svg);
+    s("title", {}, sign, label);
   }
   const ticksOf = (a, b, f, room, unit) => {
     const from = Math.min(a, b) * f, to = Math.max(a, b) * f;

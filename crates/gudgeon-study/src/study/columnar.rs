@@ -21,21 +21,21 @@ use super::table::{Column, Table, Values};
 const WRITTEN_BY: &str = "gudgeon";
 /// Key of the units of the columns, a JSON object.
 const UNITS: &str = "units";
+/// Key of what the columns are, a JSON object.
+const DESCRIPTIONS: &str = "descriptions";
 
-/// A table as the bytes of a Parquet file, uncompressed. Units stand under the key `units` of its metadata, beside what is known of the table.
+/// A table as the bytes of a Parquet file, uncompressed. Units stand under the key `units` of its metadata and what a column is under `descriptions`,
+/// beside what is known of the table.
 ///
 /// # Errors
 /// None that memory does not raise.
 pub fn to_parquet(table: &Table) -> Result<Vec<u8>> {
     let fields = table.columns.iter().map(|(name, c)| field(name, &c.values)).collect::<Result<_>>()?;
     let schema = Type::group_type_builder("table").with_fields(fields).build()?;
-    let units: serde_json::Map<String, serde_json::Value> = table
-        .columns
-        .iter()
-        .filter(|(_, c)| !c.unit.is_empty())
-        .map(|(name, c)| (name.clone(), c.unit.clone().into()))
-        .collect();
-    let mut about = vec![KeyValue::new(UNITS.to_owned(), serde_json::Value::from(units).to_string())];
+    let mut about = vec![
+        KeyValue::new(UNITS.to_owned(), of_columns(table, |c| &c.unit)),
+        KeyValue::new(DESCRIPTIONS.to_owned(), of_columns(table, |c| &c.what)),
+    ];
     about.extend(table.about.iter().map(|(k, v)| KeyValue::new(k.clone(), v.clone())));
     let properties = WriterProperties::builder()
         .set_created_by(WRITTEN_BY.to_owned())
@@ -56,6 +56,14 @@ pub fn to_parquet(table: &Table) -> Result<Vec<u8>> {
     }
     group.close()?;
     writer.into_inner()
+}
+
+/// What the columns say of themselves, as a JSON object without those that say nothing.
+fn of_columns(table: &Table, text: impl Fn(&Column) -> &String) -> String {
+    let said = table.columns.iter().filter(|(_, c)| !text(c).is_empty());
+    let all: serde_json::Map<String, serde_json::Value> =
+        said.map(|(name, c)| (name.clone(), text(c).clone().into())).collect();
+    serde_json::Value::from(all).to_string()
 }
 
 /// A column that may have holes.
@@ -87,8 +95,10 @@ fn write<T: DataType>(
 pub fn from_parquet(bytes: Vec<u8>) -> Result<Table> {
     let file = SerializedFileReader::new(Bytes::from(bytes))?;
     let mut table = Table { about: about(&file), ..Table::default() };
-    let units: IndexMap<String, String> =
-        table.about.shift_remove(UNITS).and_then(|u| serde_json::from_str(&u).ok()).unwrap_or_default();
+    let mut said = |key| -> IndexMap<String, String> {
+        table.about.shift_remove(key).and_then(|u| serde_json::from_str(&u).ok()).unwrap_or_default()
+    };
+    let (units, whats) = (said(UNITS), said(DESCRIPTIONS));
     let columns = file.metadata().file_metadata().schema_descr().columns().to_vec();
     for g in 0..file.num_row_groups() {
         let group = file.get_row_group(g)?;
@@ -109,8 +119,9 @@ pub fn from_parquet(bytes: Vec<u8>) -> Result<Table> {
                     )));
                 }
             };
-            let unit = units.get(column.name()).cloned().unwrap_or_default();
-            part.columns.insert(column.name().to_owned(), Column { unit, values });
+            let of = |all: &IndexMap<String, String>| all.get(column.name()).cloned().unwrap_or_default();
+            let own = Column { unit: of(&units), what: of(&whats), values };
+            part.columns.insert(column.name().to_owned(), own);
         }
         table.append(part).map_err(parquet::errors::ParquetError::General)?;
     }

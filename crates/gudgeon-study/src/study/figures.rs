@@ -1,6 +1,6 @@
 //! Figures of a study: tornado plots, indices with their intervals, shares, curves and maps.
 
-use gudgeon_core::result::{Bar, Column, Figure, FigureKind, Lines, Range, Series};
+use gudgeon_core::result::{Bar, Column, Figure, FigureKind, Lines, Mark, Range, Series};
 use indexmap::IndexMap;
 
 use super::analysis::{Analysis, Dependence, Finding};
@@ -17,15 +17,16 @@ impl Study {
     pub fn figures(&self, table: &Table, analysis: &Analysis) -> (Vec<Figure>, IndexMap<String, Series>) {
         let mut figures = Vec::new();
         let mut tables = IndexMap::new();
+        let inputs: Vec<String> = analysis.inputs.iter().map(|i| input_in_words(i)).collect();
         for group in &analysis.groups {
             for f in &group.results {
-                let words = in_words(&f.result);
+                let words = result_in_words(table, &f.result);
                 let title = if group.name.is_empty() { words } else { format!("{}: {words}", group.name) };
                 for (figure, series) in self.over_the_grid(table, f) {
                     tables.insert(figure.table.clone(), series);
                     figures.push(figure);
                 }
-                figures.extend(of_finding(&analysis.inputs, &title, f));
+                figures.extend(of_finding(&inputs, &title, f));
             }
         }
         (figures, tables)
@@ -63,19 +64,20 @@ impl<'a> Grid<'a> {
         self.inputs.last().map_or("", |i| i.axis.path.as_str())
     }
 
-    fn axis(table: &Table, name: &str, values: Vec<f64>) -> Column {
-        let unit = table.columns.get(name).map_or_else(String::new, |c| c.unit.clone());
-        Column { name: name.to_owned(), unit, values }
+    /// The values of an input, named in words.
+    fn axis(table: &Table, path: &str, values: Vec<f64>) -> Column {
+        let unit = table.columns.get(path).map_or_else(String::new, |c| c.unit.clone());
+        Column { name: input_in_words(path), unit, values }
     }
 
     fn column(&self, name: String, values: Vec<f64>) -> Column {
         Column { name, unit: self.f.unit.clone(), values }
     }
 
-    fn figure(&self, what: &str, over: &str, kind: FigureKind) -> Figure {
+    fn figure(&self, table: &Table, what: &str, over: &str, kind: FigureKind) -> Figure {
         Figure {
-            title: in_words(&self.f.result),
-            hint: format!("over {over}"),
+            title: result_in_words(table, &self.f.result),
+            hint: format!("{} over {over}", self.f.result),
             table: format!("{what} of {}", self.f.result),
             kind,
         }
@@ -94,8 +96,9 @@ impl<'a> Grid<'a> {
             columns.map(|(k, l)| self.column(l.clone(), self.y[k * n..(k + 1) * n].to_vec())).collect();
         let series = Series { axis: Self::axis(table, x, self.x[..n].to_vec()), columns };
         let lines = labels.iter().map(|l| (l.clone(), l.clone())).collect();
-        let kind = FigureKind::Lines(Lines { x: x.to_owned(), lines, ..Lines::default() });
-        Some((self.figure("grid", x, kind), series))
+        let over = input_in_words(x);
+        let kind = FigureKind::Lines(Lines { x: over.clone(), lines, ..Lines::default() });
+        Some((self.figure(table, "grid", &over, kind), series))
     }
 
     fn map(&self, table: &Table) -> Option<(Figure, Series)> {
@@ -103,14 +106,67 @@ impl<'a> Grid<'a> {
         let other = &second.axis.path;
         let count = second.grid().map_or(0, |v| v.len());
         let ys = table.numbers(other).filter(|_| count >= 2 && self.y.len() == count * self.n)?;
+        let (along, across) = (input_in_words(&last.axis.path), input_in_words(other));
+        let marks = marks(table, &self.x, &ys);
         let columns = vec![Self::axis(table, other, ys), self.column(self.f.result.clone(), self.y.clone())];
-        let kind =
-            FigureKind::Map { x: last.axis.path.clone(), y: other.clone(), value: self.f.result.clone() };
-        let over = format!("{} and {other}", last.axis.path);
+        let over = format!("{along} and {across}");
+        let kind = FigureKind::Map { x: along, y: across, value: self.f.result.clone(), marks };
         Some((
-            self.figure("map", &over, kind),
+            self.figure(table, "map", &over, kind),
             Series { axis: Self::axis(table, &last.axis.path, self.x.clone()), columns },
         ))
+    }
+}
+
+/// Most reservations that are marked in a map.
+const MARKED: usize = 4;
+
+/// Points without a result, and those with a reservation that others do not have.
+fn marks(table: &Table, x: &[f64], y: &[f64]) -> Vec<Mark> {
+    let said = table.said();
+    let ran = x.len() - said.iter().filter(|s| s.is_missing()).map(|s| s.rows.len()).sum::<usize>();
+    let (missing, reserved): (Vec<_>, Vec<_>) = said.iter().partition(|s| s.is_missing());
+    let some = reserved.into_iter().filter(|s| s.rows.len() < ran).take(MARKED);
+    let point = |s: &super::notes::Said, row: usize| Mark::Point {
+        x: x[row],
+        y: y[row],
+        weight: 0.0,
+        beyond: s.is_missing(),
+        label: match s.topic.as_str() {
+            gudgeon_core::result::IMPOSSIBLE => "left out: cannot be".to_owned(),
+            topic => in_words(topic),
+        },
+    };
+    missing.into_iter().chain(some).flat_map(|s| s.rows.iter().map(move |row| point(s, *row))).collect()
+}
+
+/// What a result is, and its name where nothing says it.
+fn result_in_words(table: &Table, name: &str) -> String {
+    match table.columns.get(name).map(|c| c.what.as_str()) {
+        None | Some("") => in_words(name),
+        Some(what) => what.replace('`', ""),
+    }
+}
+
+/// The path of an input for people: `rings.0.cold_gap` becomes `ring 1: cold gap`, `models.gas_flow.model` becomes `gas flow`.
+fn input_in_words(path: &str) -> String {
+    let mut words: Vec<String> = Vec::new();
+    for step in path.split('.').filter(|s| *s != "models") {
+        match (step.parse::<usize>(), words.last_mut()) {
+            (Ok(k), Some(list)) => {
+                let one = list.strip_suffix('s').unwrap_or(list).to_owned();
+                *list = format!("{one} {}", k + 1);
+            }
+            _ => words.push(step.replace('_', " ")),
+        }
+    }
+    if words.len() > 1 && words.last().is_some_and(|w| w == "model") {
+        words.pop();
+    }
+    match words.split_last() {
+        Some((last, [])) => last.clone(),
+        Some((last, before)) => format!("{}: {last}", before.join(", ")),
+        None => path.to_owned(),
     }
 }
 
@@ -203,5 +259,18 @@ fn of_finding(inputs: &[String], title: &str, f: &Finding) -> Option<Figure> {
             )
         }
         Dependence::Unknown(_) => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn inputs_are_named_in_words() {
+        let named =
+            ["rings.0.cold_gap", "engine.speed", "models.gas_flow.model", "rings.2.face.drop", "case"];
+        let words = ["ring 1: cold gap", "engine: speed", "gas flow", "ring 3, face: drop", "case"];
+        assert_eq!(named.map(input_in_words), words);
     }
 }

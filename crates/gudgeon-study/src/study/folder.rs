@@ -26,6 +26,8 @@ const PARTS: &str = "parts";
 /// In the metadata of a part: the hash of its study, and how many of its rows have no result or not the one that was asked for.
 const STUDY: &str = "study";
 const FAILED: &str = "failed";
+/// How many of its rows are machines that cannot be.
+const LEFT_OUT: &str = "left_out";
 
 /// A study that can be run: its folder, or its record alone where parts go elsewhere.
 pub struct Study {
@@ -54,6 +56,8 @@ pub struct Status {
     pub done: usize,
     /// Of these, those without a result, or without the one that was asked for.
     pub failed: usize,
+    /// Of these that are done, those left out because there is no such machine: an end gap that closes.
+    pub left_out: usize,
     /// Part files of the study.
     pub parts: usize,
     /// Numbers of those that are missing.
@@ -186,12 +190,13 @@ impl Study {
         self.dir.join(PARTS).join(format!("curves-{part:06}.parquet"))
     }
 
-    /// How many rows of a part failed, when the part is there and belongs to this study.
-    fn failed_of(&self, part: usize) -> Option<usize> {
+    /// How many rows of a part failed and are left out, when the part is there and belongs to this study.
+    fn failed_of(&self, part: usize) -> Option<(usize, usize)> {
         let about = about_parquet(&self.part_path(part)).ok()?;
         let curves = self.record.study.curves.is_empty() || self.curves_path(part).is_file();
         let own = about.get(STUDY) == Some(&self.record.sha256) && curves;
-        own.then(|| about.get(FAILED)?.parse().ok()).flatten()
+        let count = |key| about.get(key)?.parse().ok();
+        count(FAILED).zip(count(LEFT_OUT)).filter(|_| own)
     }
 
     /// How far the study is.
@@ -200,9 +205,10 @@ impl Study {
         let mut status = Status { points: self.record.points, parts: self.parts(), ..Status::default() };
         for part in 0..self.parts() {
             match self.failed_of(part) {
-                Some(failed) => {
+                Some((failed, left_out)) => {
                     status.done += self.points_of(part).len();
                     status.failed += failed;
+                    status.left_out += left_out;
                 }
                 None => status.missing.push(part),
             }
@@ -238,6 +244,7 @@ impl Study {
         let marked = |mut table: Table| {
             table.about.insert(STUDY.into(), self.record.sha256.clone());
             table.about.insert(FAILED.into(), part::failed(rows).to_string());
+            table.about.insert(LEFT_OUT.into(), part::left_out(rows).to_string());
             to_parquet(&table).map_err(damaged)
         };
         Ok(Part {

@@ -1,11 +1,12 @@
 //! The rows of some points.
 
-use gudgeon_core::result::{Failure, NoteLevel, RunResult};
+use gudgeon_core::result::{Failure, IMPOSSIBLE, Note, NoteLevel, RunResult};
 use gudgeon_scene::many::run_point;
 use gudgeon_scene::{Checked, Progress, Stopped};
-use indexmap::{IndexMap, IndexSet};
+use indexmap::IndexMap;
 
 use super::linear;
+use super::notes;
 use super::points::Plan;
 use super::record::Record;
 use super::table::{Column, Table, Values};
@@ -22,10 +23,21 @@ pub struct Row {
     failure: Failure,
     /// Topics of what a person must know.
     notes: String,
-    /// Results with their units.
-    results: Vec<(String, f64, String)>,
+    /// Those that are not about numerics alone in words, a line each.
+    told: String,
+    /// Results with their units and what they are.
+    results: Vec<(String, f64, Told)>,
     /// The abscissa and the columns of the series that were asked for, with their units.
     curves: Vec<(String, String, Vec<f64>)>,
+}
+
+/// Unit of a result, and what it is.
+#[derive(Debug, Clone, Default)]
+pub struct Told {
+    /// The unit.
+    pub unit: String,
+    /// One line.
+    pub what: String,
 }
 
 /// Runs point `k`.
@@ -47,7 +59,9 @@ pub fn run_row(
             row.keep(record, result);
             if matches!(record.study.design, Some(Design::Linear {})) {
                 match linear::columns(plan, &cases[case], &set, &record.study.results, tell) {
-                    Ok(columns) => row.results.extend(columns),
+                    Ok(columns) => row.results.extend(
+                        columns.into_iter().map(|(n, v, unit)| (n, v, Told { unit, ..Told::default() })),
+                    ),
                     Err(failure) if failure.code == "stopped" => return Err(Stopped),
                     Err(failure) => row.failure = failure,
                 }
@@ -67,14 +81,13 @@ impl Row {
 
     fn keep(&mut self, record: &Record, result: RunResult) {
         let wanted = |name: &String| record.study.results.is_empty() || record.study.results.contains(name);
-        let notes: IndexSet<&str> = result
-            .solver
-            .notes
-            .iter()
-            .filter(|n| n.level > NoteLevel::Info)
-            .map(|n| n.topic.as_str())
-            .collect();
-        self.notes = notes.into_iter().collect::<Vec<_>>().join(" ");
+        let mut notes: IndexMap<&str, &Note> = IndexMap::new();
+        for n in result.solver.notes.iter().filter(|n| n.level > NoteLevel::Info) {
+            notes.entry(&n.topic).or_insert(n);
+        }
+        self.notes = notes.keys().copied().collect::<Vec<_>>().join(" ");
+        let physical = notes.into_iter().filter(|(_, n)| !n.numerical);
+        self.told = physical.map(|(topic, n)| notes::line(topic, &n.text)).collect::<Vec<_>>().join("\n");
         if let Some(n) = result.solver.notes.iter().find(|n| n.level == NoteLevel::Failure) {
             self.failure = Failure { code: n.topic.clone(), message: n.text.clone(), path: String::new() };
         }
@@ -87,7 +100,8 @@ impl Row {
             self.curves = kept.map(|c| (c.name.clone(), c.unit.clone(), c.values.clone())).collect();
         }
         let results = result.results.into_iter().filter(|(name, _)| wanted(name));
-        self.results = results.map(|(name, v)| (name, v.value, v.unit)).collect();
+        self.results =
+            results.map(|(name, v)| (name, v.value, Told { unit: v.unit, what: v.what })).collect();
     }
 }
 
@@ -111,6 +125,7 @@ pub fn table(record: &Record, plan: &Plan, rows: &[Row]) -> Table {
     table.push("message", "", texts(&|r| &r.failure.message));
     table.push("wrong", "", texts(&|r| &r.failure.path));
     table.push("notes", "", texts(&|r| &r.notes));
+    table.push(notes::RESERVATIONS, "", texts(&|r| &r.told));
     for (name, column) in results(record, rows) {
         table.columns.insert(name, column);
     }
@@ -119,13 +134,14 @@ pub fn table(record: &Record, plan: &Plan, rows: &[Row]) -> Table {
 
 /// Columns of the results: those that were asked for, or those that any row has.
 fn results(record: &Record, rows: &[Row]) -> IndexMap<String, Column> {
-    let empty = || Column { unit: String::new(), values: Values::Numbers(vec![None; rows.len()]) };
+    let empty = || Column { values: Values::Numbers(vec![None; rows.len()]), ..Column::default() };
     let mut columns: IndexMap<String, Column> =
         record.study.results.iter().map(|n| (n.clone(), empty())).collect();
     for (k, row) in rows.iter().enumerate() {
-        for (name, value, unit) in &row.results {
+        for (name, value, told) in &row.results {
             let column = columns.entry(name.clone()).or_insert_with(empty);
-            column.unit.clone_from(unit);
+            column.unit.clone_from(&told.unit);
+            column.what.clone_from(&told.what);
             if let Values::Numbers(v) = &mut column.values {
                 v[k] = Some(*value);
             }
@@ -153,7 +169,12 @@ pub fn curves(record: &Record, rows: &[Row]) -> Option<Table> {
     Some(all)
 }
 
-/// Number of rows without the results that were asked for.
+/// Number of rows without the results that were asked for, machines that cannot be apart.
 pub fn failed(rows: &[Row]) -> usize {
-    rows.iter().filter(|r| !r.failure.code.is_empty()).count()
+    rows.iter().filter(|r| !r.failure.code.is_empty() && r.failure.code != IMPOSSIBLE).count()
+}
+
+/// Number of rows that are left out because there is no such machine.
+pub fn left_out(rows: &[Row]) -> usize {
+    rows.iter().filter(|r| r.failure.code == IMPOSSIBLE).count()
 }

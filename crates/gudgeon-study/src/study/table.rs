@@ -14,10 +14,12 @@ pub enum Values {
 }
 
 /// A column.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Column {
     /// Unit of its numbers, as a person writes it; empty where there is none.
     pub unit: String,
+    /// One line saying what it is; empty where its name does.
+    pub what: String,
     /// Its values.
     pub values: Values,
 }
@@ -29,6 +31,12 @@ pub struct Table {
     pub columns: IndexMap<String, Column>,
     /// What is known of all of it, by name.
     pub about: IndexMap<String, String>,
+}
+
+impl Default for Values {
+    fn default() -> Self {
+        Self::Numbers(Vec::new())
+    }
 }
 
 impl Values {
@@ -88,7 +96,7 @@ impl Table {
 
     /// Adds a column.
     pub fn push(&mut self, name: impl Into<String>, unit: impl Into<String>, values: Values) {
-        self.columns.insert(name.into(), Column { unit: unit.into(), values });
+        self.columns.insert(name.into(), Column { unit: unit.into(), values, ..Column::default() });
     }
 
     /// The numbers of a column, not a number where there is none; none where the column has no numbers.
@@ -107,9 +115,9 @@ impl Table {
     pub fn append(&mut self, more: Self) -> Result<(), String> {
         let (before, added) = (self.rows(), more.rows());
         for (name, column) in more.columns {
-            let Column { unit, values } = column;
+            let Column { unit, what, values } = column;
             let nothing = Values::nothing(&values, before);
-            let own = self.columns.entry(name.clone()).or_insert(Column { unit, values: nothing });
+            let own = self.columns.entry(name.clone()).or_insert(Column { unit, what, values: nothing });
             if !own.values.extend(values) {
                 return Err(name);
             }

@@ -37,7 +37,12 @@ pub fn figures(a: &Assembly, record: &Record, result: &mut RunResult) {
             title: format!("Pressure on the {} over the cycle", words[k]),
             hint: "along the middle of the side, height above the lower edge".into(),
             table,
-            kind: FigureKind::Map { x: "crank_angle".into(), y: "height".into(), value: "p".into() },
+            kind: FigureKind::Map {
+                x: "crank_angle".into(),
+                y: "height".into(),
+                value: "p".into(),
+                marks: Vec::new(),
+            },
         });
         let table = format!("{}_pressure", names[k]);
         result.tables.insert(table.clone(), over_side(side, peak));
@@ -45,7 +50,12 @@ pub fn figures(a: &Assembly, record: &Record, result: &mut RunResult) {
             title: format!("Pressure on the {} at {:.1}°", words[k], peak.theta_deg),
             hint: "when it is highest; angle from the middle of the side, height above the lower edge".into(),
             table,
-            kind: FigureKind::Map { x: "angle".into(), y: "height".into(), value: "p".into() },
+            kind: FigureKind::Map {
+                x: "angle".into(),
+                y: "height".into(),
+                value: "p".into(),
+                marks: Vec::new(),
+            },
         });
     }
 }

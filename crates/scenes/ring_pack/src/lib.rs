@@ -35,6 +35,7 @@ pub mod modes;
 mod oil_faces;
 pub mod pack;
 pub mod plan;
+mod plausible;
 pub mod rails;
 pub mod record;
 pub mod results;

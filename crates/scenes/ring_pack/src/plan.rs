@@ -120,6 +120,11 @@ fn gas_results() -> Vec<ResultInfo> {
         add("blow_by_mass_per_cycle", "kg", "gas to the crankcase, one cylinder"),
         add("blow_back_mass_per_cycle", "kg", "gas returning past ring 1 to the cylinder, one cylinder"),
         add("cylinder.p_max", "bar", "highest cylinder pressure"),
+        add(
+            "cylinder.p_max_angle",
+            "deg",
+            "crank angle of the highest cylinder pressure; the firing dead centre of four strokes is at 360",
+        ),
     ]
 }
 

@@ -83,6 +83,7 @@ impl Cycle {
             "blow_by_mass_per_cycle" => t.blow_by,
             "blow_back_mass_per_cycle" => m.blow_back,
             "cylinder.p_max" => m.cylinder.value / 1e5,
+            "cylinder.p_max_angle" => m.cylinder.theta.to_degrees(),
             "friction_power" => work / Self::duration(pack),
             "fmep" => work / swept / 1e5,
             "fmep_boundary" => t.boundary_work.iter().sum::<f64>() / swept / 1e5,

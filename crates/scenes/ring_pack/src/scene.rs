@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use gudgeon_core::BuildError;
 use gudgeon_core::kinds::EngineCycle;
-use gudgeon_core::result::{Figure, FigureKind, Gradients, Lines, ModelUse, RunResult};
+use gudgeon_core::result::{Figure, FigureKind, Gradients, Lines, ModelUse, Note, RunResult};
 
 use super::around::{Around, Varied};
 use super::headlines::headlines;
@@ -13,7 +13,7 @@ use super::rails::TakenApart;
 use super::solve::{solve, starts, wanted};
 use super::solver::RingPackSolverSpec;
 use super::used::models_in_use;
-use super::{assemble, draw, film_strokes, geometry, legal, meter, state_names};
+use super::{assemble, draw, film_strokes, geometry, legal, meter, plausible, state_names};
 use crate::case::RingPackCase;
 use gudgeon_case::{Loaded, Refinement};
 use gudgeon_scene::{
@@ -26,6 +26,10 @@ impl SceneCase for RingPackCase {
 
     fn build(loaded: &Loaded<Self>) -> Result<Pack, Vec<BuildError>> {
         let case = &loaded.value;
+        let impossible = plausible::impossible(loaded);
+        if !impossible.is_empty() {
+            return Err(impossible);
+        }
         let built = assemble::assemble(case, &loaded.source.files);
         let mut errors = legal(case);
         match built {
@@ -35,6 +39,10 @@ impl SceneCase for RingPackCase {
             }
             Err(e) => Err(e.into_iter().chain(errors).collect()),
         }
+    }
+
+    fn doubts(loaded: &Loaded<Self>, pack: &mut Pack) -> Vec<Note> {
+        plausible::unusual(loaded).into_iter().chain(pack.cylinder.notes()).collect()
     }
 
     fn explain(
@@ -68,6 +76,7 @@ impl SceneCase for RingPackCase {
         result.events.sort_by(|a, b| a.theta_deg.total_cmp(&b.theta_deg));
         result.branches = solved.branches;
         result.solver = solved.report;
+        result.solver.notes.splice(0..0, plausible::unusual(loaded));
         result.series = solved.record.series();
         result.headlines = headlines(&pack.names);
         if pack.plan.film {

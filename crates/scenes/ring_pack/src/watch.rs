@@ -127,6 +127,7 @@ impl Watch {
                         a.at.to_degrees()
                     );
                     let note = Note::caution(format!("{topic}.ring{ring}"), what(&when));
+                    let note = if NUMERICAL.contains(&topic) { note.of_numerics() } else { note };
                     notes.push(note.amount(name, a.most * scale, unit).amount("share_of_cycle", share, "1"));
                 }
             };
@@ -157,7 +158,7 @@ impl Watch {
             });
             tell("contact_drag", &w.contact_drag, "drag", "N", 1.0, &|when| {
                 format!(
-                    "`solver.limits.contact_drag` takes up to {:.4} N of the load of ring {ring}, as its contact gives way, {when}",
+                    "`solver.limits.contact_drag` takes up to {:.4} N of the load of ring {ring}, as its contact gives way, {when}; drags of 1e3 to 1e5 Pa s change the friction of a pack by some 1e-4 of itself",
                     w.contact_drag.most
                 )
             });
@@ -208,6 +209,10 @@ impl Watch {
         events
     }
 }
+
+/// Topics of drags that stand for no physics of the ring: what they take of a load that the film hardly has. (`min_load` is none of them: gas presses the
+/// ring off.)
+const NUMERICAL: [&str; 3] = ["radial_drag", "contact_drag", "radial_speed"];
 
 /// Seats that are taken back as soon as they are taken.
 fn chatter(ring: usize, log: &SeatLog) -> Option<Note> {
