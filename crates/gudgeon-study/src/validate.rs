@@ -58,7 +58,7 @@ pub struct Expect {
 }
 
 /// A file of comparisons that was read, with its case.
-pub struct Comparisons {
+struct Comparisons {
     file: Loaded<ValidationFile>,
     case: Checked,
     /// Its path.
@@ -69,7 +69,7 @@ pub struct Comparisons {
 ///
 /// # Errors
 /// Every mistake of the file, of its case and of the changes that its settings make, with places.
-pub fn read(path: &Path) -> Result<Comparisons, Report> {
+fn read(path: &Path) -> Result<Comparisons, Report> {
     let file = load::<ValidationFile>(path, &[])?;
     let case_path = tidy(&file.source.files.path(&file.value.case));
     let case = check(&case_path, &[]).map_err(|report| {
@@ -170,56 +170,43 @@ pub fn file_of(case: &Path) -> std::io::Result<Option<PathBuf>> {
     Ok(None)
 }
 
-/// Results by the setting that gives them.
-type Known<'a> = HashMap<&'a [String], IndexMap<String, Value>>;
+/// Comparisons with the runs that they need.
+struct Planned {
+    comparisons: Comparisons,
+    /// A setting for each run.
+    runs: Vec<Vec<String>>,
+    /// The run of each setting: two settings that resolve to the same values share one.
+    of: HashMap<Vec<String>, usize>,
+}
+
+/// What a run gave.
+type Ran = Result<IndexMap<String, Value>, RunError>;
 
 impl Comparisons {
-    /// Runs every setting once and compares.
-    ///
-    /// # Errors
-    /// What stopped a run, or a comparison of a result that the case does not have.
-    pub fn run(
-        &self,
-        progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
-    ) -> Result<Validated, RunError> {
+    fn plan(self) -> Result<Planned, RunError> {
         let scene = self.case.case.as_ref();
         let checks = &self.file.value.checks;
         let unknown = compared(scene, checks);
         if !unknown.is_empty() {
             return Err(RunError::Refused(self.file.refuse(&unknown).render(false)));
         }
-        let mut known = Known::new();
-        let mut done = Vec::new();
-        for (k, c) in checks.iter().enumerate() {
-            for set in [Some(&c.set), c.against.as_ref()].into_iter().flatten() {
-                if !known.contains_key(set.as_slice()) {
-                    progress(Progress {
-                        phase: format!("{}: {}", self.case.name, set.join(", ")),
-                        fraction: k as f64 / checks.len() as f64,
-                    })?;
-                    // Files are run side by side: a stop ends each of them.
-                    let mut heeded = |p| progress(p);
-                    let out = if set.is_empty() {
-                        scene.once(&mut heeded)?
-                    } else {
-                        changed(scene, set)?.once(&mut heeded)?
-                    };
-                    known.insert(set, out.results);
-                }
-            }
-            for (j, e) in c.expect.iter().enumerate() {
-                done.push(compare(c, e, &known).map_err(|e| self.refused(k, j, e))?);
+        let (mut runs, mut of, mut by_values) = (Vec::new(), HashMap::new(), HashMap::new());
+        for set in checks.iter().flat_map(|c| std::iter::once(&c.set).chain(&c.against)) {
+            if !of.contains_key(set) {
+                let values = changed(scene, set)?.resolved().to_string();
+                let run = *by_values.entry(values).or_insert_with(|| {
+                    runs.push(set.clone());
+                    runs.len() - 1
+                });
+                of.insert(set.clone(), run);
             }
         }
-        let heading = scene.heading();
-        Ok(Validated {
-            case: self.case.name.clone(),
-            file: self.path.display().to_string(),
-            title: heading.title.into(),
-            source: heading.source.into(),
-            runs: known.len(),
-            checks: done,
-        })
+        Ok(Planned { comparisons: self, runs, of })
+    }
+
+    fn run(&self, set: &[String], progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>) -> Ran {
+        progress(Progress { phase: format!("{}: {}", self.case.name, set.join(", ")), fraction: 0.0 })?;
+        Ok(changed(self.case.case.as_ref(), set)?.once(progress)?.results)
     }
 
     fn refused(&self, check: usize, expect: usize, what: String) -> RunError {
@@ -228,10 +215,37 @@ impl Comparisons {
     }
 }
 
-fn compare(c: &CheckCase, e: &Expect, known: &Known<'_>) -> Result<Check, String> {
+impl Planned {
+    /// What the sources say beside what the runs gave.
+    fn compare(&self, ran: &[IndexMap<String, Value>]) -> Result<Validated, RunError> {
+        let Comparisons { file, case, path } = &self.comparisons;
+        let mut done = Vec::new();
+        for (k, c) in file.value.checks.iter().enumerate() {
+            for (j, e) in c.expect.iter().enumerate() {
+                let compared = compare(c, e, |set| &ran[self.of[set]]);
+                done.push(compared.map_err(|e| self.comparisons.refused(k, j, e))?);
+            }
+        }
+        let heading = case.case.heading();
+        Ok(Validated {
+            case: case.name.clone(),
+            file: path.display().to_string(),
+            title: heading.title.into(),
+            source: heading.source.into(),
+            runs: ran.len(),
+            checks: done,
+        })
+    }
+}
+
+fn compare<'a>(
+    c: &CheckCase,
+    e: &Expect,
+    results: impl Fn(&[String]) -> &'a IndexMap<String, Value>,
+) -> Result<Check, String> {
     let name = e.result.as_str();
     let find = |set: &[String]| -> Result<&Value, String> {
-        let results = &known[set];
+        let results = results(set);
         results.get(name).ok_or_else(|| {
             let names: Vec<&str> = results.keys().map(String::as_str).collect();
             format!("this setting has no result `{name}`; {}", advice(name, &names))
@@ -295,7 +309,7 @@ pub enum ValidateError {
     Run(PathBuf, RunError),
 }
 
-/// Runs files of comparisons side by side on `threads` threads (0: one a core). Answers stand in the order of the files, whatever ended first.
+/// Runs the settings of files of comparisons side by side on `threads` threads (0: one a core). Answers stand in the order of the files, whatever ended first.
 ///
 /// # Errors
 /// The caller stopped it.
@@ -304,10 +318,28 @@ pub fn validate(
     threads: usize,
     progress: &mut dyn FnMut(Progress) -> Result<(), Stopped>,
 ) -> Result<Vec<Result<Validated, ValidateError>>, Stopped> {
+    let planned: Vec<Result<Planned, ValidateError>> = files
+        .iter()
+        .map(|f| {
+            let read = read(f).map_err(ValidateError::Input)?;
+            read.plan().map_err(|e| ValidateError::Run(f.clone(), e))
+        })
+        .collect();
+    let points: Vec<(&Comparisons, &[String])> = planned
+        .iter()
+        .flatten()
+        .flat_map(|p| p.runs.iter().map(|set| (&p.comparisons, set.as_slice())))
+        .collect();
     let work = |k: usize, tell: &mut dyn FnMut(Progress) -> Result<(), Stopped>| {
-        read(&files[k])
-            .map_err(ValidateError::Input)
-            .and_then(|c| c.run(tell).map_err(|e| ValidateError::Run(files[k].clone(), e)))
+        let (comparisons, set) = points[k];
+        comparisons.run(set, tell)
     };
-    run_many(files.len(), threads, work, progress).all()
+    let mut ran = run_many(points.len(), threads, work, progress).all()?.into_iter();
+    let answers = planned.into_iter().zip(files).map(|(planned, f)| {
+        let planned = planned?;
+        let own: Vec<Ran> = ran.by_ref().take(planned.runs.len()).collect();
+        let own: Result<Vec<_>, _> = own.into_iter().collect();
+        own.and_then(|own| planned.compare(&own)).map_err(|e| ValidateError::Run(f.clone(), e))
+    });
+    Ok(answers.collect())
 }

@@ -38,6 +38,11 @@ fn diesel(sets: &[&[&str]]) -> RunResult {
     run_case(DIESEL, &sets.concat())
 }
 
+/// The motored rings at one speed, without the sweep of their case.
+fn motored(set: &[&str]) -> RunResult {
+    run_case("motored-rings-1600/flooded", &[&["sweeps=[]"], set].concat())
+}
+
 fn groove_peak(r: &RunResult) -> f64 {
     peak(r, "ring3.back.p", 0.0, 720.0).0
 }
@@ -162,8 +167,7 @@ fn without_gas_two_rails_are_one_rail_counted_twice() {
         "rings.2.expander={mass=\"6 g\", height=\"2 mm\", ear_angle=\"15 deg\"}",
         "rings.2.groove.root_diameter=72 mm",
     ];
-    let (one, two) =
-        (run_case("motored-rings-1600/flooded", &[]), run_case("motored-rings-1600/flooded", &set));
+    let (one, two) = (motored(&[]), motored(&set));
     let rails = value(&two, "ring3.friction_power") + value(&two, "ring4.friction_power");
     // Two solutions of the same films, each to the tolerance of its steps (1e-4).
     assert!((rails / value(&one, "ring3.friction_power") - 1.0).abs() < 1e-3, "{rails}");
@@ -173,7 +177,7 @@ fn without_gas_two_rails_are_one_rail_counted_twice() {
 #[test]
 fn ledgers_close_where_no_pressure_drives_gas_or_oil() {
     // Next to no gas passes such a pack in a cycle: what its lands and flanks hold is the measure of what is lost.
-    let r = run_case("motored-rings-1600/flooded", &["engine.speed=5600 rpm"]);
+    let r = motored(&["engine.speed=5600 rpm"]);
     // Sums of some thousand steps, each to the rounding of a double.
     assert!(r.balance.gas_mass.is_some_and(|b| b < 1e-12), "{:?}", r.balance);
     // Oil moves between a strip and its supplies by rates that are integrated as the strips are: equal to rounding, 1e-9 asked for.
