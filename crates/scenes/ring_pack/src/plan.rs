@@ -189,6 +189,13 @@ fn film_results(i: usize, ring: &str) -> Vec<ResultInfo> {
             "bar",
             format!("the part of that which solid contact takes, {ring}; the film takes the rest"),
         ),
+        add(
+            "wear_load",
+            "J",
+            format!(
+                "load of solid contact times the way that it slides, {ring}, per cycle: the volume worn is this times a coefficient of wear (Archard)"
+            ),
+        ),
     ]
 }
 
