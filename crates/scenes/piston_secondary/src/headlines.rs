@@ -6,7 +6,6 @@ use gudgeon_core::result::Headline;
 pub fn headlines() -> Vec<Headline> {
     let pair = |label: &str, name: &str| (label.to_owned(), name.to_owned());
     let side = [pair("thrust", "side_force_max"), pair("anti-thrust", "side_force_min")];
-    let slap = [pair("thrust", "slap_force_thrust"), pair("anti-thrust", "slap_force_anti_thrust")];
     vec![
         Headline::one("Friction power", "friction_power").over(&["skirt.friction_power"]),
         Headline::one("Smallest gap", "h_min").over(&["thrust.h_min", "anti_thrust.h_min"]),
@@ -14,7 +13,6 @@ pub fn headlines() -> Vec<Headline> {
         Headline::each("Side force of film and contact", side).over(&["skirt.side_force"]),
         Headline::one("Largest difference of both edges", "tilt_max").over(&["skirt.tilt"]),
         Headline::one("Energy of the slap", "slap_energy").over(&["skirt.lateral_energy"]),
-        Headline::each("Slap force from 1 kHz on, root mean square", slap),
         Headline::one("Largest force of solid contact", "contact_force_max")
             .over(&["thrust.contact_force", "anti_thrust.contact_force"]),
         Headline::one("Friction mean effective pressure", "fmep"),
