@@ -192,9 +192,7 @@ fn film_results(i: usize, ring: &str) -> Vec<ResultInfo> {
         add(
             "wear_load",
             "J",
-            format!(
-                "load of solid contact times the way that it slides, {ring}, per cycle: the volume worn is this times a coefficient of wear (Archard)"
-            ),
+            format!("load of solid contact times the distance that {ring} slides under it, per cycle"),
         ),
     ]
 }
