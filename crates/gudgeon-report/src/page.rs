@@ -15,6 +15,7 @@ const AXIS: &str = include_str!("assets/axis.js");
 const CHART: &str = include_str!("assets/chart.js");
 const EXPORT: &str = include_str!("assets/export.js");
 const MAP: &str = include_str!("assets/map.js");
+const WATERFALL: &str = include_str!("assets/waterfall.js");
 const DRAWING: &str = include_str!("assets/drawing.js");
 const FIGURE: &str = include_str!("assets/figure.js");
 const SECTION: &str = include_str!("assets/section.js");
@@ -27,7 +28,7 @@ const BENCH: &str = include_str!("assets/bench.js");
 
 /// The scripts of a run's page, in their order: together they read the element `data` and fill the elements `bar`, `lead`, `plots` and
 /// `figures`. They expect a constant `OVER_CYCLE` that holds [`OVER_CYCLE`].
-pub const RUN_SCRIPTS: &[&str] = &[CORE, AXIS, EXPORT, CHART, SECTION, RUN, DRAWING, MAP, FIGURE];
+pub const RUN_SCRIPTS: &[&str] = &[CORE, AXIS, EXPORT, CHART, SECTION, RUN, DRAWING, MAP, WATERFALL, FIGURE];
 
 /// Which script draws the page.
 #[derive(Debug, Clone, Copy)]
@@ -100,9 +101,9 @@ fn json_for_script(value: &Value) -> String {
 pub(crate) fn document(kind: Kind, title: &str, body: &str, data: &Value) -> String {
     let scripts: &[&str] = match kind {
         Kind::Run => RUN_SCRIPTS,
-        Kind::Comparison => &[CORE, AXIS, EXPORT, CHART, COMPARE, DRAWING, MAP, FIGURE],
+        Kind::Comparison => &[CORE, AXIS, EXPORT, CHART, COMPARE, DRAWING, MAP, WATERFALL, FIGURE],
         Kind::Bench => &[CORE, BENCH],
-        Kind::Study => &[CORE, AXIS, EXPORT, CHART, DRAWING, MAP, FIGURE],
+        Kind::Study => &[CORE, AXIS, EXPORT, CHART, DRAWING, MAP, WATERFALL, FIGURE],
     };
     let mut out = String::new();
     out.push_str("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");

@@ -115,6 +115,43 @@ fn drawings_and_bars_travel_with_the_page() {
 }
 
 #[test]
+fn a_waterfall_travels_with_every_line_of_its_spectra() {
+    use gudgeon_core::result::{Column, Figure, FigureKind, Series, Waterfall};
+
+    let column =
+        |name: &str, unit: &str, values: Vec<f64>| Column { name: name.into(), unit: unit.into(), values };
+    // More rows than curves over the cycle keep.
+    let (orders, speeds) = (60, 40);
+    let of = |f: &dyn Fn(usize, usize) -> f64| -> Vec<f64> {
+        (0..speeds).flat_map(|j| (0..orders).map(move |k| (j, k))).map(|(j, k)| f(j, k)).collect()
+    };
+    let table = Series {
+        axis: column("order", "", of(&|_, k| k as f64)),
+        columns: vec![
+            column("speed", "rpm", of(&|j, _| 600.0 + j as f64)),
+            column("shaft1.torque", "N m", of(&|j, k| (j * k) as f64)),
+        ],
+    };
+    let kind = FigureKind::Waterfall(Waterfall {
+        x: vec!["order".into()],
+        y: "speed".into(),
+        spectra: vec![("crank".into(), "shaft1.torque".into())],
+    });
+    let (title, hint) = ("spectra".to_owned(), String::new());
+    let mut run = RunResult { case: "waterfall".into(), ..RunResult::default() };
+    run.figures = vec![Figure { title, hint, table: "order_spectra".into(), kind }];
+    run.tables.insert("order_spectra".into(), table);
+    let dir = scratch("waterfall");
+    let page = data(&read(write_run(&run, &dir).unwrap().report));
+    assert_eq!(page["figures"][0]["kind"]["waterfall"]["spectra"][0][1], "shaft1.torque");
+    let at = page["tables"]["order_spectra"]["columns"][1]["at"].as_u64().unwrap();
+    // Four bytes a line, in base64.
+    let text = page["arrays"][at as usize].as_str().unwrap();
+    assert_eq!(text.trim_end_matches('=').len() * 3 / 4, 4 * orders * speeds);
+    fs::remove_dir_all(dir).unwrap();
+}
+
+#[test]
 fn a_page_leads_with_verdict_headlines_and_contents() {
     let dir = scratch("leads");
     let mut run = common::run(3);

@@ -318,6 +318,8 @@ pub enum FigureKind {
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         marks: Vec<Mark>,
     },
+    /// Line spectra one above the other.
+    Waterfall(Waterfall),
     /// Something drawn to scale, still or moving. Reads no table.
     Drawing {
         /// Whether all frames are seen at once, side by side.
@@ -387,6 +389,18 @@ pub struct Lines {
     /// Points that follow each other without being joined.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub scatter: bool,
+}
+
+/// Line spectra of several values of one quantity (a speed), one above the other, the nearer hiding the farther. The table has one row per line; those
+/// of one spectrum follow each other, ascending along every abscissa.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Waterfall {
+    /// Columns along the abscissa, one shown at a time: `order`, `frequency`.
+    pub x: Vec<String>,
+    /// Column by which the spectra stand one above the other.
+    pub y: String,
+    /// Label and column of what the spectra are of, one shown at a time. Each has a unit and a scale of its own.
+    pub spectra: Vec<(String, String)>,
 }
 
 /// Something that is marked in [`Lines`], in the SI units of its columns.

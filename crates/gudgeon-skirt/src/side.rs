@@ -526,6 +526,18 @@ impl Side {
         if least > 0.0 { least } else { self.rows.smallest(e, q) - range }
     }
 
+    /// Depth below the upper edge of every row along which solid contact is summed \[m\].
+    #[must_use]
+    pub fn contact_depths(&self) -> Vec<f64> {
+        self.rows.depths()
+    }
+
+    /// Normal pressure of solid contact along these rows \[Pa\], mean over the arc of the side, at the displacements `e` of both edges and the elastic
+    /// amplitudes `q`; the present place stays.
+    pub fn contact_pressures(&mut self, e: [f64; 2], q: &[f64]) -> Vec<f64> {
+        self.rows.pressures(e, q)
+    }
+
     /// Solid contact: forces on both edges, normal force, and its moment arm.
     fn contact_loads(&mut self, e: [f64; 2], q: &[f64]) -> [f64; 6] {
         let range = self.rows.range();

@@ -31,4 +31,5 @@ mod tomanik;
 mod trends;
 mod unused;
 mod validation;
+mod wear;
 mod zottin;

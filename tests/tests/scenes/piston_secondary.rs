@@ -440,6 +440,49 @@ fn contact_and_its_end_are_passed() {
     assert!(value(&r, "contact_share") > 0.02 && value(&r, "contact_work") > 0.0);
     assert!(r.events.iter().any(|e| e.what == "solid contact begins"));
     assert!(r.events.iter().any(|e| e.what == "solid contact ends"));
+    // The wear load over the skirt is the work of rubbing over the coefficient of friction, 0.15; rows stand 0.25 mm apart on arcs of the radius times
+    // twice these angles.
+    let on = |side: &str, half_angle: f64| {
+        let wear = &r.tables["skirt_wear"].get(&format!("{side}.wear_load")).expect("a side").values;
+        wear.iter().sum::<f64>() * 0.25e-3 * 2.0 * half_angle * 0.5 * 76.51e-3
+    };
+    let load = on("thrust", 0.6213) + on("anti_thrust", 0.5306);
+    let work = value(&r, "contact_work") / 0.15;
+    // Trapezoids over rows of a degree, on contact that lasts some twenty: (1/20)².
+    assert!((load / work - 1.0).abs() < 3e-3, "{load} {work}");
+}
+
+#[test]
+fn the_spectrum_holds_the_force_and_the_gap_the_profile() {
+    let r = run_once(&coarse(&[
+        "models.skirt_profile={ model = \"barrel\", top = \"10 um\", bottom = \"6 um\" }",
+    ]));
+    // Parseval: half the squares of the harmonics are the variance of the force, of rows of a degree to what lies above 5 kHz.
+    let spectrum = &r.tables["slap_spectrum"];
+    for side in ["thrust", "anti_thrust"] {
+        let [film, contact] = ["film_force", "contact_force"].map(|f| column(&r, &format!("{side}.{f}")));
+        let force: Vec<f64> = film.iter().zip(contact).map(|(a, b)| a + b).skip(1).collect();
+        let mean = force.iter().sum::<f64>() / force.len() as f64;
+        let variance = force.iter().map(|f| (f - mean).powi(2)).sum::<f64>() / force.len() as f64;
+        let harmonics = &spectrum.get(&format!("{side}.force")).expect("a side").values;
+        let half: f64 = harmonics.iter().map(|a| 0.5 * a * a).sum();
+        assert!((half / variance - 1.0).abs() < 1e-3, "{side}: {half} {variance}");
+        let above = spectrum.axis.values.iter().zip(harmonics).filter(|(f, _)| **f >= 1000.0);
+        let slap = above.map(|(_, a)| 0.5 * a * a).sum::<f64>().sqrt();
+        // The same sum.
+        assert!((value(&r, &format!("slap_force_{side}")) / slap - 1.0).abs() < 1e-12, "{side}");
+    }
+    // 2500 rpm: a harmonic every 20.83 Hz, the second is order 1.
+    let order = &spectrum.get("order").expect("orders").values;
+    assert!((spectrum.axis.values[1] - 2500.0 / 60.0).abs() < 1e-9 && (order[1] - 1.0).abs() < 1e-12);
+    // The profile as it is given, in the middle of a clearance of 10 um and at both edges; the gap of a side under load lies within the smallest of the cycle.
+    let gap = &r.tables["skirt_gap"];
+    let centred = &gap.get("centred").expect("the profile").values;
+    let (low, high) = (centred[0], centred[centred.len() - 1]);
+    let clearance = centred.iter().copied().fold(f64::INFINITY, f64::min);
+    assert!((low - clearance - 6e-6).abs() < 1e-9 && (high - clearance - 10e-6).abs() < 1e-9, "{low} {high}");
+    let least = gap.get("thrust.gap").expect("loaded").values.iter().copied().fold(f64::INFINITY, f64::min);
+    assert!(least >= 1e-6 * value(&r, "h_min") * (1.0 - 1e-6) && least < clearance, "{least}");
 }
 
 #[test]

@@ -576,3 +576,66 @@ fn a_sweep_of_a_result_that_is_none_is_refused_with_the_nearest() {
     let told = refused_of("geared-train.toml", &[sweep]);
     assert!(told.contains("there is no result `shaft2.torque_amplitud`"), "{told}");
 }
+
+#[test]
+fn spectra_over_the_speed_are_those_of_every_order() {
+    // Two inertias, viscously damped, with pulsating torques of two orders on the second. Torque in the shaft by the torque T on J2:
+    // J1/(J1 + J2) T √(1 + (2 ζ r)²)/√((1 - r²)² + (2 ζ r)²), r the frequency over the natural one.
+    let (j1, j2, zeta) = (2.0_f64, 1.0_f64, 0.02_f64);
+    let j = j1 * j2 / (j1 + j2);
+    let natural = 3.0 * 1000.0 * std::f64::consts::PI / 30.0;
+    let (k, c) = (j * natural * natural, 2.0 * zeta * j * natural);
+    let torques = [(2.0, 40.0), (3.0, 30.0)];
+    let text = format!(
+        r#"scene = "shaft_line"
+speed = "900 rpm"
+[range]
+from = "600 rpm"
+to = "1800 rpm"
+points = 121
+[[inertias]]
+name = "a"
+inertia = {j1}
+[[inertias]]
+name = "b"
+inertia = {j2}
+[[shafts]]
+name = "ab"
+from = "a"
+to = "b"
+stiffness = {k:?}
+damping = {c:?}
+[[drives]]
+at = "b"
+drive = {{ model = "harmonics", orders = [{{ order = 2, amplitude = 40 }}, {{ order = 3, amplitude = 30 }}] }}
+[models]
+torsion = {{ model = "orders" }}
+"#
+    );
+    let folder = std::env::temp_dir().join("gudgeon-shaft-line-spectra");
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let file = folder.join("spectra.toml");
+    std::fs::write(&file, text).expect("written");
+    let r = run(&check(&file, &[]).unwrap_or_else(|r| panic!("{r}")), &mut gudgeon_scene::unwatched)
+        .expect("runs");
+    let table = &r.tables["order_spectra"];
+    let of = |name: &str| &table.get(name).expect(name).values;
+    let (frequency, speed, torque) = (of("frequency"), of("speed"), of("shaft1.torque"));
+    for (row, order) in table.axis.values.iter().enumerate() {
+        let t = torques.iter().find(|t| t.0 == *order).expect("an order that is excited").1;
+        // Rounding of a product.
+        assert!((frequency[row] - order * speed[row] / 60.0).abs() < 1e-9, "row {row}");
+        let ratio = 2.0 * std::f64::consts::PI * frequency[row] / natural;
+        let (loss, rest) = (2.0 * zeta * ratio, 1.0 - ratio * ratio);
+        let exact = j1 / (j1 + j2) * t * loss.hypot(1.0) / rest.hypot(loss);
+        // A direct solution of two equations: rounding, as near to the resonance as its damping.
+        assert!((torque[row] / exact - 1.0).abs() < 1e-9, "row {row}: {} {exact}", torque[row]);
+    }
+    // Few enough for a page, ascending, both orders at each speed, and the peak of the diagram among them.
+    assert!(torque.len() <= 2 * 36 && speed.windows(2).all(|w| w[0] <= w[1]));
+    assert!(speed.chunks(2).all(|w| w[0] == w[1]));
+    let top = |v: &[f64]| v.iter().copied().fold(0.0, f64::max);
+    let diagram =
+        |order: u32| &r.tables["speed_range"].get(&format!("shaft1.order{order}")).expect("drawn").values;
+    assert_eq!(top(torque), top(diagram(2)).max(top(diagram(3))));
+}

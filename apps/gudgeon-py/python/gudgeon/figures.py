@@ -137,8 +137,9 @@ def _carried(result: Result, figure: dict[str, Any]) -> Figure | None:
     table = result.series if figure["table"] == "series" else result.tables.get(figure["table"])
     if table is None:
         return None
-    if kind == "map":
-        x, y, v = said["x"], said["y"], said["value"]
+    if kind in ("map", "waterfall"):
+        # Of a waterfall the first of its spectra, over its first abscissa, as colours.
+        x, y, v = (said["x"], said["y"], said["value"]) if kind == "map" else (said["x"][0], said["y"], said["spectra"][0][1])
         shown = {name: _shown(table.units[name], table[name]) for name in (x, y, v)}
         rows = int(np.flatnonzero(np.diff(table[y]))[0]) + 1 if np.diff(table[y]).any() else len(table[y])
         grid = {name: (table[name] * shown[name][0])[: len(table[name]) // rows * rows].reshape(-1, rows) for name in (x, y, v)}

@@ -50,11 +50,11 @@ function savePng(svg, spec) {
   };
   image.src = "data:image/svg+xml," + encodeURIComponent(new XMLSerializer().serializeToString(copy));
 }
-// Columns of all curves in SI units; curves over other abscissas follow in columns of their own.
+// Columns of all curves in SI units, or of what `columns` says; curves over other abscissas follow in columns of their own.
 function saveCsv(spec) {
   const columns = [], cell = (t) => (/[",\n]/.test(t) ? '"' + t.replace(/"/g, '""') + '"' : t);
-  for (const l of spec.lines) {
-    if (!columns.some((c) => c.values === l.x)) columns.push({ name: `${spec.xName || "theta"}[${spec.xUnit || "deg"}]`, values: l.x });
+  for (const l of spec.columns || spec.lines) {
+    if (!columns.some((c) => c.values === l.x)) columns.push({ name: `${spec.xName || "theta"}[${spec.cycle ? "deg" : spec.xUnit || ""}]`, values: l.x });
     columns.push({ name: `${l.label}[${l.unit || ""}]`, values: l.y });
   }
   const rows = Math.max(...columns.map((c) => c.values.length)), out = [columns.map((c) => cell(c.name)).join(",")];
@@ -66,7 +66,7 @@ function saveCsv(spec) {
 function saveMenu(svg, spec) {
   const item = (name, go) => h("button", { type: "button", onclick: () => { menu.open = false; go(); } }, name);
   const all = [item("SVG", () => saveSvg(svg, spec)), item("PNG", () => savePng(svg, spec))];
-  if (spec.lines) all.push(item("CSV", () => saveCsv(spec)));
+  if (spec.lines || spec.columns) all.push(item("CSV", () => saveCsv(spec)));
   const menu = h("details", { class: "saving" }, h("summary", { "aria-label": "save " + spec.title }, "Save"), h("div", {}, ...all));
   return menu;
 }

@@ -27,15 +27,22 @@
     const [x, y, z] = [k.x, k.y, k.value].map((name) => column(table, name));
     if (x && y && z) map(where, { title: capital(f.title), hint: f.hint, x: arrays[x.at], y: arrays[y.at], z: arrays[z.at], xName: words(x.name), yName: words(y.name), xUnit: x.unit, yUnit: y.unit, zUnit: z.unit, marks: k.marks });
   }
+  function spectra(f, k, where, wide) {
+    const table = DATA.tables[f.table];
+    if (!table) return;
+    const found = ([label, name]) => { const c = column(table, name); return c && { label, unit: c.unit, values: arrays[c.at] }; };
+    const abscissas = k.x.map((n) => found([words(n), n])).filter(Boolean), y = found([words(k.y), k.y]), all = k.spectra.map(found).filter(Boolean);
+    if (abscissas.length && y && all.length) new Waterfall(where, { title: capital(f.title), hint: f.hint, abscissas, y, spectra: all, wide });
+  }
   // Units in explanations as they are typeset.
   const typeset = (t) => (t || "").replace(/ um\b/g, " µm").replace(/(\d) deg\b/g, "$1°");
   function draw(f, where, wide) {
     f = { ...f, hint: typeset(f.hint) };
     const [[kind, k]] = Object.entries(f.kind), spec = { title: capital(f.title), hint: f.hint, wide, ...k };
-    ({ lines: () => lines(f, k, where, wide), map: () => map2(f, k, where), drawing: () => drawing(where, spec), bars: () => bars(where, spec), ranges: () => ranges(where, spec), table: () => table(where, spec) })[kind]();
+    ({ lines: () => lines(f, k, where, wide), map: () => map2(f, k, where), waterfall: () => spectra(f, k, where, wide), drawing: () => drawing(where, spec), bars: () => bars(where, spec), ranges: () => ranges(where, spec), table: () => table(where, spec) })[kind]();
   }
   // Figures that hold nothing to draw are left out before one is chosen to lead.
-  const all = (DATA.figures || []).filter((f) => !(f.kind.lines || f.kind.map) || DATA.tables[f.table]);
+  const all = (DATA.figures || []).filter((f) => !(f.kind.lines || f.kind.map || f.kind.waterfall) || DATA.tables[f.table]);
   const first = lead && !lead.childElementCount ? all.find((f) => f.title === DATA.lead) || all[0] : null;
   if (first) draw(first, lead, true);
   if (host) {

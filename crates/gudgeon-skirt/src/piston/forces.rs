@@ -337,6 +337,15 @@ impl Piston {
         })
     }
 
+    /// Normal pressure of solid contact along the rows of each side \[Pa\], mean over the arc, at the coordinates `x`
+    /// ([`Side::contact_pressures`](crate::Side::contact_pressures)).
+    pub fn contact_pressures(&mut self, x: &[f64]) -> [Vec<f64>; 2] {
+        [0, 1].map(|side: usize| {
+            let own = self.own(side);
+            self.sides[side].contact_pressures([x[0], x[1]], &x[own])
+        })
+    }
+
     /// Oil that leaves both sides at the present place and the rates `w` \[m³/s\]: over the upper edges, over the lower edges, over the flanks.
     ///
     /// # Errors

@@ -140,6 +140,27 @@ impl ContactRows {
         smallest
     }
 
+    /// Depth of every row below the upper edge \[m\].
+    pub(super) fn depths(&self) -> Vec<f64> {
+        self.rows.iter().map(|s| s * self.panel.length).collect()
+    }
+
+    /// Normal pressure of every row \[Pa\], mean over the arc. Not counted among the sums.
+    pub(super) fn pressures(&mut self, e: [f64; 2], q: &[f64]) -> Vec<f64> {
+        let (range, points, n) = (self.touch.contact.range(), self.cos.len(), self.grid.intervals);
+        let (doubled, count) = (points < n + 1, self.rows.len());
+        let pressure = |k| {
+            self.row(k, e, q);
+            let [h, p, _] = &mut self.work;
+            if h.iter().all(|h| *h >= range) {
+                return 0.0;
+            }
+            self.touch.contact.pressure(h, p);
+            p.iter().enumerate().map(|(i, p)| weight(i, points, doubled) * p).sum::<f64>() / n as f64
+        };
+        (0..count).map(pressure).collect()
+    }
+
     /// The gap along row `k` of contact, into the first of `work`.
     fn row(&mut self, k: usize, e: [f64; 2], q: &[f64]) {
         let points = self.cos.len();
@@ -178,13 +199,7 @@ impl ContactRows {
                 self.touch.contact.real_area(h, area);
             }
             for (i, p) in p.iter().enumerate() {
-                let end = i == 0 || (!doubled && i + 1 == points);
-                let middle = doubled && i + 1 == points;
-                let w = match (end, middle, doubled) {
-                    (true, _, true) | (_, true, _) | (false, false, false) => 1.0,
-                    (true, _, false) => 0.5,
-                    _ => 2.0,
-                };
+                let w = weight(i, points, doubled);
                 let load = step * w * p;
                 let side = self.sign * load * self.cos[i];
                 sum[0] += side * (1.0 - s);
@@ -199,6 +214,17 @@ impl ContactRows {
             }
         }
         sum
+    }
+}
+
+/// Weight of point `i` of a row of `points` in the trapezoidal rule over the whole arc; `doubled`: the row is one half of it, to the middle.
+fn weight(i: usize, points: usize, doubled: bool) -> f64 {
+    let end = i == 0 || (!doubled && i + 1 == points);
+    let middle = doubled && i + 1 == points;
+    match (end, middle, doubled) {
+        (true, _, true) | (_, true, _) | (false, false, false) => 1.0,
+        (true, _, false) => 0.5,
+        _ => 2.0,
     }
 }
 

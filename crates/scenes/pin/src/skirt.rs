@@ -267,9 +267,11 @@ fn shape(
         c[k - 1].growth + part * (c[k].growth - c[k - 1].growth)
     };
     let rows = || t.axis.values.iter().zip(&finished.values).rev();
+    let heights: Vec<f64> = rows().map(|(x, _)| *x).rev().collect();
     let below: Vec<f64> = rows().map(|(x, _)| height - x).collect();
     let cold: Vec<f64> = rows().map(|(_, y)| -0.5 * y).collect();
     let gap: Vec<f64> = rows().map(|(x, y)| 0.5 * (barrel.assembly_clearance - growth(*x) - y)).collect();
+    let assembled: Vec<f64> = rows().map(|(_, y)| 0.5 * (barrel.assembly_clearance - y)).collect();
     let min = |v: &[f64]| v.iter().copied().fold(f64::INFINITY, f64::min);
     let (proud, tightest) = (min(&cold), min(&gap));
     let columns = vec![
@@ -292,6 +294,20 @@ fn shape(
             "radial drop of the oval skirt across the thrust direction",
         );
     }
+    let upwards = |v: &[f64]| v.iter().rev().copied().collect::<Vec<f64>>();
+    let clearances =
+        vec![column("cold_gap", "m", upwards(&assembled)), column("warm_gap", "m", upwards(&gap))];
+    out.tables.insert(
+        "skirt_clearance".into(),
+        Series { axis: column("height", "m", heights), columns: clearances },
+    );
+    lines(
+        out,
+        "skirt_clearance",
+        "Clearance of the skirt, cold and warm",
+        "radial gap between finished profile and bore in the thrust direction, the bore at 0, over the height above the open end: at assembly, and when piston and cylinder have their working temperatures",
+        &[("at assembly", "cold_gap"), ("warm", "warm_gap")],
+    );
     out.tables.insert("skirt_shape".into(), Series { axis: column("depth", "m", below), columns });
     lines(
         out,

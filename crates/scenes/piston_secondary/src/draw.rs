@@ -1,12 +1,15 @@
-//! Pictures of the motion: the piston in its bore, and the pressures on both sides of its skirt.
+//! Pictures of the motion: the piston in its bore, gap, wear and pressures of both sides of its skirt, the spectrum of its slap.
 
-use gudgeon_core::result::{Anchor, Column, Figure, FigureKind, Frame, RunResult, Series, Shape, Style};
+use gudgeon_core::result::{
+    Anchor, Column, Figure, FigureKind, Frame, Lines, Mark, RunResult, Series, Shape, Style,
+};
 use gudgeon_numerics::elementary;
 use gudgeon_skirt::Side;
 
 use super::assembly::Assembly;
 use super::plan::tidy;
-use super::record::{Map, Record};
+use super::record::{Map, Record, Wear};
+use super::spectrum::{SLAP, Spectrum};
 
 /// Title of the picture that leads.
 pub const PISTON: &str = "The piston in its bore";
@@ -24,6 +27,8 @@ const PRESSURE: f64 = 0.9;
 /// Adds the figures of a run.
 pub fn figures(a: &Assembly, record: &Record, result: &mut RunResult) {
     result.figures.push(piston(a, record));
+    gaps(a, record, result);
+    wear(a, record, result);
     let names = ["thrust", "anti_thrust"];
     let words = ["thrust side", "anti-thrust side"];
     for k in 0..2 {
@@ -62,6 +67,108 @@ pub fn figures(a: &Assembly, record: &Record, result: &mut RunResult) {
 
 fn column(name: &str, unit: &str, values: Vec<f64>) -> Column {
     Column { name: name.into(), unit: unit.into(), values }
+}
+
+/// Curves over the height above the lower edge.
+fn over_height(table: &str, title: &str, hint: String, lines: Vec<(String, String)>, y_name: &str) -> Figure {
+    let kind = Lines { x: "height".into(), lines, y_name: y_name.into(), ..Lines::default() };
+    Figure { title: title.into(), hint, table: table.into(), kind: FigureKind::Lines(kind) }
+}
+
+/// Table `skirt_gap` and its figure: the gap along the middle of both sides, of the centred skirt and when either carries most.
+fn gaps(a: &Assembly, record: &Record, result: &mut RunResult) {
+    let (length, x) = (a.piston.body.length, &a.piston.sides[0].grid().x);
+    let over = |f: &dyn Fn(f64) -> f64| x.iter().rev().map(|x| f(*x)).collect::<Vec<f64>>();
+    let centred = |depth: f64| a.clearance + a.profile.depth(depth, 0.0);
+    let mut table = Series {
+        axis: column("height", "m", over(&|x| length - x)),
+        columns: vec![column("centred", "m", over(&centred))],
+    };
+    let mut lines = vec![("hot, centred".to_owned(), "centred".to_owned())];
+    let mut told = Vec::new();
+    for (k, (name, side)) in
+        [("thrust", "thrust side"), ("anti_thrust", "anti-thrust side")].iter().enumerate()
+    {
+        let (at, own) = (&record.loaded[k], &a.piston.sides[k]);
+        if at.gap.is_empty() {
+            continue;
+        }
+        told.push(format!("{side} at {}° under {:.0} N", at.theta_deg, at.force));
+        let [top, bottom] = at.edges.map(|e| own.sign * e);
+        let rigid = |depth: f64| centred(depth) + top + (bottom - top) * depth / length;
+        let mut gap = middle(own, &at.gap);
+        gap.reverse();
+        lines.push(((*side).to_owned(), format!("{name}.gap")));
+        table.columns.push(column(&format!("{name}.gap"), "m", gap));
+        if a.elastic {
+            lines.push((format!("{side}, without yielding"), format!("{name}.rigid_gap")));
+            table.columns.push(column(&format!("{name}.rigid_gap"), "m", over(&rigid)));
+        }
+    }
+    let hint = format!(
+        "between the mean planes of skirt and liner along the middle of each side, the bore at 0: of the centred piston and where each side carries most ({}); negative where crests overlap",
+        told.join(", ")
+    );
+    result.tables.insert("skirt_gap".into(), table);
+    result.figures.push(over_height(
+        "skirt_gap",
+        "Hot profile and clearance of the skirt",
+        hint,
+        lines,
+        "gap",
+    ));
+}
+
+/// Table `skirt_wear` and its figure: load of solid contact times way, by height; none where nothing touches.
+fn wear(a: &Assembly, record: &Record, result: &mut RunResult) {
+    let Wear { depths, sides, .. } = &record.wear;
+    if sides.iter().flatten().all(|w| *w <= 0.0) {
+        return;
+    }
+    let height = depths[0].iter().rev().map(|x| a.piston.body.length - x).collect();
+    let of = |k: usize, name: &str| column(name, "J/m2", sides[k].iter().rev().copied().collect());
+    result.tables.insert(
+        "skirt_wear".into(),
+        Series {
+            axis: column("height", "m", height),
+            columns: vec![of(0, "thrust.wear_load"), of(1, "anti_thrust.wear_load")],
+        },
+    );
+    let lines = [("thrust side", "thrust.wear_load"), ("anti-thrust side", "anti_thrust.wear_load")]
+        .map(|(label, name)| (label.to_owned(), name.to_owned()));
+    result.figures.push(over_height(
+        "skirt_wear",
+        "Wear load of the skirt",
+        "pressure of solid contact times speed over a cycle, mean over the arc of the side; times a coefficient of wear (m³/(N m), Archard) it is the depth worn per cycle".into(),
+        lines.to_vec(),
+        "per cycle",
+    ));
+}
+
+/// Table `slap_spectrum` and its figure.
+pub fn slap(spectrum: &Spectrum, result: &mut RunResult) {
+    let [thrust, anti_thrust] = spectrum.slap();
+    result.tables.insert("slap_spectrum".into(), spectrum.table());
+    result.figures.push(Figure {
+        title: "Slap spectrum".into(),
+        hint: format!(
+            "amplitude (half of peak to peak) of every harmonic of the cycle in the force of film and contact on each side; order 1 is {:.2} Hz; slap from {:.0} Hz on: {thrust:.2} N rms on the thrust side, {anti_thrust:.2} N on the other",
+            spectrum.cycle * spectrum.turns,
+            SLAP
+        ),
+        table: "slap_spectrum".into(),
+        kind: FigureKind::Lines(Lines {
+            x: "frequency".into(),
+            lines: vec![
+                ("thrust side".into(), "thrust.force".into()),
+                ("anti-thrust side".into(), "anti_thrust.force".into()),
+            ],
+            log_y: true,
+            y_name: "force".into(),
+            marks: vec![Mark::At { x: SLAP, label: "slap from here".into() }],
+            ..Lines::default()
+        }),
+    });
 }
 
 /// The line of nodes in the middle of a side, from the upper edge down, or the mean of the two beside it.

@@ -1,7 +1,7 @@
 //! The scene `piston_secondary`: lateral motion and tilt of one piston on the films and crests of its skirt.
 //!
 //! `assemble` builds the sub-models into an `assembly`, `layout` places their states, `equations` gives the rates of all states, `implicit`, its `stages` and `backward_euler` integrate
-//! them, `march` finds the periodic motion and `search` the motions on the way to it, `row` and `survey` look at a cycle, `results`, `record` and `draw` turn it into results, rows and pictures.
+//! them, `march` finds the periodic motion and `search` the motions on the way to it, `row` and `survey` look at a cycle, `spectrum` takes its lateral forces apart into harmonics, `results`, `record` and `draw` turn it into results, rows and pictures.
 #![cfg_attr(doctest, doc = include_str!("../README.md"))]
 
 pub mod assemble;
@@ -30,6 +30,7 @@ pub mod row;
 mod scene;
 mod search;
 pub mod solver;
+pub mod spectrum;
 pub mod stages;
 pub mod survey;
 pub mod trajectory;

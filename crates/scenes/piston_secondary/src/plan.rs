@@ -100,6 +100,16 @@ pub fn catalogue(case: &PistonSecondaryCase, period_deg: f64, inertial: bool) ->
         ("contact_end", "deg", "crank angle at which that stretch ends"),
         ("slap_energy", "mJ", "largest kinetic energy across the bore that an approach to a side loses"),
         ("slap_energy_angle", "deg", "crank angle at which it is largest"),
+        (
+            "slap_force_thrust",
+            "N",
+            "root mean square of the force on the thrust side in harmonics of the cycle from 1 to 5 kHz, of its first 2048",
+        ),
+        (
+            "slap_force_anti_thrust",
+            "N",
+            "root mean square of the force on the anti-thrust side in the same harmonics",
+        ),
         ("periodicity_error", "um", "estimated distance from the periodic motion"),
     ] {
         add(name, unit, false, what);

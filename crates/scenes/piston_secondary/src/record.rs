@@ -8,7 +8,7 @@ use super::assembly::Assembly;
 use super::case::PistonSecondaryCase;
 use super::places::{angles, places};
 use super::plan::tidy;
-use super::row::{COLUMNS, FILLED, INERTIA, Look, OIL, YIELD, index};
+use super::row::{COLUMNS, FILLED, INERTIA, Look, OIL, Row, YIELD, index};
 use super::trajectory::Trajectory;
 use gudgeon_scene::RunError;
 
@@ -19,6 +19,73 @@ pub struct Map {
     pub theta_deg: f64,
     /// Pressure above that of the crankcase \[Pa\] at the nodes of the whole side.
     pub p: Vec<f64>,
+}
+
+/// Where one side stands when it carries most.
+#[derive(Debug, Clone, Default)]
+pub struct Loaded {
+    /// Crank angle \[deg\].
+    pub theta_deg: f64,
+    /// Force of film and contact on it \[N\].
+    pub force: f64,
+    /// Displacements of the upper and the lower edge towards the anti-thrust side \[m\].
+    pub edges: [f64; 2],
+    /// Gap \[m\] at the nodes of the whole side; empty when the side carries nothing.
+    pub gap: Vec<f64>,
+}
+
+impl Loaded {
+    /// Takes the row at `theta` \[rad\] if the side `k` carries more than so far.
+    fn raise(&mut self, k: usize, theta: f64, row: &Row, look: &Look<'_>) {
+        let name = ["thrust", "anti_thrust"][k];
+        let of = |what: &str| row[index(&format!("{name}.{what}"))];
+        let force = look.a.piston.sides[k].sign * (of("film_force") + of("contact_force"));
+        if force > self.force {
+            let edges = [index("skirt.e_top"), index("skirt.e_bottom")].map(|c| row[c]);
+            let theta_deg = tidy(theta.to_degrees());
+            *self = Self { theta_deg, force, edges, gap: look.a.piston.sides[k].gap() };
+        }
+    }
+}
+
+/// Load of solid contact times the way that it slides, by place on the skirt: the integral of normal pressure times speed over the cycle, by the
+/// trapezoidal rule over the rows.
+#[derive(Debug, Clone, Default)]
+pub struct Wear {
+    /// Depth below the upper edge of the rows of contact \[m\].
+    pub depths: [Vec<f64>; 2],
+    /// What Archard's law multiplies with a coefficient of wear there \[J/m²\], mean over the arc.
+    pub sides: [Vec<f64>; 2],
+    /// Crank angle \[rad\] and power of the row before \[W/m²\]; empty without contact.
+    before: Option<(f64, [Vec<f64>; 2])>,
+}
+
+impl Wear {
+    fn new(look: &Look<'_>) -> Self {
+        let depths = [0, 1].map(|k: usize| look.a.piston.sides[k].contact_depths());
+        let sides = depths.each_ref().map(|d| vec![0.0; d.len()]);
+        Self { depths, sides, before: None }
+    }
+
+    /// Adds the way from the row before to this one, at `theta` \[rad\].
+    fn add(&mut self, theta: f64, row: &Row, look: &mut Look<'_>) {
+        let touches = ["thrust", "anti_thrust"].map(|s| row[index(&format!("{s}.contact_force"))] != 0.0);
+        let speed = row[index("piston.v")].abs();
+        let mut power: [Vec<f64>; 2] = Default::default();
+        if touches.contains(&true) {
+            power = look.contact_pressures();
+            power.iter_mut().flatten().for_each(|p| *p *= speed);
+        }
+        if let Some((from, other)) = &self.before {
+            let half = 0.5 * (theta - from) / look.a.omega();
+            for (sum, parts) in self.sides.iter_mut().zip(power.iter().zip(other)) {
+                for part in [parts.0, parts.1] {
+                    sum.iter_mut().zip(part).for_each(|(s, p)| *s += half * p);
+                }
+            }
+        }
+        self.before = Some((theta, power));
+    }
 }
 
 /// Step of the crank angle at which yielding is judged \[rad\]: 3 deg, a tenth of the pulse that loads a skirt.
@@ -33,6 +100,10 @@ pub struct Record {
     pub maps: [Vec<Map>; 2],
     /// The map with the highest pressure of each side.
     pub peak: [Map; 2],
+    /// Each side when it carries most, among the rows.
+    pub loaded: [Loaded; 2],
+    /// Where the skirt rubs.
+    pub wear: Wear,
 }
 
 impl Record {
@@ -54,9 +125,12 @@ impl Record {
             .map(|(name, unit)| Column { name: (*name).into(), unit: (*unit).into(), values: Vec::new() })
             .collect();
         let mut maps: [Vec<Map>; 2] = Default::default();
+        let (mut loaded, mut wear): ([Loaded; 2], Wear) = (Default::default(), Wear::new(look));
         for place in places(&grid, &mapped) {
             let row = look.row(place.theta, 0.0)?;
             if place.row {
+                loaded.iter_mut().enumerate().for_each(|(k, l)| l.raise(k, place.theta, &row, look));
+                wear.add(place.theta, &row, look);
                 columns.iter_mut().zip(row).for_each(|(c, v)| c.values.push(v));
             }
             if place.map {
@@ -82,7 +156,7 @@ impl Record {
                     && (look.trajectory.oil.is_some() || k != FILLED)
             })
             .collect();
-        Ok(Self { grid, columns, shown, maps, peak })
+        Ok(Self { grid, columns, shown, maps, peak, loaded, wear })
     }
 
     /// Crank angles of all rows \[rad\].

@@ -8,6 +8,7 @@ use super::case::PistonSecondaryCase;
 use super::oil::{OilCycle, OilStep};
 use super::plan::{AT, EXTREMES, ResultInfo, tidy};
 use super::row::{INERTIA, Look, OIL, Row, index};
+use super::spectrum::Spectrum;
 use super::survey::{Survey, Which};
 
 /// Results and events of a cycle.
@@ -18,6 +19,8 @@ pub struct Told {
     pub events: Vec<Event>,
     /// Crank angles \[rad\] of the highest film pressure of each side that has any.
     pub peaks: [Option<f64>; 2],
+    /// The lateral forces in harmonics.
+    pub spectrum: Spectrum,
 }
 
 /// Names of the sides: in columns, in words.
@@ -55,6 +58,10 @@ pub fn tell(
     if want("slap_energy") {
         t.slap()?;
     }
+    let spectrum = Spectrum::new(survey, t.look.a.period, t.look.a.omega());
+    for (name, force) in ["slap_force_thrust", "slap_force_anti_thrust"].into_iter().zip(spectrum.slap()) {
+        t.put(name, force);
+    }
     t.contact(&want)?;
     let peaks = t.pressures()?;
     if want("inertia_share") {
@@ -75,7 +82,7 @@ pub fn tell(
         })
         .collect();
     t.events.sort_by(|a, b| a.theta_deg.total_cmp(&b.theta_deg));
-    Ok(Told { results, events: t.events, peaks })
+    Ok(Told { results, events: t.events, peaks, spectrum })
 }
 
 impl Teller<'_, '_, '_> {

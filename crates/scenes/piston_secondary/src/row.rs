@@ -142,6 +142,11 @@ impl<'a> Look<'a> {
         self.a.piston.contact_gaps(&self.x)
     }
 
+    /// Normal pressure of solid contact along the rows of each side \[Pa\] at the instant looked at last.
+    pub fn contact_pressures(&mut self) -> [Vec<f64>; 2] {
+        self.a.piston.contact_pressures(&self.x)
+    }
+
     /// Fills the films as they were at `t`; where two steps of the oil meet, as at the end of the first one. What the second one fills stops the piston within
     /// microseconds, by pressures that go with the step.
     fn fill_as(&mut self, t: f64) {

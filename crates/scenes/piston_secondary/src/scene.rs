@@ -122,6 +122,7 @@ fn look_at(
     result.solver.notes.push(centre_of_gravity(case));
     result.balance.skirt_oil = found.trajectory.oil.as_ref().map(|oil| oil.ledger.error());
     draw::figures(a, &record, result);
+    draw::slap(&told.spectrum, result);
     result.headlines = headlines::headlines();
     result.lead = draw::PISTON.into();
     result.series = record.series();

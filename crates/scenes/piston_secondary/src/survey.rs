@@ -3,6 +3,7 @@
 use gudgeon_core::EvalError;
 
 use super::row::{Look, Row};
+use super::spectrum::Piece;
 use super::trajectory::Between;
 
 /// An instant that was looked at.
@@ -118,6 +119,19 @@ impl Survey {
             sum += h * if self.more == 2 { (a + 4.0 * f(&own[1].row) + b) / 6.0 } else { 0.5 * (a + b) };
         }
         sum / self.omega
+    }
+
+    /// The course of `f` over every step: crank angles \[rad\] at its ends, and the values at its start, halfway and at its end. Where nothing is
+    /// known between the ends it is straight.
+    #[must_use]
+    pub fn pieces(&self, f: impl Fn(&Row) -> f64) -> Vec<Piece> {
+        let piece = |k: &usize| {
+            let own = &self.nodes[*k..=*k + self.more];
+            let (from, to) = (f(&own[0].row), f(&own[self.more].row));
+            let middle = if self.more == 2 { f(&own[1].row) } else { 0.5 * (from + to) };
+            Piece { ends: [own[0].t, own[self.more].t], values: [from, middle, to] }
+        };
+        self.steps.iter().map(piece).collect()
     }
 
     /// The extreme of `f` over `window` \[rad\] and its crank angle \[rad\].

@@ -40,6 +40,7 @@ pub fn headlines(names: &Names) -> Vec<Headline> {
         each("Friction power", "friction_power", "friction_power"),
         each("Thinnest film", "h_min", "h_min"),
         Headline { curves: pressures, ..Headline::each("Highest pressure between the rings", between) },
+        each("Wear load of solid contact", "wear_load", "contact_load"),
         each("Part of the cycle off the lower flank", "lifted_share", "position"),
     ]
 }

@@ -28,6 +28,7 @@ pub mod jacobian;
 pub mod layout;
 pub mod limits;
 pub mod liner;
+pub mod liner_wear;
 mod loads;
 pub mod marching;
 pub mod measure;

@@ -80,6 +80,8 @@ pub struct RingMeasure {
     pub nearest: (f64, f64),
     /// `∫ wetted share dt` \[s\].
     pub wetted: f64,
+    /// `∫ W |v| dt` \[J\], the load of solid contact times the way that it slides.
+    pub wear: f64,
     /// Time \[s\] off the flank that it seals.
     pub lifted: f64,
     /// Arrivals on a flank.
@@ -116,6 +118,7 @@ struct Samples {
     wetted: Column,
     friction: Column,
     load: Column,
+    contact: Column,
 }
 
 /// Everything measured over a cycle.
@@ -158,6 +161,7 @@ impl Measures {
             groove_drive: 0.0,
             nearest: (0.0, 0.0),
             wetted: 0.0,
+            wear: 0.0,
             lifted: 0.0,
             arrivals: 0,
             changes: Vec::new(),
@@ -218,7 +222,9 @@ impl Measures {
             s.mu[k] = at.mu;
             s.ratio[k] = at.p_below / at.p_above;
             s.friction[k] = at.friction.abs();
-            s.load[k] = at.load * 2.0 * PI * place.r_outer * pack.geo.rings[i].rails as f64;
+            let circumference = 2.0 * PI * place.r_outer * pack.geo.rings[i].rails as f64;
+            s.load[k] = at.load * circumference;
+            s.contact[k] = at.contact * circumference;
             s.wetted[k] = pack.oil_pack.as_ref().map_or(0.0, |o| o.ring(i, pack.at.piston.v).wetted);
         }
     }
@@ -278,6 +284,7 @@ impl Measures {
                 &mut s.wetted,
                 &mut s.friction,
                 &mut s.load,
+                &mut s.contact,
             ] {
                 pass(c);
             }
@@ -312,6 +319,7 @@ impl RingMeasure {
         self.gap_drive += over(&|k| if s.mu[k] > 0.0 { s.difference[k] / s.mu[k] } else { 0.0 });
         self.groove_drive += over(&|k| s.difference[k] * s.nearest[k].powi(3));
         self.wetted += over(&|k| s.wetted[k]);
+        self.wear += over(&|k| s.contact[k] * speed[k].abs());
         if self.seat.is_none() {
             self.nearest.0 = s.nearest[0];
         }

@@ -194,6 +194,11 @@ fn film_results(i: usize, ring: &str) -> Vec<ResultInfo> {
             "bar",
             format!("the part of that which solid contact takes, {ring}; the film takes the rest"),
         ),
+        add(
+            "wear_load",
+            "J",
+            format!("load of solid contact times the distance that {ring} slides under it, per cycle"),
+        ),
     ]
 }
 

@@ -135,6 +135,7 @@ impl Cycle {
             "oil_gap" => gap_oil(pack, i, m),
             "oil_groove" => groove_oil(pack, i, m),
             "flank_oil_lost" => flank_oil(pack, i, self.totals.flank.get(i).map_or(0.0, |f| f.lost)),
+            "wear_load" => m.wear,
             "wetted_share" => m.wetted / span,
             "gap_oil_up" => passed.up * around(pack),
             "gap_oil_down" => passed.down * around(pack),

@@ -13,7 +13,7 @@ use super::rails::TakenApart;
 use super::solve::{solve, starts, wanted};
 use super::solver::RingPackSolverSpec;
 use super::used::models_in_use;
-use super::{assemble, draw, film_strokes, geometry, legal, meter, plausible, state_names};
+use super::{assemble, draw, film_strokes, geometry, legal, liner_wear, meter, plausible, state_names};
 use crate::case::RingPackCase;
 use gudgeon_case::{Loaded, Refinement};
 use gudgeon_scene::{
@@ -107,6 +107,7 @@ impl SceneCase for RingPackCase {
         let stroke = case.engine.crank().map_err(|e| RunError::refused(&[e]))?.radius * 2.0;
         let section = geometry::section(&bodies, &pack.geo, stroke);
         draw::figures(&mut result, &ring_names(&pack), section.bore_radius);
+        liner_wear::figure(&mut result, &ring_names(&pack), &section, pack.omega);
         result.section = Some(section);
         result.seconds.insert("solve".into(), solved.seconds);
         Ok(result)

@@ -5,5 +5,6 @@
 mod own_motion;
 mod peak_width;
 mod places;
+mod spectrum;
 mod stages;
 mod trajectory;

@@ -5,3 +5,4 @@
 mod acted;
 mod contact_line;
 mod limits;
+mod liner_wear;

@@ -7,6 +7,7 @@ mod range;
 mod throws;
 mod transient;
 mod verdict;
+mod waterfall;
 
 use gudgeon_core::result::{Column, Figure, FigureKind, Lines, Note, RunResult, Value};
 

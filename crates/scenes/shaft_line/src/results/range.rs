@@ -103,6 +103,7 @@ impl Results<'_> {
                 false,
             );
         }
+        self.order_spectra(a, &machine.orders, &rows, speeds);
         self.shafts_over_speed(a, &rows, &mut table);
         self.out.tables.insert("speed_range".into(), table);
         self.answered(machine, "speed_range");
