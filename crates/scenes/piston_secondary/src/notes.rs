@@ -10,6 +10,8 @@ use super::survey::{Survey, Which};
 
 /// Part of the largest side force from which inertia that was left out is told.
 const INERTIA_TOLD: f64 = 0.02;
+/// Part of the cycle with both sides in solid contact at once from which a skirt counts as jammed. Skirts that run touch both sides at once in passing at most, when they tilt.
+const JAMMED: f64 = 0.1;
 /// Intervals of the film across half the height of a pressure peak that resolve it. Peaks of 2.7 and more intervals change by some 0.5 % on twice as fine a
 /// grid. A sharp edge that is pressed against the liner squeezes its film out beside the edge: that peak is one interval wide on every grid (1.0, 1.2, 1.4 of 20,
 /// 40, 64) and grows with it (620, 990, 1260 bar).
@@ -31,6 +33,7 @@ pub fn notes(survey: &Survey, look: &mut Look<'_>, peaks: [Option<f64>; 2]) -> R
         all.extend(inertia(survey, look)?);
     }
     all.extend(long_steps(survey, look));
+    all.extend(jammed(survey));
     for (side, peak) in peaks.into_iter().enumerate() {
         all.extend(overlap(survey, look, side)?);
         all.extend(held_open(survey, look, side)?);
@@ -65,6 +68,29 @@ fn inertia(survey: &Survey, look: &mut Look<'_>) -> Result<Option<Note>, EvalErr
             .amount("inertia_force", most, "N")
             .amount("inertia_share", part, "1")
     }))
+}
+
+/// Both sides in solid contact at once for much of the cycle: the skirt has no room.
+fn jammed(survey: &Survey) -> Option<Note> {
+    let [thrust, anti] = SIDES.map(|(side, _)| index(&format!("{side}.contact_force")));
+    let least = survey.values(|r| r[thrust].abs().min(r[anti].abs()));
+    let angles = survey.angles();
+    let (mut touching, mut whole) = (0.0, 0.0);
+    for (t, f) in angles.windows(2).zip(least.windows(2)) {
+        whole += t[1] - t[0];
+        if f[0] > 0.0 && f[1] > 0.0 {
+            touching += t[1] - t[0];
+        }
+    }
+    let share = if whole > 0.0 { touching / whole } else { 0.0 };
+    (share > JAMMED).then(|| {
+        let force = least.into_iter().fold(0.0, f64::max);
+        let text = format!(
+            "The skirt is jammed: both sides are in solid contact at once for {:.0} % of the cycle, pressed together with up to {force:.0} N. A piston that runs like this seizes. Its running clearance is too small for its profile and the grooves or waves of its surface.",
+            100.0 * share
+        );
+        Note::exceeded("jammed", text).amount("share", share, "1").amount("force", force, "N")
+    })
 }
 
 /// Steps of the oil in which the piston crosses much of its clearance.
