@@ -392,7 +392,7 @@ fn overview(out: &mut String, file: &File, heading: &str, ran: &[&VariantEntry])
     let mut reasons: Vec<String> = file
         .variants
         .iter()
-        .filter_map(|v| Some(format!("{}: {}", v.label, v.error.as_deref()?.trim())))
+        .filter_map(|v| Some(format!("`{}` {}", v.label, v.error.as_deref()?.trim())))
         .take(TOLD_MISSING)
         .collect();
     for (g, what) in [
@@ -428,11 +428,10 @@ fn headline_cards(out: &mut String, file: &File, ran: &[&VariantEntry]) {
     let Some(first) = ran.first().and_then(|v| v.run.as_ref()) else { return };
     out.push_str("<h2 class=\"unseen\">Headline results</h2>\n<div class=\"cards broad\">\n");
     for h in first.headlines.iter().take(overview::CARDS) {
-        let Some((label, name)) =
-            h.results.iter().rev().max_by(|a, b| spread(ran, &a.1).total_cmp(&spread(ran, &b.1)))
-        else {
-            continue;
-        };
+        // A whole with its part is told by the whole.
+        let most = h.results.iter().rev().max_by(|a, b| spread(ran, &a.1).total_cmp(&spread(ran, &b.1)));
+        let whole = h.results.first().filter(|(label, _)| label == "all");
+        let Some((label, name)) = whole.or(most) else { continue };
         let title = if label.is_empty() || h.results.len() == 1 {
             h.title.clone()
         } else {

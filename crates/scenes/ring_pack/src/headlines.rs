@@ -32,11 +32,8 @@ pub fn headlines(names: &Names) -> Vec<Headline> {
             [of("all", "fmep"), of("contact", "fmep_boundary")],
         ),
         Headline::one("Oil upwards, a lower limit of consumption", "oil_up"),
-        Headline::each(
-            "Highest cylinder pressure",
-            [of("pressure", "cylinder.p_max"), of("at", "cylinder.p_max_angle")],
-        )
-        .over(&["cylinder.p"]),
+        Headline::one("Highest cylinder pressure", "cylinder.p_max").over(&["cylinder.p"]),
+        Headline::one("Crank angle of that", "cylinder.p_max_angle"),
         each("Friction power", "friction_power", "friction_power"),
         each("Thinnest film", "h_min", "h_min"),
         Headline { curves: pressures, ..Headline::each("Highest pressure between the rings", between) },
