@@ -1,6 +1,7 @@
 // Opens every page below a folder in headless Chromium, light and dark, with everything unfolded, and fails where
 // - axe-core finds something serious or critical,
 // - a script fails or something is requested from anywhere but the file itself,
+// - a place for figures is empty, or one of its figures draws nothing,
 // - a page is wider than a screen of 360 to 2560 px,
 // - the first page of a run, with the figure that leads, does not fit on a sheet of A4.
 //
@@ -35,6 +36,9 @@ async function look(file, colorScheme) {
   await page.evaluate(axe);
   const found = await page.evaluate(() => window.axe.run());
   for (const v of found.violations.filter((v) => ["serious", "critical"].includes(v.impact))) say(`${v.id}: ${v.nodes[0].html.slice(0, 160)}`);
+  const empty = await page.evaluate(() => [...document.querySelectorAll(".figures, #figures, #plots, #overlay")]
+    .filter((f) => !f.querySelector("svg, table")).map((f) => f.id || f.className));
+  for (const place of empty) say(`draws nothing in ${place}`);
   for (const width of WIDTHS) {
     await page.setViewportSize({ width, height: 900 });
     await page.waitForTimeout(60);

@@ -252,7 +252,7 @@ fn page(file: &File) -> String {
         body.push_str("</tbody></table></section>\n");
     }
     points_table(&mut body, file, &errors);
-    let body = page::body(&CONTENTS, &body, "");
+    let body = page::body(&CONTENTS, &body, "", &[]);
     let data = json!({
         "points": file.points, "errors": errors, "descriptions": file.descriptions, "trusted_to": file.trusted_to
     });

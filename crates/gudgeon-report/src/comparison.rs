@@ -302,7 +302,8 @@ fn page(file: &File, series: &[(usize, &Series)]) -> String {
     }
     models_of_runs(&mut main, &ran);
     let version = ran.first().and_then(|v| v.run.as_ref()).map_or("", |r| r.gudgeon.as_str());
-    let body = page::body(&CONTENTS, &main, version);
+    let scenes: Vec<&str> = ran.iter().filter_map(|v| v.run.as_ref().map(|r| r.scene.as_str())).collect();
+    let body = page::body(&CONTENTS, &main, version, &scenes);
 
     let mut arrays = Arrays::default();
     let tables: serde_json::Map<String, serde_json::Value> =

@@ -133,8 +133,8 @@ pub(crate) fn document(kind: Kind, title: &str, body: &str, data: &Value) -> Str
 }
 
 /// What stands in the body of a page: a link past the contents, the contents of the sections that are there, the sections themselves and the
-/// last line.
-pub(crate) fn body(contents: &[(&str, &str)], main: &str, version: &str) -> String {
+/// last line, with the conventions of the scenes.
+pub(crate) fn body(contents: &[(&str, &str)], main: &str, version: &str, scenes: &[&str]) -> String {
     let mut out = String::from(
         "<a class=\"skip\" href=\"#main\">Skip the contents</a>\n<nav class=\"contents\" aria-label=\"Contents\"><ul>",
     );
@@ -144,7 +144,7 @@ pub(crate) fn body(contents: &[(&str, &str)], main: &str, version: &str) -> Stri
     out.push_str("</ul></nav>\n<main id=\"main\">\n");
     out.push_str(main);
     out.push_str("</main>\n");
-    out.push_str(&footer(version));
+    out.push_str(&footer(version, scenes));
     out
 }
 
@@ -450,13 +450,17 @@ fn code(text: &str) -> String {
     if text.is_empty() { String::new() } else { format!("<code>{}</code>", esc(text)) }
 }
 
-/// Closing line.
-pub(crate) fn footer(version: &str) -> String {
+/// Closing line: the program, and what angles and directions count from.
+fn footer(version: &str, scenes: &[&str]) -> String {
     let version = if version.is_empty() { String::new() } else { format!(" {}", esc(version)) };
-    format!(
-        "<footer>Made by Gudgeon{version}. Crank angle 0° is the gas-exchange top dead centre (start of intake), 360° \
-         the firing one. Pressures are absolute. Axial direction: positive towards the cylinder head.</footer>\n"
-    )
+    let conventions = if !scenes.is_empty() && scenes.iter().all(|s| *s == "shaft_line") {
+        "Angles are those of the reference shaft; a throw counts its own from the outer dead centre of its cylinder. Amplitudes are \
+         half of peak to peak. Pressures are absolute."
+    } else {
+        "Crank angle 0° is the gas-exchange top dead centre (start of intake), 360° the firing one. Pressures are absolute. Axial \
+         direction: positive towards the cylinder head."
+    };
+    format!("<footer>Made by Gudgeon{version}. {conventions}</footer>\n")
 }
 
 #[cfg(test)]

@@ -146,7 +146,7 @@ fn page(s: &Summary, series: &Series, tables: &IndexMap<String, Series>) -> Stri
     main.push_str(&page::skipped_section(&s.skipped));
     main.push_str(&page::models_section(&s.models));
     main.push_str(&page::sources_section(s));
-    let body = page::body(&CONTENTS, &main, &s.gudgeon);
+    let body = page::body(&CONTENTS, &main, &s.gudgeon, &[&s.scene]);
     page::document(Kind::Run, s.heading(), &body, &data(s, series, tables))
 }
 

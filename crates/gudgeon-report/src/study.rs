@@ -46,7 +46,7 @@ pub fn study_page(p: &StudyPage) -> String {
         let _ = write!(body, "<tr><th scope=\"row\">{}</th><td>{}</td></tr>", esc(name), esc(text));
     }
     body.push_str("</tbody></table></section>\n");
-    let body = page::body(&CONTENTS, &body, "");
+    let body = page::body(&CONTENTS, &body, "", &[]);
     let mut arrays = page::Arrays::default();
     let tables: serde_json::Map<String, serde_json::Value> =
         p.tables.iter().map(|(name, t)| (name.clone(), arrays.whole(t))).collect();

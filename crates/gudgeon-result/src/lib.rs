@@ -345,6 +345,9 @@ pub enum FigureKind {
         columns: Vec<(String, String)>,
         /// Label of each row and its numbers; none where there is nothing to tell.
         rows: Vec<(String, Vec<Option<f64>>)>,
+        /// Columns of text behind the numbers: name, and a text for each row.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        texts: Vec<(String, Vec<String>)>,
         /// Numbers beyond it are marked.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         limit: Option<f64>,

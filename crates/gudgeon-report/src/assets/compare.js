@@ -1,14 +1,15 @@
 // The page of a comparison: every curve of every variant, one plot per quantity.
 (function () {
-  const bar = document.getElementById("bar");
+  const bar = document.getElementById("bar"), host = document.getElementById("plots");
   if (!bar) return;
+  // Runs that go over no cycle are drawn by the script of the figures.
+  if (!host) { bar.remove(); return; }
   const variants = DATA.variants.filter((v) => arrays[v.series.axis.at].length);
   if (!variants.length) return;
   const lo = Math.min(...variants.map((v) => arrays[v.series.axis.at][0]));
   const hi = Math.max(...variants.map((v) => arrays[v.series.axis.at].at(-1)));
   const cycle = (CYCLE = new Cycle(lo, hi > lo ? hi : lo + 1, 0.5));
   cycleBar(bar, cycle);
-  const host = document.getElementById("plots");
   host.className = "figures";
   const names = new Map();
   for (const v of variants) for (const c of v.series.columns) if (!names.has(c.name)) names.set(c.name, c.unit);

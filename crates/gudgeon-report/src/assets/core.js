@@ -223,3 +223,8 @@ function cycleBar(host, cycle) {
     else if (e.key === " " && !/^(BUTTON|SUMMARY)$/.test(e.target.tagName)) { cycle.play(!cycle.playing); e.preventDefault(); }
   });
 }
+
+// On paper, what a reader must be able to check is unfolded: inputs, models, sources and assumptions.
+const printed = "#inputs > details, #skipped > details, #models > details, #sources > details";
+addEventListener("beforeprint", () => { for (const d of document.querySelectorAll(printed)) if (!d.open) { d.open = true; d.dataset.printed = ""; } });
+addEventListener("afterprint", () => { for (const d of document.querySelectorAll("details[data-printed]")) { d.open = false; delete d.dataset.printed; } });

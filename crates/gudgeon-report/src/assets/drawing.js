@@ -79,15 +79,16 @@ function apart(host, spec) {
   host.append(h("figure", { class: "plot wide" }, h("div", { class: "head" }, h("h3", {}, spec.title)), spec.hint ? h("p", { class: "hint" }, spec.hint) : null, box));
 }
 
-// Numbers in rows and columns; those beyond the limit are marked.
+// Numbers in rows and columns with texts behind them; numbers beyond the limit are marked.
 function table(host, spec) {
   const unit = (name, u) => { const d = display(u, 0); return d.f === 1 ? d.label : u; };
-  const head = h("tr", {}, h("th", { scope: "col" }, spec.rows_are), ...spec.columns.map(([name, u]) => h("th", { scope: "col", class: "num" }, name, u ? h("span", { class: "unit" }, " " + unit(name, u)) : "")));
+  const texts = spec.texts || [];
+  const head = h("tr", {}, h("th", { scope: "col" }, spec.rows_are), ...spec.columns.map(([name, u]) => h("th", { scope: "col", class: "num" }, name, u ? h("span", { class: "unit" }, " " + unit(name, u)) : "")), ...texts.map(([name]) => h("th", { scope: "col" }, name)));
   const cell = (v) => h("td", { class: "num" + (isNumber(spec.limit) && v > spec.limit * (1 + 1e-9) ? " beyond" : "") }, isNumber(v) ? (Number.isInteger(v) && Math.abs(v) < 1e6 ? String(v).replace("-", "−") : sig(v, 4)) : "–");
-  const rows = spec.rows.map(([label, values]) => h("tr", {}, h("th", { scope: "row" }, label), ...values.map(cell)));
-  const csv = () => saveFile(fileName(spec.title, "csv"), "text/csv", [[[spec.rows_are, ...spec.columns.map(([n, u]) => `${n}[${u}]`)], ...spec.rows.map(([l, v]) => [l, ...v.map((x) => (isNumber(x) ? x : ""))])].map((r) => r.map((c) => (/[",]/.test(c) ? `"${String(c).replace(/"/g, '""')}"` : c)).join(",")).join("\n") + "\n"]);
+  const rows = spec.rows.map(([label, values], k) => h("tr", {}, h("th", { scope: "row" }, label), ...values.map(cell), ...texts.map(([, t]) => h("td", {}, t[k]))));
+  const csv = () => saveFile(fileName(spec.title, "csv"), "text/csv", [[[spec.rows_are, ...spec.columns.map(([n, u]) => `${n}[${u}]`), ...texts.map(([n]) => n)], ...spec.rows.map(([l, v], k) => [l, ...v.map((x) => (isNumber(x) ? x : "")), ...texts.map(([, t]) => t[k])])].map((r) => r.map((c) => (/[",]/.test(c) ? `"${String(c).replace(/"/g, '""')}"` : c)).join(",")).join("\n") + "\n"]);
   const top = h("div", { class: "head" }, h("h3", {}, spec.title), h("div", { class: "tools" }, h("button", { type: "button", onclick: csv }, "CSV")));
-  host.append(h("figure", { class: "plot numbers" + (spec.columns.length > 5 ? " wide" : "") }, top, spec.hint ? h("p", { class: "hint" }, spec.hint) : null, h("div", { class: "scroll", tabindex: "0", role: "group", "aria-label": spec.title }, h("table", { class: "plain" }, h("thead", {}, head), h("tbody", {}, ...rows)))));
+  host.append(h("figure", { class: "plot numbers" + (spec.columns.length + texts.length > 5 ? " wide" : "") }, top, spec.hint ? h("p", { class: "hint" }, spec.hint) : null, h("div", { class: "scroll", tabindex: "0", role: "group", "aria-label": spec.title }, h("table", { class: "plain" }, h("thead", {}, head), h("tbody", {}, ...rows)))));
 }
 
 // A figure that holds all it shows: title, explanation, drawing.
@@ -99,7 +100,9 @@ function frameOf(host, spec, svg) {
 }
 
 function bars(host, spec) {
-  const W = 620, L = 210, R = 70, row = 24, H = row * spec.bars.length + 34;
+  // Room for the longest label, within reason.
+  const L = Math.min(330, Math.max(210, 16 + 6.4 * Math.max(0, ...spec.bars.map((b) => b.label.length)))), most = Math.floor((L - 16) / 6.4);
+  const W = 620, R = 70, row = 24, H = row * spec.bars.length + 34;
   const values = spec.bars.flatMap((b) => [b.value, b.limit]).filter(isNumber), lo = Math.min(0, ...values), hi = Math.max(0, ...values) || 1;
   const u = display(spec.unit, Math.max(Math.abs(lo), Math.abs(hi))), X = (v) => L + ((v - lo) / (hi - lo)) * (W - L - R);
   const told = spec.bars.map((b) => `${b.label} ${sig(b.value * u.f, 3)} ${u.label}` + (isNumber(b.limit) ? `, limit ${sig(b.limit * u.f, 3)}` : "")).join("; ");
@@ -111,12 +114,16 @@ function bars(host, spec) {
   if (u.label) s("text", { x: W - 4, y: H - 12, "text-anchor": "end", class: "dim" }, svg, u.label);
   spec.bars.forEach((b, i) => {
     const y = 4 + row * i, over = isNumber(b.limit) && b.value > b.limit * (1 + 1e-9);
-    s("text", { x: L - 8, y: y + 15, "text-anchor": "end" }, svg, b.label);
+    const name = s("text", { x: L - 8, y: y + 15, "text-anchor": "end" }, svg, b.label.length > most ? b.label.slice(0, most - 1) + "…" : b.label);
+    s("title", {}, name, b.label);
     if (!isNumber(b.value)) return;
     const a = X(Math.min(0, b.value)), e = X(Math.max(0, b.value));
     s("rect", { x: a, y: y + 4, width: Math.max(1, e - a), height: row - 8, class: over ? "over" : "within" }, svg);
     if (isNumber(b.limit)) s("line", { x1: X(b.limit), x2: X(b.limit), y1: y, y2: y + row, class: "limit" }, svg);
-    s("text", { x: Math.max(e, isNumber(b.limit) && b.limit - b.value < 0.2 * (hi - lo) ? X(b.limit) : e) + 6, y: y + 15, class: "strong" }, svg, sig(b.value * u.f, 4));
+    // Beside the largest a small one has the decimals of that: a torque of 0.003 N m is none.
+    const size = Math.max(Math.abs(lo), Math.abs(hi)) * u.f, places = Math.max(0, 3 - Math.floor(Math.log10(size)));
+    const text = b.value && spec.unit && Math.abs(b.value * u.f) < 1e-3 * size ? (b.value * u.f).toFixed(places).replace("-", "−") : sig(b.value * u.f, 4);
+    s("text", { x: Math.max(e, isNumber(b.limit) && b.limit - b.value < 0.2 * (hi - lo) ? X(b.limit) : e) + 6, y: y + 15, class: "strong" }, svg, text);
   });
   frameOf(host, spec, svg);
 }

@@ -5,6 +5,7 @@ use gudgeon_numerics::linalg::Complex;
 
 use super::determinant::{Determinant, real};
 use super::modal_damping::modal_damping;
+use super::rigid::connected_parts;
 use super::shapes::CLUSTER;
 use super::simultaneous::simultaneous;
 use crate::tree::Tree;
@@ -44,11 +45,15 @@ pub fn roots(tree: &Tree, omega: &[f64], normal: &[Vec<f64>]) -> Result<Spectrum
     let damping: Vec<f64> = omega.iter().zip(normal).map(|(w, v)| modal_damping(tree, *w, v)).collect();
     let (mut pairs, found) = one_by_one(tree, &mut determinant, omega, &damping);
     if !(found && all_differ(&pairs, omega)) {
-        let rigid: Vec<Complex> =
-            pairs.iter().zip(omega).filter(|(_, w)| **w == 0.0).flat_map(|(p, _)| *p).collect();
+        let (mut known, count, beyond) = rigid_roots(tree);
+        let mut rates = Vec::new();
+        for _ in 0..count {
+            let (rate, found) = determinant.real_root(beyond, &known);
+            if found { known.push(rate) } else { rates.push(real(beyond)) }
+        }
         let modes: Vec<[f64; 2]> =
             omega.iter().zip(&damping).filter(|(w, _)| **w != 0.0).map(|(w, c)| [*w, *c]).collect();
-        let elastic = simultaneous(&mut determinant, &modes, &rigid)?;
+        let elastic = simultaneous(&mut determinant, &modes, &rates, &known)?;
         let places = pairs.iter_mut().zip(omega).filter(|(_, w)| **w > 0.0);
         for ((pair, _), found) in places.zip(elastic) {
             *pair = found;
@@ -70,7 +75,8 @@ fn one_by_one(
     for (pair, (&w, &c)) in pairs.iter_mut().zip(omega.iter().zip(damping)) {
         if w == 0.0 {
             // Rigid modes: zero, and the rate at which the whole slows down.
-            let decay = if drag == 0.0 { real(-c) } else { determinant.rigid_decay(-c) };
+            let decay =
+                if drag == 0.0 { real(-c) } else { determinant.real_root(-c, &[Complex::default()]).0 };
             *pair = [Complex::default(), decay];
         } else if c.abs() >= 2.0 * w {
             all = false;
@@ -84,6 +90,37 @@ fn one_by_one(
         }
     }
     (pairs, all)
+}
+
+/// Roots of the rigid modes: those that are known to be zero; how many others there are, the rates at which parts that hang on damping come to
+/// rest; and a rate beyond all of those, that of every braked inertia alone between neighbours at rest, added up. Newton's method comes from there
+/// to the fastest without passing it.
+fn rigid_roots(tree: &Tree) -> (Vec<Complex>, usize, f64) {
+    let n = tree.len();
+    let part = connected_parts(tree);
+    let (mut held, mut inertia, mut brake) = (vec![false; n], vec![0.0; n], vec![0.0; n]);
+    let mut at = tree.damping.clone();
+    for i in (0..n).filter(|&i| tree.parent[i] < n && tree.k[i] == 0.0) {
+        at[i] += tree.c[i];
+        at[tree.parent[i]] += tree.c[i];
+    }
+    for i in 0..n {
+        held[part[i]] |= tree.ground[i] != 0.0;
+        inertia[part[i]] += tree.inertia[i];
+        brake[part[i]] += at[i];
+    }
+    let own = |i: usize| if tree.inertia[i] > 0.0 { tree.inertia[i] } else { inertia[part[i]] };
+    let beyond = (0..n).filter(|&i| at[i] != 0.0 && own(i) > 0.0).map(|i| at[i] / own(i)).sum::<f64>();
+    let free: Vec<usize> = (0..n).filter(|&p| part[p] == p && !held[p] && inertia[p] != 0.0).collect();
+    let mut known = vec![Complex::default(); free.len()];
+    let mut rates = free.iter().filter(|p| brake[**p] != 0.0).count();
+    known.resize(known.len() + free.len() - rates, Complex::default());
+    // A line that nothing brakes turns on as a whole.
+    if rates > 0 && !tree.is_grounded() && tree.damping.iter().all(|c| *c == 0.0) {
+        rates -= 1;
+        known.push(Complex::default());
+    }
+    (known, rates, -beyond)
 }
 
 /// Whether modes of different frequency have different eigenvalues: otherwise two searches ended in one root, and another is missing.

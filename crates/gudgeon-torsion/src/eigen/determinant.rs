@@ -6,8 +6,8 @@ use crate::tree::{Tree, Work};
 
 /// Iterations towards the eigenvalue of a mode, from the undamped one.
 const ITERATIONS: usize = 40;
-/// Iterations towards the rate at which the whole line slows down.
-const RIGID_ITERATIONS: usize = 60;
+/// Iterations towards a real root.
+const REAL_ITERATIONS: usize = 200;
 
 /// The determinant of `z² J + z C + K` by its logarithmic derivative, with a count of its evaluations.
 pub(super) struct Determinant<'a> {
@@ -40,22 +40,22 @@ impl<'a> Determinant<'a> {
         self.tree.log_derivative(z, &mut self.work)
     }
 
-    /// The real root of a free line that is braked against the ground, from a first value: beside the known root zero, which is deflated.
-    pub fn rigid_decay(&mut self, from: f64) -> Complex {
+    /// A real root from a first value beside known ones, which are deflated: the rate at which a line that is braked against the ground slows down,
+    /// or at which a part that hangs on damping comes to rest. With whether it was found.
+    pub fn real_root(&mut self, from: f64, known: &[Complex]) -> (Complex, bool) {
         let mut z = real(from);
-        for _ in 0..RIGID_ITERATIONS {
-            let n = self.log_derivative(z) - real(1.0) / z;
-            let step = real(1.0) / n;
+        for _ in 0..REAL_ITERATIONS {
+            let deflated = known.iter().fold(self.log_derivative(z), |n, k| n - real(1.0) / (z - *k));
+            let step = real(1.0) / deflated;
             if !is_finite(step) {
-                break;
+                return (real(z.re), deflated.norm1().is_nan() || deflated.norm1() > 0.0);
             }
-            z = z - step;
+            z = real((z - step).re);
             if converged(step, z) {
-                break;
+                return (z, true);
             }
         }
-        z.im = 0.0;
-        z
+        (z, false)
     }
 
     /// The root of a multiplicity near `from`, and whether it was found.

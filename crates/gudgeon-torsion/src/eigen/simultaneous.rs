@@ -9,13 +9,15 @@ use super::determinant::{Determinant, converged, is_finite, real};
 const ROUNDS: usize = 500;
 
 /// The eigenvalues of the elastic modes by pairs, ordered by the product of their magnitudes. `modes` holds undamped frequency and modal
-/// damping of each, `known` the eigenvalues of rigid modes.
+/// damping of each, `rates` first values of the real roots of rigid modes, `known` their roots that are known.
 pub(super) fn simultaneous(
     determinant: &mut Determinant<'_>,
     modes: &[[f64; 2]],
+    rates: &[Complex],
     known: &[Complex],
 ) -> Result<Vec<[Complex; 2]>, EvalError> {
     let mut all = starts(modes);
+    all.extend(rates);
     iterate(determinant, &mut all, known)?;
     // What is real to rounding is real.
     for z in &mut all {
@@ -23,7 +25,7 @@ pub(super) fn simultaneous(
             z.im = 0.0;
         }
     }
-    pairs(&all)
+    pairs(&all, modes.len())
 }
 
 /// Eigenvalues of each mode by itself, moved so that none are mirror images: pairs may become real.
@@ -95,20 +97,21 @@ fn correct(determinant: &mut Determinant<'_>, all: &mut [Complex], known: &[Comp
     false
 }
 
-/// Oscillating ones with their conjugates, then real ones by pairs, slow with fast.
-fn pairs(all: &[Complex]) -> Result<Vec<[Complex; 2]>, EvalError> {
+/// Oscillating ones with their conjugates, then real ones by pairs, slow with fast, as many as there are modes: what is left between are rates of
+/// rigid modes.
+fn pairs(all: &[Complex], modes: usize) -> Result<Vec<[Complex; 2]>, EvalError> {
     let mut upper: Vec<Complex> = all.iter().copied().filter(|z| z.im > 0.0).collect();
     let mut flat: Vec<f64> = all.iter().filter(|z| z.im == 0.0).map(|z| z.re).collect();
     upper.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
     flat.sort_by(|a, b| b.total_cmp(a));
-    if upper.len() * 2 + flat.len() != all.len() || !flat.len().is_multiple_of(2) {
+    if upper.len() * 2 + flat.len() != all.len() || upper.len() > modes {
         return Err(EvalError::fatal(
             "eigenvalues",
             "damped eigenvalues do not come in conjugate pairs: not all were found",
         ));
     }
     let mut list: Vec<[Complex; 2]> = upper.iter().map(|z| [*z, Complex::new(z.re, -z.im)]).collect();
-    for k in 0..flat.len() / 2 {
+    for k in 0..modes - upper.len() {
         list.push([real(flat[k]), real(flat[flat.len() - 1 - k])]);
     }
     list.sort_by(|a, b| (a[0].abs() * a[1].abs()).total_cmp(&(b[0].abs() * b[1].abs())));

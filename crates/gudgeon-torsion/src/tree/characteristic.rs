@@ -66,7 +66,8 @@ impl Tree {
                 work.f[p] = work.f[p] + ds;
                 continue;
             }
-            let loss = if z.im < 0.0 { -self.eta[i] } else { self.eta[i] };
+            // A loss factor belongs to oscillation: on the real axis there is none.
+            let loss = if z.im == 0.0 { 0.0 } else { self.eta[i].copysign(z.im) };
             let kappa = Complex::new(self.k[i], self.k[i] * loss) + real(self.c[i]) * z;
             let dk = real(self.c[i]);
             let inv = real(1.0) / (kappa + s);

@@ -676,7 +676,7 @@ fn critical_speeds_are_natural_frequencies_by_orders() {
         gudgeon_torsion::steady::Steady::new(&context(&l, 100.0, 12.0, &[], &[])).expect("builds");
     let frequencies = steady.frequencies(40).expect("converges");
     let (from, to) = (30.0, 130.0);
-    let found = steady.critical_speeds(&[3.0, 8.0], from, to, 10);
+    let found = steady.critical_speeds(&[3.0, 8.0], from, to, 10).expect("converges");
     let mut expected: Vec<(f64, usize)> = Vec::new();
     for o in [3.0, 8.0] {
         expected.extend(frequencies.iter().enumerate().map(|(m, w)| (w / o, m + 1)));

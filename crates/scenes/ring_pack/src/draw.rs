@@ -154,7 +154,7 @@ fn regimes(out: &RunResult, rings: &[String]) -> Option<Figure> {
         title: "Regimes of lubrication".into(),
         hint: "part of the cycle in which solid contact carries less than 1 %, up to half, and more than half of the radial load; by the rows of series.csv, in whole per cent".into(),
         table: String::new(),
-        kind: FigureKind::Table { rows_are: "ring".into(), columns: columns.to_vec(), rows, limit: None },
+        kind: FigureKind::Table { rows_are: "ring".into(), columns: columns.to_vec(), rows, texts: Vec::new(), limit: None },
     })
 }
 

@@ -71,7 +71,8 @@ fn layout(line: &Line) -> Vec<[f64; 2]> {
     at
 }
 
-/// Places at rest of a shape: link and fraction of its length from the first of its inertias.
+/// Places at rest of a shape: link and fraction of its length from the first of its inertias. The ring of a viscous damper hangs on no
+/// stiffness, takes no part in an undamped mode, and does not count.
 pub fn nodes(line: &Line, shape: &[f64]) -> Vec<(usize, f64)> {
     if shape.len() != line.nodes.len() {
         return Vec::new();
@@ -79,6 +80,7 @@ pub fn nodes(line: &Line, shape: &[f64]) -> Vec<(usize, f64)> {
     line.links
         .iter()
         .enumerate()
+        .filter(|(_, link)| link.coupling.linear(0.0, 0.0).stiffness != 0.0)
         .filter_map(|(l, link)| {
             let [a, b] = link.nodes;
             // Gears turn the shape; seen from the reference shaft they do not.

@@ -253,18 +253,21 @@ impl<'a> Machine<'a> {
     }
 
     /// Critical speeds from `from` to `to` of all orders that something excites.
-    pub fn critical_speeds(&mut self, from: f64, to: f64) -> Vec<CriticalSpeed> {
+    ///
+    /// # Errors
+    /// No convergence of natural frequencies.
+    pub fn critical_speeds(&mut self, from: f64, to: f64) -> Result<Vec<CriticalSpeed>, EvalError> {
         if let Some((range, known)) = &self.critical
             && *range == [from, to]
         {
-            return known.clone();
+            return Ok(known.clone());
         }
         let excited =
             self.steady.excitation.orders.iter().filter(|o| o.torque.iter().any(|t| t.norm1() != 0.0));
         let orders: Vec<f64> = excited.map(|o| o.order).collect();
-        let found = self.steady.critical_speeds(&orders, from, to, 64);
+        let found = self.steady.critical_speeds(&orders, from, to, 64)?;
         self.critical = Some(([from, to], found.clone()));
-        found
+        Ok(found)
     }
 
     /// Speeds at which peaks over the speed show: a grid, the critical speeds, and places half and two widths of the resonance beside

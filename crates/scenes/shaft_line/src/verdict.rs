@@ -265,14 +265,21 @@ pub struct Step<'m, 'a> {
 
 impl<'m, 'a> Step<'m, 'a> {
     /// Looks for the speeds at which peaks can be.
-    pub fn new(machine: &'m mut Machine<'a>, range: &Operating, diagram: &[f64]) -> Self {
+    ///
+    /// # Errors
+    /// No convergence of natural frequencies.
+    pub fn new(
+        machine: &'m mut Machine<'a>,
+        range: &Operating,
+        diagram: &[f64],
+    ) -> Result<Self, gudgeon_core::EvalError> {
         let grid = range.grid(diagram);
         let critical =
-            if range.is_wide() { machine.critical_speeds(range.from, range.to) } else { Vec::new() };
+            if range.is_wide() { machine.critical_speeds(range.from, range.to)? } else { Vec::new() };
         let speeds = machine.telling_speeds(&grid, &critical);
         machine.prepare(&speeds);
         let unbounded = machine.unbounded(&critical, range.from, range.to);
-        Self { machine, speeds, critical, unbounded }
+        Ok(Self { machine, speeds, critical, unbounded })
     }
 
     /// The speeds that show peaks between two speeds of the range, these included.

@@ -118,9 +118,24 @@ impl Results<'_> {
         let step = 2.0 * PI / a.period;
         let count = (r.interference_orders.si() / step + 1e-9).floor() as usize;
         let orders: Vec<f64> = (1..=count).map(|k| k as f64 * step).collect();
-        let mut found = steady.critical_speeds(&orders, from.max(1e-6 * to), to, GRID);
+        let mut found = steady.critical_speeds(&orders, from.max(1e-6 * to), to, GRID)?;
         found.retain(|c| c.mode <= elastic);
         self.critical_speed_results(&found);
+        if steady.hangs_on_damping() {
+            let links = a.line.links.iter();
+            let loose: Vec<&str> = links
+                .filter(|l| {
+                    let law = l.coupling.linear(0.0, 0.0);
+                    law.stiffness == 0.0 && law.damping > 0.0
+                })
+                .map(|l| l.name.as_str())
+                .collect();
+            let text = format!(
+                "{} damps without stiffness: critical speeds, Campbell diagram and separation follow the frequencies with damping, between ring free and ring locked; `mode.N.frequency` and the shapes are undamped, with the ring free",
+                loose.join(", ")
+            );
+            self.note(&[Note::info("with_damping", text)]);
+        }
         let here: Vec<f64> = steady.frequencies(MODES)?;
         self.nearest_critical_speed(&here, &orders, speed);
         self.out.tables.insert("critical_speeds".into(), critical_speed_table(&found));

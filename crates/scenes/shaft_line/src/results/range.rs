@@ -44,7 +44,7 @@ impl Results<'_> {
         let (from, to) = (speeds[0], speeds[speeds.len() - 1]);
         let judged = Operating::new(self.case);
         let (telling, of) = if judged.from == from && judged.to == to {
-            let critical = machine.critical_speeds(from, to);
+            let critical = machine.critical_speeds(from, to)?;
             (machine.telling_speeds(speeds, &critical), "over the speed range")
         } else {
             (Vec::new(), "of the speeds of the diagram")

@@ -35,7 +35,7 @@ impl Results<'_> {
         let mut judged: Vec<Step<'_, '_>> = Vec::new();
         for (_, machine) in steps.iter_mut() {
             judged.push(if vibration {
-                Step::new(machine, &range, diagram)
+                Step::new(machine, &range, diagram)?
             } else {
                 Step { machine, speeds: Vec::new(), critical: Vec::new(), unbounded: Vec::new() }
             });
