@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use gudgeon_core::result::RunResult;
+use gudgeon_core::result::{FigureKind, NoteLevel, RunResult};
 use gudgeon_scene::{check, explain, run};
 
 fn case(name: &str) -> PathBuf {
@@ -541,11 +541,14 @@ fn one_definition_of_separation() {
     let kept = "limits={ separation = [{ margin = \"5 %\", orders = [4.5], source = \"x\" }], stress = [{ amplitude = \"400 MPa\", source = \"y\" }] }";
     let r = once("geared-train.toml", &[kept]);
     assert_eq!(r.results["limits_broken"].value, 0.0, "{:?}", r.solver.notes);
+    let accepted = r.solver.notes.iter().filter(|n| n.topic.starts_with("verdict.accepted.mode"));
     assert!(
-        r.solver.notes.iter().any(|n| n.topic.starts_with("verdict.accepted.mode")),
+        accepted.clone().count() > 0 && accepted.clone().all(|n| n.level == NoteLevel::Caution),
         "{:?}",
         r.solver.notes
     );
+    let strict = kept.replace("source = \"x\"", "source = \"x\", accept_by_response = false");
+    assert_eq!(once("geared-train.toml", &[&strict]).results["limits_broken"].value, 1.0);
     let without = once(
         "geared-train.toml",
         &["limits={ separation = [{ margin = \"5 %\", orders = [4.5], source = \"x\" }] }"],
@@ -638,4 +641,106 @@ torsion = {{ model = "orders" }}
     let diagram =
         |order: u32| &r.tables["speed_range"].get(&format!("shaft1.order{order}")).expect("drawn").values;
     assert_eq!(top(torque), top(diagram(2)).max(top(diagram(3))));
+}
+
+/// Label, numbers and texts of the rows of a table in the report.
+fn told(r: &RunResult, title: &str) -> Vec<(String, Vec<Option<f64>>, Vec<String>)> {
+    let figure = r.figures.iter().find(|f| f.title == title).unwrap_or_else(|| panic!("no table {title}"));
+    let FigureKind::Table { rows, texts, .. } = &figure.kind else { panic!("{title} is no table") };
+    let texts = |k: usize| texts.iter().map(|t| t.1[k].clone()).collect();
+    rows.iter().enumerate().map(|(k, (label, values))| (label.clone(), values.clone(), texts(k))).collect()
+}
+
+#[test]
+fn every_limit_is_told_with_what_is_found_and_allowed() {
+    let r = once("compressor-6-throw.toml", &[]);
+    let rows = told(&r, "Limits");
+    let worst = rows.iter().filter_map(|row| row.1[0]).fold(0.0, f64::max);
+    assert_eq!(worst, r.results["worst_utilisation"].value);
+    let heat =
+        rows.iter().find(|row| row.0.starts_with("heat of")).expect("the coupling has a limit on heat");
+    // What was judged is a result, and not only the heat at the mean speed.
+    let found = r.results["envelope.shaft1.heat"].value;
+    assert!(
+        found >= r.results["shaft1.heat"].value && heat.2[0].starts_with(&format!("{found:.0}")[..2]),
+        "{heat:?}"
+    );
+    assert!(heat.2[1].ends_with(" W") && !heat.2[3].is_empty(), "{heat:?}");
+    // The peak that was judged stands in the table behind the curves.
+    let envelope = &r.tables["envelope"];
+    let drawn =
+        envelope.columns.iter().filter(|c| c.name.starts_with("shaft1.step") && c.name.ends_with(".heat"));
+    let top = drawn.flat_map(|c| c.values.iter().copied()).fold(0.0, f64::max);
+    assert!((top / found - 1.0).abs() < 1e-12, "{top} {found}");
+}
+
+#[test]
+fn curves_over_the_speed_reach_the_envelope() {
+    let r = once("compressor-6-throw.toml", &["load_steps=[]"]);
+    let top = r.results["envelope.shaft3.torque_amplitude"].value;
+    let curve = r.tables["speed_range"].get("shaft3.torque_amplitude").expect("drawn");
+    let drawn = curve.values.iter().copied().fold(0.0, f64::max);
+    // The peak is a point of both.
+    assert!((drawn / top - 1.0).abs() < 1e-12, "{drawn} {top}");
+    let strongest = r.results["strongest_critical_speed"].value;
+    let table = &r.tables["critical_speeds"];
+    let torque = table.get("torque_amplitude").expect("weighed");
+    let of = |k: usize| {
+        (table.axis.values[k] >= 600.0 && table.axis.values[k] <= 1000.0).then(|| torque.values[k])
+    };
+    let most = (0..torque.values.len()).filter_map(of).fold(0.0, f64::max);
+    let at = table.axis.values.iter().position(|w| *w == strongest).expect("one of the table");
+    assert_eq!(torque.values[at], most);
+}
+
+#[test]
+fn a_limit_of_a_shaft_stands_before_that_of_all_and_load_steps_part_limits() {
+    let limits = |own: &str| {
+        format!(
+            "limits={{ stress = [{{ amplitude = \"40 MPa\", source = \"all\" }}, {{ shaft = \"crank 1-2\", amplitude = \"60 MPa\", source = \"own\"{own} }}] }}"
+        )
+    };
+    let steps = "load_steps=[{ name = \"full\" }, { name = \"open\", set = [\"throws.0.ends.0.cylinder_pressure.held_open=true\"] }]";
+    let sources = |r: &RunResult| -> Vec<String> {
+        let own = told(r, "Limits").into_iter().filter(|row| row.0.starts_with("stress in crank 1-2"));
+        own.map(|row| row.2[row.2.len() - 1].clone()).collect()
+    };
+    assert_eq!(sources(&once("compressor-6-throw.toml", &[&limits(""), steps])), ["own"]);
+    let parted = once("compressor-6-throw.toml", &[&limits(", load_steps = [\"open\"]"), steps]);
+    assert_eq!(sources(&parted), ["all", "own"]);
+    let rows = told(&parted, "Limits");
+    let labels: Vec<&String> = rows.iter().map(|r| &r.0).collect();
+    assert!(labels.iter().enumerate().all(|(k, l)| !labels[..k].contains(l)), "{labels:?}");
+    let own = rows.iter().find(|row| row.2[3] == "own").expect("told");
+    assert_eq!(own.2[2], "open");
+    let wrong = refused_of("compressor-6-throw.toml", &[&limits(", load_steps = [\"opn\"]"), steps]);
+    assert!(wrong.contains("did you mean `open`"), "{wrong}");
+}
+
+#[test]
+fn throws_say_where_their_outer_dead_centres_are() {
+    let r = once(
+        "compressor-6-throw.toml",
+        &["load_steps=[]", "limits={}", "operating={ from = \"1000 rpm\", to = \"1000 rpm\" }"],
+    );
+    let at: Vec<f64> = told(&r, "Throws").iter().filter_map(|row| row.1[1]).collect();
+    assert_eq!(at.len(), 6);
+    let pairs = |deg: f64| at.iter().filter(|d| **d == deg).count();
+    assert_eq!([pairs(0.0), pairs(120.0), pairs(240.0)], [2, 2, 2], "{at:?}");
+    // The gas torque of a throw is that of its own angle: at its outer dead centre there is none.
+    assert!(!told(&r, "Gas loads").is_empty());
+}
+
+#[test]
+fn a_viscous_damper_moves_the_critical_speeds() {
+    let damper = "dampers=[{ name = \"damper\", at = \"throw 6\", inertia = \"4 kg m2\", damping = \"3.5 kN m s/rad\" }]";
+    let r = once("compressor-6-throw.toml", &["load_steps=[]", damper]);
+    let value = |name: &str| r.results[name].value;
+    let (damped, undamped) = (value("mode.2.damped_frequency"), value("mode.2.frequency"));
+    let critical = value("critical_speed.mode2.order9");
+    // The motor of the case has no damping of its own, so both are the same eigenvalue.
+    assert!((critical / (60.0 * damped / 9.0) - 1.0).abs() < 1e-9, "{critical} {damped}");
+    assert!(damped < 0.9 * undamped && note(&r, "with_damping").starts_with("damper damps"));
+    let bare = once("compressor-6-throw.toml", &["load_steps=[]"]);
+    assert_eq!(value("mode.2.nodes"), bare.results["mode.2.nodes"].value, "the ring is no place at rest");
 }

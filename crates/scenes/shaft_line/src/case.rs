@@ -176,7 +176,9 @@ pub struct DamperCase {
 pub struct ThrowCase {
     /// Names of the inertias.
     pub at: Vec<String>,
-    /// Angle of each throw when the shaft is at zero; empty: all zero.
+    /// Angle of each crank when the shaft is at zero, counted from the outer dead centre of that throw's own cylinder in the direction of
+    /// rotation; empty: all zero. The two throws of a balanced-opposed pair have the same value, although their cranks stand 180 degrees apart: both
+    /// pistons are at outer dead centre together. The report prints the shaft angle at which each piston is there.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub phases: Vec<Angle>,
     /// Crank radius.
@@ -398,8 +400,7 @@ pub struct Limits {
 /// Natural frequencies keep away from multiples of the speed, or from given frequencies.
 ///
 /// The distance is that between natural frequency and excitation by the excitation, `|f_n - f|/f`, at the operating speed where it is least;
-/// zero where they meet within the operating range. One that is not kept is accepted where the forced vibration there keeps every
-/// limit on torque, stress, heat and speed fluctuation.
+/// zero where they meet within the operating range. Natural frequencies are undamped, with a viscous damper those with damping.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SeparationLimit {
@@ -411,6 +412,13 @@ pub struct SeparationLimit {
     /// Fixed frequencies: the line frequency and twice it.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub frequencies: Vec<gudgeon_core::quantity::PosFrequency>,
+    /// Whether a distance that is not kept is accepted where the forced vibration there keeps every limit on torque, stress, heat and speed
+    /// fluctuation: with a reservation, as practice has it. `false`: it is not kept.
+    #[serde(default = "yes", skip_serializing_if = "is_yes")]
+    pub accept_by_response: bool,
+    /// Names of the load steps in which it counts, `as it stands` for the case itself; empty: all.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub load_steps: Vec<String>,
     /// Where the limit comes from.
     pub source: String,
 }
@@ -419,11 +427,14 @@ pub struct SeparationLimit {
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StressLimit {
-    /// Name of the shaft; empty: all that have a diameter.
+    /// Name of the shaft; empty: all that have a diameter and no limit on stress of their own in that load step.
     #[serde(default)]
     pub shaft: String,
     /// Largest admitted vibratory stress: half of peak to peak, concentration factor included.
     pub amplitude: PosPressure,
+    /// Names of the load steps in which it counts, `as it stands` for the case itself; empty: all.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub load_steps: Vec<String>,
     /// Where the limit comes from.
     pub source: String,
 }
@@ -440,6 +451,9 @@ pub struct TorqueLimit {
     /// Largest admitted torque of all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub peak: Option<PosTorque>,
+    /// Names of the load steps in which it counts, `as it stands` for the case itself; empty: all.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub load_steps: Vec<String>,
     /// Where the limit comes from.
     pub source: String,
 }
@@ -452,6 +466,9 @@ pub struct HeatLimit {
     pub shaft: String,
     /// Largest admitted heat.
     pub power: Power<gudgeon_core::quantity::Positive>,
+    /// Names of the load steps in which it counts, `as it stands` for the case itself; empty: all.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub load_steps: Vec<String>,
     /// Where the limit comes from.
     pub source: String,
 }
@@ -464,6 +481,9 @@ pub struct SpeedFluctuationLimit {
     pub inertia: String,
     /// Largest admitted coefficient of speed fluctuation: highest less lowest speed, by the mean.
     pub coefficient: PosRatio,
+    /// Names of the load steps in which it counts, `as it stands` for the case itself; empty: all.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub load_steps: Vec<String>,
     /// Where the limit comes from.
     pub source: String,
 }
@@ -490,6 +510,13 @@ pub enum Group {
     SpeedRange,
 }
 
+const fn yes() -> bool {
+    true
+}
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "as serde asks for it")]
+const fn is_yes(value: &bool) -> bool {
+    *value
+}
 fn no_inertia() -> Inertia<NonNegative> {
     quantity(0.0)
 }

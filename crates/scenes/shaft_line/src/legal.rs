@@ -91,10 +91,34 @@ pub fn legal_values(case: &ShaftLineCase) -> Vec<BuildError> {
             ));
         }
     }
+    errors.extend(legal_load_steps(case));
     for (k, l) in case.limits.torque.iter().enumerate() {
         if l.amplitude.is_none() && l.peak.is_none() {
             let what = "gives neither `amplitude` nor `peak`";
             errors.push(BuildError::at(format!("limits.torque.{k}"), what));
+        }
+    }
+    errors
+}
+
+/// Load steps of limits that the case does not have.
+fn legal_load_steps(case: &ShaftLineCase) -> Vec<BuildError> {
+    let names: Vec<&str> = super::steps::all(case).into_iter().map(|(name, _)| name).collect();
+    let l = &case.limits;
+    let all = [
+        ("separation", l.separation.iter().map(|l| &l.load_steps).collect::<Vec<_>>()),
+        ("stress", l.stress.iter().map(|l| &l.load_steps).collect()),
+        ("torque", l.torque.iter().map(|l| &l.load_steps).collect()),
+        ("heat", l.heat.iter().map(|l| &l.load_steps).collect()),
+        ("irregularity", l.irregularity.iter().map(|l| &l.load_steps).collect()),
+    ];
+    let mut errors = Vec::new();
+    for (kind, limits) in all {
+        for (k, steps) in limits.into_iter().enumerate() {
+            for (j, name) in steps.iter().enumerate().filter(|(_, n)| !names.contains(&n.as_str())) {
+                let what = format!("there is no load step `{name}`; {}", gudgeon_case::advice(name, &names));
+                errors.push(BuildError::at(format!("limits.{kind}.{k}.load_steps.{j}"), what));
+            }
         }
     }
     errors

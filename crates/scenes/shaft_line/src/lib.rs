@@ -163,8 +163,8 @@ fn run(
     }
     progress(Progress { phase: "response".into(), fraction: 0.1 })?;
     run.response_and_verdict(progress)?;
-    tables::figures(&a.line, &mut result);
-    result.headlines = headlines::headlines(&a.line, &result);
+    tables::figures(case, &a.line, &mut result);
+    result.headlines = headlines::headlines(case, a, &result);
     result.lead = draw::CAMPBELL.into();
     result.seconds.insert("solve".into(), begin.seconds());
     Ok(result)
@@ -247,20 +247,27 @@ impl Run<'_> {
         let start = self.start.clone();
         let mut machine = machine_of(&start, case, a)?;
         machine.speed_fluctuation = !case.limits.irregularity.is_empty();
+        machine.by_order = plan.range;
         if plan.response {
             let out = machine.motion(case.speed.si()).map_err(failed)?;
             self.results.periodic(&out, &mut machine);
+            self.results.balanced(&a.line, &out);
             if plan.fuller {
                 self.left_out(&out, &mut machine);
             }
         }
         let speeds = if plan.range { speeds(case) } else { Vec::new() };
+        let mut worst = 0;
+        let mut peaks = Vec::new();
         if plan.range {
             progress(Progress { phase: "vibration over the speed".into(), fraction: 0.3 })?;
             self.results.gas_over_speed(a, &self.loaded.source.files, &speeds);
-            self.results.range(&mut machine, &speeds).map_err(failed)?;
+            (worst, peaks) = self.results.range(&mut machine, &speeds).map_err(failed)?;
         }
         if !plan.verdict {
+            if plan.range {
+                self.results.over_speed(&mut machine, &speeds, &peaks, worst).map_err(failed)?;
+            }
             self.results.work(&machine);
             return Ok(());
         }
@@ -281,7 +288,13 @@ impl Run<'_> {
             let next = if step.is_some() { changed.next() } else { own.take() };
             all.extend(next.map(|m| (name.to_owned(), m)));
         }
-        self.results.verdict(&mut all, &speeds, plan.forced).map_err(failed)?;
+        let peaks = self.results.verdict(&mut all, &speeds, plan.forced).map_err(failed)?;
+        let own = steps::all(case).iter().position(|s| s.1.is_none());
+        if let Some((_, m)) = own.and_then(|k| all.get_mut(k)).filter(|_| plan.range) {
+            self.results.over_speed(m, &speeds, &peaks, worst).map_err(failed)?;
+        }
+        let machines: Vec<&Assembled> = all.iter().map(|(_, m)| m.a).collect();
+        self.results.gas_loads(&machines);
         for (_, m) in &all {
             self.results.work(m);
         }
@@ -400,7 +413,8 @@ impl Run<'_> {
             }
             all.push((name.to_owned(), m));
         }
-        self.results.verdict(&mut all, &[], !judged.is_empty()).map_err(failed)
+        self.results.verdict(&mut all, &[], !judged.is_empty()).map_err(failed)?;
+        Ok(())
     }
 }
 

@@ -38,6 +38,8 @@ pub struct Point {
     pub links: Vec<LinkPoint>,
     /// Peak to peak speed by mean speed, by inertia; empty where nobody asked and it is small.
     pub speed_fluctuation: Vec<f64>,
+    /// Order of the largest speed, by inertia, where the fluctuation is known.
+    pub fluctuation_order: Vec<f64>,
     /// Largest vibratory twist of a link (half of peak to peak, \[rad\]); zero where it is small.
     pub twist: f64,
     /// Torque amplitudes by order and link \[N m\]; empty unless they are kept.
@@ -241,6 +243,11 @@ impl<'a> Machine<'a> {
         if fluctuation || (0..nodes).any(|i| bound(i) > LARGE) {
             p.speed_fluctuation =
                 (0..nodes).map(|i| speed_fluctuation(cycle, out, i) / ratio(i).abs()).collect();
+            p.fluctuation_order = (0..nodes)
+                .map(|i| {
+                    strongest_of(out.orders.iter().map(|o| (o.order * o.order * square(o.angle[i]), o.order)))
+                })
+                .collect();
         }
         for l in 0..links {
             let twist = twist_of(a, l);
@@ -353,7 +360,11 @@ fn link_point(cycle: &mut Cycle, out: &TorsionOut, link: usize) -> LinkPoint {
 
 /// The order of the largest torque in a link, the last of several; zero without any.
 fn strongest_order(out: &TorsionOut, link: usize) -> f64 {
-    let sizes = out.orders.iter().map(|o| (square(o.torque[link]), o.order));
+    strongest_of(out.orders.iter().map(|o| (square(o.torque[link]), o.order)))
+}
+
+/// The second of the pair with the largest first, the last of several; zero without any.
+fn strongest_of(sizes: impl Iterator<Item = (f64, f64)>) -> f64 {
     sizes.fold((0.0, 0.0), |best: (f64, f64), own| if own.0 >= best.0 { own } else { best }).1
 }
 

@@ -34,12 +34,13 @@ pub fn names(case: &ShaftLineCase, plan: &Plan, a: &Assembled, excited: &[f64]) 
     }
     if plan.range {
         all.each("range.shaft", line.links.len(), &["torque_amplitude"]);
-        all.plain(&["range.worst_speed"]);
+        all.plain(&["range.worst_speed", "strongest_critical_speed"]);
     }
     if plan.verdict {
         all.plain(&["limits_broken", "worst_utilisation"]);
-        let of = ["torque_amplitude", "stress_amplitude", "speed", "order", "load_step"];
+        let of = ["torque_amplitude", "stress_amplitude", "speed", "order", "load_step", "heat"];
         all.each("envelope.shaft", line.links.len(), &of);
+        all.each("envelope.inertia", line.nodes.len(), &["irregularity"]);
     }
     all.0
 }

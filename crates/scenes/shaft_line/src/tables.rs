@@ -3,19 +3,21 @@
 use gudgeon_core::kinds::Line;
 use gudgeon_core::result::{Figure, FigureKind, RunResult};
 
+use crate::case::{ShaftCase, ShaftLineCase, ThrowCase};
 use crate::draw::CAMPBELL;
 
 /// Rows of the table of critical speeds.
 const CRITICAL: usize = 24;
 
 /// Adds the tables that the results of a run fill, each beside the figures that it belongs to.
-pub fn figures(line: &Line, out: &mut RunResult) {
-    insert(out, Some("Load steps"), load_steps(out));
+pub fn figures(case: &ShaftLineCase, line: &Line, out: &mut RunResult) {
+    insert(out, Some("Load steps"), load_steps(case, out));
     insert(out, Some(CAMPBELL), modes(out));
     insert(out, None, shafts(line, out));
     insert(out, None, critical_speeds(out));
     insert(out, None, inertias(line));
-    insert(out, None, stiffnesses(line, out));
+    insert(out, None, stiffnesses(case, line, out));
+    insert(out, None, throws(case));
 }
 
 /// Behind the figure with this title, or behind all.
@@ -42,7 +44,7 @@ fn table(
         title: title.into(),
         hint: hint.into(),
         table: String::new(),
-        kind: FigureKind::Table { rows_are: rows_are.into(), columns, rows, limit },
+        kind: FigureKind::Table { rows_are: rows_are.into(), columns, rows, texts: Vec::new(), limit },
     })
 }
 
@@ -73,7 +75,8 @@ fn modes(out: &RunResult) -> Option<Figure> {
         ("places at rest", "", "nodes"),
     ];
     let (head, rows) = of_results(out, &columns, &labels, |n, what| format!("mode.{n}.{what}"));
-    table("Modes", "about the mean torque at the mean speed", "mode", head, rows, None)
+    let hint = "about the mean torque at the mean speed; a loss factor stiffens a shaft a little, so that the frequency with damping can be the higher one";
+    table("Modes", hint, "mode", head, rows, None)
 }
 
 fn critical_speeds(out: &RunResult) -> Option<Figure> {
@@ -99,7 +102,7 @@ fn critical_speeds(out: &RunResult) -> Option<Figure> {
     };
     let of_torque = torque.map_or(
         "",
-        |_| "with the largest torque of that order in any shaft at the speeds of the diagram beside it",
+        |_| "with the largest torque of that order alone in any shaft, in the load step that the diagrams over the speed show, at the speeds drawn there; the whole vibration of all load steps is the envelope",
     );
     let hint = if told > CRITICAL {
         format!(
@@ -122,6 +125,7 @@ fn shafts(line: &Line, out: &RunResult) -> Option<Figure> {
         ("heat", "W", "heat"),
         ("vibratory torque over the range", "N m", "envelope.torque_amplitude"),
         ("vibratory stress over the range", "MPa", "envelope.stress_amplitude"),
+        ("heat over the range", "W", "envelope.heat"),
         ("at speed", "rpm", "envelope.speed"),
         ("order there", "", "envelope.order"),
     ];
@@ -141,9 +145,9 @@ fn shafts(line: &Line, out: &RunResult) -> Option<Figure> {
 }
 
 /// Load steps by limits: part of each limit that is used.
-fn load_steps(out: &RunResult) -> Option<Figure> {
+fn load_steps(case: &ShaftLineCase, out: &RunResult) -> Option<Figure> {
     let steps = out.tables.get("load_steps")?;
-    let head = steps.axis.values.iter().map(|k| (format!("step {k}"), String::new())).collect();
+    let head = crate::steps::all(case).iter().map(|(name, _)| ((*name).to_owned(), String::new())).collect();
     let rows = steps
         .columns
         .iter()
@@ -177,13 +181,72 @@ fn inertias(line: &Line) -> Option<Figure> {
     )
 }
 
-fn stiffnesses(line: &Line, out: &RunResult) -> Option<Figure> {
+fn stiffnesses(case: &ShaftLineCase, line: &Line, out: &RunResult) -> Option<Figure> {
     let labels: Vec<String> = line
         .links
         .iter()
         .map(|l| format!("{}: {} to {}", l.name, line.nodes[l.nodes[0]].name, line.nodes[l.nodes[1]].name))
         .collect();
     let columns = [("stiffness", "N m/rad", "stiffness"), ("damping", "N m s/rad", "damping")];
-    let (head, rows) = of_results(out, &columns, &labels, |n, what| format!("shaft{n}.{what}"));
+    let (mut head, mut rows) = of_results(out, &columns, &labels, |n, what| format!("shaft{n}.{what}"));
+    // What the stresses rest on, of shafts that the case names.
+    let given = |label: &str| {
+        case.shafts.iter().find(|s| label.strip_prefix(&s.name).is_some_and(|r| r.starts_with(": ")))
+    };
+    if rows.iter().any(|(label, _)| given(label).is_some_and(|s| shaft_data(s).iter().any(Option::is_some))) {
+        let more = [("diameter", "mm"), ("bore", "mm"), ("stress concentration", ""), ("loss factor", "")];
+        head.extend(more.map(|(n, u)| (n.to_owned(), u.to_owned())));
+        for (label, values) in &mut rows {
+            values.extend(given(label).map_or([None; 4], shaft_data));
+        }
+    }
     table("Mass-elastic data: shafts and couplings", "at the mean torque", "shaft", head, rows, None)
+}
+
+/// Diameter and bore where the stress is told \[mm\], stress concentration, loss factor.
+fn shaft_data(s: &ShaftCase) -> [Option<f64>; 4] {
+    let at = s.diameter.map(|d| (d.si(), s.bore.si()));
+    let strength = |d: f64, b: f64| (d.powi(4) - b.powi(4)) / d;
+    let weakest = s.pieces.iter().map(|p| (p.diameter.si(), p.bore.si()));
+    let at = at.or_else(|| weakest.min_by(|x, y| strength(x.0, x.1).total_cmp(&strength(y.0, y.1))));
+    let loss = Some(s.loss_factor.si()).filter(|l| *l > 0.0);
+    [at.map(|a| 1e3 * a.0), at.map(|a| 1e3 * a.1), at.map(|_| s.stress_concentration.si()), loss]
+}
+
+/// Crank drives as the case gives them, with the place of the outer dead centres.
+fn throws(case: &ShaftLineCase) -> Option<Figure> {
+    let all = case.throws.iter().flat_map(|t| t.at.iter().enumerate().map(move |(i, name)| (t, i, name)));
+    let row = |(t, i, name): (&ThrowCase, usize, &String)| {
+        let phase = t.phases.get(i).map_or(0.0, |p| p.si()).to_degrees();
+        let dead = (-phase).rem_euclid(360.0);
+        // 360 to rounding is 0.
+        let dead = if 360.0 - dead < 1e-9 { 0.0 } else { (1e9 * dead).round() / 1e9 };
+        let values = [
+            phase,
+            dead,
+            2e3 * t.crank_radius.si(),
+            1e3 * t.rod_length.si(),
+            t.rod_mass.si(),
+            t.reciprocating_mass.si(),
+            t.crank_inertia.si(),
+        ];
+        (name.clone(), values.map(Some).to_vec())
+    };
+    let columns = [
+        ("phase", "deg"),
+        ("outer dead centre at", "deg"),
+        ("stroke", "mm"),
+        ("rod length", "mm"),
+        ("rod mass", "kg"),
+        ("reciprocating mass", "kg"),
+        ("crank inertia", "kg m2"),
+    ];
+    table(
+        "Throws",
+        "with the angle of the shaft at which the piston is at its outer dead centre: the two throws of a balanced-opposed pair have the same",
+        "throw",
+        columns.map(|(n, u)| (n.to_owned(), u.to_owned())).to_vec(),
+        all.map(row).collect(),
+        None,
+    )
 }

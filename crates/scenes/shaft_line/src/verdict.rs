@@ -5,7 +5,7 @@ use gudgeon_numerics::elementary;
 use gudgeon_torsion::critical::CriticalSpeed;
 
 use super::assemble::Assembled;
-use super::case::ShaftLineCase;
+use super::case::{SeparationLimit, ShaftLineCase, StressLimit};
 use super::machine::{LinkPoint, Machine, Point, Sought};
 use super::told;
 
@@ -40,6 +40,11 @@ impl Operating {
             (None, Some(a), Some(b)) if steady => Self { from: a.si(), to: b.si(), given_by: "`range`" },
             _ => Self { from: case.speed.si(), to: case.speed.si(), given_by: "the mean speed alone" },
         }
+    }
+
+    /// Whether a speed \[rpm\] lies within it.
+    pub fn holds(&self, speed: f64) -> bool {
+        self.is_wide() && speed >= super::rpm(self.from) && speed <= super::rpm(self.to)
     }
 
     /// Whether it is more than one speed.
@@ -100,6 +105,8 @@ pub struct Forced {
     pub admitted: f64,
     /// Where it comes from.
     pub source: String,
+    /// Names of the load steps in which it counts; empty: all.
+    pub load_steps: Vec<String>,
 }
 
 /// Five digits without a power of ten, where that is readable.
@@ -126,19 +133,23 @@ impl Forced {
         format!("{what} {}", self.subject)
     }
 
-    /// The value with the limit, in words.
-    fn text(&self, value: f64) -> String {
-        let limit = self.admitted;
+    /// A value of the quantity in words.
+    pub fn told(&self, value: f64) -> String {
         match self.quantity {
-            Quantity::Torque | Quantity::Peak => format!("{} N m of {} N m", plain(value), plain(limit)),
-            Quantity::Stress => format!("{} MPa of {} MPa", plain(value / 1e6), plain(limit / 1e6)),
-            Quantity::Heat => format!("{} W of {} W", plain(value), plain(limit)),
-            Quantity::SpeedFluctuation => format!("{value:.6} of {limit:.6}"),
+            Quantity::Torque | Quantity::Peak => format!("{} N m", plain(value)),
+            Quantity::Stress => format!("{} MPa", plain(value / 1e6)),
+            Quantity::Heat => format!("{} W", plain(value)),
+            Quantity::SpeedFluctuation => format!("{value:.6}"),
         }
     }
 
+    /// Whether it counts in a load step.
+    pub fn counts_in(&self, step: &str) -> bool {
+        counts(&self.load_steps, step)
+    }
+
     /// Place of the subject in a line, and what makes the quantity of the torque there; none where the line of a load step lacks it.
-    fn place(&self, a: &Assembled) -> Option<(usize, f64)> {
+    pub fn place(&self, a: &Assembled) -> Option<(usize, f64)> {
         match self.quantity {
             Quantity::SpeedFluctuation => {
                 a.line.nodes.iter().position(|n| n.name == self.subject).map(|i| (i, 1.0))
@@ -152,7 +163,7 @@ impl Forced {
     }
 
     /// The quantity at a point; of a stress the torque, whose tops are known from elsewhere.
-    fn value(&self, at: usize, p: &Point) -> f64 {
+    pub fn value(&self, at: usize, p: &Point) -> f64 {
         match self.quantity {
             Quantity::SpeedFluctuation => p.speed_fluctuation.get(at).copied().unwrap_or(0.0),
             _ => self.of_link(&p.links[at]),
@@ -169,41 +180,66 @@ impl Forced {
         }
     }
 
-    /// Order of the largest torque there; none for what is no torque.
+    /// Order of the largest torque or speed there.
     fn order(&self, at: usize, p: &Point) -> Option<f64> {
-        (self.quantity != Quantity::SpeedFluctuation).then(|| p.links[at].order)
+        match self.quantity {
+            Quantity::SpeedFluctuation => p.fluctuation_order.get(at).copied(),
+            _ => Some(p.links[at].order),
+        }
     }
+}
+
+/// Whether a limit with these load steps counts in one.
+fn counts(load_steps: &[String], step: &str) -> bool {
+    load_steps.is_empty() || load_steps.iter().any(|s| s == step)
 }
 
 /// All limits on forced vibration of a case.
 pub fn forced(case: &ShaftLineCase, a: &Assembled) -> Vec<Forced> {
     let mut all = Vec::new();
-    let mut add = |quantity, subject: &str, admitted: f64, source: &str| {
-        all.push(Forced { quantity, subject: subject.into(), admitted, source: source.into() });
+    let mut add = |quantity, subject: &str, admitted: f64, source: &str, load_steps: &[String]| {
+        let load_steps = load_steps.to_vec();
+        all.push(Forced { quantity, subject: subject.into(), admitted, source: source.into(), load_steps });
     };
     let limits = &case.limits;
     for l in &limits.torque {
         if let Some(limit) = l.amplitude {
-            add(Quantity::Torque, &l.shaft, limit.si(), &l.source);
+            add(Quantity::Torque, &l.shaft, limit.si(), &l.source, &l.load_steps);
         }
         if let Some(limit) = l.peak {
-            add(Quantity::Peak, &l.shaft, limit.si(), &l.source);
+            add(Quantity::Peak, &l.shaft, limit.si(), &l.source, &l.load_steps);
         }
     }
     for l in &limits.stress {
-        for (link, stress) in a.line.links.iter().zip(&a.stress) {
-            if stress.is_some() && (l.shaft.is_empty() || l.shaft == link.name) {
-                add(Quantity::Stress, &link.name, l.amplitude.si(), &l.source);
+        for (link, _) in a.line.links.iter().zip(&a.stress).filter(|(_, s)| s.is_some()) {
+            if let Some(load_steps) = stress_counts(case, l, &link.name) {
+                add(Quantity::Stress, &link.name, l.amplitude.si(), &l.source, &load_steps);
             }
         }
     }
     for l in &limits.heat {
-        add(Quantity::Heat, &l.shaft, l.power.si(), &l.source);
+        add(Quantity::Heat, &l.shaft, l.power.si(), &l.source, &l.load_steps);
     }
     for l in &limits.irregularity {
-        add(Quantity::SpeedFluctuation, &l.inertia, l.coefficient.si(), &l.source);
+        add(Quantity::SpeedFluctuation, &l.inertia, l.coefficient.si(), &l.source, &l.load_steps);
     }
     all
+}
+
+/// Load steps (empty: all) in which a limit on stress counts for a shaft, none where it does not: one for all shafts stands back behind one of the
+/// shaft itself.
+fn stress_counts(case: &ShaftLineCase, l: &StressLimit, shaft: &str) -> Option<Vec<String>> {
+    if !l.shaft.is_empty() {
+        return (l.shaft == shaft).then(|| l.load_steps.clone());
+    }
+    let own: Vec<&StressLimit> = case.limits.stress.iter().filter(|o| o.shaft == shaft).collect();
+    if own.is_empty() {
+        return Some(l.load_steps.clone());
+    }
+    let names = super::steps::all(case).into_iter().map(|(name, _)| name);
+    let left = names.filter(|n| counts(&l.load_steps, n) && !own.iter().any(|o| counts(&o.load_steps, n)));
+    let left: Vec<String> = left.map(str::to_owned).collect();
+    (!left.is_empty()).then_some(left)
 }
 
 /// A limit in one load step.
@@ -213,8 +249,12 @@ pub struct Judged {
     pub used: f64,
     /// Value and place, in words.
     pub text: String,
+    /// The value in words.
+    pub found: String,
     /// Speed \[rad/s\] where it is used most.
     pub speed: f64,
+    /// The order that makes most of it there.
+    pub order: Option<f64>,
 }
 
 /// A separation that is not kept, and why it is accepted.
@@ -226,6 +266,22 @@ pub struct Accepted {
     pub text: String,
     /// Share of the limit used most there.
     pub used: f64,
+    /// Names of the load steps, that with the most used limit first.
+    pub steps: Vec<String>,
+}
+
+impl Accepted {
+    /// Adds one to others: those of the same mode and excitation are one, told where a limit is used most.
+    pub fn gather(self, all: &mut Vec<Self>) {
+        match all.iter_mut().find(|a| a.key == self.key) {
+            Some(a) if a.used >= self.used => a.steps.extend(self.steps),
+            Some(a) => {
+                let before = std::mem::replace(a, self);
+                a.steps.extend(before.steps);
+            }
+            None => all.push(self),
+        }
+    }
 }
 
 /// One limit over all load steps.
@@ -233,6 +289,8 @@ pub struct Accepted {
 pub struct Row {
     /// What is limited.
     pub label: String,
+    /// What is allowed, in words.
+    pub allowed: String,
     /// Where the limit comes from.
     pub source: String,
     /// By load step; none where its line does not have the subject.
@@ -253,6 +311,8 @@ impl Row {
 /// One load step while it is judged.
 #[derive(Debug)]
 pub struct Step<'m, 'a> {
+    /// Its name.
+    pub name: String,
     /// The line.
     pub machine: &'m mut Machine<'a>,
     /// Speeds that show its peaks.
@@ -269,6 +329,7 @@ impl<'m, 'a> Step<'m, 'a> {
     /// # Errors
     /// No convergence of natural frequencies.
     pub fn new(
+        name: &str,
         machine: &'m mut Machine<'a>,
         range: &Operating,
         diagram: &[f64],
@@ -279,7 +340,7 @@ impl<'m, 'a> Step<'m, 'a> {
         let speeds = machine.telling_speeds(&grid, &critical);
         machine.prepare(&speeds);
         let unbounded = machine.unbounded(&critical, range.from, range.to);
-        Ok(Self { machine, speeds, critical, unbounded })
+        Ok(Self { name: name.into(), machine, speeds, critical, unbounded })
     }
 
     /// The speeds that show peaks between two speeds of the range, these included.
@@ -306,6 +367,9 @@ impl<'m, 'a> Step<'m, 'a> {
 
     /// One limit on forced vibration over the operating range.
     pub fn judge(&mut self, limit: &Forced, range: &Operating) -> Option<Judged> {
+        if !limit.counts_in(&self.name) {
+            return None;
+        }
         let place = limit.place(self.machine.a)?;
         let speeds = self.between(range.from, range.to);
         let (speed, value) = self.worst_over(limit, &speeds)?;
@@ -316,12 +380,32 @@ impl<'m, 'a> Step<'m, 'a> {
                 c.order,
                 c.mode
             );
-            return Some(Judged { used: UNBOUNDED, text, speed: c.speed });
+            let found = "no bound".into();
+            return Some(Judged { used: UNBOUNDED, text, found, speed: c.speed, order: Some(c.order) });
         }
         let order = self.machine.at(speed).and_then(|p| limit.order(place.0, p));
-        let order = order.map_or_else(String::new, |o| format!(", mostly order {o}"));
-        let text = format!("{} at {}{order}", limit.text(value), told(speed));
-        Some(Judged { used: value / limit.admitted, text, speed })
+        let mostly = order.map_or_else(String::new, |o| format!(", mostly order {o}"));
+        let found = limit.told(value);
+        let text = format!("{found} of {} at {}{mostly}", limit.told(limit.admitted), told(speed));
+        Some(Judged { used: value / limit.admitted, text, found, speed, order })
+    }
+
+    /// Share of the limit that is used most at a critical speed, of those limits of which its order makes the largest part; and which.
+    pub fn used_by(&mut self, limits: &[Forced], c: &CriticalSpeed) -> Option<(f64, String)> {
+        if self.unbounded.iter().any(|u| u.speed == c.speed && u.order == c.order) {
+            return Some((UNBOUNDED, "vibration without bound".into()));
+        }
+        let (a, name) = (self.machine.a, &self.name);
+        let point = self.machine.at(c.speed)?;
+        let shares = limits.iter().filter(|l| l.counts_in(name)).filter_map(|l| {
+            let (at, factor) = l.place(a)?;
+            (l.order(at, point) == Some(c.order)).then(|| (factor * l.value(at, point) / l.admitted, l))
+        });
+        let most = shares.fold(None, |best: Option<(f64, &Forced)>, own| match best {
+            Some(b) if b.0 >= own.0 => best,
+            _ => Some(own),
+        });
+        most.map(|(used, l)| (used, l.label()))
     }
 
     /// Share of the limit on forced vibration that is used most between two speeds, and which; none without limits.
@@ -331,7 +415,7 @@ impl<'m, 'a> Step<'m, 'a> {
         }
         let speeds = self.between(from, to);
         let mut sampled: Vec<(f64, &Forced)> = Vec::new();
-        for l in limits {
+        for l in limits.iter().filter(|l| l.counts_in(&self.name)) {
             let Some((at, factor)) = l.place(self.machine.a) else { continue };
             let values = speeds.iter().filter_map(|w| self.machine.at(*w).map(|p| factor * l.value(at, p)));
             sampled.push((values.fold(0.0, f64::max) / l.admitted, l));
@@ -359,6 +443,12 @@ pub enum Excitation {
 }
 
 impl Excitation {
+    /// All that a limit names.
+    pub fn of(limit: &SeparationLimit) -> impl Iterator<Item = Self> + '_ {
+        let orders = limit.orders.iter().map(|o| Self::Order(*o));
+        orders.chain(limit.frequencies.iter().map(|f| Self::Fixed(f.si())))
+    }
+
     /// Angular frequency \[rad/s\] at a speed.
     fn omega(self, speed: f64) -> f64 {
         match self {
@@ -450,6 +540,26 @@ impl Spectra {
         best
     }
 
+    /// Least separation of a mode (from 0) from an excitation over the range, signed, with the frequency \[rad/s\] there; zero where they meet.
+    pub fn of_mode(&self, e: Excitation, mode: usize) -> Option<(f64, f64)> {
+        let d = |i: usize| {
+            Some((separation(*self.omega[i].get(mode)?, e.omega(self.speeds[i])), self.omega[i][mode]))
+        };
+        let all: Vec<(f64, f64)> = (0..self.speeds.len()).map(d).collect::<Option<_>>()?;
+        let met = all.windows(2).find(|w| w[0].0 * w[1].0 < 0.0);
+        match met {
+            Some(w) => Some((0.0, w[0].1 + (w[1].1 - w[0].1) * w[0].0 / (w[0].0 - w[1].0))),
+            None => all.into_iter().min_by(|a, b| a.0.abs().total_cmp(&b.0.abs())),
+        }
+    }
+
+    /// Lowest and highest frequency \[rad/s\] of a mode (from 0) over the range.
+    pub fn span(&self, mode: usize) -> Option<[f64; 2]> {
+        let all = self.omega.iter().map(|o| o.get(mode).copied()).collect::<Option<Vec<f64>>>()?;
+        let lowest = all.iter().copied().reduce(f64::min)?;
+        Some([lowest, all.into_iter().fold(lowest, f64::max)])
+    }
+
     /// Parts of the range in which some mode is nearer to an excitation than `margin`: mode, from, to.
     pub fn near(&self, e: Excitation, margin: f64) -> Vec<(usize, f64, f64)> {
         let mut found = Vec::new();
@@ -487,11 +597,21 @@ pub fn judge_separation(
     step: &mut Step<'_, '_>,
     spectra: &Spectra,
     e: Excitation,
-    margin: f64,
+    limit: &SeparationLimit,
     limits: &[Forced],
     why: &mut Vec<Accepted>,
 ) -> Option<Judged> {
+    if !counts(&limit.load_steps, &step.name) {
+        return None;
+    }
+    let margin = limit.margin.si();
     let (least, mode, speed) = spectra.nearest(e)?;
+    let order = match e {
+        Excitation::Order(o) => Some(o),
+        Excitation::Fixed(_) => None,
+    };
+    let found = format!("{:.1} % (mode {mode})", 100.0 * least);
+    let judged = |used, text| Judged { used, text, found, speed, order };
     let away = if least == 0.0 {
         format!("mode {mode} meets it at {}", told(speed))
     } else {
@@ -500,13 +620,11 @@ pub fn judge_separation(
     let text = format!("{away}, {:.1} % are wanted", 100.0 * margin);
     let used = if least * UNBOUNDED > margin { margin / least } else { UNBOUNDED };
     if used <= 1.0 {
-        return Some(Judged { used, text, speed });
+        return Some(judged(used, text));
     }
     // Nothing in the forced vibration answers to a frequency that is no order.
-    let parts = match e {
-        Excitation::Order(_) => spectra.near(e, margin),
-        Excitation::Fixed(_) => Vec::new(),
-    };
+    let asked = order.is_some() && limit.accept_by_response;
+    let parts = if asked { spectra.near(e, margin) } else { Vec::new() };
     let mut accepted = Vec::new();
     for (mode, from, to) in &parts {
         match step.most_used(limits, *from, *to) {
@@ -521,20 +639,21 @@ pub fn judge_separation(
                         format!("at {}", told(*from))
                     },
                 );
-                accepted.push(Accepted { key: format!("mode{mode}.{}", e.key()), text, used });
+                let key = format!("mode{mode}.{}", e.key());
+                accepted.push(Accepted { key, text, used, steps: vec![step.name.clone()] });
             }
             // Where they meet, the vibration says by how much it is too large.
             Some((most, which)) if least == 0.0 => {
                 let text = format!("{text}, and {which} uses {most:.4} of its limit there");
-                return Some(Judged { used: most, text, speed });
+                return Some(judged(most, text));
             }
-            _ => return Some(Judged { used, text, speed }),
+            _ => return Some(judged(used, text)),
         }
     }
     if accepted.is_empty() {
-        return Some(Judged { used, text, speed });
+        return Some(judged(used, text));
     }
     let used = accepted.iter().map(|a| a.used).fold(0.0, f64::max);
     why.extend(accepted);
-    Some(Judged { used, text: format!("{text}; accepted by the forced vibration"), speed })
+    Some(judged(used, format!("{text}; accepted by the forced vibration")))
 }

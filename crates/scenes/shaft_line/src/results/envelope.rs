@@ -1,13 +1,12 @@
 //! The largest vibration over the operating range and all load steps.
 
-use gudgeon_core::result::{Note, Series};
+use gudgeon_core::result::{Figure, FigureKind, Lines, Mark, Note, Series};
 
 use super::periodic::LINEAR;
-use super::verdict::numbered;
 use super::{MAX_DRAWN, Results, column};
 use crate::assemble::Assembled;
 use crate::machine::Sought;
-use crate::verdict::{Forced, Operating, Quantity, Step};
+use crate::verdict::{Forced, Operating, Quantity, Step, UNBOUNDED};
 use crate::{rpm, told};
 
 /// Largest torque amplitude of a link: value, speed, load step, order.
@@ -26,6 +25,7 @@ impl Results<'_> {
         (range, diagram): (&Operating, &[f64]),
         names: &[String],
         limits: &[Forced],
+        peaks: &mut Vec<f64>,
     ) {
         let Some(a) = steps.first().map(|s| s.machine.a) else { return };
         let mut tops = Vec::new();
@@ -57,9 +57,36 @@ impl Results<'_> {
             }
             tops.push((l, top));
         }
+        peaks.extend(tops.iter().map(|t| t.1.speed));
+        self.limited(steps, range, names, limits);
         self.large_motion(steps, names);
         if range.is_wide() {
-            self.curves(steps, (range, diagram), names, limits, &tops);
+            self.curves(steps, (range, diagram, peaks), names, limits, &tops);
+        }
+    }
+
+    /// Largest heat and irregularity, of what has a limit on it.
+    fn limited(
+        &mut self,
+        steps: &mut [Step<'_, '_>],
+        range: &Operating,
+        names: &[String],
+        limits: &[Forced],
+    ) {
+        for l in limits {
+            let Some((key, unit, what)) = limited_key(steps[0].machine.a, l) else { continue };
+            let judged = steps.iter_mut().enumerate().filter_map(|(k, s)| Some((k, s.judge(l, range)?)));
+            let Some((k, worst)) = judged.max_by(|a, b| a.1.used.total_cmp(&b.1.used)) else { continue };
+            if worst.used >= UNBOUNDED {
+                continue;
+            }
+            let step = if names.len() > 1 { format!(", load step {}", names[k]) } else { String::new() };
+            let what = format!(
+                "largest {what} of {} over operating range and load steps, at {}{step}",
+                l.subject,
+                told(worst.speed)
+            );
+            self.result(format!("envelope.{key}"), worst.used * l.admitted, unit, what);
         }
     }
 
@@ -100,13 +127,13 @@ impl Results<'_> {
     fn curves(
         &mut self,
         steps: &mut [Step<'_, '_>],
-        (range, diagram): (&Operating, &[f64]),
+        (range, diagram, peaks): (&Operating, &[f64], &[f64]),
         names: &[String],
         limits: &[Forced],
         tops: &[(usize, Top)],
     ) {
         let Some(a) = steps.first().map(|s| s.machine.a) else { return };
-        let speeds = drawn_speeds(steps, range, diagram, tops);
+        let speeds = drawn_speeds(steps, range, diagram, peaks);
         let axis = column("speed", "rpm", speeds.iter().map(|w| rpm(*w)).collect());
         let mut table = Series { axis, columns: Vec::new() };
         let shown = Shown::new(a, names.len() > 1);
@@ -131,7 +158,8 @@ impl Results<'_> {
             table.columns.push(column(shown.limit_column(l), shown.unit, vec![limit; speeds.len()]));
         }
         let limited = limit.is_some();
-        self.draw_envelope(&table, (&shown, names), (a, l, limited), all);
+        let others = limited_curves(steps, &speeds, names, limits, &mut table);
+        self.draw_envelope(&table, (&shown, names), (a, l, limited), all, others);
         self.out.tables.insert("envelope".into(), table);
     }
 
@@ -142,6 +170,7 @@ impl Results<'_> {
         (shown, names): (&Shown, &[String]),
         (a, l, limited): (&Assembled, usize, bool),
         mut all: Vec<(String, String)>,
+        others: Vec<Figure>,
     ) {
         let (name, what) = (&a.line.links[l].name, shown.what);
         let limit_line = limited.then(|| (format!("limit of {name}"), shown.limit_column(l)));
@@ -150,7 +179,7 @@ impl Results<'_> {
         let title = if shown.stressed { "Envelope of stress" } else { "Envelope of torque" };
         let hint = format!(
             "largest amplitude (half of peak to peak) of all load steps over the operating range: {}",
-            numbered(names)
+            names.join(", ")
         );
         self.lines(title, &hint, "envelope", "speed", all, false);
         if names.len() > 1 {
@@ -162,22 +191,66 @@ impl Results<'_> {
             let hint = "amplitude (half of peak to peak) over the operating range, in the shaft that uses its limit most";
             self.lines(&title, hint, "envelope", "speed", lines, false);
         }
-        let own = self.out.figures.split_off(before);
-        let bars =
-            self.out.figures.iter().take_while(|f| f.title == "Verdict" || f.title == "Load steps").count();
+        let mut own = self.out.figures.split_off(before);
+        own.extend(others);
+        let first = ["Limits", "Verdict", "Load steps"];
+        let bars = self.out.figures.iter().take_while(|f| first.contains(&f.title.as_str())).count();
         self.out.figures.splice(bars..bars, own);
     }
 }
 
-/// The grid, and the places of the peaks, where every load step has an answer.
-fn drawn_speeds(
+/// Name within `envelope`, unit and words of a limit on heat or irregularity; none for the others, and where the line does not have the subject.
+fn limited_key(a: &Assembled, l: &Forced) -> Option<(String, &'static str, &'static str)> {
+    let n = l.place(a)?.0 + 1;
+    match l.quantity {
+        Quantity::Heat => Some((format!("shaft{n}.heat"), "W", "heat")),
+        Quantity::SpeedFluctuation => {
+            Some((format!("inertia{n}.irregularity"), "", "coefficient of speed fluctuation"))
+        }
+        _ => None,
+    }
+}
+
+/// Heat and irregularity over the speed of what has a limit on it, a curve a load step.
+fn limited_curves(
     steps: &mut [Step<'_, '_>],
-    range: &Operating,
-    diagram: &[f64],
-    tops: &[(usize, Top)],
-) -> Vec<f64> {
+    speeds: &[f64],
+    names: &[String],
+    limits: &[Forced],
+    table: &mut Series,
+) -> Vec<Figure> {
+    let mut figures = Vec::new();
+    for l in limits {
+        let Some((key, unit, what)) = limited_key(steps[0].machine.a, l) else { continue };
+        let mut lines = Vec::new();
+        for (k, s) in steps.iter_mut().enumerate().filter(|(_, s)| l.counts_in(&s.name)) {
+            let Some((at, _)) = l.place(s.machine.a) else { continue };
+            let name = key.replacen('.', &format!(".step{}.", k + 1), 1);
+            let values = speeds.iter().map(|w| s.machine.at(*w).map_or(0.0, |p| l.value(at, p))).collect();
+            if table.get(&name).is_none() {
+                table.columns.push(column(name.clone(), unit, values));
+            }
+            lines.push((if names.len() > 1 { names[k].clone() } else { what.to_owned() }, name));
+        }
+        figures.push(Figure {
+            title: format!("{}: {what}", l.subject),
+            hint: "over the operating range, in each load step".into(),
+            table: "envelope".into(),
+            kind: FigureKind::Lines(Lines {
+                x: "speed".into(),
+                lines,
+                marks: vec![Mark::Limit { y: l.admitted, label: "limit".into() }],
+                ..Lines::default()
+            }),
+        });
+    }
+    figures
+}
+
+/// The grid, and the places of the peaks, where every load step has an answer.
+fn drawn_speeds(steps: &mut [Step<'_, '_>], range: &Operating, diagram: &[f64], peaks: &[f64]) -> Vec<f64> {
     let mut speeds = range.grid(diagram);
-    speeds.extend(tops.iter().map(|t| t.1.speed).filter(|w| *w > range.from && *w < range.to));
+    speeds.extend(peaks.iter().filter(|w| **w > range.from && **w < range.to));
     speeds.sort_unstable_by(f64::total_cmp);
     speeds.dedup();
     speeds.retain(|w| steps.iter_mut().all(|s| s.machine.at(*w).is_some()));

@@ -4,14 +4,15 @@ use std::f64::consts::PI;
 
 use gudgeon_core::EvalError;
 use gudgeon_core::kinds::{Line, Mode};
-use gudgeon_core::result::{Note, Series};
+use gudgeon_core::result::{FigureKind, Note, Series};
 use gudgeon_numerics::elementary;
 use gudgeon_torsion::critical::CriticalSpeed;
 use gudgeon_torsion::steady::Steady;
 
-use super::{Results, column};
+use super::verdict::SAME;
+use super::{Results, column, extremes};
 use crate::assemble::Assembled;
-use crate::verdict::{MODES, Operating, separation};
+use crate::verdict::{MODES, Operating, Step, separation};
 use crate::{draw, rpm};
 
 /// Maximum number of mode shapes that are drawn.
@@ -217,6 +218,45 @@ impl Results<'_> {
             table.columns.push(column(format!("order{o}"), "Hz", ray));
         }
         self.out.tables.insert("interference".into(), table);
+        Ok(())
+    }
+
+    /// Lowest and highest natural frequencies of the load steps in the Campbell diagram, of modes that a coupling moves with its mean torque.
+    ///
+    /// # Errors
+    /// No convergence.
+    pub fn campbell_by_step(&mut self, steps: &mut [Step<'_, '_>]) -> Result<(), EvalError> {
+        let Some(table) = self.out.tables.get_mut("interference").filter(|_| steps.len() > 1) else {
+            return Ok(());
+        };
+        let speeds: Vec<f64> = table.axis.values.iter().map(|s| s * PI / 30.0).collect();
+        let mut all = Vec::new();
+        for s in steps.iter_mut() {
+            let steady = &mut s.machine.steady;
+            let speed = steady.speed;
+            let here = steady.frequencies(MODES)?;
+            all.push(levels(steady, &speeds, &here)?);
+            steady.set_speed(speed);
+        }
+        let mut lines = Vec::new();
+        for k in 0..all.iter().map(Vec::len).min().unwrap_or(0) {
+            let ends = |i: usize| extremes(all.iter().map(|levels| levels[k][i]));
+            if table.get(&format!("mode{}", k + 1)).is_none()
+                || (0..speeds.len()).all(|i| ends(i)[0] - ends(i)[1] <= SAME * ends(i)[0])
+            {
+                continue;
+            }
+            for (end, what) in [(1, "lowest"), (0, "highest")] {
+                let name = format!("mode{}.{what}", k + 1);
+                let values = (0..speeds.len()).map(|i| ends(i)[end]).collect();
+                table.columns.push(column(name.clone(), "Hz", values));
+                lines.push((format!("mode {}, {what} of the load steps", k + 1), name));
+            }
+        }
+        let diagram = self.out.figures.iter_mut().find(|f| f.title == draw::CAMPBELL);
+        if let Some(FigureKind::Lines(own)) = diagram.map(|f| &mut f.kind) {
+            own.lines.extend(lines);
+        }
         Ok(())
     }
 

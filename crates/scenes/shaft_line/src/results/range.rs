@@ -16,10 +16,8 @@ const ORDERS: usize = 6;
 /// Part of the largest gas torque by which it may change over the speed without a word.
 const SAME_GAS: f64 = 1e-6;
 
-/// The answers at all speeds, with their orders.
+/// The answers at all speeds.
 fn points(machine: &mut Machine<'_>, speeds: &[f64]) -> Result<Vec<Point>, EvalError> {
-    machine.by_order = true;
-    machine.prepare(speeds);
     let mut rows = Vec::with_capacity(speeds.len());
     for w in speeds {
         match machine.at(*w) {
@@ -27,18 +25,21 @@ fn points(machine: &mut Machine<'_>, speeds: &[f64]) -> Result<Vec<Point>, EvalE
             None => return Err(machine.why(*w)),
         }
     }
-    machine.by_order = false;
     Ok(rows)
 }
 
 impl Results<'_> {
-    /// Vibratory torque over the speed.
+    /// Largest vibratory torque over the speeds of the diagrams: the shaft that has it (from 0), and the speeds of the peaks.
     ///
     /// # Errors
     /// No answer at a speed.
-    pub fn range(&mut self, machine: &mut Machine<'_>, speeds: &[f64]) -> Result<(), EvalError> {
+    pub fn range(
+        &mut self,
+        machine: &mut Machine<'_>,
+        speeds: &[f64],
+    ) -> Result<(usize, Vec<f64>), EvalError> {
         let a = machine.a;
-        let links = a.line.links.len();
+        machine.prepare(speeds);
         let rows = points(machine, speeds)?;
         // Peaks between the points count where the limits do; a wider diagram shows what it draws.
         let (from, to) = (speeds[0], speeds[speeds.len() - 1]);
@@ -49,13 +50,9 @@ impl Results<'_> {
         } else {
             (Vec::new(), "of the speeds of the diagram")
         };
-        let mut table = Series {
-            axis: column("speed", "rpm", speeds.iter().map(|w| rpm(*w)).collect()),
-            columns: Vec::new(),
-        };
-        let mut curves = Vec::new();
         let mut top = (0.0, 0, speeds[0]);
-        for l in 0..links {
+        let mut peaks = Vec::new();
+        for (l, link) in a.line.links.iter().enumerate() {
             let drawn = rows.iter().zip(speeds).map(|(p, w)| (*w, p.links[l].amplitude));
             let (speed, most) = if telling.is_empty() {
                 drawn.fold((from, 0.0), |best, at| if at.1 > best.1 { at } else { best })
@@ -65,49 +62,73 @@ impl Results<'_> {
             if most > top.0 {
                 top = (most, l, speed);
             }
+            peaks.push(speed);
             self.result(
                 format!("range.shaft{}.torque_amplitude", l + 1),
                 most,
                 "N m",
-                format!("largest vibratory torque of {} {of}", a.line.links[l].name),
+                format!("largest vibratory torque of {} {of}", link.name),
             );
+        }
+        let what = "speed of the largest vibratory torque of any shaft";
+        self.result("range.worst_speed", rpm(top.2), "rpm", what);
+        self.answered(machine, "speed_range");
+        Ok((top.1, peaks))
+    }
+
+    /// Curves over the speeds of the diagrams and the peaks between them, of all shafts and of the orders of the shaft `worst`.
+    ///
+    /// # Errors
+    /// No answer at a speed.
+    pub fn over_speed(
+        &mut self,
+        machine: &mut Machine<'_>,
+        diagram: &[f64],
+        peaks: &[f64],
+        worst: usize,
+    ) -> Result<(), EvalError> {
+        let a = machine.a;
+        let links = a.line.links.len();
+        let (from, to) = (diagram[0], diagram[diagram.len() - 1]);
+        let mut speeds = diagram.to_vec();
+        let inside: Vec<f64> = peaks.iter().copied().filter(|w| *w > from && *w < to).collect();
+        speeds.extend(inside.into_iter().filter(|w| machine.at(*w).is_some()));
+        speeds.sort_unstable_by(f64::total_cmp);
+        speeds.dedup_by(|a, b| *a - *b <= 1e-12 * *b);
+        let rows = points(machine, &speeds)?;
+        let mut table = Series {
+            axis: column("speed", "rpm", speeds.iter().map(|w| rpm(*w)).collect()),
+            columns: Vec::new(),
+        };
+        let mut curves = Vec::new();
+        for l in 0..links {
             let name = format!("shaft{}.torque_amplitude", l + 1);
-            table.columns.push(column(
-                name.clone(),
-                "N m",
-                rows.iter().map(|p| p.links[l].amplitude).collect(),
-            ));
+            let values = rows.iter().map(|p| p.links[l].amplitude).collect();
+            table.columns.push(column(name.clone(), "N m", values));
             if l < MAX_DRAWN {
                 curves.push((a.line.links[l].name.clone(), name));
             }
         }
-        let what = "speed of the largest vibratory torque of any shaft";
-        self.result("range.worst_speed", rpm(top.2), "rpm", what);
-        self.lines(
-            "Vibratory torque over the speed",
-            "half of peak to peak",
-            "speed_range",
-            "speed",
-            curves,
-            false,
-        );
-        self.weigh_critical_speeds(&machine.orders, links, &rows, speeds);
-        let curves = orders_of(top.1, &machine.orders, links, &rows, &mut table);
-        if let Some(l) = a.line.links.get(top.1) {
-            self.lines(
-                &format!("Orders of {} over the speed", l.name),
-                "torque amplitude of the strongest orders",
-                "speed_range",
-                "speed",
-                curves,
-                false,
-            );
+        let hint = format!("half of peak to peak{}", self.own_step());
+        self.lines("Vibratory torque over the speed", &hint, "speed_range", "speed", curves, false);
+        self.weigh_critical_speeds(&machine.orders, links, &rows, &speeds);
+        let curves = orders_of(worst, &machine.orders, links, &rows, &mut table);
+        if let Some(l) = a.line.links.get(worst) {
+            let title = format!("Orders of {} over the speed", l.name);
+            let hint = format!("torque amplitude of the strongest orders{}", self.own_step());
+            self.lines(&title, &hint, "speed_range", "speed", curves, false);
         }
-        self.order_spectra(a, &machine.orders, &rows, speeds);
+        self.order_spectra(a, &machine.orders, &rows, &speeds);
         self.shafts_over_speed(a, &rows, &mut table);
         self.out.tables.insert("speed_range".into(), table);
-        self.answered(machine, "speed_range");
         Ok(())
+    }
+
+    /// Name of the load step that the diagrams show, where there are several.
+    fn own_step(&self) -> String {
+        let all = crate::steps::all(self.case);
+        let own = all.iter().find(|s| s.1.is_none()).filter(|_| all.len() > 1);
+        own.map_or_else(String::new, |(name, _)| format!(", load step `{name}`"))
     }
 
     /// Stress over the speed of each shaft that has one, torque of the others that have a limit, with limit and operating range.
@@ -138,7 +159,7 @@ impl Results<'_> {
             let lines = vec![(format!("vibratory {what}"), name)];
             self.out.figures.push(Figure {
                 title: format!("{} over the speed: {what}", link.name),
-                hint: "half of peak to peak".into(),
+                hint: format!("half of peak to peak{}", self.own_step()),
                 table: "speed_range".into(),
                 kind: FigureKind::Lines(Lines { x: "speed".into(), lines, marks, ..Lines::default() }),
             });
@@ -149,7 +170,9 @@ impl Results<'_> {
     /// diagram by that.
     fn weigh_critical_speeds(&mut self, orders: &[f64], links: usize, rows: &[Point], speeds: &[f64]) {
         let Some(table) = self.out.tables.get_mut("critical_speeds") else { return };
-        let Some(order) = table.get("order") else { return };
+        let (Some(order), Some(mode)) = (table.get("order"), table.get("mode")) else { return };
+        let (order, mode) = (order.clone(), mode.clone());
+        let range = Operating::new(self.case);
         let torque = |(speed, o): (&f64, &f64)| {
             // An order that nothing excites makes none.
             let Some(k) = orders.iter().position(|other| (other - o).abs() < 1e-6) else { return 0.0 };
@@ -170,7 +193,18 @@ impl Results<'_> {
                 label.push_str(&format!(", {:.0} N m in the shaft that feels it most", torques[k]));
             }
         }
+        let strongest = (0..torques.len())
+            .filter(|k| torques[*k] > 0.0 && range.holds(table.axis.values[*k]))
+            .max_by(|x, y| torques[*x].total_cmp(&torques[*y]));
+        let strongest =
+            strongest.map(|k| (table.axis.values[k], order.values[k], mode.values[k], torques[k]));
         table.columns.push(column("torque_amplitude", "N m", torques));
+        if let Some((speed, order, mode, torque)) = strongest {
+            let what = format!(
+                "critical speed within the operating range whose order makes the largest torque: order {order} and mode {mode}, {torque:.0} N m in the shaft that feels it most"
+            );
+            self.result("strongest_critical_speed", speed, "rpm", what);
+        }
     }
 
     /// Says at how many speeds the model found no periodic motion.

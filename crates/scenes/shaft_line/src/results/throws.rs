@@ -3,8 +3,11 @@
 use std::f64::consts::PI;
 
 use gudgeon_core::kinds::LineThrow;
-use gudgeon_core::result::Series;
+use gudgeon_core::result::{Figure, FigureKind, Series};
 use gudgeon_torsion::forcing::{gas_period, gas_series};
+
+use crate::assemble::Assembled;
+use crate::case::{EndCase, Side};
 
 use super::{DRAWN, MAX_DRAWN, Results, TURN, column, extremes};
 
@@ -55,6 +58,31 @@ impl Course {
     fn angles(&self) -> impl Iterator<Item = f64> + '_ {
         (0..=self.points).map(|i| self.at(i))
     }
+}
+
+/// Mean torque \[N m\], largest force of the gas to and from the crank \[kN\], highest pressure of head and crank ends \[bar\].
+fn loads(t: &LineThrow, ends: &[EndCase]) -> [Option<f64>; 5] {
+    let sign = |e: &EndCase| if e.side == Side::Head { 1.0 } else { -1.0 };
+    let force = |x: f64| -> f64 {
+        t.ends
+            .iter()
+            .zip(ends)
+            .map(|(g, e)| sign(e) * (g.pressure.pressure(x) - g.back_pressure) * g.area)
+            .sum()
+    };
+    let angles = || (0..TURN).map(|k| gas_period(t) * k as f64 / TURN as f64);
+    let [most, least] = extremes(angles().map(force));
+    let highest = |side: Side| {
+        let own = t.ends.iter().zip(ends).filter(|(_, e)| e.side == side);
+        own.flat_map(|(g, _)| angles().map(|x| g.pressure.pressure(x) / 1e5)).reduce(f64::max)
+    };
+    [
+        Some(gas_series(t, 1)[0].re),
+        Some(most.max(0.0) / 1e3),
+        Some((-least).max(0.0) / 1e3),
+        highest(Side::Head),
+        highest(Side::Crank),
+    ]
 }
 
 impl Results<'_> {
@@ -129,6 +157,51 @@ impl Results<'_> {
             "bar",
             format!("highest pressure of {of}, of points a quarter of a degree apart and before its kinks"),
         );
+    }
+
+    /// Gas loads of each kind of throw in every load step.
+    pub fn gas_loads(&mut self, lines: &[&Assembled]) {
+        let sides: Vec<&[EndCase]> =
+            self.case.throws.iter().flat_map(|t| t.at.iter().map(|_| t.ends.as_slice())).collect();
+        let steps = crate::steps::all(self.case);
+        let mut rows = Vec::new();
+        for (n, ends) in sides.iter().enumerate() {
+            let alike = |a: &Assembled| {
+                let all = &a.line.throws;
+                n > 0 && all.get(n).zip(all.get(n - 1)).is_some_and(|(t, before)| t.is_like(before))
+            };
+            if ends.is_empty() || lines.iter().all(|a| alike(a)) {
+                continue;
+            }
+            for (a, (step, _)) in lines.iter().zip(&steps) {
+                let Some(t) = a.line.throws.get(n).filter(|t| t.ends.len() == ends.len()) else { continue };
+                let name = &a.line.nodes[t.node].name;
+                let label = if lines.len() > 1 { format!("{name}, {step}") } else { name.clone() };
+                rows.push((label, loads(t, ends).to_vec()));
+            }
+        }
+        if rows.is_empty() {
+            return;
+        }
+        let columns = [
+            ("mean gas torque", "N m"),
+            ("force to the crank", "kN"),
+            ("force from the crank", "kN"),
+            ("highest pressure, head", "bar"),
+            ("highest pressure, crank", "bar"),
+        ];
+        self.out.figures.push(Figure {
+            title: "Gas loads".into(),
+            hint: "of one of each run of equal throws: largest force of the gas on the piston either way, at the mean speed; without the forces of the moving masses".into(),
+            table: String::new(),
+            kind: FigureKind::Table {
+                rows_are: "throw".into(),
+                columns: columns.map(|(n, u)| (n.to_owned(), u.to_owned())).to_vec(),
+                rows,
+                texts: Vec::new(),
+                limit: None,
+            },
+        });
     }
 
     fn draw_throws(&mut self, table: Series, curves: Vec<(String, String)>) {

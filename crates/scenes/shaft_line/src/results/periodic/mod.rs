@@ -7,8 +7,8 @@ mod spectra;
 
 use std::f64::consts::PI;
 
-use gudgeon_core::kinds::TorsionOut;
-use gudgeon_core::result::Series;
+use gudgeon_core::kinds::{Line, TorsionOut};
+use gudgeon_core::result::{Note, Series};
 
 use super::{Results, column};
 use crate::machine::Machine;
@@ -16,6 +16,9 @@ use cycle::Cycle;
 
 /// Vibratory twist \[rad\] and speed fluctuation beyond which small vibration about a uniform rotation is no longer what is computed.
 pub const LINEAR: f64 = 1.0;
+
+/// Part of the mean torque that drives may leave to be balanced without a word.
+const UNBALANCED: f64 = 0.05;
 
 /// Labels and columns of a figure.
 type Curves = Vec<(String, String)>;
@@ -53,6 +56,26 @@ impl Results<'_> {
         self.order_table(out, a);
         self.order_bars(out, a, &vibratory);
         self.torque_bars(a, &vibratory);
+    }
+
+    /// Says how much of the mean torque the drives of the case leave to be balanced.
+    pub fn balanced(&mut self, line: &Line, out: &TorsionOut) {
+        let given: f64 = line
+            .drives
+            .iter()
+            .filter(|d| d.factor > 0.0)
+            .map(|d| {
+                let ratio = line.nodes[d.node].ratio;
+                d.factor * d.drive.torque(d.phase, out.speed * ratio).torque * ratio
+            })
+            .sum();
+        let asked = given + out.balance_torque;
+        if given > 0.0 && out.balance_torque.abs() > UNBALANCED * asked.abs() {
+            let text = format!(
+                "the drives give {given:.0} N m at the mean speed where gas work, loads and drag ask for {asked:.0} N m: the difference is added where the drives act, so that the speed is held"
+            );
+            self.note(&[Note::info("balance_torque", text).amount("difference", out.balance_torque, "N m")]);
+        }
     }
 
     fn draw_cycle(&mut self, over: &str, torques: Curves, stresses: Curves, speeds: Curves) {
