@@ -42,13 +42,13 @@ fn every_case_opens_with_sliders_and_choices() {
 
 #[test]
 fn what_a_scene_shows_first_exists_in_a_case_of_it() {
+    let opened: Vec<Value> = CASES.iter().map(|(file, text)| open(file, text)).collect();
     for shown in shown::SHOWN {
-        let of_scene = |(file, text): &&(&str, &str)| open(file, text)["scene"] == shown.scene;
-        let paths: Vec<String> = CASES
+        let paths: Vec<&str> = opened
             .iter()
-            .filter(of_scene)
-            .flat_map(|(file, text)| open(file, text)["sliders"].as_array().cloned().unwrap_or_default())
-            .filter_map(|s| s["path"].as_str().map(str::to_owned))
+            .filter(|case| case["scene"] == shown.scene)
+            .flat_map(|case| case["sliders"].as_array().into_iter().flatten())
+            .filter_map(|s| s["path"].as_str())
             .collect();
         for pattern in shown.sliders {
             assert!(

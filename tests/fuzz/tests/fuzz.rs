@@ -23,11 +23,12 @@ fn program() -> PathBuf {
     PathBuf::from(env!("CARGO_BIN_EXE_gudgeon-fuzz"))
 }
 
-/// Cases of each scene: many where one takes milliseconds, few where it takes seconds.
+/// Cases of each scene: many where one takes milliseconds, few where it takes seconds. The first three skirts are refused; the third power cylinder is the
+/// same case as the others, and takes five seconds.
 const SHORT: [(&str, usize); 6] = [
     ("pin", 14),
-    ("piston_secondary", 3),
-    ("power_cylinder", 3),
+    ("piston_secondary", 6),
+    ("power_cylinder", 2),
     ("rig", 18),
     ("ring_pack", 8),
     ("shaft_line", 14),
@@ -42,11 +43,11 @@ fn a_short_campaign_ends_without_a_forbidden_class() {
     indices.sort_unstable();
     let plan = Plan { seed: SEED, indices, wild: WILD, seconds: f64::INFINITY, jobs: 2, program: program() };
     let records = campaign::run(&plan, &corpus, &|_, _| {}).unwrap_or_else(|e| panic!("{e}"));
-    assert_eq!(records.len(), 60);
+    assert_eq!(records.len(), 62);
     assert!(!records.iter().any(|r| r.class.forbidden()), "{}", tell::text(&records));
     // A campaign that refuses everything shows nothing.
     let run = records.iter().filter(|r| r.class.honest()).count();
-    assert!(run >= 20, "only {run} of 60 cases have results\n{}", tell::text(&records));
+    assert!(run >= 20, "only {run} of 62 cases have results\n{}", tell::text(&records));
 }
 
 #[test]

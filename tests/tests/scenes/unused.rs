@@ -3,14 +3,14 @@
 use std::collections::BTreeMap;
 
 use gudgeon_core::result::RunResult;
-use gudgeon_scene::{check, explain, run};
+use gudgeon_scene::{Checked, check, explain, run};
 
 use crate::common::*;
 
 /// A case of each scene with a part of a shared table unused, and other values for all of that part.
 const CASES: [(&str, &[(&str, &str)]); 3] = [
     (
-        "turbo-diesel-120",
+        "turbo-diesel-120/flooded",
         &[
             ("piston.mass", "3 kg"),
             ("piston.inertia", "0.01 kg m2"),
@@ -50,16 +50,19 @@ fn sets(values: &[(&str, &str)]) -> Vec<String> {
     values.iter().map(|(path, value)| format!("{path}={value}")).collect()
 }
 
+fn checked_with(case: &str, set: &[String]) -> Checked {
+    checked(case, &set.iter().map(String::as_str).collect::<Vec<_>>())
+}
+
 fn ran(case: &str, set: &[String]) -> RunResult {
-    let checked = check(&case_file(case), set).unwrap_or_else(|r| panic!("{case}: {r}"));
-    run(&checked, &mut gudgeon_scene::unwatched).unwrap_or_else(|e| panic!("{case}: {e}"))
+    run(&checked_with(case, set), &mut gudgeon_scene::unwatched).unwrap_or_else(|e| panic!("{case}: {e}"))
 }
 
 #[test]
 fn what_a_scene_does_not_use_changes_nothing_and_is_told() {
     for (case, values) in CASES {
         let set = sets(values);
-        let checked = check(&case_file(case), &set).unwrap_or_else(|r| panic!("{case}: {r}"));
+        let checked = checked_with(case, &set);
         for (path, _) in values {
             let noted = checked.notes.iter().any(|n| n.contains(path) && n.contains("changes nothing"));
             assert!(noted, "{case}: {path}: {:?}", checked.notes);
@@ -94,10 +97,10 @@ fn what_a_scene_uses_changes_something() {
     for (case, path, value) in [
         ("pin-85-alcohol", "engine.bore", "86 mm"),
         ("zhu-motored-1000", "piston.gravity_offset", "3 mm"),
-        ("turbo-diesel-120", "engine.cylinders", "5"),
+        ("turbo-diesel-120/flooded", "engine.cylinders", "5"),
     ] {
         let set = [format!("{path}={value}")];
-        let checked = check(&case_file(case), &set).unwrap_or_else(|r| panic!("{case}: {r}"));
+        let checked = checked_with(case, &set);
         assert!(checked.notes.iter().all(|n| !n.contains("changes nothing")), "{case}: {:?}", checked.notes);
         let (a, b) = (ran(case, &[]), ran(case, &set));
         assert!(a.results.iter().any(|(name, v)| b.results[name].value != v.value), "{case}: {path}");
