@@ -349,7 +349,7 @@ fn values_that_no_ring_pack_has() {
     folder.write("case.toml", &base());
     let impossible = [
         ("rings.0.cold_gap=\"450 mm\"", "of the bore"),
-        ("rings.0.tangential_force=\"12000 N\"", "more than steel carries"),
+        ("rings.0.tangential_force=\"30000 N\"", "more than steel carries"),
         ("rings.0.mass=\"9 kg\"", "osmium"),
         ("rings.0.face.drop=\"9 mm\"", "of drop on a face"),
         ("engine.bore=120", "did you mean `\"120 mm\"`?"),

@@ -100,7 +100,7 @@ fn threads_and_jobs_make_the_same_bytes() {
     assert_eq!(
         lines.next(),
         Some(
-            "point,case,rig.film_1d.model,rig.speed [m/s],code,message,wrong,notes,load [N/m],moving_shear [N/m]"
+            "point,case,rig.film_1d.model,rig.speed [m/s],code,message,wrong,notes,reservations,load [N/m],moving_shear [N/m]"
         )
     );
     assert!(lines.next().is_some_and(|l| l.starts_with("0,slider-barrel,front_tracking,1,,,,,")));

@@ -142,7 +142,9 @@ impl Rows {
             }
             let si = pascal(p);
             if !(si.is_finite() && si > 0.0) {
-                let what = format!("is {:.4} bar absolute, it must be greater than zero", si / 1e5);
+                // Four digits: what a subtraction leaves behind them says nothing.
+                let rounded = format!("{si:.3e}").parse::<f64>().unwrap_or(si);
+                let what = format!("is {rounded} Pa absolute, it must be greater than zero");
                 let gauge = "a trace of gauge pressures needs the ambient pressure: `offset = \"1.013 bar\"`";
                 return Err(self.fault(i, Column::Pressure, &what).help(gauge));
             }
