@@ -364,7 +364,7 @@ fn values_that_no_ring_pack_has() {
         );
     }
     let unusual = [
-        ("rings.0.cold_gap=\"9 mm\"", "`rings.0.cold_gap`: 9 mm of end gap"),
+        ("rings.0.gap=\"9 mm\"", "`rings.0.gap`: 9 mm of end gap"),
         ("rings.0.tangential_force=\"900 N\"", "`rings.0.tangential_force`: 900 N press the ring"),
         ("engine.speed=2000", "mean piston speed"),
         ("gas.crankcase_pressure=\"0.02 bar\"", "`gas.crankcase_pressure`"),
