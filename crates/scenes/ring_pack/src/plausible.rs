@@ -155,9 +155,9 @@ fn of_ring(r: &Ring, i: usize, bore: f64) -> Vec<Look> {
     let at = |key: &str| format!("rings.{i}.{key}");
     let (height, width) = (r.height.si(), r.width.si());
     let oil = r.design != RingDesign::Compression;
-    // A three-piece ring says the height of one rail; rails and spacer fill their groove.
+    // A three-piece ring says the height of one rail; rails and spacer fill their groove, or a case says the room of one rail as its groove.
     let whole = if r.design == RingDesign::ThreePiece {
-        r.groove.height.map_or(4.0 * height, |h| h.si())
+        r.groove.height.map_or(0.0, |h| h.si()).max(4.0 * height)
     } else {
         height
     };
