@@ -190,7 +190,7 @@ fn declared_dependencies_are_complete() {
     let mut y = vec![0.0; n];
     pack.initial(3e5, &mut y);
     let theta = 6.9;
-    let increment = |y: &[f64], k: usize| (y[k] + 3e-8 * y[k].abs().max(1e-3)) - y[k];
+    let increment = |y: &[f64], k: usize| (y[k] + 1e-7 * y[k].abs().max(1e-3)) - y[k];
     let (mut f, mut g) = (vec![0.0; n + quads], vec![0.0; n + quads]);
     let mut jac = vec![0.0; (n + quads) * n];
     pack.rates(theta, &y, &mut f).expect("rates");
@@ -205,7 +205,7 @@ fn declared_dependencies_are_complete() {
         for r in 0..n + quads {
             let quotient = (g[r] - f[r]) / d;
             let error = (quotient - jac[r * n + k]).abs();
-            // Differences of rates that are rounded to 1e-15 of their size over 3e-11 or more, and one-sided quotients of laws whose second
+            // Differences of rates that are rounded to 1e-15 of their size over 1e-10 or more, and one-sided quotients of laws whose second
             // derivative is large: a thousandth of the largest entry of the column; a dependency that is not followed misses all of an entry.
             let slack = 1e-3 * size + 1e-4 * f[r].abs();
             worst = worst.max(error / slack);
