@@ -48,12 +48,15 @@ fn inputs(case: &dyn Scene) -> Vec<InputUse> {
         .iter()
         .flat_map(|s| s.taken.iter().map(move |(key, _)| format!("{}.{key}", s.path)))
         .collect();
+    let short = |path: &str| path.trim_start_matches("models.").to_owned();
+    // A change may give a whole table.
+    let is_within = |path: &str, table: &str| {
+        path.strip_prefix(table).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+    };
     let given = |i: &Input| {
         i.line.is_some()
             || sets.contains(&i.path)
-            || changed
-                .iter()
-                .any(|c| i.path.trim_start_matches("models.").starts_with(c.trim_start_matches("models.")))
+            || changed.iter().any(|c| is_within(&short(&i.path), &short(c)))
     };
     let shown = |i: Input| InputUse {
         given: given(&i),
