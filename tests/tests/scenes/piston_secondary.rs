@@ -161,6 +161,17 @@ fn a_motion_that_is_not_periodic_is_told_and_marked() {
     assert!(note.amounts["periodicity_error"].value > 1e-5 && value(&r, "friction_work") > 0.0);
 }
 
+/// Without room both sides rub at once, which no engine survives: the verdict is that of a limit that is not kept. A skirt with its clearance is not told so.
+#[test]
+fn a_jammed_skirt_is_told() {
+    let jammed = |set: &[&str]| {
+        let notes = run_once(set).solver.notes;
+        notes.iter().any(|n| n.topic == "jammed" && n.level == gudgeon_core::result::NoteLevel::Exceeded)
+    };
+    assert!(jammed(&["skirt.clearance=2 um"]));
+    assert!(!jammed(&[]));
+}
+
 #[test]
 fn a_peak_narrower_than_the_grid_is_told() {
     let topics = |along: u32, across: u32, clearance: &str| {
