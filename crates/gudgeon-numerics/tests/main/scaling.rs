@@ -118,12 +118,12 @@ fn integrations_do_not_depend_on_units() {
             let original = run((1.0, 1.0));
             for units in UNITS {
                 let scaled = run(units);
-                assert_eq!(scaled.1, original.1, "{method} {rtol:e} {units:?}");
                 if h_init > 0.0 || units.0 == 1.0 {
+                    assert_eq!(scaled.1, original.1, "{method} {rtol:e} {units:?}");
                     assert_eq!(scaled.0, original.0, "{method} {rtol:e} {units:?}");
                 }
                 // The first step is a product of powers 0.4 and 0.6 of times, whose rounding depends on the unit, and with it the times of
-                // all steps. The ends agree as well as either is right: some tens of errors of the tolerance.
+                // all steps and whether one is rejected. The ends agree as well as either is right: some tens of errors of the tolerance.
                 let end = original.0.len() - 5..original.0.len() - 1;
                 for (a, b) in scaled.0[end.clone()].iter().zip(&original.0[end]) {
                     assert!((a - b).abs() <= 30.0 * rtol, "{method} {rtol:e} {units:?}: {a} {b}");
