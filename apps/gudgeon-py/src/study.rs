@@ -57,7 +57,7 @@ impl Study {
         self.study.dir().to_owned()
     }
 
-    /// How far the study is: `points`, `done`, `failed`, `parts`, `missing`.
+    /// How far the study is: `points`, `done`, `failed`, `left_out`, `parts`, `missing`.
     fn status(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         let status = py.detach(|| self.study.status());
         to_python(py, &to_value(status).unwrap_or_default())

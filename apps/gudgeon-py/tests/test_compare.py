@@ -45,7 +45,7 @@ def test_several_cases_are_one_more_choice(pin):
 
 def test_refused_combinations_are_rows_and_left_out(pin):
     told = gudgeon.compare(pin, {"pin_strength": ["thin_ring", "shear_beam"], "pin.inner": [(12, "mm"), (13, "mm"), (25, "mm")]})
-    assert told["code"].tolist() == ["", "", "refused"] * 2 and math.isnan(told["pin_mass"][2])
+    assert told["code"].tolist() == ["", "", "impossible"] * 2 and math.isnan(told["pin_mass"][2])
     assert told.failures[0].path and told.shares.left_out["deflection"] == ["pin.inner=25 mm"]
 
 

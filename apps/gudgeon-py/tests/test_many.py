@@ -24,7 +24,7 @@ def test_rows_come_in_order_and_failures_are_rows(pin):
     assert np.isnan(rows["pin_mass"][2]) and rows.ok.tolist() == [True, True, False, True]
     assert rows.units["pin_mass"] == "g"
     (failure,) = rows.failures
-    assert (failure.row, failure.code, failure.path) == (2, "refused", "pin.inner")
+    assert (failure.row, failure.code, failure.path) == (2, "impossible", "pin.inner")
     assert rows["message"][2] == failure.message != ""
 
 
@@ -44,7 +44,7 @@ def test_points_as_columns(pin):
         np.testing.assert_array_equal(rows["pin_mass"], listed["pin_mass"])
     told = pin.run_many(frame, units={"pin.inner": "mm"}).to_dataframe()
     assert told.index.tolist() == list("abcd") and told.attrs["units"]["pin_mass"] == "g"
-    assert told.loc["c", "code"] == "refused"
+    assert told.loc["c", "code"] == "impossible"
     with pytest.raises(ValueError, match="different lengths"):
         pin.run_many({"pin.inner": [1.0], "pin.outer": [1.0, 2.0]})
 
@@ -121,7 +121,7 @@ def test_failed_points_of_functions(pin):
     assert np.isnan(f("nan")([25.0]))
     with pytest.raises(gudgeon.RunError) as e:
         f("raise")([[12.0], [25.0]])
-    assert e.value.code == "refused" and "point 1" in str(e.value)
+    assert e.value.code == "impossible" and "point 1" in str(e.value)
     assert f(7.0)([25.0]) == 7.0
     assert f({"pin_mass": 9.0}, ["pin_mass"])([[25.0], [12.0]])[0].tolist() == [9.0]
     with pytest.raises(ValueError, match="failed is"):

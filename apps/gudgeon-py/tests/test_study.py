@@ -203,5 +203,5 @@ def test_a_study_file(tmp_path):
     study = gudgeon.Study.new(tmp_path / "s", file)
     study.run()
     frame = study.to_dataframe()
-    assert study.status["failed"] == 1 and frame["code"].tolist() == ["", "refused"]
+    assert (study.status["failed"], study.status["left_out"]) == (0, 1) and frame["code"].tolist() == ["", "impossible"]
     assert frame["pin_mass"].notna().tolist() == [True, False]

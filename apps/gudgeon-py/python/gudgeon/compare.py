@@ -83,8 +83,8 @@ def compare(
     """Runs a case, or several, with every combination of ``swaps``, the last one fastest: a row each, and which of the choices matter.
 
     A swap is a path with its values; the name of a kind stands for the name of its model, ``gas_flow`` for ``models.gas_flow.model``, and a value may be a table with a model's
-    settings. Several cases are one more choice, ``case``; those of one file are told apart by what :meth:`Case.set` changed. A combination that a case forbids is a row with
-    the code ``refused`` and the reason.
+    settings. Several cases are one more choice, ``case``; those of one file are told apart by what :meth:`Case.set` changed. A combination that cannot be is left out: its row
+    has the code ``impossible`` and the reason, and no results.
 
     ``verify`` finds the numerical uncertainty of every result, which tells small shares from numerics; ``results`` are those to look at first.
 

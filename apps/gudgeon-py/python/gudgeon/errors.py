@@ -55,7 +55,7 @@ class RunError(RuntimeError):
     def __init__(self, message: str, code: str = "", path: str = "") -> None:
         super().__init__(message, code, path)
         self.code = code
-        """A word to tell failures apart by: ``refused`` (the input is wrong), ``model``, ``integration``, ``not_a_number``, ``scene``, ``stopped``."""
+        """A word to tell failures apart by: ``refused`` (the input cannot be read), ``impossible`` (there is no such machine), ``model``, ``integration``, ``not_a_number``, ``scene``, ``stopped``."""
         self.path = path
         """Path of the input that is wrong; empty where none is to blame."""
 

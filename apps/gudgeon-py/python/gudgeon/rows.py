@@ -23,7 +23,7 @@ class Failure:
     row: int
     """Number of the point, from 0."""
     code: str
-    """``refused`` (the input is wrong), ``model``, ``integration``, ``not_a_number``, ``scene``, ``stopped``; or the topic of a note, when there are results and they are marked."""
+    """``refused`` (the input cannot be read), ``impossible`` (there is no such machine), ``model``, ``integration``, ``not_a_number``, ``scene``, ``stopped``; or the topic of a note, when there are results and they are marked."""
     message: str
     """What is wrong, in one line."""
     path: str
@@ -43,7 +43,7 @@ class Rows(Mapping[str, np.ndarray]):
     >>> case = gudgeon.example("pin-85-alcohol")
     >>> rows = case.run_many([{"pin.inner": (d, "mm")} for d in (12, 13, 25)])
     >>> rows["pin_mass"].round(1), rows.failures[0].code
-    (array([127.2, 117.7,   nan]), 'refused')
+    (array([127.2, 117.7,   nan]), 'impossible')
     """
 
     def __init__(self, inputs: Mapping[str, Any], told: list[tuple[str, str, str, bytearray]], failures: list[tuple[int, str, str, str]], index: Any = None) -> None:
