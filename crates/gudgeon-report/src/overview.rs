@@ -108,10 +108,12 @@ fn card(out: &mut String, s: &Summary, series: &Series, h: &Headline) {
         };
         let _ = write!(
             out,
-            "<p class=\"value\" title=\"{}\">{label}{}</p>",
-            esc(what),
+            "<p class=\"value\">{label}{}</p>",
             of(name).map_or_else(String::new, value)
         );
+        if let Some(more) = beyond(&h.title, what) {
+            let _ = write!(out, "<p class=\"what\">{}</p>", page::prose(more));
+        }
     } else {
         members(out, s, h);
     }
@@ -120,6 +122,12 @@ fn card(out: &mut String, s: &Summary, series: &Series, h: &Headline) {
         out.push_str(&picture);
     }
     out.push_str("</div>\n");
+}
+
+/// What a description says that the title does not, up to its first semicolon.
+fn beyond<'a>(title: &str, what: &'a str) -> Option<&'a str> {
+    let more = what.split("; ").next().unwrap_or_default();
+    (!more.is_empty() && !title.to_lowercase().contains(&more.to_lowercase())).then_some(more)
 }
 
 fn value(v: &ResultValue) -> String {

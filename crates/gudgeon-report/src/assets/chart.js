@@ -156,13 +156,15 @@ class Chart {
   // Ranges and upright lines that the figure marks.
   bands() {
     const { svg, T, bottom } = this, X = (v) => this.x.to(v * this.ux.f);
+    // Spans that words take, by line: the first line with room. Words that would leave the frame stand left of their line.
     const levels = [];
     const put = (x, text) => {
-      const width = 6.2 * text.length + 10;
-      let level = levels.findIndex((end) => end < x);
-      if (level < 0) level = levels.push(0) - 1;
-      levels[level] = x + width;
-      s("text", { x: x + 4, y: T + 13 + 15 * level, class: "dim over" }, svg, text);
+      const width = 6.2 * text.length + 10, left = x + width > this.W - this.R && x - width > this.L;
+      const [a, b] = left ? [x - width, x] : [x, x + width];
+      let level = levels.findIndex((spans) => spans.every(([from, to]) => b <= from || to <= a));
+      if (level < 0) level = levels.push([]) - 1;
+      levels[level].push([a, b]);
+      s("text", { x: left ? x - 4 : x + 4, y: T + 13 + 15 * level, "text-anchor": left ? "end" : "start", class: "dim over" }, svg, text);
     };
     const within = (px) => clamp(px, this.L, this.W - this.R);
     for (const m of this.spec.marks || []) {

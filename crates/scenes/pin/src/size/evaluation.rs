@@ -81,7 +81,7 @@ fn utilisations(d: &Design<'_>, u: &[f64; PIN_QUANTITIES], out: &mut RunResult) 
         }
     }
     let Some((v, k)) = max else { return };
-    result(out, "utilisation", v, "", "greatest utilisation of a limit");
+    result(out, "utilisation", v, "", format!("greatest utilisation of a limit: {}", k.words()));
     if v <= 1.0 + 1e-9 {
         let all = d.limits.iter().filter(|l| l.is_finite()).count();
         let text =

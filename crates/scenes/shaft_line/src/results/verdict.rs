@@ -228,12 +228,15 @@ impl Results<'_> {
         let used = |r: &Row| r.worst().map_or(0.0, |w| w.1.used);
         let broken = rows.iter().filter(|r| used(r) > 1.0).count();
         self.result("limits_broken", broken as f64, "", "number of limits that are not kept");
-        let worst = rows.iter().map(used).fold(0.0, f64::max);
+        let worst = rows.iter().max_by(|a, b| used(a).total_cmp(&used(b)));
         self.result(
             "worst_utilisation",
-            worst,
+            worst.map_or(0.0, used),
             "",
-            format!("largest share of a limit that is used; above 1 it is broken, {UNBOUNDED:.0} stands for no bound"),
+            format!(
+                "largest share of a limit that is used{}; above 1 it is broken, {UNBOUNDED:.0} stands for no bound",
+                worst.map_or_else(String::new, |r| format!(": {}", r.label))
+            ),
         );
         let bars = rows.iter().map(|r| bar(r.label.clone(), used(r))).collect();
         let mut figures = vec![Figure {
