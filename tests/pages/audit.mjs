@@ -48,16 +48,18 @@ async function look(file, colorScheme) {
   await context.close();
 }
 
-// The overview and what leads, before the first break.
+// What is wider than a sheet makes a browser print all pages smaller. On the first sheet the figure that leads takes what the overview leaves.
 async function paper(page, say) {
   await page.setViewportSize({ width: SHEET.width, height: SHEET.height });
   await page.emulateMedia({ media: "print" });
   await page.waitForTimeout(60);
-  const end = await page.evaluate(() => {
-    const lead = document.getElementById("lead") || document.getElementById("overview");
-    return lead ? lead.getBoundingClientRect().bottom + scrollY : 0;
+  const { end, over } = await page.evaluate(() => {
+    const first = document.querySelector(".sheet");
+    const ends = first ? [...first.querySelectorAll("section, #lead, #lead svg")].map((e) => e.getBoundingClientRect().bottom + scrollY) : [0];
+    return { end: Math.max(...ends), over: document.documentElement.scrollWidth - innerWidth };
   });
   if (end > SHEET.height) say(`its first page takes ${((100 * end) / SHEET.height).toFixed(0)} % of a sheet`);
+  if (over > 0) say(`${over} px wider than a sheet`);
   await page.emulateMedia({ media: "screen" });
   await page.setViewportSize({ width: 1400, height: 1000 });
 }

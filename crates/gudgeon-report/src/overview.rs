@@ -17,12 +17,13 @@ pub(crate) const CARDS: usize = 10;
 const DIGITS: usize = 3;
 
 pub(crate) fn section(out: &mut String, s: &Summary, series: &Series) {
-    out.push_str("<section id=\"overview\">\n");
+    // On paper this is one sheet, and the figure takes what is left of it.
+    out.push_str("<div class=\"sheet\">\n<section id=\"overview\">\n");
     header(out, s);
     verdict(out, s);
     cards(out, s, series);
     // The bar of the crank angle stays in sight of all that follows it.
-    out.push_str("</section>\n<div id=\"bar\"></div>\n<div id=\"lead\"></div>\n");
+    out.push_str("</section>\n<div id=\"bar\"></div>\n<div id=\"lead\"></div>\n</div>\n");
 }
 
 fn header(out: &mut String, s: &Summary) {
@@ -106,11 +107,7 @@ fn card(out: &mut String, s: &Summary, series: &Series, h: &Headline) {
         } else {
             format!("<span class=\"of\">{}</span>", esc(label))
         };
-        let _ = write!(
-            out,
-            "<p class=\"value\">{label}{}</p>",
-            of(name).map_or_else(String::new, value)
-        );
+        let _ = write!(out, "<p class=\"value\">{label}{}</p>", of(name).map_or_else(String::new, value));
         if let Some(more) = beyond(&h.title, what) {
             let _ = write!(out, "<p class=\"what\">{}</p>", page::prose(more));
         }

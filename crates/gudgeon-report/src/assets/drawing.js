@@ -88,7 +88,7 @@ function table(host, spec) {
   const rows = spec.rows.map(([label, values], k) => h("tr", {}, h("th", { scope: "row" }, label), ...values.map(cell), ...texts.map(([, t]) => h("td", {}, t[k]))));
   const csv = () => saveFile(fileName(spec.title, "csv"), "text/csv", [[[spec.rows_are, ...spec.columns.map(([n, u]) => `${n}[${u}]`), ...texts.map(([n]) => n)], ...spec.rows.map(([l, v], k) => [l, ...v.map((x) => (isNumber(x) ? x : "")), ...texts.map(([, t]) => t[k])])].map((r) => r.map((c) => (/[",]/.test(c) ? `"${String(c).replace(/"/g, '""')}"` : c)).join(",")).join("\n") + "\n"]);
   const top = h("div", { class: "head" }, h("h3", {}, spec.title), h("div", { class: "tools" }, h("button", { type: "button", onclick: csv }, "CSV")));
-  host.append(h("figure", { class: "plot numbers" + (spec.columns.length + texts.length > 5 ? " wide" : "") }, top, spec.hint ? h("p", { class: "hint" }, spec.hint) : null, h("div", { class: "scroll", tabindex: "0", role: "group", "aria-label": spec.title }, h("table", { class: "plain" }, h("thead", {}, head), h("tbody", {}, ...rows)))));
+  host.append(h("figure", { class: "plot numbers" + (spec.columns.length + texts.length > 4 ? " wide" : "") }, top, spec.hint ? h("p", { class: "hint" }, spec.hint) : null, h("div", { class: "scroll", tabindex: "0", role: "group", "aria-label": spec.title }, h("table", { class: "plain" }, h("thead", {}, head), h("tbody", {}, ...rows)))));
 }
 
 // A figure that holds all it shows: title, explanation, drawing.
