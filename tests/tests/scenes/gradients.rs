@@ -55,7 +55,6 @@ const SHARE: f64 = 5e-4;
 fn blow_by_and_friction_by_inputs_are_those_of_differences() {
     let inputs = [
         "rings.0.cold_gap",
-        "rings.1.cold_gap",
         "models.film_temperature.tdc",
         "models.cylinder_pressure.burn_start",
     ];

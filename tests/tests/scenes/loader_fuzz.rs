@@ -156,12 +156,12 @@ fn no_text_brings_the_loader_down() {
     let (mut right, mut all) = (0, 0);
     for (path, text) in cases() {
         let name = path.file_name().expect("a file").to_string_lossy().into_owned();
-        for k in 0..17 {
+        for k in 0..9 {
             let case = format!("{name}, mutation {k}");
             right += usize::from(read(&case, mutated(&text, &mut dice), &[], &mut slowest));
             all += 1;
         }
-        for k in 0..4 {
+        for k in 0..2 {
             let piece = |dice: &mut Dice| dice.of(PIECES).to_owned();
             let line = text.lines().nth(dice.below(text.lines().count())).unwrap_or_default().to_owned();
             let set = [line, format!("models.x={}", piece(&mut dice)), piece(&mut dice)];
@@ -172,7 +172,7 @@ fn no_text_brings_the_loader_down() {
         read(&format!("noise {k}"), noise(&mut dice), &[], &mut slowest);
     }
     // Some mutations change nothing that matters and most do: both sides of the loader were met.
-    assert!(all > 1000 && right > all / 20 && right < all * 19 / 20, "{right} of {all} read");
+    assert!(all > 500 && right > all / 20 && right < all * 19 / 20, "{right} of {all} read");
     // A case is read in milliseconds; the bound is for a busy machine without optimisation.
     assert!(slowest.0 < Duration::from_secs(5), "{}: {:?}", slowest.1, slowest.0);
 }
