@@ -127,7 +127,6 @@ fn table(file: &File, own: &[&VariantEntry]) -> Option<String> {
     let mut out = format!("<p>{}</p>{}", counted(&verdicts), to_base(file, base, &verdicts));
     keys(&mut out, &verdicts, file.verified);
     out.push_str("<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"table\"><table class=\"plain compare\"><thead><tr><th>Result</th>");
-    crate::comparison::variant_head(&mut out, base);
     for v in shown {
         crate::comparison::variant_head(&mut out, v);
     }
@@ -154,9 +153,10 @@ fn row(
     let u = own.map_or("", |r| r.unit.as_str());
     let _ = write!(
         out,
-        "<tr><th scope=\"row\">{}<br><code>{}</code></th><td class=\"num\">{} <span class=\"unit\">{}</span></td>",
+        "<tr><th scope=\"row\">{}<br><code>{}</code><br>{} {} <span class=\"unit\">{}</span></th>",
         page::prose(&capital(title)),
         esc(name),
+        badge(base.number),
         certain(own.and_then(|r| r.value), own.and_then(|r| r.uncertainty), 4),
         esc(&unit(u))
     );

@@ -27,7 +27,7 @@ pub(crate) fn significant(value: Option<f64>, digits: usize) -> String {
 pub(crate) fn certain(value: Option<f64>, uncertainty: Option<f64>, digits: usize) -> String {
     /// More digits than anybody reads.
     const MOST: i32 = 9;
-    let (Some(v), Some(u)) = (value.filter(|v| v.is_finite()), uncertainty) else {
+    let (Some(v), Some(u)) = (value.filter(|v| v.is_finite()), uncertainty.filter(|u| *u > 0.0)) else {
         return match value {
             // Counts and orders are whole, and no measure is so by chance.
             Some(v) if v.fract() == 0.0 && v.abs() < 1e6 => format!("{v}").replace('-', "−"),
@@ -35,7 +35,7 @@ pub(crate) fn certain(value: Option<f64>, uncertainty: Option<f64>, digits: usiz
         };
     };
     // Twice the uncertainty fits into one unit of the last digit but one.
-    let held = if u > 0.0 { elementary::log10(v.abs() / u).floor() as i32 + 1 } else { MOST };
+    let held = elementary::log10(v.abs() / u).floor() as i32 + 1;
     if v == 0.0 || held <= 0 {
         return format!(
             "{} ± {}",
@@ -176,6 +176,7 @@ mod tests {
         assert_eq!(certain(Some(9.0), None, 4), "9");
         assert_eq!(certain(Some(-12.0), None, 4), "−12");
         assert_eq!(certain(Some(0.5), None, 4), "0.5000");
+        assert_eq!(certain(Some(9.0), Some(0.0), 4), "9");
         assert_eq!(certain(None, None, 4), "–");
     }
 

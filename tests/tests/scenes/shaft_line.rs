@@ -772,12 +772,12 @@ fn a_limit_of_a_shaft_stands_before_that_of_all_and_load_steps_part_limits() {
     let parted = once("compressor-6-throw.toml", &[&limits(", load_steps = [\"open\"]"), steps]);
     assert_eq!(sources(&parted), ["all", "own"]);
     let own = drawn(&parted, "crank 1-2 over the speed: stress");
-    let limits: Vec<(f64, &str)> = own
+    let marked: Vec<(f64, &str)> = own
         .marks
         .iter()
         .filter_map(|m| if let Mark::Limit { y, label } = m { Some((*y, label.as_str())) } else { None })
         .collect();
-    assert_eq!(limits, [(40.0, "limit in full"), (60.0, "limit in open")]);
+    assert_eq!(marked, [(40.0, "limit in full"), (60.0, "limit in open")]);
     let rows = told(&parted, "Limits");
     let labels: Vec<&String> = rows.iter().map(|r| &r.0).collect();
     assert!(labels.iter().enumerate().all(|(k, l)| !labels[..k].contains(l)), "{labels:?}");

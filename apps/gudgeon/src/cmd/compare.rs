@@ -436,7 +436,7 @@ mod tests {
         assert_eq!(change(&c, 0, "q"), "");
         let near = [("q", 10.01, "l/min", Some(0.01))];
         let c = comparison(vec![variant(Vec::new(), &base), variant(Vec::new(), &near)]);
-        assert_eq!(change(&c, 1, "q"), "≈ +0.10 % ± 0.20");
+        assert_eq!(change(&c, 1, "q"), "≈ +0.1 % ± 0.2");
         assert!(legend(&c).contains("not resolved"));
         let unknown = [("q", 10.32, "l/min", None), ("at", 1.0, "deg", None)];
         let c = comparison(vec![variant(Vec::new(), &unknown[..1]), variant(Vec::new(), &near)]);
