@@ -175,11 +175,7 @@ fn row(
                 format!("<b>{}</b><br>{percent}", absolute(&d, u))
             }
         };
-        let _ = write!(
-            out,
-            "<td class=\"num {}\">{lines}<span class=\"muted\">{sign} {word}</span></td>",
-            ground(&d, u)
-        );
+        let _ = write!(out, "<td class=\"num {}\">{lines}{sign} {word}</td>", ground(&d, u));
     }
     out.push_str("</tr>");
 }

@@ -469,7 +469,7 @@ fn differences_are_told_with_their_confidence() {
     for part in [
         "Of 6 differences of headline results 2 are resolved, 2 are not resolved, of 1 no uncertainty is known, 1 is equal.",
         "<b>+2.0 l/min ± 0.5</b>",
-        "<b>+2.0° ± 0.5</b><br><span class=\"muted\">✓ resolved</span>",
+        "<b>+2.0° ± 0.5</b><br>✓ resolved</td>",
         "≈ not resolved",
         "<code>--verify</code>",
         "independent",
