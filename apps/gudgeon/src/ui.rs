@@ -204,6 +204,30 @@ pub fn certain(v: f64, uncertainty: Option<f64>) -> String {
     format!("{} ± {u:.0e}", number(v))
 }
 
+/// A difference with its sign, its unit and its uncertainty where that is known: `+3.2 % ± 0.1`.
+pub fn signed(v: f64, unit: &str, uncertainty: Option<f64>) -> String {
+    let space = if unit.is_empty() { "" } else { " " };
+    let uncertainty = uncertainty.filter(|u| *u > 0.0 && u.is_finite());
+    if !matches!(unit, "%" | "deg") {
+        let sign = if v > 0.0 { "+" } else { "" };
+        return format!("{sign}{}{space}{unit}", certain(v, uncertainty));
+    }
+    let Some(u) = uncertainty else { return format!("{v:+.2} {unit}") };
+    // The place of the first digit of the uncertainty is the last one printed, and one more where both are of one size.
+    let close = i32::from((0.5..2.0).contains(&(v.abs() / u)));
+    let (decimals, u) = match elementary::log10(u).floor() as i32 {
+        place @ -4.. => {
+            let decimals = (close - place).max(0) as usize;
+            (decimals, format!("{u:.decimals$}"))
+        }
+        _ => (4, format!("{u:.0e}")),
+    };
+    let value = format!("{v:+.decimals$}");
+    // Nothing but zeros has no sign.
+    let value = if value.contains(|c: char| ('1'..='9').contains(&c)) { &value } else { &value[1..] };
+    format!("{value} {unit} ± {u}")
+}
+
 /// A unit for a person: results without one carry the unit `1`.
 pub fn unit(unit: &str) -> String {
     if unit == "1" { String::new() } else { unit.to_owned() }
@@ -284,6 +308,18 @@ mod tests {
         assert_eq!(certain(5.357e-5, Some(4.9e-7)), "(5.36 ± 0.05)e-5");
         assert_eq!(certain(83.412_34, None), "83.412");
         assert_eq!(certain(83.412_34, Some(1e-12)), "83.412 ± 1e-12");
+    }
+
+    #[test]
+    fn differences_have_a_sign() {
+        assert_eq!(signed(3.216, "%", Some(0.11)), "+3.2 % ± 0.1");
+        assert_eq!(signed(-3.216, "%", Some(1e-7)), "-3.2160 % ± 1e-7");
+        assert_eq!(signed(32.16, "%", Some(11.0)), "+32 % ± 11");
+        assert_eq!(signed(0.0612, "%", Some(0.0588)), "+0.061 % ± 0.059");
+        assert_eq!(signed(-0.02, "%", Some(2.6)), "0 % ± 3");
+        assert_eq!(signed(3.216, "deg", None), "+3.22 deg");
+        assert_eq!(signed(5.36e-5, "m", Some(4.9e-7)), "+(5.36 ± 0.05)e-5 m");
+        assert_eq!(signed(-2.0, "", None), "-2");
     }
 
     #[test]

@@ -4,18 +4,20 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use gudgeon_core::result::{
-    Assessment, Column, ComparedCase, Comparison, Figure, Grade, Series, ShareTable, Variant, short_value,
+    Assessment, Column, ComparedCase, Comparison, Confidence, Difference, Figure, Grade, Headline, Series,
+    ShareTable, Variant, short_value,
 };
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
+use crate::differences::difference;
 use crate::folder::Folder;
-use crate::number::{capital, certain, count, percent, round_trip, significant, unit};
+use crate::number::{capital, certain, count, round_trip, significant, unit};
 use crate::over_values::Point;
 use crate::page::{self, Arrays, Kind, esc};
 use crate::summary::{ModelEntry, ResultValue, Summary};
-use crate::{REPORT, ReportError, over_values, overview, shares, table};
+use crate::{REPORT, ReportError, differences, over_values, overview, shares, table};
 
 pub(crate) const COMPARISON: &str = "comparison.json";
 const TABLE: &str = "comparison.csv";
@@ -42,42 +44,80 @@ struct Swap {
 }
 
 #[derive(Debug, Serialize, Deserialize)]
-struct VariantEntry {
-    /// 1 for the base.
-    number: usize,
-    label: String,
+pub(crate) struct VariantEntry {
+    /// From 1.
+    pub(crate) number: usize,
+    pub(crate) label: String,
     /// Number of its case, from 0.
     #[serde(default)]
-    case: usize,
+    pub(crate) case: usize,
     swaps: IndexMap<String, String>,
+    /// Number of the variant that its results are compared with; null for that one itself, and where none of its case ran.
+    #[serde(default)]
+    base: Option<usize>,
     /// Why there is no run: the combination was left out, refused, or failed.
-    error: Option<String>,
+    pub(crate) error: Option<String>,
     /// Whether there is no such machine.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     left_out: bool,
     /// The shape of `summary.json`.
-    run: Option<Summary>,
+    pub(crate) run: Option<Summary>,
 }
 
-/// One result over all variants; null where a variant has none.
-#[derive(Debug, Serialize, Deserialize)]
+impl VariantEntry {
+    /// Whether it has results and a base for them.
+    const fn is_compared(&self) -> bool {
+        self.base.is_some() && self.run.is_some()
+    }
+}
+
+/// One result over all variants; null where a variant has none. Differences are to the base of each, and null for that.
+#[derive(Debug, Default, Serialize)]
 struct Row {
     unit: String,
     values: Vec<Option<f64>>,
-    /// To the first variant of the same case.
+    difference: Vec<Option<f64>>,
+    /// Sum of the numerical uncertainties of both runs.
+    difference_uncertainty: Vec<Option<f64>>,
+    /// Of the magnitude of the base; null for angles and temperatures, and where the base may be zero.
     difference_percent: Vec<Option<f64>>,
+    difference_percent_uncertainty: Vec<Option<f64>>,
+    confidence: Vec<Option<Confidence>>,
+}
+
+impl Row {
+    fn new(variants: &[VariantEntry], name: &str, unit: &str) -> Self {
+        let mut row = Self { unit: unit.to_owned(), ..Self::default() };
+        for v in variants {
+            // Values in different units cannot stand in one row.
+            let own = v.run.as_ref().and_then(|r| r.results.get(name)).filter(|v| v.unit == unit);
+            let d = own.and_then(|_| difference(variants, v, name));
+            row.values.push(own.and_then(|v| v.value));
+            row.difference.push(d.map(|d| d.absolute));
+            row.difference_uncertainty.push(d.and_then(|d| d.uncertainty));
+            row.difference_percent.push(d.and_then(|d| d.percent));
+            row.difference_percent_uncertainty.push(d.and_then(|d| d.percent_uncertainty));
+            row.confidence.push(d.map(|d| d.confidence()));
+        }
+        row
+    }
 }
 
 #[derive(Debug, Serialize, Deserialize)]
-struct File {
+pub(crate) struct File {
     case: String,
     title: String,
     #[serde(default)]
-    cases: Vec<ComparedCase>,
+    pub(crate) cases: Vec<ComparedCase>,
+    /// Whether the uncertainty of the results was looked for.
+    #[serde(default)]
+    pub(crate) verified: bool,
     swaps: Vec<Swap>,
     #[serde(default)]
     shares: Vec<ShareTable>,
-    variants: Vec<VariantEntry>,
+    pub(crate) variants: Vec<VariantEntry>,
+    /// Follows from the variants.
+    #[serde(skip_deserializing)]
     results: IndexMap<String, Row>,
 }
 
@@ -92,6 +132,7 @@ impl File {
                 label: v.label.clone(),
                 case: v.case,
                 swaps: v.swaps.iter().cloned().collect(),
+                base: c.base(v.case).filter(|b| *b != i).map(|b| b + 1),
                 error: v.why(),
                 left_out: v.is_left_out(),
                 run: v.outcome.as_ref().ok().map(Summary::new),
@@ -101,6 +142,7 @@ impl File {
             case: c.case.clone(),
             title: c.title.clone(),
             cases: c.cases.clone(),
+            verified: c.is_verified(),
             shares: c.shares.clone(),
             swaps: c
                 .swaps
@@ -113,9 +155,9 @@ impl File {
     }
 }
 
-/// The variant that another is compared with: the first one of its case.
-fn base_of<'a>(variants: &'a [VariantEntry], v: &'a VariantEntry) -> &'a VariantEntry {
-    variants.iter().find(|b| b.case == v.case).unwrap_or(v)
+/// The variant that those of a case are compared with: the first one of it that ran.
+pub(crate) fn base_of<'a>(variants: &'a [VariantEntry], v: &VariantEntry) -> Option<&'a VariantEntry> {
+    variants.iter().find(|b| b.case == v.case && b.run.is_some())
 }
 
 fn rows(variants: &[VariantEntry]) -> IndexMap<String, Row> {
@@ -125,22 +167,7 @@ fn rows(variants: &[VariantEntry]) -> IndexMap<String, Row> {
             names.entry(name).or_insert(&v.unit);
         }
     }
-    let value = |v: &VariantEntry, name: &str, u: &str| -> Option<f64> {
-        // Values in different units cannot stand in one row.
-        v.run.as_ref()?.results.get(name).filter(|v| v.unit == u)?.value
-    };
-    names
-        .iter()
-        .map(|(name, u)| {
-            let values: Vec<Option<f64>> = variants.iter().map(|v| value(v, name, u)).collect();
-            let difference = |(k, v): (usize, &Option<f64>)| {
-                let base = values[base_of(variants, &variants[k]).number - 1].filter(|b| *b != 0.0)?;
-                Some(((*v)? - base) / base.abs() * 100.0).filter(|d| d.is_finite())
-            };
-            let difference_percent = values.iter().enumerate().map(difference).collect();
-            ((*name).to_owned(), Row { unit: (*u).to_owned(), values, difference_percent })
-        })
-        .collect()
+    names.iter().map(|(name, u)| ((*name).to_owned(), Row::new(variants, name, u))).collect()
 }
 
 /// Writes `comparison.json`, `comparison.csv`, `series.csv` and `report.html` of a comparison into `dir`.
@@ -186,21 +213,13 @@ fn timing(c: &Comparison) -> String {
     format!("{:#}\n", json!(c.variants.iter().map(of).collect::<Vec<_>>()))
 }
 
-/// Whether a difference is smaller than the numerical uncertainties of both values.
-fn within_numerics(base: &VariantEntry, v: &VariantEntry, name: &str) -> bool {
-    let of = |v: &VariantEntry| {
-        let r = v.run.as_ref()?.results.get(name)?;
-        Some((r.value?, r.uncertainty?))
-    };
-    of(base).zip(of(v)).is_some_and(|((a, ua), (b, ub))| (a - b).abs() < ua + ub)
-}
-
 /// Rebuilds the page of a comparison.
 pub(crate) fn rewrite(dir: &Path) -> Result<PathBuf, ReportError> {
     let path = dir.join(COMPARISON);
     let bytes = std::fs::read(&path).map_err(ReportError::io("read", &path))?;
-    let file: File = serde_json::from_slice(&bytes)
+    let mut file: File = serde_json::from_slice(&bytes)
         .map_err(|e| ReportError::Malformed { path: path.clone(), why: e.to_string() })?;
+    file.results = rows(&file.variants);
     let series = dir.join(SERIES);
     let series = if series.is_file() { table::read_long(&series)? } else { Vec::new() };
     let series: Vec<(usize, &Series)> = series.iter().map(|(n, s)| (*n, s)).collect();
@@ -229,16 +248,37 @@ where
     names
 }
 
+/// Results down; across the values of all variants, then of each that has a base its difference with the confidence of that.
 fn csv_table(file: &File) -> Result<Vec<u8>, ReportError> {
-    let mut out = vec![
-        ["result".to_owned(), "unit".to_owned()]
-            .into_iter()
-            .chain(file.variants.iter().map(|v| v.label.clone()))
-            .collect::<Vec<_>>(),
+    const DIFFERENCE: [&str; 5] = [
+        "difference",
+        "difference uncertainty",
+        "difference [%]",
+        "difference uncertainty [%]",
+        "confidence",
     ];
+    let compared: Vec<usize> = (0..file.variants.len()).filter(|k| file.variants[*k].is_compared()).collect();
+    let mut head = vec!["result".to_owned(), "unit".to_owned()];
+    head.extend(file.variants.iter().map(|v| v.label.clone()));
+    head.extend(
+        compared.iter().flat_map(|k| DIFFERENCE.map(|what| format!("{}: {what}", file.variants[*k].label))),
+    );
+    let width = head.len();
+    let mut out = vec![head];
+    let number = |v: Option<f64>| v.map_or_else(String::new, round_trip);
     for (name, row) in &file.results {
         let mut line = vec![name.clone(), row.unit.clone()];
-        line.extend(row.values.iter().map(|v| v.map_or_else(String::new, round_trip)));
+        line.extend(row.values.iter().copied().map(number));
+        for k in &compared {
+            let figures = [
+                &row.difference,
+                &row.difference_uncertainty,
+                &row.difference_percent,
+                &row.difference_percent_uncertainty,
+            ];
+            line.extend(figures.map(|f| number(f[*k])));
+            line.push(row.confidence[*k].map_or_else(String::new, |c| c.name().to_owned()));
+        }
         out.push(line);
     }
     for name in union(file.variants.iter(), |r| &r.solver.counters) {
@@ -247,6 +287,7 @@ fn csv_table(file: &File) -> Result<Vec<u8>, ReportError> {
             let n = v.run.as_ref().and_then(|r| r.solver.counters.get(name));
             n.map_or_else(String::new, u64::to_string)
         }));
+        line.resize(width, String::new());
         out.push(line);
     }
     table::csv(out)
@@ -273,7 +314,7 @@ fn overlaid(c: &Column) -> bool {
     !known || LAST.contains(&last)
 }
 
-fn badge(n: usize) -> String {
+pub(crate) fn badge(n: usize) -> String {
     format!("<span class=\"badge c{}\">{n}</span>", (n - 1) % 8)
 }
 
@@ -289,6 +330,7 @@ fn page(file: &File, series: &[(usize, &Series)]) -> String {
             "<section id=\"results\"><h2>Results</h2><p class=\"hint\">No variant ran.</p></section>\n",
         );
     } else {
+        differences::section(&mut main, file, &ran);
         shares::section(&mut main, &file.shares);
         if !over_values.is_empty() {
             main.push_str("<section id=\"values\"><h2>Over the values</h2><div id=\"figures\" class=\"figures\"></div></section>\n");
@@ -322,8 +364,9 @@ fn page(file: &File, series: &[(usize, &Series)]) -> String {
 }
 
 /// Sections in their order, with their names in the contents at the side.
-const CONTENTS: [(&str, &str); 9] = [
+const CONTENTS: [(&str, &str); 10] = [
     ("overview", "Overview"),
+    ("differences", "Differences"),
     ("shares", "Which choice matters"),
     ("values", "Over the values"),
     ("cycle", "Over the cycle"),
@@ -424,24 +467,32 @@ fn spread(ran: &[&VariantEntry], name: &str) -> f64 {
     if top > 0.0 && top.is_finite() { (hi - lo) / top } else { 0.0 }
 }
 
-/// A card for each headline of the first variant, a row a variant: of several rings or shafts the one that differs most.
-fn headline_cards(out: &mut String, file: &File, ran: &[&VariantEntry]) {
-    let Some(first) = ran.first().and_then(|v| v.run.as_ref()) else { return };
-    out.push_str("<h2 class=\"unseen\">Headline results</h2>\n<div class=\"cards broad\">\n");
-    for h in first.headlines.iter().take(overview::CARDS) {
+/// Title and name of a result for each headline of the first variant: of several rings or shafts the one that differs most.
+pub(crate) fn headline_results(ran: &[&VariantEntry]) -> Vec<(String, String)> {
+    let Some(first) = ran.first().and_then(|v| v.run.as_ref()) else { return Vec::new() };
+    let of = |h: &Headline| {
         // A whole with its part is told by the whole.
         let most = h.results.iter().rev().max_by(|a, b| spread(ran, &a.1).total_cmp(&spread(ran, &b.1)));
         let whole = h.results.first().filter(|(label, _)| label == "all");
-        let Some((label, name)) = whole.or(most) else { continue };
-        let title = if label.is_empty() || h.results.len() == 1 {
-            h.title.clone()
-        } else {
-            format!("{}, {label}", h.title)
-        };
+        let (label, name) = whole.or(most)?;
+        let alone = label.is_empty() || h.results.len() == 1;
+        let title = if alone { h.title.clone() } else { format!("{}, {label}", h.title) };
+        Some((title, name.clone()))
+    };
+    first.headlines.iter().take(overview::CARDS).filter_map(of).collect()
+}
+
+/// A card for each headline, a row a variant.
+fn headline_cards(out: &mut String, file: &File, ran: &[&VariantEntry]) {
+    if ran.is_empty() {
+        return;
+    }
+    out.push_str("<h2 class=\"unseen\">Headline results</h2>\n<div class=\"cards broad\">\n");
+    for (title, name) in headline_results(ran) {
         let rows: Vec<(String, usize, &ResultValue)> = ran
             .iter()
             .take(IN_CARD)
-            .filter_map(|v| Some((short_label(file, v), v.number - 1, v.run.as_ref()?.results.get(name)?)))
+            .filter_map(|v| Some((short_label(file, v), v.number - 1, v.run.as_ref()?.results.get(&name)?)))
             .collect();
         let _ = write!(out, "<div class=\"card\"><h3>{}</h3>", page::prose(&capital(&title)));
         overview::rows(out, &rows);
@@ -536,8 +587,10 @@ fn drawn<'a>(file: &File, series: &[(usize, &'a Series)]) -> Vec<(usize, &'a Ser
         series.iter().copied().filter(|(n, _)| variant(*n).is_none_or(test)).collect()
     };
     let near = |v: &VariantEntry| {
-        let base = base_of(&file.variants, v);
-        v.swaps.iter().filter(|(path, value)| base.swaps.get(*path) != Some(value)).count() <= 1
+        let same = |path: &str, value: &String| {
+            base_of(&file.variants, v).is_some_and(|base| base.swaps.get(path) == Some(value))
+        };
+        v.swaps.iter().filter(|(path, value)| !same(path, value)).count() <= 1
     };
     let mut drawn = series.to_vec();
     if drawn.len() > MAX_DRAWN {
@@ -616,19 +669,13 @@ fn comparison_tables(out: &mut String, file: &File, ran: &[&VariantEntry]) {
 
 /// Results of the variants of one case.
 fn comparison_table(out: &mut String, file: &File, ran: &[&VariantEntry]) {
-    let base = ran.first().map(|v| base_of(&file.variants, v)).filter(|v| v.run.is_some());
-    match base {
-        Some(v) => {
-            let _ = write!(
-                out,
-                "<p class=\"hint\">Differences are to variant {} {}.</p>",
-                badge(v.number),
-                esc(&v.label)
-            );
-        }
-        None => out.push_str(
-            "<p class=\"hint\">The first variant did not run: there is nothing to take differences to.</p>",
-        ),
+    let base = ran.first().and_then(|v| base_of(&file.variants, v));
+    if let Some(base) = base {
+        let _ = write!(
+            out,
+            "<p class=\"hint\">{} ≈ marks those that numerical errors alone can make.</p>",
+            differences::base_told(file, base)
+        );
     }
     comparison_heads(out, ran);
     comparison_rows(out, file, ran);
@@ -637,27 +684,27 @@ fn comparison_table(out: &mut String, file: &File, ran: &[&VariantEntry]) {
     out.push_str("</tbody></table></div>");
 }
 
-/// The head of the table: a column for every variant that ran, with what it swaps.
+/// The head of the table: a column for every variant that ran.
 fn comparison_heads(out: &mut String, ran: &[&VariantEntry]) {
     out.push_str("<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"table\"><table class=\"plain compare\"><thead><tr><th>Result</th><td></td>");
     for v in ran {
-        let parts: Vec<String> = v
-            .swaps
-            .iter()
-            .map(|(path, value)| {
-                let short = path.trim_end_matches(".model").rsplit('.').next().unwrap_or(path);
-                format!(
-                    "<span title=\"{}\">{} <b>{}</b></span>",
-                    esc(path),
-                    esc(short),
-                    esc(&short_value(value))
-                )
-            })
-            .collect();
-        let label = if parts.is_empty() { esc(&v.label) } else { parts.join("<br>") };
-        let _ = write!(out, "<th class=\"num variant\">{}<br>{label}</th>", badge(v.number));
+        variant_head(out, v);
     }
     out.push_str("</tr></thead><tbody>");
+}
+
+/// The head of the column of a variant, with what it swaps.
+pub(crate) fn variant_head(out: &mut String, v: &VariantEntry) {
+    let parts: Vec<String> = v
+        .swaps
+        .iter()
+        .map(|(path, value)| {
+            let short = path.trim_end_matches(".model").rsplit('.').next().unwrap_or(path);
+            format!("<span title=\"{}\">{} <b>{}</b></span>", esc(path), esc(short), esc(&short_value(value)))
+        })
+        .collect();
+    let label = if parts.is_empty() { esc(&v.label) } else { parts.join("<br>") };
+    let _ = write!(out, "<th class=\"num variant\">{}<br>{label}</th>", badge(v.number));
 }
 
 /// A row for every result.
@@ -674,23 +721,15 @@ fn comparison_rows(out: &mut String, file: &File, ran: &[&VariantEntry]) {
             esc(name),
             esc(&unit(&row.unit))
         );
-        let value = |k: usize| row.values.get(k).copied().flatten();
         for v in ran {
-            let k = v.number - 1;
-            let base = base_of(&file.variants, v);
-            let is_other = v.number != base.number;
-            let own = v.run.as_ref().and_then(|r| r.results.get(name));
-            let text = certain(value(k), own.and_then(|r| r.uncertainty), 4);
-            if is_other && within_numerics(base, v, name) {
-                let _ = write!(out, "<td class=\"num\">{text} <span class=\"diff\">numerics</span></td>");
-            } else if row.unit == "deg" {
-                // A percentage of an angle says nothing: it would depend on where zero is.
-                let pair = value(base.number - 1).zip(value(k)).filter(|_| is_other);
-                let shift = pair.map(|(a, b)| b - a);
-                shift_cell(out, &text, shift);
-            } else {
-                cell(out, &text, row.difference_percent.get(k).copied().flatten().filter(|_| is_other));
-            }
+            let own = v.run.as_ref().and_then(|r| r.results.get(name)).filter(|r| r.unit == row.unit);
+            let text = certain(own.and_then(|r| r.value), own.and_then(|r| r.uncertainty), 4);
+            let d = own.and_then(|_| difference(&file.variants, v, name)).filter(|d| d.absolute != 0.0);
+            cell(
+                out,
+                &text,
+                d.map(|d| (differences::ground(&d, &row.unit), differences::short(&d, &row.unit))),
+            );
         }
         out.push_str("</tr>");
     }
@@ -714,10 +753,11 @@ fn comparison_work(out: &mut String, ran: &[&VariantEntry], base: Option<&Varian
         let _ = write!(out, "<tr><th scope=\"row\">{}</th><td></td>", esc(&name.replace('_', " ")));
         for v in ran {
             let n = value(v);
-            let ratio = first
-                .zip(n)
-                .filter(|(f, _)| *f > 0 && base.is_some_and(|b| b.number != v.number))
-                .map(|(f, n)| (n as f64 / f as f64 - 1.0) * 100.0);
+            let other = base.is_some_and(|b| b.number != v.number);
+            let d = first.zip(n).filter(|_| other).and_then(|(f, n)| {
+                Difference::between((f as f64, None), (n as f64, None), "").filter(|d| d.absolute != 0.0)
+            });
+            let ratio = d.map(|d| (differences::ground(&d, ""), differences::short(&d, "")));
             cell(out, &n.map_or_else(|| "–".into(), count), ratio);
         }
         out.push_str("</tr>");
@@ -748,40 +788,12 @@ fn comparison_balances(out: &mut String, ran: &[&VariantEntry]) {
     }
 }
 
-/// An angle with its shift.
-fn shift_cell(out: &mut String, text: &str, shift: Option<f64>) {
-    let Some(shift) = shift else {
-        let _ = write!(out, "<td class=\"num\">{text}</td>");
-        return;
+/// A value with the ground of its cell and its difference.
+fn cell(out: &mut String, text: &str, difference: Option<(String, String)>) {
+    let _ = match difference {
+        None => write!(out, "<td class=\"num\">{text}</td>"),
+        Some((ground, d)) => {
+            write!(out, "<td class=\"num {ground}\">{text} <span class=\"diff\">{d}</span></td>")
+        }
     };
-    let side = if shift < 0.0 { "less" } else { "more" };
-    let step = match shift.abs() {
-        d if d < 1.0 => 0,
-        d if d < 5.0 => 1,
-        d if d < 20.0 => 2,
-        _ => 3,
-    };
-    let sign = if shift > 0.0 { "+" } else { "" };
-    let _ = write!(
-        out,
-        "<td class=\"num {side}{step}\">{text} <span class=\"diff\">{sign}{}°</span></td>",
-        significant(Some(shift), 2)
-    );
-}
-
-/// A value with its difference; the larger the difference, the stronger the cell's ground.
-fn cell(out: &mut String, text: &str, difference: Option<f64>) {
-    let Some(d) = difference else {
-        let _ = write!(out, "<td class=\"num\">{text}</td>");
-        return;
-    };
-    let step = match d.abs() {
-        d if d < 1.0 => 0,
-        d if d < 5.0 => 1,
-        d if d < 20.0 => 2,
-        _ => 3,
-    };
-    let side = if d < 0.0 { "less" } else { "more" };
-    let _ =
-        write!(out, "<td class=\"num {side}{step}\">{text} <span class=\"diff\">{}</span></td>", percent(d));
 }

@@ -16,6 +16,7 @@
 
 mod bench;
 mod comparison;
+mod differences;
 mod error;
 mod folder;
 mod gradients;

@@ -27,7 +27,7 @@ pub(crate) fn significant(value: Option<f64>, digits: usize) -> String {
 pub(crate) fn certain(value: Option<f64>, uncertainty: Option<f64>, digits: usize) -> String {
     /// More digits than anybody reads.
     const MOST: i32 = 9;
-    let (Some(v), Some(u)) = (value.filter(|v| v.is_finite()), uncertainty) else {
+    let (Some(v), Some(u)) = (value.filter(|v| v.is_finite()), uncertainty.filter(|u| *u > 0.0)) else {
         return match value {
             // Counts and orders are whole, and no measure is so by chance.
             Some(v) if v.fract() == 0.0 && v.abs() < 1e6 => format!("{v}").replace('-', "−"),
@@ -35,7 +35,7 @@ pub(crate) fn certain(value: Option<f64>, uncertainty: Option<f64>, digits: usiz
         };
     };
     // Twice the uncertainty fits into one unit of the last digit but one.
-    let held = if u > 0.0 { elementary::log10(v.abs() / u).floor() as i32 + 1 } else { MOST };
+    let held = elementary::log10(v.abs() / u).floor() as i32 + 1;
     if v == 0.0 || held <= 0 {
         return format!(
             "{} ± {}",
@@ -45,6 +45,24 @@ pub(crate) fn certain(value: Option<f64>, uncertainty: Option<f64>, digits: usiz
     }
     let text = significant(Some(v), held.clamp(1, MOST) as usize);
     if held > MOST { text } else { format!("{text} ± {}", significant(Some(u), 1)) }
+}
+
+/// A difference with its sign, and behind it ` ± ` its uncertainty where that is known: apart, so that a unit can stand between. As many digits as the uncertainty
+/// leaves, at most four.
+pub(crate) fn signed(value: f64, uncertainty: Option<f64>) -> (String, String) {
+    const DIGITS: usize = 3;
+    let plus = |text: String| if value > 0.0 && text != "0" { format!("+{text}") } else { text };
+    let Some(u) = uncertainty.filter(|u| *u > 0.0) else {
+        return (plus(certain(Some(value), None, DIGITS)), String::new());
+    };
+    // One digit more where both are of one size.
+    let close = i32::from((0.5..2.0).contains(&(value.abs() / u)));
+    let place = |x: f64| elementary::log10(x).floor() as i32;
+    // Down to the place of the first digit of the uncertainty.
+    let held = if value == 0.0 { 0 } else { place(value.abs()) - place(u) + 1 + close };
+    let text =
+        if held > 0 { significant(Some(value), held.min(DIGITS as i32 + 1) as usize) } else { "0".into() };
+    (plus(text), format!(" ± {}", significant(Some(u), 1 + close as usize)))
 }
 
 /// A relative difference in percent with its sign, finer the smaller it is.
@@ -158,6 +176,7 @@ mod tests {
         assert_eq!(certain(Some(9.0), None, 4), "9");
         assert_eq!(certain(Some(-12.0), None, 4), "−12");
         assert_eq!(certain(Some(0.5), None, 4), "0.5000");
+        assert_eq!(certain(Some(9.0), Some(0.0), 4), "9");
         assert_eq!(certain(None, None, 4), "–");
     }
 
@@ -181,6 +200,30 @@ mod tests {
         assert_eq!(certain(Some(0.01), Some(0.3), 4), "0 ± 0.3");
         assert_eq!(certain(Some(1.0 / 3.0), Some(1e-14), 4), "0.333333333");
         assert_eq!(certain(Some(49.9), None, 4), "49.90");
+    }
+
+    #[test]
+    fn differences_have_a_sign_and_the_digits_that_hold() {
+        let text = |v, u| signed(v, u).into();
+        let all: [[String; 2]; 7] = [
+            text(3.2168, Some(0.12)),
+            text(-3.2168, Some(1e-9)),
+            text(0.01, Some(0.3)),
+            text(0.0612, Some(0.0588)),
+            text(3.2168, None),
+            text(3.0, Some(0.0)),
+            text(-0.0, Some(0.1)),
+        ];
+        let expected = [
+            ["+3.2", " ± 0.1"],
+            ["−3.217", " ± 1×10⁻⁹"],
+            ["0", " ± 0.3"],
+            ["+0.061", " ± 0.059"],
+            ["+3.22", ""],
+            ["+3", ""],
+            ["0", " ± 0.1"],
+        ];
+        assert_eq!(all, expected);
     }
 
     #[test]

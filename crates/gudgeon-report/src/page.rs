@@ -199,6 +199,11 @@ impl Arrays {
         self.thinned(&table.axis, table.columns.iter(), 1)
     }
 
+    /// As [`Arrays::whole`], but of the columns alone that figures read.
+    pub(crate) fn read(&mut self, table: &Series, columns: &[&str]) -> Value {
+        self.thinned(&table.axis, table.columns.iter().filter(|c| columns.contains(&c.name.as_str())), 1)
+    }
+
     fn thinned<'a>(
         &mut self,
         axis: &Column,

@@ -158,13 +158,16 @@ fn has_cycle(series: &Series) -> bool {
 /// What the scripts of the page draw.
 fn data(s: &Summary, series: &Series, tables: &IndexMap<String, Series>) -> serde_json::Value {
     let mut arrays = page::Arrays::default();
-    let used = |name: &str| s.figures.iter().any(|f| f.table == name);
+    let read = |table: &str| -> Vec<&str> {
+        s.figures.iter().filter(|f| f.table == table).flat_map(|f| f.kind.columns()).collect()
+    };
+    let used = |table: &str| s.figures.iter().any(|f| f.table == table);
     let columns =
         if has_cycle(series) { arrays.series(&series.axis, series.columns.iter()) } else { json!(null) };
     let mut data_of: serde_json::Map<String, serde_json::Value> =
-        tables.iter().filter(|(n, _)| used(n)).map(|(n, t)| (n.clone(), arrays.whole(t))).collect();
+        tables.iter().filter(|(n, _)| used(n)).map(|(n, t)| (n.clone(), arrays.read(t, &read(n)))).collect();
     if used("series") {
-        data_of.insert("series".into(), arrays.whole(series));
+        data_of.insert("series".into(), arrays.read(series, &read("series")));
     }
     json!({
         "scene": s.scene, "section": s.section, "events": s.events, "series": columns, "tables": data_of,

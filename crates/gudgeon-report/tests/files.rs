@@ -7,7 +7,9 @@ mod common;
 use std::fs;
 use std::path::PathBuf;
 
-use gudgeon_core::result::{Failure, Headline, Note, RunResult, Series};
+use gudgeon_core::result::{
+    ComparedCase, Comparison, Failure, Headline, Note, Refined, RunResult, Series, Variant, Verification,
+};
 use gudgeon_report::{
     OVER_CYCLE, ReportError, rewrite, summary_json, write_bench, write_comparison, write_run,
 };
@@ -384,7 +386,7 @@ fn a_comparison_states_differences_and_refusals() {
     let files = write_comparison(&common::comparison(), &dir).unwrap();
     let json: Value = serde_json::from_str(&read(&files.comparison)).unwrap();
     let blow_by = &json["results"]["blow_by"];
-    assert_eq!(blow_by["difference_percent"][0], 0.0);
+    assert!(blow_by["difference_percent"][0].is_null() && json["variants"][0]["base"].is_null());
     // 0.82 of the base by construction; what is left is rounding of the quotient.
     assert!((blow_by["difference_percent"][2].as_f64().unwrap() + 18.0).abs() < 1e-12);
     assert!(blow_by["values"][3].is_null());
@@ -393,7 +395,8 @@ fn a_comparison_states_differences_and_refusals() {
     assert_eq!(json["variants"][2]["run"]["results"]["fmep"]["unit"], "bar");
     let table = read(&files.table);
     assert!(table.starts_with("result,unit,\"gas_flow=orifice_network, contact=off\","));
-    assert!(table.contains("\nsolver.steps,-,5210,5210,5210,\n"));
+    // Two variants ran beside the base: five columns each.
+    assert!(table.contains(&format!("\nsolver.steps,-,5210,5210,5210,{}\n", ",".repeat(10))));
     let series = read(&files.series);
     assert!(series.starts_with("variant,theta[deg],"));
     assert_eq!(series.lines().count(), 1 + 3 * 721);
@@ -409,6 +412,109 @@ fn a_comparison_states_differences_and_refusals() {
     fs::remove_dir_all(dir).unwrap();
 }
 
+/// Three runs of three results with known uncertainties, or none.
+fn verified(first: Option<f64>, of: [[(f64, Option<f64>); 3]; 2]) -> Comparison {
+    let base = [(8.0, first), (719.0, first), (0.0, first)];
+    let names = [("blow_by", "l/min"), ("p_max_angle", "deg"), ("limits_broken", "1")];
+    let variant = |(k, values): (usize, [(f64, Option<f64>); 3])| {
+        let mut r = RunResult { case: "x".into(), gudgeon: "0".into(), ..RunResult::default() };
+        let mut found = Verification::default();
+        for ((name, unit), (value, uncertainty)) in names.iter().zip(values) {
+            r.results.insert((*name).into(), common::value(value, unit, "what"));
+            r.headlines.push(Headline::one(name, name));
+            found.uncertainty.extend(uncertainty.map(|u| ((*name).to_owned(), u)));
+        }
+        if first.is_some() {
+            found.refined.push(Refined { what: "tolerance".into(), levels: Vec::new() });
+            r.verification = Some(found);
+        }
+        let (label, swaps) = (format!("a={k}"), vec![("a".to_owned(), k.to_string())]);
+        Variant { label, case: 0, swaps, outcome: Ok(r) }
+    };
+    let variants: Vec<Variant> = [base, of[0], of[1]].into_iter().enumerate().map(variant).collect();
+    let cases = vec![ComparedCase { name: "x".into(), title: "X".into() }];
+    Comparison { case: "x".into(), cases, variants, ..Comparison::default() }
+}
+
+#[test]
+fn differences_are_told_with_their_confidence() {
+    let dir = scratch("confidence");
+    let u = Some(0.25);
+    let c = verified(u, [[(8.5, u), (1.0, u), (0.0, u)], [(10.0, u), (719.5, u), (2.0, None)]]);
+    let files = write_comparison(&c, &dir).unwrap();
+    let json: Value = serde_json::from_str(&read(&files.comparison)).unwrap();
+    let (q, angle, count) =
+        (&json["results"]["blow_by"], &json["results"]["p_max_angle"], &json["results"]["limits_broken"]);
+    // 8.5 less 8 is as large as both uncertainties together, 10 less 8 is larger.
+    assert_eq!(q["difference"], serde_json::json!([null, 0.5, 2.0]));
+    assert_eq!(q["difference_uncertainty"], serde_json::json!([null, 0.5, 0.5]));
+    assert_eq!(q["confidence"], serde_json::json!([null, "not_resolved", "resolved"]));
+    assert_eq!(q["difference_percent"], serde_json::json!([null, 6.25, 25.0]));
+    // Around the cycle, and never in per cent.
+    assert_eq!(angle["difference"], serde_json::json!([null, 2.0, 0.5]));
+    assert_eq!(angle["difference_percent"], serde_json::json!([null, null, null]));
+    assert_eq!(angle["confidence"], serde_json::json!([null, "resolved", "not_resolved"]));
+    assert_eq!(count["confidence"], serde_json::json!([null, "equal", "unknown"]));
+    let table = read(&files.table);
+    assert!(
+        table
+            .lines()
+            .next()
+            .unwrap()
+            .contains("a=1: difference,a=1: difference uncertainty,a=1: difference [%]")
+    );
+    let line = table.lines().find(|l| l.starts_with("p_max_angle")).unwrap();
+    assert_eq!(line, "p_max_angle,deg,719,1,719.5,2,0.5,,,resolved,0.5,0.5,,,not_resolved");
+    let page = read(&files.report);
+    for part in [
+        "Of 6 differences of headline results 2 are resolved, 2 are not resolved, of 1 no uncertainty is known, 1 is equal.",
+        "<b>+2.0 l/min ± 0.5</b>",
+        "<b>+2.0° ± 0.5</b><br>✓ resolved</td>",
+        "≈ not resolved",
+        "<code>--verify</code>",
+        "independent",
+    ] {
+        assert!(page.contains(part), "{part}");
+    }
+    fs::remove_file(&files.report).unwrap();
+    rewrite(&dir).unwrap();
+    // Runs without rows are no variants of a file of series, so the data differ.
+    let text = |page: &str| page.split("id=\"data\">").next().map(str::to_owned);
+    assert!(text(&read(&files.report)) == text(&page));
+    fs::remove_dir_all(dir).unwrap();
+}
+
+#[test]
+fn without_refinement_no_difference_is_called_resolved() {
+    let dir = scratch("unverified");
+    let c =
+        verified(None, [[(8.5, None), (1.0, None), (0.0, None)], [(10.0, None), (719.5, None), (2.0, None)]]);
+    let page = read(write_comparison(&c, &dir).unwrap().report);
+    assert!(page.contains("Of 6 differences of headline results of 5 no uncertainty is known, 1 is equal."));
+    assert!(page.contains("<b>+2°</b>") && page.contains("+25.0 %"));
+    assert!(!page.contains("✓ <b>resolved") && !page.contains("independent"));
+    fs::remove_dir_all(dir).unwrap();
+}
+
+#[test]
+fn the_first_variant_that_ran_is_the_base() {
+    let dir = scratch("base");
+    let mut c =
+        verified(None, [[(8.0, None), (1.0, None), (1.0, None)], [(10.0, None), (3.5, None), (2.0, None)]]);
+    let message = "the end gap closes".to_owned();
+    c.variants[0].outcome = Err(Failure { code: "impossible".into(), message, path: String::new() });
+    let files = write_comparison(&c, &dir).unwrap();
+    let json: Value = serde_json::from_str(&read(&files.comparison)).unwrap();
+    assert_eq!(json["variants"][2]["base"], 2);
+    assert_eq!(json["results"]["blow_by"]["difference_percent"], serde_json::json!([null, null, 25.0]));
+    let page = read(&files.report);
+    assert!(
+        page.contains("the first that ran: ")
+            && page.contains("has no result (<a href=\"#refused\">left out</a>)")
+    );
+    fs::remove_dir_all(dir).unwrap();
+}
+
 #[test]
 fn several_cases_have_their_own_bases_and_a_table_of_shares() {
     let dir = scratch("cases");
@@ -417,7 +523,8 @@ fn several_cases_have_their_own_bases_and_a_table_of_shares() {
     assert_eq!(json["cases"][1]["name"], "diesel_120, engine.speed=1500 rpm");
     let difference = &json["results"]["blow_by"]["difference_percent"];
     // The second case is twice the first; its differences are to its own base, within rounding of the quotient.
-    assert_eq!(difference[4], 0.0);
+    assert!(difference[4].is_null());
+    assert_eq!(json["variants"][6]["base"], 5);
     assert!((difference[6].as_f64().unwrap() + 18.0).abs() < 1e-12);
     assert_eq!(
         json["shares"][0]["effects"],

@@ -1,6 +1,7 @@
 //! What a run produces, independent of how it is written: the interface between the simulation and the report.
 #![cfg_attr(doctest, doc = include_str!("../README.md"))]
 
+mod difference;
 mod gradients;
 mod overview;
 mod shares;
@@ -10,6 +11,7 @@ use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+pub use difference::{Confidence, Difference, change};
 pub use gradients::{Gradient, GradientInput, Gradients, derivative_unit};
 pub use overview::{Assessment, Grade, Headline, VERDICT};
 pub use shares::{CASE, Share, ShareRow, ShareTable};
@@ -363,6 +365,25 @@ pub enum FigureKind {
     },
 }
 
+impl FigureKind {
+    /// Columns of its table that it reads.
+    #[must_use]
+    pub fn columns(&self) -> Vec<&str> {
+        match self {
+            Self::Lines(l) => {
+                let curves = l.lines.iter().chain(&l.rays).chain(&l.over).map(|c| &c.1);
+                std::iter::once(&l.x).chain(&l.own_x).chain(curves).map(String::as_str).collect()
+            }
+            Self::Map { x, y, value, .. } => vec![x, y, value],
+            Self::Waterfall(w) => {
+                let spectra = w.spectra.iter().map(|s| &s.1);
+                w.x.iter().chain([&w.y]).chain(spectra).map(String::as_str).collect()
+            }
+            Self::Drawing { .. } | Self::Bars { .. } | Self::Table { .. } | Self::Ranges { .. } => Vec::new(),
+        }
+    }
+}
+
 /// Curves of columns over another one.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Lines {
@@ -370,6 +391,9 @@ pub struct Lines {
     pub x: String,
     /// Label and column of each curve. Curves share a unit.
     pub lines: Vec<(String, String)>,
+    /// Label and column of the envelope of the curves, drawn over them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub over: Option<(String, String)>,
     /// Column along the abscissa of each curve, where every curve has its own: `ring1.hersey_number`, whose last word says what it is; `x` is the first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub own_x: Vec<String>,
@@ -855,6 +879,13 @@ impl Variant {
         Some(format!("{what}: {failure}"))
     }
 
+    /// A result with its numerical uncertainty, where that is known.
+    fn result(&self, name: &str) -> Option<(&Value, Option<f64>)> {
+        let run = self.outcome.as_ref().ok()?;
+        let uncertainty = run.verification.as_ref().and_then(|w| w.uncertainty.get(name));
+        Some((run.results.get(name)?, uncertainty.copied()))
+    }
+
     /// Whether there is no such machine.
     #[must_use]
     pub fn is_left_out(&self) -> bool {
@@ -882,10 +913,37 @@ pub struct Comparison {
     pub cases: Vec<ComparedCase>,
     /// `(path, values)` of every swap.
     pub swaps: Vec<(String, Vec<String>)>,
-    /// The combinations, case by case and the last swap the fastest; the first one of a case is the base that its others are compared with.
+    /// The combinations, case by case and the last swap the fastest; the first one of a case that ran is the base that its others are compared with
+    /// ([`Comparison::base`]).
     pub variants: Vec<Variant>,
     /// Which choice matters, where there are at least two: all cases together first, then each alone.
     pub shares: Vec<ShareTable>,
+}
+
+impl Comparison {
+    /// Number of the combination that those of a case are compared with: its first one that has a run, counted from 0.
+    #[must_use]
+    pub fn base(&self, case: usize) -> Option<usize> {
+        self.variants.iter().position(|v| v.case == case && v.outcome.is_ok())
+    }
+
+    /// Whether numerical uncertainties were looked for.
+    #[must_use]
+    pub fn is_verified(&self) -> bool {
+        self.variants.iter().flat_map(|v| &v.outcome).any(|r| r.verification.is_some())
+    }
+
+    /// How a result of a combination differs from that of its base; none for the base itself, and where one of the two has no such result in the same unit.
+    #[must_use]
+    pub fn difference(&self, variant: usize, result: &str) -> Option<Difference> {
+        let other = self.variants.get(variant)?;
+        let base = self.base(other.case).filter(|b| *b != variant)?;
+        let ((a, ua), (b, ub)) = (self.variants[base].result(result)?, other.result(result)?);
+        if a.unit != b.unit {
+            return None;
+        }
+        Difference::between((a.value, ua), (b.value, ub), &a.unit)
+    }
 }
 
 /// Error that a default setting should not exceed.

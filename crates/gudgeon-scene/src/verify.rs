@@ -11,7 +11,7 @@
 //! 1/2 with one level, and as at most 9/10: a series that does not shrink is named). Periodic angles are compared around the cycle.
 
 use gudgeon_core::Stopped;
-use gudgeon_core::result::{Note, Refined, RunResult, Value, Verification};
+use gudgeon_core::result::{Note, Refined, RunResult, Value, Verification, change};
 use indexmap::IndexMap;
 
 use crate::error::{Progress, RunError};
@@ -116,18 +116,11 @@ fn floors(results: &Results) -> IndexMap<String, f64> {
     floors
 }
 
-/// Distance of two values; of angles around the cycle the shorter way.
-fn distance(a: f64, b: f64, unit: &str) -> f64 {
-    const CYCLE: f64 = 720.0;
-    let d = (a - b).abs();
-    if unit == "deg" && d > 0.5 * CYCLE { (CYCLE - d).abs() } else { d }
-}
-
 /// What may be left behind the last of a series, and whether it shrinks.
 fn rest(series: &[f64], unit: &str, floor: f64) -> (f64, bool) {
     let last = |k: usize| {
         let n = series.len();
-        (n > k + 1).then(|| distance(series[n - 1 - k], series[n - 2 - k], unit))
+        (n > k + 1).then(|| change(series[n - 2 - k], series[n - 1 - k], unit).abs())
     };
     let Some(d) = last(0) else { return (0.0, true) };
     let scale = series.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
@@ -143,7 +136,7 @@ fn rest(series: &[f64], unit: &str, floor: f64) -> (f64, bool) {
 fn uncertainty(series: &[f64], unit: &str, floor: f64) -> (f64, bool) {
     let (Some(first), Some(last)) = (series.first(), series.last()) else { return (0.0, true) };
     let (rest, settles) = rest(series, unit, floor);
-    (distance(*first, *last, unit) + rest, settles)
+    (change(*first, *last, unit).abs() + rest, settles)
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use gudgeon_core::result::{FigureKind, NoteLevel, RunResult};
+use gudgeon_core::result::{FigureKind, Lines, Mark, NoteLevel, RunResult, Series};
 use gudgeon_scene::{check, explain, run};
 
 fn case(name: &str) -> PathBuf {
@@ -693,6 +693,69 @@ fn curves_over_the_speed_reach_the_envelope() {
     assert_eq!(torque.values[at], most);
 }
 
+/// The curves of a figure and what it marks.
+fn drawn<'a>(r: &'a RunResult, title: &str) -> &'a Lines {
+    let figure = r.figures.iter().find(|f| f.title == title).unwrap_or_else(|| panic!("no figure {title}"));
+    let FigureKind::Lines(lines) = &figure.kind else { panic!("{title} has no curves") };
+    lines
+}
+
+#[test]
+fn every_shaft_has_a_curve_for_every_load_step() {
+    let r = once("compressor-6-throw.toml", &[]);
+    let table = &r.tables["shafts_over_speed"];
+    let values = |column: &str| &table.get(column).unwrap_or_else(|| panic!("no {column}")).values;
+    for (title, n) in [
+        ("rubber coupling over the speed: torque", 1),
+        ("crankshaft over the speed: stress", 2),
+        ("crank 1-2 over the speed: stress", 3),
+        ("crank 5-6 over the speed: stress", 7),
+    ] {
+        let lines = drawn(&r, title);
+        let names: Vec<&str> = lines.lines.iter().map(|l| l.0.as_str()).collect();
+        assert_eq!(
+            names,
+            [
+                "full load",
+                "head ends of stage 1 open",
+                "all valves held open",
+                "broken suction valve in throw 6"
+            ]
+        );
+        assert!(lines.marks.iter().any(|m| matches!(m, Mark::Limit { .. })), "{title}");
+        assert!(lines.marks.iter().any(|m| matches!(m, Mark::Band { kept_free: false, .. })), "{title}");
+        let (label, over) = lines.over.as_ref().expect("an envelope");
+        assert_eq!(label, "envelope");
+        let top = |i: usize| lines.lines.iter().map(|l| values(&l.1)[i]).fold(0.0, f64::max);
+        assert!(values(over).iter().enumerate().all(|(i, v)| *v == top(i)), "{title}");
+        let what = if n == 1 { "torque" } else { "stress" };
+        let largest = r.results[&format!("envelope.shaft{n}.{what}_amplitude")].value;
+        let within =
+            table.axis.values.iter().zip(values(over)).filter(|(w, _)| (600.0..=1000.0).contains(*w));
+        let peak = within.map(|(_, v)| *v).fold(0.0, f64::max);
+        // The largest of all load steps is a point of the curves; what is left is rounding of its unit.
+        assert!((peak / largest - 1.0).abs() < 1e-12, "{title}: {peak} {largest}");
+    }
+    // Each curve is that of its own load step: run alone, it is that step. Both solve the same equations to a tolerance of 1e-10 from other starts; resonances enlarge that.
+    let open = "throws.0.ends.0.cylinder_pressure.held_open=true";
+    let other = "throws.1.ends.0.cylinder_pressure.held_open=true";
+    let alone = once("compressor-6-throw.toml", &["load_steps=[]", open, other]);
+    let reference = &alone.tables["speed_range"];
+    let at = |t: &Series, column: &str, speed: f64| {
+        let k = t.axis.values.iter().position(|w| (w - speed).abs() < 1e-9).expect("a speed of the diagram");
+        t.get(column).expect("drawn").values[k]
+    };
+    for speed in [500.0, 800.0, 1100.0] {
+        let own = at(reference, "shaft3.stress_amplitude", speed);
+        let step = at(table, "shaft3.step2.stress_amplitude", speed);
+        assert!((step / own - 1.0).abs() < 1e-6, "{speed}: {step} {own}");
+        assert!((at(table, "shaft3.step1.stress_amplitude", speed) / own - 1.0).abs() > 1e-3, "{speed}");
+    }
+    // One load step has no envelope.
+    let one = drawn(&alone, "crank 1-2 over the speed: stress");
+    assert!(one.over.is_none() && one.lines.len() == 1);
+}
+
 #[test]
 fn a_limit_of_a_shaft_stands_before_that_of_all_and_load_steps_part_limits() {
     let limits = |own: &str| {
@@ -708,6 +771,13 @@ fn a_limit_of_a_shaft_stands_before_that_of_all_and_load_steps_part_limits() {
     assert_eq!(sources(&once("compressor-6-throw.toml", &[&limits(""), steps])), ["own"]);
     let parted = once("compressor-6-throw.toml", &[&limits(", load_steps = [\"open\"]"), steps]);
     assert_eq!(sources(&parted), ["all", "own"]);
+    let own = drawn(&parted, "crank 1-2 over the speed: stress");
+    let marked: Vec<(f64, &str)> = own
+        .marks
+        .iter()
+        .filter_map(|m| if let Mark::Limit { y, label } = m { Some((*y, label.as_str())) } else { None })
+        .collect();
+    assert_eq!(marked, [(40.0, "limit in full"), (60.0, "limit in open")]);
     let rows = told(&parted, "Limits");
     let labels: Vec<&String> = rows.iter().map(|r| &r.0).collect();
     assert!(labels.iter().enumerate().all(|(k, l)| !labels[..k].contains(l)), "{labels:?}");

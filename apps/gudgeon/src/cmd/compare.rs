@@ -5,14 +5,16 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use gudgeon_core::quantity::with_decimal_point;
-use gudgeon_core::result::{Comparison, Note, NoteLevel, RunResult};
+use gudgeon_core::result::{
+    Comparison, Confidence, Difference, Note, NoteLevel, RunResult, VERDICT, Variant,
+};
 use gudgeon_study::{Plan, Subject};
 use indexmap::IndexMap;
 
 use crate::args::CompareArgs;
 use crate::cmd::{checked, open_out, shares};
 use crate::failure::Failure;
-use crate::ui::{Ui, number, table, unit, wrapped};
+use crate::ui::{Ui, number, signed, table, unit, wrapped};
 
 pub fn compare(a: &CompareArgs, ui: &Ui) -> Result<(), Failure> {
     let swaps = a.swap.iter().map(|s| values("--swap", s)).collect::<Result<Vec<_>, _>>()?;
@@ -126,11 +128,6 @@ fn split(text: &str) -> Vec<String> {
     all.into_iter().map(|v| v.trim().to_owned()).collect()
 }
 
-/// Numerical uncertainty of a result; 0 where nobody asked for it.
-fn uncertainty(r: &RunResult, name: &str) -> f64 {
-    r.verification.as_ref().and_then(|v| v.uncertainty.get(name)).copied().unwrap_or(0.0)
-}
-
 /// Combinations that stand side by side with all their results; of more, each gets a line with some.
 const COLUMNS: usize = 4;
 
@@ -145,11 +142,13 @@ fn text(c: &Comparison, wanted: &[String]) -> String {
     } else {
         listed(&mut s, c);
     }
+    bases(&mut s, c);
     if c.cases.len() == 1 && c.variants.len() <= COLUMNS {
         side_by_side(&mut s, c, wanted);
     } else {
         s.push_str(&one_below_the_other(c, wanted));
     }
+    s.push_str(&legend(c));
     s.push_str(&c.shares.first().map_or_else(String::new, shares::text));
     s
 }
@@ -158,31 +157,89 @@ fn letter(i: usize) -> String {
     format!("({})", i + 1)
 }
 
-/// Every combination, then what the runs say: what several say of the same subject once, in the words of the first. Writing to a String cannot fail.
+/// Every combination, then what the runs say: the same words once. Writing to a String cannot fail.
 fn listed(s: &mut String, c: &Comparison) {
     let ran = c.variants.iter().filter(|v| v.outcome.is_ok()).count();
-    let mut said: IndexMap<&str, (&Note, Vec<usize>)> = IndexMap::new();
+    let mut topics: IndexMap<&str, Vec<(usize, &Note)>> = IndexMap::new();
     for (i, v) in c.variants.iter().enumerate() {
         let why = v.why().map_or_else(String::new, |why| format!("  {why}"));
         let _ = writeln!(s, "  {} {}{why}", letter(i), v.label);
         for n in v.outcome.iter().flat_map(|r| &r.solver.notes) {
-            let of = &mut said.entry(&n.topic).or_insert_with(|| (n, Vec::new())).1;
-            if of.last() != Some(&i) {
-                of.push(i);
-            }
+            topics.entry(&n.topic).or_default().push((i, n));
         }
     }
-    let mut said: Vec<(&Note, Vec<usize>)> = said.into_values().collect();
-    said.sort_by_key(|(n, _)| n.numerical);
-    for (n, of) in said {
-        let letters: Vec<String> = of.iter().map(|i| letter(*i)).collect();
-        let who = match of.len() {
-            1 => letters[0].clone(),
-            k if k == ran => format!("all, here {}", letters[0]),
-            _ => format!("{}, here the first", letters.join(" ")),
+    let mut said: Vec<Said<'_>> = topics.into_values().flat_map(said).collect();
+    said.sort_by_key(|n| n.note.numerical);
+    for n in said {
+        let letters: Vec<String> = n.of.iter().map(|i| letter(*i)).collect();
+        let who = match n.of.len() {
+            k if k > 1 && k == ran => "all".to_owned(),
+            _ => letters.join(" "),
         };
-        let _ = writeln!(s, "  note of {who}: {}", n.text);
+        let figures = if n.alike { String::new() } else { format!(", with the figures of {}", letters[0]) };
+        let _ = writeln!(s, "  note of {who}{figures}: {}", n.note.text);
     }
+}
+
+/// What runs say of one subject.
+struct Said<'a> {
+    note: &'a Note,
+    of: Vec<usize>,
+    /// Whether all of them say it with the same figures.
+    alike: bool,
+}
+
+/// The notes of one topic: what decides about a variant, a limit or a verdict, apart for all that say something else; anything else once, with the figures of
+/// the first.
+fn said<'a>(notes: Vec<(usize, &'a Note)>) -> Vec<Said<'a>> {
+    let decides = |n: &Note| n.topic == VERDICT || n.level >= NoteLevel::Exceeded;
+    let apart = notes.iter().any(|(_, n)| decides(n));
+    let mut all: Vec<Said<'a>> = Vec::new();
+    for (i, note) in notes {
+        match all.iter_mut().find(|s| !apart || s.note.text == note.text) {
+            Some(s) => {
+                s.alike &= s.note.text == note.text;
+                if s.of.last() != Some(&i) {
+                    s.of.push(i);
+                }
+            }
+            None => all.push(Said { note, of: vec![i], alike: true }),
+        }
+    }
+    all
+}
+
+/// Which combinations the others are compared with, where it is not the first. Writing to a String cannot fail.
+fn bases(s: &mut String, c: &Comparison) {
+    for case in 0..c.cases.len() {
+        let first = c.variants.iter().position(|v| v.case == case);
+        if let (Some(first), Some(base)) = (first, c.base(case))
+            && first != base
+        {
+            let _ = writeln!(
+                s,
+                "  differences are to {}, the first that ran: {} has no result",
+                letter(base),
+                letter(first)
+            );
+        }
+    }
+}
+
+/// What stands beside differences; nothing without any.
+fn legend(c: &Comparison) -> String {
+    let compared = |(k, v): (usize, &Variant)| v.outcome.is_ok() && c.base(v.case) != Some(k);
+    let text = match any_known(c) {
+        _ if !c.variants.iter().enumerate().any(compared) => return String::new(),
+        true => {
+            "± the numerical uncertainties of both runs added, a bound; ≈ not resolved: the difference is not larger; ? not known"
+        }
+        false if c.is_verified() => {
+            "no uncertainty of the differences is known: `--verify` found no numerical setting that tells it"
+        }
+        false => "no uncertainty of the differences is known: run with `--verify`",
+    };
+    wrapped(text, 2)
 }
 
 /// How many combinations have a result, why others have none, and how often the runs say what. Writing to a String cannot fail.
@@ -226,8 +283,8 @@ fn side_by_side(s: &mut String, c: &Comparison, wanted: &[String]) {
     }
     for name in base.results.keys().filter(|n| wanted.is_empty() || wanted.contains(n)) {
         let mut row = vec![name.clone(), unit(&base.results[name].unit), value(base, name)];
-        for (_, r) in &shown[1..] {
-            row.extend([value(r, name), change(base, r, name)]);
+        for (i, r) in &shown[1..] {
+            row.extend([value(r, name), change(c, *i, name)]);
         }
         rows.push(row);
     }
@@ -251,7 +308,7 @@ fn side_by_side(s: &mut String, c: &Comparison, wanted: &[String]) {
 /// Results that stand beside each other where combinations stand below each other and nobody asked for others.
 const RESULTS: usize = 4;
 
-/// Some results of every combination, one a line, each beside its change to the first combination of its case.
+/// Some results of every combination, one a line, each beside its change to the base of its case.
 fn one_below_the_other(c: &Comparison, wanted: &[String]) -> String {
     let Some(any) = c.variants.iter().find_map(|v| v.outcome.as_ref().ok()) else { return String::new() };
     let names = shown_results(any, wanted);
@@ -262,13 +319,11 @@ fn one_below_the_other(c: &Comparison, wanted: &[String]) -> String {
     }
     let mut rows = vec![head];
     for (i, v) in c.variants.iter().enumerate() {
-        let base = c.variants.iter().find(|b| b.case == v.case).and_then(|b| b.outcome.as_ref().ok());
         let mut row = vec![letter(i)];
         for name in &names {
-            row.extend(match (&v.outcome, base) {
-                (Ok(r), Some(b)) => [value(r, name), change(b, r, name)],
-                (Ok(r), None) => [value(r, name), String::new()],
-                (Err(_), _) => ["-".into(), String::new()],
+            row.extend(match &v.outcome {
+                Ok(r) => [value(r, name), change(c, i, name)],
+                Err(_) => ["-".into(), String::new()],
             });
         }
         row.push(v.label.clone());
@@ -300,20 +355,41 @@ fn value(r: &RunResult, name: &str) -> String {
     r.results.get(name).map_or_else(|| "-".into(), |v| number(v.value))
 }
 
-/// How a result differs from that of the base: in per cent, or not beyond what the numerics leave open.
-fn change(base: &RunResult, r: &RunResult, name: &str) -> String {
-    let (Some(b), Some(v)) = (base.results.get(name), r.results.get(name)) else { return String::new() };
-    if (v.value - b.value).abs() < uncertainty(base, name) + uncertainty(r, name) {
-        "numerics".into()
-    } else if b.value != 0.0 && v.value != b.value {
-        format!("{:+.2} %", 100.0 * (v.value / b.value - 1.0))
-    } else {
-        String::new()
+/// How a result differs from that of the base: in per cent, where that says something; marked where the numerical errors alone can make it. Nothing where it
+/// does not differ, or from a zero without uncertainty: the value says it.
+fn change(c: &Comparison, variant: usize, name: &str) -> String {
+    let of = |k: usize| c.variants[k].outcome.as_ref().ok()?.results.get(name);
+    let (Some(d), Some(v)) = (c.difference(variant, name), of(variant)) else { return String::new() };
+    let from_zero = || c.base(c.variants[variant].case).and_then(of).is_some_and(|b| b.value == 0.0);
+    if d.absolute == 0.0 || d.uncertainty.is_none() && from_zero() {
+        return String::new();
+    }
+    told(&d, &v.unit, any_known(c))
+}
+
+/// Whether the uncertainty of any result is known.
+fn any_known(c: &Comparison) -> bool {
+    let mut found = c.variants.iter().flat_map(|v| &v.outcome).flat_map(|r| &r.verification);
+    found.any(|v| !v.uncertainty.is_empty())
+}
+
+/// `some`: whether the uncertainty of any result is known.
+fn told(d: &Difference, u: &str, some: bool) -> String {
+    let text = match d.percent {
+        Some(p) => signed(p, "%", d.percent_uncertainty),
+        None => signed(d.absolute, &unit(u), d.uncertainty),
+    };
+    match d.confidence() {
+        Confidence::NotResolved => format!("≈ {text}"),
+        Confidence::Unknown if some => format!("{text} ?"),
+        _ => text,
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use gudgeon_core::result::{ComparedCase, Failure, Value, Verification};
+
     use super::*;
 
     #[test]
@@ -327,6 +403,79 @@ mod tests {
         for wrong in ["a", "=x", "a=", "a=x,,y", "a=x,"] {
             assert!(values(wrong).is_none(), "{wrong}");
         }
+    }
+
+    fn variant(notes: Vec<Note>, results: &[(&str, f64, &str, Option<f64>)]) -> Variant {
+        let mut run = RunResult::default();
+        let mut verification = Verification::default();
+        for (name, value, unit, uncertainty) in results {
+            let v = Value { value: *value, unit: (*unit).into(), what: String::new() };
+            run.results.insert((*name).into(), v);
+            verification.uncertainty.extend(uncertainty.map(|u| ((*name).to_owned(), u)));
+        }
+        run.verification = (!verification.uncertainty.is_empty()).then_some(verification);
+        run.solver.notes = notes;
+        Variant { label: "x".into(), case: 0, swaps: Vec::new(), outcome: Ok(run) }
+    }
+
+    fn comparison(variants: Vec<Variant>) -> Comparison {
+        Comparison { cases: vec![ComparedCase::default()], variants, ..Comparison::default() }
+    }
+
+    #[test]
+    fn differences_carry_their_confidence() {
+        let base =
+            [("q", 10.0, "l/min", Some(0.01)), ("at", 719.0, "deg", Some(0.25)), ("none", 0.0, "1", None)];
+        let other =
+            [("q", 10.32, "l/min", Some(0.001)), ("at", 1.0, "deg", Some(0.25)), ("none", 3.0, "1", None)];
+        let c = comparison(vec![variant(Vec::new(), &base), variant(Vec::new(), &other)]);
+        // 100 (0.001 + 0.01 · 1.032)/(10 - 0.01) = 0.11 %.
+        assert_eq!(change(&c, 1, "q"), "+3.2 % ± 0.1");
+        assert_eq!(change(&c, 1, "at"), "+2.0 deg ± 0.5");
+        assert_eq!(change(&c, 1, "none"), "");
+        assert_eq!(change(&c, 0, "q"), "");
+        let near = [("q", 10.01, "l/min", Some(0.01))];
+        let c = comparison(vec![variant(Vec::new(), &base), variant(Vec::new(), &near)]);
+        assert_eq!(change(&c, 1, "q"), "≈ +0.1 % ± 0.2");
+        assert!(legend(&c).contains("not resolved"));
+        let unknown = [("q", 10.32, "l/min", None), ("at", 1.0, "deg", None)];
+        let c = comparison(vec![variant(Vec::new(), &unknown[..1]), variant(Vec::new(), &near)]);
+        assert_eq!(change(&c, 1, "q"), "-3.00 % ?");
+        let c = comparison(vec![variant(Vec::new(), &unknown), variant(Vec::new(), &unknown)]);
+        assert!(change(&c, 1, "q").is_empty() && legend(&c).contains("--verify"));
+    }
+
+    #[test]
+    fn the_first_that_ran_is_the_base() {
+        let one = |q: f64| variant(Vec::new(), &[("q", q, "N", None)]);
+        let mut none = one(0.0);
+        none.outcome = Err(Failure {
+            code: "impossible".into(),
+            message: "the gap closes".into(),
+            ..Failure::default()
+        });
+        let c = comparison(vec![none.clone(), one(2.0), one(3.0)]);
+        let text = text(&c, &[]);
+        assert!(text.contains("differences are to (2), the first that ran: (1) has no result"), "{text}");
+        assert!(text.contains("to (2)") && text.contains("+50.00 %"), "{text}");
+        let several = Comparison { variants: vec![none, one(2.0), one(3.0), one(4.0), one(5.0)], ..c };
+        let text = super::text(&several, &["q".to_owned()]);
+        assert!(text.contains("+150.00 %"), "{text}");
+    }
+
+    #[test]
+    fn each_variant_has_its_own_verdict() {
+        let notes = |kept: &str, share: &str| vec![Note::info(VERDICT, kept), Note::caution("floor", share)];
+        let c = comparison(vec![
+            variant(notes("all limits are kept", "3 %"), &[]),
+            variant(notes("2 limits are not kept", "4 %"), &[]),
+            variant(notes("all limits are kept", "5 %"), &[]),
+        ]);
+        let mut s = String::new();
+        listed(&mut s, &c);
+        assert!(s.contains("note of (1) (3): all limits are kept"), "{s}");
+        assert!(s.contains("note of (2): 2 limits are not kept"), "{s}");
+        assert!(s.contains("note of all, with the figures of (1): 3 %"), "{s}");
     }
 
     #[test]

@@ -14,6 +14,8 @@
     };
     const all = k.lines.map(pair).filter(Boolean);
     if (!all.length) return;
+    const over = k.over && pair(k.over, 0);
+    if (over) all.push({ ...over, color: "var(--fg)", dash: "2 3" });
     const rays = (k.rays || []).map(pair).filter(Boolean);
     new Chart(where, {
       title: capital(f.title), hint: f.hint, xName: words(k.own_x ? x.name.split(".").pop() : x.name), xUnit: x.unit, lines: all, logX: k.log_x, pickX: !rays.length, wide,

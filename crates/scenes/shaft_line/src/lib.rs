@@ -265,10 +265,11 @@ impl Run<'_> {
             (worst, peaks) = self.results.range(&mut machine, &speeds).map_err(failed)?;
         }
         if !plan.verdict {
+            let mut alone = [(steps::AS_IT_STANDS.to_owned(), machine)];
             if plan.range {
-                self.results.over_speed(&mut machine, &speeds, &peaks, worst).map_err(failed)?;
+                self.results.over_speed(&mut alone, 0, (&speeds, &peaks), worst).map_err(failed)?;
             }
-            self.results.work(&machine);
+            self.results.work(&alone[0].1);
             return Ok(());
         }
         progress(Progress { phase: "verdict".into(), fraction: 0.6 })?;
@@ -290,8 +291,8 @@ impl Run<'_> {
         }
         let peaks = self.results.verdict(&mut all, &speeds, plan.forced).map_err(failed)?;
         let own = steps::all(case).iter().position(|s| s.1.is_none());
-        if let Some((_, m)) = own.and_then(|k| all.get_mut(k)).filter(|_| plan.range) {
-            self.results.over_speed(m, &speeds, &peaks, worst).map_err(failed)?;
+        if let Some(own) = own.filter(|_| plan.range) {
+            self.results.over_speed(&mut all, own, (&speeds, &peaks), worst).map_err(failed)?;
         }
         let machines: Vec<&Assembled> = all.iter().map(|(_, m)| m.a).collect();
         self.results.gas_loads(&machines);

@@ -326,10 +326,18 @@ fn top_of(steps: &mut [Step<'_, '_>], name: &str) -> Option<Top> {
     best
 }
 
-/// The limit on the amplitude in a shaft, as drawn.
-pub(super) fn limit_of(limits: &[Forced], name: &str, stressed: bool) -> Option<f64> {
+/// The limits on the amplitude in a shaft, as drawn, each with its name; those that count in some load steps alone name them.
+pub(super) fn limits_of(limits: &[Forced], name: &str, stressed: bool) -> Vec<(f64, String)> {
     let (quantity, factor) = if stressed { (Quantity::Stress, 1e-6) } else { (Quantity::Torque, 1.0) };
-    let found =
-        limits.iter().filter(|l| l.subject == name && l.quantity == quantity).map(|l| factor * l.admitted);
-    found.reduce(f64::min)
+    let label = |l: &Forced| match l.load_steps.as_slice() {
+        [] => "limit".to_owned(),
+        some => format!("limit in {}", some.join(", ")),
+    };
+    let own = limits.iter().filter(|l| l.subject == name && l.quantity == quantity);
+    own.map(|l| (factor * l.admitted, label(l))).collect()
+}
+
+/// The lowest limit on the amplitude in a shaft.
+fn limit_of(limits: &[Forced], name: &str, stressed: bool) -> Option<f64> {
+    limits_of(limits, name, stressed).into_iter().map(|l| l.0).reduce(f64::min)
 }

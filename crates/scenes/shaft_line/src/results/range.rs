@@ -2,9 +2,9 @@
 
 use gudgeon_core::EvalError;
 use gudgeon_core::file::Files;
-use gudgeon_core::result::{Figure, FigureKind, Lines, Mark, Note, Series};
+use gudgeon_core::result::{Column, Figure, FigureKind, Lines, Mark, Note, Series};
 
-use super::envelope::limit_of;
+use super::envelope::limits_of;
 use super::{MAX_DRAWN, Results, column};
 use crate::assemble::{Assembled, throws_alone};
 use crate::machine::{Machine, Point, Sought};
@@ -76,17 +76,19 @@ impl Results<'_> {
         Ok((top.1, peaks))
     }
 
-    /// Curves over the speeds of the diagrams and the peaks between them, of all shafts and of the orders of the shaft `worst`.
+    /// Curves over the speeds of the diagrams and the peaks between them, of all shafts and of the orders of the shaft `worst` in the load step `own`, and of
+    /// each shaft in all load steps.
     ///
     /// # Errors
     /// No answer at a speed.
     pub fn over_speed(
         &mut self,
-        machine: &mut Machine<'_>,
-        diagram: &[f64],
-        peaks: &[f64],
+        all: &mut [(String, Machine<'_>)],
+        own: usize,
+        (diagram, peaks): (&[f64], &[f64]),
         worst: usize,
     ) -> Result<(), EvalError> {
+        let machine = &mut all[own].1;
         let a = machine.a;
         let links = a.line.links.len();
         let (from, to) = (diagram[0], diagram[diagram.len() - 1]);
@@ -96,6 +98,7 @@ impl Results<'_> {
         speeds.sort_unstable_by(f64::total_cmp);
         speeds.dedup_by(|a, b| *a - *b <= 1e-12 * *b);
         let rows = points(machine, &speeds)?;
+        let orders = machine.orders.clone();
         let mut table = Series {
             axis: column("speed", "rpm", speeds.iter().map(|w| rpm(*w)).collect()),
             columns: Vec::new(),
@@ -111,15 +114,16 @@ impl Results<'_> {
         }
         let hint = format!("half of peak to peak{}", self.own_step());
         self.lines("Vibratory torque over the speed", &hint, "speed_range", "speed", curves, false);
-        self.weigh_critical_speeds(&machine.orders, links, &rows, &speeds);
-        let curves = orders_of(worst, &machine.orders, links, &rows, &mut table);
+        self.weigh_critical_speeds(&orders, links, &rows, &speeds);
+        let curves = orders_of(worst, &orders, links, &rows, &mut table);
         if let Some(l) = a.line.links.get(worst) {
             let title = format!("Orders of {} over the speed", l.name);
             let hint = format!("torque amplitude of the strongest orders{}", self.own_step());
             self.lines(&title, &hint, "speed_range", "speed", curves, false);
         }
-        self.order_spectra(a, &machine.orders, &rows, &speeds);
-        self.shafts_over_speed(a, &rows, &mut table);
+        self.order_spectra(a, &orders, &rows, &speeds);
+        let steps = in_each(all, &Operating::new(self.case), &speeds);
+        self.shafts_over_speed(a, &rows, &mut table, &steps);
         self.out.tables.insert("speed_range".into(), table);
         Ok(())
     }
@@ -131,38 +135,47 @@ impl Results<'_> {
         own.map_or_else(String::new, |(name, _)| format!(", load step `{name}`"))
     }
 
-    /// Stress over the speed of each shaft that has one, torque of the others that have a limit, with limit and operating range.
-    fn shafts_over_speed(&mut self, a: &Assembled, rows: &[Point], table: &mut Series) {
+    /// Stress over the speed of each shaft that has one, torque of the others that have a limit: a curve a load step, their envelope, limits and operating
+    /// range.
+    fn shafts_over_speed(&mut self, a: &Assembled, rows: &[Point], table: &mut Series, steps: &InSteps<'_>) {
         let limits = forced(self.case, a);
         let range = Operating::new(self.case);
+        let mut by_step = Series { axis: steps.axis.clone(), columns: Vec::new() };
         for (l, link) in a.line.links.iter().enumerate().take(MAX_DRAWN) {
-            let stress = a.stress[l];
-            let limit = limit_of(&limits, &link.name, stress.is_some());
-            if stress.is_none() && limit.is_none() {
+            let shown = Shown { link: l, name: &link.name, stressed: a.stress[l].is_some() };
+            let limits = limits_of(&limits, &link.name, shown.stressed);
+            if !shown.stressed && limits.is_empty() {
                 continue;
             }
-            let (what, unit, factor) = match stress {
-                Some(s) => ("stress", "MPa", s / 1e6),
-                None => ("torque", "N m", 1.0),
-            };
-            let name = format!("shaft{}.{what}_amplitude", l + 1);
-            if table.get(&name).is_none() {
+            let (what, unit) = shown.what();
+            let own = format!("shaft{}.{what}_amplitude", l + 1);
+            if let Some(factor) = shown.factor(a, l).filter(|_| table.get(&own).is_none()) {
                 let values = rows.iter().map(|p| factor * p.links[l].amplitude).collect();
-                table.columns.push(column(name.clone(), unit, values));
+                table.columns.push(column(own.clone(), unit, values));
             }
+            let (lines, over) = match steps.all.len() {
+                0 => (vec![(format!("vibratory {what}"), own)], None),
+                _ => shown.curves(steps, &mut by_step),
+            };
             let mut marks = vec![Mark::At { x: rpm(self.case.speed.si()), label: "mean speed".into() }];
             if range.is_wide() {
                 let (from, to) = (rpm(range.from), rpm(range.to));
                 marks.push(Mark::Band { from, to, kept_free: false, label: "operating range".into() });
             }
-            marks.extend(limit.map(|y| Mark::Limit { y, label: "limit".into() }));
-            let lines = vec![(format!("vibratory {what}"), name)];
+            marks.extend(limits.into_iter().map(|(y, label)| Mark::Limit { y, label }));
+            let (table, step) = match over {
+                Some(_) => (IN_STEPS, ", in each load step".to_owned()),
+                None => ("speed_range", self.own_step()),
+            };
             self.out.figures.push(Figure {
                 title: format!("{} over the speed: {what}", link.name),
-                hint: format!("half of peak to peak{}", self.own_step()),
-                table: "speed_range".into(),
-                kind: FigureKind::Lines(Lines { x: "speed".into(), lines, marks, ..Lines::default() }),
+                hint: format!("half of peak to peak{step}"),
+                table: table.into(),
+                kind: FigureKind::Lines(Lines { x: "speed".into(), lines, over, marks, ..Lines::default() }),
             });
+        }
+        if !by_step.columns.is_empty() {
+            self.out.tables.insert(IN_STEPS.into(), by_step);
         }
     }
 
@@ -264,6 +277,78 @@ impl Results<'_> {
             let note = Note::caution("gas_over_speed", text);
             self.note(&[note.amount("largest_change", 100.0 * worst.0, "%")]);
         }
+    }
+}
+
+/// Table of the shafts over the speed in each load step.
+const IN_STEPS: &str = "shafts_over_speed";
+
+/// Several load steps over the speed.
+struct InSteps<'a> {
+    axis: Column,
+    /// Number, name, line and vibration of each; empty where the diagrams show all there is.
+    all: Vec<(usize, String, &'a Assembled, Vec<Point>)>,
+}
+
+/// The load steps that have an answer at all speeds of the diagrams within the operating range, where the verdict asked for most of them, and at every second one
+/// beside it, where nothing is judged. None where no range is judged.
+fn in_each<'a>(all: &mut [(String, Machine<'a>)], range: &Operating, speeds: &[f64]) -> InSteps<'a> {
+    let inside = |w: f64| w >= range.from && w <= range.to;
+    let shown: Vec<f64> = speeds
+        .iter()
+        .copied()
+        .enumerate()
+        .filter(|(k, w)| inside(*w) || k % 2 == 0)
+        .map(|(_, w)| w)
+        .collect();
+    let mut steps = Vec::new();
+    if all.len() > 1 && range.is_wide() {
+        for (number, (name, machine)) in all.iter_mut().enumerate() {
+            machine.prepare(&shown);
+            steps.extend(points(machine, &shown).ok().map(|rows| (number, name.clone(), machine.a, rows)));
+        }
+    }
+    InSteps { axis: column("speed", "rpm", shown.iter().map(|w| rpm(*w)).collect()), all: steps }
+}
+
+/// Label and column of a curve.
+type Curve = (String, String);
+
+/// A shaft whose stress is shown, or whose torque.
+struct Shown<'n> {
+    link: usize,
+    name: &'n str,
+    stressed: bool,
+}
+
+impl Shown<'_> {
+    const fn what(&self) -> (&'static str, &'static str) {
+        if self.stressed { ("stress", "MPa") } else { ("torque", "N m") }
+    }
+
+    /// What is shown by the torque, of link `at` of a line.
+    fn factor(&self, a: &Assembled, at: usize) -> Option<f64> {
+        if self.stressed { a.stress[at].map(|s| s / 1e6) } else { Some(1.0) }
+    }
+
+    /// Adds its amplitudes in each load step that has it, and their envelope.
+    fn curves(&self, steps: &InSteps<'_>, table: &mut Series) -> (Vec<Curve>, Option<Curve>) {
+        let (what, unit) = self.what();
+        let n = self.link + 1;
+        let mut lines = Vec::new();
+        let mut envelope = vec![0.0_f64; steps.axis.values.len()];
+        for (number, name, a, rows) in &steps.all {
+            let Some(at) = a.line.links.iter().position(|x| x.name == self.name) else { continue };
+            let Some(factor) = self.factor(a, at) else { continue };
+            let values: Vec<f64> = rows.iter().map(|p| factor * p.links[at].amplitude).collect();
+            envelope.iter_mut().zip(&values).for_each(|(e, v)| *e = e.max(*v));
+            let own = format!("shaft{n}.step{}.{what}_amplitude", number + 1);
+            table.columns.push(column(own.clone(), unit, values));
+            lines.push((name.clone(), own));
+        }
+        let over = format!("shaft{n}.{what}_envelope");
+        table.columns.push(column(over.clone(), unit, envelope));
+        (lines, Some(("envelope".into(), over)))
     }
 }
 
