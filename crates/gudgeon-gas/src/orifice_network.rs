@@ -157,6 +157,7 @@ impl Default for OrificeAreas {
 
 impl<P: From<Area> + Default> PassageModel<P> for OrificeAreas {
     const SIGNED: bool = true;
+    const GAP_HOLDS_FACE: bool = true;
 
     fn ring_passages(&self, _: usize, ring: &RingGeometry, o: &Openings) -> RingPassages<P> {
         let face = TAU * (o.liner_radius - o.h) * (ring.leak_face + lifted(o.h, self.face_oil));

@@ -2,7 +2,7 @@
 
 use gudgeon_core::EvalError;
 use gudgeon_core::geometry::BackVolume;
-use gudgeon_core::kinds::{GasFlow, GasIn, GasOut, GasPartials};
+use gudgeon_core::kinds::{GasFlow, GasIn, GasOut, GasPartials, GasPassage};
 use gudgeon_core::states::{ColumnInfo, StateInfo, Stateful};
 
 use crate::gas_temperature::LandEnergy;
@@ -50,6 +50,9 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> PackNetwork<M, L> {
             for (link, sign) in &self.drained {
                 *blow_by += sign * self.net.flow(*link);
             }
+        }
+        for (link, flow) in out.passages.iter_mut().enumerate() {
+            *flow = self.net.flow(link);
         }
     }
 }
@@ -101,6 +104,10 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> GasFlow for PackNetwork<M, L> {
 
     fn n_masses(&self) -> usize {
         self.net.volumes()
+    }
+
+    fn passages(&self) -> &[GasPassage] {
+        &self.passages
     }
 
     fn has_energy(&self) -> bool {
@@ -216,6 +223,10 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> GasFlow for PackNetwork<M, L> {
         let blow_by = (self.links.len() - 1) * m..self.links.len() * m;
         for (link, sign) in &self.drained {
             self.net.add_flow_gradient(*link, *sign, &mut out.flow_out[blow_by.clone()]);
+        }
+        for (link, row) in out.passages.chunks_exact_mut(m.max(1)).enumerate() {
+            row.fill(0.0);
+            self.net.add_flow_gradient(link, 1.0, row);
         }
         Ok(true)
     }

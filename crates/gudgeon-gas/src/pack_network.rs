@@ -1,7 +1,7 @@
 //! The network of lands and spaces behind rings: any law of a passage and any passages around the rings as one gas-flow model.
 
 use gudgeon_core::geometry::{BackVolume, Drain, PackGeometry, RingPlace, Vent};
-use gudgeon_core::kinds::{GasIn, gas_energy, gas_mass};
+use gudgeon_core::kinds::{GasIn, GasPassage, GasSpace, GasWay, gas_energy, gas_mass};
 use gudgeon_core::states::StateInfo;
 use gudgeon_core::{BuildError, EvalError};
 
@@ -114,6 +114,8 @@ pub struct PackNetwork<M, L: PassageLaw = OrificeLaw> {
     pub(crate) lands: Vec<usize>,
     /// Links to the crankcase (1) and from it (-1) beside those of the last ring.
     pub(crate) drained: Vec<(usize, f64)>,
+    /// What the links are, in the order of the links.
+    pub(crate) passages: Vec<GasPassage>,
     /// Of all nodes \[K\].
     temperatures: Vec<f64>,
     /// Of all volumes: masses, then energies where there is a balance of them.
@@ -129,6 +131,9 @@ struct Layout {
     volumes: usize,
     lands: Vec<usize>,
     ends: Vec<(usize, usize)>,
+    passages: Vec<GasPassage>,
+    /// What each node is.
+    spaces: Vec<GasSpace>,
     links: Vec<RingLinks>,
     /// Links from spaces to the crankcase.
     drains: Vec<(usize, Drain)>,
@@ -137,9 +142,10 @@ struct Layout {
 impl Layout {
     /// Volumes from the top: behind ring 1, land 2, behind ring 2, ...; then chamber and crankcase. `fast` says which spaces behind
     /// rings store nothing.
-    fn new(pack: &PackGeometry, fast: &[bool], has_face: bool) -> Self {
+    fn new<P, M: PassageModel<P>>(pack: &PackGeometry, fast: &[bool]) -> Self {
         let n = pack.rings.len();
         let mut temperatures = Vec::with_capacity(2 * n + 1);
+        let mut spaces = Vec::with_capacity(2 * n + 1);
         let mut backs = vec![None; n];
         let mut lands = vec![0; n + 1];
         let mut names = Vec::with_capacity(2 * n);
@@ -148,17 +154,20 @@ impl Layout {
                 lands[i] = temperatures.len();
                 temperatures.push(pack.lands[i].temperature);
                 names.push(format!("land{}", i + 1));
+                spaces.push(GasSpace::Land(i));
             }
             if ring.has_room() && !fast[i] {
                 backs[i] = Some(temperatures.len());
                 temperatures.push(ring.back_temperature);
                 names.push(format!("ring{}.back", i + 1));
+                spaces.push(GasSpace::Behind(i));
             }
         }
         let volumes = temperatures.len();
         for i in [0, n] {
             lands[i] = temperatures.len();
             temperatures.push(pack.lands[i].temperature);
+            spaces.push(GasSpace::Land(i));
         }
         for (land, node) in pack.lands.iter().zip(&mut lands).take(n).skip(1) {
             if land.vent == Vent::Open {
@@ -171,18 +180,21 @@ impl Layout {
             volumes,
             lands,
             ends: Vec::new(),
+            passages: Vec::new(),
+            spaces,
             links: Vec::new(),
             drains: Vec::new(),
         };
         for i in 0..n {
-            all.add_ring(pack, i, backs[i], fast[i], has_face);
+            all.add_ring::<P, M>(pack, i, backs[i], fast[i]);
         }
         all.add_drains(pack);
         all
     }
 
-    fn link(&mut self, a: usize, b: usize) -> usize {
+    fn link(&mut self, ring: usize, way: GasWay, a: usize, b: usize) -> usize {
         self.ends.push((a, b));
+        self.passages.push(GasPassage { ring, way, from: self.spaces[a], to: self.spaces[b] });
         self.ends.len() - 1
     }
 
@@ -192,13 +204,12 @@ impl Layout {
     }
 
     /// The links of ring `i`, whose space behind has the node `back` if it has a state.
-    fn add_ring(
+    fn add_ring<P, M: PassageModel<P>>(
         &mut self,
         pack: &PackGeometry,
         i: usize,
         back: Option<usize>,
         through: bool,
-        has_face: bool,
     ) {
         let ring = &pack.rings[i];
         let (above, below) = (self.lands[i], self.lands[i + 1]);
@@ -210,12 +221,15 @@ impl Layout {
             _ => Some(back.unwrap_or(self.crankcase())),
         };
         let upper = match (space, ring.back) {
-            (Some(space), b) => (b != BackVolume::OpenAbove).then(|| self.link(above, space)),
-            (None, _) => through.then(|| self.link(above, below)),
+            (Some(space), b) => {
+                (b != BackVolume::OpenAbove).then(|| self.link(i, GasWay::UpperFlank, above, space))
+            }
+            (None, _) => through.then(|| self.link(i, GasWay::Groove, above, below)),
         };
-        let lower = space.filter(|s| *s != below).map(|space| self.link(space, below));
-        let gap = self.link(above, below);
-        let face = has_face.then(|| self.link(above, below));
+        let lower = space.filter(|s| *s != below).map(|space| self.link(i, GasWay::LowerFlank, space, below));
+        let direct = if M::GAP_HOLDS_FACE { GasWay::GapAndFace } else { GasWay::Gap };
+        let gap = self.link(i, direct, above, below);
+        let face = M::HAS_FACE.then(|| self.link(i, GasWay::Face, above, below));
         let behind = space.map_or([above, below], |node| [node; 2]);
         self.links.push(RingLinks { upper, lower, gap, face, through, back, drain: None, behind });
     }
@@ -225,11 +239,11 @@ impl Layout {
         let crankcase = self.crankcase();
         for (i, ring) in pack.rings.iter().enumerate() {
             if let (true, Vent::Drain(drain)) = (i > 0, pack.lands[i].vent) {
-                let link = self.link(self.lands[i], crankcase);
+                let link = self.link(i, GasWay::Drain, self.lands[i], crankcase);
                 self.drains.push((link, drain));
             }
             if let (Some(back), Vent::Drain(drain)) = (self.links[i].back, ring.vent) {
-                let link = self.link(back, crankcase);
+                let link = self.link(i, GasWay::Drain, back, crankcase);
                 self.drains.push((link, drain));
                 self.links[i].drain = Some(link);
             }
@@ -306,9 +320,9 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> PackNetwork<M, L> {
                 && eliminate_below.is_some_and(|limit| filling_time(&model, &law, &spaces, i) < limit)
         };
         let fast: Vec<bool> = (0..pack.rings.len()).map(is_fast).collect();
-        let layout = Layout::new(pack, &fast, M::HAS_FACE);
+        let layout = Layout::new::<L::Passage, M>(pack, &fast);
         let drained = layout.drained();
-        let Layout { names, temperatures, volumes, lands, ends, links, drains } = layout;
+        let Layout { names, temperatures, volumes, lands, ends, passages, links, drains, .. } = layout;
         let mut net = Network::new(law, pack.gas_constant, &temperatures, volumes, &ends)?;
         for (i, link) in links.iter().enumerate() {
             if let RingLinks { through: true, upper: Some(upper), .. } = link {
@@ -327,7 +341,7 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> PackNetwork<M, L> {
         if energy.is_some() {
             states.extend(names.iter().map(|name| gas_energy(name)));
         }
-        Ok(Self { name, model, spaces, net, links, lands, drained, temperatures, states, energy })
+        Ok(Self { name, model, spaces, net, links, lands, drained, passages, temperatures, states, energy })
     }
 
     /// Gives every gas space the law that `law_at` has for gas of its temperature \[K\], for what flows out of it.

@@ -101,6 +101,9 @@ pub trait PassageModel<P>: Send {
     /// Whether any ring has a passage past its face of its own.
     const HAS_FACE: bool = false;
 
+    /// Whether [`RingPassages::gap`] holds what passes between face and liner.
+    const GAP_HOLDS_FACE: bool = false;
+
     /// Whether an opening below zero means something (an area does, a height whose cube counts does not). Only then does
     /// [`GasFlow::unbound`](gudgeon_core::kinds::GasFlow::unbound) change anything.
     const SIGNED: bool = false;

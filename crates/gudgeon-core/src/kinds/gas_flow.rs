@@ -34,6 +34,47 @@ pub struct GasIn<'a> {
     pub rings: &'a [RingPlace],
 }
 
+/// A space that gas passes from or to, counted from 0 at the crown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum GasSpace {
+    /// A land: the first is the combustion chamber, the last the crankcase, with all that is open to it.
+    Land(usize),
+    /// The space behind a ring.
+    Behind(usize),
+}
+
+/// What a passage of the gas is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum GasWay {
+    /// The end gap, or the part of it that leads directly from land to land.
+    Gap,
+    /// Likewise, as one opening with what passes between face and liner.
+    GapAndFace,
+    /// Between face and liner.
+    Face,
+    /// Over the ring: past the upper flank of its groove.
+    UpperFlank,
+    /// Under the ring: past the lower flank.
+    LowerFlank,
+    /// Past both flanks, one after the other: a groove that stores nothing.
+    Groove,
+    /// A drain to the crankcase.
+    Drain,
+}
+
+/// A passage of the gas: flow from `from` to `to` is positive.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct GasPassage {
+    /// The ring that it is at, or below the land that it drains, counted from 0 at the crown.
+    pub ring: usize,
+    /// What it is.
+    pub way: GasWay,
+    /// Where it starts.
+    pub from: GasSpace,
+    /// Where it ends.
+    pub to: GasSpace,
+}
+
 /// Pressures and flows of the pack with `n` rings.
 #[derive(Debug, PartialEq, Default)]
 pub struct GasOut {
@@ -46,6 +87,8 @@ pub struct GasOut {
     /// Flow \[kg/s\] arriving in the land below each ring from the ring, downwards positive. Differs from `flow_in` by what
     /// the space behind the ring stores and drains. The last one is the blow-by: with it goes all that drains lead to the crankcase.
     pub flow_out: Vec<f64>,
+    /// Flow \[kg/s\] through each of [`GasFlow::passages`]: as many as the caller gives room for, none in [`new`](Self::new).
+    pub passages: Vec<f64>,
     /// Energy \[W\] that gas brings to all volumes over the boundaries, less the heat to their walls; 0 in a model without a balance of energy.
     pub power: f64,
 }
@@ -62,6 +105,7 @@ impl Clone for GasOut {
         self.p_back.clone_from(&other.p_back);
         self.flow_in.clone_from(&other.flow_in);
         self.flow_out.clone_from(&other.flow_out);
+        self.passages.clone_from(&other.passages);
         self.power = other.power;
     }
 }
@@ -75,6 +119,7 @@ impl GasOut {
             p_back: vec![0.0; rings],
             flow_in: vec![0.0; rings],
             flow_out: vec![0.0; rings],
+            passages: Vec::new(),
             power: 0.0,
         }
     }
@@ -94,6 +139,8 @@ pub struct GasPartials {
     pub flow_in: Vec<f64>,
     /// Of `flow_out` \[1/s\].
     pub flow_out: Vec<f64>,
+    /// Of `passages` \[1/s\]: as many rows as the caller gives room for, none in [`new`](Self::new).
+    pub passages: Vec<f64>,
 }
 
 impl GasPartials {
@@ -106,6 +153,7 @@ impl GasPartials {
             p_back: vec![0.0; rings * states],
             flow_in: vec![0.0; rings * states],
             flow_out: vec![0.0; rings * states],
+            passages: Vec::new(),
         }
     }
 }
@@ -138,6 +186,13 @@ pub trait GasFlow: Stateful + Send {
     /// Whether gas passes through the end gaps of the rings, so that a gap that closes leaves no model.
     fn uses_end_gaps(&self) -> bool {
         true
+    }
+
+    /// The passages of its gas, in the order of [`GasOut::passages`]: what comes into a space through them less what leaves it is stored there. Those
+    /// of a ring that start where its [`Gap`](GasWay::Gap) does pass [`GasOut::flow_in`] together. None, the default, where no gas flows, or where
+    /// the model does not know.
+    fn passages(&self) -> &[GasPassage] {
+        &[]
     }
 
     /// Whether the temperature of its gas follows from a balance of energy, whose ledger [`GasOut::power`] and [`each_space`](Self::each_space) are.

@@ -16,7 +16,6 @@ use super::marching::{Books, Ended, Steps, refined, refuses, steps, unsettled};
 use super::pack::Pack;
 use super::record::Totals;
 use super::solver::{RingPackSolverSpec, Solution, Wanted};
-use super::watch::Watch;
 
 /// The scheme of tomanik1993.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
@@ -180,17 +179,11 @@ impl<'a> March<'a> {
 
     /// One cycle.
     fn cycle(&mut self, recording: bool) -> Result<Totals, EvalError> {
-        let n = self.pack.n_rings();
-        let mut totals = Totals {
-            flow_in: vec![0.0; n],
-            friction_work: vec![0.0; n],
-            boundary_work: vec![0.0; n],
-            ..Totals::default()
-        };
-        let before = self.pack.gas_mass();
         if recording {
-            self.books.watch = Watch::new(self.pack);
+            self.books.begin_recorded(self.pack);
         }
+        let mut totals = Totals::begun(self.pack);
+        let before = self.pack.gas_mass();
         for k in 0..self.per_cycle {
             let theta = f64::from(k) * self.step;
             self.seats(theta)?;
@@ -224,14 +217,13 @@ impl<'a> March<'a> {
     fn record(&mut self, theta: f64, totals: &Totals) -> Result<(), EvalError> {
         self.pack.gas(None)?;
         self.books.record.push(theta, self.pack, &totals.flow_in, totals.blow_by);
-        self.books.measures.march(theta, self.pack, totals.flow_in[0]);
+        self.books.measures.march(theta, self.pack, totals.passed());
         Ok(())
     }
 
     /// Steps of the gas over an interval, rings and films at rest.
     fn gas(&mut self, theta: f64, totals: &mut Totals) -> Result<(), EvalError> {
         let pack = &mut *self.pack;
-        let last = pack.n_rings() - 1;
         let dt = self.step / pack.omega / f64::from(self.gas_steps);
         for g in 0..self.gas_steps {
             let middle = self.step * (f64::from(g) + 0.5) / f64::from(self.gas_steps);
@@ -239,10 +231,7 @@ impl<'a> March<'a> {
             for (m, dm) in pack.gas_state.iter_mut().zip(&pack.at.dm) {
                 *m += dm * dt;
             }
-            for (sum, w) in totals.flow_in.iter_mut().zip(&pack.at.gas.flow_in) {
-                *sum += w * dt;
-            }
-            totals.blow_by += pack.at.gas.flow_out[last] * dt;
+            totals.march(pack, dt);
         }
         Ok(())
     }

@@ -266,6 +266,19 @@ enum Method {
     Sdirk(Box<Sdirk>),
 }
 
+impl Method {
+    fn new(s: &Implicit, pack: &Pack) -> Self {
+        let (dim, quads) = (pack.layout.n, pack.layout.quads());
+        let rosenbrock = |formula| Self::Rodas(Box::new(Rodas::with(formula, dim, quads, None)));
+        match s.integrator.at(s.tolerance.si()) {
+            RingIntegrator::Rodas3 => rosenbrock(Formula::Rodas3),
+            RingIntegrator::Rodas | RingIntegrator::Rodas5p => rosenbrock(Formula::Rodas5P),
+            RingIntegrator::Sdirk2 => Self::Sdirk(Box::new(Sdirk::new(dim, quads))),
+            RingIntegrator::Radau5 => Self::Radau(Box::new(Radau5::new(dim, quads, None))),
+        }
+    }
+}
+
 /// The map from the state at the start of a cycle to that at its end.
 struct Cycle<'a> {
     pack: &'a mut Pack,
@@ -538,7 +551,7 @@ impl Sampler {
             } else {
                 pack.look(t, &self.y)?;
             }
-            self.measures.sample(k, pack, self.q[0]);
+            self.measures.sample(k, pack, pack.layout.passed(&self.q));
             self.gas_ledger.sample(&*pack.gas);
         }
         self.measures.step(pack, t0, t1);
@@ -700,17 +713,8 @@ impl<'a> Cycle<'a> {
         wanted: &Wanted<'_>,
         progress: &'a mut dyn FnMut(f64) -> Result<(), Stopped>,
     ) -> Self {
-        let dim = pack.layout.n;
-        let quads = pack.layout.quads();
-        let rosenbrock = |formula| Method::Rodas(Box::new(Rodas::with(formula, dim, quads, None)));
-        let method = match s.integrator.at(s.tolerance.si()) {
-            RingIntegrator::Rodas3 => rosenbrock(Formula::Rodas3),
-            RingIntegrator::Rodas | RingIntegrator::Rodas5p => rosenbrock(Formula::Rodas5P),
-            RingIntegrator::Sdirk2 => Method::Sdirk(Box::new(Sdirk::new(dim, quads))),
-            RingIntegrator::Radau5 => Method::Radau(Box::new(Radau5::new(dim, quads, None))),
-        };
         Cycle {
-            method,
+            method: Method::new(s, pack),
             breakpoints: breakpoints(pack),
             scale: pack.layout.states.iter().map(|s| s.scale).collect(),
             absolute: pack.layout.states.iter().map(|s| !s.relative).collect(),
@@ -720,7 +724,7 @@ impl<'a> Cycle<'a> {
             staging: Staging::new(pack),
             h: FIRST_STEP,
             stats: Stats::default(),
-            q: vec![0.0; quads],
+            q: vec![0.0; pack.layout.quads()],
             longest_step: wanted.limits.longest_step.si(),
             max_steps: wanted.limits.steps_at(s.tolerance.si(), pack.omega),
             failure: None,
@@ -728,6 +732,13 @@ impl<'a> Cycle<'a> {
             done: 0.0,
             pack,
         }
+    }
+
+    /// Cycles tell what passes through each passage of the gas from now on.
+    fn follow_passages(&mut self, s: &Implicit) {
+        self.pack.follow_passages(true);
+        self.method = Method::new(s, self.pack);
+        self.q = vec![0.0; self.pack.layout.quads()];
     }
 
     /// Searches the periodic state from `y`.
@@ -827,6 +838,7 @@ fn run(
 ) -> Result<Solution, RunError> {
     let begin = Stopwatch::start();
     let discrete = pack.decision_interval().is_some();
+    pack.follow_passages(false);
     let mut y = first_states(pack, start);
     let tolerance = s.tolerance.si();
     let options = orbit_options(s, pack);
@@ -834,6 +846,7 @@ fn run(
     let report = cycle.close(&mut y, &options)?;
     let seconds = begin.seconds();
     let counters = counters(&cycle.stats);
+    cycle.follow_passages(s);
     let mut sampler = Sampler::new(cycle.pack, wanted);
     let balance = cycle.record(&mut y, tolerance, &mut sampler)?;
     let q = cycle.q;

@@ -111,6 +111,7 @@ impl Pack {
         if base.gas_partials.d_state.len() != gas * gas {
             base.gas_partials = GasPartials::new(self.n_rings(), gas);
         }
+        base.gas_partials.passages.resize(self.layout.passages * gas, 0.0);
         let known = self.gas_partials(p_cylinder, &mut base.gas_partials)?;
         for k in 0..gas {
             if !self.gas.is_integrated(k) {
@@ -335,6 +336,10 @@ impl Pack {
             jac[(n + r) * n + k] = s.flow_in[r * m + k] * per;
         }
         jac[(n + rings) * n + k] = s.flow_out[(rings - 1) * m + k] * per;
+        let first = n + self.layout.passage_quad();
+        for p in 0..self.layout.passages {
+            jac[(first + p) * n + k] = s.passages[p * m + k] * per;
+        }
     }
 
     fn gas_rows(&self, column: usize, d: f64, base: &Base, jac: &mut [f64]) {
@@ -350,6 +355,10 @@ impl Pack {
             (self.at.gas.flow_out[rings - 1] - base.gas.flow_out[rings - 1]) * per;
         if let Some(k) = self.layout.gas_quad() {
             jac[(n + k) * n + column] = (self.at.gas.power - base.gas.power) * per;
+        }
+        let first = n + self.layout.passage_quad();
+        for (p, (now, then)) in self.at.gas.passages.iter().zip(&base.gas.passages).enumerate() {
+            jac[(first + p) * n + column] = (now - then) * per;
         }
     }
 

@@ -39,6 +39,8 @@ pub struct Layout {
     pub motion_reads: Vec<Signals>,
     /// Whether the gas has a balance of energy.
     gas_has_energy: bool,
+    /// Passages of the gas whose flows are carried as quadratures: all of them while [`Pack::follow_passages`](super::pack::Pack::follow_passages) holds.
+    pub(super) passages: usize,
 }
 
 impl Layout {
@@ -85,9 +87,15 @@ impl Layout {
     }
 
     /// Number of quadratures: flow into each ring, flow out of the last, friction work of each ring and its part of solid contact, where oil on flanks is followed what each ring
-    /// gained and lost of it, and, last, what is brought to gas with a balance of energy.
+    /// gained and lost of it, what is brought to gas with a balance of energy, and, last, the flow through each passage of the gas where that is followed.
     #[must_use]
     pub fn quads(&self) -> usize {
+        self.passage_quad() + self.passages
+    }
+
+    /// The quadrature of the flow through the first passage of the gas, where passages are followed.
+    #[must_use]
+    pub fn passage_quad(&self) -> usize {
         let n = self.flank.len();
         3 * n + 1 + if self.wet_flanks { 2 * n } else { 0 } + usize::from(self.gas_has_energy)
     }
@@ -101,7 +109,12 @@ impl Layout {
     /// The quadrature of the energy that is brought to the gas; none without a balance of it.
     #[must_use]
     pub fn gas_quad(&self) -> Option<usize> {
-        self.gas_has_energy.then(|| self.quads() - 1)
+        self.gas_has_energy.then(|| self.passage_quad() - 1)
+    }
+
+    /// Out of the quadratures `q`, the gas \[kg\] that passed each ring, the last of them to the crankcase, and each passage that is followed.
+    pub fn passed(&self, q: &[f64]) -> impl Iterator<Item = f64> {
+        q[..=self.flank.len()].iter().chain(&q[self.passage_quad()..]).copied()
     }
 
     fn add(&mut self, states: impl Iterator<Item = StateInfo>) -> Range<usize> {

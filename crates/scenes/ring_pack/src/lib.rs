@@ -19,6 +19,7 @@ mod error;
 mod evaporation;
 mod film_strokes;
 mod forces;
+mod gas_balance;
 mod gas_ledger;
 pub mod geometry;
 mod headlines;

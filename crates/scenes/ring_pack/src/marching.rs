@@ -81,6 +81,7 @@ pub struct Books {
     pub measures: Measures,
     /// What limits did.
     pub watch: Watch,
+    seat: f64,
     begin: Stopwatch,
 }
 
@@ -100,12 +101,21 @@ impl Books {
     /// Opens the books of a pack, whose friction changes over at a film floor at once, as in the sources.
     pub fn open(pack: &mut Pack, wanted: &Wanted<'_>) -> Self {
         pack.hard_floor = true;
+        pack.follow_passages(false);
         Self {
             record: Record::new(pack),
             measures: Measures::new(pack, TRAPEZIUM, wanted.seat),
             watch: Watch::new(pack),
+            seat: wanted.seat,
             begin: Stopwatch::start(),
         }
+    }
+
+    /// The cycle that begins is the recorded one.
+    pub fn begin_recorded(&mut self, pack: &mut Pack) {
+        pack.follow_passages(true);
+        self.measures = Measures::new(pack, TRAPEZIUM, self.seat);
+        self.watch = Watch::new(pack);
     }
 
     /// Closes them.

@@ -135,12 +135,13 @@ pub struct Measures {
     pub lands: Vec<Peak>,
     /// Highest cylinder pressure \[Pa\].
     pub cylinder: Peak,
-    /// Gas \[kg\] that went back past ring 1 into the cylinder.
-    pub blow_back: f64,
+    /// Gas \[kg\] that went back up: past each ring, from the crankcase, and through each passage that is followed.
+    pub up: Vec<f64>,
     /// Time measured \[s\].
     pub span: f64,
     speed: Column,
-    entered: Column,
+    /// What of it has gone down so far.
+    passed: Vec<Column>,
     pressures: Vec<Column>,
     /// Angle of the last sample, when there is one.
     last: Option<f64>,
@@ -151,6 +152,7 @@ impl Measures {
     #[must_use]
     pub fn new(pack: &Pack, rule: Rule, seat: f64) -> Self {
         let n = pack.n_rings();
+        let passed = n + 1 + pack.at.gas.passages.len();
         let ring = RingMeasure {
             ln_h: (f64::INFINITY, f64::NEG_INFINITY),
             film: 0.0,
@@ -185,10 +187,10 @@ impl Measures {
             rings,
             lands: vec![Peak::default(); n.saturating_sub(1)],
             cylinder: Peak::default(),
-            blow_back: 0.0,
+            up: vec![0.0; passed],
             span: 0.0,
             speed: [0.0; MAX_NODES],
-            entered: [0.0; MAX_NODES],
+            passed: vec![[0.0; MAX_NODES]; passed],
             pressures: vec![[0.0; MAX_NODES]; n],
             last: None,
         }
@@ -200,10 +202,11 @@ impl Measures {
         self.rule.nodes
     }
 
-    /// Takes what `pack` holds as the sample at node `k` of the step; `entered`: gas \[kg\] that has entered ring 1 from above.
-    pub fn sample(&mut self, k: usize, pack: &Pack, entered: f64) {
+    /// Takes what `pack` holds as the sample at node `k` of the step; `passed`: gas \[kg\] that has passed each ring from above, to the crankcase, and
+    /// through each passage that is followed; what is left out has passed nothing.
+    pub fn sample(&mut self, k: usize, pack: &Pack, passed: impl Iterator<Item = f64>) {
         self.speed[k] = pack.at.piston.v;
-        self.entered[k] = entered;
+        self.passed.iter_mut().zip(passed).for_each(|(column, gas)| column[k] = gas);
         for (column, p) in self.pressures.iter_mut().zip(&pack.at.gas.p_land) {
             column[k] = *p;
         }
@@ -234,7 +237,9 @@ impl Measures {
         let (rule, dt) = (self.rule, (t1 - t0) / self.omega);
         let n = rule.nodes.len();
         self.span += dt;
-        self.blow_back += rule.fall(&self.entered[..n]);
+        for (up, passed) in self.up.iter_mut().zip(&self.passed) {
+            *up += rule.fall(&passed[..n]);
+        }
         for (peak, column) in self.lands.iter_mut().zip(&self.pressures[1..]) {
             raise(peak, rule, &column[..n], t0, t1);
         }
@@ -255,9 +260,9 @@ impl Measures {
     }
 
     /// Adds the step of a marching scheme that ends at `theta` \[rad\], where `pack` stands; the first call says where the cycle starts.
-    pub fn march(&mut self, theta: f64, pack: &Pack, entered: f64) {
+    pub fn march(&mut self, theta: f64, pack: &Pack, passed: impl Iterator<Item = f64>) {
         debug_assert_eq!(self.rule, TRAPEZIUM);
-        self.sample(1, pack, entered);
+        self.sample(1, pack, passed);
         if let Some(last) = self.last {
             self.step(pack, last, theta);
             raise(&mut self.cylinder, self.rule, &self.pressures[0][..2], last, theta);
@@ -270,7 +275,7 @@ impl Measures {
     fn carry(&mut self) {
         let pass = |c: &mut Column| c[0] = c[1];
         pass(&mut self.speed);
-        pass(&mut self.entered);
+        self.passed.iter_mut().for_each(pass);
         self.pressures.iter_mut().for_each(pass);
         for r in &mut self.rings {
             let s = &mut r.samples;

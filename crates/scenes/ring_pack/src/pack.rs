@@ -152,6 +152,14 @@ impl Pack {
         f(&mut *self.film_temperature, self.layout.temperature.clone());
     }
 
+    /// Has the flow through every passage of the gas carried as a quadrature from now on, or no longer: behind the others, so that these and the steps are
+    /// what they are without it.
+    pub fn follow_passages(&mut self, followed: bool) {
+        let count = if followed { self.gas.passages().len() } else { 0 };
+        self.layout.passages = count;
+        self.at.gas.passages = vec![0.0; count];
+    }
+
     /// Appends what the models remember beside their states to `out`.
     pub fn save(&mut self, out: &mut Vec<f64>) {
         self.each_block(|b, _| b.save(out));
@@ -407,6 +415,9 @@ impl Pack {
         q[n] = self.at.gas.flow_out[n - 1] * per;
         if let Some(k) = self.layout.gas_quad() {
             q[k] = self.at.gas.power * per;
+        }
+        for (q, flow) in q[self.layout.passage_quad()..].iter_mut().zip(&self.at.gas.passages) {
+            *q = flow * per;
         }
     }
 

@@ -75,6 +75,7 @@ pub fn catalogue(names: &Names, told: Told) -> Vec<ResultInfo> {
         all.extend(land_results(k + 1, land));
     }
     for (i, (ring, flank)) in names.rings.iter().enumerate().map(|(i, ring)| (i + 1, ring)) {
+        all.extend(passage_results(i, ring));
         all.extend(seat_results(i, ring, flank));
         all.extend(film_results(i, ring));
         if told.formulas {
@@ -119,6 +120,11 @@ fn gas_results() -> Vec<ResultInfo> {
         ),
         add("blow_by_mass_per_cycle", "kg", "gas to the crankcase, one cylinder"),
         add("blow_back_mass_per_cycle", "kg", "gas returning past ring 1 to the cylinder, one cylinder"),
+        add(
+            "blow_back",
+            "l/min",
+            "gas returning past ring 1 to the cylinder, whole engine, at meter conditions",
+        ),
         add("cylinder.p_max", "bar", "highest cylinder pressure"),
         add(
             "cylinder.p_max_angle",
@@ -135,6 +141,28 @@ fn land_results(k: usize, land: &str) -> Vec<ResultInfo> {
     vec![
         add("p_max", "bar", "highest pressure"),
         add("p_max_angle", "deg", "crank angle of the highest pressure"),
+    ]
+}
+
+/// Of the gas past ring `i`.
+fn passage_results(i: usize, ring: &str) -> Vec<ResultInfo> {
+    let add = |name: &str, what: String| {
+        info(
+            format!("ring{i}.{name}"),
+            "l/min",
+            Needs::Gas,
+            format!("{what}, less what comes back, whole engine, at meter conditions"),
+        )
+    };
+    vec![
+        add("blow_by", format!("gas past {ring} from the land above")),
+        add(
+            "blow_by_gap",
+            format!(
+                "the part of that directly through its end gap, {ring}, with its face where the gas model has both as one opening"
+            ),
+        ),
+        add("blow_by_groove", format!("the part of that through its groove, {ring}")),
     ]
 }
 

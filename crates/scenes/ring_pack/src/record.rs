@@ -14,6 +14,8 @@ pub struct Totals {
     pub flow_in: Vec<f64>,
     /// Gas that left the last ring to the crankcase \[kg\].
     pub blow_by: f64,
+    /// Gas that passed each passage of the gas model \[kg\]; empty where that is not followed.
+    pub passages: Vec<f64>,
     /// Friction work of each ring \[J\].
     pub friction_work: Vec<f64>,
     /// The part of it that solid contact takes \[J\].
@@ -46,6 +48,7 @@ impl Totals {
         Self {
             flow_in: q[..n].to_vec(),
             blow_by: q[n],
+            passages: q[pack.layout.passage_quad()..].to_vec(),
             friction_work: q[n + 1..2 * n + 1].to_vec(),
             boundary_work: q[2 * n + 1..3 * n + 1].to_vec(),
             oil: pack.oil_pack.as_ref().map_or_else(OilLedger::default, |o| o.ledger()),
@@ -55,6 +58,36 @@ impl Totals {
             flank: (0..n).filter_map(flank).collect(),
             ..Self::default()
         }
+    }
+
+    /// Those of a cycle that a scheme begins to march, which sums up what passes.
+    #[must_use]
+    pub fn begun(pack: &Pack) -> Self {
+        let n = pack.n_rings();
+        Self {
+            flow_in: vec![0.0; n],
+            passages: vec![0.0; pack.at.gas.passages.len()],
+            friction_work: vec![0.0; n],
+            boundary_work: vec![0.0; n],
+            ..Self::default()
+        }
+    }
+
+    /// Adds an explicit step of the gas over `dt` \[s\] with the flows of `pack`.
+    pub fn march(&mut self, pack: &Pack, dt: f64) {
+        let gas = &pack.at.gas;
+        for (sum, flow) in self.flow_in.iter_mut().zip(&gas.flow_in) {
+            *sum += flow * dt;
+        }
+        self.blow_by += gas.flow_out[pack.n_rings() - 1] * dt;
+        for (sum, flow) in self.passages.iter_mut().zip(&gas.passages) {
+            *sum += flow * dt;
+        }
+    }
+
+    /// Gas \[kg\] that passed each ring, the last of them to the crankcase, and each passage, as [`Measures`](super::measure::Measures) samples it.
+    pub fn passed(&self) -> impl Iterator<Item = f64> {
+        self.flow_in.iter().chain([&self.blow_by]).chain(&self.passages).copied()
     }
 }
 

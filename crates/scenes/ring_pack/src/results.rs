@@ -2,10 +2,12 @@
 
 use std::f64::consts::PI;
 
+use gudgeon_core::kinds::GasWay;
 use gudgeon_core::result::{Event, Value};
 use indexmap::IndexMap;
 
 use super::film_strokes;
+use super::gas_balance;
 use super::measure::{Measures, Peak, RingMeasure, Seat};
 use super::pack::Pack;
 use super::plan::{Told, catalogue};
@@ -47,7 +49,7 @@ impl Cycle {
                     Some((subject.strip_prefix(prefix)?.parse::<usize>().ok()?, what))
                 };
                 let v = match (number("ring"), number("land")) {
-                    (Some((i, what)), _) => self.of_ring(pack, i - 1, what),
+                    (Some((i, what)), _) => self.of_ring(pack, i - 1, what, meter),
                     (_, Some((k, "oil"))) => {
                         self.totals.on_land.get(k - 1).copied().unwrap_or(0.0) * around(pack)
                     }
@@ -67,21 +69,21 @@ impl Cycle {
 
     fn of_pack(&self, pack: &Pack, name: &str, meter: Meter) -> f64 {
         let (t, m) = (&self.totals, &self.measures);
-        let litres_per_minute = t.blow_by / Self::duration(pack) / meter.density * 6e4;
         let swept = PI * pack.geo.bore_radius.powi(2) * pack.kinematics.stroke();
         let work: f64 = t.friction_work.iter().sum();
         let around = around(pack);
         let up = t.oil.thrown + t.oil.evaporated;
         match name {
-            "blow_by" => litres_per_minute * meter.cylinders,
-            "blow_by_per_cylinder" => litres_per_minute,
+            "blow_by" => Self::metered(pack, t.blow_by, meter),
+            "blow_by_per_cylinder" => Self::metered(pack, t.blow_by, Meter { cylinders: 1.0, ..meter }),
             "blow_by_share" => {
                 // The swept volume at the end of the first stroke, at the temperature of the meter.
                 let charge = meter.density * pack.cylinder.pressure(PI) / meter.pressure * swept;
                 t.blow_by / charge
             }
             "blow_by_mass_per_cycle" => t.blow_by,
-            "blow_back_mass_per_cycle" => m.blow_back,
+            "blow_back_mass_per_cycle" => m.up[0],
+            "blow_back" => Self::metered(pack, m.up[0], meter),
             "cylinder.p_max" => m.cylinder.value / 1e5,
             "cylinder.p_max_angle" => m.cylinder.theta.to_degrees(),
             "friction_power" => work / Self::duration(pack),
@@ -104,18 +106,32 @@ impl Cycle {
         }
     }
 
+    /// Litres a minute of the engine at the meter from a mass of gas \[kg\] in a cycle of one cylinder.
+    fn metered(pack: &Pack, mass: f64, meter: Meter) -> f64 {
+        mass / Self::duration(pack) / meter.density * 6e4 * meter.cylinders
+    }
+
+    /// Net gas \[kg\] past ring `i` by the ways that `counts`.
+    fn net_past(&self, pack: &Pack, i: usize, counts: fn(GasWay) -> bool) -> f64 {
+        gas_balance::net_past(pack.gas.passages(), &self.totals.passages, i, counts)
+    }
+
     /// Grams an hour of the engine from a volume of oil per circumference \[m²\] in a cycle of one cylinder.
     fn grams_per_hour(pack: &Pack, volume: f64, meter: Meter) -> f64 {
         grams(pack, volume) * meter.cylinders * 3600.0 / Self::duration(pack)
     }
 
-    fn of_ring(&self, pack: &Pack, i: usize, what: &str) -> f64 {
+    fn of_ring(&self, pack: &Pack, i: usize, what: &str, meter: Meter) -> f64 {
         let (m, span) = (&self.measures.rings[i], self.measures.span);
         let passed = self.totals.passed.get(i).copied().unwrap_or_default();
         // Volumes [mm³] that the film would hold over each stroke: `π D ∫ h |v| dt` (tomanik1993, after Yoshida). The film that a ring
         // leaves is about half of its thickness; the source takes the thickness itself.
         let strokes = m.strokes.map(|s| s * 2.0 * PI * pack.geo.bore_radius * 1e9);
+        let metered = |mass| Self::metered(pack, mass, meter);
         match what {
+            "blow_by" => metered(self.totals.flow_in[i]),
+            "blow_by_gap" => metered(self.net_past(pack, i, gas_balance::is_gap)),
+            "blow_by_groove" => metered(self.net_past(pack, i, gas_balance::is_groove)),
             "h_min" => m.film_span().0 * 1e6,
             "h_max" => m.film_span().1 * 1e6,
             "h_mean" => m.film / span * 1e6,

@@ -85,7 +85,7 @@ impl Rows {
     /// What a sub-model refuses.
     pub fn record(&self, pack: &mut Pack) -> Result<Record, EvalError> {
         let mut record = Record::new(pack);
-        let (n, dim, quads) = (pack.n_rings(), pack.layout.n, pack.layout.quads());
+        let (n, dim, quads) = (pack.n_rings(), pack.layout.n, self.q.len() / self.theta.len().max(1));
         let kept = self.memory.len() / self.theta.len().max(1);
         for (k, &theta) in self.theta.iter().enumerate() {
             let memory = &self.memory[k * kept..][..kept];

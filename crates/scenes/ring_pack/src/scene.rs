@@ -7,6 +7,7 @@ use gudgeon_core::kinds::EngineCycle;
 use gudgeon_core::result::{Figure, FigureKind, Gradients, Lines, ModelUse, Note, RunResult};
 
 use super::around::{Around, Varied};
+use super::gas_balance::{self, GasBalance};
 use super::headlines::headlines;
 use super::pack::Pack;
 use super::rails::TakenApart;
@@ -87,6 +88,11 @@ impl SceneCase for RingPackCase {
                 pack.period(),
                 &ring_names(&pack),
             ));
+        }
+        let balance = GasBalance::of(&pack, &solved.cycle);
+        if let Some(figure) = gas_balance::figure(&balance, &ring_names(&pack)) {
+            result.tables.insert("blow_by".into(), gas_balance::table(&balance));
+            result.figures.push(figure);
         }
         if let Some(liner) = solved.liner {
             let lines =

@@ -104,13 +104,14 @@ fn branches(case: &RingPackCase, pack: &Pack, found: &[(f64, Solution)]) -> Vec<
         let results = f.cycle.results(pack, m);
         let name = format!("{:.2} bar", start / 1e5);
         let alike = |b: &&mut Branch| {
-            results.iter().filter(|(k, _)| k.as_str() != "periodicity_error" && !k.ends_with("_angle")).all(
-                |(k, v)| {
-                    b.results.get(k).is_some_and(|w| {
-                        (v.value - w.value).abs() <= SAME * v.value.abs().max(w.value.abs()) + 1e-12
-                    })
-                },
-            )
+            // Parts of a flow may be noise beside it.
+            let counts =
+                |k: &str| k != "periodicity_error" && !k.ends_with("_angle") && !k.contains(".blow_by_");
+            results.iter().filter(|(k, _)| counts(k)).all(|(k, v)| {
+                b.results.get(k).is_some_and(|w| {
+                    (v.value - w.value).abs() <= SAME * v.value.abs().max(w.value.abs()) + 1e-12
+                })
+            })
         };
         match branches.iter_mut().find(alike) {
             Some(b) => {

@@ -239,10 +239,7 @@ impl<'a> March<'a> {
             for (m, dm) in pack.gas_state.iter_mut().zip(&pack.at.dm) {
                 *m += dm * dt;
             }
-            for (sum, w) in totals.flow_in.iter_mut().zip(&pack.at.gas.flow_in) {
-                *sum += w * dt;
-            }
-            totals.blow_by += pack.at.gas.flow_out[self.rings.len() - 1] * dt;
+            totals.march(pack, dt);
         }
         for (v, p) in self.volumes.iter_mut().zip(&pack.at.places) {
             *v = p.back_volume;
@@ -280,9 +277,9 @@ impl<'a> March<'a> {
         books.watch.look(self.pack, self.dt * self.pack.omega);
         if pass == 0 && sub == 1 {
             // The state before the first step is as nearly as the scheme knows it that after it.
-            books.measures.march(0.0, self.pack, 0.0);
+            books.measures.march(0.0, self.pack, std::iter::empty());
         }
-        books.measures.march(theta, self.pack, self.totals.flow_in[0]);
+        books.measures.march(theta, self.pack, self.totals.passed());
     }
 
     /// The row of the series at the end of a pass of the last cycle.
@@ -318,15 +315,12 @@ fn run(
     progress: &mut dyn FnMut(f64) -> Result<(), Stopped>,
 ) -> Result<(Totals, u64), EvalError> {
     let mut march = March::new(pack, set, start);
-    let n = march.rings.len();
     let mut steps = 0;
     for cycle in 1..=set.cycles {
-        march.totals = Totals {
-            flow_in: vec![0.0; n],
-            friction_work: vec![0.0; n],
-            boundary_work: vec![0.0; n],
-            ..Totals::default()
-        };
+        if cycle == set.cycles {
+            books.begin_recorded(march.pack);
+        }
+        march.totals = Totals::begun(march.pack);
         let mut before = march.stored();
         for pass in 0..set.passes {
             let shown = cycle == set.cycles && pass < WHOLE;

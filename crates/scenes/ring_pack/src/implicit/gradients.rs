@@ -62,6 +62,8 @@ pub(super) fn gradients(
     if !report.converged {
         notes.push(not_periodic(report.error_estimate, options.tolerance, report.cycles));
     }
+    pack.follow_passages(true);
+    around.varied.iter_mut().for_each(|v| v.pack.follow_passages(true));
     let mut following = |done: f64| progress(0.5 + 0.5 * done);
     for k in 1.. {
         let mut cycle = Cycle::new(&tight, pack, wanted, &mut following);

@@ -96,7 +96,7 @@ impl Shift<'_> {
                 let (y, q) = x.split_at(trail.n);
                 let at = |source: EvalError| RunError::Eval { theta_deg: theta.to_degrees(), source };
                 pack.look(theta, y).map_err(at)?;
-                measures.sample(k, pack, q[0]);
+                measures.sample(k, pack, q.iter().copied());
             }
             measures.step(pack, *t0, *t1);
         }
