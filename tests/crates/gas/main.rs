@@ -23,3 +23,4 @@ mod series;
 mod skeleton;
 mod support;
 mod vents;
+mod ways;

@@ -1,6 +1,6 @@
 //! A gas flow with a state that is no mass, an event and a column of its own: the scene integrates, switches and records it like any other.
 
-use gudgeon_core::kinds::{GasFlow, GasFlowCtx, GasFlowSpec, GasIn, GasOut};
+use gudgeon_core::kinds::{GasFlow, GasFlowCtx, GasFlowSpec, GasIn, GasOut, GasPassage};
 use gudgeon_core::states::{ColumnInfo, Signals, StateInfo, Stateful};
 use gudgeon_core::{BuildError, EvalError, register_model, spec};
 use schemars::JsonSchema;
@@ -78,6 +78,9 @@ impl Stateful for Running {
 }
 
 impl GasFlow for Running {
+    fn passages(&self) -> &[GasPassage] {
+        self.gas.passages()
+    }
     fn n_masses(&self) -> usize {
         self.gas.n_masses()
     }

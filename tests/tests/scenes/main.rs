@@ -9,6 +9,7 @@ mod bench;
 mod cases;
 mod compare;
 mod extremes;
+mod gas_balance;
 mod gas_energy;
 mod gas_states;
 mod gradients;

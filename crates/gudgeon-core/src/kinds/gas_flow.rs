@@ -188,9 +188,9 @@ pub trait GasFlow: Stateful + Send {
         true
     }
 
-    /// The passages of its gas, in the order of [`GasOut::passages`]: what comes into a space through them less what leaves it is stored there. Those
-    /// of a ring that start where its [`Gap`](GasWay::Gap) does pass [`GasOut::flow_in`] together. None, the default, where no gas flows, or where
-    /// the model does not know.
+    /// The passages of its gas, in the order of [`GasOut::passages`]: what comes into a space through them less what leaves it is stored there. Of a
+    /// ring, the upper flank comes before the lower one; the first of its flanks passes, with gap and face, [`GasOut::flow_in`]. None, the default, where no
+    /// gas flows, or where the model does not tell its passages apart.
     fn passages(&self) -> &[GasPassage] {
         &[]
     }

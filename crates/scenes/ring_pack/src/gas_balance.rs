@@ -64,12 +64,10 @@ fn net_into<'a>(each: impl Iterator<Item = (&'a GasPassage, Passed)>, space: Gas
     each.map(|(p, gas)| (side(p.to) - side(p.from)) * gas.net).sum()
 }
 
-/// Net gas \[kg\] past ring `i` by the ways that `counts`, from the land above, out of what passed through the `passages` of a cycle.
+/// Net gas \[kg\] through the first passage of ring `i` that `is_one`, of the `passages` of a gas model and what passed them; 0 where there is none.
 #[must_use]
-pub fn net_past(passages: &[GasPassage], net: &[f64], i: usize, counts: impl Fn(GasWay) -> bool) -> f64 {
-    let own = || passages.iter().zip(net).filter(|(p, _)| p.ring == i);
-    let Some(above) = own().find(|(p, _)| is_gap(p.way)).map(|(p, _)| p.from) else { return 0.0 };
-    own().filter(|(p, _)| p.from == above && counts(p.way)).map(|(_, net)| net).sum()
+pub fn net_past(passages: &[GasPassage], net: &[f64], i: usize, is_one: impl Fn(GasWay) -> bool) -> f64 {
+    passages.iter().zip(net).find(|(p, _)| p.ring == i && is_one(p.way)).map_or(0.0, |(_, net)| *net)
 }
 
 /// Ways by which gas passes the end gap of a ring.
@@ -124,31 +122,33 @@ pub fn table(balance: &GasBalance<'_>) -> Series {
     Series { axis: Column { name: "ring".into(), unit: "1".into(), values }, columns }
 }
 
-/// The balance in rows, of the rings with these names: every passage, each ring, the crankcase. None where no gas flows.
+/// The balance in rows, of the rings with these names: every passage that gas passes, each ring, the crankcase. None where the model has no passages.
 #[must_use]
 pub fn figure(balance: &GasBalance<'_>, names: &[String]) -> Option<Figure> {
-    let blow_by = balance.past.last()?.net;
+    let to_crankcase = *balance.past.last()?;
     if balance.passages.is_empty() {
         return None;
     }
     let row = |label: String, gas: Passed| {
-        let share = (blow_by > 0.0).then(|| (1e3 * gas.net / blow_by).round() / 10.0 + 0.0);
-        let mass = [gas.down(), gas.up, gas.net].map(|m| Some(shown(m)));
-        (label, [&mass[..], &[share]].concat())
+        let share = (to_crankcase.net > 0.0).then(|| (1e3 * gas.net / to_crankcase.net).round() / 10.0 + 0.0);
+        let [net, down, up] = [gas.net, gas.down(), gas.up].map(|mass| Some(shown(mass)));
+        (label, vec![net, share, down, up])
     };
     let mut rows = Vec::new();
     for (i, name) in names.iter().enumerate() {
-        let own = balance.each().filter(|(p, _)| p.ring == i);
-        rows.extend(own.map(|(p, gas)| row(format!("{name}, {}", named(p.way).1), gas)));
-        rows.push(row(format!("{name}, together"), balance.past[i]));
+        let mut own: Vec<_> = balance.each().filter(|(p, _)| p.ring == i).collect();
+        own.sort_by_key(|(p, _)| p.way);
+        let passed = own.into_iter().filter(|(_, gas)| shown(gas.up) != 0.0 || shown(gas.down()) != 0.0);
+        rows.extend(passed.map(|(p, gas)| row(format!("{name}, {}", named(p.way).1), gas)));
+        rows.push(row(format!("{name}, all"), balance.past[i]));
     }
-    rows.push(row("to the crankcase".into(), *balance.past.last()?));
-    let columns = [("down", "mg"), ("back up", "mg"), ("net", "mg"), ("of the blow-by", "%")];
+    rows.push(row("to the crankcase".into(), to_crankcase));
+    let columns = [("net", "mg"), ("share", "%"), ("down", "mg"), ("back up", "mg")];
     Some(Figure {
         title: "Blow-by balance".into(),
         hint: format!(
-            "gas of one cylinder per cycle; a ring together: from the land above it, by gap, face and the first flank on the way. What a land or a space behind a ring gains over the cycle is the \
-             error of the balance: {:.1e} mg at most",
+            "gas of one cylinder per cycle, share of the blow-by; what passes a groove passes its upper flank, then the lower one. Error of the balance: no land and no space behind a \
+             ring gains more than {:.1e} mg over the cycle",
             1e6 * balance.gained()
         ),
         table: "blow_by".into(),

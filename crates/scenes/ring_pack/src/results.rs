@@ -111,9 +111,9 @@ impl Cycle {
         mass / Self::duration(pack) / meter.density * 6e4 * meter.cylinders
     }
 
-    /// Net gas \[kg\] past ring `i` by the ways that `counts`.
-    fn net_past(&self, pack: &Pack, i: usize, counts: fn(GasWay) -> bool) -> f64 {
-        gas_balance::net_past(pack.gas.passages(), &self.totals.passages, i, counts)
+    /// Net gas \[kg\] through the first passage of ring `i` that `is_one`.
+    fn net_past(&self, pack: &Pack, i: usize, is_one: fn(GasWay) -> bool) -> f64 {
+        gas_balance::net_past(pack.gas.passages(), &self.totals.passages, i, is_one)
     }
 
     /// Grams an hour of the engine from a volume of oil per circumference \[m²\] in a cycle of one cylinder.
