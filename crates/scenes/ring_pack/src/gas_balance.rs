@@ -147,7 +147,7 @@ pub fn figure(balance: &GasBalance<'_>, names: &[String]) -> Option<Figure> {
     Some(Figure {
         title: "Blow-by balance".into(),
         hint: format!(
-            "gas of one cylinder per cycle, share of the blow-by; what passes a groove passes its upper flank, then the lower one. Error of the balance: no land and no space behind a \
+            "gas of one cylinder per cycle, share of the blow-by; what passes a closed groove passes its upper flank, then the lower one. Error of the balance: no land and no space behind a \
              ring gains more than {:.1e} mg over the cycle",
             1e6 * balance.gained()
         ),
