@@ -102,6 +102,11 @@ impl EulerMarch {
         let mut ended = Ended { totals: Totals::default(), steps: 0, cycles: self.cycles, period: 1 };
         for cycle in 1..=self.cycles {
             let last = cycle == self.cycles;
+            if last {
+                // What passes each passage of the gas is carried too.
+                books.begin_recorded(pack);
+                step = Step::new(n, pack.layout.quads());
+            }
             step.sums.fill(0.0);
             let before: f64 = mass(pack, &y);
             for k in 0..per_cycle {
@@ -109,7 +114,7 @@ impl EulerMarch {
                 step.take(pack, theta, h, &mut y)?;
                 if last {
                     books.watch.look(pack, h);
-                    books.measures.march(theta, pack, step.sums[0]);
+                    books.measures.march(theta, pack, pack.layout.passed(&step.sums));
                     if k % self.steps_per_degree == 0 {
                         books.record.push(theta, pack, &step.sums[..rings], step.sums[rings]);
                     }
@@ -121,7 +126,7 @@ impl EulerMarch {
             progress(f64::from(cycle) / f64::from(self.cycles))?;
         }
         pack.evaluate(pack.period(), &y)?;
-        books.measures.march(pack.period(), pack, step.sums[0]);
+        books.measures.march(pack.period(), pack, pack.layout.passed(&step.sums));
         books.record.push(pack.period(), pack, &step.sums[..rings], step.sums[rings]);
         Ok(ended)
     }

@@ -122,11 +122,12 @@ pub fn table(balance: &GasBalance<'_>) -> Series {
     Series { axis: Column { name: "ring".into(), unit: "1".into(), values }, columns }
 }
 
-/// The balance in rows, of the rings with these names: every passage that gas passes, each ring, the crankcase. None where the model has no passages.
+/// The balance in rows, of the rings with these names: every passage that gas passes, each ring, the crankcase. None where the model has no passages, or
+/// the solver has not followed them.
 #[must_use]
 pub fn figure(balance: &GasBalance<'_>, names: &[String]) -> Option<Figure> {
     let to_crankcase = *balance.past.last()?;
-    if balance.passages.is_empty() {
+    if balance.through.is_empty() {
         return None;
     }
     let row = |label: String, gas: Passed| {

@@ -14,7 +14,8 @@ pub struct Totals {
     pub flow_in: Vec<f64>,
     /// Gas that left the last ring to the crankcase \[kg\].
     pub blow_by: f64,
-    /// Gas that passed each passage of the gas model \[kg\]; empty where that is not followed.
+    /// Gas that passed each passage of the gas model \[kg\]; empty where a solver does not follow them
+    /// ([`Pack::follow_passages`]): there is no balance of blow-by then, and results of passages are 0.
     pub passages: Vec<f64>,
     /// Friction work of each ring \[J\].
     pub friction_work: Vec<f64>,
