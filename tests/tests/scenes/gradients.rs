@@ -53,11 +53,7 @@ const SHARE: f64 = 5e-4;
 /// step is halved, when Newton's method ends), and is within 6e-4 of a cycle at 1e-9 with those that are made.
 #[test]
 fn blow_by_and_friction_by_inputs_are_those_of_differences() {
-    let inputs = [
-        "rings.0.cold_gap",
-        "models.film_temperature.tdc",
-        "models.cylinder_pressure.burn_start",
-    ];
+    let inputs = ["rings.0.cold_gap", "models.film_temperature.tdc", "models.cylinder_pressure.burn_start"];
     let results = ["blow_by", "fmep", "ring1.friction_power", "land2.p_max", "ring1.h_mean"];
     let followed = gradients(&checked(CASE, &on_the_deck(&[])), &by(&inputs), &[], &mut unwatched).unwrap();
     assert!(followed.method.contains("variational"), "{}", followed.method);
