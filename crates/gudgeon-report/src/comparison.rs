@@ -4,8 +4,8 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use gudgeon_core::result::{
-    Assessment, Column, ComparedCase, Comparison, Confidence, Difference, Figure, Grade, Headline, Series,
-    ShareTable, Variant, short_value,
+    Assessment, Column, ComparedCase, Comparison, Confidence, Difference, Figure, FigureKind, Grade,
+    Headline, Series, ShareTable, Variant, short_value,
 };
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
@@ -359,7 +359,7 @@ fn page(file: &File, series: &[(usize, &Series)]) -> String {
             json!({ "number": n, "label": label, "series": columns })
         })
         .collect();
-    let data = json!({ "cases": file.cases.len(), "variants": variants, "figures": figures, "tables": tables, "arrays": arrays.into_json() });
+    let data = json!({ "cases": file.cases.len(), "variants": variants, "names": names_of_curves(&ran), "figures": figures, "tables": tables, "arrays": arrays.into_json() });
     page::document(Kind::Comparison, heading, &body, &data)
 }
 
@@ -625,6 +625,32 @@ fn curves(out: &mut String, series: &[(usize, &Series)], all: usize) {
             "<section id=\"curves\"><h2>Curves</h2>{fewer}<div id=\"overlay\" class=\"figures\"></div></section>"
         );
     }
+}
+
+/// What the figures of the runs call a column of their curves: `Torque in the shafts: crank 1-2`. Columns that stand for one of many (`ring#.h_min`) are named by
+/// the script.
+fn names_of_curves(ran: &[&VariantEntry]) -> IndexMap<String, String> {
+    let mut names = IndexMap::new();
+    let mut name = |column: &str, title: &str, label: &str| {
+        names.entry(column.to_owned()).or_insert_with(|| format!("{title}: {label}"));
+    };
+    for f in ran.iter().filter_map(|v| v.run.as_ref()).flat_map(|r| &r.figures) {
+        if let (FigureKind::Lines(lines), "series") = (&f.kind, f.table.as_str()) {
+            lines.lines.iter().for_each(|(label, column)| name(column, &f.title, label));
+        }
+    }
+    let over_cycle: Vec<serde_json::Value> = serde_json::from_str(page::OVER_CYCLE).unwrap_or_default();
+    for f in &over_cycle {
+        for c in f["columns"].as_array().into_iter().flatten() {
+            if let (Some(column), Some(title), Some(label)) =
+                (c[0].as_str(), f["title"].as_str(), c[1].as_str())
+            {
+                name(column, title, label);
+            }
+        }
+    }
+    names.retain(|column, _| !column.contains('#'));
+    names
 }
 
 /// Every model that any variant uses, once.

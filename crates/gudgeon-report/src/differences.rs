@@ -175,9 +175,20 @@ fn row(
                 format!("<b>{}</b><br>{percent}", absolute(&d, u))
             }
         };
-        let _ = write!(out, "<td class=\"num {}\">{lines}{sign} {word}</td>", ground(&d, u));
+        // Where nothing was verified, the line above the table says so for all.
+        let told = if is_told_once(confidence, file.verified) {
+            lines.trim_end_matches("<br>").to_owned()
+        } else {
+            format!("{lines}{sign} {word}")
+        };
+        let _ = write!(out, "<td class=\"num {}\">{told}</td>", ground(&d, u));
     }
     out.push_str("</tr>");
+}
+
+/// Whether a verdict is that of all differences that are not equal, and stands above the table alone.
+const fn is_told_once(c: Confidence, verified: bool) -> bool {
+    matches!(c, Confidence::Unknown) && !verified
 }
 
 /// How many differences have which verdict.
@@ -188,9 +199,10 @@ fn counted(verdicts: &[Confidence]) -> String {
         .iter()
         .filter(|c| count(**c) > 0)
         .map(|c| match c {
-            Confidence::Unknown => format!("of {} no uncertainty is known", count(*c)),
-            c => format!("{} {} {}", count(*c), if count(*c) == 1 { "is" } else { "are" }, verdict(*c).1),
+            Confidence::Unknown => (c, "of unknown uncertainty"),
+            c => (c, verdict(*c).1),
         })
+        .map(|(c, word)| format!("{} {} {word}", count(*c), if count(*c) == 1 { "is" } else { "are" }))
         .collect();
     let plural = if verdicts.len() == 1 { "" } else { "s" };
     format!("Of {} difference{plural} of headline results {}.", verdicts.len(), parts.join(", "))
@@ -231,7 +243,10 @@ fn keys(out: &mut String, verdicts: &[Confidence], verified: bool) {
     out.push_str("<div class=\"keys\">");
     for c in [Confidence::Resolved, Confidence::NotResolved, Confidence::Unknown, Confidence::Equal] {
         if verdicts.contains(&c) {
-            let (sign, word) = verdict(c);
+            let (mut sign, word) = verdict(c);
+            if is_told_once(c, verified) {
+                sign = "";
+            }
             let _ = write!(out, "<span>{sign} <b>{word}</b>: {}</span>", meaning(c, verified));
         }
     }

@@ -467,7 +467,7 @@ fn differences_are_told_with_their_confidence() {
     assert_eq!(line, "p_max_angle,deg,719,1,719.5,2,0.5,,,resolved,0.5,0.5,,,not_resolved");
     let page = read(&files.report);
     for part in [
-        "Of 6 differences of headline results 2 are resolved, 2 are not resolved, of 1 no uncertainty is known, 1 is equal.",
+        "Of 6 differences of headline results 2 are resolved, 2 are not resolved, 1 is of unknown uncertainty, 1 is equal.",
         "<b>+2.0 l/min ± 0.5</b>",
         "<b>+2.0° ± 0.5</b><br>✓ resolved</td>",
         "≈ not resolved",
@@ -490,7 +490,7 @@ fn without_refinement_no_difference_is_called_resolved() {
     let c =
         verified(None, [[(8.5, None), (1.0, None), (0.0, None)], [(10.0, None), (719.5, None), (2.0, None)]]);
     let page = read(write_comparison(&c, &dir).unwrap().report);
-    assert!(page.contains("Of 6 differences of headline results of 5 no uncertainty is known, 1 is equal."));
+    assert!(page.contains("Of 6 differences of headline results 5 are of unknown uncertainty, 1 is equal."));
     assert!(page.contains("<b>+2°</b>") && page.contains("+25.0 %"));
     assert!(!page.contains("✓ <b>resolved") && !page.contains("independent"));
     fs::remove_dir_all(dir).unwrap();

@@ -39,7 +39,7 @@
       if (m) { found = { name, unit, title: title(m[1]), rank, modes, k: +(m[1] || 0) }; break; }
     }
     if (/\.lift$/.test(name) && names.has(name.replace("lift", "position"))) continue;
-    list.push(found || { name, unit, title: name, rank: 20, k: 0, modes: ["linear", "±log"] });
+    list.push(found || { name, unit, title: DATA.names[name] || name, rank: 20, k: 0, modes: ["linear", "±log"] });
   }
   list.sort((a, b) => a.rank - b.rank || a.k - b.k);
   const dashes = ["", "7 4", "2 3", "9 3 2 3"];

@@ -67,7 +67,7 @@
         axis = v.series.axis;
         curves.push({ label: v.number + " " + v.label, x: arrays[axis.at], y: arrays[c.at], unit: c.unit, color: color(v.number - 1), dash: v.number > 8 ? "6 4" : "" });
       }
-      if (curves.length) new Chart(overlay, { title: name, xName: axis.name, xUnit: axis.unit, lines: curves, modes: ["linear", "log"], pickX: true });
+      if (curves.length) new Chart(overlay, { title: DATA.names[name] || name, xName: axis.name, xUnit: axis.unit, lines: curves, modes: ["linear", "log"], pickX: true });
     }
   }
 
