@@ -40,8 +40,8 @@ pub struct Sdirk {
 
 /// `1 - 1/√2`.
 const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
-/// Places of the rates in the step: its start, and the stages.
-const C: [f64; 3] = [0.0, GAMMA, 1.0];
+/// Places in a step, from 0 to 1, at which rates are known: its start, and the stages.
+pub const PLACES: [f64; 3] = [0.0, GAMMA, 1.0];
 /// Weights of the rates in the result.
 const WEIGHTS: [f64; 3] = [0.0, 1.0 - GAMMA, GAMMA];
 /// Weights of the divided difference of second order of the rates.
@@ -106,11 +106,11 @@ impl Sdirk {
             self.base.iter_mut().zip(&done[1]).for_each(|(b, k)| *b += h * (1.0 - GAMMA) * k);
         }
         let step = GAMMA * h;
-        let te = self.core.clamp_time(t + C[i] * h);
+        let te = self.core.clamp_time(t + PLACES[i] * h);
         let y = &mut self.core.y_tmp[..n];
         // The rates of the stage before go on as they are.
         y.iter_mut().zip(&self.base).zip(&done[i - 1]).for_each(|((y, b), k)| *y = b + step * k);
-        let stage = Stage { base: &self.base, step, accuracy: &self.accuracy };
+        let stage = Stage { number: i, base: &self.base, step, accuracy: &self.accuracy };
         sys.stage(te, &stage, y, &mut k[n..])?;
         k[..n].iter_mut().zip(y.iter()).zip(&self.base).for_each(|((k, y), b)| *k = (y - b) / step);
         for invariant in sys.invariants() {
@@ -206,7 +206,7 @@ impl Scheme for Sdirk {
         if !self.judged {
             self.begin(sys, t, opts);
         }
-        for i in 1..C.len() {
+        for i in 1..PLACES.len() {
             stats.stages += 1;
             self.stage(sys, i, t, h)?;
         }

@@ -74,6 +74,8 @@ pub enum EventAction {
 /// A stage of an implicit step.
 #[derive(Debug, Clone, Copy)]
 pub struct Stage<'a> {
+    /// Which stage of the step it is, from 1 on.
+    pub number: usize,
     /// What the step has made of the states before this stage.
     pub base: &'a [f64],
     /// Step times the coefficient of the stage.

@@ -6,7 +6,6 @@ use std::f64::consts::PI;
 use gudgeon_core::content::{self, Content};
 use gudgeon_core::quantity::{PosRatio, quantity};
 use gudgeon_core::result::{Balance, Column, Note, Series};
-use gudgeon_core::states::Signals;
 use gudgeon_core::{BuildError, EvalError, Stopwatch, register_model};
 use gudgeon_numerics::elementary;
 use gudgeon_numerics::ode::{
@@ -32,6 +31,7 @@ use super::rows::Rows;
 use super::solver::{NOT_PERIODIC, Recorded, RingPackSolverSpec, Solution, Wanted};
 use super::staged::Staging;
 use super::watch::Watch;
+use super::waveform::{Setting, Waveform};
 use gudgeon_core::result::Gradients;
 use gudgeon_scene::{Asked, GradientError, MethodSetting, RunError, Stopped};
 use indexmap::IndexMap;
@@ -87,7 +87,7 @@ impl RingPackSolverSpec for Implicit {
         if self.max_cycles == 0 {
             errors.push(BuildError::at("solver.max_cycles", "at least one cycle is needed"));
         }
-        if self.integrator == RingIntegrator::Sdirk2 {
+        if matches!(self.integrator, RingIntegrator::Sdirk2 | RingIntegrator::Waveform) {
             errors.extend(pack.refuses_stages().map(|what| {
                 BuildError::at("solver.integrator", what).help("use `rodas`, which every pack can")
             }));
@@ -193,15 +193,7 @@ impl OdeSystem for Problem<'_> {
         if self.look_at(t, y).is_err() {
             return;
         }
-        self.pack.each_block(|b, own| b.ease(&mut atol[own]));
-        // Surfaces that touch carry by their roughness, beside which a film much thinner need not be known to its own size.
-        for (i, own) in self.pack.layout.radial.iter().enumerate() {
-            for k in own.clone() {
-                if self.pack.layout.states[k].changes.meets(Signals::FILM_THICKNESS) {
-                    atol[k] *= self.pack.rings[i].contact.ease(self.pack.at.places[i].h);
-                }
-            }
-        }
+        self.pack.ease(atol);
     }
     fn n_events(&self) -> usize {
         self.events.len()
@@ -240,7 +232,7 @@ fn increment(part: f64, y: f64, scale: f64) -> f64 {
 }
 
 /// What follows a cycle step by step while it is integrated.
-trait Follower {
+pub(super) trait Follower {
     /// The cycle begins at `theta` with the states `y`.
     fn begin(&mut self, pack: &mut Pack, theta: f64, y: &[f64]) -> Result<(), EvalError>;
     /// A step, or a piece of one between two events.
@@ -250,7 +242,7 @@ trait Follower {
 }
 
 /// The follower for one call.
-fn lend<'f>(follower: &'f mut Option<&mut dyn Follower>) -> Option<&'f mut dyn Follower> {
+pub(super) fn lend<'f>(follower: &'f mut Option<&mut dyn Follower>) -> Option<&'f mut dyn Follower> {
     match follower {
         Some(f) => Some(&mut **f),
         None => None,
@@ -264,16 +256,18 @@ enum Method {
     Rodas(Box<Rodas>),
     Radau(Box<Radau5>),
     Sdirk(Box<Sdirk>),
+    Waveform(Box<Waveform>),
 }
 
 impl Method {
-    fn new(s: &Implicit, pack: &Pack) -> Self {
+    fn new(s: &Implicit, pack: &Pack, balance: &[LinearInvariant]) -> Self {
         let (dim, quads) = (pack.layout.n, pack.layout.quads());
         let rosenbrock = |formula| Self::Rodas(Box::new(Rodas::with(formula, dim, quads, None)));
         match s.integrator.at(s.tolerance.si()) {
             RingIntegrator::Rodas3 => rosenbrock(Formula::Rodas3),
             RingIntegrator::Rodas | RingIntegrator::Rodas5p => rosenbrock(Formula::Rodas5P),
             RingIntegrator::Sdirk2 => Self::Sdirk(Box::new(Sdirk::new(dim, quads))),
+            RingIntegrator::Waveform => Self::Waveform(Box::new(Waveform::new(pack, balance))),
             RingIntegrator::Radau5 => Self::Radau(Box::new(Radau5::new(dim, quads, None))),
         }
     }
@@ -322,6 +316,13 @@ impl Cycle<'_> {
         self.q.fill(0.0);
         let period = self.pack.period();
         let interval = self.pack.decision_interval();
+        if let Method::Waveform(w) = &mut self.method {
+            options.h_init = self.h;
+            let mut setting =
+                Setting { breakpoints: &self.breakpoints, options: &options, stats: &mut self.stats };
+            w.cycle(self.pack, y, &mut self.q, &mut setting, follower)?;
+            return self.integrated();
+        }
         let pieces = interval.map_or(1, |i| (period / i).round().max(1.0) as usize);
         let mut outcome = Ok(());
         for piece in 0..pieces {
@@ -335,11 +336,14 @@ impl Cycle<'_> {
                 break;
             }
         }
+        outcome.and_then(|()| self.integrated())
+    }
+
+    /// A cycle is done.
+    fn integrated(&mut self) -> Result<(), IntegrateError> {
         self.done += 1.0;
-        outcome.and_then(|()| {
-            (self.progress)(1.0 - elementary::powf(0.8f64, self.done))
-                .map_err(|e| IntegrateError::Eval { t: period, source: e.into() })
-        })
+        (self.progress)(1.0 - elementary::powf(0.8f64, self.done))
+            .map_err(|e| IntegrateError::Eval { t: self.pack.period(), source: e.into() })
     }
 
     fn options(&self, rtol: f64) -> Options {
@@ -400,7 +404,7 @@ impl Cycle<'_> {
                 return Flow::Stop;
             }
             let flow = lend(&mut follower).map_or(Flow::Continue, |f| f.step(p.pack, v));
-            p.pack.book_oil(v);
+            p.pack.book_oil((v.t0(), v.y0()), (v.t1(), v.y1()));
             if let Some(f) = lend(&mut follower) {
                 f.booked(p.pack, v.t1());
             }
@@ -411,6 +415,7 @@ impl Cycle<'_> {
             Method::Rodas(m) => m.integrate(&mut problem, span, b, y, q, options, st, &mut observe),
             Method::Radau(m) => m.integrate(&mut problem, span, b, y, q, options, st, &mut observe),
             Method::Sdirk(m) => m.integrate(&mut problem, span, b, y, q, options, st, &mut observe),
+            Method::Waveform(_) => Err(IntegrateError::Input { what: "a cycle in two halves has no pieces" }),
         }?;
         stopped.map_or(Ok(()), |(t, e)| Err(IntegrateError::Eval { t, source: e.into() }))
     }
@@ -713,12 +718,13 @@ impl<'a> Cycle<'a> {
         wanted: &Wanted<'_>,
         progress: &'a mut dyn FnMut(f64) -> Result<(), Stopped>,
     ) -> Self {
+        let balance = balances(pack);
         Cycle {
-            method: Method::new(s, pack),
+            method: Method::new(s, pack, &balance),
             breakpoints: breakpoints(pack),
             scale: pack.layout.states.iter().map(|s| s.scale).collect(),
             absolute: pack.layout.states.iter().map(|s| !s.relative).collect(),
-            balance: balances(pack),
+            balance,
             events: Vec::new(),
             base: Base::default(),
             staging: Staging::new(pack),
@@ -737,7 +743,10 @@ impl<'a> Cycle<'a> {
     /// Cycles tell what passes through each passage of the gas from now on.
     fn follow_passages(&mut self, s: &Implicit) {
         self.pack.follow_passages(true);
-        self.method = Method::new(s, self.pack);
+        match &mut self.method {
+            Method::Waveform(w) => w.set_quadratures(self.pack, &self.balance),
+            method => *method = Method::new(s, self.pack, &self.balance),
+        }
         self.q = vec![0.0; self.pack.layout.quads()];
     }
 

@@ -93,6 +93,13 @@ impl Layout {
         self.passage_quad() + self.passages
     }
 
+    /// The quadratures of friction.
+    #[must_use]
+    pub fn friction_quads(&self) -> Range<usize> {
+        let n = self.flank.len();
+        n + 1..3 * n + 1
+    }
+
     /// The quadrature of the flow through the first passage of the gas, where passages are followed.
     #[must_use]
     pub fn passage_quad(&self) -> usize {

@@ -54,6 +54,7 @@ pub mod substep_march;
 mod used;
 mod vent;
 pub mod watch;
+mod waveform;
 
 use gudgeon_core::BuildError;
 

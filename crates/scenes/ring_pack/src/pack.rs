@@ -11,7 +11,7 @@ use gudgeon_core::kinds::{
     AxialForces, CylinderPressure, FilmHeat, FilmTemperature, GasFlow, GasIn, GasPartials, Kinematics, Oil,
     OilDrive, OilStep, OilTransport, RingPose,
 };
-use gudgeon_core::states::Stateful;
+use gudgeon_core::states::{Signals, Stateful};
 
 use super::conventions::Laws;
 use super::instant::{Counters, Instant, SeatLog};
@@ -20,6 +20,7 @@ use super::limits::Limits;
 use super::liner::LinerShape;
 use super::plan::{Names, Plan};
 use super::ring::Ring;
+use super::waveform::Side;
 
 /// Film thickness beyond which a trial state of an integrator is refused, which then takes a smaller step \[m\]: no groove is that deep.
 const THICKEST: f64 = 0.1;
@@ -311,25 +312,12 @@ impl Pack {
 
     /// The same for an instant of a step that has been booked since, with what the models remembered then.
     pub fn evaluate_again(&mut self, theta: f64, y: &[f64], memory: Option<&[f64]>) -> Result<(), EvalError> {
-        self.counters.instants += 1;
-        if let Some(k) = y.iter().position(|v| !v.is_finite()) {
-            return Err(EvalError::recoverable("ring_pack", format!("state {k} is not a number")));
-        }
-        // Until it is complete, this is the evaluation of no state.
-        self.state.fill(f64::NAN);
         if let Some(memory) = memory {
             self.restore_memory(memory);
         }
-        self.set_places(theta, y);
-        if let Some(i) = (0..self.n_rings()).find(|i| !self.film_is_one(*i)) {
-            let what = format!("the film of ring {} left the range of films", i + 1);
-            return Err(EvalError::recoverable("ring_pack", what));
-        }
+        self.begin_instant(theta, y)?;
         if let (Some(oil), None) = (&mut self.oil_pack, memory) {
             oil.place(&y[self.layout.oil.clone()], self.at.piston.y);
-        }
-        for (k, m) in self.gas_state.iter_mut().enumerate() {
-            *m = y[k] * self.gas_scale[k];
         }
         self.gas(None)?;
         for i in 0..self.n_rings() {
@@ -340,6 +328,58 @@ impl Pack {
         }
         self.state.copy_from_slice(y);
         Ok(())
+    }
+
+    /// Sets places and gas of an instant whose states are numbers.
+    fn begin_instant(&mut self, theta: f64, y: &[f64]) -> Result<(), EvalError> {
+        self.counters.instants += 1;
+        if let Some(k) = y.iter().position(|v| !v.is_finite()) {
+            return Err(EvalError::recoverable("ring_pack", format!("state {k} is not a number")));
+        }
+        // Until it is complete, this is the evaluation of no state.
+        self.state.fill(f64::NAN);
+        self.set_places(theta, y);
+        if let Some(i) = (0..self.n_rings()).find(|i| !self.film_is_one(*i)) {
+            let what = format!("the film of ring {} left the range of films", i + 1);
+            return Err(EvalError::recoverable("ring_pack", what));
+        }
+        for (k, m) in self.gas_state.iter_mut().enumerate() {
+            *m = y[k] * self.gas_scale[k];
+        }
+        Ok(())
+    }
+
+    /// Evaluates one side of the scene, the other standing as `y` has it; `axial` are the forces \[N\] of the films along the liner, which the films
+    /// know themselves.
+    pub(super) fn evaluate_of(
+        &mut self,
+        side: Side,
+        theta: f64,
+        y: &[f64],
+        axial: &[f64],
+    ) -> Result<(), EvalError> {
+        self.begin_instant(theta, y)?;
+        match side {
+            Side::Grooves => {
+                self.gas(None)?;
+                self.set_film_forces(axial);
+                (0..self.n_rings()).try_for_each(|i| self.in_groove(i, y))?;
+            }
+            Side::Films => {
+                if let Some(oil) = &mut self.oil_pack {
+                    oil.place(&y[self.layout.oil.clone()], self.at.piston.y);
+                }
+                self.gas_pressures(self.cylinder.pressure(theta))?;
+                (0..self.n_rings()).try_for_each(|i| self.film_of_ring(i, y))?;
+            }
+        }
+        self.state.copy_from_slice(y);
+        Ok(())
+    }
+
+    /// Forces \[N\] of the films on the rings along the liner, where they are known from elsewhere.
+    pub(super) fn set_film_forces(&mut self, axial: &[f64]) {
+        self.at.rings.iter_mut().zip(axial).for_each(|(r, f)| r.axial.film = *f);
     }
 
     /// Film, friction, oil and temperature of ring `i`.
@@ -388,13 +428,32 @@ impl Pack {
     /// Rates of the state by crank angle, and of the quadratures ([`Layout::quads`]) when `f` is longer than the state.
     pub fn rates(&mut self, theta: f64, y: &[f64], f: &mut [f64]) -> Result<(), EvalError> {
         self.evaluate(theta, y)?;
-        let (per, dim) = (1.0 / self.omega, self.layout.n);
-        f[..dim].copy_from_slice(&self.dy);
-        for k in self.layout.gas.clone() {
-            f[k] = self.at.dm[k] / self.gas_scale[k] * per;
-        }
+        let dim = self.layout.n;
+        f[..dim].iter_mut().enumerate().for_each(|(k, f)| *f = self.rate(k));
         self.quadratures(&mut f[dim..]);
         Ok(())
+    }
+
+    /// Rate of state `k` by crank angle \[1/rad\] at the instant evaluated last.
+    pub(super) fn rate(&self, k: usize) -> f64 {
+        if self.layout.gas.contains(&k) {
+            self.at.dm[k] / self.gas_scale[k] * (1.0 / self.omega)
+        } else {
+            self.dy[k]
+        }
+    }
+
+    /// Multiplies admitted errors of the states by what the models allow at the instant evaluated last.
+    pub(super) fn ease(&mut self, atol: &mut [f64]) {
+        self.each_block(|b, own| b.ease(&mut atol[own]));
+        // Surfaces that touch carry by their roughness, beside which a film much thinner need not be known to its own size.
+        for (i, own) in self.layout.radial.iter().enumerate() {
+            for k in own.clone() {
+                if self.layout.states[k].changes.meets(Signals::FILM_THICKNESS) {
+                    atol[k] *= self.rings[i].contact.ease(self.at.places[i].h);
+                }
+            }
+        }
     }
 
     /// Rates of the quadratures by crank angle, in the order of [`Layout::quads`]; none into an empty `q`.
@@ -433,22 +492,22 @@ impl Pack {
         self.rings.iter().zip(&self.layout.flank).map(|(r, own)| r.flank.volume(&y[own.clone()])).sum()
     }
 
-    /// Books the oil of an accepted step.
-    pub fn book_oil(&mut self, v: &dyn gudgeon_numerics::ode::StepView) {
+    /// Books the oil of an accepted step from one instant and its states to another.
+    pub fn book_oil(&mut self, (t0, y0): (f64, &[f64]), (t1, y1): (f64, &[f64])) {
         let Some(oil) = &mut self.oil_pack else { return };
-        let piston = self.kinematics.motion(v.t1());
+        let piston = self.kinematics.motion(t1);
         for ((h, ring), own) in self.films.iter_mut().zip(&self.rings).zip(&self.layout.radial) {
-            *h = if own.is_empty() { 0.0 } else { ring.radial.thickness(&v.y1()[own.clone()]) };
+            *h = if own.is_empty() { 0.0 } else { ring.radial.thickness(&y1[own.clone()]) };
         }
         self.viscosities.iter_mut().zip(&self.at.rings).for_each(|(mu, r)| *mu = r.mu);
         let drive = OilDrive {
-            dt: (v.t1() - v.t0()) / self.omega,
+            dt: (t1 - t0) / self.omega,
             acceleration: piston.a,
             viscosity: &self.viscosities,
             pressures: &self.at.gas.p_land,
         };
         let own = self.layout.oil.clone();
-        let (y0, y1) = (&v.y0()[own.clone()], &v.y1()[own]);
+        let (y0, y1) = (&y0[own.clone()], &y1[own]);
         oil.book(&OilStep { y0, y1, pin: piston.y, films: &self.films, drive });
     }
 

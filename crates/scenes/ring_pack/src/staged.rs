@@ -19,6 +19,7 @@ use gudgeon_numerics::stages::StageNewton;
 
 use super::pack::Pack;
 use super::ring::Ring;
+use super::waveform::Side;
 
 /// Unknowns that are solved together, and what is kept of them from stage to stage.
 #[derive(Debug, Clone, Default)]
@@ -128,13 +129,7 @@ impl Pack {
         g: &mut [f64],
         w: &mut Staging,
     ) -> Result<(), EvalError> {
-        self.state.fill(f64::NAN);
-        self.set_places(theta, y);
-        let pin = self.at.piston.y;
-        w.radii.clear();
-        w.radii.extend((0..self.n_rings()).map(|i| self.liner_radius(i, pin)));
-        self.set_gas(y)?;
-        let p = self.cylinder.pressure(theta);
+        let p = self.begin_stage(theta, y, w)?;
         self.gas_pressures(p)?;
         self.films_of_stage(stage, y, w)?;
         for pass in 0.. {
@@ -150,6 +145,47 @@ impl Pack {
         self.quadratures(g);
         self.state.copy_from_slice(y);
         Ok(())
+    }
+
+    /// Solves a stage for one side of the pack, the other standing as `y` has it; `axial` are the forces \[N\] of the films along the liner, which
+    /// the films know themselves.
+    ///
+    /// # Errors
+    /// What a sub-model refuses; no answer.
+    pub(super) fn stage_of(
+        &mut self,
+        side: Side,
+        theta: f64,
+        stage: &Stage<'_>,
+        y: &mut [f64],
+        axial: &[f64],
+        w: &mut Staging,
+    ) -> Result<(), EvalError> {
+        let p = self.begin_stage(theta, y, w)?;
+        match side {
+            Side::Grooves => {
+                self.set_film_forces(axial);
+                let Staging { gas, radii, .. } = w;
+                gas.solve(stage, y, &mut |y, states, r| self.follow((stage, states), (p, radii), y, r))?;
+            }
+            Side::Films => {
+                self.gas_pressures(p)?;
+                self.films_of_stage(stage, y, w)?;
+            }
+        }
+        self.state.copy_from_slice(y);
+        Ok(())
+    }
+
+    /// Sets what no stage changes; the pressure in the cylinder \[Pa\].
+    fn begin_stage(&mut self, theta: f64, y: &[f64], w: &mut Staging) -> Result<f64, EvalError> {
+        self.state.fill(f64::NAN);
+        self.set_places(theta, y);
+        let pin = self.at.piston.y;
+        w.radii.clear();
+        w.radii.extend((0..self.n_rings()).map(|i| self.liner_radius(i, pin)));
+        self.set_gas(y)?;
+        Ok(self.cylinder.pressure(theta))
     }
 
     fn set_gas(&mut self, y: &[f64]) -> Result<(), EvalError> {
@@ -288,5 +324,5 @@ impl Pack {
 
 /// The part of a stage that belongs to a model.
 fn part<'a>(stage: &Stage<'a>, own: Range<usize>) -> Stage<'a> {
-    Stage { base: &stage.base[own.clone()], step: stage.step, accuracy: &stage.accuracy[own] }
+    Stage { base: &stage.base[own.clone()], accuracy: &stage.accuracy[own], ..*stage }
 }

@@ -17,6 +17,9 @@ pub enum RingIntegrator {
     /// Singly diagonally implicit method of order 2 whose stages the pack solves itself, each ring by a bracket: half the steps at errors of 1e-3. For
     /// packs whose models solve stages. Not for rings that leave the liner: heavy ones at 5000 rpm come back too slowly, and blow-by is wrong at every tolerance.
     Sdirk2,
+    /// Gas with the rings in their grooves, and films, each at steps of its own over the whole cycle by the stages of `sdirk2`, in turns until both agree. For packs whose
+    /// models solve stages.
+    Waveform,
     /// Radau IIA of order 5, for references at tight tolerances.
     Radau5,
 }

@@ -1,0 +1,388 @@
+//! A cycle in two halves: gas with the rings in their grooves, then films, each at steps of its own.
+//!
+//! The two sides of a pack ask little of each other. Films need pressures; gas and grooves need how thick the films are and what force they put on the
+//! rings along the liner. So the cycle is integrated twice, each time one side alone, while what the other side did over its last cycle stands in for it
+//! (waveform relaxation, lelarasmee1982). Each side takes the steps that it needs itself, and its stages are smaller problems. What the sides do not agree on
+//! shrinks by some six times a cycle, beside the search of the periodic state, and the end of both is the solution of the whole pack.
+
+use gudgeon_core::EvalError;
+use gudgeon_core::states::Stage;
+use gudgeon_numerics::ode::{Flow, IntegrateError, Integrator, LinearInvariant, OdeSystem, Options, Stats, StepView};
+use gudgeon_numerics::sdirk::{self, Sdirk};
+
+use super::implicit::{Follower, lend};
+use super::layout::Layout;
+use super::pack::Pack;
+use super::staged::Staging;
+
+mod joint;
+mod track;
+
+use joint::{Joint, Part};
+use track::Track;
+
+/// What is integrated together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// Gas, the motion of the rings in their grooves, and the oil on the flanks.
+    Grooves,
+    /// Films, the oil under them and their temperatures.
+    Films,
+}
+
+impl Side {
+    /// Its states, in their order.
+    fn states(self, layout: &Layout) -> Vec<usize> {
+        let flat = |all: &[std::ops::Range<usize>]| all.iter().cloned().flatten().collect::<Vec<_>>();
+        match self {
+            Self::Grooves => {
+                layout.gas.clone().chain(flat(&layout.motion)).chain(flat(&layout.flank)).collect()
+            }
+            Self::Films => {
+                let films = flat(&layout.radial).into_iter();
+                films.chain(layout.oil.clone()).chain(layout.temperature.clone()).collect()
+            }
+        }
+    }
+
+    /// Its quadratures: friction is that of the films, all others are of gas and flanks.
+    fn quads(self, layout: &Layout) -> Vec<usize> {
+        let friction = layout.friction_quads();
+        (0..layout.quads()).filter(|k| friction.contains(k) == (self == Self::Films)).collect()
+    }
+}
+
+/// One side over a cycle.
+struct Half {
+    part: Part,
+    method: Sdirk,
+    /// States and quadratures of the last cycle.
+    wave: Track,
+    /// What the sides agree on of the linear invariants of the pack, by rows of this side.
+    invariants: Vec<LinearInvariant>,
+}
+
+impl Half {
+    fn new(side: Side, pack: &Pack, balance: &[LinearInvariant]) -> Self {
+        let part = Part { states: side.states(&pack.layout), quads: side.quads(&pack.layout) };
+        let n = pack.layout.n;
+        let row = |r: usize| part.row(r, n);
+        let own = |v: &LinearInvariant| {
+            let terms: Option<Vec<_>> = v.terms.iter().map(|(r, c)| Some((row(*r)?, *c))).collect();
+            Some(LinearInvariant { pivot: row(v.pivot)?, terms: terms? })
+        };
+        Self {
+            method: Sdirk::new(part.states.len(), part.quads.len()),
+            wave: Track::new(part.states.len() + part.quads.len(), &track::THIRDS),
+            invariants: balance.iter().filter_map(own).collect(),
+            part,
+        }
+    }
+}
+
+/// Both sides of a pack over a cycle.
+pub struct Waveform {
+    grooves: Half,
+    films: Half,
+    staging: Staging,
+    /// Forces \[N\] of the films on the rings along the liner, and the thicknesses that they belong to are in the wave of the films.
+    forces: Track,
+    /// What the films did in the cycle before the last.
+    before: [Track; 2],
+}
+
+/// What a cycle is integrated with.
+pub struct Setting<'a> {
+    /// Where steps end.
+    pub breakpoints: &'a [f64],
+    /// Accuracy and limits, for all states.
+    pub options: &'a Options,
+    pub stats: &'a mut Stats,
+}
+
+impl Waveform {
+    /// For a pack, whose balances are `balance`.
+    pub fn new(pack: &Pack, balance: &[LinearInvariant]) -> Self {
+        let films = Half::new(Side::Films, pack, balance);
+        let forces = Track::new(pack.n_rings(), &sdirk::PLACES);
+        Self {
+            grooves: Half::new(Side::Grooves, pack, balance),
+            before: [films.wave.clone(), forces.clone()],
+            films,
+            staging: Staging::new(pack),
+            forces,
+        }
+    }
+
+    /// The quadratures of the pack are others from now on.
+    pub fn set_quadratures(&mut self, pack: &Pack, balance: &[LinearInvariant]) {
+        self.grooves = Half::new(Side::Grooves, pack, balance);
+    }
+
+    /// Integrates a cycle from `y`; `q` are the quadratures over it.
+    pub fn cycle(
+        &mut self,
+        pack: &mut Pack,
+        y: &mut [f64],
+        q: &mut [f64],
+        setting: &mut Setting<'_>,
+        mut follower: Option<&mut dyn Follower>,
+    ) -> Result<(), IntegrateError> {
+        if self.films.wave.is_empty() {
+            self.stand_still(pack.period(), y);
+        }
+        let begin = y.to_vec();
+        self.staging.restart();
+        self.grooves(pack, y, q, setting)?;
+        if let Some(f) = lend(&mut follower) {
+            f.begin(pack, 0.0, &begin).map_err(|source| IntegrateError::Eval { t: 0.0, source })?;
+        }
+        self.films(pack, y, q, setting, follower)
+    }
+
+    /// Before anything is known of the films they stay as they begin, without a force.
+    fn stand_still(&mut self, period: f64, y: &[f64]) {
+        self.films.wave.hold(period, self.films.part.states.iter().map(|&k| y[k]));
+        self.forces.hold(period, std::iter::empty());
+    }
+
+    fn grooves(
+        &mut self,
+        pack: &mut Pack,
+        y: &mut [f64],
+        q: &mut [f64],
+        setting: &mut Setting<'_>,
+    ) -> Result<(), IntegrateError> {
+        let half = &mut self.grooves;
+        half.wave.begin(0.0);
+        let (wave, part) = (&mut half.wave, &half.part);
+        let mut system = OneSide::new(Side::Grooves, pack, &mut self.staging, part, &half.invariants)
+            .beside(&self.films.part, &self.films.wave, Some(&self.forces));
+        let mut observe = |_: &mut OneSide<'_>, v: &dyn StepView| {
+            wave.step(v);
+            Flow::Continue
+        };
+        integrate(&mut half.method, &mut system, setting, (y, q), &mut observe)
+    }
+
+    fn films(
+        &mut self,
+        pack: &mut Pack,
+        y: &mut [f64],
+        q: &mut [f64],
+        setting: &mut Setting<'_>,
+        mut follower: Option<&mut dyn Follower>,
+    ) -> Result<(), IntegrateError> {
+        let half = &mut self.films;
+        if half.part.states.is_empty() {
+            return Ok(());
+        }
+        self.before[0].clone_from(&half.wave);
+        self.before[1].clone_from(&self.forces);
+        half.wave.begin(0.0);
+        self.forces.begin(0.0);
+        let (wave, forces, beside) = (&mut half.wave, &mut self.forces, &self.grooves);
+        let part = &half.part;
+        let mut system = OneSide::new(Side::Films, pack, &mut self.staging, part, &half.invariants)
+            .beside(&beside.part, &beside.wave, None);
+        let mut joint = Joint::new(&beside.wave, [&beside.part, part], system.pack);
+        let mut observe = |s: &mut OneSide<'_>, v: &dyn StepView| {
+            wave.step(v);
+            forces.push(v.t1(), &s.axial);
+            s.next();
+            let flow = match lend(&mut follower) {
+                Some(f) => joint.pieces(v, |piece| f.step(s.pack, piece)),
+                None => Flow::Continue,
+            };
+            s.book(v);
+            if let Some(f) = lend(&mut follower) {
+                f.booked(s.pack, v.t1());
+            }
+            flow
+        };
+        integrate(&mut half.method, &mut system, setting, (y, q), &mut observe)
+    }
+
+    /// How much the films of the last cycle differ from those that gas and grooves of that cycle saw: the mean of the change of thickness over itself, and that
+    /// of their forces over their size, whichever is larger.
+    pub fn disagreement(&self, period: f64) -> f64 {
+        let films = self.films.part.states.len();
+        if films == 0 {
+            return 0.0;
+        }
+        let thickness = self.films.wave.mean_change(&self.before[0], period, films).change;
+        let force = self.forces.mean_change(&self.before[1], period, self.forces.width());
+        thickness.max(force.change / force.size.max(f64::MIN_POSITIVE))
+    }
+}
+
+/// Integrates one side over a cycle.
+fn integrate(
+    method: &mut Sdirk,
+    system: &mut OneSide<'_>,
+    setting: &mut Setting<'_>,
+    (y, q): (&mut [f64], &mut [f64]),
+    observe: &mut dyn FnMut(&mut OneSide<'_>, &dyn StepView) -> Flow,
+) -> Result<(), IntegrateError> {
+    let part = system.part;
+    let of = |all: &[f64]| part.states.iter().map(|&k| all[k]).collect::<Vec<_>>();
+    let mut options = setting.options.clone();
+    options.atol = of(&options.atol);
+    options.absolute = part.states.iter().map(|&k| setting.options.absolute[k]).collect();
+    let (mut states, mut quads) = (of(y), vec![0.0; part.quads.len()]);
+    let span = (0.0, system.pack.period());
+    let st = &mut *setting.stats;
+    method.integrate(system, span, setting.breakpoints, &mut states, &mut quads, &options, st, observe)?;
+    part.states.iter().zip(&states).for_each(|(&k, v)| y[k] = *v);
+    part.quads.iter().zip(&quads).for_each(|(&k, v)| q[k] = *v);
+    Ok(())
+}
+
+/// One side as an initial-value problem, the other as it was over its last cycle.
+struct OneSide<'a> {
+    side: Side,
+    pack: &'a mut Pack,
+    staging: &'a mut Staging,
+    part: &'a Part,
+    invariants: &'a [LinearInvariant],
+    other: Option<(&'a Part, &'a Track)>,
+    forces: Option<&'a Track>,
+    /// All states at an instant.
+    y: Vec<f64>,
+    /// What the other side is then.
+    beside: Vec<f64>,
+    /// Forces of the films: those given, or those found at the start and at the stages of the step, one instant after the other.
+    axial: Vec<f64>,
+    /// Base, and accuracy, of a stage for all states.
+    base: Vec<f64>,
+    accuracy: Vec<f64>,
+    quads: Vec<f64>,
+}
+
+impl<'a> OneSide<'a> {
+    fn new(
+        side: Side,
+        pack: &'a mut Pack,
+        staging: &'a mut Staging,
+        part: &'a Part,
+        invariants: &'a [LinearInvariant],
+    ) -> Self {
+        let n = pack.layout.n;
+        let instants = if side == Side::Films { sdirk::PLACES.len() } else { 1 };
+        Self {
+            side,
+            staging,
+            part,
+            invariants,
+            other: None,
+            forces: None,
+            y: vec![0.0; n],
+            beside: Vec::new(),
+            axial: vec![0.0; instants * pack.n_rings()],
+            base: vec![0.0; n],
+            accuracy: vec![1.0; n],
+            quads: vec![0.0; pack.layout.quads()],
+            pack,
+        }
+    }
+
+    fn beside(mut self, part: &'a Part, wave: &'a Track, forces: Option<&'a Track>) -> Self {
+        self.beside = vec![0.0; part.states.len()];
+        self.other = Some((part, wave));
+        self.forces = forces;
+        self
+    }
+
+    /// All states for those of this side.
+    fn fill(&mut self, t: f64, y: &[f64]) {
+        self.part.states.iter().zip(y).for_each(|(&k, v)| self.y[k] = *v);
+        if let Some((part, wave)) = self.other {
+            wave.eval(t, &mut self.beside);
+            part.states.iter().zip(&self.beside).for_each(|(&k, v)| self.y[k] = *v);
+        }
+        if let Some(forces) = self.forces {
+            forces.eval(t, &mut self.axial);
+        }
+    }
+
+    fn evaluate(&mut self, t: f64, y: &[f64]) -> Result<(), EvalError> {
+        self.fill(t, y);
+        self.pack.evaluate_of(self.side, t, &self.y, &self.axial)?;
+        self.keep_forces(0);
+        Ok(())
+    }
+
+    /// Keeps the forces of the films at an instant of the step.
+    fn keep_forces(&mut self, instant: usize) {
+        if self.side == Side::Films {
+            let n = self.pack.n_rings();
+            let kept = self.axial[instant * n..].iter_mut();
+            kept.zip(&self.pack.at.rings).for_each(|(f, r)| *f = r.axial.film);
+        }
+    }
+
+    /// The end of the step is the start of the next.
+    fn next(&mut self) {
+        let n = self.pack.n_rings();
+        let last = self.axial.len() - n;
+        self.axial.copy_within(last.., 0);
+    }
+
+    /// Books the oil of an accepted step of the films.
+    fn book(&mut self, v: &dyn StepView) {
+        let ends = [(&mut self.base, v.y0()), (&mut self.y, v.y1())];
+        for (all, own) in ends {
+            self.part.states.iter().zip(own).for_each(|(&k, v)| all[k] = *v);
+        }
+        self.pack.book_oil((v.t0(), &self.base), (v.t1(), &self.y));
+    }
+
+    fn quadratures(&mut self, q: &mut [f64]) {
+        self.pack.quadratures(&mut self.quads);
+        q.iter_mut().zip(&self.part.quads).for_each(|(q, &k)| *q = self.quads[k]);
+    }
+}
+
+impl OdeSystem for OneSide<'_> {
+    fn dim(&self) -> usize {
+        self.part.states.len()
+    }
+    fn quad_dim(&self) -> usize {
+        self.part.quads.len()
+    }
+    fn rhs(&mut self, t: f64, y: &[f64], f: &mut [f64]) -> Result<(), EvalError> {
+        self.evaluate(t, y)?;
+        let n = self.part.states.len();
+        for (f, &k) in f.iter_mut().zip(&self.part.states) {
+            *f = self.pack.rate(k);
+        }
+        self.quadratures(&mut f[n..]);
+        Ok(())
+    }
+    /// Stages come in their order, the second after the first.
+    fn stage(&mut self, t: f64, stage: &Stage<'_>, y: &mut [f64], g: &mut [f64]) -> Result<(), EvalError> {
+        self.fill(t, y);
+        for (j, &k) in self.part.states.iter().enumerate() {
+            (self.base[k], self.accuracy[k]) = (stage.base[j], stage.accuracy[j]);
+        }
+        let whole = Stage { base: &self.base, accuracy: &self.accuracy, ..*stage };
+        self.pack.stage_of(self.side, t, &whole, &mut self.y, &self.axial, self.staging)?;
+        self.part.states.iter().zip(y).for_each(|(&k, v)| *v = self.y[k]);
+        self.keep_forces(stage.number);
+        self.quadratures(g);
+        Ok(())
+    }
+    fn invariants(&self) -> &[LinearInvariant] {
+        self.invariants
+    }
+    fn tolerances(&mut self, t: f64, y: &[f64], atol: &mut [f64]) {
+        let known = self.pack.at.theta == t
+            && self.part.states.iter().zip(y).all(|(&k, v)| self.pack.state[k] == *v);
+        if !known && self.evaluate(t, y).is_err() {
+            return;
+        }
+        self.part.states.iter().zip(&*atol).for_each(|(&k, a)| self.base[k] = *a);
+        self.pack.ease(&mut self.base);
+        self.part.states.iter().zip(atol).for_each(|(&k, a)| *a = self.base[k]);
+    }
+}

@@ -1,0 +1,128 @@
+//! Steps of the films with what gas and grooves did over them, as steps of the whole pack.
+
+use std::cell::RefCell;
+
+use gudgeon_numerics::ode::{Flow, StepView};
+
+use super::super::pack::Pack;
+use super::track::Track;
+
+/// The states and the quadratures of a side, by their places in the pack.
+#[derive(Debug, Clone)]
+pub struct Part {
+    pub states: Vec<usize>,
+    pub quads: Vec<usize>,
+}
+
+impl Part {
+    /// The row of a state or a quadrature of the pack, whose states are `n`, among the states and quadratures of this side.
+    pub fn row(&self, row: usize, n: usize) -> Option<usize> {
+        if row < n {
+            self.states.iter().position(|k| *k == row)
+        } else {
+            self.quads.iter().position(|k| *k == row - n).map(|k| self.states.len() + k)
+        }
+    }
+}
+
+/// Ends of steps that are one within this \[rad\].
+const SLACK: f64 = 1e-9;
+
+/// A step of the films, or what lies of it in one step of gas and grooves.
+pub struct Joint<'a> {
+    beside: &'a Track,
+    parts: [&'a Part; 2],
+    t: [f64; 2],
+    /// States and quadratures of the pack at both ends.
+    y: [Vec<f64>; 2],
+    q: [Vec<f64>; 2],
+    /// Values of gas and grooves, and those of the films, at an instant.
+    own: RefCell<[Vec<f64>; 2]>,
+}
+
+/// A piece of a step as it is seen.
+struct Piece<'j, 'a> {
+    joint: &'j Joint<'a>,
+    step: &'j dyn StepView,
+}
+
+impl<'a> Joint<'a> {
+    /// For steps of the films beside what gas and grooves did; `parts` are those of the two.
+    pub fn new(beside: &'a Track, parts: [&'a Part; 2], pack: &Pack) -> Self {
+        let y = || vec![0.0; pack.layout.n];
+        let q = || vec![0.0; pack.layout.quads()];
+        let own = parts.map(|p| vec![0.0; p.states.len() + p.quads.len()]);
+        Self { beside, parts, t: [0.0; 2], y: [y(), y()], q: [q(), q()], own: RefCell::new(own) }
+    }
+
+    /// Has each piece of the step looked at, until one stops.
+    pub fn pieces(&mut self, step: &dyn StepView, mut look: impl FnMut(&dyn StepView) -> Flow) -> Flow {
+        let first = self.beside.ends().partition_point(|t| *t <= step.t0() + SLACK);
+        let inner = self.beside.ends()[first..].iter().copied().take_while(|t| *t < step.t1() - SLACK);
+        let mut from = step.t0();
+        for to in inner.chain([step.t1()]) {
+            self.t = [from, to];
+            for end in 0..2 {
+                let (mut y, mut q) = (std::mem::take(&mut self.y[end]), std::mem::take(&mut self.q[end]));
+                self.at(step, self.t[end], Some(&mut y), Some(&mut q));
+                (self.y[end], self.q[end]) = (y, q);
+            }
+            if matches!(look(&Piece { joint: self, step }), Flow::Stop) {
+                return Flow::Stop;
+            }
+            from = to;
+        }
+        Flow::Continue
+    }
+
+    /// States and quadratures of the pack at `t`.
+    fn at(&self, step: &dyn StepView, t: f64, y: Option<&mut [f64]>, q: Option<&mut [f64]>) {
+        let mut own = self.own.borrow_mut();
+        let [beside, films] = &mut *own;
+        self.beside.eval(t, beside);
+        let (states, quads) = films.split_at_mut(self.parts[1].states.len());
+        if t >= step.t1() {
+            states.copy_from_slice(step.y1());
+            quads.copy_from_slice(step.q1());
+        } else {
+            step.interpolate(t, states);
+            step.interpolate_quad(t, quads);
+        }
+        let put = |to: &mut [f64], places: &[usize], values: &[f64]| {
+            places.iter().zip(values).for_each(|(&k, v)| to[k] = *v);
+        };
+        if let Some(y) = y {
+            self.parts.iter().zip(&*own).for_each(|(p, own)| put(y, &p.states, own));
+        }
+        if let Some(q) = q {
+            self.parts.iter().zip(&*own).for_each(|(p, own)| put(q, &p.quads, &own[p.states.len()..]));
+        }
+    }
+}
+
+impl StepView for Piece<'_, '_> {
+    fn t0(&self) -> f64 {
+        self.joint.t[0]
+    }
+    fn t1(&self) -> f64 {
+        self.joint.t[1]
+    }
+    fn y0(&self) -> &[f64] {
+        &self.joint.y[0]
+    }
+    fn y1(&self) -> &[f64] {
+        &self.joint.y[1]
+    }
+    fn q0(&self) -> &[f64] {
+        &self.joint.q[0]
+    }
+    fn q1(&self) -> &[f64] {
+        &self.joint.q[1]
+    }
+    fn interpolate(&self, t: f64, y: &mut [f64]) {
+        self.joint.at(self.step, t, Some(y), None);
+    }
+    fn interpolate_quad(&self, t: f64, q: &mut [f64]) {
+        self.joint.at(self.step, t, None, Some(q));
+    }
+}

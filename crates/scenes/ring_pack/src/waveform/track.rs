@@ -1,0 +1,186 @@
+//! Values over a cycle as polynomials over steps.
+
+use std::cell::Cell;
+
+use gudgeon_numerics::ode::StepView;
+
+/// Places of the nodes of a cubic.
+pub const THIRDS: [f64; 4] = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0];
+/// Looks in a step, for means over a cycle.
+const LOOKS: usize = 720;
+
+/// Some values over a cycle: in every step the polynomial through their values at some places in it.
+#[derive(Debug, Clone)]
+pub struct Track {
+    width: usize,
+    /// Places in a step, from 0 to 1, and for each the product of its distances from the others.
+    places: &'static [f64],
+    spread: Vec<f64>,
+    /// Ends of the steps, the start first.
+    ends: Vec<f64>,
+    /// Values at the places of each step.
+    values: Vec<f64>,
+    /// The step that was looked at last.
+    last: Cell<usize>,
+}
+
+/// Means over a cycle.
+#[derive(Debug, Clone, Copy)]
+pub struct Change {
+    /// Of the largest difference.
+    pub change: f64,
+    /// Of the largest value.
+    pub size: f64,
+}
+
+impl Track {
+    pub fn new(width: usize, places: &'static [f64]) -> Self {
+        let apart = |i: usize| {
+            let others = places.iter().enumerate().filter(|(j, _)| *j != i);
+            others.map(|(_, p)| places[i] - p).product()
+        };
+        Self {
+            width,
+            places,
+            spread: (0..places.len()).map(apart).collect(),
+            ends: Vec::new(),
+            values: Vec::new(),
+            last: Cell::new(0),
+        }
+    }
+
+    /// Values at an instant.
+    pub const fn width(&self) -> usize {
+        self.width
+    }
+
+    pub const fn is_empty(&self) -> bool {
+        self.values.is_empty()
+    }
+
+    /// Ends of the steps, the start first.
+    pub fn ends(&self) -> &[f64] {
+        &self.ends
+    }
+
+    /// Forgets everything and begins anew at `t`.
+    pub fn begin(&mut self, t: f64) {
+        self.ends.clear();
+        self.values.clear();
+        self.ends.push(t);
+        self.last.set(0);
+    }
+
+    /// The same values all the time, zero where none is given.
+    pub fn hold(&mut self, end: f64, values: impl Iterator<Item = f64> + Clone) {
+        self.begin(0.0);
+        let width = self.width;
+        let all = || values.clone().chain(std::iter::repeat(0.0)).take(width);
+        self.values.extend(self.places.iter().flat_map(|_| all()));
+        self.ends.push(end);
+    }
+
+    /// Adds a step that ends at `t` with its values at all places.
+    pub fn push(&mut self, t: f64, values: &[f64]) {
+        self.values.extend_from_slice(values);
+        self.ends.push(t);
+    }
+
+    /// Adds an accepted step, states and quadratures.
+    pub fn step(&mut self, v: &dyn StepView) {
+        let (t0, t1, n) = (v.t0(), v.t1(), v.y0().len());
+        for (k, x) in self.places.iter().enumerate() {
+            let from = self.values.len();
+            self.values.resize(from + self.width, 0.0);
+            let (y, q) = self.values[from..].split_at_mut(n);
+            if k == 0 {
+                y.copy_from_slice(v.y0());
+                q.copy_from_slice(v.q0());
+            } else if k + 1 == self.places.len() {
+                y.copy_from_slice(v.y1());
+                q.copy_from_slice(v.q1());
+            } else {
+                let t = t0 + x * (t1 - t0);
+                v.interpolate(t, y);
+                v.interpolate_quad(t, q);
+            }
+        }
+        self.ends.push(t1);
+    }
+
+    /// The first values at `t`, as many as `out` holds.
+    pub fn eval(&self, t: f64, out: &mut [f64]) {
+        let step = self.step_at(t);
+        let x = (t - self.ends[step]) / (self.ends[step + 1] - self.ends[step]);
+        let count = self.places.len();
+        let values = &self.values[step * count * self.width..];
+        out.fill(0.0);
+        for (i, spread) in self.spread.iter().enumerate() {
+            let others = self.places.iter().enumerate().filter(|(j, _)| *j != i);
+            let weight = others.map(|(_, p)| x - p).product::<f64>() / spread;
+            out.iter_mut().zip(&values[i * self.width..]).for_each(|(o, v)| *o += weight * v);
+        }
+    }
+
+    /// The step that holds `t`, most often the last one or its neighbour.
+    fn step_at(&self, t: f64) -> usize {
+        let end = self.ends.len() - 2;
+        let mut step = self.last.get().min(end);
+        while step < end && t >= self.ends[step + 1] {
+            step += 1;
+        }
+        while step > 0 && t < self.ends[step] {
+            step -= 1;
+        }
+        self.last.set(step);
+        step
+    }
+
+    /// Means over the cycle of the largest difference of the first `count` values from `other`, and of the largest of them.
+    pub fn mean_change(&self, other: &Self, period: f64, count: usize) -> Change {
+        let (mut a, mut b) = (vec![0.0; count], vec![0.0; count]);
+        let mut sum = Change { change: 0.0, size: 0.0 };
+        for k in 0..LOOKS {
+            let t = period * (k as f64 + 0.5) / LOOKS as f64;
+            self.eval(t, &mut a);
+            other.eval(t, &mut b);
+            let both = a.iter().zip(&b);
+            sum.change += both.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / LOOKS as f64;
+            sum.size += a.iter().fold(0.0, |s: f64, a| s.max(a.abs())) / LOOKS as f64;
+        }
+        sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_track_is_the_polynomial_through_its_places() {
+        let cubic = |t: f64| 1.0 + t * (2.0 - t * (3.0 - 0.5 * t));
+        let mut track = Track::new(1, &THIRDS);
+        track.begin(0.0);
+        for (t0, t1) in [(0.0, 0.3), (0.3, 1.0)] {
+            let values: Vec<f64> = THIRDS.iter().map(|x| cubic(t0 + x * (t1 - t0))).collect();
+            track.push(t1, &values);
+        }
+        for t in [0.0, 0.1, 0.3, 0.95, 1.0, 0.2] {
+            let mut out = [0.0];
+            track.eval(t, &mut out);
+            // Four products of numbers of the order of one.
+            assert!((out[0] - cubic(t)).abs() < 1e-14, "{t}: {} for {}", out[0], cubic(t));
+        }
+    }
+
+    #[test]
+    fn what_is_held_does_not_change() {
+        let mut track = Track::new(2, &THIRDS);
+        track.hold(4.0, [3.0].into_iter());
+        let mut other = track.clone();
+        other.hold(4.0, [5.0].into_iter());
+        let change = track.mean_change(&other, 4.0, 2);
+        // Sums of 720 equal numbers.
+        assert!((change.change - 2.0).abs() < 1e-12 && (change.size - 3.0).abs() < 1e-12, "{change:?}");
+    }
+}
