@@ -73,8 +73,8 @@ impl StageNewton {
         self.known = false;
     }
 
-    /// Solves a stage of step `s` for `x`, which comes as a guess, until the next step would be smaller than `accuracy` in every unknown. The
-    /// residual is evaluated at the answer last.
+    /// Solves a stage of step `s` for `x`, which comes as a guess, until the next step is smaller than `accuracy` in every unknown. That step is still
+    /// taken; the residual was evaluated before it last.
     ///
     /// # Errors
     /// Recoverable where no solution is found nearby; those of the residual at the guess.
@@ -101,6 +101,7 @@ impl StageNewton {
             times(&self.inverse, &self.r, &mut self.step);
             let size = size(&self.step, accuracy);
             if size <= 1.0 && !self.fresh && (taken || self.is_seen(accuracy)) {
+                x.iter_mut().zip(&self.step).for_each(|(x, d)| *x -= d);
                 return Ok(());
             }
             if before.is_finite() && (size > SLOW * before || size <= 1.0) && !self.fresh {

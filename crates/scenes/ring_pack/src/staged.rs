@@ -5,9 +5,9 @@
 //! ```
 //!
 //! The motion of a ring, in its groove and towards the liner, is solved by its own model in one unknown: its laws have corners, and the force of a film
-//! goes with a power of its thickness. What is left is solved by Newton's method, rings following: gas and the oil on flanks of all rings
-//! together, the oil under the faces of a ring with its film. The Jacobians of that are kept from stage to stage. Films are solved before the gas and after
-//! it: what they do to gas and grooves is little, and is iterated on.
+//! goes with a power of its thickness. What is left is solved by Newton's method: the gas with the rings following, the oil on the flanks of a ring where it stands,
+//! the oil under its faces with its film following. The Jacobians of that are kept from stage to stage. What oil on flanks and films do to the rest
+//! within a stage is little, and is iterated on.
 
 use std::ops::Range;
 
@@ -29,13 +29,16 @@ struct Together {
     newton: StageNewton,
     x: Vec<f64>,
     accuracy: Vec<f64>,
+    /// What they were before.
+    before: Vec<f64>,
 }
 
 /// What [`Pack::stage`] works with.
 #[derive(Debug, Clone, Default)]
 pub struct Staging {
-    /// Gas, and oil on flanks.
     gas: Together,
+    /// Oil on the flanks of each ring.
+    flank: Vec<Together>,
     /// Oil under the faces of each ring.
     oil: Vec<Together>,
     /// Radii of the liner at the rings.
@@ -44,8 +47,10 @@ pub struct Staging {
 
 /// Most passes over films and gas.
 const PASSES: usize = 10;
-/// Accuracy of gas and oil over what is asked: what a stage lacks of them comes from nowhere.
-const TIGHT: f64 = 3e-3;
+/// Accuracy of gas and oil over what is asked, before the last step of Newton's method: what a stage lacks of them comes from nowhere.
+const TIGHT: f64 = 2e-2;
+/// Change of the oil on flanks over its accuracy that gas and rings need not know of.
+const SETTLED: f64 = 5.0;
 
 /// Tells what unknowns lack in a stage: for the states, and the places of the unknowns in them, into a slice as long as there are unknowns.
 type Missing<'a> = dyn FnMut(&mut [f64], &[usize], &mut [f64]) -> Result<(), EvalError> + 'a;
@@ -53,7 +58,7 @@ type Missing<'a> = dyn FnMut(&mut [f64], &[usize], &mut [f64]) -> Result<(), Eva
 impl Together {
     fn new(states: Vec<usize>) -> Self {
         let n = states.len();
-        Self { states, newton: StageNewton::new(n), x: vec![0.0; n], accuracy: vec![0.0; n] }
+        Self { states, newton: StageNewton::new(n), x: vec![0.0; n], accuracy: vec![0.0; n], before: vec![0.0; n] }
     }
 
     /// Solves a stage for these unknowns.
@@ -70,7 +75,9 @@ impl Together {
         self.newton.solve(&mut self.x, stage.step, &self.accuracy, &mut |x, r| {
             states.iter().zip(x).for_each(|(&k, x)| y[k] = *x);
             missing(y, states, r)
-        })
+        })?;
+        states.iter().zip(&self.x).for_each(|(&k, x)| y[k] = *x);
+        Ok(())
     }
 }
 
@@ -78,18 +85,22 @@ impl Staging {
     /// For a pack.
     pub fn new(pack: &Pack) -> Self {
         let layout = &pack.layout;
-        let gas = layout.gas.clone().chain(layout.flank.iter().cloned().flatten()).collect();
         let under = |i: usize| {
             let of = |k: &usize| pack.oil_pack.as_ref().is_some_and(|o| o.ring_of(k - layout.oil.start) == i);
             Together::new(layout.oil.clone().filter(of).collect())
         };
-        Self { gas: Together::new(gas), oil: (0..pack.n_rings()).map(under).collect(), ..Self::default() }
+        Self {
+            gas: Together::new(layout.gas.clone().collect()),
+            flank: layout.flank.iter().map(|own| Together::new(own.clone().collect())).collect(),
+            oil: (0..pack.n_rings()).map(under).collect(),
+            ..Self::default()
+        }
     }
 
     /// Forgets what is kept from stage to stage.
     pub fn restart(&mut self) {
         self.gas.newton.forget();
-        self.oil.iter_mut().for_each(|o| o.newton.forget());
+        self.flank.iter_mut().chain(&mut self.oil).for_each(|o| o.newton.forget());
     }
 }
 
@@ -133,8 +144,7 @@ impl Pack {
         self.gas_pressures(p)?;
         self.films_of_stage(stage, y, w)?;
         for pass in 0.. {
-            let Staging { gas, radii, .. } = w;
-            gas.solve(stage, y, &mut |y, states, r| self.follow((stage, states), (p, radii), y, r))?;
+            self.grooves_of_stage(stage, y, p, w)?;
             if !self.plan.film || self.films_of_stage(stage, y, w)? <= 1.0 {
                 break;
             }
@@ -165,8 +175,7 @@ impl Pack {
         match side {
             Side::Grooves => {
                 self.set_film_forces(axial);
-                let Staging { gas, radii, .. } = w;
-                gas.solve(stage, y, &mut |y, states, r| self.follow((stage, states), (p, radii), y, r))?;
+                self.grooves_of_stage(stage, y, p, w)?;
             }
             Side::Films => {
                 self.gas_pressures(p)?;
@@ -197,6 +206,64 @@ impl Pack {
         } else {
             Err(EvalError::recoverable("ring_pack", "a space without gas"))
         }
+    }
+
+    /// Gas, with the rings in their grooves following, and the oil on flanks, in turns.
+    fn grooves_of_stage(
+        &mut self,
+        stage: &Stage<'_>,
+        y: &mut [f64],
+        p: f64,
+        w: &mut Staging,
+    ) -> Result<(), EvalError> {
+        for _ in 0..=PASSES {
+            let Staging { gas, radii, .. } = w;
+            gas.solve(stage, y, &mut |y, _, r| self.follow(stage, (p, radii), y, r))?;
+            if self.flanks_of_stage(stage, y, w)? <= SETTLED {
+                return Ok(());
+            }
+        }
+        Err(EvalError::recoverable("ring_pack", "gas and the oil on flanks do not settle"))
+    }
+
+    /// The oil on the flanks of all rings where these stand; its largest change over its accuracy.
+    fn flanks_of_stage(
+        &mut self,
+        stage: &Stage<'_>,
+        y: &mut [f64],
+        w: &mut Staging,
+    ) -> Result<f64, EvalError> {
+        let mut change = 0.0_f64;
+        for (i, flank) in w.flank.iter_mut().enumerate() {
+            let own = self.layout.flank[i].clone();
+            if own.is_empty() {
+                continue;
+            }
+            flank.before.clear();
+            flank.before.extend_from_slice(&y[own.clone()]);
+            flank.solve(stage, y, &mut |y, states, r| self.flank_lacks(i, (stage, states), y, r))?;
+            for (k, before) in own.zip(&flank.before) {
+                change = change.max((y[k] - before).abs() / stage.accuracy[k]);
+            }
+        }
+        Ok(change)
+    }
+
+    /// What the oil on the flanks of ring `i` lacks in its stage.
+    fn flank_lacks(
+        &mut self,
+        i: usize,
+        (stage, states): (&Stage<'_>, &[usize]),
+        y: &[f64],
+        r: &mut [f64],
+    ) -> Result<(), EvalError> {
+        let own = &y[self.layout.flank[i].clone()];
+        self.at.places[i].flank = self.rings[i].flank.oil(own, &self.at.places[i]);
+        self.flank_rates(i, y)?;
+        for (r, &k) in r.iter_mut().zip(states) {
+            *r = y[k] - stage.base[k] - stage.step * self.dy[k];
+        }
+        Ok(())
     }
 
     /// Films of all rings, with the oil under them; the largest change of a film over its accuracy.
@@ -264,10 +331,10 @@ impl Pack {
         Ok(())
     }
 
-    /// What gas and oil on flanks lack in their stage, the rings following them; `p` is the pressure in the cylinder.
+    /// What the gas lacks in its stage, the rings following it; `p` is the pressure in the cylinder.
     fn follow(
         &mut self,
-        (stage, states): (&Stage<'_>, &[usize]),
+        stage: &Stage<'_>,
         (p, radii): (f64, &[f64]),
         y: &mut [f64],
         r: &mut [f64],
@@ -278,13 +345,8 @@ impl Pack {
             self.groove_of_stage(i, stage, y, *radius)?;
         }
         self.gas(Some(p))?;
-        for i in 0..self.n_rings() {
-            self.flank_rates(i, y)?;
-        }
-        let gas = self.layout.gas.len();
-        for (r, &k) in r.iter_mut().zip(states) {
-            let rate = if k < gas { self.at.dm[k] / (self.gas_scale[k] * self.omega) } else { self.dy[k] };
-            *r = y[k] - stage.base[k] - stage.step * rate;
+        for (r, k) in r.iter_mut().zip(self.layout.gas.clone()) {
+            *r = y[k] - stage.base[k] - stage.step * self.rate(k);
         }
         Ok(())
     }
