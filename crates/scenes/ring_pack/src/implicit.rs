@@ -318,8 +318,12 @@ impl Cycle<'_> {
         let interval = self.pack.decision_interval();
         if let Method::Waveform(w) = &mut self.method {
             options.h_init = self.h;
-            let mut setting =
-                Setting { breakpoints: &self.breakpoints, options: &options, stats: &mut self.stats };
+            let mut setting = Setting {
+                breakpoints: &self.breakpoints,
+                options: &options,
+                longest_step: self.longest_step,
+                stats: &mut self.stats,
+            };
             w.cycle(self.pack, y, &mut self.q, &mut setting, follower)?;
             return self.integrated();
         }
@@ -449,6 +453,10 @@ const REFINEMENTS: usize = 2;
 const FINEST: f64 = 1e-13;
 /// How much less repeatable than its integration a cycle with oil on the liner is.
 const OIL_NOISE: f64 = 10.0;
+/// Most cycles in halves, without oil on the liner and with it, before the pack is integrated whole.
+const HALVES_TRY: [usize; 2] = [16, 40];
+/// Tolerance of that over the one that was asked for: with it both leave the same errors.
+const WHOLE: f64 = 0.3;
 /// How strongly oil on the liner bends the map of a cycle: what a face takes up goes by a meniscus whose place is a root of the volume, and a wave before an
 /// edge is full at a corner. Volumes grow a hundredfold on the way, fivefold at most in a step. A cycle
 /// differs from the next by as much as it is accurate: where secants are trusted nearer than that, the search of 36 packs takes an eighth more cycles.
@@ -750,12 +758,31 @@ impl<'a> Cycle<'a> {
         self.q = vec![0.0; self.pack.layout.quads()];
     }
 
-    /// Searches the periodic state from `y`.
+    /// Searches the periodic state from `y`, and where the cycle is integrated in halves their agreement.
     fn close(&mut self, y: &mut [f64], options: &OrbitOptions) -> Result<OrbitReport, RunError> {
-        periodic_orbit(self, y, options).map_err(|source| {
+        self.periodic(y, options).map_err(|source| {
             let theta_deg = self.pack.at.theta.to_degrees();
             self.failure.take().map_or(RunError::Eval { theta_deg, source }, stopped)
         })
+    }
+
+    fn periodic(&mut self, y: &mut [f64], options: &OrbitOptions) -> Result<OrbitReport, EvalError> {
+        let mut report = periodic_orbit(self, y, options)?;
+        let mut next = y.to_vec();
+        while let Method::Waveform(w) = &self.method
+            && report.converged
+        {
+            let apart = w.disagreement(self.pack.period());
+            report.error_estimate = report.error_estimate.max(apart);
+            if apart <= options.tolerance {
+                break;
+            }
+            report.converged = report.cycles < options.max_cycles;
+            report.cycles += 1;
+            report.cycle_equivalents += self.map(y, &mut next, options.accuracy)?;
+            y.copy_from_slice(&next);
+        }
+        Ok(report)
     }
 
     /// The cycle from `y` once more, at full accuracy, into `sampler`; the error of its mass balances.
@@ -827,12 +854,14 @@ fn first_states(pack: &mut Pack, start: f64) -> Vec<f64> {
 fn orbit_options(s: &Implicit, pack: &Pack) -> OrbitOptions {
     // A map is only as repeatable as its integration is accurate, and where a film ends on the liner depends on where steps end.
     let tolerance = s.tolerance.si();
-    let repeatable = if pack.oil_pack.is_some() { OIL_NOISE } else { 1.0 } * tolerance;
+    let halves = s.integrator == RingIntegrator::Waveform;
+    let repeatable = if pack.oil_pack.is_some() && !halves { OIL_NOISE } else { 1.0 } * tolerance;
+    let most = if halves { HALVES_TRY[usize::from(pack.oil_pack.is_some())] } else { usize::MAX };
     OrbitOptions {
         tolerance: s.periodicity.si().max(repeatable),
         accuracy: tolerance,
-        max_cycles: s.max_cycles as usize,
-        refinements: REFINEMENTS,
+        max_cycles: most.min(s.max_cycles as usize),
+        refinements: if halves { 0 } else { REFINEMENTS },
         accelerate: pack.decision_interval().is_none(),
     }
 }
@@ -853,8 +882,11 @@ fn run(
     let options = orbit_options(s, pack);
     let mut cycle = Cycle::new(s, pack, wanted, progress);
     let report = cycle.close(&mut y, &options)?;
-    let seconds = begin.seconds();
     let counters = counters(&cycle.stats);
+    if s.integrator == RingIntegrator::Waveform && !report.converged {
+        return whole(s, (pack, start), wanted, progress, (&report, &counters));
+    }
+    let seconds = begin.seconds();
     cycle.follow_passages(s);
     let mut sampler = Sampler::new(cycle.pack, wanted);
     let balance = cycle.record(&mut y, tolerance, &mut sampler)?;
@@ -883,4 +915,29 @@ fn run(
         notes,
         seconds,
     })
+}
+
+/// Solves one start whose halves did not come to agree by the whole pack, and tells so.
+fn whole(
+    s: &Implicit,
+    (pack, start): (&mut Pack, f64),
+    wanted: &Wanted<'_>,
+    progress: &mut dyn FnMut(f64) -> Result<(), Stopped>,
+    (tried, work): (&OrbitReport, &IndexMap<String, u64>),
+) -> Result<Solution, RunError> {
+    let tolerance = quantity(WHOLE * s.tolerance.si());
+    let whole = Implicit { tolerance, integrator: RingIntegrator::Rodas3, ..s.clone() };
+    let mut solution = run(&whole, pack, start, wanted, progress)?;
+    for (name, count) in work {
+        *solution.counters.entry(name.clone()).or_default() += count;
+    }
+    solution.cycles += tried.cycle_equivalents;
+    let text = format!(
+        "films and the motion in the grooves did not agree within {} cycles (`solver.integrator` `waveform`): the pack was integrated whole, by `rodas3` at a tolerance of \
+         {:.1e}. Where rings flutter, take that from the start",
+        tried.cycles,
+        whole.tolerance.si()
+    );
+    solution.notes.push(Note::caution("halves_apart", text).of_numerics());
+    Ok(solution)
 }

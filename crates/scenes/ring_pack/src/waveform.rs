@@ -95,8 +95,10 @@ pub struct Waveform {
 pub struct Setting<'a> {
     /// Where steps end.
     pub breakpoints: &'a [f64],
-    /// Accuracy and limits, for all states.
+    /// Accuracy and limits, for all states; the longest step is that of films.
     pub options: &'a Options,
+    /// Longest step of gas and grooves \[rad\].
+    pub longest_step: f64,
     pub stats: &'a mut Stats,
 }
 
@@ -227,6 +229,9 @@ fn integrate(
     let part = system.part;
     let of = |all: &[f64]| part.states.iter().map(|&k| all[k]).collect::<Vec<_>>();
     let mut options = setting.options.clone();
+    if system.side == Side::Grooves {
+        options.h_max = setting.longest_step;
+    }
     options.atol = of(&options.atol);
     options.absolute = part.states.iter().map(|&k| setting.options.absolute[k]).collect();
     let (mut states, mut quads) = (of(y), vec![0.0; part.quads.len()]);
