@@ -22,9 +22,11 @@ fn value(r: &RunResult, name: &str) -> f64 {
 
 fn table() -> Result<(), String> {
     let tight = run(&["solver.integrator=radau5", "solver.tolerance=1e-8", "solver.periodicity=1e-7"])?;
-    let settings: [(&str, Vec<&str>); 12] = [
+    let settings: [(&str, Vec<&str>); 14] = [
         ("order 2, own stages, 1e-2", vec!["solver.integrator=sdirk2", "solver.tolerance=1e-2"]),
         ("order 2, own stages, 3e-3", vec!["solver.integrator=sdirk2", "solver.tolerance=3e-3"]),
+        ("in halves, 1e-2", vec!["solver.integrator=waveform", "solver.tolerance=1e-2"]),
+        ("in halves, 3e-3", vec!["solver.integrator=waveform", "solver.tolerance=3e-3"]),
         ("order 2, own stages, 1e-3", vec!["solver.integrator=sdirk2", "solver.tolerance=1e-3"]),
         ("order 3, 1e-2", vec!["solver.integrator=rodas3", "solver.tolerance=1e-2"]),
         ("order 3, 5e-3", vec!["solver.integrator=rodas3", "solver.tolerance=5e-3"]),

@@ -79,6 +79,8 @@ pub fn counted() -> Vec<Case> {
     all.push(diesel("flooded, tolerance 1e-6", &[FLOODED, "solver.tolerance=1e-6"]));
     let own = [FLOODED, "solver.integrator=sdirk2", "solver.tolerance=3e-3", "solver.periodicity=3e-3"];
     all.push(diesel("flooded, own stages", &own));
+    let halves = [FLOODED, "solver.integrator=waveform", "solver.tolerance=1e-2", "solver.periodicity=1e-2"];
+    all.push(diesel("flooded, in halves", &halves));
     let coarse = ["solver.intervals_along=16", "solver.intervals_across=12"];
     let elastic = Case::shipped("ea111-1400-compliant").changed("ea111-1400-compliant, 16 x 12", &coarse);
     all.push(elastic.near(Near::At("engine.speed")));

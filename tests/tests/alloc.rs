@@ -76,7 +76,7 @@ fn a_stage_of_an_implicit_step_allocates_nothing() {
                 before = allocations();
                 answered = 0;
             }
-            let stage = Stage { base: &base, step: 1f64.to_radians(), accuracy: &accuracy };
+            let stage = Stage { number: 1, base: &base, step: 1f64.to_radians(), accuracy: &accuracy };
             if pack.stage(f64::from(k + 1).to_radians(), &stage, &mut y, &mut g, &mut staging).is_ok() {
                 answered += 1;
                 base.copy_from_slice(&y);

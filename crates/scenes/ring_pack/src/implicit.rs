@@ -78,7 +78,7 @@ impl Default for Implicit {
     summary = "the whole scene as one stiff system, adaptive, the cycle closed by a periodic-orbit solver",
     equations = "dy/dtheta = f(theta, y) by Rosenbrock methods of order 3 or 5, a singly diagonally implicit one of order 2, or Radau IIA;  y(theta + cycle) = y(theta) by Anderson acceleration, with oil on the liner by vector extrapolation in cycles",
     validity = "Every pack. Errors are controlled: results differ from those of the equations by about the tolerance.",
-    references = ["sandu1997", "steinebach2023", "hairer1996", "alexander1977", "walker2011", "sidi2017"],
+    references = ["sandu1997", "steinebach2023", "hairer1996", "alexander1977", "lelarasmee1982", "walker2011", "sidi2017"],
     example = "tolerance = 1e-4\n",
 )]
 impl RingPackSolverSpec for Implicit {
@@ -87,7 +87,7 @@ impl RingPackSolverSpec for Implicit {
         if self.max_cycles == 0 {
             errors.push(BuildError::at("solver.max_cycles", "at least one cycle is needed"));
         }
-        if matches!(self.integrator, RingIntegrator::Sdirk2 | RingIntegrator::Waveform) {
+        if self.integrator.has_stages() {
             errors.extend(pack.refuses_stages().map(|what| {
                 BuildError::at("solver.integrator", what).help("use `rodas`, which every pack can")
             }));
@@ -124,12 +124,13 @@ impl RingPackSolverSpec for Implicit {
         let given = own.and_then(|v| content::read::<Self>(&Content::from(v)).ok());
         let default = given.as_ref().unwrap_or(self);
         let tolerance = default.tolerance.si();
-        let orders: [(&str, &str, RingIntegrator, &[f64]); 3] = [
+        let orders: [(&str, &str, RingIntegrator, &[f64]); 4] = [
             ("implicit, order 3", "rodas3", RingIntegrator::Rodas3, &[1e-2, 3e-3, 1e-3, 3e-4, 1e-4]),
             ("implicit, order 5", "rodas5p", RingIntegrator::Rodas5p, &[1e-2, 1e-3, 1e-4, 1e-5, 1e-6]),
             ("implicit, order 2", "sdirk2", RingIntegrator::Sdirk2, &[2e-2, 1e-2, 3e-3, 1e-3]),
+            ("implicit, in halves", "waveform", RingIntegrator::Waveform, &[2e-2, 1e-2, 3e-3, 1e-3]),
         ];
-        let orders = orders.into_iter().filter(|o| o.2 != RingIntegrator::Sdirk2 || pack.solves_stages());
+        let orders = orders.into_iter().filter(|o| !o.2.has_stages() || pack.solves_stages());
         let setting = |(method, name, integrator, t): (&str, &str, RingIntegrator, f64)| MethodSetting {
             method: method.into(),
             setting: format!("tolerance {t:.0e}"),
@@ -772,7 +773,7 @@ impl<'a> Cycle<'a> {
         while let Method::Waveform(w) = &self.method
             && report.converged
         {
-            let apart = w.disagreement(self.pack.period());
+            let apart = w.disagreement(self.pack);
             report.error_estimate = report.error_estimate.max(apart);
             if apart <= options.tolerance {
                 break;
@@ -882,11 +883,13 @@ fn run(
     let options = orbit_options(s, pack);
     let mut cycle = Cycle::new(s, pack, wanted, progress);
     let report = cycle.close(&mut y, &options)?;
+    let seconds = begin.seconds();
     let counters = counters(&cycle.stats);
     if s.integrator == RingIntegrator::Waveform && !report.converged {
-        return whole(s, (pack, start), wanted, progress, (&report, &counters));
+        let mut solution = whole(s, (pack, start), wanted, progress, (&report, &counters))?;
+        solution.seconds += seconds;
+        return Ok(solution);
     }
-    let seconds = begin.seconds();
     cycle.follow_passages(s);
     let mut sampler = Sampler::new(cycle.pack, wanted);
     let balance = cycle.record(&mut y, tolerance, &mut sampler)?;

@@ -58,7 +58,13 @@ type Missing<'a> = dyn FnMut(&mut [f64], &[usize], &mut [f64]) -> Result<(), Eva
 impl Together {
     fn new(states: Vec<usize>) -> Self {
         let n = states.len();
-        Self { states, newton: StageNewton::new(n), x: vec![0.0; n], accuracy: vec![0.0; n], before: vec![0.0; n] }
+        Self {
+            states,
+            newton: StageNewton::new(n),
+            x: vec![0.0; n],
+            accuracy: vec![0.0; n],
+            before: vec![0.0; n],
+        }
     }
 
     /// Solves a stage for these unknowns.

@@ -7,7 +7,9 @@
 
 use gudgeon_core::EvalError;
 use gudgeon_core::states::Stage;
-use gudgeon_numerics::ode::{Flow, IntegrateError, Integrator, LinearInvariant, OdeSystem, Options, Stats, StepView};
+use gudgeon_numerics::ode::{
+    Flow, IntegrateError, Integrator, LinearInvariant, OdeSystem, Options, Stats, StepView,
+};
 use gudgeon_numerics::sdirk::{self, Sdirk};
 
 use super::implicit::{Follower, lend};
@@ -158,8 +160,11 @@ impl Waveform {
         let half = &mut self.grooves;
         half.wave.begin(0.0);
         let (wave, part) = (&mut half.wave, &half.part);
-        let mut system = OneSide::new(Side::Grooves, pack, &mut self.staging, part, &half.invariants)
-            .beside(&self.films.part, &self.films.wave, Some(&self.forces));
+        let mut system = OneSide::new(Side::Grooves, pack, &mut self.staging, part, &half.invariants).beside(
+            &self.films.part,
+            &self.films.wave,
+            Some(&self.forces),
+        );
         let mut observe = |_: &mut OneSide<'_>, v: &dyn StepView| {
             wave.step(v);
             Flow::Continue
@@ -185,8 +190,11 @@ impl Waveform {
         self.forces.begin(0.0);
         let (wave, forces, beside) = (&mut half.wave, &mut self.forces, &self.grooves);
         let part = &half.part;
-        let mut system = OneSide::new(Side::Films, pack, &mut self.staging, part, &half.invariants)
-            .beside(&beside.part, &beside.wave, None);
+        let mut system = OneSide::new(Side::Films, pack, &mut self.staging, part, &half.invariants).beside(
+            &beside.part,
+            &beside.wave,
+            None,
+        );
         let mut joint = Joint::new(&beside.wave, [&beside.part, part], system.pack);
         let mut observe = |s: &mut OneSide<'_>, v: &dyn StepView| {
             wave.step(v);
@@ -207,8 +215,9 @@ impl Waveform {
 
     /// How much the films of the last cycle differ from those that gas and grooves of that cycle saw: the mean of the change of thickness over itself, and that
     /// of their forces over their size, whichever is larger.
-    pub fn disagreement(&self, period: f64) -> f64 {
-        let films = self.films.part.states.len();
+    pub fn disagreement(&self, pack: &Pack) -> f64 {
+        let period = pack.period();
+        let films = pack.layout.radial.iter().map(ExactSizeIterator::len).sum();
         if films == 0 {
             return 0.0;
         }
@@ -381,8 +390,8 @@ impl OdeSystem for OneSide<'_> {
         self.invariants
     }
     fn tolerances(&mut self, t: f64, y: &[f64], atol: &mut [f64]) {
-        let known = self.pack.at.theta == t
-            && self.part.states.iter().zip(y).all(|(&k, v)| self.pack.state[k] == *v);
+        let known =
+            self.pack.at.theta == t && self.part.states.iter().zip(y).all(|(&k, v)| self.pack.state[k] == *v);
         if !known && self.evaluate(t, y).is_err() {
             return;
         }

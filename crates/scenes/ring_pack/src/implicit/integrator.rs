@@ -17,8 +17,9 @@ pub enum RingIntegrator {
     /// Singly diagonally implicit method of order 2 whose stages the pack solves itself, each ring by a bracket: half the steps at errors of 1e-3. For
     /// packs whose models solve stages. Not for rings that leave the liner: heavy ones at 5000 rpm come back too slowly, and blow-by is wrong at every tolerance.
     Sdirk2,
-    /// Gas with the rings in their grooves, and films, each at steps of its own over the whole cycle by the stages of `sdirk2`, in turns until both agree. For packs whose
-    /// models solve stages.
+    /// Gas with the rings in their grooves, and films, each at steps of its own over the whole cycle, in turns until both agree: the cheapest for errors of 1e-3,
+    /// with the stages of `sdirk2`. For packs whose models solve stages. Where rings flutter the two do not come to agree; the run tells so and integrates the
+    /// pack whole.
     Waveform,
     /// Radau IIA of order 5, for references at tight tolerances.
     Radau5,
@@ -28,6 +29,12 @@ pub enum RingIntegrator {
 const ORDER_FIVE: f64 = 5e-5;
 
 impl RingIntegrator {
+    /// Whether it needs models that solve stages.
+    #[must_use]
+    pub const fn has_stages(self) -> bool {
+        matches!(self, Self::Sdirk2 | Self::Waveform)
+    }
+
     /// The integrator that runs at a tolerance: never [`RingIntegrator::Rodas`].
     #[must_use]
     pub fn at(self, tolerance: f64) -> Self {
