@@ -199,7 +199,8 @@ fn two_halves_of_a_cycle_come_to_agree() {
 fn halves_that_do_not_agree_are_integrated_whole() {
     let heavy = ["rings.0.mass=129 g", "rings.1.mass=111 g", "rings.2.mass=132 g"].map(String::from).to_vec();
     let with = |name: &str, tolerance: &str| {
-        [implicit(tolerance), heavy.clone(), vec![format!("solver.integrator={name}")]].concat()
+        let own = [format!("solver.integrator={name}"), "solver.periodicity=1e-2".into()];
+        [implicit(tolerance), heavy.clone(), own.to_vec()].concat()
     };
     let r = runs(&[set(CASE, &with("waveform", "1e-2")), set(CASE, &with("rodas3", "3e-3"))]);
     let note = r[0].solver.notes.iter().find(|n| n.topic == "halves_apart").expect("it is told");

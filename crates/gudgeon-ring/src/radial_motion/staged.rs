@@ -60,7 +60,8 @@ impl Staged<'_> {
             return Ok(answer);
         }
         let found = self.limited(stage, *x, loads)?;
-        *x = found.x;
+        // Nor is what was found below the floor within the accuracy.
+        *x = if lowest > 0.0 { found.x.max(elementary::ln(lowest)) } else { found.x };
         loads.set_thickness(thickness(*x)?)?;
         let response = self.search.rate(loads)?;
         let film = response.film.map_or_else(|| loads.film(response.hdot), Ok)?;

@@ -455,7 +455,7 @@ const FINEST: f64 = 1e-13;
 /// How much less repeatable than its integration a cycle with oil on the liner is.
 const OIL_NOISE: f64 = 10.0;
 /// Most cycles in halves, without oil on the liner and with it, before the pack is integrated whole.
-const HALVES_TRY: [usize; 2] = [16, 40];
+const HALVES_TRY: [usize; 2] = [10, 40];
 /// Tolerance of that over the one that was asked for: with it both leave the same errors.
 const WHOLE: f64 = 0.3;
 /// How strongly oil on the liner bends the map of a cycle: what a face takes up goes by a meniscus whose place is a root of the volume, and a wave before an
