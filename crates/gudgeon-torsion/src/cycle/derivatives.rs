@@ -3,17 +3,21 @@
 use gudgeon_numerics::elementary;
 use std::f64::consts::PI;
 
-/// Multiples of the order of the period side by side.
-const LANES: usize = 8;
+/// Multiples of the order of the period side by side: more would not leave their sums in the registers of every processor.
+const LANES: usize = 2;
 /// Blocks after which turning starts afresh, so that rounding does not add up.
-const AFRESH: usize = 4;
+const AFRESH: usize = 16;
 
-/// Phasors and orders of neighbouring multiples.
+/// A number for each of some neighbouring multiples.
+type Lane = [f64; LANES];
+
+/// Phasors, orders and their squares of neighbouring multiples.
 #[derive(Debug, Clone, Copy, Default)]
 struct Block {
-    re: [f64; LANES],
-    im: [f64; LANES],
-    order: [f64; LANES],
+    re: Lane,
+    im: Lane,
+    order: Lane,
+    square: Lane,
 }
 
 /// Orders with their phasors. Multiples of one order are turned from one to the next, several side by side.
@@ -37,6 +41,7 @@ impl Derivatives {
         let mut blocks = vec![Block::default(); if dense { highest.div_ceil(LANES) } else { 0 }];
         for (place, order) in places.iter().zip(orders) {
             blocks[place / LANES].order[place % LANES] = *order;
+            blocks[place / LANES].square[place % LANES] = order * order;
         }
         let (orders, base) = (orders.to_vec(), 2.0 * PI / period);
         Self { orders, phasors: Vec::new(), base, places, blocks }
@@ -62,13 +67,32 @@ impl Derivatives {
         }
     }
 
-    /// The sum at an angle \[rad\], and its first three derivatives.
-    pub fn at(&self, angle: f64) -> [f64; 4] {
-        if self.blocks.is_empty() { self.one_by_one(angle) } else { self.side_by_side(angle) }
+    /// The sum at an angle \[rad\], and its first four derivatives.
+    pub fn at(&self, angle: f64) -> [f64; 5] {
+        if self.blocks.is_empty() {
+            return self.one_by_one(angle);
+        }
+        let mut sums = [[0.0; LANES]; 5];
+        self.each(angle, |block, lanes| block.add(lanes, &mut sums));
+        sums.map(total)
     }
 
-    fn one_by_one(&self, angle: f64) -> [f64; 4] {
-        let mut sums = [0.0; 4];
+    /// The sum at an angle \[rad\].
+    pub fn value(&self, angle: f64) -> f64 {
+        if self.blocks.is_empty() {
+            return self.one_by_one(angle)[0];
+        }
+        let mut sum = [0.0; LANES];
+        self.each(angle, |Block { re, im, .. }, [cos, sin]| {
+            for l in 0..LANES {
+                sum[l] += re[l] * cos[l] - im[l] * sin[l];
+            }
+        });
+        total(sum)
+    }
+
+    fn one_by_one(&self, angle: f64) -> [f64; 5] {
+        let mut sums = [0.0; 5];
         for (o, [re, im]) in self.orders.iter().zip(&self.phasors) {
             let (sin, cos) = elementary::sin_cos(o * angle);
             let own = wave([*re, *im, *o], cos, sin);
@@ -77,7 +101,9 @@ impl Derivatives {
         sums
     }
 
-    fn side_by_side(&self, angle: f64) -> [f64; 4] {
+    /// Goes through the blocks with the cosines and sines of their multiples of an angle.
+    #[inline(always)]
+    fn each(&self, angle: f64, mut take: impl FnMut(&Block, &[Lane; 2])) {
         let (sin, cos) = elementary::sin_cos(self.base * angle);
         // Cosines and sines of the first multiples.
         let mut first = [[cos; LANES], [sin; LANES]];
@@ -86,38 +112,53 @@ impl Derivatives {
         }
         let by = first.map(|lanes| lanes[LANES - 1]);
         let mut lanes = first;
-        let mut sums = [[0.0; LANES]; 4];
         for (b, block) in self.blocks.iter().enumerate() {
-            if b > 0 && b % AFRESH == 0 {
-                let (sin, cos) = elementary::sin_cos(self.base * (b * LANES) as f64 * angle);
-                lanes = turned_together(&first, [cos, sin]);
+            if b > 0 {
+                lanes = if b % AFRESH == 0 {
+                    let (sin, cos) = elementary::sin_cos(self.base * (b * LANES) as f64 * angle);
+                    turned_together(&first, [cos, sin])
+                } else {
+                    turned_together(&lanes, by)
+                };
             }
-            block.add(&lanes, &mut sums);
-            lanes = turned_together(&lanes, by);
+            take(block, &lanes);
         }
-        sums.map(|lanes| lanes.iter().sum())
     }
 }
 
 impl Block {
     /// Adds its waves and their derivatives at angles whose cosines and sines are given.
     #[inline(always)]
-    fn add(&self, [cos, sin]: &[[f64; LANES]; 2], sums: &mut [[f64; LANES]; 4]) {
+    fn add(&self, [cos, sin]: &[Lane; 2], sums: &mut [Lane; 5]) {
+        let (mut even, mut odd) = ([0.0; LANES], [0.0; LANES]);
         for l in 0..LANES {
-            let own = wave([self.re[l], self.im[l], self.order[l]], cos[l], sin[l]);
-            for d in 0..4 {
-                sums[d][l] += own[d];
-            }
+            even[l] = self.re[l] * cos[l] - self.im[l] * sin[l];
+            odd[l] = self.order[l] * (self.re[l] * sin[l] + self.im[l] * cos[l]);
+        }
+        for l in 0..LANES {
+            sums[0][l] += even[l];
+            sums[1][l] -= odd[l];
+        }
+        for l in 0..LANES {
+            even[l] *= self.square[l];
+            odd[l] *= self.square[l];
+            sums[2][l] -= even[l];
+            sums[3][l] += odd[l];
+            sums[4][l] += even[l] * self.square[l];
         }
     }
 }
 
-/// A wave and its first three derivatives.
-#[inline(always)]
-fn wave([re, im, order]: [f64; 3], cos: f64, sin: f64) -> [f64; 4] {
+/// The sum of all lanes.
+fn total([a, b]: Lane) -> f64 {
+    a + b
+}
+
+/// A wave and its first four derivatives.
+fn wave([re, im, order]: [f64; 3], cos: f64, sin: f64) -> [f64; 5] {
     let (x, y) = (re * cos - im * sin, order * (re * sin + im * cos));
     let square = order * order;
-    [x, -y, -square * x, square * y]
+    [x, -y, -square * x, square * y, square * square * x]
 }
 
 /// The product of two complex numbers.
@@ -128,10 +169,11 @@ fn turned([x, y]: [f64; 2], [cos, sin]: [f64; 2]) -> [f64; 2] {
 
 /// The products of several with one.
 #[inline(always)]
-fn turned_together([x, y]: &[[f64; LANES]; 2], by: [f64; 2]) -> [[f64; LANES]; 2] {
+fn turned_together([x, y]: &[Lane; 2], [cos, sin]: [f64; 2]) -> [Lane; 2] {
     let mut out = [[0.0; LANES]; 2];
     for l in 0..LANES {
-        [out[0][l], out[1][l]] = turned([x[l], y[l]], by);
+        out[0][l] = x[l] * cos - y[l] * sin;
+        out[1][l] = x[l] * sin + y[l] * cos;
     }
     out
 }

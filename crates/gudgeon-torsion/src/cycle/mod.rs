@@ -13,8 +13,8 @@ use waves::{Waves, multiples};
 const POINTS: usize = 8;
 /// Grids: each has half the points of the one before.
 const GRIDS: usize = 4;
-/// Least number of points of a grid.
-const FEWEST: usize = 16;
+/// Least number of points of a grid: a quarter of it is a block that is summed up at once.
+const FEWEST: usize = 32;
 /// Maximum over `[-1, 1]` of `|x (x² - 1)|/6`: what a parabola through three points misses of a third derivative of one.
 const PARABOLA: f64 = 0.064_150_029_909_958_42;
 /// What parabolas may miss on a grid that is coarser than the finest, by the root mean square of the sum: the most that they miss of any sum on
@@ -24,8 +24,11 @@ const MISSED: f64 = 0.02;
 /// What a second difference may miss of the second derivative between the neighbours of a point, by the fourth one.
 const CURVED: f64 = 1.0 / 12.0 + 1.0 / 8.0;
 
-/// Last step of Halley's method by the distance of the points: its fourth power, times that of the phase between two points, is lost in rounding.
-const LAST: f64 = 1e-4;
+/// What a top may miss by the root of the sum of all squared amplitudes: some rounding errors.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// Points that are looked at together for tops; a grid has a multiple of them.
+const TOGETHER: usize = 8;
 
 /// Finds the extremes of `m + Σ Re(a_k e^{i n_k θ})` over a period of θ.
 #[derive(Debug, Clone)]
@@ -37,7 +40,7 @@ pub struct Cycle {
     points: usize,
     /// From the finest on; made when they are first looked at.
     grids: [Option<Waves>; GRIDS],
-    /// The sum at the points, with the last one in front and the first one behind.
+    /// The sum at the points, the first half a step from the beginning, with the last one in front and the first one behind.
     wave: Vec<f64>,
 }
 
@@ -52,15 +55,20 @@ struct Look {
     missed: f64,
     /// Second difference below which there is one top.
     one_top: f64,
+    /// What a top may miss.
+    admitted: f64,
+    /// Bound of the fifth derivative.
+    fifth: f64,
 }
 
-/// Sum of the squares of the amplitudes, and bounds of the second, third and fourth derivative.
+/// Sum of the squares of the amplitudes, and bounds of the second to fifth derivative.
 #[derive(Debug, Clone, Copy, Default)]
 struct Sizes {
     square: f64,
     second: f64,
     third: f64,
     fourth: f64,
+    fifth: f64,
 }
 
 impl Cycle {
@@ -109,7 +117,8 @@ impl Cycle {
         let step = self.step(grid);
         let [above, missed] = self.above(half, step, sizes);
         let one_top = if grid == 0 { f64::INFINITY } else { -CURVED * sizes.fourth * step.powi(4) };
-        let look = Look { step, above, missed, one_top };
+        let admitted = ROUNDING * sizes.square.sqrt();
+        let look = Look { step, above, missed, one_top, admitted, fifth: sizes.fifth };
         self.tops(high, low, &look)
     }
 
@@ -125,9 +134,11 @@ impl Cycle {
             let (square, o2) = (re * re + im * im, o * o);
             let second = square.sqrt() * o2;
             sizes.square += square;
+            let third = second * o;
             sizes.second += second;
-            sizes.third += second * o;
+            sizes.third += third;
             sizes.fourth += second * o2;
+            sizes.fifth += third * o2;
         }
         sizes
     }
@@ -173,13 +184,19 @@ impl Cycle {
         let n = self.wave.len() - 2;
         let (top, bottom) = (high - look.above, low + look.above);
         let (mut best, mut least) = (high, -low);
-        for s in 1..=n {
-            let here = self.wave[s];
-            if here >= top {
-                best = self.top(s, 1.0, best, look)?;
+        for (k, some) in self.wave[1..=n].chunks_exact(TOGETHER).enumerate() {
+            // Nearly everywhere there is nothing, which is found out without a branch.
+            if !some.iter().fold(false, |any, w| any | (*w >= top) | (*w <= bottom)) {
+                continue;
             }
-            if here <= bottom {
-                least = self.top(s, -1.0, least, look)?;
+            for (i, here) in some.iter().enumerate() {
+                let s = 1 + k * TOGETHER + i;
+                if *here >= top {
+                    best = self.top(s, 1.0, best, look)?;
+                }
+                if *here <= bottom {
+                    least = self.top(s, -1.0, least, look)?;
+                }
             }
         }
         Some([best, -least])
@@ -199,7 +216,7 @@ impl Cycle {
         if self.curve(s, sign) > look.one_top {
             return None;
         }
-        Some(best.max(self.climb((s - 1) as f64 + shift, sign, look.step)))
+        Some(best.max(self.climb(s as f64 - 0.5 + shift, sign, look)))
     }
 
     /// The largest second difference at a point and its neighbours.
@@ -214,21 +231,32 @@ impl Cycle {
         (s + n - 1..=s + n + 1).map(curve).fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// The top near the point `s`, by Halley's method on the derivative, at most one point away. The last step is taken by the
-    /// derivatives that are known: what is left goes with its fourth power.
-    fn climb(&self, s: f64, sign: f64, step: f64) -> f64 {
-        let mut at = s * step;
-        let (from, to) = (at - step, at + step);
+    /// The top near a place between points, the first of which stands at one half, by Newton's method on the Taylor polynomial of degree four, at most one point away.
+    ///
+    /// A step of `x` ends once that polynomial leaves out no more than is admitted, `M x⁵/120` by the bound `M` of the fifth derivative; or once the top of the
+    /// polynomial is so close to that of the sum, `M x⁴/24` by the second derivative, that the sum there is no more lower than that.
+    fn climb(&self, s: f64, sign: f64, look: &Look) -> f64 {
+        let mut at = s * look.step;
+        let (from, to) = (at - look.step, at + look.step);
         let mut best = f64::NEG_INFINITY;
         for _ in 0..20 {
-            let [value, first, second, third] = self.sum.at(at).map(|d| sign * d);
+            let [value, first, second, third, fourth] = self.sum.at(at).map(|d| sign * d);
             best = best.max(value);
+            let slope = |x: f64| first + x * (second + x * (third / 2.0 + x * fourth / 6.0));
+            let curve = |x: f64| second + x * (third + x * fourth / 2.0);
             let halley = first * second / (0.5 * first * third - second * second);
-            let by = if second < 0.0 && halley.is_finite() { halley } else { 0.25 * step * first.signum() };
+            let near = halley - slope(halley) / curve(halley);
+            let top = near - slope(near) / curve(near);
+            let by = if second < 0.0 && top.is_finite() { top } else { 0.25 * look.step * first.signum() };
             let next = (at + by).clamp(from, to);
             let by = next - at;
-            if by.abs() <= LAST * step {
-                return best.max(value + by * (first + by * (second / 2.0 + by * third / 6.0)));
+            let left = look.fifth * by.powi(4) / 24.0;
+            if 0.2 * left * by.abs() <= look.admitted {
+                let taylor = second / 2.0 + by * (third / 6.0 + by * fourth / 24.0);
+                return best.max(value + by * (first + by * taylor));
+            }
+            if second < 0.0 && (slope(by).abs() + left).powi(2) <= 2.0 * look.admitted * curve(by).abs() {
+                return best.max(sign * self.sum.value(next));
             }
             at = next;
         }

@@ -5,119 +5,116 @@ use std::f64::consts::PI;
 
 /// Numbers of a table that are kept.
 const KEPT: usize = 1 << 21;
+/// Points that are summed up side by side.
+const BLOCK: usize = 8;
 
-/// Cosines and sines of one order at points from the beginning of the period on.
-type Row = [Vec<f64>; 2];
+/// Cosines and sines of one order at neighbouring points.
+type Row = [[f64; BLOCK]; 2];
 
-/// The points of a period.
+/// The points of a period, the first half a step from its beginning.
 #[derive(Debug, Clone)]
 pub(super) struct Waves {
-    orders: Vec<f64>,
     period: f64,
     points: usize,
-    /// Orders as multiples of that of the period; empty where they are none.
-    multiples: Vec<usize>,
-    /// Rows by order; empty where they would be too large.
-    table: Vec<Row>,
-    /// Sums of cosines and sines: of even multiples, and of odd ones.
-    sums: [Row; 2],
+    /// Orders, and their places among all: even multiples of that of the period and odd ones; all together where they are no multiples.
+    groups: [Vec<(f64, usize)>; 2],
+    /// Whether orders are multiples: a quarter of the period is summed up, from whose even and odd multiples and cosines and sines the others
+    /// follow.
+    folded: bool,
+    /// Rows of all orders of a group, block by block of points; empty where they would be too large.
+    tables: [Vec<Row>; 2],
+    /// Phasors of a group.
+    phasors: [Vec<[f64; 2]>; 2],
 }
 
 impl Waves {
-    /// `points`, a multiple of four, over a period \[rad\]; `multiples` of the order of the period that the orders are, or nothing.
+    /// `points`, a multiple of four blocks, over a period \[rad\]; `multiples` of the order of the period that the orders are, or nothing.
     pub fn new(orders: &[f64], period: f64, points: usize, multiples: &[usize]) -> Self {
-        let mut own = Self {
-            orders: orders.to_vec(),
-            period,
-            points,
-            multiples: multiples.to_vec(),
-            table: Vec::new(),
-            sums: Default::default(),
-        };
-        let looked = own.looked();
-        own.sums = [0, 1].map(|_| [vec![0.0; looked], vec![0.0; looked]]);
-        if 2 * looked * orders.len() <= KEPT {
-            own.table = orders.iter().map(|o| own.row(*o)).collect();
+        let mut groups = [Vec::new(), Vec::new()];
+        for (k, order) in orders.iter().enumerate() {
+            groups[multiples.get(k).map_or(0, |m| m % 2)].push((*order, k));
+        }
+        let folded = !multiples.is_empty();
+        let mut own =
+            Self { period, points, groups, folded, tables: Default::default(), phasors: Default::default() };
+        if 2 * BLOCK * own.blocks() * orders.len() <= KEPT {
+            let rows = |group: &[(f64, usize)]| {
+                let blocks = 0..own.blocks();
+                blocks.flat_map(|b| group.iter().map(move |(o, _)| (*o, b))).map(|(o, b)| own.row(o, b)).collect()
+            };
+            own.tables = [rows(&own.groups[0]), rows(&own.groups[1])];
         }
         own
     }
 
-    /// Points at which orders are summed up: all of them, or a quarter of the period, from whose even and odd multiples and cosines
-    /// and sines the others follow.
-    fn looked(&self) -> usize {
-        if self.multiples.is_empty() { self.points } else { self.points / 4 + 1 }
+    /// Blocks of points at which orders are summed up.
+    const fn blocks(&self) -> usize {
+        self.points / if self.folded { 4 * BLOCK } else { BLOCK }
     }
 
-    fn row(&self, order: f64) -> Row {
-        let angle = |s: usize| order * self.period * s as f64 / self.points as f64;
-        let (sin, cos) = (0..self.looked()).map(|s| elementary::sin_cos(angle(s))).unzip();
-        [cos, sin]
+    fn row(&self, order: f64, block: usize) -> Row {
+        let mut row = [[0.0; BLOCK]; 2];
+        for i in 0..BLOCK {
+            let angle = order * self.period * ((block * BLOCK + i) as f64 + 0.5) / self.points as f64;
+            (row[1][i], row[0][i]) = elementary::sin_cos(angle);
+        }
+        row
     }
 
     /// `Σ Re(a_k e^{i n_k θ})` at the points.
     pub fn sum(&mut self, phasors: &[[f64; 2]], wave: &mut [f64]) {
-        let mut sums = std::mem::take(&mut self.sums);
-        sums.iter_mut().flatten().for_each(|s| s.fill(0.0));
-        for parity in 0..2 {
-            let own =
-                |k: &usize| self.multiples.get(*k).map_or(0, |m| m % 2) == parity && phasors[*k] != [0.0; 2];
-            let mut some = [0; TOGETHER];
-            let mut count = 0;
-            for k in (0..self.orders.len()).filter(own) {
-                some[count] = k;
-                count += 1;
-                if count == TOGETHER {
-                    self.add(&some, phasors, &mut sums[parity]);
-                    count = 0;
-                }
-            }
-            some[..count].iter().for_each(|k| self.add(&[*k], phasors, &mut sums[parity]));
+        for (own, group) in self.phasors.iter_mut().zip(&self.groups) {
+            own.clear();
+            own.extend(group.iter().map(|(_, k)| phasors[*k]));
         }
-        let [[cos_even, sin_even], [cos_odd, sin_odd]] = &sums;
-        if self.multiples.is_empty() {
-            wave.iter_mut().zip(cos_even.iter().zip(sin_even)).for_each(|(w, (c, s))| *w = c - s);
-        } else {
-            let (half, last) = (self.points / 2, self.points - 1);
-            for s in 0..cos_even.len() {
-                let (cos, sin) = (cos_even[s] + cos_odd[s], sin_even[s] + sin_odd[s]);
+        let half = self.points / 2;
+        for b in 0..self.blocks() {
+            let [[cos_even, sin_even], [cos_odd, sin_odd]] = [self.block(0, b), self.block(1, b)];
+            let first = b * BLOCK;
+            if !self.folded {
+                (0..BLOCK).for_each(|i| wave[first + i] = cos_even[i] - sin_even[i]);
+                continue;
+            }
+            let mut quarters = [[0.0; BLOCK]; 4];
+            for i in 0..BLOCK {
+                let (cos, sin) = (cos_even[i] + cos_odd[i], sin_even[i] + sin_odd[i]);
                 // Half a period on, odd multiples have turned their sign.
-                let (cos_on, sin_on) = (cos_even[s] - cos_odd[s], sin_even[s] - sin_odd[s]);
-                wave[s] = cos - sin;
-                wave[(self.points - s) & last] = cos + sin;
-                wave[half + s] = cos_on - sin_on;
-                wave[half - s] = cos_on + sin_on;
+                let (cos_on, sin_on) = (cos_even[i] - cos_odd[i], sin_even[i] - sin_odd[i]);
+                quarters[0][i] = cos - sin;
+                quarters[1][BLOCK - 1 - i] = cos_on + sin_on;
+                quarters[2][i] = cos_on - sin_on;
+                quarters[3][BLOCK - 1 - i] = cos + sin;
+            }
+            let last = first + BLOCK;
+            let places = [first, half - last, half + first, 2 * half - last];
+            for (quarter, place) in quarters.iter().zip(places) {
+                wave[place..place + BLOCK].copy_from_slice(quarter);
             }
         }
-        self.sums = sums;
     }
 
-    /// Adds what some orders are at the points: several at once, which loads and stores the sums once for all of them.
-    fn add<const N: usize>(&self, some: &[usize; N], phasors: &[[f64; 2]], sums: &mut Row) {
-        let own: Vec<Row>;
-        let rows: [&Row; N] = if self.table.is_empty() {
-            own = some.iter().map(|k| self.row(self.orders[*k])).collect();
-            std::array::from_fn(|j| &own[j])
-        } else {
-            some.map(|k| &self.table[k])
+    /// Sums of cosines and of sines of a group at a block of points.
+    #[inline(always)]
+    fn block(&self, group: usize, b: usize) -> Row {
+        let phasors = &self.phasors[group];
+        let mut sums = [[0.0; BLOCK]; 2];
+        let mut add = |row: &Row, a: &[f64; 2]| {
+            for i in 0..BLOCK {
+                sums[0][i] += a[0] * row[0][i];
+                sums[1][i] += a[1] * row[1][i];
+            }
         };
-        for (part, sum) in sums.iter_mut().enumerate() {
-            let a = some.map(|k| phasors[k][part]);
-            if let [one, two, three, four] = rows.map(|r| &r[part])[..] {
-                let rows = one.iter().zip(two).zip(three.iter().zip(four));
-                for (sum, ((x, y), (z, w))) in sum.iter_mut().zip(rows) {
-                    *sum += (a[0] * x + a[1] * y) + (a[2] * z + a[3] * w);
-                }
-            } else {
-                for (row, a) in rows.into_iter().zip(a) {
-                    sum.iter_mut().zip(&row[part]).for_each(|(s, x)| *s += a * x);
-                }
+        let n = phasors.len();
+        match self.tables[group].get(b * n..(b + 1) * n) {
+            Some(rows) => rows.iter().zip(phasors).for_each(|(row, a)| add(row, a)),
+            None => {
+                let orders = self.groups[group].iter().zip(phasors);
+                orders.for_each(|((order, _), a)| add(&self.row(*order, b), a));
             }
         }
+        sums
     }
 }
-
-/// Orders that are added at once.
-const TOGETHER: usize = 4;
 
 /// Orders as ascending multiples of that of the period; nothing where one is none.
 pub(super) fn multiples(orders: &[f64], period: f64) -> Vec<usize> {
