@@ -137,7 +137,7 @@ pub fn write_bench(b: &BenchTable, dir: &Path) -> Result<BenchFiles, ReportError
 pub fn write_bench_in(b: &BenchTable, mut folder: Folder) -> Result<BenchFiles, ReportError> {
     let file = File::new(b);
     let dir = folder.path().to_owned();
-    folder.add(TABLE, &csv_table(&file)?)?;
+    folder.add(TABLE, &csv_table(&file))?;
     folder.add(REPORT, page(&file).as_bytes())?;
     folder.add(BENCH, (serde_json::to_string_pretty(&file).unwrap_or_default() + "\n").as_bytes())?;
     folder.commit()?;
@@ -156,7 +156,7 @@ pub(crate) fn rewrite(dir: &Path) -> Result<PathBuf, ReportError> {
     Ok(dir.join(REPORT))
 }
 
-fn csv_table(file: &File) -> Result<Vec<u8>, ReportError> {
+fn csv_table(file: &File) -> Vec<u8> {
     let errors = file.names(|p| &p.errors);
     let work = file.names(|p| &p.work);
     let mut head: Vec<String> =

@@ -193,7 +193,7 @@ pub fn write_comparison_in(c: &Comparison, mut folder: Folder) -> Result<Compari
         .filter_map(|(i, v)| v.outcome.as_ref().ok().map(|r| (i + 1, &r.series)))
         .collect();
     folder.add(SERIES, &table::long_csv(&series)?)?;
-    folder.add(TABLE, &csv_table(&file)?)?;
+    folder.add(TABLE, &csv_table(&file))?;
     folder.add(REPORT, page(&file, &series).as_bytes())?;
     folder.add(TIMING, timing(c).as_bytes())?;
     folder.add(COMPARISON, (serde_json::to_string_pretty(&file).unwrap_or_default() + "\n").as_bytes())?;
@@ -249,7 +249,7 @@ where
 }
 
 /// Results down; across the values of all variants, then of each that has a base its difference with the confidence of that.
-fn csv_table(file: &File) -> Result<Vec<u8>, ReportError> {
+fn csv_table(file: &File) -> Vec<u8> {
     const DIFFERENCE: [&str; 5] = [
         "difference",
         "difference uncertainty",
@@ -348,7 +348,7 @@ fn page(file: &File, series: &[(usize, &Series)]) -> String {
     let body = page::body(&CONTENTS, &main, version, &scenes);
 
     let mut arrays = Arrays::default();
-    let tables: serde_json::Map<String, serde_json::Value> =
+    let tables: IndexMap<String, page::Placed> =
         over_values.iter().map(|(f, t)| (f.table.clone(), arrays.whole(t))).collect();
     let figures: Vec<&Figure> = over_values.iter().map(|(f, _)| f).collect();
     let variants: Vec<serde_json::Value> = drawn
@@ -359,7 +359,7 @@ fn page(file: &File, series: &[(usize, &Series)]) -> String {
             json!({ "number": n, "label": label, "series": columns })
         })
         .collect();
-    let data = json!({ "cases": file.cases.len(), "variants": variants, "names": names_of_curves(&ran), "figures": figures, "tables": tables, "arrays": arrays.into_json() });
+    let data = json!({ "cases": file.cases.len(), "variants": variants, "names": names_of_curves(&ran), "figures": figures, "tables": tables, "arrays": arrays.into_texts() });
     page::document(Kind::Comparison, heading, &body, &data)
 }
 

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use gudgeon_core::Registry;
 use gudgeon_core::result::{Column, Note, NoteLevel, Provenance, Refined, Series};
-use serde_json::{Value, json};
+use serde::Serialize;
 
 use crate::number::{capital, certain, count, significant, unit};
 use crate::summary::{BalanceSheet, ModelEntry, ResultValue, SkippedEntry, SolverEntry, Summary};
@@ -93,12 +93,17 @@ pub(crate) fn prose(text: &str) -> String {
 }
 
 /// JSON made safe inside a script element: no `<` (so no `</script>`, no `<!--`) and no line separators.
-fn json_for_script(value: &Value) -> String {
-    value.to_string().replace('<', "\\u003c").replace('\u{2028}', "\\u2028").replace('\u{2029}', "\\u2029")
+fn json_for_script(data: &impl Serialize) -> String {
+    // Text, numbers, lists and maps with text keys: there is nothing in it that JSON refuses.
+    let json = serde_json::to_string(data).unwrap_or_default();
+    if !json.contains(['<', '\u{2028}', '\u{2029}']) {
+        return json;
+    }
+    json.replace('<', "\\u003c").replace('\u{2028}', "\\u2028").replace('\u{2029}', "\\u2029")
 }
 
 /// One whole page.
-pub(crate) fn document(kind: Kind, title: &str, body: &str, data: &Value) -> String {
+pub(crate) fn document(kind: Kind, title: &str, body: &str, data: &impl Serialize) -> String {
     let scripts: &[&str] = match kind {
         Kind::Run => RUN_SCRIPTS,
         Kind::Comparison => &[CORE, AXIS, EXPORT, CHART, COMPARE, DRAWING, MAP, WATERFALL, FIGURE],
@@ -151,28 +156,51 @@ pub(crate) fn body(contents: &[(&str, &str)], main: &str, version: &str, scenes:
 /// Standard base64.
 fn base64(bytes: &[u8]) -> String {
     const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let letter = |group: u32, at: u32| char::from(ALPHABET[(group >> at) as usize & 63]);
     let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for chunk in bytes.chunks(3) {
-        let group = chunk.iter().fold(0u32, |g, b| g << 8 | u32::from(*b)) << (8 * (3 - chunk.len()));
-        for k in 0..4 {
-            if k <= chunk.len() {
-                out.push(char::from(ALPHABET[(group >> (18 - 6 * k)) as usize & 63]));
-            } else {
-                out.push('=');
-            }
-        }
+    let whole = bytes.chunks_exact(3);
+    let rest = whole.remainder();
+    for three in whole {
+        let group = u32::from(three[0]) << 16 | u32::from(three[1]) << 8 | u32::from(three[2]);
+        [18, 12, 6, 0].into_iter().for_each(|at| out.push(letter(group, at)));
+    }
+    if let [first, others @ ..] = rest {
+        let group = u32::from(*first) << 16 | others.first().map_or(0, |b| u32::from(*b) << 8);
+        out.push(letter(group, 18));
+        out.push(letter(group, 12));
+        out.push(if others.is_empty() { '=' } else { letter(group, 6) });
+        out.push('=');
     }
     out
 }
 
 /// Numbers as base64 of little-endian 32-bit floats: seven digits, enough for a drawing, at five bytes a number.
-fn packed(values: impl Iterator<Item = f64>) -> String {
-    let bytes: Vec<u8> = values.flat_map(|v| (v as f32).to_le_bytes()).collect();
+fn packed(values: &[f64], every: usize) -> String {
+    let mut bytes = Vec::with_capacity(4 * values.len().div_ceil(every));
+    for v in values.iter().step_by(every) {
+        bytes.extend_from_slice(&(*v as f32).to_le_bytes());
+    }
     base64(&bytes)
 }
 
 /// Most rows of a curve that a page carries; two per degree of a four-stroke cycle.
 const MAX_ROWS: usize = 1441;
+
+/// A column of a series and the number of its array.
+#[derive(Debug, Serialize)]
+pub(crate) struct PlacedColumn {
+    name: String,
+    unit: String,
+    at: usize,
+}
+
+/// A series, of which every n-th row is in the arrays.
+#[derive(Debug, Serialize)]
+pub(crate) struct Placed {
+    axis: PlacedColumn,
+    columns: Vec<PlacedColumn>,
+    every: usize,
+}
 
 /// Collects arrays for a page; equal arrays are stored once.
 #[derive(Default)]
@@ -189,18 +217,18 @@ impl Arrays {
         self.arrays.len() - 1
     }
 
-    /// `{"axis": {"name", "unit", "at": index}, "columns": [the same], "every": stride}`.
-    pub(crate) fn series<'a>(&mut self, axis: &Column, columns: impl Iterator<Item = &'a Column>) -> Value {
+    /// At most [`MAX_ROWS`] rows of some columns.
+    pub(crate) fn series<'a>(&mut self, axis: &Column, columns: impl Iterator<Item = &'a Column>) -> Placed {
         self.thinned(axis, columns, axis.values.len().div_ceil(MAX_ROWS).max(1))
     }
 
     /// As [`Arrays::series`] with every row: a map cannot spare any.
-    pub(crate) fn whole(&mut self, table: &Series) -> Value {
+    pub(crate) fn whole(&mut self, table: &Series) -> Placed {
         self.thinned(&table.axis, table.columns.iter(), 1)
     }
 
     /// As [`Arrays::whole`], but of the columns alone that figures read.
-    pub(crate) fn read(&mut self, table: &Series, columns: &[&str]) -> Value {
+    pub(crate) fn read(&mut self, table: &Series, columns: &[&str]) -> Placed {
         self.thinned(&table.axis, table.columns.iter().filter(|c| columns.contains(&c.name.as_str())), 1)
     }
 
@@ -209,19 +237,17 @@ impl Arrays {
         axis: &Column,
         columns: impl Iterator<Item = &'a Column>,
         every: usize,
-    ) -> Value {
-        let at = self.add(packed(axis.values.iter().copied().step_by(every)));
-        let columns: Vec<Value> = columns
-            .map(|c| {
-                let at = self.add(packed(c.values.iter().copied().step_by(every)));
-                json!({ "name": c.name, "unit": c.unit, "at": at })
-            })
-            .collect();
-        json!({ "axis": { "name": axis.name, "unit": axis.unit, "at": at }, "columns": columns, "every": every })
+    ) -> Placed {
+        let mut place = |c: &Column| {
+            let at = self.add(packed(&c.values, every));
+            PlacedColumn { name: c.name.clone(), unit: c.unit.clone(), at }
+        };
+        Placed { axis: place(axis), columns: columns.map(place).collect(), every }
     }
 
-    pub(crate) fn into_json(self) -> Value {
-        self.arrays.into()
+    /// The arrays, as text.
+    pub(crate) fn into_texts(self) -> Vec<String> {
+        self.arrays
     }
 }
 
@@ -514,7 +540,7 @@ mod tests {
         let mut arrays = Arrays::default();
         let axis = Column { values: theta, ..Column::default() };
         let series = arrays.series(&axis, std::iter::empty());
-        assert_eq!(series["every"], 5);
+        assert_eq!(series.every, 5);
         let rows = 7201usize.div_ceil(5);
         assert_eq!(arrays.arrays[0].len(), (rows * 4).div_ceil(3) * 4);
     }

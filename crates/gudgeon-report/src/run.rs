@@ -3,14 +3,15 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use gudgeon_core::result::{RunResult, Series};
+use gudgeon_core::result::{Figure, RunResult, Series};
 use indexmap::IndexMap;
+use serde::Serialize;
 use serde_json::json;
 
 use crate::folder::Folder;
 use crate::number::{percent, significant, unit};
 use crate::page::{self, Kind, esc};
-use crate::summary::Summary;
+use crate::summary::{EventEntry, Summary};
 use crate::{REPORT, ReportError, inputs, overview, results, table};
 
 pub(crate) const SUMMARY: &str = "summary.json";
@@ -70,7 +71,8 @@ pub fn run_files(run: &RunResult) -> Result<Vec<(String, Vec<u8>)>, ReportError>
 /// The data that the scripts of a run's page draw from, for a page that draws again while a person changes a case.
 #[must_use]
 pub fn run_data(run: &RunResult) -> serde_json::Value {
-    data(&Summary::new(run), &run.series, &run.tables)
+    // Text, numbers, lists and maps with text keys: there is nothing in it that JSON refuses.
+    serde_json::to_value(data(&Summary::new(run), &run.series, &run.tables)).unwrap_or_default()
 }
 
 /// Wall-clock seconds by phase.
@@ -156,23 +158,43 @@ fn has_cycle(series: &Series) -> bool {
 }
 
 /// What the scripts of the page draw.
-fn data(s: &Summary, series: &Series, tables: &IndexMap<String, Series>) -> serde_json::Value {
+#[derive(Serialize)]
+struct Data<'a> {
+    scene: &'a str,
+    section: &'a Option<serde_json::Value>,
+    events: &'a [EventEntry],
+    series: Option<page::Placed>,
+    tables: IndexMap<&'a str, page::Placed>,
+    figures: &'a [Figure],
+    lead: &'a str,
+    arrays: Vec<String>,
+}
+
+fn data<'a>(s: &'a Summary, series: &Series, tables: &'a IndexMap<String, Series>) -> Data<'a> {
     let mut arrays = page::Arrays::default();
     let read = |table: &str| -> Vec<&str> {
         s.figures.iter().filter(|f| f.table == table).flat_map(|f| f.kind.columns()).collect()
     };
     let used = |table: &str| s.figures.iter().any(|f| f.table == table);
-    let columns =
-        if has_cycle(series) { arrays.series(&series.axis, series.columns.iter()) } else { json!(null) };
-    let mut data_of: serde_json::Map<String, serde_json::Value> =
-        tables.iter().filter(|(n, _)| used(n)).map(|(n, t)| (n.clone(), arrays.read(t, &read(n)))).collect();
+    let columns = has_cycle(series).then(|| arrays.series(&series.axis, series.columns.iter()));
+    let mut data_of: IndexMap<&str, page::Placed> = tables
+        .iter()
+        .filter(|(n, _)| used(n))
+        .map(|(n, t)| (n.as_str(), arrays.read(t, &read(n))))
+        .collect();
     if used("series") {
-        data_of.insert("series".into(), arrays.read(series, &read("series")));
+        data_of.insert("series", arrays.read(series, &read("series")));
     }
-    json!({
-        "scene": s.scene, "section": s.section, "events": s.events, "series": columns, "tables": data_of,
-        "figures": s.figures, "lead": s.lead, "arrays": arrays.into_json(),
-    })
+    Data {
+        scene: &s.scene,
+        section: &s.section,
+        events: &s.events,
+        series: columns,
+        tables: data_of,
+        figures: &s.figures,
+        lead: &s.lead,
+        arrays: arrays.into_texts(),
+    }
 }
 
 /// Places of the curves and figures.

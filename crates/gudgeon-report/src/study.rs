@@ -48,9 +48,9 @@ pub fn study_page(p: &StudyPage) -> String {
     body.push_str("</tbody></table></section>\n");
     let body = page::body(&CONTENTS, &body, "", &[]);
     let mut arrays = page::Arrays::default();
-    let tables: serde_json::Map<String, serde_json::Value> =
+    let tables: IndexMap<String, page::Placed> =
         p.tables.iter().map(|(name, t)| (name.clone(), arrays.whole(t))).collect();
-    let data = json!({ "tables": tables, "figures": p.figures, "arrays": arrays.into_json() });
+    let data = json!({ "tables": tables, "figures": p.figures, "arrays": arrays.into_texts() });
     page::document(Kind::Study, &p.title, &body, &data)
 }
 
