@@ -80,7 +80,7 @@ pub struct Jet {
 }
 
 /// Row and column of the entries of [`Jet::h`].
-const PAIRS: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
+pub const PAIRS: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
 
 /// Place in [`Jet::h`] of the entry in row `i` and column `j`.
 const PLACE: [[usize; 3]; 3] = [[0, 1, 2], [1, 3, 4], [2, 4, 5]];

@@ -4,7 +4,7 @@
 pub const VARIABLES: usize = 3;
 
 /// Maximum number of constraints of a program.
-pub const MAX_CONSTRAINTS: usize = 32;
+pub const MAX_CONSTRAINTS: usize = 16;
 
 /// `a·x <= b`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -128,6 +128,15 @@ impl ActiveSet {
         self.len += 1;
     }
 
+    /// A point with the multipliers of all constraints.
+    fn minimum(&self, x: [f64; 3]) -> Minimum {
+        let mut multipliers = [0.0; MAX_CONSTRAINTS];
+        for (&k, u) in self.indices().iter().zip(self.u) {
+            multipliers[k] = u;
+        }
+        Minimum { x, multipliers }
+    }
+
     /// Takes out the constraint in place `j`; the others move up.
     #[inline]
     fn remove(&mut self, j: usize) {
@@ -203,23 +212,83 @@ impl ActiveSet {
 /// # Errors
 /// [`QpError`].
 pub fn minimise(h: &[[f64; 3]; 3], g: &[f64; 3], constraints: &[HalfSpace]) -> Result<Minimum, QpError> {
+    minimise_with(&inverse(h).ok_or(QpError::NotConvex)?, g, constraints)
+}
+
+fn minimise_with(
+    inv: &[[f64; 3]; 3],
+    g: &[f64; 3],
+    constraints: &[HalfSpace],
+) -> Result<Minimum, QpError> {
     if constraints.len() > MAX_CONSTRAINTS {
         return Err(QpError::Stalled);
     }
-    let inv = inverse(h).ok_or(QpError::NotConvex)?;
-    let mut x = apply(&inv, g).map(|v| -v);
+    let mut x = apply(inv, g).map(|v| -v);
     let mut active = ActiveSet::default();
     for _ in 0..20 * (constraints.len() + 1) {
         let Some(p) = active.violated(constraints, &x) else {
-            let mut multipliers = [0.0; MAX_CONSTRAINTS];
-            for (&k, u) in active.indices().iter().zip(active.u) {
-                multipliers[k] = u;
-            }
-            return Ok(Minimum { x, multipliers });
+            return Ok(active.minimum(x));
         };
-        satisfy(p, &inv, constraints, &mut x, &mut active)?;
+        satisfy(p, inv, constraints, &mut x, &mut active)?;
     }
     Err(QpError::Stalled)
+}
+
+/// As [`minimise`] of a matrix with its [`inverse`], where some constraints, at most [`VARIABLES`], are thought to hold with equality: the minimum over
+/// those is taken at once where it is that of the program.
+///
+/// # Errors
+/// [`QpError`].
+pub fn minimise_near(
+    (h, inv): (&[[f64; 3]; 3], &[[f64; 3]; 3]),
+    g: &[f64; 3],
+    constraints: &[HalfSpace],
+    guess: &[usize],
+) -> Result<Minimum, QpError> {
+    match over_equalities((h, inv), g, constraints, guess) {
+        Some(minimum) => Ok(minimum),
+        None => minimise_with(inv, g, constraints),
+    }
+}
+
+/// The minimum where the constraints `guess` hold with equality; none where it breaks another one or a multiplier is negative.
+fn over_equalities(
+    (h, inv): (&[[f64; 3]; 3], &[[f64; 3]; 3]),
+    g: &[f64; 3],
+    constraints: &[HalfSpace],
+    guess: &[usize],
+) -> Option<Minimum> {
+    let mut active = ActiveSet::default();
+    let mut bound = [0.0; 3];
+    for (i, k) in guess.iter().enumerate() {
+        bound.get_mut(i).map(|b| *b = constraints[*k].b)?;
+        active.push(*k, 0.0);
+    }
+    let n = active.len;
+    let normal = |i: usize| constraints[active.index[i]].a;
+    let x = if n == VARIABLES {
+        // A corner, whatever the function: its multipliers are those of its slope there.
+        let x = solve([normal(0), normal(1), normal(2)], bound, n)?;
+        let slope: [f64; 3] = std::array::from_fn(|i| -(dot(&h[i], &x) + g[i]));
+        active.u = solve(std::array::from_fn(|i| std::array::from_fn(|j| normal(j)[i])), slope, n)?;
+        x
+    } else {
+        let mut x = apply(inv, g).map(|v| -v);
+        let mut across = [[0.0; 3]; 3];
+        (0..n).for_each(|i| across[i] = apply(inv, &normal(i)));
+        let (mut gram, mut beyond) = ([[0.0; 3]; 3], [0.0; 3]);
+        for i in 0..n {
+            (0..n).for_each(|j| gram[i][j] = dot(&across[i], &normal(j)));
+            beyond[i] = dot(&normal(i), &x) - bound[i];
+        }
+        active.u = solve(gram, beyond, n)?;
+        for i in 0..n {
+            (0..3).for_each(|k| x[k] -= active.u[i] * across[i][k]);
+        }
+        x
+    };
+    let right = active.u[..n].iter().all(|u| *u > 0.0) && x.iter().all(|x| x.is_finite());
+    (right && active.violated(constraints, &x).is_none()).then(|| active.minimum(x))
 }
 
 /// Goes to the minimum over the active constraints and constraint `p`, which joins them; others may leave on the way.

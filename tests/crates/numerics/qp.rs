@@ -1,6 +1,6 @@
 //! Small quadratic programs: optimality conditions of random ones, and refusals.
 
-use gudgeon_numerics::qp::{HalfSpace, QpError, minimise};
+use gudgeon_numerics::qp::{HalfSpace, QpError, inverse, minimise, minimise_near};
 
 fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
@@ -44,6 +44,18 @@ fn random_programs_satisfy_their_optimality_conditions() {
             }
         };
         solved += 1;
+        // A guess that is right, one that is wrong, and one of more constraints than there are variables: the same minimum, with the rounding that is
+        // judged below.
+        let inv = inverse(&h).unwrap();
+        let held: Vec<usize> = (0..8).filter(|k| m.multipliers[*k] > 0.0).collect();
+        let others: Vec<usize> = (0..8).filter(|k| m.multipliers[*k] == 0.0).take(held.len().max(1)).collect();
+        for guess in [held, others, vec![0, 1, 2, 3]] {
+            let near = minimise_near((&h, &inv), &g, &cs, &guess).unwrap();
+            let size = 1.0 + m.multipliers.iter().sum::<f64>();
+            for (a, b) in near.x.iter().zip(m.x).chain(near.multipliers.iter().zip(m.multipliers)) {
+                assert!((a - b).abs() < 1e-11 * size * size, "{a} {b} {size}");
+            }
+        }
         let mut rest = apply(&h, &m.x);
         for i in 0..3 {
             rest[i] += g[i] + cs.iter().enumerate().map(|(k, c)| m.multipliers[k] * c.a[i]).sum::<f64>();

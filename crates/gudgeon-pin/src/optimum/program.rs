@@ -3,7 +3,7 @@
 use gudgeon_core::EvalError;
 use gudgeon_core::kinds::{PIN_QUANTITIES, PinExpansion, PinQuantity, PinSize};
 use gudgeon_numerics::elementary;
-use gudgeon_numerics::jet::{Jet, Real};
+use gudgeon_numerics::jet::{Jet, PAIRS, Real};
 use gudgeon_numerics::qp::{HalfSpace, MAX_CONSTRAINTS, Minimum};
 
 use super::result::{BOUNDS, Bound};
@@ -33,7 +33,7 @@ pub struct Program<'a, 'b> {
 /// Mass and limits with first and second derivatives at one point.
 pub struct Expansion {
     pub mass: Jet,
-    /// Logarithms of the utilisations; only those of finite limits are used.
+    /// Logarithms of the utilisations; zero where there is no limit.
     pub limits: [Jet; PIN_QUANTITIES],
 }
 
@@ -86,63 +86,79 @@ impl<'a, 'b> Program<'a, 'b> {
         self.scaled(m) / self.mass
     }
 
-    /// Quantities in the worst corner of the tolerances.
-    fn worst_quantities(&self, size: &PinSize) -> Result<[Jet; PIN_QUANTITIES], EvalError> {
-        let d = self.design;
-        let (short, long) = corners(size, &d.tolerance);
-        let e = d.strength.expansion(&short, &d.load)?;
-        let jet = |e: &PinExpansion, k: usize| Jet { v: e.value[k], g: e.gradient[k], h: e.hessian[k] };
-        let mut q: [Jet; PIN_QUANTITIES] = std::array::from_fn(|k| jet(&e, k));
-        if short != long {
-            let w = d.strength.expansion(&long, &d.load)?;
-            for k in GROWING_WITH_LENGTH.map(|q| q as usize) {
-                q[k] = jet(&w, k);
-            }
-            let b = q[PinQuantity::BendingStress as usize];
-            let o = q[PinQuantity::OvalisationStress as usize];
-            q[PinQuantity::ResultantStress as usize] = (b.squared() + o.squared()).sqrt();
-        }
-        Ok(q)
-    }
-
     /// Mass and limits around a point.
     pub fn expansion(&self, x: &[f64; 3]) -> Result<Expansion, EvalError> {
-        let size = self.size(x);
-        let mut limits = self.worst_quantities(&size)?;
-        for (q, limit) in limits.iter_mut().zip(self.design.limits) {
-            if limit.is_finite() {
-                *q = self.scaled((*q / limit).ln());
-            }
+        let (d, size) = (self.design, self.size(x));
+        let (short, long) = corners(&size, &d.tolerance);
+        let of_short = d.strength.expansion(&short, &d.load)?;
+        let of_long = (short != long).then(|| d.strength.expansion(&long, &d.load)).transpose()?;
+        let mut limits = [Jet::default(); PIN_QUANTITIES];
+        for (k, limit) in d.limits.iter().enumerate().filter(|(_, limit)| limit.is_finite()) {
+            limits[k] = match &of_long {
+                Some(long) if k == PinQuantity::ResultantStress as usize => {
+                    self.utilised(&resultant(&of_short, long), *limit)
+                }
+                Some(long) if GROWING_WITH_LENGTH.iter().any(|q| *q as usize == k) => {
+                    self.utilised(&jet(long, k), *limit)
+                }
+                _ => self.utilised(&jet(&of_short, k), *limit),
+            };
         }
         Ok(Expansion { mass: self.mass_expansion(&size), limits })
+    }
+
+    /// Logarithm of a quantity over its limit, with derivatives by units.
+    fn utilised(&self, q: &Jet, limit: f64) -> Jet {
+        let r = self.unit / q.v;
+        let g = q.g.map(|g| r * g);
+        let second = r * self.unit;
+        let h = std::array::from_fn(|k| {
+            let (i, j) = PAIRS[k];
+            second * q.h[k] - g[i] * g[j]
+        });
+        Jet { v: elementary::ln(q.v / limit), g, h }
     }
 
     /// Mass and weighted sum of the logarithms by which limits are exceeded.
     pub fn merit(&self, x: &[f64; 3], weight: f64) -> Option<f64> {
         let size = self.size(x);
         let u = self.design.utilisation(&size).ok()?;
-        let over: f64 = u.iter().map(|&u| elementary::ln(u).max(0.0)).sum();
+        let over: f64 = u.iter().filter(|u| **u > 1.0).map(|u| elementary::ln(*u)).sum();
         let merit = self.design.masses(&size).differential() / self.mass + weight * over;
         merit.is_finite().then_some(merit)
     }
 
+    /// The same where the expansion is known.
+    pub fn merit_of(&self, at: &Expansion, weight: f64) -> f64 {
+        at.mass.v + weight * at.limits.iter().map(|l| l.v.max(0.0)).sum::<f64>()
+    }
+
     /// Hessian of the Lagrangian: second derivatives of mass plus multipliers times limits; one where a dimension is fixed.
     pub fn lagrangian_hessian(&self, at: &Expansion, mu: &Multipliers) -> [[f64; 3]; 3] {
-        std::array::from_fn(|i| {
-            std::array::from_fn(|j| {
-                if self.fixed[i] || self.fixed[j] {
-                    return if i == j { 1.0 } else { 0.0 };
-                }
-                let mut w = at.mass.second(i, j);
-                for (k, c) in at.limits.iter().enumerate() {
-                    if mu[k] > 0.0 {
-                        w += mu[k] * c.second(i, j);
-                    }
-                }
-                w
-            })
-        })
+        let mut sum = at.mass.h;
+        for (c, mu) in at.limits.iter().zip(mu).filter(|(_, mu)| **mu > 0.0) {
+            sum.iter_mut().zip(c.h).for_each(|(sum, h)| *sum += mu * h);
+        }
+        let mut w = [[0.0; 3]; 3];
+        for (h, (i, j)) in sum.into_iter().zip(PAIRS) {
+            let one = if i == j { 1.0 } else { 0.0 };
+            let own = if self.fixed[i] || self.fixed[j] { one } else { h };
+            (w[i][j], w[j][i]) = (own, own);
+        }
+        w
     }
+}
+
+/// A quantity with its derivatives by metres.
+fn jet(e: &PinExpansion, k: usize) -> Jet {
+    Jet { v: e.value[k], g: e.gradient[k], h: e.hessian[k] }
+}
+
+/// The resultant stress from its parts in the corners of the tolerances where each is worst.
+fn resultant(short: &PinExpansion, long: &PinExpansion) -> Jet {
+    let bending = jet(long, PinQuantity::BendingStress as usize);
+    let ovalisation = jet(short, PinQuantity::OvalisationStress as usize);
+    (bending.squared() + ovalisation.squared()).sqrt()
 }
 
 /// What is left of a bound at a point; negative where it is violated.

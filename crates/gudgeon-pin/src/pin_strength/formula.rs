@@ -67,40 +67,47 @@ pub struct Loaded<'a, T> {
 }
 
 impl<'a, T: Real> Loaded<'a, T> {
+    #[inline(always)]
     fn new(at: &'a Surroundings, [length, outer, inner]: [T; 3], total: f64) -> Self {
         let (offset, slope) = at.centres;
         Self { at, length, outer, inner, rho: inner / outer, centres: length * slope + offset, total }
     }
 
     /// `J = π (d_o⁴ - d_i⁴)/64`.
+    #[inline(always)]
     pub fn second_moment(&self) -> T {
         let (o2, i2) = (self.outer.squared(), self.inner.squared());
         (o2 + i2) * (o2 - i2) * (self.at.pi / 64.0)
     }
 
     /// `p = F/(d_o (L - D3))`.
+    #[inline(always)]
     pub fn boss_pressure(&self) -> T {
         ((self.length - self.at.boss_gap) * self.outer).recip() * self.total
     }
 
     /// `p = F/(d_o B)`.
+    #[inline(always)]
     pub fn rod_pressure(&self) -> T {
         self.outer.recip() * (self.total / self.at.rod_width)
     }
 
     /// `σ = γ F a/(4 Z)`, `γ = 1 - B/(2 a)`, `Z = 2 J/d_o`: the greatest moment `F a/4 - F B/8` over the section modulus.
+    #[inline(always)]
     pub fn bending_stress(&self) -> T {
         let moment = (self.centres * 0.25 - self.at.rod_width / 8.0) * self.total;
         moment * self.outer / (self.second_moment() * 2.0)
     }
 
     /// `τ = c F (1 + ρ + ρ²)/(d_o² (1 - ρ⁴))`; `c = 8/(3π)` is exact for a force `F/2` through a thick tube.
+    #[inline(always)]
     pub fn shear_stress(&self, c: f64) -> T {
         let r2 = self.rho.squared();
         (r2 + self.rho + 1.0) * (c * self.total) / (self.outer.squared() * (-r2.squared() + 1.0))
     }
 
     /// `f = γ a³ F/(48 E J)`: the deflection under a force in the middle, times the coefficient of the moment.
+    #[inline(always)]
     pub fn deflection_by_coefficient(&self) -> T {
         let a = self.centres;
         // γ a³ = a² (a - B/2)
@@ -127,17 +134,20 @@ impl<'a, T: Real> Loaded<'a, T> {
     }
 
     /// `δ = F ((1 + ρ)/(1 - ρ))³/(8 E L)`: a thin ring under a pressure uniform over its projection.
+    #[inline(always)]
     pub fn thin_ring_ovalisation(&self, force: f64) -> T {
         let c = ((self.rho + 1.0) / (-self.rho + 1.0)).cubed();
         c * (force / (8.0 * self.at.modulus)) / self.length
     }
 
     /// `σ = 0.75 F (d_o + d_i)/(L (d_o - d_i)²)`: moment `F r/8` of the thin ring.
+    #[inline(always)]
     pub fn thin_ring_stress(&self) -> T {
         (self.outer + self.inner) * (0.75 * self.total) / (self.length * (self.outer - self.inner).squared())
     }
 
     /// `√(σ_b² + σ_o²)`.
+    #[inline(always)]
     pub fn resultant(bending: T, ovalisation: T) -> T {
         (bending.squared() + ovalisation.squared()).sqrt()
     }
