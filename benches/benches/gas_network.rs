@@ -87,6 +87,9 @@ fn table(tolerances: &[f64]) -> Result<Vec<Row>, String> {
         rows.push(measure("Gudgeon BDF", &mut Bdf::new(N, 2, None), rtol, true)?);
     }
     for &rtol in tolerances {
+        rows.push(measure("Gudgeon BDF, order 4", &mut Bdf::new(N, 2, None).up_to_order(4), rtol, true)?);
+    }
+    for &rtol in tolerances {
         rows.push(measure("Gudgeon Rodas5P", &mut rodas(), rtol, true)?);
     }
     for &rtol in tolerances {
@@ -124,13 +127,13 @@ fn main() {
         return;
     }
     println!(
-        "{:<16} {:>7} {:>6} {:>8} {:>6} {:>9} {:>13} {:>9} {:>9}",
+        "{:<20} {:>7} {:>6} {:>8} {:>6} {:>9} {:>13} {:>9} {:>9}",
         "code", "rtol", "steps", "rejected", "rhs", "jacobians", "blow-by error", "mass lost", "us"
     );
     for r in &rows {
         let s = &r.outcome.stats;
         println!(
-            "{:<16} {:>7.0e} {:>6} {:>8} {:>6} {:>9} {:>13.2e} {:>9.1e} {:>9.1}",
+            "{:<20} {:>7.0e} {:>6} {:>8} {:>6} {:>9} {:>13.2e} {:>9.1e} {:>9.1}",
             r.code,
             r.rtol,
             s.steps,
@@ -157,6 +160,13 @@ fn main() {
         group.bench_with_input(BenchmarkId::new("rodas", format!("{rtol:e}")), &options, |b, options| {
             b.iter(|| cycle(&mut integrator, &mut sys, options).map(|o| o.blow_by));
         });
+        let options = Options { atol_quad: vec![1e-6 * rtol; 2], ..options };
+        for (name, order) in [("bdf", 5), ("bdf, order 4", 4)] {
+            let mut integrator = Bdf::new(N, 2, None).up_to_order(order);
+            group.bench_with_input(BenchmarkId::new(name, format!("{rtol:e}")), &options, |b, options| {
+                b.iter(|| cycle(&mut integrator, &mut sys, options).map(|o| o.blow_by));
+            });
+        }
     }
     let mut sys = GasNet::new();
     let (y, mut f) = (GasNet::start(), [0.0; N + 2]);
