@@ -95,11 +95,13 @@ pub(crate) fn prose(text: &str) -> String {
 /// JSON made safe inside a script element: no `<` (so no `</script>`, no `<!--`) and no line separators.
 fn json_for_script(data: &impl Serialize) -> String {
     // Text, numbers, lists and maps with text keys: there is nothing in it that JSON refuses.
-    let json = serde_json::to_string(data).unwrap_or_default();
-    if !json.contains(['<', '\u{2028}', '\u{2029}']) {
-        return json;
+    let mut json = serde_json::to_string(data).unwrap_or_default();
+    for (sign, safe) in [('<', "\\u003c"), ('\u{2028}', "\\u2028"), ('\u{2029}', "\\u2029")] {
+        if json.contains(sign) {
+            json = json.replace(sign, safe);
+        }
     }
-    json.replace('<', "\\u003c").replace('\u{2028}', "\\u2028").replace('\u{2029}', "\\u2029")
+    json
 }
 
 /// One whole page.

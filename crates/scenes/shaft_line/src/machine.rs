@@ -234,7 +234,8 @@ impl<'a> Machine<'a> {
         let mut p =
             Point { links: (0..links).map(|l| link_point(cycle, out, l)).collect(), ..Point::default() };
         if by_order {
-            p.orders = out.orders.iter().flat_map(|o| o.torque.iter().map(|t| modulus(*t))).collect();
+            p.orders = Vec::with_capacity(out.orders.len() * links);
+            out.orders.iter().for_each(|o| p.orders.extend(o.torque.iter().map(|t| modulus(*t))));
         }
         // Relative speed of an inertia at the reference shaft: order times angle.
         let ratio = |i: usize| a.line.nodes[i].ratio;

@@ -2,6 +2,7 @@
 
 use gudgeon_core::EvalError;
 use gudgeon_core::file::Files;
+use gudgeon_core::kinds::LineThrow;
 use gudgeon_core::result::{Column, Figure, FigureKind, Lines, Mark, Note, Series};
 
 use super::envelope::limits_of;
@@ -251,18 +252,26 @@ impl Results<'_> {
     /// Says by how much the gas torque at the ends of the range differs from that at the mean speed, which is taken everywhere.
     pub fn gas_over_speed(&mut self, a: &Assembled, files: &Files, speeds: &[f64]) {
         let mut worst = (0.0, 0.0);
-        for w in [speeds.first(), speeds.last()].into_iter().flatten() {
-            let Ok(throws) = throws_alone(self.case, files, *w) else { continue };
-            for (k, (mean, here)) in a.line.throws.iter().zip(&throws).enumerate() {
-                if k > 0 && mean.is_like(&a.line.throws[k - 1]) && here.is_like(&throws[k - 1]) {
-                    continue;
+        let ends = [speeds.first(), speeds.last()].into_iter().flatten();
+        let others: Vec<(f64, Vec<LineThrow>)> =
+            ends.filter_map(|w| Some((*w, throws_alone(self.case, files, *w).ok()?))).collect();
+        let alike = |all: &[LineThrow], k: usize| k > 0 && all[k].is_like(&all[k - 1]);
+        for (k, mean) in a.line.throws.iter().enumerate() {
+            let torque = |t: &LineThrow, degrees: i32| {
+                let at = f64::from(degrees).to_radians() - mean.phase;
+                t.gas_torque(at, at)
+            };
+            let unlike = others.iter().filter(|(_, all)| !(alike(&a.line.throws, k) && alike(all, k)));
+            let mut own = Vec::new();
+            for (w, all) in unlike {
+                if own.is_empty() {
+                    own.extend((0..720).map(|degrees| torque(mean, degrees)));
                 }
-                let at = |k: i32| f64::from(k).to_radians() - mean.phase;
-                let (largest, change) = (0..720).fold((0.0, 0.0), |(largest, change): (f64, f64), k| {
-                    let torque = mean.gas_torque(at(k), at(k));
-                    let other = here.gas_torque(at(k), at(k));
-                    (largest.max(torque.abs()), change.max((other - torque).abs()))
-                });
+                let (largest, change) =
+                    own.iter().zip(0..).fold((0.0, 0.0), |(largest, change): (f64, f64), (own, degrees)| {
+                        let other = torque(&all[k], degrees);
+                        (largest.max(own.abs()), change.max((other - own).abs()))
+                    });
                 if change > worst.0 * largest {
                     worst = (change / largest, *w);
                 }

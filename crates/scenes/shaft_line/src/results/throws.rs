@@ -62,19 +62,21 @@ impl Course {
 
 /// Mean torque \[N m\], largest force of the gas to and from the crank \[kN\], highest pressure of head and crank ends \[bar\].
 fn loads(t: &LineThrow, ends: &[EndCase]) -> [Option<f64>; 5] {
-    let sign = |e: &EndCase| if e.side == Side::Head { 1.0 } else { -1.0 };
-    let force = |x: f64| -> f64 {
-        t.ends
-            .iter()
-            .zip(ends)
-            .map(|(g, e)| sign(e) * (g.pressure.pressure(x) - g.back_pressure) * g.area)
-            .sum()
+    let angle = |k: usize| gas_period(t) * k as f64 / TURN as f64;
+    let pressures: Vec<Vec<f64>> =
+        t.ends.iter().map(|g| (0..TURN).map(|k| g.pressure.pressure(angle(k))).collect()).collect();
+    let force = |k: usize| -> f64 {
+        let own = t.ends.iter().zip(ends).zip(&pressures);
+        own.map(|((g, e), p)| {
+            let sign = if e.side == Side::Head { 1.0 } else { -1.0 };
+            sign * (p[k] - g.back_pressure) * g.area
+        })
+        .sum()
     };
-    let angles = || (0..TURN).map(|k| gas_period(t) * k as f64 / TURN as f64);
-    let [most, least] = extremes(angles().map(force));
+    let [most, least] = extremes((0..TURN).map(force));
     let highest = |side: Side| {
-        let own = t.ends.iter().zip(ends).filter(|(_, e)| e.side == side);
-        own.flat_map(|(g, _)| angles().map(|x| g.pressure.pressure(x) / 1e5)).reduce(f64::max)
+        let own = ends.iter().zip(&pressures).filter(|(e, _)| e.side == side);
+        own.flat_map(|(_, p)| p).map(|p| p / 1e5).reduce(f64::max)
     };
     [
         Some(gas_series(t, 1)[0].re),
