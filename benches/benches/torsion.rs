@@ -13,6 +13,7 @@ use criterion::Criterion;
 use gudgeon_core::kinds::{CouplingSpec, Line, LineLink, LineNode, TorsionCtx, TorsionOut, TorsionSpec};
 use gudgeon_core::quantity::quantity;
 use gudgeon_torsion::coupling::Linear;
+use gudgeon_torsion::cycle::Cycle;
 use gudgeon_torsion::eigen::{natural_frequencies, roots, shapes};
 use gudgeon_torsion::sweep::{LANES, Sweep};
 use gudgeon_torsion::torsion::{Implicit, Propagator, RungeKutta};
@@ -296,6 +297,20 @@ fn main() {
     }
     let mut c = Criterion::default().configure_from_args();
     let tree = Tree::new(&line(&J, &K, &C, &C_ABS)).expect("builds");
+    // Torques that decay as those of gas do, with a resonance at order 8: other phases every time.
+    let orders: Vec<f64> = (1..=24).map(f64::from).collect();
+    let sizes: Vec<f64> = orders.iter().map(|o| o.powi(-2) / (1.0 - (o / 8.0).powi(2)).hypot(0.05)).collect();
+    let mut cycle = Cycle::new(&orders, 2.0 * std::f64::consts::PI);
+    let mut turn = 0.0;
+    c.bench_function("torsion/extremes_of_24_orders", |b| {
+        b.iter(|| {
+            turn += 0.1;
+            cycle.extremes(0.0, |k| {
+                let (sin, cos) = (turn * sizes[(7 * k) % 24].sqrt() + (k * k) as f64).sin_cos();
+                [sizes[k] * cos, sizes[k] * sin]
+            })
+        });
+    });
     c.bench_function("torsion/eigenvalues_9", |b| b.iter(|| natural_frequencies(black_box(&tree), 20)));
     c.final_summary();
 }

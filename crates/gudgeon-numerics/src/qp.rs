@@ -215,11 +215,7 @@ pub fn minimise(h: &[[f64; 3]; 3], g: &[f64; 3], constraints: &[HalfSpace]) -> R
     minimise_with(&inverse(h).ok_or(QpError::NotConvex)?, g, constraints)
 }
 
-fn minimise_with(
-    inv: &[[f64; 3]; 3],
-    g: &[f64; 3],
-    constraints: &[HalfSpace],
-) -> Result<Minimum, QpError> {
+fn minimise_with(inv: &[[f64; 3]; 3], g: &[f64; 3], constraints: &[HalfSpace]) -> Result<Minimum, QpError> {
     if constraints.len() > MAX_CONSTRAINTS {
         return Err(QpError::Stalled);
     }

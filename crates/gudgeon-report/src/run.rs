@@ -177,11 +177,8 @@ fn data<'a>(s: &'a Summary, series: &Series, tables: &'a IndexMap<String, Series
     };
     let used = |table: &str| s.figures.iter().any(|f| f.table == table);
     let columns = has_cycle(series).then(|| arrays.series(&series.axis, series.columns.iter()));
-    let mut data_of: IndexMap<&str, page::Placed> = tables
-        .iter()
-        .filter(|(n, _)| used(n))
-        .map(|(n, t)| (n.as_str(), arrays.read(t, &read(n))))
-        .collect();
+    let mut data_of: IndexMap<&str, page::Placed> =
+        tables.iter().filter(|(n, _)| used(n)).map(|(n, t)| (n.as_str(), arrays.read(t, &read(n)))).collect();
     if used("series") {
         data_of.insert("series", arrays.read(series, &read("series")));
     }

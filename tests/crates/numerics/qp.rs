@@ -48,7 +48,8 @@ fn random_programs_satisfy_their_optimality_conditions() {
         // judged below.
         let inv = inverse(&h).unwrap();
         let held: Vec<usize> = (0..8).filter(|k| m.multipliers[*k] > 0.0).collect();
-        let others: Vec<usize> = (0..8).filter(|k| m.multipliers[*k] == 0.0).take(held.len().max(1)).collect();
+        let others: Vec<usize> =
+            (0..8).filter(|k| m.multipliers[*k] == 0.0).take(held.len().max(1)).collect();
         for guess in [held, others, vec![0, 1, 2, 3]] {
             let near = minimise_near((&h, &inv), &g, &cs, &guess).unwrap();
             let size = 1.0 + m.multipliers.iter().sum::<f64>();

@@ -116,3 +116,50 @@ fn coarse_grids_miss_no_top() {
         assert!(low <= bottom + 1e-12 && low >= bottom - error, "{case}: {low} {bottom}");
     }
 }
+
+#[test]
+fn extremes_are_right_to_rounding() {
+    // Spectra as those of gas torques behind a resonance. The highest point of a dense grid is followed to its top by bisecting the sign of the derivative, with
+    // sines and cosines of every order.
+    let mut r = crate::elimination::Numbers(11);
+    let orders: Vec<f64> = (1..=24).map(f64::from).collect();
+    let mut cycle = Cycle::new(&orders, 2.0 * PI);
+    for case in 0..60 {
+        let resonant = f64::from(1 + case % 12);
+        let size = |o: f64| o.powi(-2) / (1.0 - (o / resonant).powi(2)).hypot(0.05);
+        let a: Vec<[f64; 2]> = orders
+            .iter()
+            .map(|o| [size(*o) * r.between(-1.0, 1.0), size(*o) * r.between(-1.0, 1.0)])
+            .collect();
+        let sum = |t: f64, sign: f64| {
+            let terms = orders.iter().zip(&a).map(|(o, [re, im])| {
+                let (sin, cos) = (o * t).sin_cos();
+                [sign * (re * cos - im * sin), -sign * o * (re * sin + im * cos)]
+            });
+            terms.fold([0.0; 2], |[v, s], [x, y]| [v + x, s + y])
+        };
+        let top = |sign: f64| {
+            let n = 3000;
+            let step = 2.0 * PI / f64::from(n);
+            let highest = (0..n).map(|i| sum(f64::from(i) * step, sign)[0]).fold(f64::MIN, f64::max);
+            // All points that a top higher than the highest point can stand beside.
+            let curve: f64 = orders.iter().zip(&a).map(|(o, a)| o * o * a[0].hypot(a[1])).sum();
+            let near = |i: &i32| sum(f64::from(*i) * step, sign)[0] >= highest - 0.5 * curve * step * step;
+            let tops = (0..n).filter(near).map(|i| {
+                let (mut low, mut high) = (f64::from(i - 1) * step, f64::from(i + 1) * step);
+                for _ in 0..60 {
+                    let middle = 0.5 * (low + high);
+                    if sum(middle, sign)[1] > 0.0 { low = middle } else { high = middle }
+                }
+                sum(low, sign)[0]
+            });
+            tops.fold(highest, f64::max)
+        };
+        let [high, low] = cycle.extremes(0.0, |k| a[k]);
+        let (most, least) = (top(1.0), -top(-1.0));
+        // Sums of 24 terms, each rounded; what tops may miss is less.
+        let rounding = 1e-13 * (most - least);
+        assert!((high - most).abs() <= rounding, "{case}: {high} {most}");
+        assert!((low - least).abs() <= rounding, "{case}: {low} {least}");
+    }
+}

@@ -65,8 +65,8 @@ fn line_search(
     loop {
         let y = p.moved(x, scale, step);
         // Close by, rounding decides the merit; Newton's step is right without it.
-        let accepted = length < 1e-6
-            || p.merit(&y, weight).is_some_and(|merit| merit < before || !before.is_finite());
+        let accepted =
+            length < 1e-6 || p.merit(&y, weight).is_some_and(|merit| merit < before || !before.is_finite());
         if accepted && let Ok(e) = p.expansion(&y) {
             (*x, *at) = (y, e);
             return true;

@@ -34,7 +34,9 @@ fn at_outer(d: &Design<'_>, outer: f64, known: Option<f64>) -> Option<PinSize> {
         let length = (short * stretch).min(d.length.high);
         // A lighter pin has a larger bore than this, which every limit would have to admit.
         let lighter = known.map_or(0.0, |m| bore_of(d, length, outer, m));
-        let kept = |inner| d.utilisation(&PinSize { length, outer, inner }).is_ok_and(|u| u.iter().all(|u| *u <= 1.0));
+        let kept = |inner| {
+            d.utilisation(&PinSize { length, outer, inner }).is_ok_and(|u| u.iter().all(|u| *u <= 1.0))
+        };
         if lighter >= d.min_inner(outer) && !kept(lighter) {
             return None;
         }

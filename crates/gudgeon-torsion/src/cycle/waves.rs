@@ -40,7 +40,10 @@ impl Waves {
         if 2 * BLOCK * own.blocks() * orders.len() <= KEPT {
             let rows = |group: &[(f64, usize)]| {
                 let blocks = 0..own.blocks();
-                blocks.flat_map(|b| group.iter().map(move |(o, _)| (*o, b))).map(|(o, b)| own.row(o, b)).collect()
+                blocks
+                    .flat_map(|b| group.iter().map(move |(o, _)| (*o, b)))
+                    .map(|(o, b)| own.row(o, b))
+                    .collect()
             };
             own.tables = [rows(&own.groups[0]), rows(&own.groups[1])];
         }
