@@ -90,8 +90,8 @@ impl Bdf {
         }
     }
 
-    /// Takes orders up to `order` alone, from 1 to 5. Order 5 is stable in the smallest part of the left half plane and asks for five smooth derivatives: where
-    /// a right-hand side has kinks, as orifices that choke, order 4 takes fewer steps at tight tolerances.
+    /// Takes orders up to `order` alone, from 1 to 5. Order 5 is stable in the smallest part of the left half plane and asks for five smooth derivatives. On a network of
+    /// orifices order 4 was faster for errors of 1e-6 and less.
     #[must_use]
     pub fn up_to_order(self, order: usize) -> Self {
         Self { highest: order.clamp(1, MAX_ORDER), ..self }
