@@ -14,7 +14,7 @@ pub use complex::Complex;
 pub use complex_lu::ComplexLu;
 pub(crate) use dense::lu_solve_by_products;
 pub use dense::{lu_factor, lu_factor_weighted, lu_solve, lu_solve_rows};
-pub use symmetric_banded::SymmetricBanded;
+pub use symmetric_banded::{BLOCK, SymmetricBanded};
 pub use tridiagonal::solve_tridiagonal;
 
 /// The matrix is singular to working precision, or holds a non-finite number.

@@ -28,10 +28,25 @@ pub trait CycleMap {
     fn scale(&self, y: &[f64], s: &mut [f64]);
     /// Keeps an extrapolated start within what the machine admits; `reached` is the end of the cycle before, which it does.
     fn admit(&self, _reached: &[f64], _y: &mut [f64]) {}
+    /// What is known of the slope of the map before the first cycle, as from the search of one that is like it.
+    fn known(&self) -> &[Change] {
+        &[]
+    }
     /// How the map is searched if it is strongly bent; `None` for one that is nearly linear between the iterates.
     fn bend(&self) -> Option<Bend> {
         None
     }
+}
+
+/// A difference of two starts, and of the changes over the cycles from them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Change {
+    /// Of the starts.
+    pub start: Vec<f64>,
+    /// Of the ends less the starts.
+    pub change: Vec<f64>,
+    /// Noise of the latter, in scaled units.
+    pub noise: f64,
 }
 
 /// How a map is searched that is strongly bent, or has corners: secants of far iterates say more of its curvature than of its slopes.
@@ -87,6 +102,8 @@ pub struct OrbitReport {
     pub cycle_equivalents: f64,
     /// Residual of every cycle.
     pub history: Vec<f64>,
+    /// What was learnt of the slope of the map, where the search was accelerated: for [`CycleMap::known`] of one that is like it.
+    pub changes: Vec<Change>,
 }
 
 /// Least part of a secant that is new beside the newer ones; one with less is left out.
@@ -208,6 +225,7 @@ impl Search {
                 cycles: 0,
                 cycle_equivalents: 0.0,
                 history: Vec::new(),
+                changes: Vec::new(),
             },
             cost: 0.0,
             last_cost: 1.0,
@@ -281,7 +299,8 @@ impl Search {
         // The end of the last cycle that could be computed.
         let mut g = vec![0.0; y.len()];
         let (mut end, mut extrapolated) = (g.clone(), false);
-        let mut state = Anderson::new(y.len());
+        let known = if times == 1 { map.known() } else { &[] };
+        let mut state = Anderson::new(y.len(), known);
         self.report.converged = false;
         self.noisy = false;
         // Far from the orbit a rough map does: the first cycle only has to leave the arbitrary start.
@@ -342,6 +361,7 @@ impl Search {
             state.previous = Some(Tried { at, r, rest, damping });
         }
         y.copy_from_slice(&g);
+        self.report.changes = state.changes();
         Ok(())
     }
 
@@ -594,10 +614,17 @@ struct Anderson {
 }
 
 impl Anderson {
-    fn new(n: usize) -> Self {
+    /// For `n` states, of whose map the changes `known` are known.
+    fn new(n: usize, known: &[Change]) -> Self {
+        let secant = |c: &Change| Secant {
+            dy: DVector::from_column_slice(&c.start),
+            dr: DVector::from_column_slice(&c.change),
+            noise: c.noise,
+        };
+        let of_these = known.iter().filter(|c| c.start.len() == n && c.change.len() == n);
         Self {
             s: vec![1.0; n],
-            secants: Vec::new(),
+            secants: of_these.map(secant).collect(),
             trusted: 0,
             idle: 0,
             stalled: 0,
@@ -608,6 +635,13 @@ impl Anderson {
             last: 0.0,
             slowest: 1.0,
         }
+    }
+
+    /// What the secants say, without scales.
+    fn changes(&self) -> Vec<Change> {
+        let unscaled = |v: &DVector<f64>| v.iter().zip(&self.s).map(|(v, s)| v * s).collect();
+        let of = |c: &Secant| Change { start: unscaled(&c.dy), change: unscaled(&c.dr), noise: c.noise };
+        self.secants.iter().map(of).collect()
     }
 
     /// Start and residual of the cycle from `y` to `g` in its scales; what was kept is brought to the same scales.

@@ -452,12 +452,21 @@ impl Side {
         Ok(found)
     }
 
+    /// Whether all nodes count as full: the film is linear in the rates but for a cut, and no oil is kept.
+    fn is_full(&self) -> bool {
+        self.is_superposed() && self.kept.is_none()
+    }
+
     /// Uncut pressure per viscosity for the rates, into `self.raw`.
     fn superpose(&mut self, speed: f64, rates: &[f64]) {
         let n = self.nodes();
-        let (sliding, rest) = self.fields.split_at(n);
-        self.raw.iter_mut().zip(sliding).for_each(|(p, f)| *p = speed.abs() * f);
-        for (rate, field) in rates.iter().zip(rest.chunks_exact(n)) {
+        let (first, shapes) = self.fields.split_at(3 * n);
+        let (sliding, edges) = first.split_at(n);
+        let (top, bottom) = edges.split_at(n);
+        let (u, v, w) = (speed.abs(), rates[0], rates[1]);
+        let causes = sliding.iter().zip(top.iter().zip(bottom));
+        self.raw.iter_mut().zip(causes).for_each(|(p, (s, (a, b)))| *p = u * s + v * a + w * b);
+        for (rate, field) in rates[2..].iter().zip(shapes.chunks_exact(n)) {
             self.raw.iter_mut().zip(field).for_each(|(p, f)| *p += rate * f);
         }
     }
@@ -478,24 +487,15 @@ impl Side {
     fn sums(&mut self, trial: bool, speed: f64, mu: f64, out: &mut SideLoads) {
         let width = 4 + self.elastic;
         let gap = if trial { &self.trial } else { &self.now };
-        let nx = self.nodes.nx;
-        self.over.sums(&self.p, &gap.lever, &mut self.row[..width]);
+        self.over.sums(&self.p, gap, &mut self.row[..width]);
         let mut found = [0.0; 4];
         found.copy_from_slice(&self.row[..4]);
         out.elastic.resize(self.elastic, 0.0);
         out.elastic.copy_from_slice(&self.row[4..width]);
         // Couette drag: the liner slides against the piston.
-        for j in 0..self.nodes.ny {
-            let line = j * nx..(j + 1) * nx;
-            let full: f64 = self.nodes.weight[line.clone()]
-                .iter()
-                .zip(&gap.drag[line.clone()])
-                .zip(&self.fill[line])
-                .map(|((w, d), f)| w * d * f)
-                .sum();
-            found[2] -= mu * speed * full;
-            found[3] -= mu * speed * full * self.panel.radius * self.nodes.cos[j];
-        }
+        let drag = if self.is_full() { gap.full_drag } else { self.over.drag(&self.nodes, gap, &self.fill) };
+        found[2] -= mu * speed * drag[0];
+        found[3] -= mu * speed * drag[1];
         out.film = found;
     }
 
@@ -567,7 +567,7 @@ impl Side {
     }
 }
 
-/// What sums over a film need besides its lever.
+/// What sums over a film need besides its levers.
 struct Over {
     /// Shapes of the gap's rates times the areas of the nodes.
     tests: Vec<f64>,
@@ -577,22 +577,51 @@ struct Over {
 }
 
 impl Over {
-    /// `out`: forces of a pressure on both edges, along the bore, along the bore times `R cos φ`, and on the elastic shapes.
-    fn sums(&self, p: &[f64], lever: &[f64], out: &mut [f64]) {
-        let (n, nx) = (p.len(), self.nx);
-        let dot = gudgeon_numerics::linalg::dot;
-        let (head, elastic) = out.split_at_mut(4);
-        let mut tests = self.tests.chunks_exact(n);
-        for out in head[..2].iter_mut().chain(elastic) {
-            *out = tests.next().map_or(0.0, |test| dot(test, p));
+    /// Drag of a film per viscosity and speed, and the same times `R cos φ`.
+    fn drag(&self, nodes: &Nodes, gap: &Gap, fill: &[f64]) -> [f64; 2] {
+        let mut found = [0.0; 2];
+        for (j, arm) in self.arm.iter().enumerate() {
+            let line = j * self.nx..(j + 1) * self.nx;
+            let own = nodes.weight[line.clone()].iter().zip(&gap.drag[line.clone()]).zip(&fill[line]);
+            let full: f64 = own.map(|((w, d), f)| w * d * f).sum();
+            found[0] += full;
+            found[1] += full * arm;
         }
-        (head[2], head[3]) = (0.0, 0.0);
-        for ((lever, p), arm) in lever.chunks_exact(nx).zip(p.chunks_exact(nx)).zip(&self.arm) {
-            let line = dot(lever, p);
-            head[2] += line;
-            head[3] += line * arm;
+        found
+    }
+
+    /// `out`: forces of a pressure on both edges, along the bore, along the bore times `R cos φ`, and on the elastic shapes.
+    fn sums(&self, p: &[f64], gap: &Gap, out: &mut [f64]) {
+        let n = p.len();
+        let (edges, shapes) = self.tests.split_at(2 * n);
+        let (top, bottom) = edges.split_at(n);
+        let (head, elastic) = out.split_at_mut(4);
+        head.copy_from_slice(&four_dots(p, [top, bottom, &gap.lever, &gap.moment]));
+        for (out, test) in elastic.iter_mut().zip(shapes.chunks_exact(n)) {
+            *out = gudgeon_numerics::linalg::dot(test, p);
         }
     }
+}
+
+/// Inner products of four fields with `p`, each in four partial sums.
+fn four_dots(p: &[f64], [a, b, c, d]: [&[f64]; 4]) -> [f64; 4] {
+    const LANES: usize = 4;
+    let (own, fields) = (p.chunks_exact(LANES), [a, b, c, d].map(|f| f.chunks_exact(LANES)));
+    let rest =
+        fields.each_ref().map(|f| own.remainder().iter().zip(f.remainder()).map(|(p, f)| p * f).sum::<f64>());
+    let [a, b, c, d] = fields;
+    let (mut sa, mut sb, mut sc, mut sd) = ([0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]);
+    for (((p, a), b), (c, d)) in own.zip(a).zip(b).zip(c.zip(d)) {
+        for l in 0..LANES {
+            sa[l] += a[l] * p[l];
+            sb[l] += b[l] * p[l];
+            sc[l] += c[l] * p[l];
+            sd[l] += d[l] * p[l];
+        }
+    }
+    let mut sums = [sa, sb, sc, sd].map(|s| (s[0] + s[1]) + (s[2] + s[3]));
+    sums.iter_mut().zip(rest).for_each(|(sum, rest)| *sum += rest);
+    sums
 }
 
 /// Whether all shapes are their own mirror images.

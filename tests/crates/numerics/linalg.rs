@@ -112,7 +112,21 @@ fn banded_agrees_with_dense() {
 
 #[test]
 fn symmetric_banded_agrees_with_the_general_one() {
-    for (n, half) in [(1, 0), (6, 0), (7, 1), (9, 2), (40, 6), (41, 7), (30, 29)] {
+    // Widths of every program: up to 8, 16, 24, 32, and beyond.
+    for (n, half) in [
+        (1, 0),
+        (6, 0),
+        (7, 1),
+        (9, 2),
+        (40, 7),
+        (41, 8),
+        (60, 13),
+        (3, 20),
+        (90, 24),
+        (30, 29),
+        (99, 33),
+        (60, 50),
+    ] {
         let (mut a, mut b) = (SymmetricBanded::new(n, half), Banded::new(n, half, half));
         for i in 0..n {
             for j in i.saturating_sub(half)..i {
@@ -129,16 +143,27 @@ fn symmetric_banded_agrees_with_the_general_one() {
         let f: Vec<f64> = (0..n).map(|k| weyl(k + 11)).collect();
         a.factor().unwrap();
         b.factor().unwrap();
-        for columns in 1..=9 {
-            let (mut x, mut work) = (Vec::new(), Vec::new());
-            (0..columns).for_each(|c| x.extend(f.iter().map(|f| f + c as f64)));
-            let mut y = x.clone();
-            a.solve_block(&mut x, &mut work);
-            y.chunks_exact_mut(n).for_each(|y| b.solve(y));
-            for (x, y) in x.iter().zip(&y) {
-                // Condition of a dominant matrix: a few; the rest is rounding of right-hand sides up to nine.
-                assert!((x - y).abs() < 1e-12, "{n} {half} {columns}: {x} {y}");
+        let mut y = f.clone();
+        b.solve(&mut y);
+        // A block after another one: nothing of the first is left.
+        for shift in [0.0, 3.0] {
+            for (row, f) in a.block().iter_mut().zip(&f) {
+                *row = [0.0, 1.0, 2.0, 3.0].map(|c| (f + shift) * (1.0 + c));
             }
+            a.solve_block();
+            let mut shifted: Vec<f64> = f.iter().map(|f| f + shift).collect();
+            b.solve(&mut shifted);
+            for (row, y) in a.block().iter().zip(&shifted) {
+                for (c, x) in row.iter().enumerate() {
+                    // Condition of a dominant matrix: a few; the rest is rounding of right-hand sides up to sixteen.
+                    assert!((x - (1.0 + c as f64) * y).abs() < 1e-12, "{n} {half} {c}: {x} {y}");
+                }
+            }
+        }
+        let mut x = f.clone();
+        a.solve(&mut x);
+        for (x, y) in x.iter().zip(&y) {
+            assert!((x - y).abs() < 1e-12, "{n} {half}: {x} {y}");
         }
     }
     let mut indefinite = SymmetricBanded::new(2, 1);

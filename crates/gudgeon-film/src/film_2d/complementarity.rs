@@ -7,7 +7,7 @@ use gudgeon_numerics::multigrid::FivePoint;
 
 use super::cavitation::Cavitation;
 use super::checks::check_modes;
-use super::problem::{Problem, cause_of, void_of};
+use super::problem::{Field, Problem, cause_of, is_plain, void_of};
 
 /// Solves linear systems with a [`FivePoint`] matrix.
 pub(super) trait Linear: Send {
@@ -360,14 +360,20 @@ impl<L: Linear> Film2d for Solver<L> {
         self.linear.factor(&self.problem.m, true).map_err(|s| self.singular(s))?;
         self.set_up = true;
         for (mode, out) in modes.iter().zip(p.chunks_exact_mut(n)) {
+            if is_plain(inp, mode) {
+                self.problem.plain_cause(inp, mode, out);
+                continue;
+            }
             self.problem.cause(inp, mode, &mut self.p, &mut self.void);
             self.problem.balance(&self.p, &self.void, out);
             out.iter_mut().for_each(|b| *b = -*b);
         }
         if self.linear.solve_block(&self.problem.m, p) {
             for (mode, out) in modes.iter().zip(p.chunks_exact_mut(n)) {
-                self.problem.set_edges(&cause_of(inp, mode), false, out, &mut self.void);
-                if !out.iter().sum::<f64>().is_finite() {
+                if !is_plain(inp, mode) {
+                    self.problem.set_edges(&cause_of(inp, mode), false, out, &mut self.void);
+                }
+                if !Field::of(out).is_finite {
                     return Err(EvalError::recoverable(self.model, "the film overflows"));
                 }
             }
@@ -394,10 +400,14 @@ impl<L: Linear> Film2d for Solver<L> {
         check_modes(self.model, n, &[*mode], r.len())?;
         let beside = self.beside.get_or_insert_with(|| self.problem.clone());
         beside.assemble(self.model, inp)?;
-        beside.drive(&cause_of(inp, mode), mode.u, mode.dhdt, false);
-        void_of(inp, &mut self.void);
-        beside.balance(p, &self.void, r);
-        r.iter_mut().for_each(|b| *b = -*b);
+        if is_plain(inp, mode) {
+            beside.plain_imbalance(inp, mode, p, r);
+        } else {
+            beside.drive(&cause_of(inp, mode), mode.u, mode.dhdt, false);
+            void_of(inp, &mut self.void);
+            beside.balance(p, &self.void, r);
+            r.iter_mut().for_each(|b| *b = -*b);
+        }
         self.warm = false;
         Ok(true)
     }

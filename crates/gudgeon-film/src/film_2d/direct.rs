@@ -1,6 +1,6 @@
 use gudgeon_core::kinds::{Film2d, Film2dCtx, Film2dSpec};
 use gudgeon_core::{BuildError, register_model};
-use gudgeon_numerics::linalg::{Banded, Singular, SymmetricBanded};
+use gudgeon_numerics::linalg::{BLOCK, Banded, Singular, SymmetricBanded};
 use gudgeon_numerics::multigrid::{FivePoint, Role};
 use serde::{Deserialize, Serialize};
 
@@ -67,15 +67,27 @@ impl Film2dSpec for Direct {
 /// Place of a node that is no unknown.
 const NONE: usize = usize::MAX;
 
+/// An unknown: its node, and the sides of its volume.
+#[derive(Clone, Copy)]
+struct Unknown {
+    node: usize,
+    /// Nodes that hold the conductances of its sides, along a line and across; [`NONE`] where there is no side.
+    sides: [[usize; 2]; 2],
+    /// Unknowns further on that this one exchanges with: how many rows further, and the node that holds the conductance; no rows where there are none.
+    along: [(usize, usize); 2],
+    across: (usize, usize),
+}
+
 pub(super) struct Elimination {
     /// Where each node stands among the unknowns; [`NONE`] for those whose value is always given.
     place: Vec<usize>,
-    unknowns: usize,
+    unknowns: Vec<Unknown>,
     symmetric: SymmetricBanded,
     general: Option<Banded>,
     is_symmetric: bool,
+    /// Whether every unknown of the symmetric matrix is diffused.
+    is_whole: bool,
     work: Vec<f64>,
-    block: Vec<[f64; 4]>,
 }
 
 impl Elimination {
@@ -112,22 +124,35 @@ impl Elimination {
         }
         let mut place = vec![NONE; n];
         order.iter().enumerate().for_each(|(row, k)| place[*k] = row);
-        let mut half = 1;
-        for &k in &order {
-            let above = if k + nx < n { k + nx } else { k };
-            for to in [m.after(k % nx, k), above].map(|k| place[k]).into_iter().filter(|p| *p != NONE) {
-                half = half.max(to.abs_diff(place[k]));
-            }
-        }
-        let unknowns = order.len();
+        let unknowns: Vec<Unknown> = order.iter().map(|k| Unknown::of(m, &place, *k)).collect();
+        let sides = unknowns.iter().flat_map(|u| [u.along[0].0, u.along[1].0, u.across.0]);
+        let half = sides.fold(1, usize::max);
         Self {
             place,
-            unknowns,
-            symmetric: SymmetricBanded::new(unknowns, half),
-            general: general.then(|| Banded::new(unknowns, half, half)),
+            symmetric: SymmetricBanded::new(unknowns.len(), half),
+            general: general.then(|| Banded::new(unknowns.len(), half, half)),
             is_symmetric: true,
-            work: vec![0.0; unknowns],
-            block: vec![[0.0; 4]; unknowns],
+            is_whole: false,
+            work: vec![0.0; unknowns.len()],
+            unknowns,
+        }
+    }
+
+    /// Sets up a matrix of diffusion alone, all of whose unknowns are diffused.
+    fn assemble_whole(&mut self, m: &FivePoint) {
+        let at = |g: &[f64], k: usize| g.get(k).copied().unwrap_or(0.0);
+        self.symmetric.clear();
+        for (row, u) in self.unknowns.iter().enumerate() {
+            let row = self.symmetric.row_mut(row);
+            row[0] = m.leak[u.node]
+                + (at(&m.gx, u.sides[0][0]) + at(&m.gx, u.sides[0][1]))
+                + (at(&m.gy, u.sides[1][0]) + at(&m.gy, u.sides[1][1]));
+            for (further, k) in u.along.into_iter().filter(|side| side.0 > 0) {
+                row[further] = -m.gx[k];
+            }
+            if u.across.0 > 0 {
+                row[u.across.0] = -m.gy[u.across.1];
+            }
         }
     }
 
@@ -163,15 +188,59 @@ impl Elimination {
 
     /// Takes the unknowns of a field over all nodes into `work`; those that are fixed are zero.
     fn gather(&mut self, m: &FivePoint, field: &[f64]) {
-        for (k, &row) in self.place.iter().enumerate().filter(|(_, row)| **row != NONE) {
-            self.work[row] = if m.role[k] == Role::Fixed { 0.0 } else { field[k] };
+        for (own, u) in self.work.iter_mut().zip(&self.unknowns) {
+            *own = if m.role[u.node] == Role::Fixed { 0.0 } else { field[u.node] };
         }
     }
 
-    /// Gives unknowns to a field over all nodes; what is no unknown is zero.
-    fn spread(place: &[usize], unknowns: &[f64], field: &mut [f64]) {
-        for (z, &row) in field.iter_mut().zip(place) {
-            *z = if row == NONE { 0.0 } else { unknowns[row] };
+    /// Gives the unknowns in `work` to a field over all nodes; what is no unknown is zero.
+    fn spread(&self, field: &mut [f64]) {
+        field.fill(0.0);
+        for (own, u) in self.work.iter().zip(&self.unknowns) {
+            field[u.node] = *own;
+        }
+    }
+
+    /// Solves for `C` fields at once, up to [`BLOCK`].
+    fn solve_group<const C: usize>(&mut self, m: &FivePoint, group: &mut [f64]) {
+        let nodes = self.place.len();
+        let mut fields = group.chunks_exact(nodes);
+        let own: [&[f64]; C] = std::array::from_fn(|_| fields.next().unwrap_or_default());
+        for (row, u) in self.symmetric.block().iter_mut().zip(&self.unknowns) {
+            *row = [0.0; BLOCK];
+            if self.is_whole || m.role[u.node] != Role::Fixed {
+                row.iter_mut().zip(own).for_each(|(x, field)| *x = field[u.node]);
+            }
+        }
+        self.symmetric.solve_block();
+        group.fill(0.0);
+        let mut fields = group.chunks_exact_mut(nodes);
+        let mut own: [&mut [f64]; C] = std::array::from_fn(|_| fields.next().unwrap_or_default());
+        for (row, u) in self.symmetric.block().iter().zip(&self.unknowns) {
+            own.iter_mut().zip(row).for_each(|(field, x)| field[u.node] = *x);
+        }
+    }
+}
+
+impl Unknown {
+    /// That of the node `k`, the unknowns being at `place`.
+    fn of(m: &FivePoint, place: &[usize], k: usize) -> Self {
+        let (i, nx) = (k % m.nx, m.nx);
+        let further = |to: usize| match place.get(to) {
+            Some(row) if *row != NONE => row.saturating_sub(place[k]),
+            _ => 0,
+        };
+        let (before, after) = (m.before(i, k), m.after(i, k));
+        let along = |to: usize, side: usize| if to == k { (0, k) } else { (further(to), side) };
+        let held = |is_there: bool, side: usize| if is_there { side } else { NONE };
+        Self {
+            node: k,
+            sides: [
+                [held(before != k, before), held(after != k, k)],
+                [held(k >= nx, k.wrapping_sub(nx)), held(k + nx < place.len(), k)],
+            ],
+            along: [along(before, before), along(after, k)],
+            across: (further(k + nx), k),
         }
     }
 }
@@ -185,7 +254,12 @@ impl Linear for Elimination {
         let (nx, ny) = (m.nx, m.ny);
         self.is_symmetric = symmetric;
         if symmetric || self.general.is_none() {
-            self.assemble_symmetric(m);
+            self.is_whole = self.unknowns.iter().all(|u| m.role[u.node] == Role::Diffused);
+            if self.is_whole {
+                self.assemble_whole(m);
+            } else {
+                self.assemble_symmetric(m);
+            }
             return self.symmetric.factor();
         }
         let Some(general) = self.general.as_mut() else { return Ok(()) };
@@ -227,24 +301,26 @@ impl Linear for Elimination {
             Some(general) if !self.is_symmetric => general.solve(&mut self.work),
             _ => self.symmetric.solve(&mut self.work),
         }
-        Self::spread(&self.place, &self.work, z);
+        self.spread(z);
         (1, m.residual(b, z))
     }
+
     fn solve_block(&mut self, m: &FivePoint, b: &mut [f64]) -> bool {
         if !self.is_symmetric {
             return false;
         }
-        let (nodes, unknowns) = (self.place.len(), self.unknowns);
-        let count = b.len() / nodes;
-        // The fields are taken together, and apart again from the last one on.
-        for c in 0..count {
-            self.gather(m, &b[c * nodes..(c + 1) * nodes]);
-            b[c * unknowns..(c + 1) * unknowns].copy_from_slice(&self.work);
-        }
-        self.symmetric.solve_block(&mut b[..count * unknowns], &mut self.block);
-        for c in (0..count).rev() {
-            self.work.copy_from_slice(&b[c * unknowns..(c + 1) * unknowns]);
-            Self::spread(&self.place, &self.work, &mut b[c * nodes..(c + 1) * nodes]);
+        let nodes = self.place.len();
+        for group in b.chunks_mut(BLOCK * nodes) {
+            match group.len() / nodes {
+                2 => self.solve_group::<2>(m, group),
+                3 => self.solve_group::<3>(m, group),
+                BLOCK => self.solve_group::<BLOCK>(m, group),
+                _ => {
+                    self.gather(m, group);
+                    self.symmetric.solve(&mut self.work);
+                    self.spread(group);
+                }
+            }
         }
         true
     }

@@ -21,11 +21,13 @@ pub(super) struct Problem {
     pub nx: usize,
     pub ny: usize,
     pub periodic: bool,
-    /// Length and width of the control volumes, and distances to the next node.
+    /// Length and width of the control volumes.
     wx: Vec<f64>,
     wy: Vec<f64>,
-    dx: Vec<f64>,
-    dy: Vec<f64>,
+    /// Width of the side to the next node over the distance to it, node by node: along `x`, across.
+    slender: [Vec<f64>; 2],
+    /// Flow by sliding and pressure through the sides of a line.
+    flows: Vec<f64>,
     /// Weights of the nodes in integrals.
     sx: Vec<f64>,
     sy: Vec<f64>,
@@ -70,6 +72,46 @@ impl Largest {
     }
 }
 
+/// A field that was looked at.
+pub(super) struct Field {
+    pub is_finite: bool,
+    /// Its least value; infinite when it has none.
+    pub least: f64,
+}
+
+impl Field {
+    pub fn of(field: &[f64]) -> Self {
+        let (mut wrong, mut least) = ([0.0; LANES], [f64::INFINITY; LANES]);
+        let mut look = |l: usize, x: f64| {
+            // Zero, or not a number.
+            wrong[l] += 0.0 * x;
+            least[l] = if x < least[l] { x } else { least[l] };
+        };
+        let groups = field.chunks_exact(LANES);
+        groups.remainder().iter().for_each(|x| look(0, *x));
+        for group in groups {
+            for l in 0..LANES {
+                look(l, group[l]);
+            }
+        }
+        Self {
+            is_finite: wrong.iter().all(|w| *w == 0.0),
+            least: least.into_iter().fold(f64::INFINITY, f64::min),
+        }
+    }
+}
+
+/// What a field of an input says.
+#[derive(Clone, Copy)]
+enum Kind {
+    /// Film thickness: positive.
+    Film,
+    /// Flow factor: not negative.
+    Factor,
+    /// Any number.
+    Rate,
+}
+
 /// Sides between `count` nodes from `from` on and as many from `to` on.
 #[derive(Clone, Copy)]
 struct Sides {
@@ -111,7 +153,10 @@ fn of_faces(inp: &Film2dIn<'_>, sides: Sides, phi: &[f64], given: &[f64], out: &
         out.iter_mut().zip(sides.of(phi)).for_each(|(g, (a, b))| *g = 0.5 * (a + b) * *g * *g * *g);
     }
     match inp.mu {
-        Viscosity::Uniform(mu) => out.iter_mut().for_each(|g| *g /= 6.0 * (mu + mu)),
+        Viscosity::Uniform(mu) => {
+            let fluidity = 1.0 / (12.0 * mu);
+            out.iter_mut().for_each(|g| *g *= fluidity);
+        }
         Viscosity::Nodes(m) => out.iter_mut().zip(sides.of(m)).for_each(|(g, (a, b))| *g /= 6.0 * (a + b)),
     }
 }
@@ -187,16 +232,19 @@ impl Problem {
                 (0..4).find(|&s| at[s] && e[s] == Edge::Pressure).unwrap_or(4) as u8
             })
             .collect();
+        let over = |width: f64, distance: f64| if distance > 0.0 { width / distance } else { 0.0 };
+        let along = wy.iter().flat_map(|w| dx.iter().map(move |d| over(*w, *d))).collect();
+        let across = dy.iter().flat_map(|d| wx.iter().map(move |w| over(*w, *d))).collect();
         Ok(Self {
             grid: grid.clone(),
+            slender: [along, across],
+            flows: vec![0.0; nx],
             flux,
             nx,
             ny,
             periodic,
             wx,
             wy,
-            dx,
-            dy,
             sx,
             sy,
             m: FivePoint::new(nx, ny, periodic),
@@ -222,25 +270,32 @@ impl Problem {
 
     fn check(&self, model: &'static str, inp: &Film2dIn<'_>) -> Result<(), EvalError> {
         let n = self.len();
-        let fields: [(&str, &[f64], bool); 8] = [
-            ("h", inp.h, true),
-            ("h_face_x", inp.h_face_x, false),
-            ("h_face_y", inp.h_face_y, false),
-            ("dhdt", inp.dhdt, false),
-            ("pressure_x", inp.factors.pressure_x, false),
-            ("pressure_y", inp.factors.pressure_y, false),
-            ("transport", inp.factors.transport, false),
-            ("content", inp.factors.content, false),
+        let (mut thinnest, mut least_factor) = (f64::INFINITY, f64::INFINITY);
+        let fields: [(&str, &[f64], bool, Kind); 8] = [
+            ("h", inp.h, true, Kind::Film),
+            ("h_face_x", inp.h_face_x, false, Kind::Film),
+            ("h_face_y", inp.h_face_y, false, Kind::Film),
+            ("dhdt", inp.dhdt, false, Kind::Rate),
+            ("pressure_x", inp.factors.pressure_x, false, Kind::Factor),
+            ("pressure_y", inp.factors.pressure_y, false, Kind::Factor),
+            ("transport", inp.factors.transport, false, Kind::Factor),
+            ("content", inp.factors.content, false, Kind::Factor),
         ];
-        for (name, field, needed) in fields {
+        for (name, field, needed, kind) in fields {
             if field.len() != n && (needed || !field.is_empty()) {
                 return Err(EvalError::fatal(
                     model,
                     format!("{name} has {} values, the grid {n} nodes", field.len()),
                 ));
             }
-            if !field.iter().sum::<f64>().is_finite() {
+            let look = Field::of(field);
+            if !look.is_finite {
                 return Err(EvalError::fatal(model, format!("{name} holds a value that is not finite")));
+            }
+            match kind {
+                Kind::Film => thinnest = thinnest.min(look.least),
+                Kind::Factor => least_factor = least_factor.min(look.least),
+                Kind::Rate => {}
             }
         }
         let scalars = inp.u + inp.p_cav + inp.edge_pressure.iter().sum::<f64>();
@@ -267,16 +322,13 @@ impl Problem {
         if !(mu > 0.0 && mu.is_finite()) {
             return Err(EvalError::fatal(model, format!("the viscosity is {mu} Pa s")));
         }
-        let faces = inp.h.iter().chain(inp.h_face_x).chain(inp.h_face_y);
-        let thinnest = faces.fold(f64::INFINITY, |a, &b| a.min(b));
         if thinnest <= 0.0 {
             return Err(EvalError::recoverable(
                 model,
                 format!("the thinnest film is {thinnest:e} m: the surfaces touch"),
             ));
         }
-        let factors = inp.factors.pressure_x.iter().chain(inp.factors.pressure_y).chain(inp.factors.content);
-        if factors.chain(inp.factors.transport).any(|&f| f < 0.0) {
+        if least_factor < 0.0 {
             return Err(EvalError::fatal(model, "a flow factor is negative"));
         }
         self.check_filling(model, inp)
@@ -304,27 +356,23 @@ impl Problem {
             }
         };
         for j in 0..ny {
-            let first = j * nx;
-            let (gx, wy) = (&mut self.m.gx[first..first + nx], self.wy[j]);
-            let along = Sides { from: first, to: first + 1, count: nx - 1 };
+            let row = j * nx..(j + 1) * nx;
+            let gx = &mut self.m.gx[row.clone()];
+            let along = Sides { from: row.start, to: row.start + 1, count: nx - 1 };
             conductivity(along, phi.pressure_x, inp.h_face_x, &mut gx[..nx - 1]);
             gx[nx - 1] = 0.0;
             if self.periodic {
-                let closing = Sides { from: first + nx - 1, to: first, count: 1 };
+                let closing = Sides { from: row.end - 1, to: row.start, count: 1 };
                 conductivity(closing, phi.pressure_x, inp.h_face_x, &mut gx[nx - 1..]);
             }
-            let lengths = &self.dx[..if self.periodic { nx } else { nx - 1 }];
-            gx.iter_mut().zip(lengths).for_each(|(g, dx)| *g = *g * wy / dx);
-
-            let gy = &mut self.m.gy[first..first + nx];
-            if j + 1 == ny {
-                gy.fill(0.0);
-                continue;
-            }
-            conductivity(Sides { from: first, to: first + nx, count: nx }, phi.pressure_y, inp.h_face_y, gy);
-            let dy = self.dy[j];
-            gy.iter_mut().zip(&self.wx).for_each(|(g, wx)| *g = *g * wx / dy);
+            gx.iter_mut().zip(&self.slender[0][row.clone()]).for_each(|(g, s)| *g *= s);
         }
+        // All sides across at once: they stand one line apart.
+        let inner = nx * (ny - 1);
+        let (gy, last) = self.m.gy.split_at_mut(inner);
+        conductivity(Sides { from: 0, to: nx, count: inner }, phi.pressure_y, inp.h_face_y, gy);
+        gy.iter_mut().zip(&self.slender[1]).for_each(|(g, s)| *g *= s);
+        last.fill(0.0);
     }
 
     /// What sliding and squeezing do, for a film of the given condition: where `filling` counts, an opening gap takes up oil in proportion to
@@ -558,6 +606,73 @@ impl Problem {
         void_of(inp, void);
     }
 
+    /// What one cause that is [plain](is_plain) drives into the volumes: with the flow that the sliding surface brings and what the gap takes up, the
+    /// right-hand side for the pressures, into `out`.
+    pub fn plain_cause(&mut self, inp: &Film2dIn<'_>, mode: &FilmMode<'_>, out: &mut [f64]) {
+        self.plain_flows(inp, mode, None, out);
+    }
+
+    /// The same less the flow of the pressures `p`.
+    pub fn plain_imbalance(&mut self, inp: &Film2dIn<'_>, mode: &FilmMode<'_>, p: &[f64], out: &mut [f64]) {
+        self.plain_flows(inp, mode, Some(p), out);
+    }
+
+    fn plain_flows(&mut self, inp: &Film2dIn<'_>, mode: &FilmMode<'_>, p: Option<&[f64]>, out: &mut [f64]) {
+        let (nx, ny) = (self.nx, self.ny);
+        self.squeezed(mode.dhdt, out);
+        if mode.u != 0.0 {
+            self.slide(inp, mode.u);
+        }
+        for j in 0..ny {
+            let row = j * nx..(j + 1) * nx;
+            let flows = &mut self.flows[..];
+            if mode.u == 0.0 {
+                flows.fill(0.0);
+            } else {
+                flows.copy_from_slice(&self.m.qx[row.clone()]);
+            }
+            if let Some(p) = p {
+                let (own, gx) = (&p[row.clone()], &self.m.gx[row.clone()]);
+                for (flow, (g, pair)) in flows.iter_mut().zip(gx.iter().zip(own.windows(2))) {
+                    *flow += g * (pair[0] - pair[1]);
+                }
+                flows[nx - 1] += gx[nx - 1] * (own[nx - 1] - own[0]);
+            } else if mode.u == 0.0 {
+                continue;
+            }
+            let line = &mut out[row];
+            line.iter_mut().zip(&*flows).for_each(|(out, flow)| *out -= flow);
+            line[1..].iter_mut().zip(&*flows).for_each(|(out, flow)| *out += flow);
+            if self.periodic {
+                line[0] += flows[nx - 1];
+            }
+        }
+        if let Some(p) = p {
+            for j in 1..ny {
+                let (lines, beyond) = out.split_at_mut(j * nx);
+                let gy = &self.m.gy[(j - 1) * nx..j * nx];
+                let (own, other) = (&p[(j - 1) * nx..j * nx], &p[j * nx..(j + 1) * nx]);
+                let sides = lines[(j - 1) * nx..].iter_mut().zip(&mut beyond[..nx]);
+                for ((below, above), (g, (a, b))) in sides.zip(gy.iter().zip(own.iter().zip(other))) {
+                    let flow = g * (a - b);
+                    *below -= flow;
+                    *above += flow;
+                }
+            }
+        }
+    }
+
+    /// What a gap whose content changes at `dhdt` takes up at every node, with its sign changed.
+    fn squeezed(&self, dhdt: &[f64], out: &mut [f64]) {
+        if dhdt.is_empty() {
+            return out.fill(0.0);
+        }
+        let lines = out.chunks_exact_mut(self.nx).zip(dhdt.chunks_exact(self.nx)).zip(&self.wy);
+        for ((out, rates), wy) in lines {
+            out.iter_mut().zip(rates.iter().zip(&self.wx)).for_each(|(out, (r, wx))| *out = -(r * (wx * wy)));
+        }
+    }
+
     /// Forces, flows and balances of a film. `balance` is overwritten.
     pub fn result(
         &self,
@@ -631,6 +746,11 @@ pub(super) fn void_of(inp: &Film2dIn<'_>, void: &mut [f64]) {
         Some(unfilled) => void.iter_mut().zip(unfilled.fill).for_each(|(void, fill)| *void = 1.0 - fill),
         None => void.fill(0.0),
     }
+}
+
+/// Whether nothing but sliding and squeezing drives a film: edges are at the pressure that others count from, all nodes are full and lose nothing.
+pub(super) fn is_plain(inp: &Film2dIn<'_>, mode: &FilmMode<'_>) -> bool {
+    inp.unfilled.is_none() && mode.edge_pressure == [0.0; 4]
 }
 
 /// A film with one cause of pressure alone.

@@ -94,6 +94,9 @@ const MODEL: &str = "sawtooth_waviness";
 /// rounding over `r²/3`.
 pub const SERIES: f64 = 0.2;
 
+/// `Ω/h` up to which `artanh(r) = 2 artanh(r/(1 + √(1 - r²)))`, three times over, leads below [`SERIES`]: `tanh(8 artanh(0.2)) = 0.925`.
+const HALVED: f64 = 0.92;
+
 #[derive(Debug)]
 struct Waves {
     omega: f64,
@@ -111,12 +114,18 @@ impl Waves {
 
 /// `artanh(r)/r - 1`, `0 <= r < 1`.
 pub fn excess(r: f64) -> f64 {
-    if r < SERIES {
-        let rr = r * r;
-        rr * (0..11).rev().fold(0.0, |s, k| s * rr + 1.0 / f64::from(2 * k + 3))
-    } else {
-        elementary::atanh(r) / r - 1.0
-    }
+    if r <= HALVED { excess_of_halves(r) } else { elementary::atanh(r) / r - 1.0 }
+}
+
+/// The same for `r` up to [`HALVED`], without a branch: loops over it work on several values at once.
+#[inline]
+fn excess_of_halves(r: f64) -> f64 {
+    let half = |x: f64| x / (1.0 + (1.0 - x * x).sqrt());
+    let is_small = r < SERIES;
+    let u = if is_small { r } else { half(half(half(r))) };
+    let uu = u * u;
+    let series = uu * (0..11).rev().fold(0.0, |s, k| s * uu + 1.0 / f64::from(2 * k + 3));
+    if is_small { series } else { 8.0 * (u / r) * (1.0 + series) - 1.0 }
 }
 
 impl Roughness for Waves {
@@ -127,15 +136,18 @@ impl Roughness for Waves {
     fn flow(&self, h: &[f64], out: &mut RoughFlow) -> Result<(), EvalError> {
         check_flow(MODEL, h, out)?;
         let omega = self.omega;
-        for (i, &h) in h.iter().enumerate() {
-            let film = self.film(h);
+        let RoughFlow { film, phi_x, phi_y, transport, content, content_derivative } = out;
+        film.iter_mut().zip(h).for_each(|(film, h)| *film = self.film(*h));
+        let factors = phi_x.iter_mut().zip(phi_y).zip(transport);
+        for (((phi_x, phi_y), transport), film) in factors.zip(&*film) {
             let r = omega / film;
             let rr = r * r;
-            out.film[i] = film;
-            out.phi_x[i] = (1.0 - rr) * (1.0 - rr);
-            out.phi_y[i] = 1.0 + rr;
-            out.transport[i] = film - self.shear * omega * r;
-            (out.content[i], out.content_derivative[i]) = if h >= omega {
+            *phi_x = (1.0 - rr) * (1.0 - rr);
+            *phi_y = 1.0 + rr;
+            *transport = film - self.shear * omega * r;
+        }
+        for ((content, slope), &h) in content.iter_mut().zip(content_derivative).zip(h) {
+            (*content, *slope) = if h >= omega {
                 (h, 1.0)
             } else if h > -omega {
                 let up = h + omega;
@@ -149,14 +161,17 @@ impl Roughness for Waves {
 
     fn shear(&self, h: &[f64], out: &mut RoughShear) -> Result<(), EvalError> {
         check_shear(MODEL, h, out)?;
-        for (i, &h) in h.iter().enumerate() {
-            let film = self.film(h);
+        let RoughShear { film, phi_f, phi_fs, phi_fp } = out;
+        film.iter_mut().zip(h).for_each(|(film, h)| *film = self.film(*h));
+        let thinnest = film.iter().fold(f64::INFINITY, |a, &b| if b < a { b } else { a });
+        let halved = self.omega <= HALVED * thinnest;
+        let factors = phi_f.iter_mut().zip(phi_fs).zip(phi_fp).zip(&*film);
+        for (((phi_f, phi_fs), phi_fp), film) in factors {
             let r = self.omega / film;
-            let excess = excess(r);
-            out.film[i] = film;
-            out.phi_f[i] = 1.0 + excess;
-            out.phi_fs[i] = 3.0 * excess;
-            out.phi_fp[i] = 1.0 - r * r;
+            let excess = if halved { excess_of_halves(r.min(HALVED)) } else { excess(r) };
+            *phi_f = 1.0 + excess;
+            *phi_fs = 3.0 * excess;
+            *phi_fp = 1.0 - r * r;
         }
         Ok(())
     }

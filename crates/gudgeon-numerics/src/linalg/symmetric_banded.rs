@@ -1,36 +1,78 @@
 //! Symmetric positive definite banded matrices.
 
-use super::{Singular, dot};
+use super::Singular;
 
-/// A symmetric positive definite banded matrix, factorised as `L D Lᵀ` without pivoting: half the storage and a quarter of the work of
-/// [`super::Banded`].
+mod narrow;
+mod wide;
+
+use narrow::LANES;
+use wide::PANEL;
+
+/// A symmetric positive definite banded matrix, factorised as `L D Lᵀ` without pivoting: half the storage of [`super::Banded`], and a quarter of the work or less.
 #[derive(Debug, Clone)]
 pub struct SymmetricBanded {
     n: usize,
     half: usize,
+    /// Rows of zeros before the first one, as many as a narrow band is wide; none in a wide one.
+    lead: usize,
+    stride: usize,
     /// Row i holds the entries of columns i to i + half.
     a: Vec<f64>,
-    /// Rows of the pivots that are eliminated together, with zeros behind them.
-    panel: Vec<f64>,
+    /// Pivots of a narrow band, rows of a panel of a wide one.
+    work: Vec<f64>,
+    /// One right-hand side, and several side by side.
+    one: Vec<f64>,
+    block: Vec<[f64; BLOCK]>,
     factored: bool,
 }
 
-/// Pivots that are eliminated together: what follows them is read and written once for all of them.
-const PANEL: usize = 4;
-/// Right-hand sides that [`SymmetricBanded::solve_block`] carries at once.
-const BLOCK: usize = 4;
+/// Right-hand sides that [`SymmetricBanded::solve_block`] solves for at once.
+pub const BLOCK: usize = 4;
+/// Widest band with a program of its own.
+const NARROW: usize = 32;
+
+/// Calls a function of the module `narrow` for a band that is `$width` wide.
+macro_rules! narrow {
+    ($width:expr, $call:ident($rows:expr $(, $rest:expr)*)) => {
+        match $width {
+            8 => narrow::$call::<8, { narrow::stride(8) }>($rows.0 $(, $rest)*),
+            16 => narrow::$call::<16, { narrow::stride(16) }>($rows.0 $(, $rest)*),
+            24 => narrow::$call::<24, { narrow::stride(24) }>($rows.0 $(, $rest)*),
+            _ => narrow::$call::<32, { narrow::stride(32) }>($rows.0 $(, $rest)*),
+        }
+    };
+}
 
 impl SymmetricBanded {
     /// A zero matrix of size `n` with `half` sub-diagonals.
     #[must_use]
     pub fn new(n: usize, half: usize) -> Self {
-        let panel = vec![0.0; PANEL * (half + PANEL)];
-        Self { n, half, a: vec![0.0; n * (half + 1)], panel, factored: false }
+        let width = half.max(1).next_multiple_of(LANES);
+        let (lead, stride, work) = if width <= NARROW {
+            (width, narrow::stride(width), width + n)
+        } else {
+            (0, half + 1, PANEL * (half + PANEL))
+        };
+        Self {
+            n,
+            half,
+            lead,
+            stride,
+            a: vec![0.0; (lead + n) * stride],
+            work: vec![0.0; work],
+            one: vec![0.0; n + 2 * lead],
+            block: vec![[0.0; BLOCK]; n + 2 * lead],
+            factored: false,
+        }
     }
 
     /// Sets every entry to zero, ready to be assembled again.
     pub fn clear(&mut self) {
-        self.a.fill(0.0);
+        if self.lead > 0 {
+            narrow!(self.lead, clear(self.a.as_chunks_mut()));
+        } else {
+            self.a.fill(0.0);
+        }
         self.factored = false;
     }
 
@@ -41,8 +83,18 @@ impl SymmetricBanded {
     #[inline]
     pub fn add(&mut self, i: usize, j: usize, value: f64) {
         assert!(j <= i && i <= j + self.half && i < self.n, "outside the lower half of the band");
-        self.a[j * (self.half + 1) + (i - j)] += value;
+        self.row_mut(j)[i - j] += value;
+    }
+
+    /// The entries `(i, i)` to `(i, i + half)` of row `i`, and those of their mirror images. After a factorisation they hold something else: every row is to be
+    /// written anew then.
+    ///
+    /// # Panics
+    /// When there is no such row.
+    #[inline]
+    pub fn row_mut(&mut self, i: usize) -> &mut [f64] {
         self.factored = false;
+        &mut self.a[(self.lead + i) * self.stride..][..=self.half]
     }
 
     /// Factorisation in place.
@@ -50,48 +102,10 @@ impl SymmetricBanded {
     /// # Errors
     /// [`Singular`] when the matrix is not positive definite.
     pub fn factor(&mut self) -> Result<(), Singular> {
-        let (w, wide) = (self.half + 1, self.half + PANEL);
-        for k in (0..self.n).step_by(PANEL) {
-            let count = PANEL.min(self.n - k);
-            let (done, rest) = self.a.split_at_mut((k + count) * w);
-            let mut inverse = [0.0; PANEL];
-            for p in 0..count {
-                let (before, own) = done.split_at_mut((k + p) * w);
-                let own = &mut own[..w];
-                for (q, inverse) in inverse.iter().enumerate().take(p) {
-                    let m = p - q;
-                    if m <= self.half {
-                        let pivot = &before[(k + q) * w..][..w];
-                        let l = pivot[m] * inverse;
-                        own[..w - m].iter_mut().zip(&pivot[m..]).for_each(|(x, p)| *x -= l * p);
-                    }
-                }
-                if !(own[0] > 0.0 && own[0] < f64::INFINITY) {
-                    return Err(Singular { column: k + p });
-                }
-                inverse[p] = 1.0 / own[0];
-                self.panel[p * wide..][..w].copy_from_slice(own);
-            }
-            let (u, more) = self.panel.split_at(wide);
-            let (v, more) = more.split_at(wide);
-            let (x, y) = more.split_at(wide);
-            for (r, row) in rest.chunks_exact_mut(w).enumerate().take(self.half) {
-                // The panel is full whenever rows follow it.
-                let m = r + 1;
-                let l =
-                    [u[m + 3] * inverse[0], v[m + 2] * inverse[1], x[m + 1] * inverse[2], y[m] * inverse[3]];
-                let length = w - m;
-                let (u, v) = (&u[m + 3..][..length], &v[m + 2..][..length]);
-                let (x, y) = (&x[m + 1..][..length], &y[m..][..length]);
-                for (j, a) in row[..length].iter_mut().enumerate() {
-                    *a -= (l[0] * u[j] + l[1] * v[j]) + (l[2] * x[j] + l[3] * y[j]);
-                }
-            }
-            for (p, inverse) in inverse.iter().enumerate().take(count) {
-                let own = &mut done[(k + p) * w..][..w];
-                own[0] = *inverse;
-                own[1..].iter_mut().for_each(|x| *x *= inverse);
-            }
+        if self.lead > 0 {
+            narrow!(self.lead, factor(self.a.as_chunks_mut(), &mut self.work))?;
+        } else {
+            wide::factor(&mut self.a, self.stride, &mut self.work)?;
         }
         self.factored = true;
         Ok(())
@@ -100,67 +114,33 @@ impl SymmetricBanded {
     /// Solves `A x = b` in place with the factors of [`SymmetricBanded::factor`].
     ///
     /// # Panics
-    /// When the matrix was not factorised since it was last changed: a mistake of the program.
-    pub fn solve(&self, b: &mut [f64]) {
+    /// When the matrix was not factorised since it was last changed, or `b` has another length: mistakes of the program.
+    pub fn solve(&mut self, b: &mut [f64]) {
         assert!(self.factored, "solve before factor");
-        let w = self.half + 1;
-        for k in 0..self.n {
-            let reach = self.half.min(self.n - 1 - k);
-            let (done, rest) = b.split_at_mut(k + 1);
-            let x = done[k];
-            for (y, l) in rest[..reach].iter_mut().zip(&self.a[k * w + 1..]) {
-                *y -= l * x;
-            }
-            done[k] = x * self.a[k * w];
+        if self.lead == 0 {
+            return wide::solve(&self.a, self.stride, b);
         }
-        for k in (0..self.n).rev() {
-            let reach = self.half.min(self.n - 1 - k);
-            b[k] -= dot(&self.a[k * w + 1..=k * w + reach], &b[k + 1..=k + reach]);
-        }
+        let own = self.lead..self.lead + self.n;
+        self.one[own.clone()].copy_from_slice(b);
+        self.one[own.end..].fill(0.0);
+        narrow!(self.lead, solve(self.a.as_chunks(), &mut self.one));
+        b.copy_from_slice(&self.one[own]);
     }
 
-    /// Solves `A X = B` in place for several right-hand sides, one after the other in `b`; `work` is overwritten.
+    /// Right-hand sides for [`SymmetricBanded::solve_block`], side by side, and then its solutions. Those of the call before stand in them.
+    pub fn block(&mut self) -> &mut [[f64; BLOCK]] {
+        &mut self.block[self.lead..self.lead + self.n]
+    }
+
+    /// Solves `A X = B` in place for the right-hand sides in [`SymmetricBanded::block`].
     ///
     /// # Panics
     /// As [`SymmetricBanded::solve`].
-    pub fn solve_block(&self, b: &mut [f64], work: &mut Vec<[f64; BLOCK]>) {
+    pub fn solve_block(&mut self) {
         assert!(self.factored, "solve before factor");
-        let (n, w) = (self.n, self.half + 1);
-        work.resize(n, [0.0; BLOCK]);
-        for group in b.chunks_mut(BLOCK * n) {
-            if group.len() == n {
-                self.solve(group);
-                continue;
-            }
-            for (c, column) in group.chunks_exact(n).enumerate() {
-                work.iter_mut().zip(column).for_each(|(x, b)| x[c] = *b);
-            }
-            for k in 0..n {
-                let reach = self.half.min(n - 1 - k);
-                let (done, rest) = work.split_at_mut(k + 1);
-                let own = done[k];
-                for (y, l) in rest[..reach].iter_mut().zip(&self.a[k * w + 1..]) {
-                    for c in 0..BLOCK {
-                        y[c] -= l * own[c];
-                    }
-                }
-                done[k] = own.map(|x| x * self.a[k * w]);
-            }
-            for k in (0..n).rev() {
-                let reach = self.half.min(n - 1 - k);
-                let mut sum = [0.0; BLOCK];
-                for (x, l) in work[k + 1..=k + reach].iter().zip(&self.a[k * w + 1..]) {
-                    for c in 0..BLOCK {
-                        sum[c] += l * x[c];
-                    }
-                }
-                for c in 0..BLOCK {
-                    work[k][c] -= sum[c];
-                }
-            }
-            for (c, column) in group.chunks_exact_mut(n).enumerate() {
-                column.iter_mut().zip(&*work).for_each(|(b, x)| *b = x[c]);
-            }
+        if self.lead == 0 {
+            return wide::solve_block(&self.a, self.stride, &mut self.block);
         }
+        narrow!(self.lead, solve_block(self.a.as_chunks(), &mut self.block));
     }
 }

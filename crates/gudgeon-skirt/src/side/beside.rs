@@ -62,7 +62,7 @@ impl Side {
             for k in 0..n {
                 taken[k] = mu * self.open[k] * change[k];
             }
-            self.over.sums(taken, &self.now.lever, &mut self.row[..width]);
+            self.over.sums(taken, &self.now, &mut self.row[..width]);
             out.film.iter_mut().zip(&self.row).for_each(|(f, d)| *f += d);
             out.elastic.iter_mut().zip(&self.row[4..]).for_each(|(f, d)| *f += d);
         }

@@ -11,8 +11,11 @@ pub(super) struct Gap {
     pub(super) face_y: Vec<f64>,
     /// Shear stress on the liner per viscosity and speed, without the filling.
     pub(super) drag: Vec<f64>,
-    /// Axial force per pressure of a node.
+    /// The same summed over full nodes, by itself and times `R cos φ`.
+    pub(super) full_drag: [f64; 2],
+    /// Axial force per pressure of a node, and the same times `R cos φ`.
     pub(super) lever: Vec<f64>,
+    pub(super) moment: Vec<f64>,
     /// Relative viscosity, when it varies.
     pub(super) thinning: Vec<f64>,
     pub(super) smallest: f64,
@@ -31,7 +34,9 @@ impl Gap {
             face_x: v(),
             face_y: v(),
             drag: v(),
+            full_drag: [0.0; 2],
             lever: v(),
+            moment: v(),
             thinning: Vec::new(),
             smallest: f64::INFINITY,
             is_rough,

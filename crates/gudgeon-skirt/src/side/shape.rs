@@ -1,6 +1,7 @@
 //! The gap of one side at a place, and what of its film depends on the place alone.
 
 use gudgeon_core::EvalError;
+use gudgeon_numerics::linalg::dot;
 
 use super::gap::{Gap, held_above};
 use super::kept::room_of;
@@ -49,25 +50,27 @@ impl Side {
             kept.fill(room_of(&gap.flow, gap.is_rough), &mut gap.fill, &mut gap.engaged);
         }
         self.axial_levers(gap);
-        self.thin(gap, speed)
+        self.thin(gap, speed)?;
+        self.sum_drag(gap);
+        Ok(())
     }
 
     /// Distance of the surfaces at nodes and faces.
-    fn open_gap(&self, gap: &mut Gap, e: [f64; 2], q: &[f64]) {
+    fn open_gap(&mut self, gap: &mut Gap, e: [f64; 2], q: &[f64]) {
         let nodes = &self.nodes;
-        let (nx, ny, n) = (nodes.nx, nodes.ny, nodes.len());
+        let (nx, n) = (nodes.nx, nodes.len());
         let (c, top, bottom) = (self.clearance, self.sign * e[0], self.sign * e[1]);
-        for j in 0..ny {
-            let (own, next) = (nodes.cos[j], nodes.cos_face[j]);
-            let line = j * nx..(j + 1) * nx;
-            let (h, fx, fy) =
-                (&mut gap.h[line.clone()], &mut gap.face_x[line.clone()], &mut gap.face_y[line]);
-            for i in 0..nx {
-                let here = between(top, bottom, nodes.s[i]);
-                h[i] = c + here * own;
-                fx[i] = c + between(top, bottom, nodes.s_face[i]) * own;
-                fy[i] = c + here * next;
-            }
+        let [own, next, _] = &mut self.work;
+        let (own, next) = (&mut own[..nx], &mut next[..nx]);
+        own.iter_mut().zip(&nodes.s).for_each(|(d, s)| *d = between(top, bottom, *s));
+        next.iter_mut().zip(&nodes.s_face).for_each(|(d, s)| *d = between(top, bottom, *s));
+        let lines = gap.h.chunks_exact_mut(nx).zip(gap.face_x.chunks_exact_mut(nx));
+        for (((h, fx), fy), (cos, cos_next)) in
+            lines.zip(gap.face_y.chunks_exact_mut(nx)).zip(nodes.cos.iter().zip(&nodes.cos_face))
+        {
+            h.iter_mut().zip(&*own).for_each(|(h, d)| *h = c + d * cos);
+            fx.iter_mut().zip(&*next).for_each(|(h, d)| *h = c + d * cos);
+            fy.iter_mut().zip(&*own).for_each(|(h, d)| *h = c + d * cos_next);
         }
         if !self.drop[0].is_empty() {
             for (f, d) in [(&mut gap.h, 0), (&mut gap.face_x, 1), (&mut gap.face_y, 2)] {
@@ -128,17 +131,34 @@ impl Side {
     }
 
     /// Axial force per pressure of every node, from the levers in `work[0]`.
-    fn axial_levers(&self, gap: &mut Gap) {
+    fn axial_levers(&mut self, gap: &mut Gap) {
         let nx = self.nodes.nx;
-        for (j, weight) in self.nodes.line_weight.iter().enumerate() {
+        let [own, mean, _] = &mut self.work;
+        // Half the mean of both neighbours, for the face before and for the face after; none beyond the ends of a line.
+        let mean = &mut mean[..=nx];
+        (mean[0], mean[nx]) = (0.0, 0.0);
+        let lines = gap.lever.chunks_exact_mut(nx).zip(gap.moment.chunks_exact_mut(nx));
+        let nodes = self.nodes.line_weight.iter().zip(&self.over.arm).zip(own.chunks_exact(nx));
+        for ((lever, moment), ((weight, arm), own)) in lines.zip(nodes) {
+            mean[1..nx].iter_mut().zip(own.iter().zip(&own[1..])).for_each(|(m, (a, b))| *m = 0.5 * (a + b));
             let w = 0.5 * weight;
-            let own = &self.work[0][j * nx..(j + 1) * nx];
-            for i in 0..nx {
-                // Half the mean of both neighbours, for the face before and for the face after.
-                let before = if i > 0 { 0.5 * (own[i - 1] + own[i]) } else { 0.0 };
-                let after = if i + 1 < nx { 0.5 * (own[i] + own[i + 1]) } else { 0.0 };
-                gap.lever[j * nx + i] = w * (before - after);
+            let faces = mean.iter().zip(&mean[1..]);
+            for ((lever, moment), (before, after)) in lever.iter_mut().zip(moment).zip(faces) {
+                *lever = w * (before - after);
+                *moment = *lever * arm;
             }
+        }
+    }
+
+    /// Drag of full nodes.
+    fn sum_drag(&self, gap: &mut Gap) {
+        let nx = self.nodes.nx;
+        gap.full_drag = [0.0; 2];
+        let lines = self.nodes.weight.chunks_exact(nx).zip(gap.drag.chunks_exact(nx));
+        for ((weight, drag), arm) in lines.zip(&self.over.arm) {
+            let line = dot(weight, drag);
+            gap.full_drag[0] += line;
+            gap.full_drag[1] += line * arm;
         }
     }
 

@@ -26,14 +26,15 @@ impl Side {
             self.full_films()?;
         }
         if self.is_superposed() || slopes == Slopes::Full {
-            let all = if slopes == Slopes::Full { 1.0 } else { 0.0 };
             for (m, row) in out.slope.chunks_exact_mut(width).enumerate() {
                 let field = &self.fields[(1 + m) * n..(2 + m) * n];
-                let taken = &mut self.work[0];
-                for k in 0..n {
-                    taken[k] = mu * self.open[k].max(all) * field[k];
+                let taken = self.work[0].iter_mut().zip(field);
+                if slopes == Slopes::Full {
+                    taken.for_each(|(taken, f)| *taken = mu * f);
+                } else {
+                    taken.zip(&self.open).for_each(|((taken, f), open)| *taken = mu * open * f);
                 }
-                self.over.sums(taken, &self.now.lever, row);
+                self.over.sums(&self.work[0], &self.now, row);
             }
             return Ok(());
         }

@@ -4,7 +4,7 @@ use gudgeon_core::result::Note;
 use gudgeon_core::{EvalError, Stopwatch};
 use gudgeon_numerics::elementary;
 use gudgeon_numerics::ode::Stats;
-use gudgeon_numerics::orbit::{CycleMap, OrbitOptions, OrbitReport, periodic_orbit};
+use gudgeon_numerics::orbit::{Change, CycleMap, OrbitOptions, OrbitReport, periodic_orbit};
 
 use super::assembly::Assembly;
 use super::case::PistonSecondaryCase;
@@ -19,6 +19,8 @@ pub struct Found {
     pub trajectory: Trajectory,
     /// States at the start of the cycle.
     pub start: Vec<f64>,
+    /// What the search learnt of the slope of a cycle.
+    pub changes: Vec<Change>,
     /// Cycles it took, in units of the last one.
     pub cycles: f64,
     /// Estimated distance from the periodic motion \[m\]; the change over the cycle when it was not searched for.
@@ -42,6 +44,8 @@ struct Cycle<'a> {
     failure: Option<RunError>,
     progress: &'a mut dyn FnMut(f64) -> Result<(), Stopped>,
     done: f64,
+    /// What is known of the slope of a cycle.
+    known: &'a [Change],
     /// The last cycle of the search, when it is as accurate as the one that is told and nothing more than states belongs to it.
     last: Option<Trajectory>,
 }
@@ -115,6 +119,9 @@ impl CycleMap for Cycle<'_> {
         }
         Ok((self.a.piston.film_evaluations() - before) as f64)
     }
+    fn known(&self) -> &[Change] {
+        self.known
+    }
     fn scale(&self, _: &[f64], s: &mut [f64]) {
         for (s, k) in s.iter_mut().zip(&self.a.layout.periodic) {
             *s = self.a.layout.states[*k].cycle_scale;
@@ -135,6 +142,15 @@ const NODE_SCALE: f64 = 1000.0;
 /// Scale of the states of the lateral motion that follow from its other ones where the films carry, in their own.
 const FOLLOWING: f64 = 100.0;
 
+/// Where a search begins.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Begin<'a> {
+    /// States at the start of a cycle; none: those with which the models begin.
+    pub states: Option<&'a [f64]>,
+    /// What a search on another film learnt of the slope of a cycle.
+    pub known: &'a [Change],
+}
+
 /// What a motion is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Purpose {
@@ -146,14 +162,14 @@ pub enum Purpose {
     Start,
 }
 
-/// Runs the case: the skirt as it is built, from `start` when one is known.
+/// Runs the case: the skirt as it is built, from `from`.
 ///
 /// # Errors
 /// What stopped it.
 pub fn run(
     case: &PistonSecondaryCase,
     a: &mut Assembly,
-    start: Option<&[f64]>,
+    from: Begin<'_>,
     purpose: Purpose,
     progress: &mut dyn FnMut(f64) -> Result<(), Stopped>,
 ) -> Result<Found, RunError> {
@@ -162,9 +178,9 @@ pub fn run(
         return still(case, a, begin);
     }
     let s = &case.solver;
-    let mut cycle = Cycle::new(case, a, progress);
-    let mut y = cycle.first(start)?;
-    let mut notes = Vec::new();
+    let mut cycle = Cycle::new(case, a, from.known, progress);
+    let mut y = cycle.first(from.states)?;
+    let (mut notes, mut changes) = (Vec::new(), Vec::new());
     let (cycles, mut error);
     let mut last = None;
     if s.cycles > 0 {
@@ -183,6 +199,7 @@ pub fn run(
         if last.is_some() && purpose != Purpose::Start {
             error = Some(began_at(&report));
         }
+        changes = report.changes;
     }
     let searched = begin.seconds();
     let start = y.clone();
@@ -198,6 +215,7 @@ pub fn run(
     Ok(Found {
         trajectory,
         start,
+        changes,
         cycles,
         periodicity_error: cycle.a.clearance * error.unwrap_or(change),
         notes,
@@ -210,6 +228,7 @@ impl<'a> Cycle<'a> {
     fn new(
         case: &PistonSecondaryCase,
         a: &'a mut Assembly,
+        known: &'a [Change],
         progress: &'a mut dyn FnMut(f64) -> Result<(), Stopped>,
     ) -> Self {
         let s = &case.solver;
@@ -227,6 +246,7 @@ impl<'a> Cycle<'a> {
             failure: None,
             progress,
             done: 0.0,
+            known,
             last: None,
         }
     }
@@ -346,6 +366,7 @@ fn still(case: &PistonSecondaryCase, a: &mut Assembly, begin: Stopwatch) -> Resu
     Ok(Found {
         trajectory,
         start: Vec::new(),
+        changes: Vec::new(),
         cycles: f64::from(cycles),
         periodicity_error: 0.0,
         notes,

@@ -68,7 +68,7 @@ impl SceneCase for PistonSecondaryCase {
         let start = search.start(checked)?;
         let mut a = search.built(start.elastic, None)?;
         let phase = if start.elastic { "elastic skirt" } else { "rigid skirt" };
-        let found = search.run(phase, &mut a, start.states.as_deref(), Purpose::Results, false)?;
+        let found = search.run(phase, &mut a, start.begin(), Purpose::Results, false)?;
         let mut result = RunResult { models: models(case), ..RunResult::default() };
         result.skipped = Explained::new(case, &a, &wanted).skipped;
         result.skipped.extend(start.skipped);

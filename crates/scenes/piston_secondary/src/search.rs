@@ -2,6 +2,7 @@
 
 use gudgeon_core::BuildError;
 use gudgeon_core::result::Skipped;
+use gudgeon_numerics::orbit::Change;
 use gudgeon_scene::{Progress, RunError, Stopped};
 
 use gudgeon_case::Loaded;
@@ -9,19 +10,22 @@ use gudgeon_case::Loaded;
 use super::assemble::assemble;
 use super::assembly::Assembly;
 use super::case::PistonSecondaryCase;
-use super::march::{self, Purpose};
+use super::march::{self, Begin, Purpose};
 use super::record;
 
 /// Intervals of a film that is coarse enough to look for a start with, when that of the case is much finer.
 fn coarse(case: &PistonSecondaryCase) -> Option<[u32; 2]> {
     let s = &case.solver;
-    let [along, across] = COARSE;
-    let much_finer = s.intervals_along * s.intervals_across >= 4 * along * across;
-    (s.cycles == 0 && much_finer).then(|| [s.intervals_along.min(along), s.intervals_across.min(across)])
+    let own = [s.intervals_along, s.intervals_across];
+    let coarse = [0, 1].map(|k| (own[k] / 2).clamp(COARSEST[k], COARSE[k]).min(own[k]));
+    let much_finer = own[0] * own[1] >= 4 * coarse[0] * coarse[1];
+    (s.cycles == 0 && much_finer).then_some(coarse)
 }
 
-/// Forces within some percent, at a hundredth of the work of 64 x 48.
+/// Half the intervals of the case, up to these: forces within some percent, at a hundredth of the work of 64 x 48.
 const COARSE: [u32; 2] = [16, 12];
+/// Fewer than these say little of the motion.
+const COARSEST: [u32; 2] = [8, 6];
 
 /// What the films of a piston took so far.
 pub fn work(piston: &gudgeon_skirt::Piston) -> [(&'static str, u64); 3] {
@@ -54,8 +58,18 @@ pub struct Start {
     pub elastic: bool,
     /// States at the start of a cycle.
     pub states: Option<Vec<f64>>,
+    /// What is known of the slope of a cycle.
+    pub known: Vec<Change>,
     /// What was found not to be needed.
     pub skipped: Vec<Skipped>,
+}
+
+impl Start {
+    /// The same, for a search.
+    #[must_use]
+    pub fn begin(&self) -> Begin<'_> {
+        Begin { states: self.states.as_deref(), known: &self.known }
+    }
 }
 
 impl<'a> Search<'a> {
@@ -92,12 +106,11 @@ impl<'a> Search<'a> {
         if let (true, true, Some(_)) = (periodic, looked_at, coarse) {
             // A start that is wrong costs cycles; one that is not found costs nothing more.
             let mut a = self.built(start.elastic, coarse)?;
-            let from = start.states.take();
-            start.states = match self.run("coarse film", &mut a, from.as_deref(), Purpose::Start, true) {
-                Ok(found) => Some(found.start),
+            match self.run("coarse film", &mut a, start.begin(), Purpose::Start, true) {
+                Ok(found) => (start.states, start.known) = (Some(found.start), found.changes),
                 Err(RunError::Stopped) => return Err(RunError::Stopped),
-                Err(_) => from,
-            };
+                Err(_) => {}
+            }
         }
         Ok(start)
     }
@@ -114,7 +127,7 @@ impl<'a> Search<'a> {
         let mut hard = self.built(false, coarse)?;
         // Of the skirt that yields the shapes alone count here, and no film is asked: on the grid of the case those of the checked assembly do.
         let soft = if coarse.is_some() { self.built(true, coarse)? } else { checked };
-        let found = self.run("rigid skirt", &mut hard, None, Purpose::Look, coarse.is_some())?;
+        let found = self.run("rigid skirt", &mut hard, Begin::default(), Purpose::Look, coarse.is_some())?;
         let (yielding, amplitudes) = record::yielding(&mut hard, &found.trajectory, &soft.piston)?;
         start.elastic = yielding >= below;
         if periodic {
@@ -146,12 +159,12 @@ impl<'a> Search<'a> {
         &mut self,
         phase: &str,
         a: &mut Assembly,
-        start: Option<&[f64]>,
+        from: Begin<'_>,
         purpose: Purpose,
         coarse: bool,
     ) -> Result<march::Found, RunError> {
         let mut tell = |fraction: f64| (self.progress)(Progress { phase: phase.to_owned(), fraction });
-        let found = march::run(&self.loaded.value, a, start, purpose, &mut tell)?;
+        let found = march::run(&self.loaded.value, a, from, purpose, &mut tell)?;
         self.seconds += found.seconds;
         let s = &found.stats;
         let cycles = if coarse { "coarse_cycles" } else { "cycles" };
