@@ -1,6 +1,9 @@
 use gudgeon_core::kinds::{Edge, Film2dGrid};
 use gudgeon_numerics::elementary;
 
+/// What [`Panel::grid`] takes for `crowding`: at either end the spacing vanishes somewhere as the intervals become many.
+pub const CROWDING: std::ops::RangeInclusive<f64> = -0.5..=0.5;
+
 /// One side of a skirt: part of a cylinder.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Panel {
@@ -26,8 +29,8 @@ impl Panel {
     }
 
     /// `nx` × `ny` intervals over the whole side: `x` from the upper edge down, `y` along the arc from the middle, oil at given pressure on
-    /// all edges. Along the height nodes lie closer at its middle by the part `crowding` (0 to 0.5): `x = L/2 (1 + t (1 - g + g t²))`, `t`
-    /// equally spaced from -1 to 1.
+    /// all edges. Along the height nodes lie closer at its middle by the part `crowding`, or closer at its ends where that is negative ([`CROWDING`]):
+    /// `x = L/2 (1 + t (1 - g + g t²))`, `t` equally spaced from -1 to 1.
     #[must_use]
     pub fn grid(&self, nx: usize, ny: usize, crowding: f64) -> Film2dGrid {
         let (length, width, g) = (self.length, self.width(), crowding);

@@ -58,7 +58,7 @@ mod skirt_oil;
 mod skirt_profile;
 
 pub use body::{Body, Crank, Instant, Rod};
-pub use geometry::Panel;
+pub use geometry::{CROWDING, Panel};
 pub use groove_friction::{Coulomb as GrooveCoulomb, Off as NoGrooveFriction};
 pub use pin_friction::{Coulomb as PinCoulomb, Off as NoPinFriction};
 pub use piston::{Asked, Momentum, Partials, Piston, Summary};

@@ -162,7 +162,11 @@ fn orbits_do_not_depend_on_units() {
             OrbitOptions { tolerance: 1e-8, accuracy: 1e-11, max_cycles: 400, refinements: 0, accelerate };
         let run = |unit: f64| {
             let mut y = [0.0; 2];
-            let report = periodic_orbit(&mut Map { unit }, &mut y, &options).unwrap();
+            let mut report = periodic_orbit(&mut Map { unit }, &mut y, &options).unwrap();
+            // What was learnt of the slope counts in units of the states.
+            for c in &mut report.changes {
+                c.start.iter_mut().chain(&mut c.change).for_each(|v| *v /= unit);
+            }
             (y.map(|y| y / unit), report)
         };
         let original = run(1.0);

@@ -141,9 +141,9 @@ impl Elimination {
     /// Sets up a matrix of diffusion alone, all of whose unknowns are diffused.
     fn assemble_whole(&mut self, m: &FivePoint) {
         let at = |g: &[f64], k: usize| g.get(k).copied().unwrap_or(0.0);
-        self.symmetric.clear();
         for (row, u) in self.unknowns.iter().enumerate() {
             let row = self.symmetric.row_mut(row);
+            row.fill(0.0);
             row[0] = m.leak[u.node]
                 + (at(&m.gx, u.sides[0][0]) + at(&m.gx, u.sides[0][1]))
                 + (at(&m.gy, u.sides[1][0]) + at(&m.gy, u.sides[1][1]));

@@ -82,21 +82,19 @@ pub(super) struct Field {
 impl Field {
     pub fn of(field: &[f64]) -> Self {
         let (mut wrong, mut least) = ([0.0; LANES], [f64::INFINITY; LANES]);
-        let mut look = |l: usize, x: f64| {
-            // Zero, or not a number.
-            wrong[l] += 0.0 * x;
-            least[l] = if x < least[l] { x } else { least[l] };
-        };
         let groups = field.chunks_exact(LANES);
-        groups.remainder().iter().for_each(|x| look(0, *x));
+        let rest = groups.remainder();
         for group in groups {
             for l in 0..LANES {
-                look(l, group[l]);
+                // Zero, or not a number.
+                wrong[l] += 0.0 * group[l];
+                least[l] = if group[l] < least[l] { group[l] } else { least[l] };
             }
         }
+        let lesser = |a: f64, b: f64| if b < a { b } else { a };
         Self {
-            is_finite: wrong.iter().all(|w| *w == 0.0),
-            least: least.into_iter().fold(f64::INFINITY, f64::min),
+            is_finite: wrong.iter().all(|w| *w == 0.0) && rest.iter().all(|x| x.is_finite()),
+            least: least.into_iter().chain(rest.iter().copied()).fold(f64::INFINITY, lesser),
         }
     }
 }

@@ -118,14 +118,16 @@ pub fn excess(r: f64) -> f64 {
 }
 
 /// The same for `r` up to [`HALVED`], without a branch: loops over it work on several values at once.
-#[inline]
+#[inline(always)]
 fn excess_of_halves(r: f64) -> f64 {
     let half = |x: f64| x / (1.0 + (1.0 - x * x).sqrt());
     let is_small = r < SERIES;
-    let u = if is_small { r } else { half(half(half(r))) };
+    let divided = half(half(half(r)));
+    let u = if is_small { r } else { divided };
     let uu = u * u;
     let series = uu * (0..11).rev().fold(0.0, |s, k| s * uu + 1.0 / f64::from(2 * k + 3));
-    if is_small { series } else { 8.0 * (u / r) * (1.0 + series) - 1.0 }
+    let closed = 8.0 * (divided / r) * (1.0 + series) - 1.0;
+    if is_small { series } else { closed }
 }
 
 impl Roughness for Waves {
@@ -164,13 +166,17 @@ impl Roughness for Waves {
         let RoughShear { film, phi_f, phi_fs, phi_fp } = out;
         film.iter_mut().zip(h).for_each(|(film, h)| *film = self.film(*h));
         let thinnest = film.iter().fold(f64::INFINITY, |a, &b| if b < a { b } else { a });
-        let halved = self.omega <= HALVED * thinnest;
-        let factors = phi_f.iter_mut().zip(phi_fs).zip(phi_fp).zip(&*film);
-        for (((phi_f, phi_fs), phi_fp), film) in factors {
+        if self.omega <= HALVED * thinnest {
+            phi_f.iter_mut().zip(&*film).for_each(|(e, film)| *e = excess_of_halves(self.omega / film));
+        } else {
+            phi_f.iter_mut().zip(&*film).for_each(|(e, film)| *e = excess(self.omega / film));
+        }
+        for ((phi_f, phi_fs), (phi_fp, film)) in
+            phi_f.iter_mut().zip(phi_fs).zip(phi_fp.iter_mut().zip(&*film))
+        {
             let r = self.omega / film;
-            let excess = if halved { excess_of_halves(r.min(HALVED)) } else { excess(r) };
-            *phi_f = 1.0 + excess;
-            *phi_fs = 3.0 * excess;
+            *phi_fs = 3.0 * *phi_f;
+            *phi_f += 1.0;
             *phi_fp = 1.0 - r * r;
         }
         Ok(())

@@ -33,12 +33,12 @@ const NARROW: usize = 32;
 
 /// Calls a function of the module `narrow` for a band that is `$width` wide.
 macro_rules! narrow {
-    ($width:expr, $call:ident($rows:expr $(, $rest:expr)*)) => {
+    ($width:expr, $call:ident($rows:expr, $rest:expr)) => {
         match $width {
-            8 => narrow::$call::<8, { narrow::stride(8) }>($rows.0 $(, $rest)*),
-            16 => narrow::$call::<16, { narrow::stride(16) }>($rows.0 $(, $rest)*),
-            24 => narrow::$call::<24, { narrow::stride(24) }>($rows.0 $(, $rest)*),
-            _ => narrow::$call::<32, { narrow::stride(32) }>($rows.0 $(, $rest)*),
+            8 => narrow::$call::<8, { narrow::stride(8) }>($rows.0, $rest),
+            16 => narrow::$call::<16, { narrow::stride(16) }>($rows.0, $rest),
+            24 => narrow::$call::<24, { narrow::stride(24) }>($rows.0, $rest),
+            _ => narrow::$call::<32, { narrow::stride(32) }>($rows.0, $rest),
         }
     };
 }
@@ -68,11 +68,7 @@ impl SymmetricBanded {
 
     /// Sets every entry to zero, ready to be assembled again.
     pub fn clear(&mut self) {
-        if self.lead > 0 {
-            narrow!(self.lead, clear(self.a.as_chunks_mut()));
-        } else {
-            self.a.fill(0.0);
-        }
+        self.a.fill(0.0);
         self.factored = false;
     }
 
@@ -102,13 +98,17 @@ impl SymmetricBanded {
     /// # Errors
     /// [`Singular`] when the matrix is not positive definite.
     pub fn factor(&mut self) -> Result<(), Singular> {
-        if self.lead > 0 {
-            narrow!(self.lead, factor(self.a.as_chunks_mut(), &mut self.work))?;
+        let outcome = if self.lead > 0 {
+            narrow!(self.lead, factor(self.a.as_chunks_mut(), &mut self.work))
         } else {
-            wide::factor(&mut self.a, self.stride, &mut self.work)?;
+            wide::factor(&mut self.a, self.stride, &mut self.work)
+        };
+        if outcome.is_err() {
+            // What stands behind the rows must stay zero, whatever was in them.
+            self.clear();
         }
-        self.factored = true;
-        Ok(())
+        self.factored = outcome.is_ok();
+        outcome
     }
 
     /// Solves `A x = b` in place with the factors of [`SymmetricBanded::factor`].

@@ -112,10 +112,10 @@ impl Side {
         self.rough.flow(&gap.h, &mut gap.flow)?;
         self.rough.shear(&gap.h, &mut self.shear)?;
         let (shear, lever) = (&self.shear, &mut self.work[0]);
-        for k in 0..lever.len() {
-            gap.drag[k] = (shear.phi_f[k] + shear.phi_fs[k]) / shear.film[k];
-            lever[k] = shear.phi_fp[k] * shear.film[k];
-        }
+        let factors = shear.phi_f.iter().zip(&shear.phi_fs).zip(&shear.film);
+        gap.drag.iter_mut().zip(factors).for_each(|(drag, ((f, fs), film))| *drag = (f + fs) / film);
+        let pressed = shear.phi_fp.iter().zip(&shear.film);
+        lever.iter_mut().zip(pressed).for_each(|(lever, (fp, film))| *lever = fp * film);
         if gap.flow.film.iter().zip(&gap.h).any(|(f, h)| f != h) {
             // Where the model holds the film above contact, it does so between the nodes too.
             for k in 0..self.nodes.len() {

@@ -196,7 +196,8 @@ pub struct SolverKeys {
     /// Intervals of the film across each side. With an even number, one half of a symmetric side is solved.
     #[schemars(range(min = 2, max = 1000), extend("x-refine" = { "group": "film grid", "factor": 2, "levels": 2 }))]
     pub intervals_across: u32,
-    /// How much closer nodes lie at half the height than in the mean, 0 to 0.5.
+    /// How much closer nodes lie at half the height than in the mean, 0 to 0.5; below 0, to -0.5, they lie closer at both edges: with -0.5 the first of `n` intervals
+    /// is `3/n²` of the height. A skirt that touches with an edge has its highest pressure beside it.
     pub crowding: Ratio,
     /// Distance of the rows in which solid contact is summed, the first one at the upper edge: the pitch of machining grooves.
     pub contact_pitch: PosLength,

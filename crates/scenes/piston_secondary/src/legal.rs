@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use gudgeon_core::BuildError;
+use gudgeon_skirt::CROWDING;
 
 use super::case::PistonSecondaryCase;
 use super::solver::check_tolerance;
@@ -74,8 +75,10 @@ fn of_solver(case: &PistonSecondaryCase, errors: &mut Vec<BuildError>) {
             say(place, format!("must be between {} and {}, not {n}", INTERVALS.start(), INTERVALS.end()));
         }
     }
-    if !(0.0..=0.5).contains(&s.crowding.si()) {
-        say("solver.crowding", format!("must be between 0 and 0.5, not {}", s.crowding.si()));
+    if !CROWDING.contains(&s.crowding.si()) {
+        let what =
+            format!("must be between {} and {}, not {}", CROWDING.start(), CROWDING.end(), s.crowding.si());
+        say("solver.crowding", what);
     }
     if s.max_cycles == 0 {
         say("solver.max_cycles", "at least one cycle is needed".into());

@@ -168,9 +168,13 @@ fn unresolved(look: &mut Look<'_>, side: usize, t: f64) -> Result<Option<Note>, 
     let least = along.min(across);
     Ok((least < RESOLVED).then(|| {
         let text = format!(
-            "The highest film pressure on the {words} (at {:.0} deg) stands on {along:.1} intervals along the skirt and {across:.1} across it at half its height: the grid is too coarse for it, and for solid contact beside it. Raise `solver.{}`; a peak that stays as narrow is that of a sharp edge, which the profile of the skirt has to draw back.",
+            "The highest film pressure on the {words} (at {:.0} deg) stands on {along:.1} intervals along the skirt and {across:.1} across it at half its height: the grid is too coarse for it, and for solid contact beside it. {}; a peak that stays as narrow is that of a sharp edge, which the profile of the skirt has to draw back.",
             t.to_degrees(),
-            if along <= across { "intervals_along" } else { "intervals_across" }
+            if along <= across {
+                "Raise `solver.intervals_along`, or let nodes lie closer at the edges: `solver.crowding` down to -0.5"
+            } else {
+                "Raise `solver.intervals_across`"
+            }
         );
         Note::caution(format!("grid_too_coarse.{name}"), text)
             .amount("intervals_along_peak", along, "1")

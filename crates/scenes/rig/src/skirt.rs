@@ -5,7 +5,7 @@ use gudgeon_core::quantity::{
 use gudgeon_core::{BuildError, EvalError, register_model};
 use gudgeon_film::SmoothSurfaces;
 use gudgeon_numerics::elementary;
-use gudgeon_skirt::Panel;
+use gudgeon_skirt::{CROWDING, Panel};
 use serde::{Deserialize, Serialize};
 
 use crate::along;
@@ -63,8 +63,8 @@ pub struct SkirtRig {
     #[serde(default = "across")]
     #[schemars(range(min = 2, max = 2000), extend("x-refine" = { "group": "film grid", "factor": 2 }))]
     pub intervals_y: u32,
-    /// How much closer nodes lie at half the height than in the mean, 0 for equal spacings, at most 0.5: `x = L/2 (1 + t (1 - g + g t²))`
-    /// with `t` equally spaced from -1 to 1.
+    /// How much closer nodes lie at half the height than in the mean, 0 for equal spacings, at most 0.5, or below 0, at least -0.5, at both edges:
+    /// `x = L/2 (1 + t (1 - g + g t²))` with `t` equally spaced from -1 to 1.
     #[serde(default = "equal")]
     pub crowding: Ratio,
     /// Flow and shear factors of rough or wavy surfaces; the skirt is the body.
@@ -120,8 +120,9 @@ impl RigSpec for SkirtRig {
             let what = format!("must be below 90 degrees, not {}", self.half_angle.si().to_degrees());
             errors.push(BuildError::at("half_angle", what));
         }
-        if !(0.0..=0.5).contains(&self.crowding.si()) {
-            let what = format!("must be between 0 and 0.5, not {}", self.crowding.si());
+        if !CROWDING.contains(&self.crowding.si()) {
+            let (least, most) = (CROWDING.start(), CROWDING.end());
+            let what = format!("must be between {least} and {most}, not {}", self.crowding.si());
             errors.push(BuildError::at("crowding", what));
         }
         errors.extend(along::cavitation_below(self.p_cav.si(), &[self.p_edge.si()]));

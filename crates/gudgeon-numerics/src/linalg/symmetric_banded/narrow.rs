@@ -14,12 +14,6 @@ pub(super) const fn stride(width: usize) -> usize {
     width + 1 + LANES
 }
 
-/// Sets every entry to zero.
-pub(super) fn clear<const W: usize, const S: usize>(rows: &mut [[f64; S]]) {
-    // Row by row: what is as long as a row is written by a few instructions.
-    rows.iter_mut().for_each(|row| *row = [0.0; S]);
-}
-
 /// Factorises a band of width `W`; `S` is its [`stride`]. Every row is left with the inverse of its pivot and its part of `L`; `pivots` takes
 /// the pivots, behind as many zeros as there are rows of zeros.
 pub(super) fn factor<const W: usize, const S: usize>(
