@@ -1,7 +1,7 @@
 //! Orbits of maps whose fixed points and multipliers are known: the true error against the reported one.
 
 use gudgeon_numerics::EvalError;
-use gudgeon_numerics::orbit::{Bend, CycleMap, OrbitOptions, OrbitReport, periodic_orbit};
+use gudgeon_numerics::orbit::{Bend, Change, CycleMap, OrbitOptions, OrbitReport, periodic_orbit};
 use nalgebra::{DMatrix, DVector};
 
 const N: usize = 8;
@@ -248,6 +248,52 @@ impl CycleMap for Nonlinear {
             *s = y.abs().max(0.5);
         }
     }
+}
+
+/// The same map a little displaced, as that of a coarser grid is, and what is known of its slope.
+struct Displaced(f64, Vec<Change>);
+impl CycleMap for Displaced {
+    fn dim(&self) -> usize {
+        5
+    }
+    fn map(&mut self, y0: &[f64], y1: &mut [f64], accuracy: f64) -> Result<f64, EvalError> {
+        Nonlinear.map(y0, y1, accuracy)?;
+        y1.iter_mut().enumerate().for_each(|(i, y)| *y += self.0 * (1.0 + i as f64));
+        Ok(1.0)
+    }
+    fn scale(&self, y: &[f64], s: &mut [f64]) {
+        Nonlinear.scale(y, s);
+    }
+    fn known(&self) -> &[Change] {
+        &self.1
+    }
+}
+
+#[test]
+fn what_a_like_map_taught_shortens_a_search() {
+    let search = |by: f64, y: &mut [f64; 5], known: Vec<Change>| {
+        let report = periodic_orbit(&mut Displaced(by, known), y, &options(1e-6, true)).unwrap();
+        assert!(report.converged, "{report:?}");
+        report
+    };
+    let mut near = [3.0, 0.2, 2.0, -1.0, 0.5];
+    let coarse = search(1e-3, &mut near, Vec::new());
+    assert!(!coarse.changes.is_empty());
+    let (mut with, mut without) = (near, near);
+    let taught = search(0.0, &mut with, coarse.changes.clone());
+    let alone = search(0.0, &mut without, Vec::new());
+    assert!(taught.cycles < alone.cycles, "{} {}", taught.cycles, alone.cycles);
+    // (1, .., 1) is on the orbit, and each estimate is true.
+    for (y, report) in [(with, taught), (without, alone)] {
+        let error = y.iter().map(|y| (y - 1.0).abs()).fold(0.0, f64::max);
+        assert!(error <= 3.0 * report.error_estimate + 1.2e-6 / 30.0, "{error:e} {report:?}");
+    }
+    // What is of another number of states says nothing.
+    let other = vec![Change { start: vec![1.0; 2], change: vec![0.5; 2], noise: 0.0 }];
+    assert_eq!(
+        search(0.0, &mut near.clone(), other).cycles,
+        search(0.0, &mut near.clone(), Vec::new()).cycles
+    );
 }
 
 #[test]

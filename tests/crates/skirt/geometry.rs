@@ -1,12 +1,14 @@
 //! Grids over a side.
 
 use gudgeon_core::kinds::Edge;
-use gudgeon_skirt::Panel;
+use gudgeon_skirt::{CROWDING, Panel};
 
 #[test]
 fn grid_covers_the_side_and_is_its_own_mirror_image() {
     let panel = Panel { radius: 0.04, length: 0.03, half_angle: 0.6 };
-    for (nx, ny, g) in [(9, 9, 0.0), (16, 24, 0.3), (7, 8, 0.5)] {
+    for (nx, ny, g) in
+        [(9, 9, 0.0), (16, 24, 0.3), (7, 8, 0.5), (1000, 6, *CROWDING.end()), (1000, 6, *CROWDING.start())]
+    {
         let grid = panel.grid(nx, ny, g);
         assert_eq!((grid.x.len(), grid.y.len()), (nx + 1, ny + 1));
         // Rounding of the ends.
@@ -19,6 +21,9 @@ fn grid_covers_the_side_and_is_its_own_mirror_image() {
             None => assert!(ny % 2 == 1),
         }
     }
+    // Nodes that crowd towards the edges: the first of n intervals is `(1.5 - 1/n) 2/n²` of the height with g = -1/2, all rounded to 1e-16.
+    let crowded = panel.grid(16, 8, -0.5);
+    assert!((crowded.x[1] / 0.03 - (1.5 - 1.0 / 16.0) * 2.0 / 256.0).abs() < 1e-15);
     // The area of the side by the weights of its grid.
     let (wx, wy) = panel.grid(9, 9, 0.0).weights();
     let area: f64 = wx.iter().sum::<f64>() * wy.iter().sum::<f64>();

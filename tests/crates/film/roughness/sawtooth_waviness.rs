@@ -75,6 +75,17 @@ fn series_meets_the_closed_form() {
 }
 
 #[test]
+fn halved_arguments_lead_to_the_same_function() {
+    for k in 0..1000 {
+        // Both sides of the places where the way of computing changes: 0.2 and 0.92.
+        let r = 1e-3 + 0.998 * f64::from(k) / 1000.0;
+        let (got, exact) = (1.0 + excess(r), r.atanh() / r);
+        // Six roots and quotients, and a series: some roundings of the sum.
+        assert!((got / exact - 1.0).abs() < 2e-15, "{r}: {got} {exact}");
+    }
+}
+
+#[test]
 fn signs_of_the_transport() {
     let at = |t| both(&*model(t), 8e-6).0.transport[0];
     // h ∓ Ω²/h = 8 ∓ 2 µm, two roundings.
