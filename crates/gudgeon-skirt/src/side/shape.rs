@@ -1,7 +1,6 @@
 //! The gap of one side at a place, and what of its film depends on the place alone.
 
 use gudgeon_core::EvalError;
-use gudgeon_numerics::linalg::dot;
 
 use super::gap::{Gap, held_above};
 use super::kept::room_of;
@@ -51,7 +50,9 @@ impl Side {
         }
         self.axial_levers(gap);
         self.thin(gap, speed)?;
-        self.sum_drag(gap);
+        if self.is_full() {
+            gap.full_drag = self.over.drag(&self.nodes, gap, &self.fill);
+        }
         Ok(())
     }
 
@@ -147,18 +148,6 @@ impl Side {
                 *lever = w * (before - after);
                 *moment = *lever * arm;
             }
-        }
-    }
-
-    /// Drag of full nodes.
-    fn sum_drag(&self, gap: &mut Gap) {
-        let nx = self.nodes.nx;
-        gap.full_drag = [0.0; 2];
-        let lines = self.nodes.weight.chunks_exact(nx).zip(gap.drag.chunks_exact(nx));
-        for ((weight, drag), arm) in lines.zip(&self.over.arm) {
-            let line = dot(weight, drag);
-            gap.full_drag[0] += line;
-            gap.full_drag[1] += line * arm;
         }
     }
 
