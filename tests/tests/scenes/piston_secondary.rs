@@ -356,27 +356,6 @@ fn errors_fall_with_the_order_of_the_method() {
 }
 
 #[test]
-fn small_kinks_of_the_gas_end_no_step() {
-    // Steps of a given cycle, at tolerances that pass over kinks of the tabulated pressure and that do not.
-    let work = |tolerance: &str, set: &[&str]| {
-        let tolerance = format!("solver.tolerance={tolerance}");
-        let mut all = coarse(&["solver.cycles=4", "solver.integrator=rodas3", &tolerance]);
-        all.extend(set);
-        run_once(&all)
-    };
-    let passing = work("1e-3", &[]);
-    let reference = work("1e-5", &[]);
-    for name in ["friction_power", "p_max", "h_min", "friction_force_max"] {
-        // The tolerance is that of a step in a motion whose forces go with the cube of the gap: an error of one over it.
-        let off = value(&passing, name) / value(&reference, name) - 1.0;
-        assert!(off.abs() < 1e-3, "{name}: {off:e}");
-    }
-    let steps = |r: &RunResult| r.solver.counters["steps"];
-    // Of 59 kinks those about the top of the pulse, 3 degrees apart, stay ends of steps, and the longest step is a 63rd of the cycle; with all of them it takes 98.
-    assert!((4 * 70..4 * 95).contains(&steps(&passing)), "{}", steps(&passing));
-}
-
-#[test]
 fn a_coarse_film_begins_the_search() {
     let r = run_once(&["solver.intervals_along=16", "solver.intervals_across=12"]);
     let counters = &r.solver.counters;

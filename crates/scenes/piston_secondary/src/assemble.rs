@@ -13,7 +13,6 @@ use gudgeon_skirt::{Body, ContactGrid, Crank, Panel, Piston, Rigid, Rod, Side, S
 
 use super::assembly::Assembly;
 use super::case::PistonSecondaryCase;
-use super::implicit::LARGEST_STEP;
 use super::layout::Layout;
 use super::legal::{legal, radius, running_clearance};
 use super::oil::OilKept;
@@ -67,11 +66,7 @@ pub fn assemble(
         elastic,
         piston,
         oil: parts.skirt_oil.map(|model| OilKept::new(model, period)),
-        breakpoints: breakpoints(
-            &*parts.kinematics,
-            &*parts.cylinder,
-            case.solver.method.passes_over(elastic),
-        ),
+        breakpoints: breakpoints(&*parts.kinematics, &*parts.cylinder),
         kinematics: parts.kinematics,
         profile: parts.profile,
         cylinder: parts.cylinder,
@@ -253,33 +248,11 @@ fn dead_centres(kinematics: &dyn Kinematics, period: f64) -> Vec<f64> {
     found
 }
 
-/// Crank angles where a right-hand side jumps or has a kink \[rad\], but for kinks of the pressure that would cost less than the part `missed` of its
-/// range.
-fn breakpoints(kinematics: &dyn Kinematics, cylinder: &dyn CylinderPressure, missed: f64) -> Vec<f64> {
-    let mut all = sharp_kinks(cylinder, missed);
+/// Crank angles where a right-hand side jumps or has a kink \[rad\].
+fn breakpoints(kinematics: &dyn Kinematics, cylinder: &dyn CylinderPressure) -> Vec<f64> {
+    let mut all = cylinder.kinks().to_vec();
     all.extend(dead_centres(kinematics, cylinder.period()));
     all.sort_by(f64::total_cmp);
     all.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
     all
 }
-
-/// Kinks at which the pressure jumps, or where a parabola over the longest step would be off by more than the part `missed` of its range.
-fn sharp_kinks(cylinder: &dyn CylinderPressure, missed: f64) -> Vec<f64> {
-    let at = |theta: f64| cylinder.pressure(theta);
-    let degrees = (0..cylinder.period().to_degrees() as u32).map(|d| at(f64::from(d).to_radians()));
-    let kinks = cylinder.kinks().iter();
-    let lowest = degrees.chain(kinks.clone().map(|k| at(*k))).fold(f64::INFINITY, f64::min);
-    let admitted = missed * (cylinder.highest().1 - lowest);
-    // A bend in the middle of a step of `h` is `b h/8` off the straight line through its ends.
-    let is_sharp = |k: f64| {
-        let off = |way: f64| (at(k) - 0.5 * (at(k - way) + at(k + way))).abs();
-        let jump = (at(k + ASIDE) - at(k - ASIDE)).abs();
-        off(0.25 * LARGEST_STEP) > admitted || jump > NO_JUMP * admitted
-    };
-    kinks.copied().filter(|k| missed == 0.0 || is_sharp(*k)).collect()
-}
-
-/// Distance at which the two sides of a jump are looked at \[rad\].
-const ASIDE: f64 = 1e-9;
-/// Change across it, as part of the admitted error, that is no jump.
-const NO_JUMP: f64 = 1e-2;

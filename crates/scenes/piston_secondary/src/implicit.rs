@@ -93,11 +93,6 @@ impl PistonSolverSpec for Implicit {
         ACCURACY * self.tolerance.si()
     }
 
-    fn passes_over(&self, yields: bool) -> f64 {
-        // Stages are longer where nothing ends them, and their error is that of what they pass over.
-        if yields && self.integrator == PistonIntegrator::Stages { 0.0 } else { self.tolerance.si() }
-    }
-
     fn build(&self, a: &Assembly) -> Box<dyn PistonSolver> {
         if self.integrator == PistonIntegrator::Stages && Staged::suits(a) {
             return Box::new(Staged::new(a, self.tolerance.si()));

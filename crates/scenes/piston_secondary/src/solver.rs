@@ -30,12 +30,6 @@ pub trait PistonSolverSpec: Debug + DynClone + Send + Sync {
     /// How repeatable a cycle is, in clearances: a search of the periodic motion looks no closer.
     fn repeatable_to(&self) -> f64;
 
-    /// Error of the gas pressure, as part of its range over the cycle, that a step over a kink of it may make: kinks that make less end no step. `yields`: of a
-    /// skirt that yields.
-    fn passes_over(&self, _yields: bool) -> f64 {
-        0.0
-    }
-
     /// The solver, ready for cycles of `a`.
     fn build(&self, a: &Assembly) -> Box<dyn PistonSolver>;
 
