@@ -372,18 +372,22 @@ fn a_coarse_film_begins_the_search() {
 
 #[test]
 fn nodes_at_an_edge_show_the_pressure_beside_it() {
-    // Crests touch at the edge of a tilted skirt: 274.4 bar on 128 x 96 intervals that crowd there, 627 N of contact.
+    // Crests touch at the edge of a tilted skirt: 273 bar and 627 N of contact on grids up to 128 x 96 that crowd there, to 1.5 bar and 1 N.
     let touching = |crowding: &str| {
         let crowding = format!("solver.crowding={crowding}");
-        let set = ["models.roughness.transport=homogenised", "solver.intervals_along=32", &crowding];
-        run_once(&set)
+        run_once(&[
+            "models.roughness.transport=homogenised",
+            "solver.cycles=12",
+            "solver.intervals_along=32",
+            &crowding,
+        ])
     };
     let crowded = touching("-0.45");
-    // A fifth of the nodes across, and twice the tolerance of the motion.
-    assert!((value(&crowded, "p_max") / 274.4 - 1.0).abs() < 0.02, "{}", value(&crowded, "p_max"));
+    // The spread of the limit, and what a grid of 32 x 16 leaves.
+    assert!((value(&crowded, "p_max") / 273.0 - 1.0).abs() < 0.01, "{}", value(&crowded, "p_max"));
     assert!((value(&crowded, "contact_force_max") / 627.0 - 1.0).abs() < 0.01);
     // Equal spacings miss a seventh of the peak.
-    assert!(value(&touching("0"), "p_max") < 0.87 * 274.4);
+    assert!(value(&touching("0"), "p_max") < 0.87 * 273.0);
 }
 
 #[test]
