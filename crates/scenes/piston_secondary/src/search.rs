@@ -17,7 +17,12 @@ use super::record;
 fn coarse(case: &PistonSecondaryCase) -> Option<[u32; 2]> {
     let s = &case.solver;
     let own = [s.intervals_along, s.intervals_across];
-    let coarse = [0, 1].map(|k| (own[k] / 2).clamp(COARSEST[k], COARSE[k]).min(own[k]));
+    // Oil that is kept stays on its own grid: of the start alone little comes, so only a film of a small part of the work is worth it.
+    let coarse = if case.models.skirt_oil.keeps_oil() {
+        [0, 1].map(|k| COARSE[k].min(own[k]))
+    } else {
+        [0, 1].map(|k| (own[k] / 2).clamp(COARSEST[k], COARSE[k]).min(own[k]))
+    };
     let much_finer = own[0] * own[1] >= 4 * coarse[0] * coarse[1];
     (s.cycles == 0 && much_finer).then_some(coarse)
 }
