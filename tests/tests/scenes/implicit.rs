@@ -194,6 +194,19 @@ fn two_halves_of_a_cycle_come_to_agree() {
     assert_eq!(r[0].results, r[4].results);
 }
 
+/// Without films there is one half, the whole pack.
+#[test]
+fn a_pack_without_films_has_one_half() {
+    let with = |name: &str| {
+        let own = [format!("solver.integrator={name}"), "models.gas_flow.model=gap_orifice".into()];
+        let seated = ["models.ring_motion.model=seated".into(), "outputs.results=[\"blow_by\"]".into()];
+        [implicit("1e-3"), own.to_vec(), seated.to_vec()].concat()
+    };
+    let r = runs(&[set(CASE, &with("waveform")), set(CASE, &with("rodas5p"))]);
+    let [halves, whole] = [0, 1].map(|k| value(&r[k], "blow_by"));
+    assert!((halves / whole - 1.0).abs() < 1e-3, "{halves} for {whole}");
+}
+
 /// Rings three times as heavy flutter, and films and grooves do not come to agree: the answer is that of the whole pack, and the run says so.
 #[test]
 fn halves_that_do_not_agree_are_integrated_whole() {

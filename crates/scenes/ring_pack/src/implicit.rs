@@ -769,12 +769,12 @@ impl<'a> Cycle<'a> {
 
     fn periodic(&mut self, y: &mut [f64], options: &OrbitOptions) -> Result<OrbitReport, EvalError> {
         let mut report = periodic_orbit(self, y, options)?;
-        let mut next = y.to_vec();
+        let (estimate, mut next) = (report.error_estimate, y.to_vec());
         while let Method::Waveform(w) = &self.method
             && report.converged
         {
             let apart = w.disagreement(self.pack);
-            report.error_estimate = report.error_estimate.max(apart);
+            report.error_estimate = estimate.max(apart);
             if apart <= options.tolerance {
                 break;
             }

@@ -60,7 +60,7 @@ struct Half {
     method: Sdirk,
     /// States and quadratures of the last cycle.
     wave: Track,
-    /// What the sides agree on of the linear invariants of the pack, by rows of this side.
+    /// The linear invariants of the pack that lie within this side, by its rows.
     invariants: Vec<LinearInvariant>,
 }
 
@@ -87,7 +87,7 @@ pub struct Waveform {
     grooves: Half,
     films: Half,
     staging: Staging,
-    /// Forces \[N\] of the films on the rings along the liner, and the thicknesses that they belong to are in the wave of the films.
+    /// Forces \[N\] of the films on the rings along the liner over the last cycle.
     forces: Track,
     /// What the films did in the cycle before the last.
     before: [Track; 2],
@@ -137,10 +137,17 @@ impl Waveform {
         }
         let begin = y.to_vec();
         self.staging.restart();
-        self.grooves(pack, y, q, setting)?;
-        if let Some(f) = lend(&mut follower) {
-            f.begin(pack, 0.0, &begin).map_err(|source| IntegrateError::Eval { t: 0.0, source })?;
+        let start = |pack: &mut Pack, follower: &mut Option<&mut dyn Follower>| {
+            let begun = lend(follower).map_or(Ok(()), |f| f.begin(pack, 0.0, &begin));
+            begun.map_err(|source| IntegrateError::Eval { t: 0.0, source })
+        };
+        // A cycle is looked at in its second half, where both are known. Without films there is none.
+        if self.films.part.states.is_empty() {
+            start(pack, &mut follower)?;
+            return self.grooves(pack, y, q, setting, follower);
         }
+        self.grooves(pack, y, q, setting, None)?;
+        start(pack, &mut follower)?;
         self.films(pack, y, q, setting, follower)
     }
 
@@ -156,6 +163,7 @@ impl Waveform {
         y: &mut [f64],
         q: &mut [f64],
         setting: &mut Setting<'_>,
+        mut follower: Option<&mut dyn Follower>,
     ) -> Result<(), IntegrateError> {
         let half = &mut self.grooves;
         half.wave.begin(0.0);
@@ -165,9 +173,10 @@ impl Waveform {
             &self.films.wave,
             Some(&self.forces),
         );
-        let mut observe = |_: &mut OneSide<'_>, v: &dyn StepView| {
+        let mut joint = Joint::new(&self.films.wave, [&self.films.part, part], system.pack);
+        let mut observe = |s: &mut OneSide<'_>, v: &dyn StepView| {
             wave.step(v);
-            Flow::Continue
+            lend(&mut follower).map_or(Flow::Continue, |f| joint.pieces(v, |piece| f.step(s.pack, piece)))
         };
         integrate(&mut half.method, &mut system, setting, (y, q), &mut observe)
     }
@@ -181,9 +190,6 @@ impl Waveform {
         mut follower: Option<&mut dyn Follower>,
     ) -> Result<(), IntegrateError> {
         let half = &mut self.films;
-        if half.part.states.is_empty() {
-            return Ok(());
-        }
         self.before[0].clone_from(&half.wave);
         self.before[1].clone_from(&self.forces);
         half.wave.begin(0.0);
@@ -200,10 +206,8 @@ impl Waveform {
             wave.step(v);
             forces.push(v.t1(), &s.axial);
             s.next();
-            let flow = match lend(&mut follower) {
-                Some(f) => joint.pieces(v, |piece| f.step(s.pack, piece)),
-                None => Flow::Continue,
-            };
+            let flow = lend(&mut follower)
+                .map_or(Flow::Continue, |f| joint.pieces(v, |piece| f.step(s.pack, piece)));
             s.book(v);
             if let Some(f) = lend(&mut follower) {
                 f.booked(s.pack, v.t1());

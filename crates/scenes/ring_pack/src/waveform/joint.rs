@@ -1,4 +1,4 @@
-//! Steps of the films with what gas and grooves did over them, as steps of the whole pack.
+//! Steps of one side with what the other did over them, as steps of the whole pack.
 
 use std::cell::RefCell;
 
@@ -28,7 +28,7 @@ impl Part {
 /// Ends of steps that are one within this \[rad\].
 const SLACK: f64 = 1e-9;
 
-/// A step of the films, or what lies of it in one step of gas and grooves.
+/// A step of one side, or what lies of it in one step of the other.
 pub struct Joint<'a> {
     beside: &'a Track,
     parts: [&'a Part; 2],
@@ -36,7 +36,7 @@ pub struct Joint<'a> {
     /// States and quadratures of the pack at both ends.
     y: [Vec<f64>; 2],
     q: [Vec<f64>; 2],
-    /// Values of gas and grooves, and those of the films, at an instant.
+    /// Values of the other side, and of the one that steps, at an instant.
     own: RefCell<[Vec<f64>; 2]>,
 }
 
@@ -47,7 +47,7 @@ struct Piece<'j, 'a> {
 }
 
 impl<'a> Joint<'a> {
-    /// For steps of the films beside what gas and grooves did; `parts` are those of the two.
+    /// For steps of one side beside what the other did; `parts` are that of the other and its own.
     pub fn new(beside: &'a Track, parts: [&'a Part; 2], pack: &Pack) -> Self {
         let y = || vec![0.0; pack.layout.n];
         let q = || vec![0.0; pack.layout.quads()];
@@ -78,9 +78,9 @@ impl<'a> Joint<'a> {
     /// States and quadratures of the pack at `t`.
     fn at(&self, step: &dyn StepView, t: f64, y: Option<&mut [f64]>, q: Option<&mut [f64]>) {
         let mut own = self.own.borrow_mut();
-        let [beside, films] = &mut *own;
+        let [beside, stepping] = &mut *own;
         self.beside.eval(t, beside);
-        let (states, quads) = films.split_at_mut(self.parts[1].states.len());
+        let (states, quads) = stepping.split_at_mut(self.parts[1].states.len());
         if t >= step.t1() {
             states.copy_from_slice(step.y1());
             quads.copy_from_slice(step.q1());
