@@ -21,9 +21,7 @@ use crate::ode::{
 ///
 /// Dense output: cubic, with slopes limited so that nothing overshoots between the ends of a step.
 ///
-/// Steps follow the growth of the error from step to step (gustafsson1994), which a departure that speeds up needs.
-///
-/// References: `alexander1977`, `fritsch1980`, `gustafsson1994`.
+/// References: `alexander1977`, `fritsch1980`.
 #[derive(Debug, Clone)]
 pub struct Sdirk {
     core: Core,
@@ -38,8 +36,6 @@ pub struct Sdirk {
     tied: Vec<bool>,
     /// Whether tolerances are those of the start of the step.
     judged: bool,
-    /// Size and error of the last step that was taken.
-    last: Option<(f64, f64)>,
 }
 
 /// `1 - 1/√2`.
@@ -70,7 +66,6 @@ impl Sdirk {
             accuracy: vec![0.0; dim],
             tied: vec![false; quad_dim],
             judged: false,
-            last: None,
         }
     }
 
@@ -192,18 +187,12 @@ impl Scheme for Sdirk {
 
     fn restart(&mut self) -> f64 {
         self.judged = false;
-        self.last = None;
         1.0
     }
 
-    /// Where errors grow from step to step they go on to (gustafsson1994).
-    fn accept(&mut self, h: f64, error: f64) -> f64 {
+    fn accept(&mut self, _h: f64, error: f64) -> f64 {
         self.judged = false;
-        let error = error.max(1e-10);
-        let factor = SAFETY / elementary::powf(error, self.exponent());
-        let last = self.last.replace((h, error));
-        let grown = |(h0, e0): (f64, f64)| h / h0 * elementary::powf(e0 / error, self.exponent());
-        factor * last.map_or(1.0, grown).min(1.0)
+        SAFETY / elementary::powf(error.max(1e-10), self.exponent())
     }
 
     fn attempt<S: OdeSystem + ?Sized>(
