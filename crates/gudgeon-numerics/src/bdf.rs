@@ -236,6 +236,8 @@ const AFRESH: f64 = 0.1;
 const BIAS: f64 = 3.0;
 /// Errors below this say nothing of how much longer a step may be.
 const LEAST_ERROR: f64 = 1e-4;
+/// Part of the step that the estimate of a failed one admits which is tried next: the estimate misses most where a step fails.
+const CAUTION: f64 = 0.8;
 /// Growth of the step below which it stays as it is: a change costs a factorisation, and errors of formulas for steps of other sizes.
 const LEAST_GROWTH: f64 = 2.0;
 
@@ -325,7 +327,7 @@ impl Scheme for Bdf {
     fn reject(&mut self) -> Option<f64> {
         let order = self.history.failed(self.errors.order);
         let factor =
-            0.9 * elementary::powf(BIAS * self.errors.estimate + LEAST_ERROR, -1.0 / (order + 1) as f64);
+            CAUTION * elementary::powf(BIAS * self.errors.estimate + LEAST_ERROR, -1.0 / (order + 1) as f64);
         Some(factor.clamp(0.25, 0.9))
     }
 }

@@ -5,6 +5,9 @@ use super::blocks::{Block, WIDTH, add};
 /// Highest order.
 pub(super) const MAX_ORDER: usize = 5;
 const DIFFERENCES: usize = MAX_ORDER + 2;
+/// Failures of one step after which the past is not believed any more. At a kink the error falls by little more than the step does, at any order, so some failures are
+/// usual there; an order that was given up for them takes several steps to come back, and at tight tolerances many.
+const MISLED: u32 = 10;
 
 /// Coefficients of one step, in the notation of Brenan, Campbell and Petzold (1996), chapter 5.
 #[derive(Debug, Clone, Copy, Default)]
@@ -132,10 +135,10 @@ impl History {
         v.iter_mut().zip(&self.phi).for_each(|(v, d)| add(v, f.beta[j], &d[j]));
     }
 
-    /// The difference of one order more than the step, where steps were steady enough to know it.
+    /// The difference of one order more than the step, where steps were steady enough to know it: all it is made of have one size, but for the oldest.
     pub fn above(&self, f: &Formula, correction: &[Block], v: &mut [Block]) -> bool {
         let k = f.order;
-        if k + 1 >= f.steady || k == self.last + 1 {
+        if k >= f.steady || k == self.last + 1 {
             return false;
         }
         for ((v, e), d) in v.iter_mut().zip(correction).zip(&self.phi) {
@@ -166,7 +169,7 @@ impl History {
     pub fn failed(&mut self, best: usize) -> usize {
         self.failures += 1;
         self.starting = false;
-        self.order = if self.failures < 3 { best } else { 1 };
+        self.order = if self.failures < MISLED { best } else { 1 };
         self.order
     }
 

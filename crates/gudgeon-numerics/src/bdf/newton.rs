@@ -10,7 +10,7 @@ const LEFT: f64 = 0.1;
 const DIVERGES: f64 = 0.9;
 const SLOW: f64 = 0.4;
 /// Steps that a Jacobian serves at most.
-const OLDEST: u32 = 20;
+const OLDEST: u32 = 12;
 /// Sum of the corrections to come over the last one, where nothing is known of it.
 const UNKNOWN: f64 = 100.0;
 
