@@ -10,10 +10,12 @@ use crate::ode::{
 
 mod blocks;
 mod history;
+mod lane;
 mod newton;
 
-use blocks::{Block, WIDTH, add, norm, set, zeros};
+use blocks::{Block, Norm, Sum, WIDTH, zeros};
 use history::{Formula, History, MAX_ORDER};
+use lane::Lane;
 use newton::Newton;
 
 /// Backward differentiation formulas in fixed leading coefficient form, and the work arrays for systems of one size.
@@ -42,15 +44,10 @@ pub struct Bdf {
     formula: Formula,
     /// Highest order that is taken.
     highest: usize,
-    /// Point, rates and correction of the step just tried, states first, then quadratures.
+    /// Point of the step just tried and its rates, states first, then quadratures; and what else is known of them.
     x: Vec<Block>,
-    rates: Vec<Block>,
-    correction: Vec<Block>,
     f: Vec<Block>,
-    /// Absolute and relative error that is admitted in every component, and one over their sum.
-    atol: Vec<Block>,
-    rtol: Vec<Block>,
-    per_error: Vec<Block>,
+    lanes: Vec<Lane>,
     /// Errors of the step just tried, as norms.
     errors: Errors,
 }
@@ -75,17 +72,13 @@ impl Bdf {
         Self {
             core: Core::new(dim, quad_dim, groups, false),
             matrix: StepMatrix::by_products(dim),
-            history: History::new(m),
+            history: History::new(),
             newton: Newton::default(),
             formula: Formula::default(),
             highest: MAX_ORDER,
             x: zeros(m),
-            rates: zeros(m),
-            correction: zeros(m),
             f: zeros(m),
-            atol: vec![[1.0; WIDTH]; m.div_ceil(WIDTH)],
-            rtol: zeros(m),
-            per_error: zeros(m),
+            lanes: vec![Lane::new(); m.div_ceil(WIDTH)],
             errors: Errors::default(),
         }
     }
@@ -99,12 +92,26 @@ impl Bdf {
 
     /// Sets the errors that are admitted from the start of the step on.
     fn set_tolerances(&mut self, opts: &Options) {
-        set(&mut self.atol, &self.core.atol);
+        let (n, m) = (self.core.n, self.core.m);
+        for (lane, atol) in self.lanes.iter_mut().zip(self.core.atol.chunks(WIDTH)) {
+            lane.atol[..atol.len()].copy_from_slice(atol);
+        }
         if self.history.is_new() {
-            let n = self.core.n;
-            self.atol.as_flattened_mut()[n..self.core.m].copy_from_slice(&opts.atol_quad);
-            let relative = self.rtol.as_flattened_mut()[..self.core.m].iter_mut().enumerate();
-            relative.for_each(|(i, r)| *r = opts.relative(i));
+            for i in 0..m {
+                let lane = &mut self.lanes[i / WIDTH];
+                lane.rtol[i % WIDTH] = opts.relative(i);
+                if i >= n {
+                    lane.atol[i % WIDTH] = opts.atol_quad[i - n];
+                }
+            }
+        }
+    }
+
+    /// Begins the past at the start of the step, where there is none.
+    fn begin(&mut self, h: f64) {
+        if self.history.is_new() {
+            let start = self.core.x0.chunks(WIDTH).zip(self.core.f0.chunks(WIDTH));
+            self.lanes.iter_mut().zip(start).for_each(|(lane, (x, f))| lane.begin(x, f, h));
         }
     }
 
@@ -117,29 +124,18 @@ impl Bdf {
         stats: &mut Stats,
     ) -> Result<bool, EvalError> {
         let lead = self.formula.lead / h;
-        self.history.predict(&self.formula, &mut self.x, &mut self.rates);
-        self.set_norm();
-        self.correction.fill([0.0; WIDTH]);
+        self.lanes.iter_mut().zip(&mut self.x).for_each(|(lane, x)| *x = lane.predict(&self.formula));
         self.newton.begin();
         let (n, m, te) = (self.core.n, self.core.m, self.core.clamp_time(t1));
         loop {
             let f = &mut self.f.as_flattened_mut()[..m];
             Core::checked_rhs(sys, te, &self.x.as_flattened()[..n], f, stats)?;
-            self.residual();
+            self.lanes.iter().zip(&mut self.f).for_each(|(lane, f)| lane.residual(f));
             self.solve(sys, lead);
             stats.solves += 1;
-            self.step(lead);
-            if let Some(converged) = self.newton.judge(norm(&self.f, &self.per_error)) {
+            let change = self.step(lead);
+            if let Some(converged) = self.newton.judge(change) {
                 return Ok(converged);
-            }
-        }
-    }
-
-    /// The residual of the equation from the rates in `f`.
-    fn residual(&mut self) {
-        for (f, rate) in self.f.iter_mut().zip(&self.rates) {
-            for i in 0..WIDTH {
-                f[i] = rate[i] - f[i];
             }
         }
     }
@@ -154,43 +150,31 @@ impl Bdf {
         }
     }
 
-    /// Takes the step in `f`.
-    fn step(&mut self, lead: f64) {
-        for (i, step) in self.f.iter().enumerate() {
-            add(&mut self.x[i], -1.0, step);
-            add(&mut self.correction[i], -1.0, step);
-            add(&mut self.rates[i], -lead, step);
+    /// Takes the step in `f`: its norm, NaN where a number of it is.
+    fn step(&mut self, lead: f64) -> f64 {
+        let (mut norm, mut sum) = (Norm::ZERO, Sum::ZERO);
+        for ((lane, x), step) in self.lanes.iter_mut().zip(&mut self.x).zip(&self.f) {
+            lane.go(x, step, lead, &mut norm, &mut sum);
         }
-    }
-
-    /// Sets what errors are divided by in this step, from its start and its predicted end.
-    fn set_norm(&mut self) {
-        let ends = self.history.start().zip(&self.x);
-        let admitted = self.atol.iter().zip(&self.rtol);
-        for ((per, (x0, x1)), (atol, rtol)) in self.per_error.iter_mut().zip(ends).zip(admitted) {
-            for i in 0..WIDTH {
-                let (a, b) = (x0[i].abs(), x1[i].abs());
-                per[i] = 1.0 / (atol[i] + rtol[i] * if a > b { a } else { b });
-            }
-        }
+        if sum.value().is_nan() { f64::NAN } else { norm.value() }
     }
 
     /// Errors at the order of the step and below, and which of these orders is best.
     fn judge(&mut self) {
         let k = self.formula.order;
         let sigma = &self.formula.sigma;
-        let size = norm(&self.correction, &self.per_error);
+        let mut norms = [Norm::ZERO; 3];
+        let norms = &mut norms[..k.min(3)];
+        self.lanes.iter().for_each(|lane| lane.errors(&self.formula, norms));
+        let error = |i: usize| sigma[k - i] * norms[i].value();
+        let size = norms[0].value();
         let own = sigma[k] * size;
         let mut found = Errors { size, own, below: f64::INFINITY, order: k, estimate: own };
         if k > 1 {
-            self.f.iter_mut().zip(&self.correction).for_each(|(f, e)| *f = *e);
-            self.history.add_difference(&self.formula, k, &mut self.f);
-            let below = sigma[k - 1] * norm(&self.f, &self.per_error);
+            let below = error(1);
             found.below = below;
             let lower = if k > 2 {
-                self.history.add_difference(&self.formula, k - 1, &mut self.f);
-                let two = sigma[k - 2] * norm(&self.f, &self.per_error);
-                terms(k - 1, below).max(terms(k - 2, two)) <= terms(k, own)
+                terms(k - 1, below).max(terms(k - 2, error(2))) <= terms(k, own)
             } else {
                 terms(1, below) <= 0.5 * terms(2, own)
             };
@@ -201,17 +185,22 @@ impl Bdf {
         self.errors = found;
     }
 
+    /// Takes the step just tried; the next is of order `next`.
+    fn take(&mut self, next: usize) {
+        self.lanes.iter_mut().zip(&self.x).for_each(|(lane, x)| lane.take(&self.formula, x));
+        self.history.take(&self.formula, next);
+    }
+
     /// The order of the next step and the error that an equal step would have then: that above is weighed too, where it is known.
     fn best(&mut self) -> (usize, f64) {
         let (k, errors) = (self.formula.order, self.errors);
         let same = (errors.order, errors.estimate);
-        if errors.order < k
-            || k >= self.highest
-            || !self.history.above(&self.formula, &self.correction, &mut self.f)
-        {
+        if errors.order < k || k >= self.highest || !self.formula.is_steady() {
             return same;
         }
-        let above = norm(&self.f, &self.per_error) / (k + 2) as f64;
+        let mut norm = Norm::ZERO;
+        self.lanes.iter().for_each(|lane| lane.error_above(&self.formula, &mut norm));
+        let above = norm.value() / (k + 2) as f64;
         let (own, raised) = (terms(k, errors.own), terms(k + 1, above));
         if k > 1 && terms(k - 1, errors.below) <= own.min(raised) {
             (k - 1, errors.below)
@@ -228,21 +217,17 @@ fn terms(order: usize, error: f64) -> f64 {
     (order + 1) as f64 * error
 }
 
-/// Growth of the step while order and step only grow.
+/// Growth of the step, when it grows.
 const DOUBLED: f64 = 2.0;
 /// Part of the step after an event or a breakpoint: order 1 allows less.
 const AFRESH: f64 = 0.1;
 /// What an estimated error counts for the next step: the constants of its expansion are those of equal steps.
 const BIAS: f64 = 3.0;
-/// Errors below this say nothing of how much longer a step may be.
-const LEAST_ERROR: f64 = 1e-4;
 /// Part of the step that the estimate of a failed one admits which is tried next: the estimate misses most where a step fails.
 const CAUTION: f64 = 0.8;
-/// Growth of the step below which it stays as it is: a change costs a factorisation, and errors of formulas for steps of other sizes.
-const LEAST_GROWTH: f64 = 2.0;
 
 impl Scheme for Bdf {
-    const GROWTH: f64 = 2.0;
+    const GROWTH: f64 = DOUBLED;
     const RATES: bool = false;
     const JUDGES_QUADRATURES: bool = true;
 
@@ -259,7 +244,7 @@ impl Scheme for Bdf {
     }
 
     fn restart(&mut self) -> f64 {
-        self.history.forget();
+        self.history = History::new();
         self.newton.forget();
         AFRESH
     }
@@ -272,8 +257,8 @@ impl Scheme for Bdf {
         opts: &Options,
         stats: &mut Stats,
     ) -> Result<Trial, EvalError> {
-        self.history.begin(&self.core.x0, &self.core.f0, h);
-        self.formula = self.history.formula(h);
+        self.begin(h);
+        self.formula = self.history.formula(h, &self.formula);
         let te = self.core.clamp_time(t);
         self.core.set_tolerances(sys, te, opts);
         self.set_tolerances(opts);
@@ -306,28 +291,29 @@ impl Scheme for Bdf {
         }
     }
 
-    fn accept(&mut self, h: f64, _: f64) -> f64 {
+    fn accept(&mut self, _: f64, _: f64) -> f64 {
         self.newton.age();
         let k = self.formula.order;
         if self.history.is_starting() && self.errors.order == k && k < self.highest {
-            self.history.take(&self.formula, &self.x, &self.correction, h, k + 1);
+            self.take(k + 1);
             return DOUBLED;
         }
         let (order, estimate) = self.best();
-        self.history.take(&self.formula, &self.x, &self.correction, h, order);
-        // Steps of one size are worth more than the last percents of it.
-        let admitted = BIAS * estimate + LEAST_ERROR;
-        if admitted <= 1.0 && admitted * LEAST_GROWTH.powi(order as i32 + 1) > 1.0 {
-            return 1.0;
+        self.take(order);
+        let admitted = BIAS * estimate;
+        if admitted * DOUBLED.powi(order as i32 + 1) <= 1.0 {
+            DOUBLED
+        } else if admitted <= 1.0 {
+            // A change costs a factorisation, and errors of formulas for steps of other sizes.
+            1.0
+        } else {
+            elementary::powf(admitted, -1.0 / (order + 1) as f64).clamp(0.5, 0.9)
         }
-        let factor = elementary::powf(admitted, -1.0 / (order + 1) as f64);
-        if factor < 1.0 { factor.clamp(0.5, 0.9) } else { factor }
     }
 
     fn reject(&mut self) -> Option<f64> {
         let order = self.history.failed(self.errors.order);
-        let factor =
-            CAUTION * elementary::powf(BIAS * self.errors.estimate + LEAST_ERROR, -1.0 / (order + 1) as f64);
+        let factor = CAUTION * elementary::powf(BIAS * self.errors.estimate, -1.0 / (order + 1) as f64);
         Some(factor.clamp(0.25, 0.9))
     }
 }
@@ -338,7 +324,9 @@ impl Interpolant for Bdf {
         let (x0, x1) = (&self.core.x0, &self.core.x1);
         for (c, theta) in c.iter_mut().zip([0.25, 0.5, 0.75]) {
             c.resize(x0.len(), 0.0);
-            self.history.value((theta - 1.0) * h, c);
+            let (weights, used) = self.history.weights((theta - 1.0) * h);
+            let lanes = self.lanes.iter().zip(c.chunks_mut(WIDTH));
+            lanes.for_each(|(lane, c)| lane.sum(&weights[..used], c));
             for ((c, x0), x1) in c.iter_mut().zip(x0).zip(x1) {
                 *c = (*c - x0 - theta * (x1 - x0)) / (theta * (1.0 - theta));
             }

@@ -3,15 +3,11 @@
 /// Numbers of a block.
 pub(super) const WIDTH: usize = 8;
 pub(super) type Block = [f64; WIDTH];
+pub(super) const ZERO: Block = [0.0; WIDTH];
 
 /// A vector of zeros with room for `len` numbers. What is beyond them stays zero.
 pub(super) fn zeros(len: usize) -> Vec<Block> {
-    vec![[0.0; WIDTH]; len.div_ceil(WIDTH)]
-}
-
-/// Sets the first numbers of a vector.
-pub(super) fn set(x: &mut [Block], values: &[f64]) {
-    x.as_flattened_mut()[..values.len()].copy_from_slice(values);
+    vec![ZERO; len.div_ceil(WIDTH)]
 }
 
 /// `x += a u`.
@@ -22,21 +18,52 @@ pub(super) fn add(x: &mut Block, a: f64, u: &Block) {
     }
 }
 
-/// The largest of `|v_i| per_i`; NaN when one of them is.
-#[inline]
-pub(super) fn norm(v: &[Block], per: &[Block]) -> f64 {
-    let mut most = [0.0; WIDTH];
-    for (v, per) in v.iter().zip(per) {
+/// The largest of `|v_i| per_i` that are numbers.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Norm(Block);
+
+impl Norm {
+    pub const ZERO: Self = Self(ZERO);
+
+    #[inline]
+    pub fn add(&mut self, v: &Block, per: &Block) {
         for i in 0..WIDTH {
-            most[i] = larger(most[i], (v[i] * per[i]).abs());
+            self.0[i] = larger((v[i] * per[i]).abs(), self.0[i]);
         }
     }
-    let four: [f64; 4] = std::array::from_fn(|i| larger(most[i], most[i + 4]));
-    larger(larger(four[0], four[2]), larger(four[1], four[3]))
+
+    #[inline]
+    pub fn value(&self) -> f64 {
+        reduced(&self.0, larger)
+    }
 }
 
-/// The larger of two numbers; a NaN wins.
+/// A sum that is NaN where a number of it is.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sum(Block);
+
+impl Sum {
+    pub const ZERO: Self = Self(ZERO);
+
+    #[inline]
+    pub fn add(&mut self, v: &Block) {
+        add(&mut self.0, 1.0, v);
+    }
+
+    #[inline]
+    pub fn value(&self) -> f64 {
+        reduced(&self.0, |a, b| a + b)
+    }
+}
+
+/// The larger of two numbers; the second when one is NaN.
 #[inline]
 fn larger(a: f64, b: f64) -> f64 {
-    if b <= a || a.is_nan() { a } else { b }
+    if a > b { a } else { b }
+}
+
+#[inline]
+fn reduced(x: &Block, f: impl Fn(f64, f64) -> f64) -> f64 {
+    let four: [f64; 4] = std::array::from_fn(|i| f(x[i], x[i + 4]));
+    f(f(four[0], four[2]), f(four[1], four[3]))
 }

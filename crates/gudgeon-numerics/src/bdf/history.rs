@@ -1,10 +1,10 @@
-//! Past values of a solution as modified divided differences, and the formulas that follow from their spacing.
-
-use super::blocks::{Block, WIDTH, add};
+//! The spacing of the last points, and the formulas that follow from it.
 
 /// Highest order.
 pub(super) const MAX_ORDER: usize = 5;
-const DIFFERENCES: usize = MAX_ORDER + 2;
+pub(super) const DIFFERENCES: usize = MAX_ORDER + 2;
+/// Fixed leading coefficient `Σ 1/j` of every order.
+const LEAD: [f64; MAX_ORDER + 1] = [0.0, 1.0, 3.0 / 2.0, 11.0 / 6.0, 25.0 / 12.0, 137.0 / 60.0];
 /// Failures of one step after which the past is not believed any more. At a kink the error falls by little more than the step does, at any order, so some failures are
 /// usual there; an order that was given up for them takes several steps to come back, and at tight tolerances many.
 const MISLED: u32 = 10;
@@ -13,13 +13,15 @@ const MISLED: u32 = 10;
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Formula {
     pub order: usize,
-    /// Fixed leading coefficient `Σ 1/j`.
+    /// Size of the step.
+    h: f64,
+    /// Fixed leading coefficient.
     pub lead: f64,
     /// Error of the step over the correction.
     pub error: f64,
     /// Error terms of every order over the difference of that order.
     pub sigma: [f64; MAX_ORDER + 1],
-    beta: [f64; MAX_ORDER + 1],
+    pub beta: [f64; MAX_ORDER + 1],
     /// Derivative of the predictor over the differences.
     gamma: [f64; MAX_ORDER + 1],
     psi: [f64; DIFFERENCES],
@@ -27,12 +29,24 @@ pub(super) struct Formula {
     steady: usize,
 }
 
-/// The last values.
+impl Formula {
+    /// What every difference counts in the predicted value and in its derivative.
+    #[inline]
+    pub fn weights(&self) -> impl Iterator<Item = (f64, f64)> {
+        let both = self.beta.iter().zip(&self.gamma).take(self.order + 1);
+        both.map(|(beta, gamma)| (*beta, gamma * beta))
+    }
+
+    /// Whether the order above can be judged: the steps that say so have one size, but for the oldest.
+    pub const fn is_steady(&self) -> bool {
+        self.steady > self.order
+    }
+}
+
+/// The last points.
 #[derive(Debug, Clone)]
 pub(super) struct History {
-    /// Differences of orders 0 to `MAX_ORDER + 1`, all of one block together.
-    phi: Vec<[Block; DIFFERENCES]>,
-    /// Distances of the last points from the newest, cumulated.
+    /// Their distances from the newest, cumulated.
     psi: [f64; DIFFERENCES],
     /// Order of the coming step; order and size of the last one.
     order: usize,
@@ -46,9 +60,8 @@ pub(super) struct History {
 }
 
 impl History {
-    pub fn new(m: usize) -> Self {
+    pub const fn new() -> Self {
         Self {
-            phi: vec![[[0.0; WIDTH]; DIFFERENCES]; m.div_ceil(WIDTH)],
             psi: [0.0; DIFFERENCES],
             order: 1,
             last: 0,
@@ -60,11 +73,6 @@ impl History {
         }
     }
 
-    pub fn forget(&mut self) {
-        (self.order, self.last, self.size, self.steady) = (1, 0, 0.0, 0);
-        (self.new, self.starting, self.failures) = (true, true, 0);
-    }
-
     pub const fn is_new(&self) -> bool {
         self.new
     }
@@ -74,117 +82,67 @@ impl History {
         self.starting
     }
 
-    /// The state where a step begins.
-    pub fn start(&self) -> impl Iterator<Item = &Block> {
-        self.phi.iter().map(|d| &d[0])
-    }
-
-    /// Begins a step from `x`, at which the rates `f` are known where nothing else is.
-    pub fn begin(&mut self, x: &[f64], f: &[f64], h: f64) {
-        if self.new {
-            self.psi[0] = h;
-            for ((d, x), f) in self.phi.iter_mut().zip(x.chunks(WIDTH)).zip(f.chunks(WIDTH)) {
-                d[0][..x.len()].copy_from_slice(x);
-                d[1].iter_mut().zip(f).for_each(|(d, f)| *d = h * f);
-            }
-        }
-    }
-
-    /// The formula of a step of size `h`.
+    /// The formula of a step of size `h`; `before` is that of the last trial.
     #[expect(clippy::float_cmp, reason = "steps of one size are copies of one number")]
-    pub fn formula(&self, h: f64) -> Formula {
+    pub fn formula(&self, h: f64, before: &Formula) -> Formula {
         let k = self.order;
-        let same = h == self.size && k == self.last;
-        let steady = if same { (self.steady + 1).min(self.last + 2) } else { 1 };
-        let mut f = Formula { order: k, psi: self.psi, steady, ..Formula::default() };
-        let mut alpha = [0.0; MAX_ORDER + 1];
-        (f.beta[0], f.sigma[0], alpha[0]) = (1.0, 1.0, 1.0);
-        let mut reach = h;
+        if h == self.size && k == self.last {
+            let steady = (self.steady + 1).min(k + 2);
+            // All points are equidistant, and were so for the formula before.
+            if self.steady > k && (before.h, before.order) == (h, k) {
+                return Formula { steady, ..*before };
+            }
+            return self.spaced(h, steady);
+        }
+        self.spaced(h, 1)
+    }
+
+    fn spaced(&self, h: f64, steady: usize) -> Formula {
+        let k = self.order;
+        let mut psi = self.psi;
+        if self.new {
+            psi[0] = h;
+        }
+        let mut f = Formula { order: k, h, lead: LEAD[k], psi, steady, ..Formula::default() };
+        (f.beta[0], f.sigma[0]) = (1.0, 1.0);
+        let (per_step, mut reach, mut alpha, mut sum) = (1.0 / h, h, 1.0, 0.0);
         for i in 1..=k {
             let before = std::mem::replace(&mut f.psi[i - 1], reach);
             f.beta[i] = f.beta[i - 1] * (reach / before);
             reach = before + h;
-            alpha[i] = h / reach;
-            f.sigma[i] = i as f64 * f.sigma[i - 1] * alpha[i];
-            f.gamma[i] = f.gamma[i - 1] + alpha[i - 1] / h;
+            f.gamma[i] = f.gamma[i - 1] + alpha * per_step;
+            sum += alpha;
+            alpha = h / reach;
+            f.sigma[i] = i as f64 * f.sigma[i - 1] * alpha;
         }
         f.psi[k] = reach;
-        f.lead = (1..=k).map(|j| 1.0 / j as f64).sum();
-        let all: f64 = alpha[..k].iter().sum();
-        f.error = (alpha[k] - f.lead + all).abs().max(alpha[k]);
+        f.error = (alpha - f.lead + sum).abs().max(alpha);
         f
     }
 
-    /// Value and rate that the past foretells for the end of the step.
-    pub fn predict(&self, f: &Formula, x: &mut [Block], rates: &mut [Block]) {
-        let weights: [(f64, f64); MAX_ORDER + 1] =
-            std::array::from_fn(|j| (f.beta[j], f.gamma[j] * f.beta[j]));
-        for ((x, rate), d) in x.iter_mut().zip(rates).zip(&self.phi) {
-            // The polynomial begins with a constant.
-            let mut at = (d[0], [0.0; WIDTH]);
-            for (d, (b, g)) in d.iter().zip(&weights).take(f.order + 1).skip(1) {
-                add(&mut at.0, *b, d);
-                add(&mut at.1, *g, d);
-            }
-            (*x, *rate) = at;
-        }
-    }
-
-    /// Adds the difference of order `j`, as the step has it.
-    pub fn add_difference(&self, f: &Formula, j: usize, v: &mut [Block]) {
-        v.iter_mut().zip(&self.phi).for_each(|(v, d)| add(v, f.beta[j], &d[j]));
-    }
-
-    /// The difference of one order more than the step, where steps were steady enough to know it: all it is made of have one size, but for the oldest.
-    pub fn above(&self, f: &Formula, correction: &[Block], v: &mut [Block]) -> bool {
+    /// The step of the formula was taken; the next is of order `next`.
+    pub fn take(&mut self, f: &Formula, next: usize) {
         let k = f.order;
-        if k >= f.steady || k == self.last + 1 {
-            return false;
-        }
-        for ((v, e), d) in v.iter_mut().zip(correction).zip(&self.phi) {
-            *v = *e;
-            add(v, -1.0, &d[k + 1]);
-        }
-        true
-    }
-
-    /// Takes the step to `x` with its correction; the next is of order `next`.
-    pub fn take(&mut self, f: &Formula, x: &[Block], correction: &[Block], h: f64, next: usize) {
-        let k = f.order;
-        for ((d, x), e) in self.phi.iter_mut().zip(x).zip(correction) {
-            d[k + 1] = *e;
-            let mut above = *e;
-            for (d, beta) in d.iter_mut().zip(&f.beta).take(k + 1).skip(1).rev() {
-                add(&mut above, *beta, d);
-                *d = above;
-            }
-            d[0] = *x;
-        }
-        (self.psi, self.steady, self.last, self.size) = (f.psi, f.steady, k, h);
+        (self.psi, self.steady, self.last, self.size) = (f.psi, f.steady, k, f.h);
         self.starting &= next > k;
         (self.order, self.new, self.failures) = (next, false, 0);
     }
 
     /// The step failed, of which `best` would have been the order: that of the next trial.
-    pub fn failed(&mut self, best: usize) -> usize {
+    pub const fn failed(&mut self, best: usize) -> usize {
         self.failures += 1;
         self.starting = false;
         self.order = if self.failures < MISLED { best } else { 1 };
         self.order
     }
 
-    /// The solution at `back` (zero or less) from the newest point, on the polynomial through the last values.
-    pub fn value(&self, back: f64, x: &mut [f64]) {
+    /// Weights of the differences in the solution at `back` (zero or less) from the newest point, on the polynomial through the last values, and their number.
+    pub fn weights(&self, back: f64) -> ([f64; MAX_ORDER + 1], usize) {
         let mut weights = [0.0; MAX_ORDER + 1];
         (weights[0], weights[1]) = (1.0, back / self.psi[0]);
         for j in 2..=self.last {
             weights[j] = weights[j - 1] * (back + self.psi[j - 2]) / self.psi[j - 1];
         }
-        x.fill(0.0);
-        for (x, d) in x.chunks_mut(WIDTH).zip(&self.phi) {
-            for (w, d) in weights[..=self.last].iter().zip(d) {
-                x.iter_mut().zip(d).for_each(|(x, d)| *x += w * d);
-            }
-        }
+        (weights, self.last + 1)
     }
 }
