@@ -4,8 +4,8 @@ use crate::EvalError;
 use crate::elementary;
 use crate::linalg::dot;
 use crate::ode::{
-    ColumnGroups, Core, Flow, IntegrateError, Integrator, Interpolant, OdeSystem, Options, Scheme, Stats,
-    StepMatrix, StepView, Trial, drive,
+    ColumnGroups, Core, End, Flow, IntegrateError, Integrator, Interpolant, OdeSystem, Options, Scheme,
+    Stats, StepMatrix, StepView, Trial, drive,
 };
 
 mod blocks;
@@ -115,21 +115,44 @@ impl Bdf {
         }
     }
 
-    /// Solves for the end of the step: `true` when Newton's method has converged, with `x` and `correction`.
+    /// The rates at the point of the step.
+    fn rates<S: OdeSystem + ?Sized>(
+        &mut self,
+        sys: &mut S,
+        t1: f64,
+        stats: &mut Stats,
+    ) -> Result<(), EvalError> {
+        let (n, m) = (self.core.n, self.core.m);
+        let f = &mut self.f.as_flattened_mut()[..m];
+        Core::checked_rhs(sys, t1, &self.x.as_flattened()[..n], f, stats)
+    }
+
+    /// The Jacobian at the point of the step, where the rates are known.
+    fn linearise<S: OdeSystem + ?Sized>(
+        &mut self,
+        sys: &mut S,
+        t1: f64,
+        opts: &Options,
+        stats: &mut Stats,
+    ) -> Result<(), EvalError> {
+        let m = self.core.m;
+        self.core.x1.copy_from_slice(&self.x.as_flattened()[..m]);
+        self.core.f1.copy_from_slice(&self.f.as_flattened()[..m]);
+        self.core.linearise_states(sys, t1, End::Trial, opts, stats)?;
+        self.core.set_weights(opts);
+        Ok(())
+    }
+
+    /// Solves for the end of the step, from the predicted one and its rates: `true` when Newton's method has converged, with `x` and the corrections.
     fn correct<S: OdeSystem + ?Sized>(
         &mut self,
         sys: &mut S,
         t1: f64,
-        h: f64,
+        lead: f64,
         stats: &mut Stats,
     ) -> Result<bool, EvalError> {
-        let lead = self.formula.lead / h;
-        self.lanes.iter_mut().zip(&mut self.x).for_each(|(lane, x)| *x = lane.predict(&self.formula));
         self.newton.begin();
-        let (n, m, te) = (self.core.n, self.core.m, self.core.clamp_time(t1));
         loop {
-            let f = &mut self.f.as_flattened_mut()[..m];
-            Core::checked_rhs(sys, te, &self.x.as_flattened()[..n], f, stats)?;
             self.lanes.iter().zip(&mut self.f).for_each(|(lane, f)| lane.residual(f));
             self.solve(sys, lead);
             stats.solves += 1;
@@ -137,6 +160,7 @@ impl Bdf {
             if let Some(converged) = self.newton.judge(change) {
                 return Ok(converged);
             }
+            self.rates(sys, t1, stats)?;
         }
     }
 
@@ -259,27 +283,24 @@ impl Scheme for Bdf {
     ) -> Result<Trial, EvalError> {
         self.begin(h);
         self.formula = self.history.formula(h, &self.formula);
-        let te = self.core.clamp_time(t);
-        self.core.set_tolerances(sys, te, opts);
+        let (t0, t1) = (self.core.clamp_time(t), self.core.clamp_time(t + h));
+        self.core.set_tolerances(sys, t0, opts);
         self.set_tolerances(opts);
+        let lead = self.formula.lead / h;
         loop {
+            self.lanes.iter_mut().zip(&mut self.x).for_each(|(lane, x)| *x = lane.predict(&self.formula));
+            self.rates(sys, t1, stats)?;
             let fresh = self.newton.wants_jacobian();
             if fresh {
-                if !self.history.is_new() {
-                    let n = self.core.n;
-                    Core::checked_rhs(sys, te, &self.core.x0[..n], &mut self.core.f0, stats)?;
-                }
-                self.core.linearise_states(sys, te, opts, stats)?;
-                self.core.set_weights(opts);
+                self.linearise(sys, t1, opts, stats)?;
             }
-            let lead = self.formula.lead / h;
             if self.newton.wants_factors(lead, fresh) {
                 stats.lu += 1;
                 if !self.matrix.factor(&self.core, sys, lead) {
                     return Ok(Trial::Retry(0.5));
                 }
             }
-            if self.correct(sys, t + h, h, stats)? {
+            if self.correct(sys, t1, lead, stats)? {
                 let m = self.core.m;
                 self.core.x1.copy_from_slice(&self.x.as_flattened()[..m]);
                 self.judge();

@@ -39,7 +39,7 @@ mod sums;
 mod system;
 
 pub(crate) use check::{Shape, check};
-pub(crate) use core::{Core, non_finite};
+pub(crate) use core::{Core, End, non_finite};
 pub(crate) use dense::Interpolant;
 pub(crate) use difference::difference;
 pub(crate) use driver::{Scheme, Trial, drive};

@@ -37,6 +37,14 @@ pub(crate) struct Core {
     pub(super) events: Events,
 }
 
+/// An end of a step.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum End {
+    Start,
+    /// The end that is tried.
+    Trial,
+}
+
 impl Core {
     pub(crate) fn new(n: usize, quad: usize, groups: Option<ColumnGroups>, structured: bool) -> Self {
         let m = n + quad;
@@ -105,37 +113,47 @@ impl Core {
     ) -> Result<(), EvalError> {
         let te = self.clamp_time(t);
         self.set_tolerances(sys, te, opts);
-        self.linearise_states(sys, te, opts, stats)?;
+        self.linearise_states(sys, te, End::Start, opts, stats)?;
         self.time_derivative(sys, (t, te), h, stats)
     }
 
-    /// `jac` alone, at `(te, x0)`.
+    /// `jac` alone, at one end of the step, where the rates are known.
     pub(crate) fn linearise_states<S: OdeSystem + ?Sized>(
         &mut self,
         sys: &mut S,
         te: f64,
+        end: End,
         opts: &Options,
         stats: &mut Stats,
     ) -> Result<(), EvalError> {
         stats.jacobians += 1;
         self.jac.fill(0.0);
         if self.structured {
-            sys.linearise(te, &self.x0[..self.n], &self.f0)
+            let (y, f) = match end {
+                End::Start => (&self.x0, &self.f0),
+                End::Trial => (&self.x1, &self.f1),
+            };
+            sys.linearise(te, &y[..self.n], f)
         } else {
-            self.jacobian(sys, te, opts, stats)
+            self.jacobian(sys, te, end, opts, stats)
         }
     }
 
-    /// `jac` at `(te, x0)`, by the system or by differences.
+    /// `jac` at one end of the step, by the system or by differences.
     fn jacobian<S: OdeSystem + ?Sized>(
         &mut self,
         sys: &mut S,
         te: f64,
+        end: End,
         opts: &Options,
         stats: &mut Stats,
     ) -> Result<(), EvalError> {
         let n = self.n;
-        let (y, f0, jac) = (&self.x0[..n], &self.f0, &mut self.jac);
+        let (y, f0) = match end {
+            End::Start => (&self.x0[..n], &self.f0),
+            End::Trial => (&self.x1[..n], &self.f1),
+        };
+        let jac = &mut self.jac;
         if !sys.jacobian(te, y, f0, jac)? {
             let (groups, moved) = (self.groups.as_ref(), &mut self.y_tmp[..n]);
             return difference(sys, groups, te, y, f0, opts, jac, &mut self.f_tmp, moved, stats);
