@@ -142,5 +142,5 @@ impl OdeSystem for GasNet {
 
 /// Tolerances of the race: errors scatter from one to the next.
 pub fn fan() -> Vec<f64> {
-    (0..81).map(|k| 10f64.powf(-1.0 - 0.1 * f64::from(k))).collect()
+    (0..101).map(|k| 10f64.powf(-1.0 - 0.1 * f64::from(k))).collect()
 }
