@@ -187,26 +187,33 @@ impl Bdf {
     fn judge(&mut self) {
         let k = self.formula.order;
         let sigma = &self.formula.sigma;
-        let mut norms = [Norm::ZERO; 3];
-        let norms = &mut norms[..k.min(3)];
-        self.lanes.iter().for_each(|lane| lane.errors(&self.formula, norms));
-        let error = |i: usize| sigma[k - i] * norms[i].value();
-        let size = norms[0].value();
+        let (mut at, mut under) = (Norm::ZERO, Norm::ZERO);
+        self.lanes.iter().for_each(|lane| lane.errors(&self.formula, &mut at, &mut under));
+        let size = at.value();
         let own = sigma[k] * size;
         let mut found = Errors { size, own, below: f64::INFINITY, order: k, estimate: own };
         if k > 1 {
-            let below = error(1);
+            let below = sigma[k - 1] * under.value();
             found.below = below;
-            let lower = if k > 2 {
-                terms(k - 1, below).max(terms(k - 2, error(2))) <= terms(k, own)
-            } else {
-                terms(1, below) <= 0.5 * terms(2, own)
-            };
-            if lower {
+            if self.is_lower(below, own) {
                 (found.order, found.estimate) = (k - 1, below);
             }
         }
         self.errors = found;
+    }
+
+    /// Whether the terms of the expansion fall from the order of the step to those below.
+    fn is_lower(&self, below: f64, own: f64) -> bool {
+        let k = self.formula.order;
+        if k == 2 {
+            return terms(1, below) <= 0.5 * terms(2, own);
+        }
+        let most = terms(k, own);
+        terms(k - 1, below) <= most && {
+            let mut norm = Norm::ZERO;
+            self.lanes.iter().for_each(|lane| lane.error_two_below(&self.formula, &mut norm));
+            terms(k - 2, self.formula.sigma[k - 2] * norm.value()) <= most
+        }
     }
 
     /// Takes the step just tried; the next is of order `next`.
@@ -282,7 +289,7 @@ impl Scheme for Bdf {
         stats: &mut Stats,
     ) -> Result<Trial, EvalError> {
         self.begin(h);
-        self.formula = self.history.formula(h, &self.formula);
+        self.history.formulate(h, &mut self.formula);
         let (t0, t1) = (self.core.clamp_time(t), self.core.clamp_time(t + h));
         self.core.set_tolerances(sys, t0, opts);
         self.set_tolerances(opts);

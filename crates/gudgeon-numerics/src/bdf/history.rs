@@ -82,29 +82,26 @@ impl History {
         self.starting
     }
 
-    /// The formula of a step of size `h`; `before` is that of the last trial.
+    /// Makes `f`, the formula of the last trial, that of a step of size `h`.
     #[expect(clippy::float_cmp, reason = "steps of one size are copies of one number")]
-    pub fn formula(&self, h: f64, before: &Formula) -> Formula {
+    pub fn formulate(&self, h: f64, f: &mut Formula) {
         let k = self.order;
-        if h == self.size && k == self.last {
-            let steady = (self.steady + 1).min(k + 2);
-            // All points are equidistant, and were so for the formula before.
-            if self.steady > k && (before.h, before.order) == (h, k) {
-                return Formula { steady, ..*before };
-            }
-            return self.spaced(h, steady);
+        let same = h == self.size && k == self.last;
+        // Of equidistant points, which were so before.
+        let known = same && self.steady > k && (f.h, f.order) == (h, k);
+        if !known {
+            self.space(h, f);
         }
-        self.spaced(h, 1)
+        f.steady = if same { (self.steady + 1).min(k + 2) } else { 1 };
     }
 
-    fn spaced(&self, h: f64, steady: usize) -> Formula {
+    fn space(&self, h: f64, f: &mut Formula) {
         let k = self.order;
-        let mut psi = self.psi;
+        (f.order, f.h, f.lead, f.psi) = (k, h, LEAD[k], self.psi);
         if self.new {
-            psi[0] = h;
+            f.psi[0] = h;
         }
-        let mut f = Formula { order: k, h, lead: LEAD[k], psi, steady, ..Formula::default() };
-        (f.beta[0], f.sigma[0]) = (1.0, 1.0);
+        (f.beta[0], f.sigma[0], f.gamma[0]) = (1.0, 1.0, 0.0);
         let (per_step, mut reach, mut alpha, mut sum) = (1.0 / h, h, 1.0, 0.0);
         for i in 1..=k {
             let before = std::mem::replace(&mut f.psi[i - 1], reach);
@@ -117,7 +114,6 @@ impl History {
         }
         f.psi[k] = reach;
         f.error = (alpha - f.lead + sum).abs().max(alpha);
-        f
     }
 
     /// The step of the formula was taken; the next is of order `next`.

@@ -72,17 +72,26 @@ impl Lane {
         sum.add(step);
     }
 
-    /// The correction for the first of `norms`; for the others what it would be at the orders below.
+    /// The correction, and what it would be at the order below.
     #[inline]
-    pub fn errors(&self, f: &Formula, norms: &mut [Norm]) {
+    pub fn errors(&self, f: &Formula, own: &mut Norm, below: &mut Norm) {
+        own.add(&self.correction, &self.per_error);
+        below.add(&self.correction_below(f), &self.per_error);
+    }
+
+    /// What the correction would be two orders below.
+    #[inline]
+    pub fn error_two_below(&self, f: &Formula, norm: &mut Norm) {
+        let mut v = self.correction_below(f);
+        add(&mut v, f.beta[f.order - 1], &self.phi[f.order - 1]);
+        norm.add(&v, &self.per_error);
+    }
+
+    #[inline]
+    fn correction_below(&self, f: &Formula) -> Block {
         let mut v = self.correction;
-        for (i, norm) in norms.iter_mut().enumerate() {
-            if i > 0 {
-                let j = f.order + 1 - i;
-                add(&mut v, f.beta[j], &self.phi[j]);
-            }
-            norm.add(&v, &self.per_error);
-        }
+        add(&mut v, f.beta[f.order], &self.phi[f.order]);
+        v
     }
 
     /// The difference of one order more than the step, where the steps before were as long.

@@ -38,8 +38,9 @@ impl StepMatrix {
         }
         self.weight.copy_from_slice(&core.weight);
         let factored = lu_factor_weighted(&mut self.lu, n, &mut self.piv, Some(&mut self.weight)).is_ok();
-        let pivots = self.lu.iter().step_by(n + 1);
-        self.inverse.iter_mut().zip(pivots).for_each(|(inverse, pivot)| *inverse = pivot.recip());
+        for (i, inverse) in self.inverse.iter_mut().enumerate() {
+            *inverse = 1.0 / self.lu[i * n + i];
+        }
         factored
     }
 
