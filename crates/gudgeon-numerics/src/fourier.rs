@@ -2,6 +2,7 @@
 
 use crate::elementary;
 use crate::linalg::Complex;
+use crate::vectors::{Vectorised, widest};
 
 /// Transforms between orders and `points` equidistant points of a cycle.
 #[derive(Debug, Clone)]
@@ -14,7 +15,7 @@ pub struct Fourier {
 }
 
 impl Fourier {
-    /// For at least `points` points: the next power of two, from 8 on.
+    /// For at least `points` points: the next power of two, from 16 on.
     #[must_use]
     pub fn new(points: usize) -> Self {
         let points = points.max(4 * LANES).next_power_of_two();
@@ -53,7 +54,7 @@ impl Fourier {
         }
         // With real and imaginary part exchanged the forward transform goes backward.
         self.z.swap(0, 1);
-        self.transform();
+        widest(Transform(self));
         self.z.swap(0, 1);
         x.copy_from_slice(&self.z[0]);
         y.copy_from_slice(&self.z[1]);
@@ -64,7 +65,7 @@ impl Fourier {
         let m = self.points;
         self.z[0].copy_from_slice(x);
         self.z[1].copy_from_slice(y);
-        self.transform();
+        widest(Transform(self));
         let [re, im] = &self.z;
         let part = 1.0 / m as f64;
         a[0] = Complex::new(part * re[0], 0.0);
@@ -75,19 +76,26 @@ impl Fourier {
             *b = Complex::new(part * (im[p] + im[q]), part * (re[q] - re[p]));
         }
     }
+}
 
-    /// `z_k ← Σ z_s e^{-2πiks/points}`: steps by four, and one by two where the points ask it, sorted as they go (Stockham).
-    fn transform(&mut self) {
-        let m = self.points;
-        let (mut n, mut s) = (m, 1);
+/// `z_k ← Σ z_s e^{-2πiks/points}`: steps by four, and one by two where the points ask it, sorted as they go (Stockham).
+struct Transform<'f>(&'f mut Fourier);
+
+impl Vectorised for Transform<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Fourier { points, turn, z, other } = self.0;
+        let (mut n, mut s) = (*points, 1);
         while n >= 4 {
-            step_by_four(&self.z, &mut self.other, &self.turn, n, s);
-            std::mem::swap(&mut self.z, &mut self.other);
+            step_by_four(z, other, turn, n, s);
+            std::mem::swap(z, other);
             n /= 4;
             s *= 4;
         }
         if n == 2 {
-            for (z, o) in self.z.iter().zip(&mut self.other) {
+            for (z, o) in z.iter().zip(&mut *other) {
                 let (low, high) = z.split_at(s);
                 let (sum, difference) = o.split_at_mut(s);
                 for q in 0..s {
@@ -95,18 +103,19 @@ impl Fourier {
                     difference[q] = low[q] - high[q];
                 }
             }
-            std::mem::swap(&mut self.z, &mut self.other);
+            std::mem::swap(z, other);
         }
     }
 }
 
 /// Sequences that are transformed side by side.
-const LANES: usize = 2;
+const LANES: usize = 4;
 type Lanes = [f64; LANES];
 /// A complex number of each of them.
 type Pair = [Lanes; 2];
 
 /// One step: `n` points are left of each of `s` sequences.
+#[inline(always)]
 fn step_by_four(from: &[Vec<f64>; 2], to: &mut [Vec<f64>; 2], turn: &[Vec<f64>; 2], n: usize, s: usize) {
     let [re, im] = to;
     if s == 1 {
@@ -129,6 +138,7 @@ fn step_by_four(from: &[Vec<f64>; 2], to: &mut [Vec<f64>; 2], turn: &[Vec<f64>; 
 }
 
 /// The step of one sequence of all points: what stands side by side are its points.
+#[inline(always)]
 fn first_step(from: &[Vec<f64>; 2], re: &mut [f64], im: &mut [f64], turn: &[Vec<f64>; 2]) {
     let quarter = re.len() / 4;
     let input = [0, 1, 2, 3].map(|j| from.each_ref().map(|x| &x[j * quarter..][..quarter]));

@@ -26,6 +26,7 @@
 //! | integral, extremes, level crossings over the steps of an integrator | [`panel`] | polynomial through five samples of a step |
 //! | interpolation in a table | [`table::Pchip`], [`table::PeriodicCubic`] | the first never overshoots, the second is smoother |
 //! | Fourier series of a periodic signal | [`fourier::Fourier`] | two real signals in one transform |
+//! | loops over neighbouring numbers | [`vectors::widest`] | vectors of four numbers where the processor has them |
 //!
 //! # A stiff equation with an event
 //!
@@ -157,5 +158,6 @@ pub mod sdirk;
 pub mod stages;
 pub mod table;
 pub mod tangent;
+pub mod vectors;
 
 pub use error::{EvalError, Stopped, unwatched};

@@ -143,37 +143,21 @@ impl Excitation {
     }
 
     /// The orders of the sum of [`Excitation::parts`] at `speed` \[rad/s\].
-    pub(crate) fn orders_of_parts(&mut self, parts: &[Self; 2], line: &Line, speed: f64) {
-        let square = Complex::new(speed * speed, 0.0);
-        let [mut fixed, mut masses] = parts.each_ref().map(|p| p.orders.iter().peekable());
-        let mut count = 0;
-        // Both ascend. Storage of before is used again: this runs at every speed.
-        loop {
-            let [a, b] = [fixed.peek(), masses.peek()].map(|o| o.map_or(f64::INFINITY, |o| o.order));
-            let (order, is_fixed) = if a <= b + SAME { (a, true) } else { (b, false) };
-            if order == f64::INFINITY {
-                break;
-            }
-            if count == self.orders.len() {
-                self.orders.push(Order { order, torque: Vec::new() });
-            }
-            let own = &mut self.orders[count];
-            own.order = order;
+    pub(crate) fn orders_of_parts(&mut self, parts: &[Self; 2], speed: f64) {
+        let square = speed * speed;
+        let [fixed, masses] = parts.each_ref().map(|p| &p.orders);
+        // Storage of before is used again: this runs at every speed.
+        self.orders.resize_with(fixed.len(), || Order { order: 0.0, torque: Vec::new() });
+        for ((own, fixed), masses) in self.orders.iter_mut().zip(fixed).zip(masses) {
+            own.order = fixed.order;
             own.torque.clear();
-            if let Some(o) = fixed.next_if(|_| is_fixed) {
-                own.torque.extend_from_slice(&o.torque);
-            }
-            own.torque.resize(line.nodes.len(), Complex::default());
-            if let Some(o) = masses.next_if(|o| o.order <= order + SAME) {
-                own.torque.iter_mut().zip(&o.torque).for_each(|(t, m)| *t = *t + *m * square);
-            }
-            count += 1;
+            let both = fixed.torque.iter().zip(&masses.torque);
+            own.torque.extend(both.map(|(f, m)| Complex::new(f.re + m.re * square, f.im + m.im * square)));
         }
-        self.orders.truncate(count);
     }
 
     /// The torques that do not depend on the speed, and those of the moving masses at unit speed: the torque at speed Ω is the first
-    /// plus Ω² times the second. Means are those of the gas alone.
+    /// plus Ω² times the second, order by order: both have the same ones. Means are those of the gas alone.
     #[must_use]
     pub fn parts(line: &Line, max_order: f64) -> [Self; 2] {
         let empty = || Self { orders: Vec::new(), mean: vec![0.0; line.nodes.len()] };
@@ -181,6 +165,11 @@ impl Excitation {
         fixed.gas(line, max_order);
         fixed.given(line, max_order);
         square.masses(line, 1.0, max_order);
+        let places: Vec<usize> = square.orders.iter().map(|o| fixed.place(line, o.order)).collect();
+        let nothing = vec![Complex::default(); line.nodes.len()];
+        let empty = |o: &Order| Order { order: o.order, torque: nothing.clone() };
+        let own = std::mem::replace(&mut square.orders, fixed.orders.iter().map(empty).collect());
+        own.into_iter().zip(places).for_each(|(o, place)| square.orders[place].torque = o.torque);
         for e in [&mut fixed, &mut square] {
             e.orders.sort_unstable_by(|a, b| a.order.total_cmp(&b.order));
         }
@@ -233,13 +222,17 @@ impl Excitation {
         if ratio < 0.0 {
             a.im = -a.im;
         }
-        let order = order * ratio.abs();
-        let found = self.orders.iter().position(|o| (o.order - order).abs() < SAME);
-        let at = found.unwrap_or_else(|| {
-            self.orders.push(Order { order, torque: vec![Complex::default(); line.nodes.len()] });
-            self.orders.len() - 1
-        });
+        let at = self.place(line, order * ratio.abs());
         let t = &mut self.orders[at].torque[node];
         *t = *t + a;
+    }
+
+    /// Place of an order, which is added where there is none like it.
+    fn place(&mut self, line: &Line, order: f64) -> usize {
+        let found = self.orders.iter().position(|o| (o.order - order).abs() < SAME);
+        found.unwrap_or_else(|| {
+            self.orders.push(Order { order, torque: vec![Complex::default(); line.nodes.len()] });
+            self.orders.len() - 1
+        })
     }
 }

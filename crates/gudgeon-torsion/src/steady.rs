@@ -115,7 +115,7 @@ impl Steady {
 
     /// Goes to another mean speed \[rad/s\].
     pub fn set_speed(&mut self, speed: f64) {
-        self.excitation.orders_of_parts(&self.parts, &self.line, speed);
+        self.excitation.orders_of_parts(&self.parts, speed);
         self.stand_at(speed);
     }
 
@@ -131,11 +131,10 @@ impl Steady {
     pub(crate) fn whole_orders_without_masses(&mut self, base: f64, count: usize) {
         let n = self.line.nodes.len();
         let [fixed, masses] = &mut self.parts;
-        masses.orders.clear();
-        let old = std::mem::take(&mut fixed.orders);
-        fixed.orders = (1..=count)
+        masses.orders = (1..=count)
             .map(|k| Order { order: k as f64 * base, torque: vec![Complex::default(); n] })
             .collect();
+        let old = std::mem::replace(&mut fixed.orders, masses.orders.clone());
         for o in old {
             let k = (o.order / base).round() as usize;
             if (1..=count).contains(&k) {

@@ -4,6 +4,7 @@
 //! zero, the lanes are solved again one by one with the careful elimination.
 
 use gudgeon_numerics::linalg::Complex;
+use gudgeon_numerics::vectors::{Vectorised, widest};
 
 use crate::tree::{Resonance, Singular, Tree, Work};
 
@@ -54,6 +55,32 @@ fn add(a: &mut [Lane; 2], b: &[Lane; 2]) {
     }
 }
 
+/// Plain elimination; false when a pivot is small.
+struct Fast<'w, T> {
+    sweep: &'w mut Sweep,
+    tree: &'w Tree,
+    omega: &'w Lane,
+    torque: &'w T,
+}
+
+impl<T: Fn(usize) -> [Lane; 2]> Vectorised for Fast<'_, T> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run(self) -> bool {
+        let Self { sweep, tree, omega, torque } = self;
+        sweep.coefficients(tree, omega, torque);
+        let mut margin = [f64::INFINITY; LANES];
+        let brought = sweep.eliminate(tree, omega, &mut margin);
+        sweep.root(tree, omega, &brought, &mut margin);
+        if margin.iter().any(|m| *m <= 0.0) {
+            return false;
+        }
+        sweep.substitute(tree);
+        true
+    }
+}
+
 impl Sweep {
     /// For `n` nodes.
     #[must_use]
@@ -80,7 +107,7 @@ impl Sweep {
         omega: &Lane,
         torque: &[[f64; 2]],
     ) -> Result<(), (usize, Resonance)> {
-        self.solve_lanes(tree, omega, |i, _| torque[i])
+        self.solve_lanes(tree, omega, |i| torque[i].map(|t| [t; LANES]))
     }
 
     /// The same for torques by position and lane: other torques at every frequency.
@@ -92,16 +119,16 @@ impl Sweep {
         &mut self,
         tree: &Tree,
         omega: &Lane,
-        torque: impl Fn(usize, usize) -> [f64; 2],
+        torque: impl Fn(usize) -> [Lane; 2],
     ) -> Result<(), (usize, Resonance)> {
-        if self.fast(tree, omega, &torque) {
+        if widest(Fast { sweep: self, tree, omega, torque: &torque }) {
             return Ok(());
         }
         for l in 0..LANES {
             let c = &mut self.careful;
             for (i, t) in c.torque.iter_mut().enumerate() {
-                let [re, im] = torque(i, l);
-                *t = Complex::new(re, im);
+                let [re, im] = torque(i);
+                *t = Complex::new(re[l], im[l]);
             }
             let z = Complex::new(0.0, omega[l]);
             tree.solve(z, &c.torque, &mut c.angle, &mut c.transmitted, Singular::Refuse, &mut c.work)
@@ -116,23 +143,9 @@ impl Sweep {
         Ok(())
     }
 
-    /// Plain elimination; false when a pivot is small.
-    #[inline(always)]
-    fn fast(&mut self, tree: &Tree, omega: &Lane, torque: &impl Fn(usize, usize) -> [f64; 2]) -> bool {
-        self.coefficients(tree, omega, torque);
-        let mut margin = [f64::INFINITY; LANES];
-        let brought = self.eliminate(tree, omega, &mut margin);
-        self.root(tree, omega, &brought, &mut margin);
-        if margin.iter().any(|m| *m <= 0.0) {
-            return false;
-        }
-        self.substitute(tree);
-        true
-    }
-
     /// Dynamic stiffness of every node by itself, and its torque.
     #[inline(always)]
-    fn coefficients(&mut self, tree: &Tree, omega: &Lane, torque: &impl Fn(usize, usize) -> [f64; 2]) {
+    fn coefficients(&mut self, tree: &Tree, omega: &Lane, torque: &impl Fn(usize) -> [Lane; 2]) {
         let n = tree.len();
         let (inertia, damping, ground) = (&tree.inertia[..n], &tree.damping[..n], &tree.ground[..n]);
         let (s, f) = (&mut self.s[..n], &mut self.f[..n]);
@@ -141,8 +154,8 @@ impl Sweep {
                 let w = omega[l];
                 s[i][0][l] = ground[i] - w * w * inertia[i];
                 s[i][1][l] = w * damping[i];
-                [f[i][0][l], f[i][1][l]] = torque(i, l);
             }
+            f[i] = torque(i);
         }
     }
 

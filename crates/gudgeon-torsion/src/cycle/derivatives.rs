@@ -4,7 +4,7 @@ use gudgeon_numerics::elementary;
 use std::f64::consts::PI;
 
 /// Multiples of the order of the period side by side: more would not leave their sums in the registers of every processor.
-const LANES: usize = 2;
+const LANES: usize = 4;
 /// Blocks after which turning starts afresh, so that rounding does not add up.
 const AFRESH: usize = 16;
 
@@ -18,6 +18,16 @@ struct Block {
     im: Lane,
     order: Lane,
     square: Lane,
+}
+
+/// Sum of the squares of the amplitudes, and bounds of the second to fifth derivative.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Sizes {
+    pub square: f64,
+    pub second: f64,
+    pub third: f64,
+    pub fourth: f64,
+    pub fifth: f64,
 }
 
 /// Orders with their phasors. Multiples of one order are turned from one to the next, several side by side.
@@ -67,17 +77,37 @@ impl Derivatives {
         }
     }
 
+    /// The size of the sum: each derivative is at most that of all waves at once.
+    #[inline(always)]
+    pub fn sizes(&self) -> Sizes {
+        let mut sums = [[0.0; LANES]; 5];
+        if self.blocks.is_empty() {
+            for ([re, im], o) in self.phasors.iter().zip(&self.orders) {
+                let mut own = Block::default();
+                (own.re[0], own.im[0], own.order[0], own.square[0]) = (*re, *im, *o, o * o);
+                own.add_sizes(&mut sums);
+            }
+        }
+        for block in &self.blocks {
+            block.add_sizes(&mut sums);
+        }
+        let [square, second, third, fourth, fifth] = totals(&sums);
+        Sizes { square, second, third, fourth, fifth }
+    }
+
     /// The sum at an angle \[rad\], and its first four derivatives.
+    #[inline(always)]
     pub fn at(&self, angle: f64) -> [f64; 5] {
         if self.blocks.is_empty() {
             return self.one_by_one(angle);
         }
         let mut sums = [[0.0; LANES]; 5];
         self.each(angle, |block, lanes| block.add(lanes, &mut sums));
-        sums.map(total)
+        totals(&sums)
     }
 
     /// The sum at an angle \[rad\].
+    #[inline(always)]
     pub fn value(&self, angle: f64) -> f64 {
         if self.blocks.is_empty() {
             return self.one_by_one(angle)[0];
@@ -91,6 +121,7 @@ impl Derivatives {
         total(sum)
     }
 
+    #[inline(never)]
     fn one_by_one(&self, angle: f64) -> [f64; 5] {
         let mut sums = [0.0; 5];
         for (o, [re, im]) in self.orders.iter().zip(&self.phasors) {
@@ -127,6 +158,21 @@ impl Derivatives {
 }
 
 impl Block {
+    /// Adds the squares of its amplitudes, and the largest second to fifth derivatives of its waves.
+    #[inline(always)]
+    fn add_sizes(&self, sums: &mut [Lane; 5]) {
+        for l in 0..LANES {
+            let square = self.re[l] * self.re[l] + self.im[l] * self.im[l];
+            let second = square.sqrt() * self.square[l];
+            let third = second * self.order[l];
+            sums[0][l] += square;
+            sums[1][l] += second;
+            sums[2][l] += third;
+            sums[3][l] += second * self.square[l];
+            sums[4][l] += third * self.square[l];
+        }
+    }
+
     /// Adds its waves and their derivatives at angles whose cosines and sines are given.
     #[inline(always)]
     fn add(&self, [cos, sin]: &[Lane; 2], sums: &mut [Lane; 5]) {
@@ -149,9 +195,16 @@ impl Block {
     }
 }
 
+/// The sums of all lanes. A function of its own: beside the loops that make the lanes, the compiler would add the five sums side by side instead of the lanes.
+#[inline(never)]
+fn totals(sums: &[Lane; 5]) -> [f64; 5] {
+    sums.map(total)
+}
+
 /// The sum of all lanes.
-fn total([a, b]: Lane) -> f64 {
-    a + b
+#[inline(always)]
+fn total([a, b, c, d]: Lane) -> f64 {
+    (a + c) + (b + d)
 }
 
 /// A wave and its first four derivatives.

@@ -5,8 +5,9 @@ mod waves;
 
 use std::f64::consts::PI;
 
-use derivatives::Derivatives;
+use derivatives::{Derivatives, Sizes};
 use gudgeon_numerics::elementary;
+use gudgeon_numerics::vectors::{Vectorised, widest};
 use waves::{Waves, multiples};
 
 /// Least number of points per wave of the highest order on the finest grid.
@@ -35,6 +36,8 @@ const TOGETHER: usize = 8;
 pub struct Cycle {
     sum: Derivatives,
     period: f64,
+    /// The highest order by that of the period.
+    highest: f64,
     multiples: Vec<usize>,
     /// Points of the finest grid.
     points: usize,
@@ -61,25 +64,35 @@ struct Look {
     fifth: f64,
 }
 
-/// Sum of the squares of the amplitudes, and bounds of the second to fifth derivative.
-#[derive(Debug, Clone, Copy, Default)]
-struct Sizes {
-    square: f64,
-    second: f64,
-    third: f64,
-    fourth: f64,
-    fifth: f64,
+/// Maximum and minimum of the waves.
+struct Search<'c>(&'c mut Cycle);
+
+impl Vectorised for Search<'_> {
+    type Output = [f64; 2];
+
+    #[inline(always)]
+    fn run(self) -> [f64; 2] {
+        let sizes = self.0.sum.sizes();
+        let mut grid = self.0.grid(&sizes);
+        loop {
+            if let Some(extremes) = self.0.on_grid(grid, &sizes) {
+                return extremes;
+            }
+            grid -= 1;
+        }
+    }
 }
 
 impl Cycle {
     /// For some orders, and the period after which their sum repeats \[rad\].
     #[must_use]
     pub fn new(orders: &[f64], period: f64) -> Self {
-        let highest = highest(orders, period);
+        let highest = orders.iter().copied().fold(0.0, f64::max) * period / (2.0 * PI);
         let multiples = multiples(orders, period);
         Self {
             sum: Derivatives::new(orders, period, &multiples),
             period,
+            highest,
             multiples,
             points: (POINTS * highest.ceil() as usize).next_power_of_two().max(64),
             grids: [const { None }; GRIDS],
@@ -93,20 +106,20 @@ impl Cycle {
         self.sum.orders()
     }
 
+    /// The phasors at hand, by order.
+    #[must_use]
+    pub fn phasors(&self) -> &[[f64; 2]] {
+        self.sum.phasors()
+    }
+
     /// Maximum and minimum, for a mean and the phasors of the orders.
     pub fn extremes(&mut self, mean: f64, phasors: impl Fn(usize) -> [f64; 2]) -> [f64; 2] {
         self.sum.take(phasors);
-        let sizes = self.sizes();
-        let mut grid = self.grid(&sizes);
-        loop {
-            if let Some([top, bottom]) = self.on_grid(grid, &sizes) {
-                return [mean + top, mean + bottom];
-            }
-            grid -= 1;
-        }
+        widest(Search(self)).map(|extreme| mean + extreme)
     }
 
     /// Maximum and minimum of the waves, looked for on a grid; none where it is too coarse, which the finest never is.
+    #[inline(always)]
     fn on_grid(&mut self, grid: usize, sizes: &Sizes) -> Option<[f64; 2]> {
         self.sum_on(grid);
         let (low, high) = range(&self.wave);
@@ -123,27 +136,13 @@ impl Cycle {
     }
 
     /// Distance of the points of a grid.
+    #[inline(always)]
     fn step(&self, grid: usize) -> f64 {
         self.period / (self.points >> grid) as f64
     }
 
-    /// The size of the sum: each derivative is at most that of all waves at once.
-    fn sizes(&self) -> Sizes {
-        let mut sizes = Sizes::default();
-        for ([re, im], o) in self.sum.phasors().iter().zip(self.sum.orders()) {
-            let (square, o2) = (re * re + im * im, o * o);
-            let second = square.sqrt() * o2;
-            sizes.square += square;
-            let third = second * o;
-            sizes.second += second;
-            sizes.third += third;
-            sizes.fourth += second * o2;
-            sizes.fifth += third * o2;
-        }
-        sizes
-    }
-
     /// The coarsest grid that is fine enough for most sums.
+    #[inline(always)]
     fn grid(&self, sizes: &Sizes) -> usize {
         let admitted = MISSED * (0.5 * sizes.square).sqrt();
         let fine = |g: usize| PARABOLA * self.step(g).powi(3) * sizes.third <= admitted;
@@ -151,6 +150,7 @@ impl Cycle {
     }
 
     /// The sum at the points of a grid.
+    #[inline(always)]
     fn sum_on(&mut self, g: usize) {
         let points = self.points >> g;
         let (orders, multiples) = (self.sum.orders(), &self.multiples);
@@ -167,8 +167,9 @@ impl Cycle {
     /// that cosine. Its third derivative is at most `n³ A` (Bernstein): no top is higher than that of the parabola through three points by
     /// more than [`PARABOLA`] times that. Both derivatives are at most the sums of those of all waves as well, which is less where the
     /// high orders are small.
+    #[inline(always)]
     fn above(&self, half: f64, step: f64, sizes: &Sizes) -> [f64; 2] {
-        let turn = highest(self.sum.orders(), self.period) * 2.0 * PI / self.period * step;
+        let turn = self.highest * 2.0 * PI / self.period * step;
         let own = [0.125 * sizes.second * step * step, PARABOLA * sizes.third * step.powi(3)];
         let cosine = elementary::cos(0.5 * turn);
         if turn >= 0.5 * PI {
@@ -180,13 +181,18 @@ impl Cycle {
 
     /// Maximum and minimum of the wave, whose highest and lowest point are `high` and `low`; none where two tops may stand between
     /// neighbours of a point.
+    #[inline(always)]
     fn tops(&self, high: f64, low: f64, look: &Look) -> Option<[f64; 2]> {
         let n = self.wave.len() - 2;
         let (top, bottom) = (high - look.above, low + look.above);
         let (mut best, mut least) = (high, -low);
         for (k, some) in self.wave[1..=n].chunks_exact(TOGETHER).enumerate() {
             // Nearly everywhere there is nothing, which is found out without a branch.
-            if !some.iter().fold(false, |any, w| any | (*w >= top) | (*w <= bottom)) {
+            let mut any = false;
+            for w in some {
+                any |= (*w >= top) | (*w <= bottom);
+            }
+            if !any {
                 continue;
             }
             for (i, here) in some.iter().enumerate() {
@@ -203,6 +209,7 @@ impl Cycle {
     }
 
     /// The larger of `best` and the top of `sign` times the wave about point `s`, where there is one.
+    #[inline(always)]
     fn top(&self, s: usize, sign: f64, best: f64, look: &Look) -> Option<f64> {
         let [before, here, after] = [-1, 0, 1].map(|i| sign * self.wave[s.wrapping_add_signed(i)]);
         if here < before || here <= after {
@@ -223,18 +230,20 @@ impl Cycle {
     ///
     /// The second derivative at these points differs from it by at most a twelfth of the fourth one, and between them from the straight line by at
     /// most an eighth of it: [`CURVED`] is their sum.
+    #[inline(always)]
     fn curve(&self, s: usize, sign: f64) -> f64 {
         let n = self.wave.len() - 2;
         let at = |s: usize| sign * self.wave[1 + (s - 1) % n];
         let curve = |s: usize| at(s - 1) - 2.0 * at(s) + at(s + 1);
         // A period on, so that no index is below the first.
-        (s + n - 1..=s + n + 1).map(curve).fold(f64::NEG_INFINITY, f64::max)
+        curve(s + n - 1).max(curve(s + n)).max(curve(s + n + 1))
     }
 
     /// The top near a place between points, the first of which stands at one half, by Newton's method on the Taylor polynomial of degree four, at most one point away.
     ///
     /// A step of `x` ends once that polynomial leaves out no more than is admitted, `M x⁵/120` by the bound `M` of the fifth derivative; or once the top of the
     /// polynomial is so close to that of the sum, `M x⁴/24` by the second derivative, that the sum there is no more lower than that.
+    #[inline(always)]
     fn climb(&self, s: f64, sign: f64, look: &Look) -> f64 {
         let mut at = s * look.step;
         let (from, to) = (at - look.step, at + look.step);
@@ -264,22 +273,28 @@ impl Cycle {
     }
 }
 
-/// The highest order by that of the period.
-fn highest(orders: &[f64], period: f64) -> f64 {
-    orders.iter().copied().fold(0.0, f64::max) * period / (2.0 * PI)
+/// Minimum and maximum of some numbers, eight side by side.
+#[inline(always)]
+fn range(wave: &[f64]) -> (f64, f64) {
+    let (mut low, mut high) = ([f64::INFINITY; 8], [f64::NEG_INFINITY; 8]);
+    let (whole, rest) = wave.as_chunks::<8>();
+    for w in whole {
+        for l in 0..8 {
+            low[l] = if w[l] < low[l] { w[l] } else { low[l] };
+        }
+        for l in 0..8 {
+            high[l] = if w[l] > high[l] { w[l] } else { high[l] };
+        }
+    }
+    (extreme(&low, rest, |a, b| a < b), extreme(&high, rest, |a, b| a > b))
 }
 
-/// Minimum and maximum of some numbers, four side by side.
-fn range(wave: &[f64]) -> (f64, f64) {
-    let (mut low, mut high) = ([f64::INFINITY; 4], [f64::NEG_INFINITY; 4]);
-    let mut take = |l: usize, w: f64| {
-        low[l] = if w < low[l] { w } else { low[l] };
-        high[l] = if w > high[l] { w } else { high[l] };
-    };
-    let whole = wave.chunks_exact(4);
-    whole.remainder().iter().for_each(|w| take(0, *w));
-    for w in whole {
-        (0..4).for_each(|l| take(l, w[l]));
+/// The one of some numbers that comes before all others. A function of its own, so that the lanes of [`range`] stay side by side.
+#[inline(never)]
+fn extreme(lanes: &[f64; 8], rest: &[f64], before: impl Fn(f64, f64) -> bool) -> f64 {
+    let mut best = lanes[0];
+    for w in lanes.iter().chain(rest) {
+        best = if before(*w, best) { *w } else { best };
     }
-    (low.into_iter().fold(low[0], f64::min), high.into_iter().fold(high[0], f64::max))
+    best
 }

@@ -65,6 +65,7 @@ impl Waves {
     }
 
     /// `Σ Re(a_k e^{i n_k θ})` at the points.
+    #[inline(always)]
     pub fn sum(&mut self, phasors: &[[f64; 2]], wave: &mut [f64]) {
         for (own, group) in self.phasors.iter_mut().zip(&self.groups) {
             own.clear();
@@ -75,7 +76,9 @@ impl Waves {
             let [[cos_even, sin_even], [cos_odd, sin_odd]] = [self.block(0, b), self.block(1, b)];
             let first = b * BLOCK;
             if !self.folded {
-                (0..BLOCK).for_each(|i| wave[first + i] = cos_even[i] - sin_even[i]);
+                for i in 0..BLOCK {
+                    wave[first + i] = cos_even[i] - sin_even[i];
+                }
                 continue;
             }
             let mut quarters = [[0.0; BLOCK]; 4];
@@ -101,21 +104,29 @@ impl Waves {
     fn block(&self, group: usize, b: usize) -> Row {
         let phasors = &self.phasors[group];
         let mut sums = [[0.0; BLOCK]; 2];
-        let mut add = |row: &Row, a: &[f64; 2]| {
-            for i in 0..BLOCK {
-                sums[0][i] += a[0] * row[0][i];
-                sums[1][i] += a[1] * row[1][i];
-            }
-        };
         let n = phasors.len();
         match self.tables[group].get(b * n..(b + 1) * n) {
-            Some(rows) => rows.iter().zip(phasors).for_each(|(row, a)| add(row, a)),
+            Some(rows) => {
+                for (row, a) in rows.iter().zip(phasors) {
+                    add(row, a, &mut sums);
+                }
+            }
             None => {
-                let orders = self.groups[group].iter().zip(phasors);
-                orders.for_each(|((order, _), a)| add(&self.row(*order, b), a));
+                for ((order, _), a) in self.groups[group].iter().zip(phasors) {
+                    add(&self.row(*order, b), a, &mut sums);
+                }
             }
         }
         sums
+    }
+}
+
+/// Adds the waves of an order at a block of points.
+#[inline(always)]
+fn add(row: &Row, a: &[f64; 2], sums: &mut Row) {
+    for i in 0..BLOCK {
+        sums[0][i] += a[0] * row[0][i];
+        sums[1][i] += a[1] * row[1][i];
     }
 }
 

@@ -44,50 +44,67 @@ impl IndependentOrders {
         // Lanes that are left over repeat the last order.
         let of_lane = |l: usize| &orders[l.min(orders.len() - 1)];
         let omega: Lane = std::array::from_fn(|l| of_lane(l).order * self.steady.speed);
-        for (p, row) in self.torque.iter_mut().enumerate() {
-            let (node, ratio) = (tree.node[p], tree.ratio[p]);
-            for l in 0..LANES {
-                let t = of_lane(l).torque[node];
+        for l in 0..LANES {
+            let torque = &of_lane(l).torque;
+            for ((row, node), ratio) in self.torque.iter_mut().zip(&tree.node).zip(&tree.ratio) {
+                let t = torque[*node];
                 (row[0][l], row[1][l]) = (ratio * t.re, ratio * t.im);
             }
         }
         let torque = &self.torque;
-        if let Err((l, _)) = self.sweep.solve_lanes(tree, &omega, |p, l| [torque[p][0][l], torque[p][1][l]]) {
+        if let Err((l, _)) = self.sweep.solve_lanes(tree, &omega, |p| torque[p]) {
             // The elimination of one order says it in its own words.
             self.steady.respond(of_lane(l))?;
             return Err(EvalError::fatal("torsion", "an undamped resonance is hit"));
         }
-        for (l, (o, r)) in orders.iter().zip(out).enumerate() {
-            self.take(l, o, omega[l], r);
-        }
+        self.take(orders, &omega, out);
         Ok(())
     }
 
-    /// The answer of a lane.
-    fn take(&self, l: usize, o: &Order, omega: f64, r: &mut OrderResponse) {
+    /// The answers of the lanes.
+    fn take(&self, orders: &[Order], omega: &Lane, out: &mut [OrderResponse]) {
         let (t, links) = (&self.steady.tree, self.steady.line.links.len());
         let n = t.len();
-        r.order = o.order;
-        r.angle.resize(n, [0.0; 2]);
-        r.torque.resize(links, [0.0; 2]);
-        r.heat.resize(links, 0.0);
-        r.excitation.clear();
-        r.excitation.extend(o.torque.iter().map(|t| [t.re, t.im]));
+        for (o, r) in orders.iter().zip(out.iter_mut()) {
+            r.order = o.order;
+            r.angle.resize(n, [0.0; 2]);
+            r.torque.resize(links, [0.0; 2]);
+            r.heat.resize(links, 0.0);
+            r.excitation.clear();
+            r.excitation.extend(o.torque.iter().map(|t| [t.re, t.im]));
+        }
         for (p, (x, q)) in self.sweep.angle.iter().zip(&self.sweep.transmitted).enumerate() {
-            let s = t.ratio[p];
-            r.angle[t.node[p]] = [s * x[0][l], s * x[1][l]];
-            if t.parent[p] < n {
-                let [re, im] = [q[0][l], q[1][l]];
-                let s = if t.forward[p] { 1.0 } else { -1.0 } / t.link_ratio[p];
-                r.torque[t.link[p]] = [s * re, s * im];
-                let (stiffness, loss) = (t.k[p], t.k[p] * t.eta[p] + omega * t.c[p]);
-                r.heat[t.link[p]] = if stiffness.is_finite() && loss != 0.0 {
-                    0.5 * omega * loss * (re * re + im * im) / (stiffness * stiffness + loss * loss)
-                } else {
-                    0.0
-                };
+            let (node, s) = (t.node[p], t.ratio[p]);
+            for (l, r) in out.iter_mut().enumerate().take(LANES) {
+                r.angle[node] = [s * x[0][l], s * x[1][l]];
+            }
+            if t.parent[p] >= n {
+                continue;
+            }
+            let (link, s) = (t.link[p], if t.forward[p] { 1.0 } else { -1.0 } / t.link_ratio[p]);
+            let heat = self.heat(p, omega);
+            for (l, r) in out.iter_mut().enumerate().take(LANES) {
+                r.torque[link] = [s * q[0][l], s * q[1][l]];
+                r.heat[link] = heat[l];
             }
         }
+    }
+
+    /// Mean power lost in the link of a node to its parent.
+    fn heat(&self, p: usize, omega: &Lane) -> Lane {
+        let (t, q) = (&self.steady.tree, &self.sweep.transmitted[p]);
+        let stiffness = t.k[p];
+        let mut heat = [0.0; LANES];
+        if !stiffness.is_finite() {
+            return heat;
+        }
+        for l in 0..LANES {
+            let loss = stiffness * t.eta[p] + omega[l] * t.c[p];
+            let square = q[0][l] * q[0][l] + q[1][l] * q[1][l];
+            let lost = 0.5 * omega[l] * loss * square / (stiffness * stiffness + loss * loss);
+            heat[l] = if loss != 0.0 { lost } else { 0.0 };
+        }
+        heat
     }
 }
 
