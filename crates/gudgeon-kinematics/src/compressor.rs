@@ -99,7 +99,7 @@ impl Space {
 
     pub fn volume(&self, theta: f64) -> f64 {
         // At least the clearance, up to rounding.
-        (self.area * (self.kinematics.y_tdc() - self.kinematics.motion(theta).y) + self.v_min).max(self.v_min)
+        (self.area * (self.kinematics.y_tdc() - self.kinematics.height(theta)) + self.v_min).max(self.v_min)
     }
 
     /// Piston speed by its largest, squared: 0 at the dead centres.

@@ -65,6 +65,12 @@ impl Kinematics for Exact {
             rod_angle: elementary::asin(sin_phi),
         }
     }
+    fn height(&self, theta: f64) -> f64 {
+        let Self { r, l, e, .. } = *self;
+        let (sin, cos) = elementary::sin_cos(theta);
+        let sin_phi = (r * sin - e) / l;
+        r * cos + l * ((1.0 - sin_phi) * (1.0 + sin_phi)).sqrt()
+    }
     fn y_tdc(&self) -> f64 {
         self.y_tdc
     }

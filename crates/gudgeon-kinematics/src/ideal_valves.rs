@@ -51,14 +51,18 @@ impl CylinderPressureSpec for IdealValves {
         let space = Space::new(ctx, &self.clearance)?;
         let (suction, discharge, n) = (self.suction.si(), self.discharge.si(), self.exponent.si());
         check(suction, discharge, n, &space)?;
-        let mut m =
-            Ideal { space, suction, discharge, n, top: discharge, open: self.held_open, kinks: Vec::new() };
         // Never reached: what is at the dead centre expands again.
-        m.top = m.discharge.min(m.suction * elementary::powf(m.space.v_max / m.space.v_min, n));
+        let top = discharge.min(suction * elementary::powf(space.v_max / space.v_min, n));
+        let expanded = space.v_min * elementary::powf(top / suction, 1.0 / n);
+        let compressed = space.v_max * elementary::powf(suction / discharge, 1.0 / n);
+        let open = self.held_open;
+        let mut m =
+            Ideal { space, suction, discharge, n, top, expanded, compressed, open, kinks: Vec::new() };
         if !m.open {
             let (t, d) = (m.space.top, m.space.down);
-            let suction_opens = m.space.crossing(t, t + d, |x| m.expansion(x) - m.suction);
-            let discharge_opens = m.space.crossing(t + d, t + TURN, |x| m.discharge - m.compression(x));
+            let suction_opens = m.space.crossing(t, t + d, |x| m.expansion(m.space.volume(x)) - m.suction);
+            let discharge_opens =
+                m.space.crossing(t + d, t + TURN, |x| m.discharge - m.compression(m.space.volume(x)));
             m.kinks = [t, suction_opens, t + d, discharge_opens].map(|x| reduced(x, TURN)).to_vec();
             m.kinks.sort_unstable_by(f64::total_cmp);
             m.kinks.dedup();
@@ -75,27 +79,39 @@ struct Ideal {
     n: f64,
     /// Pressure at the upper dead centre.
     top: f64,
+    /// Volume \[m³\] at which the suction pressure is reached on the way out, and that of discharge on the way back.
+    expanded: f64,
+    compressed: f64,
     open: bool,
     kinks: Vec<f64>,
 }
 
+/// Part of a volume at which a valve opens within which the pressure itself tells whether it is open: many roundings of the power.
+const BESIDE: f64 = 1e-9;
+
 impl Ideal {
-    fn expansion(&self, theta: f64) -> f64 {
-        self.top * elementary::powf(self.space.v_min / self.space.volume(theta), self.n)
+    /// Pressure of expansion to a volume.
+    fn expansion(&self, volume: f64) -> f64 {
+        self.top * elementary::powf(self.space.v_min / volume, self.n)
     }
-    fn compression(&self, theta: f64) -> f64 {
-        self.suction * elementary::powf(self.space.v_max / self.space.volume(theta), self.n)
+    /// Pressure of compression to a volume.
+    fn compression(&self, volume: f64) -> f64 {
+        self.suction * elementary::powf(self.space.v_max / volume, self.n)
     }
 }
 
 impl CylinderPressure for Ideal {
     fn pressure(&self, theta: f64) -> f64 {
         if self.open {
-            self.suction
-        } else if self.space.since_top(theta) < self.space.down {
-            self.expansion(theta).max(self.suction)
+            return self.suction;
+        }
+        let volume = self.space.volume(theta);
+        if self.space.since_top(theta) < self.space.down {
+            let is_open = volume > self.expanded * (1.0 + BESIDE);
+            if is_open { self.suction } else { self.expansion(volume).max(self.suction) }
         } else {
-            self.compression(theta).min(self.discharge)
+            let is_open = volume < self.compressed * (1.0 - BESIDE);
+            if is_open { self.discharge } else { self.compression(volume).min(self.discharge) }
         }
     }
     fn kinks(&self) -> &[f64] {

@@ -48,6 +48,10 @@ pub trait KinematicsSpec: Debug + DynClone + Send + Sync {
 pub trait Kinematics: Debug + DynClone + Send + Sync {
     /// Motion at crank angle `theta` \[rad\] (any real number; period 2π).
     fn motion(&self, theta: f64) -> PistonMotion;
+    /// Height of the pin above the crank axis \[m\] at crank angle `theta` \[rad\]: that of [`Self::motion`], which a model may know with less work.
+    fn height(&self, theta: f64) -> f64 {
+        self.motion(theta).y
+    }
     /// Highest position of the pin \[m\].
     fn y_tdc(&self) -> f64;
     /// Stroke \[m\].

@@ -146,10 +146,10 @@ impl LineThrow {
     }
 }
 
-/// What is kept, if it has as many harmonics, or else what is made; the first of these is kept.
+/// As many harmonics of those that are kept, or what is made where these are fewer; the first that are made are kept.
 fn kept(known: &OnceLock<Vec<Complex>>, count: usize, make: impl FnOnce() -> Vec<Complex>) -> Vec<Complex> {
     match known.get() {
-        Some(own) if own.len() == count + 1 => own.clone(),
+        Some(own) if own.len() > count => own[..=count].to_vec(),
         Some(_) => make(),
         None => known.get_or_init(make).clone(),
     }

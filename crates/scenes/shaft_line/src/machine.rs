@@ -235,13 +235,16 @@ impl<'a> Machine<'a> {
             Point { links: (0..links).map(|l| link_point(cycle, out, l)).collect(), ..Point::default() };
         if by_order {
             p.orders = Vec::with_capacity(out.orders.len() * links);
-            out.orders.iter().for_each(|o| p.orders.extend(o.torque.iter().map(|t| modulus(*t))));
+            out.orders.iter().for_each(|o| moduli(&o.torque, &mut p.orders));
         }
+        // Mostly one look at the largest angle of each order tells that nothing is large.
+        let [rate, angle] = largest_angles(out);
         // Relative speed of an inertia at the reference shaft: order times angle.
         let ratio = |i: usize| a.line.nodes[i].ratio;
         let bound =
             |i: usize| out.orders.iter().map(|o| o.order * norm1(o.angle[i])).sum::<f64>() / ratio(i).abs();
-        if fluctuation || (0..nodes).any(|i| bound(i) > LARGE) {
+        let may_be_large = |i: &usize| rate > LARGE * ratio(*i).abs();
+        if fluctuation || (0..nodes).filter(may_be_large).any(|i| bound(i) > LARGE) {
             p.speed_fluctuation =
                 (0..nodes).map(|i| speed_fluctuation(cycle, out, i) / ratio(i).abs()).collect();
             p.fluctuation_order = (0..nodes)
@@ -251,6 +254,9 @@ impl<'a> Machine<'a> {
                 .collect();
         }
         for l in 0..links {
+            if angle * (1.0 + gear(a, l).abs()) <= LARGE {
+                continue;
+            }
             let twist = twist_of(a, l);
             if out.orders.iter().map(|o| norm1(twist(o))).sum::<f64>() > LARGE {
                 let [top, bottom] = cycle.extremes(0.0, |k| twist(&out.orders[k]));
@@ -326,9 +332,10 @@ impl<'a> Machine<'a> {
 
 /// An answer of numbers.
 fn finite(out: &TorsionOut) -> Result<(), EvalError> {
-    let orders = out.orders.iter().flat_map(|o| o.torque.iter().chain(&o.angle)).flatten();
-    let mut all = orders.chain(&out.mean_torque).chain(&out.mean_angle).chain([&out.balance_torque]);
-    if all.all(|v| v.is_finite()) {
+    // Without a branch for every number.
+    let all = |values: &[f64]| values.iter().fold(true, |all, v| all & v.is_finite());
+    let orders = out.orders.iter().all(|o| all(o.torque.as_flattened()) & all(o.angle.as_flattened()));
+    if orders && all(&out.mean_torque) && all(&out.mean_angle) && out.balance_torque.is_finite() {
         return Ok(());
     }
     Err(EvalError::fatal("torsion", "torques or angles of this speed are beyond all numbers"))
@@ -343,10 +350,27 @@ fn norm1([re, im]: [f64; 2]) -> f64 {
     re.abs() + im.abs()
 }
 
-fn modulus(z: [f64; 2]) -> f64 {
-    let square = square(z);
-    // Numbers whose squares are none take longer.
-    if square.is_normal() { square.sqrt() } else { elementary::hypot(z[0], z[1]) }
+/// Appends the moduli of some numbers.
+fn moduli(z: &[[f64; 2]], out: &mut Vec<f64>) {
+    /// Numbers whose squares are far from the smallest and the largest of all.
+    const SQUARED: (f64, f64) = (1e-150, 1e150);
+    let first = out.len();
+    out.extend(z.iter().map(|z| square(*z).sqrt()));
+    let own = &mut out[first..];
+    if !own.iter().fold(true, |all, size| all & (*size > SQUARED.0) & (*size < SQUARED.1)) {
+        own.iter_mut().zip(z).for_each(|(size, z)| *size = elementary::hypot(z[0], z[1]));
+    }
+}
+
+/// Sum over the orders of a bound of the largest angle \[rad\] of an inertia, times the order and alone.
+fn largest_angles(out: &TorsionOut) -> [f64; 2] {
+    let mut sums = [0.0; 2];
+    for o in &out.orders {
+        let parts = o.angle.as_flattened().iter();
+        let largest = 2.0 * parts.fold(0.0, |most: f64, x| if x.abs() > most { x.abs() } else { most });
+        sums = [sums[0] + o.order * largest, sums[1] + largest];
+    }
+    sums
 }
 
 fn link_point(cycle: &mut Cycle, out: &TorsionOut, link: usize) -> LinkPoint {
@@ -355,13 +379,8 @@ fn link_point(cycle: &mut Cycle, out: &TorsionOut, link: usize) -> LinkPoint {
         amplitude: 0.5 * (top - bottom),
         peak: top.abs().max(bottom.abs()),
         heat: out.orders.iter().map(|o| o.heat[link]).sum(),
-        order: strongest_order(out, link),
+        order: strongest_of(cycle.phasors().iter().map(|z| square(*z)).zip(cycle.orders().iter().copied())),
     }
-}
-
-/// The order of the largest torque in a link, the last of several; zero without any.
-fn strongest_order(out: &TorsionOut, link: usize) -> f64 {
-    strongest_of(out.orders.iter().map(|o| (square(o.torque[link]), o.order)))
 }
 
 /// The second of the pair with the largest first, the last of several; zero without any.
@@ -379,10 +398,16 @@ pub fn speed_fluctuation(cycle: &mut Cycle, out: &TorsionOut, node: usize) -> f6
     top - bottom
 }
 
+/// Speed of the first inertia of a link by that of the second, untwisted.
+fn gear(a: &Assembled, link: usize) -> f64 {
+    let [x, y] = a.line.links[link].nodes;
+    a.line.nodes[x].ratio / a.line.nodes[y].ratio
+}
+
 /// Twist of a link in an order.
 fn twist_of(a: &Assembled, link: usize) -> impl Fn(&OrderResponse) -> [f64; 2] {
     let [x, y] = a.line.links[link].nodes;
-    let gear = a.line.nodes[x].ratio / a.line.nodes[y].ratio;
+    let gear = gear(a, link);
     move |o| [o.angle[x][0] - gear * o.angle[y][0], o.angle[x][1] - gear * o.angle[y][1]]
 }
 

@@ -27,8 +27,17 @@ impl Cycle {
         let mut torque = vec![vec![0.0; drawn.len()]; a.line.links.len()];
         let mut speed = vec![vec![0.0; drawn.len()]; a.line.nodes.len()];
         torque.iter_mut().zip(&out.mean_torque).for_each(|(t, mean)| t.fill(*mean));
+        // An order that repeats with the period has no other sines than the first one.
+        let once: Vec<(f64, f64)> =
+            drawn.iter().map(|at| elementary::sin_cos(at * 2.0 * PI / a.period)).collect();
         for o in &out.orders {
-            let wave: Vec<(f64, f64)> = drawn.iter().map(|at| elementary::sin_cos(o.order * at)).collect();
+            let multiple = o.order * turns;
+            let wave: Vec<(f64, f64)> = if multiple == multiple.round() && points == DRAWN * (drawn.len() - 1)
+            {
+                (0..drawn.len()).map(|i| once[multiple as usize * i % (drawn.len() - 1)]).collect()
+            } else {
+                drawn.iter().map(|at| elementary::sin_cos(o.order * at)).collect()
+            };
             let add = |row: &mut [f64], [re, im]: [f64; 2]| {
                 row.iter_mut().zip(&wave).for_each(|(r, (sin, cos))| *r += re * cos - im * sin);
             };
