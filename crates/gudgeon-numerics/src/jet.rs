@@ -37,14 +37,17 @@ pub trait Real:
     /// Arc cosine of a value in (-1, 1).
     fn acos(self) -> Self;
     /// Square.
+    #[inline(always)]
     fn squared(self) -> Self {
         self * self
     }
     /// Cube.
+    #[inline(always)]
     fn cubed(self) -> Self {
         self * self * self
     }
     /// Reciprocal.
+    #[inline(always)]
     fn recip(self) -> Self {
         Self::constant(1.0) / self
     }
@@ -87,6 +90,7 @@ const PLACE: [[usize; 3]; 3] = [[0, 1, 2], [1, 3, 4], [2, 4, 5]];
 
 impl Jet {
     /// Variable `i` of the formula at the value `v`.
+    #[inline(always)]
     #[must_use]
     pub fn variable(v: f64, i: usize) -> Self {
         let mut j = Self { v, ..Self::default() };
@@ -103,7 +107,7 @@ impl Jet {
     }
 
     /// `f(self)` from the value of `f` and its first and second derivative there.
-    #[inline]
+    #[inline(always)]
     fn chain(self, f: f64, f1: f64, f2: f64) -> Self {
         let mut out = Self { v: f, ..Self::default() };
         for (o, g) in out.g.iter_mut().zip(self.g) {
@@ -116,7 +120,7 @@ impl Jet {
     }
 
     /// `a·x + b·y`.
-    #[inline]
+    #[inline(always)]
     fn combined(a: f64, x: Self, b: f64, y: Self) -> Self {
         let mut out = Self { v: a * x.v + b * y.v, ..Self::default() };
         for i in 0..VARIABLES {
@@ -129,7 +133,7 @@ impl Jet {
     }
 
     /// Derivatives times `r`, with the value `v`.
-    #[inline]
+    #[inline(always)]
     fn stretched(self, v: f64, r: f64) -> Self {
         let mut out = Self { v, ..self };
         for g in &mut out.g {
@@ -144,21 +148,21 @@ impl Jet {
 
 impl Add for Jet {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn add(self, o: Self) -> Self {
         Self::combined(1.0, self, 1.0, o)
     }
 }
 impl Sub for Jet {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn sub(self, o: Self) -> Self {
         Self::combined(1.0, self, -1.0, o)
     }
 }
 impl Mul for Jet {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn mul(self, o: Self) -> Self {
         let mut out = Self::combined(o.v, self, self.v, o);
         out.v = self.v * o.v;
@@ -171,7 +175,7 @@ impl Mul for Jet {
 impl Div for Jet {
     type Output = Self;
     // A quotient is the product with the reciprocal.
-    #[inline]
+    #[inline(always)]
     fn div(self, o: Self) -> Self {
         let r = 1.0 / o.v;
         let mut out = self * o.chain(r, -r * r, 2.0 * r * r * r);
@@ -181,65 +185,65 @@ impl Div for Jet {
 }
 impl Neg for Jet {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn neg(self) -> Self {
         self * -1.0
     }
 }
 impl Add<f64> for Jet {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn add(self, o: f64) -> Self {
         Self { v: self.v + o, ..self }
     }
 }
 impl Sub<f64> for Jet {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn sub(self, o: f64) -> Self {
         Self { v: self.v - o, ..self }
     }
 }
 impl Mul<f64> for Jet {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn mul(self, o: f64) -> Self {
         self.stretched(self.v * o, o)
     }
 }
 impl Div<f64> for Jet {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn div(self, o: f64) -> Self {
         self.stretched(self.v / o, 1.0 / o)
     }
 }
 
 impl Real for Jet {
-    #[inline]
+    #[inline(always)]
     fn constant(v: f64) -> Self {
         Self { v, ..Self::default() }
     }
-    #[inline]
+    #[inline(always)]
     fn value(self) -> f64 {
         self.v
     }
-    #[inline]
+    #[inline(always)]
     fn sqrt(self) -> Self {
         let r = self.v.sqrt();
         self.chain(r, 0.5 / r, -0.25 / (r * self.v))
     }
-    #[inline]
+    #[inline(always)]
     fn ln(self) -> Self {
         let r = 1.0 / self.v;
         self.chain(elementary::ln(self.v), r, -r * r)
     }
-    #[inline]
+    #[inline(always)]
     fn acos(self) -> Self {
         let w = 1.0 / (1.0 - self.v * self.v);
         self.chain(elementary::acos(self.v), -w.sqrt(), -self.v * w * w.sqrt())
     }
-    #[inline]
+    #[inline(always)]
     fn recip(self) -> Self {
         let r = 1.0 / self.v;
         self.chain(r, -r * r, 2.0 * r * r * r)

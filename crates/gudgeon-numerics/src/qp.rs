@@ -85,25 +85,45 @@ fn apply(m: &[[f64; 3]; 3], v: &[f64; 3]) -> [f64; 3] {
 ///
 /// Not [`crate::linalg::lu_factor`]: with it a program takes 2 % longer, and one in seven differs by rounding.
 #[must_use]
-pub fn solve(mut m: [[f64; 3]; 3], mut r: [f64; 3], n: usize) -> Option<[f64; 3]> {
-    for c in 0..n {
-        let p = (c..n).max_by(|&i, &j| m[i][c].abs().total_cmp(&m[j][c].abs()))?;
-        if m[p][c].abs() < f64::MIN_POSITIVE {
+pub fn solve(m: [[f64; 3]; 3], r: [f64; 3], n: usize) -> Option<[f64; 3]> {
+    match n {
+        0 => Some([0.0; 3]),
+        1 => solve_rows::<1>(m, r),
+        2 => solve_rows::<2>(m, r),
+        _ => solve_rows::<3>(m, r),
+    }
+}
+
+/// As [`solve`], its loops written out by the compiler.
+#[inline]
+fn solve_rows<const N: usize>(mut m: [[f64; 3]; 3], mut r: [f64; 3]) -> Option<[f64; 3]> {
+    for c in 0..N {
+        let mut p = c;
+        for i in c + 1..N {
+            // The last of several of one size.
+            p = if m[i][c].abs() >= m[p][c].abs() { i } else { p };
+        }
+        let pivot = m[p][c].abs();
+        if pivot.is_nan() || pivot < f64::MIN_POSITIVE {
             return None;
         }
         m.swap(c, p);
         r.swap(c, p);
-        for i in c + 1..n {
+        for i in c + 1..N {
             let f = m[i][c] / m[c][c];
-            for k in c..n {
+            for k in c + 1..N {
                 m[i][k] -= f * m[c][k];
             }
             r[i] -= f * r[c];
         }
     }
     let mut x = [0.0; 3];
-    for i in (0..n).rev() {
-        x[i] = (r[i] - (i + 1..n).map(|k| m[i][k] * x[k]).sum::<f64>()) / m[i][i];
+    for i in (0..N).rev() {
+        let mut sum = 0.0;
+        for k in i + 1..N {
+            sum += m[i][k] * x[k];
+        }
+        x[i] = (r[i] - sum) / m[i][i];
     }
     Some(x)
 }
@@ -150,12 +170,17 @@ impl ActiveSet {
     #[inline]
     fn violated(&self, constraints: &[HalfSpace], x: &[f64; 3]) -> Option<usize> {
         let mut worst = (0.0, None);
+        let active = self.indices().iter().fold(0_u32, |active, k| active | 1 << k);
         for (k, c) in constraints.iter().enumerate() {
-            if self.indices().contains(&k) {
+            if active >> k & 1 == 1 {
+                continue;
+            }
+            let excess = dot(&c.a, x) - c.b;
+            if excess <= 0.0 {
                 continue;
             }
             let size = dot(&c.a, &c.a).sqrt().max(f64::MIN_POSITIVE);
-            let by = (dot(&c.a, x) - c.b) / size;
+            let by = excess / size;
             if by > worst.0 && by > 1e-15 * (1.0 + c.b.abs() / size) {
                 worst = (by, Some(k));
             }
@@ -176,8 +201,10 @@ impl ActiveSet {
         let inward = |k: usize| constraints[k].a.map(|v| -v);
         let mut gram = [[0.0; 3]; 3];
         let mut right = [0.0; 3];
+        let mut across = [[0.0; 3]; 3];
         for (i, &k) in self.indices().iter().enumerate() {
             let hi = apply(inv, &inward(k));
+            across[i] = hi;
             for (j, &k) in self.indices().iter().enumerate() {
                 gram[i][j] = dot(&hi, &inward(k));
             }
@@ -185,10 +212,9 @@ impl ActiveSet {
         }
         let r = solve(gram, right, self.len)?;
         let mut z = hn;
-        for (j, &k) in self.indices().iter().enumerate() {
-            let hj = apply(inv, &inward(k));
+        for (rj, hj) in r.iter().zip(across).take(self.len) {
             for (zi, hji) in z.iter_mut().zip(hj) {
-                *zi -= r[j] * hji;
+                *zi -= rj * hji;
             }
         }
         Some((z, r))
@@ -241,6 +267,9 @@ pub fn minimise_near(
     constraints: &[HalfSpace],
     guess: &[usize],
 ) -> Result<Minimum, QpError> {
+    if constraints.len() > MAX_CONSTRAINTS {
+        return Err(QpError::Stalled);
+    }
     match over_equalities((h, inv), g, constraints, guess) {
         Some(minimum) => Ok(minimum),
         None => minimise_with(inv, g, constraints),

@@ -15,14 +15,19 @@ struct Active {
 }
 
 /// The limits and bounds with a multiplier.
-fn active(p: &Program<'_, '_>, x: &[f64; 3], at: &Expansion, mu: &Multipliers) -> Vec<Active> {
+fn active(
+    p: &Program<'_, '_>,
+    x: &[f64; 3],
+    at: &Expansion,
+    mu: &Multipliers,
+) -> impl Iterator<Item = Active> {
     let limits = at.limits.iter().zip(mu).filter(|(_, mu)| **mu > 0.0);
     let limits = limits.map(|(l, mu)| Active { normal: l.g, multiplier: *mu, slack: l.v });
     let bounds = p.bounds.iter().zip(&mu[PIN_QUANTITIES..]).filter(|(_, mu)| **mu > 0.0);
     let bounds = bounds.filter_map(|(b, mu)| {
         b.as_ref().map(|b| Active { normal: b.a, multiplier: *mu, slack: slack(b, x) })
     });
-    limits.chain(bounds).collect()
+    limits.chain(bounds)
 }
 
 /// Evaluates the conditions at a point.
@@ -39,20 +44,22 @@ pub fn conditions(
     let mut kkt = KktResiduals { infeasibility: infeasibility(p, x, &utilisation), ..Default::default() };
     // Gradient of the Lagrangian, normals that hold the point.
     let mut rest = at.mass.g;
-    let mut normals = Vec::new();
+    let (mut normals, mut count) = ([[0.0; 3]; 3], 0);
     for a in active(p, x, at, mu) {
         for i in 0..3 {
             rest[i] += a.multiplier * a.normal[i];
         }
         kkt.complementarity = kkt.complementarity.max((a.multiplier * a.slack * p.mass / masses.pin).abs());
-        normals.push(p.free(&a.normal));
+        if count < 3 {
+            normals[count] = p.free(&a.normal);
+            count += 1;
+        }
     }
-    normals.truncate(3);
     let free = || (0..3).filter(|i| !p.fixed[*i]);
     let scale = free().fold(1e-300, |a: f64, i| a.max(at.mass.g[i].abs()));
     kkt.stationarity = free().fold(0.0, |a: f64, i| a.max(rest[i].abs())) / scale;
     let w = p.lagrangian_hessian(at, mu);
-    kkt.curvature = min_curvature(&w, &normals, &p.fixed).map(|c| c * p.mass / masses.pin);
+    kkt.curvature = min_curvature(&w, &normals[..count], &p.fixed).map(|c| c * p.mass / masses.pin);
     Ok(Optimum {
         size,
         masses,
@@ -79,49 +86,53 @@ fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
 #[doc(hidden)]
 #[must_use]
 pub fn min_curvature(w: &[[f64; 3]; 3], normals: &[[f64; 3]], fixed: &[bool; 3]) -> Option<f64> {
-    let basis = orthogonal_complement(normals, fixed);
-    if basis.is_empty() {
-        return None;
-    }
+    let (directions, held) = directions(normals, fixed);
+    let left = &directions[held..];
     let mut m = [[0.0; 3]; 3];
-    for (i, u) in basis.iter().enumerate() {
-        for (j, v) in basis.iter().enumerate() {
+    for (i, u) in left.iter().enumerate() {
+        for (j, v) in left.iter().enumerate() {
             let wv: [f64; 3] = std::array::from_fn(|k| dot(&w[k], v));
             m[i][j] = dot(u, &wv);
         }
     }
-    min_eigenvalue(m, basis.len())
+    min_eigenvalue(m, left.len())
 }
 
-/// Orthonormal basis of the directions that are free and orthogonal to `normals`, by Gram-Schmidt.
-fn orthogonal_complement(normals: &[[f64; 3]], fixed: &[bool; 3]) -> Vec<[f64; 3]> {
+/// Orthonormal basis by Gram-Schmidt, and how many of its first directions are those of fixed dimensions and of `normals`: the others are free.
+fn directions(normals: &[[f64; 3]], fixed: &[bool; 3]) -> ([[f64; 3]; 3], usize) {
     let unit = |i: usize| std::array::from_fn(|j| if i == j { 1.0 } else { 0.0 });
-    let mut taken: Vec<[f64; 3]> = Vec::with_capacity(3);
-    let extend = |taken: &mut Vec<[f64; 3]>, mut v: [f64; 3]| {
+    let (mut taken, mut count) = ([[0.0; 3]; 3], 0);
+    let mut extend = |mut v: [f64; 3]| {
         let before = dot(&v, &v).sqrt();
-        for t in taken.iter() {
+        for t in &taken[..count] {
             let c = dot(&v, t);
             for i in 0..3 {
                 v[i] -= c * t[i];
             }
         }
         let len = dot(&v, &v).sqrt();
-        if len > 1e-9 * before && taken.len() < 3 {
-            taken.push(v.map(|c| c / len));
+        if len > 1e-9 * before && count < 3 {
+            taken[count] = v.map(|c| c / len);
+            count += 1;
         }
+        count
     };
+    let mut held = 0;
     for v in (0..3).filter(|i| fixed[*i]).map(unit).chain(normals.iter().copied()) {
-        extend(&mut taken, v);
+        held = extend(v);
     }
-    let held = taken.len();
     for i in 0..3 {
-        extend(&mut taken, unit(i));
+        extend(unit(i));
     }
-    taken.split_off(held)
+    (taken, held)
 }
 
-/// Minimum eigenvalue of the leading `n × n` part of a symmetric matrix, by Jacobi rotations.
+/// Minimum eigenvalue of the leading `n × n` part of a symmetric matrix: of three rows by Jacobi rotations. None of no row.
 fn min_eigenvalue(mut m: [[f64; 3]; 3], n: usize) -> Option<f64> {
+    if n == 2 {
+        let (mean, half) = (0.5 * (m[0][0] + m[1][1]), 0.5 * (m[0][0] - m[1][1]));
+        return Some(mean - elementary::hypot(half, m[0][1]));
+    }
     for _ in 0..12 {
         for i in 0..n {
             for j in i + 1..n {

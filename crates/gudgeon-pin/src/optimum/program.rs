@@ -31,6 +31,7 @@ pub struct Program<'a, 'b> {
 }
 
 /// Mass and limits with first and second derivatives at one point.
+#[derive(Default)]
 pub struct Expansion {
     pub mass: Jet,
     /// Logarithms of the utilisations; zero where there is no limit.
@@ -86,15 +87,14 @@ impl<'a, 'b> Program<'a, 'b> {
         self.scaled(m) / self.mass
     }
 
-    /// Mass and limits around a point.
-    pub fn expansion(&self, x: &[f64; 3]) -> Result<Expansion, EvalError> {
+    /// Takes mass and limits around a point; what was there stays where there are none.
+    pub fn expand(&self, x: &[f64; 3], at: &mut Expansion) -> Result<(), EvalError> {
         let (d, size) = (self.design, self.size(x));
         let (short, long) = corners(&size, &d.tolerance);
         let of_short = d.strength.expansion(&short, &d.load)?;
         let of_long = (short != long).then(|| d.strength.expansion(&long, &d.load)).transpose()?;
-        let mut limits = [Jet::default(); PIN_QUANTITIES];
         for (k, limit) in d.limits.iter().enumerate().filter(|(_, limit)| limit.is_finite()) {
-            limits[k] = match &of_long {
+            at.limits[k] = match &of_long {
                 Some(long) if k == PinQuantity::ResultantStress as usize => {
                     self.utilised(&resultant(&of_short, long), *limit)
                 }
@@ -104,7 +104,8 @@ impl<'a, 'b> Program<'a, 'b> {
                 _ => self.utilised(&jet(&of_short, k), *limit),
             };
         }
-        Ok(Expansion { mass: self.mass_expansion(&size), limits })
+        at.mass = self.mass_expansion(&size);
+        Ok(())
     }
 
     /// Logarithm of a quantity over its limit, with derivatives by units.

@@ -17,7 +17,8 @@ const UNMOVED: f64 = 4.0 * f64::EPSILON;
 pub fn local_optimum(d: &Design<'_>, from: PinSize) -> Result<Optimum, NoOptimum> {
     let p = Program::new(d);
     let mut x = p.point_within_ranges(&from);
-    let mut at = p.expansion(&x).map_err(NoOptimum::Model)?;
+    let mut at = Expansion::default();
+    p.expand(&x, &mut at).map_err(NoOptimum::Model)?;
     let mut mu = [0.0; CONSTRAINTS];
     let (mut iterations, mut settled) = (0, false);
     // The last step is at rounding: its multipliers belong to this very point.
@@ -67,8 +68,8 @@ fn line_search(
         // Close by, rounding decides the merit; Newton's step is right without it.
         let accepted =
             length < 1e-6 || p.merit(&y, weight).is_some_and(|merit| merit < before || !before.is_finite());
-        if accepted && let Ok(e) = p.expansion(&y) {
-            (*x, *at) = (y, e);
+        if accepted && p.expand(&y, at).is_ok() {
+            *x = y;
             return true;
         }
         scale *= 0.5;

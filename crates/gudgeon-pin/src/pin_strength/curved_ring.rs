@@ -43,6 +43,7 @@ impl Formula for CurvedBar {
     fn surroundings(&self) -> &Surroundings {
         &self.0
     }
+    #[inline(always)]
     fn quantities<T: Real>(&self, pin: &Loaded<'_, T>, _: f64) -> [T; PIN_QUANTITIES] {
         let (modulus, nu) = (self.0.modulus, self.0.poisson);
         let f = pin.total;

@@ -53,6 +53,7 @@ impl Formula for Michell {
     fn surroundings(&self) -> &Surroundings {
         &self.at
     }
+    #[inline(always)]
     fn quantities<T: Real>(&self, pin: &Loaded<'_, T>, _: f64) -> [T; PIN_QUANTITIES] {
         let nu = self.poisson;
         let q2 = pin.rho.squared();

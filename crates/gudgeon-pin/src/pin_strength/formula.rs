@@ -5,6 +5,7 @@ use std::fmt::Debug;
 use gudgeon_core::kinds::{PIN_QUANTITIES, PinExpansion, PinForces, PinSize, PinStrength, PinStrengthCtx};
 use gudgeon_core::{BuildError, EvalError};
 use gudgeon_numerics::jet::{Jet, Real};
+use gudgeon_numerics::vectors::{Vectorised, widest};
 
 /// What all models know of the pin's surroundings.
 #[derive(Debug, Clone, Copy)]
@@ -116,6 +117,7 @@ impl<'a, T: Real> Loaded<'a, T> {
     }
 
     /// `f = F a³/(48 E J) (1 - b²/2 + b³/8)`, `b = B/a`: the Euler-Bernoulli beam under a force spread over B.
+    #[inline(always)]
     pub fn deflection_of_beam(&self) -> T {
         let (a, w) = (self.centres, self.at.rod_width);
         let shape = a.cubed() - a * (0.5 * w * w) + w * w * w / 8.0;
@@ -123,6 +125,7 @@ impl<'a, T: Real> Loaded<'a, T> {
     }
 
     /// `f = F (a/4 - B/8)/(κ A G)`, `κ` of a thick tube after `cowper1966`.
+    #[inline(always)]
     pub fn deflection_by_shear(&self) -> T {
         let nu = self.at.poisson;
         let r2 = self.rho.squared();
@@ -162,6 +165,20 @@ pub trait Formula: Debug + Send + Sync {
     fn quantities<T: Real>(&self, pin: &Loaded<'_, T>, gas: f64) -> [T; PIN_QUANTITIES];
 }
 
+/// Quantities of a formula with their derivatives.
+struct Expand<'a, F>(&'a F, &'a PinSize, &'a PinForces);
+
+impl<F: Formula> Vectorised for Expand<'_, F> {
+    type Output = [Jet; PIN_QUANTITIES];
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        let Self(formula, s, load) = self;
+        let x = [Jet::variable(s.length, 0), Jet::variable(s.outer, 1), Jet::variable(s.inner, 2)];
+        formula.quantities(&Loaded::new(formula.surroundings(), x, load.total().abs()), load.gas.abs())
+    }
+}
+
 /// A [`Formula`] as a model.
 #[derive(Debug)]
 pub struct Evaluated<F>(pub F);
@@ -198,21 +215,20 @@ impl<F: Formula> PinStrength for Evaluated<F> {
         self.check(s, load)?;
         let pin = Loaded::new(self.0.surroundings(), [s.length, s.outer, s.inner], load.total().abs());
         let out = self.0.quantities(&pin, load.gas.abs());
-        Self::finite(out.iter().all(|v| v.is_finite()))?;
+        Self::finite(out.iter().fold(true, |ok, v| ok & v.is_finite()))?;
         Ok(out)
     }
 
     fn expansion(&self, s: &PinSize, load: &PinForces) -> Result<PinExpansion, EvalError> {
         self.check(s, load)?;
-        let x = [Jet::variable(s.length, 0), Jet::variable(s.outer, 1), Jet::variable(s.inner, 2)];
-        let pin = Loaded::new(self.0.surroundings(), x, load.total().abs());
-        let jets = self.0.quantities(&pin, load.gas.abs());
-        Self::finite(jets.iter().all(|j| j.v.is_finite() && j.h.iter().all(|h| h.is_finite())))?;
-        let mut out = PinExpansion::default();
-        for (k, j) in jets.iter().enumerate() {
-            (out.value[k], out.gradient[k], out.hessian[k]) = (j.v, j.g, j.h);
-        }
-        Ok(out)
+        let jets = widest(Expand(&self.0, s, load));
+        let all = |ok: bool, v: &f64| ok & v.is_finite();
+        Self::finite(jets.iter().fold(true, |ok, j| j.h.iter().fold(all(ok, &j.v), all)))?;
+        Ok(PinExpansion {
+            value: jets.each_ref().map(|j| j.v),
+            gradient: jets.each_ref().map(|j| j.g),
+            hessian: jets.each_ref().map(|j| j.h),
+        })
     }
 
     fn min_bore_ratio(&self) -> f64 {

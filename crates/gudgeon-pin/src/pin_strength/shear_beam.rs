@@ -45,6 +45,7 @@ impl Formula for Beam {
     fn surroundings(&self) -> &Surroundings {
         &self.at
     }
+    #[inline(always)]
     fn quantities<T: Real>(&self, pin: &Loaded<'_, T>, gas: f64) -> [T; PIN_QUANTITIES] {
         let (bending, hoop) = (pin.bending_stress(), pin.thin_ring_stress());
         let mut deflection = pin.deflection_of_beam();

@@ -40,6 +40,7 @@ impl Formula for Published {
     fn surroundings(&self) -> &Surroundings {
         &self.0
     }
+    #[inline(always)]
     fn quantities<T: Real>(&self, pin: &Loaded<'_, T>, gas: f64) -> [T; PIN_QUANTITIES] {
         let (bending, hoop) = (pin.bending_stress(), pin.thin_ring_stress());
         [
