@@ -6,7 +6,6 @@ use gudgeon_core::quantity::{ALL_DIMENSIONS, Unit};
 use serde::Serialize;
 use serde_json::Value;
 
-use super::report::line_column;
 use super::schema::{Part, Schema, words_of};
 use super::tree::{Data, Node, join};
 
@@ -65,7 +64,9 @@ pub struct ChoiceInput {
 
 /// The inputs of a resolved case, in its order; `text` and `document` are what the case wrote.
 pub(super) fn inputs(schema: &Schema, resolved: &Value, text: &str, document: &Node) -> Vec<Input> {
-    let mut walk = Walk { schema, text, document, out: Vec::new() };
+    let newlines = text.bytes().enumerate().filter(|(_, b)| *b == b'\n');
+    let lines = std::iter::once(0).chain(newlines.map(|(i, _)| i + 1)).collect();
+    let mut walk = Walk { schema, lines, document, out: Vec::new() };
     if let Some(root) = Node::from_json(resolved) {
         walk.value(&root, schema.root(), schema.root(), "");
     }
@@ -74,7 +75,8 @@ pub(super) fn inputs(schema: &Schema, resolved: &Value, text: &str, document: &N
 
 struct Walk<'a> {
     schema: &'a Schema,
-    text: &'a str,
+    /// Where each line of the text begins.
+    lines: Vec<usize>,
     document: &'a Node,
     out: Vec<Input>,
 }
@@ -136,7 +138,10 @@ impl Walk<'_> {
 
     fn add(&mut self, path: &str, about: String, value: InputValue) {
         let line = match self.document.deepest(path) {
-            (node, true) => node.place.span.as_ref().map(|s| line_column(self.text, s.start).0),
+            (node, true) => {
+                let span = node.place.span.as_ref();
+                span.map(|s| self.lines.partition_point(|begin| *begin <= s.start))
+            }
             _ => None,
         };
         self.out.push(Input { path: path.to_owned(), about, line, value });

@@ -74,7 +74,7 @@ impl Schema {
     pub fn resolve(&self, mut schema: Part) -> Part {
         for _ in 0..MAX_REFERENCES {
             if let Some(target) = schema.get("$ref").and_then(Value::as_str) {
-                match target.strip_prefix('#').and_then(|p| self.root.pointer(p)) {
+                match self.target(target) {
                     Some(s) => schema = s,
                     None => return &Value::Bool(true),
                 }
@@ -91,6 +91,15 @@ impl Schema {
             }
         }
         schema
+    }
+
+    /// What a reference names.
+    fn target(&self, reference: &str) -> Option<Part> {
+        // Nearly all are `#/$defs/name`: a look without taking a pointer to pieces, which would copy them.
+        match reference.strip_prefix("#/$defs/") {
+            Some(name) if !name.contains(['/', '~', '%']) => self.root.get("$defs")?.get(name),
+            _ => self.root.pointer(reference.strip_prefix('#')?),
+        }
     }
 
     /// Whether a text, or one of some words, is what a value must be.

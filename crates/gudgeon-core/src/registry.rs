@@ -254,16 +254,7 @@ impl Registry {
     /// Collects everything linked into this program.
     #[must_use]
     pub fn collect() -> Self {
-        let mut kinds: BTreeMap<_, _> =
-            inventory::iter::<KindInfo>().map(|k| (k.kind, (k, Vec::new()))).collect();
-        for m in inventory::iter::<ModelInfo>() {
-            if let Some((_, models)) = kinds.get_mut(m.kind) {
-                models.push(m);
-            }
-        }
-        for (_, models) in kinds.values_mut() {
-            models.sort_by_key(|m| (m.name, m.file, m.line));
-        }
+        let kinds = inventory::iter::<KindInfo>().map(|k| (k.kind, (k, models_of(k.kind)))).collect();
         Self { kinds }
     }
 
@@ -355,12 +346,17 @@ impl fmt::Display for Registry {
     }
 }
 
+/// The models that are registered for a kind, by name.
+fn models_of(kind: &str) -> Vec<&'static ModelInfo> {
+    let mut models: Vec<_> = inventory::iter::<ModelInfo>().filter(|m| m.kind == kind).collect();
+    models.sort_by_key(|m| (m.name, m.file, m.line));
+    models
+}
+
 /// JSON schema of a kind: one of its models, told apart by the `model` key.
 pub fn kind_schema(kind: &str, g: &mut schemars::SchemaGenerator) -> schemars::Schema {
-    let registry = Registry::collect();
-    let variants: Vec<serde_json::Value> = registry
-        .models(kind)
-        .iter()
+    let variants: Vec<serde_json::Value> = models_of(kind)
+        .into_iter()
         .map(|m| {
             let mut schema = (m.schema)(g).to_value();
             if let Some(o) = schema.as_object_mut() {
@@ -377,5 +373,7 @@ pub fn kind_schema(kind: &str, g: &mut schemars::SchemaGenerator) -> schemars::S
             schema
         })
         .collect();
-    schemars::json_schema!({ "oneOf": variants })
+    let mut schema = schemars::Schema::default();
+    schema.insert("oneOf".into(), variants.into());
+    schema
 }

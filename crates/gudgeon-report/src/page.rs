@@ -42,16 +42,22 @@ pub(crate) enum Kind {
 /// Text made safe for HTML content and quoted attributes.
 pub(crate) fn esc(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\'' => out.push_str("&#39;"),
-            _ => out.push(c),
-        }
+    // All of these are bytes of their own, so what stands between them is text.
+    let mut from = 0;
+    for (at, byte) in text.bytes().enumerate() {
+        let safe = match byte {
+            b'&' => "&amp;",
+            b'<' => "&lt;",
+            b'>' => "&gt;",
+            b'"' => "&quot;",
+            b'\'' => "&#39;",
+            _ => continue,
+        };
+        out.push_str(&text[from..at]);
+        out.push_str(safe);
+        from = at + 1;
     }
+    out.push_str(&text[from..]);
     out
 }
 
@@ -62,31 +68,31 @@ fn typeset(text: &str) -> String {
         let bare = word.trim_end_matches([',', '.', ';', ':', ')']);
         let rest = &word[bare.len()..];
         match bare {
-            "deg" if out.ends_with(|c: char| c.is_ascii_digit()) => {
-                let _ = write!(out, "°{rest}");
-            }
+            "deg" if out.ends_with(|c: char| c.is_ascii_digit()) => out.push('°'),
             _ => {
-                let unit = if bare == "um" { "µm" } else { bare };
-                let _ = write!(out, "{}{unit}{rest}", if k > 0 { " " } else { "" });
+                if k > 0 {
+                    out.push(' ');
+                }
+                out.push_str(if bare == "um" { "µm" } else { bare });
             }
         }
+        out.push_str(rest);
     }
     out
 }
 
 /// Prose made safe, with what stands between backticks set as code and units typeset outside of it.
 pub(crate) fn prose(text: &str) -> String {
-    let coded = |(i, part): (usize, &str)| if i % 2 == 1 { esc(part) } else { esc(&typeset(part)) };
-    let parts: Vec<String> = text.split('`').enumerate().map(coded).collect();
-    if parts.len().is_multiple_of(2) {
+    let ticks = text.bytes().filter(|b| *b == b'`').count();
+    if ticks == 0 || ticks % 2 == 1 {
         return esc(&typeset(text));
     }
     let mut out = String::new();
-    for (i, part) in parts.iter().enumerate() {
+    for (i, part) in text.split('`').enumerate() {
         if i % 2 == 1 {
-            let _ = write!(out, "<code>{part}</code>");
+            out.extend(["<code>", &esc(part), "</code>"]);
         } else {
-            out.push_str(part);
+            out.push_str(&esc(&typeset(part)));
         }
     }
     out
@@ -158,22 +164,21 @@ pub(crate) fn body(contents: &[(&str, &str)], main: &str, version: &str, scenes:
 /// Standard base64.
 fn base64(bytes: &[u8]) -> String {
     const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let letter = |group: u32, at: u32| char::from(ALPHABET[(group >> at) as usize & 63]);
-    let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    let whole = bytes.chunks_exact(3);
-    let rest = whole.remainder();
-    for three in whole {
-        let group = u32::from(three[0]) << 16 | u32::from(three[1]) << 8 | u32::from(three[2]);
-        [18, 12, 6, 0].into_iter().for_each(|at| out.push(letter(group, at)));
+    let letters = |[a, b, c]: [u8; 3]| {
+        let group = u32::from(a) << 16 | u32::from(b) << 8 | u32::from(c);
+        let letter = |at: u32| ALPHABET[(group >> at) as usize & 63];
+        [letter(18), letter(12), letter(6), letter(0)]
+    };
+    let mut out = vec![b'='; bytes.len().div_ceil(3) * 4];
+    let (whole, rest) = bytes.as_chunks::<3>();
+    let (places, _) = out.as_chunks_mut::<4>();
+    places.iter_mut().zip(whole).for_each(|(place, three)| *place = letters(*three));
+    if let ([first, others @ ..], Some(place)) = (rest, places.last_mut()) {
+        let [a, b, c, _] = letters([*first, others.first().copied().unwrap_or(0), 0]);
+        *place = [a, b, if others.is_empty() { b'=' } else { c }, b'='];
     }
-    if let [first, others @ ..] = rest {
-        let group = u32::from(*first) << 16 | others.first().map_or(0, |b| u32::from(*b) << 8);
-        out.push(letter(group, 18));
-        out.push(letter(group, 12));
-        out.push(if others.is_empty() { '=' } else { letter(group, 6) });
-        out.push('=');
-    }
-    out
+    // Letters, digits and signs of the alphabet are text.
+    String::from_utf8(out).unwrap_or_default()
 }
 
 /// Numbers as base64 of little-endian 32-bit floats: seven digits, enough for a drawing, at five bytes a number.

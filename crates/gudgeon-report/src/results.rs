@@ -289,10 +289,11 @@ fn shared(told: &[String], family: &str) -> String {
 /// A row of a table per ring must not speak of ring 1.
 fn without_member(text: &str, family: &str, n: &str) -> String {
     let name = format!("{family} {n}");
-    for lead in [", in ", " of ", " on ", " at ", " in ", " past ", " behind ", ", "] {
-        if let Some(rest) = text.strip_suffix(&format!("{lead}{name}")) {
-            return rest.to_owned();
-        }
+    const LEADS: [&str; 8] = [", in ", " of ", " on ", " at ", " in ", " past ", " behind ", ", "];
+    if let Some(front) = text.strip_suffix(&name)
+        && let Some(rest) = LEADS.into_iter().find_map(|lead| front.strip_suffix(lead))
+    {
+        return rest.to_owned();
     }
     text.replace(&name, &format!("the {family}"))
 }

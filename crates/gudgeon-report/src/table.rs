@@ -40,6 +40,7 @@ struct Csv {
 
 impl Csv {
     /// The comma before all fields but the first.
+    #[inline]
     fn field(&mut self) {
         if std::mem::replace(&mut self.begun, true) {
             self.bytes.push(b',');
