@@ -38,39 +38,22 @@ pub enum QpError {
     Stalled,
 }
 
-/// Inverse of a symmetric positive definite matrix by its Cholesky factor; `None` when it is not.
+/// Inverse of a symmetric positive definite matrix by its factors `L D Lᵀ`; `None` when it is not.
 #[must_use]
 pub fn inverse(h: &[[f64; 3]; 3]) -> Option<[[f64; 3]; 3]> {
-    let mut l = [[0.0; 3]; 3];
-    for i in 0..3 {
-        for j in 0..=i {
-            let s = h[i][j] - (0..j).map(|k| l[i][k] * l[j][k]).sum::<f64>();
-            if i == j {
-                // A pivot lost to rounding counts as zero.
-                if s.is_nan() || s <= 1e-14 * h[i][i].abs() {
-                    return None;
-                }
-                l[i][i] = s.sqrt();
-            } else {
-                l[i][j] = s / l[j][j];
-            }
-        }
-    }
-    let mut out = [[0.0; 3]; 3];
-    for c in 0..3 {
-        let mut y = [0.0; 3];
-        for i in 0..3 {
-            let e = if i == c { 1.0 } else { 0.0 };
-            y[i] = (e - (0..i).map(|k| l[i][k] * y[k]).sum::<f64>()) / l[i][i];
-        }
-        for i in (0..3).rev() {
-            y[i] = (y[i] - (i + 1..3).map(|k| l[k][i] * y[k]).sum::<f64>()) / l[i][i];
-        }
-        for i in 0..3 {
-            out[i][c] = y[i];
-        }
-    }
-    Some(out)
+    // The reciprocal of a pivot; one lost to rounding counts as zero.
+    let reciprocal = |pivot: f64, i: usize| (pivot > 1e-14 * h[i][i].abs()).then(|| 1.0 / pivot);
+    let r0 = reciprocal(h[0][0], 0)?;
+    let (l10, l20) = (h[1][0] * r0, h[2][0] * r0);
+    let r1 = reciprocal(h[1][1] - l10 * h[1][0], 1)?;
+    let below = h[2][1] - l20 * h[1][0];
+    let l21 = below * r1;
+    let r2 = reciprocal(h[2][2] - l20 * h[2][0] - l21 * below, 2)?;
+    // The inverse of L has ones on its diagonal and these below.
+    let (u10, u20, u21) = (-l10, l10 * l21 - l20, -l21);
+    let (s20, s21) = (u20 * r2, u21 * r2);
+    let (i01, i11) = (u10 * r1 + u20 * s21, r1 + u21 * s21);
+    Some([[r0 + u10 * u10 * r1 + u20 * s20, i01, s20], [i01, i11, s21], [s20, s21, r2]])
 }
 
 fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {

@@ -48,11 +48,10 @@ pub(crate) fn subject(name: &str) -> String {
 
 /// Numbers of members in their order.
 fn in_order(numbers: impl Iterator<Item = String>) -> Vec<String> {
-    let mut all: Vec<String> = numbers.collect();
-    let value = |n: &String| n.parse::<f64>().unwrap_or(f64::INFINITY);
-    all.sort_by(|a, b| value(a).total_cmp(&value(b)));
+    let mut all: Vec<(f64, String)> = numbers.map(|n| (n.parse().unwrap_or(f64::INFINITY), n)).collect();
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
     all.dedup();
-    all
+    all.into_iter().map(|(_, n)| n).collect()
 }
 
 /// Parts of a cylinder: what the names of their results begin with, and their titles.

@@ -40,7 +40,7 @@ fn at_outer(d: &Design<'_>, outer: f64, known: Option<f64>) -> Option<PinSize> {
         if lighter >= d.min_inner(outer) && !kept(lighter) {
             return None;
         }
-        let inner = d.max_feasible_inner_over(length, length, outer, 2e-3)?;
+        let inner = d.max_feasible_inner_over(length, length, outer, 2e-2)?;
         Some(PinSize { length, outer, inner })
     })
 }

@@ -5,7 +5,6 @@ use std::fmt::Debug;
 use gudgeon_core::kinds::{PIN_QUANTITIES, PinExpansion, PinForces, PinSize, PinStrength, PinStrengthCtx};
 use gudgeon_core::{BuildError, EvalError};
 use gudgeon_numerics::jet::{Jet, Real};
-use gudgeon_numerics::vectors::{Vectorised, widest};
 
 /// What all models know of the pin's surroundings.
 #[derive(Debug, Clone, Copy)]
@@ -165,20 +164,6 @@ pub trait Formula: Debug + Send + Sync {
     fn quantities<T: Real>(&self, pin: &Loaded<'_, T>, gas: f64) -> [T; PIN_QUANTITIES];
 }
 
-/// Quantities of a formula with their derivatives.
-struct Expand<'a, F>(&'a F, &'a PinSize, &'a PinForces);
-
-impl<F: Formula> Vectorised for Expand<'_, F> {
-    type Output = [Jet; PIN_QUANTITIES];
-
-    #[inline(always)]
-    fn run(self) -> Self::Output {
-        let Self(formula, s, load) = self;
-        let x = [Jet::variable(s.length, 0), Jet::variable(s.outer, 1), Jet::variable(s.inner, 2)];
-        formula.quantities(&Loaded::new(formula.surroundings(), x, load.total().abs()), load.gas.abs())
-    }
-}
-
 /// A [`Formula`] as a model.
 #[derive(Debug)]
 pub struct Evaluated<F>(pub F);
@@ -221,7 +206,9 @@ impl<F: Formula> PinStrength for Evaluated<F> {
 
     fn expansion(&self, s: &PinSize, load: &PinForces) -> Result<PinExpansion, EvalError> {
         self.check(s, load)?;
-        let jets = widest(Expand(&self.0, s, load));
+        let x = [Jet::variable(s.length, 0), Jet::variable(s.outer, 1), Jet::variable(s.inner, 2)];
+        let pin = Loaded::new(self.0.surroundings(), x, load.total().abs());
+        let jets = self.0.quantities(&pin, load.gas.abs());
         let all = |ok: bool, v: &f64| ok & v.is_finite();
         Self::finite(jets.iter().fold(true, |ok, j| j.h.iter().fold(all(ok, &j.v), all)))?;
         Ok(PinExpansion {

@@ -332,13 +332,22 @@ impl<'a> Machine<'a> {
 
 /// An answer of numbers.
 fn finite(out: &TorsionOut) -> Result<(), EvalError> {
-    // Without a branch for every number.
-    let all = |values: &[f64]| values.iter().fold(true, |all, v| all & v.is_finite());
-    let orders = out.orders.iter().all(|o| all(o.torque.as_flattened()) & all(o.angle.as_flattened()));
+    let all = |values: &[f64]| values.iter().all(|v| v.is_finite());
+    let orders = out.orders.iter().all(|o| finite_phasors(&o.torque) && finite_phasors(&o.angle));
     if orders && all(&out.mean_torque) && all(&out.mean_angle) && out.balance_torque.is_finite() {
         return Ok(());
     }
     Err(EvalError::fatal("torsion", "torques or angles of this speed are beyond all numbers"))
+}
+
+/// Without a branch for every number: nothing but what is finite is nothing when there is none of it.
+fn finite_phasors(z: &[[f64; 2]]) -> bool {
+    let mut none = [0.0; 2];
+    for [re, im] in z {
+        none[0] += 0.0 * re;
+        none[1] += 0.0 * im;
+    }
+    none == [0.0; 2]
 }
 
 fn square([re, im]: [f64; 2]) -> f64 {
