@@ -340,14 +340,14 @@ fn finite(out: &TorsionOut) -> Result<(), EvalError> {
     Err(EvalError::fatal("torsion", "torques or angles of this speed are beyond all numbers"))
 }
 
-/// Without a branch for every number: nothing but what is finite is nothing when there is none of it.
+/// Whether all parts are finite: zero times any other number is not zero. Without a branch for each of them.
 fn finite_phasors(z: &[[f64; 2]]) -> bool {
-    let mut none = [0.0; 2];
+    let mut sum = [0.0; 2];
     for [re, im] in z {
-        none[0] += 0.0 * re;
-        none[1] += 0.0 * im;
+        sum[0] += 0.0 * re;
+        sum[1] += 0.0 * im;
     }
-    none == [0.0; 2]
+    sum == [0.0; 2]
 }
 
 fn square([re, im]: [f64; 2]) -> f64 {

@@ -27,17 +27,18 @@ impl Cycle {
         let mut torque = vec![vec![0.0; drawn.len()]; a.line.links.len()];
         let mut speed = vec![vec![0.0; drawn.len()]; a.line.nodes.len()];
         torque.iter_mut().zip(&out.mean_torque).for_each(|(t, mean)| t.fill(*mean));
-        // An order that repeats with the period has no other sines than the first one.
-        let once: Vec<(f64, f64)> =
-            drawn.iter().map(|at| elementary::sin_cos(at * 2.0 * PI / a.period)).collect();
+        // An order that repeats with the period takes its sines from those of the first one, where the points are drawn evenly.
+        let rows = points / DRAWN;
+        let first: Vec<(f64, f64)> =
+            drawn.iter().take(rows).map(|at| elementary::sin_cos(at * 2.0 * PI / a.period)).collect();
         for o in &out.orders {
             let multiple = o.order * turns;
-            let wave: Vec<(f64, f64)> = if multiple == multiple.round() && points == DRAWN * (drawn.len() - 1)
-            {
-                (0..drawn.len()).map(|i| once[multiple as usize * i % (drawn.len() - 1)]).collect()
-            } else {
-                drawn.iter().map(|at| elementary::sin_cos(o.order * at)).collect()
+            let in_table = multiple == multiple.round() && rows > 0 && points.is_multiple_of(DRAWN);
+            let sin_cos = |(i, at): (usize, &f64)| match in_table {
+                true => first[multiple as usize * i % rows],
+                false => elementary::sin_cos(o.order * at),
             };
+            let wave: Vec<(f64, f64)> = drawn.iter().enumerate().map(sin_cos).collect();
             let add = |row: &mut [f64], [re, im]: [f64; 2]| {
                 row.iter_mut().zip(&wave).for_each(|(r, (sin, cos))| *r += re * cos - im * sin);
             };
