@@ -181,6 +181,20 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> GasFlow for PackNetwork<M, L> {
         Ok(())
     }
 
+    fn rates_standing(
+        &mut self,
+        inp: &GasIn<'_>,
+        state: &[f64],
+        d_state: &mut [f64],
+        out: &mut GasOut,
+    ) -> Result<(), EvalError> {
+        self.set_pressures(inp, state)?;
+        self.net.update_flows();
+        self.write_pressures(out);
+        self.write_flows(d_state, out);
+        Ok(())
+    }
+
     fn partials(&mut self, inp: &GasIn<'_>, state: &[f64], out: &mut GasPartials) -> Result<bool, EvalError> {
         if self.energy.is_some() {
             // A law of passages has no derivatives by temperatures.

@@ -230,6 +230,14 @@ fn one_moved_ring_gives_the_rates_of_all() {
                     assert_eq!(refused.is_err(), fresh.rates(&inp, &state, &mut b.0, &mut b.1).is_err());
                     rings[i] = home;
                 }
+                // Other pressures while the rings stand.
+                let inp = GasIn { p_cylinder, p_crankcase: 1e5, rings: &rings };
+                gas.rates(&inp, &state, &mut a.0, &mut a.1).expect("rates");
+                let inp = GasIn { p_cylinder: 1.1 * p_cylinder, ..inp };
+                state.iter_mut().for_each(|m| *m *= 0.9);
+                gas.rates_standing(&inp, &state, &mut a.0, &mut a.1).expect("rates");
+                fresh.rates(&inp, &state, &mut b.0, &mut b.1).expect("rates");
+                assert_eq!(a, b, "{spec:?} {backs:?}");
             }
         }
     }

@@ -230,6 +230,21 @@ pub trait GasFlow: Stateful + Send {
         out: &mut GasOut,
     ) -> Result<(), EvalError>;
 
+    /// The same as [`rates`](Self::rates) to the last bit, when no ring has moved since the last call of `rates` or [`partials`](Self::partials), and that one
+    /// succeeded: passages are what they were.
+    ///
+    /// # Errors
+    /// As [`rates`](Self::rates).
+    fn rates_standing(
+        &mut self,
+        inp: &GasIn<'_>,
+        state: &[f64],
+        d_state: &mut [f64],
+        out: &mut GasOut,
+    ) -> Result<(), EvalError> {
+        self.rates(inp, state, d_state, out)
+    }
+
     /// Largest explicit time step \[s\] at which the pressures of volumes that the model couples by a linear leak approach each other without
     /// overshoot; `None` when it couples none. The limit set by the other passages depends on the pressures and is not part of it.
     fn max_explicit_step(&self) -> Option<f64> {

@@ -7,7 +7,7 @@ use crate::differences::{Tolerance, partials};
 /// - a result that is not finite, or that changes when it is asked again after another instant;
 /// - gas that appears or vanishes: the rates of the masses do not add up to what comes in less what goes out;
 /// - passages, where the model names them, that do not pass what it says of its rings, of the crankcase and of all it stores;
-/// - [`GasFlow::rates_moved`] that differs from [`GasFlow::rates`];
+/// - [`GasFlow::rates_moved`] or [`GasFlow::rates_standing`] that differs from [`GasFlow::rates`];
 /// - partial derivatives that differ from differences over 1e-5 of each mass by more than `tolerance`.
 ///
 /// Choose pressures that differ from land to land: at equal ones many laws have a kink.
@@ -43,10 +43,16 @@ fn gas(
     };
     let (d, out) = asked(model, &m, inp)?;
     let other = GasIn { p_cylinder: 2.0 * inp.p_cylinder, ..*inp };
-    asked(model, &m, &other)?;
+    let elsewhere = asked(model, &m, &other)?;
     if asked(model, &m, inp)? != (d.clone(), out.clone()) {
         wrong.push("the same instant has other rates after another instant".into());
     }
+    let (mut standing, mut standing_out) = (vec![0.0; n], with_passages(model, rings));
+    model.rates_standing(&other, &m, &mut standing, &mut standing_out)?;
+    if (standing, standing_out) != elsewhere {
+        wrong.push("rates_standing differs from rates".into());
+    }
+    model.rates(inp, &m, &mut vec![0.0; n], &mut with_passages(model, rings))?;
     let all = [&d, &out.p_land, &out.p_back, &out.flow_in, &out.flow_out, &out.passages];
     if all.iter().any(|v| v.iter().any(|x| !x.is_finite())) {
         wrong.push(format!("not finite: {d:?}, {out:?}"));

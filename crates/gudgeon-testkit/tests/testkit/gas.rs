@@ -19,14 +19,15 @@ struct OneVolume {
     /// Part of the last cylinder pressure that is remembered.
     remembers: f64,
     last: f64,
-    /// What `rates_moved` adds.
+    /// What `rates_moved` adds, and `rates_standing`.
     moved: f64,
+    standing: f64,
 }
 
 impl Default for OneVolume {
     fn default() -> Self {
         let states = [gas_mass("ring1.back")];
-        Self { states, lost: 0.0, off: 0.0, remembers: 0.0, last: 0.0, moved: 0.0 }
+        Self { states, lost: 0.0, off: 0.0, remembers: 0.0, last: 0.0, moved: 0.0, standing: 0.0 }
     }
 }
 
@@ -69,6 +70,17 @@ impl GasFlow for OneVolume {
         p.p_land.fill(0.0);
         Ok(true)
     }
+    fn rates_standing(
+        &mut self,
+        inp: &GasIn<'_>,
+        m: &[f64],
+        d: &mut [f64],
+        out: &mut GasOut,
+    ) -> Result<(), EvalError> {
+        self.rates(inp, m, d, out)?;
+        d[0] += self.standing;
+        Ok(())
+    }
     fn rates_moved(
         &mut self,
         _: usize,
@@ -95,6 +107,7 @@ fn a_gas_flow_is_checked() {
         ("the volumes gain", OneVolume { lost: 1e-9, ..OneVolume::default() }),
         ("the partial is", OneVolume { off: 1e-6, ..OneVolume::default() }),
         ("after another instant", OneVolume { remembers: 1e-9, ..OneVolume::default() }),
+        ("rates_standing differs", OneVolume { standing: 1e-9, ..OneVolume::default() }),
         ("rates_moved of ring 0", OneVolume { moved: 1e-9, ..OneVolume::default() }),
         ("not finite", OneVolume { lost: f64::NAN, ..OneVolume::default() }),
     ];
