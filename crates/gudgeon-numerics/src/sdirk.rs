@@ -39,7 +39,7 @@ pub struct Sdirk {
 }
 
 /// `1 - 1/√2`.
-const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
+pub const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
 /// Places in a step, from 0 to 1, at which rates are known: its start, and the stages.
 pub const PLACES: [f64; 3] = [0.0, GAMMA, 1.0];
 /// Weights of the rates in the result.
@@ -128,8 +128,8 @@ impl Sdirk {
             let parabola = if *tied { 0.0 } else { self.second(r) * QUADRATURE };
             self.core.x1[r] = self.core.x0[r] + h * (sum(&WEIGHTS, &self.k, r) + parabola);
         }
-        let error = |i: usize| 2.0 * CONSTANT * h * self.second(i) / self.core.scale(opts, i);
-        (0..n).map(error).fold(0.0, larger)
+        let rates = |i: usize| [0, 1, 2].map(|k: usize| self.k[k][i]);
+        (0..n).map(|i| h * error(rates(i)) / self.core.scale(opts, i)).fold(0.0, larger)
     }
 
     /// Divided difference of the rates of component `i`, times the square of the step.
@@ -161,6 +161,21 @@ impl Interpolant for Sdirk {
             c1.push(2.0 * d - a - b);
         }
     }
+}
+
+/// Error of a step over its length, for the rates at its [`PLACES`].
+#[must_use]
+pub fn error(rates: [f64; 3]) -> f64 {
+    let second: f64 = SECOND.iter().zip(rates).map(|(w, k)| w * k).sum();
+    2.0 * CONSTANT * second
+}
+
+/// Dense output at the part `x` of a step `h` between the values `y` with the rates `f` at its ends.
+#[must_use]
+pub fn between([y0, y1]: [f64; 2], f: [f64; 2], h: f64, x: f64) -> f64 {
+    let d = y1 - y0;
+    let [a, b] = f.map(|f| limited(h * f, d));
+    y0 + x * d + x * (1.0 - x) * ((1.0 - x) * (a - d) + x * (d - b))
 }
 
 /// A slope that makes no cubic overshoot between two values that differ by `d`.

@@ -14,8 +14,21 @@ const SHORTER: f64 = 0.4;
 const SHORTEST: f64 = 1e-2;
 /// A step is taken if what remains is smaller than before by this part of it.
 const GAIN: f64 = 0.1;
+/// Most steps of a solution that led nowhere and are learnt from before the Jacobian is taken anew.
+const CHORDS: usize = 6;
 /// Part of a change of the residual that the matrix must keep in an update.
 const LEAST_TURN: f64 = 0.1;
+
+/// What became of a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Taken {
+    /// It was taken, in part or as a whole.
+    Yes,
+    /// It led nowhere, and the matrix has learnt why.
+    Learnt,
+    /// It led nowhere, and the Jacobian is an old one.
+    No,
+}
 
 /// The residual of a stage, `x - b - s f(x)`, into the second slice.
 pub type Residual<'a> = dyn FnMut(&[f64], &mut [f64]) -> Result<(), EvalError> + 'a;
@@ -23,15 +36,16 @@ pub type Residual<'a> = dyn FnMut(&[f64], &mut [f64]) -> Result<(), EvalError> +
 /// Solves stages of one system by Newton's method with Broyden's updates.
 ///
 /// The matrix `I - s F` is made from the Jacobian `F` of the rates, which outlives changes of the step `s`. It is taken by differences where none is known
-/// or where steps do not shrink, and updated from every step that is taken (broyden1965, in units of the accuracy). Steps that lead nowhere are
-/// shortened.
+/// or where steps do not shrink, and updated from every step (broyden1965, in units of the accuracy): across a root of a flow that goes with the
+/// root of a pressure difference, the chord leads back between. Steps that lead nowhere after that are shortened.
 #[derive(Debug, Clone, Default)]
 pub struct StageNewton {
     /// Jacobian of the rates, row-major.
     by: Vec<f64>,
-    /// Whether it is known, and whether it was taken at the present point.
+    /// Whether it is known, whether it was taken at the present point, and whether it was given for the next guess.
     known: bool,
     fresh: bool,
+    given: bool,
     pivots: Vec<usize>,
     inverse: Vec<f64>,
     /// Residual, that before it, Newton's step; residual of a trial, and the step that would follow it.
@@ -55,6 +69,7 @@ impl StageNewton {
             by: m(),
             known: false,
             fresh: false,
+            given: false,
             pivots: vec![0; n],
             inverse: m(),
             r: v(),
@@ -71,6 +86,13 @@ impl StageNewton {
     /// Forgets the Jacobian.
     pub fn forget(&mut self) {
         self.known = false;
+    }
+
+    /// Sets the Jacobian of the rates at the guess of the next stage, for a row and a column.
+    pub fn set_jacobian(&mut self, by: impl Fn(usize, usize) -> f64) {
+        let n = self.r.len();
+        self.by.iter_mut().enumerate().for_each(|(k, entry)| *entry = by(k / n, k % n));
+        (self.known, self.given) = (true, true);
     }
 
     /// Solves a stage of step `s` for `x`, which comes as a guess, until the next step is smaller than `accuracy` in every unknown. That step is still
@@ -91,7 +113,8 @@ impl StageNewton {
             self.invert(s)?;
         }
         self.last.fill(0.0);
-        let (mut before, mut part, mut taken) = (f64::INFINITY, 1.0, false);
+        let (mut before, mut part, mut taken) = (f64::INFINITY, 1.0, std::mem::take(&mut self.given));
+        let mut chords = 0;
         for _ in 0..STEPS {
             if !self.known {
                 self.differences(x, s, accuracy, residual)?;
@@ -109,11 +132,12 @@ impl StageNewton {
                 continue;
             }
             before = size;
-            if self.take(x, size, &mut part, (s, accuracy), residual)? {
-                continue;
+            match self.take(x, size, &mut part, (s, accuracy), chords < CHORDS, residual)? {
+                Taken::Yes => {}
+                Taken::Learnt => (chords, before) = (chords + 1, f64::INFINITY),
+                // The direction may be wrong, not its length.
+                Taken::No => (self.known, before) = (false, f64::INFINITY),
             }
-            // The direction may be wrong, not its length.
-            (self.known, before) = (false, f64::INFINITY);
         }
         Err(EvalError::recoverable("stage", "Newton's method does not settle"))
     }
@@ -124,21 +148,24 @@ impl StageNewton {
         all.all(|((r, last), a)| r.abs() <= a.max(0.5 * last.abs()))
     }
 
-    /// Takes a step, or as much of it as leads anywhere; false where the Jacobian was an old one.
+    /// Takes a step, or as much of it as leads anywhere.
     fn take(
         &mut self,
         x: &mut [f64],
         size_now: f64,
         part: &mut f64,
         (s, accuracy): (f64, &[f64]),
+        learns: bool,
         residual: &mut Residual<'_>,
-    ) -> Result<bool, EvalError> {
+    ) -> Result<Taken, EvalError> {
         loop {
+            let mut seen = false;
             for ((t, x), d) in self.trial.iter_mut().zip(&*x).zip(&self.step) {
                 *t = x - *part * d;
             }
             let better = match residual(&self.trial, &mut self.moved) {
                 Ok(()) => {
+                    seen = true;
                     times(&self.inverse, &self.moved, &mut self.next);
                     size_now <= 1.0 || size(&self.next, accuracy) <= (1.0 - GAIN * *part) * size_now
                 }
@@ -152,10 +179,15 @@ impl StageNewton {
                 std::mem::swap(&mut self.r, &mut self.moved);
                 *part = (2.0 * *part).min(1.0);
                 self.fresh = false;
-                return Ok(true);
+                return Ok(Taken::Yes);
+            }
+            if seen && learns {
+                self.update(*part, s, accuracy);
+                self.fresh = false;
+                return Ok(Taken::Learnt);
             }
             if !self.fresh {
-                return Ok(false);
+                return Ok(Taken::No);
             }
             *part *= SHORTER;
             if *part < SHORTEST {

@@ -4,8 +4,25 @@ use gudgeon_numerics::EvalError;
 use gudgeon_numerics::ode::{
     Flow, IntegrateError, Integrator, LinearInvariant, OdeSystem, Options, Stage, Stats,
 };
-use gudgeon_numerics::sdirk::Sdirk;
+use gudgeon_numerics::sdirk::{self, Sdirk};
 use gudgeon_numerics::stages::StageNewton;
+
+/// Error and dense output for one component alone are those of a step.
+#[test]
+fn a_step_of_one_component() {
+    // y = t² has no third derivative, and a parabola is its own dense output; y = t³ has 6.
+    let rates = |f: fn(f64) -> f64| sdirk::PLACES.map(f);
+    assert!(sdirk::error(rates(|x| 2.0 * x)).abs() < 1e-15);
+    let cubic = sdirk::error(rates(|x| 3.0 * x * x));
+    assert!(cubic > 0.01 && cubic < 1.0, "{cubic}");
+    for x in [0.0, 0.3, 0.8, 1.0] {
+        let y = sdirk::between([1.0, 5.0], [2.0, 6.0], 1.0, x);
+        // Sums of four numbers of the order of one.
+        assert!((y - (1.0 + 2.0 * x + 2.0 * x * x)).abs() < 1e-14, "{x}: {y}");
+    }
+    // A slope that would overshoot is limited.
+    assert!(sdirk::between([0.0, 1.0], [90.0, 0.0], 1.0, 0.5) <= 1.0);
+}
 
 /// A system that solves its stages by Newton's method for all of its states.
 struct Stages<F> {
@@ -220,6 +237,38 @@ fn stages_with_a_corner_are_solved_and_hopeless_ones_refused() {
     };
     let refused = StageNewton::new(1).solve(&mut [0.0], 1.0, &[1e-9], &mut none);
     assert!(refused.is_err_and(|e| e.is_recoverable()));
+}
+
+/// A small space beside a wide passage: its gas goes with the root of a pressure difference, and Newton's method steps over the root and back. What such a step
+/// saw is learnt from, and a Jacobian that is given need not be found.
+#[test]
+fn a_step_over_the_root_of_a_difference_is_learnt_from() {
+    // x = b + s C sign(1 - x) sqrt|1 - x| has the solution 1 - (b - 1)²/(s C)², nearly.
+    let (base, step, c) = ([0.9, 0.5], 0.05, 200.0);
+    let count = |given: bool| {
+        let mut newton = StageNewton::new(2);
+        let mut evaluations = 0;
+        let mut x = [0.93, 0.5];
+        if given {
+            newton.set_jacobian(|r, k| if r == k { [-0.5 * c / 0.07_f64.sqrt(), -1.0][r] } else { 0.0 });
+        }
+        newton
+            .solve(&mut x, step, &[1e-9; 2], &mut |x, r| {
+                evaluations += 1;
+                let d: f64 = 1.0 - x[0];
+                r[0] = x[0] - base[0] - step * c * d.signum() * d.abs().sqrt();
+                r[1] = x[1] - base[1] + step * x[1];
+                Ok(())
+            })
+            .unwrap();
+        let lacks = x[0] - base[0] - step * c * (1.0 - x[0]).sqrt();
+        // As good as asked; next to the root the slope is some thousand.
+        assert!(lacks.abs() < 1e-5, "{lacks:e}");
+        evaluations
+    };
+    let (found, given) = (count(false), count(true));
+    // By shorter steps alone it took 18 and 19.
+    assert!(found <= 18 && given <= 16, "{found} {given}");
 }
 
 /// A stage of another step is solved with the Jacobian that is known: in fewer evaluations than the first, which took one.
