@@ -280,6 +280,15 @@ impl Pack {
         Ok(())
     }
 
+    /// The gas model again, where no ring has moved since the last call.
+    pub(super) fn gas_standing(&mut self, p_cylinder: f64) -> Result<(), EvalError> {
+        let inp = GasIn { p_cylinder, p_crankcase: self.p_crankcase, rings: &self.at.places };
+        self.counters.gas += 1;
+        self.gas.rates_standing(&inp, &self.gas_state, &mut self.at.dm, &mut self.at.gas)?;
+        self.share_pressures();
+        Ok(())
+    }
+
     /// The gas model again, after nothing but the place of ring `i` has moved since the last full call.
     pub(super) fn gas_moved(&mut self, i: usize, p_cylinder: f64) -> Result<(), EvalError> {
         let inp = GasIn { p_cylinder, p_crankcase: self.p_crankcase, rings: &self.at.places };

@@ -19,11 +19,11 @@ use gudgeon_numerics::stages::StageNewton;
 
 use super::pack::Pack;
 use super::ring::Ring;
-use super::waveform::Side;
+use super::waveform::{MOST_STATES, RingSteps, Side};
 
 /// Unknowns that are solved together, and what is kept of them from stage to stage.
 #[derive(Debug, Clone, Default)]
-struct Together {
+pub(super) struct Together {
     /// Their places in the state vector.
     states: Vec<usize>,
     newton: StageNewton,
@@ -36,13 +36,15 @@ struct Together {
 /// What [`Pack::stage`] works with.
 #[derive(Debug, Clone, Default)]
 pub struct Staging {
-    gas: Together,
+    pub(super) gas: Together,
     /// Oil on the flanks of each ring.
     flank: Vec<Together>,
     /// Oil under the faces of each ring.
     oil: Vec<Together>,
     /// Radii of the liner at the rings.
-    radii: Vec<f64>,
+    pub(super) radii: Vec<f64>,
+    /// Steps of the rings in their grooves, where these have steps of their own.
+    pub(super) rings: Option<RingSteps>,
 }
 
 /// Most passes over films and gas.
@@ -67,8 +69,13 @@ impl Together {
         }
     }
 
+    /// Sets the Jacobian of the rates where the next stage is guessed: for a rate and an unknown, by their numbers.
+    pub(super) fn set_jacobian(&mut self, by: impl Fn(usize, usize) -> f64) {
+        self.newton.set_jacobian(by);
+    }
+
     /// Solves a stage for these unknowns.
-    fn solve(
+    pub(super) fn solve(
         &mut self,
         stage: &Stage<'_>,
         y: &mut [f64],
@@ -103,9 +110,15 @@ impl Staging {
         }
     }
 
+    /// For a pack whose rings have steps of their own.
+    pub fn with_ring_steps(pack: &Pack) -> Self {
+        Self { rings: Some(RingSteps::new(pack)), ..Self::new(pack) }
+    }
+
     /// Forgets what is kept from stage to stage.
     pub fn restart(&mut self) {
         self.gas.newton.forget();
+        self.rings.iter_mut().for_each(RingSteps::restart);
         self.flank.iter_mut().chain(&mut self.oil).for_each(|o| o.newton.forget());
     }
 }
@@ -127,6 +140,10 @@ impl Pack {
         }
         if self.plan.film && self.rings.iter().any(|r| !r.radial.solves_stages()) {
             return Some(own("the radial motion of a ring".into()));
+        }
+        let mut both = self.layout.motion.iter().zip(&self.layout.flank);
+        if let Some(i) = both.position(|(motion, flank)| motion.len() + flank.len() > MOST_STATES) {
+            return Some(own(format!("ring {} with more than {MOST_STATES} states in its groove", i + 1)));
         }
         if self.layout.twists.iter().any(|t| *t) {
             return Some(own("a ring that twists".into()));
@@ -181,7 +198,7 @@ impl Pack {
         match side {
             Side::Grooves => {
                 self.set_film_forces(axial);
-                self.grooves_of_stage(stage, y, p, w)?;
+                self.grooves_by_steps(stage, y, p, w)?;
             }
             Side::Films => {
                 self.gas_pressures(p)?;
@@ -203,7 +220,7 @@ impl Pack {
         Ok(self.cylinder.pressure(theta))
     }
 
-    fn set_gas(&mut self, y: &[f64]) -> Result<(), EvalError> {
+    pub(super) fn set_gas(&mut self, y: &[f64]) -> Result<(), EvalError> {
         for (k, m) in self.gas_state.iter_mut().enumerate() {
             *m = y[k] * self.gas_scale[k];
         }
@@ -351,10 +368,15 @@ impl Pack {
             self.groove_of_stage(i, stage, y, *radius)?;
         }
         self.gas(Some(p))?;
+        self.gas_lacks(stage, y, r);
+        Ok(())
+    }
+
+    /// What the gas of the instant lacks in its stage.
+    pub(super) fn gas_lacks(&self, stage: &Stage<'_>, y: &[f64], r: &mut [f64]) {
         for (r, k) in r.iter_mut().zip(self.layout.gas.clone()) {
             *r = y[k] - stage.base[k] - stage.step * self.rate(k);
         }
-        Ok(())
     }
 
     /// The motion of ring `i` in its groove.

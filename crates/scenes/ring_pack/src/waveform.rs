@@ -17,9 +17,17 @@ use super::layout::Layout;
 use super::pack::Pack;
 use super::staged::Staging;
 
+mod acting;
+mod guess;
 mod joint;
+mod rings;
+mod span;
 mod track;
 
+pub use rings::RingSteps;
+pub use span::MOST_STATES;
+
+use guess::Guess;
 use joint::{Joint, Part};
 use track::Track;
 
@@ -113,7 +121,7 @@ impl Waveform {
             grooves: Half::new(Side::Grooves, pack, balance),
             before: [films.wave.clone(), forces.clone()],
             films,
-            staging: Staging::new(pack),
+            staging: Staging::with_ring_steps(pack),
             forces,
         }
     }
@@ -142,13 +150,20 @@ impl Waveform {
             begun.map_err(|source| IntegrateError::Eval { t: 0.0, source })
         };
         // A cycle is looked at in its second half, where both are known. Without films there is none.
-        if self.films.part.states.is_empty() {
-            start(pack, &mut follower)?;
-            return self.grooves(pack, y, q, setting, follower);
-        }
-        self.grooves(pack, y, q, setting, None)?;
+        self.grooves(pack, y, q, setting, follower.is_some())?;
         start(pack, &mut follower)?;
-        self.films(pack, y, q, setting, follower)
+        if !self.films.part.states.is_empty() {
+            return self.films(pack, y, q, setting, follower);
+        }
+        let mut joint = Joint::new(&self.films.wave, [&self.films.part, &self.grooves.part], pack);
+        if let Some(f) = follower {
+            for step in self.grooves.wave.steps(self.grooves.part.states.len()) {
+                if joint.pieces(&step, |piece| f.step(pack, piece)) == Flow::Stop {
+                    break;
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Before anything is known of the films they stay as they begin, without a force.
@@ -163,20 +178,26 @@ impl Waveform {
         y: &mut [f64],
         q: &mut [f64],
         setting: &mut Setting<'_>,
-        mut follower: Option<&mut dyn Follower>,
+        recorded: bool,
     ) -> Result<(), IntegrateError> {
         let half = &mut self.grooves;
         half.wave.begin(0.0);
         let (wave, part) = (&mut half.wave, &half.part);
+        if let Some(rings) = &mut self.staging.rings {
+            rings.set_accuracy(pack, setting.options);
+        }
         let mut system = OneSide::new(Side::Grooves, pack, &mut self.staging, part, &half.invariants).beside(
             &self.films.part,
             &self.films.wave,
             Some(&self.forces),
         );
-        let mut joint = Joint::new(&self.films.wave, [&self.films.part, part], system.pack);
+        let rows = system.judged.clone();
         let mut observe = |s: &mut OneSide<'_>, v: &dyn StepView| {
-            wave.step(v);
-            lend(&mut follower).map_or(Flow::Continue, |f| joint.pieces(v, |piece| f.step(s.pack, piece)))
+            match &s.staging.rings {
+                Some(rings) if recorded => rings.record(v, &rows, wave),
+                _ => wave.step(v),
+            }
+            Flow::Continue
         };
         integrate(&mut half.method, &mut system, setting, (y, q), &mut observe)
     }
@@ -275,6 +296,9 @@ struct OneSide<'a> {
     base: Vec<f64>,
     accuracy: Vec<f64>,
     quads: Vec<f64>,
+    /// States whose errors the steps of the rings judge, by their rows.
+    judged: Vec<usize>,
+    guess: Guess,
 }
 
 impl<'a> OneSide<'a> {
@@ -287,6 +311,8 @@ impl<'a> OneSide<'a> {
     ) -> Self {
         let n = pack.layout.n;
         let instants = if side == Side::Films { sdirk::PLACES.len() } else { 1 };
+        let rings = staging.rings.iter().filter(|_| side == Side::Grooves);
+        let judged = rings.flat_map(|r| r.judged(pack)).filter_map(|k| part.row(k, n)).collect();
         Self {
             side,
             staging,
@@ -300,6 +326,8 @@ impl<'a> OneSide<'a> {
             base: vec![0.0; n],
             accuracy: vec![1.0; n],
             quads: vec![0.0; pack.layout.quads()],
+            judged,
+            guess: Guess::default(),
             pack,
         }
     }
@@ -355,6 +383,16 @@ impl<'a> OneSide<'a> {
         self.pack.book_oil((v.t0(), &self.base), (v.t1(), &self.y));
     }
 
+    /// The rows of the states that are guessed, and what drives them: gas and the oil under faces, for rings and films are found by brackets.
+    fn guessed(&self, t: f64) -> (std::ops::Range<usize>, Option<f64>) {
+        let layout = &self.pack.layout;
+        if self.side == Side::Grooves {
+            return (0..layout.gas.len(), Some(self.pack.cylinder.pressure(t)));
+        }
+        let films: usize = layout.radial.iter().map(ExactSizeIterator::len).sum();
+        (films..films + layout.oil.len(), None)
+    }
+
     fn quadratures(&mut self, q: &mut [f64]) {
         self.pack.quadratures(&mut self.quads);
         q.iter_mut().zip(&self.part.quads).for_each(|(q, &k)| *q = self.quads[k]);
@@ -370,6 +408,9 @@ impl OdeSystem for OneSide<'_> {
     }
     fn rhs(&mut self, t: f64, y: &[f64], f: &mut [f64]) -> Result<(), EvalError> {
         self.evaluate(t, y)?;
+        if let (Side::Grooves, Some(rings)) = (self.side, &mut self.staging.rings) {
+            rings.begin(self.pack);
+        }
         let n = self.part.states.len();
         for (f, &k) in f.iter_mut().zip(&self.part.states) {
             *f = self.pack.rate(k);
@@ -379,13 +420,17 @@ impl OdeSystem for OneSide<'_> {
     }
     /// Stages come in their order, the second after the first.
     fn stage(&mut self, t: f64, stage: &Stage<'_>, y: &mut [f64], g: &mut [f64]) -> Result<(), EvalError> {
+        let (guessed, drive) = self.guessed(t);
+        let part = Stage { base: &stage.base[guessed.clone()], ..*stage };
+        self.guess.apply(t, &part, drive, &mut y[guessed.clone()]);
         self.fill(t, y);
         for (j, &k) in self.part.states.iter().enumerate() {
             (self.base[k], self.accuracy[k]) = (stage.base[j], stage.accuracy[j]);
         }
         let whole = Stage { base: &self.base, accuracy: &self.accuracy, ..*stage };
         self.pack.stage_of(self.side, t, &whole, &mut self.y, &self.axial, self.staging)?;
-        self.part.states.iter().zip(y).for_each(|(&k, v)| *v = self.y[k]);
+        self.part.states.iter().zip(&mut *y).for_each(|(&k, v)| *v = self.y[k]);
+        self.guess.learn(t, &part, &y[guessed]);
         self.keep_forces(stage.number);
         self.quadratures(g);
         Ok(())
@@ -401,6 +446,7 @@ impl OdeSystem for OneSide<'_> {
         }
         self.part.states.iter().zip(&*atol).for_each(|(&k, a)| self.base[k] = *a);
         self.pack.ease(&mut self.base);
-        self.part.states.iter().zip(atol).for_each(|(&k, a)| *a = self.base[k]);
+        self.part.states.iter().zip(&mut *atol).for_each(|(&k, a)| *a = self.base[k]);
+        self.judged.iter().for_each(|&row| atol[row] = f64::INFINITY);
     }
 }

@@ -86,17 +86,25 @@ impl Track {
         self.ends.push(t);
     }
 
+    /// Adds a step that ends at `t`, with the values that `at` gives for each place in it.
+    pub fn add(&mut self, t: f64, mut at: impl FnMut(f64, &mut [f64])) {
+        for x in self.places {
+            let from = self.values.len();
+            self.values.resize(from + self.width, 0.0);
+            at(*x, &mut self.values[from..]);
+        }
+        self.ends.push(t);
+    }
+
     /// Adds an accepted step, states and quadratures.
     pub fn step(&mut self, v: &dyn StepView) {
         let (t0, t1, n) = (v.t0(), v.t1(), v.y0().len());
-        for (k, x) in self.places.iter().enumerate() {
-            let from = self.values.len();
-            self.values.resize(from + self.width, 0.0);
-            let (y, q) = self.values[from..].split_at_mut(n);
-            if k == 0 {
+        self.add(t1, |x, values| {
+            let (y, q) = values.split_at_mut(n);
+            if x == 0.0 {
                 y.copy_from_slice(v.y0());
                 q.copy_from_slice(v.q0());
-            } else if k + 1 == self.places.len() {
+            } else if x == 1.0 {
                 y.copy_from_slice(v.y1());
                 q.copy_from_slice(v.q1());
             } else {
@@ -104,16 +112,24 @@ impl Track {
                 v.interpolate(t, y);
                 v.interpolate_quad(t, q);
             }
-        }
-        self.ends.push(t1);
+        });
+    }
+
+    /// Its steps, the first `states` values being states, the others quadratures.
+    pub fn steps(&self, states: usize) -> impl Iterator<Item = TrackStep<'_>> {
+        (0..self.ends.len() - 1).map(move |step| TrackStep { track: self, step, states })
     }
 
     /// The first values at `t`, as many as `out` holds.
     pub fn eval(&self, t: f64, out: &mut [f64]) {
-        let step = self.step_at(t);
+        self.eval_in(self.step_at(t), t, 0, out);
+    }
+
+    /// Values at `t` by the polynomial of a step, from one of them on.
+    fn eval_in(&self, step: usize, t: f64, first: usize, out: &mut [f64]) {
         let x = (t - self.ends[step]) / (self.ends[step + 1] - self.ends[step]);
         let count = self.places.len();
-        let values = &self.values[step * count * self.width..];
+        let values = &self.values[step * count * self.width + first..];
         out.fill(0.0);
         for (i, spread) in self.spread.iter().enumerate() {
             let others = self.places.iter().enumerate().filter(|(j, _)| *j != i);
@@ -149,6 +165,48 @@ impl Track {
             sum.size += a.iter().fold(0.0, |s: f64, a| s.max(a.abs())) / LOOKS as f64;
         }
         sum
+    }
+}
+
+/// A step of a track.
+pub struct TrackStep<'a> {
+    track: &'a Track,
+    step: usize,
+    states: usize,
+}
+
+impl TrackStep<'_> {
+    /// Values at one of the places in the step.
+    fn at(&self, place: usize) -> &[f64] {
+        let Track { width, places, values, .. } = self.track;
+        &values[(self.step * places.len() + place) * width..][..*width]
+    }
+}
+
+impl StepView for TrackStep<'_> {
+    fn t0(&self) -> f64 {
+        self.track.ends[self.step]
+    }
+    fn t1(&self) -> f64 {
+        self.track.ends[self.step + 1]
+    }
+    fn y0(&self) -> &[f64] {
+        &self.at(0)[..self.states]
+    }
+    fn y1(&self) -> &[f64] {
+        &self.at(self.track.places.len() - 1)[..self.states]
+    }
+    fn q0(&self) -> &[f64] {
+        &self.at(0)[self.states..]
+    }
+    fn q1(&self) -> &[f64] {
+        &self.at(self.track.places.len() - 1)[self.states..]
+    }
+    fn interpolate(&self, t: f64, y: &mut [f64]) {
+        self.track.eval_in(self.step, t, 0, y);
+    }
+    fn interpolate_quad(&self, t: f64, q: &mut [f64]) {
+        self.track.eval_in(self.step, t, self.states, q);
     }
 }
 
