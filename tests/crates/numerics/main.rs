@@ -24,3 +24,4 @@ mod scaling;
 mod sdirk;
 mod table;
 mod tangent;
+mod vectors;
