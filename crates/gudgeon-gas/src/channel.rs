@@ -15,6 +15,16 @@ pub fn channel_conductance(perimeter: f64, height: f64, length: f64, mu: f64, rt
 /// `(96/0.3164)^(4/3)`.
 pub const TRANSITION: f64 = 2_038.823_720_100_052_5;
 
+/// Cube of `Re/Re_c` below which the share is summed up.
+const SLOW: f64 = 1e-3;
+
+/// `(1 + x)^(-1/7)` for `x` up to [`SLOW`], by its series: the first term left out is below the rounding error.
+#[inline]
+fn slow_share(x: f64) -> f64 {
+    const C: [f64; 5] = [-1.0 / 7.0, 4.0 / 49.0, -20.0 / 343.0, 110.0 / 2401.0, -638.0 / 16807.0];
+    1.0 + x * (C[0] + x * (C[1] + x * (C[2] + x * (C[3] + x * C[4]))))
+}
+
 /// What turbulence leaves of the laminar flow `c` of a channel, `[1 + (Re/Re_c)³]^(-1/7)`, and of its derivative by `c`, at the
 /// Reynolds number `Re` that the laminar flow would have; `Re_c` is [`TRANSITION`]. Finite for every `Re >= 0`, infinity included.
 #[inline]
@@ -23,7 +33,7 @@ pub fn turbulent_share(reynolds: f64) -> (f64, f64) {
     // The bound keeps the cube a number.
     let x = (reynolds / TRANSITION).min(1e100);
     let cube = x * x * x;
-    let share = elementary::powf(1.0 + cube, -1.0 / 7.0);
+    let share = if cube < SLOW { slow_share(cube) } else { elementary::powf(1.0 + cube, -1.0 / 7.0) };
     (share, share * (1.0 - 3.0 / 7.0 * cube / (1.0 + cube)))
 }
 
@@ -47,4 +57,23 @@ pub fn sutherland_viscosity(temperature: f64) -> f64 {
 #[must_use]
 pub fn burnt_gas_viscosity(temperature: f64) -> f64 {
     3.3e-7 * elementary::powf(temperature, 0.7) / 1.027
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_series_is_the_power_where_it_stands_for_it() {
+        for k in 0..=100 {
+            let x = SLOW * f64::from(k) / 100.0;
+            let power = elementary::powf(1.0 + x, -1.0 / 7.0);
+            // Roundings of the sum in the power, of the power, and of the last sum.
+            assert!(
+                (slow_share(x) - power).abs() <= 4.0 * f64::EPSILON,
+                "{x}: {} for {power}",
+                slow_share(x)
+            );
+        }
+    }
 }

@@ -141,54 +141,43 @@ impl PassageLaw for OrificeLaw {
         self.strength(gas)
     }
 
-    /// Orifices first, several at once, as if all links were such; then what else there is.
+    /// Where most of several links are orifices these are computed at once, as if all were such; then what else there is.
     #[inline]
     fn mass_flows(&self, links: &[Link<Passage>], nodes: &[Node], flow: &mut [f64]) {
-        let single =
-            |link: &Link<Passage>| self.mass_flow(link.passage, &nodes[link.from].gas, &nodes[link.to].gas);
-        if self.is_truncated() {
-            for (link, flow) in links.iter().zip(flow) {
-                if !link.is_split() {
-                    *flow = single(link);
-                }
-            }
-            return;
-        }
-        let mut others = false;
         let (fours, rest) = links.as_chunks::<LANES>();
         let (flows, of_rest) = flow.as_chunks_mut::<LANES>();
         for (links, flow) in fours.iter().zip(flows) {
-            others |= self.openings(links, nodes, flow);
+            let orifices = links.iter().filter(|l| matches!(l.passage, Passage::Orifice { .. })).count();
+            let at_once = orifices >= WORTH && !self.is_truncated();
+            if at_once {
+                self.openings(links, nodes, flow);
+            }
+            for (link, flow) in links.iter().zip(flow) {
+                let done = at_once && matches!(link.passage, Passage::Orifice { .. } | Passage::Closed);
+                if !done && !link.is_split() {
+                    *flow = self.mass_flow(link.passage, &nodes[link.from].gas, &nodes[link.to].gas);
+                }
+            }
         }
         for (link, flow) in rest.iter().zip(of_rest) {
-            others |= self.openings(std::array::from_ref(link), nodes, std::array::from_mut(flow));
-        }
-        if others {
-            for (link, flow) in links.iter().zip(flow) {
-                if !link.is_split() && !matches!(link.passage, Passage::Orifice { .. } | Passage::Closed) {
-                    *flow = single(link);
-                }
+            if !link.is_split() {
+                *flow = self.mass_flow(link.passage, &nodes[link.from].gas, &nodes[link.to].gas);
             }
         }
     }
 }
 
-/// Links whose flows are computed at once.
+/// Links whose flows are computed at once, and the number of orifices among them from which that costs less.
 const LANES: usize = 4;
+const WORTH: usize = 2;
 
 impl OrificeLaw {
-    /// Flows through links as if all were orifices or closed; whether others are among them.
+    /// Flows through links as if all were orifices or closed.
     #[inline]
-    fn openings<const N: usize>(
-        &self,
-        links: &[Link<Passage>; N],
-        nodes: &[Node],
-        flow: &mut [f64; N],
-    ) -> bool {
-        let (mut fronts, mut drops, mut others) = ([0.0; N], [0.0; N], false);
+    fn openings<const N: usize>(&self, links: &[Link<Passage>; N], nodes: &[Node], flow: &mut [f64; N]) {
+        let (mut fronts, mut drops) = ([0.0; N], [0.0; N]);
         for ((link, front), drop) in links.iter().zip(&mut fronts).zip(&mut drops) {
             let area = if let Passage::Orifice { area } = link.passage { area } else { 0.0 };
-            others |= !matches!(link.passage, Passage::Orifice { .. } | Passage::Closed);
             let (a, b) = (&nodes[link.from], &nodes[link.to]);
             let difference = a.gas.pressure() - b.gas.pressure();
             let up = if difference >= 0.0 { a } else { b };
@@ -196,7 +185,6 @@ impl OrificeLaw {
         }
         let psi = self.psi_lanes(drops);
         *flow = std::array::from_fn(|i| (fronts[i] * psi[i]).copysign(drops[i]));
-        others
     }
 }
 

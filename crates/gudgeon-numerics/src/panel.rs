@@ -32,8 +32,8 @@ pub const TRAPEZIUM: Rule = Rule { nodes: &[0.0, 1.0], weights: &[0.5, 0.5], bar
 pub const OVERSHOOT: f64 = 0.32;
 /// Parts of a step in which turning points and crossings are looked for; a polynomial of degree 4 turns three times at most.
 const PARTS: usize = 16;
-/// Steps of golden section: from an eighth of the step to below its rounding in the value at a turning point.
-const GOLDEN_STEPS: u32 = 38;
+/// Most steps to a turning point: Newton's method, with halvings where that leaves the bracket.
+const TURNING_STEPS: usize = 60;
 /// Halvings that bring a sixteenth of a step to its rounding.
 const HALVINGS: u32 = 50;
 
@@ -67,19 +67,18 @@ impl Rule {
         if high + OVERSHOOT * (high - low) <= floor {
             return None;
         }
+        let curve = Curve::new(self.nodes, values);
         let mut best = (0.0, values[0]);
         for k in 1..=PARTS {
             let x = k as f64 / PARTS as f64;
-            let v = self.value(values, x);
+            let v = curve.value(x);
             if v > best.1 {
                 best = (x, v);
             }
         }
         let width = 1.0 / PARTS as f64;
-        let turn = self.turn(values, ((best.0 - width).max(0.0), (best.0 + width).min(1.0)), 1.0);
-        if turn.1 > best.1 {
-            best = turn;
-        }
+        let turn = curve.turn((best.0 - width).max(0.0), (best.0 + width).min(1.0), 1.0);
+        best = turn.map_or((best.0, self.value(values, best.0)), |x| (x, self.value(values, x)));
         // A straight line or a jump: the samples themselves.
         for (x, v) in self.nodes.iter().zip(values) {
             if *v > best.1 {
@@ -131,14 +130,16 @@ impl Rule {
         if values.is_sorted() || values.is_sorted_by(|a, b| a >= b) {
             return (first - last).max(0.0);
         }
-        let at = |k: usize| self.value(values, k as f64 / PARTS as f64);
+        let curve = Curve::new(self.nodes, values);
+        let at = |k: usize| curve.value(k as f64 / PARTS as f64);
         let (mut sum, mut from) = (0.0, first);
         let (mut before, mut now) = (first, at(1));
         for k in 1..PARTS {
             let next = at(k + 1);
             if (now - before) * (next - now) <= 0.0 && now != before {
-                let bracket = ((k - 1) as f64 / PARTS as f64, (k + 1) as f64 / PARTS as f64);
-                let turn = self.turn(values, bracket, if now > before { 1.0 } else { -1.0 }).1;
+                let (a, b) = ((k - 1) as f64 / PARTS as f64, (k + 1) as f64 / PARTS as f64);
+                let x = curve.turn(a, b, if now > before { 1.0 } else { -1.0 });
+                let turn = self.value(values, x.unwrap_or(k as f64 / PARTS as f64));
                 sum += (from - turn).max(0.0);
                 from = turn;
             }
@@ -146,25 +147,64 @@ impl Rule {
         }
         sum + (from - last).max(0.0)
     }
+}
 
-    /// The extreme between `a` and `b`, the highest for `sign` 1, the lowest for -1, by golden section.
-    fn turn(&self, values: &[f64], (mut a, mut b): (f64, f64), sign: f64) -> (f64, f64) {
-        const RATIO: f64 = 0.618_033_988_749_894_8;
-        let f = |x: f64| sign * self.value(values, x);
-        let (mut c, mut d) = (b - RATIO * (b - a), a + RATIO * (b - a));
-        let (mut fc, mut fd) = (f(c), f(d));
-        for _ in 0..GOLDEN_STEPS {
-            if fc > fd {
-                (b, d, fd) = (d, c, fc);
-                c = b - RATIO * (b - a);
-                fc = f(c);
-            } else {
-                (a, c, fc) = (c, d, fd);
-                d = a + RATIO * (b - a);
-                fd = f(d);
+/// The polynomial through samples in Newton's form, whose derivatives are at hand.
+struct Curve {
+    nodes: &'static [f64],
+    /// Divided differences.
+    c: [f64; MAX_NODES],
+}
+
+impl Curve {
+    fn new(nodes: &'static [f64], values: &[f64]) -> Self {
+        let mut c = [0.0; MAX_NODES];
+        c[..values.len()].copy_from_slice(values);
+        for order in 1..nodes.len() {
+            for k in (order..nodes.len()).rev() {
+                c[k] = (c[k] - c[k - 1]) / (nodes[k] - nodes[k - order]);
             }
         }
-        if fc > fd { (c, sign * fc) } else { (d, sign * fd) }
+        Self { nodes, c }
+    }
+
+    fn value(&self, x: f64) -> f64 {
+        self.nodes.iter().zip(&self.c).rev().fold(0.0, |v, (node, c)| c + (x - node) * v)
+    }
+
+    /// First and second derivative.
+    fn slopes(&self, x: f64) -> (f64, f64) {
+        let (mut v, mut first, mut half_second) = (0.0, 0.0, 0.0);
+        for (node, c) in self.nodes.iter().zip(&self.c).rev() {
+            let away = x - node;
+            half_second = first + away * half_second;
+            first = v + away * first;
+            v = c + away * v;
+        }
+        (first, 2.0 * half_second)
+    }
+
+    /// Where it is highest between `a` and `b`, for `sign` 1, or lowest, for -1, if it turns there.
+    fn turn(&self, mut a: f64, mut b: f64, sign: f64) -> Option<f64> {
+        if sign * self.slopes(a).0 <= 0.0 || sign * self.slopes(b).0 >= 0.0 {
+            return None;
+        }
+        let mut x = 0.5 * (a + b);
+        for _ in 0..TURNING_STEPS {
+            let (first, second) = self.slopes(x);
+            if sign * first > 0.0 {
+                a = x
+            } else {
+                b = x
+            }
+            let newton = x - first / second;
+            let next = if newton > a && newton < b { newton } else { 0.5 * (a + b) };
+            if (next - x).abs() <= f64::EPSILON {
+                return Some(next);
+            }
+            x = next;
+        }
+        Some(x)
     }
 }
 

@@ -552,6 +552,7 @@ fn pack(
         gas_state: vec![0.0; gas_states],
         hard_floor: false,
         state: vec![f64::NAN; states],
+        complete: false,
         films: vec![0.0; n],
         viscosities: vec![0.0; n],
         trial: Vec::with_capacity(states),

@@ -50,7 +50,7 @@ const UNIT: f64 = 0.152;
 /// Part of the range over which a load that fades out with its sixth to eighth power changes by its own size, halfway.
 pub const SCALE: f64 = 0.1;
 /// Panels of Gauss's rule on each straight or curved piece of a face.
-const PANELS: usize = 24;
+const PANELS: usize = 12;
 
 /// Separation of the mean planes against film thickness: of the rough surfaces alone, and so the same for all faces.
 #[derive(Debug, Default)]
@@ -240,9 +240,11 @@ impl<'a> WholeFace<'a> {
             FaceProfile::Parabola { curvature, apex, length } if *curvature > 0.0 => {
                 let half = (reach.max(0.0) / curvature).sqrt();
                 let (a, b) = ((apex - half).max(0.0), (apex + half).min(*length));
-                // The apex is a place like any other; a piece on either side of it.
+                // The apex is a place like any other; a piece on either side of it, equal where neither end of the face is near.
                 let mid = apex.clamp(a.min(b), b.max(a));
-                if b > a {
+                if a > 0.0 && b < *length {
+                    2.0 * self.piece(s, a, mid, PANELS / 2)
+                } else if b > a {
                     self.piece(s, a, mid, PANELS / 2) + self.piece(s, mid, b, PANELS / 2)
                 } else {
                     0.0

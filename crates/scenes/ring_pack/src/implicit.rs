@@ -558,7 +558,9 @@ impl Sampler {
             v.interpolate(t, &mut self.y);
             v.interpolate_quad(t, &mut self.q);
             if (pack.plan.axial || pack.plan.film) && k.is_multiple_of(2) {
-                pack.evaluate(t, &self.y)?;
+                if !pack.is_at(t, &self.y) {
+                    pack.evaluate(t, &self.y)?;
+                }
                 let weight = if 2 * k == last { 4.0 } else { 1.0 };
                 self.close(pack, weight * (t1 - t0) / pack.omega / 6.0);
                 self.watch.look(pack, weight * (t1 - t0) / 6.0);
@@ -692,15 +694,17 @@ fn breakpoints(pack: &Pack) -> Vec<f64> {
     all
 }
 
-/// What comes in, less what goes out, is stored: of the gas, and of the oil on the flanks of each ring.
-fn balances(pack: &Pack) -> Vec<LinearInvariant> {
+/// What comes in, less what goes out, is stored: of the gas, and of the oil on the flanks of each ring. What goes out of the gas follows from the rest, or
+/// what comes in where stages are solved to an accuracy: near equal pressures a flow goes with the root of what a stage lacks, and gas comes in by wide
+/// passages.
+fn balances(pack: &Pack, in_stages: bool) -> Vec<LinearInvariant> {
     let masses = pack.gas.n_masses();
     let mut all = Vec::new();
     if masses > 0 {
         let (first, last) = (pack.layout.n, pack.layout.n + pack.n_rings());
         let mut terms = vec![(first, -1.0), (last, 1.0)];
         terms.extend(pack.gas_scale[..masses].iter().copied().enumerate());
-        all.push(LinearInvariant { pivot: last, terms });
+        all.push(LinearInvariant { pivot: if in_stages { first } else { last }, terms });
     }
     all.extend((0..pack.n_rings()).filter_map(|i| flank_balance(pack, i)));
     all
@@ -727,7 +731,7 @@ impl<'a> Cycle<'a> {
         wanted: &Wanted<'_>,
         progress: &'a mut dyn FnMut(f64) -> Result<(), Stopped>,
     ) -> Self {
-        let balance = balances(pack);
+        let balance = balances(pack, s.integrator.has_stages());
         Cycle {
             method: Method::new(s, pack, &balance),
             breakpoints: breakpoints(pack),

@@ -108,6 +108,8 @@ pub struct Pack {
     pub hard_floor: bool,
     /// State of the last complete evaluation.
     pub state: Vec<f64>,
+    /// Whether that is an evaluation of the whole scene, and not of one side.
+    pub(super) complete: bool,
     /// Film thicknesses of the rings, scratch.
     pub films: Vec<f64>,
     /// Viscosities at the rings, scratch.
@@ -256,15 +258,19 @@ impl Pack {
 
     /// Sets places, piston and viscosities for an angle and a state.
     pub fn set_places(&mut self, theta: f64, y: &[f64]) {
+        self.locate(theta, y);
+        if self.plan.film {
+            let pin = self.at.piston.y;
+            (0..self.n_rings()).for_each(|i| self.at.rings[i].mu = self.viscosity(i, pin, y));
+        }
+    }
+
+    /// The same without viscosities, which films alone need.
+    pub(super) fn locate(&mut self, theta: f64, y: &[f64]) {
         self.at.theta = theta;
         self.at.piston = self.kinematics.motion(theta);
         let pin = self.at.piston.y;
-        for i in 0..self.n_rings() {
-            self.at.places[i] = self.place(i, self.liner_radius(i, pin), y);
-            if self.plan.film {
-                self.at.rings[i].mu = self.viscosity(i, pin, y);
-            }
-        }
+        (0..self.n_rings()).for_each(|i| self.at.places[i] = self.place(i, self.liner_radius(i, pin), y));
     }
 
     /// Runs the gas model on `self.gas_state` and copies the pressures to the rings. `p_cylinder` overrides the model.
@@ -319,6 +325,11 @@ impl Pack {
         self.evaluate_again(theta, y, None)
     }
 
+    /// Whether what `self.at` holds is the whole scene at crank angle `theta` for state `y`.
+    pub(super) fn is_at(&self, theta: f64, y: &[f64]) -> bool {
+        self.complete && self.at.theta == theta && self.state == y
+    }
+
     /// The same for an instant of a step that has been booked since, with what the models remembered then.
     pub fn evaluate_again(&mut self, theta: f64, y: &[f64], memory: Option<&[f64]>) -> Result<(), EvalError> {
         if let Some(memory) = memory {
@@ -336,6 +347,7 @@ impl Pack {
             self.in_groove(i, y)?;
         }
         self.state.copy_from_slice(y);
+        self.complete = true;
         Ok(())
     }
 
@@ -347,6 +359,7 @@ impl Pack {
         }
         // Until it is complete, this is the evaluation of no state.
         self.state.fill(f64::NAN);
+        self.complete = false;
         self.set_places(theta, y);
         if let Some(i) = (0..self.n_rings()).find(|i| !self.film_is_one(*i)) {
             let what = format!("the film of ring {} left the range of films", i + 1);

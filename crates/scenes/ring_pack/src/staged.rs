@@ -27,6 +27,8 @@ pub(super) struct Together {
     /// Their places in the state vector.
     states: Vec<usize>,
     newton: StageNewton,
+    /// Their accuracy over what is asked.
+    tight: f64,
     x: Vec<f64>,
     accuracy: Vec<f64>,
     /// What they were before.
@@ -49,8 +51,9 @@ pub struct Staging {
 
 /// Most passes over films and gas.
 const PASSES: usize = 10;
-/// Accuracy of gas and oil over what is asked, before the last step of Newton's method: what a stage lacks of them comes from nowhere.
-const TIGHT: f64 = 2e-2;
+/// Accuracy of gas over what is asked, before the last step of Newton's method, and of oil: what a stage lacks of it comes from nowhere.
+const OF_GAS: f64 = 0.2;
+const OF_OIL: f64 = 2e-2;
 /// Change of the oil on flanks over its accuracy that gas and rings need not know of.
 const SETTLED: f64 = 5.0;
 
@@ -58,11 +61,12 @@ const SETTLED: f64 = 5.0;
 type Missing<'a> = dyn FnMut(&mut [f64], &[usize], &mut [f64]) -> Result<(), EvalError> + 'a;
 
 impl Together {
-    fn new(states: Vec<usize>) -> Self {
+    fn new(states: Vec<usize>, tight: f64) -> Self {
         let n = states.len();
         Self {
             states,
             newton: StageNewton::new(n),
+            tight,
             x: vec![0.0; n],
             accuracy: vec![0.0; n],
             before: vec![0.0; n],
@@ -83,7 +87,7 @@ impl Together {
     ) -> Result<(), EvalError> {
         let states = &self.states;
         for ((x, a), &k) in self.x.iter_mut().zip(&mut self.accuracy).zip(states) {
-            (*x, *a) = (y[k], TIGHT * stage.accuracy[k]);
+            (*x, *a) = (y[k], self.tight * stage.accuracy[k]);
         }
         self.newton.solve(&mut self.x, stage.step, &self.accuracy, &mut |x, r| {
             states.iter().zip(x).for_each(|(&k, x)| y[k] = *x);
@@ -100,11 +104,11 @@ impl Staging {
         let layout = &pack.layout;
         let under = |i: usize| {
             let of = |k: &usize| pack.oil_pack.as_ref().is_some_and(|o| o.ring_of(k - layout.oil.start) == i);
-            Together::new(layout.oil.clone().filter(of).collect())
+            Together::new(layout.oil.clone().filter(of).collect(), OF_OIL)
         };
         Self {
-            gas: Together::new(layout.gas.clone().collect()),
-            flank: layout.flank.iter().map(|own| Together::new(own.clone().collect())).collect(),
+            gas: Together::new(layout.gas.clone().collect(), OF_GAS),
+            flank: layout.flank.iter().map(|own| Together::new(own.clone().collect(), OF_OIL)).collect(),
             oil: (0..pack.n_rings()).map(under).collect(),
             ..Self::default()
         }
@@ -163,7 +167,9 @@ impl Pack {
         g: &mut [f64],
         w: &mut Staging,
     ) -> Result<(), EvalError> {
-        let p = self.begin_stage(theta, y, w)?;
+        let p = self.cylinder.pressure(theta);
+        self.set_places(theta, y);
+        self.begin_stage(y, w)?;
         self.gas_pressures(p)?;
         self.films_of_stage(stage, y, w)?;
         for pass in 0.. {
@@ -180,27 +186,30 @@ impl Pack {
         Ok(())
     }
 
-    /// Solves a stage for one side of the pack, the other standing as `y` has it; `axial` are the forces \[N\] of the films along the liner, which
-    /// the films know themselves.
+    /// Solves a stage at `theta` for one side of the pack, the other standing as `y` has it; `p` is the pressure in the cylinder \[Pa\], `axial` are the
+    /// forces \[N\] of the films along the liner, which the films know themselves.
     ///
     /// # Errors
     /// What a sub-model refuses; no answer.
     pub(super) fn stage_of(
         &mut self,
         side: Side,
-        theta: f64,
+        (theta, p): (f64, f64),
         stage: &Stage<'_>,
         y: &mut [f64],
         axial: &[f64],
         w: &mut Staging,
     ) -> Result<(), EvalError> {
-        let p = self.begin_stage(theta, y, w)?;
         match side {
             Side::Grooves => {
+                self.locate(theta, y);
+                self.begin_stage(y, w)?;
                 self.set_film_forces(axial);
                 self.grooves_by_steps(stage, y, p, w)?;
             }
             Side::Films => {
+                self.set_places(theta, y);
+                self.begin_stage(y, w)?;
                 self.gas_pressures(p)?;
                 self.films_of_stage(stage, y, w)?;
             }
@@ -209,15 +218,13 @@ impl Pack {
         Ok(())
     }
 
-    /// Sets what no stage changes; the pressure in the cylinder \[Pa\].
-    fn begin_stage(&mut self, theta: f64, y: &[f64], w: &mut Staging) -> Result<f64, EvalError> {
+    /// Sets what no stage changes, at the places of the instant.
+    fn begin_stage(&mut self, y: &[f64], w: &mut Staging) -> Result<(), EvalError> {
         self.state.fill(f64::NAN);
-        self.set_places(theta, y);
-        let pin = self.at.piston.y;
+        self.complete = false;
         w.radii.clear();
-        w.radii.extend((0..self.n_rings()).map(|i| self.liner_radius(i, pin)));
-        self.set_gas(y)?;
-        Ok(self.cylinder.pressure(theta))
+        w.radii.extend(self.at.places.iter().map(|p| p.liner_radius));
+        self.set_gas(y)
     }
 
     pub(super) fn set_gas(&mut self, y: &[f64]) -> Result<(), EvalError> {

@@ -20,6 +20,7 @@ use super::staged::Staging;
 mod acting;
 mod guess;
 mod joint;
+mod ring_stage;
 mod rings;
 mod span;
 mod track;
@@ -383,11 +384,12 @@ impl<'a> OneSide<'a> {
         self.pack.book_oil((v.t0(), &self.base), (v.t1(), &self.y));
     }
 
-    /// The rows of the states that are guessed, and what drives them: gas and the oil under faces, for rings and films are found by brackets.
-    fn guessed(&self, t: f64) -> (std::ops::Range<usize>, Option<f64>) {
+    /// The rows of the states that are guessed, and what drives them where the pressure in the cylinder is `p` \[Pa\]: gas and the oil under faces, for
+    /// rings and films are found by brackets.
+    fn guessed(&self, p: f64) -> (std::ops::Range<usize>, Option<f64>) {
         let layout = &self.pack.layout;
         if self.side == Side::Grooves {
-            return (0..layout.gas.len(), Some(self.pack.cylinder.pressure(t)));
+            return (0..layout.gas.len(), Some(p));
         }
         let films: usize = layout.radial.iter().map(ExactSizeIterator::len).sum();
         (films..films + layout.oil.len(), None)
@@ -420,7 +422,8 @@ impl OdeSystem for OneSide<'_> {
     }
     /// Stages come in their order, the second after the first.
     fn stage(&mut self, t: f64, stage: &Stage<'_>, y: &mut [f64], g: &mut [f64]) -> Result<(), EvalError> {
-        let (guessed, drive) = self.guessed(t);
+        let p = self.pack.cylinder.pressure(t);
+        let (guessed, drive) = self.guessed(p);
         let part = Stage { base: &stage.base[guessed.clone()], ..*stage };
         self.guess.apply(t, &part, drive, &mut y[guessed.clone()]);
         self.fill(t, y);
@@ -428,7 +431,7 @@ impl OdeSystem for OneSide<'_> {
             (self.base[k], self.accuracy[k]) = (stage.base[j], stage.accuracy[j]);
         }
         let whole = Stage { base: &self.base, accuracy: &self.accuracy, ..*stage };
-        self.pack.stage_of(self.side, t, &whole, &mut self.y, &self.axial, self.staging)?;
+        self.pack.stage_of(self.side, (t, p), &whole, &mut self.y, &self.axial, self.staging)?;
         self.part.states.iter().zip(&mut *y).for_each(|(&k, v)| *v = self.y[k]);
         self.guess.learn(t, &part, &y[guessed]);
         self.keep_forces(stage.number);

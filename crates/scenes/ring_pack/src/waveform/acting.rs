@@ -43,6 +43,12 @@ impl Acting {
         [above, behind, below]
     }
 
+    /// Mean rates of what changes, from another instant on \[1/rad\].
+    pub fn mean_rates(&self, from: &Self) -> Values {
+        let per = 1.0 / (self.t - from.t);
+        std::array::from_fn(|k| (self.values[k] - from.values[k]) * per)
+    }
+
     /// Clearance in the groove \[m\].
     pub const fn clearance(&self) -> f64 {
         self.values[6]
@@ -59,15 +65,14 @@ pub struct Variation {
 }
 
 impl Variation {
-    /// From one instant to another, and the mean rates \[1/rad\]. Before the first the mean rates were `rates` over `before` \[rad\], zero where nothing is
-    /// known of that.
-    pub fn new(from: &Acting, to: &Acting, (rates, before): &(Values, f64)) -> (Self, Values) {
+    /// From one instant to another. Before the first the mean rates were `rates` over `before` \[rad\], zero where nothing is known of that.
+    pub fn new(from: &Acting, to: &Acting, (rates, before): &(Values, f64)) -> Self {
         let span = to.t - from.t;
         let change: Values = std::array::from_fn(|k| to.values[k] - from.values[k]);
         let begins = std::array::from_fn(|k| {
             if *before > 0.0 { slope_between(rates[k] * span, before / span, change[k]) } else { change[k] }
         });
-        (Self { from: from.values, change, begins }, change.map(|c| c / span))
+        Self { from: from.values, change, begins }
     }
 
     /// What acts at the part `x` of the span that ends at `to`.
@@ -109,8 +114,7 @@ mod tests {
     #[test]
     fn nothing_overshoots_its_ends() {
         for (rate, to) in [(100.0, 1.0), (-3.0, 1.0), (0.0, -2.0), (1e-3, -1e-9), (0.2, 0.0)] {
-            let (variation, mean) = Variation::new(&at(1.0, 0.0), &at(1.5, to), &([rate; 7], 0.1));
-            assert_eq!(mean[0], to / 0.5);
+            let variation = Variation::new(&at(1.0, 0.0), &at(1.5, to), &([rate; 7], 0.1));
             let values: Vec<f64> =
                 (0..=20).map(|k| variation.at(f64::from(k) / 20.0, &at(1.5, to)).gas_force()).collect();
             assert_eq!((values[0], values[20]), (0.0, to));
@@ -125,7 +129,7 @@ mod tests {
 
     #[test]
     fn where_nothing_is_known_before_it_is_a_line() {
-        let (variation, _) = Variation::new(&at(0.0, 1.0), &at(2.0, 3.0), &([0.0; 7], 0.0));
+        let variation = Variation::new(&at(0.0, 1.0), &at(2.0, 3.0), &([0.0; 7], 0.0));
         assert_eq!(variation.at(0.25, &at(2.0, 3.0)).clearance(), 1.5);
     }
 }

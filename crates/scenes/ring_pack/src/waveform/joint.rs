@@ -1,6 +1,6 @@
 //! Steps of one side with what the other did over them, as steps of the whole pack.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 
 use gudgeon_numerics::ode::{Flow, StepView};
 
@@ -36,8 +36,9 @@ pub struct Joint<'a> {
     /// States and quadratures of the pack at both ends.
     y: [Vec<f64>; 2],
     q: [Vec<f64>; 2],
-    /// Values of the other side, and of the one that steps, at an instant.
+    /// Values of the other side, and of the one that steps, at an instant of the step.
     own: RefCell<[Vec<f64>; 2]>,
+    known: Cell<f64>,
 }
 
 /// A piece of a step as it is seen.
@@ -52,13 +53,22 @@ impl<'a> Joint<'a> {
         let y = || vec![0.0; pack.layout.n];
         let q = || vec![0.0; pack.layout.quads()];
         let own = parts.map(|p| vec![0.0; p.states.len() + p.quads.len()]);
-        Self { beside, parts, t: [0.0; 2], y: [y(), y()], q: [q(), q()], own: RefCell::new(own) }
+        Self {
+            beside,
+            parts,
+            t: [0.0; 2],
+            y: [y(), y()],
+            q: [q(), q()],
+            own: RefCell::new(own),
+            known: Cell::new(f64::NAN),
+        }
     }
 
     /// Has each piece of the step looked at, until one stops.
     pub fn pieces(&mut self, step: &dyn StepView, mut look: impl FnMut(&dyn StepView) -> Flow) -> Flow {
         let first = self.beside.ends().partition_point(|t| *t <= step.t0() + SLACK);
         let inner = self.beside.ends()[first..].iter().copied().take_while(|t| *t < step.t1() - SLACK);
+        self.known.set(f64::NAN);
         let mut from = step.t0();
         for to in inner.chain([step.t1()]) {
             self.t = [from, to];
@@ -75,10 +85,8 @@ impl<'a> Joint<'a> {
         Flow::Continue
     }
 
-    /// States and quadratures of the pack at `t`.
-    fn at(&self, step: &dyn StepView, t: f64, y: Option<&mut [f64]>, q: Option<&mut [f64]>) {
-        let mut own = self.own.borrow_mut();
-        let [beside, stepping] = &mut *own;
+    /// States and quadratures of both sides at `t`.
+    fn look(&self, step: &dyn StepView, t: f64, [beside, stepping]: &mut [Vec<f64>; 2]) {
         self.beside.eval(t, beside);
         let (states, quads) = stepping.split_at_mut(self.parts[1].states.len());
         if t >= step.t1() {
@@ -87,6 +95,14 @@ impl<'a> Joint<'a> {
         } else {
             step.interpolate(t, states);
             step.interpolate_quad(t, quads);
+        }
+    }
+
+    /// States and quadratures of the pack at `t`.
+    fn at(&self, step: &dyn StepView, t: f64, y: Option<&mut [f64]>, q: Option<&mut [f64]>) {
+        let mut own = self.own.borrow_mut();
+        if self.known.replace(t) != t {
+            self.look(step, t, &mut own);
         }
         let put = |to: &mut [f64], places: &[usize], values: &[f64]| {
             places.iter().zip(values).for_each(|(&k, v)| to[k] = *v);

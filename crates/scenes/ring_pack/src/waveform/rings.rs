@@ -1,7 +1,7 @@
 //! Rings in their grooves at steps of their own within a step of the gas.
 //!
 //! A stage of the gas asks where a ring stands at its instant. The ring comes there from the instant before, the start of the step or its first stage, by
-//! as many steps as its own accuracy asks for ([`super::span`]): a multirate method. While the gas is solved a ring responds linearly to the force of the gas; how, its
+//! the step of the gas or by as many as its own accuracy asks for ([`super::span`]): a multirate method. While the gas is solved a ring responds linearly to the force of the gas; how, its
 //! last two integrations tell (a secant a ring). Gas and rings alternate until every ring stands where the gas saw it.
 
 use gudgeon_core::EvalError;
@@ -9,34 +9,55 @@ use gudgeon_core::geometry::RingPlace;
 use gudgeon_core::kinds::GasPartials;
 use gudgeon_core::states::Stage;
 use gudgeon_numerics::ode::{Options, StepView};
-use gudgeon_numerics::sdirk::GAMMA;
 
 use super::super::pack::Pack;
 use super::super::staged::{Staging, Together};
 use super::acting::Acting;
-use super::span::{MOST_STATES, Node, Span, States, Steps, ease};
+use super::ring_stage::ease;
+use super::span::{MOST_STATES, Node, States, Steps, Target};
 use super::track::Track;
 
 /// Error over the tolerance up to which steps chosen for other pressures are kept.
 const KEPT: f64 = 2.0;
 /// Difference, over the tolerance, between where a ring comes to and where the gas saw it, in clearances and open shares of gaps.
-const SEEN: f64 = 3e-3;
+const SEEN: f64 = 2e-2;
 /// Change of the force on a ring, over the tolerance and the sum of all forces, for which it is not integrated again.
 const NEARLY: f64 = 0.03;
 /// Least change of the force on a ring \[N\] from which its response is learnt.
 const LEAST_FORCE: f64 = 1e-9;
+/// Looks at the gas in a pass up to which its Jacobian is good for the next stage.
+const KEPT_LOOKS: usize = 2;
 /// Most solutions of the gas in a stage.
 const PASSES: usize = 10;
 /// Ends of steps that are one within this \[rad\].
 const SLACK: f64 = 1e-9;
 
+/// Most stages for which it is taken for granted how a ring responded.
+const STALE: usize = 8;
+
+/// How a ring responded in a stage, by the force of the gas.
+#[derive(Debug, Clone, Copy, Default)]
+struct Learnt {
+    /// Derivatives of the states \[1/N\], and the span that led there \[rad\].
+    slope: States,
+    span: f64,
+    /// Stages since.
+    age: usize,
+}
+
 /// How a ring responds to the gas in a stage.
 #[derive(Debug, Clone, Default)]
 struct Response {
+    /// Whether the ring was integrated in this stage.
+    known: bool,
     /// Force of the gas \[N\], the states that it led to, and their derivatives by it.
     force: f64,
     y: States,
     slope: States,
+    /// What the gas saw the ring do in the last first and in the last second stage.
+    before: [Option<Learnt>; 2],
+    /// Whether the ring went on there as it did before, for all that the gas saw.
+    quiet: [bool; 2],
 }
 
 impl Response {
@@ -50,18 +71,24 @@ impl Response {
         self.y[j] + self.slope[j] * (force - self.force)
     }
 
-    /// The first integration in a stage led to `y`.
-    fn begin(&mut self, force: f64, y: &States) {
-        *self = Self { force, y: *y, slope: [0.0; MOST_STATES] };
+    /// The first integration in stage `number`, over a span \[rad\], led to `y`.
+    fn begin(&mut self, (number, span): (usize, f64), force: f64, y: &States) {
+        (self.known, self.force, self.y, self.slope) = (true, force, *y, [0.0; MOST_STATES]);
+        if let Some(l) = self.before[number - 1].as_mut().filter(|l| l.age < STALE) {
+            l.age += 1;
+            self.slope = l.slope.map(|s| s * (span / l.span));
+        }
     }
 
-    /// A further one led to `y`.
-    fn learn(&mut self, force: f64, y: &States) {
+    /// A further one led to `y`; the gas sees the difference, or not.
+    fn learn(&mut self, (number, span): (usize, f64), force: f64, y: &States, seen: bool) {
         let change = force - self.force;
         if change.abs() > LEAST_FORCE {
             self.slope = std::array::from_fn(|j| (y[j] - self.y[j]) / change);
         }
         (self.force, self.y) = (force, *y);
+        self.before[number - 1] = seen.then_some(Learnt { slope: self.slope, span, age: 0 });
+        self.quiet[number - 1] = !seen;
     }
 }
 
@@ -71,6 +98,8 @@ pub struct RingSteps {
     rings: Vec<Steps>,
     responses: Vec<Response>,
     partials: GasPartials,
+    /// Looks at the gas in the first pass of the last stage.
+    looks: usize,
     /// First step of a cycle \[rad\], and relative error of a step.
     first: f64,
     tolerance: f64,
@@ -108,7 +137,7 @@ impl RingSteps {
             for (j, k) in states(pack, i).enumerate() {
                 (y[j], rates[j]) = (pack.state[k], pack.dy[k]);
             }
-            if ring.spans[1].is_known() && y == ring.spans[1].end.y {
+            if ring.is_known() && y == ring.spans[1].end.y {
                 // Its stages know the rates better than an evaluation.
                 ring.start = ring.spans[1].end;
             } else {
@@ -136,22 +165,16 @@ impl RingSteps {
         }
     }
 
-    /// Oil that left the flanks of ring `i` \[m²/s\], as a rate at stage `number` of a step over `h`.
-    fn lost(&self, i: usize, number: usize, h: f64) -> f64 {
-        let [first, second] = &self.rings[i].spans;
-        let early = first.lost / (GAMMA * h);
-        if number == 1 { early } else { ((first.lost + second.lost) / h - (1.0 - GAMMA) * early) / GAMMA }
-    }
-
     /// Forgets what is kept from stage to stage.
     pub fn restart(&mut self) {
         self.rings.iter_mut().for_each(Steps::forget);
+        self.responses.fill(Response::default());
+        self.looks = usize::MAX;
     }
 
     /// Adds an accepted step of the gas to `wave`, whose rows `rows` are the states of the rings, in pieces that their steps ask for.
     pub fn record(&self, v: &dyn StepView, rows: &[usize], wave: &mut Track) {
-        let spans = self.rings.iter().flat_map(|r| &r.spans);
-        let mut ends: Vec<f64> = spans.flat_map(Span::ends).collect();
+        let mut ends: Vec<f64> = self.rings.iter().flat_map(Steps::ends).collect();
         ends.retain(|t| *t < v.t1() - SLACK && *t > v.t0() + SLACK);
         ends.push(v.t1());
         ends.sort_by(f64::total_cmp);
@@ -194,21 +217,26 @@ impl Pack {
         p: f64,
         w: &mut Staging,
     ) -> Result<(), EvalError> {
-        let Staging { gas, radii, rings: Some(rings), .. } = w else {
+        let Staging { gas, rings: Some(rings), .. } = w else {
             return Err(EvalError::fatal("ring_pack", "no steps of rings"));
         };
         rings.begin_stage(stage.number, self.at.theta - stage.step);
         self.gas_pressures(p)?;
-        for (i, radius) in radii.iter().enumerate() {
-            self.at.places[i] = self.place(i, *radius, y);
-            let force = self.integrate(i, stage, y, rings, true)?;
-            rings.responses[i].begin(force, &rings.rings[i].spans[stage.number - 1].end.y);
+        for i in 0..self.n_rings() {
+            if rings.responses[i].quiet[stage.number - 1] && rings.rings[i].is_whole() {
+                self.go_on(i, stage, y, rings);
+            } else {
+                self.begin_response(i, stage, y, rings)?;
+            }
         }
-        self.gas_jacobian(p, gas, rings)?;
-        for _ in 0..=PASSES {
+        if rings.looks > KEPT_LOOKS {
+            self.gas_jacobian(p, gas, rings)?;
+        }
+        for pass in 0..=PASSES {
             let moving = rings.responses.iter().any(Response::is_known);
-            let mut standing = false;
+            let (mut standing, mut looks) = (false, 0);
             gas.solve(stage, y, &mut |y, _, r| {
+                looks += 1;
                 self.set_gas(y)?;
                 if moving {
                     self.responses(p, &rings.responses, y)?;
@@ -221,8 +249,11 @@ impl Pack {
                 self.gas_lacks(stage, y, r);
                 Ok(())
             })?;
+            if pass == 0 {
+                rings.looks = looks;
+            }
             let mut settled = true;
-            for i in 0..radii.len() {
+            for i in 0..self.n_rings() {
                 settled &= self.has_settled(i, stage, y, rings)?;
             }
             if settled {
@@ -254,20 +285,49 @@ impl Pack {
 
     /// Puts ring `i` where its response to the gas leads.
     fn respond(&mut self, i: usize, respond: &Response, y: &mut [f64]) {
-        let own = motion(self, i);
-        if own.is_empty() || !respond.is_known() {
+        if motion(self, i).is_empty() || !respond.is_known() {
             return;
         }
         self.external_forces(i);
         let force = self.at.rings[i].axial.gas;
         states(self, i).enumerate().for_each(|(j, k)| y[k] = respond.at(j, force));
+        self.put(i, y);
+    }
+
+    /// Puts ring `i` where its states say.
+    fn put(&mut self, i: usize, y: &[f64]) {
+        let own = motion(self, i);
         let (ring, place) = (&self.rings[i], &mut self.at.places[i]);
-        let pose = ring.motion.pose(&y[own], place.clearance);
-        (place.s, place.v, place.lift_fraction) = (pose.s, pose.v, pose.lift_fraction);
+        if !own.is_empty() {
+            let pose = ring.motion.pose(&y[own], place.clearance);
+            (place.s, place.v, place.lift_fraction) = (pose.s, pose.v, pose.lift_fraction);
+        }
         place.flank = ring.flank.oil(&y[self.layout.flank[i].clone()], place);
     }
 
-    /// Integrates ring `i` again under the gas that was found; whether it comes to where the gas saw it.
+    /// Integrates ring `i` under the gas of the instant, by steps that are chosen now.
+    fn begin_response(
+        &mut self,
+        i: usize,
+        stage: &Stage<'_>,
+        y: &mut [f64],
+        w: &mut RingSteps,
+    ) -> Result<(), EvalError> {
+        let force = self.integrate(i, stage, y, w, true)?;
+        let end = &w.rings[i].spans[stage.number - 1].end;
+        w.responses[i].begin((stage.number, end.trend.1), force, &end.y);
+        Ok(())
+    }
+
+    /// Puts ring `i` where it comes to at the rates that it had.
+    fn go_on(&mut self, i: usize, stage: &Stage<'_>, y: &mut [f64], w: &mut RingSteps) {
+        let ahead = w.rings[i].ahead(stage.number, self.at.theta);
+        states(self, i).zip(&ahead).for_each(|(k, v)| y[k] = *v);
+        self.put(i, y);
+        (w.responses[i].known, w.responses[i].slope) = (false, [0.0; MOST_STATES]);
+    }
+
+    /// Integrates ring `i`, again or for the first time, under the gas that was found; whether it comes to where the gas saw it.
     fn has_settled(
         &mut self,
         i: usize,
@@ -275,18 +335,25 @@ impl Pack {
         y: &mut [f64],
         w: &mut RingSteps,
     ) -> Result<bool, EvalError> {
-        let (number, seen) = (stage.number, self.at.places[i]);
+        let (number, seen, least) = (stage.number, self.at.places[i], SEEN * w.tolerance);
+        if !w.responses[i].known {
+            self.begin_response(i, stage, y, w)?;
+            let quiet = apart(&seen, &self.at.places[i]) <= least;
+            w.responses[i].quiet[number - 1] = quiet;
+            return Ok(quiet);
+        }
         if self.is_unchanged(i, y, (number, w)) {
             return Ok(true);
         }
+        let before = w.rings[i].spans[number - 1].place;
         let force = self.integrate(i, stage, y, w, false)?;
         let span = &w.rings[i].spans[number - 1];
-        w.responses[i].learn(force, &span.end.y);
+        let moved = apart(&before, &span.place) > least;
+        w.responses[i].learn((number, span.end.trend.1), force, &span.end.y, moved);
         if span.error <= KEPT {
-            return Ok(apart(&seen, &self.at.places[i]) <= SEEN * w.tolerance);
+            return Ok(apart(&seen, &self.at.places[i]) <= least);
         }
-        let force = self.integrate(i, stage, y, w, true)?;
-        w.responses[i].begin(force, &w.rings[i].spans[number - 1].end.y);
+        self.begin_response(i, stage, y, w)?;
         Ok(false)
     }
 
@@ -325,7 +392,9 @@ impl Pack {
             return Ok(0.0);
         }
         let (acting, place) = (Acting::of(self, i), self.at.places[i]);
-        steps.integrate(&mut self.rings[i], stage.number, acting, &place, chooses)?;
+        let to = Target { number: stage.number, acting, place: &place, chooses };
+        steps.integrate(&mut self.rings[i], &to)?;
+        steps.tell_lost(stage);
         let span = &steps.spans[stage.number - 1];
         states(self, i).zip(&span.end.y).for_each(|(k, v)| y[k] = *v);
         self.at.places[i] = span.place;
@@ -333,7 +402,7 @@ impl Pack {
         if moves {
             (r.axial.damping, r.reaction) = (span.response.damping, span.response.reaction);
         }
-        r.flank.lost = w.lost(i, stage.number, stage.step / GAMMA);
+        r.flank.lost = steps.lost[stage.number - 1];
         Ok(acting.gas_force())
     }
 }

@@ -1,28 +1,21 @@
-//! A ring in its groove, with the oil on its flanks, at steps of its own between two instants of the gas.
+//! A ring in its groove, with the oil on its flanks, over a step of the gas.
 //!
-//! The method is that of the pack ([`sdirk`]); the stages of the motion are solved by its model, the oil by secants.
+//! The method is that of the pack ([`sdirk`]). A ring takes the step of the gas where that is accurate enough for it, the stages of the gas being its own. Elsewhere
+//! it takes steps of its own from each instant of the gas to the next, under what acts on it as a parabola between them.
 
 use gudgeon_core::EvalError;
 use gudgeon_core::geometry::RingPlace;
-use gudgeon_core::kinds::{FlankIn, RingForces, RingPose, RingResponse};
+use gudgeon_core::kinds::RingResponse;
 use gudgeon_core::states::Stage;
 use gudgeon_numerics::elementary;
 use gudgeon_numerics::sdirk::{self, GAMMA};
 
 use super::super::ring::Ring;
 use super::acting::{Acting, Values, Variation};
+use super::ring_stage::{RingStage, Step};
 
-/// Part of the error of a step that its stages may add.
-const STAGES: f64 = 0.005;
-/// Change of the oil over the accuracy of a stage that the motion need not know of.
-const SETTLED: f64 = 20.0;
 /// Most steps between two instants, rejected ones included.
 const MOST: usize = 400;
-/// Most passes over motion and oil, and most looks at the oil in one.
-const PASSES: usize = 10;
-const LOOKS: usize = 25;
-/// Least slope of what the oil lacks: more of it never brings more.
-const LEAST_SLOPE: f64 = 0.5;
 /// Part of the step that the error estimate admits which is taken, and the largest growth.
 const SAFETY: f64 = 0.85;
 const GROWTH: f64 = 2.0;
@@ -46,21 +39,10 @@ pub struct Node {
     pub trend: (Values, f64),
 }
 
-/// A step.
-#[derive(Debug, Clone, Copy, Default)]
-struct Step {
-    /// Start and length.
-    t: f64,
-    h: f64,
-    /// States at both stages, the rates there, and the errors admitted.
-    y: [States; 2],
-    rates: [States; 2],
-    atol: States,
-}
-
 /// From one instant of the gas to the next.
 #[derive(Debug, Clone, Default)]
 pub struct Span {
+    /// Steps of the ring from the one to the other; none where it takes the step of the gas.
     steps: Vec<Step>,
     pub end: Node,
     /// Largest error of a step over the tolerance.
@@ -73,15 +55,6 @@ pub struct Span {
 }
 
 impl Span {
-    pub fn is_known(&self) -> bool {
-        !self.steps.is_empty()
-    }
-
-    /// Ends of its steps.
-    pub fn ends(&self) -> impl Iterator<Item = f64> {
-        self.steps.iter().map(|s| s.t + s.h)
-    }
-
     /// Where the ring stands at the start of step `k`, and the rates there.
     fn before(&self, from: &Node, k: usize) -> (States, States) {
         if k == 0 { (from.y, from.rates) } else { (self.steps[k - 1].y[1], self.steps[k - 1].rates[1]) }
@@ -90,10 +63,16 @@ impl Span {
     /// States at an instant.
     fn at(&self, from: &Node, t: f64) -> States {
         let k = self.steps.partition_point(|s| s.t <= t).max(1) - 1;
-        let Step { t: t0, h, y, rates, .. } = &self.steps[k];
-        let (y0, k0) = self.before(from, k);
-        std::array::from_fn(|j| sdirk::between([y0[j], y[1][j]], [k0[j], rates[1][j]], *h, (t - t0) / h))
+        let (y, rates) = self.before(from, k);
+        within(&self.steps[k], (&y, &rates), t)
     }
+}
+
+/// States at an instant of a step from the states `y0` with the rates `k0`.
+fn within(step: &Step, (y0, k0): (&States, &States), t: f64) -> States {
+    let Step { t: t0, h, y, rates, .. } = step;
+    let x = (t - t0) / h;
+    std::array::from_fn(|j| sdirk::between([y0[j], y[1][j]], [k0[j], rates[1][j]], *h, x))
 }
 
 /// One ring over a step of the gas.
@@ -105,11 +84,31 @@ pub struct Steps {
     pub start: Node,
     /// To the first stage, and from there to the second.
     pub spans: [Span; 2],
+    /// The step of the gas, and whether the ring takes it.
+    whole: Step,
+    is_whole: bool,
+    /// Whether the step was solved to its end.
+    known: bool,
+    /// Oil that left the flanks \[m²/s\], as rates at both stages of the gas.
+    pub lost: [f64; 2],
     /// Errors admitted before they are eased, and those by magnitude.
     pub atol: States,
     pub relative: States,
     /// How what the oil lacks grows with it.
     slope: States,
+}
+
+/// Where a ring is integrated to.
+#[derive(Debug, Clone, Copy)]
+pub struct Target<'a> {
+    /// Stage of the gas.
+    pub number: usize,
+    /// What acts there.
+    pub acting: Acting,
+    /// The place there, clearance and pose apart.
+    pub place: &'a RingPlace,
+    /// Whether steps are chosen now, or are those that were chosen before.
+    pub chooses: bool,
 }
 
 impl Steps {
@@ -120,40 +119,126 @@ impl Steps {
 
     /// Forgets what is kept from stage to stage.
     pub fn forget(&mut self) {
-        self.spans.iter_mut().for_each(|w| w.steps.clear());
+        self.known = false;
         self.slope = [1.0; MOST_STATES];
     }
 
-    /// Integrates the span to stage `number`, at whose end `end` acts, the clearance and the pose of `place` apart: by steps that are chosen now, or by those
-    /// chosen before.
-    pub fn integrate(
-        &mut self,
-        ring: &mut Ring,
-        number: usize,
-        end: Acting,
-        place: &RingPlace,
-        chooses: bool,
-    ) -> Result<(), EvalError> {
+    /// Whether a step was solved to its end.
+    pub const fn is_known(&self) -> bool {
+        self.known
+    }
+
+    /// Whether the ring takes the step of the gas, or took the last one.
+    pub const fn is_whole(&self) -> bool {
+        self.is_whole
+    }
+
+    /// States at the instant `t` of a stage of the gas, at the rates of the instant before.
+    pub fn ahead(&self, number: usize, t: f64) -> States {
+        let from = if number == 1 { &self.start } else { &self.spans[0].end };
+        std::array::from_fn(|j| from.y[j] + (t - from.acting.t) * from.rates[j])
+    }
+
+    /// Integrates the ring to a stage of the gas.
+    pub fn integrate(&mut self, ring: &mut Ring, to: &Target<'_>) -> Result<(), EvalError> {
+        let from = if to.number == 1 { &self.start } else { &self.spans[0].end };
+        let (t, length) = (to.acting.t, to.acting.t - from.acting.t);
+        let trend = (to.acting.mean_rates(&from.acting), length);
+        let end = &mut self.spans[to.number - 1].end;
+        (end.acting, end.trend) = (to.acting, trend);
+        if to.number == 1 {
+            self.known = false;
+            if to.chooses {
+                self.is_whole = self.start.h * GAMMA >= length * (1.0 - 1e-9);
+            }
+        }
+        if self.is_whole {
+            self.take_step_of_gas(ring, to)?;
+            let too_far = to.number == 2 && to.chooses && self.spans[1].error > 1.0;
+            if too_far {
+                // What the first stage saw is the stage of a step that was too long.
+                self.is_whole = false;
+                self.start.h = (t - self.start.acting.t) * shortened(self.spans[1].error);
+                let place = self.spans[0].place;
+                self.take_steps(
+                    ring,
+                    &Target { number: 1, acting: self.spans[0].end.acting, place: &place, ..*to },
+                )?;
+            }
+        }
+        if !self.is_whole {
+            self.take_steps(ring, to)?;
+        }
+        self.known = to.number == 2;
+        Ok(())
+    }
+
+    /// Tells the oil that left the flanks as a rate at a stage of the gas: both together, by the weights of the method, are all that left.
+    pub fn tell_lost(&mut self, stage: &Stage<'_>) {
+        let h = stage.step / GAMMA;
+        let [first, second] = &self.spans;
+        self.lost[stage.number - 1] = match stage.number {
+            1 => first.lost / stage.step,
+            _ => ((first.lost + second.lost) / h - (1.0 - GAMMA) * self.lost[0]) / GAMMA,
+        };
+    }
+
+    /// Solves a stage of the gas as one of the ring.
+    fn take_step_of_gas(&mut self, ring: &mut Ring, to: &Target<'_>) -> Result<(), EvalError> {
+        let Self { start, spans, whole, .. } = self;
+        let [first, second] = spans;
+        let (t0, t) = (start.acting.t, to.acting.t);
+        if to.number == 1 && to.chooses {
+            *whole = Step::new(t0, (t - t0) / GAMMA, &start.y, &start.rates, start.atol);
+        }
+        if to.number == 2 && to.chooses {
+            whole.go_on(&start.y);
+        }
+        let accuracy = whole.accuracy(&start.y, &self.relative);
+        let mut stage = RingStage::new(ring, (self.motion, self.n), &mut self.slope, to.place);
+        let lost = stage.solve(whole, (to.number, &start.y), &accuracy, &to.acting)?;
+        let span = if to.number == 1 { &mut *first } else { &mut *second };
+        (span.end.y, span.end.rates) = (whole.y[to.number - 1], whole.rates[to.number - 1]);
+        (span.place, span.response) = (stage.place, stage.response);
+        span.steps.clear();
+        if to.number == 1 {
+            (first.error, first.lost) = (0.0, GAMMA * whole.h * lost);
+            return Ok(());
+        }
+        // The weights of the method are those of both stages, not of both spans.
+        let early = first.lost / GAMMA;
+        second.lost = early * (1.0 - GAMMA) + GAMMA * whole.h * lost - first.lost;
+        second.error = error(whole, (&start.y, &start.rates), &self.relative);
+        if to.chooses {
+            let next = whole.h * (SAFETY / elementary::cbrt(second.error.max(1e-10))).clamp(0.2, GROWTH);
+            second.end.h = next.max(start.h);
+            second.end.atol = self.atol;
+            stage.ease(&mut second.end.atol);
+        }
+        Ok(())
+    }
+
+    /// Integrates the span to a stage of the gas by steps of the ring.
+    fn take_steps(&mut self, ring: &mut Ring, to: &Target<'_>) -> Result<(), EvalError> {
         let (first, rest) = self.spans.split_at_mut(1);
-        let (from, span) = match number {
+        let (from, span) = match to.number {
             1 => (&self.start, &mut first[0]),
             _ => (&first[0].end, &mut rest[0]),
         };
-        let (variation, trend) = Variation::new(&from.acting, &end, &from.trend);
-        (span.end.acting, span.end.trend) = (end, (trend, end.t - from.acting.t));
+        let variation = Variation::new(&from.acting, &to.acting, &from.trend);
         (span.error, span.lost) = (0.0, 0.0);
-        let sizes = (self.motion, self.n);
-        let accuracy = (&self.atol, &self.relative);
-        let mut run =
-            Integration { ring, place, from, span, variation, sizes, accuracy, slope: &mut self.slope };
-        if chooses {
+        let stage = RingStage::new(ring, (self.motion, self.n), &mut self.slope, to.place);
+        let mut run = Integration { stage, from, span, variation, accuracy: (&self.atol, &self.relative) };
+        if to.chooses {
             run.choose()?;
         } else {
             for k in 0..run.span.steps.len() {
-                let error = run.step(k)?;
+                let error = run.step(k, false)?;
                 run.span.error = run.span.error.max(error);
             }
         }
+        let RingStage { place, response, .. } = run.stage;
+        (span.place, span.response) = (place, response);
         if let Some(last) = span.steps.last() {
             (span.end.y, span.end.rates) = (last.y[1], last.rates[1]);
         }
@@ -163,37 +248,44 @@ impl Steps {
     /// States at an instant of the step of the gas.
     pub fn at(&self, t: f64) -> States {
         let [first, second] = &self.spans;
-        if t <= first.end.acting.t { first.at(&self.start, t) } else { second.at(&first.end, t) }
+        if self.is_whole {
+            within(&self.whole, (&self.start.y, &self.start.rates), t)
+        } else if t <= first.end.acting.t {
+            first.at(&self.start, t)
+        } else {
+            second.at(&first.end, t)
+        }
+    }
+
+    /// Ends of its steps.
+    pub fn ends(&self) -> impl Iterator<Item = f64> {
+        self.spans.iter().flat_map(|span| span.steps.iter().map(|s| s.t + s.h))
     }
 }
 
-/// Eases the errors admitted of a ring where it stands.
-pub fn ease(ring: &Ring, (motion, n): (usize, usize), atol: &mut States) {
-    let (own, oil) = atol[..n].split_at_mut(motion);
-    ring.motion.ease(own);
-    ring.flank.ease(oil);
+/// Error of a step from the states `y0` with the rates `k0`, over the tolerance.
+fn error(step: &Step, (y0, k0): (&States, &States), relative: &States) -> f64 {
+    let Step { h, y: [_, y], rates: [first, second], atol, .. } = step;
+    let each: States = std::array::from_fn(|j| {
+        let scale = atol[j] + relative[j] * y0[j].abs().max(y[j].abs());
+        (h * sdirk::error([k0[j], first[j], second[j]]) / scale).abs()
+    });
+    each.iter().fold(0.0, |a, b| if b.is_nan() { f64::INFINITY } else { b.max(a) })
 }
 
-/// The integration of a span.
+/// Part of a step with an error above the tolerance that is tried next.
+fn shortened(error: f64) -> f64 {
+    (SAFETY / elementary::cbrt(error)).clamp(0.1, 0.9)
+}
+
+/// The integration of a span by steps of the ring.
 struct Integration<'a> {
-    ring: &'a mut Ring,
-    place: &'a RingPlace,
+    stage: RingStage<'a>,
     from: &'a Node,
     span: &'a mut Span,
     variation: Variation,
-    /// States of the motion, and all.
-    sizes: (usize, usize),
     /// Errors admitted before they are eased, and those by magnitude.
     accuracy: (&'a States, &'a States),
-    slope: &'a mut States,
-}
-
-/// A stage of a step of a ring.
-struct Staged {
-    number: usize,
-    step: f64,
-    base: States,
-    accuracy: States,
 }
 
 impl Integration<'_> {
@@ -217,18 +309,17 @@ impl Integration<'_> {
                 Err(e) if e.is_recoverable() => f64::INFINITY,
                 error => error?,
             };
-            let factor = SAFETY / elementary::cbrt(error.max(1e-10));
             if error > 1.0 {
                 self.span.steps.pop();
                 self.span.lost = lost;
-                (h, most) = (tried * factor.clamp(0.1, 0.9), 1.0);
+                (h, most) = (tried * shortened(error), 1.0);
                 continue;
             }
-            let next = tried * factor.clamp(0.2, most);
+            let next = tried * (SAFETY / elementary::cbrt(error.max(1e-10))).clamp(0.2, most);
             (h, most) = (if tried < h { h.max(next) } else { next }, GROWTH);
             self.span.error = self.span.error.max(error);
             self.span.end.atol = *self.accuracy.0;
-            ease(self.ring, self.sizes, &mut self.span.end.atol);
+            self.stage.ease(&mut self.span.end.atol);
             if last {
                 self.span.end.h = h;
                 return Ok(());
@@ -238,127 +329,29 @@ impl Integration<'_> {
         Err(EvalError::recoverable("ring_pack", "a ring needs too many steps within one of the gas"))
     }
 
-    /// Adds a step, its stages first as the rates before go on; its error over the tolerance.
+    /// Adds a step; its error over the tolerance.
     fn try_step(&mut self, t: f64, h: f64) -> Result<f64, EvalError> {
         let k = self.span.steps.len();
         let (y, rates) = self.span.before(self.from, k);
-        let guess = [GAMMA, 1.0].map(|part| std::array::from_fn(|j| y[j] + part * h * rates[j]));
-        let atol = self.span.end.atol;
-        self.span.steps.push(Step { t, h, y: guess, rates: [rates; 2], atol });
-        self.step(k)
+        self.span.steps.push(Step::new(t, h, &y, &rates, self.span.end.atol));
+        self.step(k, true)
     }
 
-    /// Integrates step `k`; its error over the tolerance.
-    fn step(&mut self, k: usize) -> Result<f64, EvalError> {
+    /// Integrates step `k`, for the first time or again; its error over the tolerance.
+    fn step(&mut self, k: usize, is_new: bool) -> Result<f64, EvalError> {
         let (y0, k0) = self.span.before(self.from, k);
-        let Step { t, h, atol, .. } = self.span.steps[k];
-        let relative = self.accuracy.1;
-        let accuracy = std::array::from_fn(|j| STAGES * (atol[j] + relative[j] * y0[j].abs()));
-        let span = self.span.end.acting.t - self.from.acting.t;
-        let mut w = Staged { number: 1, step: GAMMA * h, base: y0, accuracy };
-        for number in [1, 2] {
-            if number == 2 {
-                let first = &self.span.steps[k].rates[0];
-                w.base = std::array::from_fn(|j| y0[j] + h * (1.0 - GAMMA) * first[j]);
+        let (span, relative) = (&mut *self.span, self.accuracy.1);
+        let step = &mut span.steps[k];
+        let accuracy = step.accuracy(&y0, relative);
+        let (begin, end) = (self.from.acting.t, &span.end.acting);
+        for (number, weight) in [(1, 1.0 - GAMMA), (2, GAMMA)] {
+            if is_new && number == 2 {
+                step.go_on(&y0);
             }
-            w.number = number;
-            let x = (t + h * sdirk::PLACES[number] - self.from.acting.t) / span;
-            let at = self.variation.at(x, &self.span.end.acting);
-            let mut y = self.span.steps[k].y[number - 1];
-            let lost = self.stage(&w, &mut y, &at)?;
-            self.span.lost += h * lost * [1.0 - GAMMA, GAMMA][number - 1];
-            let step = &mut self.span.steps[k];
-            step.y[number - 1] = y;
-            step.rates[number - 1] = std::array::from_fn(|j| (y[j] - w.base[j]) / w.step);
+            let at = self.variation.at((step.instant(number) - begin) / (end.t - begin), end);
+            let lost = self.stage.solve(step, (number, &y0), &accuracy, &at)?;
+            span.lost += step.h * lost * weight;
         }
-        let Step { y: [_, y], rates: [first, second], .. } = &self.span.steps[k];
-        let error = |j: usize| {
-            let scale = atol[j] + relative[j] * y0[j].abs().max(y[j].abs());
-            (h * sdirk::error([k0[j], first[j], second[j]]) / scale).abs()
-        };
-        let each: States = std::array::from_fn(error);
-        Ok(each.iter().fold(0.0, |a, b| if b.is_nan() { f64::INFINITY } else { b.max(a) }))
-    }
-
-    /// A stage where `at` acts; the oil that leaves the flanks \[m²/s\].
-    fn stage(&mut self, w: &Staged, y: &mut States, at: &Acting) -> Result<f64, EvalError> {
-        let (m, n) = self.sizes;
-        let mut stands = *self.place;
-        stands.clearance = at.clearance();
-        let (motion, oil) = y[..n].split_at_mut(m);
-        let mut lost = 0.0;
-        for turn in 0.. {
-            if m > 0 {
-                let Staged { number, step, base, accuracy } = w;
-                let part = Stage { number: *number, base: &base[..m], step: *step, accuracy: &accuracy[..m] };
-                let forces = RingForces::new(stands, at.axial());
-                let (flank, oil) = (&self.ring.flank, &*oil);
-                let mut place = |pose: RingPose| {
-                    (stands.s, stands.v, stands.lift_fraction) = (pose.s, pose.v, pose.lift_fraction);
-                    stands.flank = flank.oil(oil, &stands);
-                    stands
-                };
-                self.span.response = self.ring.motion.stage(&part, motion, &forces, &mut place)?;
-            } else {
-                stands.flank = self.ring.flank.oil(oil, &stands);
-            }
-            if oil.is_empty() {
-                break;
-            }
-            let mut found = [0.0; MOST_STATES];
-            found[m..n].copy_from_slice(oil);
-            lost = self.find_oil(w, &mut found, &mut stands, at)?;
-            let mut change = 0.0_f64;
-            for (j, oil) in oil.iter_mut().enumerate() {
-                change = change.max(((found[m + j] - *oil) / w.accuracy[m + j]).abs());
-                *oil = found[m + j];
-            }
-            if m == 0 || change <= SETTLED {
-                break;
-            }
-            if turn == PASSES {
-                return Err(EvalError::recoverable(
-                    "ring_pack",
-                    "a ring and the oil on its flanks do not settle",
-                ));
-            }
-        }
-        self.span.place = stands;
-        Ok(lost)
-    }
-
-    /// Finds the oil on the flanks of a ring that stands in `stands`, from a guess; what leaves the flanks \[m²/s\]. Each flank has its own: secants on
-    /// both at once.
-    fn find_oil(
-        &mut self,
-        w: &Staged,
-        oil: &mut States,
-        stands: &mut RingPlace,
-        at: &Acting,
-    ) -> Result<f64, EvalError> {
-        let ([above, behind, below], (m, n)) = (at.pressures(), self.sizes);
-        let (mut lacks, mut steps, mut dy) = ([0.0; MOST_STATES], [0.0; MOST_STATES], [0.0; MOST_STATES]);
-        for look in 0..LOOKS {
-            stands.flank = self.ring.flank.oil(&oil[m..n], stands);
-            let inp = FlankIn::new(*stands, above, behind, below);
-            let lost = self.ring.flank.rates(&oil[m..n], &inp, &mut dy[m..n])?.lost;
-            let mut farthest = 0.0_f64;
-            for j in m..n {
-                let now = oil[j] - w.base[j] - w.step * dy[j];
-                if look > 0 && steps[j] != 0.0 {
-                    self.slope[j] = ((now - lacks[j]) / steps[j]).max(LEAST_SLOPE);
-                }
-                lacks[j] = now;
-                steps[j] = -now / self.slope[j];
-                oil[j] += steps[j];
-                // A slope from before may be too steep.
-                let far = if look == 0 { now } else { steps[j] };
-                farthest = farthest.max((far / w.accuracy[j]).abs());
-            }
-            if farthest <= 1.0 {
-                return Ok(lost);
-            }
-        }
-        Err(EvalError::recoverable("ring_pack", "the oil on flanks does not settle"))
+        Ok(error(step, (&y0, &k0), relative))
     }
 }
