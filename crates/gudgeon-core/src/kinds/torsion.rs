@@ -6,7 +6,7 @@ use gudgeon_numerics::elementary;
 use gudgeon_numerics::linalg::Complex;
 use indexmap::IndexMap;
 
-use super::{Coupling, CylinderPressure, Drive, Kinematics, ThrowInertia};
+use super::{Coupling, CylinderPressure, Drive, Kinematics, OrderResponses, ThrowInertia};
 use crate::result::Note;
 use crate::{BuildError, EvalError, register_kind};
 
@@ -252,26 +252,11 @@ pub enum TorsionAnswer {
     Time,
 }
 
-/// One order of a periodic motion; phasors `a` stand for `Re(a e^{i order θ})`, θ the angle of the reference shaft.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct OrderResponse {
-    /// The order.
-    pub order: f64,
-    /// Angles of the inertias \[rad\], real and imaginary part.
-    pub angle: Vec<[f64; 2]>,
-    /// Torques in the links \[N m\].
-    pub torque: Vec<[f64; 2]>,
-    /// Power that the link turns into heat \[W\].
-    pub heat: Vec<f64>,
-    /// Torques that excite the inertias \[N m\].
-    pub excitation: Vec<[f64; 2]>,
-}
-
 /// What a torsion model found.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct TorsionOut {
     /// Periodic motion by order, ascending.
-    pub orders: Vec<OrderResponse>,
+    pub orders: OrderResponses,
     /// Mean torques in the links \[N m\].
     pub mean_torque: Vec<f64>,
     /// Mean angles of the inertias against what balances, \[rad\].

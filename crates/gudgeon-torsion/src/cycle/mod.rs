@@ -211,7 +211,7 @@ impl Cycle {
     /// The larger of `best` and the top of `sign` times the wave about point `s`, where there is one.
     #[inline(always)]
     fn top(&self, s: usize, sign: f64, best: f64, look: &Look) -> Option<f64> {
-        let [before, here, after] = [-1, 0, 1].map(|i| sign * self.wave[s.wrapping_add_signed(i)]);
+        let (before, here, after) = (sign * self.wave[s - 1], sign * self.wave[s], sign * self.wave[s + 1]);
         if here < before || here <= after {
             return Some(best);
         }
@@ -249,7 +249,9 @@ impl Cycle {
         let (from, to) = (at - look.step, at + look.step);
         let mut best = f64::NEG_INFINITY;
         for _ in 0..20 {
-            let [value, first, second, third, fourth] = self.sum.at(at).map(|d| sign * d);
+            let mut derivatives = self.sum.at(at);
+            derivatives.iter_mut().for_each(|d| *d *= sign);
+            let [value, first, second, third, fourth] = derivatives;
             best = best.max(value);
             let slope = |x: f64| first + x * (second + x * (third / 2.0 + x * fourth / 6.0));
             let curve = |x: f64| second + x * (third + x * fourth / 2.0);
@@ -293,8 +295,10 @@ fn range(wave: &[f64]) -> (f64, f64) {
 #[inline(never)]
 fn extreme(lanes: &[f64; 8], rest: &[f64], before: impl Fn(f64, f64) -> bool) -> f64 {
     let mut best = lanes[0];
-    for w in lanes.iter().chain(rest) {
-        best = if before(*w, best) { *w } else { best };
+    for some in [lanes.as_slice(), rest] {
+        for w in some {
+            best = if before(*w, best) { *w } else { best };
+        }
     }
     best
 }

@@ -31,7 +31,7 @@ impl Cycle {
         let rows = points / DRAWN;
         let first: Vec<(f64, f64)> =
             drawn.iter().take(rows).map(|at| elementary::sin_cos(at * 2.0 * PI / a.period)).collect();
-        for o in &out.orders {
+        for o in out.orders.iter() {
             let multiple = o.order * turns;
             let in_table = multiple == multiple.round() && rows > 0 && points.is_multiple_of(DRAWN);
             let sin_cos = |(i, at): (usize, &f64)| match in_table {
