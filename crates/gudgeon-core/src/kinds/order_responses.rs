@@ -63,45 +63,53 @@ impl OrderResponses {
 
     /// Angles of an inertia \[rad\].
     #[must_use]
+    #[inline]
     pub fn angle(&self, node: usize) -> PhasorRow<'_> {
         row(&self.angle, node, self.len())
     }
 
     /// Torques in a link \[N m\].
     #[must_use]
+    #[inline]
     pub fn torque(&self, link: usize) -> PhasorRow<'_> {
         row(&self.torque, link, self.len())
     }
 
     /// Power that a link turns into heat \[W\].
     #[must_use]
+    #[inline]
     pub fn heat(&self, link: usize) -> &[f64] {
         &self.heat[link * self.len()..][..self.len()]
     }
 
     /// Torques that excite an inertia \[N m\].
     #[must_use]
+    #[inline]
     pub fn excitation(&self, node: usize) -> PhasorRow<'_> {
         row(&self.excitation, node, self.len())
     }
 
     /// As [`OrderResponses::angle`], to be written.
+    #[inline]
     pub fn angle_mut(&mut self, node: usize) -> [&mut [f64]; 2] {
         row_mut(&mut self.angle, node, self.order.len())
     }
 
     /// As [`OrderResponses::torque`], to be written.
+    #[inline]
     pub fn torque_mut(&mut self, link: usize) -> [&mut [f64]; 2] {
         row_mut(&mut self.torque, link, self.order.len())
     }
 
     /// As [`OrderResponses::heat`], to be written.
+    #[inline]
     pub fn heat_mut(&mut self, link: usize) -> &mut [f64] {
         let count = self.order.len();
         &mut self.heat[link * count..][..count]
     }
 
     /// As [`OrderResponses::excitation`], to be written.
+    #[inline]
     pub fn excitation_mut(&mut self, node: usize) -> [&mut [f64]; 2] {
         row_mut(&mut self.excitation, node, self.order.len())
     }
@@ -154,10 +162,12 @@ fn put([re, im]: &mut Phasors, k: usize, z: &[[f64; 2]], count: usize) {
     rows.zip(z).for_each(|((re, im), z)| [*re, *im] = *z);
 }
 
-fn row(phasors: &Phasors, row: usize, count: usize) -> PhasorRow<'_> {
-    phasors.each_ref().map(|part| &part[row * count..][..count])
+#[inline]
+fn row([re, im]: &Phasors, row: usize, count: usize) -> PhasorRow<'_> {
+    [&re[row * count..][..count], &im[row * count..][..count]]
 }
 
-fn row_mut(phasors: &mut Phasors, row: usize, count: usize) -> [&mut [f64]; 2] {
-    phasors.each_mut().map(|part| &mut part[row * count..][..count])
+#[inline]
+fn row_mut([re, im]: &mut Phasors, row: usize, count: usize) -> [&mut [f64]; 2] {
+    [&mut re[row * count..][..count], &mut im[row * count..][..count]]
 }

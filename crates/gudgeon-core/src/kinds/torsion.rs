@@ -74,15 +74,20 @@ impl GasEnd {
     /// at `decided_at`.
     #[must_use]
     pub fn torque(&self, decided_at: f64, theta: f64) -> f64 {
-        let m = self.kinematics.motion(theta);
-        let mut way = m.v / self.kinematics.omega();
+        self.torque_of(self.pressure.pressure_decided_at(decided_at, theta), theta)
+    }
+
+    /// Torque \[N m\] of a pressure \[Pa\] on the throw at its angle `theta`.
+    #[must_use]
+    pub fn torque_of(&self, pressure: f64, theta: f64) -> f64 {
+        let mut way = self.kinematics.velocity(theta) / self.kinematics.omega();
         if self.obliquity == Obliquity::Reversed {
             // The crank end sees the motion turned about, and its lever with it.
+            let m = self.kinematics.motion(theta);
             let sign = if m.y < 0.0 { -1.0 } else { 1.0 };
             way += sign * 2.0 * self.crank_radius * elementary::cos(theta) * elementary::tan(m.rod_angle);
         }
-        let p = self.pressure.pressure_decided_at(decided_at, theta);
-        -self.factor * way * (p - self.back_pressure) * self.area
+        -self.factor * way * (pressure - self.back_pressure) * self.area
     }
 }
 

@@ -68,9 +68,9 @@ impl Derivatives {
     }
 
     /// Takes other phasors.
-    pub fn take(&mut self, phasors: impl Fn(usize) -> [f64; 2]) {
+    pub fn take(&mut self, phasors: impl IntoIterator<Item = [f64; 2]>) {
         self.phasors.clear();
-        self.phasors.extend((0..self.orders.len()).map(phasors));
+        self.phasors.extend(phasors);
         for (place, [re, im]) in self.places.iter().zip(&self.phasors) {
             let block = &mut self.blocks[place / LANES];
             (block.re[place % LANES], block.im[place % LANES]) = (*re, *im);

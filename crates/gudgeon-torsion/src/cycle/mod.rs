@@ -112,8 +112,8 @@ impl Cycle {
         self.sum.phasors()
     }
 
-    /// Maximum and minimum, for a mean and the phasors of the orders.
-    pub fn extremes(&mut self, mean: f64, phasors: impl Fn(usize) -> [f64; 2]) -> [f64; 2] {
+    /// Maximum and minimum, for a mean and the phasors of the orders, one of each.
+    pub fn extremes(&mut self, mean: f64, phasors: impl IntoIterator<Item = [f64; 2]>) -> [f64; 2] {
         self.sum.take(phasors);
         widest(Search(self)).map(|extreme| mean + extreme)
     }

@@ -91,7 +91,7 @@ impl IndependentOrders {
         let (tree, group) = (&steady.tree, &groups[g]);
         let omega: Lane = std::array::from_fn(|l| group.order[l] * steady.speed);
         widest(Excite { group, steady, torque, out });
-        let at = |p: usize| torque[p].map(|part| part.map(|t| tree.ratio[p] * t));
+        let at = |p: usize| scaled(&torque[p], tree.ratio[p]);
         if sweep.solve_lanes(tree, &omega, at).is_err() {
             // The elimination of one order says it in its own words.
             self.one_by_one()?;
@@ -118,14 +118,12 @@ impl Vectorised for Excite<'_> {
         let square = self.steady.speed * self.steady.speed;
         let [fixed, masses] = &self.group.parts;
         for (p, node) in self.steady.tree.node.iter().enumerate() {
-            let row = self.out.excitation_mut(*node);
-            for (part, row) in row.into_iter().enumerate() {
-                let (own, fixed, masses) = (&mut self.torque[p][part], &fixed[p][part], &masses[p][part]);
-                for l in 0..LANES {
-                    own[l] = fixed[l] + masses[l] * square;
-                }
-                self.group.write(own, row);
+            let (own, fixed, masses) = (&mut self.torque[p], &fixed[p], &masses[p]);
+            for l in 0..LANES {
+                own[0][l] = fixed[0][l] + masses[0][l] * square;
+                own[1][l] = fixed[1][l] + masses[1][l] * square;
             }
+            self.group.write(own, self.out.excitation_mut(*node));
         }
     }
 }
@@ -148,25 +146,27 @@ impl Vectorised for Answer<'_> {
         let t = &steady.tree;
         let n = t.len();
         for (p, (x, q)) in sweep.angle.iter().zip(&sweep.transmitted).enumerate() {
-            for (row, x) in out.angle_mut(t.node[p]).into_iter().zip(x) {
-                group.write(&scaled(x, t.ratio[p]), row);
-            }
+            group.write(&scaled(x, t.ratio[p]), out.angle_mut(t.node[p]));
             if t.parent[p] >= n {
                 continue;
             }
             let s = if t.forward[p] { 1.0 } else { -1.0 } / t.link_ratio[p];
-            for (row, q) in out.torque_mut(t.link[p]).into_iter().zip(q) {
-                group.write(&scaled(q, s), row);
-            }
-            group.write(&heat(steady, p, q, omega), out.heat_mut(t.link[p]));
+            group.write(&scaled(q, s), out.torque_mut(t.link[p]));
+            group.write_row(&heat(steady, p, q, omega), out.heat_mut(t.link[p]));
         }
     }
 }
 
 impl Group {
-    /// Writes the lanes of its orders into a row of all.
+    /// Writes the lanes of its orders into rows of all.
     #[inline(always)]
-    fn write(&self, lanes: &Lane, row: &mut [f64]) {
+    fn write(&self, lanes: &[Lane; 2], [re, im]: [&mut [f64]; 2]) {
+        self.write_row(&lanes[0], re);
+        self.write_row(&lanes[1], im);
+    }
+
+    #[inline(always)]
+    fn write_row(&self, lanes: &Lane, row: &mut [f64]) {
         let row = &mut row[self.first..][..self.count];
         match row.as_mut_array::<LANES>() {
             Some(whole) => *whole = *lanes,
@@ -176,10 +176,11 @@ impl Group {
 }
 
 #[inline(always)]
-fn scaled(lanes: &Lane, by: f64) -> Lane {
-    let mut out = [0.0; LANES];
+fn scaled(lanes: &[Lane; 2], by: f64) -> [Lane; 2] {
+    let mut out = [[0.0; LANES]; 2];
     for l in 0..LANES {
-        out[l] = by * lanes[l];
+        out[0][l] = by * lanes[0][l];
+        out[1][l] = by * lanes[1][l];
     }
     out
 }

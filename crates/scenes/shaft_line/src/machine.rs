@@ -273,9 +273,8 @@ impl<'a> Machine<'a> {
             if angle * (1.0 + gear(a, l).abs()) <= LARGE {
                 continue;
             }
-            let twist = twist_of(a, out, l);
-            if (0..out.orders.len()).map(|k| norm1(twist(k))).sum::<f64>() > LARGE {
-                let [top, bottom] = cycle.extremes(0.0, twist);
+            if twist_of(a, out, l).map(norm1).sum::<f64>() > LARGE {
+                let [top, bottom] = cycle.extremes(0.0, twist_of(a, out, l));
                 p.twist = p.twist.max(0.5 * (top - bottom));
             }
         }
@@ -365,18 +364,18 @@ fn norm1([re, im]: [f64; 2]) -> f64 {
 }
 
 /// Real and imaginary parts as pairs.
-fn phasors([re, im]: PhasorRow<'_>) -> impl Iterator<Item = [f64; 2]> {
+pub fn phasors([re, im]: PhasorRow<'_>) -> impl Iterator<Item = [f64; 2]> {
     re.iter().zip(im).map(|(re, im)| [*re, *im])
 }
 
 fn link_point(cycle: &mut Cycle, out: &TorsionOut, link: usize) -> LinkPoint {
-    let [re, im] = out.orders.torque(link);
-    let [top, bottom] = cycle.extremes(out.mean_torque[link], |k| [re[k], im[k]]);
+    let torques = out.orders.torque(link);
+    let [top, bottom] = cycle.extremes(out.mean_torque[link], phasors(torques));
     LinkPoint {
         amplitude: 0.5 * (top - bottom),
         peak: top.abs().max(bottom.abs()),
         heat: out.orders.heat(link).iter().sum(),
-        order: strongest_of(phasors([re, im]).map(square).zip(out.orders.orders().iter().copied())),
+        order: strongest_of(phasors(torques).map(square).zip(out.orders.orders().iter().copied())),
     }
 }
 
@@ -387,8 +386,8 @@ fn strongest_of(sizes: impl Iterator<Item = (f64, f64)>) -> f64 {
 
 /// Peak to peak speed of an inertia by the mean speed of the reference shaft.
 pub fn speed_fluctuation(cycle: &mut Cycle, out: &TorsionOut, node: usize) -> f64 {
-    let (orders, [re, im]) = (out.orders.orders(), out.orders.angle(node));
-    let speed = |k: usize| [-orders[k] * im[k], orders[k] * re[k]];
+    let angles = phasors(out.orders.angle(node));
+    let speed = out.orders.orders().iter().zip(angles).map(|(order, [re, im])| [-order * im, order * re]);
     let [top, bottom] = cycle.extremes(0.0, speed);
     top - bottom
 }
@@ -400,10 +399,10 @@ fn gear(a: &Assembled, link: usize) -> f64 {
 }
 
 /// Twist of a link by order.
-fn twist_of(a: &Assembled, out: &TorsionOut, link: usize) -> impl Fn(usize) -> [f64; 2] {
-    let [x, y] = a.line.links[link].nodes.map(|node| out.orders.angle(node));
+fn twist_of<'o>(a: &Assembled, out: &'o TorsionOut, link: usize) -> impl Iterator<Item = [f64; 2]> + use<'o> {
+    let [x, y] = a.line.links[link].nodes.map(|node| phasors(out.orders.angle(node)));
     let gear = gear(a, link);
-    move |k| [x[0][k] - gear * y[0][k], x[1][k] - gear * y[1][k]]
+    x.zip(y).map(move |(x, y)| [x[0] - gear * y[0], x[1] - gear * y[1]])
 }
 
 /// Largest vibratory twist (half of peak to peak) of a link.

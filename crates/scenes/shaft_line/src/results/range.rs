@@ -118,13 +118,14 @@ impl Results<'_> {
         let hint = format!("half of peak to peak{}", self.own_step());
         self.lines("Vibratory torque over the speed", &hint, "speed_range", "speed", curves, false);
         self.weigh_critical_speeds(&orders, &rows, &speeds);
-        let curves = orders_of(worst, &orders, &rows, &mut table);
+        let strengths: Vec<Vec<f64>> = (0..links).map(|l| strength(l, &orders, &rows)).collect();
+        let curves = orders_of(worst, &orders, (&rows, &strengths), &mut table);
         if let Some(l) = a.line.links.get(worst) {
             let title = format!("Orders of {} over the speed", l.name);
             let hint = format!("torque amplitude of the strongest orders{}", self.own_step());
             self.lines(&title, &hint, "speed_range", "speed", curves, false);
         }
-        self.order_spectra(a, &orders, &rows, &speeds);
+        self.order_spectra(a, &orders, (&rows, &strengths), &speeds);
         let steps = in_each(all, &Operating::new(self.case), &speeds);
         self.shafts_over_speed(a, &rows, &mut table, &steps);
         self.out.tables.insert("speed_range".into(), table);
@@ -366,18 +367,24 @@ impl Shown<'_> {
     }
 }
 
+/// Largest torque amplitude of a shaft over the speed, by order \[N m\].
+fn strength(link: usize, orders: &[f64], rows: &[Arc<Point>]) -> Vec<f64> {
+    let mut most = vec![0.0; orders.len()];
+    for p in rows {
+        most.iter_mut().zip(p.orders_of(link)).for_each(|(most, own)| *most = if *own > *most { *own } else { *most });
+    }
+    most
+}
+
 /// Columns of the strongest orders of a shaft over the speed, with their labels.
 fn orders_of(
     link: usize,
     orders: &[f64],
-    rows: &[Arc<Point>],
+    (rows, strengths): (&[Arc<Point>], &[Vec<f64>]),
     table: &mut Series,
 ) -> Vec<(String, String)> {
-    let mut strength = vec![0.0; orders.len()];
-    for own in rows.iter().flat_map(|p| (0..p.links.len()).map(|l| p.orders_of(l))) {
-        strength.iter_mut().zip(own).for_each(|(most, own)| *most = if own > most { *own } else { *most });
-    }
-    let mut strongest: Vec<(f64, usize)> = strength.into_iter().zip(0..).collect();
+    let most = |k: usize| strengths.iter().map(|s| s[k]).fold(0.0, f64::max);
+    let mut strongest: Vec<(f64, usize)> = (0..orders.len()).map(|k| (most(k), k)).collect();
     strongest.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut curves = Vec::new();
     for (_, k) in strongest.iter().take(ORDERS) {

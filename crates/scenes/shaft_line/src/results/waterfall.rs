@@ -29,10 +29,17 @@ struct Drawn {
 }
 
 impl Results<'_> {
-    /// Table `order_spectra`, with a row per speed and order, and its figure. `orders` are those of the amplitudes in `rows`.
-    pub(super) fn order_spectra(&mut self, a: &Assembled, orders: &[f64], rows: &[Arc<Point>], speeds: &[f64]) {
+    /// Table `order_spectra`, with a row per speed and order, and its figure. `orders` are those of the amplitudes in `rows` and of the largest of each
+    /// shaft.
+    pub(super) fn order_spectra(
+        &mut self,
+        a: &Assembled,
+        orders: &[f64],
+        (rows, strengths): (&[Arc<Point>], &[Vec<f64>]),
+        speeds: &[f64],
+    ) {
         let shafts = shafts(a, rows);
-        let kept = lines(orders, &shafts, rows);
+        let kept = lines(orders, &shafts, strengths);
         if shafts.is_empty() || kept.is_empty() {
             return;
         }
@@ -92,9 +99,8 @@ fn shafts(a: &Assembled, rows: &[Arc<Point>]) -> Vec<Drawn> {
 }
 
 /// Orders with a line that is seen in any of the shafts.
-fn lines(orders: &[f64], shafts: &[Drawn], rows: &[Arc<Point>]) -> Vec<usize> {
-    let most = |k: usize, s: &Drawn| rows.iter().map(|p| p.order_of(s.link, k)).fold(0.0, f64::max);
-    let seen = |k: usize, s: &Drawn| s.factor * most(k, s) > SEEN * s.largest;
+fn lines(orders: &[f64], shafts: &[Drawn], strengths: &[Vec<f64>]) -> Vec<usize> {
+    let seen = |k: usize, s: &Drawn| s.factor * strengths[s.link][k] > SEEN * s.largest;
     (0..orders.len()).filter(|k| shafts.iter().any(|s| seen(*k, s))).collect()
 }
 
