@@ -78,7 +78,9 @@ impl Words {
 
     /// Each word, and what it means.
     pub fn told(&self) -> impl Iterator<Item = (String, String)> + '_ {
-        self.0.iter().map(|(word, meaning)| ((*word).to_owned(), meaning.map_or_else(String::new, |s| about(s, s))))
+        self.0
+            .iter()
+            .map(|(word, meaning)| ((*word).to_owned(), meaning.map_or_else(String::new, |s| about(s, s))))
     }
 }
 

@@ -116,8 +116,7 @@ pub fn load_document<T: DeserializeOwned + JsonSchema + 'static>(
     overrides: &[String],
 ) -> Result<Loaded<T>, Report> {
     let source = Arc::new(source);
-    let (base, found) =
-        document.0.map_err(|d| Report::new(d, Arc::clone(&source), Arc::from(overrides)))?;
+    let (base, found) = document.0.map_err(|d| Report::new(d, Arc::clone(&source), Arc::from(overrides)))?;
     load_tree(source, Arc::new(base), found, overrides)
 }
 

@@ -507,7 +507,9 @@ pub(super) fn property(table: Part, key: &str) -> Option<Part> {
 fn write_out_demands(root: &mut Value) {
     let mut tables = BTreeMap::new();
     each_table(root, &mut |field| {
-        if let (Some(target), Some(_)) = (named(field, "$ref").and_then(Value::as_str), named(field, "required")) {
+        if let (Some(target), Some(_)) =
+            (named(field, "$ref").and_then(Value::as_str), named(field, "required"))
+        {
             tables.insert(target.to_owned(), None);
         }
     });

@@ -86,7 +86,8 @@ impl<const N: usize> Interpolant<N> {
         let period = 2.0 * PI * turns.next_power_of_two() as f64;
         let sampled = (0..64).map(|i| f(period * (f64::from(i) + 0.37) / 64.0));
         Self {
-            scale: sampled.fold([0.0; N], |most, own| std::array::from_fn(|k| f64::max(most[k], own[k].abs()))),
+            scale: sampled
+                .fold([0.0; N], |most, own| std::array::from_fn(|k| f64::max(most[k], own[k].abs()))),
             segments: vec![Segment::NotBuilt; count],
             coefficients: vec![[[0.0; TERMS]; N]; count],
             fit: fit(),

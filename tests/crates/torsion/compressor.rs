@@ -391,7 +391,8 @@ fn steady_vibration_by_orders() {
     near(&top, &[8195.0, 7935.0, 12391.0, 9439.0, 6500.0, 3336.0], 5e-4);
     near(&bottom, &[-5165.0, -5003.0, -6310.0, -5720.0, -4429.0, -2446.0], 5e-4);
     near(&out.mean_torque, &[1722.489, 1722.489, 1722.489, 1291.867, 861.245, 430.622], 2e-6);
-    let amplitude: Vec<f64> = out.orders.iter().take(4).map(|o| o.torque[2][0].hypot(o.torque[2][1])).collect();
+    let amplitude: Vec<f64> =
+        out.orders.iter().take(4).map(|o| o.torque[2][0].hypot(o.torque[2][1])).collect();
     near(&amplitude, &[3338.0, 4025.0, 5219.0, 1911.0], 5e-4);
     let phases = [0.0, 180.0, 90.0, 270.0].map(f64::to_radians);
     let (top, bottom, _) = cycle(&at(Gas::M3, 104.720, phases), 2.0 * PI);
@@ -432,7 +433,7 @@ fn orders_are_what_the_time_domain_settles_to() {
     l.drives.push(LineDrive { node: 0, phase: 0.0, factor: 1.0, drive: hold.build().expect("builds") });
     let motion = |time: f64| {
         let (mut a, mut w) = (steady.mean_angle.clone(), vec![speed; 7]);
-        for o in &steady.orders {
+        for o in steady.orders.iter() {
             let (sin, cos) = (o.order * speed * time).sin_cos();
             for i in 0..7 {
                 let [re, im] = o.angle[i];
@@ -468,7 +469,7 @@ fn orders_are_what_the_time_domain_settles_to() {
     for (modes, tolerance) in [(7, 1e-10), (5, 5e-3)] {
         let spec = Modal { modes, ..Modal::default() };
         let b = run(&spec, &context(&bare, speed, 24.0, &[], &[]));
-        for (x, y) in a.orders.iter().zip(&b.orders).take(6) {
+        for (x, y) in a.orders.iter().zip(b.orders.iter()).take(6) {
             for (p, q) in x.torque.iter().zip(&y.torque) {
                 let top = x.torque.iter().map(|t| t[0].hypot(t[1])).fold(0.0, f64::max);
                 assert!(

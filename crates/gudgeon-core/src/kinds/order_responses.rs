@@ -37,7 +37,9 @@ impl OrderResponses {
         let count = order.len();
         self.order.clear();
         self.order.extend(order);
-        for (phasors, rows) in [(&mut self.angle, nodes), (&mut self.torque, links), (&mut self.excitation, nodes)] {
+        for (phasors, rows) in
+            [(&mut self.angle, nodes), (&mut self.torque, links), (&mut self.excitation, nodes)]
+        {
             phasors.iter_mut().for_each(|part| part.resize(rows * count, 0.0));
         }
         self.heat.resize(links * count, 0.0);
@@ -124,7 +126,9 @@ impl OrderResponses {
     /// One order.
     #[must_use]
     pub fn get(&self, k: usize) -> OrderResponse {
-        let of = |[re, im]: &Phasors| re.iter().zip(im).skip(k).step_by(self.len()).map(|(re, im)| [*re, *im]).collect();
+        let of = |[re, im]: &Phasors| {
+            re.iter().zip(im).skip(k).step_by(self.len()).map(|(re, im)| [*re, *im]).collect()
+        };
         OrderResponse {
             order: self.order[k],
             angle: of(&self.angle),

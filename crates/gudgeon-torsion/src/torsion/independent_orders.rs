@@ -36,10 +36,9 @@ fn groups(steady: &Steady) -> Vec<Group> {
         let of_lane = |l: usize| first + l.min(count - 1);
         let torques = |part: &Excitation| {
             let at = |node: usize, l: usize| part.orders[of_lane(l)].torque[node];
-            let lanes = |node: &usize| [
-                std::array::from_fn(|l| at(*node, l).re),
-                std::array::from_fn(|l| at(*node, l).im),
-            ];
+            let lanes = |node: &usize| {
+                [std::array::from_fn(|l| at(*node, l).re), std::array::from_fn(|l| at(*node, l).im)]
+            };
             steady.tree.node.iter().map(lanes).collect()
         };
         Group {
@@ -121,6 +120,8 @@ impl Vectorised for Excite<'_> {
             let (own, fixed, masses) = (&mut self.torque[p], &fixed[p], &masses[p]);
             for l in 0..LANES {
                 own[0][l] = fixed[0][l] + masses[0][l] * square;
+            }
+            for l in 0..LANES {
                 own[1][l] = fixed[1][l] + masses[1][l] * square;
             }
             self.group.write(own, self.out.excitation_mut(*node));
@@ -206,8 +207,14 @@ fn heat(steady: &Steady, p: usize, q: &[Lane; 2], omega: &Lane) -> Lane {
 impl Torsion for IndependentOrders {
     fn run(&mut self, out: &mut TorsionOut) -> Result<(), EvalError> {
         self.respond(&mut out.orders)?;
-        out.counters.insert("time_steps".into(), 0);
-        out.counters.insert("linear_solutions".into(), out.orders.len() as u64);
+        let counts = [("time_steps", 0), ("linear_solutions", out.orders.len() as u64)];
+        for (name, n) in counts {
+            // At most speeds they are there already.
+            match out.counters.get_mut(name) {
+                Some(own) => *own = n,
+                None => drop(out.counters.insert(name.into(), n)),
+            }
+        }
         self.steady.describe(out);
         Ok(())
     }

@@ -37,7 +37,7 @@ use gudgeon_case::Loaded;
 use gudgeon_scene::{
     Explanation, GradientError, Progress, RunError, SceneCase, Stopped, Varied, WorkPrecision, model_use,
 };
-use machine::{Machine, Point, phasors};
+use machine::{Machine, Point};
 use plan::Plan;
 use results::Results;
 use start::Start;
@@ -336,7 +336,7 @@ impl Run<'_> {
         let mut amplitudes = |o: &TorsionOut| -> Vec<f64> {
             let cycle = machine.extremes(o);
             (0..a.line.links.len())
-                .map(|l| cycle.extremes(0.0, phasors(o.orders.torque(l))))
+                .map(|l| cycle.extremes(0.0, o.orders.torque(l)))
                 .map(|[top, bottom]| 0.5 * (top - bottom))
                 .collect()
         };

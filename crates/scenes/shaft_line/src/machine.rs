@@ -139,7 +139,7 @@ impl<'a> Machine<'a> {
     /// As [`Torsion::run`].
     pub fn motion(&mut self, speed: f64) -> Result<TorsionOut, EvalError> {
         let mut out = std::mem::take(&mut self.room);
-        out.counters.clear();
+        out.counters.values_mut().for_each(|n| *n = 0);
         out.notes.clear();
         self.torsion.set_speed(speed)?;
         self.torsion.run(&mut out)?;
@@ -274,8 +274,7 @@ impl<'a> Machine<'a> {
                 continue;
             }
             if twist_of(a, out, l).map(norm1).sum::<f64>() > LARGE {
-                let [top, bottom] = cycle.extremes(0.0, twist_of(a, out, l));
-                p.twist = p.twist.max(0.5 * (top - bottom));
+                p.twist = p.twist.max(twist_amplitude(cycle, a, out, l));
             }
         }
         p
@@ -348,7 +347,11 @@ impl<'a> Machine<'a> {
 /// An answer of numbers.
 fn finite(out: &TorsionOut) -> Result<(), EvalError> {
     let all = |values: &[f64]| values.iter().all(|v| v.is_finite());
-    if out.orders.values().iter().all(|values| all_finite(values)) && all(&out.mean_torque) && all(&out.mean_angle) && out.balance_torque.is_finite() {
+    if out.orders.values().iter().all(|values| all_finite(values))
+        && all(&out.mean_torque)
+        && all(&out.mean_angle)
+        && out.balance_torque.is_finite()
+    {
         return Ok(());
     }
     Err(EvalError::fatal("torsion", "torques or angles of this speed are beyond all numbers"))
@@ -364,13 +367,13 @@ fn norm1([re, im]: [f64; 2]) -> f64 {
 }
 
 /// Real and imaginary parts as pairs.
-pub fn phasors([re, im]: PhasorRow<'_>) -> impl Iterator<Item = [f64; 2]> {
+fn phasors([re, im]: PhasorRow<'_>) -> impl Iterator<Item = [f64; 2]> {
     re.iter().zip(im).map(|(re, im)| [*re, *im])
 }
 
 fn link_point(cycle: &mut Cycle, out: &TorsionOut, link: usize) -> LinkPoint {
     let torques = out.orders.torque(link);
-    let [top, bottom] = cycle.extremes(out.mean_torque[link], phasors(torques));
+    let [top, bottom] = cycle.extremes(out.mean_torque[link], torques);
     LinkPoint {
         amplitude: 0.5 * (top - bottom),
         peak: top.abs().max(bottom.abs()),
@@ -386,9 +389,11 @@ fn strongest_of(sizes: impl Iterator<Item = (f64, f64)>) -> f64 {
 
 /// Peak to peak speed of an inertia by the mean speed of the reference shaft.
 pub fn speed_fluctuation(cycle: &mut Cycle, out: &TorsionOut, node: usize) -> f64 {
-    let angles = phasors(out.orders.angle(node));
-    let speed = out.orders.orders().iter().zip(angles).map(|(order, [re, im])| [-order * im, order * re]);
-    let [top, bottom] = cycle.extremes(0.0, speed);
+    let (orders, [re, im]) = (out.orders.orders(), out.orders.angle(node));
+    let rates = |sign: f64, part: &[f64]| -> Vec<f64> {
+        orders.iter().zip(part).map(|(order, x)| sign * order * x).collect()
+    };
+    let [top, bottom] = cycle.extremes(0.0, [&rates(-1.0, im), &rates(1.0, re)]);
     top - bottom
 }
 
@@ -407,6 +412,7 @@ fn twist_of<'o>(a: &Assembled, out: &'o TorsionOut, link: usize) -> impl Iterato
 
 /// Largest vibratory twist (half of peak to peak) of a link.
 pub fn twist_amplitude(cycle: &mut Cycle, a: &Assembled, out: &TorsionOut, link: usize) -> f64 {
-    let [top, bottom] = cycle.extremes(0.0, twist_of(a, out, link));
+    let (re, im): (Vec<f64>, Vec<f64>) = twist_of(a, out, link).map(<(f64, f64)>::from).unzip();
+    let [top, bottom] = cycle.extremes(0.0, [&re, &im]);
     0.5 * (top - bottom)
 }

@@ -74,7 +74,8 @@ impl Curves {
         let turns = (gas_period(throw) / (2.0 * PI)).round().max(1.0) as usize;
         Self {
             gas: (!throw.ends.is_empty()).then(|| Interpolant::new(turns, |a| [gas_torque(line, k, a)])),
-            inertia: (!throw.inertia.is_constant()).then(|| Interpolant::new(1, |a| throw.inertia.inertia(a).into())),
+            inertia: (!throw.inertia.is_constant())
+                .then(|| Interpolant::new(1, |a| throw.inertia.inertia(a).into())),
         }
     }
 }

@@ -141,7 +141,13 @@ impl Results<'_> {
 
     /// Stress over the speed of each shaft that has one, torque of the others that have a limit: a curve a load step, their envelope, limits and operating
     /// range.
-    fn shafts_over_speed(&mut self, a: &Assembled, rows: &[Arc<Point>], table: &mut Series, steps: &InSteps<'_>) {
+    fn shafts_over_speed(
+        &mut self,
+        a: &Assembled,
+        rows: &[Arc<Point>],
+        table: &mut Series,
+        steps: &InSteps<'_>,
+    ) {
         let limits = forced(self.case, a);
         let range = Operating::new(self.case);
         let mut by_step = Series { axis: steps.axis.clone(), columns: Vec::new() };
@@ -371,7 +377,9 @@ impl Shown<'_> {
 fn strength(link: usize, orders: &[f64], rows: &[Arc<Point>]) -> Vec<f64> {
     let mut most = vec![0.0; orders.len()];
     for p in rows {
-        most.iter_mut().zip(p.orders_of(link)).for_each(|(most, own)| *most = if *own > *most { *own } else { *most });
+        most.iter_mut()
+            .zip(p.orders_of(link))
+            .for_each(|(most, own)| *most = if *own > *most { *own } else { *most });
     }
     most
 }

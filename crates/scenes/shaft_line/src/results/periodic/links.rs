@@ -6,7 +6,7 @@ use gudgeon_numerics::elementary;
 
 use super::LINEAR;
 use crate::assemble::Assembled;
-use crate::machine::{Machine, phasors, twist_amplitude};
+use crate::machine::{Machine, twist_amplitude};
 use crate::results::Results;
 
 /// Part of the largest torque that is left of rounding where there is none.
@@ -17,7 +17,7 @@ impl Results<'_> {
     pub(super) fn periodic_link(&mut self, out: &TorsionOut, machine: &mut Machine<'_>, l: usize) -> f64 {
         let a = machine.a;
         let (name, n) = (&a.line.links[l].name, l + 1);
-        let [top, bottom] = machine.extremes(out).extremes(out.mean_torque[l], phasors(out.orders.torque(l)));
+        let [top, bottom] = machine.extremes(out).extremes(out.mean_torque[l], out.orders.torque(l));
         let vibratory = 0.5 * (top - bottom);
         let twist = twist_amplitude(machine.extremes(out), a, out, l);
         if twist > LINEAR {

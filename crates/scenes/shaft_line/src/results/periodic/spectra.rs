@@ -19,7 +19,8 @@ fn sizes([re, im]: PhasorRow<'_>) -> Vec<f64> {
 impl Results<'_> {
     /// Torque of the lowest orders in each shaft.
     pub(super) fn order_results(&mut self, out: &TorsionOut, a: &Assembled) {
-        let amplitudes: Vec<Vec<f64>> = (0..a.line.links.len()).map(|l| sizes(out.orders.torque(l))).collect();
+        let amplitudes: Vec<Vec<f64>> =
+            (0..a.line.links.len()).map(|l| sizes(out.orders.torque(l))).collect();
         for (k, order) in out.orders.orders().iter().enumerate().take(ORDERS) {
             for (l, link) in a.line.links.iter().enumerate() {
                 let name = format!("shaft{}.order{order}", l + 1);
