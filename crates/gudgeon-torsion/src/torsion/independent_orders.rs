@@ -169,9 +169,9 @@ impl Group {
     #[inline(always)]
     fn write_row(&self, lanes: &Lane, row: &mut [f64]) {
         let row = &mut row[self.first..][..self.count];
-        match row.as_mut_array::<LANES>() {
-            Some(whole) => *whole = *lanes,
-            None => row.copy_from_slice(&lanes[..self.count]),
+        match <&mut Lane>::try_from(&mut *row) {
+            Ok(whole) => *whole = *lanes,
+            Err(_) => row.copy_from_slice(&lanes[..self.count]),
         }
     }
 }
