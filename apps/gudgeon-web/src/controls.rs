@@ -89,10 +89,10 @@ pub fn choices(inputs: &[Input]) -> Vec<Choice> {
     let mut all: Vec<Choice> = inputs
         .iter()
         .filter_map(|i| match &i.value {
-            InputValue::Choice(c) if c.words.len() > 1 => {
+            InputValue::Choice(c) if c.words.count() > 1 => {
                 let path = i.path.strip_suffix(".model").unwrap_or(&i.path);
                 let (label, of) = names(path);
-                let (value, words) = (c.value.clone(), c.words.clone());
+                let (value, words) = (c.value.clone(), c.words.told().collect());
                 Some(Choice { path: i.path.clone(), label, of, kind: c.kind.clone(), value, words })
             }
             _ => None,

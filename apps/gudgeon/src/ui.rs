@@ -246,14 +246,15 @@ pub fn table(rows: &[Vec<String>], right: &[usize]) -> String {
     for row in rows {
         let mut line = String::new();
         for (c, cell) in row.iter().enumerate() {
-            let pad = " ".repeat(widths[c] - cell.chars().count());
+            let pad = widths[c] - cell.chars().count();
             line.push_str("  ");
             if right.contains(&c) {
-                line.push_str(&pad);
+                line.extend(std::iter::repeat_n(' ', pad));
                 line.push_str(cell);
             } else {
                 line.push_str(cell);
-                line.push_str(&pad);
+                // Nothing stands behind the last cell.
+                line.extend(std::iter::repeat_n(' ', if c + 1 < row.len() { pad } else { 0 }));
             }
         }
         out.push_str(line.trim_end());

@@ -3,10 +3,10 @@
 //! Everything comes from the schema and the resolved case, so inputs of models and scenes that are registered elsewhere are among them.
 
 use gudgeon_core::quantity::{ALL_DIMENSIONS, Unit};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use serde_json::Value;
 
-use super::schema::{Part, Schema, words_of};
+use super::schema::{Part, Schema, at, named, words_of};
 use super::tree::{Data, Node, join};
 
 /// An input of a case.
@@ -58,8 +58,36 @@ pub struct ChoiceInput {
     pub value: String,
     /// The kind of the models; empty for other words.
     pub kind: String,
-    /// What it may be, and what each means.
-    pub words: Vec<(String, String)>,
+    /// What it may be.
+    pub words: Words,
+}
+
+/// The words that an input may be.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Words(Vec<Word>);
+
+/// A word, and the schema that tells what it means, where there is one.
+type Word = (&'static str, Option<Part>);
+
+impl Words {
+    /// How many there are.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Each word, and what it means.
+    pub fn told(&self) -> impl Iterator<Item = (String, String)> + '_ {
+        self.0
+            .iter()
+            .map(|(word, meaning)| ((*word).to_owned(), meaning.map_or_else(String::new, |s| about(s, s))))
+    }
+}
+
+impl Serialize for Words {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(self.told())
+    }
 }
 
 /// The inputs of a resolved case, in its order; `text` and `document` are what the case wrote.
@@ -99,28 +127,28 @@ impl Walk<'_> {
                 if let (Some(t), Some(Node { data: Data::Text(word), .. })) =
                     (tagged, tagged.and_then(|t| node.child(t.tag)))
                 {
-                    let words = t.variants.iter().map(|(n, s)| ((*n).to_owned(), about(s, s))).collect();
+                    let words = Words(t.variants.iter().map(|(n, s)| (*n, Some(*s))).collect());
                     let value = ChoiceInput { value: word.clone(), kind: kind.into(), words };
                     self.add(&join(path, t.tag), about(field, inner), InputValue::Choice(value));
                 }
-                let properties = table.and_then(|t| t.get("properties")).and_then(Value::as_object);
+                let properties = table.and_then(|t| at(t, "properties")).and_then(Value::as_object);
                 for e in entries {
-                    if let Some(s) = properties.and_then(|p| p.get(&e.key)) {
+                    if let Some(s) = properties.and_then(|p| named(p, &e.key)) {
                         self.value(&e.node, s, s, &join(path, &e.key));
                     }
                 }
             }
             Data::Array(items) => {
                 for (k, item) in items.iter().enumerate() {
-                    if let Some(s) = inner.get("items") {
-                        self.value(item, s, s, &join(path, k));
+                    if let Some(s) = at(inner, "items") {
+                        self.value(item, s, s, &join(path, &k.to_string()));
                     }
                 }
             }
-            Data::Text(word) => match (inner.get("x-dimension"), words_of(inner)) {
+            Data::Text(word) => match (at(inner, "x-dimension"), words_of(inner)) {
                 (Some(_), _) => self.quantity(word, field, inner, path),
                 (None, Some(words)) if words.len() > 1 => {
-                    let words = words.into_iter().map(|w| (w.to_owned(), String::new())).collect();
+                    let words = Words(words.into_iter().map(|w| (w, None)).collect());
                     let value = ChoiceInput { value: word.clone(), kind: String::new(), words };
                     self.add(path, about(field, inner), InputValue::Choice(value));
                 }
@@ -128,7 +156,7 @@ impl Walk<'_> {
             },
             Data::Integer(_) | Data::Float(_) => self.number(node, field, inner, path),
             Data::Bool(b) => {
-                let words = ["true", "false"].map(|w| (w.to_owned(), String::new())).to_vec();
+                let words = Words(["true", "false"].map(|w| (w, None)).to_vec());
                 let value = ChoiceInput { value: b.to_string(), kind: String::new(), words };
                 self.add(path, about(field, inner), InputValue::Choice(value));
             }
@@ -150,11 +178,11 @@ impl Walk<'_> {
     /// A number that the resolved case writes in SI.
     fn quantity(&mut self, si: &str, field: Part, schema: Part, path: &str) {
         let Some(si) = si.split(' ').next().and_then(|n| n.parse::<f64>().ok()) else { return };
-        let dimension = schema.get("x-dimension").and_then(Value::as_str).unwrap_or_default();
+        let dimension = at(schema, "x-dimension").and_then(Value::as_str).unwrap_or_default();
         let units = ALL_DIMENSIONS.iter().find(|(n, ..)| *n == dimension).map_or(&[][..], |(_, u, _)| u);
         let unit = self.written_unit(path, units).or_else(|| readable(si, units));
         let of_unit = |si: f64| unit.map_or(si, |u| rounded((si - u.offset) / u.factor));
-        let (least, most) = match schema.get("x-bound").and_then(Value::as_str) {
+        let (least, most) = match at(schema, "x-bound").and_then(Value::as_str) {
             Some("between 0 and 1") => (Some(0.0), Some(1.0)),
             Some("greater than zero" | "zero or greater") => (Some(0.0), None),
             _ => (None, None),
@@ -183,7 +211,7 @@ impl Walk<'_> {
     }
 
     fn number(&mut self, node: &Node, field: Part, schema: Part, path: &str) {
-        if schema.get("x-dimension").is_some() {
+        if at(schema, "x-dimension").is_some() {
             if let Data::Integer(_) | Data::Float(_) = node.data {
                 let text = match node.data {
                     Data::Integer(i) => i.to_string(),
@@ -194,9 +222,9 @@ impl Walk<'_> {
             }
             return;
         }
-        let limit = |key: &str| schema.get(key).and_then(Value::as_f64);
+        let limit = |key: &str| at(schema, key).and_then(Value::as_f64);
         let (value, whole) = match node.data {
-            Data::Integer(i) => (i as f64, schema.get("type").and_then(Value::as_str) == Some("integer")),
+            Data::Integer(i) => (i as f64, at(schema, "type").and_then(Value::as_str) == Some("integer")),
             Data::Float(f) => (f, false),
             _ => return,
         };
@@ -213,9 +241,9 @@ impl Walk<'_> {
 
     /// The kind that a reference names: the definition of a kind's models has its name.
     fn kind_of(&self, schema: Part) -> &'static str {
-        let reference = |s: Part| s.get("$ref").and_then(Value::as_str);
+        let reference = |s: Part| at(s, "$ref").and_then(Value::as_str);
         let optional = || {
-            let any = schema.get("anyOf").and_then(Value::as_array)?;
+            let any = at(schema, "anyOf").and_then(Value::as_array)?;
             any.iter().find_map(reference)
         };
         let named = reference(schema).or_else(optional).and_then(|r| r.rsplit('/').next());
@@ -225,7 +253,7 @@ impl Walk<'_> {
 
 /// What a value is for: what its field says, or its type.
 fn about(field: Part, schema: Part) -> String {
-    let text = field.get("description").or_else(|| schema.get("description")).and_then(Value::as_str);
+    let text = at(field, "description").or_else(|| at(schema, "description")).and_then(Value::as_str);
     text.unwrap_or_default().split_whitespace().collect::<Vec<_>>().join(" ")
 }
 

@@ -35,7 +35,7 @@ use serde::de::DeserializeOwned;
 use toml::de::DeTable;
 
 pub use cursor::{Help, KeyHelp};
-pub use inputs::{ChoiceInput, Input, InputValue, NumberInput};
+pub use inputs::{ChoiceInput, Input, InputValue, NumberInput, Words};
 pub use near::{advice, list, nearest};
 pub use published::{one_scene_of, published};
 pub use refine::{Level, Refinement};
@@ -102,10 +102,56 @@ pub fn load_source<T: DeserializeOwned + JsonSchema + 'static>(
     source: Source,
     overrides: &[String],
 ) -> Result<Loaded<T>, Report> {
+    let document = Document::of(&source.text);
+    load_document(source, document, overrides)
+}
+
+/// As [`load_source`], with the document that its text is.
+///
+/// # Errors
+/// As [`load_source`].
+pub fn load_document<T: DeserializeOwned + JsonSchema + 'static>(
+    source: Source,
+    document: Document,
+    overrides: &[String],
+) -> Result<Loaded<T>, Report> {
     let source = Arc::new(source);
-    let (base, found) =
-        parse(&source.text).map_err(|d| Report::new(d, Arc::clone(&source), Arc::from(overrides)))?;
+    let (base, found) = document.0.map_err(|d| Report::new(d, Arc::clone(&source), Arc::from(overrides)))?;
     load_tree(source, Arc::new(base), found, overrides)
+}
+
+/// A text as a tree, and what is wrong with it already; or why it is none.
+#[derive(Debug, Clone)]
+pub struct Document(Result<(Node, Vec<Diagnostic>), Vec<Diagnostic>>);
+
+impl Document {
+    /// Reads a text.
+    #[must_use]
+    pub fn of(text: &str) -> Self {
+        Self(parse(text))
+    }
+
+    /// The scene that it names, with the changes of `overrides`.
+    #[must_use]
+    pub fn scene(&self, overrides: &[String]) -> Option<String> {
+        let set = overrides.iter().rev().find_map(|o| o.split_once('=').filter(|(p, _)| p.trim() == "scene"));
+        if let Some((_, v)) = set {
+            return Some(v.trim().trim_matches('"').to_owned());
+        }
+        match &self.0.as_ref().ok()?.0.child("scene")?.data {
+            Data::Text(t) => Some(t.clone()),
+            _ => None,
+        }
+    }
+
+    /// The keys and tables at its top.
+    #[must_use]
+    pub fn keys(&self) -> Vec<&str> {
+        match self.0.as_ref().map(|(root, _)| &root.data) {
+            Ok(Data::Table(all)) => all.iter().map(|e| e.key.as_str()).collect(),
+            _ => Vec::new(),
+        }
+    }
 }
 
 /// As [`load`], from the tree of a text and what was wrong with it already.
@@ -206,24 +252,7 @@ pub fn read_beside(files: &Files, name: &str) -> Result<Source, Report> {
 /// The scene that a case names, without checking the rest of it.
 #[must_use]
 pub fn scene_of(source: &Source, overrides: &[String]) -> Option<String> {
-    let set = overrides.iter().rev().find_map(|o| o.split_once('=').filter(|(p, _)| p.trim() == "scene"));
-    if let Some((_, v)) = set {
-        return Some(v.trim().trim_matches('"').to_owned());
-    }
-    match &parse(&source.text).ok()?.0.child("scene")?.data {
-        Data::Text(t) => Some(t.clone()),
-        _ => None,
-    }
-}
-
-/// The keys and tables that a text has at its top.
-#[must_use]
-pub fn top_level_keys(text: &str) -> Vec<String> {
-    let Ok((root, _)) = parse(text) else { return Vec::new() };
-    match root.data {
-        Data::Table(all) => all.into_iter().map(|e| e.key).collect(),
-        _ => Vec::new(),
-    }
+    Document::of(&source.text).scene(overrides)
 }
 
 /// Lines of a file with several syntax errors that are shown; behind the first, the parser guesses.

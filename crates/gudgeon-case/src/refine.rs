@@ -144,7 +144,7 @@ fn walk(schemas: &Schema, schema: Part, value: &Value, path: &str, out: &mut Vec
         Value::Array(items) => {
             let Some(inner) = schema.get("items") else { return };
             for (k, v) in items.iter().enumerate() {
-                walk(schemas, inner, v, &join(path, k), out);
+                walk(schemas, inner, v, &join(path, &k.to_string()), out);
             }
         }
         Value::Object(table) => {

@@ -73,7 +73,7 @@ impl Schema {
     /// Follows references and drops the `null` alternative of an optional value.
     pub fn resolve(&self, mut schema: Part) -> Part {
         for _ in 0..MAX_REFERENCES {
-            if let Some(target) = schema.get("$ref").and_then(Value::as_str) {
+            if let Some(target) = at(schema, "$ref").and_then(Value::as_str) {
                 match self.target(target) {
                     Some(s) => schema = s,
                     None => return &Value::Bool(true),
@@ -81,7 +81,7 @@ impl Schema {
                 continue;
             }
             // `oneOf` is a choice even when only one model is linked; the others are how schemars writes an option.
-            if schema.get("oneOf").is_some() {
+            if at(schema, "oneOf").is_some() {
                 break;
             }
             let mut rest = alternatives(schema).into_iter().flatten().filter(|s| !is_null(s));
@@ -97,7 +97,7 @@ impl Schema {
     fn target(&self, reference: &str) -> Option<Part> {
         // Nearly all are `#/$defs/name`: a look without taking a pointer to pieces, which would copy them.
         match reference.strip_prefix("#/$defs/") {
-            Some(name) if !name.contains(['/', '~', '%']) => self.root.get("$defs")?.get(name),
+            Some(name) if !name.contains(['/', '~', '%']) => at(self.root, "$defs")?.get(name),
             _ => self.root.pointer(reference.strip_prefix('#')?),
         }
     }
@@ -110,12 +110,12 @@ impl Schema {
 
     /// Keys that the outermost table must have.
     pub fn required(&self) -> Vec<&'static str> {
-        strings(self.root.get("required"))
+        strings(at(self.root, "required"))
     }
 
     /// Keys of a document that nothing reads: those of an outer table that are not among what its field says is used (`x-used`).
     pub fn unused(&self, document: &Node) -> Vec<String> {
-        let tables = self.root.get("properties").and_then(Value::as_object).into_iter().flatten();
+        let tables = at(self.root, "properties").and_then(Value::as_object).into_iter().flatten();
         let mut out = Vec::new();
         for (name, field) in tables.filter(|(_, field)| field.get("x-used").is_some()) {
             let used = strings(field.get("x-used"));
@@ -131,8 +131,8 @@ impl Schema {
     pub fn field(&self, schema: Part, node: Option<&Node>, step: &str) -> Option<Part> {
         let schema = self.resolve(schema);
         let schema = self.model_of_word(schema).unwrap_or(schema);
-        if step.parse::<usize>().is_ok() && schema.get("items").is_some() {
-            return schema.get("items");
+        if step.parse::<usize>().is_ok() && at(schema, "items").is_some() {
+            return at(schema, "items");
         }
         property(self.chosen(schema, node)?, step)
     }
@@ -190,15 +190,15 @@ impl Schema {
             }
             Data::Array(items) => {
                 for (i, item) in items.iter().enumerate() {
-                    if let Some(s) = schema.get("items") {
-                        self.look_for_improbable(item, s, &join(path, i), out);
+                    if let Some(s) = at(schema, "items") {
+                        self.look_for_improbable(item, s, &join(path, &i.to_string()), out);
                     }
                 }
                 return;
             }
             _ => return,
         };
-        if let Some(dimension) = schema.get("x-dimension").and_then(Value::as_str)
+        if let Some(dimension) = at(schema, "x-dimension").and_then(Value::as_str)
             && let Some((_, _, _, example)) = IMPROBABLE
                 .iter()
                 .find(|(d, least, most, _)| *d == dimension && number.abs() >= *least && number.abs() < *most)
@@ -216,8 +216,8 @@ impl Schema {
             return;
         }
         let schema = self.resolve(schema);
-        if let Some(dimension) = schema.get("x-dimension").and_then(Value::as_str) {
-            let bound = schema.get("x-bound").and_then(Value::as_str).unwrap_or_default();
+        if let Some(dimension) = at(schema, "x-dimension").and_then(Value::as_str) {
+            let bound = at(schema, "x-bound").and_then(Value::as_str).unwrap_or_default();
             return check_quantity(node, dimension, bound, path, out);
         }
         if let Some(words) = words_of(schema) {
@@ -255,16 +255,16 @@ impl Schema {
         path: &str,
         out: &mut Vec<Diagnostic>,
     ) {
-        let properties = schema.get("properties").and_then(Value::as_object);
-        let own = |key: &str| properties.and_then(|p| p.get(key));
-        let other = schema.get("additionalProperties");
+        let properties = at(schema, "properties").and_then(Value::as_object);
+        let own = |key: &str| properties.and_then(|p| named(p, key));
+        let other = at(schema, "additionalProperties");
         let known: Vec<&str> = properties.into_iter().flatten().map(|(key, _)| key.as_str()).collect();
         let present: HashSet<&str> = entries.iter().map(|e| e.key.as_str()).collect();
         let absent = |key: &&str| !present.contains(*key);
         let mut missing: Vec<&str> =
-            strings(schema.get("required")).into_iter().filter(|k| absent(k) && !skip.contains(k)).collect();
+            strings(at(schema, "required")).into_iter().filter(|k| absent(k) && !skip.contains(k)).collect();
 
-        let sets = schema.get(X_SETS).and_then(Value::as_object);
+        let sets = at(schema, X_SETS).and_then(Value::as_object);
         if sets.is_some() && present.contains(SET) {
             // What it would give is not missing as well.
             missing.clear();
@@ -321,7 +321,7 @@ impl Schema {
     /// What a missing key is for, and which models could stand there.
     fn meaning(&self, key: &str, schema: Part) -> Option<String> {
         let inner = self.resolve(schema);
-        let text = schema.get("description").or_else(|| inner.get("description")).and_then(Value::as_str);
+        let text = at(schema, "description").or_else(|| at(inner, "description")).and_then(Value::as_str);
         let models = self.tagged(inner).map(|t| format!("one of the models {}", list(t.names())));
         let words = words_of(inner).map(|w| format!("one of {}", list(w)));
         let parts: Vec<String> = text.map(first_sentence).into_iter().chain(models).chain(words).collect();
@@ -329,7 +329,7 @@ impl Schema {
     }
 
     fn array(&self, node: &Node, items: &[Node], schema: Part, path: &str, out: &mut Vec<Diagnostic>) {
-        let limit = |key: &str| schema.get(key).and_then(Value::as_u64);
+        let limit = |key: &str| at(schema, key).and_then(Value::as_u64);
         let n = items.len() as u64;
         let most = limit("maxItems").unwrap_or(MAX_ITEMS as u64);
         let wanted = match limit("minItems") {
@@ -337,11 +337,11 @@ impl Schema {
             Some(a) if n < a => format!("at least {a}"),
             _ if n > most => format!("at most {most}"),
             _ => {
-                let prefix = schema.get("prefixItems").and_then(Value::as_array);
+                let prefix = at(schema, "prefixItems").and_then(Value::as_array);
                 for (i, item) in items.iter().enumerate() {
                     let own = prefix.and_then(|p| p.get(i));
-                    if let Some(s) = own.or_else(|| schema.get("items")) {
-                        self.value(item, s, &join(path, i), out);
+                    if let Some(s) = own.or_else(|| at(schema, "items")) {
+                        self.value(item, s, &join(path, &i.to_string()), out);
                     }
                 }
                 return;
@@ -448,10 +448,10 @@ impl Schema {
     fn search(&self, schema: Part, path: &str, in_array: bool, depth: usize, visit: &mut Visit<'_>) {
         const DEPTH: usize = 4;
         let schema = self.resolve(schema);
-        if let Some(items) = schema.get("items") {
+        if let Some(items) = at(schema, "items") {
             return self.search(items, path, true, depth, visit);
         }
-        let Some(properties) = schema.get("properties").and_then(Value::as_object) else { return };
+        let Some(properties) = at(schema, "properties").and_then(Value::as_object) else { return };
         visit(path, in_array, properties);
         if depth < DEPTH {
             for (key, s) in properties {
@@ -488,17 +488,28 @@ impl Schema {
 
 type Visit<'a> = dyn FnMut(&str, bool, &Map<String, Value>) + 'a;
 
+/// What a schema says under a key. Its tables have few keys: to go through them takes less than to hash the one that is looked for.
+pub(super) fn at<'v>(schema: &'v Value, key: &str) -> Option<&'v Value> {
+    named(schema.as_object()?, key)
+}
+
+pub(super) fn named<'v>(table: &'v Map<String, Value>, key: &str) -> Option<&'v Value> {
+    table.iter().find(|(own, _)| *own == key).map(|(_, value)| value)
+}
+
 /// The schema of a key of a table.
 pub(super) fn property(table: Part, key: &str) -> Option<Part> {
-    let own = table.get("properties").and_then(|p| p.get(key));
-    own.or_else(|| table.get("additionalProperties").filter(|a| a.is_object()))
+    let own = at(table, "properties").and_then(|p| at(p, key));
+    own.or_else(|| at(table, "additionalProperties").filter(|a| a.is_object()))
 }
 
 /// Writes out every table that stands in several places and must have more keys in this one (`required` beside `$ref`).
 fn write_out_demands(root: &mut Value) {
     let mut tables = BTreeMap::new();
     each_table(root, &mut |field| {
-        if let (Some(target), Some(_)) = (field.get("$ref").and_then(Value::as_str), field.get("required")) {
+        if let (Some(target), Some(_)) =
+            (named(field, "$ref").and_then(Value::as_str), named(field, "required"))
+        {
             tables.insert(target.to_owned(), None);
         }
     });
@@ -506,8 +517,8 @@ fn write_out_demands(root: &mut Value) {
         *table = target.strip_prefix('#').and_then(|p| root.pointer(p)).and_then(Value::as_object).cloned();
     }
     each_table(root, &mut |field| {
-        let known = field.get("$ref").and_then(Value::as_str).and_then(|target| tables.get(target));
-        if let (Some(Some(table)), Some(Value::Array(here))) = (known, field.get("required")) {
+        let known = named(field, "$ref").and_then(Value::as_str).and_then(|target| tables.get(target));
+        if let (Some(Some(table)), Some(Value::Array(here))) = (known, named(field, "required")) {
             let mut required = table.get("required").and_then(Value::as_array).cloned().unwrap_or_default();
             required.extend(here.iter().filter(|key| !required.contains(key)).cloned().collect::<Vec<_>>());
             field.insert("required".into(), Value::Array(required));
@@ -546,12 +557,12 @@ pub(super) struct Tagged {
 impl Tagged {
     fn of(schemas: &Schema, schema: Part) -> Option<Self> {
         let all: Vec<Part> = alternatives(schema)?.into_iter().map(|s| schemas.resolve(s)).collect();
-        let properties = |s: Part| s.get("properties").and_then(Value::as_object);
-        let constant = |s: Part, key: &str| properties(s)?.get(key)?.get("const")?.as_str();
+        let properties = |s: Part| at(s, "properties").and_then(Value::as_object);
+        let constant = |s: Part, key: &str| at(named(properties(s)?, key)?, "const")?.as_str();
         let tag = properties(all.first()?)?.keys().find(|k| all.iter().all(|s| constant(s, k).is_some()))?;
         let variants = all.iter().filter_map(|s| Some((constant(s, tag)?, *s))).collect();
-        let default = schema.get("x-default").and_then(Value::as_str);
-        Some(Self { tag, default, renamed: schema.get("x-renamed").and_then(Value::as_object), variants })
+        let default = at(schema, "x-default").and_then(Value::as_str);
+        Some(Self { tag, default, renamed: at(schema, "x-renamed").and_then(Value::as_object), variants })
     }
 
     pub fn names(&self) -> Vec<&'static str> {
@@ -582,16 +593,16 @@ pub(super) const RENAMED: &str = "it is called";
 
 /// What a key is called today that had another name once (`x-renamed`).
 fn renamed<'a>(schema: &'a Value, key: &str) -> Option<&'a str> {
-    schema.get("x-renamed")?.get(key)?.as_str()
+    at(schema, "x-renamed")?.get(key)?.as_str()
 }
 
 fn alternatives(schema: &Value) -> Option<Vec<&Value>> {
-    let v = schema.get("oneOf").or_else(|| schema.get("anyOf")).or_else(|| schema.get("allOf"))?;
+    let v = at(schema, "oneOf").or_else(|| at(schema, "anyOf")).or_else(|| at(schema, "allOf"))?;
     v.as_array().map(|a| a.iter().collect())
 }
 
 fn is_null(schema: &Value) -> bool {
-    schema.get("type").and_then(Value::as_str) == Some("null")
+    at(schema, "type").and_then(Value::as_str) == Some("null")
 }
 
 pub(super) fn strings(v: Option<&Value>) -> Vec<&str> {
@@ -599,7 +610,7 @@ pub(super) fn strings(v: Option<&Value>) -> Vec<&str> {
 }
 
 pub(super) fn types_of(schema: &Value) -> Vec<&str> {
-    match schema.get("type") {
+    match at(schema, "type") {
         Some(Value::String(t)) => vec![t],
         list => strings(list).into_iter().filter(|t| *t != "null").collect(),
     }
@@ -607,11 +618,11 @@ pub(super) fn types_of(schema: &Value) -> Vec<&str> {
 
 /// The admitted words, when the schema is nothing but a choice of words.
 pub(super) fn words_of(schema: &Value) -> Option<Vec<&str>> {
-    if let Some(word) = schema.get("const").and_then(Value::as_str) {
+    if let Some(word) = at(schema, "const").and_then(Value::as_str) {
         return Some(vec![word]);
     }
-    if schema.get("enum").is_some() {
-        return Some(strings(schema.get("enum")));
+    if at(schema, "enum").is_some() {
+        return Some(strings(at(schema, "enum")));
     }
     let mut words = Vec::new();
     for s in alternatives(schema)?.into_iter().filter(|s| !is_null(s)) {
@@ -666,7 +677,7 @@ fn no_such_set(node: &Node, sets: &Map<String, Value>, path: &str) -> Diagnostic
 }
 
 fn check_range(node: &Node, v: f64, schema: &Value, path: &str, out: &mut Vec<Diagnostic>) {
-    let limit = |key: &str| schema.get(key).and_then(Value::as_f64);
+    let limit = |key: &str| at(schema, key).and_then(Value::as_f64);
     let wanted = if !v.is_finite() {
         Some("finite".to_owned())
     } else if let Some(a) = limit("minimum").filter(|a| v < *a) {
@@ -686,7 +697,7 @@ fn check_range(node: &Node, v: f64, schema: &Value, path: &str, out: &mut Vec<Di
 
 /// The greatest value that the type behind a whole number holds.
 fn most_of(schema: &Value) -> Option<f64> {
-    Some(match schema.get("format")?.as_str()? {
+    Some(match at(schema, "format")?.as_str()? {
         "uint8" => f64::from(u8::MAX),
         "uint16" => f64::from(u16::MAX),
         "uint32" => f64::from(u32::MAX),

@@ -3,7 +3,7 @@
 use gudgeon_core::sets::{self, ParameterSet, SET, SetValue, X_SETS};
 use serde::{Deserialize, Serialize};
 
-use super::schema::{Part, Schema, property};
+use super::schema::{Part, Schema, at, property};
 use super::tree::{Data, Entry, Node, join};
 
 /// A set that a table of a case takes over.
@@ -49,7 +49,7 @@ pub(super) fn expand(document: &mut Node, schemas: &Schema) -> Vec<UsedSet> {
 
 fn each(node: &mut Node, schema: Part, path: &str, schemas: &Schema, used: &mut Vec<UsedSet>) {
     let Some(schema) = schemas.table_of(schema, node) else { return };
-    if schema.get(X_SETS).is_some() {
+    if at(schema, X_SETS).is_some() {
         used.extend(take_over(node, schema, path));
     }
     match &mut node.data {
@@ -62,8 +62,8 @@ fn each(node: &mut Node, schema: Part, path: &str, schemas: &Schema, used: &mut 
         }
         Data::Array(items) => {
             for (i, item) in items.iter_mut().enumerate() {
-                if let Some(s) = schema.get("items") {
-                    each(item, s, &join(path, i), schemas, used);
+                if let Some(s) = at(schema, "items") {
+                    each(item, s, &join(path, &i.to_string()), schemas, used);
                 }
             }
         }

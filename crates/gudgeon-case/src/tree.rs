@@ -83,8 +83,8 @@ pub fn steps(path: &str, base: usize) -> Vec<Step> {
 }
 
 /// `path.key`, or `key` at the top.
-pub(super) fn join(path: &str, key: impl std::fmt::Display) -> String {
-    if path.is_empty() { key.to_string() } else { format!("{path}.{key}") }
+pub(super) fn join(path: &str, key: &str) -> String {
+    if path.is_empty() { key.to_owned() } else { [path, ".", key].concat() }
 }
 
 impl Node {

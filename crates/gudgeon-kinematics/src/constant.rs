@@ -51,4 +51,7 @@ impl CylinderPressure for Level {
     fn period(&self) -> f64 {
         crate::periodic::FOUR_STROKE
     }
+    fn depends_on_speed(&self) -> bool {
+        false
+    }
 }

@@ -71,6 +71,13 @@ impl Kinematics for Exact {
         let sin_phi = (r * sin - e) / l;
         r * cos + l * ((1.0 - sin_phi) * (1.0 + sin_phi)).sqrt()
     }
+    fn velocity(&self, theta: f64) -> f64 {
+        let Self { r, l, e, omega, .. } = *self;
+        let (sin, cos) = elementary::sin_cos(theta);
+        let sin_phi = (r * sin - e) / l;
+        let tan_phi = sin_phi / ((1.0 - sin_phi) * (1.0 + sin_phi)).sqrt();
+        -omega * r * (sin + cos * tan_phi)
+    }
     fn y_tdc(&self) -> f64 {
         self.y_tdc
     }

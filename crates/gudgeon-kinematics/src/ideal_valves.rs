@@ -120,4 +120,7 @@ impl CylinderPressure for Ideal {
     fn period(&self) -> f64 {
         TURN
     }
+    fn depends_on_speed(&self) -> bool {
+        false
+    }
 }

@@ -330,6 +330,9 @@ impl CylinderPressure for Trace {
     fn period(&self) -> f64 {
         self.period
     }
+    fn depends_on_speed(&self) -> bool {
+        false
+    }
     fn highest(&self) -> (f64, f64) {
         self.highest
     }

@@ -128,7 +128,7 @@ fn step_by_four(from: &[Vec<f64>; 2], to: &mut [Vec<f64>; 2], turn: &[Vec<f64>; 
         let part = |x: usize, j: usize| &from[x][(j * quarter + p) * s..][..s];
         let input = [0, 1, 2, 3].map(|j| [part(0, j), part(1, j)]);
         for q in (0..s).step_by(LANES) {
-            let output = butterfly(input.map(|z| z.map(|x| lanes(x, q))), w);
+            let output = butterfly(pairs(&input, q), w);
             for (j, z) in output.into_iter().enumerate() {
                 re[j * s + q..][..LANES].copy_from_slice(&z[0]);
                 im[j * s + q..][..LANES].copy_from_slice(&z[1]);
@@ -144,7 +144,7 @@ fn first_step(from: &[Vec<f64>; 2], re: &mut [f64], im: &mut [f64], turn: &[Vec<
     let input = [0, 1, 2, 3].map(|j| from.each_ref().map(|x| &x[j * quarter..][..quarter]));
     for p in (0..quarter).step_by(LANES) {
         let w = [1, 2, 3].map(|j| turn.each_ref().map(|t| std::array::from_fn(|l| t[j * (p + l)])));
-        let output = butterfly(input.map(|z| z.map(|x| lanes(x, p))), w);
+        let output = butterfly(pairs(&input, p), w);
         for (j, z) in output.into_iter().enumerate() {
             for l in 0..LANES {
                 re[4 * (p + l) + j] = z[0][l];
@@ -152,6 +152,13 @@ fn first_step(from: &[Vec<f64>; 2], re: &mut [f64], im: &mut [f64], turn: &[Vec<
             }
         }
     }
+}
+
+/// Numbers of four sequences from a place on. Without `map`, which becomes a function of its own here.
+#[inline(always)]
+fn pairs([a, b, c, d]: &[[&[f64]; 2]; 4], at: usize) -> [Pair; 4] {
+    let pair = |z: &[&[f64]; 2]| [lanes(z[0], at), lanes(z[1], at)];
+    [pair(a), pair(b), pair(c), pair(d)]
 }
 
 #[inline(always)]

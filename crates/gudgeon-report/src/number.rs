@@ -11,16 +11,27 @@ pub(crate) fn significant(value: Option<f64>, digits: usize) -> String {
     }
     let digits = digits.max(1);
     // The exponent after rounding: 9.9999 with three digits is 10.0, not 9.99 or 10.00.
-    let scientific = format!("{:.*e}", digits - 1, value);
+    let scientific = format!("{:.*e}", digits - 1, value.abs());
     let Some((mantissa, exponent)) = scientific.split_once('e') else { return scientific };
     let exponent: i32 = exponent.parse().unwrap_or(0);
-    let text = if (-3..6).contains(&exponent) {
-        let decimals = usize::try_from(digits as i32 - 1 - exponent).unwrap_or(0);
-        format!("{value:.decimals$}")
+    let mut out = String::from(if value < 0.0 { "−" } else { "" });
+    if !(-3..6).contains(&exponent) {
+        out.extend([mantissa, "×10", &superscript(exponent)]);
+    } else if exponent < 0 {
+        out.push_str("0.");
+        out.extend((exponent + 1..0).map(|_| '0'));
+        out.extend(mantissa.chars().filter(|c| *c != '.'));
+    } else if exponent as usize + 1 < digits {
+        let shown = mantissa.chars().filter(|c| *c != '.');
+        shown.enumerate().for_each(|(k, c)| {
+            out.push_str(if k == exponent as usize + 1 { "." } else { "" });
+            out.push(c);
+        });
     } else {
-        format!("{mantissa}×10{}", superscript(exponent))
-    };
-    text.replace('-', "−")
+        // No digit before the point is left out.
+        let _ = write!(out, "{:.0}", value.abs());
+    }
+    out
 }
 
 /// A value with the digits that hold: as many as its uncertainty leaves, and that uncertainty with one digit. Without one, `digits`.

@@ -118,7 +118,10 @@ pub(crate) fn document(kind: Kind, title: &str, body: &str, data: &impl Serializ
         Kind::Bench => &[CORE, BENCH],
         Kind::Study => &[CORE, AXIS, EXPORT, CHART, DRAWING, MAP, WATERFALL, FIGURE],
     };
-    let mut out = String::new();
+    let json = json_for_script(data);
+    let mut out = String::with_capacity(
+        body.len() + json.len() + scripts.iter().map(|s| s.len()).sum::<usize>() + (1 << 16),
+    );
     out.push_str("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
     out.push_str("<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n");
     // The page may run what is written in it and load nothing from anywhere.
@@ -130,11 +133,7 @@ pub(crate) fn document(kind: Kind, title: &str, body: &str, data: &impl Serializ
         write!(out, "<title>{} · Gudgeon</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n", esc(title));
     out.push_str(body);
     out.push_str("<noscript><p class=\"note\">The drawings and curves on this page need JavaScript; the tables do not.</p></noscript>\n");
-    let _ = write!(
-        out,
-        "<script type=\"application/json\" id=\"data\">{}</script>\n<script>\n",
-        json_for_script(data)
-    );
+    let _ = write!(out, "<script type=\"application/json\" id=\"data\">{json}</script>\n<script>\n");
     if matches!(kind, Kind::Run) {
         let _ = writeln!(out, "const OVER_CYCLE = {};", OVER_CYCLE.trim_end());
     }
@@ -151,7 +150,8 @@ pub(crate) fn body(contents: &[(&str, &str)], main: &str, version: &str, scenes:
     let mut out = String::from(
         "<a class=\"skip\" href=\"#main\">Skip the contents</a>\n<nav class=\"contents\" aria-label=\"Contents\"><ul>",
     );
-    for (id, name) in contents.iter().filter(|(id, _)| main.contains(&format!("<section id=\"{id}\""))) {
+    let there: Vec<&str> = main.split("<section id=\"").skip(1).filter_map(|s| s.split('"').next()).collect();
+    for (id, name) in contents.iter().filter(|(id, _)| there.contains(id)) {
         let _ = write!(out, "<li><a href=\"#{id}\">{name}</a></li>");
     }
     out.push_str("</ul></nav>\n<main id=\"main\">\n");
@@ -161,13 +161,24 @@ pub(crate) fn body(contents: &[(&str, &str)], main: &str, version: &str, scenes:
     out
 }
 
+/// The two letters of twelve bits, of all there are.
+static LETTERS: [[u8; 2]; 4096] = {
+    const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut all = [[0; 2]; 4096];
+    let mut bits = 0;
+    while bits < all.len() {
+        all[bits] = [ALPHABET[bits >> 6], ALPHABET[bits & 63]];
+        bits += 1;
+    }
+    all
+};
+
 /// Standard base64.
 fn base64(bytes: &[u8]) -> String {
-    const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let letters = |[a, b, c]: [u8; 3]| {
-        let group = u32::from(a) << 16 | u32::from(b) << 8 | u32::from(c);
-        let letter = |at: u32| ALPHABET[(group >> at) as usize & 63];
-        [letter(18), letter(12), letter(6), letter(0)]
+        let group = usize::from(a) << 16 | usize::from(b) << 8 | usize::from(c);
+        let ([a, b], [c, d]) = (LETTERS[group >> 12], LETTERS[group & 4095]);
+        [a, b, c, d]
     };
     let mut out = vec![b'='; bytes.len().div_ceil(3) * 4];
     let (whole, rest) = bytes.as_chunks::<3>();
@@ -183,9 +194,10 @@ fn base64(bytes: &[u8]) -> String {
 
 /// Numbers as base64 of little-endian 32-bit floats: seven digits, enough for a drawing, at five bytes a number.
 fn packed(values: &[f64], every: usize) -> String {
-    let mut bytes = Vec::with_capacity(4 * values.len().div_ceil(every));
-    for v in values.iter().step_by(every) {
-        bytes.extend_from_slice(&(*v as f32).to_le_bytes());
+    let mut bytes = vec![0; 4 * values.len().div_ceil(every)];
+    let (places, _) = bytes.as_chunks_mut::<4>();
+    for (place, v) in places.iter_mut().zip(values.iter().step_by(every)) {
+        *place = (*v as f32).to_le_bytes();
     }
     base64(&bytes)
 }

@@ -269,6 +269,9 @@ fn at_angles(out: &mut String, s: &Summary, angles: &IndexMap<&str, IndexMap<&st
 /// One description for all members: what differs between theirs is the name of each.
 fn shared(told: &[String], family: &str) -> String {
     let Some((first, rest)) = told.split_first() else { return String::new() };
+    if rest.iter().all(|other| other == first) {
+        return first.clone();
+    }
     let words: Vec<&str> = first.split(' ').collect();
     let (mut lead, mut end) = (words.len(), words.len());
     for other in rest {

@@ -50,7 +50,9 @@ fn tenths(out: &mut String, value: f64) {
             out.push(digit(tenths / 10 / place));
         }
     }
-    out.extend([digit(tenths / 10), '.', digit(tenths)]);
+    out.push(digit(tenths / 10));
+    out.push('.');
+    out.push(digit(tenths));
 }
 
 /// What the picture shows, for those who do not see it.

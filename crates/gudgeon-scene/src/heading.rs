@@ -5,6 +5,8 @@ use crate::sweep_input::Sweep;
 /// What every case may say besides its physics.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Heading<'a> {
+    /// Name of its scene.
+    pub scene: &'a str,
     /// One line for reports.
     pub title: &'a str,
     /// Where the case comes from.
@@ -49,6 +51,7 @@ macro_rules! case_file {
         impl $crate::Headed for $name {
             fn heading(&self) -> $crate::Heading<'_> {
                 $crate::Heading {
+                    scene: self.scene.as_str(),
                     title: &self.title,
                     source: &self.source,
                     assumptions: &self.assumptions,

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use gudgeon_case::{Report, Source, UsedSet, read, scene_of};
+use gudgeon_case::{Report, Source, UsedSet, read};
 use gudgeon_core::result::{ModelUse, Note, RunResult, Skipped};
 use gudgeon_core::{BuildError, Registry, Stopped, Stopwatch};
 
@@ -244,7 +244,7 @@ fn headed(scene: &dyn Scene, mut result: RunResult) -> RunResult {
     let sets = scene.sets();
     result.assumptions.extend(sets.iter().flat_map(UsedSet::assumptions));
     cite_sets(&sets, &mut result.models);
-    result.scene = scene_of(scene.source(), scene.overrides()).unwrap_or_default();
+    result.scene = heading.scene.into();
     result.solver.notes.sort_by_key(|n| n.numerical);
     result
 }

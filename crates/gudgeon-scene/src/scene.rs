@@ -9,7 +9,7 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 
 use gudgeon_case::catalogue::resolve;
 use gudgeon_case::{
-    Help, Input, Loaded, Refinement, Report, Source, UsedSet, load_source, nearest, scene_of, top_level_keys,
+    Document, Help, Input, Loaded, Refinement, Report, Source, UsedSet, load_document, nearest,
 };
 use gudgeon_core::kinds::EngineCycle;
 use gudgeon_core::result::{GradientInput, Gradients, ModelUse, Note, RunResult, Value};
@@ -339,8 +339,8 @@ impl<C: SceneCase> Scene for Read<C> {
     }
 }
 
-/// Reads a case from a text and `--set` arguments.
-type ReadCase = fn(Source, &[String]) -> Result<Box<dyn Scene>, Report>;
+/// Reads a case from a text, the document that it is and `--set` arguments.
+type ReadCase = fn(Source, Document, &[String]) -> Result<Box<dyn Scene>, Report>;
 
 /// A registered scene.
 #[derive(Debug)]
@@ -405,8 +405,12 @@ pub fn case_schemas() -> Vec<serde_json::Value> {
 
 /// Reads a case of the scene `C`: what [`register_scene!`](crate::register_scene) hands over.
 #[doc(hidden)]
-pub fn read_case<C: SceneCase>(source: Source, overrides: &[String]) -> Result<Box<dyn Scene>, Report> {
-    Ok(Box::new(Read::new(load_source::<C>(source, overrides)?)))
+pub fn read_case<C: SceneCase>(
+    source: Source,
+    document: Document,
+    overrides: &[String],
+) -> Result<Box<dyn Scene>, Report> {
+    Ok(Box::new(Read::new(load_document::<C>(source, document, overrides)?)))
 }
 
 /// Registers a scene, beside the implementation of [`SceneCase`].
@@ -476,6 +480,14 @@ pub fn verify_scenes() -> Result<(), String> {
 #[serde(transparent)]
 pub struct SceneName(String);
 
+impl SceneName {
+    /// The name.
+    #[must_use]
+    pub fn as_str(&self) -> &str {
+        &self.0
+    }
+}
+
 impl JsonSchema for SceneName {
     fn schema_name() -> Cow<'static, str> {
         "SceneName".into()
@@ -493,8 +505,9 @@ impl JsonSchema for SceneName {
 /// # Errors
 /// Every mistake of the text and of the overrides.
 pub fn load(source: Source, overrides: &[String]) -> Result<Box<dyn Scene>, Report> {
-    match scene_for(&source, overrides) {
-        Some(s) => (s.read)(source, overrides),
+    let document = Document::of(&source.text);
+    match scene_for(&document, overrides) {
+        Some(s) => (s.read)(source, document, overrides),
         None => {
             let what = "no scene is linked into this program";
             Err(Report::unreadable(&source.name, gudgeon_case::Diagnostic::new(what)))
@@ -503,33 +516,33 @@ pub fn load(source: Source, overrides: &[String]) -> Result<Box<dyn Scene>, Repo
 }
 
 /// The scene that a case names, or the one that is most like it.
-fn scene_for(source: &Source, overrides: &[String]) -> Option<&'static SceneInfo> {
-    let name = scene_of(source, overrides);
+fn scene_for(document: &Document, overrides: &[String]) -> Option<&'static SceneInfo> {
+    let name = document.scene(overrides);
     let all = scenes();
     let named = |n: &str| all.iter().find(|s| s.name == n);
     name.as_deref()
         .and_then(|n| named(n).or_else(|| named(nearest(n, all.iter().map(|s| s.name))?)))
-        .or_else(|| most_alike(source, all))
+        .or_else(|| most_alike(document, all))
         .copied()
 }
 
 /// What the schema of a case knows about the line of a text that a byte offset stands in: of the scene that the text names, or that is most like it.
 #[must_use]
 pub fn help(source: &Source, offset: usize) -> Help {
-    scene_for(source, &[]).map_or_else(Help::default, |s| (s.help)(&source.text, offset))
+    scene_for(&Document::of(&source.text), &[]).map_or_else(Help::default, |s| (s.help)(&source.text, offset))
 }
 
-/// The scene that knows most of the tables of a text.
-fn most_alike<'a>(source: &Source, all: &'a [&'static SceneInfo]) -> Option<&'a &'static SceneInfo> {
-    let keys = top_level_keys(&source.text);
+/// The scene that knows most of the tables of a document.
+fn most_alike<'a>(document: &Document, all: &'a [&'static SceneInfo]) -> Option<&'a &'static SceneInfo> {
+    let keys = document.keys();
     let known = |s: &SceneInfo| {
         let mut generator = SchemaGenerator::default();
         let _ = (s.schema)(&mut generator);
         let definitions = generator.take_definitions(true);
-        let own = |k: &&String| {
+        let own = |k: &&&str| {
             definitions
                 .values()
-                .any(|d| d["properties"]["scene"].is_object() && d["properties"][k.as_str()].is_object())
+                .any(|d| d["properties"]["scene"].is_object() && d["properties"][**k].is_object())
         };
         keys.iter().filter(own).count()
     };

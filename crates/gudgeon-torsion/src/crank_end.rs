@@ -12,6 +12,12 @@ impl Kinematics for CrankEnd {
         let m = self.head.motion(theta);
         PistonMotion { y: -m.y, v: -m.v, a: -m.a, rod_angle: m.rod_angle }
     }
+    fn height(&self, theta: f64) -> f64 {
+        -self.head.height(theta)
+    }
+    fn velocity(&self, theta: f64) -> f64 {
+        -self.head.velocity(theta)
+    }
     fn y_tdc(&self) -> f64 {
         self.head.stroke() - self.head.y_tdc()
     }

@@ -17,13 +17,13 @@ const CHECKED: [f64; 3] = [-0.93, -0.27, 0.65];
 /// Admitted error at these points, relative to the maximum of the function.
 const TOLERANCE: f64 = 1e-13;
 
-/// Interpolant of a periodic function `f`. Segments are built when they are first asked for. Where no polynomial agrees (a valve opens there),
-/// `f` itself is evaluated.
+/// Interpolant of periodic functions `f`, several that are evaluated at once. Segments are built when they are first asked for. Where no polynomial
+/// agrees (a valve opens there), `f` itself is evaluated.
 #[derive(Debug, Clone)]
-pub struct Interpolant {
-    scale: f64,
+pub struct Interpolant<const N: usize> {
+    scale: [f64; N],
     segments: Vec<Segment>,
-    coefficients: Vec<[f64; TERMS]>,
+    coefficients: Vec<[[f64; TERMS]; N]>,
     fit: Fit,
 }
 
@@ -79,43 +79,44 @@ fn fit() -> Fit {
     })
 }
 
-impl Interpolant {
+impl<const N: usize> Interpolant<N> {
     /// Interpolant of `f` with a period of `turns` turns (rounded up to a power of two).
-    pub fn new(turns: usize, f: impl Fn(f64) -> f64) -> Self {
+    pub fn new(turns: usize, f: impl Fn(f64) -> [f64; N]) -> Self {
         let count = PER_TURN * turns.next_power_of_two();
         let period = 2.0 * PI * turns.next_power_of_two() as f64;
-        let sampled = (0..64).map(|i| f(period * (f64::from(i) + 0.37) / 64.0).abs());
+        let sampled = (0..64).map(|i| f(period * (f64::from(i) + 0.37) / 64.0));
         Self {
-            scale: sampled.fold(0.0, f64::max),
+            scale: sampled
+                .fold([0.0; N], |most, own| std::array::from_fn(|k| f64::max(most[k], own[k].abs()))),
             segments: vec![Segment::NotBuilt; count],
-            coefficients: vec![[0.0; TERMS]; count],
+            coefficients: vec![[[0.0; TERMS]; N]; count],
             fit: fit(),
         }
     }
 
-    /// Admitted difference from the function at the points where a polynomial is checked, in the unit of the function.
+    /// Admitted difference from each function at the points where a polynomial is checked, in its unit.
     #[must_use]
-    pub fn tolerance(&self) -> f64 {
-        TOLERANCE * self.scale
+    pub fn tolerance(&self) -> [f64; N] {
+        self.scale.map(|scale| TOLERANCE * scale)
     }
 
-    /// Number of segments, among those asked for so far, in which the function itself is evaluated.
+    /// Number of segments, among those asked for so far, in which the functions themselves are evaluated.
     #[must_use]
     pub fn direct_segments(&self) -> usize {
         self.segments.iter().filter(|s| **s == Segment::Direct).count()
     }
 
-    /// Value at an angle \[rad\]; `f` is the function that the interpolant was made for.
-    pub fn value(&mut self, angle: f64, f: impl Fn(f64) -> f64) -> f64 {
+    /// Values at an angle \[rad\]; `f` are the functions that the interpolant was made for.
+    pub fn value(&mut self, angle: f64, f: impl Fn(f64) -> [f64; N]) -> [f64; N] {
         self.value_at(Place::of(angle), angle, f)
     }
 
     /// The same at an angle whose place is known.
     #[inline]
-    pub(crate) fn value_at(&mut self, place: Place, angle: f64, f: impl Fn(f64) -> f64) -> f64 {
+    pub(crate) fn value_at(&mut self, place: Place, angle: f64, f: impl Fn(f64) -> [f64; N]) -> [f64; N] {
         let i = self.segment(place);
         match self.segments[i] {
-            Segment::Polynomial => value(&self.coefficients[i], place.inside),
+            Segment::Polynomial => self.coefficients[i].each_ref().map(|c| value(c, place.inside)),
             Segment::Direct => f(angle),
             Segment::NotBuilt => {
                 self.build(i, &f);
@@ -124,19 +125,19 @@ impl Interpolant {
         }
     }
 
-    /// Derivative with respect to the angle \[rad\]; where the function is not smooth, that of the polynomial through it at the nodes.
-    pub fn derivative(&mut self, angle: f64, f: impl Fn(f64) -> f64) -> f64 {
+    /// Derivatives with respect to the angle \[rad\]; where a function is not smooth, that of the polynomial through it at the nodes.
+    pub fn derivative(&mut self, angle: f64, f: impl Fn(f64) -> [f64; N]) -> [f64; N] {
         self.derivative_at(Place::of(angle), f)
     }
 
     /// The same at a place.
     #[inline]
-    pub(crate) fn derivative_at(&mut self, place: Place, f: impl Fn(f64) -> f64) -> f64 {
+    pub(crate) fn derivative_at(&mut self, place: Place, f: impl Fn(f64) -> [f64; N]) -> [f64; N] {
         let i = self.segment(place);
         if self.segments[i] == Segment::NotBuilt {
             self.build(i, &f);
         }
-        2.0 * PER_RADIAN * derivative(&self.coefficients[i], place.inside)
+        self.coefficients[i].each_ref().map(|c| 2.0 * PER_RADIAN * derivative(c, place.inside))
     }
 
     /// Segment of a place: their number is a power of two.
@@ -145,15 +146,20 @@ impl Interpolant {
         (place.segment & (self.segments.len() as i64 - 1)) as usize
     }
 
-    fn build(&mut self, i: usize, f: &impl Fn(f64) -> f64) {
+    fn build(&mut self, i: usize, f: &impl Fn(f64) -> [f64; N]) {
         let angle = |t: f64| (i as f64 + 0.5 * (t + 1.0)) / PER_RADIAN;
-        let mut terms = [0.0; TERMS];
+        let mut all = [[0.0; TERMS]; N];
         for (at, by_term) in self.fit.iter() {
-            let own = f(angle(*at));
-            terms.iter_mut().zip(by_term).for_each(|(t, part)| *t += part * own);
+            for (terms, own) in all.iter_mut().zip(f(angle(*at))) {
+                terms.iter_mut().zip(by_term).for_each(|(t, part)| *t += part * own);
+            }
         }
-        self.coefficients[i] = terms;
-        let agrees = CHECKED.iter().all(|t| (value(&terms, *t) - f(angle(*t))).abs() <= self.tolerance());
+        self.coefficients[i] = all;
+        let tolerance = self.tolerance();
+        let agrees = CHECKED.iter().all(|t| {
+            let exact = f(angle(*t));
+            (0..N).all(|k| (value(&all[k], *t) - exact[k]).abs() <= tolerance[k])
+        });
         self.segments[i] = if agrees { Segment::Polynomial } else { Segment::Direct };
     }
 }

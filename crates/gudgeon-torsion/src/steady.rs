@@ -31,7 +31,7 @@ pub struct Steady {
     /// Shares of the nodes in that torque, by node.
     balance: Vec<f64>,
     /// What excites it at any speed: see [`Excitation::parts`].
-    parts: [Excitation; 2],
+    pub(crate) parts: [Excitation; 2],
     /// Damping against the ground without that of the drives, by position.
     drag: Vec<f64>,
     varying: bool,
@@ -39,6 +39,7 @@ pub struct Steady {
     pub(crate) pivots: Vec<f64>,
     work: Work,
     scratch: [Vec<Complex>; 3],
+    mean_scratch: [Vec<f64>; 3],
 }
 
 /// Damping of the drives: the negative derivatives of their torques by the speed at the mean speed, by position.
@@ -106,6 +107,7 @@ impl Steady {
             pivots: vec![0.0; n],
             work: Work::new(n),
             scratch: [z.clone(), z.clone(), z],
+            mean_scratch: [vec![0.0; n], vec![0.0; n], vec![0.0; n]],
             tree,
             line,
         };
@@ -155,10 +157,52 @@ impl Steady {
         drive_damping(&self.line, &mut self.tree, self.speed);
     }
 
-    /// The mean state under mean torques by node; the tree stays as it is.
+    /// The mean state under mean torques by node; the tree stays as it is: mean torques in the links, angles against the mean of the nodes that
+    /// balance (against the ground where several places are held) and the torque that balances at the reference shaft.
     pub(crate) fn take_mean(&mut self, mean: &[f64]) {
-        (self.mean_torque, self.mean_angle, self.balance_torque) =
-            mean_state(&self.line, &self.tree, mean, &self.balance);
+        let (line, tree, balance) = (&self.line, &self.tree, &self.balance);
+        let n = tree.len();
+        let [f, twist, phi] = &mut self.mean_scratch;
+        f.clear();
+        f.extend((0..n).map(|p| mean[tree.node[p]] * tree.ratio[p]));
+        let total: f64 = f.iter().sum();
+        let held = tree.ground.iter().filter(|g| **g != 0.0).count();
+        self.balance_torque = if held > 0 { 0.0 } else { -total };
+        if held > 1
+            && let Some((torque, angle)) = held_state(line, tree, f)
+        {
+            (self.mean_torque, self.mean_angle) = (torque, angle);
+            return;
+        }
+        // A line that is held at one place takes up the rest there.
+        match tree.ground.iter().position(|g| *g != 0.0) {
+            Some(g) => f[g] -= total,
+            None => (0..n).for_each(|p| f[p] -= total * balance[tree.node[p]]),
+        }
+        self.mean_torque.resize(line.links.len(), 0.0);
+        for p in 0..n {
+            let q = tree.parent[p];
+            if q < n {
+                f[q] += f[p];
+                let s = if tree.forward[p] { 1.0 } else { -1.0 };
+                let physical = s * f[p] / tree.link_ratio[p];
+                self.mean_torque[tree.link[p]] = physical;
+                // φ_child - φ_parent.
+                let coupling = &line.links[tree.link[p]].coupling;
+                twist[p] = s * coupling.static_twist(physical) / tree.link_ratio[p];
+            }
+        }
+        phi.fill(0.0);
+        for p in (0..n).rev() {
+            if tree.parent[p] < n {
+                phi[p] = phi[tree.parent[p]] + twist[p];
+            }
+        }
+        let zero: f64 = (0..n).map(|p| balance[tree.node[p]] * phi[p]).sum();
+        self.mean_angle.resize(n, 0.0);
+        for p in 0..n {
+            self.mean_angle[tree.node[p]] = (phi[p] - zero) * tree.ratio[p];
+        }
     }
 
     /// Takes the stiffness of the links at angular frequency `omega` \[rad/s\].
@@ -222,53 +266,8 @@ impl Steady {
     }
 }
 
-/// Mean torques in the links, angles against the mean of the nodes that balance (against the ground where several places are held) and
-/// the torque that balances at the reference shaft, for mean torques by node.
-fn mean_state(line: &Line, tree: &Tree, mean: &[f64], balance: &[f64]) -> (Vec<f64>, Vec<f64>, f64) {
-    let n = tree.len();
-    let mut f: Vec<f64> = (0..n).map(|p| mean[tree.node[p]] * tree.ratio[p]).collect();
-    let total: f64 = f.iter().sum();
-    let held = tree.ground.iter().filter(|g| **g != 0.0).count();
-    let balance_torque = if held > 0 { 0.0 } else { -total };
-    if held > 1
-        && let Some(answer) = held_state(line, tree, &f)
-    {
-        return answer;
-    }
-    // A line that is held at one place takes up the rest there.
-    match tree.ground.iter().position(|g| *g != 0.0) {
-        Some(g) => f[g] -= total,
-        None => (0..n).for_each(|p| f[p] -= total * balance[tree.node[p]]),
-    }
-    let mut torque = vec![0.0; line.links.len()];
-    let mut twist = vec![0.0; n];
-    for p in 0..n {
-        let q = tree.parent[p];
-        if q < n {
-            f[q] += f[p];
-            let s = if tree.forward[p] { 1.0 } else { -1.0 };
-            let physical = s * f[p] / tree.link_ratio[p];
-            torque[tree.link[p]] = physical;
-            // φ_child - φ_parent.
-            twist[p] = s * line.links[tree.link[p]].coupling.static_twist(physical) / tree.link_ratio[p];
-        }
-    }
-    let mut phi = vec![0.0; n];
-    for p in (0..n).rev() {
-        if tree.parent[p] < n {
-            phi[p] = phi[tree.parent[p]] + twist[p];
-        }
-    }
-    let zero: f64 = (0..n).map(|p| balance[tree.node[p]] * phi[p]).sum();
-    let mut angle = vec![0.0; n];
-    for p in 0..n {
-        angle[tree.node[p]] = (phi[p] - zero) * tree.ratio[p];
-    }
-    (torque, angle, balance_torque)
-}
-
-/// Static state of a line that is held at several places: couplings as the tree has them. None when a part is not held at all.
-fn held_state(line: &Line, tree: &Tree, f: &[f64]) -> Option<(Vec<f64>, Vec<f64>, f64)> {
+/// Mean torques in the links and mean angles of a line that is held at several places: couplings as the tree has them. None when a part is not held at all.
+fn held_state(line: &Line, tree: &Tree, f: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
     let n = tree.len();
     let load: Vec<Complex> = f.iter().map(|f| Complex::new(*f, 0.0)).collect();
     let (mut x, mut q) = (vec![Complex::default(); n], vec![Complex::default(); n]);
@@ -281,7 +280,7 @@ fn held_state(line: &Line, tree: &Tree, f: &[f64]) -> Option<(Vec<f64>, Vec<f64>
             torque[tree.link[p]] = s * q[p].re / tree.link_ratio[p];
         }
     }
-    Some((torque, angle, 0.0))
+    Some((torque, angle))
 }
 
 impl Steady {

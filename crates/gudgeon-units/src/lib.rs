@@ -403,13 +403,14 @@ impl Wanted {
 
     fn schema(&self) -> schemars::Schema {
         let units: Vec<_> = self.units.iter().map(|u| u.name).filter(|n| !n.is_empty()).collect();
-        schemars::json_schema!({
-            "description": format!("{}, {}", self.name, self.bound),
-            "type": ["number", "string"],
-            "x-units": units,
-            "x-dimension": self.name,
-            "x-bound": self.bound,
-        })
+        // Values as they are: `json_schema!` would write each of them out and read it again.
+        let mut schema = schemars::Schema::default();
+        schema.insert("description".into(), format!("{}, {}", self.name, self.bound).into());
+        schema.insert("type".into(), vec!["number", "string"].into());
+        schema.insert("x-units".into(), units.into());
+        schema.insert("x-dimension".into(), self.name.into());
+        schema.insert("x-bound".into(), self.bound.into());
+        schema
     }
 }
 

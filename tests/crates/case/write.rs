@@ -50,7 +50,7 @@ fn inputs_have_the_unit_of_the_text_and_its_line() {
     assert_eq!((gap.dimension.as_str(), gap.unit.as_str()), ("a length", "mm"));
     assert!(find("rings.0.gap").line.is_some() && find("machine.cylinders").line.is_none());
     let InputValue::Choice(gas) = &find("models.gas.model").value else { panic!("a choice") };
-    assert!(gas.words.iter().any(|(w, _)| w == "channel"), "{gas:?}");
+    assert!(gas.words.told().any(|(w, _)| w == "channel"), "{gas:?}");
     assert_eq!(find("machine.speed").about, "Crankshaft speed. More text.");
 }
 

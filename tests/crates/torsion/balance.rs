@@ -144,7 +144,7 @@ fn a_geared_coupling_is_its_reduced_line() {
         // A motion that stays in the linear part would be no test.
         assert!(top > 100.0, "{top}");
         assert!((a.mean_torque[0] - b.mean_torque[0]).abs() < 1e-9 * top);
-        for (x, y) in a.orders.iter().zip(&b.orders) {
+        for (x, y) in a.orders.iter().zip(b.orders.iter()) {
             // The torque of the second shaft is that of its own first inertia.
             for (l, gear) in [(0, 1.0), (1, ratio)] {
                 let ([p, q], [r, s]) = (x.torque[l], y.torque[l]);

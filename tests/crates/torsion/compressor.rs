@@ -341,14 +341,14 @@ fn the_last_cylinder_swings_most() {
 
 /// Largest and smallest torque of the links and peak-to-peak speed of the nodes over a turn.
 fn cycle(out: &TorsionOut, period: f64) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
-    let (links, nodes) = (out.mean_torque.len(), out.orders[0].angle.len());
+    let (links, nodes) = (out.mean_torque.len(), out.orders.get(0).angle.len());
     let (mut top, mut bottom) = (vec![f64::NEG_INFINITY; links], vec![f64::INFINITY; links]);
     let mut swing = vec![[f64::INFINITY, f64::NEG_INFINITY]; nodes];
     for s in 0..2880 {
         let at = period * f64::from(s) / 2880.0;
         let mut t = out.mean_torque.clone();
         let mut w = vec![0.0; nodes];
-        for o in &out.orders {
+        for o in out.orders.iter() {
             let (sin, cos) = (o.order * at).sin_cos();
             for (t, a) in t.iter_mut().zip(&o.torque) {
                 *t += a[0] * cos - a[1] * sin;
@@ -391,7 +391,8 @@ fn steady_vibration_by_orders() {
     near(&top, &[8195.0, 7935.0, 12391.0, 9439.0, 6500.0, 3336.0], 5e-4);
     near(&bottom, &[-5165.0, -5003.0, -6310.0, -5720.0, -4429.0, -2446.0], 5e-4);
     near(&out.mean_torque, &[1722.489, 1722.489, 1722.489, 1291.867, 861.245, 430.622], 2e-6);
-    let amplitude: Vec<f64> = out.orders[..4].iter().map(|o| o.torque[2][0].hypot(o.torque[2][1])).collect();
+    let amplitude: Vec<f64> =
+        out.orders.iter().take(4).map(|o| o.torque[2][0].hypot(o.torque[2][1])).collect();
     near(&amplitude, &[3338.0, 4025.0, 5219.0, 1911.0], 5e-4);
     let phases = [0.0, 180.0, 90.0, 270.0].map(f64::to_radians);
     let (top, bottom, _) = cycle(&at(Gas::M3, 104.720, phases), 2.0 * PI);
@@ -432,7 +433,7 @@ fn orders_are_what_the_time_domain_settles_to() {
     l.drives.push(LineDrive { node: 0, phase: 0.0, factor: 1.0, drive: hold.build().expect("builds") });
     let motion = |time: f64| {
         let (mut a, mut w) = (steady.mean_angle.clone(), vec![speed; 7]);
-        for o in &steady.orders {
+        for o in steady.orders.iter() {
             let (sin, cos) = (o.order * speed * time).sin_cos();
             for i in 0..7 {
                 let [re, im] = o.angle[i];
@@ -468,7 +469,7 @@ fn orders_are_what_the_time_domain_settles_to() {
     for (modes, tolerance) in [(7, 1e-10), (5, 5e-3)] {
         let spec = Modal { modes, ..Modal::default() };
         let b = run(&spec, &context(&bare, speed, 24.0, &[], &[]));
-        for (x, y) in a.orders.iter().zip(&b.orders).take(6) {
+        for (x, y) in a.orders.iter().zip(b.orders.iter()).take(6) {
             for (p, q) in x.torque.iter().zip(&y.torque) {
                 let top = x.torque.iter().map(|t| t[0].hypot(t[1])).fold(0.0, f64::max);
                 assert!(
@@ -536,7 +537,7 @@ fn harmonic_balance_after_other_speeds_is_that_of_its_own() {
     }
     let alone = run(&spec, &context(&l, 62.8, 24.0, &[], &[]));
     let largest = alone.orders.iter().map(|o| o.torque[3][0].hypot(o.torque[3][1])).fold(0.0, f64::max);
-    for (a, b) in alone.orders.iter().zip(&out.orders) {
+    for (a, b) in alone.orders.iter().zip(out.orders.iter()) {
         for (a, b) in a.torque.iter().zip(&b.torque) {
             // Both are within the tolerance, which the line magnifies by less than a hundred here.
             assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 1e-9 * largest, "{a:?} {b:?}");
@@ -557,7 +558,7 @@ fn harmonic_balance_is_the_periodic_motion_with_variable_inertia() {
     );
     assert_eq!(out.counters["time_steps"], 0);
     let (mut a, mut w) = (out.mean_angle.clone(), vec![speed; 7]);
-    for o in &out.orders {
+    for o in out.orders.iter() {
         for i in 0..7 {
             a[i] += o.angle[i][0];
             w[i] -= o.order * speed * o.angle[i][1];
@@ -637,7 +638,7 @@ fn phasors_are_what_the_lanes_and_the_tree_say() {
     tree.solve(z, &torque, &mut x, &mut q, gudgeon_torsion::tree::Singular::Refuse, &mut work)
         .expect("damped");
     for p in 0..7 {
-        let a = out.orders[0].angle[tree.node[p]];
+        let a = out.orders.get(0).angle[tree.node[p]];
         assert!((x[p].re - a[0]).abs() < 1e-18 && (x[p].im - a[1]).abs() < 1e-18);
     }
 }
@@ -654,8 +655,8 @@ fn a_model_at_another_speed_answers_as_if_it_were_built_there() {
             moving.run(&mut out).expect("runs");
             let there = run(spec, &context(&l, speed, 12.0, &[], &[]));
             let scale =
-                there.orders.iter().flat_map(|o| &o.torque).map(|t| t[0].hypot(t[1])).fold(0.0, f64::max);
-            for (a, b) in out.orders.iter().zip(&there.orders) {
+                there.orders.iter().flat_map(|o| o.torque).map(|t| t[0].hypot(t[1])).fold(0.0, f64::max);
+            for (a, b) in out.orders.iter().zip(there.orders.iter()) {
                 for (a, b) in a.torque.iter().zip(&b.torque) {
                     // Harmonic balance ends at 1e-10 of the exciting torques, which a resonance magnifies some ten times.
                     assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 1e-8 * scale, "{speed}: {a:?} {b:?}");
@@ -706,7 +707,7 @@ fn throws_that_are_alike_excite_as_throws_of_their_own() {
     // So is the motion with all that is not linear, but for the interpolants that they share: these are right to 1e-13 of their maximum.
     let [a, b] = [&own, &shared].map(|l| {
         let out = run(&HarmonicBalance::default(), &context(l, 100.0, 12.0, &[], &[]));
-        out.orders.into_iter().flat_map(|o| o.torque).collect::<Vec<_>>()
+        out.orders.iter().flat_map(|o| o.torque).collect::<Vec<_>>()
     });
     let largest = a.iter().map(|z| z[0].hypot(z[1])).fold(0.0, f64::max);
     let miss = a.iter().zip(&b).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1])).fold(0.0, f64::max);

@@ -248,10 +248,10 @@ fn stiffness_under_load_is_the_slope_of_the_twist() {
     line.drives.push(drive(1, 1.0, &Harmonics { mean: quantity(0.0), orders: vec![order] }));
     let out = run(&Orders {}, &context(&line, 100.0, 4.0, [&[], &[]], &[]));
     let kappa = c(24e3, 24e3 * 0.95 / (2.0 * PI));
-    by_hand(&out.orders[0], kappa, 200.0, c(70.0 * 0.4_f64.cos(), -70.0 * 0.4_f64.sin()));
+    by_hand(&out.orders.get(0), kappa, 200.0, c(70.0 * 0.4_f64.cos(), -70.0 * 0.4_f64.sin()));
     // Loss per cycle by the definition of ψ.
-    let twist = (out.orders[0].torque[0][0].hypot(out.orders[0].torque[0][1])) / kappa.abs();
-    let lost = out.orders[0].heat[0] * 2.0 * PI / 200.0;
+    let twist = out.orders.torque(0)[0][0].hypot(out.orders.torque(0)[1][0]) / kappa.abs();
+    let lost = out.orders.heat(0)[0] * 2.0 * PI / 200.0;
     assert!((lost / (0.95 * 0.5 * 24e3 * twist * twist) - 1.0).abs() < 1e-13);
     // A fan whose torque goes with the square of the speed: over the range every speed has its own stiffness, also where a table
     // begins far above the torque at rest.
@@ -331,7 +331,7 @@ fn frequency_dependent_coupling_by_hand() {
         assert_eq!(o.order, *n);
         let torque = c(0.3 * n, 0.0);
         let torque = c(40.0 / n * torque.re.cos(), -40.0 / n * torque.re.sin());
-        by_hand(o, c(k, k * eta), n * speed, torque);
+        by_hand(&o, c(k, k * eta), n * speed, torque);
     }
     // Come from another speed: every speed its own stiffness.
     let ctx = TorsionCtx { period: 4.0 * PI, ..context(&line, 1.0, 20.0, [&[], &[]], &[]) };
@@ -383,7 +383,7 @@ fn harmonic_balance_of_nonlinear_couplings_is_their_motion_over_time() {
         assert!((out.mean_torque[0] / 600.0 - 1.0).abs() < 1e-10);
         let state = |t: f64| {
             let (mut a, mut w, mut q) = (out.mean_angle.clone(), vec![speed; 2], out.mean_torque[0]);
-            for o in &out.orders {
+            for o in out.orders.iter() {
                 let (sin, cos) = (o.order * speed * t).sin_cos();
                 q += o.torque[0][0] * cos - o.torque[0][1] * sin;
                 for i in 0..2 {
@@ -403,7 +403,7 @@ fn harmonic_balance_of_nonlinear_couplings_is_their_motion_over_time() {
         let times: Vec<f64> = (0..=n).map(|i| 3.0 * turn * f64::from(i) / f64::from(n)).collect();
         let time =
             run(&Implicit { tolerance: quantity(1e-10) }, &context(&driven, speed, orders, [&a, &w], &times));
-        let top = out.orders[0].torque[0][0].hypot(out.orders[0].torque[0][1]);
+        let top = out.orders.torque(0)[0][0].hypot(out.orders.torque(0)[1][0]);
         for (r, t) in times.iter().enumerate() {
             let (a, w, q) = state(*t);
             for i in 0..2 {
@@ -429,7 +429,7 @@ fn harmonic_balance_of_nonlinear_couplings_is_their_motion_over_time() {
             })
             .sum::<f64>()
             / f64::from(m);
-        let heat: f64 = out.orders.iter().map(|o| o.heat[0]).sum();
+        let heat: f64 = out.orders.heat(0).iter().sum();
         assert!((power / heat - 1.0).abs() < 30.0 * tolerance && heat > 10.0, "{power} {heat}");
     }
 }

@@ -150,7 +150,7 @@ fn closed_form_with_rigid_links_is_the_merged_line() {
     let line = bare(full);
     let x = run(&Modal::default(), &context(&line, [&[], &[]], &[]));
     let y = run(&Orders {}, &context(&line, [&[], &[]], &[]));
-    for (p, q) in x.orders[0].torque.iter().zip(&y.orders[0].torque) {
+    for (p, q) in x.orders.get(0).torque.iter().zip(&y.orders.get(0).torque) {
         assert!((p[0] - q[0]).abs() < 1e-11 * 50.0 && (p[1] - q[1]).abs() < 1e-11 * 50.0, "{p:?} {q:?}");
     }
 }
@@ -201,7 +201,7 @@ fn what_has_no_meaning_in_time_is_refused_with_a_way_out() {
     line.links[0] = link(0, 1, 1e4, 0.0, 0.0);
     let x = run(&Modal { modes: 3, ..Modal::default() }, &context(&line, [&[], &[]], &[]));
     let y = run(&Orders {}, &context(&line, [&[], &[]], &[]));
-    for (p, q) in x.orders[0].angle.iter().zip(&y.orders[0].angle) {
+    for (p, q) in x.orders.get(0).angle.iter().zip(&y.orders.get(0).angle) {
         assert!((p[0] - q[0]).hypot(p[1] - q[1]) < 1e-12 * q[0].hypot(q[1]), "{p:?} {q:?}");
     }
 }

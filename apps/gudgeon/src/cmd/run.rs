@@ -32,7 +32,10 @@ pub fn run(a: &RunArgs, ui: &Ui) -> Result<(), Failure> {
             ui.note(&n.text);
         }
     }
-    failure_of(&result)
+    let outcome = failure_of(&result);
+    // The process ends behind a run: its memory goes at once, not piece by piece.
+    std::mem::forget((c, result));
+    outcome
 }
 
 /// Results that are written and marked as what they are not end a run with the exit code of a failure.

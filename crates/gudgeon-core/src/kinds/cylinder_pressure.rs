@@ -48,6 +48,10 @@ pub trait CylinderPressure: Debug + DynClone + Send + Sync {
     fn highest(&self) -> (f64, f64) {
         search_highest(self)
     }
+    /// Whether it is another one at another speed of the crank.
+    fn depends_on_speed(&self) -> bool {
+        true
+    }
     /// What a person should know about how the pressure came about: a filter that acted, with how much.
     fn notes(&self) -> Vec<Note> {
         Vec::new()

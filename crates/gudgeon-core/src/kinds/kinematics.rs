@@ -52,6 +52,10 @@ pub trait Kinematics: Debug + DynClone + Send + Sync {
     fn height(&self, theta: f64) -> f64 {
         self.motion(theta).y
     }
+    /// Velocity \[m/s\], towards the head positive, at crank angle `theta` \[rad\]: that of [`Self::motion`] likewise.
+    fn velocity(&self, theta: f64) -> f64 {
+        self.motion(theta).v
+    }
     /// Highest position of the pin \[m\].
     fn y_tdc(&self) -> f64;
     /// Stroke \[m\].

@@ -6,7 +6,7 @@ use gudgeon_numerics::elementary;
 use gudgeon_numerics::linalg::Complex;
 use indexmap::IndexMap;
 
-use super::{Coupling, CylinderPressure, Drive, Kinematics, ThrowInertia};
+use super::{Coupling, CylinderPressure, Drive, Kinematics, OrderResponses, ThrowInertia};
 use crate::result::Note;
 use crate::{BuildError, EvalError, register_kind};
 
@@ -74,15 +74,20 @@ impl GasEnd {
     /// at `decided_at`.
     #[must_use]
     pub fn torque(&self, decided_at: f64, theta: f64) -> f64 {
-        let m = self.kinematics.motion(theta);
-        let mut way = m.v / self.kinematics.omega();
+        self.torque_of(self.pressure.pressure_decided_at(decided_at, theta), theta)
+    }
+
+    /// Torque \[N m\] of a pressure \[Pa\] on the throw at its angle `theta`.
+    #[must_use]
+    pub fn torque_of(&self, pressure: f64, theta: f64) -> f64 {
+        let mut way = self.kinematics.velocity(theta) / self.kinematics.omega();
         if self.obliquity == Obliquity::Reversed {
             // The crank end sees the motion turned about, and its lever with it.
+            let m = self.kinematics.motion(theta);
             let sign = if m.y < 0.0 { -1.0 } else { 1.0 };
             way += sign * 2.0 * self.crank_radius * elementary::cos(theta) * elementary::tan(m.rod_angle);
         }
-        let p = self.pressure.pressure_decided_at(decided_at, theta);
-        -self.factor * way * (p - self.back_pressure) * self.area
+        -self.factor * way * (pressure - self.back_pressure) * self.area
     }
 }
 
@@ -252,26 +257,11 @@ pub enum TorsionAnswer {
     Time,
 }
 
-/// One order of a periodic motion; phasors `a` stand for `Re(a e^{i order θ})`, θ the angle of the reference shaft.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct OrderResponse {
-    /// The order.
-    pub order: f64,
-    /// Angles of the inertias \[rad\], real and imaginary part.
-    pub angle: Vec<[f64; 2]>,
-    /// Torques in the links \[N m\].
-    pub torque: Vec<[f64; 2]>,
-    /// Power that the link turns into heat \[W\].
-    pub heat: Vec<f64>,
-    /// Torques that excite the inertias \[N m\].
-    pub excitation: Vec<[f64; 2]>,
-}
-
 /// What a torsion model found.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct TorsionOut {
     /// Periodic motion by order, ascending.
-    pub orders: Vec<OrderResponse>,
+    pub orders: OrderResponses,
     /// Mean torques in the links \[N m\].
     pub mean_torque: Vec<f64>,
     /// Mean angles of the inertias against what balances, \[rad\].

@@ -34,7 +34,7 @@ pub(super) struct Sizes {
 #[derive(Debug, Clone)]
 pub(super) struct Derivatives {
     orders: Vec<f64>,
-    phasors: Vec<[f64; 2]>,
+    phasors: [Vec<f64>; 2],
     /// Angular frequency of the period.
     base: f64,
     /// Place of each order in the blocks; empty where orders are no multiples, or few of many.
@@ -54,7 +54,7 @@ impl Derivatives {
             blocks[place / LANES].square[place % LANES] = order * order;
         }
         let (orders, base) = (orders.to_vec(), 2.0 * PI / period);
-        Self { orders, phasors: Vec::new(), base, places, blocks }
+        Self { orders, phasors: Default::default(), base, places, blocks }
     }
 
     /// The orders.
@@ -62,16 +62,25 @@ impl Derivatives {
         &self.orders
     }
 
-    /// The phasors.
-    pub fn phasors(&self) -> &[[f64; 2]] {
-        &self.phasors
+    /// Real and imaginary parts of the phasors.
+    pub fn phasors(&self) -> [&[f64]; 2] {
+        [&self.phasors[0], &self.phasors[1]]
     }
 
-    /// Takes other phasors.
-    pub fn take(&mut self, phasors: impl Fn(usize) -> [f64; 2]) {
-        self.phasors.clear();
-        self.phasors.extend((0..self.orders.len()).map(phasors));
-        for (place, [re, im]) in self.places.iter().zip(&self.phasors) {
+    /// Takes other phasors, real and imaginary parts.
+    pub fn take(&mut self, [re, im]: [&[f64]; 2]) {
+        re.clone_into(&mut self.phasors[0]);
+        im.clone_into(&mut self.phasors[1]);
+        if self.orders.len() == self.blocks.len() * LANES {
+            // Every multiple is there.
+            let parts = re.chunks_exact(LANES).zip(im.chunks_exact(LANES));
+            for (block, (re, im)) in self.blocks.iter_mut().zip(parts) {
+                block.re.copy_from_slice(re);
+                block.im.copy_from_slice(im);
+            }
+            return;
+        }
+        for (place, (re, im)) in self.places.iter().zip(re.iter().zip(im)) {
             let block = &mut self.blocks[place / LANES];
             (block.re[place % LANES], block.im[place % LANES]) = (*re, *im);
         }
@@ -82,7 +91,8 @@ impl Derivatives {
     pub fn sizes(&self) -> Sizes {
         let mut sums = [[0.0; LANES]; 5];
         if self.blocks.is_empty() {
-            for ([re, im], o) in self.phasors.iter().zip(&self.orders) {
+            let [re, im] = &self.phasors;
+            for ((re, im), o) in re.iter().zip(im).zip(&self.orders) {
                 let mut own = Block::default();
                 (own.re[0], own.im[0], own.order[0], own.square[0]) = (*re, *im, *o, o * o);
                 own.add_sizes(&mut sums);
@@ -118,13 +128,14 @@ impl Derivatives {
                 sum[l] += re[l] * cos[l] - im[l] * sin[l];
             }
         });
-        total(sum)
+        total(&sum)
     }
 
     #[inline(never)]
     fn one_by_one(&self, angle: f64) -> [f64; 5] {
         let mut sums = [0.0; 5];
-        for (o, [re, im]) in self.orders.iter().zip(&self.phasors) {
+        let [re, im] = &self.phasors;
+        for (o, (re, im)) in self.orders.iter().zip(re.iter().zip(im)) {
             let (sin, cos) = elementary::sin_cos(o * angle);
             let own = wave([*re, *im, *o], cos, sin);
             sums.iter_mut().zip(own).for_each(|(s, w)| *s += w);
@@ -141,7 +152,7 @@ impl Derivatives {
         for l in 1..LANES {
             [first[0][l], first[1][l]] = turned([first[0][l - 1], first[1][l - 1]], [cos, sin]);
         }
-        let by = first.map(|lanes| lanes[LANES - 1]);
+        let by = [first[0][LANES - 1], first[1][LANES - 1]];
         let mut lanes = first;
         for (b, block) in self.blocks.iter().enumerate() {
             if b > 0 {
@@ -197,13 +208,13 @@ impl Block {
 
 /// The sums of all lanes. A function of its own: beside the loops that make the lanes, the compiler would add the five sums side by side instead of the lanes.
 #[inline(never)]
-fn totals(sums: &[Lane; 5]) -> [f64; 5] {
-    sums.map(total)
+fn totals([a, b, c, d, e]: &[Lane; 5]) -> [f64; 5] {
+    [total(a), total(b), total(c), total(d), total(e)]
 }
 
 /// The sum of all lanes.
 #[inline(always)]
-fn total([a, b, c, d]: Lane) -> f64 {
+fn total([a, b, c, d]: &Lane) -> f64 {
     (a + c) + (b + d)
 }
 

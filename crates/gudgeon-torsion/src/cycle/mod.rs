@@ -28,6 +28,8 @@ const CURVED: f64 = 1.0 / 12.0 + 1.0 / 8.0;
 /// What a top may miss by the root of the sum of all squared amplitudes: some rounding errors.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
+/// Points in front of a period and behind it: two neighbours of every point are looked at.
+const BESIDE: usize = 2;
 /// Points that are looked at together for tops; a grid has a multiple of them.
 const TOGETHER: usize = 8;
 
@@ -43,7 +45,7 @@ pub struct Cycle {
     points: usize,
     /// From the finest on; made when they are first looked at.
     grids: [Option<Waves>; GRIDS],
-    /// The sum at the points, the first half a step from the beginning, with the last one in front and the first one behind.
+    /// The sum at the points, the first half a step from the beginning, with the last [`BESIDE`] in front and the first ones behind.
     wave: Vec<f64>,
 }
 
@@ -106,16 +108,11 @@ impl Cycle {
         self.sum.orders()
     }
 
-    /// The phasors at hand, by order.
-    #[must_use]
-    pub fn phasors(&self) -> &[[f64; 2]] {
-        self.sum.phasors()
-    }
-
-    /// Maximum and minimum, for a mean and the phasors of the orders.
-    pub fn extremes(&mut self, mean: f64, phasors: impl Fn(usize) -> [f64; 2]) -> [f64; 2] {
+    /// Maximum and minimum, for a mean and the phasors of the orders: real and imaginary parts, one of each order.
+    pub fn extremes(&mut self, mean: f64, phasors: [&[f64]; 2]) -> [f64; 2] {
         self.sum.take(phasors);
-        widest(Search(self)).map(|extreme| mean + extreme)
+        let [high, low] = widest(Search(self));
+        [mean + high, mean + low]
     }
 
     /// Maximum and minimum of the waves, looked for on a grid; none where it is too coarse, which the finest never is.
@@ -155,9 +152,10 @@ impl Cycle {
         let points = self.points >> g;
         let (orders, multiples) = (self.sum.orders(), &self.multiples);
         let waves = self.grids[g].get_or_insert_with(|| Waves::new(orders, self.period, points, multiples));
-        self.wave.resize(points + 2, 0.0);
-        waves.sum(self.sum.phasors(), &mut self.wave[1..=points]);
-        (self.wave[0], self.wave[points + 1]) = (self.wave[points], self.wave[1]);
+        self.wave.resize(points + 2 * BESIDE, 0.0);
+        waves.sum(self.sum.phasors(), &mut self.wave[BESIDE..][..points]);
+        self.wave.copy_within(points..points + BESIDE, 0);
+        self.wave.copy_within(BESIDE..2 * BESIDE, points + BESIDE);
     }
 
     /// How far a top can lie above a point at most half a step away, and above the parabola through the three points about it.
@@ -183,20 +181,20 @@ impl Cycle {
     /// neighbours of a point.
     #[inline(always)]
     fn tops(&self, high: f64, low: f64, look: &Look) -> Option<[f64; 2]> {
-        let n = self.wave.len() - 2;
+        let n = self.wave.len() - 2 * BESIDE;
         let (top, bottom) = (high - look.above, low + look.above);
         let (mut best, mut least) = (high, -low);
-        for (k, some) in self.wave[1..=n].chunks_exact(TOGETHER).enumerate() {
+        for (k, some) in self.wave[BESIDE..][..n].as_chunks::<TOGETHER>().0.iter().enumerate() {
             // Nearly everywhere there is nothing, which is found out without a branch.
-            let mut any = false;
-            for w in some {
-                any |= (*w >= top) | (*w <= bottom);
+            let mut found = [0; TOGETHER];
+            for i in 0..TOGETHER {
+                found[i] = u64::from((some[i] >= top) | (some[i] <= bottom));
             }
-            if !any {
+            if found == [0; TOGETHER] {
                 continue;
             }
             for (i, here) in some.iter().enumerate() {
-                let s = 1 + k * TOGETHER + i;
+                let s = BESIDE + k * TOGETHER + i;
                 if *here >= top {
                     best = self.top(s, 1.0, best, look)?;
                 }
@@ -211,7 +209,7 @@ impl Cycle {
     /// The larger of `best` and the top of `sign` times the wave about point `s`, where there is one.
     #[inline(always)]
     fn top(&self, s: usize, sign: f64, best: f64, look: &Look) -> Option<f64> {
-        let [before, here, after] = [-1, 0, 1].map(|i| sign * self.wave[s.wrapping_add_signed(i)]);
+        let (before, here, after) = (sign * self.wave[s - 1], sign * self.wave[s], sign * self.wave[s + 1]);
         if here < before || here <= after {
             return Some(best);
         }
@@ -223,7 +221,7 @@ impl Cycle {
         if self.curve(s, sign) > look.one_top {
             return None;
         }
-        Some(best.max(self.climb(s as f64 - 0.5 + shift, sign, look)))
+        Some(best.max(self.climb((s - BESIDE) as f64 + 0.5 + shift, sign, look)))
     }
 
     /// The largest second difference at a point and its neighbours.
@@ -232,11 +230,9 @@ impl Cycle {
     /// most an eighth of it: [`CURVED`] is their sum.
     #[inline(always)]
     fn curve(&self, s: usize, sign: f64) -> f64 {
-        let n = self.wave.len() - 2;
-        let at = |s: usize| sign * self.wave[1 + (s - 1) % n];
-        let curve = |s: usize| at(s - 1) - 2.0 * at(s) + at(s + 1);
-        // A period on, so that no index is below the first.
-        curve(s + n - 1).max(curve(s + n)).max(curve(s + n + 1))
+        let curve =
+            |s: usize| sign * self.wave[s - 1] - 2.0 * (sign * self.wave[s]) + sign * self.wave[s + 1];
+        curve(s - 1).max(curve(s)).max(curve(s + 1))
     }
 
     /// The top near a place between points, the first of which stands at one half, by Newton's method on the Taylor polynomial of degree four, at most one point away.
@@ -249,7 +245,9 @@ impl Cycle {
         let (from, to) = (at - look.step, at + look.step);
         let mut best = f64::NEG_INFINITY;
         for _ in 0..20 {
-            let [value, first, second, third, fourth] = self.sum.at(at).map(|d| sign * d);
+            let mut derivatives = self.sum.at(at);
+            derivatives.iter_mut().for_each(|d| *d *= sign);
+            let [value, first, second, third, fourth] = derivatives;
             best = best.max(value);
             let slope = |x: f64| first + x * (second + x * (third / 2.0 + x * fourth / 6.0));
             let curve = |x: f64| second + x * (third + x * fourth / 2.0);
@@ -293,8 +291,10 @@ fn range(wave: &[f64]) -> (f64, f64) {
 #[inline(never)]
 fn extreme(lanes: &[f64; 8], rest: &[f64], before: impl Fn(f64, f64) -> bool) -> f64 {
     let mut best = lanes[0];
-    for w in lanes.iter().chain(rest) {
-        best = if before(*w, best) { *w } else { best };
+    for some in [lanes.as_slice(), rest] {
+        for w in some {
+            best = if before(*w, best) { *w } else { best };
+        }
     }
     best
 }

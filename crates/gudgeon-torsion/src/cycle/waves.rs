@@ -5,11 +5,13 @@ use std::f64::consts::PI;
 
 /// Numbers of a table that are kept.
 const KEPT: usize = 1 << 21;
+/// Numbers of a vector.
+const LANES: usize = 4;
 /// Points that are summed up side by side.
-const BLOCK: usize = 8;
+const BLOCK: usize = 2 * LANES;
 
-/// Cosines and sines of one order at neighbouring points.
-type Row = [[f64; BLOCK]; 2];
+/// Cosines and sines of one order at neighbouring points, by vectors: arrays of more numbers than these would be added up in vectors of two.
+type Row = [[[f64; LANES]; 2]; 2];
 
 /// The points of a period, the first half a step from its beginning.
 #[derive(Debug, Clone)]
@@ -24,7 +26,7 @@ pub(super) struct Waves {
     /// Rows of all orders of a group, block by block of points; empty where they would be too large.
     tables: [Vec<Row>; 2],
     /// Phasors of a group.
-    phasors: [Vec<[f64; 2]>; 2],
+    own: [Vec<[f64; 2]>; 2],
 }
 
 impl Waves {
@@ -36,7 +38,7 @@ impl Waves {
         }
         let folded = !multiples.is_empty();
         let mut own =
-            Self { period, points, groups, folded, tables: Default::default(), phasors: Default::default() };
+            Self { period, points, groups, folded, tables: Default::default(), own: Default::default() };
         if 2 * BLOCK * own.blocks() * orders.len() <= KEPT {
             let rows = |group: &[(f64, usize)]| {
                 let blocks = 0..own.blocks();
@@ -56,20 +58,21 @@ impl Waves {
     }
 
     fn row(&self, order: f64, block: usize) -> Row {
-        let mut row = [[0.0; BLOCK]; 2];
+        let mut row = Row::default();
         for i in 0..BLOCK {
             let angle = order * self.period * ((block * BLOCK + i) as f64 + 0.5) / self.points as f64;
-            (row[1][i], row[0][i]) = elementary::sin_cos(angle);
+            let (sin, cos) = elementary::sin_cos(angle);
+            (row[0][i / LANES][i % LANES], row[1][i / LANES][i % LANES]) = (cos, sin);
         }
         row
     }
 
     /// `Σ Re(a_k e^{i n_k θ})` at the points.
     #[inline(always)]
-    pub fn sum(&mut self, phasors: &[[f64; 2]], wave: &mut [f64]) {
-        for (own, group) in self.phasors.iter_mut().zip(&self.groups) {
+    pub fn sum(&mut self, [re, im]: [&[f64]; 2], wave: &mut [f64]) {
+        for (own, group) in self.own.iter_mut().zip(&self.groups) {
             own.clear();
-            own.extend(group.iter().map(|(_, k)| phasors[*k]));
+            own.extend(group.iter().map(|(_, k)| [re[*k], im[*k]]));
         }
         let half = self.points / 2;
         for b in 0..self.blocks() {
@@ -101,9 +104,9 @@ impl Waves {
 
     /// Sums of cosines and of sines of a group at a block of points.
     #[inline(always)]
-    fn block(&self, group: usize, b: usize) -> Row {
-        let phasors = &self.phasors[group];
-        let mut sums = [[0.0; BLOCK]; 2];
+    fn block(&self, group: usize, b: usize) -> [[f64; BLOCK]; 2] {
+        let phasors = &self.own[group];
+        let mut sums = Row::default();
         let n = phasors.len();
         match self.tables[group].get(b * n..(b + 1) * n) {
             Some(rows) => {
@@ -117,16 +120,29 @@ impl Waves {
                 }
             }
         }
-        sums
+        let mut block = [[0.0; BLOCK]; 2];
+        for l in 0..LANES {
+            (block[0][l], block[0][LANES + l]) = (sums[0][0][l], sums[0][1][l]);
+            (block[1][l], block[1][LANES + l]) = (sums[1][0][l], sums[1][1][l]);
+        }
+        block
     }
 }
 
 /// Adds the waves of an order at a block of points.
 #[inline(always)]
-fn add(row: &Row, a: &[f64; 2], sums: &mut Row) {
-    for i in 0..BLOCK {
-        sums[0][i] += a[0] * row[0][i];
-        sums[1][i] += a[1] * row[1][i];
+fn add(row: &Row, [re, im]: &[f64; 2], sums: &mut Row) {
+    // One by one, so that the sums stay in registers.
+    add_vector(&row[0][0], *re, &mut sums[0][0]);
+    add_vector(&row[0][1], *re, &mut sums[0][1]);
+    add_vector(&row[1][0], *im, &mut sums[1][0]);
+    add_vector(&row[1][1], *im, &mut sums[1][1]);
+}
+
+#[inline(always)]
+fn add_vector(wave: &[f64; LANES], by: f64, sum: &mut [f64; LANES]) {
+    for l in 0..LANES {
+        sum[l] += by * wave[l];
     }
 }
 

@@ -1,9 +1,10 @@
 //! The linear response order by order: the running model of `orders`, and of `harmonic_balance` where nothing is nonlinear.
 
-use gudgeon_core::kinds::{OrderResponse, Torsion, TorsionCtx, TorsionOut};
+use gudgeon_core::kinds::{OrderResponse, OrderResponses, Torsion, TorsionCtx, TorsionOut};
 use gudgeon_core::{BuildError, EvalError};
+use gudgeon_numerics::vectors::{Vectorised, widest};
 
-use crate::forcing::Order;
+use crate::forcing::Excitation;
 use crate::steady::Steady;
 use crate::sweep::{LANES, Lane, Sweep};
 
@@ -12,8 +13,42 @@ use crate::sweep::{LANES, Lane, Sweep};
 pub(super) struct IndependentOrders {
     steady: Steady,
     sweep: Sweep,
+    groups: Vec<Group>,
     /// Torques by position and order.
     torque: Vec<[Lane; 2]>,
+}
+
+/// Neighbouring orders that are solved side by side; lanes that are left over repeat the last one.
+#[derive(Debug)]
+struct Group {
+    first: usize,
+    count: usize,
+    order: Lane,
+    /// Torques by position: those that do not depend on the speed, and those of the moving masses at unit speed.
+    parts: [Vec<[Lane; 2]>; 2],
+}
+
+/// The orders of a line by groups.
+fn groups(steady: &Steady) -> Vec<Group> {
+    let [fixed, _] = &steady.parts;
+    let of = |first: usize| {
+        let count = LANES.min(fixed.orders.len() - first);
+        let of_lane = |l: usize| first + l.min(count - 1);
+        let torques = |part: &Excitation| {
+            let at = |node: usize, l: usize| part.orders[of_lane(l)].torque[node];
+            let lanes = |node: &usize| {
+                [std::array::from_fn(|l| at(*node, l).re), std::array::from_fn(|l| at(*node, l).im)]
+            };
+            steady.tree.node.iter().map(lanes).collect()
+        };
+        Group {
+            first,
+            count,
+            order: std::array::from_fn(|l| fixed.orders[of_lane(l)].order),
+            parts: steady.parts.each_ref().map(torques),
+        }
+    };
+    (0..fixed.orders.len()).step_by(LANES).map(of).collect()
 }
 
 impl IndependentOrders {
@@ -22,105 +57,170 @@ impl IndependentOrders {
     pub fn new(ctx: &TorsionCtx<'_>) -> Result<Self, BuildError> {
         let steady = Steady::new(ctx)?;
         let n = steady.tree.len();
-        Ok(Self { steady, sweep: Sweep::new(n), torque: vec![[[0.0; LANES]; 2]; n] })
+        let groups = groups(&steady);
+        Ok(Self { steady, sweep: Sweep::new(n), groups, torque: vec![[[0.0; LANES]; 2]; n] })
     }
 
-    /// Response to some orders.
-    fn respond(&mut self, orders: &[Order], out: &mut Vec<OrderResponse>) -> Result<(), EvalError> {
+    /// Response to all orders.
+    fn respond(&mut self, out: &mut OrderResponses) -> Result<(), EvalError> {
         if self.steady.depends_on_frequency() {
-            *out = orders.iter().map(|o| self.steady.respond(o)).collect::<Result<_, _>>()?;
+            *out = self.one_by_one()?.as_slice().into();
             return Ok(());
         }
-        out.resize_with(orders.len(), OrderResponse::default);
-        for (some, answers) in orders.chunks(LANES).zip(out.chunks_mut(LANES)) {
-            self.respond_together(some, answers)?;
+        let orders = self.steady.parts[0].orders.iter().map(|o| o.order);
+        out.reset(orders, self.steady.tree.len(), self.steady.line.links.len());
+        for g in 0..self.groups.len() {
+            self.respond_together(g, out)?;
         }
         Ok(())
     }
 
-    /// Response to at most as many orders as there are lanes, side by side.
-    fn respond_together(&mut self, orders: &[Order], out: &mut [OrderResponse]) -> Result<(), EvalError> {
-        let tree = &self.steady.tree;
-        // Lanes that are left over repeat the last order.
-        let of_lane = |l: usize| &orders[l.min(orders.len() - 1)];
-        let omega: Lane = std::array::from_fn(|l| of_lane(l).order * self.steady.speed);
-        for l in 0..LANES {
-            let torque = &of_lane(l).torque;
-            for ((row, node), ratio) in self.torque.iter_mut().zip(&tree.node).zip(&tree.ratio) {
-                let t = torque[*node];
-                (row[0][l], row[1][l]) = (ratio * t.re, ratio * t.im);
-            }
-        }
-        let torque = &self.torque;
-        if let Err((l, _)) = self.sweep.solve_lanes(tree, &omega, |p| torque[p]) {
+    /// The careful elimination of one order after the other.
+    fn one_by_one(&mut self) -> Result<Vec<OrderResponse>, EvalError> {
+        self.steady.set_speed(self.steady.speed);
+        let orders = std::mem::take(&mut self.steady.excitation.orders);
+        let found = orders.iter().map(|o| self.steady.respond(o)).collect();
+        self.steady.excitation.orders = orders;
+        found
+    }
+
+    /// Response to a group of orders, side by side.
+    fn respond_together(&mut self, g: usize, out: &mut OrderResponses) -> Result<(), EvalError> {
+        let Self { steady, sweep, groups, torque } = self;
+        let (tree, group) = (&steady.tree, &groups[g]);
+        let omega: Lane = std::array::from_fn(|l| group.order[l] * steady.speed);
+        widest(Excite { group, steady, torque, out });
+        let at = |p: usize| scaled(&torque[p], tree.ratio[p]);
+        if sweep.solve_lanes(tree, &omega, at).is_err() {
             // The elimination of one order says it in its own words.
-            self.steady.respond(of_lane(l))?;
+            self.one_by_one()?;
             return Err(EvalError::fatal("torsion", "an undamped resonance is hit"));
         }
-        self.take(orders, &omega, out);
+        widest(Answer { group, steady, sweep, omega: &omega, out });
         Ok(())
     }
+}
 
-    /// The answers of the lanes.
-    fn take(&self, orders: &[Order], omega: &Lane, out: &mut [OrderResponse]) {
-        let (t, links) = (&self.steady.tree, self.steady.line.links.len());
-        let n = t.len();
-        for (o, r) in orders.iter().zip(out.iter_mut()) {
-            r.order = o.order;
-            r.angle.resize(n, [0.0; 2]);
-            r.torque.resize(links, [0.0; 2]);
-            r.heat.resize(links, 0.0);
-            r.excitation.clear();
-            r.excitation.extend(o.torque.iter().map(|t| [t.re, t.im]));
-        }
-        for (p, (x, q)) in self.sweep.angle.iter().zip(&self.sweep.transmitted).enumerate() {
-            let (node, s) = (t.node[p], t.ratio[p]);
-            for (l, r) in out.iter_mut().enumerate().take(LANES) {
-                r.angle[node] = [s * x[0][l], s * x[1][l]];
+/// Torques of a group at the speed of a line, by position and among the answers.
+struct Excite<'e> {
+    group: &'e Group,
+    steady: &'e Steady,
+    torque: &'e mut [[Lane; 2]],
+    out: &'e mut OrderResponses,
+}
+
+impl Vectorised for Excite<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let square = self.steady.speed * self.steady.speed;
+        let [fixed, masses] = &self.group.parts;
+        for (p, node) in self.steady.tree.node.iter().enumerate() {
+            let (own, fixed, masses) = (&mut self.torque[p], &fixed[p], &masses[p]);
+            for l in 0..LANES {
+                own[0][l] = fixed[0][l] + masses[0][l] * square;
             }
+            for l in 0..LANES {
+                own[1][l] = fixed[1][l] + masses[1][l] * square;
+            }
+            self.group.write(own, self.out.excitation_mut(*node));
+        }
+    }
+}
+
+/// Takes the answers of a sweep.
+struct Answer<'s> {
+    group: &'s Group,
+    steady: &'s Steady,
+    sweep: &'s Sweep,
+    omega: &'s Lane,
+    out: &'s mut OrderResponses,
+}
+
+impl Vectorised for Answer<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { group, steady, sweep, omega, out } = self;
+        let t = &steady.tree;
+        let n = t.len();
+        for (p, (x, q)) in sweep.angle.iter().zip(&sweep.transmitted).enumerate() {
+            group.write(&scaled(x, t.ratio[p]), out.angle_mut(t.node[p]));
             if t.parent[p] >= n {
                 continue;
             }
-            let (link, s) = (t.link[p], if t.forward[p] { 1.0 } else { -1.0 } / t.link_ratio[p]);
-            let heat = self.heat(p, omega);
-            for (l, r) in out.iter_mut().enumerate().take(LANES) {
-                r.torque[link] = [s * q[0][l], s * q[1][l]];
-                r.heat[link] = heat[l];
-            }
+            let s = if t.forward[p] { 1.0 } else { -1.0 } / t.link_ratio[p];
+            group.write(&scaled(q, s), out.torque_mut(t.link[p]));
+            group.write_row(&heat(steady, p, q, omega), out.heat_mut(t.link[p]));
         }
+    }
+}
+
+impl Group {
+    /// Writes the lanes of its orders into rows of all.
+    #[inline(always)]
+    fn write(&self, lanes: &[Lane; 2], [re, im]: [&mut [f64]; 2]) {
+        self.write_row(&lanes[0], re);
+        self.write_row(&lanes[1], im);
     }
 
-    /// Mean power lost in the link of a node to its parent.
-    fn heat(&self, p: usize, omega: &Lane) -> Lane {
-        let (t, q) = (&self.steady.tree, &self.sweep.transmitted[p]);
-        let stiffness = t.k[p];
-        let mut heat = [0.0; LANES];
-        if !stiffness.is_finite() {
-            return heat;
+    #[inline(always)]
+    fn write_row(&self, lanes: &Lane, row: &mut [f64]) {
+        let row = &mut row[self.first..][..self.count];
+        match <&mut Lane>::try_from(&mut *row) {
+            Ok(whole) => *whole = *lanes,
+            Err(_) => row.copy_from_slice(&lanes[..self.count]),
         }
-        for l in 0..LANES {
-            let loss = stiffness * t.eta[p] + omega[l] * t.c[p];
-            let square = q[0][l] * q[0][l] + q[1][l] * q[1][l];
-            let lost = 0.5 * omega[l] * loss * square / (stiffness * stiffness + loss * loss);
-            heat[l] = if loss != 0.0 { lost } else { 0.0 };
-        }
-        heat
     }
+}
+
+#[inline(always)]
+fn scaled(lanes: &[Lane; 2], by: f64) -> [Lane; 2] {
+    let mut out = [[0.0; LANES]; 2];
+    for l in 0..LANES {
+        out[0][l] = by * lanes[0][l];
+        out[1][l] = by * lanes[1][l];
+    }
+    out
+}
+
+/// Mean power lost in the link of a node to its parent, which transmits `q`.
+#[inline(always)]
+fn heat(steady: &Steady, p: usize, q: &[Lane; 2], omega: &Lane) -> Lane {
+    let t = &steady.tree;
+    let stiffness = t.k[p];
+    let mut heat = [0.0; LANES];
+    if !stiffness.is_finite() {
+        return heat;
+    }
+    for l in 0..LANES {
+        let loss = stiffness * t.eta[p] + omega[l] * t.c[p];
+        let square = q[0][l] * q[0][l] + q[1][l] * q[1][l];
+        let lost = 0.5 * omega[l] * loss * square / (stiffness * stiffness + loss * loss);
+        heat[l] = if loss != 0.0 { lost } else { 0.0 };
+    }
+    heat
 }
 
 impl Torsion for IndependentOrders {
     fn run(&mut self, out: &mut TorsionOut) -> Result<(), EvalError> {
-        let orders = std::mem::take(&mut self.steady.excitation.orders);
-        let found = self.respond(&orders, &mut out.orders);
-        self.steady.excitation.orders = orders;
-        found?;
-        out.counters.insert("time_steps".into(), 0);
-        out.counters.insert("linear_solutions".into(), out.orders.len() as u64);
+        self.respond(&mut out.orders)?;
+        let counts = [("time_steps", 0), ("linear_solutions", out.orders.len() as u64)];
+        for (name, n) in counts {
+            // At most speeds they are there already.
+            match out.counters.get_mut(name) {
+                Some(own) => *own = n,
+                None => drop(out.counters.insert(name.into(), n)),
+            }
+        }
         self.steady.describe(out);
         Ok(())
     }
     fn set_speed(&mut self, speed: f64) -> Result<(), EvalError> {
-        self.steady.set_speed(speed);
+        // Its excitation is made up where the orders are solved.
+        self.steady.stand_at(speed);
         Ok(())
     }
 }

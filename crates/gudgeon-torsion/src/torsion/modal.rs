@@ -81,7 +81,7 @@ impl TorsionSpec for Modal {
         TorsionAnswer::Periodic
     }
     fn fuller(&self, line: &Line) -> Option<Box<dyn TorsionSpec>> {
-        HarmonicBalance::default().if_it_has_more(line)
+        HarmonicBalance::of_what_is_left_out(line)
     }
 }
 
@@ -98,7 +98,7 @@ impl Torsion for Solver {
     }
     fn run(&mut self, out: &mut TorsionOut) -> Result<(), EvalError> {
         let basis = Basis::new(&self.steady.tree, &self.spec)?;
-        out.orders.clear();
+        let mut found = Vec::with_capacity(self.steady.excitation.orders.len());
         for o in &self.steady.excitation.orders {
             let omega = o.order * self.steady.speed;
             let torque = torque_by_position(&self.steady.tree, o);
@@ -106,8 +106,9 @@ impl Torsion for Solver {
                 let what = format!("order {} hits an undamped natural frequency", o.order);
                 EvalError::fatal("modal", what)
             })?;
-            out.orders.push(response(&self.steady, o, omega, &torque, &angle));
+            found.push(response(&self.steady, o, omega, &torque, &angle));
         }
+        out.orders = found.as_slice().into();
         out.counters.insert("time_steps".into(), 0);
         out.counters.insert("modes".into(), basis.omega.len() as u64);
         self.steady.describe(out);

@@ -37,6 +37,6 @@ impl TorsionSpec for Orders {
         TorsionAnswer::Periodic
     }
     fn fuller(&self, line: &Line) -> Option<Box<dyn TorsionSpec>> {
-        HarmonicBalance::default().if_it_has_more(line)
+        HarmonicBalance::of_what_is_left_out(line)
     }
 }

@@ -336,7 +336,7 @@ impl Run<'_> {
         let mut amplitudes = |o: &TorsionOut| -> Vec<f64> {
             let cycle = machine.extremes(o);
             (0..a.line.links.len())
-                .map(|l| cycle.extremes(0.0, |k| o.orders[k].torque[l]))
+                .map(|l| cycle.extremes(0.0, o.orders.torque(l)))
                 .map(|[top, bottom]| 0.5 * (top - bottom))
                 .collect()
         };

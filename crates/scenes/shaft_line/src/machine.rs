@@ -1,10 +1,12 @@
 //! A line in one load step, asked for its vibration at one speed after the other.
 
-use std::collections::BTreeMap;
+mod sizes;
 
-use gudgeon_core::kinds::{OrderResponse, Torsion, TorsionCtx, TorsionOut, TorsionSpec};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use gudgeon_core::kinds::{PhasorRow, Torsion, TorsionCtx, TorsionOut, TorsionSpec};
 use gudgeon_core::{BuildError, EvalError};
-use gudgeon_numerics::elementary;
 use gudgeon_numerics::maximum::maximise;
 use gudgeon_torsion::critical::CriticalSpeed;
 use gudgeon_torsion::cycle::Cycle;
@@ -12,6 +14,7 @@ use gudgeon_torsion::steady::Steady;
 use gudgeon_torsion::torsion::Orders;
 
 use super::assemble::Assembled;
+use sizes::{all_finite, largest_angles, torque_amplitudes};
 
 /// Damping ratio below which a resonance counts as undamped: its peak would be a million times the static answer.
 const UNDAMPED: f64 = 1e-6;
@@ -42,8 +45,21 @@ pub struct Point {
     pub fluctuation_order: Vec<f64>,
     /// Largest vibratory twist of a link (half of peak to peak, \[rad\]); zero where it is small.
     pub twist: f64,
-    /// Torque amplitudes by order and link \[N m\]; empty unless they are kept.
+    /// Torque amplitudes by link and order \[N m\]; empty unless they are kept.
     pub orders: Vec<f64>,
+}
+
+impl Point {
+    /// Torque amplitudes of a link by order \[N m\]; empty unless they are kept.
+    pub fn orders_of(&self, link: usize) -> &[f64] {
+        let count = self.orders.len() / self.links.len().max(1);
+        &self.orders[link * count..][..count]
+    }
+
+    /// That of one order, zero where it is not kept.
+    pub fn order_of(&self, link: usize, k: usize) -> f64 {
+        self.orders_of(link).get(k).copied().unwrap_or(0.0)
+    }
 }
 
 /// A line at any speed.
@@ -73,7 +89,7 @@ pub struct Machine<'a> {
     room: TorsionOut,
     /// Critical speeds of the range that was asked for last.
     critical: Option<([f64; 2], Vec<CriticalSpeed>)>,
-    points: BTreeMap<u64, Point>,
+    points: BTreeMap<u64, Arc<Point>>,
     /// At speeds where peaks of one link alone were looked for, by speed and link.
     of_one_link: BTreeMap<(u64, usize), LinkPoint>,
 }
@@ -114,7 +130,7 @@ impl<'a> Machine<'a> {
 
     /// Takes vibration that is known already.
     pub fn given(&mut self, speed: f64, point: Point) {
-        self.points.insert(speed.to_bits(), point);
+        self.points.insert(speed.to_bits(), Arc::new(point));
     }
 
     /// The whole answer at a speed \[rad/s\].
@@ -123,7 +139,7 @@ impl<'a> Machine<'a> {
     /// As [`Torsion::run`].
     pub fn motion(&mut self, speed: f64) -> Result<TorsionOut, EvalError> {
         let mut out = std::mem::take(&mut self.room);
-        out.counters.clear();
+        out.counters.values_mut().for_each(|n| *n = 0);
         out.notes.clear();
         self.torsion.set_speed(speed)?;
         self.torsion.run(&mut out)?;
@@ -132,14 +148,14 @@ impl<'a> Machine<'a> {
     }
 
     /// Vibration at a speed \[rad/s\]; none where there is no periodic motion, which is kept in mind.
-    pub fn at(&mut self, speed: f64) -> Option<&Point> {
+    pub fn at(&mut self, speed: f64) -> Option<&Arc<Point>> {
         // Bits of positive numbers ascend with them.
         let key = speed.to_bits();
         if !self.points.contains_key(&key) {
             let out = self.answer(speed)?;
             let point = self.point(&out);
             self.room = out;
-            self.points.insert(key, point);
+            self.points.insert(key, Arc::new(point));
         }
         self.points.get(&key)
     }
@@ -217,11 +233,9 @@ impl<'a> Machine<'a> {
 
     /// Extremes over the cycle for some answer.
     pub fn extremes(&mut self, out: &TorsionOut) -> &mut Cycle {
-        let same = |c: &Cycle| c.orders().iter().copied().eq(out.orders.iter().map(|o| o.order));
-        if !self.cycle.as_ref().is_some_and(same) {
-            let orders: Vec<f64> = out.orders.iter().map(|o| o.order).collect();
+        if !self.cycle.as_ref().is_some_and(|c| c.orders() == out.orders.orders()) {
             self.cycle = None;
-            self.orders.clone_from(&orders);
+            out.orders.orders().clone_into(&mut self.orders);
         }
         let (orders, period) = (&self.orders, self.a.period);
         self.cycle.get_or_insert_with(|| Cycle::new(orders, period))
@@ -234,22 +248,24 @@ impl<'a> Machine<'a> {
         let mut p =
             Point { links: (0..links).map(|l| link_point(cycle, out, l)).collect(), ..Point::default() };
         if by_order {
-            p.orders = Vec::with_capacity(out.orders.len() * links);
-            out.orders.iter().for_each(|o| moduli(&o.torque, &mut p.orders));
+            p.orders = torque_amplitudes(&out.orders);
         }
         // Mostly one look at the largest angle of each order tells that nothing is large.
-        let [rate, angle] = largest_angles(out);
+        let [rate, angle] = largest_angles(&out.orders, nodes);
         // Relative speed of an inertia at the reference shaft: order times angle.
         let ratio = |i: usize| a.line.nodes[i].ratio;
-        let bound =
-            |i: usize| out.orders.iter().map(|o| o.order * norm1(o.angle[i])).sum::<f64>() / ratio(i).abs();
+        let orders = || out.orders.orders().iter().copied();
+        let angles = |i: usize| phasors(out.orders.angle(i));
+        let bound = |i: usize| {
+            orders().zip(angles(i)).map(|(order, z)| order * norm1(z)).sum::<f64>() / ratio(i).abs()
+        };
         let may_be_large = |i: &usize| rate > LARGE * ratio(*i).abs();
         if fluctuation || (0..nodes).filter(may_be_large).any(|i| bound(i) > LARGE) {
             p.speed_fluctuation =
                 (0..nodes).map(|i| speed_fluctuation(cycle, out, i) / ratio(i).abs()).collect();
             p.fluctuation_order = (0..nodes)
                 .map(|i| {
-                    strongest_of(out.orders.iter().map(|o| (o.order * o.order * square(o.angle[i]), o.order)))
+                    strongest_of(orders().zip(angles(i)).map(|(order, z)| (order * order * square(z), order)))
                 })
                 .collect();
         }
@@ -257,10 +273,8 @@ impl<'a> Machine<'a> {
             if angle * (1.0 + gear(a, l).abs()) <= LARGE {
                 continue;
             }
-            let twist = twist_of(a, l);
-            if out.orders.iter().map(|o| norm1(twist(o))).sum::<f64>() > LARGE {
-                let [top, bottom] = cycle.extremes(0.0, |k| twist(&out.orders[k]));
-                p.twist = p.twist.max(0.5 * (top - bottom));
+            if twist_of(a, out, l).map(norm1).sum::<f64>() > LARGE {
+                p.twist = p.twist.max(twist_amplitude(cycle, a, out, l));
             }
         }
         p
@@ -324,7 +338,7 @@ impl<'a> Machine<'a> {
             speeds.iter().filter_map(|w| self.at(*w).map(|p| (*w, of_point(p)))).collect();
         let mut of_speed = |w| match sought {
             Sought::Link(l, quantity) => self.link_at(w, *l).map(|p| quantity(&p)),
-            Sought::Line(quantity) => self.at(w).map(quantity),
+            Sought::Line(quantity) => self.at(w).map(|p| quantity(p)),
         };
         maximise(&samples, |w| of_speed(w).unwrap_or(f64::NEG_INFINITY))
     }
@@ -333,21 +347,14 @@ impl<'a> Machine<'a> {
 /// An answer of numbers.
 fn finite(out: &TorsionOut) -> Result<(), EvalError> {
     let all = |values: &[f64]| values.iter().all(|v| v.is_finite());
-    let orders = out.orders.iter().all(|o| finite_phasors(&o.torque) && finite_phasors(&o.angle));
-    if orders && all(&out.mean_torque) && all(&out.mean_angle) && out.balance_torque.is_finite() {
+    if out.orders.values().iter().all(|values| all_finite(values))
+        && all(&out.mean_torque)
+        && all(&out.mean_angle)
+        && out.balance_torque.is_finite()
+    {
         return Ok(());
     }
     Err(EvalError::fatal("torsion", "torques or angles of this speed are beyond all numbers"))
-}
-
-/// Whether all parts are finite: zero times any other number is not zero. Without a branch for each of them.
-fn finite_phasors(z: &[[f64; 2]]) -> bool {
-    let mut sum = [0.0; 2];
-    for [re, im] in z {
-        sum[0] += 0.0 * re;
-        sum[1] += 0.0 * im;
-    }
-    sum == [0.0; 2]
 }
 
 fn square([re, im]: [f64; 2]) -> f64 {
@@ -359,36 +366,19 @@ fn norm1([re, im]: [f64; 2]) -> f64 {
     re.abs() + im.abs()
 }
 
-/// Appends the moduli of some numbers.
-fn moduli(z: &[[f64; 2]], out: &mut Vec<f64>) {
-    /// Numbers whose squares are far from the smallest and the largest of all.
-    const SQUARED: (f64, f64) = (1e-150, 1e150);
-    let first = out.len();
-    out.extend(z.iter().map(|z| square(*z).sqrt()));
-    let own = &mut out[first..];
-    if !own.iter().fold(true, |all, size| all & (*size > SQUARED.0) & (*size < SQUARED.1)) {
-        own.iter_mut().zip(z).for_each(|(size, z)| *size = elementary::hypot(z[0], z[1]));
-    }
-}
-
-/// Sum over the orders of a bound of the largest angle \[rad\] of an inertia, times the order and alone.
-fn largest_angles(out: &TorsionOut) -> [f64; 2] {
-    let mut sums = [0.0; 2];
-    for o in &out.orders {
-        let parts = o.angle.as_flattened().iter();
-        let largest = 2.0 * parts.fold(0.0, |most: f64, x| if x.abs() > most { x.abs() } else { most });
-        sums = [sums[0] + o.order * largest, sums[1] + largest];
-    }
-    sums
+/// Real and imaginary parts as pairs.
+fn phasors([re, im]: PhasorRow<'_>) -> impl Iterator<Item = [f64; 2]> {
+    re.iter().zip(im).map(|(re, im)| [*re, *im])
 }
 
 fn link_point(cycle: &mut Cycle, out: &TorsionOut, link: usize) -> LinkPoint {
-    let [top, bottom] = cycle.extremes(out.mean_torque[link], |k| out.orders[k].torque[link]);
+    let torques = out.orders.torque(link);
+    let [top, bottom] = cycle.extremes(out.mean_torque[link], torques);
     LinkPoint {
         amplitude: 0.5 * (top - bottom),
         peak: top.abs().max(bottom.abs()),
-        heat: out.orders.iter().map(|o| o.heat[link]).sum(),
-        order: strongest_of(cycle.phasors().iter().map(|z| square(*z)).zip(cycle.orders().iter().copied())),
+        heat: out.orders.heat(link).iter().sum(),
+        order: strongest_of(phasors(torques).map(square).zip(out.orders.orders().iter().copied())),
     }
 }
 
@@ -399,11 +389,11 @@ fn strongest_of(sizes: impl Iterator<Item = (f64, f64)>) -> f64 {
 
 /// Peak to peak speed of an inertia by the mean speed of the reference shaft.
 pub fn speed_fluctuation(cycle: &mut Cycle, out: &TorsionOut, node: usize) -> f64 {
-    let speed = |k: usize| {
-        let o = &out.orders[k];
-        [-o.order * o.angle[node][1], o.order * o.angle[node][0]]
+    let (orders, [re, im]) = (out.orders.orders(), out.orders.angle(node));
+    let rates = |sign: f64, part: &[f64]| -> Vec<f64> {
+        orders.iter().zip(part).map(|(order, x)| sign * order * x).collect()
     };
-    let [top, bottom] = cycle.extremes(0.0, speed);
+    let [top, bottom] = cycle.extremes(0.0, [&rates(-1.0, im), &rates(1.0, re)]);
     top - bottom
 }
 
@@ -413,16 +403,16 @@ fn gear(a: &Assembled, link: usize) -> f64 {
     a.line.nodes[x].ratio / a.line.nodes[y].ratio
 }
 
-/// Twist of a link in an order.
-fn twist_of(a: &Assembled, link: usize) -> impl Fn(&OrderResponse) -> [f64; 2] {
-    let [x, y] = a.line.links[link].nodes;
+/// Twist of a link by order.
+fn twist_of<'o>(a: &Assembled, out: &'o TorsionOut, link: usize) -> impl Iterator<Item = [f64; 2]> + use<'o> {
+    let [x, y] = a.line.links[link].nodes.map(|node| phasors(out.orders.angle(node)));
     let gear = gear(a, link);
-    move |o| [o.angle[x][0] - gear * o.angle[y][0], o.angle[x][1] - gear * o.angle[y][1]]
+    x.zip(y).map(move |(x, y)| [x[0] - gear * y[0], x[1] - gear * y[1]])
 }
 
 /// Largest vibratory twist (half of peak to peak) of a link.
 pub fn twist_amplitude(cycle: &mut Cycle, a: &Assembled, out: &TorsionOut, link: usize) -> f64 {
-    let twist = twist_of(a, link);
-    let [top, bottom] = cycle.extremes(0.0, |k| twist(&out.orders[k]));
+    let (re, im): (Vec<f64>, Vec<f64>) = twist_of(a, out, link).map(<(f64, f64)>::from).unzip();
+    let [top, bottom] = cycle.extremes(0.0, [&re, &im]);
     0.5 * (top - bottom)
 }

@@ -81,7 +81,7 @@ impl Start {
     /// Starts in a periodic motion.
     pub fn take_steady(&mut self, out: &TorsionOut) {
         self.angles.clone_from(&out.mean_angle);
-        for o in &out.orders {
+        for o in out.orders.iter() {
             for (i, a) in o.angle.iter().enumerate() {
                 self.angles[i] += a[0];
                 self.speeds[i] -= o.order * out.speed * a[1];

@@ -57,9 +57,12 @@ impl Default for HarmonicBalance {
 }
 
 impl HarmonicBalance {
-    /// Itself, where a line has something that models by independent orders leave out.
-    pub(crate) fn if_it_has_more(self, line: &Line) -> Option<Box<dyn TorsionSpec>> {
-        (!active(line).is_empty()).then(|| Box::new(self) as Box<dyn TorsionSpec>)
+    /// The model that tells how much models by independent orders leave out of a line, where that is anything.
+    pub(crate) fn of_what_is_left_out(line: &Line) -> Option<Box<dyn TorsionSpec>> {
+        /// The difference is told in hundredths of a per cent; a resonance magnifies an error of the torques some ten times.
+        const TOLERANCE: f64 = 1e-6;
+        let own = Self { tolerance: quantity(TOLERANCE), ..Self::default() };
+        (!active(line).is_empty()).then(|| Box::new(own) as Box<dyn TorsionSpec>)
     }
 }
 

@@ -62,9 +62,9 @@ pub(super) struct Throw {
 /// What throws that are alike have in common.
 #[derive(Debug)]
 pub(super) struct Curves {
-    pub(super) gas: Option<Interpolant>,
+    pub(super) gas: Option<Interpolant<1>>,
     /// Inertia and its derivative by the angle.
-    pub(super) inertia: Option<[Interpolant; 2]>,
+    pub(super) inertia: Option<Interpolant<2>>,
 }
 
 impl Curves {
@@ -72,11 +72,10 @@ impl Curves {
     fn new(line: &Line, k: usize) -> Self {
         let throw = &line.throws[k];
         let turns = (gas_period(throw) / (2.0 * PI)).round().max(1.0) as usize;
-        let inertia = |a: f64| throw.inertia.inertia(a);
-        let two = || [Interpolant::new(1, |a| inertia(a).0), Interpolant::new(1, |a| inertia(a).1)];
         Self {
-            gas: (!throw.ends.is_empty()).then(|| Interpolant::new(turns, |a| gas_torque(line, k, a))),
-            inertia: (!throw.inertia.is_constant()).then(two),
+            gas: (!throw.ends.is_empty()).then(|| Interpolant::new(turns, |a| [gas_torque(line, k, a)])),
+            inertia: (!throw.inertia.is_constant())
+                .then(|| Interpolant::new(1, |a| throw.inertia.inertia(a).into())),
         }
     }
 }
@@ -91,7 +90,7 @@ fn throws(line: &Line, active: &[usize], cycle: f64, m: usize) -> (Vec<Throw>, V
             curves.len() - 1
         });
         let gas_uniform = (0..m).map(|s| match &mut curves[place].gas {
-            Some(gas) => gas.value(uniform_angle(line, k, cycle, s, m), |a| gas_torque(line, k, a)),
+            Some(gas) => gas.value(uniform_angle(line, k, cycle, s, m), |a| [gas_torque(line, k, a)])[0],
             None => 0.0,
         });
         let gas_uniform = gas_uniform.collect();
@@ -202,11 +201,10 @@ impl NonlinearTorques {
                 let at = uniform_angle(line, t.throw, self.cycle, s, m) + x[here + s];
                 let (mut f, place) = (0.0, Place::of(at));
                 if let Some(p) = &mut curves.gas {
-                    f += p.value_at(place, at, |a| gas_torque(line, t.throw, a)) - t.gas_uniform[s];
+                    f += p.value_at(place, at, |a| [gas_torque(line, t.throw, a)])[0] - t.gas_uniform[s];
                 }
-                if let Some([inertia, derivative]) = &mut curves.inertia {
-                    let j = inertia.value_at(place, at, |a| throw.inertia.inertia(a).0);
-                    let dj = derivative.value_at(place, at, |a| throw.inertia.inertia(a).1);
+                if let Some(inertia) = &mut curves.inertia {
+                    let [j, dj] = inertia.value_at(place, at, |a| throw.inertia.inertia(a).into());
                     let w = speed + v[here + s];
                     f -= (j - throw.inertia.mean()) * a[here + s] + 0.5 * dj * w * w;
                 }

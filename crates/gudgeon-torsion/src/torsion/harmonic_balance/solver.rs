@@ -64,8 +64,9 @@ impl Torsion for Solver {
         }
         self.solved_speeds.keep(speed, &self.x);
         let rest = self.nonlinear.link_torques_beside_tangents();
-        out.orders = self.responses()?;
-        self.add_nonlinear_torques(&mut out.orders, &rest);
+        let mut orders = self.responses()?;
+        self.add_nonlinear_torques(&mut orders, &rest);
+        out.orders = orders.as_slice().into();
         out.counters.insert("time_steps".into(), 0);
         out.counters.insert("rounds".into(), cost.rounds);
         out.counters.insert("linear_solutions".into(), cost.solutions);

@@ -9,11 +9,15 @@ mod transient;
 mod verdict;
 mod waterfall;
 
+use std::rc::Rc;
+
+use gudgeon_core::kinds::LineThrow;
 use gudgeon_core::result::{Column, Figure, FigureKind, Lines, Note, RunResult, Value};
 
 use super::assemble::Assembled;
 use super::case::ShaftLineCase;
 use super::machine::Machine;
+use throws::Pressures;
 
 /// Points over a turn of which curves are drawn.
 const TURN: usize = 1440;
@@ -26,6 +30,8 @@ const MAX_DRAWN: usize = 12;
 pub struct Results<'a> {
     case: &'a ShaftLineCase,
     out: &'a mut RunResult,
+    /// Of throws that were looked at.
+    pressures: Vec<(LineThrow, Rc<Pressures>)>,
 }
 
 fn column(name: impl Into<String>, unit: &str, values: Vec<f64>) -> Column {
@@ -39,7 +45,7 @@ fn extremes(values: impl Iterator<Item = f64>) -> [f64; 2] {
 
 impl<'a> Results<'a> {
     pub fn new(case: &'a ShaftLineCase, out: &'a mut RunResult) -> Self {
-        Self { case, out }
+        Self { case, out, pressures: Vec::new() }
     }
 
     fn result(&mut self, name: impl Into<String>, value: f64, unit: &str, what: impl Into<String>) {

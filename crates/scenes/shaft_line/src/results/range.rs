@@ -1,5 +1,7 @@
 //! Vibration over the speed.
 
+use std::sync::Arc;
+
 use gudgeon_core::EvalError;
 use gudgeon_core::file::Files;
 use gudgeon_core::kinds::LineThrow;
@@ -18,11 +20,11 @@ const ORDERS: usize = 6;
 const SAME_GAS: f64 = 1e-6;
 
 /// The answers at all speeds.
-fn points(machine: &mut Machine<'_>, speeds: &[f64]) -> Result<Vec<Point>, EvalError> {
+fn points(machine: &mut Machine<'_>, speeds: &[f64]) -> Result<Vec<Arc<Point>>, EvalError> {
     let mut rows = Vec::with_capacity(speeds.len());
     for w in speeds {
         match machine.at(*w) {
-            Some(p) => rows.push(p.clone()),
+            Some(p) => rows.push(Arc::clone(p)),
             None => return Err(machine.why(*w)),
         }
     }
@@ -115,14 +117,15 @@ impl Results<'_> {
         }
         let hint = format!("half of peak to peak{}", self.own_step());
         self.lines("Vibratory torque over the speed", &hint, "speed_range", "speed", curves, false);
-        self.weigh_critical_speeds(&orders, links, &rows, &speeds);
-        let curves = orders_of(worst, &orders, links, &rows, &mut table);
+        self.weigh_critical_speeds(&orders, &rows, &speeds);
+        let strengths: Vec<Vec<f64>> = (0..links).map(|l| strength(l, &orders, &rows)).collect();
+        let curves = orders_of(worst, &orders, (&rows, &strengths), &mut table);
         if let Some(l) = a.line.links.get(worst) {
             let title = format!("Orders of {} over the speed", l.name);
             let hint = format!("torque amplitude of the strongest orders{}", self.own_step());
             self.lines(&title, &hint, "speed_range", "speed", curves, false);
         }
-        self.order_spectra(a, &orders, &rows, &speeds);
+        self.order_spectra(a, &orders, (&rows, &strengths), &speeds);
         let steps = in_each(all, &Operating::new(self.case), &speeds);
         self.shafts_over_speed(a, &rows, &mut table, &steps);
         self.out.tables.insert("speed_range".into(), table);
@@ -138,7 +141,13 @@ impl Results<'_> {
 
     /// Stress over the speed of each shaft that has one, torque of the others that have a limit: a curve a load step, their envelope, limits and operating
     /// range.
-    fn shafts_over_speed(&mut self, a: &Assembled, rows: &[Point], table: &mut Series, steps: &InSteps<'_>) {
+    fn shafts_over_speed(
+        &mut self,
+        a: &Assembled,
+        rows: &[Arc<Point>],
+        table: &mut Series,
+        steps: &InSteps<'_>,
+    ) {
         let limits = forced(self.case, a);
         let range = Operating::new(self.case);
         let mut by_step = Series { axis: steps.axis.clone(), columns: Vec::new() };
@@ -182,7 +191,7 @@ impl Results<'_> {
 
     /// Adds to each critical speed the torque that its order makes in any shaft at the speeds of the diagram beside it, and marks it in the Campbell
     /// diagram by that.
-    fn weigh_critical_speeds(&mut self, orders: &[f64], links: usize, rows: &[Point], speeds: &[f64]) {
+    fn weigh_critical_speeds(&mut self, orders: &[f64], rows: &[Arc<Point>], speeds: &[f64]) {
         let Some(table) = self.out.tables.get_mut("critical_speeds") else { return };
         let (Some(order), Some(mode)) = (table.get("order"), table.get("mode")) else { return };
         let (order, mode) = (order.clone(), mode.clone());
@@ -192,8 +201,8 @@ impl Results<'_> {
             let Some(k) = orders.iter().position(|other| (other - o).abs() < 1e-6) else { return 0.0 };
             let next = speeds.partition_point(|w| rpm(*w) < *speed).min(speeds.len() - 1);
             let near = next.saturating_sub(1)..=next;
-            let own = near.flat_map(|j| rows[j].orders.get(k * links..(k + 1) * links).into_iter().flatten());
-            own.copied().fold(0.0, f64::max)
+            let links = |p: &Point| (0..p.links.len()).map(|l| p.order_of(l, k)).fold(0.0, f64::max);
+            near.map(|j| links(&rows[j])).fold(0.0, f64::max)
         };
         let torques: Vec<f64> = table.axis.values.iter().zip(&order.values).map(torque).collect();
         let largest = torques.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
@@ -251,6 +260,9 @@ impl Results<'_> {
 
     /// Says by how much the gas torque at the ends of the range differs from that at the mean speed, which is taken everywhere.
     pub fn gas_over_speed(&mut self, a: &Assembled, files: &Files, speeds: &[f64]) {
+        if !a.line.throws.iter().flat_map(|t| &t.ends).any(|e| e.pressure.depends_on_speed()) {
+            return;
+        }
         let mut worst = (0.0, 0.0);
         let ends = [speeds.first(), speeds.last()].into_iter().flatten();
         let others: Vec<(f64, Vec<LineThrow>)> =
@@ -296,7 +308,7 @@ const IN_STEPS: &str = "shafts_over_speed";
 struct InSteps<'a> {
     axis: Column,
     /// Number, name, line and vibration of each; empty where the diagrams show all there is.
-    all: Vec<(usize, String, &'a Assembled, Vec<Point>)>,
+    all: Vec<(usize, String, &'a Assembled, Vec<Arc<Point>>)>,
 }
 
 /// The load steps that have an answer at all speeds of the diagrams within the operating range, where the verdict asked for most of them, and at every second one
@@ -361,25 +373,31 @@ impl Shown<'_> {
     }
 }
 
+/// Largest torque amplitude of a shaft over the speed, by order \[N m\].
+fn strength(link: usize, orders: &[f64], rows: &[Arc<Point>]) -> Vec<f64> {
+    let mut most = vec![0.0; orders.len()];
+    for p in rows {
+        most.iter_mut()
+            .zip(p.orders_of(link))
+            .for_each(|(most, own)| *most = if *own > *most { *own } else { *most });
+    }
+    most
+}
+
 /// Columns of the strongest orders of a shaft over the speed, with their labels.
 fn orders_of(
     link: usize,
     orders: &[f64],
-    links: usize,
-    rows: &[Point],
+    (rows, strengths): (&[Arc<Point>], &[Vec<f64>]),
     table: &mut Series,
 ) -> Vec<(String, String)> {
-    let strength = |k: usize| {
-        rows.iter()
-            .flat_map(|p| p.orders.get(k * links..(k + 1) * links).into_iter().flatten())
-            .fold(0.0, |a, b| f64::max(a, *b))
-    };
-    let mut strongest: Vec<(f64, usize)> = (0..orders.len()).map(|k| (strength(k), k)).collect();
+    let most = |k: usize| strengths.iter().map(|s| s[k]).fold(0.0, f64::max);
+    let mut strongest: Vec<(f64, usize)> = (0..orders.len()).map(|k| (most(k), k)).collect();
     strongest.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut curves = Vec::new();
     for (_, k) in strongest.iter().take(ORDERS) {
         let name = format!("shaft{}.order{}", link + 1, orders[*k]);
-        let column_of = rows.iter().map(|p| p.orders.get(k * links + link).copied().unwrap_or(0.0)).collect();
+        let column_of = rows.iter().map(|p| p.order_of(link, *k)).collect();
         table.columns.push(column(name.clone(), "N m", column_of));
         curves.push((format!("order {}", orders[*k]), name));
     }

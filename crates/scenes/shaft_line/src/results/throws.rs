@@ -1,6 +1,7 @@
 //! Throws on their own.
 
 use std::f64::consts::PI;
+use std::rc::Rc;
 
 use gudgeon_core::kinds::LineThrow;
 use gudgeon_core::result::{Figure, FigureKind, Series};
@@ -14,40 +15,21 @@ use super::{DRAWN, MAX_DRAWN, Results, TURN, column, extremes};
 /// Angle to either side of a jump of the pressure at which it is evaluated.
 const BESIDE: f64 = 1e-9;
 
-/// Gas torque of a throw over its own angle, and what follows from it: the same of all throws that are alike.
-struct Course {
+/// Gas pressures of a throw over its own angle: the same of all throws that are alike.
+#[derive(Debug)]
+pub(super) struct Pressures {
     period: f64,
     points: usize,
-    torque: Vec<f64>,
-    mean: f64,
-    /// Maximum and minimum of the torque, either side of the angles where the pressure jumps included.
-    torque_range: [f64; 2],
-    /// Maximum and minimum pressure where there is one gas space.
-    pressure_range: Option<[f64; 2]>,
+    /// By gas space and point \[Pa\].
+    ends: Vec<Vec<f64>>,
 }
 
-impl Course {
+impl Pressures {
     fn new(t: &LineThrow) -> Self {
         let period = gas_period(t);
         let points = (TURN as f64 * period / (2.0 * PI)) as usize;
-        let torque = |x: f64| t.gas_torque(x - t.phase, x - t.phase);
-        let mut own = Self {
-            period,
-            points,
-            torque: Vec::new(),
-            mean: gas_series(t, 1)[0].re,
-            torque_range: [0.0; 2],
-            pressure_range: None,
-        };
-        own.torque = own.angles().map(torque).collect();
-        let kinks = t.ends.iter().flat_map(|e| e.pressure.kinks().iter().copied());
-        let sides = kinks.flat_map(|x| [x - BESIDE, x + BESIDE]).map(torque);
-        own.torque_range = extremes(own.torque.iter().copied().chain(sides));
-        if let [end] = &t.ends[..] {
-            let before_kinks = end.pressure.kinks().iter().map(|x| x - BESIDE);
-            let pressures = before_kinks.chain(own.angles()).map(|x| end.pressure.pressure(x));
-            own.pressure_range = Some(extremes(pressures));
-        }
+        let mut own = Self { period, points, ends: Vec::new() };
+        own.ends = t.ends.iter().map(|e| own.angles().map(|x| e.pressure.pressure(x)).collect()).collect();
         own
     }
 
@@ -60,22 +42,51 @@ impl Course {
     }
 }
 
+/// Gas torque of a throw over its own angle, and what follows from it: the same of all throws that are alike.
+struct Course {
+    pressures: Rc<Pressures>,
+    torque: Vec<f64>,
+    mean: f64,
+    /// Maximum and minimum of the torque, either side of the angles where the pressure jumps included.
+    torque_range: [f64; 2],
+    /// Maximum and minimum pressure where there is one gas space.
+    pressure_range: Option<[f64; 2]>,
+}
+
+impl Course {
+    fn new(t: &LineThrow, pressures: Rc<Pressures>) -> Self {
+        let torque_at = |(i, x): (usize, f64)| -> f64 {
+            t.ends.iter().zip(&pressures.ends).map(|(e, p)| e.torque_of(p[i], x)).sum()
+        };
+        let torque: Vec<f64> = pressures.angles().enumerate().map(torque_at).collect();
+        let kinks = t.ends.iter().flat_map(|e| e.pressure.kinks().iter().copied());
+        let beside = kinks.flat_map(|x| [x - BESIDE, x + BESIDE]);
+        let sides = beside.map(|x| t.ends.iter().map(|e| e.torque(x, x)).sum());
+        let torque_range = extremes(torque.iter().copied().chain(sides));
+        let pressure_range = match (&t.ends[..], &pressures.ends[..]) {
+            ([end], [own]) => {
+                let before_kinks = end.pressure.kinks().iter().map(|x| end.pressure.pressure(x - BESIDE));
+                Some(extremes(before_kinks.chain(own.iter().copied())))
+            }
+            _ => None,
+        };
+        Self { torque, mean: gas_series(t, 1)[0].re, torque_range, pressure_range, pressures }
+    }
+}
+
 /// Mean torque \[N m\], largest force of the gas to and from the crank \[kN\], highest pressure of head and crank ends \[bar\].
-fn loads(t: &LineThrow, ends: &[EndCase]) -> [Option<f64>; 5] {
-    let angle = |k: usize| gas_period(t) * k as f64 / TURN as f64;
-    let pressures: Vec<Vec<f64>> =
-        t.ends.iter().map(|g| (0..TURN).map(|k| g.pressure.pressure(angle(k))).collect()).collect();
+fn loads(t: &LineThrow, ends: &[EndCase], pressures: &Pressures) -> [Option<f64>; 5] {
     let force = |k: usize| -> f64 {
-        let own = t.ends.iter().zip(ends).zip(&pressures);
+        let own = t.ends.iter().zip(ends).zip(&pressures.ends);
         own.map(|((g, e), p)| {
             let sign = if e.side == Side::Head { 1.0 } else { -1.0 };
             sign * (p[k] - g.back_pressure) * g.area
         })
         .sum()
     };
-    let [most, least] = extremes((0..TURN).map(force));
+    let [most, least] = extremes((0..pressures.points).map(force));
     let highest = |side: Side| {
-        let own = ends.iter().zip(&pressures).filter(|(e, _)| e.side == side);
+        let own = ends.iter().zip(&pressures.ends).filter(|(e, _)| e.side == side);
         own.flat_map(|(_, p)| p).map(|p| p / 1e5).reduce(f64::max)
     };
     [
@@ -88,6 +99,16 @@ fn loads(t: &LineThrow, ends: &[EndCase]) -> [Option<f64>; 5] {
 }
 
 impl Results<'_> {
+    /// Pressures of a throw, worked out once for all that are alike.
+    fn pressures(&mut self, t: &LineThrow) -> Rc<Pressures> {
+        if let Some((_, known)) = self.pressures.iter().find(|(other, _)| t.is_like(other)) {
+            return Rc::clone(known);
+        }
+        let own = Rc::new(Pressures::new(t));
+        self.pressures.push((t.clone(), Rc::clone(&own)));
+        own
+    }
+
     /// Gas torque, work and inertia of the throws at constant speed.
     pub fn throws(&mut self, throws: &[LineThrow]) {
         let mut table = Series { axis: column("angle", "deg", Vec::new()), columns: Vec::new() };
@@ -106,14 +127,14 @@ impl Results<'_> {
             }
             let course = match known.take() {
                 Some((other, course)) if t.is_like(other) => course,
-                _ => Course::new(t),
+                _ => Course::new(t, self.pressures(t)),
             };
             self.torque_of_throw(n, &course);
             if let Some(range) = course.pressure_range {
                 self.pressure_of_throw(n, range);
             }
             if k < MAX_DRAWN {
-                curves.push((format!("throw {n}"), add_columns(&mut table, t, n, &course)));
+                curves.push((format!("throw {n}"), add_columns(&mut table, n, &course)));
             }
             known = Some((t, course));
         }
@@ -136,7 +157,7 @@ impl Results<'_> {
         self.result(format!("throw{n}.torque_min"), bottom, "N m", format!("smallest gas torque of {of}"));
         self.result(
             format!("throw{n}.work"),
-            mean * course.period,
+            mean * course.pressures.period,
             "J",
             format!("work of the gas on {of} per cycle"),
         );
@@ -179,7 +200,8 @@ impl Results<'_> {
                 let Some(t) = a.line.throws.get(n).filter(|t| t.ends.len() == ends.len()) else { continue };
                 let name = &a.line.nodes[t.node].name;
                 let label = if lines.len() > 1 { format!("{name}, {step}") } else { name.clone() };
-                rows.push((label, loads(t, ends).to_vec()));
+                let pressures = self.pressures(t);
+                rows.push((label, loads(t, ends, &pressures).to_vec()));
             }
         }
         if rows.is_empty() {
@@ -224,17 +246,19 @@ impl Results<'_> {
 }
 
 /// Adds the torque of throw `n` to the table, and the pressures of the first one; the name of the column of torque.
-fn add_columns(table: &mut Series, t: &LineThrow, n: usize, course: &Course) -> String {
-    if table.axis.values.len() < course.points / DRAWN {
-        table.axis.values = (0..=course.points).step_by(DRAWN).map(|i| course.at(i).to_degrees()).collect();
+fn add_columns(table: &mut Series, n: usize, course: &Course) -> String {
+    let Pressures { points, ends, .. } = &*course.pressures;
+    if table.axis.values.len() < points / DRAWN {
+        let angles = (0..=*points).step_by(DRAWN).map(|i| course.pressures.at(i).to_degrees());
+        table.axis.values = angles.collect();
     }
     let rows = table.axis.values.len();
     let name = format!("throw{n}.torque");
-    let torque = (0..rows).map(|i| course.torque[i * DRAWN % course.points]).collect();
+    let torque = (0..rows).map(|i| course.torque[i * DRAWN % points]).collect();
     table.columns.push(column(name.clone(), "N m", torque));
-    if t.ends.len() <= 2 && n == 1 {
-        for (j, e) in t.ends.iter().enumerate() {
-            let pressure = (0..rows).map(|i| e.pressure.pressure(course.at(i * DRAWN)) / 1e5);
+    if ends.len() <= 2 && n == 1 {
+        for (j, own) in ends.iter().enumerate() {
+            let pressure = own.iter().step_by(DRAWN).map(|p| p / 1e5);
             table.columns.push(column(format!("throw{n}.end{}.p", j + 1), "bar", pressure.collect()));
         }
     }

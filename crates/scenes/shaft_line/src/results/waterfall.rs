@@ -1,6 +1,7 @@
 //! Order spectra of the shafts over the speed, as a waterfall.
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 use gudgeon_core::result::{Figure, FigureKind, Series, Waterfall};
 
@@ -28,10 +29,17 @@ struct Drawn {
 }
 
 impl Results<'_> {
-    /// Table `order_spectra`, with a row per speed and order, and its figure. `orders` are those of the amplitudes in `rows`.
-    pub(super) fn order_spectra(&mut self, a: &Assembled, orders: &[f64], rows: &[Point], speeds: &[f64]) {
+    /// Table `order_spectra`, with a row per speed and order, and its figure. `orders` are those of the amplitudes in `rows` and of the largest of each
+    /// shaft.
+    pub(super) fn order_spectra(
+        &mut self,
+        a: &Assembled,
+        orders: &[f64],
+        (rows, strengths): (&[Arc<Point>], &[Vec<f64>]),
+        speeds: &[f64],
+    ) {
         let shafts = shafts(a, rows);
-        let kept = lines(orders, &shafts, a.line.links.len(), rows);
+        let kept = lines(orders, &shafts, strengths);
         if shafts.is_empty() || kept.is_empty() {
             return;
         }
@@ -49,7 +57,7 @@ impl Results<'_> {
         let mut labels = Vec::new();
         for s in &shafts {
             let name = format!("shaft{}.{}", s.link + 1, s.what);
-            let values = of(&|j, k| s.factor * amplitude(&rows[j], k, s.link, a.line.links.len()));
+            let values = of(&|j, k| s.factor * rows[j].order_of(s.link, k));
             labels.push((format!("{}, {}", a.line.links[s.link].name, s.what), name.clone()));
             table.columns.push(column(name, s.unit, values));
         }
@@ -74,12 +82,8 @@ impl Results<'_> {
     }
 }
 
-fn amplitude(p: &Point, order: usize, link: usize, links: usize) -> f64 {
-    p.orders.get(order * links + link).copied().unwrap_or(0.0)
-}
-
 /// Shafts that vibrate most: first those whose stress is known, by it, then the others by their torque.
-fn shafts(a: &Assembled, rows: &[Point]) -> Vec<Drawn> {
+fn shafts(a: &Assembled, rows: &[Arc<Point>]) -> Vec<Drawn> {
     let drawn = |link: usize| {
         let (factor, unit, what) = match a.stress[link] {
             Some(s) => (s / 1e6, "MPa", "stress"),
@@ -95,15 +99,14 @@ fn shafts(a: &Assembled, rows: &[Point]) -> Vec<Drawn> {
 }
 
 /// Orders with a line that is seen in any of the shafts.
-fn lines(orders: &[f64], shafts: &[Drawn], links: usize, rows: &[Point]) -> Vec<usize> {
-    let most = |k: usize, s: &Drawn| rows.iter().map(|p| amplitude(p, k, s.link, links)).fold(0.0, f64::max);
-    let seen = |k: usize, s: &Drawn| s.factor * most(k, s) > SEEN * s.largest;
+fn lines(orders: &[f64], shafts: &[Drawn], strengths: &[Vec<f64>]) -> Vec<usize> {
+    let seen = |k: usize, s: &Drawn| s.factor * strengths[s.link][k] > SEEN * s.largest;
     (0..orders.len()).filter(|k| shafts.iter().any(|s| seen(*k, s))).collect()
 }
 
 /// Speeds that are drawn: every few of the diagram, and in their place those at which a shaft comes closest to its largest vibration, so that no
 /// resonance of the diagram is passed over.
-fn spectra(rows: &[Point], shafts: &[Drawn]) -> Vec<usize> {
+fn spectra(rows: &[Arc<Point>], shafts: &[Drawn]) -> Vec<usize> {
     let near = |j: usize| {
         shafts.iter().map(|s| s.factor * rows[j].links[s.link].amplitude / s.largest).fold(0.0, f64::max)
     };

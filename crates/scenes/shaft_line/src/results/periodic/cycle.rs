@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use gudgeon_core::kinds::TorsionOut;
 use gudgeon_core::result::Column;
 use gudgeon_numerics::elementary;
+use gudgeon_numerics::vectors::{Vectorised, widest};
 
 use crate::assemble::Assembled;
 use crate::results::{DRAWN, MAX_DRAWN, TURN, column};
@@ -15,6 +16,26 @@ pub(super) struct Cycle {
     points: usize,
     torque: Vec<Vec<f64>>,
     speed: Vec<Vec<f64>>,
+}
+
+/// Adds an order to the drawn points of a row.
+struct Add<'w> {
+    row: &'w mut [f64],
+    phasor: [f64; 2],
+    /// Its sines and cosines.
+    wave: [&'w [f64]; 2],
+}
+
+impl Vectorised for Add<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { row, phasor: [re, im], wave: [sin, cos] } = self;
+        for ((r, sin), cos) in row.iter_mut().zip(sin).zip(cos) {
+            *r += re * cos - im * sin;
+        }
+    }
 }
 
 impl Cycle {
@@ -31,20 +52,21 @@ impl Cycle {
         let rows = points / DRAWN;
         let first: Vec<(f64, f64)> =
             drawn.iter().take(rows).map(|at| elementary::sin_cos(at * 2.0 * PI / a.period)).collect();
-        for o in &out.orders {
+        let [mut sin, mut cos] = [vec![0.0; drawn.len()], vec![0.0; drawn.len()]];
+        for o in out.orders.iter() {
             let multiple = o.order * turns;
             let in_table = multiple == multiple.round() && rows > 0 && points.is_multiple_of(DRAWN);
-            let sin_cos = |(i, at): (usize, &f64)| match in_table {
-                true => first[multiple as usize * i % rows],
-                false => elementary::sin_cos(o.order * at),
-            };
-            let wave: Vec<(f64, f64)> = drawn.iter().enumerate().map(sin_cos).collect();
-            let add = |row: &mut [f64], [re, im]: [f64; 2]| {
-                row.iter_mut().zip(&wave).for_each(|(r, (sin, cos))| *r += re * cos - im * sin);
-            };
-            torque.iter_mut().zip(&o.torque).for_each(|(t, p)| add(t, *p));
+            for (i, at) in drawn.iter().enumerate() {
+                (sin[i], cos[i]) = match in_table {
+                    true => first[multiple as usize * i % rows],
+                    false => elementary::sin_cos(o.order * at),
+                };
+            }
+            let wave = [&sin[..], &cos];
+            torque.iter_mut().zip(&o.torque).for_each(|(row, p)| widest(Add { row, phasor: *p, wave }));
             let rate = o.order * out.speed;
-            speed.iter_mut().zip(&o.angle).for_each(|(w, p)| add(w, [-rate * p[1], rate * p[0]]));
+            let speeds = o.angle.iter().map(|p| [-rate * p[1], rate * p[0]]);
+            speed.iter_mut().zip(speeds).for_each(|(row, phasor)| widest(Add { row, phasor, wave }));
         }
         Self { turns, points, torque, speed }
     }

@@ -34,8 +34,8 @@ impl Results<'_> {
             "",
             format!("coefficient of speed fluctuation of {name}: peak to peak speed by mean speed"),
         );
-        let amplitude =
-            out.orders.iter().map(|o| elementary::hypot(o.angle[i][0], o.angle[i][1])).fold(0.0, f64::max);
+        let [re, im] = out.orders.angle(i);
+        let amplitude = re.iter().zip(im).map(|(re, im)| elementary::hypot(*re, *im)).fold(0.0, f64::max);
         self.result(
             format!("inertia{n}.angle_amplitude"),
             amplitude.to_degrees(),

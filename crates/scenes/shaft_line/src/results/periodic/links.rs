@@ -17,7 +17,7 @@ impl Results<'_> {
     pub(super) fn periodic_link(&mut self, out: &TorsionOut, machine: &mut Machine<'_>, l: usize) -> f64 {
         let a = machine.a;
         let (name, n) = (&a.line.links[l].name, l + 1);
-        let [top, bottom] = machine.extremes(out).extremes(out.mean_torque[l], |k| out.orders[k].torque[l]);
+        let [top, bottom] = machine.extremes(out).extremes(out.mean_torque[l], out.orders.torque(l));
         let vibratory = 0.5 * (top - bottom);
         let twist = twist_amplitude(machine.extremes(out), a, out, l);
         if twist > LINEAR {
@@ -41,7 +41,7 @@ impl Results<'_> {
         );
         self.strongest_order(out, a, l);
         self.law(l, out.mean_torque[l], a, "at its mean torque");
-        let heat: f64 = out.orders.iter().map(|o| o.heat[l]).sum();
+        let heat: f64 = out.orders.heat(l).iter().sum();
         self.result(format!("shaft{n}.heat"), heat, "W", format!("mean power lost in {name}"));
         if let Some(s) = a.stress[l] {
             self.result(
@@ -61,14 +61,13 @@ impl Results<'_> {
     }
 
     fn strongest_order(&mut self, out: &TorsionOut, a: &Assembled, l: usize) {
-        let strongest = out.orders.iter().max_by(|x, y| {
-            elementary::hypot(x.torque[l][0], x.torque[l][1])
-                .total_cmp(&elementary::hypot(y.torque[l][0], y.torque[l][1]))
-        });
-        if let Some(o) = strongest {
+        let [re, im] = out.orders.torque(l);
+        let sizes: Vec<f64> = re.iter().zip(im).map(|(re, im)| elementary::hypot(*re, *im)).collect();
+        let orders = out.orders.orders().iter().zip(&sizes);
+        if let Some((order, _)) = orders.max_by(|x, y| x.1.total_cmp(y.1)) {
             self.result(
                 format!("shaft{}.strongest_order", l + 1),
-                o.order,
+                *order,
                 "",
                 format!("order of the largest torque in {}", a.line.links[l].name),
             );

@@ -1,6 +1,6 @@
 //! Orders of torques and angles: results, table and bars.
 
-use gudgeon_core::kinds::TorsionOut;
+use gudgeon_core::kinds::{PhasorRow, TorsionOut};
 use gudgeon_core::result::{Bar, Figure, FigureKind, Series};
 use gudgeon_numerics::elementary;
 
@@ -11,39 +11,39 @@ use crate::results::{Results, column};
 /// Maximum number of bars of a figure.
 const BARS: usize = 24;
 
-/// Amplitude of a phasor.
-fn size([re, im]: [f64; 2]) -> f64 {
-    elementary::hypot(re, im)
+/// Amplitudes of phasors.
+fn sizes([re, im]: PhasorRow<'_>) -> Vec<f64> {
+    re.iter().zip(im).map(|(re, im)| elementary::hypot(*re, *im)).collect()
 }
 
 impl Results<'_> {
     /// Torque of the lowest orders in each shaft.
     pub(super) fn order_results(&mut self, out: &TorsionOut, a: &Assembled) {
-        for o in out.orders.iter().take(ORDERS) {
+        let amplitudes: Vec<Vec<f64>> =
+            (0..a.line.links.len()).map(|l| sizes(out.orders.torque(l))).collect();
+        for (k, order) in out.orders.orders().iter().enumerate().take(ORDERS) {
             for (l, link) in a.line.links.iter().enumerate() {
-                let name = format!("shaft{}.order{}", l + 1, o.order);
-                let what = format!("torque of order {} in {}", o.order, link.name);
-                self.result(name, size(o.torque[l]), "N m", what);
+                let name = format!("shaft{}.order{order}", l + 1);
+                let what = format!("torque of order {order} in {}", link.name);
+                self.result(name, amplitudes[l][k], "N m", what);
             }
         }
     }
 
     /// Table `orders`: amplitudes of torque, stress and angle by order.
     pub(super) fn order_table(&mut self, out: &TorsionOut, a: &Assembled) {
-        let of = |f: &dyn Fn(usize) -> f64| (0..out.orders.len()).map(f).collect::<Vec<f64>>();
         let mut table =
-            Series { axis: column("order", "", of(&|k| out.orders[k].order)), columns: Vec::new() };
+            Series { axis: column("order", "", out.orders.orders().to_vec()), columns: Vec::new() };
         for l in 0..a.line.links.len() {
-            let rows = of(&|k| size(out.orders[k].torque[l]));
-            table.columns.push(column(format!("shaft{}.torque", l + 1), "N m", rows));
-            if let Some(s) = a.stress[l] {
-                let rows = of(&|k| s / 1e6 * size(out.orders[k].torque[l]));
+            let torques = sizes(out.orders.torque(l));
+            let stresses = a.stress[l].map(|s| torques.iter().map(|t| s / 1e6 * t).collect());
+            table.columns.push(column(format!("shaft{}.torque", l + 1), "N m", torques));
+            if let Some(rows) = stresses {
                 table.columns.push(column(format!("shaft{}.stress", l + 1), "MPa", rows));
             }
         }
         for i in 0..a.line.nodes.len() {
-            let rows = of(&|k| size(out.orders[k].angle[i]));
-            table.columns.push(column(format!("inertia{}.angle", i + 1), "rad", rows));
+            table.columns.push(column(format!("inertia{}.angle", i + 1), "rad", sizes(out.orders.angle(i))));
         }
         self.out.tables.insert("orders".into(), table);
     }
@@ -53,12 +53,8 @@ impl Results<'_> {
         let Some(l) = (0..vibratory.len()).max_by(|x, y| vibratory[*x].total_cmp(&vibratory[*y])) else {
             return;
         };
-        let bar = |o: &gudgeon_core::kinds::OrderResponse| Bar {
-            label: format!("order {}", o.order),
-            value: size(o.torque[l]),
-            limit: None,
-        };
-        let bars = out.orders.iter().take(BARS).map(bar).collect();
+        let bar = |(order, value): (&f64, f64)| Bar { label: format!("order {order}"), value, limit: None };
+        let bars = out.orders.orders().iter().zip(sizes(out.orders.torque(l))).take(BARS).map(bar).collect();
         self.out.figures.push(Figure {
             title: format!("Order spectrum of {}", a.line.links[l].name),
             hint: "torque amplitude per order, in the shaft that vibrates most; table `orders` has all"
