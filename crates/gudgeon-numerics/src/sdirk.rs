@@ -226,7 +226,7 @@ impl Scheme for Sdirk {
             self.stage(sys, i, t, h)?;
         }
         let error = self.finish(h, opts);
-        if error <= 1.0 {
+        if error <= opts.slack {
             self.start.copy_from_slice(&self.core.x1[..self.core.n]);
         }
         Ok(Trial::Done { error })

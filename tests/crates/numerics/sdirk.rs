@@ -290,3 +290,31 @@ fn evaluations_of_the_next(
         .unwrap();
     assert!(evaluations < first, "{evaluations} {first}");
 }
+
+/// Steps of an integration that are taken again: with the same ends from another start, and in parts where the error has grown beyond what is let pass.
+#[test]
+fn known_steps_are_taken_again() {
+    let run = |start: f64, ends: &[f64], slack: f64| {
+        let (mut system, mut s) = (Stages::new(2, 1, smooth), Sdirk::new(2, 1));
+        let mut o = Options::new(1e-4, &[1.0, 1.0]);
+        (o.ends, o.slack) = (ends.to_vec(), slack);
+        let (mut y, mut q, mut seen) = ([start, 3.0], [0.0], Vec::new());
+        let mut stats = Stats::default();
+        s.integrate(&mut system, (0.0, 2.0), &[0.7], &mut y, &mut q, &o, &mut stats, &mut |_, v| {
+            seen.push(v.t1());
+            Flow::Continue
+        })
+        .unwrap();
+        (seen, y, q, stats.rejected)
+    };
+    let first = run(1.0, &[], 1.0);
+    let again = run(1.0, &first.0, 10.0);
+    assert_eq!((&again.0, again.3), (&first.0, 0));
+    // The length of a step is now a difference of its ends: some roundings of numbers of the order of one in each of two dozen steps.
+    assert!((again.1[0] - first.1[0]).abs() + (again.2[0] - first.2[0]).abs() < 1e-13, "{again:?} {first:?}");
+    assert_eq!(run(1.02, &first.0, 10.0).0, first.0);
+    // Every other end, the last one among them: errors are up to eight times those admitted, and all of these ends are met.
+    let half: Vec<f64> = first.0.iter().skip(1 - first.0.len() % 2).step_by(2).copied().collect();
+    let parts = run(1.0, &half, 1.0);
+    assert!(parts.3 > 0 && half.iter().all(|end| parts.0.contains(end)), "{parts:?}");
+}

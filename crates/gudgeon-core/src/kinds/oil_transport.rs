@@ -205,8 +205,8 @@ pub trait OilTransport: Stateful + Debug + Send {
     /// The field as it is.
     fn field(&self, out: &mut [f64]);
 
-    /// Begins a cycle with a field, the pin at `pin` \[m\].
-    fn begin_cycle(&mut self, field: &[f64], pin: f64);
+    /// Begins a cycle with the states `y` and a field, the pin at `pin` \[m\].
+    fn begin_cycle(&mut self, y: &[f64], field: &[f64], pin: f64);
 
     /// Ends a cycle: what was booked beside the states becomes part of them; the field is handed out.
     fn end_cycle(&mut self, y: &mut [f64], field: &mut [f64]);
@@ -214,7 +214,8 @@ pub trait OilTransport: Stateful + Debug + Send {
     /// Books an accepted step.
     fn book(&mut self, step: &OilStep<'_>);
 
-    /// Longest way of a piston \[m\] over which a step may go.
+    /// Longest way of a piston \[m\] over which a step may go whose method asks for rates alone: over a longer one a face takes up what the one before it leaves in the
+    /// same step, which stages can tell that are solved in the order in which the faces pass.
     fn longest_way(&self) -> f64;
 
     /// What ring `i` does with the oil while the piston moves at `v` \[m/s\].

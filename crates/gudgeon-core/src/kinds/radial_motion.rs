@@ -205,6 +205,21 @@ pub trait RadialMotion: Stateful + Send {
         Err(EvalError::fatal("radial_motion", "the model does not solve stages of implicit steps"))
     }
 
+    /// A trial of a stage: what the states `y` lack in it goes into `r`, in units of the states. The motion there, with its film; none where a limit acts, of which
+    /// [`RadialMotion::stage`] alone knows, and of models that do not answer this way.
+    ///
+    /// # Errors
+    /// What the film refuses.
+    fn try_stage(
+        &mut self,
+        _stage: &Stage<'_>,
+        _y: &[f64],
+        _loads: &mut dyn RadialTrials,
+        _r: &mut [f64],
+    ) -> Result<Option<(RadialResponse, FaceForces)>, EvalError> {
+        Ok(None)
+    }
+
     /// Until [`RadialMotion::end_differences`], rates are asked for states and loads that differ by little from the last instant, whose loads and
     /// film are given and where `on_floor` says whether a floor carried anything: what is searched for may be found by one step of Newton's
     /// method from there.

@@ -4,8 +4,8 @@
 //! They say how far the film reaches (`extent`), and the flux of the film moves oil from one to the other (`rates`). The liner
 //! carries a film on a fixed grid. What a leading edge takes up is known before it gets there: it is added to the state as the
 //! integral of the film over the way it went, so that no step needs to resolve the film it passes. What a trailing edge leaves
-//! is what the states of its face lost over a step, laid down over the way the edge went. Nothing is therefore ever gained or
-//! lost, whatever the tolerance.
+//! is what the states of its face lost over a step, laid down over the way the edge went; a face that comes there in the same step
+//! takes it up again. Nothing is therefore ever gained or lost, whatever the tolerance.
 
 use gudgeon_core::kinds::{
     OilDrive, OilExtent, OilFaceIn, OilFacePlace, OilLand, OilLedger, OilPassed, OilStep, OilTransport,
@@ -28,7 +28,7 @@ const LINER_UNIT: f64 = 1e-6;
 /// Film of one cell that counts as one, in its unit: which cells a step ends in differs from cycle to cycle, and a face is as long
 /// as many of them.
 const CELL_SCALE: f64 = 100.0;
-/// Part of the smallest distance between two faces over which a step may go: a face takes up what the one before it left in earlier steps.
+/// Part of the smallest distance between two faces over which a step may go that takes up nothing of its own.
 const WAY: f64 = 0.8;
 
 /// All oil of a pack.
@@ -98,14 +98,35 @@ impl Carried {
         UNIT_FILM * self.faces[k].length
     }
 
-    /// What the edges of face `k` have passed since the start of the step.
-    fn swept(&self, k: usize, pin: f64) -> [f64; SIDES] {
-        let (f, liner) = (&self.faces[k], &self.liner);
-        let e = f.edges(pin);
-        [
-            if e[0] < f.edge[0] { f.below[0] - liner.below(e[0]) } else { 0.0 },
-            if e[1] > f.edge[1] { liner.below(e[1]) - f.below[1] } else { 0.0 },
-        ]
+    /// What the edges of face `k` have passed since the start of the step, and what of that the face before it has left meanwhile. The film on the liner is still
+    /// that of the start, or where `laid` holds what the face before it has left lies there already.
+    fn swept(&self, k: usize, pin: f64, laid: bool) -> [f64; SIDES] {
+        let (f, e, liner) = (&self.faces[k], self.faces[k].edges(pin), &self.liner);
+        let mut swept = [0.0; SIDES];
+        // The cell in which the other began has a new film as well.
+        let near = if laid { liner.cell } else { 0.0 };
+        if e[0] < f.edge[0] {
+            let ahead = self.faces.get(k + 1).filter(|a| e[0] < a.trail.from + near);
+            swept[0] = match ahead {
+                None => f.below[0] - liner.below(e[0]),
+                Some(_) if laid => liner.between(e[0], f.edge[0]),
+                Some(a) => f.below[0] - a.below[1] + (a.trail.from - e[0]) * a.trail.film,
+            };
+        }
+        if e[1] > f.edge[1] {
+            let ahead = k.checked_sub(1).map(|a| &self.faces[a]).filter(|a| e[1] > a.trail.from - near);
+            swept[1] = match ahead {
+                None => liner.below(e[1]) - f.below[1],
+                Some(_) if laid => liner.between(f.edge[1], e[1]),
+                Some(a) => a.below[0] - f.below[1] + (e[1] - a.trail.from) * a.trail.film,
+            };
+        }
+        swept
+    }
+
+    /// Number of the face that comes `i`-th over a place of the liner, with the pin at `pin`.
+    fn in_turn(&self, i: usize, pin: f64) -> usize {
+        if self.faces[0].trailing(pin) == 1 { self.faces.len() - 1 - i } else { i }
     }
 
     /// The crankcase wets what the lowest ring uncovers, and the faces begin a step on the liner as it then is.
@@ -134,7 +155,7 @@ impl Carried {
 
     /// Books face `k` over a step: `y0`, `y1` its two states, `h` its film at the end.
     fn book_face(&mut self, k: usize, y0: &[f64], y1: &[f64], pin: f64, h: f64) {
-        let (unit, swept, from) = (self.unit(k), self.swept(k, pin), self.faces[k].edge);
+        let (unit, swept) = (self.unit(k), self.swept(k, pin, true));
         let f = &mut self.faces[k];
         let to = f.edges(pin);
         // What lies before the end gap passes it. The next ring, whose gap stands elsewhere, scrapes it off; above ring 1 it stays on the liner.
@@ -151,19 +172,20 @@ impl Carried {
         // What the face lost stays behind its trailing edge. Integration errors may make it less than nothing: that is owed,
         // for the volumes must not jump, which would spoil the time derivatives of the next step.
         let lost = f.owed + stays - ((y1[0] - y0[0]) + (y1[1] - y0[1])) * unit;
-        let trailing = usize::from(to[1] < from[1]);
-        let way = (to[trailing] - from[trailing]).abs();
+        let trailing = f.trailing(pin);
+        let moved = to[trailing] != f.edge[trailing];
         // The wave before the leading edge, beyond what there is room for, goes; nothing else depends on it.
         let leading = 1 - trailing;
         let volume = y1[leading] * unit + f.taken[leading];
         let left = (volume - f.capacity(h, leading) - f.room[leading]).max(0.0);
         f.taken[leading] -= left;
-        let laid = if way > 0.0 { lost.max(0.0) } else { 0.0 };
-        f.owed = lost - laid;
+        f.trail = f.trail(pin, lost);
+        f.owed = lost - if moved { lost.max(0.0) } else { 0.0 };
+        f.before = (y1[0] + y1[1]) * unit;
         self.lands.scrape(f.ring, f.exit[leading], left, &mut self.ledger);
         f.edge = to;
-        if way > 0.0 {
-            self.liner.lay(from[trailing], to[trailing], laid / way, trailing);
+        if moved {
+            self.liner.lay(&f.trail, trailing);
         }
     }
 }
@@ -229,10 +251,13 @@ impl OilTransport for Carried {
     }
 
     fn place(&mut self, y: &[f64], pin: f64) {
-        for k in 0..self.faces.len() {
+        for i in 0..self.faces.len() {
+            let k = self.in_turn(i, pin);
             let unit = self.unit(k);
-            let swept = self.swept(k, pin);
+            let swept = self.swept(k, pin, false);
             let f = &mut self.faces[k];
+            let lost = f.owed + f.before - (y[SIDES * k] + y[SIDES * k + 1]) * unit;
+            f.trail = f.trail(pin, lost);
             for side in 0..SIDES {
                 let taken = f.taken[side] + (1.0 - f.gap[side]) * swept[side];
                 f.volume[side] = y[SIDES * k + side] * unit + taken;
@@ -292,15 +317,18 @@ impl OilTransport for Carried {
         }
     }
 
-    fn begin_cycle(&mut self, field: &[f64], pin: f64) {
+    fn begin_cycle(&mut self, y: &[f64], field: &[f64], pin: f64) {
         // An extrapolated film may be less than none.
         for (film, y) in self.liner.film.iter_mut().zip(field) {
             *film = (y * LINER_UNIT).max(0.0);
         }
         self.clear_ledger();
         self.liner.refresh();
-        for f in &mut self.faces {
+        for (k, held) in y.chunks_exact(SIDES).enumerate() {
+            let unit = self.unit(k);
+            let f = &mut self.faces[k];
             (f.taken, f.owed) = ([0.0; SIDES], 0.0);
+            f.before = (held[0] + held[1]) * unit;
             f.edge = f.edges(pin);
         }
         self.supply();
@@ -321,7 +349,8 @@ impl OilTransport for Carried {
     }
 
     fn book(&mut self, step: &OilStep<'_>) {
-        for k in 0..self.faces.len() {
+        for i in 0..self.faces.len() {
+            let k = self.in_turn(i, step.pin);
             let own = SIDES * k..SIDES * (k + 1);
             let h = step.films[self.faces[k].ring];
             self.book_face(k, &step.y0[own.clone()], &step.y1[own], step.pin, h);

@@ -24,6 +24,16 @@ pub struct Reach {
     pub gap: f64,
 }
 
+/// Film that an edge left over its way.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Trail {
+    /// Heights at which the way begins and ends \[m\].
+    pub from: f64,
+    pub to: f64,
+    /// Thickness \[m\].
+    pub film: f64,
+}
+
 /// One running face.
 #[derive(Debug, Clone)]
 pub struct OilFace {
@@ -49,6 +59,10 @@ pub struct OilFace {
     pub taken: [f64; SIDES],
     /// Lost and not laid down yet \[m²\]: negative where the face has more than it took up.
     pub owed: f64,
+    /// What the states hold at the start of the step \[m²\].
+    pub before: f64,
+    /// Film that the trailing edge has left over the step so far.
+    pub trail: Trail,
     /// Edges at the start of the step \[m\].
     pub edge: [f64; SIDES],
     /// Film on the liner below those edges then \[m²\].
@@ -75,6 +89,8 @@ impl OilFace {
             gap,
             taken: [0.0; SIDES],
             owed: 0.0,
+            before: 0.0,
+            trail: Trail::default(),
             edge: [0.0; SIDES],
             below: [0.0; SIDES],
             volume: [0.0; SIDES],
@@ -85,6 +101,19 @@ impl OilFace {
     /// Bottom and top edge \[m\] with the pin at `pin`.
     pub fn edges(&self, pin: f64) -> [f64; SIDES] {
         [pin + self.offset, pin + self.offset + self.length]
+    }
+
+    /// Which edge trails with the pin at `pin`: the upper one on the way down.
+    pub fn trailing(&self, pin: f64) -> usize {
+        usize::from(pin + self.offset < self.edge[0])
+    }
+
+    /// The film behind the trailing edge with the pin at `pin`, whose volume is `lost` \[m²\].
+    pub fn trail(&self, pin: f64, lost: f64) -> Trail {
+        let side = self.trailing(pin);
+        let (from, to) = (self.edge[side], self.edges(pin)[side]);
+        let way = (to - from).abs();
+        Trail { from, to, film: if way > 0.0 { lost.max(0.0) / way } else { 0.0 } }
     }
 
     /// Distance from the narrowest place to an edge \[m\].

@@ -4,6 +4,7 @@
 
 use gudgeon_core::kinds::Volatile;
 
+use super::face::Trail;
 use super::vapour::Vapour;
 
 /// Film by height.
@@ -127,14 +128,27 @@ impl Liner {
         self.sum[k] + (x - k as f64) * self.cell * self.film[k]
     }
 
-    /// Lays a film of `thickness` where an edge went from `a` to `b`; outside the face is above a top edge (`side` 1), below a
+    /// Volume of the film from height `a` up to `b`, as it is now; none where `b` is below.
+    pub fn between(&self, a: f64, b: f64) -> f64 {
+        let mut sum = 0.0;
+        if b > a {
+            for k in self.cell_at(a)..=self.cell_at(b) {
+                let (low, high) = self.ends(k);
+                sum += self.film[k] * (b.min(high) - a.max(low)).max(0.0);
+            }
+        }
+        sum
+    }
+
+    /// Lays the film that an edge left; outside the face is above a top edge (`side` 1), below a
     /// bottom edge.
-    pub fn lay(&mut self, a: f64, b: f64, thickness: f64, side: usize) {
+    pub fn lay(&mut self, trail: &Trail, side: usize) {
+        let (a, b) = (trail.from, trail.to);
         let (lo, hi) = (a.min(b), a.max(b));
         let (first, last) = (self.cell_at(lo), self.cell_at(hi));
         self.touch(first);
         for k in first..=last {
-            let (low, high) = (self.bottom + k as f64 * self.cell, self.bottom + (k + 1) as f64 * self.cell);
+            let (low, high) = self.ends(k);
             let new = hi.min(high) - lo.max(low);
             if new <= 0.0 {
                 continue;
@@ -142,7 +156,7 @@ impl Liner {
             // The part that was outside before.
             let old =
                 if side == 1 { (high - a).clamp(0.0, self.cell) } else { (a - low).clamp(0.0, self.cell) };
-            let (before, added) = (self.film[k] * old, thickness * new);
+            let (before, added) = (self.film[k] * old, trail.film * new);
             self.film[k] = (before + added) / (old + new);
             if let Some(vapour) = &mut self.vapour {
                 vapour.mix(k, before, added);

@@ -117,6 +117,8 @@ struct Run<'a, M, S: ?Sized> {
     h: f64,
     /// Next breakpoint, start of the current segment, and whether that is a breakpoint.
     next_bp: usize,
+    /// Next end of a known step.
+    next_end: usize,
     seg_start: f64,
     seg_start_is_bp: bool,
     /// Time of the last restart by an event.
@@ -173,8 +175,9 @@ impl<'a, M: Scheme, S: OdeSystem + ?Sized> Run<'a, M, S> {
             stats,
             end,
             t: t0,
-            h: opts.h_init,
+            h: if opts.ends.is_empty() { opts.h_init } else { f64::INFINITY },
             next_bp,
+            next_end: 0,
             seg_start: t0,
             seg_start_is_bp,
             since: t0,
@@ -198,7 +201,7 @@ impl<'a, M: Scheme, S: OdeSystem + ?Sized> Run<'a, M, S> {
             self.evaluate_start()?;
             let step = self.propose(stop.at)?;
             let Some(error) = self.attempt(&step)? else { continue };
-            if error > 1.0 {
+            if error > self.opts.slack {
                 self.reject_for_error(step.h, error);
                 continue;
             }
@@ -269,7 +272,8 @@ impl<'a, M: Scheme, S: OdeSystem + ?Sized> Run<'a, M, S> {
     /// The step to try next, which ends at `stop` at the latest.
     fn propose(&mut self, stop: f64) -> Result<Proposal, IntegrateError> {
         let (t, opts) = (self.t, self.opts);
-        if self.h <= 0.0 || !self.h.is_finite() {
+        let stop = self.known_end().map_or(stop, |end| end.min(stop));
+        if self.h <= 0.0 || !self.h.is_finite() && opts.ends.is_empty() {
             self.h = first_step(self.method.core(), self.sys, t, stop - t, opts, self.stats);
         }
         let h_max = if opts.h_max > 0.0 { opts.h_max } else { f64::INFINITY };
@@ -295,6 +299,15 @@ impl<'a, M: Scheme, S: OdeSystem + ?Sized> Run<'a, M, S> {
             });
         }
         Ok(Proposal { h, t_new: if last { stop } else { t + h }, cut: h < self.h })
+    }
+
+    /// Where the step ends that was taken from here before.
+    fn known_end(&mut self) -> Option<f64> {
+        let ends = &self.opts.ends;
+        while ends.get(self.next_end).is_some_and(|&e| e <= self.t || near(e, self.t)) {
+            self.next_end += 1;
+        }
+        ends.get(self.next_end).copied()
     }
 
     /// Attempts the step: its error norm, or `None` when it was rejected without one.
@@ -374,7 +387,13 @@ impl<'a, M: Scheme, S: OdeSystem + ?Sized> Run<'a, M, S> {
         let most = if self.rejected_before { 1.0 } else { M::GROWTH };
         let factor = self.method.accept(step.h, error).clamp(0.2, most);
         self.rejected_before = false;
-        self.h = if step.cut { self.h.max(factor * step.h) } else { factor * step.h };
+        self.h = if !self.opts.ends.is_empty() {
+            f64::INFINITY
+        } else if step.cut {
+            self.h.max(factor * step.h)
+        } else {
+            factor * step.h
+        };
 
         self.coefficients.forget();
         let (source, c): (&dyn Interpolant, _) = (&*self.method, self.method.tried());

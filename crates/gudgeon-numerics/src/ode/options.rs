@@ -22,6 +22,11 @@ pub struct Options {
     pub h_min: f64,
     /// Maximum number of steps, rejected ones included.
     pub max_steps: u64,
+    /// Ends of the steps of an integration that was much like this one: they are taken again, and only a step whose error is more than [`Options::slack`] times what is
+    /// admitted is tried in parts. Empty: steps are as long as their errors allow. Results then go smoothly with the start, which the number of steps spoils.
+    pub ends: Vec<f64>,
+    /// Error of a step over the one admitted with which it is accepted.
+    pub slack: f64,
     /// Points inside each step at which event functions are looked at, beside its ends.
     pub event_samples: u32,
 }
@@ -49,6 +54,8 @@ impl Options {
             h_max: f64::INFINITY,
             h_min: 0.0,
             max_steps: 2_000_000,
+            ends: Vec::new(),
+            slack: 1.0,
             event_samples: 3,
         }
     }

@@ -144,6 +144,26 @@ impl RadialMotion for Runtime {
         Ok((answer.response, answer.film))
     }
 
+    fn try_stage(
+        &mut self,
+        stage: &Stage<'_>,
+        y: &[f64],
+        loads: &mut dyn RadialTrials,
+        r: &mut [f64],
+    ) -> Result<Option<(RadialResponse, FaceForces)>, EvalError> {
+        let lowest = loads.state().lowest.0;
+        if !loads.state().resists || stage.base[0] < elementary::ln(lowest) {
+            return Ok(None);
+        }
+        let search = Search { limits: &self.limits, ring: self.ring, hdot: self.hdot, balanced: false };
+        let staged = Staged { search, per: self.per, slope: self.slope };
+        let trial = staged.trial(stage, y[0], loads)?;
+        r[0] = trial.lacks / (1.0 + trial.slope.max(0.0));
+        let limited = staged.is_limited(loads.state(), trial.response.hdot, trial.film.load);
+        self.hdot = trial.response.hdot;
+        Ok((!limited).then_some((trial.response, trial.film)))
+    }
+
     /// The tangent is worth its film where a velocity was searched for; one that came with its film by a search is as cheap as one evaluation.
     fn begin_differences(
         &mut self,

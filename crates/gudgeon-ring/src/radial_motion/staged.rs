@@ -37,6 +37,15 @@ pub struct Staged<'a> {
     pub slope: f64,
 }
 
+/// What a thickness leads to.
+pub struct Trial {
+    /// The balance, over the tension, and its derivative by `x` through the velocity alone.
+    pub lacks: f64,
+    pub slope: f64,
+    pub response: RadialResponse,
+    pub film: FaceForces,
+}
+
 /// Answer of a stage.
 pub struct Answer {
     pub response: RadialResponse,
@@ -78,42 +87,51 @@ impl Staged<'_> {
         if !loads.state().resists {
             return Ok(None);
         }
-        let (base, per) = (stage.base[0], stage.step * self.per);
-        let cap = self.search.limits.radial_speed;
-        let floor = self.search.limits.min_load * loads.state().tension;
-        let (mut hdot, mut film, mut lifted, mut contact_drag) = (0.0, FaceForces::default(), 0.0, 0.0);
-        let balance = |x: f64| -> Result<f64, EvalError> {
-            let h = thickness(x)?;
-            loads.set_thickness(h)?;
-            hdot = h * (x - base) / per;
-            // The velocity that the cap on it turns into this one.
-            let free = hdot / (1.0 - (hdot / cap).powi(2)).max(1e-12).sqrt();
-            film = loads.film(free)?;
-            let at = loads.state();
-            contact_drag = if free > 0.0 { self.search.contact_drag(at) * free } else { 0.0 };
-            let needed = at.load - at.contact - at.dry + loads.friction(free).0 + contact_drag;
-            let carried = soft(needed, floor);
-            lifted = carried - needed;
-            Ok((carried - film.load) / at.tension)
-        };
-        let known = Known { from: base, guess: *x, slope: self.slope, reach: REACH, tol: stage.accuracy[0] };
+        let mut last = None;
+        let balance =
+            |x: f64| -> Result<f64, EvalError> { Ok(last.insert(self.trial(stage, x, loads)?).lacks) };
+        let known =
+            Known { from: stage.base[0], guess: *x, slope: self.slope, reach: REACH, tol: stage.accuracy[0] };
         let found = match first_root(balance, known) {
             Ok(found) => found,
             Err(RootError::Function(e)) if !e.is_recoverable() => return Err(e),
             Err(_) => return Ok(None),
         };
-        if self.is_limited(loads.state(), hdot, film.load) {
+        let Some(Trial { response, film, .. }) = last else { return Ok(None) };
+        if self.is_limited(loads.state(), response.hdot, film.load) {
             return Ok(None);
         }
         *x = found.x;
-        let mut limited = Limited::default();
-        (limited.lifted, limited.contact_drag) = (lifted, contact_drag);
-        let response = RadialResponse::new(hdot, Some(film), limited);
         Ok(Some(Answer { response, film, slope: found.slope }))
     }
 
+    /// A trial at `x` without limits.
+    pub fn trial(&self, stage: &Stage<'_>, x: f64, loads: &mut dyn RadialTrials) -> Result<Trial, EvalError> {
+        let per = stage.step * self.per;
+        let cap = self.search.limits.radial_speed;
+        let h = thickness(x)?;
+        loads.set_thickness(h)?;
+        let hdot = h * (x - stage.base[0]) / per;
+        // The velocity that the cap on it turns into this one.
+        let free = hdot / (1.0 - (hdot / cap).powi(2)).max(1e-12).sqrt();
+        let film = loads.film(free)?;
+        let at = loads.state();
+        let drag = if free > 0.0 { self.search.contact_drag(at) } else { 0.0 };
+        let (friction, slope) = loads.friction(free);
+        let needed = at.load - at.contact - at.dry + friction + drag * free;
+        let carried = soft(needed, self.search.limits.min_load * at.tension);
+        let mut limited = Limited::default();
+        (limited.lifted, limited.contact_drag) = (carried - needed, drag * free);
+        Ok(Trial {
+            lacks: (carried - film.load) / at.tension,
+            slope: (film.squeeze_damping + slope + drag) * h / (per * at.tension),
+            response: RadialResponse::new(hdot, Some(film), limited),
+            film,
+        })
+    }
+
     /// Whether a drag or an end of the way would change the velocity.
-    fn is_limited(&self, at: &RadialState, hdot: f64, load: f64) -> bool {
+    pub fn is_limited(&self, at: &RadialState, hdot: f64, load: f64) -> bool {
         let near_an_end = if hdot > 0.0 {
             at.furthest - at.thickness < self.search.limits.retreat_band * at.furthest
         } else {

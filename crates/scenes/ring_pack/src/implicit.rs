@@ -53,7 +53,8 @@ pub struct Implicit {
     pub tolerance: PosRatio,
     /// Time integrator.
     pub integrator: RingIntegrator,
-    /// True relative error of the periodic state; not below `tolerance`.
+    /// True relative error of the periodic state; not below `tolerance`, with oil on the liner not below ten times that, or a fifth of it with
+    /// `waveform`.
     #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1 }))]
     pub periodicity: PosRatio,
     /// Most cycles, all phases of the search together, before the run is called unconverged. Half of them, but at least 60, are accelerated; the
@@ -356,8 +357,10 @@ impl Cycle<'_> {
         options.absolute.clone_from(&self.absolute);
         options.h_max = self.longest_step;
         options.max_steps = self.max_steps;
-        if let Some(oil) = &self.pack.oil_pack {
-            // A face takes up what the one before it left in earlier steps.
+        if let Some(oil) = &self.pack.oil_pack
+            && !matches!(self.method, Method::Waveform(_))
+        {
+            // A face takes up what the one before it left in earlier steps, which the Jacobian does not know.
             let speed = 1.1 * 0.5 * self.pack.kinematics.stroke() * self.pack.omega;
             options.h_max = options.h_max.min(oil.longest_way() * self.pack.omega / speed);
         }
@@ -431,7 +434,7 @@ impl Cycle<'_> {
     fn begin(&mut self, y: &[f64]) {
         let (n, pin) = (self.pack.layout.n, self.pack.kinematics.motion(0.0).y);
         if let Some(oil) = &mut self.pack.oil_pack {
-            oil.begin_cycle(&y[n..], pin);
+            oil.begin_cycle(&y[self.pack.layout.oil.clone()], &y[n..], pin);
         }
     }
 
@@ -454,6 +457,9 @@ const REFINEMENTS: usize = 2;
 const FINEST: f64 = 1e-13;
 /// How much less repeatable than its integration a cycle with oil on the liner is.
 const OIL_NOISE: f64 = 10.0;
+/// How much less where films take the same steps again, and part of its accuracy by which a cycle then differs from the next.
+const OIL_AGAIN: f64 = 0.2;
+const NOISE_AGAIN: f64 = 0.1;
 /// Most cycles in halves, without oil on the liner and with it, before the pack is integrated whole.
 const HALVES_TRY: [usize; 2] = [10, 40];
 /// Least tolerance of the first cycle in halves, in which films stand still for the gas: more accuracy is for nothing.
@@ -512,7 +518,8 @@ impl CycleMap for Cycle<'_> {
         }
     }
     fn bend(&self) -> Option<Bend> {
-        self.pack.oil_pack.is_some().then_some(OIL_BEND)
+        let noise = if matches!(self.method, Method::Waveform(_)) { NOISE_AGAIN } else { OIL_BEND.noise };
+        self.pack.oil_pack.is_some().then_some(Bend { noise, ..OIL_BEND })
     }
 }
 
@@ -780,7 +787,7 @@ impl<'a> Cycle<'a> {
     fn periodic(&mut self, y: &mut [f64], options: &OrbitOptions) -> Result<OrbitReport, EvalError> {
         let mut report = periodic_orbit(self, y, options)?;
         let (estimate, mut next) = (report.error_estimate, y.to_vec());
-        while let Method::Waveform(w) = &self.method
+        while let Method::Waveform(w) = &mut self.method
             && report.converged
         {
             let apart = w.disagreement(self.pack);
@@ -788,6 +795,7 @@ impl<'a> Cycle<'a> {
             if apart <= options.tolerance {
                 break;
             }
+            w.look_again();
             report.converged = report.cycles < options.max_cycles;
             report.cycles += 1;
             report.cycle_equivalents += self.map(y, &mut next, options.accuracy)?;
@@ -866,10 +874,14 @@ fn orbit_options(s: &Implicit, pack: &Pack) -> OrbitOptions {
     // A map is only as repeatable as its integration is accurate, and where a film ends on the liner depends on where steps end.
     let tolerance = s.tolerance.si();
     let halves = s.integrator == RingIntegrator::Waveform;
-    let repeatable = if pack.oil_pack.is_some() && !halves { OIL_NOISE } else { 1.0 } * tolerance;
+    let noise = match (pack.oil_pack.is_some(), halves) {
+        (true, true) => OIL_AGAIN,
+        (true, false) => OIL_NOISE,
+        _ => 1.0,
+    };
     let most = if halves { HALVES_TRY[usize::from(pack.oil_pack.is_some())] } else { usize::MAX };
     OrbitOptions {
-        tolerance: s.periodicity.si().max(repeatable),
+        tolerance: s.periodicity.si().max(noise * tolerance),
         accuracy: tolerance,
         max_cycles: most.min(s.max_cycles as usize),
         refinements: if halves { 0 } else { REFINEMENTS },

@@ -3,7 +3,8 @@
 use gudgeon_core::EvalError;
 use gudgeon_core::geometry::{RingGeometry, RingPlace};
 use gudgeon_core::kinds::{
-    FaceForces, FaceIn, FlankFriction, Hydrodynamics, OilTransport, RadialLoads, RadialState, RadialTrials,
+    FaceForces, FaceIn, FlankFriction, Hydrodynamics, OilTransport, RadialLoads, RadialResponse, RadialState,
+    RadialTrials,
 };
 
 use super::contact_line::ContactLine;
@@ -67,6 +68,22 @@ pub fn flank_load(place: &RingPlace, r: &RingInstant) -> f64 {
 }
 
 impl Loads<'_> {
+    /// The ring at this instant, its motion and its film found.
+    pub fn found(&self, response: &RadialResponse, film: FaceForces) -> RingInstant {
+        RingInstant {
+            dry: self.dry,
+            flux: self.flux,
+            perimeter: self.perimeter,
+            load: self.state.load,
+            contact: self.state.contact,
+            limited: response.limited,
+            hdot: response.hdot,
+            film,
+            film_known: true,
+            ..*self.at
+        }
+    }
+
     fn face(&self, land: usize) -> FaceIn {
         face_in(self.geo, self.state.thickness, self.at, self.u, land)
     }

@@ -533,6 +533,11 @@ impl Pack {
         oil.book(&OilStep { y0, y1, pin: piston.y, films: &self.films, drive });
     }
 
+    /// Number of states of all films.
+    pub(super) fn films(&self) -> usize {
+        self.layout.radial.iter().map(ExactSizeIterator::len).sum()
+    }
+
     /// Has the models decide what they decide in steps, from the forces of the last instant. Returns whether anything changed.
     pub fn decide_seats(&mut self) -> bool {
         let mut changed = false;

@@ -26,9 +26,9 @@ use super::waveform::{MOST_STATES, RingSteps, Side};
 pub(super) struct Together {
     /// Their places in the state vector.
     states: Vec<usize>,
-    newton: StageNewton,
-    /// Their accuracy over what is asked.
+    /// Their accuracy over what is asked, before the last step.
     tight: f64,
+    newton: StageNewton,
     x: Vec<f64>,
     accuracy: Vec<f64>,
     /// What they were before.
@@ -41,8 +41,9 @@ pub struct Staging {
     pub(super) gas: Together,
     /// Oil on the flanks of each ring.
     flank: Vec<Together>,
-    /// Oil under the faces of each ring.
+    /// Oil under the faces of each ring, its film following, and both together.
     oil: Vec<Together>,
+    wet: Vec<Together>,
     /// Radii of the liner at the rings.
     pub(super) radii: Vec<f64>,
     /// Steps of the rings in their grooves, where these have steps of their own.
@@ -51,9 +52,13 @@ pub struct Staging {
 
 /// Most passes over films and gas.
 const PASSES: usize = 10;
-/// Accuracy of gas over what is asked, before the last step of Newton's method, and of oil: what a stage lacks of it comes from nowhere.
-const OF_GAS: f64 = 0.2;
-const OF_OIL: f64 = 2e-2;
+/// Accuracy over what is asked, before the last step of Newton's method: of gas, whose balance is closed by what comes in; of the oil on flanks, where what a stage lacks comes
+/// from nowhere; of the oil under faces, where it stays with the face.
+const GAS: f64 = 0.2;
+const FLANKS: f64 = 2e-2;
+const FACES: f64 = 1.0;
+/// Share of the load that contact carries from which on surfaces touch.
+const TOUCH: f64 = 0.05;
 /// Change of the oil on flanks over its accuracy that gas and rings need not know of.
 const SETTLED: f64 = 5.0;
 
@@ -65,8 +70,8 @@ impl Together {
         let n = states.len();
         Self {
             states,
-            newton: StageNewton::new(n),
             tight,
+            newton: StageNewton::new(n),
             x: vec![0.0; n],
             accuracy: vec![0.0; n],
             before: vec![0.0; n],
@@ -85,9 +90,9 @@ impl Together {
         y: &mut [f64],
         missing: &mut Missing<'_>,
     ) -> Result<(), EvalError> {
-        let states = &self.states;
+        let (states, tight) = (&self.states, self.tight);
         for ((x, a), &k) in self.x.iter_mut().zip(&mut self.accuracy).zip(states) {
-            (*x, *a) = (y[k], self.tight * stage.accuracy[k]);
+            (*x, *a) = (y[k], tight * stage.accuracy[k]);
         }
         self.newton.solve(&mut self.x, stage.step, &self.accuracy, &mut |x, r| {
             states.iter().zip(x).for_each(|(&k, x)| y[k] = *x);
@@ -104,12 +109,17 @@ impl Staging {
         let layout = &pack.layout;
         let under = |i: usize| {
             let of = |k: &usize| pack.oil_pack.as_ref().is_some_and(|o| o.ring_of(k - layout.oil.start) == i);
-            Together::new(layout.oil.clone().filter(of).collect(), OF_OIL)
+            Together::new(layout.oil.clone().filter(of).collect(), FACES)
+        };
+        let both = |i: usize| {
+            let film = layout.radial[i].clone();
+            Together::new(film.chain(under(i).states).collect(), FACES)
         };
         Self {
-            gas: Together::new(layout.gas.clone().collect(), OF_GAS),
-            flank: layout.flank.iter().map(|own| Together::new(own.clone().collect(), OF_OIL)).collect(),
+            gas: Together::new(layout.gas.clone().collect(), GAS),
+            flank: layout.flank.iter().map(|own| Together::new(own.clone().collect(), FLANKS)).collect(),
             oil: (0..pack.n_rings()).map(under).collect(),
+            wet: (0..pack.n_rings()).map(both).collect(),
             ..Self::default()
         }
     }
@@ -123,7 +133,7 @@ impl Staging {
     pub fn restart(&mut self) {
         self.gas.newton.forget();
         self.rings.iter_mut().for_each(RingSteps::restart);
-        self.flank.iter_mut().chain(&mut self.oil).for_each(|o| o.newton.forget());
+        self.flank.iter_mut().chain(&mut self.oil).chain(&mut self.wet).for_each(|o| o.newton.forget());
     }
 }
 
@@ -307,13 +317,15 @@ impl Pack {
         if !self.plan.film {
             return Ok(change);
         }
-        for i in 0..self.n_rings() {
+        let (n, down) = (self.n_rings(), self.at.piston.v < 0.0);
+        // A ring takes up what the one before it leaves in the same step.
+        for i in (0..n).map(|k| if down { n - 1 - k } else { k }) {
             let film = self.layout.radial[i].start;
             let before = y[film];
             let oil = &mut w.oil[i];
             if oil.states.is_empty() {
                 self.film_of_stage(i, stage, y)?;
-            } else {
+            } else if !self.film_with_oil(i, stage, y, &mut w.wet[i])? {
                 oil.solve(stage, y, &mut |y, states, r| self.oil_under((i, states), stage, y, r))?;
             }
             change = change.max((y[film] - before).abs() / stage.accuracy[film]);
@@ -323,6 +335,60 @@ impl Pack {
             self.friction(i)?;
         }
         Ok(change)
+    }
+
+    /// The film of ring `i` and the oil under it, all together; whether they were found so.
+    fn film_with_oil(
+        &mut self,
+        i: usize,
+        stage: &Stage<'_>,
+        y: &mut [f64],
+        both: &mut Together,
+    ) -> Result<bool, EvalError> {
+        // Surfaces that touch resist an approach a thousand times more than a parting: there is a corner where they stand.
+        let r = &self.at.rings[i];
+        if r.contact > TOUCH * r.load {
+            return Ok(false);
+        }
+        both.before.clear();
+        both.before.extend(both.states.iter().map(|&k| y[k]));
+        let before = std::mem::take(&mut both.before);
+        let found = both.solve(stage, y, &mut |y, states, r| self.film_and_oil((i, states), stage, y, r));
+        if found.is_err() {
+            both.states.iter().zip(&before).for_each(|(&k, v)| y[k] = *v);
+        }
+        both.before = before;
+        match found {
+            Ok(()) => Ok(true),
+            Err(e) if e.is_recoverable() => Ok(false),
+            Err(e) => Err(e),
+        }
+    }
+
+    /// What the film of ring `i` and the oil under it lack, where no limit acts.
+    fn film_and_oil(
+        &mut self,
+        (i, states): (usize, &[usize]),
+        stage: &Stage<'_>,
+        y: &[f64],
+        r: &mut [f64],
+    ) -> Result<(), EvalError> {
+        if let Some(oil) = &mut self.oil_pack {
+            oil.place(&y[self.layout.oil.clone()], self.at.piston.y);
+        }
+        let own = self.layout.radial[i].clone();
+        let (mut loads, radial) = self.loads(i);
+        let found = radial.try_stage(&part(stage, own.clone()), &y[own.clone()], &mut loads, r)?;
+        let found = found.map(|(response, film)| loads.found(&response, film));
+        self.at.rings[i] =
+            found.ok_or_else(|| EvalError::recoverable("ring_pack", "a limit acts on a film"))?;
+        self.at.places[i].h = self.rings[i].radial.thickness(&y[own]);
+        self.oil_rates(i);
+        let films = self.layout.radial[i].len();
+        for (r, &k) in r.iter_mut().zip(states).skip(films) {
+            *r = y[k] - stage.base[k] - stage.step * self.dy[k];
+        }
+        Ok(())
     }
 
     /// What the oil under the faces of ring `i` lacks, its film following.
@@ -346,18 +412,11 @@ impl Pack {
     }
 
     fn film_of_stage(&mut self, i: usize, stage: &Stage<'_>, y: &mut [f64]) -> Result<(), EvalError> {
-        self.wet(i)?;
         let own = self.layout.radial[i].clone();
         let part = part(stage, own.clone());
         let (mut loads, radial) = self.loads(i);
-        let outcome = radial.stage(&part, &mut y[own], &mut loads);
-        let (dry, flux, perimeter) = (loads.dry, loads.flux, loads.perimeter);
-        let (load, contact) = (loads.state.load, loads.state.contact);
-        let (found, film) = outcome?;
-        let r = &mut self.at.rings[i];
-        (r.dry, r.flux, r.perimeter) = (dry, flux, perimeter);
-        (r.load, r.contact, r.limited) = (load, contact, found.limited);
-        (r.hdot, r.film, r.film_known) = (found.hdot, film, true);
+        let (response, film) = radial.stage(&part, &mut y[own], &mut loads)?;
+        self.at.rings[i] = loads.found(&response, film);
         Ok(())
     }
 

@@ -20,6 +20,7 @@ use super::staged::Staging;
 mod acting;
 mod guess;
 mod joint;
+mod repeat;
 mod ring_stage;
 mod rings;
 mod span;
@@ -30,6 +31,7 @@ pub use span::MOST_STATES;
 
 use guess::Guess;
 use joint::{Joint, Part};
+use repeat::Repeat;
 use track::Track;
 
 /// What is integrated together.
@@ -91,6 +93,12 @@ impl Half {
     }
 }
 
+/// Change of the films, over the accuracy, of which gas and grooves need not know while the periodic state is searched.
+const ALIKE: f64 = 5.0;
+/// Change of films and their oil up to which the steps of another cycle serve them, and error of a step over the accuracy up to which it is taken again.
+const NEAR: f64 = 0.3;
+const SLACK: f64 = 10.0;
+
 /// Both sides of a pack over a cycle.
 pub struct Waveform {
     grooves: Half,
@@ -98,8 +106,27 @@ pub struct Waveform {
     staging: Staging,
     /// Forces \[N\] of the films on the rings along the liner over the last cycle.
     forces: Track,
-    /// What the films did in the cycle before the last.
+    /// What the films did that gas and grooves saw last, and how these began and ended then.
     before: [Track; 2],
+    seen: Option<Seen>,
+    /// Steps of the films that are taken again, and their stages.
+    grid: Grid,
+    repeat: Repeat,
+}
+
+/// Gas and grooves over the cycle in which they were integrated last.
+struct Seen {
+    start: Vec<f64>,
+    end: Vec<f64>,
+    quads: Vec<f64>,
+}
+
+/// Steps of the films over a cycle that kept its accuracy, and the films then.
+struct Grid {
+    ends: Vec<f64>,
+    start: Vec<f64>,
+    films: Track,
+    rtol: f64,
 }
 
 /// What a cycle is integrated with.
@@ -121,6 +148,14 @@ impl Waveform {
         Self {
             grooves: Half::new(Side::Grooves, pack, balance),
             before: [films.wave.clone(), forces.clone()],
+            seen: None,
+            grid: Grid {
+                ends: Vec::new(),
+                start: Vec::new(),
+                films: films.wave.clone(),
+                rtol: f64::INFINITY,
+            },
+            repeat: Repeat::default(),
             films,
             staging: Staging::with_ring_steps(pack),
             forces,
@@ -151,7 +186,19 @@ impl Waveform {
             begun.map_err(|source| IntegrateError::Eval { t: 0.0, source })
         };
         // A cycle is looked at in its second half, where both are known. Without films there is none.
-        self.grooves(pack, y, q, setting, follower.is_some())?;
+        match self
+            .seen
+            .take()
+            .filter(|seen| follower.is_none() && self.stand(seen, pack, y, setting.options.rtol))
+        {
+            Some(seen) => {
+                let part = &self.grooves.part;
+                part.states.iter().zip(&seen.end).for_each(|(&k, v)| y[k] = *v);
+                part.quads.iter().zip(&seen.quads).for_each(|(&k, v)| q[k] = *v);
+                self.seen = Some(seen);
+            }
+            None => self.grooves(pack, y, q, setting, follower.is_some())?,
+        }
         start(pack, &mut follower)?;
         if !self.films.part.states.is_empty() {
             return self.films(pack, y, q, setting, follower);
@@ -165,6 +212,19 @@ impl Waveform {
             }
         }
         Ok(())
+    }
+
+    /// Whether gas and grooves would do again what they did, to `rtol`: they begin as they did and see much the same films. Without oil on the liner the periodic state is found sooner than
+    /// that would pay.
+    fn stand(&self, seen: &Seen, pack: &Pack, y: &[f64], rtol: f64) -> bool {
+        pack.oil_pack.is_some()
+            && moved(pack, &self.grooves.part, &seen.start, y) <= rtol
+            && self.disagreement(pack) <= ALIKE * rtol
+    }
+
+    /// Has gas and grooves integrated in the next cycle, whatever they see.
+    pub fn look_again(&mut self) {
+        self.seen = None;
     }
 
     /// Before anything is known of the films they stay as they begin, without a force.
@@ -182,6 +242,9 @@ impl Waveform {
         recorded: bool,
     ) -> Result<(), IntegrateError> {
         let half = &mut self.grooves;
+        let start = of(y, &half.part.states);
+        self.before[0].clone_from(&self.films.wave);
+        self.before[1].clone_from(&self.forces);
         half.wave.begin(0.0);
         let (wave, part) = (&mut half.wave, &half.part);
         if let Some(rings) = &mut self.staging.rings {
@@ -200,7 +263,9 @@ impl Waveform {
             }
             Flow::Continue
         };
-        integrate(&mut half.method, &mut system, setting, (y, q), &mut observe)
+        integrate(&mut half.method, &mut system, setting, &[], (y, q), &mut observe)?;
+        self.seen = Some(Seen { start, end: of(y, &half.part.states), quads: of(q, &half.part.quads) });
+        Ok(())
     }
 
     fn films(
@@ -211,9 +276,10 @@ impl Waveform {
         setting: &mut Setting<'_>,
         mut follower: Option<&mut dyn Follower>,
     ) -> Result<(), IntegrateError> {
+        let rtol = setting.options.rtol;
+        let again = follower.is_none() && self.grid_serves(pack, y, rtol);
+        let start = of(y, &self.films.part.states);
         let half = &mut self.films;
-        self.before[0].clone_from(&half.wave);
-        self.before[1].clone_from(&self.forces);
         half.wave.begin(0.0);
         self.forces.begin(0.0);
         let (wave, forces, beside) = (&mut half.wave, &mut self.forces, &self.grooves);
@@ -223,6 +289,8 @@ impl Waveform {
             &beside.wave,
             None,
         );
+        self.repeat.begin(again);
+        system.repeat = Some(&mut self.repeat);
         let mut joint = Joint::new(&beside.wave, [&beside.part, part], system.pack);
         let mut observe = |s: &mut OneSide<'_>, v: &dyn StepView| {
             wave.step(v);
@@ -236,14 +304,29 @@ impl Waveform {
             }
             flow
         };
-        integrate(&mut half.method, &mut system, setting, (y, q), &mut observe)
+        let ends: &[f64] = if again { &self.grid.ends } else { &[] };
+        integrate(&mut half.method, &mut system, setting, ends, (y, q), &mut observe)?;
+        if !again {
+            self.grid = Grid { ends: half.wave.ends().to_vec(), start, films: half.wave.clone(), rtol };
+        }
+        Ok(())
+    }
+
+    /// Whether the steps of the films are good enough for another cycle: with steps of its own, every cycle would differ from the others by the errors of these.
+    fn grid_serves(&self, pack: &Pack, y: &[f64], rtol: f64) -> bool {
+        let grid = &self.grid;
+        let apart = |from: &Track| self.films.wave.mean_change(from, pack.period(), pack.films()).change;
+        pack.oil_pack.is_some()
+            && grid.rtol <= rtol
+            && moved(pack, &self.films.part, &grid.start, y) <= NEAR
+            && apart(&grid.films) <= NEAR
     }
 
     /// How much the films of the last cycle differ from those that gas and grooves of that cycle saw: the mean of the change of thickness over itself, and that
     /// of their forces over their size, whichever is larger; infinite before anything is known of films.
     pub fn disagreement(&self, pack: &Pack) -> f64 {
         let period = pack.period();
-        let films = pack.layout.radial.iter().map(ExactSizeIterator::len).sum();
+        let films = pack.films();
         if films == 0 {
             return 0.0;
         }
@@ -256,23 +339,40 @@ impl Waveform {
     }
 }
 
+/// Values at some places.
+fn of(all: &[f64], places: &[usize]) -> Vec<f64> {
+    places.iter().map(|&k| all[k]).collect()
+}
+
+/// How far the states of a side are from where they began a cycle: the largest change over what counts as one between cycles.
+fn moved(pack: &Pack, part: &Part, start: &[f64], y: &[f64]) -> f64 {
+    let change = |(&k, v): (&usize, &f64)| {
+        let info = &pack.layout.states[k];
+        let scale = if info.cycle_relative { v.abs().max(info.cycle_scale) } else { info.cycle_scale };
+        (y[k] - v).abs() / scale
+    };
+    part.states.iter().zip(start).map(change).fold(0.0, f64::max)
+}
+
 /// Integrates one side over a cycle.
 fn integrate(
     method: &mut Sdirk,
     system: &mut OneSide<'_>,
     setting: &mut Setting<'_>,
+    ends: &[f64],
     (y, q): (&mut [f64], &mut [f64]),
     observe: &mut dyn FnMut(&mut OneSide<'_>, &dyn StepView) -> Flow,
 ) -> Result<(), IntegrateError> {
     let part = system.part;
-    let of = |all: &[f64]| part.states.iter().map(|&k| all[k]).collect::<Vec<_>>();
     let mut options = setting.options.clone();
     if system.side == Side::Grooves {
         options.h_max = setting.longest_step;
     }
-    options.atol = of(&options.atol);
+    options.ends = ends.to_vec();
+    options.slack = if ends.is_empty() { 1.0 } else { SLACK };
+    options.atol = of(&options.atol, &part.states);
     options.absolute = part.states.iter().map(|&k| setting.options.absolute[k]).collect();
-    let (mut states, mut quads) = (of(y), vec![0.0; part.quads.len()]);
+    let (mut states, mut quads) = (of(y, &part.states), vec![0.0; part.quads.len()]);
     let span = (0.0, system.pack.period());
     let st = &mut *setting.stats;
     method.integrate(system, span, setting.breakpoints, &mut states, &mut quads, &options, st, observe)?;
@@ -303,6 +403,8 @@ struct OneSide<'a> {
     /// States whose errors the steps of the rings judge, by their rows.
     judged: Vec<usize>,
     guess: Guess,
+    /// The same stages of the cycle before, where they are known.
+    repeat: Option<&'a mut Repeat>,
 }
 
 impl<'a> OneSide<'a> {
@@ -332,6 +434,7 @@ impl<'a> OneSide<'a> {
             quads: vec![0.0; pack.layout.quads()],
             judged,
             guess: Guess::default(),
+            repeat: None,
             pack,
         }
     }
@@ -394,8 +497,10 @@ impl<'a> OneSide<'a> {
         if self.side == Side::Grooves {
             return (0..layout.gas.len(), Some(p));
         }
-        let films: usize = layout.radial.iter().map(ExactSizeIterator::len).sum();
-        (films..films + layout.oil.len(), None)
+        let films = self.pack.films();
+        // Without oil films are found by brackets.
+        let first = if layout.oil.is_empty() { films } else { 0 };
+        (first..films + layout.oil.len(), None)
     }
 
     fn quadratures(&mut self, q: &mut [f64]) {
@@ -429,6 +534,9 @@ impl OdeSystem for OneSide<'_> {
         let (guessed, drive) = self.guessed(p);
         let part = Stage { base: &stage.base[guessed.clone()], ..*stage };
         self.guess.apply(t, &part, drive, &mut y[guessed.clone()]);
+        if let Some(repeat) = &mut self.repeat {
+            repeat.apply(t, stage, y);
+        }
         self.fill(t, y);
         for (j, &k) in self.part.states.iter().enumerate() {
             (self.base[k], self.accuracy[k]) = (stage.base[j], stage.accuracy[j]);
@@ -437,6 +545,9 @@ impl OdeSystem for OneSide<'_> {
         self.pack.stage_of(self.side, (t, p), &whole, &mut self.y, &self.axial, self.staging)?;
         self.part.states.iter().zip(&mut *y).for_each(|(&k, v)| *v = self.y[k]);
         self.guess.learn(t, &part, &y[guessed]);
+        if let Some(repeat) = &mut self.repeat {
+            repeat.learn(t, stage, y);
+        }
         self.keep_forces(stage.number);
         self.quadratures(g);
         Ok(())
