@@ -462,8 +462,6 @@ const OIL_AGAIN: f64 = 0.2;
 const NOISE_AGAIN: f64 = 0.1;
 /// Most cycles in halves, without oil on the liner and with it, before the pack is integrated whole.
 const HALVES_TRY: [usize; 2] = [10, 40];
-/// Least tolerance of the first cycle in halves, in which films stand still for the gas: more accuracy is for nothing.
-const ROUGH: f64 = 3e-2;
 /// Tolerance of that over the one that was asked for: with it both leave the same errors.
 const WHOLE: f64 = 0.3;
 /// How strongly oil on the liner bends the map of a cycle: what a face takes up goes by a meniscus whose place is a root of the volume, and a wave before an
@@ -480,11 +478,7 @@ impl CycleMap for Cycle<'_> {
         for (y, s) in y1.iter_mut().zip(&self.pack.layout.states) {
             *y = y.max(s.cycle_min);
         }
-        let rough = match &self.method {
-            Method::Waveform(w) if w.disagreement(self.pack).is_infinite() => ROUGH,
-            _ => 0.0,
-        };
-        let rtol = accuracy.max(FINEST).max(rough);
+        let rtol = accuracy.max(FINEST);
         let n = self.pack.layout.n;
         self.failure = None;
         self.begin(y1);

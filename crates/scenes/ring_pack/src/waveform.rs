@@ -323,15 +323,12 @@ impl Waveform {
     }
 
     /// How much the films of the last cycle differ from those that gas and grooves of that cycle saw: the mean of the change of thickness over itself, and that
-    /// of their forces over their size, whichever is larger; infinite before anything is known of films.
+    /// of their forces over their size, whichever is larger.
     pub fn disagreement(&self, pack: &Pack) -> f64 {
         let period = pack.period();
         let films = pack.films();
         if films == 0 {
             return 0.0;
-        }
-        if self.before[0].is_empty() {
-            return f64::INFINITY;
         }
         let thickness = self.films.wave.mean_change(&self.before[0], period, films).change;
         let force = self.forces.mean_change(&self.before[1], period, self.forces.width());
