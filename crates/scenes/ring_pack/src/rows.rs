@@ -17,12 +17,16 @@ pub struct Rows {
     theta: Vec<f64>,
     y: Vec<f64>,
     q: Vec<f64>,
+    /// Flows \[kg/s\] past each ring and to the crankcase, of every row but the first.
+    flows: Vec<f64>,
     /// What the models remember beside their states.
     memory: Vec<f64>,
 }
 
 /// A row at the end of a step is its end, \[rad\].
 const SLACK: f64 = 1e-9;
+/// Part of a step over which a slope is taken to either side.
+const BESIDE: f64 = 1e-3;
 
 impl Rows {
     /// Rows `step` \[rad\] apart, or the nearest whole part of a cycle.
@@ -41,6 +45,7 @@ impl Rows {
             theta: Vec::with_capacity(count),
             y: Vec::with_capacity(count * pack.layout.n),
             q: Vec::with_capacity(count * quads),
+            flows: Vec::with_capacity(count * (pack.n_rings() + 1)),
             memory,
         }
     }
@@ -57,7 +62,21 @@ impl Rows {
         {
             let t = row.min(v.t1());
             self.keep(pack, t, |y| v.interpolate(t, y), |q| v.interpolate_quad(t, q));
+            self.keep_flows(pack, v, t);
         }
+    }
+
+    /// Keeps the flows at `t` as slopes of what has passed: next to a wide passage a flow that is evaluated magnifies what dense output lacks.
+    fn keep_flows(&mut self, pack: &Pack, v: &dyn StepView, t: f64) {
+        let beside = BESIDE * (v.t1() - v.t0());
+        let (from, to) = ((t - beside).max(v.t0()), (t + beside).min(v.t1()));
+        let mut passed = [from, to].map(|_| vec![0.0; pack.layout.quads()]);
+        for (q, t) in passed.iter_mut().zip([from, to]) {
+            v.interpolate_quad(t, q);
+        }
+        let [before, after] = passed;
+        let slopes = before.iter().zip(&after).map(|(a, b)| (b - a) / (to - from) * pack.omega);
+        self.flows.extend(slopes.take(pack.n_rings() + 1));
     }
 
     fn keep(
@@ -92,6 +111,11 @@ impl Rows {
             pack.evaluate_again(theta, &self.y[k * dim..][..dim], Some(memory))?;
             (0..n).try_for_each(|i| pack.film_peak(i))?;
             let q = &self.q[k * quads..][..quads];
+            if let Some(first) = k.checked_sub(1) {
+                let flows = &self.flows[first * (n + 1)..][..=n];
+                pack.at.gas.flow_in.copy_from_slice(&flows[..n]);
+                pack.at.gas.flow_out[n - 1] = flows[n];
+            }
             record.push(theta, pack, &q[..n], q[n]);
         }
         Ok(record)
