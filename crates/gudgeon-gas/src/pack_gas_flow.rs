@@ -20,6 +20,13 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> PackNetwork<M, L> {
         Ok(())
     }
 
+    /// Computes all flows and writes what follows from them.
+    fn flow(&mut self, d_state: &mut [f64], out: &mut GasOut) {
+        self.net.update_flows();
+        self.write_pressures(out);
+        self.write_flows(d_state, out);
+    }
+
     fn write_pressures(&self, out: &mut GasOut) {
         for (p, &node) in out.p_land.iter_mut().zip(&self.lands) {
             *p = self.net.pressure(node);
@@ -175,9 +182,7 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> GasFlow for PackNetwork<M, L> {
         out: &mut GasOut,
     ) -> Result<(), EvalError> {
         self.set(inp, state)?;
-        self.net.update_flows();
-        self.write_pressures(out);
-        self.write_flows(d_state, out);
+        self.flow(d_state, out);
         Ok(())
     }
 
@@ -189,9 +194,7 @@ impl<L: PassageLaw, M: PassageModel<L::Passage>> GasFlow for PackNetwork<M, L> {
         out: &mut GasOut,
     ) -> Result<(), EvalError> {
         self.set_pressures(inp, state)?;
-        self.net.update_flows();
-        self.write_pressures(out);
-        self.write_flows(d_state, out);
+        self.flow(d_state, out);
         Ok(())
     }
 

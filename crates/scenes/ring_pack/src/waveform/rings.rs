@@ -1,8 +1,9 @@
 //! Rings in their grooves at steps of their own within a step of the gas.
 //!
 //! A stage of the gas asks where a ring stands at its instant. The ring comes there from the instant before, the start of the step or its first stage, by
-//! the step of the gas or by as many as its own accuracy asks for ([`super::span`]): a multirate method. While the gas is solved a ring responds linearly to the force of the gas; how, its
-//! last two integrations tell (a secant a ring). Gas and rings alternate until every ring stands where the gas saw it.
+//! the step of the gas or by as many as its own accuracy asks for ([`super::span`]): a multirate method. While the gas is solved a ring goes on at the rates that it had, where
+//! that was all that the gas saw of it in the stage before; elsewhere it responds linearly to the force of the gas: how, its last two integrations tell (a secant a ring), or what was learnt in
+//! the step before. Gas and rings alternate until every ring stands where the gas saw it.
 
 use gudgeon_core::EvalError;
 use gudgeon_core::geometry::RingPlace;
@@ -31,7 +32,6 @@ const KEPT_LOOKS: usize = 2;
 const PASSES: usize = 10;
 /// Ends of steps that are one within this \[rad\].
 const SLACK: f64 = 1e-9;
-
 /// Most stages for which it is taken for granted how a ring responded.
 const STALE: usize = 8;
 
