@@ -251,8 +251,9 @@ pub(super) fn lend<'f>(follower: &'f mut Option<&mut dyn Follower>) -> Option<&'
     }
 }
 
-/// First step of a cycle \[rad\].
+/// First step of a cycle \[rad\], and of one in halves: their stages are solved from farther away.
 const FIRST_STEP: f64 = 1e-3;
+const FIRST_OF_HALVES: f64 = 1e-2;
 
 enum Method {
     Rodas(Box<Rodas>),
@@ -313,7 +314,7 @@ impl Cycle<'_> {
         self.pack.each_block(|b, _| b.set_accuracy(accuracy));
         self.pack.events(&mut self.events);
         // Every cycle starts with the same step: the map must depend on nothing but the state.
-        self.h = FIRST_STEP;
+        self.h = if matches!(self.method, Method::Waveform(_)) { FIRST_OF_HALVES } else { FIRST_STEP };
         self.staging.restart();
         self.q.fill(0.0);
         let period = self.pack.period();

@@ -21,7 +21,7 @@ use super::track::Track;
 /// Error over the tolerance up to which steps chosen for other pressures are kept.
 const KEPT: f64 = 2.0;
 /// Difference, over the tolerance, between where a ring comes to and where the gas saw it, in clearances and open shares of gaps.
-const SEEN: f64 = 2e-2;
+const SEEN: f64 = 0.1;
 /// Change of the force on a ring, over the tolerance and the sum of all forces, for which it is not integrated again.
 const NEARLY: f64 = 0.03;
 /// Least change of the force on a ring \[N\] from which its response is learnt.

@@ -14,8 +14,8 @@ use super::super::ring::Ring;
 use super::acting::{Acting, Values, Variation};
 use super::ring_stage::{RingStage, Step};
 
-/// Most steps between two instants, rejected ones included.
-const MOST: usize = 400;
+/// Most steps between two instants, rejected ones included. A ring that needs more crosses its groove: gas that sees only where it ends would take the step back.
+const MOST: usize = 8;
 /// Part of the step that the error estimate admits which is taken, and the largest growth.
 const SAFETY: f64 = 0.85;
 const GROWTH: f64 = 2.0;
