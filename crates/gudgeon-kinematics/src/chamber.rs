@@ -47,7 +47,7 @@ impl Chamber {
     #[must_use]
     pub fn volume(&self, theta: f64) -> f64 {
         // The difference is at least zero up to rounding; the clearance volume keeps the sum positive.
-        self.area * (self.kinematics.y_tdc() - self.kinematics.motion(theta).y) + self.clearance
+        self.area * (self.kinematics.y_tdc() - self.kinematics.height(theta)) + self.clearance
     }
 
     /// Volume \[m³\] and its derivative \[m³/rad\].

@@ -98,13 +98,18 @@ impl Space {
     }
 
     pub fn volume(&self, theta: f64) -> f64 {
+        self.volume_at(self.kinematics.height(theta))
+    }
+
+    /// Volume \[m³\] with the pin at a height.
+    pub fn volume_at(&self, height: f64) -> f64 {
         // At least the clearance, up to rounding.
-        (self.area * (self.kinematics.y_tdc() - self.kinematics.height(theta)) + self.v_min).max(self.v_min)
+        (self.area * (self.kinematics.y_tdc() - height) + self.v_min).max(self.v_min)
     }
 
     /// Piston speed by its largest, squared: 0 at the dead centres.
     pub fn speed(&self, theta: f64) -> f64 {
-        self.kinematics.motion(theta).v.abs()
+        self.kinematics.velocity(theta).abs()
     }
 
     /// Crank angle at which `f` changes sign between two angles, to rounding.

@@ -78,6 +78,13 @@ impl Kinematics for Exact {
         let tan_phi = sin_phi / ((1.0 - sin_phi) * (1.0 + sin_phi)).sqrt();
         -omega * r * (sin + cos * tan_phi)
     }
+    fn height_and_velocity(&self, theta: f64) -> (f64, f64) {
+        let Self { r, l, e, omega, .. } = *self;
+        let (sin, cos) = elementary::sin_cos(theta);
+        let sin_phi = (r * sin - e) / l;
+        let cos_phi = ((1.0 - sin_phi) * (1.0 + sin_phi)).sqrt();
+        (r * cos + l * cos_phi, -omega * r * (sin + cos * (sin_phi / cos_phi)))
+    }
     fn y_tdc(&self) -> f64 {
         self.y_tdc
     }

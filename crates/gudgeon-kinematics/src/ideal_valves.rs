@@ -98,14 +98,8 @@ impl Ideal {
     fn compression(&self, volume: f64) -> f64 {
         self.suction * elementary::powf(self.space.v_max / volume, self.n)
     }
-}
-
-impl CylinderPressure for Ideal {
-    fn pressure(&self, theta: f64) -> f64 {
-        if self.open {
-            return self.suction;
-        }
-        let volume = self.space.volume(theta);
+    /// Pressure at an angle at which the gas has a volume.
+    fn at(&self, theta: f64, volume: f64) -> f64 {
         if self.space.since_top(theta) < self.space.down {
             let is_open = volume > self.expanded * (1.0 + BESIDE);
             if is_open { self.suction } else { self.expansion(volume).max(self.suction) }
@@ -113,6 +107,15 @@ impl CylinderPressure for Ideal {
             let is_open = volume < self.compressed * (1.0 - BESIDE);
             if is_open { self.discharge } else { self.compression(volume).min(self.discharge) }
         }
+    }
+}
+
+impl CylinderPressure for Ideal {
+    fn pressure(&self, theta: f64) -> f64 {
+        if self.open { self.suction } else { self.at(theta, self.space.volume(theta)) }
+    }
+    fn pressure_at_height(&self, _: f64, theta: f64, height: f64) -> f64 {
+        if self.open { self.suction } else { self.at(theta, self.space.volume_at(height)) }
     }
     fn kinks(&self) -> &[f64] {
         &self.kinks

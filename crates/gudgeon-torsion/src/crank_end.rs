@@ -18,6 +18,10 @@ impl Kinematics for CrankEnd {
     fn velocity(&self, theta: f64) -> f64 {
         -self.head.velocity(theta)
     }
+    fn height_and_velocity(&self, theta: f64) -> (f64, f64) {
+        let (y, v) = self.head.height_and_velocity(theta);
+        (-y, -v)
+    }
     fn y_tdc(&self) -> f64 {
         self.head.stroke() - self.head.y_tdc()
     }

@@ -6,7 +6,8 @@
 use gudgeon_numerics::elementary;
 use std::f64::consts::PI;
 
-/// Segments per turn: the functions of a crank vary over a tenth of a turn at the fastest.
+/// Segments per turn: the functions of a crank vary over a tenth of a turn at the fastest. Multiples of their width stand in their middle, so that angles near
+/// equidistant points of a turn, where the motion of a cycle is looked at, are in one segment each and not on both sides of an end.
 const PER_TURN: usize = 512;
 /// Segments per radian, of every interpolant.
 const PER_RADIAN: f64 = PER_TURN as f64 / (2.0 * PI);
@@ -41,7 +42,7 @@ enum Segment {
 /// Where an angle lies among the segments, which are the same of all interpolants but for their number.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Place {
-    /// Segments from angle zero on.
+    /// Segments from that about angle zero on.
     segment: i64,
     /// Coordinate in the segment, from -1 to 1.
     inside: f64,
@@ -51,7 +52,7 @@ impl Place {
     /// Of an angle \[rad\].
     #[inline]
     pub fn of(angle: f64) -> Self {
-        let u = angle * PER_RADIAN;
+        let u = angle * PER_RADIAN + 0.5;
         // The floor, which is no machine instruction everywhere.
         let segment = u as i64 - i64::from(u < 0.0);
         Self { segment, inside: 2.0 * (u - segment as f64) - 1.0 }
@@ -120,7 +121,7 @@ impl<const N: usize> Interpolant<N> {
             Segment::Direct => f(angle),
             Segment::NotBuilt => {
                 self.build(i, &f);
-                f(angle)
+                self.value_at(place, angle, f)
             }
         }
     }
@@ -147,7 +148,7 @@ impl<const N: usize> Interpolant<N> {
     }
 
     fn build(&mut self, i: usize, f: &impl Fn(f64) -> [f64; N]) {
-        let angle = |t: f64| (i as f64 + 0.5 * (t + 1.0)) / PER_RADIAN;
+        let angle = |t: f64| (i as f64 + 0.5 * t) / PER_RADIAN;
         let mut all = [[0.0; TERMS]; N];
         for (at, by_term) in self.fit.iter() {
             for (terms, own) in all.iter_mut().zip(f(angle(*at))) {

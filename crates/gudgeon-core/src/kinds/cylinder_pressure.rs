@@ -38,6 +38,11 @@ pub trait CylinderPressure: Debug + DynClone + Send + Sync {
         let _ = decided_at;
         self.pressure(theta)
     }
+    /// The same where the height \[m\] of the pin at `theta` is known already: that of the kinematics that the model was built with.
+    fn pressure_at_height(&self, decided_at: f64, theta: f64, height: f64) -> f64 {
+        let _ = height;
+        self.pressure_decided_at(decided_at, theta)
+    }
     /// Crank angles in `[0, period)` \[rad\], ascending, where the pressure or its slope jumps, and the tops of pulses so narrow that a
     /// step could pass over them: an integrator restarts there.
     fn kinks(&self) -> &[f64];

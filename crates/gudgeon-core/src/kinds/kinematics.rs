@@ -56,6 +56,11 @@ pub trait Kinematics: Debug + DynClone + Send + Sync {
     fn velocity(&self, theta: f64) -> f64 {
         self.motion(theta).v
     }
+    /// Both at once.
+    fn height_and_velocity(&self, theta: f64) -> (f64, f64) {
+        let m = self.motion(theta);
+        (m.y, m.v)
+    }
     /// Highest position of the pin \[m\].
     fn y_tdc(&self) -> f64;
     /// Stroke \[m\].

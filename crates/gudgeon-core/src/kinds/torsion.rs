@@ -74,13 +74,19 @@ impl GasEnd {
     /// at `decided_at`.
     #[must_use]
     pub fn torque(&self, decided_at: f64, theta: f64) -> f64 {
-        self.torque_of(self.pressure.pressure_decided_at(decided_at, theta), theta)
+        let (height, velocity) = self.kinematics.height_and_velocity(theta);
+        self.torque_at(velocity, self.pressure.pressure_at_height(decided_at, theta, height), theta)
     }
 
     /// Torque \[N m\] of a pressure \[Pa\] on the throw at its angle `theta`.
     #[must_use]
     pub fn torque_of(&self, pressure: f64, theta: f64) -> f64 {
-        let mut way = self.kinematics.velocity(theta) / self.kinematics.omega();
+        self.torque_at(self.kinematics.velocity(theta), pressure, theta)
+    }
+
+    /// The same where the velocity of the piston is known.
+    fn torque_at(&self, velocity: f64, pressure: f64, theta: f64) -> f64 {
+        let mut way = velocity / self.kinematics.omega();
         if self.obliquity == Obliquity::Reversed {
             // The crank end sees the motion turned about, and its lever with it.
             let m = self.kinematics.motion(theta);
