@@ -6,6 +6,7 @@ use gudgeon_core::kinds::{Line, LineThrow};
 use gudgeon_numerics::elementary;
 use gudgeon_numerics::linalg::Complex;
 use gudgeon_numerics::quadrature::GaussLegendre;
+use gudgeon_numerics::vectors::{Vectorised, widest};
 
 /// Orders closer than this are one.
 const SAME: f64 = 1e-9;
@@ -13,6 +14,10 @@ const SAME: f64 = 1e-9;
 const PANELS: usize = 64;
 /// Points of Gauss per panel: 16 points carry 4 waves to 1e-10 of their amplitude and 5 to 1e-7, so a turn carries 300 orders.
 const POINTS: usize = 16;
+/// Points whose waves are added up side by side.
+const LANES: usize = 8;
+/// Orders after which waves are made afresh instead of by turning the one before, so that rounding does not add up.
+const AFRESH: usize = 32;
 
 /// Torques of one order.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,32 +46,65 @@ pub fn series(f: impl Fn(f64) -> f64, period: f64, kinks: &[f64], max_harmonic: 
     stops.extend(kinks.iter().map(|k| k.rem_euclid(period)));
     stops.sort_unstable_by(f64::total_cmp);
     let gauss = GaussLegendre::new(POINTS);
-    let mut c = vec![Complex::default(); max_harmonic + 1];
+    let (nodes, weights) = (gauss.nodes(), gauss.weights());
+    let mut sums = vec![[[0.0; LANES]; 2]; max_harmonic + 1];
     for w in stops.windows(2) {
         let (a, b) = (w[0], w[1]);
         if b - a < 1e-14 * period {
             continue;
         }
-        for (x, weight) in gauss.nodes().iter().zip(gauss.weights()) {
-            let at = 0.5 * (a + b) + 0.5 * (b - a) * x;
-            let v = f(at) * weight * 0.5 * (b - a) / period;
-            c[0].re += v;
-            // e^{-ikbα} by repeated turning, started afresh now and then so that rounding does not add up.
-            let (sin, cos) = elementary::sin_cos(base * at);
-            let turn = Complex::new(cos, -sin);
-            let mut e = Complex::new(2.0 * v, 0.0);
-            for (k, c) in c.iter_mut().enumerate().skip(1) {
-                if k % 32 == 0 {
-                    let (sin, cos) = elementary::sin_cos(k as f64 * base * at);
-                    e = Complex::new(2.0 * v * cos, -2.0 * v * sin);
-                } else {
-                    e = e * turn;
+        for first in (0..POINTS).step_by(LANES) {
+            let at = std::array::from_fn(|l| 0.5 * (a + b) + 0.5 * (b - a) * nodes[first + l]);
+            let value = std::array::from_fn(|l| f(at[l]) * weights[first + l] * (b - a) / period);
+            widest(Waves { at, value, base, sums: &mut sums });
+        }
+    }
+    let total = |lanes: &[f64; LANES]| lanes.iter().sum::<f64>();
+    let mut c: Vec<Complex> = sums.iter().map(|[re, im]| Complex::new(total(re), total(im))).collect();
+    c[0] = Complex::new(0.5 * c[0].re, 0.0);
+    c
+}
+
+/// Adds `value e^{-ik base at}` of some points side by side to the sums over all points, k from 0.
+struct Waves<'s> {
+    at: [f64; LANES],
+    value: [f64; LANES],
+    base: f64,
+    sums: &'s mut [[[f64; LANES]; 2]],
+}
+
+impl Vectorised for Waves<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { at, value, base, sums } = self;
+        let (mut cos, mut sin) = ([1.0; LANES], [0.0; LANES]);
+        for l in 0..LANES {
+            (sin[l], cos[l]) = elementary::sin_cos(base * at[l]);
+        }
+        for (n, some) in sums.chunks_mut(AFRESH).enumerate() {
+            let (mut re, mut im) = (value, [0.0; LANES]);
+            if n > 0 {
+                for l in 0..LANES {
+                    let (sin, cos) = elementary::sin_cos((n * AFRESH) as f64 * base * at[l]);
+                    (re[l], im[l]) = (value[l] * cos, -value[l] * sin);
                 }
-                *c = *c + e;
+            }
+            for sum in some {
+                let (mut next_re, mut next_im) = ([0.0; LANES], [0.0; LANES]);
+                for l in 0..LANES {
+                    sum[0][l] += re[l];
+                    next_re[l] = re[l] * cos[l] + im[l] * sin[l];
+                }
+                for l in 0..LANES {
+                    sum[1][l] += im[l];
+                    next_im[l] = im[l] * cos[l] - re[l] * sin[l];
+                }
+                (re, im) = (next_re, next_im);
             }
         }
     }
-    c
 }
 
 /// Period of the gas torque of a throw over its angle \[rad\].

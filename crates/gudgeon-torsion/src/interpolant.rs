@@ -116,14 +116,14 @@ impl<const N: usize> Interpolant<N> {
     #[inline]
     pub(crate) fn value_at(&mut self, place: Place, angle: f64, f: impl Fn(f64) -> [f64; N]) -> [f64; N] {
         let i = self.segment(place);
-        match self.segments[i] {
-            Segment::Polynomial => self.coefficients[i].each_ref().map(|c| value(c, place.inside)),
-            Segment::Direct => f(angle),
-            Segment::NotBuilt => {
-                self.build(i, &f);
-                self.value_at(place, angle, f)
-            }
+        if self.segments[i] == Segment::NotBuilt {
+            self.build(i, &f);
         }
+        if self.segments[i] == Segment::Direct {
+            return f(angle);
+        }
+        let c = &self.coefficients[i];
+        std::array::from_fn(|k| value(&c[k], place.inside))
     }
 
     /// Derivatives with respect to the angle \[rad\]; where a function is not smooth, that of the polynomial through it at the nodes.
@@ -138,7 +138,8 @@ impl<const N: usize> Interpolant<N> {
         if self.segments[i] == Segment::NotBuilt {
             self.build(i, &f);
         }
-        self.coefficients[i].each_ref().map(|c| 2.0 * PER_RADIAN * derivative(c, place.inside))
+        let c = &self.coefficients[i];
+        std::array::from_fn(|k| 2.0 * PER_RADIAN * derivative(&c[k], place.inside))
     }
 
     /// Segment of a place: their number is a power of two.
@@ -147,6 +148,7 @@ impl<const N: usize> Interpolant<N> {
         (place.segment & (self.segments.len() as i64 - 1)) as usize
     }
 
+    #[inline(never)]
     fn build(&mut self, i: usize, f: &impl Fn(f64) -> [f64; N]) {
         let angle = |t: f64| (i as f64 + 0.5 * t) / PER_RADIAN;
         let mut all = [[0.0; TERMS]; N];
@@ -165,6 +167,7 @@ impl<const N: usize> Interpolant<N> {
     }
 }
 
+#[inline]
 fn value(c: &[f64; TERMS], t: f64) -> f64 {
     let s = t * t;
     // Two short sums that do not wait for each other.
@@ -173,6 +176,7 @@ fn value(c: &[f64; TERMS], t: f64) -> f64 {
     even + t * odd
 }
 
+#[inline]
 fn derivative(c: &[f64; TERMS], t: f64) -> f64 {
     (1..TERMS).rev().fold(0.0, |sum, k| sum * t + k as f64 * c[k])
 }

@@ -35,6 +35,8 @@ pub struct Steady {
     /// Damping against the ground without that of the drives, by position.
     drag: Vec<f64>,
     varying: bool,
+    /// Whether all links are the same at any mean torque and frequency: the tree keeps what it was built with.
+    constant: bool,
     /// Room for the pivots of a count.
     pub(crate) pivots: Vec<f64>,
     work: Work,
@@ -95,6 +97,9 @@ impl Steady {
         let z = vec![Complex::default(); n];
         let mut steady = Self {
             varying: line.links.iter().any(|l| l.coupling.depends_on_frequency()),
+            constant: line.links.iter().all(|l| {
+                !l.coupling.depends_on_frequency() && !l.coupling.depends_on_load()
+            }),
             excitation: Excitation::default(),
             speed: ctx.speed,
             mean_torque: Vec::new(),
@@ -129,31 +134,40 @@ impl Steady {
     }
 
     /// Leaves the torque of the moving masses out of the excitation, and gives it every multiple of `base` up to the harmonic `count`,
-    /// also where nothing excites it.
-    pub(crate) fn whole_orders_without_masses(&mut self, base: f64, count: usize) {
+    /// also where nothing excites it. What is left out is returned: the same orders at unit speed.
+    pub(crate) fn whole_orders_without_masses(&mut self, base: f64, count: usize) -> Vec<Order> {
         let n = self.line.nodes.len();
-        let [fixed, masses] = &mut self.parts;
-        masses.orders = (1..=count)
-            .map(|k| Order { order: k as f64 * base, torque: vec![Complex::default(); n] })
-            .collect();
-        let old = std::mem::replace(&mut fixed.orders, masses.orders.clone());
-        for o in old {
-            let k = (o.order / base).round() as usize;
-            if (1..=count).contains(&k) {
-                fixed.orders[k - 1].torque = o.torque;
+        let none = |k: usize| Order { order: k as f64 * base, torque: vec![Complex::default(); n] };
+        let nothing: Vec<Order> = (1..=count).map(none).collect();
+        let whole = |old: Vec<Order>| {
+            let mut orders = nothing.clone();
+            for o in old {
+                let k = (o.order / base).round() as usize;
+                if (1..=count).contains(&k) {
+                    orders[k - 1].torque = o.torque;
+                }
             }
-        }
+            orders
+        };
+        let [fixed, masses] = &mut self.parts;
+        fixed.orders = whole(std::mem::take(&mut fixed.orders));
+        let left_out = whole(std::mem::replace(&mut masses.orders, nothing.clone()));
         self.set_speed(self.speed);
+        left_out
     }
 
     /// The mean state under the means of the excitation, and the tree about it.
     fn linearise(&mut self) {
-        self.tree.linearise(&self.line, 0.0, &[]);
+        if !self.constant {
+            self.tree.linearise(&self.line, 0.0, &[]);
+        }
         self.tree.damping.clone_from(&self.drag);
         let mean = std::mem::take(&mut self.excitation.mean);
         self.take_mean(&mean);
         self.excitation.mean = mean;
-        self.tree.linearise(&self.line, 0.0, &self.mean_torque);
+        if !self.constant {
+            self.tree.linearise(&self.line, 0.0, &self.mean_torque);
+        }
         drive_damping(&self.line, &mut self.tree, self.speed);
     }
 

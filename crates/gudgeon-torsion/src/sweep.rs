@@ -149,11 +149,17 @@ impl Sweep {
         let n = tree.len();
         let (inertia, damping, ground) = (&tree.inertia[..n], &tree.damping[..n], &tree.ground[..n]);
         let (s, f) = (&mut self.s[..n], &mut self.f[..n]);
+        let mut square = [0.0; LANES];
+        for l in 0..LANES {
+            square[l] = omega[l] * omega[l];
+        }
         for i in 0..n {
+            let (own, ground, inertia, damping) = (&mut s[i], ground[i], inertia[i], damping[i]);
             for l in 0..LANES {
-                let w = omega[l];
-                s[i][0][l] = ground[i] - w * w * inertia[i];
-                s[i][1][l] = w * damping[i];
+                own[0][l] = ground - square[l] * inertia;
+            }
+            for l in 0..LANES {
+                own[1][l] = omega[l] * damping;
             }
             f[i] = torque(i);
         }

@@ -12,28 +12,28 @@ use crate::sweep::{LANES, Lane, Sweep};
 #[derive(Debug)]
 pub(super) struct IndependentOrders {
     steady: Steady,
-    sweep: Sweep,
     groups: Vec<Group>,
-    /// Torques by position and order.
-    torque: Vec<[Lane; 2]>,
 }
 
 /// Neighbouring orders that are solved side by side; lanes that are left over repeat the last one.
 #[derive(Debug)]
 struct Group {
-    first: usize,
-    count: usize,
     order: Lane,
     /// Torques by position: those that do not depend on the speed, and those of the moving masses at unit speed.
     parts: [Vec<[Lane; 2]>; 2],
+    /// Their sum at the speed of the line, and the answer to it.
+    torque: Vec<[Lane; 2]>,
+    omega: Lane,
+    sweep: Sweep,
 }
 
-/// The orders of a line by groups.
+/// The orders of a line by groups of [`LANES`].
 fn groups(steady: &Steady) -> Vec<Group> {
     let [fixed, _] = &steady.parts;
+    let n = steady.tree.len();
     let of = |first: usize| {
-        let count = LANES.min(fixed.orders.len() - first);
-        let of_lane = |l: usize| first + l.min(count - 1);
+        let last = (first + LANES).min(fixed.orders.len()) - 1;
+        let of_lane = |l: usize| (first + l).min(last);
         let torques = |part: &Excitation| {
             let at = |node: usize, l: usize| part.orders[of_lane(l)].torque[node];
             let lanes = |node: &usize| {
@@ -42,10 +42,11 @@ fn groups(steady: &Steady) -> Vec<Group> {
             steady.tree.node.iter().map(lanes).collect()
         };
         Group {
-            first,
-            count,
             order: std::array::from_fn(|l| fixed.orders[of_lane(l)].order),
             parts: steady.parts.each_ref().map(torques),
+            torque: vec![[[0.0; LANES]; 2]; n],
+            omega: [0.0; LANES],
+            sweep: Sweep::new(n),
         }
     };
     (0..fixed.orders.len()).step_by(LANES).map(of).collect()
@@ -56,9 +57,7 @@ impl IndependentOrders {
     /// As [`Steady::new`].
     pub fn new(ctx: &TorsionCtx<'_>) -> Result<Self, BuildError> {
         let steady = Steady::new(ctx)?;
-        let n = steady.tree.len();
-        let groups = groups(&steady);
-        Ok(Self { steady, sweep: Sweep::new(n), groups, torque: vec![[[0.0; LANES]; 2]; n] })
+        Ok(Self { groups: groups(&steady), steady })
     }
 
     /// Response to all orders.
@@ -69,9 +68,17 @@ impl IndependentOrders {
         }
         let orders = self.steady.parts[0].orders.iter().map(|o| o.order);
         out.reset(orders, self.steady.tree.len(), self.steady.line.links.len());
-        for g in 0..self.groups.len() {
-            self.respond_together(g, out)?;
+        let Self { steady, groups } = self;
+        widest(Excite { groups, steady, out });
+        for g in groups.iter_mut() {
+            let (tree, torque) = (&steady.tree, &g.torque);
+            if g.sweep.solve_lanes(tree, &g.omega, |p| scaled(&torque[p], tree.ratio[p])).is_err() {
+                // The elimination of one order says it in its own words.
+                self.one_by_one()?;
+                return Err(EvalError::fatal("torsion", "an undamped resonance is hit"));
+            }
         }
+        widest(Answer { groups, steady, out });
         Ok(())
     }
 
@@ -84,28 +91,12 @@ impl IndependentOrders {
         found
     }
 
-    /// Response to a group of orders, side by side.
-    fn respond_together(&mut self, g: usize, out: &mut OrderResponses) -> Result<(), EvalError> {
-        let Self { steady, sweep, groups, torque } = self;
-        let (tree, group) = (&steady.tree, &groups[g]);
-        let omega: Lane = std::array::from_fn(|l| group.order[l] * steady.speed);
-        widest(Excite { group, steady, torque, out });
-        let at = |p: usize| scaled(&torque[p], tree.ratio[p]);
-        if sweep.solve_lanes(tree, &omega, at).is_err() {
-            // The elimination of one order says it in its own words.
-            self.one_by_one()?;
-            return Err(EvalError::fatal("torsion", "an undamped resonance is hit"));
-        }
-        widest(Answer { group, steady, sweep, omega: &omega, out });
-        Ok(())
-    }
 }
 
-/// Torques of a group at the speed of a line, by position and among the answers.
+/// Torques of all orders at the speed of a line, by group and among the answers.
 struct Excite<'e> {
-    group: &'e Group,
+    groups: &'e mut [Group],
     steady: &'e Steady,
-    torque: &'e mut [[Lane; 2]],
     out: &'e mut OrderResponses,
 }
 
@@ -114,27 +105,34 @@ impl Vectorised for Excite<'_> {
 
     #[inline(always)]
     fn run(self) {
-        let square = self.steady.speed * self.steady.speed;
-        let [fixed, masses] = &self.group.parts;
-        for (p, node) in self.steady.tree.node.iter().enumerate() {
-            let (own, fixed, masses) = (&mut self.torque[p], &fixed[p], &masses[p]);
+        let Self { groups, steady, out } = self;
+        let square = steady.speed * steady.speed;
+        for g in groups.iter_mut() {
             for l in 0..LANES {
-                own[0][l] = fixed[0][l] + masses[0][l] * square;
+                g.omega[l] = g.order[l] * steady.speed;
             }
-            for l in 0..LANES {
-                own[1][l] = fixed[1][l] + masses[1][l] * square;
+        }
+        for (p, node) in steady.tree.node.iter().enumerate() {
+            for g in groups.iter_mut() {
+                let (own, fixed, masses) = (&mut g.torque[p], &g.parts[0][p], &g.parts[1][p]);
+                for l in 0..LANES {
+                    own[0][l] = fixed[0][l] + masses[0][l] * square;
+                }
+                for l in 0..LANES {
+                    own[1][l] = fixed[1][l] + masses[1][l] * square;
+                }
             }
-            self.group.write(own, self.out.excitation_mut(*node));
+            let [re, im] = out.excitation_mut(*node);
+            write(re, groups, 1.0, |g| &g.torque[p][0]);
+            write(im, groups, 1.0, |g| &g.torque[p][1]);
         }
     }
 }
 
-/// Takes the answers of a sweep.
+/// Takes the answers of the sweeps.
 struct Answer<'s> {
-    group: &'s Group,
+    groups: &'s [Group],
     steady: &'s Steady,
-    sweep: &'s Sweep,
-    omega: &'s Lane,
     out: &'s mut OrderResponses,
 }
 
@@ -143,35 +141,45 @@ impl Vectorised for Answer<'_> {
 
     #[inline(always)]
     fn run(self) {
-        let Self { group, steady, sweep, omega, out } = self;
+        let Self { groups, steady, out } = self;
         let t = &steady.tree;
         let n = t.len();
-        for (p, (x, q)) in sweep.angle.iter().zip(&sweep.transmitted).enumerate() {
-            group.write(&scaled(x, t.ratio[p]), out.angle_mut(t.node[p]));
+        for p in 0..n {
+            let [re, im] = out.angle_mut(t.node[p]);
+            write(re, groups, t.ratio[p], |g| &g.sweep.angle[p][0]);
+            write(im, groups, t.ratio[p], |g| &g.sweep.angle[p][1]);
             if t.parent[p] >= n {
                 continue;
             }
             let s = if t.forward[p] { 1.0 } else { -1.0 } / t.link_ratio[p];
-            group.write(&scaled(q, s), out.torque_mut(t.link[p]));
-            group.write_row(&heat(steady, p, q, omega), out.heat_mut(t.link[p]));
+            let [re, im] = out.torque_mut(t.link[p]);
+            write(re, groups, s, |g| &g.sweep.transmitted[p][0]);
+            write(im, groups, s, |g| &g.sweep.transmitted[p][1]);
+            let (whole, rest) = out.heat_mut(t.link[p]).as_chunks_mut::<LANES>();
+            for (own, g) in whole.iter_mut().zip(groups) {
+                *own = heat(steady, p, &g.sweep.transmitted[p], &g.omega);
+            }
+            if let Some(g) = groups.get(whole.len()) {
+                rest.copy_from_slice(&heat(steady, p, &g.sweep.transmitted[p], &g.omega)[..rest.len()]);
+            }
         }
     }
 }
 
-impl Group {
-    /// Writes the lanes of its orders into rows of all.
-    #[inline(always)]
-    fn write(&self, lanes: &[Lane; 2], [re, im]: [&mut [f64]; 2]) {
-        self.write_row(&lanes[0], re);
-        self.write_row(&lanes[1], im);
+/// Writes what the groups have, times a factor, into a row of all orders.
+#[inline(always)]
+fn write<'g>(row: &mut [f64], groups: &'g [Group], by: f64, of: impl Fn(&'g Group) -> &'g Lane) {
+    let (whole, rest) = row.as_chunks_mut::<LANES>();
+    for (own, g) in whole.iter_mut().zip(groups) {
+        let lanes = of(g);
+        for l in 0..LANES {
+            own[l] = by * lanes[l];
+        }
     }
-
-    #[inline(always)]
-    fn write_row(&self, lanes: &Lane, row: &mut [f64]) {
-        let row = &mut row[self.first..][..self.count];
-        match <&mut Lane>::try_from(&mut *row) {
-            Ok(whole) => *whole = *lanes,
-            Err(_) => row.copy_from_slice(&lanes[..self.count]),
+    // Lanes of the last group that are left over have no place.
+    if let Some(g) = groups.get(whole.len()) {
+        for (own, x) in rest.iter_mut().zip(of(g)) {
+            *own = by * x;
         }
     }
 }
@@ -209,9 +217,9 @@ impl Torsion for IndependentOrders {
         self.respond(&mut out.orders)?;
         let counts = [("time_steps", 0), ("linear_solutions", out.orders.len() as u64)];
         for (name, n) in counts {
-            // At most speeds they are there already.
-            match out.counters.get_mut(name) {
-                Some(own) => *own = n,
+            // At most speeds they are there already, and to compare few names takes less than to hash one.
+            match out.counters.iter_mut().find(|(known, _)| *known == name) {
+                Some((_, own)) => *own = n,
                 None => drop(out.counters.insert(name.into(), n)),
             }
         }

@@ -1,6 +1,6 @@
 //! A line in one load step, asked for its vibration at one speed after the other.
 
-mod sizes;
+pub(crate) mod sizes;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -14,7 +14,7 @@ use gudgeon_torsion::steady::Steady;
 use gudgeon_torsion::torsion::Orders;
 
 use super::assemble::Assembled;
-use sizes::{all_finite, largest_angles, torque_amplitudes};
+use sizes::{all_finite, angle_bounds, strongest, torque_amplitudes};
 
 /// Damping ratio below which a resonance counts as undamped: its peak would be a million times the static answer.
 const UNDAMPED: f64 = 1e-6;
@@ -148,16 +148,17 @@ impl<'a> Machine<'a> {
     }
 
     /// Vibration at a speed \[rad/s\]; none where there is no periodic motion, which is kept in mind.
-    pub fn at(&mut self, speed: f64) -> Option<&Arc<Point>> {
+    pub fn at(&mut self, speed: f64) -> Option<Arc<Point>> {
         // Bits of positive numbers ascend with them.
         let key = speed.to_bits();
-        if !self.points.contains_key(&key) {
-            let out = self.answer(speed)?;
-            let point = self.point(&out);
-            self.room = out;
-            self.points.insert(key, Arc::new(point));
+        if let Some(point) = self.points.get(&key) {
+            return Some(Arc::clone(point));
         }
-        self.points.get(&key)
+        let out = self.answer(speed)?;
+        let point = Arc::new(self.point(&out));
+        self.room = out;
+        self.points.insert(key, Arc::clone(&point));
+        Some(point)
     }
 
     /// Vibration in one link at a speed \[rad/s\], without looking at the others.
@@ -203,13 +204,17 @@ impl<'a> Machine<'a> {
     /// Vibration at ascending speeds, every second one after those beside it: a model that iterates starts from what is known on both
     /// sides.
     pub fn prepare(&mut self, speeds: &[f64]) {
-        let mut stride = speeds.len().next_power_of_two();
-        while stride > 0 {
-            // Where there is no answer, whoever asks for it finds out.
-            if speeds.iter().step_by(stride).any(|w| self.at(*w).is_none()) {
+        let mut none = |w: &f64| self.at(*w).is_none();
+        // Where there is no answer, whoever asks for it finds out.
+        if speeds.first().is_some_and(&mut none) {
+            return;
+        }
+        let mut half = speeds.len().next_power_of_two() / 2;
+        while half > 0 {
+            if speeds.iter().skip(half).step_by(2 * half).any(&mut none) {
                 return;
             }
-            stride /= 2;
+            half /= 2;
         }
     }
 
@@ -250,8 +255,8 @@ impl<'a> Machine<'a> {
         if by_order {
             p.orders = torque_amplitudes(&out.orders);
         }
-        // Mostly one look at the largest angle of each order tells that nothing is large.
-        let [rate, angle] = largest_angles(&out.orders, nodes);
+        // Mostly one look at all angles together tells that nothing is large.
+        let [rate, angle] = angle_bounds(&out.orders, nodes);
         // Relative speed of an inertia at the reference shaft: order times angle.
         let ratio = |i: usize| a.line.nodes[i].ratio;
         let orders = || out.orders.orders().iter().copied();
@@ -335,10 +340,10 @@ impl<'a> Machine<'a> {
             Sought::Line(quantity) => quantity(p),
         };
         let samples: Vec<(f64, f64)> =
-            speeds.iter().filter_map(|w| self.at(*w).map(|p| (*w, of_point(p)))).collect();
+            speeds.iter().filter_map(|w| self.at(*w).map(|p| (*w, of_point(&p)))).collect();
         let mut of_speed = |w| match sought {
             Sought::Link(l, quantity) => self.link_at(w, *l).map(|p| quantity(&p)),
-            Sought::Line(quantity) => self.at(w).map(|p| quantity(p)),
+            Sought::Line(quantity) => self.at(w).map(|p| quantity(&p)),
         };
         maximise(&samples, |w| of_speed(w).unwrap_or(f64::NEG_INFINITY))
     }
@@ -378,7 +383,7 @@ fn link_point(cycle: &mut Cycle, out: &TorsionOut, link: usize) -> LinkPoint {
         amplitude: 0.5 * (top - bottom),
         peak: top.abs().max(bottom.abs()),
         heat: out.orders.heat(link).iter().sum(),
-        order: strongest_of(phasors(torques).map(square).zip(out.orders.orders().iter().copied())),
+        order: strongest(out.orders.orders(), torques),
     }
 }
 

@@ -383,7 +383,7 @@ impl<'m, 'a> Step<'m, 'a> {
             let found = "no bound".into();
             return Some(Judged { used: UNBOUNDED, text, found, speed: c.speed, order: Some(c.order) });
         }
-        let order = self.machine.at(speed).and_then(|p| limit.order(place.0, p));
+        let order = self.machine.at(speed).and_then(|p| limit.order(place.0, &p));
         let mostly = order.map_or_else(String::new, |o| format!(", mostly order {o}"));
         let found = limit.told(value);
         let text = format!("{found} of {} at {}{mostly}", limit.told(limit.admitted), told(speed));
@@ -396,7 +396,7 @@ impl<'m, 'a> Step<'m, 'a> {
             return Some((UNBOUNDED, "vibration without bound".into()));
         }
         let (a, name) = (self.machine.a, &self.name);
-        let point = self.machine.at(c.speed)?;
+        let point = &self.machine.at(c.speed)?;
         let shares = limits.iter().filter(|l| l.counts_in(name)).filter_map(|l| {
             let (at, factor) = l.place(a)?;
             (l.order(at, point) == Some(c.order)).then(|| (factor * l.value(at, point) / l.admitted, l))
@@ -417,7 +417,7 @@ impl<'m, 'a> Step<'m, 'a> {
         let mut sampled: Vec<(f64, &Forced)> = Vec::new();
         for l in limits.iter().filter(|l| l.counts_in(&self.name)) {
             let Some((at, factor)) = l.place(self.machine.a) else { continue };
-            let values = speeds.iter().filter_map(|w| self.machine.at(*w).map(|p| factor * l.value(at, p)));
+            let values = speeds.iter().filter_map(|w| self.machine.at(*w).map(|p| factor * l.value(at, &p)));
             sampled.push((values.fold(0.0, f64::max) / l.admitted, l));
         }
         sampled.sort_by(|a, b| b.0.total_cmp(&a.0));

@@ -226,7 +226,7 @@ fn limited_curves(
         for (k, s) in steps.iter_mut().enumerate().filter(|(_, s)| l.counts_in(&s.name)) {
             let Some((at, _)) = l.place(s.machine.a) else { continue };
             let name = key.replacen('.', &format!(".step{}.", k + 1), 1);
-            let values = speeds.iter().map(|w| s.machine.at(*w).map_or(0.0, |p| l.value(at, p))).collect();
+            let values = speeds.iter().map(|w| s.machine.at(*w).map_or(0.0, |p| l.value(at, &p))).collect();
             if table.get(&name).is_none() {
                 table.columns.push(column(name.clone(), unit, values));
             }

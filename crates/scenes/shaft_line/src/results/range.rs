@@ -10,6 +10,7 @@ use gudgeon_core::result::{Column, Figure, FigureKind, Lines, Mark, Note, Series
 use super::envelope::limits_of;
 use super::{MAX_DRAWN, Results, column};
 use crate::assemble::{Assembled, throws_alone};
+use crate::machine::sizes::raise;
 use crate::machine::{Machine, Point, Sought};
 use crate::verdict::{Operating, forced};
 use crate::{draw, rpm, told};
@@ -24,7 +25,7 @@ fn points(machine: &mut Machine<'_>, speeds: &[f64]) -> Result<Vec<Arc<Point>>, 
     let mut rows = Vec::with_capacity(speeds.len());
     for w in speeds {
         match machine.at(*w) {
-            Some(p) => rows.push(Arc::clone(p)),
+            Some(p) => rows.push(p),
             None => return Err(machine.why(*w)),
         }
     }
@@ -118,7 +119,7 @@ impl Results<'_> {
         let hint = format!("half of peak to peak{}", self.own_step());
         self.lines("Vibratory torque over the speed", &hint, "speed_range", "speed", curves, false);
         self.weigh_critical_speeds(&orders, &rows, &speeds);
-        let strengths: Vec<Vec<f64>> = (0..links).map(|l| strength(l, &orders, &rows)).collect();
+        let strengths = strengths(links, &orders, &rows);
         let curves = orders_of(worst, &orders, (&rows, &strengths), &mut table);
         if let Some(l) = a.line.links.get(worst) {
             let title = format!("Orders of {} over the speed", l.name);
@@ -373,15 +374,11 @@ impl Shown<'_> {
     }
 }
 
-/// Largest torque amplitude of a shaft over the speed, by order \[N m\].
-fn strength(link: usize, orders: &[f64], rows: &[Arc<Point>]) -> Vec<f64> {
-    let mut most = vec![0.0; orders.len()];
-    for p in rows {
-        most.iter_mut()
-            .zip(p.orders_of(link))
-            .for_each(|(most, own)| *most = if *own > *most { *own } else { *most });
-    }
-    most
+/// Largest torque amplitudes over the speed, by shaft and order \[N m\].
+fn strengths(links: usize, orders: &[f64], rows: &[Arc<Point>]) -> Vec<Vec<f64>> {
+    let mut most = vec![0.0; links * orders.len()];
+    rows.iter().for_each(|p| raise(&mut most, &p.orders));
+    most.chunks(orders.len().max(1)).map(<[f64]>::to_vec).collect()
 }
 
 /// Columns of the strongest orders of a shaft over the speed, with their labels.
