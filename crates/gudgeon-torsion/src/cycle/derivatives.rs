@@ -7,6 +7,10 @@ use std::f64::consts::PI;
 const LANES: usize = 4;
 /// Blocks after which turning starts afresh, so that rounding does not add up.
 const AFRESH: usize = 16;
+/// Places of a turn whose cosines and sines are kept.
+const PLACES: usize = 64;
+/// Their distance \[rad\].
+const PLACE: f64 = 2.0 * PI / PLACES as f64;
 
 /// A number for each of some neighbouring multiples.
 type Lane = [f64; LANES];
@@ -20,7 +24,7 @@ struct Block {
     square: Lane,
 }
 
-/// Sum of the squares of the amplitudes, and bounds of the second to fifth derivative.
+/// Sum of the squares of the amplitudes, and bounds of the second to sixth derivative.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Sizes {
     pub square: f64,
@@ -28,6 +32,7 @@ pub(super) struct Sizes {
     pub third: f64,
     pub fourth: f64,
     pub fifth: f64,
+    pub sixth: f64,
 }
 
 /// Orders with their phasors. Multiples of one order are turned from one to the next, several side by side.
@@ -37,6 +42,8 @@ pub(super) struct Derivatives {
     phasors: [Vec<f64>; 2],
     /// Angular frequency of the period.
     base: f64,
+    /// Cosines and sines of [`PLACES`].
+    turns: Vec<[f64; 2]>,
     /// Place of each order in the blocks; empty where orders are no multiples, or few of many.
     places: Vec<usize>,
     blocks: Vec<Block>,
@@ -53,8 +60,12 @@ impl Derivatives {
             blocks[place / LANES].order[place % LANES] = *order;
             blocks[place / LANES].square[place % LANES] = order * order;
         }
+        let turns = (0..if dense { PLACES } else { 0 }).map(|i| {
+            let (sin, cos) = elementary::sin_cos(i as f64 * PLACE);
+            [cos, sin]
+        });
         let (orders, base) = (orders.to_vec(), 2.0 * PI / period);
-        Self { orders, phasors: Default::default(), base, places, blocks }
+        Self { orders, phasors: Default::default(), base, turns: turns.collect(), places, blocks }
     }
 
     /// The orders.
@@ -89,7 +100,7 @@ impl Derivatives {
     /// The size of the sum: each derivative is at most that of all waves at once.
     #[inline(always)]
     pub fn sizes(&self) -> Sizes {
-        let mut sums = [[0.0; LANES]; 5];
+        let mut sums = [[0.0; LANES]; 6];
         if self.blocks.is_empty() {
             let [re, im] = &self.phasors;
             for ((re, im), o) in re.iter().zip(im).zip(&self.orders) {
@@ -101,17 +112,17 @@ impl Derivatives {
         for block in &self.blocks {
             block.add_sizes(&mut sums);
         }
-        let [square, second, third, fourth, fifth] = totals(&sums);
-        Sizes { square, second, third, fourth, fifth }
+        let [square, second, third, fourth, fifth, sixth] = totals(&sums);
+        Sizes { square, second, third, fourth, fifth, sixth }
     }
 
-    /// The sum at an angle \[rad\], and its first four derivatives.
+    /// The sum at an angle \[rad\], and its first five derivatives.
     #[inline(always)]
-    pub fn at(&self, angle: f64) -> [f64; 5] {
+    pub fn at(&self, angle: f64) -> [f64; 6] {
         if self.blocks.is_empty() {
             return self.one_by_one(angle);
         }
-        let mut sums = [[0.0; LANES]; 5];
+        let mut sums = [[0.0; LANES]; 6];
         self.each(angle, |block, lanes| block.add(lanes, &mut sums));
         totals(&sums)
     }
@@ -128,12 +139,12 @@ impl Derivatives {
                 sum[l] += re[l] * cos[l] - im[l] * sin[l];
             }
         });
-        total(&sum)
+        total_of(&sum)
     }
 
     #[inline(never)]
-    fn one_by_one(&self, angle: f64) -> [f64; 5] {
-        let mut sums = [0.0; 5];
+    fn one_by_one(&self, angle: f64) -> [f64; 6] {
+        let mut sums = [0.0; 6];
         let [re, im] = &self.phasors;
         for (o, (re, im)) in self.orders.iter().zip(re.iter().zip(im)) {
             let (sin, cos) = elementary::sin_cos(o * angle);
@@ -146,12 +157,7 @@ impl Derivatives {
     /// Goes through the blocks with the cosines and sines of their multiples of an angle.
     #[inline(always)]
     fn each(&self, angle: f64, mut take: impl FnMut(&Block, &[Lane; 2])) {
-        let (sin, cos) = elementary::sin_cos(self.base * angle);
-        // Cosines and sines of the first multiples.
-        let mut first = [[cos; LANES], [sin; LANES]];
-        for l in 1..LANES {
-            [first[0][l], first[1][l]] = turned([first[0][l - 1], first[1][l - 1]], [cos, sin]);
-        }
+        let first = self.first(angle);
         let by = [first[0][LANES - 1], first[1][LANES - 1]];
         let mut lanes = first;
         for (b, block) in self.blocks.iter().enumerate() {
@@ -166,12 +172,42 @@ impl Derivatives {
             take(block, &lanes);
         }
     }
+
+    /// Cosines and sines of the first multiples of an angle. A function of its own: beside it the compiler would take the lanes apart again in the loop
+    /// over the blocks.
+    #[inline(never)]
+    fn first(&self, angle: f64) -> [Lane; 2] {
+        let one = self.turn(angle);
+        let two = turned(one, one);
+        let (three, four) = (turned(two, one), turned(two, two));
+        [0, 1].map(|part| [one[part], two[part], three[part], four[part]])
+    }
+
+    /// Cosine and sine of the order of the period at an angle: those of the nearest place, turned by what is left, of which the powers beyond these are below
+    /// rounding.
+    #[inline]
+    fn turn(&self, angle: f64) -> [f64; 2] {
+        let at = self.base * angle;
+        let near = at * (1.0 / PLACE) + 0.5;
+        // The floor, which is no machine instruction everywhere.
+        let place = near as i64 - i64::from(near < 0.0);
+        let Some(known) = self.turns.get((place & (PLACES as i64 - 1)) as usize) else {
+            let (sin, cos) = elementary::sin_cos(at);
+            return [cos, sin];
+        };
+        let x = at - place as f64 * PLACE;
+        let y = x * x;
+        let sin = x * (1.0 - y * (1.0 / 6.0) * (1.0 - y * (1.0 / 20.0) * (1.0 - y * (1.0 / 42.0))));
+        let rest = 1.0 - y * (1.0 / 30.0) * (1.0 - y * (1.0 / 56.0));
+        let cos = 1.0 - 0.5 * y * (1.0 - y * (1.0 / 12.0) * rest);
+        turned(*known, [cos, sin])
+    }
 }
 
 impl Block {
-    /// Adds the squares of its amplitudes, and the largest second to fifth derivatives of its waves.
+    /// Adds the squares of its amplitudes, and the largest second to sixth derivatives of its waves.
     #[inline(always)]
-    fn add_sizes(&self, sums: &mut [Lane; 5]) {
+    fn add_sizes(&self, sums: &mut [Lane; 6]) {
         for l in 0..LANES {
             let square = self.re[l] * self.re[l] + self.im[l] * self.im[l];
             let second = square.sqrt() * self.square[l];
@@ -179,14 +215,16 @@ impl Block {
             sums[0][l] += square;
             sums[1][l] += second;
             sums[2][l] += third;
-            sums[3][l] += second * self.square[l];
+            let fourth = second * self.square[l];
+            sums[3][l] += fourth;
             sums[4][l] += third * self.square[l];
+            sums[5][l] += fourth * self.square[l];
         }
     }
 
     /// Adds its waves and their derivatives at angles whose cosines and sines are given.
     #[inline(always)]
-    fn add(&self, [cos, sin]: &[Lane; 2], sums: &mut [Lane; 5]) {
+    fn add(&self, [cos, sin]: &[Lane; 2], sums: &mut [Lane; 6]) {
         let (mut even, mut odd) = ([0.0; LANES], [0.0; LANES]);
         for l in 0..LANES {
             even[l] = self.re[l] * cos[l] - self.im[l] * sin[l];
@@ -202,14 +240,21 @@ impl Block {
             sums[2][l] -= even[l];
             sums[3][l] += odd[l];
             sums[4][l] += even[l] * self.square[l];
+            sums[5][l] -= odd[l] * self.square[l];
         }
     }
 }
 
-/// The sums of all lanes. A function of its own: beside the loops that make the lanes, the compiler would add the five sums side by side instead of the lanes.
+/// The sums of all lanes. A function of its own: beside the loops that make the lanes, the compiler would add the six sums side by side instead of the lanes.
 #[inline(never)]
-fn totals([a, b, c, d, e]: &[Lane; 5]) -> [f64; 5] {
-    [total(a), total(b), total(c), total(d), total(e)]
+fn totals([a, b, c, d, e, f]: &[Lane; 6]) -> [f64; 6] {
+    [total(a), total(b), total(c), total(d), total(e), total(f)]
+}
+
+/// The sum of all lanes, a function of its own likewise.
+#[inline(never)]
+fn total_of(lanes: &Lane) -> f64 {
+    total(lanes)
 }
 
 /// The sum of all lanes.
@@ -218,11 +263,11 @@ fn total([a, b, c, d]: &Lane) -> f64 {
     (a + c) + (b + d)
 }
 
-/// A wave and its first four derivatives.
-fn wave([re, im, order]: [f64; 3], cos: f64, sin: f64) -> [f64; 5] {
+/// A wave and its first five derivatives.
+fn wave([re, im, order]: [f64; 3], cos: f64, sin: f64) -> [f64; 6] {
     let (x, y) = (re * cos - im * sin, order * (re * sin + im * cos));
     let square = order * order;
-    [x, -y, -square * x, square * y, square * square * x]
+    [x, -y, -square * x, square * y, square * square * x, -square * square * y]
 }
 
 /// The product of two complex numbers.

@@ -62,8 +62,9 @@ struct Look {
     one_top: f64,
     /// What a top may miss.
     admitted: f64,
-    /// Bound of the fifth derivative.
+    /// Bounds of the fifth and sixth derivative.
     fifth: f64,
+    sixth: f64,
 }
 
 /// Maximum and minimum of the waves.
@@ -128,7 +129,7 @@ impl Cycle {
         let [above, missed] = self.above(half, step, sizes);
         let one_top = if grid == 0 { f64::INFINITY } else { -CURVED * sizes.fourth * step.powi(4) };
         let admitted = ROUNDING * sizes.square.sqrt();
-        let look = Look { step, above, missed, one_top, admitted, fifth: sizes.fifth };
+        let look = Look { step, above, missed, one_top, admitted, fifth: sizes.fifth, sixth: sizes.sixth };
         self.tops(high, low, &look)
     }
 
@@ -237,8 +238,8 @@ impl Cycle {
 
     /// The top near a place between points, the first of which stands at one half, by Newton's method on the Taylor polynomial of degree four, at most one point away.
     ///
-    /// A step of `x` ends once that polynomial leaves out no more than is admitted, `M x⁵/120` by the bound `M` of the fifth derivative; or once the top of the
-    /// polynomial is so close to that of the sum, `M x⁴/24` by the second derivative, that the sum there is no more lower than that.
+    /// A step of `x` ends once that of degree five leaves out no more than is admitted, `M x⁶/720` by the bound `M` of the sixth derivative; or once the top of
+    /// the polynomial is so close to that of the sum, `M x⁴/24` of the fifth one by the second, that the sum there is no more lower than that.
     #[inline(always)]
     fn climb(&self, s: f64, sign: f64, look: &Look) -> f64 {
         let mut at = s * look.step;
@@ -247,7 +248,7 @@ impl Cycle {
         for _ in 0..20 {
             let mut derivatives = self.sum.at(at);
             derivatives.iter_mut().for_each(|d| *d *= sign);
-            let [value, first, second, third, fourth] = derivatives;
+            let [value, first, second, third, fourth, fifth] = derivatives;
             best = best.max(value);
             let slope = |x: f64| first + x * (second + x * (third / 2.0 + x * fourth / 6.0));
             let curve = |x: f64| second + x * (third + x * fourth / 2.0);
@@ -257,11 +258,11 @@ impl Cycle {
             let by = if second < 0.0 && top.is_finite() { top } else { 0.25 * look.step * first.signum() };
             let next = (at + by).clamp(from, to);
             let by = next - at;
-            let left = look.fifth * by.powi(4) / 24.0;
-            if 0.2 * left * by.abs() <= look.admitted {
-                let taylor = second / 2.0 + by * (third / 6.0 + by * fourth / 24.0);
-                return best.max(value + by * (first + by * taylor));
+            if look.sixth * by.powi(6) <= 720.0 * look.admitted {
+                let taylor = third / 6.0 + by * (fourth / 24.0 + by * fifth / 120.0);
+                return best.max(value + by * (first + by * (second / 2.0 + by * taylor)));
             }
+            let left = look.fifth * by.powi(4) / 24.0;
             if second < 0.0 && (slope(by).abs() + left).powi(2) <= 2.0 * look.admitted * curve(by).abs() {
                 return best.max(sign * self.sum.value(next));
             }

@@ -13,41 +13,52 @@ const BLOCK: usize = 2 * LANES;
 /// Cosines and sines of one order at neighbouring points, by vectors: arrays of more numbers than these would be added up in vectors of two.
 type Row = [[[f64; LANES]; 2]; 2];
 
+/// Place of an order that is not there.
+const NONE: usize = usize::MAX;
+
 /// The points of a period, the first half a step from its beginning.
 #[derive(Debug, Clone)]
 pub(super) struct Waves {
     period: f64,
     points: usize,
-    /// Orders, and their places among all: even multiples of that of the period and odd ones; all together where they are no multiples.
-    groups: [Vec<(f64, usize)>; 2],
+    orders: Vec<f64>,
+    /// Places of the orders, an odd multiple of that of the period and an even one side by side, so that all sums of a pair stay in registers; any two where
+    /// they are no multiples. Where there are more of one kind, [`NONE`] of the other.
+    pairs: Vec<[usize; 2]>,
+    /// Whether these are the orders one after the other.
+    in_order: bool,
     /// Whether orders are multiples: a quarter of the period is summed up, from whose even and odd multiples and cosines and sines the others
     /// follow.
     folded: bool,
-    /// Rows of all orders of a group, block by block of points; empty where they would be too large.
-    tables: [Vec<Row>; 2],
-    /// Phasors of a group.
-    own: [Vec<[f64; 2]>; 2],
+    /// Rows of all pairs, block by block of points; empty where they would be too large.
+    table: Vec<[Row; 2]>,
+    /// Phasors by pair.
+    own: Vec<[[f64; 2]; 2]>,
 }
 
 impl Waves {
     /// `points`, a multiple of four blocks, over a period \[rad\]; `multiples` of the order of the period that the orders are, or nothing.
     pub fn new(orders: &[f64], period: f64, points: usize, multiples: &[usize]) -> Self {
-        let mut groups = [Vec::new(), Vec::new()];
-        for (k, order) in orders.iter().enumerate() {
-            groups[multiples.get(k).map_or(0, |m| m % 2)].push((*order, k));
-        }
-        let folded = !multiples.is_empty();
-        let mut own =
-            Self { period, points, groups, folded, tables: Default::default(), own: Default::default() };
-        if 2 * BLOCK * own.blocks() * orders.len() <= KEPT {
-            let rows = |group: &[(f64, usize)]| {
-                let blocks = 0..own.blocks();
-                blocks
-                    .flat_map(|b| group.iter().map(move |(o, _)| (*o, b)))
-                    .map(|(o, b)| own.row(o, b))
-                    .collect()
-            };
-            own.tables = [rows(&own.groups[0]), rows(&own.groups[1])];
+        let kind = |odd: usize| {
+            let own = move |k: &usize| multiples.get(*k).map_or(*k, |m| m + 1) % 2 != odd;
+            (0..orders.len()).filter(own).collect::<Vec<usize>>()
+        };
+        let (odd, even) = (kind(1), kind(0));
+        let at = |all: &[usize], j: usize| all.get(j).copied().unwrap_or(NONE);
+        let pairs: Vec<_> = (0..odd.len().max(even.len())).map(|j| [at(&odd, j), at(&even, j)]).collect();
+        let mut own = Self {
+            period,
+            points,
+            orders: orders.to_vec(),
+            in_order: pairs.as_flattened().iter().enumerate().all(|(k, place)| k == *place),
+            folded: !multiples.is_empty(),
+            table: Vec::new(),
+            own: vec![Default::default(); pairs.len()],
+            pairs,
+        };
+        if 4 * BLOCK * own.blocks() * own.pairs.len() <= KEPT {
+            let rows = (0..own.blocks()).flat_map(|b| own.pairs.iter().map(move |pair| (pair, b)));
+            own.table = rows.map(|(pair, b)| own.rows(pair, b)).collect();
         }
         own
     }
@@ -57,76 +68,105 @@ impl Waves {
         self.points / if self.folded { 4 * BLOCK } else { BLOCK }
     }
 
-    fn row(&self, order: f64, block: usize) -> Row {
-        let mut row = Row::default();
-        for i in 0..BLOCK {
-            let angle = order * self.period * ((block * BLOCK + i) as f64 + 0.5) / self.points as f64;
-            let (sin, cos) = elementary::sin_cos(angle);
-            (row[0][i / LANES][i % LANES], row[1][i / LANES][i % LANES]) = (cos, sin);
+    /// Rows of a pair of orders; one that is not there has no phasor, whatever its row.
+    fn rows(&self, pair: &[usize; 2], block: usize) -> [Row; 2] {
+        let mut rows = <[Row; 2]>::default();
+        for (row, place) in rows.iter_mut().zip(pair) {
+            let Some(order) = self.orders.get(*place) else { continue };
+            for i in 0..BLOCK {
+                let angle = order * self.period * ((block * BLOCK + i) as f64 + 0.5) / self.points as f64;
+                let (sin, cos) = elementary::sin_cos(angle);
+                (row[0][i / LANES][i % LANES], row[1][i / LANES][i % LANES]) = (cos, sin);
+            }
         }
-        row
+        rows
+    }
+
+    /// Takes phasors, real and imaginary parts of all orders.
+    #[inline(always)]
+    fn take(&mut self, [re, im]: [&[f64]; 2]) {
+        if self.in_order {
+            let parts = re.as_chunks::<2>().0.iter().zip(im.as_chunks::<2>().0);
+            for (own, (re, im)) in self.own.iter_mut().zip(parts) {
+                *own = [[re[0], im[0]], [re[1], im[1]]];
+            }
+            return;
+        }
+        let part = |part: &[f64], place: usize| part.get(place).copied().unwrap_or(0.0);
+        for (own, [odd, even]) in self.own.iter_mut().zip(&self.pairs) {
+            *own = [[part(re, *odd), part(im, *odd)], [part(re, *even), part(im, *even)]];
+        }
     }
 
     /// `Σ Re(a_k e^{i n_k θ})` at the points.
     #[inline(always)]
-    pub fn sum(&mut self, [re, im]: [&[f64]; 2], wave: &mut [f64]) {
-        for (own, group) in self.own.iter_mut().zip(&self.groups) {
-            own.clear();
-            own.extend(group.iter().map(|(_, k)| [re[*k], im[*k]]));
-        }
-        let half = self.points / 2;
-        for b in 0..self.blocks() {
-            let [[cos_even, sin_even], [cos_odd, sin_odd]] = [self.block(0, b), self.block(1, b)];
-            let first = b * BLOCK;
-            if !self.folded {
+    pub fn sum(&mut self, phasors: [&[f64]; 2], wave: &mut [f64]) {
+        self.take(phasors);
+        if !self.folded {
+            for (b, place) in wave.as_chunks_mut::<BLOCK>().0.iter_mut().enumerate() {
+                let [odd, even] = self.block(b);
                 for i in 0..BLOCK {
-                    wave[first + i] = cos_even[i] - sin_even[i];
+                    let (h, l) = (i / LANES, i % LANES);
+                    place[i] = (even[0][h][l] + odd[0][h][l]) - (even[1][h][l] + odd[1][h][l]);
                 }
-                continue;
             }
-            let mut quarters = [[0.0; BLOCK]; 4];
-            for i in 0..BLOCK {
-                let (cos, sin) = (cos_even[i] + cos_odd[i], sin_even[i] + sin_odd[i]);
-                // Half a period on, odd multiples have turned their sign.
-                let (cos_on, sin_on) = (cos_even[i] - cos_odd[i], sin_even[i] - sin_odd[i]);
-                quarters[0][i] = cos - sin;
-                quarters[1][BLOCK - 1 - i] = cos_on + sin_on;
-                quarters[2][i] = cos_on - sin_on;
-                quarters[3][BLOCK - 1 - i] = cos + sin;
-            }
-            let last = first + BLOCK;
-            let places = [first, half - last, half + first, 2 * half - last];
-            for (quarter, place) in quarters.iter().zip(places) {
-                wave[place..place + BLOCK].copy_from_slice(quarter);
+            return;
+        }
+        let (first, last) = wave.split_at_mut(self.points / 2);
+        let ((first, second), (third, fourth)) =
+            (first.split_at_mut(self.points / 4), last.split_at_mut(self.points / 4));
+        let forward = first.as_chunks_mut::<LANES>().0.iter_mut().zip(third.as_chunks_mut::<LANES>().0);
+        let backward = second.as_chunks_mut::<LANES>().0.iter_mut().zip(fourth.as_chunks_mut::<LANES>().0);
+        let mut places = forward.zip(backward.rev());
+        for b in 0..self.blocks() {
+            let [odd, even] = self.block(b);
+            for h in 0..2 {
+                let Some(((first, third), (second, fourth))) = places.next() else { return };
+                let sums = [even[0][h], odd[0][h], even[1][h], odd[1][h]];
+                [*first, *second, *third, *fourth] = quarters(sums);
             }
         }
     }
 
-    /// Sums of cosines and of sines of a group at a block of points.
+    /// Sums of cosines and of sines of odd and of even orders at a block of points.
     #[inline(always)]
-    fn block(&self, group: usize, b: usize) -> [[f64; BLOCK]; 2] {
-        let phasors = &self.own[group];
-        let mut sums = Row::default();
-        let n = phasors.len();
-        match self.tables[group].get(b * n..(b + 1) * n) {
+    fn block(&self, b: usize) -> [Row; 2] {
+        let mut sums = <[Row; 2]>::default();
+        let n = self.own.len();
+        match self.table.get(b * n..(b + 1) * n) {
             Some(rows) => {
-                for (row, a) in rows.iter().zip(phasors) {
-                    add(row, a, &mut sums);
+                for (rows, own) in rows.iter().zip(&self.own) {
+                    add(&rows[0], &own[0], &mut sums[0]);
+                    add(&rows[1], &own[1], &mut sums[1]);
                 }
             }
             None => {
-                for ((order, _), a) in self.groups[group].iter().zip(phasors) {
-                    add(&self.row(*order, b), a, &mut sums);
+                for (pair, own) in self.pairs.iter().zip(&self.own) {
+                    let rows = self.rows(pair, b);
+                    add(&rows[0], &own[0], &mut sums[0]);
+                    add(&rows[1], &own[1], &mut sums[1]);
                 }
             }
         }
-        let mut block = [[0.0; BLOCK]; 2];
-        for l in 0..LANES {
-            (block[0][l], block[0][LANES + l]) = (sums[0][0][l], sums[0][1][l]);
-            (block[1][l], block[1][LANES + l]) = (sums[1][0][l], sums[1][1][l]);
-        }
-        block
+        sums
     }
+}
+
+/// The sum at some points of the first quarter of a period and at those that mirror them in the others, from the sums of cosines of even and odd multiples and
+/// those of sines. In the second and fourth quarter the points run backwards.
+#[inline(always)]
+fn quarters([cos_even, cos_odd, sin_even, sin_odd]: [[f64; LANES]; 4]) -> [[f64; LANES]; 4] {
+    let mut out = [[0.0; LANES]; 4];
+    for l in 0..LANES {
+        let (cos, sin) = (cos_even[l] + cos_odd[l], sin_even[l] + sin_odd[l]);
+        // Half a period on, odd multiples have turned their sign.
+        let (cos_on, sin_on) = (cos_even[l] - cos_odd[l], sin_even[l] - sin_odd[l]);
+        out[0][l] = cos - sin;
+        out[1][LANES - 1 - l] = cos_on + sin_on;
+        out[2][l] = cos_on - sin_on;
+        out[3][LANES - 1 - l] = cos + sin;
+    }
+    out
 }
 
 /// Adds the waves of an order at a block of points.

@@ -115,12 +115,13 @@ impl Vectorised for Excite<'_> {
         for (p, node) in steady.tree.node.iter().enumerate() {
             for g in groups.iter_mut() {
                 let (own, fixed, masses) = (&mut g.torque[p], &g.parts[0][p], &g.parts[1][p]);
+                // Into numbers of their own first: places in three lists may be the same for all that the compiler knows.
+                let mut sum = [[0.0; LANES]; 2];
                 for l in 0..LANES {
-                    own[0][l] = fixed[0][l] + masses[0][l] * square;
+                    sum[0][l] = fixed[0][l] + masses[0][l] * square;
+                    sum[1][l] = fixed[1][l] + masses[1][l] * square;
                 }
-                for l in 0..LANES {
-                    own[1][l] = fixed[1][l] + masses[1][l] * square;
-                }
+                *own = sum;
             }
             let [re, im] = out.excitation_mut(*node);
             write(re, groups, 1.0, |g| &g.torque[p][0]);
@@ -172,9 +173,11 @@ fn write<'g>(row: &mut [f64], groups: &'g [Group], by: f64, of: impl Fn(&'g Grou
     let (whole, rest) = row.as_chunks_mut::<LANES>();
     for (own, g) in whole.iter_mut().zip(groups) {
         let lanes = of(g);
+        let mut scaled = [0.0; LANES];
         for l in 0..LANES {
-            own[l] = by * lanes[l];
+            scaled[l] = by * lanes[l];
         }
+        *own = scaled;
     }
     // Lanes of the last group that are left over have no place.
     if let Some(g) = groups.get(whole.len()) {
