@@ -94,9 +94,9 @@ impl Serialize for Words {
 pub(super) fn inputs(schema: &Schema, resolved: &Value, text: &str, document: &Node) -> Vec<Input> {
     let newlines = text.bytes().enumerate().filter(|(_, b)| *b == b'\n');
     let lines = std::iter::once(0).chain(newlines.map(|(i, _)| i + 1)).collect();
-    let mut walk = Walk { schema, lines, document, out: Vec::new() };
+    let mut walk = Walk { schema, lines, out: Vec::new() };
     if let Some(root) = Node::from_json(resolved) {
-        walk.value(&root, schema.root(), schema.root(), "");
+        walk.value((&root, Some(document)), schema.root(), schema.root(), "");
     }
     walk.out
 }
@@ -105,13 +105,12 @@ struct Walk<'a> {
     schema: &'a Schema,
     /// Where each line of the text begins.
     lines: Vec<usize>,
-    document: &'a Node,
     out: Vec<Input>,
 }
 
 impl Walk<'_> {
-    /// `field` is the schema before references are followed: what the value is for stands there.
-    fn value(&mut self, node: &Node, field: Part, schema: Part, path: &str) {
+    /// `field` is the schema before references are followed: what the value is for stands there. `written` is what the case wrote in this place.
+    fn value(&mut self, (node, written): (&Node, Option<&Node>), field: Part, schema: Part, path: &str) {
         let kind = self.kind_of(schema);
         let inner = self.schema.resolve(schema);
         let models = self.schema.model_of_word(inner);
@@ -129,58 +128,57 @@ impl Walk<'_> {
                 {
                     let words = Words(t.variants.iter().map(|(n, s)| (*n, Some(*s))).collect());
                     let value = ChoiceInput { value: word.clone(), kind: kind.into(), words };
-                    self.add(&join(path, t.tag), about(field, inner), InputValue::Choice(value));
+                    let written = written.and_then(|w| w.child(t.tag));
+                    self.add(&join(path, t.tag), written, about(field, inner), InputValue::Choice(value));
                 }
                 let properties = table.and_then(|t| at(t, "properties")).and_then(Value::as_object);
                 for e in entries {
                     if let Some(s) = properties.and_then(|p| named(p, &e.key)) {
-                        self.value(&e.node, s, s, &join(path, &e.key));
+                        let written = written.and_then(|w| w.child(&e.key));
+                        self.value((&e.node, written), s, s, &join(path, &e.key));
                     }
                 }
             }
             Data::Array(items) => {
                 for (k, item) in items.iter().enumerate() {
                     if let Some(s) = at(inner, "items") {
-                        self.value(item, s, s, &join(path, &k.to_string()));
+                        let key = k.to_string();
+                        let written = written.and_then(|w| w.child(&key));
+                        self.value((item, written), s, s, &join(path, &key));
                     }
                 }
             }
             Data::Text(word) => match (at(inner, "x-dimension"), words_of(inner)) {
-                (Some(_), _) => self.quantity(word, field, inner, path),
+                (Some(_), _) => self.quantity((word, written), field, inner, path),
                 (None, Some(words)) if words.len() > 1 => {
                     let words = Words(words.into_iter().map(|w| (w, None)).collect());
                     let value = ChoiceInput { value: word.clone(), kind: String::new(), words };
-                    self.add(path, about(field, inner), InputValue::Choice(value));
+                    self.add(path, written, about(field, inner), InputValue::Choice(value));
                 }
                 _ => {}
             },
-            Data::Integer(_) | Data::Float(_) => self.number(node, field, inner, path),
+            Data::Integer(_) | Data::Float(_) => self.number((node, written), field, inner, path),
             Data::Bool(b) => {
                 let words = Words(["true", "false"].map(|w| (w, None)).to_vec());
                 let value = ChoiceInput { value: b.to_string(), kind: String::new(), words };
-                self.add(path, about(field, inner), InputValue::Choice(value));
+                self.add(path, written, about(field, inner), InputValue::Choice(value));
             }
             Data::Date => {}
         }
     }
 
-    fn add(&mut self, path: &str, about: String, value: InputValue) {
-        let line = match self.document.deepest(path) {
-            (node, true) => {
-                let span = node.place.span.as_ref();
-                span.map(|s| self.lines.partition_point(|begin| *begin <= s.start))
-            }
-            _ => None,
-        };
+    fn add(&mut self, path: &str, written: Option<&Node>, about: String, value: InputValue) {
+        let span = written.and_then(|w| w.place.span.as_ref());
+        let line = span.map(|s| self.lines.partition_point(|begin| *begin <= s.start));
         self.out.push(Input { path: path.to_owned(), about, line, value });
     }
 
     /// A number that the resolved case writes in SI.
-    fn quantity(&mut self, si: &str, field: Part, schema: Part, path: &str) {
+    fn quantity(&mut self, (si, written): (&str, Option<&Node>), field: Part, schema: Part, path: &str) {
         let Some(si) = si.split(' ').next().and_then(|n| n.parse::<f64>().ok()) else { return };
         let dimension = at(schema, "x-dimension").and_then(Value::as_str).unwrap_or_default();
         let units = ALL_DIMENSIONS.iter().find(|(n, ..)| *n == dimension).map_or(&[][..], |(_, u, _)| u);
-        let unit = self.written_unit(path, units).or_else(|| readable(si, units));
+        let unit = written.and_then(|w| written_unit(w, units)).or_else(|| readable(si, units));
         let of_unit = |si: f64| unit.map_or(si, |u| rounded((si - u.offset) / u.factor));
         let (least, most) = match at(schema, "x-bound").and_then(Value::as_str) {
             Some("between 0 and 1") => (Some(0.0), Some(1.0)),
@@ -195,22 +193,10 @@ impl Walk<'_> {
             least: least.map(of_unit),
             most: most.map(of_unit),
         };
-        self.add(path, about(field, schema), InputValue::Number(number));
+        self.add(path, written, about(field, schema), InputValue::Number(number));
     }
 
-    /// The unit that the case itself writes; a bare number is SI.
-    fn written_unit(&self, path: &str, units: &'static [Unit]) -> Option<&'static Unit> {
-        match self.document.deepest(path) {
-            (Node { data: Data::Text(t), .. }, true) => {
-                let name = t.trim_start_matches(|c: char| c.is_ascii_digit() || "+-.eE ".contains(c)).trim();
-                units.iter().find(|u| u.is(name))
-            }
-            (Node { data: Data::Integer(_) | Data::Float(_), .. }, true) => units.first(),
-            _ => None,
-        }
-    }
-
-    fn number(&mut self, node: &Node, field: Part, schema: Part, path: &str) {
+    fn number(&mut self, (node, written): (&Node, Option<&Node>), field: Part, schema: Part, path: &str) {
         if at(schema, "x-dimension").is_some() {
             if let Data::Integer(_) | Data::Float(_) = node.data {
                 let text = match node.data {
@@ -218,7 +204,7 @@ impl Walk<'_> {
                     Data::Float(f) => f.to_string(),
                     _ => return,
                 };
-                self.quantity(&text, field, schema, path);
+                self.quantity((&text, written), field, schema, path);
             }
             return;
         }
@@ -236,7 +222,7 @@ impl Walk<'_> {
             least: limit("minimum").or_else(|| limit("exclusiveMinimum")),
             most: limit("maximum").or_else(|| limit("exclusiveMaximum")),
         };
-        self.add(path, about(field, schema), InputValue::Number(number));
+        self.add(path, written, about(field, schema), InputValue::Number(number));
     }
 
     /// The kind that a reference names: the definition of a kind's models has its name.
@@ -248,6 +234,18 @@ impl Walk<'_> {
         };
         let named = reference(schema).or_else(optional).and_then(|r| r.rsplit('/').next());
         named.unwrap_or_default()
+    }
+}
+
+/// The unit that the case itself writes; a bare number is SI.
+fn written_unit(written: &Node, units: &'static [Unit]) -> Option<&'static Unit> {
+    match &written.data {
+        Data::Text(t) => {
+            let name = t.trim_start_matches(|c: char| c.is_ascii_digit() || "+-.eE ".contains(c)).trim();
+            units.iter().find(|u| u.is(name))
+        }
+        Data::Integer(_) | Data::Float(_) => units.first(),
+        _ => None,
     }
 }
 

@@ -256,7 +256,7 @@ fn page(file: &File) -> String {
     let data = json!({
         "points": file.points, "errors": errors, "descriptions": file.descriptions, "trusted_to": file.trusted_to
     });
-    page::document(Kind::Bench, heading, &body, &data)
+    page::document(Kind::Bench, heading, &body, &data, None)
 }
 
 /// Sections in their order, with their names in the contents at the side.

@@ -359,8 +359,8 @@ fn page(file: &File, series: &[(usize, &Series)]) -> String {
             json!({ "number": n, "label": label, "series": columns })
         })
         .collect();
-    let data = json!({ "cases": file.cases.len(), "variants": variants, "names": names_of_curves(&ran), "figures": figures, "tables": tables, "arrays": arrays.into_texts() });
-    page::document(Kind::Comparison, heading, &body, &data)
+    let data = json!({ "cases": file.cases.len(), "variants": variants, "names": names_of_curves(&ran), "figures": figures, "tables": tables });
+    page::document(Kind::Comparison, heading, &body, &data, Some(&arrays))
 }
 
 /// Sections in their order, with their names in the contents at the side.

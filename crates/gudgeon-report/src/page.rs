@@ -63,6 +63,9 @@ pub(crate) fn esc(text: &str) -> String {
 
 /// Units in prose as they are typeset: `0.3 um` and `um` alone become `0.3 µm` and `µm`, `360 deg` becomes `360°`.
 fn typeset(text: &str) -> String {
+    if !text.contains("um") && !text.contains("deg") {
+        return text.to_owned();
+    }
     let mut out = String::with_capacity(text.len());
     for (k, word) in text.split(' ').enumerate() {
         let bare = word.trim_end_matches([',', '.', ';', ':', ')']);
@@ -110,8 +113,14 @@ fn json_for_script(data: &impl Serialize) -> String {
     json
 }
 
-/// One whole page.
-pub(crate) fn document(kind: Kind, title: &str, body: &str, data: &impl Serialize) -> String {
+/// One whole page. The arrays stand in the data as its last key, `arrays`, where there may be any.
+pub(crate) fn document(
+    kind: Kind,
+    title: &str,
+    body: &str,
+    data: &impl Serialize,
+    arrays: Option<&Arrays>,
+) -> String {
     let scripts: &[&str] = match kind {
         Kind::Run => RUN_SCRIPTS,
         Kind::Comparison => &[CORE, AXIS, EXPORT, CHART, COMPARE, DRAWING, MAP, WATERFALL, FIGURE],
@@ -119,9 +128,9 @@ pub(crate) fn document(kind: Kind, title: &str, body: &str, data: &impl Serializ
         Kind::Study => &[CORE, AXIS, EXPORT, CHART, DRAWING, MAP, WATERFALL, FIGURE],
     };
     let json = json_for_script(data);
-    let mut out = String::with_capacity(
-        body.len() + json.len() + scripts.iter().map(|s| s.len()).sum::<usize>() + (1 << 16),
-    );
+    let arrays_size = arrays.map_or(0, |a| a.arrays.iter().map(|a| a.len() + 3).sum::<usize>());
+    let scripts_size = scripts.iter().map(|s| s.len()).sum::<usize>();
+    let mut out = String::with_capacity(body.len() + json.len() + arrays_size + scripts_size + (1 << 16));
     out.push_str("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
     out.push_str("<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n");
     // The page may run what is written in it and load nothing from anywhere.
@@ -133,7 +142,20 @@ pub(crate) fn document(kind: Kind, title: &str, body: &str, data: &impl Serializ
         write!(out, "<title>{} · Gudgeon</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n", esc(title));
     out.push_str(body);
     out.push_str("<noscript><p class=\"note\">The drawings and curves on this page need JavaScript; the tables do not.</p></noscript>\n");
-    let _ = write!(out, "<script type=\"application/json\" id=\"data\">{json}</script>\n<script>\n");
+    out.push_str("<script type=\"application/json\" id=\"data\">");
+    match arrays {
+        // Letters, digits and signs of base64 need no look at what JSON and a script element admit.
+        Some(arrays) => {
+            out.push_str(json.strip_suffix('}').unwrap_or(&json));
+            out.push_str(",\"arrays\":[");
+            for (k, array) in arrays.arrays.iter().enumerate() {
+                out.extend([if k > 0 { ",\"" } else { "\"" }, array, "\""]);
+            }
+            out.push_str("]}");
+        }
+        None => out.push_str(&json),
+    }
+    out.push_str("</script>\n<script>\n");
     if matches!(kind, Kind::Run) {
         let _ = writeln!(out, "const OVER_CYCLE = {};", OVER_CYCLE.trim_end());
     }

@@ -142,8 +142,7 @@ fn matrix_table(out: &mut String, s: &Summary, (rows, columns): (&str, &str), va
     let told: Vec<String> = values
         .iter()
         .filter_map(|((m, n), (name, _))| {
-            let text = s.descriptions.get(*name)?.replace(&format!("{rows} {m}"), &format!("the {rows}"));
-            Some(text.replace(&format!("{columns} {n}"), &format!("the {columns}")))
+            Some(nameless(&nameless(s.descriptions.get(*name)?, rows, m), columns, n))
         })
         .collect();
     let unit_of = values.values().next().map_or("", |(_, v)| v.unit.as_str());
@@ -290,14 +289,21 @@ fn shared(told: &[String], family: &str) -> String {
 
 /// A row of a table per ring must not speak of ring 1.
 fn without_member(text: &str, family: &str, n: &str) -> String {
-    let name = format!("{family} {n}");
+    let name = [family, " ", n].concat();
     const LEADS: [&str; 8] = [", in ", " of ", " on ", " at ", " in ", " past ", " behind ", ", "];
     if let Some(front) = text.strip_suffix(&name)
         && let Some(rest) = LEADS.into_iter().find_map(|lead| front.strip_suffix(lead))
     {
         return rest.to_owned();
     }
-    text.replace(&name, &format!("the {family}"))
+    nameless(text, family, n)
+}
+
+/// A text that speaks of any member of a family instead of one.
+fn nameless(text: &str, family: &str, n: &str) -> String {
+    let name = [family, " ", n].concat();
+    // Most texts do not name it, which a search tells that looks for nothing else.
+    if text.contains(&name) { text.replace(&name, &["the ", family].concat()) } else { text.to_owned() }
 }
 
 #[cfg(test)]

@@ -72,7 +72,11 @@ pub fn run_files(run: &RunResult) -> Result<Vec<(String, Vec<u8>)>, ReportError>
 #[must_use]
 pub fn run_data(run: &RunResult) -> serde_json::Value {
     // Text, numbers, lists and maps with text keys: there is nothing in it that JSON refuses.
-    serde_json::to_value(data(&Summary::new(run), &run.series, &run.tables)).unwrap_or_default()
+    let summary = Summary::new(run);
+    let (data, arrays) = data(&summary, &run.series, &run.tables);
+    let mut data = serde_json::to_value(data).unwrap_or_default();
+    data["arrays"] = arrays.into_texts().into();
+    data
 }
 
 /// Wall-clock seconds by phase.
@@ -149,7 +153,8 @@ fn page(s: &Summary, series: &Series, tables: &IndexMap<String, Series>) -> Stri
     main.push_str(&page::models_section(&s.models));
     main.push_str(&page::sources_section(s));
     let body = page::body(&CONTENTS, &main, &s.gudgeon, &[&s.scene]);
-    page::document(Kind::Run, s.heading(), &body, &data(s, series, tables))
+    let (data, arrays) = data(s, series, tables);
+    page::document(Kind::Run, s.heading(), &body, &data, Some(&arrays))
 }
 
 /// Whether there are curves over the crank angle.
@@ -167,10 +172,13 @@ struct Data<'a> {
     tables: IndexMap<&'a str, page::Placed>,
     figures: &'a [Figure],
     lead: &'a str,
-    arrays: Vec<String>,
 }
 
-fn data<'a>(s: &'a Summary, series: &Series, tables: &'a IndexMap<String, Series>) -> Data<'a> {
+fn data<'a>(
+    s: &'a Summary,
+    series: &Series,
+    tables: &'a IndexMap<String, Series>,
+) -> (Data<'a>, page::Arrays) {
     let mut arrays = page::Arrays::default();
     let read = |table: &str| -> Vec<&str> {
         s.figures.iter().filter(|f| f.table == table).flat_map(|f| f.kind.columns()).collect()
@@ -182,7 +190,7 @@ fn data<'a>(s: &'a Summary, series: &Series, tables: &'a IndexMap<String, Series
     if used("series") {
         data_of.insert("series", arrays.read(series, &read("series")));
     }
-    Data {
+    let data = Data {
         scene: &s.scene,
         section: &s.section,
         events: &s.events,
@@ -190,8 +198,8 @@ fn data<'a>(s: &'a Summary, series: &Series, tables: &'a IndexMap<String, Series
         tables: data_of,
         figures: &s.figures,
         lead: &s.lead,
-        arrays: arrays.into_texts(),
-    }
+    };
+    (data, arrays)
 }
 
 /// Places of the curves and figures.

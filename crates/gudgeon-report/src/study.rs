@@ -50,8 +50,8 @@ pub fn study_page(p: &StudyPage) -> String {
     let mut arrays = page::Arrays::default();
     let tables: IndexMap<String, page::Placed> =
         p.tables.iter().map(|(name, t)| (name.clone(), arrays.whole(t))).collect();
-    let data = json!({ "tables": tables, "figures": p.figures, "arrays": arrays.into_texts() });
-    page::document(Kind::Study, &p.title, &body, &data)
+    let data = json!({ "tables": tables, "figures": p.figures });
+    page::document(Kind::Study, &p.title, &body, &data, Some(&arrays))
 }
 
 /// Sections in their order, with their names in the contents at the side.

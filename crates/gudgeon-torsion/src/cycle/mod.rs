@@ -195,6 +195,9 @@ impl Cycle {
                 continue;
             }
             for (i, here) in some.iter().enumerate() {
+                if found[i] == 0 {
+                    continue;
+                }
                 let s = BESIDE + k * TOGETHER + i;
                 if *here >= top {
                     best = self.top(s, 1.0, best, look)?;
