@@ -49,6 +49,7 @@
 use std::any::Any;
 use std::collections::BTreeMap;
 use std::fmt;
+use std::sync::OnceLock;
 
 use crate::content::{self, Content};
 
@@ -209,8 +210,11 @@ inventory::collect!(DefaultModel);
 /// Everything registered in this program, sorted by kind and name.
 #[derive(Debug)]
 pub struct Registry {
-    kinds: BTreeMap<&'static str, (&'static KindInfo, Vec<&'static ModelInfo>)>,
+    kinds: &'static Kinds,
 }
+
+/// Kinds with their models, by name.
+type Kinds = BTreeMap<&'static str, (&'static KindInfo, Vec<&'static ModelInfo>)>;
 
 /// The registry contradicts itself. Both places are named so that either can be mended.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -251,11 +255,12 @@ pub enum RegistryError {
 }
 
 impl Registry {
-    /// Collects everything linked into this program.
+    /// Collects everything linked into this program: once, for nothing is registered later.
     #[must_use]
     pub fn collect() -> Self {
-        let kinds = inventory::iter::<KindInfo>().map(|k| (k.kind, (k, models_of(k.kind)))).collect();
-        Self { kinds }
+        static KNOWN: OnceLock<Kinds> = OnceLock::new();
+        let all = || inventory::iter::<KindInfo>().map(|k| (k.kind, (k, models_of(k.kind)))).collect();
+        Self { kinds: KNOWN.get_or_init(all) }
     }
 
     /// The kinds, by name.
@@ -355,8 +360,9 @@ fn models_of(kind: &str) -> Vec<&'static ModelInfo> {
 
 /// JSON schema of a kind: one of its models, told apart by the `model` key.
 pub fn kind_schema(kind: &str, g: &mut schemars::SchemaGenerator) -> schemars::Schema {
-    let variants: Vec<serde_json::Value> = models_of(kind)
-        .into_iter()
+    let variants: Vec<serde_json::Value> = Registry::collect()
+        .models(kind)
+        .iter()
         .map(|m| {
             let mut schema = (m.schema)(g).to_value();
             if let Some(o) = schema.as_object_mut() {

@@ -273,10 +273,10 @@ fn shared(told: &[String], family: &str) -> String {
     }
     let words: Vec<&str> = first.split(' ').collect();
     let (mut lead, mut end) = (words.len(), words.len());
-    for other in rest {
-        let other: Vec<&str> = other.split(' ').collect();
-        lead = lead.min(words.iter().zip(&other).take_while(|(a, b)| a == b).count());
-        end = end.min(words.iter().rev().zip(other.iter().rev()).take_while(|(a, b)| a == b).count());
+    for other in rest.iter().filter(|other| *other != first) {
+        let same = |(a, b): &(&&str, &str)| **a == *b;
+        lead = words[..lead].iter().zip(other.split(' ')).take_while(same).count();
+        end = words[words.len() - end..].iter().rev().zip(other.rsplit(' ')).take_while(same).count();
     }
     if lead == words.len() {
         return first.clone();

@@ -405,7 +405,7 @@ impl Wanted {
         let units: Vec<_> = self.units.iter().map(|u| u.name).filter(|n| !n.is_empty()).collect();
         // Values as they are: `json_schema!` would write each of them out and read it again.
         let mut schema = schemars::Schema::default();
-        schema.insert("description".into(), format!("{}, {}", self.name, self.bound).into());
+        schema.insert("description".into(), [self.name, ", ", self.bound].concat().into());
         schema.insert("type".into(), vec!["number", "string"].into());
         schema.insert("x-units".into(), units.into());
         schema.insert("x-dimension".into(), self.name.into());
@@ -451,6 +451,10 @@ impl<D: Dimension, B: Bound> schemars::JsonSchema for Quantity<D, B> {
     }
     fn schema_name() -> Cow<'static, str> {
         format!("{} ({})", D::NAME, B::TEXT).into()
+    }
+    fn schema_id() -> Cow<'static, str> {
+        // Asked for at every field: no text is made for it.
+        std::any::type_name::<Self>().into()
     }
     fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
         Wanted::of::<D, B>().schema()

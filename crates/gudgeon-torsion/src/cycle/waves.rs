@@ -22,14 +22,15 @@ pub(super) struct Waves {
     period: f64,
     points: usize,
     orders: Vec<f64>,
+    /// The same as multiples of the order of the period, or nothing.
+    multiples: Vec<usize>,
+    /// Cosines and sines of half a turn, a point in each half step, where orders are multiples.
+    turns: Vec<[f64; 2]>,
     /// Places of the orders, an odd multiple of that of the period and an even one side by side, so that all sums of a pair stay in registers; any two where
     /// they are no multiples. Where there are more of one kind, [`NONE`] of the other.
     pairs: Vec<[usize; 2]>,
     /// Whether these are the orders one after the other.
     in_order: bool,
-    /// Whether orders are multiples: a quarter of the period is summed up, from whose even and odd multiples and cosines and sines the others
-    /// follow.
-    folded: bool,
     /// Rows of all pairs, block by block of points; empty where they would be too large.
     table: Vec<[Row; 2]>,
     /// Phasors by pair.
@@ -51,7 +52,11 @@ impl Waves {
             points,
             orders: orders.to_vec(),
             in_order: pairs.as_flattened().iter().enumerate().all(|(k, place)| k == *place),
-            folded: !multiples.is_empty(),
+            turns: (0..if multiples.is_empty() { 0 } else { points })
+                .map(|j| elementary::sin_cos(PI * j as f64 / points as f64))
+                .map(|(sin, cos)| [cos, sin])
+                .collect(),
+            multiples: multiples.to_vec(),
             table: Vec::new(),
             own: vec![Default::default(); pairs.len()],
             pairs,
@@ -63,23 +68,42 @@ impl Waves {
         own
     }
 
+    /// Whether a quarter of the period is summed up, from whose even and odd multiples and cosines and sines the others follow.
+    const fn folded(&self) -> bool {
+        !self.multiples.is_empty()
+    }
+
     /// Blocks of points at which orders are summed up.
     const fn blocks(&self) -> usize {
-        self.points / if self.folded { 4 * BLOCK } else { BLOCK }
+        self.points / if self.folded() { 4 * BLOCK } else { BLOCK }
     }
 
     /// Rows of a pair of orders; one that is not there has no phasor, whatever its row.
     fn rows(&self, pair: &[usize; 2], block: usize) -> [Row; 2] {
         let mut rows = <[Row; 2]>::default();
         for (row, place) in rows.iter_mut().zip(pair) {
-            let Some(order) = self.orders.get(*place) else { continue };
+            if *place == NONE {
+                continue;
+            }
             for i in 0..BLOCK {
-                let angle = order * self.period * ((block * BLOCK + i) as f64 + 0.5) / self.points as f64;
-                let (sin, cos) = elementary::sin_cos(angle);
+                let [cos, sin] = self.wave(*place, block * BLOCK + i);
                 (row[0][i / LANES][i % LANES], row[1][i / LANES][i % LANES]) = (cos, sin);
             }
         }
         rows
+    }
+
+    /// Cosine and sine of the order at a place, at a point.
+    fn wave(&self, place: usize, point: usize) -> [f64; 2] {
+        let Some(multiple) = self.multiples.get(place) else {
+            let angle = self.orders[place] * self.period * (point as f64 + 0.5) / self.points as f64;
+            let (sin, cos) = elementary::sin_cos(angle);
+            return [cos, sin];
+        };
+        // Points are half steps apart from the beginning, and half a turn is as many half steps as there are points.
+        let half_steps = multiple * (2 * point + 1);
+        let [cos, sin] = self.turns[half_steps % self.points];
+        if half_steps / self.points % 2 == 0 { [cos, sin] } else { [-cos, -sin] }
     }
 
     /// Takes phasors, real and imaginary parts of all orders.
@@ -102,7 +126,7 @@ impl Waves {
     #[inline(always)]
     pub fn sum(&mut self, phasors: [&[f64]; 2], wave: &mut [f64]) {
         self.take(phasors);
-        if !self.folded {
+        if !self.folded() {
             for (b, place) in wave.as_chunks_mut::<BLOCK>().0.iter_mut().enumerate() {
                 let [odd, even] = self.block(b);
                 for i in 0..BLOCK {
