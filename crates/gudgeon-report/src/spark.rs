@@ -14,8 +14,11 @@ const STRETCHES: usize = 100;
 
 /// Curves over one axis with a common ordinate, which holds zero unless all values are far from it; none where there is nothing to draw.
 pub(crate) fn spark(columns: &[&Column]) -> Option<String> {
-    let finite = || columns.iter().flat_map(|c| &c.values).copied().filter(|v| v.is_finite());
-    let (low, high) = finite().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for v in columns.iter().flat_map(|c| &c.values).filter(|v| v.is_finite()) {
+        low = if *v < low { *v } else { low };
+        high = if *v > high { *v } else { high };
+    }
     if low >= high {
         return None;
     }

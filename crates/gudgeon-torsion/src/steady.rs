@@ -97,9 +97,10 @@ impl Steady {
         let z = vec![Complex::default(); n];
         let mut steady = Self {
             varying: line.links.iter().any(|l| l.coupling.depends_on_frequency()),
-            constant: line.links.iter().all(|l| {
-                !l.coupling.depends_on_frequency() && !l.coupling.depends_on_load()
-            }),
+            constant: line
+                .links
+                .iter()
+                .all(|l| !l.coupling.depends_on_frequency() && !l.coupling.depends_on_load()),
             excitation: Excitation::default(),
             speed: ctx.speed,
             mean_torque: Vec::new(),

@@ -90,7 +90,6 @@ impl IndependentOrders {
         self.steady.excitation.orders = orders;
         found
     }
-
 }
 
 /// Torques of all orders at the speed of a line, by group and among the answers.

@@ -98,12 +98,7 @@ pub(super) struct Cost {
 impl Solver {
     /// Of a line with the first order `base`, whose motion repeats after `period` \[rad\] and whose torques without those of the moving
     /// masses are in `steady`; `masses` are these at unit speed, of the same harmonics.
-    pub fn new(
-        steady: Steady,
-        masses: &[Order],
-        [tolerance, base, period]: [f64; 3],
-        rounds: usize,
-    ) -> Self {
+    pub fn new(steady: Steady, masses: &[Order], [tolerance, base, period]: [f64; 3], rounds: usize) -> Self {
         let nonlinear = NonlinearTorques::new(&steady.line, period, masses.len());
         let unknowns = nonlinear.active.len() * nonlinear.orders();
         let masses = nonlinear.active.iter().flat_map(|node| {
