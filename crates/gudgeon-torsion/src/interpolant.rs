@@ -15,6 +15,8 @@ const PER_RADIAN: f64 = PER_TURN as f64 / (2.0 * PI);
 const TERMS: usize = 7;
 /// Points besides the nodes at which a polynomial must agree with its function, over the segment from -1 to 1.
 const CHECKED: [f64; 3] = [-0.93, -0.27, 0.65];
+/// Angle \[rad\] to either side that a derivative is taken over where there is no polynomial: it loses the rounding of an angle by this, some 1e-9.
+const BESIDE: f64 = 1e-6;
 /// Admitted error at these points, relative to the maximum of the function.
 const TOLERANCE: f64 = 1e-13;
 
@@ -126,17 +128,26 @@ impl<const N: usize> Interpolant<N> {
         std::array::from_fn(|k| value(&c[k], place.inside))
     }
 
-    /// Derivatives with respect to the angle \[rad\]; where a function is not smooth, that of the polynomial through it at the nodes.
+    /// Derivatives with respect to the angle \[rad\]; where a function is not smooth, a difference over so little that its corners are nearly always beside.
     pub fn derivative(&mut self, angle: f64, f: impl Fn(f64) -> [f64; N]) -> [f64; N] {
-        self.derivative_at(Place::of(angle), f)
+        self.derivative_at(Place::of(angle), angle, f)
     }
 
     /// The same at a place.
     #[inline]
-    pub(crate) fn derivative_at(&mut self, place: Place, f: impl Fn(f64) -> [f64; N]) -> [f64; N] {
+    pub(crate) fn derivative_at(
+        &mut self,
+        place: Place,
+        angle: f64,
+        f: impl Fn(f64) -> [f64; N],
+    ) -> [f64; N] {
         let i = self.segment(place);
         if self.segments[i] == Segment::NotBuilt {
             self.build(i, &f);
+        }
+        if self.segments[i] == Segment::Direct {
+            let (before, after) = (f(angle - BESIDE), f(angle + BESIDE));
+            return std::array::from_fn(|k| (after[k] - before[k]) / (2.0 * BESIDE));
         }
         let c = &self.coefficients[i];
         std::array::from_fn(|k| 2.0 * PER_RADIAN * derivative(&c[k], place.inside))

@@ -28,6 +28,14 @@ fn a_function_with_a_corner_is_evaluated_there_and_a_polynomial_elsewhere() {
         * (0.5 * 0.25_f64.cos() / (1.2 + 0.5_f64.cos())
             + 0.25_f64.sin() * 0.5_f64.sin() / (1.2 + 0.5_f64.cos()).powi(2));
     assert!((p.derivative(0.5, |a| [f(a)])[0] / exact - 1.0).abs() < 1e-9);
+    // On both sides of the corner, in the segment that has it, the slope of that side: from the rounding of an angle over 2e-6.
+    for at in [1.233, 1.235_f64] {
+        let smooth = 0.5 * (0.5 * at).cos() / (1.2 + at.cos())
+            + (0.5 * at).sin() * at.sin() / (1.2 + at.cos()).powi(2);
+        let beyond = if at > 1.234 { 0.1 * (4.0 * PI - at - (at - 1.234)) } else { 0.0 };
+        let exact = 1e4 * (smooth + beyond);
+        assert!((p.derivative(at, |a| [f(a)])[0] / exact - 1.0).abs() < 1e-8, "{at}");
+    }
 }
 
 /// The derivative may be asked for first: the segment is built then.

@@ -30,12 +30,12 @@ impl NonlinearTorques {
                 let at = uniform_angle(line, t.throw, self.cycle, s, few) + x[i];
                 let place = Place::of(at);
                 if let Some(p) = &mut curves.gas {
-                    by_angle[o] += p.derivative_at(place, |a| [gas_torque(line, t.throw, a)])[0];
+                    by_angle[o] += p.derivative_at(place, at, |a| [gas_torque(line, t.throw, a)])[0];
                 }
                 if let Some(inertia) = &mut curves.inertia {
                     let own = |a: f64| throw.inertia.inertia(a).into();
                     let [j, dj] = inertia.value_at(place, at, own);
-                    let [_, ddj] = inertia.derivative_at(place, own);
+                    let [_, ddj] = inertia.derivative_at(place, at, own);
                     let w = speed + v[i];
                     by_angle[o] -= dj * a[i] + 0.5 * ddj * w * w;
                     by_speed[o] -= dj * w;
