@@ -135,26 +135,21 @@ impl Steady {
     }
 
     /// Leaves the torque of the moving masses out of the excitation, and gives it every multiple of `base` up to the harmonic `count`,
-    /// also where nothing excites it. What is left out is returned: the same orders at unit speed.
-    pub(crate) fn whole_orders_without_masses(&mut self, base: f64, count: usize) -> Vec<Order> {
+    /// also where nothing excites it.
+    pub(crate) fn whole_orders_without_masses(&mut self, base: f64, count: usize) {
         let n = self.line.nodes.len();
-        let none = |k: usize| Order { order: k as f64 * base, torque: vec![Complex::default(); n] };
-        let nothing: Vec<Order> = (1..=count).map(none).collect();
-        let whole = |old: Vec<Order>| {
-            let mut orders = nothing.clone();
-            for o in old {
-                let k = (o.order / base).round() as usize;
-                if (1..=count).contains(&k) {
-                    orders[k - 1].torque = o.torque;
-                }
-            }
-            orders
-        };
         let [fixed, masses] = &mut self.parts;
-        fixed.orders = whole(std::mem::take(&mut fixed.orders));
-        let left_out = whole(std::mem::replace(&mut masses.orders, nothing.clone()));
+        masses.orders = (1..=count)
+            .map(|k| Order { order: k as f64 * base, torque: vec![Complex::default(); n] })
+            .collect();
+        let old = std::mem::replace(&mut fixed.orders, masses.orders.clone());
+        for o in old {
+            let k = (o.order / base).round() as usize;
+            if (1..=count).contains(&k) {
+                fixed.orders[k - 1].torque = o.torque;
+            }
+        }
         self.set_speed(self.speed);
-        left_out
     }
 
     /// The mean state under the means of the excitation, and the tree about it.

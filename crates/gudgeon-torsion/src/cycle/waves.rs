@@ -103,7 +103,7 @@ impl Waves {
         // Points are half steps apart from the beginning, and half a turn is as many half steps as there are points.
         let half_steps = multiple * (2 * point + 1);
         let [cos, sin] = self.turns[half_steps % self.points];
-        if half_steps / self.points % 2 == 0 { [cos, sin] } else { [-cos, -sin] }
+        if (half_steps / self.points).is_multiple_of(2) { [cos, sin] } else { [-cos, -sin] }
     }
 
     /// Takes phasors, real and imaginary parts of all orders.

@@ -89,9 +89,9 @@ impl TorsionSpec for HarmonicBalance {
         let harmonics = ((ctx.orders / base) + 1e-9).floor() as usize;
         check_size(harmonics, active(ctx.line).len())?;
         // The moving masses are part of what is evaluated here.
-        let masses = steady.whole_orders_without_masses(base, harmonics);
+        steady.whole_orders_without_masses(base, harmonics);
         let scales = [self.tolerance.si(), base, ctx.period];
-        Ok(Box::new(Solver::new(steady, &masses, scales, self.rounds.max(2))))
+        Ok(Box::new(Solver::new(steady, scales, harmonics, self.rounds.max(2))))
     }
     fn answers(&self) -> TorsionAnswer {
         TorsionAnswer::Periodic

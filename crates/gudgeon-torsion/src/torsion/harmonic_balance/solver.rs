@@ -9,7 +9,6 @@ use gudgeon_numerics::linalg::Complex;
 
 use super::nonlinear::NonlinearTorques;
 use super::solved_speeds::SolvedSpeeds;
-use crate::forcing::Order;
 use crate::receptance::Receptance;
 use crate::steady::Steady;
 
@@ -34,8 +33,6 @@ pub(super) struct Solver {
     pub(super) gmres: Gmres,
     /// Torques on the active nodes that the linear line does not have, by node and order with the mean.
     pub(super) x: Vec<Complex>,
-    /// Those of the moving masses at unit speed where nothing vibrates.
-    masses: Vec<Complex>,
     /// Angles of the active nodes in the same order.
     pub(super) angle: Vec<Complex>,
     /// Change of mean angles by mean torques on the active nodes, a row for each angle; of the mean torques of the links in the same way.
@@ -54,16 +51,11 @@ impl Torsion for Solver {
         self.linearise_links();
         self.receptance.factor(&mut self.steady, self.base, self.nonlinear.harmonics);
         let speed = self.steady.speed;
-        if self.solved_speeds.is_empty() {
-            let square = Complex::new(speed * speed, 0.0);
-            self.x.iter_mut().zip(&self.masses).for_each(|(x, m)| *x = square * *m);
-        } else {
-            self.solved_speeds.extrapolate(speed, &mut self.x);
-        }
+        self.solved_speeds.extrapolate(speed, &mut self.x);
         let mut cost = Cost::default();
         let mut found = self.iterate(&mut cost);
-        if found.is_err() {
-            // The motion of another speed, and that of the moving masses on a stiff shaft, may be a bad start.
+        if found.is_err() && !self.solved_speeds.is_empty() {
+            // The motion of another speed may be a bad start.
             self.x.fill(Complex::default());
             found = self.iterate(&mut cost);
         }
@@ -97,14 +89,10 @@ pub(super) struct Cost {
 
 impl Solver {
     /// Of a line with the first order `base`, whose motion repeats after `period` \[rad\] and whose torques without those of the moving
-    /// masses are in `steady`; `masses` are these at unit speed, of the same harmonics.
-    pub fn new(steady: Steady, masses: &[Order], [tolerance, base, period]: [f64; 3], rounds: usize) -> Self {
-        let nonlinear = NonlinearTorques::new(&steady.line, period, masses.len());
+    /// masses are in `steady`.
+    pub fn new(steady: Steady, [tolerance, base, period]: [f64; 3], harmonics: usize, rounds: usize) -> Self {
+        let nonlinear = NonlinearTorques::new(&steady.line, period, harmonics);
         let unknowns = nonlinear.active.len() * nonlinear.orders();
-        let masses = nonlinear.active.iter().flat_map(|node| {
-            std::iter::once(Complex::default()).chain(masses.iter().map(|o| o.torque[*node]))
-        });
-        let masses = masses.collect();
         Self {
             tolerance,
             rounds,
@@ -113,7 +101,6 @@ impl Solver {
             receptance: Receptance::default(),
             gmres: Gmres::default(),
             x: vec![Complex::default(); unknowns],
-            masses,
             angle: vec![Complex::default(); unknowns],
             angle_by_torque: Vec::new(),
             link_by_torque: Vec::new(),
