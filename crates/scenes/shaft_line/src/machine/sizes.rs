@@ -113,7 +113,7 @@ impl Vectorised for Strongest<'_> {
         }
         let most = rest().chain(most).fold(0.0, f64::max);
         // Orders ascend: of equals the last is the largest.
-        if let Some((_, order)) = rest().zip(rest_orders).filter(|(square, _)| *square == most).last() {
+        if let Some((_, order)) = rest().zip(rest_orders).rfind(|(square, _)| *square == most) {
             return *order;
         }
         let mut order = [0.0; LANES];
