@@ -51,3 +51,42 @@ pub fn widest<W: Vectorised>(work: W) -> W::Output {
 fn in_fours<W: Vectorised>(work: W) -> W::Output {
     work.run()
 }
+
+/// Whether all numbers are finite.
+#[must_use]
+pub fn all_finite(values: &[f64]) -> bool {
+    widest(Finite(values))
+}
+
+/// Zero times any number that is not finite is not zero: no branch for each of them.
+struct Finite<'v>(&'v [f64]);
+
+impl Vectorised for Finite<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run(self) -> bool {
+        let mut sums = [0.0; 8];
+        let (whole, rest) = self.0.as_chunks::<8>();
+        for values in whole {
+            for l in 0..8 {
+                sums[l] += 0.0 * values[l];
+            }
+        }
+        sums == [0.0; 8] && rest.iter().all(|v| v.is_finite())
+    }
+}
+
+/// The least of some numbers, none of which is NaN; infinite when there are none.
+#[inline(always)]
+#[must_use]
+pub fn least(values: &[f64]) -> f64 {
+    let mut least = [f64::INFINITY; 8];
+    let (whole, rest) = values.as_chunks::<8>();
+    for values in whole {
+        for l in 0..8 {
+            least[l] = if values[l] < least[l] { values[l] } else { least[l] };
+        }
+    }
+    least.into_iter().chain(rest.iter().copied()).fold(f64::INFINITY, |a, b| if b < a { b } else { a })
+}

@@ -4,6 +4,7 @@ use gudgeon_core::kinds::{RoughFlow, RoughShear, Roughness, RoughnessSpec};
 use gudgeon_core::quantity::{PosLength, PosRatio};
 use gudgeon_core::{BuildError, EvalError, register_model};
 use gudgeon_numerics::elementary;
+use gudgeon_numerics::vectors::{Vectorised, least, widest};
 use serde::{Deserialize, Serialize};
 
 use super::checks::{check_flow, check_shear};
@@ -90,12 +91,19 @@ impl RoughnessSpec for SawtoothWaviness {
 
 const MODEL: &str = "sawtooth_waviness";
 
-/// `Ω/h` up to which `artanh(r)/r - 1` is summed: what is left out is of the order `0.2^22` of it, what the closed form would lose is
+/// `Ω/h` up to which `artanh(r)/r - 1` is summed, `tanh 0.2`: what is left out is of the order `0.2^22` of it, what the closed form would lose is
 /// rounding over `r²/3`.
-pub const SERIES: f64 = 0.2;
+pub const SERIES: f64 = 0.197_375_320_224_904;
 
-/// `Ω/h` up to which `artanh(r) = 2 artanh(r/(1 + √(1 - r²)))`, three times over, leads below [`SERIES`]: `tanh(8 artanh(0.2)) = 0.925`.
-const HALVED: f64 = 0.92;
+/// Places that lead below [`SERIES`] by `artanh r = artanh c + artanh((r - c)/(1 - r c))`: the `r` from which one serves, the place `c`, and its `artanh c`.
+const CENTRES: [[f64; 3]; 4] = [
+    [SERIES, 0.379_948_962_255_224_9, 0.4],
+    [0.537_049_566_998_035_3, 0.664_036_770_267_849, 0.8],
+    [0.761_594_155_955_764_9, 0.833_654_607_012_155_2, 1.2],
+    [0.885_351_648_202_262_5, 0.921_668_554_406_471_3, 1.6],
+];
+/// `Ω/h` up to which the last of them leads there, `tanh 1.8`.
+const REACH: f64 = 0.946_806_012_846_268_3;
 
 #[derive(Debug)]
 struct Waves {
@@ -106,47 +114,78 @@ struct Waves {
 }
 
 impl Waves {
-    #[inline]
-    fn film(&self, h: f64) -> f64 {
-        held_above(h, self.closest * self.omega, (self.closest - 1.0) * self.omega)
+    /// Separation up to which the film is held open.
+    fn held_up_to(&self) -> f64 {
+        (2.0 * self.closest - 1.0) * self.omega
+    }
+
+    /// Films of separations, and the smallest separation.
+    #[inline(always)]
+    fn films(&self, h: &[f64], film: &mut [f64]) -> f64 {
+        film.copy_from_slice(h);
+        let thinnest = least(h);
+        if thinnest < self.held_up_to() {
+            let (floor, blend) = (self.closest * self.omega, (self.closest - 1.0) * self.omega);
+            for film in film {
+                *film = held_above(*film, floor, blend);
+            }
+        }
+        thinnest
     }
 }
 
 /// `artanh(r)/r - 1`, `0 <= r < 1`.
 pub fn excess(r: f64) -> f64 {
-    if r <= HALVED { excess_of_halves(r) } else { elementary::atanh(r) / r - 1.0 }
+    if r <= REACH { excess_within_reach(r, 1.0) } else { elementary::atanh(r) / r - 1.0 }
 }
 
-/// The same for `r` up to [`HALVED`], without a branch: loops over it work on several values at once.
+/// The same for `r = omega/film` up to [`REACH`], without a branch: loops over it work on several values at once.
 #[inline(always)]
-fn excess_of_halves(r: f64) -> f64 {
-    let half = |x: f64| x / (1.0 + (1.0 - x * x).sqrt());
-    let is_small = r < SERIES;
-    let divided = half(half(half(r)));
-    let u = if is_small { r } else { divided };
-    let uu = u * u;
-    let series = uu * (0..11).rev().fold(0.0, |s, k| s * uu + 1.0 / f64::from(2 * k + 3));
-    let closed = 8.0 * (divided / r) * (1.0 + series) - 1.0;
-    if is_small { series } else { closed }
+fn excess_within_reach(omega: f64, film: f64) -> f64 {
+    let (mut c, mut angle) = (0.0, 0.0);
+    for [from, centre, its_angle] in CENTRES {
+        let is_reached = omega > from * film;
+        c = if is_reached { centre } else { c };
+        angle = if is_reached { its_angle } else { angle };
+    }
+    let t = (omega - c * film) / (film - c * omega);
+    let tt = t * t;
+    let mut series = 0.0;
+    for k in (0..11).rev() {
+        series = series * tt + 1.0 / f64::from(2 * k + 3);
+    }
+    series *= tt;
+    let closed = (angle + t * (1.0 + series)) * film / omega - 1.0;
+    if angle == 0.0 { series } else { closed }
 }
 
-impl Roughness for Waves {
-    fn held_below(&self) -> Option<f64> {
-        Some((2.0 * self.closest - 1.0) * self.omega)
-    }
+/// Flow factors of films.
+struct Flow<'a> {
+    waves: &'a Waves,
+    h: &'a [f64],
+    out: &'a mut RoughFlow,
+}
 
-    fn flow(&self, h: &[f64], out: &mut RoughFlow) -> Result<(), EvalError> {
-        check_flow(MODEL, h, out)?;
-        let omega = self.omega;
+impl Vectorised for Flow<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { waves, h, out } = self;
+        let omega = waves.omega;
         let RoughFlow { film, phi_x, phi_y, transport, content, content_derivative } = out;
-        film.iter_mut().zip(h).for_each(|(film, h)| *film = self.film(*h));
-        let factors = phi_x.iter_mut().zip(phi_y).zip(transport);
-        for (((phi_x, phi_y), transport), film) in factors.zip(&*film) {
+        let thinnest = waves.films(h, film);
+        for (((phi_x, phi_y), transport), film) in phi_x.iter_mut().zip(phi_y).zip(transport).zip(&*film) {
             let r = omega / film;
             let rr = r * r;
             *phi_x = (1.0 - rr) * (1.0 - rr);
             *phi_y = 1.0 + rr;
-            *transport = film - self.shear * omega * r;
+            *transport = film - waves.shear * omega * r;
+        }
+        if thinnest >= omega {
+            content.copy_from_slice(h);
+            content_derivative.fill(1.0);
+            return;
         }
         for ((content, slope), &h) in content.iter_mut().zip(content_derivative).zip(h) {
             (*content, *slope) = if h >= omega {
@@ -158,27 +197,57 @@ impl Roughness for Waves {
                 (0.0, 0.0)
             };
         }
+    }
+}
+
+/// Factors of the shear stresses of films.
+struct Shear<'a> {
+    waves: &'a Waves,
+    h: &'a [f64],
+    out: &'a mut RoughShear,
+}
+
+impl Vectorised for Shear<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { waves, h, out } = self;
+        let omega = waves.omega;
+        let RoughShear { film, phi_f, phi_fs, phi_fp } = out;
+        let thinnest = waves.films(h, film).max(waves.closest * omega);
+        if omega <= REACH * thinnest {
+            for (e, film) in phi_f.iter_mut().zip(&*film) {
+                *e = excess_within_reach(omega, *film);
+            }
+        } else {
+            for (e, film) in phi_f.iter_mut().zip(&*film) {
+                *e = excess(omega / film);
+            }
+        }
+        for (((phi_f, phi_fs), phi_fp), film) in phi_f.iter_mut().zip(phi_fs).zip(phi_fp).zip(&*film) {
+            let r = omega / film;
+            *phi_fs = 3.0 * *phi_f;
+            *phi_f += 1.0;
+            *phi_fp = 1.0 - r * r;
+        }
+    }
+}
+
+impl Roughness for Waves {
+    fn held_below(&self) -> Option<f64> {
+        Some(self.held_up_to())
+    }
+
+    fn flow(&self, h: &[f64], out: &mut RoughFlow) -> Result<(), EvalError> {
+        check_flow(MODEL, h, out)?;
+        widest(Flow { waves: self, h, out });
         Ok(())
     }
 
     fn shear(&self, h: &[f64], out: &mut RoughShear) -> Result<(), EvalError> {
         check_shear(MODEL, h, out)?;
-        let RoughShear { film, phi_f, phi_fs, phi_fp } = out;
-        film.iter_mut().zip(h).for_each(|(film, h)| *film = self.film(*h));
-        let thinnest = film.iter().fold(f64::INFINITY, |a, &b| if b < a { b } else { a });
-        if self.omega <= HALVED * thinnest {
-            phi_f.iter_mut().zip(&*film).for_each(|(e, film)| *e = excess_of_halves(self.omega / film));
-        } else {
-            phi_f.iter_mut().zip(&*film).for_each(|(e, film)| *e = excess(self.omega / film));
-        }
-        for ((phi_f, phi_fs), (phi_fp, film)) in
-            phi_f.iter_mut().zip(phi_fs).zip(phi_fp.iter_mut().zip(&*film))
-        {
-            let r = self.omega / film;
-            *phi_fs = 3.0 * *phi_f;
-            *phi_f += 1.0;
-            *phi_fp = 1.0 - r * r;
-        }
+        widest(Shear { waves: self, h, out });
         Ok(())
     }
 }

@@ -8,13 +8,14 @@ use std::sync::Arc;
 use gudgeon_core::kinds::{PhasorRow, Torsion, TorsionCtx, TorsionOut, TorsionSpec};
 use gudgeon_core::{BuildError, EvalError};
 use gudgeon_numerics::maximum::maximise;
+use gudgeon_numerics::vectors::all_finite;
 use gudgeon_torsion::critical::CriticalSpeed;
 use gudgeon_torsion::cycle::Cycle;
 use gudgeon_torsion::steady::Steady;
 use gudgeon_torsion::torsion::Orders;
 
 use super::assemble::Assembled;
-use sizes::{all_finite, angle_bounds, strongest, torque_amplitudes};
+use sizes::{angle_bounds, strongest, torque_amplitudes};
 
 /// Damping ratio below which a resonance counts as undamped: its peak would be a million times the static answer.
 const UNDAMPED: f64 = 1e-6;

@@ -4,11 +4,6 @@ use gudgeon_core::kinds::{OrderResponses, PhasorRow};
 use gudgeon_numerics::elementary;
 use gudgeon_numerics::vectors::{Vectorised, widest};
 
-/// Whether all numbers are finite.
-pub(super) fn all_finite(values: &[f64]) -> bool {
-    widest(Finite(values))
-}
-
 /// Torque amplitudes by link and order \[N m\].
 pub(super) fn torque_amplitudes(orders: &OrderResponses) -> Vec<f64> {
     let [_, _, re, im] = orders.values();
@@ -33,25 +28,6 @@ pub(crate) fn raise(most: &mut [f64], by: &[f64]) {
 /// Bounds of the angle \[rad\] of each inertia, times the order and alone: the sums over all orders and inertias.
 pub(super) fn angle_bounds(orders: &OrderResponses, nodes: usize) -> [f64; 2] {
     widest(Bounds { orders, nodes })
-}
-
-/// Zero times any number that is not finite is not zero: no branch for each of them.
-struct Finite<'v>(&'v [f64]);
-
-impl Vectorised for Finite<'_> {
-    type Output = bool;
-
-    #[inline(always)]
-    fn run(self) -> bool {
-        let mut sums = [0.0; 8];
-        let (whole, rest) = self.0.as_chunks::<8>();
-        for values in whole {
-            for l in 0..8 {
-                sums[l] += 0.0 * values[l];
-            }
-        }
-        sums == [0.0; 8] && rest.iter().all(|v| v.is_finite())
-    }
 }
 
 /// Numbers side by side.
