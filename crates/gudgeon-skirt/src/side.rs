@@ -6,6 +6,7 @@ use gudgeon_core::kinds::{
     Superposition,
 };
 use gudgeon_core::{BuildError, EvalError};
+use gudgeon_numerics::vectors::widest;
 
 mod beside;
 mod contact;
@@ -16,6 +17,8 @@ mod nodes;
 mod outflow;
 mod shape;
 mod slopes;
+mod sums;
+mod told;
 
 pub use contact::ContactGrid;
 pub use kept::{Filling, OilMoved, OilWay};
@@ -25,6 +28,9 @@ use contact::{ContactRows, Touch};
 use gap::{Gap, film_input};
 use kept::Kept;
 use nodes::Nodes;
+use outflow::Rim;
+use sums::{ContentRates, ContentShapes, CutOff, Over, Superposed};
+use told::Told;
 
 use crate::geometry::Panel;
 
@@ -79,6 +85,8 @@ pub struct Side {
     /// Shapes of the gap's rates at the nodes: upper edge, lower edge, elastic ones.
     shapes: Vec<f64>,
     over: Over,
+    /// Nodes over which oil leaves.
+    rim: Vec<Rim>,
     /// Elastic shapes at faces along `x` and along `y`.
     face_shapes: [Vec<f64>; 2],
     elastic: usize,
@@ -116,6 +124,8 @@ pub struct Side {
     open: Vec<f64>,
     fill: Vec<f64>,
     contact_now: [f64; 6],
+    /// What was told last, as long as `p`, `open` and `fill` are those of it.
+    told: Told,
     /// Oil that is kept, when it is.
     kept: Option<Kept>,
     /// Film evaluations so far: linear systems set up.
@@ -147,7 +157,6 @@ impl Side {
         let nodes = Nodes::new(&grid, &panel, is_half);
         let n = nodes.len();
         let shapes = nodes.shapes(sign, setup.compliance.shapes(), whole.len());
-        let tests: Vec<f64> = shapes.iter().enumerate().map(|(k, v)| v * nodes.weight[k % n]).collect();
         let mut drop = nodes.drops(&panel, setup.profile);
         let least_drop = drop[0].iter().chain(&drop[1]).fold(f64::INFINITY, |a, &b| a.min(b));
         let is_cylinder = drop.iter().flatten().all(|d| *d == 0.0);
@@ -158,7 +167,8 @@ impl Side {
         let (cg, own) = (setup.contact_grid, &shapes[2 * n..]);
         let rows = ContactRows::new(panel, sign, clearance, cg, touch, symmetric, profile, &nodes, own);
         let is_rough = !rough.is_smooth();
-        let over = Over { tests, arm: nodes.cos.iter().map(|c| panel.radius * c).collect(), nx: nodes.nx };
+        let over = Over::new(&nodes, &shapes, panel.radius);
+        let rim = Rim::of(&grid, is_half);
         Ok(Self {
             panel,
             sign,
@@ -168,6 +178,7 @@ impl Side {
             drop,
             least_drop,
             over,
+            rim,
             face_shapes: nodes.at_faces(own),
             nodes,
             elastic,
@@ -198,6 +209,7 @@ impl Side {
             open: vec![0.0; n],
             fill: vec![1.0; n],
             contact_now: [0.0; 6],
+            told: Told::default(),
             kept: None,
             evaluations: 0,
             whole,
@@ -348,6 +360,7 @@ impl Side {
     /// Goes to a place: its gap, its contact and what rates do there.
     fn go(&mut self, e: [f64; 2], q: &[f64], speed: f64) -> Result<(), EvalError> {
         self.placed.clear();
+        self.told.forget();
         self.is_moving = false;
         self.sense = if speed < 0.0 { -1.0 } else { 1.0 };
         self.shape_gap(false, e, q, speed)?;
@@ -355,13 +368,8 @@ impl Side {
         if self.kept.is_some() {
             self.fill.copy_from_slice(&self.now.fill);
         }
-        let n = self.nodes();
-        for (m, rates) in self.modes_of_rates.chunks_exact_mut(n).enumerate() {
-            let shape = &self.shapes[m * n..(m + 1) * n];
-            for ((r, s), slope) in rates.iter_mut().zip(shape).zip(&self.now.flow.content_derivative) {
-                *r = s * slope;
-            }
-        }
+        let slope = &self.now.flow.content_derivative;
+        widest(ContentShapes { shapes: &self.shapes, slope, out: &mut self.modes_of_rates });
         Ok(())
     }
 
@@ -372,6 +380,7 @@ impl Side {
     /// A film that cannot be solved.
     fn full_films(&mut self) -> Result<(), EvalError> {
         let n = self.nodes();
+        self.told.forget();
         let inp = film_input(&self.now, n);
         let [top, bottom] = [&self.modes_of_rates[..n], &self.modes_of_rates[n..2 * n]];
         let mode = |u: f64, dhdt| FilmMode { u, dhdt, edge_pressure: [0.0; 4] };
@@ -400,30 +409,25 @@ impl Side {
         out: &mut SideLoads,
     ) -> Result<(), EvalError> {
         out.contact = self.contact_now;
-        if self.is_superposed() {
-            if !self.is_moving {
-                self.superpose(speed, rates);
-            }
-            self.cut(mu);
+        if self.told.is_of(speed, mu, rates) {
+            self.told.loads(out);
         } else {
-            self.solve_whole(false, speed, mu, rates)?;
+            if self.is_superposed() {
+                self.pressures(speed, mu, rates);
+            } else {
+                self.solve_whole(false, speed, mu, rates)?;
+            }
+            self.sums(false, speed, mu, out);
+            self.told.take(speed, mu, rates, out);
         }
-        self.sums(false, speed, mu, out);
         self.slopes(speed, mu, rates, slopes, out)
     }
 
     /// Rate of the gap's content at every node, into `self.rates`.
     fn combine_rates(&mut self, trial: bool, rates: &[f64]) {
-        let n = self.nodes();
         let gap = if trial { &self.trial } else { &self.now };
-        for k in 0..n {
-            self.rates[k] = rates[0] * self.shapes[k] + rates[1] * self.shapes[n + k];
-        }
-        for (m, rate) in rates[2..].iter().enumerate() {
-            let shape = &self.shapes[(2 + m) * n..(3 + m) * n];
-            self.rates.iter_mut().zip(shape).for_each(|(r, s)| *r += rate * s);
-        }
-        self.rates.iter_mut().zip(&gap.flow.content_derivative).for_each(|(r, s)| *r *= s);
+        let (shapes, slope) = (&self.shapes[..], &gap.flow.content_derivative[..]);
+        widest(ContentRates { rates, shapes, slope, out: &mut self.rates });
     }
 
     /// The film with its cavitation, by the solver alone.
@@ -435,6 +439,7 @@ impl Side {
         rates: &[f64],
     ) -> Result<Film2dOut, EvalError> {
         self.combine_rates(trial, rates);
+        self.told.forget();
         let n = self.nodes();
         let gap = if trial { &self.trial } else { &self.now };
         let [scaled, _, _] = &mut self.work;
@@ -457,30 +462,18 @@ impl Side {
         self.is_superposed() && self.kept.is_none()
     }
 
-    /// Uncut pressure per viscosity for the rates, into `self.raw`.
-    fn superpose(&mut self, speed: f64, rates: &[f64]) {
-        let n = self.nodes();
-        let (first, shapes) = self.fields.split_at(3 * n);
-        let (sliding, edges) = first.split_at(n);
-        let (top, bottom) = edges.split_at(n);
-        let (u, v, w) = (speed.abs(), rates[0], rates[1]);
-        let causes = sliding.iter().zip(top.iter().zip(bottom));
-        self.raw.iter_mut().zip(causes).for_each(|(p, (s, (a, b)))| *p = u * s + v * a + w * b);
-        for (rate, field) in rates[2..].iter().zip(shapes.chunks_exact(n)) {
-            self.raw.iter_mut().zip(field).for_each(|(p, f)| *p += rate * f);
+    /// Pressures of a film that is linear in the rates but for a cut: uncut ones per viscosity into `self.raw`, the others into `self.p`, and where they take
+    /// part in changes into `self.open`.
+    fn pressures(&mut self, speed: f64, mu: f64, rates: &[f64]) {
+        if self.told.is_of(speed, mu, rates) {
+            return;
         }
-    }
-
-    /// The pressure from `self.raw`, cut off, and where it takes part in changes.
-    fn cut(&mut self, mu: f64) {
+        self.told.forget();
+        if !self.is_moving {
+            widest(Superposed { speed: speed.abs(), rates, fields: &self.fields, out: &mut self.raw });
+        }
         let cut = if self.superposition == Superposition::CutOff { self.p_cav } else { f64::NEG_INFINITY };
-        for ((p, open), raw) in self.p.iter_mut().zip(&mut self.open).zip(&self.raw) {
-            let full = mu * raw;
-            // A film without pressure, as that of a centred skirt at rest, answers like a full one.
-            let is_open = full >= cut;
-            *open = if is_open { 1.0 } else { 0.0 };
-            *p = if is_open { full } else { cut };
-        }
+        widest(CutOff { mu, cut, raw: &self.raw, p: &mut self.p, open: &mut self.open });
     }
 
     /// Sums over the film in `self.p`.
@@ -493,7 +486,7 @@ impl Side {
         out.elastic.resize(self.elastic, 0.0);
         out.elastic.copy_from_slice(&self.row[4..width]);
         // Couette drag: the liner slides against the piston.
-        let drag = if self.is_full() { gap.full_drag } else { self.over.drag(&self.nodes, gap, &self.fill) };
+        let drag = if self.is_full() { gap.full_drag } else { self.over.drag(gap, &self.fill) };
         found[2] -= mu * speed * drag[0];
         found[3] -= mu * speed * drag[1];
         out.film = found;
@@ -565,63 +558,6 @@ impl Side {
     pub fn rubbing(&self, speed: f64, contact: &[f64; 6]) -> [f64; 2] {
         self.rows.rubbing(speed, contact)
     }
-}
-
-/// What sums over a film need besides its levers.
-struct Over {
-    /// Shapes of the gap's rates times the areas of the nodes.
-    tests: Vec<f64>,
-    /// `R cos φ` of every line.
-    arm: Vec<f64>,
-    nx: usize,
-}
-
-impl Over {
-    /// Drag of a film per viscosity and speed, and the same times `R cos φ`.
-    fn drag(&self, nodes: &Nodes, gap: &Gap, fill: &[f64]) -> [f64; 2] {
-        let mut found = [0.0; 2];
-        for (j, arm) in self.arm.iter().enumerate() {
-            let line = j * self.nx..(j + 1) * self.nx;
-            let own = nodes.weight[line.clone()].iter().zip(&gap.drag[line.clone()]).zip(&fill[line]);
-            let full: f64 = own.map(|((w, d), f)| w * d * f).sum();
-            found[0] += full;
-            found[1] += full * arm;
-        }
-        found
-    }
-
-    /// `out`: forces of a pressure on both edges, along the bore, along the bore times `R cos φ`, and on the elastic shapes.
-    fn sums(&self, p: &[f64], gap: &Gap, out: &mut [f64]) {
-        let n = p.len();
-        let (edges, shapes) = self.tests.split_at(2 * n);
-        let (top, bottom) = edges.split_at(n);
-        let (head, elastic) = out.split_at_mut(4);
-        head.copy_from_slice(&four_dots(p, [top, bottom, &gap.lever, &gap.moment]));
-        for (out, test) in elastic.iter_mut().zip(shapes.chunks_exact(n)) {
-            *out = gudgeon_numerics::linalg::dot(test, p);
-        }
-    }
-}
-
-/// Inner products of four fields with `p`, each in four partial sums.
-fn four_dots(p: &[f64], [a, b, c, d]: [&[f64]; 4]) -> [f64; 4] {
-    const LANES: usize = 4;
-    let (own, fields) = (p.chunks_exact(LANES), [a, b, c, d].map(|f| f.chunks_exact(LANES)));
-    let rest =
-        fields.each_ref().map(|f| own.remainder().iter().zip(f.remainder()).map(|(p, f)| p * f).sum::<f64>());
-    let [a, b, c, d] = fields;
-    let (mut sa, mut sb, mut sc, mut sd) = ([0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]);
-    for (((p, a), b), (c, d)) in own.zip(a).zip(b).zip(c.zip(d)) {
-        for l in 0..LANES {
-            sa[l] += a[l] * p[l];
-            sb[l] += b[l] * p[l];
-            sc[l] += c[l] * p[l];
-            sd[l] += d[l] * p[l];
-        }
-    }
-    let mut sums = [sa, sb, sc, sd].map(|s| (s[0] + s[1]) + (s[2] + s[3]));
-    sums.iter_mut().zip(rest).for_each(|(sum, rest)| *sum += rest);
-    sums
 }
 
 /// Whether all shapes are their own mirror images.

@@ -379,6 +379,20 @@ pub trait Film2d: Send {
         Ok(false)
     }
 
+    /// The same of the film that [`Film2d::solve_many`] set up last, whose input was `inp`: nothing need be set up again.
+    ///
+    /// # Errors
+    /// As [`Film2d::imbalance`].
+    fn imbalance_here(
+        &mut self,
+        inp: &Film2dIn<'_>,
+        mode: &FilmMode<'_>,
+        p: &[f64],
+        r: &mut [f64],
+    ) -> Result<bool, EvalError> {
+        self.imbalance(inp, mode, p, r)
+    }
+
     /// Pressures \[Pa\] that take up flows left over, field after field in place: the solutions of the matrix that [`Film2d::solve_many`] set up last. With
     /// [`Film2d::imbalance`] this is one step of Newton's method from a film to one beside it. Flows on edges that give a pressure do not count.
     ///

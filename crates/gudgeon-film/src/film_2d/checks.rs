@@ -2,6 +2,7 @@
 
 use gudgeon_core::kinds::FilmMode;
 use gudgeon_core::{BuildError, EvalError};
+use gudgeon_numerics::vectors::all_finite;
 
 /// Relative tolerance of a solution that is asked for when a case does not say.
 pub(super) fn tolerance() -> f64 {
@@ -30,8 +31,8 @@ pub(super) fn check_modes(
         ));
     }
     for m in modes {
-        let sum = m.u + m.edge_pressure.iter().sum::<f64>() + m.dhdt.iter().sum::<f64>();
-        if !(sum.is_finite() && (m.dhdt.is_empty() || m.dhdt.len() == n)) {
+        let sum = m.u + m.edge_pressure.iter().sum::<f64>();
+        if !(sum.is_finite() && all_finite(m.dhdt) && (m.dhdt.is_empty() || m.dhdt.len() == n)) {
             return Err(EvalError::fatal(model, "a mode is not finite or not of the size of the grid"));
         }
     }

@@ -412,6 +412,23 @@ impl<L: Linear> Film2d for Solver<L> {
         Ok(true)
     }
 
+    fn imbalance_here(
+        &mut self,
+        inp: &Film2dIn<'_>,
+        mode: &FilmMode<'_>,
+        p: &[f64],
+        r: &mut [f64],
+    ) -> Result<bool, EvalError> {
+        if !(self.set_up && is_plain(inp, mode)) {
+            return self.imbalance(inp, mode, p, r);
+        }
+        let n = self.p.len();
+        check_modes(self.model, n, &[*mode], p.len())?;
+        check_modes(self.model, n, &[*mode], r.len())?;
+        self.problem.plain_imbalance(inp, mode, p, r);
+        Ok(true)
+    }
+
     fn respond(&mut self, r: &mut [f64]) -> Result<(), EvalError> {
         let n = self.p.len();
         if !self.set_up {

@@ -2,6 +2,7 @@ use gudgeon_core::kinds::{Film2d, Film2dCtx, Film2dSpec};
 use gudgeon_core::{BuildError, register_model};
 use gudgeon_numerics::linalg::{BLOCK, Banded, Singular, SymmetricBanded};
 use gudgeon_numerics::multigrid::{FivePoint, Role};
+use gudgeon_numerics::vectors::{Vectorised, widest};
 use serde::{Deserialize, Serialize};
 
 use super::cavitation::Cavitation;
@@ -67,12 +68,10 @@ impl Film2dSpec for Direct {
 /// Place of a node that is no unknown.
 const NONE: usize = usize::MAX;
 
-/// An unknown: its node, and the sides of its volume.
+/// An unknown: its node, and what it exchanges with unknowns further on.
 #[derive(Clone, Copy)]
 struct Unknown {
     node: usize,
-    /// Nodes that hold the conductances of its sides, along a line and across; [`NONE`] where there is no side.
-    sides: [[usize; 2]; 2],
     /// Unknowns further on that this one exchanges with: how many rows further, and the node that holds the conductance; no rows where there are none.
     along: [(usize, usize); 2],
     across: (usize, usize),
@@ -87,6 +86,8 @@ pub(super) struct Elimination {
     is_symmetric: bool,
     /// Whether every unknown of the symmetric matrix is diffused.
     is_whole: bool,
+    /// What every node lets through to all others and loses.
+    diagonal: Vec<f64>,
     work: Vec<f64>,
 }
 
@@ -133,6 +134,7 @@ impl Elimination {
             general: general.then(|| Banded::new(unknowns.len(), half, half)),
             is_symmetric: true,
             is_whole: false,
+            diagonal: vec![0.0; n],
             work: vec![0.0; unknowns.len()],
             unknowns,
         }
@@ -140,15 +142,15 @@ impl Elimination {
 
     /// Sets up a matrix of diffusion alone, all of whose unknowns are diffused.
     fn assemble_whole(&mut self, m: &FivePoint) {
-        let at = |g: &[f64], k: usize| g.get(k).copied().unwrap_or(0.0);
+        widest(Diagonal { m, out: &mut self.diagonal });
+        self.symmetric.clear();
         for (row, u) in self.unknowns.iter().enumerate() {
             let row = self.symmetric.row_mut(row);
-            row.fill(0.0);
-            row[0] = m.leak[u.node]
-                + (at(&m.gx, u.sides[0][0]) + at(&m.gx, u.sides[0][1]))
-                + (at(&m.gy, u.sides[1][0]) + at(&m.gy, u.sides[1][1]));
-            for (further, k) in u.along.into_iter().filter(|side| side.0 > 0) {
-                row[further] = -m.gx[k];
+            row[0] = self.diagonal[u.node];
+            for (further, k) in u.along {
+                if further > 0 {
+                    row[further] = -m.gx[k];
+                }
             }
             if u.across.0 > 0 {
                 row[u.across.0] = -m.gy[u.across.1];
@@ -206,18 +208,23 @@ impl Elimination {
         let nodes = self.place.len();
         let mut fields = group.chunks_exact(nodes);
         let own: [&[f64]; C] = std::array::from_fn(|_| fields.next().unwrap_or_default());
-        for (row, u) in self.symmetric.block().iter_mut().zip(&self.unknowns) {
+        let (block, is_whole) = (self.symmetric.block(), self.is_whole);
+        for (row, u) in block.iter_mut().zip(&self.unknowns) {
             *row = [0.0; BLOCK];
-            if self.is_whole || m.role[u.node] != Role::Fixed {
-                row.iter_mut().zip(own).for_each(|(x, field)| *x = field[u.node]);
+            if is_whole || m.role[u.node] != Role::Fixed {
+                for c in 0..C {
+                    row[c] = own[c][u.node];
+                }
             }
         }
         self.symmetric.solve_block();
         group.fill(0.0);
         let mut fields = group.chunks_exact_mut(nodes);
-        let mut own: [&mut [f64]; C] = std::array::from_fn(|_| fields.next().unwrap_or_default());
+        let own: [&mut [f64]; C] = std::array::from_fn(|_| fields.next().unwrap_or_default());
         for (row, u) in self.symmetric.block().iter().zip(&self.unknowns) {
-            own.iter_mut().zip(row).for_each(|(field, x)| field[u.node] = *x);
+            for c in 0..C {
+                own[c][u.node] = row[c];
+            }
         }
     }
 }
@@ -232,15 +239,41 @@ impl Unknown {
         };
         let (before, after) = (m.before(i, k), m.after(i, k));
         let along = |to: usize, side: usize| if to == k { (0, k) } else { (further(to), side) };
-        let held = |is_there: bool, side: usize| if is_there { side } else { NONE };
-        Self {
-            node: k,
-            sides: [
-                [held(before != k, before), held(after != k, k)],
-                [held(k >= nx, k.wrapping_sub(nx)), held(k + nx < place.len(), k)],
-            ],
-            along: [along(before, before), along(after, k)],
-            across: (further(k + nx), k),
+        Self { node: k, along: [along(before, before), along(after, k)], across: (further(k + nx), k) }
+    }
+}
+
+/// What every node of a matrix of diffusion lets through to all others and loses.
+struct Diagonal<'a> {
+    m: &'a FivePoint,
+    out: &'a mut [f64],
+}
+
+impl Vectorised for Diagonal<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { m, out } = self;
+        let (nx, n) = (m.nx, out.len());
+        let (gx, gy, leak) = (&m.gx[..n], &m.gy[..n], &m.leak[..n]);
+        for k in 0..nx {
+            out[k] = leak[k] + (gx[k.saturating_sub(1)] + gx[k]) + gy[k];
+        }
+        let (before, below) = (&gx[nx - 1..n - 1], &gy[..n - nx]);
+        let own = gx[nx..].iter().zip(&gy[nx..]).zip(&leak[nx..]);
+        for ((out, ((gx, gy), leak)), (before, below)) in
+            out[nx..].iter_mut().zip(own).zip(before.iter().zip(below))
+        {
+            *out = leak + (before + gx) + (below + gy);
+        }
+        if m.periodic {
+            for start in (0..n).step_by(nx) {
+                let (before, below) = (gx[start + nx - 1], if start > 0 { gy[start - nx] } else { 0.0 });
+                out[start] = leak[start] + (before + gx[start]) + (below + gy[start]);
+            }
+        } else {
+            out[0] = leak[0] + gx[0] + gy[0];
         }
     }
 }

@@ -10,6 +10,7 @@ mod flux;
 mod multigrid;
 mod off;
 mod problem;
+mod sides;
 mod sor;
 
 pub use cavitation::Cavitation;

@@ -3,9 +3,11 @@
 use gudgeon_core::kinds::{Edge, Film2dGrid, Film2dIn, Film2dOut, FilmMode, Viscosity};
 use gudgeon_core::{BuildError, EvalError};
 use gudgeon_numerics::multigrid::{FivePoint, Role};
+use gudgeon_numerics::vectors::{Vectorised, least, widest};
 
 use super::cavitation::Cavitation;
 use super::flux::Flux;
+use super::sides::{Exchange, OfFaces, Sides, Slide, Squeezed, mean_of_nodes};
 
 /// Maximum number of nodes of a grid: one field of 128 MB.
 const MAX_NODES: usize = 1 << 24;
@@ -26,7 +28,10 @@ pub(super) struct Problem {
     wy: Vec<f64>,
     /// Width of the side to the next node over the distance to it, node by node: along `x`, across.
     slender: [Vec<f64>; 2],
-    /// Flow by sliding and pressure through the sides of a line.
+    /// Width of the side to the next node along `x`, none at the end of a line; areas of the control volumes.
+    width: Vec<f64>,
+    areas: Vec<f64>,
+    /// Flow through every side.
     flows: Vec<f64>,
     /// Weights of the nodes in integrals.
     sx: Vec<f64>,
@@ -81,20 +86,28 @@ pub(super) struct Field {
 
 impl Field {
     pub fn of(field: &[f64]) -> Self {
-        let (mut wrong, mut least) = ([0.0; LANES], [f64::INFINITY; LANES]);
-        let groups = field.chunks_exact(LANES);
-        let rest = groups.remainder();
+        widest(Look(field))
+    }
+}
+
+struct Look<'a>(&'a [f64]);
+
+impl Vectorised for Look<'_> {
+    type Output = Field;
+
+    #[inline(always)]
+    fn run(self) -> Field {
+        let mut wrong = [0.0; 2 * LANES];
+        let (groups, rest) = self.0.as_chunks::<{ 2 * LANES }>();
         for group in groups {
-            for l in 0..LANES {
+            for l in 0..2 * LANES {
                 // Zero, or not a number.
                 wrong[l] += 0.0 * group[l];
-                least[l] = if group[l] < least[l] { group[l] } else { least[l] };
             }
         }
-        let lesser = |a: f64, b: f64| if b < a { b } else { a };
-        Self {
-            is_finite: wrong.iter().all(|w| *w == 0.0) && rest.iter().all(|x| x.is_finite()),
-            least: least.into_iter().chain(rest.iter().copied()).fold(f64::INFINITY, lesser),
+        Field {
+            is_finite: wrong == [0.0; 2 * LANES] && rest.iter().all(|x| x.is_finite()),
+            least: least(self.0),
         }
     }
 }
@@ -108,65 +121,6 @@ enum Kind {
     Factor,
     /// Any number.
     Rate,
-}
-
-/// Sides between `count` nodes from `from` on and as many from `to` on.
-#[derive(Clone, Copy)]
-struct Sides {
-    from: usize,
-    to: usize,
-    count: usize,
-}
-
-impl Sides {
-    /// The values at either end.
-    fn of<'a>(&self, x: &'a [f64]) -> impl Iterator<Item = (&'a f64, &'a f64)> {
-        x[self.from..self.from + self.count].iter().zip(&x[self.to..self.to + self.count])
-    }
-}
-
-/// Mean of the conductivities `φ h³/(12 μ)` of the nodes on either side.
-fn mean_of_nodes(inp: &Film2dIn<'_>, sides: Sides, phi: &[f64], out: &mut [f64]) {
-    let mu = |k: usize| match inp.mu {
-        Viscosity::Uniform(mu) => mu,
-        Viscosity::Nodes(m) => m[k],
-    };
-    let factor = |k: usize| if phi.is_empty() { 1.0 } else { phi[k] };
-    let one = |k: usize| factor(k) * inp.h[k].powi(3) / mu(k);
-    for (i, g) in out.iter_mut().enumerate() {
-        *g = (one(sides.from + i) + one(sides.to + i)) / 24.0;
-    }
-}
-
-/// `φ h³/(12 μ)` of the means of either side, or of the film thickness that is `given` there.
-fn of_faces(inp: &Film2dIn<'_>, sides: Sides, phi: &[f64], given: &[f64], out: &mut [f64]) {
-    if given.is_empty() {
-        out.iter_mut().zip(sides.of(inp.h)).for_each(|(g, (a, b))| *g = 0.5 * (a + b));
-    } else {
-        out.copy_from_slice(&given[sides.from..sides.from + sides.count]);
-    }
-    if phi.is_empty() {
-        out.iter_mut().for_each(|g| *g = *g * *g * *g);
-    } else {
-        out.iter_mut().zip(sides.of(phi)).for_each(|(g, (a, b))| *g = 0.5 * (a + b) * *g * *g * *g);
-    }
-    match inp.mu {
-        Viscosity::Uniform(mu) => {
-            let fluidity = 1.0 / (12.0 * mu);
-            out.iter_mut().for_each(|g| *g *= fluidity);
-        }
-        Viscosity::Nodes(m) => out.iter_mut().zip(sides.of(m)).for_each(|(g, (a, b))| *g /= 6.0 * (a + b)),
-    }
-}
-
-/// `f(i, i + 1)` for every place of a line, which closes to a ring: where it does not, the last means nothing.
-#[inline]
-fn around(line: &mut [f64], f: impl Fn(usize, usize) -> f64) {
-    let last = line.len() - 1;
-    for i in 0..last {
-        line[i] = f(i, i + 1);
-    }
-    line[last] = f(last, 0);
 }
 
 impl Problem {
@@ -232,11 +186,15 @@ impl Problem {
             .collect();
         let over = |width: f64, distance: f64| if distance > 0.0 { width / distance } else { 0.0 };
         let along = wy.iter().flat_map(|w| dx.iter().map(move |d| over(*w, *d))).collect();
+        let width = wy.iter().flat_map(|w| dx.iter().map(move |d| if *d > 0.0 { *w } else { 0.0 })).collect();
+        let areas = wy.iter().flat_map(|wy| wx.iter().map(move |wx| wx * wy)).collect();
         let across = dy.iter().flat_map(|d| wx.iter().map(move |w| over(*w, *d))).collect();
         Ok(Self {
             grid: grid.clone(),
             slender: [along, across],
-            flows: vec![0.0; nx],
+            width,
+            areas,
+            flows: vec![0.0; nx * ny],
             flux,
             nx,
             ny,
@@ -344,33 +302,34 @@ impl Problem {
     }
 
     fn conductances<const NODE: bool>(&mut self, inp: &Film2dIn<'_>) {
-        let (nx, ny) = (self.nx, self.ny);
-        let phi = &inp.factors;
-        let conductivity = |side: Sides, phi: &[f64], given: &[f64], out: &mut [f64]| {
+        let (nx, n) = (self.nx, self.len());
+        let factors = &inp.factors;
+        let conductivity = |sides: Sides, phi: &[f64], given: &[f64], out: &mut [f64]| {
             if NODE && given.is_empty() {
-                mean_of_nodes(inp, side, phi, out);
+                mean_of_nodes(inp, sides, phi, out);
             } else {
-                of_faces(inp, side, phi, given, out);
+                widest(OfFaces { inp, sides, phi, given, out });
             }
         };
-        for j in 0..ny {
-            let row = j * nx..(j + 1) * nx;
-            let gx = &mut self.m.gx[row.clone()];
-            let along = Sides { from: row.start, to: row.start + 1, count: nx - 1 };
-            conductivity(along, phi.pressure_x, inp.h_face_x, &mut gx[..nx - 1]);
-            gx[nx - 1] = 0.0;
-            if self.periodic {
-                let closing = Sides { from: row.end - 1, to: row.start, count: 1 };
-                conductivity(closing, phi.pressure_x, inp.h_face_x, &mut gx[nx - 1..]);
+        // All sides along lines at once: nothing flows from the end of one to the start of the next, for there is no width between them.
+        let FivePoint { gx, gy, .. } = &mut self.m;
+        let along = Sides { from: 0, to: 1, count: n - 1 };
+        conductivity(along, factors.pressure_x, inp.h_face_x, &mut gx[..n - 1]);
+        gx[n - 1] = 0.0;
+        if self.periodic {
+            for start in (0..n).step_by(nx) {
+                let end = start + nx - 1;
+                let closing = Sides { from: end, to: start, count: 1 };
+                conductivity(closing, factors.pressure_x, inp.h_face_x, &mut gx[end..=end]);
             }
-            gx.iter_mut().zip(&self.slender[0][row.clone()]).for_each(|(g, s)| *g *= s);
         }
-        // All sides across at once: they stand one line apart.
-        let inner = nx * (ny - 1);
-        let (gy, last) = self.m.gy.split_at_mut(inner);
-        conductivity(Sides { from: 0, to: nx, count: inner }, phi.pressure_y, inp.h_face_y, gy);
-        gy.iter_mut().zip(&self.slender[1]).for_each(|(g, s)| *g *= s);
+        // All sides across: they stand one line apart.
+        let (gy, last) = gy.split_at_mut(n - nx);
+        conductivity(Sides { from: 0, to: nx, count: n - nx }, factors.pressure_y, inp.h_face_y, gy);
         last.fill(0.0);
+        for (g, slender) in [(&mut self.m.gx[..], &self.slender[0]), (&mut self.m.gy, &self.slender[1])] {
+            g.iter_mut().zip(slender).for_each(|(g, s)| *g *= s);
+        }
     }
 
     /// What sliding and squeezing do, for a film of the given condition: where `filling` counts, an opening gap takes up oil in proportion to
@@ -386,26 +345,22 @@ impl Problem {
 
     /// Flow that the sliding surface carries from each node to the next.
     fn slide(&mut self, inp: &Film2dIn<'_>, u: f64) {
-        let nx = self.nx;
+        let (nx, n) = (self.nx, self.len());
         let film = if inp.factors.transport.is_empty() { inp.h } else { inp.factors.transport };
-        for (j, qx) in self.m.qx.chunks_exact_mut(nx).enumerate() {
-            let row = j * nx..(j + 1) * nx;
-            let (h, film, wy) = (&inp.h[row.clone()], &film[row.clone()], self.wy[j]);
-            match self.flux {
-                Flux::Face if inp.h_face_x.is_empty() => {
-                    around(qx, |i, next| 0.5 * u * (0.5 * (film[i] + film[next])) * wy);
-                }
-                Flux::Face => {
-                    let given = &inp.h_face_x[row];
-                    // What rough surfaces add varies little: its mean, on top of the film between the nodes.
-                    let more = |i: usize, next: usize| 0.5 * ((film[i] - h[i]) + (film[next] - h[next]));
-                    around(qx, |i, next| 0.5 * u * (given[i] + more(i, next)) * wy);
-                }
-                Flux::Node if u >= 0.0 => around(qx, |i, _| 0.5 * u * film[i] * wy),
-                Flux::Node => around(qx, |_, next| 0.5 * u * film[next] * wy),
-            }
-            if !self.periodic {
-                qx[nx - 1] = 0.0;
+        let (given, carried) = match self.flux {
+            Flux::Face => (inp.h_face_x, None),
+            Flux::Node => (&[][..], Some(usize::from(u < 0.0))),
+        };
+        let half = 0.5 * u;
+        let (width, out) = (&self.width[..], &mut self.m.qx[..]);
+        widest(Slide { half, h: inp.h, film, given, carried, width, out: &mut out[..n - 1] });
+        out[n - 1] = 0.0;
+        if self.periodic {
+            for start in (0..n).step_by(nx) {
+                let end = start + nx - 1;
+                let (h, film) = (&[inp.h[end], inp.h[start]], &[film[end], film[start]]);
+                let given = given.get(end..=end).unwrap_or_default();
+                Slide { half, h, film, given, carried, width: &width[end..], out: &mut out[end..=end] }.run();
             }
         }
     }
@@ -616,58 +571,41 @@ impl Problem {
     }
 
     fn plain_flows(&mut self, inp: &Film2dIn<'_>, mode: &FilmMode<'_>, p: Option<&[f64]>, out: &mut [f64]) {
-        let (nx, ny) = (self.nx, self.ny);
-        self.squeezed(mode.dhdt, out);
-        if mode.u != 0.0 {
+        let (nx, n) = (self.nx, self.len());
+        if mode.dhdt.is_empty() {
+            out.fill(0.0);
+        } else {
+            widest(Squeezed { rates: mode.dhdt, areas: &self.areas, out });
+        }
+        if mode.u == 0.0 && p.is_none() {
+            return;
+        }
+        if mode.u == 0.0 {
+            self.flows.fill(0.0);
+        } else {
             self.slide(inp, mode.u);
+            self.flows.copy_from_slice(&self.m.qx);
         }
-        for j in 0..ny {
-            let row = j * nx..(j + 1) * nx;
-            let flows = &mut self.flows[..];
-            if mode.u == 0.0 {
-                flows.fill(0.0);
-            } else {
-                flows.copy_from_slice(&self.m.qx[row.clone()]);
-            }
-            if let Some(p) = p {
-                let (own, gx) = (&p[row.clone()], &self.m.gx[row.clone()]);
-                for (flow, (g, pair)) in flows.iter_mut().zip(gx.iter().zip(own.windows(2))) {
-                    *flow += g * (pair[0] - pair[1]);
-                }
-                flows[nx - 1] += gx[nx - 1] * (own[nx - 1] - own[0]);
-            } else if mode.u == 0.0 {
-                continue;
-            }
-            let line = &mut out[row];
-            line.iter_mut().zip(&*flows).for_each(|(out, flow)| *out -= flow);
-            line[1..].iter_mut().zip(&*flows).for_each(|(out, flow)| *out += flow);
-            if self.periodic {
-                line[0] += flows[nx - 1];
-            }
+        // The side that closes a ring leads from the end of its line to the start of it.
+        for end in (nx - 1..n).step_by(nx).filter(|_| self.periodic) {
+            let start = end + 1 - nx;
+            let pressed = p.map_or(0.0, |p| self.m.gx[end] * (p[end] - p[start]));
+            let flow = std::mem::take(&mut self.flows[end]) + pressed;
+            out[end] -= flow;
+            out[start] += flow;
         }
-        if let Some(p) = p {
-            for j in 1..ny {
-                let (lines, beyond) = out.split_at_mut(j * nx);
-                let gy = &self.m.gy[(j - 1) * nx..j * nx];
-                let (own, other) = (&p[(j - 1) * nx..j * nx], &p[j * nx..(j + 1) * nx]);
-                let sides = lines[(j - 1) * nx..].iter_mut().zip(&mut beyond[..nx]);
-                for ((below, above), (g, (a, b))) in sides.zip(gy.iter().zip(own.iter().zip(other))) {
-                    let flow = g * (a - b);
-                    *below -= flow;
-                    *above += flow;
-                }
-            }
+        let FivePoint { gx, gy, .. } = &self.m;
+        // Lines that are no rings stand behind one another as one: nothing flows between them.
+        let line = if self.periodic { nx } else { n };
+        for start in (0..n).step_by(line) {
+            let flows = &mut self.flows[start..start + line - 1];
+            let driven = p.map(|p| (&gx[start..], &p[start..]));
+            widest(Exchange { step: 1, driven, flows, out: &mut out[start..] });
         }
-    }
-
-    /// What a gap whose content changes at `dhdt` takes up at every node, with its sign changed.
-    fn squeezed(&self, dhdt: &[f64], out: &mut [f64]) {
-        if dhdt.is_empty() {
-            return out.fill(0.0);
-        }
-        let lines = out.chunks_exact_mut(self.nx).zip(dhdt.chunks_exact(self.nx)).zip(&self.wy);
-        for ((out, rates), wy) in lines {
-            out.iter_mut().zip(rates.iter().zip(&self.wx)).for_each(|(out, (r, wx))| *out = -(r * (wx * wy)));
+        if p.is_some() {
+            let flows = &mut self.flows[..n - nx];
+            flows.fill(0.0);
+            widest(Exchange { step: nx, driven: p.map(|p| (&gy[..], p)), flows, out });
         }
     }
 

@@ -17,7 +17,7 @@ pub enum Role {
 /// Node `k = j nx + i`; a [`Role::Diffused`] unknown `v` sends `gx[k] (v[k] - v[k+1])` to the next node of its line and
 /// `gy[k] (v[k] - v[k+nx])` to the line above; a [`Role::Carried`] one sends `-qx[k] v[k]` to the next node where `qx[k] > 0`, to the one
 /// before where `qx[k-1] < 0`, and loses `-hold[k] v[k]`; nodes that are not diffused are zero to diffusion. A row is the sum of what leaves.
-/// The last `gx` and `qx` of a line join it to its first node when lines are periodic, and are not read otherwise.
+/// The last `gx` and `qx` of a line join it to its first node when lines are periodic, and are zero otherwise; so are the `gy` of the last line.
 #[derive(Debug, Clone)]
 pub struct FivePoint {
     /// Nodes along a line.

@@ -2,8 +2,10 @@
 
 use gudgeon_core::EvalError;
 use gudgeon_core::kinds::{FilmMode, Superposition};
+use gudgeon_numerics::vectors::widest;
 
 use super::gap::film_input;
+use super::sums::Taken;
 use super::{Side, SideLoads};
 
 impl Side {
@@ -28,8 +30,7 @@ impl Side {
         let n = self.nodes();
         let count = 2 + self.elastic;
         if self.is_superposed() {
-            self.superpose(speed, rates);
-            self.cut(mu);
+            self.pressures(speed, mu, rates);
         }
         let mut moved = std::mem::take(&mut self.moved);
         let mut outcome = Ok(true);
@@ -57,12 +58,10 @@ impl Side {
         self.film.respond(&mut self.beside)?;
         let width = 4 + self.elastic;
         for (c, out) in out.iter_mut().enumerate().take(count) {
-            let change = &self.beside[c * n..(c + 1) * n];
-            let taken = &mut self.work[0];
-            for k in 0..n {
-                taken[k] = mu * self.open[k] * change[k];
-            }
-            self.over.sums(taken, &self.now, &mut self.row[..width]);
+            let field = &self.beside[c * n..(c + 1) * n];
+            let open = Some(&self.open[..]);
+            widest(Taken { factor: mu, open, field, out: &mut self.work[0] });
+            self.over.sums(&self.work[0], &self.now, &mut self.row[..width]);
             out.film.iter_mut().zip(&self.row).for_each(|(f, d)| *f += d);
             out.elastic.iter_mut().zip(&self.row[4..]).for_each(|(f, d)| *f += d);
         }
@@ -85,7 +84,7 @@ impl Side {
         self.shape_gap(true, e, q, speed)?;
         out.contact = self.contact_loads(e, q);
         self.sums(true, speed, mu, out);
-        self.left_over(true, speed, rates, column)
+        self.left_over(speed, rates, column)
     }
 
     /// Forces at another place for rates that are given: one film alone. The present place stays.
@@ -100,6 +99,7 @@ impl Side {
     ) -> Result<(), EvalError> {
         self.shape_gap(true, e, q, speed)?;
         out.contact = self.contact_loads(e, q);
+        self.told.forget();
         let kept = std::mem::take(&mut self.p);
         self.p = std::mem::take(&mut self.open);
         let outcome = if self.superposition == Superposition::None {
@@ -132,20 +132,13 @@ impl Side {
         outcome
     }
 
-    /// Flow per viscosity that a pressure per viscosity leaves over in the film, into field `column` of `self.beside`: `self.raw` for the film beside the
-    /// present place, `self.p` for the present one. Whether the film's model can tell.
-    pub(super) fn left_over(
-        &mut self,
-        trial: bool,
-        speed: f64,
-        rates: &[f64],
-        column: usize,
-    ) -> Result<bool, EvalError> {
-        self.combine_rates(trial, rates);
+    /// Flow per viscosity that the uncut pressures per viscosity leave over in the film beside the present place, into field `column` of `self.beside`.
+    /// Whether the film's model can tell.
+    fn left_over(&mut self, speed: f64, rates: &[f64], column: usize) -> Result<bool, EvalError> {
+        self.combine_rates(true, rates);
         let n = self.nodes();
-        let gap = if trial { &self.trial } else { &self.now };
         let mode = FilmMode { u: -speed, dhdt: &self.rates, edge_pressure: [0.0; 4] };
-        let p = if trial { &self.raw } else { &self.p };
-        self.film.imbalance(&film_input(gap, n), &mode, p, &mut self.beside[column * n..(column + 1) * n])
+        let out = &mut self.beside[column * n..(column + 1) * n];
+        self.film.imbalance(&film_input(&self.trial, n), &mode, &self.raw, out)
     }
 }

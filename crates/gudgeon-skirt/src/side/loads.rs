@@ -17,9 +17,10 @@ pub struct SideLoads {
 }
 
 /// Derivatives of the forces with respect to the rates.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Slopes {
     /// Not wanted.
+    #[default]
     None,
     /// Of the film as it is.
     Film,

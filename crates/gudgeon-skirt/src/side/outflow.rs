@@ -1,9 +1,10 @@
 //! Oil that leaves one side.
 
 use gudgeon_core::EvalError;
-use gudgeon_core::kinds::Edge;
+use gudgeon_core::kinds::{Edge, Film2dGrid, FilmMode};
 
 use super::Side;
+use super::gap::film_input;
 
 impl Side {
     /// Oil that leaves the side at the rates given \[m³/s\]: over the upper edge, over the lower edge, over the flanks.
@@ -11,13 +12,8 @@ impl Side {
     /// # Errors
     /// A film that cannot be solved.
     pub fn oil_flow(&mut self, speed: f64, mu: f64, rates: &[f64]) -> Result<[f64; 3], EvalError> {
-        let out = if self.is_superposed() {
-            self.superpose(speed, rates);
-            self.cut(mu);
-            self.p.iter_mut().for_each(|p| *p /= mu);
-            let known = self.left_over(false, speed, rates, 0);
-            self.p.iter_mut().for_each(|p| *p *= mu);
-            if known? { self.outflow() } else { self.whole_outflow(speed, mu, rates)? }
+        let out = if self.is_superposed() && self.left_here(speed, mu, rates)? {
+            self.outflow()
         } else {
             self.whole_outflow(speed, mu, rates)?
         };
@@ -36,21 +32,49 @@ impl Side {
         Ok(found?.outflow)
     }
 
+    /// Flow that the pressures leave over in the film of the present place, into the first field of `self.beside`. Whether the film's model can tell.
+    fn left_here(&mut self, speed: f64, mu: f64, rates: &[f64]) -> Result<bool, EvalError> {
+        self.pressures(speed, mu, rates);
+        self.combine_rates(false, rates);
+        let n = self.nodes();
+        let [per_viscosity, _, _] = &mut self.work;
+        per_viscosity.iter_mut().zip(&self.p).for_each(|(out, p)| *out = p / mu);
+        let mode = FilmMode { u: -speed, dhdt: &self.rates, edge_pressure: [0.0; 4] };
+        self.film.imbalance_here(&film_input(&self.now, n), &mode, per_viscosity, &mut self.beside[..n])
+    }
+
     /// Flow over every edge that the first field of `self.beside` leaves over there.
     fn outflow(&self) -> [f64; 4] {
-        let (nx, ny) = (self.nodes.nx, self.nodes.ny);
         let mut out = [0.0; 4];
-        for (k, r) in self.beside[..nx * ny].iter().enumerate() {
-            let (i, j) = (k % nx, k / nx);
-            let at = [i == 0, i + 1 == nx, j == 0, j + 1 == ny];
-            let edges = self.film.grid().edges;
-            if let Some(e) = (0..4).find(|&e| at[e] && edges[e] == Edge::Pressure) {
-                // A flank at the pressure of the cavity beside it gives no oil to a gap that opens.
-                let inner = (i.clamp(1, nx - 2), j.clamp(1, if self.is_half { ny - 1 } else { ny - 2 }));
-                let dry = e >= 2 && self.p_cav >= 0.0 && self.open[inner.1 * nx + inner.0] == 0.0;
-                out[e] += if dry { r.max(0.0) } else { *r };
-            }
+        for rim in &self.rim {
+            let r = self.beside[rim.node];
+            // A flank at the pressure of the cavity beside it gives no oil to a gap that opens.
+            let dry = rim.edge >= 2 && self.p_cav >= 0.0 && self.open[rim.inner] == 0.0;
+            out[rim.edge] += if dry { r.max(0.0) } else { r };
         }
         out
+    }
+}
+
+/// A node on an edge that gives a pressure.
+pub(super) struct Rim {
+    node: usize,
+    edge: usize,
+    /// The node beside it, towards the middle of the side.
+    inner: usize,
+}
+
+impl Rim {
+    /// All those of a grid, or of one that is half a side.
+    pub(super) fn of(grid: &Film2dGrid, is_half: bool) -> Vec<Self> {
+        let (nx, ny) = (grid.x.len(), grid.y.len());
+        let on = |k: usize| {
+            let (i, j) = (k % nx, k / nx);
+            let at = [i == 0, i + 1 == nx, j == 0, j + 1 == ny];
+            let edge = (0..4).find(|&e| at[e] && grid.edges[e] == Edge::Pressure)?;
+            let (i, j) = (i.clamp(1, nx - 2), j.clamp(1, if is_half { ny - 1 } else { ny - 2 }));
+            Some(Self { node: k, edge, inner: j * nx + i })
+        };
+        (0..nx * ny).filter_map(on).collect()
     }
 }

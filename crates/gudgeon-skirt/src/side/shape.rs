@@ -1,9 +1,12 @@
 //! The gap of one side at a place, and what of its film depends on the place alone.
 
 use gudgeon_core::EvalError;
+use gudgeon_core::kinds::RoughShear;
+use gudgeon_numerics::vectors::{Vectorised, least, widest};
 
 use super::gap::{Gap, held_above};
 use super::kept::room_of;
+use super::nodes::Nodes;
 use super::{MODEL, Side};
 use crate::geometry::between;
 
@@ -32,7 +35,7 @@ impl Side {
 
     /// The film in a gap that is open, and what depends on it.
     fn fill_gap(&mut self, gap: &mut Gap, speed: f64) -> Result<(), EvalError> {
-        gap.smallest = gap.h.iter().fold(f64::INFINITY, |a, &b| a.min(b));
+        gap.smallest = least(&gap.h);
         if gap.smallest < -DEEPEST {
             let what = format!("the skirt would stand {:.0} um inside the liner", -1e6 * gap.smallest);
             return Err(EvalError::recoverable(MODEL, what));
@@ -51,28 +54,16 @@ impl Side {
         self.axial_levers(gap);
         self.thin(gap, speed)?;
         if self.is_full() {
-            gap.full_drag = self.over.drag(&self.nodes, gap, &self.fill);
+            gap.full_drag = self.over.full_drag(gap);
         }
         Ok(())
     }
 
     /// Distance of the surfaces at nodes and faces.
     fn open_gap(&mut self, gap: &mut Gap, e: [f64; 2], q: &[f64]) {
-        let nodes = &self.nodes;
-        let (nx, n) = (nodes.nx, nodes.len());
+        let n = self.nodes.len();
         let (c, top, bottom) = (self.clearance, self.sign * e[0], self.sign * e[1]);
-        let [own, next, _] = &mut self.work;
-        let (own, next) = (&mut own[..nx], &mut next[..nx]);
-        own.iter_mut().zip(&nodes.s).for_each(|(d, s)| *d = between(top, bottom, *s));
-        next.iter_mut().zip(&nodes.s_face).for_each(|(d, s)| *d = between(top, bottom, *s));
-        let lines = gap.h.chunks_exact_mut(nx).zip(gap.face_x.chunks_exact_mut(nx));
-        for (((h, fx), fy), (cos, cos_next)) in
-            lines.zip(gap.face_y.chunks_exact_mut(nx)).zip(nodes.cos.iter().zip(&nodes.cos_face))
-        {
-            h.iter_mut().zip(&*own).for_each(|(h, d)| *h = c + d * cos);
-            fx.iter_mut().zip(&*next).for_each(|(h, d)| *h = c + d * cos);
-            fy.iter_mut().zip(&*own).for_each(|(h, d)| *h = c + d * cos_next);
-        }
+        widest(Tilted { nodes: &self.nodes, c, top, bottom, gap });
         if !self.drop[0].is_empty() {
             for (f, d) in [(&mut gap.h, 0), (&mut gap.face_x, 1), (&mut gap.face_y, 2)] {
                 f.iter_mut().zip(&self.drop[d]).for_each(|(f, d)| *f += d);
@@ -112,12 +103,9 @@ impl Side {
     fn rough_film(&mut self, gap: &mut Gap) -> Result<(), EvalError> {
         self.rough.flow(&gap.h, &mut gap.flow)?;
         self.rough.shear(&gap.h, &mut self.shear)?;
-        let (shear, lever) = (&self.shear, &mut self.work[0]);
-        let factors = shear.phi_f.iter().zip(&shear.phi_fs).zip(&shear.film);
-        gap.drag.iter_mut().zip(factors).for_each(|(drag, ((f, fs), film))| *drag = (f + fs) / film);
-        let pressed = shear.phi_fp.iter().zip(&shear.film);
-        lever.iter_mut().zip(pressed).for_each(|(lever, (fp, film))| *lever = fp * film);
-        if gap.flow.film.iter().zip(&gap.h).any(|(f, h)| f != h) {
+        let (shear, lever) = (&self.shear, &mut self.work[0][..]);
+        widest(Stresses { shear, drag: &mut gap.drag, lever });
+        if widest(Differ(&gap.flow.film, &gap.h)) {
             // Where the model holds the film above contact, it does so between the nodes too.
             for k in 0..self.nodes.len() {
                 let (east, north) = self.nodes.next(k);
@@ -133,22 +121,8 @@ impl Side {
 
     /// Axial force per pressure of every node, from the levers in `work[0]`.
     fn axial_levers(&mut self, gap: &mut Gap) {
-        let nx = self.nodes.nx;
         let [own, mean, _] = &mut self.work;
-        // Half the mean of both neighbours, for the face before and for the face after; none beyond the ends of a line.
-        let mean = &mut mean[..=nx];
-        (mean[0], mean[nx]) = (0.0, 0.0);
-        let lines = gap.lever.chunks_exact_mut(nx).zip(gap.moment.chunks_exact_mut(nx));
-        let nodes = self.nodes.line_weight.iter().zip(&self.over.arm).zip(own.chunks_exact(nx));
-        for ((lever, moment), ((weight, arm), own)) in lines.zip(nodes) {
-            mean[1..nx].iter_mut().zip(own.iter().zip(&own[1..])).for_each(|(m, (a, b))| *m = 0.5 * (a + b));
-            let w = 0.5 * weight;
-            let faces = mean.iter().zip(&mean[1..]);
-            for ((lever, moment), (before, after)) in lever.iter_mut().zip(moment).zip(faces) {
-                *lever = w * (before - after);
-                *moment = *lever * arm;
-            }
-        }
+        widest(Levers { nodes: &self.nodes, arm: &self.over.arm, own, mean, gap });
     }
 
     /// Viscosity that falls with the shear rate of sliding.
@@ -162,5 +136,108 @@ impl Side {
         model.factor(rate, &mut gap.thinning, slope)?;
         gap.drag.iter_mut().zip(&gap.thinning).for_each(|(d, t)| *d *= t);
         Ok(())
+    }
+}
+
+/// Distance of the surfaces of a cylinder whose edges are displaced towards the liner by `top` and `bottom`, at nodes and faces.
+struct Tilted<'a> {
+    nodes: &'a Nodes,
+    c: f64,
+    top: f64,
+    bottom: f64,
+    gap: &'a mut Gap,
+}
+
+impl Vectorised for Tilted<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { nodes, c, top, bottom, gap } = self;
+        let nx = nodes.nx;
+        let (s, s_face) = (&nodes.s[..nx], &nodes.s_face[..nx]);
+        for (j, (cos, cos_face)) in nodes.cos.iter().zip(&nodes.cos_face).enumerate() {
+            let line = j * nx..(j + 1) * nx;
+            let (h, x, y) = (&mut gap.h[line.clone()], &mut gap.face_x[line.clone()], &mut gap.face_y[line]);
+            for i in 0..nx {
+                let own = between(top, bottom, s[i]);
+                h[i] = c + own * cos;
+                x[i] = c + between(top, bottom, s_face[i]) * cos;
+                y[i] = c + own * cos_face;
+            }
+        }
+    }
+}
+
+/// Drag of a film between rough surfaces per viscosity and speed, and the axial lever of its pressure.
+struct Stresses<'a> {
+    shear: &'a RoughShear,
+    drag: &'a mut [f64],
+    lever: &'a mut [f64],
+}
+
+impl Vectorised for Stresses<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let RoughShear { film, phi_f, phi_fs, phi_fp } = self.shear;
+        for (((drag, f), fs), film) in self.drag.iter_mut().zip(phi_f).zip(phi_fs).zip(film) {
+            *drag = (f + fs) / film;
+        }
+        for ((lever, fp), film) in self.lever.iter_mut().zip(phi_fp).zip(film) {
+            *lever = fp * film;
+        }
+    }
+}
+
+/// Whether two fields differ.
+struct Differ<'a>(&'a [f64], &'a [f64]);
+
+impl Vectorised for Differ<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run(self) -> bool {
+        let mut differ = false;
+        for (a, b) in self.0.iter().zip(self.1) {
+            differ |= a != b;
+        }
+        differ
+    }
+}
+
+/// Axial force per pressure of every node, and the same times `R cos φ`, from the levers `own` of the nodes.
+struct Levers<'a> {
+    nodes: &'a Nodes,
+    arm: &'a [f64],
+    own: &'a [f64],
+    mean: &'a mut [f64],
+    gap: &'a mut Gap,
+}
+
+impl Vectorised for Levers<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { nodes, arm, own, mean, gap } = self;
+        let nx = nodes.nx;
+        // Half the mean of both neighbours, for the face before and for the face after; none beyond the ends of a line.
+        let mean = &mut mean[..=nx];
+        (mean[0], mean[nx]) = (0.0, 0.0);
+        for (j, (weight, arm)) in nodes.line_weight.iter().zip(arm).enumerate() {
+            let line = j * nx..(j + 1) * nx;
+            let own = &own[line.clone()];
+            for i in 1..nx {
+                mean[i] = 0.5 * (own[i - 1] + own[i]);
+            }
+            let w = 0.5 * weight;
+            let (lever, moment) = (&mut gap.lever[line.clone()], &mut gap.moment[line]);
+            for i in 0..nx {
+                lever[i] = w * (mean[i] - mean[i + 1]);
+                moment[i] = lever[i] * arm;
+            }
+        }
     }
 }

@@ -1,7 +1,9 @@
 //! Derivatives of the forces of one side with respect to its rates.
 
 use gudgeon_core::EvalError;
+use gudgeon_numerics::vectors::widest;
 
+use super::sums::Taken;
 use super::{Side, SideLoads, Slopes};
 
 impl Side {
@@ -22,27 +24,30 @@ impl Side {
         }
         let (n, width) = (self.nodes(), 4 + self.elastic);
         out.slope.resize(rates.len() * width, 0.0);
+        if self.told.is_of(speed, mu, rates) && self.told.slope(slopes, &mut out.slope) {
+            return Ok(());
+        }
         if slopes == Slopes::Full && !self.is_superposed() {
             self.full_films()?;
         }
         if self.is_superposed() || slopes == Slopes::Full {
+            let open = (slopes != Slopes::Full).then_some(&self.open[..]);
             for (m, row) in out.slope.chunks_exact_mut(width).enumerate() {
                 let field = &self.fields[(1 + m) * n..(2 + m) * n];
-                let taken = self.work[0].iter_mut().zip(field);
-                if slopes == Slopes::Full {
-                    taken.for_each(|(taken, f)| *taken = mu * f);
-                } else {
-                    taken.zip(&self.open).for_each(|((taken, f), open)| *taken = mu * open * f);
-                }
+                widest(Taken { factor: mu, open, field, out: &mut self.work[0] });
                 self.over.sums(&self.work[0], &self.now, row);
             }
-            return Ok(());
+        } else {
+            // The film of now waits where nothing else is kept meanwhile.
+            self.set_aside();
+            let outcome = self.slopes_of_whole(speed, mu, rates, out);
+            self.set_aside();
+            outcome?;
         }
-        // The film of now waits where nothing else is kept meanwhile.
-        self.set_aside();
-        let outcome = self.slopes_of_whole(speed, mu, rates, out);
-        self.set_aside();
-        outcome
+        if self.told.is_of(speed, mu, rates) {
+            self.told.take_slope(slopes, &out.slope);
+        }
+        Ok(())
     }
 
     /// Changes pressure and filling for what waits in their place.

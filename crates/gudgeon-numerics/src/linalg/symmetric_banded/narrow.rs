@@ -47,7 +47,9 @@ impl<const W: usize, const S: usize> Vectorised for Factor<'_, W, S> {
         let Self { rows, pivots } = self;
         for k in 0..rows.len().min(pivots.len()).saturating_sub(W) {
             let ((before, rest), (past, here)) = (rows.split_at_mut(k + W), pivots.split_at_mut(k + W));
-            let (Some(before), Some(past)) = (before.last_chunk::<W>(), past.last_chunk::<W>()) else { break };
+            let (Some(before), Some(past)) = (before.last_chunk::<W>(), past.last_chunk::<W>()) else {
+                break;
+            };
             let (Some(own), Some(here)) = (rest.first_mut(), here.first_mut()) else { break };
             let (mut taken, mut pivot) = ([0.0; W], own[0]);
             for i in 0..W {

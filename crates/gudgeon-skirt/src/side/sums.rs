@@ -1,0 +1,235 @@
+//! Sums over the film of one side, and the fields that are summed.
+
+use gudgeon_numerics::vectors::{Vectorised, widest};
+
+use super::gap::Gap;
+use super::nodes::Nodes;
+
+/// Partial sums of an inner product.
+const LANES: usize = 4;
+
+/// What sums over a film need besides its levers.
+pub(super) struct Over {
+    /// Shapes of the gap's rates times the areas of the nodes.
+    pub(super) tests: Vec<f64>,
+    /// `R cos φ` of every line.
+    pub(super) arm: Vec<f64>,
+    /// Areas of the nodes, and the same times `R cos φ`.
+    areas: [Vec<f64>; 2],
+    nx: usize,
+}
+
+impl Over {
+    /// Over the nodes of a side of that radius, whose gap changes in the `shapes`.
+    pub(super) fn new(nodes: &Nodes, shapes: &[f64], radius: f64) -> Self {
+        let (n, nx) = (nodes.len(), nodes.nx);
+        let arm: Vec<f64> = nodes.cos.iter().map(|c| radius * c).collect();
+        let levers = nodes.weight.iter().enumerate().map(|(k, w)| w * arm[k / nx]).collect();
+        Self {
+            tests: shapes.iter().enumerate().map(|(k, v)| v * nodes.weight[k % n]).collect(),
+            arm,
+            areas: [nodes.weight.clone(), levers],
+            nx,
+        }
+    }
+
+    /// Drag of a full film per viscosity and speed, and the same times `R cos φ`.
+    pub(super) fn full_drag(&self, gap: &Gap) -> [f64; 2] {
+        let [areas, levers] = &self.areas;
+        widest(Dots { of: &gap.drag, with: [areas, levers] })
+    }
+
+    /// The same of a film that is filled in part.
+    pub(super) fn drag(&self, gap: &Gap, fill: &[f64]) -> [f64; 2] {
+        let mut found = [0.0; 2];
+        for (j, arm) in self.arm.iter().enumerate() {
+            let line = j * self.nx..(j + 1) * self.nx;
+            let own = self.areas[0][line.clone()].iter().zip(&gap.drag[line.clone()]).zip(&fill[line]);
+            let full: f64 = own.map(|((w, d), f)| w * d * f).sum();
+            found[0] += full;
+            found[1] += full * arm;
+        }
+        found
+    }
+
+    /// `out`: forces of a pressure on both edges, along the bore, along the bore times `R cos φ`, and on the elastic shapes.
+    pub(super) fn sums(&self, p: &[f64], gap: &Gap, out: &mut [f64]) {
+        let n = p.len();
+        let (edges, shapes) = self.tests.split_at(2 * n);
+        let (top, bottom) = edges.split_at(n);
+        let (head, elastic) = out.split_at_mut(4);
+        head.copy_from_slice(&widest(Dots { of: p, with: [top, bottom, &gap.lever, &gap.moment] }));
+        for (out, test) in elastic.iter_mut().zip(shapes.chunks_exact(n)) {
+            [*out] = widest(Dots { of: p, with: [test] });
+        }
+    }
+}
+
+/// Inner products of a field with others, each in partial sums.
+struct Dots<'a, const N: usize> {
+    of: &'a [f64],
+    with: [&'a [f64]; N],
+}
+
+impl<const N: usize> Vectorised for Dots<'_, N> {
+    type Output = [f64; N];
+
+    #[inline(always)]
+    fn run(self) -> [f64; N] {
+        let (own, rest) = self.of.as_chunks::<LANES>();
+        let (count, n) = (own.len(), self.of.len());
+        let mut parts = [[0.0; LANES]; N];
+        let mut groups: [&[[f64; LANES]]; N] = [&[]; N];
+        for (groups, field) in groups.iter_mut().zip(self.with) {
+            *groups = &field.as_chunks::<LANES>().0[..count];
+        }
+        for k in 0..count {
+            for f in 0..N {
+                for l in 0..LANES {
+                    parts[f][l] += groups[f][k][l] * own[k][l];
+                }
+            }
+        }
+        let mut sums = [0.0; N];
+        for f in 0..N {
+            let s = parts[f];
+            let mut last = 0.0;
+            for (p, x) in rest.iter().zip(&self.with[f][n - rest.len()..n]) {
+                last += p * x;
+            }
+            sums[f] = ((s[0] + s[1]) + (s[2] + s[3])) + last;
+        }
+        sums
+    }
+}
+
+/// Pressure per viscosity of causes at their rates: sliding at `speed`, then the gap's `rates`.
+pub(super) struct Superposed<'a> {
+    pub(super) speed: f64,
+    pub(super) rates: &'a [f64],
+    /// Pressure of one metre a second of every cause.
+    pub(super) fields: &'a [f64],
+    pub(super) out: &'a mut [f64],
+}
+
+impl Vectorised for Superposed<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { speed, rates, fields, out } = self;
+        let n = out.len();
+        let (u, v, w) = (speed, rates[0], rates[1]);
+        let (sliding, top, bottom) = (&fields[..n], &fields[n..2 * n], &fields[2 * n..3 * n]);
+        for k in 0..n {
+            out[k] = u * sliding[k] + v * top[k] + w * bottom[k];
+        }
+        for (rate, field) in rates[2..].iter().zip(fields[3 * n..].chunks_exact(n)) {
+            for (p, f) in out.iter_mut().zip(field) {
+                *p += rate * f;
+            }
+        }
+    }
+}
+
+/// A pressure per viscosity as pressure that is cut off, and where it takes part in changes (1, or 0 where it is cut).
+pub(super) struct CutOff<'a> {
+    pub(super) mu: f64,
+    pub(super) cut: f64,
+    pub(super) raw: &'a [f64],
+    pub(super) p: &'a mut [f64],
+    pub(super) open: &'a mut [f64],
+}
+
+impl Vectorised for CutOff<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { mu, cut, raw, p, open } = self;
+        for ((p, open), raw) in p.iter_mut().zip(open).zip(raw) {
+            let full = mu * raw;
+            // A film without pressure, as that of a centred skirt at rest, answers like a full one.
+            let is_open = full >= cut;
+            *open = if is_open { 1.0 } else { 0.0 };
+            *p = if is_open { full } else { cut };
+        }
+    }
+}
+
+/// A field times a factor, and times another field where there is one.
+pub(super) struct Taken<'a> {
+    pub(super) factor: f64,
+    pub(super) open: Option<&'a [f64]>,
+    pub(super) field: &'a [f64],
+    pub(super) out: &'a mut [f64],
+}
+
+impl Vectorised for Taken<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        if let Some(open) = self.open {
+            for ((out, open), field) in self.out.iter_mut().zip(open).zip(self.field) {
+                *out = self.factor * open * field;
+            }
+        } else {
+            for (out, field) in self.out.iter_mut().zip(self.field) {
+                *out = self.factor * field;
+            }
+        }
+    }
+}
+
+/// Rates of the gap's content: shapes at their `rates`, times the slope of the content over the gap.
+pub(super) struct ContentRates<'a> {
+    pub(super) rates: &'a [f64],
+    pub(super) shapes: &'a [f64],
+    pub(super) slope: &'a [f64],
+    pub(super) out: &'a mut [f64],
+}
+
+impl Vectorised for ContentRates<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { rates, shapes, slope, out } = self;
+        let n = out.len();
+        let (top, bottom) = (&shapes[..n], &shapes[n..2 * n]);
+        for k in 0..n {
+            out[k] = rates[0] * top[k] + rates[1] * bottom[k];
+        }
+        for (rate, shape) in rates[2..].iter().zip(shapes[2 * n..].chunks_exact(n)) {
+            for (r, s) in out.iter_mut().zip(shape) {
+                *r += rate * s;
+            }
+        }
+        for (r, s) in out.iter_mut().zip(slope) {
+            *r *= s;
+        }
+    }
+}
+
+/// The same of every shape at one metre a second, shape after shape.
+pub(super) struct ContentShapes<'a> {
+    pub(super) shapes: &'a [f64],
+    pub(super) slope: &'a [f64],
+    pub(super) out: &'a mut [f64],
+}
+
+impl Vectorised for ContentShapes<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { shapes, slope, out } = self;
+        let n = slope.len();
+        for (rates, shape) in out.chunks_exact_mut(n).zip(shapes.chunks_exact(n)) {
+            for ((r, s), slope) in rates.iter_mut().zip(shape).zip(slope) {
+                *r = s * slope;
+            }
+        }
+    }
+}
