@@ -87,7 +87,7 @@ pub struct Side {
     over: Over,
     /// Nodes over which oil leaves.
     rim: Vec<Rim>,
-    /// Elastic shapes at faces along `x` and along `y`.
+    /// The same at faces along `x` and along `y`.
     face_shapes: [Vec<f64>; 2],
     elastic: usize,
     /// How the surface yields.
@@ -179,7 +179,7 @@ impl Side {
             least_drop,
             over,
             rim,
-            face_shapes: nodes.at_faces(own),
+            face_shapes: nodes.face_shapes(sign, own),
             nodes,
             elastic,
             compliance: setup.compliance,

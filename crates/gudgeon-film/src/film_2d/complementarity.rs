@@ -4,10 +4,11 @@ use gudgeon_core::EvalError;
 use gudgeon_core::kinds::{Film2d, Film2dGrid, Film2dIn, Film2dOut, FilmMode, Superposition};
 use gudgeon_numerics::linalg::Singular;
 use gudgeon_numerics::multigrid::FivePoint;
+use gudgeon_numerics::vectors::all_finite;
 
 use super::cavitation::Cavitation;
 use super::checks::check_modes;
-use super::problem::{Field, Problem, cause_of, is_plain, void_of};
+use super::problem::{Problem, cause_of, is_plain, void_of};
 
 /// Solves linear systems with a [`FivePoint`] matrix.
 pub(super) trait Linear: Send {
@@ -373,7 +374,7 @@ impl<L: Linear> Film2d for Solver<L> {
                 if !is_plain(inp, mode) {
                     self.problem.set_edges(&cause_of(inp, mode), false, out, &mut self.void);
                 }
-                if !Field::of(out).is_finite {
+                if !all_finite(out) {
                     return Err(EvalError::recoverable(self.model, "the film overflows"));
                 }
             }

@@ -68,19 +68,25 @@ impl Film2dSpec for Direct {
 /// Place of a node that is no unknown.
 const NONE: usize = usize::MAX;
 
-/// An unknown: its node, and what it exchanges with unknowns further on.
+/// What an unknown exchanges with one further on.
 #[derive(Clone, Copy)]
-struct Unknown {
+struct Coupling {
+    row: usize,
+    /// How many rows further.
+    further: usize,
+    /// The node that holds the conductance.
     node: usize,
-    /// Unknowns further on that this one exchanges with: how many rows further, and the node that holds the conductance; no rows where there are none.
-    along: [(usize, usize); 2],
-    across: (usize, usize),
 }
 
 pub(super) struct Elimination {
     /// Where each node stands among the unknowns; [`NONE`] for those whose value is always given.
     place: Vec<usize>,
-    unknowns: Vec<Unknown>,
+    /// The node of every unknown.
+    nodes: Vec<usize>,
+    /// Nodes that are no unknowns.
+    given: Vec<usize>,
+    /// What unknowns exchange with others further on, along lines and across.
+    couplings: [Vec<Coupling>; 2],
     symmetric: SymmetricBanded,
     general: Option<Banded>,
     is_symmetric: bool,
@@ -125,35 +131,30 @@ impl Elimination {
         }
         let mut place = vec![NONE; n];
         order.iter().enumerate().for_each(|(row, k)| place[*k] = row);
-        let unknowns: Vec<Unknown> = order.iter().map(|k| Unknown::of(m, &place, *k)).collect();
-        let sides = unknowns.iter().flat_map(|u| [u.along[0].0, u.along[1].0, u.across.0]);
-        let half = sides.fold(1, usize::max);
+        let couplings = Coupling::all(m, &place, &order);
+        let half = couplings.iter().flatten().map(|c| c.further).fold(1, usize::max);
         Self {
-            place,
-            symmetric: SymmetricBanded::new(unknowns.len(), half),
-            general: general.then(|| Banded::new(unknowns.len(), half, half)),
+            symmetric: SymmetricBanded::new(order.len(), half),
+            general: general.then(|| Banded::new(order.len(), half, half)),
             is_symmetric: true,
             is_whole: false,
             diagonal: vec![0.0; n],
-            work: vec![0.0; unknowns.len()],
-            unknowns,
+            work: vec![0.0; order.len()],
+            given: (0..n).filter(|k| place[*k] == NONE).collect(),
+            place,
+            nodes: order,
+            couplings,
         }
     }
 
     /// Sets up a matrix of diffusion alone, all of whose unknowns are diffused.
     fn assemble_whole(&mut self, m: &FivePoint) {
         widest(Diagonal { m, out: &mut self.diagonal });
-        self.symmetric.clear();
-        for (row, u) in self.unknowns.iter().enumerate() {
-            let row = self.symmetric.row_mut(row);
-            row[0] = self.diagonal[u.node];
-            for (further, k) in u.along {
-                if further > 0 {
-                    row[further] = -m.gx[k];
-                }
-            }
-            if u.across.0 > 0 {
-                row[u.across.0] = -m.gy[u.across.1];
+        let Self { nodes, symmetric, diagonal, couplings: [along, across], .. } = self;
+        symmetric.write_diagonal(nodes.iter().map(|k| diagonal[*k]));
+        for (couplings, conductances) in [(along, &m.gx), (across, &m.gy)] {
+            for c in couplings {
+                symmetric.couple(c.row, c.further, -conductances[c.node]);
             }
         }
     }
@@ -190,16 +191,16 @@ impl Elimination {
 
     /// Takes the unknowns of a field over all nodes into `work`; those that are fixed are zero.
     fn gather(&mut self, m: &FivePoint, field: &[f64]) {
-        for (own, u) in self.work.iter_mut().zip(&self.unknowns) {
-            *own = if m.role[u.node] == Role::Fixed { 0.0 } else { field[u.node] };
+        for (own, k) in self.work.iter_mut().zip(&self.nodes) {
+            *own = if m.role[*k] == Role::Fixed { 0.0 } else { field[*k] };
         }
     }
 
     /// Gives the unknowns in `work` to a field over all nodes; what is no unknown is zero.
     fn spread(&self, field: &mut [f64]) {
         field.fill(0.0);
-        for (own, u) in self.work.iter().zip(&self.unknowns) {
-            field[u.node] = *own;
+        for (own, k) in self.work.iter().zip(&self.nodes) {
+            field[*k] = *own;
         }
     }
 
@@ -209,37 +210,41 @@ impl Elimination {
         let mut fields = group.chunks_exact(nodes);
         let own: [&[f64]; C] = std::array::from_fn(|_| fields.next().unwrap_or_default());
         let (block, is_whole) = (self.symmetric.block(), self.is_whole);
-        for (row, u) in block.iter_mut().zip(&self.unknowns) {
+        for (row, k) in block.iter_mut().zip(&self.nodes) {
             *row = [0.0; BLOCK];
-            if is_whole || m.role[u.node] != Role::Fixed {
+            if is_whole || m.role[*k] != Role::Fixed {
                 for c in 0..C {
-                    row[c] = own[c][u.node];
+                    row[c] = own[c][*k];
                 }
             }
         }
         self.symmetric.solve_block();
-        group.fill(0.0);
         let mut fields = group.chunks_exact_mut(nodes);
-        let own: [&mut [f64]; C] = std::array::from_fn(|_| fields.next().unwrap_or_default());
-        for (row, u) in self.symmetric.block().iter().zip(&self.unknowns) {
+        let mut own: [&mut [f64]; C] = std::array::from_fn(|_| fields.next().unwrap_or_default());
+        for field in &mut own {
+            self.given.iter().for_each(|k| field[*k] = 0.0);
+        }
+        for (row, k) in self.symmetric.block().iter().zip(&self.nodes) {
             for c in 0..C {
-                own[c][u.node] = row[c];
+                own[c][*k] = row[c];
             }
         }
     }
 }
 
-impl Unknown {
-    /// That of the node `k`, the unknowns being at `place`.
-    fn of(m: &FivePoint, place: &[usize], k: usize) -> Self {
-        let (i, nx) = (k % m.nx, m.nx);
-        let further = |to: usize| match place.get(to) {
-            Some(row) if *row != NONE => row.saturating_sub(place[k]),
-            _ => 0,
-        };
-        let (before, after) = (m.before(i, k), m.after(i, k));
-        let along = |to: usize, side: usize| if to == k { (0, k) } else { (further(to), side) };
-        Self { node: k, along: [along(before, before), along(after, k)], across: (further(k + nx), k) }
+impl Coupling {
+    /// All those along lines, and those across, of the unknowns whose nodes are in `order`, each node being at `place`.
+    fn all(m: &FivePoint, place: &[usize], order: &[usize]) -> [Vec<Self>; 2] {
+        let mut all = [Vec::new(), Vec::new()];
+        for (row, &k) in order.iter().enumerate() {
+            let (before, after) = (m.before(k % m.nx, k), m.after(k % m.nx, k));
+            for (way, to, node) in [(0, before, before), (0, after, k), (1, k + m.nx, k)] {
+                if let Some(other) = place.get(to).filter(|other| **other != NONE && **other > row) {
+                    all[way].push(Self { row, further: other - row, node });
+                }
+            }
+        }
+        all
     }
 }
 
@@ -287,7 +292,7 @@ impl Linear for Elimination {
         let (nx, ny) = (m.nx, m.ny);
         self.is_symmetric = symmetric;
         if symmetric || self.general.is_none() {
-            self.is_whole = self.unknowns.iter().all(|u| m.role[u.node] == Role::Diffused);
+            self.is_whole = self.nodes.iter().all(|k| m.role[*k] == Role::Diffused);
             if self.is_whole {
                 self.assemble_whole(m);
             } else {

@@ -3,7 +3,7 @@
 use gudgeon_core::kinds::{Edge, Film2dGrid, Film2dIn, Film2dOut, FilmMode, Viscosity};
 use gudgeon_core::{BuildError, EvalError};
 use gudgeon_numerics::multigrid::{FivePoint, Role};
-use gudgeon_numerics::vectors::{Vectorised, least, widest};
+use gudgeon_numerics::vectors::{Vectorised, finite_least, widest};
 
 use super::cavitation::Cavitation;
 use super::flux::Flux;
@@ -73,41 +73,6 @@ impl Largest {
             let (x, y) = (g[k] * a[k], g[k] * b[k]);
             larger(&mut self.flow[0], (x - y).abs());
             larger(&mut self.product[0], x.abs().max(y.abs()));
-        }
-    }
-}
-
-/// A field that was looked at.
-pub(super) struct Field {
-    pub is_finite: bool,
-    /// Its least value; infinite when it has none.
-    pub least: f64,
-}
-
-impl Field {
-    pub fn of(field: &[f64]) -> Self {
-        widest(Look(field))
-    }
-}
-
-struct Look<'a>(&'a [f64]);
-
-impl Vectorised for Look<'_> {
-    type Output = Field;
-
-    #[inline(always)]
-    fn run(self) -> Field {
-        let mut wrong = [0.0; 2 * LANES];
-        let (groups, rest) = self.0.as_chunks::<{ 2 * LANES }>();
-        for group in groups {
-            for l in 0..2 * LANES {
-                // Zero, or not a number.
-                wrong[l] += 0.0 * group[l];
-            }
-        }
-        Field {
-            is_finite: wrong == [0.0; 2 * LANES] && rest.iter().all(|x| x.is_finite()),
-            least: least(self.0),
         }
     }
 }
@@ -244,13 +209,12 @@ impl Problem {
                     format!("{name} has {} values, the grid {n} nodes", field.len()),
                 ));
             }
-            let look = Field::of(field);
-            if !look.is_finite {
+            let Some(least) = finite_least(field) else {
                 return Err(EvalError::fatal(model, format!("{name} holds a value that is not finite")));
-            }
+            };
             match kind {
-                Kind::Film => thinnest = thinnest.min(look.least),
-                Kind::Factor => least_factor = least_factor.min(look.least),
+                Kind::Film => thinnest = thinnest.min(least),
+                Kind::Factor => least_factor = least_factor.min(least),
                 Kind::Rate => {}
             }
         }

@@ -4,7 +4,7 @@ use gudgeon_core::kinds::{RoughFlow, RoughShear, Roughness, RoughnessSpec};
 use gudgeon_core::quantity::{PosLength, PosRatio};
 use gudgeon_core::{BuildError, EvalError, register_model};
 use gudgeon_numerics::elementary;
-use gudgeon_numerics::vectors::{Vectorised, least, widest};
+use gudgeon_numerics::vectors::{Vectorised, widest};
 use serde::{Deserialize, Serialize};
 
 use super::checks::{check_flow, check_shear};
@@ -119,18 +119,15 @@ impl Waves {
         (2.0 * self.closest - 1.0) * self.omega
     }
 
-    /// Films of separations, and the smallest separation.
-    #[inline(always)]
-    fn films(&self, h: &[f64], film: &mut [f64]) -> f64 {
+    /// Films of separations, the smallest of which is `thinnest`.
+    fn films(&self, h: &[f64], thinnest: f64, film: &mut [f64]) {
         film.copy_from_slice(h);
-        let thinnest = least(h);
         if thinnest < self.held_up_to() {
             let (floor, blend) = (self.closest * self.omega, (self.closest - 1.0) * self.omega);
             for film in film {
                 *film = held_above(*film, floor, blend);
             }
         }
-        thinnest
     }
 }
 
@@ -163,6 +160,7 @@ fn excess_within_reach(omega: f64, film: f64) -> f64 {
 struct Flow<'a> {
     waves: &'a Waves,
     h: &'a [f64],
+    thinnest: f64,
     out: &'a mut RoughFlow,
 }
 
@@ -171,10 +169,9 @@ impl Vectorised for Flow<'_> {
 
     #[inline(always)]
     fn run(self) {
-        let Self { waves, h, out } = self;
+        let Self { waves, h, thinnest, out } = self;
         let omega = waves.omega;
         let RoughFlow { film, phi_x, phi_y, transport, content, content_derivative } = out;
-        let thinnest = waves.films(h, film);
         for (((phi_x, phi_y), transport), film) in phi_x.iter_mut().zip(phi_y).zip(transport).zip(&*film) {
             let r = omega / film;
             let rr = r * r;
@@ -203,7 +200,7 @@ impl Vectorised for Flow<'_> {
 /// Factors of the shear stresses of films.
 struct Shear<'a> {
     waves: &'a Waves,
-    h: &'a [f64],
+    thinnest: f64,
     out: &'a mut RoughShear,
 }
 
@@ -212,10 +209,10 @@ impl Vectorised for Shear<'_> {
 
     #[inline(always)]
     fn run(self) {
-        let Self { waves, h, out } = self;
+        let Self { waves, thinnest, out } = self;
         let omega = waves.omega;
         let RoughShear { film, phi_f, phi_fs, phi_fp } = out;
-        let thinnest = waves.films(h, film).max(waves.closest * omega);
+        let thinnest = thinnest.max(waves.closest * omega);
         if omega <= REACH * thinnest {
             for (e, film) in phi_f.iter_mut().zip(&*film) {
                 *e = excess_within_reach(omega, *film);
@@ -240,14 +237,16 @@ impl Roughness for Waves {
     }
 
     fn flow(&self, h: &[f64], out: &mut RoughFlow) -> Result<(), EvalError> {
-        check_flow(MODEL, h, out)?;
-        widest(Flow { waves: self, h, out });
+        let thinnest = check_flow(MODEL, h, out)?;
+        self.films(h, thinnest, &mut out.film);
+        widest(Flow { waves: self, h, thinnest, out });
         Ok(())
     }
 
     fn shear(&self, h: &[f64], out: &mut RoughShear) -> Result<(), EvalError> {
-        check_shear(MODEL, h, out)?;
-        widest(Shear { waves: self, h, out });
+        let thinnest = check_shear(MODEL, h, out)?;
+        self.films(h, thinnest, &mut out.film);
+        widest(Shear { waves: self, thinnest, out });
         Ok(())
     }
 }

@@ -79,18 +79,32 @@ impl SymmetricBanded {
     #[inline]
     pub fn add(&mut self, i: usize, j: usize, value: f64) {
         assert!(j <= i && i <= j + self.half && i < self.n, "outside the lower half of the band");
-        self.row_mut(j)[i - j] += value;
+        self.factored = false;
+        self.a[(self.lead + j) * self.stride + i - j] += value;
     }
 
-    /// The entries `(i, i)` to `(i, i + half)` of row `i`, and those of their mirror images. After a factorisation they hold something else: every row is to be
-    /// written anew then.
+    /// Sets the entries `(i, i)`, and all others to zero.
+    pub fn write_diagonal(&mut self, values: impl Iterator<Item = f64>) {
+        self.factored = false;
+        let rows = self.a[self.lead * self.stride..].chunks_exact_mut(self.stride);
+        for (row, value) in rows.zip(values) {
+            if self.lead > 0 {
+                row[1..=self.lead].as_chunks_mut::<LANES>().0.fill([0.0; LANES]);
+            } else {
+                row.fill(0.0);
+            }
+            row[0] = value;
+        }
+    }
+
+    /// Sets entry `(i, i + further)` and its mirror image, `further` being no more than the sub-diagonals.
     ///
     /// # Panics
-    /// When there is no such row.
+    /// When there is no such entry.
     #[inline]
-    pub fn row_mut(&mut self, i: usize) -> &mut [f64] {
+    pub fn couple(&mut self, i: usize, further: usize, value: f64) {
         self.factored = false;
-        &mut self.a[(self.lead + i) * self.stride..][..=self.half]
+        self.a[(self.lead + i) * self.stride..][..=self.half][further] = value;
     }
 
     /// Factorisation in place.

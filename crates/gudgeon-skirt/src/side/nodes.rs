@@ -59,21 +59,15 @@ impl Nodes {
     /// Shapes of the gap's rates: upper edge, lower edge of a side of sign `sign`, then the elastic ones, given on a grid of `whole` nodes whose first part
     /// these are.
     pub(super) fn shapes(&self, sign: f64, elastic: &[f64], whole: usize) -> Vec<f64> {
-        let n = self.len();
-        let mut shapes = vec![0.0; 2 * n];
-        for k in 0..n {
-            let (i, j) = (k % self.nx, k / self.nx);
-            shapes[k] = sign * self.cos[j] * (1.0 - self.s[i]);
-            shapes[n + k] = sign * self.cos[j] * self.s[i];
-        }
-        elastic.chunks_exact(whole).for_each(|shape| shapes.extend_from_slice(&shape[..n]));
+        let mut shapes = edges(sign, &self.cos, &self.s);
+        elastic.chunks_exact(whole).for_each(|shape| shapes.extend_from_slice(&shape[..self.len()]));
         shapes
     }
 
-    /// Fields at the nodes, one after the other, at faces along `x` and along `y`.
-    pub(super) fn at_faces(&self, fields: &[f64]) -> [Vec<f64>; 2] {
-        let mut faces = [Vec::with_capacity(fields.len()), Vec::with_capacity(fields.len())];
-        for f in fields.chunks_exact(self.len()) {
+    /// The same at faces along `x` and along `y`; `elastic` ones are those at the nodes.
+    pub(super) fn face_shapes(&self, sign: f64, elastic: &[f64]) -> [Vec<f64>; 2] {
+        let mut faces = [edges(sign, &self.cos, &self.s_face), edges(sign, &self.cos_face, &self.s)];
+        for f in elastic.chunks_exact(self.len()) {
             for k in 0..self.len() {
                 let (east, north) = self.next(k);
                 faces[0].push(0.5 * (f[k] + f[east]));
@@ -90,6 +84,14 @@ impl Nodes {
         };
         [field(&self.s, &self.angle), field(&self.s_face, &self.angle), field(&self.s, &self.angle_face)]
     }
+}
+
+/// How much the gap opens per displacement of the upper, then of the lower edge of a side of sign `sign`, at places of those cosines and parts of the
+/// height.
+fn edges(sign: f64, cos: &[f64], s: &[f64]) -> Vec<f64> {
+    let top = cos.iter().flat_map(|c| s.iter().map(move |s| sign * c * (1.0 - s)));
+    let bottom = cos.iter().flat_map(|c| s.iter().map(move |s| sign * c * s));
+    top.chain(bottom).collect()
 }
 
 /// Values halfway between neighbours; the last one stands at the end.

@@ -6,9 +6,7 @@ use gudgeon_numerics::vectors::{Vectorised, least, widest};
 
 use super::gap::{Gap, held_above};
 use super::kept::room_of;
-use super::nodes::Nodes;
 use super::{MODEL, Side};
-use crate::geometry::between;
 
 /// How deep a skirt may stand inside the liner \[m\]: far beyond what contact allows, and yet within a start that is given wrongly.
 const DEEPEST: f64 = 1e-4;
@@ -61,23 +59,10 @@ impl Side {
 
     /// Distance of the surfaces at nodes and faces.
     fn open_gap(&mut self, gap: &mut Gap, e: [f64; 2], q: &[f64]) {
-        let n = self.nodes.len();
-        let (c, top, bottom) = (self.clearance, self.sign * e[0], self.sign * e[1]);
-        widest(Tilted { nodes: &self.nodes, c, top, bottom, gap });
-        if !self.drop[0].is_empty() {
-            for (f, d) in [(&mut gap.h, 0), (&mut gap.face_x, 1), (&mut gap.face_y, 2)] {
-                f.iter_mut().zip(&self.drop[d]).for_each(|(f, d)| *f += d);
-            }
-        }
-        for (m, q) in q.iter().enumerate() {
-            let shapes = [
-                &self.shapes[(2 + m) * n..(3 + m) * n],
-                &self.face_shapes[0][m * n..(m + 1) * n],
-                &self.face_shapes[1][m * n..(m + 1) * n],
-            ];
-            for (f, shape) in [&mut gap.h, &mut gap.face_x, &mut gap.face_y].into_iter().zip(shapes) {
-                f.iter_mut().zip(shape).for_each(|(f, s)| *f += q * s);
-            }
+        let [x, y] = &self.face_shapes;
+        let fields = [&mut gap.h, &mut gap.face_x, &mut gap.face_y].into_iter().zip([&self.shapes, x, y]);
+        for ((out, shapes), drop) in fields.zip(&self.drop) {
+            widest(Opened { c: self.clearance, e, q, shapes, drop, out });
         }
     }
 
@@ -121,8 +106,9 @@ impl Side {
 
     /// Axial force per pressure of every node, from the levers in `work[0]`.
     fn axial_levers(&mut self, gap: &mut Gap) {
-        let [own, mean, _] = &mut self.work;
-        widest(Levers { nodes: &self.nodes, arm: &self.over.arm, own, mean, gap });
+        let [own, flow, _] = &mut self.work;
+        let Gap { lever, moment, .. } = gap;
+        widest(Levers { across: &self.over.across, arms: &self.over.arms, own, flow, lever, moment });
     }
 
     /// Viscosity that falls with the shear rate of sliding.
@@ -139,31 +125,35 @@ impl Side {
     }
 }
 
-/// Distance of the surfaces of a cylinder whose edges are displaced towards the liner by `top` and `bottom`, at nodes and faces.
-struct Tilted<'a> {
-    nodes: &'a Nodes,
+/// Distance of the surfaces: the clearance `c`, changed by the displacements `e` of both edges and the amplitudes `q` in their shapes, and the drop of the
+/// profile where there is one.
+struct Opened<'a> {
     c: f64,
-    top: f64,
-    bottom: f64,
-    gap: &'a mut Gap,
+    e: [f64; 2],
+    q: &'a [f64],
+    shapes: &'a [f64],
+    drop: &'a [f64],
+    out: &'a mut [f64],
 }
 
-impl Vectorised for Tilted<'_> {
+impl Vectorised for Opened<'_> {
     type Output = ();
 
     #[inline(always)]
     fn run(self) {
-        let Self { nodes, c, top, bottom, gap } = self;
-        let nx = nodes.nx;
-        let (s, s_face) = (&nodes.s[..nx], &nodes.s_face[..nx]);
-        for (j, (cos, cos_face)) in nodes.cos.iter().zip(&nodes.cos_face).enumerate() {
-            let line = j * nx..(j + 1) * nx;
-            let (h, x, y) = (&mut gap.h[line.clone()], &mut gap.face_x[line.clone()], &mut gap.face_y[line]);
-            for i in 0..nx {
-                let own = between(top, bottom, s[i]);
-                h[i] = c + own * cos;
-                x[i] = c + between(top, bottom, s_face[i]) * cos;
-                y[i] = c + own * cos_face;
+        let Self { c, e, q, shapes, drop, out } = self;
+        let n = out.len();
+        let (edges, elastic) = shapes.split_at(2 * n);
+        let (top, bottom) = edges.split_at(n);
+        for (h, (top, bottom)) in out.iter_mut().zip(top.iter().zip(bottom)) {
+            *h = c + (e[0] * top + e[1] * bottom);
+        }
+        for (h, drop) in out.iter_mut().zip(drop) {
+            *h += drop;
+        }
+        for (q, shape) in q.iter().zip(elastic.chunks_exact(n)) {
+            for (h, s) in out.iter_mut().zip(shape) {
+                *h += q * s;
             }
         }
     }
@@ -207,13 +197,17 @@ impl Vectorised for Differ<'_> {
     }
 }
 
-/// Axial force per pressure of every node, and the same times `R cos φ`, from the levers `own` of the nodes.
+/// Axial force per pressure of every node, and the same times `R cos φ`, from the levers `own` of the nodes: a pressure pushes against the slope of the film,
+/// through the mean lever of the sides before and after its node.
 struct Levers<'a> {
-    nodes: &'a Nodes,
-    arm: &'a [f64],
+    /// A quarter of the width of the side to the next node; none at the end of a line.
+    across: &'a [f64],
+    /// `R cos φ`.
+    arms: &'a [f64],
     own: &'a [f64],
-    mean: &'a mut [f64],
-    gap: &'a mut Gap,
+    flow: &'a mut [f64],
+    lever: &'a mut [f64],
+    moment: &'a mut [f64],
 }
 
 impl Vectorised for Levers<'_> {
@@ -221,23 +215,18 @@ impl Vectorised for Levers<'_> {
 
     #[inline(always)]
     fn run(self) {
-        let Self { nodes, arm, own, mean, gap } = self;
-        let nx = nodes.nx;
-        // Half the mean of both neighbours, for the face before and for the face after; none beyond the ends of a line.
-        let mean = &mut mean[..=nx];
-        (mean[0], mean[nx]) = (0.0, 0.0);
-        for (j, (weight, arm)) in nodes.line_weight.iter().zip(arm).enumerate() {
-            let line = j * nx..(j + 1) * nx;
-            let own = &own[line.clone()];
-            for i in 1..nx {
-                mean[i] = 0.5 * (own[i - 1] + own[i]);
-            }
-            let w = 0.5 * weight;
-            let (lever, moment) = (&mut gap.lever[line.clone()], &mut gap.moment[line]);
-            for i in 0..nx {
-                lever[i] = w * (mean[i] - mean[i + 1]);
-                moment[i] = lever[i] * arm;
-            }
+        let Self { across, arms, own, flow, lever, moment } = self;
+        let last = own.len() - 1;
+        for (flow, (width, (a, b))) in flow.iter_mut().zip(across.iter().zip(own.iter().zip(&own[1..]))) {
+            *flow = width * (a + b);
+        }
+        flow[last] = 0.0;
+        lever[0] = -flow[0];
+        for (lever, (before, after)) in lever[1..].iter_mut().zip(flow.iter().zip(&flow[1..])) {
+            *lever = before - after;
+        }
+        for (moment, (lever, arm)) in moment.iter_mut().zip(lever.iter().zip(arms)) {
+            *moment = lever * arm;
         }
     }
 }

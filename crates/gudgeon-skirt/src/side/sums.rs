@@ -1,19 +1,19 @@
 //! Sums over the film of one side, and the fields that are summed.
 
-use gudgeon_numerics::vectors::{Vectorised, widest};
+use gudgeon_numerics::vectors::{Vectorised, dots};
 
 use super::gap::Gap;
 use super::nodes::Nodes;
-
-/// Partial sums of an inner product.
-const LANES: usize = 4;
 
 /// What sums over a film need besides its levers.
 pub(super) struct Over {
     /// Shapes of the gap's rates times the areas of the nodes.
     pub(super) tests: Vec<f64>,
-    /// `R cos φ` of every line.
-    pub(super) arm: Vec<f64>,
+    /// `R cos φ` of every line, and of every node.
+    arm: Vec<f64>,
+    pub(super) arms: Vec<f64>,
+    /// A quarter of the width of the side to the next node along `x`; none at the end of a line.
+    pub(super) across: Vec<f64>,
     /// Areas of the nodes, and the same times `R cos φ`.
     areas: [Vec<f64>; 2],
     nx: usize,
@@ -24,10 +24,14 @@ impl Over {
     pub(super) fn new(nodes: &Nodes, shapes: &[f64], radius: f64) -> Self {
         let (n, nx) = (nodes.len(), nodes.nx);
         let arm: Vec<f64> = nodes.cos.iter().map(|c| radius * c).collect();
-        let levers = nodes.weight.iter().enumerate().map(|(k, w)| w * arm[k / nx]).collect();
+        let arms: Vec<f64> = (0..n).map(|k| arm[k / nx]).collect();
+        let across = |k: usize| if k % nx + 1 < nx { 0.25 * nodes.line_weight[k / nx] } else { 0.0 };
+        let levers = nodes.weight.iter().zip(&arms).map(|(w, arm)| w * arm).collect();
         Self {
             tests: shapes.iter().enumerate().map(|(k, v)| v * nodes.weight[k % n]).collect(),
             arm,
+            arms,
+            across: (0..n).map(across).collect(),
             areas: [nodes.weight.clone(), levers],
             nx,
         }
@@ -36,7 +40,7 @@ impl Over {
     /// Drag of a full film per viscosity and speed, and the same times `R cos φ`.
     pub(super) fn full_drag(&self, gap: &Gap) -> [f64; 2] {
         let [areas, levers] = &self.areas;
-        widest(Dots { of: &gap.drag, with: [areas, levers] })
+        dots(&gap.drag, [areas, levers])
     }
 
     /// The same of a film that is filled in part.
@@ -58,48 +62,10 @@ impl Over {
         let (edges, shapes) = self.tests.split_at(2 * n);
         let (top, bottom) = edges.split_at(n);
         let (head, elastic) = out.split_at_mut(4);
-        head.copy_from_slice(&widest(Dots { of: p, with: [top, bottom, &gap.lever, &gap.moment] }));
+        head.copy_from_slice(&dots(p, [top, bottom, &gap.lever, &gap.moment]));
         for (out, test) in elastic.iter_mut().zip(shapes.chunks_exact(n)) {
-            [*out] = widest(Dots { of: p, with: [test] });
+            [*out] = dots(p, [test]);
         }
-    }
-}
-
-/// Inner products of a field with others, each in partial sums.
-struct Dots<'a, const N: usize> {
-    of: &'a [f64],
-    with: [&'a [f64]; N],
-}
-
-impl<const N: usize> Vectorised for Dots<'_, N> {
-    type Output = [f64; N];
-
-    #[inline(always)]
-    fn run(self) -> [f64; N] {
-        let (own, rest) = self.of.as_chunks::<LANES>();
-        let (count, n) = (own.len(), self.of.len());
-        let mut parts = [[0.0; LANES]; N];
-        let mut groups: [&[[f64; LANES]]; N] = [&[]; N];
-        for (groups, field) in groups.iter_mut().zip(self.with) {
-            *groups = &field.as_chunks::<LANES>().0[..count];
-        }
-        for k in 0..count {
-            for f in 0..N {
-                for l in 0..LANES {
-                    parts[f][l] += groups[f][k][l] * own[k][l];
-                }
-            }
-        }
-        let mut sums = [0.0; N];
-        for f in 0..N {
-            let s = parts[f];
-            let mut last = 0.0;
-            for (p, x) in rest.iter().zip(&self.with[f][n - rest.len()..n]) {
-                last += p * x;
-            }
-            sums[f] = ((s[0] + s[1]) + (s[2] + s[3])) + last;
-        }
-        sums
     }
 }
 

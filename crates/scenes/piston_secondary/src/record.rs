@@ -21,6 +21,10 @@ pub struct Map {
     pub p: Vec<f64>,
 }
 
+/// Columns of the forces of both sides.
+const FILM: [&str; 2] = ["thrust.film_force", "anti_thrust.film_force"];
+const CONTACT: [&str; 2] = ["thrust.contact_force", "anti_thrust.contact_force"];
+
 /// Where one side stands when it carries most.
 #[derive(Debug, Clone, Default)]
 pub struct Loaded {
@@ -37,9 +41,7 @@ pub struct Loaded {
 impl Loaded {
     /// Takes the row at `theta` \[rad\] if the side `k` carries more than so far.
     fn raise(&mut self, k: usize, theta: f64, row: &Row, look: &Look<'_>) {
-        let name = ["thrust", "anti_thrust"][k];
-        let of = |what: &str| row[index(&format!("{name}.{what}"))];
-        let force = look.a.piston.sides[k].sign * (of("film_force") + of("contact_force"));
+        let force = look.a.piston.sides[k].sign * (row[index(FILM[k])] + row[index(CONTACT[k])]);
         if force > self.force {
             let edges = [index("skirt.e_top"), index("skirt.e_bottom")].map(|c| row[c]);
             let theta_deg = tidy(theta.to_degrees());
@@ -69,7 +71,7 @@ impl Wear {
 
     /// Adds the way from the row before to this one, at `theta` \[rad\].
     fn add(&mut self, theta: f64, row: &Row, look: &mut Look<'_>) {
-        let touches = ["thrust", "anti_thrust"].map(|s| row[index(&format!("{s}.contact_force"))] != 0.0);
+        let touches = CONTACT.map(|force| row[index(force)] != 0.0);
         let speed = row[index("piston.v")].abs();
         let mut power: [Vec<f64>; 2] = Default::default();
         if touches.contains(&true) {
