@@ -29,7 +29,7 @@ use gap::{Gap, film_input};
 use kept::Kept;
 use nodes::Nodes;
 use outflow::Rim;
-use sums::{ContentRates, ContentShapes, CutOff, Over, Superposed};
+use sums::{ContentRates, ContentShapes, CutOff, Over, Superposed, Taken};
 use told::Told;
 
 use crate::geometry::Panel;
@@ -486,7 +486,13 @@ impl Side {
         out.elastic.resize(self.elastic, 0.0);
         out.elastic.copy_from_slice(&self.row[4..width]);
         // Couette drag: the liner slides against the piston.
-        let drag = if self.is_full() { gap.full_drag } else { self.over.drag(gap, &self.fill) };
+        let drag = if self.is_full() {
+            gap.full_drag
+        } else {
+            let taken = &mut self.work[0];
+            widest(Taken { factor: 1.0, open: Some(&self.fill), field: &gap.drag, out: taken });
+            self.over.drag(taken)
+        };
         found[2] -= mu * speed * drag[0];
         found[3] -= mu * speed * drag[1];
         out.film = found;

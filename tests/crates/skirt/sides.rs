@@ -160,6 +160,42 @@ fn forces(side: &mut Side, e: [f64; 2], speed: f64, rates: [f64; 2]) -> SideLoad
 }
 
 #[test]
+fn forces_told_again_are_those_of_a_side_that_is_asked_first() {
+    let panel = Panel { radius: RADIUS, length: LENGTH, half_angle: 0.6 };
+    let side = || {
+        let contact = ContactGrid { pitch: 0.25e-3, intervals: 12 };
+        built(panel, true, Shape { power: 0, waves: 1 }, contact, 1e-7)
+    };
+    let (e, q, speed, rates) = ([-2e-6, -3e-6], [5e-7], 9.0, [-4e-3, -6e-3, 1e-3]);
+    let ask = |side: &mut Side, mu: f64, rates: &[f64; 3], slopes: Slopes| {
+        let mut l = SideLoads::default();
+        side.place(e, &q, speed).expect("a film");
+        side.loads(speed, mu, rates, slopes, &mut l).expect("a film");
+        (l, side.pressure())
+    };
+    let first = |mu: f64, rates: &[f64; 3], slopes: Slopes| ask(&mut side(), mu, rates, slopes);
+    let mut asked = side();
+    let other = [2e-3, -6e-3, 1e-3];
+    for (mu, rates, slopes) in [
+        (0.016, &rates, Slopes::None),
+        (0.016, &rates, Slopes::Film),
+        (0.016, &rates, Slopes::Film),
+        (0.016, &rates, Slopes::Full),
+        (0.016, &other, Slopes::Film),
+        (0.016, &rates, Slopes::Film),
+        (0.012, &rates, Slopes::Film),
+    ] {
+        assert_eq!(ask(&mut asked, mu, rates, slopes), first(mu, rates, slopes), "{mu} {rates:?} {slopes:?}");
+        // Whatever is asked in between, the same is told.
+        asked.oil_flow(speed, mu, &other).expect("a film");
+        let mut beside = vec![SideLoads::default(); 3];
+        asked.loads_beside(e, &q, &[1e-9; 3], speed, mu, rates, &mut beside).expect("a film");
+        assert_eq!(ask(&mut asked, mu, rates, slopes), first(mu, rates, slopes), "{mu} {rates:?} {slopes:?}");
+        asked.place([-1e-6; 2], &q, speed).expect("a film");
+    }
+}
+
+#[test]
 fn films_under_a_profile_converge() {
     // Nodes and the faces between them see the same profile: forces change little when the nodes come twice as close, whatever the profile is.
     let panel = Panel { radius: RADIUS, length: LENGTH, half_angle: 0.6 };

@@ -52,7 +52,7 @@ impl Side {
         self.axial_levers(gap);
         self.thin(gap, speed)?;
         if self.is_full() {
-            gap.full_drag = self.over.full_drag(gap);
+            gap.full_drag = self.over.drag(&gap.drag);
         }
         Ok(())
     }

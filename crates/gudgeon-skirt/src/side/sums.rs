@@ -9,51 +9,33 @@ use super::nodes::Nodes;
 pub(super) struct Over {
     /// Shapes of the gap's rates times the areas of the nodes.
     pub(super) tests: Vec<f64>,
-    /// `R cos φ` of every line, and of every node.
-    arm: Vec<f64>,
+    /// `R cos φ` of every node.
     pub(super) arms: Vec<f64>,
     /// A quarter of the width of the side to the next node along `x`; none at the end of a line.
     pub(super) across: Vec<f64>,
     /// Areas of the nodes, and the same times `R cos φ`.
     areas: [Vec<f64>; 2],
-    nx: usize,
 }
 
 impl Over {
     /// Over the nodes of a side of that radius, whose gap changes in the `shapes`.
     pub(super) fn new(nodes: &Nodes, shapes: &[f64], radius: f64) -> Self {
         let (n, nx) = (nodes.len(), nodes.nx);
-        let arm: Vec<f64> = nodes.cos.iter().map(|c| radius * c).collect();
-        let arms: Vec<f64> = (0..n).map(|k| arm[k / nx]).collect();
+        let arms: Vec<f64> = (0..n).map(|k| radius * nodes.cos[k / nx]).collect();
         let across = |k: usize| if k % nx + 1 < nx { 0.25 * nodes.line_weight[k / nx] } else { 0.0 };
         let levers = nodes.weight.iter().zip(&arms).map(|(w, arm)| w * arm).collect();
         Self {
             tests: shapes.iter().enumerate().map(|(k, v)| v * nodes.weight[k % n]).collect(),
-            arm,
             arms,
             across: (0..n).map(across).collect(),
             areas: [nodes.weight.clone(), levers],
-            nx,
         }
     }
 
-    /// Drag of a full film per viscosity and speed, and the same times `R cos φ`.
-    pub(super) fn full_drag(&self, gap: &Gap) -> [f64; 2] {
+    /// Sums of a drag per viscosity and speed, and of the same times `R cos φ`.
+    pub(super) fn drag(&self, drag: &[f64]) -> [f64; 2] {
         let [areas, levers] = &self.areas;
-        dots(&gap.drag, [areas, levers])
-    }
-
-    /// The same of a film that is filled in part.
-    pub(super) fn drag(&self, gap: &Gap, fill: &[f64]) -> [f64; 2] {
-        let mut found = [0.0; 2];
-        for (j, arm) in self.arm.iter().enumerate() {
-            let line = j * self.nx..(j + 1) * self.nx;
-            let own = self.areas[0][line.clone()].iter().zip(&gap.drag[line.clone()]).zip(&fill[line]);
-            let full: f64 = own.map(|((w, d), f)| w * d * f).sum();
-            found[0] += full;
-            found[1] += full * arm;
-        }
-        found
+        dots(drag, [areas, levers])
     }
 
     /// `out`: forces of a pressure on both edges, along the bore, along the bore times `R cos φ`, and on the elastic shapes.
