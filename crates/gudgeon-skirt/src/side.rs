@@ -85,10 +85,10 @@ pub struct Side {
     /// Shapes of the gap's rates at the nodes: upper edge, lower edge, elastic ones.
     shapes: Vec<f64>,
     over: Over,
+    /// Shapes at faces along `x` and along `y`.
+    face_shapes: [Vec<f64>; 2],
     /// Nodes over which oil leaves.
     rim: Vec<Rim>,
-    /// The same at faces along `x` and along `y`.
-    face_shapes: [Vec<f64>; 2],
     elastic: usize,
     /// How the surface yields.
     pub compliance: Box<dyn SkirtCompliance>,
