@@ -28,6 +28,10 @@ pub trait CycleMap {
     fn scale(&self, y: &[f64], s: &mut [f64]);
     /// Keeps an extrapolated start within what the machine admits; `reached` is the end of the cycle before, which it does.
     fn admit(&self, _reached: &[f64], _y: &mut [f64]) {}
+    /// Part of its accuracy by which the last cycle differs from another from the same start.
+    fn noise(&self) -> f64 {
+        1.0
+    }
     /// What is known of the slope of the map before the first cycle, as from the search of one that is like it.
     fn known(&self) -> &[Change] {
         &[]
@@ -330,7 +334,9 @@ impl Search {
             self.report.history.push(residual);
             let ratio = state.learn(&at, &r, before.max(accuracy), options);
             let (correction, rest) = explain(&state.secants[state.trusted..], &r, FRESH);
-            let estimate = self.judge(&mut state, residual, correction.amax(), rest.amax(), ratio, options);
+            let noise = map.noise() * options.accuracy;
+            let explained = (correction.amax(), rest.amax());
+            let estimate = self.judge(&mut state, residual, explained, ratio, noise);
             // A slow mode can hide behind faster ones for a cycle: what passes must pass twice, and go on falling as if it would
             // end below the tolerance, unless nothing but the noise of the map is left, which a further cycle would not lessen.
             let accurate = k == 0 || accuracy <= options.accuracy;
@@ -365,15 +371,14 @@ impl Search {
         Ok(())
     }
 
-    /// The estimated error after a cycle, from the parts of its residual that the secants explain and leave over.
+    /// The estimated error after a cycle, from the parts of its residual that the secants explain and leave over, and the noise of the cycle.
     fn judge(
         &mut self,
         state: &mut Anderson,
         residual: f64,
-        explained: f64,
-        rest: f64,
+        (explained, rest): (f64, f64),
         ratio: f64,
-        options: &OrbitOptions,
+        noise: f64,
     ) -> f64 {
         let (largest, gain, suspect) = spectrum(&state.secants, FRESH);
         self.report.multiplier = largest;
@@ -383,7 +388,7 @@ impl Search {
         let gain = gain.max(self.gain).max(1.0 / (1.0 - ratio.clamp(0.0, 1.0 - 1.0 / MAX_GAIN)));
         // y + r - correction would be on the orbit, but for what the secants leave unexplained, and for the noise that
         // may be all that they explain.
-        let noise = residual.max(state.last).min(options.accuracy);
+        let noise = residual.max(state.last).min(noise);
         state.last = residual;
         let estimate = (explained + rest * gain).max(residual).max(noise * gain);
         self.report.error_estimate = estimate;

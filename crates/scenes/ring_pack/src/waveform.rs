@@ -18,6 +18,7 @@ use super::pack::Pack;
 use super::staged::Staging;
 
 mod acting;
+mod grid;
 mod guess;
 mod joint;
 mod repeat;
@@ -29,6 +30,7 @@ mod track;
 pub use rings::RingSteps;
 pub use span::MOST_STATES;
 
+use grid::{Grid, Rule, moved};
 use guess::Guess;
 use joint::{Joint, Part};
 use repeat::Repeat;
@@ -73,6 +75,8 @@ struct Half {
     wave: Track,
     /// The linear invariants of the pack that lie within this side, by its rows.
     invariants: Vec<LinearInvariant>,
+    /// Its steps.
+    grid: Grid,
 }
 
 impl Half {
@@ -88,6 +92,7 @@ impl Half {
             method: Sdirk::new(part.states.len(), part.quads.len()),
             wave: Track::new(part.states.len() + part.quads.len(), &track::THIRDS),
             invariants: balance.iter().filter_map(own).collect(),
+            grid: Grid::default(),
             part,
         }
     }
@@ -95,9 +100,6 @@ impl Half {
 
 /// Change of the films, over the accuracy, of which gas and grooves need not know while the periodic state is searched.
 const ALIKE: f64 = 5.0;
-/// Change of films and their oil up to which the steps of another cycle serve them, and error of a step over the accuracy up to which it is taken again.
-const NEAR: f64 = 0.3;
-const SLACK: f64 = 10.0;
 
 /// Both sides of a pack over a cycle.
 pub struct Waveform {
@@ -109,9 +111,8 @@ pub struct Waveform {
     /// What the films did that gas and grooves saw last, and how these began and ended then.
     before: [Track; 2],
     seen: Option<Seen>,
-    /// Steps of the films that are taken again, and their stages.
-    grid: Grid,
-    repeat: Repeat,
+    /// Whether both sides took the steps of the cycle before in the last one.
+    repeats: [bool; 2],
 }
 
 /// Gas and grooves over the cycle in which they were integrated last.
@@ -119,14 +120,6 @@ struct Seen {
     start: Vec<f64>,
     end: Vec<f64>,
     quads: Vec<f64>,
-}
-
-/// Steps of the films over a cycle that kept its accuracy, and the films then.
-struct Grid {
-    ends: Vec<f64>,
-    start: Vec<f64>,
-    films: Track,
-    rtol: f64,
 }
 
 /// What a cycle is integrated with.
@@ -149,13 +142,7 @@ impl Waveform {
             grooves: Half::new(Side::Grooves, pack, balance),
             before: [films.wave.clone(), forces.clone()],
             seen: None,
-            grid: Grid {
-                ends: Vec::new(),
-                start: Vec::new(),
-                films: films.wave.clone(),
-                rtol: f64::INFINITY,
-            },
-            repeat: Repeat::default(),
+            repeats: [false; 2],
             films,
             staging: Staging::with_ring_steps(pack),
             forces,
@@ -164,7 +151,8 @@ impl Waveform {
 
     /// The quadratures of the pack are others from now on.
     pub fn set_quadratures(&mut self, pack: &Pack, balance: &[LinearInvariant]) {
-        self.grooves = Half::new(Side::Grooves, pack, balance);
+        let grid = std::mem::take(&mut self.grooves.grid);
+        self.grooves = Half { grid, ..Half::new(Side::Grooves, pack, balance) };
     }
 
     /// Integrates a cycle from `y`; `q` are the quadratures over it.
@@ -241,12 +229,14 @@ impl Waveform {
         setting: &mut Setting<'_>,
         recorded: bool,
     ) -> Result<(), IntegrateError> {
+        let rule = self.again(Side::Grooves, pack, y, setting.options.rtol, recorded);
         let half = &mut self.grooves;
         let start = of(y, &half.part.states);
         self.before[0].clone_from(&self.films.wave);
         self.before[1].clone_from(&self.forces);
         half.wave.begin(0.0);
-        let (wave, part) = (&mut half.wave, &half.part);
+        let (wave, part, mut ends) = (&mut half.wave, &half.part, Vec::new());
+        half.grid.repeat.begin(rule.is_some());
         if let Some(rings) = &mut self.staging.rings {
             rings.set_accuracy(pack, setting.options);
         }
@@ -256,14 +246,27 @@ impl Waveform {
             Some(&self.forces),
         );
         let rows = system.judged.clone();
+        system.repeat = Some(&mut half.grid.repeat);
         let mut observe = |s: &mut OneSide<'_>, v: &dyn StepView| {
+            ends.push(v.t1());
             match &s.staging.rings {
                 Some(rings) if recorded => rings.record(v, &rows, wave),
                 _ => wave.step(v),
             }
             Flow::Continue
         };
-        integrate(&mut half.method, &mut system, setting, &[], (y, q), &mut observe)?;
+        integrate(
+            &mut half.method,
+            &mut system,
+            setting,
+            rule.map(|r| (r, &half.grid.ends[..])),
+            (y, q),
+            &mut observe,
+        )?;
+        half.grid.ends = ends;
+        if rule.is_none() {
+            half.grid.choose(start.clone(), None, setting.options.rtol);
+        }
         self.seen = Some(Seen { start, end: of(y, &half.part.states), quads: of(q, &half.part.quads) });
         Ok(())
     }
@@ -277,7 +280,7 @@ impl Waveform {
         mut follower: Option<&mut dyn Follower>,
     ) -> Result<(), IntegrateError> {
         let rtol = setting.options.rtol;
-        let again = follower.is_none() && self.grid_serves(pack, y, rtol);
+        let rule = self.again(Side::Films, pack, y, rtol, follower.is_some());
         let start = of(y, &self.films.part.states);
         let half = &mut self.films;
         half.wave.begin(0.0);
@@ -289,8 +292,8 @@ impl Waveform {
             &beside.wave,
             None,
         );
-        self.repeat.begin(again);
-        system.repeat = Some(&mut self.repeat);
+        half.grid.repeat.begin(rule.is_some());
+        system.repeat = Some(&mut half.grid.repeat);
         let mut joint = Joint::new(&beside.wave, [&beside.part, part], system.pack);
         let mut observe = |s: &mut OneSide<'_>, v: &dyn StepView| {
             wave.step(v);
@@ -304,22 +307,34 @@ impl Waveform {
             }
             flow
         };
-        let ends: &[f64] = if again { &self.grid.ends } else { &[] };
-        integrate(&mut half.method, &mut system, setting, ends, (y, q), &mut observe)?;
-        if !again {
-            self.grid = Grid { ends: half.wave.ends().to_vec(), start, films: half.wave.clone(), rtol };
+        integrate(
+            &mut half.method,
+            &mut system,
+            setting,
+            rule.map(|r| (r, &half.grid.ends[..])),
+            (y, q),
+            &mut observe,
+        )?;
+        half.grid.ends = half.wave.ends().to_vec();
+        if rule.is_none() {
+            half.grid.choose(start, pack.oil_pack.as_ref().map(|_| half.wave.clone()), rtol);
         }
         Ok(())
     }
 
-    /// Whether the steps of the films are good enough for another cycle: with steps of its own, every cycle would differ from the others by the errors of these.
-    fn grid_serves(&self, pack: &Pack, y: &[f64], rtol: f64) -> bool {
-        let grid = &self.grid;
-        let apart = |from: &Track| self.films.wave.mean_change(from, pack.period(), pack.films()).change;
-        pack.oil_pack.is_some()
-            && grid.rtol <= rtol
-            && moved(pack, &self.films.part, &grid.start, y) <= NEAR
-            && apart(&grid.films) <= NEAR
+    /// The rule by which a side takes the steps of the last cycle again from `y`, if it does.
+    fn again(&mut self, side: Side, pack: &Pack, y: &[f64], rtol: f64, recorded: bool) -> Option<Rule> {
+        let half = if side == Side::Grooves { &self.grooves } else { &self.films };
+        let films = &self.films.wave;
+        let rule = Rule::of(side, pack, recorded)
+            .filter(|rule| half.grid.serves(*rule, pack, &half.part, (y, films), rtol));
+        self.repeats[side as usize] = rule.is_some();
+        rule
+    }
+
+    /// Whether the last cycle took the steps of the one before.
+    pub fn repeats(&self) -> bool {
+        self.repeats == [true; 2]
     }
 
     /// How much the films of the last cycle differ from those that gas and grooves of that cycle saw: the mean of the change of thickness over itself, and that
@@ -341,22 +356,12 @@ fn of(all: &[f64], places: &[usize]) -> Vec<f64> {
     places.iter().map(|&k| all[k]).collect()
 }
 
-/// How far the states of a side are from where they began a cycle: the largest change over what counts as one between cycles.
-fn moved(pack: &Pack, part: &Part, start: &[f64], y: &[f64]) -> f64 {
-    let change = |(&k, v): (&usize, &f64)| {
-        let info = &pack.layout.states[k];
-        let scale = if info.cycle_relative { v.abs().max(info.cycle_scale) } else { info.cycle_scale };
-        (y[k] - v).abs() / scale
-    };
-    part.states.iter().zip(start).map(change).fold(0.0, f64::max)
-}
-
 /// Integrates one side over a cycle.
 fn integrate(
     method: &mut Sdirk,
     system: &mut OneSide<'_>,
     setting: &mut Setting<'_>,
-    ends: &[f64],
+    again: Option<(Rule, &[f64])>,
     (y, q): (&mut [f64], &mut [f64]),
     observe: &mut dyn FnMut(&mut OneSide<'_>, &dyn StepView) -> Flow,
 ) -> Result<(), IntegrateError> {
@@ -365,8 +370,9 @@ fn integrate(
     if system.side == Side::Grooves {
         options.h_max = setting.longest_step;
     }
-    options.ends = ends.to_vec();
-    options.slack = if ends.is_empty() { 1.0 } else { SLACK };
+    if let Some((rule, ends)) = again {
+        (options.ends, options.slack) = (ends.to_vec(), rule.slack);
+    }
     options.atol = of(&options.atol, &part.states);
     options.absolute = part.states.iter().map(|&k| setting.options.absolute[k]).collect();
     let (mut states, mut quads) = (of(y, &part.states), vec![0.0; part.quads.len()]);
