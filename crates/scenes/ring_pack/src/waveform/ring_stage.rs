@@ -13,7 +13,7 @@ use super::span::{MOST_STATES, States};
 /// Part of the error of a step that its stages may add.
 const STAGES: f64 = 0.005;
 /// Change of the oil over the accuracy of a stage that the motion need not know of.
-const SETTLED: f64 = 20.0;
+const SETTLED: f64 = 100.0;
 /// Most passes over motion and oil, and most looks at the oil in one.
 const PASSES: usize = 10;
 const LOOKS: usize = 25;

@@ -21,13 +21,13 @@ use super::track::Track;
 /// Error over the tolerance up to which steps chosen for other pressures are kept.
 const KEPT: f64 = 2.0;
 /// Difference, over the tolerance, between where a ring comes to and where the gas saw it, in clearances and open shares of gaps.
-const SEEN: f64 = 0.1;
+const SEEN: f64 = 0.2;
 /// Change of the force on a ring, over the tolerance and the sum of all forces, for which it is not integrated again.
-const NEARLY: f64 = 0.03;
+const NEARLY: f64 = 0.1;
 /// Least change of the force on a ring \[N\] from which its response is learnt.
 const LEAST_FORCE: f64 = 1e-9;
 /// Looks at the gas in a pass up to which its Jacobian is good for the next stage.
-const KEPT_LOOKS: usize = 2;
+const KEPT_LOOKS: usize = 3;
 /// Most solutions of the gas in a stage.
 const PASSES: usize = 10;
 /// Ends of steps that are one within this \[rad\].

@@ -16,9 +16,10 @@ use super::ring_stage::{RingStage, Step};
 
 /// Most steps between two instants, rejected ones included. A ring that needs more crosses its groove: gas that sees only where it ends would take the step back.
 const MOST: usize = 8;
-/// Part of the step that the error estimate admits which is taken, and the largest growth.
+/// Part of the step that the error estimate admits which is taken, and the largest growth: of steps of the gas, and of steps within one.
 const SAFETY: f64 = 0.85;
 const GROWTH: f64 = 2.0;
+const GROWTH_WITHIN: f64 = 4.0;
 
 /// Most states of a ring in its groove.
 pub const MOST_STATES: usize = 6;
@@ -291,7 +292,7 @@ struct Integration<'a> {
 impl Integration<'_> {
     /// Integrates by steps that are chosen now.
     fn choose(&mut self) -> Result<(), EvalError> {
-        let (mut t, mut h, mut most) = (self.from.acting.t, self.from.h, GROWTH);
+        let (mut t, mut h, mut most) = (self.from.acting.t, self.from.h, GROWTH_WITHIN);
         let end = self.span.end.acting.t;
         self.span.end.atol = self.from.atol;
         self.span.steps.clear();
@@ -316,7 +317,7 @@ impl Integration<'_> {
                 continue;
             }
             let next = tried * (SAFETY / elementary::cbrt(error.max(1e-10))).clamp(0.2, most);
-            (h, most) = (if tried < h { h.max(next) } else { next }, GROWTH);
+            (h, most) = (if tried < h { h.max(next) } else { next }, GROWTH_WITHIN);
             self.span.error = self.span.error.max(error);
             self.span.end.atol = *self.accuracy.0;
             self.stage.ease(&mut self.span.end.atol);
