@@ -54,7 +54,7 @@ pub struct Staging {
 const PASSES: usize = 10;
 /// Accuracy over what is asked, before the last step of Newton's method: of gas, whose balance is closed by what comes in; of the oil on flanks, where what a stage lacks comes
 /// from nowhere; of the oil under faces, where it stays with the face.
-const GAS: f64 = 4.0;
+const GAS: f64 = 2.0;
 const FLANKS: f64 = 2e-2;
 const FACES: f64 = 1.0;
 /// Share of the load that contact carries from which on surfaces touch.
