@@ -11,12 +11,14 @@
 //! in which both are smooth on either side of zero separation. The face never changes during a run, so the integral costs a few
 //! nanoseconds afterwards.
 
+use std::convert::Infallible;
 use std::sync::Arc;
 
 use gudgeon_core::geometry::FaceProfile;
 use gudgeon_core::kinds::Contact;
 use gudgeon_numerics::elementary;
 use gudgeon_numerics::quadrature::GaussLegendre;
+use gudgeon_numerics::roots::itp;
 
 /// Line load against film thickness.
 #[derive(Debug, Clone, Default)]
@@ -49,8 +51,10 @@ const DEEPEST: f64 = -37.0;
 const UNIT: f64 = 0.152;
 /// Part of the range over which a load that fades out with its sixth to eighth power changes by its own size, halfway.
 pub const SCALE: f64 = 0.1;
-/// Panels of Gauss's rule on each straight or curved piece of a face.
-const PANELS: usize = 12;
+/// Width of the bracket of a separation, over the larger of the film and the separation before.
+const ROUNDING: f64 = 1e-15;
+/// Panels of Gauss's rule on each straight or curved piece of a face: good to 1e-8 of the load.
+const PANELS: usize = 6;
 
 /// Separation of the mean planes against film thickness: of the rough surfaces alone, and so the same for all faces.
 #[derive(Debug, Default)]
@@ -79,7 +83,12 @@ impl MeanPlanes {
         let top = elementary::ln(elementary::exp_m1(range / unit));
         let step = (top - DEEPEST) / POINTS as f64;
         let film = |k: usize| unit * elementary::ln_1p(elementary::exp(DEEPEST + step * k as f64));
-        let points: Vec<f64> = (0..=POINTS).map(|k| separation(contact, film(k))).collect();
+        let mut last = below(contact, film(0));
+        let next = |k: usize| {
+            last = separation(contact, film(k), last);
+            last
+        };
+        let points: Vec<f64> = (0..=POINTS).map(next).collect();
         let planes: Vec<f64> = points.iter().map(|s| contact.mean_planes(*s)).collect();
         let separation = Spline::new(DEEPEST, step, &planes);
         Self { range, unit, step, points, separation }
@@ -189,23 +198,25 @@ fn fourth(root: f64) -> f64 {
     (r * r) * (r * r)
 }
 
-/// Separation \[m\] at which the mean gap is `film` \[m\], by bisection on a function that rises.
-fn separation(contact: &dyn Contact, film: f64) -> f64 {
-    let (mut lo, mut hi) = (-film.max(contact.range()), film);
+/// Separation \[m\] at which the mean gap, which rises with it, is `film`; at least `least`.
+fn separation(contact: &dyn Contact, film: f64, least: f64) -> f64 {
+    // Where mean planes overlap the gap falls with the exponential of a square: its logarithm is a curve that secants follow.
+    let lacks =
+        |s: f64| Ok::<_, Infallible>(elementary::ln((contact.mean_gap(s) / film).max(f64::MIN_POSITIVE)));
+    // A mean gap is never less than the separation.
+    itp(lacks, least, film, ROUNDING * film.max(-least)).map_or(least, |root| root.x)
+}
+
+/// A separation \[m\] at which the mean gap is less than `film`.
+fn below(contact: &dyn Contact, film: f64) -> f64 {
+    let mut s = -film.max(contact.range());
     for _ in 0..40 {
-        if contact.mean_gap(lo) < film {
+        if contact.mean_gap(s) < film {
             break;
         }
-        (lo, hi) = (2.0 * lo, lo);
+        s *= 2.0;
     }
-    for _ in 0..80 {
-        let mid = 0.5 * (lo + hi);
-        if mid <= lo || mid >= hi {
-            break;
-        }
-        if contact.mean_gap(mid) < film { lo = mid } else { hi = mid }
-    }
-    0.5 * (lo + hi)
+    s
 }
 
 /// What a contact model says for separations.
