@@ -263,14 +263,14 @@ enum Method {
 }
 
 impl Method {
-    fn new(s: &Implicit, pack: &Pack, balance: &[LinearInvariant]) -> Self {
+    fn new(s: &Implicit, pack: &Pack) -> Self {
         let (dim, quads) = (pack.layout.n, pack.layout.quads());
         let rosenbrock = |formula| Self::Rodas(Box::new(Rodas::with(formula, dim, quads, None)));
         match s.integrator.at(s.tolerance.si()) {
             RingIntegrator::Rodas3 => rosenbrock(Formula::Rodas3),
             RingIntegrator::Rodas | RingIntegrator::Rodas5p => rosenbrock(Formula::Rodas5P),
             RingIntegrator::Sdirk2 => Self::Sdirk(Box::new(Sdirk::new(dim, quads))),
-            RingIntegrator::Waveform => Self::Waveform(Box::new(Waveform::new(pack, balance))),
+            RingIntegrator::Waveform => Self::Waveform(Box::new(Waveform::new(pack))),
             RingIntegrator::Radau5 => Self::Radau(Box::new(Radau5::new(dim, quads, None))),
         }
     }
@@ -747,7 +747,7 @@ impl<'a> Cycle<'a> {
     ) -> Self {
         let balance = balances(pack, s.integrator.has_stages());
         Cycle {
-            method: Method::new(s, pack, &balance),
+            method: Method::new(s, pack),
             breakpoints: breakpoints(pack),
             scale: pack.layout.states.iter().map(|s| s.scale).collect(),
             absolute: pack.layout.states.iter().map(|s| !s.relative).collect(),
@@ -771,8 +771,8 @@ impl<'a> Cycle<'a> {
     fn follow_passages(&mut self, s: &Implicit) {
         self.pack.follow_passages(true);
         match &mut self.method {
-            Method::Waveform(w) => w.set_quadratures(self.pack, &self.balance),
-            method => *method = Method::new(s, self.pack, &self.balance),
+            Method::Waveform(w) => w.tell_quadratures(self.pack, &self.balance),
+            method => *method = Method::new(s, self.pack),
         }
         self.q = vec![0.0; self.pack.layout.quads()];
     }

@@ -80,8 +80,11 @@ struct Half {
 }
 
 impl Half {
-    fn new(side: Side, pack: &Pack, balance: &[LinearInvariant]) -> Self {
-        let part = Part { states: side.states(&pack.layout), quads: side.quads(&pack.layout) };
+    fn new(side: Side, pack: &Pack) -> Self {
+        Self::with(Part { states: side.states(&pack.layout), quads: Vec::new() }, pack, &[])
+    }
+
+    fn with(part: Part, pack: &Pack, balance: &[LinearInvariant]) -> Self {
         let n = pack.layout.n;
         let row = |r: usize| part.row(r, n);
         let own = |v: &LinearInvariant| {
@@ -90,7 +93,7 @@ impl Half {
         };
         Self {
             method: Sdirk::new(part.states.len(), part.quads.len()),
-            wave: Track::new(part.states.len() + part.quads.len(), &track::THIRDS),
+            wave: Track::new(part.width(), &track::THIRDS),
             invariants: balance.iter().filter_map(own).collect(),
             grid: Grid::default(),
             part,
@@ -134,12 +137,12 @@ pub struct Setting<'a> {
 }
 
 impl Waveform {
-    /// For a pack, whose balances are `balance`.
-    pub fn new(pack: &Pack, balance: &[LinearInvariant]) -> Self {
-        let films = Half::new(Side::Films, pack, balance);
+    /// For a pack, without quadratures.
+    pub fn new(pack: &Pack) -> Self {
+        let films = Half::new(Side::Films, pack);
         let forces = Track::new(pack.n_rings(), &sdirk::PLACES);
         Self {
-            grooves: Half::new(Side::Grooves, pack, balance),
+            grooves: Half::new(Side::Grooves, pack),
             before: [films.wave.clone(), forces.clone()],
             seen: None,
             repeats: [false; 2],
@@ -149,10 +152,14 @@ impl Waveform {
         }
     }
 
-    /// The quadratures of the pack are others from now on.
-    pub fn set_quadratures(&mut self, pack: &Pack, balance: &[LinearInvariant]) {
-        let grid = std::mem::take(&mut self.grooves.grid);
-        self.grooves = Half { grid, ..Half::new(Side::Grooves, pack, balance) };
+    /// Cycles tell the quadratures of the pack, whose balances are `balance`, from now on.
+    pub fn tell_quadratures(&mut self, pack: &Pack, balance: &[LinearInvariant]) {
+        for (half, side) in [(&mut self.grooves, Side::Grooves), (&mut self.films, Side::Films)] {
+            let part = Part { states: side.states(&pack.layout), quads: side.quads(&pack.layout) };
+            let told = Half::with(part, pack, balance);
+            let Half { wave, grid, .. } = std::mem::replace(half, told);
+            (half.wave, half.grid) = (wave, grid);
+        }
     }
 
     /// Integrates a cycle from `y`; `q` are the quadratures over it.
@@ -234,7 +241,7 @@ impl Waveform {
         let start = of(y, &half.part.states);
         self.before[0].clone_from(&self.films.wave);
         self.before[1].clone_from(&self.forces);
-        half.wave.begin(0.0);
+        half.wave.begin(0.0, half.part.width());
         let (wave, part, mut ends) = (&mut half.wave, &half.part, Vec::new());
         half.grid.repeat.begin(rule.is_some());
         if let Some(rings) = &mut self.staging.rings {
@@ -283,8 +290,8 @@ impl Waveform {
         let rule = self.again(Side::Films, pack, y, rtol, follower.is_some());
         let start = of(y, &self.films.part.states);
         let half = &mut self.films;
-        half.wave.begin(0.0);
-        self.forces.begin(0.0);
+        half.wave.begin(0.0, half.part.width());
+        self.forces.begin(0.0, pack.n_rings());
         let (wave, forces, beside) = (&mut half.wave, &mut self.forces, &self.grooves);
         let part = &half.part;
         let mut system = OneSide::new(Side::Films, pack, &mut self.staging, part, &half.invariants).beside(

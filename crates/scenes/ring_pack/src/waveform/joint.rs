@@ -15,6 +15,11 @@ pub struct Part {
 }
 
 impl Part {
+    /// Number of states and quadratures.
+    pub const fn width(&self) -> usize {
+        self.states.len() + self.quads.len()
+    }
+
     /// The row of a state or a quadrature of the pack, whose states are `n`, among the states and quadratures of this side.
     pub fn row(&self, row: usize, n: usize) -> Option<usize> {
         if row < n {
@@ -52,7 +57,7 @@ impl<'a> Joint<'a> {
     pub fn new(beside: &'a Track, parts: [&'a Part; 2], pack: &Pack) -> Self {
         let y = || vec![0.0; pack.layout.n];
         let q = || vec![0.0; pack.layout.quads()];
-        let own = parts.map(|p| vec![0.0; p.states.len() + p.quads.len()]);
+        let own = parts.map(|p| vec![0.0; p.width()]);
         Self {
             beside,
             parts,

@@ -63,8 +63,9 @@ impl Track {
         &self.ends
     }
 
-    /// Forgets everything and begins anew at `t`.
-    pub fn begin(&mut self, t: f64) {
+    /// Forgets everything and begins anew at `t`, with as many values as `width` says.
+    pub fn begin(&mut self, t: f64, width: usize) {
+        self.width = width;
         self.ends.clear();
         self.values.clear();
         self.ends.push(t);
@@ -73,8 +74,8 @@ impl Track {
 
     /// The same values all the time, zero where none is given.
     pub fn hold(&mut self, end: f64, values: impl Iterator<Item = f64> + Clone) {
-        self.begin(0.0);
         let width = self.width;
+        self.begin(0.0, width);
         let all = || values.clone().chain(std::iter::repeat(0.0)).take(width);
         self.values.extend(self.places.iter().flat_map(|_| all()));
         self.ends.push(end);
@@ -218,7 +219,7 @@ mod tests {
     fn a_track_is_the_polynomial_through_its_places() {
         let cubic = |t: f64| 1.0 + t * (2.0 - t * (3.0 - 0.5 * t));
         let mut track = Track::new(1, &THIRDS);
-        track.begin(0.0);
+        track.begin(0.0, 1);
         for (t0, t1) in [(0.0, 0.3), (0.3, 1.0)] {
             let values: Vec<f64> = THIRDS.iter().map(|x| cubic(t0 + x * (t1 - t0))).collect();
             track.push(t1, &values);
