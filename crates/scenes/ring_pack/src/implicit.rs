@@ -324,7 +324,6 @@ impl Cycle<'_> {
             let mut setting = Setting {
                 breakpoints: &self.breakpoints,
                 options: &options,
-                longest_step: self.longest_step,
                 stats: &mut self.stats,
             };
             w.cycle(self.pack, y, &mut self.q, &mut setting, follower)?;

@@ -129,10 +129,8 @@ struct Seen {
 pub struct Setting<'a> {
     /// Where steps end.
     pub breakpoints: &'a [f64],
-    /// Accuracy and limits, for all states; the longest step is that of films.
+    /// Accuracy and limits, for all states.
     pub options: &'a Options,
-    /// Longest step of gas and grooves \[rad\].
-    pub longest_step: f64,
     pub stats: &'a mut Stats,
 }
 
@@ -374,9 +372,6 @@ fn integrate(
 ) -> Result<(), IntegrateError> {
     let part = system.part;
     let mut options = setting.options.clone();
-    if system.side == Side::Grooves {
-        options.h_max = setting.longest_step;
-    }
     if let Some((rule, ends)) = again {
         (options.ends, options.slack) = (ends.to_vec(), rule.slack);
     }

@@ -21,9 +21,9 @@ use super::track::Track;
 /// Error over the tolerance up to which steps chosen for other pressures are kept.
 const KEPT: f64 = 2.0;
 /// Difference, over the tolerance, between where a ring comes to and where the gas saw it, in clearances and open shares of gaps.
-const SEEN: f64 = 0.2;
+const SEEN: f64 = 0.1;
 /// Change of the force on a ring, over the tolerance and the sum of all forces, for which it is not integrated again.
-const NEARLY: f64 = 0.1;
+const NEARLY: f64 = 0.05;
 /// Least change of the force on a ring \[N\] from which its response is learnt.
 const LEAST_FORCE: f64 = 1e-9;
 /// Looks at the gas in a pass up to which its Jacobian is good for the next stage.
