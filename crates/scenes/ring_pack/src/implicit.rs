@@ -321,11 +321,8 @@ impl Cycle<'_> {
         let interval = self.pack.decision_interval();
         if let Method::Waveform(w) = &mut self.method {
             options.h_init = self.h;
-            let mut setting = Setting {
-                breakpoints: &self.breakpoints,
-                options: &options,
-                stats: &mut self.stats,
-            };
+            let mut setting =
+                Setting { breakpoints: &self.breakpoints, options: &options, stats: &mut self.stats };
             w.cycle(self.pack, y, &mut self.q, &mut setting, follower)?;
             return self.integrated();
         }
@@ -572,7 +569,7 @@ impl Sampler {
             v.interpolate_quad(t, &mut self.q);
             if (pack.plan.axial || pack.plan.film) && k.is_multiple_of(2) {
                 if !pack.is_at(t, &self.y) {
-                    pack.evaluate(t, &self.y)?;
+                    pack.evaluate_in_step(t, &self.y)?;
                 }
                 let weight = if 2 * k == last { 4.0 } else { 1.0 };
                 self.close(pack, weight * (t1 - t0) / pack.omega / 6.0);

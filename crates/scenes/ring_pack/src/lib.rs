@@ -18,6 +18,7 @@ mod end_gap;
 mod error;
 mod evaporation;
 mod film_strokes;
+mod films_between;
 mod forces;
 mod gas_balance;
 mod gas_ledger;

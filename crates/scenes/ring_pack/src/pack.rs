@@ -14,6 +14,7 @@ use gudgeon_core::kinds::{
 use gudgeon_core::states::{Signals, Stateful};
 
 use super::conventions::Laws;
+use super::films_between::FilmsBetween;
 use super::instant::{Counters, Instant, SeatLog};
 use super::layout::Layout;
 use super::limits::Limits;
@@ -108,8 +109,10 @@ pub struct Pack {
     pub hard_floor: bool,
     /// State of the last complete evaluation.
     pub state: Vec<f64>,
-    /// Whether that is an evaluation of the whole scene, and not of one side.
+    /// Whether that is an evaluation of all forces, and not of one side.
     pub(super) complete: bool,
+    /// Films in the step that is looked at, where they are not to be solved again for that.
+    pub(super) between: Option<FilmsBetween>,
     /// Film thicknesses of the rings, scratch.
     pub films: Vec<f64>,
     /// Viscosities at the rings, scratch.
@@ -325,7 +328,7 @@ impl Pack {
         self.evaluate_again(theta, y, None)
     }
 
-    /// Whether what `self.at` holds is the whole scene at crank angle `theta` for state `y`.
+    /// Whether `self.at` holds all forces at crank angle `theta` for state `y`.
     pub(super) fn is_at(&self, theta: f64, y: &[f64]) -> bool {
         self.complete && self.at.theta == theta && self.state == y
     }
@@ -346,6 +349,23 @@ impl Pack {
             }
             self.in_groove(i, y)?;
         }
+        self.state.copy_from_slice(y);
+        self.complete = true;
+        Ok(())
+    }
+
+    /// Evaluates the forces at an instant of a step: films as they are known between its stages, if they are, and without flows of gas that nobody asks for.
+    pub fn evaluate_in_step(&mut self, theta: f64, y: &[f64]) -> Result<(), EvalError> {
+        let Some(films) = self.between.take() else { return self.evaluate(theta, y) };
+        self.begin_instant(theta, y)?;
+        if self.gas.has_energy() {
+            self.gas(None)?;
+        } else {
+            self.gas_pressures(self.cylinder.pressure(theta))?;
+        }
+        films.tell(theta, &mut self.at.rings);
+        self.between = Some(films);
+        (0..self.n_rings()).try_for_each(|i| self.in_groove(i, y))?;
         self.state.copy_from_slice(y);
         self.complete = true;
         Ok(())
@@ -428,8 +448,7 @@ impl Pack {
         self.layout.radial[i].is_empty() || (THINNEST..THICKEST).contains(&self.at.places[i].h)
     }
 
-    /// Places, pressures and the reach of the oil at crank angle `theta` for state `y`, without flows, films and forces: what
-    /// [`super::measure`] asks for.
+    /// Places, pressures and the reach of the oil at crank angle `theta` for state `y`, and films where they are known: what [`super::measure`] asks for.
     pub fn look(&mut self, theta: f64, y: &[f64]) -> Result<(), EvalError> {
         // What `self.at` holds is no longer an evaluation of any state.
         self.state.fill(f64::NAN);
@@ -443,6 +462,9 @@ impl Pack {
             for i in 0..self.n_rings() {
                 self.wet(i)?;
             }
+        }
+        if let Some(films) = &self.between {
+            films.tell(theta, &mut self.at.rings);
         }
         Ok(())
     }

@@ -12,6 +12,7 @@ use gudgeon_numerics::ode::{
 };
 use gudgeon_numerics::sdirk::{self, Sdirk};
 
+use super::films_between::FilmsBetween;
 use super::implicit::{Follower, lend};
 use super::layout::Layout;
 use super::pack::Pack;
@@ -287,6 +288,9 @@ impl Waveform {
         let rtol = setting.options.rtol;
         let rule = self.again(Side::Films, pack, y, rtol, follower.is_some());
         let start = of(y, &self.films.part.states);
+        // With oil on the liner films are to be where that is now.
+        let looked_at = follower.is_some() && pack.oil_pack.is_none();
+        pack.between = looked_at.then(|| FilmsBetween::new(pack.n_rings()));
         let half = &mut self.films;
         half.wave.begin(0.0, half.part.width());
         self.forces.begin(0.0, pack.n_rings());
@@ -303,9 +307,10 @@ impl Waveform {
         let mut observe = |s: &mut OneSide<'_>, v: &dyn StepView| {
             wave.step(v);
             forces.push(v.t1(), &s.axial);
-            s.next();
+            s.pack.between.iter_mut().for_each(|films| films.took(v.t0(), v.t1()));
             let flow = lend(&mut follower)
                 .map_or(Flow::Continue, |f| joint.pieces(v, |piece| f.step(s.pack, piece)));
+            s.next();
             s.book(v);
             if let Some(f) = lend(&mut follower) {
                 f.booked(s.pack, v.t1());
@@ -320,6 +325,7 @@ impl Waveform {
             (y, q),
             &mut observe,
         )?;
+        pack.between = None;
         half.grid.ends = half.wave.ends().to_vec();
         if rule.is_none() {
             half.grid.choose(start, pack.oil_pack.as_ref().map(|_| half.wave.clone()), rtol);
@@ -475,7 +481,11 @@ impl<'a> OneSide<'a> {
         if self.side == Side::Films {
             let n = self.pack.n_rings();
             let kept = self.axial[instant * n..].iter_mut();
-            kept.zip(&self.pack.at.rings).for_each(|(f, r)| *f = r.axial.film);
+            let Pack { at, between, .. } = &mut *self.pack;
+            kept.zip(&at.rings).for_each(|(f, r)| *f = r.axial.film);
+            if let Some(between) = between {
+                between.keep(instant, &at.rings);
+            }
         }
     }
 
@@ -484,6 +494,7 @@ impl<'a> OneSide<'a> {
         let n = self.pack.n_rings();
         let last = self.axial.len() - n;
         self.axial.copy_within(last.., 0);
+        self.pack.between.iter_mut().for_each(FilmsBetween::go_on);
     }
 
     /// Books the oil of an accepted step of the films.
