@@ -1,27 +1,58 @@
-//! Films between the instants of a step at which they were solved.
+//! What films do between the instants of a step at which they were solved.
 
 use gudgeon_numerics::sdirk::GAMMA;
 
 use super::instant::RingInstant;
+
+/// Number of things that films do.
+const COUNT: usize = 15;
+
+/// What the film of a ring does at an instant, in the order of [`film`].
+type Told = [f64; COUNT];
+
+/// Film rate, viscosity, load and its share on contact, perimeter, friction, force along the groove, powers, and what limits did.
+const fn film(r: &mut RingInstant) -> [&mut f64; COUNT] {
+    let l = &mut r.limited;
+    [
+        &mut r.hdot,
+        &mut r.mu,
+        &mut r.load,
+        &mut r.contact,
+        &mut r.perimeter,
+        &mut r.friction,
+        &mut r.axial.film,
+        &mut r.power,
+        &mut r.boundary_power,
+        &mut l.floor,
+        &mut l.drag,
+        &mut l.contact_drag,
+        &mut l.slowed,
+        &mut l.lifted,
+        &mut l.thickest,
+    ]
+}
 
 /// Films of all rings at the start of a step and at its stages, and the parabolas through them, which leave the range of the three nowhere.
 #[derive(Debug, Clone)]
 pub struct FilmsBetween {
     /// Start and length of the step \[rad\].
     step: (f64, f64),
-    instants: [Vec<RingInstant>; 3],
+    instants: [Vec<Told>; 3],
 }
 
 impl FilmsBetween {
     /// For as many rings.
     pub fn new(rings: usize) -> Self {
-        let instant = || vec![RingInstant::default(); rings];
+        let instant = || vec![[0.0; COUNT]; rings];
         Self { step: (0.0, 1.0), instants: [instant(), instant(), instant()] }
     }
 
     /// Keeps the rings at an instant of a step: its start, or a stage.
     pub fn keep(&mut self, instant: usize, rings: &[RingInstant]) {
-        self.instants[instant].copy_from_slice(rings);
+        self.instants[instant]
+            .iter_mut()
+            .zip(rings)
+            .for_each(|(kept, ring)| *kept = film(&mut ring.clone()).map(|does| *does));
     }
 
     /// The step from `t0` to `t1` was taken.
@@ -34,7 +65,7 @@ impl FilmsBetween {
         self.instants.swap(0, 2);
     }
 
-    /// Tells what the films do at `t`: film rate, viscosity, load, friction and what limits did.
+    /// Has the films of `rings` do what they do at `t`.
     pub fn tell(&self, t: f64, rings: &mut [RingInstant]) {
         let x = (t - self.step.0) / self.step.1;
         let weights = [
@@ -42,28 +73,15 @@ impl FilmsBetween {
             x * (1.0 - x) / (GAMMA * (1.0 - GAMMA)),
             x * (x - GAMMA) / (1.0 - GAMMA),
         ];
-        for (i, ring) in rings.iter_mut().enumerate() {
-            tell(ring, &self.instants.each_ref().map(|rings| rings[i]), &weights);
+        let [first, second, last] = &self.instants;
+        for (((a, b), c), ring) in first.iter().zip(second).zip(last).zip(rings) {
+            for (k, does) in film(ring).into_iter().enumerate() {
+                let parabola = weights[0] * a[k] + weights[1] * b[k] + weights[2] * c[k];
+                *does = parabola.clamp(a[k].min(b[k]).min(c[k]), a[k].max(b[k]).max(c[k]));
+            }
+            ring.film_known = false;
         }
     }
-}
-
-/// One ring between three instants.
-fn tell(ring: &mut RingInstant, at: &[RingInstant; 3], weights: &[f64; 3]) {
-    let mix = |of: fn(&RingInstant) -> f64| {
-        let [a, b, c] = at.each_ref().map(of);
-        let parabola = weights[0] * a + weights[1] * b + weights[2] * c;
-        parabola.clamp(a.min(b).min(c), a.max(b).max(c))
-    };
-    (ring.hdot, ring.mu, ring.load) = (mix(|r| r.hdot), mix(|r| r.mu), mix(|r| r.load));
-    (ring.contact, ring.perimeter) = (mix(|r| r.contact), mix(|r| r.perimeter));
-    (ring.friction, ring.axial.film) = (mix(|r| r.friction), mix(|r| r.axial.film));
-    (ring.power, ring.boundary_power) = (mix(|r| r.power), mix(|r| r.boundary_power));
-    ring.film_known = false;
-    let l = &mut ring.limited;
-    (l.floor, l.drag) = (mix(|r| r.limited.floor), mix(|r| r.limited.drag));
-    (l.contact_drag, l.slowed) = (mix(|r| r.limited.contact_drag), mix(|r| r.limited.slowed));
-    (l.lifted, l.thickest) = (mix(|r| r.limited.lifted), mix(|r| r.limited.thickest));
 }
 
 #[cfg(test)]
@@ -82,18 +100,21 @@ mod tests {
             films.keep(instant, &[ring(x)]);
         }
         films.took(2.0, 6.0);
-        let mut at = [RingInstant::default()];
+        let at = |films: &FilmsBetween, t: f64| {
+            let mut ring = [RingInstant::default()];
+            films.tell(t, &mut ring);
+            ring[0]
+        };
         for x in [0.0, 0.2, 0.7, 0.95, 1.0] {
-            films.tell(2.0 + 4.0 * x, &mut at);
+            let ring = at(&films, 2.0 + 4.0 * x);
             // Three products of numbers below ten.
-            assert!((at[0].friction - x * (3.0 - x)).abs() < 1e-14, "{x}: {}", at[0].friction);
+            assert!((ring.friction - x * (3.0 - x)).abs() < 1e-14, "{x}: {}", ring.friction);
             // The least of the three is that at the first stage.
             let contact = (x - 0.6).powi(2).max((GAMMA - 0.6).powi(2));
-            assert!((at[0].contact - contact).abs() < 1e-14, "{x}: {}", at[0].contact);
+            assert!((ring.contact - contact).abs() < 1e-14, "{x}: {}", ring.contact);
         }
         films.go_on();
         films.took(6.0, 7.0);
-        films.tell(6.0, &mut at);
-        assert!((at[0].friction - 2.0).abs() < 1e-14);
+        assert!((at(&films, 6.0).friction - 2.0).abs() < 1e-14);
     }
 }
