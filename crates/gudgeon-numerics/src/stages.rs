@@ -46,6 +46,8 @@ pub struct StageNewton {
     known: bool,
     fresh: bool,
     given: bool,
+    /// Step whose matrix is inverted; NaN where the Jacobian is a newer one.
+    inverted: f64,
     pivots: Vec<usize>,
     inverse: Vec<f64>,
     /// Residual, that before it, Newton's step; residual of a trial, and the step that would follow it.
@@ -70,6 +72,7 @@ impl StageNewton {
             known: false,
             fresh: false,
             given: false,
+            inverted: f64::NAN,
             pivots: vec![0; n],
             inverse: m(),
             r: v(),
@@ -92,7 +95,7 @@ impl StageNewton {
     pub fn set_jacobian(&mut self, by: impl Fn(usize, usize) -> f64) {
         let n = self.r.len();
         self.by.iter_mut().enumerate().for_each(|(k, entry)| *entry = by(k / n, k % n));
-        (self.known, self.given) = (true, true);
+        (self.known, self.given, self.inverted) = (true, true, f64::NAN);
     }
 
     /// Solves a stage of step `s` for `x`, which comes as a guess, until the next step is smaller than `accuracy` in every unknown. That step is still
@@ -216,20 +219,24 @@ impl StageNewton {
                 self.by[row * n + column] = (unit - (self.moved[row] - self.r[row]) / d) / s;
             }
         }
-        (self.known, self.fresh) = (true, true);
+        (self.known, self.fresh, self.inverted) = (true, true, f64::NAN);
         Ok(())
     }
 
-    /// Inverts the matrix, by Gauss and Jordan's elimination in place.
+    /// Inverts the matrix, by Gauss and Jordan's elimination in place, unless it is inverted: both stages of a step have the same, and updates keep it so.
     fn invert(&mut self, s: f64) -> Result<(), EvalError> {
+        if self.inverted == s {
+            return Ok(());
+        }
         let n = self.r.len();
         for (k, (m, by)) in self.inverse.iter_mut().zip(&self.by).enumerate() {
             *m = f64::from(u8::from(k.is_multiple_of(n + 1))) - s * by;
         }
         if invert(&mut self.inverse, n, &mut self.pivots, &mut self.row) {
+            self.inverted = s;
             return Ok(());
         }
-        self.known = false;
+        (self.known, self.inverted) = (false, f64::NAN);
         Err(EvalError::recoverable("stage", "the matrix of a stage is singular"))
     }
 

@@ -488,8 +488,24 @@ impl Pack {
     }
 
     /// Multiplies admitted errors of the states by what the models allow at the instant evaluated last.
-    pub(super) fn ease(&mut self, atol: &mut [f64]) {
-        self.each_block(|b, own| b.ease(&mut atol[own]));
+    pub(super) fn ease(&self, atol: &mut [f64]) {
+        self.gas.ease(&mut atol[self.layout.gas.clone()]);
+        for (ring, (motion, flank)) in self.rings.iter().zip(self.layout.motion.iter().zip(&self.layout.flank)) {
+            ring.motion.ease(&mut atol[motion.clone()]);
+            ring.flank.ease(&mut atol[flank.clone()]);
+        }
+        self.ease_films(atol);
+    }
+
+    /// The same for films, the oil under them and their temperatures.
+    pub(super) fn ease_films(&self, atol: &mut [f64]) {
+        for (ring, own) in self.rings.iter().zip(&self.layout.radial) {
+            ring.radial.ease(&mut atol[own.clone()]);
+        }
+        if let Some(oil) = &self.oil_pack {
+            oil.ease(&mut atol[self.layout.oil.clone()]);
+        }
+        self.film_temperature.ease(&mut atol[self.layout.temperature.clone()]);
         // Surfaces that touch carry by their roughness, beside which a film much thinner need not be known to its own size.
         for (i, own) in self.layout.radial.iter().enumerate() {
             for k in own.clone() {

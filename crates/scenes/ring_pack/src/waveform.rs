@@ -577,9 +577,14 @@ impl OdeSystem for OneSide<'_> {
         if !known && self.evaluate(t, y).is_err() {
             return;
         }
+        if self.side == Side::Grooves {
+            // Gas comes first, and the steps of the rings judge the rest.
+            self.pack.gas.ease(&mut atol[..self.pack.layout.gas.len()]);
+            self.judged.iter().for_each(|&row| atol[row] = f64::INFINITY);
+            return;
+        }
         self.part.states.iter().zip(&*atol).for_each(|(&k, a)| self.base[k] = *a);
-        self.pack.ease(&mut self.base);
+        self.pack.ease_films(&mut self.base);
         self.part.states.iter().zip(&mut *atol).for_each(|(&k, a)| *a = self.base[k]);
-        self.judged.iter().for_each(|&row| atol[row] = f64::INFINITY);
     }
 }
