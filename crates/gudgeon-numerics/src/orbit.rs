@@ -32,6 +32,10 @@ pub trait CycleMap {
     fn noise(&self) -> f64 {
         1.0
     }
+    /// Whether no further cycle is of use: the search ends with what it has.
+    fn gives_up(&self) -> bool {
+        false
+    }
     /// What is known of the slope of the map before the first cycle, as from the search of one that is like it.
     fn known(&self) -> &[Change] {
         &[]
@@ -312,7 +316,7 @@ impl Search {
         let mut accuracy = if times == 1 { rough } else { options.accuracy };
         let mut before = accuracy;
         for k in 0.. {
-            if self.report.cycles + times > limit {
+            if self.report.cycles + times > limit || map.gives_up() {
                 break;
             }
             if let Err(e) = self.apply(map, y, &mut end, accuracy, times) {
@@ -488,7 +492,7 @@ impl Search {
         let mut g = vec![0.0; y.len()];
         self.report.converged = false;
         self.report.period = 1;
-        while self.report.cycles < options.max_cycles {
+        while self.report.cycles < options.max_cycles && !map.gives_up() {
             self.apply(map, y, &mut g, options.accuracy, 1)?;
             map.scale(&g, &mut s);
             y.copy_from_slice(&g);

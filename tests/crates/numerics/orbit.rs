@@ -348,6 +348,41 @@ fn failures_are_reported() {
     }
 }
 
+/// A map that gives up after some cycles.
+struct Vain {
+    left: usize,
+    bend: Option<Bend>,
+}
+impl CycleMap for Vain {
+    fn dim(&self) -> usize {
+        1
+    }
+    fn map(&mut self, y0: &[f64], y1: &mut [f64], _: f64) -> Result<f64, EvalError> {
+        self.left -= 1;
+        y1[0] = y0[0] + 1.0;
+        Ok(1.0)
+    }
+    fn scale(&self, _: &[f64], s: &mut [f64]) {
+        s[0] = 1.0;
+    }
+    fn gives_up(&self) -> bool {
+        self.left == 0
+    }
+    fn bend(&self) -> Option<Bend> {
+        self.bend
+    }
+}
+
+#[test]
+fn a_map_that_gives_up_is_asked_no_more() {
+    let bend = Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, noise: 1.0 };
+    for (accelerate, bend) in [(true, None), (true, Some(bend)), (false, None)] {
+        let mut map = Vain { left: 4, bend };
+        let report = periodic_orbit(&mut map, &mut [0.0], &options(1e-4, accelerate)).unwrap();
+        assert!(!report.converged && report.cycles == 4, "{accelerate} {bend:?} {report:?}");
+    }
+}
+
 /// Approaches ln 20 the slower the farther above it, and has no meaning below 1: secants from above overshoot far.
 struct Bounded {
     admits: bool,

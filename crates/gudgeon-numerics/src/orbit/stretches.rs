@@ -270,7 +270,7 @@ impl Search {
             if self.report.cycles == 0 { options.accuracy.max(1e-3) } else { options.accuracy };
         self.report.converged = false;
         self.noisy = false;
-        while self.report.cycles + times <= limit {
+        while self.report.cycles + times <= limit && !map.gives_up() {
             if let Err(e) = self.apply(map, y, &mut end, accuracy, times) {
                 if !std::mem::take(&mut stepped) || !e.is_recoverable() {
                     return Err(e);

@@ -324,6 +324,7 @@ impl Cycle<'_> {
             let mut setting =
                 Setting { breakpoints: &self.breakpoints, options: &options, stats: &mut self.stats };
             w.cycle(self.pack, y, &mut self.q, &mut setting, follower)?;
+            w.compare(self.pack);
             return self.integrated();
         }
         let pieces = interval.map_or(1, |i| (period / i).round().max(1.0) as usize);
@@ -513,6 +514,9 @@ impl CycleMap for Cycle<'_> {
     }
     fn noise(&self) -> f64 {
         if matches!(&self.method, Method::Waveform(w) if w.repeats()) { NOISE_AGAIN } else { 1.0 }
+    }
+    fn gives_up(&self) -> bool {
+        matches!(&self.method, Method::Waveform(w) if w.come_apart())
     }
     fn bend(&self) -> Option<Bend> {
         let noise = if matches!(self.method, Method::Waveform(_)) { NOISE_AGAIN } else { OIL_BEND.noise };
@@ -794,8 +798,11 @@ impl<'a> Cycle<'a> {
             if left <= options.tolerance {
                 break;
             }
+            report.converged = report.cycles < options.max_cycles && !w.come_apart();
+            if !report.converged {
+                break;
+            }
             w.look_again();
-            report.converged = report.cycles < options.max_cycles;
             report.cycles += 1;
             report.cycle_equivalents += self.map(y, &mut next, options.accuracy)?;
             y.copy_from_slice(&next);

@@ -490,7 +490,9 @@ impl Pack {
     /// Multiplies admitted errors of the states by what the models allow at the instant evaluated last.
     pub(super) fn ease(&self, atol: &mut [f64]) {
         self.gas.ease(&mut atol[self.layout.gas.clone()]);
-        for (ring, (motion, flank)) in self.rings.iter().zip(self.layout.motion.iter().zip(&self.layout.flank)) {
+        for (ring, (motion, flank)) in
+            self.rings.iter().zip(self.layout.motion.iter().zip(&self.layout.flank))
+        {
             ring.motion.ease(&mut atol[motion.clone()]);
             ring.flank.ease(&mut atol[flank.clone()]);
         }
