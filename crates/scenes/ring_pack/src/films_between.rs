@@ -49,10 +49,9 @@ impl FilmsBetween {
 
     /// Keeps the rings at an instant of a step: its start, or a stage.
     pub fn keep(&mut self, instant: usize, rings: &[RingInstant]) {
-        self.instants[instant]
-            .iter_mut()
-            .zip(rings)
-            .for_each(|(kept, ring)| *kept = film(&mut ring.clone()).map(|does| *does));
+        for (kept, mut ring) in self.instants[instant].iter_mut().zip(rings.iter().copied()) {
+            *kept = film(&mut ring).map(|does| *does);
+        }
     }
 
     /// The step from `t0` to `t1` was taken.
@@ -77,7 +76,7 @@ impl FilmsBetween {
         for (((a, b), c), ring) in first.iter().zip(second).zip(last).zip(rings) {
             for (k, does) in film(ring).into_iter().enumerate() {
                 let parabola = weights[0] * a[k] + weights[1] * b[k] + weights[2] * c[k];
-                *does = parabola.clamp(a[k].min(b[k]).min(c[k]), a[k].max(b[k]).max(c[k]));
+                *does = parabola.max(a[k].min(b[k]).min(c[k])).min(a[k].max(b[k]).max(c[k]));
             }
             ring.film_known = false;
         }
