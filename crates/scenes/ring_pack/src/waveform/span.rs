@@ -15,7 +15,7 @@ use super::acting::{Acting, Values, Variation};
 use super::ring_stage::{RingStage, Step};
 
 /// Most steps between two instants, rejected ones included. A ring that needs more crosses its groove: gas that sees only where it ends would take the step back.
-const MOST: usize = 8;
+const MOST: usize = 5;
 /// Part of the step that the error estimate admits which is taken, and the largest growth: of steps of the gas, and of steps within one.
 const SAFETY: f64 = 0.85;
 const GROWTH: f64 = 2.0;
