@@ -329,15 +329,16 @@ impl Waveform {
             }
             flow
         };
-        integrate(
+        let done = integrate(
             &mut half.method,
             &mut system,
             setting,
             rule.map(|r| (r, &half.grid.ends[..])),
             (y, q),
             &mut observe,
-        )?;
+        );
         pack.between = None;
+        done?;
         half.grid.ends = half.wave.ends().to_vec();
         if rule.is_none() {
             half.grid.choose(start, pack.oil_pack.as_ref().map(|_| half.wave.clone()), rtol);
