@@ -12,6 +12,7 @@ use crate::EvalError;
 use crate::elementary;
 use nalgebra::{DMatrix, DVector, Schur};
 
+mod points;
 mod stretches;
 
 /// The map of a cycle.

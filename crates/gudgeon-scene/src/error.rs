@@ -67,6 +67,18 @@ impl RunError {
         }
     }
 
+    /// Whether another method may still succeed: it was neither stopped nor did a model refuse for good.
+    #[must_use]
+    pub const fn may_go_otherwise(&self) -> bool {
+        match self {
+            Self::Eval { source, .. }
+            | Self::Model { source }
+            | Self::Integrate(IntegrateError::Eval { source, .. }) => source.is_recoverable(),
+            Self::Integrate(_) | Self::Scene(_) => true,
+            Self::NotANumber(_) | Self::Refused(_) | Self::Stopped => false,
+        }
+    }
+
     /// The same as a row of a study tells it.
     #[must_use]
     pub fn failure(&self) -> Failure {

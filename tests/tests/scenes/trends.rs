@@ -115,8 +115,9 @@ fn starved_faces_have_the_signs_of_an_engine() {
     let solid = all("fmep_boundary");
     assert!(solid[0] > solid[1] && solid[1] > solid[2], "{solid:?}");
     for r in &runs {
-        // Ten times the tolerance of a step: so repeatable is a cycle with oil on the liner. Oil: sums of some ten thousand terms, exact to rounding.
-        assert!(value(r, "periodicity_error") < 1e-3);
+        // Twenty times the tolerance of a step: what the slowest mode, of a multiplier of 0.95, makes of a cycle that is as repeatable as that. Oil: sums of some ten
+        // thousand terms, exact to rounding.
+        assert!(value(r, "periodicity_error") < 2e-3);
         assert!(r.balance.oil_mass.is_some_and(|b| b < 1e-11), "{:?}", r.balance);
     }
     let speed = ["engine.speed=1000 rpm", "engine.speed=2600 rpm"].map(at);

@@ -1,5 +1,6 @@
 //! Search in stretches, for maps that are strongly bent: some cycles are repeated plainly, and what they say of the slopes is used for one step; then
-//! again from there (vector extrapolation in cycles, sidi2017). Secants older than a stretch are dropped: they belong to other slopes.
+//! again from there (vector extrapolation in cycles, sidi2017). Far from the orbit secants older than a stretch are dropped: they belong to other slopes. Near it all
+//! stretches are taken together (`points`).
 //!
 //! Slow modes of a map with stores that hardly see each other (oil before the edges of rings) are single states. A secant in the noise does not show them,
 //! but three residuals of the state that fall by the same factor do (Aitken's process, state by state).
@@ -9,17 +10,19 @@
 
 use nalgebra::DVector;
 
-use super::{
-    Bend, CycleMap, DEPTH, NEARER, OrbitOptions, ROUGHEST, Search, Secant, explain, sinks, spectrum,
-};
+use super::points::{Blend, Points};
+use super::{Bend, CycleMap, NEARER, OrbitOptions, ROUGHEST, Search, explain, sinks, spectrum};
 use crate::EvalError;
 use crate::elementary;
 
 /// Cycles that are not looked at: at the start, and after a step, which stirs up fast modes.
-const FIRST: usize = 5;
+const FIRST: usize = 4;
 const SKIPPED: usize = 2;
-/// Secants of a stretch.
+/// Secants of a stretch, whose cycles are one more.
 const GATHERED: usize = 2;
+/// Part of the residual that cycles taken together may leave over to be stepped with before the stretch is complete, and of a step by which it may miss.
+const EXPLAINED: f64 = 0.3;
+const MISSED: f64 = 0.1;
 /// Part of the largest residual from which on a state is extrapolated alone, and of its own residual that the secants must have left over.
 const LARGE: f64 = 0.1;
 const LEFT: f64 = 0.3;
@@ -44,13 +47,14 @@ const TRIED: usize = 40;
 /// Plain cycles after which it shows that they come no nearer.
 const STUCK: usize = 20;
 
-/// What is known since the last step.
+/// What is known since the last step, and near the orbit from before it.
 struct Stretch {
     bend: Bend,
     /// Scales of the states in the last cycle.
     s: Vec<f64>,
-    secants: Vec<Secant>,
-    /// Residuals, oldest first.
+    /// The cycles that came to rest.
+    points: Points,
+    /// Residuals of this stretch, oldest first.
     residuals: Vec<DVector<f64>>,
     /// Start of the last cycle.
     at: Option<DVector<f64>>,
@@ -79,7 +83,7 @@ impl Stretch {
         Self {
             bend,
             s: vec![1.0; n],
-            secants: Vec::new(),
+            points: Points::default(),
             residuals: Vec::new(),
             at: None,
             skipped: FIRST,
@@ -96,7 +100,7 @@ impl Stretch {
 
     /// Begins anew after a step.
     fn restart(&mut self) {
-        self.secants.clear();
+        self.points.stepped();
         self.residuals.clear();
         self.at = None;
         self.skipped = SKIPPED;
@@ -108,10 +112,7 @@ impl Stretch {
         map.scale(g, &mut self.s);
         let n = y.len();
         let rescale = DVector::from_iterator(n, before.iter().zip(&self.s).map(|(b, s)| b / s));
-        for secant in &mut self.secants {
-            secant.dy.component_mul_assign(&rescale);
-            secant.dr.component_mul_assign(&rescale);
-        }
+        self.points.rescale(&rescale);
         for v in self.residuals.iter_mut().chain(&mut self.at) {
             v.component_mul_assign(&rescale);
         }
@@ -119,19 +120,51 @@ impl Stretch {
         let r = DVector::from_iterator(n, g.iter().zip(y).zip(&self.s).map(|((g, y), s)| (g - y) / s));
         if self.skipped > 0 {
             self.skipped -= 1;
-        } else if let (Some(from), Some(last)) = (&self.at, self.residuals.last()) {
-            let noise = self.bend.noise * accuracy;
-            self.secants.push(Secant { dy: &at - from, dr: &r - last, noise });
-            if self.secants.len() > DEPTH {
-                self.secants.remove(0);
-            }
+        } else {
+            self.points.push(&at, &r, self.bend.noise * accuracy);
         }
         self.at = Some(at);
         self.residuals.push(r);
     }
 
+    /// Whether it is time for a step: the stretch is complete, or what is known from before explains where it is.
     fn ready(&self) -> bool {
-        self.secants.len() >= if self.plain { 2 * GATHERED } else { GATHERED }
+        let secants = if self.plain { 2 * GATHERED } else { GATHERED };
+        self.points.own() > secants || self.points.has_earlier() && self.explains()
+    }
+
+    /// Whether the cycles together explain the last one. Only a whole stretch shows whether a machine that goes to and fro comes to rest, and where states drift
+    /// that would be sent back.
+    fn explains(&self) -> bool {
+        let ([.., before, r], Some(blend)) = (&self.residuals[..], self.blend()) else { return false };
+        let large = LARGE * r.amax();
+        before.dot(r) > 0.0
+            && blend.rest.amax() <= EXPLAINED * r.amax()
+            && r.iter().zip(blend.step.iter()).all(|(r, step)| r.abs() < large || r * step >= 0.0)
+    }
+
+    /// The cycles taken together, where that is of use.
+    fn blend(&self) -> Option<Blend> {
+        self.points.blend().filter(|_| !self.plain)
+    }
+
+    /// What the cycles say of a step from the end of the last, whose residual is `r`, and what they leave over of that.
+    fn known(&self, r: &DVector<f64>) -> (DVector<f64>, DVector<f64>) {
+        if self.plain {
+            return (DVector::zeros(r.len()), r.clone());
+        }
+        if let Some(blend) = self.blend() {
+            return (blend.step, blend.rest);
+        }
+        let (correction, rest) = explain(&self.points.secants(true), r, self.bend.fresh);
+        (-correction, rest)
+    }
+
+    /// Moves the end `g` of the last cycle to where the cycles together are.
+    fn settle(&self, g: &mut [f64]) {
+        if let Some(blend) = self.blend() {
+            g.iter_mut().zip(blend.step.iter()).zip(&self.s).for_each(|((g, d), s)| *g += d * s);
+        }
     }
 
     /// Whether plain cycles come no nearer, although none drifts.
@@ -180,17 +213,17 @@ impl Stretch {
         self.ahead = to_go.fold(0.0, |far, d| far.max(d.abs()));
     }
 
-    /// The step from the end of the last cycle: what the secants explain, and what single states go on by. No state is sent back that only went forth: where it
-    /// drifts at a constant rate the secants know nothing but noise of it.
+    /// The step from the end of the last cycle: what the cycles explain, and what single states go on by. No state is sent back that only went forth: where it
+    /// drifts at a constant rate the cycles know nothing but noise of it.
     fn step(&mut self) -> DVector<f64> {
-        let ([.., r0, r1, r2, r], Some(at)) = (&self.residuals[..], &self.at) else {
+        let (Some(r), Some(at)) = (self.residuals.last(), &self.at) else {
             return DVector::zeros(self.s.len());
         };
-        let trusted = if self.plain { &[] } else { &self.secants[..] };
-        let (correction, rest) = explain(trusted, r, self.bend.fresh);
+        let (mut step, rest) = self.known(r);
         let residual = r.amax();
         let longest = (self.bend.stride * residual).min(self.reach);
-        let mut step = -&correction * (longest / correction.amax().max(f64::MIN_POSITIVE)).min(1.0);
+        step *= (longest / step.amax().max(f64::MIN_POSITIVE)).min(1.0);
+        let [.., r0, r1, r2, _] = &self.residuals[..] else { return step };
         for i in 0..step.len() {
             let drifts = drifts(&self.residuals, i);
             let mut left = rest[i];
@@ -291,10 +324,12 @@ impl Search {
             let settled = passed > 0.0 && residual <= 3.0 * options.accuracy;
             if accurate && (settled && estimate <= options.tolerance || sinks(estimate, passed, options)) {
                 self.report.converged = true;
+                state.settle(&mut g);
                 break;
             }
-            if state.idle > IDLE {
+            if state.idle > IDLE && (state.plain || state.blend().is_some()) {
                 self.noisy = true;
+                state.settle(&mut g);
                 break;
             }
             passed = if estimate <= options.tolerance { estimate } else { 0.0 };
@@ -307,7 +342,8 @@ impl Search {
             if self.stuck || self.doubled {
                 break;
             }
-            if state.ready() {
+            // What passes is looked at once more from where it is.
+            if state.ready() && passed == 0.0 {
                 let step = state.step();
                 if state.plain && step.amax() == 0.0 {
                     continue;
@@ -331,9 +367,14 @@ impl Search {
         let residual = r.amax();
         self.report.residual = residual;
         self.report.history.push(residual);
-        let (explained, rest) = explain(&state.secants, r, state.bend.fresh);
-        let (largest, slow, suspect) = spectrum(&state.secants, state.bend.fresh);
+        let blend = state.blend();
+        let (rest, weight, missed) =
+            blend.as_ref().map_or((r, 1.0, 0.0), |b| (&b.rest, b.weight, MISSED * b.step.amax()));
+        let (largest, slow, suspect) = spectrum(&state.points.secants(false), state.bend.fresh);
         let ratio = state.ratio(options.accuracy);
+        // Between residuals that are noise a decay says nothing, where secants do.
+        let own_noise = state.bend.noise * options.accuracy;
+        let ratio = if slow > 1.0 && residual <= 3.0 * own_noise { 0.0 } else { ratio };
         let seen = slow.max(1.0 / (1.0 - ratio.clamp(0.0, 1.0 - 1.0 / super::MAX_GAIN)));
         // Fast modes that a step stirred up hide a slow one: what was slow before it is taken to be slow still.
         let gain = seen.max(state.held);
@@ -345,9 +386,8 @@ impl Search {
         let falls = residual > 3.0 * options.accuracy || residual < 0.5 * state.best;
         state.idle = if falls { 0 } else { state.idle + 1 };
         state.best = state.best.min(residual);
-        let noise = residual.max(last).min(options.accuracy);
-        let estimate =
-            (explained.amax() + rest.amax() * gain).max(residual).max(noise * gain).max(state.ahead);
+        let noise = residual.max(last).min(own_noise);
+        let estimate = (gain * (rest.amax() + noise * weight) + missed).max(state.ahead);
         self.report.error_estimate = estimate;
         estimate
     }

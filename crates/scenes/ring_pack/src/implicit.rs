@@ -53,8 +53,7 @@ pub struct Implicit {
     pub tolerance: PosRatio,
     /// Time integrator.
     pub integrator: RingIntegrator,
-    /// True relative error of the periodic state; not below `tolerance`, with oil on the liner not below ten times that, or a fifth of it with
-    /// `waveform`.
+    /// True relative error of the periodic state; not below `tolerance`, with oil on the liner not below twenty times that, or with `waveform` ten times up to 1e-3.
     #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1 }))]
     pub periodicity: PosRatio,
     /// Most cycles, all phases of the search together, before the run is called unconverged. Half of them, but at least 60, are accelerated; the
@@ -288,6 +287,8 @@ struct Cycle<'a> {
     base: Base,
     staging: Staging,
     h: f64,
+    /// Relative error of a step that the case asks for.
+    tolerance: f64,
     stats: Stats,
     q: Vec<f64>,
     /// Longest step \[rad\]: none may jump over a pressure pulse.
@@ -453,10 +454,12 @@ const ASKED_EVERY: u32 = 1000;
 const REFINEMENTS: usize = 2;
 /// Tightest tolerance of a cycle: a hundred times the rounding of its states.
 const FINEST: f64 = 1e-13;
-/// How much less repeatable than its integration a cycle with oil on the liner is.
-const OIL_NOISE: f64 = 10.0;
-/// How much less where films take the same steps again.
-const OIL_AGAIN: f64 = 0.2;
+/// How much less repeatable than its integration a cycle with oil on the liner is where films do not take the same steps again.
+const OIL_NOISE: f64 = 20.0;
+/// Largest noise of a cycle with oil on the liner in the same steps that tighter tolerances do not lessen: an edge of a film is in one cell or the next.
+const CELLS: f64 = 1e-4;
+/// Periodicity with oil on the liner in the same steps over the noise of a cycle: the slowest mode multiplies that by ten and more.
+const OIL_AGAIN: f64 = 10.0;
 /// Part of its accuracy by which a cycle in the steps of the one before differs from it, without oil on the liner and with it.
 const NOISE_AGAIN: f64 = 0.1;
 /// Part by which halves come nearer in a cycle at least: to a sixth usually.
@@ -519,7 +522,11 @@ impl CycleMap for Cycle<'_> {
         matches!(&self.method, Method::Waveform(w) if w.come_apart())
     }
     fn bend(&self) -> Option<Bend> {
-        let noise = if matches!(self.method, Method::Waveform(_)) { NOISE_AGAIN } else { OIL_BEND.noise };
+        let noise = if matches!(self.method, Method::Waveform(_)) {
+            oil_noise(self.tolerance) / self.tolerance
+        } else {
+            OIL_BEND.noise
+        };
         self.pack.oil_pack.is_some().then_some(Bend { noise, ..OIL_BEND })
     }
 }
@@ -756,6 +763,7 @@ impl<'a> Cycle<'a> {
             base: Base::default(),
             staging: Staging::new(pack),
             h: FIRST_STEP,
+            tolerance: s.tolerance.si(),
             stats: Stats::default(),
             q: vec![0.0; pack.layout.quads()],
             longest_step: wanted.limits.longest_step.si(),
@@ -787,6 +795,10 @@ impl<'a> Cycle<'a> {
 
     fn periodic(&mut self, y: &mut [f64], options: &OrbitOptions) -> Result<OrbitReport, EvalError> {
         let mut report = periodic_orbit(self, y, options)?;
+        // Where a search in halves with oil ends in the noise of its cycles it may be nearer than one of the whole pack is asked to come.
+        report.converged |= self.pack.oil_pack.is_some()
+            && matches!(&self.method, Method::Waveform(w) if !w.come_apart())
+            && report.error_estimate <= OIL_NOISE * options.accuracy;
         let (estimate, mut next) = (report.error_estimate, y.to_vec());
         while let Method::Waveform(w) = &mut self.method
             && report.converged
@@ -886,19 +898,24 @@ fn first_states(pack: &mut Pack, start: f64) -> Vec<f64> {
     y
 }
 
+/// Noise of a cycle in halves with oil on the liner, in the steps of the one before.
+const fn oil_noise(tolerance: f64) -> f64 {
+    (NOISE_AGAIN * tolerance).max(tolerance.min(CELLS))
+}
+
 /// How the periodic state is searched.
 fn orbit_options(s: &Implicit, pack: &Pack) -> OrbitOptions {
     // A map is only as repeatable as its integration is accurate, and where a film ends on the liner depends on where steps end.
     let tolerance = s.tolerance.si();
     let halves = s.integrator == RingIntegrator::Waveform;
-    let noise = match (pack.oil_pack.is_some(), halves) {
-        (true, true) => OIL_AGAIN,
-        (true, false) => OIL_NOISE,
-        _ => 1.0,
+    let least = match (pack.oil_pack.is_some(), halves) {
+        (true, true) => OIL_AGAIN * oil_noise(tolerance),
+        (true, false) => OIL_NOISE * tolerance,
+        _ => tolerance,
     };
     let most = if halves { HALVES_TRY[usize::from(pack.oil_pack.is_some())] } else { usize::MAX };
     OrbitOptions {
-        tolerance: s.periodicity.si().max(noise * tolerance),
+        tolerance: s.periodicity.si().max(least),
         accuracy: tolerance,
         max_cycles: most.min(s.max_cycles as usize),
         refinements: if halves { 0 } else { REFINEMENTS },
@@ -921,14 +938,15 @@ fn run(
     let tolerance = s.tolerance.si();
     let options = orbit_options(s, pack);
     let mut cycle = Cycle::new(s, pack, wanted, progress);
-    let mut report = cycle.close(&mut y, &options)?;
-    let seconds = begin.seconds();
-    let counters = counters(&cycle.stats);
-    if s.integrator == RingIntegrator::Waveform && !report.converged {
-        let mut solution = whole(s, (pack, start), wanted, progress, (&report, &counters))?;
+    let closed = cycle.close(&mut y, &options);
+    let (seconds, counters, cycles) = (begin.seconds(), counters(&cycle.stats), cycle.done);
+    let apart = closed.as_ref().map_or_else(RunError::may_go_otherwise, |report| !report.converged);
+    if s.integrator == RingIntegrator::Waveform && apart {
+        let mut solution = whole(s, (pack, start), wanted, progress, (cycles, &counters))?;
         solution.seconds += seconds;
         return Ok(solution);
     }
+    let mut report = closed?;
     cycle.follow_passages(s);
     let mut sampler = Sampler::new(cycle.pack, wanted);
     let balance = cycle.record(&mut y, tolerance, &mut sampler)?;
@@ -966,7 +984,7 @@ fn whole(
     (pack, start): (&mut Pack, f64),
     wanted: &Wanted<'_>,
     progress: &mut dyn FnMut(f64) -> Result<(), Stopped>,
-    (tried, work): (&OrbitReport, &IndexMap<String, u64>),
+    (cycles, work): (f64, &IndexMap<String, u64>),
 ) -> Result<Solution, RunError> {
     let tolerance = quantity(WHOLE * s.tolerance.si());
     let whole = Implicit { tolerance, integrator: RingIntegrator::Rodas3, ..s.clone() };
@@ -974,11 +992,10 @@ fn whole(
     for (name, count) in work {
         *solution.counters.entry(name.clone()).or_default() += count;
     }
-    solution.cycles += tried.cycle_equivalents;
+    solution.cycles += cycles;
     let text = format!(
-        "films and the motion in the grooves did not agree within {} cycles (`solver.integrator` `waveform`): the pack was integrated whole, by `rodas3` at a tolerance of \
-         {:.1e}. Where rings flutter, take that from the start",
-        tried.cycles,
+        "films and the motion in the grooves did not come to agree in {cycles} cycles (`solver.integrator` `waveform`): the pack was integrated whole, by `rodas3` at a tolerance \
+         of {:.1e}. Where rings flutter, take that from the start",
         whole.tolerance.si()
     );
     solution.notes.push(Note::caution("halves_apart", text).of_numerics());

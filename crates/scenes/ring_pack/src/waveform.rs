@@ -105,10 +105,12 @@ impl Half {
 /// Change of the films, over the accuracy, of which gas and grooves need not know while the periodic state is searched.
 const ALIKE: f64 = 5.0;
 
-/// Cycle from which on the halves are compared, and how far they may be apart if they come no nearer from one cycle to the next: of 54 packs of three rings those that
-/// come to agree are within 0.05 after four cycles, and those that do not are beyond 0.2 after five. With six rings they agree from 0.13 on.
-const COMPARED: usize = 3;
-const APART: f64 = 0.1;
+/// Cycle from which on the halves are compared, without oil on the liner and with it, and how far they may be apart if they come no nearer from one cycle to the next:
+/// of 54 packs of three rings those that come to agree are within 0.05 after four cycles, and those that do not are beyond 0.2 after five. With six rings they agree from 0.13 on.
+/// With oil they may part for a while as it spreads, and for a cycle after a step of the search: of 21 packs those that agree are within 0.1 in one cycle of two from the
+/// eighth on, and the two that do not are beyond 0.17 in all.
+const COMPARED: [usize; 2] = [3, 8];
+const APART: [f64; 2] = [0.1, 0.15];
 
 /// Both sides of a pack over a cycle.
 pub struct Waveform {
@@ -361,13 +363,15 @@ impl Waveform {
         self.repeats == [true; 2]
     }
 
-    /// Compares the halves after a cycle, from the one on in which they must have come nearer if they do at all. With oil on the liner they may part for a while.
+    /// Compares the halves after a cycle, from the one on in which they must have come nearer if they do at all.
     pub fn compare(&mut self, pack: &Pack) {
         self.cycles += 1;
-        let before = self.apart.take();
-        if pack.oil_pack.is_none() && self.cycles >= COMPARED {
+        let (before, oil) = (self.apart.take(), pack.oil_pack.is_some());
+        let most = APART[usize::from(oil)];
+        if self.cycles >= COMPARED[usize::from(oil)] {
             let apart = self.disagreement(pack);
-            self.parts = apart > APART && before.is_some_and(|before| apart >= before);
+            self.parts = apart > most
+                && before.is_some_and(|before| if oil { before > most } else { apart >= before });
             self.apart = Some(apart);
         }
     }
