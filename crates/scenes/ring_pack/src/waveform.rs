@@ -130,11 +130,10 @@ pub struct Waveform {
     parts: bool,
 }
 
-/// Gas and grooves over the cycle in which they were integrated last.
+/// Gas and grooves over the cycle in which they were integrated last, while the periodic state is searched: no quadratures are told then.
 struct Seen {
     start: Vec<f64>,
     end: Vec<f64>,
-    quads: Vec<f64>,
 }
 
 /// What a cycle is integrated with.
@@ -202,7 +201,6 @@ impl Waveform {
             Some(seen) => {
                 let part = &self.grooves.part;
                 part.states.iter().zip(&seen.end).for_each(|(&k, v)| y[k] = *v);
-                part.quads.iter().zip(&seen.quads).for_each(|(&k, v)| q[k] = *v);
                 self.seen = Some(seen);
             }
             None => self.grooves(pack, y, q, setting, follower.is_some())?,
@@ -287,7 +285,7 @@ impl Waveform {
         if rule.is_none() {
             half.grid.choose(start.clone(), None, setting.options.rtol);
         }
-        self.seen = Some(Seen { start, end: of(y, &half.part.states), quads: of(q, &half.part.quads) });
+        self.seen = Some(Seen { start, end: of(y, &half.part.states) });
         Ok(())
     }
 
