@@ -214,7 +214,7 @@ fn a_slow_mode_is_found_in_the_noise_of_its_cycles() {
     cycles.sort_unstable();
     errors.sort_by(f64::total_cmp);
     let (median, most) = (cycles[cycles.len() / 2], cycles[cycles.len() - 1]);
-    // 14 and 26 when this was written, where repetition takes 80 to the tolerance; and no error beyond three quarters of its estimate.
+    // 14 and 26 when this was written, and no error beyond three quarters of its estimate.
     assert!(median <= 16 && most <= 30, "{median} cycles, {most} at most");
     assert!(errors[errors.len() - 1] <= 1.0, "{errors:?}");
 }

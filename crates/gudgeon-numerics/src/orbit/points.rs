@@ -12,7 +12,6 @@ use super::{DEPTH, Secant};
 const NEAR: f64 = 0.02;
 /// How much a residual is in doubt because the map is bent, over itself: from 0.03 to 0.1 it hardly matters.
 const BLUR: f64 = 0.1;
-
 /// Growth of the residual over its noise by which a cycle leaves an orbit that is not stable.
 const LEAVES: f64 = 10.0;
 

@@ -108,7 +108,7 @@ const ALIKE: f64 = 5.0;
 /// Cycle from which on the halves are compared, without oil on the liner and with it, and how far they may be apart if they come no nearer from one cycle to the next:
 /// of 54 packs of three rings those that come to agree are within 0.05 after four cycles, and those that do not are beyond 0.2 after five. With six rings they agree from 0.13 on.
 /// With oil they may part for a while as it spreads, and for a cycle after a step of the search: of 21 packs those that agree are within 0.1 in one cycle of two from the
-/// eighth on, and the two that do not are beyond 0.17 in all.
+/// eighth on, and the two that do not are beyond 0.17 in the six from there.
 const COMPARED: [usize; 2] = [3, 8];
 const APART: [f64; 2] = [0.1, 0.15];
 
