@@ -161,11 +161,9 @@ impl Stretch {
     }
 
     /// Moves the end `g` of the last cycle to where the cycles together are.
-    fn settle(&self, map: &dyn CycleMap, g: &mut [f64]) {
+    fn settle(&self, g: &mut [f64]) {
         if let Some(blend) = self.blend() {
-            let reached = g.to_vec();
             g.iter_mut().zip(blend.step.iter()).zip(&self.s).for_each(|((g, d), s)| *g += d * s);
-            map.admit(&reached, g);
         }
     }
 
@@ -326,12 +324,12 @@ impl Search {
             let settled = passed > 0.0 && residual <= 3.0 * options.accuracy;
             if accurate && (settled && estimate <= options.tolerance || sinks(estimate, passed, options)) {
                 self.report.converged = true;
-                state.settle(map, &mut g);
+                state.settle(&mut g);
                 break;
             }
             if state.idle > IDLE && (state.plain || state.blend().is_some()) {
                 self.noisy = true;
-                state.settle(map, &mut g);
+                state.settle(&mut g);
                 break;
             }
             passed = if estimate <= options.tolerance { estimate } else { 0.0 };
