@@ -8,7 +8,7 @@ use super::instant::RingInstant;
 const COUNT: usize = 15;
 
 /// What the film of a ring does at an instant, in the order of [`film`].
-type Told = [f64; COUNT];
+pub type Told = [f64; COUNT];
 
 /// Film rate, viscosity, load and its share on contact, perimeter, friction, force along the groove, powers, and what limits did.
 const fn film(r: &mut RingInstant) -> [&mut f64; COUNT] {
@@ -49,8 +49,8 @@ impl FilmsBetween {
 
     /// Keeps the rings at an instant of a step: its start, or a stage.
     pub fn keep(&mut self, instant: usize, rings: &[RingInstant]) {
-        for (kept, mut ring) in self.instants[instant].iter_mut().zip(rings.iter().copied()) {
-            *kept = film(&mut ring).map(|does| *does);
+        for (kept, ring) in self.instants[instant].iter_mut().zip(rings) {
+            *kept = film(&mut { *ring }).map(|does| *does);
         }
     }
 
@@ -64,8 +64,8 @@ impl FilmsBetween {
         self.instants.swap(0, 2);
     }
 
-    /// Has the films of `rings` do what they do at `t`.
-    pub fn tell(&self, t: f64, rings: &mut [RingInstant]) {
+    /// What the films of all rings do at `t`.
+    pub fn at(&self, t: f64) -> impl Iterator<Item = Told> {
         let x = (t - self.step.0) / self.step.1;
         let weights = [
             (x - GAMMA) * (x - 1.0) / GAMMA,
@@ -73,13 +73,26 @@ impl FilmsBetween {
             x * (x - GAMMA) / (1.0 - GAMMA),
         ];
         let [first, second, last] = &self.instants;
-        for (((a, b), c), ring) in first.iter().zip(second).zip(last).zip(rings) {
-            for (k, does) in film(ring).into_iter().enumerate() {
-                let parabola = weights[0] * a[k] + weights[1] * b[k] + weights[2] * c[k];
-                *does = parabola.max(a[k].min(b[k]).min(c[k])).min(a[k].max(b[k]).max(c[k]));
-            }
-            ring.film_known = false;
-        }
+        first.iter().zip(second).zip(last).map(move |((a, b), c)| between(&weights, a, b, c))
+    }
+}
+
+/// Sum of three instants by their weights, within the range of these.
+fn between(weights: &[f64; 3], a: &Told, b: &Told, c: &Told) -> Told {
+    let (lower, higher) =
+        (|a: f64, b: f64| if a < b { a } else { b }, |a: f64, b: f64| if a > b { a } else { b });
+    std::array::from_fn(|k| {
+        let (a, b, c) = (a[k], b[k], c[k]);
+        let parabola = weights[0] * a + weights[1] * b + weights[2] * c;
+        lower(higher(parabola, lower(lower(a, b), c)), higher(higher(a, b), c))
+    })
+}
+
+/// Has films do what is known of them.
+pub fn tell(films: impl Iterator<Item = Told>, rings: &mut [RingInstant]) {
+    for (told, ring) in films.zip(rings) {
+        film(ring).into_iter().zip(told).for_each(|(does, told)| *does = told);
+        ring.film_known = false;
     }
 }
 
@@ -101,7 +114,7 @@ mod tests {
         films.took(2.0, 6.0);
         let at = |films: &FilmsBetween, t: f64| {
             let mut ring = [RingInstant::default()];
-            films.tell(t, &mut ring);
+            tell(films.at(t), &mut ring);
             ring[0]
         };
         for x in [0.0, 0.2, 0.7, 0.95, 1.0] {

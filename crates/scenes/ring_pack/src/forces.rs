@@ -9,7 +9,7 @@ use gudgeon_core::kinds::{
 };
 use gudgeon_numerics::elementary;
 
-use super::loads::{Loads, face_in, furthest, wet_faces};
+use super::loads::{Loads, furthest, wet_faces};
 use super::pack::Pack;
 
 /// Standard acceleration used by both sources \[m/s²\].
@@ -104,15 +104,25 @@ impl Pack {
     /// # Errors
     /// What the film refuses.
     pub fn film_peak(&mut self, i: usize) -> Result<(), EvalError> {
-        let mut high = 0.0_f64;
-        for land in 0..self.rings[i].films.len() {
-            let inp =
-                face_in(&self.geo.rings[i], self.at.places[i].h, &self.at.rings[i], -self.at.piston.v, land);
-            self.counters.film += 1;
-            high = high.max(self.rings[i].films[land].evaluate(&inp, self.at.rings[i].hdot)?.p_max);
-        }
-        self.at.rings[i].film_p_max = high;
-        Ok(())
+        self.whole_film(i).map(drop)
+    }
+
+    /// The same with friction and film force, for a ring whose `hdot` and `contact` are known: its load and its film are those of the instant.
+    pub(super) fn film_beside(&mut self, i: usize) -> Result<(), EvalError> {
+        let film = self.whole_film(i)?;
+        let (loads, _) = self.loads(i);
+        let (load, perimeter) = (loads.state.load, loads.perimeter);
+        let r = &mut self.at.rings[i];
+        (r.load, r.perimeter) = (load, perimeter);
+        (r.film, r.film_known) = (film, true);
+        self.friction(i)
+    }
+
+    fn whole_film(&mut self, i: usize) -> Result<FaceForces, EvalError> {
+        let hdot = self.at.rings[i].hdot;
+        let (film, highest) = self.loads(i).0.whole_film(hdot)?;
+        self.at.rings[i].film_p_max = highest;
+        Ok(film)
     }
 
     /// Tilts the films of ring `i` as it twists, and lets them reach as far as its oil does.

@@ -14,7 +14,7 @@ use gudgeon_core::kinds::{
 use gudgeon_core::states::{Signals, Stateful};
 
 use super::conventions::Laws;
-use super::films_between::FilmsBetween;
+use super::films_between::{FilmsBetween, Told, tell};
 use super::instant::{Counters, Instant, SeatLog};
 use super::layout::Layout;
 use super::limits::Limits;
@@ -262,6 +262,11 @@ impl Pack {
     /// Sets places, piston and viscosities for an angle and a state.
     pub fn set_places(&mut self, theta: f64, y: &[f64]) {
         self.locate(theta, y);
+        self.set_viscosities(y);
+    }
+
+    /// Viscosities of the films at the places of the instant.
+    fn set_viscosities(&mut self, y: &[f64]) {
         if self.plan.film {
             let pin = self.at.piston.y;
             (0..self.n_rings()).for_each(|i| self.at.rings[i].mu = self.viscosity(i, pin, y));
@@ -339,6 +344,7 @@ impl Pack {
             self.restore_memory(memory);
         }
         self.begin_instant(theta, y)?;
+        self.set_viscosities(y);
         if let (Some(oil), None) = (&mut self.oil_pack, memory) {
             oil.place(&y[self.layout.oil.clone()], self.at.piston.y);
         }
@@ -357,15 +363,34 @@ impl Pack {
     /// Evaluates the forces at an instant of a step: films as they are known between its stages, if they are, and without flows of gas that nobody asks for.
     pub fn evaluate_in_step(&mut self, theta: f64, y: &[f64]) -> Result<(), EvalError> {
         let Some(films) = self.between.take() else { return self.evaluate(theta, y) };
+        let done = self.evaluate_beside(films.at(theta), theta, y, |_, _| Ok(()));
+        self.between = Some(films);
+        done
+    }
+
+    /// The same for films whose velocities and contact are known, for a row of the series: what these carry, and what they cost, is found for the instant.
+    pub fn evaluate_row(&mut self, films: &[Told], theta: f64, y: &[f64]) -> Result<(), EvalError> {
+        self.evaluate_beside(films.iter().copied(), theta, y, Self::film_beside)
+    }
+
+    fn evaluate_beside(
+        &mut self,
+        films: impl Iterator<Item = Told>,
+        theta: f64,
+        y: &[f64],
+        film: impl Fn(&mut Self, usize) -> Result<(), EvalError>,
+    ) -> Result<(), EvalError> {
         self.begin_instant(theta, y)?;
         if self.gas.has_energy() {
             self.gas(None)?;
         } else {
             self.gas_pressures(self.cylinder.pressure(theta))?;
         }
-        films.tell(theta, &mut self.at.rings);
-        self.between = Some(films);
-        (0..self.n_rings()).try_for_each(|i| self.in_groove(i, y))?;
+        tell(films, &mut self.at.rings);
+        for i in 0..self.n_rings() {
+            film(self, i)?;
+            self.in_groove(i, y)?;
+        }
         self.state.copy_from_slice(y);
         self.complete = true;
         Ok(())
@@ -380,7 +405,7 @@ impl Pack {
         // Until it is complete, this is the evaluation of no state.
         self.state.fill(f64::NAN);
         self.complete = false;
-        self.set_places(theta, y);
+        self.locate(theta, y);
         if let Some(i) = (0..self.n_rings()).find(|i| !self.film_is_one(*i)) {
             let what = format!("the film of ring {} left the range of films", i + 1);
             return Err(EvalError::recoverable("ring_pack", what));
@@ -408,6 +433,7 @@ impl Pack {
                 (0..self.n_rings()).try_for_each(|i| self.in_groove(i, y))?;
             }
             Side::Films => {
+                self.set_viscosities(y);
                 if let Some(oil) = &mut self.oil_pack {
                     oil.place(&y[self.layout.oil.clone()], self.at.piston.y);
                 }
@@ -452,7 +478,7 @@ impl Pack {
     pub fn look(&mut self, theta: f64, y: &[f64]) -> Result<(), EvalError> {
         // What `self.at` holds is no longer an evaluation of any state.
         self.state.fill(f64::NAN);
-        self.set_places(theta, y);
+        self.locate(theta, y);
         for (k, m) in self.gas_state.iter_mut().enumerate() {
             *m = y[k] * self.gas_scale[k];
         }
@@ -463,8 +489,9 @@ impl Pack {
                 self.wet(i)?;
             }
         }
-        if let Some(films) = &self.between {
-            films.tell(theta, &mut self.at.rings);
+        match &self.between {
+            Some(films) => tell(films.at(theta), &mut self.at.rings),
+            None => self.set_viscosities(y),
         }
         Ok(())
     }

@@ -6,6 +6,7 @@
 use gudgeon_core::EvalError;
 use gudgeon_numerics::ode::StepView;
 
+use super::films_between::Told;
 use super::pack::Pack;
 use super::record::Record;
 
@@ -21,6 +22,10 @@ pub struct Rows {
     flows: Vec<f64>,
     /// What the models remember beside their states.
     memory: Vec<f64>,
+    /// What the films did, of every row but the first, where that is known.
+    films: Vec<Told>,
+    /// Quadratures on either side of a row, scratch.
+    beside: [Vec<f64>; 2],
 }
 
 /// A row at the end of a step is its end, \[rad\].
@@ -47,6 +52,8 @@ impl Rows {
             q: Vec::with_capacity(count * quads),
             flows: Vec::with_capacity(count * (pack.n_rings() + 1)),
             memory,
+            films: Vec::new(),
+            beside: [vec![0.0; quads], vec![0.0; quads]],
         }
     }
 
@@ -63,6 +70,7 @@ impl Rows {
             let t = row.min(v.t1());
             self.keep(pack, t, |y| v.interpolate(t, y), |q| v.interpolate_quad(t, q));
             self.keep_flows(pack, v, t);
+            self.films.extend(pack.between.iter().flat_map(|films| films.at(t)));
         }
     }
 
@@ -70,12 +78,11 @@ impl Rows {
     fn keep_flows(&mut self, pack: &Pack, v: &dyn StepView, t: f64) {
         let beside = BESIDE * (v.t1() - v.t0());
         let (from, to) = ((t - beside).max(v.t0()), (t + beside).min(v.t1()));
-        let mut passed = [from, to].map(|_| vec![0.0; pack.layout.quads()]);
-        for (q, t) in passed.iter_mut().zip([from, to]) {
+        for (q, t) in self.beside.iter_mut().zip([from, to]) {
             v.interpolate_quad(t, q);
         }
-        let [before, after] = passed;
-        let slopes = before.iter().zip(&after).map(|(a, b)| (b - a) / (to - from) * pack.omega);
+        let [before, after] = &self.beside;
+        let slopes = before.iter().zip(after).map(|(a, b)| (b - a) / (to - from) * pack.omega);
         self.flows.extend(slopes.take(pack.n_rings() + 1));
     }
 
@@ -107,9 +114,13 @@ impl Rows {
         let (n, dim, quads) = (pack.n_rings(), pack.layout.n, self.q.len() / self.theta.len().max(1));
         let kept = self.memory.len() / self.theta.len().max(1);
         for (k, &theta) in self.theta.iter().enumerate() {
-            let memory = &self.memory[k * kept..][..kept];
-            pack.evaluate_again(theta, &self.y[k * dim..][..dim], Some(memory))?;
-            (0..n).try_for_each(|i| pack.film_peak(i))?;
+            let y = &self.y[k * dim..][..dim];
+            if let Some(films) = k.checked_sub(1).and_then(|k| self.films.get(k * n..(k + 1) * n)) {
+                pack.evaluate_row(films, theta, y)?;
+            } else {
+                pack.evaluate_again(theta, y, Some(&self.memory[k * kept..][..kept]))?;
+                (0..n).try_for_each(|i| pack.film_peak(i))?;
+            }
             let q = &self.q[k * quads..][..quads];
             if let Some(first) = k.checked_sub(1) {
                 let flows = &self.flows[first * (n + 1)..][..=n];

@@ -74,20 +74,31 @@ impl<'a> Joint<'a> {
         let first = self.beside.ends().partition_point(|t| *t <= step.t0() + SLACK);
         let inner = self.beside.ends()[first..].iter().copied().take_while(|t| *t < step.t1() - SLACK);
         self.known.set(f64::NAN);
-        let mut from = step.t0();
+        self.end(step, step.t0());
         for to in inner.chain([step.t1()]) {
-            self.t = [from, to];
-            for end in 0..2 {
-                let (mut y, mut q) = (std::mem::take(&mut self.y[end]), std::mem::take(&mut self.q[end]));
-                self.at(step, self.t[end], Some(&mut y), Some(&mut q));
-                (self.y[end], self.q[end]) = (y, q);
-            }
+            // A piece begins where the one before ends.
+            self.t[0] = self.t[1];
+            self.y.swap(0, 1);
+            self.q.swap(0, 1);
+            self.end(step, to);
             if matches!(look(&Piece { joint: self, step }), Flow::Stop) {
                 return Flow::Stop;
             }
-            from = to;
         }
         Flow::Continue
+    }
+
+    /// Puts the end of the piece at `t`.
+    fn end(&mut self, step: &dyn StepView, t: f64) {
+        self.t[1] = t;
+        let (mut y, mut q) = (std::mem::take(&mut self.y[1]), std::mem::take(&mut self.q[1]));
+        self.at(step, t, Some(&mut y), Some(&mut q));
+        (self.y[1], self.q[1]) = (y, q);
+    }
+
+    /// The end of the piece that `t` is.
+    fn is_end(&self, t: f64) -> Option<usize> {
+        self.t.iter().position(|end| *end == t)
     }
 
     /// States and quadratures of both sides at `t`.
@@ -141,9 +152,15 @@ impl StepView for Piece<'_, '_> {
         &self.joint.q[1]
     }
     fn interpolate(&self, t: f64, y: &mut [f64]) {
-        self.joint.at(self.step, t, Some(y), None);
+        match self.joint.is_end(t) {
+            Some(end) => y.copy_from_slice(&self.joint.y[end]),
+            None => self.joint.at(self.step, t, Some(y), None),
+        }
     }
     fn interpolate_quad(&self, t: f64, q: &mut [f64]) {
-        self.joint.at(self.step, t, None, Some(q));
+        match self.joint.is_end(t) {
+            Some(end) => q.copy_from_slice(&self.joint.q[end]),
+            None => self.joint.at(self.step, t, None, Some(q)),
+        }
     }
 }

@@ -6,16 +6,18 @@ use gudgeon_numerics::ode::StepView;
 
 /// Places of the nodes of a cubic.
 pub const THIRDS: [f64; 4] = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0];
-/// Looks in a step, for means over a cycle.
-const LOOKS: usize = 720;
+/// Most places in a step.
+const MOST_PLACES: usize = 4;
+/// Looks at a cycle, for means over it by which it is judged whether two are alike: these need be known to some parts in a hundred.
+const LOOKS: usize = 240;
 
 /// Some values over a cycle: in every step the polynomial through their values at some places in it.
 #[derive(Debug, Clone)]
 pub struct Track {
     width: usize,
-    /// Places in a step, from 0 to 1, and for each the product of its distances from the others.
+    /// Places in a step, from 0 to 1, at most [`MOST_PLACES`], and for each one over the product of its distances from the others.
     places: &'static [f64],
-    spread: Vec<f64>,
+    scale: [f64; MOST_PLACES],
     /// Ends of the steps, the start first.
     ends: Vec<f64>,
     /// Values at the places of each step.
@@ -35,14 +37,15 @@ pub struct Change {
 
 impl Track {
     pub fn new(width: usize, places: &'static [f64]) -> Self {
-        let apart = |i: usize| {
+        debug_assert!(places.len() <= MOST_PLACES);
+        let scale = |i: usize| {
             let others = places.iter().enumerate().filter(|(j, _)| *j != i);
-            others.map(|(_, p)| places[i] - p).product()
+            places.get(i).map_or(0.0, |at| 1.0 / others.map(|(_, p)| at - p).product::<f64>())
         };
         Self {
             width,
             places,
-            spread: (0..places.len()).map(apart).collect(),
+            scale: std::array::from_fn(scale),
             ends: Vec::new(),
             values: Vec::new(),
             last: Cell::new(0),
@@ -129,14 +132,26 @@ impl Track {
     /// Values at `t` by the polynomial of a step, from one of them on.
     fn eval_in(&self, step: usize, t: f64, first: usize, out: &mut [f64]) {
         let x = (t - self.ends[step]) / (self.ends[step + 1] - self.ends[step]);
-        let count = self.places.len();
-        let values = &self.values[step * count * self.width + first..];
-        out.fill(0.0);
-        for (i, spread) in self.spread.iter().enumerate() {
-            let others = self.places.iter().enumerate().filter(|(j, _)| *j != i);
-            let weight = others.map(|(_, p)| x - p).product::<f64>() / spread;
-            out.iter_mut().zip(&values[i * self.width..]).for_each(|(o, v)| *o += weight * v);
+        let from = step * self.places.len() * self.width + first;
+        let rows = self.values[from..].chunks(self.width);
+        for (i, (weight, row)) in self.weights(x).iter().zip(rows).take(self.places.len()).enumerate() {
+            let terms = out.iter_mut().zip(row);
+            if i == 0 {
+                terms.for_each(|(o, v)| *o = weight * v);
+            } else {
+                terms.for_each(|(o, v)| *o += weight * v);
+            }
         }
+    }
+
+    /// Weights of the values at the places of a step for the part `x` of it (Lagrange).
+    fn weights(&self, x: f64) -> [f64; MOST_PLACES] {
+        let mut from = [1.0; MOST_PLACES];
+        from.iter_mut().zip(self.places).for_each(|(d, p)| *d = x - p);
+        let [a, b, c, d] = from;
+        let (ab, cd) = (a * b, c * d);
+        let products = [b * cd, a * cd, ab * d, ab * c];
+        std::array::from_fn(|i| products[i] * self.scale[i])
     }
 
     /// The step that holds `t`, most often the last one or its neighbour.
@@ -239,7 +254,7 @@ mod tests {
         let mut other = track.clone();
         other.hold(4.0, [5.0].into_iter());
         let change = track.mean_change(&other, 4.0, 2);
-        // Sums of 720 equal numbers.
+        // Sums of 240 equal numbers.
         assert!((change.change - 2.0).abs() < 1e-12 && (change.size - 3.0).abs() < 1e-12, "{change:?}");
     }
 }
