@@ -43,10 +43,12 @@ pub struct ContactLine {
 
 /// Parts of a least film thickness over which the approach to it fades out: of one that a contact model names, and of another.
 const BANDS: (f64, f64) = (0.02, 1.0);
-/// Intervals of the tables: cubic interpolation between them is good to about 1e-7 of the load.
-const POINTS: usize = 1024;
+/// Intervals of the tables below `w = EDGE` and above: cubic interpolation between them is good to about 1e-7 of the load.
+const INTERVALS: [usize; 2] = [128, 208];
 /// The table begins at `exp(DEEPEST)` of the unit: mean planes of Gaussian surfaces overlap by eight roughness heights there.
 const DEEPEST: f64 = -37.0;
+/// Below it separation and load bend little, for the one goes as the root of `-w`.
+const EDGE: f64 = -2.0;
 /// Part of the range that is the unit `S`: one roughness of Gaussian surfaces.
 const UNIT: f64 = 0.152;
 /// Part of the range over which a load that fades out with its sixth to eighth power changes by its own size, halfway.
@@ -63,8 +65,8 @@ pub struct MeanPlanes {
     range: f64,
     /// The length `S` \[m\].
     unit: f64,
-    /// Interval of the table.
-    step: f64,
+    /// Points of the table, and of all that faces make of it.
+    grid: Grid,
     /// Separation at the points of the table \[m\], as the contact model is asked.
     points: Vec<f64>,
     /// Distance of the mean planes there \[m\].
@@ -81,17 +83,17 @@ impl MeanPlanes {
         }
         let unit = UNIT * range;
         let top = elementary::ln(elementary::exp_m1(range / unit));
-        let step = (top - DEEPEST) / POINTS as f64;
-        let film = |k: usize| unit * elementary::ln_1p(elementary::exp(DEEPEST + step * k as f64));
+        let grid = Grid::up_to(top);
+        let film = |k: usize| unit * elementary::ln_1p(elementary::exp(grid.at(k)));
         let mut last = below(contact, film(0));
         let next = |k: usize| {
             last = separation(contact, film(k), last);
             last
         };
-        let points: Vec<f64> = (0..=POINTS).map(next).collect();
+        let points: Vec<f64> = (0..=grid.intervals()).map(next).collect();
         let planes: Vec<f64> = points.iter().map(|s| contact.mean_planes(*s)).collect();
-        let separation = Spline::new(DEEPEST, step, &planes);
-        Self { range, unit, step, points, separation }
+        let separation = Spline::new(grid, &planes);
+        Self { range, unit, grid, points, separation }
     }
 
     fn place(&self, h: f64) -> f64 {
@@ -135,7 +137,7 @@ impl ContactLine {
         let mut whole = WholeFace::new(contact, face, what);
         let root = |s: &f64| (lands as f64 * whole.sum(*s)).max(0.0).sqrt().sqrt();
         let roots: Vec<f64> = self.planes.points.iter().map(root).collect();
-        Spline::new(DEEPEST, self.planes.step, &roots)
+        Spline::new(self.planes.grid, &roots)
     }
 
     /// Load per circumference \[N/m\] at film thickness `h` \[m\].
@@ -292,47 +294,89 @@ impl<'a> WholeFace<'a> {
     }
 }
 
-/// A natural cubic spline through equally spaced points: its second derivative is continuous.
+/// Points that are equally spaced below an edge, and closer above it.
+#[derive(Debug, Clone, Copy, Default)]
+struct Grid {
+    /// Intervals below the edge and above.
+    steps: [f64; 2],
+}
+
+impl Grid {
+    /// From the deepest point to `top`.
+    fn up_to(top: f64) -> Self {
+        Self { steps: [(EDGE - DEEPEST) / INTERVALS[0] as f64, (top - EDGE) / INTERVALS[1] as f64] }
+    }
+
+    const fn intervals(&self) -> usize {
+        INTERVALS[0] + INTERVALS[1]
+    }
+
+    /// Point `k`.
+    fn at(&self, k: usize) -> f64 {
+        match k.checked_sub(INTERVALS[0]) {
+            Some(above) => EDGE + self.steps[1] * above as f64,
+            None => DEEPEST + self.steps[0] * k as f64,
+        }
+    }
+
+    /// Length of interval `i`.
+    fn step(&self, i: usize) -> f64 {
+        self.steps[usize::from(i >= INTERVALS[0])]
+    }
+
+    /// The interval that holds `w`, the first or the last where none does, and the part of it that lies before `w`.
+    fn find(&self, w: f64) -> (usize, f64) {
+        let (first, from, zone) = if w < EDGE { (0, DEEPEST, 0) } else { (INTERVALS[0], EDGE, 1) };
+        let t = (w - from) / self.steps[zone];
+        let within = (t.max(0.0) as usize).min(INTERVALS[zone] - 1);
+        (first + within, t - within as f64)
+    }
+}
+
+/// A natural cubic spline: its second derivative is continuous.
 #[derive(Debug, Clone, Default)]
 struct Spline {
-    start: f64,
-    step: f64,
-    /// Coefficients of every interval in units of the step.
+    grid: Grid,
+    /// Coefficients of every interval in units of its length.
     pieces: Vec<[f64; 4]>,
 }
 
 impl Spline {
-    fn new(start: f64, step: f64, y: &[f64]) -> Self {
+    fn new(grid: Grid, y: &[f64]) -> Self {
         let n = y.len();
-        // Second derivatives times step² over 6: m_(i-1) + 4 m_i + m_(i+1) = y_(i-1) - 2 y_i + y_(i+1), zero at the ends.
+        // Second derivatives over 6: g m_(i-1) + 2 (g + h) m_i + h m_(i+1) = (y_(i+1) - y_i)/h - (y_i - y_(i-1))/g between intervals g and h, zero at the
+        // ends.
         let (mut m, mut c) = (vec![0.0; n], vec![0.0; n]);
         for i in 1..n - 1 {
-            let pivot = 4.0 - c[i - 1];
-            c[i] = 1.0 / pivot;
-            m[i] = (y[i - 1] - 2.0 * y[i] + y[i + 1] - m[i - 1]) / pivot;
+            let (g, h) = (grid.step(i - 1), grid.step(i));
+            let pivot = 2.0 * (g + h) - g * c[i - 1];
+            c[i] = h / pivot;
+            m[i] = ((y[i + 1] - y[i]) / h - (y[i] - y[i - 1]) / g - g * m[i - 1]) / pivot;
         }
         for i in (1..n - 1).rev() {
             m[i] -= c[i] * m[i + 1];
         }
         let pieces = (0..n - 1)
             .map(|i| {
-                let (a, b) = (m[i], m[i + 1]);
+                let square = grid.step(i) * grid.step(i);
+                let (a, b) = (square * m[i], square * m[i + 1]);
                 [y[i], y[i + 1] - y[i] - 2.0 * a - b, 3.0 * a, b - a]
             })
             .collect();
-        Self { start, step, pieces }
+        Self { grid, pieces }
     }
 
-    /// Value and slope; straight on below the table.
+    /// Value and slope; straight on below the table, zero where there is none.
     fn at(&self, w: f64) -> (f64, f64) {
-        let t = (w - self.start) / self.step;
-        let i = (t.max(0.0) as usize).min(self.pieces.len().saturating_sub(1));
-        let Some(c) = self.pieces.get(i) else { return (0.0, 0.0) };
-        let f = t - i as f64;
+        if self.pieces.is_empty() {
+            return (0.0, 0.0);
+        }
+        let (i, f) = self.grid.find(w);
+        let (c, step) = (self.pieces[i], self.grid.step(i));
         if f < 0.0 {
-            return (c[0] + c[1] * f, c[1] / self.step);
+            return (c[0] + c[1] * f, c[1] / step);
         }
         let slope = c[1] + f * (2.0 * c[2] + 3.0 * f * c[3]);
-        (c[0] + f * (c[1] + f * (c[2] + f * c[3])), slope / self.step)
+        (c[0] + f * (c[1] + f * (c[2] + f * c[3])), slope / step)
     }
 }
