@@ -33,6 +33,8 @@ pub trait CycleMap {
     fn noise(&self) -> f64 {
         1.0
     }
+    /// The next cycle will probably be the last of the search: what is to be gathered from that can be gathered in it.
+    fn expect_last(&mut self) {}
     /// Whether no further cycle is of use: the search ends with what it has.
     fn gives_up(&self) -> bool {
         false
@@ -132,6 +134,10 @@ const PROBE: usize = 8;
 const NUDGE: f64 = 0.03;
 /// Cycles in the noise of the map after which nothing more is expected of another.
 const IDLE: usize = 5;
+/// Residual over the accuracy of a cycle that is as little as its noise.
+const SETTLED: f64 = 3.0;
+/// Steps of the acceleration from which on the fall of a residual says what the next will be: the first leaves an arbitrary start.
+const SETTLES: usize = 2;
 /// Turns of a residual that is not halved any more, after which one below this many times the accuracy is taken for noise of the map too: steps that fall
 /// differently can make it noisier than it was asked to be.
 const STALL: (usize, f64) = (12, 30.0);
@@ -345,7 +351,7 @@ impl Search {
             // A slow mode can hide behind faster ones for a cycle: what passes must pass twice, and go on falling as if it would
             // end below the tolerance, unless nothing but the noise of the map is left, which a further cycle would not lessen.
             let accurate = k == 0 || accuracy <= options.accuracy;
-            let settled = k > 0 && residual <= 3.0 * options.accuracy;
+            let settled = k > 0 && residual <= SETTLED * options.accuracy;
             if accurate
                 && (settled && estimate <= options.tolerance || sinks(estimate, state.passed, options))
             {
@@ -369,6 +375,9 @@ impl Search {
             }
             map.admit(&g, y);
             extrapolated = true;
+            if state.passed > 0.0 || k >= SETTLES && promises((estimate, residual), ratio, options) {
+                map.expect_last();
+            }
             state.previous = Some(Tried { at, r, rest, damping });
         }
         y.copy_from_slice(&g);
@@ -521,7 +530,7 @@ impl Search {
                     changes[..p - 1].iter().all(|c| c.last().is_some_and(|c| *c > 4.0 * blurred[p - 1]));
                 // It must be seen twice before it is believed, and go on falling: a slow mode can hide behind faster ones.
                 let settled = passed[p - 1] > 0.0
-                    && changes[p - 1].last().is_some_and(|c| *c <= 3.0 * options.accuracy);
+                    && changes[p - 1].last().is_some_and(|c| *c <= SETTLED * options.accuracy);
                 if excluded
                     && (settled && estimate <= options.tolerance || sinks(estimate, passed[p - 1], options))
                 {
@@ -571,6 +580,11 @@ fn band(seen: &[Vec<f64>], s: &[f64], options: &OrbitOptions) -> Option<f64> {
 fn sinks(estimate: f64, before: f64, options: &OrbitOptions) -> bool {
     let fall = (estimate / before).min(1.0 - 1.0 / MAX_GAIN);
     estimate * (fall / (1.0 - fall)).max(1.0) <= options.tolerance
+}
+
+/// Whether the next cycle ends the search if estimate and residual go on falling by `ratio`.
+fn promises((estimate, residual): (f64, f64), ratio: f64, options: &OrbitOptions) -> bool {
+    ratio * estimate <= options.tolerance && ratio * residual <= SETTLED * options.accuracy
 }
 
 /// A difference of two iterates, of their residuals, and the noise in the latter.
@@ -682,7 +696,7 @@ impl Anderson {
             // The secants mislead: step with newer ones only. What they say of the multipliers is still of use.
             self.trusted = self.secants.len();
         }
-        let falls = residual > 3.0 * options.accuracy || residual < 0.5 * self.best;
+        let falls = residual > SETTLED * options.accuracy || residual < 0.5 * self.best;
         self.idle = if falls { 0 } else { self.idle + 1 };
         let (near, halved) = (residual <= STALL.1 * options.accuracy, residual < 0.5 * self.best);
         // A slow mode goes on the way it went; noise does not.

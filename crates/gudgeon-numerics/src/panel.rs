@@ -24,6 +24,13 @@ pub const LOBATTO: Rule = Rule {
     barycentric: &[7.0 / 8.0, -49.0 / 24.0, 7.0 / 3.0, -49.0 / 24.0, 7.0 / 8.0],
 };
 
+/// Both ends and the middle: exact for the integral of polynomials to degree 3.
+pub const SIMPSON: Rule = Rule {
+    nodes: &[0.0, 0.5, 1.0],
+    weights: &[1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0],
+    barycentric: &[2.0, -4.0, 2.0],
+};
+
 /// Both ends and a straight line between them.
 pub const TRAPEZIUM: Rule = Rule { nodes: &[0.0, 1.0], weights: &[0.5, 0.5], barycentric: &[-1.0, 1.0] };
 

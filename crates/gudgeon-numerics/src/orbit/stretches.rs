@@ -11,7 +11,7 @@
 use nalgebra::DVector;
 
 use super::points::{Blend, Points};
-use super::{Bend, CycleMap, NEARER, OrbitOptions, ROUGHEST, Search, explain, sinks, spectrum};
+use super::{Bend, CycleMap, NEARER, OrbitOptions, ROUGHEST, SETTLED, Search, explain, sinks, spectrum};
 use crate::EvalError;
 use crate::elementary;
 
@@ -161,9 +161,11 @@ impl Stretch {
     }
 
     /// Moves the end `g` of the last cycle to where the cycles together are.
-    fn settle(&self, g: &mut [f64]) {
+    fn settle(&self, map: &dyn CycleMap, g: &mut [f64]) {
         if let Some(blend) = self.blend() {
+            let reached = g.to_vec();
             g.iter_mut().zip(blend.step.iter()).zip(&self.s).for_each(|((g, d), s)| *g += d * s);
+            map.admit(&reached, g);
         }
     }
 
@@ -321,15 +323,15 @@ impl Search {
             let estimate = self.judge_stretch(&mut state, options, last);
             let residual = self.report.residual;
             last = residual;
-            let settled = passed > 0.0 && residual <= 3.0 * options.accuracy;
+            let settled = passed > 0.0 && residual <= SETTLED * options.accuracy;
             if accurate && (settled && estimate <= options.tolerance || sinks(estimate, passed, options)) {
                 self.report.converged = true;
-                state.settle(&mut g);
+                state.settle(map, &mut g);
                 break;
             }
             if state.idle > IDLE && (state.plain || state.blend().is_some()) {
                 self.noisy = true;
-                state.settle(&mut g);
+                state.settle(map, &mut g);
                 break;
             }
             passed = if estimate <= options.tolerance { estimate } else { 0.0 };
@@ -374,7 +376,7 @@ impl Search {
         let ratio = state.ratio(options.accuracy);
         // Between residuals that are noise a decay says nothing, where secants do.
         let own_noise = state.bend.noise * options.accuracy;
-        let ratio = if slow > 1.0 && residual <= 3.0 * own_noise { 0.0 } else { ratio };
+        let ratio = if slow > 1.0 && residual <= SETTLED * own_noise { 0.0 } else { ratio };
         let seen = slow.max(1.0 / (1.0 - ratio.clamp(0.0, 1.0 - 1.0 / super::MAX_GAIN)));
         // Fast modes that a step stirred up hide a slow one: what was slow before it is taken to be slow still.
         let gain = seen.max(state.held);
@@ -383,7 +385,7 @@ impl Search {
             self.suspect = suspect && !state.plain;
             self.report.multiplier = largest.max(ratio.min(1.0));
         }
-        let falls = residual > 3.0 * options.accuracy || residual < 0.5 * state.best;
+        let falls = residual > SETTLED * options.accuracy || residual < 0.5 * state.best;
         state.idle = if falls { 0 } else { state.idle + 1 };
         state.best = state.best.min(residual);
         let noise = residual.max(last).min(own_noise);

@@ -13,7 +13,7 @@ use gudgeon_numerics::ode::{
     Stats, StepView,
 };
 use gudgeon_numerics::orbit::{Bend, CycleMap, OrbitOptions, OrbitReport, periodic_orbit};
-use gudgeon_numerics::panel::LOBATTO;
+use gudgeon_numerics::panel::{LOBATTO, Rule, SIMPSON};
 use gudgeon_numerics::radau::Radau5;
 use gudgeon_numerics::rodas::{Formula, Rodas};
 use gudgeon_numerics::sdirk::Sdirk;
@@ -276,8 +276,21 @@ impl Method {
     }
 }
 
+/// A recorded cycle, and what its balances lack.
+struct Taken {
+    sampler: Sampler,
+    balance: Balance,
+}
+
 /// The map from the state at the start of a cycle to that at its end.
 struct Cycle<'a> {
+    spec: &'a Implicit,
+    wanted: Wanted<'a>,
+    /// Whether the next cycle will probably be the last of the search, and is recorded; and what the last cycle left, if it was.
+    expects: bool,
+    taken: Option<Taken>,
+    /// Whether cycles tell what passes through each passage of the gas.
+    follows: bool,
     pack: &'a mut Pack,
     method: Method,
     breakpoints: Vec<f64>,
@@ -468,6 +481,8 @@ const OIL_AGAIN: f64 = 10.0;
 const NOISE_AGAIN: f64 = 0.1;
 /// Part by which halves come nearer in a cycle at least: to a sixth usually.
 const CLOSER: f64 = 3.0;
+/// How far halves may be apart, over what is asked of the periodic state, in the cycle of its search that is taken for the results.
+const LIKE: f64 = 0.5;
 /// Most cycles in halves, without oil on the liner and with it, before the pack is integrated whole.
 const HALVES_TRY: [usize; 2] = [10, 40];
 /// Tolerance of that over the one that was asked for: with it both leave the same errors.
@@ -488,9 +503,14 @@ impl CycleMap for Cycle<'_> {
         }
         let rtol = accuracy.max(FINEST);
         let n = self.pack.layout.n;
-        self.failure = None;
-        self.begin(y1);
-        if let Err(e) = self.integrate(&mut y1[..n], rtol, None) {
+        (self.failure, self.taken) = (None, None);
+        let done = if std::mem::take(&mut self.expects) {
+            self.record(y1, rtol).map(|taken| self.taken = Some(taken))
+        } else {
+            self.begin(y1);
+            self.integrate(&mut y1[..n], rtol, None)
+        };
+        if let Err(e) = done {
             let given_up = matches!(&e, IntegrateError::Eval { source: EvalError::Stopped, .. });
             self.failure = Some(e);
             let what = "the cycle could not be integrated";
@@ -521,6 +541,9 @@ impl CycleMap for Cycle<'_> {
     }
     fn noise(&self) -> f64 {
         if matches!(&self.method, Method::Waveform(w) if w.repeats()) { NOISE_AGAIN } else { 1.0 }
+    }
+    fn expect_last(&mut self) {
+        self.expects = true;
     }
     fn gives_up(&self) -> bool {
         matches!(&self.method, Method::Waveform(w) if w.come_apart())
@@ -553,9 +576,9 @@ struct Sampler {
 }
 
 impl Sampler {
-    fn new(pack: &mut Pack, wanted: &Wanted<'_>) -> Self {
+    fn new(pack: &mut Pack, wanted: &Wanted<'_>, rule: Rule) -> Self {
         let n = pack.n_rings();
-        let mut measures = Measures::new(pack, LOBATTO, wanted.seat);
+        let mut measures = Measures::new(pack, rule, wanted.seat);
         let (theta, value) = pack.cylinder.highest();
         measures.cylinder = Peak { theta, value };
         Self {
@@ -578,15 +601,16 @@ impl Sampler {
     fn measure(&mut self, pack: &mut Pack, v: &dyn StepView) -> Result<(), EvalError> {
         let (t0, t1) = (v.t0(), v.t1());
         let last = self.measures.nodes().len() - 1;
+        let half = last / 2;
         for (k, x) in self.measures.nodes().iter().enumerate() {
             let t = if k == last { t1 } else { t0 + x * (t1 - t0) };
             v.interpolate(t, &mut self.y);
             v.interpolate_quad(t, &mut self.q);
-            if (pack.plan.axial || pack.plan.film) && k.is_multiple_of(2) {
+            if (pack.plan.axial || pack.plan.film) && k.is_multiple_of(half) {
                 if !pack.is_at(t, &self.y) {
                     pack.evaluate_in_step(t, &self.y)?;
                 }
-                let weight = if 2 * k == last { 4.0 } else { 1.0 };
+                let weight = if k == half { 4.0 } else { 1.0 };
                 self.close(pack, weight * (t1 - t0) / pack.omega / 6.0);
                 self.watch.look(pack, weight * (t1 - t0) / 6.0);
             } else {
@@ -703,6 +727,7 @@ fn not_periodic(error: f64, wanted: f64, cycles: usize) -> Note {
 /// What stopped an integration.
 fn stopped(e: IntegrateError) -> RunError {
     match e {
+        IntegrateError::Eval { t, source } => RunError::Eval { theta_deg: t.to_degrees(), source },
         IntegrateError::TooManySteps { t, max } => {
             RunError::scene(RingPackError::Steps { theta_deg: t.to_degrees(), max })
         }
@@ -751,13 +776,18 @@ fn flank_balance(pack: &Pack, i: usize) -> Option<LinearInvariant> {
 
 impl<'a> Cycle<'a> {
     fn new(
-        s: &Implicit,
+        s: &'a Implicit,
         pack: &'a mut Pack,
-        wanted: &Wanted<'_>,
+        wanted: &Wanted<'a>,
         progress: &'a mut dyn FnMut(f64) -> Result<(), Stopped>,
     ) -> Self {
         let balance = balances(pack, s.integrator.has_stages());
         Cycle {
+            spec: s,
+            wanted: *wanted,
+            expects: false,
+            taken: None,
+            follows: false,
             method: Method::new(s, pack),
             breakpoints: breakpoints(pack),
             scale: pack.layout.states.iter().map(|s| s.scale).collect(),
@@ -780,11 +810,14 @@ impl<'a> Cycle<'a> {
     }
 
     /// Cycles tell what passes through each passage of the gas from now on.
-    fn follow_passages(&mut self, s: &Implicit) {
+    fn follow_passages(&mut self) {
+        if std::mem::replace(&mut self.follows, true) {
+            return;
+        }
         self.pack.follow_passages(true);
         match &mut self.method {
             Method::Waveform(w) => w.tell_quadratures(self.pack, &self.balance),
-            method => *method = Method::new(s, self.pack),
+            method => *method = Method::new(self.spec, self.pack),
         }
         self.q = vec![0.0; self.pack.layout.quads()];
     }
@@ -808,8 +841,11 @@ impl<'a> Cycle<'a> {
             && report.converged
         {
             let apart = w.disagreement(self.pack);
-            // The recorded cycle, in the same steps, brings both nearer once more.
-            let left = if w.repeats() { apart / CLOSER } else { apart };
+            if self.taken.is_some() && apart > LIKE * options.tolerance {
+                self.taken = None;
+            }
+            // A cycle that is recorded after these, in the same steps, brings both nearer once more.
+            let left = if w.repeats() && self.taken.is_none() { apart / CLOSER } else { apart };
             report.error_estimate = estimate.max(left);
             if left <= options.tolerance {
                 break;
@@ -837,8 +873,12 @@ impl<'a> Cycle<'a> {
         }
     }
 
-    /// The cycle from `y` once more, at full accuracy, into `sampler`; the error of its mass balances.
-    fn record(&mut self, y: &mut [f64], tolerance: f64, sampler: &mut Sampler) -> Result<Balance, RunError> {
+    /// The cycle from `y`, measured and kept row by row.
+    fn record(&mut self, y: &mut [f64], tolerance: f64) -> Result<Taken, IntegrateError> {
+        self.follow_passages();
+        // Halves are looked at in pieces that are parts of the steps of both.
+        let rule = if matches!(self.method, Method::Waveform(_)) { SIMPSON } else { LOBATTO };
+        let mut sampler = Sampler::new(self.pack, &self.wanted, rule);
         let dim = self.pack.layout.n;
         let gas: Vec<f64> = y[..self.pack.gas.n_masses()].to_vec();
         self.begin(y);
@@ -848,20 +888,26 @@ impl<'a> Cycle<'a> {
             // What the crankcase put on the liner before the first step was counted with the rest.
             o.clear_ledger();
         }
-        self.integrate(&mut y[..dim], tolerance, Some(sampler)).map_err(stopped)?;
+        self.integrate(&mut y[..dim], tolerance, Some(&mut sampler))?;
         if let Some(o) = &mut self.pack.oil_pack {
             o.settle();
         }
+        if let Some(source) = sampler.failure.take() {
+            return Err(IntegrateError::Eval { t: self.pack.at.theta, source });
+        }
+        let balance = self.balance_of(y, &gas, (oil_before, flank_before));
+        Ok(Taken { sampler, balance })
+    }
+
+    /// What the balances of gas and oil lack over a cycle that ends at `y`, by what the pack held at its start.
+    fn balance_of(&self, y: &[f64], gas: &[f64], (oil_before, flank_before): (f64, f64)) -> Balance {
         let oil_mass = self.pack.oil_pack.as_ref().map(|o| {
             let l = o.ledger();
             let stored = self.pack.oil_total(y) - oil_before;
             (l.gained() - stored).abs() / l.taken.max(f64::MIN_POSITIVE)
         });
-        if let Some(source) = sampler.failure.take() {
-            return Err(RunError::Eval { theta_deg: self.pack.at.theta.to_degrees(), source });
-        }
         let (q, n) = (&self.q, self.pack.n_rings());
-        let stored: f64 = gas.iter().zip(&*y).zip(&self.pack.gas_scale).map(|((a, b), m)| (b - a) * m).sum();
+        let stored: f64 = gas.iter().zip(y).zip(&self.pack.gas_scale).map(|((a, b), m)| (b - a) * m).sum();
         // Packs without a pressure to drive them pass next to nothing: there what they hold is the measure.
         let held: f64 = y.iter().zip(&self.pack.gas_scale).take(gas.len()).map(|(m, scale)| m * scale).sum();
         let through = q[0].abs().max(q[n].abs()).max(held).max(f64::MIN_POSITIVE);
@@ -871,7 +917,7 @@ impl<'a> Cycle<'a> {
             let sum = |k: usize| q[first + k..first + 2 * n].iter().step_by(2).sum::<f64>();
             (sum(0) - sum(1) - flank_stored).abs() / sum(0).max(flank_before).max(f64::MIN_POSITIVE)
         });
-        Ok(Balance { gas_mass: Some(gas_mass), oil_mass, flank_oil, ..Balance::default() })
+        Balance { gas_mass: Some(gas_mass), oil_mass, flank_oil, ..Balance::default() }
     }
 }
 
@@ -956,10 +1002,14 @@ fn run(
         return Ok(solution);
     }
     let mut report = closed?;
-    cycle.follow_passages(s);
-    let mut sampler = Sampler::new(cycle.pack, wanted);
-    let balance = cycle.record(&mut y, tolerance, &mut sampler)?;
-    cycle.judge(&mut report, options.tolerance);
+    let Taken { sampler, balance } = match cycle.taken.take().filter(|_| report.converged) {
+        Some(taken) => taken,
+        None => {
+            let taken = cycle.record(&mut y, tolerance).map_err(stopped)?;
+            cycle.judge(&mut report, options.tolerance);
+            taken
+        }
+    };
     let q = cycle.q;
     let (energy, momentum) = sampler.balance(pack);
     let gas_energy = pack.layout.gas_quad().and_then(|k| sampler.gas_ledger.closure(q[k]));
