@@ -117,6 +117,14 @@ pub struct OrbitReport {
     pub changes: Vec<Change>,
 }
 
+impl OrbitReport {
+    /// Distance from the orbit at which the last cycle began, scaled maximum norm: that of its end, and the change over it.
+    #[must_use]
+    pub fn began_at(&self) -> f64 {
+        self.error_estimate + self.residual
+    }
+}
+
 /// Least part of a secant that is new beside the newer ones; one with less is left out.
 const FRESH: f64 = 1e-9;
 /// Differences of earlier iterates that the acceleration keeps.

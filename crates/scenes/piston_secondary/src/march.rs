@@ -197,7 +197,7 @@ pub fn run(
         (cycles, error) = (report.cycle_equivalents, Some(report.error_estimate));
         last = cycle.reusable(&y, &report, wanted);
         if last.is_some() && purpose != Purpose::Start {
-            error = Some(began_at(&report));
+            error = Some(report.began_at());
         }
         changes = report.changes;
     }
@@ -256,7 +256,7 @@ impl<'a> Cycle<'a> {
         let last = self.last.take().filter(|t| !t.ends().is_empty())?;
         let end = last.at_end(last.ends().len() - 1);
         let ends_there = self.a.layout.periodic.iter().all(|k| end[*k] == y[*k]);
-        (ends_there && report.converged && report.period == 1 && began_at(report) <= wanted).then_some(last)
+        (ends_there && report.converged && report.period == 1 && report.began_at() <= wanted).then_some(last)
     }
 
     /// States of the first cycle: those given, or those with which the models begin.
@@ -298,11 +298,6 @@ impl<'a> Cycle<'a> {
         y.copy_from_slice(&self.y);
         Ok(report)
     }
-}
-
-/// Distance from the periodic motion at which the last cycle of a search began: that of its end, and the change over it.
-fn began_at(report: &OrbitReport) -> f64 {
-    report.error_estimate + report.residual
 }
 
 /// What the search of the periodic motion found, for a person.

@@ -836,16 +836,22 @@ impl<'a> Cycle<'a> {
         report.converged |= self.pack.oil_pack.is_some()
             && matches!(&self.method, Method::Waveform(w) if !w.come_apart())
             && report.error_estimate <= oil_least(options.accuracy);
+        if self.taken.is_some() {
+            let apart = self.halves_apart();
+            if report.converged && report.began_at() <= options.tolerance && apart <= LIKE * options.tolerance
+            {
+                report.error_estimate = report.began_at().max(apart);
+                return Ok(report);
+            }
+            self.taken = None;
+        }
         let (estimate, mut next) = (report.error_estimate, y.to_vec());
         while let Method::Waveform(w) = &mut self.method
             && report.converged
         {
             let apart = w.disagreement(self.pack);
-            if self.taken.is_some() && apart > LIKE * options.tolerance {
-                self.taken = None;
-            }
-            // A cycle that is recorded after these, in the same steps, brings both nearer once more.
-            let left = if w.repeats() && self.taken.is_none() { apart / CLOSER } else { apart };
+            // The recorded cycle, in the same steps, brings both nearer once more.
+            let left = if w.repeats() { apart / CLOSER } else { apart };
             report.error_estimate = estimate.max(left);
             if left <= options.tolerance {
                 break;
@@ -860,6 +866,14 @@ impl<'a> Cycle<'a> {
             y.copy_from_slice(&next);
         }
         Ok(report)
+    }
+
+    /// How far the halves of the last cycle are apart, where there are any.
+    fn halves_apart(&self) -> f64 {
+        match &self.method {
+            Method::Waveform(w) => w.disagreement(self.pack),
+            _ => 0.0,
+        }
     }
 
     /// Judges how far the halves of the recorded cycle are apart, if it was integrated in the steps of the one before.
@@ -1002,7 +1016,7 @@ fn run(
         return Ok(solution);
     }
     let mut report = closed?;
-    let Taken { sampler, balance } = match cycle.taken.take().filter(|_| report.converged) {
+    let Taken { sampler, balance } = match cycle.taken.take() {
         Some(taken) => taken,
         None => {
             let taken = cycle.record(&mut y, tolerance).map_err(stopped)?;

@@ -495,11 +495,11 @@ impl<'a> OneSide<'a> {
     fn fill(&mut self, t: f64, y: &[f64]) {
         self.part.states.iter().zip(y).for_each(|(&k, v)| self.y[k] = *v);
         if let Some((part, wave)) = self.other {
-            wave.eval(t, &mut self.beside);
+            wave.eval(t, 0, &mut self.beside);
             part.states.iter().zip(&self.beside).for_each(|(&k, v)| self.y[k] = *v);
         }
         if let Some(forces) = self.forces {
-            forces.eval(t, &mut self.axial);
+            forces.eval(t, 0, &mut self.axial);
         }
     }
 

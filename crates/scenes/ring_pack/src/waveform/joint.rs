@@ -1,6 +1,6 @@
 //! Steps of one side with what the other did over them, as steps of the whole pack.
 
-use std::cell::{Cell, RefCell};
+use std::cell::RefCell;
 
 use gudgeon_numerics::ode::{Flow, StepView};
 
@@ -41,9 +41,8 @@ pub struct Joint<'a> {
     /// States and quadratures of the pack at both ends.
     y: [Vec<f64>; 2],
     q: [Vec<f64>; 2],
-    /// Values of the other side, and of the one that steps, at an instant of the step.
-    own: RefCell<[Vec<f64>; 2]>,
-    known: Cell<f64>,
+    /// States or quadratures of one side at an instant, scratch.
+    own: RefCell<Vec<f64>>,
 }
 
 /// A piece of a step as it is seen.
@@ -57,23 +56,13 @@ impl<'a> Joint<'a> {
     pub fn new(beside: &'a Track, parts: [&'a Part; 2], pack: &Pack) -> Self {
         let y = || vec![0.0; pack.layout.n];
         let q = || vec![0.0; pack.layout.quads()];
-        let own = parts.map(|p| vec![0.0; p.width()]);
-        Self {
-            beside,
-            parts,
-            t: [0.0; 2],
-            y: [y(), y()],
-            q: [q(), q()],
-            own: RefCell::new(own),
-            known: Cell::new(f64::NAN),
-        }
+        Self { beside, parts, t: [0.0; 2], y: [y(), y()], q: [q(), q()], own: RefCell::new(Vec::new()) }
     }
 
     /// Has each piece of the step looked at, until one stops.
     pub fn pieces(&mut self, step: &dyn StepView, mut look: impl FnMut(&dyn StepView) -> Flow) -> Flow {
         let first = self.beside.ends().partition_point(|t| *t <= step.t0() + SLACK);
         let inner = self.beside.ends()[first..].iter().copied().take_while(|t| *t < step.t1() - SLACK);
-        self.known.set(f64::NAN);
         self.end(step, step.t0());
         for to in inner.chain([step.t1()]) {
             // A piece begins where the one before ends.
@@ -92,7 +81,8 @@ impl<'a> Joint<'a> {
     fn end(&mut self, step: &dyn StepView, t: f64) {
         self.t[1] = t;
         let (mut y, mut q) = (std::mem::take(&mut self.y[1]), std::mem::take(&mut self.q[1]));
-        self.at(step, t, Some(&mut y), Some(&mut q));
+        self.states(step, t, &mut y);
+        self.quads(step, t, &mut q);
         (self.y[1], self.q[1]) = (y, q);
     }
 
@@ -101,34 +91,32 @@ impl<'a> Joint<'a> {
         self.t.iter().position(|end| *end == t)
     }
 
-    /// States and quadratures of both sides at `t`.
-    fn look(&self, step: &dyn StepView, t: f64, [beside, stepping]: &mut [Vec<f64>; 2]) {
-        self.beside.eval(t, beside);
-        let (states, quads) = stepping.split_at_mut(self.parts[1].states.len());
-        if t >= step.t1() {
-            states.copy_from_slice(step.y1());
-            quads.copy_from_slice(step.q1());
-        } else {
-            step.interpolate(t, states);
-            step.interpolate_quad(t, quads);
-        }
+    /// States of the pack at `t`.
+    fn states(&self, step: &dyn StepView, t: f64, y: &mut [f64]) {
+        let [beside, stepping] = self.parts;
+        self.put(y, &beside.states, |own| self.beside.eval(t, 0, own));
+        self.put(y, &stepping.states, |own| match t {
+            t if t >= step.t1() => own.copy_from_slice(step.y1()),
+            t => step.interpolate(t, own),
+        });
     }
 
-    /// States and quadratures of the pack at `t`.
-    fn at(&self, step: &dyn StepView, t: f64, y: Option<&mut [f64]>, q: Option<&mut [f64]>) {
+    /// Quadratures of the pack at `t`.
+    fn quads(&self, step: &dyn StepView, t: f64, q: &mut [f64]) {
+        let [beside, stepping] = self.parts;
+        self.put(q, &beside.quads, |own| self.beside.eval(t, beside.states.len(), own));
+        self.put(q, &stepping.quads, |own| match t {
+            t if t >= step.t1() => own.copy_from_slice(step.q1()),
+            t => step.interpolate_quad(t, own),
+        });
+    }
+
+    /// Puts what `look` finds where a side has it.
+    fn put(&self, to: &mut [f64], places: &[usize], look: impl FnOnce(&mut [f64])) {
         let mut own = self.own.borrow_mut();
-        if self.known.replace(t) != t {
-            self.look(step, t, &mut own);
-        }
-        let put = |to: &mut [f64], places: &[usize], values: &[f64]| {
-            places.iter().zip(values).for_each(|(&k, v)| to[k] = *v);
-        };
-        if let Some(y) = y {
-            self.parts.iter().zip(&*own).for_each(|(p, own)| put(y, &p.states, own));
-        }
-        if let Some(q) = q {
-            self.parts.iter().zip(&*own).for_each(|(p, own)| put(q, &p.quads, &own[p.states.len()..]));
-        }
+        own.resize(places.len(), 0.0);
+        look(&mut own);
+        places.iter().zip(&*own).for_each(|(&k, v)| to[k] = *v);
     }
 }
 
@@ -154,13 +142,13 @@ impl StepView for Piece<'_, '_> {
     fn interpolate(&self, t: f64, y: &mut [f64]) {
         match self.joint.is_end(t) {
             Some(end) => y.copy_from_slice(&self.joint.y[end]),
-            None => self.joint.at(self.step, t, Some(y), None),
+            None => self.joint.states(self.step, t, y),
         }
     }
     fn interpolate_quad(&self, t: f64, q: &mut [f64]) {
         match self.joint.is_end(t) {
             Some(end) => q.copy_from_slice(&self.joint.q[end]),
-            None => self.joint.at(self.step, t, None, Some(q)),
+            None => self.joint.quads(self.step, t, q),
         }
     }
 }

@@ -124,23 +124,21 @@ impl Track {
         (0..self.ends.len() - 1).map(move |step| TrackStep { track: self, step, states })
     }
 
-    /// The first values at `t`, as many as `out` holds.
-    pub fn eval(&self, t: f64, out: &mut [f64]) {
-        self.eval_in(self.step_at(t), t, 0, out);
+    /// Values at `t` from number `first` on, as many as `out` holds.
+    pub fn eval(&self, t: f64, first: usize, out: &mut [f64]) {
+        self.eval_in(self.step_at(t), t, first, out);
     }
 
     /// Values at `t` by the polynomial of a step, from one of them on.
     fn eval_in(&self, step: usize, t: f64, first: usize, out: &mut [f64]) {
         let x = (t - self.ends[step]) / (self.ends[step + 1] - self.ends[step]);
-        let from = step * self.places.len() * self.width + first;
-        let rows = self.values[from..].chunks(self.width);
-        for (i, (weight, row)) in self.weights(x).iter().zip(rows).take(self.places.len()).enumerate() {
-            let terms = out.iter_mut().zip(row);
-            if i == 0 {
-                terms.for_each(|(o, v)| *o = weight * v);
-            } else {
-                terms.for_each(|(o, v)| *o += weight * v);
-            }
+        let (count, n) = (self.places.len(), out.len());
+        let values = &self.values[step * count * self.width + first..];
+        // Where there are fewer places the last one stands for those beyond, without a weight.
+        let [a, b, c, d] = [0, 1, 2, 3].map(|i: usize| &values[i.min(count - 1) * self.width..][..n]);
+        let w = self.weights(x);
+        for (k, o) in out.iter_mut().enumerate() {
+            *o = w[0] * a[k] + w[1] * b[k] + w[2] * c[k] + w[3] * d[k];
         }
     }
 
@@ -174,8 +172,8 @@ impl Track {
         let mut sum = Change { change: 0.0, size: 0.0 };
         for k in 0..LOOKS {
             let t = period * (k as f64 + 0.5) / LOOKS as f64;
-            self.eval(t, &mut a);
-            other.eval(t, &mut b);
+            self.eval(t, 0, &mut a);
+            other.eval(t, 0, &mut b);
             let both = a.iter().zip(&b);
             sum.change += both.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / LOOKS as f64;
             sum.size += a.iter().fold(0.0, |s: f64, a| s.max(a.abs())) / LOOKS as f64;
@@ -241,7 +239,7 @@ mod tests {
         }
         for t in [0.0, 0.1, 0.3, 0.95, 1.0, 0.2] {
             let mut out = [0.0];
-            track.eval(t, &mut out);
+            track.eval(t, 0, &mut out);
             // Four products of numbers of the order of one.
             assert!((out[0] - cubic(t)).abs() < 1e-14, "{t}: {} for {}", out[0], cubic(t));
         }
