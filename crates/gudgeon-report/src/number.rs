@@ -159,13 +159,28 @@ impl RoundTrip {
     /// Shortest decimal text that reads back as the same number, in powers of ten outside 10⁻⁴ … 10¹⁵; empty for one that is not finite.
     pub(crate) fn text(&mut self, value: f64) -> &str {
         let size = value.abs();
-        if size < 1e-5 || (1e-4..1e15).contains(&size) {
+        if (1e-4..1e15).contains(&size) || size < 1e-5 {
             let text = self.fast.format_finite(value);
             return text.strip_suffix(".0").unwrap_or(text);
         }
-        // Where that library puts the point or the exponent elsewhere.
+        self.moved(value)
+    }
+
+    /// Where that library puts the point or the exponent elsewhere. Apart, for the others to be written in line.
+    #[inline(never)]
+    fn moved(&mut self, value: f64) -> &str {
         self.other.clear();
-        if value.is_finite() {
+        if value.abs() < 1e-4 {
+            // `0.0000123` of that library is `1.23e-5`.
+            let text = self.fast.format_finite(value);
+            let size = text.strip_prefix('-').unwrap_or(text);
+            let (first, rest) = size.strip_prefix("0.0000").unwrap_or(size).split_at(1);
+            self.other.push_str(if value < 0.0 { "-" } else { "" });
+            self.other.push_str(first);
+            self.other.push_str(if rest.is_empty() { "" } else { "." });
+            self.other.push_str(rest);
+            self.other.push_str("e-5");
+        } else if value.is_finite() {
             // Writing to a string does not fail.
             let _ = write!(self.other, "{value:e}");
         }
@@ -250,6 +265,7 @@ mod tests {
         let mut writer = RoundTrip::default();
         let mut sizes: Vec<f64> = (-330..=308).map(|e| format!("1.2345e{e}").parse().unwrap()).collect();
         sizes.extend((-330..=308).map(|e| format!("1e{e}").parse::<f64>().unwrap()));
+        sizes.extend((0..2000).map(|k| 1e-5 + 4.4987e-8 * f64::from(k)));
         sizes.extend([0.1, 1.0 / 3.0, 1.0 / 3e5, 5e-324, f64::MAX, 101_325.0, 720.0, 0.3 - 0.1]);
         for size in sizes {
             let near = [size, size.next_up(), size.next_down()].into_iter().filter(|v| v.is_finite());
