@@ -196,8 +196,8 @@ fn keys(schema: &Schema, at: &At<'_>) -> Vec<KeyHelp> {
     let inner = schema.resolve(at.field);
     let inner = schema.model_of_word(inner).map_or(inner, |m| schema.resolve(m));
     let table = match (schema.tagged(inner), at.node) {
-        (Some(t), Some(node)) => t.chosen(node).or(t.variants.first().map(|(_, s)| *s)),
-        (Some(t), None) => t.variants.first().map(|(_, s)| *s),
+        (Some(t), Some(node)) => t.chosen(schema, node).or_else(|| t.first(schema)),
+        (Some(t), None) => t.first(schema),
         (None, _) => Some(inner),
     };
     let Some(table) = table else { return Vec::new() };

@@ -120,7 +120,7 @@ impl Walk<'_> {
             Data::Table(entries) => {
                 let tagged = self.schema.tagged(inner);
                 let table = match tagged {
-                    Some(t) => t.chosen(node),
+                    Some(t) => t.chosen(self.schema, node),
                     None => Some(inner),
                 };
                 if let (Some(t), Some(Node { data: Data::Text(word), .. })) =

@@ -13,6 +13,7 @@ mod cursor;
 mod inputs;
 mod near;
 mod overrides;
+mod parts;
 mod places;
 mod published;
 mod refine;

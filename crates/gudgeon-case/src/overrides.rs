@@ -206,7 +206,7 @@ fn change_variant(
     let resolved = schemas.resolve(schema);
     let Some(tagged) = schemas.tagged(resolved).filter(|t| t.tag == last.text) else { return };
     let (Data::Text(new), Data::Table(entries)) = (&value.data, &mut node.data) else { return };
-    let Some((_, variant)) = tagged.variants.iter().find(|(n, _)| n == new) else { return };
+    let Some(variant) = tagged.variant(schemas, new) else { return };
     let old = entries.iter().find(|e| e.key == tagged.tag).and_then(|e| match &e.node.data {
         Data::Text(t) => Some(t.clone()),
         _ => None,
@@ -216,10 +216,9 @@ fn change_variant(
         return;
     }
     let has = |key: &str| variant.get("properties").is_some_and(|p| p.get(key).is_some());
-    let known_before = |key: &str| {
-        let before = tagged.variants.iter().find(|(n, _)| Some(*n) == old.as_deref());
-        before.is_none_or(|(_, s)| s.get("properties").is_some_and(|p| p.get(key).is_some()))
-    };
+    let before = old.as_deref().and_then(|old| tagged.variant(schemas, old));
+    let known_before =
+        |key: &str| before.is_none_or(|s| s.get("properties").is_some_and(|p| p.get(key).is_some()));
     // A key that neither model has is a mistake of the user, not a left-over.
     let drops = |e: &Entry| e.key != tagged.tag && !has(&e.key) && known_before(&e.key);
     let given = |e: &&Entry| e.node.place.origin != Origin::Default;

@@ -149,11 +149,7 @@ fn walk(schemas: &Schema, schema: Part, value: &Value, path: &str, out: &mut Vec
         }
         Value::Object(table) => {
             let own = match schemas.tagged(schema) {
-                Some(t) => table
-                    .get(t.tag)
-                    .and_then(Value::as_str)
-                    .and_then(|name| t.variants.iter().find(|(n, _)| *n == name))
-                    .map(|(_, s)| *s),
+                Some(t) => table.get(t.tag).and_then(Value::as_str).and_then(|name| t.variant(schemas, name)),
                 None => Some(schema),
             };
             let Some(properties) = own.and_then(|s| s.get("properties")).and_then(Value::as_object) else {

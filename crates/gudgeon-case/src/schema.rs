@@ -4,7 +4,7 @@
 //! deserialisation still has the last word.
 
 use std::any::TypeId;
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{HashMap, HashSet};
 use std::sync::{Mutex, PoisonError, RwLock};
 
 use gudgeon_core::quantity::{self, ALL_DIMENSIONS, QuantityError};
@@ -12,16 +12,18 @@ use gudgeon_core::sets::{SET, X_SETS};
 use serde_json::{Map, Value};
 
 use super::near::{advice, list, nearest};
+use super::parts::Parts;
 use super::report::{Diagnostic, MAX_MISTAKES, Origin};
 use super::tree::{Data, Entry, Node, Place, join, steps};
 
 /// A part of a schema. Schemas live as long as the program.
 pub(super) type Part = &'static Value;
 
-/// A root schema with its definitions.
+/// A root schema with the parts that it names.
 #[derive(Debug)]
 pub(super) struct Schema {
     root: Part,
+    parts: Parts,
     /// The choices that were looked at, by the address of the part: what they are told apart by is found once.
     choices: RwLock<HashMap<usize, Option<&'static Tagged>>>,
 }
@@ -48,10 +50,9 @@ impl Schema {
         // What a panicking thread left is whole: entries are only ever added.
         let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
         known.get_or_insert_default().entry(TypeId::of::<T>()).or_insert_with(|| {
-            let mut root = schemars::schema_for!(T).to_value();
-            write_out_demands(&mut root);
+            let (root, parts) = Parts::of::<T>();
             // One a type and program, for the whole life of it.
-            Box::leak(Box::new(Self { root: Box::leak(Box::new(root)), choices: RwLock::default() }))
+            Box::leak(Box::new(Self { root, parts, choices: RwLock::default() }))
         })
     }
 
@@ -75,7 +76,7 @@ impl Schema {
         for _ in 0..MAX_REFERENCES {
             if let Some(target) = at(schema, "$ref").and_then(Value::as_str) {
                 match self.target(target) {
-                    Some(s) => schema = s,
+                    Some(table) => schema = self.parts.demanding(schema, table),
                     None => return &Value::Bool(true),
                 }
                 continue;
@@ -95,9 +96,8 @@ impl Schema {
 
     /// What a reference names.
     fn target(&self, reference: &str) -> Option<Part> {
-        // Nearly all are `#/$defs/name`: a look without taking a pointer to pieces, which would copy them.
         match reference.strip_prefix("#/$defs/") {
-            Some(name) if !name.contains(['/', '~', '%']) => at(self.root, "$defs")?.get(name),
+            Some(name) => self.parts.named(name),
             _ => self.root.pointer(reference.strip_prefix('#')?),
         }
     }
@@ -139,7 +139,7 @@ impl Schema {
 
     /// The table that a document asks for, where a schema has several to choose from; else the schema itself.
     fn chosen(&self, schema: Part, node: Option<&Node>) -> Option<Part> {
-        self.tagged(schema).map_or(Some(schema), |tagged| tagged.chosen(node?))
+        self.tagged(schema).map_or(Some(schema), |tagged| tagged.chosen(self, node?))
     }
 
     /// What a value is read by: the table that it asks for where there are several, references followed.
@@ -369,11 +369,12 @@ impl Schema {
             return out.push(d);
         };
         let Some(chosen) = entries.iter().find(|e| e.key == tag) else {
-            if let Some(variant) = tagged.default.and_then(|name| tagged.variant(name)) {
+            if let Some(variant) = tagged.default.and_then(|name| tagged.variant(self, name)) {
                 return self.table(node, entries, variant, &[tag], path, out);
             }
             let what = Diagnostic::new(format!("missing key `{tag}`"));
-            let near = entries.iter().find(|e| nearest(&e.key, [tag]).is_some() && !tagged.has_key(&e.key));
+            let stray = |e: &&Entry| nearest(&e.key, [tag]).is_some() && !tagged.has_key(self, &e.key);
+            let near = entries.iter().find(stray);
             return out.push(match near {
                 Some(e) => here(Diagnostic::new(format!("unknown key `{}`", e.key)), &e.key_place)
                     .help(format!("did you mean `{tag}`?")),
@@ -383,7 +384,7 @@ impl Schema {
         let Data::Text(name) = &chosen.node.data else {
             return out.push(wrong_type(&chosen.node, "a name", &join(path, tag)).help(advice("", &names)));
         };
-        match tagged.variant(name) {
+        match tagged.variant(self, name) {
             Some(variant) => self.table(node, entries, variant, &[tag], path, out),
             None => {
                 if let Some(now) = tagged.renamed.and_then(|r| r.get(name)).and_then(Value::as_str) {
@@ -503,45 +504,6 @@ pub(super) fn property(table: Part, key: &str) -> Option<Part> {
     own.or_else(|| at(table, "additionalProperties").filter(|a| a.is_object()))
 }
 
-/// Writes out every table that stands in several places and must have more keys in this one (`required` beside `$ref`).
-fn write_out_demands(root: &mut Value) {
-    let mut tables = BTreeMap::new();
-    each_table(root, &mut |field| {
-        if let (Some(target), Some(_)) =
-            (named(field, "$ref").and_then(Value::as_str), named(field, "required"))
-        {
-            tables.insert(target.to_owned(), None);
-        }
-    });
-    for (target, table) in &mut tables {
-        *table = target.strip_prefix('#').and_then(|p| root.pointer(p)).and_then(Value::as_object).cloned();
-    }
-    each_table(root, &mut |field| {
-        let known = named(field, "$ref").and_then(Value::as_str).and_then(|target| tables.get(target));
-        if let (Some(Some(table)), Some(Value::Array(here))) = (known, named(field, "required")) {
-            let mut required = table.get("required").and_then(Value::as_array).cloned().unwrap_or_default();
-            required.extend(here.iter().filter(|key| !required.contains(key)).cloned().collect::<Vec<_>>());
-            field.insert("required".into(), Value::Array(required));
-            field.remove("$ref");
-            for (key, value) in table {
-                field.entry(key.clone()).or_insert_with(|| value.clone());
-            }
-        }
-    });
-}
-
-/// Calls `f` for every table of a value, the outer ones first.
-fn each_table(part: &mut Value, f: &mut dyn FnMut(&mut Map<String, Value>)) {
-    match part {
-        Value::Object(o) => {
-            f(o);
-            o.values_mut().for_each(|v| each_table(v, f));
-        }
-        Value::Array(a) => a.iter_mut().for_each(|v| each_table(v, f)),
-        _ => {}
-    }
-}
-
 /// Tables told apart by the constant value of one key.
 #[derive(Debug)]
 pub(super) struct Tagged {
@@ -550,7 +512,7 @@ pub(super) struct Tagged {
     pub default: Option<&'static str>,
     /// What became of names that were valid once (`x-renamed`).
     renamed: Option<&'static Map<String, Value>>,
-    /// Name and schema of each.
+    /// Name of each, and what is known of it without reading more: of a model its outline.
     pub variants: Vec<(&'static str, Part)>,
 }
 
@@ -569,22 +531,28 @@ impl Tagged {
         self.variants.iter().map(|(n, _)| *n).collect()
     }
 
-    fn has_key(&self, key: &str) -> bool {
-        self.variants.iter().any(|(_, s)| s.get("properties").is_some_and(|p| p.get(key).is_some()))
+    fn has_key(&self, schemas: &Schema, key: &str) -> bool {
+        let has = |s: Part| s.get("properties").is_some_and(|p| p.get(key).is_some());
+        self.variants.iter().any(|(_, s)| has(schemas.parts.whole(s)))
     }
 
     /// The alternative that a table asks for.
-    pub fn chosen(&self, node: &Node) -> Option<Part> {
+    pub fn chosen(&self, schemas: &Schema, node: &Node) -> Option<Part> {
         match node.child(self.tag).map(|n| &n.data) {
-            Some(Data::Text(name)) => self.variant(name),
+            Some(Data::Text(name)) => self.variant(schemas, name),
             Some(_) => None,
-            None => self.variant(self.default?),
+            None => self.variant(schemas, self.default?),
         }
     }
 
     /// The alternative of a name.
-    pub fn variant(&self, name: &str) -> Option<Part> {
-        self.variants.iter().find(|(n, _)| *n == name).map(|(_, s)| *s)
+    pub fn variant(&self, schemas: &Schema, name: &str) -> Option<Part> {
+        self.variants.iter().find(|(n, _)| *n == name).map(|(_, s)| schemas.parts.whole(s))
+    }
+
+    /// The first alternative.
+    pub fn first(&self, schemas: &Schema) -> Option<Part> {
+        self.variants.first().map(|(_, s)| schemas.parts.whole(s))
     }
 }
 

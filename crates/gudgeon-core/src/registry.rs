@@ -358,28 +358,65 @@ fn models_of(kind: &str) -> Vec<&'static ModelInfo> {
     models
 }
 
-/// JSON schema of a kind: one of its models, told apart by the `model` key.
+/// Among the transforms of a generator it says that [`kind_schema`] tells no more of a model than its outline: its name, its line and, under
+/// [`X_KIND`], its kind. Who reads such a schema asks for the whole of a model with [`model_schema`].
+#[derive(Debug, Clone, Copy)]
+pub struct Outlines;
+
+impl schemars::transform::Transform for Outlines {
+    fn transform(&mut self, _: &mut schemars::Schema) {}
+}
+
+/// Key of the outline of a model that holds its kind.
+pub const X_KIND: &str = "x-kind";
+
+/// JSON schema of a kind: one of its models, told apart by the `model` key. Of each model its outline alone where the generator has
+/// [`Outlines`] among its transforms.
 pub fn kind_schema(kind: &str, g: &mut schemars::SchemaGenerator) -> schemars::Schema {
-    let variants: Vec<serde_json::Value> = Registry::collect()
-        .models(kind)
-        .iter()
-        .map(|m| {
-            let mut schema = (m.schema)(g).to_value();
-            if let Some(o) = schema.as_object_mut() {
-                let properties = o.entry("properties").or_insert_with(|| serde_json::json!({}));
-                if let Some(p) = properties.as_object_mut() {
-                    p.insert("model".into(), serde_json::json!({ "const": m.name }));
-                }
-                let required = o.entry("required").or_insert_with(|| serde_json::json!([]));
-                if let Some(r) = required.as_array_mut() {
-                    r.push("model".into());
-                }
-                o.insert("description".into(), m.summary.into());
-            }
-            schema
-        })
-        .collect();
+    if g.settings().transforms.iter().any(|t| t.is::<Outlines>()) {
+        return one_of(kind, outline);
+    }
+    whole_kind_schema(kind, g)
+}
+
+/// As [`kind_schema`], with the whole of every model.
+pub fn whole_kind_schema(kind: &str, g: &mut schemars::SchemaGenerator) -> schemars::Schema {
+    one_of(kind, |m| model_schema(m, g))
+}
+
+fn one_of(kind: &str, told: impl FnMut(&'static ModelInfo) -> serde_json::Value) -> schemars::Schema {
+    let variants: Vec<serde_json::Value> =
+        Registry::collect().models(kind).iter().copied().map(told).collect();
     let mut schema = schemars::Schema::default();
     schema.insert("oneOf".into(), variants.into());
     schema
+}
+
+/// JSON schema of a model with its `model` key.
+pub fn model_schema(m: &ModelInfo, g: &mut schemars::SchemaGenerator) -> serde_json::Value {
+    let mut schema = (m.schema)(g).to_value();
+    if let Some(o) = schema.as_object_mut() {
+        let properties = o.entry("properties").or_insert_with(|| serde_json::json!({}));
+        if let Some(p) = properties.as_object_mut() {
+            p.insert("model".into(), serde_json::json!({ "const": m.name }));
+        }
+        let required = o.entry("required").or_insert_with(|| serde_json::json!([]));
+        if let Some(r) = required.as_array_mut() {
+            r.push("model".into());
+        }
+        o.insert("description".into(), m.summary.into());
+    }
+    schema
+}
+
+fn outline(m: &'static ModelInfo) -> serde_json::Value {
+    let mut tag = serde_json::Map::with_capacity(1);
+    tag.insert("const".into(), m.name.into());
+    let mut properties = serde_json::Map::with_capacity(1);
+    properties.insert("model".into(), tag.into());
+    let mut all = serde_json::Map::with_capacity(3);
+    all.insert(X_KIND.into(), m.kind.into());
+    all.insert("properties".into(), properties.into());
+    all.insert("description".into(), m.summary.into());
+    all.into()
 }

@@ -7,7 +7,7 @@ use std::ops::Deref;
 use std::sync::{Mutex, PoisonError};
 
 use gudgeon_core::content::{self, Content, Error};
-use gudgeon_core::registry::{Kind, kind_schema};
+use gudgeon_core::registry::{Kind, whole_kind_schema};
 use gudgeon_core::spec;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::de::{DeserializeOwned, Error as _};
@@ -138,7 +138,7 @@ where
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let common = C::json_schema(generator).to_value();
-        let mut choice = kind_schema(S::NAME, generator).to_value();
+        let mut choice = whole_kind_schema(S::NAME, generator).to_value();
         for variant in choice["oneOf"].as_array_mut().into_iter().flatten() {
             let name = variant["properties"][MODEL].take();
             let mut properties = Map::new();
