@@ -179,7 +179,10 @@ impl Folder {
         // From here on the change is done.
         fs::rename(&written, &place).map_err(ReportError::io("write", &place))?;
         self.created.clear();
-        self.apply(&journal)
+        self.apply(&journal)?;
+        // Nothing is left to do; a journal that will not go is followed once more, which does no harm.
+        let _ = fs::remove_file(&place);
+        Ok(())
     }
 }
 
