@@ -12,7 +12,7 @@ use crate::page::{esc, prose};
 const BESIDE: usize = 6;
 
 /// Inputs of the members of one list (`rings`): by the rest of their path, then by number.
-type Members<'a> = IndexMap<String, BTreeMap<usize, Row<'a>>>;
+type Members<'a> = IndexMap<&'a str, BTreeMap<usize, Row<'a>>>;
 
 /// One value, or the values of a list of numbers, with what they are.
 #[derive(Default)]
@@ -43,12 +43,16 @@ pub(crate) fn section(out: &mut String, inputs: &[InputUse]) {
 }
 
 /// A path before, at and after its first number: `rings.0.cold_gap` as `rings`, 0, `cold_gap`.
-fn parts(path: &str) -> (String, Option<(usize, String)>) {
-    let all: Vec<&str> = path.split('.').collect();
-    match all.iter().position(|p| p.parse::<usize>().is_ok()) {
-        Some(k) => (all[..k].join("."), all[k].parse().ok().map(|n| (n, all[k + 1..].join(".")))),
-        None => (path.to_owned(), None),
+fn parts(path: &str) -> (&str, Option<(usize, &str)>) {
+    let mut from = 0;
+    for part in path.split('.') {
+        let end = from + part.len();
+        if let Ok(n) = part.parse() {
+            return (&path[..from.saturating_sub(1)], Some((n, path.get(end + 1..).unwrap_or_default())));
+        }
+        from = end + 1;
     }
+    (path, None)
 }
 
 /// A path without the number at its end, that of a value in a list.
@@ -57,12 +61,12 @@ fn list(rest: &str) -> &str {
 }
 
 fn tables(out: &mut String, inputs: &[&InputUse]) {
-    let mut plain: IndexMap<String, Row<'_>> = IndexMap::new();
-    let mut families: IndexMap<String, Members<'_>> = IndexMap::new();
+    let mut plain: IndexMap<&str, Row<'_>> = IndexMap::new();
+    let mut families: IndexMap<&str, Members<'_>> = IndexMap::new();
     for i in inputs {
         let row = match parts(&i.path) {
             (head, Some((n, rest))) if !rest.is_empty() => {
-                let of = families.entry(head).or_default().entry(list(&rest).to_owned()).or_default();
+                let of = families.entry(head).or_default().entry(list(rest)).or_default();
                 of.entry(n).or_default()
             }
             (head, _) => plain.entry(head).or_default(),
@@ -76,7 +80,7 @@ fn tables(out: &mut String, inputs: &[&InputUse]) {
     }
 }
 
-fn plain_table(out: &mut String, rows: &IndexMap<String, Row<'_>>) {
+fn plain_table(out: &mut String, rows: &IndexMap<&str, Row<'_>>) {
     if rows.is_empty() {
         return;
     }
@@ -120,7 +124,10 @@ fn family_table(out: &mut String, family: &str, rows: &Members<'_>) {
 }
 
 fn joined(row: &Row<'_>) -> String {
-    prose(&row.values.join(", "))
+    match row.values[..] {
+        [only] => prose(only),
+        _ => prose(&row.values.join(", ")),
+    }
 }
 
 #[cfg(test)]

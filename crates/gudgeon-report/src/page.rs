@@ -63,7 +63,8 @@ pub(crate) fn esc(text: &str) -> String {
 
 /// Units in prose as they are typeset: `0.3 um` and `um` alone become `0.3 µm` and `µm`, `360 deg` becomes `360°`.
 fn typeset(text: &str) -> String {
-    if !text.contains("um") && !text.contains("deg") {
+    // Nearly all texts hold neither; one that is taken to pieces in vain stays as it is.
+    if !text.as_bytes().windows(2).any(|two| two == b"um" || two == b"eg") {
         return text.to_owned();
     }
     let mut out = String::with_capacity(text.len());
@@ -215,13 +216,23 @@ fn base64(bytes: &[u8]) -> String {
 }
 
 /// Numbers as base64 of little-endian 32-bit floats: seven digits, enough for a drawing, at five bytes a number.
-fn packed(values: &[f64], every: usize) -> String {
-    let mut bytes = vec![0; 4 * values.len().div_ceil(every)];
-    let (places, _) = bytes.as_chunks_mut::<4>();
-    for (place, v) in places.iter_mut().zip(values.iter().step_by(every)) {
-        *place = (*v as f32).to_le_bytes();
-    }
-    base64(&bytes)
+fn packed(values: &[f64]) -> String {
+    let (threes, rest) = values.as_chunks::<3>();
+    let mut out: Vec<[[u8; 2]; 8]> = Vec::with_capacity(threes.len() + 1);
+    // Three numbers are 96 bits and so sixteen letters, without a number for each byte in between.
+    out.extend(threes.iter().map(|three| {
+        let [a, b, c] = three.map(|v| u64::from((v as f32).to_bits().swap_bytes()));
+        let (high, low) = (a << 16 | b >> 16, (b & 0xffff) << 32 | c);
+        let letters = |bits: u64, shift: u32| LETTERS[(bits >> shift) as usize & 4095];
+        let [a, b, c, d] = [36, 24, 12, 0].map(|shift| letters(high, shift));
+        let [e, f, g, h] = [36, 24, 12, 0].map(|shift| letters(low, shift));
+        [a, b, c, d, e, f, g, h]
+    }));
+    let mut out = out.into_flattened().into_flattened();
+    let bytes: Vec<u8> = rest.iter().flat_map(|v| (*v as f32).to_le_bytes()).collect();
+    out.extend_from_slice(base64(&bytes).as_bytes());
+    // Letters, digits and signs of the alphabet are text.
+    String::from_utf8(out).unwrap_or_default()
 }
 
 /// Most rows of a curve that a page carries; two per degree of a four-stroke cycle.
@@ -280,7 +291,11 @@ impl Arrays {
         every: usize,
     ) -> Placed {
         let mut place = |c: &Column| {
-            let at = self.add(packed(&c.values, every));
+            let at = self.add(if every == 1 {
+                packed(&c.values)
+            } else {
+                packed(&c.values.iter().copied().step_by(every).collect::<Vec<_>>())
+            });
             PlacedColumn { name: c.name.clone(), unit: c.unit.clone(), at }
         };
         Placed { axis: place(axis), columns: columns.map(place).collect(), every }
@@ -561,6 +576,15 @@ mod tests {
             ("foobar", "Zm9vYmFy"),
         ] {
             assert_eq!(base64(plain.as_bytes()), coded);
+        }
+    }
+
+    #[test]
+    fn packed_numbers_are_the_letters_of_their_bytes() {
+        let values: Vec<f64> = (0..9).map(|k| 1.0 / (f64::from(k) - 3.3)).collect();
+        for n in 0..values.len() {
+            let bytes: Vec<u8> = values[..n].iter().flat_map(|v| (*v as f32).to_le_bytes()).collect();
+            assert_eq!(packed(&values[..n]), base64(&bytes));
         }
     }
 
