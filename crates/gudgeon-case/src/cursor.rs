@@ -4,6 +4,7 @@ use serde::Serialize;
 use serde_json::Value;
 use toml::de::DeTable;
 
+use super::inputs::flat;
 use super::report::Origin;
 use super::schema::{Part, Schema, phrase, strings, types_of, units_of, words_of};
 use super::tree::{Data, Node, join};
@@ -143,10 +144,6 @@ fn about(schema: &Schema, field: Part) -> String {
     let inner = schema.resolve(field);
     let text = field.get("description").or_else(|| inner.get("description")).and_then(Value::as_str);
     flat(text.unwrap_or_default())
-}
-
-fn flat(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// What a key wants.

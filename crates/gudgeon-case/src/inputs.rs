@@ -252,7 +252,18 @@ fn written_unit(written: &Node, units: &'static [Unit]) -> Option<&'static Unit>
 /// What a value is for: what its field says, or its type.
 fn about(field: Part, schema: Part) -> String {
     let text = at(field, "description").or_else(|| at(schema, "description")).and_then(Value::as_str);
-    text.unwrap_or_default().split_whitespace().collect::<Vec<_>>().join(" ")
+    flat(text.unwrap_or_default())
+}
+
+/// A text as one line, with single spaces between its words.
+pub(super) fn flat(text: &str) -> String {
+    let bytes = text.as_bytes();
+    // Nearly all are so as they stand, which a look at their bytes tells where no other letters are among them.
+    let plain = bytes.iter().all(|b| b.is_ascii_graphic() || *b == b' ')
+        && !bytes.windows(2).any(|two| two == b"  ")
+        && !text.starts_with(' ')
+        && !text.ends_with(' ');
+    if plain { text.to_owned() } else { text.split_whitespace().collect::<Vec<_>>().join(" ") }
 }
 
 /// The unit in which a number has one to three digits before its point; temperatures are read in degrees Celsius, speeds of rotation in rpm.
@@ -268,5 +279,9 @@ fn readable(si: f64, units: &'static [Unit]) -> Option<&'static Unit> {
 
 /// Without the rounding of the change of units: 120 mm and not 119.99999999999999.
 fn rounded(value: f64) -> f64 {
+    // A whole number of at most twelve digits has no other digits to be rounded.
+    if value.fract() == 0.0 && value.abs() < 1e12 {
+        return value;
+    }
     format!("{value:.11e}").parse().unwrap_or(value)
 }

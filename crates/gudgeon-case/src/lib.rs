@@ -522,8 +522,13 @@ impl<T: serde::Serialize + JsonSchema + 'static> Loaded<T> {
     /// The inputs of this case: numbers, words and models, in the order of the resolved case.
     #[must_use]
     pub fn inputs(&self) -> Vec<Input> {
-        let Ok(resolved) = self.resolved() else { return Vec::new() };
-        inputs::inputs(Schema::of::<T>(), &resolved, &self.source.text, &self.tree)
+        self.resolved().map_or_else(|_| Vec::new(), |resolved| self.inputs_of(&resolved))
+    }
+
+    /// The same, where its resolved values are at hand.
+    #[must_use]
+    pub fn inputs_of(&self, resolved: &serde_json::Value) -> Vec<Input> {
+        inputs::inputs(Schema::of::<T>(), resolved, &self.source.text, &self.tree)
     }
 
     /// How the numerical settings of this case are refined.

@@ -34,29 +34,26 @@ pub fn provenance(file: &str, case: &dyn Scene) -> Provenance {
         text: source.text.clone(),
         files: files(source),
         sets: case.sets().iter().map(set_use).collect(),
-        inputs: inputs(case),
+        inputs: inputs(case, &resolved),
         resolved,
     }
 }
 
 /// The inputs as a page shows them. A change with `--set` has no line in the file, and neither have values of a parameter set: their paths say that they are given.
-fn inputs(case: &dyn Scene) -> Vec<InputUse> {
+fn inputs(case: &dyn Scene, resolved: &serde_json::Value) -> Vec<InputUse> {
     let changed: Vec<&str> =
-        case.overrides().iter().filter_map(|o| o.split('=').next()).map(str::trim).collect();
+        case.overrides().iter().filter_map(|o| o.split('=').next()).map(|c| short(c.trim())).collect();
     let sets: Vec<String> = case
         .sets()
         .iter()
         .flat_map(|s| s.taken.iter().map(move |(key, _)| format!("{}.{key}", s.path)))
         .collect();
-    let short = |path: &str| path.trim_start_matches("models.").to_owned();
     // A change may give a whole table.
     let is_within = |path: &str, table: &str| {
         path.strip_prefix(table).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
     };
     let given = |i: &Input| {
-        i.line.is_some()
-            || sets.contains(&i.path)
-            || changed.iter().any(|c| is_within(&short(&i.path), &short(c)))
+        i.line.is_some() || sets.contains(&i.path) || changed.iter().any(|c| is_within(short(&i.path), c))
     };
     let shown = |i: Input| InputUse {
         given: given(&i),
@@ -64,7 +61,12 @@ fn inputs(case: &dyn Scene) -> Vec<InputUse> {
         about: sentence(&i.about).to_owned(),
         path: i.path,
     };
-    case.inputs().into_iter().map(shown).collect()
+    case.inputs_of(resolved).into_iter().map(shown).collect()
+}
+
+/// A path without the table of models before it.
+fn short(path: &str) -> &str {
+    path.strip_prefix("models.").map_or(path, short)
 }
 
 fn text(value: &InputValue) -> String {

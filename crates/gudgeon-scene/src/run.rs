@@ -211,7 +211,9 @@ fn finish(c: &Checked, begin: Stopwatch, mut result: RunResult) -> Result<RunRes
     result.gudgeon = env!("CARGO_PKG_VERSION").into();
     result.provenance = provenance(&c.file, c.case.as_ref());
     result.solver.notes.extend(c.notes.iter().map(|n| Note::caution("dropped_keys", n)));
-    if let Some(column) = result.series.columns.iter().find(|c| c.values.iter().any(|v| !v.is_finite())) {
+    // All of them, though one would do: without an end before the last they are looked at several at once.
+    let finite = |values: &[f64]| values.iter().fold(true, |all, v| all & v.is_finite());
+    if let Some(column) = result.series.columns.iter().find(|c| !finite(&c.values)) {
         return Err(RunError::NotANumber(column.name.clone()));
     }
     result.seconds.insert("total".into(), begin.seconds());

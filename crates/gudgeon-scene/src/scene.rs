@@ -127,7 +127,11 @@ pub trait Scene: Send + Sync {
     /// As [`SceneCase::refinements`].
     fn refinements(&self) -> Vec<Refinement>;
     /// Its numbers, words and models, for a program that offers them to a person.
-    fn inputs(&self) -> Vec<Input>;
+    fn inputs(&self) -> Vec<Input> {
+        self.inputs_of(&self.resolved())
+    }
+    /// The same, where its resolved values are at hand.
+    fn inputs_of(&self, resolved: &serde_json::Value) -> Vec<Input>;
     /// The text it was read from with further changes written into it, but not checked.
     ///
     /// # Errors
@@ -259,8 +263,8 @@ impl<C: SceneCase> Scene for Read<C> {
         C::refinements(&self.loaded)
     }
 
-    fn inputs(&self) -> Vec<Input> {
-        self.loaded.inputs()
+    fn inputs_of(&self, resolved: &serde_json::Value) -> Vec<Input> {
+        self.loaded.inputs_of(resolved)
     }
 
     fn rewritten(&self, set: &[String]) -> Result<String, Report> {
