@@ -402,14 +402,16 @@ impl Wanted {
     }
 
     fn schema(&self) -> schemars::Schema {
-        let units: Vec<_> = self.units.iter().map(|u| u.name).filter(|n| !n.is_empty()).collect();
-        // Values as they are: `json_schema!` would write each of them out and read it again.
+        let units = self.units.iter().map(|u| u.name).filter(|n| !n.is_empty());
+        // Values as they are: `json_schema!` would write each of them out and read it again. All at once, for which room is made once.
         let mut schema = schemars::Schema::default();
-        schema.insert("description".into(), [self.name, ", ", self.bound].concat().into());
-        schema.insert("type".into(), vec!["number", "string"].into());
-        schema.insert("x-units".into(), units.into());
-        schema.insert("x-dimension".into(), self.name.into());
-        schema.insert("x-bound".into(), self.bound.into());
+        schema.ensure_object().extend([
+            ("description".into(), [self.name, ", ", self.bound].concat().into()),
+            ("type".into(), ["number", "string"].into_iter().collect()),
+            ("x-units".into(), units.collect()),
+            ("x-dimension".into(), self.name.into()),
+            ("x-bound".into(), self.bound.into()),
+        ]);
         schema
     }
 }
