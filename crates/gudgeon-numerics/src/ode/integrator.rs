@@ -23,7 +23,7 @@ pub trait StepView {
     fn q1(&self) -> &[f64] {
         &[]
     }
-    /// Quadratures at `t` inside the step, as accurate as the states; the default joins the ends by a straight line.
+    /// The first quadratures at `t` inside the step, as many as `q` holds, as accurate as the states; the default joins the ends by a straight line.
     fn interpolate_quad(&self, t: f64, q: &mut [f64]) {
         let x = (t - self.t0()) / (self.t1() - self.t0());
         for ((q, a), b) in q.iter_mut().zip(self.q0()).zip(self.q1()) {

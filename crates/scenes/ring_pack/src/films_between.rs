@@ -5,24 +5,24 @@ use gudgeon_numerics::sdirk::GAMMA;
 use super::instant::RingInstant;
 
 /// Number of things that films do.
-const COUNT: usize = 15;
+const COUNT: usize = 14;
 
 /// What the film of a ring does at an instant, in the order of [`film`].
 pub type Told = [f64; COUNT];
 
-/// Film rate, viscosity, load and its share on contact, perimeter, friction, force along the groove, powers, and what limits did.
+/// Film rate, viscosity, contact, perimeter, shear and force on the slope of the face, highest pressure, and what limits did. Friction follows from them, and bends
+/// where the ring turns.
 const fn film(r: &mut RingInstant) -> [&mut f64; COUNT] {
-    let l = &mut r.limited;
+    let (f, l) = (&mut r.film, &mut r.limited);
     [
         &mut r.hdot,
         &mut r.mu,
-        &mut r.load,
         &mut r.contact,
         &mut r.perimeter,
-        &mut r.friction,
-        &mut r.axial.film,
-        &mut r.power,
-        &mut r.boundary_power,
+        &mut f.ring_shear,
+        &mut f.liner_shear,
+        &mut f.slope_force,
+        &mut r.film_p_max,
         &mut l.floor,
         &mut l.drag,
         &mut l.contact_drag,
@@ -102,11 +102,8 @@ mod tests {
 
     #[test]
     fn what_films_do_goes_by_a_parabola_within_the_range_of_its_ends() {
-        let ring = |x: f64| RingInstant {
-            friction: x * (3.0 - x),
-            contact: (x - 0.6).powi(2),
-            ..Default::default()
-        };
+        let ring =
+            |x: f64| RingInstant { hdot: x * (3.0 - x), contact: (x - 0.6).powi(2), ..Default::default() };
         let mut films = FilmsBetween::new(1);
         for (instant, x) in [0.0, GAMMA, 1.0].into_iter().enumerate() {
             films.keep(instant, &[ring(x)]);
@@ -120,13 +117,13 @@ mod tests {
         for x in [0.0, 0.2, 0.7, 0.95, 1.0] {
             let ring = at(&films, 2.0 + 4.0 * x);
             // Three products of numbers below ten.
-            assert!((ring.friction - x * (3.0 - x)).abs() < 1e-14, "{x}: {}", ring.friction);
+            assert!((ring.hdot - x * (3.0 - x)).abs() < 1e-14, "{x}: {}", ring.hdot);
             // The least of the three is that at the first stage.
             let contact = (x - 0.6).powi(2).max((GAMMA - 0.6).powi(2));
             assert!((ring.contact - contact).abs() < 1e-14, "{x}: {}", ring.contact);
         }
         films.go_on();
         films.took(6.0, 7.0);
-        assert!((at(&films, 6.0).friction - 2.0).abs() < 1e-14);
+        assert!((at(&films, 6.0).hdot - 2.0).abs() < 1e-14);
     }
 }

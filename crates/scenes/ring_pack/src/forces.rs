@@ -9,7 +9,7 @@ use gudgeon_core::kinds::{
 };
 use gudgeon_numerics::elementary;
 
-use super::loads::{Loads, furthest, wet_faces};
+use super::loads::{Loads, face_in, furthest, wet_faces};
 use super::pack::Pack;
 
 /// Standard acceleration used by both sources \[m/s²\].
@@ -104,25 +104,15 @@ impl Pack {
     /// # Errors
     /// What the film refuses.
     pub fn film_peak(&mut self, i: usize) -> Result<(), EvalError> {
-        self.whole_film(i).map(drop)
-    }
-
-    /// The same with friction and film force, for a ring whose `hdot` and `contact` are known: its load and its film are those of the instant.
-    pub(super) fn film_beside(&mut self, i: usize) -> Result<(), EvalError> {
-        let film = self.whole_film(i)?;
-        let (loads, _) = self.loads(i);
-        let (load, perimeter) = (loads.state.load, loads.perimeter);
-        let r = &mut self.at.rings[i];
-        (r.load, r.perimeter) = (load, perimeter);
-        (r.film, r.film_known) = (film, true);
-        self.friction(i)
-    }
-
-    fn whole_film(&mut self, i: usize) -> Result<FaceForces, EvalError> {
-        let hdot = self.at.rings[i].hdot;
-        let (film, highest) = self.loads(i).0.whole_film(hdot)?;
-        self.at.rings[i].film_p_max = highest;
-        Ok(film)
+        let mut high = 0.0_f64;
+        for land in 0..self.rings[i].films.len() {
+            let inp =
+                face_in(&self.geo.rings[i], self.at.places[i].h, &self.at.rings[i], -self.at.piston.v, land);
+            self.counters.film += 1;
+            high = high.max(self.rings[i].films[land].evaluate(&inp, self.at.rings[i].hdot)?.p_max);
+        }
+        self.at.rings[i].film_p_max = high;
+        Ok(())
     }
 
     /// Tilts the films of ring `i` as it twists, and lets them reach as far as its oil does.
@@ -180,35 +170,51 @@ impl Pack {
         } else {
             self.film(i, self.at.rings[i].hdot)?
         };
-        let u = -self.at.piston.v;
-        let lowest = self.lowest(i);
+        let weight = self.floor_weight(i);
         let line = &self.rings[i].contact;
         let r = &mut self.at.rings[i];
         r.film = o;
-        // On a floor the surfaces carry what the film does not; under the least film nothing real does.
-        let mut viscous = 1.0;
-        if lowest > 0.0 {
-            let above = self.at.places[i].h - lowest;
-            let weight = if self.hard_floor {
-                f64::from(u8::from(above <= 1e-6 * lowest))
-            } else {
-                1.0 - (above / (line.band() * lowest)).clamp(0.0, 1.0)
-            };
-            if line.floor_replaces_film {
-                viscous = 1.0 - weight;
-                r.contact = weight * r.load.max(0.0);
-                r.limited.floor = r.contact;
-            } else {
-                r.limited.floor = weight * (r.load - r.dry.0 - r.contact - o.load).max(0.0);
-                if line.floor.is_some() {
-                    r.contact += r.limited.floor;
-                }
+        if line.floor_replaces_film {
+            r.contact = weight * r.load.max(0.0);
+            r.limited.floor = r.contact;
+        } else if weight > 0.0 {
+            r.limited.floor = weight * (r.load - r.dry.0 - r.contact - o.load).max(0.0);
+            if line.floor.is_some() {
+                r.contact += r.limited.floor;
             }
         }
+        self.rub(i, weight)
+    }
+
+    /// How much of ring `i` rests on its floor: there the surfaces carry what the film does not; under the least film nothing real does.
+    fn floor_weight(&self, i: usize) -> f64 {
+        let lowest = self.lowest(i);
+        let above = self.at.places[i].h - lowest;
+        if lowest <= 0.0 {
+            0.0
+        } else if self.hard_floor {
+            f64::from(u8::from(above <= 1e-6 * lowest))
+        } else {
+            1.0 - (above / (self.rings[i].contact.band() * lowest)).clamp(0.0, 1.0)
+        }
+    }
+
+    /// Load of ring `i` for the pressures of the instant, and the friction of a film and a contact that are known.
+    pub(super) fn friction_beside(&mut self, i: usize) -> Result<(), EvalError> {
+        self.at.rings[i].load = self.radial_load(i);
+        self.rub(i, self.floor_weight(i))
+    }
+
+    /// Friction and film force of ring `i` for its film and its contact, the part `weight` of it resting on a floor.
+    fn rub(&mut self, i: usize, weight: f64) -> Result<(), EvalError> {
+        let u = -self.at.piston.v;
+        let line = &self.rings[i].contact;
+        let r = &mut self.at.rings[i];
         let rubbing = match &self.rings[i].rubbing {
             None => line.friction * r.contact * elementary::tanh(u / self.limits.friction_speed),
             Some(friction) => friction.force(line, self.at.places[i].h, r.contact, u)?,
         };
+        let (o, viscous) = (r.film, if line.floor_replaces_film { 1.0 - weight } else { 1.0 });
         r.friction = r.perimeter * (viscous * self.laws.drag.shear(&o) + rubbing);
         r.power = self.laws.drag.power(r.friction, u);
         r.boundary_power = self.laws.drag.power(r.perimeter * rubbing, u);

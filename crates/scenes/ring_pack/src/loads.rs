@@ -87,38 +87,6 @@ impl Loads<'_> {
     fn face(&self, land: usize) -> FaceIn {
         face_in(self.geo, self.state.thickness, self.at, self.u, land)
     }
-
-    /// Film at squeeze velocity `hdot`, summed over the lands, and its highest pressure \[Pa\].
-    pub fn whole_film(&mut self, hdot: f64) -> Result<(FaceForces, f64), EvalError> {
-        let mut highest = 0.0_f64;
-        let sum = self.sum(|film, inp| {
-            let o = film.evaluate(inp, hdot)?;
-            highest = highest.max(o.p_max);
-            Ok(o.forces())
-        })?;
-        Ok((sum, highest))
-    }
-
-    /// Sum of what the lands say, by the parts of their friction that are counted.
-    fn sum(
-        &mut self,
-        mut of: impl FnMut(&mut dyn Hydrodynamics, &FaceIn) -> Result<FaceForces, EvalError>,
-    ) -> Result<FaceForces, EvalError> {
-        let mut sum = FaceForces::default();
-        for land in 0..self.films.len() {
-            *self.count += 1;
-            let inp = self.face(land);
-            let o = of(&mut *self.films[land], &inp)?;
-            let share = self.shares[land];
-            self.flux[land] = o.flux;
-            sum.load += o.load;
-            sum.squeeze_damping += o.squeeze_damping;
-            sum.ring_shear += share * o.ring_shear;
-            sum.liner_shear += share * o.liner_shear;
-            sum.slope_force += share * o.slope_force;
-        }
-        Ok(sum)
-    }
 }
 
 impl RadialLoads for Loads<'_> {
@@ -131,7 +99,20 @@ impl RadialLoads for Loads<'_> {
         (f.force(hdot, axial) / self.perimeter, f.derivative(hdot, axial) / self.perimeter)
     }
     fn film(&mut self, hdot: f64) -> Result<FaceForces, EvalError> {
-        self.sum(|film, inp| film.forces(inp, hdot))
+        let mut sum = FaceForces::default();
+        for land in 0..self.films.len() {
+            *self.count += 1;
+            let inp = self.face(land);
+            let o = self.films[land].forces(&inp, hdot)?;
+            let share = self.shares[land];
+            self.flux[land] = o.flux;
+            sum.load += o.load;
+            sum.squeeze_damping += o.squeeze_damping;
+            sum.ring_shear += share * o.ring_shear;
+            sum.liner_shear += share * o.liner_shear;
+            sum.slope_force += share * o.slope_force;
+        }
+        Ok(sum)
     }
 
     fn film_load(&mut self, hdot: f64) -> Result<(f64, f64), EvalError> {

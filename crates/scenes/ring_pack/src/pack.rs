@@ -363,22 +363,17 @@ impl Pack {
     /// Evaluates the forces at an instant of a step: films as they are known between its stages, if they are, and without flows of gas that nobody asks for.
     pub fn evaluate_in_step(&mut self, theta: f64, y: &[f64]) -> Result<(), EvalError> {
         let Some(films) = self.between.take() else { return self.evaluate(theta, y) };
-        let done = self.evaluate_beside(films.at(theta), theta, y, |_, _| Ok(()));
+        let done = self.evaluate_beside(films.at(theta), theta, y);
         self.between = Some(films);
         done
     }
 
-    /// The same for films whose velocities and contact are known, for a row of the series: what these carry, and what they cost, is found for the instant.
-    pub fn evaluate_row(&mut self, films: &[Told], theta: f64, y: &[f64]) -> Result<(), EvalError> {
-        self.evaluate_beside(films.iter().copied(), theta, y, Self::film_beside)
-    }
-
-    fn evaluate_beside(
+    /// The same for films that are known: what these carry, and what they cost, is found for the instant.
+    pub fn evaluate_beside(
         &mut self,
         films: impl Iterator<Item = Told>,
         theta: f64,
         y: &[f64],
-        film: impl Fn(&mut Self, usize) -> Result<(), EvalError>,
     ) -> Result<(), EvalError> {
         self.begin_instant(theta, y)?;
         if self.gas.has_energy() {
@@ -388,7 +383,7 @@ impl Pack {
         }
         tell(films, &mut self.at.rings);
         for i in 0..self.n_rings() {
-            film(self, i)?;
+            self.friction_beside(i)?;
             self.in_groove(i, y)?;
         }
         self.state.copy_from_slice(y);
@@ -474,11 +469,11 @@ impl Pack {
         self.layout.radial[i].is_empty() || (THINNEST..THICKEST).contains(&self.at.places[i].h)
     }
 
-    /// Places, pressures and the reach of the oil at crank angle `theta` for state `y`, and films where they are known: what [`super::measure`] asks for.
+    /// Places, pressures, viscosities and the reach of the oil at crank angle `theta` for state `y`: what [`super::measure`] asks for.
     pub fn look(&mut self, theta: f64, y: &[f64]) -> Result<(), EvalError> {
         // What `self.at` holds is no longer an evaluation of any state.
         self.state.fill(f64::NAN);
-        self.locate(theta, y);
+        self.set_places(theta, y);
         for (k, m) in self.gas_state.iter_mut().enumerate() {
             *m = y[k] * self.gas_scale[k];
         }
@@ -488,10 +483,6 @@ impl Pack {
             for i in 0..self.n_rings() {
                 self.wet(i)?;
             }
-        }
-        match &self.between {
-            Some(films) => tell(films.at(theta), &mut self.at.rings),
-            None => self.set_viscosities(y),
         }
         Ok(())
     }

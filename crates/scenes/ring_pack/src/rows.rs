@@ -14,7 +14,7 @@ use super::record::Record;
 #[derive(Debug, Clone)]
 pub struct Rows {
     grid: Vec<f64>,
-    /// Angle, states and quadratures of every row so far.
+    /// Angle and states of every row so far, and the gas \[kg\] that has passed each ring and gone to the crankcase.
     theta: Vec<f64>,
     y: Vec<f64>,
     q: Vec<f64>,
@@ -24,7 +24,7 @@ pub struct Rows {
     memory: Vec<f64>,
     /// What the films did, of every row but the first, where that is known.
     films: Vec<Told>,
-    /// Quadratures on either side of a row, scratch.
+    /// What has passed on either side of a row, scratch.
     beside: [Vec<f64>; 2],
 }
 
@@ -39,7 +39,7 @@ impl Rows {
     pub fn new(pack: &mut Pack, step: f64) -> Self {
         let period = pack.period();
         let rows = (period / step).round().max(1.0) as usize;
-        let (quads, count) = (pack.layout.quads(), rows + 1);
+        let (flows, count) = (pack.n_rings() + 1, rows + 1);
         let mut memory = Vec::new();
         pack.save(&mut memory);
         let kept = memory.len();
@@ -49,11 +49,11 @@ impl Rows {
             grid: (0..=rows).map(|k| period * k as f64 / rows as f64).collect(),
             theta: Vec::with_capacity(count),
             y: Vec::with_capacity(count * pack.layout.n),
-            q: Vec::with_capacity(count * quads),
-            flows: Vec::with_capacity(count * (pack.n_rings() + 1)),
+            q: Vec::with_capacity(count * flows),
+            flows: Vec::with_capacity(count * flows),
             memory,
             films: Vec::new(),
-            beside: [vec![0.0; quads], vec![0.0; quads]],
+            beside: [vec![0.0; flows], vec![0.0; flows]],
         }
     }
 
@@ -83,7 +83,7 @@ impl Rows {
         }
         let [before, after] = &self.beside;
         let slopes = before.iter().zip(after).map(|(a, b)| (b - a) / (to - from) * pack.omega);
-        self.flows.extend(slopes.take(pack.n_rings() + 1));
+        self.flows.extend(slopes);
     }
 
     fn keep(
@@ -96,7 +96,7 @@ impl Rows {
         self.theta.push(self.grid[self.theta.len()]);
         let (y, q) = (self.y.len(), self.q.len());
         self.y.resize(y + pack.layout.n, 0.0);
-        self.q.resize(q + pack.layout.quads(), 0.0);
+        self.q.resize(q + pack.n_rings() + 1, 0.0);
         states(&mut self.y[y..]);
         passed(&mut self.q[q..]);
         if let Some(oil) = &mut pack.oil_pack {
@@ -111,23 +111,23 @@ impl Rows {
     /// What a sub-model refuses.
     pub fn record(&self, pack: &mut Pack) -> Result<Record, EvalError> {
         let mut record = Record::new(pack);
-        let (n, dim, quads) = (pack.n_rings(), pack.layout.n, self.q.len() / self.theta.len().max(1));
+        let (n, dim) = (pack.n_rings(), pack.layout.n);
         let kept = self.memory.len() / self.theta.len().max(1);
         for (k, &theta) in self.theta.iter().enumerate() {
             let y = &self.y[k * dim..][..dim];
             if let Some(films) = k.checked_sub(1).and_then(|k| self.films.get(k * n..(k + 1) * n)) {
-                pack.evaluate_row(films, theta, y)?;
+                pack.evaluate_beside(films.iter().copied(), theta, y)?;
             } else {
                 pack.evaluate_again(theta, y, Some(&self.memory[k * kept..][..kept]))?;
                 (0..n).try_for_each(|i| pack.film_peak(i))?;
             }
-            let q = &self.q[k * quads..][..quads];
+            let passed = &self.q[k * (n + 1)..][..=n];
             if let Some(first) = k.checked_sub(1) {
                 let flows = &self.flows[first * (n + 1)..][..=n];
                 pack.at.gas.flow_in.copy_from_slice(&flows[..n]);
                 pack.at.gas.flow_out[n - 1] = flows[n];
             }
-            record.push(theta, pack, &q[..n], q[n]);
+            record.push(theta, pack, &passed[..n], passed[n]);
         }
         Ok(record)
     }

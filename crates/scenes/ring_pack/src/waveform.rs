@@ -170,7 +170,10 @@ impl Waveform {
             let part = Part { states: side.states(&pack.layout), quads: side.quads(&pack.layout) };
             let told = Half::with(part, pack, balance);
             let Half { wave, grid, .. } = std::mem::replace(half, told);
-            (half.wave, half.grid) = (wave, grid);
+            // What has no states is not integrated: its quadratures stand still beside the other half, in a wave that has room for them.
+            if !half.part.states.is_empty() {
+                (half.wave, half.grid) = (wave, grid);
+            }
         }
     }
 
@@ -506,21 +509,23 @@ impl<'a> OneSide<'a> {
     fn evaluate(&mut self, t: f64, y: &[f64]) -> Result<(), EvalError> {
         self.fill(t, y);
         self.pack.evaluate_of(self.side, t, &self.y, &self.axial)?;
-        self.keep_forces(0);
-        Ok(())
+        self.keep_forces(0)
     }
 
     /// Keeps the forces of the films at an instant of the step.
-    fn keep_forces(&mut self, instant: usize) {
-        if self.side == Side::Films {
-            let n = self.pack.n_rings();
-            let kept = self.axial[instant * n..].iter_mut();
-            let Pack { at, between, .. } = &mut *self.pack;
-            kept.zip(&at.rings).for_each(|(f, r)| *f = r.axial.film);
-            if let Some(between) = between {
-                between.keep(instant, &at.rings);
-            }
+    fn keep_forces(&mut self, instant: usize) -> Result<(), EvalError> {
+        if self.side != Side::Films {
+            return Ok(());
         }
+        let n = self.pack.n_rings();
+        let kept = self.axial[instant * n..].iter_mut();
+        kept.zip(&self.pack.at.rings).for_each(|(f, r)| *f = r.axial.film);
+        if self.pack.between.is_some() {
+            (0..n).try_for_each(|i| self.pack.film_peak(i))?;
+        }
+        let Pack { at, between, .. } = &mut *self.pack;
+        between.iter_mut().for_each(|films| films.keep(instant, &at.rings));
+        Ok(())
     }
 
     /// The end of the step is the start of the next.
@@ -598,7 +603,7 @@ impl OdeSystem for OneSide<'_> {
         if let Some(repeat) = &mut self.repeat {
             repeat.learn(t, stage, y);
         }
-        self.keep_forces(stage.number);
+        self.keep_forces(stage.number)?;
         self.quadratures(g);
         Ok(())
     }

@@ -7,7 +7,7 @@ use gudgeon_numerics::ode::{Flow, StepView};
 use super::super::pack::Pack;
 use super::track::Track;
 
-/// The states and the quadratures of a side, by their places in the pack.
+/// The states and the quadratures of a side, by their places in the pack, ascending.
 #[derive(Debug, Clone)]
 pub struct Part {
     pub states: Vec<usize>,
@@ -101,18 +101,22 @@ impl<'a> Joint<'a> {
         });
     }
 
-    /// Quadratures of the pack at `t`.
+    /// The first quadratures of the pack at `t`, as many as `q` holds.
     fn quads(&self, step: &dyn StepView, t: f64, q: &mut [f64]) {
-        let [beside, stepping] = self.parts;
-        self.put(q, &beside.quads, |own| self.beside.eval(t, beside.states.len(), own));
-        self.put(q, &stepping.quads, |own| match t {
-            t if t >= step.t1() => own.copy_from_slice(step.q1()),
+        let [beside, stepping] =
+            self.parts.map(|part| &part.quads[..part.quads.partition_point(|k| *k < q.len())]);
+        self.put(q, beside, |own| self.beside.eval(t, self.parts[0].states.len(), own));
+        self.put(q, stepping, |own| match t {
+            t if t >= step.t1() => own.copy_from_slice(&step.q1()[..own.len()]),
             t => step.interpolate_quad(t, own),
         });
     }
 
     /// Puts what `look` finds where a side has it.
     fn put(&self, to: &mut [f64], places: &[usize], look: impl FnOnce(&mut [f64])) {
+        if places.is_empty() {
+            return;
+        }
         let mut own = self.own.borrow_mut();
         own.resize(places.len(), 0.0);
         look(&mut own);
@@ -147,7 +151,7 @@ impl StepView for Piece<'_, '_> {
     }
     fn interpolate_quad(&self, t: f64, q: &mut [f64]) {
         match self.joint.is_end(t) {
-            Some(end) => q.copy_from_slice(&self.joint.q[end]),
+            Some(end) => q.copy_from_slice(&self.joint.q[end][..q.len()]),
             None => self.joint.quads(self.step, t, q),
         }
     }

@@ -180,9 +180,14 @@ impl RingSteps {
         ends.sort_by(f64::total_cmp);
         ends.dedup_by(|a, b| *a - *b < SLACK);
         let n = v.y0().len();
-        let mut from = v.t0();
+        let (mut from, mut end) = (v.t0(), Vec::new());
         for to in ends {
             wave.add(to, |x, values| {
+                if x == 0.0 && !end.is_empty() {
+                    // A piece begins where the one before ends.
+                    values.copy_from_slice(&end);
+                    return;
+                }
                 let t = if x == 1.0 { to } else { from + x * (to - from) };
                 let (y, q) = values.split_at_mut(n);
                 v.interpolate(t, y);
@@ -191,6 +196,10 @@ impl RingSteps {
                 for ring in self.rings.iter().filter(|r| r.n > 0) {
                     let own = ring.at(t);
                     own[..ring.n].iter().zip(rows.by_ref()).for_each(|(v, k)| y[*k] = *v);
+                }
+                if x == 1.0 {
+                    end.clear();
+                    end.extend_from_slice(values);
                 }
             });
             from = to;
