@@ -81,14 +81,20 @@ impl Pieces {
             .map(|(t, w)| (t, w * elementary::powf(t, order), w * elementary::powf(t, order - 1.0)))
             .collect();
         let count = ((FAR - DEEP) * PER_UNIT) as usize;
+        let middle = |i: usize| DEEP + (i as f64 + 0.5) / PER_UNIT;
+        // exp(-(c+t)²/2) at the nodes, from one centre c to the next as exp(-(c+t)²/2) exp(-d(c + d/2)) exp(-dt): a few roundings a step.
+        let gauss = |t: f64| elementary::exp(-0.5 * (middle(0) + t) * (middle(0) + t));
+        let mut at: Vec<[f64; 2]> =
+            nodes.iter().map(|(t, ..)| [gauss(*t), elementary::exp(-t / PER_UNIT)]).collect();
         let pieces = (0..count)
             .map(|i| {
-                let centre = DEEP + (i as f64 + 0.5) / PER_UNIT;
+                let centre = middle(i);
                 let (mut value, mut lower) = (0.0, 0.0);
-                for &(t, w, w_lower) in &nodes {
-                    let g = elementary::exp(-0.5 * (centre + t) * (centre + t));
-                    value += w * g;
-                    lower += w_lower * g;
+                let on = elementary::exp(-(centre + 0.5 / PER_UNIT) / PER_UNIT);
+                for (&(_, w, w_lower), [g, shrink]) in nodes.iter().zip(&mut at) {
+                    value += w * *g;
+                    lower += w_lower * *g;
+                    *g *= on * *shrink;
                 }
                 // F'' = n F - λ F' about the centre: (k+2)(k+1) a_(k+2) = (n - k) a_k - λ (k+1) a_(k+1).
                 let mut a = [0.0; TERMS];

@@ -161,14 +161,18 @@ impl Strip {
         h.max(0.0) + self.roughness
     }
 
-    /// Width of the strip of `oil` \[m²\] in a gap \[m\], odd in the oil: a dry flank is no corner.
-    fn wetted(&self, oil: f64, gap: f64) -> f64 {
-        // Of volumes, not of their ratio, no power overflows.
+    /// Width of the strip of `oil` \[m²\] in a gap \[m\], odd in the oil: a dry flank is no corner; and the share of the gap that it leaves open,
+    /// `H²/(H² + b²)`.
+    fn wetted(&self, oil: f64, gap: f64) -> (f64, f64) {
+        // Of volumes, not of their ratio, no power overflows. Roots and quotients that do not wait for each other: this is asked at every look at a ring.
         let room = self.width * gap;
         let (square, whole) = (oil * oil, room * room);
-        let wide = self.width * oil / (square * square + whole * whole).sqrt().sqrt();
+        let size = (square * square + whole * whole).sqrt();
+        let wide = self.width * oil * (size.sqrt() * (1.0 / size));
+        let free = gap * gap * size;
         // What fills the gap may round up.
-        if wide > self.width { self.width } else { wide }
+        let bridged = if wide > self.width { self.width } else { wide };
+        (bridged, free / (free + self.width * self.width * square))
     }
 
     /// Oil and gas between a flank and a ring `h` \[m\] above it, over a `circumference` \[m\].
@@ -207,12 +211,6 @@ impl Strip {
             bridge * wetted * cube * dp.abs() / (12.0 * self.mu * (bridge + gap * gap) * reach * reach);
         FlankFlow { fed: missing * (self.per_renewal + gathered), lost: blown }
     }
-}
-
-/// Share of a gap that a strip leaves open.
-fn open_share(wetted: f64, gap: f64) -> f64 {
-    let square = gap * gap;
-    square / (square + wetted * wetted)
 }
 
 struct Runtime {
@@ -261,10 +259,8 @@ impl Flank for Runtime {
 
     fn oil(&self, y: &[f64], place: &RingPlace) -> FlankOil {
         let (oil, h) = (self.volumes(y), distances(place));
-        let gap = h.map(|h| self.strip.gap(h));
-        let wetted = [0, 1].map(|k| self.strip.wetted(oil[k], gap[k]));
-        let open = [0, 1].map(|k| open_share(wetted[k], gap[k]));
-        FlankOil { wetted, open }
+        let [lower, upper] = [0, 1].map(|k| self.strip.wetted(oil[k], self.strip.gap(h[k])));
+        FlankOil { wetted: [lower.0, upper.0], open: [lower.1, upper.1] }
     }
 
     fn rates(&mut self, y: &[f64], at: &FlankIn, dy: &mut [f64]) -> Result<FlankFlow, EvalError> {
