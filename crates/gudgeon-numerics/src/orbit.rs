@@ -144,6 +144,8 @@ const NUDGE: f64 = 0.03;
 const IDLE: usize = 5;
 /// Residual over the accuracy of a cycle that is as little as its noise.
 const SETTLED: f64 = 3.0;
+/// Part of the tolerance below which an estimate must be foreseen for the next cycle to be taken for the last.
+const PROMISED: f64 = 0.5;
 /// Steps of the acceleration from which on the fall of a residual says what the next will be: the first leaves an arbitrary start.
 const SETTLES: usize = 2;
 /// Turns of a residual that is not halved any more, after which one below this many times the accuracy is taken for noise of the map too: steps that fall
@@ -590,9 +592,9 @@ fn sinks(estimate: f64, before: f64, options: &OrbitOptions) -> bool {
     estimate * (fall / (1.0 - fall)).max(1.0) <= options.tolerance
 }
 
-/// Whether the next cycle ends the search if estimate and residual go on falling by `ratio`.
+/// Whether the next cycle ends the search with something to spare if estimate and residual go on falling by `ratio`.
 fn promises((estimate, residual): (f64, f64), ratio: f64, options: &OrbitOptions) -> bool {
-    ratio * estimate <= options.tolerance && ratio * residual <= SETTLED * options.accuracy
+    ratio * estimate <= PROMISED * options.tolerance && ratio * residual <= options.accuracy
 }
 
 /// A difference of two iterates, of their residuals, and the noise in the latter.

@@ -78,6 +78,80 @@ fn options(tolerance: f64, accelerate: bool) -> OrbitOptions {
     }
 }
 
+/// A map that keeps which of its cycles it was told of as probably the last.
+struct Told {
+    map: Linear,
+    cycles: usize,
+    announced: Vec<usize>,
+}
+
+impl CycleMap for Told {
+    fn dim(&self) -> usize {
+        self.map.dim()
+    }
+    fn map(&mut self, y0: &[f64], y1: &mut [f64], accuracy: f64) -> Result<f64, EvalError> {
+        self.cycles += 1;
+        self.map.map(y0, y1, accuracy)
+    }
+    fn scale(&self, y: &[f64], s: &mut [f64]) {
+        self.map.scale(y, s);
+    }
+    fn expect_last(&mut self) {
+        self.announced.push(self.cycles + 1);
+    }
+}
+
+/// What is gathered in a cycle that is announced costs less than a cycle, so that announcements pay when more of them come true than not. Of 199 searches of a map with eight
+/// modes, which end abruptly, 63 announce their last cycle, and 32 one that is not.
+#[test]
+fn announced_cycles_are_the_last_ones_more_often_than_not() {
+    let (mut kept, mut vain) = (0, 0);
+    for seed in 1..=SEEDS {
+        let map = Linear::new(0.8, 1.0, seed);
+        let mut y = map.start.clone();
+        let mut map = Told { map, cycles: 0, announced: Vec::new() };
+        let r = periodic_orbit(&mut map, &mut y, &options(1e-4, true)).unwrap();
+        assert_eq!(r.cycles, map.cycles);
+        let last = usize::from(map.announced.last() == Some(&r.cycles));
+        kept += last;
+        vain += map.announced.len() - last;
+    }
+    // A quarter of the searches; by chance, a standard deviation is 7.
+    assert!(kept >= 50 && vain < kept, "{kept} {vain}");
+}
+
+/// A last cycle began as far from the orbit as its end is, and the way that it went.
+#[test]
+fn a_last_cycle_began_within_what_is_told() {
+    for seed in 1..=SEEDS {
+        let map = Linear::new(0.8, 0.0, seed);
+        let mut y = map.start.clone();
+        let mut map = Kept { map, start: Vec::new() };
+        let r = periodic_orbit(&mut map, &mut y, &options(1e-4, true)).unwrap();
+        // An estimate may be a third of the error, as in [`survey`].
+        assert!(map.map.error(&map.start) <= 3.0 * r.began_at(), "{seed}: {r:?}");
+    }
+}
+
+/// A map that keeps where its last cycle began.
+struct Kept {
+    map: Linear,
+    start: Vec<f64>,
+}
+
+impl CycleMap for Kept {
+    fn dim(&self) -> usize {
+        self.map.dim()
+    }
+    fn map(&mut self, y0: &[f64], y1: &mut [f64], accuracy: f64) -> Result<f64, EvalError> {
+        self.start = y0.to_vec();
+        self.map.map(y0, y1, accuracy)
+    }
+    fn scale(&self, y: &[f64], s: &mut [f64]) {
+        self.map.scale(y, s);
+    }
+}
+
 /// Runs many starts and bases; every converged answer must be as good as it says, to a factor 3. Answers the median of the cycles
 /// and how many converged.
 fn survey(largest: f64, level: f64, tolerance: f64, accelerate: bool) -> (usize, usize) {

@@ -1,6 +1,6 @@
 //! The polynomial through the samples of a step.
 
-use gudgeon_numerics::panel::{LOBATTO, OVERSHOOT, TRAPEZIUM};
+use gudgeon_numerics::panel::{LOBATTO, OVERSHOOT, SIMPSON, TRAPEZIUM};
 
 fn sampled(f: impl Fn(f64) -> f64) -> Vec<f64> {
     LOBATTO.nodes.iter().map(|x| f(*x)).collect()
@@ -151,4 +151,23 @@ fn monotone_samples_are_taken_by_their_ends() {
     assert_eq!(LOBATTO.fall(&[0.0, 0.0, 0.0, 0.0, 1.0]), 0.0);
     assert_eq!(LOBATTO.fall(&[1.0, 0.0, 0.0, 0.0, 0.0]), 1.0);
     assert!(LOBATTO.fall(&[0.0, 0.0, 1.0, 0.0, 0.0]) > 1.0);
+}
+
+#[test]
+fn three_samples_are_exact_for_the_integral_of_a_cubic_and_through_a_parabola() {
+    let at = |f: &dyn Fn(f64) -> f64| SIMPSON.nodes.iter().map(|x| f(*x)).collect::<Vec<_>>();
+    for degree in 0..=3 {
+        let v = at(&|x| x.powi(degree));
+        // Three products of numbers up to one.
+        assert!((SIMPSON.mean(&v) - 1.0 / f64::from(degree + 1)).abs() < 1e-15, "{degree}");
+    }
+    let parabola = |x: f64| 1.0 + x * (3.0 - 4.0 * x);
+    let v = at(&parabola);
+    for x in [0.0, 0.1, 0.5, 0.77, 1.0] {
+        // As above, over differences of a tenth.
+        assert!((SIMPSON.value(&v, x) - parabola(x)).abs() < 1e-14, "{x}");
+    }
+    let (x, top) = SIMPSON.maximum(&v, 0.0).expect("above");
+    // Newton's method to rounding; the top is flat there.
+    assert!((x - 0.375).abs() < 1e-12 && (top - 1.5625).abs() < 1e-14, "{x} {top}");
 }

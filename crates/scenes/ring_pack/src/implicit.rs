@@ -301,8 +301,9 @@ struct Cycle<'a> {
     base: Base,
     staging: Staging,
     h: f64,
-    /// Relative error of a step that the case asks for.
+    /// Relative error of a step that the case asks for, and what is asked of the periodic state.
     tolerance: f64,
+    periodicity: f64,
     stats: Stats,
     q: Vec<f64>,
     /// Longest step \[rad\]: none may jump over a pressure pulse.
@@ -481,6 +482,8 @@ const OIL_AGAIN: f64 = 10.0;
 const NOISE_AGAIN: f64 = 0.1;
 /// Part by which halves come nearer in a cycle at least: to a sixth usually.
 const CLOSER: f64 = 3.0;
+/// The same, as it usually is.
+const SIXTH: f64 = 6.0;
 /// How far halves may be apart, over what is asked of the periodic state, in the cycle of its search that is taken for the results.
 const LIKE: f64 = 0.5;
 /// Most cycles in halves, without oil on the liner and with it, before the pack is integrated whole.
@@ -543,7 +546,8 @@ impl CycleMap for Cycle<'_> {
         if matches!(&self.method, Method::Waveform(w) if w.repeats()) { NOISE_AGAIN } else { 1.0 }
     }
     fn expect_last(&mut self) {
-        self.expects = true;
+        // Halves that would still be too far apart then go on.
+        self.expects = self.halves_apart() <= SIXTH * LIKE * self.periodicity;
     }
     fn gives_up(&self) -> bool {
         matches!(&self.method, Method::Waveform(w) if w.come_apart())
@@ -798,6 +802,7 @@ impl<'a> Cycle<'a> {
             staging: Staging::new(pack),
             h: FIRST_STEP,
             tolerance: s.tolerance.si(),
+            periodicity: orbit_options(s, pack).tolerance,
             stats: Stats::default(),
             q: vec![0.0; pack.layout.quads()],
             longest_step: wanted.limits.longest_step.si(),
