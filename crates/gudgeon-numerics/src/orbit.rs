@@ -324,7 +324,7 @@ impl Search {
         // The end of the last cycle that could be computed.
         let mut g = vec![0.0; y.len()];
         let (mut end, mut extrapolated) = (g.clone(), false);
-        let known = if times == 1 { map.known() } else { &[] };
+        let known = if times == 1 { known(map) } else { Vec::new() };
         let mut state = Anderson::new(y.len(), known);
         self.report.converged = false;
         self.noisy = false;
@@ -391,7 +391,7 @@ impl Search {
             state.previous = Some(Tried { at, r, rest, damping });
         }
         y.copy_from_slice(&g);
-        self.report.changes = state.changes();
+        self.report.changes = changes(&state.secants, &state.s);
         Ok(())
     }
 
@@ -598,10 +598,38 @@ fn promises((estimate, residual): (f64, f64), ratio: f64, options: &OrbitOptions
 }
 
 /// A difference of two iterates, of their residuals, and the noise in the latter.
+#[derive(Clone)]
 struct Secant {
     dy: DVector<f64>,
     dr: DVector<f64>,
     noise: f64,
+}
+
+impl Secant {
+    /// Brings it to other scales.
+    fn rescale(&mut self, by: &DVector<f64>) {
+        self.dy.component_mul_assign(by);
+        self.dr.component_mul_assign(by);
+    }
+}
+
+/// What is known of the slope of a map, without scales.
+fn known(map: &dyn CycleMap) -> Vec<Secant> {
+    let (n, known) = (map.dim(), map.known());
+    let of_these = known.iter().filter(|c| c.start.len() == n && c.change.len() == n);
+    let secant = |c: &Change| Secant {
+        dy: DVector::from_column_slice(&c.start),
+        dr: DVector::from_column_slice(&c.change),
+        noise: c.noise,
+    };
+    of_these.map(secant).collect()
+}
+
+/// What secants in the scales `s` say, without scales.
+fn changes(secants: &[Secant], s: &[f64]) -> Vec<Change> {
+    let unscaled = |v: &DVector<f64>| v.iter().zip(s).map(|(v, s)| v * s).collect();
+    let of = |c: &Secant| Change { start: unscaled(&c.dy), change: unscaled(&c.dr), noise: c.noise };
+    secants.iter().map(of).collect()
 }
 
 /// A cycle, and the step from it.
@@ -648,17 +676,11 @@ struct Anderson {
 }
 
 impl Anderson {
-    /// For `n` states, of whose map the changes `known` are known.
-    fn new(n: usize, known: &[Change]) -> Self {
-        let secant = |c: &Change| Secant {
-            dy: DVector::from_column_slice(&c.start),
-            dr: DVector::from_column_slice(&c.change),
-            noise: c.noise,
-        };
-        let of_these = known.iter().filter(|c| c.start.len() == n && c.change.len() == n);
+    /// For `n` states, of whose map the secants `known` are known.
+    fn new(n: usize, known: Vec<Secant>) -> Self {
         Self {
             s: vec![1.0; n],
-            secants: of_these.map(secant).collect(),
+            secants: known,
             trusted: 0,
             idle: 0,
             stalled: 0,
@@ -671,13 +693,6 @@ impl Anderson {
         }
     }
 
-    /// What the secants say, without scales.
-    fn changes(&self) -> Vec<Change> {
-        let unscaled = |v: &DVector<f64>| v.iter().zip(&self.s).map(|(v, s)| v * s).collect();
-        let of = |c: &Secant| Change { start: unscaled(&c.dy), change: unscaled(&c.dr), noise: c.noise };
-        self.secants.iter().map(of).collect()
-    }
-
     /// Start and residual of the cycle from `y` to `g` in its scales; what was kept is brought to the same scales.
     fn scaled(&mut self, map: &dyn CycleMap, y: &[f64], g: &[f64]) -> (DVector<f64>, DVector<f64>) {
         let n = y.len();
@@ -685,8 +700,7 @@ impl Anderson {
         map.scale(g, &mut self.s);
         let rescale = DVector::from_iterator(n, before.iter().zip(&self.s).map(|(before, s)| before / s));
         for secant in &mut self.secants {
-            secant.dy.component_mul_assign(&rescale);
-            secant.dr.component_mul_assign(&rescale);
+            secant.rescale(&rescale);
         }
         if let Some(tried) = &mut self.previous {
             for v in [&mut tried.at, &mut tried.r, &mut tried.rest] {

@@ -722,6 +722,54 @@ impl CycleMap for Tanks {
     }
 }
 
+/// Tanks, and what is known of their slope from others that are fed a little more.
+struct Taught(Tanks, Vec<Change>);
+impl CycleMap for Taught {
+    fn dim(&self) -> usize {
+        self.0.dim()
+    }
+    fn map(&mut self, y0: &[f64], y1: &mut [f64], accuracy: f64) -> Result<f64, EvalError> {
+        self.0.map(y0, y1, accuracy)
+    }
+    fn scale(&self, y: &[f64], s: &mut [f64]) {
+        self.0.scale(y, s);
+    }
+    fn bend(&self) -> Option<Bend> {
+        self.0.bend
+    }
+    fn known(&self) -> &[Change] {
+        &self.1
+    }
+}
+
+#[test]
+fn what_a_like_map_taught_shortens_a_search_in_stretches() {
+    // Multipliers of 0.94, 0.875 and 0.82.
+    let b = [0.35, 0.5, 0.6];
+    let bend = Some(Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, noise: 1.0 });
+    let options =
+        OrbitOptions { tolerance: 5e-3, accuracy: 1e-4, max_cycles: 200, refinements: 0, accelerate: true };
+    let (mut taught, mut alone) = (0, 0);
+    for seed in 1..=20 {
+        // What is fed moves the orbit by 2e-2 to 5e-2, which changes a cycle by 3e-3.
+        let mut like = Tanks { a: 1.003, ..Tanks::new(&b, seed, bend) };
+        let mut near: Vec<f64> = b.iter().map(|b| 0.5 / (b * b)).collect();
+        let coarse = OrbitOptions { accuracy: 2e-4, tolerance: 1e-2, ..options };
+        let report = periodic_orbit(&mut like, &mut near, &coarse).unwrap();
+        assert!(report.converged && !report.changes.is_empty(), "{report:?}");
+        for (known, cycles) in [(report.changes, &mut taught), (Vec::new(), &mut alone)] {
+            let mut map = Taught(Tanks::new(&b, seed, bend), known);
+            let mut y = near.clone();
+            let report = periodic_orbit(&mut map, &mut y, &options).unwrap();
+            let error = map.0.error(&y);
+            assert!(report.converged && error <= 1.5 * report.error_estimate, "{error:e} {report:?}");
+            *cycles += report.cycles;
+        }
+    }
+    // 13 and 17 cycles when this was written.
+    assert!(5 * taught < 4 * alone, "{taught} {alone}");
+}
+
 /// A store that fills at a constant rate to a corner and then ever slower (multiplier 0.9966), blurred by what beside it goes to and fro at a corner: oil before the edge of a ring.
 struct Creep(u64);
 impl Creep {

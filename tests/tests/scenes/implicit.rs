@@ -106,11 +106,13 @@ fn error_follows_the_tolerance() {
     }
     let slope = (errors[0] / errors[4]).log10() / 4.0;
     println!("observed slope of error over tolerance, both logarithmic: {slope:.2}");
-    assert!(errors.windows(2).all(|w| w[1] < w[0]), "{errors:?}");
+    // Over two decades: by chance one error can be as small as that of a tenth of its tolerance (2.3e-5 at 1e-3, where those of twelve other packs have a median of 9e-5).
+    assert!(errors.windows(3).all(|w| w[2] < w[0]), "{errors:?}");
     // Error control per step: proportional to the tolerance, were it not for kinks that a step may meet anywhere.
     assert!(slope > 0.5, "{slope}");
-    // At 1e-3 and at the default of 1e-4 the results are as good as the tolerance says.
-    assert!(errors[1] < 1e-3 && errors[2] < 1e-4, "{errors:?}");
+    // The results are as good as the tolerance says, at the default of 1e-4 too.
+    let asked = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
+    assert!(errors.iter().zip(asked).all(|(error, asked)| *error < asked), "{errors:?}");
 }
 
 /// Stages that the pack solves itself: as near to the reference as their tolerance says, in fewer steps than the Rosenbrock method of the same error.
@@ -242,6 +244,42 @@ fn halves_that_do_not_agree_are_integrated_whole() {
     let note = r[0].solver.notes.iter().find(|n| n.topic == "halves_apart").expect("it is told");
     assert!(note.text.contains("did not come to agree"), "{}", note.text);
     assert_eq!(r[0].results, r[1].results);
+}
+
+/// A search of the whole pack begins where one in halves ends, which leaves it a few cycles; where these do not agree, as if there had been none.
+#[test]
+fn a_search_begins_where_halves_end() {
+    let rodas3 = |tolerance: &str| [implicit(tolerance), vec!["solver.integrator=rodas3".into()]].concat();
+    let heavy = ["rings.0.mass=129 g", "rings.1.mass=111 g", "rings.2.mass=132 g"].map(String::from).to_vec();
+    let asked = [
+        set("turbo-diesel-120", &rodas3("1e-3")),
+        set(CASE, &rodas3("1e-3")),
+        set(CASE, &[rodas3("3e-3"), heavy].concat()),
+        set(CASE, &[implicit("1e-2"), vec!["solver.integrator=waveform".into()]].concat()),
+        set(CASE, &[rodas3("1e-3"), vec!["models.ring_motion.model=three_seat".into()]].concat()),
+        // Too few for both searches.
+        set(CASE, &[rodas3("1e-3"), vec!["solver.max_cycles=1".into()]].concat()),
+    ];
+    let r = runs(&asked);
+    let cycles = |k: usize, name: &str| r[k].solver.counters.get(name).copied().unwrap_or(0);
+    for (k, (_, set)) in asked.iter().enumerate() {
+        println!("{set:?}: {} and {} cycles", cycles(k, "coarse_cycles"), cycles(k, "cycles"));
+    }
+    // 17 and 5 cycles from a cold start.
+    assert!(cycles(0, "coarse_cycles") > 8 && cycles(0, "cycles") <= 7);
+    assert!(cycles(1, "coarse_cycles") > 2 && cycles(1, "cycles") <= 4);
+    assert!(cycles(2, "coarse_cycles") > 2 && r[2].solver.notes.iter().all(|n| n.topic != "halves_apart"));
+    assert!(value(&r[2], "periodicity_error") <= 3e-3);
+    assert!((3..6).all(|k| cycles(k, "coarse_cycles") == 0));
+    // Nearer than the periodic state is asked to be found.
+    for (k, case) in ["turbo-diesel-120", CASE].iter().enumerate() {
+        let exact = &runs(&[set(case, &implicit("1e-5"))])[0];
+        for name in ["blow_by", "friction_power", "land2.p_max"] {
+            let error = (value(&r[k], name) / value(exact, name) - 1.0).abs();
+            // That of the search of a pack with oil at this tolerance is 1e-2.
+            assert!(error <= [2e-3, 1e-3][k], "{case} {name}: {error:e}");
+        }
+    }
 }
 
 /// With oil on the liner halves may part for some cycles. Where they go on to do so they are given up as soon as that shows, and not after forty cycles: of thirty speeds within 0.003 rpm

@@ -2,7 +2,8 @@
 //!
 //! Near the orbit the change of one cycle drowns in the noise of the map, and a slow mode multiplies that: at a multiplier of 0.95 by twenty. All cycles together
 //! know more. The state that is looked for is the mean of their ends with the weights for which the mean of their residuals, doubts included, is least: reduced rank
-//! extrapolation (sidi2017) with noise. Where all residuals are noise that is the plain mean.
+//! extrapolation (sidi2017) with noise. Where all residuals are noise that is the plain mean. Secants of a map that is like it may be added to that, for what their
+//! ends and residuals have in common is not asked.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -37,17 +38,24 @@ pub struct Blend {
 pub struct Points {
     all: Vec<Point>,
     own: usize,
+    /// Secants of a map that is like this one, in its scales.
+    known: Vec<Secant>,
 }
 
 impl Points {
+    /// None yet, of a map of which the secants `known` are known.
+    pub const fn with(known: Vec<Secant>) -> Self {
+        Self { all: Vec::new(), own: 0, known }
+    }
+
     /// Cycles since the last step.
     pub const fn own(&self) -> usize {
         self.own
     }
 
-    /// Whether there are others.
+    /// Whether more is known than these say.
     pub const fn has_earlier(&self) -> bool {
-        self.own < self.all.len()
+        self.own < self.all.len() || !self.known.is_empty()
     }
 
     /// A cycle from `at` with the residual `r` and its noise.
@@ -64,6 +72,7 @@ impl Points {
     pub fn stepped(&mut self) {
         if !self.is_near() {
             self.all.clear();
+            self.known.clear();
         }
         self.own = 0;
     }
@@ -74,17 +83,29 @@ impl Points {
             point.at.component_mul_assign(by);
             point.r.component_mul_assign(by);
         }
+        for secant in &mut self.known {
+            secant.rescale(by);
+        }
     }
 
-    /// Secants from cycle to cycle; `own`: those since the last step.
-    pub fn secants(&self, own: bool) -> Vec<Secant> {
-        let first = if own { self.all.len() - self.own } else { 0 };
+    /// Secants: those that were known, then from cycle to cycle.
+    pub fn secants(&self) -> Vec<Secant> {
+        self.known.iter().cloned().chain(self.between(0)).collect()
+    }
+
+    /// Those since the last step.
+    pub fn own_secants(&self) -> Vec<Secant> {
+        self.between(self.all.len() - self.own).collect()
+    }
+
+    /// Those from cycle to cycle, from the cycle `first` on.
+    fn between(&self, first: usize) -> impl Iterator<Item = Secant> {
         let between = |w: &[Point]| Secant {
             dy: &w[1].at - &w[0].at,
             dr: &w[1].r - &w[0].r,
             noise: w[0].noise.max(w[1].noise),
         };
-        self.all[first..].windows(2).map(between).collect()
+        self.all[first..].windows(2).map(between)
     }
 
     /// Whether the last cycle came to rest near the orbit, and did not begin to leave it.
@@ -98,21 +119,26 @@ impl Points {
     }
 
     /// Near the orbit all cycles together, with the weights `w` of the least `|Σ w r|² + Σ (w s)²` for `Σ w = 1`, where `s` is the doubt in a residual `r`:
-    /// `(RᵀR + diag s²) w ∝ 1`.
+    /// `(RᵀR + diag s²) w ∝ e`, with `e` of ones. The differences `dr` of known secants are further columns of `R`, whose weights are free: `e` is zero there.
     pub fn blend(&self) -> Option<Blend> {
         let last = self.all.last().filter(|_| self.is_near())?;
-        let n = self.all.len();
-        let mut matrix = DMatrix::from_fn(n, n, |i, j| self.all[i].r.dot(&self.all[j].r));
-        for (i, p) in self.all.iter().enumerate() {
-            matrix[(i, i)] += (p.noise + BLUR * p.r.norm()).powi(2);
+        let cycles = self.all.iter().map(|p| (&p.r, &p.at, p.noise));
+        let columns: Vec<_> = cycles.chain(self.known.iter().map(|c| (&c.dr, &c.dy, c.noise))).collect();
+        let (n, all) = (columns.len(), self.all.len());
+        let mut matrix = DMatrix::from_fn(n, n, |i, j| columns[i].0.dot(columns[j].0));
+        for (i, (r, _, noise)) in columns.iter().enumerate() {
+            matrix[(i, i)] += (noise + BLUR * r.norm()).powi(2);
         }
-        let w = matrix.cholesky()?.solve(&DVector::from_element(n, 1.0));
-        let w = &w / w.sum();
+        let ones = DVector::from_fn(n, |i, _| f64::from(u8::from(i < all)));
+        let w = matrix.cholesky()?.solve(&ones);
+        let w = &w / w.rows(0, all).sum();
         let (mut rest, mut step) = (DVector::zeros(last.r.len()), -(&last.at + &last.r));
-        for (w, p) in w.iter().zip(&self.all) {
-            rest += &p.r * *w;
-            step += (&p.at + &p.r) * *w;
+        let mut noise = 0.0;
+        for (w, (r, at, of)) in w.iter().zip(&columns) {
+            rest += *r * *w;
+            step += (*at + *r) * *w;
+            noise += (w * of).powi(2);
         }
-        Some(Blend { weight: w.norm(), rest, step })
+        Some(Blend { weight: noise.sqrt() / last.noise.max(f64::MIN_POSITIVE), rest, step })
     }
 }

@@ -11,7 +11,10 @@
 use nalgebra::DVector;
 
 use super::points::{Blend, Points};
-use super::{Bend, CycleMap, NEARER, OrbitOptions, ROUGHEST, SETTLED, Search, explain, sinks, spectrum};
+use super::{
+    Bend, CycleMap, NEARER, OrbitOptions, ROUGHEST, SETTLED, Search, Secant, changes, explain, known, sinks,
+    spectrum,
+};
 use crate::EvalError;
 use crate::elementary;
 
@@ -79,15 +82,16 @@ struct Stretch {
 }
 
 impl Stretch {
-    fn new(n: usize, bend: Bend) -> Self {
+    /// For `n` states, of whose map the secants `known` are known: then the start is near.
+    fn new(n: usize, bend: Bend, known: Vec<Secant>) -> Self {
         Self {
             bend,
             s: vec![1.0; n],
-            points: Points::default(),
             residuals: Vec::new(),
             at: None,
-            skipped: FIRST,
+            skipped: if known.is_empty() { FIRST } else { SKIPPED },
             held: 1.0,
+            points: Points::with(known),
             reach: bend.reach,
             best: f64::INFINITY,
             idle: 0,
@@ -156,7 +160,7 @@ impl Stretch {
         if let Some(blend) = self.blend() {
             return (blend.step, blend.rest);
         }
-        let (correction, rest) = explain(&self.points.secants(true), r, self.bend.fresh);
+        let (correction, rest) = explain(&self.points.own_secants(), r, self.bend.fresh);
         (-correction, rest)
     }
 
@@ -294,15 +298,16 @@ impl Search {
         (times, limit): (usize, usize),
         bend: Bend,
     ) -> Result<(), EvalError> {
-        let mut state = Stretch::new(y.len(), bend);
+        let known = if times == 1 { known(map) } else { Vec::new() };
+        let rough = self.report.cycles == 0 && known.is_empty();
+        let mut state = Stretch::new(y.len(), bend, known);
         if self.noisy {
             // What noise said of slow modes is forgotten, but a stretch must show that there are none.
             state.held = super::MAX_GAIN;
         }
         let (mut g, mut end) = (y.to_vec(), y.to_vec());
         let (mut stepped, mut passed, mut last) = (false, 0.0, 0.0);
-        let mut accuracy =
-            if self.report.cycles == 0 { options.accuracy.max(1e-3) } else { options.accuracy };
+        let mut accuracy = if rough { options.accuracy.max(1e-3) } else { options.accuracy };
         self.report.converged = false;
         self.noisy = false;
         while self.report.cycles + times <= limit && !map.gives_up() {
@@ -359,6 +364,7 @@ impl Search {
             }
         }
         y.copy_from_slice(&g);
+        self.report.changes = changes(&state.points.secants(), &state.s);
         Ok(())
     }
 
@@ -372,7 +378,7 @@ impl Search {
         let blend = state.blend();
         let (rest, weight, missed) =
             blend.as_ref().map_or((r, 1.0, 0.0), |b| (&b.rest, b.weight, MISSED * b.step.amax()));
-        let (largest, slow, suspect) = spectrum(&state.points.secants(false), state.bend.fresh);
+        let (largest, slow, suspect) = spectrum(&state.points.secants(), state.bend.fresh);
         let ratio = state.ratio(options.accuracy);
         // Between residuals that are noise a decay says nothing, where secants do.
         let own_noise = state.bend.noise * options.accuracy;

@@ -5,44 +5,40 @@ use std::f64::consts::PI;
 
 use gudgeon_core::content::{self, Content};
 use gudgeon_core::quantity::{PosRatio, quantity};
-use gudgeon_core::result::{Balance, Column, Note, Series};
-use gudgeon_core::{BuildError, EvalError, Stopwatch, register_model};
+use gudgeon_core::result::{Balance, Gradients};
+use gudgeon_core::{BuildError, EvalError, register_model};
 use gudgeon_numerics::elementary;
 use gudgeon_numerics::ode::{
     Direction, EventAction, Flow, IntegrateError, Integrator, LinearInvariant, OdeSystem, Options, Stage,
     Stats, StepView,
 };
-use gudgeon_numerics::orbit::{Bend, CycleMap, OrbitOptions, OrbitReport, periodic_orbit};
-use gudgeon_numerics::panel::{LOBATTO, Rule, SIMPSON};
+use gudgeon_numerics::orbit::{Bend, Change, CycleMap, OrbitOptions, OrbitReport, periodic_orbit};
+use gudgeon_numerics::panel::{LOBATTO, SIMPSON};
 use gudgeon_numerics::radau::Radau5;
 use gudgeon_numerics::rodas::{Formula, Rodas};
 use gudgeon_numerics::sdirk::Sdirk;
 
 use super::around::Around;
-use super::error::RingPackError;
-use super::gas_ledger::GasLedger;
 use super::jacobian::Base;
-use super::measure::{Measures, Peak};
 use super::modes::EventOf;
 use super::pack::Pack;
-use super::record::Totals;
-use super::results;
-use super::rows::Rows;
-use super::solver::{NOT_PERIODIC, Recorded, RingPackSolverSpec, Solution, Wanted};
+use super::solver::{RingPackSolverSpec, Solution, Wanted};
 use super::staged::Staging;
-use super::watch::Watch;
 use super::waveform::{Setting, Waveform};
-use gudgeon_core::result::Gradients;
 use gudgeon_scene::{Asked, GradientError, MethodSetting, RunError, Stopped};
-use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 mod gradients;
 mod integrator;
+mod sampler;
+mod search;
 
 pub use integrator::RingIntegrator;
+
+use sampler::Sampler;
+use search::{oil_least, oil_noise, orbit_options, stopped};
 
 /// The whole scene at once, adaptive and error-controlled; the cycle closed by a periodic-orbit solver.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
@@ -57,8 +53,8 @@ pub struct Implicit {
     /// `waveform` ten times up to 1e-3.
     #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1 }))]
     pub periodicity: PosRatio,
-    /// Most cycles, all phases of the search together, before the run is called unconverged. Half of them, but at least 60, are accelerated; the
-    /// rest, and those of models with decided seats, repeat plainly.
+    /// Most cycles, all phases of the search together, before the run is called unconverged. It begins with cycles in halves, at most half of all, where
+    /// the pack can be halved (`waveform`). Half of the others, but at least 60, are accelerated; the rest, and those of models with decided seats, repeat plainly.
     #[schemars(range(max = 1000))]
     pub max_cycles: u32,
 }
@@ -77,7 +73,7 @@ impl Default for Implicit {
 #[register_model(
     name = "implicit",
     summary = "the whole scene as one stiff system, adaptive, the cycle closed by a periodic-orbit solver",
-    equations = "dy/dtheta = f(theta, y) by Rosenbrock methods of order 3 or 5, a singly diagonally implicit one of order 2, or Radau IIA;  y(theta + cycle) = y(theta) by Anderson acceleration, with oil on the liner by vector extrapolation in cycles",
+    equations = "dy/dtheta = f(theta, y) by Rosenbrock methods of order 3 or 5, a singly diagonally implicit one of order 2, or Radau IIA;  y(theta + cycle) = y(theta) by Anderson acceleration, with oil on the liner by vector extrapolation in cycles, from where halves of the pack end",
     validity = "Every pack. Errors are controlled: results differ from those of the equations by about the tolerance.",
     references = ["sandu1997", "steinebach2023", "hairer1996", "alexander1977", "lelarasmee1982", "walker2011", "sidi2017"],
     example = "tolerance = 1e-4\n",
@@ -106,7 +102,7 @@ impl RingPackSolverSpec for Implicit {
         wanted: &Wanted<'_>,
         progress: &mut dyn FnMut(f64) -> Result<(), Stopped>,
     ) -> Result<Solution, RunError> {
-        run(self, pack, start, wanted, progress)
+        search::run(self, pack, start, wanted, progress)
     }
 
     fn gradients(
@@ -289,6 +285,10 @@ struct Cycle<'a> {
     /// Whether the next cycle will probably be the last of the search, and is recorded; and what the last cycle left, if it was.
     expects: bool,
     taken: Option<Taken>,
+    /// Whether another search begins where this one ends: none of its cycles is recorded.
+    leads_on: bool,
+    /// What is known of the slope of the map before the first cycle.
+    known: Vec<Change>,
     /// Whether cycles tell what passes through each passage of the gas.
     follows: bool,
     pack: &'a mut Pack,
@@ -465,19 +465,8 @@ impl Cycle<'_> {
 /// Steps after which a long cycle asks whether to go on: some tenths of a second.
 const ASKED_EVERY: u32 = 1000;
 
-/// How many times the search of a periodic state may tighten the tolerance tenfold: rings that float amplify the error of a cycle.
-const REFINEMENTS: usize = 2;
 /// Tightest tolerance of a cycle: a hundred times the rounding of its states.
 const FINEST: f64 = 1e-13;
-/// How much less repeatable than its integration a cycle with oil on the liner is where films do not take the same steps again, and up to what error: with 4e-2 a search
-/// ended where oil still crept by a hundredth a cycle.
-const OIL_NOISE: f64 = 20.0;
-const OIL_MOST: f64 = 1e-2;
-/// Largest noise of a cycle with oil on the liner in the same steps that tighter tolerances do not lessen: at 1e-4 cycles differ by 1e-4 to 3e-4. Why is not known; an edge of a
-/// film that is in one cell of the liner or in the next would do it.
-const CELLS: f64 = 1e-4;
-/// Periodicity with oil on the liner in the same steps over the noise of a cycle: the slowest mode multiplies that by ten and more.
-const OIL_AGAIN: f64 = 10.0;
 /// Part of its accuracy by which a cycle in the steps of the one before differs from it, without oil on the liner and with it.
 const NOISE_AGAIN: f64 = 0.1;
 /// Part by which halves come nearer in a cycle at least: to a sixth usually.
@@ -486,10 +475,6 @@ const CLOSER: f64 = 3.0;
 const SIXTH: f64 = 6.0;
 /// How far halves may be apart, over what is asked of the periodic state, in the cycle of its search that is taken for the results.
 const LIKE: f64 = 0.5;
-/// Most cycles in halves, without oil on the liner and with it, before the pack is integrated whole.
-const HALVES_TRY: [usize; 2] = [10, 40];
-/// Tolerance of that over the one that was asked for: with it both leave the same errors.
-const WHOLE: f64 = 0.3;
 /// How strongly oil on the liner bends the map of a cycle: what a face takes up goes by a meniscus whose place is a root of the volume, and a wave before an
 /// edge is full at a corner. Volumes grow a hundredfold on the way, fivefold at most in a step. A cycle
 /// differs from the next by as much as it is accurate: where secants are trusted nearer than that, the search of 36 packs takes an eighth more cycles.
@@ -547,10 +532,13 @@ impl CycleMap for Cycle<'_> {
     }
     fn expect_last(&mut self) {
         // Halves that would still be too far apart then go on.
-        self.expects = self.halves_apart() <= SIXTH * LIKE * self.periodicity;
+        self.expects = !self.leads_on && self.halves_apart() <= SIXTH * LIKE * self.periodicity;
     }
     fn gives_up(&self) -> bool {
         matches!(&self.method, Method::Waveform(w) if w.come_apart())
+    }
+    fn known(&self) -> &[Change] {
+        &self.known
     }
     fn bend(&self) -> Option<Bend> {
         let noise = if matches!(self.method, Method::Waveform(_)) {
@@ -559,183 +547,6 @@ impl CycleMap for Cycle<'_> {
             OIL_BEND.noise
         };
         self.pack.oil_pack.is_some().then_some(Bend { noise, ..OIL_BEND })
-    }
-}
-
-/// Follows the recorded cycle step by step: measures it, closes its balances, and keeps the rows of its series.
-struct Sampler {
-    rows: Rows,
-    measures: Measures,
-    y: Vec<f64>,
-    q: Vec<f64>,
-    failure: Option<EvalError>,
-    impulse: Vec<[f64; 2]>,
-    work: Vec<[f64; 2]>,
-    start: Vec<(f64, f64)>,
-    end: Vec<(f64, f64)>,
-    /// Crank angles \[deg\] and the film on the liner there.
-    liner: Vec<(u32, Vec<f64>)>,
-    watch: Watch,
-    gas_ledger: GasLedger,
-}
-
-impl Sampler {
-    fn new(pack: &mut Pack, wanted: &Wanted<'_>, rule: Rule) -> Self {
-        let n = pack.n_rings();
-        let mut measures = Measures::new(pack, rule, wanted.seat);
-        let (theta, value) = pack.cylinder.highest();
-        measures.cylinder = Peak { theta, value };
-        Self {
-            rows: Rows::new(pack, wanted.series_step),
-            measures,
-            y: vec![0.0; pack.layout.n],
-            q: vec![0.0; pack.layout.quads()],
-            failure: None,
-            impulse: vec![[0.0; 2]; n],
-            work: vec![[0.0; 2]; n],
-            start: vec![(0.0, 0.0); n],
-            end: vec![(0.0, 0.0); n],
-            liner: Vec::new(),
-            watch: Watch::new(pack),
-            gas_ledger: GasLedger::default(),
-        }
-    }
-
-    /// Samples the dense output of a step; at its ends and in its middle all forces, for Simpson's rule on impulse and work and on what limits did.
-    fn measure(&mut self, pack: &mut Pack, v: &dyn StepView) -> Result<(), EvalError> {
-        let (t0, t1) = (v.t0(), v.t1());
-        let last = self.measures.nodes().len() - 1;
-        let half = last / 2;
-        for (k, x) in self.measures.nodes().iter().enumerate() {
-            let t = if k == last { t1 } else { t0 + x * (t1 - t0) };
-            v.interpolate(t, &mut self.y);
-            v.interpolate_quad(t, &mut self.q);
-            if (pack.plan.axial || pack.plan.film) && k.is_multiple_of(half) {
-                if !pack.is_at(t, &self.y) {
-                    pack.evaluate_in_step(t, &self.y)?;
-                }
-                let weight = if k == half { 4.0 } else { 1.0 };
-                self.close(pack, weight * (t1 - t0) / pack.omega / 6.0);
-                self.watch.look(pack, weight * (t1 - t0) / 6.0);
-            } else {
-                pack.look(t, &self.y)?;
-            }
-            self.measures.sample(k, pack, pack.layout.passed(&self.q));
-            self.gas_ledger.sample(&*pack.gas);
-        }
-        self.measures.step(pack, t0, t1);
-        for (i, e) in self.end.iter_mut().enumerate() {
-            *e = momentum(pack, i);
-        }
-        Ok(())
-    }
-
-    /// Adds the forces of the instant over `dt` \[s\] to impulse and work.
-    fn close(&mut self, pack: &Pack, dt: f64) {
-        for i in 0..pack.n_rings() {
-            if pack.layout.motion[i].is_empty() {
-                continue;
-            }
-            let (r, velocity) = (&pack.at.rings[i], pack.at.places[i].v);
-            let a = &r.axial;
-            let parts = [a.gas, a.inertia, a.gravity, a.film, a.damping, r.reaction, a.expander];
-            let sum: f64 = parts.iter().sum();
-            let magnitude: f64 = parts.iter().map(|p| p.abs()).sum();
-            self.impulse[i][0] += dt * sum;
-            self.impulse[i][1] += dt * magnitude;
-            self.work[i][0] += dt * sum * velocity;
-            self.work[i][1] += dt * parts.iter().map(|p| (p * velocity).abs()).sum::<f64>();
-        }
-    }
-
-    fn balance(&self, pack: &Pack) -> (Option<f64>, Option<f64>) {
-        if pack.layout.motion.iter().all(|m| m.is_empty()) {
-            return (None, None);
-        }
-        let worst = |sums: &[[f64; 2]], change: &dyn Fn(usize) -> f64| {
-            sums.iter()
-                .enumerate()
-                .filter(|(_, s)| s[1] > 0.0)
-                .map(|(i, s)| ((s[0] - change(i)) / s[1]).abs())
-                .fold(0.0, f64::max)
-        };
-        let momentum = worst(&self.impulse, &|i| self.end[i].0 - self.start[i].0);
-        let energy = worst(&self.work, &|i| self.end[i].1 - self.start[i].1);
-        (Some(energy), Some(momentum))
-    }
-}
-
-impl Follower for Sampler {
-    fn begin(&mut self, pack: &mut Pack, theta: f64, y: &[f64]) -> Result<(), EvalError> {
-        pack.evaluate(theta, y)?;
-        self.rows.start(pack, y);
-        self.gas_ledger.sample(&*pack.gas);
-        for (i, s) in self.start.iter_mut().enumerate() {
-            *s = momentum(pack, i);
-        }
-        Ok(())
-    }
-
-    fn step(&mut self, pack: &mut Pack, v: &dyn StepView) -> Flow {
-        self.rows.step(pack, v);
-        match self.measure(pack, v) {
-            Ok(()) => Flow::Continue,
-            Err(e) => {
-                self.failure = Some(e);
-                Flow::Stop
-            }
-        }
-    }
-
-    /// Keeps the film on the liner at every dead centre.
-    fn booked(&mut self, pack: &Pack, theta: f64) {
-        let turns = theta / PI;
-        if let Some(oil) = &pack.oil_pack
-            && (turns - turns.round()).abs() < 1e-9
-        {
-            self.liner.push((turns.round() as u32 * 180, oil.liner().1));
-        }
-    }
-}
-
-/// The film on the liner at the dead centres over the height above the lowest place of the pin.
-fn liner_table(pack: &Pack, films: Vec<(u32, Vec<f64>)>) -> Option<Series> {
-    let oil = pack.oil_pack.as_ref()?;
-    let lowest = pack.y_tdc - pack.kinematics.stroke();
-    let z = oil.liner().0.into_iter().map(|z| z - lowest).collect();
-    let column = |name: String, unit: &str, values| Column { name, unit: unit.into(), values };
-    Some(Series {
-        axis: column("height".into(), "m", z),
-        columns: films.into_iter().map(|(deg, f)| column(format!("film_at_{deg}"), "m", f)).collect(),
-    })
-}
-
-/// Momentum and kinetic energy of ring `i` relative to the piston.
-fn momentum(pack: &Pack, i: usize) -> (f64, f64) {
-    let (m, v) = (pack.geo.rings[i].mass, pack.at.places[i].v);
-    (m * v, 0.5 * m * v * v)
-}
-
-/// What is said of a cycle that does not close as it should.
-fn not_periodic(error: f64, wanted: f64, cycles: usize) -> Note {
-    let seen = if error <= wanted { " only since the last cycle" } else { "" };
-    let text = format!(
-        "not periodic within {wanted:.0e} after {cycles} cycles: the estimated error is {error:.1e}{seen}. Raise `solver.max_cycles`, tighten \
-         `solver.tolerance`, or look for a mode that never settles (a ring that flutters)"
-    );
-    let failed = error.is_nan() || error > NOT_PERIODIC * wanted;
-    let note = if failed { Note::failure("not_periodic", text) } else { Note::caution("not_periodic", text) };
-    note.amount("estimated_error", error, "1").amount("wanted", wanted, "1")
-}
-
-/// What stopped an integration.
-fn stopped(e: IntegrateError) -> RunError {
-    match e {
-        IntegrateError::Eval { t, source } => RunError::Eval { theta_deg: t.to_degrees(), source },
-        IntegrateError::TooManySteps { t, max } => {
-            RunError::scene(RingPackError::Steps { theta_deg: t.to_degrees(), max })
-        }
-        other => RunError::Integrate(other),
     }
 }
 
@@ -791,6 +602,8 @@ impl<'a> Cycle<'a> {
             wanted: *wanted,
             expects: false,
             taken: None,
+            leads_on: false,
+            known: Vec::new(),
             follows: false,
             method: Method::new(s, pack),
             breakpoints: breakpoints(pack),
@@ -938,144 +751,4 @@ impl<'a> Cycle<'a> {
         });
         Balance { gas_mass: Some(gas_mass), oil_mass, flank_oil, ..Balance::default() }
     }
-}
-
-/// Work counters of a search.
-fn counters(work: &Stats) -> IndexMap<String, u64> {
-    let all = [
-        ("steps", work.steps),
-        ("rejected", work.rejected),
-        ("rhs", work.rhs),
-        ("jacobians", work.jacobians),
-        ("factorisations", work.lu),
-        ("events", work.events),
-        ("stages", work.stages),
-    ];
-    // Methods without stages of the scene's own do not speak of them.
-    let all = all.into_iter().filter(|(name, n)| *name != "stages" || *n > 0);
-    all.map(|(k, v)| (k.to_owned(), v)).collect()
-}
-
-/// States with which the first cycle starts, all lands at `start` \[Pa\].
-fn first_states(pack: &mut Pack, start: f64) -> Vec<f64> {
-    let dim = pack.layout.n;
-    let mut y = vec![0.0; dim + pack.layout.carried];
-    pack.initial(start, &mut y[..dim]);
-    if let Some(oil) = &pack.oil_pack {
-        oil.field(&mut y[dim..]);
-    }
-    y
-}
-
-/// Noise of a cycle in halves with oil on the liner, in the steps of the one before.
-const fn oil_noise(tolerance: f64) -> f64 {
-    (NOISE_AGAIN * tolerance).max(tolerance.min(CELLS))
-}
-
-/// Least periodicity with oil on the liner where films do not take the same steps again.
-fn oil_least(tolerance: f64) -> f64 {
-    (OIL_NOISE * tolerance).min(OIL_MOST).max(tolerance)
-}
-
-/// How the periodic state is searched.
-fn orbit_options(s: &Implicit, pack: &Pack) -> OrbitOptions {
-    // A map is only as repeatable as its integration is accurate, and where a film ends on the liner depends on where steps end.
-    let tolerance = s.tolerance.si();
-    let halves = s.integrator == RingIntegrator::Waveform;
-    let least = match (pack.oil_pack.is_some(), halves) {
-        (true, true) => OIL_AGAIN * oil_noise(tolerance),
-        (true, false) => oil_least(tolerance),
-        _ => tolerance,
-    };
-    let most = if halves { HALVES_TRY[usize::from(pack.oil_pack.is_some())] } else { usize::MAX };
-    OrbitOptions {
-        tolerance: s.periodicity.si().max(least),
-        accuracy: tolerance,
-        max_cycles: most.min(s.max_cycles as usize),
-        refinements: if halves { 0 } else { REFINEMENTS },
-        accelerate: pack.decision_interval().is_none(),
-    }
-}
-
-/// Solves one start.
-fn run(
-    s: &Implicit,
-    pack: &mut Pack,
-    start: f64,
-    wanted: &Wanted<'_>,
-    progress: &mut dyn FnMut(f64) -> Result<(), Stopped>,
-) -> Result<Solution, RunError> {
-    let begin = Stopwatch::start();
-    let discrete = pack.decision_interval().is_some();
-    pack.follow_passages(false);
-    let mut y = first_states(pack, start);
-    let tolerance = s.tolerance.si();
-    let options = orbit_options(s, pack);
-    let mut cycle = Cycle::new(s, pack, wanted, progress);
-    let closed = cycle.close(&mut y, &options);
-    let (seconds, counters, cycles) = (begin.seconds(), counters(&cycle.stats), cycle.done);
-    let apart = closed.as_ref().map_or_else(RunError::may_go_otherwise, |report| !report.converged);
-    if s.integrator == RingIntegrator::Waveform && apart {
-        let mut solution = whole(s, (pack, start), wanted, progress, (cycles, &counters))?;
-        solution.seconds += seconds;
-        return Ok(solution);
-    }
-    let mut report = closed?;
-    let Taken { sampler, balance } = match cycle.taken.take() {
-        Some(taken) => taken,
-        None => {
-            let taken = cycle.record(&mut y, tolerance).map_err(stopped)?;
-            cycle.judge(&mut report, options.tolerance);
-            taken
-        }
-    };
-    let q = cycle.q;
-    let (energy, momentum) = sampler.balance(pack);
-    let gas_energy = pack.layout.gas_quad().and_then(|k| sampler.gas_ledger.closure(q[k]));
-    let totals = Totals {
-        balance: Balance { energy, momentum, gas_energy, ..balance },
-        periodicity_error: report.error_estimate,
-        ..Totals::of_cycle(pack, &q)
-    };
-    sampler.watch.carried(pack)?;
-    let mut notes = sampler.watch.notes(pack);
-    if report.period == 1 && !report.converged {
-        notes.push(not_periodic(report.error_estimate, options.tolerance, report.cycles));
-    }
-    Ok(Solution {
-        liner: liner_table(pack, sampler.liner),
-        record: Recorded::Rows(sampler.rows),
-        retreats: sampler.watch.events(),
-        cycle: results::Cycle { totals, measures: sampler.measures },
-        // Decisions that do not repeat are told by the caller, for every start.
-        period: if report.converged || !discrete { report.period } else { 0 },
-        cycles: report.cycle_equivalents,
-        counters,
-        notes,
-        seconds,
-    })
-}
-
-/// Solves one start whose halves did not come to agree by the whole pack, and tells so.
-fn whole(
-    s: &Implicit,
-    (pack, start): (&mut Pack, f64),
-    wanted: &Wanted<'_>,
-    progress: &mut dyn FnMut(f64) -> Result<(), Stopped>,
-    (cycles, work): (f64, &IndexMap<String, u64>),
-) -> Result<Solution, RunError> {
-    let tolerance = quantity(WHOLE * s.tolerance.si());
-    let whole = Implicit { tolerance, integrator: RingIntegrator::Rodas3, ..s.clone() };
-    let mut solution = run(&whole, pack, start, wanted, progress)?;
-    for (name, count) in work {
-        *solution.counters.entry(name.clone()).or_default() += count;
-    }
-    solution.cycles += cycles;
-    let text = format!(
-        "films and the motion in the grooves did not come to agree in {cycles} cycles (`solver.integrator` `waveform`): the pack was integrated whole, by `rodas3` at a tolerance \
-         of {:.1e}. Where rings flutter, take that from the start",
-        whole.tolerance.si()
-    );
-    solution.notes.push(Note::caution("halves_apart", text).of_numerics());
-    Ok(solution)
 }

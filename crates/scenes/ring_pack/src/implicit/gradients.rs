@@ -21,9 +21,8 @@ use gudgeon_numerics::{EvalError, Stopped};
 use gudgeon_scene::{GradientError, RunError};
 use indexmap::IndexMap;
 
-use super::{
-    Cycle, Implicit, Pack, RingIntegrator, Wanted, first_states, not_periodic, orbit_options, stopped,
-};
+use super::search::{self, approach, not_periodic};
+use super::{Cycle, Implicit, Pack, RingIntegrator, Wanted, orbit_options, stopped};
 use crate::around::{Around, Varied};
 use variation::Variation;
 
@@ -45,16 +44,19 @@ pub(super) fn gradients(
     progress: &mut dyn FnMut(f64) -> Result<(), Stopped>,
 ) -> Result<Gradients, GradientError> {
     fits(pack, around.varied)?;
-    let mut y = first_states(pack, start);
     let options = orbit_options(s, pack);
-    let mut searching = |done: f64| progress(0.5 * done);
-    let mut search = Cycle::new(s, pack, wanted, &mut searching);
-    let report = search.close(&mut y, &options)?;
+    let begun = approach(s, pack, start, wanted, &mut |done| progress(0.5 * done))?;
+    let led = begun.led();
+    let mut searching = |done: f64| progress(0.5 * (led + (1.0 - led) * done));
+    let mut y = begun.y;
+    let mut cycle = Cycle::new(s, pack, wanted, &mut searching);
+    cycle.known = begun.known;
+    let report = cycle.close(&mut y, &options)?;
     if report.period != 1 {
         let what = format!("the cycle repeats only every {} cycles", report.period);
         return Err(GradientError::NoMethod(what));
     }
-    let mut counters = super::counters(&search.stats);
+    let mut counters = search::counters(&cycle.stats);
     counters.insert("cycles".into(), report.cycles as u64);
     let tolerance = s.tolerance.si().min(TOLERANCE);
     let tight = Implicit { tolerance: quantity(tolerance), integrator: RingIntegrator::Rodas5p, ..s.clone() };
@@ -120,7 +122,7 @@ fn distance(pack: &Pack, d: &[f64]) -> f64 {
 
 /// Adds the work of a followed cycle.
 fn count(counters: &mut IndexMap<String, u64>, cycle: &Cycle<'_>, followed: &Variation<'_>, k: usize) {
-    for (name, n) in super::counters(&cycle.stats) {
+    for (name, n) in search::counters(&cycle.stats) {
         *counters.entry(name).or_insert(0) += n;
     }
     let own = [("rhs", followed.work.instants), ("jacobians", followed.work.jacobians)];

@@ -7,11 +7,13 @@ use gudgeon_numerics::panel::LOBATTO;
 use gudgeon_scene::RunError;
 use indexmap::IndexMap;
 
-use super::super::{Measures, Pack, Peak, Totals, Wanted, results};
+use super::super::{Pack, Wanted};
 use super::Orbit;
 use super::variation::Trail;
 use crate::around::Varied;
-use crate::results::Meter;
+use crate::measure::{Measures, Peak};
+use crate::record::Totals;
+use crate::results::{self, Meter};
 
 /// Results at the orbit, and their derivatives.
 pub fn results(
