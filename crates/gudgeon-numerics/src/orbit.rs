@@ -150,7 +150,7 @@ const PROMISED: f64 = 0.5;
 const SETTLES: usize = 2;
 /// Turns of a residual that is not halved any more, after which one below this many times the accuracy is taken for noise of the map too: steps that fall
 /// differently can make it noisier than it was asked to be.
-const STALL: (usize, f64) = (12, 30.0);
+const STALL: (usize, f64) = (6, 30.0);
 /// Cycles that acceleration has before plain repetition may take its place.
 const PATIENCE: usize = 60;
 /// Cycles over which plain repetition shows that it has come to rest in a band, and the width of a band over the noise of the map below which it is one.
