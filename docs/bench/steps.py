@@ -3,7 +3,7 @@
     python3 docs/bench/steps.py [--binary PATH] [--integrator NAME] [--tolerance T] [--oil off|liner_film]
 
 runs the diesel of the README at six speeds, three moduli of contact and three masses of the rings, and packs of three to ten rings made of its second one, and prints
-Markdown. Needs Python 3.9 or newer and, without `--binary`, cargo.
+Markdown. Cycles and steps are those of the whole pack, times also those of the cycles in halves that lead there. Needs Python 3.9 or newer and, without `--binary`, cargo.
 """
 
 import argparse
