@@ -53,7 +53,7 @@ pub struct Implicit {
     /// `waveform` ten times up to 1e-3.
     #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1 }))]
     pub periodicity: PosRatio,
-    /// Most cycles, all phases of the search together, before the run is called unconverged. It begins with cycles in halves, at most half of all, where
+    /// Most cycles, all phases of the search together, before the run is called unconverged. The search begins with cycles in halves, at most half of all, where
     /// the pack can be halved (`waveform`). Half of the others, but at least 60, are accelerated; the rest, and those of models with decided seats, repeat plainly.
     #[schemars(range(max = 1000))]
     pub max_cycles: u32,
