@@ -1,5 +1,4 @@
 //! The attributes that register kinds and models. `gudgeon-core` documents and exports them; nothing else names this crate.
-#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 
 mod fields;
 mod kind;

@@ -90,7 +90,9 @@ fn published_scheme_tends_to_the_implicit_solution() {
 #[test]
 fn error_follows_the_tolerance() {
     let tolerances = ["1e-2", "1e-3", "1e-4", "1e-5", "1e-6"];
-    let mut asked = vec![set(CASE, &[implicit("1e-7"), vec!["solver.integrator=radau5".into()]].concat())];
+    // Periodic to 1e-6: nearer, the noise of a fluttering ring takes three times the cycles and changes no result by more than 3e-7.
+    let own = ["method=implicit", "integrator=radau5", "tolerance=1e-7", "periodicity=1e-6"];
+    let mut asked = vec![set(CASE, &own.map(|own| format!("solver.{own}")))];
     asked.extend(tolerances[..4].iter().map(|t| set(CASE, &implicit(t))));
     let mut r = runs(&asked);
     r.push(TIGHT.clone());
@@ -106,7 +108,7 @@ fn error_follows_the_tolerance() {
     }
     let slope = (errors[0] / errors[4]).log10() / 4.0;
     println!("observed slope of error over tolerance, both logarithmic: {slope:.2}");
-    // Over two decades: by chance one error can be as small as that of a tenth of its tolerance (2.3e-5 at 1e-3, where twelve other packs have medians of 6e-5 in blow-by and 9e-5 in friction).
+    // Over two decades: by chance one error can be as small as that of a tenth of its tolerance (on another way to the periodic state 2.3e-5 at 1e-3, where twelve other packs have medians of 6e-5 in blow-by and 9e-5 in friction).
     assert!(errors.windows(3).all(|w| w[2] < w[0]), "{errors:?}");
     // Error control per step: proportional to the tolerance, were it not for kinks that a step may meet anywhere.
     assert!(slope > 0.5, "{slope}");
@@ -265,9 +267,9 @@ fn a_search_begins_where_halves_end() {
     for (k, (_, set)) in asked.iter().enumerate() {
         println!("{set:?}: {} and {} cycles", cycles(k, "coarse_cycles"), cycles(k, "cycles"));
     }
-    // 17 and 5 cycles from a cold start.
-    assert!(cycles(0, "coarse_cycles") > 8 && cycles(0, "cycles") <= 7);
-    assert!(cycles(1, "coarse_cycles") > 2 && cycles(1, "cycles") <= 4);
+    // 17 and 5 cycles from a cold start; 2 each when this was written.
+    assert!(cycles(0, "coarse_cycles") > 8 && cycles(0, "cycles") <= 4);
+    assert!(cycles(1, "coarse_cycles") > 2 && cycles(1, "cycles") <= 3);
     assert!(cycles(2, "coarse_cycles") > 2 && r[2].solver.notes.iter().all(|n| n.topic != "halves_apart"));
     assert!(value(&r[2], "periodicity_error") <= 3e-3);
     assert!((3..6).all(|k| cycles(k, "coarse_cycles") == 0));
