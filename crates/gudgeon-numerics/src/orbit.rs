@@ -43,6 +43,18 @@ pub trait CycleMap {
     fn known(&self) -> &[Change] {
         &[]
     }
+    /// Whether the search begins near the orbit: at that of a map that is like this one.
+    fn begins_near(&self) -> bool {
+        false
+    }
+    /// Where the orbit of that map is if it is moved by what it lacks of this one in the cycle from `y` to `end` (defect correction, stetter1978), within `tolerance`;
+    /// `None` where there is no such map any more, or it has no such orbit.
+    ///
+    /// # Errors
+    /// Its cycles cannot be computed, and the search is not to go on.
+    fn lead(&mut self, _y: &[f64], _end: &[f64], _tolerance: f64) -> Result<Option<Vec<f64>>, EvalError> {
+        Ok(None)
+    }
     /// How the map is searched if it is strongly bent; `None` for one that is nearly linear between the iterates.
     fn bend(&self) -> Option<Bend> {
         None
@@ -146,8 +158,8 @@ const IDLE: usize = 5;
 const SETTLED: f64 = 3.0;
 /// Part of the tolerance below which an estimate must be foreseen for the next cycle to be taken for the last.
 const PROMISED: f64 = 0.5;
-/// Steps of the acceleration from which on the fall of a residual says what the next will be: the first leaves an arbitrary start.
-const SETTLES: usize = 2;
+/// Steps of the acceleration from which on the fall of a residual says what the next will be: the first leaves an arbitrary start, but not one near the orbit.
+const SETTLES: [usize; 2] = [2, 1];
 /// Turns of a residual that is not halved any more, after which one below this many times the accuracy is taken for noise of the map too: steps that fall
 /// differently can make it noisier than it was asked to be.
 const STALL: (usize, f64) = (6, 30.0);
@@ -329,7 +341,9 @@ impl Search {
         self.report.converged = false;
         self.noisy = false;
         // Far from the orbit a rough map does: the first cycle only has to leave the arbitrary start.
-        let rough = if self.report.cycles == 0 { options.accuracy.max(1e-3) } else { options.accuracy };
+        let first = self.report.cycles == 0;
+        let near = first && map.begins_near();
+        let rough = if first && !near { options.accuracy.max(1e-3) } else { options.accuracy };
         let mut accuracy = if times == 1 { rough } else { options.accuracy };
         let mut before = accuracy;
         for k in 0.. {
@@ -385,7 +399,9 @@ impl Search {
             }
             map.admit(&g, y);
             extrapolated = true;
-            if state.passed > 0.0 || k >= SETTLES && promises((estimate, residual), ratio, options) {
+            if state.passed > 0.0
+                || k >= SETTLES[usize::from(near)] && promises((estimate, residual), ratio, options)
+            {
                 map.expect_last();
             }
             state.previous = Some(Tried { at, r, rest, damping });

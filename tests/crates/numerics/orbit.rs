@@ -722,51 +722,83 @@ impl CycleMap for Tanks {
     }
 }
 
-/// Tanks, and what is known of their slope from others that are fed a little more.
-struct Taught(Tanks, Vec<Change>);
+/// Tanks, and what is known of their slope from others that are like them; these may lead on, moved by what they did otherwise.
+struct Taught {
+    tanks: Tanks,
+    known: Vec<Change>,
+    like: Option<(Tanks, Vec<f64>)>,
+    leads: usize,
+}
 impl CycleMap for Taught {
     fn dim(&self) -> usize {
-        self.0.dim()
+        self.tanks.dim()
     }
     fn map(&mut self, y0: &[f64], y1: &mut [f64], accuracy: f64) -> Result<f64, EvalError> {
-        self.0.map(y0, y1, accuracy)
+        self.tanks.map(y0, y1, accuracy)
     }
     fn scale(&self, y: &[f64], s: &mut [f64]) {
-        self.0.scale(y, s);
+        self.tanks.scale(y, s);
     }
     fn bend(&self) -> Option<Bend> {
-        self.0.bend
+        self.tanks.bend
     }
     fn known(&self) -> &[Change] {
-        &self.1
+        &self.known
+    }
+    fn begins_near(&self) -> bool {
+        self.like.is_some()
+    }
+    fn lead(&mut self, y: &[f64], end: &[f64], _: f64) -> Result<Option<Vec<f64>>, EvalError> {
+        let Some((like, moved)) = &mut self.like else { return Ok(None) };
+        self.leads += 1;
+        moved.iter_mut().zip(y.iter().zip(end)).for_each(|(d, (y, end))| *d += end - y);
+        // Each passes on what it is fed and what is added to it.
+        let mut flow = like.a;
+        let passed = moved.iter().map(|d| {
+            flow += d;
+            flow
+        });
+        Ok(Some(like.b.iter().zip(passed).map(|(b, out)| (out / b).powi(2)).collect()))
     }
 }
 
 #[test]
-fn what_a_like_map_taught_shortens_a_search_in_stretches() {
+fn a_like_map_shortens_a_search_in_stretches_by_what_it_taught_and_more_where_it_leads_on() {
     // Multipliers of 0.94, 0.875 and 0.82.
     let b = [0.35, 0.5, 0.6];
     let bend = Some(Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, noise: 1.0 });
     let options =
         OrbitOptions { tolerance: 5e-3, accuracy: 1e-4, max_cycles: 200, refinements: 0, accelerate: true };
-    let (mut taught, mut alone) = (0, 0);
+    let (mut led, mut taught, mut alone, mut leads) = (0, 0, 0, 0);
     for seed in 1..=20 {
-        // What is fed moves the orbit by 2e-2 to 5e-2, which changes a cycle by 3e-3.
-        let mut like = Tanks { a: 1.003, ..Tanks::new(&b, seed, bend) };
+        // What is fed moves the orbit by 2e-2 to 5e-2, which changes a cycle by 3e-3; outlets that are 2 % wider move it on and change the slopes.
+        let like = |wider: f64| {
+            let b: Vec<f64> = b.iter().map(|b| b * wider).collect();
+            Tanks { a: 1.003, ..Tanks::new(&b, seed, bend) }
+        };
         let mut near: Vec<f64> = b.iter().map(|b| 0.5 / (b * b)).collect();
         let coarse = OrbitOptions { accuracy: 2e-4, tolerance: 1e-2, ..options };
-        let report = periodic_orbit(&mut like, &mut near, &coarse).unwrap();
+        let report = periodic_orbit(&mut like(1.0), &mut near, &coarse).unwrap();
         assert!(report.converged && !report.changes.is_empty(), "{report:?}");
-        for (known, cycles) in [(report.changes, &mut taught), (Vec::new(), &mut alone)] {
-            let mut map = Taught(Tanks::new(&b, seed, bend), known);
-            let mut y = near.clone();
+        let led_by = Some((like(1.02), vec![0.0; b.len()]));
+        let mut far = near.clone();
+        periodic_orbit(&mut like(1.02), &mut far, &coarse).unwrap();
+        for (known, like, start, cycles) in [
+            (report.changes.clone(), led_by, &far, &mut led),
+            (report.changes, None, &near, &mut taught),
+            (Vec::new(), None, &near, &mut alone),
+        ] {
+            let mut map = Taught { tanks: Tanks::new(&b, seed, bend), known, like, leads: 0 };
+            let mut y = start.clone();
             let report = periodic_orbit(&mut map, &mut y, &options).unwrap();
-            let error = map.0.error(&y);
+            let error = map.tanks.error(&y);
             assert!(report.converged && error <= 1.5 * report.error_estimate, "{error:e} {report:?}");
             *cycles += report.cycles;
+            leads += map.leads;
         }
     }
-    // 13 and 17 cycles when this was written.
+    // 3.4, 13 and 17 cycles when this was written: one that shows what the like map lacks, one or two that show how much is left, for it is led on once more where that is too much.
+    assert!(3 * led < taught && (20..=40).contains(&leads), "{led} {taught} {leads}");
     assert!(5 * taught < 4 * alone, "{taught} {alone}");
 }
 

@@ -93,6 +93,17 @@ impl Points {
         self.known.iter().cloned().chain(self.between(0)).collect()
     }
 
+    /// Forgets all cycles, and nothing of what was known before.
+    pub fn forget(&mut self) {
+        self.all.clear();
+        self.own = 0;
+    }
+
+    /// Those that were known.
+    pub fn known(&self) -> &[Secant] {
+        &self.known
+    }
+
     /// Those since the last step.
     pub fn own_secants(&self) -> Vec<Secant> {
         self.between(self.all.len() - self.own).collect()

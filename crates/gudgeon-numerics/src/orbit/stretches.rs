@@ -21,6 +21,8 @@ use crate::elementary;
 /// Cycles that are not looked at: at the start, and after a step, which stirs up fast modes.
 const FIRST: usize = 4;
 const SKIPPED: usize = 2;
+/// Most cycles in which a search that begins near the orbit is led on.
+const LED: usize = 4;
 /// Secants of a stretch, whose cycles are one more.
 const GATHERED: usize = 2;
 /// Part of the residual that cycles taken together may leave over to be stepped with before the stretch is complete, and of a step by which it may miss.
@@ -79,6 +81,8 @@ struct Stretch {
     drifts: Vec<Option<Drift>>,
     /// How far states have to go that drift.
     ahead: f64,
+    /// Cycles in which a search that began near the orbit may still be led on.
+    near: usize,
 }
 
 impl Stretch {
@@ -99,6 +103,7 @@ impl Stretch {
             plain: false,
             drifts: vec![None; n],
             ahead: 0.0,
+            near: 0,
         }
     }
 
@@ -108,6 +113,48 @@ impl Stretch {
         self.residuals.clear();
         self.at = None;
         self.skipped = SKIPPED;
+    }
+
+    /// Where a search that began near the orbit goes on after the cycle from `y` to `g`: where a like map leads, or by what all cycles say if that explains where they are, or
+    /// from the end of the cycle. After some cycles it is a search like any other.
+    fn goes_on_near(
+        &mut self,
+        map: &mut dyn CycleMap,
+        (y, g): (&[f64], &[f64]),
+        tolerance: f64,
+    ) -> Result<Option<Vec<f64>>, EvalError> {
+        self.near -= 1;
+        self.at = None;
+        if self.near == 0 {
+            self.points.forget();
+            self.residuals.clear();
+            self.skipped = SKIPPED;
+            return Ok(None);
+        }
+        let explains = |b: &Blend| b.rest.amax() <= EXPLAINED * self.last_residual();
+        let next = match (map.lead(y, g, tolerance)?, self.blend().filter(explains)) {
+            (Some(next), _) => next,
+            (None, Some(blend)) => {
+                let mut next = g.to_vec();
+                next.iter_mut().zip(blend.step.iter()).zip(&self.s).for_each(|((y, d), s)| *y += d * s);
+                map.admit(g, &mut next);
+                next
+            }
+            (None, None) => g.to_vec(),
+        };
+        self.residuals.clear();
+        map.expect_last();
+        Ok(Some(next))
+    }
+
+    /// Largest part of the last residual.
+    fn last_residual(&self) -> f64 {
+        self.residuals.last().map_or(0.0, |r| r.amax())
+    }
+
+    /// What tells how slow the map is: where the search began near the orbit, and cycles differ by little more than noise, only what was known before.
+    fn slopes(&self) -> Vec<Secant> {
+        if self.near > 0 { self.points.known().to_vec() } else { self.points.secants() }
     }
 
     /// Takes the cycle from `y` to `g`, as accurate as `accuracy`.
@@ -307,6 +354,9 @@ impl Search {
         }
         let (mut g, mut end) = (y.to_vec(), y.to_vec());
         let (mut stepped, mut passed, mut last) = (false, 0.0, 0.0);
+        if self.report.cycles == 0 && map.begins_near() {
+            (state.skipped, state.near) = (0, LED);
+        }
         let mut accuracy = if rough { options.accuracy.max(1e-3) } else { options.accuracy };
         self.report.converged = false;
         self.noisy = false;
@@ -328,7 +378,8 @@ impl Search {
             let estimate = self.judge_stretch(&mut state, options, last);
             let residual = self.report.residual;
             last = residual;
-            let settled = passed > 0.0 && residual <= SETTLED * options.accuracy;
+            let settled =
+                (passed > 0.0 || state.near > 0 && stepped) && residual <= SETTLED * options.accuracy;
             if accurate && (settled && estimate <= options.tolerance || sinks(estimate, passed, options)) {
                 self.report.converged = true;
                 state.settle(map, &mut g);
@@ -340,6 +391,17 @@ impl Search {
                 break;
             }
             passed = if estimate <= options.tolerance { estimate } else { 0.0 };
+            if passed > 0.0 && map.begins_near() {
+                map.expect_last();
+            }
+            if state.near > 0
+                && passed == 0.0
+                && let Some(next) = state.goes_on_near(map, (y, &g), options.tolerance)?
+            {
+                y.copy_from_slice(&next);
+                stepped = true;
+                continue;
+            }
             y.copy_from_slice(&g);
             state.plain = self.report.cycles >= (options.max_cycles / TRUSTED).max(TRIED);
             let rough = if state.plain { 0.0 } else { bend.rough * residual };
@@ -378,7 +440,7 @@ impl Search {
         let blend = state.blend();
         let (rest, weight, missed) =
             blend.as_ref().map_or((r, 1.0, 0.0), |b| (&b.rest, b.weight, MISSED * b.step.amax()));
-        let (largest, slow, suspect) = spectrum(&state.points.secants(), state.bend.fresh);
+        let (largest, slow, suspect) = spectrum(&state.slopes(), state.bend.fresh);
         let ratio = state.ratio(options.accuracy);
         // Between residuals that are noise a decay says nothing, where secants do.
         let own_noise = state.bend.noise * options.accuracy;

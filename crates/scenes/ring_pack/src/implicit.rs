@@ -30,6 +30,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+mod approach;
 mod gradients;
 mod integrator;
 mod sampler;
@@ -37,6 +38,7 @@ mod search;
 
 pub use integrator::RingIntegrator;
 
+use approach::Halves;
 use sampler::Sampler;
 use search::{oil_least, oil_noise, orbit_options, stopped};
 
@@ -75,7 +77,7 @@ impl Default for Implicit {
     summary = "the whole scene as one stiff system, adaptive, the cycle closed by a periodic-orbit solver",
     equations = "dy/dtheta = f(theta, y) by Rosenbrock methods of order 3 or 5, a singly diagonally implicit one of order 2, or Radau IIA;  y(theta + cycle) = y(theta) by Anderson acceleration, with oil on the liner by vector extrapolation in cycles, from where halves of the pack end",
     validity = "Every pack. Errors are controlled: results differ from those of the equations by about the tolerance.",
-    references = ["sandu1997", "steinebach2023", "hairer1996", "alexander1977", "lelarasmee1982", "walker2011", "sidi2017"],
+    references = ["sandu1997", "steinebach2023", "hairer1996", "alexander1977", "lelarasmee1982", "walker2011", "sidi2017", "stetter1978"],
     example = "tolerance = 1e-4\n",
 )]
 impl RingPackSolverSpec for Implicit {
@@ -289,6 +291,12 @@ struct Cycle<'a> {
     leads_on: bool,
     /// What is known of the slope of the map before the first cycle.
     known: Vec<Change>,
+    /// Whether the search begins where one in halves ended; those, where they lead on from a cycle; and how many cycles they took.
+    near: bool,
+    halves: Option<Halves>,
+    coarse: usize,
+    /// What is added to the end of each cycle; nothing where it is empty.
+    moved: Vec<f64>,
     /// Whether cycles tell what passes through each passage of the gas.
     follows: bool,
     pack: &'a mut Pack,
@@ -359,11 +367,16 @@ impl Cycle<'_> {
         outcome.and_then(|()| self.integrated())
     }
 
+    /// Part of the search that is told to be done.
+    fn progress_told(&self) -> f64 {
+        1.0 - elementary::powf(0.8f64, self.done)
+    }
+
     /// A cycle is done.
     fn integrated(&mut self) -> Result<(), IntegrateError> {
         self.done += 1.0;
-        (self.progress)(1.0 - elementary::powf(0.8f64, self.done))
-            .map_err(|e| IntegrateError::Eval { t: self.pack.period(), source: e.into() })
+        let told = self.progress_told();
+        (self.progress)(told).map_err(|e| IntegrateError::Eval { t: self.pack.period(), source: e.into() })
     }
 
     fn options(&self, rtol: f64) -> Options {
@@ -452,6 +465,16 @@ impl Cycle<'_> {
         }
     }
 
+    /// Adds to the end of a cycle what is to be added: films and masses stay what they can be.
+    fn move_on(&self, y: &mut [f64]) {
+        y.iter_mut().zip(&self.moved).for_each(|(y, d)| *y += d);
+        if !self.moved.is_empty() {
+            let (states, carried) = y.split_at_mut(self.pack.layout.n);
+            states.iter_mut().zip(&self.pack.layout.states).for_each(|(y, s)| *y = y.max(s.cycle_min));
+            carried.iter_mut().for_each(|film| *film = film.max(0.0));
+        }
+    }
+
     /// Puts the film on the liner behind the states, and what the faces took up into them.
     fn end(&mut self, y: &mut [f64]) {
         let n = self.pack.layout.n;
@@ -511,6 +534,7 @@ impl CycleMap for Cycle<'_> {
         // The velocity of a ring that could be held says nothing.
         self.pack.start_modes(self.pack.period(), &mut y1[..n])?;
         self.end(y1);
+        self.move_on(y1);
         Ok(1.0)
     }
     fn scale(&self, y: &[f64], s: &mut [f64]) {
@@ -535,10 +559,19 @@ impl CycleMap for Cycle<'_> {
         self.expects = !self.leads_on && self.halves_apart() <= SIXTH * LIKE * self.periodicity;
     }
     fn gives_up(&self) -> bool {
-        matches!(&self.method, Method::Waveform(w) if w.come_apart())
+        // Cycles of halves on the way count as well.
+        let all = self.coarse + self.done as usize;
+        let too_many = self.coarse > 0 && all >= self.spec.max_cycles as usize;
+        too_many || matches!(&self.method, Method::Waveform(w) if w.come_apart())
     }
     fn known(&self) -> &[Change] {
         &self.known
+    }
+    fn begins_near(&self) -> bool {
+        self.near
+    }
+    fn lead(&mut self, y: &[f64], end: &[f64], tolerance: f64) -> Result<Option<Vec<f64>>, EvalError> {
+        self.led_by_halves(y, end, tolerance)
     }
     fn bend(&self) -> Option<Bend> {
         let noise = if matches!(self.method, Method::Waveform(_)) {
@@ -604,6 +637,10 @@ impl<'a> Cycle<'a> {
             taken: None,
             leads_on: false,
             known: Vec::new(),
+            near: false,
+            halves: None,
+            coarse: 0,
+            moved: Vec::new(),
             follows: false,
             method: Method::new(s, pack),
             breakpoints: breakpoints(pack),

@@ -21,7 +21,8 @@ use gudgeon_numerics::{EvalError, Stopped};
 use gudgeon_scene::{GradientError, RunError};
 use indexmap::IndexMap;
 
-use super::search::{self, approach, not_periodic};
+use super::approach::approach;
+use super::search::{self, not_periodic};
 use super::{Cycle, Implicit, Pack, RingIntegrator, Wanted, orbit_options, stopped};
 use crate::around::{Around, Varied};
 use variation::Variation;
@@ -48,9 +49,8 @@ pub(super) fn gradients(
     let begun = approach(s, pack, start, wanted, &mut |done| progress(0.5 * done))?;
     let led = begun.led();
     let mut searching = |done: f64| progress(0.5 * (led + (1.0 - led) * done));
-    let mut y = begun.y;
     let mut cycle = Cycle::new(s, pack, wanted, &mut searching);
-    cycle.known = begun.known;
+    let mut y = cycle.begin_at(begun);
     let report = cycle.close(&mut y, &options)?;
     if report.period != 1 {
         let what = format!("the cycle repeats only every {} cycles", report.period);

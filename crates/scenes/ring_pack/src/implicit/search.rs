@@ -1,16 +1,14 @@
-//! The search of the periodic state: from where, how near, and what is told of it.
-//!
-//! A cycle in halves costs a tenth of one of the whole pack, and ends near where that does. So the search of any other integrator begins where one in halves ends, with what
-//! that found of the slope of the map; where halves do not agree it begins as if there had been none.
+//! The search of the periodic state: how near, and what is told of it.
 
 use gudgeon_core::Stopwatch;
 use gudgeon_core::quantity::quantity;
 use gudgeon_core::result::{Balance, Note};
 use gudgeon_numerics::ode::{IntegrateError, Stats};
-use gudgeon_numerics::orbit::{Change, OrbitOptions};
+use gudgeon_numerics::orbit::OrbitOptions;
 use gudgeon_scene::{RunError, Stopped};
 use indexmap::IndexMap;
 
+use super::approach::{Start, approach};
 use super::sampler::liner_table;
 use super::{Cycle, Implicit, NOISE_AGAIN, Pack, RingIntegrator, Taken, Wanted};
 use crate::error::RingPackError;
@@ -33,20 +31,6 @@ const OIL_AGAIN: f64 = 10.0;
 const HALVES_TRY: [usize; 2] = [10, 40];
 /// Tolerance of that over the one that was asked for: with it both leave the same errors.
 const WHOLE: f64 = 0.3;
-/// Tolerance of halves that a search begins with, over that of the search, and the range in which it is, without oil on the liner and with it: with less the search takes as many
-/// cycles of the whole pack.
-const ROUGHER: f64 = 10.0;
-const ROUGH: [(f64, f64); 2] = [(1e-3, 1e-2), (1e-3, 3e-3)];
-/// Tolerance of a search without oil below which it is not the way to the orbit that takes its cycles, but the noise at its end: halves shorten it no more.
-const FINE: f64 = 5e-5;
-/// How near they come to their periodic state, over what a search that ends there would be asked, and beyond which distance they do not end: at 3e-2 they would before the slow mode
-/// of oil shows.
-const NEARBY: (f64, f64) = (3.0, 5e-3);
-/// Most steps of one of their halves in a cycle, ten times what usual ones take: where a ring opens and shuts a thousand times they are no way to anywhere.
-const ROUGH_STEPS: u64 = 4000;
-/// Part of a search that they are told to take.
-const LEAD: f64 = 0.2;
-
 /// What is said of a cycle that does not close as it should.
 pub(super) fn not_periodic(error: f64, wanted: f64, cycles: usize) -> Note {
     let seen = if error <= wanted { " only since the last cycle" } else { "" };
@@ -127,68 +111,6 @@ pub(super) fn orbit_options(s: &Implicit, pack: &Pack) -> OrbitOptions {
     }
 }
 
-/// Where a search begins.
-pub(super) struct Start {
-    pub y: Vec<f64>,
-    /// What is known of the slope of the map of a cycle.
-    pub known: Vec<Change>,
-    /// Cycles in halves that led there, and the time that they took \[s\].
-    pub coarse: usize,
-    seconds: f64,
-}
-
-impl Start {
-    /// All lands at `start` \[Pa\], and nothing known.
-    fn cold(pack: &mut Pack, start: f64) -> Self {
-        Self { y: first_states(pack, start), known: Vec::new(), coarse: 0, seconds: 0.0 }
-    }
-
-    /// Part of the search that is done.
-    pub const fn led(&self) -> f64 {
-        if self.coarse > 0 { LEAD } else { 0.0 }
-    }
-}
-
-/// Where the search of `s` begins with all lands at `start` \[Pa\]: at the end of one in halves, if the pack can be halved and the halves agree.
-pub(super) fn approach(
-    s: &Implicit,
-    pack: &mut Pack,
-    start: f64,
-    wanted: &Wanted<'_>,
-    progress: &mut dyn FnMut(f64) -> Result<(), Stopped>,
-) -> Result<Start, RunError> {
-    let mut begun = Start::cold(pack, start);
-    let (most, oil) = (s.max_cycles / 2, pack.oil_pack.is_some());
-    let far = oil || s.tolerance.si() >= FINE;
-    if s.integrator == RingIntegrator::Waveform || !pack.solves_stages() || most == 0 || !far {
-        return Ok(begun);
-    }
-    let clock = Stopwatch::start();
-    let (finest, roughest) = ROUGH[usize::from(oil)];
-    let tolerance = quantity((ROUGHER * s.tolerance.si()).clamp(finest, roughest));
-    let halves = Implicit { tolerance, integrator: RingIntegrator::Waveform, max_cycles: most, ..s.clone() };
-    let mut options = orbit_options(&halves, pack);
-    options.tolerance = (NEARBY.0 * options.tolerance).min(NEARBY.1.max(options.tolerance));
-    let mut lead = |done: f64| progress(LEAD * done);
-    let mut cycle = Cycle::new(&halves, pack, wanted, &mut lead);
-    cycle.leads_on = true;
-    cycle.max_steps = cycle.max_steps.min(ROUGH_STEPS);
-    let mut y = begun.y.clone();
-    let closed = cycle.close(&mut y, &options);
-    begun.coarse = cycle.done as usize;
-    begun.seconds = clock.seconds();
-    match closed {
-        Ok(report) if report.converged && report.period == 1 => {
-            begun.y = y;
-            // Without oil a few cycles know the slope better than those in halves did.
-            begun.known = if oil { report.changes } else { Vec::new() };
-        }
-        Err(e) if !e.may_go_otherwise() => return Err(e),
-        _ => {}
-    }
-    Ok(begun)
-}
-
 /// Solves one start.
 pub(super) fn run(
     s: &Implicit,
@@ -216,12 +138,12 @@ fn search(
     let tolerance = s.tolerance.si();
     let mut options = orbit_options(s, pack);
     options.max_cycles -= begun.coarse;
-    let mut y = begun.y;
+    let before = begun.seconds;
     let mut cycle = Cycle::new(s, pack, wanted, progress);
-    cycle.known = begun.known;
+    let mut y = cycle.begin_at(begun);
     let closed = cycle.close(&mut y, &options);
-    let seconds = begun.seconds + begin.seconds();
-    let (mut counters, cycles) = (counters(&cycle.stats), cycle.done);
+    let seconds = before + begin.seconds();
+    let (mut counters, cycles, coarse) = (counters(&cycle.stats), cycle.done, cycle.coarse);
     let apart = closed.as_ref().map_or_else(RunError::may_go_otherwise, |report| !report.converged);
     if s.integrator == RingIntegrator::Waveform && apart {
         let mut solution = whole(s, (pack, start), wanted, progress, (cycles, &counters))?;
@@ -250,8 +172,8 @@ fn search(
     if report.period == 1 && !report.converged {
         notes.push(not_periodic(report.error_estimate, options.tolerance, report.cycles));
     }
-    if begun.coarse > 0 {
-        counters.insert("coarse_cycles".into(), begun.coarse as u64);
+    if coarse > 0 {
+        counters.insert("coarse_cycles".into(), coarse as u64);
     }
     Ok(Solution {
         liner: liner_table(pack, sampler.liner),

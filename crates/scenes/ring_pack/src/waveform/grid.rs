@@ -18,19 +18,18 @@ pub struct Rule {
     pub slack: f64,
 }
 
-/// Without oil on the liner a step that is not accurate any more is tried again in parts.
-const FLOODED: Rule = Rule { near: 0.05, slack: 1.0 };
-/// With it every cycle would differ from the others by the errors of its steps: they are kept for longer, while the state is searched.
+/// A step that is not accurate any more is tried again in parts.
+const ACCURATE: Rule = Rule { near: 0.05, slack: 1.0 };
+/// With oil on the liner every cycle of the films would differ from the others by the errors of its steps: they are kept for longer, while the state is searched.
 const OIL: Rule = Rule { near: 0.3, slack: 10.0 };
 
 impl Rule {
-    /// For one side of a pack in a cycle that is recorded or not. Gas and grooves beside oil on the liner choose steps anew: what they change there is little, and is not
-    /// integrated again while it is.
+    /// For one side of a pack in a cycle that is recorded or not: with oil on the liner a recorded one chooses its steps anew.
     pub fn of(side: Side, pack: &Pack, recorded: bool) -> Option<Self> {
         match (side, pack.oil_pack.is_some()) {
-            (_, false) => Some(FLOODED),
-            (Side::Films, true) if !recorded => Some(OIL),
-            _ => None,
+            (_, true) if recorded => None,
+            (Side::Films, true) => Some(OIL),
+            _ => Some(ACCURATE),
         }
     }
 }

@@ -1,0 +1,193 @@
+//! The way to the periodic state by halves of the pack, for integrators of the whole.
+//!
+//! A cycle in halves (`waveform`) costs a tenth of one of the whole pack, and ends near where that does. So a search begins where one in halves ends; where halves do not agree
+//! it begins as if there had been none. What the whole pack does otherwise, `d = Φ(y) - Φh(y)`, is then known after one of its cycles, and halves that are
+//! moved by it, `y = Φh(y) + d`, lead to where its own orbit is but for the part by which `d` changes on the way (defect correction, stetter1978): the slow modes of the pack
+//! are found by the cheap cycles.
+
+use gudgeon_core::Stopwatch;
+use gudgeon_core::quantity::quantity;
+use gudgeon_numerics::EvalError;
+use gudgeon_numerics::ode::IntegrateError;
+use gudgeon_numerics::orbit::{Change, OrbitOptions};
+use gudgeon_scene::{RunError, Stopped};
+
+use super::search::{first_states, orbit_options};
+use super::{Cycle, Implicit, Method, Pack, RingIntegrator, Wanted};
+use crate::waveform::Waveform;
+
+/// Tolerance of halves that a search begins with, over that of the search, and the range in which it is, without oil on the liner and with it: with less the search takes as many
+/// cycles of the whole pack.
+const ROUGHER: f64 = 10.0;
+const ROUGH: [(f64, f64); 2] = [(1e-3, 1e-2), (1e-3, 3e-3)];
+/// Tolerance of a search without oil below which it is not the way to the orbit that takes its cycles, but the noise at its end: halves shorten it no more.
+const FINE: f64 = 5e-5;
+/// How near they come to their periodic state, over what a search that ends there would be asked, and beyond which distance they do not end: at 3e-2 they would before the slow mode
+/// of oil shows.
+const NEARBY: (f64, f64) = (3.0, 5e-3);
+/// Most steps of one of their halves in a cycle, ten times what usual ones take: where a ring opens and shuts a thousand times they are no way to anywhere.
+const ROUGH_STEPS: u64 = 4000;
+/// How near halves that are moved come to their periodic state, over what is asked of the search, and most of their cycles.
+const MOVED: f64 = 0.5;
+const LED: usize = 10;
+/// How often they lead on: what they do otherwise than the whole pack changes by a tenth of the way at most.
+const LEADS: usize = 2;
+/// Part of a search that they are told to take.
+const LEAD: f64 = 0.2;
+
+/// Halves of a pack at the end of their search.
+pub(super) struct Halves {
+    spec: Implicit,
+    options: OrbitOptions,
+    waveform: Box<Waveform>,
+    /// What is known of the slope of their map.
+    changes: Vec<Change>,
+    /// What the whole pack does otherwise in a cycle.
+    moved: Vec<f64>,
+    /// How often they may still lead on.
+    leads: usize,
+}
+
+/// Where a search begins.
+pub(super) struct Start {
+    pub y: Vec<f64>,
+    /// What is known of the slope of the map of a cycle.
+    pub known: Vec<Change>,
+    /// Whether halves led there, and those that may lead on from there.
+    pub near: bool,
+    pub halves: Option<Halves>,
+    /// Their cycles, and the time that they took \[s\].
+    pub coarse: usize,
+    pub seconds: f64,
+}
+
+impl Start {
+    /// All lands at `start` \[Pa\], and nothing known.
+    pub fn cold(pack: &mut Pack, start: f64) -> Self {
+        Self {
+            y: first_states(pack, start),
+            known: Vec::new(),
+            near: false,
+            halves: None,
+            coarse: 0,
+            seconds: 0.0,
+        }
+    }
+
+    /// Part of the search that is done.
+    pub const fn led(&self) -> f64 {
+        if self.coarse > 0 { LEAD } else { 0.0 }
+    }
+}
+
+/// How halves are searched for `s`.
+fn rougher(s: &Implicit, pack: &Pack, most: u32) -> (Implicit, OrbitOptions) {
+    let (finest, roughest) = ROUGH[usize::from(pack.oil_pack.is_some())];
+    let tolerance = quantity((ROUGHER * s.tolerance.si()).clamp(finest, roughest));
+    let halves = Implicit { tolerance, integrator: RingIntegrator::Waveform, max_cycles: most, ..s.clone() };
+    let mut options = orbit_options(&halves, pack);
+    options.tolerance = (NEARBY.0 * options.tolerance).min(NEARBY.1.max(options.tolerance));
+    (halves, options)
+}
+
+/// The map of a cycle in halves that leads to where another search begins.
+fn in_halves<'a>(
+    spec: &'a Implicit,
+    pack: &'a mut Pack,
+    wanted: &Wanted<'a>,
+    progress: &'a mut dyn FnMut(f64) -> Result<(), Stopped>,
+) -> Cycle<'a> {
+    let mut cycle = Cycle::new(spec, pack, wanted, progress);
+    cycle.leads_on = true;
+    cycle.max_steps = cycle.max_steps.min(ROUGH_STEPS);
+    cycle
+}
+
+/// Where the search of `s` begins with all lands at `start` \[Pa\]: at the end of one in halves, if the pack can be halved and the halves agree.
+pub(super) fn approach(
+    s: &Implicit,
+    pack: &mut Pack,
+    start: f64,
+    wanted: &Wanted<'_>,
+    progress: &mut dyn FnMut(f64) -> Result<(), Stopped>,
+) -> Result<Start, RunError> {
+    let mut begun = Start::cold(pack, start);
+    let (most, oil) = (s.max_cycles / 2, pack.oil_pack.is_some());
+    let far = oil || s.tolerance.si() >= FINE;
+    if s.integrator == RingIntegrator::Waveform || !pack.solves_stages() || most == 0 || !far {
+        return Ok(begun);
+    }
+    let clock = Stopwatch::start();
+    let (spec, options) = rougher(s, pack, most);
+    let mut lead = |done: f64| progress(LEAD * done);
+    let mut cycle = in_halves(&spec, pack, wanted, &mut lead);
+    let mut y = begun.y.clone();
+    let closed = cycle.close(&mut y, &options);
+    begun.coarse = cycle.done as usize;
+    begun.seconds = clock.seconds();
+    match (closed, cycle.method) {
+        (Ok(report), Method::Waveform(waveform)) if report.converged && report.period == 1 => {
+            // Without oil a few cycles know the slope better than those in halves did.
+            if oil {
+                begun.known = report.changes.clone();
+                let (changes, moved) = (report.changes, vec![0.0; y.len()]);
+                begun.halves = Some(Halves { spec, options, waveform, changes, moved, leads: LEADS });
+            }
+            (begun.y, begun.near) = (y, true);
+        }
+        (Err(e), _) if !e.may_go_otherwise() => return Err(e),
+        _ => {}
+    }
+    Ok(begun)
+}
+
+impl Cycle<'_> {
+    /// Takes over what led to where the search begins; its first states.
+    pub(super) fn begin_at(&mut self, begun: Start) -> Vec<f64> {
+        (self.known, self.near) = (begun.known, begun.near);
+        (self.halves, self.coarse) = (begun.halves, begun.coarse);
+        begun.y
+    }
+
+    /// Where halves end that are moved by what this pack did otherwise than they in the cycle from `y` to `end`; `None` where there are none, or where they lead nowhere.
+    pub(super) fn led_by_halves(
+        &mut self,
+        y: &[f64],
+        end: &[f64],
+        tolerance: f64,
+    ) -> Result<Option<Vec<f64>>, EvalError> {
+        let Some(mut halves) = self.halves.take() else { return Ok(None) };
+        halves.moved.iter_mut().zip(y.iter().zip(end)).for_each(|(d, (y, end))| *d += end - y);
+        // Halves know of no passages.
+        self.pack.follow_passages(false);
+        let told = self.progress_told();
+        let mut progress = |_: f64| (self.progress)(told);
+        let mut cycle = in_halves(&halves.spec, self.pack, &self.wanted, &mut progress);
+        cycle.method = Method::Waveform(halves.waveform);
+        (cycle.known, cycle.moved, cycle.near) = (halves.changes.clone(), halves.moved, true);
+        let mut next = y.to_vec();
+        let options = OrbitOptions { tolerance: MOVED * tolerance, max_cycles: LED, ..halves.options };
+        let found = cycle.periodic(&mut next, &options);
+        let (done, failure) = (cycle.done as usize, cycle.failure.take());
+        let (moved, method) = (cycle.moved, cycle.method);
+        self.coarse += done;
+        self.pack.follow_passages(self.follows);
+        halves.leads -= 1;
+        match (found, method) {
+            (Ok(report), Method::Waveform(waveform))
+                if report.period == 1 && report.error_estimate <= tolerance =>
+            {
+                let led = Halves { waveform, moved, ..halves };
+                self.halves = Some(led).filter(|halves| halves.leads > 0);
+                Ok(Some(next))
+            }
+            (Err(e), _)
+                if matches!(failure, Some(IntegrateError::Eval { source: EvalError::Stopped, .. })) =>
+            {
+                self.failure = failure;
+                Err(e)
+            }
+            _ => Ok(None),
+        }
+    }
+}
