@@ -20,7 +20,6 @@
 //! stand on every specification and save 6 packages. Reading case files (TOML, places, diagnostics) is `gudgeon-case`, which no physics crate
 //! depends on; the program as a whole is 129 packages.
 #![cfg_attr(doctest, doc = include_str!("../README.md"))]
-#![cfg_attr(doctest, doc = include_str!("../../gudgeon-macros/README.md"))]
 
 pub mod content;
 pub mod error;
