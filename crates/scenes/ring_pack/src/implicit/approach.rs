@@ -30,7 +30,7 @@ const ROUGH_STEPS: u64 = 4000;
 /// How near halves that are moved come to their periodic state, over what is asked of the search, and most of their cycles.
 const MOVED: f64 = 0.5;
 const LED: usize = 10;
-/// How often they lead on: what they do otherwise than the whole pack changes by a tenth of the way at most.
+/// How often they lead on: what they do otherwise than the whole pack changes on the way, usually by a tenth of it.
 const LEADS: usize = 2;
 /// Part of a search that they are told to take.
 const LEAD: f64 = 0.2;
