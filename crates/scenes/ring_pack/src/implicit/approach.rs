@@ -25,8 +25,9 @@ const FINE: f64 = 5e-5;
 /// How near they come to their periodic state, over what a search that ends there would be asked, and beyond which distance they do not end: at 3e-2 they would before the slow mode
 /// of oil shows.
 const NEARBY: (f64, f64) = (3.0, 5e-3);
-/// Most steps of one of their halves in a cycle, ten times what usual ones take: where a ring opens and shuts a thousand times they are no way to anywhere.
-const ROUGH_STEPS: u64 = 4000;
+/// Most steps of one of their halves in a cycle, without oil on the liner and with it: where a ring leaves the liner or opens and shuts a thousand times they are no way to
+/// anywhere, and cost more than the pack as a whole. Of 40 packs of three to six rings usual ones take up to 460 and 900.
+const ROUGH_STEPS: [u64; 2] = [600, 4000];
 /// How near halves that are moved come to their periodic state, over what is asked of the search, and most of their cycles.
 const MOVED: f64 = 0.5;
 const LED: usize = 10;
@@ -99,7 +100,7 @@ fn in_halves<'a>(
 ) -> Cycle<'a> {
     let mut cycle = Cycle::new(spec, pack, wanted, progress);
     cycle.leads_on = true;
-    cycle.max_steps = cycle.max_steps.min(ROUGH_STEPS);
+    cycle.max_steps = cycle.max_steps.min(ROUGH_STEPS[usize::from(cycle.pack.oil_pack.is_some())]);
     cycle
 }
 
