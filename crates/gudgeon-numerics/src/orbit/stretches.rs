@@ -38,6 +38,11 @@ const STEADY: f64 = 0.3;
 const BLURRED: f64 = 2.0;
 /// How much farther a secant over the last step may lead it than its residuals say: their noise hides multipliers beyond the largest.
 const FARTHER: f64 = 10.0;
+/// Parts of itself that a state loses and gains at most where its residuals alone lead it on, and how many times the last of them it may gain in any case: a store neither runs empty nor fills
+/// up at the rate at which it began to. Without these limits a store of a diesel with fluttering rings was emptied by one step, and took thirty cycles to fill again.
+const EMPTIED: f64 = 0.7;
+const FILLED: f64 = 3.0;
+const AT_LEAST: f64 = 9.0;
 /// Cycles at the noise of the map after which nothing more is expected: those of three stretches.
 const IDLE: usize = 3 * (SKIPPED + GATHERED);
 /// Cosine between residuals of a machine that goes to and fro, the part of a residual that two such cycles leave, its least size over the accuracy, and the
@@ -286,6 +291,7 @@ impl Stretch {
             }
             let goes_on = (drifts || !self.plain) && left.abs() >= (LARGE * residual).max(LEFT * r[i].abs());
             if let Some(further) = goes_on.then(|| further([r0[i], r1[i], r2[i], r[i]], drifts)).flatten() {
+                let further = within_reach(further, at[i] + r[i], r[i]);
                 let here = Drift { y: at[i] * self.s[i], rate: r[i] * self.s[i] };
                 let known = self.drifts[i].replace(here).and_then(|before| here.root(before));
                 let root = known
@@ -319,6 +325,12 @@ impl Drift {
         let on = moved * self.rate > 0.0 && slower * self.rate > 0.0 && before.rate * self.rate > 0.0;
         on.then(|| self.rate * moved / slower)
     }
+}
+
+/// The part of the way `further` that a state may take from `y`, whose last residual is `r`.
+fn within_reach(further: f64, y: f64, r: f64) -> f64 {
+    let most = if further * y < 0.0 { EMPTIED * y.abs() } else { (FILLED * y.abs()).max(AT_LEAST * r.abs()) };
+    further.clamp(-most, most)
 }
 
 /// How far a state goes on whose last residuals fall by the same factor, or that drifts at a rate of which noise leaves no more to be said than its mean decay.
