@@ -29,7 +29,7 @@ pub trait CycleMap {
     fn scale(&self, y: &[f64], s: &mut [f64]);
     /// Keeps an extrapolated start within what the machine admits; `reached` is the end of the cycle before, which it does.
     fn admit(&self, _reached: &[f64], _y: &mut [f64]) {}
-    /// Part of its accuracy by which the last cycle differs from another from the same start.
+    /// Part of its accuracy by which the last cycle differs from another from the same start; where [`Bend::noise`] says what is usual, over that.
     fn noise(&self) -> f64 {
         1.0
     }
@@ -83,7 +83,7 @@ pub struct Bend {
     pub reach: f64,
     /// Accuracy of a cycle over the residual of the one before: far from the orbit cheaper cycles do.
     pub rough: f64,
-    /// Part of its accuracy by which a cycle differs from cycle to cycle.
+    /// Part of its accuracy by which a cycle usually differs from cycle to cycle.
     pub noise: f64,
 }
 

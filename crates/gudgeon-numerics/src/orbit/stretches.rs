@@ -177,7 +177,7 @@ impl Stretch {
         if self.skipped > 0 {
             self.skipped -= 1;
         } else {
-            self.points.push(&at, &r, self.bend.noise * accuracy);
+            self.points.push(&at, &r, self.bend.noise * map.noise() * accuracy);
         }
         self.at = Some(at);
         self.residuals.push(r);
@@ -387,7 +387,7 @@ impl Search {
             g.copy_from_slice(&end);
             state.take(map, y, &g, accuracy);
             let accurate = accuracy <= options.accuracy;
-            let estimate = self.judge_stretch(&mut state, options, last);
+            let estimate = self.judge_stretch(&mut state, options, (last, map.noise()));
             let residual = self.report.residual;
             last = residual;
             let settled =
@@ -442,8 +442,13 @@ impl Search {
         Ok(())
     }
 
-    /// The estimated error after a cycle of a stretch.
-    fn judge_stretch(&mut self, state: &mut Stretch, options: &OrbitOptions, last: f64) -> f64 {
+    /// The estimated error after a cycle of a stretch; `last` is the residual before, `noise` that of the cycle over what is usual.
+    fn judge_stretch(
+        &mut self,
+        state: &mut Stretch,
+        options: &OrbitOptions,
+        (last, noise): (f64, f64),
+    ) -> f64 {
         state.look_ahead(options.accuracy);
         let Some(r) = state.residuals.last() else { return f64::INFINITY };
         let residual = r.amax();
@@ -455,7 +460,7 @@ impl Search {
         let (largest, slow, suspect) = spectrum(&state.slopes(), state.bend.fresh);
         let ratio = state.ratio(options.accuracy);
         // Between residuals that are noise a decay says nothing, where secants do.
-        let own_noise = state.bend.noise * options.accuracy;
+        let own_noise = state.bend.noise * noise * options.accuracy;
         let ratio = if slow > 1.0 && residual <= SETTLED * own_noise { 0.0 } else { ratio };
         let seen = slow.max(1.0 / (1.0 - ratio.clamp(0.0, 1.0 - 1.0 / super::MAX_GAIN)));
         // Fast modes that a step stirred up hide a slow one: what was slow before it is taken to be slow still.

@@ -30,6 +30,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+mod again;
 mod approach;
 mod gradients;
 mod integrator;
@@ -38,6 +39,7 @@ mod search;
 
 pub use integrator::RingIntegrator;
 
+use again::Again;
 use approach::Halves;
 use sampler::Sampler;
 use search::{oil_least, oil_noise, orbit_options, stopped};
@@ -157,6 +159,7 @@ struct Problem<'a> {
     scale: &'a [f64],
     balance: &'a [LinearInvariant],
     events: &'a [EventOf],
+    again: &'a mut Again,
 }
 
 impl Problem<'_> {
@@ -219,6 +222,7 @@ impl OdeSystem for Problem<'_> {
         self.pack.block_mut(e.block).switch(e.event, &mut y[own]);
         // The instant belongs to the other mode.
         self.pack.state.fill(f64::NAN);
+        self.again.cut_off(t);
         Ok(EventAction::Restart)
     }
 }
@@ -295,6 +299,8 @@ struct Cycle<'a> {
     near: bool,
     halves: Option<Halves>,
     coarse: usize,
+    /// The steps of the cycle before.
+    again: Again,
     /// What is added to the end of each cycle; nothing where it is empty.
     moved: Vec<f64>,
     /// Whether cycles tell what passes through each passage of the gas.
@@ -353,6 +359,7 @@ impl Cycle<'_> {
         }
         let pieces = interval.map_or(1, |i| (period / i).round().max(1.0) as usize);
         let mut outcome = Ok(());
+        options.ends = self.again.begin(self.pack, y, rtol);
         for piece in 0..pieces {
             let span = (period * piece as f64 / pieces as f64, period * (piece + 1) as f64 / pieces as f64);
             let first = if piece == 0 { lend(&mut follower) } else { None };
@@ -427,11 +434,13 @@ impl Cycle<'_> {
             scale: &self.scale,
             balance: &self.balance,
             events: &self.events,
+            again: &mut self.again,
         };
         let (progress, done) = (&mut self.progress, 1.0 - elementary::powf(0.8f64, self.done));
         let (mut steps, mut stopped) = (0_u32, None);
         let mut observe = |p: &mut Problem<'_>, v: &dyn StepView| {
             steps += 1;
+            p.again.step(v.t1());
             if steps.is_multiple_of(ASKED_EVERY)
                 && let Err(e) = progress(done)
             {
@@ -552,7 +561,12 @@ impl CycleMap for Cycle<'_> {
         }
     }
     fn noise(&self) -> f64 {
-        if matches!(&self.method, Method::Waveform(w) if w.repeats()) { NOISE_AGAIN } else { 1.0 }
+        let repeats = match &self.method {
+            // With oil that is said by how the map bends.
+            Method::Waveform(w) => w.repeats() && self.pack.oil_pack.is_none(),
+            _ => self.again.repeats(),
+        };
+        if repeats { NOISE_AGAIN } else { 1.0 }
     }
     fn expect_last(&mut self) {
         // Halves that would still be too far apart then go on.
@@ -649,6 +663,7 @@ impl<'a> Cycle<'a> {
             balance,
             events: Vec::new(),
             base: Base::default(),
+            again: Again::default(),
             staging: Staging::new(pack),
             h: FIRST_STEP,
             tolerance: s.tolerance.si(),

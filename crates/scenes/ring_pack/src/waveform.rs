@@ -28,10 +28,11 @@ mod rings;
 mod span;
 mod track;
 
+pub use grid::moved;
 pub use rings::RingSteps;
 pub use span::MOST_STATES;
 
-use grid::{Grid, Rule, moved};
+use grid::{Grid, Rule};
 use guess::Guess;
 use joint::{Joint, Part};
 use repeat::Repeat;
@@ -227,7 +228,7 @@ impl Waveform {
     /// that would pay.
     fn stand(&self, seen: &Seen, pack: &Pack, y: &[f64], rtol: f64) -> bool {
         pack.oil_pack.is_some()
-            && moved(pack, &self.grooves.part, &seen.start, y) <= rtol
+            && moved(pack, self.grooves.part.states.iter().copied(), &seen.start, y) <= rtol
             && self.disagreement(pack) <= ALIKE * rtol
     }
 

@@ -66,17 +66,17 @@ impl Grid {
         let apart = |then: &Track| films.mean_change(then, pack.period(), pack.films()).change;
         self.rtol > 0.0
             && self.rtol <= rtol
-            && moved(pack, part, &self.start, y) <= rule.near
+            && moved(pack, part.states.iter().copied(), &self.start, y) <= rule.near
             && self.films.as_ref().is_none_or(|then| apart(then) <= rule.near)
     }
 }
 
-/// How far the states of a side are from where they began a cycle: the largest change over what counts as one between cycles.
-pub fn moved(pack: &Pack, part: &Part, start: &[f64], y: &[f64]) -> f64 {
-    let change = |(&k, v): (&usize, &f64)| {
+/// How far some of the states are from where they began a cycle, `start`: the largest change over what counts as one between cycles.
+pub fn moved(pack: &Pack, states: impl Iterator<Item = usize>, start: &[f64], y: &[f64]) -> f64 {
+    let change = |(k, v): (usize, &f64)| {
         let info = &pack.layout.states[k];
         let scale = if info.cycle_relative { v.abs().max(info.cycle_scale) } else { info.cycle_scale };
         (y[k] - v).abs() / scale
     };
-    part.states.iter().zip(start).map(change).fold(0.0, f64::max)
+    states.zip(start).map(change).fold(0.0, f64::max)
 }

@@ -1,0 +1,48 @@
+//! Steps of a cycle that the next one takes again, near the periodic state: hardly one of them is rejected, and cycles differ by their starts alone, not by where steps
+//! fell. A search then sees a tenth of the noise, and a slow mode, which multiplies that, sooner.
+
+use super::super::pack::Pack;
+use super::super::waveform::moved;
+
+/// Largest change of the states since the steps were chosen, over what counts as one between cycles, for which they are taken again.
+const NEAR: f64 = 0.05;
+
+/// The steps of the last cycle, and what they were chosen for.
+#[derive(Debug, Default)]
+pub struct Again {
+    /// Ends of its steps, those apart that an event cut off: it happens at another instant in the next cycle, and the step after it is sought from there.
+    ends: Vec<f64>,
+    start: Vec<f64>,
+    /// Accuracy; zero where no steps were chosen yet.
+    rtol: f64,
+    /// Whether the last cycle took the steps of the one before.
+    repeats: bool,
+}
+
+impl Again {
+    /// Begins a cycle of accuracy `rtol` at `y`: the ends of its steps, or none where these are to be as long as their errors allow.
+    pub fn begin(&mut self, pack: &Pack, y: &[f64], rtol: f64) -> Vec<f64> {
+        self.repeats = self.rtol == rtol && moved(pack, 0..y.len(), &self.start, y) <= NEAR;
+        let ends = std::mem::take(&mut self.ends);
+        if self.repeats {
+            return ends;
+        }
+        (self.start, self.rtol) = (y.to_vec(), rtol);
+        Vec::new()
+    }
+
+    /// A step ends at `t`.
+    pub fn step(&mut self, t: f64) {
+        self.ends.push(t);
+    }
+
+    /// An event happens at `t`, which cuts off the step that ends there.
+    pub fn cut_off(&mut self, t: f64) {
+        self.ends.pop_if(|end| *end == t);
+    }
+
+    /// Whether the last cycle took the steps of the one before.
+    pub const fn repeats(&self) -> bool {
+        self.repeats
+    }
+}
