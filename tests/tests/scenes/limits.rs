@@ -202,10 +202,11 @@ fn low_speeds_are_solved_with_the_rings_on_the_liner() {
 /// The drag of surfaces that part is balanced with the film, in the same search.
 #[test]
 fn films_are_evaluated_as_often_as_their_balance_needs() {
-    let r = run_case(CASE, &[]);
+    // Rings that are held begin no search in halves, whose films would be counted with the rest.
+    let r = run_case(CASE, &["models.ring_motion.model=three_seat"]);
     let each = r.solver.counters["film_evaluations"] as f64 / r.solver.counters["rhs"] as f64;
-    // Four faces, two of them searched in three evaluations and looked at in a fourth, and a Jacobian for every five right-hand sides: 17.9 when this
-    // was written, 28 when the drag was searched apart.
+    // Four faces, two of them searched in three evaluations and looked at in a fourth, and a Jacobian for every five right-hand sides: 19.0 when this
+    // was written; half as many again when the drag was searched apart.
     assert!(each < 20.0, "{each} evaluations of films for a right-hand side");
 }
 
@@ -249,6 +250,7 @@ fn gas_steps_too_long_for_merged_volumes_are_refused_with_those_that_do() {
 fn parting_surfaces_reject_no_more_steps_than_others() {
     let r = run_case(CASE, &["engine.speed=\"1000 rpm\""]);
     let (steps, rejected) = (r.solver.counters["steps"] as f64, r.solver.counters["rejected"] as f64);
-    // 0.28 when this was written; 0.42 with the drag searched apart, 0.52 with velocities good to a part of the load.
-    assert!(rejected < 0.4 * steps, "{rejected} of {steps}");
+    // 0.22 in two cycles, of which the second takes the steps of the first again. Where each chose its steps it was 0.28 to 0.35, 0.42 with the drag searched apart, 0.52 with velocities
+    // good to a part of the load: 0.27 and more in such two.
+    assert!(rejected < 0.26 * steps, "{rejected} of {steps}");
 }
