@@ -6,6 +6,8 @@ use super::super::waveform::moved;
 
 /// Largest change of the states since the steps were chosen, over what counts as one between cycles, for which they are taken again.
 const NEAR: f64 = 0.05;
+/// How many times as many steps as were chosen are taken again: where a ring flutters each cycle divides others.
+const MOST: f64 = 1.1;
 
 /// The steps of the last cycle, and what they were chosen for.
 #[derive(Debug, Default)]
@@ -13,6 +15,8 @@ pub struct Again {
     /// Ends of its steps, those apart that an event cut off: it happens at another instant in the next cycle, and the step after it is sought from there.
     ends: Vec<f64>,
     start: Vec<f64>,
+    /// How many there were when they were chosen.
+    chosen: usize,
     /// Accuracy; zero where no steps were chosen yet.
     rtol: f64,
     /// Whether the last cycle took the steps of the one before.
@@ -22,7 +26,12 @@ pub struct Again {
 impl Again {
     /// Begins a cycle of accuracy `rtol` at `y`: the ends of its steps, or none where these are to be as long as their errors allow.
     pub fn begin(&mut self, pack: &Pack, y: &[f64], rtol: f64) -> Vec<f64> {
-        self.repeats = self.rtol == rtol && moved(pack, 0..y.len(), &self.start, y) <= NEAR;
+        if !self.repeats {
+            self.chosen = self.ends.len();
+        }
+        self.repeats = self.rtol == rtol
+            && self.ends.len() as f64 <= MOST * self.chosen as f64
+            && moved(pack, 0..y.len(), &self.start, y) <= NEAR;
         let ends = std::mem::take(&mut self.ends);
         if self.repeats {
             return ends;
