@@ -371,6 +371,10 @@ impl Cycle<'_> {
                 break;
             }
         }
+        if outcome.is_err() {
+            // Steps of a part of a cycle say nothing of the rest.
+            self.again = Again::default();
+        }
         outcome.and_then(|()| self.integrated())
     }
 
