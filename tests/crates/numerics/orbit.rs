@@ -1034,21 +1034,20 @@ fn what_many_states_gather_in_one_is_not_taken_for_growth() {
     assert!(r.cycles <= 20, "{r:?}");
 }
 
-/// Stores that drain at a constant rate until they are nearly empty, in noise that is as large as a fifth of that rate; the second is in equilibrium soon.
-struct Draining {
+/// A store that changes in a cycle by what it holds, and holds `least` at least; a second one follows it.
+struct Store {
     calls: u64,
+    change: fn(f64, u64) -> f64,
+    least: f64,
 }
 
-impl CycleMap for Draining {
+impl CycleMap for Store {
     fn dim(&self) -> usize {
         2
     }
     fn map(&mut self, y0: &[f64], y1: &mut [f64], _: f64) -> Result<f64, EvalError> {
         self.calls += 1;
-        // Fractional parts of multiples of the golden ratio: spread evenly over -1 to 1.
-        let noise = 2.0 * (self.calls as f64 * 0.618_033_988_749_895).fract() - 1.0;
-        let taken = (0.3 * y0[0]).min(1e-2);
-        y1[0] = y0[0] - taken + 2e-3 * noise * (taken / 1e-2);
+        y1[0] = y0[0] + (self.change)(y0[0], self.calls);
         y1[1] = 0.5 * y0[1] + 0.5 * y0[0];
         Ok(1.0)
     }
@@ -1057,7 +1056,7 @@ impl CycleMap for Draining {
     }
     fn admit(&self, _: &[f64], y: &mut [f64]) {
         for y in y {
-            *y = y.max(0.0);
+            *y = y.max(self.least);
         }
     }
     fn bend(&self) -> Option<Bend> {
@@ -1065,9 +1064,22 @@ impl CycleMap for Draining {
     }
 }
 
+/// At a constant rate until it is nearly empty, in noise that is as large as a fifth of that rate.
+fn draining(y: f64, calls: u64) -> f64 {
+    // Fractional parts of multiples of the golden ratio: spread evenly over -1 to 1.
+    let noise = 2.0 * (calls as f64 * 0.618_033_988_749_895).fract() - 1.0;
+    let taken = (0.3 * y).min(1e-2);
+    2e-3 * noise * (taken / 1e-2) - taken
+}
+
+/// Down at a constant rate to half of what it holds, and from little up by a fifth a cycle: oil before the edge of a ring that feeds itself.
+fn feeding(y: f64, _: u64) -> f64 {
+    (0.2 * y * (1.0 - y / 0.1)).max(-0.012)
+}
+
 #[test]
 fn a_store_that_drains_in_noise_is_not_filled_again() {
-    let mut map = Draining { calls: 0 };
+    let mut map = Store { calls: 0, change: draining, least: 0.0 };
     let mut y = vec![1.0; 2];
     let options =
         OrbitOptions { tolerance: 1e-3, accuracy: 1e-4, max_cycles: 200, refinements: 0, accelerate: true };
@@ -1078,37 +1090,12 @@ fn a_store_that_drains_in_noise_is_not_filled_again() {
     assert!(r.cycles <= 117, "{} {:?}", r.cycles, r.history);
 }
 
-/// A store that drains at a constant rate to half of what it holds, and from little grows again by a fifth a cycle: oil before the edge of a ring that feeds itself.
-struct Feeding;
-
-impl CycleMap for Feeding {
-    fn dim(&self) -> usize {
-        2
-    }
-    fn map(&mut self, y0: &[f64], y1: &mut [f64], _: f64) -> Result<f64, EvalError> {
-        y1[0] = y0[0] + (0.2 * y0[0] * (1.0 - y0[0] / 0.1)).max(-0.012);
-        y1[1] = 0.5 * y0[1] + 0.5 * y0[0];
-        Ok(1.0)
-    }
-    fn scale(&self, _: &[f64], s: &mut [f64]) {
-        s.fill(1.0);
-    }
-    fn admit(&self, _: &[f64], y: &mut [f64]) {
-        for y in y {
-            *y = y.max(1e-4);
-        }
-    }
-    fn bend(&self) -> Option<Bend> {
-        Some(Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, noise: 0.1 })
-    }
-}
-
 #[test]
 fn a_store_is_not_emptied_by_a_step_because_it_drained() {
     let mut y = vec![0.3; 2];
     let options =
         OrbitOptions { tolerance: 1e-3, accuracy: 1e-4, max_cycles: 200, refinements: 0, accelerate: true };
-    let r = periodic_orbit(&mut Feeding, &mut y, &options).unwrap();
+    let r = periodic_orbit(&mut Store { calls: 0, change: feeding, least: 1e-4 }, &mut y, &options).unwrap();
     let error = y.iter().map(|y| (y - 0.1).abs()).fold(0.0, f64::max);
     assert!(r.converged && error <= 3.0 * r.error_estimate.max(1e-13), "{error:e} {y:?} {r:?}");
     // 23 when this was written, 33 where one step may empty it.
