@@ -370,6 +370,8 @@ impl Search {
             let ratio = state.learn(&at, &r, before.max(accuracy), options);
             let (correction, rest) = explain(&state.secants[state.trusted..], &r, FRESH);
             let noise = map.noise() * options.accuracy;
+            // A residual that turned fell by as much as it is smaller; where it grows nothing is foreseen.
+            let fall = if ratio > 0.0 { ratio } else { residual / state.last };
             let explained = (correction.amax(), rest.amax());
             let estimate = self.judge(&mut state, residual, explained, ratio, noise);
             // A slow mode can hide behind faster ones for a cycle: what passes must pass twice, and go on falling as if it would
@@ -400,7 +402,7 @@ impl Search {
             map.admit(&g, y);
             extrapolated = true;
             if state.passed > 0.0
-                || k >= SETTLES[usize::from(near)] && promises((estimate, residual), ratio, options)
+                || k >= SETTLES[usize::from(near)] && promises((estimate, residual), fall, options)
             {
                 map.expect_last();
             }
@@ -608,9 +610,9 @@ fn sinks(estimate: f64, before: f64, options: &OrbitOptions) -> bool {
     estimate * (fall / (1.0 - fall)).max(1.0) <= options.tolerance
 }
 
-/// Whether the next cycle ends the search with something to spare if estimate and residual go on falling by `ratio`.
-fn promises((estimate, residual): (f64, f64), ratio: f64, options: &OrbitOptions) -> bool {
-    ratio * estimate <= PROMISED * options.tolerance && ratio * residual <= options.accuracy
+/// Whether the next cycle ends the search with something to spare if estimate and residual go on falling by `fall`.
+fn promises((estimate, residual): (f64, f64), fall: f64, options: &OrbitOptions) -> bool {
+    fall * estimate <= PROMISED * options.tolerance && fall * residual <= options.accuracy
 }
 
 /// A difference of two iterates, of their residuals, and the noise in the latter.

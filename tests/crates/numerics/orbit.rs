@@ -102,7 +102,7 @@ impl CycleMap for Told {
 }
 
 /// What is gathered in a cycle that is announced costs less than a cycle, so that announcements pay when more of them come true than not. Of 199 searches of a map with eight
-/// modes, which end abruptly, 63 announce their last cycle, and 32 one that is not.
+/// modes, which end abruptly, 58 announce their last cycle, and 26 one that is not.
 #[test]
 fn announced_cycles_are_the_last_ones_more_often_than_not() {
     let (mut kept, mut vain) = (0, 0);
@@ -118,6 +118,23 @@ fn announced_cycles_are_the_last_ones_more_often_than_not() {
     }
     // A quarter of the searches; by chance, a standard deviation is 7.
     assert!(kept >= 50 && vain < kept, "{kept} {vain}");
+}
+
+/// A map whose cycles differ by more than its orbit is asked for (rings that flutter) turns its residual every other time, which says nothing of an end.
+#[test]
+fn a_residual_that_turns_and_does_not_fall_announces_nothing() {
+    let (mut announced, mut cycles) = (0, 0);
+    for seed in 1..=SEEDS {
+        // Noise of ten times the tolerance.
+        let map = Linear::new(0.3, 300.0, seed);
+        let mut y = map.start.clone();
+        let mut map = Told { map, cycles: 0, announced: Vec::new() };
+        periodic_orbit(&mut map, &mut y, &options(1e-4, true)).unwrap();
+        announced += map.announced.len();
+        cycles += map.cycles;
+    }
+    // One of 11940, by chance; 6408 where a residual that turned was taken for one that is gone.
+    assert!(100 * announced <= cycles, "{announced} of {cycles}");
 }
 
 /// A last cycle began as far from the orbit as its end is, and the way that it went.
