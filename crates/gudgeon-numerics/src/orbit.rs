@@ -10,7 +10,7 @@
 
 use crate::EvalError;
 use crate::elementary;
-use nalgebra::{DMatrix, DVector, Schur};
+use nalgebra::{DMatrix, DVector, SVD, Schur};
 
 mod points;
 mod stretches;
@@ -804,10 +804,19 @@ fn explain(secants: &[Secant], r: &DVector<f64>, fresh: f64) -> (DVector<f64>, D
     (correction, rest)
 }
 
+/// By how much the eigenvalue `l` of `m` is in doubt where the columns of `m` are by `blur`: `|E v|` for its eigenvector `v`.
+fn blur_of(m: &DMatrix<f64>, l: f64, blur: &[f64]) -> f64 {
+    let n = m.nrows();
+    let kernel = SVD::new(m - DMatrix::identity(n, n) * l, false, true);
+    let Some(v) = kernel.v_t.as_ref().filter(|v| v.nrows() > 0) else { return 0.0 };
+    v.row(n - 1).iter().zip(blur).map(|(v, b)| (v * b).powi(2)).sum::<f64>().sqrt()
+}
+
 /// Largest multiplier (its magnitude) of the map on the span of the iterates' differences, and the largest factor `1/|1 - λ|` by
 /// which a residual there understates an error; and whether an unstable fixed point must be thought possible. Differences that are not well apart, or near the noise, are left out.
 fn spectrum(secants: &[Secant], fresh: f64) -> (f64, f64, bool) {
     let mut basis: Vec<(DVector<f64>, DVector<f64>)> = Vec::new();
+    let mut blur = Vec::new();
     for secant in secants.iter().rev() {
         let (mut q, mut g) = (secant.dy.clone(), &secant.dy + &secant.dr);
         for _ in 0..2 {
@@ -820,18 +829,20 @@ fn spectrum(secants: &[Secant], fresh: f64) -> (f64, f64, bool) {
         let size = q.norm();
         if size.is_finite() && size > (30.0 * secant.noise).max(fresh.max(0.01) * secant.dy.norm()) {
             basis.push((q / size, g / size));
+            blur.push(secant.noise / size);
         }
     }
     if basis.is_empty() {
         return (0.0, 1.0, false);
     }
     let m = DMatrix::from_fn(basis.len(), basis.len(), |i, j| basis[i].0.dot(&basis[j].1));
-    let eigenvalues = Schur::try_new(m, 1e-12, 200).map(|s| s.complex_eigenvalues());
+    let eigenvalues = Schur::try_new(m.clone(), 1e-12, 200).map(|s| s.complex_eigenvalues());
     let (mut largest, mut gain, mut suspect) = (0.0_f64, 1.0_f64, false);
     for l in eigenvalues.iter().flat_map(|e| e.iter()) {
         largest = largest.max(l.norm());
         suspect |= l.norm() > if l.re < 0.9 * l.norm() { SUSPECT_TURNING } else { SUSPECT };
-        gain = gain.max(1.0 / (l - 1.0).norm().max(1.0 / MAX_GAIN));
+        let blurred = if l.im == 0.0 { blur_of(&m, l.re, &blur) } else { 0.0 };
+        gain = gain.max(1.0 / (l - 1.0).norm().max(blurred).max(1.0 / MAX_GAIN));
     }
     (largest, gain, suspect)
 }
