@@ -807,13 +807,15 @@ fn explain(secants: &[Secant], r: &DVector<f64>, fresh: f64) -> (DVector<f64>, D
 /// By how much the eigenvalue `l` of `m` is in doubt where the columns of `m` are by `blur`: `|E v|` for its eigenvector `v`.
 fn blur_of(m: &DMatrix<f64>, l: f64, blur: &[f64]) -> f64 {
     let n = m.nrows();
-    let kernel = SVD::new(m - DMatrix::identity(n, n) * l, false, true);
-    let Some(v) = kernel.v_t.as_ref().filter(|v| v.nrows() > 0) else { return 0.0 };
+    // Singular values fall: the last direction is that of the eigenvector.
+    let kernel = SVD::try_new(m - DMatrix::identity(n, n) * l, false, true, 1e-12, 200);
+    let Some(v) = kernel.and_then(|k| k.v_t).filter(|v| v.nrows() > 0) else { return 0.0 };
     v.row(n - 1).iter().zip(blur).map(|(v, b)| (v * b).powi(2)).sum::<f64>().sqrt()
 }
 
 /// Largest multiplier (its magnitude) of the map on the span of the iterates' differences, and the largest factor `1/|1 - λ|` by
-/// which a residual there understates an error; and whether an unstable fixed point must be thought possible. Differences that are not well apart, or near the noise, are left out.
+/// which a residual there understates an error, at most what the noise of the differences can tell; and whether an unstable fixed point must be thought possible. Differences that
+/// are not well apart, or near the noise, are left out.
 fn spectrum(secants: &[Secant], fresh: f64) -> (f64, f64, bool) {
     let mut basis: Vec<(DVector<f64>, DVector<f64>)> = Vec::new();
     let mut blur = Vec::new();
