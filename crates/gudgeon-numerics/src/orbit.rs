@@ -370,7 +370,7 @@ impl Search {
             let ratio = state.learn(&at, &r, before.max(accuracy), options);
             let (correction, rest) = explain(&state.secants[state.trusted..], &r, FRESH);
             let noise = map.noise() * options.accuracy;
-            // A residual that turned fell by as much as it is smaller; where it grows nothing is foreseen.
+            // Of a residual that turned no mode tells the decay: it fell by as much as it is smaller, if it is.
             let fall = if ratio > 0.0 { ratio } else { residual / state.last };
             let explained = (correction.amax(), rest.amax());
             let estimate = self.judge(&mut state, residual, explained, ratio, noise);
