@@ -32,6 +32,7 @@ use serde_json::Value;
 
 mod again;
 mod approach;
+mod films_alone;
 mod gradients;
 mod integrator;
 mod sampler;
@@ -40,7 +41,7 @@ mod search;
 pub use integrator::RingIntegrator;
 
 use again::Again;
-use approach::Halves;
+use films_alone::FilmsAlone;
 use sampler::Sampler;
 use search::{oil_least, oil_noise, orbit_options, stopped};
 
@@ -58,7 +59,7 @@ pub struct Implicit {
     #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1 }))]
     pub periodicity: PosRatio,
     /// Most cycles, all phases of the search together, before the run is called unconverged. The search begins with cycles in halves, at most half of all, where
-    /// the pack can be halved (`waveform`). Half of the others, but at least 60, are accelerated; the rest, and those of models with decided seats, repeat plainly.
+    /// the pack can be halved (`waveform`); those of films alone, at most 30 after one of the whole pack, are not counted. Half of the others, but at least 60, are accelerated; the rest, and those of models with decided seats, repeat plainly.
     #[schemars(range(max = 1000))]
     pub max_cycles: u32,
 }
@@ -295,10 +296,12 @@ struct Cycle<'a> {
     leads_on: bool,
     /// What is known of the slope of the map before the first cycle.
     known: Vec<Change>,
-    /// Whether the search begins where one in halves ended; those, where they lead on from a cycle; and how many cycles they took.
+    /// Whether the search begins near the orbit, and the cycles in halves that led there.
     near: bool,
-    halves: Option<Halves>,
     coarse: usize,
+    /// Films that go through cycles by themselves, and how many these were.
+    films: Option<FilmsAlone>,
+    films_cycles: usize,
     /// The steps of the cycle before.
     again: Again,
     /// What is added to the end of each cycle; nothing where it is empty.
@@ -360,6 +363,9 @@ impl Cycle<'_> {
         let pieces = interval.map_or(1, |i| (period / i).round().max(1.0) as usize);
         let mut outcome = Ok(());
         options.ends = self.again.begin(self.pack, y, rtol);
+        if let Some(films) = &mut self.films {
+            films.waveform.begin_beside(y);
+        }
         for piece in 0..pieces {
             let span = (period * piece as f64 / pieces as f64, period * (piece + 1) as f64 / pieces as f64);
             let first = if piece == 0 { lend(&mut follower) } else { None };
@@ -374,6 +380,9 @@ impl Cycle<'_> {
         if outcome.is_err() {
             // Steps of a part of a cycle say nothing of the rest.
             self.again = Again::default();
+        }
+        if let Some(films) = &mut self.films {
+            films.waveform.end_beside(y);
         }
         outcome.and_then(|()| self.integrated())
     }
@@ -441,6 +450,7 @@ impl Cycle<'_> {
             again: &mut self.again,
         };
         let (progress, done) = (&mut self.progress, 1.0 - elementary::powf(0.8f64, self.done));
+        let films = &mut self.films;
         let (mut steps, mut stopped) = (0_u32, None);
         let mut observe = |p: &mut Problem<'_>, v: &dyn StepView| {
             steps += 1;
@@ -450,6 +460,9 @@ impl Cycle<'_> {
             {
                 stopped = Some((v.t1(), e));
                 return Flow::Stop;
+            }
+            if let Some(films) = films.as_mut() {
+                films.waveform.see(v);
             }
             let flow = lend(&mut follower).map_or(Flow::Continue, |f| f.step(p.pack, v));
             p.pack.book_oil((v.t0(), v.y0()), (v.t1(), v.y1()));
@@ -589,7 +602,7 @@ impl CycleMap for Cycle<'_> {
         self.near
     }
     fn lead(&mut self, y: &[f64], end: &[f64], tolerance: f64) -> Result<Option<Vec<f64>>, EvalError> {
-        self.led_by_halves(y, end, tolerance)
+        self.led_by_films((y, end), tolerance)
     }
     fn bend(&self) -> Option<Bend> {
         let noise = if matches!(self.method, Method::Waveform(_)) {
@@ -656,8 +669,9 @@ impl<'a> Cycle<'a> {
             leads_on: false,
             known: Vec::new(),
             near: false,
-            halves: None,
             coarse: 0,
+            films: None,
+            films_cycles: 0,
             moved: Vec::new(),
             follows: false,
             method: Method::new(s, pack),

@@ -129,6 +129,9 @@ pub struct Waveform {
     cycles: usize,
     apart: Option<f64>,
     parts: bool,
+    /// Whether gas and grooves stand as an integration of the whole pack found them, and how these began in it.
+    held: bool,
+    begun: Vec<f64>,
 }
 
 /// Gas and grooves over the cycle in which they were integrated last, while the periodic state is searched: no quadratures are told then.
@@ -159,6 +162,8 @@ impl Waveform {
             cycles: 0,
             apart: None,
             parts: false,
+            held: false,
+            begun: Vec::new(),
             films,
             staging: Staging::with_ring_steps(pack),
             forces,
@@ -196,11 +201,12 @@ impl Waveform {
             let begun = lend(follower).map_or(Ok(()), |f| f.begin(pack, 0.0, &begin));
             begun.map_err(|source| IntegrateError::Eval { t: 0.0, source })
         };
+        let rtol = setting.options.rtol;
         // A cycle is looked at in its second half, where both are known. Without films there is none.
         match self
             .seen
             .take()
-            .filter(|seen| follower.is_none() && self.stand(seen, pack, y, setting.options.rtol))
+            .filter(|seen| self.held || follower.is_none() && self.stand(seen, pack, y, rtol))
         {
             Some(seen) => {
                 let part = &self.grooves.part;
@@ -230,6 +236,37 @@ impl Waveform {
         pack.oil_pack.is_some()
             && moved(pack, self.grooves.part.states.iter().copied(), &seen.start, y) <= rtol
             && self.disagreement(pack) <= ALIKE * rtol
+    }
+
+    /// Gas and grooves stand as they are in an integration of the whole pack from `y` on, whose steps [`Self::see`] is told.
+    pub fn begin_beside(&mut self, y: &[f64]) {
+        let part = &self.grooves.part;
+        self.grooves.wave.begin(0.0, part.width());
+        self.begun = of(y, &part.states);
+        (self.held, self.seen, self.apart, self.parts) = (true, None, None, false);
+    }
+
+    /// A step of the whole pack.
+    pub fn see(&mut self, v: &dyn StepView) {
+        let (t0, t1, states) = (v.t0(), v.t1(), &self.grooves.part.states);
+        let mut between = vec![0.0; v.y0().len()];
+        self.grooves.wave.add(t1, |x, values| {
+            let all = if x == 0.0 {
+                v.y0()
+            } else if x == 1.0 {
+                v.y1()
+            } else {
+                v.interpolate(t0 + x * (t1 - t0), &mut between);
+                &between
+            };
+            values.iter_mut().zip(states).for_each(|(value, &k)| *value = all[k]);
+        });
+    }
+
+    /// The integration of the whole pack ended at `y`.
+    pub fn end_beside(&mut self, y: &[f64]) {
+        let start = std::mem::take(&mut self.begun);
+        self.seen = Some(Seen { start, end: of(y, &self.grooves.part.states) });
     }
 
     /// Has gas and grooves integrated in the next cycle, whatever they see.
@@ -367,6 +404,9 @@ impl Waveform {
 
     /// Compares the halves after a cycle, from the one on in which they must have come nearer if they do at all.
     pub fn compare(&mut self, pack: &Pack) {
+        if self.held {
+            return;
+        }
         self.cycles += 1;
         let (before, oil) = (self.apart.take(), pack.oil_pack.is_some());
         let most = APART[usize::from(oil)];
@@ -391,7 +431,7 @@ impl Waveform {
         }
         let period = pack.period();
         let films = pack.films();
-        if films == 0 {
+        if films == 0 || self.held {
             return 0.0;
         }
         let thickness = self.films.wave.mean_change(&self.before[0], period, films).change;

@@ -1,20 +1,16 @@
 //! The way to the periodic state by halves of the pack, for integrators of the whole.
 //!
 //! A cycle in halves (`waveform`) costs a tenth of one of the whole pack, and ends near where that does. So a search begins where one in halves ends; where halves do not agree
-//! it begins as if there had been none. What the whole pack does otherwise, `d = Φ(y) - Φh(y)`, is then known after one of its cycles, and halves that are
-//! moved by it, `y = Φh(y) + d`, lead to where its own orbit is but for the part by which `d` changes on the way (defect correction, stetter1978): the slow modes of the pack
-//! are found by the cheap cycles.
+//! it begins as if there had been none. With oil on the liner films lead on from there ([`super::films_alone`]).
 
 use gudgeon_core::Stopwatch;
 use gudgeon_core::quantity::quantity;
-use gudgeon_numerics::EvalError;
-use gudgeon_numerics::ode::IntegrateError;
 use gudgeon_numerics::orbit::{Change, OrbitOptions};
 use gudgeon_scene::{RunError, Stopped};
 
+use super::films_alone::{AGREED, FilmsAlone};
 use super::search::{first_states, orbit_options};
 use super::{Cycle, Implicit, Method, Pack, RingIntegrator, Wanted};
-use crate::waveform::Waveform;
 
 /// Tolerance of halves that a search begins with, over that of the search, and the range in which it is, without oil on the liner and with it: with less the search takes as many
 /// cycles of the whole pack.
@@ -28,36 +24,18 @@ const NEARBY: (f64, f64) = (3.0, 5e-3);
 /// Most steps of one of their halves in a cycle, without oil on the liner and with it: where a ring leaves the liner or opens and shuts a thousand times they are no way to
 /// anywhere, and cost more than the pack as a whole. Of 40 packs of three to six rings usual ones take up to 460 and 900.
 const ROUGH_STEPS: [u64; 2] = [600, 4000];
-/// How near halves that are moved come to their periodic state, over what is asked of the search, and most of their cycles.
-const MOVED: f64 = 0.5;
-const LED: usize = 10;
-/// How often they lead on: what they do otherwise than the whole pack changes on the way, usually by a tenth of it.
-const LEADS: usize = 2;
 /// Part of a search that they are told to take.
 const LEAD: f64 = 0.2;
-
-/// Halves of a pack at the end of their search.
-pub(super) struct Halves {
-    spec: Implicit,
-    options: OrbitOptions,
-    waveform: Box<Waveform>,
-    /// What is known of the slope of their map.
-    changes: Vec<Change>,
-    /// What the whole pack does otherwise in a cycle.
-    moved: Vec<f64>,
-    /// How often they may still lead on.
-    leads: usize,
-}
 
 /// Where a search begins.
 pub(super) struct Start {
     pub y: Vec<f64>,
     /// What is known of the slope of the map of a cycle.
     pub known: Vec<Change>,
-    /// Whether halves led there, and those that may lead on from there.
+    /// Whether halves led there; with oil on the liner, their films, which may lead on.
     pub near: bool,
-    pub halves: Option<Halves>,
-    /// Their cycles, and the time that they took \[s\].
+    pub films: Option<FilmsAlone>,
+    /// Cycles in halves, and the time that they took \[s\].
     pub coarse: usize,
     pub seconds: f64,
 }
@@ -69,7 +47,7 @@ impl Start {
             y: first_states(pack, start),
             known: Vec::new(),
             near: false,
-            halves: None,
+            films: None,
             coarse: 0,
             seconds: 0.0,
         }
@@ -92,7 +70,7 @@ fn rougher(s: &Implicit, pack: &Pack, most: u32) -> (Implicit, OrbitOptions) {
 }
 
 /// The map of a cycle in halves that leads to where another search begins.
-fn in_halves<'a>(
+pub(super) fn in_halves<'a>(
     spec: &'a Implicit,
     pack: &'a mut Pack,
     wanted: &Wanted<'a>,
@@ -130,13 +108,14 @@ pub(super) fn approach(
         (Ok(report), Method::Waveform(waveform)) if report.converged && report.period == 1 => {
             // Without oil a few cycles know the slope better than those in halves did.
             if oil {
-                begun.known = report.changes.clone();
-                let (changes, moved) = (report.changes, vec![0.0; y.len()]);
-                begun.halves = Some(Halves { spec, options, waveform, changes, moved, leads: LEADS });
+                begun.known.clone_from(&report.changes);
+                begun.films =
+                    Some(FilmsAlone { spec, options, waveform, changes: report.changes, near: AGREED });
             }
             (begun.y, begun.near) = (y, true);
         }
         (Err(e), _) if !e.may_go_otherwise() => return Err(e),
+        _ if oil => begun.films = Some(FilmsAlone::new(spec, options, pack)),
         _ => {}
     }
     Ok(begun)
@@ -146,49 +125,7 @@ impl Cycle<'_> {
     /// Takes over what led to where the search begins; its first states.
     pub(super) fn begin_at(&mut self, begun: Start) -> Vec<f64> {
         (self.known, self.near) = (begun.known, begun.near);
-        (self.halves, self.coarse) = (begun.halves, begun.coarse);
+        (self.films, self.coarse) = (begun.films, begun.coarse);
         begun.y
-    }
-
-    /// Where halves end that are moved by what this pack did otherwise than they in the cycle from `y` to `end`; `None` where there are none, or where they lead nowhere.
-    pub(super) fn led_by_halves(
-        &mut self,
-        y: &[f64],
-        end: &[f64],
-        tolerance: f64,
-    ) -> Result<Option<Vec<f64>>, EvalError> {
-        let Some(mut halves) = self.halves.take() else { return Ok(None) };
-        halves.moved.iter_mut().zip(y.iter().zip(end)).for_each(|(d, (y, end))| *d += end - y);
-        // Halves know of no passages.
-        self.pack.follow_passages(false);
-        let told = self.progress_told();
-        let mut progress = |_: f64| (self.progress)(told);
-        let mut cycle = in_halves(&halves.spec, self.pack, &self.wanted, &mut progress);
-        cycle.method = Method::Waveform(halves.waveform);
-        (cycle.known, cycle.moved, cycle.near) = (halves.changes.clone(), halves.moved, true);
-        let mut next = y.to_vec();
-        let options = OrbitOptions { tolerance: MOVED * tolerance, max_cycles: LED, ..halves.options };
-        let found = cycle.periodic(&mut next, &options);
-        let (done, failure) = (cycle.done as usize, cycle.failure.take());
-        let (moved, method) = (cycle.moved, cycle.method);
-        self.coarse += done;
-        self.pack.follow_passages(self.follows);
-        halves.leads -= 1;
-        match (found, method) {
-            (Ok(report), Method::Waveform(waveform))
-                if report.period == 1 && report.error_estimate <= tolerance =>
-            {
-                let led = Halves { waveform, moved, ..halves };
-                self.halves = Some(led).filter(|halves| halves.leads > 0);
-                Ok(Some(next))
-            }
-            (Err(e), _)
-                if matches!(failure, Some(IntegrateError::Eval { source: EvalError::Stopped, .. })) =>
-            {
-                self.failure = failure;
-                Err(e)
-            }
-            _ => Ok(None),
-        }
     }
 }

@@ -9,6 +9,7 @@ use gudgeon_scene::{RunError, Stopped};
 use indexmap::IndexMap;
 
 use super::approach::{Start, approach};
+use super::films_alone::FilmsAlone;
 use super::sampler::liner_table;
 use super::{Cycle, Implicit, NOISE_AGAIN, Pack, RingIntegrator, Taken, Wanted};
 use crate::error::RingPackError;
@@ -141,9 +142,12 @@ fn search(
     let before = begun.seconds;
     let mut cycle = Cycle::new(s, pack, wanted, progress);
     let mut y = cycle.begin_at(begun);
+    let turns = cycle.come_near(&mut y, &options)?;
+    options.max_cycles = options.max_cycles.saturating_sub(turns);
     let closed = cycle.close(&mut y, &options);
     let seconds = before + begin.seconds();
-    let (mut counters, cycles, coarse) = (counters(&cycle.stats), cycle.done, cycle.coarse);
+    let (mut counters, cycles, coarse) =
+        (counters(&cycle.stats), cycle.done, cycle.coarse + cycle.films_cycles);
     let apart = closed.as_ref().map_or_else(RunError::may_go_otherwise, |report| !report.converged);
     if s.integrator == RingIntegrator::Waveform && apart {
         let mut solution = whole(s, (pack, start), wanted, progress, (cycles, &counters))?;
@@ -182,7 +186,7 @@ fn search(
         cycle: results::Cycle { totals, measures: sampler.measures },
         // Decisions that do not repeat are told by the caller, for every start.
         period: if report.converged || !discrete { report.period } else { 0 },
-        cycles: report.cycle_equivalents,
+        cycles: report.cycle_equivalents + turns as f64,
         counters,
         notes,
         seconds,
@@ -200,7 +204,10 @@ fn whole(
     let tolerance = quantity(WHOLE * s.tolerance.si());
     let whole = Implicit { tolerance, integrator: RingIntegrator::Rodas3, ..s.clone() };
     pack.follow_passages(false);
-    let begun = Start::cold(pack, start);
+    let mut begun = Start::cold(pack, start);
+    if pack.oil_pack.is_some() {
+        begun.films = Some(FilmsAlone::new(s.clone(), orbit_options(s, pack), pack));
+    }
     let mut solution = search(&whole, (pack, begun), wanted, progress, start)?;
     for (name, count) in work {
         *solution.counters.entry(name.clone()).or_default() += count;
