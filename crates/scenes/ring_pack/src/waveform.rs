@@ -132,6 +132,8 @@ pub struct Waveform {
     /// Whether gas and grooves stand as an integration of the whole pack found them, and how these began in it.
     held: bool,
     begun: Vec<f64>,
+    /// All states at an instant of that.
+    between: Vec<f64>,
 }
 
 /// Gas and grooves over the cycle in which they were integrated last, while the periodic state is searched: no quadratures are told then.
@@ -164,6 +166,7 @@ impl Waveform {
             parts: false,
             held: false,
             begun: Vec::new(),
+            between: Vec::new(),
             films,
             staging: Staging::with_ring_steps(pack),
             forces,
@@ -248,18 +251,19 @@ impl Waveform {
 
     /// A step of the whole pack.
     pub fn see(&mut self, v: &dyn StepView) {
-        let (t0, t1, states) = (v.t0(), v.t1(), &self.grooves.part.states);
-        let mut between = vec![0.0; v.y0().len()];
-        self.grooves.wave.add(t1, |x, values| {
+        let Self { grooves: Half { wave, part, .. }, between, .. } = self;
+        let (t0, t1) = (v.t0(), v.t1());
+        between.resize(v.y0().len(), 0.0);
+        wave.add(t1, |x, values| {
             let all = if x == 0.0 {
                 v.y0()
             } else if x == 1.0 {
                 v.y1()
             } else {
-                v.interpolate(t0 + x * (t1 - t0), &mut between);
-                &between
+                v.interpolate(t0 + x * (t1 - t0), between);
+                &**between
             };
-            values.iter_mut().zip(states).for_each(|(value, &k)| *value = all[k]);
+            values.iter_mut().zip(&part.states).for_each(|(value, &k)| *value = all[k]);
         });
     }
 

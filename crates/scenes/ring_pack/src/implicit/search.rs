@@ -174,7 +174,7 @@ fn search(
     sampler.watch.carried(pack)?;
     let mut notes = sampler.watch.notes(pack);
     if report.period == 1 && !report.converged {
-        notes.push(not_periodic(report.error_estimate, options.tolerance, report.cycles));
+        notes.push(not_periodic(report.error_estimate, options.tolerance, report.cycles + turns));
     }
     if coarse > 0 {
         counters.insert("coarse_cycles".into(), coarse as u64);
