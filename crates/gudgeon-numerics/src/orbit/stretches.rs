@@ -139,12 +139,7 @@ impl Stretch {
         let explains = |b: &Blend| b.rest.amax() <= EXPLAINED * self.last_residual();
         let next = match (map.lead(y, g, tolerance)?, self.blend().filter(explains)) {
             (Some(next), _) => next,
-            (None, Some(blend)) => {
-                let mut next = g.to_vec();
-                next.iter_mut().zip(blend.step.iter()).zip(&self.s).for_each(|((y, d), s)| *y += d * s);
-                map.admit(g, &mut next);
-                next
-            }
+            (None, Some(blend)) => self.on_by(map, g, &blend.step),
             (None, None) => g.to_vec(),
         };
         self.residuals.clear();
@@ -219,10 +214,17 @@ impl Stretch {
     /// Moves the end `g` of the last cycle to where the cycles together are.
     fn settle(&self, map: &dyn CycleMap, g: &mut [f64]) {
         if let Some(blend) = self.blend() {
-            let reached = g.to_vec();
-            g.iter_mut().zip(blend.step.iter()).zip(&self.s).for_each(|((g, d), s)| *g += d * s);
-            map.admit(&reached, g);
+            let next = self.on_by(map, g, &blend.step);
+            g.copy_from_slice(&next);
         }
+    }
+
+    /// The states `g` moved by a scaled step, as far as the machine can follow.
+    fn on_by(&self, map: &dyn CycleMap, g: &[f64], step: &DVector<f64>) -> Vec<f64> {
+        let mut next: Vec<f64> =
+            g.iter().zip(step.iter()).zip(&self.s).map(|((g, d), s)| g + d * s).collect();
+        map.admit(g, &mut next);
+        next
     }
 
     /// Whether plain cycles come no nearer, although none drifts.
@@ -429,10 +431,7 @@ impl Search {
                 if state.plain && step.amax() == 0.0 {
                     continue;
                 }
-                for ((y, d), s) in y.iter_mut().zip(step.iter()).zip(&state.s) {
-                    *y += d * s;
-                }
-                map.admit(&g, y);
+                y.copy_from_slice(&state.on_by(map, &g, &step));
                 stepped = true;
                 state.restart();
             }
