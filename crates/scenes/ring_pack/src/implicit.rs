@@ -364,7 +364,7 @@ impl Cycle<'_> {
         let mut outcome = Ok(());
         options.ends = self.again.begin(self.pack, y, rtol);
         if let Some(films) = &mut self.films {
-            films.waveform.begin_beside(y);
+            films.waveform.begin_beside();
         }
         for piece in 0..pieces {
             let span = (period * piece as f64 / pieces as f64, period * (piece + 1) as f64 / pieces as f64);

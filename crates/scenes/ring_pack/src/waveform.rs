@@ -129,10 +129,8 @@ pub struct Waveform {
     cycles: usize,
     apart: Option<f64>,
     parts: bool,
-    /// Whether gas and grooves stand as an integration of the whole pack found them, and how these began in it.
+    /// Whether gas and grooves stand as an integration of the whole pack found them, and all states at an instant of that.
     held: bool,
-    begun: Vec<f64>,
-    /// All states at an instant of that.
     between: Vec<f64>,
 }
 
@@ -165,7 +163,6 @@ impl Waveform {
             apart: None,
             parts: false,
             held: false,
-            begun: Vec::new(),
             between: Vec::new(),
             films,
             staging: Staging::with_ring_steps(pack),
@@ -241,11 +238,9 @@ impl Waveform {
             && self.disagreement(pack) <= ALIKE * rtol
     }
 
-    /// Gas and grooves stand as they are in an integration of the whole pack from `y` on, whose steps [`Self::see`] is told.
-    pub fn begin_beside(&mut self, y: &[f64]) {
-        let part = &self.grooves.part;
-        self.grooves.wave.begin(0.0, part.width());
-        self.begun = of(y, &part.states);
+    /// Gas and grooves stand from now on as they are in an integration of the whole pack that begins, whose steps [`Self::see`] is told.
+    pub fn begin_beside(&mut self) {
+        self.grooves.wave.begin(0.0, self.grooves.part.width());
         (self.held, self.seen, self.apart, self.parts) = (true, None, None, false);
     }
 
@@ -267,10 +262,9 @@ impl Waveform {
         });
     }
 
-    /// The integration of the whole pack ended at `y`.
+    /// The integration of the whole pack ended at `y`; where it began does not matter to what stands.
     pub fn end_beside(&mut self, y: &[f64]) {
-        let start = std::mem::take(&mut self.begun);
-        self.seen = Some(Seen { start, end: of(y, &self.grooves.part.states) });
+        self.seen = Some(Seen { start: Vec::new(), end: of(y, &self.grooves.part.states) });
     }
 
     /// Has gas and grooves integrated in the next cycle, whatever they see.
