@@ -59,7 +59,7 @@ pub struct Implicit {
     #[schemars(extend("x-refine" = { "group": "tolerance", "factor": 0.1 }))]
     pub periodicity: PosRatio,
     /// Most cycles, all phases of the search together, before the run is called unconverged. The search begins with cycles in halves, at most half of all, where
-    /// the pack can be halved (`waveform`); those of films alone, at most 30 after one of the whole pack, are not counted. Half of the others, but at least 60, are accelerated; the rest, and those of models with decided seats, repeat plainly.
+    /// the pack can be halved (`waveform`); those of films alone, at most 31 after one of the whole pack, are not counted. Half of the others, but at least 60, are accelerated; the rest, and those of models with decided seats, repeat plainly.
     #[schemars(range(max = 1000))]
     pub max_cycles: u32,
 }
