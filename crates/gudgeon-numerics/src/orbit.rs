@@ -43,9 +43,9 @@ pub trait CycleMap {
     fn known(&self) -> &[Change] {
         &[]
     }
-    /// Whether the search begins near the orbit: at that of a map that is like this one.
-    fn begins_near(&self) -> bool {
-        false
+    /// How far from the orbit the search begins, in scaled units, where it begins near: at the orbit of a map that is like this one. Infinite where nobody knows.
+    fn begins_near(&self) -> Option<f64> {
+        None
     }
     /// Where the orbit of that map is if it is moved by what it lacks of this one in the cycle from `y` to `end` (defect correction, stetter1978), within `tolerance`;
     /// `None` where there is no such map any more, or it has no such orbit.
@@ -54,6 +54,10 @@ pub trait CycleMap {
     /// Its cycles cannot be computed, and the search is not to go on.
     fn lead(&mut self, _y: &[f64], _end: &[f64], _tolerance: f64) -> Result<Option<Vec<f64>>, EvalError> {
         Ok(None)
+    }
+    /// Whether the machine never leaves a fixed point, however slow it is about it: a search that ends at one then does not try.
+    fn stays(&self) -> bool {
+        false
     }
     /// How the map is searched if it is strongly bent; `None` for one that is nearly linear between the iterates.
     fn bend(&self) -> Option<Bend> {
@@ -217,7 +221,7 @@ pub fn periodic_orbit(
     }
     let mut other = y.to_vec();
     if !search.doubled {
-        if !search.suspect || !search.report.converged {
+        if !search.suspect || !search.report.converged || map.stays() {
             return Ok(search.finish());
         }
         // Near or beyond the edge of stability: what does the machine itself do?
@@ -342,7 +346,7 @@ impl Search {
         self.noisy = false;
         // Far from the orbit a rough map does: the first cycle only has to leave the arbitrary start.
         let first = self.report.cycles == 0;
-        let near = first && map.begins_near();
+        let near = first && map.begins_near().is_some();
         let rough = if first && !near { options.accuracy.max(1e-3) } else { options.accuracy };
         let mut accuracy = if times == 1 { rough } else { options.accuracy };
         let mut before = accuracy;

@@ -287,19 +287,31 @@ fn a_search_begins_where_halves_end() {
     }
 }
 
-/// Where rings flutter halves do not agree, and the oil, which takes 38 cycles of the whole pack to its periodic state, is brought there by cycles of the films alone.
+/// Where rings flutter halves do not agree, and the oil, which takes hundreds of cycles of the whole pack to its periodic state, is brought there by cycles of the films alone.
 #[test]
 fn films_alone_lead_where_rings_flutter() {
-    let r = &runs(&[set("alcohol-2000-5600", &[])])[0];
-    let count = |name: &str| r.solver.counters.get(name).copied().unwrap_or(0);
-    println!("{} and {} cycles", count("coarse_cycles"), count("cycles"));
-    // 9 cycles in halves and 45 of films, and 9 of the whole pack when this was written.
-    assert!(count("coarse_cycles") > 20 && count("cycles") <= 14, "{:?}", r.solver.counters);
-    assert!(value(r, "periodicity_error") <= 2e-3);
-    // 108 cycles of order 5 at a tolerance of 1e-5. The film of ring 1 goes on for longest: 1.3e-3 of the friction is left of it, and 1.7e-3 was before.
-    for (name, exact, admitted) in [("blow_by", 11.011339, 2e-4), ("friction_power", 442.8003, 3e-3)] {
-        let error = (value(r, name) / exact - 1.0).abs();
-        assert!(error <= admitted, "{name}: {error:e}");
+    let r = runs(&[
+        set("alcohol-2000-5600", &[]),
+        set("turbo-diesel-120", &["engine.speed=3000 rpm".into(), "solver.tolerance=3e-3".into()]),
+    ]);
+    // Films that come nearer, by 300 cycles at a time, to where a hundredth of what counts as one is moved: runs at tolerances of 1e-4 and 1e-5 differ by 4e-5. As far as they came before, by
+    // the film on the whole liner, the friction of the diesel was 1.4e-2 of itself too low: ring 1 then had yet to run dry at its upper turning point.
+    let exact = [
+        [("blow_by", 11.0118), ("friction_power", 443.44)],
+        [("blow_by", 86.2310), ("friction_power", 735.95)],
+    ];
+    for (r, exact) in r.iter().zip(exact) {
+        let count = |name: &str| r.solver.counters.get(name).copied().unwrap_or(0);
+        println!("{} and {} cycles", count("coarse_cycles"), count("cycles"));
+        // 121 and 71 in halves and of films, 10 and 7 of the whole pack when this was written.
+        assert!(count("coarse_cycles") > 20 && count("cycles") <= 14, "{:?}", r.solver.counters);
+        assert!(value(r, "periodicity_error") <= 2e-3);
+        for ((name, exact), admitted) in exact.into_iter().zip([2e-4, 4e-3]) {
+            let error = (value(r, name) / exact - 1.0).abs();
+            println!("{name}: {error:e}");
+            // 8e-6 and 9e-5 of the blow-by, 8e-4 and 2e-3 of the friction when this was written.
+            assert!(error <= admitted, "{name}: {error:e}");
+        }
     }
 }
 

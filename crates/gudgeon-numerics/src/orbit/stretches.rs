@@ -12,8 +12,8 @@ use nalgebra::DVector;
 
 use super::points::{Blend, Points};
 use super::{
-    Bend, CycleMap, NEARER, OrbitOptions, ROUGHEST, SETTLED, Search, Secant, changes, explain, known, sinks,
-    spectrum,
+    Bend, CycleMap, NEARER, OrbitOptions, ROUGHEST, SETTLED, Search, Secant, changes, explain, known, norm,
+    sinks, spectrum,
 };
 use crate::EvalError;
 use crate::elementary;
@@ -23,6 +23,9 @@ const FIRST: usize = 4;
 const SKIPPED: usize = 2;
 /// Most cycles in which a search that begins near the orbit is led on.
 const LED: usize = 4;
+/// Distance from the orbit to which a like map leads, over the way there, and that moved by less it is nearer than that: the way gets shorter by a third to a half each time, as
+/// fluttering packs show.
+const LED_TO: f64 = 2.0;
 /// Secants of a stretch, whose cycles are one more.
 const GATHERED: usize = 2;
 /// Part of the residual that cycles taken together may leave over to be stepped with before the stretch is complete, and of a step by which it may miss.
@@ -88,6 +91,8 @@ struct Stretch {
     ahead: f64,
     /// Cycles in which a search that began near the orbit may still be led on.
     near: usize,
+    /// How far from the orbit the cycle begins, as far as that by which it was led there says; infinite where it says nothing.
+    led: f64,
 }
 
 impl Stretch {
@@ -109,6 +114,7 @@ impl Stretch {
             drifts: vec![None; n],
             ahead: 0.0,
             near: 0,
+            led: f64::INFINITY,
         }
     }
 
@@ -138,7 +144,10 @@ impl Stretch {
         }
         let explains = |b: &Blend| b.rest.amax() <= EXPLAINED * self.last_residual();
         let next = match (map.lead(y, g, tolerance)?, self.blend().filter(explains)) {
-            (Some(next), _) => next,
+            (Some(next), _) => {
+                self.led = LED_TO * norm(&next, y, &self.s);
+                next
+            }
             (None, Some(blend)) => self.on_by(map, g, &blend.step),
             (None, None) => g.to_vec(),
         };
@@ -368,8 +377,8 @@ impl Search {
         }
         let (mut g, mut end) = (y.to_vec(), y.to_vec());
         let (mut stepped, mut passed, mut last) = (false, 0.0, 0.0);
-        if self.report.cycles == 0 && map.begins_near() {
-            (state.skipped, state.near) = (0, LED);
+        if let (0, Some(from)) = (self.report.cycles, map.begins_near()) {
+            (state.skipped, state.near, state.led) = (0, LED, LED_TO * from);
         }
         let mut accuracy = if rough { options.accuracy.max(1e-3) } else { options.accuracy };
         self.report.converged = false;
@@ -405,7 +414,7 @@ impl Search {
                 break;
             }
             passed = if estimate <= options.tolerance { estimate } else { 0.0 };
-            if passed > 0.0 && map.begins_near() {
+            if passed > 0.0 && map.begins_near().is_some() {
                 map.expect_last();
             }
             if state.near > 0
@@ -466,7 +475,8 @@ impl Search {
         let gain = seen.max(state.held);
         if state.ready() {
             state.held = seen;
-            self.suspect = suspect && !state.plain;
+            // What was known before is of a like map, whose search has asked.
+            self.suspect = suspect && !state.plain && state.near == 0;
             self.report.multiplier = largest.max(ratio.min(1.0));
         }
         let falls = residual > SETTLED * options.accuracy || residual < 0.5 * state.best;
@@ -474,6 +484,8 @@ impl Search {
         state.best = state.best.min(residual);
         let noise = residual.max(last).min(own_noise);
         let estimate = (gain * (rest.amax() + noise * weight) + missed).max(state.ahead);
+        // All that is slow went the way of which the length is known, noise that it multiplied with it.
+        let estimate = estimate.min(std::mem::replace(&mut state.led, f64::INFINITY).max(residual));
         self.report.error_estimate = estimate;
         estimate
     }

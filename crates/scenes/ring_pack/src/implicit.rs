@@ -20,6 +20,7 @@ use gudgeon_numerics::sdirk::Sdirk;
 
 use super::around::Around;
 use super::jacobian::Base;
+use super::layout::Layout;
 use super::modes::EventOf;
 use super::pack::Pack;
 use super::solver::{RingPackSolverSpec, Solution, Wanted};
@@ -296,8 +297,8 @@ struct Cycle<'a> {
     leads_on: bool,
     /// What is known of the slope of the map before the first cycle.
     known: Vec<Change>,
-    /// Whether the search begins near the orbit, and the cycles in halves that led there.
-    near: bool,
+    /// How far from the orbit the search begins where it begins near it, infinite where nobody knows; and the cycles in halves that led there.
+    near: Option<f64>,
     coarse: usize,
     /// Films that go through cycles by themselves, and how many these were.
     films: Option<FilmsAlone>,
@@ -501,6 +502,11 @@ impl Cycle<'_> {
         }
     }
 
+    /// Whether films go through a cycle of the whole pack by themselves: what they do otherwise than that is added to its end.
+    fn films_go_alone(&self) -> bool {
+        !self.moved.is_empty()
+    }
+
     /// Puts the film on the liner behind the states, and what the faces took up into them.
     fn end(&mut self, y: &mut [f64]) {
         let n = self.pack.layout.n;
@@ -516,6 +522,9 @@ const ASKED_EVERY: u32 = 1000;
 
 /// Tightest tolerance of a cycle: a hundred times the rounding of its states.
 const FINEST: f64 = 1e-13;
+/// What counts as one in the distance between the ends of a cycle of films alone, over that in one of the whole pack: of the oil that faces hold, and of the film on the liner. They
+/// take the same steps again, and it is by such amounts that ring 1 runs dry at its upper turning point over a hundred cycles: a tenth of a micrometre on the liner, and a hundredth of the friction.
+const FINER: (f64, f64) = (0.1, 0.02);
 /// Part of its accuracy by which a cycle in the steps of the one before differs from it, without oil on the liner and with it.
 const NOISE_AGAIN: f64 = 0.1;
 /// Part by which halves come nearer in a cycle at least: to a sixth usually.
@@ -567,8 +576,14 @@ impl CycleMap for Cycle<'_> {
         for ((s, y), info) in s.iter_mut().zip(y).zip(&self.pack.layout.states) {
             *s = if info.cycle_relative { y.abs().max(info.cycle_scale) } else { info.cycle_scale };
         }
-        if let Some(oil) = &self.pack.oil_pack {
-            s[self.pack.layout.n..].fill(oil.carried_scale());
+        let Some(oil) = &self.pack.oil_pack else { return };
+        let Layout { n, oil: faces, .. } = &self.pack.layout;
+        s[*n..].fill(oil.carried_scale());
+        if self.films_go_alone() {
+            for k in faces.clone() {
+                s[k] = y[k].abs().max(FINER.0 * self.pack.layout.states[k].cycle_scale);
+            }
+            s[*n..].iter_mut().for_each(|s| *s *= FINER.1);
         }
     }
     fn admit(&self, reached: &[f64], y: &mut [f64]) {
@@ -598,11 +613,15 @@ impl CycleMap for Cycle<'_> {
     fn known(&self) -> &[Change] {
         &self.known
     }
-    fn begins_near(&self) -> bool {
+    fn begins_near(&self) -> Option<f64> {
         self.near
     }
     fn lead(&mut self, y: &[f64], end: &[f64], tolerance: f64) -> Result<Option<Vec<f64>>, EvalError> {
         self.led_by_films((y, end), tolerance)
+    }
+    fn stays(&self) -> bool {
+        // Oil evaporates, is scraped off or passes: of more than there is room for nothing stays.
+        self.films_go_alone()
     }
     fn bend(&self) -> Option<Bend> {
         let noise = if matches!(self.method, Method::Waveform(_)) {
@@ -668,7 +687,7 @@ impl<'a> Cycle<'a> {
             taken: None,
             leads_on: false,
             known: Vec::new(),
-            near: false,
+            near: None,
             coarse: 0,
             films: None,
             films_cycles: 0,

@@ -32,8 +32,8 @@ pub(super) struct Start {
     pub y: Vec<f64>,
     /// What is known of the slope of the map of a cycle.
     pub known: Vec<Change>,
-    /// Whether halves led there; with oil on the liner, their films, which may lead on.
-    pub near: bool,
+    /// How far that is from the orbit, infinite where nobody knows, if halves led there; with oil on the liner, their films, which may lead on.
+    pub near: Option<f64>,
     pub films: Option<FilmsAlone>,
     /// Cycles in halves, and the time that they took \[s\].
     pub coarse: usize,
@@ -46,7 +46,7 @@ impl Start {
         Self {
             y: first_states(pack, start),
             known: Vec::new(),
-            near: false,
+            near: None,
             films: None,
             coarse: 0,
             seconds: 0.0,
@@ -112,7 +112,7 @@ pub(super) fn approach(
                 begun.films =
                     Some(FilmsAlone { spec, options, waveform, changes: report.changes, near: AGREED });
             }
-            (begun.y, begun.near) = (y, true);
+            (begun.y, begun.near) = (y, Some(f64::INFINITY));
         }
         (Err(e), _) if !e.may_go_otherwise() => return Err(e),
         _ if oil => begun.films = Some(FilmsAlone::new(spec, options, pack)),

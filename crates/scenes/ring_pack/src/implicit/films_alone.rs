@@ -65,7 +65,8 @@ impl Cycle<'_> {
         let options = OrbitOptions { tolerance: films.near * tolerance, max_cycles: MOST, ..films.options };
         let found = cycle.map(y, &mut alone, options.accuracy).and_then(|_| {
             cycle.moved = end.iter().zip(&alone).map(|(end, alone)| end - alone).collect();
-            (cycle.near, cycle.known) = (!films.changes.is_empty(), films.changes);
+            cycle.near = (!films.changes.is_empty()).then_some(f64::INFINITY);
+            cycle.known = films.changes;
             cycle.periodic(&mut next, &options)
         });
         let (done, failure, method) = (cycle.done as usize, cycle.failure.take(), cycle.method);
@@ -90,25 +91,26 @@ impl Cycle<'_> {
 
     /// Brings `y` near the periodic state by cycles of the whole pack and of its films alone, in turns, where halves did not; the cycles of the whole.
     pub(super) fn come_near(&mut self, y: &mut [f64], options: &OrbitOptions) -> Result<usize, RunError> {
-        if self.near || options.max_cycles <= 2 * TURNS.iter().sum::<usize>() {
+        if self.near.is_some() || options.max_cycles <= 2 * TURNS.iter().sum::<usize>() {
             return Ok(0);
         }
         let begun = self.done;
-        self.turns(y, options).map_err(|source| {
+        let way = self.turns(y, options).map_err(|source| {
             let theta_deg = self.pack.at.theta.to_degrees();
             self.failure.take().map_or(RunError::Eval { theta_deg, source }, stopped)
         })?;
-        self.near = self.films.is_some();
+        self.near = self.films.as_ref().map(|_| way);
         Ok((self.done - begun) as usize)
     }
 
-    fn turns(&mut self, y: &mut [f64], options: &OrbitOptions) -> Result<(), EvalError> {
+    /// The same; how far films moved the start of the last cycle of the whole, in scaled units.
+    fn turns(&mut self, y: &mut [f64], options: &OrbitOptions) -> Result<f64, EvalError> {
         let (mut start, mut end, mut scale) = (y.to_vec(), y.to_vec(), vec![1.0; y.len()]);
-        let mut led = false;
+        let (mut led, mut way) = (false, f64::INFINITY);
         for cycles in TURNS {
             for _ in 0..cycles {
                 if self.films.is_none() {
-                    return Ok(());
+                    return Ok(way);
                 }
                 start.copy_from_slice(y);
                 match self.map(&start, y, options.accuracy.max(ROUGH)) {
@@ -121,13 +123,17 @@ impl Cycle<'_> {
                 }
             }
             self.scale(&end, &mut scale);
-            let changes = start.iter().zip(&end).zip(&scale).map(|((a, b), s)| ((b - a) / s).abs());
-            let tolerance = options.tolerance.max(PART / FLUTTER * changes.fold(0.0, f64::max));
+            let tolerance = options.tolerance.max(PART / FLUTTER * apart(&start, &end, &scale));
             if let Some(next) = self.led_by_films((&start, &end), tolerance)? {
                 y.copy_from_slice(&next);
-                led = true;
+                (led, way) = (true, apart(&start, y, &scale));
             }
         }
-        Ok(())
+        Ok(way)
     }
+}
+
+/// Largest difference of two starts in scaled units.
+fn apart(a: &[f64], b: &[f64], scale: &[f64]) -> f64 {
+    a.iter().zip(b).zip(scale).map(|((a, b), s)| ((b - a) / s).abs()).fold(0.0, f64::max)
 }
