@@ -87,6 +87,8 @@ pub struct Bend {
     pub reach: f64,
     /// Accuracy of a cycle over the residual of the one before: far from the orbit cheaper cycles do.
     pub rough: f64,
+    /// Cycles that are not looked at: at the start, and after a step, which stirs up fast modes. With fewer a search takes fewer cycles, and knows less of slow modes where it ends.
+    pub settles: (usize, usize),
     /// Part of its accuracy by which a cycle usually differs from cycle to cycle.
     pub noise: f64,
 }

@@ -282,7 +282,7 @@ impl CycleMap for Bent {
         self.1
     }
     fn bend(&self) -> Option<Bend> {
-        Some(Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, noise: 0.1 })
+        Some(Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, settles: (4, 2), noise: 0.1 })
     }
 }
 
@@ -361,7 +361,7 @@ impl CycleMap for Logistic {
 
 #[test]
 fn a_cycle_that_repeats_every_second_time_is_reported() {
-    let bent = Some(Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, noise: 0.1 });
+    let bent = Some(Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, settles: (4, 2), noise: 0.1 });
     for (accelerate, bend) in [(true, None), (true, bent), (false, None)] {
         for start in [0.3, 0.55, 0.68, 0.9] {
             let r: f64 = 3.2;
@@ -536,7 +536,7 @@ impl CycleMap for Vain {
 
 #[test]
 fn a_map_that_gives_up_is_asked_no_more() {
-    let bend = Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, noise: 1.0 };
+    let bend = Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, settles: (4, 2), noise: 1.0 };
     for (accelerate, bend) in [(true, None), (true, Some(bend)), (false, None)] {
         let mut map = Vain { left: 4, bend };
         let report = periodic_orbit(&mut map, &mut [0.0], &options(1e-4, accelerate)).unwrap();
@@ -809,7 +809,7 @@ impl CycleMap for Taught {
 fn a_like_map_shortens_a_search_in_stretches_by_what_it_taught_and_more_where_it_leads_on() {
     // Multipliers of 0.94, 0.875 and 0.82.
     let b = [0.35, 0.5, 0.6];
-    let bend = Some(Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, noise: 1.0 });
+    let bend = Some(Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, settles: (4, 2), noise: 1.0 });
     let options =
         OrbitOptions { tolerance: 5e-3, accuracy: 1e-4, max_cycles: 200, refinements: 0, accelerate: true };
     let (mut led, mut taught, mut alone, mut leads) = (0, 0, 0, 0);
@@ -851,7 +851,7 @@ fn a_like_map_shortens_a_search_in_stretches_by_what_it_taught_and_more_where_it
 fn a_start_that_hardly_moves_ends_the_search_of_a_slow_map() {
     // Multipliers of 0.99, 0.875 and 0.82.
     let b = [0.14, 0.5, 0.6];
-    let bend = Some(Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, noise: 1.0 });
+    let bend = Some(Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, settles: (4, 2), noise: 1.0 });
     let options =
         OrbitOptions { tolerance: 8e-3, accuracy: 3e-4, max_cycles: 200, refinements: 0, accelerate: true };
     let slow = Change { start: vec![1.0, 0.0, 0.0], change: vec![-0.0098, 0.0098, 0.0], noise: 1e-4 };
@@ -885,7 +885,7 @@ impl Creep {
 }
 impl CycleMap for Creep {
     fn bend(&self) -> Option<Bend> {
-        Some(Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, noise: 0.1 })
+        Some(Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, settles: (4, 2), noise: 0.1 })
     }
     fn dim(&self) -> usize {
         3
@@ -935,7 +935,7 @@ fn a_store_that_creeps_is_filled_where_its_rate_ends() {
 
 #[test]
 fn a_bent_map_is_followed_by_fresh_secants_and_cheap_cycles() {
-    let bent = Some(Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, noise: 0.3 });
+    let bent = Some(Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, settles: (4, 2), noise: 0.3 });
     // Multipliers of 0.9, 0.8, 0.6 and 0.28.
     let b = [0.45, 0.63, 0.9, 1.2];
     let (mut all, mut plain) = (0, 0);
@@ -998,7 +998,7 @@ impl CycleMap for Stores {
         }
     }
     fn bend(&self) -> Option<Bend> {
-        Some(Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, noise: 0.1 })
+        Some(Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, settles: (4, 2), noise: 0.1 })
     }
 }
 
@@ -1117,7 +1117,7 @@ impl CycleMap for Store {
         }
     }
     fn bend(&self) -> Option<Bend> {
-        Some(Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, noise: 0.1 })
+        Some(Bend { fresh: 0.2, stride: 40.0, reach: 4.0, rough: 0.03, settles: (4, 2), noise: 0.1 })
     }
 }
 

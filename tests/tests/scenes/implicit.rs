@@ -303,13 +303,13 @@ fn films_alone_lead_where_rings_flutter() {
     for (r, exact) in r.iter().zip(exact) {
         let count = |name: &str| r.solver.counters.get(name).copied().unwrap_or(0);
         println!("{} and {} cycles", count("coarse_cycles"), count("cycles"));
-        // 121 and 71 in halves and of films, 10 and 7 of the whole pack when this was written.
+        // 71 and 87 in halves and of films, 8 and 7 of the whole pack when this was written.
         assert!(count("coarse_cycles") > 20 && count("cycles") <= 14, "{:?}", r.solver.counters);
         assert!(value(r, "periodicity_error") <= 2e-3);
         for ((name, exact), admitted) in exact.into_iter().zip([2e-4, 4e-3]) {
             let error = (value(r, name) / exact - 1.0).abs();
             println!("{name}: {error:e}");
-            // 8e-6 and 9e-5 of the blow-by, 8e-4 and 2e-3 of the friction when this was written.
+            // 1e-5 and 1.1e-4 of the blow-by, 8e-4 and 3e-4 of the friction when this was written; of other searches as good up to 3e-3.
             assert!(error <= admitted, "{name}: {error:e}");
         }
     }

@@ -18,9 +18,6 @@ use super::{
 use crate::EvalError;
 use crate::elementary;
 
-/// Cycles that are not looked at: at the start, and after a step, which stirs up fast modes.
-const FIRST: usize = 4;
-const SKIPPED: usize = 2;
 /// Most cycles in which a search that begins near the orbit is led on.
 const LED: usize = 4;
 /// Distance from the orbit to which a like map leads, over the way there, and that moved by less it is nearer than that: the way gets shorter by a third to a half each time, as
@@ -46,8 +43,8 @@ const FARTHER: f64 = 10.0;
 const EMPTIED: f64 = 0.7;
 const FILLED: f64 = 3.0;
 const AT_LEAST: f64 = 9.0;
-/// Cycles at the noise of the map after which nothing more is expected: those of three stretches.
-const IDLE: usize = 3 * (SKIPPED + GATHERED);
+/// Stretches at the noise of the map after which nothing more is expected.
+const IDLE: usize = 3;
 /// Cosine between residuals of a machine that goes to and fro, the part of a residual that two such cycles leave, its least size over the accuracy, and the
 /// cycles in a row that must be so: secants bring a mode with a negative multiplier to rest in a stretch, unless the period has doubled.
 const TURNING: f64 = -0.9;
@@ -103,7 +100,7 @@ impl Stretch {
             s: vec![1.0; n],
             residuals: Vec::new(),
             at: None,
-            skipped: if known.is_empty() { FIRST } else { SKIPPED },
+            skipped: if known.is_empty() { bend.settles.0 } else { bend.settles.1 },
             held: 1.0,
             points: Points::with(known),
             reach: bend.reach,
@@ -118,12 +115,17 @@ impl Stretch {
         }
     }
 
+    /// Its cycles, those among them that are not looked at.
+    const fn cycles(&self) -> usize {
+        self.bend.settles.1 + GATHERED
+    }
+
     /// Begins anew after a step.
     fn restart(&mut self) {
         self.points.stepped();
         self.residuals.clear();
         self.at = None;
-        self.skipped = SKIPPED;
+        self.skipped = self.bend.settles.1;
     }
 
     /// Where a search that began near the orbit goes on after the cycle from `y` to `g`: where a like map leads, or by what all cycles say if that explains where they are, or
@@ -139,7 +141,7 @@ impl Stretch {
         if self.near == 0 {
             self.points.forget();
             self.residuals.clear();
-            self.skipped = SKIPPED;
+            self.skipped = self.bend.settles.1;
             return Ok(None);
         }
         let explains = |b: &Blend| b.rest.amax() <= EXPLAINED * self.last_residual();
@@ -253,7 +255,7 @@ impl Stretch {
     /// Whether it did so for long enough; asked after every cycle.
     fn goes_to_and_fro(&mut self, accuracy: f64) -> bool {
         if self.ready() {
-            let cycles = if self.plain { 1 } else { SKIPPED + GATHERED };
+            let cycles = if self.plain { 1 } else { self.cycles() };
             self.turned = if self.turns(accuracy) { self.turned + cycles } else { 0 };
         }
         self.turned >= DOUBLED
@@ -408,7 +410,7 @@ impl Search {
                 state.settle(map, &mut g);
                 break;
             }
-            if state.idle > IDLE && (state.plain || state.blend().is_some()) {
+            if state.idle > IDLE * state.cycles() && (state.plain || state.blend().is_some()) {
                 self.noisy = true;
                 state.settle(map, &mut g);
                 break;
