@@ -52,7 +52,7 @@ pub trait CycleMap {
     ///
     /// # Errors
     /// Its cycles cannot be computed, and the search is not to go on.
-    fn lead(&mut self, _y: &[f64], _end: &[f64], _tolerance: f64) -> Result<Option<Vec<f64>>, EvalError> {
+    fn lead(&mut self, _y: &[f64], _end: &[f64], _tolerance: f64) -> Result<Option<Led>, EvalError> {
         Ok(None)
     }
     /// Whether the machine never leaves a fixed point, however slow it is about it: a search that ends at one then does not try.
@@ -63,6 +63,15 @@ pub trait CycleMap {
     fn bend(&self) -> Option<Bend> {
         None
     }
+}
+
+/// Where a like map leads.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Led {
+    /// State at the start of a cycle.
+    pub y: Vec<f64>,
+    /// Whether its search came to an end there, within the tolerance: then the way there tells how far off the start of the last cycle was.
+    pub settled: bool,
 }
 
 /// A difference of two starts, and of the changes over the cycles from them.

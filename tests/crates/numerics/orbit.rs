@@ -1,7 +1,7 @@
 //! Orbits of maps whose fixed points and multipliers are known: the true error against the reported one.
 
 use gudgeon_numerics::EvalError;
-use gudgeon_numerics::orbit::{Bend, Change, CycleMap, OrbitOptions, OrbitReport, periodic_orbit};
+use gudgeon_numerics::orbit::{Bend, Change, CycleMap, Led, OrbitOptions, OrbitReport, periodic_orbit};
 use nalgebra::{DMatrix, DVector};
 
 const N: usize = 8;
@@ -791,7 +791,7 @@ impl CycleMap for Taught {
     fn begins_near(&self) -> Option<f64> {
         self.like.is_some().then_some(f64::INFINITY)
     }
-    fn lead(&mut self, y: &[f64], end: &[f64], _: f64) -> Result<Option<Vec<f64>>, EvalError> {
+    fn lead(&mut self, y: &[f64], end: &[f64], _: f64) -> Result<Option<Led>, EvalError> {
         let Some((like, moved)) = &mut self.like else { return Ok(None) };
         self.leads += 1;
         moved.iter_mut().zip(y.iter().zip(end)).for_each(|(d, (y, end))| *d += end - y);
@@ -801,7 +801,8 @@ impl CycleMap for Taught {
             flow += d;
             flow
         });
-        Ok(Some(like.b.iter().zip(passed).map(|(b, out)| (out / b).powi(2)).collect()))
+        let y = like.b.iter().zip(passed).map(|(b, out)| (out / b).powi(2)).collect();
+        Ok(Some(Led { y, settled: true }))
     }
 }
 

@@ -146,9 +146,11 @@ impl Stretch {
         }
         let explains = |b: &Blend| b.rest.amax() <= EXPLAINED * self.last_residual();
         let next = match (map.lead(y, g, tolerance)?, self.blend().filter(explains)) {
-            (Some(next), _) => {
-                self.led = LED_TO * norm(&next, y, &self.s);
-                next
+            (Some(led), _) => {
+                if led.settled {
+                    self.led = LED_TO * norm(&led.y, y, &self.s);
+                }
+                led.y
             }
             (None, Some(blend)) => self.on_by(map, g, &blend.step),
             (None, None) => g.to_vec(),

@@ -12,7 +12,7 @@ use gudgeon_numerics::ode::{
     Direction, EventAction, Flow, IntegrateError, Integrator, LinearInvariant, OdeSystem, Options, Stage,
     Stats, StepView,
 };
-use gudgeon_numerics::orbit::{Bend, Change, CycleMap, OrbitOptions, OrbitReport, periodic_orbit};
+use gudgeon_numerics::orbit::{Bend, Change, CycleMap, Led, OrbitOptions, OrbitReport, periodic_orbit};
 use gudgeon_numerics::panel::{LOBATTO, SIMPSON};
 use gudgeon_numerics::radau::Radau5;
 use gudgeon_numerics::rodas::{Formula, Rodas};
@@ -619,7 +619,7 @@ impl CycleMap for Cycle<'_> {
     fn begins_near(&self) -> Option<f64> {
         self.near
     }
-    fn lead(&mut self, y: &[f64], end: &[f64], tolerance: f64) -> Result<Option<Vec<f64>>, EvalError> {
+    fn lead(&mut self, y: &[f64], end: &[f64], tolerance: f64) -> Result<Option<Led>, EvalError> {
         self.led_by_films((y, end), tolerance)
     }
     fn stays(&self) -> bool {

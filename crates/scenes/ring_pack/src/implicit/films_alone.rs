@@ -7,7 +7,7 @@
 
 use gudgeon_numerics::EvalError;
 use gudgeon_numerics::ode::IntegrateError;
-use gudgeon_numerics::orbit::{Change, CycleMap, OrbitOptions};
+use gudgeon_numerics::orbit::{Change, CycleMap, Led, OrbitOptions};
 use gudgeon_scene::RunError;
 
 use super::approach::in_halves;
@@ -53,7 +53,7 @@ impl Cycle<'_> {
         &mut self,
         (y, end): (&[f64], &[f64]),
         tolerance: f64,
-    ) -> Result<Option<Vec<f64>>, EvalError> {
+    ) -> Result<Option<Led>, EvalError> {
         let Some(mut films) = self.films.take() else { return Ok(None) };
         // Films know of no passages.
         self.pack.follow_passages(false);
@@ -77,7 +77,7 @@ impl Cycle<'_> {
                 self.known.clone_from(&report.changes);
                 (films.changes, films.waveform) = (report.changes, waveform);
                 self.films = Some(films);
-                Ok(Some(next))
+                Ok(Some(Led { y: next, settled: report.converged }))
             }
             (Err(e), _)
                 if matches!(failure, Some(IntegrateError::Eval { source: EvalError::Stopped, .. })) =>
@@ -125,8 +125,9 @@ impl Cycle<'_> {
             self.scale(&end, &mut scale);
             let tolerance = options.tolerance.max(PART / FLUTTER * apart(&start, &end, &scale));
             if let Some(next) = self.led_by_films((&start, &end), tolerance)? {
-                y.copy_from_slice(&next);
-                (led, way) = (true, apart(&start, y, &scale));
+                y.copy_from_slice(&next.y);
+                led = true;
+                way = if next.settled { apart(&start, y, &scale) } else { f64::INFINITY };
             }
         }
         Ok(way)
