@@ -735,10 +735,13 @@ impl<'a> Cycle<'a> {
 
     /// Searches the periodic state from `y`, and where the cycle is integrated in halves their agreement.
     fn close(&mut self, y: &mut [f64], options: &OrbitOptions) -> Result<OrbitReport, RunError> {
-        self.periodic(y, options).map_err(|source| {
-            let theta_deg = self.pack.at.theta.to_degrees();
-            self.failure.take().map_or(RunError::Eval { theta_deg, source }, stopped)
-        })
+        self.periodic(y, options).map_err(|source| self.failed(source))
+    }
+
+    /// Why a search that could not go on failed: by its last cycle, or else by `source`.
+    fn failed(&mut self, source: EvalError) -> RunError {
+        let theta_deg = self.pack.at.theta.to_degrees();
+        self.failure.take().map_or(RunError::Eval { theta_deg, source }, stopped)
     }
 
     fn periodic(&mut self, y: &mut [f64], options: &OrbitOptions) -> Result<OrbitReport, EvalError> {

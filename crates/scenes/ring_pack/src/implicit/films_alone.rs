@@ -11,7 +11,6 @@ use gudgeon_numerics::orbit::{Change, CycleMap, Led, OrbitOptions};
 use gudgeon_scene::RunError;
 
 use super::approach::in_halves;
-use super::search::stopped;
 use super::{Cycle, Implicit, Method, Pack};
 use crate::waveform::Waveform;
 
@@ -95,10 +94,7 @@ impl Cycle<'_> {
             return Ok(0);
         }
         let begun = self.done;
-        let way = self.turns(y, options).map_err(|source| {
-            let theta_deg = self.pack.at.theta.to_degrees();
-            self.failure.take().map_or(RunError::Eval { theta_deg, source }, stopped)
-        })?;
+        let way = self.turns(y, options).map_err(|source| self.failed(source))?;
         self.near = self.films.as_ref().map(|_| way);
         Ok((self.done - begun) as usize)
     }
