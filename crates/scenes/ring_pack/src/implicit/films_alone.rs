@@ -1,7 +1,7 @@
 //! The way to the periodic state with oil on the liner: films alone, between cycles of the whole pack.
 //!
 //! What takes the cycles of a pack with oil is not its rings, which repeat after a few cycles even where they flutter, but the oil on the liner and before the edges of faces: what is
-//! missing of that falls by as little as a twentieth a cycle. After a cycle of the whole pack, `Φ(y)`, films and oil can go through it by themselves, under its gas and its rings, in a tenth of the time.
+//! missing of that falls by as little as a hundredth a cycle. After a cycle of the whole pack, `Φ(y)`, films and oil can go through it by themselves, under its gas and its rings, in a tenth to a third of the time.
 //! What they do otherwise than in the whole, `d = Φ(y) - Φf(y)`, is then known, and where films come to rest that are moved by it, `y = Φf(y) + d`, the next cycle of the whole begins
 //! (defect correction, stetter1978).
 
@@ -18,8 +18,8 @@ use crate::waveform::Waveform;
 /// cycles at least.
 const TURNS: [usize; 3] = [3, 1, 1];
 const ROUGH: f64 = 1e-3;
-/// How near to their rest films come, over what is asked of the search, where halves agreed and where rings flutter: there cycles of films differ by more, and three times as many would halve
-/// an error. In turns at least over the change of the cycle that they saw.
+/// How near to their rest films come, over what is asked of the search, where halves agreed and where rings flutter: there cycles of films differ by more, and half as near leaves
+/// the same errors. In turns at least over the change of the cycle that they saw.
 pub(super) const AGREED: f64 = 0.2;
 const FLUTTER: f64 = 0.5;
 const PART: f64 = 0.1;
