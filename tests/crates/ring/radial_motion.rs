@@ -5,15 +5,15 @@ use std::cell::OnceCell;
 use gudgeon_core::EvalError;
 use gudgeon_core::kinds::{
     FaceForces, RadialLimits, RadialLoads, RadialMotion, RadialMotionCtx, RadialMotionSpec, RadialResponse,
-    RadialState,
+    RadialState, RadialTrials,
 };
-use gudgeon_core::states::Signals;
+use gudgeon_core::states::{Signals, Stage};
 use gudgeon_ring::FilmBalance;
 use gudgeon_ring::parts::soft;
 
 const OMEGA: f64 = 200.0;
 
-/// A film with the load `rest - damping v + bend v²`, and a contact and loads that are given.
+/// A film with the load `rest (2 um/h)^falls - damping v + bend v²`, and a contact and loads that are given.
 #[derive(Debug, Clone)]
 struct Ring {
     h: f64,
@@ -27,11 +27,14 @@ struct Ring {
     friction: Option<(f64, f64)>,
     faces: usize,
     rest: f64,
+    falls: f64,
     damping: f64,
     bend: f64,
     flux: [f64; 2],
     fails_to_carry: bool,
     evaluations: usize,
+    /// Those of the load alone.
+    loads: usize,
     seen: Seen,
 }
 
@@ -58,18 +61,21 @@ impl Ring {
             friction: None,
             faces: 1,
             rest: 1300.0,
+            falls: 0.0,
             damping: 1e6,
             bend: 0.0,
             flux: [0.0; 2],
             fails_to_carry: false,
             evaluations: 0,
+            loads: 0,
             seen: Seen::default(),
         }
     }
 
     fn film_at(&self, v: f64) -> FaceForces {
+        let rest = self.rest * (2e-6 / self.h).powf(self.falls);
         FaceForces {
-            load: self.rest - self.damping * v + self.bend * v * v,
+            load: rest - self.damping * v + self.bend * v * v,
             squeeze_damping: self.damping - 2.0 * self.bend * v,
             ring_shear: 3.0 + 5.0 * v,
             liner_shear: 4.0 - 7.0 * v,
@@ -105,6 +111,7 @@ impl RadialLoads for Ring {
         Ok(self.film_at(v))
     }
     fn film_load(&mut self, v: f64) -> Result<(f64, f64), EvalError> {
+        self.loads += 1;
         let f = self.film_at(v);
         Ok((f.load, -f.squeeze_damping))
     }
@@ -112,11 +119,18 @@ impl RadialLoads for Ring {
         if self.fails_to_carry {
             return Err(EvalError::recoverable("test", "no film carries this"));
         }
-        let v = (self.rest - load) / self.damping;
+        let v = (self.film_at(0.0).load - load) / self.damping;
         Ok((v, self.film_at(v)))
     }
     fn flux(&mut self) -> &mut [f64; 2] {
         &mut self.flux
+    }
+}
+
+impl RadialTrials for Ring {
+    fn set_thickness(&mut self, h: f64) -> Result<(), EvalError> {
+        (self.h, self.seen) = (h, Seen::default());
+        Ok(())
     }
 }
 
@@ -305,6 +319,64 @@ fn the_drag_of_a_ring_off_the_liner_comes_in_smoothly() {
     let share = 1e5 * 3e-4 / 1600.0_f64;
     let drag = 1e5 * smooth((share / 0.01).ln() / 9.0_f64.ln());
     near(r.hdot, -300.0 / (1e6 + drag), 1e-9);
+}
+
+/// How far a stage from `base` to `x` goes beyond where its rates lead, `x - base - s ḣ(x)/(h ω)`, and these.
+fn beyond_rates(
+    limits: RadialLimits,
+    ring: &Ring,
+    (base, step): (f64, f64),
+    x: f64,
+) -> (f64, RadialResponse) {
+    let rates = once(limits, Ring { h: x.exp(), ..ring.clone() });
+    (x - base - step * rates.hdot / (x.exp() * OMEGA), rates)
+}
+
+#[test]
+fn a_stage_off_the_liner_ends_where_its_rates_say() {
+    let limits = RadialLimits {
+        min_load: 1e-3,
+        radial_speed: 3.0,
+        radial_drag: 10.0,
+        drag_counts: (1e-3, 0.1),
+        drag_gap: (2.0, 5.0),
+        ..far()
+    };
+    let (base, accuracy) = (3e-5_f64.ln(), [1e-9]);
+    let (mut drags, mut most) = ([0; 3], 0);
+    // Films that resist little, as much as the drag, and far more; rings that float, that leave at the cap, and that gas lifts or brings back.
+    for damping in [1e-2, 10.0, 300.0, 1e5] {
+        for push in [0.1, 1.0, 5.0, 30.0, 150.0, 450.0, -0.1, -1.0, -5.0, -30.0, -150.0, -2000.0] {
+            for step in [1e-4, 1e-3, 1e-2] {
+                let ring = Ring { damping, falls: 0.3, load: 577.0 - push, ..Ring::new() };
+                let stage = Stage { number: 1, base: &[base], step, accuracy: &accuracy };
+                let (mut m, mut tried) = (motion(limits), ring.clone());
+                let (mut y, mut rates) = ([base], RadialResponse::default());
+                for _ in 0..2 {
+                    (tried.evaluations, tried.loads) = (0, 0);
+                    let (response, _) = m.stage(&stage, &mut y, &mut tried).expect("a stage");
+                    // A drag that sets in with the velocity that the film alone allows can leave several roots: this is one.
+                    let at = |x: f64| beyond_rates(limits, &ring, (base, step), x);
+                    let ((before, _), (after, _)) = (at(y[0] - accuracy[0]), at(y[0] + accuracy[0]));
+                    assert!(before < 0.0 && after > 0.0, "{damping} {push} {step}: {before} {after}");
+                    rates = at(y[0]).1;
+                    assert!(
+                        (response.limited.drag > 0.0) == (rates.limited.drag > 0.0),
+                        "{damping} {push} {step}"
+                    );
+                }
+                most = most.max(tried.evaluations + tried.loads);
+                drags[if rates.limited.drag == 0.0 {
+                    0
+                } else {
+                    1 + usize::from(rates.limited.slowed > 0.1)
+                }] += 1;
+            }
+        }
+    }
+    assert!(drags.iter().all(|n| *n > 10), "free, dragged, at the cap: {drags:?}");
+    // A stage that is known begins at its end.
+    assert!(most <= 12, "{most} films");
 }
 
 #[test]

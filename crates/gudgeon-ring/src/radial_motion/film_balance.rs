@@ -11,7 +11,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::search::Search;
-use super::staged::Staged;
+use super::staged::{Before, Staged};
 use super::tangent::Tangent;
 
 /// The film thickness follows from the radial balance of forces, the inertia of the ring left out:
@@ -54,7 +54,7 @@ impl RadialMotionSpec for FilmBalance {
             dragged: false,
             differences: false,
             tangent: None,
-            slope: 0.0,
+            before: Before::default(),
         }))
     }
 }
@@ -76,8 +76,8 @@ struct Runtime {
     dragged: bool,
     differences: bool,
     tangent: Option<Tangent>,
-    /// Derivative of the balance of the last stage.
-    slope: f64,
+    /// What is known from the last stage.
+    before: Before,
 }
 
 impl Stateful for Runtime {
@@ -138,9 +138,9 @@ impl RadialMotion for Runtime {
         loads: &mut dyn RadialTrials,
     ) -> Result<(RadialResponse, FaceForces), EvalError> {
         let search = Search { limits: &self.limits, ring: self.ring, hdot: self.hdot, balanced: false };
-        let mut staged = Staged { search, per: self.per, slope: self.slope };
+        let mut staged = Staged { search, per: self.per, before: self.before };
         let answer = staged.solve(stage, &mut y[0], loads)?;
-        (self.slope, self.hdot) = (answer.slope, answer.response.hdot);
+        (self.before, self.hdot) = (answer.known, answer.response.hdot);
         Ok((answer.response, answer.film))
     }
 
@@ -156,12 +156,11 @@ impl RadialMotion for Runtime {
             return Ok(None);
         }
         let search = Search { limits: &self.limits, ring: self.ring, hdot: self.hdot, balanced: false };
-        let staged = Staged { search, per: self.per, slope: self.slope };
+        let staged = Staged { search, per: self.per, before: self.before };
         let trial = staged.trial(stage, y[0], loads)?;
         r[0] = trial.lacks / (1.0 + trial.slope.max(0.0));
-        let limited = staged.is_limited(loads.state(), trial.response.hdot, trial.film.load);
         self.hdot = trial.response.hdot;
-        Ok((!limited).then_some((trial.response, trial.film)))
+        Ok((!trial.is_limited).then_some((trial.response, trial.film)))
     }
 
     /// The tangent is worth its film where a velocity was searched for; one that came with its film by a search is as cheap as one evaluation.

@@ -9,22 +9,76 @@ const PARTING: f64 = 1e-5;
 /// Radial velocity over its limit at which a film carries nothing that it would lose at a higher one.
 const AWAY: f64 = 1e3;
 
+/// Most looks for the velocity that a film alone allows, and the step of Newton's method, over that velocity, behind which the next would be a millionth.
+const FREE: usize = 60;
+const NEAR: f64 = 1e-3;
+
+/// Load of a film that is drawn apart, over the least that is asked of it, below which it counts as none.
+const LEAST: f64 = 1e-6;
+
 /// Largest of a load `w` and zero, smoothed over `floor`: equal to the load within `least²/w`.
 pub fn soft(w: f64, floor: f64) -> f64 {
     0.5 * (w + (w * w + 4.0 * floor * floor).sqrt())
 }
 
+/// From 0 to 1, without a corner.
+fn ramp(x: f64) -> f64 {
+    x * x * (3.0 - 2.0 * x)
+}
+
 /// What is left of the load for the film, and how little of it a film is asked to carry \[N/m\].
 #[derive(Debug, Clone, Copy)]
-struct Needed {
+pub struct Needed {
     load: f64,
     floor: f64,
 }
 
 impl Needed {
+    /// At an instant, with films that carry at least `least` of the tension.
+    pub fn of(at: &RadialState, least: f64) -> Self {
+        Self { load: at.load - at.contact - at.dry, floor: least * at.tension }
+    }
+
+    /// The size of it.
+    pub fn size(&self) -> f64 {
+        self.soft().max(self.load.abs())
+    }
+
     fn soft(&self) -> f64 {
         soft(self.load, self.floor)
     }
+
+    /// What a film is asked to carry beyond what is needed against what resists.
+    pub fn lifted(&self, resisted: &Resisted) -> f64 {
+        let w = self.load + resisted.force;
+        soft(w, self.floor) - w
+    }
+
+    /// What a film that carries `load` lacks.
+    pub fn lacks(&self, load: f64, resisted: &Resisted) -> f64 {
+        soft(self.load + resisted.force, self.floor) - load
+    }
+
+    /// The velocity at which film and what resists are in balance, by a step of Newton's method from `v`: for the load that the film is asked for, or where gas lifts the ring
+    /// for what is needed, by what the film carries.
+    pub fn velocity(&self, v: f64, film: &FaceForces, resisted: &Resisted) -> f64 {
+        let (w, floor) = (self.load + resisted.force, self.floor);
+        if w >= 0.0 {
+            let all = soft(w, floor);
+            v - (all - film.load) / (film.squeeze_damping + resisted.slope * all / (2.0 * all - w))
+        } else {
+            let load = film.load.max(LEAST * floor);
+            let damping = film.squeeze_damping * (1.0 + (floor / load).powi(2));
+            v - (w - load + floor * floor / load) / (damping + resisted.slope)
+        }
+    }
+}
+
+/// What resists the motion of a ring beside its film \[N/m\], and its derivative \[N s/m²\].
+#[derive(Debug, Clone, Copy)]
+pub struct Resisted {
+    pub force: f64,
+    pub slope: f64,
 }
 
 /// The search of one instant.
@@ -41,8 +95,7 @@ impl Search<'_> {
     /// Squeeze velocity from the radial balance.
     pub fn rate(&mut self, loads: &mut dyn RadialLoads) -> Result<RadialResponse, EvalError> {
         let at = *loads.state();
-        let floor = self.limits.min_load * at.tension;
-        let needed = Needed { load: at.load - at.contact - at.dry, floor };
+        let needed = Needed::of(&at, self.limits.min_load);
         if !at.resists {
             return Ok(self.without_film(&at, needed.load));
         }
@@ -145,7 +198,7 @@ impl Search<'_> {
         needed: Needed,
         limited: &mut Limited,
     ) -> Result<f64, EvalError> {
-        let drag = self.drag(loads.state(), free, needed.soft().max(needed.load.abs()));
+        let drag = self.drag(loads.state(), free, needed.size());
         if drag <= 0.0 {
             return Ok(free);
         }
@@ -177,14 +230,42 @@ impl Search<'_> {
     pub fn drag(&self, at: &RadialState, free: f64, load: f64) -> f64 {
         let limits = self.limits;
         let share = limits.radial_drag * free.abs() / load;
-        let ((begins, full), (near, far)) = (limits.drag_counts, limits.drag_gap);
-        let off = ((at.thickness / at.contact_range - near) / (far - near)).min(1.0);
+        let ((begins, full), off) = (limits.drag_counts, self.off(at));
         if share <= begins || off <= 0.0 {
             return 0.0;
         }
         let x = (elementary::ln(share / begins) / elementary::ln(full / begins)).min(1.0);
-        let ramp = |x: f64| x * x * (3.0 - 2.0 * x);
         limits.radial_drag * ramp(x) * ramp(off)
+    }
+
+    /// How far a ring is off the liner, from where its drag counts (0) to where it does in full.
+    fn off(&self, at: &RadialState) -> f64 {
+        let (near, far) = self.limits.drag_gap;
+        ((at.thickness / at.contact_range - near) / (far - near)).min(1.0)
+    }
+
+    /// Whether a ring is so far off the liner that its drag may count.
+    pub fn is_off(&self, at: &RadialState) -> bool {
+        self.off(at) > 0.0
+    }
+
+    /// The same where the drag leaves the velocity `v`, at which the film is `film`: the film alone would allow a higher one, which is looked for as far as the drag changes
+    /// with it.
+    pub fn drag_at(
+        &self,
+        loads: &mut dyn RadialLoads,
+        needed: Needed,
+        (v, film): (f64, &FaceForces),
+    ) -> Result<f64, EvalError> {
+        let at = *loads.state();
+        if !self.is_off(&at) {
+            return Ok(0.0);
+        }
+        let load = needed.size();
+        let fastest = (self.limits.drag_counts.1 * load / self.limits.radial_drag).copysign(v);
+        let holds = v.abs() < fastest.abs();
+        let free = if holds { alone(loads, needed.soft(), (v, film), fastest)? } else { v };
+        Ok(self.drag(&at, free, load))
     }
 
     /// Drag per circumference \[N s/m²\] of surfaces in contact, while they part.
@@ -236,6 +317,38 @@ impl Search<'_> {
         let what = format!("radial balance of ring {} did not converge", self.ring + 1);
         Err(EvalError::recoverable("ring_pack", what))
     }
+}
+
+/// The velocity at which a film alone carries `load`, from `v` on as far as `fastest`; `v` itself where the film would be slower. At `v` it is `film`.
+fn alone(
+    loads: &mut dyn RadialLoads,
+    load: f64,
+    (v, film): (f64, &FaceForces),
+    fastest: f64,
+) -> Result<f64, EvalError> {
+    // More than it must carry on the way out, less on the way in.
+    let surplus = |carried: f64| fastest.signum() * (carried - load);
+    if surplus(film.load) <= 0.0 {
+        return Ok(v);
+    }
+    let inside = |x: f64, slow: f64, fast: f64| (x - slow) * (x - fast) < 0.0;
+    let follows = v + (film.load - load) / film.squeeze_damping;
+    let (mut slow, mut fast) = (v, fastest);
+    let mut free = if inside(follows, slow, fast) { follows } else { fastest };
+    for _ in 0..FREE {
+        let (carried, rate) = loads.film_load(free)?;
+        if surplus(carried) > 0.0 {
+            slow = free;
+        } else {
+            fast = free;
+        }
+        let next = free - (carried - load) / rate;
+        if slow == fastest || (next - free).abs() <= NEAR * free.abs() {
+            return Ok(if slow == fastest { fastest } else { next });
+        }
+        free = if inside(next, slow, fast) { next } else { 0.5 * (slow + fast) };
+    }
+    Ok(free)
 }
 
 /// On the floor: the film at rest, where it carries less than it must.

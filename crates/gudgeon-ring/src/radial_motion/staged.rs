@@ -10,13 +10,16 @@ use gudgeon_core::states::Stage;
 use gudgeon_numerics::elementary;
 use gudgeon_numerics::roots::{Found, Known, RootError, first_root};
 
-use super::search::{Search, soft};
+use super::search::{Needed, Resisted, Search};
 
 /// Longest step of a trial in `ln h`.
 const REACH: f64 = 1.0;
 
 /// Film thicknesses \[m\] between which trials stay: no groove is deeper, and nothing is thinner.
 const THICKNESSES: std::ops::Range<f64> = 1e-26..0.1;
+
+/// Square of a velocity off the liner over its cap up to which a trial is taken at its word.
+const NEAR_CAP: f64 = 0.9999;
 
 /// The film thickness \[m\] of a trial.
 fn thickness(x: f64) -> Result<f64, EvalError> {
@@ -33,24 +36,35 @@ pub struct Staged<'a> {
     pub search: Search<'a>,
     /// Seconds per radian.
     pub per: f64,
-    /// Derivative of the balance by `x`, of the last stage.
+    /// What is known from the last stage.
+    pub before: Before,
+}
+
+/// What is known from the last stage.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Before {
+    /// Derivative of the balance by `x`.
     pub slope: f64,
+    /// Whether the ring was off the liner, where its drag counts.
+    pub off: bool,
 }
 
 /// What a thickness leads to.
 pub struct Trial {
-    /// The balance, over the tension, and its derivative by `x` through the velocity alone.
+    /// The balance, over the tension, and its derivative by `x` through the velocity alone; off the liner the way in `x` beyond the one that the ring comes.
     pub lacks: f64,
     pub slope: f64,
     pub response: RadialResponse,
     pub film: FaceForces,
+    /// Whether an end of the way would change the velocity, or a drag that is left out.
+    pub is_limited: bool,
 }
 
 /// Answer of a stage.
 pub struct Answer {
     pub response: RadialResponse,
     pub film: FaceForces,
-    pub slope: f64,
+    pub known: Before,
 }
 
 impl Staged<'_> {
@@ -68,16 +82,24 @@ impl Staged<'_> {
         if let Some(answer) = self.free(stage, x, loads)? {
             return Ok(answer);
         }
+        if !self.before.off && self.search.is_off(loads.state()) {
+            // With a drag the balance has another slope.
+            self.before = Before { off: true, slope: 0.0 };
+            if let Some(answer) = self.free(stage, x, loads)? {
+                return Ok(answer);
+            }
+        }
         let found = self.limited(stage, *x, loads)?;
         // Nor is what was found below the floor within the accuracy.
         *x = if lowest > 0.0 { found.x.max(elementary::ln(lowest)) } else { found.x };
         loads.set_thickness(thickness(*x)?)?;
         let response = self.search.rate(loads)?;
         let film = response.film.map_or_else(|| loads.film(response.hdot), Ok)?;
-        Ok(Answer { response, film, slope: 0.0 })
+        let known = Before { slope: 0.0, off: response.limited.drag > 0.0 };
+        Ok(Answer { response, film, known })
     }
 
-    /// The stage without limits; none where one would act.
+    /// The stage without limits but the drag of a ring off the liner, where that counts; none where another would act.
     fn free(
         &self,
         stage: &Stage<'_>,
@@ -90,57 +112,68 @@ impl Staged<'_> {
         let mut last = None;
         let balance =
             |x: f64| -> Result<f64, EvalError> { Ok(last.insert(self.trial(stage, x, loads)?).lacks) };
-        let known =
-            Known { from: stage.base[0], guess: *x, slope: self.slope, reach: REACH, tol: stage.accuracy[0] };
+        let known = Known {
+            from: stage.base[0],
+            guess: *x,
+            slope: self.before.slope,
+            reach: REACH,
+            tol: stage.accuracy[0],
+        };
         let found = match first_root(balance, known) {
             Ok(found) => found,
             Err(RootError::Function(e)) if !e.is_recoverable() => return Err(e),
             Err(_) => return Ok(None),
         };
-        let Some(Trial { response, film, .. }) = last else { return Ok(None) };
-        if self.is_limited(loads.state(), response.hdot, film.load) {
-            return Ok(None);
-        }
+        let Some(Trial { response, film, is_limited: false, .. }) = last else { return Ok(None) };
         *x = found.x;
-        Ok(Some(Answer { response, film, slope: found.slope }))
+        let known = Before { slope: found.slope, off: response.limited.drag > 0.0 };
+        Ok(Some(Answer { response, film, known }))
     }
 
-    /// A trial at `x` without limits.
+    /// A trial at `x` without limits but the drag of a ring off the liner.
     pub fn trial(&self, stage: &Stage<'_>, x: f64, loads: &mut dyn RadialTrials) -> Result<Trial, EvalError> {
         let per = stage.step * self.per;
-        let cap = self.search.limits.radial_speed;
         let h = thickness(x)?;
         loads.set_thickness(h)?;
-        let hdot = h * (x - stage.base[0]) / per;
+        let way = x - stage.base[0];
+        let (hdot, cap) = (h * way / per, self.search.limits.radial_speed);
         // The velocity that the cap on it turns into this one.
-        let free = hdot / (1.0 - (hdot / cap).powi(2)).max(1e-12).sqrt();
+        let most = if self.before.off { NEAR_CAP } else { 1.0 - 1e-12 };
+        let free = hdot / (1.0 - (hdot / cap).powi(2).min(most)).sqrt();
+        let needed = Needed::of(loads.state(), self.search.limits.min_load);
         let film = loads.film(free)?;
+        let off = if self.before.off { self.search.drag_at(loads, needed, (free, &film))? } else { 0.0 };
         let at = loads.state();
-        let drag = if free > 0.0 { self.search.contact_drag(at) } else { 0.0 };
+        let parting = if free > 0.0 { self.search.contact_drag(at) } else { 0.0 };
         let (friction, slope) = loads.friction(free);
-        let needed = at.load - at.contact - at.dry + friction + drag * free;
-        let carried = soft(needed, self.search.limits.min_load * at.tension);
+        let resisted = Resisted { force: friction + (parting + off) * free, slope: slope + parting + off };
         let mut limited = Limited::default();
-        (limited.lifted, limited.contact_drag) = (carried - needed, drag * free);
-        Ok(Trial {
-            lacks: (carried - film.load) / at.tension,
-            slope: (film.squeeze_damping + slope + drag) * h / (per * at.tension),
-            response: RadialResponse::new(hdot, Some(film), limited),
-            film,
-        })
+        (limited.lifted, limited.contact_drag) = (needed.lifted(&resisted), parting * free);
+        if off > 0.0 {
+            (limited.drag, limited.slowed) = (off * free.abs(), 1.0 - hdot / free);
+        }
+        let (lacks, slope) = if self.before.off {
+            // A film that hardly resists balances at velocities that differ by orders: how far the ring comes by the one that follows from here.
+            let follows = needed.velocity(free, &film, &resisted);
+            (way - per * follows / ((1.0 + (follows / cap).powi(2)).sqrt() * h), 0.0)
+        } else {
+            let slope = (film.squeeze_damping + resisted.slope) * h / (per * at.tension);
+            (needed.lacks(film.load, &resisted) / at.tension, slope)
+        };
+        let left_out = !self.before.off && self.search.drag(at, free, needed.size()) > 0.0;
+        let is_limited = left_out || self.is_near_an_end(at, hdot);
+        Ok(Trial { lacks, slope, response: RadialResponse::new(hdot, Some(film), limited), film, is_limited })
     }
 
-    /// Whether a drag or an end of the way would change the velocity.
-    pub fn is_limited(&self, at: &RadialState, hdot: f64, load: f64) -> bool {
-        let near_an_end = if hdot > 0.0 {
+    /// Whether an end of the way would change the velocity.
+    fn is_near_an_end(&self, at: &RadialState, hdot: f64) -> bool {
+        let (lowest, band) = at.lowest;
+        let near = if hdot > 0.0 {
             at.furthest - at.thickness < self.search.limits.retreat_band * at.furthest
         } else {
-            let (lowest, band) = at.lowest;
             lowest > 0.0 && at.thickness - lowest < band * lowest
         };
-        near_an_end
-            || at.thickness <= at.lowest.0
-            || self.search.drag(at, hdot, load.abs().max(at.load.abs())) > 0.0
+        near || at.thickness <= lowest
     }
 
     /// The stage with limits.
