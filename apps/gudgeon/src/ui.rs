@@ -123,17 +123,17 @@ impl Ui {
     /// A progress bar on a terminal, nothing elsewhere.
     pub fn bar(&self) -> Bar {
         const SCALE: u64 = 1000;
-        let target = if self.quiet || !io::stderr().is_terminal() {
-            ProgressDrawTarget::hidden()
-        } else {
-            ProgressDrawTarget::stderr()
-        };
+        let shown = !self.quiet && io::stderr().is_terminal();
+        let target = if shown { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
         let bar = ProgressBar::with_draw_target(Some(SCALE), target);
         // A constant template: a mistake in it shows in every run, and costs only the look.
         if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent:>3} %  {elapsed}  {wide_msg}") {
             bar.set_style(style);
         }
-        bar.enable_steady_tick(Duration::from_millis(200));
+        if shown {
+            // A thread of its own.
+            bar.enable_steady_tick(Duration::from_millis(200));
+        }
         Bar { bar, scale: SCALE as f64 }
     }
 }

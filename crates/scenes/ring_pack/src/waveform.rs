@@ -598,6 +598,9 @@ impl<'a> OneSide<'a> {
     }
 
     fn quadratures(&mut self, q: &mut [f64]) {
+        if q.is_empty() {
+            return;
+        }
         self.pack.quadratures(&mut self.quads);
         q.iter_mut().zip(&self.part.quads).for_each(|(q, &k)| *q = self.quads[k]);
     }
